@@ -1,0 +1,251 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+#pragma once
+// Vocabulary: the grid, one concept for images, depth maps, dot grids and taxel arrays.
+// A grid has rows(), cols() and a cell at (row, column); x runs along columns, y along rows. What
+// the cell is (a byte, a float, a dual number, a 2-vector) is up to the algorithm that reads it.
+//
+// A type joins in one of two ways: it has members rows(), cols() and operator()(row, col), or
+// grid_traits is specialised for it (see adapt/, and examples/02_your_own_image_type.cpp). Inside,
+// algorithms see only views: cheap values that never own and never copy pixels.
+#include <concepts>
+#include <cstddef>
+#include <type_traits>
+#include <utility>
+
+namespace fingerpad {
+inline namespace v0 {
+
+/// Signed, as Eigen::Index: strides may be negative and differences need no cast.
+using index = std::ptrdiff_t;
+
+/// The one customisation point. Required: static rows(g), cols(g), at(g, row, col), where `at` of
+/// a mutable grid returns something that can be assigned to. Optional, for grids in plain memory:
+/// static data(g), row_stride(g), col_stride(g), strides counted in cells.
+template <class G>
+struct grid_traits {
+  static constexpr index rows(const G& g) requires requires { g.rows(); }
+  { return static_cast<index>(g.rows()); }
+  static constexpr index cols(const G& g) requires requires { g.cols(); }
+  { return static_cast<index>(g.cols()); }
+  static constexpr decltype(auto) at(const G& g, index row, index col) requires requires {
+    g(row, col);
+  }
+  { return g(row, col); }
+  static constexpr decltype(auto) at(G& g, index row, index col) requires requires { g(row, col); }
+  { return g(row, col); }
+};
+
+namespace detail {
+template <class G>
+using traits_of = grid_traits<std::remove_cvref_t<G>>;
+
+template <class G> concept readable_grid = requires(const std::remove_cvref_t<G>& g, index i) {
+  { traits_of<G>::rows(g) } -> std::convertible_to<index>;
+  { traits_of<G>::cols(g) } -> std::convertible_to<index>;
+  traits_of<G>::at(g, i, i);
+};
+
+template <class G>
+struct cell {  // void, not an error, for what is no grid: the concept then names the culprit
+  using type = void;
+};
+template <readable_grid G>
+struct cell<G> {
+  using type = std::remove_cvref_t<decltype(traits_of<G>::at(
+      std::declval<const std::remove_cvref_t<G>&>(), index(0), index(0)))>;
+};
+}  // namespace detail
+
+/// What the grid stores, without reference or const; void for what is not a grid.
+template <class G>
+using cell_t = typename detail::cell<G>::type;
+
+/// Anything with rows, columns and readable cells.
+template <class G> concept grid = detail::readable_grid<G> && !std::is_void_v<cell_t<G>>;
+
+/// A grid whose cells can be assigned from T.
+template <class G, class T = cell_t<G>>
+concept writable_grid = grid<G> && requires(std::remove_reference_t<G>& g, const T& cell, index i) {
+  detail::traits_of<G>::at(g, i, i) = static_cast<cell_t<G>>(cell);
+};
+
+/// A grid in plain memory: cell (i, j) is data[i * row_stride + j * col_stride].
+template <class G> concept strided_grid = grid<G> && requires(const std::remove_cvref_t<G>& g) {
+  { *detail::traits_of<G>::data(g) } -> std::convertible_to<cell_t<G>>;
+  { detail::traits_of<G>::row_stride(g) } -> std::convertible_to<index>;
+  { detail::traits_of<G>::col_stride(g) } -> std::convertible_to<index>;
+};
+
+template <grid G>
+constexpr index rows(const G& g) {
+  return detail::traits_of<G>::rows(g);
+}
+template <grid G>
+constexpr index cols(const G& g) {
+  return detail::traits_of<G>::cols(g);
+}
+
+/// True when the two grids have the same number of rows and of columns.
+template <grid A, grid B>
+constexpr bool same_size(const A& a, const B& b) {
+  return rows(a) == rows(b) && cols(a) == cols(b);
+}
+
+/// Cells in plain memory with signed strides; T is const for a view that only reads. Region,
+/// transpose, flip, every n-th row, one channel of an interleaved image: all are this view with
+/// another start and other strides.
+template <class T>
+class StridedView {
+ public:
+  constexpr StridedView() = default;
+  constexpr StridedView(T* data, index rows, index cols, index row_stride, index col_stride = 1)
+      : data_(data), rows_(rows), cols_(cols), row_stride_(row_stride), col_stride_(col_stride) {}
+  /// A view that only reads, from one that may write.
+  constexpr operator StridedView<const T>() const requires(!std::is_const_v<T>) {
+    return {data_, rows_, cols_, row_stride_, col_stride_};
+  }
+
+  constexpr index rows() const { return rows_; }
+  constexpr index cols() const { return cols_; }
+  constexpr index row_stride() const { return row_stride_; }
+  constexpr index col_stride() const { return col_stride_; }
+  constexpr T* data() const { return data_; }
+  constexpr T* row(index i) const { return data_ + i * row_stride_; }
+  constexpr T& operator()(index i, index j) const {
+    return data_[i * row_stride_ + j * col_stride_];
+  }
+
+ private:
+  T* data_ = nullptr;
+  index rows_ = 0;
+  index cols_ = 0;
+  index row_stride_ = 0;
+  index col_stride_ = 1;
+};
+
+/// Cells computed on demand by a function of (row, col): a conversion, a synthetic image.
+template <class F>
+class LazyView {
+ public:
+  constexpr LazyView(index rows, index cols, F function)
+      : rows_(rows), cols_(cols), function_(std::move(function)) {}
+  constexpr index rows() const { return rows_; }
+  constexpr index cols() const { return cols_; }
+  constexpr decltype(auto) operator()(index i, index j) const { return function_(i, j); }
+
+ private:
+  index rows_;
+  index cols_;
+  F function_;
+};
+template <class F>
+LazyView(index, index, F) -> LazyView<F>;
+
+/// The fallback: refers to a grid that offers nothing but its cells.
+template <class G>
+class RefView {
+ public:
+  constexpr explicit RefView(G& g) : grid_(&g) {}
+  constexpr index rows() const { return detail::traits_of<G>::rows(*grid_); }
+  constexpr index cols() const { return detail::traits_of<G>::cols(*grid_); }
+  constexpr decltype(auto) operator()(index i, index j) const {
+    return detail::traits_of<G>::at(*grid_, i, j);
+  }
+
+ private:
+  G* grid_;
+};
+
+template <class T>
+struct grid_traits<StridedView<T>> {
+  using View = StridedView<T>;
+  static constexpr index rows(const View& v) { return v.rows(); }
+  static constexpr index cols(const View& v) { return v.cols(); }
+  static constexpr T& at(const View& v, index row, index col) { return v(row, col); }
+  static constexpr T* data(const View& v) { return v.data(); }
+  static constexpr index row_stride(const View& v) { return v.row_stride(); }
+  static constexpr index col_stride(const View& v) { return v.col_stride(); }
+};
+
+namespace detail {
+template <class G>
+inline constexpr bool is_view = false;
+template <class T>
+inline constexpr bool is_view<StridedView<T>> = true;
+template <class F>
+inline constexpr bool is_view<LazyView<F>> = true;
+template <class G>
+inline constexpr bool is_view<RefView<G>> = true;
+}  // namespace detail
+
+/// The strongest view of a grid: itself if it is a view, strided if it lies in plain memory, else a
+/// reference. The grid must outlive the view; a temporary that owns its cells is refused at compile
+/// time ("use of deleted function").
+template <grid G>
+constexpr auto as_view(G& g) {
+  if constexpr (detail::is_view<std::remove_cv_t<G>>) {
+    return g;
+  } else if constexpr (strided_grid<G>) {
+    using Traits = detail::traits_of<G>;
+    using T = std::remove_pointer_t<decltype(Traits::data(g))>;
+    return StridedView<T>(Traits::data(g), Traits::rows(g), Traits::cols(g), Traits::row_stride(g),
+                          Traits::col_stride(g));
+  } else {
+    return RefView<G>(g);
+  }
+}
+template <grid G>
+  requires(!std::is_lvalue_reference_v<G> && !detail::is_view<std::remove_cvref_t<G>>)
+constexpr auto as_view(G&& owner) = delete;
+template <grid G>
+  requires(!std::is_lvalue_reference_v<G> && detail::is_view<std::remove_cvref_t<G>>)
+constexpr auto as_view(G&& view) {
+  return view;
+}
+
+/// The rectangle of `row_count` x `col_count` cells whose first cell is (row, col).
+template <class T>
+constexpr StridedView<T> region(
+    StridedView<T> v, index row, index col, index row_count, index col_count) {
+  return {v.data() + row * v.row_stride() + col * v.col_stride(), row_count, col_count,
+          v.row_stride(), v.col_stride()};
+}
+
+/// Rows and columns exchanged.
+template <class T>
+constexpr StridedView<T> transpose(StridedView<T> v) {
+  return {v.data(), v.cols(), v.rows(), v.col_stride(), v.row_stride()};
+}
+
+/// Last row first.
+template <class T>
+constexpr StridedView<T> flip_rows(StridedView<T> v) {
+  return {v.data() + (v.rows() - 1) * v.row_stride(), v.rows(), v.cols(), -v.row_stride(),
+          v.col_stride()};
+}
+
+/// Last column first.
+template <class T>
+constexpr StridedView<T> flip_cols(StridedView<T> v) {
+  return {v.data() + (v.cols() - 1) * v.col_stride(), v.rows(), v.cols(), v.row_stride(),
+          -v.col_stride()};
+}
+
+/// Rows and columns 0, n, 2n, ...; n >= 1.
+template <class T>
+constexpr StridedView<T> every_nth(StridedView<T> v, index n) {
+  return {v.data(), (v.rows() + n - 1) / n, (v.cols() + n - 1) / n, n * v.row_stride(),
+          n * v.col_stride()};
+}
+
+/// Channel `c` of an image whose `channels` values lie side by side in each pixel (BGRBGR...).
+/// `row_stride` is counted in values, as in `channels * cols` for an image without padding.
+template <class T>
+constexpr StridedView<T> interleaved_channel(
+    T* data, index rows, index cols, index channels, index c, index row_stride) {
+  return {data + c, rows, cols, row_stride, channels};
+}
+
+}  // namespace v0
+}  // namespace fingerpad

@@ -1,0 +1,103 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+#pragma once
+// Vocabulary: what a number is. Every kernel is written once for any `scalar`: float, double, long
+// double, a multiprecision number, or a dual number that carries derivatives.
+//
+// Rules for code on scalars: keep every intermediate in a named S (expression-template numbers hold
+// references), return S and never auto, call mathematics unqualified after `using std::exp;`, write
+// constants as S(2) or from scalar_traits, and branch on value(x).
+#include <cmath>
+#include <concepts>
+#include <limits>
+#include <type_traits>
+
+#if defined(__FINITE_MATH_ONLY__) && __FINITE_MATH_ONLY__
+#error \
+    "fingerpad marks missing data by NaN: compile with -fno-finite-math-only (part of -ffast-math)"
+#endif
+
+namespace fingerpad {
+inline namespace v0 {
+
+/// What the library must know of a number beyond its arithmetic; specialise it for your own.
+///   real       the plain number in which thresholds are stated
+///   epsilon()  relative spacing of `real`
+///   value(x)   x as a `real`, without derivatives: what branches look at
+/// The primary template serves every type with its own std::numeric_limits. A dual number has none
+/// (asking for it gives 0 in silence), so it needs its own traits: see adapt/autodiff.hpp.
+template <class S>
+struct scalar_traits {
+  static_assert(std::numeric_limits<S>::is_specialized,
+                "this number has no std::numeric_limits: specialise fingerpad::scalar_traits");
+  using real = S;
+  static constexpr real epsilon() { return (std::numeric_limits<S>::epsilon)(); }
+  static constexpr const real& value(const S& x) { return x; }
+};
+
+/// A number that behaves as a real one: copyable, built from an int and a double, ordered, and
+/// closed under + - * / (a result may be an expression, as long as it converts back).
+/// Models: float, double, long double, boost::multiprecision::number, Eigen::AutoDiffScalar.
+template <class S>
+concept scalar = std::copyable<S> && !std::integral<S> && std::constructible_from<S, double> &&
+                 std::constructible_from<S, int> && requires(const S a, const S b) {
+  S(a + b);
+  S(a - b);
+  S(a * b);
+  S(a / b);
+  S(-a);
+  { a < b } -> std::convertible_to<bool>;
+};
+
+template <class S>
+using scalar_real_t = typename scalar_traits<S>::real;
+
+/// x without its derivatives, as the plain number on which branches are taken.
+template <scalar S>
+constexpr scalar_real_t<S> value(const S& x) {
+  return scalar_traits<S>::value(x);
+}
+
+/// Relative spacing of the real type behind S; the yardstick of every threshold.
+template <scalar S>
+constexpr scalar_real_t<S> epsilon() {
+  return scalar_traits<S>::epsilon();
+}
+
+/// The missing value.
+template <scalar S>
+constexpr S not_a_number() {
+  return S((std::numeric_limits<scalar_real_t<S>>::quiet_NaN)());
+}
+
+/// False for NaN and for both infinities.
+template <scalar S>
+constexpr bool is_finite(const S& x) {
+  const scalar_real_t<S> v = value(x);
+  const scalar_real_t<S> difference = v - v;
+  return difference == scalar_real_t<S>(0);
+}
+
+template <scalar S>
+constexpr S square(const S& x) {
+  return S(x * x);
+}
+
+namespace detail {
+template <class Cell>
+struct real_of {
+  using type = Cell;
+};
+template <class Cell>
+  requires std::integral<Cell>
+struct real_of<Cell> {
+  using type = double;
+};
+}  // namespace detail
+
+/// The scalar to compute in for what a grid stores: double for integers, else the cell type itself.
+template <class Cell>
+using real_of_t = typename detail::real_of<std::remove_cvref_t<Cell>>::type;
+
+}  // namespace v0
+}  // namespace fingerpad
