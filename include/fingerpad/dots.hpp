@@ -93,10 +93,10 @@ constexpr bool is_present(const P& p) {
 /// a side, 8 also a corner. Returns how many there were. O(1), no allocation.
 template <int Neighbours = 8, dot_grid G, class Visit>
   requires(Neighbours == 4 || Neighbours == 8)
-constexpr int for_each_neighbour(const G& dots, index row, index col, Visit&& visit) {
+constexpr int for_each_neighbour(const G& dots, Index row, Index col, Visit&& visit) {
   int found = 0;
-  for (index i = row - 1; i <= row + 1; ++i) {
-    for (index j = col - 1; j <= col + 1; ++j) {
+  for (Index i = row - 1; i <= row + 1; ++i) {
+    for (Index j = col - 1; j <= col + 1; ++j) {
       const bool inside = i >= 0 && i < rows(dots) && j >= 0 && j < cols(dots);
       const bool self = i == row && j == col;
       const bool corner = i != row && j != col;
@@ -115,10 +115,10 @@ constexpr int for_each_neighbour(const G& dots, index row, index col, Visit&& vi
 
 /// How many dots of the grid were found.
 template <dot_grid G>
-constexpr index count_present(const G& dots) {
-  index count = 0;
-  for (index i = 0; i < rows(dots); ++i) {
-    for (index j = 0; j < cols(dots); ++j) {
+constexpr Index count_present(const G& dots) {
+  Index count = 0;
+  for (Index i = 0; i < rows(dots); ++i) {
+    for (Index j = 0; j < cols(dots); ++j) {
       count += is_present(cell_t<G>(grid_traits<G>::at(dots, i, j))) ? 1 : 0;
     }
   }

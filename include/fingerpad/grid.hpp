@@ -17,22 +17,22 @@ namespace fingerpad {
 inline namespace v0 {
 
 /// Signed, as Eigen::Index: strides may be negative and differences need no cast.
-using index = std::ptrdiff_t;
+using Index = std::ptrdiff_t;
 
 /// The one customisation point. Required: static rows(g), cols(g), at(g, row, col), where `at` of
 /// a mutable grid returns something that can be assigned to. Optional, for grids in plain memory:
 /// static data(g), row_stride(g), col_stride(g), strides counted in cells.
 template <class G>
 struct grid_traits {
-  static constexpr index rows(const G& g) requires requires { g.rows(); }
-  { return static_cast<index>(g.rows()); }
-  static constexpr index cols(const G& g) requires requires { g.cols(); }
-  { return static_cast<index>(g.cols()); }
-  static constexpr decltype(auto) at(const G& g, index row, index col) requires requires {
+  static constexpr Index rows(const G& g) requires requires { g.rows(); }
+  { return static_cast<Index>(g.rows()); }
+  static constexpr Index cols(const G& g) requires requires { g.cols(); }
+  { return static_cast<Index>(g.cols()); }
+  static constexpr decltype(auto) at(const G& g, Index row, Index col) requires requires {
     g(row, col);
   }
   { return g(row, col); }
-  static constexpr decltype(auto) at(G& g, index row, index col) requires requires { g(row, col); }
+  static constexpr decltype(auto) at(G& g, Index row, Index col) requires requires { g(row, col); }
   { return g(row, col); }
 };
 
@@ -40,9 +40,9 @@ namespace detail {
 template <class G>
 using traits_of = grid_traits<std::remove_cvref_t<G>>;
 
-template <class G> concept readable_grid = requires(const std::remove_cvref_t<G>& g, index i) {
-  { traits_of<G>::rows(g) } -> std::convertible_to<index>;
-  { traits_of<G>::cols(g) } -> std::convertible_to<index>;
+template <class G> concept readable_grid = requires(const std::remove_cvref_t<G>& g, Index i) {
+  { traits_of<G>::rows(g) } -> std::convertible_to<Index>;
+  { traits_of<G>::cols(g) } -> std::convertible_to<Index>;
   traits_of<G>::at(g, i, i);
 };
 
@@ -53,7 +53,7 @@ struct cell {  // void, not an error, for what is no grid: the concept then name
 template <readable_grid G>
 struct cell<G> {
   using type = std::remove_cvref_t<decltype(traits_of<G>::at(
-      std::declval<const std::remove_cvref_t<G>&>(), index(0), index(0)))>;
+      std::declval<const std::remove_cvref_t<G>&>(), Index(0), Index(0)))>;
 };
 }  // namespace detail
 
@@ -66,23 +66,23 @@ template <class G> concept grid = detail::readable_grid<G> && !std::is_void_v<ce
 
 /// A grid whose cells can be assigned from T.
 template <class G, class T = cell_t<G>>
-concept writable_grid = grid<G> && requires(std::remove_reference_t<G>& g, const T& cell, index i) {
+concept writable_grid = grid<G> && requires(std::remove_reference_t<G>& g, const T& cell, Index i) {
   detail::traits_of<G>::at(g, i, i) = static_cast<cell_t<G>>(cell);
 };
 
 /// A grid in plain memory: cell (i, j) is data[i * row_stride + j * col_stride].
 template <class G> concept strided_grid = grid<G> && requires(const std::remove_cvref_t<G>& g) {
   { *detail::traits_of<G>::data(g) } -> std::convertible_to<cell_t<G>>;
-  { detail::traits_of<G>::row_stride(g) } -> std::convertible_to<index>;
-  { detail::traits_of<G>::col_stride(g) } -> std::convertible_to<index>;
+  { detail::traits_of<G>::row_stride(g) } -> std::convertible_to<Index>;
+  { detail::traits_of<G>::col_stride(g) } -> std::convertible_to<Index>;
 };
 
 template <grid G>
-constexpr index rows(const G& g) {
+constexpr Index rows(const G& g) {
   return detail::traits_of<G>::rows(g);
 }
 template <grid G>
-constexpr index cols(const G& g) {
+constexpr Index cols(const G& g) {
   return detail::traits_of<G>::cols(g);
 }
 
@@ -99,57 +99,57 @@ template <class T>
 class StridedView {
  public:
   constexpr StridedView() = default;
-  constexpr StridedView(T* data, index rows, index cols, index row_stride, index col_stride = 1)
+  constexpr StridedView(T* data, Index rows, Index cols, Index row_stride, Index col_stride = 1)
       : data_(data), rows_(rows), cols_(cols), row_stride_(row_stride), col_stride_(col_stride) {}
   /// A view that only reads, from one that may write.
   constexpr operator StridedView<const T>() const requires(!std::is_const_v<T>) {
     return {data_, rows_, cols_, row_stride_, col_stride_};
   }
 
-  constexpr index rows() const { return rows_; }
-  constexpr index cols() const { return cols_; }
-  constexpr index row_stride() const { return row_stride_; }
-  constexpr index col_stride() const { return col_stride_; }
+  constexpr Index rows() const { return rows_; }
+  constexpr Index cols() const { return cols_; }
+  constexpr Index row_stride() const { return row_stride_; }
+  constexpr Index col_stride() const { return col_stride_; }
   constexpr T* data() const { return data_; }
-  constexpr T* row(index i) const { return data_ + i * row_stride_; }
-  constexpr T& operator()(index i, index j) const {
+  constexpr T* row(Index i) const { return data_ + i * row_stride_; }
+  constexpr T& operator()(Index i, Index j) const {
     return data_[i * row_stride_ + j * col_stride_];
   }
 
  private:
   T* data_ = nullptr;
-  index rows_ = 0;
-  index cols_ = 0;
-  index row_stride_ = 0;
-  index col_stride_ = 1;
+  Index rows_ = 0;
+  Index cols_ = 0;
+  Index row_stride_ = 0;
+  Index col_stride_ = 1;
 };
 
 /// Cells computed on demand by a function of (row, col): a conversion, a synthetic image.
 template <class F>
 class LazyView {
  public:
-  constexpr LazyView(index rows, index cols, F function)
+  constexpr LazyView(Index rows, Index cols, F function)
       : rows_(rows), cols_(cols), function_(std::move(function)) {}
-  constexpr index rows() const { return rows_; }
-  constexpr index cols() const { return cols_; }
-  constexpr decltype(auto) operator()(index i, index j) const { return function_(i, j); }
+  constexpr Index rows() const { return rows_; }
+  constexpr Index cols() const { return cols_; }
+  constexpr decltype(auto) operator()(Index i, Index j) const { return function_(i, j); }
 
  private:
-  index rows_;
-  index cols_;
+  Index rows_;
+  Index cols_;
   F function_;
 };
 template <class F>
-LazyView(index, index, F) -> LazyView<F>;
+LazyView(Index, Index, F) -> LazyView<F>;
 
 /// The fallback: refers to a grid that offers nothing but its cells.
 template <class G>
 class RefView {
  public:
   constexpr explicit RefView(G& g) : grid_(&g) {}
-  constexpr index rows() const { return detail::traits_of<G>::rows(*grid_); }
-  constexpr index cols() const { return detail::traits_of<G>::cols(*grid_); }
-  constexpr decltype(auto) operator()(index i, index j) const {
+  constexpr Index rows() const { return detail::traits_of<G>::rows(*grid_); }
+  constexpr Index cols() const { return detail::traits_of<G>::cols(*grid_); }
+  constexpr decltype(auto) operator()(Index i, Index j) const {
     return detail::traits_of<G>::at(*grid_, i, j);
   }
 
@@ -160,12 +160,12 @@ class RefView {
 template <class T>
 struct grid_traits<StridedView<T>> {
   using View = StridedView<T>;
-  static constexpr index rows(const View& v) { return v.rows(); }
-  static constexpr index cols(const View& v) { return v.cols(); }
-  static constexpr T& at(const View& v, index row, index col) { return v(row, col); }
+  static constexpr Index rows(const View& v) { return v.rows(); }
+  static constexpr Index cols(const View& v) { return v.cols(); }
+  static constexpr T& at(const View& v, Index row, Index col) { return v(row, col); }
   static constexpr T* data(const View& v) { return v.data(); }
-  static constexpr index row_stride(const View& v) { return v.row_stride(); }
-  static constexpr index col_stride(const View& v) { return v.col_stride(); }
+  static constexpr Index row_stride(const View& v) { return v.row_stride(); }
+  static constexpr Index col_stride(const View& v) { return v.col_stride(); }
 };
 
 namespace detail {
@@ -207,7 +207,7 @@ constexpr auto as_view(G&& view) {
 /// The rectangle of `row_count` x `col_count` cells whose first cell is (row, col).
 template <class T>
 constexpr StridedView<T> region(
-    StridedView<T> v, index row, index col, index row_count, index col_count) {
+    StridedView<T> v, Index row, Index col, Index row_count, Index col_count) {
   return {v.data() + row * v.row_stride() + col * v.col_stride(), row_count, col_count,
           v.row_stride(), v.col_stride()};
 }
@@ -234,7 +234,7 @@ constexpr StridedView<T> flip_cols(StridedView<T> v) {
 
 /// Rows and columns 0, n, 2n, ...; n >= 1.
 template <class T>
-constexpr StridedView<T> every_nth(StridedView<T> v, index n) {
+constexpr StridedView<T> every_nth(StridedView<T> v, Index n) {
   return {v.data(), (v.rows() + n - 1) / n, (v.cols() + n - 1) / n, n * v.row_stride(),
           n * v.col_stride()};
 }
@@ -243,7 +243,7 @@ constexpr StridedView<T> every_nth(StridedView<T> v, index n) {
 /// `row_stride` is counted in values, as in `channels * cols` for an image without padding.
 template <class T>
 constexpr StridedView<T> interleaved_channel(
-    T* data, index rows, index cols, index channels, index c, index row_stride) {
+    T* data, Index rows, Index cols, Index channels, Index c, Index row_stride) {
   return {data + c, rows, cols, row_stride, channels};
 }
 

@@ -1,0 +1,32 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+#pragma once
+// Eigen matrices, arrays, maps, references and blocks as grids in plain memory, row- or column-
+// major. Expressions without memory (a + b) need no adapter: they have rows(), cols() and (i, j).
+#include <Eigen/Core>
+
+#include "fingerpad/grid.hpp"
+
+namespace fingerpad {
+inline namespace v0 {
+
+template <class G>
+  requires std::derived_from<G, Eigen::DenseBase<G>> &&
+      (bool(Eigen::internal::traits<G>::Flags& Eigen::DirectAccessBit)) struct grid_traits<G> {
+    static Index rows(const G& g) { return g.rows(); }
+    static Index cols(const G& g) { return g.cols(); }
+    static decltype(auto) at(const G& g, Index row, Index col) { return g.coeff(row, col); }
+    static decltype(auto) at(G& g, Index row, Index col) requires requires { g.coeffRef(row, col); }
+    { return g.coeffRef(row, col); }
+    static auto* data(const G& g) { return g.data(); }
+    static auto* data(G& g) { return g.data(); }
+    static Index row_stride(const G& g) {
+      return G::IsRowMajor ? g.outerStride() : g.innerStride();
+    }
+    static Index col_stride(const G& g) {
+      return G::IsRowMajor ? g.innerStride() : g.outerStride();
+    }
+  };
+
+}  // namespace v0
+}  // namespace fingerpad

@@ -1,0 +1,48 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+#pragma once
+// mdspan of rank two as a grid, whichever library it comes from (std, std::experimental, Kokkos):
+// it is known by its members, so nothing is included, and cells are reached through accessor and
+// mapping, so it does not matter whether this mdspan is indexed by [] or by ().
+#include <concepts>
+#include <type_traits>
+
+#include "fingerpad/grid.hpp"
+
+namespace fingerpad {
+inline namespace v0 {
+
+namespace detail {
+template <class G> concept mdspan_2d = G::rank()
+== 2 && requires(const G& g) {
+  typename G::accessor_type;
+  typename G::mapping_type;
+  g.accessor().access(g.data_handle(), g.mapping()(0, 0));
+  g.extent(0);
+};
+}  // namespace detail
+
+template <detail::mdspan_2d G>
+struct grid_traits<G> {
+  using Extent = typename G::index_type;
+  static constexpr Index rows(const G& g) { return static_cast<Index>(g.extent(0)); }
+  static constexpr Index cols(const G& g) { return static_cast<Index>(g.extent(1)); }
+  static constexpr decltype(auto) at(const G& g, Index row, Index col) {
+    const auto offset = g.mapping()(static_cast<Extent>(row), static_cast<Extent>(col));
+    return g.accessor().access(g.data_handle(), offset);
+  }
+  static constexpr auto* data(
+      const G& g) requires std::is_pointer_v<typename G::data_handle_type> &&
+      (G::mapping_type::is_always_strided()) {
+    return g.data_handle();
+  }
+  static constexpr Index row_stride(const G& g) requires(G::mapping_type::is_always_strided()) {
+    return static_cast<Index>(g.stride(0));
+  }
+  static constexpr Index col_stride(const G& g) requires(G::mapping_type::is_always_strided()) {
+    return static_cast<Index>(g.stride(1));
+  }
+};
+
+}  // namespace v0
+}  // namespace fingerpad

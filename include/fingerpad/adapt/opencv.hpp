@@ -1,0 +1,47 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+#pragma once
+// OpenCV images as grids: cv::Mat_<T> as it is; one channel of an interleaved cv::Mat as a view
+// without a copy. A cv::Mat knows its type only at run time, so it is viewed by naming the type.
+#include <opencv2/core/mat.hpp>
+
+#include "fingerpad/expects.hpp"
+#include "fingerpad/grid.hpp"
+
+namespace fingerpad {
+inline namespace v0 {
+
+template <class T>
+struct grid_traits<cv::Mat_<T>> {
+  using Image = cv::Mat_<T>;
+  static Index rows(const Image& m) { return m.rows; }
+  static Index cols(const Image& m) { return m.cols; }
+  static const T& at(const Image& m, Index i, Index j) {
+    return *(data(m) + i * row_stride(m) + j);
+  }
+  static T& at(Image& m, Index i, Index j) { return *(data(m) + i * row_stride(m) + j); }
+  static const T* data(const Image& m) { return m.template ptr<T>(); }
+  static T* data(Image& m) { return m.template ptr<T>(); }
+  static Index row_stride(const Image& m) { return static_cast<Index>(m.step[0] / sizeof(T)); }
+  static Index col_stride(const Image&) { return 1; }
+};
+
+/// Channel `c` of `image` (B = 0, G = 1, R = 2 as OpenCV reads colour files), viewed as T, which
+/// must be the type of its values; refuses another type or a channel that is not there
+/// (parameter_error). The image must outlive the view.
+template <class T>
+StridedView<T> channel(cv::Mat& image, int c) {
+  expects(image.depth() == cv::DataType<std::remove_const_t<T>>::depth, "channel", "image.depth()",
+          static_cast<long long>(image.depth()), "the depth of the type asked for");
+  expects(c >= 0 && c < image.channels(), "channel", "c", static_cast<long long>(c),
+          "in [0, image.channels())");
+  return interleaved_channel(image.ptr<T>(), image.rows, image.cols, image.channels(), c,
+                             static_cast<Index>(image.step[0] / sizeof(T)));
+}
+template <class T>
+StridedView<const T> channel(const cv::Mat& image, int c) {
+  return channel<const T>(const_cast<cv::Mat&>(image), c);
+}
+
+}  // namespace v0
+}  // namespace fingerpad

@@ -1,0 +1,137 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+#pragma once
+// The few vector operations behind window_sums.hpp: load, store, convert, running sum over lanes.
+// A thin layer over the vector extensions that GCC and clang share. Explicit because GCC 12 does
+// not vectorise loops of run-time length at -O2; the width is that of the instruction set compiled
+// for, since wider vectors are split badly, and is a template argument everywhere, so that
+// translation units compiled for different sets never share a function by name.
+// Unsupported compiler or byte order: `native_vector_bytes` is 0 and nothing else is declared.
+#include <bit>
+#include <concepts>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <type_traits>
+#include <utility>
+
+namespace fingerpad {
+inline namespace v0 {
+namespace detail {
+
+#if !defined(__GNUC__) || (!defined(__clang__) && __GNUC__ < 12) || !defined(__BYTE_ORDER__) || \
+    __BYTE_ORDER__ != __ORDER_LITTLE_ENDIAN__
+inline constexpr int native_vector_bytes = 0;
+#else
+#define FINGERPAD_HAS_VECTORS
+#if defined(__AVX512BW__) && defined(__AVX512VL__)
+inline constexpr int native_vector_bytes = 64;
+#elif defined(__AVX2__)
+inline constexpr int native_vector_bytes = 32;
+#else
+inline constexpr int native_vector_bytes = 16;
+#endif
+#endif
+
+#if defined(FINGERPAD_HAS_VECTORS)
+#undef FINGERPAD_HAS_VECTORS
+
+/// N numbers of type T in one vector. A struct, because GCC 12 ignores a dependent size in a
+/// function-local alias.
+template <class T, int N>
+struct Lanes {
+  using type __attribute__((vector_size(N * sizeof(T)))) = T;
+};
+template <class T, int N>
+using lanes = typename Lanes<T, N>::type;
+
+template <class T, int N>
+inline lanes<T, N> load(const T* from) {
+  lanes<T, N> v;
+  std::memcpy(&v, from, sizeof v);
+  return v;
+}
+
+template <class T, class V>
+inline void store(T* to, V v) {
+  std::memcpy(to, &v, sizeof v);
+}
+
+/// The same numbers as another type, lane by lane.
+template <class To, int N, class V>
+inline lanes<To, N> convert(V v) {
+  return __builtin_convertvector(v, lanes<To, N>);
+}
+
+/// Lanes moved up by `Step`, zeros moving in.
+template <int Step, class V, std::size_t... I>
+inline V moved_up(V v, std::index_sequence<I...>) {
+  constexpr int n = int(sizeof...(I));
+  return __builtin_shufflevector(v, V{}, (int(I) < Step ? n + int(I) : int(I) - Step)...);
+}
+
+template <class V, std::size_t... I>
+inline V last_everywhere(V v, std::index_sequence<I...>) {
+  constexpr int n = int(sizeof...(I));
+  return __builtin_shufflevector(v, v, (int(I) * 0 + n - 1)...);
+}
+
+/// Lane i becomes the sum of lanes 0..i, modulo the range of T (unsigned).
+template <int N, class V, int Step = 1>
+inline V running_sum(V v) {
+  if constexpr (Step < N) {
+    v += moved_up<Step>(v, std::make_index_sequence<std::size_t(N)>{});
+    return running_sum<N, V, 2 * Step>(v);
+  } else {
+    return v;
+  }
+}
+
+/// True when every bit is 0.
+template <class T, int N>
+inline bool all_zero(lanes<T, N> v) {
+  constexpr int words = N * int(sizeof(T)) / 8;
+  using Words = lanes<std::uint64_t, words>;
+  const Words w = Words(v);
+  if constexpr (words > 2) {
+    constexpr int half = words / 2;
+    lanes<std::uint64_t, half> low, high;
+    std::memcpy(&low, &w, sizeof low);
+    std::memcpy(&high, reinterpret_cast<const char*>(&w) + sizeof low, sizeof high);
+    return all_zero<std::uint64_t, half>(low | high);
+  } else if constexpr (words == 2) {
+    return (w[0] | w[1]) == 0;
+  } else {
+    return w[0] == 0;
+  }
+}
+
+/// Where `mask` (all bits or none, lane by lane) takes a, else b.
+template <class V, class M>
+inline V choose(M mask, V a, V b) {
+  return V((M(a) & mask) | (M(b) & ~mask));
+}
+
+/// out[i] = sum of in[0..i], for i < n rounded up to whole vectors; `in` is zero from n on.
+/// After it `tail` further elements (rounded up likewise) repeat the total.
+/// Sums are modulo the range of Lane: differences up to its maximum remain exact.
+template <int Bytes, class In, class Lane>
+inline void running_sum_row(const In* in, Lane* out, std::ptrdiff_t n, std::ptrdiff_t tail) {
+  constexpr int N = Bytes / int(sizeof(Lane));
+  using V = lanes<Lane, N>;
+  V carry{};
+  std::ptrdiff_t i = 0;
+  for (; i < n; i += N) {
+    const V local = running_sum<N>(convert<Lane, N>(load<In, N>(in + i)));
+    store(out + i, V(local + carry));
+    carry += last_everywhere(local, std::make_index_sequence<std::size_t(N)>{});
+  }
+  for (const std::ptrdiff_t end = n + tail; i < end; i += N) {
+    store(out + i, carry);
+  }
+}
+#endif
+
+}  // namespace detail
+}  // namespace v0
+}  // namespace fingerpad
