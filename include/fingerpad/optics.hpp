@@ -54,6 +54,13 @@ void expects_valid(const Camera<S>& camera) {
           camera.plate_index, "finite and >= 1");
 }
 
+/// The same camera in another scalar.
+template <scalar To, scalar From>
+Camera<To> cast(const Camera<From>& c) {
+  return {To(c.plate_distance_mm), To(c.refractive_index),   To(c.center_x_px), To(c.center_y_px),
+          To(c.pitch_mm),          To(c.plate_thickness_mm), To(c.plate_index)};
+}
+
 namespace detail {
 
 /// tan of the refracted angle in a medium of index n, over t = tan of the angle in air:

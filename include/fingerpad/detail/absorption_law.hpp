@@ -44,6 +44,12 @@ void expects_valid(const Absorption<S>& fluid) {
           fluid.max_depth_mm, "finite and > 0");
 }
 
+/// The same fluid in another scalar.
+template <scalar To, scalar From>
+Absorption<To> cast(const Absorption<From>& f) {
+  return {To(f.c_red_per_mm), To(f.c_green_per_mm), To(f.kappa), To(f.max_depth_mm)};
+}
+
 /// The pencil of light that comes back to one pixel.
 template <scalar S = double>
 struct Pencil {

@@ -74,9 +74,10 @@ struct DepthReference {
   Index pixels_used = 0;
   S residual_rms = S(0);  ///< of the depth equation at the known depths, grey levels
 
-  bool in_pad(Index row, Index col) const {
-    return is_finite(depth_mm[static_cast<std::size_t>(row * cols + col)]);
+  const S& depth(Index row, Index col) const {
+    return depth_mm[static_cast<std::size_t>(row * cols + col)];
   }
+  bool in_pad(Index row, Index col) const { return is_finite(depth(row, col)); }
 };
 
 namespace detail {

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 // What became of a pixel. Where the status is not `ok` the depth is NaN; it is never clamped.
+#include <cstddef>
 #include <cstdint>
 
 namespace fingerpad {
@@ -16,6 +17,7 @@ enum class PixelStatus : std::uint8_t {
   saturated = 5,     ///< a colour is at or above the saturation limit
   outside_pad = 6,   ///< the reference has no depth here
 };
+inline constexpr std::size_t pixel_status_count = 7;
 
 }  // namespace v0
 }  // namespace fingerpad

@@ -21,20 +21,19 @@ namespace detail {
 
 #if !defined(__GNUC__) || (!defined(__clang__) && __GNUC__ < 12) || !defined(__BYTE_ORDER__) || \
     __BYTE_ORDER__ != __ORDER_LITTLE_ENDIAN__
-inline constexpr int native_vector_bytes = 0;
+constexpr int native_vector_bytes = 0;
 #else
 #define FINGERPAD_HAS_VECTORS
 #if defined(__AVX512BW__) && defined(__AVX512VL__)
-inline constexpr int native_vector_bytes = 64;
+constexpr int native_vector_bytes = 64;
 #elif defined(__AVX2__)
-inline constexpr int native_vector_bytes = 32;
+constexpr int native_vector_bytes = 32;
 #else
-inline constexpr int native_vector_bytes = 16;
+constexpr int native_vector_bytes = 16;
 #endif
 #endif
 
 #if defined(FINGERPAD_HAS_VECTORS)
-#undef FINGERPAD_HAS_VECTORS
 
 /// N numbers of type T in one vector. A struct, because GCC 12 ignores a dependent size in a
 /// function-local alias.
@@ -46,39 +45,39 @@ template <class T, int N>
 using lanes = typename Lanes<T, N>::type;
 
 template <class T, int N>
-inline lanes<T, N> load(const T* from) {
+[[gnu::always_inline]] inline lanes<T, N> load(const T* from) {
   lanes<T, N> v;
   std::memcpy(&v, from, sizeof v);
   return v;
 }
 
 template <class T, class V>
-inline void store(T* to, V v) {
+[[gnu::always_inline]] inline void store(T* to, V v) {
   std::memcpy(to, &v, sizeof v);
 }
 
 /// The same numbers as another type, lane by lane.
 template <class To, int N, class V>
-inline lanes<To, N> convert(V v) {
+[[gnu::always_inline]] inline lanes<To, N> convert(V v) {
   return __builtin_convertvector(v, lanes<To, N>);
 }
 
 /// Lanes moved up by `Step`, zeros moving in.
 template <int Step, class V, std::size_t... I>
-inline V moved_up(V v, std::index_sequence<I...>) {
+[[gnu::always_inline]] inline V moved_up(V v, std::index_sequence<I...>) {
   constexpr int n = int(sizeof...(I));
   return __builtin_shufflevector(v, V{}, (int(I) < Step ? n + int(I) : int(I) - Step)...);
 }
 
 template <class V, std::size_t... I>
-inline V last_everywhere(V v, std::index_sequence<I...>) {
+[[gnu::always_inline]] inline V last_everywhere(V v, std::index_sequence<I...>) {
   constexpr int n = int(sizeof...(I));
   return __builtin_shufflevector(v, v, (int(I) * 0 + n - 1)...);
 }
 
 /// Lane i becomes the sum of lanes 0..i, modulo the range of T (unsigned).
 template <int N, class V, int Step = 1>
-inline V running_sum(V v) {
+[[gnu::always_inline]] inline V running_sum(V v) {
   if constexpr (Step < N) {
     v += moved_up<Step>(v, std::make_index_sequence<std::size_t(N)>{});
     return running_sum<N, V, 2 * Step>(v);
@@ -89,7 +88,7 @@ inline V running_sum(V v) {
 
 /// True when every bit is 0.
 template <class T, int N>
-inline bool all_zero(lanes<T, N> v) {
+[[gnu::always_inline]] inline bool all_zero(lanes<T, N> v) {
   constexpr int words = N * int(sizeof(T)) / 8;
   using Words = lanes<std::uint64_t, words>;
   const Words w = Words(v);
@@ -108,27 +107,69 @@ inline bool all_zero(lanes<T, N> v) {
 
 /// Where `mask` (all bits or none, lane by lane) takes a, else b.
 template <class V, class M>
-inline V choose(M mask, V a, V b) {
+[[gnu::always_inline]] inline V choose(M mask, V a, V b) {
   return V((M(a) & mask) | (M(b) & ~mask));
 }
 
-/// out[i] = sum of in[0..i], for i < n rounded up to whole vectors; `in` is zero from n on.
-/// After it `tail` further elements (rounded up likewise) repeat the total.
+/// Lanes of a and b in turn: a0 b0 a1 b1 ..., as two vectors.
+template <class V>
+struct Two {
+  V first, second;
+};
+template <class V, std::size_t... I>
+[[gnu::always_inline]] inline Two<V> zip(V a, V b, std::index_sequence<I...>) {
+  constexpr int n = int(sizeof...(I));
+  return {__builtin_shufflevector(a, b, (int(I) / 2 + int(I) % 2 * n)...),
+          __builtin_shufflevector(a, b, (int(I) / 2 + int(I) % 2 * n + n / 2)...)};
+}
+template <int N, class V>
+[[gnu::always_inline]] inline Two<V> zip(V a, V b) {
+  return zip(a, b, std::make_index_sequence<std::size_t(N)>{});
+}
+
+/// Even and odd lanes as lanes twice as wide, of `Wide`: no shuffle on any machine.
+template <class Wide, int N, class V>
+[[gnu::always_inline]] inline Two<lanes<Wide, N>> unzip_wide(V v) {
+  using W = lanes<Wide, N>;
+  constexpr int half = 4 * int(sizeof(Wide));
+  return {W(v) & (W{} + Wide((Wide(1) << half) - 1)), W(v) >> half};
+}
+
+/// 2 N lanes as lanes twice as wide.
+template <class Wide, int N, class V>
+[[gnu::always_inline]] inline Two<lanes<Wide, N>> widen(V v) {
+  using W = lanes<Wide, N>;
+  const Two<V> both = zip<2 * N>(v, V{});
+  return {W(both.first), W(both.second)};
+}
+
+/// out[i] = sum of in[0..i], for i < n, a multiple of the lanes in a vector of In.
+/// After it `tail` further elements (rounded up to vectors) repeat the total.
 /// Sums are modulo the range of Lane: differences up to its maximum remain exact.
 template <int Bytes, class In, class Lane>
 inline void running_sum_row(const In* in, Lane* out, std::ptrdiff_t n, std::ptrdiff_t tail) {
   constexpr int N = Bytes / int(sizeof(Lane));
   using V = lanes<Lane, N>;
+  constexpr auto order = std::make_index_sequence<std::size_t(N)>{};
   V carry{};
-  std::ptrdiff_t i = 0;
-  for (; i < n; i += N) {
-    const V local = running_sum<N>(convert<Lane, N>(load<In, N>(in + i)));
-    store(out + i, V(local + carry));
-    carry += last_everywhere(local, std::make_index_sequence<std::size_t(N)>{});
+  if constexpr (sizeof(In) == sizeof(Lane)) {
+    for (std::ptrdiff_t i = 0; i < n; i += N) {
+      const V local = running_sum<N>(load<Lane, N>(in + i));
+      store(out + i, V(local + carry));
+      carry += last_everywhere(local, order);
+    }
+  } else {  // over pairs of columns: half the lanes to sum over
+    for (std::ptrdiff_t i = 0; i < n; i += 2 * N) {
+      const Two<V> columns = unzip_wide<Lane, N>(load<In, 2 * N>(in + i));
+      const V local = running_sum<N>(V(columns.first + columns.second));
+      const V odd = local + carry;
+      const Two<V> sums = zip<N>(V(odd - columns.second), odd);
+      store(out + i, sums.first);
+      store(out + i + N, sums.second);
+      carry += last_everywhere(local, order);
+    }
   }
-  for (const std::ptrdiff_t end = n + tail; i < end; i += N) {
-    store(out + i, carry);
-  }
+  for (std::ptrdiff_t i = n; i < n + tail; i += N) store(out + i, carry);
 }
 #endif
 

@@ -84,11 +84,10 @@ template <class Load, class Pixel>
 concept row_source =
     masked_row_source<Load, Pixel> || std::invocable<Load&, Index, Pixel*, Pixel*>;
 
-/// The mean of integer pixels. Whole windows multiply by the reciprocal of their area, as box
-/// filters do, and cut ones divide: the only difference is in the last bit.
-inline float window_mean(std::uint32_t sum, std::uint16_t count, int area) {
-  if (int(count) == area) return float(sum) * float(1.0 / area);
-  return count == 0 ? not_a_number<float>() : float(sum) / float(count);
+/// The mean of integer pixels. Multiplying by the reciprocal is what box filters do, so that whole
+/// windows have their bits, and it lets both channels share one division.
+inline float window_mean(std::uint32_t sum, std::uint16_t count) {
+  return count == 0 ? not_a_number<float>() : float(sum) * (1.0f / float(count));
 }
 
 }  // namespace detail

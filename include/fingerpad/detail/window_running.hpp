@@ -153,16 +153,15 @@ class RunningWindowSums {
         count -= sums.count[past];
       }
       if (j < 0) continue;
-      const int area = int((2 * r + 1) * (2 * r + 1));
-      out.red[j] = mean(red, std::uint16_t(count), area);
-      out.green[j] = mean(green, std::uint16_t(count), area);
+      out.red[j] = mean(red, std::uint16_t(count));
+      out.green[j] = mean(green, std::uint16_t(count));
       if (out.count != nullptr) out.count[j] = std::uint16_t(count);
     }
   }
 
-  static Mean mean(const Sum& sum, std::uint16_t count, int area) {
+  static Mean mean(const Sum& sum, std::uint16_t count) {
     if constexpr (std::integral<Pixel>) {
-      return window_mean(sum, count, area);
+      return window_mean(sum, count);
     } else {
       return count == 0 ? not_a_number<Mean>() : Mean(sum / Sum(int(count)));
     }

@@ -58,6 +58,8 @@ class VectorWindowSums {
     red_.assign(std::size_t(padded_), 0);
     green_.assign(std::size_t(padded_), 0);
     valid_.assign(std::size_t(padded_), 0);
+    weight_.assign(std::size_t(padded_), 0.0f);
+    cover_.assign(std::size_t(padded_ / half), Cover::none);
     const std::size_t ring = std::size_t(pitch_ * (ring_rows_ + 1));  // the last row remains zero
     red_ring_.assign(ring, 0);
     green_ring_.assign(ring, 0);
@@ -106,8 +108,11 @@ class VectorWindowSums {
     line_vector<std::uint32_t> red, green;
     line_vector<std::uint16_t> count;
   };
-  static constexpr int block = Bytes / 2;     // columns done at once: one vector of counts
-  static constexpr int sum_lanes = Bytes / 4;  // two vectors of sums
+  static constexpr int wide = Bytes / 4;  // lanes of sums and means
+  static constexpr int half = Bytes / 2;  // lanes of counts: two vectors of sums
+  using Floats = lanes<float, wide>;
+  using Wide = lanes<std::uint32_t, wide>;
+  enum class Cover : std::uint8_t { none, cut, whole };  // what `half` windows hold of valid pixels
 
   bool in_image(Index row) const { return row >= 0 && row < rows_; }
   Index slot(Index row) const { return row % ring_rows_ * pitch_ + margin_; }
@@ -134,125 +139,161 @@ class VectorWindowSums {
     constexpr int N = Bytes / int(sizeof(Pixel));
     using V = lanes<Pixel, N>;
     const V low = V{} + range_.low, high = V{} + range_.high;
-    for (Index j = 0; j < padded_; j += N) {
-      const V red = load<Pixel, N>(red_.data() + j), green = load<Pixel, N>(green_.data() + j);
+    Pixel *const reds = red_.data(), *const greens = green_.data();
+    std::uint8_t* const valids = valid_.data();
+    for (Index j = 0, end = padded_; j < end; j += N) {
+      const V red = load<Pixel, N>(reds + j), green = load<Pixel, N>(greens + j);
       V valid = V((red >= low) & (red <= high) & (green >= low) & (green <= high));
       if constexpr (Masked) {
-        valid &= V(convert<Pixel, N>(load<std::uint8_t, N>(valid_.data() + j)) != V{});
+        valid &= V(convert<Pixel, N>(load<std::uint8_t, N>(valids + j)) != V{});
       }
-      store(red_.data() + j, V(red & valid));
-      store(green_.data() + j, V(green & valid));
-      store(valid_.data() + j, convert<std::uint8_t, N>(V(valid & (V{} + Pixel(1)))));
+      store(reds + j, V(red & valid));
+      store(greens + j, V(green & valid));
+      store(valids + j, convert<std::uint8_t, N>(V(valid & (V{} + Pixel(1)))));
     }
     std::fill(red_.begin() + cols_, red_.end(), Pixel(0));
     std::fill(green_.begin() + cols_, green_.end(), Pixel(0));
     std::fill(valid_.begin() + cols_, valid_.end(), std::uint8_t(0));
   }
 
-  /// Sums of `N` windows of one row that begin at `from`: differences of its running sum.
-  template <int N, class T>
-  static lanes<T, N> along_row(const T* from, Index r) {
-    return load<T, N>(from + r) - load<T, N>(from - r - 1);
-  }
+  /// Sums along one row over windows of 2 r + 1 columns: differences of its running sum.
+  template <class T>
+  struct AlongRow {
+    const T *right, *left;
+    AlongRow(const T* running, Index r) : right(running + r), left(running - r - 1) {}
+    template <int N>
+    [[gnu::always_inline]] lanes<T, N> at(Index j) const {
+      return load<T, N>(right + j) - load<T, N>(left + j);
+    }
+  };
 
   /// Moves window k down by one row, from the ring rows at offsets `past` to `in`.
   template <bool Emit>
   void slide(std::size_t k, Index in, Index past, const MeanRows<float>& out) {
-    const Index r = radius_[k];
-    const int area = int((2 * r + 1) * (2 * r + 1));
-    using Counts = lanes<std::uint16_t, block>;
-    const Counts full = Counts{} + std::uint16_t(area);
-    Sums& sums = sums_[k];
-    for (Index j = 0; j < cols_; j += block) {
-      Counts count = load<std::uint16_t, block>(sums.count.data() + j);
-      count += convert<std::uint16_t, block>(along_row<block>(valid_ring_.data() + in + j, r));
-      count -= convert<std::uint16_t, block>(along_row<block>(valid_ring_.data() + past + j, r));
-      store(sums.count.data() + j, count);
-      slide_sums(red_ring_.data() + j, in, past, r, sums.red.data() + j);
-      slide_sums(green_ring_.data() + j, in, past, r, sums.green.data() + j);
+    slide_counts(k, in, past);
+    slide_sums<Emit>(k, red_ring_.data(), in, past, sums_[k].red.data(), out.red);
+    slide_sums<Emit>(k, green_ring_.data(), in, past, sums_[k].green.data(), out.green);
+    if constexpr (Emit) {
+      if (out.count != nullptr) std::copy_n(sums_[k].count.data(), cols_, out.count);
+    }
+  }
+
+  void slide_counts(std::size_t k, Index in, Index past) {
+    using Counts = lanes<std::uint16_t, half>;
+    const Index r = radius_[k], cols = cols_;
+    const AlongRow<std::uint8_t> entering(valid_ring_.data() + in, r);
+    const AlongRow<std::uint8_t> leaving(valid_ring_.data() + past, r);
+    const Counts full = Counts{} + std::uint16_t(area(r));
+    std::uint16_t* const count = sums_[k].count.data();
+    Cover* cover = cover_.data();
+    float* const weight = weight_.data();
+    for (Index j = 0; j < cols; j += Bytes) {
+      const auto gain = widen<std::uint16_t, half>(entering.template at<Bytes>(j));
+      const auto loss = widen<std::uint16_t, half>(leaving.template at<Bytes>(j));
+      const Counts first = load<std::uint16_t, half>(count + j) + gain.first - loss.first;
+      const Counts second =
+          load<std::uint16_t, half>(count + j + half) + gain.second - loss.second;
+      store(count + j, first);
+      store(count + j + half, second);
+      *cover++ = weigh(first, full, weight + j);
+      *cover++ = weigh(second, full, weight + j + half);
+    }
+  }
+
+  /// How `half` windows are covered; weight becomes 1 / n, NaN where n is 0, if n is not uniform.
+  template <class Counts>
+  [[gnu::always_inline]] static Cover weigh(Counts n, Counts full, float* weight) {
+    if (all_zero<std::uint16_t, half>(n ^ full)) return Cover::whole;
+    if (all_zero<std::uint16_t, half>(n)) return Cover::none;
+    const auto counts = widen<std::uint32_t, wide>(n);
+    store(weight, reciprocal(counts.first));
+    store(weight + wide, reciprocal(counts.second));
+    return Cover::cut;
+  }
+  [[gnu::always_inline]] static Floats reciprocal(Wide n) {
+    using Ints = lanes<std::int32_t, wide>;
+    const Floats count = convert<float, wide>(Ints(n));
+    const Floats one = Floats{} + 1.0f;
+    const auto empty = count < one;
+    return choose(empty, Floats{} + not_a_number<float>(), one / choose(empty, one, count));
+  }
+
+  template <bool Emit>
+  void slide_sums(
+      std::size_t k, const Lane* ring, Index in, Index past, std::uint32_t* sum, float* mean) {
+    const Index r = radius_[k], cols = cols_;
+    const AlongRow<Lane> entering(ring + in, r), leaving(ring + past, r);
+    const Cover* const cover = cover_.data();
+    const float* const weight = weight_.data();
+    const Floats missing = Floats{} + missing_;
+    const Floats whole = Floats{} + 1.0f / float(area(r));
+    const auto step = [&](Index j, float* to) __attribute__((always_inline)) {
+      const Cover c = cover[j / half];
+      if (c == Cover::none) {
+        store(sum + j, Wide{});
+        store(sum + j + wide, Wide{});
+        if constexpr (Emit) store(to, missing);
+        if constexpr (Emit) store(to + wide, missing);
+        return;
+      }
+      const Two<Floats> sums = slide_block(entering, leaving, j, sum + j);
       if constexpr (Emit) {
-        if (j + block > cols_) {
-          emit_rest(sums, j, area, out);
-        } else if (all_zero<std::uint16_t, block>(count ^ full)) {
-          emit_whole(sums.red.data() + j, area, out.red + j);
-          emit_whole(sums.green.data() + j, area, out.green + j);
-        } else if (all_zero<std::uint16_t, block>(count)) {
-          emit_empty(out.red + j);
-          emit_empty(out.green + j);
+        if (c == Cover::whole) {
+          store(to, sums.first * whole);
+          store(to + wide, sums.second * whole);
         } else {
-          emit_cut(sums.red.data() + j, sums.count.data() + j, area, out.red + j);
-          emit_cut(sums.green.data() + j, sums.count.data() + j, area, out.green + j);
+          store(to, sums.first * load<float, wide>(weight + j));
+          store(to + wide, sums.second * load<float, wide>(weight + j + wide));
         }
       }
-    }
-    if constexpr (Emit) {
-      if (out.count != nullptr) std::copy_n(sums.count.data(), cols_, out.count);
-    }
-  }
-
-  static void slide_sums(const Lane* ring, Index in, Index past, Index r, std::uint32_t* sum) {
-    for (int part = 0; part < block; part += sum_lanes) {
-      auto s = load<std::uint32_t, sum_lanes>(sum + part);
-      s += convert<std::uint32_t, sum_lanes>(along_row<sum_lanes>(ring + in + part, r));
-      s -= convert<std::uint32_t, sum_lanes>(along_row<sum_lanes>(ring + past + part, r));
-      store(sum + part, s);
+    };
+    Index j = 0;
+    for (; j + half <= cols; j += half) step(j, Emit ? mean + j : nullptr);
+    if (j < cols) {
+      float rest[std::size_t(half)];
+      step(j, rest);
+      if constexpr (Emit) std::copy_n(rest, cols - j, mean + j);
     }
   }
 
-  /// Sums as float, rounded once. 8-bit sums fit a signed int, which is cheaper to convert.
-  static lanes<float, sum_lanes> as_float(const std::uint32_t* sum) {
-    using From = std::conditional_t<sizeof(Pixel) == 1, std::int32_t, std::uint32_t>;
-    return convert<float, sum_lanes>(lanes<From, sum_lanes>(load<std::uint32_t, sum_lanes>(sum)));
-  }
-
-  static void emit_whole(const std::uint32_t* sum, int area, float* out) {
-    const float scale = float(1.0 / area);
-    for (int part = 0; part < block; part += sum_lanes) {
-      store(out + part, as_float(sum + part) * scale);
+  /// Updates `half` sums and returns them as float, rounded once.
+  [[gnu::always_inline]] static Two<Floats> slide_block(
+      const AlongRow<Lane>& entering, const AlongRow<Lane>& leaving, Index j, std::uint32_t* sum) {
+    Wide first = load<std::uint32_t, wide>(sum), second = load<std::uint32_t, wide>(sum + wide);
+    if constexpr (sizeof(Pixel) == 1) {
+      const auto gain = widen<std::uint32_t, wide>(entering.template at<half>(j));
+      const auto loss = widen<std::uint32_t, wide>(leaving.template at<half>(j));
+      first += gain.first - loss.first;
+      second += gain.second - loss.second;
+    } else {
+      first += entering.template at<wide>(j) - leaving.template at<wide>(j);
+      second += entering.template at<wide>(j + wide) - leaving.template at<wide>(j + wide);
+    }
+    store(sum, first);
+    store(sum + wide, second);
+    if constexpr (sizeof(Pixel) == 1) {  // fits a signed int, which is cheaper to convert
+      using Ints = lanes<std::int32_t, wide>;
+      return {convert<float, wide>(Ints(first)), convert<float, wide>(Ints(second))};
+    } else {
+      return {convert<float, wide>(first), convert<float, wide>(second)};
     }
   }
 
-  static void emit_empty(float* out) {
-    for (int part = 0; part < block; part += sum_lanes) {
-      store(out + part, lanes<float, sum_lanes>{} + not_a_number<float>());
-    }
-  }
-
-  /// window_mean() lane by lane.
-  static void emit_cut(const std::uint32_t* sum, const std::uint16_t* count, int area, float* out) {
-    using Ints = lanes<std::int32_t, sum_lanes>;
-    using Floats = lanes<float, sum_lanes>;
-    const Floats scale = Floats{} + float(1.0 / area);
-    const Floats nan = Floats{} + not_a_number<float>();
-    for (int part = 0; part < block; part += sum_lanes) {
-      const Ints n = convert<std::int32_t, sum_lanes>(load<std::uint16_t, sum_lanes>(count + part));
-      const Ints empty = n == Ints{};
-      const Floats s = as_float(sum + part);
-      const Floats cut = s / convert<float, sum_lanes>(n - empty);  // n + 1 where n is 0
-      const Floats whole = s * scale;
-      store(out + part, choose(empty, nan, choose(Ints(n == Ints{} + area), whole, cut)));
-    }
-  }
-
-  /// The last, incomplete block.
-  void emit_rest(const Sums& sums, Index j, int area, const MeanRows<float>& out) const {
-    for (Index i = j; i < cols_; ++i) {
-      const std::size_t at = std::size_t(i);
-      out.red[i] = window_mean(sums.red[at], sums.count[at], area);
-      out.green[i] = window_mean(sums.green[at], sums.count[at], area);
-    }
-  }
+  static int area(Index r) { return int((2 * r + 1) * (2 * r + 1)); }
 
   Index rows_, cols_;
   std::array<Index, std::size_t(Windows)> radius_;
   ClosedRange<Pixel> range_;
   Index padded_ = 0, margin_ = 0, pitch_ = 0, ring_rows_ = 0;
   Index began_ = 0, next_row_ = 0;
+  float missing_ = not_a_number<float>();  // a variable: GCC 12 builds a constant one lane by lane
   line_vector<Pixel> red_, green_;
   line_vector<std::uint8_t> valid_;
   line_vector<Lane> red_ring_, green_ring_;
   line_vector<std::uint8_t> valid_ring_;
   std::array<Sums, std::size_t(Windows)> sums_;
+  std::vector<Cover> cover_;
+  line_vector<float> weight_;
 };
 
 }  // namespace detail

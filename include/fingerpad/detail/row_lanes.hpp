@@ -1,0 +1,100 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+#pragma once
+// One formula, applied along a row: by vectors where the scalar is float or double and the compiler
+// has them, else one by one. Every cell is computed alike, whichever way it is reached.
+#include <concepts>
+#include <cstdint>
+#include <cstring>
+
+#include "fingerpad/detail/window_lanes.hpp"
+#include "fingerpad/grid.hpp"
+
+namespace fingerpad {
+inline namespace v0 {
+namespace detail {
+
+/// The number of S in the vectors that row kernels use; 1 where there are none.
+template <class S>
+inline constexpr int row_lanes = (std::same_as<S, float> ||
+                                  std::same_as<S, double>)&&native_vector_bytes
+                                         > 0
+                                     ? native_vector_bytes / static_cast<int>(sizeof(S))
+                                     : 1;
+
+template <class S, int N>
+struct RowVector {
+  using type = lanes<S, N>;
+};
+template <class S>
+struct RowVector<S, 1> {
+  using type = S;
+};
+
+/// Cells from[0], from[1], ... as one V of S. Integers widen and narrow by a factor of two at
+/// a time, for which machines have instructions and GCC 12 uses them.
+template <class V, class S, class T>
+V load_cells(const T* from) {
+  if constexpr (std::same_as<V, S>) {
+    return static_cast<S>(*from);
+  } else {
+    constexpr int n = static_cast<int>(sizeof(V) / sizeof(S));
+    const lanes<T, n> cells = load<T, n>(from);
+    if constexpr (std::integral<T>) {
+      return convert<S, n>(convert<std::int32_t, n>(convert<std::uint16_t, n>(cells)));
+    } else {
+      return convert<S, n>(cells);
+    }
+  }
+}
+
+/// The cells of v, truncated to T where T is an integer, to to[0], to[1], ...
+template <class S, class V, class T>
+void store_cells(T* to, const V& v) {
+  if constexpr (std::same_as<V, S>) {
+    *to = static_cast<T>(v);
+  } else {
+    constexpr int n = static_cast<int>(sizeof(V) / sizeof(S));
+    if constexpr (std::integral<T>) {
+      store(to, convert<T, n>(convert<std::uint16_t, n>(convert<std::int32_t, n>(v))));
+    } else {
+      store(to, convert<T, n>(v));
+    }
+  }
+}
+
+/// Bytes that are nonzero or not, as what a comparison of V gives.
+template <class V, class S>
+auto load_flags(const std::uint8_t* from) {
+  return load_cells<V, S>(from) != V{};
+}
+
+/// The outcome of a comparison, as bytes 1 and 0.
+template <class S, class Mask>
+void store_flags(std::uint8_t* to, const Mask& mask) {
+  if constexpr (std::same_as<Mask, bool> || std::integral<Mask>) {
+    *to = static_cast<std::uint8_t>(mask);
+  } else {
+    constexpr int n = static_cast<int>(sizeof(Mask) / sizeof(S));
+    store(to, convert<std::uint8_t, n>(convert<std::uint16_t, n>(mask & (Mask{} + 1))));
+  }
+}
+
+/// Calls kernel.operator()<V>(j) for j in [0, count) in steps of V's lanes, V = S at the end.
+template <class S, int Bytes = native_vector_bytes, class Kernel>
+void for_each_cell(Index count, const Kernel& kernel) {
+  constexpr int n = row_lanes<S>;
+  Index j = 0;
+  if constexpr (n > 1) {
+    for (; j + n <= count; j += n) {
+      kernel.template operator()<typename RowVector<S, n>::type>(j);
+    }
+  }
+  for (; j < count; ++j) {
+    kernel.template operator()<S>(j);
+  }
+}
+
+}  // namespace detail
+}  // namespace v0
+}  // namespace fingerpad
