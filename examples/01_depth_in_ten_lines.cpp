@@ -1,0 +1,41 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+// From image files to a depth map in millimetres: the free pad once, then every frame.
+// Usage: 01_depth_in_ten_lines [RECORDING]
+#include <cstdio>
+#include <opencv2/imgcodecs.hpp>
+#include <string>
+
+#include "fingerpad/adapt/opencv.hpp"
+#include "fingerpad/depth.hpp"
+
+using fingerpad::channel;
+constexpr int green = 1, red = 2;  // OpenCV reads colours as blue, green, red
+
+int main(int argc, char** argv) {
+  const std::string recording = argc > 1 ? argv[1] : FINGERPAD_EXAMPLE_RECORDING;
+  const cv::Mat pad = cv::imread(recording + "/reference.png");
+  const cv::Mat1f shape = cv::imread(recording + "/reference_depth.tiff", cv::IMREAD_UNCHANGED);
+  const cv::Mat frame = cv::imread(recording + "/frames/000005.png");
+  if (pad.empty() || shape.empty() || frame.empty()) {
+    std::fprintf(stderr, "%s: no reference or no frame 5 there\n", recording.c_str());
+    return 1;
+  }
+
+  const fingerpad::Camera<double> camera{.center_x_px = 239.5, .center_y_px = 239.5};
+  const fingerpad::Absorption<double> fluid;  // the published fluid
+  const auto reference = fingerpad::fit_reference(camera, fluid, channel<std::uint8_t>(pad, red),
+                                                  channel<std::uint8_t>(pad, green), shape);
+  const fingerpad::DepthEstimator estimate(camera, fluid, reference);
+  auto workspace = estimate.workspace<std::uint8_t>();  // the last memory that is taken
+
+  cv::Mat1f depth_mm(frame.size());
+  const auto result = estimate(channel<std::uint8_t>(frame, red),
+                               channel<std::uint8_t>(frame, green), depth_mm, workspace);
+
+  const float center = depth_mm(240, 240);
+  std::printf("%td of %td pixels have a depth; %.2f mm at the centre, %.2f mm in the free pad\n",
+              result.valid_pixels(), result.pad_pixels, static_cast<double>(center),
+              static_cast<double>(shape(240, 240)));
+  return result.accepted && center > 8.0f && center < shape(240, 240) + 0.5f ? 0 : 1;
+}

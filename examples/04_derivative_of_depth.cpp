@@ -1,0 +1,58 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+// How far does a depth move when the colour or the calibration does? Compute with dual numbers, and
+// every kernel also returns its exact derivatives.
+#include <Eigen/Core>
+#include <cmath>
+#include <cstdio>
+
+#include "fingerpad/adapt/autodiff.hpp"
+#include "fingerpad/depth.hpp"
+
+namespace {
+
+/// Depth of one pixel, 10 mm from the axis, for any scalar.
+template <fingerpad::scalar S>
+S depth_of(const S& red, const S& green, const S& c_red, const S& kappa, const S& scattering) {
+  const fingerpad::Camera<S> camera;
+  fingerpad::Absorption<S> fluid;
+  fluid.c_green_per_mm = fluid.c_green_per_mm - fluid.c_red_per_mm + c_red;
+  fluid.c_red_per_mm = c_red;
+  fluid.kappa = kappa;
+  const auto ray = fingerpad::ray_at_tangent(camera, S(0.2));
+  const auto pencil = fingerpad::pencil_of(camera, ray);
+  return fingerpad::newton_depth(fluid, pencil, scattering, {red, green}).depth_mm;
+}
+
+}  // namespace
+
+int main() {
+  constexpr int n = 5;
+  using Vector = Eigen::Matrix<double, n, 1>;
+  using Dual = Eigen::AutoDiffScalar<Vector>;
+  const char* names[n] = {"red", "green", "c_red", "kappa", "scattering"};
+  const Vector at{{58.0, 39.0, 0.0290, 0.9924, 0.0163}};
+
+  Dual x[n];
+  for (int i = 0; i < n; ++i) {
+    x[i] = Dual(at[i], n, i);
+  }
+  const Dual depth = depth_of(x[0], x[1], x[2], x[3], x[4]);
+  std::printf("depth %.4f mm\n", depth.value());
+
+  bool right = true;
+  for (int i = 0; i < n; ++i) {
+    const double h = 1e-5 * at[i];
+    const auto moved = [&](double by) {
+      Vector v = at;
+      v[i] += by;
+      return depth_of(v[0], v[1], v[2], v[3], v[4]);
+    };
+    const double difference = (moved(h) - moved(-h)) / (2 * h);
+    const double derivative = depth.derivatives()[i];
+    std::printf("  d depth / d %-10s %12.6f mm, by differences %12.6f\n", names[i], derivative,
+                difference);
+    right = right && std::abs(derivative - difference) < 1e-6 * std::abs(derivative);
+  }
+  return right ? 0 : 1;
+}
