@@ -4,6 +4,7 @@
 // From two channels of a frame to rows of smoothed red and green in grey levels, one row after the
 // other. A pixel counts where the reference knows the pad and both its channels lie strictly
 // between the limits of the grey scale; a mean over no such pixel is NaN.
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <concepts>
@@ -132,7 +133,7 @@ void load_pixels(const Red& red, const Green& green, Index row, Pixel* to_red, P
     to_green[j] = static_cast<Pixel>(green(row, j));
   }
 }
-/// The same for two channels of one interleaved image, which share their cache lines.
+/// The same for images in plain memory. Two channels of one interleaved image are read together.
 template <std::unsigned_integral Pixel>
 void load_pixels(const StridedView<const Pixel>& red,
                  const StridedView<const Pixel>& green,
@@ -142,15 +143,41 @@ void load_pixels(const StridedView<const Pixel>& red,
   const Pixel* r = red.row(row);
   const Pixel* g = green.row(row);
   const Index step = red.col_stride();
-  if (step == green.col_stride() && step == 1) {
-    std::memcpy(to_red, r, static_cast<std::size_t>(red.cols()) * sizeof(Pixel));
-    std::memcpy(to_green, g, static_cast<std::size_t>(red.cols()) * sizeof(Pixel));
-  } else {
-    for (Index j = 0; j < red.cols(); ++j) {
-      to_red[j] = r[j * step];
-      to_green[j] = g[j * green.col_stride()];
+  const Index n = red.cols();
+  const auto bytes = static_cast<std::size_t>(n) * sizeof(Pixel);
+  if (step == 1 && green.col_stride() == 1) {
+    std::memcpy(to_red, r, bytes);
+    std::memcpy(to_green, g, bytes);
+    return;
+  }
+  Index done = 0;
+  const bool together = step == green.col_stride() && r - g < step && g - r < step;
+  if (together && (step == 3 || step == 4)) {
+    // Which channel is first in a pixel is not known, so the last pixel is left: a block that
+    // begins at the first of the two would reach past it.
+    const Pixel* first = (std::min)(r, g);
+    const auto red_at = static_cast<int>(r - first);
+    const auto green_at = static_cast<int>(g - first);
+    done = n - 1;
+    if (step == 3) {
+      load_interleaved_row<3>(first, done, red_at, green_at, to_red, to_green);
+    } else {
+      load_interleaved_row<4>(first, done, red_at, green_at, to_red, to_green);
     }
   }
+  for (Index j = done; j < n; ++j) {
+    to_red[j] = r[j * step];
+    to_green[j] = g[j * green.col_stride()];
+  }
+}
+template <std::unsigned_integral Pixel>
+void load_pixels(const StridedView<Pixel>& red,
+                 const StridedView<Pixel>& green,
+                 Index row,
+                 Pixel* to_red,
+                 Pixel* to_green) {
+  load_pixels(StridedView<const Pixel>(red), StridedView<const Pixel>(green), row, to_red,
+              to_green);
 }
 
 /// Rows of plain colours, in grey levels.

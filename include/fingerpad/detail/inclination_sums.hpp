@@ -102,17 +102,9 @@ class InclinationSums {
   void scan(const View& depth, Scratch& s) const {
     s.lost_px = 0;
     each_row(depth, s, [&](Index i) {
-      const T* psi0 = psi_.data() + i * cols_;
-      const std::uint8_t* present0 = present_.data() + i * cols_;
-      std::uint8_t* lost = s.lost.data() + i * cols_;
-      std::uint32_t lost_here = 0;
-      for (Index j = 0; j < cols_; ++j) {
-        const bool both = (s.present.data()[j] & present0[j]) != 0;
-        s.psi.data()[j] = both ? T(s.psi.data()[j] - psi0[j]) : T(0);
-        lost[j] = static_cast<std::uint8_t>(present0[j] & (s.present.data()[j] ^ 1));
-        lost_here += lost[j];
-      }
-      s.lost_px += static_cast<Index>(lost_here);
+      const Index first = i * cols_;
+      s.lost_px += compare(cols_, psi_.data() + first, present_.data() + first, s.present.data(),
+                           s.psi.data(), s.lost.data() + first);
       s.change.set_row(i, s.psi.data());
     });
     for (Index i = 0; s.lost_px > 0 && i < rows_; ++i) {
@@ -166,6 +158,23 @@ class InclinationSums {
     }
   }
 
+  /// psi becomes the change of psi, 0 where either is missing. Returns how many pixels are lost.
+  static Index compare(Index cols,
+                       const T* psi0,
+                       const std::uint8_t* present0,
+                       const std::uint8_t* present,
+                       T* __restrict psi,
+                       std::uint8_t* __restrict lost) {
+    std::uint32_t count = 0;
+    for (Index j = 0; j < cols; ++j) {
+      const T change = T(psi[j] - psi0[j]);
+      psi[j] = (present[j] & present0[j]) != 0 ? change : T(0);
+      lost[j] = static_cast<std::uint8_t>(present0[j] & (present[j] ^ 1));
+      count += lost[j];
+    }
+    return static_cast<Index>(count);
+  }
+
   static void clear(Line& line) {
     for (std::size_t j = 0; j < line.depth.size(); ++j) {
       line.depth[j] = line.weight[j] = S(0);
@@ -178,13 +187,17 @@ class InclinationSums {
       clear(to);
       return;
     }
-    S* d = to.depth.data() + 1;
-    S* w = to.weight.data() + 1;
+    S* l = to.depth.data() + 1;
     for (Index j = 0; j < cols_; ++j) {
-      const S l = S(depth(row, j));
-      const bool good = is_finite(l);
-      d[j] = good ? l : S(0);
-      w[j] = good ? S(1) : S(0);
+      l[j] = S(depth(row, j));
+    }
+    weigh(cols_, l, to.weight.data() + 1);
+  }
+  static void weigh(Index cols, S* __restrict l, S* __restrict weight) {
+    for (Index j = 0; j < cols; ++j) {
+      const bool good = is_finite(l[j]);
+      l[j] = good ? l[j] : S(0);
+      weight[j] = good ? S(1) : S(0);
     }
   }
 

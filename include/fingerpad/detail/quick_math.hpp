@@ -47,9 +47,9 @@ inline float quick_exp(float x) {
 inline float quick_sqrt(float x) {
   float inverse = std::bit_cast<float>(0x5F3759DF - (std::bit_cast<std::int32_t>(x) >> 1));
   const float half = 0.5F * x;
-  for (int step = 0; step < 3; ++step) {
-    inverse = inverse * (1.5F - half * inverse * inverse);
-  }
+  inverse = inverse * (1.5F - half * inverse * inverse);
+  inverse = inverse * (1.5F - half * inverse * inverse);
+  inverse = inverse * (1.5F - half * inverse * inverse);
   return x * inverse;
 }
 

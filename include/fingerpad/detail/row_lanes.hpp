@@ -14,12 +14,11 @@ namespace fingerpad {
 inline namespace v0 {
 namespace detail {
 
-/// The number of S in the vectors that row kernels use; 1 where there are none.
-template <class S>
-inline constexpr int row_lanes = (std::same_as<S, float> ||
-                                  std::same_as<S, double>)&&native_vector_bytes
-                                         > 0
-                                     ? native_vector_bytes / static_cast<int>(sizeof(S))
+/// The number of S in a vector of VectorBytes; 1 where there are no vectors of S.
+template <class S, int VectorBytes = native_vector_bytes>
+inline constexpr int row_lanes = (std::same_as<S, float> || std::same_as<S, double>)&&VectorBytes >
+                                         0
+                                     ? VectorBytes / static_cast<int>(sizeof(S))
                                      : 1;
 
 template <class S, int N>
@@ -81,9 +80,9 @@ void store_flags(std::uint8_t* to, const Mask& mask) {
 }
 
 /// Calls kernel.operator()<V>(j) for j in [0, count) in steps of V's lanes, V = S at the end.
-template <class S, int Bytes = native_vector_bytes, class Kernel>
+template <class S, int VectorBytes = native_vector_bytes, class Kernel>
 void for_each_cell(Index count, const Kernel& kernel) {
-  constexpr int n = row_lanes<S>;
+  constexpr int n = row_lanes<S, VectorBytes>;
   Index j = 0;
   if constexpr (n > 1) {
     for (; j + n <= count; j += n) {

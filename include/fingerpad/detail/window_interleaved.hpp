@@ -45,12 +45,8 @@ template <std::size_t C, std::size_t... I>
 
 /// red[i] = from[channels i + red_offset], and likewise green, for i < n.
 template <int channels, class Pixel, int VectorBytes = native_vector_bytes>
-void load_interleaved_row(const Pixel* from,
-                          Index n,
-                          int red_offset,
-                          int green_offset,
-                          Pixel* red,
-                          Pixel* green) {
+void load_interleaved_row(
+    const Pixel* from, Index n, int red_offset, int green_offset, Pixel* red, Pixel* green) {
   Index i = 0;
 #if defined(FINGERPAD_HAS_VECTORS)
   if constexpr (sizeof(Pixel) == 1 && channels >= 2 && channels <= 4) {

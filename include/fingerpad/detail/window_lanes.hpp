@@ -7,8 +7,6 @@
 // for, since wider vectors are split badly, and is a template argument everywhere, so that
 // translation units compiled for different sets never share a function by name.
 // Unsupported compiler or byte order: `native_vector_bytes` is 0 and nothing else is declared.
-#include <bit>
-#include <concepts>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>

@@ -77,12 +77,12 @@ std::array<Index, std::size_t(Windows)> window_radii(
 }
 
 /// A caller's row source: load(row, red, green), or load(row, red, green, inside) where it also
-/// fills one byte per pixel, nonzero where the pixel may count. All rows asked for lie in the image.
+/// fills one byte per pixel, nonzero where the pixel may count. All rows asked for lie in the
+/// image.
 template <class Load, class Pixel>
 concept masked_row_source = std::invocable<Load&, Index, Pixel*, Pixel*, std::uint8_t*>;
 template <class Load, class Pixel>
-concept row_source =
-    masked_row_source<Load, Pixel> || std::invocable<Load&, Index, Pixel*, Pixel*>;
+concept row_source = masked_row_source<Load, Pixel> || std::invocable<Load&, Index, Pixel*, Pixel*>;
 
 /// The mean of integer pixels. Multiplying by the reciprocal is what box filters do, so that whole
 /// windows have their bits, and it lets both channels share one division.

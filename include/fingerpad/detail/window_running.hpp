@@ -2,7 +2,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 // Window means for any number: float, double, long double, a dual number, 50 digits, or integers.
-// Plain running sums, down the columns and then along the row. See window_sums.hpp for the contract.
+// Plain running sums, down the columns and then along the row. See window_sums.hpp for the
+// contract.
 #include <array>
 #include <concepts>
 #include <cstddef>
@@ -20,9 +21,9 @@ template <class Pixel, int Windows = 1>
 class RunningWindowSums {
  public:
   using Mean = window_mean_t<Pixel>;
-  using Sum = std::conditional_t<
-      std::integral<Pixel>, std::uint32_t,
-      std::conditional_t<std::same_as<Pixel, float>, double, Pixel>>;
+  using Sum = std::conditional_t<std::integral<Pixel>,
+                                 std::uint32_t,
+                                 std::conditional_t<std::same_as<Pixel, float>, double, Pixel>>;
 
   RunningWindowSums(Index rows,
                     Index cols,

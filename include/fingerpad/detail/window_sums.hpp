@@ -11,9 +11,10 @@
 //
 //   WindowSums<std::uint8_t, 2> sums(rows, cols, {33, 55}, {0, 255});
 //   sums.start(first, load_row);  // load_row(row, red, green) or (row, red, green, inside)
-//   for (Index row = first; row < last; ++row) sums.advance(load_row, {{r33, g33}, {r55, g55, n55}});
+//   for (Index row = first; row < last; ++row) sums.advance(load_row, {{r33, g33}, {r55, g55}});
 //
-// load_row is asked for rows in order, once each: from about half a window before `first`.
+// load_row is asked for rows in order, once each, from half a window before `first` on (the plain
+// path, which starts anew every 32 rows, may begin that much earlier).
 #include <concepts>
 #include <cstdint>
 
@@ -22,7 +23,6 @@
 #include "fingerpad/detail/window_running.hpp"
 #if defined(FINGERPAD_HAS_VECTORS)
 #include "fingerpad/detail/window_vector.hpp"
-#undef FINGERPAD_HAS_VECTORS
 #endif
 
 namespace fingerpad {

@@ -1,7 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// Window means of 8- and 16-bit images by vector instructions. See window_sums.hpp for the contract.
+// Window means of 8- and 16-bit images by vector instructions. See window_sums.hpp for the
+// contract.
 //
 // Each row is cleaned (invalid pixels become 0) and replaced by its running sum, kept for as many
 // rows as the largest window is high. A sum along the row is then one difference, whatever the
@@ -191,8 +192,7 @@ class VectorWindowSums {
       const auto gain = widen<std::uint16_t, half>(entering.template at<Bytes>(j));
       const auto loss = widen<std::uint16_t, half>(leaving.template at<Bytes>(j));
       const Counts first = load<std::uint16_t, half>(count + j) + gain.first - loss.first;
-      const Counts second =
-          load<std::uint16_t, half>(count + j + half) + gain.second - loss.second;
+      const Counts second = load<std::uint16_t, half>(count + j + half) + gain.second - loss.second;
       store(count + j, first);
       store(count + j + half, second);
       *cover++ = weigh(first, full, weight + j);
@@ -211,8 +211,7 @@ class VectorWindowSums {
     return Cover::cut;
   }
   [[gnu::always_inline]] static Floats reciprocal(Wide n) {
-    using Ints = lanes<std::int32_t, wide>;
-    const Floats count = convert<float, wide>(Ints(n));
+    const Floats count = convert<float, wide>(lanes<std::int32_t, wide>(n));
     const Floats one = Floats{} + 1.0f;
     const auto empty = count < one;
     return choose(empty, Floats{} + not_a_number<float>(), one / choose(empty, one, count));
@@ -237,14 +236,13 @@ class VectorWindowSums {
         return;
       }
       const Two<Floats> sums = slide_block(entering, leaving, j, sum + j);
-      if constexpr (Emit) {
-        if (c == Cover::whole) {
-          store(to, sums.first * whole);
-          store(to + wide, sums.second * whole);
-        } else {
-          store(to, sums.first * load<float, wide>(weight + j));
-          store(to + wide, sums.second * load<float, wide>(weight + j + wide));
-        }
+      if constexpr (!Emit) return;
+      if (c == Cover::whole) {
+        store(to, sums.first * whole);
+        store(to + wide, sums.second * whole);
+      } else {
+        store(to, sums.first * load<float, wide>(weight + j));
+        store(to + wide, sums.second * load<float, wide>(weight + j + wide));
       }
     };
     Index j = 0;
@@ -257,8 +255,10 @@ class VectorWindowSums {
   }
 
   /// Updates `half` sums and returns them as float, rounded once.
-  [[gnu::always_inline]] static Two<Floats> slide_block(
-      const AlongRow<Lane>& entering, const AlongRow<Lane>& leaving, Index j, std::uint32_t* sum) {
+  [[gnu::always_inline]] static Two<Floats> slide_block(const AlongRow<Lane>& entering,
+                                                        const AlongRow<Lane>& leaving,
+                                                        Index j,
+                                                        std::uint32_t* sum) {
     Wide first = load<std::uint32_t, wide>(sum), second = load<std::uint32_t, wide>(sum + wide);
     if constexpr (sizeof(Pixel) == 1) {
       const auto gain = widen<std::uint32_t, wide>(entering.template at<half>(j));
@@ -288,9 +288,8 @@ class VectorWindowSums {
   Index began_ = 0, next_row_ = 0;
   float missing_ = not_a_number<float>();  // a variable: GCC 12 builds a constant one lane by lane
   line_vector<Pixel> red_, green_;
-  line_vector<std::uint8_t> valid_;
   line_vector<Lane> red_ring_, green_ring_;
-  line_vector<std::uint8_t> valid_ring_;
+  line_vector<std::uint8_t> valid_, valid_ring_;
   std::array<Sums, std::size_t(Windows)> sums_;
   std::vector<Cover> cover_;
   line_vector<float> weight_;

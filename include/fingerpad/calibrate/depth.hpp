@@ -1,0 +1,222 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+#pragma once
+// What the fluid does to light, from colours at known depths: c_red, c_green (through their
+// difference), kappa and g, by least squares on the depth equation F(l) = 0 (detail/
+// absorption_law.hpp), with as many samples as there are.
+// Source: Ito, Kim, Obinata, "Shape sensing by vision-based tactile sensor" (slides), parameter
+// identification, which solves three equations for three unknowns; printed error E005.
+//
+// The parameters are known far worse than the depth: with a noise of 0.034 grey levels in 4 samples
+// c_red is good to 73 % and delta not even to its sign, while their errors compensate to microns of
+// depth. So the result carries their covariance and predicts the error of a depth from it.
+#include <Eigen/QR>
+#include <Eigen/SVD>
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "fingerpad/detail/absorption_fit.hpp"
+#include "fingerpad/detail/absorption_law.hpp"
+#include "fingerpad/expects.hpp"
+#include "fingerpad/optics.hpp"
+#include "fingerpad/scalar.hpp"
+
+namespace fingerpad {
+inline namespace v0 {
+
+/// The mean colour of one place of the membrane whose depth is known. The reference frame gives
+/// such samples too.
+template <scalar S = double>
+struct DepthSample {
+  Pencil<S> pencil;   ///< of the pixel
+  S rho_sq_mm2;       ///< squared distance of the pixel from the axis on the plate
+  S depth_mm;         ///< l along the ray, >= 0
+  Colour<S> colour;   ///< grey levels, > 0
+  S weight = S(1);    ///< 1 / (relative noise of the colour), > 0
+};
+
+/// The sample of pixel (row, col).
+template <class Heights = AstigmaticHeights, scalar S>
+DepthSample<S> depth_sample(const Camera<S>& camera,
+                            const S& row,
+                            const S& col,
+                            const S& depth_mm,
+                            const Colour<S>& colour,
+                            const S& weight = S(1)) {
+  const Ray<S> ray = ray_at_pixel(camera, row, col);
+  return {pencil_of<Heights>(camera, ray), square(ray.plate_rho_mm), depth_mm, colour, weight};
+}
+
+struct AbsorptionFitOptions {
+  double grey_noise = 0;       ///< sd of a colour of weight 1, grey levels; 0: from the residuals
+  double max_condition = 1e8;  ///< refuse samples that determine the parameters worse than this
+  int max_iterations = 200;
+};
+
+/// The fluid, and how well it is known. Parameters are in the order c_red, delta, kappa, g_0, ...
+template <scalar S = double, int Degree = 0>
+struct AbsorptionFit {
+  static constexpr int parameters = 4 + Degree;
+  using Covariance = Eigen::Matrix<S, parameters, parameters, Eigen::DontAlign>;
+
+  Absorption<S> fluid;
+  /// g = sum of scattering[j] v^j in grey levels per mm^2, v = (rho / rho_max_mm)^2.
+  Eigen::Matrix<S, Degree + 1, 1, Eigen::DontAlign> scattering;
+  S rho_max_mm;
+  Covariance covariance;  ///< NaN with as many samples as parameters and no given grey_noise
+  S condition;            ///< of d F / d ln(parameter); 6e3 for depths .5, 4, 8, 12 mm
+  S residual_rms;         ///< of F, grey levels
+  S grey_noise;           ///< sd of a colour of weight 1: as given, else as the residuals say
+  int iterations;
+  bool converged;
+  bool delta_at_limit;  ///< the samples would rather have delta < 0; it is 0
+
+  S scattering_at(const S& rho_sq_mm2) const {
+    const S v = rho_sq_mm2 / square(rho_max_mm);
+    S g = scattering(Degree);
+    for (int j = Degree - 1; j >= 0; --j) {
+      g = g * v + scattering(j);
+    }
+    return g;
+  }
+};
+
+/// sd in mm of the depth found from this sample's colours, as far as it comes from the uncertainty
+/// of the fit: the covariance carried through F(l) = 0. Evaluates at the sample's depth.
+template <scalar S, int Degree>
+S predicted_depth_sd(const AbsorptionFit<S, Degree>& fit, const DepthSample<S>& at) {
+  using std::exp;
+  using std::sqrt;
+  const S delta = fit.fluid.c_green_per_mm - fit.fluid.c_red_per_mm;
+  const S path = at.pencil.path_factor * at.depth_mm;
+  const S g = fit.scattering_at(at.rho_sq_mm2);
+  const S c_red = fit.fluid.c_red_per_mm;
+  Eigen::Matrix<S, 4 + Degree, 1, Eigen::DontAlign> by;
+  by(0) = g * detail::scattered_light_per_absorption(at.depth_mm, c_red, at.pencil);
+  by(1) = at.colour.green * path * exp(S(delta * path));
+  by(2) = -at.colour.red;
+  by(3) = scattered_light(at.depth_mm, c_red, at.pencil);
+  for (int j = 1; j <= Degree; ++j) {
+    by(3 + j) = by(2 + j) * at.rho_sq_mm2 / square(fit.rho_max_mm);
+  }
+  const S slope = depth_equation(fit.fluid, at.pencil, g, at.colour, at.depth_mm).slope;
+  const S variance = by.dot(fit.covariance * by);
+  return S(sqrt(variance) / slope);
+}
+
+namespace detail {
+
+/// Refuses samples from which no fluid can be found, naming what they lack. Returns the largest
+/// rho^2.
+template <scalar S>
+S expects_valid(std::span<const DepthSample<S>> samples, int parameters) {
+  const char* const owner = "fit_absorption";
+  std::vector<S> depths;
+  S rho_sq = S(0);
+  for (const DepthSample<S>& s : samples) {
+    expects(is_finite(s.depth_mm) && !(s.depth_mm < S(0)), owner, "depth_mm", s.depth_mm,
+            "finite and >= 0");
+    expects(is_finite(s.colour.red) && s.colour.red > S(0), owner, "colour.red", s.colour.red,
+            "finite and > 0");
+    expects(is_finite(s.colour.green) && s.colour.green > S(0), owner, "colour.green",
+            s.colour.green, "finite and > 0");
+    expects(is_finite(s.weight) && s.weight > S(0), owner, "weight", s.weight, "finite and > 0");
+    expects(is_finite(s.rho_sq_mm2) && !(s.rho_sq_mm2 < S(0)), owner, "rho_sq_mm2", s.rho_sq_mm2,
+            "finite and >= 0");
+    expects(is_finite(s.pencil.path_factor) && !(s.pencil.path_factor < S(2)), owner,
+            "pencil.path_factor", s.pencil.path_factor, "finite and >= 2");
+    depths.push_back(s.depth_mm);
+    rho_sq = rho_sq < s.rho_sq_mm2 ? s.rho_sq_mm2 : rho_sq;
+  }
+  expects(static_cast<int>(samples.size()) >= parameters, owner, "number of samples",
+          static_cast<long long>(samples.size()),
+          "at least the number of parameters, 4 + Degree: the reference and 3 known depths");
+  std::sort(depths.begin(), depths.end());
+  const S far = depths.back();
+  long long distinct = far > S(0) ? 1 : 0;
+  for (std::size_t i = 1; i < depths.size(); ++i) {
+    distinct += depths[i] - depths[i - 1] > far / S(1000) ? 1 : 0;
+  }
+  expects(distinct >= 3, owner, "number of distinct depths", distinct,
+          ">= 3, further apart than a thousandth of the largest");
+  return rho_sq;
+}
+
+}  // namespace detail
+
+/// Finds the fluid and g, a polynomial of degree `Degree` in rho^2, from at least 4 + Degree
+/// samples at 3 or more depths. Samples that do not determine them are refused with what is lacking
+/// (parameter_error). Allocates; O(samples) per iteration, some 150 trial fluids to begin with.
+template <int Degree = 0, scalar S = double>
+AbsorptionFit<S, Degree> fit_absorption(std::span<const DepthSample<S>> samples,
+                                        const AbsorptionFitOptions& options = {}) {
+  using std::sqrt;
+  using Equations = std::vector<detail::AbsorptionEquation<S>>;
+  using Problem = detail::AbsorptionProblem<S, Degree + 2, Equations>;
+  using Matrix = typename Problem::Matrix;
+  const char* const owner = "fit_absorption";
+  constexpr int n = 4 + Degree;
+
+  const S rho_sq = detail::expects_valid(samples, n);
+  const S rho_sq_max = rho_sq > S(0) ? rho_sq : S(1);
+  Equations equations;
+  for (const DepthSample<S>& s : samples) {
+    equations.push_back({s.pencil, s.depth_mm, S(s.rho_sq_mm2 / rho_sq_max), s.colour, s.weight});
+  }
+  Problem problem(equations);
+  auto p = detail::search_absorption(problem);
+  expects(is_finite(p.cost), owner, "residual", p.cost, "finite: are the samples all alike?");
+  AbsorptionFit<S, Degree> fit;
+  fit.iterations = 0;
+  for (int round = 0; round < 3; ++round) {  // the noise of F depends, weakly, on the fit
+    problem.weigh(p);
+    const auto descent = detail::descend(problem, p, options.max_iterations);
+    fit.iterations += descent.iterations;
+    fit.converged = descent.converged;
+  }
+
+  const Matrix jacobian = problem.full_jacobian(p);
+  Eigen::Matrix<S, n, 1, Eigen::DontAlign> size;
+  size << p.c_red, (p.delta > S(0) ? p.delta : p.c_red), p.linear;
+  size.template tail<Degree + 1>().setConstant(p.linear(1));
+  size = size.cwiseAbs();
+  const Matrix relative = jacobian * size.asDiagonal();
+  const auto singular = Eigen::JacobiSVD<Matrix>(relative).singularValues();
+  fit.condition = S(singular(0) / singular(n - 1));
+  expects(is_finite(fit.condition) && fit.condition < S(options.max_condition), owner,
+          "condition number", fit.condition,
+          "< max_condition: the depths must spread over several mm, and differ at every radius");
+  expects(p.linear(0) > S(0), owner, "fitted kappa", S(p.linear(0)), "> 0: are red and green right?");
+  expects(p.linear(1) > S(0), owner, "fitted g", S(p.linear(1)), "> 0: are red and green right?");
+
+  fit.fluid.c_red_per_mm = p.c_red;
+  fit.fluid.c_green_per_mm = p.c_red + p.delta;
+  fit.fluid.kappa = p.linear(0);
+  fit.scattering = p.linear.template tail<Degree + 1>();
+  fit.rho_max_mm = sqrt(rho_sq_max);
+  fit.delta_at_limit = !(p.delta > S(0));
+
+  S residual_sq = S(0);
+  for (const DepthSample<S>& s : samples) {
+    const S g = fit.scattering_at(s.rho_sq_mm2);
+    residual_sq += square(depth_equation(fit.fluid, s.pencil, g, s.colour, s.depth_mm).value);
+  }
+  const S count = S(static_cast<int>(samples.size()));
+  fit.residual_rms = sqrt(S(residual_sq / count));
+  fit.grey_noise = options.grey_noise > 0 ? S(options.grey_noise) : S(sqrt(S(p.cost / (count - S(n)))));
+
+  // (J^T J)^-1 = R^-1 R^-T, for parameters relative to their size.
+  const Eigen::HouseholderQR<Matrix> qr(relative);
+  const Matrix upper = qr.matrixQR().topRows(n);
+  const Matrix inverse =
+      upper.template triangularView<Eigen::Upper>().solve(Matrix::Identity(n, n));
+  const Matrix scaled = size.asDiagonal() * inverse * fit.grey_noise;
+  fit.covariance = scaled * scaled.transpose();
+  return fit;
+}
+
+}  // namespace v0
+}  // namespace fingerpad
