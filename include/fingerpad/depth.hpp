@@ -224,20 +224,24 @@ class DepthEstimator {
                DepthResult& result) const {
     const std::uint8_t* inside = setup_.in_pad.data() + row * pad_.cols;
     std::uint8_t* status = w.status_.data();
-    for (Index j = 0; j < pad_.cols; ++j) {
-      if (detail::all_well(inside + j, status + j, pad_.cols - j)) {  // eight pixels at a time
-        result.count[static_cast<std::size_t>(PixelStatus::ok)] += 8;
-        j += 7;
-        continue;
+    Index j = 0;
+    while (j < pad_.cols) {
+      const Index well = detail::count_well(inside + j, status + j, pad_.cols - j);
+      result.count[static_cast<std::size_t>(PixelStatus::ok)] += well;
+      j += well;
+      const Index out = detail::count_zeros(inside + j, pad_.cols - j);
+      std::fill_n(status + j, out, static_cast<std::uint8_t>(PixelStatus::outside_pad));
+      std::fill_n(w.depth_.begin() + j, out, not_a_number<S>());
+      result.count[static_cast<std::size_t>(PixelStatus::outside_pad)] += out;
+      j += out;
+      if (j < pad_.cols && inside[j] != 0 && status[j] != 0) {
+        if (status[j] == static_cast<std::uint8_t>(PixelStatus::not_a_number)) {
+          status[j] = static_cast<std::uint8_t>(
+              detail::status_of_cells(red(row, j), green(row, j), w.scale_));
+        }
+        ++result.count[status[j]];
+        ++j;
       }
-      if (inside[j] == 0) {
-        status[j] = static_cast<std::uint8_t>(PixelStatus::outside_pad);
-        w.depth_[static_cast<std::size_t>(j)] = not_a_number<S>();
-      } else if (status[j] == static_cast<std::uint8_t>(PixelStatus::not_a_number)) {
-        status[j] = static_cast<std::uint8_t>(
-            detail::status_of_cells(red(row, j), green(row, j), w.scale_));
-      }
-      ++result.count[status[j]];
     }
   }
 

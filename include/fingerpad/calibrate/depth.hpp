@@ -204,9 +204,13 @@ AbsorptionFit<S, Degree> fit_absorption(std::span<const DepthSample<S>> samples,
     const S g = fit.scattering_at(s.rho_sq_mm2);
     residual_sq += square(depth_equation(fit.fluid, s.pencil, g, s.colour, s.depth_mm).value);
   }
-  const S count = S(static_cast<int>(samples.size()));
-  fit.residual_rms = sqrt(S(residual_sq / count));
-  fit.grey_noise = options.grey_noise > 0 ? S(options.grey_noise) : S(sqrt(S(p.cost / (count - S(n)))));
+  const int count = static_cast<int>(samples.size());
+  fit.residual_rms = sqrt(S(residual_sq / S(count)));
+  if (options.grey_noise > 0) {
+    fit.grey_noise = S(options.grey_noise);
+  } else {
+    fit.grey_noise = count > n ? S(sqrt(S(p.cost / S(count - n)))) : not_a_number<S>();
+  }
 
   // (J^T J)^-1 = R^-1 R^-T, for parameters relative to their size.
   const Eigen::HouseholderQR<Matrix> qr(relative);

@@ -110,16 +110,39 @@ void fill_outside(
   }
 }
 
-/// True when the first eight of `left` pixels are inside the pad with status ok.
-inline bool all_well(const std::uint8_t* inside, const std::uint8_t* status, Index left) {
-  if (left < 8) {
-    return false;
+/// How many of the first `count` bytes are zero, up to the first that is not.
+inline Index count_zeros(const std::uint8_t* bytes, Index count) {
+  Index n = 0;
+  std::uint64_t eight = 0;
+  for (; n + 8 <= count; n += 8) {
+    std::memcpy(&eight, bytes + n, sizeof eight);
+    if (eight != 0) {
+      break;
+    }
   }
+  while (n < count && bytes[n] == 0) {
+    ++n;
+  }
+  return n;
+}
+
+/// How many of the first `count` pixels are inside the pad (1) with status ok (0), up to the first
+/// that is not.
+inline Index count_well(const std::uint8_t* inside, const std::uint8_t* status, Index count) {
+  Index n = 0;
   std::uint64_t in = 0;
   std::uint64_t is = 0;
-  std::memcpy(&in, inside, sizeof in);
-  std::memcpy(&is, status, sizeof is);
-  return in == 0x0101010101010101u && is == 0;
+  for (; n + 8 <= count; n += 8) {
+    std::memcpy(&in, inside + n, sizeof in);
+    std::memcpy(&is, status + n, sizeof is);
+    if (in != 0x0101010101010101u || is != 0) {
+      break;
+    }
+  }
+  while (n < count && inside[n] != 0 && status[n] == 0) {
+    ++n;
+  }
+  return n;
 }
 
 }  // namespace detail

@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <cstring>
 
-#include "fingerpad/detail/window_lanes.hpp"
+#include "fingerpad/detail/lanes.hpp"
 #include "fingerpad/grid.hpp"
 
 namespace fingerpad {

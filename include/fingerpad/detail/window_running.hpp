@@ -28,8 +28,13 @@ class RunningWindowSums {
   RunningWindowSums(Index rows,
                     Index cols,
                     const std::array<int, std::size_t(Windows)>& window_px,
-                    const window_limits_t<Pixel>& limits)
-      : rows_(rows), cols_(cols), radius_(window_radii<Windows>(window_px)), limits_(limits) {
+                    const window_limits_t<Pixel>& limits,
+                    int green_windows = Windows)
+      : rows_(rows),
+        cols_(cols),
+        radius_(window_radii<Windows>(window_px)),
+        limits_(limits),
+        green_windows_(std::size_t(green_windows)) {
     expects(rows >= 1, "WindowSums", "rows", rows, ">= 1");
     expects(cols >= 1, "WindowSums", "cols", cols, ">= 1");
     ring_.resize(std::size_t(2 * radius_.back() + 2));
@@ -58,7 +63,7 @@ class RunningWindowSums {
   template <row_source<Pixel> Load>
   void advance(Load&& load_row, const MeanRows<Mean> (&out)[std::size_t(Windows)]) {
     slide(load_row);
-    for (std::size_t k = 0; k < sums_.size(); ++k) average(sums_[k], radius_[k], out[k]);
+    for (std::size_t k = 0; k < sums_.size(); ++k) average(k, out[k]);
   }
 
  private:
@@ -137,7 +142,9 @@ class RunningWindowSums {
     }
   }
 
-  void average(const ColumnSums& sums, Index r, const MeanRows<Mean>& out) const {
+  void average(std::size_t k, const MeanRows<Mean>& out) const {
+    const ColumnSums& sums = sums_[k];
+    const Index r = radius_[k];
     Sum red(0), green(0);
     int count = 0;
     for (Index j = -r; j < cols_; ++j) {
@@ -155,7 +162,7 @@ class RunningWindowSums {
       }
       if (j < 0) continue;
       out.red[j] = mean(red, std::uint16_t(count));
-      out.green[j] = mean(green, std::uint16_t(count));
+      if (k < green_windows_) out.green[j] = mean(green, std::uint16_t(count));
       if (out.count != nullptr) out.count[j] = std::uint16_t(count);
     }
   }
@@ -171,6 +178,7 @@ class RunningWindowSums {
   Index rows_, cols_;
   std::array<Index, std::size_t(Windows)> radius_;
   window_limits_t<Pixel> limits_;
+  std::size_t green_windows_;
   Index next_row_ = 0;
   std::vector<Row> ring_;
   std::array<ColumnSums, std::size_t(Windows)> sums_;

@@ -13,13 +13,14 @@
 //   sums.start(first, load_row);  // load_row(row, red, green) or (row, red, green, inside)
 //   for (Index row = first; row < last; ++row) sums.advance(load_row, {{r33, g33}, {r55, g55}});
 //
+// A last argument of the constructor, green_windows, limits green to the first so many windows.
 // load_row is asked for rows in order, once each, from half a window before `first` on (the plain
 // path, which starts anew every 32 rows, may begin that much earlier).
 #include <concepts>
 #include <cstdint>
 
 #include "fingerpad/detail/window_interleaved.hpp"
-#include "fingerpad/detail/window_lanes.hpp"
+#include "fingerpad/detail/lanes.hpp"
 #include "fingerpad/detail/window_running.hpp"
 #if defined(FINGERPAD_HAS_VECTORS)
 #include "fingerpad/detail/window_vector.hpp"

@@ -12,31 +12,16 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <new>
 #include <type_traits>
 #include <vector>
 
-#include "fingerpad/detail/window_lanes.hpp"
+#include "fingerpad/detail/lanes.hpp"
+#include "fingerpad/detail/line_vector.hpp"
 #include "fingerpad/detail/window_rows.hpp"
 
 namespace fingerpad {
 inline namespace v0 {
 namespace detail {
-
-/// Memory that begins on a cache line, so that aligned vectors never straddle two.
-template <class T>
-struct LineAllocator {
-  using value_type = T;
-  static constexpr std::align_val_t line{64};
-  LineAllocator() = default;
-  template <class U>
-  constexpr LineAllocator(const LineAllocator<U>&) {}
-  T* allocate(std::size_t n) { return static_cast<T*>(::operator new(n * sizeof(T), line)); }
-  void deallocate(T* p, std::size_t) { ::operator delete(p, line); }
-  friend bool operator==(const LineAllocator&, const LineAllocator&) { return true; }
-};
-template <class T>
-using line_vector = std::vector<T, LineAllocator<T>>;
 
 template <class Pixel, int Windows, int Bytes>
 class VectorWindowSums {
@@ -48,8 +33,13 @@ class VectorWindowSums {
   VectorWindowSums(Index rows,
                    Index cols,
                    const std::array<int, std::size_t(Windows)>& window_px,
-                   const ValueLimits<double>& limits)
-      : rows_(rows), cols_(cols), radius_(window_radii<Windows>(window_px)), range_(limits) {
+                   const ValueLimits<double>& limits,
+                   int green_windows = Windows)
+      : rows_(rows),
+        cols_(cols),
+        radius_(window_radii<Windows>(window_px)),
+        range_(limits),
+        green_windows_(std::size_t(green_windows)) {
     expects(rows >= 1, "WindowSums", "rows", rows, ">= 1");
     expects(cols >= 1, "WindowSums", "cols", cols, ">= 1");
     padded_ = (cols + 63) / 64 * 64;
@@ -173,7 +163,9 @@ class VectorWindowSums {
   void slide(std::size_t k, Index in, Index past, const MeanRows<float>& out) {
     slide_counts(k, in, past);
     slide_sums<Emit>(k, red_ring_.data(), in, past, sums_[k].red.data(), out.red);
-    slide_sums<Emit>(k, green_ring_.data(), in, past, sums_[k].green.data(), out.green);
+    if (k < green_windows_) {
+      slide_sums<Emit>(k, green_ring_.data(), in, past, sums_[k].green.data(), out.green);
+    }
     if constexpr (Emit) {
       if (out.count != nullptr) std::copy_n(sums_[k].count.data(), cols_, out.count);
     }
@@ -284,6 +276,7 @@ class VectorWindowSums {
   Index rows_, cols_;
   std::array<Index, std::size_t(Windows)> radius_;
   ClosedRange<Pixel> range_;
+  std::size_t green_windows_;
   Index padded_ = 0, margin_ = 0, pitch_ = 0, ring_rows_ = 0;
   Index began_ = 0, next_row_ = 0;
   float missing_ = not_a_number<float>();  // a variable: GCC 12 builds a constant one lane by lane

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// The few vector operations behind window_sums.hpp: load, store, convert, running sum over lanes.
+// The few vector operations behind the row kernels: load, store, convert, running sum over lanes.
 // A thin layer over the vector extensions that GCC and clang share. Explicit because GCC 12 does
 // not vectorise loops of run-time length at -O2; the width is that of the instruction set compiled
 // for, since wider vectors are split badly, and is a template argument everywhere, so that

@@ -1,0 +1,30 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+#pragma once
+// A vector whose memory begins on a cache line.
+#include <cstddef>
+#include <new>
+#include <vector>
+
+namespace fingerpad {
+inline namespace v0 {
+namespace detail {
+
+/// Memory that begins on a cache line, so that aligned vectors never straddle two.
+template <class T>
+struct LineAllocator {
+  using value_type = T;
+  static constexpr std::align_val_t line{64};
+  LineAllocator() = default;
+  template <class U>
+  constexpr LineAllocator(const LineAllocator<U>&) {}
+  T* allocate(std::size_t n) { return static_cast<T*>(::operator new(n * sizeof(T), line)); }
+  void deallocate(T* p, std::size_t) { ::operator delete(p, line); }
+  friend bool operator==(const LineAllocator&, const LineAllocator&) { return true; }
+};
+template <class T>
+using line_vector = std::vector<T, LineAllocator<T>>;
+
+}  // namespace detail
+}  // namespace v0
+}  // namespace fingerpad
