@@ -67,7 +67,7 @@ struct AbsorptionFit {
   Eigen::Matrix<S, Degree + 1, 1, Eigen::DontAlign> scattering;
   S rho_max_mm;
   Covariance covariance;  ///< NaN with as many samples as parameters and no given grey_noise
-  S condition;            ///< of d F / d ln(parameter); 6e3 for depths .5, 4, 8, 12 mm
+  S condition;            ///< of dF / d ln(parameter); 6e3 for depths of 0.5, 4, 8 and 12 mm
   S residual_rms;         ///< of F, grey levels
   S grey_noise;           ///< sd of a colour of weight 1: as given, else as the residuals say
   int iterations;
@@ -149,7 +149,7 @@ S expects_valid(std::span<const DepthSample<S>> samples, int parameters) {
 
 /// Finds the fluid and g, a polynomial of degree `Degree` in rho^2, from at least 4 + Degree
 /// samples at 3 or more depths. Samples that do not determine them are refused with what is lacking
-/// (parameter_error). Allocates; O(samples) per iteration, some 150 trial fluids to begin with.
+/// (parameter_error). Allocates; O(samples) per iteration, some 700 trial fluids to begin with.
 template <int Degree = 0, scalar S = double>
 AbsorptionFit<S, Degree> fit_absorption(std::span<const DepthSample<S>> samples,
                                         const AbsorptionFitOptions& options = {}) {
@@ -167,8 +167,9 @@ AbsorptionFit<S, Degree> fit_absorption(std::span<const DepthSample<S>> samples,
     equations.push_back({s.pencil, s.depth_mm, S(s.rho_sq_mm2 / rho_sq_max), s.colour, s.weight});
   }
   Problem problem(equations);
-  auto p = detail::search_absorption(problem);
-  expects(is_finite(p.cost), owner, "residual", p.cost, "finite: are the samples all alike?");
+  auto p = detail::search_absorption(problem, 60);
+  expects(is_finite(p.cost), owner, "residual", p.cost,
+          "finite with kappa > 0 and g > 0: are red and green right?");
   AbsorptionFit<S, Degree> fit;
   fit.iterations = 0;
   for (int round = 0; round < 3; ++round) {  // the noise of F depends, weakly, on the fit
@@ -180,7 +181,8 @@ AbsorptionFit<S, Degree> fit_absorption(std::span<const DepthSample<S>> samples,
 
   const Matrix jacobian = problem.full_jacobian(p);
   Eigen::Matrix<S, n, 1, Eigen::DontAlign> size;
-  size << p.c_red, (p.delta > S(0) ? p.delta : p.c_red), p.linear;
+  const S delta_size = p.delta * S(10) < p.c_red ? S(p.c_red / S(10)) : p.delta;  // may be 0
+  size << p.c_red, delta_size, p.linear;
   size.template tail<Degree + 1>().setConstant(p.linear(1));
   size = size.cwiseAbs();
   const Matrix relative = jacobian * size.asDiagonal();
@@ -189,8 +191,6 @@ AbsorptionFit<S, Degree> fit_absorption(std::span<const DepthSample<S>> samples,
   expects(is_finite(fit.condition) && fit.condition < S(options.max_condition), owner,
           "condition number", fit.condition,
           "< max_condition: the depths must spread over several mm, and differ at every radius");
-  expects(p.linear(0) > S(0), owner, "fitted kappa", S(p.linear(0)), "> 0: are red and green right?");
-  expects(p.linear(1) > S(0), owner, "fitted g", S(p.linear(1)), "> 0: are red and green right?");
 
   fit.fluid.c_red_per_mm = p.c_red;
   fit.fluid.c_green_per_mm = p.c_red + p.delta;

@@ -162,23 +162,10 @@ class AbsorptionProblem {
   Vector row_weight_;
 };
 
-/// The best of a coarse search over every fluid that a pad could hold; needs no first guess.
-template <class Problem>
-auto search_absorption(const Problem& problem) {
-  using S = typename Problem::Vector::Scalar;
-  typename Problem::Point best{};
-  for (int i = 0; i <= 16; ++i) {
-    using std::exp;
-    const S c_red = S(exp(S(i) * S(6) / S(16))) / S(1000);  // 0.001 to 0.4 per mm
-    for (int j = 0; j <= 8; ++j) {
-      const S delta = S(j * j) / S(1000);  // 0 to 0.064 per mm
-      const auto p = problem.project(c_red, delta, nullptr, nullptr);
-      if (is_finite(p.cost) && !(best.cost < p.cost)) {
-        best = p;
-      }
-    }
-  }
-  return best;
+/// Light is neither negative nor scattered with a negative sign. There are minima where it is.
+template <class Point>
+bool is_physical(const Point& p) {
+  return is_finite(p.cost) && p.linear(0) > 0 && p.linear(1) > 0;
 }
 
 struct AbsorptionDescent {
@@ -225,7 +212,7 @@ AbsorptionDescent descend(const Problem& problem, typename Problem::Point& p, in
     const auto next = problem.project(c_red, delta, &new_r, &new_j);
     const S moved = (step(0) < S(0) ? S(-step(0)) : S(step(0))) +
                     (delta < p.delta ? S(p.delta - delta) : S(delta - p.delta)) / c_red;
-    if (next.cost < p.cost) {
+    if (is_physical(next) && next.cost < p.cost) {
       const bool gained = next.cost < p.cost * (S(1) - S(100) * epsilon<S>());
       p = next;
       r = new_r;
@@ -239,6 +226,35 @@ AbsorptionDescent descend(const Problem& problem, typename Problem::Point& p, in
     }
   }
   return result;
+}
+
+/// The lowest minimum below a coarse grid of every fluid that a pad could hold: for each delta the
+/// best c_red, and from each of these downhill, because there can be several minima. Needs no first
+/// guess. The cost is not a number if no fluid at all is physical.
+template <class Problem>
+auto search_absorption(const Problem& problem, int max_iterations) {
+  using std::exp;
+  using S = typename Problem::Vector::Scalar;
+  using Point = typename Problem::Point;
+  Point best{};
+  for (int j = 0; j <= 8; ++j) {
+    const S delta = S(j * j) / S(1000);  // 0 to 0.064 per mm
+    Point start{};
+    for (int i = 0; i <= 24; ++i) {
+      const S c_red = S(exp(S(i) / S(4))) / S(1000);  // 0.001 to 0.4 per mm
+      const Point p = problem.project(c_red, delta, nullptr, nullptr);
+      if (is_physical(p) && !(start.cost < p.cost)) {
+        start = p;
+      }
+    }
+    if (is_finite(start.cost)) {
+      descend(problem, start, max_iterations);
+      if (!(best.cost < start.cost)) {
+        best = start;
+      }
+    }
+  }
+  return best;
 }
 
 }  // namespace detail

@@ -6,7 +6,8 @@
 // not vectorise loops of run-time length at -O2; the width is that of the instruction set compiled
 // for, since wider vectors are split badly, and is a template argument everywhere, so that
 // translation units compiled for different sets never share a function by name.
-// Unsupported compiler or byte order: `native_vector_bytes` is 0 and nothing else is declared.
+// Unsupported compiler or byte order, or FINGERPAD_NO_VECTORS defined by the user (for the whole
+// program): `native_vector_bytes` is 0 and nothing else is declared.
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
@@ -17,7 +18,8 @@ namespace fingerpad {
 inline namespace v0 {
 namespace detail {
 
-#if !defined(__GNUC__) || (!defined(__clang__) && __GNUC__ < 12) || !defined(__BYTE_ORDER__) || \
+#if defined(FINGERPAD_NO_VECTORS) || !defined(__GNUC__) ||                \
+    (!defined(__clang__) && __GNUC__ < 12) || !defined(__BYTE_ORDER__) || \
     __BYTE_ORDER__ != __ORDER_LITTLE_ENDIAN__
 constexpr int native_vector_bytes = 0;
 #else

@@ -21,62 +21,82 @@ inline constexpr int row_lanes = (std::same_as<S, float> || std::same_as<S, doub
                                      ? VectorBytes / static_cast<int>(sizeof(S))
                                      : 1;
 
+/// A vector of N numbers S, or S itself.
 template <class S, int N>
-struct RowVector {
-  using type = lanes<S, N>;
-};
+struct RowVector;
 template <class S>
 struct RowVector<S, 1> {
   using type = S;
 };
 
-/// Cells from[0], from[1], ... as one V of S. Integers widen and narrow by a factor of two at
-/// a time, for which machines have instructions and GCC 12 uses them.
+/// Cells from[0], from[1], ... as one V of S.
 template <class V, class S, class T>
-V load_cells(const T* from) {
-  if constexpr (std::same_as<V, S>) {
+  requires std::same_as<V, S> V load_cells(const T* from) {
     return static_cast<S>(*from);
-  } else {
-    constexpr int n = static_cast<int>(sizeof(V) / sizeof(S));
-    const lanes<T, n> cells = load<T, n>(from);
-    if constexpr (std::integral<T>) {
-      return convert<S, n>(convert<std::int32_t, n>(convert<std::uint16_t, n>(cells)));
-    } else {
-      return convert<S, n>(cells);
-    }
   }
-}
 
 /// The cells of v, truncated to T where T is an integer, to to[0], to[1], ...
 template <class S, class V, class T>
+  requires std::same_as<V, S>
 void store_cells(T* to, const V& v) {
-  if constexpr (std::same_as<V, S>) {
-    *to = static_cast<T>(v);
+  *to = static_cast<T>(v);
+}
+
+/// The outcome of a comparison, as bytes 1 and 0.
+template <class S>
+void store_flags(std::uint8_t* to, bool flag) {
+  *to = flag ? 1 : 0;
+}
+
+#if defined(FINGERPAD_HAS_VECTORS)
+template <class S, int N>
+  requires(N > 1)
+struct RowVector<S, N> {
+  using type = lanes<S, N>;
+};
+
+template <class V, class S>
+inline constexpr int lanes_in = static_cast<int>(sizeof(V) / sizeof(S));
+
+/// Integers that widen or narrow by a factor of two at a time, for which machines have
+/// instructions and GCC 12 uses them.
+template <class T> concept narrow_integer = std::unsigned_integral<T> && sizeof(T) <= 2;
+
+template <class V, class S, class T>
+  requires(!std::same_as<V, S>)
+V load_cells(const T* from) {
+  constexpr int n = lanes_in<V, S>;
+  const lanes<T, n> cells = load<T, n>(from);
+  if constexpr (narrow_integer<T>) {
+    return convert<S, n>(convert<std::int32_t, n>(convert<std::uint16_t, n>(cells)));
   } else {
-    constexpr int n = static_cast<int>(sizeof(V) / sizeof(S));
-    if constexpr (std::integral<T>) {
-      store(to, convert<T, n>(convert<std::uint16_t, n>(convert<std::int32_t, n>(v))));
-    } else {
-      store(to, convert<T, n>(v));
-    }
+    return convert<S, n>(cells);
   }
 }
+
+template <class S, class V, class T>
+  requires(!std::same_as<V, S>)
+void store_cells(T* to, const V& v) {
+  constexpr int n = lanes_in<V, S>;
+  if constexpr (narrow_integer<T>) {
+    store(to, convert<T, n>(convert<std::uint16_t, n>(convert<std::int32_t, n>(v))));
+  } else {
+    store(to, convert<T, n>(v));
+  }
+}
+
+template <class S, class Mask>
+  requires(!std::integral<Mask>)
+void store_flags(std::uint8_t* to, const Mask& mask) {
+  constexpr int n = lanes_in<Mask, S>;
+  store(to, convert<std::uint8_t, n>(convert<std::uint16_t, n>(mask & (Mask{} + 1))));
+}
+#endif
 
 /// Bytes that are nonzero or not, as what a comparison of V gives.
 template <class V, class S>
 auto load_flags(const std::uint8_t* from) {
   return load_cells<V, S>(from) != V{};
-}
-
-/// The outcome of a comparison, as bytes 1 and 0.
-template <class S, class Mask>
-void store_flags(std::uint8_t* to, const Mask& mask) {
-  if constexpr (std::same_as<Mask, bool> || std::integral<Mask>) {
-    *to = static_cast<std::uint8_t>(mask);
-  } else {
-    constexpr int n = static_cast<int>(sizeof(Mask) / sizeof(S));
-    store(to, convert<std::uint8_t, n>(convert<std::uint16_t, n>(mask & (Mask{} + 1))));
-  }
 }
 
 /// Calls kernel.operator()<V>(j) for j in [0, count) in steps of V's lanes, V = S at the end.
