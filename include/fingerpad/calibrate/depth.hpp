@@ -31,11 +31,11 @@ inline namespace v0 {
 /// such samples too.
 template <scalar S = double>
 struct DepthSample {
-  Pencil<S> pencil;   ///< of the pixel
-  S rho_sq_mm2;       ///< squared distance of the pixel from the axis on the plate
-  S depth_mm;         ///< l along the ray, >= 0
-  Colour<S> colour;   ///< grey levels, > 0
-  S weight = S(1);    ///< 1 / (relative noise of the colour), > 0
+  Pencil<S> pencil;  ///< of the pixel
+  S rho_sq_mm2;      ///< squared distance of the pixel from the axis on the plate
+  S depth_mm;        ///< l along the ray, >= 0
+  Colour<S> colour;  ///< grey levels, > 0
+  S weight = S(1);   ///< 1 / (relative noise of the colour), > 0
 };
 
 /// The sample of pixel (row, col).
@@ -109,12 +109,23 @@ S predicted_depth_sd(const AbsorptionFit<S, Degree>& fit, const DepthSample<S>& 
 
 namespace detail {
 
+/// How many values differ by more than a thousandth of the largest; 0 counts as one if there.
+template <scalar S>
+long long distinct_values(std::vector<S> values) {
+  std::sort(values.begin(), values.end());
+  long long distinct = values.empty() ? 0 : 1;
+  for (std::size_t i = 1; i < values.size(); ++i) {
+    distinct += values[i] - values[i - 1] > values.back() / S(1000) ? 1 : 0;
+  }
+  return distinct;
+}
+
 /// Refuses samples from which no fluid can be found, naming what they lack. Returns the largest
 /// rho^2.
 template <scalar S>
-S expects_valid(std::span<const DepthSample<S>> samples, int parameters) {
+S expects_valid(std::span<const DepthSample<S>> samples, int degree) {
   const char* const owner = "fit_absorption";
-  std::vector<S> depths;
+  std::vector<S> depths, radii;
   S rho_sq = S(0);
   for (const DepthSample<S>& s : samples) {
     expects(is_finite(s.depth_mm) && !(s.depth_mm < S(0)), owner, "depth_mm", s.depth_mm,
@@ -129,26 +140,27 @@ S expects_valid(std::span<const DepthSample<S>> samples, int parameters) {
     expects(is_finite(s.pencil.path_factor) && !(s.pencil.path_factor < S(2)), owner,
             "pencil.path_factor", s.pencil.path_factor, "finite and >= 2");
     depths.push_back(s.depth_mm);
+    radii.push_back(s.rho_sq_mm2);
     rho_sq = rho_sq < s.rho_sq_mm2 ? s.rho_sq_mm2 : rho_sq;
   }
-  expects(static_cast<int>(samples.size()) >= parameters, owner, "number of samples",
+  expects(static_cast<int>(samples.size()) >= 4 + degree, owner, "number of samples",
           static_cast<long long>(samples.size()),
           "at least the number of parameters, 4 + Degree: the reference and 3 known depths");
-  std::sort(depths.begin(), depths.end());
-  const S far = depths.back();
-  long long distinct = far > S(0) ? 1 : 0;
-  for (std::size_t i = 1; i < depths.size(); ++i) {
-    distinct += depths[i] - depths[i - 1] > far / S(1000) ? 1 : 0;
-  }
+  const long long distinct = distinct_values(depths);
   expects(distinct >= 3, owner, "number of distinct depths", distinct,
           ">= 3, further apart than a thousandth of the largest");
+  const long long rings = distinct_values(radii);
+  expects(rings > degree, owner, "number of distinct rho_sq_mm2", rings,
+          "> Degree, further apart than a thousandth of the largest");
   return rho_sq;
 }
 
 }  // namespace detail
 
 /// Finds the fluid and g, a polynomial of degree `Degree` in rho^2, from at least 4 + Degree
-/// samples at 3 or more depths. Samples that do not determine them are refused with what is lacking
+/// samples at 3 or more depths; with no more than that there can be two exact solutions (4 % of
+/// random sensors), of which this is the one with the smaller delta: give one depth more. Samples
+/// that do not determine them are refused with what is lacking
 /// (parameter_error). Allocates; O(samples) per iteration, some 700 trial fluids to begin with.
 template <int Degree = 0, scalar S = double>
 AbsorptionFit<S, Degree> fit_absorption(std::span<const DepthSample<S>> samples,
@@ -160,7 +172,7 @@ AbsorptionFit<S, Degree> fit_absorption(std::span<const DepthSample<S>> samples,
   const char* const owner = "fit_absorption";
   constexpr int n = 4 + Degree;
 
-  const S rho_sq = detail::expects_valid(samples, n);
+  const S rho_sq = detail::expects_valid(samples, Degree);
   const S rho_sq_max = rho_sq > S(0) ? rho_sq : S(1);
   Equations equations;
   for (const DepthSample<S>& s : samples) {

@@ -32,10 +32,10 @@ struct NeighbourLightFit {
   NeighbourLight<double> light;
   double rms_before_mm;  ///< of l - l_true
   double rms_after_mm;   ///< of what the best fit leaves
-  double m0_sd;  ///< standard deviations as of independent pixels: too small where the errors
-  double n_sd;   ///< of neighbouring pixels are alike
-  bool n_at_limit;                   ///< the best n is an end of the search
-  Index pixels;                      ///< that took part
+  double m0_sd;     ///< standard deviations as of independent pixels: too small where the errors
+  double n_sd;      ///< of neighbouring pixels are alike
+  bool n_at_limit;  ///< the best n is an end of the search
+  Index pixels;     ///< that took part
   std::vector<double> rms_of_radius_mm;  ///< after the best m0 and n, smallest radius first
 };
 
@@ -189,8 +189,8 @@ NeighbourLightFit fit_neighbour_light(double pitch_mm,
 
   const double count = static_cast<double>(fit.pixels);
   const double determinant = best.uu * best.vv - best.uv * best.uv;
-  expects(determinant > 1e-9 * best.uu * best.vv, owner,
-          "independent share of n in the fit", determinant / (best.uu * best.vv),
+  expects(determinant > 1e-9 * best.uu * best.vv, owner, "independent share of n in the fit",
+          determinant / (best.uu * best.vv),
           "> 1e-9: depths must change by different amounts, and some error must be explained");
   const double variance = (best_sq > 0 ? best_sq : 0) / (count - 2);
   fit.light.m0_mm_per_rad = best.m0;
@@ -199,8 +199,8 @@ NeighbourLightFit fit_neighbour_light(double pitch_mm,
   fit.m0_sd = std::sqrt(variance * best.vv / determinant);
   fit.n_sd = std::sqrt(variance * best.uu / determinant);
   const double margin = (search.largest_n_per_mm - search.smallest_n_per_mm) / 1000;
-  fit.n_at_limit = best.n < search.smallest_n_per_mm + margin ||
-                   best.n > search.largest_n_per_mm - margin;
+  fit.n_at_limit =
+      best.n < search.smallest_n_per_mm + margin || best.n > search.largest_n_per_mm - margin;
   return fit;
 }
 

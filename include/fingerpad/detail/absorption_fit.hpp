@@ -76,6 +76,15 @@ class AbsorptionProblem {
 
   Index size() const { return row_weight_.size(); }
 
+  /// Sum of squares of the weighted greens, the scale of the cost.
+  S green_sq() const {
+    S sum = S(0);
+    for (Index i = 0; i < size(); ++i) {
+      sum += square(S(row_weight_(i) * sample(i).colour.green));
+    }
+    return sum;
+  }
+
   /// Divides each equation by the noise of F there, sqrt(e^{2 delta k l} + kappa^2) times that of
   /// a colour: constant to a few per cent over the depths of a pad.
   void weigh(const Point& p) {
@@ -229,14 +238,16 @@ AbsorptionDescent descend(const Problem& problem, typename Problem::Point& p, in
 }
 
 /// The lowest minimum below a coarse grid of every fluid that a pad could hold: for each delta the
-/// best c_red, and from each of these downhill, because there can be several minima. Needs no first
-/// guess. The cost is not a number if no fluid at all is physical.
+/// best c_red, and from each of these downhill, because there can be several minima. Of minima that
+/// only roundoff tells apart (four samples can have two exact solutions) that of the smallest
+/// delta. Needs no first guess. The cost is not a number if no fluid at all is physical.
 template <class Problem>
 auto search_absorption(const Problem& problem, int max_iterations) {
   using std::exp;
   using S = typename Problem::Vector::Scalar;
   using Point = typename Problem::Point;
   Point best{};
+  const S roundoff = square(S(S(1000) * epsilon<S>())) * problem.green_sq();
   for (int j = 0; j <= 8; ++j) {
     const S delta = S(j * j) / S(1000);  // 0 to 0.064 per mm
     Point start{};
@@ -249,7 +260,7 @@ auto search_absorption(const Problem& problem, int max_iterations) {
     }
     if (is_finite(start.cost)) {
       descend(problem, start, max_iterations);
-      if (!(best.cost < start.cost)) {
+      if (!(best.cost <= start.cost + roundoff)) {
         best = start;
       }
     }

@@ -1,0 +1,97 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+#pragma once
+// What the benchmarks look at: the published pad by 640 x 480 pixels, from two cameras, with the
+// rays, dots and noise of tests/support/pad.hpp.
+#include <cmath>
+#include <cstdint>
+#include <string>
+
+#include "../../tests/support/pad.hpp"
+
+namespace bench {
+
+using fingerpad::Index;
+using test::Frame;
+using test::Image;
+using test::Pad;
+
+/// A spherical cap 13 mm high on a base of 18.735 mm, alone and under a flat plate 3.5 mm below its
+/// top.
+struct Scene {
+  std::string name;
+  Pad pad;
+  Image<double> free_mm;
+  Image<double> pressed_mm;
+
+  Scene(const std::string& label, double pitch_mm, double max_depth_mm) : name(label) {
+    pad.fluid.max_depth_mm = max_depth_mm;
+    pad.rows = 480;
+    pad.cols = 640;
+    pad.camera.pitch_mm = pitch_mm;
+    pad.camera.center_x_px = 319.5;
+    pad.camera.center_y_px = 239.5;
+    free_mm = pad.free_depths();
+    pressed_mm = pad.pressed_depths(3.5);
+  }
+
+  std::size_t pixels() const { return free_mm.cells.size(); }
+  double noise = 1;  ///< grey levels
+
+  template <class Pixel>
+  Frame<Pixel> pressed_frame() const {
+    return pad.frame<Pixel>(pressed_mm, noise);
+  }
+};
+
+/// Every pixel sees the pad; the corners see its rim, at depths near 0.
+inline Scene full_pad(double max_depth_mm = 14) {
+  return {"full pad", 0.0468, max_depth_mm};
+}
+/// The published scale: 488 pixels wide, four rows of it beyond either edge of the image.
+inline Scene round_pad() {
+  return {"round pad", 0.0768, 14};
+}
+
+/// Both channels as BGR BGR ...
+template <class Pixel>
+struct Interleaved {
+  Image<Pixel> cells;
+
+  explicit Interleaved(const Frame<Pixel>& frame) : cells(frame.red.rows(), 3 * frame.red.cols()) {
+    for (Index i = 0; i < frame.red.rows(); ++i) {
+      for (Index j = 0; j < frame.red.cols(); ++j) {
+        cells(i, 3 * j + 1) = frame.green(i, j);
+        cells(i, 3 * j + 2) = frame.red(i, j);
+      }
+    }
+  }
+  fingerpad::StridedView<const Pixel> channel(Index c) const {
+    return fingerpad::interleaved_channel(cells.cells.data(), cells.rows(), cells.cols() / 3, 3, c,
+                                          cells.cols());
+  }
+  auto green() const { return channel(1); }
+  auto red() const { return channel(2); }
+};
+
+/// Mean of |depth - truth| over the pixels that have both; `share` of them, of those with a truth.
+struct MeanError {
+  double mm = 0;
+  double share = 0;
+
+  template <class S>
+  MeanError(const Image<S>& depth_mm, const Image<double>& truth_mm) {
+    double known = 0;
+    double found = 0;
+    for (std::size_t k = 0; k < truth_mm.cells.size(); ++k) {
+      const double error = std::abs(static_cast<double>(depth_mm.cells[k]) - truth_mm.cells[k]);
+      known += std::isnan(truth_mm.cells[k]) ? 0 : 1;
+      found += std::isnan(error) ? 0 : 1;
+      mm += std::isnan(error) ? 0 : error;
+    }
+    mm /= found;
+    share = found / known;
+  }
+};
+
+}  // namespace bench

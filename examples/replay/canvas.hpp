@@ -1,0 +1,57 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+#pragma once
+// A white sheet to draw figures on. Coordinates are pixels of the finished picture and may be
+// fractions; everything is drawn several times larger and shrunk at the end, so that lines and
+// letters are smooth. ASCII text only.
+#include <opencv2/core.hpp>
+#include <string>
+#include <vector>
+
+namespace replay {
+
+using Spot = cv::Point2d;
+using Ink = cv::Scalar;  ///< blue, green, red
+
+namespace ink {
+inline const Ink black(38, 34, 32);
+inline const Ink grey(128, 122, 118);
+inline const Ink pale(224, 221, 219);
+inline const Ink white(255, 255, 255);
+inline const Ink accent(48, 40, 214);
+}  // namespace ink
+
+enum class Align { left, centre, right };
+
+class Canvas {
+ public:
+  Canvas(double width, double height);
+
+  void line(Spot from, Spot to, double width, const Ink& colour);
+  void curve(const std::vector<Spot>& spots, double width, const Ink& colour);
+  void dashed_curve(const std::vector<Spot>& spots, double width, const Ink& colour);
+  void polygon(const std::vector<Spot>& corners, const Ink& colour);
+  void circle(Spot centre, double radius, double width, const Ink& colour);
+  /// `at` lies on the baseline; `height` is that of a capital letter.
+  void text(Spot at, const std::string& words, double height, const Ink& colour,
+            Align align = Align::left, bool bold = false);
+  double text_width(const std::string& words, double height, bool bold = false) const;
+
+  /// The large pixels that a rectangle covers, for pictures to be painted into directly.
+  cv::Mat area(const cv::Rect2d& rectangle);
+  /// Paints only where `mask` (8 bit, of the size of area(rectangle)) is set, in its proportion.
+  void blend(const cv::Rect2d& rectangle, const cv::Mat& picture, const cv::Mat& mask);
+  /// Mask of area(rectangle) that is set inside a polygon.
+  cv::Mat mask_of(const cv::Rect2d& rectangle, const std::vector<Spot>& corners) const;
+
+  cv::Mat finished() const;
+
+  static constexpr int scale = 4;
+
+ private:
+  std::vector<cv::Point> large(const std::vector<Spot>& spots, Spot origin = {0, 0}) const;
+  cv::Size size_;
+  cv::Mat sheet_;
+};
+
+}  // namespace replay

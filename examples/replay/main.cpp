@@ -1,0 +1,56 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+// replay: from a recording on disk to depth maps, a table and pictures. See --help.
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <exception>
+#include <map>
+#include <string>
+
+#include "replay.hpp"
+
+int main(int argc, char** argv) {
+  CLI::App app(
+      "Depth maps, a table and pictures from a recording of a fluid-filled pad.\n"
+      "RECORDING is a folder with sensor.json, reference.png, reference_depth.tiff and frames/;\n"
+      "DIR receives frames.csv and pictures/, and depth/ with --raw. An earlier run's DIR is\n"
+      "replaced when the new one is complete; nothing is left behind when something fails.");
+  replay::Options options;
+  std::string frames;
+  const std::map<std::string, replay::Smoothing> policies = {
+      {"none", replay::Smoothing::none},
+      {"box", replay::Smoothing::box},
+      {"bias-free", replay::Smoothing::bias_free},
+      {"anchored", replay::Smoothing::anchored}};
+  app.add_option("RECORDING", options.recording, "the recording's folder")->required();
+  app.add_option("--out", options.out, "the folder to write")->required()->option_text("DIR");
+  app.add_flag("--raw", options.raw, "also write depth/NNNNNN.tiff: 32-bit float, mm, NaN: invalid");
+  app.add_option_function<std::string>(
+         "--smoothing",
+         [&](const std::string& name) { options.smoothing = policies.at(name); },
+         "none, box, bias-free or anchored; by default anchored over the recording's smoothing_px, "
+         "and none where it has no smoothing_px")
+      ->check(CLI::IsMember({"none", "box", "bias-free", "anchored"}))
+      ->option_text("POLICY");
+  app.add_option("--frames", frames, "only frames A to B-1, counted from 0; A or B may be left out")
+      ->option_text("A:B");
+  app.add_flag("!--no-pictures", options.pictures, "write no pictures");
+  app.footer("Exit status: 0 done, 1 something in the files, 2 wrong arguments.");
+  try {
+    app.parse(argc, argv);
+    if (!frames.empty()) {
+      options.range = replay::parse_range(frames);
+    }
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? 0 : 2;
+  } catch (const std::invalid_argument& error) {
+    std::fprintf(stderr, "--frames: %s\nRun with --help for more information.\n", error.what());
+    return 2;
+  }
+  try {
+    return replay::run(options);
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "replay: %s\n", error.what());
+    return 1;
+  }
+}

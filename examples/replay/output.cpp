@@ -1,0 +1,183 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+#include "output.hpp"
+
+#include <unistd.h>
+
+#include <cmath>
+#include <cstdio>
+#include <regex>
+#include <system_error>
+#include <vector>
+
+#include "failure.hpp"
+
+namespace replay {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* columns = "frame,time_s,valid_share,depth_mean_mm,depth_max_mm";
+
+/// Whether a file of this path, relative to the output folder, is one that the program writes.
+bool is_ours(const std::string& relative) {
+  static const std::regex ours(
+      R"(frames\.csv|dots\.csv|depth|depth/\d{6}\.tiff|contact|contact/\d{6}\.png|pictures|)"
+      R"(pictures/(depth|side)_\d{6}\.png|pictures/montage\.png)");
+  return std::regex_match(relative, ours);
+}
+
+void refuse_foreign(const fs::path& place) {
+  const std::string kept = ": nothing was touched; name another folder";
+  if (!fs::exists(fs::symlink_status(place))) {
+    return;
+  }
+  if (!fs::is_directory(place)) {
+    fail(place, "is not a folder" + kept);
+  }
+  for (const fs::directory_entry& entry : fs::recursive_directory_iterator(place)) {
+    const std::string relative = entry.path().lexically_relative(place).generic_string();
+    if (entry.is_symlink() || !is_ours(relative)) {
+      fail(place, "holds " + relative + ", which no earlier run wrote" + kept);
+    }
+  }
+  if (!fs::is_empty(place)) {
+    std::ifstream table(place / "frames.csv");
+    std::string header;
+    if (!std::getline(table, header) || header.rfind("frame,time_s", 0) != 0) {
+      fail(place, "is not empty and holds no frames.csv of an earlier run" + kept);
+    }
+  }
+}
+
+/// The folder itself, without "." or a trailing slash, behind symbolic links.
+fs::path resolved(const fs::path& given) {
+  fs::path place = fs::weakly_canonical(given);
+  return place.has_filename() ? place : place.parent_path();
+}
+
+fs::path make_sibling(const fs::path& place) {
+  std::string name = (place.parent_path() / ("." + place.filename().string() + ".XXXXXX")).string();
+  std::vector<char> pattern(name.begin(), name.end());
+  pattern.push_back('\0');
+  if (::mkdtemp(pattern.data()) == nullptr) {
+    fail(place.parent_path(),
+         "cannot be written: " + std::error_code(errno, std::generic_category()).message());
+  }
+  const fs::path sibling(pattern.data());
+  fs::permissions(sibling, fs::perms::group_read | fs::perms::group_exec | fs::perms::others_read |
+                               fs::perms::others_exec,
+                  fs::perm_options::add);
+  return sibling;
+}
+
+}  // namespace
+
+OutputFolder::OutputFolder(const fs::path& place) {
+  try {
+    place_ = resolved(place);
+    refuse_foreign(place_);
+  } catch (const fs::filesystem_error& error) {
+    fail(place, error.code().message());
+  }
+  make_parents(place_.parent_path());
+  try {
+    growing_ = make_sibling(place_);
+  } catch (const Failure&) {
+    remove_traces();
+    throw;
+  }
+}
+
+OutputFolder::~OutputFolder() {
+  if (!growing_.empty()) {
+    remove_traces();
+  }
+}
+
+void OutputFolder::make_parents(const fs::path& folder) {
+  if (fs::exists(folder)) {
+    return;
+  }
+  make_parents(folder.parent_path());
+  std::error_code error;
+  fs::create_directory(folder, error);
+  if (error) {
+    remove_traces();
+    fail(folder, "cannot be made: " + error.message());
+  }
+  made_parents_.push_back(folder);
+}
+
+void OutputFolder::remove_traces() {
+  std::error_code ignored;
+  if (!growing_.empty()) {
+    fs::remove_all(growing_, ignored);
+  }
+  for (; !made_parents_.empty(); made_parents_.pop_back()) {
+    fs::remove(made_parents_.back(), ignored);  // only where it is empty
+  }
+}
+
+fs::path OutputFolder::file(const std::string& part, const std::string& name) const {
+  std::error_code error;
+  fs::create_directories(growing_ / part, error);
+  if (error) {
+    fail(growing_ / part, "cannot be written: " + error.message());
+  }
+  return growing_ / part / name;
+}
+
+void OutputFolder::publish() {
+  try {
+    refuse_foreign(place_);  // again: somebody may have used it meanwhile
+    if (fs::exists(place_)) {
+      // The earlier run stays whole until the new one has its place.
+      const fs::path earlier = make_sibling(place_);
+      fs::rename(place_, earlier);
+      std::error_code error;
+      fs::rename(growing_, place_, error);
+      if (error) {
+        fs::rename(earlier, place_);
+        fail(place_, "cannot be replaced: " + error.message());
+      }
+      fs::remove_all(earlier);
+    } else {
+      fs::rename(growing_, place_);
+    }
+    growing_.clear();
+  } catch (const fs::filesystem_error& error) {
+    fail(place_, "cannot be written: " + error.code().message());
+  }
+}
+
+std::string numbered(const std::string& stem, int frame, const std::string& extension) {
+  char digits[16];
+  std::snprintf(digits, sizeof digits, "%06d", frame);
+  return stem + digits + extension;
+}
+
+FramesCsv::FramesCsv(const fs::path& file) : file_(file), stream_(file) {
+  stream_ << columns << '\n';
+}
+
+void FramesCsv::write(const FrameRow& row) {
+  const auto cell = [](double value) {
+    char text[32] = "";
+    if (std::isfinite(value)) {
+      std::snprintf(text, sizeof text, "%.6f", value);
+    }
+    return std::string(text);
+  };
+  stream_ << row.frame << ',' << row.time_s << ',' << cell(row.valid_share) << ','
+          << cell(row.depth_mean_mm) << ',' << cell(row.depth_max_mm) << '\n';
+}
+
+void FramesCsv::close() {
+  stream_.close();
+  if (!stream_) {
+    fail(file_, "cannot be written");
+  }
+}
+
+}  // namespace replay

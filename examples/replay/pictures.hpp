@@ -1,0 +1,56 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+#pragma once
+// What a person would look at: false-colour depth, a side view, and a recording at a glance.
+#include <opencv2/core.hpp>
+#include <string>
+#include <vector>
+
+#include "depth_colours.hpp"
+#include "sensor.hpp"
+
+namespace replay {
+
+/// The row that a side view shows.
+struct Section {
+  int row = 0;
+  int col = 0;           ///< of the point that chose the row
+  double dent_mm = 0;    ///< how far it lies below the free pad; 0: nothing presses the pad
+};
+
+/// One frame, as far as pictures need it.
+struct Scene {
+  int frame = 0;
+  std::string time_s;      ///< empty where unknown
+  cv::Mat image;           ///< 8- or 16-bit colour
+  cv::Mat_<float> depth_mm;
+  Section section;
+  double valid_share = 0;
+  double depth_mean_mm = 0;  ///< NaN where no pixel is valid
+  double depth_max_mm = 0;
+};
+
+class Painter {
+ public:
+  /// `brightest` is the grey level that shows as white in the camera's pictures.
+  Painter(const Sensor& sensor, const cv::Mat_<float>& free_depth_mm, double brightest);
+
+  /// The row through the deepest dent, or, on a free pad, through the point of the largest depth.
+  Section find_section(const cv::Mat_<float>& depth_mm) const;
+
+  cv::Mat depth(const Scene& scene) const;
+  cv::Mat side(const Scene& scene) const;
+  /// One column a scene: camera image, depth, its change and side view.
+  cv::Mat montage(const std::string& title, const std::vector<Scene>& scenes) const;
+
+ private:
+  fingerpad::Camera<double> camera_;
+  cv::Mat_<float> free_depth_mm_;
+  cv::Mat_<uchar> in_pad_;
+  double half_width_mm_;  ///< of side views
+  double top_mm_;         ///< of the depth scale
+  ColourScale scale_;
+  double brightest_;
+};
+
+}  // namespace replay

@@ -1,0 +1,34 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+#pragma once
+// The run of the program, from its options to its output.
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include "depth_step.hpp"
+
+namespace replay {
+
+/// Frames [first, last); no last: to the end.
+struct Range {
+  int first = 0;
+  std::optional<int> last;
+};
+
+/// Reads "A:B", "A:" or ":B"; throws std::invalid_argument.
+Range parse_range(const std::string& text);
+
+struct Options {
+  std::filesystem::path recording;
+  std::filesystem::path out;
+  std::optional<Smoothing> smoothing;
+  Range range;
+  bool raw = false;
+  bool pictures = true;
+};
+
+/// The exit status: 0, or 130 where the user interrupted. Throws Failure.
+int run(const Options& options);
+
+}  // namespace replay

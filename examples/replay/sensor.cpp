@@ -1,0 +1,258 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+#include "sensor.hpp"
+
+#include <fstream>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <utility>
+#include <vector>
+
+#include "failure.hpp"
+
+namespace replay {
+namespace {
+
+using nlohmann::json;
+
+struct Key {
+  std::string name;
+  std::string purpose;  ///< what the reader of an error message learns about a missing key
+};
+
+/// One object of the file and the keys that it may have.
+class Section {
+ public:
+  Section(const std::filesystem::path& file, std::string name, const json& object,
+          std::vector<Key> keys)
+      : file_(file), name_(std::move(name)), object_(object), keys_(std::move(keys)) {
+    if (!object_.is_object()) {
+      fail(file_, (name_.empty() ? "the whole file" : name_) + " is " + kind(object_) +
+                      ", must be an object { ... }");
+    }
+    for (const auto& item : object_.items()) {
+      if (find(item.key()) == nullptr) {
+        fail(file_, "unknown key " + full_name(item.key()) + " (known here: " + known() + ")");
+      }
+    }
+  }
+
+  bool has(const std::string& key) const { return object_.contains(key); }
+
+  const json& at(const std::string& key) const {
+    if (!has(key)) {
+      fail(file_, full_name(key) + " is missing (" + find(key)->purpose + ")");
+    }
+    return object_.at(key);
+  }
+
+  Section section(const std::string& key, std::vector<Key> keys) const {
+    return {file_, key, at(key), std::move(keys)};
+  }
+
+  double number(const std::string& key) const {
+    const json& found = at(key);
+    if (!found.is_number()) {
+      refuse_type(key, found, "a number");
+    }
+    return found.get<double>();
+  }
+
+  double positive(const std::string& key) const {
+    const double found = number(key);
+    if (!(found > 0)) {
+      fail(file_, full_name(key) + " = " + at(key).dump() + ", must be > 0");
+    }
+    return found;
+  }
+
+  int positive_integer(const std::string& key) const {
+    const json& found = at(key);
+    if (!found.is_number_integer()) {
+      refuse_type(key, found, "a whole number");
+    }
+    const double found_value = found.get<double>();
+    if (!(found_value >= 1 && found_value <= std::numeric_limits<int>::max())) {
+      fail(file_, full_name(key) + " = " + found.dump() + ", must be >= 1 and fit into 32 bits");
+    }
+    return found.get<int>();
+  }
+
+  std::string path(const std::string& key) const {
+    const json& found = at(key);
+    if (!found.is_string() || found.get<std::string>().empty()) {
+      refuse_type(key, found, "the path of a file");
+    }
+    return found.get<std::string>();
+  }
+
+  std::pair<double, double> pair(const std::string& key) const {
+    const json& found = at(key);
+    if (!found.is_array() || found.size() != 2 || !found[0].is_number() || !found[1].is_number()) {
+      refuse_type(key, found, "two numbers [x, y]");
+    }
+    return {found[0].get<double>(), found[1].get<double>()};
+  }
+
+ private:
+  static std::string kind(const json& value) {
+    const std::string type = value.type_name();
+    return (type == "array" || type == "object" ? "an " : type == "null" ? "" : "a ") + type;
+  }
+  const Key* find(const std::string& name) const {
+    for (const Key& key : keys_) {
+      if (key.name == name) {
+        return &key;
+      }
+    }
+    return nullptr;
+  }
+  std::string full_name(const std::string& key) const {
+    return name_.empty() ? key : name_ + "." + key;
+  }
+  std::string known() const {
+    std::string list;
+    for (const Key& key : keys_) {
+      list += (list.empty() ? "" : ", ") + key.name;
+    }
+    return list;
+  }
+  [[noreturn]] void refuse_type(const std::string& key, const json& found, const char* must) const {
+    fail(file_, full_name(key) + " is " + found.dump() + " (" + kind(found) + "), must be " + must);
+  }
+
+  const std::filesystem::path& file_;
+  std::string name_;
+  const json& object_;
+  std::vector<Key> keys_;
+};
+
+json parse(const std::filesystem::path& file) {
+  std::ifstream stream(file);
+  if (!stream) {
+    fail(file, "cannot be read (every recording has this file; it describes the sensor)");
+  }
+  try {
+    return json::parse(stream);
+  } catch (const json::exception& error) {
+    const std::string what = error.what();  // "[json.exception.parse_error.101] parse error at ..."
+    const auto start = what.find("] ");
+    fail(file, start == std::string::npos ? what : what.substr(start + 2));
+  }
+}
+
+fingerpad::Camera<double> read_camera(const Section& root) {
+  const Section section = root.section(
+      "camera", {{"plate_distance_mm", "from the camera's centre to the plate's inner face, mm"},
+                 {"refractive_index", "of the fluid, 1.33 for water"},
+                 {"center_px", "[x, y] of the pixel on the optical axis"},
+                 {"pitch_mm", "size of a pixel on the plate's inner face, mm"}});
+  fingerpad::Camera<double> camera;
+  camera.plate_distance_mm = section.number("plate_distance_mm");
+  camera.refractive_index = section.number("refractive_index");
+  std::tie(camera.center_x_px, camera.center_y_px) = section.pair("center_px");
+  camera.pitch_mm = section.number("pitch_mm");
+  expects_valid(camera);
+  return camera;
+}
+
+fingerpad::Absorption<double> read_absorption(const Section& root) {
+  const Section section =
+      root.section("absorption", {{"c_red_per_mm", "absorption of red light in the fluid, 1/mm"},
+                                  {"c_green_per_mm", "absorption of green light, 1/mm"},
+                                  {"kappa", "ratio of light and camera in green to those in red"},
+                                  {"max_depth_mm", "depths are looked for up to here, mm"}});
+  fingerpad::Absorption<double> absorption;
+  absorption.c_red_per_mm = section.number("c_red_per_mm");
+  absorption.c_green_per_mm = section.number("c_green_per_mm");
+  absorption.kappa = section.number("kappa");
+  absorption.max_depth_mm = section.number("max_depth_mm");
+  expects_valid(absorption);
+  return absorption;
+}
+
+Pad read_pad(const Section& root) {
+  const Section section =
+      root.section("pad", {{"base_radius_mm", "radius of the pad on the plate, mm"},
+                           {"apex_height_mm", "height of the free pad above the plate, mm"}});
+  return {section.positive("base_radius_mm"), section.positive("apex_height_mm")};
+}
+
+Dots read_dots(const Section& root) {
+  const Section section = root.section("dots", {{"rows", "rows of printed dots"},
+                                                {"cols", "columns of printed dots"},
+                                                {"pitch_mm", "between neighbouring dots, mm"},
+                                                {"diameter_mm", "of a printed dot, mm"}});
+  return {section.positive_integer("rows"), section.positive_integer("cols"),
+          section.positive("pitch_mm"), section.positive("diameter_mm")};
+}
+
+Rim read_rim(const Section& root) {
+  const Section section = root.section(
+      "rim", {{"side_dot_length_mm", "stress-free length from the rim to its side dot, mm"},
+              {"membrane_modulus_n_per_mm", "shear modulus times thickness, N/mm"}});
+  Rim rim{section.positive("side_dot_length_mm"), {}};
+  if (section.has("membrane_modulus_n_per_mm")) {
+    rim.membrane_modulus_n_per_mm = section.positive("membrane_modulus_n_per_mm");
+  }
+  return rim;
+}
+
+NeighbourLight read_neighbour_light(const Section& root) {
+  const Section section =
+      root.section("neighbour_light", {{"radius_px", "of the disc that sends light, px"},
+                                       {"m0_mm_per_rad", "its strength, mm per rad"},
+                                       {"n_per_mm", "how its strength grows with depth, 1/mm"}});
+  return {section.positive_integer("radius_px"), section.number("m0_mm_per_rad"),
+          section.number("n_per_mm")};
+}
+
+}  // namespace
+
+Sensor read_sensor(const std::filesystem::path& file) {
+  const json content = parse(file);
+  const Section root(file, "", content,
+                     {{"camera", "position and resolution of the camera"},
+                      {"absorption", "how the fluid absorbs light"},
+                      {"pad", "size of the free pad"},
+                      {"reference", "a frame of the free pad and its known depth"},
+                      {"video", "a video in the place of the folder frames/"},
+                      {"smoothing_px", "width of the smoothing window, px"},
+                      {"dots", "the printed dots"},
+                      {"rim", "the dots at the rim"},
+                      {"neighbour_light", "compensation of light from neighbouring membrane"}});
+  Sensor sensor;
+  try {
+    sensor.camera = read_camera(root);
+    sensor.absorption = read_absorption(root);
+  } catch (const fingerpad::parameter_error& error) {
+    fail(file, error.what());
+  }
+  sensor.pad = read_pad(root);
+  const Section reference =
+      root.section("reference", {{"frame", "picture of the free pad, a PNG file"},
+                                 {"depth", "its depth in mm per pixel, a 32-bit float TIFF file"}});
+  sensor.reference_frame = reference.path("frame");
+  sensor.reference_depth = reference.path("depth");
+  if (root.has("video")) {
+    sensor.video = root.path("video");
+  }
+  if (root.has("smoothing_px")) {
+    sensor.smoothing_px = root.positive_integer("smoothing_px");
+    if (*sensor.smoothing_px % 2 == 0) {
+      fail(file, "smoothing_px = " + std::to_string(*sensor.smoothing_px) + ", must be odd");
+    }
+  }
+  if (root.has("dots")) {
+    sensor.dots = read_dots(root);
+  }
+  if (root.has("rim")) {
+    sensor.rim = read_rim(root);
+  }
+  if (root.has("neighbour_light")) {
+    sensor.neighbour_light = read_neighbour_light(root);
+  }
+  return sensor;
+}
+
+}  // namespace replay

@@ -1,0 +1,54 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+#pragma once
+// sensor.json of a recording: what is known about the camera, the fluid and the pad. Unknown keys
+// are refused with their name, missing ones with what they are for, wrong values with their range.
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include "fingerpad/detail/absorption_law.hpp"
+#include "fingerpad/optics.hpp"
+
+namespace replay {
+
+struct Pad {
+  double base_radius_mm = 0;
+  double apex_height_mm = 0;
+};
+
+struct Dots {
+  int rows = 0;
+  int cols = 0;
+  double pitch_mm = 0;
+  double diameter_mm = 0;
+};
+
+struct Rim {
+  double side_dot_length_mm = 0;
+  std::optional<double> membrane_modulus_n_per_mm;
+};
+
+struct NeighbourLight {
+  int radius_px = 0;
+  double m0_mm_per_rad = 0;
+  double n_per_mm = 0;
+};
+
+struct Sensor {
+  fingerpad::Camera<double> camera;
+  fingerpad::Absorption<double> absorption;
+  Pad pad;
+  std::string reference_frame;       ///< paths as written, relative to the recording
+  std::string reference_depth;
+  std::optional<std::string> video;  ///< in the place of the folder frames/
+  std::optional<int> smoothing_px;   ///< width of the window, odd; none: colours as they are
+  std::optional<Dots> dots;
+  std::optional<Rim> rim;
+  std::optional<NeighbourLight> neighbour_light;
+};
+
+/// Reads and checks `file`; throws Failure.
+Sensor read_sensor(const std::filesystem::path& file);
+
+}  // namespace replay

@@ -1,0 +1,337 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+#include "fingerpad/calibrate/depth.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "support/catch.hpp"
+#include "support/generators.hpp"
+#include "support/numbers.hpp"
+
+using namespace fingerpad;
+
+namespace {
+
+/// A sensor whose fluid and light are known.
+struct Sensor {
+  Camera<double> camera;
+  Absorption<double> fluid;
+  double brightness = 57;
+  std::vector<double> g = {0.0163};  // over (rho / 20 mm)^2
+
+  double g_at(double rho_sq_mm2) const {
+    double sum = 0;
+    for (std::size_t k = g.size(); k-- > 0;) {
+      sum = sum * rho_sq_mm2 / 400 + g[k];
+    }
+    return sum;
+  }
+  DepthSample<double> sample(double row, double col, double depth_mm) const {
+    auto s = depth_sample(camera, row, col, depth_mm, Colour<double>{});
+    s.colour = colour_at_depth(fluid, s.pencil, brightness, g_at(s.rho_sq_mm2), depth_mm);
+    return s;
+  }
+};
+
+Sensor random_sensor() {
+  Sensor sensor;
+  sensor.camera.plate_distance_mm = test::uniform(30, 80);
+  sensor.fluid.c_red_per_mm = test::log_uniform(0.015, 0.06);
+  sensor.fluid.c_green_per_mm = sensor.fluid.c_red_per_mm + test::uniform(0, 0.02);
+  sensor.fluid.kappa = test::log_uniform(0.5, 2);
+  sensor.brightness = test::uniform(40, 200);
+  sensor.g = {test::log_uniform(0.3, 3) * 3 * sensor.brightness /
+              (sensor.camera.plate_distance_mm * sensor.camera.plate_distance_mm)};
+  return sensor;
+}
+
+using Samples = std::vector<DepthSample<double>>;
+
+Samples samples_on_axis(const Sensor& sensor, int count) {
+  Samples samples;
+  for (int i = 0; i < count; ++i) {
+    samples.push_back(sensor.sample(239.5, 319.5, 0.3 + 12.0 * i / (count - 1)));
+  }
+  return samples;
+}
+
+void add_noise(Samples& samples, double sd, std::mt19937& random) {
+  std::normal_distribution<double> noise(0, sd);
+  for (auto& s : samples) {
+    s.colour.red += noise(random) / s.weight;
+    s.colour.green += noise(random) / s.weight;
+  }
+}
+
+/// The depth that a fitted model finds in these colours, by bisection on F.
+template <class Fit>
+double depth_of(const Fit& fit, const DepthSample<double>& s) {
+  double low = -1, high = 20;
+  for (int k = 0; k < 60; ++k) {
+    const double l = (low + high) / 2;
+    const double g = fit.scattering_at(s.rho_sq_mm2);
+    (l > 0 && depth_equation(fit.fluid, s.pencil, g, s.colour, l).value > 0 ? high : low) = l;
+  }
+  return low;
+}
+
+template <class F>
+std::string refusal(const F& f) {
+  try {
+    f();
+  } catch (const parameter_error& error) {
+    return error.what();
+  }
+  return "accepted";
+}
+
+}  // namespace
+
+TEST_CASE("dW/dc is the derivative of W") {
+  using test::Digits50;
+  rc::prop("against differences in fifty digits", [] {
+    const double l = test::log_uniform(1e-4, 15), c = test::log_uniform(1e-6, 1);
+    const double k = test::uniform(2, 2.5), h = test::uniform(20, 100);
+    const Pencil<Digits50> wide{Digits50(k), {Digits50(h), Digits50(h - 3)}};
+    const auto w = [&](const Digits50& x) { return scattered_light(Digits50(l), x, wide); };
+    const Digits50 truth = test::slope_by_difference(w, Digits50(c), Digits50(c * 1e-15));
+    const double slope =
+        detail::scattered_light_per_absorption(l, c, Pencil<double>{k, {h, h - 3}});
+    const double scale = static_cast<double>(w(Digits50(c))) / c;
+    RC_ASSERT(std::abs(slope - static_cast<double>(truth)) < 1e-14 * scale * (1 + c * k * l));
+  });
+}
+
+TEST_CASE("calibration of depth: noise-free colours give the fluid back") {
+  rc::prop("random sensors", [] {
+    const Sensor sensor = random_sensor();
+    const Samples samples = samples_on_axis(sensor, 5 + static_cast<int>(test::whole(0, 11)));
+    const auto fit = fit_absorption<0, double>(samples);
+    const double roundoff = 100 * fit.condition * epsilon<double>();
+    RC_ASSERT(fit.converged);
+    RC_ASSERT(test::relative_error(fit.fluid.c_red_per_mm, sensor.fluid.c_red_per_mm) < roundoff);
+    RC_ASSERT(test::relative_error(fit.fluid.kappa, sensor.fluid.kappa) < roundoff);
+    RC_ASSERT(test::relative_error(fit.scattering(0), sensor.g[0]) < roundoff);
+    RC_ASSERT(std::abs(fit.fluid.c_green_per_mm - sensor.fluid.c_green_per_mm) <
+              roundoff * sensor.fluid.c_green_per_mm);
+    RC_ASSERT(fit.residual_rms < 1e-12 * sensor.brightness);
+  });
+}
+
+TEST_CASE("calibration of depth: four samples are enough near the published fluid") {
+  rc::prop("fluids like the published one", [] {
+    Sensor sensor;
+    sensor.fluid.c_red_per_mm = test::uniform(0.02, 0.04);
+    sensor.fluid.c_green_per_mm = sensor.fluid.c_red_per_mm + test::uniform(0.002, 0.008);
+    const auto fit = fit_absorption<0, double>(samples_on_axis(sensor, 4));
+    const double roundoff = 100 * fit.condition * epsilon<double>();
+    RC_ASSERT(fit.converged);
+    RC_ASSERT(test::relative_error(fit.fluid.c_red_per_mm, sensor.fluid.c_red_per_mm) < roundoff);
+  });
+}
+
+TEST_CASE("calibration of depth: g that varies over the radius") {
+  Sensor sensor;
+  sensor.g = {0.0163, -0.004, 0.001};
+  Samples samples;
+  for (int i = 0; i < 6; ++i) {
+    for (int j = 0; j < 5; ++j) {
+      samples.push_back(sensor.sample(239.5, 319.5 + 50 * j, 0.5 + 2.3 * i));
+    }
+  }
+  const auto fit = fit_absorption<2, double>(samples);
+  CHECK(fit.converged);
+  CHECK(fit.fluid.c_red_per_mm == Approx(0.029).epsilon(1e-8));
+  for (const auto& s : samples) {
+    CHECK(fit.scattering_at(s.rho_sq_mm2) == Approx(sensor.g_at(s.rho_sq_mm2)).epsilon(1e-8));
+  }
+}
+
+TEST_CASE("calibration of depth: brighter light and longer numbers change only what they must") {
+  std::mt19937 random(7);
+  const Sensor sensor;
+  Samples samples = samples_on_axis(sensor, 20);
+  add_noise(samples, 0.02, random);
+  const auto fit = fit_absorption<0, double>(samples);
+  Samples brighter = samples;
+  for (auto& s : brighter) {
+    s.colour = {2 * s.colour.red, 2 * s.colour.green};
+  }
+  const auto twice = fit_absorption<0, double>(brighter);
+  CHECK(twice.fluid.c_red_per_mm == fit.fluid.c_red_per_mm);
+  CHECK(twice.fluid.c_green_per_mm == fit.fluid.c_green_per_mm);
+  CHECK(twice.fluid.kappa == fit.fluid.kappa);
+  CHECK(twice.scattering(0) == 2 * fit.scattering(0));
+  CHECK(twice.grey_noise == 2 * fit.grey_noise);
+
+  std::vector<DepthSample<long double>> wide;
+  for (const auto& s : samples) {
+    using L = long double;
+    wide.push_back({{L(s.pencil.path_factor),
+                     {L(s.pencil.height.meridional_mm), L(s.pencil.height.sagittal_mm)}},
+                    L(s.rho_sq_mm2),
+                    L(s.depth_mm),
+                    {L(s.colour.red), L(s.colour.green)},
+                    L(s.weight)});
+  }
+  const auto longer = fit_absorption<0, long double>(wide);
+  CHECK(static_cast<double>(longer.fluid.c_red_per_mm) ==
+        Approx(fit.fluid.c_red_per_mm).epsilon(1e-6));
+}
+
+TEST_CASE("calibration of depth: the fit is where no parameter lowers the residual") {
+  std::mt19937 random(3);
+  Samples samples = samples_on_axis(Sensor{}, 30);
+  add_noise(samples, 0.03, random);
+  const auto fit = fit_absorption<0, double>(samples);
+  REQUIRE_FALSE(fit.delta_at_limit);
+  const std::array<double, 4> best = {fit.fluid.c_red_per_mm,
+                                      fit.fluid.c_green_per_mm - fit.fluid.c_red_per_mm,
+                                      fit.fluid.kappa, fit.scattering(0)};
+  const auto cost = [&](const std::array<double, 4>& p) {
+    double sum = 0;
+    for (const auto& s : samples) {
+      const double path = s.pencil.path_factor * s.depth_mm;
+      const double delta = best[1];  // the weights stay those of the fit
+      const double noise_sq = std::exp(2 * delta * path) + best[2] * best[2];
+      const Absorption<double> fluid{p[0], p[0] + p[1], p[2]};
+      const double f = depth_equation(fluid, s.pencil, p[3], s.colour, s.depth_mm).value;
+      sum += f * f / noise_sq;
+    }
+    return sum;
+  };
+  const double lowest = cost(best);
+  for (std::size_t k = 0; k < 4; ++k) {
+    for (const double step : {-1e-4, 1e-4}) {
+      auto p = best;
+      p[k] *= 1 + step;
+      CHECK(cost(p) > lowest);
+    }
+  }
+}
+
+TEST_CASE("calibration of depth: errors compensate to microns of depth, as predicted") {
+  const Sensor sensor;
+  constexpr int trials = 200;
+  AbsorptionFitOptions options;
+  options.grey_noise = 0.034;
+  std::mt19937 random(11);
+  const std::array<double, 3> depths = {2, 6, 11};
+  std::array<double, 3> error_sq = {}, predicted_sq = {};
+  double kappa_sq = 0, kappa_predicted_sq = 0, noise_sq = 0;
+  for (int t = 0; t < trials; ++t) {
+    Samples samples = samples_on_axis(sensor, 60);
+    add_noise(samples, 0.034, random);
+    const auto fit = fit_absorption<0, double>(samples, options);
+    for (std::size_t k = 0; k < depths.size(); ++k) {
+      const auto s = sensor.sample(239.5, 319.5, depths[k]);
+      error_sq[k] += square(depth_of(fit, s) - depths[k]);
+      predicted_sq[k] += square(predicted_depth_sd(fit, s));
+    }
+    kappa_sq += square(fit.fluid.kappa - sensor.fluid.kappa);
+    kappa_predicted_sq += fit.covariance(2, 2);
+    noise_sq += square(fit_absorption<0, double>(samples).grey_noise);
+  }
+  for (std::size_t k = 0; k < depths.size(); ++k) {
+    const double error = std::sqrt(error_sq[k] / trials);
+    const double predicted = std::sqrt(predicted_sq[k] / trials);
+    CAPTURE(depths[k], error, predicted);
+    CHECK(error < 0.010);
+    CHECK(error / predicted > 0.7);
+    CHECK(error / predicted < 1.4);
+  }
+  CAPTURE(kappa_sq, kappa_predicted_sq);
+  CHECK(std::sqrt(kappa_sq / kappa_predicted_sq) == Approx(1).margin(0.3));
+  CHECK(std::sqrt(noise_sq / trials) == Approx(0.034).epsilon(0.03));
+}
+
+TEST_CASE("calibration of depth: covariance against Monte Carlo where the noise is small") {
+  const Sensor sensor;
+  constexpr int trials = 300;
+  constexpr double noise = 1e-4;
+  AbsorptionFitOptions options;
+  options.grey_noise = noise;
+  std::mt19937 random(5);
+  Samples exact = samples_on_axis(sensor, 12);
+  exact[3].weight = 4;
+  const auto at = fit_absorption<0, double>(exact, options);
+  Eigen::Matrix4d scatter = Eigen::Matrix4d::Zero();
+  for (int t = 0; t < trials; ++t) {
+    Samples samples = exact;
+    add_noise(samples, noise, random);
+    const auto fit = fit_absorption<0, double>(samples, options);
+    Eigen::Vector4d off(fit.fluid.c_red_per_mm, 0, fit.fluid.kappa, fit.scattering(0));
+    off(1) = fit.fluid.c_green_per_mm - fit.fluid.c_red_per_mm;
+    off -= Eigen::Vector4d(0.029, 0.0046, sensor.fluid.kappa, 0.0163);
+    scatter += off * off.transpose() / trials;
+  }
+  for (int k = 0; k < 4; ++k) {
+    CAPTURE(k);
+    CHECK(std::sqrt(scatter(k, k) / at.covariance(k, k)) == Approx(1).margin(0.15));
+  }
+  const double correlation =
+      at.covariance(0, 1) / std::sqrt(at.covariance(0, 0) * at.covariance(1, 1));
+  const double seen = scatter(0, 1) / std::sqrt(scatter(0, 0) * scatter(1, 1));
+  CHECK(seen == Approx(correlation).margin(0.02));
+}
+
+TEST_CASE("calibration of depth: a difference of absorption below 0 is held at 0") {
+  Sensor sensor;
+  sensor.fluid.c_green_per_mm = 0.0285;  // no such fluid is accepted, but colours can look so
+  const auto fit = fit_absorption<0, double>(samples_on_axis(sensor, 12));
+  CHECK(fit.delta_at_limit);
+  CHECK(fit.fluid.c_green_per_mm == fit.fluid.c_red_per_mm);
+  CHECK(fit.converged);
+  CHECK(fit.residual_rms > 0);
+}
+
+TEST_CASE("calibration of depth: degenerate samples are refused, saying what is lacking") {
+  const Sensor sensor;
+  const auto fit = [](const Samples& samples) {
+    return refusal([&] { fit_absorption<0, double>(samples); });
+  };
+  const auto at = [&](const std::vector<double>& depths) {
+    Samples samples;
+    for (const double l : depths) {
+      samples.push_back(sensor.sample(239.5, 319.5, l));
+    }
+    return samples;
+  };
+  CHECK(fit({}).find("number of samples = 0, must be at least") != std::string::npos);
+  CHECK(fit(at({1, 5, 9})).find("number of samples = 3, must be at least") != std::string::npos);
+  CHECK(fit(at({4, 4, 4, 4, 4})).find("distinct depths = 1, must be >= 3") != std::string::npos);
+  CHECK(fit(at({4, 4, 8, 8, 4})).find("distinct depths = 2, must be >= 3") != std::string::npos);
+  CHECK(fit(at({0, 0, 0, 0})).find("distinct depths = 1, must be >= 3") != std::string::npos);
+  CHECK(fit(at({4, 8, 12, 12})).find("condition number = ") != std::string::npos);
+  CHECK(fit(at({0, 1e-5, 2e-5, 3e-5})) != "accepted");
+  CHECK(fit(at({0, 4, 8, 12})) == "accepted");
+  for (const double bad : {std::nan(""), -1.0, HUGE_VAL}) {
+    Samples samples = at({0.5, 4, 8, 12});
+    samples[1].depth_mm = bad;
+    CHECK(fit(samples).find("depth_mm = ") != std::string::npos);
+    samples = at({0.5, 4, 8, 12});
+    samples[2].colour.red = bad;
+    CHECK(fit(samples).find("colour.red = ") != std::string::npos);
+    samples = at({0.5, 4, 8, 12});
+    samples[2].colour.green = bad;
+    CHECK(fit(samples).find("colour.green = ") != std::string::npos);
+    samples = at({0.5, 4, 8, 12});
+    samples[0].weight = bad;
+    CHECK(fit(samples).find("weight = ") != std::string::npos);
+  }
+  Samples swapped = at({0.5, 4, 8, 12});
+  for (auto& s : swapped) {
+    std::swap(s.colour.red, s.colour.green);
+  }
+  CHECK(fit(swapped) != "accepted");
+  const auto at_one_radius = at({0.5, 2, 4, 6, 8, 10});
+  CHECK(refusal([&] { fit_absorption<1, double>(at_one_radius); }).find("rho_sq_mm2 = 1, must") !=
+        std::string::npos);
+  const auto unknown = fit_absorption<0, double>(at({0.5, 4, 8, 12}));
+  CHECK(std::isnan(unknown.covariance(0, 0)));  // nothing left over to judge the noise by
+}

@@ -1,0 +1,152 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+#include "fingerpad/calibrate/neighbour_light.hpp"
+
+#include <Eigen/Core>
+#include <cmath>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "fingerpad/adapt/eigen.hpp"
+#include "support/catch.hpp"
+#include "support/generators.hpp"
+
+using namespace fingerpad;
+
+namespace {
+
+using Map = Eigen::Array<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+using Frames = std::vector<Map>;
+constexpr double pitch_mm = 0.2;
+
+Map membrane(double pressed_mm, double shift_mm) {
+  Map l(64, 80);
+  for (Index i = 0; i < 64; ++i) {
+    for (Index j = 0; j < 80; ++j) {
+      const double x = pitch_mm * (static_cast<double>(j) - 40),
+                   y = pitch_mm * (static_cast<double>(i) - 32);
+      const double cap = 8 - 0.08 * (x * x + y * y);
+      const double plate = 8 - pressed_mm + 0.1 * (x - shift_mm);
+      l(i, j) = cap > 0 ? (std::min)(cap, plate) : std::nan("");
+    }
+  }
+  return l;
+}
+
+/// What neighbouring light of this kind makes of the true depths: l_true = l - m psi_sum by the
+/// compensation's own sums.
+Frames truths(const NeighbourLight<double>& light, const Map& reference, const Frames& measured) {
+  Frames truth;
+  const detail::InclinationSums<SteppedDisc<>, double> sums(light.radius_px, pitch_mm,
+                                                            as_view(reference));
+  auto scratch = sums.make_scratch();
+  for (const Map& l : measured) {
+    truth.push_back(l);
+    sums.scan(as_view(l), scratch);
+    for (Index i = 0; i < l.rows(); ++i) {
+      sums.sum_row(i, scratch);
+      for (Index j = 0; j < l.cols(); ++j) {
+        const double m =
+            light.m0_mm_per_rad * std::exp(light.n_per_mm * (l(i, j) - reference(i, j)));
+        truth.back()(i, j) -= m * scratch.sum[static_cast<std::size_t>(j)];
+      }
+    }
+  }
+  return truth;
+}
+
+NeighbourLightFit fit_of(const Map& reference,
+                         const Frames& measured,
+                         const Frames& truth,
+                         const NeighbourLightSearch& search = {}) {
+  return fit_neighbour_light(pitch_mm, reference, std::span<const Map>(measured),
+                             std::span<const Map>(truth), search);
+}
+
+std::string refusal(const Map& reference, const Frames& measured, const Frames& truth) {
+  try {
+    fit_of(reference, measured, truth, {3, 4, -1, 1, 2});
+  } catch (const parameter_error& error) {
+    return error.what();
+  }
+  return "accepted";
+}
+
+}  // namespace
+
+TEST_CASE("calibration of neighbour light: noise-free frames give it back") {
+  rc::prop("random light", [] {
+    const NeighbourLight<double> light{test::whole(3, 9), test::uniform(0.0005, 0.002),
+                                       test::uniform(-0.5, 0.5)};
+    const Map reference = membrane(0, 0);
+    const Frames measured = {membrane(1, 1), membrane(2.5, -2)};
+    const auto fit =
+        fit_of(reference, measured, truths(light, reference, measured), {1, 12, -1, 1, 2});
+    RC_ASSERT(fit.light.radius_px == light.radius_px);
+    RC_ASSERT(std::abs(fit.light.m0_mm_per_rad / light.m0_mm_per_rad - 1) < 1e-9);
+    RC_ASSERT(std::abs(fit.light.n_per_mm - light.n_per_mm) < 1e-9);
+    RC_ASSERT(fit.rms_after_mm < 1e-6 * fit.rms_before_mm);
+    RC_ASSERT(fit.rms_of_radius_mm.size() == 12u);
+    RC_ASSERT(!fit.n_at_limit);
+  });
+}
+
+TEST_CASE("calibration of neighbour light: the stated deviations are those of many fits") {
+  const NeighbourLight<double> light{6, 0.001, 0.2};
+  const Map reference = membrane(0, 0);
+  const Frames measured = {membrane(1, 1), membrane(2.5, -2)};
+  const Frames exact = truths(light, reference, measured);
+  std::mt19937 random(9);
+  std::normal_distribution<double> noise(0, 0.02);
+  double m0_sq = 0, n_sq = 0;
+  NeighbourLightFit fit{};
+  constexpr int trials = 100;
+  for (int t = 0; t < trials; ++t) {
+    Frames truth = exact;
+    for (Map& l : truth) {
+      l = l.unaryExpr([&](double v) { return v + noise(random); });
+    }
+    fit = fit_of(reference, measured, truth, {6, 6, -1, 1, 1});
+    m0_sq += square(fit.light.m0_mm_per_rad - light.m0_mm_per_rad) / trials;
+    n_sq += square(fit.light.n_per_mm - light.n_per_mm) / trials;
+  }
+  CHECK(std::sqrt(m0_sq) == Approx(fit.m0_sd).epsilon(0.25));
+  CHECK(std::sqrt(n_sq) == Approx(fit.n_sd).epsilon(0.25));
+  CHECK(fit.rms_after_mm == Approx(0.02).epsilon(0.05));
+  CHECK(fit.rms_before_mm > fit.rms_after_mm);
+}
+
+TEST_CASE("calibration of neighbour light: compensation with the fit removes the error") {
+  const NeighbourLight<double> light{7, 0.0015, 0.3};
+  const Map reference = membrane(0, 0);
+  const Frames measured = {membrane(2, 1)};
+  const Frames truth = truths(light, reference, measured);
+  const auto fit = fit_of(reference, measured, truth, {5, 9, -1, 1, 3});
+  const NeighbourLightCompensation<SteppedDisc<>, double> compensation(fit.light, pitch_mm,
+                                                                       reference);
+  auto scratch = compensation.make_scratch();
+  Map out(64, 80);
+  REQUIRE(compensation(measured[0], out, scratch));
+  for (Index k = 0; k < out.size(); ++k) {
+    if (!std::isnan(truth[0](k))) {
+      CHECK(out(k) == Approx((std::max)(truth[0](k), 0.0)).margin(1e-9));
+    }
+  }
+}
+
+TEST_CASE("calibration of neighbour light: degenerate frames are refused") {
+  const Map reference = membrane(0, 0);
+  const Frames pressed = {membrane(2, 0)};
+  CHECK(refusal(reference, {reference}, {reference}).find("inclination change") !=
+        std::string::npos);
+  CHECK(refusal(reference, {}, {}).find("number of frames = 0") != std::string::npos);
+  CHECK(refusal(reference, pressed, {}).find("number of frames") != std::string::npos);
+  CHECK(refusal(reference, {Map::Ones(3, 3)}, {reference}).find("same size") != std::string::npos);
+  CHECK(refusal(reference, {Map::Constant(64, 80, std::nan(""))}, {reference})
+            .find("pixels with a reference") != std::string::npos);
+  CHECK(refusal(reference, pressed, pressed).find("independent share of n") != std::string::npos);
+  CHECK_THROWS_AS(fit_neighbour_light(0.0, reference, std::span<const Map>(pressed),
+                                      std::span<const Map>(pressed)),
+                  parameter_error);
+}

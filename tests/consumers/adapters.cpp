@@ -1,0 +1,19 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+// A program that looks at the same cells through OpenCV and through xtensor.
+#include "fingerpad/adapt/mdspan.hpp"
+#include "fingerpad/adapt/opencv.hpp"
+#include "fingerpad/adapt/xtensor.hpp"
+#if __has_include(<xtensor/containers/xarray.hpp>)
+#include <xtensor/containers/xarray.hpp>
+#else
+#include <xtensor/xarray.hpp>
+#endif
+
+int main() {
+  const cv::Mat_<float> image = (cv::Mat_<float>(2, 3) << 1, 2, 3, 4, 5, 6);
+  const xt::xarray<float> array = {{1, 2, 3}, {4, 5, 6}};
+  const auto a = fingerpad::as_view(image);
+  const auto b = fingerpad::as_view(array);
+  return fingerpad::same_size(a, b) && a(1, 2) == b(1, 2) ? 0 : 1;
+}

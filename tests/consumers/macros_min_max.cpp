@@ -1,0 +1,42 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+// A user whose own headers define min and max as macros, as <windows.h> does. The standard library
+// and the foreign libraries come first, since not all of them withstand it.
+#include <Eigen/Core>
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <concepts>
+#include <cstdint>
+#include <limits>
+#include <memory>
+#include <numbers>
+#include <opencv2/core.hpp>
+#include <optional>
+#include <span>
+#include <stdexcept>
+#include <string>
+#include <type_traits>
+#include <unsupported/Eigen/AutoDiff>
+#include <utility>
+#include <vector>
+#if __has_include(<xtensor/containers/xarray.hpp>)
+#include <xtensor/containers/xarray.hpp>
+#else
+#include <xtensor/xarray.hpp>
+#endif
+
+#define min(a, b) this does not compile
+#define max(a, b) this does not compile
+#include "fingerpad/adapt/autodiff.hpp"
+#include "fingerpad/adapt/eigen.hpp"
+#include "fingerpad/adapt/mdspan.hpp"
+#include "fingerpad/adapt/opencv.hpp"
+#include "fingerpad/adapt/xtensor.hpp"
+#include "fingerpad/fingerpad.hpp"
+#if !defined(min) || !defined(max)
+#error "The user's macros are gone."
+#endif
+
+int main() {}

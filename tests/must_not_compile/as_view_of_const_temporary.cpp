@@ -1,0 +1,25 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+// A constant temporary is a temporary too, though an ordinary reference would bind to it.
+// message: deleted
+#include "fingerpad/grid.hpp"
+#include "support/foreign_image.hpp"
+
+using Image = test::ForeignImage<double>;
+static const Image make() {
+  return Image(2, 2);
+}
+
+#ifdef FINGERPAD_MUST_NOT_COMPILE
+static void good_or_bad() {
+  (void)fingerpad::as_view(make());
+}
+#else
+static void good_or_bad() {
+  const Image image = make();
+  (void)fingerpad::as_view(image);
+}
+#endif
+int main() {
+  good_or_bad();
+}

@@ -1,0 +1,20 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+// A view that reads does not become one that writes.
+// message: (conversion|call to|function).*StridedView<const int>
+#include "fingerpad/grid.hpp"
+
+using fingerpad::StridedView;
+
+#ifdef FINGERPAD_MUST_NOT_COMPILE
+static void good_or_bad() {
+  (void)StridedView<int>(StridedView<const int>());
+}
+#else
+static void good_or_bad() {
+  (void)StridedView<const int>(StridedView<int>());
+}
+#endif
+int main() {
+  good_or_bad();
+}

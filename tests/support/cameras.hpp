@@ -1,0 +1,57 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+#pragma once
+// Cameras and pixels at random, the same in every number type.
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "fingerpad/optics.hpp"
+#include "support/generators.hpp"
+
+namespace test {
+
+using fingerpad::Camera;
+using fingerpad::Point2;
+
+/// A camera at random, with a plate or without; exact in every type.
+inline Camera<double> any_camera() {
+  Camera<double> camera;
+  camera.plate_distance_mm = test::uniform(5, 100);
+  camera.refractive_index = test::uniform(1, 2);
+  camera.center_x_px = test::uniform(0, 640);
+  camera.center_y_px = test::uniform(0, 480);
+  camera.pitch_mm = test::uniform(0.01, 0.2);
+  camera.plate_index = test::uniform(1, 2);
+  if (test::whole(0, 1) == 1) {
+    camera.plate_thickness_mm = test::uniform(0, 0.9) * camera.plate_distance_mm;
+  }
+  return camera;
+}
+
+template <class S>
+Camera<S> as(const Camera<double>& c) {
+  return {S(c.plate_distance_mm), S(c.refractive_index),   S(c.center_x_px), S(c.center_y_px),
+          S(c.pitch_mm),          S(c.plate_thickness_mm), S(c.plate_index)};
+}
+
+/// tan(phi_air), up to 75 degrees.
+inline double any_tangent() {
+  return test::uniform(0, 3.7);
+}
+
+/// A pixel that looks at most 60 degrees from the axis, relative to the centre pixel.
+inline Point2<double> any_offset(const Camera<double>& camera) {
+  const double r = test::uniform(0, 1.7) / tangent_per_px(camera);
+  const double angle = test::uniform(-std::numbers::pi, std::numbers::pi);
+  return {r * std::cos(angle), r * std::sin(angle)};
+}
+
+/// |a - b| is at most so many epsilons of `scale`.
+template <class S>
+bool near(const S& a, const S& b, const S& scale, double epsilons) {
+  using std::abs;
+  return S(abs(S(a - b))) <= S(epsilons) * (std::numeric_limits<S>::epsilon)() * scale;
+}
+
+}  // namespace test

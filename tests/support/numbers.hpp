@@ -1,0 +1,77 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+#pragma once
+// The numbers that the tests compute in besides float, double and long double: fifty digits as the
+// reference, the same with expression templates, and a dual number small enough to be read.
+#include <boost/multiprecision/cpp_bin_float.hpp>
+#include <cmath>
+#include <limits>
+
+#include "fingerpad/scalar.hpp"
+
+namespace test {
+
+namespace mp = boost::multiprecision;
+using Digits50 = mp::number<mp::cpp_bin_float<50>, mp::et_off>;
+/// Its sums and products are expressions that hold references, as in many number libraries.
+using Lazy50 = mp::number<mp::cpp_bin_float<50>, mp::et_on>;
+
+/// A number and its derivative with respect to one seed.
+template <class Real>
+struct Dual {
+  Real v = Real(0);
+  Real d = Real(0);
+
+  Dual() = default;
+  Dual(Real value) : v(value) {}  // NOLINT: implicit, as numbers are
+  Dual(Real value, Real slope) : v(value), d(slope) {}
+
+  friend Dual operator-(const Dual& a) { return {-a.v, -a.d}; }
+  friend Dual operator+(const Dual& a, const Dual& b) { return {a.v + b.v, a.d + b.d}; }
+  friend Dual operator-(const Dual& a, const Dual& b) { return {a.v - b.v, a.d - b.d}; }
+  friend Dual operator*(const Dual& a, const Dual& b) { return {a.v * b.v, a.d * b.v + a.v * b.d}; }
+  friend Dual operator/(const Dual& a, const Dual& b) {
+    return {a.v / b.v, (a.d - a.v / b.v * b.d) / b.v};
+  }
+  friend bool operator<(const Dual& a, const Dual& b) { return a.v < b.v; }
+  friend bool operator>(const Dual& a, const Dual& b) { return a.v > b.v; }
+  friend bool operator==(const Dual& a, const Dual& b) { return a.v == b.v; }
+  friend Dual exp(const Dual& a) {
+    using std::exp;
+    const Real e = exp(a.v);
+    return {e, e * a.d};
+  }
+  friend Dual sqrt(const Dual& a) {
+    using std::sqrt;
+    const Real r = sqrt(a.v);
+    return {r, a.d / (r + r)};
+  }
+};
+
+/// f'(x) by the dual number.
+template <class Real, class F>
+Real slope_by_dual(const F& f, Real x) {
+  return f(Dual<Real>(x, Real(1))).d;
+}
+
+/// f'(x) by central differences; with a step of about epsilon^(1/3) good to about epsilon^(2/3).
+template <class Real, class F>
+Real slope_by_difference(const F& f, const Real& x, const Real& step) {
+  return Real((f(Real(x + step)) - f(Real(x - step))) / (step + step));
+}
+
+/// |a - b| relative to |b|.
+template <class Real>
+Real relative_error(const Real& a, const Real& b) {
+  using std::abs;
+  return a == b ? Real(0) : Real(abs(Real(a - b)) / abs(b));
+}
+
+}  // namespace test
+
+template <class Real>
+struct fingerpad::scalar_traits<test::Dual<Real>> {
+  using real = Real;
+  static constexpr Real epsilon() { return (std::numeric_limits<Real>::epsilon)(); }
+  static const Real& value(const test::Dual<Real>& x) { return x.v; }
+};

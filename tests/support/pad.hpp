@@ -1,0 +1,270 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+#pragma once
+// A pad whose every number is known, and frames of it: a spherical cap behind a plate, seen along
+// refracted rays through the forward model. Small, so that a test can afford many of them.
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <random>
+#include <type_traits>
+#include <vector>
+
+#include "fingerpad/depth.hpp"
+
+namespace test {
+
+using fingerpad::Index;
+
+/// Rows of cells in plain memory.
+template <class T>
+struct Image {
+  Index height = 0;
+  Index width = 0;
+  std::vector<T> cells;
+
+  Image() = default;
+  Image(Index rows, Index cols, const T& cell = T())
+      : height(rows), width(cols), cells(static_cast<std::size_t>(rows * cols), cell) {}
+  Index rows() const { return height; }
+  Index cols() const { return width; }
+  T& operator()(Index i, Index j) { return cells[static_cast<std::size_t>(i * width + j)]; }
+  const T& operator()(Index i, Index j) const {
+    return cells[static_cast<std::size_t>(i * width + j)];
+  }
+};
+
+}  // namespace test
+
+template <class T>
+struct fingerpad::grid_traits<test::Image<T>> {
+  using Image = test::Image<T>;
+  static Index rows(const Image& g) { return g.height; }
+  static Index cols(const Image& g) { return g.width; }
+  static const T& at(const Image& g, Index row, Index col) { return g(row, col); }
+  static T& at(Image& g, Index row, Index col) { return g(row, col); }
+  static const T* data(const Image& g) { return g.cells.data(); }
+  static T* data(Image& g) { return g.cells.data(); }
+  static Index row_stride(const Image& g) { return g.width; }
+  static Index col_stride(const Image&) { return 1; }
+};
+
+namespace test {
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+
+/// Equal to the last bit, NaN and NaN being equal.
+template <class T>
+bool same_bits(const T& a, const T& b) {
+  return a == b || (a != a && b != b);
+}
+template <class T>
+bool same_bits(const Image<T>& a, const Image<T>& b) {
+  return a.width == b.width && std::equal(a.cells.begin(), a.cells.end(), b.cells.begin(),
+                                          b.cells.end(), [](const T& x, const T& y) {
+                                            return same_bits(x, y);
+                                          });
+}
+
+/// Bits at random, the same on every machine and in every run.
+class Random {
+ public:
+  explicit Random(std::uint64_t seed) : bits_(seed) {}
+  /// In [0, 1).
+  double uniform() { return std::ldexp(static_cast<double>(bits_() >> 11U), -53); }
+  double uniform(double low, double high) { return low + (high - low) * uniform(); }
+  Index whole(Index low, Index high) {
+    return low + static_cast<Index>(uniform() * static_cast<double>(high - low + 1));
+  }
+  /// Mean 0, standard deviation 1; a sum of twelve, since std::normal_distribution differs between
+  /// libraries.
+  double normal() {
+    double sum = -6;
+    for (int i = 0; i < 12; ++i) {
+      sum += uniform();
+    }
+    return sum;
+  }
+
+ private:
+  std::mt19937_64 bits_;
+};
+
+/// Red and green of one frame.
+template <class Pixel>
+struct Frame {
+  Image<Pixel> red;
+  Image<Pixel> green;
+  Frame(Index rows, Index cols, Pixel cell = Pixel(0))
+      : red(rows, cols, cell), green(rows, cols, cell) {}
+};
+
+/// A grey level as a camera with this type of pixel stores it.
+template <class Pixel>
+Pixel stored(double level) {
+  if constexpr (std::is_integral_v<Pixel>) {
+    const double units = level * fingerpad::grey_scale_of<Pixel>().units_per_level;
+    const double top = static_cast<double>((std::numeric_limits<Pixel>::max)());
+    return static_cast<Pixel>((std::min)((std::max)(std::floor(units + 0.5), 0.0), top));
+  } else {
+    return Pixel(level);
+  }
+}
+
+/// Published fluid (defaults of Absorption) and pad: sphere of 20 mm cut 13 mm below its top, over
+/// 48 x 56 pixels of 0.8 mm. Brightness and scattering give the published change of colour.
+struct Pad {
+  Index rows = 48;
+  Index cols = 56;
+  fingerpad::Camera<double> camera;
+  fingerpad::Absorption<double> fluid;
+  double sphere_radius_mm = 20;
+  double height_mm = 13;
+  double brightness = 57;
+  double scattering = 0.0163;
+  double scattering_loss = 0.05;  ///< share of it lost from the axis to the rim
+
+  Pad() {
+    camera.pitch_mm = 0.8;
+    camera.center_x_px = 27.5;
+    camera.center_y_px = 23.5;
+  }
+
+  double base_radius_mm() const {
+    const double below = sphere_radius_mm - height_mm;
+    return std::sqrt(sphere_radius_mm * sphere_radius_mm - below * below);
+  }
+  fingerpad::Ray<double> ray(Index row, Index col) const {
+    return fingerpad::ray_at_pixel(camera, static_cast<double>(row), static_cast<double>(col));
+  }
+  template <class Heights = fingerpad::AstigmaticHeights>
+  fingerpad::Pencil<double> pencil(Index row, Index col) const {
+    return fingerpad::pencil_of<Heights>(camera, ray(row, col));
+  }
+  double g(Index row, Index col) const {
+    const double share = ray(row, col).plate_rho_mm / base_radius_mm();
+    return scattering * (1 - scattering_loss * share * share);
+  }
+
+  /// Where the pixel's ray meets the free pad; NaN where it misses the base.
+  double free_depth(Index row, Index col) const {
+    const auto r = ray(row, col);
+    if (!(r.plate_rho_mm < base_radius_mm())) {
+      return nan;
+    }
+    // (rho + t z)^2 + (z - z0)^2 = R^2
+    const double z0 = height_mm - sphere_radius_mm;
+    const double a = 1 + r.tan_fluid * r.tan_fluid;
+    const double b = z0 - r.plate_rho_mm * r.tan_fluid;
+    const double c = r.plate_rho_mm * r.plate_rho_mm + z0 * z0 -
+                     sphere_radius_mm * sphere_radius_mm;
+    return (b + std::sqrt(b * b - a * c)) / a;
+  }
+  /// The same under a flat plate `press_mm` below the top.
+  double pressed_depth(Index row, Index col, double press_mm) const {
+    return (std::min)(free_depth(row, col), height_mm - press_mm);
+  }
+  /// Some printed dots: every seventh pixel and its neighbour are darker.
+  double dotted_brightness(Index row, Index col) const {
+    return brightness * ((row % 7 < 2 && col % 7 < 2) ? 0.4 : 1.0);
+  }
+
+  template <class Heights = fingerpad::AstigmaticHeights>
+  fingerpad::Colour<double> colour(Index row, Index col, double depth_mm, double bright) const {
+    return fingerpad::colour_at_depth(fluid, pencil<Heights>(row, col), bright, g(row, col),
+                                      depth_mm);
+  }
+
+  Image<double> free_depths() const {
+    Image<double> depth(rows, cols);
+    for (Index i = 0; i < rows; ++i) {
+      for (Index j = 0; j < cols; ++j) {
+        depth(i, j) = free_depth(i, j);
+      }
+    }
+    return depth;
+  }
+  Image<double> pressed_depths(double press_mm) const {
+    Image<double> depth = free_depths();
+    for (double& l : depth.cells) {
+      l = l < height_mm - press_mm ? l : l != l ? l : height_mm - press_mm;
+    }
+    return depth;
+  }
+
+  /// The frame of a membrane at these depths, black outside, with noise of so many grey levels.
+  template <class Pixel, class Heights = fingerpad::AstigmaticHeights>
+  Frame<Pixel> frame(const Image<double>& depth_mm, double noise = 0, std::uint64_t seed = 1) const {
+    Frame<Pixel> frame(rows, cols);
+    Random random(seed);
+    for (Index i = 0; i < rows; ++i) {
+      for (Index j = 0; j < cols; ++j) {
+        if (depth_mm(i, j) != depth_mm(i, j)) {
+          continue;
+        }
+        const auto c = colour<Heights>(i, j, depth_mm(i, j), dotted_brightness(i, j));
+        frame.red(i, j) = stored<Pixel>(c.red + (noise > 0 ? noise * random.normal() : 0));
+        frame.green(i, j) = stored<Pixel>(c.green + (noise > 0 ? noise * random.normal() : 0));
+      }
+    }
+    return frame;
+  }
+
+  /// What fit_reference() makes of a frame of the free pad without noise.
+  template <class S,
+            class Fit = fingerpad::RadialFit,
+            class Heights = fingerpad::AstigmaticHeights>
+  auto reference(const fingerpad::GreyScale& scale = {}) const {
+    const Image<double> depth = free_depths();
+    const auto free = frame<double, Heights>(depth);
+    return fingerpad::fit_reference<Fit, Heights, S>(camera, fluid, free.red, free.green, depth,
+                                                     scale);
+  }
+
+  template <class Smoothing,
+            class Inverse,
+            class S,
+            class Heights = fingerpad::AstigmaticHeights>
+  auto estimator(Smoothing smoothing = {}, Inverse inverse = {}) const {
+    return fingerpad::DepthEstimator<Smoothing, Inverse, Heights, S>(
+        camera, fluid, reference<S, fingerpad::RadialFit, Heights>(), smoothing, inverse);
+  }
+};
+
+/// What an estimator gives for one frame.
+template <class S>
+struct Estimate {
+  fingerpad::DepthResult result;
+  Image<S> depth_mm;
+  Image<fingerpad::PixelStatus> status;
+  Estimate(Index rows, Index cols)
+      : depth_mm(rows, cols, S(-1)), status(rows, cols, fingerpad::PixelStatus::ok) {}
+};
+
+template <class S, class Estimator, class Pixel>
+Estimate<S> estimate(const Estimator& estimator,
+                     const Frame<Pixel>& frame,
+                     const fingerpad::GreyScale& scale = fingerpad::grey_scale_of<Pixel>()) {
+  auto workspace = estimator.template workspace<Pixel>(scale);
+  Estimate<S> e(frame.red.rows(), frame.red.cols());
+  e.result = estimator(frame.red, frame.green, e.depth_mm, e.status, workspace);
+  return e;
+}
+
+/// Largest |a - b| where b is a number; infinite where a is not.
+template <class A, class B>
+double largest_error(const Image<A>& a, const Image<B>& b) {
+  double worst = 0;
+  for (std::size_t k = 0; k < b.cells.size(); ++k) {
+    const double expected = static_cast<double>(b.cells[k]);
+    const double error = std::abs(static_cast<double>(a.cells[k]) - expected);
+    if (expected == expected && !(error <= worst)) {
+      worst = error == error ? error : std::numeric_limits<double>::infinity();
+    }
+  }
+  return worst;
+}
+
+}  // namespace test

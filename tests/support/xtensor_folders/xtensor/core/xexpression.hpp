@@ -1,0 +1,6 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+#pragma once
+// Imitates the folders of xtensor 0.26 on a machine that has the flat layout.
+#define FINGERPAD_TEST_XTENSOR_FOLDERS
+#include <xtensor/xexpression.hpp>
