@@ -11,10 +11,10 @@ import sys
 
 
 def rows_of(run):
-    """{group: {row: (least seconds, counters)}}, in the order of the program."""
+    """{group: {row: (least seconds, counters)}}, in the order of the program whatever that of the run."""
     unit = {"ns": 1e-9, "us": 1e-6, "ms": 1e-3, "s": 1.0}
     groups = {}
-    for b in run["benchmarks"]:
+    for b in sorted(run["benchmarks"], key=lambda b: b["family_index"]):
         if b.get("run_type") == "aggregate":
             continue
         group, row = b["run_name"].split("/", 1)
@@ -36,12 +36,12 @@ def error_text(errors):
 def print_group(group, rows):
     against = [name for k, name in enumerate(rows) if k == 0 or name.startswith("streaming")]
     print(f"\n**{group}**\n")
-    print("| | ms | ns/pixel | error |", *(f" times faster than {name} |" for name in against))
+    print("| | ms | ns/pixel | error |" + "".join(f" time of {name} over its own |" for name in against))
     print("|---|--:|--:|--:|" + "--:|" * len(against))
     for name, (seconds, pixels, errors) in rows.items():
         ratios = (rows[other][0] / seconds for other in against)
-        print(f"| {name} | {seconds * 1e3:.3f} | {seconds / pixels * 1e9:.3f} | {error_text(errors)} |",
-              *(f" {ratio:.3g} |" for ratio in ratios))
+        print(f"| {name} | {seconds * 1e3:.3f} | {seconds / pixels * 1e9:.3f} | {error_text(errors)} |"
+              + "".join(f" {ratio:.3g} |" for ratio in ratios))
 
 
 def main():

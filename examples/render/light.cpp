@@ -17,8 +17,10 @@ float surroundings(const replay::Sensor& sensor, double rho_mm) {
 
 }  // namespace
 
-cv::Mat_<cv::Vec3f> ideal_frame(
-    const replay::Sensor& sensor, const Lighting& lighting, const Sight& sight, int samples) {
+cv::Mat_<cv::Vec3f> ideal_frame(const replay::Sensor& sensor,
+                                const Lighting& lighting,
+                                const Sight& sight,
+                                int samples) {
   const auto& fluid = sensor.absorption;
   cv::Mat_<cv::Vec3f> frame(sight.depth_mm.rows / samples, sight.depth_mm.cols / samples,
                             cv::Vec3f(0, 0, 0));
@@ -46,8 +48,7 @@ cv::Mat_<cv::Vec3f> ideal_frame(
       }
       const double scattering = lighting.scattering * (1 - 0.05 * (1 - std::exp(-share * share)));
       const auto pencil = fingerpad::pencil_of(sensor.camera, ray);
-      const auto colour =
-          fingerpad::colour_at_depth(fluid, pencil, brightness, scattering, depth);
+      const auto colour = fingerpad::colour_at_depth(fluid, pencil, brightness, scattering, depth);
       const double blue = lighting.blue_share * brightness *
                           std::exp(-2 * fluid.c_green_per_mm * pencil.path_factor * depth);
       pixel += weight * cv::Vec3f(static_cast<float>(blue), static_cast<float>(colour.green),

@@ -23,8 +23,10 @@ struct Lighting {
 };
 
 /// The frame without noise, BGR in grey levels, as the mean of the samples of each pixel.
-cv::Mat_<cv::Vec3f> ideal_frame(
-    const replay::Sensor& sensor, const Lighting& lighting, const Sight& sight, int samples);
+cv::Mat_<cv::Vec3f> ideal_frame(const replay::Sensor& sensor,
+                                const Lighting& lighting,
+                                const Sight& sight,
+                                int samples);
 
 /// Shot noise: its variance grows with the level.
 class Noise {

@@ -125,8 +125,7 @@ void render_all(const Options& options) {
     return look(sensor.camera, membrane.triangles, step, size, 1, dot_mm).depth_mm;
   };
   const auto ideal = [&](const render::Step& step) {
-    const auto sight =
-        look(sensor.camera, membrane.triangles, step, size, options.samples, dot_mm);
+    const auto sight = look(sensor.camera, membrane.triangles, step, size, options.samples, dot_mm);
     return ideal_frame(sensor, options.lighting, sight, options.samples);
   };
   const render::Step& free_pad = membrane.steps.front();
@@ -148,8 +147,9 @@ void render_all(const Options& options) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app("Renders reference.png, reference_depth.tiff and frames/ of a recording from its "
-               "sensor.json and membrane/ (nodes.npy, triangles.npy, dots.npy).");
+  CLI::App app(
+      "Renders reference.png, reference_depth.tiff and frames/ of a recording from its "
+      "sensor.json and membrane/ (nodes.npy, triangles.npy, dots.npy).");
   Options options;
   app.add_option("RECORDING", options.recording, "folder with sensor.json and membrane/")
       ->required();

@@ -20,8 +20,12 @@ namespace {
 
 namespace fs = std::filesystem;
 
-Point operator-(const Point& a, const Point& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
-double dot(const Point& a, const Point& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+Point operator-(const Point& a, const Point& b) {
+  return {a.x - b.x, a.y - b.y, a.z - b.z};
+}
+double dot(const Point& a, const Point& b) {
+  return a.x * b.x + a.y * b.y + a.z * b.z;
+}
 Point cross(const Point& a, const Point& b) {
   return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
@@ -78,7 +82,9 @@ struct FluidRay {
 class Rays {
  public:
   Rays(const fingerpad::Camera<double>& camera, cv::Size size, int samples)
-      : camera_(camera), samples_(samples), rows_(size.height * samples),
+      : camera_(camera),
+        samples_(samples),
+        rows_(size.height * samples),
         cols_(size.width * samples) {
     rays_.reserve(static_cast<std::size_t>(rows_) * static_cast<std::size_t>(cols_));
     for (int i = 0; i < rows_; ++i) {

@@ -16,8 +16,12 @@ constexpr double capital_height = 21;  // of the font at scale 1
 int strokes(double width) {
   return (std::max)(1, static_cast<int>(std::lround(width * Canvas::scale)));
 }
-double font_scale(double height) { return height * Canvas::scale / capital_height; }
-int stroke_of_text(double height, bool bold) { return strokes(height * (bold ? 0.19 : 0.125)); }
+double font_scale(double height) {
+  return height * Canvas::scale / capital_height;
+}
+int stroke_of_text(double height, bool bold) {
+  return strokes(height * (bold ? 0.19 : 0.125));
+}
 
 cv::Rect large_rectangle(const cv::Rect2d& r) {
   const auto big = [](double x) { return static_cast<int>(std::lround(x * Canvas::scale)); };
@@ -84,19 +88,19 @@ void Canvas::circle(Spot centre, double radius, double width, const Ink& colour)
 
 double Canvas::text_width(const std::string& words, double height, bool bold) const {
   int baseline = 0;
-  const cv::Size size = cv::getTextSize(words, font, font_scale(height),
-                                        stroke_of_text(height, bold), &baseline);
+  const cv::Size size =
+      cv::getTextSize(words, font, font_scale(height), stroke_of_text(height, bold), &baseline);
   return static_cast<double>(size.width) / scale;
 }
 
-void Canvas::text(Spot at, const std::string& words, double height, const Ink& colour, Align align,
-                  bool bold) {
+void Canvas::text(
+    Spot at, const std::string& words, double height, const Ink& colour, Align align, bool bold) {
   const double width = text_width(words, height, bold);
   at.x -= align == Align::left ? 0 : align == Align::right ? width : width / 2;
   const cv::Point origin(static_cast<int>(std::lround(at.x * scale)),
                          static_cast<int>(std::lround(at.y * scale)));
-  cv::putText(sheet_, words, origin, font, font_scale(height), colour,
-              stroke_of_text(height, bold), cv::LINE_AA);
+  cv::putText(sheet_, words, origin, font, font_scale(height), colour, stroke_of_text(height, bold),
+              cv::LINE_AA);
 }
 
 cv::Mat Canvas::area(const cv::Rect2d& rectangle) {
@@ -111,7 +115,8 @@ void Canvas::blend(const cv::Rect2d& rectangle, const cv::Mat& picture, const cv
     auto* to = below.ptr<cv::Vec3b>(i);
     for (int j = 0; j < below.cols; ++j) {
       for (int c = 0; c < 3; ++c) {
-        to[j][c] = static_cast<uchar>((to[j][c] * (255 - weight[j]) + from[j][c] * weight[j]) / 255);
+        to[j][c] =
+            static_cast<uchar>((to[j][c] * (255 - weight[j]) + from[j][c] * weight[j]) / 255);
       }
     }
   }

@@ -33,8 +33,12 @@ class Canvas {
   void polygon(const std::vector<Spot>& corners, const Ink& colour);
   void circle(Spot centre, double radius, double width, const Ink& colour);
   /// `at` lies on the baseline; `height` is that of a capital letter.
-  void text(Spot at, const std::string& words, double height, const Ink& colour,
-            Align align = Align::left, bool bold = false);
+  void text(Spot at,
+            const std::string& words,
+            double height,
+            const Ink& colour,
+            Align align = Align::left,
+            bool bold = false);
   double text_width(const std::string& words, double height, bool bold = false) const;
 
   /// The large pixels that a rectangle covers, for pictures to be painted into directly.

@@ -17,7 +17,9 @@ struct Enlarged {
   cv::Mat_<float> opacity;
 };
 
-float clamped(float x) { return (std::min)((std::max)(x, 0.0F), 1.0F); }
+float clamped(float x) {
+  return (std::min)((std::max)(x, 0.0F), 1.0F);
+}
 
 Enlarged enlarged(const cv::Mat_<float>& values, const cv::Mat_<uchar>& in_pad, cv::Size size) {
   cv::Mat_<float> filled(values.size());
@@ -145,7 +147,8 @@ void paint_map(Canvas& canvas,
       const float share = clamped((map.value(i, j) - bottom) / range);
       const cv::Vec3b colour = scale.colours(0, static_cast<int>(std::lround(share * 255)));
       const Slope tilt = slope_at(map.relief, i, j);
-      const float shade = 1 + 0.15F * std::tanh(12 * (tilt.x + tilt.y) * per_px);  // light: top left
+      const float shade =
+          1 + 0.15F * std::tanh(12 * (tilt.x + tilt.y) * per_px);  // light: top left
       const float line =
           every > 0 ? 0.45F * line_cover(map.value(i, j), slope_at(map.value, i, j), every) : 0.0F;
       for (int c = 0; c < 3; ++c) {

@@ -19,8 +19,7 @@ constexpr int green = 1;  // OpenCV stores blue, green, red
 constexpr int red = 2;
 
 auto reference_of(const Recording& recording) {
-  const auto& [camera, absorption] =
-      std::tie(recording.sensor.camera, recording.sensor.absorption);
+  const auto& [camera, absorption] = std::tie(recording.sensor.camera, recording.sensor.absorption);
   const cv::Mat& frame = recording.reference;
   const cv::Mat_<float>& depth = recording.reference_depth;
   if (frame.depth() == CV_16U) {
@@ -40,8 +39,7 @@ class NeighbourLightStep {
     const fingerpad::NeighbourLight<float> light{given.radius_px,
                                                  static_cast<float>(given.m0_mm_per_rad),
                                                  static_cast<float>(given.n_per_mm)};
-    compensation_.emplace(light, pitch_on_membrane_mm(sensor.camera, free_depth_mm),
-                          free_depth_mm);
+    compensation_.emplace(light, pitch_on_membrane_mm(sensor.camera, free_depth_mm), free_depth_mm);
     scratch_.emplace(compensation_->make_scratch());
   }
 

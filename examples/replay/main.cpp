@@ -24,10 +24,10 @@ int main(int argc, char** argv) {
       {"anchored", replay::Smoothing::anchored}};
   app.add_option("RECORDING", options.recording, "the recording's folder")->required();
   app.add_option("--out", options.out, "the folder to write")->required()->option_text("DIR");
-  app.add_flag("--raw", options.raw, "also write depth/NNNNNN.tiff: 32-bit float, mm, NaN: invalid");
+  app.add_flag("--raw", options.raw,
+               "also write depth/NNNNNN.tiff: 32-bit float, mm, NaN: invalid");
   app.add_option_function<std::string>(
-         "--smoothing",
-         [&](const std::string& name) { options.smoothing = policies.at(name); },
+         "--smoothing", [&](const std::string& name) { options.smoothing = policies.at(name); },
          "none, box, bias-free or anchored; by default anchored over the recording's smoothing_px, "
          "and none where it has no smoothing_px")
       ->check(CLI::IsMember({"none", "box", "bias-free", "anchored"}))

@@ -52,7 +52,7 @@ void refuse_foreign(const fs::path& place) {
 
 /// The folder itself, without "." or a trailing slash, behind symbolic links.
 fs::path resolved(const fs::path& given) {
-  fs::path place = fs::weakly_canonical(given);
+  fs::path place = fs::weakly_canonical(fs::absolute(given));
   return place.has_filename() ? place : place.parent_path();
 }
 
@@ -65,8 +65,9 @@ fs::path make_sibling(const fs::path& place) {
          "cannot be written: " + std::error_code(errno, std::generic_category()).message());
   }
   const fs::path sibling(pattern.data());
-  fs::permissions(sibling, fs::perms::group_read | fs::perms::group_exec | fs::perms::others_read |
-                               fs::perms::others_exec,
+  fs::permissions(sibling,
+                  fs::perms::group_read | fs::perms::group_exec | fs::perms::others_read |
+                      fs::perms::others_exec,
                   fs::perm_options::add);
   return sibling;
 }

@@ -58,8 +58,7 @@ cv::Mat displayed(const cv::Mat& image, double brightest, cv::Size size) {
     shown = image;
   }
   shown.convertTo(shown, CV_8U, 245 / (brightest * units));
-  cv::resize(shown, shown, size, 0, 0,
-             size.width < image.cols ? cv::INTER_AREA : cv::INTER_CUBIC);
+  cv::resize(shown, shown, size, 0, 0, size.width < image.cols ? cv::INTER_AREA : cv::INTER_CUBIC);
   return shown;
 }
 
@@ -155,13 +154,13 @@ cv::Mat Painter::depth(const Scene& scene) const {
 
 cv::Mat Painter::side(const Scene& scene) const {
   constexpr double width = 620;
-  const Frame2d frame{{64, 84, width, width * top_mm_ / (2 * half_width_mm_)},
-                      half_width_mm_, top_mm_};
+  const Frame2d frame{
+      {64, 84, width, width * top_mm_ / (2 * half_width_mm_)}, half_width_mm_, top_mm_};
   const double below = frame.rectangle.y + frame.rectangle.height;
   Canvas canvas(frame.rectangle.x + width + 28, below + 92);
   const bool dented = scene.section.dent_mm > 0;
-  canvas.text({28, 34}, dented ? "Side view through the deepest dent"
-                               : "Side view through the deepest point",
+  canvas.text({28, 34},
+              dented ? "Side view through the deepest dent" : "Side view through the deepest point",
               1.3 * letter, ink::black, Align::left, true);
   canvas.text({frame.rectangle.x + width, 34}, caption_of(scene), letter, ink::black, Align::right);
   const Profile profile = profile_of(camera_, scene.depth_mm, scene.section.row);
@@ -170,9 +169,9 @@ cv::Mat Painter::side(const Scene& scene) const {
   paint_axes(canvas, frame, letter, Labels::full);
   const double y_mm = (scene.section.row - camera_.center_y_px) * camera_.pitch_mm + 0.0;
   const double line = below + 74;
-  canvas.text({frame.rectangle.x, line}, format("camera row %d, y = %.2f mm at the plate",
-                                                scene.section.row, y_mm),
-              letter, ink::black);
+  canvas.text({frame.rectangle.x, line},
+              format("camera row %d, y = %.2f mm at the plate", scene.section.row, y_mm), letter,
+              ink::black);
   const std::string legend = "free pad";
   const double right = frame.rectangle.x + width;
   canvas.text({right, line}, legend, letter, ink::grey, Align::right);
@@ -182,9 +181,9 @@ cv::Mat Painter::side(const Scene& scene) const {
     const int row = scene.section.row;
     const int col = scene.section.col;
     const auto at = [&](const cv::Mat_<float>& depth) {
-      const auto point = fingerpad::point_at(camera_, static_cast<double>(row),
-                                             static_cast<double>(col),
-                                             static_cast<double>(depth(row, col)));
+      const auto point =
+          fingerpad::point_at(camera_, static_cast<double>(row), static_cast<double>(col),
+                              static_cast<double>(depth(row, col)));
       return frame.at({point.x, point.z});
     };
     const Spot bottom = at(scene.depth_mm);

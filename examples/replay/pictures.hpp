@@ -14,15 +14,15 @@ namespace replay {
 /// The row that a side view shows.
 struct Section {
   int row = 0;
-  int col = 0;           ///< of the point that chose the row
-  double dent_mm = 0;    ///< how far it lies below the free pad; 0: nothing presses the pad
+  int col = 0;         ///< of the point that chose the row
+  double dent_mm = 0;  ///< how far it lies below the free pad; 0: nothing presses the pad
 };
 
 /// One frame, as far as pictures need it.
 struct Scene {
   int frame = 0;
-  std::string time_s;      ///< empty where unknown
-  cv::Mat image;           ///< 8- or 16-bit colour
+  std::string time_s;  ///< empty where unknown
+  cv::Mat image;       ///< 8- or 16-bit colour
   cv::Mat_<float> depth_mm;
   Section section;
   double valid_share = 0;

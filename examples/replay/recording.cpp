@@ -126,8 +126,8 @@ Recording open_recording(const fs::path& folder) {
                          frame_file.filename().string() + " is " + size_of(recording.reference));
   }
   const auto& video = recording.sensor.video;
-  recording.frames = video ? FrameSource::of_video(folder / *video)
-                           : FrameSource::of_folder(folder / "frames");
+  recording.frames =
+      video ? FrameSource::of_video(folder / *video) : FrameSource::of_folder(folder / "frames");
   recording.times_s = read_times(folder / "signals.csv", recording.frames.size());
   return recording;
 }

@@ -27,7 +27,9 @@ constexpr int published_window_px = 29;
 constexpr int montage_columns = 6;
 
 volatile std::sig_atomic_t interrupted = 0;
-void interrupt(int /*signal*/) { interrupted = 1; }
+void interrupt(int /*signal*/) {
+  interrupted = 1;
+}
 
 struct Summary {
   std::vector<double> step_ms;
@@ -77,8 +79,11 @@ double brightest_level(const cv::Mat& image) {
   return level;
 }
 
-Scene measured(int frame, const Recording& recording, const cv::Mat& image,
-               const cv::Mat_<float>& depth_mm, const FrameDepth& result) {
+Scene measured(int frame,
+               const Recording& recording,
+               const cv::Mat& image,
+               const cv::Mat_<float>& depth_mm,
+               const FrameDepth& result) {
   Scene scene;
   scene.frame = frame;
   const auto time = recording.times_s.find(frame);
@@ -95,7 +100,8 @@ Scene measured(int frame, const Recording& recording, const cv::Mat& image,
   }
   const auto valid = static_cast<double>(result.valid_pixels);
   constexpr double none = std::numeric_limits<double>::quiet_NaN();
-  scene.valid_share = valid / static_cast<double>((std::max)(result.pad_pixels, fingerpad::Index{1}));
+  scene.valid_share =
+      valid / static_cast<double>((std::max)(result.pad_pixels, fingerpad::Index{1}));
   scene.depth_mean_mm = valid > 0 ? sum / valid : none;
   scene.depth_max_mm = valid > 0 ? top : none;
   return scene;
@@ -112,7 +118,9 @@ bool in_montage(int done, int total) {
   return false;
 }
 
-void print_summary(const Summary& summary, const Recording& recording, const Options& options,
+void print_summary(const Summary& summary,
+                   const Recording& recording,
+                   const Options& options,
                    const OutputFolder& output) {
   std::vector<double> ms = summary.step_ms;
   std::nth_element(ms.begin(), ms.begin() + static_cast<std::ptrdiff_t>(ms.size() / 2), ms.end());
@@ -196,8 +204,8 @@ int run(const Options& options) {
       summary.step_ms.push_back(taken.count());
       summary.valid_share_sum += scene.valid_share;
       summary.deepest_mm = std::fmax(summary.deepest_mm, scene.depth_max_mm);
-      table.write({frame, scene.time_s, scene.valid_share, scene.depth_mean_mm,
-                   scene.depth_max_mm});
+      table.write(
+          {frame, scene.time_s, scene.valid_share, scene.depth_mean_mm, scene.depth_max_mm});
       if (options.raw) {
         write_depth_image(output.file("depth", numbered("", frame, ".tiff")), depth_mm);
       }

@@ -23,7 +23,9 @@ struct Key {
 /// One object of the file and the keys that it may have.
 class Section {
  public:
-  Section(const std::filesystem::path& file, std::string name, const json& object,
+  Section(const std::filesystem::path& file,
+          std::string name,
+          const json& object,
           std::vector<Key> keys)
       : file_(file), name_(std::move(name)), object_(object), keys_(std::move(keys)) {
     if (!object_.is_object()) {

@@ -39,7 +39,7 @@ struct Sensor {
   fingerpad::Camera<double> camera;
   fingerpad::Absorption<double> absorption;
   Pad pad;
-  std::string reference_frame;       ///< paths as written, relative to the recording
+  std::string reference_frame;  ///< paths as written, relative to the recording
   std::string reference_depth;
   std::optional<std::string> video;  ///< in the place of the folder frames/
   std::optional<int> smoothing_px;   ///< width of the window, odd; none: colours as they are

@@ -6,7 +6,8 @@
 #include <string>
 namespace replay {
 
-Profile profile_of(const fingerpad::Camera<double>& camera, const cv::Mat_<float>& depth_mm,
+Profile profile_of(const fingerpad::Camera<double>& camera,
+                   const cv::Mat_<float>& depth_mm,
                    int row) {
   Profile profile;
   bool open = false;
@@ -20,8 +21,8 @@ Profile profile_of(const fingerpad::Camera<double>& camera, const cv::Mat_<float
       profile.emplace_back();
       open = true;
     }
-    const auto point = fingerpad::point_at(camera, static_cast<double>(row),
-                                           static_cast<double>(col), depth);
+    const auto point =
+        fingerpad::point_at(camera, static_cast<double>(row), static_cast<double>(col), depth);
     profile.back().emplace_back(point.x, point.z);
   }
   return profile;

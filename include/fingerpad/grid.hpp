@@ -10,6 +10,7 @@
 // algorithms see only views: cheap values that never own and never copy pixels.
 #include <concepts>
 #include <cstddef>
+#include <memory>
 #include <type_traits>
 #include <utility>
 
@@ -67,6 +68,8 @@ template <class G> concept grid = detail::readable_grid<G> && !std::is_void_v<ce
 /// A grid whose cells can be assigned from T.
 template <class G, class T = cell_t<G>>
 concept writable_grid = grid<G> && requires(std::remove_reference_t<G>& g, const T& cell, Index i) {
+  // a cell returned by value is a copy: what is assigned to it would be lost
+  requires !std::same_as<decltype(detail::traits_of<G>::at(g, i, i)), cell_t<G>>;
   detail::traits_of<G>::at(g, i, i) = static_cast<cell_t<G>>(cell);
 };
 
@@ -146,7 +149,7 @@ LazyView(Index, Index, F) -> LazyView<F>;
 template <class G>
 class RefView {
  public:
-  constexpr explicit RefView(G& g) : grid_(&g) {}
+  constexpr explicit RefView(G& g) : grid_(std::addressof(g)) {}
   constexpr Index rows() const { return detail::traits_of<G>::rows(*grid_); }
   constexpr Index cols() const { return detail::traits_of<G>::cols(*grid_); }
   constexpr decltype(auto) operator()(Index i, Index j) const {
@@ -221,15 +224,15 @@ constexpr StridedView<T> transpose(StridedView<T> v) {
 /// Last row first.
 template <class T>
 constexpr StridedView<T> flip_rows(StridedView<T> v) {
-  return {v.data() + (v.rows() - 1) * v.row_stride(), v.rows(), v.cols(), -v.row_stride(),
-          v.col_stride()};
+  const Index last = v.rows() > 0 ? v.rows() - 1 : 0;
+  return {v.row(last), v.rows(), v.cols(), -v.row_stride(), v.col_stride()};
 }
 
 /// Last column first.
 template <class T>
 constexpr StridedView<T> flip_cols(StridedView<T> v) {
-  return {v.data() + (v.cols() - 1) * v.col_stride(), v.rows(), v.cols(), v.row_stride(),
-          -v.col_stride()};
+  const Index last = v.cols() > 0 ? v.cols() - 1 : 0;
+  return {v.data() + last * v.col_stride(), v.rows(), v.cols(), v.row_stride(), -v.col_stride()};
 }
 
 /// Rows and columns 0, n, 2n, ...; n >= 1.

@@ -116,7 +116,7 @@ Ray<S> ray_at_pixel(const Camera<S>& camera, const S& row, const S& col) {
   const S y = row - camera.center_y_px;
   const S r_sq = x * x + y * y;
   // The square root has no derivative at 0; on the axis t itself is 0 for every camera.
-  const S r = value(r_sq) > 0 ? S(sqrt(r_sq)) : S(0);
+  const S r = value(r_sq) == 0 ? S(0) : S(sqrt(r_sq));
   return ray_at_tangent(camera, S(r * tangent_per_px(camera)));
 }
 
@@ -209,7 +209,7 @@ Point2<S> pixel_of(const Camera<S>& camera, const Point3<S>& point) {
   const S m = camera.plate_index;
   const S in_air = camera.plate_distance_mm - camera.plate_thickness_mm;
   const S rho_sq = point.x * point.x + point.y * point.y;
-  const S rho = value(rho_sq) > 0 ? S(sqrt(rho_sq)) : S(0);
+  const S rho = value(rho_sq) == 0 ? S(0) : S(sqrt(rho_sq));
   S t = rho / (in_air + camera.plate_thickness_mm / m + point.z / n);
   S reach = in_air;  // distance from the axis per unit of t
   for (int step = 0; step <= 8; ++step) {

@@ -3,7 +3,7 @@
 #pragma once
 // Catch2, version 2 or 3, and RapidCheck's rc::prop for it. Under version 3 the build puts
 // catch2_3/ in the include path, whose catch2/catch.hpp is a forwarding header.
-#include <catch2/catch.hpp>
-
 #include <rapidcheck.h>
 #include <rapidcheck/catch.h>
+
+#include <catch2/catch.hpp>

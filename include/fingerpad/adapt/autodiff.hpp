@@ -3,6 +3,7 @@
 #pragma once
 // Eigen::AutoDiffScalar as a scalar: every kernel then also yields exact derivatives with respect
 // to whatever the caller seeds (colours, calibration, camera).
+#include <Eigen/Core>  // AutoDiff does not include it
 #include <unsupported/Eigen/AutoDiff>
 
 #include "fingerpad/scalar.hpp"

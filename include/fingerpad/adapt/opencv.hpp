@@ -16,12 +16,15 @@ struct grid_traits<cv::Mat_<T>> {
   using Image = cv::Mat_<T>;
   static Index rows(const Image& m) { return m.rows; }
   static Index cols(const Image& m) { return m.cols; }
+  // A row is a whole number of values but, where it is padded, not always of pixels: only images of
+  // one channel have a stride.
+  static constexpr bool has_stride = cv::DataType<T>::channels == 1;
   static const T& at(const Image& m, Index i, Index j) {
-    return *(data(m) + i * row_stride(m) + j);
+    return m.template ptr<T>(static_cast<int>(i))[j];
   }
-  static T& at(Image& m, Index i, Index j) { return *(data(m) + i * row_stride(m) + j); }
-  static const T* data(const Image& m) { return m.template ptr<T>(); }
-  static T* data(Image& m) { return m.template ptr<T>(); }
+  static T& at(Image& m, Index i, Index j) { return m.template ptr<T>(static_cast<int>(i))[j]; }
+  static const T* data(const Image& m) requires has_stride { return m.template ptr<T>(); }
+  static T* data(Image& m) requires has_stride { return m.template ptr<T>(); }
   static Index row_stride(const Image& m) { return static_cast<Index>(m.step[0] / sizeof(T)); }
   static Index col_stride(const Image&) { return 1; }
 };

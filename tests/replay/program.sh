@@ -1,0 +1,103 @@
+#!/usr/bin/env bash
+# SPDX-FileCopyrightText: 2026 The fingerpad authors
+# SPDX-License-Identifier: MIT
+# program.sh REPLAY RENDER RECORDING: the two programs as a user meets them. Exit statuses, one line
+# on standard error, nothing left behind; the recording is rendered again byte for byte; the depth
+# is as near the truth as docs/depth.md says.
+set -uo pipefail
+export LC_ALL=C
+replay=$1
+render=$2
+recording=$3
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+failures=0
+
+fail() {
+  echo "FAILED: $*"
+  failures=$((failures + 1))
+}
+
+# refuses STATUS PATTERN ARGUMENTS...: replay exits with STATUS, says one line that matches
+# PATTERN (status 2: any number of lines) and leaves nothing behind.
+refuses() {
+  local status=$1 pattern=$2
+  shift 2
+  local before after actual
+  before=$(find "$work" -not -name stderr | sort)
+  "$replay" "$@" >/dev/null 2>"$work/stderr"
+  actual=$?
+  after=$(find "$work" -not -name stderr | sort)
+  [[ $actual == "$status" ]] || fail "status $actual, not $status: replay $*"
+  grep -q -- "$pattern" "$work/stderr" || fail "'$(cat "$work/stderr")' for: replay $*"
+  [[ $status == 2 || $(wc -l <"$work/stderr") == 1 ]] || fail "not one line: replay $*"
+  [[ $before == "$after" ]] || fail "something was left behind: replay $*"
+}
+
+broken=$work/broken
+cp -r "$recording" "$broken"
+refuses 2 "RECORDING" --out "$work/out"
+refuses 2 "out" "$recording"
+refuses 2 "A:B" "$recording" --out "$work/out" --frames three
+refuses 2 "smoothing" "$recording" --out "$work/out" --smoothing gauss
+refuses 1 "^replay: $work/none: there is no such folder" "$work/none" --out "$work/out"
+refuses 1 "frames 0 to 10" "$recording" --out "$work/out" --frames 4:90
+refuses 1 "which no earlier run wrote" "$recording" --out "$broken"
+refuses 1 "is not a folder" "$recording" --out "$broken/sensor.json"
+refuses 1 "sensor.json/out" "$recording" --out "$broken/sensor.json/out"
+[[ $(id -u) == 0 ]] || { mkdir "$work/locked" && chmod 500 "$work/locked" &&
+  refuses 1 "locked" "$recording" --out "$work/locked/out"; }
+
+head -c 50000 "$recording/frames/000003.png" >"$broken/frames/000003.png"
+refuses 1 "frames/000003.png: cannot be read" "$broken" --out "$work/out"
+rm -r "$broken/frames" && mkdir "$broken/frames"
+refuses 1 "frames: holds no frames" "$broken" --out "$work/out"
+sed 's/"pitch_mm": 0.08$/"pitch": 0.08/' "$recording/sensor.json" >"$broken/sensor.json"
+refuses 1 "sensor.json: unknown key camera.pitch " "$broken" --out "$work/out"
+rm "$broken/sensor.json"
+refuses 1 "sensor.json: cannot be read" "$broken" --out "$work/out"
+
+"$replay" --help | grep -q -- "--raw" || fail "--help does not explain --raw"
+
+# Rendered again: the same bytes.
+mkdir "$work/again"
+cp -r "$recording/membrane" "$recording/sensor.json" "$recording/signals.csv" "$work/again"
+"$render" "$work/again" >/dev/null || fail "the recording cannot be rendered"
+diff -r "$recording" "$work/again" || fail "the bundled recording is not what render makes"
+
+# Depth against the truth: at most these errors in mm within 14 and 17.5 mm of the axis.
+accuracy() {
+  "$replay" "$recording" --out "$work/out" --raw --no-pictures --smoothing "$1" >/dev/null ||
+    fail "replay --smoothing $1"
+  local errors
+  errors=$("$render" "$recording" --compare "$work/out/depth" | tail -n 1)
+  echo "$1: $errors (at most $2 $3)"
+  awk -v inner="$2" -v outer="$3" '{ exit !($2 <= inner && $3 <= outer) }' <<<"$errors" ||
+    fail "$1 is less accurate than that"
+}
+accuracy anchored 0.030 0.040
+accuracy bias-free 0.030 0.070
+accuracy box 0.045 0.060
+accuracy none 0.7 0.7
+
+"$replay" "$recording" --out "$work/out" --frames 0:7 >"$work/table" || fail "replay with pictures"
+grep -q "^frames  *7$" "$work/table" || fail "the printed table: $(cat "$work/table")"
+for file in frames.csv pictures/{montage,depth_000006,side_000006}.png; do
+  [[ -s $work/out/$file ]] || fail "$file is missing"
+done
+[[ ! -e $work/out/depth ]] || fail "the depth maps of the earlier run are still there"
+
+# Interrupted: nothing half-written.
+rm -r "$work/out"
+"$replay" "$recording" --out "$work/out" >/dev/null 2>&1 &
+sleep 0.3
+kill -TERM $! 2>/dev/null
+wait $!
+status=$?
+if [[ $status == 130 ]]; then
+  [[ -z $(find "$work" -name '*out*') ]] || fail "an interrupted run left something behind"
+elif [[ $status != 0 ]]; then # 0: it was done before the signal came
+  fail "status $status after an interrupt"
+fi
+
+((failures == 0)) && echo "all as it should be"

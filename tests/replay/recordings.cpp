@@ -1,0 +1,370 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+#include <unistd.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <filesystem>
+#include <fstream>
+#include <functional>
+#include <iterator>
+#include <opencv2/core.hpp>
+#include <opencv2/imgcodecs.hpp>
+#include <opencv2/imgproc.hpp>
+#include <opencv2/videoio.hpp>
+#include <string>
+
+#include "replay/depth_step.hpp"
+#include "replay/failure.hpp"
+#include "replay/images.hpp"
+#include "replay/recording.hpp"
+#include "replay/replay.hpp"
+#include "support/catch.hpp"
+
+namespace fs = std::filesystem;
+
+namespace {
+
+const fs::path bundled =
+    fs::path(__FILE__).parent_path().parent_path().parent_path() / "examples" / "data" / "press";
+
+/// A folder of its own for each test, with a copy of the first frames of the bundled recording.
+class Workplace {
+ public:
+  Workplace() {
+    std::string pattern = (fs::temp_directory_path() / "fingerpad.XXXXXX").string();
+    root_ = ::mkdtemp(pattern.data());
+    fs::create_directories(recording() / "frames");
+    for (const char* file : {"sensor.json", "reference.png", "reference_depth.tiff",
+                             "frames/000000.png", "frames/000001.png", "frames/000002.png"}) {
+      fs::copy_file(bundled / file, recording() / file);
+    }
+  }
+  ~Workplace() { fs::remove_all(root_); }
+  Workplace(const Workplace&) = delete;
+  Workplace& operator=(const Workplace&) = delete;
+
+  fs::path recording() const { return root_ / "recording"; }
+  fs::path out() const { return root_ / "out"; }
+
+  replay::Options options() const {
+    replay::Options options;
+    options.recording = recording();
+    options.out = out();
+    options.raw = true;
+    options.pictures = false;
+    return options;
+  }
+
+  /// The line that a run complains with; empty where it does not. Nothing may be left behind.
+  std::string complaint() const {
+    std::string line;
+    try {
+      replay::run(options());
+    } catch (const replay::Failure& failure) {
+      line = failure.what();
+      CHECK(names() == "recording ");
+    }
+    CHECK(line.find('\n') == std::string::npos);
+    return line;
+  }
+
+  /// What lies beside the recording, hidden files included.
+  std::string names() const {
+    std::vector<std::string> all;
+    for (const auto& entry : fs::directory_iterator(root_)) {
+      all.push_back(entry.path().filename().string());
+    }
+    std::sort(all.begin(), all.end());
+    std::string line;
+    for (const std::string& name : all) {
+      line += name + " ";
+    }
+    return line;
+  }
+
+  void replace_in_sensor(const std::string& old, const std::string& with) const {
+    std::ifstream in(recording() / "sensor.json");
+    std::string text(std::istreambuf_iterator<char>(in), {});
+    in.close();
+    REQUIRE(text.find(old) != std::string::npos);
+    text.replace(text.find(old), old.size(), with);
+    std::ofstream(recording() / "sensor.json") << text;
+  }
+
+  void write(const std::string& file, const std::string& text) const {
+    std::ofstream(recording() / file) << text;
+  }
+
+ private:
+  fs::path root_;
+};
+
+bool ends_with(const std::string& text, const std::string& end) {
+  return text.size() >= end.size() && text.substr(text.size() - end.size()) == end;
+}
+
+/// Largest difference of two depth maps, which must be invalid in the same pixels.
+double largest_difference(const fs::path& a, const fs::path& b) {
+  const cv::Mat_<float> first = replay::read_depth_image(a);
+  const cv::Mat_<float> second = replay::read_depth_image(b);
+  REQUIRE(first.size() == second.size());
+  double largest = 0;
+  for (int i = 0; i < first.rows; ++i) {
+    for (int j = 0; j < first.cols; ++j) {
+      REQUIRE(std::isnan(first(i, j)) == std::isnan(second(i, j)));
+      if (!std::isnan(first(i, j))) {
+        largest = (std::max)(largest, static_cast<double>(std::abs(first(i, j) - second(i, j))));
+      }
+    }
+  }
+  return largest;
+}
+
+}  // namespace
+
+TEST_CASE("a recording gives a table and one depth map per frame") {
+  const Workplace work;
+  work.write("signals.csv", "frame,time_s,pressure_mpa\n0,0.00,0.016\n2,0.25,\n");
+  REQUIRE(work.complaint().empty());
+  CHECK(work.names() == "out recording ");
+  std::ifstream table(work.out() / "frames.csv");
+  std::string line;
+  std::getline(table, line);
+  CHECK(line == "frame,time_s,valid_share,depth_mean_mm,depth_max_mm");
+  std::getline(table, line);
+  CHECK(line.substr(0, 7) == "0,0.00,");
+  std::getline(table, line);
+  CHECK(line.substr(0, 3) == "1,,");
+  std::getline(table, line);
+  CHECK(line.substr(0, 7) == "2,0.25,");
+  CHECK_FALSE(std::getline(table, line));
+  CHECK(fs::exists(work.out() / "depth" / "000002.tiff"));
+  CHECK_FALSE(fs::exists(work.out() / "pictures"));
+}
+
+TEST_CASE("sensor.json is refused with the key's name") {
+  const Workplace work;
+  struct Fault {
+    const char* old;
+    const char* with;
+    const char* complaint;
+  };
+  const auto [old, with, complaint] = GENERATE(
+      Fault{"\"pitch_mm\": 0.08", "\"pich_mm\": 0.08", "unknown key camera.pich_mm"},
+      Fault{"\"smoothing_px\": 29", "\"smooth\": 29", "unknown key smooth "},
+      Fault{"\"kappa\": 0.9924,", "", "absorption.kappa is missing (ratio of light"},
+      Fault{"\"frame\": \"reference.png\",", "", "reference.frame is missing (picture of"},
+      Fault{"\"plate_distance_mm\": 50.0", "\"plate_distance_mm\": \"50\"",
+            "camera.plate_distance_mm is \"50\" (a string), must be a number"},
+      Fault{"[239.5, 239.5]", "[239.5]", "camera.center_px is [239.5] (an array), must be two"},
+      Fault{"\"smoothing_px\": 29", "\"smoothing_px\": 28", "smoothing_px = 28, must be odd"},
+      Fault{"\"smoothing_px\": 29", "\"smoothing_px\": 2.5", "must be a whole number"},
+      Fault{"\"refractive_index\": 1.33", "\"refractive_index\": 0.9", "refractive_index = 0.9"},
+      Fault{"\"base_radius_mm\": 18.735", "\"base_radius_mm\": -1", "pad.base_radius_mm = -1"},
+      Fault{"\"rows\": 21", "\"rows\": 0", "dots.rows = 0"}, Fault{"{", "[", "parse error"},
+      Fault{"\"reference.png\"", "7", "reference.frame is 7 (a number), must be the path"},
+      Fault{"\"reference.png\"", "\"none.png\"", "none.png: there is no such file"},
+      Fault{"\"smoothing_px\"", "\"video\": \"none.mp4\", \"smoothing_px\"", "no such video"});
+  work.replace_in_sensor(old, with);
+  const std::string line = work.complaint();
+  INFO(line);
+  CHECK(line.find(complaint) != std::string::npos);
+}
+
+TEST_CASE("optional sections are accepted, and checked") {
+  const Workplace work;
+  work.replace_in_sensor(
+      "\"smoothing_px\"",
+      "\"rim\": { \"side_dot_length_mm\": 0.8, \"membrane_modulus_n_per_mm\": 0.5 },\n"
+      "\"neighbour_light\": { \"radius_px\": 30, \"m0_mm_per_rad\": 1e-5, \"n_per_mm\": 0.224 },\n"
+      "\"smoothing_px\"");
+  CHECK(work.complaint().empty());
+  fs::remove_all(work.out());
+  work.replace_in_sensor("\"radius_px\": 30", "\"radius_px\": \"30\"");
+  CHECK(work.complaint().find("neighbour_light.radius_px is \"30\"") != std::string::npos);
+}
+
+TEST_CASE("files that cannot be used are refused with their name") {
+  const Workplace work;
+  SECTION("no frames") {
+    fs::remove_all(work.recording() / "frames");
+    fs::create_directory(work.recording() / "frames");
+    CHECK(ends_with(work.complaint(), "frames: holds no frames"));
+  }
+  SECTION("no folder of frames") {
+    fs::remove_all(work.recording() / "frames");
+    CHECK(work.complaint().find("frames: there is no such folder") != std::string::npos);
+  }
+  SECTION("a frame cut short") {
+    fs::resize_file(work.recording() / "frames" / "000001.png", 60000);
+    CHECK(work.complaint().find("frames/000001.png: cannot be read") != std::string::npos);
+  }
+  SECTION("a frame that is no image") {
+    work.write("frames/000002.png", "not an image");
+    CHECK(work.complaint().find("frames/000002.png: cannot be read") != std::string::npos);
+  }
+  SECTION("a frame of another size") {
+    cv::imwrite((work.recording() / "frames" / "000001.png").string(),
+                cv::Mat(100, 120, CV_8UC3, cv::Scalar(1, 2, 3)));
+    CHECK(ends_with(work.complaint(),
+                    "frames/000001.png: is 120 x 100 px, but the reference is 480 x 480 px"));
+  }
+  SECTION("a grey frame") {
+    cv::imwrite((work.recording() / "frames" / "000001.png").string(),
+                cv::Mat(480, 480, CV_8UC1, cv::Scalar(9)));
+    CHECK(work.complaint().find("000001.png: has 1 channel, must be a colour") !=
+          std::string::npos);
+  }
+  SECTION("no reference") {
+    fs::remove(work.recording() / "reference.png");
+    CHECK(ends_with(work.complaint(), "reference.png: there is no such file"));
+  }
+  SECTION("a reference depth of another size") {
+    cv::imwrite((work.recording() / "reference_depth.tiff").string(), cv::Mat1f(9, 9, 1.0F));
+    CHECK(work.complaint().find("reference_depth.tiff: is 9 x 9 px, but reference.png") !=
+          std::string::npos);
+  }
+  SECTION("a reference depth that is no depth") {
+    fs::copy_file(work.recording() / "reference.png", work.recording() / "reference_depth.tiff",
+                  fs::copy_options::overwrite_existing);
+    CHECK(work.complaint().find("must be a 32-bit float image") != std::string::npos);
+  }
+  SECTION("a reference without the pad") {
+    cv::imwrite((work.recording() / "reference_depth.tiff").string(),
+                cv::Mat1f(480, 480, std::nanf("")));
+    CHECK(work.complaint().find("fit_reference") != std::string::npos);
+  }
+}
+
+TEST_CASE("signals.csv is refused with the line's number") {
+  const Workplace work;
+  struct Fault {
+    const char* text;
+    const char* complaint;
+  };
+  const auto [text, complaint] = GENERATE(
+      Fault{"", "signals.csv: is empty"}, Fault{"time,frame\n", "line 1: must be frame,time_s"},
+      Fault{"frame,time_s\n0,0\n1\n", "line 3: has 1 values, must have 2"},
+      Fault{"frame,time_s\n0,zero\n", "line 2: time_s 'zero' is not a number"},
+      Fault{"frame,time_s\n3,0\n", "line 2: frame '3' is not one of the frames 0 to 2"},
+      Fault{"frame,time_s\n1.5,0\n", "line 2: frame '1.5' is not"},
+      Fault{"frame,time_s\n1,0\n1,1\n", "line 3: frame 1 is given twice"},
+      Fault{"frame,time_s,pressure_mpa\n0,0,x\n", "line 2: pressure_mpa 'x' is not a number"});
+  work.write("signals.csv", text);
+  const std::string line = work.complaint();
+  INFO(line);
+  CHECK(line.find(complaint) != std::string::npos);
+}
+
+TEST_CASE("an earlier run is replaced, anything else is left alone") {
+  const Workplace work;
+  REQUIRE(work.complaint().empty());
+  auto options = work.options();
+  options.range = {1, 2};
+  replay::run(options);
+  CHECK_FALSE(fs::exists(work.out() / "depth" / "000000.tiff"));
+  CHECK(fs::exists(work.out() / "depth" / "000001.tiff"));
+  CHECK(work.names() == "out recording ");
+
+  SECTION("a run that fails leaves the earlier one as it was") {
+    work.write("frames/000001.png", "");
+    CHECK_THROWS_AS(replay::run(options), replay::Failure);
+    CHECK(fs::exists(work.out() / "depth" / "000001.tiff"));
+    CHECK(work.names() == "out recording ");
+  }
+  SECTION("a foreign file among the results") {
+    std::ofstream(work.out() / "depth" / "notes.txt") << "mine";
+    CHECK_THROWS_WITH(replay::run(options), Catch::Contains("holds depth/notes.txt"));
+    CHECK(fs::exists(work.out() / "depth" / "notes.txt"));
+  }
+  SECTION("a folder of somebody else") {
+    options.out = work.recording();
+    CHECK_THROWS_WITH(replay::run(options), Catch::Contains("which no earlier run wrote"));
+    CHECK(fs::exists(work.recording() / "sensor.json"));
+  }
+  SECTION("a file in the place of the folder") {
+    options.out = work.recording() / "sensor.json";
+    CHECK_THROWS_WITH(replay::run(options), Catch::Contains("is not a folder"));
+  }
+  SECTION("an empty folder, and folders that are not there yet") {
+    options.out = work.recording().parent_path() / "new" / "newer" / "out";
+    replay::run(options);
+    CHECK(fs::exists(options.out / "frames.csv"));
+    fs::remove_all(options.out);
+    fs::create_directory(options.out);
+    replay::run(options);
+    CHECK(fs::exists(options.out / "frames.csv"));
+  }
+}
+
+TEST_CASE("16-bit frames give the depth of 8-bit frames") {
+  const Workplace narrow;
+  const Workplace wide;
+  for (const auto& entry : fs::directory_iterator(wide.recording() / "frames")) {
+    cv::Mat frame = cv::imread(entry.path().string(), cv::IMREAD_UNCHANGED);
+    frame.convertTo(frame, CV_16U, 256);
+    cv::imwrite(entry.path().string(), frame);
+  }
+  auto options = narrow.options();
+  auto options_wide = wide.options();
+  options.smoothing = options_wide.smoothing =
+      GENERATE(replay::Smoothing::none, replay::Smoothing::box, replay::Smoothing::bias_free,
+               replay::Smoothing::anchored);
+  replay::run(options);
+  replay::run(options_wide);
+  for (const char* name : {"000000.tiff", "000002.tiff"}) {
+    CHECK(largest_difference(narrow.out() / "depth" / name, wide.out() / "depth" / name) < 2e-5);
+  }
+}
+
+TEST_CASE("a video takes the place of the folder of frames") {
+  const Workplace work;
+  const fs::path file = work.recording() / "frames.avi";
+  {
+    const replay::QuietCodecs quiet;
+    // Without loss, so that the depth is that of the images.
+    cv::VideoWriter video(file.string(), cv::VideoWriter::fourcc('F', 'F', 'V', '1'), 10,
+                          cv::Size(480, 480));
+    for (const char* name : {"000000.png", "000001.png", "000002.png"}) {
+      if (video.isOpened()) {
+        video.write(cv::imread((work.recording() / "frames" / name).string()));
+      }
+    }
+  }
+  if (!fs::exists(file) || fs::file_size(file) < 10000) {
+    WARN("no encoder for FFV1 here; videos are not tested");
+    return;
+  }
+  auto options = work.options();
+  replay::run(options);
+  work.replace_in_sensor("\"smoothing_px\"", "\"video\": \"frames.avi\", \"smoothing_px\"");
+  options.out = work.recording().parent_path() / "from_video";
+  options.range = {1, {}};
+  replay::run(options);
+  CHECK_FALSE(fs::exists(options.out / "depth" / "000000.tiff"));
+  // FFV1 stores luminance and colour differences here, which costs about a grey level.
+  const cv::Mat_<float> from_images =
+      replay::read_depth_image(work.out() / "depth" / "000002.tiff");
+  const cv::Mat_<float> from_video =
+      replay::read_depth_image(options.out / "depth" / "000002.tiff");
+  CHECK(std::abs(from_images(240, 240) - from_video(240, 240)) < 1.0F);
+
+  work.write("frames.avi", "not a video");
+  fs::remove_all(work.out());
+  fs::remove_all(options.out);
+  CHECK(work.complaint().find("frames.avi: cannot be read as a video") != std::string::npos);
+}
+
+TEST_CASE("a range of frames must lie in the recording") {
+  const Workplace work;
+  auto options = work.options();
+  options.range = {2, 5};
+  CHECK_THROWS_WITH(replay::run(options), Catch::Contains("holds frames 0 to 2, so --frames 2:5"));
+  CHECK(replay::parse_range("3:").first == 3);
+  CHECK(replay::parse_range(":7").last == 7);
+  for (const char* bad : {"", "3", "a:b", "1:2:3", "-1:2", "1 :2"}) {
+    CHECK_THROWS_AS(replay::parse_range(bad), std::invalid_argument);
+  }
+}
