@@ -30,9 +30,9 @@ struct Bench {
   Image<S> compensated(Index radius_px) const {
     const NeighbourLightCompensation<Disc, S> compensate({.radius_px = radius_px}, pitch<S>(),
                                                          free);
-    auto scratch = compensate.make_scratch();
+    auto workspace = compensate.workspace();
     Image<S> out(scene.pad.rows, scene.pad.cols);
-    compensate(pressed, out, scratch);
+    compensate(pressed, out, workspace);
     return out;
   }
 
@@ -46,12 +46,12 @@ struct Bench {
     using Compensation = NeighbourLightCompensation<Disc, S>;
     const auto compensate =
         std::make_shared<Compensation>(NeighbourLight<S>{.radius_px = radius_px}, pitch<S>(), free);
-    const auto scratch =
-        std::make_shared<typename Compensation::Scratch>(compensate->make_scratch());
+    const auto workspace =
+        std::make_shared<typename Compensation::Workspace>(compensate->workspace());
     const auto out = std::make_shared<Image<S>>(scene.pad.rows, scene.pad.cols);
     bench::add(
         "radius " + std::to_string(radius_px) + " px/" + name, scene.pixels(),
-        [=, this] { (*compensate)(pressed, *out, *scratch); },
+        [=, this] { (*compensate)(pressed, *out, *workspace); },
         [=, this](auto& counters) {
           counters["max_error_mm"] =
               test::largest_error(*out, compensated<ExactDisc, double>(radius_px));

@@ -61,9 +61,9 @@ bool identical(const A& a, const B& b) {
 template <class Disc, class S>
 Map<S> compensated(const NeighbourLight<S>& light, const Map<S>& reference, const Map<S>& depth) {
   const NeighbourLightCompensation<Disc, S> compensation(light, S(0.125), reference);
-  auto scratch = compensation.make_scratch();
+  auto workspace = compensation.workspace();
   Map<S> out(depth.rows(), depth.cols());
-  REQUIRE(compensation(depth, out, scratch));
+  REQUIRE(compensation(depth, out, workspace).accepted);
   return out;
 }
 
@@ -314,11 +314,11 @@ TEST_CASE("neighbour light: same bits on every grid") {
   const NeighbourLight<float> light{9, 0.002F, 0.2F};
   const Map<float> expected = compensated<SteppedDisc<>>(light, reference, depth);
   const NeighbourLightCompensation<> compensation(light, 0.125F, reference);
-  auto scratch = compensation.make_scratch();
+  auto workspace = compensation.workspace();
 
   const Eigen::ArrayXXf column_major = depth;
   Eigen::ArrayXXf column_major_out(rows, cols);
-  REQUIRE(compensation(column_major, column_major_out, scratch));
+  REQUIRE(compensation(column_major, column_major_out, workspace).accepted);
   CHECK(identical(column_major_out, expected));
 
   cv::Mat_<float> image(static_cast<int>(rows), static_cast<int>(cols));
@@ -331,47 +331,47 @@ TEST_CASE("neighbour light: same bits on every grid") {
       grid_traits<test::ForeignImage<float>>::at(foreign, i, j) = depth(i, j);
     }
   }
-  REQUIRE(compensation(image, image, scratch));  // in place
+  REQUIRE(compensation(image, image, workspace).accepted);  // in place
   CHECK(identical(as_view(image), expected));
-  REQUIRE(compensation(tensor, tensor, scratch));
+  REQUIRE(compensation(tensor, tensor, workspace).accepted);
   CHECK(identical(as_view(tensor), expected));
-  REQUIRE(compensation(foreign, foreign, scratch));
+  REQUIRE(compensation(foreign, foreign, workspace).accepted);
   CHECK(identical(as_view(foreign), expected));
 
   Map<float> out(rows, cols);
   const LazyView lazy(rows, cols, [&](Index i, Index j) { return depth(i, j); });
-  REQUIRE(compensation(lazy, out, scratch));
+  REQUIRE(compensation(lazy, out, workspace).accepted);
   CHECK(identical(out, expected));
   Map<float> flipped = depth.colwise().reverse();
-  REQUIRE(compensation(flip_rows(as_view(flipped)), flip_rows(as_view(flipped)), scratch));
+  REQUIRE(compensation(flip_rows(as_view(flipped)), flip_rows(as_view(flipped)), workspace).accepted);
   CHECK(identical(flip_rows(as_view(flipped)), expected));
 }
 
 TEST_CASE("neighbour light: other sizes are refused and nothing is written") {
   const Map<float> reference = Map<float>::Constant(8, 9, 1.0F);
   const NeighbourLightCompensation<> compensation({}, 0.1F, reference);
-  auto scratch = compensation.make_scratch();
+  auto workspace = compensation.workspace();
   Map<float> out = Map<float>::Constant(8, 9, 7.0F);
   const Map<float> narrow = Map<float>::Constant(8, 8, 1.0F);
-  CHECK(compensation(narrow, out, scratch).status == NeighbourLightStatus::other_size);
+  CHECK_FALSE(compensation(narrow, out, workspace).accepted);
   CHECK((out == 7.0F).all());
   Map<float> small_out = Map<float>::Constant(7, 9, 7.0F);
-  CHECK_FALSE(compensation(reference, small_out, scratch));
+  CHECK_FALSE(compensation(reference, small_out, workspace).accepted);
   CHECK((small_out == 7.0F).all());
   const NeighbourLightCompensation<> other({}, 0.1F, narrow);
-  auto other_scratch = other.make_scratch();
-  CHECK_FALSE(compensation(reference, out, other_scratch));
+  auto other_workspace = other.workspace();
+  CHECK_FALSE(compensation(reference, out, other_workspace).accepted);
   CHECK((out == 7.0F).all());
 }
 
 TEST_CASE("neighbour light: lost pixels are counted") {
   const Map<float> reference = Map<float>::Constant(20, 20, 1.0F);
   const NeighbourLightCompensation<> compensation({5, 0.001F, 0.2F}, 0.1F, reference);
-  auto scratch = compensation.make_scratch();
+  auto workspace = compensation.workspace();
   Map<float> depth = reference;
-  CHECK(compensation(depth, depth, scratch).lost_px == 0);
+  CHECK(compensation(depth, depth, workspace).lost_px == 0);
   depth.block(3, 4, 2, 3).setConstant(std::nanf(""));
-  CHECK(compensation(depth, depth, scratch).lost_px == 6);
+  CHECK(compensation(depth, depth, workspace).lost_px == 6);
 }
 
 TEST_CASE("neighbour light: bad parameters are refused by name, value and range") {
@@ -387,14 +387,14 @@ TEST_CASE("neighbour light: bad parameters are refused by name, value and range"
 
 TEST_CASE("neighbour light: none copies or does nothing") {
   const NoNeighbourLight none;
-  auto scratch = none.make_scratch();
+  auto workspace = none.workspace();
   Map<float> depth = Map<float>::Constant(3, 4, 2.0F);
   Map<float> out = Map<float>::Zero(3, 4);
-  CHECK(none(depth, depth, scratch));
-  CHECK(none(depth, out, scratch));
+  CHECK(none(depth, depth, workspace).accepted);
+  CHECK(none(depth, out, workspace).accepted);
   CHECK((out == 2.0F).all());
   Map<float> other(3, 5);
-  CHECK_FALSE(none(depth, other, scratch));
+  CHECK_FALSE(none(depth, other, workspace).accepted);
 }
 
 TEST_CASE("neighbour light: other numbers") {

@@ -40,10 +40,10 @@ class NeighbourLightStep {
                                                  static_cast<float>(given.m0_mm_per_rad),
                                                  static_cast<float>(given.n_per_mm)};
     compensation_.emplace(light, pitch_on_membrane_mm(sensor.camera, free_depth_mm), free_depth_mm);
-    scratch_.emplace(compensation_->make_scratch());
+    workspace_.emplace(compensation_->workspace());
   }
 
-  void operator()(cv::Mat_<float>& depth_mm) { (*compensation_)(depth_mm, depth_mm, *scratch_); }
+  void operator()(cv::Mat_<float>& depth_mm) { (*compensation_)(depth_mm, depth_mm, *workspace_); }
 
  private:
   using Compensation = fingerpad::NeighbourLightCompensation<>;
@@ -60,7 +60,7 @@ class NeighbourLightStep {
   }
 
   std::optional<Compensation> compensation_;
-  std::optional<Compensation::Scratch> scratch_;
+  std::optional<Compensation::Workspace> workspace_;
 };
 
 /// Everything that lives as long as the frames come.

@@ -109,7 +109,7 @@ Section Painter::find_section(const cv::Mat_<float>& depth_mm) const {
   cv::blur(fall, fall, window);
   cv::blur(depth, depth, window);
   cv::blur(count, count, window);
-  const cv::Mat whole = count > 0.999F;
+  const cv::Mat whole = count > 0.999;
   double dent = 0;
   cv::Point where(depth_mm.cols / 2, depth_mm.rows / 2);
   cv::minMaxLoc(fall, nullptr, &dent, nullptr, &where, whole);

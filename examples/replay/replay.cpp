@@ -173,9 +173,9 @@ int run(const Options& options) {
   const DepthStep depth_step = depth_step_of(recording, options);
   const Painter painter(recording.sensor, recording.reference_depth,
                         brightest_level(recording.reference));
-  OutputFolder output(options.out);
   std::signal(SIGINT, interrupt);
   std::signal(SIGTERM, interrupt);
+  OutputFolder output(options.out);
   FramesCsv table(output.file("frames.csv"));
   Summary summary;
   std::vector<Scene> columns;

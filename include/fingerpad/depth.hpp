@@ -33,7 +33,8 @@ inline namespace v0 {
 
 /// What became of a frame.
 struct DepthResult {
-  bool accepted = false;  ///< false: a grid has another size than the reference; nothing written
+  bool accepted = false;  ///< false: a grid or the workspace has another size than the reference;
+                          ///< nothing written
   Index pad_pixels = 0;   ///< pixels at which the reference knows the pad
   std::array<Index, pixel_status_count> count = {};  ///< pixels by PixelStatus
 
@@ -71,7 +72,8 @@ class DepthEstimator {
   class Workspace {
    public:
     Workspace(const DepthEstimator& estimator, const GreyScale& scale)
-        : rows_(estimator.setup_, estimator.smoothing_, scale),
+        : area_(estimator.pad_),
+          rows_(estimator.setup_, estimator.smoothing_, scale),
           scale_(scale),
           red_(static_cast<std::size_t>(estimator.setup_.cols)),
           green_(red_.size()),
@@ -80,6 +82,7 @@ class DepthEstimator {
 
    private:
     friend class DepthEstimator;
+    detail::PadArea area_;
     detail::ColourRows<Pixel, S, Smoothing> rows_;
     GreyScale scale_;
     std::vector<S> red_;
@@ -129,7 +132,7 @@ class DepthEstimator {
                   "the workspace was made for another type of cell");
     DepthResult result;
     result.accepted = has_size(red) && has_size(green) && has_size(depth_mm) && has_size(status) &&
-                      0 <= first && first <= last && last <= rows_;
+                      workspace.area_ == pad_ && 0 <= first && first <= last && last <= rows_;
     if (!result.accepted) {
       return result;
     }

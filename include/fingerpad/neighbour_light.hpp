@@ -57,16 +57,10 @@ inline S without_neighbour_light(const S& depth_mm,
   return value(compensated) < 0 ? S(0) : compensated;
 }
 
-enum class NeighbourLightStatus {
-  ok,          ///< every finite pixel is compensated
-  other_size,  ///< a grid or the scratch differs in size from the reference; nothing was written
-};
-
 struct NeighbourLightResult {
-  NeighbourLightStatus status = NeighbourLightStatus::ok;
-  Index lost_px = 0;  ///< pixels of the reference whose inclination this frame does not show
-
-  explicit operator bool() const { return status == NeighbourLightStatus::ok; }
+  bool accepted = false;  ///< false: a grid or the workspace has another size than the reference;
+                          ///< nothing written
+  Index lost_px = 0;      ///< pixels of the reference whose inclination this frame does not show
 };
 
 /// Removes the light of the neighbouring membrane from depth maps. `Disc` is SteppedDisc<> (time
@@ -78,12 +72,12 @@ struct NeighbourLightResult {
 /// and nothing is added for it.
 ///
 /// Bounded time and no allocation per frame; const, so that threads may share one, each with its
-/// own scratch. Twice the work in frames where pixels of the reference are missing.
+/// own workspace. Twice the work in frames where pixels of the reference are missing.
 template <class Disc = SteppedDisc<>, scalar S = float>
 class NeighbourLightCompensation {
  public:
   /// Memory that one frame at a time needs, taken up front.
-  using Scratch = typename detail::InclinationSums<Disc, S>::Scratch;
+  using Workspace = typename detail::InclinationSums<Disc, S>::Workspace;
 
   /// `pitch_mm` is the distance on the membrane between the points that neighbouring pixels see:
   /// that is where the gradient is taken. It is the pitch on the plate times about 1 + l / h, h the
@@ -108,34 +102,34 @@ class NeighbourLightCompensation {
 
   Index rows() const { return sums_.rows(); }
   Index cols() const { return sums_.cols(); }
-  Scratch make_scratch() const { return sums_.make_scratch(); }
+  Workspace workspace() const { return sums_.workspace(); }
 
   /// Compensates `depth_mm` into `out`, which may be the same grid. NaN where the input is NaN and
   /// nowhere else. A grid of another size than the reference is refused before anything is written.
   template <grid Depth, writable_grid<S> Out>
     requires(!std::integral<cell_t<Out>>)
-  NeighbourLightResult operator()(const Depth& depth_mm, Out&& out, Scratch& scratch) const {
+  NeighbourLightResult operator()(const Depth& depth_mm, Out&& out, Workspace& workspace) const {
     const auto from = as_view(depth_mm);
     const auto to = as_view(std::forward<Out>(out));
     if (from.rows() != rows() || from.cols() != cols() || to.rows() != rows() ||
-        to.cols() != cols() || !sums_.fits(scratch)) {
-      return {NeighbourLightStatus::other_size, 0};
+        to.cols() != cols() || !sums_.fits(workspace)) {
+      return {};
     }
-    sums_.scan(from, scratch);
+    sums_.scan(from, workspace);
     for (Index i = 0; i < rows(); ++i) {
-      sums_.sum_row(i, scratch);
-      S* row_mm = scratch.lines[0].depth.data();
+      sums_.sum_row(i, workspace);
+      S* row_mm = workspace.lines[0].depth.data();
       for (Index j = 0; j < cols(); ++j) {
         row_mm[j] = S(from(i, j));
       }
       const Index first = i * cols();
-      compensate_row(cols(), reference_.data() + first, m0_.data() + first, scratch.sum.data(),
+      compensate_row(cols(), reference_.data() + first, m0_.data() + first, workspace.sum.data(),
                      light_.n_per_mm, row_mm);
       for (Index j = 0; j < cols(); ++j) {
         to(i, j) = static_cast<cell_t<Out>>(row_mm[j]);
       }
     }
-    return {NeighbourLightStatus::ok, scratch.lost_px};
+    return {true, workspace.lost_px};
   }
 
  private:
@@ -173,21 +167,21 @@ class NeighbourLightCompensation {
 
 /// No compensation: nothing to do where depth and output are one grid in memory, else a copy.
 struct NoNeighbourLight {
-  struct Scratch {};
-  Scratch make_scratch() const { return {}; }
+  struct Workspace {};
+  Workspace workspace() const { return {}; }
 
   template <grid Depth, writable_grid<cell_t<Depth>> Out>
-  NeighbourLightResult operator()(const Depth& depth_mm, Out&& out, Scratch&) const {
+  NeighbourLightResult operator()(const Depth& depth_mm, Out&& out, Workspace&) const {
     const auto from = as_view(depth_mm);
     const auto to = as_view(std::forward<Out>(out));
     if (!same_size(from, to)) {
-      return {NeighbourLightStatus::other_size, 0};
+      return {};
     }
     if constexpr (strided_grid<Depth> && strided_grid<Out> &&
                   std::same_as<cell_t<Depth>, cell_t<Out>>) {
       if (from.data() == to.data() && from.row_stride() == to.row_stride() &&
           from.col_stride() == to.col_stride()) {
-        return {};
+        return {true, 0};
       }
     }
     for (Index i = 0; i < to.rows(); ++i) {
@@ -195,7 +189,7 @@ struct NoNeighbourLight {
         to(i, j) = static_cast<cell_t<Out>>(from(i, j));
       }
     }
-    return {};
+    return {true, 0};
   }
 };
 

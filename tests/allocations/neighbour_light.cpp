@@ -39,12 +39,12 @@ TEST_CASE("neighbour light: a frame allocates nothing") {
   const StridedView<float> view(depth.data(), 48, 64, 64);
   const NeighbourLightCompensation<> stepped({}, 0.1F, reference_view);
   const NeighbourLightCompensation<ExactDisc> exact({}, 0.1F, reference_view);
-  auto scratch = stepped.make_scratch();
-  auto exact_scratch = exact.make_scratch();
+  auto workspace = stepped.workspace();
+  auto exact_workspace = exact.workspace();
   const long before = allocations;
   for (int frame = 0; frame < 3; ++frame) {
-    stepped(view, view, scratch);
-    exact(view, view, exact_scratch);
+    stepped(view, view, workspace);
+    exact(view, view, exact_workspace);
   }
   const long after = allocations;
   CHECK(before > 0);

@@ -74,7 +74,7 @@ double depth_of(const Fit& fit, const DepthSample<double>& s) {
   double low = -1, high = 20;
   for (int k = 0; k < 60; ++k) {
     const double l = (low + high) / 2;
-    const double g = fit.scattering_at(s.rho_sq_mm2);
+    const double g = fit.scattering.at(s.rho_sq_mm2);
     (l > 0 && depth_equation(fit.fluid, s.pencil, g, s.colour, l).value > 0 ? high : low) = l;
   }
   return low;
@@ -116,7 +116,7 @@ TEST_CASE("calibration of depth: noise-free colours give the fluid back") {
     RC_ASSERT(fit.converged);
     RC_ASSERT(test::relative_error(fit.fluid.c_red_per_mm, sensor.fluid.c_red_per_mm) < roundoff);
     RC_ASSERT(test::relative_error(fit.fluid.kappa, sensor.fluid.kappa) < roundoff);
-    RC_ASSERT(test::relative_error(fit.scattering(0), sensor.g[0]) < roundoff);
+    RC_ASSERT(test::relative_error(fit.scattering.coefficient[0], sensor.g[0]) < roundoff);
     RC_ASSERT(std::abs(fit.fluid.c_green_per_mm - sensor.fluid.c_green_per_mm) <
               roundoff * sensor.fluid.c_green_per_mm);
     RC_ASSERT(fit.residual_rms < 1e-12 * sensor.brightness);
@@ -148,7 +148,7 @@ TEST_CASE("calibration of depth: g that varies over the radius") {
   CHECK(fit.converged);
   CHECK(fit.fluid.c_red_per_mm == Approx(0.029).epsilon(1e-8));
   for (const auto& s : samples) {
-    CHECK(fit.scattering_at(s.rho_sq_mm2) == Approx(sensor.g_at(s.rho_sq_mm2)).epsilon(1e-8));
+    CHECK(fit.scattering.at(s.rho_sq_mm2) == Approx(sensor.g_at(s.rho_sq_mm2)).epsilon(1e-8));
   }
 }
 
@@ -166,7 +166,7 @@ TEST_CASE("calibration of depth: brighter light and longer numbers change only w
   CHECK(twice.fluid.c_red_per_mm == fit.fluid.c_red_per_mm);
   CHECK(twice.fluid.c_green_per_mm == fit.fluid.c_green_per_mm);
   CHECK(twice.fluid.kappa == fit.fluid.kappa);
-  CHECK(twice.scattering(0) == 2 * fit.scattering(0));
+  CHECK(twice.scattering.coefficient[0] == 2 * fit.scattering.coefficient[0]);
   CHECK(twice.grey_noise == 2 * fit.grey_noise);
 
   std::vector<DepthSample<long double>> wide;
@@ -192,7 +192,7 @@ TEST_CASE("calibration of depth: the fit is where no parameter lowers the residu
   REQUIRE_FALSE(fit.delta_at_limit);
   const std::array<double, 4> best = {fit.fluid.c_red_per_mm,
                                       fit.fluid.c_green_per_mm - fit.fluid.c_red_per_mm,
-                                      fit.fluid.kappa, fit.scattering(0)};
+                                      fit.fluid.kappa, fit.scattering.coefficient[0]};
   const auto cost = [&](const std::array<double, 4>& p) {
     double sum = 0;
     for (const auto& s : samples) {
@@ -265,7 +265,7 @@ TEST_CASE("calibration of depth: covariance against Monte Carlo where the noise 
     Samples samples = exact;
     add_noise(samples, noise, random);
     const auto fit = fit_absorption<0, double>(samples, options);
-    Eigen::Vector4d off(fit.fluid.c_red_per_mm, 0, fit.fluid.kappa, fit.scattering(0));
+    Eigen::Vector4d off(fit.fluid.c_red_per_mm, 0, fit.fluid.kappa, fit.scattering.coefficient[0]);
     off(1) = fit.fluid.c_green_per_mm - fit.fluid.c_red_per_mm;
     off -= Eigen::Vector4d(0.029, 0.0046, sensor.fluid.kappa, 0.0163);
     scatter += off * off.transpose() / trials;

@@ -40,16 +40,16 @@ Frames truths(const NeighbourLight<double>& light, const Map& reference, const F
   Frames truth;
   const detail::InclinationSums<SteppedDisc<>, double> sums(light.radius_px, pitch_mm,
                                                             as_view(reference));
-  auto scratch = sums.make_scratch();
+  auto workspace = sums.workspace();
   for (const Map& l : measured) {
     truth.push_back(l);
-    sums.scan(as_view(l), scratch);
+    sums.scan(as_view(l), workspace);
     for (Index i = 0; i < l.rows(); ++i) {
-      sums.sum_row(i, scratch);
+      sums.sum_row(i, workspace);
       for (Index j = 0; j < l.cols(); ++j) {
         const double m =
             light.m0_mm_per_rad * std::exp(light.n_per_mm * (l(i, j) - reference(i, j)));
-        truth.back()(i, j) -= m * scratch.sum[static_cast<std::size_t>(j)];
+        truth.back()(i, j) -= m * workspace.sum[static_cast<std::size_t>(j)];
       }
     }
   }
@@ -125,9 +125,9 @@ TEST_CASE("calibration of neighbour light: compensation with the fit removes the
   const auto fit = fit_of(reference, measured, truth, {5, 9, -1, 1, 3});
   const NeighbourLightCompensation<SteppedDisc<>, double> compensation(fit.light, pitch_mm,
                                                                        reference);
-  auto scratch = compensation.make_scratch();
+  auto workspace = compensation.workspace();
   Map out(64, 80);
-  REQUIRE(compensation(measured[0], out, scratch));
+  REQUIRE(compensation(measured[0], out, workspace).accepted);
   for (Index k = 0; k < out.size(); ++k) {
     if (!std::isnan(truth[0](k))) {
       CHECK(out(k) == Approx((std::max)(truth[0](k), 0.0)).margin(1e-9));

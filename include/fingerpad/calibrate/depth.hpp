@@ -20,6 +20,7 @@
 
 #include "fingerpad/detail/absorption_fit.hpp"
 #include "fingerpad/detail/absorption_law.hpp"
+#include "fingerpad/detail/depth_reference.hpp"
 #include "fingerpad/expects.hpp"
 #include "fingerpad/optics.hpp"
 #include "fingerpad/scalar.hpp"
@@ -63,9 +64,7 @@ struct AbsorptionFit {
   using Covariance = Eigen::Matrix<S, parameters, parameters, Eigen::DontAlign>;
 
   Absorption<S> fluid;
-  /// g = sum of scattering[j] v^j in grey levels per mm^2, v = (rho / rho_max_mm)^2.
-  Eigen::Matrix<S, Degree + 1, 1, Eigen::DontAlign> scattering;
-  S rho_max_mm;
+  RadialScattering<S, Degree> scattering;
   Covariance covariance;  ///< NaN with as many samples as parameters and no given grey_noise
   S condition;            ///< of dF / d ln(parameter); 6e3 for depths of 0.5, 4, 8 and 12 mm
   S residual_rms;         ///< of F, grey levels
@@ -73,15 +72,6 @@ struct AbsorptionFit {
   int iterations;
   bool converged;
   bool delta_at_limit;  ///< the samples would rather have delta < 0; it is 0
-
-  S scattering_at(const S& rho_sq_mm2) const {
-    const S v = rho_sq_mm2 / square(rho_max_mm);
-    S g = scattering(Degree);
-    for (int j = Degree - 1; j >= 0; --j) {
-      g = g * v + scattering(j);
-    }
-    return g;
-  }
 };
 
 /// sd in mm of the depth found from this sample's colours, as far as it comes from the uncertainty
@@ -92,7 +82,7 @@ S predicted_depth_sd(const AbsorptionFit<S, Degree>& fit, const DepthSample<S>& 
   using std::sqrt;
   const S delta = fit.fluid.c_green_per_mm - fit.fluid.c_red_per_mm;
   const S path = at.pencil.path_factor * at.depth_mm;
-  const S g = fit.scattering_at(at.rho_sq_mm2);
+  const S g = fit.scattering.at(at.rho_sq_mm2);
   const S c_red = fit.fluid.c_red_per_mm;
   Eigen::Matrix<S, 4 + Degree, 1, Eigen::DontAlign> by;
   by(0) = g * detail::scattered_light_per_absorption(at.depth_mm, c_red, at.pencil);
@@ -100,7 +90,7 @@ S predicted_depth_sd(const AbsorptionFit<S, Degree>& fit, const DepthSample<S>& 
   by(2) = -at.colour.red;
   by(3) = scattered_light(at.depth_mm, c_red, at.pencil);
   for (int j = 1; j <= Degree; ++j) {
-    by(3 + j) = by(2 + j) * at.rho_sq_mm2 / square(fit.rho_max_mm);
+    by(3 + j) = by(2 + j) * at.rho_sq_mm2 / square(fit.scattering.rho_max_mm);
   }
   const S slope = depth_equation(fit.fluid, at.pencil, g, at.colour, at.depth_mm).slope;
   const S variance = by.dot(fit.covariance * by);
@@ -207,13 +197,15 @@ AbsorptionFit<S, Degree> fit_absorption(std::span<const DepthSample<S>> samples,
   fit.fluid.c_red_per_mm = p.c_red;
   fit.fluid.c_green_per_mm = p.c_red + p.delta;
   fit.fluid.kappa = p.linear(0);
-  fit.scattering = p.linear.template tail<Degree + 1>();
-  fit.rho_max_mm = sqrt(rho_sq_max);
+  for (int j = 0; j <= Degree; ++j) {
+    fit.scattering.coefficient[static_cast<std::size_t>(j)] = p.linear(1 + j);
+  }
+  fit.scattering.rho_max_mm = sqrt(rho_sq_max);
   fit.delta_at_limit = !(p.delta > S(0));
 
   S residual_sq = S(0);
   for (const DepthSample<S>& s : samples) {
-    const S g = fit.scattering_at(s.rho_sq_mm2);
+    const S g = fit.scattering.at(s.rho_sq_mm2);
     residual_sq += square(depth_equation(fit.fluid, s.pencil, g, s.colour, s.depth_mm).value);
   }
   const int count = static_cast<int>(samples.size());

@@ -146,20 +146,20 @@ NeighbourLightFit fit_neighbour_light(double pitch_mm,
   std::vector<detail::LightSample> samples;
   for (Index r = search.smallest_radius_px; r <= search.largest_radius_px; ++r) {
     const detail::InclinationSums<Disc, double> sums(r, pitch_mm, reference);
-    auto scratch = sums.make_scratch();
+    auto workspace = sums.workspace();
     samples.clear();
     for (std::size_t k = 0; k < measured_mm.size(); ++k) {
       const auto measured = as_view(measured_mm[k]);
       const auto truth = as_view(true_mm[k]);
-      sums.scan(measured, scratch);
+      sums.scan(measured, workspace);
       for (Index i = 0; i < sums.rows(); i += search.every_px) {
-        sums.sum_row(i, scratch);
+        sums.sum_row(i, workspace);
         for (Index j = 0; j < sums.cols(); j += search.every_px) {
           const double l = static_cast<double>(measured(i, j));
           const double error = l - static_cast<double>(truth(i, j));
           const double risen = l - static_cast<double>(reference(i, j));
           if (is_finite(error) && is_finite(risen)) {
-            samples.push_back({error, risen, scratch.sum[static_cast<std::size_t>(j)]});
+            samples.push_back({error, risen, workspace.sum[static_cast<std::size_t>(j)]});
           }
         }
       }

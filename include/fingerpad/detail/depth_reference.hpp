@@ -43,14 +43,15 @@ struct RadialScattering {
   std::array<S, static_cast<std::size_t>(Degree) + 1> coefficient = {};  ///< of 1, v, v^2, ...
   S rho_max_mm = S(1);  ///< farthest pixel of the fit, on the plate
 
-  S operator()(Index /*row*/, Index /*col*/, const S& rho_sq_mm2) const {
+  S at(const S& rho_sq_mm2) const {
     const S v = rho_sq_mm2 / (rho_max_mm * rho_max_mm);
-    S g = coefficient[Degree];
+    S g = coefficient[static_cast<std::size_t>(Degree)];
     for (int j = Degree - 1; j >= 0; --j) {
       g = g * v + coefficient[static_cast<std::size_t>(j)];
     }
     return g;
   }
+  S operator()(Index /*row*/, Index /*col*/, const S& rho_sq_mm2) const { return at(rho_sq_mm2); }
 };
 
 /// g per pixel, the published quotient; NaN where the reference has no usable depth.

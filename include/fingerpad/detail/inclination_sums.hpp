@@ -30,8 +30,8 @@ class InclinationSums {
 
  public:
   /// Memory of one frame at a time.
-  struct Scratch {
-    Scratch(Index rows, Index cols, Index radius_px)
+  struct Workspace {
+    Workspace(Index rows, Index cols, Index radius_px)
         : change(rows, cols),
           missing(rows, cols),
           change_row(cols, radius_px),
@@ -71,7 +71,7 @@ class InclinationSums {
         psi_(size(), T(0)),
         present_(size(), 0),
         count_(size(), S(0)) {
-    Scratch s = make_scratch();
+    Workspace s = workspace();
     each_row(reference, s, [&](Index i) {
       for (Index j = 0; j < cols_; ++j) {
         psi_[at(i, j)] = s.psi[static_cast<std::size_t>(j)];
@@ -89,17 +89,17 @@ class InclinationSums {
 
   Index rows() const { return rows_; }
   Index cols() const { return cols_; }
-  Scratch make_scratch() const { return Scratch(rows_, cols_, radius_); }
+  Workspace workspace() const { return Workspace(rows_, cols_, radius_); }
 
-  /// Whether this scratch was made for this reference and radius.
-  bool fits(const Scratch& s) const {
+  /// Whether this workspace was made for this reference and radius.
+  bool fits(const Workspace& s) const {
     return s.lost.size() == size() && s.sum.size() == static_cast<std::size_t>(cols_) &&
            s.change_row.band.size() == static_cast<std::size_t>(cols_ + 1 + 2 * radius_);
   }
 
-  /// Reads the frame into the scratch tables; s.lost_px says how many pixels were not seen.
+  /// Reads the frame into the workspace tables; s.lost_px says how many pixels were not seen.
   template <class View>
-  void scan(const View& depth, Scratch& s) const {
+  void scan(const View& depth, Workspace& s) const {
     s.lost_px = 0;
     each_row(depth, s, [&](Index i) {
       const Index first = i * cols_;
@@ -113,7 +113,7 @@ class InclinationSums {
   }
 
   /// s.sum = psi_sum of one row, rad, of the frame scanned last.
-  void sum_row(Index row, Scratch& s) const {
+  void sum_row(Index row, Workspace& s) const {
     s.change_row.sum(s.change, shape_, radius_, row);
     const S stairs = S(shape_.staircase_weight) / unit_;
     const S square = S(shape_.square_weight) / unit_;
@@ -135,7 +135,7 @@ class InclinationSums {
   }
 
  private:
-  using Line = typename Scratch::Line;
+  using Line = typename Workspace::Line;
 
   std::size_t size() const { return static_cast<std::size_t>(rows_ * cols_); }
   std::size_t at(Index i, Index j) const { return static_cast<std::size_t>(i * cols_ + j); }
@@ -148,7 +148,7 @@ class InclinationSums {
 
   /// Calls visit(i) for each row, with s.psi and s.present of that row.
   template <class View, class Visit>
-  void each_row(const View& depth, Scratch& s, const Visit& visit) const {
+  void each_row(const View& depth, Workspace& s, const Visit& visit) const {
     clear(s.lines[2]);
     load(depth, 0, s.lines[0]);
     for (Index i = 0; i < rows_; ++i) {
@@ -201,7 +201,7 @@ class InclinationSums {
     }
   }
 
-  void find_psi(const Line& up, const Line& here, const Line& down, Scratch& s) const {
+  void find_psi(const Line& up, const Line& here, const Line& down, Workspace& s) const {
     find_psi(cols_, per_mm_, unit_, here.depth.data() + 1, here.weight.data() + 1,
              up.depth.data() + 1, up.weight.data() + 1, down.depth.data() + 1,
              down.weight.data() + 1, s.psi.data(), s.present.data());

@@ -22,6 +22,7 @@ struct PadArea {
   Index col = 0;
   Index rows = 0;
   Index cols = 0;
+  bool operator==(const PadArea&) const = default;
 };
 
 /// A reference and its camera in the coordinates of the pad's rectangle, and where that lies in
