@@ -35,7 +35,7 @@ struct Inputs {
     reference.cols = fitted.cols;
     reference.pixels_used = fitted.pixels_used;
     reference.depth_mm.assign(fitted.depth_mm.begin(), fitted.depth_mm.end());
-    reference.scattering.rho_max_mm = fitted.scattering.rho_max_mm;
+    reference.scattering.rho_max_mm = S(fitted.scattering.rho_max_mm);
     std::copy(fitted.scattering.coefficient.begin(), fitted.scattering.coefficient.end(),
               reference.scattering.coefficient.begin());
     const auto camera = cast<S>(scene.pad.camera);

@@ -54,7 +54,7 @@ template <class Smoothing = Anchored<BiasFreeMean>,
           class Scattering = RadialScattering<S>>
 class DepthEstimator {
  public:
-  using Reference = DepthReference<S, Scattering>;
+  using Reference = DepthReference<S, Scattering, Heights>;
 
   /// Refuses bad parameters (parameter_error).
   DepthEstimator(const Camera<double>& camera,
@@ -160,7 +160,7 @@ class DepthEstimator {
 
  private:
   /// All work is done on the rectangle of pixels that holds the pad, in its own coordinates.
-  DepthEstimator(const detail::PadReference<S, Scattering>& pad,
+  DepthEstimator(const detail::PadReference<S, Scattering, Heights>& pad,
                  const Absorption<double>& fluid,
                  Smoothing smoothing,
                  Inverse inverse)
@@ -176,7 +176,7 @@ class DepthEstimator {
       pad_pixels_ += setup_.in_pad.back();
     }
     if constexpr (detail::is_anchored<Smoothing>) {
-      setup_.anchor = detail::anchor_of<Heights, S>(pad.camera, fluid, pad.reference);
+      setup_.anchor = detail::anchor_of(pad.camera, fluid, pad.reference);
     }
   }
 
@@ -259,14 +259,14 @@ class DepthEstimator {
 
 template <scalar S,
           class Scattering,
+          class Heights,
           class Smoothing = Anchored<BiasFreeMean>,
           class Inverse = ExponentialFree<>>
 DepthEstimator(const Camera<double>&,
                const Absorption<double>&,
-               const DepthReference<S, Scattering>&,
+               const DepthReference<S, Scattering, Heights>&,
                Smoothing = {},
-               Inverse = {})
-    -> DepthEstimator<Smoothing, Inverse, AstigmaticHeights, S, Scattering>;
+               Inverse = {}) -> DepthEstimator<Smoothing, Inverse, Heights, S, Scattering>;
 
 }  // namespace v0
 }  // namespace fingerpad

@@ -36,8 +36,9 @@ Absorption<double> fluid_with(double delta_per_mm, double max_depth_mm = 18) {
   fluid.max_depth_mm = max_depth_mm;
   return fluid;
 }
-const double published_delta = Absorption<double>().c_green_per_mm - Absorption<double>().c_red_per_mm;
-const std::vector<double> deltas = {0, 1e-9, 1e-4, published_delta};
+const double published_delta =
+    Absorption<double>().c_green_per_mm - Absorption<double>().c_red_per_mm;
+const std::vector<double> deltas = {0, 1e-4, published_delta};
 constexpr double brightness = 57;
 constexpr double scattering = 0.0163;
 
@@ -73,22 +74,18 @@ struct ExactEquation {
         green(colour.green),
         g(scatter) {}
 
-  Digits50 value(const Digits50& l) const {
-    const Digits50 ck = c * k;
-    const Digits50 e = exp(Digits50(-ck * l));
-    const Digits50 q1 = (product + (sum + 2 / ck) / ck) / k;
-    const Digits50 q2 = (l * l + sum * l + 2 * l / ck) / k;
-    return green * exp(Digits50(delta * k * l)) - kappa_red + g * (q1 * (1 - e) - q2 * e);
-  }
-  Digits50 slope(const Digits50& l) const {
-    const Digits50 scatter = g * c * (l * l + sum * l + product) * exp(Digits50(-c * k * l));
-    return green * delta * k * exp(Digits50(delta * k * l)) + scatter;
-  }
-  /// From a depth that is right to about 1e-3 mm, six steps double the digits to fifty.
+  /// From a depth that is right to about 1e-3 mm, five of Newton's steps give fifty digits.
   Digits50 root(double near) const {
+    const Digits50 ck = c * k;
+    const Digits50 q1 = (product + (sum + 2 / ck) / ck) / k;
     Digits50 l(near);
-    for (int step = 0; step < 6; ++step) {
-      l = l - value(l) / slope(l);
+    for (int step = 0; step < 5; ++step) {
+      const Digits50 decay = exp(Digits50(-ck * l));
+      const Digits50 membrane = green * exp(Digits50(delta * k * l));
+      const Digits50 q2 = (l * l + sum * l + 2 * l / ck) / k;
+      const Digits50 scatter_slope = c * (l * l + sum * l + product) * decay;
+      const Digits50 value = membrane - kappa_red + g * (q1 * (1 - decay) - q2 * decay);
+      l = l - value / (membrane * delta * k + g * scatter_slope);
     }
     return l;
   }
@@ -126,10 +123,10 @@ struct Pixel {
 /// Depths from 1e-6 to 14 mm, dense at both ends of the scale.
 std::vector<double> depths() {
   std::vector<double> l;
-  for (double x = bound_mm::smallest; x < 1; x *= 10) {
+  for (double x = bound_mm::smallest; x < 1; x *= 30) {
     l.push_back(x);
   }
-  for (double x = 1; x < bound_mm::deepest; x += 1.625) {
+  for (double x = 1; x < bound_mm::deepest; x += 3.25) {
     l.push_back(x);
   }
   l.push_back(bound_mm::deepest);
@@ -141,7 +138,7 @@ template <class S, class Solve>
 double worst_error(const Solve& solve, double bright = brightness) {
   double worst = 0;
   for (const double delta : deltas) {
-    for (double rho = 0; rho <= static_cast<double>(pixels_to_rim); rho += 47) {
+    for (double rho = 0; rho <= static_cast<double>(pixels_to_rim); rho += 78) {
       for (const double l : depths()) {
         const Pixel<S> p(fluid_with(delta), rho, l, bright);
         const DepthRoot<S> root = solve(p.fluid, as<S>(p.light), p.g, p.colour);
@@ -184,7 +181,7 @@ TEST_CASE("Newton's depth also has no bound of its own in 50 digits", "[depth]")
 }
 
 TEST_CASE("the bisection stays within the half-width it states", "[depth]") {
-  for (const int halvings : {2, 3, 8, 16, 24}) {
+  for (const int halvings : {2, 8, 16, 24}) {
     const double half_width = std::ldexp(18.0, 1 - halvings);
     const double error = worst_error<double>(
         [&](const auto& fluid, const auto& light, const auto& g, const auto& colour) {
@@ -268,7 +265,7 @@ class RowSolver {
     }
     rows_.invert(0, pixels_to_rim, red.data(), green.data(), depth.data(), status.data());
     double worst = 0;
-    for (std::size_t j = 0; j < red.size(); j += 13) {
+    for (std::size_t j = 0; j < red.size(); j += 39) {
       const ExactEquation f(fluid_, as<Digits50>(light[j]), Digits50(g),
                             Colour<double>{static_cast<double>(red[j]),
                                            static_cast<double>(green[j])});
@@ -322,7 +319,6 @@ TEST_CASE("the exponential-free depth in float", "[depth]") {
   CHECK((worst_of_rows<float, 2, 6>(14.5)) <= bound_mm::one_step_float);
   CHECK((worst_of_rows<float, 3, 6>()) <= bound_mm::one_step_float);
   CHECK((worst_of_rows<float, 4, 6>()) <= bound_mm::two_steps_float);
-  CHECK((worst_of_rows<float, 6, 6>()) <= bound_mm::two_steps_float);
   CHECK((worst_of_rows<float, 9, 6>()) <= bound_mm::two_steps_float);
 }
 

@@ -31,10 +31,10 @@ inline constexpr bool is_anchored<Anchored<Mean>> = true;
 
 /// The anchor at the free pad of `reference`. Outside the pad, where nothing is averaged, it holds
 /// harmless numbers.
-template <class Heights, class S, class Scattering>
+template <class S, class Scattering, class Heights>
 Anchor<S> anchor_of(const Camera<double>& camera,
                     const Absorption<double>& fluid,
-                    const DepthReference<S, Scattering>& reference) {
+                    const DepthReference<S, Scattering, Heights>& reference) {
   const double delta = fluid.c_green_per_mm - fluid.c_red_per_mm;
   Anchor<S> anchor;
   anchor.kappa = S(fluid.kappa);

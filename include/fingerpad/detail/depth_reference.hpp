@@ -65,8 +65,9 @@ struct PixelScattering {
   }
 };
 
-/// The free pad, as the depth estimator needs it.
-template <scalar S, class Scattering = RadialScattering<S>>
+/// The free pad, as the depth estimator needs it. The type remembers the policy of heights that g
+/// was fitted with, so that the estimator uses the same.
+template <scalar S, class Scattering = RadialScattering<S>, class Heights = AstigmaticHeights>
 struct DepthReference {
   Index rows = 0;
   Index cols = 0;
@@ -149,9 +150,9 @@ void visit_reference(const Camera<double>& camera,
 
 /// Least squares of known = g(rho) scattered over the powers of v; in double, the cubic that is
 /// needed is far from losing digits. Refuses data that do not determine g.
-template <scalar S, int Degree, class VisitAll>
+template <scalar S, int Degree, class Heights, class VisitAll>
 void fit_scattering(const VisitAll& visit_all,
-                    DepthReference<S, RadialScattering<S, Degree>>& reference) {
+                    DepthReference<S, RadialScattering<S, Degree>, Heights>& reference) {
   constexpr auto n = static_cast<std::size_t>(Degree + 1);
   double rho_sq_max = 0;
   visit_all([&](Index, Index, double rho_sq, double, double) {
@@ -189,8 +190,9 @@ void fit_scattering(const VisitAll& visit_all,
 }
 
 /// The published quotient, pixel by pixel.
-template <scalar S, class VisitAll>
-void fit_scattering(const VisitAll& visit_all, DepthReference<S, PixelScattering<S>>& reference) {
+template <scalar S, class Heights, class VisitAll>
+void fit_scattering(const VisitAll& visit_all,
+                    DepthReference<S, PixelScattering<S>, Heights>& reference) {
   reference.scattering.cols = reference.cols;
   reference.scattering.plane.assign(reference.depth_mm.size(), not_a_number<S>());
   visit_all([&](Index row, Index col, double, double known, double scattered) {
@@ -237,7 +239,7 @@ auto fit_reference(const Camera<double>& camera,
   expects(same_size(red, green) && same_size(red, depth_mm), "fit_reference", "rows of depth_mm",
           static_cast<long long>(rows(depth_mm)), "of the same size as the red and green image");
   using Scattering = typename Fit::template Scattering<S>;
-  DepthReference<S, Scattering> reference;
+  DepthReference<S, Scattering, Heights> reference;
   const auto depth_view = as_view(depth_mm);
   reference.rows = depth_view.rows();
   reference.cols = depth_view.cols();

@@ -54,7 +54,7 @@ class PixelwiseRows {
  public:
   PixelwiseRows(const Camera<double>& camera,
                 const Absorption<double>& fluid,
-                const DepthReference<S, Scattering>& reference)
+                const DepthReference<S, Scattering, Heights>& reference)
       : camera_(cast<S>(camera)), fluid_(cast<S>(fluid)), scattering_(reference.scattering) {}
 
   template <class FindRoot>
@@ -91,7 +91,7 @@ class DepthRows<Bisection, Heights, S, Scattering> {
  public:
   DepthRows(const Camera<double>& camera,
             const Absorption<double>& fluid,
-            const DepthReference<S, Scattering>& reference,
+            const DepthReference<S, Scattering, Heights>& reference,
             const Bisection& policy)
       : rows_(camera, fluid, reference), halvings_(policy.halvings) {
     expects(halvings_ >= 2 && halvings_ <= 100, "Bisection", "halvings",
@@ -118,7 +118,7 @@ class DepthRows<Newton<From>, Heights, S, Scattering> {
  public:
   DepthRows(const Camera<double>& camera,
             const Absorption<double>& fluid,
-            const DepthReference<S, Scattering>& reference,
+            const DepthReference<S, Scattering, Heights>& reference,
             const Newton<From>&)
       : rows_(camera, fluid, reference) {}
   void invert(Index row,
@@ -149,7 +149,7 @@ class DepthRows<ExponentialFree<Order, Degree, Radial>, Heights, S, Scattering> 
  public:
   DepthRows(const Camera<double>& camera,
             const Absorption<double>& fluid,
-            const DepthReference<S, Scattering>& reference,
+            const DepthReference<S, Scattering, Heights>& reference,
             const ExponentialFree<Order, Degree, Radial>&)
       : scattering_(reference.scattering) {
     const auto pencil = [&](double rho_mm) {  // rho as a pinhole has it: radius in px times pitch
@@ -199,7 +199,7 @@ class DepthRows<ExponentialFree<Order, Degree, Radial>, Heights, S, Scattering> 
 
  private:
   static double pad_radius_px(const Camera<double>& camera,
-                              const DepthReference<S, Scattering>& reference) {
+                              const DepthReference<S, Scattering, Heights>& reference) {
     double radius_sq = 0;
     for (Index i = 0; i < reference.rows; ++i) {
       for (Index j = 0; j < reference.cols; ++j) {

@@ -27,13 +27,13 @@ struct PadArea {
 
 /// A reference and its camera in the coordinates of the pad's rectangle, and where that lies in
 /// frames of rows x cols pixels.
-template <class S, class Scattering>
+template <class S, class Scattering, class Heights>
 struct PadReference {
   Index rows;
   Index cols;
   PadArea area;
   Camera<double> camera;
-  DepthReference<S, Scattering> reference;
+  DepthReference<S, Scattering, Heights> reference;
 };
 
 template <class S, int Degree>
@@ -51,9 +51,9 @@ PixelScattering<S> crop_scattering(const PixelScattering<S>& g, const PadArea& a
   return cropped;
 }
 
-template <class S, class Scattering>
-PadReference<S, Scattering> crop_to_pad(const Camera<double>& camera,
-                                        const DepthReference<S, Scattering>& reference) {
+template <class S, class Scattering, class Heights>
+PadReference<S, Scattering, Heights> crop_to_pad(
+    const Camera<double>& camera, const DepthReference<S, Scattering, Heights>& reference) {
   Index first_row = reference.rows;
   Index last_row = 0;
   Index first_col = reference.cols;
@@ -69,7 +69,7 @@ PadReference<S, Scattering> crop_to_pad(const Camera<double>& camera,
     }
   }
   const PadArea area{first_row, first_col, last_row - first_row, last_col - first_col};
-  PadReference<S, Scattering> pad{reference.rows, reference.cols, area, camera, {}};
+  PadReference<S, Scattering, Heights> pad{reference.rows, reference.cols, area, camera, {}};
   pad.camera.center_x_px -= static_cast<double>(area.col);
   pad.camera.center_y_px -= static_cast<double>(area.row);
   pad.reference.rows = area.rows;
