@@ -64,7 +64,7 @@ struct Bench {
     using Long = long double;
     const Camera<Long> exact = make_camera<Long>();
     add(
-        "ray_at_pixel", "1",
+        "ray_at_pixel", "k",
         [](const auto& c, S row, S col, S) { return ray_at_pixel(c, row, col); },
         [=](const Ray<S>& ray, S row, S col, S) {
           const auto truth = ray_at_pixel(exact, Long(row), Long(col));

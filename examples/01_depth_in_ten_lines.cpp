@@ -9,8 +9,13 @@
 #include "fingerpad/adapt/opencv.hpp"
 #include "fingerpad/depth.hpp"
 
-using fingerpad::channel;
-constexpr int green = 1, red = 2;  // OpenCV reads colours as blue, green, red
+// Channels as views, without a copy; OpenCV reads colours as blue, green, red.
+static auto green_of(const cv::Mat& image) {
+  return fingerpad::channel<std::uint8_t>(image, 1);
+}
+static auto red_of(const cv::Mat& image) {
+  return fingerpad::channel<std::uint8_t>(image, 2);
+}
 
 int main(int argc, char** argv) {
   const std::string recording = argc > 1 ? argv[1] : FINGERPAD_EXAMPLE_RECORDING;
@@ -24,14 +29,12 @@ int main(int argc, char** argv) {
 
   const fingerpad::Camera<double> camera{.center_x_px = 239.5, .center_y_px = 239.5};
   const fingerpad::Absorption<double> fluid;  // the published fluid
-  const auto reference = fingerpad::fit_reference(camera, fluid, channel<std::uint8_t>(pad, red),
-                                                  channel<std::uint8_t>(pad, green), shape);
+  const auto reference = fit_reference(camera, fluid, red_of(pad), green_of(pad), shape);
   const fingerpad::DepthEstimator estimate(camera, fluid, reference);
   auto workspace = estimate.workspace<std::uint8_t>();  // the last memory that is taken
 
   cv::Mat1f depth_mm(frame.size());
-  const auto result = estimate(channel<std::uint8_t>(frame, red),
-                               channel<std::uint8_t>(frame, green), depth_mm, workspace);
+  const auto result = estimate(red_of(frame), green_of(frame), depth_mm, workspace);
 
   const float center = depth_mm(240, 240);
   std::printf("%td of %td pixels have a depth; %.2f mm at the centre, %.2f mm in the free pad\n",

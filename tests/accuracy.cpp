@@ -106,7 +106,9 @@ class Scene {
   }
 
   /// Membrane darker toward the rim, dots of 0.6 mm every 1.5 mm.
-  Frame<std::uint8_t> frame(const Image<double>& depth, std::uint64_t seed, double noise = 1) const {
+  Frame<std::uint8_t> frame(const Image<double>& depth,
+                            std::uint64_t seed,
+                            double noise = 1) const {
     Frame<std::uint8_t> frame(pad_.rows, pad_.cols, 3);
     test::Random random(seed);
     for (Index i = 0; i < pad_.rows; ++i) {
@@ -206,7 +208,7 @@ TEST_CASE("depth of noisy frames of finite-element membranes", "[accuracy]") {
   const auto reference = scene.reference(free);
   const auto check = [](const Error& error, const Error& bound) {
     INFO("mean absolute error within 14 mm: " << error.inner_mm
-                                               << ", within 17.5 mm: " << error.outer_mm);
+                                              << ", within 17.5 mm: " << error.outer_mm);
     CHECK(error.inner_mm <= bound.inner_mm);
     CHECK(error.outer_mm <= bound.outer_mm);
   };

@@ -4,7 +4,7 @@
 """Google Benchmark JSON (files, or standard input) to Markdown tables of speed against error.
 
 One table for each group of rows ("group/row"). A time is the least CPU time of all repetitions;
-ratios are to the first row of the table and to its rows called "streaming", within one run.
+ratios are to the first row of the table and to its rows called "streaming", of the same run.
 """
 import json
 import sys
@@ -28,20 +28,25 @@ def rows_of(run):
 
 
 def error_text(errors):
-    return ", ".join(f"{value:.2g} {key.rsplit('_', 1)[1]} ({key.split('_')[0]})" if "_error_" in key
-                     else f"{100 * value:.4g} % {key.rsplit('_', 1)[1]}"
-                     for key, value in errors.items())
+    """max_error_mm = 1e-5 reads "max 1e-05 mm", share_found = 0.9 reads "90 % found"."""
+    parts = []
+    for key, value in errors.items():
+        kind, *_, last = key.split("_")
+        parts.append(f"{100 * value:.4g} % {last}" if kind == "share" else f"{kind} {value:.2g} {last}")
+    return ", ".join(parts)
 
 
 def print_group(group, rows):
-    against = [name for k, name in enumerate(rows) if k == 0 or name.startswith("streaming")]
+    first = next(iter(rows))
+    streams = [name for name in rows if name.startswith("streaming")]
     print(f"\n**{group}**\n")
-    print("| | ms | ns/pixel | error |" + "".join(f" time of {name} over its own |" for name in against))
-    print("|---|--:|--:|--:|" + "--:|" * len(against))
+    print(f"| | ms | ns/pixel | error | faster than {first} |"
+          + "".join(f" time over {name} |" for name in streams))
+    print("|---|--:|--:|--:|--:|" + "--:|" * len(streams))
     for name, (seconds, pixels, errors) in rows.items():
-        ratios = (rows[other][0] / seconds for other in against)
-        print(f"| {name} | {seconds * 1e3:.3f} | {seconds / pixels * 1e9:.3f} | {error_text(errors)} |"
-              + "".join(f" {ratio:.3g} |" for ratio in ratios))
+        print(f"| {name} | {seconds * 1e3:.3f} | {seconds / pixels * 1e9:.3f} | {error_text(errors)}"
+              f" | {rows[first][0] / seconds:.3g} |"
+              + "".join(f" {seconds / rows[stream][0]:.3g} |" for stream in streams))
 
 
 def main():

@@ -48,7 +48,8 @@ template <class Array>
 std::vector<Point> points_of(const Array& array, std::size_t step) {
   std::vector<Point> points;
   for (std::size_t i = 0; i < array.shape(1); ++i) {
-    points.push_back({array(step, i, 0), array(step, i, 1), array(step, i, 2)});
+    const auto at = [&](std::size_t axis) { return static_cast<double>(array(step, i, axis)); };
+    points.push_back({at(0), at(1), at(2)});
   }
   return points;
 }
@@ -228,11 +229,11 @@ Sight look(const fingerpad::Camera<double>& camera,
   sight.upright = cv::Mat_<float>(rays.size(), 1.0F);
   sight.on_dot = cv::Mat_<uchar>(rays.size(), uchar{0});
   const std::vector<Point> normals = node_normals(triangles, step.nodes);
-  for (const auto& [a, b, c] : triangles) {
+  for (const std::array<int, 3>& corners : triangles) {
     const auto pick = [&](const std::vector<Point>& from) {
-      return std::array<Point, 3>{from[static_cast<std::size_t>(a)],
-                                  from[static_cast<std::size_t>(b)],
-                                  from[static_cast<std::size_t>(c)]};
+      return std::array<Point, 3>{from[static_cast<std::size_t>(corners[0])],
+                                  from[static_cast<std::size_t>(corners[1])],
+                                  from[static_cast<std::size_t>(corners[2])]};
     };
     meet_triangle(rays, pick(step.nodes), pick(normals), sight);
   }

@@ -19,7 +19,8 @@ constexpr int green = 1;  // OpenCV stores blue, green, red
 constexpr int red = 2;
 
 auto reference_of(const Recording& recording) {
-  const auto& [camera, absorption] = std::tie(recording.sensor.camera, recording.sensor.absorption);
+  const auto& camera = recording.sensor.camera;
+  const auto& absorption = recording.sensor.absorption;
   const cv::Mat& frame = recording.reference;
   const cv::Mat_<float>& depth = recording.reference_depth;
   if (frame.depth() == CV_16U) {

@@ -28,13 +28,13 @@ int main(int argc, char** argv) {
                "also write depth/NNNNNN.tiff: 32-bit float, mm, NaN: invalid");
   app.add_option_function<std::string>(
          "--smoothing", [&](const std::string& name) { options.smoothing = policies.at(name); },
-         "none, box, bias-free or anchored; by default anchored over the recording's smoothing_px, "
-         "and none where it has no smoothing_px")
+         "none, box, bias-free or anchored (default; none without smoothing_px)")
       ->check(CLI::IsMember({"none", "box", "bias-free", "anchored"}))
       ->option_text("POLICY");
   app.add_option("--frames", frames, "only frames A to B-1, counted from 0; A or B may be left out")
       ->option_text("A:B");
-  app.add_flag("!--no-pictures", options.pictures, "write no pictures");
+  app.add_flag_callback(
+      "--no-pictures", [&] { options.pictures = false; }, "write no pictures");
   app.footer("Exit status: 0 done, 1 something in the files, 2 wrong arguments.");
   try {
     app.parse(argc, argv);

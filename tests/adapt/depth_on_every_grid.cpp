@@ -126,8 +126,8 @@ cv::Mat interleaved(const Frame<Pixel>& frame, int channels) {
 
 }  // namespace
 
-TEMPLATE_TEST_CASE("a frame is read from every grid", "[adapt][depth]", std::uint8_t, std::uint16_t,
-                   float) {
+TEMPLATE_TEST_CASE(
+    "a frame is read from every grid", "[adapt][depth]", std::uint8_t, std::uint16_t, float) {
   using Pixel = TestType;
   Case<Pixel, Anchored<BiasFreeMean>> c;
   const Index rows = c.pad.rows;
@@ -140,8 +140,8 @@ TEMPLATE_TEST_CASE("a frame is read from every grid", "[adapt][depth]", std::uin
   CHECK(c.reads_filled(RowMajor<Pixel>(rows, cols), RowMajor<Pixel>(rows, cols)));
   CHECK(c.reads_filled(ColMajor<Pixel>(rows, cols), ColMajor<Pixel>(rows, cols)));
   CHECK(c.reads_filled(cv::Mat_<Pixel>(r, k), cv::Mat_<Pixel>(r, k)));
-  CHECK(c.reads_filled(test::ForeignImage<Pixel>(rows, cols),
-                       test::ForeignImage<Pixel>(rows, cols)));
+  CHECK(
+      c.reads_filled(test::ForeignImage<Pixel>(rows, cols), test::ForeignImage<Pixel>(rows, cols)));
   using Tensor = xt::xtensor<Pixel, 2>;
   const std::array<std::size_t, 2> shape = {static_cast<std::size_t>(rows),
                                             static_cast<std::size_t>(cols)};
@@ -155,8 +155,8 @@ TEMPLATE_TEST_CASE("a frame is read from every grid", "[adapt][depth]", std::uin
   }
 
   using Span = test::TestMdspan<const Pixel>;
-  const auto mapping = test::LayoutStride::right(static_cast<test::MdIndex>(rows),
-                                                 static_cast<test::MdIndex>(cols));
+  const auto mapping =
+      test::LayoutStride::right(static_cast<test::MdIndex>(rows), static_cast<test::MdIndex>(cols));
   CHECK(c.reads(Span(red.cells.data(), mapping), Span(green.cells.data(), mapping)));
 
   // stored upside down and back to front, with space between
@@ -210,14 +210,15 @@ TEST_CASE("depth and status are written into every grid", "[adapt][depth]") {
   CHECK(c.writes(channel<float>(pairs, 1), status));
   std::vector<float> memory(static_cast<std::size_t>(rows * cols));
   std::vector<PixelStatus> states(memory.size());
-  const auto mapping = test::LayoutStride::left(static_cast<test::MdIndex>(rows),
-                                                static_cast<test::MdIndex>(cols));
+  const auto mapping =
+      test::LayoutStride::left(static_cast<test::MdIndex>(rows), static_cast<test::MdIndex>(cols));
   CHECK(c.writes(test::TestMdspan<float>(memory.data(), mapping),
                  test::TestMdspan<PixelStatus>(states.data(), mapping)));
   CHECK(c.writes(StridedView<float>(&memory.back(), rows, cols, -cols, -1), status));
-  CHECK(c.writes(LazyView(rows, cols, [&](Index i, Index j) -> float& {
-                   return memory[static_cast<std::size_t>(i * cols + j)];
-                 }),
+  CHECK(c.writes(LazyView(rows, cols,
+                          [&](Index i, Index j) -> float& {
+                            return memory[static_cast<std::size_t>(i * cols + j)];
+                          }),
                  status));
   ColMajor<float> wide(rows + 4, cols + 6);
   CHECK(c.writes(wide.block(1, 2, rows, cols), status));

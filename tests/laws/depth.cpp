@@ -21,8 +21,8 @@ namespace {
 
 namespace bound_mm {
 constexpr double bisection = 18.0 / 32768 + 1e-9;  // its half-width, 16 halvings of 18 mm
-constexpr double newton = 1e-10;      // roundoff of g, of the rays and of the colours
-constexpr double polynomial = 1e-9;   // degree 10 in double; wider cameras need more powers of u
+constexpr double newton = 1e-10;                   // roundoff of g, of the rays and of the colours
+constexpr double polynomial = 1e-9;  // degree 10 in double; wider cameras need more powers of u
 // Single floats of up to 60 grey levels (3.8e-6 apart) where F rises by more than 1 level per mm.
 constexpr double single = 2e-4;
 constexpr double anchored_8_bit = 1e-3;  // 1/128 of a grey level: residuals are stored so
@@ -131,15 +131,14 @@ TEMPLATE_TEST_CASE("what the forward model shows, the inverse finds",
                    (Way<Newton<>, double, SingleHeight>),
                    (Way<Newton<>, float>),
                    (Way<ExponentialFree<>, float>),
-                   (Way<ExponentialFree<9, 10>, double, SingleHeight>)) {
+                   (Way<ExponentialFree<9, 10, 8>, double, SingleHeight>)) {
   rc::prop("on random sensors, with printed dots", [] {
     using S = typename TestType::scalar;
     using Heights = typename TestType::heights;
     const Pad pad = any_pad();
     const auto depth = pad.pressed_depths(test::uniform(0, 5));
     const auto frame = pad.frame<S, Heights>(depth);
-    const auto estimator =
-        pad.estimator<NoSmoothing, typename TestType::inverse, S, Heights>();
+    const auto estimator = pad.estimator<NoSmoothing, typename TestType::inverse, S, Heights>();
     const auto e = test::estimate<S>(estimator, frame);
     RC_ASSERT(test::largest_error(e.depth_mm, depth) <= TestType::bound());
     RC_ASSERT(e.result.valid_pixels() == e.result.pad_pixels);
@@ -150,7 +149,7 @@ TEMPLATE_TEST_CASE("the membrane's brightness does not matter",
                    "[depth][law]",
                    (Way<Bisection, double>),
                    (Way<Newton<>, double>),
-                   (Way<ExponentialFree<9, 10>, double>)) {
+                   (Way<ExponentialFree<9, 10, 8>, double>)) {
   rc::prop("pixel by pixel", [] {
     const Pad pad = any_pad();
     const auto depth = pad.pressed_depths(test::uniform(0, 5));
@@ -224,8 +223,7 @@ TEMPLATE_TEST_CASE("more red is deeper, more green is less deep",
   rc::prop("at every pixel", [] {
     using S = typename TestType::scalar;
     const Pad pad = any_pad();
-    const auto estimator =
-        pad.estimator<NoSmoothing, typename TestType::inverse, S>();
+    const auto estimator = pad.estimator<NoSmoothing, typename TestType::inverse, S>();
     const auto frame = pad.frame<S>(pad.pressed_depths(test::uniform(0, 5)));
     auto redder = frame;
     auto greener = frame;

@@ -62,10 +62,9 @@ bool same_bits(const T& a, const T& b) {
 }
 template <class T>
 bool same_bits(const Image<T>& a, const Image<T>& b) {
-  return a.width == b.width && std::equal(a.cells.begin(), a.cells.end(), b.cells.begin(),
-                                          b.cells.end(), [](const T& x, const T& y) {
-                                            return same_bits(x, y);
-                                          });
+  return a.width == b.width &&
+         std::equal(a.cells.begin(), a.cells.end(), b.cells.begin(), b.cells.end(),
+                    [](const T& x, const T& y) { return same_bits(x, y); });
 }
 
 /// Bits at random, the same on every machine and in every run.
@@ -158,8 +157,8 @@ struct Pad {
     const double z0 = height_mm - sphere_radius_mm;
     const double a = 1 + r.tan_fluid * r.tan_fluid;
     const double b = z0 - r.plate_rho_mm * r.tan_fluid;
-    const double c = r.plate_rho_mm * r.plate_rho_mm + z0 * z0 -
-                     sphere_radius_mm * sphere_radius_mm;
+    const double c =
+        r.plate_rho_mm * r.plate_rho_mm + z0 * z0 - sphere_radius_mm * sphere_radius_mm;
     return (b + std::sqrt(b * b - a * c)) / a;
   }
   /// The same under a flat plate `press_mm` below the top.
@@ -196,7 +195,9 @@ struct Pad {
 
   /// The frame of a membrane at these depths, black outside, with noise of so many grey levels.
   template <class Pixel, class Heights = fingerpad::AstigmaticHeights>
-  Frame<Pixel> frame(const Image<double>& depth_mm, double noise = 0, std::uint64_t seed = 1) const {
+  Frame<Pixel> frame(const Image<double>& depth_mm,
+                     double noise = 0,
+                     std::uint64_t seed = 1) const {
     Frame<Pixel> frame(rows, cols);
     Random random(seed);
     for (Index i = 0; i < rows; ++i) {
@@ -213,9 +214,7 @@ struct Pad {
   }
 
   /// What fit_reference() makes of a frame of the free pad without noise.
-  template <class S,
-            class Fit = fingerpad::RadialFit,
-            class Heights = fingerpad::AstigmaticHeights>
+  template <class S, class Fit = fingerpad::RadialFit, class Heights = fingerpad::AstigmaticHeights>
   auto reference(const fingerpad::GreyScale& scale = {}) const {
     const Image<double> depth = free_depths();
     const auto free = frame<double, Heights>(depth);
@@ -223,10 +222,7 @@ struct Pad {
                                                      scale);
   }
 
-  template <class Smoothing,
-            class Inverse,
-            class S,
-            class Heights = fingerpad::AstigmaticHeights>
+  template <class Smoothing, class Inverse, class S, class Heights = fingerpad::AstigmaticHeights>
   auto estimator(Smoothing smoothing = {}, Inverse inverse = {}) const {
     return fingerpad::DepthEstimator<Smoothing, Inverse, Heights, S>(
         camera, fluid, reference<S, fingerpad::RadialFit, Heights>(), smoothing, inverse);

@@ -33,20 +33,48 @@ void* take(std::size_t size, std::size_t alignment) {
 constexpr std::size_t plain = alignof(std::max_align_t);
 }  // namespace
 
-void* operator new(std::size_t size) { return take(size, plain); }
-void* operator new[](std::size_t size) { return take(size, plain); }
-void* operator new(std::size_t size, std::align_val_t a) { return take(size, std::size_t(a)); }
-void* operator new[](std::size_t size, std::align_val_t a) { return take(size, std::size_t(a)); }
-void* operator new(std::size_t size, const std::nothrow_t&) noexcept { return take(size, plain); }
-void* operator new[](std::size_t size, const std::nothrow_t&) noexcept { return take(size, plain); }
-void operator delete(void* p) noexcept { give_back(p); }
-void operator delete[](void* p) noexcept { give_back(p); }
-void operator delete(void* p, std::size_t) noexcept { give_back(p); }
-void operator delete[](void* p, std::size_t) noexcept { give_back(p); }
-void operator delete(void* p, std::align_val_t) noexcept { give_back(p); }
-void operator delete[](void* p, std::align_val_t) noexcept { give_back(p); }
-void operator delete(void* p, std::size_t, std::align_val_t) noexcept { give_back(p); }
-void operator delete[](void* p, std::size_t, std::align_val_t) noexcept { give_back(p); }
+void* operator new(std::size_t size) {
+  return take(size, plain);
+}
+void* operator new[](std::size_t size) {
+  return take(size, plain);
+}
+void* operator new(std::size_t size, std::align_val_t a) {
+  return take(size, std::size_t(a));
+}
+void* operator new[](std::size_t size, std::align_val_t a) {
+  return take(size, std::size_t(a));
+}
+void* operator new(std::size_t size, const std::nothrow_t&) noexcept {
+  return take(size, plain);
+}
+void* operator new[](std::size_t size, const std::nothrow_t&) noexcept {
+  return take(size, plain);
+}
+void operator delete(void* p) noexcept {
+  give_back(p);
+}
+void operator delete[](void* p) noexcept {
+  give_back(p);
+}
+void operator delete(void* p, std::size_t) noexcept {
+  give_back(p);
+}
+void operator delete[](void* p, std::size_t) noexcept {
+  give_back(p);
+}
+void operator delete(void* p, std::align_val_t) noexcept {
+  give_back(p);
+}
+void operator delete[](void* p, std::align_val_t) noexcept {
+  give_back(p);
+}
+void operator delete(void* p, std::size_t, std::align_val_t) noexcept {
+  give_back(p);
+}
+void operator delete[](void* p, std::size_t, std::align_val_t) noexcept {
+  give_back(p);
+}
 
 namespace {
 
@@ -82,7 +110,7 @@ TEMPLATE_TEST_CASE("no frame takes memory",
                    (Step<Anchored<BiasFreeMean>, ExponentialFree<>, std::uint8_t, float>),
                    (Step<Anchored<BiasFreeMean>, ExponentialFree<>, float, float>),
                    (Step<BiasFreeMean, Newton<Start::previous_frame>, double, double>),
-                   (Step<BoxMean, ExponentialFree<9, 12>, std::uint8_t, double>)) {
+                   (Step<BoxMean, ExponentialFree<9, 12, 8>, std::uint8_t, double>)) {
   using S = typename TestType::scalar;
   using Pixel = typename TestType::pixel;
   const Pad pad;
