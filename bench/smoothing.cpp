@@ -71,8 +71,7 @@ struct Bench {
       setup->in_pad.push_back(is_finite(l) ? 1 : 0);
     }
     if constexpr (detail::is_anchored<Smoothing>) {
-      setup->anchor =
-          detail::anchor_of<AstigmaticHeights>(scene.pad.camera, scene.pad.fluid, reference);
+      setup->anchor = detail::anchor_of(scene.pad.camera, scene.pad.fluid, reference);
     }
     using Rows = detail::ColourRows<Pixel, float, Smoothing>;
     const auto rows = std::make_shared<Rows>(*setup, Smoothing(), grey_scale_of<Pixel>());

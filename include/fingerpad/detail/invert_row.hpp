@@ -28,7 +28,9 @@ bool any(const Mask& mask) noexcept {
   std::uint64_t words[sizeof(Mask) / 8];
   std::memcpy(words, &mask, sizeof mask);
   std::uint64_t found = 0;
-  for (const std::uint64_t word : words) found |= word;
+  for (const std::uint64_t word : words) {
+    found |= word;
+  }
   return found != 0;
 }
 
@@ -46,15 +48,18 @@ template <int Order, std::size_t Degree, class V>
     V value = f[Degree - 1] * s + f[Degree - 2];
     slope = slope * s + value;
     for (int j = int(Degree) - 3; j >= 0; --j) {
-      if constexpr (is_halley) bend = bend * s + slope;
+      if constexpr (is_halley) {
+        bend = bend * s + slope;
+      }
       value = value * s + f[j];
       slope = slope * s + value;
     }
     value = value * s - target;
-    if constexpr (is_halley)
+    if constexpr (is_halley) {
       return refine<Order / 3>(f, target, s - value * slope / (slope * slope - value * bend));
-    else
+    } else {
       return refine<Order / 2>(f, target, s - value / slope);
+    }
   }
 }
 
@@ -74,8 +79,9 @@ void write_status(const Scalar* depth_mm, std::uint8_t* status) noexcept {
   std::uint8_t code[Count];
   std::memcpy(bits, depth_mm, sizeof bits);
   constexpr Bits infinity = std::bit_cast<Bits>(std::numeric_limits<Scalar>::infinity());
-  for (std::size_t i = 0; i < Count; ++i)
+  for (std::size_t i = 0; i < Count; ++i) {
     code[i] = std::uint8_t((bits[i] & ~Bits(0) >> 1) > infinity ? 3 - (bits[i] & 3) : 0);
+  }
   std::memcpy(status, code, sizeof code);
 }
 
@@ -91,16 +97,21 @@ template <int Order, class Table, class V, class Gain>
 #pragma GCC unroll 16
   for (int j = int(degree) - 1; j >= 0; --j) {
     f[j] = polynomial(table.scatter[j], Table::scatter_radial(j), u);
-    if constexpr (has_gain) f[j] = f[j] * gain;
-    if (j < Table::exp_degree)
+    if constexpr (has_gain) {
+      f[j] = f[j] * gain;
+    }
+    if (j < Table::exp_degree) {
       f[j] = f[j] + green * polynomial(table.exp_minus_1[j], Table::exp_radial(j), u);
+    }
     total = j == int(degree) - 1 ? f[j] : total + f[j];
   }
   const V target = table.kappa * red - green;
   const V scaled = target * total;
   const V s = refine<Order>(f, target, scaled / (f[0] * (total - target) + scaled));
   auto inside = (target >= Scalar(0)) & (target <= total);
-  if constexpr (has_gain) inside = inside & (gain > Scalar(0));
+  if constexpr (has_gain) {
+    inside = inside & (gain > Scalar(0));
+  }
   const V nan = V{} + nan_because<Scalar>(PixelStatus::not_a_number);
   const V below = V{} + nan_because<Scalar>(PixelStatus::below_range);
   const V above = V{} + nan_because<Scalar>(PixelStatus::above_range);
@@ -117,7 +128,9 @@ template <class Table>
 ColumnSpan covered_columns(const Table& table, std::ptrdiff_t row, std::ptrdiff_t cols) noexcept {
   const double scale = double(table.u_root_per_px);
   const double dy = (double(row) - double(table.center_row_px)) * scale;
-  if (!(dy * dy <= 1)) return {0, 0};
+  if (!(dy * dy <= 1)) {
+    return {0, 0};
+  }
   const double half_px = std::sqrt(1 - dy * dy) / scale;
   const auto clamp = [&](double col) {
     return col > 0 ? col < double(cols) ? std::ptrdiff_t(col) : cols : std::ptrdiff_t(0);
@@ -155,7 +168,9 @@ void invert_row(const Table& table,
 
   V ramp = {};
   Scalar steps[std::size_t(width)];
-  for (int i = 0; i < width; ++i) steps[i] = Scalar(i) - local.center_col_px;
+  for (int i = 0; i < width; ++i) {
+    steps[i] = Scalar(i) - local.center_col_px;
+  }
   std::memcpy(&ramp, steps, sizeof ramp);
   const Scalar dy = (Scalar(row) - local.center_row_px) * local.u_root_per_px;
   const Scalar dy_sq = dy * dy;
@@ -166,13 +181,17 @@ void invert_row(const Table& table,
     const Scalar* r = red + first;
     const Scalar* b = green + first;
     const Scalar* g = nullptr;
-    if constexpr (has_gain) g = gain + first;
+    if constexpr (has_gain) {
+      g = gain + first;
+    }
     Scalar* d = depth_mm + first;
     if (count < block) {
       std::memset(spare, 0, sizeof spare);
       r = static_cast<const Scalar*>(std::memcpy(spare[0], r, bytes));
       b = static_cast<const Scalar*>(std::memcpy(spare[1], b, bytes));
-      if constexpr (has_gain) g = static_cast<const Scalar*>(std::memcpy(spare[2], g, bytes));
+      if constexpr (has_gain) {
+        g = static_cast<const Scalar*>(std::memcpy(spare[2], g, bytes));
+      }
       d = spare[3];
     }
     auto bad = V{} != V{};
@@ -180,12 +199,13 @@ void invert_row(const Table& table,
       const V dx = (ramp + Scalar(first + i)) * local.u_root_per_px;
       const V u = dx * dx + dy_sq;
       V l;
-      if constexpr (has_gain)
+      if constexpr (has_gain) {
         l = invert<Order>(local, u, load_cells<V, Scalar>(r + i), load_cells<V, Scalar>(b + i),
                           load_cells<V, Scalar>(g + i));
-      else
+      } else {
         l = invert<Order>(local, u, load_cells<V, Scalar>(r + i), load_cells<V, Scalar>(b + i),
                           nullptr);
+      }
       bad = bad | (l != l);
       std::memcpy(d + i, &l, sizeof l);
     }
@@ -195,7 +215,9 @@ void invert_row(const Table& table,
       std::uint8_t code[std::size_t(block)];
       write_status<block>(d, code);
       std::memcpy(status + first, code, std::size_t(count));
-      if (count < block) std::memcpy(depth_mm + first, d, bytes);
+      if (count < block) {
+        std::memcpy(depth_mm + first, d, bytes);
+      }
     }
   }
 }

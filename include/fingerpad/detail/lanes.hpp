@@ -169,7 +169,9 @@ inline void running_sum_row(const In* in, Lane* out, std::ptrdiff_t n, std::ptrd
       carry += last_everywhere(local, order);
     }
   }
-  for (std::ptrdiff_t i = n; i < n + tail; i += N) store(out + i, carry);
+  for (std::ptrdiff_t i = n; i < n + tail; i += N) {
+    store(out + i, carry);
+  }
 }
 #endif
 

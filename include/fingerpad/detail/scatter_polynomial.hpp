@@ -62,19 +62,27 @@ void project(const Function& f, const Radial& radial, Scalar (&c)[Rows][Cols]) {
   const auto angle = [](int i, int n) { return std::numbers::pi * (i + 0.5) / n; };
   const auto node = [&](int i, int n) { return 0.5 + 0.5 * std::cos(angle(i, n)); };
   double rest[Rows + 8][Cols + 8];
-  for (int i = 0; i < num_s; ++i)
-    for (int a = 0; a < num_u; ++a) rest[i][a] = f(node(i, num_s), node(a, num_u));
-  for (int j = int(Rows) - 1; j >= 0; --j)
+  for (int i = 0; i < num_s; ++i) {
+    for (int a = 0; a < num_u; ++a) {
+      rest[i][a] = f(node(i, num_s), node(a, num_u));
+    }
+  }
+  for (int j = int(Rows) - 1; j >= 0; --j) {
     for (int p = radial(j); p >= 0; --p) {
       double sum = 0;
-      for (int i = 0; i < num_s; ++i)
-        for (int a = 0; a < num_u; ++a)
+      for (int i = 0; i < num_s; ++i) {
+        for (int a = 0; a < num_u; ++a) {
           sum += rest[i][a] * std::cos(j * angle(i, num_s)) * std::cos(p * angle(a, num_u));
+        }
+      }
       c[j][p] = Scalar(std::ldexp(sum / (num_s * num_u), 2 * (j + p)));  // T_n leads with 2^{2n-1}
-      for (int i = 0; i < num_s; ++i)
-        for (int a = 0; a < num_u; ++a)
+      for (int i = 0; i < num_s; ++i) {
+        for (int a = 0; a < num_u; ++a) {
           rest[i][a] -= double(c[j][p]) * std::pow(node(i, num_s), j) * std::pow(node(a, num_u), p);
+        }
+      }
     }
+  }
 }
 
 /// Builds the table. `w_over_l(l_mm, rho_mm)` is W(l) / l, times g(rho) when no gain plane is used;
@@ -105,7 +113,9 @@ template <class V, class Scalar>
 [[gnu::always_inline]] inline V polynomial(const Scalar* c, int last, V u) noexcept {
   using Coefficient = std::conditional_t<std::is_floating_point_v<V>, V, Scalar>;
   V sum = V{} + Coefficient(c[last]);
-  for (int p = last - 1; p >= 0; --p) sum = sum * u + Coefficient(c[p]);
+  for (int p = last - 1; p >= 0; --p) {
+    sum = sum * u + Coefficient(c[p]);
+  }
   return sum;
 }
 
@@ -130,7 +140,7 @@ double error_bound_mm(const Table& table,
     return value * s;
   };
   double bound = 0;
-  for (int a = 0; a <= num_u; ++a)
+  for (int a = 0; a <= num_u; ++a) {
     for (int i = 1; i <= num_s; ++i) {
       const double s = double(i) / num_s, u = double(a) / num_u;
       const double l = domain.l_max_mm * s, rho = domain.rho_max_mm * std::sqrt(u);
@@ -140,6 +150,7 @@ double error_bound_mm(const Table& table,
       const double miss = gain * std::abs(w) + green_max * std::abs(e);
       bound = (std::max)(bound, domain.l_max_mm * miss / (gain * w_slope));
     }
+  }
   return bound;
 }
 }  // namespace detail

@@ -59,8 +59,12 @@ void load_interleaved_row(
       }
       planes = riffle(riffle(riffle(riffle(planes, all), all), all), all);
       for (std::size_t c = 0; c < C; ++c) {
-        if (int(c) == red_offset) store(red + i, planes[c]);
-        if (int(c) == green_offset) store(green + i, planes[c]);
+        if (int(c) == red_offset) {
+          store(red + i, planes[c]);
+        }
+        if (int(c) == green_offset) {
+          store(green + i, planes[c]);
+        }
       }
     }
   }

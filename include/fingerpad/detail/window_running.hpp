@@ -54,7 +54,9 @@ class RunningWindowSums {
     for (Index row = next_row_ - radius_.back(); row < next_row_ + radius_.back(); ++row) {
       take_in(row, load_row);
     }
-    while (next_row_ < first_row) slide(load_row);
+    while (next_row_ < first_row) {
+      slide(load_row);
+    }
   }
 
   Index next_row() const { return next_row_; }
@@ -63,7 +65,9 @@ class RunningWindowSums {
   template <row_source<Pixel> Load>
   void advance(Load&& load_row, const MeanRows<Mean> (&out)[std::size_t(Windows)]) {
     slide(load_row);
-    for (std::size_t k = 0; k < sums_.size(); ++k) average(k, out[k]);
+    for (std::size_t k = 0; k < sums_.size(); ++k) {
+      average(k, out[k]);
+    }
   }
 
  private:
@@ -89,7 +93,9 @@ class RunningWindowSums {
 
   template <class Load>
   void take_in(Index row, Load& load_row) {
-    if (!in_image(row)) return;
+    if (!in_image(row)) {
+      return;
+    }
     Row& to = slot(row);
     if constexpr (masked_row_source<Load, Pixel>) {
       load_row(row, to.red.data(), to.green.data(), to.valid.data());
@@ -100,7 +106,9 @@ class RunningWindowSums {
       const bool inside = !masked_row_source<Load, Pixel> || to.valid[j] != 0;
       const bool valid = inside && counts(to.red[j]) && counts(to.green[j]);
       to.valid[j] = valid;
-      if (!valid) to.red[j] = to.green[j] = Pixel(0);
+      if (!valid) {
+        to.red[j] = to.green[j] = Pixel(0);
+      }
     }
   }
 
@@ -118,12 +126,16 @@ class RunningWindowSums {
       sums_[k].red.assign(size(), Sum(0));
       sums_[k].green.assign(size(), Sum(0));
       sums_[k].count.assign(size(), 0);
-      for (Index i = row - r; i <= row + r; ++i) add_row(sums_[k], i);
+      for (Index i = row - r; i <= row + r; ++i) {
+        add_row(sums_[k], i);
+      }
     }
   }
 
   void add_row(ColumnSums& sums, Index row) {
-    if (!in_image(row)) return;
+    if (!in_image(row)) {
+      return;
+    }
     const Row& from = slot(row);
     for (std::size_t j = 0; j < size(); ++j) {
       sums.red[j] += Sum(from.red[j]);
@@ -133,7 +145,9 @@ class RunningWindowSums {
   }
 
   void subtract_row(ColumnSums& sums, Index row) {
-    if (!in_image(row)) return;
+    if (!in_image(row)) {
+      return;
+    }
     const Row& from = slot(row);
     for (std::size_t j = 0; j < size(); ++j) {
       sums.red[j] -= Sum(from.red[j]);
@@ -160,10 +174,16 @@ class RunningWindowSums {
         green -= sums.green[past];
         count -= sums.count[past];
       }
-      if (j < 0) continue;
+      if (j < 0) {
+        continue;
+      }
       out.red[j] = mean(red, std::uint16_t(count));
-      if (k < green_windows_) out.green[j] = mean(green, std::uint16_t(count));
-      if (out.count != nullptr) out.count[j] = std::uint16_t(count);
+      if (k < green_windows_) {
+        out.green[j] = mean(green, std::uint16_t(count));
+      }
+      if (out.count != nullptr) {
+        out.count[j] = std::uint16_t(count);
+      }
     }
   }
 

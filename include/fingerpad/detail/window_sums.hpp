@@ -19,8 +19,8 @@
 #include <concepts>
 #include <cstdint>
 
-#include "fingerpad/detail/window_interleaved.hpp"
 #include "fingerpad/detail/lanes.hpp"
+#include "fingerpad/detail/window_interleaved.hpp"
 #include "fingerpad/detail/window_running.hpp"
 #if defined(FINGERPAD_HAS_VECTORS)
 #include "fingerpad/detail/window_vector.hpp"

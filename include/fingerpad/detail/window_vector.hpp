@@ -17,6 +17,7 @@
 
 #include "fingerpad/detail/lanes.hpp"
 #include "fingerpad/detail/line_vector.hpp"
+#include "fingerpad/detail/window_cover.hpp"
 #include "fingerpad/detail/window_rows.hpp"
 
 namespace fingerpad {
@@ -66,14 +67,18 @@ class VectorWindowSums {
   void start(Index first_row, Load&& load_row) {
     next_row_ = first_row;
     const Index r_max = radius_.back();
-    for (Index row = first_row - r_max; row < first_row + r_max; ++row) take_in(row, load_row);
+    for (Index row = first_row - r_max; row < first_row + r_max; ++row) {
+      take_in(row, load_row);
+    }
     for (std::size_t k = 0; k < sums_.size(); ++k) {
       Sums& sums = sums_[k];
       std::fill(sums.red.begin(), sums.red.end(), 0u);
       std::fill(sums.green.begin(), sums.green.end(), 0u);
       std::fill(sums.count.begin(), sums.count.end(), std::uint16_t(0));
       for (Index row = first_row - radius_[k]; row < first_row + radius_[k]; ++row) {
-        if (in_image(row)) slide<false>(k, slot(row), zero_slot(), {});
+        if (in_image(row)) {
+          slide<false>(k, slot(row), zero_slot(), {});
+        }
       }
     }
     began_ = first_row;
@@ -103,7 +108,6 @@ class VectorWindowSums {
   static constexpr int half = Bytes / 2;  // lanes of counts: two vectors of sums
   using Floats = lanes<float, wide>;
   using Wide = lanes<std::uint32_t, wide>;
-  enum class Cover : std::uint8_t { none, cut, whole };  // what `half` windows hold of valid pixels
 
   bool in_image(Index row) const { return row >= 0 && row < rows_; }
   Index slot(Index row) const { return row % ring_rows_ * pitch_ + margin_; }
@@ -111,7 +115,9 @@ class VectorWindowSums {
 
   template <class Load>
   void take_in(Index row, Load& load_row) {
-    if (!in_image(row)) return;
+    if (!in_image(row)) {
+      return;
+    }
     if constexpr (masked_row_source<Load, Pixel>) {
       load_row(row, red_.data(), green_.data(), valid_.data());
     } else {
@@ -167,7 +173,9 @@ class VectorWindowSums {
       slide_sums<Emit>(k, green_ring_.data(), in, past, sums_[k].green.data(), out.green);
     }
     if constexpr (Emit) {
-      if (out.count != nullptr) std::copy_n(sums_[k].count.data(), cols_, out.count);
+      if (out.count != nullptr) {
+        std::copy_n(sums_[k].count.data(), cols_, out.count);
+      }
     }
   }
 
@@ -187,26 +195,9 @@ class VectorWindowSums {
       const Counts second = load<std::uint16_t, half>(count + j + half) + gain.second - loss.second;
       store(count + j, first);
       store(count + j + half, second);
-      *cover++ = weigh(first, full, weight + j);
-      *cover++ = weigh(second, full, weight + j + half);
+      *cover++ = weigh<half>(first, full, weight + j);
+      *cover++ = weigh<half>(second, full, weight + j + half);
     }
-  }
-
-  /// How `half` windows are covered; weight becomes 1 / n, NaN where n is 0, if n is not uniform.
-  template <class Counts>
-  [[gnu::always_inline]] static Cover weigh(Counts n, Counts full, float* weight) {
-    if (all_zero<std::uint16_t, half>(n ^ full)) return Cover::whole;
-    if (all_zero<std::uint16_t, half>(n)) return Cover::none;
-    const auto counts = widen<std::uint32_t, wide>(n);
-    store(weight, reciprocal(counts.first));
-    store(weight + wide, reciprocal(counts.second));
-    return Cover::cut;
-  }
-  [[gnu::always_inline]] static Floats reciprocal(Wide n) {
-    const Floats count = convert<float, wide>(lanes<std::int32_t, wide>(n));
-    const Floats one = Floats{} + 1.0f;
-    const auto empty = count < one;
-    return choose(empty, Floats{} + not_a_number<float>(), one / choose(empty, one, count));
   }
 
   template <bool Emit>
@@ -223,12 +214,18 @@ class VectorWindowSums {
       if (c == Cover::none) {
         store(sum + j, Wide{});
         store(sum + j + wide, Wide{});
-        if constexpr (Emit) store(to, missing);
-        if constexpr (Emit) store(to + wide, missing);
+        if constexpr (Emit) {
+          store(to, missing);
+        }
+        if constexpr (Emit) {
+          store(to + wide, missing);
+        }
         return;
       }
       const Two<Floats> sums = slide_block(entering, leaving, j, sum + j);
-      if constexpr (!Emit) return;
+      if constexpr (!Emit) {
+        return;
+      }
       if (c == Cover::whole) {
         store(to, sums.first * whole);
         store(to + wide, sums.second * whole);
@@ -238,11 +235,15 @@ class VectorWindowSums {
       }
     };
     Index j = 0;
-    for (; j + half <= cols; j += half) step(j, Emit ? mean + j : nullptr);
+    for (; j + half <= cols; j += half) {
+      step(j, Emit ? mean + j : nullptr);
+    }
     if (j < cols) {
       float rest[std::size_t(half)];
       step(j, rest);
-      if constexpr (Emit) std::copy_n(rest, cols - j, mean + j);
+      if constexpr (Emit) {
+        std::copy_n(rest, cols - j, mean + j);
+      }
     }
   }
 
