@@ -193,6 +193,10 @@ TEST_CASE("a frame of another size is refused and nothing written", "[depth]") {
     CHECK_FALSE(estimator.band(first, last, good.red, good.green, e.depth_mm, e.status, workspace)
                     .accepted);
   }
+  // the workspace of an estimator for another pad
+  auto foreign =
+      fine_pad().estimator<BoxMean, ExponentialFree<>, float>().workspace<std::uint8_t>();
+  CHECK_FALSE(estimator(good.red, good.green, e.depth_mm, e.status, foreign).accepted);
   CHECK(e.depth_mm.cells == untouched.depth_mm.cells);
   CHECK(e.status.cells == untouched.status.cells);
   // and the workspace is none the worse for it

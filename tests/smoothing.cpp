@@ -300,7 +300,8 @@ namespace {
 template <class Pixel, class Mean, class S>
 double free_pad_error(const Pad& pad, int window) {
   const auto estimator =
-      pad.estimator<Anchored<Mean>, ExponentialFree<9, (sizeof(S) > 4 ? 12 : 6), (sizeof(S) > 4 ? 8 : 3)>, S>(
+      pad.estimator<Anchored<Mean>,
+                    ExponentialFree<9, (sizeof(S) > 4 ? 12 : 6), (sizeof(S) > 4 ? 8 : 3)>, S>(
           Anchored<Mean>{{window}});
   const auto depth = pad.free_depths();
   const auto e = test::estimate<S>(estimator, pad.frame<Pixel>(depth));

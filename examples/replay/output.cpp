@@ -57,7 +57,9 @@ fs::path resolved(const fs::path& given) {
 }
 
 fs::path make_sibling(const fs::path& place) {
-  std::string name = (place.parent_path() / ("." + place.filename().string() + ".XXXXXX")).string();
+  std::string hidden = ".";
+  hidden += place.filename().string() + ".XXXXXX";
+  const std::string name = (place.parent_path() / hidden).string();
   std::vector<char> pattern(name.begin(), name.end());
   pattern.push_back('\0');
   if (::mkdtemp(pattern.data()) == nullptr) {

@@ -306,7 +306,8 @@ template <class S, int Order, int Degree, int Radial = 3>
 double worst_of_rows(double max_depth_mm = 18) {
   double worst = 0;
   for (const double delta : deltas) {
-    const RowSolver<ExponentialFree<Order, Degree, Radial>, S> solver(fluid_with(delta, max_depth_mm));
+    const RowSolver<ExponentialFree<Order, Degree, Radial>, S> solver(
+        fluid_with(delta, max_depth_mm));
     worst = (std::max)(worst, (std::max)(solver.worst(), solver.worst(0.4 * brightness)));
   }
   return worst;
