@@ -113,7 +113,7 @@ struct Bench {
   template <class S, class Work>
   void add(const std::string& name, Work work) const {
     const auto depth = std::make_shared<Image<S>>(scene.pad.rows, scene.pad.cols);
-    const auto status = std::make_shared<Image<std::uint8_t>>(scene.pad.rows, scene.pad.cols);
+    const auto status = std::make_shared<Image<PixelStatus>>(scene.pad.rows, scene.pad.cols);
     bench::add(
         scene.name + ", depths up to " + std::to_string(int(scene.pad.fluid.max_depth_mm)) +
             " mm/" + name,
@@ -128,11 +128,11 @@ struct Bench {
   /// find_root(inputs, k) for every pixel k.
   template <class S, class FindRoot>
   void each_pixel(const std::string& name, FindRoot find_root) const {
-    add<S>(name, [=](Planes<S> in, S* depth, std::uint8_t* status) {
+    add<S>(name, [=](Planes<S> in, S* depth, PixelStatus* status) {
       for (std::size_t k = 0; k < in.size; ++k) {
         const DepthRoot<S> root = find_root(in, k);
         depth[k] = root.depth_mm;
-        status[k] = static_cast<std::uint8_t>(root.status);
+        status[k] = root.status;
       }
     });
   }
@@ -142,7 +142,7 @@ struct Bench {
     using Policy = ExponentialFree<Order, Degree, Radial>;
     const detail::DepthRows<Policy, AstigmaticHeights, S, Scattering> rows(
         scene.pad.camera, scene.pad.fluid, reference, Policy());
-    add<S>(name, [=](Planes<S> in, S* depth, std::uint8_t* status) {
+    add<S>(name, [=](Planes<S> in, S* depth, PixelStatus* status) {
       for (Index i = 0; i < reference.rows; ++i) {
         const Index k = i * reference.cols;
         rows.invert(i, reference.cols, in.red + k, in.green + k, depth + k, status + k);
@@ -166,23 +166,23 @@ struct Bench {
   }
 
   void add_baselines() const {
-    add<double>("published bisection, double", [](Planes<double> in, double* depth, std::uint8_t*) {
+    add<double>("published bisection, double", [](Planes<double> in, double* depth, PixelStatus*) {
       for (std::size_t k = 0; k < in.size; ++k) {
         depth[k] = bisection(in.fluid, in.pencils[k], in.g[k], in.colour(k));
       }
     });
     add<float>("streaming pass over two planes",
-               [](Planes<float> in, float* depth, std::uint8_t* status) {
+               [](Planes<float> in, float* depth, PixelStatus* status) {
                  for (std::size_t k = 0; k < in.size; ++k) {
                    depth[k] = in.red[k] + in.green[k];
-                   status[k] = 0;
+                   status[k] = PixelStatus::ok;
                  }
                });
     add<float>("streaming pass over three planes",
-               [](Planes<float> in, float* depth, std::uint8_t* status) {
+               [](Planes<float> in, float* depth, PixelStatus* status) {
                  for (std::size_t k = 0; k < in.size; ++k) {
                    depth[k] = in.red[k] + in.green[k] + in.g[k];
-                   status[k] = 0;
+                   status[k] = PixelStatus::ok;
                  }
                });
   }

@@ -67,7 +67,8 @@ class DepthEstimator {
                        smoothing,
                        inverse) {}
 
-  /// All memory that frames with cells of type Pixel need; one per thread.
+  /// All memory that frames with cells of type Pixel need; one per thread. Refuses a grey scale
+  /// that makes no sense (parameter_error).
   template <class Pixel>
   class Workspace {
    public:
@@ -78,7 +79,9 @@ class DepthEstimator {
           red_(static_cast<std::size_t>(estimator.setup_.cols)),
           green_(red_.size()),
           depth_(red_.size()),
-          status_(red_.size()) {}
+          status_(red_.size()) {
+      expects_valid(scale);
+    }
 
    private:
     friend class DepthEstimator;
@@ -88,7 +91,7 @@ class DepthEstimator {
     std::vector<S> red_;
     std::vector<S> green_;
     std::vector<S> depth_;
-    std::vector<std::uint8_t> status_;
+    std::vector<PixelStatus> status_;
   };
   template <class Pixel>
   Workspace<Pixel> workspace(const GreyScale& scale = grey_scale_of<Pixel>()) const {
@@ -139,7 +142,8 @@ class DepthEstimator {
     result.pad_pixels = pad_pixels_;
     const auto depth_view = as_view(depth_mm);
     const auto status_view = as_view(status);
-    detail::fill_outside(pad_, first, last, depth_view, not_a_number<S>());
+    detail::fill_outside(pad_, first, last, depth_view,
+                         static_cast<cell_t<Depth>>(not_a_number<S>()));
     detail::fill_outside(pad_, first, last, status_view, PixelStatus::outside_pad);
     auto& outside = result.count[static_cast<std::size_t>(PixelStatus::outside_pad)];
     outside = (last - first) * cols_;
@@ -226,23 +230,22 @@ class DepthEstimator {
                Workspace<Pixel>& w,
                DepthResult& result) const {
     const std::uint8_t* inside = setup_.in_pad.data() + row * pad_.cols;
-    std::uint8_t* status = w.status_.data();
+    PixelStatus* status = w.status_.data();
     Index j = 0;
     while (j < pad_.cols) {
       const Index well = detail::count_well(inside + j, status + j, pad_.cols - j);
       result.count[static_cast<std::size_t>(PixelStatus::ok)] += well;
       j += well;
       const Index out = detail::count_zeros(inside + j, pad_.cols - j);
-      std::fill_n(status + j, out, static_cast<std::uint8_t>(PixelStatus::outside_pad));
+      std::fill_n(status + j, out, PixelStatus::outside_pad);
       std::fill_n(w.depth_.begin() + j, out, not_a_number<S>());
       result.count[static_cast<std::size_t>(PixelStatus::outside_pad)] += out;
       j += out;
-      if (j < pad_.cols && inside[j] != 0 && status[j] != 0) {
-        if (status[j] == static_cast<std::uint8_t>(PixelStatus::not_a_number)) {
-          status[j] = static_cast<std::uint8_t>(
-              detail::status_of_cells(red(row, j), green(row, j), w.scale_));
+      if (j < pad_.cols && inside[j] != 0 && status[j] != PixelStatus::ok) {
+        if (status[j] == PixelStatus::not_a_number) {
+          status[j] = detail::status_of_cells(red(row, j), green(row, j), w.scale_);
         }
-        ++result.count[status[j]];
+        ++result.count[static_cast<std::size_t>(status[j])];
         ++j;
       }
     }

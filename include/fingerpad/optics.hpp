@@ -173,8 +173,8 @@ struct TangentShift {
 };
 
 /// Eq. 13 as printed, sin(phi_fluid) in the place of the tangent: right only where z is a length
-/// along the ray. For comparison: 0.026 mm short at a pad's rim with a camera 50 mm away, 0.39 mm
-/// at 30 degrees.
+/// along the ray. For comparison: at most 0.026 mm short on a pad 50 mm from the camera, 0.39 mm at
+/// 30 degrees and 13 mm of depth.
 struct PublishedSineShift {
   template <scalar S>
   static S per_tangent(const Camera<S>& camera, const S& t_sq) {
@@ -200,8 +200,8 @@ Point3<S> point_at(const Camera<S>& camera, const S& row, const S& col, const S&
 
 /// The pixel that sees `point` (x along columns, y along rows); inverse of point_at with
 /// TangentShift. Needs point.z >= 0. The distance from the axis is concave in t, so Newton's method
-/// from the paraxial ray rises to the root; eight steps reach the roundoff of every type up to 50
-/// digits (at most five in double).
+/// from the paraxial ray rises to the root without a safeguard: three to five steps in double,
+/// eight at most up to 50 digits.
 template <scalar S>
 Point2<S> pixel_of(const Camera<S>& camera, const Point3<S>& point) {
   using std::sqrt;
@@ -220,7 +220,11 @@ Point2<S> pixel_of(const Camera<S>& camera, const Point3<S>& point) {
     // d/dt of t / sqrt(n^2 + (n^2 - 1) t^2) is n^2 / (...)^(3/2)
     const S slope = in_air + camera.plate_thickness_mm * m * m * plate * plate * plate +
                     point.z * n * n * fluid * fluid * fluid;
-    t = t - (t * reach - rho) / slope;
+    const S change = (rho - t * reach) / slope;
+    t = t + change;
+    if (value(change) <= epsilon<S>() * value(t)) {  // from below, but for roundoff
+      break;
+    }
   }
   const S px_per_mm = S(1) / (tangent_per_px(camera) * reach);
   return {S(camera.center_x_px + point.x * px_per_mm), S(camera.center_y_px + point.y * px_per_mm)};

@@ -253,7 +253,7 @@ class RowSolver {
   /// Worst error with all pixels at depth l.
   double error(double l, double bright) const {
     std::vector<S> red, green, depth(std::size_t(pixels_to_rim), S(-1));
-    std::vector<std::uint8_t> status(std::size_t(pixels_to_rim), 99);
+    std::vector<PixelStatus> status(std::size_t(pixels_to_rim), PixelStatus::outside_pad);
     const auto g = static_cast<double>(S(scattering));
     const auto camera = camera_at_corner();
     std::vector<Pencil<double>> light;
@@ -270,10 +270,11 @@ class RowSolver {
           fluid_, as<Digits50>(light[j]), Digits50(g),
           Colour<double>{static_cast<double>(red[j]), static_cast<double>(green[j])});
       const Digits50 exact = f.root(l);
-      if (status[j] == 1 && exact < 2 * bound_mm::newton_float) {
+      if (status[j] == PixelStatus::below_range && exact < 2 * bound_mm::newton_float) {
         continue;
       }
-      worst = (std::max)(worst, status[j] == 0 ? error_mm(depth[j], exact) : HUGE_VAL);
+      worst =
+          (std::max)(worst, status[j] == PixelStatus::ok ? error_mm(depth[j], exact) : HUGE_VAL);
     }
     return worst;
   }

@@ -28,7 +28,7 @@ struct Absorption {
   S c_green_per_mm = S(336) / S(10000);  ///< c_G, absorption of green, >= c_R
   S kappa =
       S(9924) / S(10000);  ///< alpha_G beta_G / (alpha_R beta_R), light source and camera, > 0
-  S max_depth_mm = S(18);  ///< depths are looked for in [0, max_depth_mm], > 0
+  S max_depth_mm = S(14);  ///< depths are looked for in [0, max_depth_mm], > 0
 };
 
 /// Refuses what no fluid can have (parameter_error).

@@ -20,6 +20,7 @@
 #include "fingerpad/detail/frame_rows.hpp"
 #include "fingerpad/detail/row_lanes.hpp"
 #include "fingerpad/detail/smoothing.hpp"
+#include "fingerpad/detail/valid_pixels.hpp"
 #include "fingerpad/detail/window_sums.hpp"
 #include "fingerpad/grid.hpp"
 
@@ -43,6 +44,16 @@ struct ColourSetup {
   Anchor<S> anchor;                  ///< empty unless the smoothing is anchored
 };
 
+/// Whether a channel's value carries information.
+template <class Pixel>
+struct Counts {
+  GreyScale scale;
+  bool operator()(const Pixel& x) const {
+    const auto plain = static_cast<double>(value(real_of_t<Pixel>(x)));
+    return plain > scale.dark && plain < scale.saturated;
+  }
+};
+
 /// Rows of plain colours, in grey levels.
 template <class Pixel, class S>
 class PlainRows {
@@ -62,10 +73,7 @@ class PlainRows {
       const ColourSetup<S>& setup, const Red& red, const Green& green, S* to_red, S* to_green) {
     load_pixels(red, green, row_, red_.data(), green_.data());
     const std::uint8_t* inside = setup.in_pad.data() + row_ * setup.cols;
-    const auto counts = [this](const Pixel& x) {
-      return static_cast<double>(value(S(x))) > scale_.dark &&
-             static_cast<double>(value(S(x))) < scale_.saturated;
-    };
+    const Counts<Pixel> counts{scale_};
     const S level = S(1) / S(scale_.units_per_level);
     for (std::size_t j = 0; j < red_.size(); ++j) {
       const bool valid = inside[j] != 0 && counts(red_[j]) && counts(green_[j]);
@@ -96,6 +104,7 @@ class MeanRowsOf {
  public:
   MeanRowsOf(const ColourSetup<S>& setup, const Smoothing& smoothing, const GreyScale& scale)
       : scale_(scale),
+        plain_mean_(windows == 1 && !anchored && exact && scale.units_per_level == 1),
         sums_(setup.rows,
               setup.cols,
               Windows::sizes_px(smoothing),
@@ -122,6 +131,11 @@ class MeanRowsOf {
   void next(
       const ColourSetup<S>& setup, const Red& red, const Green& green, S* to_red, S* to_green) {
     MeanRows<S> out[static_cast<std::size_t>(windows)];
+    if (plain_mean_) {
+      out[0] = {to_red, to_green};
+      sums_.advance(source(setup, red, green), out);
+      return;
+    }
     for (std::size_t k = 0; k < static_cast<std::size_t>(windows); ++k) {
       out[k] = {mean_[k].red.data(), mean_[k].green.data()};
     }
@@ -174,31 +188,37 @@ class MeanRowsOf {
                       const std::uint8_t* inside,
                       Element* first,
                       Element* second,
-                      std::uint8_t* valid) {
+                      std::uint8_t* valid) const {
     const S* rise = setup.anchor.rise.data() + row * setup.cols;
     const S* scattered = setup.anchor.scattered.data() + row * setup.cols;
+    const Pixel* reds = red_.data();
+    const Pixel* greens = green_.data();
     const S level = S(1) / S(scale_.units_per_level);
-    const S dark = S(scale_.dark) * level;
-    const S saturated = S(scale_.saturated) * level;
-    const S kappa = setup.anchor.kappa;
-    for_each_cell<S>(setup.cols, [&]<class V>(Index j) {
-      const V green = load_cells<V, S>(green_.data() + j) * level;
-      const V red = load_cells<V, S>(red_.data() + j) * level;
-      const V residual =
-          load_cells<V, S>(rise + j) * green - kappa * red + load_cells<V, S>(scattered + j);
-      if constexpr (exact) {
+    const S kappa = setup.anchor.kappa * level;
+    if constexpr (exact) {
+      const ClosedRange<Pixel> range({scale_.dark, scale_.saturated});
+      mark_valid(range, reds, greens, inside, valid, setup.cols);
+      const S units = S(residual_units);
+      const S zero = S(residual_zero) + S(0.5);  // the half rounds
+      for_each_cell<S>(setup.cols, [&]<class V>(Index j) {
+        const V green = load_cells<V, S>(greens + j) * level;
+        const V membrane = load_cells<V, S>(rise + j) * green;
+        const V fluid = load_cells<V, S>(scattered + j) - load_cells<V, S>(reds + j) * kappa;
+        const V stored = (membrane + fluid) * units + zero;
         const V low = V{} + S(1);
         const V high = V{} + S(65535);
-        const V stored = residual * S(residual_units) + (S(residual_zero) + S(0.5));
         store_cells<S>(first + j, stored < low ? low : stored > high ? high : stored);
         store_cells<S>(second + j, green * S(green_units));
-      } else {
-        store_cells<S>(first + j, residual);
-        store_cells<S>(second + j, green);
+      });
+    } else {
+      const Counts<Pixel> counts{scale_};
+      for (Index j = 0; j < setup.cols; ++j) {
+        const S green = S(greens[j]) * level;
+        first[j] = S(rise[j] * green - kappa * S(reds[j]) + scattered[j]);
+        second[j] = green;
+        valid[j] = inside[j] != 0 && counts(reds[j]) && counts(greens[j]);
       }
-      store_flags<S>(valid + j, (red > dark) & (red < saturated) & (green > dark) &
-                                    (green < saturated) & load_flags<V, S>(inside + j));
-    });
+    }
   }
 
   /// Weighs the means and turns them back into grey levels. Where the inner window holds no valid
@@ -243,6 +263,7 @@ class MeanRowsOf {
   };
 
   GreyScale scale_;
+  bool plain_mean_;  ///< the means are what is wanted, in grey levels already
   WindowSums<Element, windows> sums_;
   std::array<S, static_cast<std::size_t>(windows)> weight_;
   std::array<Means, static_cast<std::size_t>(windows)> mean_;

@@ -30,6 +30,15 @@ struct GreyScale {
   double saturated = 255;      ///< in stored units
 };
 
+/// Refuses a scale on which no pixel could count, or whose levels exceed those of an 8-bit image.
+inline void expects_valid(const GreyScale& scale) {
+  expects(scale.units_per_level > 0 && is_finite(scale.units_per_level), "GreyScale",
+          "units_per_level", scale.units_per_level, "finite and > 0");
+  expects(is_finite(scale.dark), "GreyScale", "dark", scale.dark, "finite");
+  expects(scale.saturated > scale.dark && scale.saturated <= 256 * scale.units_per_level,
+          "GreyScale", "saturated", scale.saturated, "in (dark, 256 units_per_level]");
+}
+
 /// The scale of a cell type: 16-bit images hold 256 times the grey level, all others the grey
 /// level.
 template <class Cell>
@@ -236,6 +245,7 @@ auto fit_reference(const Camera<double>& camera,
                    const GreyScale& scale = grey_scale_of<cell_t<Red>>()) {
   expects_valid(camera);
   expects_valid(fluid);
+  expects_valid(scale);
   expects(same_size(red, green) && same_size(red, depth_mm), "fit_reference", "rows of depth_mm",
           static_cast<long long>(rows(depth_mm)), "of the same size as the red and green image");
   using Scattering = typename Fit::template Scattering<S>;

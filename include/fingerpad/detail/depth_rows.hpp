@@ -63,7 +63,7 @@ class PixelwiseRows {
               const S* red,
               const S* green,
               S* depth_mm,
-              std::uint8_t* status,
+              PixelStatus* status,
               const FindRoot& find_root) const {
     for (Index j = 0; j < cols; ++j) {
       const Ray<S> ray =
@@ -73,7 +73,7 @@ class PixelwiseRows {
       const DepthRoot<S> root =
           find_root(fluid_, pencil, g, Colour<S>{red[j], green[j]}, depth_mm[j]);
       depth_mm[j] = root.depth_mm;
-      status[j] = static_cast<std::uint8_t>(root.status);
+      status[j] = root.status;
     }
   }
 
@@ -97,12 +97,8 @@ class DepthRows<Bisection, Heights, S, Scattering> {
     expects(halvings_ >= 2 && halvings_ <= 100, "Bisection", "halvings",
             static_cast<long long>(halvings_), "in 2..100");
   }
-  void invert(Index row,
-              Index cols,
-              const S* red,
-              const S* green,
-              S* depth_mm,
-              std::uint8_t* status) const {
+  void invert(
+      Index row, Index cols, const S* red, const S* green, S* depth_mm, PixelStatus* status) const {
     rows_.invert(row, cols, red, green, depth_mm, status,
                  [this](const auto& fluid, const auto& pencil, const S& g, const auto& colour,
                         const S&) { return bisect_depth(fluid, pencil, g, colour, halvings_); });
@@ -121,12 +117,8 @@ class DepthRows<Newton<From>, Heights, S, Scattering> {
             const DepthReference<S, Scattering, Heights>& reference,
             const Newton<From>&)
       : rows_(camera, fluid, reference) {}
-  void invert(Index row,
-              Index cols,
-              const S* red,
-              const S* green,
-              S* depth_mm,
-              std::uint8_t* status) const {
+  void invert(
+      Index row, Index cols, const S* red, const S* green, S* depth_mm, PixelStatus* status) const {
     rows_.invert(
         row, cols, red, green, depth_mm, status,
         [](const auto& fluid, const auto& pencil, const S& g, const auto& colour, const S& before) {
@@ -183,12 +175,8 @@ class DepthRows<ExponentialFree<Order, Degree, Radial>, Heights, S, Scattering> 
             "<= 0.005: take a higher Degree or Radial, or Newton");
   }
 
-  void invert(Index row,
-              Index cols,
-              const S* red,
-              const S* green,
-              S* depth_mm,
-              std::uint8_t* status) const {
+  void invert(
+      Index row, Index cols, const S* red, const S* green, S* depth_mm, PixelStatus* status) const {
     if constexpr (folds_g) {
       invert_row<Order>(table_, row, cols, red, green, nullptr, depth_mm, status);
     } else {

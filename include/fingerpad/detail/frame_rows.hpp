@@ -25,6 +25,9 @@ PixelStatus status_of_cells(const Cell& red, const Cell& green, const GreyScale&
   using S = real_of_t<Cell>;
   const auto r = static_cast<double>(value(S(red)));
   const auto g = static_cast<double>(value(S(green)));
+  if (!is_finite(r) || !is_finite(g)) {
+    return PixelStatus::not_a_number;
+  }
   if (r >= scale.saturated || g >= scale.saturated) {
     return PixelStatus::saturated;
   }
@@ -51,14 +54,19 @@ void store_row(const S* from, const View& view, Index row) {
     view(row, j) = static_cast<cell_t<View>>(from[j]);
   }
 }
-template <class View>
-void store_row(const std::uint8_t* from, const View& view, Index row) {
-  if constexpr (!std::is_same_v<decltype(view(row, Index(0))), IgnoredCell::Sink>) {
-    for (Index j = 0; j < view.cols(); ++j) {
-      view(row, j) = static_cast<PixelStatus>(from[j]);
-    }
+template <class S>
+void store_row(const S* from, const StridedView<S>& view, Index row) {
+  if (view.col_stride() == 1) {
+    std::copy_n(from, view.cols(), view.row(row));
+    return;
+  }
+  for (Index j = 0; j < view.cols(); ++j) {
+    view(row, j) = from[j];
   }
 }
+template <class View>
+void store_row(const PixelStatus*, const View& view, Index row) requires
+    std::is_same_v<decltype(view(row, Index(0))), IgnoredCell::Sink> {}
 
 /// Copies one row of each channel to plain memory.
 template <class Red, class Green, class Pixel>

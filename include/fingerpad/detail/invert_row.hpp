@@ -3,6 +3,7 @@
 #pragma once
 // One image row of depths from a ScatterPolynomial, as many pixels at a time as a register holds.
 // No allocation, no branch per pixel; a pixel without an answer gets NaN and the reason.
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <cstddef>
@@ -73,14 +74,14 @@ constexpr Scalar nan_because(PixelStatus why) {
 
 /// Reads the reasons back from `Count` depths.
 template <std::size_t Count, class Scalar>
-void write_status(const Scalar* depth_mm, std::uint8_t* status) noexcept {
+void write_status(const Scalar* depth_mm, PixelStatus* status) noexcept {
   using Bits = std::conditional_t<sizeof(Scalar) == 4, std::uint32_t, std::uint64_t>;
   Bits bits[Count];
-  std::uint8_t code[Count];
+  PixelStatus code[Count];
   std::memcpy(bits, depth_mm, sizeof bits);
   constexpr Bits infinity = std::bit_cast<Bits>(std::numeric_limits<Scalar>::infinity());
   for (std::size_t i = 0; i < Count; ++i) {
-    code[i] = std::uint8_t((bits[i] & ~Bits(0) >> 1) > infinity ? 3 - (bits[i] & 3) : 0);
+    code[i] = PixelStatus((bits[i] & ~Bits(0) >> 1) > infinity ? 3 - (bits[i] & 3) : 0);
   }
   std::memcpy(status, code, sizeof code);
 }
@@ -150,7 +151,7 @@ void invert_row(const Table& table,
                 const Scalar* green,
                 Gain gain,
                 Scalar* depth_mm,
-                std::uint8_t* status) noexcept {
+                PixelStatus* status) noexcept {
   constexpr bool has_gain = !std::is_null_pointer_v<Gain>;
   constexpr int width = row_lanes<Scalar, VectorBytes>;
   constexpr std::ptrdiff_t block = 64;
@@ -160,7 +161,7 @@ void invert_row(const Table& table,
   const auto leave_out = [&](std::ptrdiff_t first, std::ptrdiff_t last) {
     for (std::ptrdiff_t col = first; col < last; ++col) {
       depth_mm[col] = std::numeric_limits<Scalar>::quiet_NaN();
-      status[col] = std::uint8_t(PixelStatus::outside_pad);
+      status[col] = PixelStatus::outside_pad;
     }
   };
   leave_out(0, begin);
@@ -210,9 +211,9 @@ void invert_row(const Table& table,
       std::memcpy(d + i, &l, sizeof l);
     }
     if (count == block && !any(bad)) {
-      std::memset(status + first, 0, block);
+      std::fill_n(status + first, block, PixelStatus::ok);
     } else {
-      std::uint8_t code[std::size_t(block)];
+      PixelStatus code[std::size_t(block)];
       write_status<block>(d, code);
       std::memcpy(status + first, code, std::size_t(count));
       if (count < block) {

@@ -129,7 +129,7 @@ inline Index count_zeros(const std::uint8_t* bytes, Index count) {
 
 /// How many of the first `count` pixels are inside the pad (1) with status ok (0), up to the first
 /// that is not.
-inline Index count_well(const std::uint8_t* inside, const std::uint8_t* status, Index count) {
+inline Index count_well(const std::uint8_t* inside, const PixelStatus* status, Index count) {
   Index n = 0;
   std::uint64_t in = 0;
   std::uint64_t is = 0;
@@ -140,7 +140,7 @@ inline Index count_well(const std::uint8_t* inside, const std::uint8_t* status, 
       break;
     }
   }
-  while (n < count && inside[n] != 0 && status[n] == 0) {
+  while (n < count && inside[n] != 0 && status[n] == PixelStatus::ok) {
     ++n;
   }
   return n;

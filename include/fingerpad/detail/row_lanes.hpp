@@ -42,12 +42,6 @@ void store_cells(T* to, const V& v) {
   *to = static_cast<T>(v);
 }
 
-/// The outcome of a comparison, as bytes 1 and 0.
-template <class S>
-void store_flags(std::uint8_t* to, bool flag) {
-  *to = flag ? 1 : 0;
-}
-
 #if defined(FINGERPAD_HAS_VECTORS)
 template <class S, int N>
   requires(N > 1)
@@ -85,19 +79,7 @@ void store_cells(T* to, const V& v) {
   }
 }
 
-template <class S, class Mask>
-  requires(!std::integral<Mask>)
-void store_flags(std::uint8_t* to, const Mask& mask) {
-  constexpr int n = lanes_in<Mask, S>;
-  store(to, convert<std::uint8_t, n>(convert<std::uint16_t, n>(mask & (Mask{} + 1))));
-}
 #endif
-
-/// Bytes that are nonzero or not, as what a comparison of V gives.
-template <class V, class S>
-auto load_flags(const std::uint8_t* from) {
-  return load_cells<V, S>(from) != V{};
-}
 
 /// Calls kernel.operator()<V>(j) for j in [0, count) in steps of V's lanes, V = S at the end.
 template <class S, int VectorBytes = native_vector_bytes, class Kernel>

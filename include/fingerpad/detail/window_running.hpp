@@ -138,8 +138,8 @@ class RunningWindowSums {
     }
     const Row& from = slot(row);
     for (std::size_t j = 0; j < size(); ++j) {
-      sums.red[j] += Sum(from.red[j]);
-      sums.green[j] += Sum(from.green[j]);
+      sums.red[j] = Sum(sums.red[j] + Sum(from.red[j]));
+      sums.green[j] = Sum(sums.green[j] + Sum(from.green[j]));
       sums.count[j] = std::uint16_t(sums.count[j] + from.valid[j]);
     }
   }
@@ -150,8 +150,8 @@ class RunningWindowSums {
     }
     const Row& from = slot(row);
     for (std::size_t j = 0; j < size(); ++j) {
-      sums.red[j] -= Sum(from.red[j]);
-      sums.green[j] -= Sum(from.green[j]);
+      sums.red[j] = Sum(sums.red[j] - Sum(from.red[j]));
+      sums.green[j] = Sum(sums.green[j] - Sum(from.green[j]));
       sums.count[j] = std::uint16_t(sums.count[j] - from.valid[j]);
     }
   }
@@ -164,14 +164,14 @@ class RunningWindowSums {
     for (Index j = -r; j < cols_; ++j) {
       if (j + r < cols_) {
         const std::size_t in = std::size_t(j + r);
-        red += sums.red[in];
-        green += sums.green[in];
+        red = Sum(red + sums.red[in]);
+        green = Sum(green + sums.green[in]);
         count += sums.count[in];
       }
       if (j > r) {
         const std::size_t past = std::size_t(j - r - 1);
-        red -= sums.red[past];
-        green -= sums.green[past];
+        red = Sum(red - sums.red[past]);
+        green = Sum(green - sums.green[past]);
         count -= sums.count[past];
       }
       if (j < 0) {
