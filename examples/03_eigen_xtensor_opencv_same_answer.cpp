@@ -31,7 +31,7 @@ int main() {
   const auto level = [&](Index i, Index j, auto member) {
     const auto pencil =
         fingerpad::pencil_of(camera, fingerpad::ray_at_pixel(camera, double(i), double(j)));
-    const double depth = (std::max)(shape(i, j), 0.0);
+    const double depth = (std::max)(0.0, shape(i, j));  // 0 for NaN
     return std::uint8_t(fingerpad::colour_at_depth(fluid, pencil, 57.0, 0.0163, depth).*member);
   };
   using Colour = fingerpad::Colour<double>;

@@ -3,33 +3,10 @@
 #include "fingerpad/neighbour_light.hpp"
 
 #include <cmath>
-#include <cstdlib>
-#include <new>
 #include <vector>
 
+#include "allocations/count.hpp"
 #include "support/catch.hpp"
-
-namespace {
-long allocations = 0;
-}
-
-#if defined(__GNUC__) && !defined(__clang__)
-#pragma GCC diagnostic ignored "-Wmismatched-new-delete"  // GCC 12 inlines only one of the two
-#endif
-
-void* operator new(std::size_t size) {
-  ++allocations;
-  if (void* p = std::malloc(size)) {
-    return p;
-  }
-  throw std::bad_alloc();
-}
-void operator delete(void* p) noexcept {
-  std::free(p);
-}
-void operator delete(void* p, std::size_t) noexcept {
-  std::free(p);
-}
 
 TEST_CASE("neighbour light: a frame allocates nothing") {
   using namespace fingerpad;
@@ -41,12 +18,12 @@ TEST_CASE("neighbour light: a frame allocates nothing") {
   const NeighbourLightCompensation<ExactDisc> exact({}, 0.1F, reference_view);
   auto workspace = stepped.workspace();
   auto exact_workspace = exact.workspace();
-  const long before = allocations;
+  const long before = test::allocations();
   for (int frame = 0; frame < 3; ++frame) {
     stepped(view, view, workspace);
     exact(view, view, exact_workspace);
   }
-  const long after = allocations;
+  const long after = test::allocations();
   CHECK(before > 0);
   CHECK(after == before);
 }
