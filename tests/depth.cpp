@@ -77,11 +77,11 @@ double mm_per_level(const Pad& pad, Index i, Index j, double l) {
 
 template <class Pixel>
 PixelStatus reason(const Pixel& red, const Pixel& green) {
-  const Pixel top = test::stored<Pixel>(255);
-  if (red >= top || green >= top) {
-    return PixelStatus::saturated;
+  if (!is_finite(real_of_t<Pixel>(red)) || !is_finite(real_of_t<Pixel>(green))) {
+    return PixelStatus::not_a_number;
   }
-  return red <= Pixel(0) || green <= Pixel(0) ? PixelStatus::dark : PixelStatus::not_a_number;
+  const Pixel top = test::stored<Pixel>(255);
+  return red >= top || green >= top ? PixelStatus::saturated : PixelStatus::dark;
 }
 
 /// Windows that the policy averages over, and the weight of the first.
