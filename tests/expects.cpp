@@ -5,7 +5,7 @@
 #include <limits>
 #include <string>
 
-#include "fingerpad/detail/absorption_law.hpp"
+#include "fingerpad/detail/depth/absorption_law.hpp"
 #include "fingerpad/optics.hpp"
 #include "support/catch.hpp"
 #include "support/numbers.hpp"

@@ -343,7 +343,8 @@ TEST_CASE("neighbour light: same bits on every grid") {
   REQUIRE(compensation(lazy, out, workspace).accepted);
   CHECK(identical(out, expected));
   Map<float> flipped = depth.colwise().reverse();
-  REQUIRE(compensation(flip_rows(as_view(flipped)), flip_rows(as_view(flipped)), workspace).accepted);
+  REQUIRE(
+      compensation(flip_rows(as_view(flipped)), flip_rows(as_view(flipped)), workspace).accepted);
   CHECK(identical(flip_rows(as_view(flipped)), expected));
 }
 

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <string>
 
-#include "fingerpad/detail/depth_reference.hpp"
+#include "fingerpad/detail/depth/depth_reference.hpp"
 #include "support/catch.hpp"
 #include "support/generators.hpp"
 #include "support/pad.hpp"

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 // Smoothing policies against a mean that adds up every window anew.
-#include "fingerpad/detail/smoothing.hpp"
+#include "fingerpad/detail/depth/smoothing.hpp"
 
 #include <cmath>
 #include <limits>
@@ -9,7 +9,7 @@
 #include <string>
 
 #include "fingerpad/adapt/opencv.hpp"
-#include "fingerpad/detail/colour_rows.hpp"
+#include "fingerpad/detail/depth/colour_rows.hpp"
 #include "support/catch.hpp"
 #include "support/generators.hpp"
 #include "support/pad.hpp"

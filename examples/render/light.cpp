@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "fingerpad/detail/absorption_law.hpp"
+#include "fingerpad/detail/depth/absorption_law.hpp"
 
 namespace render {
 namespace {

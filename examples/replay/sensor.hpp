@@ -7,7 +7,7 @@
 #include <optional>
 #include <string>
 
-#include "fingerpad/detail/absorption_law.hpp"
+#include "fingerpad/detail/depth/absorption_law.hpp"
 #include "fingerpad/optics.hpp"
 
 namespace replay {

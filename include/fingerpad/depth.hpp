@@ -3,13 +3,14 @@
 #pragma once
 // Depth of a fluid-filled pad from the colour of its membrane, seen by one camera through the
 // fluid. Source: Ito, Kim, Obinata, "Shape sensing by vision-based tactile sensor" (slides). The
-// law is in detail/absorption_law.hpp; published and corrected forms in docs/errata.md, E001-E007.
+// law is in detail/depth/absorption_law.hpp; published and corrected forms in docs/errata.md,
+// E001-E007.
 //
 // Once per sensor: fit_reference() on a frame of the free pad. Per frame: the colours are averaged
-// over a window (detail/smoothing.hpp) and the depth equation is solved per pixel
-// (detail/depth_inverse.hpp, detail/scatter_polynomial.hpp). The depth is that of the membrane
-// along the pixel's refracted ray, z in mm above the plate; point_at() in optics.hpp makes it a
-// point. Light from neighbouring membrane is compensated by neighbour_light.hpp, if at all.
+// over a window (detail/depth/smoothing.hpp) and the depth equation is solved per pixel
+// (detail/depth/depth_inverse.hpp, detail/depth/scatter_polynomial.hpp). The depth is that of the
+// membrane along the pixel's refracted ray, z in mm above the plate; point_at() in optics.hpp makes
+// it a point. Light from neighbouring membrane is compensated by neighbour_light.hpp, if at all.
 #include <algorithm>
 #include <array>
 #include <cstddef>
@@ -18,12 +19,12 @@
 #include <utility>
 #include <vector>
 
-#include "fingerpad/detail/colour_rows.hpp"
-#include "fingerpad/detail/depth_inverse.hpp"
-#include "fingerpad/detail/depth_reference.hpp"
-#include "fingerpad/detail/depth_rows.hpp"
-#include "fingerpad/detail/pad_area.hpp"
-#include "fingerpad/detail/pixel_status.hpp"
+#include "fingerpad/detail/depth/colour_rows.hpp"
+#include "fingerpad/detail/depth/depth_inverse.hpp"
+#include "fingerpad/detail/depth/depth_reference.hpp"
+#include "fingerpad/detail/depth/depth_rows.hpp"
+#include "fingerpad/detail/depth/pad_area.hpp"
+#include "fingerpad/detail/depth/pixel_status.hpp"
 #include "fingerpad/expects.hpp"
 #include "fingerpad/grid.hpp"
 #include "fingerpad/optics.hpp"

@@ -2,10 +2,13 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 // Everything but the adapters, which bring their libraries with them (see adapt/).
+#include "fingerpad/calibrate/depth.hpp"
+#include "fingerpad/calibrate/neighbour_light.hpp"
 #include "fingerpad/depth.hpp"
 #include "fingerpad/dots.hpp"
 #include "fingerpad/expects.hpp"
 #include "fingerpad/grid.hpp"
+#include "fingerpad/neighbour_light.hpp"
 #include "fingerpad/optics.hpp"
 #include "fingerpad/scalar.hpp"
 #include "fingerpad/version.hpp"

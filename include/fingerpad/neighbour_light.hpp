@@ -15,8 +15,8 @@
 #include <utility>
 #include <vector>
 
-#include "fingerpad/detail/inclination_sums.hpp"
-#include "fingerpad/detail/quick_math.hpp"
+#include "fingerpad/detail/disc/inclination_sums.hpp"
+#include "fingerpad/detail/vectors/quick_math.hpp"
 #include "fingerpad/expects.hpp"
 #include "fingerpad/grid.hpp"
 #include "fingerpad/scalar.hpp"

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
-#include "fingerpad/detail/absorption_law.hpp"
+#include "fingerpad/detail/depth/absorption_law.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: MIT
 // Window means at the limits of their arithmetic: largest windows of largest values, sums that run
 // over long columns, images smaller than the window, every way of computing them.
-#include "fingerpad/detail/window_sums.hpp"
+#include "fingerpad/detail/window/window_sums.hpp"
 
 #include <array>
 #include <cmath>

@@ -32,8 +32,8 @@ struct grid_traits<G> {
     return g.accessor().access(g.data_handle(), offset);
   }
   // Plain memory only where the accessor hands out the memory itself, not a value computed from it.
-  static constexpr auto* data(
-      const G& g) requires std::is_same_v<typename G::data_handle_type, typename G::element_type*> &&
+  static constexpr auto* data(const G& g) requires
+      std::is_same_v<typename G::data_handle_type, typename G::element_type*> &&
       std::is_same_v<typename G::reference, typename G::element_type&> &&
       (G::mapping_type::is_always_strided()) {
     return g.data_handle();

@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 // What the fluid does to light, from colours at known depths: c_red, c_green (through their
-// difference), kappa and g, by least squares on the depth equation F(l) = 0 (detail/
-// absorption_law.hpp), with as many samples as there are.
+// difference), kappa and g, by least squares on the depth equation F(l) = 0 of absorption_law.hpp,
+// with as many samples as there are.
 // Source: Ito, Kim, Obinata, "Shape sensing by vision-based tactile sensor" (slides), parameter
 // identification, which solves three equations for three unknowns; printed error E005.
 //
@@ -18,9 +18,9 @@
 #include <span>
 #include <vector>
 
-#include "fingerpad/detail/absorption_fit.hpp"
-#include "fingerpad/detail/absorption_law.hpp"
-#include "fingerpad/detail/depth_reference.hpp"
+#include "fingerpad/detail/depth/absorption_fit.hpp"
+#include "fingerpad/detail/depth/absorption_law.hpp"
+#include "fingerpad/detail/depth/depth_reference.hpp"
 #include "fingerpad/expects.hpp"
 #include "fingerpad/optics.hpp"
 #include "fingerpad/scalar.hpp"

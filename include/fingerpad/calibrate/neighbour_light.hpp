@@ -11,7 +11,7 @@
 #include <span>
 #include <vector>
 
-#include "fingerpad/detail/inclination_sums.hpp"
+#include "fingerpad/detail/disc/inclination_sums.hpp"
 #include "fingerpad/expects.hpp"
 #include "fingerpad/grid.hpp"
 #include "fingerpad/neighbour_light.hpp"

@@ -4,7 +4,7 @@
 // What a block of neighbouring windows holds of valid pixels, and by what their sums are weighed.
 #include <cstdint>
 
-#include "fingerpad/detail/lanes.hpp"
+#include "fingerpad/detail/vectors/lanes.hpp"
 #include "fingerpad/scalar.hpp"
 
 namespace fingerpad {

@@ -14,7 +14,7 @@
 #include <type_traits>
 #include <vector>
 
-#include "fingerpad/detail/absorption_law.hpp"
+#include "fingerpad/detail/depth/absorption_law.hpp"
 #include "fingerpad/expects.hpp"
 #include "fingerpad/grid.hpp"
 #include "fingerpad/scalar.hpp"

@@ -15,13 +15,13 @@
 #include <type_traits>
 #include <vector>
 
-#include "fingerpad/detail/anchor.hpp"
-#include "fingerpad/detail/depth_reference.hpp"
-#include "fingerpad/detail/frame_rows.hpp"
-#include "fingerpad/detail/row_lanes.hpp"
-#include "fingerpad/detail/smoothing.hpp"
-#include "fingerpad/detail/valid_pixels.hpp"
-#include "fingerpad/detail/window_sums.hpp"
+#include "fingerpad/detail/depth/anchor.hpp"
+#include "fingerpad/detail/depth/depth_reference.hpp"
+#include "fingerpad/detail/depth/frame_rows.hpp"
+#include "fingerpad/detail/depth/smoothing.hpp"
+#include "fingerpad/detail/depth/valid_pixels.hpp"
+#include "fingerpad/detail/vectors/row_lanes.hpp"
+#include "fingerpad/detail/window/window_sums.hpp"
 #include "fingerpad/grid.hpp"
 
 namespace fingerpad {

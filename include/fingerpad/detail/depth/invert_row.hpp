@@ -12,9 +12,9 @@
 #include <limits>
 #include <type_traits>
 
-#include "fingerpad/detail/pixel_status.hpp"
-#include "fingerpad/detail/row_lanes.hpp"
-#include "fingerpad/detail/scatter_polynomial.hpp"
+#include "fingerpad/detail/depth/pixel_status.hpp"
+#include "fingerpad/detail/depth/scatter_polynomial.hpp"
+#include "fingerpad/detail/vectors/row_lanes.hpp"
 
 namespace fingerpad {
 inline namespace v0 {

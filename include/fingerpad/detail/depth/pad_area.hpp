@@ -7,8 +7,8 @@
 #include <cstdint>
 #include <cstring>
 
-#include "fingerpad/detail/depth_reference.hpp"
-#include "fingerpad/detail/pixel_status.hpp"
+#include "fingerpad/detail/depth/depth_reference.hpp"
+#include "fingerpad/detail/depth/pixel_status.hpp"
 #include "fingerpad/grid.hpp"
 #include "fingerpad/optics.hpp"
 

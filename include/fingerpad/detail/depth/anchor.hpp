@@ -5,9 +5,9 @@
 #include <cmath>
 #include <vector>
 
-#include "fingerpad/detail/absorption_law.hpp"
-#include "fingerpad/detail/depth_reference.hpp"
-#include "fingerpad/detail/smoothing.hpp"
+#include "fingerpad/detail/depth/absorption_law.hpp"
+#include "fingerpad/detail/depth/depth_reference.hpp"
+#include "fingerpad/detail/depth/smoothing.hpp"
 #include "fingerpad/grid.hpp"
 #include "fingerpad/optics.hpp"
 

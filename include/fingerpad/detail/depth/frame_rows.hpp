@@ -9,9 +9,9 @@
 #include <cstring>
 #include <type_traits>
 
-#include "fingerpad/detail/depth_reference.hpp"
-#include "fingerpad/detail/pixel_status.hpp"
-#include "fingerpad/detail/window_sums.hpp"
+#include "fingerpad/detail/depth/depth_reference.hpp"
+#include "fingerpad/detail/depth/pixel_status.hpp"
+#include "fingerpad/detail/window/window_sums.hpp"
 #include "fingerpad/grid.hpp"
 #include "fingerpad/scalar.hpp"
 

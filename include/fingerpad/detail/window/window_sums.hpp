@@ -19,11 +19,11 @@
 #include <concepts>
 #include <cstdint>
 
-#include "fingerpad/detail/lanes.hpp"
-#include "fingerpad/detail/window_interleaved.hpp"
-#include "fingerpad/detail/window_running.hpp"
+#include "fingerpad/detail/vectors/lanes.hpp"
+#include "fingerpad/detail/window/window_interleaved.hpp"
+#include "fingerpad/detail/window/window_running.hpp"
 #if defined(FINGERPAD_HAS_VECTORS)
-#include "fingerpad/detail/window_vector.hpp"
+#include "fingerpad/detail/window/window_vector.hpp"
 #endif
 
 namespace fingerpad {

@@ -8,7 +8,7 @@
 #include <Eigen/QR>
 #include <cmath>
 
-#include "fingerpad/detail/absorption_law.hpp"
+#include "fingerpad/detail/depth/absorption_law.hpp"
 #include "fingerpad/scalar.hpp"
 
 namespace fingerpad {

@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <cstring>
 
-#include "fingerpad/detail/lanes.hpp"
+#include "fingerpad/detail/vectors/lanes.hpp"
 #include "fingerpad/grid.hpp"
 
 namespace fingerpad {

@@ -11,7 +11,7 @@
 #include <limits>
 #include <vector>
 
-#include "fingerpad/detail/disc_shape.hpp"
+#include "fingerpad/detail/disc/disc_shape.hpp"
 #include "fingerpad/grid.hpp"
 #include "fingerpad/scalar.hpp"
 

@@ -8,8 +8,8 @@
 //   (the exponential-free form for whole rows is in scatter_polynomial.hpp)
 #include <cmath>
 
-#include "fingerpad/detail/absorption_law.hpp"
-#include "fingerpad/detail/pixel_status.hpp"
+#include "fingerpad/detail/depth/absorption_law.hpp"
+#include "fingerpad/detail/depth/pixel_status.hpp"
 #include "fingerpad/scalar.hpp"
 
 namespace fingerpad {

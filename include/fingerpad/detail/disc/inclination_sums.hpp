@@ -13,8 +13,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "fingerpad/detail/disc_sums.hpp"
-#include "fingerpad/detail/quick_math.hpp"
+#include "fingerpad/detail/disc/disc_sums.hpp"
+#include "fingerpad/detail/vectors/quick_math.hpp"
 #include "fingerpad/grid.hpp"
 #include "fingerpad/scalar.hpp"
 

@@ -5,8 +5,8 @@
 #include <concepts>
 #include <cstdint>
 
-#include "fingerpad/detail/lanes.hpp"
-#include "fingerpad/detail/window_rows.hpp"
+#include "fingerpad/detail/vectors/lanes.hpp"
+#include "fingerpad/detail/window/window_rows.hpp"
 #include "fingerpad/grid.hpp"
 
 namespace fingerpad {

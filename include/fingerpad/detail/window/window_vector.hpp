@@ -15,10 +15,10 @@
 #include <type_traits>
 #include <vector>
 
-#include "fingerpad/detail/lanes.hpp"
-#include "fingerpad/detail/line_vector.hpp"
-#include "fingerpad/detail/window_cover.hpp"
-#include "fingerpad/detail/window_rows.hpp"
+#include "fingerpad/detail/vectors/lanes.hpp"
+#include "fingerpad/detail/vectors/line_vector.hpp"
+#include "fingerpad/detail/window/window_cover.hpp"
+#include "fingerpad/detail/window/window_rows.hpp"
 
 namespace fingerpad {
 inline namespace v0 {

@@ -11,7 +11,7 @@
 #include <type_traits>
 #include <vector>
 
-#include "fingerpad/detail/window_rows.hpp"
+#include "fingerpad/detail/window/window_rows.hpp"
 
 namespace fingerpad {
 inline namespace v0 {

@@ -9,11 +9,11 @@
 #include <cstdint>
 #include <vector>
 
-#include "fingerpad/detail/depth_inverse.hpp"
-#include "fingerpad/detail/depth_reference.hpp"
-#include "fingerpad/detail/invert_row.hpp"
-#include "fingerpad/detail/pixel_status.hpp"
-#include "fingerpad/detail/scatter_polynomial.hpp"
+#include "fingerpad/detail/depth/depth_inverse.hpp"
+#include "fingerpad/detail/depth/depth_reference.hpp"
+#include "fingerpad/detail/depth/invert_row.hpp"
+#include "fingerpad/detail/depth/pixel_status.hpp"
+#include "fingerpad/detail/depth/scatter_polynomial.hpp"
 
 namespace fingerpad {
 inline namespace v0 {
