@@ -104,12 +104,12 @@ class MeanRowsOf {
  public:
   MeanRowsOf(const ColourSetup<S>& setup, const Smoothing& smoothing, const GreyScale& scale)
       : scale_(scale),
-        plain_mean_(windows == 1 && !anchored && exact && scale.units_per_level == 1),
         sums_(setup.rows,
               setup.cols,
               Windows::sizes_px(smoothing),
               limits(scale),
-              anchored ? 1 : windows) {
+              anchored ? 1 : windows,
+              anchored ? 1.0f : static_cast<float>(1 / scale.units_per_level)) {
     const auto size = static_cast<std::size_t>(setup.cols);
     const auto weight = window_weights(Windows::sizes_px(smoothing));
     for (std::size_t k = 0; k < weight.size(); ++k) {
@@ -131,16 +131,16 @@ class MeanRowsOf {
   void next(
       const ColourSetup<S>& setup, const Red& red, const Green& green, S* to_red, S* to_green) {
     MeanRows<S> out[static_cast<std::size_t>(windows)];
-    if (plain_mean_) {
+    if constexpr (windows == 1 && !anchored) {  // the means are what is wanted
       out[0] = {to_red, to_green};
       sums_.advance(source(setup, red, green), out);
-      return;
+    } else {
+      for (std::size_t k = 0; k < static_cast<std::size_t>(windows); ++k) {
+        out[k] = {mean_[k].red.data(), mean_[k].green.data()};
+      }
+      sums_.advance(source(setup, red, green), out);
+      finish(setup, row_++, to_red, to_green);
     }
-    for (std::size_t k = 0; k < static_cast<std::size_t>(windows); ++k) {
-      out[k] = {mean_[k].red.data(), mean_[k].green.data()};
-    }
-    sums_.advance(source(setup, red, green), out);
-    finish(setup, row_++, to_red, to_green);
   }
 
  private:
@@ -226,21 +226,19 @@ class MeanRowsOf {
   void finish(const ColourSetup<S>& setup, Index row, S* to_red, S* to_green) const {
     const S* rise = anchored ? setup.anchor.rise.data() + row * setup.cols : nullptr;
     const S* scattered = anchored ? setup.anchor.scattered.data() + row * setup.cols : nullptr;
-    const S level = S(1) / S(exact ? (anchored ? green_units : scale_.units_per_level) : 1.0);
     const S per_kappa = S(1) / setup.anchor.kappa;
     for_each_cell<S>(setup.cols, [&]<class V>(Index j) {
       V red = weighted<V>(mean_.front().red, mean_.back().red, j);
       V green = load_cells<V, S>(mean_.front().green.data() + j);
       if constexpr (anchored) {  // one window will do for green: its share in the equation is small
-        green = green * level;
         if constexpr (exact) {
+          green = green * (S(1) / S(green_units));
           red = (red - S(residual_zero)) * (S(1) / S(residual_units));
         }
         red = (load_cells<V, S>(rise + j) * green + load_cells<V, S>(scattered + j) - red) *
               per_kappa;
       } else {
-        green = weighted<V>(mean_.front().green, mean_.back().green, j) * level;
-        red = red * level;
+        green = weighted<V>(mean_.front().green, mean_.back().green, j);
       }
       store_cells<S>(to_red + j, red);
       store_cells<S>(to_green + j, green);
@@ -263,7 +261,6 @@ class MeanRowsOf {
   };
 
   GreyScale scale_;
-  bool plain_mean_;  ///< the means are what is wanted, in grey levels already
   WindowSums<Element, windows> sums_;
   std::array<S, static_cast<std::size_t>(windows)> weight_;
   std::array<Means, static_cast<std::size_t>(windows)> mean_;

@@ -29,12 +29,14 @@ class RunningWindowSums {
                     Index cols,
                     const std::array<int, std::size_t(Windows)>& window_px,
                     const window_limits_t<Pixel>& limits,
-                    int green_windows = Windows)
+                    int green_windows = Windows,
+                    float scale = 1)
       : rows_(rows),
         cols_(cols),
         radius_(window_radii<Windows>(window_px)),
         limits_(limits),
-        green_windows_(std::size_t(green_windows)) {
+        green_windows_(std::size_t(green_windows)),
+        scale_(scale) {
     expects(rows >= 1, "WindowSums", "rows", rows, ">= 1");
     expects(cols >= 1, "WindowSums", "cols", cols, ">= 1");
     ring_.resize(std::size_t(2 * radius_.back() + 2));
@@ -187,9 +189,9 @@ class RunningWindowSums {
     }
   }
 
-  static Mean mean(const Sum& sum, std::uint16_t count) {
+  Mean mean(const Sum& sum, std::uint16_t count) const {
     if constexpr (std::integral<Pixel>) {
-      return window_mean(sum, count);
+      return window_mean(sum, count) * scale_;
     } else {
       return count == 0 ? not_a_number<Mean>() : Mean(sum / Sum(int(count)));
     }
@@ -199,6 +201,7 @@ class RunningWindowSums {
   std::array<Index, std::size_t(Windows)> radius_;
   window_limits_t<Pixel> limits_;
   std::size_t green_windows_;
+  float scale_;
   Index next_row_ = 0;
   std::vector<Row> ring_;
   std::array<ColumnSums, std::size_t(Windows)> sums_;

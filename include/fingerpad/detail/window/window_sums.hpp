@@ -13,9 +13,10 @@
 //   sums.start(first, load_row);  // load_row(row, red, green) or (row, red, green, inside)
 //   for (Index row = first; row < last; ++row) sums.advance(load_row, {{r33, g33}, {r55, g55}});
 //
-// A last argument of the constructor, green_windows, limits green to the first so many windows.
-// load_row is asked for rows in order, once each, from half a window before `first` on (the plain
-// path, which starts anew every 32 rows, may begin that much earlier).
+// Two more arguments of the constructor: green_windows limits green to the first so many windows,
+// and scale multiplies the means of integers. load_row is asked for rows in order, once each, from
+// half a window before `first` on (the plain path, which starts anew every 32 rows, may begin that
+// much earlier).
 #include <concepts>
 #include <cstdint>
 

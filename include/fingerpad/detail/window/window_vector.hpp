@@ -17,7 +17,7 @@
 
 #include "fingerpad/detail/vectors/lanes.hpp"
 #include "fingerpad/detail/vectors/line_vector.hpp"
-#include "fingerpad/detail/window/window_cover.hpp"
+#include "fingerpad/detail/window/window_block.hpp"
 #include "fingerpad/detail/window/window_rows.hpp"
 
 namespace fingerpad {
@@ -35,12 +35,14 @@ class VectorWindowSums {
                    Index cols,
                    const std::array<int, std::size_t(Windows)>& window_px,
                    const ValueLimits<double>& limits,
-                   int green_windows = Windows)
+                   int green_windows = Windows,
+                   float scale = 1)
       : rows_(rows),
         cols_(cols),
         radius_(window_radii<Windows>(window_px)),
         range_(limits),
-        green_windows_(std::size_t(green_windows)) {
+        green_windows_(std::size_t(green_windows)),
+        scale_(scale) {
     expects(rows >= 1, "WindowSums", "rows", rows, ">= 1");
     expects(cols >= 1, "WindowSums", "cols", cols, ">= 1");
     padded_ = (cols + 63) / 64 * 64;
@@ -153,24 +155,21 @@ class VectorWindowSums {
     std::fill(valid_.begin() + cols_, valid_.end(), std::uint8_t(0));
   }
 
-  /// Sums along one row over windows of 2 r + 1 columns: differences of its running sum.
-  template <class T>
-  struct AlongRow {
-    const T *right, *left;
-    AlongRow(const T* running, Index r) : right(running + r), left(running - r - 1) {}
-    template <int N>
-    [[gnu::always_inline]] lanes<T, N> at(Index j) const {
-      return load<T, N>(right + j) - load<T, N>(left + j);
-    }
-  };
-
   /// Moves window k down by one row, from the ring rows at offsets `past` to `in`.
   template <bool Emit>
   void slide(std::size_t k, Index in, Index past, const MeanRows<float>& out) {
     slide_counts(k, in, past);
-    slide_sums<Emit>(k, red_ring_.data(), in, past, sums_[k].red.data(), out.red);
-    if (k < green_windows_) {
-      slide_sums<Emit>(k, green_ring_.data(), in, past, sums_[k].green.data(), out.green);
+    const auto slide_both = [&]<bool Signed>(std::bool_constant<Signed>) {
+      slide_sums<Emit, Signed>(k, red_ring_.data(), in, past, sums_[k].red.data(), out.red);
+      if (k < green_windows_) {
+        slide_sums<Emit, Signed>(k, green_ring_.data(), in, past, sums_[k].green.data(), out.green);
+      }
+    };
+    // Sums that fit a signed int are cheaper to convert: all of 8 bit, of 16 bit up to 181 x 181.
+    if (sizeof(Pixel) == 1 || area(radius_[k]) <= 32767) {
+      slide_both(std::true_type{});
+    } else {
+      slide_both(std::false_type{});
     }
     if constexpr (Emit) {
       if (out.count != nullptr) {
@@ -200,7 +199,7 @@ class VectorWindowSums {
     }
   }
 
-  template <bool Emit>
+  template <bool Emit, bool Signed>
   void slide_sums(
       std::size_t k, const Lane* ring, Index in, Index past, std::uint32_t* sum, float* mean) {
     const Index r = radius_[k], cols = cols_;
@@ -208,7 +207,7 @@ class VectorWindowSums {
     const Cover* const cover = cover_.data();
     const float* const weight = weight_.data();
     const Floats missing = Floats{} + missing_;
-    const Floats whole = Floats{} + 1.0f / float(area(r));
+    const Floats whole = Floats{} + scale_ / float(area(r));
     const auto step = [&](Index j, float* to) __attribute__((always_inline)) {
       const Cover c = cover[j / half];
       if (c == Cover::none) {
@@ -222,7 +221,7 @@ class VectorWindowSums {
         }
         return;
       }
-      const Two<Floats> sums = slide_block(entering, leaving, j, sum + j);
+      const Two<Floats> sums = slide_block<Signed>(entering, leaving, j, sum + j);
       if constexpr (!Emit) {
         return;
       }
@@ -230,8 +229,8 @@ class VectorWindowSums {
         store(to, sums.first * whole);
         store(to + wide, sums.second * whole);
       } else {
-        store(to, sums.first * load<float, wide>(weight + j));
-        store(to + wide, sums.second * load<float, wide>(weight + j + wide));
+        store(to, sums.first * (load<float, wide>(weight + j) * scale_));
+        store(to + wide, sums.second * (load<float, wide>(weight + j + wide) * scale_));
       }
     };
     Index j = 0;
@@ -248,6 +247,7 @@ class VectorWindowSums {
   }
 
   /// Updates `half` sums and returns them as float, rounded once.
+  template <bool Signed>
   [[gnu::always_inline]] static Two<Floats> slide_block(const AlongRow<Lane>& entering,
                                                         const AlongRow<Lane>& leaving,
                                                         Index j,
@@ -264,7 +264,7 @@ class VectorWindowSums {
     }
     store(sum, first);
     store(sum + wide, second);
-    if constexpr (sizeof(Pixel) == 1) {  // fits a signed int, which is cheaper to convert
+    if constexpr (Signed) {
       using Ints = lanes<std::int32_t, wide>;
       return {convert<float, wide>(Ints(first)), convert<float, wide>(Ints(second))};
     } else {
@@ -278,6 +278,7 @@ class VectorWindowSums {
   std::array<Index, std::size_t(Windows)> radius_;
   ClosedRange<Pixel> range_;
   std::size_t green_windows_;
+  float scale_;
   Index padded_ = 0, margin_ = 0, pitch_ = 0, ring_rows_ = 0;
   Index began_ = 0, next_row_ = 0;
   float missing_ = not_a_number<float>();  // a variable: GCC 12 builds a constant one lane by lane

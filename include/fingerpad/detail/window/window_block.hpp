@@ -1,10 +1,12 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// What a block of neighbouring windows holds of valid pixels, and by what their sums are weighed.
+// A block of neighbouring windows: their sums along a row, what they hold of valid pixels, and by
+// what their sums are weighed.
 #include <cstdint>
 
 #include "fingerpad/detail/vectors/lanes.hpp"
+#include "fingerpad/grid.hpp"
 #include "fingerpad/scalar.hpp"
 
 namespace fingerpad {
@@ -18,6 +20,17 @@ enum class Cover : std::uint8_t {
 };
 
 #if defined(FINGERPAD_HAS_VECTORS)
+/// Sums along one row over windows of 2 r + 1 columns: differences of its running sum.
+template <class T>
+struct AlongRow {
+  const T *right, *left;
+  AlongRow(const T* running, Index r) : right(running + r), left(running - r - 1) {}
+  template <int N>
+  [[gnu::always_inline]] lanes<T, N> at(Index j) const {
+    return load<T, N>(right + j) - load<T, N>(left + j);
+  }
+};
+
 /// 1 / n in float, NaN where n is 0.
 template <int N>
 [[gnu::always_inline]] inline lanes<float, N> reciprocal(lanes<std::uint32_t, N> n) {
