@@ -102,35 +102,37 @@ class DepthEstimator {
   /// Depth in mm of a frame, NaN where there is none, from its red and green channel. A warm start
   /// takes last frame's depth from `depth_mm`.
   template <grid Red, grid Green, class Depth, class Pixel>
-  requires writable_grid<Depth, S> DepthResult operator()(const Red& red,
-                                                          const Green& green,
-                                                          Depth&& depth_mm,
-                                                          Workspace<Pixel>& workspace) const {
+    requires(writable_grid<Depth, S>)
+  DepthResult operator()(const Red& red,
+                         const Green& green,
+                         Depth&& depth_mm,
+                         Workspace<Pixel>& workspace) const {
     const LazyView no_status(rows_, cols_, detail::IgnoredCell{});
     return band(0, rows_, red, green, depth_mm, no_status, workspace);
   }
 
   /// The same, with a PixelStatus per pixel.
   template <grid Red, grid Green, class Depth, class Status, class Pixel>
-  requires writable_grid<Depth, S> && writable_grid<Status, PixelStatus> DepthResult
-  operator()(const Red& red,
-             const Green& green,
-             Depth&& depth_mm,
-             Status&& status,
-             Workspace<Pixel>& workspace) const {
+    requires(writable_grid<Depth, S> && writable_grid<Status, PixelStatus>)
+  DepthResult operator()(const Red& red,
+                         const Green& green,
+                         Depth&& depth_mm,
+                         Status&& status,
+                         Workspace<Pixel>& workspace) const {
     return band(0, rows_, red, green, depth_mm, status, workspace);
   }
 
   /// Rows [first, last) of the frame only, for threads that share a frame; bit for bit what the
   /// whole frame gives.
   template <grid Red, grid Green, class Depth, class Status, class Pixel>
-    requires writable_grid<Depth, S> DepthResult band(Index first,
-                                                      Index last,
-                                                      const Red& red,
-                                                      const Green& green,
-                                                      Depth&& depth_mm,
-                                                      Status&& status,
-                                                      Workspace<Pixel>& workspace)
+    requires(writable_grid<Depth, S>)
+  DepthResult band(Index first,
+                   Index last,
+                   const Red& red,
+                   const Green& green,
+                   Depth&& depth_mm,
+                   Status&& status,
+                   Workspace<Pixel>& workspace)
   const {
     static_assert(std::is_same_v<cell_t<Red>, Pixel> && std::is_same_v<cell_t<Green>, Pixel>,
                   "the workspace was made for another type of cell");

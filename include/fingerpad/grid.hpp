@@ -20,21 +20,37 @@ inline namespace v0 {
 /// Signed, as Eigen::Index: strides may be negative and differences need no cast.
 using Index = std::ptrdiff_t;
 
+namespace detail {
+template <class G> concept has_size_members = requires(const G& g) {
+  g.rows();
+  g.cols();
+};
+template <class G> concept has_call_operator = requires(G& g, Index i) {
+  g(i, i);
+};
+}  // namespace detail
+
 /// The one customisation point. Required: static rows(g), cols(g), at(g, row, col), where `at` of
 /// a mutable grid returns something that can be assigned to. Optional, for grids in plain memory:
 /// static data(g), row_stride(g), col_stride(g), strides counted in cells.
 template <class G>
 struct grid_traits {
-  static constexpr Index rows(const G& g) requires requires { g.rows(); }
-  { return static_cast<Index>(g.rows()); }
-  static constexpr Index cols(const G& g) requires requires { g.cols(); }
-  { return static_cast<Index>(g.cols()); }
-  static constexpr decltype(auto) at(const G& g, Index row, Index col) requires requires {
-    g(row, col);
+  static constexpr Index rows(const G& g) requires(detail::has_size_members<G>) {
+    return static_cast<Index>(g.rows());
   }
-  { return g(row, col); }
-  static constexpr decltype(auto) at(G& g, Index row, Index col) requires requires { g(row, col); }
-  { return g(row, col); }
+  static constexpr Index cols(const G& g) requires(detail::has_size_members<G>) {
+    return static_cast<Index>(g.cols());
+  }
+  static constexpr decltype(auto) at(const G& g,
+                                     Index row,
+                                     Index col) requires(detail::has_call_operator<const G>) {
+    return g(row, col);
+  }
+  static constexpr decltype(auto) at(G& g,
+                                     Index row,
+                                     Index col) requires(detail::has_call_operator<G>) {
+    return g(row, col);
+  }
 };
 
 namespace detail {

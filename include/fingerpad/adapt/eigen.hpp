@@ -10,23 +10,28 @@
 namespace fingerpad {
 inline namespace v0 {
 
+namespace detail {
 template <class G>
-  requires std::derived_from<G, Eigen::DenseBase<G>> &&
-      (bool(Eigen::internal::traits<G>::Flags& Eigen::DirectAccessBit)) struct grid_traits<G> {
-    static Index rows(const G& g) { return g.rows(); }
-    static Index cols(const G& g) { return g.cols(); }
-    static decltype(auto) at(const G& g, Index row, Index col) { return g.coeff(row, col); }
-    static decltype(auto) at(G& g, Index row, Index col) requires requires { g.coeffRef(row, col); }
-    { return g.coeffRef(row, col); }
-    static auto* data(const G& g) { return g.data(); }
-    static auto* data(G& g) { return g.data(); }
-    static Index row_stride(const G& g) {
-      return G::IsRowMajor ? g.outerStride() : g.innerStride();
-    }
-    static Index col_stride(const G& g) {
-      return G::IsRowMajor ? g.innerStride() : g.outerStride();
-    }
-  };
+concept eigen_in_memory = std::derived_from<G, Eigen::DenseBase<G>> &&
+                          (Eigen::internal::traits<G>::Flags& Eigen::DirectAccessBit) != 0;
+template <class G> concept eigen_writable = requires(G& g, Index i) {
+  g.coeffRef(i, i);
+};
+}  // namespace detail
+
+template <detail::eigen_in_memory G>
+struct grid_traits<G> {
+  static Index rows(const G& g) { return g.rows(); }
+  static Index cols(const G& g) { return g.cols(); }
+  static decltype(auto) at(const G& g, Index row, Index col) { return g.coeff(row, col); }
+  static decltype(auto) at(G& g, Index row, Index col) requires(detail::eigen_writable<G>) {
+    return g.coeffRef(row, col);
+  }
+  static auto* data(const G& g) { return g.data(); }
+  static auto* data(G& g) { return g.data(); }
+  static Index row_stride(const G& g) { return G::IsRowMajor ? g.outerStride() : g.innerStride(); }
+  static Index col_stride(const G& g) { return G::IsRowMajor ? g.innerStride() : g.outerStride(); }
+};
 
 }  // namespace v0
 }  // namespace fingerpad

@@ -23,8 +23,8 @@ struct grid_traits<cv::Mat_<T>> {
     return m.template ptr<T>(static_cast<int>(i))[j];
   }
   static T& at(Image& m, Index i, Index j) { return m.template ptr<T>(static_cast<int>(i))[j]; }
-  static const T* data(const Image& m) requires has_stride { return m.template ptr<T>(); }
-  static T* data(Image& m) requires has_stride { return m.template ptr<T>(); }
+  static const T* data(const Image& m) requires(has_stride) { return m.template ptr<T>(); }
+  static T* data(Image& m) requires(has_stride) { return m.template ptr<T>(); }
   static Index row_stride(const Image& m) { return static_cast<Index>(m.step[0] / sizeof(T)); }
   static Index col_stride(const Image&) { return 1; }
 };

@@ -17,8 +17,16 @@
 namespace fingerpad {
 inline namespace v0 {
 
+namespace detail {
+template <class G> concept xtensor_in_memory = requires(G& g) {
+  g.data() + g.data_offset();
+  g.strides();
+};
+}  // namespace detail
+
 template <class G>
-requires xt::is_xexpression<G>::value struct grid_traits<G> {
+  requires(xt::is_xexpression<G>::value)
+struct grid_traits<G> {
   static Index rows(const G& g) { return static_cast<Index>(g.shape()[0]); }
   static Index cols(const G& g) { return static_cast<Index>(g.shape()[1]); }
   static decltype(auto) at(const G& g, Index row, Index col) {
@@ -27,14 +35,18 @@ requires xt::is_xexpression<G>::value struct grid_traits<G> {
   static decltype(auto) at(G& g, Index row, Index col) {
     return g(static_cast<std::size_t>(row), static_cast<std::size_t>(col));
   }
-  static auto* data(const G& g) requires requires { g.data() + g.data_offset(); }
-  { return g.data() + g.data_offset(); }
-  static auto* data(G& g) requires requires { g.data() + g.data_offset(); }
-  { return g.data() + g.data_offset(); }
-  static Index row_stride(const G& g) requires requires { g.strides(); }
-  { return static_cast<Index>(g.strides()[0]); }
-  static Index col_stride(const G& g) requires requires { g.strides(); }
-  { return static_cast<Index>(g.strides()[1]); }
+  static auto* data(const G& g) requires(detail::xtensor_in_memory<const G>) {
+    return g.data() + g.data_offset();
+  }
+  static auto* data(G& g) requires(detail::xtensor_in_memory<G>) {
+    return g.data() + g.data_offset();
+  }
+  static Index row_stride(const G& g) requires(detail::xtensor_in_memory<const G>) {
+    return static_cast<Index>(g.strides()[0]);
+  }
+  static Index col_stride(const G& g) requires(detail::xtensor_in_memory<const G>) {
+    return static_cast<Index>(g.strides()[1]);
+  }
 };
 
 }  // namespace v0

@@ -16,10 +16,10 @@ namespace detail {
 
 /// The number of S in a vector of VectorBytes; 1 where there are no vectors of S.
 template <class S, int VectorBytes = native_vector_bytes>
-inline constexpr int row_lanes = (std::same_as<S, float> || std::same_as<S, double>)&&VectorBytes >
-                                         0
-                                     ? VectorBytes / static_cast<int>(sizeof(S))
-                                     : 1;
+inline constexpr int row_lanes = 1;
+template <class S, int VectorBytes>
+  requires(VectorBytes > 0 && (std::same_as<S, float> || std::same_as<S, double>))
+inline constexpr int row_lanes<S, VectorBytes> = VectorBytes / static_cast<int>(sizeof(S));
 
 /// A vector of N numbers S, or S itself.
 template <class S, int N>
@@ -31,13 +31,14 @@ struct RowVector<S, 1> {
 
 /// Cells from[0], from[1], ... as one V of S.
 template <class V, class S, class T>
-  requires std::same_as<V, S> V load_cells(const T* from) {
-    return static_cast<S>(*from);
-  }
+  requires(std::same_as<V, S>)
+V load_cells(const T* from) {
+  return static_cast<S>(*from);
+}
 
 /// The cells of v, truncated to T where T is an integer, to to[0], to[1], ...
 template <class S, class V, class T>
-  requires std::same_as<V, S>
+  requires(std::same_as<V, S>)
 void store_cells(T* to, const V& v) {
   *to = static_cast<T>(v);
 }
