@@ -91,8 +91,8 @@ DepthRoot<S> bisect_depth(const Absorption<S>& fluid,
 
 /// Newton's method on F from `start_mm` (last frame's depth, or 0), kept inside the bracket that
 /// the signs of F close around the root. Converges to the roundoff of F: <= 1e-12 mm in double for
-/// depths up to 14 mm. Six steps are typical from 0, two from last frame; 60 at most. A dual number
-/// gets the exact derivative of the root with respect to whatever is seeded.
+/// depths up to 14 mm. Five steps are typical from 0, four from last frame; 60 at most. A dual
+/// number gets the exact derivative of the root with respect to whatever is seeded.
 template <scalar S>
 DepthRoot<S> newton_depth(const Absorption<S>& fluid,
                           const Pencil<S>& pencil,
