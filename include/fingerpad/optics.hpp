@@ -230,5 +230,48 @@ Point2<S> pixel_of(const Camera<S>& camera, const Point3<S>& point) {
   return {S(camera.center_x_px + point.x * px_per_mm), S(camera.center_y_px + point.y * px_per_mm)};
 }
 
+/// A camera without perspective: a height map, whose pixels see points straight above them. For
+/// maps that other sensors or simulations give.
+template <scalar S = double>
+struct OrthographicCamera {
+  S center_x_px = S(639) / S(2);  ///< pixel on the axis, along columns
+  S center_y_px = S(479) / S(2);  ///< the same along rows
+  S pitch_mm = S(8) / S(100);     ///< distance of neighbouring pixels' points, > 0
+};
+
+/// Refuses what no camera can have (parameter_error).
+template <scalar S>
+void expects_valid(const OrthographicCamera<S>& camera) {
+  expects(is_finite(camera.center_x_px), "OrthographicCamera", "center_x_px", camera.center_x_px,
+          "finite");
+  expects(is_finite(camera.center_y_px), "OrthographicCamera", "center_y_px", camera.center_y_px,
+          "finite");
+  expects(is_finite(camera.pitch_mm) && camera.pitch_mm > S(0), "OrthographicCamera", "pitch_mm",
+          camera.pitch_mm, "finite and > 0");
+}
+
+/// The same camera in another scalar.
+template <scalar To, scalar From>
+OrthographicCamera<To> cast(const OrthographicCamera<From>& c) {
+  return {To(c.center_x_px), To(c.center_y_px), To(c.pitch_mm)};
+}
+
+/// The point above (row, col) at height depth_mm; NaN depth gives NaN.
+template <scalar S>
+Point3<S> point_at(const OrthographicCamera<S>& camera,
+                   const S& row,
+                   const S& col,
+                   const S& depth_mm) {
+  return {S((col - camera.center_x_px) * camera.pitch_mm),
+          S((row - camera.center_y_px) * camera.pitch_mm), depth_mm};
+}
+
+/// The pixel that sees `point`.
+template <scalar S>
+Point2<S> pixel_of(const OrthographicCamera<S>& camera, const Point3<S>& point) {
+  return {S(camera.center_x_px + point.x / camera.pitch_mm),
+          S(camera.center_y_px + point.y / camera.pitch_mm)};
+}
+
 }  // namespace v0
 }  // namespace fingerpad

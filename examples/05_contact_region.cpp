@@ -1,0 +1,54 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+// Where a rod touches the pad, from depth maps: the threshold from the free pad, then area, depth
+// and outline of the contact. Usage: 05_contact_region [RECORDING]
+#include "fingerpad/contact_region.hpp"
+
+#include <cstdio>
+#include <opencv2/imgcodecs.hpp>
+#include <string>
+
+#include "fingerpad/adapt/opencv.hpp"
+#include "fingerpad/calibrate/contact_region.hpp"
+#include "fingerpad/depth.hpp"
+
+int main(int argc, char** argv) {
+  const std::string recording = argc > 1 ? argv[1] : FINGERPAD_EXAMPLE_RECORDING;
+  const cv::Mat pad = cv::imread(recording + "/reference.png");
+  const cv::Mat1f shape = cv::imread(recording + "/reference_depth.tiff", cv::IMREAD_UNCHANGED);
+  const cv::Mat frame = cv::imread(recording + "/frames/000005.png");
+  if (pad.empty() || shape.empty() || frame.empty()) {
+    std::fprintf(stderr, "%s: no reference or no frame 5 there\n", recording.c_str());
+    return 1;
+  }
+  const auto red = [](const cv::Mat& image) { return fingerpad::channel<std::uint8_t>(image, 2); };
+  const auto green = [](const cv::Mat& image) {
+    return fingerpad::channel<std::uint8_t>(image, 1);
+  };
+  const fingerpad::Camera<double> camera{.center_x_px = 239.5, .center_y_px = 239.5};
+  const fingerpad::Absorption<double> fluid;
+  const auto reference = fit_reference(camera, fluid, red(pad), green(pad), shape);
+  const fingerpad::DepthEstimator depth_of(camera, fluid, reference);
+  auto depth_workspace = depth_of.workspace<std::uint8_t>();
+
+  // Once per sensor: how much the free pad bulges. More frames of it would also tell the noise.
+  fingerpad::FreePadCalibration<> free_pad(camera, shape.rows, shape.cols);
+  free_pad.add(shape);
+  fingerpad::ContactTest test{.free_apex_mm = 13.03};
+  test.threshold_per_mm = free_pad.fit().threshold_per_mm;
+  const fingerpad::ContactRegion<> contact_of(camera, shape.rows, shape.cols, test);
+  auto workspace = contact_of.workspace();  // the last memory that is taken
+
+  // Every frame.
+  cv::Mat1f depth_mm(frame.size());
+  cv::Mat1b mask(frame.size());
+  depth_of(red(frame), green(frame), depth_mm, depth_workspace);
+  const fingerpad::ContactResult contact = contact_of(depth_mm, mask, workspace);
+
+  std::printf("threshold %.4f per mm\n", test.threshold_per_mm);
+  std::printf("contact of %.1f mm^2, %.2f mm deep, around (%.2f, %.2f) mm\n", contact.area_mm2,
+              contact.depth_mm, contact.center_mm.x, contact.center_mm.y);
+  const bool on_the_axis =
+      contact.center_mm.x * contact.center_mm.x + contact.center_mm.y * contact.center_mm.y < 0.25;
+  return on_the_axis && contact.area_mm2 > 80 && contact.area_mm2 < 120 ? 0 : 1;
+}
