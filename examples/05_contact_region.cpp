@@ -2,14 +2,13 @@
 // SPDX-License-Identifier: MIT
 // Where a rod touches the pad, from depth maps: the threshold from the free pad, then area, depth
 // and outline of the contact. Usage: 05_contact_region [RECORDING]
-#include "fingerpad/contact_region.hpp"
-
 #include <cstdio>
 #include <opencv2/imgcodecs.hpp>
 #include <string>
 
 #include "fingerpad/adapt/opencv.hpp"
 #include "fingerpad/calibrate/contact_region.hpp"
+#include "fingerpad/contact_region.hpp"
 #include "fingerpad/depth.hpp"
 
 int main(int argc, char** argv) {

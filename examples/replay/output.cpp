@@ -6,6 +6,7 @@
 
 #include <cmath>
 #include <cstdio>
+#include <limits>
 #include <regex>
 #include <system_error>
 #include <vector>
@@ -17,13 +18,34 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* columns = "frame,time_s,valid_share,depth_mean_mm,depth_max_mm";
+constexpr const char* columns =
+    "frame,time_s,valid_share,depth_mean_mm,depth_max_mm,"
+    "contact_area_mm2,contact_depth_mm,contact_center_x_mm,contact_center_y_mm,"
+    "reference_dot_row,reference_dot_col,object_x_mm,object_y_mm,object_z_mm,"
+    "rotation_x_rad,rotation_y_rad,rotation_z_rad";
+constexpr const char* dot_columns = "frame,row,col,x_px,y_px,x_mm,y_mm,z_mm,contact";
+
+/// Empty where there is no number.
+std::string cell(double value) {
+  char text[32] = "";
+  if (std::isfinite(value)) {
+    std::snprintf(text, sizeof text, "%.6f", value);
+  }
+  return text;
+}
+
+void close_file(std::ofstream& stream, const fs::path& file) {
+  stream.close();
+  if (!stream) {
+    fail(file, "cannot be written");
+  }
+}
 
 /// Whether a file of this path, relative to the output folder, is one that the program writes.
 bool is_ours(const std::string& relative) {
   static const std::regex ours(
       R"(frames\.csv|dots\.csv|depth|depth/\d{6}\.tiff|contact|contact/\d{6}\.png|pictures|)"
-      R"(pictures/(depth|side)_\d{6}\.png|pictures/montage\.png)");
+      R"(pictures/(depth|side|contact)_\d{6}\.png|pictures/(montage|motion)\.png)");
   return std::regex_match(relative, ours);
 }
 
@@ -165,22 +187,49 @@ FramesCsv::FramesCsv(const fs::path& file) : file_(file), stream_(file) {
 }
 
 void FramesCsv::write(const FrameRow& row) {
-  const auto cell = [](double value) {
-    char text[32] = "";
-    if (std::isfinite(value)) {
-      std::snprintf(text, sizeof text, "%.6f", value);
-    }
-    return std::string(text);
-  };
+  const auto& contact = row.contact;
   stream_ << row.frame << ',' << row.time_s << ',' << cell(row.valid_share) << ','
-          << cell(row.depth_mean_mm) << ',' << cell(row.depth_max_mm) << '\n';
+          << cell(row.depth_mean_mm) << ',' << cell(row.depth_max_mm) << ','
+          << cell(contact.area_mm2) << ',' << cell(contact.depth_mm) << ','
+          << cell(contact.center_mm.x) << ',' << cell(contact.center_mm.y);
+  const auto& motion = row.motion;
+  if (motion.reference.exists()) {
+    stream_ << ',' << motion.reference.row << ',' << motion.reference.col;
+  } else {
+    stream_ << ",,";
+  }
+  constexpr double none = std::numeric_limits<double>::quiet_NaN();
+  for (const double value : {motion.position_mm.x, motion.position_mm.y, motion.position_mm.z,
+                             motion.angles.x_rad, motion.angles.y_rad, motion.angles.z_rad}) {
+    stream_ << ',' << cell(motion.ok() ? value : none);
+  }
+  stream_ << '\n';
 }
 
 void FramesCsv::close() {
-  stream_.close();
-  if (!stream_) {
-    fail(file_, "cannot be written");
+  close_file(stream_, file_);
+}
+
+DotsCsv::DotsCsv(const fs::path& file) : file_(file), stream_(file) {
+  stream_ << dot_columns << '\n';
+}
+
+void DotsCsv::write(int frame, const FrameDots& dots) {
+  for (int i = 0; i < dots.dots_px.rows; ++i) {
+    for (int j = 0; j < dots.dots_px.cols; ++j) {
+      const cv::Vec2d& px = dots.dots_px(i, j);
+      const cv::Vec3d& mm = dots.dots_mm(i, j);
+      if (is_present(px)) {
+        stream_ << frame << ',' << i << ',' << j << ',' << cell(px[0]) << ',' << cell(px[1]) << ','
+                << cell(mm[0]) << ',' << cell(mm[1]) << ',' << cell(mm[2]) << ','
+                << (dots.in_contact(i, j) != 0 ? 1 : 0) << '\n';
+      }
+    }
   }
+}
+
+void DotsCsv::close() {
+  close_file(stream_, file_);
 }
 
 }  // namespace replay

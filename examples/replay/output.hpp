@@ -8,6 +8,9 @@
 #include <string>
 #include <vector>
 
+#include "contact_step.hpp"
+#include "motion_step.hpp"
+
 namespace replay {
 
 class OutputFolder {
@@ -45,12 +48,26 @@ struct FrameRow {
   double valid_share = 0;
   double depth_mean_mm = 0;  ///< NaN where no pixel is valid, then empty in the file
   double depth_max_mm = 0;
+  ContactResult contact;
+  fingerpad::ObjectMotionResult<double> motion;
 };
 
 class FramesCsv {
  public:
   explicit FramesCsv(const std::filesystem::path& file);
   void write(const FrameRow& row);
+  void close();  ///< throws Failure where anything could not be written
+
+ private:
+  std::filesystem::path file_;
+  std::ofstream stream_;
+};
+
+/// dots.csv: one line for each dot that was found in a frame.
+class DotsCsv {
+ public:
+  explicit DotsCsv(const std::filesystem::path& file);
+  void write(int frame, const FrameDots& dots);
   void close();  ///< throws Failure where anything could not be written
 
  private:

@@ -4,63 +4,18 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <opencv2/imgproc.hpp>
 
 #include "canvas.hpp"
+#include "contact_picture.hpp"
 #include "depth_colours.hpp"
+#include "picture_parts.hpp"
 #include "side_view.hpp"
 
 namespace replay {
 namespace {
 
-constexpr double letter = 9;  // height of a capital in the large pictures
 constexpr double dent_worth_showing_mm = 0.3;
-
-template <class... Values>
-std::string format(const char* pattern, Values... values) {
-  char text[160];
-  std::snprintf(text, sizeof text, pattern, values...);
-  return text;
-}
-
-std::string caption_of(const Scene& scene) {
-  const std::string frame = "frame " + std::to_string(scene.frame);
-  return scene.time_s.empty() ? frame : frame + ",  t = " + scene.time_s + " s";
-}
-
-/// A round number of mm that is a fifth of the image or a little less.
-double scale_bar_mm(double image_width_mm) {
-  double best = 1e-3;
-  for (double decade = 1e-3; decade < 1e4; decade *= 10) {
-    for (const double digit : {1.0, 2.0, 5.0}) {
-      best = digit * decade < 0.21 * image_width_mm ? digit * decade : best;
-    }
-  }
-  return best;
-}
-
-void paint_scale_bar(Canvas& canvas, Spot left, double length, double mm, double text_height) {
-  const double right = left.x + length;
-  canvas.line(left, {right, left.y}, 2.0, ink::black);
-  canvas.line({left.x, left.y - 4}, {left.x, left.y + 4}, 1.2, ink::black);
-  canvas.line({right, left.y - 4}, {right, left.y + 4}, 1.2, ink::black);
-  canvas.text({right + 8, left.y + text_height / 2}, format("%g mm at the plate", mm), text_height,
-              ink::black);
-}
-
-/// The camera's image, 8 bit, with `brightest` shown as nearly white.
-cv::Mat displayed(const cv::Mat& image, double brightest, cv::Size size) {
-  const double units = image.depth() == CV_16U ? 256 : 1;
-  cv::Mat shown;
-  cv::cvtColor(image, shown, image.channels() == 4 ? cv::COLOR_BGRA2BGR : cv::COLOR_BGR2RGB);
-  if (image.channels() == 3) {
-    shown = image;
-  }
-  shown.convertTo(shown, CV_8U, 245 / (brightest * units));
-  cv::resize(shown, shown, size, 0, 0, size.width < image.cols ? cv::INTER_AREA : cv::INTER_CUBIC);
-  return shown;
-}
 
 /// Little triangles on both sides of `rectangle` that point at the height `y`.
 void paint_row_markers(Canvas& canvas, const cv::Rect2d& rectangle, double y, double size) {
@@ -130,7 +85,8 @@ cv::Mat Painter::depth(const Scene& scene) const {
   const double below = map.y + map.height;
   Canvas canvas(right + 116, below + 66);
   canvas.text({map.x, 34}, "Depth of the membrane", 1.3 * letter, ink::black, Align::left, true);
-  canvas.text({right + 96, 34}, caption_of(scene), letter, ink::black, Align::right);
+  canvas.text({right + 96, 34}, caption(scene.frame, scene.time_s), letter, ink::black,
+              Align::right);
   paint_map(canvas, map, scene.depth_mm, in_pad_, scale_, 1);
   paint_legend(canvas, {right + 30, map.y + 50, 18, map.height - 100}, scale_, letter);
   const double row_y = map.y + (scene.section.row + 0.5) * shrink;
@@ -162,7 +118,8 @@ cv::Mat Painter::side(const Scene& scene) const {
   canvas.text({28, 34},
               dented ? "Side view through the deepest dent" : "Side view through the deepest point",
               1.3 * letter, ink::black, Align::left, true);
-  canvas.text({frame.rectangle.x + width, 34}, caption_of(scene), letter, ink::black, Align::right);
+  canvas.text({frame.rectangle.x + width, 34}, caption(scene.frame, scene.time_s), letter,
+              ink::black, Align::right);
   const Profile profile = profile_of(camera_, scene.depth_mm, scene.section.row);
   const Profile free_profile = profile_of(camera_, free_depth_mm_, scene.section.row);
   paint_profile(canvas, frame, profile, free_profile, scale_, 1.8);
@@ -218,9 +175,11 @@ cv::Mat Painter::montage(const std::string& title, const std::vector<Scene>& sce
   for (std::size_t k = 0; k < scenes.size(); ++k) {
     const Scene& scene = scenes[k];
     const double x = left + static_cast<double>(k) * (cell + gap);
-    canvas.text({x + cell / 2, 66}, caption_of(scene), letter, ink::black, Align::centre);
+    canvas.text({x + cell / 2, 66}, caption(scene.frame, scene.time_s), letter, ink::black,
+                Align::centre);
     cv::Mat paper = canvas.area({x, camera_y, cell, height});
     displayed(scene.image, brightest_, paper.size()).copyTo(paper);
+    paint_outline(canvas, {x, camera_y, cell, height}, scene.contact_mask, 1.6);
     paint_map(canvas, {x, depth_y, cell, height}, scene.depth_mm, in_pad_, scale_, 1);
     const cv::Rect2d change_map(x, change_y, cell, height);
     cv::Mat_<float> pressed_in_mm;
@@ -233,7 +192,8 @@ cv::Mat Painter::montage(const std::string& title, const std::vector<Scene>& sce
                   profile_of(camera_, free_depth_mm_, scene.section.row), scale_, 1.2);
     paint_axes(canvas, frame, small, k == 0 ? Labels::numbers : Labels::x_numbers);
   }
-  canvas.text({left, camera_y - 10}, "camera image, brightened", small, ink::grey);
+  canvas.text({left, camera_y - 10}, "camera image, brightened; contact outlined", small,
+              ink::grey);
   canvas.text({left, depth_y - 10}, "depth, a line every 1 mm", small, ink::grey);
   canvas.text({left, change_y - 10}, "pressed in (red) or bulging out (blue) against the free pad",
               small, ink::grey);

@@ -1,12 +1,15 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// What a person would look at: false-colour depth, a side view, and a recording at a glance.
+// What a person would look at: false-colour depth, a side view, the contact over the camera's
+// image, and a recording at a glance.
 #include <opencv2/core.hpp>
 #include <string>
 #include <vector>
 
+#include "contact_step.hpp"
 #include "depth_colours.hpp"
+#include "motion_step.hpp"
 #include "sensor.hpp"
 
 namespace replay {
@@ -28,6 +31,9 @@ struct Scene {
   double valid_share = 0;
   double depth_mean_mm = 0;  ///< NaN where no pixel is valid
   double depth_max_mm = 0;
+  cv::Mat_<uchar> contact_mask;  ///< nonzero: in contact
+  ContactResult contact;
+  FrameDots dots;
 };
 
 class Painter {
@@ -40,6 +46,8 @@ class Painter {
 
   cv::Mat depth(const Scene& scene) const;
   cv::Mat side(const Scene& scene) const;
+  /// `initial_px` are the free pad's dots.
+  cv::Mat contact(const Scene& scene, const DotGrid& initial_px) const;
   /// One column a scene: camera image, depth, its change and side view.
   cv::Mat montage(const std::string& title, const std::vector<Scene>& scenes) const;
 

@@ -110,6 +110,16 @@ cv::Mat FrameSource::next() {
   return frame;
 }
 
+cv::Mat next_frame(FrameSource& frames, cv::Size size) {
+  cv::Mat image = frames.next();
+  if (image.size() != size) {
+    fail(frames.last_file(), "is " + size_of(image) + ", but the reference is " +
+                                 std::to_string(size.width) + " x " + std::to_string(size.height) +
+                                 " px");
+  }
+  return image;
+}
+
 Recording open_recording(const fs::path& folder) {
   std::error_code error;
   if (!fs::is_directory(folder, error)) {
@@ -128,6 +138,9 @@ Recording open_recording(const fs::path& folder) {
   const auto& video = recording.sensor.video;
   recording.frames =
       video ? FrameSource::of_video(folder / *video) : FrameSource::of_folder(folder / "frames");
+  if (fs::is_directory(folder / "free", error)) {
+    recording.free_frames = FrameSource::of_folder(folder / "free");
+  }
   recording.times_s = read_times(folder / "signals.csv", recording.frames.size());
   return recording;
 }

@@ -37,11 +37,15 @@ class FrameSource {
   int position_ = 0;
 };
 
+/// The next frame, which must be of `size`; throws Failure.
+cv::Mat next_frame(FrameSource& frames, cv::Size size);
+
 struct Recording {
   Sensor sensor;
   cv::Mat reference;                ///< the free pad, 8- or 16-bit colour
   cv::Mat_<float> reference_depth;  ///< mm, NaN outside the pad
   FrameSource frames;
+  FrameSource free_frames;             ///< more frames of the free pad; may be none
   std::map<int, std::string> times_s;  ///< of the frames that signals.csv names, as written there
 };
 

@@ -132,15 +132,29 @@ TEST_CASE("a recording gives a table and one depth map per frame") {
   std::ifstream table(work.out() / "frames.csv");
   std::string line;
   std::getline(table, line);
-  CHECK(line == "frame,time_s,valid_share,depth_mean_mm,depth_max_mm");
+  CHECK(line ==
+        "frame,time_s,valid_share,depth_mean_mm,depth_max_mm,"
+        "contact_area_mm2,contact_depth_mm,contact_center_x_mm,contact_center_y_mm,"
+        "reference_dot_row,reference_dot_col,object_x_mm,object_y_mm,object_z_mm,"
+        "rotation_x_rad,rotation_y_rad,rotation_z_rad");
+  const auto columns = std::count(line.begin(), line.end(), ',');
   std::getline(table, line);
   CHECK(line.substr(0, 7) == "0,0.00,");
+  // the free pad: no contact, and so no place of it and no object
+  CHECK(line.find(",0.000000,,,,,,,,,,,") != std::string::npos);
+  CHECK(std::count(line.begin(), line.end(), ',') == columns);
   std::getline(table, line);
   CHECK(line.substr(0, 3) == "1,,");
+  CHECK(line.find(",,,,,,") == std::string::npos);  // a rod touches: every column is there
+  CHECK(std::count(line.begin(), line.end(), ',') == columns);
   std::getline(table, line);
   CHECK(line.substr(0, 7) == "2,0.25,");
   CHECK_FALSE(std::getline(table, line));
   CHECK(fs::exists(work.out() / "depth" / "000002.tiff"));
+  CHECK(fs::exists(work.out() / "contact" / "000002.png"));
+  std::ifstream dots(work.out() / "dots.csv");
+  std::getline(dots, line);
+  CHECK(line == "frame,row,col,x_px,y_px,x_mm,y_mm,z_mm,contact");
   CHECK_FALSE(fs::exists(work.out() / "pictures"));
 }
 

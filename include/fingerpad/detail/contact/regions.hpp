@@ -99,8 +99,8 @@ class Regions {
     region.end = tail_;
   }
 
-  /// Frees what does not fulfil `belongs` of the region that was found last. It leaves the queue, or
-  /// a pixel that regions take in turns would be there twice.
+  /// Frees what does not fulfil `belongs` of the region that was found last. It leaves the queue,
+  /// or a pixel that regions take in turns would be there twice.
   template <class Belongs>
   void trim(Region& region, const Belongs& belongs) {
     tail_ = region.begin;

@@ -1,0 +1,28 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+#pragma once
+// The printed dots of one frame, as the library takes them: a grid of pixels in print order.
+#include <limits>
+#include <opencv2/core.hpp>
+#include <vector>
+
+#include "fingerpad/adapt/opencv.hpp"
+#include "fingerpad/dots.hpp"
+
+namespace replay {
+
+/// rows x cols of [x_px, y_px], NaN where a dot was not found.
+using DotGrid = cv::Mat_<cv::Vec2d>;
+using fingerpad::is_present;
+
+inline cv::Vec2d no_dot() {
+  return cv::Vec2d::all(std::numeric_limits<double>::quiet_NaN());
+}
+inline DotGrid no_dots(cv::Size size) {
+  return DotGrid(size, no_dot());
+}
+
+/// Centers of dark spots, in any order.
+using Blobs = std::vector<cv::Vec2d>;
+
+}  // namespace replay

@@ -1,0 +1,40 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+#include "motion_step.hpp"
+
+#include "fingerpad/adapt/opencv.hpp"
+
+namespace replay {
+
+MotionStep::MotionStep(const Sensor& sensor,
+                       const DotGrid& initial_px,
+                       const cv::Mat_<float>& free_depth_mm)
+    : camera_(sensor.camera) {
+  if (!initial_px.empty()) {
+    motion_.emplace(in_space(initial_px, free_depth_mm));
+    state_.emplace(motion_->start());
+  }
+}
+
+cv::Mat_<cv::Vec3d> MotionStep::in_space(const DotGrid& dots_px,
+                                         const cv::Mat_<float>& depth_mm) const {
+  cv::Mat_<cv::Vec3d> dots_mm(dots_px.size());
+  fingerpad::spatial_dots(camera_, dots_px, depth_mm, dots_mm);
+  return dots_mm;
+}
+
+FrameDots MotionStep::operator()(const DotGrid& dots_px,
+                                 const cv::Mat_<float>& depth_mm,
+                                 const cv::Mat_<uchar>& contact) {
+  FrameDots frame;
+  if (motion_) {
+    frame.dots_px = dots_px;
+    frame.dots_mm = in_space(dots_px, depth_mm);
+    frame.in_contact.create(dots_px.size());
+    fingerpad::contact_at_dots(dots_px, contact, frame.in_contact);
+    frame.motion = (*motion_)(frame.dots_mm, frame.in_contact, *state_);
+  }
+  return frame;
+}
+
+}  // namespace replay

@@ -1,0 +1,49 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+#pragma once
+// All that is written of a recording, into a folder that appears when it is complete.
+#include <filesystem>
+#include <optional>
+#include <vector>
+
+#include "output.hpp"
+#include "pictures.hpp"
+#include "recording.hpp"
+#include "replay.hpp"
+
+namespace replay {
+
+class Writer {
+ public:
+  /// For `total` frames of a recording whose free pad has `initial_dots`, which may be none. The
+  /// options must outlive the writer. Throws Failure, here and below.
+  Writer(const Recording& recording,
+         const Options& options,
+         const DotGrid& initial_dots,
+         int total);
+
+  void operator()(Scene scene);
+  /// Writes what concerns all frames, and moves the folder to its place.
+  void finish();
+
+  const std::vector<FrameRow>& rows() const { return rows_; }
+  const std::filesystem::path& place() const { return output_.place(); }
+
+ private:
+  std::filesystem::path file(const char* folder,
+                             const char* stem,
+                             const Scene& scene,
+                             const char* extension) const;
+
+  const Options& options_;
+  Painter painter_;
+  DotGrid initial_dots_;
+  int total_;
+  OutputFolder output_;
+  FramesCsv table_;
+  std::optional<DotsCsv> dots_;
+  std::vector<FrameRow> rows_;
+  std::vector<Scene> columns_;  ///< of the montage
+};
+
+}  // namespace replay

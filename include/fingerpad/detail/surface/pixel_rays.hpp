@@ -1,0 +1,93 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+#pragma once
+// What a camera's pixels see at a depth, with all that does not depend on the depth computed
+// beforehand: point_at() of optics.hpp without its square roots and divisions.
+#include <cmath>
+#include <cstddef>
+
+#include "fingerpad/detail/vectors/line_vector.hpp"
+#include "fingerpad/dots.hpp"
+#include "fingerpad/grid.hpp"
+#include "fingerpad/optics.hpp"
+#include "fingerpad/scalar.hpp"
+
+namespace fingerpad {
+inline namespace v0 {
+namespace detail {
+
+template <class CameraType>
+class PixelRays;
+
+/// A pixel's ray is straight and lies in a plane with the axis: its point is (column - center, row
+/// - center) times a number that grows linearly with the depth. Two numbers per pixel.
+template <scalar S>
+class PixelRays<Camera<S>> {
+ public:
+  using Scalar = S;
+
+  PixelRays(const Camera<S>& camera, Index rows, Index cols)
+      : center_x_(camera.center_x_px), center_y_(camera.center_y_px), cols_(cols) {
+    rays_.reserve(static_cast<std::size_t>(rows * cols));
+    for (Index i = 0; i < rows; ++i) {
+      for (Index j = 0; j < cols; ++j) {
+        rays_.push_back(ray(camera, i, j));
+      }
+    }
+  }
+
+  Point3<S> operator()(Index row, Index col, const S& depth_mm) const {
+    const auto& ray = rays_[static_cast<std::size_t>(row * cols_ + col)];
+    const S mm_per_px = ray.at_plate + ray.per_mm * depth_mm;
+    return {S((S(static_cast<double>(col)) - center_x_) * mm_per_px),
+            S((S(static_cast<double>(row)) - center_y_) * mm_per_px), depth_mm};
+  }
+
+ private:
+  struct MmPerPx {
+    S at_plate;
+    S per_mm;
+  };
+
+  static MmPerPx ray(const Camera<S>& camera, Index row, Index col) {
+    using std::sqrt;
+    const S x = S(static_cast<double>(col)) - camera.center_x_px;
+    const S y = S(static_cast<double>(row)) - camera.center_y_px;
+    const S r_sq = x * x + y * y;
+    // on the axis, the limit from beside it
+    const S r = value(r_sq) == 0 ? S(1) / S(1048576) : S(sqrt(r_sq));
+    // one depth, far enough for the difference of two points to keep its digits
+    const S far = S(64);
+    const S near_x = point_at(camera, camera.center_y_px, S(camera.center_x_px + r), S(0)).x;
+    const S far_x = point_at(camera, camera.center_y_px, S(camera.center_x_px + r), far).x;
+    return {S(near_x / r), S((far_x - near_x) / (far * r))};
+  }
+
+  S center_x_;
+  S center_y_;
+  Index cols_;
+  line_vector<MmPerPx> rays_;
+};
+
+/// Nothing to remember.
+template <scalar S>
+class PixelRays<OrthographicCamera<S>> {
+ public:
+  using Scalar = S;
+
+  PixelRays(const OrthographicCamera<S>& camera, Index, Index) : camera_(camera) {}
+
+  Point3<S> operator()(Index row, Index col, const S& depth_mm) const {
+    return point_at(camera_, S(static_cast<double>(row)), S(static_cast<double>(col)), depth_mm);
+  }
+
+ private:
+  OrthographicCamera<S> camera_;
+};
+
+template <class CameraType>
+using camera_scalar_t = typename PixelRays<CameraType>::Scalar;
+
+}  // namespace detail
+}  // namespace v0
+}  // namespace fingerpad

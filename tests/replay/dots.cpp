@@ -1,0 +1,411 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+#include "replay/dots.hpp"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <opencv2/core.hpp>
+#include <opencv2/imgproc.hpp>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "replay/dots_match.hpp"
+#include "replay/dots_track.hpp"
+#include "replay/failure.hpp"
+#include "replay/recording.hpp"
+#include "support/catch.hpp"
+
+namespace fs = std::filesystem;
+using replay::DotGrid;
+using replay::is_present;
+
+namespace {
+
+const fs::path bundled =
+    fs::path(__FILE__).parent_path().parent_path().parent_path() / "examples" / "data" / "press";
+
+struct Recorded {
+  replay::Recording recording = replay::open_recording(bundled);
+  std::vector<cv::Mat> frames;
+
+  Recorded() {
+    recording.frames.seek(0);
+    for (int k = 0; k < recording.frames.size(); ++k) {
+      frames.push_back(recording.frames.next());
+    }
+  }
+  replay::DotSource source(const fs::path& folder = bundled) const {
+    return replay::DotSource(folder, recording.sensor, recording.reference,
+                             recording.reference_depth, recording.frames.size());
+  }
+};
+
+/// Read once: the images are the same in every test.
+const Recorded& press() {
+  static const Recorded recorded;
+  return recorded;
+}
+
+/// Where the dots of the bundled recording really are, per frame. The file has float32 triples
+/// behind a header that ends with a line feed; on the free pad, its first step, the dots lie on
+/// multiples of the pitch in plan, and that is their place in the print.
+std::vector<DotGrid> true_dots() {
+  std::ifstream file(bundled / "membrane" / "dots.npy", std::ios::binary);
+  std::string header;
+  std::getline(file, header);
+  const std::string values(std::istreambuf_iterator<char>(file), {});
+  const std::size_t steps = press().frames.size();
+  const std::size_t count = values.size() / (steps * 3 * sizeof(float));
+  REQUIRE(header.find("'<f4'") != std::string::npos);
+  REQUIRE(header.find("(" + std::to_string(steps) + ", " + std::to_string(count) + ", 3)") !=
+          std::string::npos);
+  const auto value = [&](std::size_t step, std::size_t dot, std::size_t axis) {
+    float number = 0;
+    const std::size_t at = ((step * count + dot) * 3 + axis) * sizeof(float);
+    values.copy(reinterpret_cast<char*>(&number), sizeof(float), at);
+    return static_cast<double>(number);
+  };
+  const replay::Dots& print = *press().recording.sensor.dots;
+  std::vector<DotGrid> dots(steps);
+  for (std::size_t step = 0; step < steps; ++step) {
+    dots[step] = replay::no_dots({print.cols, print.rows});
+    for (std::size_t dot = 0; dot < count; ++dot) {
+      const auto col = std::lround(value(0, dot, 0) / print.pitch_mm) + (print.cols - 1) / 2;
+      const auto row = std::lround(value(0, dot, 1) / print.pitch_mm) + (print.rows - 1) / 2;
+      const auto pixel = fingerpad::pixel_of(
+          press().recording.sensor.camera,
+          fingerpad::Point3<double>{value(step, dot, 0), value(step, dot, 1), value(step, dot, 2)});
+      dots[step](static_cast<int>(row), static_cast<int>(col)) = {pixel.x, pixel.y};
+    }
+  }
+  return dots;
+}
+
+struct Comparison {
+  int true_count = 0;
+  int found = 0;
+  int wrong = 0;      ///< farther than half a pitch from the truth, or no dot at all
+  double rms_px = 0;  ///< of found dots within 16 mm of the axis on the plate
+};
+
+Comparison compare(const DotGrid& found, const DotGrid& truth) {
+  const replay::Sensor& sensor = press().recording.sensor;
+  const cv::Vec2d axis(sensor.camera.center_x_px, sensor.camera.center_y_px);
+  REQUIRE(found.size() == truth.size());
+  Comparison result;
+  double sum = 0;
+  int inner = 0;
+  for (int i = 0; i < truth.rows; ++i) {
+    for (int j = 0; j < truth.cols; ++j) {
+      result.true_count += is_present(truth(i, j)) ? 1 : 0;
+      if (!is_present(found(i, j))) {
+        continue;
+      }
+      ++result.found;
+      const double error = cv::norm(found(i, j) - truth(i, j));
+      // Near the rim dots lie closer together in the image than half a pitch on the plate.
+      const bool right = error < 3;
+      result.wrong += right ? 0 : 1;
+      if (right && cv::norm(truth(i, j) - axis) * sensor.camera.pitch_mm < 16) {
+        sum += error * error;
+        ++inner;
+      }
+    }
+  }
+  result.rms_px = std::sqrt(sum / (inner > 0 ? inner : 1));
+  return result;
+}
+
+/// Largest distance of dots that both grids have; both must have the same.
+double largest_distance(const DotGrid& a, const DotGrid& b) {
+  REQUIRE(a.size() == b.size());
+  double largest = 0;
+  for (int i = 0; i < a.rows; ++i) {
+    for (int j = 0; j < a.cols; ++j) {
+      REQUIRE(is_present(a(i, j)) == is_present(b(i, j)));
+      if (is_present(a(i, j))) {
+        largest = (std::max)(largest, cv::norm(a(i, j) - b(i, j)));
+      }
+    }
+  }
+  return largest;
+}
+
+class Folder {
+ public:
+  Folder() {
+    std::string pattern = (fs::temp_directory_path() / "fingerpad.XXXXXX").string();
+    path_ = ::mkdtemp(pattern.data());
+  }
+  ~Folder() { fs::remove_all(path_); }
+  Folder(const Folder&) = delete;
+  Folder& operator=(const Folder&) = delete;
+  const fs::path& path() const { return path_; }
+  void write(const std::string& text) const { std::ofstream(path_ / "dots.csv") << text; }
+
+ private:
+  fs::path path_;
+};
+
+std::string lines_of(int frame, const DotGrid& dots) {
+  std::string lines;
+  for (int i = 0; i < dots.rows; ++i) {
+    for (int j = 0; j < dots.cols; ++j) {
+      if (is_present(dots(i, j))) {
+        lines += std::to_string(frame) + "," + std::to_string(i) + "," + std::to_string(j) + "," +
+                 std::to_string(dots(i, j)[0]) + "," + std::to_string(dots(i, j)[1]) + "\n";
+      }
+    }
+  }
+  return lines;
+}
+
+cv::Mat turned(const cv::Mat& image, double degrees) {
+  const auto& camera = press().recording.sensor.camera;
+  const cv::Point2f axis(static_cast<float>(camera.center_x_px),
+                         static_cast<float>(camera.center_y_px));
+  cv::Mat result;
+  cv::warpAffine(image, result, cv::getRotationMatrix2D(axis, degrees, 1), image.size(),
+                 cv::INTER_LINEAR);
+  return result;
+}
+
+}  // namespace
+
+TEST_CASE("the dots of the bundled recording are found where they are") {
+  auto source = press().source();
+  REQUIRE(source.present());
+  CHECK(source.how() == "found in the frames");
+  const std::vector<DotGrid> truth = true_dots();
+  const auto check = [](const DotGrid& found, const DotGrid& true_dots_of_frame) {
+    const Comparison result = compare(found, true_dots_of_frame);
+    CHECK(result.found >= 0.99 * result.true_count);
+    CHECK(result.wrong == 0);
+    CHECK(result.rms_px < 0.08);
+  };
+  check(source.initial(), truth.front());
+  for (std::size_t k = 0; k < truth.size(); ++k) {
+    INFO("frame " << k);
+    check(source.of(static_cast<int>(k), press().frames[k]), truth[k]);
+  }
+}
+
+TEST_CASE("a 16-bit frame shows the dots of the 8-bit frame") {
+  cv::Mat wide;
+  press().frames[6].convertTo(wide, CV_16U, 256);
+  CHECK(largest_distance(press().source().of(6, press().frames[6]), press().source().of(6, wide)) <
+        1e-4);
+}
+
+TEST_CASE("a print that is turned is found turned") {
+  const double degrees = GENERATE(-8.0, 3.0, 8.0);
+  const auto& recording = press().recording;
+  const replay::DotSource source(bundled, recording.sensor, turned(recording.reference, degrees),
+                                 recording.reference_depth, 1);
+  REQUIRE(source.present());
+  const double angle = degrees * CV_PI / 180;
+  const cv::Matx22d turn(std::cos(angle), std::sin(angle), -std::sin(angle), std::cos(angle));
+  const cv::Vec2d axis(recording.sensor.camera.center_x_px, recording.sensor.camera.center_y_px);
+  DotGrid truth = true_dots().front();
+  for (cv::Vec2d& dot : truth) {
+    dot = axis + turn * (dot - axis);
+  }
+  const Comparison result = compare(source.initial(), truth);
+  CHECK(result.found >= 0.95 * result.true_count);
+  CHECK(result.wrong == 0);
+  CHECK(result.rms_px < 0.12);
+}
+
+TEST_CASE("a black frame shows no dots, and the next frame has them again") {
+  auto source = press().source();
+  const std::vector<DotGrid> truth = true_dots();
+  source.of(5, press().frames[5]);
+  const cv::Mat black(press().frames[6].size(), CV_8UC3, cv::Scalar::all(0));
+  CHECK(fingerpad::count_present(source.of(6, black)) == 0);
+  const Comparison result = compare(source.of(7, press().frames[7]), truth[7]);
+  CHECK(result.found >= 0.99 * result.true_count);
+  CHECK(result.wrong == 0);
+}
+
+TEST_CASE("what hides a part of the frame hides only dots there") {
+  const std::vector<DotGrid> truth = true_dots();
+  const int level = GENERATE(0, 30, 255);
+  auto source = press().source();
+  source.of(5, press().frames[5]);
+  const cv::Rect hidden(150, 200, 110, 90);
+  cv::Mat frame = press().frames[6].clone();
+  frame(hidden) = cv::Scalar::all(level);
+  const DotGrid found = source.of(6, frame);
+  CHECK(compare(found, truth[6]).wrong == 0);
+  const cv::Point margin(8, 8);
+  const cv::Rect near(hidden.tl() - margin, hidden.br() + margin);
+  const cv::Rect inside(hidden.tl() + margin, hidden.br() - margin);
+  for (int i = 0; i < found.rows; ++i) {
+    for (int j = 0; j < found.cols; ++j) {
+      if (!is_present(truth[6](i, j))) {
+        continue;
+      }
+      const cv::Point at(cv::Point2d(truth[6](i, j)[0], truth[6](i, j)[1]));
+      INFO("row " << i << ", col " << j);
+      CHECK((near.contains(at) || is_present(found(i, j))));
+      CHECK_FALSE((inside.contains(at) && is_present(found(i, j))));
+    }
+  }
+  const Comparison after = compare(source.of(7, press().frames[7]), truth[7]);
+  CHECK(after.found >= 0.99 * after.true_count);
+  CHECK(after.wrong == 0);
+}
+
+TEST_CASE("noise alone is no print") {
+  cv::Mat noise(press().recording.reference.size(), CV_8UC3);
+  cv::theRNG().state = 20110801;
+  cv::randn(noise, cv::Scalar::all(60), cv::Scalar::all(1));
+  const replay::DotSource source(bundled, press().recording.sensor, noise,
+                                 press().recording.reference_depth, 1);
+  CHECK_FALSE(source.present());
+  CHECK(source.how() == "none");
+}
+
+TEST_CASE("without a word about dots there are none") {
+  replay::Sensor sensor = press().recording.sensor;
+  sensor.dots.reset();
+  replay::DotSource source(bundled, sensor, press().recording.reference,
+                           press().recording.reference_depth, 11);
+  CHECK_FALSE(source.present());
+  CHECK(source.of(0, press().frames[0]).empty());
+}
+
+TEST_CASE("smooth moves of several pitches keep the labels") {
+  // A square print of 19 x 19 dots held at the rim; the middle moves and turns as one.
+  constexpr int count = 19;
+  constexpr double pitch_px = 17;
+  std::mt19937 random(20110801);
+  std::uniform_real_distribution<double> unit(-1, 1);
+  for (int trial = 0; trial < 4; ++trial) {
+    replay::FirstOrder free_pad;
+    free_pad.found = DotGrid(count, count);
+    for (int i = 0; i < count; ++i) {
+      for (int j = 0; j < count; ++j) {
+        free_pad.found(i, j) = pitch_px * cv::Vec2d(j, i) + cv::Vec2d(50, 50);
+      }
+    }
+    free_pad.expected = free_pad.found;
+    replay::DotTracker tracker(free_pad);
+    const cv::Vec2d center = free_pad.found(count / 2, count / 2);
+    const cv::Vec2d shift = pitch_px * cv::Vec2d(1.5 * unit(random), 1.5 * unit(random));
+    const double turn = 0.4 * unit(random);
+    DotGrid truth(count, count);
+    replay::Blobs blobs;
+    for (int i = 0; i < count; ++i) {
+      for (int j = 0; j < count; ++j) {
+        const cv::Vec2d from = free_pad.found(i, j) - center;
+        const double rest = (std::max)(0.0, 1 - from.dot(from) / std::pow(11 * pitch_px, 2));
+        const double angle = turn * rest * rest;
+        const cv::Matx22d rotation(std::cos(angle), -std::sin(angle), std::sin(angle),
+                                   std::cos(angle));
+        truth(i, j) = center + rotation * from + rest * rest * shift;
+        if (unit(random) < 0.9) {  // one in twenty is not seen
+          blobs.push_back(truth(i, j) + 0.1 * cv::Vec2d(unit(random), unit(random)));
+        }
+      }
+    }
+    for (int k = 0; k < 10; ++k) {  // and some spots are no dots
+      blobs.push_back(center + 9 * pitch_px * cv::Vec2d(unit(random), unit(random)));
+    }
+    const DotGrid found = tracker.track(blobs);
+    INFO("trial " << trial << ", shift " << shift << " px, turn " << turn);
+    CHECK(static_cast<int>(fingerpad::count_present(found)) > 85 * count * count / 100);
+    int wrong = 0;
+    for (int i = 0; i < count; ++i) {
+      for (int j = 0; j < count; ++j) {
+        wrong += cv::norm(found(i, j) - truth(i, j)) > pitch_px / 2 ? 1 : 0;
+      }
+    }
+    CHECK(wrong == 0);
+  }
+}
+
+TEST_CASE("dots.csv is read as it was written, and goes before the frames") {
+  auto found = press().source();
+  const DotGrid first = found.of(0, press().frames[0]);
+  const DotGrid third = found.of(2, press().frames[2]);
+  const Folder folder;
+  folder.write("frame,row,col,x_px,y_px\r\n" + lines_of(2, third) + "\n" + lines_of(0, first));
+  auto read = press().source(folder.path());
+  REQUIRE(read.present());
+  CHECK(read.how() == "dots.csv");
+  CHECK(largest_distance(read.of(0, press().frames[0]), first) < 1e-5);
+  CHECK(fingerpad::count_present(read.of(1, press().frames[1])) == 0);
+  CHECK(read.of(1, press().frames[1]).size() == first.size());
+  CHECK(largest_distance(read.of(2, press().frames[0]), third) < 1e-5);
+  CHECK(largest_distance(read.initial(), first) < 1e-5);
+}
+
+TEST_CASE("the reference shows the free pad's dots where dots.csv has fewer of the same") {
+  const DotGrid free_pad = press().source().initial();
+  const Folder folder;
+  const auto half = [&](int by) {
+    DotGrid dots = replay::no_dots(free_pad.size());
+    for (int i = 0; i < dots.rows; ++i) {
+      for (int j = by; j < dots.cols; j += 2) {
+        dots(i, j) = free_pad(i, j - by);
+      }
+    }
+    return dots;
+  };
+  folder.write("frame,row,col,x_px,y_px\n" + lines_of(3, half(0)));
+  CHECK(largest_distance(press().source(folder.path()).initial(), free_pad) == 0);
+  // Another order of the columns: the file's word counts.
+  folder.write("frame,row,col,x_px,y_px\n" + lines_of(3, half(1)));
+  CHECK(largest_distance(press().source(folder.path()).initial(), half(1)) < 1e-5);
+}
+
+TEST_CASE("without a print in sensor.json the size is that of dots.csv") {
+  replay::Sensor sensor = press().recording.sensor;
+  sensor.dots.reset();
+  const Folder folder;
+  folder.write("frame,row,col,x_px,y_px\n1,2,4,10.5,-3e1\n5,6,0,1,2\n");
+  replay::DotSource source(folder.path(), sensor, press().recording.reference,
+                           press().recording.reference_depth, 11);
+  CHECK(source.initial().size() == cv::Size(5, 7));
+  CHECK(source.initial()(2, 4) == cv::Vec2d(10.5, -30));
+  CHECK(fingerpad::count_present(source.initial()) == 1);
+  CHECK(source.of(5, press().frames[5])(6, 0) == cv::Vec2d(1, 2));
+}
+
+TEST_CASE("dots.csv is refused with the line's number") {
+  struct Fault {
+    const char* text;
+    const char* complaint;
+  };
+  const std::string header = "frame,row,col,x_px,y_px\n";
+  const auto [text, complaint] = GENERATE(
+      Fault{"", "dots.csv: is empty"}, Fault{"frame,row,col,x,y\n", "line 1: must be frame,row"},
+      Fault{"H", "dots.csv: names no dots"}, Fault{"H0,1,2,3\n", "line 2: has 4 values, must have"},
+      Fault{"H0,1,2,3,4,5\n", "line 2: has 6 values, must have 5"},
+      Fault{"H0,1,2,3,4\n\n0,1,2,5,6\n", "line 4: row 1, col 2 of frame 0 is given twice"},
+      Fault{"H11,1,2,3,4\n", "line 2: frame '11' is not one of the frames 0 to 10"},
+      Fault{"H-1,1,2,3,4\n", "line 2: frame '-1' is not"},
+      Fault{"H0,21,2,3,4\n", "line 2: row '21' is not one of the rows of dots 0 to 20"},
+      Fault{"H0,1.5,2,3,4\n", "line 2: row '1.5' is not"},
+      Fault{"H0,1,21,3,4\n", "line 2: col '21' is not one of the columns of dots 0 to 20"},
+      Fault{"H0,1,,3,4\n", "line 2: col '' is not"},
+      Fault{"H0,1,2,left,4\n", "line 2: x_px 'left' is not a number"},
+      Fault{"H0,1,2,3,nan\n", "line 2: y_px 'nan' is not a number"});
+  const Folder folder;
+  folder.write(text[0] == 'H' ? header + (text + 1) : text);
+  std::string line;
+  try {
+    press().source(folder.path());
+  } catch (const replay::Failure& failure) {
+    line = failure.what();
+  }
+  INFO(line);
+  CHECK(line.find(complaint) != std::string::npos);
+}
