@@ -23,6 +23,7 @@
 #include "fingerpad/detail/contact/mask_growth.hpp"
 #include "fingerpad/detail/contact/region_measures.hpp"
 #include "fingerpad/detail/contact/regions.hpp"
+#include "fingerpad/detail/space/pixel_rays.hpp"
 #include "fingerpad/expects.hpp"
 #include "fingerpad/grid.hpp"
 #include "fingerpad/optics.hpp"
@@ -198,7 +199,7 @@ class ContactRegion {
   detail::BorderedImage image_;
   Curvature curvature_;
   Finder finder_;
-  detail::RayTable rays_;
+  detail::PixelRays<CameraType> rays_;
 };
 
 }  // namespace v0

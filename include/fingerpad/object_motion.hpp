@@ -171,7 +171,7 @@ class ObjectMotion {
     result.residual_rms_mm = track.residual_rms_mm;
     if (state.has_object_) {
       result.position_mm = track.pose(track.start_mm);
-      result.displacement_mm = detail::motion::difference(result.position_mm, track.start_mm);
+      result.displacement_mm = detail::difference(result.position_mm, track.start_mm);
     }
   }
 

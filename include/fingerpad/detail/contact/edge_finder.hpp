@@ -15,6 +15,7 @@
 #include "fingerpad/detail/contact/mask_distance.hpp"
 #include "fingerpad/detail/contact/outside_level.hpp"
 #include "fingerpad/detail/contact/regions.hpp"
+#include "fingerpad/detail/contact/sparse_mean.hpp"
 #include "fingerpad/grid.hpp"
 #include "fingerpad/scalar.hpp"
 
@@ -88,6 +89,7 @@ class EdgeFinder<HalfLevelEdge, Statistic, Projection, S> {
              const Projection& projection,
              const BorderedImage& image)
       : image_(image),
+        threshold_(S(test.threshold_per_mm)),
         gap_mm_(edge.touching_gap_mm),
         ring_px_(test.ring.radius_px),
         projection_(projection),
@@ -105,13 +107,18 @@ class EdgeFinder<HalfLevelEdge, Statistic, Projection, S> {
   struct Workspace {
     OutsideLevel<S> outside;
     typename MeanMap::Workspace curvature;
-    std::vector<S> mean;   ///< with the image's border
+    SparseMean<S> smoothing;
+    std::vector<S> raw;    ///< mean curvature, with the image's border
+    std::vector<S> mean;   ///< the same, smoothed
     std::vector<S> inner;  ///< of a region, to take a quantile of
     std::vector<S> level;  ///< edge of the region at hand by cells of `outside`; NaN: not known yet
   };
   Workspace workspace() const {
-    Workspace w{OutsideLevel<S>(image_, ring_px_), mean_.workspace(), {}, {}, {}};
-    w.mean.assign(static_cast<std::size_t>(image_.size()), not_a_number<S>());
+    // a third of the ring: what noise leaves of the edge becomes smooth, and the edge stays
+    const SparseMean<S> smoothing(image_.cols, (ring_px_ + 1) / 3);
+    Workspace w{OutsideLevel<S>(image_, ring_px_), mean_.workspace(), smoothing, {}, {}, {}, {}};
+    w.raw.assign(static_cast<std::size_t>(image_.size()), not_a_number<S>());
+    w.mean = w.raw;
     w.inner.resize(static_cast<std::size_t>(2 * most_samples));
     w.level.resize(static_cast<std::size_t>(w.outside.cells()));
     return w;
@@ -128,11 +135,12 @@ class EdgeFinder<HalfLevelEdge, Statistic, Projection, S> {
     if (rows.first >= rows.last) {
       return 0;
     }
-    w.outside.measure(image_.view(statistic), marks);
+    w.outside.measure(image_.view(statistic), marks, threshold_);
     // the region grows by a ring's radius at most
-    mean_.band((std::max)(rows.first - ring_px_, Index(0)),
-               (std::min)(rows.last + ring_px_, image_.rows), depth_mm, image_.view(w.mean.data()),
-               w.curvature);
+    const Index first = (std::max)(rows.first - ring_px_, Index(0));
+    const Index last = (std::min)(rows.last + ring_px_, image_.rows);
+    mean_.band(first, last, depth_mm, image_.view(w.raw.data()), w.curvature);
+    w.smoothing(first, last, image_.view(w.raw.data()), image_.view(w.mean.data()));
     return regions.for_each(keep,
                             [&](Regions::Region& region) { place(depth_mm, regions, region, w); });
   }
@@ -192,7 +200,7 @@ class EdgeFinder<HalfLevelEdge, Statistic, Projection, S> {
     }
     S* quarter = w.inner.data() + (end - w.inner.data()) / 4;
     std::nth_element(w.inner.data(), quarter, end);
-    return *quarter;
+    return *quarter < S(0) ? *quarter : S(0);
   }
 
   /// Distance of what neighbouring pixels see, at the region's mean depth.
@@ -215,6 +223,7 @@ class EdgeFinder<HalfLevelEdge, Statistic, Projection, S> {
   static constexpr Index most_samples = 2000;
 
   BorderedImage image_;
+  S threshold_;
   double gap_mm_;
   Index ring_px_;
   Projection projection_;

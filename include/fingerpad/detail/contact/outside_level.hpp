@@ -79,29 +79,31 @@ class OutsideLevel {
     const Index j = (std::min)((col + step / 2) / step, cols_ - 1);
     return i * cols_ + j;
   }
-  /// In 1/mm; NaN where no free membrane is known at all.
+  /// In 1/mm.
   const S& operator[](std::size_t cell) const { return level_[cell]; }
 
   /// From the curvatures of a frame and its seeds of contact. Negative sections count as 0 in
-  /// `curvature`, or do not: there are none on a free membrane.
+  /// `curvature`, or do not: there are none on a free membrane. What is below the threshold is not
+  /// free, even if cleaning dropped it. Where nothing is, the threshold is taken for half of it.
   template <class Curvature, class Marks>
-  void measure(const Curvature& curvature, const Marks& marks) {
+  void measure(const Curvature& curvature, const Marks& marks, const S& threshold) {
     for (Index c = 0; c < cells(); ++c) {
-      weight_[static_cast<std::size_t>(c)] = is_seed(marks, c) ? S(1) : S(0);
+      const bool touched = is_seed(marks, c) || at(curvature, c) < threshold;
+      weight_[static_cast<std::size_t>(c)] = touched ? S(1) : S(0);
     }
     sums_(weight_, near_);
     S total = S(0);
     S count = S(0);
     for (Index c = 0; c < cells(); ++c) {
       const auto k = static_cast<std::size_t>(c);
-      const S here = curvature(c / cols_ * step, c % cols_ * step);
+      const S here = at(curvature, c);
       const bool free = weight_[k] < S(0.5) && is_finite(here);
       level_[k] = free ? here : S(0);
       weight_[k] = free ? S(1) : S(0);
       total = total + level_[k];
       count = count + weight_[k];
     }
-    const S everywhere = total / count;  // 0/0 where there is none
+    const S everywhere = count > S(0.5) ? S(total / count) : S(threshold + threshold);
     sums_(level_, window_);
     sums_(weight_, window_);
     for (std::size_t k = 0; k < level_.size(); ++k) {
@@ -110,9 +112,13 @@ class OutsideLevel {
   }
 
  private:
+  template <class Map>
+  decltype(auto) at(const Map& map, Index c) const {
+    return map(c / cols_ * step, c % cols_ * step);
+  }
   template <class Marks>
   bool is_seed(const Marks& marks, Index c) const {
-    return marks(c / cols_ * step, c % cols_ * step) == Mark::seed;
+    return at(marks, c) == Mark::seed;
   }
 
   Index rows_;

@@ -85,11 +85,11 @@ struct ContactMap {
     enter(seen, t);
     Point3<S> center = {S(0), S(0), S(0)};
     for (Index k = 0; k < seen.fresh; ++k) {
-      center = detail::motion::sum(center, dot(k));
+      center = detail::sum(center, dot(k));
     }
     t.start_mm = reference.exists()
                      ? frame.dot(reference.row, reference.col)
-                     : detail::motion::scaled(S(S(1) / S(static_cast<double>(seen.fresh))), center);
+                     : detail::scaled(S(S(1) / S(static_cast<double>(seen.fresh))), center);
     t.dots_used = seen.fresh;
     return MotionStatus::ok;
   }
@@ -170,8 +170,7 @@ struct ContactMap {
   static void residuals(const Pose<S>& pose, const Seen& seen, Track<S>& t) {
     for (Index k = 0; k < seen.known; ++k) {
       Sight<S>& s = t.sights[static_cast<std::size_t>(k)];
-      s.residual_sq =
-          detail::motion::length_sq(detail::motion::difference(s.dot_mm, pose(s.place_mm)));
+      s.residual_sq = detail::length_sq(detail::difference(s.dot_mm, pose(s.place_mm)));
     }
   }
 
@@ -250,9 +249,8 @@ struct ContactMap {
       }
       entry.weight = entry.weight + s.trust;
       const S share = s.trust / entry.weight;
-      const Point3<S> step =
-          detail::motion::scaled(share, detail::motion::difference(place, entry.place_mm));
-      entry.place_mm = detail::motion::sum(entry.place_mm, step);
+      const Point3<S> step = detail::scaled(share, detail::difference(place, entry.place_mm));
+      entry.place_mm = detail::sum(entry.place_mm, step);
     }
   }
 

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "fingerpad/detail/motion/rotation.hpp"
+#include "fingerpad/detail/space/point_algebra.hpp"
 #include "fingerpad/dots.hpp"
 #include "fingerpad/grid.hpp"
 #include "fingerpad/scalar.hpp"
@@ -37,11 +38,6 @@ constexpr bool is_placed(const Point3<S>& p) {
     return v < reach && -reach < v;  // false for NaN
   };
   return within(p.x) && within(p.y) && within(p.z);
-}
-
-template <scalar S>
-constexpr Point3<S> missing_point() {
-  return {not_a_number<S>(), not_a_number<S>(), not_a_number<S>()};
 }
 
 /// Any spatial point in the scalar S.

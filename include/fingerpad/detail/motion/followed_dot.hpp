@@ -158,10 +158,10 @@ struct SumOfAngles {
     const Angles<S> turned = zyx_angles(step.pose.rotation);
     t.angles = {S(t.angles.x_rad + turned.x_rad), S(t.angles.y_rad + turned.y_rad),
                 S(t.angles.z_rad + turned.z_rad)};
-    t.displacement_mm = detail::motion::sum(t.displacement_mm, moved(t.followed.anchor, step));
+    t.displacement_mm = detail::sum(t.displacement_mm, moved(t.followed.anchor, step));
     const Rotation<S> rotation = rotation_of(t.angles);
-    const Point3<S> position = detail::motion::sum(t.start_mm, t.displacement_mm);
-    t.pose = {rotation, detail::motion::difference(position, rotation(t.start_mm))};
+    const Point3<S> position = detail::sum(t.start_mm, t.displacement_mm);
+    t.pose = {rotation, detail::difference(position, rotation(t.start_mm))};
     t.dots_used = step.dots_used;
     t.residual_rms_mm = step.residual_rms_mm;
     t.followed.anchor = step.now;
@@ -178,8 +178,8 @@ struct SumOfAngles {
     CommonDots self = {{false, false, false, false, true, false, false, false, false}, 1};
     const CommonDots all = common_dots(anchor, step.now);
     const CommonDots& used = all.found[4] ? self : all;
-    return detail::motion::difference(detail::motion::center(step.now, used),
-                                      detail::motion::center(anchor, used));
+    return detail::difference(detail::motion::center(step.now, used),
+                              detail::motion::center(anchor, used));
   }
 };
 

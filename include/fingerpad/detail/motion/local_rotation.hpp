@@ -37,16 +37,16 @@ struct LocalTurn {
 /// Eqs. 14-16.
 template <scalar S>
 Basis<S> published_basis(const GridDirections<S>& q) {
-  const S sq1 = detail::motion::length_sq(q.q1);
-  const S sq2 = detail::motion::length_sq(q.q2);
-  const Point3<S> n3 = detail::motion::cross(q.q1, q.q2);
+  const S sq1 = detail::length_sq(q.q1);
+  const S sq2 = detail::length_sq(q.q2);
+  const Point3<S> n3 = detail::cross(q.q1, q.q2);
   const S limit = S(collinear_spread_sq) * sq1 * sq2;
-  if (!(value(detail::motion::length_sq(n3)) > value(limit))) {
+  if (!(value(detail::length_sq(n3)) > value(limit))) {
     return {};
   }
-  const Point3<S> n1 = detail::motion::unit(q.q1);
-  const Point3<S> n2 = detail::motion::unit(q.q2);
-  return {n1, n2, detail::motion::cross(n1, n2), true};
+  const Point3<S> n1 = detail::unit(q.q1);
+  const Point3<S> n2 = detail::unit(q.q2);
+  return {n1, n2, detail::cross(n1, n2), true};
 }
 
 /// The orthonormal frame nearest to n1 and n2, which both deviate from it by the same angle:
@@ -56,22 +56,21 @@ Basis<S> published_basis(const GridDirections<S>& q) {
 template <scalar S>
 Basis<S> symmetric_frame(const GridDirections<S>& q) {
   using std::sqrt;
-  const S sq1 = detail::motion::length_sq(q.q1);
-  const S sq2 = detail::motion::length_sq(q.q2);
-  const Point3<S> normal = detail::motion::cross(q.q1, q.q2);
+  const S sq1 = detail::length_sq(q.q1);
+  const S sq2 = detail::length_sq(q.q2);
+  const Point3<S> normal = detail::cross(q.q1, q.q2);
   const S limit = S(collinear_spread_sq) * sq1 * sq2;
-  if (!(value(detail::motion::length_sq(normal)) > value(limit))) {
+  if (!(value(detail::length_sq(normal)) > value(limit))) {
     return {};
   }
-  const Point3<S> n3 = detail::motion::unit(normal);
+  const Point3<S> n3 = detail::unit(normal);
   // n1 + n2, but for a factor: the shorter direction is stretched to the length of the other
   const S stretch = sqrt(S(sq1 / sq2));
-  const Point3<S> s =
-      detail::motion::unit(detail::motion::sum(q.q1, detail::motion::scaled(stretch, q.q2)));
-  const Point3<S> t = detail::motion::cross(n3, s);
+  const Point3<S> s = detail::unit(detail::sum(q.q1, detail::scaled(stretch, q.q2)));
+  const Point3<S> t = detail::cross(n3, s);
   const S half = sqrt(S(S(1) / S(2)));
-  return {detail::motion::scaled(half, detail::motion::difference(s, t)),
-          detail::motion::scaled(half, detail::motion::sum(s, t)), n3, true};
+  return {detail::scaled(half, detail::difference(s, t)), detail::scaled(half, detail::sum(s, t)),
+          n3, true};
 }
 
 namespace detail::motion {

@@ -7,45 +7,12 @@
 // every angle comes from atan2.
 #include <cmath>
 
+#include "fingerpad/detail/space/point_algebra.hpp"
 #include "fingerpad/dots.hpp"
 #include "fingerpad/scalar.hpp"
 
 namespace fingerpad {
 inline namespace v0 {
-
-namespace detail::motion {
-template <scalar S>
-Point3<S> sum(const Point3<S>& a, const Point3<S>& b) {
-  return {S(a.x + b.x), S(a.y + b.y), S(a.z + b.z)};
-}
-template <scalar S>
-Point3<S> difference(const Point3<S>& a, const Point3<S>& b) {
-  return {S(a.x - b.x), S(a.y - b.y), S(a.z - b.z)};
-}
-template <scalar S>
-Point3<S> scaled(const S& factor, const Point3<S>& a) {
-  return {S(factor * a.x), S(factor * a.y), S(factor * a.z)};
-}
-template <scalar S>
-S dot(const Point3<S>& a, const Point3<S>& b) {
-  return S(a.x * b.x + a.y * b.y + a.z * b.z);
-}
-template <scalar S>
-Point3<S> cross(const Point3<S>& a, const Point3<S>& b) {
-  return {S(a.y * b.z - a.z * b.y), S(a.z * b.x - a.x * b.z), S(a.x * b.y - a.y * b.x)};
-}
-template <scalar S>
-S length_sq(const Point3<S>& a) {
-  return dot(a, a);
-}
-/// a / |a|; a must not be 0.
-template <scalar S>
-Point3<S> unit(const Point3<S>& a) {
-  using std::sqrt;
-  const S length = sqrt(length_sq(a));
-  return scaled(S(S(1) / length), a);
-}
-}  // namespace detail::motion
 
 /// A 3x3 matrix that turns vectors: x_now = R x_before. Rows before columns, identity by default.
 template <scalar S = double>
@@ -88,14 +55,14 @@ struct Pose {
   Point3<S> translation_mm = {S(0), S(0), S(0)};
 
   Point3<S> operator()(const Point3<S>& before) const {
-    return detail::motion::sum(rotation(before), translation_mm);
+    return detail::sum(rotation(before), translation_mm);
   }
 };
 
 template <scalar S>
 Pose<S> inverse(const Pose<S>& pose) {
   const Rotation<S> back = inverse(pose.rotation);
-  return {back, detail::motion::scaled(S(-1), back(pose.translation_mm))};
+  return {back, detail::scaled(S(-1), back(pose.translation_mm))};
 }
 
 /// First `first`, then `second`.

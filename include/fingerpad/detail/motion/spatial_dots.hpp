@@ -89,7 +89,7 @@ SpatialDotsResult spatial_dots(const Camera<S>& camera,
       const S l = depth_between_pixels(depth, row, col);
       const bool known = is_finite(l);
       to(i, j) = detail::motion::point_from<cell_t<Out>>(
-          known ? point_at<Shift>(camera, row, col, l) : detail::motion::missing_point<S>());
+          known ? point_at<Shift>(camera, row, col, l) : detail::missing_point<S>());
       result.found += known ? 1 : 0;
     }
   }

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstddef>
 
+#include "fingerpad/detail/space/point_algebra.hpp"
 #include "fingerpad/dots.hpp"
 #include "fingerpad/scalar.hpp"
 
@@ -17,44 +18,12 @@ namespace detail {
 template <scalar S, std::size_t N>
 using SmallMatrix = std::array<std::array<S, N>, N>;
 
-template <scalar S>
-S dot(const Point3<S>& a, const Point3<S>& b) {
-  return S(a.x * b.x + a.y * b.y + a.z * b.z);
-}
-template <scalar S>
-Point3<S> cross(const Point3<S>& a, const Point3<S>& b) {
-  return {S(a.y * b.z - a.z * b.y), S(a.z * b.x - a.x * b.z), S(a.x * b.y - a.y * b.x)};
-}
-template <scalar S>
-Point3<S> difference(const Point3<S>& a, const Point3<S>& b) {
-  return {S(a.x - b.x), S(a.y - b.y), S(a.z - b.z)};
-}
-/// a + s b.
-template <scalar S>
-Point3<S> moved(const Point3<S>& a, const S& s, const Point3<S>& b) {
-  return {S(a.x + s * b.x), S(a.y + s * b.y), S(a.z + s * b.z)};
-}
-template <scalar S>
-Point3<S> unit(const Point3<S>& a) {
-  using std::sqrt;
-  const S length = sqrt(S(dot(a, a)));
-  return {S(a.x / length), S(a.y / length), S(a.z / length)};
-}
 /// a or -a, whichever looks toward the object.
 template <scalar S>
 Point3<S> toward_object(const Point3<S>& a) {
   const S side = S(value(a.z) < 0 ? -1 : 1);
   return {S(side * a.x), S(side * a.y), S(side * a.z)};
 }
-template <scalar S>
-bool is_finite_point(const Point3<S>& p) {
-  return is_finite(p.x) && is_finite(p.y) && is_finite(p.z);
-}
-template <scalar S>
-constexpr Point3<S> missing_point() {
-  return {not_a_number<S>(), not_a_number<S>(), not_a_number<S>()};
-}
-
 /// A right-handed frame whose third axis is the unit vector n; u lies in the plane of x and n.
 template <scalar S>
 struct SurfaceFrame {
