@@ -139,13 +139,12 @@ TEST_CASE("object motion: summed angles err as the table says, composed rotation
     std::function<Vector(int)> turn;
   };
   const auto about = [](Vector axis, double angle_deg) {
-    const double s = angle_deg * degree / 300 / std::sqrt(detail::motion::length_sq(axis));
-    return [=](int) { return detail::motion::scaled(s, axis); };
+    const double s = angle_deg * degree / 300 / std::sqrt(detail::length_sq(axis));
+    return [=](int) { return detail::scaled(s, axis); };
   };
   const auto then = [](Vector first, Vector second, double angle_deg) {
-    return [=](int k) {
-      return detail::motion::scaled(angle_deg * degree / 150, k < 150 ? first : second);
-    };
+    return
+        [=](int k) { return detail::scaled(angle_deg * degree / 150, k < 150 ? first : second); };
   };
   const auto circle = [](double radius_deg) {
     return [=](int k) {
@@ -217,10 +216,9 @@ TEST_CASE("object motion: a rolled ball, without noise") {
     CHECK(changes >= 8);
     CHECK(result.residual_rms_mm < 1e-12);
     const Vector center{-6, 1, ball.depth_mm + ball.radius_mm};
-    const Vector moved = detail::motion::difference(result.pose(center), center);
-    return std::pair{
-        error_deg(result.pose.rotation, r.pose.rotation),
-        std::sqrt(detail::motion::length_sq(detail::motion::difference(moved, {12, 6, 0})))};
+    const Vector moved = detail::difference(result.pose(center), center);
+    return std::pair{error_deg(result.pose.rotation, r.pose.rotation),
+                     std::sqrt(detail::length_sq(detail::difference(moved, {12, 6, 0})))};
   };
   const auto [map_deg, map_mm] = run(ContactMap());
   CHECK(map_deg < 1e-10);
@@ -485,7 +483,7 @@ TEST_CASE("object motion: a neighbourhood uses the dots that remain") {
       l.found[at] = true;
     }
     for (std::size_t at = 0; at < 9; ++at) {
-      l.dot[at] = l.found[at] ? l.dot[at] : detail::motion::missing_point<double>();
+      l.dot[at] = l.found[at] ? l.dot[at] : detail::missing_point<double>();
     }
     const auto one = [&](auto local) {
       const auto result = decltype(local)::turn(k, l);
@@ -524,7 +522,7 @@ TEST_CASE("object motion: what remains of an affine grid has its directions") {
     }
     const auto basis = published_basis(grid_directions(n, all));
     const auto parallel = [](const Vector& a, const Vector& b) {
-      return Approx(1).margin(1e-14) == detail::motion::dot(a, detail::motion::unit(b));
+      return Approx(1).margin(1e-14) == detail::dot(a, detail::unit(b));
     };
     CHECK((parallel(basis.n1, q1) && parallel(basis.n2, q2)));
     ++determined;

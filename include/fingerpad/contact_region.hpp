@@ -164,19 +164,30 @@ class ContactRegion {
     }
   }
 
+  template <class Cell>
+  static Cell as_cell(detail::Mark mark) {
+    using detail::Mark;
+    if constexpr (std::is_same_v<Cell, Touch>) {
+      const Touch other = mark == Mark::unknown ? Touch::unknown : Touch::none;
+      return mark == Mark::contact ? Touch::contact : other;
+    } else {
+      return static_cast<Cell>(mark == Mark::contact ? 255 : 0);
+    }
+  }
+
   template <class To>
   void write(const StridedView<detail::Mark>& marks, const To& to) const {
     using Cell = cell_t<To>;
-    using detail::Mark;
     for (Index i = 0; i < image_.rows; ++i) {
-      const Mark* row = marks.row(i);
-      for (Index j = 0; j < image_.cols; ++j) {
-        if constexpr (std::is_same_v<Cell, Touch>) {
-          const Touch other = row[j] == Mark::unknown ? Touch::unknown : Touch::none;
-          to(i, j) = row[j] == Mark::contact ? Touch::contact : other;
-        } else {
-          to(i, j) = static_cast<Cell>(row[j] == Mark::contact ? 255 : 0);
+      const detail::Mark* row = marks.row(i);
+      if constexpr (std::is_same_v<To, StridedView<Cell>>) {
+        if (to.col_stride() == 1) {
+          std::transform(row, row + image_.cols, to.row(i), as_cell<Cell>);
+          continue;
         }
+      }
+      for (Index j = 0; j < image_.cols; ++j) {
+        to(i, j) = as_cell<Cell>(row[j]);
       }
     }
   }

@@ -75,8 +75,8 @@ double distance(const Pose<S>& a, const Pose<S>& b) {
     const S d = a.rotation.m[i / 3][i % 3] - b.rotation.m[i / 3][i % 3];
     worst = (std::max)(worst, std::abs(static_cast<double>(d)));
   }
-  const Point3<S> t = detail::motion::difference(a.translation_mm, b.translation_mm);
-  return worst + std::sqrt(static_cast<double>(detail::motion::length_sq(t)));
+  const Point3<S> t = detail::difference(a.translation_mm, b.translation_mm);
+  return worst + std::sqrt(static_cast<double>(detail::length_sq(t)));
 }
 
 struct Scene {
@@ -229,8 +229,8 @@ TEMPLATE_TEST_CASE("a scene seen mirrored, transposed or turned gives that motio
       };
       const Pose<double> other = pose_after<TestType>(mapped(scene, map));
       for (const Vector& p : {Vector{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}) {
-        const Vector off = detail::motion::difference(other(point(p)), point(pose(p)));
-        RC_ASSERT(detail::motion::length_sq(off) < 1e-20);
+        const Vector off = detail::difference(other(point(p)), point(pose(p)));
+        RC_ASSERT(detail::length_sq(off) < 1e-20);
       }
     };
     using At = std::pair<Index, Index>;
@@ -352,7 +352,7 @@ TEST_CASE("dots on a line determine no rotation", "[object_motion][law]") {
     for (std::size_t k = 0; k < 9; ++k) {
       const double s = test::uniform(-0.2, 0.2) + static_cast<double>(k);
       a.dot[k] =
-          detail::motion::sum(detail::motion::scaled(s, along),
+          detail::sum(detail::scaled(s, along),
                               Vector{test::uniform(-0.02, 0.02), test::uniform(-0.02, 0.02), 10});
       a.found[k] = true;
     }

@@ -16,7 +16,7 @@ struct ContactTest {
   /// 20 mm radius; calibrate/contact_region.hpp takes it from frames. Finite, > 0.
   double threshold_per_mm = 0.025;
   double free_apex_mm = 13;  ///< height of the free pad, from which contact depth counts; finite
-  CurvatureRing ring;
+  CurvatureRing ring = {};
 };
 
 /// Paper 002: delta = 0.00015 per mm on a ring of 10 px, with PublishedTwiceMean<36>. Two orders

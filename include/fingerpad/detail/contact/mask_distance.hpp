@@ -47,6 +47,9 @@ class MaskDistance {
   void row(Index i, const Visit& visit) {
     Index count = 0;
     for (Index j = 0; j < cols_; ++j) {
+      if (along(i, j) == far_) {
+        continue;  // nothing in the whole column
+      }
       double from = 0;
       while (count > 0) {
         from = crossing(i, vertex_[static_cast<std::size_t>(count - 1)], j);
@@ -61,6 +64,10 @@ class MaskDistance {
     }
     Index k = 0;
     for (Index j = 0; j < cols_; ++j) {
+      if (count == 0) {
+        visit(j, static_cast<double>(far_) * static_cast<double>(far_));
+        continue;
+      }
       while (k + 1 < count && start_[static_cast<std::size_t>(k + 1)] < static_cast<double>(j)) {
         ++k;
       }

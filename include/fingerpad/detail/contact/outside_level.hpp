@@ -16,46 +16,69 @@ namespace fingerpad {
 inline namespace v0 {
 namespace detail {
 
-/// Sums over windows of 2 reach + 1 cells, by running along the rows and then along the columns.
+/// Sums over windows of 2 reach + 1 cells, by running along the rows and then along the columns, of
+/// all columns at once.
 template <class S>
 class CellSums {
  public:
-  CellSums(Index rows, Index cols) : rows_(rows), cols_(cols) {
-    line_.resize(static_cast<std::size_t>((std::max)(rows, cols)));
-  }
+  CellSums(Index rows, Index cols)
+      : rows_(rows),
+        cols_(cols),
+        before_(static_cast<std::size_t>(rows * cols)),
+        sum_(static_cast<std::size_t>(cols)) {}
 
   void operator()(std::vector<S>& cells, Index reach) {
+    before_ = cells;
     for (Index i = 0; i < rows_; ++i) {
-      run(cells.data() + i * cols_, cols_, 1, reach);
+      along_row(row(before_, i), row(cells, i), reach);
     }
-    for (Index j = 0; j < cols_; ++j) {
-      run(cells.data() + j, rows_, cols_, reach);
-    }
+    before_ = cells;
+    along_columns(cells, reach);
   }
 
  private:
-  void run(S* cells, Index count, Index stride, Index reach) {
-    for (Index k = 0; k < count; ++k) {
-      line_[static_cast<std::size_t>(k)] = cells[k * stride];
-    }
+  S* row(std::vector<S>& cells, Index i) const { return cells.data() + i * cols_; }
+
+  void along_row(const S* from, S* to, Index reach) const {
     S sum = S(0);
-    for (Index k = 0; k < (std::min)(reach, count); ++k) {
-      sum = sum + line_[static_cast<std::size_t>(k)];
+    for (Index k = 0; k < (std::min)(reach, cols_); ++k) {
+      sum = sum + from[k];
     }
-    for (Index k = 0; k < count; ++k) {
-      if (k + reach < count) {
-        sum = sum + line_[static_cast<std::size_t>(k + reach)];
+    for (Index k = 0; k < cols_; ++k) {
+      const S enters = k + reach < cols_ ? from[k + reach] : S(0);
+      const S leaves = k - reach > 0 ? from[k - reach - 1] : S(0);
+      const S change = enters - leaves;
+      sum = sum + change;
+      to[k] = sum;
+    }
+  }
+
+  void along_columns(std::vector<S>& cells, Index reach) {
+    std::fill(sum_.begin(), sum_.end(), S(0));
+    for (Index k = 0; k < (std::min)(reach, rows_); ++k) {
+      add(row(before_, k), S(1));
+    }
+    for (Index k = 0; k < rows_; ++k) {
+      if (k + reach < rows_) {
+        add(row(before_, k + reach), S(1));
       }
       if (k - reach > 0) {
-        sum = sum - line_[static_cast<std::size_t>(k - reach - 1)];
+        add(row(before_, k - reach - 1), S(-1));
       }
-      cells[k * stride] = sum;
+      std::copy(sum_.begin(), sum_.end(), row(cells, k));
+    }
+  }
+  void add(const S* from, const S& sign) {
+    S* sum = sum_.data();
+    for (Index j = 0; j < cols_; ++j) {
+      sum[j] = sum[j] + sign * from[j];
     }
   }
 
   Index rows_;
   Index cols_;
-  std::vector<S> line_;
+  std::vector<S> before_;
+  std::vector<S> sum_;
 };
 
 template <class S>
@@ -87,22 +110,21 @@ class OutsideLevel {
   /// free, even if cleaning dropped it. Where nothing is, the threshold is taken for half of it.
   template <class Curvature, class Marks>
   void measure(const Curvature& curvature, const Marks& marks, const S& threshold) {
-    for (Index c = 0; c < cells(); ++c) {
-      const bool touched = is_seed(marks, c) || at(curvature, c) < threshold;
-      weight_[static_cast<std::size_t>(c)] = touched ? S(1) : S(0);
-    }
+    visit_cells([&](std::size_t k, Index i, Index j) {
+      const bool touched = marks(i, j) == Mark::seed || curvature(i, j) < threshold;
+      weight_[k] = touched ? S(1) : S(0);
+    });
     sums_(weight_, near_);
     S total = S(0);
     S count = S(0);
-    for (Index c = 0; c < cells(); ++c) {
-      const auto k = static_cast<std::size_t>(c);
-      const S here = at(curvature, c);
+    visit_cells([&](std::size_t k, Index i, Index j) {
+      const S here = curvature(i, j);
       const bool free = weight_[k] < S(0.5) && is_finite(here);
       level_[k] = free ? here : S(0);
       weight_[k] = free ? S(1) : S(0);
       total = total + level_[k];
       count = count + weight_[k];
-    }
+    });
     const S everywhere = count > S(0.5) ? S(total / count) : S(threshold + threshold);
     sums_(level_, window_);
     sums_(weight_, window_);
@@ -112,13 +134,15 @@ class OutsideLevel {
   }
 
  private:
-  template <class Map>
-  decltype(auto) at(const Map& map, Index c) const {
-    return map(c / cols_ * step, c % cols_ * step);
-  }
-  template <class Marks>
-  bool is_seed(const Marks& marks, Index c) const {
-    return at(marks, c) == Mark::seed;
+  /// visit(cell, row, col) with the pixel that stands for the cell.
+  template <class Visit>
+  void visit_cells(const Visit& visit) const {
+    std::size_t k = 0;
+    for (Index i = 0; i < rows_; ++i) {
+      for (Index j = 0; j < cols_; ++j, ++k) {
+        visit(k, i * step, j * step);
+      }
+    }
   }
 
   Index rows_;

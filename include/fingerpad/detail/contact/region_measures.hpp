@@ -20,15 +20,14 @@ namespace detail {
 template <class Depth, class Rays>
 double pixel_area_mm2(
     const StridedView<Mark>& marks, const Depth& depth_mm, const Rays& rays, Index i, Index j) {
-  const double z = static_cast<double>(depth_mm(i, j));
   const auto seen = [&](Index row, Index col) {
     const bool known = marks(row, col) != Mark::unknown;
-    return rays(row, col, known ? static_cast<double>(depth_mm(row, col)) : z);
+    return rays(row, col, static_cast<double>(known ? depth_mm(row, col) : depth_mm(i, j)));
   };
   const Index left = (std::max)(j - 1, Index(0));
-  const Index right = (std::min)(j + 1, depth_mm.cols() - 1);
+  const Index right = (std::min)(j + 1, marks.cols() - 1);
   const Index top = (std::max)(i - 1, Index(0));
-  const Index bottom = (std::min)(i + 1, depth_mm.rows() - 1);
+  const Index bottom = (std::min)(i + 1, marks.rows() - 1);
   const Point3<double> across = difference(seen(i, right), seen(i, left));
   const Point3<double> down = difference(seen(bottom, j), seen(top, j));
   const double steps = static_cast<double>((right - left) * (bottom - top));

@@ -48,6 +48,10 @@ Point3<S> unit(const Point3<S>& a) {
   return {S(a.x / length), S(a.y / length), S(a.z / length)};
 }
 template <scalar S>
+bool is_finite_point(const Point3<S>& p) {
+  return is_finite(p.x) && is_finite(p.y) && is_finite(p.z);
+}
+template <scalar S>
 constexpr Point3<S> missing_point() {
   return {not_a_number<S>(), not_a_number<S>(), not_a_number<S>()};
 }

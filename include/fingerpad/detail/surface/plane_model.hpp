@@ -61,8 +61,9 @@ struct PlaneModel {
 
   template <scalar S>
   static bool is_finite_shape(const Plane<S>& p) {
-    return is_present(p.normal) && is_finite(p.distance_mm) && is_present(p.center_mm) &&
-           is_finite(p.distance_sd_mm) && is_finite(p.tilt_sd_rad);
+    return detail::is_finite_point(p.normal) && is_finite(p.distance_mm) &&
+           detail::is_finite_point(p.center_mm) && is_finite(p.distance_sd_mm) &&
+           is_finite(p.tilt_sd_rad);
   }
 
   /// The plane of a patch into `plane`, and the mean square distance from it.

@@ -148,7 +148,7 @@ struct QuadricModel {
     }
     for (const Point3<S>& p :
          {q.direction_1, q.direction_2, q.point_mm, q.normal, q.origin_mm, q.u, q.v, q.w}) {
-      finite = finite && is_present(p);
+      finite = finite && detail::is_finite_point(p);
     }
     return finite;
   }

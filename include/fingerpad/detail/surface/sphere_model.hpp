@@ -93,8 +93,8 @@ struct SphereModel {
 
   template <scalar S>
   static bool is_finite_shape(const Sphere<S>& s) {
-    return is_finite(s.curvature_per_mm) && is_present(s.point_mm) && is_present(s.normal) &&
-           is_finite(s.curvature_sd_per_mm);
+    return is_finite(s.curvature_per_mm) && detail::is_finite_point(s.point_mm) &&
+           detail::is_finite_point(s.normal) && is_finite(s.curvature_sd_per_mm);
   }
 
   /// The sphere of a patch, and the mean square distance from it. `add_up(kernel)` gives the sums
