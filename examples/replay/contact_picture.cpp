@@ -33,12 +33,18 @@ class Placement {
   double shrink_;
 };
 
+/// As it is printed: rounded, and never "-0.0".
+double rounded(double value, double steps_per_unit) {
+  return std::round(value * steps_per_unit) / steps_per_unit + 0.0;
+}
+
 std::string words_of_contact(const ContactResult& contact) {
   if (!contact.in_contact()) {
     return "no contact";
   }
   return format("contact %.1f mm^2,  %.2f mm deep,  center (%.2f, %.2f) mm", contact.area_mm2,
-                contact.depth_mm, contact.center_mm.x, contact.center_mm.y);
+                contact.depth_mm, rounded(contact.center_mm.x, 100),
+                rounded(contact.center_mm.y, 100));
 }
 
 std::string words_of_motion(const FrameDots& dots) {
@@ -49,10 +55,12 @@ std::string words_of_motion(const FrameDots& dots) {
   if (!motion.ok()) {
     return std::string("object: ") + name_of(motion.status);
   }
+  const auto& moved = motion.displacement_mm;
+  const auto degrees = [](double rad) { return rounded(rad / degree, 10); };
   return format("object moved (%.2f, %.2f, %.2f) mm,  turned (%.1f, %.1f, %.1f) degrees",
-                motion.displacement_mm.x, motion.displacement_mm.y, motion.displacement_mm.z,
-                motion.angles.x_rad / degree, motion.angles.y_rad / degree,
-                motion.angles.z_rad / degree);
+                rounded(moved.x, 100), rounded(moved.y, 100), rounded(moved.z, 100),
+                degrees(motion.angles.x_rad), degrees(motion.angles.y_rad),
+                degrees(motion.angles.z_rad));
 }
 
 }  // namespace

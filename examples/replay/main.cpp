@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
-// replay: from a recording on disk to depth maps, a table and pictures. See --help.
+// replay: from a recording on disk to tables, maps and pictures. See --help.
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <exception>
@@ -11,10 +11,11 @@
 
 int main(int argc, char** argv) {
   CLI::App app(
-      "Depth maps, a table and pictures from a recording of a fluid-filled pad.\n"
-      "RECORDING is a folder with sensor.json, reference.png, reference_depth.tiff and frames/;\n"
-      "DIR receives frames.csv and pictures/, and depth/ with --raw. An earlier run's DIR is\n"
-      "replaced when the new one is complete; nothing is left behind when something fails.");
+      "Depth, contact and the motion of the object from a recording of a fluid-filled pad.\n"
+      "RECORDING is a folder with sensor.json, reference.png, reference_depth.tiff and frames/,\n"
+      "and perhaps free/ (frames of the free pad) and dots.csv; DIR receives frames.csv, dots.csv\n"
+      "and pictures/, and depth/ and contact/ with --raw. An earlier run's DIR is replaced when\n"
+      "the new one is complete; nothing is left behind when something fails.");
   replay::Options options;
   std::string frames;
   const std::map<std::string, replay::Smoothing> policies = {
@@ -24,8 +25,10 @@ int main(int argc, char** argv) {
       {"anchored", replay::Smoothing::anchored}};
   app.add_option("RECORDING", options.recording, "the recording's folder")->required();
   app.add_option("--out", options.out, "the folder to write")->required()->option_text("DIR");
-  app.add_flag("--raw", options.raw,
-               "also write depth/NNNNNN.tiff: 32-bit float, mm, NaN: invalid");
+  app.add_flag(
+      "--raw", options.raw,
+      "also write depth/NNNNNN.tiff (32-bit float, mm, NaN: invalid) and contact/NNNNNN.png "
+      "(255 in contact, else 0)");
   app.add_option_function<std::string>(
          "--smoothing", [&](const std::string& name) { options.smoothing = policies.at(name); },
          "none, box, bias-free or anchored (default; none without smoothing_px)")

@@ -200,6 +200,40 @@ TEST_CASE("optional sections are accepted, and checked") {
   CHECK(work.complaint().find("neighbour_light.radius_px is \"30\"") != std::string::npos);
 }
 
+TEST_CASE("frames of the free pad set the threshold of contact") {
+  const auto area_of_frame_2 = [](const Workplace& work) {
+    REQUIRE(work.complaint().empty());
+    std::ifstream table(work.out() / "frames.csv");
+    std::string line;
+    for (int k = 0; k < 4; ++k) {
+      std::getline(table, line);
+    }
+    for (int column = 0; column < 5; ++column) {
+      line.erase(0, line.find(',') + 1);
+    }
+    fs::remove_all(work.out());
+    return std::stod(line);
+  };
+  const Workplace work;
+  const double from_shape = area_of_frame_2(work);
+  fs::create_directory(work.recording() / "free");
+  SECTION("frames of a free pad: much the same") {
+    fs::copy_file(work.recording() / "frames/000000.png", work.recording() / "free/0.png");
+    const double from_frame = area_of_frame_2(work);
+    CHECK(from_frame != from_shape);
+    CHECK(std::abs(from_frame - from_shape) < 0.1 * from_shape);
+  }
+  SECTION("none there") {
+    CHECK(ends_with(work.complaint(), "free: holds no frames"));
+  }
+  SECTION("a frame of another size") {
+    cv::imwrite((work.recording() / "free" / "0.png").string(),
+                cv::Mat(100, 120, CV_8UC3, cv::Scalar(1, 2, 3)));
+    CHECK(ends_with(work.complaint(),
+                    "free/0.png: is 120 x 100 px, but the reference is 480 x 480 px"));
+  }
+}
+
 TEST_CASE("files that cannot be used are refused with their name") {
   const Workplace work;
   SECTION("no frames") {
