@@ -1,0 +1,207 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+#pragma once
+// Full-size frames of finite-element membranes: refracted rays, printed dots, 8 bit, noise in each
+// channel. See tests/data/README.md for the shapes.
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <filesystem>
+#include <fstream>
+#include <string>
+
+#include "fingerpad/depth.hpp"
+#include "support/catch.hpp"
+#include "support/pad.hpp"
+
+namespace test {
+
+constexpr double base_radius_mm = 18.735;
+
+inline std::ifstream open_data(const std::string& name, const std::string& header) {
+  const auto folder = std::filesystem::path(__FILE__).parent_path().parent_path() / "data";
+  std::ifstream file(folder / name, std::ios::binary);
+  std::string found(header.size(), ' ');
+  file.read(found.data(), static_cast<std::streamsize>(found.size()));
+  REQUIRE(found == header);
+  return file;
+}
+
+/// Heights of a membrane, 160 x 160 samples 0.24 mm apart around the axis.
+class Membrane {
+ public:
+  explicit Membrane(const std::string& name) : heights_(samples, samples) {
+    auto file = open_data(name + ".pgm", "P5\n160 160\n65535\n");
+    for (double& h : heights_.cells) {
+      const int high = file.get();
+      h = (256 * high + file.get()) / 4000.0 - 2;
+    }
+    REQUIRE(file.good());
+  }
+
+  /// Height above (x, y), by cubic interpolation.
+  double operator()(double x_mm, double y_mm) const {
+    const double col = position(x_mm);
+    const double row = position(y_mm);
+    const Index j = static_cast<Index>(col);
+    const Index i = static_cast<Index>(row);
+    double along[4];
+    for (Index k = 0; k < 4; ++k) {
+      const double* h = &heights_(i - 1 + k, j - 1);
+      along[k] = cubic(h, col - static_cast<double>(j));
+    }
+    return cubic(along, row - static_cast<double>(i));
+  }
+
+ private:
+  static constexpr Index samples = 160;
+  static double position(double mm) {
+    const double middle = (static_cast<double>(samples) - 1) / 2;
+    return (std::min)((std::max)(mm / 0.24 + middle, 1.0), static_cast<double>(samples) - 3);
+  }
+  static double cubic(const double* h, double t) {  // Catmull and Rom
+    const double a = 3 * (h[1] - h[2]) + h[3] - h[0];
+    const double b = 2 * h[0] - 5 * h[1] + 4 * h[2] - h[3];
+    return h[1] + t * (h[2] - h[0] + t * (b + t * a)) / 2;
+  }
+  Image<double> heights_;
+};
+
+/// Which parts of a membrane touch, of the same samples.
+class TrueContact {
+ public:
+  explicit TrueContact(const std::string& name) : touches_(samples, samples) {
+    auto file = open_data(name + ".pbm", "P4\n160 160\n");
+    for (Index k = 0; k < samples * samples; k += 8) {
+      const int byte = file.get();
+      for (Index bit = 0; bit < 8; ++bit) {
+        touches_.cells[static_cast<std::size_t>(k + bit)] = byte >> (7 - bit) & 1;
+      }
+    }
+    REQUIRE(file.good());
+  }
+
+  /// By linear interpolation between the samples.
+  bool operator()(double x_mm, double y_mm) const {
+    const double col = position(x_mm);
+    const double row = position(y_mm);
+    const auto j = static_cast<Index>(col);
+    const auto i = static_cast<Index>(row);
+    const double u = col - static_cast<double>(j);
+    const double v = row - static_cast<double>(i);
+    return (1 - v) * ((1 - u) * touches_(i, j) + u * touches_(i, j + 1)) +
+               v * ((1 - u) * touches_(i + 1, j) + u * touches_(i + 1, j + 1)) >=
+           0.5;
+  }
+
+ private:
+  static constexpr Index samples = 160;
+  static double position(double mm) {
+    const double middle = (static_cast<double>(samples) - 1) / 2;
+    return (std::min)((std::max)(mm / 0.24 + middle, 0.0), static_cast<double>(samples) - 1.001);
+  }
+  Image<int> touches_;
+};
+
+/// What the default camera sees: 640 x 480 pixels of 0.08 mm.
+class Scene {
+ public:
+  Scene() {
+    pad_.rows = 480;
+    pad_.cols = 640;
+    pad_.camera = fingerpad::Camera<double>();
+  }
+  const Pad& pad() const { return pad_; }
+
+  /// Where every pixel's ray meets the membrane.
+  Image<double> depth(const std::string& name) const {
+    const Membrane membrane(name);
+    Image<double> depth(pad_.rows, pad_.cols, nan);
+    for (Index i = 0; i < pad_.rows; ++i) {
+      for (Index j = 0; j < pad_.cols; ++j) {
+        const auto at = [&](double z) {
+          return point_at(pad_.camera, static_cast<double>(i), static_cast<double>(j), z);
+        };
+        const auto foot = at(0);
+        if (std::hypot(foot.x, foot.y) >= base_radius_mm) {
+          continue;
+        }
+        const auto top = at(1);
+        const auto above = [&](double z) {
+          return membrane(foot.x + z * (top.x - foot.x), foot.y + z * (top.y - foot.y)) - z;
+        };
+        depth(i, j) = crossing(above);
+      }
+    }
+    return depth;
+  }
+
+  /// Membrane darker toward the rim, dots of 0.6 mm every 1.5 mm.
+  Frame<std::uint8_t> frame(const Image<double>& depth,
+                            std::uint64_t seed,
+                            double noise = 1) const {
+    Frame<std::uint8_t> frame(pad_.rows, pad_.cols, 3);
+    Random random(seed);
+    for (Index i = 0; i < pad_.rows; ++i) {
+      for (Index j = 0; j < pad_.cols; ++j) {
+        const double l = depth(i, j);
+        if (l != l) {
+          continue;
+        }
+        const auto p = point_at(pad_.camera, static_cast<double>(i), static_cast<double>(j), l);
+        const double u = p.x - 1.5 * std::round(p.x / 1.5);
+        const double v = p.y - 1.5 * std::round(p.y / 1.5);
+        const double share = (p.x * p.x + p.y * p.y) / (base_radius_mm * base_radius_mm);
+        const double bright = 57 * (1 - 0.06 * share) * (u * u + v * v < 0.09 ? 0.4 : 1);
+        const auto c = pad_.colour(i, j, l, bright);
+        frame.red(i, j) = stored<std::uint8_t>(c.red + noise * random.normal());
+        frame.green(i, j) = stored<std::uint8_t>(c.green + noise * random.normal());
+      }
+    }
+    return frame;
+  }
+
+  /// From the mean of many free frames, as one would take it, in 16 bit: 1/4 of a level of noise.
+  fingerpad::DepthReference<float> reference(const Image<double>& free) const {
+    Frame<std::uint16_t> mean(pad_.rows, pad_.cols);
+    Random random(99);
+    for (std::size_t k = 0; k < free.cells.size(); ++k) {
+      if (free.cells[k] == free.cells[k]) {
+        const Index i = static_cast<Index>(k) / pad_.cols;
+        const Index j = static_cast<Index>(k) % pad_.cols;
+        const auto c = pad_.colour(i, j, free.cells[k], 57);
+        mean.red.cells[k] = stored<std::uint16_t>(c.red + 0.25 * random.normal());
+        mean.green.cells[k] = stored<std::uint16_t>(c.green + 0.25 * random.normal());
+      }
+    }
+    return fit_reference(pad_.camera, pad_.fluid, mean.red, mean.green, free);
+  }
+
+ private:
+  /// Zero of a function that falls from above to below 0 between 0 and 14 mm.
+  template <class F>
+  static double crossing(const F& above) {
+    double low = 0;
+    double high = 14;
+    double at_low = above(low);
+    double at_high = above(high);
+    if (at_low <= 0) {
+      return 0;
+    }
+    for (int step = 0; step < 60 && high - low > 1e-6; ++step) {
+      // every third step halves, or a steep end would stay where it is
+      const double secant = low + (high - low) * at_low / (at_low - at_high);
+      const double z = step % 3 == 2 ? (low + high) / 2 : secant;
+      const double f = above(z);
+      if (std::abs(f) < 1e-6) {
+        return z;
+      }
+      (f > 0 ? low : high) = z;
+      (f > 0 ? at_low : at_high) = f;
+    }
+    return (low + high) / 2;
+  }
+  Pad pad_;
+};
+
+}  // namespace test
