@@ -27,6 +27,7 @@
 #include "fingerpad/expects.hpp"
 #include "fingerpad/grid.hpp"
 #include "fingerpad/optics.hpp"
+#include "fingerpad/touch.hpp"
 
 namespace fingerpad {
 inline namespace v0 {

@@ -22,6 +22,7 @@
 #include "fingerpad/detail/motion/spatial_dots.hpp"
 #include "fingerpad/expects.hpp"
 #include "fingerpad/grid.hpp"
+#include "fingerpad/touch.hpp"
 
 namespace fingerpad {
 inline namespace v0 {
@@ -113,10 +114,10 @@ class ObjectMotion {
 
   /// The object in a frame with dots `dots_mm` (NaN: not found) of which those with a true
   /// `contact` touch it.
-  template <spatial_dot_grid Dots, grid Contact>
-    requires(std::convertible_to<cell_t<Contact>, bool>)
-  ObjectMotionResult<S>
-  operator()(const Dots& dots_mm, const Contact& contact, State& state) const {
+  template <spatial_dot_grid Dots, contact_mask Contact>
+  ObjectMotionResult<S> operator()(const Dots& dots_mm,
+                                   const Contact& contact,
+                                   State& state) const {
     const auto dots = as_view(dots_mm);
     const auto flags = as_view(contact);
     if (dots.rows() != rows() || dots.cols() != cols() || !same_size(dots, flags) ||

@@ -25,6 +25,7 @@
 #include "fingerpad/grid.hpp"
 #include "fingerpad/optics.hpp"
 #include "fingerpad/scalar.hpp"
+#include "fingerpad/touch.hpp"
 
 namespace fingerpad {
 inline namespace v0 {
@@ -102,7 +103,7 @@ class SurfaceFit {
   Index cols() const { return cols_; }
 
   /// The shape of the object where `contact` is true.
-  template <grid Depth, grid Mask>
+  template <grid Depth, contact_mask Mask>
     requires(std::constructible_from<Scalar, cell_t<Depth>>)
   Result operator()(const Depth& depth_mm, const Mask& contact) const {
     const auto depth = as_view(depth_mm);
@@ -118,7 +119,7 @@ class SurfaceFit {
   /// The same, and the distance of each pixel used from the shape, in mm: positive where the object
   /// stands out into the pad; NaN elsewhere, and everywhere unless ok(). `residual_mm` may be the
   /// depth map.
-  template <grid Depth, grid Mask, writable_grid<Scalar> Residual>
+  template <grid Depth, contact_mask Mask, writable_grid<Scalar> Residual>
     requires(std::constructible_from<Scalar, cell_t<Depth>> && !std::integral<cell_t<Residual>>)
   Result operator()(const Depth& depth_mm, const Mask& contact, Residual&& residual_mm) const {
     const auto depth = as_view(depth_mm);

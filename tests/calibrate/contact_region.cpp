@@ -116,12 +116,33 @@ TEST_CASE("calibration: the rules by definition", "[contact_region]") {
   const auto at = [&](double share) {
     return lows[static_cast<std::size_t>(share * static_cast<double>(lows.size() - 1))];
   };
-  CHECK(calibration.fit({1, 2, 0.1}).threshold_per_mm == Approx(at(0.1)).epsilon(1e-12));
-  CHECK(calibration.fit({1, 2, 0.5}).threshold_per_mm == Approx(at(0.5)).epsilon(1e-12));
+  CHECK(calibration.fit({1, 2, 0.1, false}).threshold_per_mm == Approx(at(0.1)).epsilon(1e-12));
+  CHECK(calibration.fit({1, 2, 0.5, false}).threshold_per_mm == Approx(at(0.5)).epsilon(1e-12));
   CHECK(calibration.fit({0.5, 2, 0.1}).threshold_per_mm ==
         Approx(published.median_per_mm / 2).epsilon(1e-12));
   CHECK(calibration.fit({1, 0, 0.5}).threshold_per_mm ==
         Approx(published.median_per_mm).epsilon(1e-12));
+  CHECK(calibration.fit({1, 3, 0.1}).threshold_per_mm ==
+        Approx(means[static_cast<std::size_t>(0.1 * static_cast<double>(means.size() - 1))] -
+               3 * published.noise_per_mm)
+            .epsilon(1e-12));
+}
+
+TEST_CASE("calibration: two frames are enough for half of the level", "[contact_region]") {
+  const Index rows = 180, cols = 200;
+  const auto camera = test::height_map(rows, cols, 0.1);
+  test::Random random(9);
+  Calibration calibration(camera, rows, cols, {8});
+  for (int frame = 0; frame < 2; ++frame) {
+    auto depth = test::depths_of<float>(camera, free_pad(0.05), rows, cols);
+    add_noise(depth, 0.002, random);
+    calibration.add(depth);
+  }
+  const FreePadCurvature pad = calibration.fit();
+  CHECK(pad.noise_per_mm > 0.003);
+  CHECK(pad.threshold_per_mm == Approx(pad.median_per_mm / 2));
+  // a pixel's own sigma from two frames is now and then many times too large
+  CHECK(calibration.fit({0.5, 2, 0.001, false}).threshold_per_mm < pad.threshold_per_mm);
 }
 
 TEST_CASE("calibration: one bad pixel sets the published threshold, but no quantile",
@@ -139,7 +160,7 @@ TEST_CASE("calibration: one bad pixel sets the published threshold, but no quant
     spoilt.add(noisy);
   }
   CHECK(spoilt.fit().threshold_per_mm == Approx(good.fit().threshold_per_mm).epsilon(0.01));
-  const ThresholdRule robust{1, 2, 0.005};
+  const ThresholdRule robust{1, 2, 0.005, false};
   CHECK(spoilt.fit(robust).threshold_per_mm ==
         Approx(good.fit(robust).threshold_per_mm).epsilon(0.01));
   const ThresholdRule published = published_threshold_rule();

@@ -23,15 +23,18 @@ namespace fingerpad {
 inline namespace v0 {
 
 /// delta = min(level_share x median of E, quantile over the pad of E - sigmas x sigma).
+/// The sigma of a single pixel, as published, takes dozens of frames to be known; that of the whole
+/// pad takes two.
 struct ThresholdRule {
   double level_share = 0.5;  ///< in (0, 1]
   double sigmas = 2;         ///< >= 0
   double quantile = 0.001;   ///< in [0, 0.5]; share of the free pad that may be taken for contact
+  bool pooled_sigma = true;  ///< one sigma, the root mean square over the pad, for all pixels
 };
 
 /// The slides' rule: the worst pixel alone counts.
 constexpr ThresholdRule published_threshold_rule() {
-  return {1, 2, 0};
+  return {1, 2, 0, false};
 }
 
 /// What the free pad is like. All curvatures in 1/mm.
@@ -39,7 +42,8 @@ struct FreePadCurvature {
   double threshold_per_mm = 0;  ///< delta, for ContactTest
   double median_per_mm = 0;     ///< of E over the pad
   double noise_per_mm = 0;      ///< root mean square of sigma over the pad; 0 from a single frame
-  double edge_noise_mm = 0;     ///< standard deviation of an edge point on a flat object, from it
+  double edge_noise_mm = 0;     ///< standard deviation that it alone would leave a point of a flat
+                                ///< object's edge; HalfLevelEdge, which smooths, comes to less
   Index pixels = 0;             ///< with a curvature in every frame
   int frames = 0;
 };
@@ -89,13 +93,13 @@ class FreePadCalibration {
     FreePadCurvature pad;
     pad.frames = frames_;
     std::vector<double> means;
-    std::vector<double> lows;
+    std::vector<double> sigmas;
     double variance = 0;
     for (std::size_t k = 0; k < mean_.size(); ++k) {
       if (is_finite(squares_[k])) {
         const double of_pixel = frames_ > 1 ? squares_[k] / (frames_ - 1) : 0;
         means.push_back(mean_[k]);
-        lows.push_back(mean_[k] - rule.sigmas * std::sqrt(of_pixel));
+        sigmas.push_back(std::sqrt(of_pixel));
         variance += of_pixel;
       }
     }
@@ -103,10 +107,14 @@ class FreePadCalibration {
     expects(frames_ > 0, "FreePadCalibration", "frames", static_cast<long long>(frames_), ">= 1");
     expects(pad.pixels > 0, "FreePadCalibration", "pixels", static_cast<long long>(pad.pixels),
             ">= 1 with a curvature in every frame");
+    pad.noise_per_mm = std::sqrt(variance / static_cast<double>(pad.pixels));
+    std::vector<double> lows = means;
+    for (std::size_t k = 0; k < lows.size(); ++k) {
+      lows[k] -= rule.sigmas * (rule.pooled_sigma ? pad.noise_per_mm : sigmas[k]);
+    }
     pad.median_per_mm = quantile(means, 0.5);
     pad.threshold_per_mm =
         (std::min)(rule.level_share * pad.median_per_mm, quantile(lows, rule.quantile));
-    pad.noise_per_mm = std::sqrt(variance / static_cast<double>(pad.pixels));
     // the mean curvature across an edge rises by 4 / (pi r) of its jump per mm, see edge_level.hpp
     pad.edge_noise_mm =
         pad.noise_per_mm / pad.median_per_mm * 0.785398163397448 * ring_px_ * pixel_mm_;

@@ -48,8 +48,9 @@ struct WidenedByRing {
 /// rows around the contact.
 struct HalfLevelEdge {
   /// What is nearer than this to the object counts as touched; it moves the edge outward by
-  /// sqrt(gap / jump of the mean curvature), 0.4 mm at the default. In [0, 1].
-  double touching_gap_mm = 0.01;
+  /// sqrt(gap / jump of the mean curvature), about 0.5 mm at the default, which is what a depth map
+  /// from 8-bit frames cannot tell from contact. In [0, 1].
+  double touching_gap_mm = 0.02;
 };
 
 inline void expects_valid(const AtThreshold&) {}

@@ -114,8 +114,7 @@ class EdgeFinder<HalfLevelEdge, Statistic, Projection, S> {
     std::vector<S> level;  ///< edge of the region at hand by cells of `outside`; NaN: not known yet
   };
   Workspace workspace() const {
-    // a third of the ring: what noise leaves of the edge becomes smooth, and the edge stays
-    const SparseMean<S> smoothing(image_.cols, (ring_px_ + 1) / 3);
+    const SparseMean<S> smoothing(image_.cols, spread_px());
     Workspace w{OutsideLevel<S>(image_, ring_px_), mean_.workspace(), smoothing, {}, {}, {}, {}};
     w.raw.assign(static_cast<std::size_t>(image_.size()), not_a_number<S>());
     w.mean = w.raw;
@@ -172,14 +171,17 @@ class EdgeFinder<HalfLevelEdge, Statistic, Projection, S> {
     const double area_mm2 = static_cast<double>(region.pixels()) * pixel_mm * pixel_mm;
     const S patch_mm = S(std::sqrt(area_mm2 / 3.14159265358979323846));
     const S ring_mm = S(static_cast<double>(ring_px_) * pixel_mm);
+    const S spread_mm = S(static_cast<double>(spread_px()) * pixel_mm);
+    const auto edge = [&](const S& outside) {
+      return edge_level(inside, outside, S(gap_mm_), ring_mm, patch_mm, spread_mm);
+    };
     std::fill(w.level.begin(), w.level.end(), not_a_number<S>());
     const auto within = [&](Index at) {
       const auto pixel = static_cast<std::size_t>(at);
       S& level = w.level[cell_[pixel]];
       if (!(level == level)) {
         const S outside = w.outside[cell_[pixel]] / S(means_in<Statistic>);
-        level =
-            outside > inside ? edge_level(inside, outside, S(gap_mm_), ring_mm, patch_mm) : inside;
+        level = outside > inside ? edge(outside) : inside;
       }
       return w.mean[pixel] < level;
     };
@@ -217,6 +219,9 @@ class EdgeFinder<HalfLevelEdge, Statistic, Projection, S> {
     }
     return detail::pixel_size_mm(projection_, sum / count);
   }
+
+  /// A third of the ring: noise leaves the edge smooth, and the edge stays where it is.
+  Index spread_px() const { return (ring_px_ + 1) / 3; }
 
   /// A region's properties come from a thousand of its pixels, or two.
   static Index sparse(const Regions::Region& region) { return region.pixels() / most_samples + 1; }

@@ -18,12 +18,15 @@
 namespace fingerpad {
 inline namespace v0 {
 
-/// q: share of the jump that a ring sees at `offset` outside a straight edge, in radii of the ring;
-/// offset >= 0.
+/// q: share of the jump that a ring sees at `offset` outside a straight edge, in radii of the ring.
+/// Inside it is what the other side lacks: q(-offset) = 1 - q(offset).
 template <scalar S>
 S edge_share(const S& offset) {
   using std::acos;
   using std::sqrt;
+  if (value(offset) < 0) {
+    return S(S(1) - edge_share(S(-offset)));
+  }
   if (!(value(offset) < 1)) {
     return S(1);
   }
@@ -34,18 +37,23 @@ S edge_share(const S& offset) {
 }
 
 /// The curvature in 1/mm at which the region ends, so that what is nearer than `gap_mm` to the
-/// object lies inside. Needs outside > inside; ring and patch radius in mm, > 0.
+/// object lies inside. Needs outside > inside; ring and patch radius in mm, > 0; `spread_mm` is the
+/// distance of the pixels of which SparseMean takes the mean, 0: none taken.
 template <scalar S>
 S edge_level(const S& inside_per_mm,
              const S& outside_per_mm,
              const S& gap_mm,
              const S& ring_mm,
-             const S& patch_mm) {
+             const S& patch_mm,
+             const S& spread_mm = S(0)) {
   using std::sqrt;
   const S jump = outside_per_mm - inside_per_mm;
   const S ratio = gap_mm / jump;
   const S offset = value(ratio) > 0 ? S(sqrt(ratio)) : S(0);
-  const S share = edge_share(S(offset / ring_mm));
+  const S here = edge_share(S(offset / ring_mm));
+  const S inward = edge_share(S((offset - spread_mm) / ring_mm));
+  const S outward = edge_share(S((offset + spread_mm) / ring_mm));
+  const S share = (here + inward + outward) / S(3);
   const S round = share + S(0.070735530263064590) * ring_mm / patch_mm;
   const S held = value(round) < 1 ? round : S(1);
   return S(inside_per_mm + held * jump);

@@ -4,32 +4,14 @@
 // Masks made larger or smaller by a disc of any radius, in a time that does not depend on it.
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
-#include <type_traits>
 
 #include "fingerpad/detail/contact/mask_distance.hpp"
 #include "fingerpad/expects.hpp"
 #include "fingerpad/grid.hpp"
+#include "fingerpad/touch.hpp"
 
 namespace fingerpad {
 inline namespace v0 {
-
-/// What is known of a pixel. As a number: black, grey and white of an 8-bit image.
-enum class Touch : std::uint8_t { none = 0, unknown = 127, contact = 255 };
-
-namespace detail {
-
-/// Anything but 0, and of a Touch only contact.
-template <class Cell>
-constexpr bool is_in_mask(const Cell& cell) {
-  if constexpr (std::is_same_v<Cell, Touch>) {
-    return cell == Touch::contact;
-  } else {
-    return static_cast<bool>(cell);
-  }
-}
-
-}  // namespace detail
 
 /// Grows (by_px > 0) or shrinks (by_px < 0) masks of one size. What lies beyond the image neither
 /// adds nor takes away. O(rows cols), no allocation.
@@ -57,7 +39,8 @@ class MaskGrowth {
     const bool grows = by_px >= 0;
     // what is in no mask is farther than this
     const double reach = (std::min)(std::abs(by_px), static_cast<double>(rows_ + cols_ - 1));
-    distance.measure([&](Index i, Index j) { return detail::is_in_mask(from(i, j)) == grows; });
+    distance.measure(
+        [&](Index i, Index j) { return says_contact(cell_t<Mask>(from(i, j))) == grows; });
     for (Index i = 0; i < rows_; ++i) {
       distance.row(i, [&](Index j, double squared_px) {
         const bool near = squared_px <= reach * reach;

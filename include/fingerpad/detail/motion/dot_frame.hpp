@@ -14,6 +14,7 @@
 #include "fingerpad/dots.hpp"
 #include "fingerpad/grid.hpp"
 #include "fingerpad/scalar.hpp"
+#include "fingerpad/touch.hpp"
 
 namespace fingerpad {
 inline namespace v0 {
@@ -47,16 +48,6 @@ constexpr Point3<S> spatial(const P& p) {
   return {S(Traits::x(p)), S(Traits::y(p)), S(Traits::z(p))};
 }
 
-/// A contact flag of any type; NaN is no contact.
-template <class Flag>
-constexpr bool is_set(const Flag& flag) {
-  if constexpr (std::floating_point<Flag>) {
-    return flag < 0 || flag > 0;
-  } else {
-    return static_cast<bool>(flag);
-  }
-}
-
 template <scalar S, class Dots, class Contact>
 class DotFrame {
  public:
@@ -65,7 +56,9 @@ class DotFrame {
   Index rows() const { return dots_.rows(); }
   Index cols() const { return dots_.cols(); }
   Point3<S> dot(Index row, Index col) const { return spatial<S>(cell_t<Dots>(dots_(row, col))); }
-  bool flagged(Index row, Index col) const { return is_set(cell_t<Contact>(contact_(row, col))); }
+  bool flagged(Index row, Index col) const {
+    return says_contact(cell_t<Contact>(contact_(row, col)));
+  }
   bool found(Index row, Index col) const { return is_placed(dot(row, col)); }
   bool in_contact(DotIndex d) const { return flagged(d.row, d.col) && found(d.row, d.col); }
 

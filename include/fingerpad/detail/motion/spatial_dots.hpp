@@ -10,6 +10,7 @@
 
 #include "fingerpad/detail/motion/dot_frame.hpp"
 #include "fingerpad/optics.hpp"
+#include "fingerpad/touch.hpp"
 
 namespace fingerpad {
 inline namespace v0 {
@@ -99,7 +100,7 @@ SpatialDotsResult spatial_dots(const Camera<S>& camera,
 /// Which dots lie in contact: the flag of the mask's pixel nearest to each; false where a dot was
 /// not found or lies outside of the mask. False, and nothing written, when `out` has another size
 /// than the dot grid. Allocates nothing.
-template <dot_grid Dots, grid Mask, writable_grid<bool> Out>
+template <dot_grid Dots, contact_mask Mask, writable_grid<bool> Out>
 bool contact_at_dots(const Dots& dots_px, const Mask& mask, Out&& out) {
   const auto from = as_view(dots_px);
   const auto flags = as_view(mask);
@@ -116,9 +117,8 @@ bool contact_at_dots(const Dots& dots_px, const Mask& mask, Out&& out) {
       const auto row = static_cast<double>(value(Traits::y(p)));
       const auto col = static_cast<double>(value(Traits::x(p)));
       const bool inside = row > -0.5 && col > -0.5 && row < last_row && col < last_col;
-      const bool set =
-          inside && detail::motion::is_set(cell_t<Mask>(
-                        flags(static_cast<Index>(row + 0.5), static_cast<Index>(col + 0.5))));
+      const bool set = inside && says_contact(cell_t<Mask>(flags(static_cast<Index>(row + 0.5),
+                                                                 static_cast<Index>(col + 0.5))));
       to(i, j) = static_cast<cell_t<Out>>(set);
     }
   }

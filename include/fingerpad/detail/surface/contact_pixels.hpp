@@ -10,6 +10,7 @@
 
 #include "fingerpad/grid.hpp"
 #include "fingerpad/scalar.hpp"
+#include "fingerpad/touch.hpp"
 
 namespace fingerpad {
 inline namespace v0 {
@@ -23,7 +24,7 @@ inline constexpr bool is_byte_mask<StridedView<T>> = std::is_integral_v<T> && si
 
 template <class View>
 bool is_set(const View& mask, Index row, Index col) {
-  return static_cast<bool>(mask(row, col));
+  return says_contact(cell_t<View>(mask(row, col)));
 }
 
 /// First column of [col, last) that is set, or a column before it; `last` if there is none.
