@@ -46,7 +46,7 @@ struct Bench {
         group + name, pixels(),
         [=, from = depth] { *result = (*region)(*from, *mask, *workspace); },
         [=, truth = film.area_mm2()](auto& counters) {
-          counters["area_error"] = std::abs(result->area_mm2 - truth) / truth;
+          counters["share_wrong_area"] = std::abs(result->area_mm2 - truth) / truth;
         });
   }
 
@@ -74,7 +74,7 @@ struct Bench {
     near_zero.threshold_per_mm = 0.001;
     add_region<PublishedTwiceMean<>, AtThreshold, NoCleaning>("published test",
                                                               published_contact_test());
-    add_region<ClampedMean<>>("default, with its gap of 0.01 mm");
+    add_region<ClampedMean<>>("default, with its gap");
     add_region<ClampedMean<>>("default, no gap", {}, no_gap);
     add_region<ClampedMean<>, HalfLevelEdge, Hysteresis>("Hysteresis, no gap", {}, no_gap);
     add_region<ClampedMean<>, AtThreshold>("AtThreshold, half of the free pad");

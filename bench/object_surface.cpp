@@ -10,6 +10,7 @@
 #include <cmath>
 #include <memory>
 #include <string>
+#include <type_traits>
 
 #include "support/run.hpp"
 #include "support/scene.hpp"
@@ -82,7 +83,8 @@ struct Bench {
     const auto fit = std::make_shared<Fit>(480, 640, camera, options);
     const auto out = std::make_shared<Image<float>>(480, 640);
     const auto note = [=, this](auto& counters) {
-      counters["error"] = error_of((*fit)(depth, mask).shape);
+      counters[std::is_same_v<Model, PlaneModel> ? "tilt_error_rad" : "curvature_error_1/mm"] =
+          error_of((*fit)(depth, mask).shape);
     };
     bench::add(
         group + "/" + name, depth.cells.size(),

@@ -44,7 +44,7 @@ def print_group(group, rows):
           + "".join(f" time over {name} |" for name in streams))
     print("|---|--:|--:|--:|--:|" + "--:|" * len(streams))
     for name, (seconds, pixels, errors) in rows.items():
-        print(f"| {name} | {seconds * 1e3:.3f} | {seconds / pixels * 1e9:.3f} | {error_text(errors)}"
+        print(f"| {name} | {seconds * 1e3:.4g} | {seconds / pixels * 1e9:.4g} | {error_text(errors)}"
               f" | {rows[first][0] / seconds:.3g} |"
               + "".join(f" {seconds / rows[stream][0]:.3g} |" for stream in streams))
 
