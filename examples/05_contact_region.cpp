@@ -1,7 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
-// Where a rod touches the pad, from depth maps: the threshold from the free pad, then area, depth
-// and outline of the contact. Usage: 05_contact_region [RECORDING]
+// Where a rod touches the pad and how it is curved, from depth maps: the threshold from the free
+// pad, then area and depth of the contact and the surface in it.
+// Usage: 05_contact_region [RECORDING]
+#include <cmath>
 #include <cstdio>
 #include <opencv2/imgcodecs.hpp>
 #include <string>
@@ -10,6 +12,7 @@
 #include "fingerpad/calibrate/contact_region.hpp"
 #include "fingerpad/contact_region.hpp"
 #include "fingerpad/depth.hpp"
+#include "fingerpad/object_surface.hpp"
 
 int main(int argc, char** argv) {
   const std::string recording = argc > 1 ? argv[1] : FINGERPAD_EXAMPLE_RECORDING;
@@ -37,17 +40,20 @@ int main(int argc, char** argv) {
   test.threshold_per_mm = free_pad.fit().threshold_per_mm;
   const fingerpad::ContactRegion<> contact_of(camera, shape.rows, shape.cols, test);
   auto workspace = contact_of.workspace();  // the last memory that is taken
+  const fingerpad::SurfaceFit<fingerpad::QuadricModel> surface_of(shape.rows, shape.cols, camera);
 
   // Every frame.
   cv::Mat1f depth_mm(frame.size());
   cv::Mat1b mask(frame.size());
   depth_of(red(frame), green(frame), depth_mm, depth_workspace);
   const fingerpad::ContactResult contact = contact_of(depth_mm, mask, workspace);
+  const auto surface = surface_of(depth_mm, mask);
 
-  std::printf("threshold %.4f per mm\n", test.threshold_per_mm);
   std::printf("contact of %.1f mm^2, %.2f mm deep, around (%.2f, %.2f) mm\n", contact.area_mm2,
               contact.depth_mm, contact.center_mm.x, contact.center_mm.y);
-  const bool on_the_axis =
-      contact.center_mm.x * contact.center_mm.x + contact.center_mm.y * contact.center_mm.y < 0.25;
-  return on_the_axis && contact.area_mm2 > 80 && contact.area_mm2 < 120 ? 0 : 1;
+  const double radius_mm = 1 / surface.shape.curvature_1_per_mm;  // of the rod it is 12
+  std::printf("object of radius %.1f mm, %.3f mm rms off that\n", radius_mm, surface.rms_mm);
+  const bool plausible = contact.area_mm2 > 80 && contact.area_mm2 < 120 &&
+                         std::abs(contact.center_mm.x) < 0.5 && std::abs(radius_mm - 12) < 2;
+  return plausible ? 0 : 1;
 }

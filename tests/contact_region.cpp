@@ -12,13 +12,16 @@
 #include <vector>
 
 #include "support/catch.hpp"
+#include "support/refusal.hpp"
 #include "support/soap_film.hpp"
 
 using namespace fingerpad;
+using test::begins_with;
 using test::depths_of;
 using test::height_map;
 using test::Image;
 using test::pad_camera;
+using test::refusal;
 using test::RoundFilm;
 
 namespace {
@@ -71,20 +74,6 @@ Index pixels_for(double radius_mm, Index ring_px, double pitch_mm = 0.08) {
 }
 
 constexpr HalfLevelEdge no_gap{0};
-
-template <class F>
-std::string refusal(const F& construct) {
-  try {
-    construct();
-  } catch (const parameter_error& error) {
-    return error.what();
-  }
-  return "accepted";
-}
-
-bool begins_with(const std::string& text, const std::string& begin) {
-  return text.compare(0, begin.size(), begin) == 0;
-}
 
 }  // namespace
 

@@ -13,9 +13,11 @@
 #include "support/catch.hpp"
 #include "support/foreign_image.hpp"
 #include "support/pad.hpp"
+#include "support/refusal.hpp"
 
 using namespace fingerpad;
 using test::Image;
+using test::refusal;
 
 namespace {
 
@@ -54,16 +56,6 @@ double in_the_middle(const F& depth_at_mm,
   const Index size = 2 * radius_px + 1;
   const Image<double> depth = depths<double>(size, size, depth_at_mm, projection.pitch_mm);
   return curvatures<Statistic>(depth, {radius_px}, projection)(radius_px, radius_px);
-}
-
-template <class F>
-std::string refusal(const F& construct) {
-  try {
-    construct();
-  } catch (const parameter_error& error) {
-    return error.what();
-  }
-  return "accepted";
 }
 
 }  // namespace

@@ -47,9 +47,8 @@ struct ContactResult {
 };
 
 /// The contact region of depth maps of one size.
-///   Statistic   ClampedMean<>, SectionMean<>, PublishedTwiceMean<>, HessianFit<>,
-///   ClampedHessian<>,
-///               RingStencil<>
+///   Statistic   ClampedMean<>, SectionMean<>, PublishedTwiceMean<>, HessianFit<>, RingStencil<>,
+///               ClampedHessian<>
 ///   Edge        HalfLevelEdge, AtThreshold (published), WidenedByRing
 ///   Cleaning    WithoutSpecks, LargestRegion, Hysteresis, NoCleaning (published)
 ///   CameraType  Camera<double>, or OrthographicCamera<double> for height maps

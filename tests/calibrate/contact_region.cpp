@@ -10,10 +10,13 @@
 
 #include "fingerpad/contact_region.hpp"
 #include "support/catch.hpp"
+#include "support/refusal.hpp"
 #include "support/soap_film.hpp"
 
 using namespace fingerpad;
+using test::begins_with;
 using test::Image;
+using test::refusal;
 using test::RoundFilm;
 
 namespace {
@@ -33,20 +36,6 @@ void add_noise(Image<S>& depth, double noise_mm, test::Random& random) {
   for (S& l : depth.cells) {
     l += static_cast<S>(noise_mm * random.normal());
   }
-}
-
-template <class F>
-std::string refusal(const F& construct) {
-  try {
-    construct();
-  } catch (const parameter_error& error) {
-    return error.what();
-  }
-  return "accepted";
-}
-
-bool begins_with(const std::string& text, const std::string& begin) {
-  return text.compare(0, begin.size(), begin) == 0;
 }
 
 }  // namespace

@@ -12,10 +12,13 @@
 #include "support/catch.hpp"
 #include "support/generators.hpp"
 #include "support/soap_film.hpp"
+#include "support/turned.hpp"
 
 using namespace fingerpad;
 using test::Image;
+using test::mirrored;
 using test::RoundFilm;
+using test::transposed;
 
 namespace {
 
@@ -80,27 +83,6 @@ Image<double> any_membrane(Index rows, Index cols) {
 
 Image<double> any_membrane() {
   return any_membrane(test::whole(24, 44), test::whole(24, 44));
-}
-
-template <class T>
-Image<T> transposed(const Image<T>& image) {
-  Image<T> out(image.cols(), image.rows());
-  for (Index i = 0; i < image.rows(); ++i) {
-    for (Index j = 0; j < image.cols(); ++j) {
-      out(j, i) = image(i, j);
-    }
-  }
-  return out;
-}
-template <class T>
-Image<T> mirrored(const Image<T>& image) {
-  Image<T> out(image.rows(), image.cols());
-  for (Index i = 0; i < image.rows(); ++i) {
-    for (Index j = 0; j < image.cols(); ++j) {
-      out(i, image.cols() - 1 - j) = image(i, j);
-    }
-  }
-  return out;
 }
 
 Index differing(const Image<std::uint8_t>& a, const Image<std::uint8_t>& b) {

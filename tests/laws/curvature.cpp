@@ -10,9 +10,13 @@
 #include "support/catch.hpp"
 #include "support/generators.hpp"
 #include "support/pad.hpp"
+#include "support/turned.hpp"
 
 using namespace fingerpad;
 using test::Image;
+using test::mirrored;
+using test::transposed;
+using test::turned;
 
 namespace {
 
@@ -48,33 +52,6 @@ Image<S> curvatures(const Image<S>& depth,
   auto workspace = map.workspace();
   Image<S> out(depth.rows(), depth.cols(), S(7));
   RC_ASSERT(map(depth, out, workspace).accepted);
-  return out;
-}
-
-template <class T>
-Image<T> transposed(const Image<T>& image) {
-  Image<T> out(image.cols(), image.rows());
-  for (Index i = 0; i < image.rows(); ++i) {
-    for (Index j = 0; j < image.cols(); ++j) {
-      out(j, i) = image(i, j);
-    }
-  }
-  return out;
-}
-template <class T>
-Image<T> turned(const Image<T>& image) {
-  Image<T> out = image;
-  std::reverse(out.cells.begin(), out.cells.end());
-  return out;
-}
-template <class T>
-Image<T> mirrored(const Image<T>& image) {
-  Image<T> out(image.rows(), image.cols());
-  for (Index i = 0; i < image.rows(); ++i) {
-    for (Index j = 0; j < image.cols(); ++j) {
-      out(i, image.cols() - 1 - j) = image(i, j);
-    }
-  }
   return out;
 }
 

@@ -11,11 +11,14 @@
 #include "support/catch.hpp"
 #include "support/generators.hpp"
 #include "support/pad.hpp"
+#include "support/turned.hpp"
 
 using namespace fingerpad;
 using test::Frame;
 using test::Image;
+using test::mirrored;
 using test::Pad;
+using test::transposed;
 
 namespace {
 
@@ -89,26 +92,6 @@ void spoil(Frame<Pixel>& frame, int share) {
   }
 }
 
-template <class T>
-Image<T> mirrored(const Image<T>& image) {
-  Image<T> out(image.rows(), image.cols());
-  for (Index i = 0; i < image.rows(); ++i) {
-    for (Index j = 0; j < image.cols(); ++j) {
-      out(i, image.cols() - 1 - j) = image(i, j);
-    }
-  }
-  return out;
-}
-template <class T>
-Image<T> transposed(const Image<T>& image) {
-  Image<T> out(image.cols(), image.rows());
-  for (Index i = 0; i < image.rows(); ++i) {
-    for (Index j = 0; j < image.cols(); ++j) {
-      out(j, i) = image(i, j);
-    }
-  }
-  return out;
-}
 template <class Pixel, class Turn>
 Frame<Pixel> turned(const Frame<Pixel>& frame, const Turn& turn) {
   Frame<Pixel> out(0, 0);

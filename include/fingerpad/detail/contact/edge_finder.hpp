@@ -28,11 +28,15 @@ namespace detail {
 template <class Edge, class Statistic, class Projection, class S>
 class EdgeFinder;
 
-/// How many times the mean curvature of a free membrane a statistic is.
+/// How many times the mean curvature of a free membrane a statistic is; 0: another curvature.
 template <class Statistic>
 inline constexpr int means_in = 1;
 template <int Directions>
 inline constexpr int means_in<PublishedTwiceMean<Directions>> = 2;
+template <int Directions>
+inline constexpr int means_in<HessianFit<Directions, FittedValue::larger>> = 0;
+template <int Directions>
+inline constexpr int means_in<HessianFit<Directions, FittedValue::smaller>> = 0;
 
 template <class Statistic, class Projection, class S>
 class EdgeFinder<AtThreshold, Statistic, Projection, S> {
@@ -81,6 +85,8 @@ class EdgeFinder<WidenedByRing, Statistic, Projection, S> {
 
 template <class Statistic, class Projection, class S>
 class EdgeFinder<HalfLevelEdge, Statistic, Projection, S> {
+  static_assert(means_in<Statistic> > 0,
+                "HalfLevelEdge compares mean curvatures, which this statistic is not");
   using MeanMap = CurvatureMap<SectionMean<>, Projection, S>;
 
  public:

@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 // The curvature of the free membrane around a contact, where a ring sees nothing of it: a mean over
-// a window, because a sheared pad is flatter before the object than behind it. On every fourth
-// pixel, which is finer than the ring can tell.
+// a window, because a sheared pad bulges unevenly around the object. On every fourth pixel, which
+// is finer than the ring can tell.
 #include <algorithm>
 #include <cstddef>
 #include <vector>

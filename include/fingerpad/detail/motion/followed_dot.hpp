@@ -113,6 +113,34 @@ struct Track {
   S residual_rms_mm = S(0);
 };
 
+/// A dot is followed from the frame in which the object begins.
+template <scalar S, class Frame, class FollowingTrack>
+MotionStatus begin_following(const Frame& frame, DotIndex reference, FollowingTrack& t) {
+  if (!reference.exists()) {
+    return MotionStatus::no_reference_dot;
+  }
+  t = {};
+  t.followed = follow<S>(frame, reference);
+  t.start_mm = frame.dot(reference.row, reference.col);
+  t.dots_used = 9;
+  return MotionStatus::ok;
+}
+
+/// The step of a followed dot in the next frame, or why there is none.
+template <class Local, scalar S, class Frame>
+DotStep<S> next_step(const Frame& frame, DotIndex reference, FollowedDot<S>& followed) {
+  DotStep<S> step;
+  if (!is_still_held(frame, followed)) {
+    step.status = MotionStatus::lost;
+    return step;
+  }
+  step = step_of<Local>(frame, followed);
+  if (step.status == MotionStatus::ok && followed.has_left && !reference.exists()) {
+    step.status = MotionStatus::no_reference_dot;
+  }
+  return step;
+}
+
 }  // namespace detail::motion
 
 /// Published: the angles and the displacement of the object are the sums of those of the steps from
@@ -133,28 +161,18 @@ struct SumOfAngles {
 
   template <scalar S, class Frame>
   MotionStatus begin(const Frame& frame, DotIndex reference, Track<S>& t) const {
-    if (!reference.exists()) {
-      return MotionStatus::no_reference_dot;
-    }
-    t = {};
-    t.followed = detail::motion::follow<S>(frame, reference);
-    t.start_mm = frame.dot(reference.row, reference.col);
-    t.dots_used = 9;
-    return MotionStatus::ok;
+    return detail::motion::begin_following<S>(frame, reference, t);
   }
 
   template <scalar S, class Frame>
   MotionStatus advance(const Frame& frame, DotIndex reference, Track<S>& t) const {
-    if (!detail::motion::is_still_held(frame, t.followed)) {
-      return MotionStatus::lost;
-    }
-    const detail::motion::DotStep<S> step = detail::motion::step_of<Local>(frame, t.followed);
+    const detail::motion::DotStep<S> step =
+        detail::motion::next_step<Local>(frame, reference, t.followed);
     if (step.status != MotionStatus::ok) {
       return step.status;
     }
-    if (t.followed.has_left && !reference.exists()) {
-      return MotionStatus::no_reference_dot;
-    }
+    t.dots_used = step.dots_used;
+    t.residual_rms_mm = step.residual_rms_mm;
     const Angles<S> turned = zyx_angles(step.pose.rotation);
     t.angles = {S(t.angles.x_rad + turned.x_rad), S(t.angles.y_rad + turned.y_rad),
                 S(t.angles.z_rad + turned.z_rad)};
@@ -162,8 +180,6 @@ struct SumOfAngles {
     const Rotation<S> rotation = rotation_of(t.angles);
     const Point3<S> position = detail::sum(t.start_mm, t.displacement_mm);
     t.pose = {rotation, detail::difference(position, rotation(t.start_mm))};
-    t.dots_used = step.dots_used;
-    t.residual_rms_mm = step.residual_rms_mm;
     t.followed.anchor = step.now;
     if (reference.exists() && reference != t.followed.index) {
       t.followed = detail::motion::follow<S>(frame, reference);
@@ -202,32 +218,20 @@ struct AnchoredComposition {
 
   template <scalar S, class Frame>
   MotionStatus begin(const Frame& frame, DotIndex reference, Track<S>& t) const {
-    if (!reference.exists()) {
-      return MotionStatus::no_reference_dot;
-    }
-    t = {};
-    t.followed = detail::motion::follow<S>(frame, reference);
-    t.start_mm = frame.dot(reference.row, reference.col);
-    t.dots_used = 9;
-    return MotionStatus::ok;
+    return detail::motion::begin_following<S>(frame, reference, t);
   }
 
   template <scalar S, class Frame>
   MotionStatus advance(const Frame& frame, DotIndex reference, Track<S>& t) const {
-    if (!detail::motion::is_still_held(frame, t.followed)) {
-      return MotionStatus::lost;
-    }
-    const detail::motion::DotStep<S> step = detail::motion::step_of<Local>(frame, t.followed);
+    const detail::motion::DotStep<S> step =
+        detail::motion::next_step<Local>(frame, reference, t.followed);
     if (step.status != MotionStatus::ok) {
       return step.status;
     }
-    if (t.followed.has_left && !reference.exists()) {
-      return MotionStatus::no_reference_dot;
-    }
-    t.pose = step.pose * t.at_anchor;
-    t.angles = zyx_angles(t.pose.rotation);
     t.dots_used = step.dots_used;
     t.residual_rms_mm = step.residual_rms_mm;
+    t.pose = step.pose * t.at_anchor;
+    t.angles = zyx_angles(t.pose.rotation);
     if (reference.exists() && reference != t.followed.index) {
       t.pose.rotation = detail::motion::renormalized(t.pose.rotation);
       t.at_anchor = t.pose;
