@@ -73,10 +73,10 @@ class RoundFilm : public RoundContact {
   /// Cubic between the steps; NaN beyond the rim.
   double outside(double rho) const {
     const double at = (rho - radius_mm) / step_mm;
-    const auto k = static_cast<std::size_t>(at);
-    if (k + 1 >= fall_.size()) {
+    if (!(at < static_cast<double>(fall_.size()) - 1)) {
       return nan;
     }
+    const auto k = static_cast<std::size_t>(at);
     const double t = at - static_cast<double>(k);
     const double low = radius_mm + step_mm * static_cast<double>(k);
     const double rise = fall_[k + 1] - fall_[k];
