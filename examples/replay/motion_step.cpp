@@ -9,7 +9,10 @@ namespace replay {
 MotionStep::MotionStep(const Sensor& sensor,
                        const DotGrid& initial_px,
                        const cv::Mat_<float>& free_depth_mm)
-    : camera_(sensor.camera) {
+    : camera_(sensor.camera),
+      dot_radius_px_(sensor.dots ? sensor.dots->diameter_mm / 2 / camera_.pitch_mm : 0.0),
+      growth_(free_depth_mm.rows, free_depth_mm.cols),
+      growth_workspace_(growth_.workspace()) {
   if (!initial_px.empty()) {
     motion_.emplace(in_space(initial_px, free_depth_mm));
     state_.emplace(motion_->start());
@@ -31,7 +34,9 @@ FrameDots MotionStep::operator()(const DotGrid& dots_px,
     frame.dots_px = dots_px;
     frame.dots_mm = in_space(dots_px, depth_mm);
     frame.in_contact.create(dots_px.size());
-    fingerpad::contact_at_dots(dots_px, contact, frame.in_contact);
+    cv::Mat_<uchar> inner(contact.size());
+    growth_(contact, -dot_radius_px_, inner, growth_workspace_);
+    fingerpad::contact_at_dots(dots_px, inner, frame.in_contact);
     frame.motion = (*motion_)(frame.dots_mm, frame.in_contact, *state_);
   }
   return frame;

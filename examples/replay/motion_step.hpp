@@ -2,11 +2,13 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 // From the dots of a frame, its depth map and its contact to the motion of the object, with the
-// library's object_motion.hpp; the only place of the program that knows it.
+// library's object_motion.hpp; the only place of the program that knows it. A dot counts as in
+// contact when all of it is: one on the edge is about to let go, or has not been touched yet.
 #include <opencv2/core.hpp>
 #include <optional>
 
 #include "dots_grid.hpp"
+#include "fingerpad/contact_region.hpp"
 #include "fingerpad/object_motion.hpp"
 #include "sensor.hpp"
 
@@ -16,7 +18,7 @@ namespace replay {
 struct FrameDots {
   DotGrid dots_px;
   cv::Mat_<cv::Vec3d> dots_mm;  ///< NaN where a dot was not found or has no depth
-  cv::Mat_<uchar> in_contact;
+  cv::Mat_<uchar> in_contact;   ///< 1 for dots that are
   fingerpad::ObjectMotionResult<double> motion;
 };
 
@@ -36,6 +38,9 @@ class MotionStep {
   cv::Mat_<cv::Vec3d> in_space(const DotGrid& dots_px, const cv::Mat_<float>& depth_mm) const;
 
   fingerpad::Camera<double> camera_;
+  double dot_radius_px_;
+  fingerpad::MaskGrowth growth_;
+  fingerpad::MaskGrowth::Workspace growth_workspace_;
   std::optional<Motion> motion_;
   std::optional<Motion::State> state_;
 };
