@@ -27,7 +27,6 @@
 #include "fingerpad/expects.hpp"
 #include "fingerpad/grid.hpp"
 #include "fingerpad/optics.hpp"
-#include "fingerpad/touch.hpp"
 
 namespace fingerpad {
 inline namespace v0 {

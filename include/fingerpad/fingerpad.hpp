@@ -15,5 +15,4 @@
 #include "fingerpad/object_surface.hpp"
 #include "fingerpad/optics.hpp"
 #include "fingerpad/scalar.hpp"
-#include "fingerpad/touch.hpp"
 #include "fingerpad/version.hpp"

@@ -10,6 +10,7 @@
 // algorithms see only views: cheap values that never own and never copy pixels.
 #include <concepts>
 #include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <type_traits>
 #include <utility>
@@ -265,6 +266,27 @@ constexpr StridedView<T> interleaved_channel(
     T* data, Index rows, Index cols, Index channels, Index c, Index row_stride) {
   return {data + c, rows, cols, row_stride, channels};
 }
+
+/// What a mask of contact says of a pixel. As a number: black, grey and white of an 8-bit image.
+enum class Touch : std::uint8_t { none = 0, unknown = 127, contact = 255 };
+
+/// Whether a cell of a mask says contact: bytes, bools and numbers that are not 0 (nor NaN), and of
+/// a Touch only contact.
+template <class Cell>
+constexpr bool says_contact(const Cell& cell) {
+  if constexpr (std::is_same_v<Cell, Touch>) {
+    return cell == Touch::contact;
+  } else if constexpr (std::is_floating_point_v<Cell>) {
+    return cell < 0 || cell > 0;
+  } else {
+    return static_cast<bool>(cell);
+  }
+}
+
+/// A mask: a grid of such cells.
+template <class G> concept contact_mask = grid<G> && requires(const cell_t<G>& cell) {
+  static_cast<bool>(cell);
+};
 
 }  // namespace v0
 }  // namespace fingerpad

@@ -22,7 +22,6 @@
 #include "fingerpad/detail/motion/spatial_dots.hpp"
 #include "fingerpad/expects.hpp"
 #include "fingerpad/grid.hpp"
-#include "fingerpad/touch.hpp"
 
 namespace fingerpad {
 inline namespace v0 {

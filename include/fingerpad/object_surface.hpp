@@ -25,7 +25,6 @@
 #include "fingerpad/grid.hpp"
 #include "fingerpad/optics.hpp"
 #include "fingerpad/scalar.hpp"
-#include "fingerpad/touch.hpp"
 
 namespace fingerpad {
 inline namespace v0 {

@@ -8,7 +8,6 @@
 #include "fingerpad/detail/contact/mask_distance.hpp"
 #include "fingerpad/expects.hpp"
 #include "fingerpad/grid.hpp"
-#include "fingerpad/touch.hpp"
 
 namespace fingerpad {
 inline namespace v0 {

@@ -14,7 +14,6 @@
 #include "fingerpad/dots.hpp"
 #include "fingerpad/grid.hpp"
 #include "fingerpad/scalar.hpp"
-#include "fingerpad/touch.hpp"
 
 namespace fingerpad {
 inline namespace v0 {

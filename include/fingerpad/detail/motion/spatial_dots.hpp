@@ -10,7 +10,6 @@
 
 #include "fingerpad/detail/motion/dot_frame.hpp"
 #include "fingerpad/optics.hpp"
-#include "fingerpad/touch.hpp"
 
 namespace fingerpad {
 inline namespace v0 {

@@ -10,7 +10,6 @@
 
 #include "fingerpad/grid.hpp"
 #include "fingerpad/scalar.hpp"
-#include "fingerpad/touch.hpp"
 
 namespace fingerpad {
 inline namespace v0 {

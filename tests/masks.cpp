@@ -1,7 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
-#include "fingerpad/touch.hpp"
-
+// Masks of contact, and that every method reads them alike.
 #include <limits>
 #include <string>
 #include <vector>
