@@ -21,18 +21,6 @@ namespace {
 
 constexpr double degrees = 180 / std::numbers::pi;
 
-/// Nine dots 1.5 mm apart on a ball of 18 mm.
-Neighbourhood<double> dots_on_ball() {
-  Neighbourhood<double> n;
-  for (std::size_t k = 0; k < 9; ++k) {
-    const double x = 1.5 * static_cast<double>(k % 3) - 1.5;
-    const double y = 1.5 * static_cast<double>(k / 3) - 1.5;
-    n.dot[k] = {x, y, 10 + (x * x + y * y) / 36};
-    n.found[k] = true;
-  }
-  return n;
-}
-
 template <class S>
 Neighbourhood<S> as(const Neighbourhood<double>& n) {
   Neighbourhood<S> out;
@@ -45,7 +33,7 @@ Neighbourhood<S> as(const Neighbourhood<double>& n) {
 
 template <class Local>
 double shear_error_deg() {
-  const auto before = dots_on_ball();
+  const auto before = test::nine_dots();
   auto after = before;
   for (auto& p : after.dot) {
     p.x += 0.2 * p.y;
@@ -62,7 +50,7 @@ double noise_error_deg() {
   test::Gauss gauss(7);
   double sum_sq = 0;
   for (int k = 0; k < 1000; ++k) {
-    const auto before = dots_on_ball();
+    const auto before = test::nine_dots();
     auto after = before;
     for (auto& p : after.dot) {
       p = {p.x + 0.02 * gauss(), p.y + 0.02 * gauss(), p.z + 0.05 * gauss()};
@@ -78,8 +66,8 @@ double noise_error_deg() {
 template <class Local, class S>
 void add_rotation(const std::string& name) {
   struct Data {
-    Neighbourhood<S> anchor = as<S>(dots_on_ball());
-    Neighbourhood<S> now = as<S>(dots_on_ball());
+    Neighbourhood<S> anchor = as<S>(test::nine_dots());
+    Neighbourhood<S> now = as<S>(test::nine_dots());
     Rotation<S> before = rotation_of(Angles<S>{S(0.1), S(-0.2), S(0.3)});
     Angles<S> angles;
   };

@@ -25,18 +25,6 @@ namespace {
 constexpr double degree = std::numbers::pi / 180;
 using Vector = Point3<double>;
 
-/// Nine dots 1.5 mm apart on a shallow bowl.
-Neighbourhood<double> bowl() {
-  Neighbourhood<double> n;
-  for (std::size_t k = 0; k < 9; ++k) {
-    const double x = 1.5 * static_cast<double>(k % 3) - 1.5;
-    const double y = 1.5 * static_cast<double>(k / 3) - 1.5;
-    n.dot[k] = {x, y, 10 + (x * x + y * y) / 36};
-    n.found[k] = true;
-  }
-  return n;
-}
-
 Neighbourhood<double> turned(Neighbourhood<double> n, const Rotation<double>& r) {
   for (auto& p : n.dot) {
     p = r(p);
@@ -87,7 +75,7 @@ bool prints_as(double error, const char* digits) {
 }  // namespace
 
 TEST_CASE("object motion: the published basis as printed and as repaired (E021, E022, E023)") {
-  const auto k = bowl();
+  const auto k = test::nine_dots();
   const Rotation<double> true_turn =
       rotation_of(Angles<double>{20.6 * degree, 8.9 * degree, 6.7 * degree});
   const auto l = turned(k, true_turn);
@@ -474,7 +462,7 @@ TEST_CASE("object motion: names of statuses") {
 }
 
 TEST_CASE("object motion: a neighbourhood uses the dots that remain") {
-  const auto k = bowl();
+  const auto k = test::nine_dots();
   const Rotation<double> turn = rotation_of(Angles<double>{0.2, -0.3, 0.4});
   const auto check = [&](std::vector<std::size_t> kept, MotionStatus expected) {
     auto l = turned(k, turn);

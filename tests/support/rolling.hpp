@@ -50,6 +50,18 @@ struct Cells {
 using Dots = Cells<fingerpad::Point3<double>>;
 using Flags = Cells<unsigned char>;
 
+/// Nine dots 1.5 mm apart on a ball of 18 mm.
+inline fingerpad::Neighbourhood<double> nine_dots() {
+  fingerpad::Neighbourhood<double> n;
+  for (std::size_t k = 0; k < 9; ++k) {
+    const double x = 1.5 * static_cast<double>(k % 3) - 1.5;
+    const double y = 1.5 * static_cast<double>(k / 3) - 1.5;
+    n.dot[k] = {x, y, 10 + (x * x + y * y) / 36};
+    n.found[k] = true;
+  }
+  return n;
+}
+
 /// The rotation by the vector `turn` (axis times angle).
 inline fingerpad::Rotation<double> turned_by(const fingerpad::Point3<double>& turn) {
   const double angle = std::sqrt(fingerpad::detail::length_sq(turn));
