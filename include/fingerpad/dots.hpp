@@ -89,6 +89,15 @@ constexpr bool is_present(const P& p) {
   return present;
 }
 
+/// A place in the dot grid; row -1: none.
+struct DotIndex {
+  Index row = -1;
+  Index col = -1;
+
+  constexpr bool exists() const { return row >= 0; }
+  friend constexpr bool operator==(const DotIndex&, const DotIndex&) = default;
+};
+
 /// Calls visit(row, col, point) for each dot beside (row, col) that is present: 4 neighbours share
 /// a side, 8 also a corner. Returns how many there were. O(1), no allocation.
 template <int Neighbours = 8, dot_grid G, class Visit>

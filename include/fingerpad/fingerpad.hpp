@@ -15,4 +15,5 @@
 #include "fingerpad/object_surface.hpp"
 #include "fingerpad/optics.hpp"
 #include "fingerpad/scalar.hpp"
+#include "fingerpad/stick_ratio.hpp"
 #include "fingerpad/version.hpp"

@@ -18,15 +18,6 @@
 namespace fingerpad {
 inline namespace v0 {
 
-/// A place in the dot grid; row -1: none.
-struct DotIndex {
-  Index row = -1;
-  Index col = -1;
-
-  constexpr bool exists() const { return row >= 0; }
-  friend constexpr bool operator==(const DotIndex&, const DotIndex&) = default;
-};
-
 namespace detail::motion {
 
 /// Found, and within a kilometre: squares of what passes are finite in every scalar.

@@ -1,0 +1,68 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+#pragma once
+// One formula along a run of cells whose memory goes on past its end by at least a vector: whole
+// vectors only. A kernel is written once for V, which is a vector of S, or S itself where there
+// are none.
+#include "fingerpad/detail/vectors/lanes.hpp"
+#include "fingerpad/detail/vectors/row_lanes.hpp"
+#include "fingerpad/grid.hpp"
+#include "fingerpad/scalar.hpp"
+
+namespace fingerpad {
+inline namespace v0 {
+namespace detail {
+
+template <class S>
+using run_vector = typename RowVector<S, row_lanes<S>>::type;
+
+/// By so many cells a kernel on `run_vector<S>` may read and write past the end of a run.
+template <class S>
+inline constexpr Index run_overhang = row_lanes<S> - 1;
+
+/// Where `condition` a, else b.
+template <scalar S>
+S choose(bool condition, const S& a, const S& b) {
+  return condition ? a : b;
+}
+
+template <scalar S>
+S sum_of_lanes(const S& v) {
+  return v;
+}
+template <scalar S>
+S largest_lane(const S& v) {
+  return v;
+}
+#if defined(FINGERPAD_HAS_VECTORS)
+template <class S, class V>
+  requires(!scalar<V>)
+S sum_of_lanes(const V& v) {
+  S sum = v[0];
+  for (int i = 1; i < lanes_in<V, S>; ++i) {
+    sum += v[i];
+  }
+  return sum;
+}
+template <class S, class V>
+  requires(!scalar<V>)
+S largest_lane(const V& v) {
+  S largest = v[0];
+  for (int i = 1; i < lanes_in<V, S>; ++i) {
+    largest = largest < v[i] ? v[i] : largest;
+  }
+  return largest;
+}
+#endif
+
+/// Calls kernel(k) for k = begin, begin + lanes, ... < end.
+template <class S, class Kernel>
+void for_each_vector(Index begin, Index end, const Kernel& kernel) {
+  for (Index k = begin; k < end; k += row_lanes<S>) {
+    kernel(k);
+  }
+}
+
+}  // namespace detail
+}  // namespace v0
+}  // namespace fingerpad
