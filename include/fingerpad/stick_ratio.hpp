@@ -128,6 +128,7 @@ class StickRatio {
     const StickStatus status = look(state);
     StickRatioResult<S>& result = state.result;
     result.status = back ? StickStatus::restarted : status;
+    detail::stick::settle_marks(state);
     detail::stick::write_states(state, to);
     if (status == StickStatus::updated) {
       result.stick_ratio = S(result.stick) / S(result.stick + result.slip);
@@ -145,20 +146,16 @@ class StickRatio {
     StickRatioResult<S>& result = state.result;
     result.accepted = true;
     result.out_of_place = 0;
-    if (!state.given.any_found) {
-      return StickStatus::no_dots;
-    }
-    if (!state.given.any_touch) {
-      state.forget();
-      return StickStatus::no_contact;
+    if (!state.given.any_touch()) {
+      return without_contact(state);
     }
     const Run run = layout_.run(state.given.first_row, state.given.last_row);
-    state.clear_now();
+    state.keep_of_now(run);
     const PlacedDots placed =
         prepare_dots(denoising_, state.given, layout_, run, inner_, state.scratch, state.now);
     result.out_of_place = placed.out_of_place;
     if (placed.dots < test_.least_dots) {
-      return StickStatus::too_few_dots;
+      return any_found(state) ? StickStatus::too_few_dots : StickStatus::no_dots;
     }
     const Choice choice =
         choose_reference(reference_, followed_dots(reference_, state, run), state.repository, run,
@@ -179,23 +176,36 @@ class StickRatio {
     return status;
   }
 
+  bool any_found(const State& state) const {
+    return count_dots(view(state.given.found), layout_.run(0, rows() - 1)) > 0;
+  }
+
+  StickStatus without_contact(State& state) const {
+    if (!any_found(state)) {
+      return StickStatus::no_dots;
+    }
+    state.forget();
+    return StickStatus::no_contact;
+  }
+
   /// The ratio against the chosen reference.
   StickStatus answer(const Choice& choice, const Run& run, State& state) const {
     using namespace detail::stick;
     const FramePair<S> pair{view(state.now), state.repository.dots(choice.age), run, layout_};
-    if (count_pairs(pair) < test_.least_dots) {
+    const NearestDot reference = first_dot(dot_of(motion_), pair, state);
+    if (reference.pairs < test_.least_dots) {
       return StickStatus::too_few_dots;
     }
     const S slip = S(test_.slip_px / test_.reference_px);
     const S slip_sq = slip * slip * choice.furthest_sq;
-    const Index reference = first_dot(dot_of(motion_), pair, state);
-    const ObjectShift<S> shift = motion_between(motion_, pair, reference, slip_sq);
+    const ObjectShift<S> shift = motion_between(motion_, pair, reference.cell, slip_sq);
     mark_dots(denoising_, pair, shift, slip_sq, state.residuals, state.marks);
+    state.stick_center = centroid(pair.now, run, state.marks, DotMarks<S>::stick());
     StickRatioResult<S>& result = state.result;
     result.reference_age = static_cast<Index>(state.frame - state.repository.frame(choice.age));
     result.angle_rad = shift.angle_rad();
     result.scale = shift.scale();
-    result.reference_dot = layout_.dot_at(reference);
+    result.reference_dot = layout_.dot_at(reference.cell);
     return StickStatus::updated;
   }
 

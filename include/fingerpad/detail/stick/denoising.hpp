@@ -84,7 +84,7 @@ PlacedDots prepare_dots(const DotMean& mean,
   const S side = S(mean.weights.side), diagonal = S(mean.weights.diagonal);
   const V self = V{} + S(mean.weights.self), zero = V{} + S(0);
   const PlanesView<S> p = view(placed);
-  for_each_vector<S>(run.begin, run.end, [&](Index k) {
+  for (Index k = run.begin; k < run.end; k += run_step<S>) {
     const V x = load_cells<V, S>(p.x + k), y = load_cells<V, S>(p.y + k);
     const V allowed = load_cells<V, S>(inner.data() + k);
     V sum_x = zero, sum_y = zero, weight = self;
@@ -94,9 +94,9 @@ PlacedDots prepare_dots(const DotMean& mean,
       const V off_y =
           load_cells<V, S>(p.y + k - step) + load_cells<V, S>(p.y + k + step) - S(2) * y;
       const auto both = V(off_x * off_x + off_y * off_y) < no_distance_sq<S>();
-      sum_x += choose(both, V(w * off_x), zero);
-      sum_y += choose(both, V(w * off_y), zero);
-      weight += choose(both, V(zero + S(2) * w), zero);
+      sum_x += only_where(both, V(w * off_x));
+      sum_y += only_where(both, V(w * off_y));
+      weight += only_where(both, V(zero + S(2) * w));
     };
     add_pair(1, side);
     add_pair(stride, side);
@@ -105,7 +105,7 @@ PlacedDots prepare_dots(const DotMean& mean,
     const V touch = load_cells<V, S>(given.touch.data() + k);
     store_cells<S>(now.x.data() + k, V(x + sum_x / weight + touch));
     store_cells<S>(now.y.data() + k, V(y + sum_y / weight));
-  });
+  }
   return counts;
 }
 
@@ -139,15 +139,38 @@ void mark_dots(const Denoising&,
   using V = run_vector<S>;
   const V unknown = V{} + DotMarks<S>::unknown(), slip = V{} + DotMarks<S>::slip(),
           stick = V{} + DotMarks<S>::stick();
-  for_each_vector<S>(pair.run.begin, pair.run.end, [&](Index k) {
+  for (Index k = pair.run.begin; k < pair.run.end; k += run_step<S>) {
     V rx, ry;
     shift.residual(load_cells<V, S>(pair.now.x + k), load_cells<V, S>(pair.now.y + k),
                    load_cells<V, S>(pair.then.x + k), load_cells<V, S>(pair.then.y + k), rx, ry);
     const V sq = rx * rx + ry * ry;
     const V known = choose(sq < slip_sq, stick, slip);
     store_cells<S>(marks.data() + k, V(choose(sq < no_distance_sq<S>(), known, unknown)));
-  });
+  }
 }
+
+/// Weighted sum of a dot and its eight neighbours.
+template <class S>
+class WeightedSum {
+ public:
+  WeightedSum(const DotWeights& weights, Index stride)
+      : self_(weights.self), side_(weights.side), diagonal_(weights.diagonal), stride_(stride) {}
+
+  [[gnu::always_inline]] inline run_vector<S> operator()(const S* p) const {
+    using V = run_vector<S>;
+    const S* const above = p - stride_;
+    const S* const below = p + stride_;
+    const V sides = load_cells<V, S>(p - 1) + load_cells<V, S>(p + 1) + load_cells<V, S>(above) +
+                    load_cells<V, S>(below);
+    const V diagonals = load_cells<V, S>(above - 1) + load_cells<V, S>(above + 1) +
+                        load_cells<V, S>(below - 1) + load_cells<V, S>(below + 1);
+    return self_ * load_cells<V, S>(p) + side_ * sides + diagonal_ * diagonals;
+  }
+
+ private:
+  S self_, side_, diagonal_;
+  Index stride_;
+};
 
 template <class S>
 void write_residuals(const FramePair<S>& pair,
@@ -156,20 +179,20 @@ void write_residuals(const FramePair<S>& pair,
                      Residuals<S>& out,
                      line_vector<S>& marks) {
   using V = run_vector<S>;
-  const V zero = V{} + S(0), one = V{} + S(1);
+  const V one = V{} + S(1);
   const V unknown = V{} + DotMarks<S>::unknown(), slip = V{} + DotMarks<S>::slip();
   const Index stride = pair.layout.stride();
-  for_each_vector<S>(pair.run.begin - stride, pair.run.end + stride, [&](Index k) {
+  for (Index k = pair.run.begin - stride; k < pair.run.end + stride; k += run_step<S>) {
     V rx, ry;
     shift.residual(load_cells<V, S>(pair.now.x + k), load_cells<V, S>(pair.now.y + k),
                    load_cells<V, S>(pair.then.x + k), load_cells<V, S>(pair.then.y + k), rx, ry);
     const V sq = rx * rx + ry * ry;
     const auto counts = sq < gate_sq;
-    store_cells<S>(out.planes.x.data() + k, V(choose(counts, rx, zero)));
-    store_cells<S>(out.planes.y.data() + k, V(choose(counts, ry, zero)));
-    store_cells<S>(out.counts.data() + k, V(choose(counts, one, zero)));
+    store_cells<S>(out.planes.x.data() + k, V(only_where(counts, rx)));
+    store_cells<S>(out.planes.y.data() + k, V(only_where(counts, ry)));
+    store_cells<S>(out.counts.data() + k, V(only_where(counts, one)));
     store_cells<S>(marks.data() + k, V(choose(sq < no_distance_sq<S>(), slip, unknown)));
-  });
+  }
 }
 
 template <class S>
@@ -181,27 +204,17 @@ void mark_dots(const ResidualMean& mean,
                line_vector<S>& marks) {
   using V = run_vector<S>;
   write_residuals(pair, shift, S(slip_sq * S(mean.gate * mean.gate)), residuals, marks);
-  const S self = S(mean.weights.self), side = S(mean.weights.side),
-          diagonal = S(mean.weights.diagonal);
+  const WeightedSum<S> around(mean.weights, pair.layout.stride());
   const V stick = V{} + DotMarks<S>::stick(), zero = V{} + S(0);
-  const Index stride = pair.layout.stride();
-  const auto weighted = [&](const S* p) {
-    const V here = load_cells<V, S>(p);
-    const V beside = load_cells<V, S>(p - 1) + load_cells<V, S>(p + 1) +
-                     load_cells<V, S>(p - stride) + load_cells<V, S>(p + stride);
-    const V across = load_cells<V, S>(p - stride - 1) + load_cells<V, S>(p - stride + 1) +
-                     load_cells<V, S>(p + stride - 1) + load_cells<V, S>(p + stride + 1);
-    return V(self * here + side * beside + diagonal * across);
-  };
-  for_each_vector<S>(pair.run.begin, pair.run.end, [&](Index k) {
-    const V x = weighted(residuals.planes.x.data() + k);
-    const V y = weighted(residuals.planes.y.data() + k);
-    const V weight = weighted(residuals.counts.data() + k);
+  for (Index k = pair.run.begin; k < pair.run.end; k += run_step<S>) {
+    const V x = around(residuals.planes.x.data() + k);
+    const V y = around(residuals.planes.y.data() + k);
+    const V weight = around(residuals.counts.data() + k);
     const V before = load_cells<V, S>(marks.data() + k);
     const auto follows = V(x * x + y * y) < V(slip_sq * weight * weight);
     const auto counts = zero < load_cells<V, S>(residuals.counts.data() + k);
     store_cells<S>(marks.data() + k, V(choose(counts, V(choose(follows, stick, before)), before)));
-  });
+  }
 }
 
 }  // namespace detail::stick

@@ -72,47 +72,79 @@ constexpr S no_distance_sq() {
   return S(1e18);
 }
 
+/// Calls use(cell_of) with cell_of(j) the cell of row i, col j: where the cells of a row lie side
+/// by side, without a multiplication.
+template <class View, class Use>
+void with_row(const View& view, Index i, const Use& use) {
+  if constexpr (requires {
+                  view.row(i);
+                  view.col_stride();
+                }) {
+    if (view.col_stride() == 1) {
+      auto* const row = view.row(i);
+      use([row](Index j) -> auto& { return row[j]; });
+      return;
+    }
+  }
+  use([&view, i](Index j) -> decltype(auto) { return view(i, j); });
+}
+
 /// A frame as it was given.
 template <class S>
 struct GivenDots {
-  DotPlanes<S> found;    ///< px; whatever was given, NaN or not
+  DotPlanes<S> found;    ///< whatever was given, NaN or not
   line_vector<S> touch;  ///< 0 in contact, else NaN: found + touch are the dots in contact
-  bool any_found = false;
-  bool any_touch = false;
-  Index first_row = 0, last_row = -1;  ///< that have a flag of contact
+  Index first_row = 0, last_row = -1;  ///< with a flag of contact
 
   GivenDots() = default;
   explicit GivenDots(const DotLayout& layout)
       : found(layout), touch(found.x.size(), not_a_number<S>()) {}
+
+  bool any_touch() const { return first_row <= last_row; }
 
   template <class Dots, class Contact>
   void read(const DotLayout& layout, const Dots& dots, const Contact& contact) {
     using Point = cell_t<Dots>;
     first_row = layout.rows;
     last_row = -1;
-    any_found = false;
     for (Index i = 0; i < layout.rows; ++i) {
-      S* const x = found.x.data() + layout.at(i, 0);
-      S* const y = found.y.data() + layout.at(i, 0);
-      S* const t = touch.data() + layout.at(i, 0);
-      bool row_found = false;
+      const std::size_t row = static_cast<std::size_t>(layout.at(i, 0));
+      S* const x = found.x.data() + row;
+      S* const y = found.y.data() + row;
+      S* const t = touch.data() + row;
       bool row_touch = false;
-      for (Index j = 0; j < layout.cols; ++j) {
-        const Point p = dots(i, j);
-        const bool touches = says_contact(cell_t<Contact>(contact(i, j)));
-        x[j] = S(point_traits<Point>::x(p));
-        y[j] = S(point_traits<Point>::y(p));
-        t[j] = touches ? S(0) : not_a_number<S>();
-        row_found = row_found || S(x[j] * x[j] + y[j] * y[j]) < no_distance_sq<S>();
-        row_touch = row_touch || touches;
-      }
-      any_found = any_found || row_found;
+      with_row(dots, i, [&](const auto& row_dots) {
+        for (Index j = 0; j < layout.cols; ++j) {
+          const Point p = row_dots(j);
+          x[j] = S(point_traits<Point>::x(p));
+          y[j] = S(point_traits<Point>::y(p));
+        }
+      });
+      with_row(contact, i, [&](const auto& row_contact) {
+        for (Index j = 0; j < layout.cols; ++j) {
+          const bool touches = says_contact(cell_t<Contact>(row_contact(j)));
+          t[j] = touches ? S(0) : not_a_number<S>();
+          row_touch |= touches;
+        }
+      });
       first_row = row_touch ? std::min(first_row, i) : first_row;
       last_row = row_touch ? i : last_row;
     }
-    any_touch = last_row >= 0;
   }
 };
+
+/// How many dots of the run are found.
+template <class S>
+Index count_dots(const PlanesView<S>& p, const Run& run) {
+  using V = run_vector<S>;
+  const V one = V{} + S(1), zero = V{} + S(0);
+  V count = zero;
+  for (Index k = run.begin; k < run.end; k += run_step<S>) {
+    const V x = load_cells<V, S>(p.x + k), y = load_cells<V, S>(p.y + k);
+    count += only_where(V(x * x + y * y) < no_distance_sq<S>(), one);
+  }
+  return static_cast<Index>(value(sum_of_lanes<S>(count)));
+}
 
 }  // namespace detail::stick
 }  // namespace v0

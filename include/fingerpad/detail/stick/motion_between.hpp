@@ -76,7 +76,7 @@ void add_dot(const FramePair<S>& pair,
   const S tx = pair.then.x[k] - about.then_x, ty = pair.then.y[k] - about.then_y;
   const S sum_sq = nx * nx + ny * ny + tx * tx + ty * ty;
   if (sum_sq < no_distance_sq<S>()) {
-    sums.add(weight, nx, ny, tx, ty);
+    sums.add_weighted(weight, nx, ny, tx, ty);
   }
 }
 
@@ -130,26 +130,30 @@ PairSums<S> sums_around(const FramePair<S>& pair, Index reference, const ObjectS
   return sums;
 }
 
-/// The dots that follow `shift` to within the square root of `slip_sq`.
+/// The dots that follow `shift` to within the square root of `slip_sq`, as seen from the origins of
+/// `about`.
 template <class S>
 PairSums<S> sums_of_followers(const FramePair<S>& pair,
                               const ObjectShift<S>& shift,
                               const S& slip_sq,
                               const ObjectShift<S>& about) {
   using V = run_vector<S>;
+  const S cosine = shift.cosine, sine = shift.sine;
+  S from_x, from_y;  // residual of the origins
+  shift.residual(about.now_x, about.now_y, about.then_x, about.then_y, from_x, from_y);
   PairSums<V> sums;
-  const V zero = V{} + S(0), one = V{} + S(1);
-  for_each_vector<S>(pair.run.begin, pair.run.end, [&](Index k) {
-    const V nx = load_cells<V, S>(pair.now.x + k), ny = load_cells<V, S>(pair.now.y + k);
-    const V tx = load_cells<V, S>(pair.then.x + k), ty = load_cells<V, S>(pair.then.y + k);
-    V rx, ry;
-    shift.residual(nx, ny, tx, ty, rx, ry);
+  const V one = V{} + S(1);
+  for (Index k = pair.run.begin; k < pair.run.end; k += run_step<S>) {
+    const V nx = load_cells<V, S>(pair.now.x + k) - about.now_x;
+    const V ny = load_cells<V, S>(pair.now.y + k) - about.now_y;
+    const V tx = load_cells<V, S>(pair.then.x + k) - about.then_x;
+    const V ty = load_cells<V, S>(pair.then.y + k) - about.then_y;
+    const V rx = cosine * nx + sine * ny - tx + from_x;
+    const V ry = cosine * ny - sine * nx - ty + from_y;
     const auto follows = V(rx * rx + ry * ry) < slip_sq;
-    sums.add(choose(follows, one, zero), choose(follows, V(nx - about.now_x), zero),
-             choose(follows, V(ny - about.now_y), zero),
-             choose(follows, V(tx - about.then_x), zero),
-             choose(follows, V(ty - about.then_y), zero));
-  });
+    sums.add(only_where(follows, one), only_where(follows, nx), only_where(follows, ny),
+             only_where(follows, tx), only_where(follows, ty));
+  }
   PairSums<S> total;
   total.weight = sum_of_lanes<S>(sums.weight);
   total.now_x = sum_of_lanes<S>(sums.now_x);

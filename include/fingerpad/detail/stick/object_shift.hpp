@@ -22,7 +22,8 @@ struct ObjectShift {
 
   /// What of the displacement from `then` to `now` is not the object's, seen in the frame of then.
   template <class V>
-  void residual(const V& nx, const V& ny, const V& tx, const V& ty, V& rx, V& ry) const {
+  [[gnu::always_inline]] inline void residual(
+      const V& nx, const V& ny, const V& tx, const V& ty, V& rx, V& ry) const {
     const V x = nx - now_x, y = ny - now_y;
     rx = cosine * x + sine * y - (tx - then_x);
     ry = cosine * y - sine * x - (ty - then_y);
@@ -41,7 +42,7 @@ struct ObjectShift {
   }
 };
 
-/// Weighted sums over pairs of a dot now and then, both as seen from the origins of a shift.
+/// Sums over pairs of a dot now and then, both as seen from origins of their own.
 template <class V>
 struct PairSums {
   V weight{}, now_x{}, now_y{}, then_x{}, then_y{};
@@ -49,15 +50,27 @@ struct PairSums {
   V along{};   ///< now . then
   V across{};  ///< then x now
 
-  void add(const V& w, const V& nx, const V& ny, const V& tx, const V& ty) {
+  [[gnu::always_inline]] inline void add(
+      const V& one, const V& nx, const V& ny, const V& tx, const V& ty) {
+    weight += one;
+    now_x += nx;
+    now_y += ny;
+    then_x += tx;
+    then_y += ty;
+    now_sq += nx * nx + ny * ny;
+    along += nx * tx + ny * ty;
+    across += tx * ny - ty * nx;
+  }
+  void add_weighted(const V& w, const V& nx, const V& ny, const V& tx, const V& ty) {
+    const V wx = w * nx, wy = w * ny;
     weight += w;
-    now_x += w * nx;
-    now_y += w * ny;
+    now_x += wx;
+    now_y += wy;
     then_x += w * tx;
     then_y += w * ty;
-    now_sq += w * (nx * nx + ny * ny);
-    along += w * (nx * tx + ny * ty);
-    across += w * (tx * ny - ty * nx);
+    now_sq += wx * nx + wy * ny;
+    along += wx * tx + wy * ty;
+    across += wy * tx - wx * ty;
   }
 };
 

@@ -17,7 +17,7 @@ namespace detail::stick {
 /// True, lane by lane, where the dot between two neighbours `step` away lies further than half a
 /// pitch from their middle; false where one of the three is missing.
 template <class V, class S>
-auto is_out_of_line(const PlanesView<S>& p, Index k, Index step) {
+[[gnu::always_inline]] inline auto is_out_of_line(const PlanesView<S>& p, Index k, Index step) {
   const V ax = load_cells<V, S>(p.x + k - step), bx = load_cells<V, S>(p.x + k + step);
   const V ay = load_cells<V, S>(p.y + k - step), by = load_cells<V, S>(p.y + k + step);
   const V off_x = ax + bx - S(2) * load_cells<V, S>(p.x + k);
@@ -44,18 +44,17 @@ PlacedDots place_dots(const GivenDots<S>& given,
   const PlanesView<S> found = view(given.found);
   const V nothing = V{} + not_a_number<S>(), one = V{} + S(1), zero = V{} + S(0);
   V dots = zero, touching = zero;
-  for_each_vector<S>(run.begin, run.end, [&](Index k) {
+  for (Index k = run.begin; k < run.end; k += run_step<S>) {
     const V touch = load_cells<V, S>(given.touch.data() + k);
     const V x = load_cells<V, S>(found.x + k), y = load_cells<V, S>(found.y + k);
     const V held = choose(is_out_of_line<V>(found, k, 1), nothing,
                           V(choose(is_out_of_line<V>(found, k, stride), nothing, x)));
-    const V sq = x * x + y * y + touch;
-    const V held_sq = held * held + y * y + touch;
-    touching += choose(sq < no_distance_sq<S>(), one, zero);
-    dots += choose(held_sq < no_distance_sq<S>(), one, zero);
+    const V is_touching = only_where(V(x * x + y * y + touch) < no_distance_sq<S>(), one);
+    touching += is_touching;
+    dots += only_where(held < no_distance_sq<S>(), is_touching);
     store_cells<S>(placed.x.data() + k, V(OnlyTouching ? V(held + touch) : held));
     store_cells<S>(placed.y.data() + k, y);
-  });
+  }
   const auto count = [](const V& v) { return static_cast<Index>(value(sum_of_lanes<S>(v))); };
   return {count(dots), count(touching) - count(dots)};
 }

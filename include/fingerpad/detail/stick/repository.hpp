@@ -19,12 +19,12 @@ template <class S>
 S furthest_sq(const PlanesView<S>& now, const PlanesView<S>& before, const Run& run) {
   using V = run_vector<S>;
   V furthest = V{} + S(-1);
-  for_each_vector<S>(run.begin, run.end, [&](Index k) {
+  for (Index k = run.begin; k < run.end; k += run_step<S>) {
     const V dx = load_cells<V, S>(now.x + k) - load_cells<V, S>(before.x + k);
     const V dy = load_cells<V, S>(now.y + k) - load_cells<V, S>(before.y + k);
     const V sq = dx * dx + dy * dy;
     furthest = choose(furthest < sq, sq, furthest);
-  });
+  }
   return largest_lane<S>(furthest);
 }
 

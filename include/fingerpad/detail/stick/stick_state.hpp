@@ -25,6 +25,7 @@ class StickState {
         scratch(layout),
         residuals(layout),
         marks(layout.cells<S>(), S(0)),
+        states(marks.size()),
         repository(layout, capacity) {}
 
   /// As before the first frame.
@@ -42,14 +43,20 @@ class StickState {
     result = StickRatioResult<S>{.accepted = true};
   }
 
-  void clear_now() { std::fill(now.x.begin(), now.x.end(), not_a_number<S>()); }
+  /// No dot of this frame but those of `run`, still to be written.
+  void keep_of_now(const Run& run) {
+    std::fill(now.x.begin(), now.x.begin() + run.begin, not_a_number<S>());
+    std::fill(now.x.begin() + run.end, now.x.end(), not_a_number<S>());
+  }
 
   DotLayout layout;
   GivenDots<S> given;  // this frame
   DotPlanes<S> now;    // of it, the dots in contact, in their places
   DotPlanes<S> scratch;
   Residuals<S> residuals;
-  line_vector<S> marks;  // what each dot did in the last answer
+  line_vector<S> marks;                   // what each dot did in the last answer
+  line_vector<std::uint8_t> states;       // the same, as DotState
+  Point2<S> stick_center = {S(0), S(0)};  // of the last answer
   Repository<S> repository;
   StickRatioResult<S> result;
   std::int64_t frame = 0;
@@ -66,11 +73,11 @@ PlanesView<S> followed_dots(const UpdatedReference<InStickRegion>&,
     return view(state.now);
   }
   const V nothing = V{} + not_a_number<S>(), least = V{} + DotMarks<S>::slip();
-  for_each_vector<S>(run.begin, run.end, [&](Index k) {
+  for (Index k = run.begin; k < run.end; k += run_step<S>) {
     const auto sticks = least < load_cells<V, S>(state.marks.data() + k);
     const V x = load_cells<V, S>(state.now.x.data() + k);
     store_cells<S>(state.scratch.x.data() + k, V(choose(sticks, x, nothing)));
-  });
+  }
   return {state.scratch.x.data(), state.now.y.data()};
 }
 template <class Reference, class S>
@@ -78,97 +85,119 @@ PlanesView<S> followed_dots(const Reference&, StickState<S>& state, const Run&) 
   return view(state.now);
 }
 
-/// The dot of both frames nearest to the centroid of those that are marked at least as `least`; -1
-/// if there is none.
+/// The centroid of the dots that are marked at least as `least`; NaN if there is none.
 template <class S>
-Index nearest_to_centroid(const FramePair<S>& pair,
-                          const line_vector<S>& marks,
-                          const S& least,
-                          line_vector<S>& distance_sq) {
+Point2<S> centroid(const PlanesView<S>& now,
+                   const Run& run,
+                   const line_vector<S>& marks,
+                   const S& least) {
   using V = run_vector<S>;
   const V zero = V{} + S(0), one = V{} + S(1), lowest = V{} + least;
   V count = zero, sum_x = zero, sum_y = zero;
-  const auto counts = [&](Index k, const V& x, const V& y) {
-    const V dx = x - load_cells<V, S>(pair.then.x + k), dy = y - load_cells<V, S>(pair.then.y + k);
-    const V unmarked =
+  for (Index k = run.begin; k < run.end; k += run_step<S>) {
+    const V x = load_cells<V, S>(now.x + k), y = load_cells<V, S>(now.y + k);
+    const V held =
         choose(load_cells<V, S>(marks.data() + k) < lowest, V(zero + no_distance_sq<S>()), zero);
-    return V(dx * dx + dy * dy + unmarked) < no_distance_sq<S>();
-  };
-  for_each_vector<S>(pair.run.begin, pair.run.end, [&](Index k) {
-    const V x = load_cells<V, S>(pair.now.x + k), y = load_cells<V, S>(pair.now.y + k);
-    const auto is_in = counts(k, x, y);
-    count += choose(is_in, one, zero);
-    sum_x += choose(is_in, x, zero);
-    sum_y += choose(is_in, y, zero);
-  });
+    const auto counts = V(x * x + y * y + held) < no_distance_sq<S>();
+    count += only_where(counts, one);
+    sum_x += only_where(counts, x);
+    sum_y += only_where(counts, y);
+  }
   const S dots = sum_of_lanes<S>(count);
-  if (!(S(0) < dots)) {
-    return -1;
-  }
-  const S center_x = sum_of_lanes<S>(sum_x) / dots, center_y = sum_of_lanes<S>(sum_y) / dots;
-  V nearest = zero - no_distance_sq<S>();  // of negative squares, the largest
-  for_each_vector<S>(pair.run.begin, pair.run.end, [&](Index k) {
-    const V x = load_cells<V, S>(pair.now.x + k), y = load_cells<V, S>(pair.now.y + k);
-    const V dx = x - center_x, dy = y - center_y;
-    const V minus_sq =
-        choose(counts(k, x, y), V(zero - dx * dx - dy * dy), V(zero - no_distance_sq<S>()));
-    nearest = choose(nearest < minus_sq, minus_sq, nearest);
-    store_cells<S>(distance_sq.data() + k, minus_sq);
-  });
-  const S best = largest_lane<S>(nearest);
-  Index k = pair.run.begin;
-  while (k + 1 < pair.run.end && distance_sq[static_cast<std::size_t>(k)] < best) {
-    ++k;
-  }
-  return k;
+  return {S(sum_of_lanes<S>(sum_x) / dots), S(sum_of_lanes<S>(sum_y) / dots)};
 }
 
+/// Of the dots that both frames have: their number, and of those that are marked at least as
+/// `least` the one nearest to `center`, -1 if there is none.
+struct NearestDot {
+  Index pairs = 0;
+  Index cell = -1;
+};
 template <class S>
-Index first_dot(const CentralDot&, const FramePair<S>& pair, StickState<S>& state) {
-  return nearest_to_centroid(pair, state.marks, S(0), state.scratch.y);
-}
-template <class S>
-Index first_dot(const TrackedDot&, const FramePair<S>& pair, StickState<S>& state) {
-  const Index tracked =
-      nearest_to_centroid(pair, state.marks, DotMarks<S>::stick(), state.scratch.y);
-  return tracked >= 0 ? tracked : first_dot(CentralDot(), pair, state);
-}
-
-/// Dots that both frames have.
-template <class S>
-Index count_pairs(const FramePair<S>& pair) {
+NearestDot nearest_dot(const FramePair<S>& pair,
+                       const Point2<S>& center,
+                       const line_vector<S>& marks,
+                       const S& least,
+                       line_vector<S>& minus_distance_sq) {
   using V = run_vector<S>;
-  const V one = V{} + S(1), zero = V{} + S(0);
-  V count = zero;
-  for_each_vector<S>(pair.run.begin, pair.run.end, [&](Index k) {
-    const V dx = load_cells<V, S>(pair.now.x + k) - load_cells<V, S>(pair.then.x + k);
-    const V dy = load_cells<V, S>(pair.now.y + k) - load_cells<V, S>(pair.then.y + k);
-    count += choose(V(dx * dx + dy * dy) < no_distance_sq<S>(), one, zero);
-  });
-  return static_cast<Index>(value(sum_of_lanes<S>(count)));
-}
-
-/// Writes what each dot does, and counts it. Marks of dots that do not touch any more are dropped.
-template <class S, class States>
-void write_states(StickState<S>& state, const States& to) {
-  using Cell = cell_t<States>;
-  std::array<Index, 4> counts = {};
-  for (Index i = 0; i < state.layout.rows; ++i) {
-    const std::size_t row = static_cast<std::size_t>(state.layout.at(i, 0));
-    const S* const touch = state.given.touch.data() + row;
-    S* const marks = state.marks.data() + row;
-    for (Index j = 0; j < state.layout.cols; ++j) {
-      const bool touches = touch[j] < S(1);  // 0, not NaN
-      marks[j] =
-          touches ? (marks[j] < DotMarks<S>::unknown() ? DotMarks<S>::unknown() : marks[j]) : S(0);
-      const auto mark = static_cast<std::size_t>(value(marks[j]));
-      ++counts[mark];
-      to(i, j) = static_cast<Cell>(static_cast<DotState>(mark));
+  const V zero = V{} + S(0), one = V{} + S(1), lowest = V{} + least;
+  const V far = zero - no_distance_sq<S>();
+  V count = zero, nearest = far;
+  for (Index k = pair.run.begin; k < pair.run.end; k += run_step<S>) {
+    const V x = load_cells<V, S>(pair.now.x + k), y = load_cells<V, S>(pair.now.y + k);
+    const V moved_x = x - load_cells<V, S>(pair.then.x + k);
+    const V moved_y = y - load_cells<V, S>(pair.then.y + k);
+    const auto known = V(moved_x * moved_x + moved_y * moved_y) < no_distance_sq<S>();
+    count += only_where(known, one);
+    const V dx = x - center.x, dy = y - center.y;
+    const V marked =
+        choose(load_cells<V, S>(marks.data() + k) < lowest, far, V(zero - dx * dx - dy * dy));
+    const V minus_sq = choose(known, marked, far);
+    nearest = choose(nearest < minus_sq, minus_sq, nearest);
+    store_cells<S>(minus_distance_sq.data() + k, minus_sq);
+  }
+  NearestDot found{static_cast<Index>(value(sum_of_lanes<S>(count))), -1};
+  const S best = largest_lane<S>(nearest);
+  if (-no_distance_sq<S>() < best) {
+    found.cell = pair.run.begin;
+    while (minus_distance_sq[static_cast<std::size_t>(found.cell)] < best) {
+      ++found.cell;
     }
   }
-  state.result.unknown = counts[1];
-  state.result.slip = counts[2];
-  state.result.stick = counts[3];
+  return found;
+}
+
+template <class S>
+NearestDot first_dot(const CentralDot&, const FramePair<S>& pair, StickState<S>& state) {
+  const S any = S(0);
+  const Point2<S> center = centroid(pair.now, pair.run, state.marks, any);
+  return nearest_dot(pair, center, state.marks, any, state.scratch.y);
+}
+template <class S>
+NearestDot first_dot(const TrackedDot&, const FramePair<S>& pair, StickState<S>& state) {
+  const NearestDot tracked =
+      nearest_dot(pair, state.stick_center, state.marks, DotMarks<S>::stick(), state.scratch.y);
+  return tracked.cell >= 0 ? tracked : first_dot(CentralDot(), pair, state);
+}
+
+/// Settles what each dot does: marks of dots that do not touch any more are dropped, dots that
+/// newly touch are unknown. Counts them.
+template <class S>
+void settle_marks(StickState<S>& state) {
+  using V = run_vector<S>;
+  const V none = V{} + S(0), one = V{} + S(1);
+  const V unknown = V{} + DotMarks<S>::unknown(), slip = V{} + DotMarks<S>::slip(),
+          stick = V{} + DotMarks<S>::stick();
+  V slipping = none, sticking = none, touching = none;
+  const Run run = state.layout.run(0, state.layout.rows - 1);
+  for (Index k = run.begin; k < run.end; k += run_step<S>) {
+    const V touch = load_cells<V, S>(state.given.touch.data() + k);
+    const V last = load_cells<V, S>(state.marks.data() + k);
+    const auto touches = touch < one;  // 0, not NaN
+    const V mark = only_where(touches, V(choose(last < unknown, unknown, last)));
+    touching += only_where(touches, one);
+    slipping += choose(mark < slip, none, one);
+    sticking += choose(mark < stick, none, one);
+    store_cells<S>(state.marks.data() + k, mark);
+    store_cells<S>(state.states.data() + k, mark);
+  }
+  const auto count = [](const V& v) { return static_cast<Index>(value(sum_of_lanes<S>(v))); };
+  state.result.stick = count(sticking);
+  state.result.slip = count(slipping) - count(sticking);
+  state.result.unknown = count(touching) - count(slipping);
+}
+
+template <class S, class States>
+void write_states(const StickState<S>& state, const States& to) {
+  using Cell = cell_t<States>;
+  for (Index i = 0; i < state.layout.rows; ++i) {
+    const std::uint8_t* const from = state.states.data() + state.layout.at(i, 0);
+    with_row(to, i, [&](const auto& cell) {
+      for (Index j = 0; j < state.layout.cols; ++j) {
+        cell(j) = static_cast<Cell>(static_cast<DotState>(from[j]));
+      }
+    });
+  }
 }
 
 /// 0 for dots that have eight neighbours in the grid, else NaN.

@@ -63,11 +63,11 @@ void add_pair(const PublishedZoom&,
   const V then = then_x * motion_y - then_y * motion_x;
   const V now = now_x * motion_y - now_y * motion_x;
   // 1e-12: what moves less has no direction
-  const V per_motion = choose(S(1e-12) < motion_sq, V(inverse_sqrt(motion_sq)), zero);
-  sums.then += choose(motion_sq < no_distance_sq<S>(),
-                      V(choose(then < zero, V(-then), then) * per_motion), zero);
-  sums.now += choose(motion_sq < no_distance_sq<S>(),
-                     V(choose(now < zero, V(-now), now) * per_motion), zero);
+  const V per_motion = only_where(S(1e-12) < motion_sq, V(inverse_sqrt(motion_sq)));
+  sums.then += only_where(motion_sq < no_distance_sq<S>(),
+                          V(choose(then < zero, V(-then), then) * per_motion));
+  sums.now +=
+      only_where(motion_sq < no_distance_sq<S>(), V(choose(now < zero, V(-now), now) * per_motion));
 }
 template <class V, class S>
 void add_pair(const LeastSquaresZoom& zoom,
@@ -85,8 +85,8 @@ void add_pair(const LeastSquaresZoom& zoom,
   const V now_along = now_x * motion_x + now_y * motion_y;
   const V then = then_x * now_x + then_y * now_y - weight * then_along * now_along;
   const V now = now_x * now_x + now_y * now_y - weight * now_along * now_along;
-  sums.then += choose(motion_sq < no_distance_sq<S>(), then, zero);
-  sums.now += choose(motion_sq < no_distance_sq<S>(), now, zero);
+  sums.then += only_where(motion_sq < no_distance_sq<S>(), then);
+  sums.now += only_where(motion_sq < no_distance_sq<S>(), now);
 }
 
 /// alpha of the frames, `turned` being the object's motion without it; 1 where the pairs determine
@@ -112,14 +112,14 @@ S scale_between(const Zoom& zoom, const FramePair<S>& pair, const ObjectShift<S>
     d.dy += object_y;
     return d;
   };
-  for_each_vector<S>(pair.run.begin, pair.run.end, [&](Index k) {
+  for (Index k = pair.run.begin; k < pair.run.end; k += run_step<S>) {
     const Dot a = dot(k);
     for (const Index step : {Index(1), stride - 1, stride, stride + 1}) {
       const Dot b = dot(k + step);
       add_pair<V, S>(zoom, a.tx - b.tx, a.ty - b.ty, a.nx - b.nx, a.ny - b.ny, a.dx + b.dx,
                      a.dy + b.dy, sums);
     }
-  });
+  }
   const S alpha = sum_of_lanes<S>(sums.then) / sum_of_lanes<S>(sums.now);
   return is_plausible_scale(alpha) ? alpha : S(1);
 }

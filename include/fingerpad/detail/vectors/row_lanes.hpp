@@ -9,6 +9,7 @@
 
 #include "fingerpad/detail/vectors/lanes.hpp"
 #include "fingerpad/grid.hpp"
+#include "fingerpad/scalar.hpp"
 
 namespace fingerpad {
 inline namespace v0 {
@@ -40,7 +41,11 @@ V load_cells(const T* from) {
 template <class S, class V, class T>
   requires(std::same_as<V, S>)
 void store_cells(T* to, const V& v) {
-  *to = static_cast<T>(v);
+  if constexpr (std::integral<T>) {
+    *to = static_cast<T>(value(v));
+  } else {
+    *to = static_cast<T>(v);
+  }
 }
 
 #if defined(FINGERPAD_HAS_VECTORS)
@@ -59,7 +64,7 @@ template <class T> concept narrow_integer = std::unsigned_integral<T> && sizeof(
 
 template <class V, class S, class T>
   requires(!std::same_as<V, S>)
-V load_cells(const T* from) {
+[[gnu::always_inline]] inline V load_cells(const T* from) {
   constexpr int n = lanes_in<V, S>;
   const lanes<T, n> cells = load<T, n>(from);
   if constexpr (narrow_integer<T>) {
@@ -71,7 +76,7 @@ V load_cells(const T* from) {
 
 template <class S, class V, class T>
   requires(!std::same_as<V, S>)
-void store_cells(T* to, const V& v) {
+[[gnu::always_inline]] inline void store_cells(T* to, const V& v) {
   constexpr int n = lanes_in<V, S>;
   if constexpr (narrow_integer<T>) {
     store(to, convert<T, n>(convert<std::uint16_t, n>(convert<std::int32_t, n>(v))));

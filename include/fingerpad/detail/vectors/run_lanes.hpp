@@ -16,6 +16,10 @@ namespace detail {
 template <class S>
 using run_vector = typename RowVector<S, row_lanes<S>>::type;
 
+/// A run is worked through by so many cells at a time.
+template <class S>
+inline constexpr Index run_step = row_lanes<S>;
+
 /// By so many cells a kernel on `run_vector<S>` may read and write past the end of a run.
 template <class S>
 inline constexpr Index run_overhang = row_lanes<S> - 1;
@@ -24,6 +28,12 @@ inline constexpr Index run_overhang = row_lanes<S> - 1;
 template <scalar S>
 S choose(bool condition, const S& a, const S& b) {
   return condition ? a : b;
+}
+
+/// Where `condition` a, else 0.
+template <scalar S>
+S only_where(bool condition, const S& a) {
+  return condition ? a : S(0);
 }
 
 template <scalar S>
@@ -35,6 +45,11 @@ S largest_lane(const S& v) {
   return v;
 }
 #if defined(FINGERPAD_HAS_VECTORS)
+template <class V, class M>
+  requires(!scalar<V>)
+[[gnu::always_inline]] inline V only_where(M mask, const V& a) {
+  return V(M(a) & mask);
+}
 template <class S, class V>
   requires(!scalar<V>)
 S sum_of_lanes(const V& v) {
@@ -54,14 +69,6 @@ S largest_lane(const V& v) {
   return largest;
 }
 #endif
-
-/// Calls kernel(k) for k = begin, begin + lanes, ... < end.
-template <class S, class Kernel>
-void for_each_vector(Index begin, Index end, const Kernel& kernel) {
-  for (Index k = begin; k < end; k += row_lanes<S>) {
-    kernel(k);
-  }
-}
 
 }  // namespace detail
 }  // namespace v0
