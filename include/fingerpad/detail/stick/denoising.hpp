@@ -154,7 +154,10 @@ template <class S>
 class WeightedSum {
  public:
   WeightedSum(const DotWeights& weights, Index stride)
-      : self_(weights.self), side_(weights.side), diagonal_(weights.diagonal), stride_(stride) {}
+      : self_(S(weights.self)),
+        side_(S(weights.side)),
+        diagonal_(S(weights.diagonal)),
+        stride_(stride) {}
 
   [[gnu::always_inline]] inline run_vector<S> operator()(const S* p) const {
     using V = run_vector<S>;

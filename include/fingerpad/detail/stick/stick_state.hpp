@@ -25,7 +25,6 @@ class StickState {
         scratch(layout),
         residuals(layout),
         marks(layout.cells<S>(), S(0)),
-        states(marks.size()),
         repository(layout, capacity) {}
 
   /// As before the first frame.
@@ -55,7 +54,6 @@ class StickState {
   DotPlanes<S> scratch;
   Residuals<S> residuals;
   line_vector<S> marks;                   // what each dot did in the last answer
-  line_vector<std::uint8_t> states;       // the same, as DotState
   Point2<S> stick_center = {S(0), S(0)};  // of the last answer
   Repository<S> repository;
   StickRatioResult<S> result;
@@ -179,7 +177,6 @@ void settle_marks(StickState<S>& state) {
     slipping += choose(mark < slip, none, one);
     sticking += choose(mark < stick, none, one);
     store_cells<S>(state.marks.data() + k, mark);
-    store_cells<S>(state.states.data() + k, mark);
   }
   const auto count = [](const V& v) { return static_cast<Index>(value(sum_of_lanes<S>(v))); };
   state.result.stick = count(sticking);
@@ -191,10 +188,10 @@ template <class S, class States>
 void write_states(const StickState<S>& state, const States& to) {
   using Cell = cell_t<States>;
   for (Index i = 0; i < state.layout.rows; ++i) {
-    const std::uint8_t* const from = state.states.data() + state.layout.at(i, 0);
+    const S* const marks = state.marks.data() + state.layout.at(i, 0);
     with_row(to, i, [&](const auto& cell) {
       for (Index j = 0; j < state.layout.cols; ++j) {
-        cell(j) = static_cast<Cell>(static_cast<DotState>(from[j]));
+        cell(j) = static_cast<Cell>(static_cast<DotState>(static_cast<int>(value(marks[j]))));
       }
     });
   }

@@ -47,46 +47,40 @@ struct ZoomSums {
   V then{}, now{};
 };
 
-/// then, now: the vectors between two neighbours, now turned back; motion: the sum of their
-/// displacements.
-template <class V, class S>
-void add_pair(const PublishedZoom&,
-              V then_x,
-              V then_y,
-              V now_x,
-              V now_y,
-              V motion_x,
-              V motion_y,
-              ZoomSums<V>& sums) {
+/// Two neighbours: the vector between them then, and now with the object turned back; and the sum
+/// of their displacements.
+template <class V>
+struct NeighbourPair {
+  V then_x, then_y;
+  V now_x, now_y;
+  V motion_x, motion_y;
+};
+
+template <class S, class V>
+void add_pair(const PublishedZoom&, const NeighbourPair<V>& p, ZoomSums<V>& sums) {
   const V zero{};
-  const V motion_sq = motion_x * motion_x + motion_y * motion_y;
-  const V then = then_x * motion_y - then_y * motion_x;
-  const V now = now_x * motion_y - now_y * motion_x;
+  const V motion_sq = p.motion_x * p.motion_x + p.motion_y * p.motion_y;
+  const V then = p.then_x * p.motion_y - p.then_y * p.motion_x;
+  const V now = p.now_x * p.motion_y - p.now_y * p.motion_x;
+  const V then_size = choose(then < zero, V(zero - then), then);
+  const V now_size = choose(now < zero, V(zero - now), now);
   // 1e-12: what moves less has no direction
   const V per_motion = only_where(S(1e-12) < motion_sq, V(inverse_sqrt(motion_sq)));
-  sums.then += only_where(motion_sq < no_distance_sq<S>(),
-                          V(choose(then < zero, V(-then), then) * per_motion));
-  sums.now +=
-      only_where(motion_sq < no_distance_sq<S>(), V(choose(now < zero, V(-now), now) * per_motion));
+  const auto known = motion_sq < no_distance_sq<S>();
+  sums.then += only_where(known, V(then_size * per_motion));
+  sums.now += only_where(known, V(now_size * per_motion));
 }
-template <class V, class S>
-void add_pair(const LeastSquaresZoom& zoom,
-              V then_x,
-              V then_y,
-              V now_x,
-              V now_y,
-              V motion_x,
-              V motion_y,
-              ZoomSums<V>& sums) {
-  const V zero{};
-  const V motion_sq = motion_x * motion_x + motion_y * motion_y;
+template <class S, class V>
+void add_pair(const LeastSquaresZoom& zoom, const NeighbourPair<V>& p, ZoomSums<V>& sums) {
+  const V motion_sq = p.motion_x * p.motion_x + p.motion_y * p.motion_y;
   const V weight = S(1) / (motion_sq + S(zoom.fading_px * zoom.fading_px));
-  const V then_along = then_x * motion_x + then_y * motion_y;
-  const V now_along = now_x * motion_x + now_y * motion_y;
-  const V then = then_x * now_x + then_y * now_y - weight * then_along * now_along;
-  const V now = now_x * now_x + now_y * now_y - weight * now_along * now_along;
-  sums.then += only_where(motion_sq < no_distance_sq<S>(), then);
-  sums.now += only_where(motion_sq < no_distance_sq<S>(), now);
+  const V then_along = p.then_x * p.motion_x + p.then_y * p.motion_y;
+  const V now_along = p.now_x * p.motion_x + p.now_y * p.motion_y;
+  const V both = p.then_x * p.now_x + p.then_y * p.now_y - weight * then_along * now_along;
+  const V now = p.now_x * p.now_x + p.now_y * p.now_y - weight * now_along * now_along;
+  const auto known = motion_sq < no_distance_sq<S>();
+  sums.then += only_where(known, both);
+  sums.now += only_where(known, now);
 }
 
 /// alpha of the frames, `turned` being the object's motion without it; 1 where the pairs determine
@@ -116,8 +110,9 @@ S scale_between(const Zoom& zoom, const FramePair<S>& pair, const ObjectShift<S>
     const Dot a = dot(k);
     for (const Index step : {Index(1), stride - 1, stride, stride + 1}) {
       const Dot b = dot(k + step);
-      add_pair<V, S>(zoom, a.tx - b.tx, a.ty - b.ty, a.nx - b.nx, a.ny - b.ny, a.dx + b.dx,
-                     a.dy + b.dy, sums);
+      add_pair<S, V>(zoom,
+                     {a.tx - b.tx, a.ty - b.ty, a.nx - b.nx, a.ny - b.ny, a.dx + b.dx, a.dy + b.dy},
+                     sums);
     }
   }
   const S alpha = sum_of_lanes<S>(sums.then) / sum_of_lanes<S>(sums.now);

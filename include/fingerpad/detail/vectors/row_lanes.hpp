@@ -9,7 +9,6 @@
 
 #include "fingerpad/detail/vectors/lanes.hpp"
 #include "fingerpad/grid.hpp"
-#include "fingerpad/scalar.hpp"
 
 namespace fingerpad {
 inline namespace v0 {
@@ -41,11 +40,7 @@ V load_cells(const T* from) {
 template <class S, class V, class T>
   requires(std::same_as<V, S>)
 void store_cells(T* to, const V& v) {
-  if constexpr (std::integral<T>) {
-    *to = static_cast<T>(value(v));
-  } else {
-    *to = static_cast<T>(v);
-  }
+  *to = static_cast<T>(v);
 }
 
 #if defined(FINGERPAD_HAS_VECTORS)
