@@ -1,17 +1,17 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// The share of the contact that sticks to the object, from the dots printed in the membrane: near 1
-// nothing slips, and well before it is 0, when the object slips as a whole, slip creeps in from the
-// edge of the contact. Source: Ito, Kim, Obinata, "Robust slippage degree estimation based on
-// reference update of vision-based tactile sensor" (the slides 003 with their backup), and
-// "Acquisition of contact force and slippage using a vision-based tactile sensor with a fluid-type
-// touchpad", eqs. 6-8; published and corrected forms in docs/errata.md, E034-E038.
+// The share of the contact that sticks to the object, from the dots printed in the membrane: 1 when
+// nothing slips, 0 when the object slips as a whole; long before, slip creeps in from the edge of
+// the contact. Source: Ito, Kim, Obinata, "Robust slippage degree estimation based on reference
+// update of vision-based tactile sensor", the talk with its backup slides; and "Acquisition of
+// contact force and slippage using a vision-based tactile sensor with a fluid-type touchpad",
+// eqs. 6-8. Published and corrected forms in docs/errata.md, E032-E038.
 //
 // A dot sticks that has moved, since a reference frame, as the object has; the reference is a
-// stored frame from which the dots have come far enough, in one direction, to tell. Every step is
-// in detail/stick/ by its name: place_check, repository, motion_between, denoising.
-// What no dots can show: an object that slides as a whole while the membrane stands still.
+// stored frame from which the dots have come far enough, in one direction, to tell. The steps lie
+// in detail/stick/ in this order: place_check, reference_choice, motion_between, denoising. What no
+// dots can show: an object that slides as a whole while the membrane stands still.
 #include <cmath>
 #include <cstdint>
 
@@ -32,7 +32,8 @@ struct StickTest {
   double store_px = 0.5;      ///< U_min (not printed), in [0, reference_px]: a frame is stored when
                               ///< a dot has moved further from the newest stored one
   double slip_px = 0.24;      ///< delta_0, > 0: a dot slips that differs from the object's motion
-                              ///< by more than this, times d_max / U
+                              ///< by more than this times d_max / U; for dots with other noise
+                              ///< than the published 0.06 px see calibrate/stick_ratio.hpp
   Index least_dots = 5;       ///< >= 1: to compare; fewer give no ratio
 };
 inline void expects_valid(const StickTest& test) {
@@ -46,8 +47,6 @@ inline void expects_valid(const StickTest& test) {
           ">= 1");
 }
 
-/// False-slip probability and the threshold that has it: see calibrate/stick_ratio.hpp.
-///
 /// Stick ratio of a pad, frame by frame.
 ///   Motion     StickConsensus<Freedom, Dot> (default), ReferenceDotMotion<Freedom, Zoom, Dot>
 ///   Reference  UpdatedReference<Over> (default), FirstReference
@@ -164,7 +163,8 @@ class StickRatio {
     if (choice.standing) {
       return StickStatus::standing;
     }
-    const bool leap = S(4) * S(square(test_.reference_px)) < choice.newest_sq;
+    const bool leap =
+        stores_all_along(reference_) && S(4) * S(square(test_.reference_px)) < choice.newest_sq;
     if (leap && has_jumped(view(state.now), state.repository.dots(0), run, layout_.stride())) {
       return StickStatus::jumped;
     }

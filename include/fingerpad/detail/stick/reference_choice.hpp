@@ -102,6 +102,15 @@ bool is_stored(const FirstReference&, const Repository<S>& stored) {
   return stored.size() == 0;
 }
 
+/// Whether the newest stored frame is of a moment ago, so that a leap from it is a leap of names.
+template <class Over>
+constexpr bool stores_all_along(const UpdatedReference<Over>&) {
+  return true;
+}
+constexpr bool stores_all_along(const FirstReference&) {
+  return false;
+}
+
 }  // namespace detail::stick
 }  // namespace v0
 }  // namespace fingerpad
