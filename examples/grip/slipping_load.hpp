@@ -1,0 +1,135 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+#pragma once
+// A load that hangs on a fluid fingertip by friction, as simply as that can be told honestly:
+//   - the membrane is a square net of springs, held at the rim; each knot is a printed dot. A fluid
+//     does not hold the membrane from behind, so there is no other spring;
+//   - the contact is a disc over which the fluid's pressure carries the grip force, so its area is
+//     force / pressure, and each dot in it carries an equal share;
+//   - a dot in contact moves with the object as long as the net pulls on it less than friction
+//     allows (Coulomb, one coefficient), and slides on it against that force otherwise;
+//   - the object has its mass, and a little drag so that it does not ring.
+// Left out: depth, lateral contraction, friction that falls when sliding begins, the other fingers.
+// "load" is the share of the weight that this fingertip bears.
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <numbers>
+#include <vector>
+
+namespace grip {
+
+struct Fingertip {
+  int dots = 21;  ///< in each direction, odd
+  double pitch_mm = 1.5;
+  double rim_mm = 15.5;          ///< radius at which the membrane is held
+  double spring_n_per_mm = 0.1;  ///< of the net: shear modulus times thickness of the membrane
+  double pressure_mpa = 0.02;
+  double friction = 0.6;
+  double drag_ns_per_mm = 0.005;
+};
+
+class SlippingLoad {
+ public:
+  /// The object hangs at rest.
+  SlippingLoad(const Fingertip& tip, double load_n, double force_n)
+      : tip_(tip),
+        shift_mm_(cells(), 0),
+        slid_mm_(cells(), 0),
+        touches_(cells(), 0),
+        free_(cells(), 0) {
+    for (int i = 0; i < tip.dots; ++i) {
+      for (int j = 0; j < tip.dots; ++j) {
+        free_[at(i, j)] = std::hypot(place_mm(i), place_mm(j)) < tip.rim_mm ? 1 : 0;
+      }
+    }
+    for (int k = 0; k < 60; ++k) {
+      advance(load_n, force_n, 1.0 / 30);
+    }
+  }
+
+  /// For a time the object is pulled along x by `load_n`, and the tip presses with `force_n`.
+  void advance(double load_n, double force_n, double time_s) {
+    constexpr int steps = 40;
+    constexpr double gravity_mm_s2 = 9810;
+    press(force_n);
+    for (int k = 0; k < steps; ++k) {
+      const double pull_n = load_n - relax() - tip_.drag_ns_per_mm * speed_mm_s_;
+      speed_mm_s_ += time_s / steps * pull_n / load_n * gravity_mm_s2;
+      object_mm_ += time_s / steps * speed_mm_s_;
+    }
+  }
+
+  double x_mm(int row, int col) const { return place_mm(col) + shift_mm_[at(row, col)]; }
+  double y_mm(int row, int) const { return place_mm(row); }
+  bool touches(int row, int col) const { return touches_[at(row, col)] != 0; }
+  double friction_limit_n() const { return tip_.friction * force_n_; }
+  /// How far the object has slid over the middle of the contact, where it slips last.
+  double slip_mm() const { return 0 - slid_mm_[at(tip_.dots / 2, tip_.dots / 2)]; }
+
+ private:
+  int width() const { return tip_.dots + 2; }
+  std::size_t cells() const { return static_cast<std::size_t>(width() * width()); }
+  std::size_t at(int row, int col) const {
+    return static_cast<std::size_t>((row + 1) * width() + col + 1);
+  }
+  double place_mm(int k) const { return tip_.pitch_mm * (k - tip_.dots / 2); }
+
+  /// Dots that come into contact are held where they are.
+  void press(double force_n) {
+    force_n_ = force_n;
+    touching_ = 0;
+    const double contact_mm = std::sqrt(force_n / tip_.pressure_mpa / std::numbers::pi);
+    const double radius_mm = (std::min)(contact_mm, tip_.rim_mm - tip_.pitch_mm);
+    for (int i = 0; i < tip_.dots; ++i) {
+      for (int j = 0; j < tip_.dots; ++j) {
+        const std::size_t k = at(i, j);
+        const bool touches = std::hypot(place_mm(i), place_mm(j)) < radius_mm;
+        slid_mm_[k] = touches && touches_[k] == 0 ? shift_mm_[k] - object_mm_ : slid_mm_[k];
+        touches_[k] = touches ? 1 : 0;
+        touching_ += touches ? 1 : 0;
+      }
+    }
+  }
+
+  /// Brings the net to rest with the object where it is; the force with which it holds the object.
+  double relax() {
+    const double most_mm = friction_limit_n() / touching_ / tip_.spring_n_per_mm;
+    for (int sweep = 0; sweep < 12; ++sweep) {
+      for (std::size_t k = 0; k < free_.size(); ++k) {
+        if (free_[k] != 0) {
+          const double rest_mm = neighbours_mm(k) / 4;
+          shift_mm_[k] = touches_[k] == 0
+                             ? shift_mm_[k] + 1.5 * (rest_mm - shift_mm_[k])
+                             : std::clamp(object_mm_ + slid_mm_[k], rest_mm - most_mm / 4,
+                                          rest_mm + most_mm / 4);
+        }
+      }
+    }
+    double held_mm = 0;
+    for (std::size_t k = 0; k < free_.size(); ++k) {
+      if (touches_[k] != 0) {
+        held_mm += std::clamp(4 * shift_mm_[k] - neighbours_mm(k), -most_mm, most_mm);
+        slid_mm_[k] = shift_mm_[k] - object_mm_;
+      }
+    }
+    return tip_.spring_n_per_mm * held_mm;
+  }
+
+  double neighbours_mm(std::size_t k) const {
+    const auto row = static_cast<std::size_t>(width());
+    return shift_mm_[k - 1] + shift_mm_[k + 1] + shift_mm_[k - row] + shift_mm_[k + row];
+  }
+
+  Fingertip tip_;
+  std::vector<double> shift_mm_;  ///< of each dot, along x
+  std::vector<double> slid_mm_;   ///< of each dot against the object
+  std::vector<char> touches_;
+  std::vector<char> free_;  ///< not held by the rim
+  int touching_ = 0;
+  double force_n_ = 0;
+  double object_mm_ = 0;
+  double speed_mm_s_ = 0;
+};
+
+}  // namespace grip
