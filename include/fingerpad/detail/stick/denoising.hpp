@@ -185,7 +185,9 @@ void write_residuals(const FramePair<S>& pair,
   const V one = V{} + S(1);
   const V unknown = V{} + DotMarks<S>::unknown(), slip = V{} + DotMarks<S>::slip();
   const Index stride = pair.layout.stride();
-  for (Index k = pair.run.begin - stride; k < pair.run.end + stride; k += run_step<S>) {
+  // the neighbours of the first and of the last dot too
+  const Index first = pair.run.begin - stride - 1, last = pair.run.end + stride;
+  for (Index k = first; k <= last; k += run_step<S>) {
     V rx, ry;
     shift.residual(load_cells<V, S>(pair.now.x + k), load_cells<V, S>(pair.now.y + k),
                    load_cells<V, S>(pair.then.x + k), load_cells<V, S>(pair.then.y + k), rx, ry);
