@@ -31,8 +31,9 @@ int main() {
   for (int frame = 0; frame <= 12; ++frame) {
     const auto seen = stick(dot_grid, contact_grid, state_grid, state);  // every frame
     if (seen.updated()) {
-      std::printf("frame %2d: stick ratio %.2f (%td of %td dots), %s\n", frame, seen.stick_ratio,
-                  seen.stick, seen.dots_in_contact(), seen.stick_ratio < 0.5F ? "grip!" : "ok");
+      std::printf("frame %2d: stick ratio %.2f (%td of %td dots), %s\n", frame,
+                  double(seen.stick_ratio), seen.stick, seen.dots_in_contact(),
+                  seen.stick_ratio < 0.5F ? "grip!" : "ok");
       last = seen.stick_ratio;
     } else {
       std::printf("frame %2d: %s\n", frame, name_of(seen.status));

@@ -86,6 +86,12 @@ void Canvas::circle(Spot centre, double radius, double width, const Ink& colour)
              strokes(width), cv::LINE_AA, fraction_bits);
 }
 
+void Canvas::disc(Spot centre, double radius, const Ink& colour) {
+  cv::circle(sheet_, large({centre}).front(),
+             static_cast<int>(std::lround(radius * (scale << fraction_bits))), colour, cv::FILLED,
+             cv::LINE_AA, fraction_bits);
+}
+
 double Canvas::text_width(const std::string& words, double height, bool bold) const {
   int baseline = 0;
   const cv::Size size =

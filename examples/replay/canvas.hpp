@@ -32,6 +32,7 @@ class Canvas {
   void dashed_curve(const std::vector<Spot>& spots, double width, const Ink& colour);
   void polygon(const std::vector<Spot>& corners, const Ink& colour);
   void circle(Spot centre, double radius, double width, const Ink& colour);
+  void disc(Spot centre, double radius, const Ink& colour);
   /// `at` lies on the baseline; `height` is that of a capital letter.
   void text(Spot at,
             const std::string& words,

@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <cstdlib>
 #include <limits>
+#include <string>
 
 #include "failure.hpp"
 
@@ -37,6 +39,20 @@ ContactStep contact_step_of(Recording& recording,
   }
 }
 
+DotSource dots_of(Recording& recording, const Options& options) {
+  if (recording.sensor.dots_only) {
+    return DotSource::of_dots_only(options.recording, recording);
+  }
+  return DotSource(options.recording, recording.sensor, recording.reference,
+                   recording.reference_depth, recording.frames.size());
+}
+
+/// NaN where there is no text.
+double seconds(const std::string& text) {
+  return text.empty() ? std::numeric_limits<double>::quiet_NaN()
+                      : std::strtod(text.c_str(), nullptr);
+}
+
 /// What the pixels of a depth map say together.
 void describe_depth(const FrameDepth& result, Scene& scene) {
   double sum = 0;
@@ -56,6 +72,9 @@ void describe_depth(const FrameDepth& result, Scene& scene) {
 }
 
 double median(std::vector<double> values) {
+  if (values.empty()) {
+    return std::numeric_limits<double>::quiet_NaN();
+  }
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
   std::nth_element(values.begin(), middle, values.end());
   return *middle;
@@ -65,14 +84,28 @@ double median(std::vector<double> values) {
 
 Chain::Chain(Recording& recording, const Options& options)
     : recording_(recording),
-      depth_(depth_step_of(recording, options)),
-      contact_(contact_step_of(recording, depth_, options)),
-      dots_(options.recording,
-            recording.sensor,
-            recording.reference,
-            recording.reference_depth,
-            recording.frames.size()),
-      motion_(recording.sensor, dots_.initial(), recording.reference_depth) {}
+      depth_(recording.sensor.dots_only ? DepthStep() : depth_step_of(recording, options)),
+      contact_(recording.sensor.dots_only ? ContactStep()
+                                          : contact_step_of(recording, depth_, options)),
+      dots_(dots_of(recording, options)),
+      stick_(dots_.initial().size(), recording.sensor.stick) {
+  if (!recording.sensor.dots_only) {
+    motion_.emplace(recording.sensor, dots_.initial(), recording.reference_depth);
+  }
+}
+
+void Chain::measure_depth(Scene& scene) {
+  scene.depth_mm.create(scene.image.size());
+  scene.contact_mask.create(scene.image.size());
+  const auto start = std::chrono::steady_clock::now();
+  const FrameDepth depth = depth_(scene.image, scene.depth_mm);
+  const auto between = std::chrono::steady_clock::now();
+  scene.contact = contact_(scene.depth_mm, scene.contact_mask);
+  const auto end = std::chrono::steady_clock::now();
+  depth_ms_.push_back(Milliseconds(between - start).count());
+  contact_ms_.push_back(Milliseconds(end - between).count());
+  describe_depth(depth, scene);
+}
 
 Scene Chain::operator()(int frame, const cv::Mat& image) {
   Scene scene;
@@ -80,19 +113,15 @@ Scene Chain::operator()(int frame, const cv::Mat& image) {
   const auto time = recording_.times_s.find(frame);
   scene.time_s = time == recording_.times_s.end() ? "" : time->second;
   scene.image = image;
-  scene.depth_mm.create(image.size());
-  scene.contact_mask.create(image.size());
-  const auto start = std::chrono::steady_clock::now();
-  const FrameDepth depth = depth_(image, scene.depth_mm);
-  const auto between = std::chrono::steady_clock::now();
-  scene.contact = contact_(scene.depth_mm, scene.contact_mask);
-  const auto end = std::chrono::steady_clock::now();
-  depth_ms_.push_back(Milliseconds(between - start).count());
-  contact_ms_.push_back(Milliseconds(end - between).count());
-  if (dots_.present()) {
-    scene.dots = motion_(dots_.of(frame, image), scene.depth_mm, scene.contact_mask);
+  if (depth_) {
+    measure_depth(scene);
   }
-  describe_depth(depth, scene);
+  if (dots_.present()) {
+    const DotGrid dots_px = dots_.of(frame, image);
+    scene.dots =
+        motion_ ? (*motion_)(dots_px, scene.depth_mm, scene.contact_mask) : dots_alone(dots_px);
+    scene.dots.stick = stick_(dots_px, scene.dots.in_contact, seconds(scene.time_s));
+  }
   return scene;
 }
 

@@ -3,6 +3,7 @@
 #pragma once
 // All that is computed of a recording, frame by frame in the order of time.
 #include <opencv2/core.hpp>
+#include <optional>
 #include <vector>
 
 #include "contact_step.hpp"
@@ -12,6 +13,7 @@
 #include "pictures.hpp"
 #include "recording.hpp"
 #include "replay.hpp"
+#include "stick_step.hpp"
 
 namespace replay {
 
@@ -24,16 +26,18 @@ class Chain {
   Scene operator()(int frame, const cv::Mat& image);
 
   const DotSource& dots() const { return dots_; }
-  /// Medians over the frames so far.
+  /// Medians over the frames so far; of a dots-only recording there are none.
   double depth_ms() const;
   double contact_ms() const;
 
  private:
+  void measure_depth(Scene& scene);
   const Recording& recording_;
-  DepthStep depth_;
-  ContactStep contact_;
+  DepthStep depth_;      ///< empty where the recording is of dots only
+  ContactStep contact_;  ///< the same
   DotSource dots_;
-  MotionStep motion_;
+  std::optional<MotionStep> motion_;  ///< none where the recording is of dots only
+  StickStep stick_;
   std::vector<double> depth_ms_;
   std::vector<double> contact_ms_;
 };

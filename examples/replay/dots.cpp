@@ -7,13 +7,16 @@
 #include <vector>
 
 #include "dots_file.hpp"
+#include "dots_lattice.hpp"
 #include "dots_match.hpp"
 #include "dots_order.hpp"
+#include "failure.hpp"
 
 namespace replay {
 namespace {
 
-constexpr int least_dots = 9;  // fewer in order are chance
+constexpr int least_dots = 9;     // fewer in order are chance
+constexpr int first_frames = 10;  // a camera's first frames may be dark
 
 /// Whether two grids mean the same dots by the same row and column.
 bool agree(const DotGrid& a, const DotGrid& b) {
@@ -66,6 +69,38 @@ DotSource::DotSource(const std::filesystem::path& folder,
     initial_ = free_pad->found;
     tracker_ = std::make_unique<DotTracker>(*free_pad);
   }
+}
+
+DotSource DotSource::of_dots_only(const std::filesystem::path& folder, Recording& recording) {
+  DotSource source;
+  const DotPattern& given = recording.sensor.pattern;
+  const std::filesystem::path file = folder / "dots.csv";
+  if (std::filesystem::exists(file)) {
+    source.how_ = "dots.csv";
+    std::optional<cv::Size> size;
+    if (given.rows > 0) {
+      size = cv::Size(given.cols, given.rows);
+    }
+    source.listed_ = read_dots(file, recording.frames.size(), size);
+    source.initial_ = source.listed_.begin()->second;
+    return source;
+  }
+  auto pattern = find_pattern(recording.reference, given);
+  const int tried = (std::min)(first_frames, recording.frames.size());
+  recording.frames.seek(0);
+  for (int frame = 0; frame < tried && !pattern; ++frame) {
+    pattern = find_pattern(next_frame(recording.frames, recording.reference.size()), given);
+  }
+  if (!pattern) {
+    fail(folder, "none of the first " + std::to_string(tried) +
+                     " frames shows a grid of nine or more dots (\"dots\" in sensor.json may say "
+                     "what they look like, or dots.csv where they are)");
+  }
+  source.how_ = "found in the frames";
+  source.initial_ = pattern->order.found;
+  source.finder_ = std::make_unique<BlobFinder>(recording.reference.size(), pattern->look);
+  source.tracker_ = std::make_unique<DotTracker>(pattern->order, elastic_pad);
+  return source;
 }
 
 DotGrid DotSource::of(int frame, const cv::Mat& image) {

@@ -2,7 +2,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 // The printed dots of a recording, frame by frame and in print order: read from dots.csv where the
-// recording has it, else found in the frames where sensor.json says what is printed.
+// recording has it, else found in the frames where sensor.json says what is printed or the
+// recording is of dots only.
 #include <filesystem>
 #include <map>
 #include <memory>
@@ -12,6 +13,7 @@
 #include "dots_blobs.hpp"
 #include "dots_grid.hpp"
 #include "dots_track.hpp"
+#include "recording.hpp"
 #include "sensor.hpp"
 
 namespace replay {
@@ -25,6 +27,11 @@ class DotSource {
             const cv::Mat& reference_image,
             const cv::Mat_<float>& reference_depth,
             int frame_count);
+
+  /// The same for a dots-only recording. Without dots.csv, dots are found by the grid that the
+  /// reference shows, else the first of the first ten frames that shows one. Throws Failure where
+  /// none does.
+  static DotSource of_dots_only(const std::filesystem::path& folder, Recording& recording);
 
   /// False where there is neither dots.csv nor a print that the free pad shows; then every grid is
   /// empty (0 x 0).
@@ -42,6 +49,7 @@ class DotSource {
   DotGrid of(int frame, const cv::Mat& image);
 
  private:
+  DotSource() = default;
   std::string how_ = "none";
   DotGrid initial_;
   std::map<int, DotGrid> listed_;

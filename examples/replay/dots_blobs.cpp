@@ -9,8 +9,9 @@
 namespace replay {
 namespace {
 
-constexpr float least_darkness = 0.08F;  // a dot is darker than the membrane by this share or more
-constexpr float least_light = 4.0F;      // grey levels of red + green; darker places show nothing
+constexpr float least_darkness = 0.08F;   // a dot is darker than the membrane by this share or more
+constexpr std::size_t most_spots = 4000;  // in a whole frame; more are its grain
+constexpr float least_light = 4.0F;       // grey levels of red + green; darker places show nothing
 constexpr float glare = 2.0F;  // light above this many times the pad's median is none of its own
 
 /// Median of the values where `mask` is positive; 0 where it is nowhere.
@@ -31,6 +32,8 @@ float median_of(const cv::Mat_<float>& values, const cv::Mat_<float>& mask) {
   std::nth_element(inside.begin(), middle, inside.end());
   return *middle;
 }
+
+constexpr float brightest_light = 512;  // red plus green, or what stands for it
 
 /// Red plus green in grey levels.
 cv::Mat_<float> red_and_green(const cv::Mat& image) {
@@ -79,6 +82,33 @@ cv::Vec2d center_of_gravity(const cv::Mat_<float>& dark, cv::Vec2d center, doubl
   return center;
 }
 
+double median(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+/// Whether a disc lies within the frame.
+bool is_whole(const cv::Vec2d& center, double radius_px, cv::Size size) {
+  return center[0] >= radius_px && center[0] <= size.width - 1 - radius_px &&
+         center[1] >= radius_px && center[1] <= size.height - 1 - radius_px;
+}
+
+float mean_within(const cv::Mat_<float>& values, const cv::Vec2d& center, double radius_px) {
+  const cv::Rect box = square(center, radius_px, values.size());
+  double sum = 0;
+  int count = 0;
+  for (int i = box.y; i < box.y + box.height; ++i) {
+    for (int j = box.x; j < box.x + box.width; ++j) {
+      if (cv::norm(cv::Vec2d(j, i) - center) <= radius_px) {
+        sum += static_cast<double>(values(i, j));
+        ++count;
+      }
+    }
+  }
+  return count > 0 ? static_cast<float>(sum / count) : 0.0F;
+}
+
 /// Pixels whose response is the largest around them.
 Blobs peaks(const cv::Mat_<float>& response, float least, int reach_px) {
   cv::Mat_<float> largest;
@@ -124,6 +154,29 @@ BlobFinder::BlobFinder(const Sensor& sensor, const cv::Mat_<float>& reference_de
   pitch_px_ = sensor.dots->pitch_mm * px_per_mm;
 }
 
+BlobFinder::BlobFinder(cv::Size size, const SpotLook& look)
+    : pad_(size, 1.0F),
+      radius_px_(look.radius_px),
+      pitch_px_(look.pitch_px),
+      margin_px_(look.radius_px),
+      whole_frame_(true),
+      bright_(look.bright) {}
+
+/// Twice the mean of all colours in the place of red and green, and bright spots made dark.
+cv::Mat_<float> BlobFinder::light_of(const cv::Mat& image) const {
+  if (!whole_frame_) {
+    return red_and_green(image);
+  }
+  const double level = image.depth() == CV_16U ? 1.0 / 256 : 1.0;
+  const double share = 2 * level / 3;
+  cv::Mat_<float> light;
+  cv::transform(cv::Mat_<cv::Vec3f>(image), light, cv::Matx13f::all(static_cast<float>(share)));
+  if (bright_) {
+    cv::subtract(static_cast<double>(brightest_light), light, light);
+  }
+  return light;
+}
+
 /// Mean of the light around each pixel, weighted; 0 where there is no weight.
 cv::Mat_<float> BlobFinder::light_around(const cv::Mat_<float>& light,
                                          const cv::Mat_<float>& weight) const {
@@ -143,7 +196,7 @@ cv::Mat_<float> BlobFinder::light_around(const cv::Mat_<float>& light,
 /// By which share a pixel is darker than the membrane around it, 0 off the pad. The membrane is
 /// what is left when the pixels that are darker than their surroundings are taken away.
 cv::Mat_<float> BlobFinder::darkness(const cv::Mat& image) const {
-  const cv::Mat_<float> light = red_and_green(image);
+  const cv::Mat_<float> light = light_of(image);
   const float brightest = glare * median_of(light, pad_);
   cv::Mat_<float> pad = pad_.clone();
   pad.setTo(0, light > static_cast<double>(brightest));
@@ -209,15 +262,42 @@ Blobs BlobFinder::find(const cv::Mat& image) const {
   const int reach_px = (std::max)(static_cast<int>(std::lround(0.8 * radius_px_)), 1);
   const Blobs rough = peaks(response, 0.25F * least_darkness, reach_px);
   Blobs found;
+  if (whole_frame_ && rough.size() > most_spots) {
+    return found;
+  }
   for (std::size_t k = 0; k < rough.size(); ++k) {
     const double reach = (std::min)((std::max)(1.4 * radius_px_, radius_px_ + 1.5),
                                     0.55 * distance_to_nearest(rough, k));
     const cv::Vec2d center = center_of_gravity(dark, rough[k], reach);
-    if (is_present(center) && looks_like_a_dot(dark, center)) {
+    if (is_present(center) && is_whole(center, margin_px_, dark.size()) &&
+        looks_like_a_dot(dark, center)) {
       found.push_back(center);
     }
   }
   return found;
+}
+
+TypicalSpot BlobFinder::typical(const cv::Mat& image, const Blobs& spots) const {
+  if (spots.empty()) {
+    return {};
+  }
+  const cv::Mat_<float> dark = darkness(image);
+  std::vector<double> radii;
+  std::vector<double> middles;
+  for (const cv::Vec2d& spot : spots) {
+    const float middle = mean_within(dark, spot, (std::max)(radius_px_ / 2, 1.0));
+    int count = 0;
+    const cv::Rect box = square(spot, pitch_px_ / 2, dark.size());
+    for (int i = box.y; i < box.y + box.height; ++i) {
+      for (int j = box.x; j < box.x + box.width; ++j) {
+        const bool near = cv::norm(cv::Vec2d(j, i) - spot) <= pitch_px_ / 2;
+        count += near && dark(i, j) > middle / 2 ? 1 : 0;
+      }
+    }
+    radii.push_back(std::sqrt(count / 3.14159265358979));
+    middles.push_back(static_cast<double>(middle));
+  }
+  return {median(radii), median(middles)};
 }
 
 }  // namespace replay

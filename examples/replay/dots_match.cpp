@@ -14,8 +14,7 @@ constexpr double cell_px = 16;
 // In parts of the spacing between dots:
 constexpr double growth_gate = 0.35;    // how far a spot may lie from where a dot is looked for
 constexpr double largest_misfit = 0.3;  // how far a dot may lie from where its neighbours put it
-constexpr double least_strange = 0.10;  // nor than this, where that is many times what is usual
-constexpr double strange = 8;           // that is, this many times the median
+constexpr double strange = 8;           // times the median is much more than usual
 constexpr int around = 2;               // dots as far as this in the grid tell how a dot moves
 constexpr int least_neighbours = 3;
 
@@ -138,8 +137,8 @@ DotGrid dots_of(const Labels& labels, const BlobMap& blobs) {
   return dots;
 }
 
-Matcher::Matcher(const DotGrid& base, const BlobMap& blobs)
-    : base_(base), blobs_(blobs), spacing_px_(base.size(), 0.0) {
+Matcher::Matcher(const DotGrid& base, const BlobMap& blobs, const Smoothness& smoothness)
+    : base_(base), blobs_(blobs), smoothness_(smoothness), spacing_px_(base.size(), 0.0) {
   double sum = 0;
   int count = 0;
   for (int i = 0; i < base.rows; ++i) {
@@ -302,7 +301,7 @@ void Matcher::drop_strangers(Labels& labels) const {
   }
   const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
   std::nth_element(sorted.begin(), middle, sorted.end());
-  const double limit = (std::max)(least_strange, strange * *middle);
+  const double limit = (std::max)(smoothness_.least_strange, strange * *middle);
   for (int i = 0; i < labels.rows; ++i) {
     for (int j = 0; j < labels.cols; ++j) {
       labels(i, j) = misfits(i, j) > limit ? -1 : labels(i, j);

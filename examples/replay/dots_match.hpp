@@ -34,13 +34,22 @@ class BlobMap {
   std::vector<std::vector<int>> content_;
 };
 
+/// How smoothly neighbours move, in parts of the spacing between dots: a dot that is further from
+/// where its neighbours put it, and much further than is usual in the frame, is a shadow or half a
+/// dot. Behind an elastic pad a contact moves dots while those beside it stand still.
+struct Smoothness {
+  double least_strange = 0.10;
+};
+constexpr Smoothness membrane{};
+constexpr Smoothness elastic_pad{0.3};
+
 /// Number of the spot that is each printed dot; -1: none.
 using Labels = cv::Mat_<int>;
 
 class Matcher {
  public:
   /// `base`: where the dots were (NaN: nobody knows). Both must outlive the matcher.
-  Matcher(const DotGrid& base, const BlobMap& blobs);
+  Matcher(const DotGrid& base, const BlobMap& blobs, const Smoothness& smoothness = membrane);
 
   /// Labels of the dots in `seeds` (nonzero), each taken to have moved by about `moves`, and of all
   /// the dots that are reached from them.
@@ -67,6 +76,7 @@ class Matcher {
 
   const DotGrid& base_;
   const BlobMap& blobs_;
+  Smoothness smoothness_;
   cv::Mat_<double> spacing_px_;
 };
 

@@ -118,8 +118,9 @@ void drop_doubtful(Guess& best, const std::vector<Guess>& guesses) {
 
 }  // namespace
 
-DotTracker::DotTracker(const FirstOrder& free_pad)
-    : free_(filled(free_pad.found, free_pad.expected, free_pad.expected)),
+DotTracker::DotTracker(const FirstOrder& free_pad, const Smoothness& smoothness)
+    : smoothness_(smoothness),
+      free_(filled(free_pad.found, free_pad.expected, free_pad.expected)),
       last_(free_.clone()),
       velocity_(free_.size(), cv::Vec2d(0, 0)),
       border_(border_of(free_pad.found)),
@@ -128,8 +129,8 @@ DotTracker::DotTracker(const FirstOrder& free_pad)
 
 DotGrid DotTracker::track(const Blobs& blobs) {
   const BlobMap map(blobs);
-  const Matcher from_last(last_, map);
-  const Matcher from_free(free_, map);
+  const Matcher from_last(last_, map, smoothness_);
+  const Matcher from_free(free_, map, smoothness_);
   const cv::Mat_<uchar> everywhere(free_.size(), uchar{1});
   const DotGrid at_rest(free_.size(), cv::Vec2d(0, 0));
   const int most = (std::min)(count_, map.size());

@@ -14,7 +14,7 @@ namespace replay {
 
 class DotTracker {
  public:
-  explicit DotTracker(const FirstOrder& free_pad);
+  explicit DotTracker(const FirstOrder& free_pad, const Smoothness& smoothness = membrane);
 
   /// The dots among the spots of the next frame.
   DotGrid track(const Blobs& blobs);
@@ -22,6 +22,7 @@ class DotTracker {
  private:
   void remember(const DotGrid& found);
 
+  Smoothness smoothness_;
   DotGrid free_;            ///< every dot on the free pad: found there, or where it should be
   DotGrid last_;            ///< where every dot was last, or where its neighbours put it
   DotGrid velocity_;        ///< px per frame, 0 where unknown

@@ -11,11 +11,15 @@
 
 int main(int argc, char** argv) {
   CLI::App app(
-      "Depth, contact and the motion of the object from a recording of a fluid-filled pad.\n"
-      "RECORDING is a folder with sensor.json, reference.png, reference_depth.tiff and frames/,\n"
-      "and perhaps free/ (frames of the free pad) and dots.csv; DIR receives frames.csv, dots.csv\n"
-      "and pictures/, and depth/ and contact/ with --raw. An earlier run's DIR is replaced when\n"
-      "the new one is complete; nothing is left behind when something fails.");
+      "Depth, contact, the motion of the object and the stick ratio from a recording of a\n"
+      "fluid-filled pad. RECORDING is a folder with sensor.json, reference.png,\n"
+      "reference_depth.tiff and frames/, and perhaps free/ (frames of the free pad) and dots.csv;\n"
+      "DIR receives frames.csv, dots.csv and pictures/, and depth/ and contact/ with --raw.\n"
+      "A recording of any other pad with a grid of dots needs a sensor.json of {} and frames/ or "
+      "a\n"
+      "video: dots are found in the frames, each that is found counts as in contact, and only the\n"
+      "dots and the stick ratio are written. An earlier run's DIR is replaced when the new one is\n"
+      "complete; nothing is left behind when something fails.");
   replay::Options options;
   std::string frames;
   const std::map<std::string, replay::Smoothing> policies = {

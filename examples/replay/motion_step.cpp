@@ -2,9 +2,25 @@
 // SPDX-License-Identifier: MIT
 #include "motion_step.hpp"
 
+#include <limits>
+
 #include "fingerpad/adapt/opencv.hpp"
 
 namespace replay {
+
+FrameDots dots_alone(const DotGrid& dots_px) {
+  FrameDots frame;
+  frame.dots_px = dots_px;
+  frame.dots_mm =
+      cv::Mat_<cv::Vec3d>(dots_px.size(), cv::Vec3d::all(std::numeric_limits<double>::quiet_NaN()));
+  frame.in_contact.create(dots_px.size());
+  for (int i = 0; i < dots_px.rows; ++i) {
+    for (int j = 0; j < dots_px.cols; ++j) {
+      frame.in_contact(i, j) = is_present(dots_px(i, j)) ? 1 : 0;
+    }
+  }
+  return frame;
+}
 
 MotionStep::MotionStep(const Sensor& sensor,
                        const DotGrid& initial_px,

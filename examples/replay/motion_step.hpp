@@ -11,6 +11,7 @@
 #include "fingerpad/contact_region.hpp"
 #include "fingerpad/object_motion.hpp"
 #include "sensor.hpp"
+#include "stick_step.hpp"
 
 namespace replay {
 
@@ -20,7 +21,11 @@ struct FrameDots {
   cv::Mat_<cv::Vec3d> dots_mm;  ///< NaN where a dot was not found or has no depth
   cv::Mat_<uchar> in_contact;   ///< 1 for dots that are
   fingerpad::ObjectMotionResult<double> motion;
+  StickFrame stick;
 };
+
+/// Dots of a frame of which nothing else is known: each that is found counts as in contact.
+FrameDots dots_alone(const DotGrid& dots_px);
 
 class MotionStep {
  public:

@@ -22,8 +22,9 @@ constexpr const char* columns =
     "frame,time_s,valid_share,depth_mean_mm,depth_max_mm,"
     "contact_area_mm2,contact_depth_mm,contact_center_x_mm,contact_center_y_mm,"
     "reference_dot_row,reference_dot_col,object_x_mm,object_y_mm,object_z_mm,"
-    "rotation_x_rad,rotation_y_rad,rotation_z_rad";
-constexpr const char* dot_columns = "frame,row,col,x_px,y_px,x_mm,y_mm,z_mm,contact";
+    "rotation_x_rad,rotation_y_rad,rotation_z_rad,"
+    "dots_in_contact,stick_ratio,stick_ratio_updated";
+constexpr const char* dot_columns = "frame,row,col,x_px,y_px,x_mm,y_mm,z_mm,contact,stick";
 
 /// Empty where there is no number.
 std::string cell(double value) {
@@ -32,6 +33,11 @@ std::string cell(double value) {
     std::snprintf(text, sizeof text, "%.6f", value);
   }
   return text;
+}
+
+/// 1 or 0; empty where it is not known whether a dot sticks, or it touches nothing.
+const char* stick_cell(DotState state) {
+  return state == DotState::stick ? "1" : state == DotState::slip ? "0" : "";
 }
 
 void close_file(std::ofstream& stream, const fs::path& file) {
@@ -45,7 +51,8 @@ void close_file(std::ofstream& stream, const fs::path& file) {
 bool is_ours(const std::string& relative) {
   static const std::regex ours(
       R"(frames\.csv|dots\.csv|depth|depth/\d{6}\.tiff|contact|contact/\d{6}\.png|pictures|)"
-      R"(pictures/(depth|side|contact)_\d{6}\.png|pictures/(montage|motion)\.png)");
+      R"(pictures/(depth|side|contact|stick)_\d{6}\.png|)"
+      R"(pictures/(montage|motion|stick_ratio)\.png)");
   return std::regex_match(relative, ours);
 }
 
@@ -187,21 +194,28 @@ FramesCsv::FramesCsv(const fs::path& file) : file_(file), stream_(file) {
 }
 
 void FramesCsv::write(const FrameRow& row) {
+  constexpr double none = std::numeric_limits<double>::quiet_NaN();
   const auto& contact = row.contact;
   stream_ << row.frame << ',' << row.time_s << ',' << cell(row.valid_share) << ','
           << cell(row.depth_mean_mm) << ',' << cell(row.depth_max_mm) << ','
-          << cell(contact.area_mm2) << ',' << cell(contact.depth_mm) << ','
-          << cell(contact.center_mm.x) << ',' << cell(contact.center_mm.y);
+          << cell(contact.accepted ? contact.area_mm2 : none) << ',' << cell(contact.depth_mm)
+          << ',' << cell(contact.center_mm.x) << ',' << cell(contact.center_mm.y);
   const auto& motion = row.motion;
   if (motion.reference.exists()) {
     stream_ << ',' << motion.reference.row << ',' << motion.reference.col;
   } else {
     stream_ << ",,";
   }
-  constexpr double none = std::numeric_limits<double>::quiet_NaN();
   for (const double value : {motion.position_mm.x, motion.position_mm.y, motion.position_mm.z,
                              motion.angles.x_rad, motion.angles.y_rad, motion.angles.z_rad}) {
     stream_ << ',' << cell(motion.ok() ? value : none);
+  }
+  const auto& stick = row.stick;
+  if (row.has_dots) {
+    stream_ << ',' << stick.dots_in_contact() << ',' << cell(static_cast<double>(stick.stick_ratio))
+            << ',' << (stick.updated() ? 1 : 0);
+  } else {
+    stream_ << ",,,";
   }
   stream_ << '\n';
 }
@@ -222,7 +236,8 @@ void DotsCsv::write(int frame, const FrameDots& dots) {
       if (is_present(px)) {
         stream_ << frame << ',' << i << ',' << j << ',' << cell(px[0]) << ',' << cell(px[1]) << ','
                 << cell(mm[0]) << ',' << cell(mm[1]) << ',' << cell(mm[2]) << ','
-                << (dots.in_contact(i, j) != 0 ? 1 : 0) << '\n';
+                << (dots.in_contact(i, j) != 0 ? 1 : 0) << ',' << stick_cell(dots.stick.state(i, j))
+                << '\n';
       }
     }
   }

@@ -44,12 +44,14 @@ std::string numbered(const std::string& stem, int frame, const std::string& exte
 /// One line of frames.csv.
 struct FrameRow {
   int frame = 0;
-  std::string time_s;  ///< empty where unknown
-  double valid_share = 0;
+  std::string time_s;        ///< empty where unknown
+  double valid_share = 0;    ///< NaN, and empty in the file, where the recording is of dots only
   double depth_mean_mm = 0;  ///< NaN where no pixel is valid, then empty in the file
   double depth_max_mm = 0;
-  ContactResult contact;
+  ContactResult contact;  ///< not accepted: the recording is of dots only
   fingerpad::ObjectMotionResult<double> motion;
+  bool has_dots = false;
+  fingerpad::StickRatioResult<float> stick;
 };
 
 class FramesCsv {

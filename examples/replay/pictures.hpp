@@ -3,6 +3,7 @@
 #pragma once
 // What a person would look at: false-colour depth, a side view, the contact over the camera's
 // image, and a recording at a glance.
+#include <limits>
 #include <opencv2/core.hpp>
 #include <string>
 #include <vector>
@@ -21,17 +22,19 @@ struct Section {
   double dent_mm = 0;  ///< how far it lies below the free pad; 0: nothing presses the pad
 };
 
+constexpr double not_known = std::numeric_limits<double>::quiet_NaN();
+
 /// One frame, as far as pictures need it.
 struct Scene {
   int frame = 0;
-  std::string time_s;  ///< empty where unknown
-  cv::Mat image;       ///< 8- or 16-bit colour
-  cv::Mat_<float> depth_mm;
+  std::string time_s;        ///< empty where unknown
+  cv::Mat image;             ///< 8- or 16-bit colour
+  cv::Mat_<float> depth_mm;  ///< empty where the recording is of dots only
   Section section;
-  double valid_share = 0;
-  double depth_mean_mm = 0;  ///< NaN where no pixel is valid
-  double depth_max_mm = 0;
-  cv::Mat_<uchar> contact_mask;  ///< nonzero: in contact
+  double valid_share = not_known;
+  double depth_mean_mm = not_known;  ///< where no pixel is valid
+  double depth_max_mm = not_known;
+  cv::Mat_<uchar> contact_mask;  ///< nonzero: in contact; empty as the depth
   ContactResult contact;
   FrameDots dots;
 };

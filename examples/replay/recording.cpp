@@ -120,13 +120,10 @@ cv::Mat next_frame(FrameSource& frames, cv::Size size) {
   return image;
 }
 
-Recording open_recording(const fs::path& folder) {
-  std::error_code error;
-  if (!fs::is_directory(folder, error)) {
-    fail(folder, "there is no such folder");
-  }
-  Recording recording;
-  recording.sensor = read_sensor(folder / "sensor.json");
+namespace {
+
+/// The picture of the free pad and its depth.
+void read_reference(const fs::path& folder, Recording& recording) {
   const fs::path frame_file = folder / recording.sensor.reference_frame;
   const fs::path depth_file = folder / recording.sensor.reference_depth;
   recording.reference = read_colour_image(frame_file);
@@ -135,10 +132,36 @@ Recording open_recording(const fs::path& folder) {
     fail(depth_file, "is " + size_of(recording.reference_depth) + ", but " +
                          frame_file.filename().string() + " is " + size_of(recording.reference));
   }
+}
+
+/// The picture that a dots-only recording names, or its first frame.
+void read_first_picture(const fs::path& folder, Recording& recording) {
+  if (recording.sensor.reference_frame.empty()) {
+    recording.frames.seek(0);
+    recording.reference = recording.frames.next();
+  } else {
+    recording.reference = read_colour_image(folder / recording.sensor.reference_frame);
+  }
+}
+
+}  // namespace
+
+Recording open_recording(const fs::path& folder) {
+  std::error_code error;
+  if (!fs::is_directory(folder, error)) {
+    fail(folder, "there is no such folder");
+  }
+  Recording recording;
+  recording.sensor = read_sensor(folder / "sensor.json");
+  if (!recording.sensor.dots_only) {
+    read_reference(folder, recording);
+  }
   const auto& video = recording.sensor.video;
   recording.frames =
       video ? FrameSource::of_video(folder / *video) : FrameSource::of_folder(folder / "frames");
-  if (fs::is_directory(folder / "free", error)) {
+  if (recording.sensor.dots_only) {
+    read_first_picture(folder, recording);
+  } else if (fs::is_directory(folder / "free", error)) {
     recording.free_frames = FrameSource::of_folder(folder / "free");
   }
   recording.times_s = read_times(folder / "signals.csv", recording.frames.size());

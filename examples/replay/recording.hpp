@@ -42,8 +42,8 @@ cv::Mat next_frame(FrameSource& frames, cv::Size size);
 
 struct Recording {
   Sensor sensor;
-  cv::Mat reference;                ///< the free pad, 8- or 16-bit colour
-  cv::Mat_<float> reference_depth;  ///< mm, NaN outside the pad
+  cv::Mat reference;  ///< the free pad, 8- or 16-bit colour; dots only: may be the first frame
+  cv::Mat_<float> reference_depth;  ///< mm, NaN outside the pad; dots only: empty
   FrameSource frames;
   FrameSource free_frames;             ///< more frames of the free pad; may be none
   std::map<int, std::string> times_s;  ///< of the frames that signals.csv names, as written there

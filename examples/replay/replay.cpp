@@ -2,10 +2,12 @@
 // SPDX-License-Identifier: MIT
 #include "replay.hpp"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <csignal>
 #include <cstdio>
+#include <limits>
 #include <stdexcept>
 
 #include "chain.hpp"
@@ -32,10 +34,8 @@ Range within(const Range& range, int size, const std::filesystem::path& recordin
   return {range.first, last};
 }
 
-void print_summary(const Chain& chain,
-                   const Writer& writer,
-                   const Recording& recording,
-                   const Options& options) {
+/// What is only known of a recording with depth.
+void print_depth(const Chain& chain, const Writer& writer) {
   double valid_share = 0;
   double deepest_mm = 0;
   double largest_mm2 = 0;
@@ -47,23 +47,57 @@ void print_summary(const Chain& chain,
     in_contact += row.contact.in_contact() ? 1 : 0;
   }
   const auto frames = static_cast<double>(writer.rows().size());
-  std::printf("frames       %zu\n", writer.rows().size());
-  std::printf("size         %d x %d px, %g mm/px\n", recording.reference.cols,
-              recording.reference.rows, recording.sensor.camera.pitch_mm);
   std::printf("valid        %.2f %% of the pad's pixels\n", 100 * valid_share / frames);
   std::printf("deepest      %.2f mm\n", deepest_mm);
   std::printf("contact      in %d frames, at most %.1f mm^2\n", in_contact, largest_mm2);
-  std::printf("dots         %td, %s\n", fingerpad::count_present(chain.dots().initial()),
-              chain.dots().how().c_str());
   std::printf("depth step   %.2f ms a frame (median)\n", chain.depth_ms());
   std::printf("contact step %.2f ms a frame (median)\n", chain.contact_ms());
+}
+
+void print_dots(const Chain& chain, const Writer& writer) {
+  std::printf("dots         %td, %s\n", fingerpad::count_present(chain.dots().initial()),
+              chain.dots().how().c_str());
+  if (!chain.dots().present()) {
+    return;
+  }
+  double lowest = std::numeric_limits<double>::infinity();
+  int updated = 0;
+  for (const FrameRow& row : writer.rows()) {
+    if (row.stick.updated()) {
+      ++updated;
+      lowest = (std::min)(lowest, static_cast<double>(row.stick.stick_ratio));
+    }
+  }
+  if (updated > 0) {
+    std::printf("stick ratio  in %d frames, at least %.2f\n", updated, lowest);
+  } else {
+    std::printf("stick ratio  none\n");
+  }
+}
+
+void print_summary(const Chain& chain,
+                   const Writer& writer,
+                   const Recording& recording,
+                   const Options& options) {
+  const bool dots_only = recording.sensor.dots_only;
+  const cv::Size size = recording.reference.size();
+  std::printf("frames       %zu\n", writer.rows().size());
+  if (dots_only) {
+    std::printf("size         %d x %d px\n", size.width, size.height);
+  } else {
+    std::printf("size         %d x %d px, %g mm/px\n", size.width, size.height,
+                recording.sensor.camera.pitch_mm);
+    print_depth(chain, writer);
+  }
+  print_dots(chain, writer);
   std::printf("table        %s\n", (writer.place() / "frames.csv").c_str());
-  if (options.raw) {
+  if (options.raw && !dots_only) {
     std::printf("depth maps   %s\n", (writer.place() / "depth").c_str());
     std::printf("masks        %s\n", (writer.place() / "contact").c_str());
   }
   if (options.pictures) {
-    std::printf("pictures     %s; montage.png first\n", (writer.place() / "pictures").c_str());
+    std::printf("pictures     %s; %s first\n", (writer.place() / "pictures").c_str(),
+                dots_only ? "stick_ratio.png" : "montage.png");
   }
 }
 

@@ -81,6 +81,14 @@ class Section {
     return found.get<int>();
   }
 
+  bool truth(const std::string& key) const {
+    const json& found = at(key);
+    if (!found.is_boolean()) {
+      refuse_type(key, found, "true or false");
+    }
+    return found.get<bool>();
+  }
+
   std::string path(const std::string& key) const {
     const json& found = at(key);
     if (!found.is_string() || found.get<std::string>().empty()) {
@@ -190,6 +198,53 @@ Dots read_dots(const Section& root) {
           section.positive("pitch_mm"), section.positive("diameter_mm")};
 }
 
+DotPattern read_pattern(const Section& root) {
+  const Section section =
+      root.section("dots", {{"rows", "rows of dots; counted without it"},
+                            {"cols", "columns of dots, where rows is given"},
+                            {"diameter_px", "of a dot; measured without it"},
+                            {"bright", "whether dots are brighter than the ground around them"}});
+  DotPattern pattern;
+  if (section.has("rows") || section.has("cols")) {
+    pattern.rows = section.positive_integer("rows");
+    pattern.cols = section.positive_integer("cols");
+  }
+  if (section.has("diameter_px")) {
+    pattern.diameter_px = section.positive("diameter_px");
+  }
+  if (section.has("bright")) {
+    pattern.bright = section.truth("bright");
+  }
+  return pattern;
+}
+
+fingerpad::StickTest read_stick(const Section& root) {
+  const Section section =
+      root.section("stick", {{"reference_px", "dots are compared over moves longer than this, px"},
+                             {"store_px", "a frame is stored after a move longer than this, px"},
+                             {"slip_px", "a dot that is off by this at reference_px slips, px"}});
+  fingerpad::StickTest test;
+  const auto read = [&](const char* key, double& value) {
+    value = section.has(key) ? section.number(key) : value;
+  };
+  read("reference_px", test.reference_px);
+  read("store_px", test.store_px);
+  read("slip_px", test.slip_px);
+  expects_valid(test);
+  return test;
+}
+
+/// Whether the file names anything that depth needs.
+bool names_depth(const Section& root) {
+  for (const char* key :
+       {"camera", "absorption", "pad", "smoothing_px", "rim", "neighbour_light"}) {
+    if (root.has(key)) {
+      return true;
+    }
+  }
+  return root.has("reference") && root.at("reference").contains("depth");
+}
+
 Rim read_rim(const Section& root) {
   const Section section = root.section(
       "rim", {{"side_dot_length_mm", "stress-free length from the rim to its side dot, mm"},
@@ -210,6 +265,17 @@ NeighbourLight read_neighbour_light(const Section& root) {
           section.number("n_per_mm")};
 }
 
+void read_dots_only(const Section& root, Sensor& sensor) {
+  if (root.has("dots")) {
+    sensor.pattern = read_pattern(root);
+  }
+  if (root.has("reference")) {
+    const Section reference =
+        root.section("reference", {{"frame", "picture of the dots before anything touches them"}});
+    sensor.reference_frame = reference.path("frame");
+  }
+}
+
 }  // namespace
 
 Sensor read_sensor(const std::filesystem::path& file) {
@@ -223,8 +289,24 @@ Sensor read_sensor(const std::filesystem::path& file) {
                       {"smoothing_px", "width of the smoothing window, px"},
                       {"dots", "the printed dots"},
                       {"rim", "the dots at the rim"},
-                      {"neighbour_light", "compensation of light from neighbouring membrane"}});
+                      {"neighbour_light", "compensation of light from neighbouring membrane"},
+                      {"stick", "when dots are compared, and what counts as slip"}});
   Sensor sensor;
+  if (root.has("video")) {
+    sensor.video = root.path("video");
+  }
+  if (root.has("stick")) {
+    try {
+      sensor.stick = read_stick(root);
+    } catch (const fingerpad::parameter_error& error) {
+      fail(file, error.what());
+    }
+  }
+  sensor.dots_only = !names_depth(root);
+  if (sensor.dots_only) {
+    read_dots_only(root, sensor);
+    return sensor;
+  }
   try {
     sensor.camera = read_camera(root);
     sensor.absorption = read_absorption(root);
@@ -237,9 +319,6 @@ Sensor read_sensor(const std::filesystem::path& file) {
                                  {"depth", "its depth in mm per pixel, a 32-bit float TIFF file"}});
   sensor.reference_frame = reference.path("frame");
   sensor.reference_depth = reference.path("depth");
-  if (root.has("video")) {
-    sensor.video = root.path("video");
-  }
   if (root.has("smoothing_px")) {
     sensor.smoothing_px = root.positive_integer("smoothing_px");
     if (*sensor.smoothing_px % 2 == 0) {

@@ -3,12 +3,14 @@
 #pragma once
 // sensor.json of a recording: what is known about the camera, the fluid and the pad. Unknown keys
 // are refused with their name, missing ones with what they are for, wrong values with their range.
+// A recording of which only the dots are looked at names no camera, no fluid, no pad and no depth.
 #include <filesystem>
 #include <optional>
 #include <string>
 
 #include "fingerpad/detail/depth/absorption_law.hpp"
 #include "fingerpad/optics.hpp"
+#include "fingerpad/stick_ratio.hpp"
 
 namespace replay {
 
@@ -22,6 +24,14 @@ struct Dots {
   int cols = 0;
   double pitch_mm = 0;
   double diameter_mm = 0;
+};
+
+/// What is known of the dots of a dots-only recording; what is not is found in the frames.
+struct DotPattern {
+  int rows = 0;  ///< 0: counted
+  int cols = 0;
+  double diameter_px = 0;      ///< 0: measured
+  std::optional<bool> bright;  ///< brighter than the ground around them, or darker
 };
 
 struct Rim {
@@ -39,11 +49,15 @@ struct Sensor {
   fingerpad::Camera<double> camera;
   fingerpad::Absorption<double> absorption;
   Pad pad;
-  std::string reference_frame;  ///< paths as written, relative to the recording
+  std::string reference_frame;  ///< paths as written, relative to the recording; dots only: may
+                                ///< be empty
   std::string reference_depth;
   std::optional<std::string> video;  ///< in the place of the folder frames/
   std::optional<int> smoothing_px;   ///< width of the window, odd; none: colours as they are
   std::optional<Dots> dots;
+  bool dots_only = false;  ///< then camera, absorption, pad and dots are empty
+  DotPattern pattern;      ///< of a dots-only recording
+  fingerpad::StickTest stick;
   std::optional<Rim> rim;
   std::optional<NeighbourLight> neighbour_light;
 };

@@ -8,6 +8,7 @@
 
 #include "images.hpp"
 #include "motion_chart.hpp"
+#include "stick_chart.hpp"
 
 namespace replay {
 namespace {
@@ -53,11 +54,14 @@ Writer::Writer(const Recording& recording,
                const DotGrid& initial_dots,
                int total)
     : options_(options),
-      painter_(recording.sensor, recording.reference_depth, brightest_level(recording.reference)),
+      brightest_(brightest_level(recording.reference)),
       initial_dots_(initial_dots),
       total_(total),
       output_(options.out),
       table_(output_.file("frames.csv")) {
+  if (!recording.sensor.dots_only) {
+    painter_.emplace(recording.sensor, recording.reference_depth, brightest_);
+  }
   if (!initial_dots.empty()) {
     dots_.emplace(output_.file("dots.csv"));
   }
@@ -65,23 +69,35 @@ Writer::Writer(const Recording& recording,
 
 void Writer::operator()(Scene scene) {
   rows_.push_back({scene.frame, scene.time_s, scene.valid_share, scene.depth_mean_mm,
-                   scene.depth_max_mm, scene.contact, scene.dots.motion});
+                   scene.depth_max_mm, scene.contact, scene.dots.motion, scene.dots.stick.present(),
+                   scene.dots.stick.result});
   table_.write(rows_.back());
   if (dots_) {
     dots_->write(scene.frame, scene.dots);
   }
-  if (options_.raw) {
+  if (options_.raw && painter_) {
     write_depth_image(file("depth", "", scene, ".tiff"), scene.depth_mm);
     write_png(file("contact", "", scene, ".png"), scene.contact_mask);
   }
   if (options_.pictures) {
-    scene.section = painter_.find_section(scene.depth_mm);
-    write_png(file("pictures", "depth_", scene, ".png"), painter_.depth(scene));
-    write_png(file("pictures", "side_", scene, ".png"), painter_.side(scene));
-    write_png(file("pictures", "contact_", scene, ".png"), painter_.contact(scene, initial_dots_));
-    if (in_montage(static_cast<int>(rows_.size()) - 1, total_)) {
+    write_pictures(scene);
+    if (painter_ && in_montage(static_cast<int>(rows_.size()) - 1, total_)) {
       columns_.push_back(std::move(scene));
     }
+  }
+}
+
+void Writer::write_pictures(Scene& scene) {
+  if (painter_) {
+    scene.section = painter_->find_section(scene.depth_mm);
+    write_png(file("pictures", "depth_", scene, ".png"), painter_->depth(scene));
+    write_png(file("pictures", "side_", scene, ".png"), painter_->side(scene));
+    write_png(file("pictures", "contact_", scene, ".png"), painter_->contact(scene, initial_dots_));
+  }
+  if (dots_) {
+    // The first frames of a camera may be dark, and nothing better is known without a free pad.
+    const double brightest = painter_ ? brightest_ : brightest_level(scene.image);
+    write_png(file("pictures", "stick_", scene, ".png"), stick_picture(scene, brightest));
   }
 }
 
@@ -89,8 +105,13 @@ void Writer::finish() {
   if (options_.pictures) {
     const std::string name = std::filesystem::canonical(options_.recording).filename().string();
     const std::string title = name + ": " + std::to_string(rows_.size()) + " frames";
-    write_png(output_.file("pictures", "montage.png"), painter_.montage(title, columns_));
-    write_png(output_.file("pictures", "motion.png"), motion_chart(title, rows_));
+    if (painter_) {
+      write_png(output_.file("pictures", "montage.png"), painter_->montage(title, columns_));
+      write_png(output_.file("pictures", "motion.png"), motion_chart(title, rows_));
+    }
+    if (dots_) {
+      write_png(output_.file("pictures", "stick_ratio.png"), stick_chart(title, rows_));
+    }
   }
   table_.close();
   if (dots_) {

@@ -10,6 +10,7 @@
 #include "pictures.hpp"
 #include "recording.hpp"
 #include "replay.hpp"
+#include "stick_picture.hpp"
 
 namespace replay {
 
@@ -34,9 +35,11 @@ class Writer {
                              const char* stem,
                              const Scene& scene,
                              const char* extension) const;
+  void write_pictures(Scene& scene);
 
   const Options& options_;
-  Painter painter_;
+  std::optional<Painter> painter_;  ///< none where the recording is of dots only
+  double brightest_;
   DotGrid initial_dots_;
   int total_;
   OutputFolder output_;

@@ -191,7 +191,8 @@ class StickRatio {
   /// The ratio against the chosen reference.
   StickStatus answer(const Choice& choice, const Run& run, State& state) const {
     using namespace detail::stick;
-    const FramePair<S> pair{view(state.now), state.repository.dots(choice.age), run, layout_};
+    const FramePair<S> pair{view(state.now), state.repository.dots(choice.age), run, layout_,
+                            choice.furthest_sq};
     const NearestDot reference = first_dot(dot_of(motion_), pair, state);
     if (reference.pairs < test_.least_dots) {
       return StickStatus::too_few_dots;

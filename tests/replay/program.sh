@@ -82,7 +82,7 @@ accuracy none 0.7 0.7
 
 "$replay" "$recording" --out "$work/out" --frames 0:7 >"$work/table" || fail "replay with pictures"
 grep -q "^frames  *7$" "$work/table" || fail "the printed table: $(cat "$work/table")"
-for file in frames.csv pictures/{montage,depth_000006,side_000006}.png; do
+for file in frames.csv pictures/{montage,stick_ratio,depth_000006,side_000006,stick_000006}.png; do
   [[ -s $work/out/$file ]] || fail "$file is missing"
 done
 [[ ! -e $work/out/depth ]] || fail "the depth maps of the earlier run are still there"

@@ -136,7 +136,8 @@ TEST_CASE("a recording gives a table and one depth map per frame") {
         "frame,time_s,valid_share,depth_mean_mm,depth_max_mm,"
         "contact_area_mm2,contact_depth_mm,contact_center_x_mm,contact_center_y_mm,"
         "reference_dot_row,reference_dot_col,object_x_mm,object_y_mm,object_z_mm,"
-        "rotation_x_rad,rotation_y_rad,rotation_z_rad");
+        "rotation_x_rad,rotation_y_rad,rotation_z_rad,"
+        "dots_in_contact,stick_ratio,stick_ratio_updated");
   const auto columns = std::count(line.begin(), line.end(), ',');
   std::getline(table, line);
   CHECK(line.substr(0, 7) == "0,0.00,");
@@ -154,7 +155,7 @@ TEST_CASE("a recording gives a table and one depth map per frame") {
   CHECK(fs::exists(work.out() / "contact" / "000002.png"));
   std::ifstream dots(work.out() / "dots.csv");
   std::getline(dots, line);
-  CHECK(line == "frame,row,col,x_px,y_px,x_mm,y_mm,z_mm,contact");
+  CHECK(line == "frame,row,col,x_px,y_px,x_mm,y_mm,z_mm,contact,stick");
   CHECK_FALSE(fs::exists(work.out() / "pictures"));
 }
 
@@ -168,6 +169,11 @@ TEST_CASE("sensor.json is refused with the key's name") {
   const auto [old, with, complaint] = GENERATE(
       Fault{"\"pitch_mm\": 0.08", "\"pich_mm\": 0.08", "unknown key camera.pich_mm"},
       Fault{"\"smoothing_px\": 29", "\"smooth\": 29", "unknown key smooth "},
+      Fault{"\"smoothing_px\"", "\"stick\": {\"slipp_px\": 1}, \"smoothing_px\"",
+            "unknown key stick.slipp_px (known here: reference_px, store_px, slip_px)"},
+      Fault{"\"smoothing_px\"", "\"stick\": {\"slip_px\": -1}, \"smoothing_px\"", "slip_px = -1"},
+      Fault{"\"smoothing_px\"", "\"stick\": {\"store_px\": \"1\"}, \"smoothing_px\"",
+            "stick.store_px is \"1\" (a string), must be a number"},
       Fault{"\"kappa\": 0.9924,", "", "absorption.kappa is missing (ratio of light"},
       Fault{"\"frame\": \"reference.png\",", "", "reference.frame is missing (picture of"},
       Fault{"\"plate_distance_mm\": 50.0", "\"plate_distance_mm\": \"50\"",

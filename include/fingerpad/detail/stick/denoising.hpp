@@ -65,7 +65,9 @@ PlacedDots prepare_dots(const Denoising&,
                         const line_vector<S>&,
                         DotPlanes<S>&,
                         DotPlanes<S>& now) {
-  return place_dots<true>(given, run, layout.stride(), now);
+  PlacedDots counts = place_dots<true>(given, run, layout.stride(), now);
+  place_corners(given, layout, now, counts);
+  return counts;
 }
 
 /// The same, averaged. `inner` is 0 for dots that have all neighbours, else NaN.
@@ -79,8 +81,9 @@ PlacedDots prepare_dots(const DotMean& mean,
                         DotPlanes<S>& now) {
   using V = run_vector<S>;
   const Index stride = layout.stride();
-  const PlacedDots counts =
+  PlacedDots counts =
       place_dots<false>(given, {run.begin - stride, run.end + stride}, stride, placed);
+  place_corners(given, layout, placed, counts);
   const S side = S(mean.weights.side), diagonal = S(mean.weights.diagonal);
   const V self = V{} + S(mean.weights.self), zero = V{} + S(0);
   const PlanesView<S> p = view(placed);

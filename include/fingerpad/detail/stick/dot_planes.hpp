@@ -127,7 +127,7 @@ struct GivenDots {
           row_touch |= touches;
         }
       });
-      first_row = row_touch ? std::min(first_row, i) : first_row;
+      first_row = row_touch ? (std::min)(first_row, i) : first_row;
       last_row = row_touch ? i : last_row;
     }
   }

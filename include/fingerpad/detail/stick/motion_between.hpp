@@ -27,10 +27,12 @@ struct ReferenceDotMotion {
 };
 
 /// The map that fits all sticking dots best. Beginning with the reference dot and its 24 nearest,
-/// dots that follow the map are taken, and the map fitted to them, `passes` times.
+/// dots that follow the map are taken, and the map fitted to them, until they hardly become more.
+/// Where a dot has outrun the map, which none can that the object drags, the search begins anew
+/// from the one that has come furthest: the first has found dots that stand still together.
 template <Freedom Free = Freedom::similarity, class Dot = TrackedDot>
 struct StickConsensus {
-  int passes = 2;  ///< 0 to 10
+  int most_passes = 10;  ///< 0 to 100; two or three are the rule
 };
 
 template <Freedom Free, class Zoom, class Dot>
@@ -39,8 +41,8 @@ void expects_valid(const ReferenceDotMotion<Free, Zoom, Dot>& motion) {
 }
 template <Freedom Free, class Dot>
 void expects_valid(const StickConsensus<Free, Dot>& motion) {
-  expects(motion.passes >= 0 && motion.passes <= 10, "StickConsensus", "passes",
-          static_cast<long long>(motion.passes), "in [0, 10]");
+  expects(motion.most_passes >= 0 && motion.most_passes <= 100, "StickConsensus", "most_passes",
+          static_cast<long long>(motion.most_passes), "in [0, 100]");
 }
 
 namespace detail::stick {
@@ -166,22 +168,77 @@ PairSums<S> sums_of_followers(const FramePair<S>& pair,
   return total;
 }
 
+/// The map on which the dots around one agree with those that follow it.
+template <Freedom Free, class S>
+ObjectShift<S> consensus(const FramePair<S>& pair, Index from, const S& slip_sq, int most_passes) {
+  constexpr int fewest = 3;  // dots that a map can be wrong about
+  const S hardly_more = S(1.005);
+  const ObjectShift<S> about = shift_of_dot(pair, from);
+  ObjectShift<S> shift = fit<Free>(sums_around(pair, from, about), about);
+  S before = S(0);
+  for (int pass = 0; pass < most_passes; ++pass) {
+    const PairSums<S> sums = sums_of_followers(pair, shift, slip_sq, about);
+    if (sums.weight < S(fewest)) {
+      break;
+    }
+    shift = fit<Free>(sums, about);
+    if (!(hardly_more * before < sums.weight)) {
+      break;
+    }
+    before = sums.weight;
+  }
+  return shift;
+}
+
+/// Whether the object, as seen from the origins of the map, has come less than half of d_max.
+template <class S>
+bool has_hardly_moved(const ObjectShift<S>& shift, const S& furthest_sq) {
+  const S x = shift.now_x - shift.then_x, y = shift.now_y - shift.then_y;
+  return S(4) * (x * x + y * y) < furthest_sq;
+}
+
+/// Of the dots that have come half of d_max at least, and that the map leaves with more than half
+/// of it, in its direction, the one that has come furthest; -1 if there is none. A dot that the
+/// scale alone has moved by a quarter of that says nothing.
+template <class S>
+Index furthest_outrunner(const FramePair<S>& pair, const ObjectShift<S>& shift) {
+  const S zoom = shift.scale() - S(1);
+  Index furthest = -1;
+  S least_sq = pair.furthest_sq / S(4);
+  for (Index k = pair.run.begin; k < pair.run.end; ++k) {
+    const S dx = pair.now.x[k] - pair.then.x[k], dy = pair.now.y[k] - pair.then.y[k];
+    const S sq = dx * dx + dy * dy;
+    if (least_sq < sq && sq < no_distance_sq<S>()) {
+      S rx, ry;
+      shift.residual(pair.now.x[k], pair.now.y[k], pair.then.x[k], pair.then.y[k], rx, ry);
+      const S from_x = zoom * (pair.now.x[k] - shift.now_x);
+      const S from_y = zoom * (pair.now.y[k] - shift.now_y);
+      const bool zooms = sq < S(16) * (from_x * from_x + from_y * from_y);
+      const S ahead = rx * dx + ry * dy;
+      if (!zooms && sq < S(2) * ahead) {
+        furthest = k;
+        least_sq = sq;
+      }
+    }
+  }
+  return furthest;
+}
+
 template <Freedom Free, class Dot, class S>
 ObjectShift<S> motion_between(const StickConsensus<Free, Dot>& policy,
                               const FramePair<S>& pair,
                               Index reference,
                               const S& slip_sq) {
-  constexpr int fewest = 3;  // dots that a map can be wrong about
-  const ObjectShift<S> about = shift_of_dot(pair, reference);
-  ObjectShift<S> shift = fit<Free>(sums_around(pair, reference, about), about);
-  for (int pass = 0; pass < policy.passes; ++pass) {
-    const PairSums<S> sums = sums_of_followers(pair, shift, slip_sq, about);
-    if (value(sums.weight) < fewest) {
-      break;
-    }
-    shift = fit<Free>(sums, about);
+  const ObjectShift<S> shift = consensus<Free>(pair, reference, slip_sq, policy.most_passes);
+  if (!has_hardly_moved(shift, pair.furthest_sq)) {
+    return shift;
   }
-  return shift;
+  const Index ahead = furthest_outrunner(pair, shift);
+  if (ahead < 0) {
+    return shift;
+  }
+  const ObjectShift<S> other = consensus<Free>(pair, ahead, slip_sq, policy.most_passes);
+  return has_hardly_moved(other, pair.furthest_sq) ? shift : other;
 }
 
 }  // namespace detail::stick

@@ -47,9 +47,10 @@ PlacedDots place_dots(const GivenDots<S>& given,
   for (Index k = run.begin; k < run.end; k += run_step<S>) {
     const V touch = load_cells<V, S>(given.touch.data() + k);
     const V x = load_cells<V, S>(found.x + k), y = load_cells<V, S>(found.y + k);
+    const V near = choose(V(x * x + y * y) < no_distance_sq<S>(), x, nothing);
     const V held = choose(is_out_of_line<V>(found, k, 1), nothing,
-                          V(choose(is_out_of_line<V>(found, k, stride), nothing, x)));
-    const V is_touching = only_where(V(x * x + y * y + touch) < no_distance_sq<S>(), one);
+                          V(choose(is_out_of_line<V>(found, k, stride), nothing, near)));
+    const V is_touching = only_where(V(near + touch) < no_distance_sq<S>(), one);
     touching += is_touching;
     dots += only_where(held < no_distance_sq<S>(), is_touching);
     store_cells<S>(placed.x.data() + k, V(OnlyTouching ? V(held + touch) : held));
@@ -57,6 +58,38 @@ PlacedDots place_dots(const GivenDots<S>& given,
   }
   const auto count = [](const V& v) { return static_cast<Index>(value(sum_of_lanes<S>(v))); };
   return {count(dots), count(touching) - count(dots)};
+}
+
+/// The corners of the pattern lie between no two neighbours: they are held against the line through
+/// the next two, along their row and their column.
+template <class S>
+void place_corners(const GivenDots<S>& given,
+                   const DotLayout& layout,
+                   DotPlanes<S>& placed,
+                   PlacedDots& counts) {
+  const PlanesView<S> p = view(given.found);
+  const auto is_off = [&](Index k, Index step) {
+    const S ax = p.x[k + step], ay = p.y[k + step];
+    const S along_x = ax - p.x[k + 2 * step], along_y = ay - p.y[k + 2 * step];
+    const S off_x = p.x[k] - ax - along_x, off_y = p.y[k] - ay - along_y;
+    return along_x * along_x + along_y * along_y < S(4) * (off_x * off_x + off_y * off_y);
+  };
+  for (const Index row : {Index(0), layout.rows - 1}) {
+    for (const Index col : {Index(0), layout.cols - 1}) {
+      const Index k = layout.at(row, col);
+      const std::size_t cell = static_cast<std::size_t>(k);
+      const bool there = is_finite(placed.x[cell]) && is_finite(placed.y[cell]);
+      const bool off =
+          (layout.cols > 2 && is_off(k, col == 0 ? 1 : -1)) ||
+          (layout.rows > 2 && is_off(k, row == 0 ? layout.stride() : -layout.stride()));
+      if (there && off) {
+        const bool touches = is_finite(given.touch[cell]);
+        placed.x[cell] = not_a_number<S>();
+        counts.dots -= touches ? 1 : 0;
+        counts.out_of_place += touches ? 1 : 0;
+      }
+    }
+  }
 }
 
 /// True when the dots have all moved by one pitch of the pattern, along rows, columns or diagonals,
@@ -76,7 +109,7 @@ bool has_jumped(const PlanesView<S>& now,
       }
     }
     void finish() {
-      const double n = static_cast<double>(std::max<Index>(count, 1));
+      const double n = static_cast<double>((std::max<Index>)(count, 1));
       x /= n, y /= n, sq /= n;
     }
   };
@@ -92,8 +125,8 @@ bool has_jumped(const PlanesView<S>& now,
   for (Mean* m : {&moved, &next_col, &next_row}) {
     m->finish();
   }
-  const double pitch_sq = std::min(next_col.x * next_col.x + next_col.y * next_col.y,
-                                   next_row.x * next_row.x + next_row.y * next_row.y);
+  const double pitch_sq = (std::min)(next_col.x * next_col.x + next_col.y * next_col.y,
+                                     next_row.x * next_row.x + next_row.y * next_row.y);
   const double near_sq = pitch_sq / 16;
   const double spread_sq = moved.sq - moved.x * moved.x - moved.y * moved.y;
   if (!(pitch_sq > 0) || !(spread_sq < near_sq)) {

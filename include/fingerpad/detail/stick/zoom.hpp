@@ -39,6 +39,7 @@ struct FramePair {
   PlanesView<S> now, then;
   Run run;
   DotLayout layout;
+  S furthest_sq;  ///< d_max^2
 };
 
 /// Sums over pairs of neighbours: of what the distance was, and of what it is.

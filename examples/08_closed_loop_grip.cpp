@@ -1,0 +1,84 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+// A cup is filled while a fingertip holds it by friction; its weight and the friction are unknown.
+// The stick ratio of the dots sets the grip force: the cup stays. With a constant force it drops.
+// 08_closed_loop_grip [CHART.png] also draws both runs.
+#include <algorithm>
+#include <cstddef>
+#include <cstdio>
+#include <opencv2/imgcodecs.hpp>
+#include <vector>
+
+#include "fingerpad/grip_control.hpp"
+#include "fingerpad/stick_ratio.hpp"
+#include "grip/camera.hpp"
+#include "grip/grip_chart.hpp"
+#include "grip/slipping_load.hpp"
+
+namespace {
+
+constexpr int n = 21;  // dots in each direction
+constexpr double frame_s = 1.0 / 30;
+constexpr double dropped_mm = 20;
+const fingerpad::GripLaw<> law{.raise_gain_n_per_s = 20};  // gently: the cup fills slowly
+
+/// N that hang on the fingertip: a cup that is filled for 13 seconds, then held.
+double load_at(double time_s) {
+  return 0.4 + 0.2 * std::clamp(time_s - 1, 0.0, 13.0);
+}
+
+grip::Run run(bool controlled) {
+  const fingerpad::StickRatio stick_ratio(n, n);  // once
+  const fingerpad::GripControl control(law);
+  auto stick_state = stick_ratio.start();
+  auto grip_state = control.start(1.5);  // N, with which the cup was taken
+
+  std::vector<fingerpad::DotState> states(n * n);
+  const fingerpad::StridedView<fingerpad::DotState> states_out(states.data(), n, n, n);
+
+  double force_n = grip_state.force_n();
+  grip::SlippingLoad load({.dots = n}, load_at(0), force_n);
+  grip::Camera camera(n);
+  grip::Run record;
+  for (int frame = 0; frame < 480 && load.slip_mm() < dropped_mm; ++frame) {
+    const double time_s = frame * frame_s;
+    load.advance(load_at(time_s), force_n, frame_s);
+    camera.look_at(load);
+    const auto stick = stick_ratio(camera.dots(), camera.touch(), states_out, stick_state);
+    const auto grip = control(stick.stick_ratio, news_of(stick.status), frame_s, grip_state);
+    record.push_back({time_s, load_at(time_s), load.friction_limit_n(), force_n, stick.stick_ratio,
+                      load.slip_mm()});
+    if (controlled) {
+      force_n = grip.force_n;
+    }
+  }
+  return record;
+}
+
+void print(const char* name, const grip::Run& record) {
+  std::printf("%s\n  time s   load N   grip N   stick ratio   slip mm\n", name);
+  for (std::size_t k = 0; k < record.size(); k += 60) {
+    const auto& m = record[k];
+    std::printf("%8.1f %8.2f %8.2f %13.2f %9.3f\n", m.time_s, m.load_n, m.force_n, m.stick_ratio,
+                m.slip_mm);
+  }
+  const auto& last = record.back();
+  std::printf("%8.1f %8.2f %8.2f %13.2f %9.3f  %s\n\n", last.time_s, last.load_n, last.force_n,
+              last.stick_ratio, last.slip_mm, last.slip_mm < dropped_mm ? "held" : "dropped");
+}
+
+}  // namespace
+
+int main(int count, char** words) {
+  const auto with = run(true);
+  const auto without = run(false);
+  print("grip force from the stick ratio", with);
+  print("constant grip force", without);
+  if (count > 1 && !cv::imwrite(words[1], grip::grip_chart(with, without, law.set_point))) {
+    std::fprintf(stderr, "cannot write %s\n", words[1]);
+    return 1;
+  }
+  const bool held = with.back().slip_mm < 0.5;
+  const bool dropped = without.back().slip_mm >= dropped_mm;
+  return held && dropped ? 0 : 1;
+}

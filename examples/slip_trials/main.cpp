@@ -1,0 +1,141 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+// slip_trials: how well the stick ratio tells recordings with slip from recordings without, beside
+// the simplest measure there is. See --help.
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cstdio>
+#include <exception>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "measures.hpp"
+#include "replay/failure.hpp"
+#include "trials.hpp"
+
+namespace {
+
+using slip_trials::Measures;
+using slip_trials::Trial;
+using slip_trials::View;
+
+/// One trial: the mean of its views.
+struct Scored {
+  const Trial* trial;
+  Measures whole;
+  Measures early;
+};
+
+/// Share of the pairs of a slipping and a holding trial that the scores put in order; a tie is half
+/// a pair. Negative where there is no pair.
+double roc_area(const std::vector<Scored>& trials, double (*score)(const Scored&)) {
+  double won = 0;
+  double pairs = 0;
+  for (const Scored& slip : trials) {
+    for (const Scored& hold : trials) {
+      if (slip.trial->slips && !hold.trial->slips) {
+        const double difference = score(slip) - score(hold);
+        won += difference > 0 ? 1.0 : difference == 0 ? 0.5 : 0.0;
+        ++pairs;
+      }
+    }
+  }
+  return pairs > 0 ? won / pairs : -1;
+}
+
+void print_roc_area(const char* name,
+                    const std::vector<Scored>& trials,
+                    double (*whole)(const Scored&),
+                    double (*early)(const Scored&)) {
+  std::printf("%-34s %8.3f %12.3f\n", name, roc_area(trials, whole), roc_area(trials, early));
+}
+
+void print_trial(const Scored& scored, const std::vector<View>& views) {
+  const Trial& trial = *scored.trial;
+  const auto& all = scored.whole;
+  std::printf("%-5s %-24s %6d %5zu  %5.2f %5.2f %5.2f  %5.2f  %5.3f %5.3f  |",
+              trial.slips ? "slip" : "hold", trial.name.c_str(), views.front().size(), all.answers,
+              all.ratio, all.lowest, all.ratio_by_noise, scored.early.ratio, all.moved_share,
+              scored.early.moved_share);
+  for (const std::string& tenth : tenths_of(views)) {
+    std::printf(" %s", tenth.c_str());
+  }
+  std::printf("\n");
+}
+
+int run(const std::string& folder) {
+  constexpr int all_frames = std::numeric_limits<int>::max();
+  const std::vector<Trial> trials = slip_trials::trials_of(folder);
+  std::vector<std::vector<View>> views;
+  int shortest = 0;
+  for (const Trial& trial : trials) {
+    views.emplace_back();
+    for (const auto& file : trial.views) {
+      View view = slip_trials::look_at(file);
+      if (view.size() == 0) {
+        std::printf("left out: %s: %s\n", file.c_str(), view.fault.c_str());
+        continue;
+      }
+      shortest = shortest == 0 ? view.size() : (std::min)(shortest, view.size());
+      views.back().push_back(std::move(view));
+    }
+  }
+  std::printf(
+      "label trial                    frames  new  ratio lowest noise  early  moved early  | ratio "
+      "by tenths\n");
+  std::vector<Scored> scored;
+  for (std::size_t k = 0; k < trials.size(); ++k) {
+    if (!views[k].empty()) {
+      scored.push_back({&trials[k], slip_trials::mean_over(views[k], all_frames),
+                        slip_trials::mean_over(views[k], shortest)});
+      print_trial(scored.back(), views[k]);
+    }
+  }
+  const auto slips = std::count_if(scored.begin(), scored.end(),
+                                   [](const Scored& one) { return one.trial->slips; });
+  std::printf("\n%td slip, %td hold. Area under the ROC curve    whole     first %d frames\n",
+              slips, static_cast<std::ptrdiff_t>(scored.size()) - slips, shortest);
+  print_roc_area(
+      "stick ratio, low", scored, [](const Scored& s) { return -s.whole.ratio; },
+      [](const Scored& s) { return -s.early.ratio; });
+  print_roc_area(
+      "stick ratio, threshold by noise", scored,
+      [](const Scored& s) { return -s.whole.ratio_by_noise; },
+      [](const Scored& s) { return -s.early.ratio_by_noise; });
+  print_roc_area(
+      "share of dots > 2 px off, high", scored, [](const Scored& s) { return s.whole.moved_share; },
+      [](const Scored& s) { return s.early.moved_share; });
+  return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app(
+      "The stick ratio of labelled recordings of pads with dots. FOLDER holds either labels.dat\n"
+      "(lines of: height ok|fail 0|1 start end event trial) and a folder of frames for each trial\n"
+      "whose name begins with the trial's, or the folder slip/ and others, in which every folder\n"
+      "with videos or frames is a trial; its videos are views of it.\n"
+      "Dots are found as replay finds them, and each that is found counts as in contact.\n"
+      "Columns: frames of the first view; new: answers of the stick ratio; ratio: mean of the new\n"
+      "answers (1 where there is none: nothing was seen to slip), lowest; noise: the same as "
+      "ratio\n"
+      "with slip_px set by the noise of the first five frames, where that is above the default;\n"
+      "moved: mean share of dots that are more than 2 px off the median motion since the first\n"
+      "frame; early: the same in as many first frames as the shortest recording has. No measure\n"
+      "depends on how long a recording is.");
+  std::string folder;
+  app.add_option("FOLDER", folder, "the labelled recordings")->required();
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? 0 : 2;
+  }
+  try {
+    return run(folder);
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "slip_trials: %s\n", error.what());
+    return 1;
+  }
+}

@@ -1,0 +1,192 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+#include "measures.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+#include <opencv2/core.hpp>
+
+#include "replay/dots.hpp"
+#include "replay/failure.hpp"
+#include "replay/motion_step.hpp"
+#include "replay/stick_step.hpp"
+
+namespace slip_trials {
+namespace {
+
+using replay::DotGrid;
+
+constexpr double far_px = 2;
+constexpr double none = std::numeric_limits<double>::quiet_NaN();
+constexpr int quiet_frames = 5;      // at the beginning; they tell the noise
+constexpr double false_slip = 0.01;  // probability that noise alone makes a dot slip
+
+double median(std::vector<double> values) {
+  if (values.empty()) {
+    return none;
+  }
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+/// How each dot that both frames show has moved, less the median of all.
+std::vector<cv::Vec2d> moves_off_median(const DotGrid& from, const DotGrid& to) {
+  std::vector<cv::Vec2d> moves;
+  std::vector<double> x;
+  std::vector<double> y;
+  for (int i = 0; i < from.rows; ++i) {
+    for (int j = 0; j < from.cols; ++j) {
+      const cv::Vec2d move = to(i, j) - from(i, j);
+      if (replay::is_present(move)) {
+        moves.push_back(move);
+        x.push_back(move[0]);
+        y.push_back(move[1]);
+      }
+    }
+  }
+  const cv::Vec2d common(median(x), median(y));
+  for (cv::Vec2d& move : moves) {
+    move -= common;
+  }
+  return moves;
+}
+
+double share_far_off(const DotGrid& first, const DotGrid& now) {
+  const auto moves = moves_off_median(first, now);
+  const auto far = std::count_if(moves.begin(), moves.end(),
+                                 [](const cv::Vec2d& move) { return cv::norm(move) > far_px; });
+  return moves.empty() ? none : static_cast<double>(far) / static_cast<double>(moves.size());
+}
+
+/// Standard deviation of a dot's coordinate, from the differences of successive first frames. The
+/// median, because some dots may already move.
+double noise_px(const std::vector<DotGrid>& frames) {
+  std::vector<double> sizes;
+  const std::size_t last = (std::min)(frames.size(), std::size_t{quiet_frames});
+  for (std::size_t k = 1; k < last; ++k) {
+    for (const cv::Vec2d& move : moves_off_median(frames[k - 1], frames[k])) {
+      sizes.push_back(std::abs(move[0]));
+      sizes.push_back(std::abs(move[1]));
+    }
+  }
+  constexpr double sd_of_median = 1.4826;
+  return sizes.empty() ? 0.0 : sd_of_median * median(sizes) / std::sqrt(2.0);
+}
+
+/// The threshold that a difference of two noisy positions exceeds with probability false_slip.
+double slip_px_of(double noise_px) {
+  return noise_px * std::sqrt(2.0) * std::sqrt(-2 * std::log(false_slip));
+}
+
+std::vector<double> ratios(const std::vector<DotGrid>& frames, const fingerpad::StickTest& test) {
+  replay::StickStep step(frames.front().size(), test);
+  std::vector<double> ratio;
+  for (const DotGrid& dots : frames) {
+    const auto result = step(dots, replay::dots_alone(dots).in_contact, none).result;
+    ratio.push_back(result.updated() ? static_cast<double>(result.stick_ratio) : none);
+  }
+  return ratio;
+}
+
+std::vector<DotGrid> follow(const std::filesystem::path& file) {
+  replay::Recording recording;
+  recording.sensor.dots_only = true;
+  recording.frames = std::filesystem::is_directory(file) ? replay::FrameSource::of_folder(file)
+                                                         : replay::FrameSource::of_video(file);
+  recording.frames.seek(0);
+  recording.reference = recording.frames.next();
+  replay::DotSource dots = replay::DotSource::of_dots_only(file, recording);
+  std::vector<DotGrid> frames;
+  recording.frames.seek(0);
+  for (int frame = 0; frame < recording.frames.size(); ++frame) {
+    frames.push_back(dots.of(frame, next_frame(recording.frames, recording.reference.size())));
+  }
+  return frames;
+}
+
+/// Mean and number of the values among the first ones; the lowest of them.
+struct Mean {
+  double mean = none;
+  double lowest = none;
+  std::size_t count = 0;
+};
+Mean mean_of(const std::vector<double>& values, std::size_t first, std::size_t last) {
+  Mean result;
+  double sum = 0;
+  for (std::size_t k = first; k < (std::min)(last, values.size()); ++k) {
+    if (std::isfinite(values[k])) {
+      sum += values[k];
+      ++result.count;
+      result.lowest = std::fmin(result.lowest, values[k]);
+    }
+  }
+  if (result.count > 0) {
+    result.mean = sum / static_cast<double>(result.count);
+  }
+  return result;
+}
+
+double or_else(double value, double otherwise) {
+  return std::isfinite(value) ? value : otherwise;
+}
+
+}  // namespace
+
+View look_at(const std::filesystem::path& file) {
+  View view;
+  try {
+    const std::vector<DotGrid> frames = follow(file);
+    fingerpad::StickTest test;
+    view.ratio = ratios(frames, test);
+    test.slip_px = (std::max)(test.slip_px, slip_px_of(noise_px(frames)));
+    view.ratio_by_noise = ratios(frames, test);
+    for (const DotGrid& dots : frames) {
+      view.moved_share.push_back(share_far_off(frames.front(), dots));
+    }
+  } catch (const replay::Failure& failure) {
+    view = {};
+    view.fault = failure.what();
+  }
+  return view;
+}
+
+Measures mean_over(const std::vector<View>& views, int frames) {
+  Measures all;
+  const auto count = static_cast<double>(views.size());
+  for (const View& view : views) {
+    const auto last = static_cast<std::size_t>(frames);
+    const Mean ratio = mean_of(view.ratio, 0, last);
+    all.answers += ratio.count;
+    all.ratio += or_else(ratio.mean, 1) / count;
+    all.lowest += or_else(ratio.lowest, 1) / count;
+    all.ratio_by_noise += or_else(mean_of(view.ratio_by_noise, 0, last).mean, 1) / count;
+    all.moved_share += or_else(mean_of(view.moved_share, 0, last).mean, 0) / count;
+  }
+  return all;
+}
+
+std::vector<std::string> tenths_of(const std::vector<View>& views) {
+  constexpr std::size_t parts = 10;
+  std::vector<std::string> tenths;
+  for (std::size_t part = 0; part < parts; ++part) {
+    double sum = 0;
+    std::size_t count = 0;
+    for (const View& view : views) {
+      const std::size_t size = view.ratio.size();
+      const Mean ratio = mean_of(view.ratio, part * size / parts, (part + 1) * size / parts);
+      sum += ratio.count > 0 ? ratio.mean * static_cast<double>(ratio.count) : 0.0;
+      count += ratio.count;
+    }
+    char text[16] = "   -";
+    if (count > 0) {
+      std::snprintf(text, sizeof text, "%.2f", sum / static_cast<double>(count));
+    }
+    tenths.emplace_back(text);
+  }
+  return tenths;
+}
+
+}  // namespace slip_trials

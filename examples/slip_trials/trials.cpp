@@ -1,0 +1,113 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+#include "trials.hpp"
+
+#include <algorithm>
+#include <cctype>
+#include <fstream>
+#include <set>
+#include <sstream>
+
+#include "replay/failure.hpp"
+
+namespace slip_trials {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::vector<fs::path> sorted_entries(const fs::path& folder) {
+  std::vector<fs::path> entries;
+  for (const auto& entry : fs::directory_iterator(folder)) {
+    if (entry.path().filename().string().front() != '.') {
+      entries.push_back(entry.path());
+    }
+  }
+  std::sort(entries.begin(), entries.end());
+  return entries;
+}
+
+bool has_extension(const fs::path& file, const std::set<std::string>& extensions) {
+  std::string extension = file.extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return fs::is_regular_file(file) && extensions.count(extension) > 0;
+}
+
+/// The videos in a folder, or the folder itself where it holds pictures.
+std::vector<fs::path> views_in(const fs::path& folder) {
+  std::vector<fs::path> videos;
+  bool pictures = false;
+  for (const fs::path& file : sorted_entries(folder)) {
+    if (has_extension(file, {".avi", ".mp4", ".mkv", ".mov"})) {
+      videos.push_back(file);
+    }
+    pictures = pictures || has_extension(file, {".jpg", ".jpeg", ".png", ".bmp"});
+  }
+  return videos.empty() && pictures ? std::vector<fs::path>{folder} : videos;
+}
+
+std::vector<Trial> by_labels(const fs::path& folder) {
+  std::ifstream labels(folder / "labels.dat");
+  std::vector<Trial> trials;
+  for (std::string line; std::getline(labels, line);) {
+    std::istringstream words(line);
+    std::string height;
+    std::string outcome;
+    std::string number;
+    std::string start;
+    std::string end;
+    std::string event;
+    std::string name;
+    if (!(words >> height >> outcome >> number >> start >> end >> event >> name)) {
+      continue;
+    }
+    for (const fs::path& entry : sorted_entries(folder)) {
+      if (fs::is_directory(entry) && entry.filename().string().rfind(name, 0) == 0) {
+        trials.push_back({entry.filename().string(), outcome != "ok", views_in(entry)});
+      }
+    }
+  }
+  return trials;
+}
+
+std::vector<Trial> by_folders(const fs::path& folder) {
+  std::vector<Trial> trials;
+  for (const fs::path& label : sorted_entries(folder)) {
+    if (!fs::is_directory(label)) {
+      continue;
+    }
+    std::vector<fs::path> places = {label};
+    for (const auto& entry : fs::recursive_directory_iterator(label)) {
+      if (entry.is_directory()) {
+        places.push_back(entry.path());
+      }
+    }
+    for (const fs::path& place : places) {
+      const std::string name = place.lexically_relative(label).generic_string();
+      trials.push_back({name, label.filename() == "slip", views_in(place)});
+    }
+  }
+  return trials;
+}
+
+}  // namespace
+
+std::vector<Trial> trials_of(const fs::path& folder) {
+  if (!fs::is_directory(folder)) {
+    replay::fail(folder, "there is no such folder");
+  }
+  std::vector<Trial> trials =
+      fs::exists(folder / "labels.dat") ? by_labels(folder) : by_folders(folder);
+  trials.erase(std::remove_if(trials.begin(), trials.end(),
+                              [](const Trial& trial) { return trial.views.empty(); }),
+               trials.end());
+  std::sort(trials.begin(), trials.end(), [](const Trial& a, const Trial& b) {
+    return a.slips != b.slips ? a.slips : a.name < b.name;
+  });
+  if (trials.empty()) {
+    replay::fail(folder, "holds neither a labels.dat with trials nor folders of them");
+  }
+  return trials;
+}
+
+}  // namespace slip_trials

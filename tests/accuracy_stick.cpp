@@ -1,0 +1,377 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+// Stick ratios against the truth: of synthetic dots, with each effect and without it, and of dots
+// of finite-element membranes. test_fingerpad "[accuracy]" -s prints all figures.
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <fstream>
+#include <iomanip>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "fingerpad/stick_ratio.hpp"
+#include "support/catch.hpp"
+#include "support/finite_elements.hpp"
+#include "support/slipping_dots.hpp"
+
+using namespace fingerpad;
+using test::ContactFlags;
+using test::DotPattern;
+using test::DotStates;
+using test::PointsPx;
+using test::SlipScene;
+using test::StickError;
+
+namespace {
+
+constexpr double noise_px = 0.14;  // for which the published 0.24 px are
+
+using Published =
+    StickRatio<ReferenceDotMotion<Freedom::similarity, PublishedZoom>, UpdatedReference<>, DotMean>;
+
+/// Errors in every synthetic scene.
+class Errors {
+ public:
+  template <class Ratio>
+  Errors(const char* name, const Ratio& ratio, double shear_pitches = 1) : name_(name) {
+    DotPattern pattern;
+    pattern.shear_pitches = shear_pitches;
+    for (const SlipScene scene : test::all_slip_scenes) {
+      of_.push_back(test::error_of(ratio, scene, noise_px, pattern, 8));
+    }
+  }
+  const StickError& operator[](SlipScene scene) const {
+    return of_[static_cast<std::size_t>(scene)];
+  }
+  const std::string& name() const { return name_; }
+  std::string line() const {
+    std::ostringstream line;
+    line << std::left << std::setw(16) << name_ << std::fixed << std::setprecision(3);
+    for (const StickError& e : of_) {
+      line << std::setw(6) << e.mean_abs;
+    }
+    return line.str() + '\n';
+  }
+
+ private:
+  std::string name_;
+  std::vector<StickError> of_;
+};
+
+/// Shown with -s.
+void show(const std::vector<const Errors*>& table) {
+  std::string text = "\nmean error      shear back  slips turn  +shft press in    out   all\n";
+  for (const Errors* e : table) {
+    text += e->line();
+  }
+  INFO(text);
+  SUCCEED();
+}
+
+}  // namespace
+
+TEST_CASE("stick ratio of synthetic dots, with all effects", "[accuracy]") {
+  // Of the dots in the shear zone those that follow the object to less than slip_px count as
+  // sticking, which makes the ratio too large; their noise makes it too small.
+  const Errors all("all effects", StickRatio(21, 21));
+  for (const SlipScene scene : test::all_slip_scenes) {
+    const StickError& e = all[scene];
+    INFO(name_of(scene) << ": mean absolute error " << e.mean_abs << ", mean " << e.mean
+                        << ", worst " << e.worst << ", frames with an answer " << e.updated
+                        << ", dots told wrong " << e.wrong_dots);
+    CHECK(e.mean_abs <= 0.03);
+    CHECK(e.updated >= 0.9);
+  }
+}
+
+TEST_CASE("stick ratio of synthetic dots, by the width of the shear zone", "[accuracy]") {
+  // The goal of 0.03 is met at one pitch. In wider zones the dots next to the stick region slip
+  // less than slip_px, and the ratio is too large: by 0.040 and 0.076 at two and three pitches.
+  // A jump smears, by the mean over neighbours, into the dots before it: 0.02 to 0.07.
+  const StickRatio ratio(21, 21);
+  const Errors jump("jump", ratio, 0), one("1 pitch", ratio, 1), two("2 pitches", ratio, 2),
+      three("3 pitches", ratio, 3);
+  show({&jump, &one, &two, &three});
+  for (const SlipScene scene : test::all_slip_scenes) {
+    CAPTURE(name_of(scene));
+    CHECK(jump[scene].mean_abs < 0.09);
+    CHECK(two[scene].mean_abs < 0.07);
+    CHECK(three[scene].mean_abs < 0.12);
+  }
+  // slip that is not seen is an error of one sign
+  CHECK(three[SlipScene::reversal].mean > 0.9 * three[SlipScene::reversal].mean_abs);
+}
+
+TEST_CASE("stick ratio of synthetic dots, each effect left out", "[accuracy]") {
+  const Index n = 21;
+  const Errors all("all effects", StickRatio(n, n));
+  const Errors first("first reference", StickRatio<StickConsensus<>, FirstReference>(n, n));
+  const Errors no_turn("no turn", StickRatio<StickConsensus<Freedom::scaling>>(n, n));
+  const Errors no_zoom("no zoom", StickRatio<StickConsensus<Freedom::rigid>>(n, n));
+  const Errors noisy("no denoising",
+                     StickRatio<StickConsensus<>, UpdatedReference<>, NoDenoising>(n, n));
+  const Errors one_dot("one dot", StickRatio<ReferenceDotMotion<>>(n, n));
+  const Errors published("published", Published(n, n));
+  show({&all, &first, &no_turn, &no_zoom, &noisy, &one_dot, &published});
+  // Without it, the scene of an effect fails: far above the goal, and several times worse than
+  // with it.
+  const auto needs = [&](const Errors& without, SlipScene scene, double times) {
+    CAPTURE(without.name(), name_of(scene));
+    CHECK(without[scene].mean_abs > 0.045);
+    CHECK(without[scene].mean_abs > times * all[scene].mean_abs);
+  };
+  needs(first, SlipScene::reversal, 3);
+  needs(first, SlipScene::slips, 5);
+  needs(no_turn, SlipScene::turn, 10);
+  needs(no_turn, SlipScene::shift_turn, 10);
+  needs(no_turn, SlipScene::everything, 10);
+  needs(no_zoom, SlipScene::press, 20);
+  needs(no_zoom, SlipScene::zoom_in, 8);
+  needs(no_zoom, SlipScene::zoom_out, 8);
+  needs(no_zoom, SlipScene::everything, 10);
+  needs(noisy, SlipScene::shear, 2.5);
+  needs(noisy, SlipScene::press, 5);
+  needs(one_dot, SlipScene::shear, 6);
+  needs(one_dot, SlipScene::press, 10);
+  needs(published, SlipScene::shear, 3);
+  needs(published, SlipScene::zoom_in, 4);
+  // and no effect does harm where it is not needed
+  const double with = all[SlipScene::shear].mean_abs;
+  CHECK(no_turn[SlipScene::shear].mean_abs > with - 0.005);
+  CHECK(no_zoom[SlipScene::shear].mean_abs > with - 0.005);
+  CHECK(first[SlipScene::shear].mean_abs > with - 0.005);
+}
+
+namespace {
+
+/// A membrane of finite elements: dots as the camera sees them, and what sticks. See
+/// tests/data/README.md.
+class StickScene {
+ public:
+  explicit StickScene(const std::string& name) : name_(name) {
+    read_truth();
+    read_dots();
+  }
+  Index steps() const { return static_cast<Index>(frames_.size()); }
+  const PointsPx& dots(Index step) const { return frames_[at(step)].dots; }
+  const ContactFlags& contact(Index step) const { return frames_[at(step)].contact; }
+  const std::string& phase(Index step) const { return frames_[at(step)].phase; }
+  /// Of the nodes in contact, the share that slipped less than 5 um in this step.
+  double stick_ratio(Index step) const { return frames_[at(step)].stick_ratio; }
+
+  Index first_slip_of_all() const {
+    for (Index k = 0; k < steps(); ++k) {
+      if (stick_ratio(k) < 0.1) {
+        return k;
+      }
+    }
+    return steps();
+  }
+
+ private:
+  struct Frame {
+    std::string phase;
+    double stick_ratio = 0;
+    PointsPx dots{21, 21, {test::nan, test::nan}};
+    ContactFlags contact{21, 21};
+  };
+  static std::size_t at(Index step) { return static_cast<std::size_t>(step); }
+
+  void read_truth() {
+    auto file = test::open_data("stick_truth.csv", "scene,step,phase,stick_ratio_kin\n");
+    std::string scene, step, phase, ratio;
+    while (std::getline(file, scene, ',') && std::getline(file, step, ',') &&
+           std::getline(file, phase, ',') && std::getline(file, ratio)) {
+      if (scene == name_) {
+        frames_.push_back({.phase = phase, .stick_ratio = std::stod(ratio)});
+      }
+    }
+    REQUIRE(steps() > 0);
+  }
+
+  void read_dots() {
+    auto file = test::open_data(name_ + "_dots.pgm", "P5\n");
+    int width = 0, height = 0, top = 0;
+    file >> width >> height >> top;
+    file.get();
+    REQUIRE((width % 2 == 0 && height == steps() + 1 && top == 65535));
+    const auto next = [&] {
+      const int high = file.get();
+      return 256 * high + file.get();
+    };
+    std::vector<DotIndex> places;
+    for (int k = 0; k < width / 2; ++k) {
+      const Index col = next();
+      places.push_back({next(), col});
+    }
+    for (Frame& frame : frames_) {
+      for (const DotIndex& p : places) {
+        const int x = next(), y = next();
+        frame.dots(p.row, p.col) = {x / 64.0, y % 32768 / 64.0};
+        frame.contact(p.row, p.col) = y >= 32768 ? 1 : 0;
+      }
+    }
+    REQUIRE(file.good());
+  }
+
+  std::string name_;
+  std::vector<Frame> frames_;
+};
+
+/// Of the area in contact in a step and `age` steps earlier, the share that slipped less than a
+/// length in between.
+class SlippedLess {
+ public:
+  explicit SlippedLess(const std::string& name, Index steps) : shares_(steps, ages * lengths) {
+    auto file = test::open_data(name + "_slip.pgm", "P5\n96 " + std::to_string(steps) + "\n255\n");
+    for (int& share : shares_.cells) {
+      share = file.get();
+    }
+    REQUIRE(file.good());
+  }
+  /// NaN where it is not known.
+  double operator()(Index step, Index age, double length_mm) const {
+    const double place = std::log(length_mm / 0.002) / std::log(1.5);
+    if (age < 1 || age > ages || !(place >= 0 && place < lengths - 1)) {
+      return test::nan;
+    }
+    const Index t = static_cast<Index>(place);
+    const double u = place - static_cast<double>(t);
+    const int low = shares_(step, (age - 1) * lengths + t);
+    const int high = shares_(step, (age - 1) * lengths + t + 1);
+    return high == 255 ? test::nan : ((1 - u) * low + u * high) / 250;
+  }
+
+ private:
+  static constexpr Index ages = 8, lengths = 12;
+  test::Image<int> shares_;
+};
+
+constexpr double jitter_px = 0.06;
+constexpr Index recordings = 20;
+/// The defaults, but with the threshold that this noise has: 2 sigma sqrt(ln(1 / p)), of which
+/// p = 1 % of sticking dots are told to slip, sigma = 0.416 x 0.06 px after denoising.
+const StickTest scene_test{.slip_px = 2 * 0.416 * jitter_px * std::sqrt(std::log(100.0))};
+
+struct SceneResult {
+  double mean_abs = 0;  ///< over frames with an answer
+  double mean = 0;
+  double answers = 0;       ///< frames with one, mean of the recordings
+  double to_reference = 0;  ///< the same error against the area that slipped less than the
+                            ///< threshold since the reference
+  Index announced_from = 1000, announced_to = -1;  ///< steps; of all recordings
+  double most_sticking = 0;                        ///< the truth when slip is announced
+
+  std::string line(const std::string& name) const {
+    std::ostringstream line;
+    line << name << ": mean absolute error " << mean_abs << ", mean " << mean << ", over "
+         << answers << " frames a recording; against slip since the reference " << to_reference
+         << "; announced at steps " << announced_from << " to " << announced_to
+         << ", when as much as " << most_sticking << " sticks";
+    return line.str();
+  }
+};
+constexpr Index never = 999;
+
+/// `slipped` is compared with besides; `keep` tells in which steps.
+template <class Slipped, class Keep>
+SceneResult follow(const StickScene& scene,
+                   const Slipped& slipped,
+                   const Keep& keep,
+                   const StickTest& test = scene_test) {
+  const StickRatio ratio(21, 21, test);
+  SceneResult result;
+  double compared = 0;
+  for (Index seed = 1; seed <= recordings; ++seed) {
+    test::Random random(static_cast<std::uint64_t>(seed));
+    DotStates states(21, 21);
+    auto state = ratio.start();
+    Index announced = never;
+    for (Index k = 0; k < scene.steps(); ++k) {
+      const auto r =
+          ratio(noisy(scene.dots(k), jitter_px, random), scene.contact(k), states, state);
+      if (r.updated() && r.stick_ratio < 0.5F && announced == never) {
+        announced = k;
+        result.most_sticking = (std::max)(result.most_sticking, scene.stick_ratio(k));
+      }
+      if (r.updated() && keep(k)) {
+        const double found = static_cast<double>(r.stick_ratio);
+        // 0.092 mm of membrane, 10 mm from the plate, per pixel
+        const double length_mm =
+            0.092 * test.slip_px * static_cast<double>(r.furthest_px) / test.reference_px;
+        result.mean_abs += std::abs(found - scene.stick_ratio(k));
+        result.mean += found - scene.stick_ratio(k);
+        ++result.answers;
+        const double truth = slipped(k, r.reference_age, length_mm);
+        if (is_finite(truth)) {
+          result.to_reference += std::abs(found - truth);
+          ++compared;
+        }
+      }
+    }
+    result.announced_from = (std::min)(result.announced_from, announced);
+    result.announced_to = (std::max)(result.announced_to, announced);
+  }
+  result.mean_abs /= result.answers;
+  result.mean /= result.answers;
+  result.to_reference /= compared;
+  result.answers /= static_cast<double>(recordings);
+  return result;
+}
+
+bool every_step(Index) {
+  return true;
+}
+
+}  // namespace
+
+TEST_CASE("stick ratio of finite-element membranes", "[accuracy]") {
+  const auto check = [](const std::string& name, double bound) {
+    const StickScene scene(name);
+    const SceneResult r = follow(scene, SlippedLess(name, scene.steps()), every_step);
+    INFO(r.line(name) << "; all slips at step " << scene.first_slip_of_all());
+    CHECK(r.mean_abs <= bound);
+    CHECK(r.announced_to < scene.first_slip_of_all());
+    CHECK(r.most_sticking < 0.7);
+    return r;
+  };
+  // The truth is slip by 5 um within a step. What is found is slip by the threshold, 10 to 19 um,
+  // since a reference one to three steps back: slow slip counts as sticking.
+  check("drag", 0.06);      // 0.050 measured, goal 0.08
+  check("cylinder", 0.10);  // 0.082, goal 0.12
+  // 0.088, goal 0.08: slow creep at the end, where 0.3 of the nodes stick by the truth, but by the
+  // threshold 0.36 to 0.45 of the area.
+  const SceneResult mix = check("mix", 0.105);
+  CHECK(mix.to_reference < 0.08);
+  // 0.096, goal 0.08: only four frames have an answer, of 97 dots.
+  check("twist", 0.12);
+  const StickScene drag("drag");
+  const SceneResult back = follow(drag, SlippedLess("drag", drag.steps()),
+                                  [&](Index k) { return drag.phase(k) == "back"; });
+  INFO(back.line("reversal"));
+  CHECK(back.mean_abs <= 0.045);  // 0.031, goal 0.08
+}
+
+TEST_CASE("no slip is announced on finite-element membranes that stick", "[accuracy]") {
+  const auto unknown = [](Index, Index, double) { return test::nan; };
+  const StickScene press("press"), roll("roll"), tilt("tilt");
+  // Dots that hold on to what is pressed or rolled hardly move: there is nothing to compare.
+  CHECK(follow(press, unknown, every_step).announced_from == never);
+  CHECK(follow(roll, unknown, every_step).announced_from == never);
+  // Compared all the same, after 1 px:
+  StickTest closer = scene_test;
+  closer.reference_px = 1;
+  closer.store_px = 0.25;
+  const SceneResult r = follow(press, unknown, every_step, closer);
+  INFO(r.line("press"));
+  CHECK(r.answers > 3);
+  CHECK(r.announced_from == never);
+  CHECK(r.mean_abs < 0.1);
+  // A tilted plate, dragged until it slips; no goal.
+  const SceneResult dragged = follow(tilt, unknown, every_step);
+  INFO(dragged.line("tilt"));
+  CHECK(dragged.announced_to < tilt.first_slip_of_all());
+  CHECK(dragged.most_sticking < 0.9);
+}

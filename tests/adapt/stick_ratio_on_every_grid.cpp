@@ -1,0 +1,170 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+// Dots, flags and states held by every kind of grid: one answer, to the bit.
+#include <Eigen/Core>
+#include <array>
+#include <cstdint>
+#include <opencv2/core.hpp>
+#include <type_traits>
+#include <vector>
+#if __has_include(<xtensor/containers/xtensor.hpp>)
+#include <xtensor/containers/xtensor.hpp>
+#else
+#include <xtensor/xtensor.hpp>
+#endif
+
+#include "fingerpad/adapt/eigen.hpp"
+#include "fingerpad/adapt/mdspan.hpp"
+#include "fingerpad/adapt/opencv.hpp"
+#include "fingerpad/adapt/xtensor.hpp"
+#include "fingerpad/stick_ratio.hpp"
+#include "support/catch.hpp"
+#include "support/foreign_image.hpp"
+#include "support/slipping_dots.hpp"
+#include "support/test_mdspan.hpp"
+
+using namespace fingerpad;
+
+namespace {
+
+constexpr Index n = 21;
+constexpr int size = 21;
+constexpr std::size_t cells = 21 * 21;
+
+template <class T>
+using RowMajor = Eigen::Matrix<T, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+template <class T>
+using ColMajor = Eigen::Matrix<T, Eigen::Dynamic, Eigen::Dynamic>;
+
+/// Three frames; the first two have been followed.
+struct Case {
+  test::Image<Point2<float>> dots{n, n};
+  test::ContactFlags contact;
+  StickRatio<> ratio{n, n};
+  StickRatio<>::State state = ratio.start();
+  test::DotStates states{n, n};
+  StickRatioResult<float> result;
+
+  Case() {
+    test::SlippingDots truth;
+    test::Random random(2);
+    for (int k = 0; k < 3; ++k) {
+      const auto noisy_dots = noisy(truth.dots, 0.1, random);
+      for (std::size_t c = 0; c < cells; ++c) {
+        const auto& p = noisy_dots.cells[c];
+        dots.cells[c] = {static_cast<float>(p.x), static_cast<float>(p.y)};
+      }
+      dots(8, 9).y = static_cast<float>(test::nan);
+      contact = truth.contact;
+      if (k < 2) {
+        ratio(dots, contact, states, state);
+      }
+      truth.step({.shift_px = 2.5, .direction_rad = 1, .turn_rad = 0.01, .stick_share = 0.6});
+    }
+    auto copy = state;
+    result = ratio(dots, contact, states, copy);
+    REQUIRE(result.updated());
+    REQUIRE((result.stick > 50 && result.slip > 50 && result.unknown == 1));
+  }
+
+  template <class Dots, class Contact, class States>
+  bool agrees(const Dots& from, const Contact& flags, States&& to) const {
+    auto copy = state;
+    const auto r = ratio(from, flags, to, copy);
+    const auto view = as_view(to);
+    bool same = r.accepted && r.status == result.status && r.stick_ratio == result.stick_ratio &&
+                r.angle_rad == result.angle_rad && r.scale == result.scale &&
+                r.furthest_px == result.furthest_px && r.reference_dot == result.reference_dot;
+    for (Index i = 0; i < n; ++i) {
+      for (Index j = 0; j < n; ++j) {
+        same = same && static_cast<DotState>(view(i, j)) == states(i, j);
+      }
+    }
+    return same;
+  }
+  template <class Dots>
+  bool reads_dots(const Dots& from) const {
+    return agrees(from, contact, test::DotStates(n, n));
+  }
+  template <class Contact>
+  bool reads_flags(const Contact& flags) const {
+    return agrees(dots, flags, test::DotStates(n, n));
+  }
+  template <class States>
+  bool writes(States&& to) const {
+    return agrees(dots, contact, to);
+  }
+  template <class Grid, class Make>
+  static Grid filled(Grid grid, const Make& make) {
+    const auto view = as_view(grid);
+    for (Index i = 0; i < n; ++i) {
+      for (Index j = 0; j < n; ++j) {
+        view(i, j) = make(i, j);
+      }
+    }
+    return grid;
+  }
+};
+
+}  // namespace
+
+TEST_CASE("dots that stick are read from every grid", "[adapt][stick_ratio]") {
+  const Case c;
+  const auto as = [&](auto point) {
+    using P = decltype(point);
+    using X = std::remove_cvref_t<decltype(point_traits<P>::x(point))>;
+    return [&](Index i, Index j) {
+      return P{static_cast<X>(c.dots(i, j).x), static_cast<X>(c.dots(i, j).y)};
+    };
+  };
+  CHECK(c.reads_dots(c.dots));
+  CHECK(c.reads_dots(Case::filled(RowMajor<Eigen::Vector2f>(n, n), as(Eigen::Vector2f()))));
+  CHECK(c.reads_dots(Case::filled(ColMajor<Eigen::Vector2f>(n, n), as(Eigen::Vector2f()))));
+  CHECK(c.reads_dots(Case::filled(cv::Mat_<cv::Vec2f>(size, size), as(cv::Vec2f()))));
+  CHECK(c.reads_dots(Case::filled(cv::Mat_<cv::Point2f>(size, size), as(cv::Point2f()))));
+  CHECK(c.reads_dots(Case::filled(cv::Mat_<cv::Point2d>(size, size), as(cv::Point2d()))));
+  CHECK(c.reads_dots(
+      Case::filled(test::ForeignImage<std::array<float, 2>>(n, n), as(std::array<float, 2>()))));
+  const std::array<std::size_t, 2> shape = {21, 21};
+  CHECK(c.reads_dots(Case::filled(xt::xtensor<cv::Point2f, 2>(shape), as(cv::Point2f()))));
+  const auto mapping =
+      test::LayoutStride::right(static_cast<test::MdIndex>(n), static_cast<test::MdIndex>(n));
+  CHECK(c.reads_dots(test::TestMdspan<const Point2<float>>(c.dots.cells.data(), mapping)));
+  std::vector<Point2<float>> memory(4 * cells);
+  const StridedView<Point2<float>> backward(&memory.back(), n, n, -4 * n, -2);
+  CHECK(c.reads_dots(Case::filled(backward, as(Point2<float>()))));
+  CHECK(c.reads_dots(LazyView(n, n, [&](Index i, Index j) { return c.dots(i, j); })));
+  const auto spatial = [&](Index i, Index j) {
+    return Point3<float>{c.dots(i, j).x, c.dots(i, j).y, 7};
+  };
+  CHECK(c.reads_dots(LazyView(n, n, spatial)));  // their depth is not looked at
+}
+
+TEST_CASE("flags of contact are read from every grid", "[adapt][stick_ratio]") {
+  const Case c;
+  const auto flag = [&](auto yes, auto no) {
+    return [&c, yes, no](Index i, Index j) { return c.contact(i, j) != 0 ? yes : no; };
+  };
+  CHECK(c.reads_flags(Case::filled(RowMajor<bool>(n, n), flag(true, false))));
+  CHECK(c.reads_flags(Case::filled(ColMajor<float>(n, n), flag(-1.0F, 0.0F))));
+  CHECK(c.reads_flags(
+      Case::filled(cv::Mat_<std::uint8_t>(size, size), flag(std::uint8_t(255), std::uint8_t(0)))));
+  CHECK(c.reads_flags(Case::filled(test::ForeignImage<double>(n, n), flag(1.0, test::nan))));
+  CHECK(c.reads_flags(LazyView(n, n, flag(Touch::contact, Touch::unknown))));
+  const std::array<std::size_t, 2> shape = {21, 21};
+  CHECK(c.reads_flags(Case::filled(xt::xtensor<int, 2>(shape), flag(3, 0))));
+}
+
+TEST_CASE("states of dots are written into every grid", "[adapt][stick_ratio]") {
+  const Case c;
+  CHECK(c.writes(RowMajor<std::uint8_t>(n, n)));
+  CHECK(c.writes(ColMajor<float>(n, n)));
+  CHECK(c.writes(ColMajor<int>(n, n)));
+  CHECK(c.writes(cv::Mat_<std::uint8_t>(size, size)));
+  CHECK(c.writes(test::ForeignImage<DotState>(n, n)));
+  const std::array<std::size_t, 2> shape = {21, 21};
+  CHECK(c.writes(xt::xtensor<std::uint8_t, 2>(shape)));
+  std::vector<DotState> memory(cells);
+  CHECK(c.writes(StridedView<DotState>(&memory.back(), n, n, -n, -1)));
+  CHECK(c.writes(StridedView<DotState>(memory.data(), n, n, 1, n)));
+}

@@ -1,0 +1,446 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+// Recordings of any pad with a grid of dots: nothing is known but the frames, which are drawn here.
+#include <unistd.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <functional>
+#include <map>
+#include <opencv2/core.hpp>
+#include <opencv2/imgcodecs.hpp>
+#include <opencv2/imgproc.hpp>
+#include <opencv2/videoio.hpp>
+#include <random>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "replay/dots.hpp"
+#include "replay/dots_lattice.hpp"
+#include "replay/failure.hpp"
+#include "replay/images.hpp"
+#include "replay/replay.hpp"
+#include "support/catch.hpp"
+
+namespace fs = std::filesystem;
+using replay::DotGrid;
+using replay::is_present;
+
+namespace {
+
+const cv::Size frame_size(320, 240);
+
+/// A pad whose dots are drawn where a test says.
+struct Pad {
+  double radius_px = 5;
+  bool bright = false;
+  cv::Scalar ground{150, 110, 90};  ///< blue, green, red
+  double fall = 0.5;                ///< of the light from the left border to the right one
+};
+
+/// Rows x cols of dots around the middle of the frame, turned from x to y.
+DotGrid grid_of(cv::Size size, double pitch_px, double turn_degrees) {
+  const double c = std::cos(turn_degrees * CV_PI / 180);
+  const double s = std::sin(turn_degrees * CV_PI / 180);
+  DotGrid dots(size);
+  for (int i = 0; i < size.height; ++i) {
+    for (int j = 0; j < size.width; ++j) {
+      const double u = pitch_px * (j - (size.width - 1) / 2.0);
+      const double v = pitch_px * (i - (size.height - 1) / 2.0);
+      dots(i, j) = {160 + c * u - s * v, 120 + s * u + c * v};
+    }
+  }
+  return dots;
+}
+
+cv::Mat drawn(const Pad& pad, const DotGrid& dots) {
+  constexpr int fine = 4;
+  const cv::Size size(frame_size.width * fine, frame_size.height * fine);
+  cv::Mat sheet(size, CV_8UC3, pad.ground);
+  for (const cv::Vec2d& dot : dots) {
+    if (is_present(dot)) {
+      const cv::Point at(cvRound((dot[0] + 0.5) * fine - 0.5),
+                         cvRound((dot[1] + 0.5) * fine - 0.5));
+      cv::circle(sheet, at, cvRound(pad.radius_px * fine),
+                 pad.bright ? cv::Scalar(230, 235, 225) : cv::Scalar(30, 25, 28), cv::FILLED);
+    }
+  }
+  cv::Mat frame;
+  cv::resize(sheet, frame, frame_size, 0, 0, cv::INTER_AREA);
+  for (int i = 0; i < frame.rows; ++i) {
+    for (int j = 0; j < frame.cols; ++j) {
+      frame.at<cv::Vec3b>(i, j) *= 1 - pad.fall * j / frame.cols;
+    }
+  }
+  return frame;
+}
+
+DotGrid moved(const DotGrid& dots, const cv::Vec2d& by) {
+  DotGrid all = dots.clone();
+  for (cv::Vec2d& dot : all) {
+    dot += by;
+  }
+  return all;
+}
+
+/// The largest distance between dots of the same name; infinite where the sizes differ.
+double largest_error_px(const DotGrid& found, const DotGrid& truth) {
+  if (found.size() != truth.size()) {
+    return std::numeric_limits<double>::infinity();
+  }
+  double largest = 0;
+  for (int i = 0; i < truth.rows; ++i) {
+    for (int j = 0; j < truth.cols; ++j) {
+      if (is_present(found(i, j))) {
+        largest = (std::max)(largest, cv::norm(found(i, j) - truth(i, j)));
+      }
+    }
+  }
+  return largest;
+}
+
+/// A recording with a sensor.json and frames, and a place for the results.
+class DotRecording {
+ public:
+  explicit DotRecording(const std::vector<cv::Mat>& frames, const std::string& sensor = "{}") {
+    std::string pattern = (fs::temp_directory_path() / "fingerpad.XXXXXX").string();
+    root_ = ::mkdtemp(pattern.data());
+    fs::create_directories(folder() / "frames");
+    std::ofstream(folder() / "sensor.json") << sensor;
+    for (std::size_t k = 0; k < frames.size(); ++k) {
+      const std::string name = std::to_string(1000 + k) + ".png";
+      cv::imwrite((folder() / "frames" / name).string(), frames[k]);
+    }
+  }
+  ~DotRecording() { fs::remove_all(root_); }
+  DotRecording(const DotRecording&) = delete;
+  DotRecording& operator=(const DotRecording&) = delete;
+
+  fs::path folder() const { return root_ / "recording"; }
+  fs::path out() const { return root_ / "out"; }
+
+  std::string complaint(bool pictures = false) const {
+    replay::Options options;
+    options.recording = folder();
+    options.out = out();
+    options.pictures = pictures;
+    options.raw = true;
+    try {
+      replay::run(options);
+    } catch (const replay::Failure& failure) {
+      CHECK_FALSE(fs::exists(out()));
+      return failure.what();
+    }
+    return "";
+  }
+
+  /// The dots of every frame, as replay finds them.
+  std::vector<DotGrid> dots() const {
+    replay::Recording recording = replay::open_recording(folder());
+    auto source = replay::DotSource::of_dots_only(folder(), recording);
+    std::vector<DotGrid> all;
+    recording.frames.seek(0);
+    for (int frame = 0; frame < recording.frames.size(); ++frame) {
+      all.push_back(source.of(frame, recording.frames.next()));
+    }
+    return all;
+  }
+
+ private:
+  fs::path root_;
+};
+
+/// The lines of a table, each as a map from column to cell.
+std::vector<std::map<std::string, std::string>> table(const fs::path& file) {
+  std::ifstream stream(file);
+  std::vector<std::vector<std::string>> lines;
+  for (std::string line; std::getline(stream, line);) {
+    lines.emplace_back(1);
+    for (const char c : line) {
+      if (c == ',') {
+        lines.back().emplace_back();
+      } else {
+        lines.back().back() += c;
+      }
+    }
+  }
+  std::vector<std::map<std::string, std::string>> rows;
+  for (std::size_t k = 1; k < lines.size(); ++k) {
+    REQUIRE(lines[k].size() == lines[0].size());
+    rows.emplace_back();
+    for (std::size_t c = 0; c < lines[k].size(); ++c) {
+      rows.back()[lines[0][c]] = lines[k][c];
+    }
+  }
+  return rows;
+}
+
+}  // namespace
+
+TEST_CASE("a grid of dots is found without a word about it") {
+  Pad pad;
+  pad.bright = GENERATE(false, true);
+  pad.ground = pad.bright ? cv::Scalar(40, 60, 25) : cv::Scalar(150, 110, 90);
+  const double turn_degrees = GENERATE(-30, 0, 8, 40);
+  pad.radius_px = GENERATE(2.5, 6.0);
+  const DotGrid truth = grid_of({7, 5}, 5 * pad.radius_px, turn_degrees);
+  INFO("bright " << pad.bright << ", turned " << turn_degrees << ", radius " << pad.radius_px);
+  const auto found = replay::find_pattern(drawn(pad, truth), {});
+  REQUIRE(found);
+  CHECK(found->look.bright == pad.bright);
+  CHECK(std::abs(found->look.radius_px - pad.radius_px) < 0.2 * pad.radius_px + 0.3);
+  CHECK(fingerpad::count_present(found->order.found) == 35);
+  CHECK(largest_error_px(found->order.found, truth) < 0.2);
+}
+
+TEST_CASE("rows and columns that are given are kept, with the most dots") {
+  const DotGrid truth = grid_of({7, 5}, 30, 0);
+  const cv::Mat frame = drawn({}, truth);
+  SECTION("fewer than the frame shows") {
+    const auto found = replay::find_pattern(frame, {5, 6, 0, {}});
+    REQUIRE(found);
+    CHECK(largest_error_px(found->order.found, DotGrid(truth, cv::Rect(0, 0, 6, 5))) < 0.2);
+  }
+  SECTION("more: the places of the others are known, the dots are not") {
+    const auto found = replay::find_pattern(frame, {6, 7, 0, {}});
+    REQUIRE(found);
+    CHECK(fingerpad::count_present(found->order.found) == 35);
+    CHECK(largest_error_px(found->order.expected, grid_of({7, 6}, 30, 0)) < 15.5);
+    CHECK(std::abs(found->order.expected(5, 3)[1] - (truth(4, 3)[1] + 30)) < 1);
+  }
+}
+
+TEST_CASE("what lies in a grid but is faint is not taken for the dots") {
+  // The blocks of a compressed picture: more of them than there are dots.
+  const DotGrid truth = grid_of({6, 4}, 44, 0);
+  Pad pad;
+  pad.radius_px = 7;
+  pad.fall = 0;
+  cv::Mat frame = drawn(pad, truth);
+  for (int y = 8; y < frame.rows; y += 16) {
+    for (int x = 8; x < frame.cols; x += 16) {
+      cv::Mat block(frame, cv::Rect(x - 3, y - 3, 6, 6));
+      block *= 1.16;
+    }
+  }
+  const auto found = replay::find_pattern(frame, {});
+  REQUIRE(found);
+  CHECK_FALSE(found->look.bright);
+  CHECK(largest_error_px(found->order.found, truth) < 1.0);
+}
+
+TEST_CASE("noise alone is no grid of dots") {
+  cv::Mat noise(frame_size, CV_8UC3);
+  cv::setRNGSeed(7);
+  cv::randn(noise, cv::Scalar::all(120), cv::Scalar::all(20));
+  const auto found = replay::find_pattern(noise, {});
+  CHECK((!found || fingerpad::count_present(found->order.found) < 12));
+  const DotRecording even(
+      std::vector<cv::Mat>{cv::Mat(frame_size, CV_8UC3, cv::Scalar(90, 120, 100))});
+  CHECK(even.complaint().find("none of the first 1 frames shows a grid of nine or more dots") !=
+        std::string::npos);
+}
+
+TEST_CASE("a first frame without dots does no harm") {
+  const DotGrid truth = grid_of({7, 5}, 30, 10);
+  const DotRecording recording(std::vector<cv::Mat>{
+      cv::Mat(frame_size, CV_8UC3, cv::Scalar(1, 1, 1)), drawn({}, truth), drawn({}, truth)});
+  const auto dots = recording.dots();
+  CHECK(fingerpad::count_present(dots[0]) == 0);
+  CHECK(fingerpad::count_present(dots[2]) == 35);
+}
+
+TEST_CASE("lost dots are missing while they are lost, and come back under their own name") {
+  const DotGrid truth = grid_of({7, 5}, 30, 5);
+  std::vector<cv::Mat> frames;
+  std::vector<DotGrid> truths;
+  for (int k = 0; k < 16; ++k) {
+    truths.push_back(moved(truth, {2.5 * k - 10, 0.5 * k}));
+    frames.push_back(drawn({}, truths.back()));
+  }
+  SECTION("a few of them, under a shadow") {
+    const std::vector<cv::Point> hidden = {{2, 1}, {3, 1}, {2, 2}};
+    for (std::size_t k = 4; k < 12; ++k) {
+      DotGrid rest = truths[k].clone();
+      for (const cv::Point& at : hidden) {
+        rest(at) = replay::no_dot();
+      }
+      frames[k] = drawn({}, rest);
+    }
+    const auto dots = DotRecording(frames).dots();
+    for (std::size_t k = 0; k < dots.size(); ++k) {
+      INFO("frame " << k);
+      CHECK(largest_error_px(dots[k], truths[k]) < 0.2);
+      for (const cv::Point& at : hidden) {
+        CHECK(is_present(dots[k](at)) == !(k >= 4 && k < 12));
+      }
+    }
+  }
+  SECTION("all of them") {
+    for (std::size_t k = 5; k < 8; ++k) {
+      frames[k] = cv::Scalar(0, 0, 0);
+    }
+    const auto dots = DotRecording(frames).dots();
+    CHECK(fingerpad::count_present(dots[6]) == 0);
+    CHECK(fingerpad::count_present(dots[9]) == 35);
+    CHECK(largest_error_px(dots[9], truths[9]) < 0.2);
+    CHECK(largest_error_px(dots[15], truths[15]) < 0.2);
+  }
+}
+
+TEST_CASE("a small contact that moves one dot at once by a quarter of a pitch keeps it") {
+  const DotGrid truth = grid_of({11, 8}, 26, 0);
+  std::vector<cv::Mat> frames;
+  std::vector<DotGrid> truths;
+  for (int k = 0; k < 12; ++k) {
+    truths.push_back(truth.clone());
+    truths.back()(4, 5) += k < 6 ? cv::Vec2d(0, 0) : cv::Vec2d(5.2, 3.2);
+    frames.push_back(drawn({}, truths.back()));
+  }
+  const auto dots = DotRecording(frames).dots();
+  for (std::size_t k = 0; k < dots.size(); ++k) {
+    INFO("frame " << k);
+    CHECK(largest_error_px(dots[k], truths[k]) < 0.2);
+    CHECK(fingerpad::count_present(dots[k]) == 88);
+  }
+}
+
+TEST_CASE("a compressed video gives the dots of its pictures") {
+  const DotGrid truth = grid_of({7, 5}, 30, 10);
+  Pad pad;
+  pad.radius_px = 6;
+  const DotRecording recording(std::vector<cv::Mat>{}, R"({"video": "dots.avi", "dots": {}})");
+  const int count = 12;
+  {
+    const replay::QuietCodecs quiet;
+    cv::VideoWriter video((recording.folder() / "dots.avi").string(),
+                          cv::VideoWriter::fourcc('X', 'V', 'I', 'D'), 25, frame_size);
+    for (int k = 0; k < count && video.isOpened(); ++k) {
+      video.write(drawn(pad, moved(truth, {1.5 * k, -0.7 * k})));
+    }
+  }
+  const fs::path file = recording.folder() / "dots.avi";
+  if (!fs::exists(file) || fs::file_size(file) < 2000) {
+    WARN("no encoder for MPEG-4 here; compressed videos are not tested");
+    return;
+  }
+  const auto dots = recording.dots();
+  REQUIRE(dots.size() == static_cast<std::size_t>(count));
+  for (int k = 0; k < count; ++k) {
+    const DotGrid& found = dots[static_cast<std::size_t>(k)];
+    CHECK(fingerpad::count_present(found) >= 33);
+    CHECK(largest_error_px(found, moved(truth, {1.5 * k, -0.7 * k})) < 0.7);
+  }
+}
+
+TEST_CASE("the stick ratio of a dots-only recording") {
+  // Two of eight rows stand still while the others are carried away.
+  const DotGrid truth = grid_of({10, 8}, 26, 0);
+  std::vector<cv::Mat> frames;
+  for (int k = 0; k < 8; ++k) {
+    DotGrid now = truth.clone();
+    for (int i = 0; i < 6; ++i) {
+      for (int j = 0; j < 10; ++j) {
+        now(i, j) += cv::Vec2d(0.8 * k, 0);
+      }
+    }
+    frames.push_back(drawn({}, now));
+  }
+  const DotRecording recording(frames);
+  REQUIRE(recording.complaint(true).empty());
+  const auto rows = table(recording.out() / "frames.csv");
+  REQUIRE(rows.size() == 8);
+  CHECK(rows[0].at("dots_in_contact") == "80");
+  CHECK(rows[0].at("stick_ratio").empty());
+  CHECK(rows[0].at("stick_ratio_updated") == "0");
+  for (const char* empty : {"depth_max_mm", "contact_area_mm2", "object_x_mm", "valid_share"}) {
+    CHECK(rows[7].at(empty).empty());
+  }
+  CHECK(rows[7].at("stick_ratio_updated") == "1");
+  CHECK(std::abs(std::stod(rows[7].at("stick_ratio")) - 0.75) < 1e-6);
+
+  std::map<std::string, int> states;
+  for (const auto& dot : table(recording.out() / "dots.csv")) {
+    CHECK(dot.at("contact") == "1");
+    CHECK(dot.at("x_mm").empty());
+    if (dot.at("frame") == "7") {
+      ++states[dot.at("stick")];
+      CHECK((dot.at("stick") == "1") == (std::stoi(dot.at("row")) < 6));
+    }
+  }
+  CHECK(states["1"] == 60);
+  CHECK(states["0"] == 20);
+  CHECK(fs::exists(recording.out() / "pictures" / "stick_000007.png"));
+  CHECK(fs::exists(recording.out() / "pictures" / "stick_ratio.png"));
+  CHECK_FALSE(fs::exists(recording.out() / "depth"));
+  CHECK_FALSE(fs::exists(recording.out() / "pictures" / "depth_000007.png"));
+  // Its own files are known again.
+  CHECK(recording.complaint(true).empty());
+}
+
+TEST_CASE("thresholds of the stick ratio come from sensor.json") {
+  const DotGrid truth = grid_of({8, 6}, 30, 0);
+  std::vector<cv::Mat> frames;
+  for (int k = 0; k < 5; ++k) {
+    frames.push_back(drawn({}, moved(truth, {1.0 * k, 0})));
+  }
+  const auto answers = [&](const std::string& sensor) {
+    const DotRecording recording(frames, sensor);
+    REQUIRE(recording.complaint().empty());
+    const auto rows = table(recording.out() / "frames.csv");
+    return std::count_if(rows.begin(), rows.end(),
+                         [](const auto& row) { return row.at("stick_ratio_updated") == "1"; });
+  };
+  CHECK(answers("{}") > 0);
+  CHECK(answers(R"({"stick": {"reference_px": 9}})") == 0);
+}
+
+TEST_CASE("dots.csv serves a dots-only recording, too") {
+  const DotGrid truth = grid_of({4, 3}, 30, 0);
+  const cv::Mat plain(frame_size, CV_8UC3, cv::Scalar(90, 120, 100));
+  const DotRecording recording(std::vector<cv::Mat>{plain, plain, plain});
+  std::ofstream file(recording.folder() / "dots.csv");
+  file << "frame,row,col,x_px,y_px\n";
+  for (int frame = 0; frame < 3; ++frame) {
+    for (int i = 0; i < 3; ++i) {
+      for (int j = 0; j < 4; ++j) {
+        file << frame << ',' << i << ',' << j << ',' << truth(i, j)[0] + 3 * frame << ','
+             << truth(i, j)[1] << '\n';
+      }
+    }
+  }
+  file.close();
+  REQUIRE(recording.complaint().empty());
+  const auto rows = table(recording.out() / "frames.csv");
+  CHECK(rows[2].at("dots_in_contact") == "12");
+  CHECK(std::stod(rows[2].at("stick_ratio")) == 1);
+}
+
+TEST_CASE("the sensor.json of a dots-only recording is refused with the key's name") {
+  struct Fault {
+    const char* sensor;
+    const char* complaint;
+  };
+  const auto [sensor, complaint] = GENERATE(
+      Fault{R"({"dots": {"pitch_mm": 1}})",
+            "unknown key dots.pitch_mm (known here: rows, cols, diameter_px, bright)"},
+      Fault{R"({"dots": {"rows": 5}})", "dots.cols is missing (columns of dots"},
+      Fault{R"({"dots": {"rows": 5, "cols": 0}})", "dots.cols = 0"},
+      Fault{R"({"dots": {"bright": 1}})", "dots.bright is 1 (a number), must be true or false"},
+      Fault{R"({"dots": {"diameter_px": -2}})", "dots.diameter_px = -2, must be > 0"},
+      Fault{R"({"stick": {"slip": 1}})", "unknown key stick.slip "},
+      Fault{R"({"stick": {"reference_px": 0}})", "reference_px = 0"},
+      Fault{R"({"reference": {"fram": "a.png"}})", "unknown key reference.fram "},
+      Fault{R"({"reference": {"frame": "none.png"}})", "none.png: there is no such file"},
+      Fault{R"({"absorption": {}})", "camera is missing"},
+      Fault{R"({"smoothing_px": 29})", "camera is missing"},
+      Fault{R"({"sens": 1})", "unknown key sens "});
+  const DotRecording recording(std::vector<cv::Mat>{drawn({}, grid_of({7, 5}, 30, 0))}, sensor);
+  const std::string line = recording.complaint();
+  INFO(line);
+  CHECK(line.find(complaint) != std::string::npos);
+  CHECK(line.find('\n') == std::string::npos);
+}
