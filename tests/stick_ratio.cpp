@@ -523,6 +523,40 @@ TEST_CASE("stick ratio, bad input: swapped dots") {
   run({4, 4}, {5, 5}, 4);
 }
 
+TEST_CASE("stick ratio, bad input: a misplaced corner of the pattern") {
+  // It lies between no two neighbours; left in, it would be the furthest dot and hide all slip.
+  for (const DotIndex corner : {DotIndex{0, 0}, DotIndex{0, 8}, DotIndex{8, 0}, DotIndex{8, 8}}) {
+    CAPTURE(corner.row, corner.col);
+    Follower<> f;
+    f(shifted(0));
+    auto dots = shifted(3);
+    dots(corner.row, corner.col).y += corner.row == 0 ? -30 : 30;
+    const auto r = f(dots);
+    REQUIRE(r.updated());
+    CHECK(r.out_of_place >= 1);  // and perhaps the one beside
+    CHECK(r.furthest_px == Approx(3));
+    CHECK(r.slip == 0);
+    CHECK(f.states(corner.row, corner.col) == DotState::unknown);
+  }
+}
+
+TEST_CASE("stick ratio: dots that stand still together are not the object") {
+  // A patch of 16 dots goes on with the object; the search begins among those that stand.
+  Follower<StickConsensus<Freedom::similarity, CentralDot>> f;
+  f(shifted(0));
+  auto dots = shifted(0);
+  for (Index i = 0; i < 4; ++i) {
+    for (Index j = 0; j < 4; ++j) {
+      dots(i, j).x += 3;
+    }
+  }
+  const auto r = f(dots);
+  REQUIRE(r.updated());
+  CHECK(f.states(1, 1) == DotState::stick);
+  CHECK(f.states(6, 6) == DotState::slip);
+  CHECK(r.stick <= 16);
+}
+
 TEST_CASE("stick ratio, bad input: a pattern that jumps by one pitch") {
   for (const Index rows : {-1, 0, 1}) {
     for (const Index cols : {-1, 0, 1}) {

@@ -4,8 +4,6 @@
 // Dots that carry another dot's name: two exchanged, one found at a spot of glare, or the whole
 // pattern taken for its neighbour. One such dot would be the furthest of all and set the threshold.
 #include <algorithm>
-#include <array>
-#include <cmath>
 #include <cstddef>
 
 #include "fingerpad/detail/stick/dot_planes.hpp"

@@ -3,7 +3,6 @@
 #pragma once
 // What a stick ratio remembers from frame to frame, and the memory in which it works.
 #include <algorithm>
-#include <array>
 #include <cstdint>
 #include <limits>
 
