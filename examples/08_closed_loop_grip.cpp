@@ -45,9 +45,10 @@ grip::Run run(bool controlled) {
     load.advance(load_at(time_s), force_n, frame_s);
     camera.look_at(load);
     const auto stick = stick_ratio(camera.dots(), camera.touch(), states_out, stick_state);
-    const auto grip = control(stick.stick_ratio, news_of(stick.status), frame_s, grip_state);
-    record.push_back({time_s, load_at(time_s), load.friction_limit_n(), force_n, stick.stick_ratio,
-                      load.slip_mm()});
+    const double ratio = double(stick.stick_ratio);
+    const auto grip = control(ratio, news_of(stick.status), frame_s, grip_state);
+    record.push_back(
+        {time_s, load_at(time_s), load.friction_limit_n(), force_n, ratio, load.slip_mm()});
     if (controlled) {
       force_n = grip.force_n;
     }
