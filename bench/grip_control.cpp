@@ -95,7 +95,8 @@ Outcome run(const GripLaw<double>* law, double friction, double rise_n_per_s) {
     load.advance((std::min)(first_n + rise_n_per_s * time_s, last_n), force_n, frame_s);
     camera.look_at(load);
     const auto stick = stick_ratio(camera.dots(), camera.touch(), states_out, stick_state);
-    const auto grip = control(stick.stick_ratio, news_of(stick.status), frame_s, grip_state);
+    const auto grip =
+        control(double(stick.stick_ratio), news_of(stick.status), frame_s, grip_state);
     force_n = law != nullptr ? grip.force_n : force_n;
   }
   return {load.slip_mm(), last_n / friction / force_n};
