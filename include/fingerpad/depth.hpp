@@ -113,7 +113,7 @@ class DepthEstimator {
 
   /// The same, with a PixelStatus per pixel.
   template <grid Red, grid Green, class Depth, class Status, class Pixel>
-    requires(writable_grid<Depth, S> && writable_grid<Status, PixelStatus>)
+    requires(writable_grid<Depth, S>&& writable_grid<Status, PixelStatus>)
   DepthResult operator()(const Red& red,
                          const Green& green,
                          Depth&& depth_mm,

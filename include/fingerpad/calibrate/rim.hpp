@@ -1,0 +1,248 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+#pragma once
+// The rim from frames of the free pad: the stress-free lengths of its side dots and the membrane's
+// mu t (shear modulus times thickness), for wrench.hpp. Source of the law: rim_traction.hpp; Ito,
+// Kim, Obinata 2011 do not say how side dots are calibrated.
+//
+// The free pad balances as a whole: 2 pi a T_z = p pi a^2, so the mean vertical pull of the rim is
+// p a / 2, whatever the shape. With D_j = x_j - b_j (for two rows 2 L d), C_j its part across the
+// rim and L_j = r_j L the stress-free length, clamped_rim_pull says that the mean is
+//   mu t (A / L - B L^3),   A = sum w_j D_jz / r_j,   B = sum w_j D_jz r_j^3 / |C_j|^4,
+// linear in u = mu t / L and v = mu t L^3: two pressures give both, L = (v / u)^(1/4). The free pad
+// is the same all around, so r_j, the share of dot j in L, is its length over the mean length.
+//
+// One pressure gives mu t for a known L, or L for a known mu t. OneRow takes the chord for the
+// derivative at the rim, so mu t comes out 1.4 % too large for side dots of 0.8 mm on a rim of
+// 18.7 mm, and L 0.1 % too small; ExtrapolatedRow leaves 0.1 % and 0.03 %.
+#include <cmath>
+#include <cstddef>
+#include <vector>
+
+#include "fingerpad/detail/membrane/calibrate_rim_balance.hpp"
+#include "fingerpad/detail/membrane/calibrate_rim_equations.hpp"
+#include "fingerpad/detail/membrane/calibrate_rim_frames.hpp"
+#include "fingerpad/detail/membrane/rim_traction.hpp"
+#include "fingerpad/dots.hpp"
+#include "fingerpad/expects.hpp"
+#include "fingerpad/grid.hpp"
+#include "fingerpad/scalar.hpp"
+
+namespace fingerpad {
+inline namespace v0 {
+
+/// What the frames are good for, and when they are not good enough.
+struct RimFitOptions {
+  double side_dot_noise_mm = 0;   ///< sd of each coordinate of a side dot in one frame, >= 0; with
+  double pressure_noise_mpa = 0;  ///< that of a frame's pressure, >= 0: standard errors from
+                                  ///< these; both 0: from the residual, of 3 pressures or more
+  double max_condition = 1e4;     ///< refuse pressures that tell L from mu t worse than this, > 1
+  double least_stretch = 1.005;   ///< lambda at the lowest pressure, > 1
+};
+
+/// The rim of a pad. Usable as the lengths of `Wrench(border, fit, options)`: fit(k) is the length
+/// of the k-th side dot.
+template <scalar S = double>
+struct RimFit {
+  S length_mm;                    ///< L, the mean stress-free length, mm
+  S modulus_n_per_mm;             ///< mu t
+  std::vector<S> side_dot_share;  ///< r_j of each column of the border; their mean is about 1
+  S length_sd_mm;                 ///< standard errors; 0 for what was given, NaN where neither
+  S modulus_sd_n_per_mm;          ///< noise nor residual tells them
+  S correlation;                  ///< of the two; near 1: their errors make up for each other
+  S condition;                    ///< of the equations by the relative changes of L and mu t
+  S residual;                     ///< of the vertical balance, rms, as a share of the mean p a / 2
+  S share_scatter;                ///< sd of one level's lengths / mean length about r_j: noise
+                                  ///< of the dots; NaN from a single level
+  std::vector<S> stretch;         ///< mean lambda at each level
+  Index missing;                  ///< side dots that some level did not see; r_j from the others
+
+  S operator()(Index k) const { return S(length_mm * side_dot_share[static_cast<std::size_t>(k)]); }
+};
+
+/// Collects frames of the free pad at one pressure or several, then fits. `Row` as in Wrench; the
+/// standard errors leave out that what an ExtrapolatedRow says depends on L and mu t.
+template <class Row = OneRow, scalar S = double>
+class RimCalibration {
+ public:
+  /// `border_mm` as for Wrench; refuses what Wrench would refuse (parameter_error).
+  template <spatial_dot_grid Border>
+  RimCalibration(const Border& border_mm, const S& base_radius_mm, const Row& row = {})
+      : rim_(border_mm, base_radius_mm), row_(row) {
+    expects_valid(row);
+  }
+
+  /// Adds a frame of the free pad to level 0, 1, ... of pressure; the frames of a level, of about
+  /// the same pressure, are averaged. NaN: a dot was not found. False, and nothing added, where
+  /// pressure or grid are not usable, or the level is neither there nor the next.
+  template <spatial_dot_grid Dots>
+  bool add(std::size_t level, const Dots& side_dots_mm, const S& pressure_mpa) {
+    const auto dots = as_view(side_dots_mm);
+    if (dots.rows() != Row::rows || dots.cols() != rim_.size() || level > levels_.size() ||
+        !is_finite(pressure_mpa) || !(value(pressure_mpa) > 0)) {
+      return false;
+    }
+    if (level == levels_.size()) {
+      levels_.emplace_back(Row::rows, rim_.size());
+    }
+    levels_[level].template add<Row>(dots, pressure_mpa);
+    return true;
+  }
+
+  std::size_t levels() const { return levels_.size(); }
+
+  /// Both, from 2 pressures or more. Refuses (parameter_error) fewer, equal ones, dots that are not
+  /// there, that do not stretch or that stretch alike at all pressures, a pull that is not upward.
+  RimFit<S> fit(const RimFitOptions& options = {}) const {
+    using std::sqrt;
+    check(options, 2);
+    expects(distinct_pressures() >= 2, owner, "distinct pressures",
+            static_cast<long long>(distinct_pressures()), ">= 2, more than a hundredth apart");
+    Balance balance(rim_, levels_, row_);
+    return settled(balance, options, true, true, [&] {
+      const auto both = detail::membrane::both_of(balance.equations());
+      expects(is_finite(both.condition) && value(both.condition) < options.max_condition, owner,
+              "condition number", both.condition,
+              "< max_condition: the side dots have to stretch more at the higher pressure");
+      expects(value(both.u) > 0 && value(both.v) > 0, owner, "L^4 in mm^4", S(both.v / both.u),
+              "> 0, with mu t > 0: are pressures and dots right?");
+      const S length = sqrt(S(sqrt(S(both.v / both.u))));
+      return Pair{length, S(both.u * length)};
+    });
+  }
+
+  /// mu t, where the mean length L is known.
+  RimFit<S> fit_modulus(const S& length_mm, const RimFitOptions& options = {}) const {
+    check(options, 1);
+    expects(is_finite(length_mm) && value(length_mm) > 0, owner, "length_mm", length_mm,
+            "finite and > 0");
+    Balance balance(rim_, levels_, row_);
+    return settled(balance, options, false, true, [&] {
+      return Pair{length_mm, detail::membrane::modulus_of(length_mm, balance.equations())};
+    });
+  }
+
+  /// L, where mu t is known.
+  RimFit<S> fit_length(const S& modulus_n_per_mm, const RimFitOptions& options = {}) const {
+    check(options, 1);
+    expects(is_finite(modulus_n_per_mm) && value(modulus_n_per_mm) > 0, owner, "modulus_n_per_mm",
+            modulus_n_per_mm, "finite and > 0");
+    Balance balance(rim_, levels_, row_);
+    return settled(balance, options, true, false, [&] {
+      return Pair{detail::membrane::length_of(modulus_n_per_mm, balance.equations()),
+                  modulus_n_per_mm};
+    });
+  }
+
+ private:
+  using Balance = detail::membrane::FreeRimBalance<Row, S>;
+  static constexpr const char* owner = "RimCalibration";
+
+  void check(const RimFitOptions& options, long long least_levels) const {
+    const char* const of_options = "RimFitOptions";
+    const auto noise = [&](double sd, const char* name) {
+      expects(is_finite(sd) && sd >= 0, of_options, name, sd, "finite and >= 0");
+    };
+    noise(options.side_dot_noise_mm, "side_dot_noise_mm");
+    noise(options.pressure_noise_mpa, "pressure_noise_mpa");
+    expects(is_finite(options.max_condition) && options.max_condition > 1, of_options,
+            "max_condition", options.max_condition, "finite and > 1");
+    expects(is_finite(options.least_stretch) && options.least_stretch > 1, of_options,
+            "least_stretch", options.least_stretch, "finite and > 1");
+    expects(static_cast<long long>(levels_.size()) >= least_levels, owner, "levels of pressure",
+            static_cast<long long>(levels_.size()),
+            least_levels > 1 ? ">= 2; with one, fit_modulus or fit_length" : ">= 1");
+    const Index seen = detail::membrane::seen_in_all(rim_, levels_);
+    expects(3 * seen >= 2 * rim_.size(), owner, "side dots that every level sees",
+            static_cast<long long>(seen), ">= 2/3 of the border points");
+    const Index ever = detail::membrane::seen_in_any(rim_, levels_);
+    expects(ever == rim_.size(), owner, "side dots that some level sees",
+            static_cast<long long>(ever), "all of them: leave others out of the border");
+  }
+
+  Index distinct_pressures() const {
+    Index distinct = 0;
+    for (std::size_t k = 0; k < levels_.size(); ++k) {
+      bool is_new = true;
+      for (std::size_t before = 0; before < k; ++before) {
+        const double ratio =
+            static_cast<double>(value(S(levels_[k].pressure_mpa / levels_[before].pressure_mpa)));
+        is_new = is_new && std::abs(std::log(ratio)) > 0.01;
+      }
+      distinct += is_new ? 1 : 0;
+    }
+    return distinct;
+  }
+
+  struct Pair {
+    S length;
+    S modulus;
+  };
+
+  /// Solves; again and again where what the dots tell depends on the solution.
+  template <class Solve>
+  RimFit<S> settled(Balance& balance,
+                    const RimFitOptions& options,
+                    bool length_found,
+                    bool modulus_found,
+                    const Solve& solve) const {
+    using std::sqrt;
+    Pair found = solve();
+    if constexpr (Row::needs_modulus) {
+      S change = S(1);
+      for (int round = 0; round < 200 && value(change) > 1e-10; ++round) {
+        balance.correct(found.length, found.modulus);
+        const Pair next = solve();
+        const S longer = next.length / found.length - S(1);
+        const S stiffer = next.modulus / found.modulus - S(1);
+        change = sqrt(S(square(longer) + square(stiffer)));
+        found = next;
+      }
+      expects(value(change) <= 1e-10, owner, "change of the last round", change, "<= 1e-10");
+    }
+    return finished(balance, found.length, found.modulus, length_found, modulus_found, options);
+  }
+
+  RimFit<S> finished(const Balance& balance,
+                     const S& length,
+                     const S& modulus,
+                     bool length_found,
+                     bool modulus_found,
+                     const RimFitOptions& options) const {
+    RimFit<S> fit{};
+    fit.length_mm = length;
+    fit.modulus_n_per_mm = modulus;
+    fit.side_dot_share = balance.shares();
+    fit.share_scatter = balance.share_scatter();
+    fit.missing = rim_.size() - detail::membrane::seen_in_all(rim_, levels_);
+    bool stretched = true;
+    S least = not_a_number<S>();
+    for (std::size_t k = 0; k < levels_.size(); ++k) {
+      const S lambda = balance.stretch(k, length);
+      fit.stretch.push_back(lambda);
+      const bool enough = value(lambda) >= options.least_stretch;
+      if (k == 0 || !(value(lambda) >= value(least))) {
+        least = lambda;
+      }
+      stretched = stretched && enough;
+    }
+    expects(stretched, owner, "stretch of the side dots", least,
+            ">= least_stretch at all pressures");
+    expects(is_finite(modulus) && value(modulus) > 0, owner, "membrane modulus", modulus, "> 0");
+    fit.residual = balance.residual(length, modulus);
+    const auto errors = balance.errors(length, modulus, length_found, modulus_found,
+                                       S(options.side_dot_noise_mm), S(options.pressure_noise_mpa));
+    fit.length_sd_mm = errors.length_sd_mm;
+    fit.modulus_sd_n_per_mm = errors.modulus_sd_n_per_mm;
+    fit.correlation = errors.correlation;
+    fit.condition = errors.condition;
+    return fit;
+  }
+
+  detail::membrane::CalibratedRim<S> rim_;
+  Row row_;
+  std::vector<detail::membrane::RimLevel<S>> levels_;
+};
+
+}  // namespace v0
+}  // namespace fingerpad

@@ -1,0 +1,168 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+#pragma once
+// Ways to the membrane's forces on the rim that need no unknown inside: each column by itself, all
+// of them together, or the material alone.
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "fingerpad/detail/membrane/compartments.hpp"
+#include "fingerpad/detail/membrane/segments.hpp"
+#include "fingerpad/detail/membrane/tensions.hpp"
+#include "fingerpad/detail/space/point_algebra.hpp"
+#include "fingerpad/dots.hpp"
+#include "fingerpad/expects.hpp"
+#include "fingerpad/grid.hpp"
+#include "fingerpad/scalar.hpp"
+
+namespace fingerpad {
+inline namespace v0 {
+namespace detail::membrane {
+
+/// The vertical pull of column i by the pressure on it alone: eq. 12 without the shear between
+/// columns.
+template <scalar S>
+S column_load(const Segments<S>& segments, Index i, const S& pressure_mpa) {
+  S sum = S(0);
+  for (Index j = segments.rows(); j-- > 0;) {
+    sum = sum + segments.area(i, j).z;
+  }
+  return S(pressure_mpa * sum);
+}
+
+/// The force of direction `pull` with the vertical component `load`; false where there is none.
+template <scalar S>
+bool force_along(const Point3<S>& pull, const S& load, Point3<S>& force) {
+  const bool upward = value(pull.z) > 0;
+  force = upward ? scaled(S(load / pull.z), pull) : Point3<S>{S(0), S(0), S(0)};
+  return upward;
+}
+
+/// The vertical pull at the top of column i, if its tension is that of the rim.
+template <scalar S>
+S lift_at_top(const Segments<S>& segments, Index i, const Point3<S>& pull) {
+  using std::sqrt;
+  const S per_mm = S(sqrt(S(length_sq(pull) / length_sq(segments.around(i, 0).along))));
+  return S(per_mm * segments.around(i, segments.rows()).normal.z);
+}
+
+/// Force per pull with which the rim carries what is below A_g; not above 0 where it cannot.
+template <scalar S>
+S balanced_modulus(const Segments<S>& segments,
+                   const std::vector<Point3<S>>& pulls,
+                   const S& pressure_mpa) {
+  S load = S(0);
+  S lift = S(0);
+  for (Index i = 0; i < segments.columns(); ++i) {
+    const Point3<S>& pull = pulls[static_cast<std::size_t>(i)];
+    load = load + column_load(segments, i, pressure_mpa);
+    // where A_g is not level, what is above it pulls up or down, with about the tension of the rim
+    lift = lift + pull.z - lift_at_top(segments, i, pull);
+  }
+  return value(lift) > 0 ? S(load / lift) : S(0);
+}
+
+/// What fixes the magnitude of a pull, and so how its noise spreads.
+enum class Magnitude : std::uint8_t {
+  of_all,     ///< the balance of all columns together
+  of_column,  ///< the balance of its own column
+  given,      ///< the material
+};
+
+}  // namespace detail::membrane
+
+/// One pass: each column carries the pressure on it, in the direction of its side dots. Takes the
+/// shear between columns for 0. Reference and first guess.
+struct ClosedForm {
+  static constexpr auto magnitude = detail::membrane::Magnitude::of_column;
+  static constexpr bool finds_tensions = false;
+  template <scalar S>
+  struct Work {
+    Work(const ClosedForm&, Index, Index) {}
+  };
+
+  template <bool, scalar S>
+  bool solve(const detail::membrane::Segments<S>& segments,
+             const detail::membrane::Compartments<S>&,
+             const std::vector<Point3<S>>& pulls,
+             const S& pressure_mpa,
+             Work<S>&,
+             detail::membrane::Tensions<S>& tensions) const {
+    bool good = true;
+    for (Index i = 0; i < segments.columns(); ++i) {
+      const std::size_t k = static_cast<std::size_t>(i);
+      const S load = detail::membrane::column_load(segments, i, pressure_mpa);
+      good = detail::membrane::force_along(pulls[k], load, tensions.rim[k]) && good;
+    }
+    return good;
+  }
+};
+
+/// All columns at once: the pulls are right up to one factor, mu t, and what they lift together is
+/// the pressure on the whole membrane below A_g. Needs no material constant, and of the shape
+/// nothing but the area of A_g.
+struct BalancedRim {
+  static constexpr auto magnitude = detail::membrane::Magnitude::of_all;
+  static constexpr bool finds_tensions = false;
+  template <scalar S>
+  struct Work {
+    Work(const BalancedRim&, Index, Index) {}
+  };
+
+  template <bool Magnitudes, scalar S>
+  bool solve(const detail::membrane::Segments<S>& segments,
+             const detail::membrane::Compartments<S>&,
+             const std::vector<Point3<S>>& pulls,
+             const S& pressure_mpa,
+             Work<S>&,
+             detail::membrane::Tensions<S>& tensions) const {
+    static_assert(Magnitudes, "a direction alone cannot be balanced: use ClampedRim");
+    const S modulus = detail::membrane::balanced_modulus(segments, pulls, pressure_mpa);
+    if (!(value(modulus) > 0)) {
+      return false;
+    }
+    for (std::size_t k = 0; k < pulls.size(); ++k) {
+      tensions.rim[k] = detail::scaled(modulus, pulls[k]);
+    }
+    return true;
+  }
+};
+
+/// The material's modulus is known (calibrate/rim.hpp): the pulls are forces. Needs no shape.
+struct KnownModulus {
+  static constexpr auto magnitude = detail::membrane::Magnitude::given;
+  static constexpr bool finds_tensions = false;
+  template <scalar S>
+  struct Work {
+    Work(const KnownModulus&, Index, Index) {}
+  };
+
+  double modulus_n_per_mm = 0.5;  ///< mu t: shear modulus times thickness, > 0
+
+  template <bool Magnitudes, scalar S>
+  bool solve(const detail::membrane::Segments<S>&,
+             const detail::membrane::Compartments<S>&,
+             const std::vector<Point3<S>>& pulls,
+             const S&,
+             Work<S>&,
+             detail::membrane::Tensions<S>& tensions) const {
+    static_assert(Magnitudes, "a direction alone has no magnitude: use ClampedRim");
+    for (std::size_t k = 0; k < pulls.size(); ++k) {
+      tensions.rim[k] = detail::scaled(S(modulus_n_per_mm), pulls[k]);
+    }
+    return true;
+  }
+};
+
+/// Refuses what has no meaning (parameter_error).
+inline void expects_valid(const ClosedForm&) {}
+inline void expects_valid(const BalancedRim&) {}
+inline void expects_valid(const KnownModulus& given) {
+  expects(is_finite(given.modulus_n_per_mm) && given.modulus_n_per_mm > 0, "KnownModulus",
+          "modulus_n_per_mm", given.modulus_n_per_mm, "finite and > 0");
+}
+
+}  // namespace v0
+}  // namespace fingerpad
