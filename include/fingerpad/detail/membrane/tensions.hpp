@@ -41,16 +41,6 @@ Point3<S> border_force(const Border<S>& border, const S& normal, const S& shear)
   return sum(scaled(normal, border.normal), scaled(shear, border.along));
 }
 
-/// Sets what the membrane pulls the base with from the tensions of the lowest row.
-template <scalar S>
-void gather_rim(const Segments<S>& segments, Tensions<S>& tensions) {
-  for (Index i = 0; i < segments.columns(); ++i) {
-    const auto k = static_cast<std::size_t>(i);
-    tensions.rim[k] =
-        border_force(segments.around(i, 0), tensions.around_normal[k], tensions.around_shear[k]);
-  }
-}
-
 /// A segment's unbalanced force and its unbalanced torque about its own normal.
 template <scalar S>
 struct Unbalanced {
