@@ -119,7 +119,9 @@ void render_all(const Options& options) {
   const double dot_mm = sensor.dots ? sensor.dots->diameter_mm : 0.0;
   fs::create_directories(options.out / "frames");
   copy_unless_same(options.recording / "sensor.json", options.out / "sensor.json");
-  copy_unless_same(options.recording / "signals.csv", options.out / "signals.csv");
+  for (const char* file : {"signals.csv", "side_dots.csv", "stress_free_dots.csv"}) {
+    copy_unless_same(options.recording / file, options.out / file);
+  }
   render::Noise noise(options.seed, options.lighting);
   const auto centres = [&](const render::Step& step) {
     return look(sensor.camera, membrane.triangles, step, size, 1, dot_mm).depth_mm;

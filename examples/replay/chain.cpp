@@ -39,6 +39,22 @@ ContactStep contact_step_of(Recording& recording,
   }
 }
 
+WrenchStep wrench_step_of(const Recording& recording, const Options& options) {
+  try {
+    return make_wrench_step(recording);
+  } catch (const fingerpad::parameter_error& error) {
+    fail(options.recording, error.what());
+  }
+}
+
+TractionStep traction_step_of(const Recording& recording, const Options& options) {
+  try {
+    return make_traction_step(recording);
+  } catch (const fingerpad::parameter_error& error) {
+    fail(options.recording / "stress_free_dots.csv", error.what());
+  }
+}
+
 DotSource dots_of(Recording& recording, const Options& options) {
   if (recording.sensor.dots_only) {
     return DotSource::of_dots_only(options.recording, recording);
@@ -88,7 +104,9 @@ Chain::Chain(Recording& recording, const Options& options)
       contact_(recording.sensor.dots_only ? ContactStep()
                                           : contact_step_of(recording, depth_, options)),
       dots_(dots_of(recording, options)),
-      stick_(dots_.initial().size(), recording.sensor.stick) {
+      stick_(dots_.initial().size(), recording.sensor.stick),
+      wrench_(wrench_step_of(recording, options)),
+      traction_(traction_step_of(recording, options)) {
   if (!recording.sensor.dots_only) {
     motion_.emplace(recording.sensor, dots_.initial(), recording.reference_depth);
   }
@@ -110,8 +128,8 @@ void Chain::measure_depth(Scene& scene) {
 Scene Chain::operator()(int frame, const cv::Mat& image) {
   Scene scene;
   scene.frame = frame;
-  const auto time = recording_.times_s.find(frame);
-  scene.time_s = time == recording_.times_s.end() ? "" : time->second;
+  scene.time_s = recording_.signals.time_s(frame);
+  scene.pressure_mpa = recording_.signals.pressure_mpa(frame);
   scene.image = image;
   if (depth_) {
     measure_depth(scene);
@@ -122,6 +140,14 @@ Scene Chain::operator()(int frame, const cv::Mat& image) {
         motion_ ? (*motion_)(dots_px, scene.depth_mm, scene.contact_mask) : dots_alone(dots_px);
     scene.dots.stick = stick_(dots_px, scene.dots.in_contact, seconds(scene.time_s));
   }
+  if (wrench_) {
+    const auto start = std::chrono::steady_clock::now();
+    scene.wrench = wrench_(frame, scene.depth_mm, scene.contact_mask);
+    wrench_ms_.push_back(Milliseconds(std::chrono::steady_clock::now() - start).count());
+  }
+  if (traction_ && dots_.present()) {
+    scene.traction = traction_(scene.dots, scene.pressure_mpa);
+  }
   return scene;
 }
 
@@ -130,6 +156,9 @@ double Chain::depth_ms() const {
 }
 double Chain::contact_ms() const {
   return median(contact_ms_);
+}
+double Chain::wrench_ms() const {
+  return median(wrench_ms_);
 }
 
 }  // namespace replay

@@ -14,6 +14,8 @@
 #include "recording.hpp"
 #include "replay.hpp"
 #include "stick_step.hpp"
+#include "traction_step.hpp"
+#include "wrench_step.hpp"
 
 namespace replay {
 
@@ -29,6 +31,7 @@ class Chain {
   /// Medians over the frames so far; of a dots-only recording there are none.
   double depth_ms() const;
   double contact_ms() const;
+  double wrench_ms() const;
 
  private:
   void measure_depth(Scene& scene);
@@ -38,8 +41,11 @@ class Chain {
   DotSource dots_;
   std::optional<MotionStep> motion_;  ///< none where the recording is of dots only
   StickStep stick_;
+  WrenchStep wrench_;      ///< empty where the recording lacks something
+  TractionStep traction_;  ///< the same
   std::vector<double> depth_ms_;
   std::vector<double> contact_ms_;
+  std::vector<double> wrench_ms_;
 };
 
 }  // namespace replay

@@ -164,7 +164,8 @@ void paint_map(Canvas& canvas,
 void paint_legend(Canvas& canvas,
                   const cv::Rect2d& bar,
                   const ColourScale& scale,
-                  double text_height) {
+                  double text_height,
+                  const char* unit) {
   cv::Mat paper = canvas.area(bar);
   colour_column(scale, paper.size()).copyTo(paper);
   const double right = bar.x + bar.width;
@@ -180,7 +181,7 @@ void paint_legend(Canvas& canvas,
     canvas.line({right, y}, {right + 4, y}, 0.8, ink::grey);
     canvas.text({right + 8, y + text_height / 2}, label, text_height, ink::black);
   }
-  canvas.text({bar.x, bar.y - 1.6 * text_height}, "mm", text_height, ink::black);
+  canvas.text({bar.x, bar.y - 1.6 * text_height}, unit, text_height, ink::black);
 }
 
 }  // namespace replay

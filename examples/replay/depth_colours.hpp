@@ -33,10 +33,11 @@ void paint_map(Canvas& canvas,
                const ColourScale& scale,
                double line_every_mm);
 
-/// A legend with ticks in mm; `bar` is the coloured rectangle, labels stand on its right.
+/// A legend with ticks; `bar` is the coloured rectangle, labels stand on its right.
 void paint_legend(Canvas& canvas,
                   const cv::Rect2d& bar,
                   const ColourScale& scale,
-                  double text_height);
+                  double text_height,
+                  const char* unit = "mm");
 
 }  // namespace replay

@@ -11,9 +11,12 @@
 
 int main(int argc, char** argv) {
   CLI::App app(
-      "Depth, contact, the motion of the object and the stick ratio from a recording of a\n"
-      "fluid-filled pad. RECORDING is a folder with sensor.json, reference.png,\n"
+      "Depth, contact, the motion of the object, the stick ratio and the force from a recording\n"
+      "of a fluid-filled pad. RECORDING is a folder with sensor.json, reference.png,\n"
       "reference_depth.tiff and frames/, and perhaps free/ (frames of the free pad) and dots.csv;\n"
+      "force and moment need signals.csv with pressures, side_dots.csv and \"rim\" in "
+      "sensor.json,\n"
+      "the load on each dot also stress_free_dots.csv;\n"
       "DIR receives frames.csv, dots.csv and pictures/, and depth/ and contact/ with --raw.\n"
       "A recording of any other pad with a grid of dots needs a sensor.json of {} and frames/ or "
       "a\n"

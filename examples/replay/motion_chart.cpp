@@ -2,100 +2,15 @@
 // SPDX-License-Identifier: MIT
 #include "motion_chart.hpp"
 
-#include <algorithm>
-#include <cmath>
 #include <limits>
 
-#include "canvas.hpp"
-#include "picture_parts.hpp"
+#include "line_chart.hpp"
 
 namespace replay {
 namespace {
 
 constexpr double degree = 3.14159265358979323846 / 180;
 constexpr double none = std::numeric_limits<double>::quiet_NaN();
-const Ink line_colours[] = {{180, 110, 30}, {60, 140, 40}, {48, 40, 214}};
-
-struct Series {
-  std::string name;
-  std::vector<double> values;  ///< one a frame; NaN: none
-};
-
-struct Panel {
-  std::string title;
-  std::vector<Series> series;
-};
-
-template <class Value>
-Series series(const std::string& name, const std::vector<FrameRow>& rows, const Value& value) {
-  Series s{name, {}};
-  for (const FrameRow& row : rows) {
-    s.values.push_back(value(row));
-  }
-  return s;
-}
-
-/// From a round number to a round number, with a tick at each in between.
-struct Scale {
-  double bottom;
-  double top;
-  double tick;
-
-  explicit Scale(const Panel& panel) {
-    double low = 0;
-    double high = 0;
-    for (const Series& s : panel.series) {
-      for (const double value : s.values) {
-        low = std::isfinite(value) ? (std::min)(low, value) : low;
-        high = std::isfinite(value) ? (std::max)(high, value) : high;
-      }
-    }
-    const double span = (std::max)(high - low, 0.1);
-    const double decade = std::pow(10, std::floor(std::log10(span / 2)));
-    const double digit = span / 2 / decade;
-    tick = decade * (digit < 2 ? 1 : digit < 5 ? 2 : 5);
-    bottom = tick * std::floor(low / tick);
-    top = (std::max)(tick * std::ceil(high / tick), bottom + tick);
-  }
-};
-
-void paint_panel(Canvas& canvas, const cv::Rect2d& box, const Panel& panel, int first_frame) {
-  const Scale scale(panel);
-  const double last = static_cast<double>(panel.series.front().values.size()) - 1;
-  const auto x_of = [&](double k) { return box.x + box.width * k / (std::max)(last, 1.0); };
-  const auto y_of = [&](double value) {
-    return box.y + box.height * (scale.top - value) / (scale.top - scale.bottom);
-  };
-  canvas.text({box.x, box.y - 12}, panel.title, letter, ink::black, Align::left, true);
-  for (double value = scale.bottom; value < scale.top + scale.tick / 2; value += scale.tick) {
-    const double y = y_of(value);
-    canvas.line({box.x, y}, {box.x + box.width, y}, 0.6, ink::pale);
-    canvas.text({box.x - 8, y + letter / 2}, format("%g", value + 0.0), letter, ink::grey,
-                Align::right);
-  }
-  const double step = (std::max)(1.0, std::ceil(last / 12));
-  for (double k = 0; k <= last; k += step) {
-    canvas.text({x_of(k), box.y + box.height + 18}, std::to_string(first_frame + int(k)), letter,
-                ink::grey, Align::centre);
-  }
-  for (std::size_t s = 0; s < panel.series.size(); ++s) {
-    const Series& line = panel.series[s];
-    const Ink& colour = line_colours[s];
-    std::vector<Spot> spots;
-    for (std::size_t k = 0; k <= line.values.size(); ++k) {
-      if (k < line.values.size() && std::isfinite(line.values[k])) {
-        spots.emplace_back(x_of(static_cast<double>(k)), y_of(line.values[k]));
-        canvas.circle(spots.back(), 1.8, 1.8, colour);
-      } else {
-        canvas.curve(spots, 1.6, colour);
-        spots.clear();
-      }
-    }
-    const double y = box.y + 8 + 20 * static_cast<double>(s);
-    canvas.line({box.x + box.width + 14, y}, {box.x + box.width + 34, y}, 1.6, colour);
-    canvas.text({box.x + box.width + 42, y + letter / 2}, line.name, letter, ink::black);
-  }
-}
 
 }  // namespace
 
@@ -112,30 +27,19 @@ cv::Mat motion_chart(const std::string& title, const std::vector<FrameRow>& rows
   };
   using Point = fingerpad::Point3<double>;
   using Angles = fingerpad::Angles<double>;
-  const std::vector<Panel> panels = {
+  const std::vector<LinePanel> panels = {
       {"contact area, mm^2",
-       {series("area", rows, [](const FrameRow& row) { return row.contact.area_mm2; })}},
+       {line_series("area", rows, [](const FrameRow& row) { return row.contact.area_mm2; })}},
       {"contact depth, mm",
-       {series("depth", rows, [](const FrameRow& row) { return row.contact.depth_mm; })}},
+       {line_series("depth", rows, [](const FrameRow& row) { return row.contact.depth_mm; })}},
       {"displacement of the object, mm",
-       {series("x", rows, moved(&Point::x)), series("y", rows, moved(&Point::y)),
-        series("z", rows, moved(&Point::z))}},
+       {line_series("x", rows, moved(&Point::x)), line_series("y", rows, moved(&Point::y)),
+        line_series("z", rows, moved(&Point::z))}},
       {"rotation of the object, degrees",
-       {series("about x", rows, turned(&Angles::x_rad)),
-        series("about y", rows, turned(&Angles::y_rad)),
-        series("about z", rows, turned(&Angles::z_rad))}}};
-  constexpr double width = 620;
-  constexpr double height = 150;
-  constexpr double gap = 62;
-  const double bottom = 84 + static_cast<double>(panels.size()) * (height + gap);
-  Canvas canvas(72 + width + 120, bottom + 6);
-  canvas.text({28, 34}, title, 1.3 * letter, ink::black, Align::left, true);
-  for (std::size_t k = 0; k < panels.size(); ++k) {
-    const double y = 84 + static_cast<double>(k) * (height + gap);
-    paint_panel(canvas, {72, y, width, height}, panels[k], rows.front().frame);
-  }
-  canvas.text({72 + width / 2, bottom - 14}, "frame", letter, ink::grey, Align::centre);
-  return canvas.finished();
+       {line_series("about x", rows, turned(&Angles::x_rad)),
+        line_series("about y", rows, turned(&Angles::y_rad)),
+        line_series("about z", rows, turned(&Angles::z_rad))}}};
+  return line_chart(title, panels, rows.front().frame);
 }
 
 }  // namespace replay

@@ -23,7 +23,8 @@ constexpr const char* columns =
     "contact_area_mm2,contact_depth_mm,contact_center_x_mm,contact_center_y_mm,"
     "reference_dot_row,reference_dot_col,object_x_mm,object_y_mm,object_z_mm,"
     "rotation_x_rad,rotation_y_rad,rotation_z_rad,"
-    "dots_in_contact,stick_ratio,stick_ratio_updated";
+    "dots_in_contact,stick_ratio,stick_ratio_updated,"
+    "wrench_fx_n,wrench_fy_n,wrench_fz_n,wrench_mx_nm,wrench_my_nm,wrench_mz_nm";
 constexpr const char* dot_columns = "frame,row,col,x_px,y_px,x_mm,y_mm,z_mm,contact,stick";
 
 /// Empty where there is no number.
@@ -51,8 +52,8 @@ void close_file(std::ofstream& stream, const fs::path& file) {
 bool is_ours(const std::string& relative) {
   static const std::regex ours(
       R"(frames\.csv|dots\.csv|depth|depth/\d{6}\.tiff|contact|contact/\d{6}\.png|pictures|)"
-      R"(pictures/(depth|side|contact|stick)_\d{6}\.png|)"
-      R"(pictures/(montage|motion|stick_ratio)\.png)");
+      R"(pictures/(depth|side|contact|stick|rim|traction)_\d{6}\.png|)"
+      R"(pictures/(montage|motion|stick_ratio|wrench)\.png)");
   return std::regex_match(relative, ours);
 }
 
@@ -216,6 +217,13 @@ void FramesCsv::write(const FrameRow& row) {
             << ',' << (stick.updated() ? 1 : 0);
   } else {
     stream_ << ",,,";
+  }
+  const fingerpad::Point3<double>& force = row.wrench.force_n;
+  const fingerpad::Point3<double>& moment = row.wrench.moment_n_mm;
+  constexpr double metre = 1000;  // in mm
+  for (const double value :
+       {force.x, force.y, force.z, moment.x / metre, moment.y / metre, moment.z / metre}) {
+    stream_ << ',' << cell(row.has_wrench() ? value : none);
   }
   stream_ << '\n';
 }

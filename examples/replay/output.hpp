@@ -10,6 +10,7 @@
 
 #include "contact_step.hpp"
 #include "motion_step.hpp"
+#include "wrench_step.hpp"
 
 namespace replay {
 
@@ -52,6 +53,10 @@ struct FrameRow {
   fingerpad::ObjectMotionResult<double> motion;
   bool has_dots = false;
   fingerpad::StickRatioResult<float> stick;
+  fingerpad::WrenchResult<double> wrench;  ///< not ok(), and empty in the file: no answer
+  double pressure_mpa = 0;                 ///< NaN: not known
+
+  bool has_wrench() const { return wrench.accepted && wrench.ok(); }
 };
 
 class FramesCsv {

@@ -42,6 +42,7 @@ Painter::Painter(const Sensor& sensor, const cv::Mat_<float>& free_depth_mm, dou
       free_depth_mm_(free_depth_mm),
       in_pad_(free_depth_mm == free_depth_mm),  // NaN equals nothing
       half_width_mm_(std::ceil(sensor.pad.base_radius_mm + 1)),
+      dot_pitch_px_(sensor.dots ? sensor.dots->pitch_mm / sensor.camera.pitch_mm : 0.0),
       top_mm_(2 * std::ceil((std::max)(sensor.pad.apex_height_mm, largest(free_depth_mm)) / 2)),
       scale_(depth_scale(top_mm_)),
       brightest_((std::max)(brightest, 1.0)) {}

@@ -12,6 +12,8 @@
 #include "depth_colours.hpp"
 #include "motion_step.hpp"
 #include "sensor.hpp"
+#include "traction_step.hpp"
+#include "wrench_step.hpp"
 
 namespace replay {
 
@@ -34,9 +36,12 @@ struct Scene {
   double valid_share = not_known;
   double depth_mean_mm = not_known;  ///< where no pixel is valid
   double depth_max_mm = not_known;
+  double pressure_mpa = not_known;
   cv::Mat_<uchar> contact_mask;  ///< nonzero: in contact; empty as the depth
   ContactResult contact;
   FrameDots dots;
+  WrenchFrame wrench;
+  TractionFrame traction;
 };
 
 class Painter {
@@ -51,6 +56,10 @@ class Painter {
   cv::Mat side(const Scene& scene) const;
   /// `initial_px` are the free pad's dots.
   cv::Mat contact(const Scene& scene, const DotGrid& initial_px) const;
+  /// What the membrane pulls the rim with, over the camera's image.
+  cv::Mat rim(const Scene& scene) const;
+  /// Contact pressure and shear at the dots, over the camera's image.
+  cv::Mat traction(const Scene& scene) const;
   /// One column a scene: camera image, depth, its change and side view.
   cv::Mat montage(const std::string& title, const std::vector<Scene>& scenes) const;
 
@@ -59,6 +68,7 @@ class Painter {
   cv::Mat_<float> free_depth_mm_;
   cv::Mat_<uchar> in_pad_;
   double half_width_mm_;  ///< of side views
+  double dot_pitch_px_;   ///< at the plate; 0 without dots
   double top_mm_;         ///< of the depth scale
   ColourScale scale_;
   double brightest_;

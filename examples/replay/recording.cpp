@@ -7,7 +7,6 @@
 
 #include "failure.hpp"
 #include "images.hpp"
-#include "signals.hpp"
 
 namespace replay {
 namespace {
@@ -164,7 +163,14 @@ Recording open_recording(const fs::path& folder) {
   } else if (fs::is_directory(folder / "free", error)) {
     recording.free_frames = FrameSource::of_folder(folder / "free");
   }
-  recording.times_s = read_times(folder / "signals.csv", recording.frames.size());
+  recording.signals = read_signals(folder / "signals.csv", recording.frames.size());
+  if (!recording.sensor.dots_only) {
+    recording.side_dots = read_side_dots(folder / "side_dots.csv", recording.frames.size());
+    if (const auto& dots = recording.sensor.dots) {
+      recording.stress_free_dots =
+          read_stress_free_dots(folder / "stress_free_dots.csv", {dots->cols, dots->rows});
+    }
+  }
   return recording;
 }
 

@@ -1,16 +1,19 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// A recording on disk: sensor.json, the free pad, the frames (a folder or a video) and the signals.
+// A recording on disk: sensor.json, the free pad, the frames (a folder or a video), the signals and
+// the dots beside the rim.
 // Everything that can be checked before the first frame is checked by open_recording().
 #include <filesystem>
-#include <map>
 #include <opencv2/core.hpp>
 #include <opencv2/videoio.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "sensor.hpp"
+#include "side_dots.hpp"
+#include "signals.hpp"
 
 namespace replay {
 
@@ -45,8 +48,10 @@ struct Recording {
   cv::Mat reference;  ///< the free pad, 8- or 16-bit colour; dots only: may be the first frame
   cv::Mat_<float> reference_depth;  ///< mm, NaN outside the pad; dots only: empty
   FrameSource frames;
-  FrameSource free_frames;             ///< more frames of the free pad; may be none
-  std::map<int, std::string> times_s;  ///< of the frames that signals.csv names, as written there
+  FrameSource free_frames;  ///< more frames of the free pad; may be none
+  Signals signals;
+  std::optional<SideDots> side_dots;
+  std::optional<SpaceGrid> stress_free_dots;
 };
 
 /// Opens and checks a recording; throws Failure.

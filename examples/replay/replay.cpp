@@ -34,6 +34,25 @@ Range within(const Range& range, int size, const std::filesystem::path& recordin
   return {range.first, last};
 }
 
+void print_wrench(const Chain& chain, const Writer& writer, const Recording& recording) {
+  const std::string lacking = lacking_for_wrench(recording);
+  if (!lacking.empty()) {
+    std::printf("force        none: %s\n", lacking.c_str());
+    return;
+  }
+  int known = 0;
+  double largest_n = 0;
+  for (const FrameRow& row : writer.rows()) {
+    if (row.has_wrench()) {
+      ++known;
+      const auto& f = row.wrench.force_n;
+      largest_n = std::fmax(largest_n, std::sqrt(f.x * f.x + f.y * f.y + f.z * f.z));
+    }
+  }
+  std::printf("force        in %d frames, at most %.2f N\n", known, largest_n);
+  std::printf("force step   %.2f ms a frame (median)\n", chain.wrench_ms());
+}
+
 /// What is only known of a recording with depth.
 void print_depth(const Chain& chain, const Writer& writer) {
   double valid_share = 0;
@@ -90,6 +109,9 @@ void print_summary(const Chain& chain,
     print_depth(chain, writer);
   }
   print_dots(chain, writer);
+  if (!dots_only) {
+    print_wrench(chain, writer, recording);
+  }
   std::printf("table        %s\n", (writer.place() / "frames.csv").c_str());
   if (options.raw && !dots_only) {
     std::printf("depth maps   %s\n", (writer.place() / "depth").c_str());

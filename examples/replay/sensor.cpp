@@ -248,10 +248,15 @@ bool names_depth(const Section& root) {
 Rim read_rim(const Section& root) {
   const Section section = root.section(
       "rim", {{"side_dot_length_mm", "stress-free length from the rim to its side dot, mm"},
-              {"membrane_modulus_n_per_mm", "shear modulus times thickness, N/mm"}});
-  Rim rim{section.positive("side_dot_length_mm"), {}};
+              {"membrane_modulus_n_per_mm", "shear modulus times thickness, N/mm"},
+              {"stress_free_inclination_rad", "of the stress-free membrane at the rim, rad"}});
+  Rim rim;
+  rim.side_dot_length_mm = section.positive("side_dot_length_mm");
   if (section.has("membrane_modulus_n_per_mm")) {
     rim.membrane_modulus_n_per_mm = section.positive("membrane_modulus_n_per_mm");
+  }
+  if (section.has("stress_free_inclination_rad")) {
+    rim.stress_free_inclination_rad = section.positive("stress_free_inclination_rad");
   }
   return rim;
 }

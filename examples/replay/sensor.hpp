@@ -37,6 +37,7 @@ struct DotPattern {
 struct Rim {
   double side_dot_length_mm = 0;
   std::optional<double> membrane_modulus_n_per_mm;
+  std::optional<double> stress_free_inclination_rad;  ///< of the membrane at the rim
 };
 
 struct NeighbourLight {

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <fstream>
+#include <limits>
 #include <vector>
 
 #include "failure.hpp"
@@ -35,10 +36,20 @@ bool is_number(const std::string& text, double& number) {
 
 }  // namespace
 
-std::map<int, std::string> read_times(const std::filesystem::path& file, int frame_count) {
-  std::map<int, std::string> times;
+std::string Signals::time_s(int frame) const {
+  const auto found = times_s.find(frame);
+  return found == times_s.end() ? "" : found->second;
+}
+
+double Signals::pressure_mpa(int frame) const {
+  const auto found = pressures_mpa.find(frame);
+  return found == pressures_mpa.end() ? std::numeric_limits<double>::quiet_NaN() : found->second;
+}
+
+Signals read_signals(const std::filesystem::path& file, int frame_count) {
+  Signals signals;
   if (!std::filesystem::exists(file)) {
-    return times;
+    return signals;
   }
   std::ifstream stream(file);
   std::string line;
@@ -68,17 +79,20 @@ std::map<int, std::string> read_times(const std::filesystem::path& file, int fra
       refuse(number, "frame '" + cells[0] + "' is not one of the frames 0 to " +
                          std::to_string(frame_count - 1));
     }
+    double value = 0;
     for (std::size_t i = 1; i < cells.size(); ++i) {
-      double value = 0;
       if (!(i == 2 && cells[i].empty()) && !is_number(cells[i], value)) {
         refuse(number, header[i] + " '" + cells[i] + "' is not a number");
       }
     }
-    if (!times.emplace(static_cast<int>(frame), cells[1]).second) {
+    if (with_pressure && !cells[2].empty()) {
+      signals.pressures_mpa.emplace(static_cast<int>(frame), value);
+    }
+    if (!signals.times_s.emplace(static_cast<int>(frame), cells[1]).second) {
       refuse(number, "frame " + cells[0] + " is given twice");
     }
   }
-  return times;
+  return signals;
 }
 
 }  // namespace replay

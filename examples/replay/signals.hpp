@@ -8,8 +8,16 @@
 
 namespace replay {
 
-/// Time of each frame that the file names, as written there; throws Failure with the line number.
-/// An absent file is no fault and names no frame.
-std::map<int, std::string> read_times(const std::filesystem::path& file, int frame_count);
+/// What is known of the frames that the file names.
+struct Signals {
+  std::map<int, std::string> times_s;  ///< as written there
+  std::map<int, double> pressures_mpa;
+
+  std::string time_s(int frame) const;   ///< empty where unknown
+  double pressure_mpa(int frame) const;  ///< NaN where unknown
+};
+
+/// Throws Failure with the line number. An absent file is no fault and names no frame.
+Signals read_signals(const std::filesystem::path& file, int frame_count);
 
 }  // namespace replay

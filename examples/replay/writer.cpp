@@ -9,6 +9,7 @@
 #include "images.hpp"
 #include "motion_chart.hpp"
 #include "stick_chart.hpp"
+#include "wrench_chart.hpp"
 
 namespace replay {
 namespace {
@@ -68,9 +69,10 @@ Writer::Writer(const Recording& recording,
 }
 
 void Writer::operator()(Scene scene) {
+  with_wrench_ = with_wrench_ || scene.wrench.present;
   rows_.push_back({scene.frame, scene.time_s, scene.valid_share, scene.depth_mean_mm,
                    scene.depth_max_mm, scene.contact, scene.dots.motion, scene.dots.stick.present(),
-                   scene.dots.stick.result});
+                   scene.dots.stick.result, scene.wrench.result, scene.pressure_mpa});
   table_.write(rows_.back());
   if (dots_) {
     dots_->write(scene.frame, scene.dots);
@@ -93,6 +95,12 @@ void Writer::write_pictures(Scene& scene) {
     write_png(file("pictures", "depth_", scene, ".png"), painter_->depth(scene));
     write_png(file("pictures", "side_", scene, ".png"), painter_->side(scene));
     write_png(file("pictures", "contact_", scene, ".png"), painter_->contact(scene, initial_dots_));
+    if (scene.wrench.present) {
+      write_png(file("pictures", "rim_", scene, ".png"), painter_->rim(scene));
+    }
+    if (scene.traction.present()) {
+      write_png(file("pictures", "traction_", scene, ".png"), painter_->traction(scene));
+    }
   }
   if (dots_) {
     // The first frames of a camera may be dark, and nothing better is known without a free pad.
@@ -108,6 +116,9 @@ void Writer::finish() {
     if (painter_) {
       write_png(output_.file("pictures", "montage.png"), painter_->montage(title, columns_));
       write_png(output_.file("pictures", "motion.png"), motion_chart(title, rows_));
+      if (with_wrench_) {
+        write_png(output_.file("pictures", "wrench.png"), wrench_chart(title, rows_));
+      }
     }
     if (dots_) {
       write_png(output_.file("pictures", "stick_ratio.png"), stick_chart(title, rows_));

@@ -42,6 +42,7 @@ class Writer {
   double brightest_;
   DotGrid initial_dots_;
   int total_;
+  bool with_wrench_ = false;
   OutputFolder output_;
   FramesCsv table_;
   std::optional<DotsCsv> dots_;

@@ -50,10 +50,10 @@ struct WrenchOptions {
   Index columns = 36;  ///< n, lines from the rim to A_g, in [8, 720]; published 72
   Index rows = 30;     ///< m, segments of a column, in [2, 1000]; published steps of 0.2 mm: 65
   S line_step_mm = S(2) / S(5);  ///< step along a line, in [radius / 1000, radius / 10]
-  S blur_mm = S(8) / S(5);       ///< what lies nearer to the edge of the contact is not looked at,
-                            ///< >= 0: half the width of the depth map's smoothing and a node of
-                            ///< the height map; 0.6 for exact shapes
-  S reach_mm = S(4);  ///< how far beyond that the membrane's inclination is read, > 0
+  S blur_mm = S(3) / S(5);  ///< what lies nearer to the edge of the contact is not looked at, >= 0:
+                            ///< a node of the height map, and half of the half width over which a
+                            ///< depth map was averaged; more makes the edge less certain
+  S reach_mm = S(4);        ///< how far beyond that the membrane's inclination is read, >= 4 steps
 };
 
 template <scalar S>
@@ -64,7 +64,6 @@ void expects_valid(const WrenchOptions<S>& o) {
   };
   positive(o.base_radius_mm, "base_radius_mm");
   positive(o.side_dot_length_mm, "side_dot_length_mm");
-  positive(o.reach_mm, "reach_mm");
   expects(o.columns >= 8 && o.columns <= 720, owner, "columns", static_cast<long long>(o.columns),
           "in [8, 720]");
   expects(o.rows >= 2 && o.rows <= 1000, owner, "rows", static_cast<long long>(o.rows),
@@ -72,6 +71,8 @@ void expects_valid(const WrenchOptions<S>& o) {
   const S steps = o.base_radius_mm / o.line_step_mm;
   expects(is_finite(steps) && value(steps) >= 10 && value(steps) <= 1000, owner, "line_step_mm",
           o.line_step_mm, "in [base_radius_mm / 1000, base_radius_mm / 10]");
+  expects(is_finite(o.reach_mm) && !(o.reach_mm < S(4) * o.line_step_mm), owner, "reach_mm",
+          o.reach_mm, "finite and >= 4 line_step_mm");
   expects(is_finite(o.blur_mm) && value(o.blur_mm) >= 0, owner, "blur_mm", o.blur_mm,
           "finite and >= 0");
 }
@@ -164,8 +165,8 @@ class Wrench {
 
   /// Force and moment of a frame. `shape` is the membrane (HeightMap, or any membrane_shape);
   /// `side_dots_mm` has Row::rows rows, the one nearer to the rim first, and a column for each
-  /// border point; NaN: not found. Pressure in MPa above that of the air. With `noise` the result
-  /// has a covariance.
+  /// border point; NaN: not found. Pressure in MPa above that of the air, at most 1e6. With `noise`
+  /// the result has a covariance.
   template <class Shape, spatial_dot_grid Dots>
     requires(membrane_shape<Shape, S>)
   WrenchResult<S>
@@ -219,7 +220,8 @@ class Wrench {
                      const S& pressure_mpa,
                      Workspace& work,
                      WrenchResult<S>& result) const {
-    if (!is_finite(pressure_mpa) || !(value(pressure_mpa) > 0)) {
+    // no pad holds so much, and squares must stay finite
+    if (!(value(pressure_mpa) > 0) || S(1e6) < pressure_mpa) {
       return WrenchStatus::bad_pressure;
     }
     const WrenchStatus shaped = lay_mesh(shape, work, result);
@@ -344,15 +346,19 @@ class Wrench {
     Point3<S> moment = force;
     S tension_sq = S(0), pull_sq = S(0);
     const S half = S(std::numbers::pi) / S(static_cast<double>(options_.columns));
-    // the middle of a piece of a circle lies a little inside
+    // a piece of the rim: the mean of its points lies a little inside, and the sum of forces along
+    // it is a little shorter than they are
     const S arm = options_.base_radius_mm * S(sin(half)) / half;
+    const S arm_along = options_.base_radius_mm * half / S(sin(half));
     for (Index i = 0; i < options_.columns; ++i) {
       const std::size_t k = static_cast<std::size_t>(i);
       const Point3<S>& f = work.tensions_.rim[k];
       const S at = half * S(static_cast<double>(2 * i + 1));
+      const S c = cos(at);
+      const S s = sin(at);
       force = detail::sum(force, f);
-      moment =
-          detail::sum(moment, detail::cross({S(arm * S(cos(at))), S(arm * S(sin(at))), S(0)}, f));
+      moment = {S(moment.x + arm * s * f.z), S(moment.y - arm * c * f.z),
+                S(moment.z + arm_along * (c * f.y - s * f.x))};
       tension_sq = tension_sq + detail::length_sq(f);
       pull_sq = pull_sq + detail::length_sq(work.pulls_.segments[k]);
     }
@@ -380,7 +386,10 @@ class Wrench {
                                            edge_mm2, pressure_mpa},
           noise);
     }
-    const bool finite = detail::is_finite_point(result.force_n) && detail::is_finite_point(moment);
+    bool finite = detail::is_finite_point(result.force_n) && detail::is_finite_point(moment);
+    for (std::size_t k = 0; k < 6; ++k) {
+      finite = finite && is_finite(result.covariance[k][k]);
+    }
     if (!finite) {
       result = failed(result);
       forget(work);

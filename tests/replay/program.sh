@@ -61,7 +61,7 @@ refuses 1 "sensor.json: cannot be read" "$broken" --out "$work/out"
 
 # Rendered again: the same bytes.
 mkdir "$work/again"
-cp -r "$recording/membrane" "$recording/sensor.json" "$recording/signals.csv" "$work/again"
+cp -r "$recording/membrane" "$recording/sensor.json" "$recording"/*.csv "$work/again"
 "$render" "$work/again" >/dev/null || fail "the recording cannot be rendered"
 diff -r "$recording" "$work/again" || fail "the bundled recording is not what render makes"
 
@@ -82,7 +82,8 @@ accuracy none 0.7 0.7
 
 "$replay" "$recording" --out "$work/out" --frames 0:7 >"$work/table" || fail "replay with pictures"
 grep -q "^frames  *7$" "$work/table" || fail "the printed table: $(cat "$work/table")"
-for file in frames.csv pictures/{montage,stick_ratio,depth_000006,side_000006,stick_000006}.png; do
+for file in frames.csv pictures/{montage,stick_ratio,wrench}.png \
+            pictures/{depth,side,stick,rim,traction}_000006.png; do
   [[ -s $work/out/$file ]] || fail "$file is missing"
 done
 [[ ! -e $work/out/depth ]] || fail "the depth maps of the earlier run are still there"

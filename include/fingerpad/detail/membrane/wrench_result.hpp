@@ -16,7 +16,7 @@ inline namespace v0 {
 enum class WrenchStatus : std::uint8_t {
   ok,
   no_contact,         ///< the membrane touches nothing: force and moment are 0
-  bad_pressure,       ///< not finite, or not above 0
+  bad_pressure,       ///< not finite, not above 0, or above all reason
   too_few_side_dots,  ///< more than a third were not found
   unstretched,        ///< more than a third do not tell a direction: too little stretch, or slack
   no_shape,           ///< more than a third of the lines run into holes
@@ -64,7 +64,11 @@ struct WrenchResult {
   WrenchStatus status = WrenchStatus::no_contact;
   Point3<S> force_n = {not_a_number<S>(), not_a_number<S>(), not_a_number<S>()};
   Point3<S> moment_n_mm = {not_a_number<S>(), not_a_number<S>(), not_a_number<S>()};  ///< about Q
-  /// Of (F_x, F_y, F_z, M_x, M_y, M_z), in N and N mm, to first order in the noise; 0 without.
+  /// Of (F_x, F_y, F_z, M_x, M_y, M_z), in N and N mm, to first order in the noise; 0 without. As
+  /// if all pulls were scaled together (with ClosedForm and PublishedIteration: each column by
+  /// itself), which is what BalancedRim does. LeastSquares evens out the noise of side dots: true
+  /// deviations of F_x and F_y are a fifth smaller, of M_x and M_y several times; noise of A_g it
+  /// spreads further than told.
   std::array<std::array<S, 6>, 6> covariance{};
   S summit_area_mm2 = not_a_number<S>();   ///< within A_g, in plan; NaN for KnownModulus
   S modulus_n_per_mm = not_a_number<S>();  ///< mu t that this frame would have: mean of tension
