@@ -11,8 +11,8 @@
 #include <vector>
 
 #include "fingerpad/wrench.hpp"
-#include "support/pad.hpp"
-#include "support/soap_film.hpp"
+#include "pad.hpp"
+#include "soap_film.hpp"
 
 namespace test {
 
