@@ -239,8 +239,16 @@ class Wrench {
     if (pulled != WrenchStatus::ok) {
       return pulled;
     }
-    const bool solved = solver_.template solve<Law::tells_magnitude>(
+    bool solved = solver_.template solve<Law::tells_magnitude>(
         work.segments_, work.nodes_, work.pulls_.segments, pressure, work.work_, work.tensions_);
+    if constexpr (Solver::finds_tensions) {
+      const auto imbalance =
+          detail::membrane::residual(work.segments_, work.nodes_, work.tensions_, pressure);
+      result.residual = solved ? imbalance.force : not_a_number<S>();
+    }
+    if constexpr (Solver::magnitude == detail::membrane::Magnitude::of_all) {
+      solved = solved && detail::membrane::carry_load(work.segments_, pressure, work.tensions_.rim);
+    }
     return solved ? WrenchStatus::ok : WrenchStatus::not_solved;
   }
 
@@ -371,11 +379,6 @@ class Wrench {
     S edge_mm2 = S(0);
     if constexpr (needs_shape) {
       result.summit_area_mm2 = summit_area(work.nodes_, edge_mm2);
-    }
-    if constexpr (Solver::finds_tensions) {
-      const auto imbalance = detail::membrane::residual(work.segments_, work.nodes_, work.tensions_,
-                                                        S(pressure_mpa * chord_factor()));
-      result.residual = imbalance.force;
     }
     keep_tensions(work);
     if (value(noise.side_dot_mm) > 0 || value(noise.edge_mm) > 0 || value(noise.pressure_mpa) > 0) {

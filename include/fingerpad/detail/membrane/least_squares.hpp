@@ -110,7 +110,7 @@ struct LeastSquares {
       factor = -work.cholesky.shared_right() / left;
     }
     work.cholesky.solve(factor);
-    return spread(R(pressure_mpa), work, tensions) && carry_load(segments, pressure_mpa, tensions);
+    return spread(R(pressure_mpa), work, tensions);
   }
 
  private:
@@ -192,32 +192,6 @@ struct LeastSquares {
       entries[detail::membrane::SegmentEquations<R>::shared_row][0] = -weight * pull.normal;
       entries[detail::membrane::SegmentEquations<R>::shared_row][1] = -weight * pull.along;
     }
-  }
-
-  /// Rows of an uneven mesh are not satisfied exactly, but their sum is known: all columns together
-  /// carry the pressure on them and what pulls at A_g. Scales the rim's forces to that.
-  template <scalar S>
-  static bool carry_load(const detail::membrane::Segments<S>& segments,
-                         const S& pressure_mpa,
-                         detail::membrane::Tensions<S>& tensions) {
-    S load = S(0);
-    S lift = S(0);
-    const Index top = segments.rows();
-    for (Index i = 0; i < segments.columns(); ++i) {
-      const auto k = static_cast<std::size_t>(top * segments.columns() + i);
-      const Point3<S> pull = detail::membrane::border_force(
-          segments.around(i, top), tensions.around_normal[k], tensions.around_shear[k]);
-      load = load + detail::membrane::column_load(segments, i, pressure_mpa) + pull.z;
-      lift = lift + tensions.rim[static_cast<std::size_t>(i)].z;
-    }
-    const S scale = load / lift;
-    if (!is_finite(scale) || !(value(scale) > 0)) {
-      return false;
-    }
-    for (Point3<S>& force : tensions.rim) {
-      force = detail::scaled(scale, force);
-    }
-    return true;
   }
 
   template <scalar S>

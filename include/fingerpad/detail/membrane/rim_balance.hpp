@@ -64,6 +64,17 @@ S balanced_modulus(const Segments<S>& segments,
   return value(lift) > 0 ? S(load / lift) : S(0);
 }
 
+/// Scales the rim's forces so that together they carry what is below A_g: of the rows of an uneven
+/// mesh, which are not satisfied exactly, the sum is known better. False where they cannot.
+template <scalar S>
+bool carry_load(const Segments<S>& segments, const S& pressure_mpa, std::vector<Point3<S>>& rim) {
+  const S scale = balanced_modulus(segments, rim, pressure_mpa);
+  for (Point3<S>& force : rim) {
+    force = scaled(scale, force);
+  }
+  return is_finite(scale) && value(scale) > 0;
+}
+
 /// What fixes the magnitude of a pull, and so how its noise spreads.
 enum class Magnitude : std::uint8_t {
   of_all,     ///< the balance of all columns together
