@@ -4,7 +4,7 @@
 // Force and moment in six axes, from the pressure in the pad, the shape of its membrane and the
 // side dots near the rim. Source: Ito, Kim, Obinata, "Multi-axis force measurement based on
 // vision-based fluid-type hemispherical tactile sensor" (2011); published and corrected forms in
-// docs/errata.md, E025-E027.
+// docs/errata.md, E025-E027 and E043-E046.
 //
 // The base feels the pull of the membrane along the rim and the pressure on its area (eqs. 1, 2):
 //   F = integral of T ds - p S_base z,    M = integral of b x T ds.
@@ -12,13 +12,10 @@
 // F_z < 0. The side dots tell how the membrane pulls (detail/membrane/rim_traction.hpp); how much,
 // is found from the balance of the membrane between the rim and the line A_g where it touches the
 // object or is level: everywhere below it nothing but tension and pressure acts.
-#include <array>
 #include <cmath>
 #include <concepts>
 #include <cstddef>
-#include <cstdint>
 #include <numbers>
-#include <utility>
 #include <vector>
 
 #include "fingerpad/detail/membrane/compartments.hpp"
@@ -32,6 +29,7 @@
 #include "fingerpad/detail/membrane/rim_traction.hpp"
 #include "fingerpad/detail/membrane/segments.hpp"
 #include "fingerpad/detail/membrane/tensions.hpp"
+#include "fingerpad/detail/membrane/wrench_options.hpp"
 #include "fingerpad/detail/membrane/wrench_result.hpp"
 #include "fingerpad/detail/space/point_algebra.hpp"
 #include "fingerpad/dots.hpp"
@@ -41,41 +39,6 @@
 
 namespace fingerpad {
 inline namespace v0 {
-
-template <scalar S = double>
-struct WrenchOptions {
-  S base_radius_mm = S(18735) / S(1000);  ///< of the clamped rim, around Q, > 0
-  S side_dot_length_mm = S(4) / S(5);     ///< from the rim to its side dot along the stress-free
-                                          ///< membrane, > 0, short against the radius
-  Index columns = 36;  ///< n, lines from the rim to A_g, in [8, 720]; published 72
-  Index rows = 30;     ///< m, segments of a column, in [2, 1000]; published steps of 0.2 mm: 65
-  S line_step_mm = S(2) / S(5);  ///< step along a line, in [radius / 1000, radius / 10]
-  S blur_mm = S(3) / S(5);  ///< what lies nearer to the edge of the contact is not looked at, >= 0:
-                            ///< a node of the height map, and half of the half width over which a
-                            ///< depth map was averaged; more makes the edge less certain
-  S reach_mm = S(4);        ///< how far beyond that the membrane's inclination is read, >= 4 steps
-};
-
-template <scalar S>
-void expects_valid(const WrenchOptions<S>& o) {
-  const char* const owner = "WrenchOptions";
-  const auto positive = [&](const S& x, const char* name) {
-    expects(is_finite(x) && value(x) > 0, owner, name, x, "finite and > 0");
-  };
-  positive(o.base_radius_mm, "base_radius_mm");
-  positive(o.side_dot_length_mm, "side_dot_length_mm");
-  expects(o.columns >= 8 && o.columns <= 720, owner, "columns", static_cast<long long>(o.columns),
-          "in [8, 720]");
-  expects(o.rows >= 2 && o.rows <= 1000, owner, "rows", static_cast<long long>(o.rows),
-          "in [2, 1000]");
-  const S steps = o.base_radius_mm / o.line_step_mm;
-  expects(is_finite(steps) && value(steps) >= 10 && value(steps) <= 1000, owner, "line_step_mm",
-          o.line_step_mm, "in [base_radius_mm / 1000, base_radius_mm / 10]");
-  expects(is_finite(o.reach_mm) && !(o.reach_mm < S(4) * o.line_step_mm), owner, "reach_mm",
-          o.reach_mm, "finite and >= 4 line_step_mm");
-  expects(is_finite(o.blur_mm) && value(o.blur_mm) >= 0, owner, "blur_mm", o.blur_mm,
-          "finite and >= 0");
-}
 
 /// Six-axis force.
 ///   Solver  LeastSquares (default), BalancedRim (as good, 15 times as fast, no inner tensions),
@@ -241,14 +204,15 @@ class Wrench {
     }
     bool solved = solver_.template solve<Law::tells_magnitude>(
         work.segments_, work.nodes_, work.pulls_.segments, pressure, work.work_, work.tensions_);
+    S residual = not_a_number<S>();
     if constexpr (Solver::finds_tensions) {
-      const auto imbalance =
-          detail::membrane::residual(work.segments_, work.nodes_, work.tensions_, pressure);
-      result.residual = solved ? imbalance.force : not_a_number<S>();
+      residual =
+          detail::membrane::residual(work.segments_, work.nodes_, work.tensions_, pressure).force;
     }
     if constexpr (Solver::magnitude == detail::membrane::Magnitude::of_all) {
       solved = solved && detail::membrane::carry_load(work.segments_, pressure, work.tensions_.rim);
     }
+    result.residual = solved ? residual : not_a_number<S>();
     return solved ? WrenchStatus::ok : WrenchStatus::not_solved;
   }
 
@@ -256,7 +220,7 @@ class Wrench {
   WrenchStatus lay_mesh(const Shape& shape, Workspace& work, WrenchResult<S>& result) const {
     if constexpr (needs_shape) {
       Point3<S> center;
-      if (!find_contact(shape, center)) {
+      if (!detail::membrane::find_contact(shape, options_.base_radius_mm, center)) {
         return WrenchStatus::no_contact;
       }
       work.nodes_.template lay<Lines>(shape, center);
@@ -302,31 +266,6 @@ class Wrench {
     }
   }
 
-  /// Middle of the contact, from a mesh of places all over the base; false where none touches.
-  template <class Shape>
-  bool find_contact(const Shape& shape, Point3<S>& center) const {
-    constexpr int places = 64;
-    const S step = S(2) * options_.base_radius_mm / S(places);
-    S x_sum = S(0), y_sum = S(0);
-    int count = 0;
-    for (int i = 0; i < places; ++i) {
-      const S y = (S(i) + S(1) / S(2)) * step - options_.base_radius_mm;
-      for (int j = 0; j < places; ++j) {
-        const S x = (S(j) + S(1) / S(2)) * step - options_.base_radius_mm;
-        if (shape.in_contact(x, y)) {
-          x_sum = x_sum + x;
-          y_sum = y_sum + y;
-          ++count;
-        }
-      }
-    }
-    if (count == 0) {
-      return false;
-    }
-    center = {S(x_sum / S(count)), S(y_sum / S(count)), S(0)};
-    return true;
-  }
-
   /// Area of a circle over that of the polygon of as many corners as there are lines: the mesh has
   /// chords where rim and A_g are round, so the pressure on it is a little too small.
   S chord_factor() const {
@@ -347,30 +286,9 @@ class Wrench {
               Workspace& work,
               const WrenchNoise<S>& noise,
               WrenchResult<S>& result) const {
-    using std::cos;
-    using std::sin;
-    using std::sqrt;
-    Point3<S> force = {S(0), S(0), S(0)};
-    Point3<S> moment = force;
-    S tension_sq = S(0), pull_sq = S(0);
-    const S half = S(std::numbers::pi) / S(static_cast<double>(options_.columns));
-    // a piece of the rim: the mean of its points lies a little inside, and the sum of forces along
-    // it is a little shorter than they are
-    const S arm = options_.base_radius_mm * S(sin(half)) / half;
-    const S arm_along = options_.base_radius_mm * half / S(sin(half));
-    for (Index i = 0; i < options_.columns; ++i) {
-      const std::size_t k = static_cast<std::size_t>(i);
-      const Point3<S>& f = work.tensions_.rim[k];
-      const S at = half * S(static_cast<double>(2 * i + 1));
-      const S c = cos(at);
-      const S s = sin(at);
-      force = detail::sum(force, f);
-      moment = {S(moment.x + arm * s * f.z), S(moment.y - arm * c * f.z),
-                S(moment.z + arm_along * (c * f.y - s * f.x))};
-      tension_sq = tension_sq + detail::length_sq(f);
-      pull_sq = pull_sq + detail::length_sq(work.pulls_.segments[k]);
-    }
-    const S modulus = sqrt(S(tension_sq / pull_sq));
+    const auto [force, moment] =
+        detail::membrane::sum_of_rim(work.tensions_.rim, options_.base_radius_mm);
+    const S modulus = detail::membrane::mean_factor(work.tensions_.rim, work.pulls_.segments);
     result.force_n = {force.x, force.y, S(force.z - pressure_mpa * base_area_mm2())};
     result.moment_n_mm = moment;
     if (Law::tells_magnitude) {
@@ -378,7 +296,7 @@ class Wrench {
     }
     S edge_mm2 = S(0);
     if constexpr (needs_shape) {
-      result.summit_area_mm2 = summit_area(work.nodes_, edge_mm2);
+      result.summit_area_mm2 = chord_factor() * work.nodes_.summit_area(edge_mm2);
     }
     keep_tensions(work);
     if (value(noise.side_dot_mm) > 0 || value(noise.edge_mm) > 0 || value(noise.pressure_mpa) > 0) {
@@ -410,24 +328,6 @@ class Wrench {
     out.broken_lines = from.broken_lines;
     out.level_lines = from.level_lines;
     return out;
-  }
-
-  /// In plan; `per_mm`: root of the sum of squares of its changes when a line ends 1 mm further
-  /// out.
-  S summit_area(const detail::membrane::Compartments<S>& nodes, S& per_mm) const {
-    using std::sqrt;
-    const Index m = options_.rows;
-    S area = S(0), squares = S(0);
-    for (Index i = 0; i < options_.columns; ++i) {
-      const Point3<S>& left = nodes.node(i == 0 ? options_.columns - 1 : i - 1, m);
-      const Point3<S>& here = nodes.node(i, m);
-      const Point3<S>& right = nodes.node(i + 1 == options_.columns ? 0 : i + 1, m);
-      area = area + (here.x * right.y - here.y * right.x) / S(2);
-      // the corner moves across the chord between its neighbours
-      squares = squares + (square(S(right.x - left.x)) + square(S(right.y - left.y))) / S(4);
-    }
-    per_mm = sqrt(squares);
-    return S(area * chord_factor());
   }
 
   /// The tension at each border point: that of its segment, in the direction of its own pull.

@@ -74,6 +74,23 @@ class Compartments {
     return count;
   }
 
+  /// Area within A_g in plan, as a polygon; `per_mm`: root of the sum of squares of its changes
+  /// when a line ends 1 mm further out.
+  S summit_area(S& per_mm) const {
+    using std::sqrt;
+    S area = S(0), squares = S(0);
+    for (Index i = 0; i < columns_; ++i) {
+      const Point3<S>& left = node(i == 0 ? columns_ - 1 : i - 1, rows_);
+      const Point3<S>& here = node(i, rows_);
+      const Point3<S>& right = node(i + 1 == columns_ ? 0 : i + 1, rows_);
+      area = area + (here.x * right.y - here.y * right.x) / S(2);
+      // the corner moves across the chord between its neighbours
+      squares = squares + (square(S(right.x - left.x)) + square(S(right.y - left.y))) / S(4);
+    }
+    per_mm = sqrt(squares);
+    return area;
+  }
+
   /// Angle of line i at the rim.
   S angle(Index line) const {
     return S(2 * std::numbers::pi) * S(static_cast<double>(line)) /

@@ -33,6 +33,33 @@ concept membrane_shape = requires(const T& shape, const S& x, const S& y) {
   { shape.in_contact(x, y) } -> std::convertible_to<bool>;
 };
 
+namespace detail::membrane {
+/// Middle of the contact, from a mesh of places all over the base; false where none touches.
+template <class Shape, scalar S>
+bool find_contact(const Shape& shape, const S& base_radius_mm, Point3<S>& center) {
+  constexpr int places = 64;
+  const S step = S(2) * base_radius_mm / S(places);
+  S x_sum = S(0), y_sum = S(0);
+  int count = 0;
+  for (int i = 0; i < places; ++i) {
+    const S y = (S(i) + S(1) / S(2)) * step - base_radius_mm;
+    for (int j = 0; j < places; ++j) {
+      const S x = (S(j) + S(1) / S(2)) * step - base_radius_mm;
+      if (shape.in_contact(x, y)) {
+        x_sum = x_sum + x;
+        y_sum = y_sum + y;
+        ++count;
+      }
+    }
+  }
+  if (count == 0) {
+    return false;
+  }
+  center = {S(x_sum / S(count)), S(y_sum / S(count)), S(0)};
+  return true;
+}
+}  // namespace detail::membrane
+
 /// Heights on a square mesh in plan about Q; between the nodes heights and slopes are interpolated
 /// bilinearly, slopes being central differences. 24 bytes a node in double.
 template <scalar S = double>

@@ -32,10 +32,9 @@ struct RimPulls {
   std::vector<Point3<S>> along;     ///< d of each dot
   std::vector<Point3<S>> segments;  ///< integral over each rim segment, mm times what a pull is in
   Index missing = 0;                ///< not found, or with a coordinate that is no number
-  Index unstretched = 0;
-  Index slack = 0;
+  Index unstretched = 0;            ///< too little to tell a direction
+  Index slack = 0;                  ///< shorter than without stress
   Index outward = 0;  ///< pulls that lean out of the pad: there the membrane bulges past the rim
-  Index usable() const { return static_cast<Index>(dots.size()) - missing - unstretched - slack; }
 };
 
 /// Points of the rim in the order of their angle. Between them pulls are interpolated linearly.

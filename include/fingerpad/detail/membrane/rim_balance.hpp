@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <numbers>
 #include <vector>
 
 #include "fingerpad/detail/membrane/compartments.hpp"
@@ -73,6 +74,49 @@ bool carry_load(const Segments<S>& segments, const S& pressure_mpa, std::vector<
     force = scaled(scale, force);
   }
   return is_finite(scale) && value(scale) > 0;
+}
+
+/// Force and moment about Q of the membrane on the base, from the forces on equal pieces of the rim
+/// (eqs. 4 and 5).
+template <scalar S>
+struct RimSum {
+  Point3<S> force_n;
+  Point3<S> moment_n_mm;
+};
+
+template <scalar S>
+RimSum<S> sum_of_rim(const std::vector<Point3<S>>& forces, const S& radius_mm) {
+  using std::cos;
+  using std::sin;
+  const S half = S(std::numbers::pi) / S(static_cast<double>(forces.size()));
+  // a piece of the rim: the mean of its points lies a little inside, and the sum of what turns
+  // about the axis along it is a little shorter than its parts together
+  const S arm = radius_mm * S(sin(half)) / half;
+  const S arm_along = radius_mm * half / S(sin(half));
+  RimSum<S> sums = {{S(0), S(0), S(0)}, {S(0), S(0), S(0)}};
+  for (std::size_t k = 0; k < forces.size(); ++k) {
+    const Point3<S>& f = forces[k];
+    const S at = half * S(static_cast<double>(2 * k + 1));
+    const S c = cos(at);
+    const S s = sin(at);
+    const Point3<S>& m = sums.moment_n_mm;
+    sums.force_n = sum(sums.force_n, f);
+    sums.moment_n_mm = {S(m.x + arm * s * f.z), S(m.y - arm * c * f.z),
+                        S(m.z + arm_along * (c * f.y - s * f.x))};
+  }
+  return sums;
+}
+
+/// Force per pull, root mean square.
+template <scalar S>
+S mean_factor(const std::vector<Point3<S>>& forces, const std::vector<Point3<S>>& pulls) {
+  using std::sqrt;
+  S force_sq = S(0), pull_sq = S(0);
+  for (std::size_t k = 0; k < forces.size(); ++k) {
+    force_sq = force_sq + length_sq(forces[k]);
+    pull_sq = pull_sq + length_sq(pulls[k]);
+  }
+  return S(sqrt(S(force_sq / pull_sq)));
 }
 
 /// What fixes the magnitude of a pull, and so how its noise spreads.
