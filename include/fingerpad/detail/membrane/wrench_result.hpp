@@ -66,9 +66,8 @@ struct WrenchResult {
   Point3<S> moment_n_mm = {not_a_number<S>(), not_a_number<S>(), not_a_number<S>()};  ///< about Q
   /// Of (F_x, F_y, F_z, M_x, M_y, M_z), in N and N mm, to first order in the noise; 0 without. As
   /// if all pulls were scaled together (with ClosedForm and PublishedIteration: each column by
-  /// itself), which is what BalancedRim does. LeastSquares evens out the noise of side dots: true
-  /// deviations of F_x and F_y are a fifth smaller, of M_x and M_y several times; noise of A_g it
-  /// spreads further than told.
+  /// itself). LeastSquares evens out noise of the side dots, so its true deviations are smaller,
+  /// those of M_x and M_y much smaller; noise of A_g it spreads further than told.
   std::array<std::array<S, 6>, 6> covariance{};
   S summit_area_mm2 = not_a_number<S>();   ///< within A_g, in plan; NaN for KnownModulus
   S modulus_n_per_mm = not_a_number<S>();  ///< mu t that this frame would have: mean of tension
