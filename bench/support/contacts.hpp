@@ -1,0 +1,48 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+#pragma once
+// Frames of made-up contacts, and how far one column of results is from another.
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <random>
+#include <vector>
+
+#include "fingerpad/grid.hpp"
+
+namespace bench {
+
+/// Columns: measure in [1, largest], displacement's x and y in mm, angle in rad.
+template <class S>
+struct Contacts {
+  static constexpr fingerpad::Index frames = 4096;
+  std::vector<S> cells = std::vector<S>(static_cast<std::size_t>(4 * frames));
+
+  explicit Contacts(double largest) {
+    std::mt19937 random(1);
+    std::uniform_real_distribution<double> share(0, 1);
+    for (fingerpad::Index k = 0; k < frames; ++k) {
+      at(k, 0) = S(1 + (largest - 1) * share(random));
+      at(k, 1) = S(2 * share(random) - 1);
+      at(k, 2) = S(2 * share(random) - 1);
+      at(k, 3) = S(0.2 * share(random) - 0.1);
+    }
+  }
+  S& at(fingerpad::Index frame, fingerpad::Index column) {
+    return cells[static_cast<std::size_t>(column * frames + frame)];
+  }
+  fingerpad::StridedView<const S> samples() const { return {cells.data(), frames, 4, 1, frames}; }
+};
+
+/// Largest difference, as a share of the largest value of `truth`.
+template <class S>
+double worst_share(const std::vector<S>& found, const std::vector<long double>& truth) {
+  long double worst = 0, largest = 0;
+  for (std::size_t k = 0; k < truth.size(); ++k) {
+    worst = (std::max)(worst, std::abs(static_cast<long double>(found[k]) - truth[k]));
+    largest = (std::max)(largest, std::abs(truth[k]));
+  }
+  return static_cast<double>(worst / largest);
+}
+
+}  // namespace bench
