@@ -39,6 +39,19 @@ ContactStep contact_step_of(Recording& recording,
   }
 }
 
+ForceStep force_step_of(const Recording& recording,
+                        const DotGrid& initial_px,
+                        const Options& options) {
+  if (recording.sensor.dots_only) {
+    return {};
+  }
+  try {
+    return make_force_step(recording, initial_px);
+  } catch (const fingerpad::parameter_error& error) {
+    fail(options.recording, error.what());
+  }
+}
+
 WrenchStep wrench_step_of(const Recording& recording, const Options& options) {
   try {
     return make_wrench_step(recording);
@@ -105,6 +118,7 @@ Chain::Chain(Recording& recording, const Options& options)
                                           : contact_step_of(recording, depth_, options)),
       dots_(dots_of(recording, options)),
       stick_(dots_.initial().size(), recording.sensor.stick),
+      force_(force_step_of(recording, dots_.initial(), options)),
       wrench_(wrench_step_of(recording, options)),
       traction_(traction_step_of(recording, options)) {
   if (!recording.sensor.dots_only) {
@@ -130,6 +144,10 @@ Scene Chain::operator()(int frame, const cv::Mat& image) {
   scene.frame = frame;
   scene.time_s = recording_.signals.time_s(frame);
   scene.pressure_mpa = recording_.signals.pressure_mpa(frame);
+  if (const auto truth = recording_.true_forces.find(frame);
+      truth != recording_.true_forces.end()) {
+    scene.truth = truth->second;
+  }
   scene.image = image;
   if (depth_) {
     measure_depth(scene);
@@ -139,6 +157,9 @@ Scene Chain::operator()(int frame, const cv::Mat& image) {
     scene.dots =
         motion_ ? (*motion_)(dots_px, scene.depth_mm, scene.contact_mask) : dots_alone(dots_px);
     scene.dots.stick = stick_(dots_px, scene.dots.in_contact, seconds(scene.time_s));
+  }
+  if (force_) {
+    scene.force = force_(scene.contact, scene.dots);
   }
   if (wrench_) {
     const auto start = std::chrono::steady_clock::now();

@@ -9,6 +9,7 @@
 #include "contact_step.hpp"
 #include "depth_step.hpp"
 #include "dots.hpp"
+#include "force_step.hpp"
 #include "motion_step.hpp"
 #include "pictures.hpp"
 #include "recording.hpp"
@@ -41,6 +42,7 @@ class Chain {
   DotSource dots_;
   std::optional<MotionStep> motion_;  ///< none where the recording is of dots only
   StickStep stick_;
+  ForceStep force_;        ///< empty where the recording is of dots only
   WrenchStep wrench_;      ///< empty where the recording lacks something
   TractionStep traction_;  ///< the same
   std::vector<double> depth_ms_;

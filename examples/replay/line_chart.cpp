@@ -32,8 +32,9 @@ struct Scale {
     const double decade = std::pow(10, std::floor(std::log10(span / 2)));
     const double digit = span / 2 / decade;
     tick = decade * (digit < 2 ? 1 : digit < 5 ? 2 : 5);
-    bottom = tick * std::floor(low / tick);
-    top = (std::max)(tick * std::ceil(high / tick), bottom + tick);
+    // what hardly crosses a tick needs no other one beyond it
+    bottom = tick * std::floor(low / tick + 0.02);
+    top = (std::max)(tick * std::ceil(high / tick - 0.02), bottom + tick);
   }
 };
 
@@ -45,32 +46,40 @@ void paint_panel(Canvas& canvas, const cv::Rect2d& box, const LinePanel& panel, 
     return box.y + box.height * (scale.top - value) / (scale.top - scale.bottom);
   };
   canvas.text({box.x, box.y - 12}, panel.title, letter, ink::black, Align::left, true);
-  for (double value = scale.bottom; value < scale.top + scale.tick / 2; value += scale.tick) {
+  for (double step = 0; scale.bottom + step * scale.tick < scale.top + scale.tick / 2; ++step) {
+    const double value = scale.tick * (std::round(scale.bottom / scale.tick) + step);
     const double y = y_of(value);
     canvas.line({box.x, y}, {box.x + box.width, y}, 0.6, ink::pale);
     canvas.text({box.x - 8, y + letter / 2}, format("%g", value + 0.0), letter, ink::grey,
                 Align::right);
   }
-  const double step = (std::max)(1.0, std::ceil(last / 12));
-  for (double k = 0; k <= last; k += step) {
+  const double stride = (std::max)(1.0, std::ceil(last / 12));
+  for (double k = 0; k <= last; k += stride) {
     canvas.text({x_of(k), box.y + box.height + 18}, std::to_string(first_frame + int(k)), letter,
                 ink::grey, Align::centre);
   }
   for (std::size_t s = 0; s < panel.series.size(); ++s) {
     const LineSeries& line = panel.series[s];
-    const Ink& colour = line_colours[s];
+    const Ink& colour = line_colours[line.beside < 0 ? static_cast<int>(s) : line.beside];
+    const auto paint = [&](const std::vector<Spot>& curve) {
+      if (line.beside < 0) {
+        canvas.curve(curve, 1.6, colour);
+      } else {
+        canvas.dashed_curve(curve, 1.6, colour);
+      }
+    };
     std::vector<Spot> spots;
     for (std::size_t k = 0; k <= line.values.size(); ++k) {
       if (k < line.values.size() && std::isfinite(line.values[k])) {
         spots.emplace_back(x_of(static_cast<double>(k)), y_of(line.values[k]));
         canvas.circle(spots.back(), 1.8, 1.8, colour);
       } else {
-        canvas.curve(spots, 1.6, colour);
+        paint(spots);
         spots.clear();
       }
     }
     const double y = box.y + 8 + 20 * static_cast<double>(s);
-    canvas.line({box.x + box.width + 14, y}, {box.x + box.width + 34, y}, 1.6, colour);
+    paint({{box.x + box.width + 14, y}, {box.x + box.width + 34, y}});
     canvas.text({box.x + box.width + 42, y + letter / 2}, line.name, letter, ink::black);
   }
 }

@@ -13,18 +13,20 @@ namespace replay {
 struct LineSeries {
   std::string name;
   std::vector<double> values;  ///< one a frame; NaN: none
+  int beside = -1;             ///< which one of its panel it is the truth of: dashed, in its colour
 };
 
 struct LinePanel {
   std::string title;
-  std::vector<LineSeries> series;  ///< at most three
+  std::vector<LineSeries> series;  ///< at most three, and as many truths after them
 };
 
 template <class Value>
 LineSeries line_series(const std::string& name,
                        const std::vector<FrameRow>& rows,
                        const Value& value) {
-  LineSeries s{name, {}};
+  LineSeries s;
+  s.name = name;
   for (const FrameRow& row : rows) {
     s.values.push_back(value(row));
   }

@@ -24,6 +24,8 @@ constexpr const char* columns =
     "reference_dot_row,reference_dot_col,object_x_mm,object_y_mm,object_z_mm,"
     "rotation_x_rad,rotation_y_rad,rotation_z_rad,"
     "dots_in_contact,stick_ratio,stick_ratio_updated,"
+    "shift_x_mm,shift_y_mm,shift_rad,"
+    "normal_force_n,tangential_force_x_n,tangential_force_y_n,moment_z_nm,"
     "wrench_fx_n,wrench_fy_n,wrench_fz_n,wrench_mx_nm,wrench_my_nm,wrench_mz_nm";
 constexpr const char* dot_columns = "frame,row,col,x_px,y_px,x_mm,y_mm,z_mm,contact,stick";
 
@@ -53,7 +55,7 @@ bool is_ours(const std::string& relative) {
   static const std::regex ours(
       R"(frames\.csv|dots\.csv|depth|depth/\d{6}\.tiff|contact|contact/\d{6}\.png|pictures|)"
       R"(pictures/(depth|side|contact|stick|rim|traction)_\d{6}\.png|)"
-      R"(pictures/(montage|motion|stick_ratio|wrench)\.png)");
+      R"(pictures/(montage|motion|stick_ratio|forces|wrench)\.png)");
   return std::regex_match(relative, ours);
 }
 
@@ -218,9 +220,15 @@ void FramesCsv::write(const FrameRow& row) {
   } else {
     stream_ << ",,,";
   }
+  const auto& shift = row.force.shift;
+  constexpr double metre = 1000;  // in mm
+  for (const double value :
+       {shift.displacement.x, shift.displacement.y, shift.rotation_rad, row.force.normal_n,
+        row.force.tangential_n.x, row.force.tangential_n.y, row.force.moment_n_mm / metre}) {
+    stream_ << ',' << cell(value);
+  }
   const fingerpad::Point3<double>& force = row.wrench.force_n;
   const fingerpad::Point3<double>& moment = row.wrench.moment_n_mm;
-  constexpr double metre = 1000;  // in mm
   for (const double value :
        {force.x, force.y, force.z, moment.x / metre, moment.y / metre, moment.z / metre}) {
     stream_ << ',' << cell(row.has_wrench() ? value : none);

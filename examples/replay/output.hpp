@@ -5,11 +5,14 @@
 // and moves there when it is complete. An earlier run's folder is replaced; anybody else's is not.
 #include <filesystem>
 #include <fstream>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "contact_step.hpp"
+#include "force_step.hpp"
 #include "motion_step.hpp"
+#include "true_forces.hpp"
 #include "wrench_step.hpp"
 
 namespace replay {
@@ -53,6 +56,8 @@ struct FrameRow {
   fingerpad::ObjectMotionResult<double> motion;
   bool has_dots = false;
   fingerpad::StickRatioResult<float> stick;
+  ForceFrame force;  ///< by look-up
+  std::optional<TrueForce> truth;
   fingerpad::WrenchResult<double> wrench;  ///< not ok(), and empty in the file: no answer
   double pressure_mpa = 0;                 ///< NaN: not known
 

@@ -5,14 +5,17 @@
 // image, and a recording at a glance.
 #include <limits>
 #include <opencv2/core.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "contact_step.hpp"
 #include "depth_colours.hpp"
+#include "force_step.hpp"
 #include "motion_step.hpp"
 #include "sensor.hpp"
 #include "traction_step.hpp"
+#include "true_forces.hpp"
 #include "wrench_step.hpp"
 
 namespace replay {
@@ -40,6 +43,8 @@ struct Scene {
   cv::Mat_<uchar> contact_mask;  ///< nonzero: in contact; empty as the depth
   ContactResult contact;
   FrameDots dots;
+  ForceFrame force;
+  std::optional<TrueForce> truth;
   WrenchFrame wrench;
   TractionFrame traction;
 };

@@ -5,6 +5,7 @@
 // the dots beside the rim.
 // Everything that can be checked before the first frame is checked by open_recording().
 #include <filesystem>
+#include <map>
 #include <opencv2/core.hpp>
 #include <opencv2/videoio.hpp>
 #include <optional>
@@ -14,6 +15,7 @@
 #include "sensor.hpp"
 #include "side_dots.hpp"
 #include "signals.hpp"
+#include "true_forces.hpp"
 
 namespace replay {
 
@@ -50,6 +52,7 @@ struct Recording {
   FrameSource frames;
   FrameSource free_frames;  ///< more frames of the free pad; may be none
   Signals signals;
+  std::map<int, TrueForce> true_forces;  ///< by frame; may be none
   std::optional<SideDots> side_dots;
   std::optional<SpaceGrid> stress_free_dots;
 };

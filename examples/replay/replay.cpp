@@ -34,6 +34,70 @@ Range within(const Range& range, int size, const std::filesystem::path& recordin
   return {range.first, last};
 }
 
+/// Mean of what is finite.
+class Mean {
+ public:
+  void add(double value) {
+    if (std::isfinite(value)) {
+      sum_ += value;
+      ++count_;
+    }
+  }
+  int count() const { return count_; }
+  std::string words(const char* unit) const {
+    char text[48] = "none";
+    if (count_ > 0) {
+      std::snprintf(text, sizeof text, "%.2f %s", sum_ / count_, unit);
+    }
+    return text;
+  }
+
+ private:
+  double sum_ = 0;
+  int count_ = 0;
+};
+
+/// Forces by look-up, and how far they are from the truth where that is known.
+void print_look_up(const Writer& writer, const Recording& recording) {
+  if (!recording.sensor.force) {
+    return;
+  }
+  int known = 0, beyond = 0, disagreeing = 0;
+  double normal_n = 0, tangential_n = 0;
+  Mean normal_error, tangential_error, moment_error;
+  for (const FrameRow& row : writer.rows()) {
+    const ForceFrame& f = row.force;
+    const double along_n = std::hypot(f.tangential_n.x, f.tangential_n.y);
+    known += std::isfinite(f.normal_n) || std::isfinite(along_n) ? 1 : 0;
+    beyond += f.beyond_range ? 1 : 0;
+    disagreeing += std::abs(f.disagreement) > 3 ? 1 : 0;
+    normal_n = std::fmax(normal_n, f.normal_n);
+    tangential_n = std::fmax(tangential_n, along_n);
+    if (row.truth) {
+      const auto& truth = *row.truth;
+      normal_error.add(std::abs(f.normal_n + truth.force_n.z));
+      tangential_error.add(
+          std::hypot(f.tangential_n.x - truth.force_n.x, f.tangential_n.y - truth.force_n.y));
+      moment_error.add(std::abs(f.moment_n_mm - truth.moment_n_mm));
+    }
+  }
+  std::printf("look-up      in %d frames, at most %.2f N normal, %.2f N along the plate\n", known,
+              normal_n, tangential_n);
+  if (disagreeing > 0) {
+    std::printf(
+        "             in %d of them area and depth disagree: contacts unlike the calibration's\n",
+        disagreeing);
+  }
+  if (beyond > 0) {
+    std::printf("             in %d of them beyond what was calibrated\n", beyond);
+  }
+  if (normal_error.count() + tangential_error.count() > 0) {
+    std::printf("its error    %s normal, %s along the plate, %s moment (means)\n",
+                normal_error.words("N").c_str(), tangential_error.words("N").c_str(),
+                moment_error.words("N mm").c_str());
+  }
+}
+
 void print_wrench(const Chain& chain, const Writer& writer, const Recording& recording) {
   const std::string lacking = lacking_for_wrench(recording);
   if (!lacking.empty()) {
@@ -110,6 +174,7 @@ void print_summary(const Chain& chain,
   }
   print_dots(chain, writer);
   if (!dots_only) {
+    print_look_up(writer, recording);
     print_wrench(chain, writer, recording);
   }
   std::printf("table        %s\n", (writer.place() / "frames.csv").c_str());

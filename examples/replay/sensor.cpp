@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: MIT
 #include "sensor.hpp"
 
+#include <algorithm>
+#include <array>
 #include <fstream>
 #include <limits>
 #include <nlohmann/json.hpp>
@@ -50,7 +52,7 @@ class Section {
   }
 
   Section section(const std::string& key, std::vector<Key> keys) const {
-    return {file_, key, at(key), std::move(keys)};
+    return {file_, full_name(key), at(key), std::move(keys)};
   }
 
   double number(const std::string& key) const {
@@ -89,12 +91,53 @@ class Section {
     return found.get<bool>();
   }
 
+  std::string one_of(const std::string& key, const std::vector<std::string>& words) const {
+    const json& found = at(key);
+    for (const std::string& word : words) {
+      if (found.is_string() && found.get<std::string>() == word) {
+        return word;
+      }
+    }
+    std::string must;
+    for (const std::string& word : words) {
+      must += (must.empty() ? "\"" : " or \"") + word + "\"";
+    }
+    refuse_type(key, found, must.c_str());
+  }
+
+  [[noreturn]] void refuse(const std::string& why) const {
+    fail(file_, name_ + ": " + why + " (known here: " + known() + ")");
+  }
+  /// Refuses with this section's name what `check` refuses.
+  template <class Check>
+  void check(const Check& check) const {
+    try {
+      check();
+    } catch (const fingerpad::parameter_error& error) {
+      fail(file_, name_ + ": " + error.what());
+    }
+  }
+
   std::string path(const std::string& key) const {
     const json& found = at(key);
     if (!found.is_string() || found.get<std::string>().empty()) {
       refuse_type(key, found, "the path of a file");
     }
     return found.get<std::string>();
+  }
+
+  /// As many numbers as the array has, followed by zeros.
+  template <std::size_t Most>
+  std::array<double, Most> numbers(const std::string& key) const {
+    const json& found = at(key);
+    const auto is_number = [](const json& entry) { return entry.is_number(); };
+    if (!found.is_array() || found.empty() || found.size() > Most ||
+        !std::all_of(found.begin(), found.end(), is_number)) {
+      refuse_type(key, found, ("1 to " + std::to_string(Most) + " numbers [...]").c_str());
+    }
+    std::array<double, Most> numbers{};
+    std::copy(found.begin(), found.end(), numbers.begin());
+    return numbers;
   }
 
   std::pair<double, double> pair(const std::string& key) const {
@@ -237,7 +280,7 @@ fingerpad::StickTest read_stick(const Section& root) {
 /// Whether the file names anything that depth needs.
 bool names_depth(const Section& root) {
   for (const char* key :
-       {"camera", "absorption", "pad", "smoothing_px", "rim", "neighbour_light"}) {
+       {"camera", "absorption", "pad", "smoothing_px", "rim", "neighbour_light", "force"}) {
     if (root.has(key)) {
       return true;
     }
@@ -259,6 +302,82 @@ Rim read_rim(const Section& root) {
     rim.stress_free_inclination_rad = section.positive("stress_free_inclination_rad");
   }
   return rim;
+}
+
+/// `unit` is that of the measure, as keys have it.
+NormalForceLookUp read_normal_force(const Section& force,
+                                    const std::string& key,
+                                    const std::string& unit,
+                                    bool needs_residual) {
+  const Section section = force.section(
+      key,
+      {{"coefficients", "normal force in N, the constant first, then by powers of the measure"},
+       {"from_" + unit, "the smallest contact of the calibration"},
+       {"to_" + unit, "the largest contact of the calibration"},
+       {"residual_n", "what the calibration left, N; by_area and by_depth are weighted by it"},
+       {"per_mm_sq", "share of the force by which it changes for each squared mm of shift"},
+       {"per_rad_sq", "the same for each squared rad"}});
+  NormalForceLookUp look_up;
+  look_up.curve.coefficients =
+      section.numbers<NormalForceLookUp::Curve::parameters>("coefficients");
+  look_up.curve.from = section.number("from_" + unit);
+  look_up.curve.to = section.number("to_" + unit);
+  if (needs_residual || section.has("residual_n")) {
+    look_up.residual_n = section.positive("residual_n");
+  }
+  look_up.compensation.per_mm_sq = section.has("per_mm_sq") ? section.number("per_mm_sq") : 0;
+  look_up.compensation.per_rad_sq = section.has("per_rad_sq") ? section.number("per_rad_sq") : 0;
+  section.check([&] { expects_valid(look_up.curve); });
+  section.check([&] { expects_valid(look_up.compensation); });
+  return look_up;
+}
+
+ShearLookUp read_shear(const Section& force) {
+  const Section section = force.section(
+      "shear", {{"by", "the measure that displacement and rotation count by, area or depth"},
+                {"reference", "the measure at which they count as they are, mm^2 or mm"},
+                {"displacement_exponent", "of measure / reference"},
+                {"rotation_exponent", "of measure / reference"},
+                {"force_n_per_mm", "odd polynomial of the displacement, the linear one first"},
+                {"moment_n_mm_per_rad", "odd polynomial of the rotation, the linear one first"},
+                {"to_mm", "the largest displacement of the calibration, as it counts"},
+                {"to_rad", "the largest rotation of the calibration, as it counts"}});
+  constexpr std::size_t most = ShearLookUp::Map().force.size;
+  ShearLookUp look_up;
+  look_up.by = section.one_of("by", {"area", "depth"}) == "area" ? ContactMeasure::area
+                                                                 : ContactMeasure::depth;
+  look_up.normalisation.reference = section.number("reference");
+  look_up.normalisation.displacement_exponent = section.number("displacement_exponent");
+  look_up.normalisation.rotation_exponent = section.number("rotation_exponent");
+  look_up.map.force.coefficients = section.numbers<most>("force_n_per_mm");
+  look_up.map.force.to = section.number("to_mm");
+  look_up.map.moment.coefficients = section.numbers<most>("moment_n_mm_per_rad");
+  look_up.map.moment.to = section.number("to_rad");
+  section.check([&] { expects_valid(look_up.normalisation); });
+  section.check([&] { expects_valid(look_up.map); });
+  return look_up;
+}
+
+ForceLookUp read_force(const Section& root) {
+  const Section section =
+      root.section("force", {{"by_area", "normal force by contact area"},
+                             {"by_depth", "normal force by contact depth"},
+                             {"shear", "tangential force and moment by shift and rotation"}});
+  const bool both = section.has("by_area") && section.has("by_depth");
+  ForceLookUp look_up;
+  if (section.has("by_area")) {
+    look_up.by_area = read_normal_force(section, "by_area", "mm2", both);
+  }
+  if (section.has("by_depth")) {
+    look_up.by_depth = read_normal_force(section, "by_depth", "mm", both);
+  }
+  if (section.has("shear")) {
+    look_up.shear = read_shear(section);
+  }
+  if (!look_up.by_area && !look_up.by_depth && !look_up.shear) {
+    section.refuse("holds no curve");
+  }
+  return look_up;
 }
 
 NeighbourLight read_neighbour_light(const Section& root) {
@@ -295,6 +414,7 @@ Sensor read_sensor(const std::filesystem::path& file) {
                       {"dots", "the printed dots"},
                       {"rim", "the dots at the rim"},
                       {"neighbour_light", "compensation of light from neighbouring membrane"},
+                      {"force", "curves that tell forces from contact and shift"},
                       {"stick", "when dots are compared, and what counts as slip"}});
   Sensor sensor;
   if (root.has("video")) {
@@ -332,6 +452,9 @@ Sensor read_sensor(const std::filesystem::path& file) {
   }
   if (root.has("dots")) {
     sensor.dots = read_dots(root);
+  }
+  if (root.has("force")) {
+    sensor.force = read_force(root);
   }
   if (root.has("rim")) {
     sensor.rim = read_rim(root);

@@ -9,7 +9,9 @@
 #include <string>
 
 #include "fingerpad/detail/depth/absorption_law.hpp"
+#include "fingerpad/normal_force.hpp"
 #include "fingerpad/optics.hpp"
+#include "fingerpad/shear.hpp"
 #include "fingerpad/stick_ratio.hpp"
 
 namespace replay {
@@ -40,6 +42,32 @@ struct Rim {
   std::optional<double> stress_free_inclination_rad;  ///< of the membrane at the rim
 };
 
+/// What of a contact a force is looked up by.
+enum class ContactMeasure { area, depth };
+
+/// Normal force by area or depth.
+struct NormalForceLookUp {
+  using Curve = fingerpad::PolynomialForce<5>;  ///< higher powers than given count nothing
+  Curve curve;
+  fingerpad::ScaledCompensation<> compensation;
+  double residual_n = 0;
+};
+
+/// Tangential force and moment.
+struct ShearLookUp {
+  using Map = fingerpad::RadialShear<4>;
+  ContactMeasure by = ContactMeasure::area;
+  fingerpad::ShearNormalisation<> normalisation;
+  Map map;
+};
+
+/// Forces by look-up: curves from an earlier calibration, at least one.
+struct ForceLookUp {
+  std::optional<NormalForceLookUp> by_area;  ///< mm^2
+  std::optional<NormalForceLookUp> by_depth;
+  std::optional<ShearLookUp> shear;
+};
+
 struct NeighbourLight {
   int radius_px = 0;
   double m0_mm_per_rad = 0;
@@ -59,6 +87,7 @@ struct Sensor {
   bool dots_only = false;  ///< then camera, absorption, pad and dots are empty
   DotPattern pattern;      ///< of a dots-only recording
   fingerpad::StickTest stick;
+  std::optional<ForceLookUp> force;
   std::optional<Rim> rim;
   std::optional<NeighbourLight> neighbour_light;
 };

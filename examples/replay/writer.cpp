@@ -6,6 +6,7 @@
 #include <string>
 #include <utility>
 
+#include "force_chart.hpp"
 #include "images.hpp"
 #include "motion_chart.hpp"
 #include "stick_chart.hpp"
@@ -69,10 +70,12 @@ Writer::Writer(const Recording& recording,
 }
 
 void Writer::operator()(Scene scene) {
+  with_force_ = with_force_ || scene.force.looked_up;
   with_wrench_ = with_wrench_ || scene.wrench.present;
   rows_.push_back({scene.frame, scene.time_s, scene.valid_share, scene.depth_mean_mm,
                    scene.depth_max_mm, scene.contact, scene.dots.motion, scene.dots.stick.present(),
-                   scene.dots.stick.result, scene.wrench.result, scene.pressure_mpa});
+                   scene.dots.stick.result, scene.force, scene.truth, scene.wrench.result,
+                   scene.pressure_mpa});
   table_.write(rows_.back());
   if (dots_) {
     dots_->write(scene.frame, scene.dots);
@@ -116,6 +119,9 @@ void Writer::finish() {
     if (painter_) {
       write_png(output_.file("pictures", "montage.png"), painter_->montage(title, columns_));
       write_png(output_.file("pictures", "motion.png"), motion_chart(title, rows_));
+      if (with_force_) {
+        write_png(output_.file("pictures", "forces.png"), force_chart(title, rows_));
+      }
       if (with_wrench_) {
         write_png(output_.file("pictures", "wrench.png"), wrench_chart(title, rows_));
       }

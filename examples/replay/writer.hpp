@@ -42,6 +42,7 @@ class Writer {
   double brightest_;
   DotGrid initial_dots_;
   int total_;
+  bool with_force_ = false;
   bool with_wrench_ = false;
   OutputFolder output_;
   FramesCsv table_;

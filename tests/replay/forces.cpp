@@ -19,6 +19,7 @@
 #include "replay/replay.hpp"
 #include "replay/side_dots.hpp"
 #include "replay/signals.hpp"
+#include "replay/true_forces.hpp"
 #include "support/catch.hpp"
 
 namespace fs = std::filesystem;
@@ -142,6 +143,32 @@ double number(const Line& line, const std::string& name) {
   return std::stod(line.at(name));
 }
 
+const std::vector<std::string> look_up = {"normal_force_n", "tangential_force_x_n",
+                                          "tangential_force_y_n", "moment_z_nm"};
+
+constexpr const char* by_depth_alone =
+    R"({"by_depth": {"coefficients": [0, 1, 0.5], "from_mm": 0.1, "to_mm": 3.5}})";
+constexpr const char* by_area_alone =
+    R"({"by_area": {"coefficients": [0, 0.02], "from_mm2": 3, "to_mm2": 340}})";
+constexpr const char* shear_alone =
+    R"({"shear": {"by": "area", "reference": 50,
+                  "displacement_exponent": 0.5, "force_n_per_mm": [2], "to_mm": 9,
+                  "rotation_exponent": 1, "moment_n_mm_per_rad": [300, 10], "to_rad": 0.1}})";
+
+/// Puts this in the place of the bundled recording's "force"; nothing takes it away.
+void set_force(const Workplace& work, const std::string& force) {
+  const std::string text = work.read("sensor.json");
+  const auto at = text.find(",\n  \"force\"");
+  REQUIRE(at != std::string::npos);
+  work.write("sensor.json",
+             text.substr(0, at) + (force.empty() ? "" : ",\n  \"force\": " + force) + "\n}\n");
+}
+
+bool is_empty(const Line& line, const std::vector<std::string>& names) {
+  return std::all_of(names.begin(), names.end(),
+                     [&](const std::string& name) { return line.at(name).empty(); });
+}
+
 }  // namespace
 
 TEST_CASE("replay: force and moment of the bundled recording", "[wrench]") {
@@ -257,8 +284,11 @@ TEST_CASE("replay: how side dots are carried to the rim is said in sensor.json",
 TEST_CASE("replay: pictures of forces, and its own files are known again", "[wrench]") {
   const Workplace work;
   for (int again = 0; again < 2; ++again) {
+    if (again == 1) {
+      fs::remove(work.recording() / "forces.csv");  // no truth to paint beside
+    }
     work.run({6, 8}, true);
-    for (const char* name : {"wrench.png", "rim_000006.png", "rim_000007.png",
+    for (const char* name : {"forces.png", "wrench.png", "rim_000006.png", "rim_000007.png",
                              "traction_000006.png", "traction_000007.png"}) {
       const cv::Mat picture = cv::imread((work.out() / "pictures" / name).string());
       INFO(name);
@@ -267,7 +297,9 @@ TEST_CASE("replay: pictures of forces, and its own files are known again", "[wre
     }
   }
   fs::remove(work.recording() / "stress_free_dots.csv");
+  set_force(work, "");
   work.run({6, 7}, true);
+  CHECK_FALSE(fs::exists(work.out() / "pictures" / "forces.png"));
   CHECK_FALSE(fs::exists(work.out() / "pictures" / "traction_000006.png"));
 }
 
@@ -359,4 +391,198 @@ TEST_CASE("replay: the border is the mean over the frames") {
   CHECK(std::isnan(all->dots_mm.at(3)(0, 0)[1]));
   CHECK(all->dots_mm.count(1) == 0);
   CHECK_FALSE(replay::read_side_dots(work.recording() / "none.csv", 4));
+}
+
+TEST_CASE("replay: forces by look-up of the bundled recording", "[look-up]") {
+  // a rod, looked up in curves of a plate: the shift tells as much of both, area and depth do not
+  const Workplace work;
+  const auto found = work.run({});
+  const auto truth = table(bundled / "forces.csv");
+  REQUIRE(found.size() == 11);
+  REQUIRE(truth.size() == 11);
+  double normal_n = 0, tangential_n = 0, moment_nm = 0;
+  for (std::size_t k = 0; k < truth.size(); ++k) {
+    const auto error = [&](const char* name, const char* true_name, double sign) {
+      return std::abs(number(found[k], name) - sign * number(truth[k], true_name)) / 11;
+    };
+    normal_n += error("normal_force_n", "force_z_n", -1);
+    tangential_n += error("tangential_force_x_n", "force_x_n", 1) +
+                    error("tangential_force_y_n", "force_y_n", 1);
+    moment_nm += error("moment_z_nm", "moment_z_nm", 1);
+  }
+  INFO("mean errors " << normal_n << " N, " << tangential_n << " N, " << moment_nm << " N m");
+  CHECK(tangential_n < 0.06 * 1.8);
+  CHECK(moment_nm < 0.0004);     // of the 0.04 that were calibrated
+  CHECK(normal_n < 0.22 * 3.1);  // docs: another shape than the calibration's
+  for (const std::string& name : look_up) {
+    CHECK(number(found[0], name) == 0);
+  }
+  CHECK(is_empty(found[0], {"shift_x_mm", "shift_y_mm", "shift_rad"}));
+  // the rod sticks in frame 6 and carries the dots along
+  CHECK(number(found[6], "shift_x_mm") == Approx(0.5491).margin(0.03));
+  CHECK(number(found[6], "shift_y_mm") == Approx(0).margin(0.01));
+  CHECK(number(found[6], "shift_rad") == Approx(0).margin(0.001));
+}
+
+TEST_CASE("replay: without curves nothing is looked up, and nothing else changes", "[look-up]") {
+  const Workplace work;
+  const auto with = work.run({6, 8});
+  set_force(work, "");
+  const auto without = work.run({6, 8});
+  for (std::size_t k = 0; k < 2; ++k) {
+    CHECK(is_empty(without[k], look_up));
+    for (const auto& [name, text] : with[k]) {
+      if (std::find(look_up.begin(), look_up.end(), name) == look_up.end()) {
+        INFO(name);
+        CHECK(without[k].at(name) == text);
+      }
+    }
+    CHECK_FALSE(without[k].at("shift_x_mm").empty());
+  }
+}
+
+TEST_CASE("replay: forces are what the curves say of area, depth and shift", "[look-up]") {
+  const Workplace work;
+  SECTION("by depth") {
+    set_force(work, by_depth_alone);
+    for (const Line& line : work.run({0, 2})) {
+      const std::string& deep = line.at("contact_depth_mm");
+      const double depth_mm = deep.empty() ? 0 : std::stod(deep);
+      CHECK(number(line, "normal_force_n") ==
+            Approx(depth_mm + 0.5 * depth_mm * depth_mm).margin(1e-5));
+      CHECK(is_empty(line, {"tangential_force_x_n", "tangential_force_y_n", "moment_z_nm"}));
+    }
+  }
+  SECTION("by area") {
+    set_force(work, by_area_alone);
+    const Line line = work.run({6, 7})[0];
+    CHECK(number(line, "normal_force_n") ==
+          Approx(0.02 * number(line, "contact_area_mm2")).margin(1e-5));
+  }
+  SECTION("by area, displaced and turned") {
+    set_force(work,
+              R"({"by_area": {"coefficients": [0, 0.02], "from_mm2": 3, "to_mm2": 340,
+                             "per_mm_sq": 0.5, "per_rad_sq": 10000}})");
+    const Line line = work.run({7, 8})[0];
+    const double x = number(line, "shift_x_mm"), y = number(line, "shift_y_mm"),
+                 turn = number(line, "shift_rad");
+    CHECK(number(line, "normal_force_n") ==
+          Approx(0.02 * number(line, "contact_area_mm2") *
+                 (1 + 0.5 * (x * x + y * y) + 10000 * turn * turn))
+              .epsilon(1e-3));
+  }
+  SECTION("by both, the one that left less counting more") {
+    set_force(work,
+              R"({"by_area": {"coefficients": [1], "from_mm2": 3, "to_mm2": 340,
+                             "residual_n": 0.1},
+                  "by_depth": {"coefficients": [2], "from_mm": 0.1, "to_mm": 3.5,
+                               "residual_n": 0.2}})");
+    CHECK(number(work.run({6, 7})[0], "normal_force_n") == Approx(1.2));
+  }
+  SECTION("shear by area") {
+    set_force(work, shear_alone);
+    const Line line = work.run({7, 8})[0];
+    const double share = number(line, "contact_area_mm2") / 50;
+    CHECK(number(line, "tangential_force_x_n") ==
+          Approx(2 * std::sqrt(share) * number(line, "shift_x_mm")).margin(1e-4));
+    CHECK(number(line, "tangential_force_y_n") ==
+          Approx(2 * std::sqrt(share) * number(line, "shift_y_mm")).margin(1e-4));
+    const double turn = share * number(line, "shift_rad");
+    CHECK(number(line, "moment_z_nm") ==
+          Approx((300 * turn + 10 * turn * std::abs(turn)) / 1000).margin(2e-6));
+    CHECK(line.at("normal_force_n").empty());
+  }
+}
+
+TEST_CASE("replay: without dots there is no shear, without contact no force", "[look-up]") {
+  const Workplace work;
+  const double with_dots_n = number(work.run({6, 7})[0], "normal_force_n");
+  work.replace("sensor.json",
+               R"("dots": { "rows": 21, "cols": 21, "pitch_mm": 1.5, "diameter_mm": 0.7 },)", "");
+  const auto lines = work.run({6, 7});
+  CHECK(is_empty(lines[0], {"shift_x_mm", "shift_y_mm", "shift_rad", "tangential_force_x_n",
+                            "tangential_force_y_n", "moment_z_nm"}));
+  // without a shift the compensation does not count, and it is small
+  CHECK(number(lines[0], "normal_force_n") == Approx(with_dots_n).epsilon(0.01));
+  const Line free = work.run({0, 1})[0];
+  for (const std::string& name : look_up) {
+    CHECK(number(free, name) == 0);
+  }
+}
+
+TEST_CASE("replay: curves that cannot be are refused with what is wrong", "[look-up]") {
+  const Workplace work;
+  const auto says = [&](const std::string& force, const std::string& words) {
+    set_force(work, force);
+    const std::string line = work.complaint();
+    INFO(line);
+    CHECK(line.find("sensor.json: " + words) != std::string::npos);
+    CHECK(line.find('\n') == std::string::npos);
+    CHECK_FALSE(fs::exists(work.out()));
+  };
+  const auto changed = [](std::string text, const std::string& old, const std::string& with) {
+    REQUIRE(text.find(old) != std::string::npos);
+    return text.replace(text.find(old), old.size(), with);
+  };
+  says("{}", "force: holds no curve (known here: by_area, by_depth, shear)");
+  says("3", "force is a number, must be an object");
+  says(R"({"by_volume": {}})", "unknown key force.by_volume (known here: by_area, by_depth,");
+  says(changed(by_depth_alone, "to_mm", "to_mm2"), "unknown key force.by_depth.to_mm2");
+  says(changed(by_area_alone, "to_mm2", "to_mm"), "unknown key force.by_area.to_mm");
+  says(R"({"by_depth": {"from_mm": 0.1, "to_mm": 3.5}})",
+       "force.by_depth.coefficients is missing (normal force in N,");
+  says(R"({"by_depth": {"coefficients": [0, 1], "from_mm": 0.1}})",
+       "force.by_depth.to_mm is missing (the largest contact of the calibration)");
+  says(changed(by_depth_alone, "[0, 1, 0.5]", "[]"),
+       "force.by_depth.coefficients is [] (an array), must be 1 to 6 numbers");
+  says(changed(by_depth_alone, "[0, 1, 0.5]", "[0, 1, 2, 3, 4, 5, 6]"),
+       "force.by_depth.coefficients is [0,1,2,3,4,5,6] (an array), must be 1 to 6 numbers");
+  says(changed(by_depth_alone, "[0, 1, 0.5]", "[0, \"1\"]"), "force.by_depth.coefficients is [0,");
+  says(changed(by_depth_alone, "[0, 1, 0.5]", "[0, 1, -0.5]"),
+       "force.by_depth: PolynomialForce: slope within the range = -");
+  says(changed(by_depth_alone, "3.5", "0.1"), "force.by_depth: PolynomialForce: to = 0.1, must be");
+  says(changed(by_depth_alone, "3.5", "3.5, \"residual_n\": 0"),
+       "force.by_depth.residual_n = 0, must be > 0");
+  const std::string both =
+      changed(by_area_alone, "}}", "},") + std::string(by_depth_alone).substr(1);
+  says(both, "force.by_area.residual_n is missing (what the calibration left, N; by_area and");
+  says(changed(both, "340", "340, \"residual_n\": 0.1"), "force.by_depth.residual_n is missing");
+  says(changed(shear_alone, "\"area\"", "\"volume\""),
+       "force.shear.by is \"volume\" (a string), must be \"area\" or \"depth\"");
+  says(changed(shear_alone, "\"area\"", "7"), "force.shear.by is 7 (a number), must be");
+  says(changed(shear_alone, "\"to_mm\": 9,", ""), "force.shear.to_mm is missing (the largest");
+  says(changed(shear_alone, "\"reference\": 50", "\"reference\": 0"),
+       "force.shear: ShearNormalisation: reference = 0, must be finite and > 0");
+  says(changed(shear_alone, "[2]", "[-2]"), "force.shear: RadialShear: force: first of the");
+  says(changed(shear_alone, "[300, 10]", "[1, 2, 3, 4, 5]"),
+       "force.shear.moment_n_mm_per_rad is [1,2,3,4,5] (an array), must be 1 to 4 numbers");
+  // curves make no recording of dots alone one with depth
+  work.write("sensor.json", std::string("{\"force\": ") + by_depth_alone + "}");
+  CHECK(work.complaint().find("sensor.json: camera is missing") != std::string::npos);
+}
+
+TEST_CASE("replay: true forces are read, or refused with the line", "[look-up]") {
+  const Workplace work;
+  const fs::path file = work.recording() / "forces.csv";
+  const std::string header = "frame,force_x_n,force_y_n,force_z_n,moment_z_nm\n";
+  work.write("forces.csv", header + "3,1,-2,-3.5,0.004\n");
+  const auto forces = replay::read_true_forces(file, 11);
+  REQUIRE(forces.size() == 1);
+  CHECK(forces.at(3).force_n.y == -2);
+  CHECK(forces.at(3).force_n.z == -3.5);
+  CHECK(forces.at(3).moment_n_mm == Approx(4));
+  const auto says = [&](const std::string& text, const std::string& words) {
+    work.write("forces.csv", text);
+    const std::string line = work.complaint();
+    INFO(line);
+    CHECK(line.find("forces.csv: " + words) != std::string::npos);
+  };
+  says("", "is empty");
+  says("frame,fx\n", "line 1: must be frame,force_x_n,force_y_n,force_z_n,moment_z_nm");
+  says(header + "0,0,0,0\n", "line 2: has 4 values, must have 5");
+  says(header + "0,0,0,much,0\n", "line 2: force_z_n 'much' is not a number");
+  says(header + "11,0,0,0,0\n", "line 2: frame '11' is not one of the frames 0 to 10");
+  says(header + "1,0,0,0,0\n1,0,0,0,0\n", "line 3: frame 1 is given twice");
+  fs::remove(file);
+  CHECK(replay::read_true_forces(file, 11).empty());
 }

@@ -82,7 +82,9 @@ accuracy none 0.7 0.7
 
 "$replay" "$recording" --out "$work/out" --frames 0:7 >"$work/table" || fail "replay with pictures"
 grep -q "^frames  *7$" "$work/table" || fail "the printed table: $(cat "$work/table")"
-for file in frames.csv pictures/{montage,stick_ratio,wrench}.png \
+grep -Eq "^its error    0\.[0-9]+ N normal, 0\.0[0-9] N along the plate, 0\.[0-9]+ N mm moment" \
+  "$work/table" || fail "the printed errors of the look-up: $(cat "$work/table")"
+for file in frames.csv pictures/{montage,stick_ratio,forces,wrench}.png \
             pictures/{depth,side,stick,rim,traction}_000006.png; do
   [[ -s $work/out/$file ]] || fail "$file is missing"
 done

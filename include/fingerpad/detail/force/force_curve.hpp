@@ -126,10 +126,11 @@ void expects_valid(const PolynomialForce<Degree, S>& curve) {
   expects(is_finite(curve.to) && value(curve.to) > value(curve.from), owner, "to", curve.to,
           "finite and > from");
   constexpr int steps = Degree > 2 ? 16 : 1;  // a slope of first degree is lowest at an end
+  const S rounding = S(64 * epsilon<S>()) * curve.force_n(curve.to) / curve.to;  // of a level end
   for (int k = 0; k <= steps; ++k) {
     const S share = S(k) / S(steps);
     const S slope = curve.slope(S(curve.from + S(share * S(curve.to - curve.from))));
-    expects(value(slope) >= 0, owner, "slope within the range", slope, ">= 0");
+    expects(value(slope) >= -value(rounding), owner, "slope within the range", slope, ">= 0");
   }
 }
 template <scalar S>
@@ -181,7 +182,7 @@ class WholeCurve {
  private:
   S held_within(const S& measure) const {
     const S above = value(measure) > 0 ? measure : S(0);
-    return value(above) < value(curve_.to) ? above : curve_.to;
+    return value(above) <= value(curve_.to) ? above : curve_.to;
   }
 
   Curve curve_;

@@ -206,7 +206,7 @@ class ModelFitter {
     S variance = left_sq / freedom;
     if (options_.robust) {  // Huber 1981, section 7.6
       const S count = S(static_cast<double>(n));
-      const S share = S(static_cast<double>(inside)) / count;
+      const S share = S(static_cast<double>((std::max)(inside, Index(1)))) / count;
       const S correction = S(1) + S(S(static_cast<double>(p)) / count) * S((S(1) - share) / share);
       variance = S(square(correction) * S(bounded_sq / freedom)) / square(share);
     }

@@ -86,9 +86,9 @@ ModelFit<S> fit_rising(const std::vector<ForceSample<S>>& samples,
       terms = some;
     }
   }
-  expects(is_finite(least) && value(best.explained) >= options.least_explained, "fit_normal_force",
-          "share of the measured variance that a rising force explains", best.explained,
-          ">= least_explained: the force falls while the contact grows");
+  expects(is_finite(least) && value(best.explained) >= value(S(options.least_explained)),
+          "fit_normal_force", "share of the measured variance that a rising force explains",
+          best.explained, ">= least_explained: the force falls while the contact grows");
   return best;
 }
 
@@ -239,6 +239,8 @@ PowerLawFit<S> fit_power_law(std::span<const ForceSample<S>> samples, const FitO
       owner, names, log_radii, logarithms, options)(Fit::Vector::Zero(2), true);
   const Fit fit = detail::ModelFitter<S, detail::PowerLawModel<S>>(owner, names, radii, model,
                                                                    options)(start.parameters, true);
+  expects(value(fit.parameters(1)) > 0 && value(fit.parameters(1)) <= 2, owner, "exponent",
+          S(fit.parameters(1)), "in (0, 2]: the radius must grow with the force");
   PowerLawFit<S> result;
   result.curve.coefficient_mm = exp(fit.parameters(0));
   result.curve.exponent = fit.parameters(1);
@@ -258,6 +260,8 @@ PowerLawFit<S> fit_power_law(std::span<const ForceSample<S>> samples, const FitO
     result.curve.to = value(s.measure) > value(result.curve.to) ? s.measure : result.curve.to;
   }
   result.errors.residual_sd_n = sqrt(S(left_sq / S(weights - S(2))));
+  expects(is_finite(result.errors.residual_sd_n), owner, "residual_sd_n",
+          result.errors.residual_sd_n, "finite: the samples contradict each other");
   result.residual_sd_mm = fit.residual_sd;
   result.explained = fit.explained;
   result.converged = fit.converged;

@@ -1,0 +1,198 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+// Calibration of forces by look-up. In go contacts that a force gauge and the camera saw together;
+// out come what was fitted, how well it tells loads that it did not see, and a "force" section for
+// the sensor.json of a recording. data/README.md tells the columns.
+//   10_calibrate_forces [CONTACTS.csv]
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <exception>
+#include <fstream>
+#include <map>
+#include <span>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "fingerpad/calibrate/force.hpp"
+#include "fingerpad/normal_force.hpp"
+#include "fingerpad/shear.hpp"
+
+using Sample = fingerpad::ForceSample<double>;
+using Samples = std::span<const Sample>;
+using LeftOut = fingerpad::CrossValidation<double>;
+constexpr int degree = 3;  // of the normal force
+
+/// What forces are looked up by.
+struct Measure {
+  const char *name, *column, *unit;
+  double reference;  // a usual contact, as which displacement and rotation are counted
+};
+constexpr Measure area{"area", "contact_area_mm2", "mm2", 100};
+constexpr Measure depth{"depth", "contact_depth_mm", "mm", 2};
+
+std::vector<Sample> read(const char* file, const Measure& measure) {
+  const auto split = [](const std::string& line) {
+    std::istringstream stream(line.substr(0, line.find('\r')));
+    std::vector<std::string> cells;
+    for (std::string cell; std::getline(stream, cell, ',');) {
+      cells.push_back(cell);
+    }
+    return cells;
+  };
+  std::ifstream stream(file);
+  std::string line;
+  std::getline(stream, line);
+  const auto names = split(line);
+  std::map<std::string, int> loads;
+  std::vector<Sample> samples;
+  while (std::getline(stream, line)) {
+    const auto cells = split(line);
+    std::map<std::string, std::string> at;
+    for (std::size_t k = 0; k < names.size() && k < cells.size(); ++k) {
+      at[names[k]] = cells[k];
+    }
+    const auto number = [&](const char* name) {  // NaN where nothing was measured
+      return at[name].empty() ? std::nan("") : std::strtod(at[name].c_str(), nullptr);
+    };
+    Sample sample;
+    sample.measure = number(measure.column);
+    sample.displacement_mm = {number("shift_x_mm"), number("shift_y_mm")};
+    sample.rotation_rad = number("shift_rad");
+    sample.normal_force_n = -number("force_z_n");
+    sample.tangential_force_n = {number("force_x_n"), number("force_y_n")};
+    sample.moment_n_mm = 1000 * number("moment_z_nm");
+    sample.load = loads.emplace(at["load"], static_cast<int>(loads.size())).first->second;
+    samples.push_back(sample);
+  }
+  return samples;
+}
+
+void print(const char* name, double fitted, double standard_error) {
+  std::printf("  %-22s %10.5g +- %.2g\n", name, fitted, standard_error);
+}
+void print(const char* unit, double residual, const LeftOut& left_out) {
+  std::printf("  %-22s %10.3g %s\n", "residual", residual, unit);
+  std::printf("  %-22s %10.3g %s, at most %.3g, over %d loads\n", "error of a load unseen",
+              left_out.mean_abs, unit, left_out.worst, left_out.loads);
+}
+
+struct Normal {
+  fingerpad::NormalForceFit<degree> fit;
+  LeftOut left_out;
+};
+
+/// With a compensation for displacement and rotation where that tells unseen loads better.
+Normal fit_normal(Samples samples, const Measure& by) {
+  const auto fitted = [&](bool compensated) {
+    fingerpad::NormalForceFitOptions options;
+    options.displaced = options.turned = compensated;
+    const auto fit = [&](Samples some) {
+      return fingerpad::fit_normal_force<degree>(some, options);
+    };
+    const auto error = [](const auto& model, const Sample& s) {
+      const fingerpad::NormalForce force(model.curve, model.compensation);
+      return force(s.measure, s.displacement_mm, s.rotation_rad).force_n - s.normal_force_n;
+    };
+    return Normal{fit(samples), fingerpad::leave_one_load_out(samples, fit, error)};
+  };
+  const Normal plain = fitted(false), compensated = fitted(true);
+  const Normal& best = compensated.left_out.rms < plain.left_out.rms ? compensated : plain;
+  const auto& curve = best.fit.curve;
+  std::printf("normal force by %s: c1 m + c2 m^2 + c3 m^3 N, m from %.4g to %.4g %s\n", by.name,
+              curve.from, curve.to, by.unit);
+  for (std::size_t k = 1; k <= degree; ++k) {
+    const char name[] = {'c', static_cast<char>('0' + k), '\0'};
+    print(name, curve.coefficients[k], std::sqrt(best.fit.errors.covariance[k][k]));
+  }
+  if (best.fit.per_mm_sq_sd > 0) {
+    print("displaced, 1/mm^2", best.fit.compensation.per_mm_sq, best.fit.per_mm_sq_sd);
+    print("turned, 1/rad^2", best.fit.compensation.per_rad_sq, best.fit.per_rad_sq_sd);
+  }
+  print("N", best.fit.errors.residual_sd_n, best.left_out);
+  return best;
+}
+
+struct Shear {
+  fingerpad::ShearFit<> force, moment;
+  LeftOut force_left_out, moment_left_out;
+};
+
+/// Exponents need loads of many sizes; those of all loads are kept while one is left out.
+Shear fit_shear(Samples samples, const Measure& by) {
+  using fingerpad::fit_moment, fingerpad::fit_tangential_force;
+  Shear all;
+  all.force = fit_tangential_force(samples, by.reference);
+  all.moment = fit_moment(samples, by.reference);
+  const auto fit = [&](Samples some) {
+    const auto force = fit_tangential_force(some, by.reference, {false, all.force.exponent});
+    const auto moment = fit_moment(some, by.reference, {false, all.moment.exponent});
+    return fingerpad::Shear<>({by.reference, force.exponent, moment.exponent},
+                              {force.polynomial, moment.polynomial});
+  };
+  all.force_left_out = leave_one_load_out(samples, fit, [](const auto& shear, const Sample& s) {
+    const auto told = shear(s.measure, s.displacement_mm, s.rotation_rad).tangential_force_n;
+    return std::hypot(told.x - s.tangential_force_n.x, told.y - s.tangential_force_n.y);
+  });
+  all.moment_left_out = leave_one_load_out(samples, fit, [](const auto& shear, const Sample& s) {
+    return shear(s.measure, s.displacement_mm, s.rotation_rad).moment_n_mm - s.moment_n_mm;
+  });
+  std::printf("tangential force by displacement and %s over %g %s\n", by.name, by.reference,
+              by.unit);
+  print("N/mm", all.force.polynomial.coefficients[0], all.force.standard_errors[0]);
+  print("exponent", all.force.exponent, all.force.exponent_sd);
+  print("N", all.force.residual_sd, all.force_left_out);
+  std::printf("moment by rotation and %s over %g %s\n", by.name, by.reference, by.unit);
+  print("N mm/rad", all.moment.polynomial.coefficients[0], all.moment.standard_errors[0]);
+  print("exponent", all.moment.exponent, all.moment.exponent_sd);
+  print("N mm", all.moment.residual_sd, all.moment_left_out);
+  return all;
+}
+
+void print_section(const Normal& normal, const Measure& by) {
+  const auto& fit = normal.fit;
+  std::printf("  \"by_%s\": { \"coefficients\": [", by.name);
+  for (std::size_t k = 0; k <= degree; ++k) {
+    std::printf("%s%.6g", k == 0 ? "" : ", ", fit.curve.coefficients[k]);
+  }
+  std::printf("], \"from_%s\": %.4g, \"to_%s\": %.4g,\n", by.unit, fit.curve.from, by.unit,
+              fit.curve.to);
+  std::printf("    \"per_mm_sq\": %.4g, \"per_rad_sq\": %.4g, \"residual_n\": %.3g },\n",
+              fit.compensation.per_mm_sq, fit.compensation.per_rad_sq, fit.errors.residual_sd_n);
+}
+
+void print_section(const Shear& shear, const Measure& by) {
+  std::printf("  \"shear\": { \"by\": \"%s\", \"reference\": %g,\n", by.name, by.reference);
+  std::printf("    \"displacement_exponent\": %.4f, \"force_n_per_mm\": [%.5g], \"to_mm\": %.4g,\n",
+              shear.force.exponent, shear.force.polynomial.coefficients[0],
+              shear.force.polynomial.to);
+  std::printf(
+      "    \"rotation_exponent\": %.4f, \"moment_n_mm_per_rad\": [%.5g], \"to_rad\": %.4g }",
+      shear.moment.exponent, shear.moment.polynomial.coefficients[0], shear.moment.polynomial.to);
+}
+
+int main(int argc, char** argv) {
+  try {
+    const char* const file = argc > 1 ? argv[1] : FINGERPAD_EXAMPLE_RECORDING "/../contacts.csv";
+    const auto by_area = read(file, area), by_depth = read(file, depth);
+    const Normal of_area = fit_normal(by_area, area), of_depth = fit_normal(by_depth, depth);
+    const Shear of_shear_by_area = fit_shear(by_area, area),
+                of_shear_by_depth = fit_shear(by_depth, depth);
+    const bool deep = of_shear_by_depth.force_left_out.rms < of_shear_by_area.force_left_out.rms;
+    std::printf("\"force\": {\n");
+    print_section(of_area, area);
+    print_section(of_depth, depth);
+    print_section(deep ? of_shear_by_depth : of_shear_by_area, deep ? depth : area);
+    std::printf("\n}\n");
+    const double largest_n = of_depth.fit.curve.force_n(of_depth.fit.curve.to);
+    const double error_n = std::fmax(of_area.left_out.mean_abs, of_depth.left_out.mean_abs);
+    if (error_n < 0.02 * largest_n) {
+      return 0;
+    }
+    std::fprintf(stderr, "normal forces are off by %.2g N of %.2g N\n", error_n, largest_n);
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "%s\n", error.what());
+  }
+  return 1;
+}

@@ -1,0 +1,162 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+// load_trials: how well the moves of a pad's dots tell the force along it, for loads that took no
+// part in the calibration. See --help.
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cstdio>
+#include <exception>
+#include <iterator>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "fingerpad/adapt/opencv.hpp"
+#include "fingerpad/calibrate/force.hpp"
+#include "fingerpad/contact_shift.hpp"
+#include "loads.hpp"
+#include "replay/failure.hpp"
+
+namespace {
+
+using fingerpad::ForceSample;
+using fingerpad::Point2;
+using load_trials::Load;
+
+using Samples = std::vector<ForceSample<double>>;
+
+/// How far the dots moved, as the mean of all repeats; the displacement stays in px.
+template <class Mean>
+Samples samples_of(const std::vector<Load>& loads, const Mean& mean) {
+  using Shift = fingerpad::ContactShift<fingerpad::ContactDots, Mean>;
+  Samples samples;
+  for (const Load& load : loads) {
+    const Shift shift(load.from, {}, mean);
+    auto workspace = shift.workspace();
+    const cv::Mat_<unsigned char> all(load.to.size(), static_cast<unsigned char>(1));
+    const auto moved = shift(load.to, all, workspace);
+    samples.push_back({.measure = 1,
+                       .displacement_mm = moved.displacement,
+                       .tangential_force_n = {load.fx_n, load.fz_n},
+                       .load = static_cast<int>(samples.size())});
+  }
+  return samples;
+}
+
+/// Force by a straight line over the displacement along the same axis, least squares.
+struct Lines {
+  Point2<double> slope;
+  Point2<double> at_zero;
+  Point2<double> operator()(const Point2<double>& d) const {
+    return {slope.x * d.x + at_zero.x, slope.y * d.y + at_zero.y};
+  }
+};
+Lines fit_lines(std::span<const ForceSample<double>> samples) {
+  const auto line = [&](double Point2<double>::*axis) {
+    double n = 0, mean_d = 0, mean_f = 0, dd = 0, df = 0;
+    for (const auto& s : samples) {
+      n += 1;
+      mean_d += (s.displacement_mm.*axis - mean_d) / n;
+      mean_f += (s.tangential_force_n.*axis - mean_f) / n;
+    }
+    for (const auto& s : samples) {
+      const double off = s.displacement_mm.*axis - mean_d;
+      dd += off * off;
+      df += off * (s.tangential_force_n.*axis - mean_f);
+    }
+    return Point2<double>{df / dd, mean_f - df / dd * mean_d};
+  };
+  const auto x = line(&Point2<double>::x);
+  const auto y = line(&Point2<double>::y);
+  return {{x.x, y.x}, {x.y, y.y}};
+}
+
+/// Mean absolute error of one component, each load left out once.
+template <class Fit>
+double left_out_error(const Samples& samples, const Fit& fit, double Point2<double>::*axis) {
+  const auto error = [&](const auto& map, const ForceSample<double>& s) {
+    return map(s.displacement_mm).*axis - s.tangential_force_n.*axis;
+  };
+  return fingerpad::leave_one_load_out(std::span<const ForceSample<double>>(samples), fit, error)
+      .mean_abs;
+}
+
+/// Displacements of all loads, and of those about one axis alone.
+struct Displaced {
+  Samples single;
+  Samples all;
+};
+
+template <class Mean>
+Displaced displaced(const std::vector<Load>& loads, const Mean& mean) {
+  std::vector<Load> single;
+  std::copy_if(loads.begin(), loads.end(), std::back_inserter(single),
+               [](const Load& load) { return load.single_axis; });
+  return {samples_of(single, mean), samples_of(loads, mean)};
+}
+
+template <class Fit>
+void print_row(const char* name, const Displaced& samples, const Fit& fit) {
+  std::printf("%-38s", name);
+  for (const Samples* some : {&samples.single, &samples.all}) {
+    std::printf(" %10.3f %8.3f", left_out_error(*some, fit, &Point2<double>::x),
+                left_out_error(*some, fit, &Point2<double>::y));
+  }
+  std::printf("\n");
+}
+
+auto linear_map(bool robust) {
+  return [robust](std::span<const ForceSample<double>> samples) {
+    const auto fit = fingerpad::fit_linear_shear(samples, fingerpad::shear_without_measure(),
+                                                 {.robust = robust});
+    return [map = fit.map](const Point2<double>& d) { return map.force_n(d); };
+  };
+}
+
+int run(const std::string& folder, double threshold) {
+  const std::vector<Load> loads = load_trials::loads_of(folder);
+  const Displaced robust = displaced(loads, fingerpad::HuberMean{.threshold = threshold});
+  const Displaced plain = displaced(loads, fingerpad::PlainMean{});
+  std::printf(
+      "%zu loads about one axis, %zu in all; each left out once.\n"
+      "Mean absolute error in N                one axis: fx       fz    all: fx       fz\n",
+      robust.single.size(), robust.all.size());
+  print_row("robust mean, robust linear map", robust, linear_map(true));
+  print_row("robust mean, linear map", robust, linear_map(false));
+  print_row("robust mean, a line for each axis", robust, fit_lines);
+  print_row("plain mean, robust linear map", plain, linear_map(true));
+  print_row("plain mean, linear map", plain, linear_map(false));
+  print_row("plain mean, a line for each axis", plain, fit_lines);
+  return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app(
+      "Force along a pad from the moves of its dots. FOLDER holds a .json file for each load, "
+      "with\n"
+      "its force along the pad (fx, fz, in N), the tilts that it was resolved through (thetax,\n"
+      "thetaz) and, for each repeat, MoveData[].BlobMoves[] = [x, y, size, dx, dy, dsize] in px.\n"
+      "Each load is predicted from a calibration with all others: first of the loads that are\n"
+      "tilted about one axis, whose forces are exact, then of all. Linear map: both forces from\n"
+      "both displacements, with offsets. Robust: Huber's, against dots that are stuck or mistaken\n"
+      "and against loads that do not fit.");
+  std::string folder;
+  app.add_option("FOLDER", folder, "the loads")->required();
+  // beyond it are as many of normal errors in the plane as beyond 1.345 on a line: 18 %
+  double threshold = 1.86;
+  app.add_option("--threshold", threshold, "of the robust mean, in standard deviations")
+      ->capture_default_str();
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? 0 : 2;
+  }
+  try {
+    return run(folder, threshold);
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "load_trials: %s\n", error.what());
+    return 1;
+  }
+}

@@ -1,0 +1,399 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+// Forces by look-up on finite-element membranes: calibrated on some scenes, tested on others.
+// test_fingerpad "[accuracy][force]" -s prints all figures.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <iomanip>
+#include <span>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "fingerpad/calibrate/force.hpp"
+#include "fingerpad/normal_force.hpp"
+#include "fingerpad/shear.hpp"
+#include "support/catch.hpp"
+#include "support/contact_records.hpp"
+
+using namespace fingerpad;
+using test::ContactDotsOf;
+using test::ContactMeasure;
+
+namespace {
+
+using Samples = std::vector<ForceSample<double>>;
+using Scenes = std::vector<std::string>;
+
+const Scenes plates = {"press", "drag", "twist", "mix"};
+const Scenes others = {"roll", "tilt", "cylinder"};
+
+Scenes without(Scenes scenes, const std::string& left_out) {
+  scenes.erase(std::find(scenes.begin(), scenes.end(), left_out));
+  return scenes;
+}
+
+Samples samples_of(const Scenes& scenes,
+                   ContactMeasure measure,
+                   ContactDotsOf dots = ContactDotsOf::edge) {
+  return test::force_samples(test::contact_records(scenes), measure, dots);
+}
+
+/// Absolute errors over samples, and the largest that was measured.
+struct Errors {
+  double mean = 0, worst = 0, bias = 0, largest = 0;
+  int count = 0;
+
+  void add(double error, double measured) {
+    ++count;
+    mean += (std::abs(error) - mean) / count;
+    bias += (error - bias) / count;
+    worst = (std::max)(worst, std::abs(error));
+    largest = (std::max)(largest, std::abs(measured));
+  }
+};
+
+std::string rounded(double x, int digits) {
+  std::ostringstream text;
+  text << std::fixed << std::setprecision(digits) << x;
+  return text.str();
+}
+
+/// A line a test: errors in the unit, and as per cent of a full scale.
+class Table {
+ public:
+  Table(const std::string& title, const std::string& unit, const std::string& note) {
+    text_ << '\n' << title << '\n' << std::setw(33) << ("mean/" + unit) << std::setw(9) << "worst";
+    text_ << std::setw(9) << "mean %" << std::setw(9) << "worst %" << std::setw(12) << note << '\n';
+  }
+  /// Returns the mean as a share of the full scale.
+  double add(const std::string& name, const Errors& e, double full_scale, const std::string& note) {
+    text_ << std::left << std::setw(24) << name << std::right << std::setw(9) << rounded(e.mean, 3)
+          << std::setw(9) << rounded(e.worst, 3) << std::setw(9)
+          << rounded(100 * e.mean / full_scale, 1) << std::setw(9)
+          << rounded(100 * e.worst / full_scale, 1) << std::setw(12) << note << '\n';
+    return e.mean / full_scale;
+  }
+  void show() const {
+    INFO(text_.str());
+    SUCCEED();
+  }
+
+ private:
+  std::ostringstream text_;
+};
+
+const char* name_of(ContactMeasure measure) {
+  return measure == ContactMeasure::depth ? "depth" : "area";
+}
+
+double largest_force(const Samples& samples) {
+  double largest = 0;
+  for (const auto& s : samples) {
+    largest = (std::max)(largest, s.normal_force_n);
+  }
+  return largest;
+}
+
+/// The largest normal force of all plate scenes, in N: what errors of normal forces are shares of.
+double full_scale_n() {
+  return largest_force(samples_of(plates, ContactMeasure::area));
+}
+
+template <int Degree>
+using Force = NormalForce<PolynomialForce<Degree>, NoCompensation, CurveErrors<Degree + 1>>;
+
+template <int Degree>
+Force<Degree> calibrated(const Scenes& scenes, ContactMeasure measure) {
+  const Samples samples = samples_of(scenes, measure);
+  const auto fit = fit_normal_force<Degree>(std::span<const ForceSample<double>>(samples));
+  CHECK(fit.converged);
+  return Force<Degree>(fit.curve, {}, fit.errors);
+}
+
+template <class AnyForce>
+Errors normal_errors(const AnyForce& force, const Scenes& scenes, ContactMeasure measure) {
+  Errors e;
+  for (const auto& s : samples_of(scenes, measure)) {
+    e.add(force(s.measure).force_n - s.normal_force_n, s.normal_force_n);
+  }
+  return e;
+}
+
+/// Mean errors of each plate scene, calibrated with the other three.
+template <int Degree>
+std::vector<double> add_left_out(ContactMeasure measure, Table& table) {
+  std::vector<double> shares;
+  for (const std::string& scene : plates) {
+    const auto force = calibrated<Degree>(without(plates, scene), measure);
+    const Errors e = normal_errors(force, {scene}, measure);
+    const std::string name =
+        std::string(name_of(measure)) + ", degree " + std::to_string(Degree) + ", " + scene;
+    shares.push_back(table.add(name, e, full_scale_n(), rounded(e.bias, 3)));
+  }
+  return shares;
+}
+
+bool all_below(const std::vector<double>& shares, double bound) {
+  return std::all_of(shares.begin(), shares.end(), [&](double share) { return share <= bound; });
+}
+
+/// Forces by area and by depth, with cubic curves, combined.
+struct FusedErrors {
+  Errors errors;
+  double flagged = 0;  ///< share of the contacts of which the two forces disagree beyond 3
+};
+FusedErrors fused_errors(const Scenes& calibration, const std::string& scene) {
+  const auto by_area = calibrated<3>(calibration, ContactMeasure::area);
+  const auto by_depth = calibrated<3>(calibration, ContactMeasure::depth);
+  const Samples areas = samples_of({scene}, ContactMeasure::area);
+  const Samples depths = samples_of({scene}, ContactMeasure::depth);
+  FusedErrors result;
+  bool complete = true;
+  for (std::size_t k = 0; k < areas.size(); ++k) {
+    const auto r = fused(by_area(areas[k].measure), by_depth(depths[k].measure));
+    complete = complete && r.sources == 2;
+    result.errors.add(r.force_n - areas[k].normal_force_n, areas[k].normal_force_n);
+    result.flagged +=
+        (std::abs(r.disagreement) > 3 ? 1.0 : 0.0) / static_cast<double>(areas.size());
+  }
+  CHECK(complete);
+  return result;
+}
+
+}  // namespace
+
+TEST_CASE("normal force of plates, calibrated on other scenes", "[accuracy][force]") {
+  // Errors are shares of the largest normal force of all plate scenes, 9.93 N in `press`; without
+  // `press` the calibration ends at 9.10 N.
+  CHECK(full_scale_n() == Approx(9.93).margin(0.01));
+  Table table("Normal force of a plate, calibrated on the other three scenes", "N", "bias/N");
+  const auto depth_2 = add_left_out<2>(ContactMeasure::depth, table);
+  const auto depth_3 = add_left_out<3>(ContactMeasure::depth, table);
+  const auto area_2 = add_left_out<2>(ContactMeasure::area, table);
+  const auto area_3 = add_left_out<3>(ContactMeasure::area, table);
+  std::vector<double> both;
+  double flagged = 0;
+  for (const std::string& scene : plates) {
+    const auto f = fused_errors(without(plates, scene), scene);
+    both.push_back(table.add("fused, degree 3, " + scene, f.errors, full_scale_n(),
+                             rounded(f.errors.bias, 3)));
+    flagged = (std::max)(flagged, f.flagged);
+  }
+  table.show();
+  CHECK(all_below(depth_3, 0.01));   // goal 0.02; 0.007 measured
+  CHECK(all_below(area_3, 0.005));   // goal 0.03; 0.002
+  CHECK(all_below(both, 0.005));     // 0.002
+  CHECK(all_below(area_2, 0.012));   // 0.008
+  CHECK(all_below(depth_2, 0.027));  // 0.021: as published, it misses the goal on `press` alone
+  CHECK(flagged <= 0.051);           // one frame of `press`
+}
+
+TEST_CASE("normal force of other shapes from curves of plates", "[accuracy][force]") {
+  // No goal is set, and none could be met: a sphere or a cylinder of the same area presses harder.
+  // That area and depth disagree is what tells.
+  Table table("Other shapes, calibrated on all four scenes of plates, degree 3", "N", "bias/N");
+  Table disagree("Contacts of which area and depth disagree beyond 3", "N", "flagged");
+  for (const std::string& scene : others) {
+    for (const auto measure : {ContactMeasure::depth, ContactMeasure::area}) {
+      const Errors e = normal_errors(calibrated<3>(plates, measure), {scene}, measure);
+      const double share = table.add(std::string(name_of(measure)) + ", " + scene, e,
+                                     full_scale_n(), rounded(e.bias, 3));
+      CAPTURE(scene, name_of(measure));
+      CHECK(share < 0.13);  // up to 0.109 measured
+      const bool plate_by_area = scene == "tilt" && measure == ContactMeasure::area;
+      CHECK((share < 0.007) == plate_by_area);  // an area has no tilt
+      // a curved object is deeper and touches less
+      CHECK((e.bias > 0) == (measure == ContactMeasure::depth));
+    }
+    const auto f = fused_errors(plates, scene);
+    disagree.add("fused, " + scene, f.errors, full_scale_n(), rounded(100 * f.flagged, 0) + " %");
+    CHECK(f.flagged > 0.9);
+  }
+  table.show();
+  disagree.show();
+}
+
+namespace {
+
+/// What a half that is not tested is filled with.
+template <int Degree>
+OddPolynomial<Degree> any_polynomial() {
+  OddPolynomial<Degree> polynomial;
+  polynomial.coefficients.fill(1);
+  polynomial.to = 1;
+  return polynomial;
+}
+
+double reference_of(ContactMeasure measure) {
+  return measure == ContactMeasure::depth ? 10 : 100;  // as published
+}
+
+/// Published exponents of rotation.
+double rotation_exponent_of(ContactMeasure measure) {
+  return measure == ContactMeasure::depth ? 2.2 : 1.7;
+}
+
+/// Errors are lengths of difference vectors.
+template <int Degree>
+Errors tangential_errors(const ShearFit<Degree>& fit, double reference, const Samples& samples) {
+  const Shear<RadialShear<Degree>> shear({reference, fit.exponent, 0},
+                                         {fit.polynomial, any_polynomial<Degree>()});
+  Errors e;
+  for (const auto& s : samples) {
+    const auto found = shear(s.measure, s.displacement_mm, 0).tangential_force_n;
+    const auto& truth = s.tangential_force_n;
+    e.add(std::hypot(found.x - truth.x, found.y - truth.y), std::hypot(truth.x, truth.y));
+  }
+  return e;
+}
+
+template <int Degree>
+Errors moment_errors(const ShearFit<Degree>& fit, double reference, const Samples& samples) {
+  const Shear<RadialShear<Degree>> shear({reference, 0, fit.exponent},
+                                         {any_polynomial<Degree>(), fit.polynomial});
+  Errors e;
+  for (const auto& s : samples) {
+    e.add(shear(s.measure, {0, 0}, s.rotation_rad).moment_n_mm - s.moment_n_mm, s.moment_n_mm);
+  }
+  return e;
+}
+
+template <int Degree>
+ShearFit<Degree> tangential_fit(const Samples& samples, double reference) {
+  const auto fit =
+      fit_tangential_force<Degree>(std::span<const ForceSample<double>>(samples), reference);
+  CHECK(fit.converged);
+  return fit;
+}
+
+/// One measure and one choice of dots: mean errors as shares of the largest force of each scene.
+struct TangentialShares {
+  double drag, tilt, cylinder;  ///< calibrated on mix
+  double mix;                   ///< calibrated on drag and cylinder
+};
+template <int Degree>
+TangentialShares add_tangential(ContactMeasure measure, ContactDotsOf dots, Table& table) {
+  const double reference = reference_of(measure);
+  const auto of = [&](const Scenes& scenes) { return samples_of(scenes, measure, dots); };
+  const std::string name = std::string(dots == ContactDotsOf::edge ? "edge, " : "center, ") +
+                           name_of(measure) + ", " + std::to_string(Degree) + ", ";
+  const auto share = [&](const auto& fit, const std::string& scene) {
+    const Errors e = tangential_errors(fit, reference, of({scene}));
+    return table.add(name + scene, e, e.largest, rounded(fit.exponent, 2));
+  };
+  const auto from_mix = tangential_fit<Degree>(of({"mix"}), reference);
+  const auto from_drags = tangential_fit<Degree>(of({"drag", "cylinder"}), reference);
+  return {share(from_mix, "drag"), share(from_mix, "tilt"), share(from_mix, "cylinder"),
+          share(from_drags, "mix")};
+}
+
+}  // namespace
+
+TEST_CASE("tangential force, calibrated on other scenes", "[accuracy][force]") {
+  // Exponents are fitted; the published 0.65 and 0.75 are those of another pad.
+  Table table("drag, tilt, cylinder: calibrated on mix; mix: on drag and cylinder", "N",
+              "exponent");
+  const auto depth = add_tangential<1>(ContactMeasure::depth, ContactDotsOf::edge, table);
+  const auto area = add_tangential<1>(ContactMeasure::area, ContactDotsOf::edge, table);
+  const auto depth_2 = add_tangential<2>(ContactMeasure::depth, ContactDotsOf::edge, table);
+  const auto area_2 = add_tangential<2>(ContactMeasure::area, ContactDotsOf::edge, table);
+  const auto central = add_tangential<1>(ContactMeasure::depth, ContactDotsOf::center, table);
+  const auto central_area = add_tangential<1>(ContactMeasure::area, ContactDotsOf::center, table);
+  table.show();
+  // the goal is 0.04
+  CHECK(depth.drag <= 0.02);
+  CHECK(depth.tilt <= 0.035);
+  CHECK(depth.cylinder <= 0.04);
+  CHECK(depth.mix <= 0.04);
+  CHECK(area.drag <= 0.025);
+  CHECK(area.tilt <= 0.04);
+  CHECK(area.cylinder <= 0.07);  // 0.055: the cylinder's contact is a strip
+  CHECK(area.mix <= 0.025);
+  // A second degree does no better: 0.044 and 0.049 on the cylinder, 0.041 by depth on the mix.
+  for (const auto& two : {depth_2, area_2}) {
+    CHECK(two.drag <= 0.03);
+    CHECK(two.tilt <= 0.04);
+    CHECK(two.cylinder <= 0.06);
+    CHECK(two.mix <= 0.05);
+  }
+  // The central dot, as published, misses the goal wherever the direction of motion changes.
+  for (const auto& published : {central, central_area}) {
+    CHECK(published.drag > 0.06);
+    CHECK(published.tilt > 0.06);
+    CHECK(published.cylinder <= 0.04);
+    CHECK(published.mix > 0.05);
+  }
+}
+
+TEST_CASE("tangential force after a reversal", "[accuracy][force]") {
+  // The plate of `drag` turns back after step 22. The central dot then still lies where the object
+  // took it, while the force is gone and soon of the other sign.
+  constexpr std::ptrdiff_t turned_back = 22;
+  const auto measure = ContactMeasure::depth;
+  Table table("drag, calibrated on mix, degree 1, by depth", "N", "exponent");
+  std::array<double, 2> before{}, after{};
+  for (const auto dots : {ContactDotsOf::edge, ContactDotsOf::center}) {
+    const auto fit = tangential_fit<1>(samples_of({"mix"}, measure, dots), reference_of(measure));
+    const Samples drag = samples_of({"drag"}, measure, dots);
+    const double full = tangential_errors(fit, reference_of(measure), drag).largest;
+    const Samples out(drag.begin(), drag.begin() + turned_back);
+    const Samples back(drag.begin() + turned_back, drag.end());
+    const std::string name = dots == ContactDotsOf::edge ? "edge" : "center";
+    const auto share = [&](const Samples& part, const std::string& what) {
+      return table.add(name + ", " + what, tangential_errors(fit, reference_of(measure), part),
+                       full, rounded(fit.exponent, 2));
+    };
+    const std::size_t k = dots == ContactDotsOf::edge ? 0 : 1;
+    before[k] = share(out, "before");
+    after[k] = share(back, "after");
+  }
+  table.show();
+  CHECK(after[0] <= 0.03);
+  CHECK(after[1] > 3 * after[0]);
+}
+
+TEST_CASE("moment, calibrated on other scenes", "[accuracy][force]") {
+  // Shares of the largest moment of the scene. Alone, `twist` does not tell an exponent: it turns
+  // at one depth.
+  Table table("twist: calibrated on mix; mix: on twist, exponent as published", "N mm", "exponent");
+  const auto share = [&](const std::string& name, const auto& fit, ContactMeasure measure,
+                         const Samples& samples) {
+    const Errors e = moment_errors(fit, reference_of(measure), samples);
+    return table.add(name, e, e.largest, rounded(fit.exponent, 2));
+  };
+  for (const auto measure : {ContactMeasure::depth, ContactMeasure::area}) {
+    const double reference = reference_of(measure);
+    const ExponentSearch<> published{.search = false, .given = rotation_exponent_of(measure)};
+    const bool by_depth = measure == ContactMeasure::depth;
+    for (const auto dots : {ContactDotsOf::edge, ContactDotsOf::center}) {
+      const Samples mix = samples_of({"mix"}, measure, dots);
+      const Samples twist = samples_of({"twist"}, measure, dots);
+      const std::span<const ForceSample<double>> of_mix(mix), of_twist(twist);
+      const bool edge = dots == ContactDotsOf::edge;
+      const std::string name = std::string(edge ? "edge, " : "all, ") + name_of(measure) + ", ";
+      const auto fit = fit_moment<1>(of_mix, reference);
+      CHECK(fit.converged);
+      const double forth = share(name + "1, twist", fit, measure, twist);
+      const double forth_2 =
+          share(name + "2, twist", fit_moment<2>(of_mix, reference), measure, twist);
+      const double given =
+          share(name + "1 p., twist", fit_moment<1>(of_mix, reference, published), measure, twist);
+      const double back =
+          share(name + "1 p., mix", fit_moment<1>(of_twist, reference, published), measure, mix);
+      CAPTURE(name_of(measure), edge);
+      // the goal is 0.05
+      CHECK(forth <= (edge ? 0.015 : 0.06));   // 0.009 and 0.010; all dots 0.049 and 0.050
+      CHECK(forth_2 <= (edge ? 0.015 : 0.1));  // 0.007; all dots 0.080
+      // The published exponents are too large for this pad, whose moment grows as depth to the 1.6
+      // and as area to the 1.0.
+      CHECK(given <= (by_depth ? 0.1 : 0.2));     // 0.082 and 0.158
+      CHECK(back <= (by_depth ? 0.045 : 0.075));  // 0.028 and 0.057; all dots 0.035 and 0.062
+    }
+    const Samples twist = samples_of({"twist"}, ContactMeasure::depth);
+    CHECK_THROWS_AS(fit_moment<1>(std::span<const ForceSample<double>>(twist), 10.0),
+                    parameter_error);
+  }
+  table.show();
+}

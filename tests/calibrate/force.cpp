@@ -1,0 +1,1209 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+#include "fingerpad/calibrate/force.hpp"
+
+#include <algorithm>
+#include <array>
+#include <boost/multiprecision/eigen.hpp>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <set>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "fingerpad/adapt/autodiff.hpp"
+#include "fingerpad/normal_force.hpp"
+#include "fingerpad/shear.hpp"
+#include "support/catch.hpp"
+#include "support/generators.hpp"
+#include "support/numbers.hpp"
+#include "support/pad.hpp"
+#include "support/refusal.hpp"
+
+using namespace fingerpad;
+using test::begins_with;
+using test::Digits50;
+using test::Random;
+using test::refusal;
+
+namespace {
+
+using Sample = ForceSample<double>;
+using Samples = std::vector<Sample>;
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+template <class S>
+std::span<const ForceSample<S>> all(const std::vector<ForceSample<S>>& samples) {
+  return samples;
+}
+
+/// A pad whose every number is known. The measure is a depth in mm, or the radius of an elastic
+/// pad.
+template <class S = double>
+struct Pad {
+  S constant = S(0), linear = S(0.5), square_term = S(0.3), cubic = S(0);
+  S per_mm_sq = S(-0.1), per_rad_sq = S(8);
+  S reference = S(2);
+  S pull_1 = S(2), pull_2 = S(0.6), pull_exponent = S(0.7);
+  S turn_1 = S(40), turn_2 = S(30), turn_exponent = S(1.6);
+  S radius_mm = S(2.2), gamma = S(0.38);
+  AffineForce<S> affine = {S(0.8), S(-0.6), S(0.7)};
+  LinearShear<S> linear_map = {S(1.9), S(-0.3), S(0.2), S(2.4), {S(0.4), S(-0.25)}, S(0), S(0)};
+
+  PolynomialForce<3, S> curve() const {
+    return {{constant, linear, square_term, cubic}, S(0.1), S(6)};
+  }
+  S plain(const S& m) const { return curve().force_n(m); }
+  S compensated(const ForceSample<S>& s) const {
+    const S d_sq = square(s.displacement_mm.x) + square(s.displacement_mm.y);
+    return S(plain(s.measure) * (S(1) + per_mm_sq * d_sq + per_rad_sq * square(s.rotation_rad)));
+  }
+  S factor(const ForceSample<S>& s, const S& exponent) const {
+    return shear_factor(s.measure, reference, exponent);
+  }
+  Point2<S> pull(const ForceSample<S>& s, const S& second) const {
+    using std::sqrt;
+    const S u = factor(s, pull_exponent);
+    const S d_sq = square(s.displacement_mm.x) + square(s.displacement_mm.y);
+    const S gain = S(u * S(pull_1 + second * u * sqrt(d_sq)));
+    return {S(gain * s.displacement_mm.x), S(gain * s.displacement_mm.y)};
+  }
+  S turn(const ForceSample<S>& s, const S& second) const {
+    const S x = factor(s, turn_exponent) * s.rotation_rad;
+    const S size = value(x) < 0 ? S(-x) : x;
+    return S(turn_1 * x + second * x * size);
+  }
+};
+
+/// Contacts of all sizes, displaced and turned, of five loads; without forces.
+template <class S = double>
+std::vector<ForceSample<S>> contacts(int count, Random& random) {
+  std::vector<ForceSample<S>> samples;
+  for (int k = 0; k < count; ++k) {
+    ForceSample<S> s;
+    s.measure = S(random.uniform(0.4, 5));
+    s.displacement_mm = {S(random.uniform(-1, 1)), S(random.uniform(-1, 1))};
+    s.rotation_rad = S(random.uniform(-0.15, 0.15));
+    s.load = k % 5;
+    samples.push_back(s);
+  }
+  return samples;
+}
+
+/// Errors of a measured force, in N.
+struct Noise {
+  double sd = 0.05;
+  double outliers = 0;  ///< share
+  double size = 2;      ///< of an outlier, on average
+  bool one_side = false;
+};
+
+double error_of(const Noise& noise, Random& random) {
+  if (random.uniform() < noise.outliers) {
+    const double size = noise.size * random.uniform(0.5, 1.5);
+    return noise.one_side || random.uniform() < 0.5 ? size : -size;
+  }
+  return noise.sd * random.normal();
+}
+
+/// All forces of a pad in one sample: compensated normal force, tangential force and moment of the
+/// first or second degree.
+Samples measured(const Pad<>& pad, int count, const Noise& noise, int degree, Random& random) {
+  Samples samples = contacts(count, random);
+  const double two = degree == 2 ? 1 : 0;
+  for (Sample& s : samples) {
+    s.normal_force_n = pad.compensated(s) + error_of(noise, random);
+    const auto pull = pad.pull(s, two * pad.pull_2);
+    s.tangential_force_n = {pull.x + error_of(noise, random), pull.y + error_of(noise, random)};
+    s.moment_n_mm = pad.turn(s, two * pad.turn_2) + error_of(noise, random);
+  }
+  return samples;
+}
+
+/// How often the truth is within two standard errors, and how large errors are over them.
+class Coverage {
+ public:
+  explicit Coverage(const std::string& name) : name_(name) {}
+  void add(double found, double truth, double standard_error) {
+    const double z = (found - truth) / standard_error;
+    within_ += std::abs(z) <= 2 ? 1 : 0;
+    sum_sq_ += z * z;
+    ++fits_;
+  }
+  /// Three standard deviations of a count around `expected`, and of the root mean square around
+  /// `size`, with `slack` for standard errors that hold for many samples only.
+  void check(double slack = 0, double expected = 0.95, double size = 1.02) const {
+    const double share = within_ / fits_, rms = std::sqrt(sum_sq_ / fits_);
+    CAPTURE(name_, share, rms, fits_);
+    CHECK(share >= expected - 3 * std::sqrt(expected * (1 - expected) / fits_) - slack);
+    CHECK(std::abs(rms - size) <= 3 / std::sqrt(2 * fits_) + slack);
+  }
+
+ private:
+  std::string name_;
+  double within_ = 0, sum_sq_ = 0, fits_ = 0;
+};
+
+/// Coverage of some parameters over fits of fresh samples: `fit(random)` returns for each of them
+/// {found, truth, standard error}.
+template <std::size_t N, class Fit>
+void check_coverage(const std::array<const char*, N>& names,
+                    int fits,
+                    std::uint64_t seed,
+                    const Fit& fit,
+                    double slack = 0) {
+  std::vector<Coverage> coverage(names.begin(), names.end());
+  Random random(seed);
+  for (int k = 0; k < fits; ++k) {
+    const std::array<std::array<double, 3>, N> found = fit(random);
+    for (std::size_t i = 0; i < N; ++i) {
+      coverage[i].add(found[i][0], found[i][1], found[i][2]);
+    }
+  }
+  for (const Coverage& c : coverage) {
+    c.check(slack);
+  }
+}
+
+struct Way {
+  const char* name;
+  bool robust;
+  Noise noise;
+  int samples;
+  int fits;
+  double slack;
+};
+/// Huber's standard errors are those of many samples; with 40 of which 15 % are outliers, 91 % are
+/// within two.
+const std::array<Way, 3> ways = {
+    {{"plain", false, {}, 60, 200, 0},
+     {"Huber without outliers", true, {}, 60, 80, 0.02},
+     {"Huber, 15 % outliers", true, {.outliers = 0.15}, 100, 80, 0.02}}};
+
+FitOptions options_of(const Way& way) {
+  FitOptions options;
+  options.robust = way.robust;
+  options.passes = 25;  // its weights then still move, but by little
+  return options;
+}
+
+double sd(double variance) {
+  return std::sqrt(variance);
+}
+
+}  // namespace
+
+TEST_CASE("curves of the normal force are found within their errors", "[calibrate][force]") {
+  for (const Way& way : ways) {
+    CAPTURE(way.name);
+    const Pad<> pad;
+    check_coverage<4>(
+        {"linear", "square", "per_mm_sq", "per_rad_sq"}, way.fits, 1,
+        [&](Random& random) {
+          const auto samples = measured(pad, way.samples, way.noise, 1, random);
+          NormalForceFitOptions options;
+          options.displaced = options.turned = true;
+          options.fit = options_of(way);
+          const auto fit = fit_normal_force<2>(all(samples), options);
+          const auto& c = fit.errors.covariance;
+          return std::array<std::array<double, 3>, 4>{
+              {{fit.curve.coefficients[1], pad.linear, sd(c[1][1])},
+               {fit.curve.coefficients[2], pad.square_term, sd(c[2][2])},
+               {fit.compensation.per_mm_sq, pad.per_mm_sq, fit.per_mm_sq_sd},
+               {fit.compensation.per_rad_sq, pad.per_rad_sq, fit.per_rad_sq_sd}}};
+        },
+        way.slack);
+    Pad<> cubic{
+        .constant = 0.3, .square_term = 0.05, .cubic = 0.06, .per_mm_sq = 0, .per_rad_sq = 0};
+    check_coverage<5>(
+        {"constant", "linear", "square", "cubic", "force"}, way.fits, 2,
+        [&](Random& random) {
+          const auto samples = measured(cubic, way.samples, way.noise, 1, random);
+          const auto fit = fit_normal_force<3>(
+              all(samples), {.through_zero = false, .rising = false, .fit = options_of(way)});
+          const auto& c = fit.errors.covariance;
+          const auto& p = fit.curve.coefficients;
+          // The variance of a force takes all of the covariance.
+          const double at = 3.3;
+          const double variance =
+              fit.errors.variance_n2(fit.curve.gradient(at), 0) - square(fit.errors.residual_sd_n);
+          return std::array<std::array<double, 3>, 5>{
+              {{p[0], cubic.constant, sd(c[0][0])},
+               {p[1], cubic.linear, sd(c[1][1])},
+               {p[2], cubic.square_term, sd(c[2][2])},
+               {p[3], cubic.cubic, sd(c[3][3])},
+               {fit.curve.force_n(at), cubic.plain(at), sd(variance)}}};
+        },
+        way.slack);
+  }
+}
+
+TEST_CASE("elastic pads and the published compensation are found within their errors",
+          "[calibrate][force]") {
+  for (const Way& way : ways) {
+    CAPTURE(way.name);
+    const Pad<> pad;
+    check_coverage<2>(
+        {"coefficient_mm", "exponent"}, way.fits, 3,
+        [&](Random& random) {
+          Samples samples = contacts(way.samples, random);
+          for (Sample& s : samples) {  // errors in the radius
+            s.normal_force_n = random.uniform(0.3, 20);
+            s.measure =
+                pad.radius_mm * std::pow(s.normal_force_n, pad.gamma) + error_of(way.noise, random);
+          }
+          const auto fit = fit_power_law<double>(samples, options_of(way));
+          const auto& c = fit.errors.covariance;
+          return std::array<std::array<double, 3>, 2>{
+              {{fit.curve.coefficient_mm, pad.radius_mm, sd(c[0][0])},
+               {fit.curve.exponent, pad.gamma, sd(c[1][1])}}};
+        },
+        way.slack);
+    for (const auto by : {AffineBy::displacement, AffineBy::rotation}) {
+      check_coverage<3>(
+          {"gain", "per_unit", "offset_n"}, way.fits, 4,
+          [&](Random& random) {
+            Samples samples = contacts(way.samples, random);
+            for (Sample& s : samples) {
+              const double size = by == AffineBy::rotation
+                                      ? std::abs(s.rotation_rad)
+                                      : std::hypot(s.displacement_mm.x, s.displacement_mm.y);
+              s.normal_force_n =
+                  pad.affine(pad.plain(s.measure), size) + error_of(way.noise, random);
+            }
+            const auto fit = fit_affine_force(all(samples), pad.curve(), by, options_of(way));
+            return std::array<std::array<double, 3>, 3>{
+                {{fit.force.gain, pad.affine.gain, fit.standard_errors[0]},
+                 {fit.force.per_unit, pad.affine.per_unit, fit.standard_errors[1]},
+                 {fit.force.offset_n, pad.affine.offset_n, fit.standard_errors[2]}}};
+          },
+          way.slack);
+    }
+  }
+}
+
+namespace {
+
+template <int Degree>
+void check_shear_coverage(const Way& way, bool given) {
+  const Pad<> pad;
+  CAPTURE(Degree, given);
+  constexpr double second = Degree == 2 ? 1 : 0;
+  const auto row = [&](const auto& fit, double c_1, double c_2, double exponent) {
+    // what was given is no estimate: the first coefficient stands in for it
+    const auto& c = fit.polynomial.coefficients;
+    const std::array<double, 3> first = {c[0], c_1, fit.standard_errors[0]};
+    const std::array<double, 3> last = {c[Degree - 1], Degree == 2 ? c_2 : c_1,
+                                        fit.standard_errors[Degree - 1]};
+    const std::array<double, 3> exponents = {fit.exponent, exponent, fit.exponent_sd};
+    CHECK((fit.exponent_sd == 0) == given);
+    return std::array<std::array<double, 3>, 3>{{first, last, given ? first : exponents}};
+  };
+  check_coverage<3>(
+      {"c_1", "c_n", "displacement_exponent"}, way.fits, 5,
+      [&](Random& random) {
+        const auto samples = measured(pad, way.samples, way.noise, Degree, random);
+        const auto fit = fit_tangential_force<Degree>(
+            all(samples), pad.reference,
+            {.search = !given, .given = pad.pull_exponent, .steps = 12}, options_of(way));
+        return row(fit, pad.pull_1, second * pad.pull_2, pad.pull_exponent);
+      },
+      way.slack);
+  check_coverage<3>(
+      {"c_1", "c_n", "rotation_exponent"}, way.fits, 6,
+      [&](Random& random) {
+        const auto samples = measured(pad, way.samples, way.noise, Degree, random);
+        const auto fit = fit_moment<Degree>(
+            all(samples), pad.reference,
+            {.search = !given, .given = pad.turn_exponent, .steps = 12}, options_of(way));
+        return row(fit, pad.turn_1, second * pad.turn_2, pad.turn_exponent);
+      },
+      way.slack);
+}
+
+}  // namespace
+
+TEST_CASE("shear is found within its errors, exponents searched or given", "[calibrate][force]") {
+  for (const Way& way : ways) {
+    CAPTURE(way.name);
+    check_shear_coverage<1>(way, false);
+    check_shear_coverage<2>(way, false);
+  }
+  check_shear_coverage<1>(ways[0], true);
+  check_shear_coverage<2>(ways[0], true);
+}
+
+TEST_CASE("a linear map with offsets is found within its errors", "[calibrate][force]") {
+  const Pad<> pad;
+  const LinearShear<double>& truth = pad.linear_map;
+  for (const Way& way : ways) {
+    CAPTURE(way.name);
+    check_coverage<6>(
+        {"x_by_x", "x_by_y", "offset_n.x", "y_by_x", "y_by_y", "offset_n.y"}, way.fits, 7,
+        [&](Random& random) {
+          Samples samples = contacts(way.samples, random);
+          for (Sample& s : samples) {
+            const double u = pad.factor(s, pad.pull_exponent);
+            const auto force = truth.force_n({u * s.displacement_mm.x, u * s.displacement_mm.y});
+            s.tangential_force_n = {force.x + error_of(way.noise, random),
+                                    force.y + error_of(way.noise, random)};
+          }
+          const auto fit = fit_linear_shear(all(samples), {pad.reference, pad.pull_exponent, 0.0},
+                                            options_of(way));
+          const auto& x = fit.x_standard_errors;
+          const auto& y = fit.y_standard_errors;
+          return std::array<std::array<double, 3>, 6>{
+              {{fit.map.x_by_x, truth.x_by_x, x[0]},
+               {fit.map.x_by_y, truth.x_by_y, x[1]},
+               {fit.map.offset_n.x, truth.offset_n.x, x[2]},
+               {fit.map.y_by_x, truth.y_by_x, y[0]},
+               {fit.map.y_by_y, truth.y_by_y, y[1]},
+               {fit.map.offset_n.y, truth.offset_n.y, y[2]}}};
+        },
+        way.slack);
+  }
+}
+
+TEST_CASE("a calibration tells how far the next force is off", "[calibrate][force]") {
+  const Pad<> pad{.per_mm_sq = 0, .per_rad_sq = 0};
+  Coverage predicted("next force");
+  Random random(8);
+  const Noise noise;
+  for (int k = 0; k < 1000; ++k) {
+    // few samples, so that the parameters matter, too
+    const auto samples = measured(pad, 12, noise, 1, random);
+    const auto fit = fit_normal_force<2>(all(samples), {.rising = false});
+    PolynomialForce<2> curve = fit.curve;
+    curve.from = 0.1;
+    curve.to = 6;
+    const NormalForce<PolynomialForce<2>, NoCompensation, CurveErrors<3>> force(curve, {},
+                                                                                fit.errors);
+    const double at = random.uniform(0.4, 5);
+    const auto found = force(at);
+    predicted.add(found.force_n, pad.plain(at) + error_of(noise, random), sd(found.variance_n2));
+  }
+  predicted.check(0, 0.927, 1.118);  // Student's distribution, 10 degrees of freedom
+}
+
+namespace {
+
+/// Largest relative error of each parameter, of samples without noise.
+template <class S>
+double error_without_noise(bool robust) {
+  const Pad<S> pad;
+  FitOptions options;
+  options.robust = robust;
+  Random random(9);
+  auto samples = contacts<S>(30, random);
+  double worst = 0;
+  const auto compare = [&](const S& found, const S& truth) {
+    using std::abs;
+    worst = (std::max)(worst, static_cast<double>(abs(S((found - truth) / truth))));
+  };
+  for (auto& s : samples) {
+    s.normal_force_n = pad.compensated(s);
+    s.tangential_force_n = pad.pull(s, pad.pull_2);
+    s.moment_n_mm = pad.turn(s, pad.turn_2);
+  }
+  const auto normal =
+      fit_normal_force<2>(all(samples), {.displaced = true, .turned = true, .fit = options});
+  compare(normal.curve.coefficients[1], pad.linear);
+  compare(normal.curve.coefficients[2], pad.square_term);
+  compare(normal.compensation.per_mm_sq, pad.per_mm_sq);
+  compare(normal.compensation.per_rad_sq, pad.per_rad_sq);
+  CHECK(value(normal.curve.coefficients[0]) == 0);
+  const auto pull = fit_tangential_force<2>(all(samples), pad.reference, {.steps = 10}, options);
+  compare(pull.polynomial.coefficients[0], pad.pull_1);
+  compare(pull.polynomial.coefficients[1], pad.pull_2);
+  compare(pull.exponent, pad.pull_exponent);
+  const auto turn = fit_moment<2>(all(samples), pad.reference, {.steps = 10}, options);
+  compare(turn.polynomial.coefficients[0], pad.turn_1);
+  compare(turn.polynomial.coefficients[1], pad.turn_2);
+  compare(turn.exponent, pad.turn_exponent);
+  auto shifted = samples;
+  for (auto& s : shifted) {
+    using std::sqrt;
+    const S size = sqrt(S(square(s.displacement_mm.x) + square(s.displacement_mm.y)));
+    s.normal_force_n = pad.affine(pad.plain(s.measure), size);
+    const S u = pad.factor(s, pad.pull_exponent);
+    s.tangential_force_n =
+        pad.linear_map.force_n({S(u * s.displacement_mm.x), S(u * s.displacement_mm.y)});
+  }
+  const auto affine = fit_affine_force(all(shifted), pad.curve(), AffineBy::displacement, options);
+  compare(affine.force.gain, pad.affine.gain);
+  compare(affine.force.per_unit, pad.affine.per_unit);
+  compare(affine.force.offset_n, pad.affine.offset_n);
+  const auto linear = fit_linear_shear(
+      all(shifted), ShearNormalisation<S>{pad.reference, pad.pull_exponent, S(0)}, options);
+  compare(linear.map.x_by_x, pad.linear_map.x_by_x);
+  compare(linear.map.x_by_y, pad.linear_map.x_by_y);
+  compare(linear.map.offset_n.x, pad.linear_map.offset_n.x);
+  compare(linear.map.y_by_x, pad.linear_map.y_by_x);
+  compare(linear.map.y_by_y, pad.linear_map.y_by_y);
+  compare(linear.map.offset_n.y, pad.linear_map.offset_n.y);
+  for (auto& s : shifted) {
+    using std::pow;
+    s.measure = pad.radius_mm * S(pow(s.normal_force_n, pad.gamma));
+  }
+  const auto elastic = fit_power_law<S>(all(shifted), options);
+  compare(elastic.curve.coefficient_mm, pad.radius_mm);
+  compare(elastic.curve.exponent, pad.gamma);
+  return worst;
+}
+
+}  // namespace
+
+TEST_CASE("samples without noise give back the parameters", "[calibrate][force]") {
+  // A few hundred times the number's spacing.
+  CHECK(error_without_noise<double>(false) < 1e-13);
+  CHECK(error_without_noise<double>(true) < 1e-13);
+  CHECK(error_without_noise<float>(false) < 1e-4);
+  CHECK(error_without_noise<Digits50>(false) < 1e-47);
+}
+
+namespace {
+
+/// Samples with noise, and fits of them, for what must hold of every calibration.
+Samples any_samples(int count = 30) {
+  Random random(static_cast<std::uint64_t>(test::whole(1, 1000000)));
+  Pad<> pad;
+  pad.linear = test::uniform(0.3, 1);
+  pad.square_term = test::uniform(0.1, 0.5);
+  pad.pull_exponent = test::uniform(0, 1);
+  Samples samples = measured(pad, count, {.sd = 0.1}, 2, random);
+  for (Sample& s : samples) {  // elastic enough for a power law
+    s.normal_force_n = (std::max)(s.normal_force_n, 0.01);
+  }
+  return samples;
+}
+
+FitOptions any_options() {
+  FitOptions options;
+  options.robust = test::whole(0, 1) == 1;
+  return options;
+}
+
+/// Parameters and standard errors of all fits, each with the powers in which it grows with the unit
+/// of force and with that of the measure.
+struct Number {
+  double value;
+  int force_power = 0;
+  int measure_power = 0;
+};
+std::vector<Number> all_fits(const Samples& samples, const FitOptions& options) {
+  std::vector<Number> numbers;
+  const auto normal =
+      fit_normal_force<2>(all(samples), {.displaced = true, .turned = true, .fit = options});
+  for (int k = 1; k <= 2; ++k) {
+    const auto i = static_cast<std::size_t>(k);
+    numbers.push_back({normal.curve.coefficients[i], 1, -k});
+    numbers.push_back({normal.errors.covariance[i][i], 2, -2 * k});
+  }
+  numbers.insert(numbers.end(), {{normal.errors.residual_sd_n, 1},
+                                 {normal.compensation.per_mm_sq},
+                                 {normal.compensation.per_rad_sq},
+                                 {normal.per_mm_sq_sd},
+                                 {normal.per_rad_sq_sd},
+                                 {normal.explained}});
+  const auto pull = fit_tangential_force<2>(all(samples), 2.0, {.steps = 10}, options);
+  numbers.insert(numbers.end(), {{pull.polynomial.coefficients[0], 1},
+                                 {pull.polynomial.coefficients[1], 1},
+                                 {pull.standard_errors[0], 1},
+                                 {pull.exponent},
+                                 {pull.exponent_sd},
+                                 {pull.polynomial.to}});
+  const auto turn = fit_moment<1>(all(samples), 2.0, {.steps = 10}, options);
+  numbers.insert(numbers.end(),
+                 {{turn.polynomial.coefficients[0], 1}, {turn.exponent}, {turn.residual_sd, 1}});
+  const auto linear = fit_linear_shear(all(samples), shear_without_measure(), options);
+  numbers.insert(numbers.end(), {{linear.map.x_by_x, 1},
+                                 {linear.map.x_by_y, 1},
+                                 {linear.map.offset_n.y, 1},
+                                 {linear.y_standard_errors[2], 1},
+                                 {linear.residual_sd_n.x, 1}});
+  return numbers;
+}
+
+double worst_difference(const std::vector<Number>& a, const std::vector<Number>& b) {
+  double worst = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    worst = (std::max)(worst,
+                       std::abs(a[i].value - b[i].value) / (std::max)(std::abs(b[i].value), 1e-3));
+  }
+  return worst;
+}
+
+}  // namespace
+
+TEST_CASE("a calibration depends neither on order nor on units", "[calibrate][force]") {
+  rc::prop("the order of the samples", [] {
+    Samples samples = any_samples();
+    const FitOptions options = any_options();
+    const auto before = all_fits(samples, options);
+    std::reverse(samples.begin(), samples.end());
+    const std::ptrdiff_t first = test::whole(0, static_cast<std::ptrdiff_t>(samples.size()) - 1);
+    std::rotate(samples.begin(), samples.begin() + first, samples.end());
+    RC_ASSERT(worst_difference(all_fits(samples, options), before) < 1e-9);
+  });
+  rc::prop("the unit of force, to the last bit", [] {
+    Samples samples = any_samples();
+    const FitOptions options = any_options();
+    const auto before = all_fits(samples, options);
+    const int power = static_cast<int>(test::whole(-20, 20));
+    for (Sample& s : samples) {
+      s.normal_force_n = std::ldexp(s.normal_force_n, power);
+      s.tangential_force_n = {std::ldexp(s.tangential_force_n.x, power),
+                              std::ldexp(s.tangential_force_n.y, power)};
+      s.moment_n_mm = std::ldexp(s.moment_n_mm, power);
+    }
+    const auto after = all_fits(samples, options);
+    for (std::size_t i = 0; i < before.size(); ++i) {
+      RC_ASSERT(after[i].value == std::ldexp(before[i].value, before[i].force_power * power));
+    }
+  });
+  rc::prop("the unit of the measure, to the last bit", [] {
+    Samples samples = any_samples();
+    const NormalForceFitOptions options{.displaced = true, .fit = any_options()};
+    const int power = static_cast<int>(test::whole(-20, 20));
+    const auto before = fit_normal_force<2>(all(samples), options);
+    for (Sample& s : samples) {
+      s.measure = std::ldexp(s.measure, power);
+    }
+    const auto after = fit_normal_force<2>(all(samples), options);
+    RC_ASSERT(after.curve.to == std::ldexp(before.curve.to, power));
+    RC_ASSERT(after.compensation.per_mm_sq == before.compensation.per_mm_sq);
+    for (int k = 0; k <= 2; ++k) {
+      const auto i = static_cast<std::size_t>(k);
+      RC_ASSERT(after.curve.coefficients[i] ==
+                std::ldexp(before.curve.coefficients[i], -k * power));
+    }
+  });
+  rc::prop("the axes of the image", [] {
+    Samples samples = any_samples();
+    const auto before = fit_tangential_force<2>(all(samples), 2.0);
+    const double angle = test::uniform(-3, 3), c = std::cos(angle), s = std::sin(angle);
+    const auto turned = [&](const Point2<double>& p) {
+      return Point2<double>{c * p.x - s * p.y, s * p.x + c * p.y};
+    };
+    for (Sample& sample : samples) {
+      sample.displacement_mm = turned(sample.displacement_mm);
+      sample.tangential_force_n = turned(sample.tangential_force_n);
+    }
+    const auto after = fit_tangential_force<2>(all(samples), 2.0);
+    RC_ASSERT(std::abs(after.exponent - before.exponent) < 1e-9);
+    for (std::size_t k = 0; k < 2; ++k) {
+      RC_ASSERT(std::abs(after.polynomial.coefficients[k] - before.polynomial.coefficients[k]) <
+                1e-8);
+    }
+  });
+}
+
+TEST_CASE("samples given twice count twice", "[calibrate][force]") {
+  Random random(10);
+  const Samples once = measured({}, 30, {}, 1, random);
+  Samples twice = once;
+  twice.insert(twice.end(), once.begin(), once.end());
+  const auto a = fit_normal_force<2>(all(once), {.rising = false});
+  const auto b = fit_normal_force<2>(all(twice), {.rising = false});
+  for (std::size_t k = 1; k <= 2; ++k) {
+    CHECK(b.curve.coefficients[k] == Approx(a.curve.coefficients[k]).epsilon(1e-12));
+    // the same sum of squares over 58 instead of 28 degrees of freedom
+    CHECK(b.errors.covariance[k][k] == Approx(a.errors.covariance[k][k] * 28 / 58).epsilon(1e-12));
+  }
+}
+
+TEST_CASE("the covariance is that which the forces' errors carry into the parameters",
+          "[calibrate][force]") {
+  // Parameters and their derivatives by all forces, in one pass.
+  constexpr int count = 10;
+  using S = Eigen::AutoDiffScalar<Eigen::Matrix<double, count, 1>>;
+  Random random(11);
+  const Samples plain = measured({}, count, {}, 1, random);
+  std::vector<ForceSample<S>> samples;
+  for (int k = 0; k < count; ++k) {
+    const Sample& s = plain[static_cast<std::size_t>(k)];
+    ForceSample<S> dual;
+    dual.measure = S(s.measure);
+    dual.displacement_mm = {S(s.displacement_mm.x), S(s.displacement_mm.y)};
+    dual.rotation_rad = S(s.rotation_rad);
+    dual.normal_force_n = S(s.normal_force_n, count, k);
+    samples.push_back(dual);
+  }
+  const NormalForceFitOptions options{.through_zero = false, .rising = false};
+  const auto dual = fit_normal_force<2>(all(samples), options);
+  const auto fit = fit_normal_force<2>(all(plain), options);
+  for (std::size_t i = 0; i <= 2; ++i) {
+    CHECK(dual.curve.coefficients[i].value() == Approx(fit.curve.coefficients[i]).epsilon(1e-12));
+    for (std::size_t j = 0; j <= 2; ++j) {
+      const double carried =
+          dual.curve.coefficients[i].derivatives().dot(dual.curve.coefficients[j].derivatives());
+      CHECK(fit.errors.covariance[i][j] ==
+            Approx(square(fit.errors.residual_sd_n) * carried).epsilon(1e-9));
+    }
+  }
+}
+
+TEST_CASE("Huber's loss withstands gross outliers", "[calibrate][force]") {
+  for (const double share : {0.1, 0.2}) {
+    CAPTURE(share);
+    const Noise noise{.outliers = share, .size = 4, .one_side = true};
+    Random random(12);
+    const Pad<> pad{.per_mm_sq = 0, .per_rad_sq = 0};
+    int plain_far = 0;
+    double worst = 0;
+    for (int k = 0; k < 20; ++k) {
+      const auto samples = measured(pad, 100, noise, 1, random);
+      const auto robust = fit_normal_force<2>(all(samples), {.fit = {.robust = true}});
+      const auto plain = fit_normal_force<2>(all(samples));
+      for (const double at : {1.0, 3.0, 5.0}) {
+        const double standard_error = sd(robust.errors.variance_n2(robust.curve.gradient(at), 0) -
+                                         square(robust.errors.residual_sd_n));
+        worst =
+            (std::max)(worst, std::abs(robust.curve.force_n(at) - pad.plain(at)) / standard_error);
+        plain_far += plain.curve.force_n(at) - pad.plain(at) > 10 * standard_error ? 1 : 0;
+      }
+      // and they are found: all that weigh less than a third lie far off
+      for (const auto& r : robust.residuals) {
+        const double off = r.measured - pad.plain(samples[r.sample].measure);
+        CHECK((off < 1 || r.weight < 1.0 / 3));
+        CHECK((r.weight > 1.0 / 3 || off > 0.1));
+      }
+    }
+    CHECK(worst < 6);
+    CHECK(plain_far >= 50);  // of 60
+  }
+}
+
+TEST_CASE("a force that would fall is held", "[calibrate][force]") {
+  const auto lowest_slope = [](const auto& curve) {
+    double lowest = infinity;
+    for (int k = 0; k <= 200; ++k) {
+      lowest = (std::min)(lowest, curve.slope(curve.to * k / 200.0));
+    }
+    return lowest;
+  };
+  Random random(13);
+  Samples saturated = contacts(40, random);
+  for (Sample& s : saturated) {
+    s.normal_force_n = 4 * s.measure - 0.6 * square(s.measure) + 0.05 * random.normal();
+  }
+  const auto fit = fit_normal_force<2>(all(saturated));
+  CHECK(fit.held_rising);
+  CHECK(lowest_slope(fit.curve) > -1e-12);
+  const auto free = fit_normal_force<2>(all(saturated), {.rising = false});
+  CHECK_FALSE(free.held_rising);
+  CHECK(lowest_slope(free.curve) < -0.5);
+  CHECK(free.errors.residual_sd_n < fit.errors.residual_sd_n);
+  CHECK(begins_with(refusal([&] { (void)NormalForce<>(free.curve); }),
+                    "PolynomialForce: slope within the range"));
+  // what is not close to falling is not touched
+  const Samples rising = measured({}, 40, {}, 1, random);
+  const auto held = fit_normal_force<2>(all(rising));
+  CHECK_FALSE(held.held_rising);
+  CHECK(held.curve.coefficients ==
+        fit_normal_force<2>(all(rising), {.rising = false}).curve.coefficients);
+
+  // whatever a rising fit returns, NormalForce takes
+  std::set<std::string> complaints;
+  int held_fits = 0, refused = 0;
+  const auto make = [&](const auto& fitted) {
+    held_fits += fitted.held_rising ? 1 : 0;
+    CHECK(lowest_slope(fitted.curve) > -1e-9);
+    (void)NormalForce(fitted.curve, NoCompensation{}, fitted.errors);
+  };
+  for (int k = 0; k < 60; ++k) {
+    const double a = random.uniform(-2, 6), b = random.uniform(-1.5, 1.5);
+    const double c = random.uniform(-0.2, 0.2);
+    Samples samples = contacts(25, random);
+    for (Sample& s : samples) {
+      const double m = s.measure;
+      s.normal_force_n = m * (a + m * (b + m * c)) + 0.2 * random.normal();
+    }
+    const NormalForceFitOptions options{.through_zero = k % 2 == 0,
+                                        .fit = {.robust = k % 3 == 0, .passes = 20}};
+    for (const std::string& message :
+         {refusal([&] { make(fit_normal_force<1>(all(samples), options)); }),
+          refusal([&] { make(fit_normal_force<2>(all(samples), options)); }),
+          refusal([&] { make(fit_normal_force<3>(all(samples), options)); })}) {
+      const bool falls = begins_with(message, "fit_normal_force: share of the measured variance");
+      refused += falls ? 1 : 0;
+      if (message != "accepted" && !falls) {
+        complaints.insert(message);
+      }
+    }
+  }
+  CHECK(held_fits > 20);
+  CHECK((refused > 10 && refused < 150));
+  for (const std::string& complaint : complaints) {
+    FAIL_CHECK(complaint);
+  }
+}
+
+TEST_CASE("options add what they name and nothing else", "[calibrate][force]") {
+  Random random(14);
+  const Pad<> pad{.constant = 0.6};
+  const Samples samples = measured(pad, 80, {}, 1, random);
+  const auto fit = [&](const NormalForceFitOptions& options) {
+    return fit_normal_force<2>(all(samples), options);
+  };
+  const auto both = fit({.through_zero = false, .displaced = true, .turned = true});
+  CHECK(both.curve.coefficients[0] == Approx(0.6).margin(0.1));
+  CHECK(both.errors.residual_sd_n == Approx(0.05).margin(0.015));
+  const auto zero = fit({.displaced = true, .turned = true});
+  CHECK(zero.curve.coefficients[0] == 0);
+  CHECK(zero.errors.covariance[0][0] == 0);
+  CHECK(zero.errors.residual_sd_n > both.errors.residual_sd_n);
+  const auto displaced = fit({.through_zero = false, .displaced = true});
+  CHECK(displaced.compensation.per_mm_sq == Approx(pad.per_mm_sq).margin(0.02));
+  CHECK(displaced.compensation.per_rad_sq == 0);
+  CHECK(displaced.per_rad_sq_sd == 0);
+  const auto turned = fit({.through_zero = false, .turned = true});
+  CHECK(turned.compensation.per_mm_sq == 0);
+  CHECK(turned.compensation.per_rad_sq == Approx(pad.per_rad_sq).margin(4));
+  const auto neither = fit({.through_zero = false});
+  CHECK(neither.compensation.per_mm_sq == 0);
+  CHECK(neither.compensation.per_rad_sq == 0);
+  CHECK(neither.errors.residual_sd_n > turned.errors.residual_sd_n);
+  CHECK(neither.explained < both.explained);
+  CHECK(both.curve.from == std::min_element(samples.begin(), samples.end(), [](auto& a, auto& b) {
+                             return a.measure < b.measure;
+                           })->measure);
+  CHECK(both.curve.to == std::max_element(samples.begin(), samples.end(), [](auto& a, auto& b) {
+                           return a.measure < b.measure;
+                         })->measure);
+}
+
+TEST_CASE("residuals are complete and in order", "[calibrate][force]") {
+  Random random(15);
+  Samples samples = measured({}, 40, {}, 1, random);
+  // in between: samples that a fit cannot use
+  std::vector<std::size_t> usable;
+  for (std::size_t k = 0; k < samples.size(); ++k) {
+    if (k % 7 == 2) {
+      samples[k].measure = k % 2 == 0 ? test::nan : 0;
+    } else if (k % 11 == 3) {
+      samples[k].normal_force_n = samples[k].moment_n_mm = samples[k].tangential_force_n.y =
+          infinity;
+    } else {
+      usable.push_back(k);
+    }
+  }
+  const auto places = [](const auto& residuals, std::size_t first, std::size_t step,
+                         std::size_t count) {
+    std::vector<std::size_t> found;
+    for (std::size_t k = first; found.size() < count && k < residuals.size(); k += step) {
+      found.push_back(residuals[k].sample);
+    }
+    return found;
+  };
+  const auto normal = fit_normal_force<2>(all(samples), {.displaced = true, .turned = true});
+  CHECK(normal.residuals.size() == usable.size());
+  CHECK(places(normal.residuals, 0, 1, usable.size()) == usable);
+  const NormalForce<PolynomialForce<2>, ScaledCompensation<>> force(normal.curve,
+                                                                    normal.compensation);
+  double left_sq = 0;
+  for (const auto& r : normal.residuals) {
+    const Sample& s = samples[r.sample];
+    CHECK(r.measured == s.normal_force_n);
+    CHECK(r.weight == 1);
+    CHECK(r.fitted ==
+          Approx(force(s.measure, s.displacement_mm, s.rotation_rad).force_n).epsilon(1e-12));
+    left_sq += square(r.measured - r.fitted);
+  }
+  CHECK(normal.errors.residual_sd_n ==
+        Approx(std::sqrt(left_sq / static_cast<double>(usable.size() - 4))).epsilon(1e-9));
+
+  const auto pull = fit_tangential_force<1>(all(samples), 2.0);
+  CHECK(pull.residuals.size() == 2 * usable.size());
+  CHECK(places(pull.residuals, 0, 2, usable.size()) == usable);
+  CHECK(places(pull.residuals, 1, 2, usable.size()) == usable);
+  CHECK(pull.residuals[3].measured == samples[usable[1]].tangential_force_n.y);
+  const auto turn = fit_moment<1>(all(samples), 2.0);
+  CHECK(places(turn.residuals, 0, 1, turn.residuals.size()) == usable);
+  const Shear<> shear({2.0, pull.exponent, turn.exponent}, {pull.polynomial, turn.polynomial});
+  for (std::size_t k = 0; k < usable.size(); ++k) {
+    const Sample& s = samples[usable[k]];
+    const auto found = shear(s.measure, s.displacement_mm, s.rotation_rad);
+    CHECK(pull.residuals[2 * k].fitted == Approx(found.tangential_force_n.x).epsilon(1e-9));
+    CHECK(pull.residuals[2 * k + 1].fitted == Approx(found.tangential_force_n.y).epsilon(1e-9));
+    CHECK(turn.residuals[k].fitted == Approx(found.moment_n_mm).epsilon(1e-9));
+    CHECK(std::hypot(found.normalised_displacement_mm.x, found.normalised_displacement_mm.y) <=
+          pull.polynomial.to * (1 + 1e-12));
+  }
+  const auto linear = fit_linear_shear(all(samples), shear_without_measure());
+  CHECK(linear.residuals.size() == 2 * usable.size());
+  CHECK(places(linear.residuals, 0, 1, usable.size()) == usable);
+  CHECK(places(linear.residuals, usable.size(), 1, usable.size()) == usable);
+  CHECK(linear.residuals[usable.size()].measured == samples[usable[0]].tangential_force_n.y);
+}
+
+TEST_CASE("predictions never use the load that is left out", "[calibrate][force]") {
+  Random random(16);
+  Samples samples = measured({}, 30, {}, 1, random);
+  constexpr std::array<int, 5> loads = {7, -2, 0, 1000000, 3};  // interleaved, in no order
+  for (Sample& s : samples) {
+    s.load = loads[static_cast<std::size_t>(s.load)];
+  }
+  const auto fit = [](std::span<const Sample> rest) { return fit_normal_force<2>(rest); };
+  const auto predicted = [](const auto& model, const Sample& s) {
+    return model.curve.force_n(s.measure);
+  };
+  const auto clean = leave_one_load_out(all(samples), fit, predicted);
+  CHECK(clean.loads == 5);
+  CHECK(clean.samples == 30);
+  REQUIRE(clean.errors.size() == 30);
+  for (const int poisoned : loads) {
+    Samples other = samples;
+    for (Sample& s : other) {
+      s.normal_force_n += s.load == poisoned ? s.measure : 0;
+    }
+    const auto result = leave_one_load_out(all(other), fit, predicted);
+    for (std::size_t k = 0; k < samples.size(); ++k) {
+      CHECK((result.errors[k] == clean.errors[k]) == (samples[k].load == poisoned));
+    }
+  }
+  // summed up
+  const auto off = [](const auto& model, const Sample& s) {
+    return s.load == 3 ? test::nan : model.curve.force_n(s.measure) - s.normal_force_n;
+  };
+  const auto result = leave_one_load_out(all(samples), fit, off);
+  double sum = 0, sum_sq = 0, worst = 0;
+  for (const double error : result.errors) {
+    sum += is_finite(error) ? std::abs(error) : 0;
+    sum_sq += is_finite(error) ? square(error) : 0;
+    worst = is_finite(error) ? (std::max)(worst, std::abs(error)) : worst;
+  }
+  CHECK(result.loads == 5);
+  CHECK(result.samples == 24);
+  CHECK(result.mean_abs == Approx(sum / 24).epsilon(1e-12));
+  CHECK(result.rms == Approx(std::sqrt(sum_sq / 24)).epsilon(1e-12));
+  CHECK(result.worst == worst);
+  CHECK(worst < 1.5);
+  // what the fit refuses is refused; no samples, no answer
+  for (Sample& s : samples) {
+    s.load = 1;
+  }
+  CHECK_THROWS_AS(leave_one_load_out(all(samples), fit, off), parameter_error);
+  const auto none = leave_one_load_out(std::span<const Sample>(), fit, off);
+  CHECK((none.loads == 0 && none.samples == 0 && none.mean_abs != none.mean_abs));
+}
+
+namespace {
+
+template <class Fit>
+void check_refused(const Fit& fit, const std::string& begin) {
+  const std::string message = refusal([&] { (void)fit(); });
+  CAPTURE(message, begin);
+  CHECK(begins_with(message, begin));
+}
+
+template <class Change>
+Samples changed(Samples samples, const Change& change) {
+  for (Sample& s : samples) {
+    change(s);
+  }
+  return samples;
+}
+
+}  // namespace
+
+TEST_CASE("samples that do not tell the parameters are refused by name", "[calibrate][force]") {
+  Random random(17);
+  const Samples good = measured({}, 40, {}, 1, random);
+  const auto normal = [](const Samples& samples, const NormalForceFitOptions& options = {}) {
+    return [&samples, options] { return fit_normal_force<2>(all(samples), options); };
+  };
+  const auto pull = [](const Samples& samples, const ExponentSearch<>& search = {}) {
+    return [&samples, search] { return fit_tangential_force<1>(all(samples), 2.0, search); };
+  };
+  const auto turn = [](const Samples& samples, const ExponentSearch<>& search = {}) {
+    return [&samples, search] { return fit_moment<2>(all(samples), 2.0, search); };
+  };
+  const auto linear = [](const Samples& samples) {
+    return [&samples] { return fit_linear_shear(all(samples), shear_without_measure()); };
+  };
+  const auto elastic = [](const Samples& samples) {
+    return [&samples] { return fit_power_law<double>(all(samples)); };
+  };
+  const auto affine = [](const Samples& samples, AffineBy by) {
+    return [&samples, by] { return fit_affine_force(all(samples), Pad<>().curve(), by); };
+  };
+
+  SECTION("too few") {
+    const Samples none, one(good.begin(), good.begin() + 1), two(good.begin(), good.begin() + 2);
+    check_refused(normal(none), "fit_normal_force: usable samples = 0, must be > 0");
+    check_refused(normal(two), "fit_normal_force: usable samples = 2, must be > 2");
+    check_refused(pull(one), "fit_tangential_force: usable samples = 2, must be > 2");
+    check_refused(pull(none), "fit_tangential_force: usable samples = 0");
+    check_refused(turn(two), "fit_moment: usable samples = 2, must be > 3");
+    check_refused(linear(two), "fit_linear_shear: usable samples = 2, must be > 3");
+    check_refused(linear(none), "fit_linear_shear: usable samples = 0");
+    check_refused(elastic(two), "fit_power_law: usable samples = 2, must be > 2");
+    check_refused(elastic(none), "fit_power_law: usable samples = 0");
+    check_refused(affine(two, AffineBy::rotation), "fit_affine_force: usable samples = 2");
+    check_refused(affine(none, AffineBy::rotation), "fit_affine_force: usable samples = 0");
+  }
+  SECTION("all measures alike") {
+    const auto alike = changed(good, [](Sample& s) { s.measure = 3; });
+    check_refused(normal(alike), "fit_normal_force: largest measure = 3, must be > the smallest");
+    check_refused(pull(alike),
+                  "fit_tangential_force: what the samples tell of displacement_exponent");
+    check_refused(turn(alike), "fit_moment: what the samples tell of rotation_exponent");
+    check_refused(affine(alike, AffineBy::displacement),
+                  "fit_affine_force: what the samples tell of offset_n");
+    CHECK(refusal(pull(alike, {.search = false, .given = 0.7})) == "accepted");
+    const auto at_reference = changed(good, [](Sample& s) { s.measure = 2; });
+    check_refused(pull(at_reference),
+                  "fit_tangential_force: what the samples tell of displacement_exponent");
+    // two measures tell no more than two coefficients
+    const auto two = changed(good, [](Sample& s) { s.measure = s.measure < 3 ? 1 : 4; });
+    check_refused([&] { return fit_normal_force<3>(all(two)); },
+                  "fit_normal_force: what the samples tell of measure^3");
+    check_refused(normal(two, {.through_zero = false}),
+                  "fit_normal_force: what the samples tell of measure^2");
+  }
+  SECTION("collinear or not moved at all") {
+    const auto along =
+        changed(good, [](Sample& s) { s.displacement_mm.y = 2 * s.displacement_mm.x; });
+    check_refused(linear(along), "fit_linear_shear: what the samples tell of x_by_y");
+    const auto still = changed(good, [](Sample& s) {
+      s.displacement_mm = {0, 0};
+      s.rotation_rad = 0;
+    });
+    check_refused(linear(still), "fit_linear_shear: what the samples tell of x_by_x");
+    check_refused(pull(still), "fit_tangential_force: what the samples tell of coefficient 1");
+    check_refused(turn(still), "fit_moment: what the samples tell of coefficient 1");
+    check_refused(normal(still, {.displaced = true}),
+                  "fit_normal_force: what the samples tell of per_mm_sq");
+    check_refused(normal(still, {.turned = true}),
+                  "fit_normal_force: what the samples tell of per_rad_sq");
+    check_refused(affine(still, AffineBy::displacement),
+                  "fit_affine_force: what the samples tell of per_unit");
+    check_refused(affine(still, AffineBy::rotation),
+                  "fit_affine_force: what the samples tell of per_unit");
+    const auto tied = changed(good, [](Sample& s) {
+      s.rotation_rad = 0.1 * std::hypot(s.displacement_mm.x, s.displacement_mm.y);
+    });
+    check_refused(normal(tied, {.displaced = true, .turned = true}),
+                  "fit_normal_force: what the samples tell of per_rad_sq");
+    const auto one_size = changed(good, [](Sample& s) {
+      s.measure = 3;
+      s.rotation_rad = s.rotation_rad < 0 ? -0.1 : 0.1;
+    });
+    check_refused(turn(one_size, {.search = false, .given = 1}),
+                  "fit_moment: what the samples tell of coefficient 2");
+  }
+  SECTION("forces that are constant, 0, or nothing but noise") {
+    const auto constant = changed(good, [](Sample& s) { s.normal_force_n = 2; });
+    check_refused(normal(constant, {.through_zero = false, .rising = false}),
+                  "fit_normal_force: share of the measured variance");
+    check_refused(normal(constant, {.through_zero = false}),
+                  "fit_normal_force: share of the measured variance");
+    check_refused(elastic(constant), "fit_power_law: what the samples tell of exponent");
+    check_refused(affine(constant, AffineBy::displacement),
+                  "fit_affine_force: share of the measured variance");
+    const auto zero = changed(good, [](Sample& s) {
+      s.normal_force_n = s.moment_n_mm = 0;
+      s.tangential_force_n = {0, 0};
+    });
+    check_refused(normal(zero), "fit_normal_force: share of the measured variance");
+    check_refused(elastic(zero), "fit_power_law: usable samples = 0");
+    check_refused(linear(zero), "fit_linear_shear: share of the measured variance");
+    const auto noise = changed(good, [&](Sample& s) {
+      s.normal_force_n = 5 + random.normal();
+      s.moment_n_mm = random.normal();
+      s.tangential_force_n = {random.normal(), random.normal()};
+    });
+    check_refused(normal(noise, {.through_zero = false}),
+                  "fit_normal_force: share of the measured variance");
+    check_refused(pull(noise, {.search = false}),
+                  "fit_tangential_force: share of the measured variance");
+    check_refused(turn(noise, {.search = false}), "fit_moment: share of the measured variance");
+    check_refused(linear(noise), "fit_linear_shear: share of the measured variance");
+    check_refused(elastic(noise), "fit_power_law: share of the measured variance");
+    check_refused(affine(noise, AffineBy::rotation),
+                  "fit_affine_force: share of the measured variance");
+  }
+  SECTION("a force that falls while the contact grows") {
+    const auto falling = changed(good, [](Sample& s) { s.normal_force_n = 10 - s.measure; });
+    check_refused(normal(falling, {.through_zero = false}),
+                  "fit_normal_force: share of the measured variance that a rising force explains");
+  }
+  SECTION("a radius that shrinks while the force grows") {
+    const auto shrinking =
+        changed(good, [](Sample& s) { s.normal_force_n = std::pow(s.measure, -2.0); });
+    check_refused(elastic(shrinking), "fit_power_law: exponent = -0.5, must be in (0, 2]");
+    const auto too_fast =
+        changed(good, [](Sample& s) { s.normal_force_n = std::pow(s.measure, 0.4); });
+    check_refused(elastic(too_fast), "fit_power_law: exponent = 2.5, must be in (0, 2]");
+  }
+  SECTION("an exponent outside the search") {
+    const ExponentSearch<> low{.lowest = -1, .highest = 0.3}, high{.lowest = 2.5, .highest = 3};
+    check_refused(pull(good, low), "fit_tangential_force: displacement_exponent");
+    check_refused(pull(good, high), "fit_tangential_force: displacement_exponent");
+    check_refused(turn(good, low), "fit_moment: rotation_exponent");
+    check_refused(turn(good, high), "fit_moment: rotation_exponent");
+  }
+  SECTION("bad options") {
+    check_refused(pull(good, {.steps = 1}), "ExponentSearch: steps = 1, must be >= 2");
+    check_refused(pull(good, {.lowest = 1, .highest = 1}), "ExponentSearch: highest");
+    check_refused(pull(good, {.search = false, .given = test::nan}), "");
+    for (const double bad : {0.0, -1.0, test::nan, infinity}) {
+      CHECK_THROWS_AS(fit_tangential_force<1>(all(good), bad), parameter_error);
+      CHECK_THROWS_AS(fit_moment<1>(all(good), bad), parameter_error);
+      CHECK_THROWS_AS(fit_linear_shear(all(good), ShearNormalisation<double>{bad, 0, 0}),
+                      parameter_error);
+      check_refused(normal(good, {.fit = {.threshold = bad}}), "FitOptions: threshold");
+      check_refused(normal(good, {.fit = {.least_independence = bad}}),
+                    "FitOptions: least_independence");
+    }
+    check_refused(normal(good, {.fit = {.passes = 1}}), "FitOptions: passes = 1, must be >= 2");
+    check_refused(normal(good, {.fit = {.least_independence = 1}}),
+                  "FitOptions: least_independence");
+    check_refused(normal(good, {.fit = {.least_explained = -0.1}}), "FitOptions: least_explained");
+    check_refused(normal(good, {.fit = {.least_explained = 1}}), "FitOptions: least_explained");
+    PolynomialForce<2> falling{{0, -1, 0}, 0, 5};
+    CHECK_THROWS_AS(fit_affine_force(all(good), falling, AffineBy::rotation), parameter_error);
+  }
+}
+
+TEST_CASE("samples that are no numbers are left out", "[calibrate][force]") {
+  Random random(18);
+  const Samples good = measured({}, 40, {}, 1, random);
+  Samples with = good;
+  for (const double odd : {test::nan, infinity, -infinity, 0.0, -1.0}) {
+    Sample s = good[0];
+    s.measure = odd;
+    with.insert(with.begin() + 3, s);
+  }
+  for (const double odd : {test::nan, infinity, -infinity}) {
+    for (int field = 0; field < 4; ++field) {
+      Sample s = good[0];
+      (field == 0 ? s.displacement_mm.x : field == 1 ? s.displacement_mm.y : s.rotation_rad) = odd;
+      if (field == 3) {
+        s.rotation_rad = 0;
+        s.normal_force_n = s.tangential_force_n.x = s.moment_n_mm = odd;
+      }
+      with.insert(with.begin() + 11, s);
+    }
+  }
+  const NormalForceFitOptions options{.displaced = true, .turned = true};
+  CHECK(fit_normal_force<2>(all(with), options).curve.coefficients ==
+        fit_normal_force<2>(all(good), options).curve.coefficients);
+  CHECK(fit_tangential_force<1>(all(with), 2.0).exponent ==
+        fit_tangential_force<1>(all(good), 2.0).exponent);
+  CHECK(fit_affine_force(all(with), Pad<>().curve(), AffineBy::rotation).force.gain ==
+        fit_affine_force(all(good), Pad<>().curve(), AffineBy::rotation).force.gain);
+}
+
+namespace {
+
+/// True where all of a result are numbers.
+template <class... Numbers>
+bool finite(const Numbers&... numbers) {
+  return (is_finite(numbers) && ...);
+}
+template <class Residuals>
+bool finite_residuals(const Residuals& residuals) {
+  return std::all_of(residuals.begin(), residuals.end(), [](const auto& r) {
+    return finite(r.measured, r.fitted, r.weight) && r.weight >= 0 && r.weight <= 1;
+  });
+}
+template <std::size_t N>
+bool finite_array(const std::array<double, N>& numbers) {
+  return std::all_of(numbers.begin(), numbers.end(), [](double x) { return is_finite(x); });
+}
+template <std::size_t N>
+bool finite_errors(const CurveErrors<N>& errors) {
+  return is_finite(errors.residual_sd_n) &&
+         std::all_of(errors.covariance.begin(), errors.covariance.end(), finite_array<N>);
+}
+template <int Degree>
+bool finite_shear(const ShearFit<Degree>& fit) {
+  return finite_array(fit.polynomial.coefficients) && finite_array(fit.standard_errors) &&
+         finite(fit.polynomial.to, fit.exponent, fit.exponent_sd, fit.residual_sd, fit.explained) &&
+         finite_residuals(fit.residuals);
+}
+
+/// Sometimes something else than what was measured.
+double odd(double x, double share, Random& random) {
+  constexpr std::array<double, 16> values = {test::nan, infinity, -infinity, 0,     -0.0, -1,
+                                             1e-320,    1e-160,   1e-30,     1e-10, 1e-3, 1e3,
+                                             1e10,      1e30,     1e160,     1e300};
+  return random.uniform() < share ? values[static_cast<std::size_t>(random.whole(0, 15))] : x;
+}
+
+}  // namespace
+
+TEST_CASE("odd samples give numbers or a refusal", "[calibrate][force]") {
+  Random random(19);
+  std::set<std::string> complaints;
+  int answers = 0, refusals = 0;
+  const auto check = [&](const char* name, int k, const auto& fit) {
+    try {
+      if (!fit()) {
+        complaints.insert(std::string(name) + ", case " + std::to_string(k));
+      }
+      ++answers;
+    } catch (const parameter_error&) {
+      ++refusals;
+    }
+  };
+  for (int k = 0; k < 300; ++k) {
+    Samples samples = measured({}, static_cast<int>(random.whole(0, 12)), {}, 1, random);
+    const double share = std::array<double, 4>{0, 0.02, 0.1, 0.4}[static_cast<std::size_t>(k % 4)];
+    for (Sample& s : samples) {
+      for (double* x :
+           {&s.measure, &s.displacement_mm.x, &s.displacement_mm.y, &s.rotation_rad,
+            &s.normal_force_n, &s.tangential_force_n.x, &s.tangential_force_n.y, &s.moment_n_mm}) {
+        *x = odd(*x, share, random);
+      }
+    }
+    FitOptions options;
+    options.robust = k % 3 == 0;
+    options.threshold = random.uniform() < 0.2 ? 0.01 : options.threshold;
+    options.passes = 10;
+    options.least_explained = random.uniform() < 0.5 ? 0 : options.least_explained;
+    const bool moved = random.uniform() < 0.5;
+    const NormalForceFitOptions normal{moved, random.uniform() < 0.5, moved, !moved, options};
+    check("fit_normal_force", k, [&] {
+      const auto fit = fit_normal_force<2>(all(samples), normal);
+      return finite_array(fit.curve.coefficients) && finite_errors(fit.errors) &&
+             finite(fit.compensation.per_mm_sq, fit.compensation.per_rad_sq, fit.per_mm_sq_sd,
+                    fit.per_rad_sq_sd, fit.explained) &&
+             finite_residuals(fit.residuals);
+    });
+    check("fit_affine_force", k, [&] {
+      const auto fit = fit_affine_force(all(samples), Pad<>().curve(), AffineBy::rotation, options);
+      return finite(fit.force.gain, fit.force.per_unit, fit.force.offset_n, fit.residual_sd_n) &&
+             finite_array(fit.standard_errors) && finite_residuals(fit.residuals);
+    });
+    check("fit_power_law", k, [&] {
+      const auto fit = fit_power_law<double>(all(samples), options);
+      return finite(fit.curve.coefficient_mm, fit.curve.exponent, fit.residual_sd_mm,
+                    fit.explained) &&
+             finite_errors(fit.errors) && finite_residuals(fit.residuals);
+    });
+    const ExponentSearch<> exponent{.search = moved, .given = 1, .steps = 5};
+    check("fit_tangential_force", k, [&] {
+      return finite_shear(fit_tangential_force<1>(all(samples), 2.0, exponent, options));
+    });
+    check("fit_moment", k,
+          [&] { return finite_shear(fit_moment<2>(all(samples), 2.0, exponent, options)); });
+    check("fit_linear_shear", k, [&] {
+      const auto fit = fit_linear_shear(all(samples), {2.0, 0.5, 0.0}, options);
+      return finite(fit.map.x_by_x, fit.map.x_by_y, fit.map.y_by_x, fit.map.y_by_y,
+                    fit.map.offset_n.x, fit.map.offset_n.y, fit.residual_sd_n.x) &&
+             finite_array(fit.x_standard_errors) && finite_array(fit.y_standard_errors) &&
+             finite_residuals(fit.residuals);
+    });
+  }
+  CHECK(answers > 300);
+  CHECK(refusals > 300);
+  for (const std::string& complaint : complaints) {
+    FAIL_CHECK(complaint);
+  }
+}
