@@ -102,7 +102,9 @@ double full_scale_n() {
 }
 
 template <int Degree>
-using Force = NormalForce<PolynomialForce<Degree>, NoCompensation, CurveErrors<Degree + 1>>;
+using Force = NormalForce<PolynomialForce<Degree>,
+                          NoCompensation,
+                          CurveErrors<PolynomialForce<Degree>::parameters>>;
 
 template <int Degree>
 Force<Degree> calibrated(const Scenes& scenes, ContactMeasure measure) {

@@ -437,7 +437,7 @@ TEST_CASE("contact shift: dots of any type", "[contact_shift]") {
     CHECK(r.residual_rms == expected.residual_rms);
   };
   const auto as = [&]<class P>(const Points& from, const auto& make, P) {
-    Image<P> to(9, 9);
+    Image<P> to(9, 9, make(from.cells.front()));
     for (std::size_t k = 0; k < to.cells.size(); ++k) {
       to.cells[k] = make(from.cells[k]);
     }

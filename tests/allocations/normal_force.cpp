@@ -39,8 +39,8 @@ TEMPLATE_TEST_CASE("normal force: neither a frame nor many of them allocate",
   using Curve = typename TestType::Curve;
   using S = typename Curve::number;
   using Errors = CurveErrors<Curve::parameters, S>;
-  const S measures[] = {S(-1),   S(0),   S(5),
-                        S(100),  S(470), S(1000),
+  const S measures[] = {S(-1),  S(0),   S(5),
+                        S(100), S(470), S(1000),
                         S(1e6), S(0.1), std::numeric_limits<S>::quiet_NaN()};
   test::Image<S> samples(200, 4), forces(200, 1), too_small(199, 1);
   for (Index i = 0; i < 200; ++i) {
