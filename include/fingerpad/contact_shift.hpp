@@ -49,7 +49,7 @@ struct PlainMean {
 };
 /// Huber's M-estimate: a dot whose residual is more than `threshold` times what noise explains
 /// counts less, so that stuck and mistaken dots, up to a third or so, bias it little. The scale is
-/// that of the median residual.
+/// that of the median residual, whose own derivative a dual number does not carry.
 struct HuberMean {
   static constexpr bool is_robust = true;
   double threshold = 1.5;  ///< in standard deviations, > 0
@@ -60,7 +60,7 @@ enum class ShiftStatus : std::uint8_t {
   measured,        ///< displacement and angle
   one_place_only,  ///< the dots do not tell an angle: fewer than two, or all in one place
   no_dots,         ///< none of the chosen dots is there in both frames
-  other_size,      ///< a grid is not of the reference's size
+  other_size,      ///< a grid is not of the reference's size, or the workspace is another's
 };
 
 /// "measured", "one place only", ...
@@ -265,6 +265,7 @@ class ContactShift {
       return result;
     }
     Sums sums = sums_of(w);
+    const Point2<S> middle = sums.from;  // of all, whatever they count
     if constexpr (Mean::is_robust) {
       for (int pass = 0; pass < mean_.passes; ++pass) {
         reweigh(sums, w);
@@ -273,12 +274,46 @@ class ContactShift {
     }
     using std::atan2;
     result.dots = static_cast<Index>(w.pairs_.size());
-    result.displacement = {S(sums.to.x - sums.from.x), S(sums.to.y - sums.from.y)};
-    const bool turns = value(square(sums.cross) + square(sums.dot)) > 0;
+    result.displacement = carried(middle, sums);
+    const bool turns = value(S(square(sums.cross) + square(sums.dot))) > 0;
     result.status = turns ? ShiftStatus::measured : ShiftStatus::one_place_only;
     result.rotation_rad = turns ? S(atan2(sums.cross, sums.dot)) : not_a_number<S>();
     result.residual_rms = rms_of(sums, w);
     return result;
+  }
+
+  /// A sum of places far from the origin is coarse; that of what is left to the middle is not, and
+  /// makes the middle of dots in one place exactly that place.
+  static void refine_middles(Sums& sums, const Workspace& w) {
+    Point2<S> from = {S(0), S(0)}, to = {S(0), S(0)};
+    for (const Pair& p : w.pairs_) {
+      from = {S(from.x + S(p.weight * S(p.from.x - sums.from.x))),
+              S(from.y + S(p.weight * S(p.from.y - sums.from.y)))};
+      to = {S(to.x + S(p.weight * S(p.to.x - sums.to.x))),
+            S(to.y + S(p.weight * S(p.to.y - sums.to.y)))};
+    }
+    sums.from = {S(sums.from.x + S(from.x / sums.weight)),
+                 S(sums.from.y + S(from.y / sums.weight))};
+    sums.to = {S(sums.to.x + S(to.x / sums.weight)), S(sums.to.y + S(to.y / sums.weight))};
+  }
+
+  /// A vector turned by the angle of the rigid shift; as it is where there is none.
+  static Point2<S> turned(const Point2<S>& v, const Sums& sums) {
+    using std::sqrt;
+    const S size_sq = square(sums.cross) + square(sums.dot);
+    const bool turns = value(size_sq) > 0;
+    const S size = turns ? S(sqrt(size_sq)) : S(1);
+    const S cosine = turns ? S(sums.dot / size) : S(1);
+    const S sine = turns ? S(sums.cross / size) : S(0);
+    return {S(S(cosine * v.x) - S(sine * v.y)), S(S(sine * v.x) + S(cosine * v.y))};
+  }
+
+  /// How far the rigid shift carries a place.
+  static Point2<S> carried(const Point2<S>& place, const Sums& sums) {
+    const Point2<S> from = {S(place.x - sums.from.x), S(place.y - sums.from.y)};
+    const Point2<S> to = turned(from, sums);
+    return {S(S(sums.to.x - sums.from.x) + S(to.x - from.x)),
+            S(S(sums.to.y - sums.from.y) + S(to.y - from.y))};
   }
 
   /// Middles, and the sums about them.
@@ -292,6 +327,7 @@ class ContactShift {
     }
     sums.from = {S(sums.from.x / sums.weight), S(sums.from.y / sums.weight)};
     sums.to = {S(sums.to.x / sums.weight), S(sums.to.y / sums.weight)};
+    refine_middles(sums, w);
     for (const Pair& p : w.pairs_) {
       const S ax = p.from.x - sums.from.x, ay = p.from.y - sums.from.y;
       const S bx = p.to.x - sums.to.x, by = p.to.y - sums.to.y;
@@ -303,14 +339,9 @@ class ContactShift {
 
   /// Squared distance of a dot from where the rigid shift puts it.
   static S residual_sq(const Pair& p, const Sums& sums) {
-    using std::sqrt;
-    const S size_sq = square(sums.cross) + square(sums.dot);
-    const S size = value(size_sq) > 0 ? S(sqrt(size_sq)) : S(1);
-    const S cosine = value(size_sq) > 0 ? S(sums.dot / size) : S(1);
-    const S sine = sums.cross / size;
-    const S ax = p.from.x - sums.from.x, ay = p.from.y - sums.from.y;
-    const S x = S(p.to.x - sums.to.x) - S(S(cosine * ax) - S(sine * ay));
-    const S y = S(p.to.y - sums.to.y) - S(S(sine * ax) + S(cosine * ay));
+    const Point2<S> put = turned({S(p.from.x - sums.from.x), S(p.from.y - sums.from.y)}, sums);
+    const S x = S(p.to.x - sums.to.x) - put.x;
+    const S y = S(p.to.y - sums.to.y) - put.y;
     return S(square(x) + square(y));
   }
 

@@ -72,6 +72,9 @@ class NormalForce {
     }
     const ForceChange<S> change = change_by(displacement_mm, rotation_rad);
     const S force = force_of(measure, change);
+    if (!is_finite(force)) {  // too large for a number
+      return result;
+    }
     result.force_n = value(force) > 0 ? force : S(0);
     result.status = value(measure) <= 0                    ? ForceStatus::no_contact
                     : value(force) < 0                     ? ForceStatus::held_at_zero
@@ -84,7 +87,9 @@ class NormalForce {
       for (S& by_parameter : gradient) {
         by_parameter = by_parameter * gain;
       }
-      result.variance_n2 = errors_.variance_n2(gradient, S(change.gain * curve_.slope(measure)));
+      const S slope =
+          S(change.gain * curve_.slope(measure)) + S(change.shift_n * curve_.fade_slope(measure));
+      result.variance_n2 = errors_.variance_n2(gradient, slope);
     }
     return result;
   }
@@ -114,6 +119,7 @@ class NormalForce {
           change = change_by(displacement, block.column[3][k]);
         }
         const S force = force_of(measure, change);
+        known = known & is_finite(force);
         const S held = value(force) > 0 ? force : S(0);
         forces.column[0][k] = known ? held : not_a_number<S>();
         not_finite += static_cast<int>(!known);

@@ -493,7 +493,7 @@ TEST_CASE("batches of normal forces in numbers with derivatives and with many di
   const auto p = PublishedPolynomial::draw(random);
   const auto force = PublishedPolynomial::force(in<D>(p));
   const auto force50 = PublishedPolynomial::force(in<Digits50>(p));
-  test::Image<D> samples(70, 4), forces(70, 1);
+  test::Image<D> samples(70, 4, D(0)), forces(70, 1, D(0));
   test::Image<Digits50> samples50(70, 4), forces50(70, 1);
   for (Index i = 0; i < 70; ++i) {
     const auto q = PublishedPolynomial::draw(random);

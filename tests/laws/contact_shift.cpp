@@ -168,7 +168,8 @@ TEMPLATE_TEST_CASE("contact shift: the axes are a matter of choice",
     const auto a = TestType::of(s), b = TestType::of({s.dots, s.free, s.contact});
     RC_ASSERT(apart(a.rotation_rad, -b.rotation_rad) < tolerance<TestType>);
     RC_ASSERT(std::abs(a.residual_rms - b.residual_rms) < tolerance<TestType>);
-    RC_ASSERT(apart(a.displacement, {-b.displacement.x, -b.displacement.y}) < tolerance<TestType>);
+    RC_ASSERT(TestType::Mean::is_robust ||  // else of places that count differently
+              apart(a.displacement, {-b.displacement.x, -b.displacement.y}) < 1e-12);
   });
 }
 

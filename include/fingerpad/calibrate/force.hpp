@@ -26,6 +26,7 @@
 #include "fingerpad/detail/force/polynomial_model.hpp"
 #include "fingerpad/detail/force/shear_map.hpp"
 #include "fingerpad/detail/force/shear_model.hpp"
+#include "fingerpad/detail/force/zeros.hpp"
 #include "fingerpad/expects.hpp"
 #include "fingerpad/grid.hpp"
 #include "fingerpad/scalar.hpp"
@@ -69,7 +70,8 @@ enum class AffineBy { displacement, rotation };
 template <scalar S = double>
 struct AffineForceFit {
   AffineForce<S> force;
-  std::array<S, 3> standard_errors;  ///< of gain, per_unit and offset_n
+  std::array<S, 3> standard_errors;            ///< of gain, per_unit and offset_n
+  std::array<std::array<S, 3>, 3> covariance;  ///< of these
   S residual_sd_n = S(0);
   std::vector<ForceResidual<S>> residuals;
 };
@@ -108,8 +110,12 @@ template <int Degree = 1, scalar S = double>
 struct ShearFit {
   OddPolynomial<Degree, S> polynomial;
   S exponent = S(0);
-  std::array<S, static_cast<std::size_t>(Degree)> standard_errors = {};
+  std::array<S, static_cast<std::size_t>(Degree)> standard_errors =
+      detail::zeros<S, static_cast<std::size_t>(Degree)>();
   S exponent_sd = S(0);  ///< 0 if it was given
+  std::array<std::array<S, static_cast<std::size_t>(Degree) + 1>,
+             static_cast<std::size_t>(Degree) + 1>
+      covariance = {};   ///< of the coefficients and, last, the exponent
   S residual_sd = S(0);  ///< of a component of the force in N, or of the moment in N mm
   std::vector<ForceResidual<S>> residuals;  ///< of a force x and y in turn
   S explained = S(0);
@@ -133,9 +139,11 @@ ShearFit<Degree, S> fit_moment(std::span<const ForceSample<S>> samples,
 /// normalisation is given; the moment is not fitted.
 template <scalar S = double>
 struct LinearShearFit {
-  LinearShear<S> map;                  ///< its moment is 0
-  std::array<S, 3> x_standard_errors;  ///< of x_by_x, x_by_y, offset_n.x
-  std::array<S, 3> y_standard_errors;  ///< of y_by_x, y_by_y, offset_n.y
+  LinearShear<S> map;                            ///< its moment is 0
+  std::array<S, 3> x_standard_errors;            ///< of x_by_x, x_by_y, offset_n.x
+  std::array<S, 3> y_standard_errors;            ///< of y_by_x, y_by_y, offset_n.y
+  std::array<std::array<S, 3>, 3> x_covariance;  ///< of these
+  std::array<std::array<S, 3>, 3> y_covariance;
   Point2<S> residual_sd_n;
   std::vector<ForceResidual<S>> residuals;  ///< all of x, then all of y
 };

@@ -8,6 +8,7 @@
 #include <cstddef>
 
 #include "fingerpad/detail/force/smooth_step.hpp"
+#include "fingerpad/detail/force/zeros.hpp"
 #include "fingerpad/expects.hpp"
 #include "fingerpad/scalar.hpp"
 
@@ -21,9 +22,10 @@ struct PolynomialForce {
   using number = S;
   static constexpr std::size_t parameters = static_cast<std::size_t>(Degree) + 1;
 
-  std::array<S, parameters> coefficients = {};  ///< lowest power first, finite
-  S from = not_a_number<S>();                   ///< the smallest measure identified, finite, >= 0
-  S to = not_a_number<S>();                     ///< the largest, finite, > from
+  std::array<S, parameters> coefficients =
+      detail::zeros<S, parameters>();  ///< lowest power first, finite
+  S from = not_a_number<S>();          ///< the smallest measure identified, finite, >= 0
+  S to = not_a_number<S>();            ///< the largest, finite, > from
 
   S force_n(const S& measure) const {
     S sum = coefficients[parameters - 1];
@@ -89,7 +91,8 @@ struct PowerLawForce {
     if (!(value(radius_mm) > 0)) {
       return S(0);
     }
-    return S(force_n(radius_mm) / S(exponent * radius_mm));
+    const S force = force_n(radius_mm);
+    return value(force) > 0 ? S(S(force / radius_mm) / exponent) : S(0);
   }
   /// dF by the coefficient and by the exponent.
   std::array<S, parameters> gradient(const S& radius_mm) const {
@@ -123,10 +126,15 @@ void expects_valid(const PolynomialForce<Degree, S>& curve) {
   }
   expects(is_finite(curve.from) && value(curve.from) >= 0, owner, "from", curve.from,
           "finite and >= 0");
+  const S& constant = curve.coefficients[0];
+  expects(value(curve.from) > 0 || value(constant) == 0, owner, "first of the coefficients",
+          constant, "0 where from is 0: the force would begin with a step");
   expects(is_finite(curve.to) && value(curve.to) > value(curve.from), owner, "to", curve.to,
           "finite and > from");
   constexpr int steps = Degree > 2 ? 16 : 1;  // a slope of first degree is lowest at an end
-  const S rounding = S(64 * epsilon<S>()) * curve.force_n(curve.to) / curve.to;  // of a level end
+  const S end = curve.force_n(curve.to);
+  const S size = value(end) < 0 ? S(-end) : end;
+  const S rounding = S(64 * epsilon<S>()) * S(size / curve.to);  // of the slope of a level end
   for (int k = 0; k <= steps; ++k) {
     const S share = S(k) / S(steps);
     const S slope = curve.slope(S(curve.from + S(share * S(curve.to - curve.from))));
@@ -158,7 +166,7 @@ class WholeCurve {
   explicit WholeCurve(const Curve& curve)
       : curve_(curve),
         end_slope_(curve.slope(curve.to)),
-        one_over_from_(value(curve.from) > 0 ? S(S(1) / curve.from) : S(1e30)) {}
+        one_over_from_(value(curve.from) > 1e-30 ? S(S(1) / curve.from) : S(1e30)) {}
 
   const Curve& curve() const { return curve_; }
 
@@ -173,11 +181,13 @@ class WholeCurve {
   /// dF/dm.
   S slope(const S& measure) const {
     const S held = held_within(measure);
-    const S fade_slope = smooth_step_slope(S(held * one_over_from_)) * one_over_from_;
-    return S(S(curve_.slope(held) * fade(measure)) + S(curve_.force_n(held) * fade_slope));
+    return S(S(curve_.slope(held) * fade(measure)) + S(curve_.force_n(held) * fade_slope(measure)));
   }
   /// How much of the force is faded in, in [0, 1]: 1 from the start of the range on.
   S fade(const S& measure) const { return smooth_step(S(held_within(measure) * one_over_from_)); }
+  S fade_slope(const S& measure) const {
+    return S(smooth_step_slope(S(held_within(measure) * one_over_from_)) * one_over_from_);
+  }
 
  private:
   S held_within(const S& measure) const {

@@ -6,6 +6,7 @@
 #include <array>
 #include <cstddef>
 
+#include "fingerpad/detail/force/zeros.hpp"
 #include "fingerpad/expects.hpp"
 #include "fingerpad/scalar.hpp"
 
@@ -23,9 +24,10 @@ struct CurveErrors {
   static constexpr bool known = true;
   static constexpr std::size_t size = Parameters;
 
-  std::array<std::array<S, size>, size> covariance = {};  ///< of the parameters, symmetric
-  S residual_sd_n = S(0);  ///< standard deviation of a sample about the curve, N, >= 0
-  S measure_sd = S(0);     ///< noise of the measure that the samples did not have, >= 0
+  std::array<std::array<S, size>, size> covariance =
+      detail::zero_matrix<S, size>();  ///< of the parameters: symmetric and not indefinite
+  S residual_sd_n = S(0);              ///< standard deviation of a sample about the curve, N, >= 0
+  S measure_sd = S(0);                 ///< noise of the measure that the samples did not have, >= 0
 
   /// Variance in N^2 of the force at a measure where the curve has this gradient and slope.
   S variance_n2(const std::array<S, size>& gradient, const S& slope) const {

@@ -11,9 +11,9 @@ enum class ForceStatus : std::uint8_t {
   measured,      ///< within the range that was identified
   below_range,   ///< a smaller contact than any identified: the force fades to 0 with it
   beyond_range,  ///< a larger one, or a larger shift: the curve goes on along its tangent
-  held_at_zero,  ///< a compensation made it negative
+  held_at_zero,  ///< the curve or a compensation is negative there
   no_contact,    ///< the measure is 0 or negative: no force, whatever is displaced
-  not_finite,    ///< what it is computed from is no number: no answer
+  not_finite,    ///< what it is computed from is no number, or it is too large for one
 };
 
 /// "measured", "below range", ...

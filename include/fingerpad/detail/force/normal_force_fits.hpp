@@ -207,6 +207,7 @@ AffineForceFit<S> fit_affine_force(std::span<const ForceSample<S>> samples,
   AffineForceFit<S> result;
   result.force = {fit.parameters(0), fit.parameters(1), fit.parameters(2)};
   result.standard_errors = detail::standard_errors_of<S, 3>(fit);
+  result.covariance = detail::covariance_of<S, 3>(fit);
   result.residual_sd_n = fit.residual_sd;
   detail::add_residuals(fit, forces, usable.places, result.residuals);
   return result;

@@ -80,6 +80,7 @@ ShearFit<Degree, S> fit_shear_equations(const char* owner,
   }
   result.polynomial.to = longest;
   result.exponent_sd = exponent.search ? S(sqrt(fit.covariance(Degree, Degree))) : S(0);
+  result.covariance = covariance_of<S, static_cast<std::size_t>(Degree) + 1>(fit);
   result.residual_sd = fit.residual_sd;
   add_residuals(fit, measured, places, result.residuals);
   result.explained = fit.explained;
@@ -176,6 +177,8 @@ LinearShearFit<S> fit_linear_shear(std::span<const ForceSample<S>> samples,
   result.map.moment_n_mm_per_rad = S(0);
   result.x_standard_errors = detail::standard_errors_of<S, 3>(of_x);
   result.y_standard_errors = detail::standard_errors_of<S, 3>(of_y);
+  result.x_covariance = detail::covariance_of<S, 3>(of_x);
+  result.y_covariance = detail::covariance_of<S, 3>(of_y);
   result.residual_sd_n = {of_x.residual_sd, of_y.residual_sd};
   detail::add_residuals(of_x, x, usable.places, result.residuals);
   detail::add_residuals(of_y, y, usable.places, result.residuals);

@@ -65,6 +65,20 @@ std::array<S, N> standard_errors_of(const ModelFit<S>& fit) {
   return errors;
 }
 
+/// The covariance of the first parameters; 0 for what was not fitted.
+template <scalar S, std::size_t N>
+std::array<std::array<S, N>, N> covariance_of(const ModelFit<S>& fit) {
+  std::array<std::array<S, N>, N> covariance;
+  for (std::size_t i = 0; i < N; ++i) {
+    for (std::size_t j = 0; j < N; ++j) {
+      const Index row = static_cast<Index>(i), col = static_cast<Index>(j);
+      const bool fitted = row < fit.covariance.rows() && col < fit.covariance.cols();
+      covariance[i][j] = fitted ? S(fit.covariance(row, col)) : S(0);
+    }
+  }
+  return covariance;
+}
+
 /// y = a p with given columns.
 template <scalar S>
 struct LinearModel {

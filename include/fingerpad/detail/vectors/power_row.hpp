@@ -72,18 +72,18 @@ template <class V>
   return V(Bits(p) + (Bits(shifted) << 52));
 }
 
-/// Powers of Bytes / 8 numbers; 0 for those that are not > 0.
+/// Powers of Bytes / 8 numbers; 0 for those that are not > 0, and none beyond exp(700).
 template <int Bytes, class S>
 [[gnu::always_inline]] inline void power_lanes(
     const S* x, double factor, double s, double t, S* power_s, S* power_t) {
   constexpr int n = Bytes / 8;
   using V = lanes<double, n>;
   using Bits = lanes<std::int64_t, n>;
-  const V given = convert<double, n>(load<S, n>(x)) * factor;
-  const V least = V{} + 1e-290;
-  const Bits positive = Bits(given > least);
-  const V log_x = log_of<V>(choose(positive, given, V{} + 1.0));
-  const V zero{};
+  const V number = convert<double, n>(load<S, n>(x));
+  const V given = number * factor;
+  const V least = V{} + 1e-290, zero{};
+  const Bits positive = Bits(number > zero);
+  const V log_x = log_of<V>(choose(Bits(given > least), given, least));
   store(power_s, convert<S, n>(choose(positive, exp_of<V>(log_x * s), zero)));
   store(power_t, convert<S, n>(choose(positive, exp_of<V>(log_x * t), zero)));
 }
