@@ -532,16 +532,22 @@ TEMPLATE_TEST_CASE("contact shift: too few dots for an angle, or for anything",
     CHECK(r.rotation_rad == Approx(0.7).epsilon(1e-14));
   }
   SECTION("all in one place, in the frame or in the reference") {
-    const Points heap(5, 5, {0, 0});
-    for (const auto& r : {shift<ContactDots, TestType>(free, heap, Mask(5, 5, 1)),
-                          shift<ContactDots, TestType>(heap, free, Mask(5, 5, 1)),
-                          shift<ContactDots, TestType>(heap, heap, Mask(5, 5, 1))}) {
-      CHECK(r.status == ShiftStatus::one_place_only);
-      CHECK(r.dots == 25);
-      CHECK(std::abs(r.displacement.x) < 1e-14);
-      CHECK(std::abs(r.displacement.y) < 1e-14);
-      CHECK(std::isnan(r.rotation_rad));
-      CHECK(is_finite(r.residual_rms));
+    test::Random random(4);
+    for (int k = 0; k < 50; ++k) {
+      // the rounded sum of 25 such places, over 25, is not the place
+      const Point2<double> place = {random.uniform(-20, 20), random.uniform(-20, 20)};
+      const Points heap(5, 5, place);
+      for (const auto& r : {shift<ContactDots, TestType>(free, heap, Mask(5, 5, 1)),
+                            shift<ContactDots, TestType>(heap, free, Mask(5, 5, 1)),
+                            shift<ContactDots, TestType>(heap, heap, Mask(5, 5, 1))}) {
+        CHECK(r.status == ShiftStatus::one_place_only);
+        CHECK(r.dots == 25);
+        CHECK(std::isnan(r.rotation_rad));
+        CHECK(is_finite(r.residual_rms));
+      }
+      const auto moved = shift<ContactDots, TestType>(free, heap, Mask(5, 5, 1)).displacement;
+      CHECK(std::abs(moved.x - place.x) < 1e-13);
+      CHECK(std::abs(moved.y - place.y) < 1e-13);
     }
   }
   SECTION("none") {

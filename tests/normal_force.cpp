@@ -618,3 +618,47 @@ TEST_CASE("normal force: batches of other sizes are not touched", "[normal_force
   CHECK(by_area.for_samples(test::Image<double>(5, 1, missing), forces).not_finite == 5);
   CHECK(std::isnan(forces(4, 0)));
 }
+
+TEST_CASE("normal force: what is too large for a number is no answer", "[normal_force]") {
+  CHECK(refused(PowerLawForce<>{1, 1e-3, 0, 10}) ==  // 10^1000 N
+        "PowerLawForce: to = 10, must be where force and slope are finite");
+  CHECK(refused(PolynomialForce<>{{0, 1e308, 1e308}, 1, 10}) ==
+        "PolynomialForce: to = 10, must be where force and slope are finite");
+  const NormalForce<> force(PolynomialForce<>{{0, 1e10, 0}, 1, 10});
+  CHECK(force(1e299).status == ForceStatus::not_finite);
+  CHECK(std::isnan(force(1e299).force_n));
+  const std::vector<double> measures{0.5, 1e299};
+  std::vector<double> forces(2, -1);
+  const auto counts = force.for_samples(StridedView<const double>(measures.data(), 2, 1, 1),
+                                        StridedView<double>(forces.data(), 2, 1, 1));
+  CHECK(counts.not_finite == 1);
+  CHECK(is_finite(forces[0]));
+  CHECK(std::isnan(forces[1]));
+}
+
+TEST_CASE("normal force: no curve begins with a step", "[normal_force]") {
+  CHECK(
+      refused(PolynomialForce<>{{1, 1, 0}, 0, 10}) ==
+      "PolynomialForce: first of the coefficients = 1, must be 0 where from is 0: the force would "
+      "begin with a step");
+  const NormalForce<> nearly(PolynomialForce<>{{1, 1, 0}, 1e-310, 10});
+  CHECK(nearly(0).force_n == 0);
+  // a level curve is none that falls, whatever its sign
+  const NormalForce<> level(PolynomialForce<>{{-3, 0, 0}, 1, 3});
+  CHECK(level(2).status == ForceStatus::held_at_zero);
+}
+
+TEST_CASE("normal force: the variance knows how a compensation fades", "[normal_force]") {
+  CurveErrors<3> errors;
+  errors.measure_sd = 0.1;
+  const NormalForce force(published_force_of_area(), published_compensation_by_area(), errors);
+  for (const double area_mm2 : {2.0, 5.0, 9.0, 17.0, 100.0, 600.0}) {
+    const Point2<double> moved = {1, 0};
+    const double step = 1e-6 * area_mm2;
+    const double slope =
+        (force(area_mm2 + step, moved).force_n - force(area_mm2 - step, moved).force_n) /
+        (2 * step);
+    CHECK(std::sqrt(force(area_mm2, moved).variance_n2) ==
+          Approx(0.1 * std::abs(slope)).epsilon(1e-6));
+  }
+}

@@ -133,6 +133,9 @@ void expects_valid(const PolynomialForce<Degree, S>& curve) {
           "finite and > from");
   constexpr int steps = Degree > 2 ? 16 : 1;  // a slope of first degree is lowest at an end
   const S end = curve.force_n(curve.to);
+  const S end_slope = curve.slope(curve.to);
+  expects(is_finite(end) && is_finite(end_slope), owner, "to", curve.to,
+          "where force and slope are finite");
   const S size = value(end) < 0 ? S(-end) : end;
   const S rounding = S(64 * epsilon<S>()) * S(size / curve.to);  // of the slope of a level end
   for (int k = 0; k <= steps; ++k) {
@@ -152,6 +155,10 @@ void expects_valid(const PowerLawForce<S>& curve) {
           "finite and >= 0");
   expects(is_finite(curve.to) && value(curve.to) > value(curve.from), owner, "to", curve.to,
           "finite and > from");
+  const S end = curve.force_n(curve.to);
+  const S end_slope = curve.slope(curve.to);
+  expects(is_finite(end) && is_finite(end_slope), owner, "to", curve.to,
+          "where force and slope are finite");
 }
 
 namespace detail {
@@ -166,7 +173,7 @@ class WholeCurve {
   explicit WholeCurve(const Curve& curve)
       : curve_(curve),
         end_slope_(curve.slope(curve.to)),
-        one_over_from_(value(curve.from) > 1e-30 ? S(S(1) / curve.from) : S(1e30)) {}
+        one_over_from_(value(curve.from) > value(S(1e-30)) ? S(S(1) / curve.from) : S(1e30)) {}
 
   const Curve& curve() const { return curve_; }
 
