@@ -21,6 +21,7 @@
 #include <type_traits>
 #include <vector>
 
+#include "fingerpad/detail/force/rigid_shift.hpp"
 #include "fingerpad/dots.hpp"
 #include "fingerpad/expects.hpp"
 #include "fingerpad/grid.hpp"
@@ -100,12 +101,7 @@ class ContactShift {
   /// What a frame writes on the way.
   class Workspace {
     friend class ContactShift;
-    struct Pair {
-      Point2<S> from;
-      Point2<S> to;
-      S weight;
-    };
-    std::vector<Pair> pairs_;
+    std::vector<detail::DotPair<S>> pairs_;
     std::vector<scalar_real_t<S>> residuals_;
   };
 
@@ -160,14 +156,8 @@ class ContactShift {
   }
 
  private:
-  using Pair = typename Workspace::Pair;
-  struct Sums {
-    S weight = S(0);
-    Point2<S> from = {S(0), S(0)};
-    Point2<S> to = {S(0), S(0)};
-    S cross = S(0);
-    S dot = S(0);
-  };
+  using Pair = detail::DotPair<S>;
+  using Rigid = detail::RigidShift<S>;
 
   template <planar_point P>
   static Point2<S> planar(const P& p) {
@@ -264,110 +254,45 @@ class ContactShift {
     if (w.pairs_.empty()) {
       return result;
     }
-    Sums sums = sums_of(w);
-    const Point2<S> middle = sums.from;  // of all, whatever they count
+    Rigid shift(w.pairs_);
+    const Point2<S> middle = shift.from();  // of all, whatever they count
     if constexpr (Mean::is_robust) {
       for (int pass = 0; pass < mean_.passes; ++pass) {
-        reweigh(sums, w);
-        sums = sums_of(w);
+        reweigh(shift, w);
+        shift = Rigid(w.pairs_);
       }
     }
-    using std::atan2;
     result.dots = static_cast<Index>(w.pairs_.size());
-    result.displacement = carried(middle, sums);
-    const bool turns = value(S(square(sums.cross) + square(sums.dot))) > 0;
-    result.status = turns ? ShiftStatus::measured : ShiftStatus::one_place_only;
-    result.rotation_rad = turns ? S(atan2(sums.cross, sums.dot)) : not_a_number<S>();
-    result.residual_rms = rms_of(sums, w);
+    result.displacement = shift.carried(middle);
+    result.status = shift.turns() ? ShiftStatus::measured : ShiftStatus::one_place_only;
+    result.rotation_rad = shift.angle_rad();
+    result.residual_rms = rms_of(shift, w);
     return result;
   }
 
-  /// A sum of places far from the origin is coarse; that of what is left to the middle is not, and
-  /// makes the middle of dots in one place exactly that place.
-  static void refine_middles(Sums& sums, const Workspace& w) {
-    Point2<S> from = {S(0), S(0)}, to = {S(0), S(0)};
-    for (const Pair& p : w.pairs_) {
-      from = {S(from.x + S(p.weight * S(p.from.x - sums.from.x))),
-              S(from.y + S(p.weight * S(p.from.y - sums.from.y)))};
-      to = {S(to.x + S(p.weight * S(p.to.x - sums.to.x))),
-            S(to.y + S(p.weight * S(p.to.y - sums.to.y)))};
-    }
-    sums.from = {S(sums.from.x + S(from.x / sums.weight)),
-                 S(sums.from.y + S(from.y / sums.weight))};
-    sums.to = {S(sums.to.x + S(to.x / sums.weight)), S(sums.to.y + S(to.y / sums.weight))};
-  }
-
-  /// A vector turned by the angle of the rigid shift; as it is where there is none.
-  static Point2<S> turned(const Point2<S>& v, const Sums& sums) {
-    using std::sqrt;
-    const S size_sq = square(sums.cross) + square(sums.dot);
-    const bool turns = value(size_sq) > 0;
-    const S size = turns ? S(sqrt(size_sq)) : S(1);
-    const S cosine = turns ? S(sums.dot / size) : S(1);
-    const S sine = turns ? S(sums.cross / size) : S(0);
-    return {S(S(cosine * v.x) - S(sine * v.y)), S(S(sine * v.x) + S(cosine * v.y))};
-  }
-
-  /// How far the rigid shift carries a place.
-  static Point2<S> carried(const Point2<S>& place, const Sums& sums) {
-    const Point2<S> from = {S(place.x - sums.from.x), S(place.y - sums.from.y)};
-    const Point2<S> to = turned(from, sums);
-    return {S(S(sums.to.x - sums.from.x) + S(to.x - from.x)),
-            S(S(sums.to.y - sums.from.y) + S(to.y - from.y))};
-  }
-
-  /// Middles, and the sums about them.
-  static Sums sums_of(const Workspace& w) {
-    Sums sums;
-    for (const Pair& p : w.pairs_) {
-      sums.weight = sums.weight + p.weight;
-      sums.from = {S(sums.from.x + S(p.weight * p.from.x)),
-                   S(sums.from.y + S(p.weight * p.from.y))};
-      sums.to = {S(sums.to.x + S(p.weight * p.to.x)), S(sums.to.y + S(p.weight * p.to.y))};
-    }
-    sums.from = {S(sums.from.x / sums.weight), S(sums.from.y / sums.weight)};
-    sums.to = {S(sums.to.x / sums.weight), S(sums.to.y / sums.weight)};
-    refine_middles(sums, w);
-    for (const Pair& p : w.pairs_) {
-      const S ax = p.from.x - sums.from.x, ay = p.from.y - sums.from.y;
-      const S bx = p.to.x - sums.to.x, by = p.to.y - sums.to.y;
-      sums.cross = sums.cross + S(p.weight * S(S(ax * by) - S(ay * bx)));
-      sums.dot = sums.dot + S(p.weight * S(S(ax * bx) + S(ay * by)));
-    }
-    return sums;
-  }
-
-  /// Squared distance of a dot from where the rigid shift puts it.
-  static S residual_sq(const Pair& p, const Sums& sums) {
-    const Point2<S> put = turned({S(p.from.x - sums.from.x), S(p.from.y - sums.from.y)}, sums);
-    const S x = S(p.to.x - sums.to.x) - put.x;
-    const S y = S(p.to.y - sums.to.y) - put.y;
-    return S(square(x) + square(y));
-  }
-
-  static S rms_of(const Sums& sums, const Workspace& w) {
+  static S rms_of(const Rigid& shift, const Workspace& w) {
     using std::sqrt;
     S sum = S(0);
     for (const Pair& p : w.pairs_) {
-      sum = sum + S(p.weight * residual_sq(p, sums));
+      sum = sum + S(p.weight * shift.residual_sq(p));
     }
-    const S mean_sq = sum / sums.weight;
+    const S mean_sq = sum / shift.weight();
     return value(mean_sq) > 0 ? S(sqrt(mean_sq)) : S(0);
   }
 
-  void reweigh(const Sums& sums, Workspace& w) const {
+  void reweigh(const Rigid& shift, Workspace& w) const {
     using std::sqrt;
     using Real = scalar_real_t<S>;
     w.residuals_.clear();
     for (const Pair& p : w.pairs_) {
-      w.residuals_.push_back(value(residual_sq(p, sums)));
+      w.residuals_.push_back(value(shift.residual_sq(p)));
     }
     const auto middle = w.residuals_.begin() + static_cast<Index>(w.residuals_.size() / 2);
     std::nth_element(w.residuals_.begin(), middle, w.residuals_.end());
     // The median distance of plane noise is sqrt(2 ln 2) standard deviations of a coordinate.
     const Real limit_sq = *middle * Real(mean_.threshold * mean_.threshold / 1.3862943611198906);
     for (Pair& p : w.pairs_) {
-      const S residual = residual_sq(p, sums);
+      const S residual = shift.residual_sq(p);
       const bool far = value(residual) > limit_sq;
       p.weight = far ? S(sqrt(S(S(limit_sq) / residual))) : S(1);
     }
