@@ -1,0 +1,167 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+#pragma once
+// An object that hangs between two foam fingers, simulated: what the taxels read while the grip is
+// loosened, until the object slips.
+//
+// Each taxel carries its share of the grip, largest in the middle of the contact (Hertz), bears
+// friction K N^beta, and holds the object by a spring along the finger. The object sinks until the
+// springs carry its weight; where a spring would pull harder than friction bears, the taxel slips
+// on. A taxel that slips shakes: its speed is the load of a rider on the foam, whose motion is felt
+// as normal force.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <random>
+#include <vector>
+
+#include "fingerpad/foam_contact.hpp"
+#include "fingerpad/grid.hpp"
+
+namespace grip {
+
+struct FoamFingersSetup {
+  fingerpad::Index rows = 16;
+  fingerpad::Index cols = 4;
+  double pitch_mm = 3.4;
+  double first_force_n = 10;                                 // that each finger presses with
+  double weight_n = 4.1;                                     // of the object
+  fingerpad::PolymerFriction<> friction = {.factor = 0.35};  // of one taxel
+  double contact_radius_mm = 22;                 // at the first force; goes with its cube root
+  double shear_stiffness_n_per_mm = 0.05;        // of one taxel
+  fingerpad::Rider<> rider = {1e-5, 6e-5, 0.3};  // about 28 Hz
+  double drag_n_s_per_mm = 0.03;                 // load on the rider for each mm/s of slip
+  double counts_per_n = 800;
+  double noise_counts = 4;
+  double rate_hz = 100;
+  double grip_lag_s = 0.1;  // of the gripper
+};
+
+/// Both fingers and the object between them.
+class FoamFingers {
+ public:
+  FoamFingers(const FoamFingersSetup& setup, unsigned seed)
+      : setup_(setup),
+        hold_(setup.rider, 1 / setup.rate_hz),
+        force_n_(setup.first_force_n),
+        random_(seed) {
+    for (Finger& finger : fingers_) {
+      // no object is held just in the middle
+      std::uniform_real_distribution<double> place(-2, 2);
+      finger.center_x_mm = place(random_);
+      finger.center_y_mm = place(random_);
+      finger.slip_mm.assign(taxels(), 0.0);
+      finger.load_n.assign(taxels(), 0.0);
+      finger.riders.assign(taxels(), hold_.start());
+      finger.readings.assign(taxels(), 0.0);
+    }
+    for (int k = 0; k < 100; ++k) {  // let it come to rest
+      advance(setup.first_force_n);
+    }
+    time_s_ = 0;
+  }
+
+  /// The next sample, while the gripper goes toward `force_n`.
+  void advance(double force_n) {
+    force_n_ += (force_n - force_n_) / (1 + setup_.grip_lag_s * setup_.rate_hz);
+    time_s_ += 1 / setup_.rate_hz;
+    for (Finger& finger : fingers_) {
+      advance(finger);
+    }
+  }
+
+  /// What finger 0 or 1 reads, in counts.
+  fingerpad::StridedView<const double> readings(std::size_t finger) const {
+    return {fingers_[finger].readings.data(), setup_.rows, setup_.cols, setup_.cols};
+  }
+  double time_s() const { return time_s_; }
+  double force_n() const { return force_n_; }
+  /// Friction cannot hold the object on one of the fingers any more.
+  bool has_slipped() const { return fingers_[0].has_slipped || fingers_[1].has_slipped; }
+  const FoamFingersSetup& setup() const { return setup_; }
+
+ private:
+  struct Finger {
+    double center_x_mm = 0, center_y_mm = 0;
+    double sunk_mm = 0;  // the object, against the finger
+    bool has_slipped = false;
+    std::vector<double> slip_mm;  // of the object over each taxel
+    std::vector<double> load_n;   // on each rider
+    std::vector<fingerpad::FirstOrderHold<>::State> riders;
+    std::vector<double> readings;
+  };
+
+  std::size_t taxels() const { return static_cast<std::size_t>(setup_.rows * setup_.cols); }
+
+  /// The normal force on each taxel.
+  std::vector<double> pressures(const Finger& finger) const {
+    const double radius = setup_.contact_radius_mm * std::cbrt(force_n_ / setup_.first_force_n);
+    std::vector<double> normal(taxels());
+    double sum = 0;
+    for (std::size_t k = 0; k < normal.size(); ++k) {
+      const auto row = static_cast<fingerpad::Index>(k) / setup_.cols;
+      const auto col = static_cast<fingerpad::Index>(k) % setup_.cols;
+      const double y = (double(row) - double(setup_.rows - 1) / 2) * setup_.pitch_mm;
+      const double x = (double(col) - double(setup_.cols - 1) / 2) * setup_.pitch_mm;
+      const double away = std::hypot(x - finger.center_x_mm, y - finger.center_y_mm) / radius;
+      normal[k] = std::sqrt(std::max(0.0, 1 - away * away));
+      sum += normal[k];
+    }
+    for (double& n : normal) {
+      n *= force_n_ / sum;
+    }
+    return normal;
+  }
+
+  void advance(Finger& finger) {
+    const std::vector<double> normal = pressures(finger);
+    sink(finger, normal);
+    for (std::size_t k = 0; k < normal.size(); ++k) {
+      const double bears = friction_force(setup_.friction, normal[k]);
+      const double pull = setup_.shear_stiffness_n_per_mm * (finger.sunk_mm - finger.slip_mm[k]);
+      const double slipped = std::max(0.0, (pull - bears) / setup_.shear_stiffness_n_per_mm);
+      finger.slip_mm[k] += slipped;
+      const double load = normal[k] > 0 ? setup_.drag_n_s_per_mm * slipped * setup_.rate_hz : 0.0;
+      const double shakes = setup_.rider.stiffness_n_per_mm *
+                            hold_(finger.load_n[k], load, finger.riders[k]).position_mm;
+      finger.load_n[k] = load;
+      const double felt = normal[k] > 0 ? normal[k] + shakes : 0.0;
+      finger.readings[k] =
+          std::max(0.0, setup_.counts_per_n * felt + setup_.noise_counts * normal_(random_));
+    }
+  }
+
+  /// Lets the object sink until the taxels carry half of its weight.
+  void sink(Finger& finger, const std::vector<double>& normal) const {
+    const auto carried = [&](double sunk_mm) {
+      double sum = 0;
+      for (std::size_t k = 0; k < normal.size(); ++k) {
+        sum += std::min(friction_force(setup_.friction, normal[k]),
+                        setup_.shear_stiffness_n_per_mm * (sunk_mm - finger.slip_mm[k]));
+      }
+      return sum;
+    };
+    const double weight = setup_.weight_n / 2;
+    double low = finger.sunk_mm, high = finger.sunk_mm + 100;
+    finger.has_slipped = finger.has_slipped || carried(high) < weight;
+    if (finger.has_slipped || carried(low) >= weight) {
+      return;
+    }
+    for (int k = 0; k < 40; ++k) {
+      const double middle = (low + high) / 2;
+      (carried(middle) < weight ? low : high) = middle;
+    }
+    finger.sunk_mm = high;
+  }
+
+  FoamFingersSetup setup_;
+  fingerpad::FirstOrderHold<> hold_;
+  double force_n_;
+  double time_s_ = 0;
+  std::array<Finger, 2> fingers_;
+  std::mt19937 random_;
+  std::normal_distribution<double> normal_{0, 1};
+};
+
+}  // namespace grip

@@ -1,0 +1,169 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+#pragma once
+// The last readings of every taxel with their running sums, so that the spread of each is known in
+// O(1) a sample. With d = reading - reference and u = 0 (oldest) ... n - 1 (newest):
+//   sum d, sum u d, sum d^2
+// A running sum in floating point collects rounding, and one about a far reference loses digits:
+// so at each sample a few taxels are summed anew about their newest reading, all of them once within
+// a window.
+#include <algorithm>
+#include <cstddef>
+#include <vector>
+
+#include "fingerpad/grid.hpp"
+#include "fingerpad/scalar.hpp"
+
+namespace fingerpad {
+inline namespace v0 {
+
+/// What of the window counts as vibration: all that is not its mean, as published.
+struct MeanRemoved {
+  static constexpr bool has_slope = false;
+};
+/// All that is not a straight line: a grip that is loosened or raised evenly does not vibrate.
+struct TrendRemoved {
+  static constexpr bool has_slope = true;
+};
+
+namespace detail {
+
+template <scalar S>
+class TaxelWindow {
+ public:
+  TaxelWindow(Index taxels, Index length)
+      : taxels_(taxels),
+        length_(length),
+        refreshed_((taxels + length - 1) / length),
+        readings_(static_cast<std::size_t>(taxels * length), S(0)),
+        reference_(static_cast<std::size_t>(taxels), S(0)),
+        sum_(reference_),
+        moment_(reference_),
+        squares_(reference_) {}
+
+  Index length() const { return length_; }
+
+  /// As if `now` had been read all along.
+  void restart(const S* now) {
+    for (Index u = 0; u < length_; ++u) {
+      std::copy(now, now + taxels_, row(u));
+    }
+    std::copy(now, now + taxels_, reference_.data());
+    std::fill(sum_.begin(), sum_.end(), S(0));
+    std::fill(moment_.begin(), moment_.end(), S(0));
+    std::fill(squares_.begin(), squares_.end(), S(0));
+    oldest_ = 0;
+  }
+
+  /// `now` becomes the newest reading of every taxel; the oldest is forgotten.
+  void push(const S* now) {
+    S* const replaced = row(oldest_);
+    const S last = S(static_cast<int>(length_ - 1));
+    for (Index k = 0; k < taxels_; ++k) {
+      const std::size_t i = static_cast<std::size_t>(k);
+      const S gone = replaced[k] - reference_[i];
+      const S come = now[k] - reference_[i];
+      const S rest = sum_[i] - gone;  // of those that stay; each of them grows one sample older
+      moment_[i] = moment_[i] - rest + S(last * come);
+      sum_[i] = rest + come;
+      squares_[i] = squares_[i] + S(S(come - gone) * S(come + gone));
+      replaced[k] = now[k];
+    }
+    oldest_ = oldest_ + 1 < length_ ? oldest_ + 1 : 0;
+    refresh();
+  }
+
+  const S& reading(Index taxel, Index u) const {
+    const Index at = oldest_ + u < length_ ? oldest_ + u : oldest_ + u - length_;
+    return readings_[static_cast<std::size_t>(at * taxels_ + taxel)];
+  }
+
+  /// Mean square of what is left of each taxel without its mean or line, >= 0.
+  template <class Level>
+  void variances(scalar_real_t<S>* out) const {
+    const Weights w(length_);
+    for (Index k = 0; k < taxels_; ++k) {
+      const scalar_real_t<S> left = value(squares_left<Level>(static_cast<std::size_t>(k), w));
+      out[k] = left > 0 ? left : scalar_real_t<S>(0);
+    }
+  }
+
+  /// What is left of one taxel at each time of the window, oldest first; returns its mean square.
+  template <class Level>
+  S residuals(Index taxel, S* out) const {
+    const Weights w(length_);
+    const std::size_t i = static_cast<std::size_t>(taxel);
+    const S mean = sum_[i] * w.share;  // of the differences from the reference, which are exact
+    const S slope = Level::has_slope ? S(S(moment_[i] - S(w.middle * sum_[i])) * w.spread) : S(0);
+    S squares = S(0);
+    for (Index u = 0; u < length_; ++u) {
+      const S level = mean + S(slope * S(S(static_cast<int>(u)) - w.middle));
+      out[u] = S(reading(taxel, u) - reference_[i]) - level;
+      squares = squares + square(out[u]);
+    }
+    return S(squares * w.share);
+  }
+
+ private:
+  struct Weights {
+    explicit Weights(Index length)
+        : middle(S(static_cast<int>(length - 1)) / S(2)),
+          share(S(1) / S(static_cast<int>(length))),
+          spread(S(12) /
+                 S(S(static_cast<int>(length)) * S(square(S(static_cast<int>(length))) - S(1)))) {}
+    S middle;  // mean of u
+    S share;   // 1 / n
+    S spread;  // 1 / sum (u - middle)^2
+  };
+
+  template <class Level>
+  S squares_left(std::size_t i, const Weights& w) const {
+    const S flat = squares_[i] - S(square(sum_[i]) * w.share);
+    if constexpr (!Level::has_slope) {
+      return S(flat * w.share);
+    } else {
+      const S tilt = moment_[i] - S(w.middle * sum_[i]);
+      return S(S(flat - S(square(tilt) * w.spread)) * w.share);
+    }
+  }
+
+  void refresh() {
+    const Index end = (std::min)(next_ + refreshed_, taxels_);
+    for (Index k = next_; k < end; ++k) {
+      sum_anew(k);
+    }
+    next_ = end < taxels_ ? end : 0;
+  }
+
+  void sum_anew(Index taxel) {
+    const std::size_t i = static_cast<std::size_t>(taxel);
+    reference_[i] = reading(taxel, length_ - 1);  // finite, whatever the sums had become
+    S sum = S(0), moment = S(0), squares = S(0);
+    for (Index u = 0; u < length_; ++u) {
+      const S d = reading(taxel, u) - reference_[i];
+      sum = sum + d;
+      moment = moment + S(S(static_cast<int>(u)) * d);
+      squares = squares + square(d);
+    }
+    sum_[i] = sum;
+    moment_[i] = moment;
+    squares_[i] = squares;
+  }
+
+  S* row(Index at) { return readings_.data() + at * taxels_; }
+
+  Index taxels_;
+  Index length_;
+  Index refreshed_;  // taxels summed anew at each sample
+  Index oldest_ = 0;
+  Index next_ = 0;
+  std::vector<S> readings_;  // length x taxels, from `oldest_` round
+  std::vector<S> reference_;
+  std::vector<S> sum_;
+  std::vector<S> moment_;
+  std::vector<S> squares_;
+};
+
+}  // namespace detail
+}  // namespace v0
+}  // namespace fingerpad

@@ -1,0 +1,297 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+#pragma once
+// What a foam finger feels at each sample: where it is pressed, which taxel vibrates and how fast.
+// Source: "Pre-Slip Sensing Using Tactile Sensor" (2007), the data of its stack: x-bar and y-bar,
+// vibrating location, and vibration frequency as the number of sensed waves. The paper gives no
+// formulas for them; here they are
+//
+//   centroid   sum of reading x place / sum of readings, over the taxels that press
+//   location   the taxel whose readings spread most in the window, beyond its noise; of equals the
+//              first in row-major order
+//   waves      crossings of the mean by that taxel, or the strongest line of its spectrum
+//
+// Taxels that are dead, saturated, stuck or missing are left out, and come back a whole window
+// after they were last bad.
+#include <algorithm>
+#include <cmath>
+#include <concepts>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+#include "fingerpad/detail/preslip/finger_sample.hpp"
+#include "fingerpad/detail/preslip/taxel_options.hpp"
+#include "fingerpad/detail/preslip/taxel_window.hpp"
+#include "fingerpad/detail/preslip/wave_count.hpp"
+#include "fingerpad/expects.hpp"
+#include "fingerpad/grid.hpp"
+#include "fingerpad/scalar.hpp"
+
+namespace fingerpad {
+inline namespace v0 {
+
+/// Features of one finger, sample by sample. Waves: ZeroCrossings or SpectralPeak; Level:
+/// TrendRemoved or MeanRemoved. Const: one serves any number of fingers of its size, each with a
+/// state of its own. A sample takes O(rows cols) time, and what Waves says while a taxel vibrates;
+/// after a jump of the clock O(rows cols window). Nothing is allocated or thrown.
+template <class Waves = ZeroCrossings, class Level = TrendRemoved, scalar S = double>
+class TaxelFeatures {
+  using Real = scalar_real_t<S>;
+
+ public:
+  /// The window of one finger. A value: copy it to go back to this sample later.
+  class State {
+   public:
+    /// Forgets all samples.
+    void reset() { samples_ = 0; }
+    /// Samples since the start or the last jump of the clock, at most a window.
+    Index samples() const { return samples_; }
+
+   private:
+    friend class TaxelFeatures;
+    State(Index taxels, Index length)
+        : window_(taxels, length),
+          held_(static_cast<std::size_t>(taxels), S(0)),
+          same_for_(held_.size(), 0),
+          bad_for_(held_.size(), 0),
+          floor_(held_.size(), Real(0)),
+          spread_(held_.size(), Real(0)),
+          time_s_(static_cast<std::size_t>(length), S(0)),
+          residual_(time_s_.size(), S(0)),
+          scratch_(length) {}
+
+    detail::TaxelWindow<S> window_;
+    std::vector<S> held_;                 // the last good reading of each taxel
+    std::vector<std::int32_t> same_for_;  // how often it was the same before
+    std::vector<std::int32_t> bad_for_;   // samples until it counts again
+    std::vector<Real> floor_;             // variance beyond which it vibrates; infinite: left out
+    std::vector<Real> spread_;            // variance of those beyond their floor, else 0
+    std::vector<S> time_s_;               // of the window, oldest first
+    std::vector<S> residual_;
+    typename Waves::template Scratch<S> scratch_;
+    Index samples_ = 0;
+  };
+
+  /// Refuses bad parameters (parameter_error).
+  TaxelFeatures(Index rows,
+                Index cols,
+                const TaxelOptions<S>& options = {},
+                const Waves& waves = {})
+      : rows_(rows), cols_(cols), options_(options), waves_(waves) {
+    check();
+    floor_.assign(taxels(), floor_of(value(options.noise)));
+  }
+
+  /// With a standard deviation for each taxel; one that is not a number >= 0 marks a dead taxel.
+  template <grid Noise>
+    requires std::constructible_from<S, cell_t<Noise>>
+  explicit TaxelFeatures(const Noise& noise,
+                         const TaxelOptions<S>& options = {},
+                         const Waves& waves = {})
+      : rows_(fingerpad::rows(noise)),
+        cols_(fingerpad::cols(noise)),
+        options_(options),
+        waves_(waves) {
+    check();
+    const auto of = as_view(noise);
+    for (Index i = 0; i < rows_; ++i) {
+      for (Index j = 0; j < cols_; ++j) {
+        floor_.push_back(floor_of(value(static_cast<S>(of(i, j)))));
+      }
+    }
+  }
+
+  Index rows() const { return rows_; }
+  Index cols() const { return cols_; }
+  const TaxelOptions<S>& options() const { return options_; }
+
+  /// Takes all memory.
+  State start() const { return State(rows_ * cols_, options_.window); }
+
+  /// The features at `time_s`, when the sample was received. NaN, infinite and saturated readings
+  /// are left out. A time that is NaN or not later than the last is refused; one that is earlier by
+  /// more than the longest gap is a new clock, which begins a new window.
+  template <grid Taxels>
+    requires std::constructible_from<S, cell_t<Taxels>> FingerSample<S>
+  operator()(const Taxels& taxels, const S& time_s, State& state) const {
+    FingerSample<S> sample;
+    const auto readings = as_view(taxels);
+    if (readings.rows() != rows_ || readings.cols() != cols_ ||
+        state.held_.size() != floor_.size() || state.window_.length() != options_.window) {
+      sample.status = TaxelStatus::other_size;
+      return sample;
+    }
+    const Clock clock = tell(time_s, state);
+    if (clock == Clock::not_later) {
+      sample.status = TaxelStatus::time_not_later;
+      return sample;
+    }
+    if (clock == Clock::jumped) {
+      forget(state);
+    }
+    read(readings, sample, state);
+    store(time_s, state);
+    find_vibration(sample, state);
+    return sample;
+  }
+
+ private:
+  enum class Clock : std::uint8_t { runs, jumped, not_later };
+
+  void check() const {
+    expects(rows_ >= 1 && rows_ <= 4096, "TaxelFeatures", "rows", static_cast<long long>(rows_),
+            "in [1, 4096]");
+    expects(cols_ >= 1 && cols_ <= 4096, "TaxelFeatures", "cols", static_cast<long long>(cols_),
+            "in [1, 4096]");
+    expects_valid(options_);
+    waves_.check();
+  }
+
+  std::size_t taxels() const { return static_cast<std::size_t>(rows_ * cols_); }
+
+  Real floor_of(const Real& noise) const {
+    const Real beyond = value(options_.noise_factor) * noise;
+    return noise >= 0 ? Real(beyond * beyond) : infinite();
+  }
+  static Real infinite() { return (std::numeric_limits<Real>::infinity)(); }
+
+  Clock tell(const S& time_s, const State& state) const {
+    if (!is_finite(time_s)) {
+      return Clock::not_later;
+    }
+    if (state.samples_ == 0) {
+      return Clock::jumped;
+    }
+    const Real step = value(time_s) - value(state.time_s_.back());
+    const Real gap = value(options_.longest_gap_s);
+    return step > gap || step < -gap ? Clock::jumped : step > 0 ? Clock::runs : Clock::not_later;
+  }
+
+  static void forget(State& state) {
+    state.samples_ = 0;
+    std::fill(state.held_.begin(), state.held_.end(), S(0));
+    std::fill(state.same_for_.begin(), state.same_for_.end(), 0);
+    std::fill(state.bad_for_.begin(), state.bad_for_.end(), 0);
+  }
+
+  /// Takes over what can be used of the readings, and finds the centroid of what presses.
+  template <class View>
+  void read(const View& readings, FingerSample<S>& sample, State& state) const {
+    S sum = S(0), sum_x = S(0), sum_y = S(0);
+    for (Index i = 0; i < rows_; ++i) {
+      S row_sum = S(0), row_x = S(0);
+      for (Index j = 0; j < cols_; ++j) {
+        const S pressed = take(static_cast<S>(readings(i, j)), i * cols_ + j, sample, state);
+        row_sum = row_sum + pressed;
+        row_x = row_x + S(pressed * S(static_cast<int>(j)));
+      }
+      sum = sum + row_sum;
+      sum_x = sum_x + row_x;
+      sum_y = sum_y + S(row_sum * S(static_cast<int>(i)));
+    }
+    sample.sum = sum;
+    if (value(sum) > 0 && value(sum) >= value(options_.least_sum)) {
+      sample.center_x_mm = S(sum_x / sum) * options_.pitch_mm;
+      sample.center_y_mm = S(sum_y / sum) * options_.pitch_mm;
+    }
+  }
+
+  /// One reading; returns what it weighs in the centroid.
+  S take(const S& reading, Index taxel, FingerSample<S>& sample, State& state) const {
+    const std::size_t i = static_cast<std::size_t>(taxel);
+    const bool good = is_finite(reading) && value(reading) < value(options_.saturated_at);
+    const bool same = good && value(reading) == value(state.held_[i]);
+    state.same_for_[i] = same ? (std::min)(state.same_for_[i] + 1, most_same) : 0;
+    state.held_[i] = good ? reading : state.held_[i];
+    state.bad_for_[i] =
+        good ? (std::max)(state.bad_for_[i] - 1, 0) : static_cast<std::int32_t>(options_.window);
+    const bool stuck = options_.stuck_after > 0 && state.same_for_[i] >= options_.stuck_after &&
+                       value(reading) != Real(0);
+    const bool dead = !(floor_[i] < infinite());
+    state.floor_[i] = state.bad_for_[i] > 0 || stuck ? infinite() : floor_[i];
+    const bool counts = good && !stuck && !dead;
+    sample.left_out += counts ? 0 : 1;
+    return counts && value(reading) > 0 ? reading : S(0);
+  }
+
+  void store(const S& time_s, State& state) const {
+    if (state.samples_ == 0) {
+      state.window_.restart(state.held_.data());
+      std::fill(state.time_s_.begin(), state.time_s_.end(), time_s);
+    } else {
+      state.window_.push(state.held_.data());
+      std::move(state.time_s_.begin() + 1, state.time_s_.end(), state.time_s_.begin());
+      state.time_s_.back() = time_s;
+    }
+    state.samples_ = (std::min)(state.samples_ + 1, options_.window);
+  }
+
+  void find_vibration(FingerSample<S>& sample, State& state) const {
+    if (sample.left_out == rows_ * cols_) {
+      sample.status = TaxelStatus::no_taxels;
+      return;
+    }
+    if (state.samples_ < options_.window) {
+      return;
+    }
+    sample.status = TaxelStatus::quiet;
+    const Index strongest = strongest_taxel(state);
+    if (strongest == FingerSample<S>::no_location) {
+      return;
+    }
+    const S mean_square =
+        state.window_.template residuals<Level>(strongest, state.residual_.data());
+    if (!(value(mean_square) > 0)) {
+      return;
+    }
+    using std::sqrt;
+    const S duration = options_.sample_period_s * S(static_cast<int>(options_.window));
+    const S rms = S(sqrt(mean_square));
+    const detail::WaveWindow<S> window{state.residual_.data(), state.time_s_.data(),
+                                       options_.window, rms, duration};
+    sample.status = TaxelStatus::vibrating;
+    sample.location = strongest;
+    sample.waves = waves_(window, state.scratch_);
+    sample.frequency_hz = S(static_cast<int>(sample.waves)) / duration;
+    sample.deviation = rms;
+  }
+
+  /// The first of those whose variance is largest, of those beyond their floor.
+  Index strongest_taxel(State& state) const {
+    Real* const spread = state.spread_.data();
+    state.window_.template variances<Level>(spread);
+    const std::size_t count = taxels();
+    Real largest[lanes] = {};
+    for (std::size_t i = 0; i < count; ++i) {
+      spread[i] = spread[i] > state.floor_[i] ? spread[i] : Real(0);
+    }
+    std::size_t i = 0;
+    for (; i + lanes <= count; i += lanes) {
+      for (std::size_t k = 0; k < lanes; ++k) {
+        largest[k] = spread[i + k] > largest[k] ? spread[i + k] : largest[k];
+      }
+    }
+    for (; i < count; ++i) {
+      largest[0] = spread[i] > largest[0] ? spread[i] : largest[0];
+    }
+    const Real most = *std::max_element(largest, largest + lanes);
+    if (!(most > 0)) {
+      return FingerSample<S>::no_location;
+    }
+    return std::find(spread, spread + count, most) - spread;
+  }
+
+  static constexpr std::size_t lanes = 8;
+  static constexpr std::int32_t most_same = 1 << 30;
+
+  Index rows_;
+  Index cols_;
+  TaxelOptions<S> options_;
+  Waves waves_;
+  std::vector<Real> floor_;
+};
+
+}  // namespace v0
+}  // namespace fingerpad

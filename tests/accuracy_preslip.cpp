@@ -1,0 +1,241 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+// Whole chains, from readings to alarms, on signals of known truth: how often slip is found and how
+// late, and how often it is found where there is none. test_fingerpad "[preslip][accuracy]" -s
+// prints all figures.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <iomanip>
+#include <random>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "fingerpad/holding_force.hpp"
+#include "fingerpad/preslip.hpp"
+#include "fingerpad/taxel_features.hpp"
+#include "grip/foam_fingers.hpp"
+#include "support/catch.hpp"
+#include "support/foam_signals.hpp"
+
+using namespace fingerpad;
+using test::FoamScene;
+using test::FoamSignal;
+
+namespace {
+
+/// Features and rule over both fingers.
+template <class Rule, class Waves = ZeroCrossings>
+class Chain {
+ public:
+  Chain(const FoamScene& scene, double rate_hz)
+      : features_(scene.rows, scene.cols, options(scene, rate_hz)),
+        fingers_{features_.start(), features_.start()},
+        history_(rule_.start()) {}
+
+  bool alarms(FoamSignal& signal, double time_s) {
+    std::array<FingerSample<double>, 2> samples;
+    for (std::size_t f = 0; f < 2; ++f) {
+      samples[f] = features_(signal.finger(f, time_s), time_s, fingers_[f]);
+    }
+    return rule_(samples, history_).is_fresh;
+  }
+  double window_s() const { return 16 * features_.options().sample_period_s; }
+
+ private:
+  static TaxelOptions<double> options(const FoamScene& scene, double rate_hz) {
+    TaxelOptions<double> o;
+    o.sample_period_s = 1 / rate_hz;
+    o.longest_gap_s = 8 / rate_hz;
+    o.noise = scene.noise;
+    return o;
+  }
+  TaxelFeatures<Waves> features_;
+  Preslip<Rule> rule_;
+  std::array<typename TaxelFeatures<Waves>::State, 2> fingers_;
+  typename Preslip<Rule>::State history_;
+};
+
+struct Detection {
+  int scenes = 0;
+  int found = 0;
+  int early = 0;              // scenes with an alarm before anything slips
+  double latest_windows = 0;  // from the slip to the alarm
+};
+
+/// Two fingers on which square patches begin to slip at random places, frequency and time.
+FoamScene any_slip(std::mt19937& random, double rate_hz, int patches, Index side) {
+  const auto any = [&](double low, double high) {
+    return std::uniform_real_distribution<double>(low, high)(random);
+  };
+  FoamScene scene;
+  scene.drift = any(0, 0.3);
+  const double frequency = rate_hz * any(0.08, 0.3);
+  for (auto& finger : scene.patches) {
+    for (int p = 0; p < patches; ++p) {
+      test::SlippingPatch patch;
+      patch.rows = patch.cols = side;
+      patch.row = static_cast<Index>(any(0, 14));
+      patch.col = static_cast<Index>(any(0, 2));
+      patch.begin_s = (60 + any(0, 1)) / rate_hz;
+      patch.frequency_hz = frequency;
+      patch.phase = any(0, 6.28);
+      finger.push_back(patch);
+    }
+  }
+  return scene;
+}
+
+template <class Rule, class Waves = ZeroCrossings>
+Detection detection(int scenes, int patches, Index side = 2) {
+  Detection d;
+  const double rates[] = {10, 31, 100, 1000};
+  std::mt19937 random(17);
+  for (int k = 0; k < scenes; ++k) {
+    const double rate_hz = rates[k % 4];
+    const FoamScene scene = any_slip(random, rate_hz, patches, side);
+    FoamSignal signal(scene, static_cast<unsigned>(k));
+    Chain<Rule, Waves> chain(scene, rate_hz);
+    bool is_early = false;
+    double found_s = -1;
+    for (int n = 0; n < 140 && found_s < 0; ++n) {
+      const double time_s = n / rate_hz;
+      if (chain.alarms(signal, time_s)) {
+        if (n < 60) {
+          is_early = true;
+        } else {
+          found_s = time_s;
+        }
+      }
+    }
+    ++d.scenes;
+    d.early += is_early ? 1 : 0;
+    d.found += found_s >= 0 ? 1 : 0;
+    if (found_s >= 0) {
+      d.latest_windows = std::max(d.latest_windows, (found_s - 60 / rate_hz) / chain.window_s());
+    }
+  }
+  return d;
+}
+
+void show(const std::string& name, const Detection& d) {
+  std::ostringstream text;
+  text << name << ": found " << d.found << " of " << d.scenes << ", early alarms " << d.early
+       << ", at most " << std::setprecision(2) << d.latest_windows << " windows after the slip";
+  INFO(text.str());
+  SUCCEED();
+}
+
+template <class Rule>
+int false_alarms(double minutes, double rate_hz, unsigned seed) {
+  FoamScene scene;
+  scene.rows = 8;
+  scene.drift = 0.3;
+  FoamSignal signal(scene, seed);
+  Chain<Rule> chain(scene, rate_hz);
+  int alarms = 0;
+  for (int n = 0; n < minutes * 60 * rate_hz; ++n) {
+    alarms += chain.alarms(signal, n / rate_hz) ? 1 : 0;
+  }
+  return alarms;
+}
+
+}  // namespace
+
+TEST_CASE("pre-slip of known signals: slip is found", "[preslip][accuracy]") {
+  const auto check = [](const std::string& name, const Detection& d) {
+    show(name, d);
+    CHECK(d.found >= 0.99 * d.scenes);
+    CHECK(d.early == 0);
+  };
+  check("grasp-optimise, one patch", detection<GraspOptimise<>>(120, 1));
+  check("grasp-optimise, three patches", detection<GraspOptimise<>>(120, 3));
+  check("grasp-lift, one patch", detection<GraspLift<>>(120, 1));
+  check("grasp-lift, three patches", detection<GraspLift<>>(120, 3));
+  check("grasp-optimise, spectrum", detection<GraspOptimise<>, SpectralPeak>(120, 3));
+  check("grasp-lift, spectrum", detection<GraspLift<>, SpectralPeak>(120, 3));
+}
+
+TEST_CASE("pre-slip of known signals: grasp-optimise needs two taxels that vibrate alike",
+          "[preslip][accuracy]") {
+  // one taxel stays the strongest, so its location never differs: what the rule cannot see
+  const Detection d = detection<GraspOptimise<>>(40, 1, 1);
+  show("grasp-optimise, patches of one taxel", d);
+  CHECK(d.found <= 2);
+  CHECK(detection<GraspLift<>>(40, 1, 1).found == 40);
+}
+
+TEST_CASE("pre-slip of known signals: no alarm where nothing slips", "[preslip][accuracy]") {
+  // the goal is at most one alarm in ten minutes
+  CHECK(false_alarms<GraspOptimise<>>(20, 31, 1) == 0);
+  CHECK(false_alarms<GraspLift<>>(20, 31, 2) == 0);
+}
+
+namespace {
+
+struct Loosening {
+  LoosenCommand<double> end;
+  double slipped_at_n = 0;
+};
+
+/// The grip on a simulated object is loosened until it slips as a whole, with a warning on the way.
+template <class Rule>
+Loosening loosened(const grip::FoamFingersSetup& object, unsigned seed) {
+  grip::FoamFingers hand(object, seed);
+  const TaxelFeatures<> features(object.rows, object.cols,
+                                 TaxelOptions<>{.pitch_mm = object.pitch_mm,
+                                                .sample_period_s = 1 / object.rate_hz,
+                                                .noise = object.noise_counts});
+  const Preslip<Rule> rule;
+  const LoosenUntilPreslip<> loosen({.first_force_n = object.first_force_n,
+                                     .least_force_n = 0.1,
+                                     .step_n = 0.2,
+                                     .settle_samples = 4,
+                                     .watch_samples = 36,
+                                     .until_slipped = true});
+  std::array<TaxelFeatures<>::State, 2> fingers{features.start(), features.start()};
+  auto history = rule.start();
+  auto search = loosen.start();
+  LoosenCommand<double> command = search.command();
+  while (!is_end(command.phase)) {
+    hand.advance(command.force_n);
+    std::array<FingerSample<double>, 2> samples;
+    for (std::size_t f = 0; f < 2; ++f) {
+      samples[f] = features(hand.readings(f), hand.time_s(), fingers[f]);
+    }
+    const bool alarm = rule(samples, history).is_fresh;
+    command = loosen(hand.has_slipped() ? SlipNews::slipped
+                     : alarm            ? SlipNews::preslip
+                                        : SlipNews::steady,
+                     search);
+  }
+  return {command, hand.force_n()};
+}
+
+template <class Rule>
+void every_loosening_is_warned_of(const std::string& name) {
+  std::string text = name + ": steps of warning";
+  for (unsigned seed = 0; seed < 12; ++seed) {
+    grip::FoamFingersSetup object;
+    object.friction.factor = 0.25 + 0.05 * (seed % 4);
+    object.weight_n = 2.5 + 0.7 * (seed % 3);
+    const Loosening run = loosened<Rule>(object, seed);
+    CAPTURE(seed);
+    CHECK(run.end.phase == SearchPhase::slipped);
+    CHECK(run.end.warning_steps >= 1);
+    CHECK(run.end.preslip_force_n > run.slipped_at_n);
+    text +=
+        ' ' + std::to_string(run.end.warning_steps) + " of " + std::to_string(run.end.steps) + ',';
+  }
+  text.pop_back();
+  INFO(text);
+  SUCCEED();
+}
+
+}  // namespace
+
+TEST_CASE("pre-slip of a simulated object: a warning before it slips", "[preslip][accuracy]") {
+  every_loosening_is_warned_of<GraspOptimise<>>("grasp-optimise");
+  every_loosening_is_warned_of<GraspLift<>>("grasp-lift");
+}
