@@ -12,8 +12,9 @@
 int main(int argc, char** argv) {
   CLI::App app(
       "Depth, contact, the motion of the object, the stick ratio and the force from a recording\n"
-      "of a fluid-filled pad. RECORDING is a folder with sensor.json, reference.png,\n"
-      "reference_depth.tiff and frames/, and perhaps free/ (frames of the free pad) and dots.csv;\n"
+      "of a fluid-filled pad, or pre-slip from one of a foam array.\n"
+      "RECORDING is a folder with sensor.json, reference.png, reference_depth.tiff and frames/,\n"
+      "and perhaps free/ (frames of the free pad) and dots.csv;\n"
       "force and moment need signals.csv with pressures, side_dots.csv and \"rim\" in "
       "sensor.json,\n"
       "the load on each dot also stress_free_dots.csv; forces by look-up need \"force\" in\n"
@@ -22,8 +23,12 @@ int main(int argc, char** argv) {
       "A recording of any other pad with a grid of dots needs a sensor.json of {} and frames/ or "
       "a\n"
       "video: dots are found in the frames, each that is found counts as in contact, and only the\n"
-      "dots and the stick ratio are written. An earlier run's DIR is replaced when the new one is\n"
-      "complete; nothing is left behind when something fails.");
+      "dots and the stick ratio are written.\n"
+      "A recording of a foam array is taxels.csv, and perhaps a sensor.json with a section "
+      "\"foam\":\n"
+      "it gives frames.csv, with the vibration of each finger and pre-slip, and pictures/.\n"
+      "An earlier run's DIR is replaced when the new one is complete; nothing is left behind when\n"
+      "something fails.");
   replay::Options options;
   std::string frames;
   const std::map<std::string, replay::Smoothing> policies = {

@@ -55,7 +55,7 @@ bool is_ours(const std::string& relative) {
   static const std::regex ours(
       R"(frames\.csv|dots\.csv|depth|depth/\d{6}\.tiff|contact|contact/\d{6}\.png|pictures|)"
       R"(pictures/(depth|side|contact|stick|rim|traction)_\d{6}\.png|)"
-      R"(pictures/(montage|motion|stick_ratio|forces|wrench)\.png)");
+      R"(pictures/(montage|motion|stick_ratio|forces|wrench|array|frequency|preslip)\.png)");
   return std::regex_match(relative, ours);
 }
 

@@ -5,34 +5,21 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <csignal>
 #include <cstdio>
 #include <limits>
 #include <stdexcept>
 
 #include "chain.hpp"
 #include "failure.hpp"
+#include "foam_recording.hpp"
+#include "foam_replay.hpp"
+#include "interrupt.hpp"
 #include "progress.hpp"
 #include "recording.hpp"
 #include "writer.hpp"
 
 namespace replay {
 namespace {
-
-volatile std::sig_atomic_t interrupted = 0;
-void interrupt(int /*signal*/) {
-  interrupted = 1;
-}
-
-Range within(const Range& range, int size, const std::filesystem::path& recording) {
-  const int last = range.last.value_or(size);
-  if (range.first >= last || last > size) {
-    fail(recording, "holds frames 0 to " + std::to_string(size - 1) + ", so --frames " +
-                        std::to_string(range.first) + ":" + std::to_string(last) +
-                        " names none or too many");
-  }
-  return {range.first, last};
-}
 
 /// Mean of what is finite.
 class Mean {
@@ -213,20 +200,32 @@ Range parse_range(const std::string& text) {
   return range;
 }
 
+Range within(const Range& range, int size, const std::filesystem::path& recording) {
+  const int last = range.last.value_or(size);
+  if (range.first >= last || last > size) {
+    fail(recording, "holds frames 0 to " + std::to_string(size - 1) + ", so --frames " +
+                        std::to_string(range.first) + ":" + std::to_string(last) +
+                        " names none or too many");
+  }
+  return {range.first, last};
+}
+
 int run(const Options& options) {
+  if (is_foam_recording(options.recording)) {
+    return run_foam(options);
+  }
   Recording recording = open_recording(options.recording);
   const Range range = within(options.range, recording.frames.size(), options.recording);
   const int total = *range.last - range.first;
   Chain chain(recording, options);
-  std::signal(SIGINT, interrupt);
-  std::signal(SIGTERM, interrupt);
+  watch_for_interrupts();
   Writer writer(recording, options, chain.dots().initial(), total);
   recording.frames.seek(range.first);
   {
     const Progress progress(total);
     for (int done = 0; done < total; ++done) {
       progress.show(done);
-      if (interrupted != 0) {
+      if (is_interrupted()) {
         return 130;
       }
       const cv::Mat image = next_frame(recording.frames, recording.reference.size());

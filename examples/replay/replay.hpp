@@ -19,6 +19,9 @@ struct Range {
 /// Reads "A:B", "A:" or ":B"; throws std::invalid_argument.
 Range parse_range(const std::string& text);
 
+/// The range within the frames that there are; throws Failure.
+Range within(const Range& range, int size, const std::filesystem::path& recording);
+
 struct Options {
   std::filesystem::path recording;
   std::filesystem::path out;

@@ -25,8 +25,9 @@ struct TaxelNoise {
                                    ///< `typical`, as a taxel that rested will not once it is
                                    ///< pressed; NaN: never read, a dead taxel
   double typical = 0;              ///< of the taxels whose readings changed, root mean square
-  double largest_factor = 0;       ///< the most that a window spread, in `deviations` of its taxel:
-                                   ///< TaxelOptions::noise_factor must be above it
+  double largest_factor = 0;       ///< the most that any window spread, in `deviations` of its
+                                   ///< taxel: where nothing was touched, TaxelOptions::noise_factor
+                                   ///< must be above it
   double centroid_deviation_mm = 0;  ///< of the centroid, in a window; NaN: never pressed
   Index windows = 0;                 ///< that were looked at
 
@@ -123,12 +124,13 @@ class TaxelNoiseCalibration {
     if (variances.empty()) {
       return not_a_number<double>();
     }
-    const auto middle = variances.begin() + static_cast<std::ptrdiff_t>(variances.size() / 2);
-    std::nth_element(variances.begin(), middle, variances.end());
+    std::sort(variances.begin(), variances.end());
+    const std::size_t half = variances.size() / 2;
+    const double median = (variances[half] + variances[(variances.size() - 1) / 2]) / 2;
     const double n = static_cast<double>(features_.options().window);
     const double freedom = n - (Level::has_slope ? 2 : 1);
     const double median_share = std::pow(1 - 2 / (9 * freedom), 3);
-    return *middle * n / (freedom * median_share);
+    return median * n / (freedom * median_share);
   }
 
   template <class View>

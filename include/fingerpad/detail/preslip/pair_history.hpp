@@ -1,14 +1,12 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// Histories of samples for the pair rules: as they came, and column by column. Samples are numbered
-// 0, 1, 2, ... from the start.
+// The history of samples for the pair rules, and which pairs of it stand. Samples are numbered 0,
+// 1, 2, ... from the start.
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <limits>
 #include <type_traits>
 #include <vector>
 
@@ -166,119 +164,6 @@ class SideHistory {
   }
   std::vector<HandSides<Fingers>> sides_;
   std::int64_t count_ = 0;
-};
-
-/// The same column by column, so that one sample is compared with many at once. What can be no
-/// older sample of a pair is stored with a number of waves that fits none.
-template <class Rule, std::size_t Fingers>
-class SideColumns {
- public:
-  explicit SideColumns(Index size) : size_(size) {
-    for (Columns& c : fingers_) {
-      c.x.assign(static_cast<std::size_t>(size), 0.0);
-      c.y = c.x;
-      c.location.assign(c.x.size(), 0);
-      c.waves = c.location;
-    }
-    clear();
-  }
-
-  void clear() {
-    for (Columns& c : fingers_) {
-      std::fill(c.waves.begin(), c.waves.end(), fits_none);
-    }
-  }
-
-  void add(const HandSides<Fingers>& sides, std::int64_t number) {
-    const std::size_t at = static_cast<std::size_t>(number % size_);
-    for (std::size_t f = 0; f < Fingers; ++f) {
-      const PairSide& side = sides[f];
-      const bool can_be_older = is_lift<Rule> ? side.is_pressed : side.is_vibrating;
-      fingers_[f].x[at] = side.x;
-      fingers_[f].y[at] = side.y;
-      fingers_[f].location[at] = side.location;
-      fingers_[f].waves[at] = can_be_older ? side.waves : fits_none;
-    }
-  }
-
-  /// The latest sample before `number` that makes a pair with `later`, of those in the history that
-  /// ends with `number`.
-  std::int64_t latest(const HandSides<Fingers>& later,
-                      std::int64_t number,
-                      std::size_t track,
-                      double tolerance) const {
-    // place of the sample `number`: it still holds the one that leaves the history
-    const std::int64_t here = number % size_;
-    const std::int64_t before = latest_in(0, here, later, track, tolerance);
-    if (before != no_sample) {
-      return number - here + before;
-    }
-    const std::int64_t behind = latest_in(here + 1, size_, later, track, tolerance);
-    return behind != no_sample ? number - here - size_ + behind : no_sample;
-  }
-
- private:
-  struct Columns {
-    std::vector<double> x, y;
-    std::vector<std::int64_t> location, waves;
-  };
-  using Hits = std::array<std::int64_t, 32>;
-  static constexpr std::int64_t run = std::tuple_size_v<Hits>;
-  static constexpr std::int64_t fits_none =
-      is_lift<Rule> ? (std::numeric_limits<std::int64_t>::max)() : std::int64_t{-1};
-
-  /// The last place in [begin, end) that fits.
-  std::int64_t latest_in(std::int64_t begin,
-                         std::int64_t end,
-                         const HandSides<Fingers>& later,
-                         std::size_t track,
-                         double tolerance) const {
-    for (std::int64_t last = end; last > begin; last -= run) {
-      const std::int64_t first = (std::max)(begin, last - run);
-      Hits hits;
-      hits.fill(is_lift<Rule> ? 0 : 1);
-      for (std::size_t f = first_finger<Rule, Fingers>(track); f < end_finger<Rule, Fingers>(track);
-           ++f) {
-        compare(fingers_[f], later[f], static_cast<std::size_t>(first),
-                static_cast<std::size_t>(last - first), tolerance, hits);
-      }
-      for (std::int64_t i = last - first; i-- > 0;) {
-        if (hits[static_cast<std::size_t>(i)] != 0) {
-          return first + i;
-        }
-      }
-    }
-    return no_sample;
-  }
-
-  static void compare(const Columns& older,
-                      const PairSide& later,
-                      std::size_t first,
-                      std::size_t count,
-                      double tolerance,
-                      Hits& hits) {
-    const double* const x = older.x.data() + first;
-    const double* const y = older.y.data() + first;
-    const std::int64_t* const location = older.location.data() + first;
-    const std::int64_t* const waves = older.waves.data() + first;
-    if constexpr (!is_lift<Rule>) {
-      for (std::size_t i = 0; i < count; ++i) {
-        hits[i] &= static_cast<int>(waves[i] == later.waves) &
-                   static_cast<int>(location[i] != later.location);
-      }
-    } else if (later.is_pressed && later.is_vibrating) {
-      constexpr bool any = std::is_same_v<typename Rule::Axes, AnyAxis>;
-      for (std::size_t i = 0; i < count; ++i) {
-        const int in_x = static_cast<int>(std::fabs(x[i] - later.x) > tolerance);
-        const int in_y = static_cast<int>(std::fabs(y[i] - later.y) > tolerance);
-        hits[i] |= (any ? in_x | in_y : in_x & in_y) & static_cast<int>(waves[i] < later.waves) &
-                   static_cast<int>(location[i] != later.location);
-      }
-    }
-  }
-
-  std::int64_t size_;
-  std::array<Columns, Fingers> fingers_;
 };
 
 }  // namespace detail

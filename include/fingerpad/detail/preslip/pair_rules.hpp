@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <type_traits>
 
 #include "fingerpad/detail/preslip/finger_sample.hpp"
@@ -64,11 +65,14 @@ namespace detail {
 struct PairSide {
   double x = 0;  // of the centroid, in mm; where it is rounded, in cells
   double y = 0;
-  std::int64_t location = -1;
-  std::int64_t waves = 0;
+  std::int32_t location = -1;
+  std::int32_t waves = 0;
   bool is_pressed = false;
   bool is_vibrating = false;  // has a location, and waves enough
 };
+
+/// Beyond this a location counts as none; the arrays of TaxelFeatures have less.
+inline constexpr Index most_location = (std::numeric_limits<std::int32_t>::max)();
 
 /// The most cells from the first taxel, so that two of them fit one 64-bit number.
 inline constexpr double most_cells = 1e9;
@@ -76,8 +80,9 @@ inline constexpr double most_cells = 1e9;
 template <class Centroid, scalar S>
 PairSide pair_side(const FingerSample<S>& s, const PreslipOptions<S>& o) {
   PairSide side;
-  side.location = (std::max)(s.location, FingerSample<S>::no_location);
-  side.waves = std::clamp(s.waves, Index(0), o.most_waves);
+  const bool has_location = s.location >= 0 && s.location <= most_location;
+  side.location = static_cast<std::int32_t>(has_location ? s.location : Index(-1));
+  side.waves = static_cast<std::int32_t>(std::clamp(s.waves, Index(0), o.most_waves));
   side.is_vibrating = side.location >= 0 && s.waves >= o.least_waves;
   side.is_pressed = s.is_pressed();
   side.x = static_cast<double>(value(s.center_x_mm));
@@ -99,9 +104,9 @@ double apart_by(const PreslipOptions<S>& o) {
 }
 
 template <class Axes>
-bool centroids_differ(const PairSide& a, const PairSide& b, double tolerance) {
-  const bool x = std::fabs(a.x - b.x) > tolerance;
-  const bool y = std::fabs(a.y - b.y) > tolerance;
+bool centroids_differ(double apart_x, double apart_y, double tolerance) {
+  const bool x = std::fabs(apart_x) > tolerance;
+  const bool y = std::fabs(apart_y) > tolerance;
   return std::is_same_v<Axes, AnyAxis> ? x || y : x && y;
 }
 
@@ -133,7 +138,7 @@ struct GraspLift {
                     double tolerance) {
     return older.is_pressed && later.is_pressed && later.is_vibrating &&
            older.location != later.location && later.waves > older.waves &&
-           detail::centroids_differ<Axes>(older, later, tolerance);
+           detail::centroids_differ<Axes>(older.x - later.x, older.y - later.y, tolerance);
   }
 };
 

@@ -13,6 +13,7 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "fingerpad/detail/preslip/pair_columns.hpp"
 #include "fingerpad/detail/preslip/pair_history.hpp"
 #include "fingerpad/detail/preslip/pair_rules.hpp"
 #include "fingerpad/detail/preslip/remembered_pairs.hpp"

@@ -5,8 +5,8 @@
 // O(1) a sample. With d = reading - reference and u = 0 (oldest) ... n - 1 (newest):
 //   sum d, sum u d, sum d^2
 // A running sum in floating point collects rounding, and one about a far reference loses digits:
-// so at each sample a few taxels are summed anew about their newest reading, all of them once within
-// a window.
+// so at each sample a few taxels are summed anew about their newest reading, all of them once
+// within a window.
 #include <algorithm>
 #include <cstddef>
 #include <vector>
@@ -57,25 +57,16 @@ class TaxelWindow {
 
   /// `now` becomes the newest reading of every taxel; the oldest is forgotten.
   void push(const S* now) {
-    S* const replaced = row(oldest_);
-    const S last = S(static_cast<int>(length_ - 1));
-    for (Index k = 0; k < taxels_; ++k) {
-      const std::size_t i = static_cast<std::size_t>(k);
-      const S gone = replaced[k] - reference_[i];
-      const S come = now[k] - reference_[i];
-      const S rest = sum_[i] - gone;  // of those that stay; each of them grows one sample older
-      moment_[i] = moment_[i] - rest + S(last * come);
-      sum_[i] = rest + come;
-      squares_[i] = squares_[i] + S(S(come - gone) * S(come + gone));
-      replaced[k] = now[k];
-    }
+    const S* const gone = row(oldest_);
+    add_lines(gone, now);
+    add_squares(gone, now);
+    std::copy(now, now + taxels_, row(oldest_));
     oldest_ = oldest_ + 1 < length_ ? oldest_ + 1 : 0;
     refresh();
   }
 
   const S& reading(Index taxel, Index u) const {
-    const Index at = oldest_ + u < length_ ? oldest_ + u : oldest_ + u - length_;
-    return readings_[static_cast<std::size_t>(at * taxels_ + taxel)];
+    return readings_[static_cast<std::size_t>(place(u) * taxels_ + taxel)];
   }
 
   /// Mean square of what is left of each taxel without its mean or line, >= 0.
@@ -127,29 +118,58 @@ class TaxelWindow {
     }
   }
 
+  // In two loops: compilers give up on loops over many arrays that might overlap.
+  void add_lines(const S* gone, const S* come) {
+    const S* const reference = reference_.data();
+    S* const sum = sum_.data();
+    S* const moment = moment_.data();
+    const S last = S(static_cast<int>(length_ - 1));
+    for (Index k = 0; k < taxels_; ++k) {
+      const S rest = sum[k] - S(gone[k] - reference[k]);  // of those that stay; they grow older
+      const S added = come[k] - reference[k];
+      moment[k] = moment[k] - rest + S(last * added);
+      sum[k] = rest + added;
+    }
+  }
+  void add_squares(const S* gone, const S* come) {
+    const S* const reference = reference_.data();
+    S* const squares = squares_.data();
+    for (Index k = 0; k < taxels_; ++k) {
+      const S removed = gone[k] - reference[k];
+      const S added = come[k] - reference[k];
+      squares[k] = squares[k] + S(S(added - removed) * S(added + removed));
+    }
+  }
+
   void refresh() {
     const Index end = (std::min)(next_ + refreshed_, taxels_);
-    for (Index k = next_; k < end; ++k) {
-      sum_anew(k);
-    }
+    sum_anew(next_, end);
     next_ = end < taxels_ ? end : 0;
   }
 
-  void sum_anew(Index taxel) {
-    const std::size_t i = static_cast<std::size_t>(taxel);
-    reference_[i] = reading(taxel, length_ - 1);  // finite, whatever the sums had become
-    S sum = S(0), moment = S(0), squares = S(0);
-    for (Index u = 0; u < length_; ++u) {
-      const S d = reading(taxel, u) - reference_[i];
-      sum = sum + d;
-      moment = moment + S(S(static_cast<int>(u)) * d);
-      squares = squares + square(d);
+  /// Row by row, as the readings lie.
+  void sum_anew(Index begin, Index end) {
+    S* const reference = reference_.data();
+    S* const sum = sum_.data();
+    S* const moment = moment_.data();
+    S* const squares = squares_.data();
+    for (Index k = begin; k < end; ++k) {
+      reference[k] = reading(k, length_ - 1);  // finite, whatever the sums had become
+      sum[k] = moment[k] = squares[k] = S(0);
     }
-    sum_[i] = sum;
-    moment_[i] = moment;
-    squares_[i] = squares;
+    for (Index u = 0; u < length_; ++u) {
+      const S* const readings = row(place(u));
+      const S age = S(static_cast<int>(u));
+      for (Index k = begin; k < end; ++k) {
+        const S d = readings[k] - reference[k];
+        sum[k] = sum[k] + d;
+        moment[k] = moment[k] + S(age * d);
+        squares[k] = squares[k] + S(d * d);
+      }
+    }
   }
 
+  Index place(Index u) const { return oldest_ + u < length_ ? oldest_ + u : oldest_ + u - length_; }
   S* row(Index at) { return readings_.data() + at * taxels_; }
 
   Index taxels_;

@@ -1,0 +1,21 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+#pragma once
+// Whether the user wants the program to stop, so that it can leave nothing behind.
+#include <csignal>
+
+namespace replay {
+
+inline volatile std::sig_atomic_t interrupts = 0;
+
+inline void watch_for_interrupts() {
+  const auto note = [](int /*signal*/) { interrupts = 1; };
+  std::signal(SIGINT, note);
+  std::signal(SIGTERM, note);
+}
+
+inline bool is_interrupted() {
+  return interrupts != 0;
+}
+
+}  // namespace replay
