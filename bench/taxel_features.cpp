@@ -22,7 +22,7 @@ using namespace fingerpad;
 
 namespace {
 
-constexpr Index rows = 27, cols = 6, period = 4096;
+constexpr Index rows = 27, cols = 6, period = 256;
 constexpr Index vibrating_taxel = 74;
 
 /// Readings of one finger: `period` arrays, again and again.

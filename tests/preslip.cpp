@@ -300,8 +300,12 @@ TEST_CASE("waves and locations out of range", "[preslip]") {
   CHECK_FALSE(pair<GraspOptimise<>>(felt(4, 2), felt(least_index, 2)));
   CHECK(pair<GraspLift<>>(felt(least_index, 2, 0, 0), felt(4, 3, 1, 1)));
   CHECK_FALSE(pair<GraspLift<>>(felt(4, 2, 0, 0), felt(-7, 3, 1, 1)));
-  CHECK(pair<GraspOptimise<>>(felt(most_index, 2), felt(most_index - 1, 2)));
-  CHECK_FALSE(pair<GraspOptimise<>>(felt(most_index, 2), felt(most_index, 2)));
+  // and so are those that 31 bits do not hold
+  constexpr Index last = (Index(1) << 31) - 1;
+  CHECK(pair<GraspOptimise<>>(felt(last, 2), felt(last - 1, 2)));
+  CHECK_FALSE(pair<GraspOptimise<>>(felt(last, 2), felt(last, 2)));
+  CHECK_FALSE(pair<GraspOptimise<>>(felt(last, 2), felt(last + 1, 2)));
+  CHECK_FALSE(pair<GraspOptimise<>>(felt(most_index, 2), felt(4, 2)));
 }
 
 TEMPLATE_TEST_CASE("pre-slip: an alarm begins with a pair and stands until its older sample leaves",

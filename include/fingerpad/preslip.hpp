@@ -93,7 +93,7 @@ class Preslip {
 
   /// Adds the newest sample of all fingers to the history and says what the history then shows. A
   /// finger that does not vibrate, is not pressed, or whose sample could not be taken makes no pair
-  /// beyond what that says; it never hides those of the others.
+  /// beyond what that says; it never hides those of the others. A location of 2^31 or more is none.
   PreslipResult operator()(const std::array<FingerSample<S>, Fingers>& newest, State& state) const {
     const auto found = state.memory_(detail::hand_sides<Rule>(newest, options_),
                                      detail::apart_by<typename Rule::Centroid>(options_));

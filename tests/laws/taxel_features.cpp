@@ -250,3 +250,38 @@ TEST_CASE("taxel features: what is reported is what two passes over the window g
     }
   });
 }
+
+TEMPLATE_TEST_CASE("taxel features: whatever is read, what is said is in range",
+                   "[taxel_features]",
+                   (TaxelFeatures<ZeroCrossings, TrendRemoved, double>),
+                   (TaxelFeatures<SpectralPeak, MeanRemoved, double>)) {
+  rc::prop("odd readings at odd times", [] {
+    constexpr double odd[] = {test::nan, INFINITY, -INFINITY, 0, -0.0, 1e308, -1e308, 5e-324, 4095};
+    auto o = any_options();
+    o.stuck_after = test::whole(0, 8);
+    o.saturated_at = test::whole(0, 1) == 0 ? INFINITY : 4000;
+    o.least_sum = test::uniform(0, 100);
+    const TestType features(2, 3, o);
+    auto state = features.start();
+    double time = 0;
+    for (int n = 0; n < 60; ++n) {
+      Array array(2, 3);
+      for (double& reading : array.cells) {
+        const auto kind = test::whole(0, 24);
+        reading = kind < 9 ? odd[kind] : test::uniform(0, 1000);
+      }
+      const auto kind = test::whole(0, 30);
+      time = kind == 0 ? time - 100 : kind == 1 ? time + 50 : time + test::uniform(0.01, 2);
+      const auto sample = features(array, kind == 2 ? odd[test::whole(0, 2)] : time, state);
+      RC_ASSERT(sample.location >= -1 && sample.location < 6);
+      RC_ASSERT(sample.waves >= 0 && sample.waves <= o.window / 2);
+      RC_ASSERT(sample.left_out >= 0 && sample.left_out <= 6);
+      RC_ASSERT((sample.location >= 0) == (sample.status == TaxelStatus::vibrating));
+      RC_ASSERT(is_finite(sample.frequency_hz));
+      if (sample.is_pressed()) {  // sums of huge readings may be too large for a number
+        RC_ASSERT(sample.center_x_mm >= 0 && sample.center_x_mm <= 2 * o.pitch_mm * (1 + 1e-12));
+        RC_ASSERT(sample.center_y_mm >= 0 && sample.center_y_mm <= o.pitch_mm * (1 + 1e-12));
+      }
+    }
+  });
+}
