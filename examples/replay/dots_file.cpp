@@ -11,6 +11,7 @@
 #include <tuple>
 #include <vector>
 
+#include "csv_cells.hpp"
 #include "failure.hpp"
 
 namespace replay {
@@ -26,18 +27,6 @@ struct Line {
   cv::Vec2d pixel;
 };
 
-std::vector<std::string> split(const std::string& line) {
-  std::vector<std::string> cells(1);
-  for (const char c : line) {
-    if (c == ',') {
-      cells.emplace_back();
-    } else if (c != ' ' && c != '\t' && c != '\r') {
-      cells.back() += c;
-    }
-  }
-  return cells;
-}
-
 /// The lines of one file, each checked by itself.
 class LineReader {
  public:
@@ -47,7 +36,7 @@ class LineReader {
     if (!std::getline(stream_, line)) {
       fail(file, "is empty or cannot be read");
     }
-    if (split(line) != header) {
+    if (cells_of(line) != header) {
       refuse("must be frame,row,col,x_px,y_px");
     }
   }
@@ -57,7 +46,7 @@ class LineReader {
     std::string text;
     while (std::getline(stream_, text)) {
       ++number_;
-      cells_ = split(text);
+      cells_ = cells_of(text);
       if (cells_.size() == 1 && cells_[0].empty()) {
         continue;
       }

@@ -11,6 +11,7 @@
 #include <optional>
 #include <utility>
 
+#include "csv_cells.hpp"
 #include "failure.hpp"
 
 namespace replay {
@@ -21,18 +22,6 @@ using Place = std::pair<int, int>;  // row and column
 
 constexpr int most_places = 4096;  // rows or columns
 constexpr double no_number = std::numeric_limits<double>::quiet_NaN();
-
-std::vector<std::string> split(const std::string& line) {
-  std::vector<std::string> cells(1);
-  for (const char c : line) {
-    if (c == ',') {
-      cells.emplace_back();
-    } else if (c != ' ' && c != '\t' && c != '\r') {
-      cells.back() += c;
-    }
-  }
-  return cells;
-}
 
 /// Reads up to four digits from `at` on.
 std::optional<int> digits(const std::string& text, std::size_t& at) {
@@ -79,7 +68,7 @@ Header read_header(const fs::path& file, std::string line) {
   }
   const auto refuse = [&](const std::string& why) { fail(file, "line 1: " + why); };
   Header header;
-  header.names = split(line);
+  header.names = cells_of(line);
   std::map<std::string, std::size_t> others;
   for (std::size_t k = 0; k < header.names.size(); ++k) {
     const std::string& name = header.names[k];
@@ -144,7 +133,7 @@ class TableReader {
   TaxelTable read() {
     std::string line;
     for (number_ = 2; std::getline(stream_, line); ++number_) {
-      cells_ = split(line);
+      cells_ = cells_of(line);
       if (cells_.size() == 1 && cells_[0].empty()) {
         continue;
       }

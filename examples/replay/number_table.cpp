@@ -6,22 +6,11 @@
 #include <cstdlib>
 #include <fstream>
 
+#include "csv_cells.hpp"
 #include "failure.hpp"
 
 namespace replay {
 namespace {
-
-std::vector<std::string> split(const std::string& line) {
-  std::vector<std::string> cells(1);
-  for (const char c : line) {
-    if (c == ',') {
-      cells.emplace_back();
-    } else if (c != ' ' && c != '\t' && c != '\r') {
-      cells.back() += c;
-    }
-  }
-  return cells;
-}
 
 bool is_number(const std::string& text, double& number) {
   char* end = nullptr;
@@ -38,7 +27,7 @@ NumberTable::NumberTable(const std::filesystem::path& file, const std::vector<st
   if (!std::getline(stream, text)) {
     fail(file, "is empty or cannot be read");
   }
-  if (split(text) != header) {
+  if (cells_of(text) != header) {
     std::string names;
     for (const std::string& name : header) {
       names += (names.empty() ? "" : ",") + name;
@@ -46,7 +35,7 @@ NumberTable::NumberTable(const std::filesystem::path& file, const std::vector<st
     refuse(1, "must be " + names);
   }
   for (int number = 2; std::getline(stream, text); ++number) {
-    const std::vector<std::string> cells = split(text);
+    const std::vector<std::string> cells = cells_of(text);
     if (cells.size() == 1 && cells[0].empty()) {
       continue;
     }

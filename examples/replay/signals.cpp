@@ -8,25 +8,11 @@
 #include <limits>
 #include <vector>
 
+#include "csv_cells.hpp"
 #include "failure.hpp"
 
 namespace replay {
 namespace {
-
-std::vector<std::string> split(std::string line) {
-  if (!line.empty() && line.back() == '\r') {
-    line.pop_back();
-  }
-  std::vector<std::string> cells(1);
-  for (const char c : line) {
-    if (c == ',') {
-      cells.emplace_back();
-    } else if (c != ' ' && c != '\t') {
-      cells.back() += c;
-    }
-  }
-  return cells;
-}
 
 bool is_number(const std::string& text, double& number) {
   char* end = nullptr;
@@ -59,13 +45,13 @@ Signals read_signals(const std::filesystem::path& file, int frame_count) {
   if (!std::getline(stream, line)) {
     fail(file, "is empty or cannot be read");
   }
-  const std::vector<std::string> header = split(line);
+  const std::vector<std::string> header = cells_of(line);
   const bool with_pressure = header == std::vector<std::string>{"frame", "time_s", "pressure_mpa"};
   if (!with_pressure && header != std::vector<std::string>{"frame", "time_s"}) {
     refuse(1, "must be frame,time_s,pressure_mpa (the last is optional)");
   }
   for (int number = 2; std::getline(stream, line); ++number) {
-    const std::vector<std::string> cells = split(line);
+    const std::vector<std::string> cells = cells_of(line);
     if (cells.size() == 1 && cells[0].empty()) {
       continue;
     }

@@ -21,9 +21,10 @@ namespace detail {
 template <class Rule, std::size_t Fingers>
 class SideColumns {
  public:
-  explicit SideColumns(Index size) : size_(size) {
+  template <scalar S>
+  explicit SideColumns(const PreslipOptions<S>& o) : size_(o.history) {
     for (Columns& c : fingers_) {
-      c.location.assign(static_cast<std::size_t>(size), 0);
+      c.location.assign(static_cast<std::size_t>(size_), 0);
       c.waves = c.location;
       c.centroid.resize(c.location.size());
     }

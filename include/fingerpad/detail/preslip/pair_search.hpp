@@ -56,70 +56,52 @@ struct AllPairs {
   };
 };
 
+namespace detail {
+
+/// Pairs of the newest sample with what `Past` remembers of the earlier ones; pairs found before
+/// stand as long as they are in the history.
+template <class Rule, std::size_t Fingers, class Past>
+class NewestAgainst {
+  static constexpr std::size_t tracks = detail::tracks<Rule, Fingers>();
+
+ public:
+  template <scalar S>
+  explicit NewestAgainst(const PreslipOptions<S>& o) : past_(o), standing_(o.history) {}
+
+  void clear() {
+    past_.clear();
+    standing_.clear();
+  }
+
+  FoundPairs<tracks> operator()(const HandSides<Fingers>& newest, double tolerance) {
+    const std::int64_t number = standing_.begin_sample();
+    for (std::size_t track = 0; track < tracks; ++track) {
+      if (can_be_later<Rule>(newest, track)) {
+        standing_.add(track, past_.latest(newest, number, track, tolerance));
+      }
+    }
+    past_.add(newest, number);
+    return standing_.found();
+  }
+
+ private:
+  Past past_;
+  StandingPairs<tracks> standing_;
+};
+
+}  // namespace detail
+
 /// The newest sample against the earlier ones, from the latest back to the first that fits.
 struct NewestPairs {
   template <class Rule, std::size_t Fingers>
-  class Memory {
-    static constexpr std::size_t tracks = detail::tracks<Rule, Fingers>();
-
-   public:
-    template <scalar S>
-    explicit Memory(const PreslipOptions<S>& o) : columns_(o.history), standing_(o.history) {}
-
-    void clear() {
-      columns_.clear();
-      standing_.clear();
-    }
-
-    detail::FoundPairs<tracks> operator()(const detail::HandSides<Fingers>& newest,
-                                          double tolerance) {
-      const std::int64_t number = standing_.begin_sample();
-      for (std::size_t track = 0; track < tracks; ++track) {
-        if (detail::can_be_later<Rule>(newest, track)) {
-          standing_.add(track, columns_.latest(newest, number, track, tolerance));
-        }
-      }
-      columns_.add(newest, number);
-      return standing_.found();
-    }
-
-   private:
-    detail::SideColumns<Rule, Fingers> columns_;
-    detail::StandingPairs<tracks> standing_;
-  };
+  using Memory = detail::NewestAgainst<Rule, Fingers, detail::SideColumns<Rule, Fingers>>;
 };
 
 /// Only what can still be asked for is remembered. Centroids must be rounded (MovedToOtherCell):
 /// with a tolerance, any number of samples can each be the only answer to some question.
 struct ConstantTime {
   template <class Rule, std::size_t Fingers>
-  class Memory {
-    static constexpr std::size_t tracks = detail::tracks<Rule, Fingers>();
-
-   public:
-    template <scalar S>
-    explicit Memory(const PreslipOptions<S>& o) : remembered_(o), standing_(o.history) {}
-
-    void clear() {
-      remembered_.clear();
-      standing_.clear();
-    }
-
-    detail::FoundPairs<tracks> operator()(const detail::HandSides<Fingers>& newest, double) {
-      const std::int64_t number = standing_.begin_sample();
-      for (std::size_t track = 0; track < tracks; ++track) {
-        if (detail::can_be_later<Rule>(newest, track)) {
-          standing_.add(track, remembered_.latest(newest, track));
-        }
-      }
-      remembered_.add(newest, number);
-      return standing_.found();
-    }
-
-   private:
-    detail::RememberedPairs<Rule, Fingers> remembered_;
-    detail::StandingPairs<tracks> standing_;
-  };
+  using Memory = detail::NewestAgainst<Rule, Fingers, detail::RememberedPairs<Rule, Fingers>>;
 };
 
 }  // namespace v0

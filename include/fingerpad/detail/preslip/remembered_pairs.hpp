@@ -41,7 +41,7 @@ class RememberedPairs<GraspOptimise<SamePair>, Fingers> {
     table_.clear();
   }
 
-  std::int64_t latest(const HandSides<Fingers>& later, std::size_t) const {
+  std::int64_t latest(const HandSides<Fingers>& later, std::int64_t, std::size_t, double) const {
     const Locations* const locations = table_.find(waves_of(later));
     return locations != nullptr ? (*locations)(locations_of(later)) : no_sample;
   }
@@ -92,7 +92,10 @@ class RememberedPairs<GraspOptimise<AnyPair>, Fingers> {
     }
   }
 
-  std::int64_t latest(const HandSides<Fingers>& later, std::size_t track) const {
+  std::int64_t latest(const HandSides<Fingers>& later,
+                      std::int64_t,
+                      std::size_t track,
+                      double) const {
     const PairSide& side = later[track];
     return by_waves_[track][static_cast<std::size_t>(side.waves)]({side.location});
   }
@@ -127,7 +130,7 @@ class RememberedPairs<GraspLift<MovedToOtherCell, Axes>, Fingers> {
     }
   }
 
-  std::int64_t latest(const HandSides<Fingers>& later, std::size_t) const {
+  std::int64_t latest(const HandSides<Fingers>& later, std::int64_t, std::size_t, double) const {
     std::int64_t found = no_sample;
     for (std::size_t f = 0; f < Fingers; ++f) {
       if (later[f].is_vibrating && later[f].is_pressed) {
