@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 // Which taxels of an array can be believed: not those that are missing, saturated or stuck, nor for
-// a window after they were bad. Written as choices between numbers over whole columns, without a
-// branch and a few columns at a time, so that compilers treat many taxels at once.
+// a window after they were bad. Written as choices between numbers, without a branch and with
+// columns that do not overlap, so that compilers treat many taxels at once.
 #include <algorithm>
 #include <cstddef>
 #include <limits>
@@ -33,10 +33,10 @@ class TaxelHealth {
   explicit TaxelHealth(Index taxels)
       : now_(static_cast<std::size_t>(taxels), S(0)),
         held_(now_),
-        good_(now_.size(), Real(0)),
-        same_for_(good_),
-        bad_for_(good_),
-        floor_(good_) {}
+        counts_(now_.size(), Real(0)),
+        same_for_(counts_),
+        bad_for_(counts_),
+        floor_(counts_) {}
 
   std::size_t size() const { return now_.size(); }
 
@@ -51,11 +51,8 @@ class TaxelHealth {
 
   /// Judges them, with the `floor` of each taxel: infinite for a dead one.
   void judge(const Real* floor, const Limits& limits) {
-    hold(limits.saturated_at);
-    count_bad(limits.window);
-    find_counting(floor, limits.stuck_after);
-    find_floors(floor, limits.stuck_after);
-    weigh();
+    judge(size(), floor, limits, now_.data(), held_.data(), counts_.data(), same_for_.data(),
+          bad_for_.data(), floor_.data());
   }
 
   /// The last good reading of each taxel.
@@ -65,87 +62,50 @@ class TaxelHealth {
   /// The floors of those whose whole window is good, infinite for the others.
   const Real* floor() const { return floor_.data(); }
   /// 1 for each that counts now, 0 for the others.
-  const Real* counts() const { return good_.data(); }
+  const Real* counts() const { return counts_.data(); }
 
  private:
-  void hold(const Real& saturated_at) {
-    const S* const now = now_.data();
-    S* const held = held_.data();
-    Real* const good = good_.data();
-    Real* const same_for = same_for_.data();
-    const Real yes = Real(1), no = Real(0);
-    for (std::size_t k = 0; k < size(); ++k) {
+  static void judge(std::size_t size,
+                    const Real* __restrict floor,
+                    const Limits& limits,
+                    S* __restrict now,
+                    S* __restrict held,
+                    Real* __restrict counts,
+                    Real* __restrict same_for,
+                    Real* __restrict bad_for,
+                    Real* __restrict floor_now) {
+    const Real yes = Real(1), no = Real(0), none = infinite();
+    const Real saturated_at = limits.saturated_at, stuck_after = limits.stuck_after;
+    const Real window = limits.window;
+    for (std::size_t k = 0; k < size; ++k) {
       const S reading = now[k], before = held[k];
-      const Real x = value(reading);
+      const Real x = value(reading), limit = floor[k];
       const Real finite = Real(x - x) == no ? yes : no;  // the difference of NaN is NaN
       const Real below = x < saturated_at ? yes : no;
+      const Real good = finite * below;
       const Real equal = x == value(before) ? yes : no;
-      const Real usable = finite * below;
-      const Real once_more = same_for[k] + yes;
-      held[k] = usable > no ? reading : before;
-      good[k] = usable;
-      same_for[k] = usable * equal * once_more;
-    }
-  }
-
-  void count_bad(const Real& window) {
-    const Real* const good = good_.data();
-    Real* const bad_for = bad_for_.data();
-    const Real no = Real(0);
-    for (std::size_t k = 0; k < size(); ++k) {
-      const Real one_less = bad_for[k] - Real(1);
+      const Real same = good * equal * Real(same_for[k] + yes);
+      const Real one_less = bad_for[k] - yes;
       const Real left = one_less > no ? one_less : no;
-      bad_for[k] = good[k] > no ? left : window;
-    }
-  }
-
-  /// 1 where a reading has not changed for long; where 0 is read, nothing presses and nothing
-  /// moves.
-  static Real is_stuck(const Real& x, const Real& same_for, const Real& stuck_after) {
-    const Real yes = Real(1), no = Real(0);
-    const Real stands = same_for < stuck_after ? no : yes;
-    return x == no ? no : stands;
-  }
-
-  void find_counting(const Real* floor, const Real& stuck_after) {
-    const S* const now = now_.data();
-    const Real* const same_for = same_for_.data();
-    Real* const good = good_.data();
-    const Real yes = Real(1), no = Real(0), none = infinite();
-    for (std::size_t k = 0; k < size(); ++k) {
-      const Real stuck = is_stuck(value(now[k]), same_for[k], stuck_after);
-      const Real alive = floor[k] < none ? yes : no;
-      good[k] = good[k] * (yes - stuck) * alive;
-    }
-  }
-
-  void find_floors(const Real* floor, const Real& stuck_after) {
-    const S* const now = now_.data();
-    const Real* const same_for = same_for_.data();
-    const Real* const bad_for = bad_for_.data();
-    Real* const floor_now = floor_.data();
-    const Real no = Real(0), none = infinite();
-    for (std::size_t k = 0; k < size(); ++k) {
-      const Real doubt = is_stuck(value(now[k]), same_for[k], stuck_after) + bad_for[k];
-      const Real limit = floor[k];
+      const Real bad = good > no ? left : window;
+      const Real stands = same < stuck_after ? no : yes;
+      const Real stuck = x == no ? no : stands;  // where 0 is read nothing presses
+      const Real alive = limit < none ? yes : no;
+      const Real counted = good * Real(yes - stuck) * alive;
+      const Real positive = x > no ? yes : no;
+      const Real presses = counted * positive, doubt = stuck + bad;
+      held[k] = good > no ? reading : before;
+      now[k] = presses > no ? reading : S(0);
+      counts[k] = counted;
+      same_for[k] = same;
+      bad_for[k] = bad;
       floor_now[k] = doubt > no ? none : limit;
-    }
-  }
-
-  void weigh() {
-    S* const now = now_.data();
-    const Real* const good = good_.data();
-    const Real no = Real(0);
-    for (std::size_t k = 0; k < size(); ++k) {
-      const S reading = now[k];
-      const Real positive = value(reading) > no ? good[k] : no;
-      now[k] = positive > no ? reading : S(0);
     }
   }
 
   std::vector<S> now_;
   std::vector<S> held_;
-  std::vector<Real> good_;      // 1 or 0: counts now
+  std::vector<Real> counts_;    // 1 or 0
   std::vector<Real> same_for_;  // samples for which it did not change
   std::vector<Real> bad_for_;   // samples until it can vibrate again
   std::vector<Real> floor_;

@@ -8,6 +8,7 @@
 // so at each sample a few taxels are summed anew about their newest reading, all of them once
 // within a window.
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <vector>
 
@@ -34,7 +35,7 @@ class TaxelWindow {
   TaxelWindow(Index taxels, Index length)
       : taxels_(taxels),
         length_(length),
-        refreshed_((taxels + length - 1) / length),
+        refreshed_((taxels / length + lanes) / lanes * lanes),
         readings_(static_cast<std::size_t>(taxels * length), S(0)),
         reference_(static_cast<std::size_t>(taxels), S(0)),
         sum_(reference_),
@@ -57,10 +58,7 @@ class TaxelWindow {
 
   /// `now` becomes the newest reading of every taxel; the oldest is forgotten.
   void push(const S* now) {
-    const S* const gone = row(oldest_);
-    add_lines(gone, now);
-    add_squares(gone, now);
-    std::copy(now, now + taxels_, row(oldest_));
+    exchange(now, row(oldest_), reference_.data(), sum_.data(), moment_.data(), squares_.data());
     oldest_ = oldest_ + 1 < length_ ? oldest_ + 1 : 0;
     refresh();
   }
@@ -118,63 +116,69 @@ class TaxelWindow {
     }
   }
 
-  // In two loops: compilers give up on loops over many arrays that might overlap.
-  void add_lines(const S* gone, const S* come) {
-    const S* const reference = reference_.data();
-    S* const sum = sum_.data();
-    S* const moment = moment_.data();
+  /// The oldest reading of each taxel for the newest. The columns do not overlap.
+  void exchange(const S* __restrict newest,
+                S* __restrict oldest,
+                const S* __restrict reference,
+                S* __restrict sum,
+                S* __restrict moment,
+                S* __restrict squares) const {
     const S last = S(static_cast<int>(length_ - 1));
     for (Index k = 0; k < taxels_; ++k) {
-      const S rest = sum[k] - S(gone[k] - reference[k]);  // of those that stay; they grow older
-      const S added = come[k] - reference[k];
-      moment[k] = moment[k] - rest + S(last * added);
-      sum[k] = rest + added;
-    }
-  }
-  void add_squares(const S* gone, const S* come) {
-    const S* const reference = reference_.data();
-    S* const squares = squares_.data();
-    for (Index k = 0; k < taxels_; ++k) {
-      const S removed = gone[k] - reference[k];
-      const S added = come[k] - reference[k];
-      squares[k] = squares[k] + S(S(added - removed) * S(added + removed));
+      const S gone = oldest[k] - reference[k];
+      const S come = newest[k] - reference[k];
+      const S rest = sum[k] - gone;  // of those that stay; each of them grows one sample older
+      moment[k] = moment[k] - rest + S(last * come);
+      sum[k] = rest + come;
+      squares[k] = squares[k] + S(S(come - gone) * S(come + gone));
+      oldest[k] = newest[k];
     }
   }
 
   void refresh() {
     const Index end = (std::min)(next_ + refreshed_, taxels_);
-    sum_anew(next_, end);
+    for (; next_ + lanes <= end; next_ += lanes) {
+      sum_anew<static_cast<std::size_t>(lanes)>(next_);
+    }
+    for (; next_ < end; ++next_) {
+      sum_anew<1>(next_);
+    }
     next_ = end < taxels_ ? end : 0;
   }
 
-  /// Row by row, as the readings lie.
-  void sum_anew(Index begin, Index end) {
-    S* const reference = reference_.data();
-    S* const sum = sum_.data();
-    S* const moment = moment_.data();
-    S* const squares = squares_.data();
-    for (Index k = begin; k < end; ++k) {
-      reference[k] = reading(k, length_ - 1);  // finite, whatever the sums had become
+  /// Of taxels side by side, in registers.
+  template <std::size_t Taxels>
+  void sum_anew(Index first) {
+    std::array<S, Taxels> reference, sum, moment, squares;
+    for (std::size_t k = 0; k < Taxels; ++k) {
+      // finite, whatever the sums had become
+      reference[k] = reading(first + static_cast<Index>(k), length_ - 1);
       sum[k] = moment[k] = squares[k] = S(0);
     }
     for (Index u = 0; u < length_; ++u) {
-      const S* const readings = row(place(u));
+      const S* const readings = row(place(u)) + first;
       const S age = S(static_cast<int>(u));
-      for (Index k = begin; k < end; ++k) {
+      for (std::size_t k = 0; k < Taxels; ++k) {
         const S d = readings[k] - reference[k];
         sum[k] = sum[k] + d;
         moment[k] = moment[k] + S(age * d);
         squares[k] = squares[k] + S(d * d);
       }
     }
+    std::copy(reference.begin(), reference.end(), reference_.begin() + first);
+    std::copy(sum.begin(), sum.end(), sum_.begin() + first);
+    std::copy(moment.begin(), moment.end(), moment_.begin() + first);
+    std::copy(squares.begin(), squares.end(), squares_.begin() + first);
   }
 
   Index place(Index u) const { return oldest_ + u < length_ ? oldest_ + u : oldest_ + u - length_; }
   S* row(Index at) { return readings_.data() + at * taxels_; }
 
+  static constexpr Index lanes = 8;
+
   Index taxels_;
   Index length_;
-  Index refreshed_;  // taxels summed anew at each sample
+  Index refreshed_;  // taxels summed anew at each sample, at least taxels / length
   Index oldest_ = 0;
   Index next_ = 0;
   std::vector<S> readings_;  // length x taxels, from `oldest_` round
