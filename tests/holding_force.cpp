@@ -485,7 +485,7 @@ TEMPLATE_TEST_CASE("searches: in any number",
   CHECK(number(end.force_n) == 8.75);
   const LiftWithRegrip<S> lift;
   auto lifting = lift.start();
-  auto up = tell(lift, lifting, "----p" + std::string(16, '-') + "-");
+  auto up = tell(lift, lifting, std::string("----p").append(17, '-'));
   CHECK(number(up.force_n) == 1.5);
   CHECK(number(up.height_mm) == 1.25);
   up = tell(lift, lifting, std::string(195, '-'));

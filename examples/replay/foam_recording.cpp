@@ -49,7 +49,9 @@ std::optional<Place> place_of(const std::string& name) {
 }
 
 std::string name_of(const Place& place) {
-  return "r" + std::to_string(place.first) + "_c" + std::to_string(place.second);
+  std::string name = "r";
+  name += std::to_string(place.first) + "_c" + std::to_string(place.second);
+  return name;
 }
 
 /// Where the columns are in a line.
