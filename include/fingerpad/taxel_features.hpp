@@ -209,14 +209,14 @@ class TaxelFeatures {
       sum_y[lane] = sum_y[lane] + S(weights[k] * y_mm_[k]);
       counted[lane] = counted[lane] + counts[k];
     };
-    std::size_t k = 0;
-    for (; k + lanes <= taxels(); k += lanes) {
+    const std::size_t count = x_mm_.size(), in_lanes = count - count % lanes;
+    for (std::size_t k = 0; k < in_lanes; k += lanes) {
       for (std::size_t lane = 0; lane < lanes; ++lane) {
         add(k + lane, lane);
       }
     }
-    for (; k < taxels(); ++k) {
-      add(k, 0);
+    for (std::size_t lane = 0; lane < count - in_lanes; ++lane) {
+      add(in_lanes + lane, lane);
     }
     S total_x = S(0), total_y = S(0);
     Real total = Real(0);
@@ -287,18 +287,17 @@ class TaxelFeatures {
     Real* const spread = state.spread_.data();
     const Real* const floor = state.health_.floor();
     state.window_.template variances<Level>(spread);
-    const std::size_t count = taxels();
-    Real largest[lanes] = {};
+    const std::size_t count = floor_.size(), in_lanes = count - count % lanes;
     for (std::size_t i = 0; i < count; ++i) {
       spread[i] = spread[i] > floor[i] ? spread[i] : Real(0);
     }
-    std::size_t i = 0;
-    for (; i + lanes <= count; i += lanes) {
+    Real largest[lanes] = {};
+    for (std::size_t i = 0; i < in_lanes; i += lanes) {
       for (std::size_t k = 0; k < lanes; ++k) {
         largest[k] = spread[i + k] > largest[k] ? spread[i + k] : largest[k];
       }
     }
-    for (; i < count; ++i) {
+    for (std::size_t i = in_lanes; i < count; ++i) {
       largest[0] = spread[i] > largest[0] ? spread[i] : largest[0];
     }
     const Real most = *std::max_element(largest, largest + lanes);

@@ -88,7 +88,8 @@ Taxels taxels_of(int rows, int cols, int samples, const Signal& signal) {
   Taxels taxels{{"frame", "time_s"}, {}};
   for (int i = 0; i < rows; ++i) {
     for (int j = 0; j < cols; ++j) {
-      taxels.header.push_back("r" + std::to_string(i) + "_c" + std::to_string(j));
+      std::string& name = taxels.header.emplace_back("r");
+      name += std::to_string(i) + "_c" + std::to_string(j);
     }
   }
   for (int k = 0; k < samples; ++k) {
