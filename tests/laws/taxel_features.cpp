@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <vector>
 
 #include "support/catch.hpp"
@@ -256,10 +257,11 @@ TEMPLATE_TEST_CASE("taxel features: whatever is read, what is said is in range",
                    (TaxelFeatures<ZeroCrossings, TrendRemoved, double>),
                    (TaxelFeatures<SpectralPeak, MeanRemoved, double>)) {
   rc::prop("odd readings at odd times", [] {
-    constexpr double odd[] = {test::nan, INFINITY, -INFINITY, 0, -0.0, 1e308, -1e308, 5e-324, 4095};
+    constexpr double infinite = std::numeric_limits<double>::infinity();
+    constexpr double odd[] = {test::nan, infinite, -infinite, 0, -0.0, 1e308, -1e308, 5e-324, 4095};
     auto o = any_options();
     o.stuck_after = test::whole(0, 8);
-    o.saturated_at = test::whole(0, 1) == 0 ? INFINITY : 4000;
+    o.saturated_at = test::whole(0, 1) == 0 ? infinite : 4000;
     o.least_sum = test::uniform(0, 100);
     const TestType features(2, 3, o);
     auto state = features.start();
