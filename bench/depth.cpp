@@ -1,11 +1,13 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
-// Depth from smoothed planes of red and green, every way there is. The error is the largest against
-// the root in long double of the same equation with the same inputs. What depends on the pixel only
-// (its pencil and g) is made before the clock starts, for every way alike.
+// Depth from smoothed planes of red and green, every way there is. The error is that of each pixel
+// against the root in long double of the same equation with the same inputs. What depends on the
+// pixel only (its pencil and g) is made before the clock starts, for every way alike.
 #include "fingerpad/depth.hpp"
 
 #include <memory>
+#include <opencv2/core.hpp>
+#include <string>
 #include <vector>
 
 #include "support/run.hpp"
@@ -109,18 +111,23 @@ struct Bench {
     }
   }
 
-  /// work(inputs, depth, status) fills the two outputs.
+  std::string group() const {
+    return scene.name + ", depths up to " + std::to_string(int(scene.pad.fluid.max_depth_mm)) +
+           " mm";
+  }
+
+  /// work(inputs, depth, status) fills the two outputs; `memory` was made before all that it holds.
   template <class S, class Work>
-  void add(const std::string& name, Work work) const {
+  void add(const std::string& name, Work work, const bench::Memory& memory = {}) const {
     const auto depth = std::make_shared<Image<S>>(scene.pad.rows, scene.pad.cols);
     const auto status = std::make_shared<Image<PixelStatus>>(scene.pad.rows, scene.pad.cols);
+    const bool is_yardstick = name.starts_with("streaming");
     bench::add(
-        scene.name + ", depths up to " + std::to_string(int(scene.pad.fluid.max_depth_mm)) +
-            " mm/" + name,
-        scene.pixels(), [=, this] { work(inputs<S>(), depth->cells.data(), status->cells.data()); },
+        group() + "/" + name, scene.pixels(), memory.bytes(),
+        [=, this] { work(inputs<S>(), depth->cells.data(), status->cells.data()); },
         [=, this](auto& counters) {
-          if (name.find("streaming") == std::string::npos) {
-            counters["max_error_mm"] = test::largest_error(*depth, exact);
+          if (!is_yardstick) {
+            bench::note_errors(counters, "depth", "mm", bench::errors_of(*depth, exact));
           }
         });
   }
@@ -140,29 +147,34 @@ struct Bench {
   template <class S, int Order, int Degree, int Radial, class Scattering>
   void add_rows(const std::string& name, const DepthReference<S, Scattering>& reference) const {
     using Policy = ExponentialFree<Order, Degree, Radial>;
-    const detail::DepthRows<Policy, AstigmaticHeights, S, Scattering> rows(
-        scene.pad.camera, scene.pad.fluid, reference, Policy());
-    add<S>(name, [=](Planes<S> in, S* depth, PixelStatus* status) {
-      for (Index i = 0; i < reference.rows; ++i) {
-        const Index k = i * reference.cols;
-        rows.invert(i, reference.cols, in.red + k, in.green + k, depth + k, status + k);
+    using Rows = detail::DepthRows<Policy, AstigmaticHeights, S, Scattering>;
+    const bench::Memory memory;
+    const auto rows =
+        std::make_shared<const Rows>(scene.pad.camera, scene.pad.fluid, reference, Policy());
+    const auto work = [=, height = scene.pad.rows, width = scene.pad.cols](Planes<S> in, S* depth,
+                                                                           PixelStatus* status) {
+      for (Index i = 0; i < height; ++i) {
+        const Index k = i * width;
+        rows->invert(i, width, in.red + k, in.green + k, depth + k, status + k);
       }
-    });
+    };
+    add<S>(name, work, memory);
   }
 
   /// With g folded into the polynomials, and as a plane of its own.
-  template <int Order, int Degree>
+  template <int Order, int Degree, int Radial = 3>
   void add_single() const {
-    const std::string name =
-        "exponential-free float <" + std::to_string(Order) + ", " + std::to_string(Degree) + ">";
-    add_rows<float, Order, Degree, 3>(name, single.reference);
+    const std::string name = "exponential-free float <" + std::to_string(Order) + ", " +
+                             std::to_string(Degree) +
+                             (Radial == 3 ? ">" : ", " + std::to_string(Radial) + ">");
+    add_rows<float, Order, Degree, Radial>(name, single.reference);
     DepthReference<float, PixelScattering<float>> planar;
     planar.rows = single.reference.rows;
     planar.cols = single.reference.cols;
     planar.depth_mm = single.reference.depth_mm;
     planar.pixels_used = single.reference.pixels_used;
     planar.scattering = {planar.cols, single.g};
-    add_rows<float, Order, Degree, 3>(name + ", plane of g", planar);
+    add_rows<float, Order, Degree, Radial>(name + ", plane of g", planar);
   }
 
   void add_baselines() const {
@@ -185,10 +197,31 @@ struct Bench {
                    status[k] = PixelStatus::ok;
                  }
                });
+    bench::add_streaming(group(), scene.pixels());
+    add_opencv();
+  }
+
+  void add_opencv() const {
+    const bench::Memory memory;
+    const auto out = std::make_shared<bench::Frame<float>>(scene.pad.rows, scene.pad.cols);
+    const auto log = [size = int(scene.pixels())](const std::vector<float>& in, Image<float>& to) {
+      cv::log(cv::Mat(1, size, CV_32F, const_cast<float*>(in.data())),
+              cv::Mat(1, size, CV_32F, to.cells.data()));
+    };
+    bench::add(
+        group() + "/cv::log of both planes", scene.pixels(), memory.bytes(),
+        [=, this] {
+          log(single.red, out->red);
+          log(single.green, out->green);
+        },
+        [](auto&) {});
   }
 
   void add_pixelwise() const {
     each_pixel<double>("bisect_depth, double", [](const auto& in, std::size_t k) {
+      return bisect_depth(in.fluid, in.pencils[k], in.g[k], in.colour(k));
+    });
+    each_pixel<float>("bisect_depth, float", [](const auto& in, std::size_t k) {
       return bisect_depth(in.fluid, in.pencils[k], in.g[k], in.colour(k));
     });
     each_pixel<double>("newton_depth, double, cold", [](const auto& in, std::size_t k) {
@@ -207,6 +240,7 @@ struct Bench {
 }  // namespace
 
 int main(int argc, char** argv) {
+  cv::setNumThreads(1);
   const Bench published{bench::full_pad(14)};
   published.add_baselines();
   published.add_pixelwise();
@@ -214,8 +248,10 @@ int main(int argc, char** argv) {
   published.add_single<2, 6>();
   published.add_single<3, 5>();
   published.add_single<3, 6>();
+  published.add_single<3, 6, 4>();
   published.add_single<4, 5>();
   published.add_single<4, 6>();
+  published.add_rows<double, 3, 6, 3>("exponential-free double <3, 6>", published.full.reference);
   published.add_rows<double, 9, 12, 8>("exponential-free double <9, 12, 8>",
                                        published.full.reference);
   const Bench deep{bench::full_pad(18)};

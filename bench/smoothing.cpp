@@ -1,9 +1,11 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
-// Two smoothed planes of float from one noisy frame, beside OpenCV's box filter. The error is the
-// mean of that of the depths which Newton's method in double then finds.
+// Two smoothed planes from one noisy frame, beside OpenCV's box filter. The error is that of each
+// pixel's depth which Newton's method in double then finds.
 #include <memory>
 #include <opencv2/imgproc.hpp>
+#include <string>
+#include <type_traits>
 #include <vector>
 
 #include "fingerpad/depth.hpp"
@@ -23,7 +25,6 @@ cv::Mat as_mat(Image<T>& image, int channels = 1) {
 
 struct Bench {
   bench::Scene scene;
-  DepthReference<float> reference = scene.pad.reference<float>();
   bench::Frame<std::uint8_t> planar = scene.pressed_frame<std::uint8_t>();
   bench::Frame<std::uint16_t> deep = scene.pressed_frame<std::uint16_t>();
   bench::Interleaved<std::uint8_t> bgr{planar};
@@ -37,7 +38,8 @@ struct Bench {
     }
   }
 
-  bench::MeanError error(const bench::Frame<float>& smooth) const {
+  template <class S>
+  std::vector<double> errors(const bench::Frame<S>& smooth) const {
     Image<double> depth(scene.pad.rows, scene.pad.cols, test::nan);
     for (std::size_t k = 0; k < pencils.size(); ++k) {
       const Index row = Index(k) / scene.pad.cols;
@@ -46,49 +48,60 @@ struct Bench {
       depth.cells[k] =
           newton_depth(scene.pad.fluid, pencils[k], scene.pad.g(row, col), colour).depth_mm;
     }
-    return bench::MeanError(depth, scene.pressed_mm);
+    return bench::errors_of(depth, scene.pressed_mm);
   }
 
-  /// work(smooth) fills both planes.
-  template <class Work>
-  void add(const std::string& group, const std::string& name, Work work) const {
-    const auto smooth = std::make_shared<bench::Frame<float>>(scene.pad.rows, scene.pad.cols);
+  /// work(smooth) fills both planes; `memory` was made before all that it holds.
+  template <class S = float, class Work>
+  void add(const std::string& group,
+           const std::string& name,
+           Work work,
+           const bench::Memory& memory = {}) const {
+    const auto smooth = std::make_shared<bench::Frame<S>>(scene.pad.rows, scene.pad.cols);
+    const auto made = bench::kept([=, this] { return errors(*smooth); });
     bench::add(
-        scene.name + ", " + group + "/" + name, scene.pixels(), [=]() mutable { work(*smooth); },
-        [=, this](auto& counters) { counters["mean_error_mm"] = error(*smooth).mm; });
+        scene.name + ", " + group + "/" + name, scene.pixels(), memory.bytes(),
+        [=]() mutable { work(*smooth); },
+        [=](auto& counters) { bench::note_errors(counters, "depth", "mm", made()); });
   }
 
-  template <class Smoothing, class Red, class Green>
+  template <class Smoothing, class S = float, class Red, class Green>
   void add_ours(const std::string& group,
                 const std::string& name,
                 const Red& red,
                 const Green& green) const {
     using Pixel = cell_t<Red>;
-    const auto setup = std::make_shared<detail::ColourSetup<float>>();
+    const auto reference = scene.pad.reference<S>();
+    const bench::Memory memory;
+    const auto setup = std::make_shared<detail::ColourSetup<S>>();
     setup->rows = scene.pad.rows;
     setup->cols = scene.pad.cols;
-    for (const float l : reference.depth_mm) {
+    for (const S l : reference.depth_mm) {
       setup->in_pad.push_back(is_finite(l) ? 1 : 0);
     }
     if constexpr (detail::is_anchored<Smoothing>) {
       setup->anchor = detail::anchor_of(scene.pad.camera, scene.pad.fluid, reference);
     }
-    using Rows = detail::ColourRows<Pixel, float, Smoothing>;
+    using Rows = detail::ColourRows<Pixel, S, Smoothing>;
     const auto rows = std::make_shared<Rows>(*setup, Smoothing(), grey_scale_of<Pixel>());
-    add(group, name, [=, r = as_view(red), g = as_view(green)](bench::Frame<float>& smooth) {
+    const auto work = [=, r = as_view(red), g = as_view(green)](bench::Frame<S>& smooth) {
       rows->start(*setup, r, g, 0);
       for (Index i = 0; i < setup->rows; ++i) {
         rows->next(*setup, r, g, &smooth.red(i, 0), &smooth.green(i, 0));
       }
-    });
+    };
+    add<S>(group, name, work, memory);
   }
 
   template <class Red, class Green>
   void add_all_ours(const std::string& group, const Red& red, const Green& green) const {
-    add_ours<BoxMean>(group, "BoxMean", red, green);
+    add_ours<NoSmoothing>(group, "NoSmoothing", red, green);
+    add_ours<BoxMean>(group, "BoxMean, published", red, green);
     add_ours<BiasFreeMean>(group, "BiasFreeMean", red, green);
     add_ours<Anchored<BoxMean>>(group, "Anchored<BoxMean>", red, green);
     add_ours<Anchored<BiasFreeMean>>(group, "Anchored<BiasFreeMean>, the default", red, green);
+    add_ours<Anchored<BiasFreeMean>, double>(group, "Anchored<BiasFreeMean>, double", red, green);
+    bench::add_streaming(scene.name + ", " + group, scene.pixels());
   }
 
   void add_planar() {

@@ -34,15 +34,20 @@ struct Contacts {
   fingerpad::StridedView<const S> samples() const { return {cells.data(), frames, 4, 1, frames}; }
 };
 
-/// Largest difference, as a share of the largest value of `truth`.
+/// Differences, as shares of the largest value of `truth`.
 template <class S>
-double worst_share(const std::vector<S>& found, const std::vector<long double>& truth) {
-  long double worst = 0, largest = 0;
-  for (std::size_t k = 0; k < truth.size(); ++k) {
-    worst = (std::max)(worst, std::abs(static_cast<long double>(found[k]) - truth[k]));
-    largest = (std::max)(largest, std::abs(truth[k]));
+std::vector<double> share_errors(const std::vector<S>& found,
+                                 const std::vector<long double>& truth) {
+  long double largest = 0;
+  for (const long double& value : truth) {
+    largest = (std::max)(largest, std::abs(value));
   }
-  return static_cast<double>(worst / largest);
+  std::vector<double> errors;
+  for (std::size_t k = 0; k < truth.size(); ++k) {
+    const long double difference = static_cast<long double>(found[k]) - truth[k];
+    errors.push_back(static_cast<double>(std::abs(difference) / largest));
+  }
+  return errors;
 }
 
 }  // namespace bench

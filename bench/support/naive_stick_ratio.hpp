@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 // The stick ratio as the slides state it, step by step over vectors of points in double: what the
-// library's speed is compared with. All dots are there and in contact.
+// library's speed and error are compared with. All dots are there.
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -17,8 +17,12 @@ struct NaivePoint {
 
 class NaiveStickRatio {
  public:
-  NaiveStickRatio(int rows, int cols, int capacity)
-      : rows_(rows), cols_(cols), capacity_(capacity) {}
+  /// `contact`: which dots touch the object, in all frames; the central one must.
+  NaiveStickRatio(int rows, int cols, int capacity, std::vector<bool> contact)
+      : rows_(rows), cols_(cols), capacity_(capacity), contact_(std::move(contact)) {}
+
+  /// How many frames ago the reference of the last answer was; 0: the last frame had none.
+  int reference_age() const { return age_; }
 
   /// The ratio, or the last one where no stored frame will do.
   double operator()(const std::vector<NaivePoint>& given) {
@@ -27,10 +31,12 @@ class NaiveStickRatio {
     for (const auto& stored : repository_) {
       double d_max = 0;
       for (std::size_t k = 0; k < now.size(); ++k) {
-        d_max = std::max(d_max, distance(now[k], stored[k]));
+        d_max = contact_[k] ? std::max(d_max, distance(now[k], stored.dots[k])) : d_max;
       }
       furthest.push_back(d_max);
     }
+    ++frame_;
+    age_ = 0;
     const int newest = static_cast<int>(furthest.size()) - 1;
     int turned = std::max(newest, 0);  // i_C
     while (turned > 0 && at(furthest, turned - 1) > at(furthest, turned)) {
@@ -38,12 +44,14 @@ class NaiveStickRatio {
     }
     for (int i = newest; i >= turned; --i) {
       if (at(furthest, i) > 2.0) {
-        ratio_ = ratio_against(now, repository_[static_cast<std::size_t>(i)]);
+        const Stored& reference = repository_[static_cast<std::size_t>(i)];
+        ratio_ = ratio_against(now, reference.dots);
+        age_ = frame_ - reference.frame;
         break;
       }
     }
     if (newest < 0 || at(furthest, newest) > 0.5) {
-      repository_.push_back(now);
+      repository_.push_back({frame_, now});
       if (static_cast<int>(repository_.size()) > capacity_) {
         repository_.erase(repository_.begin());
       }
@@ -52,6 +60,11 @@ class NaiveStickRatio {
   }
 
  private:
+  struct Stored {
+    int frame;
+    std::vector<NaivePoint> dots;
+  };
+
   static double at(const std::vector<double>& v, int i) { return v[static_cast<std::size_t>(i)]; }
   static double distance(const NaivePoint& a, const NaivePoint& b) {
     return std::hypot(a.x - b.x, a.y - b.y);
@@ -102,7 +115,7 @@ class NaiveStickRatio {
           NaivePoint q{now[a].x - then[a].x + now[b].x - then[b].x,
                        now[a].y - then[a].y + now[b].y - then[b].y};
           const double length = std::hypot(q.x, q.y);
-          if (length > 1e-9) {
+          if (contact_[a] && contact_[b] && length > 1e-9) {
             q = {q.x / length, q.y / length};
             across_then += std::abs((then[a].x - then[b].x) * q.y - (then[a].y - then[b].y) * q.x);
             across_now += std::abs((now[a].x - now[b].x) * q.y - (now[a].y - now[b].y) * q.x);
@@ -116,18 +129,23 @@ class NaiveStickRatio {
     for (std::size_t k = 0; k < now.size(); ++k) {
       moved.push_back(
           {alpha * (now[k].x - 320) + 320 - then[k].x, alpha * (now[k].y - 240) + 240 - then[k].y});
-      d_max = std::max(d_max, std::hypot(moved[k].x, moved[k].y));
+      d_max = contact_[k] ? std::max(d_max, std::hypot(moved[k].x, moved[k].y)) : d_max;
     }
-    int sticking = 0;
-    for (const auto& d : moved) {
-      sticking += distance(d, moved[center]) < 0.24 * d_max / 2.0 ? 1 : 0;
+    int sticking = 0, touching = 0;
+    for (std::size_t k = 0; k < moved.size(); ++k) {
+      const bool sticks = distance(moved[k], moved[center]) < 0.24 * d_max / 2.0;
+      sticking += contact_[k] && sticks ? 1 : 0;
+      touching += contact_[k] ? 1 : 0;
     }
-    return static_cast<double>(sticking) / static_cast<double>(moved.size());
+    return static_cast<double>(sticking) / touching;
   }
 
   int rows_, cols_, capacity_;
+  std::vector<bool> contact_;
   double ratio_ = 1;
-  std::vector<std::vector<NaivePoint>> repository_;
+  int frame_ = 0;
+  int age_ = 0;
+  std::vector<Stored> repository_;
 };
 
 }  // namespace bench

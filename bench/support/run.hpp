@@ -1,27 +1,103 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// How a row of a table is measured. A name is "group/row"; the first row of a group is what the
-// report compares the others of the group with, and rows called "streaming ..." also.
+// How a row of a table is measured. A name is "group/row". The report compares each row with the
+// first of its group and with those called "streaming ..." and "cv::..."; a row with "published"
+// in its name is the published way.
 #include <benchmark/benchmark.h>
 
+#include <algorithm>
+#include <cmath>
 #include <cstddef>
+#include <memory>
+#include <optional>
 #include <string>
+#include <vector>
+
+#include "../../tests/allocations/count.hpp"
 
 namespace bench {
 
-/// Times `work`, which treats `pixels` pixels, and lets `note` add the row's error as a counter.
+using Counters = benchmark::UserCounters;
+
+/// Bytes taken from the heap since it was made: what a row's estimator, workspace, state and
+/// outputs hold. Inputs are made before.
+class Memory {
+ public:
+  long bytes() const { return test::bytes_taken() - before_; }
+
+ private:
+  long before_ = test::bytes_taken();
+};
+
+/// Notes the median, the 99th percentile and the largest of |errors|, those that are numbers, and
+/// the share of errors that are numbers if it is not 1. The first quantity noted is the row's main
+/// one. A unit is "mm", "1/mm", "deg", "share" (relative to the truth) ...
+inline void note_errors(Counters& counters,
+                        const std::string& quantity,
+                        const std::string& unit,
+                        std::vector<double> errors) {
+  const double all = static_cast<double>(errors.size());
+  std::erase_if(errors, [](double e) { return std::isnan(e); });
+  if (static_cast<double>(errors.size()) < all) {
+    counters["found|" + quantity] = static_cast<double>(errors.size()) / all;
+  }
+  if (errors.empty()) {
+    return;
+  }
+  for (double& e : errors) {
+    e = std::abs(e);
+  }
+  std::sort(errors.begin(), errors.end());
+  const auto share = [&](double s) {
+    return errors[static_cast<std::size_t>(s * static_cast<double>(errors.size() - 1))];
+  };
+  const std::string name = "error|" + quantity + "|" + unit + "|";
+  counters[name + "median"] = share(0.5);
+  counters[name + "99 %"] = share(0.99);
+  counters[name + "worst"] = errors.back();
+}
+
+/// Times `work`, which treats `pixels` pixels (or dots, frames, ...), and counts how often a call
+/// takes memory from the heap. `note` adds errors, once: Google Benchmark runs a row many times.
 template <class Work, class Note>
-void add(const std::string& name, std::size_t pixels, Work work, Note note) {
+void add(const std::string& name, std::size_t pixels, long bytes, Work work, Note note) {
+  const auto noted = std::make_shared<std::optional<Counters>>();
   benchmark::RegisterBenchmark(name.c_str(), [=](benchmark::State& state) mutable {
+    work();
+    const long before = test::allocations();
+    work();
+    const long allocations = test::allocations() - before;
     for (auto _ : state) {
       work();
       benchmark::ClobberMemory();
     }
     state.counters["pixels/s"] =
         benchmark::Counter(double(pixels), benchmark::Counter::kIsIterationInvariantRate);
-    note(state.counters);
+    state.counters["bytes"] = double(bytes);
+    state.counters["allocations"] = double(allocations);
+    if (!*noted) {
+      noted->emplace();
+      note(**noted);
+    }
+    state.counters.insert((*noted)->begin(), (*noted)->end());
   })->Unit(benchmark::kMicrosecond);
+}
+
+/// What memory allows at most: four planes of floats in, one out, once.
+inline void add_streaming(const std::string& group, std::size_t pixels = 640 * 480) {
+  const auto planes = std::make_shared<std::vector<float>>(5 * pixels, 1.0F);
+  add(
+      group + "/streaming pass", pixels, static_cast<long>(planes->size() * sizeof(float)),
+      [planes, pixels] {
+        const float* in = planes->data();
+        float* out = planes->data() + 4 * pixels;
+        for (std::size_t k = 0; k < pixels; ++k) {
+          out[k] = in[k] * in[k + pixels] + in[k + 2 * pixels] * in[k + 3 * pixels];
+        }
+        benchmark::DoNotOptimize(out);
+      },
+      [](auto&) {});
 }
 
 inline int run(int argc, char** argv) {

@@ -4,8 +4,13 @@
 // What the benchmarks look at: the published pad by 640 x 480 pixels, from two cameras, with the
 // rays, dots and noise of tests/support/pad.hpp.
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
+#include <memory>
+#include <optional>
 #include <string>
+#include <type_traits>
+#include <vector>
 
 #include "../../tests/support/pad.hpp"
 
@@ -74,24 +79,30 @@ struct Interleaved {
   auto red() const { return channel(2); }
 };
 
-/// Mean of |depth - truth| over the pixels that have both; `share` of them, of those with a truth.
-struct MeanError {
-  double mm = 0;
-  double share = 0;
-
-  template <class S>
-  MeanError(const Image<S>& depth_mm, const Image<double>& truth_mm) {
-    double known = 0;
-    double found = 0;
-    for (std::size_t k = 0; k < truth_mm.cells.size(); ++k) {
-      const double error = std::abs(static_cast<double>(depth_mm.cells[k]) - truth_mm.cells[k]);
-      known += std::isnan(truth_mm.cells[k]) ? 0 : 1;
-      found += std::isnan(error) ? 0 : 1;
-      mm += std::isnan(error) ? 0 : error;
+/// |found - truth| of every pixel that has a truth; NaN where nothing was found.
+template <class S, class T>
+std::vector<double> errors_of(const Image<S>& found, const Image<T>& truth) {
+  std::vector<double> errors;
+  for (std::size_t k = 0; k < truth.cells.size(); ++k) {
+    if (!(truth.cells[k] != truth.cells[k])) {
+      using Wide = std::common_type_t<S, T>;
+      errors.push_back(static_cast<double>(std::abs(Wide(found.cells[k]) - Wide(truth.cells[k]))));
     }
-    mm /= found;
-    share = found / known;
   }
-};
+  return errors;
+}
+
+/// What `make` gives, made when it is first asked for and then kept, by all copies: truths take
+/// longer than the rows that are compared with them.
+template <class Make>
+auto kept(Make make) {
+  using Value = decltype(make());
+  return [make, value = std::make_shared<std::optional<Value>>()]() -> const Value& {
+    if (!*value) {
+      *value = make();
+    }
+    return **value;
+  };
+}
 
 }  // namespace bench

@@ -11,9 +11,11 @@
 // operators would mix allocators.
 namespace {
 std::atomic<long> taken{0};
+std::atomic<long> bytes{0};
 
 void* take(std::size_t size, std::size_t alignment) {
   ++taken;
+  bytes += static_cast<long>(size);
   const std::size_t whole = (size + alignment - 1) / alignment * alignment;
   if (void* p = std::aligned_alloc(alignment, whole == 0 ? alignment : whole)) {
     return p;
@@ -72,4 +74,7 @@ void operator delete[](void* p, std::size_t, std::align_val_t) noexcept {
 
 long test::allocations() {
   return taken;
+}
+long test::bytes_taken() {
+  return bytes;
 }
