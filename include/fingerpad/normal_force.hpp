@@ -156,8 +156,12 @@ class NormalForce {
   }
   /// What the compensation adds fades with the contact, too.
   S force_of(const S& measure, const ForceChange<S>& change) const {
-    const S shift = change.shift_n * curve_.fade(measure);
-    return S(S(change.gain * curve_.force_n(measure)) + shift);
+    if constexpr (Compensation::reads_motion) {
+      const S shift = change.shift_n * curve_.fade(measure);
+      return S(S(change.gain * curve_.force_n(measure)) + shift);
+    } else {  // times 1 and plus 0 would not be left out by itself
+      return curve_.force_n(measure);
+    }
   }
 
   detail::WholeCurve<Curve> curve_;
