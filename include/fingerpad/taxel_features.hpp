@@ -61,7 +61,7 @@ class TaxelFeatures {
           residual_(time_s_.size(), S(0)),
           scratch_(length) {}
 
-    detail::TaxelWindow<S> window_;
+    detail::TaxelWindow<Level, S> window_;
     detail::TaxelHealth<S> health_;
     std::vector<Real> spread_;  // variance of those beyond their floor, else 0
     std::vector<S> time_s_;     // of the window, oldest first
@@ -265,8 +265,7 @@ class TaxelFeatures {
     if (strongest == FingerSample<S>::no_location) {
       return;
     }
-    const S mean_square =
-        state.window_.template residuals<Level>(strongest, state.residual_.data());
+    const S mean_square = state.window_.residuals(strongest, state.residual_.data());
     if (!(value(mean_square) > 0)) {
       return;
     }
@@ -286,7 +285,7 @@ class TaxelFeatures {
   Index strongest_taxel(State& state) const {
     Real* const spread = state.spread_.data();
     const Real* const floor = state.health_.floor();
-    state.window_.template variances<Level>(spread);
+    state.window_.variances(spread);
     const std::size_t count = floor_.size(), in_lanes = count - count % lanes;
     for (std::size_t i = 0; i < count; ++i) {
       spread[i] = spread[i] > floor[i] ? spread[i] : Real(0);

@@ -148,7 +148,7 @@ class TaxelNoiseCalibration {
 
   void judge() {
     ++windows_;
-    window_.template variances<Level>(spread_.data());
+    window_.variances(spread_.data());
     for (std::size_t k = 0; k < taxels_.size(); ++k) {
       Taxel& taxel = taxels_[k];
       if (!taxel.is_bad) {
@@ -157,15 +157,15 @@ class TaxelNoiseCalibration {
     }
     if (is_pressed_) {
       double spread[2];
-      centroid_.template variances<Level>(spread);
+      centroid_.variances(spread);
       centroid_variances_.push_back((spread[0] + spread[1]) / 2);
     }
   }
 
   Features features_;
   typename Features::State state_;
-  detail::TaxelWindow<double> window_;
-  detail::TaxelWindow<double> centroid_;
+  detail::TaxelWindow<Level, double> window_;
+  detail::TaxelWindow<Level, double> centroid_;
   std::vector<double> held_;
   std::vector<double> spread_;
   std::vector<Taxel> taxels_;

@@ -3,7 +3,7 @@
 #pragma once
 // The last readings of every taxel with their running sums, so that the spread of each is known in
 // O(1) a sample. With d = reading - reference and u = 0 (oldest) ... n - 1 (newest):
-//   sum d, sum u d, sum d^2
+//   sum d, sum d^2, and for a line sum u d
 // A running sum in floating point collects rounding, and one about a far reference loses digits:
 // so at each sample a few taxels are summed anew about their newest reading, all of them once
 // within a window.
@@ -29,7 +29,7 @@ struct TrendRemoved {
 
 namespace detail {
 
-template <scalar S>
+template <class Level, scalar S>
 class TaxelWindow {
  public:
   TaxelWindow(Index taxels, Index length)
@@ -39,7 +39,7 @@ class TaxelWindow {
         readings_(static_cast<std::size_t>(taxels * length), S(0)),
         reference_(static_cast<std::size_t>(taxels), S(0)),
         sum_(reference_),
-        moment_(reference_),
+        moment_(Level::has_slope ? reference_.size() : 0, S(0)),
         squares_(reference_) {}
 
   Index length() const { return length_; }
@@ -68,25 +68,29 @@ class TaxelWindow {
   }
 
   /// Mean square of what is left of each taxel without its mean or line, >= 0.
-  template <class Level>
   void variances(scalar_real_t<S>* out) const {
     const Weights w(length_);
     for (Index k = 0; k < taxels_; ++k) {
-      const scalar_real_t<S> left = value(squares_left<Level>(static_cast<std::size_t>(k), w));
+      const scalar_real_t<S> left = value(squares_left(static_cast<std::size_t>(k), w));
       out[k] = left > 0 ? left : scalar_real_t<S>(0);
     }
   }
 
   /// What is left of one taxel at each time of the window, oldest first; returns its mean square.
-  template <class Level>
   S residuals(Index taxel, S* out) const {
     const Weights w(length_);
     const std::size_t i = static_cast<std::size_t>(taxel);
     const S mean = sum_[i] * w.share;  // of the differences from the reference, which are exact
-    const S slope = Level::has_slope ? S(S(moment_[i] - S(w.middle * sum_[i])) * w.spread) : S(0);
+    S slope = S(0);
+    if constexpr (Level::has_slope) {
+      slope = S(moment_[i] - S(w.middle * sum_[i])) * w.spread;
+    }
     S squares = S(0);
     for (Index u = 0; u < length_; ++u) {
-      const S level = mean + S(slope * S(S(static_cast<int>(u)) - w.middle));
+      S level = mean;
+      if constexpr (Level::has_slope) {
+        level = mean + S(slope * S(S(static_cast<int>(u)) - w.middle));
+      }
       out[u] = S(reading(taxel, u) - reference_[i]) - level;
       squares = squares + square(out[u]);
     }
@@ -105,7 +109,6 @@ class TaxelWindow {
     S spread;  // 1 / sum (u - middle)^2
   };
 
-  template <class Level>
   S squares_left(std::size_t i, const Weights& w) const {
     const S flat = squares_[i] - S(square(sum_[i]) * w.share);
     if constexpr (!Level::has_slope) {
@@ -128,7 +131,9 @@ class TaxelWindow {
       const S gone = oldest[k] - reference[k];
       const S come = newest[k] - reference[k];
       const S rest = sum[k] - gone;  // of those that stay; each of them grows one sample older
-      moment[k] = moment[k] - rest + S(last * come);
+      if constexpr (Level::has_slope) {
+        moment[k] = moment[k] - rest + S(last * come);
+      }
       sum[k] = rest + come;
       squares[k] = squares[k] + S(S(come - gone) * S(come + gone));
       oldest[k] = newest[k];
@@ -161,13 +166,17 @@ class TaxelWindow {
       for (std::size_t k = 0; k < Taxels; ++k) {
         const S d = readings[k] - reference[k];
         sum[k] = sum[k] + d;
-        moment[k] = moment[k] + S(age * d);
+        if constexpr (Level::has_slope) {
+          moment[k] = moment[k] + S(age * d);
+        }
         squares[k] = squares[k] + S(d * d);
       }
     }
     std::copy(reference.begin(), reference.end(), reference_.begin() + first);
     std::copy(sum.begin(), sum.end(), sum_.begin() + first);
-    std::copy(moment.begin(), moment.end(), moment_.begin() + first);
+    if constexpr (Level::has_slope) {
+      std::copy(moment.begin(), moment.end(), moment_.begin() + first);
+    }
     std::copy(squares.begin(), squares.end(), squares_.begin() + first);
   }
 
