@@ -1,0 +1,194 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+#pragma once
+// Frames for the whole chain with the truth of every result: a membrane in equilibrium, pressed
+// flat by a plate that drags its dots to and fro and turns them, all of them sticking; 8-bit
+// colours with one grey level of noise, side dots that pull as the plate pushes.
+#include <cmath>
+#include <cstdint>
+#include <numbers>
+#include <utility>
+#include <vector>
+
+#include "../../tests/support/pressed_pad.hpp"
+#include "../../tests/support/soap_film.hpp"
+#include "whole_chain.hpp"
+
+namespace chain {
+
+constexpr double pressure_mpa = test::pressed_mpa;
+constexpr double pitch_mm = 1.5;  ///< of the dots
+
+/// Where the plate is in frame k of `count`, and what it does to the pad.
+struct Plate {
+  double shift_x_mm = 0;
+  double shift_y_mm = 0;
+  double turn_rad = 0;
+  double contact_mm = 8;
+
+  Plate(int k, int count) {
+    const double at = 2 * std::numbers::pi * k / count;
+    shift_x_mm = 0.5 * std::cos(at);
+    shift_y_mm = 0.5 * std::sin(at);
+    turn_rad = 0.05 * std::sin(at);
+    contact_mm = 8 + 0.4 * std::sin(at + 1);
+  }
+};
+
+/// How the rim is pulled, so that the plate's force along the pad is balanced about the summit.
+struct RimPull {
+  double normal, lean, shear, turning, direction_rad;
+
+  RimPull(const test::RoundPad<test::FilmSide>& pad, const Plate& plate) {
+    const double sine = pad.sine(pad.radius_mm), cosine = std::sqrt(1 - sine * sine);
+    const double high = pad.height(0);
+    normal = pad.tension(pad.radius_mm, pressure_mpa);
+    shear = 0.2 * normal * std::hypot(plate.shift_x_mm, plate.shift_y_mm);
+    turning = normal * plate.turn_rad;
+    lean = -high * shear / (pad.radius_mm * sine - high * cosine);
+    direction_rad = std::atan2(plate.shift_y_mm, plate.shift_x_mm);
+  }
+  test::RimLoad operator()(double at) const {
+    return {normal + lean * std::cos(at - direction_rad),
+            turning - shear * std::sin(at - direction_rad)};
+  }
+};
+
+/// One frame with all that is true of it.
+struct PressedFrame {
+  Plate plate;
+  test::RoundPad<test::FilmSide> membrane;
+  test::Image<double> depth_mm;  ///< NaN outside of the pad
+  test::Frame<std::uint8_t> image;
+  Plane<Point2<double>> dots_px;
+  test::Image<Point3<double>> side_dots_mm;
+  test::Wrench6 wrench;
+
+  Frame view() const {
+    return {fingerpad::as_view(image.red), fingerpad::as_view(image.green), dots_px.view(),
+            fingerpad::as_view(side_dots_mm), pressure_mpa};
+  }
+  double contact_area_mm2() const { return std::numbers::pi * plate.contact_mm * plate.contact_mm; }
+};
+
+class PressedFrames {
+ public:
+  /// The pad fills most of the image, whatever its size.
+  explicit PressedFrames(Index rows = 480, Index cols = 640, int count = 16, Index dots = 21)
+      : dots_(dots) {
+    pad_.rows = rows;
+    pad_.cols = cols;
+    pad_.camera.pitch_mm = 0.0768 * 640 / static_cast<double>(cols);
+    pad_.camera.center_x_px = static_cast<double>(cols - 1) / 2;
+    pad_.camera.center_y_px = static_cast<double>(rows - 1) / 2;
+    for (int k = 0; k < count; ++k) {
+      frames_.push_back(made(Plate(k, count), static_cast<std::uint64_t>(k + 1)));
+    }
+  }
+
+  std::size_t size() const { return frames_.size(); }
+  const PressedFrame& operator[](std::size_t k) const { return frames_[k]; }
+  Index pixels() const { return pad_.rows * pad_.cols; }
+
+  auto finger() const {
+    const auto reference = pad_.reference<float>();
+    const test::RimOfDots rim = rim_of(frames_.front().membrane);
+    const auto borders = rim.borders();
+    Plane<Point3<double>> border(1, borders.cols());
+    border.cells = borders.cells;
+    Finger<std::remove_const_t<decltype(reference)>> f{
+        pad_.camera, pad_.fluid, reference, pad_.rows, pad_.cols, free_dots(), border};
+    // what the plate's pressure on the area says; by depth, a line between two of the frames
+    f.force_of_area = {{0, pressure_mpa, 0}, 50, 400};
+    const auto of_depth = [&](double contact_mm) {
+      test::RoundPad<test::FilmSide> pad;
+      pad.contact_mm = contact_mm;
+      return std::pair{f.contact_test.free_apex_mm - pad.height(0),
+                       pressure_mpa * std::numbers::pi * contact_mm * contact_mm};
+    };
+    const auto [less_mm, less_n] = of_depth(7.6);
+    const auto [more_mm, more_n] = of_depth(8.4);
+    const double slope = (more_n - less_n) / (more_mm - less_mm);
+    f.force_of_depth = {{less_n - slope * less_mm, slope, 0}, less_mm - 0.5, more_mm + 0.5};
+    f.shear.force.coefficients[0] = 1;
+    f.shear.moment.coefficients[0] = 1;
+    return f;
+  }
+
+ private:
+  /// Where the plate carries what lies at `home` on the pad: rigidly under it, not at all at the
+  /// rim.
+  static Point2<double> carried(const Plate& plate, double radius_mm, const Point2<double>& home) {
+    const double r = std::hypot(home.x, home.y);
+    const double share =
+        r < plate.contact_mm ? 1 : (radius_mm - r) / (radius_mm - plate.contact_mm);
+    const double c = std::cos(share * plate.turn_rad), s = std::sin(share * plate.turn_rad);
+    return {c * home.x - s * home.y + share * plate.shift_x_mm,
+            s * home.x + c * home.y + share * plate.shift_y_mm};
+  }
+  Point2<double> home(Index i, Index j) const {
+    const double middle = static_cast<double>(dots_ - 1) / 2;
+    const double step_mm = 20 * pitch_mm / static_cast<double>(dots_ - 1);
+    return {step_mm * (static_cast<double>(j) - middle),
+            step_mm * (static_cast<double>(i) - middle)};
+  }
+  bool printed(const Point2<double>& home) const {
+    return std::hypot(home.x, home.y) < 0.93 * pad_.base_radius_mm();
+  }
+
+  Plane<Point3<double>> free_dots() const {
+    Plane<Point3<double>> dots(dots_, dots_, {test::nan, test::nan, test::nan});
+    const double low = pad_.height_mm - pad_.sphere_radius_mm;
+    for (Index i = 0; i < dots_; ++i) {
+      for (Index j = 0; j < dots_; ++j) {
+        const auto h = home(i, j);
+        if (printed(h)) {
+          const double r_sq = h.x * h.x + h.y * h.y;
+          dots.view()(i, j) = {
+              h.x, h.y, low + std::sqrt(pad_.sphere_radius_mm * pad_.sphere_radius_mm - r_sq)};
+        }
+      }
+    }
+    return dots;
+  }
+
+  PressedFrame made(const Plate& plate, std::uint64_t seed) const {
+    test::RoundPad<test::FilmSide> membrane;
+    membrane.contact_mm = plate.contact_mm;
+    const test::RoundFilm film({.radius_mm = plate.contact_mm,
+                                .free_per_mm = membrane.curvature_per_mm(),
+                                .top_mm = membrane.height(0)});
+    test::Image<double> depth(pad_.rows, pad_.cols, test::nan);
+    for (Index i = 0; i < pad_.rows; ++i) {
+      for (Index j = 0; j < pad_.cols; ++j) {
+        if (pad_.ray(i, j).plate_rho_mm < pad_.base_radius_mm()) {
+          depth(i, j) = test::depth_at_pixel(pad_.camera, film, i, j);
+        }
+      }
+    }
+    Plane<Point2<double>> dots(dots_, dots_, {test::nan, test::nan});
+    for (Index i = 0; i < dots_; ++i) {
+      for (Index j = 0; j < dots_; ++j) {
+        if (printed(home(i, j))) {
+          const auto p = carried(plate, membrane.radius_mm, home(i, j));
+          dots.view()(i, j) = pixel_of(pad_.camera, Point3<double>{p.x, p.y, film(p.x, p.y)});
+        }
+      }
+    }
+    const test::RimOfDots rim = rim_of(membrane);
+    const RimPull pull(membrane, plate);
+    return {plate,
+            membrane,
+            depth,
+            pad_.frame<std::uint8_t>(depth, 1, seed),
+            dots,
+            rim.dots(pull),
+            wrench_of(rim, pull, pressure_mpa)};
+  }
+
+  test::Pad pad_;
+  Index dots_;
+  std::vector<PressedFrame> frames_;
+};
+
+}  // namespace chain
