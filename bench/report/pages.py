@@ -1,0 +1,230 @@
+#!/usr/bin/env python3
+# SPDX-FileCopyrightText: 2026 The fingerpad authors
+# SPDX-License-Identifier: MIT
+"""Writes the report: pages.py BUILD DOCS COMPILER, from what the benchmarks left in BUILD.
+
+docs/speed_and_error.md and docs/whole_chain.md with their pictures, and the tables within
+docs/hard_cases.md and docs/what_a_scene_needs.md.
+"""
+import csv
+import io
+import json
+import pathlib
+import re
+import subprocess
+import sys
+
+import plots
+from runs import FLAGS, read
+from tables import number, print_group, size
+
+# {program: (heading, groups that get a picture)}
+METHODS = {
+    "depth": ("Depth: inversion", ["full pad, depths up to 14 mm"]),
+    "frame": ("Depth: the whole step", ["round pad"]),
+    "smoothing": ("Depth: averaging", ["two planes"]),
+    "neighbour_light": ("Neighbour light", ["radius 15 px"]),
+    "optics": ("Optics", ["virtual heights", "point"]),
+    "curvature": ("Curvature", ["round pad, radius 10 px"]),
+    "contact_region": ("Contact region", ["350 mm^2"]),
+    "object_surface": ("Object surface", ["rays"]),
+    "object_motion": ("Motion of the object", ["frame of 21x21 dots"]),
+    "stick_ratio": ("Stick ratio", ["frame of 21x21 dots"]),
+    "grip_control": ("Grip control", ["closed loop"]),
+    "wrench": ("Six-axis force", ["36x30 segments", "72x65 segments"]),
+    "traction": ("Traction", ["frame of 21x21 dots"]),
+    "normal_force": ("Normal force", ["one frame, double"]),
+    "contact_shift": ("Shift of the contact", ["noise only", "stuck dots"]),
+    "shear": ("Tangential force and moment", ["4096 contacts"]),
+    "taxel_features": ("Taxel features", ["vibrating, window 16"]),
+    "preslip": ("Pre-slip", ["detection"]),
+    "foam_contact": ("Foam contact", ["steps", "lift, 2000 steps"]),
+}
+# The published way against the default: (label, program, group, published row, our row, quantity).
+COMPARED = [
+    ("depth of a pixel", "depth", "full pad, depths up to 14 mm", "published bisection, double",
+     "exponential-free float <3, 6>", None),
+    ("depth of a noisy frame", "frame", "round pad", "published: BoxMean + Bisection in double",
+     "Anchored<BiasFreeMean> + ExponentialFree<>", None),
+    ("curvature", "curvature", "round pad, radius 10 px", "published circle, double",
+     "ClampedMean<18>, float, PitchAtDepth, the default", None),
+    ("contact's area", "contact_region", "350 mm^2", "published test", "default, with its gap", None),
+    ("attitude of a rolling ball", "object_motion", "frame of 21x21 dots",
+     "published: SumOfAngles<PublishedBasis>", "ContactMap, double, the default", None),
+    ("stick ratio", "stick_ratio", "frame of 21x21 dots", "published policies, float",
+     "StickConsensus, ResidualMean, float, the default", None),
+    ("force along the pad", "wrench", "36x30 segments", "published: iteration, rim, lines",
+     "LeastSquares, double, the default", "F_xy"),
+    ("shift of the contact", "contact_shift", "noise only", "central dot, published",
+     "EdgeDots, the default", None),
+    ("lift of a held object", "foam_contact", "lift, 2000 steps",
+     "published: printed, trapezoidal rule", "causal_response, the default", None),
+]
+
+
+def machine(compiler):
+    model = "unknown processor"
+    for line in pathlib.Path("/proc/cpuinfo").read_text(encoding="utf-8").splitlines():
+        if line.startswith("model name"):
+            model = line.split(":", 1)[1].strip()
+            break
+    version = subprocess.run([compiler, "--version"], capture_output=True, text=True, check=True)
+    commit = subprocess.run(["git", "rev-parse", "--short", "HEAD"], capture_output=True, text=True,
+                            check=False).stdout.strip()
+    return (f"One core of {model}; {version.stdout.splitlines()[0]}; flags "
+            f"{' and '.join(f'`{f}`' for f in FLAGS.values())}, besides `-std=c++20 -DNDEBUG`; "
+            f"commit {commit}.")
+
+
+def write_methods(build, docs, about):
+    pictures = docs / "speed_and_error"
+    pictures.mkdir(exist_ok=True)
+    runs = {program: read({f: build / f"{program}_{f}.json" for f in FLAGS}) for program in METHODS}
+    body = io.StringIO()
+    for program, (title, plotted) in METHODS.items():
+        body.write(f"\n## {title}\n")
+        for group, rows in runs[program].items():
+            if group in plotted:
+                k = plotted.index(group)
+                name = f"{program}_{k + 1}.png" if k else f"{program}.png"
+                plots.pareto(f"{title}: {group}", rows, pictures / name)
+                body.write(f"\n![{title}, {group}: time against error](speed_and_error/{name})\n")
+            print_group(group, rows, body)
+    overview = [(label, runs[program][group][published], runs[program][group][ours], quantity)
+                for label, program, group, published, ours, quantity in COMPARED]
+    plots.summary(overview, pictures / "summary.png")
+    (docs / "speed_and_error.md").write_text(f"""# Speed against error
+
+Every method, every policy and every scalar: what a frame costs and how far it is from the truth, on
+the same inputs. Written by `bench/report/run`, which builds and runs all of `bench/`.
+
+{about}
+
+![fingerpad's default against the published way](speed_and_error/summary.png)
+
+How to read it. Times are medians over repetitions, with half the distance of the 10th and the 90th
+percentile; "ns per item" is the native time over the number of pixels, samples or frames of a call, and "times as
+fast" compares with the first row, both at the native flags. Errors are the
+**median / 99th percentile / worst** of everything that was compared, and of how many if not all have
+an answer. Memory is what a row's estimator, workspace, state and outputs take; allocations are those
+of one call. "over" columns give the native time over that of a yardstick in the same run: OpenCV's
+nearest primitive, or one streaming pass over four planes of 640 x 480 floats. In the pictures a star
+is the published way, the dotted line joins the ways that nothing beats in both time and error, and
+dashed lines are yardsticks. What is timed and what the truth is stands on top of each `bench/*.cpp`.
+The [whole chain](whole_chain.md), [hard cases](hard_cases.md) and [what a scene
+needs](what_a_scene_needs.md) have pages of their own.
+{body.getvalue()}""", encoding="utf-8")
+
+
+def write_chain(build, docs, about):
+    pictures = docs / "whole_chain"
+    pictures.mkdir(exist_ok=True)
+    runs = {name: json.loads((build / f"chain_{f}.json").read_text(encoding="utf-8"))
+            for f, name in FLAGS.items()}
+    runs = {"-O2": runs[FLAGS["o2"]], "native": runs[FLAGS["native"]]}
+    plots.chain_stages(runs, pictures / "stages.png")
+    plots.chain_latencies(runs, pictures / "latency.png")
+    plots.chain_growth(runs["native"], pictures / "growth.png")
+    out = io.StringIO()
+    chains = runs["native"]["chains"]
+    out.write("| ms, medians | " + " | ".join(f"{c}, {f}" for c in chains for f in runs) + " |\n")
+    out.write("|---|" + "--:|" * (len(chains) * len(runs)) + "\n")
+    for stage in next(iter(chains.values()))["stages_ms"]:
+        cells = []
+        for chain in chains:
+            for run in runs.values():
+                of = run["chains"][chain]
+                ms = of["stages_ms"][stage]
+                cells.append(f"{number(ms, 3)} ({100 * ms / of['whole_ms']:.0f} %)")
+        out.write(f"| {stage} | {' | '.join(cells)} |\n")
+    whole = [f"**{number(run['chains'][c]['whole_ms'], 3)}**" for c in chains for run in runs.values()]
+    out.write(f"| **frame** | {' | '.join(whole)} |\n")
+    stages = out.getvalue()
+
+    out = io.StringIO()
+    out.write("| median / 99 % / worst | " + " | ".join(chains) + " |\n")
+    out.write("|---|" + "--:|" * len(chains) + "\n")
+    for quantity, of in next(iter(chains.values()))["errors"].items():
+        cells = []
+        for chain in chains.values():
+            e = chain["errors"][quantity]
+            cells.append(" / ".join(number(e[s]) for s in ("median", "99 %", "worst")))
+        out.write(f"| {quantity}, {of['unit']} | {' | '.join(cells)} |\n")
+    out.write("| memory | " + " | ".join(size(c["bytes"]) for c in chains.values()) + " |\n")
+    errors = out.getvalue()
+
+    out = io.StringIO()
+    out.write("| lean chain | median, ms | 99 % | 99.9 % | worst | frames a second | allocations |\n")
+    out.write("|---|--:|--:|--:|--:|--:|--:|\n")
+    for flags, run in runs.items():
+        for name, of in run["latencies"].items():
+            times = [number(of[k], 3) for k in ("median_ms", "99_ms", "999_ms", "worst_ms")]
+            out.write(f"| {name}, {flags} | {' | '.join(times)} | {of['frames_per_s']:.0f} "
+                      f"| {of['allocations']} |\n")
+    latencies = out.getvalue()
+    count = next(iter(runs["native"]["latencies"].values()))["frames"]
+    (docs / "whole_chain.md").write_text(f"""# The whole chain
+
+A frame in, all results out: 640 x 480 8-bit BGR frame to smoothing, depth, contact region, motion of
+the object, stick ratio, look-up forces and six-axis force, put together in
+[bench/chain/whole_chain.hpp](../bench/chain/whole_chain.hpp); the dots are given. Written by
+`bench/report/run`.
+
+{about}
+
+Three chains. **default**: the policies by default, with the published iteration as solver of the
+six-axis force. **least squares**: the same with the default solver. **lean**: what a flat contact on
+a pad with dark dots cannot do without: `Anchored<BoxMean>`, `ExponentialFree<2, 5>`, `HessianFit<9>`,
+`AtThreshold`.
+
+![Time of each stage](whole_chain/stages.png)
+
+{stages}
+## Error
+
+16 frames of a membrane in equilibrium under a plate that drags its dots to and fro and turns them,
+one grey level of noise; every result has its truth (bench/chain/pressed_frames.hpp).
+
+{errors}
+The contact's area is that of a region whose gap of 20 um counts as touched, and of depths that were
+averaged over 29 px; [contact region](contact_region.md) says what each does to it. Look-up forces
+follow the area.
+
+## Latency
+
+{count} frames of the lean chain, one after another. Two threads share the depth's rows and work on
+dots and six-axis force side by side; their results are the same to the last bit, as they are from run
+to run (`tests/whole_chain.cpp`).
+
+![Share of frames that take longer](whole_chain/latency.png)
+
+{latencies}
+## Growth
+
+Windows and rings keep their sizes in px.
+
+![Time over the size of the image, the number of dots, and the length of the history](whole_chain/growth.png)
+""", encoding="utf-8")
+
+
+def replace_table(page, name, table):
+    text = page.read_text(encoding="utf-8")
+    pattern = rf"(<!-- table: {name} -->\n).*?(<!-- end -->)"
+    page.write_text(re.sub(pattern, lambda m: m[1] + "\n" + table.strip() + "\n\n" + m[2], text,
+                           flags=re.S), encoding="utf-8")
+
+
+def main():
+    build, docs = pathlib.Path(sys.argv[1]), pathlib.Path(sys.argv[2])
+    about = machine(sys.argv[3])
+    write_methods(build, docs, about)
+    write_chain(build, docs, about)
+    replace_table(docs / "hard_cases.md", "hard_cases", (build / "hard_cases.md").read_text("utf-8"))
+    replace_table(docs / "what_a_scene_needs.md", "ablation",
+                  (build / "ablation.md").read_text("utf-8"))
+    with open(build / "ablation.csv", encoding="utf-8") as file:
+        plots.ablation(list(csv.DictReader(file)), docs / "what_a_scene_needs.png")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,174 @@
+# SPDX-FileCopyrightText: 2026 The fingerpad authors
+# SPDX-License-Identifier: MIT
+"""The report's pictures."""
+import math
+
+import matplotlib
+
+matplotlib.use("Agg")
+import matplotlib.pyplot as plt  # noqa: E402
+
+PUBLISHED, OURS, PALE, YARDSTICK = "#c0392b", "#1f4e79", "#9db8d2", "#7f8c8d"
+plt.rcParams.update({"font.size": 9, "axes.spines.top": False, "axes.spines.right": False,
+                     "axes.grid": True, "grid.alpha": 0.25, "figure.dpi": 110})
+
+
+def save(figure, path):
+    figure.tight_layout()
+    figure.savefig(path)
+    plt.close(figure)
+
+
+def front(points):
+    """Those that nothing beats in both time and error."""
+    best, kept = math.inf, []
+    for point in sorted(points):
+        if point[1] < best:
+            best = point[1]
+            kept.append(point)
+    return kept
+
+
+def pareto(title, rows, path):
+    """Time against error of every way that has one."""
+    rows = list(rows.values())
+    quantity, error = next(r.main_error() for r in rows if r.errors)
+    ways = [r for r in rows if quantity in r.errors and not r.is_yardstick]
+    positive = [r.errors[quantity].high for r in ways if r.errors[quantity].high > 0]
+    floor = min(positive, default=1) / 3
+    figure, axes = plt.subplots(figsize=(10, max(3.6, 0.23 * len(rows) + 1.2)))
+    points, names = [], []
+    for k, row in enumerate(ways, 1):
+        y = max(row.errors[quantity].high, floor)
+        native, o2 = row.median("native"), row.median("o2")
+        colour = PUBLISHED if row.is_published else OURS
+        axes.plot([native, o2], [y, y], color=PALE, lw=1, zorder=1)
+        axes.plot(o2, y, "o", mfc="white", mec=colour, ms=6, zorder=2)
+        axes.plot(native, y, "*" if row.is_published else "o", color=colour,
+                  ms=16 if row.is_published else 7, zorder=3)
+        axes.annotate(str(k), (native, y), xytext=(-5, 5), textcoords="offset points",
+                      ha="right", fontsize=8, color=colour)
+        points.append((native, y))
+        names.append((f"{k}  {row.name}", colour))
+    axes.plot(*zip(*front(points)), color=OURS, lw=1, ls=":", zorder=0, drawstyle="steps-post")
+    for row in rows:
+        if row.is_yardstick:
+            axes.axvline(row.median("native"), color=YARDSTICK, lw=1, ls="--", zorder=0)
+            axes.text(row.median("native"), 1.0, " " + row.name.split(",")[0], rotation=90, va="top",
+                      ha="right", fontsize=7, color=YARDSTICK, transform=axes.get_xaxis_transform())
+    axes.set_xscale("log")
+    axes.set_yscale("log")
+    exact = ", lowest: 0" if len(positive) < len(ways) else ""
+    axes.set_xlabel("time, s (filled: -O3 -march=native, hollow: -O2; star: as published)")
+    axes.set_ylabel(f"99th percentile of the error of {quantity}, {error.unit}{exact}")
+    axes.set_title(title, loc="left", weight="bold")
+    for k, (name, colour) in enumerate(names):
+        axes.text(1.02, 1 - (k + 0.5) / max(len(names), 12), name, transform=axes.transAxes,
+                  fontsize=8, va="center", color=colour)
+    figure.subplots_adjust(right=0.6)
+    figure.savefig(path, bbox_inches="tight")
+    plt.close(figure)
+
+
+def summary(methods, path):
+    """Bars of how many times faster and better ours is: (label, published, ours, quantity or None)."""
+    figure, axes = plt.subplots(figsize=(9, 0.42 * len(methods) + 1.3))
+    better_colour = "#2e8b57"
+    for k, (_, published, ours, quantity) in enumerate(methods):
+        y = len(methods) - k
+        quantity = quantity or published.main_error()[0]
+        faster = published.median("native") / ours.median("native")
+        better = published.errors[quantity].high / ours.errors[quantity].high
+        for offset, ratio, colour in ((0.17, faster, OURS), (-0.17, better, better_colour)):
+            axes.barh(y + offset, ratio - 1, left=1, height=0.32, color=colour)
+            text = f"{ratio:.2g}x" if ratio < 100 else f"{ratio:.0f}x"
+            axes.text(max(ratio, 1), y + offset, " " + text, va="center", fontsize=8)
+    axes.set_xscale("log")
+    axes.set_yticks(range(len(methods), 0, -1), [m[0] for m in methods])
+    axes.axvline(1, color="black", lw=1)
+    axes.set_xlabel("as published / fingerpad's default; bars to the left: slower, or less accurate")
+    axes.barh(0, 0, color=OURS, label="times faster (-O3 -march=native)")
+    axes.barh(0, 0, color=better_colour, label="times smaller error (99th percentile)")
+    axes.set_ylim(0.4, len(methods) + 0.6)
+    axes.margins(x=0.12)
+    axes.legend(loc="lower right", frameon=False)
+    save(figure, path)
+
+
+def chain_stages(runs, path):
+    """Bars of the stages' medians; `runs` {flags: JSON of bench/chain.cpp}."""
+    figure, axes = plt.subplots(figsize=(9, 3.2))
+    bars = [(f"{name}, {flags}", run["chains"][name]["stages_ms"])
+            for name in next(iter(runs.values()))["chains"] for flags, run in runs.items()]
+    colours = plt.get_cmap("tab10").colors
+    for y, (name, stages) in enumerate(reversed(bars)):
+        left = 0
+        for k, (stage, ms) in enumerate(stages.items()):
+            axes.barh(y, ms, left=left, color=colours[k], label=stage if y == 0 else None)
+            left += ms
+        axes.text(left, y, f" {left:.2f} ms", va="center", fontsize=8)
+    axes.set_yticks(range(len(bars)), [name for name, _ in reversed(bars)])
+    axes.set_xlabel("ms a frame of 640 x 480, one thread (medians)")
+    axes.legend(ncol=4, fontsize=8, frameon=False, loc="lower center", bbox_to_anchor=(0.45, 1))
+    axes.margins(x=0.1)
+    save(figure, path)
+
+
+def chain_latencies(runs, path):
+    """How many frames take longer than so many ms."""
+    figure, axes = plt.subplots(figsize=(9, 3.4))
+    for flags, run in runs.items():
+        for name, of in run["latencies"].items():
+            ms, n = of["sorted_ms"], len(of["sorted_ms"])
+            axes.plot(ms, [1 - k / n for k in range(n)], label=f"{name}, {flags}",
+                      ls="-" if name == "one thread" else "--")
+    axes.set_xscale("log")
+    axes.set_yscale("log")
+    axes.set_xlabel("latency of a frame, ms")
+    axes.set_ylabel("share of the frames that take longer")
+    axes.legend(frameon=False)
+    save(figure, path)
+
+
+def chain_growth(run, path):
+    """Stages over the number of pixels, of dots and of stored frames."""
+    kinds = list(dict.fromkeys(g["by"] for g in run["growth"]))
+    figure, all_axes = plt.subplots(1, len(kinds), figsize=(11, 3.6), sharey=True)
+    for axes, kind in zip(all_axes, kinds):
+        points = [g for g in run["growth"] if g["by"] == kind]
+        for stage in points[0]["stages_ms"]:
+            axes.plot([p["size"] for p in points], [p["stages_ms"][stage] for p in points],
+                      marker="o", ms=3, label=stage)
+        axes.set_xscale("log")
+        axes.set_yscale("log")
+        axes.set_xlabel(kind)
+    all_axes[0].set_ylabel("ms a frame, native")
+    all_axes[-1].legend(fontsize=8, frameon=False, loc="center left", bbox_to_anchor=(1, 0.5))
+    save(figure, path)
+
+
+def ablation(cells, path):
+    """Heat map: how many times larger an error is without the effect; `cells` of the program's CSV."""
+    cells = [c for c in cells if c["with_median"] and c["without_median"]]
+    name = lambda c: f"{c['effect']}: {c['quantity']}"
+    effects = list(dict.fromkeys(map(name, cells)))
+    scenes = list(dict.fromkeys(c["scene"] for c in cells))
+    ratio = [[math.nan] * len(scenes) for _ in effects]
+    figure, axes = plt.subplots(figsize=(11, 0.34 * len(effects) + 1.6))
+    for c in cells:
+        # below a millionth there is only rounding
+        with_it, without = (x if x > 1e-6 else 0.0 for x in (float(c["with_median"]),
+                                                             float(c["without_median"])))
+        times = without / with_it if with_it > 0 else math.inf if without > 0 else 1
+        i, j = effects.index(name(c)), scenes.index(c["scene"])
+        ratio[i][j] = max(-2, min(2, math.log10(times))) if times > 0 else -2
+        text = "all" if times == math.inf else f"{times:.2g}" if times < 100 else f"{times:.0f}"
+        axes.text(j, i, text, ha="center", va="center", fontsize=8,
+                  color="white" if abs(ratio[i][j]) > 0.8 else "black")
+    axes.imshow(ratio, cmap="RdBu", vmin=-1.3, vmax=1.3, aspect="auto")
+    axes.set_xticks(range(len(scenes)), scenes, rotation=25, ha="right")
+    axes.set_yticks(range(len(effects)), effects)
+    axes.grid(False)
+    axes.set_title("Median error without an effect / with it (blue: switch it on; red: it harms; "
+                   "all: none is left with it)", loc="left", fontsize=10)
+    save(figure, path)
