@@ -98,6 +98,10 @@ class PressedFrames {
     border.cells = borders.cells;
     Finger<std::remove_const_t<decltype(reference)>> f{
         pad_.camera, pad_.fluid, reference, pad_.rows, pad_.cols, free_dots(), border};
+    // windows and rings as wide on the pad as those by default are at 640 x 480
+    const double scale = static_cast<double>(pad_.cols) / 640;
+    f.smoothing_px = 2 * static_cast<int>(14 * scale) + 1;
+    f.contact_test.ring.radius_px = static_cast<Index>(25 * scale);
     // what the plate's pressure on the area says; by depth, a line between two of the frames
     f.force_of_area = {{0, pressure_mpa, 0}, 50, 400};
     const auto of_depth = [&](double contact_mm) {

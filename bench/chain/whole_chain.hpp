@@ -45,6 +45,7 @@ struct Finger {
   Index cols = 0;
   Plane<Point3<double>> free_dots_mm;
   Plane<Point3<double>> border_mm;
+  int smoothing_px = 29;
   fingerpad::ContactTest contact_test = {};
   fingerpad::StickTest stick_test = {};
   fingerpad::UpdatedReference<> stick_reference = {};
@@ -98,7 +99,7 @@ class WholeChain {
  public:
   explicit WholeChain(const Finger<ReferenceType>& finger)
       : finger_(finger),
-        depth_(finger.camera, finger.fluid, finger.reference),
+        depth_(finger.camera, finger.fluid, finger.reference, {{finger.smoothing_px}}),
         depth_mm_(finger.rows, finger.cols),
         status_(finger.rows, finger.cols),
         contact_(finger.camera, finger.rows, finger.cols, finger.contact_test),

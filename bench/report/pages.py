@@ -201,7 +201,7 @@ to run (`tests/whole_chain.cpp`).
 {latencies}
 ## Growth
 
-Windows and rings keep their sizes in px.
+Windows and rings are as wide on the pad, whatever the size of the image.
 
 ![Time over the size of the image, the number of dots, and the length of the history](whole_chain/growth.png)
 """, encoding="utf-8")

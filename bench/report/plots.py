@@ -7,6 +7,7 @@ import matplotlib
 
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402
+from matplotlib.ticker import LogFormatterMathtext  # noqa: E402
 
 PUBLISHED, OURS, PALE, YARDSTICK = "#c0392b", "#1f4e79", "#9db8d2", "#7f8c8d"
 plt.rcParams.update({"font.size": 9, "axes.spines.top": False, "axes.spines.right": False,
@@ -17,6 +18,13 @@ def save(figure, path):
     figure.tight_layout()
     figure.savefig(path)
     plt.close(figure)
+
+
+def logarithmic(axis, name):
+    """Numbers between the powers of ten too, where these are few."""
+    axis.axes.set(**{f"{name}scale": "log"})
+    axis.set_minor_formatter(LogFormatterMathtext(labelOnlyBase=False, minor_thresholds=(1.5, 0.6)))
+    axis.set_tick_params(which="minor", labelsize=7)
 
 
 def front(points):
@@ -56,8 +64,8 @@ def pareto(title, rows, path):
             axes.axvline(row.median("native"), color=YARDSTICK, lw=1, ls="--", zorder=0)
             axes.text(row.median("native"), 1.0, " " + row.name.split(",")[0], rotation=90, va="top",
                       ha="right", fontsize=7, color=YARDSTICK, transform=axes.get_xaxis_transform())
-    axes.set_xscale("log")
-    axes.set_yscale("log")
+    logarithmic(axes.xaxis, "x")
+    logarithmic(axes.yaxis, "y")
     exact = ", lowest: 0" if len(positive) < len(ways) else ""
     axes.set_xlabel("time, s (filled: -O3 -march=native, hollow: -O2; star: as published)")
     axes.set_ylabel(f"99th percentile of the error of {quantity}, {error.unit}{exact}")
@@ -122,7 +130,7 @@ def chain_latencies(runs, path):
             ms, n = of["sorted_ms"], len(of["sorted_ms"])
             axes.plot(ms, [1 - k / n for k in range(n)], label=f"{name}, {flags}",
                       ls="-" if name == "one thread" else "--")
-    axes.set_xscale("log")
+    logarithmic(axes.xaxis, "x")
     axes.set_yscale("log")
     axes.set_xlabel("latency of a frame, ms")
     axes.set_ylabel("share of the frames that take longer")
