@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
-// Loads from dots of finite-element membranes against the truth. test_fingerpad
-// "[accuracy][traction]" -s prints all figures.
+// Loads from dots of finite-element membranes against the truth.
+// test_accuracy "[traction]" -s prints all figures.
 #include <cmath>
 #include <iomanip>
 #include <sstream>
@@ -62,7 +62,7 @@ double largest(const std::array<double, 3>& parts) {
 
 }  // namespace
 
-TEST_CASE("traction of finite-element membranes, mu t given", "[accuracy][traction]") {
+TEST_CASE("traction of finite-element membranes, mu t given", "[traction]") {
   const TractionField field(test::stress_free_dots(), GivenModulus{true_mu_t});
   Table table("mu t given, exact dots");
   for (const TractionScene& s : test::traction_scenes()) {
@@ -79,7 +79,7 @@ TEST_CASE("traction of finite-element membranes, mu t given", "[accuracy][tracti
   table.show();
 }
 
-TEST_CASE("traction of finite-element membranes, mu t from the balance", "[accuracy][traction]") {
+TEST_CASE("traction of finite-element membranes, mu t from the balance", "[traction]") {
   const TractionField field(test::stress_free_dots());
   Table table("mu t from the balance, exact dots");
   for (const TractionScene& s : test::traction_scenes()) {
@@ -96,7 +96,7 @@ TEST_CASE("traction of finite-element membranes, mu t from the balance", "[accur
   table.show();
 }
 
-TEST_CASE("traction of finite-element membranes, noisy dots", "[accuracy][traction]") {
+TEST_CASE("traction of finite-element membranes, noisy dots", "[traction]") {
   const TractionField field(test::stress_free_dots());
   const int frames = 40;
   for (const double noise_mm : {0.005, 0.02}) {
@@ -117,7 +117,7 @@ TEST_CASE("traction of finite-element membranes, noisy dots", "[accuracy][tracti
   }
 }
 
-TEST_CASE("traction of finite-element membranes, mean of frames", "[accuracy][traction]") {
+TEST_CASE("traction of finite-element membranes, mean of frames", "[traction]") {
   // Dots averaged over 16 frames have a quarter of the noise, and so have all loads.
   const TractionField field(test::stress_free_dots(), GivenModulus{true_mu_t});
   const TractionScene s = test::traction_scene("drag");
@@ -147,7 +147,7 @@ TEST_CASE("traction of finite-element membranes, mean of frames", "[accuracy][tr
   CHECK(mean < 0.02);
 }
 
-TEST_CASE("mu t from frames of the free pad", "[accuracy][traction]") {
+TEST_CASE("mu t from frames of the free pad", "[traction]") {
   const TractionField field(test::stress_free_dots());
   const TractionScene s = test::traction_scene("free");
   auto maps = field.maps();
@@ -176,7 +176,7 @@ TEST_CASE("mu t from frames of the free pad", "[accuracy][traction]") {
   CHECK(std::abs(balance.mu_t_n_per_mm() - true_mu_t) <= 0.025 * true_mu_t);
 }
 
-TEST_CASE("what noise of the dots does to a load", "[accuracy][traction]") {
+TEST_CASE("what noise of the dots does to a load", "[traction]") {
   // The load is a second difference of places: noise goes with mu t / pitch^2 along the membrane,
   // with its tension / pitch^2 across.
   const double mu_t = 0.5, stretch = 1.15, noise_mm = 0.005;

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 // Force and moment of finite-element membranes against the truth: by their exact shape and side
-// dots, and by noisy frames. test_fingerpad "[accuracy][wrench]" -s prints all figures.
+// dots, and by noisy frames. test_accuracy "[wrench]" -s prints all figures.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -268,7 +268,7 @@ void at_most(const Errors& e, double fxy, double fz, double mxy, double mz) {
 
 }  // namespace
 
-TEST_CASE("wrench of finite-element membranes, exact shape and side dots", "[accuracy][wrench]") {
+TEST_CASE("wrench of finite-element membranes, exact shape and side dots", "[wrench]") {
   const auto rim = border();
   const auto options = exact_options();
   auto two_rows = options;
@@ -335,7 +335,7 @@ TEST_CASE("wrench of finite-element membranes, exact shape and side dots", "[acc
   at_most(published_errors, 0.23, 0.042, 0.26, 0.46);
 }
 
-TEST_CASE("the published rim finds too little of drag and twist", "[accuracy][wrench]") {
+TEST_CASE("the published rim finds too little of drag and twist", "[wrench]") {
   const auto rim = border();
   const Published published(rim, exact_options());
   const Wrench<BalancedRim> balanced(rim, exact_options());
@@ -442,7 +442,7 @@ Image<Point3<double>> jittered(Image<Point3<double>> dots, const Noise& noise, s
 
 }  // namespace
 
-TEST_CASE("wrench of finite-element membranes, noisy frames", "[accuracy][wrench]") {
+TEST_CASE("wrench of finite-element membranes, noisy frames", "[wrench]") {
   const auto rim = border();
   Rendered rendered;
   WrenchOptions<double> options = exact_options();

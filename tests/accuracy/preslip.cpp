@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 // Whole chains, from readings to alarms, on signals of known truth: how often slip is found and how
-// late, and how often it is found where there is none. test_fingerpad "[preslip][accuracy]" -s
+// late, and how often it is found where there is none. test_accuracy "[preslip]" -s
 // prints all figures.
 #include <algorithm>
 #include <array>
@@ -143,7 +143,7 @@ int false_alarms(double minutes, double rate_hz, unsigned seed) {
 
 }  // namespace
 
-TEST_CASE("pre-slip of known signals: slip is found", "[preslip][accuracy]") {
+TEST_CASE("pre-slip of known signals: slip is found", "[preslip]") {
   const auto check = [](const std::string& name, const Detection& d) {
     show(name, d);
     CHECK(d.found >= 0.99 * d.scenes);
@@ -158,7 +158,7 @@ TEST_CASE("pre-slip of known signals: slip is found", "[preslip][accuracy]") {
 }
 
 TEST_CASE("pre-slip of known signals: grasp-optimise needs two taxels that vibrate alike",
-          "[preslip][accuracy]") {
+          "[preslip]") {
   // one taxel stays the strongest, so its location never differs: what the rule cannot see
   const Detection d = detection<GraspOptimise<>>(40, 1, 1);
   show("grasp-optimise, patches of one taxel", d);
@@ -166,7 +166,7 @@ TEST_CASE("pre-slip of known signals: grasp-optimise needs two taxels that vibra
   CHECK(detection<GraspLift<>>(40, 1, 1).found == 40);
 }
 
-TEST_CASE("pre-slip of known signals: no alarm where nothing slips", "[preslip][accuracy]") {
+TEST_CASE("pre-slip of known signals: no alarm where nothing slips", "[preslip]") {
   // the goal is at most one alarm in ten minutes
   CHECK(false_alarms<GraspOptimise<>>(20, 31, 1) == 0);
   CHECK(false_alarms<GraspLift<>>(20, 31, 2) == 0);
@@ -235,7 +235,7 @@ void every_loosening_is_warned_of(const std::string& name) {
 
 }  // namespace
 
-TEST_CASE("pre-slip of a simulated object: a warning before it slips", "[preslip][accuracy]") {
+TEST_CASE("pre-slip of a simulated object: a warning before it slips", "[preslip]") {
   every_loosening_is_warned_of<GraspOptimise<>>("grasp-optimise");
   every_loosening_is_warned_of<GraspLift<>>("grasp-lift");
 }

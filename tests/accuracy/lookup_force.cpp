@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 // Forces by look-up on finite-element membranes: calibrated on some scenes, tested on others.
-// test_fingerpad "[accuracy][force]" -s prints all figures.
+// test_accuracy "[force]" -s prints all figures.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -166,7 +166,7 @@ FusedErrors fused_errors(const Scenes& calibration, const std::string& scene) {
 
 }  // namespace
 
-TEST_CASE("normal force of plates, calibrated on other scenes", "[accuracy][force]") {
+TEST_CASE("normal force of plates, calibrated on other scenes", "[force]") {
   // Errors are shares of the largest normal force of all plate scenes, 9.93 N in `press`; without
   // `press` the calibration ends at 9.10 N.
   CHECK(full_scale_n() == Approx(9.93).margin(0.01));
@@ -192,7 +192,7 @@ TEST_CASE("normal force of plates, calibrated on other scenes", "[accuracy][forc
   CHECK(flagged <= 0.051);           // one frame of `press`
 }
 
-TEST_CASE("normal force of other shapes from curves of plates", "[accuracy][force]") {
+TEST_CASE("normal force of other shapes from curves of plates", "[force]") {
   // No goal is set, and none could be met: a sphere or a cylinder of the same area presses harder.
   // That area and depth disagree is what tells.
   Table table("Other shapes, calibrated on all four scenes of plates, degree 3", "N", "bias/N");
@@ -293,7 +293,7 @@ TangentialShares add_tangential(ContactMeasure measure, ContactDotsOf dots, Tabl
 
 }  // namespace
 
-TEST_CASE("tangential force, calibrated on other scenes", "[accuracy][force]") {
+TEST_CASE("tangential force, calibrated on other scenes", "[force]") {
   // Exponents are fitted; the published 0.65 and 0.75 are those of another pad.
   Table table("drag, tilt, cylinder: calibrated on mix; mix: on drag and cylinder", "N",
               "exponent");
@@ -329,7 +329,7 @@ TEST_CASE("tangential force, calibrated on other scenes", "[accuracy][force]") {
   }
 }
 
-TEST_CASE("tangential force after a reversal", "[accuracy][force]") {
+TEST_CASE("tangential force after a reversal", "[force]") {
   // The plate of `drag` turns back after step 22. The central dot then still lies where the object
   // took it, while the force is gone and soon of the other sign.
   constexpr std::ptrdiff_t turned_back = 22;
@@ -356,7 +356,7 @@ TEST_CASE("tangential force after a reversal", "[accuracy][force]") {
   CHECK(after[1] > 3 * after[0]);
 }
 
-TEST_CASE("moment, calibrated on other scenes", "[accuracy][force]") {
+TEST_CASE("moment, calibrated on other scenes", "[force]") {
   // Shares of the largest moment of the scene. Alone, `twist` does not tell an exponent: it turns
   // at one depth.
   Table table("twist: calibrated on mix; mix: on twist, exponent as published", "N mm", "exponent");

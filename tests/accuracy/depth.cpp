@@ -57,7 +57,7 @@ Error error_of(const test::Scene& scene,
 
 }  // namespace
 
-TEST_CASE("depth of noisy frames of finite-element membranes", "[accuracy]") {
+TEST_CASE("depth of noisy frames of finite-element membranes", "[depth]") {
   const test::Scene scene;
   const auto free = scene.depth("free");
   const auto reference = scene.reference(free);

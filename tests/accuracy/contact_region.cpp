@@ -67,7 +67,7 @@ struct Exact {
 
 }  // namespace
 
-TEST_CASE("contact of finite-element membranes by their heights", "[accuracy]") {
+TEST_CASE("contact of finite-element membranes by their heights", "[contact_region]") {
   const Exact exact;
   FreePadCalibration<ClampedMean<>, OrthographicCamera<double>> calibration(exact.camera, 480, 480,
                                                                             {12});
@@ -95,7 +95,7 @@ TEST_CASE("contact of finite-element membranes by their heights", "[accuracy]") 
   CHECK(region(exact.depth("free"), mask, workspace).contact_px == 0);
 }
 
-TEST_CASE("contact of finite-element membranes by noisy frames", "[accuracy]") {
+TEST_CASE("contact of finite-element membranes by noisy frames", "[contact_region]") {
   const test::Scene scene;
   const test::Pad& pad = scene.pad();
   const auto free = scene.depth("free");

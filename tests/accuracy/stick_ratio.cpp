@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 // Stick ratios against the truth: of synthetic dots, with each effect and without it, and of dots
-// of finite-element membranes. test_fingerpad "[accuracy]" -s prints all figures.
+// of finite-element membranes. test_accuracy "[stick_ratio]" -s prints all figures.
 #include <array>
 #include <cmath>
 #include <cstdint>
@@ -72,7 +72,7 @@ void show(const std::vector<const Errors*>& table) {
 
 }  // namespace
 
-TEST_CASE("stick ratio of synthetic dots, with all effects", "[accuracy]") {
+TEST_CASE("stick ratio of synthetic dots, with all effects", "[stick_ratio]") {
   // Of the dots in the shear zone those that follow the object to less than slip_px count as
   // sticking, which makes the ratio too large; their noise makes it too small.
   const Errors all("all effects", StickRatio(21, 21));
@@ -86,7 +86,7 @@ TEST_CASE("stick ratio of synthetic dots, with all effects", "[accuracy]") {
   }
 }
 
-TEST_CASE("stick ratio of synthetic dots, by the width of the shear zone", "[accuracy]") {
+TEST_CASE("stick ratio of synthetic dots, by the width of the shear zone", "[stick_ratio]") {
   // The goal of 0.03 is met at one pitch. In wider zones the dots next to the stick region slip
   // less than slip_px, and the ratio is too large: by 0.040 and 0.076 at two and three pitches.
   // A jump smears, by the mean over neighbours, into the dots before it: 0.02 to 0.07.
@@ -104,7 +104,7 @@ TEST_CASE("stick ratio of synthetic dots, by the width of the shear zone", "[acc
   CHECK(three[SlipScene::reversal].mean > 0.9 * three[SlipScene::reversal].mean_abs);
 }
 
-TEST_CASE("stick ratio of synthetic dots, each effect left out", "[accuracy]") {
+TEST_CASE("stick ratio of synthetic dots, each effect left out", "[stick_ratio]") {
   const Index n = 21;
   const Errors all("all effects", StickRatio(n, n));
   const Errors first("first reference", StickRatio<StickConsensus<>, FirstReference>(n, n));
@@ -327,7 +327,7 @@ bool every_step(Index) {
 
 }  // namespace
 
-TEST_CASE("stick ratio of finite-element membranes", "[accuracy]") {
+TEST_CASE("stick ratio of finite-element membranes", "[stick_ratio]") {
   const auto check = [](const std::string& name, double bound) {
     const StickScene scene(name);
     const SceneResult r = follow(scene, SlippedLess(name, scene.steps()), every_step);
@@ -354,7 +354,7 @@ TEST_CASE("stick ratio of finite-element membranes", "[accuracy]") {
   CHECK(back.mean_abs <= 0.045);  // 0.031, goal 0.08
 }
 
-TEST_CASE("no slip is announced on finite-element membranes that stick", "[accuracy]") {
+TEST_CASE("no slip is announced on finite-element membranes that stick", "[stick_ratio]") {
   const auto unknown = [](Index, Index, double) { return test::nan; };
   const StickScene press("press"), roll("roll"), tilt("tilt");
   // Dots that hold on to what is pressed or rolled hardly move: there is nothing to compare.
