@@ -103,8 +103,8 @@ the same inputs. Written by `bench/report/run`, which builds and runs all of `be
 ![fingerpad's default against the published way](speed_and_error/summary.png)
 
 How to read it. Times are medians over repetitions, with half the distance of the 10th and the 90th
-percentile; "ns per item" is the native time over the number of pixels, samples or frames of a call, and "times as
-fast" compares with the first row, both at the native flags. Errors are the
+percentile; "ns per item" is the native time over the number of pixels, samples or frames of a call,
+and "times as fast" compares with the first row, both at the native flags. Errors are the
 **median / 99th percentile / worst** of everything that was compared, and of how many if not all have
 an answer. Memory is what a row's estimator, workspace, state and outputs take; allocations are those
 of one call. "over" columns give the native time over that of a yardstick in the same run: OpenCV's
@@ -116,6 +116,44 @@ needs](what_a_scene_needs.md) have pages of their own.
 {body.getvalue()}""", encoding="utf-8")
 
 
+def table(head, rows):
+    """A table with its first column to the left, the others to the right."""
+    lines = [head, ["---"] + ["--:"] * (len(head) - 1), *rows]
+    return "\n".join(f"| {' | '.join(cells)} |" for cells in lines) + "\n"
+
+
+def chain_stages(runs, chains):
+    """How long each stage takes, and its share of the frame; `runs` by flags."""
+    def column(chain, run):
+        of = run["chains"][chain]
+        shares = [f"{number(ms, 3)} ({100 * ms / of['whole_ms']:.0f} %)"
+                  for ms in of["stages_ms"].values()]
+        return shares + [f"**{number(of['whole_ms'], 3)}**"]
+    stages = [*next(iter(chains.values()))["stages_ms"], "**frame**"]
+    columns = {f"{c}, {f}": column(c, run) for c in chains for f, run in runs.items()}
+    return table(["ms, medians", *columns], zip(stages, *columns.values()))
+
+
+def chain_errors(chains):
+    def column(chain):
+        errors = [" / ".join(number(e[s]) for s in ("median", "99 %", "worst"))
+                  for e in chain["errors"].values()]
+        return errors + [size(chain["bytes"])]
+    quantities = [f"{q}, {e['unit']}" for q, e in next(iter(chains.values()))["errors"].items()]
+    return table(["median / 99 % / worst", *chains],
+                 zip([*quantities, "memory"], *map(column, chains.values())))
+
+
+def chain_latencies(runs):
+    def row(name, flags, of):
+        times = [number(of[k], 3) for k in ("median_ms", "99_ms", "999_ms", "worst_ms")]
+        return [f"{name}, {flags}", *times, f"{of['frames_per_s']:.0f}", str(of["allocations"])]
+    return table(["lean chain", "median, ms", "99 %", "99.9 %", "worst", "frames a second",
+                  "allocations"],
+                 [row(name, flags, of) for flags, run in runs.items()
+                  for name, of in run["latencies"].items()])
+
+
 def write_chain(build, docs, about):
     pictures = docs / "whole_chain"
     pictures.mkdir(exist_ok=True)
@@ -125,43 +163,7 @@ def write_chain(build, docs, about):
     plots.chain_stages(runs, pictures / "stages.png")
     plots.chain_latencies(runs, pictures / "latency.png")
     plots.chain_growth(runs["native"], pictures / "growth.png")
-    out = io.StringIO()
     chains = runs["native"]["chains"]
-    out.write("| ms, medians | " + " | ".join(f"{c}, {f}" for c in chains for f in runs) + " |\n")
-    out.write("|---|" + "--:|" * (len(chains) * len(runs)) + "\n")
-    for stage in next(iter(chains.values()))["stages_ms"]:
-        cells = []
-        for chain in chains:
-            for run in runs.values():
-                of = run["chains"][chain]
-                ms = of["stages_ms"][stage]
-                cells.append(f"{number(ms, 3)} ({100 * ms / of['whole_ms']:.0f} %)")
-        out.write(f"| {stage} | {' | '.join(cells)} |\n")
-    whole = [f"**{number(run['chains'][c]['whole_ms'], 3)}**" for c in chains for run in runs.values()]
-    out.write(f"| **frame** | {' | '.join(whole)} |\n")
-    stages = out.getvalue()
-
-    out = io.StringIO()
-    out.write("| median / 99 % / worst | " + " | ".join(chains) + " |\n")
-    out.write("|---|" + "--:|" * len(chains) + "\n")
-    for quantity, of in next(iter(chains.values()))["errors"].items():
-        cells = []
-        for chain in chains.values():
-            e = chain["errors"][quantity]
-            cells.append(" / ".join(number(e[s]) for s in ("median", "99 %", "worst")))
-        out.write(f"| {quantity}, {of['unit']} | {' | '.join(cells)} |\n")
-    out.write("| memory | " + " | ".join(size(c["bytes"]) for c in chains.values()) + " |\n")
-    errors = out.getvalue()
-
-    out = io.StringIO()
-    out.write("| lean chain | median, ms | 99 % | 99.9 % | worst | frames a second | allocations |\n")
-    out.write("|---|--:|--:|--:|--:|--:|--:|\n")
-    for flags, run in runs.items():
-        for name, of in run["latencies"].items():
-            times = [number(of[k], 3) for k in ("median_ms", "99_ms", "999_ms", "worst_ms")]
-            out.write(f"| {name}, {flags} | {' | '.join(times)} | {of['frames_per_s']:.0f} "
-                      f"| {of['allocations']} |\n")
-    latencies = out.getvalue()
     count = next(iter(runs["native"]["latencies"].values()))["frames"]
     (docs / "whole_chain.md").write_text(f"""# The whole chain
 
@@ -179,13 +181,13 @@ a pad with dark dots cannot do without: `Anchored<BoxMean>`, `ExponentialFree<2,
 
 ![Time of each stage](whole_chain/stages.png)
 
-{stages}
+{chain_stages(runs, chains)}
 ## Error
 
 16 frames of a membrane in equilibrium under a plate that drags its dots to and fro and turns them,
 one grey level of noise; every result has its truth (bench/chain/pressed_frames.hpp).
 
-{errors}
+{chain_errors(chains)}
 The contact's area is that of a region whose gap of 20 um counts as touched, and of depths that were
 averaged over 29 px; [contact region](contact_region.md) says what each does to it. Look-up forces
 follow the area.
@@ -198,7 +200,7 @@ to run (`tests/whole_chain.cpp`).
 
 ![Share of frames that take longer](whole_chain/latency.png)
 
-{latencies}
+{chain_latencies(runs)}
 ## Growth
 
 Windows and rings are as wide on the pad, whatever the size of the image.
