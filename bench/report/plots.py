@@ -7,7 +7,7 @@ import matplotlib
 
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402
-from matplotlib.ticker import LogFormatterMathtext  # noqa: E402
+from matplotlib.ticker import LogFormatterSciNotation  # noqa: E402
 
 PUBLISHED, OURS, PALE, YARDSTICK = "#c0392b", "#1f4e79", "#9db8d2", "#7f8c8d"
 plt.rcParams.update({"font.size": 9, "axes.spines.top": False, "axes.spines.right": False,
@@ -23,7 +23,7 @@ def save(figure, path):
 def logarithmic(axis, name):
     """Numbers between the powers of ten too, where these are few."""
     axis.axes.set(**{f"{name}scale": "log"})
-    axis.set_minor_formatter(LogFormatterMathtext(labelOnlyBase=False, minor_thresholds=(1.5, 0.6)))
+    axis.set_minor_formatter(LogFormatterSciNotation(labelOnlyBase=False, minor_thresholds=(1.5, 0.6)))
     axis.set_tick_params(which="minor", labelsize=7)
 
 
@@ -37,6 +37,24 @@ def front(points):
     return kept
 
 
+def number_points(axes, points, others, colours):
+    """Numbers beside `points`, each in the free place that is nearest; with a line if it is far."""
+    dots_per_point = axes.figure.dpi / 72
+    place = lambda point: axes.transData.transform(point) / dots_per_point
+    taken = [place(p) for p in points + others]
+    around = [(r * math.cos(a), r * math.sin(a)) for r in (9, 14, 20, 27, 35, 44)
+              for a in [math.radians(135 + 30 * k) for k in range(12)]]
+    for k, (point, colour) in enumerate(zip(points, colours), 1):
+        at = place(point)
+        room = lambda d: min(math.dist(at + d, other) for other in taken)
+        offset = next((d for d in around if room(d) >= 8.5), max(around, key=room))
+        taken.append(at + offset)
+        line = {"arrowstyle": "-", "lw": 0.5, "color": colour, "shrinkA": 0, "shrinkB": 3}
+        axes.annotate(str(k), point, xytext=offset, textcoords="offset points", ha="center",
+                      va="center", fontsize=8, color=colour,
+                      arrowprops=line if math.hypot(*offset) > 15 else None)
+
+
 def pareto(title, rows, path):
     """Time against error of every way that has one."""
     rows = list(rows.values())
@@ -45,7 +63,7 @@ def pareto(title, rows, path):
     positive = [r.errors[quantity].high for r in ways if r.errors[quantity].high > 0]
     floor = min(positive, default=1) / 3
     figure, axes = plt.subplots(figsize=(10, max(3.6, 0.23 * len(rows) + 1.2)))
-    points, names = [], []
+    points, hollow, names = [], [], []
     for k, row in enumerate(ways, 1):
         y = max(row.errors[quantity].high, floor)
         native, o2 = row.median("native"), row.median("o2")
@@ -54,9 +72,8 @@ def pareto(title, rows, path):
         axes.plot(o2, y, "o", mfc="white", mec=colour, ms=6, zorder=2)
         axes.plot(native, y, "*" if row.is_published else "o", color=colour,
                   ms=16 if row.is_published else 7, zorder=3)
-        axes.annotate(str(k), (native, y), xytext=(-5, 5), textcoords="offset points",
-                      ha="right", fontsize=8, color=colour)
         points.append((native, y))
+        hollow.append((o2, y))
         names.append((f"{k}  {row.name}", colour))
     axes.plot(*zip(*front(points)), color=OURS, lw=1, ls=":", zorder=0, drawstyle="steps-post")
     for row in rows:
@@ -74,6 +91,7 @@ def pareto(title, rows, path):
         axes.text(1.02, 1 - (k + 0.5) / max(len(names), 12), name, transform=axes.transAxes,
                   fontsize=8, va="center", color=colour)
     figure.subplots_adjust(right=0.6)
+    number_points(axes, points, hollow, [colour for _, colour in names])
     figure.savefig(path, bbox_inches="tight")
     plt.close(figure)
 
