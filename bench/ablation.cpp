@@ -29,7 +29,7 @@ void append(std::vector<Effect>& all, const std::vector<Effect>& more) {
 }
 
 std::vector<Effect> image_effects() {
-  const test::Pad pad = published_pad();
+  const test::Pad pad = test::published_pad();
   const Seen free(pad, shapes().front(), 1);
   const Seen press(pad, shapes()[1], 2);
   DepthEffects depth(pad, free.depth_mm);

@@ -24,6 +24,7 @@
 #include <vector>
 
 #include "../../tests/support/slipping_dots.hpp"
+#include "../../tests/support/stick_scene.hpp"
 #include "fingerpad/stick_ratio.hpp"
 #include "membranes.hpp"
 
@@ -73,40 +74,12 @@ inline std::vector<StickRecording> slipping(test::SlipScene scene,
 
 /// NAME_dots.pgm and stick_truth.csv, with noise of 0.06 px.
 inline std::vector<StickRecording> finite_elements(const std::string& name) {
+  const test::StickScene scene(name);
   StickRecording exact;
-  auto truth = open_data("stick_truth.csv", "scene,step,phase,stick_ratio_kin\n");
-  std::string scene, step, phase, ratio;
-  while (std::getline(truth, scene, ',') && std::getline(truth, step, ',') &&
-         std::getline(truth, phase, ',') && std::getline(truth, ratio)) {
-    if (scene == name) {
-      const double sticks = std::stod(ratio);
-      exact.push_back({test::PointsPx(21, 21, {test::nan, test::nan}), test::ContactFlags(21, 21),
-                       [sticks](Index) { return sticks; }});
-    }
+  for (Index k = 0; k < scene.steps(); ++k) {
+    const double sticks = scene.stick_ratio(k);
+    exact.push_back({scene.dots(k), scene.contact(k), [sticks](Index) { return sticks; }});
   }
-  auto file = open_data(name + "_dots.pgm", "P5\n");
-  Index width = 0, height = 0, top = 0;
-  file >> width >> height >> top;
-  file.get();
-  require(height == static_cast<Index>(exact.size()) + 1 && top == 65535,
-          name + " has other steps");
-  const auto next = [&] {
-    const int high = file.get();
-    return 256 * high + file.get();
-  };
-  std::vector<fingerpad::DotIndex> places;
-  for (Index k = 0; k < width / 2; ++k) {
-    const Index col = next();
-    places.push_back({next(), col});
-  }
-  for (StickFrame& frame : exact) {
-    for (const auto& p : places) {
-      const int x = next(), y = next();
-      frame.dots(p.row, p.col) = {x / 64.0, y % 32768 / 64.0};
-      frame.contact(p.row, p.col) = y >= 32768 ? 1 : 0;
-    }
-  }
-  require(file.good(), name + " is too short");
   std::vector<StickRecording> all;
   for (std::uint64_t seed = 1; seed <= 8; ++seed) {
     test::Random random(seed);

@@ -11,87 +11,19 @@
 // whatever is switched on.
 #include <cmath>
 #include <cstdint>
-#include <numbers>
 #include <random>
-#include <sstream>
 #include <string>
 #include <vector>
 
 #include "../../tests/support/rolling.hpp"
+#include "../../tests/support/wrench_frames.hpp"
 #include "fingerpad/wrench.hpp"
 #include "membranes.hpp"
 
 namespace bench::ablation {
 
-inline constexpr Index side_dots = 72;
 using SideDots = Image<fingerpad::Point3<double>>;
-
-struct WrenchFrame {
-  std::string name, heights, scene;
-  double pressure_mpa = 0;
-  fingerpad::Point3<double> force_n{}, moment_n_mm{};
-  SideDots dots{1, side_dots, {0, 0, 0}};
-  fingerpad::HeightMap<double> map{19.5, 0.5};
-};
-
-inline void fill_heights(WrenchFrame& f) {
-  const Membrane membrane(f.heights);
-  f.map.fill(
-      [&](Index i, Index j) {
-        const double x = f.map.position_mm(j), y = f.map.position_mm(i);
-        return std::hypot(x, y) > base_radius_mm ? test::nan : membrane.height(x, y);
-      },
-      [&](Index i, Index j, const auto&...) {
-        double share = 0;  // the mean over the node's surroundings
-        for (const double down : {-0.125, 0.125}) {
-          for (const double right : {-0.125, 0.125}) {
-            share += membrane.touches(f.map.position_mm(j) + right, f.map.position_mm(i) + down)
-                         ? 0.25
-                         : 0;
-          }
-        }
-        return share;
-      });
-}
-
-inline std::vector<WrenchFrame> wrench_frames() {
-  auto file = open_data("wrench_frames.csv", "frame,heights,scene,step,");
-  auto dots = open_data("wrench_side_dots.csv", "frame,row,");
-  std::vector<WrenchFrame> frames;
-  std::string line, cell;
-  std::getline(file, line);
-  std::getline(dots, line);
-  while (std::getline(file, line)) {
-    std::istringstream cells(line);
-    WrenchFrame f;
-    std::getline(cells, f.name, ',');
-    std::getline(cells, f.heights, ',');
-    std::getline(cells, f.scene, ',');
-    std::getline(cells, cell, ',');
-    for (double* number : {&f.pressure_mpa, &f.force_n.x, &f.force_n.y, &f.force_n.z,
-                           &f.moment_n_mm.x, &f.moment_n_mm.y, &f.moment_n_mm.z}) {
-      std::getline(cells, cell, ',');
-      *number = std::stod(cell);
-    }
-    for (int row = 1; row <= 3; ++row) {  // the first is that of one row of side dots
-      std::getline(dots, line);
-      std::istringstream numbers(line);
-      std::getline(numbers, cell, ',');
-      require(cell == f.name, "side dots of another frame than " + f.name);
-      std::getline(numbers, cell, ',');
-      for (Index k = 0; row == 1 && k < side_dots; ++k) {
-        for (double* number : {&f.dots(0, k).x, &f.dots(0, k).y, &f.dots(0, k).z}) {
-          std::getline(numbers, cell, ',');
-          *number = std::stod(cell);
-        }
-      }
-    }
-    fill_heights(f);
-    frames.push_back(f);
-  }
-  require(frames.size() == 15, "not 15 frames with forces");
-  return frames;
-}
+using test::WrenchFrame;
 
 inline Scene scene_of(const WrenchFrame& f) {
   if (f.name == "drag_c") {
@@ -104,15 +36,6 @@ inline Scene scene_of(const WrenchFrame& f) {
          : f.scene == "roll"  ? Scene::rolling
          : f.scene == "tilt"  ? Scene::tilted
                               : Scene::wedge;
-}
-
-inline SideDots border() {
-  SideDots points(1, side_dots, {0, 0, 0});
-  for (Index k = 0; k < side_dots; ++k) {
-    const double at = 2 * std::numbers::pi * static_cast<double>(k) / side_dots;
-    points(0, k) = {base_radius_mm * std::cos(at), base_radius_mm * std::sin(at), 0};
-  }
-  return points;
 }
 
 inline SideDots seen_dots(SideDots dots, double noise, double lost_share, std::uint64_t seed) {
@@ -131,7 +54,7 @@ inline SideDots seen_dots(SideDots dots, double noise, double lost_share, std::u
 class WrenchEffects {
  public:
   WrenchEffects() {
-    for (const WrenchFrame& f : wrench_frames()) {
+    for (const WrenchFrame& f : test::wrench_frames()) {
       shown_.push_back({scene_of(f), f, 1, 0});
       if (f.name == "drag_b" || f.name == "twist_b") {
         shown_.push_back({Scene::noisy, f, 2, 0});
@@ -157,9 +80,11 @@ class WrenchEffects {
     const WrenchFrame& drag = shown_[1].frame;
     auto work_with = with.workspace();
     auto work_without = without.workspace();
+    const auto& heights = test::exact_heights(drag.heights);
+    const SideDots dots = test::rows_of(drag.dots, 1);
     force.cost_us = moment.cost_us =
-        cost_us([&] { with(drag.map, drag.dots, drag.pressure_mpa, work_with); },
-                [&] { without(drag.map, drag.dots, drag.pressure_mpa, work_without); });
+        cost_us([&] { with(heights, dots, drag.pressure_mpa, work_with); },
+                [&] { without(heights, dots, drag.pressure_mpa, work_without); });
     effects.push_back(force);
     effects.push_back(moment);
   }
@@ -177,8 +102,9 @@ class WrenchEffects {
     using fingerpad::detail::difference, fingerpad::detail::length_sq;
     auto workspace = wrench.workspace();
     for (std::uint64_t seed = 1; seed <= 8; ++seed) {
-      const auto dots = seen_dots(s.frame.dots, s.noise, s.lost_share, seed);
-      const auto r = wrench(s.frame.map, dots, s.frame.pressure_mpa, workspace);
+      const auto dots = seen_dots(test::rows_of(s.frame.dots, 1), s.noise, s.lost_share, seed);
+      const auto r =
+          wrench(test::exact_heights(s.frame.heights), dots, s.frame.pressure_mpa, workspace);
       force.add(std::sqrt(length_sq(difference(r.force_n, s.frame.force_n))));
       moment.add(std::sqrt(length_sq(difference(r.moment_n_mm, s.frame.moment_n_mm))));
     }
@@ -191,7 +117,7 @@ inline std::vector<Effect> wrench_effects() {
   using namespace fingerpad;
   WrenchOptions<double> options;
   options.side_dot_length_mm = 0.79995;  // chord of 0.8 mm of a sphere of 21.45 mm
-  const auto rim = border();
+  const auto rim = test::rim_border();
   const ExtrapolatedRow carried{1.0623};  // of a cap 11 mm high: 2 atan(11 / 18.735)
   const Wrench<> squares(rim, options);
   const Wrench<LeastSquares, ExtrapolatedRow> extrapolated(rim, options, {}, carried);

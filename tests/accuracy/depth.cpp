@@ -2,10 +2,11 @@
 // SPDX-License-Identifier: MIT
 // Depth error on full-size frames of finite-element membranes: refracted rays, printed dots, 8 bit,
 // one grey level of noise in each channel. See tests/data/README.md for the shapes.
+#include "fingerpad/depth.hpp"
+
 #include <cmath>
 #include <string>
 
-#include "fingerpad/depth.hpp"
 #include "support/catch.hpp"
 #include "support/finite_elements.hpp"
 

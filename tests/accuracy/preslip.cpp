@@ -3,6 +3,8 @@
 // Whole chains, from readings to alarms, on signals of known truth: how often slip is found and how
 // late, and how often it is found where there is none. test_accuracy "[preslip]" -s
 // prints all figures.
+#include "fingerpad/preslip.hpp"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -13,7 +15,6 @@
 #include <vector>
 
 #include "fingerpad/holding_force.hpp"
-#include "fingerpad/preslip.hpp"
 #include "fingerpad/taxel_features.hpp"
 #include "grip/foam_fingers.hpp"
 #include "support/catch.hpp"

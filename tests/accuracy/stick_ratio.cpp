@@ -2,19 +2,20 @@
 // SPDX-License-Identifier: MIT
 // Stick ratios against the truth: of synthetic dots, with each effect and without it, and of dots
 // of finite-element membranes. test_accuracy "[stick_ratio]" -s prints all figures.
+#include "fingerpad/stick_ratio.hpp"
+
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <fstream>
 #include <iomanip>
 #include <sstream>
 #include <string>
 #include <vector>
 
-#include "fingerpad/stick_ratio.hpp"
 #include "support/catch.hpp"
 #include "support/finite_elements.hpp"
 #include "support/slipping_dots.hpp"
+#include "support/stick_scene.hpp"
 
 using namespace fingerpad;
 using test::ContactFlags;
@@ -23,6 +24,7 @@ using test::DotStates;
 using test::PointsPx;
 using test::SlipScene;
 using test::StickError;
+using test::StickScene;
 
 namespace {
 
@@ -146,80 +148,6 @@ TEST_CASE("stick ratio of synthetic dots, each effect left out", "[stick_ratio]"
 
 namespace {
 
-/// A membrane of finite elements: dots as the camera sees them, and what sticks. See
-/// tests/data/README.md.
-class StickScene {
- public:
-  explicit StickScene(const std::string& name) : name_(name) {
-    read_truth();
-    read_dots();
-  }
-  Index steps() const { return static_cast<Index>(frames_.size()); }
-  const PointsPx& dots(Index step) const { return frames_[at(step)].dots; }
-  const ContactFlags& contact(Index step) const { return frames_[at(step)].contact; }
-  const std::string& phase(Index step) const { return frames_[at(step)].phase; }
-  /// Of the nodes in contact, the share that slipped less than 5 um in this step.
-  double stick_ratio(Index step) const { return frames_[at(step)].stick_ratio; }
-
-  Index first_slip_of_all() const {
-    for (Index k = 0; k < steps(); ++k) {
-      if (stick_ratio(k) < 0.1) {
-        return k;
-      }
-    }
-    return steps();
-  }
-
- private:
-  struct Frame {
-    std::string phase;
-    double stick_ratio = 0;
-    PointsPx dots{21, 21, {test::nan, test::nan}};
-    ContactFlags contact{21, 21};
-  };
-  static std::size_t at(Index step) { return static_cast<std::size_t>(step); }
-
-  void read_truth() {
-    auto file = test::open_data("stick_truth.csv", "scene,step,phase,stick_ratio_kin\n");
-    std::string scene, step, phase, ratio;
-    while (std::getline(file, scene, ',') && std::getline(file, step, ',') &&
-           std::getline(file, phase, ',') && std::getline(file, ratio)) {
-      if (scene == name_) {
-        frames_.push_back({.phase = phase, .stick_ratio = std::stod(ratio)});
-      }
-    }
-    REQUIRE(steps() > 0);
-  }
-
-  void read_dots() {
-    auto file = test::open_data(name_ + "_dots.pgm", "P5\n");
-    int width = 0, height = 0, top = 0;
-    file >> width >> height >> top;
-    file.get();
-    REQUIRE((width % 2 == 0 && height == steps() + 1 && top == 65535));
-    const auto next = [&] {
-      const int high = file.get();
-      return 256 * high + file.get();
-    };
-    std::vector<DotIndex> places;
-    for (int k = 0; k < width / 2; ++k) {
-      const Index col = next();
-      places.push_back({next(), col});
-    }
-    for (Frame& frame : frames_) {
-      for (const DotIndex& p : places) {
-        const int x = next(), y = next();
-        frame.dots(p.row, p.col) = {x / 64.0, y % 32768 / 64.0};
-        frame.contact(p.row, p.col) = y >= 32768 ? 1 : 0;
-      }
-    }
-    REQUIRE(file.good());
-  }
-
-  std::string name_;
-  std::vector<Frame> frames_;
-};
-
 /// Of the area in contact in a step and `age` steps earlier, the share that slipped less than a
 /// length in between.
 class SlippedLess {
@@ -229,7 +157,7 @@ class SlippedLess {
     for (int& share : shares_.cells) {
       share = file.get();
     }
-    REQUIRE(file.good());
+    test::require_data(file.good(), name + "_slip.pgm is too short");
   }
   /// NaN where it is not known.
   double operator()(Index step, Index age, double length_mm) const {

@@ -2,12 +2,13 @@
 // SPDX-License-Identifier: MIT
 // Loads from dots of finite-element membranes against the truth.
 // test_accuracy "[traction]" -s prints all figures.
+#include "fingerpad/traction.hpp"
+
 #include <cmath>
 #include <iomanip>
 #include <sstream>
 #include <string>
 
-#include "fingerpad/traction.hpp"
 #include "support/catch.hpp"
 #include "support/traction_scenes.hpp"
 

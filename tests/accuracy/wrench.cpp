@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: MIT
 // Force and moment of finite-element membranes against the truth: by their exact shape and side
 // dots, and by noisy frames. test_accuracy "[wrench]" -s prints all figures.
+#include "fingerpad/wrench.hpp"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -16,120 +18,21 @@
 #include "fingerpad/contact_region.hpp"
 #include "fingerpad/depth.hpp"
 #include "fingerpad/detail/membrane/pad_heights.hpp"
-#include "fingerpad/wrench.hpp"
 #include "support/catch.hpp"
 #include "support/finite_elements.hpp"
 #include "support/rolling.hpp"
+#include "support/wrench_frames.hpp"
 
 using namespace fingerpad;
+using test::exact_heights;
 using test::Image;
+using test::rows_of;
+using test::WrenchFrame;
 
 namespace {
 
-constexpr Index side_dots = 72;
 constexpr double stress_free_inclination_rad = 1.0623;  // of a cap 11 mm high: 2 atan(11 / 18.735)
 constexpr double true_modulus = 0.5;                    // N/mm: 0.5 MPa, 1 mm thick
-
-/// A step of a scene; see tests/data/README.md.
-struct Frame {
-  std::string name, heights, scene;
-  std::uint64_t number = 0;
-  double pressure_mpa = 0;
-  Point3<double> force_n{}, moment_n_mm{};
-  double largest_fxy = 0, largest_fz = 0, largest_mxy = 0, largest_mz = 0;  ///< of the scene
-  Image<Point3<double>> dots{3, side_dots, {0, 0, 0}};  ///< of one row; of two rows
-};
-
-std::vector<Frame> read_frames() {
-  std::vector<Frame> frames;
-  auto file = test::open_data("wrench_frames.csv", "frame,heights,scene,step,");
-  auto dots = test::open_data("wrench_side_dots.csv", "frame,row,");
-  std::string line, cell;
-  std::getline(file, line);
-  std::getline(dots, line);
-  while (std::getline(file, line)) {
-    std::istringstream cells(line);
-    Frame f;
-    std::getline(cells, f.name, ',');
-    std::getline(cells, f.heights, ',');
-    std::getline(cells, f.scene, ',');
-    std::getline(cells, cell, ',');
-    for (double* number : {&f.pressure_mpa, &f.force_n.x, &f.force_n.y, &f.force_n.z,
-                           &f.moment_n_mm.x, &f.moment_n_mm.y, &f.moment_n_mm.z, &f.largest_fxy,
-                           &f.largest_fz, &f.largest_mxy, &f.largest_mz}) {
-      std::getline(cells, cell, ',');
-      *number = std::stod(cell);
-    }
-    for (Index row = 0; row < 3; ++row) {
-      std::getline(dots, line);
-      std::istringstream numbers(line);
-      std::getline(numbers, cell, ',');
-      REQUIRE(cell == f.name);
-      std::getline(numbers, cell, ',');
-      REQUIRE(std::stoi(cell) == row + 1);
-      for (Index k = 0; k < side_dots; ++k) {
-        for (double* number : {&f.dots(row, k).x, &f.dots(row, k).y, &f.dots(row, k).z}) {
-          std::getline(numbers, cell, ',');
-          *number = std::stod(cell);
-        }
-      }
-    }
-    f.number = frames.size();
-    frames.push_back(f);
-  }
-  REQUIRE(frames.size() == 15);
-  return frames;
-}
-
-const std::vector<Frame>& frames() {
-  static const std::vector<Frame> all = read_frames();
-  return all;
-}
-
-Image<Point3<double>> border() {
-  Image<Point3<double>> points(1, side_dots, {0, 0, 0});
-  for (Index k = 0; k < side_dots; ++k) {
-    const double at = 2 * std::numbers::pi * static_cast<double>(k) / side_dots;
-    points(0, k) = {test::base_radius_mm * std::cos(at), test::base_radius_mm * std::sin(at), 0};
-  }
-  return points;
-}
-
-/// One row of a frame's side dots, or both of two.
-Image<Point3<double>> rows_of(const Image<Point3<double>>& dots, Index rows) {
-  Image<Point3<double>> out(rows, side_dots, {0, 0, 0});
-  const auto from = dots.cells.begin() + (rows == 1 ? 0 : side_dots);
-  std::copy(from, from + rows * side_dots, out.cells.begin());
-  return out;
-}
-
-/// Shapes of the membranes, exactly as the finite elements have them.
-const HeightMap<double>& exact_heights(const std::string& name) {
-  static std::map<std::string, HeightMap<double>> all;
-  const auto found = all.find(name);
-  if (found != all.end()) {
-    return found->second;
-  }
-  const test::Membrane membrane(name);
-  const test::TrueContact contact(name);
-  HeightMap<double> map(19.5, 0.5);
-  map.fill(
-      [&](Index i, Index j) {
-        const double x = map.position_mm(j), y = map.position_mm(i);
-        return std::hypot(x, y) > test::base_radius_mm ? test::nan : membrane(x, y);
-      },
-      [&](Index i, Index j, const auto&...) {
-        // a share, as the mean over the node's surroundings
-        double share = 0;
-        for (const double down : {-0.125, 0.125}) {
-          for (const double right : {-0.125, 0.125}) {
-            share += contact(map.position_mm(j) + right, map.position_mm(i) + down) ? 0.25 : 0;
-          }
-        }
-        return share;
-      });
-  return all.emplace(name, map).first->second;
-}
 
 enum class Share {
   of_scene,  ///< of the largest of the frame's scene
@@ -137,13 +40,13 @@ enum class Share {
 };
 
 struct Input {
-  std::function<const HeightMap<double>&(const Frame&)> heights;
-  std::function<Image<Point3<double>>(const Frame&)> dots;
+  std::function<const HeightMap<double>&(const WrenchFrame&)> heights;
+  std::function<Image<Point3<double>>(const WrenchFrame&)> dots;
 };
 
 Input exact_input() {
-  return {[](const Frame& f) -> const HeightMap<double>& { return exact_heights(f.heights); },
-          [](const Frame& f) { return f.dots; }};
+  return {[](const WrenchFrame& f) -> const HeightMap<double>& { return exact_heights(f.heights); },
+          [](const WrenchFrame& f) { return f.dots; }};
 }
 
 /// Mean and largest absolute errors over frames, as shares of the largest there is: F_x and F_y
@@ -167,7 +70,7 @@ Errors errors_of(const W& wrench,
   Errors e;
   std::array<double, 4> count{}, products{}, squares{};
   double frames_seen = 0;
-  for (const Frame& f : frames()) {
+  for (const WrenchFrame& f : test::wrench_frames()) {
     if (!scene.empty() && f.scene != scene) {
       continue;
     }
@@ -269,7 +172,7 @@ void at_most(const Errors& e, double fxy, double fz, double mxy, double mz) {
 }  // namespace
 
 TEST_CASE("wrench of finite-element membranes, exact shape and side dots", "[wrench]") {
-  const auto rim = border();
+  const auto rim = test::rim_border();
   const auto options = exact_options();
   auto two_rows = options;
   two_rows.side_dot_length_mm = 0.8;
@@ -336,7 +239,7 @@ TEST_CASE("wrench of finite-element membranes, exact shape and side dots", "[wre
 }
 
 TEST_CASE("the published rim finds too little of drag and twist", "[wrench]") {
-  const auto rim = border();
+  const auto rim = test::rim_border();
   const Published published(rim, exact_options());
   const Wrench<BalancedRim> balanced(rim, exact_options());
   const Input input = exact_input();
@@ -390,7 +293,7 @@ class Rendered {
     test_.threshold_per_mm = calibration.fit().threshold_per_mm;
   }
 
-  const HeightMap<double>& heights(const Frame& f, Seen seen) {
+  const HeightMap<double>& heights(const WrenchFrame& f, Seen seen) {
     if (seen == Seen::exact) {
       return exact_heights(f.heights);
     }
@@ -443,7 +346,7 @@ Image<Point3<double>> jittered(Image<Point3<double>> dots, const Noise& noise, s
 }  // namespace
 
 TEST_CASE("wrench of finite-element membranes, noisy frames", "[wrench]") {
-  const auto rim = border();
+  const auto rim = test::rim_border();
   Rendered rendered;
   WrenchOptions<double> options = exact_options();
   auto two_rows = options;
@@ -458,10 +361,10 @@ TEST_CASE("wrench of finite-element membranes, noisy frames", "[wrench]") {
   const Wrench<KnownModulus> given(rim, options, {.modulus_n_per_mm = true_modulus});
   const Wrench<PublishedIteration> corrected(rim, options);
   const auto input = [&](const Noise& noise) {
-    return Input{[&rendered, noise](const Frame& f) -> const HeightMap<double>& {
+    return Input{[&rendered, noise](const WrenchFrame& f) -> const HeightMap<double>& {
                    return rendered.heights(f, noise.seen);
                  },
-                 [noise](const Frame& f) { return jittered(f.dots, noise, f.number); }};
+                 [noise](const WrenchFrame& f) { return jittered(f.dots, noise, f.number); }};
   };
   const Noise all;
   Table table("frames of 8 bit, noise of 1 grey level, side dots of 0.06 px");

@@ -1,29 +1,35 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// Full-size frames of finite-element membranes: refracted rays, printed dots, 8 bit, noise in each
-// channel. See tests/data/README.md for the shapes.
+// Finite-element membranes (tests/data/README.md): their shapes, what touches, and full-size frames
+// of them: refracted rays, printed dots, 8 bit, noise in each channel.
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <filesystem>
 #include <fstream>
+#include <stdexcept>
 #include <string>
 
 #include "fingerpad/depth.hpp"
-#include "support/catch.hpp"
-#include "support/pad.hpp"
+#include "pad.hpp"
 
 namespace test {
 
 constexpr double base_radius_mm = 18.735;
+
+inline void require_data(bool held, const std::string& what) {
+  if (!held) {
+    throw std::runtime_error("tests/data: " + what);
+  }
+}
 
 inline std::ifstream open_data(const std::string& name, const std::string& header) {
   const auto folder = std::filesystem::path(__FILE__).parent_path().parent_path() / "data";
   std::ifstream file(folder / name, std::ios::binary);
   std::string found(header.size(), ' ');
   file.read(found.data(), static_cast<std::streamsize>(found.size()));
-  REQUIRE(found == header);
+  require_data(found == header, name + " begins otherwise");
   return file;
 }
 
@@ -36,7 +42,7 @@ class Membrane {
       const int high = file.get();
       h = (256 * high + file.get()) / 4000.0 - 2;
     }
-    REQUIRE(file.good());
+    require_data(file.good(), name + ".pgm is too short");
   }
 
   /// Height above (x, y), by cubic interpolation.
@@ -78,7 +84,16 @@ class TrueContact {
         touches_.cells[static_cast<std::size_t>(k + bit)] = byte >> (7 - bit) & 1;
       }
     }
-    REQUIRE(file.good());
+    require_data(file.good(), name + ".pbm is too short");
+  }
+
+  /// In plan.
+  double area_mm2() const {
+    double sum = 0;
+    for (const int touches : touches_.cells) {
+      sum += touches;
+    }
+    return sum * 0.24 * 0.24;
   }
 
   /// By linear interpolation between the samples.
@@ -103,105 +118,123 @@ class TrueContact {
   Image<int> touches_;
 };
 
-/// What the default camera sees: 640 x 480 pixels of 0.08 mm.
+/// The published pad before the default camera: 640 x 480 pixels of 0.08 mm.
+inline Pad published_pad() {
+  Pad pad;
+  pad.rows = 480;
+  pad.cols = 640;
+  pad.camera = fingerpad::Camera<double>();
+  return pad;
+}
+
+/// Zero of a function that falls from above to below 0 between 0 and 14 mm.
+template <class F>
+double crossing(const F& above) {
+  double low = 0;
+  double high = 14;
+  double at_low = above(low);
+  double at_high = above(high);
+  if (at_low <= 0) {
+    return 0;
+  }
+  for (int step = 0; step < 60 && high - low > 1e-6; ++step) {
+    // every third step halves, or a steep end would stay where it is
+    const double secant = low + (high - low) * at_low / (at_low - at_high);
+    const double z = step % 3 == 2 ? (low + high) / 2 : secant;
+    const double f = above(z);
+    if (std::abs(f) < 1e-6) {
+      return z;
+    }
+    (f > 0 ? low : high) = z;
+    (f > 0 ? at_low : at_high) = f;
+  }
+  return (low + high) / 2;
+}
+
+/// Where every pixel's ray meets the membrane; NaN outside of the base.
+inline Image<double> depths(const Pad& pad, const Membrane& membrane) {
+  Image<double> depth(pad.rows, pad.cols, nan);
+  for (Index i = 0; i < pad.rows; ++i) {
+    for (Index j = 0; j < pad.cols; ++j) {
+      const auto at = [&](double z) {
+        return point_at(pad.camera, static_cast<double>(i), static_cast<double>(j), z);
+      };
+      const auto foot = at(0);
+      if (std::hypot(foot.x, foot.y) >= base_radius_mm) {
+        continue;
+      }
+      const auto top = at(1);
+      depth(i, j) = crossing([&](double z) {
+        return membrane(foot.x + z * (top.x - foot.x), foot.y + z * (top.y - foot.y)) - z;
+      });
+    }
+  }
+  return depth;
+}
+
+/// Membrane darker toward the rim, dots of 0.6 mm every 1.5 mm. `noise` in grey levels.
+inline Frame<std::uint8_t> frame_of(const Pad& pad,
+                                    const Image<double>& depth_mm,
+                                    std::uint64_t seed,
+                                    double noise) {
+  Frame<std::uint8_t> frame(pad.rows, pad.cols, 3);
+  Random random(seed);
+  for (Index i = 0; i < pad.rows; ++i) {
+    for (Index j = 0; j < pad.cols; ++j) {
+      const double l = depth_mm(i, j);
+      if (std::isnan(l)) {
+        continue;
+      }
+      const auto p = point_at(pad.camera, static_cast<double>(i), static_cast<double>(j), l);
+      const double u = p.x - 1.5 * std::round(p.x / 1.5);
+      const double v = p.y - 1.5 * std::round(p.y / 1.5);
+      const double share = (p.x * p.x + p.y * p.y) / (base_radius_mm * base_radius_mm);
+      const double bright = 57 * (1 - 0.06 * share) * (u * u + v * v < 0.09 ? 0.4 : 1);
+      const auto c = pad.colour(i, j, l, bright);
+      frame.red(i, j) = stored<std::uint8_t>(c.red + noise * random.normal());
+      frame.green(i, j) = stored<std::uint8_t>(c.green + noise * random.normal());
+    }
+  }
+  return frame;
+}
+
+/// The reference of a camera, or of what is taken for it, from the mean of many free frames, as one
+/// would take it: 16 bit, 1/4 of a grey level of noise. `seen_mm`: what there is; `known_mm`: where
+/// the rays of `camera` meet the free pad.
+inline fingerpad::DepthReference<float> reference_of(const Pad& pad,
+                                                     const fingerpad::Camera<double>& camera,
+                                                     const Image<double>& seen_mm,
+                                                     const Image<double>& known_mm) {
+  Frame<std::uint16_t> mean(pad.rows, pad.cols);
+  Random random(99);
+  for (Index i = 0; i < pad.rows; ++i) {
+    for (Index j = 0; j < pad.cols; ++j) {
+      if (!std::isnan(seen_mm(i, j))) {
+        const auto c = pad.colour(i, j, seen_mm(i, j), 57);
+        mean.red(i, j) = stored<std::uint16_t>(c.red + 0.25 * random.normal());
+        mean.green(i, j) = stored<std::uint16_t>(c.green + 0.25 * random.normal());
+      }
+    }
+  }
+  return fit_reference(camera, pad.fluid, mean.red, mean.green, known_mm);
+}
+
+/// The same for the published pad, by the names of the shapes.
 class Scene {
  public:
-  Scene() {
-    pad_.rows = 480;
-    pad_.cols = 640;
-    pad_.camera = fingerpad::Camera<double>();
-  }
   const Pad& pad() const { return pad_; }
-
-  /// Where every pixel's ray meets the membrane.
-  Image<double> depth(const std::string& name) const {
-    const Membrane membrane(name);
-    Image<double> depth(pad_.rows, pad_.cols, nan);
-    for (Index i = 0; i < pad_.rows; ++i) {
-      for (Index j = 0; j < pad_.cols; ++j) {
-        const auto at = [&](double z) {
-          return point_at(pad_.camera, static_cast<double>(i), static_cast<double>(j), z);
-        };
-        const auto foot = at(0);
-        if (std::hypot(foot.x, foot.y) >= base_radius_mm) {
-          continue;
-        }
-        const auto top = at(1);
-        const auto above = [&](double z) {
-          return membrane(foot.x + z * (top.x - foot.x), foot.y + z * (top.y - foot.y)) - z;
-        };
-        depth(i, j) = crossing(above);
-      }
-    }
-    return depth;
-  }
-
-  /// Membrane darker toward the rim, dots of 0.6 mm every 1.5 mm.
-  Frame<std::uint8_t> frame(const Image<double>& depth,
+  Image<double> depth(const std::string& name) const { return depths(pad_, Membrane(name)); }
+  Frame<std::uint8_t> frame(const Image<double>& depth_mm,
                             std::uint64_t seed,
                             double noise = 1) const {
-    Frame<std::uint8_t> frame(pad_.rows, pad_.cols, 3);
-    Random random(seed);
-    for (Index i = 0; i < pad_.rows; ++i) {
-      for (Index j = 0; j < pad_.cols; ++j) {
-        const double l = depth(i, j);
-        if (l != l) {
-          continue;
-        }
-        const auto p = point_at(pad_.camera, static_cast<double>(i), static_cast<double>(j), l);
-        const double u = p.x - 1.5 * std::round(p.x / 1.5);
-        const double v = p.y - 1.5 * std::round(p.y / 1.5);
-        const double share = (p.x * p.x + p.y * p.y) / (base_radius_mm * base_radius_mm);
-        const double bright = 57 * (1 - 0.06 * share) * (u * u + v * v < 0.09 ? 0.4 : 1);
-        const auto c = pad_.colour(i, j, l, bright);
-        frame.red(i, j) = stored<std::uint8_t>(c.red + noise * random.normal());
-        frame.green(i, j) = stored<std::uint8_t>(c.green + noise * random.normal());
-      }
-    }
-    return frame;
+    return frame_of(pad_, depth_mm, seed, noise);
   }
-
-  /// From the mean of many free frames, as one would take it, in 16 bit: 1/4 of a level of noise.
-  fingerpad::DepthReference<float> reference(const Image<double>& free) const {
-    Frame<std::uint16_t> mean(pad_.rows, pad_.cols);
-    Random random(99);
-    for (std::size_t k = 0; k < free.cells.size(); ++k) {
-      if (free.cells[k] == free.cells[k]) {
-        const Index i = static_cast<Index>(k) / pad_.cols;
-        const Index j = static_cast<Index>(k) % pad_.cols;
-        const auto c = pad_.colour(i, j, free.cells[k], 57);
-        mean.red.cells[k] = stored<std::uint16_t>(c.red + 0.25 * random.normal());
-        mean.green.cells[k] = stored<std::uint16_t>(c.green + 0.25 * random.normal());
-      }
-    }
-    return fit_reference(pad_.camera, pad_.fluid, mean.red, mean.green, free);
+  fingerpad::DepthReference<float> reference(const Image<double>& free_mm) const {
+    return reference_of(pad_, pad_.camera, free_mm, free_mm);
   }
 
  private:
-  /// Zero of a function that falls from above to below 0 between 0 and 14 mm.
-  template <class F>
-  static double crossing(const F& above) {
-    double low = 0;
-    double high = 14;
-    double at_low = above(low);
-    double at_high = above(high);
-    if (at_low <= 0) {
-      return 0;
-    }
-    for (int step = 0; step < 60 && high - low > 1e-6; ++step) {
-      // every third step halves, or a steep end would stay where it is
-      const double secant = low + (high - low) * at_low / (at_low - at_high);
-      const double z = step % 3 == 2 ? (low + high) / 2 : secant;
-      const double f = above(z);
-      if (std::abs(f) < 1e-6) {
-        return z;
-      }
-      (f > 0 ? low : high) = z;
-      (f > 0 ? at_low : at_high) = f;
-    }
-    return (low + high) / 2;
-  }
-  Pad pad_;
+  Pad pad_ = published_pad();
 };
 
 }  // namespace test
