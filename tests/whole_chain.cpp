@@ -74,13 +74,15 @@ TEMPLATE_TEST_CASE("the whole chain tells what the plate does",
     CAPTURE(k);
     const Results& r = run.results[k];
     const PressedFrame& f = frames()[k];
-    CHECK(r.contact.area_mm2 == Approx(f.contact_area_mm2()).epsilon(0.3));
-    CHECK(r.contact.depth_mm == Approx(13 - f.membrane.height(0)).margin(0.1));
-    CHECK(r.motion.angles.z_rad == Approx(f.plate.turn_rad - first.plate.turn_rad).margin(0.002));
+    // a gap of 20 um counts as touching, and depths are averaged over 15 px
+    CHECK(r.contact.area_mm2 > f.contact_area_mm2());
+    CHECK(r.contact.area_mm2 == Approx(f.contact_area_mm2()).epsilon(0.25));
+    CHECK(r.contact.depth_mm == Approx(13 - f.membrane.height(0)).margin(0.03));
+    CHECK(r.motion.angles.z_rad == Approx(f.plate.turn_rad - first.plate.turn_rad).margin(0.0005));
     CHECK(r.wrench.ok());
     CHECK(r.wrench.force_n.z == Approx(f.wrench.force_n.z).epsilon(0.15));
-    CHECK(r.wrench.force_n.x == Approx(f.wrench.force_n.x).margin(0.15));
-    CHECK(r.wrench.moment_n_mm.z == Approx(f.wrench.moment_n_mm.z).margin(1));
+    CHECK(r.wrench.force_n.x == Approx(f.wrench.force_n.x).margin(0.08));
+    CHECK(r.wrench.moment_n_mm.z == Approx(f.wrench.moment_n_mm.z).margin(0.7));
     if (k > 0) {
       CHECK(r.stick.stick_ratio > 0.95F);
     }
