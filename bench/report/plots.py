@@ -85,7 +85,7 @@ def pareto(title, rows, path):
     logarithmic(axes.yaxis, "y")
     exact = ", lowest: 0" if len(positive) < len(ways) else ""
     axes.set_xlabel("time, s (filled: -O3 -march=native, hollow: -O2; star: as published)")
-    axes.set_ylabel(f"99th percentile of the error of {quantity}, {error.unit}{exact}")
+    axes.set_ylabel(f"99th percentile of the error of\n{quantity}, {error.unit}{exact}")
     axes.set_title(title, loc="left", weight="bold")
     for k, (name, colour) in enumerate(names):
         axes.text(1.02, 1 - (k + 0.5) / max(len(names), 12), name, transform=axes.transAxes,
