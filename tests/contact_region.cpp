@@ -485,6 +485,21 @@ TEST_CASE("missing neighbours count as just as deep", "[contact_region]") {
   CHECK(is_finite(r.depth_mm));
 }
 
+TEST_CASE("pixels at the image's end count as much as others", "[contact_region]") {
+  const OrthographicCamera<double> camera;
+  ContactTest test = with_ring(3);
+  test.ring.min_direction_share = 0.01;
+  const Image<double> plate(30, 41, 5.0);
+  const auto found = find<SectionMean<>, AtThreshold>(camera, plate, test);
+  CHECK(found.mask(0, 20) == Touch::contact);
+  CHECK(found.mask(29, 20) == Touch::contact);
+  CHECK(found.mask(15, 0) == Touch::contact);
+  CHECK(found.mask(15, 40) == Touch::contact);
+  const double pixel_mm2 = camera.pitch_mm * camera.pitch_mm;
+  const auto count = static_cast<double>(found.result.contact_px);
+  CHECK(found.result.area_mm2 == Approx(count * pixel_mm2).epsilon(1e-12));
+}
+
 TEST_CASE("an image smaller than the ring is unknown", "[contact_region]") {
   for (const Index size : {2, 9}) {
     const Image<float> depth(size, size + 1, 9.0F);

@@ -4,11 +4,14 @@
 
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <numbers>
 #include <string>
 #include <vector>
 
+#include "fingerpad/detail/membrane/pad_heights.hpp"
 #include "support/catch.hpp"
+#include "support/generators.hpp"
 #include "support/numbers.hpp"
 #include "support/pressed_pad.hpp"
 #include "support/refusal.hpp"
@@ -683,6 +686,65 @@ TEST_CASE("side dots of different stress-free lengths", "[wrench]") {
   const auto truth = wrench_of(rim, load, pressed_mpa);
   CHECK(distance(r.force_n, truth.force_n) < 1e-9);
   CHECK(distance(r.moment_n_mm, truth.moment_n_mm) < 1.5e-3 * size(truth.moment_n_mm));
+}
+
+namespace {
+/// A tilted bowl over the plate, as a camera sees it.
+struct Bowl {
+  Camera<double> camera{
+      .center_x_px = test::uniform(75, 85), .center_y_px = test::uniform(55, 65), .pitch_mm = 0.3};
+  double top_mm = test::uniform(5, 10), radius_mm = test::uniform(18, 40);
+  double along_x = test::uniform(-0.1, 0.1), along_y = test::uniform(-0.1, 0.1);
+
+  double height(double x, double y) const {
+    return top_mm + along_x * x + along_y * y - (x * x + y * y) / (2 * radius_mm);
+  }
+  /// A ray is steep, so heights above where it ends hardly depend on where that is.
+  double depth(Index i, Index j) const {
+    double mm = top_mm;
+    for (int k = 0; k < 20; ++k) {
+      const auto p = point_at(camera, static_cast<double>(i), static_cast<double>(j), mm);
+      mm = height(p.x, p.y);
+    }
+    return mm > 0 ? mm : test::nan;
+  }
+};
+}  // namespace
+
+TEST_CASE("heights in plan are those that a camera has seen along its rays", "[wrench]") {
+  rc::prop("and a pixel without depth leaves out no more than what it sees", [] {
+    const Bowl bowl;
+    test::Image<double> depth(120, 160);
+    const test::Image<std::uint8_t> mask(120, 160, 255);
+    for (Index i = 0; i < depth.rows(); ++i) {
+      for (Index j = 0; j < depth.cols(); ++j) {
+        depth(i, j) = bowl.depth(i, j);
+      }
+    }
+    const PadHeights<Camera<double>> heights(120, 160, bowl.camera, 15.0);
+    auto whole = heights.map(), torn = heights.map();
+    RC_ASSERT(heights(depth, mask, whole));
+    const Index row = test::whole(40, 80), col = test::whole(60, 100);
+    const double seen_mm = depth(row, col);
+    const auto hole =
+        point_at(bowl.camera, static_cast<double>(row), static_cast<double>(col), seen_mm);
+    depth(row, col) = test::nan;
+    RC_ASSERT(heights(depth, mask, torn));
+    for (Index i = 0; i < whole.side(); ++i) {
+      for (Index j = 0; j < whole.side(); ++j) {
+        const double x = whole.position_mm(j), y = whole.position_mm(i);
+        const double truth = bowl.height(x, y);
+        const double found = whole.node(i, j).height_mm;
+        if (truth > 0.5) {
+          RC_ASSERT(std::abs(found - truth) < 0.003);
+          RC_ASSERT((truth < 1.5 || std::hypot(x, y) > 14 || whole.in_contact(x, y)));
+          if (std::hypot(x - hole.x, y - hole.y) > 1) {
+            RC_ASSERT(std::abs(torn.node(i, j).height_mm - found) < 0.001);
+          }
+        }
+      }
+    }
+  });
 }
 
 TEST_CASE("heights on a mesh stand for the shape", "[wrench]") {

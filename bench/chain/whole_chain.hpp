@@ -90,7 +90,7 @@ struct WithLeastSquares : ByDefault {
 struct Lean : ByDefault {
   using Smoothing = fingerpad::Anchored<fingerpad::BoxMean>;
   using Inverse = fingerpad::ExponentialFree<2, 5>;
-  using Statistic = fingerpad::HessianFit<9>;
+  using Statistic = fingerpad::RingStencil<9>;
   using Edge = fingerpad::AtThreshold;
 };
 

@@ -176,7 +176,7 @@ the object, stick ratio, look-up forces and six-axis force, put together in
 
 Three chains. **default**: the policies by default, with the published iteration as solver of the
 six-axis force. **least squares**: the same with the default solver. **lean**: what a flat contact on
-a pad with dark dots cannot do without: `Anchored<BoxMean>`, `ExponentialFree<2, 5>`, `HessianFit<9>`,
+a pad with dark dots cannot do without: `Anchored<BoxMean>`, `ExponentialFree<2, 5>`, `RingStencil<9>`,
 `AtThreshold`.
 
 ![Time of each stage](whole_chain/stages.png)

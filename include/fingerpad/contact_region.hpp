@@ -196,9 +196,9 @@ class ContactRegion {
                const View& depth_mm,
                ContactResult& result) const {
     const detail::RegionMeasures sums(marks, depth_mm, rays_);
-    result.contact_px = sums.pixels;
+    result.contact_px = sums.pixels();
     if (result.in_contact()) {
-      result.area_mm2 = sums.area_mm2;
+      result.area_mm2 = sums.area_mm2();
       result.center_mm = sums.center_mm();
       result.depth_mm = test_.free_apex_mm - result.center_mm.z;
     }

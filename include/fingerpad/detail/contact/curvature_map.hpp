@@ -105,8 +105,9 @@ class CurvatureMap {
       const Index count = (std::min)(Strip::columns, cols_ - j);
       Strip strip(kernel_, units_, least_);
       for (Index i = first; i < last; ++i) {
-        strip.row(cell(workspace, i, j), count, segment);
-        known += store_segment(segment, count, to, i, j);
+        const bool whole = strip.row(cell(workspace, i, j), count, segment);
+        known += whole ? count : count_known(segment, count);
+        store_segment(segment, count, to, i, j);
       }
     }
     return {true, known, (last - first) * cols_ - known};
@@ -171,15 +172,21 @@ class CurvatureMap {
     });
   }
 
-  /// How many of them are known.
+  static Index count_known(const S* segment, Index count) {
+    return std::count_if(segment, segment + count, [](const S& k) { return value(k) == value(k); });
+  }
+
   template <class View>
-  static Index store_segment(const S* segment, Index count, const View& to, Index i, Index first) {
-    int known = 0;
+  static void store_segment(const S* segment, Index count, const View& to, Index i, Index first) {
+    if constexpr (detail::plain_rows<View, S>) {
+      if (to.col_stride() == 1) {
+        std::copy_n(segment, count, to.row(i) + first);
+        return;
+      }
+    }
     for (Index j = 0; j < count; ++j) {
       to(i, first + j) = static_cast<cell_t<View>>(segment[j]);
-      known += value(segment[j]) == value(segment[j]) ? 1 : 0;
     }
-    return known;
   }
 
   detail::DepthUnits<Projection, S> units_;

@@ -29,13 +29,6 @@ template <class Mask>
   }
 }
 
-/// Rows that vectors of S can be loaded from.
-template <class View, class S>
-inline constexpr bool plain_rows = false;
-template <class T, class S>
-  requires(std::same_as<std::remove_const_t<T>, S>)
-inline constexpr bool plain_rows<StridedView<T>, S> = true;
-
 /// True when some lane of `wanted` is not in `found`.
 template <class Mask>
 [[gnu::always_inline]] inline bool lacks(const Mask& wanted, const Mask& found) {
@@ -213,11 +206,14 @@ class CurvatureStrip {
   CurvatureStrip(const Kernel& kernel, const Units& units, int least)
       : kernel_(kernel), units_(units), least_(least) {}
 
-  /// `count` <= columns curvatures, rounded up to whole vectors, around cells[0] and on.
-  void row(const S* cells, Index count, S* out) {
-    if (!all_whole(cells, count, out)) {
+  /// `count` <= columns curvatures, rounded up to whole vectors, around cells[0] and on. True when
+  /// all rings were whole: nothing is missing.
+  bool row(const S* cells, Index count, S* out) {
+    const bool whole = all_whole(cells, count, out);
+    if (!whole) {
       mend(cells, count, out);
     }
+    return whole;
   }
 
  private:

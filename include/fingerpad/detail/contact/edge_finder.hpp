@@ -160,8 +160,8 @@ class EdgeFinder<HalfLevelEdge, Statistic, Projection, S> {
   static Band rows_with_seeds(const Marks& marks) {
     Band rows{marks.rows(), 0};
     for (Index i = 0; i < marks.rows(); ++i) {
-      const Mark* row = marks.row(i);
-      if (std::find(row, row + marks.cols(), Mark::seed) != row + marks.cols()) {
+      const Mark* end = marks.row(i) + marks.cols();
+      if (find_mark(marks.row(i), end, Mark::seed) != end) {
         rows.first = (std::min)(rows.first, i);
         rows.last = i + 1;
       }

@@ -18,6 +18,20 @@ namespace detail {
 /// State of a pixel while regions are found.
 enum class Mark : std::uint8_t { free, unknown, seed, contact };
 
+inline const std::uint8_t* bytes_of(const Mark* marks) {
+  return reinterpret_cast<const std::uint8_t*>(marks);
+}
+inline std::uint8_t* bytes_of(Mark* marks) {
+  return reinterpret_cast<std::uint8_t*>(marks);
+}
+
+/// The first such mark in [first, last), or last.
+inline const Mark* find_mark(const Mark* first, const Mark* last, Mark which) {
+  const auto count = static_cast<std::size_t>(last - first);
+  const void* found = count == 0 ? nullptr : std::memchr(first, static_cast<int>(which), count);
+  return found == nullptr ? last : static_cast<const Mark*>(found);
+}
+
 /// Marks of a row of curvatures: seed below the threshold, unknown where there is none.
 template <class S>
 void mark_below(const S& threshold, const S* curvature, Index count, Mark* marks) {
@@ -25,7 +39,7 @@ void mark_below(const S& threshold, const S* curvature, Index count, Mark* marks
     const V k = load_cells<V, S>(curvature + j);
     const V known = k == k ? V{} : V(V{} + S(static_cast<int>(Mark::unknown)));
     const V mark = k < V{} + threshold ? V(V{} + S(static_cast<int>(Mark::seed))) : known;
-    store_cells<S>(reinterpret_cast<std::uint8_t*>(marks + j), mark);
+    store_cells<S>(bytes_of(marks + j), mark);
   });
 }
 
@@ -133,10 +147,8 @@ class Regions {
 
  private:
   Index next_seed(Index from) const {
-    const Mark* first = mark_.data() + from;
-    const auto left = static_cast<std::size_t>(image_.size() - from);
-    const void* found = std::memchr(first, static_cast<int>(Mark::seed), left);
-    return found == nullptr ? image_.size() : static_cast<const Mark*>(found) - mark_.data();
+    const Mark* marks = mark_.data();
+    return find_mark(marks + from, marks + image_.size(), Mark::seed) - marks;
   }
 
   void push(Index at) {

@@ -67,8 +67,7 @@ class HeightMap {
  public:
   /// Memory for places within `half_width_mm` > 0 of Q along x and y, nodes `spacing_mm` > 0 apart.
   explicit HeightMap(const S& half_width_mm, const S& spacing_mm = S(1) / S(2))
-      : spacing_mm_(spacing_mm) {
-    using std::ceil;
+      : spacing_mm_(spacing_mm), per_mm_(S(1) / spacing_mm) {
     expects(is_finite(spacing_mm) && value(spacing_mm) > 0, "HeightMap", "spacing_mm", spacing_mm,
             "finite and > 0");
     const S cells = half_width_mm / spacing_mm;
@@ -86,8 +85,11 @@ class HeightMap {
   /// x of a column of nodes, and y of a row of the same number.
   S position_mm(Index k) const { return S(static_cast<double>(k - middle_)) * spacing_mm_; }
 
-  /// Writes every node: `height(row, col)` in mm (NaN: none), and which share of the membrane
-  /// around it touches the object, from 0 to 1.
+  /// Height of a node and its rise along x and y.
+  const HeightAndSlope<S>& node(Index row, Index col) const { return nodes_[at(row, col)]; }
+
+  /// Writes every node, row after row: `height(row, col)` in mm (NaN: none), and which share of the
+  /// membrane around it touches the object, from 0 to 1.
   template <class Height, class Share>
   void fill(const Height& height, const Share& contact_share) {
     for (Index i = 0; i < side(); ++i) {
@@ -140,8 +142,8 @@ class HeightMap {
   };
 
   Cell cell_of(const S& x_mm, const S& y_mm) const {
-    const S col = x_mm / spacing_mm_ + S(static_cast<double>(middle_));
-    const S row = y_mm / spacing_mm_ + S(static_cast<double>(middle_));
+    const S col = x_mm * per_mm_ + S(static_cast<double>(middle_));
+    const S row = y_mm * per_mm_ + S(static_cast<double>(middle_));
     const auto last = static_cast<scalar_real_t<S>>(static_cast<double>(side() - 1));
     if (!(value(row) >= 0 && value(col) >= 0 && value(row) < last && value(col) < last)) {
       return {false, 0, 0, S(0), S(0)};  // and for NaN
@@ -163,6 +165,7 @@ class HeightMap {
   }
 
   S spacing_mm_;
+  S per_mm_;  ///< nodes
   Index middle_ = 0;
   std::vector<HeightAndSlope<S>> nodes_;
   std::vector<S> share_;

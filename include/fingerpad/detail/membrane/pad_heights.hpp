@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 // From a depth map along camera rays, and the mask of the contact, to heights in plan.
-#include <array>
 #include <cmath>
 #include <concepts>
 #include <cstddef>
@@ -21,7 +20,7 @@ inline namespace v0 {
 
 /// Fills height maps from the depth maps of a camera (or of an OrthographicCamera). Above a place
 /// in plan the pixel that sees the membrane there depends on the height that is looked for: it is
-/// found by the secant method, from what depends on the place alone.
+/// found by Newton's method, from what depends on the place alone.
 ///
 /// const, so that threads may share one; a frame takes no memory, throws nothing, and takes
 /// bounded time for each node.
@@ -37,7 +36,11 @@ class PadHeights {
              const CameraType& camera,
              const Scalar& half_width_mm = Scalar(39) / Scalar(2),
              const Scalar& spacing_mm = Scalar(1) / Scalar(2))
-      : rows_(rows), cols_(cols), half_width_mm_(half_width_mm), spacing_mm_(spacing_mm) {
+      : rows_(rows),
+        cols_(cols),
+        center_px_{camera.center_x_px, camera.center_y_px},
+        half_width_mm_(half_width_mm),
+        spacing_mm_(spacing_mm) {
     expects(rows >= 2, "PadHeights", "rows", static_cast<long long>(rows), ">= 2");
     expects(cols >= 2, "PadHeights", "cols", static_cast<long long>(cols), ">= 2");
     expects_valid(camera);
@@ -66,8 +69,9 @@ class PadHeights {
         heights.side() != side_) {
       return false;
     }
-    heights.fill([&](Index i, Index j) { return height(depth, at(i, j)); },
-                 [&](Index i, Index j, const S& z) { return contact_share(mask, at(i, j), z); });
+    heights.fill(
+        [&](Index i, Index j) { return height(depth, at(i, j), continued(heights, i, j)); },
+        [&](Index i, Index j, const S& z) { return contact_share(mask, at(i, j), z); });
     return true;
   }
 
@@ -77,7 +81,6 @@ class PadHeights {
   /// Where the membrane above a place is seen: at center + (x, y) / mm_per_px, which depends on its
   /// height: mm_per_px = at_plate + rising z + bending z^2, nearly straight.
   struct Sight {
-    S center_x, center_y;
     S x, y;
     S at_plate, rising, bending;
   };
@@ -95,95 +98,126 @@ class PadHeights {
     const S middle = mm_per_px(S(high / S(2)));
     const S top = mm_per_px(high);
     const S bending = S(2) * (top - S(2) * middle + low) / (high * high);
-    return {camera.center_x_px,
-            camera.center_y_px,
-            x,
-            y,
-            low,
-            S((top - low) / high - bending * high),
-            bending};
+    return {x, y, low, S((top - low) / high - bending * high), bending};
   }
 
   const Sight& at(Index i, Index j) const {
     return sights_[static_cast<std::size_t>(i * side_ + j)];
   }
 
-  static Point2<S> pixel(const Sight& s, const S& z) {
-    const S mm_per_px = s.at_plate + z * (s.rising + z * s.bending);
-    return {S(s.center_x + s.x / mm_per_px), S(s.center_y + s.y / mm_per_px)};
+  /// The pixel that sees a place at some height.
+  struct Sighting {
+    S x_px, y_px;  ///< from the center
+    S px_per_mm;
+    S nearer;  ///< by this share of x_px and y_px it is nearer to the center for each mm of height
+  };
+
+  static Sighting sighting(const Sight& s, const S& z) {
+    const S px_per_mm = S(1) / (s.at_plate + z * (s.rising + z * s.bending));
+    return {S(s.x * px_per_mm), S(s.y * px_per_mm), px_per_mm,
+            S((s.rising + S(2) * z * s.bending) * px_per_mm)};
   }
+
+  /// The depth there, and how it changes with the height of the place.
+  struct Seen {
+    S depth_mm;
+    S per_mm;
+  };
 
   /// Bilinear; NaN outside of the map and beside pixels without depth.
   template <class View>
-  S depth_at(const View& depth, const Point2<S>& p) const {
-    const bool inside = value(p.x) >= 0 && value(p.y) >= 0 &&
-                        value(p.x) < static_cast<scalar_real_t<S>>(cols_ - 1) &&
-                        value(p.y) < static_cast<scalar_real_t<S>>(rows_ - 1);
+  Seen seen(const View& depth, const Sight& s, const S& z) const {
+    const Sighting at = sighting(s, z);
+    const S x = center_px_.x + at.x_px;
+    const S y = center_px_.y + at.y_px;
+    const bool inside = value(x) >= 0 && value(y) >= 0 &&
+                        value(x) < static_cast<scalar_real_t<S>>(cols_ - 1) &&
+                        value(y) < static_cast<scalar_real_t<S>>(rows_ - 1);
     if (!inside) {
-      return not_a_number<S>();
+      return {not_a_number<S>(), not_a_number<S>()};
     }
-    const Index j = static_cast<Index>(value(p.x));
-    const Index i = static_cast<Index>(value(p.y));
-    const S right = p.x - S(static_cast<double>(j));
-    const S down = p.y - S(static_cast<double>(i));
-    const S up = S(depth(i, j)) + right * (S(depth(i, j + 1)) - S(depth(i, j)));
-    const S low = S(depth(i + 1, j)) + right * (S(depth(i + 1, j + 1)) - S(depth(i + 1, j)));
-    return S(up + down * (low - up));
+    const Index j = static_cast<Index>(value(x));
+    const Index i = static_cast<Index>(value(y));
+    const S right = x - S(static_cast<double>(j));
+    const S down = y - S(static_cast<double>(i));
+    const S up_rise = S(depth(i, j + 1)) - S(depth(i, j));
+    const S low_rise = S(depth(i + 1, j + 1)) - S(depth(i + 1, j));
+    const S up = S(depth(i, j)) + right * up_rise;
+    const S low = S(depth(i + 1, j)) + right * low_rise;
+    const S outward = (up_rise + down * (low_rise - up_rise)) * at.x_px + (low - up) * at.y_px;
+    return {S(up + down * (low - up)), S(-outward * at.nearer)};
   }
 
-  /// The z with depth(pixel(z)) = z.
-  template <class View>
-  S height(const View& depth, const Sight& s) const {
-    constexpr int most_steps = 8;
-    const S close = S(1) / S(2000);  // mm
-    S z = depth_at(depth, pixel(s, S(0)));
-    if (!is_finite(z)) {  // steep membrane: seen from further inside
-      z = S(4);
+  /// The height of a node if the two before it in its column go on straight; NaN at first.
+  static S continued(const HeightMap<S>& heights, Index i, Index j) {
+    if (i < 2) {
+      return not_a_number<S>();
     }
-    S before = z;
-    S excess_before = S(0);
+    return S(S(2) * heights.node(i - 1, j).height_mm - heights.node(i - 2, j).height_mm);
+  }
+
+  /// The z that is seen at its own height.
+  template <class View>
+  S height(const View& depth, const Sight& s, const S& guess) const {
+    const S near = is_finite(guess) ? root(depth, s, guess) : guess;
+    if (is_finite(near)) {
+      return near;
+    }
+    const S on_plate = seen(depth, s, S(0)).depth_mm;
+    // steep membrane is seen from further inside
+    return root(depth, s, is_finite(on_plate) ? on_plate : S(4));
+  }
+
+  template <class View>
+  S root(const View& depth, const Sight& s, S z) const {
+    constexpr int most_steps = 8;
+    const S close = S(1) / S(20);  // mm; the step that follows leaves some 0.001 mm
     for (int step = 0; step < most_steps; ++step) {
-      const S excess = depth_at(depth, pixel(s, z)) - z;
+      const Seen here = seen(depth, s, z);
+      const S excess = here.depth_mm - z;
       if (!is_finite(excess)) {
         return not_a_number<S>();
       }
-      if (value(excess) < value(close) && value(excess) > value(S(-close))) {
-        return S(z + excess);
-      }
-      const S slope = step == 0 ? S(-1) : S((excess - excess_before) / (z - before));
-      before = z;
-      excess_before = excess;
+      const S slope = here.per_mm - S(1);
       z = z - excess / (slope < S(-1) / S(10) ? slope : S(-1));
+      if (value(excess) < value(close) && value(excess) > value(S(-close))) {
+        return z;
+      }
     }
     return not_a_number<S>();
   }
 
+  /// Of four places around a node, those where the mask says contact.
   template <class View>
   S contact_share(const View& mask, const Sight& s, const S& z) const {
     if (!is_finite(z)) {
       return S(0);
     }
-    const Point2<S> p = pixel(s, z);
-    const S away = spacing_mm_ / (S(4) * s.at_plate);  // px
-    S share = S(0);
-    for (const int down : {-1, 1}) {
-      for (const int right : {-1, 1}) {
-        const S col = p.x + S(right) * away + S(1) / S(2);
-        const S row = p.y + S(down) * away + S(1) / S(2);
-        const bool inside = value(col) >= 0 && value(row) >= 0 &&
-                            value(col) < static_cast<scalar_real_t<S>>(cols_) &&
-                            value(row) < static_cast<scalar_real_t<S>>(rows_);
-        if (inside &&
-            says_contact(mask(static_cast<Index>(value(row)), static_cast<Index>(value(col))))) {
-          share = share + S(1) / S(4);
-        }
+    const Sighting at = sighting(s, z);
+    const S x = center_px_.x + at.x_px;
+    const S y = center_px_.y + at.y_px;
+    const S away = spacing_mm_ / S(4) * at.px_per_mm;
+    int touching = 0;
+    for (const Index row : {nearest(S(y - away), rows_), nearest(S(y + away), rows_)}) {
+      for (const Index col : {nearest(S(x - away), cols_), nearest(S(x + away), cols_)}) {
+        const bool inside = row >= 0 && col >= 0;
+        touching += inside && says_contact(mask(row, col)) ? 1 : 0;
       }
     }
-    return share;
+    return S(touching) / S(4);
+  }
+
+  /// -1 outside of the image.
+  static Index nearest(const S& px, Index count) {
+    const S shifted = px + S(1) / S(2);
+    const bool inside =
+        value(shifted) >= 0 && value(shifted) < static_cast<scalar_real_t<S>>(count);
+    return inside ? static_cast<Index>(value(shifted)) : Index(-1);
   }
 
   Index rows_;
   Index cols_;
+  Point2<S> center_px_;
   S half_width_mm_;
   S spacing_mm_;
   Index side_ = 0;

@@ -7,6 +7,7 @@
 #include <cstddef>
 
 #include "fingerpad/detail/vectors/line_vector.hpp"
+#include "fingerpad/detail/vectors/row_lanes.hpp"
 #include "fingerpad/dots.hpp"
 #include "fingerpad/grid.hpp"
 #include "fingerpad/optics.hpp"
@@ -19,6 +20,12 @@ namespace detail {
 template <class CameraType>
 class PixelRays;
 
+/// The point at a distance of (x, y) pixels from the center of the image.
+template <scalar S>
+Point3<S> point_beside(const S& x_px, const S& y_px, const S& mm_per_px, const S& depth_mm) {
+  return {S(x_px * mm_per_px), S(y_px * mm_per_px), depth_mm};
+}
+
 /// A pixel's ray is straight and lies in a plane with the axis: its point is (column - center, row
 /// - center) times a number that grows linearly with the depth. Two numbers per pixel.
 template <scalar S>
@@ -28,19 +35,31 @@ class PixelRays<Camera<S>> {
 
   PixelRays(const Camera<S>& camera, Index rows, Index cols)
       : center_x_(camera.center_x_px), center_y_(camera.center_y_px), cols_(cols) {
-    rays_.reserve(static_cast<std::size_t>(rows * cols));
+    at_plate_.reserve(static_cast<std::size_t>(rows * cols));
+    per_mm_.reserve(static_cast<std::size_t>(rows * cols));
     for (Index i = 0; i < rows; ++i) {
       for (Index j = 0; j < cols; ++j) {
-        rays_.push_back(ray(camera, i, j));
+        const MmPerPx mm_per_px = ray(camera, i, j);
+        at_plate_.push_back(mm_per_px.at_plate);
+        per_mm_.push_back(mm_per_px.per_mm);
       }
     }
   }
 
+  /// A column and a row from the center, px.
+  S x_px(Index col) const { return S(static_cast<double>(col)) - center_x_; }
+  S y_px(Index row) const { return S(static_cast<double>(row)) - center_y_; }
+
+  /// Of a pixel, or as many beside each other as V has lanes.
+  template <class V>
+  [[gnu::always_inline]] V mm_per_px(Index row, Index col, const V& depth_mm) const {
+    const Index at = row * cols_ + col;
+    return load_cells<V, S>(at_plate_.data() + at) +
+           load_cells<V, S>(per_mm_.data() + at) * depth_mm;
+  }
+
   Point3<S> operator()(Index row, Index col, const S& depth_mm) const {
-    const auto& ray = rays_[static_cast<std::size_t>(row * cols_ + col)];
-    const S mm_per_px = ray.at_plate + ray.per_mm * depth_mm;
-    return {S((S(static_cast<double>(col)) - center_x_) * mm_per_px),
-            S((S(static_cast<double>(row)) - center_y_) * mm_per_px), depth_mm};
+    return point_beside(x_px(col), y_px(row), mm_per_px(row, col, depth_mm), depth_mm);
   }
 
  private:
@@ -66,7 +85,8 @@ class PixelRays<Camera<S>> {
   S center_x_;
   S center_y_;
   Index cols_;
-  line_vector<MmPerPx> rays_;
+  line_vector<S> at_plate_;
+  line_vector<S> per_mm_;
 };
 
 /// Nothing to remember.
@@ -77,8 +97,16 @@ class PixelRays<OrthographicCamera<S>> {
 
   PixelRays(const OrthographicCamera<S>& camera, Index, Index) : camera_(camera) {}
 
+  S x_px(Index col) const { return S(static_cast<double>(col)) - camera_.center_x_px; }
+  S y_px(Index row) const { return S(static_cast<double>(row)) - camera_.center_y_px; }
+
+  template <class V>
+  [[gnu::always_inline]] V mm_per_px(Index, Index, const V&) const {
+    return V{} + camera_.pitch_mm;
+  }
+
   Point3<S> operator()(Index row, Index col, const S& depth_mm) const {
-    return point_at(camera_, S(static_cast<double>(row)), S(static_cast<double>(col)), depth_mm);
+    return point_beside(x_px(col), y_px(row), camera_.pitch_mm, depth_mm);
   }
 
  private:

@@ -6,6 +6,7 @@
 #include <concepts>
 #include <cstdint>
 #include <cstring>
+#include <type_traits>
 
 #include "fingerpad/detail/vectors/lanes.hpp"
 #include "fingerpad/grid.hpp"
@@ -81,6 +82,13 @@ template <class S, class V, class T>
 }
 
 #endif
+
+/// Whether rows hold S in memory, which vectors can be loaded from where cells lie side by side.
+template <class View, class S>
+inline constexpr bool plain_rows = false;
+template <class T, class S>
+  requires(std::same_as<std::remove_const_t<T>, S>)
+inline constexpr bool plain_rows<StridedView<T>, S> = true;
 
 /// Calls kernel.operator()<V>(j) for j in [0, count) in steps of V's lanes, V = S at the end.
 template <class S, int VectorBytes = native_vector_bytes, class Kernel>
