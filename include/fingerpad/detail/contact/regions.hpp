@@ -28,7 +28,7 @@ inline std::uint8_t* bytes_of(Mark* marks) {
 /// The first such mark in [first, last), or last.
 inline const Mark* find_mark(const Mark* first, const Mark* last, Mark which) {
   const auto count = static_cast<std::size_t>(last - first);
-  const void* found = count == 0 ? nullptr : std::memchr(first, static_cast<int>(which), count);
+  const void* found = std::memchr(first, static_cast<int>(which), count);
   return found == nullptr ? last : static_cast<const Mark*>(found);
 }
 
