@@ -78,6 +78,10 @@ class PadHeights {
  private:
   using S = Scalar;
 
+  /// Sights are exact up to this height, and no guess goes beyond: what a camera sees wildly deep
+  /// then reaches no farther than it is seen.
+  static constexpr int highest_mm = 20;
+
   /// Where the membrane above a place is seen: at center + (x, y) / mm_per_px, which depends on its
   /// height: mm_per_px = at_plate + rising z + bending z^2, nearly straight.
   struct Sight {
@@ -90,7 +94,7 @@ class PadHeights {
     // on the axis, the limit from beside it
     const S r_sq = x * x + y * y;
     const S r = value(r_sq) == 0 ? S(1) / S(1024) : S(sqrt(r_sq));
-    const S high = S(20);
+    const S high = S(highest_mm);
     const auto mm_per_px = [&](const S& z) {
       return S(r / S(pixel_of(camera, Point3<S>{r, S(0), z}).x - camera.center_x_px));
     };
@@ -159,9 +163,11 @@ class PadHeights {
   /// The z that is seen at its own height.
   template <class View>
   S height(const View& depth, const Sight& s, const S& guess) const {
-    const S near = is_finite(guess) ? root(depth, s, guess) : guess;
-    if (is_finite(near)) {
-      return near;
+    if (value(guess) >= 0 && value(guess) <= highest_mm) {
+      const S near = root(depth, s, guess);
+      if (is_finite(near)) {
+        return near;
+      }
     }
     const S on_plate = seen(depth, s, S(0)).depth_mm;
     // steep membrane is seen from further inside
