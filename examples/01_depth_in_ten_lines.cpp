@@ -7,7 +7,7 @@
 #include <string>
 
 #include "fingerpad/adapt/opencv.hpp"
-#include "fingerpad/depth.hpp"
+#include "fingerpad/depth/depth.hpp"
 
 // Channels as views, without a copy; OpenCV reads colours as blue, green, red.
 static auto green_of(const cv::Mat& image) {

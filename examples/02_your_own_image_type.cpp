@@ -5,7 +5,7 @@
 #include <cstdio>
 #include <vector>
 
-#include "fingerpad/depth.hpp"
+#include "fingerpad/depth/depth.hpp"
 
 // Somebody's camera driver: lines of pixels, red and green packed into one 32-bit word each.
 struct PackedFrame {

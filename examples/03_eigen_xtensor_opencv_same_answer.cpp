@@ -8,7 +8,7 @@
 #include "fingerpad/adapt/eigen.hpp"
 #include "fingerpad/adapt/opencv.hpp"
 #include "fingerpad/adapt/xtensor.hpp"
-#include "fingerpad/depth.hpp"
+#include "fingerpad/depth/depth.hpp"
 #if __has_include(<xtensor/containers/xtensor.hpp>)
 #include <xtensor/containers/xtensor.hpp>
 #else

@@ -7,7 +7,7 @@
 #include <cstdio>
 
 #include "fingerpad/adapt/autodiff.hpp"
-#include "fingerpad/depth.hpp"
+#include "fingerpad/depth/depth.hpp"
 
 namespace {
 

@@ -9,10 +9,10 @@
 #include <string>
 
 #include "fingerpad/adapt/opencv.hpp"
-#include "fingerpad/calibrate/contact_region.hpp"
-#include "fingerpad/contact_region.hpp"
-#include "fingerpad/depth.hpp"
-#include "fingerpad/object_surface.hpp"
+#include "fingerpad/calibrate/contact.hpp"
+#include "fingerpad/contact/contact_region.hpp"
+#include "fingerpad/depth/depth.hpp"
+#include "fingerpad/contact/object_surface.hpp"
 
 int main(int argc, char** argv) {
   const std::string recording = argc > 1 ? argv[1] : FINGERPAD_EXAMPLE_RECORDING;

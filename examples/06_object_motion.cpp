@@ -5,7 +5,7 @@
 #include <cstdio>
 #include <vector>
 
-#include "fingerpad/object_motion.hpp"
+#include "fingerpad/motion/object_motion.hpp"
 
 using fingerpad::Index;
 using Dot = fingerpad::Point3<double>;

@@ -7,7 +7,7 @@
 #include <cstdio>
 #include <vector>
 
-#include "fingerpad/stick_ratio.hpp"
+#include "fingerpad/slip/stick_ratio.hpp"
 
 using namespace fingerpad;
 

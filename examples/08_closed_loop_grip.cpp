@@ -9,8 +9,8 @@
 #include <opencv2/imgcodecs.hpp>
 #include <vector>
 
-#include "fingerpad/grip_control.hpp"
-#include "fingerpad/stick_ratio.hpp"
+#include "fingerpad/slip/grip_control.hpp"
+#include "fingerpad/slip/stick_ratio.hpp"
 #include "grip/camera.hpp"
 #include "grip/grip_chart.hpp"
 #include "grip/slipping_load.hpp"

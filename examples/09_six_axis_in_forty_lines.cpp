@@ -7,7 +7,7 @@
 #include <numbers>
 #include <vector>
 
-#include "fingerpad/wrench.hpp"
+#include "fingerpad/force/wrench.hpp"
 
 using Point = fingerpad::Point3<double>;
 using fingerpad::Index;

@@ -16,8 +16,8 @@
 #include <vector>
 
 #include "fingerpad/calibrate/force.hpp"
-#include "fingerpad/normal_force.hpp"
-#include "fingerpad/shear.hpp"
+#include "fingerpad/force/normal_force.hpp"
+#include "fingerpad/force/shear.hpp"
 
 using Sample = fingerpad::ForceSample<double>;
 using Samples = std::span<const Sample>;

@@ -15,9 +15,9 @@
 #include <string>
 #include <vector>
 
-#include "fingerpad/calibrate/taxel_features.hpp"
-#include "fingerpad/preslip.hpp"
-#include "fingerpad/taxel_features.hpp"
+#include "fingerpad/calibrate/taxels.hpp"
+#include "fingerpad/foam/preslip.hpp"
+#include "fingerpad/foam/taxel_features.hpp"
 
 using namespace fingerpad;
 

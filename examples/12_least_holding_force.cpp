@@ -6,9 +6,9 @@
 #include <array>
 #include <cstdio>
 
-#include "fingerpad/holding_force.hpp"
-#include "fingerpad/preslip.hpp"
-#include "fingerpad/taxel_features.hpp"
+#include "fingerpad/foam/holding_force.hpp"
+#include "fingerpad/foam/preslip.hpp"
+#include "fingerpad/foam/taxel_features.hpp"
 #include "grip/foam_fingers.hpp"
 
 int main() {

@@ -110,7 +110,7 @@ an answer. Memory is what a row's estimator, workspace, state and outputs take; 
 of one call. "over" columns give the native time over that of a yardstick in the same run: OpenCV's
 nearest primitive, or one streaming pass over four planes of 640 x 480 floats. In the pictures a star
 is the published way, the dotted line joins the ways that nothing beats in both time and error, and
-dashed lines are yardsticks. What is timed and what the truth is stands on top of each `bench/*.cpp`.
+dashed lines are yardsticks. What is timed and what the truth is stands on top of each `bench/*/*.cpp`.
 The [whole chain](whole_chain.md), [hard cases](hard_cases.md) and [what a scene
 needs](what_a_scene_needs.md) have pages of their own.
 {body.getvalue()}""", encoding="utf-8")
@@ -169,7 +169,7 @@ def write_chain(build, docs, about):
 
 A frame in, all results out: 640 x 480 8-bit BGR frame to smoothing, depth, contact region, motion of
 the object, stick ratio, look-up forces and six-axis force, put together in
-[bench/chain/whole_chain.hpp](../bench/chain/whole_chain.hpp); the dots are given. Written by
+[bench/report/chain/whole_chain.hpp](../bench/report/chain/whole_chain.hpp); the dots are given. Written by
 `bench/report/run`.
 
 {about}
@@ -185,7 +185,7 @@ a pad with dark dots cannot do without: `Anchored<BoxMean>`, `ExponentialFree<2,
 ## Error
 
 16 frames of a membrane in equilibrium under a plate that drags its dots to and fro and turns them,
-one grey level of noise; every result has its truth (bench/chain/pressed_frames.hpp).
+one grey level of noise; every result has its truth (bench/report/chain/pressed_frames.hpp).
 
 {chain_errors(chains)}
 The contact's area is that of a region whose gap of 20 um counts as touched, and of depths that were
@@ -196,7 +196,7 @@ follow the area.
 
 {count} frames of the lean chain, one after another. Two threads share the depth's rows and work on
 dots and six-axis force side by side; their results are the same to the last bit, as they are from run
-to run (`tests/whole_chain.cpp`).
+to run (`tests/pipeline/whole_chain.cpp`).
 
 ![Share of frames that take longer](whole_chain/latency.png)
 

@@ -122,7 +122,7 @@ def summary(methods, path):
 
 
 def chain_stages(runs, path):
-    """Bars of the stages' medians; `runs` {flags: JSON of bench/chain.cpp}."""
+    """Bars of the stages' medians; `runs` {flags: JSON of bench/report/chain.cpp}."""
     figure, axes = plt.subplots(figsize=(9, 3.2))
     bars = [(f"{name}, {flags}", run["chains"][name]["stages_ms"])
             for name in next(iter(runs.values()))["chains"] for flags, run in runs.items()]

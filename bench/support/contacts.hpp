@@ -8,7 +8,7 @@
 #include <random>
 #include <vector>
 
-#include "fingerpad/grid.hpp"
+#include "fingerpad/core/grid.hpp"
 
 namespace bench {
 

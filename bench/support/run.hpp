@@ -14,7 +14,7 @@
 #include <string>
 #include <vector>
 
-#include "../../tests/allocations/count.hpp"
+#include "../../tests/no_allocation/count.hpp"
 
 namespace bench {
 

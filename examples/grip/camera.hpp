@@ -6,8 +6,8 @@
 #include <random>
 #include <vector>
 
-#include "fingerpad/dots.hpp"
-#include "fingerpad/grid.hpp"
+#include "fingerpad/core/dots.hpp"
+#include "fingerpad/core/grid.hpp"
 #include "slipping_load.hpp"
 
 namespace grip {

@@ -16,8 +16,8 @@
 #include <random>
 #include <vector>
 
-#include "fingerpad/foam_contact.hpp"
-#include "fingerpad/grid.hpp"
+#include "fingerpad/sim/foam_contact.hpp"
+#include "fingerpad/core/grid.hpp"
 
 namespace grip {
 

@@ -13,7 +13,7 @@
 
 #include "fingerpad/adapt/opencv.hpp"
 #include "fingerpad/calibrate/force.hpp"
-#include "fingerpad/contact_shift.hpp"
+#include "fingerpad/motion/contact_shift.hpp"
 #include "loads.hpp"
 #include "replay/failure.hpp"
 

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "fingerpad/detail/depth/absorption_law.hpp"
+#include "fingerpad/depth/absorption.hpp"
 
 namespace render {
 namespace {

@@ -8,8 +8,8 @@
 #include <opencv2/core.hpp>
 #include <vector>
 
-#include "fingerpad/dots.hpp"
-#include "fingerpad/optics.hpp"
+#include "fingerpad/core/dots.hpp"
+#include "fingerpad/optics/camera.hpp"
 
 namespace render {
 

@@ -5,7 +5,7 @@
 #include <memory>
 
 #include "fingerpad/adapt/opencv.hpp"
-#include "fingerpad/calibrate/contact_region.hpp"
+#include "fingerpad/calibrate/contact.hpp"
 
 namespace replay {
 namespace {

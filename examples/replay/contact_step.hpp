@@ -7,7 +7,7 @@
 #include <opencv2/core.hpp>
 
 #include "depth_step.hpp"
-#include "fingerpad/contact_region.hpp"
+#include "fingerpad/contact/contact_region.hpp"
 #include "recording.hpp"
 
 namespace replay {

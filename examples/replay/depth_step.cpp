@@ -7,8 +7,8 @@
 #include <optional>
 
 #include "fingerpad/adapt/opencv.hpp"
-#include "fingerpad/depth.hpp"
-#include "fingerpad/neighbour_light.hpp"
+#include "fingerpad/depth/depth.hpp"
+#include "fingerpad/depth/neighbour_light.hpp"
 
 namespace replay {
 namespace {

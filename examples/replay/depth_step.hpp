@@ -7,7 +7,7 @@
 #include <opencv2/core.hpp>
 #include <string>
 
-#include "fingerpad/grid.hpp"
+#include "fingerpad/core/grid.hpp"
 #include "recording.hpp"
 
 namespace replay {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "fingerpad/adapt/opencv.hpp"
-#include "fingerpad/dots.hpp"
+#include "fingerpad/core/dots.hpp"
 
 namespace replay {
 

@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "canvas.hpp"
-#include "fingerpad/preslip.hpp"
+#include "fingerpad/foam/preslip.hpp"
 #include "foam_axis.hpp"
 #include "picture_parts.hpp"
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "fingerpad/grid.hpp"
+#include "fingerpad/core/grid.hpp"
 #include "foam_sensor.hpp"
 
 namespace replay {

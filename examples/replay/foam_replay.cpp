@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "failure.hpp"
-#include "fingerpad/expects.hpp"
+#include "fingerpad/core/expects.hpp"
 #include "foam_activity.hpp"
 #include "foam_array_picture.hpp"
 #include "foam_axis.hpp"

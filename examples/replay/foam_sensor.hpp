@@ -6,8 +6,8 @@
 #include <optional>
 #include <vector>
 
-#include "fingerpad/preslip.hpp"
-#include "fingerpad/taxel_features.hpp"
+#include "fingerpad/foam/preslip.hpp"
+#include "fingerpad/foam/taxel_features.hpp"
 
 namespace replay {
 

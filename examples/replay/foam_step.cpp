@@ -7,8 +7,8 @@
 #include <chrono>
 #include <cmath>
 
-#include "fingerpad/calibrate/taxel_features.hpp"
-#include "fingerpad/expects.hpp"
+#include "fingerpad/calibrate/taxels.hpp"
+#include "fingerpad/core/expects.hpp"
 
 namespace replay {
 namespace {

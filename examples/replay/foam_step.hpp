@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "fingerpad/preslip.hpp"
-#include "fingerpad/taxel_features.hpp"
+#include "fingerpad/foam/preslip.hpp"
+#include "fingerpad/foam/taxel_features.hpp"
 #include "foam_recording.hpp"
 
 namespace replay {

@@ -6,9 +6,9 @@
 #include <optional>
 
 #include "fingerpad/adapt/opencv.hpp"
-#include "fingerpad/normal_force.hpp"
-#include "fingerpad/object_motion.hpp"
-#include "fingerpad/shear.hpp"
+#include "fingerpad/force/normal_force.hpp"
+#include "fingerpad/motion/object_motion.hpp"
+#include "fingerpad/force/shear.hpp"
 
 namespace replay {
 namespace {

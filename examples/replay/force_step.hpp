@@ -7,7 +7,7 @@
 #include <limits>
 
 #include "contact_step.hpp"
-#include "fingerpad/contact_shift.hpp"
+#include "fingerpad/motion/contact_shift.hpp"
 #include "motion_step.hpp"
 #include "recording.hpp"
 

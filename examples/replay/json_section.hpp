@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "failure.hpp"
-#include "fingerpad/expects.hpp"
+#include "fingerpad/core/expects.hpp"
 
 namespace replay {
 

@@ -8,8 +8,8 @@
 #include <optional>
 
 #include "dots_grid.hpp"
-#include "fingerpad/contact_region.hpp"
-#include "fingerpad/object_motion.hpp"
+#include "fingerpad/contact/contact_region.hpp"
+#include "fingerpad/motion/object_motion.hpp"
 #include "sensor.hpp"
 #include "stick_step.hpp"
 

@@ -8,11 +8,11 @@
 #include <optional>
 #include <string>
 
-#include "fingerpad/detail/depth/absorption_law.hpp"
-#include "fingerpad/normal_force.hpp"
-#include "fingerpad/optics.hpp"
-#include "fingerpad/shear.hpp"
-#include "fingerpad/stick_ratio.hpp"
+#include "fingerpad/depth/absorption.hpp"
+#include "fingerpad/force/normal_force.hpp"
+#include "fingerpad/optics/camera.hpp"
+#include "fingerpad/force/shear.hpp"
+#include "fingerpad/slip/stick_ratio.hpp"
 
 namespace replay {
 

@@ -7,7 +7,7 @@
 
 #include "canvas.hpp"
 #include "depth_colours.hpp"
-#include "fingerpad/optics.hpp"
+#include "fingerpad/optics/camera.hpp"
 
 namespace replay {
 

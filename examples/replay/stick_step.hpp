@@ -7,7 +7,7 @@
 #include <optional>
 
 #include "dots_grid.hpp"
-#include "fingerpad/stick_ratio.hpp"
+#include "fingerpad/slip/stick_ratio.hpp"
 
 namespace replay {
 

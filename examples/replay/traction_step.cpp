@@ -5,7 +5,7 @@
 #include <memory>
 
 #include "fingerpad/adapt/opencv.hpp"
-#include "fingerpad/traction.hpp"
+#include "fingerpad/force/traction.hpp"
 
 namespace replay {
 namespace {

@@ -6,7 +6,7 @@
 #include <functional>
 #include <opencv2/core.hpp>
 
-#include "fingerpad/detail/traction/traction_result.hpp"
+#include "fingerpad/force/traction_result.hpp"
 #include "motion_step.hpp"
 #include "recording.hpp"
 

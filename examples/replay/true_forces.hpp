@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <map>
 
-#include "fingerpad/dots.hpp"
+#include "fingerpad/core/dots.hpp"
 
 namespace replay {
 

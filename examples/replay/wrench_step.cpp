@@ -9,8 +9,8 @@
 #include <optional>
 
 #include "fingerpad/adapt/opencv.hpp"
-#include "fingerpad/detail/membrane/pad_heights.hpp"
-#include "fingerpad/wrench.hpp"
+#include "fingerpad/force/pad_heights.hpp"
+#include "fingerpad/force/wrench.hpp"
 
 namespace replay {
 namespace {

@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "fingerpad/detail/membrane/wrench_result.hpp"
-#include "fingerpad/dots.hpp"
+#include "fingerpad/force/wrench_result.hpp"
+#include "fingerpad/core/dots.hpp"
 #include "recording.hpp"
 
 namespace replay {

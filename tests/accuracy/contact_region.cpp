@@ -4,13 +4,13 @@
 // the contact that the finite elements say. That is known to half a mesh width only (0.37 mm, 9 to
 // 21 % of the area): nodes are in contact or not, and the edge runs somewhere in the triangles
 // between the last of the ones and the first of the others. See tests/data/README.md.
-#include "fingerpad/calibrate/contact_region.hpp"
+#include "fingerpad/calibrate/contact.hpp"
 
 #include <cmath>
 #include <string>
 
-#include "fingerpad/contact_region.hpp"
-#include "fingerpad/depth.hpp"
+#include "fingerpad/contact/contact_region.hpp"
+#include "fingerpad/depth/depth.hpp"
 #include "support/catch.hpp"
 #include "support/finite_elements.hpp"
 

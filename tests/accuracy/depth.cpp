@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: MIT
 // Depth error on full-size frames of finite-element membranes: refracted rays, printed dots, 8 bit,
 // one grey level of noise in each channel. See tests/data/README.md for the shapes.
-#include "fingerpad/depth.hpp"
+#include "fingerpad/depth/depth.hpp"
 
 #include <cmath>
 #include <string>

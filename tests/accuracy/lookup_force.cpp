@@ -12,8 +12,8 @@
 #include <vector>
 
 #include "fingerpad/calibrate/force.hpp"
-#include "fingerpad/normal_force.hpp"
-#include "fingerpad/shear.hpp"
+#include "fingerpad/force/normal_force.hpp"
+#include "fingerpad/force/shear.hpp"
 #include "support/catch.hpp"
 #include "support/contact_records.hpp"
 

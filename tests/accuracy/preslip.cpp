@@ -3,7 +3,7 @@
 // Whole chains, from readings to alarms, on signals of known truth: how often slip is found and how
 // late, and how often it is found where there is none. test_accuracy "[preslip]" -s
 // prints all figures.
-#include "fingerpad/preslip.hpp"
+#include "fingerpad/foam/preslip.hpp"
 
 #include <algorithm>
 #include <array>
@@ -14,8 +14,8 @@
 #include <string>
 #include <vector>
 
-#include "fingerpad/holding_force.hpp"
-#include "fingerpad/taxel_features.hpp"
+#include "fingerpad/foam/holding_force.hpp"
+#include "fingerpad/foam/taxel_features.hpp"
 #include "grip/foam_fingers.hpp"
 #include "support/catch.hpp"
 #include "support/foam_signals.hpp"

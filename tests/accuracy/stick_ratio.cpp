@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: MIT
 // Stick ratios against the truth: of synthetic dots, with each effect and without it, and of dots
 // of finite-element membranes. test_accuracy "[stick_ratio]" -s prints all figures.
-#include "fingerpad/stick_ratio.hpp"
+#include "fingerpad/slip/stick_ratio.hpp"
 
 #include <array>
 #include <cmath>

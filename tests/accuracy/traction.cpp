@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: MIT
 // Loads from dots of finite-element membranes against the truth.
 // test_accuracy "[traction]" -s prints all figures.
-#include "fingerpad/traction.hpp"
+#include "fingerpad/force/traction.hpp"
 
 #include <cmath>
 #include <iomanip>

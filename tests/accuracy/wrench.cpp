@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: MIT
 // Force and moment of finite-element membranes against the truth: by their exact shape and side
 // dots, and by noisy frames. test_accuracy "[wrench]" -s prints all figures.
-#include "fingerpad/wrench.hpp"
+#include "fingerpad/force/wrench.hpp"
 
 #include <algorithm>
 #include <array>
@@ -14,10 +14,10 @@
 #include <string>
 #include <vector>
 
-#include "fingerpad/calibrate/contact_region.hpp"
-#include "fingerpad/contact_region.hpp"
-#include "fingerpad/depth.hpp"
-#include "fingerpad/detail/membrane/pad_heights.hpp"
+#include "fingerpad/calibrate/contact.hpp"
+#include "fingerpad/contact/contact_region.hpp"
+#include "fingerpad/depth/depth.hpp"
+#include "fingerpad/force/pad_heights.hpp"
 #include "support/catch.hpp"
 #include "support/finite_elements.hpp"
 #include "support/rolling.hpp"

@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "fingerpad/adapt/eigen.hpp"
-#include "fingerpad/detail/depth/absorption_law.hpp"
+#include "fingerpad/depth/absorption.hpp"
 #include "support/catch.hpp"
 #include "support/generators.hpp"
 #include "support/numbers.hpp"

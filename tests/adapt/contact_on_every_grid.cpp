@@ -16,7 +16,7 @@
 #include "fingerpad/adapt/mdspan.hpp"
 #include "fingerpad/adapt/opencv.hpp"
 #include "fingerpad/adapt/xtensor.hpp"
-#include "fingerpad/contact_region.hpp"
+#include "fingerpad/contact/contact_region.hpp"
 #include "support/catch.hpp"
 #include "support/foreign_image.hpp"
 #include "support/soap_film.hpp"

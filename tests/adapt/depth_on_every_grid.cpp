@@ -16,7 +16,7 @@
 #include "fingerpad/adapt/mdspan.hpp"
 #include "fingerpad/adapt/opencv.hpp"
 #include "fingerpad/adapt/xtensor.hpp"
-#include "fingerpad/depth.hpp"
+#include "fingerpad/depth/depth.hpp"
 #include "support/catch.hpp"
 #include "support/foreign_image.hpp"
 #include "support/pad.hpp"

@@ -17,7 +17,7 @@
 #include "fingerpad/adapt/mdspan.hpp"
 #include "fingerpad/adapt/opencv.hpp"
 #include "fingerpad/adapt/xtensor.hpp"
-#include "fingerpad/stick_ratio.hpp"
+#include "fingerpad/slip/stick_ratio.hpp"
 #include "support/catch.hpp"
 #include "support/foreign_image.hpp"
 #include "support/slipping_dots.hpp"

@@ -14,8 +14,8 @@
 #include <vector>
 
 #include "fingerpad/adapt/autodiff.hpp"
-#include "fingerpad/normal_force.hpp"
-#include "fingerpad/shear.hpp"
+#include "fingerpad/force/normal_force.hpp"
+#include "fingerpad/force/shear.hpp"
 #include "support/catch.hpp"
 #include "support/generators.hpp"
 #include "support/numbers.hpp"

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 // Denoising of dots in the stick ratio: a dot is judged by itself.
-#include "fingerpad/stick_ratio.hpp"
+#include "fingerpad/slip/stick_ratio.hpp"
 
 using namespace fingerpad;
 using namespace fingerpad::detail;

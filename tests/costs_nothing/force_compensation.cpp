@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 // Compensation and error of a normal force by look-up.
-#include "fingerpad/normal_force.hpp"
+#include "fingerpad/force/normal_force.hpp"
 
 using namespace fingerpad;
 

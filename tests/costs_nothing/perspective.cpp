@@ -3,7 +3,7 @@
 // The camera's perspective in the curvature of a height map.
 #include <limits>
 
-#include "fingerpad/detail/contact/curvature_projection.hpp"
+#include "fingerpad/image/curvature_projection.hpp"
 
 using namespace fingerpad;
 using Units = detail::DepthUnits<PlatePitch, float>;

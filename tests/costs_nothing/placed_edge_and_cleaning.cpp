@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 // The placed edge of a contact and the cleaning of its mask: what is below the threshold touches.
-#include "fingerpad/contact_region.hpp"
+#include "fingerpad/contact/contact_region.hpp"
 
 using namespace fingerpad;
 using namespace fingerpad::detail;

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 // The object's turn and zoom in the stick ratio.
-#include "fingerpad/stick_ratio.hpp"
+#include "fingerpad/slip/stick_ratio.hpp"
 
 using namespace fingerpad;
 using Shift = detail::stick::ObjectShift<float>;

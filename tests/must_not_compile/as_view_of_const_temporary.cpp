@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: MIT
 // A constant temporary is a temporary too, though an ordinary reference would bind to it.
 // message: deleted
-#include "fingerpad/grid.hpp"
+#include "fingerpad/core/grid.hpp"
 #include "support/foreign_image.hpp"
 
 using Image = test::ForeignImage<double>;

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: MIT
 // The samples to be remembered grow as the factorial of the fingers that must differ at once.
 // message: at most three coordinates
-#include "fingerpad/preslip.hpp"
+#include "fingerpad/foam/preslip.hpp"
 
 #ifdef FINGERPAD_MUST_NOT_COMPILE
 using Pairing = fingerpad::SamePair;

@@ -3,7 +3,7 @@
 // Within a tolerance any number of samples can each be the only one that differs: no search finds
 // them in constant time.
 // message: ConstantTime takes GraspLift with MovedToOtherCell
-#include "fingerpad/preslip.hpp"
+#include "fingerpad/foam/preslip.hpp"
 
 #ifdef FINGERPAD_MUST_NOT_COMPILE
 using Centroid = fingerpad::MovedBeyond;

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: MIT
 // A principal curvature has no level that its mean has at the edge of contact.
 // message: HalfLevelEdge compares mean curvatures
-#include "fingerpad/contact_region.hpp"
+#include "fingerpad/contact/contact_region.hpp"
 
 #ifdef FINGERPAD_MUST_NOT_COMPILE
 using Statistic = fingerpad::HessianFit<18, fingerpad::FittedValue::larger>;

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: MIT
 // Optics in whole numbers would round everything away.
 // message: (satisfaction of|does not satisfy) 'scalar
-#include "fingerpad/optics.hpp"
+#include "fingerpad/optics/camera.hpp"
 
 #ifdef FINGERPAD_MUST_NOT_COMPILE
 static void good_or_bad() {

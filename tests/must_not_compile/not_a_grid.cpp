@@ -4,7 +4,7 @@
 // message: (satisfaction of|does not satisfy) 'grid
 #include <vector>
 
-#include "fingerpad/grid.hpp"
+#include "fingerpad/core/grid.hpp"
 #include "support/foreign_image.hpp"
 
 #ifdef FINGERPAD_MUST_NOT_COMPILE

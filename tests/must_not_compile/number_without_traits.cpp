@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: MIT
 // A number without limits of its own must say what its epsilon is.
 // message: specialise fingerpad::scalar_traits
-#include "fingerpad/scalar.hpp"
+#include "fingerpad/core/scalar.hpp"
 
 struct Number {  // arithmetic, but no std::numeric_limits
   double v;

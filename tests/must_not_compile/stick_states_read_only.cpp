@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: MIT
 // What dots do is written: a grid that only reads cannot take it.
 // message: (satisfaction of|does not satisfy) 'writable_grid
-#include "fingerpad/stick_ratio.hpp"
+#include "fingerpad/slip/stick_ratio.hpp"
 #include "support/foreign_image.hpp"
 
 using namespace fingerpad;

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: MIT
 // Dots have 4 or 8 neighbours.
 // message: Neighbours == [48]
-#include "fingerpad/dots.hpp"
+#include "fingerpad/core/dots.hpp"
 #include "support/foreign_image.hpp"
 
 const test::ForeignImage<fingerpad::Point2<double>> dots(2, 2);

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: MIT
 // A computed cell is a copy; what is assigned to it would be lost in silence.
 // message: (satisfaction of|does not satisfy) 'writable_grid
-#include "fingerpad/dots.hpp"
+#include "fingerpad/core/dots.hpp"
 
 using Point = fingerpad::Point2<double>;
 template <fingerpad::writable_grid G>

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: MIT
 // A view that reads does not become one that writes.
 // message: (conversion|call to|function).*StridedView<const int>
-#include "fingerpad/grid.hpp"
+#include "fingerpad/core/grid.hpp"
 
 using fingerpad::StridedView;
 

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: MIT
 // What is read-only is refused where cells are written.
 // message: (satisfaction of|does not satisfy) 'writable_grid
-#include "fingerpad/grid.hpp"
+#include "fingerpad/core/grid.hpp"
 #include "support/foreign_image.hpp"
 
 template <fingerpad::writable_grid G>

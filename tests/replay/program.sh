@@ -3,7 +3,7 @@
 # SPDX-License-Identifier: MIT
 # program.sh REPLAY RENDER RECORDING: the two programs as a user meets them. Exit statuses, one line
 # on standard error, nothing left behind; the recording is rendered again byte for byte; the depth
-# is as near the truth as docs/depth.md says.
+# is as near the truth as docs/depth/depth.md says.
 set -uo pipefail
 export LC_ALL=C
 replay=$1

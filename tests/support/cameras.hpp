@@ -6,7 +6,7 @@
 #include <limits>
 #include <numbers>
 
-#include "fingerpad/optics.hpp"
+#include "fingerpad/optics/camera.hpp"
 #include "support/generators.hpp"
 
 namespace test {

@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "fingerpad/detail/force/force_samples.hpp"
-#include "fingerpad/dots.hpp"
+#include "fingerpad/calibrate/force_samples.hpp"
+#include "fingerpad/core/dots.hpp"
 #include "support/finite_elements.hpp"
 
 namespace test {

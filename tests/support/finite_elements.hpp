@@ -11,7 +11,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "fingerpad/depth.hpp"
+#include "fingerpad/depth/depth.hpp"
 #include "pad.hpp"
 
 namespace test {

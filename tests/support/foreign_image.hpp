@@ -6,7 +6,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "fingerpad/grid.hpp"
+#include "fingerpad/core/grid.hpp"
 
 namespace test {
 

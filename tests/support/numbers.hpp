@@ -7,7 +7,7 @@
 #include <cmath>
 #include <limits>
 
-#include "fingerpad/scalar.hpp"
+#include "fingerpad/core/scalar.hpp"
 
 namespace test {
 

@@ -12,7 +12,7 @@
 #include <type_traits>
 #include <vector>
 
-#include "fingerpad/depth.hpp"
+#include "fingerpad/depth/depth.hpp"
 
 namespace test {
 

@@ -10,7 +10,7 @@
 #include <numbers>
 #include <vector>
 
-#include "fingerpad/wrench.hpp"
+#include "fingerpad/force/wrench.hpp"
 #include "pad.hpp"
 #include "soap_film.hpp"
 

@@ -4,7 +4,7 @@
 // What constructors say of bad parameters.
 #include <string>
 
-#include "fingerpad/expects.hpp"
+#include "fingerpad/core/expects.hpp"
 
 namespace test {
 

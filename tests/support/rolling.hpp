@@ -11,7 +11,7 @@
 #include <random>
 #include <vector>
 
-#include "fingerpad/object_motion.hpp"
+#include "fingerpad/motion/object_motion.hpp"
 
 namespace test {
 

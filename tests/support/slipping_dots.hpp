@@ -11,8 +11,8 @@
 #include <numbers>
 #include <vector>
 
-#include "fingerpad/dots.hpp"
-#include "fingerpad/stick_ratio.hpp"
+#include "fingerpad/core/dots.hpp"
+#include "fingerpad/slip/stick_ratio.hpp"
 #include "pad.hpp"
 
 namespace test {

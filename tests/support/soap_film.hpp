@@ -12,7 +12,7 @@
 #include <cmath>
 #include <vector>
 
-#include "fingerpad/optics.hpp"
+#include "fingerpad/optics/camera.hpp"
 #include "pad.hpp"
 
 namespace test {

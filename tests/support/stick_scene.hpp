@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "fingerpad/dots.hpp"
+#include "fingerpad/core/dots.hpp"
 #include "finite_elements.hpp"
 #include "slipping_dots.hpp"
 

@@ -13,7 +13,7 @@
 #include <string>
 #include <vector>
 
-#include "fingerpad/traction.hpp"
+#include "fingerpad/force/traction.hpp"
 #include "rolling.hpp"
 
 namespace test {

@@ -4,8 +4,8 @@
 // One algorithm on grids, in the shape that all of the library's have: a constrained door, then a
 // loop on views. Its weights differ from cell to cell, so that a transposed, shifted or repeated
 // cell changes the sum; its result must be the same on every grid type to the last bit.
-#include "fingerpad/grid.hpp"
-#include "fingerpad/scalar.hpp"
+#include "fingerpad/core/grid.hpp"
+#include "fingerpad/core/scalar.hpp"
 
 namespace test {
 

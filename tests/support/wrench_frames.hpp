@@ -13,7 +13,7 @@
 #include <string>
 #include <vector>
 
-#include "fingerpad/wrench.hpp"
+#include "fingerpad/force/wrench.hpp"
 #include "finite_elements.hpp"
 
 namespace test {

@@ -6,7 +6,7 @@
 #include <Eigen/Core>  // AutoDiff does not include it
 #include <unsupported/Eigen/AutoDiff>
 
-#include "fingerpad/scalar.hpp"
+#include "fingerpad/core/scalar.hpp"
 
 namespace fingerpad {
 inline namespace v0 {

@@ -5,7 +5,7 @@
 // major. Expressions without memory (a + b) need no adapter: they have rows(), cols() and (i, j).
 #include <Eigen/Core>
 
-#include "fingerpad/grid.hpp"
+#include "fingerpad/core/grid.hpp"
 
 namespace fingerpad {
 inline namespace v0 {

@@ -7,7 +7,7 @@
 #include <concepts>
 #include <type_traits>
 
-#include "fingerpad/grid.hpp"
+#include "fingerpad/core/grid.hpp"
 
 namespace fingerpad {
 inline namespace v0 {

@@ -5,8 +5,8 @@
 // without a copy. A cv::Mat knows its type only at run time, so it is viewed by naming the type.
 #include <opencv2/core/mat.hpp>
 
-#include "fingerpad/expects.hpp"
-#include "fingerpad/grid.hpp"
+#include "fingerpad/core/expects.hpp"
+#include "fingerpad/core/grid.hpp"
 
 namespace fingerpad {
 inline namespace v0 {

@@ -12,7 +12,7 @@
 
 #include <cstddef>
 
-#include "fingerpad/grid.hpp"
+#include "fingerpad/core/grid.hpp"
 
 namespace fingerpad {
 inline namespace v0 {

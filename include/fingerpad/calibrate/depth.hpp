@@ -18,12 +18,12 @@
 #include <span>
 #include <vector>
 
-#include "fingerpad/detail/depth/absorption_fit.hpp"
-#include "fingerpad/detail/depth/absorption_law.hpp"
-#include "fingerpad/detail/depth/depth_reference.hpp"
-#include "fingerpad/expects.hpp"
-#include "fingerpad/optics.hpp"
-#include "fingerpad/scalar.hpp"
+#include "fingerpad/calibrate/detail/absorption_fit.hpp"
+#include "fingerpad/depth/absorption.hpp"
+#include "fingerpad/depth/depth_reference.hpp"
+#include "fingerpad/core/expects.hpp"
+#include "fingerpad/optics/camera.hpp"
+#include "fingerpad/core/scalar.hpp"
 
 namespace fingerpad {
 inline namespace v0 {

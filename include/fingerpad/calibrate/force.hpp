@@ -5,7 +5,7 @@
 // camera: the curves and compensations of normal_force.hpp and the maps of shear.hpp. Least squares
 // by QR, on demand with Huber's weights; with each parameter its covariance, with each fit what it
 // leaves. Samples that do not determine a parameter are refused with its name (parameter_error), as
-// are samples that contradict each other. docs/calibration.md tells how to take samples.
+// are samples that contradict each other. docs/calibrate/calibration.md tells how to take samples.
 //
 // The standard errors hold for samples with independent errors in the force. Errors in the measure
 // or the displacement bias the fit toward smaller slopes, and samples of one load have common
@@ -18,18 +18,18 @@
 #include <string>
 #include <vector>
 
-#include "fingerpad/detail/force/compensation.hpp"
-#include "fingerpad/detail/force/force_curve.hpp"
-#include "fingerpad/detail/force/force_errors.hpp"
-#include "fingerpad/detail/force/force_samples.hpp"
-#include "fingerpad/detail/force/model_fit.hpp"
-#include "fingerpad/detail/force/polynomial_model.hpp"
-#include "fingerpad/detail/force/shear_map.hpp"
-#include "fingerpad/detail/force/shear_model.hpp"
-#include "fingerpad/detail/force/zeros.hpp"
-#include "fingerpad/expects.hpp"
-#include "fingerpad/grid.hpp"
-#include "fingerpad/scalar.hpp"
+#include "fingerpad/force/compensation.hpp"
+#include "fingerpad/force/force_curve.hpp"
+#include "fingerpad/force/force_errors.hpp"
+#include "fingerpad/calibrate/force_samples.hpp"
+#include "fingerpad/calibrate/model_fit.hpp"
+#include "fingerpad/calibrate/detail/polynomial_model.hpp"
+#include "fingerpad/force/shear_map.hpp"
+#include "fingerpad/calibrate/detail/shear_model.hpp"
+#include "fingerpad/force/detail/zeros.hpp"
+#include "fingerpad/core/expects.hpp"
+#include "fingerpad/core/grid.hpp"
+#include "fingerpad/core/scalar.hpp"
 
 namespace fingerpad {
 inline namespace v0 {
@@ -155,5 +155,5 @@ LinearShearFit<S> fit_linear_shear(std::span<const ForceSample<S>> samples,
 }  // namespace v0
 }  // namespace fingerpad
 
-#include "fingerpad/detail/force/normal_force_fits.hpp"
-#include "fingerpad/detail/force/shear_fits.hpp"
+#include "fingerpad/calibrate/normal_force_fits.hpp"
+#include "fingerpad/calibrate/shear_fits.hpp"

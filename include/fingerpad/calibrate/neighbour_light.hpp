@@ -11,10 +11,10 @@
 #include <span>
 #include <vector>
 
-#include "fingerpad/detail/disc/inclination_sums.hpp"
-#include "fingerpad/expects.hpp"
-#include "fingerpad/grid.hpp"
-#include "fingerpad/neighbour_light.hpp"
+#include "fingerpad/depth/detail/inclination_sums.hpp"
+#include "fingerpad/core/expects.hpp"
+#include "fingerpad/core/grid.hpp"
+#include "fingerpad/depth/neighbour_light.hpp"
 
 namespace fingerpad {
 inline namespace v0 {

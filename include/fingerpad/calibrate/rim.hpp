@@ -22,14 +22,14 @@
 #include <cstddef>
 #include <vector>
 
-#include "fingerpad/detail/membrane/calibrate_rim_balance.hpp"
-#include "fingerpad/detail/membrane/calibrate_rim_equations.hpp"
-#include "fingerpad/detail/membrane/calibrate_rim_frames.hpp"
-#include "fingerpad/detail/membrane/rim_traction.hpp"
-#include "fingerpad/dots.hpp"
-#include "fingerpad/expects.hpp"
-#include "fingerpad/grid.hpp"
-#include "fingerpad/scalar.hpp"
+#include "fingerpad/calibrate/detail/rim_balance.hpp"
+#include "fingerpad/calibrate/detail/rim_equations.hpp"
+#include "fingerpad/calibrate/detail/rim_frames.hpp"
+#include "fingerpad/force/rim_traction.hpp"
+#include "fingerpad/core/dots.hpp"
+#include "fingerpad/core/expects.hpp"
+#include "fingerpad/core/grid.hpp"
+#include "fingerpad/core/scalar.hpp"
 
 namespace fingerpad {
 inline namespace v0 {

@@ -1,0 +1,212 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+// Shapes fitted to a contact in a float depth map of 640x480 with noise of 0.02 mm, seen along
+// refracted rays and as a map of heights. Timed: a convex sphere of 18 mm, 200 px wide. Errors:
+// over 40 objects of other sizes and places, spheres of 15 to 40 mm, and for the plane planes of
+// slopes up to 0.4: that of the curvature or of the normal, and of the rms distance from the shape.
+// First row: a pass that reads depth and mask and adds up the depths in contact.
+#include "fingerpad/contact/object_surface.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <numbers>
+#include <opencv2/core.hpp>
+#include <string>
+#include <type_traits>
+#include <vector>
+
+#include "support/run.hpp"
+#include "support/scene.hpp"
+
+using namespace fingerpad;
+using bench::Image;
+
+namespace {
+
+using Mask = Image<unsigned char>;
+
+constexpr Index height_px = 480, width_px = 640;
+constexpr std::size_t pixels = height_px * width_px;
+constexpr double noise_mm = 0.02;
+
+/// z = 9 mm + slope . (p - p0) + a sphere's rise about p0, which the middle of the contact sees.
+struct Object {
+  double curvature_per_mm = 1.0 / 18;
+  Point2<double> slope = {0, 0};
+  Point2<double> middle_px = {319.5, 239.5};
+  double contact_px = 100;
+
+  double depth_mm(double x, double y) const {
+    const double r_sq = x * x + y * y;
+    const double root = std::sqrt((std::max)(1 - square(curvature_per_mm) * r_sq, 0.0));
+    return 9 + slope.x * x + slope.y * y + curvature_per_mm * r_sq / (1 + root);
+  }
+};
+
+std::vector<Object> varied_objects(bool flat) {
+  std::vector<Object> objects(40);
+  test::Random random(4);
+  for (Object& o : objects) {
+    if (flat) {
+      o.slope = {random.uniform(-0.28, 0.28), random.uniform(-0.28, 0.28)};
+    }
+    o.curvature_per_mm = flat ? 0 : 1 / random.uniform(15, 40);
+    o.middle_px = {319.5 + random.uniform(-50, 50), 239.5 + random.uniform(-50, 50)};
+    o.contact_px = random.uniform(60, 110);
+  }
+  return objects;
+}
+
+double error_of(const Plane<double>& p, const Object& o) {
+  const double x = p.normal.x + o.slope.x * p.normal.z, y = p.normal.y + o.slope.y * p.normal.z;
+  const double z = o.slope.x * p.normal.y - o.slope.y * p.normal.x;
+  const double length = std::sqrt(1 + square(o.slope.x) + square(o.slope.y));
+  return std::asin(std::sqrt(x * x + y * y + z * z) / length) * 180 / std::numbers::pi;
+}
+double error_of(const Sphere<double>& s, const Object& o) {
+  return s.curvature_per_mm - o.curvature_per_mm;
+}
+double error_of(const Quadric<double>& q, const Object& o) {
+  return q.mean_curvature_per_mm() - o.curvature_per_mm;
+}
+
+/// Depths and mask of an object, NaN where it does not touch.
+struct Contact {
+  Image<float> depth{height_px, width_px, static_cast<float>(test::nan)};
+  Mask mask{height_px, width_px, 0};
+
+  template <class CameraType>
+  Contact(const CameraType& camera, const Object& o, std::uint64_t seed) {
+    test::Random random(seed);
+    const auto middle = point_at(camera, o.middle_px.y, o.middle_px.x, 9.0);
+    for (Index i = 0; i < height_px; ++i) {
+      for (Index j = 0; j < width_px; ++j) {
+        const double row = static_cast<double>(i), col = static_cast<double>(j);
+        if (std::hypot(col - o.middle_px.x, row - o.middle_px.y) > o.contact_px) {
+          continue;
+        }
+        double z = 9;
+        for (int step = 0; step < 40; ++step) {
+          const auto p = point_at(camera, row, col, z);
+          const double next = o.depth_mm(p.x - middle.x, p.y - middle.y);
+          const bool is_there = std::abs(next - z) < 1e-10;
+          z = next;
+          if (is_there) {
+            break;
+          }
+        }
+        mask(i, j) = 255;
+        depth(i, j) = static_cast<float>(z + noise_mm * random.normal());
+      }
+    }
+  }
+};
+
+template <class CameraType>
+struct Bench {
+  std::string group;
+  CameraType camera = {};
+  std::shared_ptr<const Contact> timed = std::make_shared<Contact>(camera, Object(), 1);
+
+  /// fit(contact) gives a SurfaceResult.
+  template <bool IsFlat, class Fit>
+  std::vector<double> errors_of(const Fit& fit) const {
+    std::vector<double> errors;
+    std::uint64_t seed = 1;
+    for (const Object& o : varied_objects(IsFlat)) {
+      const auto r = fit(Contact(camera, o, ++seed));
+      errors.push_back(r.ok() ? error_of(r.shape, o) : test::nan);
+    }
+    return errors;
+  }
+
+  template <bool IsFlat, class Fit>
+  void add_fit(const std::string& name, long bytes, const Fit& fit) const {
+    const auto errors = bench::kept([=, this] { return errors_of<IsFlat>(fit); });
+    bench::add(
+        group + "/" + name, pixels, bytes,
+        [=, contact = timed] { benchmark::DoNotOptimize(fit(*contact)); },
+        [=](auto& counters) {
+          bench::note_errors(counters, IsFlat ? "normal" : "curvature", IsFlat ? "deg" : "1/mm",
+                             errors());
+        });
+  }
+
+  template <class Model>
+  void add(const std::string& name, Index border_px = 0) const {
+    using Fit = SurfaceFit<Model, CameraType>;
+    constexpr bool is_flat = std::is_same_v<Model, PlaneModel>;
+    const SurfaceOptions options{50, border_px};
+    const bench::Memory memory;
+    const auto fit = std::make_shared<Fit>(height_px, width_px, camera, options);
+    add_fit<is_flat>(name, memory.bytes(),
+                     [=](const Contact& c) { return (*fit)(c.depth, c.mask); });
+    if (border_px == 0) {
+      const auto out = std::make_shared<Image<float>>(height_px, width_px);
+      add_fit<is_flat>(name + ", residual map", memory.bytes(),
+                       [=](const Contact& c) { return (*fit)(c.depth, c.mask, *out); });
+    }
+  }
+
+  /// The plane by least squares in depth, from the points in contact.
+  void add_opencv() const {
+    const bench::Memory memory;
+    const auto unknowns = std::make_shared<std::vector<double>>(3 * pixels);
+    const auto depths = std::make_shared<std::vector<double>>(pixels);
+    add_fit<true>("cv::solve of a plane", memory.bytes(), [=, camera = camera](const Contact& c) {
+      int count = 0;
+      for (Index i = 0; i < height_px; ++i) {
+        for (Index j = 0; j < width_px; ++j) {
+          if (c.mask(i, j) != 0) {
+            const auto p = point_at(camera, double(i), double(j), double(c.depth(i, j)));
+            double* row = unknowns->data() + 3 * count;
+            row[0] = 1;
+            row[1] = p.x;
+            row[2] = p.y;
+            (*depths)[static_cast<std::size_t>(count++)] = p.z;
+          }
+        }
+      }
+      const cv::Mat a(count, 3, CV_64F, unknowns->data()), b(count, 1, CV_64F, depths->data());
+      cv::Mat x;
+      cv::solve(a, b, x, cv::DECOMP_NORMAL | cv::DECOMP_CHOLESKY);
+      const double slope_x = x.at<double>(1), slope_y = x.at<double>(2);
+      const double length = std::sqrt(1 + slope_x * slope_x + slope_y * slope_y);
+      SurfaceResult<Plane<double>> result;
+      result.status = SurfaceStatus::ok;
+      result.shape.normal = {-slope_x / length, -slope_y / length, 1 / length};
+      return result;
+    });
+  }
+
+  void add_all() const {
+    const auto sum = std::make_shared<double>(0);
+    bench::add(
+        group + "/streaming sum of depths", pixels, 0,
+        [=, contact = timed] {
+          for (std::size_t k = 0; k < pixels; ++k) {
+            *sum +=
+                contact->mask.cells[k] != 0 ? static_cast<double>(contact->depth.cells[k]) : 0.0;
+          }
+        },
+        [](auto&) {});
+    bench::add_streaming(group, pixels);
+    add<PlaneModel>("plane");
+    add<SphereModel>("sphere");
+    add<QuadricModel>("quadric");
+    add<QuadricModel>("quadric, border of 6 px left out", 6);
+    add_opencv();
+  }
+};
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  cv::setNumThreads(1);
+  const Bench<Camera<double>> rays{"rays"};
+  const Bench<OrthographicCamera<double>> heights{"heights"};
+  rays.add_all();
+  heights.add_all();
+  return bench::run(argc, argv);
+}

@@ -1,0 +1,122 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+// Removal of the neighbouring membrane's light from a depth map, for small to large discs. The
+// error is that of each pixel that this changes, against the sum over every pixel of the disc in
+// long double; of NoNeighbourLight it is the whole of the light.
+#include "fingerpad/depth/neighbour_light.hpp"
+
+#include <memory>
+#include <opencv2/imgproc.hpp>
+#include <string>
+#include <utility>
+
+#include "support/run.hpp"
+#include "support/scene.hpp"
+
+using namespace fingerpad;
+using bench::Image;
+
+namespace {
+
+/// A depth map as a frame gives it: round and smooth, NaN outside the pad.
+Image<float> smooth_depths(const Image<double>& depth_mm) {
+  Image<float> out(depth_mm.rows(), depth_mm.cols());
+  std::copy(depth_mm.cells.begin(), depth_mm.cells.end(), out.cells.begin());
+  return out;
+}
+
+struct Bench {
+  Index radius_px;
+  bench::Scene scene = bench::round_pad();
+  Image<float> free = smooth_depths(scene.free_mm);
+  Image<float> pressed = smooth_depths(scene.pressed_mm);
+
+  std::string group() const { return "radius " + std::to_string(radius_px) + " px"; }
+
+  template <class Disc, class S>
+  NeighbourLightCompensation<Disc, S> compensation() const {
+    return {NeighbourLight<S>{.radius_px = radius_px}, S(scene.pad.camera.pitch_mm * 1.1), free};
+  }
+
+  /// NaN where no light is to be removed.
+  Image<long double> truth() const {
+    const auto compensate = compensation<ExactDisc, long double>();
+    auto workspace = compensate.workspace();
+    Image<long double> out(scene.pad.rows, scene.pad.cols);
+    compensate(pressed, out, workspace);
+    for (std::size_t k = 0; k < out.cells.size(); ++k) {
+      if (out.cells[k] == static_cast<long double>(pressed.cells[k])) {
+        out.cells[k] = not_a_number<long double>();
+      }
+    }
+    return out;
+  }
+
+  template <class S, class Compensation, class Truth>
+  void add(const std::string& name,
+           Compensation made,
+           const Truth& truth,
+           const bench::Memory& memory) const {
+    const auto compensate = std::make_shared<const Compensation>(std::move(made));
+    const auto workspace =
+        std::make_shared<typename Compensation::Workspace>(compensate->workspace());
+    const auto out = std::make_shared<Image<S>>(scene.pad.rows, scene.pad.cols);
+    bench::add(
+        group() + "/" + name, scene.pixels(), memory.bytes(),
+        [=, this] { (*compensate)(pressed, *out, *workspace); },
+        [=](auto& counters) {
+          bench::note_errors(counters, "depth", "mm", bench::errors_of(*out, truth()));
+        });
+  }
+
+  template <class Disc, class S, class Truth>
+  void add(const std::string& name, const Truth& truth) const {
+    const bench::Memory memory;
+    add<S>(name, compensation<Disc, S>(), truth, memory);
+  }
+
+  /// filter(from, to) by OpenCV.
+  template <class Filter>
+  void add_opencv(const std::string& name, Filter filter) const {
+    const auto from = std::make_shared<Image<float>>(pressed);
+    const bench::Memory memory;
+    const auto out = std::make_shared<Image<float>>(scene.pad.rows, scene.pad.cols);
+    const auto mat = [](Image<float>& image) {
+      return cv::Mat(int(image.rows()), int(image.cols()), CV_32F, image.cells.data());
+    };
+    bench::add(
+        group() + "/" + name, scene.pixels(), memory.bytes(),
+        [=] {
+          cv::Mat to = mat(*out);
+          filter(mat(*from), to);
+        },
+        [](auto&) {});
+  }
+
+  void add_all() const {
+    const auto exact = bench::kept([this] { return truth(); });
+    const cv::Size window(int(2 * radius_px + 1), int(2 * radius_px + 1));
+    add<ExactDisc, double>("ExactDisc, double, published", exact);
+    add<ExactDisc, float>("ExactDisc, float", exact);
+    add<SteppedDisc<>, double>("SteppedDisc<5>, double", exact);
+    add<SteppedDisc<>, float>("SteppedDisc<5>, float, the default", exact);
+    add<SteppedDisc<3>, float>("SteppedDisc<3>, float", exact);
+    add<float>("NoNeighbourLight, to another image", NoNeighbourLight(), exact, bench::Memory());
+    bench::add_streaming(group(), scene.pixels());
+    add_opencv("cv::boxFilter of the disc's size",
+               [=](const cv::Mat& from, cv::Mat& to) { cv::boxFilter(from, to, CV_32F, window); });
+    add_opencv("cv::GaussianBlur of the disc's size",
+               [=](const cv::Mat& from, cv::Mat& to) { cv::GaussianBlur(from, to, window, 0); });
+  }
+};
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  cv::setNumThreads(1);
+  const Bench benches[] = {{5}, {15}, {30}, {50}};
+  for (const Bench& b : benches) {
+    b.add_all();
+  }
+  return bench::run(argc, argv);
+}

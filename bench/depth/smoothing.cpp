@@ -1,0 +1,168 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+// Two smoothed planes from one noisy frame, beside OpenCV's box filter. The error is that of each
+// pixel's depth which Newton's method in double then finds.
+#include <memory>
+#include <opencv2/imgproc.hpp>
+#include <string>
+#include <type_traits>
+#include <vector>
+
+#include "fingerpad/depth/depth.hpp"
+#include "support/run.hpp"
+#include "support/scene.hpp"
+
+using namespace fingerpad;
+using bench::Image;
+
+namespace {
+
+template <class T>
+cv::Mat as_mat(Image<T>& image, int channels = 1) {
+  return cv::Mat(int(image.rows()), int(image.cols()) / channels,
+                 CV_MAKETYPE(cv::DataType<T>::depth, channels), image.cells.data());
+}
+
+struct Bench {
+  bench::Scene scene;
+  bench::Frame<std::uint8_t> planar = scene.pressed_frame<std::uint8_t>();
+  bench::Frame<std::uint16_t> deep = scene.pressed_frame<std::uint16_t>();
+  bench::Interleaved<std::uint8_t> bgr{planar};
+  std::vector<Pencil<double>> pencils;
+
+  explicit Bench(const bench::Scene& which) : scene(which) {
+    for (Index i = 0; i < scene.pad.rows; ++i) {
+      for (Index j = 0; j < scene.pad.cols; ++j) {
+        pencils.push_back(scene.pad.pencil(i, j));
+      }
+    }
+  }
+
+  template <class S>
+  std::vector<double> errors(const bench::Frame<S>& smooth) const {
+    Image<double> depth(scene.pad.rows, scene.pad.cols, test::nan);
+    for (std::size_t k = 0; k < pencils.size(); ++k) {
+      const Index row = Index(k) / scene.pad.cols;
+      const Index col = Index(k) % scene.pad.cols;
+      const Colour<double> colour{double(smooth.red.cells[k]), double(smooth.green.cells[k])};
+      depth.cells[k] =
+          newton_depth(scene.pad.fluid, pencils[k], scene.pad.g(row, col), colour).depth_mm;
+    }
+    return bench::errors_of(depth, scene.pressed_mm);
+  }
+
+  /// work(smooth) fills both planes; `memory` was made before all that it holds.
+  template <class S = float, class Work>
+  void add(const std::string& group,
+           const std::string& name,
+           Work work,
+           const bench::Memory& memory = {}) const {
+    const auto smooth = std::make_shared<bench::Frame<S>>(scene.pad.rows, scene.pad.cols);
+    const auto made = bench::kept([=, this] { return errors(*smooth); });
+    bench::add(
+        scene.name + ", " + group + "/" + name, scene.pixels(), memory.bytes(),
+        [=]() mutable { work(*smooth); },
+        [=](auto& counters) { bench::note_errors(counters, "depth", "mm", made()); });
+  }
+
+  template <class Smoothing, class S = float, class Red, class Green>
+  void add_ours(const std::string& group,
+                const std::string& name,
+                const Red& red,
+                const Green& green) const {
+    using Pixel = cell_t<Red>;
+    const auto reference = scene.pad.reference<S>();
+    const bench::Memory memory;
+    const auto setup = std::make_shared<detail::ColourSetup<S>>();
+    setup->rows = scene.pad.rows;
+    setup->cols = scene.pad.cols;
+    for (const S l : reference.depth_mm) {
+      setup->in_pad.push_back(is_finite(l) ? 1 : 0);
+    }
+    if constexpr (detail::is_anchored<Smoothing>) {
+      setup->anchor = detail::anchor_of(scene.pad.camera, scene.pad.fluid, reference);
+    }
+    using Rows = detail::ColourRows<Pixel, S, Smoothing>;
+    const auto rows = std::make_shared<Rows>(*setup, Smoothing(), grey_scale_of<Pixel>());
+    const auto work = [=, r = as_view(red), g = as_view(green)](bench::Frame<S>& smooth) {
+      rows->start(*setup, r, g, 0);
+      for (Index i = 0; i < setup->rows; ++i) {
+        rows->next(*setup, r, g, &smooth.red(i, 0), &smooth.green(i, 0));
+      }
+    };
+    add<S>(group, name, work, memory);
+  }
+
+  template <class Red, class Green>
+  void add_all_ours(const std::string& group, const Red& red, const Green& green) const {
+    add_ours<NoSmoothing>(group, "NoSmoothing", red, green);
+    add_ours<BoxMean>(group, "BoxMean, published", red, green);
+    add_ours<BiasFreeMean>(group, "BiasFreeMean", red, green);
+    add_ours<Anchored<BoxMean>>(group, "Anchored<BoxMean>", red, green);
+    add_ours<Anchored<BiasFreeMean>>(group, "Anchored<BiasFreeMean>, the default", red, green);
+    add_ours<Anchored<BiasFreeMean>, double>(group, "Anchored<BiasFreeMean>, double", red, green);
+    bench::add_streaming(scene.name + ", " + group, scene.pixels());
+  }
+
+  void add_planar() {
+    const cv::Mat red = as_mat(planar.red);
+    const cv::Mat green = as_mat(planar.green);
+    add("two planes", "cv::boxFilter to float", [=](bench::Frame<float>& smooth) {
+      cv::boxFilter(red, as_mat(smooth.red), CV_32F, window);
+      cv::boxFilter(green, as_mat(smooth.green), CV_32F, window);
+    });
+    cv::Mat small[2];
+    add("two planes", "cv::blur to 8 bit, then to float", [=](bench::Frame<float>& smooth) mutable {
+      cv::blur(red, small[0], window);
+      cv::blur(green, small[1], window);
+      small[0].convertTo(as_mat(smooth.red), CV_32F);
+      small[1].convertTo(as_mat(smooth.green), CV_32F);
+    });
+    add_all_ours("two planes", planar.red, planar.green);
+  }
+
+  void add_interleaved() {
+    const cv::Mat image = as_mat(bgr.cells, 3);
+    cv::Mat part[2];
+    add("BGR", "cv::extractChannel, cv::boxFilter", [=](bench::Frame<float>& smooth) mutable {
+      cv::extractChannel(image, part[0], 2);
+      cv::extractChannel(image, part[1], 1);
+      cv::boxFilter(part[0], as_mat(smooth.red), CV_32F, window);
+      cv::boxFilter(part[1], as_mat(smooth.green), CV_32F, window);
+    });
+    cv::Mat all;
+    add("BGR", "cv::boxFilter, cv::extractChannel", [=](bench::Frame<float>& smooth) mutable {
+      cv::boxFilter(image, all, CV_32F, window);
+      cv::extractChannel(all, as_mat(smooth.red), 2);
+      cv::extractChannel(all, as_mat(smooth.green), 1);
+    });
+    add_all_ours("BGR", bgr.red(), bgr.green());
+  }
+
+  void add_deep() {
+    const cv::Mat red = as_mat(deep.red);
+    const cv::Mat green = as_mat(deep.green);
+    add("two planes of 16 bit", "cv::boxFilter to float", [=](bench::Frame<float>& smooth) {
+      cv::boxFilter(red, as_mat(smooth.red), CV_32F, window);
+      cv::boxFilter(green, as_mat(smooth.green), CV_32F, window);
+      as_mat(smooth.red) *= 1.0 / 256;
+      as_mat(smooth.green) *= 1.0 / 256;
+    });
+    add_all_ours("two planes of 16 bit", deep.red, deep.green);
+  }
+
+  static inline const cv::Size window{29, 29};
+};
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  cv::setNumThreads(1);
+  Bench full(bench::full_pad());
+  full.add_planar();
+  full.add_interleaved();
+  full.add_deep();
+  Bench round(bench::round_pad());
+  round.add_interleaved();
+  return bench::run(argc, argv);
+}

@@ -1,0 +1,187 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+// Normal force by look-up, of 4096 contacts ("ns/pixel" is per contact). "as printed": eqs. 18 and
+// 21 with nothing about range, contact or bad input. Error of each contact: that of rounding, from
+// long double, as a share of the largest force; of "as printed", from itself. What a curve errs by
+// is a matter of its calibration: docs/force/normal_force.md has it for finite elements.
+#include "fingerpad/force/normal_force.hpp"
+
+#include <cmath>
+#include <memory>
+#include <opencv2/core.hpp>
+#include <string>
+#include <type_traits>
+#include <vector>
+
+#include "support/contacts.hpp"
+#include "support/run.hpp"
+
+using namespace fingerpad;
+
+namespace {
+
+constexpr double largest_mm2 = 400, largest_depth_mm = 5, largest_radius_mm = 12;
+using Long = long double;
+
+/// force(measure, displacement, angle) of contact k, in the scalar T.
+template <class T, class S, class Force>
+T force_of(const Force& force, bench::Contacts<S>& contacts, Index k) {
+  return force(T(contacts.at(k, 0)), Point2<T>{T(contacts.at(k, 1)), T(contacts.at(k, 2))},
+               T(contacts.at(k, 3)));
+}
+
+template <class S, class Truth>
+void note(bench::Counters& counters,
+          const Truth& truth,
+          bench::Contacts<S>& contacts,
+          const std::vector<S>& found) {
+  std::vector<Long> true_n;
+  for (Index k = 0; k < contacts.frames; ++k) {
+    true_n.push_back(force_of<Long>(truth, contacts, k));
+  }
+  bench::note_errors(counters, "force", "share", bench::share_errors(found, true_n));
+}
+
+/// Work on each contact; make(S()) gives the force(measure, displacement, angle) in the scalar S.
+template <class S, class Make>
+void add_each(const std::string& name, double largest, const Make& make) {
+  const auto contacts = std::make_shared<bench::Contacts<S>>(largest);
+  const bench::Memory memory;
+  const auto out = std::make_shared<std::vector<S>>(contacts->frames);
+  bench::add(
+      name, out->size(), memory.bytes(),
+      [=, force = make(S())] {
+        for (Index k = 0; k < contacts->frames; ++k) {
+          (*out)[static_cast<std::size_t>(k)] = force_of<S>(force, *contacts, k);
+        }
+      },
+      [=](auto& counters) { note(counters, make(Long()), *contacts, *out); });
+}
+
+/// What a NormalForce says as a plain number.
+template <class Estimator>
+auto number_of(const Estimator& estimator) {
+  return [=](const auto& measure, const auto& displacement, const auto& rotation) {
+    return estimator(measure, displacement, rotation).force_n;
+  };
+}
+
+/// make(S()) gives a NormalForce in the scalar S: one contact at a time, and all in one call.
+template <class S, class Make>
+void add_both(const std::string& type,
+              const std::string& name,
+              const Make& make,
+              double largest = largest_mm2) {
+  const auto plain = [=](auto number) { return number_of(make(number)); };
+  add_each<S>("one frame, " + type + "/" + name, largest, plain);
+  const auto contacts = std::make_shared<bench::Contacts<S>>(largest);
+  const bench::Memory memory;
+  const auto out = std::make_shared<std::vector<S>>(contacts->frames);
+  bench::add(
+      "many frames, " + type + "/" + name, out->size(), memory.bytes(),
+      [=, estimator = make(S())] {
+        estimator.for_samples(contacts->samples(),
+                              StridedView<S>(out->data(), contacts->frames, 1, 1));
+      },
+      [=](auto& counters) { note(counters, plain(Long()), *contacts, *out); });
+}
+
+template <class S>
+constexpr ScaledCompensation<S> scaling{S(-0.02), S(0.5)};
+
+template <std::size_t Size, class S>
+CurveErrors<Size, S> some_errors() {
+  CurveErrors<Size, S> errors;
+  S variance = S(1e-4);
+  for (std::size_t k = 0; k < Size; ++k) {
+    errors.covariance[k][k] = variance;
+    variance *= S(1e-2);
+  }
+  errors.residual_sd_n = S(0.1);
+  return errors;
+}
+
+/// The quadratic of eq. 18.
+template <class S>
+void add_opencv(const std::string& group) {
+  const auto contacts = std::make_shared<bench::Contacts<S>>(largest_mm2);
+  const bench::Memory memory;
+  const auto squares = std::make_shared<std::vector<S>>(contacts->frames);
+  const auto out = std::make_shared<std::vector<S>>(contacts->frames);
+  bench::add(
+      group + "/cv::pow and cv::addWeighted", out->size(), memory.bytes(),
+      [=] {
+        const auto row = [](S* cells) {
+          return cv::Mat(1, int(bench::Contacts<S>::frames), cv::DataType<S>::type, cells);
+        };
+        const cv::Mat areas = row(contacts->cells.data());
+        cv::Mat powers = row(squares->data()), forces = row(out->data());
+        cv::pow(areas, 2, powers);
+        cv::addWeighted(powers, 0.00008, areas, 0.0191, 0.6242, forces);
+      },
+      [](auto&) {});
+}
+
+template <class S>
+void add_all(const std::string& type) {
+  const std::string single = "one frame, " + type;
+  add_each<S>(single + "/published, as printed", largest_mm2, [](auto) {
+    return [](const auto& area, const auto& d, const auto&) {
+      using T = std::remove_cvref_t<decltype(area)>;
+      using std::sqrt;
+      const T plain = T(0.00008) * area * area + T(0.0191) * area + T(0.6242);
+      return T(T(0.748) * plain - T(0.637) * sqrt(d.x * d.x + d.y * d.y) + T(1.7));
+    };
+  });
+  add_both<S>(type, "NoCompensation",
+              []<class T>(T) { return NormalForce(published_force_of_area<T>()); });
+  add_both<S>(type, "ScaledCompensation",
+              []<class T>(T) { return NormalForce(published_force_of_area<T>(), scaling<T>); });
+  add_both<S>(type, "PublishedCompensation, published", []<class T>(T) {
+    return NormalForce(published_force_of_area<T>(), published_compensation_by_area<T>());
+  });
+  add_both<S>(
+      type, "PublishedCompensation by depth, published",
+      []<class T>(T) {
+        return NormalForce(published_force_of_depth<T>(), published_compensation_by_depth<T>());
+      },
+      largest_depth_mm);
+  add_both<S>(type, "PolynomialForce<3>", []<class T>(T) {
+    return NormalForce(
+        PolynomialForce<3, T>{{T(0), T(0.02), T(1e-5), T(1e-7)}, T(0), T(largest_mm2)});
+  });
+  add_both<S>(type, "PolynomialForce<5>", []<class T>(T) {
+    return NormalForce(PolynomialForce<5, T>{
+        {T(0), T(0.02), T(1e-5), T(1e-7), T(1e-10), T(1e-13)}, T(0), T(largest_mm2)});
+  });
+  add_both<S>(
+      type, "PowerLawForce",
+      []<class T>(T) {
+        const T third = T(1) / T(3);
+        return NormalForce(PowerLawForce<T>{T(6), third, T(0), T(largest_radius_mm)});
+      },
+      largest_radius_mm);
+  add_each<S>(single + "/ScaledCompensation, variance", largest_mm2, []<class T>(T) {
+    return number_of(NormalForce(published_force_of_area<T>(), scaling<T>, some_errors<3, T>()));
+  });
+  add_each<S>(single + "/fused, by area and by depth", largest_mm2, []<class T>(T) {
+    const NormalForce by_area(published_force_of_area<T>(), scaling<T>, some_errors<3, T>());
+    const NormalForce by_depth(published_force_of_depth<T>(), scaling<T>, some_errors<3, T>());
+    return [=](const T& area, const Point2<T>& d, const T& angle) {
+      return fused(by_area(area, d, angle), by_depth(area / T(80), d, angle)).force_n;
+    };
+  });
+  for (const std::string& group : {single, "many frames, " + type}) {
+    bench::add_streaming(group, static_cast<std::size_t>(bench::Contacts<S>::frames));
+    add_opencv<S>(group);
+  }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  cv::setNumThreads(1);
+  add_all<double>("double");
+  add_all<float>("float");
+  return bench::run(argc, argv);
+}

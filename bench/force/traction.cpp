@@ -1,0 +1,135 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+// Loads of a frame of 21 x 21 dots. "ns/pixel" is per frame. Errors over seven membranes of known
+// load (tests/data/traction_*.csv): of the pressure of each dot whose neighbours all touch, as a
+// share of the pad's, and of each component of force and moment, as a share of the largest (of
+// the moment where there is one); exact, and with noise of 0.02 mm in x, y and z of each dot.
+#include "fingerpad/force/traction.hpp"
+
+#include <array>
+#include <memory>
+#include <opencv2/core.hpp>
+#include <string>
+#include <vector>
+
+#include "../tests/support/traction_scenes.hpp"
+#include "support/run.hpp"
+
+using namespace fingerpad;
+
+namespace {
+
+template <class S>
+test::Cells<Point3<S>> as(const test::Dots& dots) {
+  test::Cells<Point3<S>> to(dots.rows(), dots.cols());
+  for (std::size_t k = 0; k < dots.cells.size(); ++k) {
+    const auto& p = dots.cells[k];
+    to.cells[k] = {static_cast<S>(p.x), static_cast<S>(p.y), static_cast<S>(p.z)};
+  }
+  return to;
+}
+
+struct Errors {
+  std::vector<double> pressure, force, moment;
+
+  void note(bench::Counters& counters, const std::string& noise) const {
+    bench::note_errors(counters, "pressure" + noise, "share", pressure);
+    bench::note_errors(counters, "force" + noise, "share", force);
+    bench::note_errors(counters, "moment" + noise, "share", moment);
+  }
+
+  /// Components as shares of the largest true one.
+  template <class P>
+  static void add(const P& found, const Point3<double>& truth, double of, std::vector<double>& to) {
+    to.push_back((static_cast<double>(found.x) - truth.x) / of);
+    to.push_back((static_cast<double>(found.y) - truth.y) / of);
+    to.push_back((static_cast<double>(found.z) - truth.z) / of);
+  }
+};
+
+template <class S, class Field>
+Errors errors_of(const Field& field, double noise_mm, int frames) {
+  Errors errors;
+  auto maps = field.maps();
+  for (const test::TractionScene& s : test::traction_scenes()) {
+    test::Gauss gauss(11);
+    for (int k = 0; k < frames; ++k) {
+      const auto r = field(as<S>(noisy(s.dots, noise_mm, gauss)), s.contact,
+                           static_cast<S>(s.pressure_mpa), maps);
+      Errors::add(r.force_n, s.force_n, s.largest_force_n(), errors.force);
+      if (s.largest_moment_n_mm() > 0) {
+        Errors::add(r.moment_n_mm, s.moment_n_mm, s.largest_moment_n_mm(), errors.moment);
+      }
+      for (Index i = 0; i < 21; ++i) {
+        for (Index j = 0; j < 21; ++j) {
+          if (s.inside_contact(i, j, 1)) {
+            const auto found = static_cast<double>(maps.pressure_mpa()(i, j));
+            errors.pressure.push_back((found - s.contact_pressure_mpa(i, j)) / s.pressure_mpa);
+          }
+        }
+      }
+    }
+  }
+  return errors;
+}
+
+template <class Modulus, class S = double>
+void add_frame(const std::string& name,
+               const Modulus& modulus,
+               const TractionOptions& options = {}) {
+  struct Running {
+    TractionField<Modulus, S> field;
+    TractionMaps<S> maps = field.maps();
+  };
+  const test::TractionScene& scene = test::traction_scenes()[1];
+  const auto dots = as<S>(scene.dots);
+  const test::Dots stress_free = test::stress_free_dots();
+  const bench::Memory memory;
+  const auto d =
+      std::make_shared<Running>(Running{TractionField<Modulus, S>(stress_free, modulus, options)});
+  bench::add(
+      "frame of 21x21 dots/" + name, 1, memory.bytes(),
+      [d, dots, &scene] {
+        benchmark::DoNotOptimize(
+            d->field(dots, scene.contact, static_cast<S>(scene.pressure_mpa), d->maps));
+      },
+      [d, errors = std::array<Errors, 2>()](auto& counters) mutable {
+        if (errors[0].force.empty()) {
+          errors = {errors_of<S>(d->field, 0, 1), errors_of<S>(d->field, 0.02, 40)};
+        }
+        errors[0].note(counters, "");
+        errors[1].note(counters, ", 20 um noise");
+      });
+}
+
+/// A membrane of 21 x 21 dots has 800 triangles, each with a deformation gradient to invert.
+void add_opencv() {
+  const auto triangles = std::make_shared<std::vector<cv::Matx22d>>(800, cv::Matx22d(2, 1, 1, 3));
+  const bench::Memory memory;
+  const auto inverse = std::make_shared<std::vector<cv::Matx22d>>(800);
+  bench::add(
+      "frame of 21x21 dots/cv::invert of 800 2x2", 1, memory.bytes(),
+      [=] {
+        for (std::size_t k = 0; k < triangles->size(); ++k) {
+          cv::invert((*triangles)[k], (*inverse)[k]);
+        }
+        benchmark::DoNotOptimize(inverse->data());
+      },
+      [](auto&) {});
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  cv::setNumThreads(1);
+  add_frame("GivenModulus, double", GivenModulus{0.5});
+  add_frame<GivenModulus<float>, float>("GivenModulus, float", GivenModulus{0.5F});
+  add_frame("BalancedModulus, double, the default", BalancedModulus{});
+  add_frame<BalancedModulus, float>("BalancedModulus, float", BalancedModulus{});
+  add_frame("GivenModulus, abrupt end of the sums", GivenModulus{0.5}, {.fade_dots = 0});
+  add_frame("GivenModulus, no ring, abrupt end", GivenModulus{0.5},
+            {.ring_dots = 0, .fade_dots = 0});
+  add_opencv();
+  bench::add_streaming("frame of 21x21 dots");
+  return bench::run(argc, argv);
+}

@@ -1,0 +1,347 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+// Six-axis force by every solver. "ns/pixel" is per frame: mesh, side dots, forces; the shape is
+// given. Truth: 24 films pressed flat, dragged and turned by forces of every direction and size at
+// 5 to 20 kPa, whose force, moment and side dots are known in closed form
+// (tests/support/pressed_pad.hpp). Errors: of F_z, of F_x and F_y together, M_x and M_y together
+// and M_z, in shares of the truth; "residual": of eqs. 6 and 7, rms, as a share of the pressure's;
+// of a mesh: heights of its nodes. "heights in plan": all heights in a disc of 18 mm, with the blur
+// of a frame.
+#include "fingerpad/force/wrench.hpp"
+
+#include <cmath>
+#include <cstdint>
+#include <memory>
+#include <numbers>
+#include <opencv2/imgproc.hpp>
+#include <string>
+#include <vector>
+
+#include "../tests/support/pressed_pad.hpp"
+#include "fingerpad/force/pad_heights.hpp"
+#include "support/run.hpp"
+
+using namespace fingerpad;
+using test::Image;
+using test::RimLoad;
+
+namespace {
+
+using Film = test::RoundPad<test::FilmSide>;
+
+/// A pad and what it is pressed with: a lateral force at the height of the object, a torque, and a
+/// press.
+struct Load {
+  Film pad;
+  double pressure_mpa, shear_share, turning_share, direction_rad;
+
+  test::Wrench6 truth() const { return wrench_of(rim_of(pad), *this, pressure_mpa); }
+
+  RimLoad operator()(double at) const {
+    const double sine = pad.sine(pad.radius_mm), cosine = std::sqrt(1 - sine * sine);
+    const double high = pad.height(0), normal = pad.tension(pad.radius_mm, pressure_mpa);
+    const double shear = shear_share * normal, turning = turning_share * normal;
+    const double lean = -high * shear / (pad.radius_mm * sine - high * cosine);
+    return {normal + lean * std::cos(at - direction_rad),
+            turning - shear * std::sin(at - direction_rad)};
+  }
+};
+
+/// The first is the one that is timed.
+const std::vector<Load>& loads() {
+  static const std::vector<Load> all = [] {
+    std::vector<Load> list;
+    for (int k = 0; k < 24; ++k) {
+      Film pad;
+      pad.contact_mm = 8 + k % 3 - (k % 2 == 0 ? 0 : 1.5);
+      pad.rim_sine = 0.9 - 0.05 * (k % 4);
+      const double pressure_mpa = 0.01 * std::pow(2, (k * 5 % 9 - 4 * (k != 0)) / 4.0);
+      const double shear = 0.1 - 0.08 * (k * 7 % 10) / 9.0;
+      const double turning = (k % 2 == 0 ? 0.1 : -0.1) * (1 - 0.1 * (k % 8));
+      list.push_back({pad, pressure_mpa, shear, turning, k * std::numbers::pi * 0.37});
+    }
+    return list;
+  }();
+  return all;
+}
+
+template <class S>
+Image<Point3<S>> as(const Image<Point3<double>>& from) {
+  Image<Point3<S>> to(from.rows(), from.cols(), {S(0), S(0), S(0)});
+  for (std::size_t k = 0; k < from.cells.size(); ++k) {
+    to.cells[k] = {S(from.cells[k].x), S(from.cells[k].y), S(from.cells[k].z)};
+  }
+  return to;
+}
+
+template <class S>
+HeightMap<S> heights_of(const Film& pad) {
+  HeightMap<S> map(S(19.5), S(0.5));
+  map.fill([&](Index i, Index j) { return pad(map.position_mm(j), map.position_mm(i)).height_mm; },
+           [&](Index i, Index j, const auto&...) {
+             return S(pad.in_contact(map.position_mm(j), map.position_mm(i)) ? 1 : 0);
+           });
+  return map;
+}
+
+/// The shapes of all loads.
+template <class S>
+const std::vector<HeightMap<S>>& shapes() {
+  static const std::vector<HeightMap<S>> all = [] {
+    std::vector<HeightMap<S>> list;
+    for (const Load& load : loads()) {
+      list.push_back(heights_of<S>(load.pad));
+    }
+    return list;
+  }();
+  return all;
+}
+
+struct WrenchErrors {
+  std::vector<double> force_z, force_xy, moment_xy, moment_z, residual;
+
+  template <class S>
+  void add(const WrenchResult<S>& found, const test::Wrench6& truth) {
+    const auto share = [](double x, double y, double true_x, double true_y) {
+      return std::hypot(x - true_x, y - true_y) / std::hypot(true_x, true_y);
+    };
+    const auto &f = found.force_n, &m = found.moment_n_mm;
+    const auto &tf = truth.force_n, &tm = truth.moment_n_mm;
+    force_z.push_back(double(f.z) / tf.z - 1);
+    force_xy.push_back(share(double(f.x), double(f.y), tf.x, tf.y));
+    moment_xy.push_back(share(double(m.x), double(m.y), tm.x, tm.y));
+    moment_z.push_back(double(m.z) / tm.z - 1);
+    residual.push_back(double(found.residual));
+  }
+  void note(bench::Counters& counters, bool has_residual) const {
+    bench::note_errors(counters, "F_z", "share", force_z);
+    bench::note_errors(counters, "F_xy", "share", force_xy);
+    bench::note_errors(counters, "M_xy", "share", moment_xy);
+    bench::note_errors(counters, "M_z", "share", moment_z);
+    if (has_residual) {
+      bench::note_errors(counters, "residual", "of the pressure", residual);
+    }
+  }
+};
+
+template <class Solver,
+          class Row = OneRow,
+          class Law = ClampedRim,
+          class Lines = StraightLines,
+          class S = double>
+void add_frame(const std::string& group,
+               const std::string& name,
+               Index columns,
+               Index rows,
+               const Row& row = {}) {
+  using W = Wrench<Solver, Row, Law, Lines, S>;
+  struct Frame {
+    W wrench;
+    typename W::Workspace work = wrench.workspace();
+    WrenchResult<S> result = {};
+  };
+  WrenchOptions<S> options;
+  options.columns = columns;
+  options.rows = rows;
+  options.blur_mm = S(0.6);
+  std::vector<Image<Point3<S>>> dots;
+  for (const Load& load : loads()) {
+    dots.push_back(as<S>(rim_of(load.pad).dots(load, Row::rows)));
+  }
+  const auto border = as<S>(rim_of(loads().front().pad).borders());
+  const auto& shape = shapes<S>();
+  const bench::Memory memory;
+  const auto d = std::make_shared<Frame>(Frame{W(border, options, Solver{}, row, Law{})});
+  bench::add(
+      group + "/" + name, 1, memory.bytes(),
+      [d, dots, &shape] {
+        d->result = d->wrench(shape[0], dots[0], S(loads()[0].pressure_mpa), d->work);
+        benchmark::DoNotOptimize(d->result);
+      },
+      [d, dots, &shape, errors = WrenchErrors()](auto& counters) mutable {
+        for (std::size_t k = 0; errors.residual.size() < loads().size(); ++k) {
+          const Load& load = loads()[k];
+          errors.add(d->wrench(shape[k], dots[k], S(load.pressure_mpa), d->work), load.truth());
+        }
+        errors.note(counters, Solver::finds_tensions);
+      });
+}
+
+/// Lines and segments alone.
+template <class Lines, class S>
+void add_mesh(const std::string& group, const std::string& name, Index columns, Index rows) {
+  struct Mesh {
+    detail::membrane::Compartments<S> nodes;
+    detail::membrane::Segments<S> segments;
+    Mesh(Index c, Index r) : nodes(c, r, S(18.735), {S(0.4), S(0.6), S(4)}), segments(c, r) {}
+  };
+  const auto& shape = shapes<S>();
+  const bench::Memory memory;
+  const auto d = std::make_shared<Mesh>(columns, rows);
+  const auto lay = [d, &shape](std::size_t k) {
+    d->nodes.template lay<Lines>(shape[k], {S(0), S(0), S(0)});
+    d->segments.measure(d->nodes);
+  };
+  bench::add(
+      group + "/" + name, 1, memory.bytes(),
+      [d, lay] {
+        lay(0);
+        benchmark::DoNotOptimize(d->segments);
+      },
+      [=](auto& counters) {
+        std::vector<double> errors;
+        for (std::size_t k = 0; k < loads().size(); ++k) {
+          lay(k);
+          for (Index line = 0; line < columns; ++line) {
+            for (Index r = 1; r <= rows; ++r) {
+              const auto& node = d->nodes.node(line, r);
+              const double away = std::hypot(double(node.x), double(node.y));
+              errors.push_back(double(node.z) - loads()[k].pad.height(away));
+            }
+          }
+        }
+        bench::note_errors(counters, "height", "mm", errors);
+      });
+}
+
+/// As many equations as the pull of each segment at the rim has.
+void add_opencv(const std::string& group, Index columns) {
+  struct System {
+    cv::Mat matrix, right, solution;
+  };
+  const auto d = std::make_shared<System>();
+  const int n = static_cast<int>(columns);
+  d->matrix = cv::Mat(n, n, CV_64F);
+  d->right = cv::Mat(n, 1, CV_64F, cv::Scalar(1));
+  for (int i = 0; i < n; ++i) {
+    for (int j = 0; j < n; ++j) {
+      d->matrix.at<double>(i, j) = (i == j ? 4 : 0) + std::sin(1.0 + i * j);
+    }
+  }
+  bench::add(
+      group + "/cv::solve, dense, " + std::to_string(n) + " unknowns", 1,
+      static_cast<long>(sizeof(double)) * (n * n + 2 * n),
+      [d] {
+        cv::solve(d->matrix, d->right, d->solution, cv::DECOMP_LU);
+        benchmark::DoNotOptimize(d->solution.data);
+      },
+      [](auto&) {});
+}
+
+void add_all(Index columns, Index rows) {
+  const std::string group = std::to_string(columns) + "x" + std::to_string(rows) + " segments";
+  add_frame<PublishedIteration, OneRow, PublishedDirection, SteepestLines>(
+      group, "published: iteration, rim, lines", columns, rows);
+  add_mesh<StraightLines, double>(group, "mesh alone", columns, rows);
+  add_mesh<SteepestLines, double>(group, "mesh alone, SteepestLines", columns, rows);
+  add_frame<PublishedIteration>(group, "PublishedIteration", columns, rows);
+  add_frame<ClosedForm>(group, "ClosedForm", columns, rows);
+  add_frame<BalancedRim>(group, "BalancedRim", columns, rows);
+  add_frame<BalancedRim, ExtrapolatedRow>(group, "BalancedRim, ExtrapolatedRow", columns, rows,
+                                          {1.06});
+  add_frame<BalancedRim, TwoRows>(group, "BalancedRim, TwoRows", columns, rows);
+  add_frame<KnownModulus>(group, "KnownModulus", columns, rows);
+  add_frame<LeastSquares>(group, "LeastSquares, double, the default", columns, rows);
+  add_frame<LeastSquares, OneRow, PublishedDirection>(group, "LeastSquares, PublishedDirection",
+                                                      columns, rows);
+  add_frame<LeastSquares, OneRow, ClampedRim, SteepestLines>(group, "LeastSquares, SteepestLines",
+                                                             columns, rows);
+  add_frame<BalancedRim, OneRow, ClampedRim, StraightLines, float>(group, "BalancedRim, float",
+                                                                   columns, rows);
+  add_frame<PublishedIteration, OneRow, ClampedRim, StraightLines, float>(
+      group, "PublishedIteration, float", columns, rows);
+  add_frame<LeastSquares, OneRow, ClampedRim, StraightLines, float>(group, "LeastSquares, float",
+                                                                    columns, rows);
+  add_opencv(group, columns);
+}
+
+/// Heights in plan from a depth map of 640 x 480.
+template <class S>
+void add_heights(const std::string& name) {
+  struct Picture {
+    Film pad;
+    Image<float> depth{480, 640, 0.0F};
+    Image<std::uint8_t> mask{480, 640};
+  };
+  struct InPlan {
+    PadHeights<Camera<S>> heights{480, 640, Camera<S>()};
+    HeightMap<S> map = heights.map();
+  };
+  const auto picture = std::make_shared<Picture>();
+  const Film& pad = picture->pad;
+  for (Index i = 0; i < 480; ++i) {
+    for (Index j = 0; j < 640; ++j) {
+      // the ray is below the membrane, then above
+      double z = 0, high = 20;
+      Point3<double> p{0, 0, 0};
+      for (int step = 0; step < 40; ++step) {
+        const double middle = (z + high) / 2;
+        p = point_at(Camera<double>(), static_cast<double>(i), static_cast<double>(j), middle);
+        const double r = std::hypot(p.x, p.y);
+        (r < pad.radius_mm && pad.height(r) > middle ? z : high) = middle;
+      }
+      picture->depth(i, j) = static_cast<float>(z);
+      picture->mask(i, j) = pad.touches(std::hypot(p.x, p.y)) ? 1 : 0;
+    }
+  }
+  const bench::Memory memory;
+  const auto d = std::make_shared<InPlan>();
+  bench::add(
+      "heights in plan from 640x480/" + name, 1, memory.bytes(),
+      [=] {
+        d->heights(picture->depth, picture->mask, d->map);
+        benchmark::DoNotOptimize(d->map);
+      },
+      [=](auto& counters) {
+        std::vector<double> errors;
+        for (Index i = 0; i < d->map.side(); ++i) {
+          for (Index j = 0; j < d->map.side(); ++j) {
+            const double x = double(d->map.position_mm(j)), y = double(d->map.position_mm(i));
+            if (std::hypot(x, y) < 18) {
+              errors.push_back(double(d->map(S(x), S(y)).height_mm) -
+                               picture->pad.height(std::hypot(x, y)));
+            }
+          }
+        }
+        bench::note_errors(counters, "height", "mm", errors);
+      });
+}
+
+/// A picture of 640 x 480 resampled at as many places.
+void add_opencv_heights() {
+  struct Picture {
+    cv::Mat depth{480, 640, CV_32F, cv::Scalar(8)}, column, row, plan;
+  };
+  const int side =
+      static_cast<int>(PadHeights<Camera<float>>(480, 640, Camera<float>()).map().side());
+  const auto d = std::make_shared<Picture>();
+  d->column = cv::Mat(side, side, CV_32F);
+  d->row = cv::Mat(side, side, CV_32F);
+  for (int i = 0; i < side; ++i) {
+    for (int j = 0; j < side; ++j) {
+      d->row.at<float>(i, j) = 479.3F * static_cast<float>(i) / static_cast<float>(side);
+      d->column.at<float>(i, j) = 639.3F * static_cast<float>(j) / static_cast<float>(side);
+    }
+  }
+  bench::add(
+      "heights in plan from 640x480/cv::remap to as many places", 1,
+      static_cast<long>(sizeof(float)) * 3 * side * side,
+      [d] {
+        cv::remap(d->depth, d->plan, d->column, d->row, cv::INTER_LINEAR);
+        benchmark::DoNotOptimize(d->plan.data);
+      },
+      [](auto&) {});
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  cv::setNumThreads(1);
+  add_all(36, 30);
+  bench::add_streaming("36x30 segments");
+  add_all(72, 65);
+  add_heights<double>("double");
+  add_heights<float>("float");
+  add_opencv_heights();
+  return bench::run(argc, argv);
+}

@@ -1,0 +1,193 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+// Maps of curvature of a pressed pad, beside the published circle through three points and beside
+// OpenCV's filters. "curvature" is the error against the mean normal curvature of each pixel whose
+// ring sees the free sphere alone; "rounding" is that of all against the same statistic in long
+// double, of the published circle against the mean of sections.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <opencv2/imgproc.hpp>
+#include <string>
+#include <vector>
+
+#include "fingerpad/image/curvature_map.hpp"
+#include "support/run.hpp"
+#include "support/scene.hpp"
+
+using namespace fingerpad;
+using bench::Image;
+
+namespace {
+
+constexpr int directions = 18;
+
+template <class S, class T>
+Image<S> as(const Image<T>& depth_mm) {
+  Image<S> out(depth_mm.rows(), depth_mm.cols());
+  std::copy(depth_mm.cells.begin(), depth_mm.cells.end(), out.cells.begin());
+  return out;
+}
+
+struct Bench {
+  bench::Scene scene;
+  Index radius_px;
+  Image<float> depth = as<float>(scene.pressed_mm);
+  Image<double> truth = true_curvatures();
+
+  double pitch_mm() const { return scene.pad.camera.pitch_mm; }
+  std::string group() const { return scene.name + ", radius " + std::to_string(radius_px) + " px"; }
+
+  /// 1 / radius where the ring sees the free sphere alone, else NaN.
+  Image<double> true_curvatures() const {
+    const double plate_mm = scene.pressed_mm(scene.pad.rows / 2, scene.pad.cols / 2);
+    const auto ring = ring_offsets(radius_px, directions);
+    Image<double> curvature(depth.rows(), depth.cols(), test::nan);
+    for (Index i = radius_px; i < depth.rows() - radius_px; ++i) {
+      for (Index j = radius_px; j < depth.cols() - radius_px; ++j) {
+        const bool is_free = std::all_of(ring.begin(), ring.end(), [&](const RingOffset& o) {
+          return scene.pressed_mm(i - o.row, j - o.col) < plate_mm &&
+                 scene.pressed_mm(i + o.row, j + o.col) < plate_mm;
+        });
+        curvature(i, j) = is_free ? 1 / scene.pad.sphere_radius_mm : test::nan;
+      }
+    }
+    return curvature;
+  }
+
+  /// The same statistic of the same depths in long double.
+  template <class Statistic, class Projection>
+  Image<long double> exact(const Projection& projection) const {
+    const CurvatureMap<Statistic, Projection, long double> map({radius_px}, projection,
+                                                               depth.rows(), depth.cols());
+    auto workspace = map.workspace();
+    Image<long double> out(depth.rows(), depth.cols());
+    map(depth, out, workspace);
+    return out;
+  }
+
+  /// Adds work(), which fills `out`.
+  template <class Statistic, class Image, class Projection, class Work>
+  void add_map(const std::string& name,
+               const Projection& projection,
+               const std::shared_ptr<Image>& out,
+               long bytes,
+               const Work& work) const {
+    const auto same = bench::kept([=, this] { return exact<Statistic>(projection); });
+    bench::add(group() + "/" + name, scene.pixels(), bytes, work, [=, this](auto& counters) {
+      bench::note_errors(counters, "curvature", "1/mm", bench::errors_of(*out, truth));
+      bench::note_errors(counters, "rounding", "1/mm", bench::errors_of(*out, same()));
+    });
+  }
+
+  template <class Statistic, class S, class Projection>
+  void add(const std::string& name, const Projection& projection) const {
+    using Map = CurvatureMap<Statistic, Projection, S>;
+    const auto from = std::make_shared<Image<S>>(as<S>(depth));
+    const bench::Memory memory;
+    const auto map =
+        std::make_shared<Map>(CurvatureRing{radius_px}, projection, depth.rows(), depth.cols());
+    const auto workspace = std::make_shared<typename Map::Workspace>(map->workspace());
+    const auto out = std::make_shared<Image<S>>(depth.rows(), depth.cols());
+    add_map<Statistic>(name, projection, out, memory.bytes(),
+                       [=] { (*map)(*from, *out, *workspace); });
+  }
+
+  /// Eqs. 10 and 11, with nearest pixels and their true distances.
+  template <class S>
+  void add_published(const std::string& name) const {
+    const auto from = std::make_shared<Image<S>>(as<S>(depth));
+    const bench::Memory memory;
+    const auto out =
+        std::make_shared<Image<S>>(depth.rows(), depth.cols(), std::numeric_limits<S>::quiet_NaN());
+    const auto ring = ring_offsets(radius_px, directions);
+    std::vector<S> radius_mm;
+    for (const RingOffset& o : ring) {
+      radius_mm.push_back(S(std::sqrt(double(o.radius_sq())) * pitch_mm()));
+    }
+    const auto work = [=, r = radius_px] {
+      const Image<S>& l = *from;
+      for (Index i = r; i < l.rows() - r; ++i) {
+        for (Index j = r; j < l.cols() - r; ++j) {
+          S sum = S(0);
+          for (std::size_t k = 0; k < ring.size(); ++k) {
+            const auto [row, col] = ring[k];
+            sum += circle_center_curvature(radius_mm[k], l(i - row, j - col), l(i, j),
+                                           l(i + row, j + col));
+          }
+          (*out)(i, j) = sum / S(directions);
+        }
+      }
+    };
+    add_map<SectionMean<>>(name, PlatePitch{pitch_mm()}, out, memory.bytes(), work);
+  }
+
+  void add_opencv() const {
+    const int size = int(2 * radius_px + 1);
+    cv::Mat kernel = cv::Mat::zeros(size, size, CV_32F);
+    for (const RingOffset& o : ring_offsets(radius_px, directions)) {
+      const double weight = 1 / (double(o.radius_sq()) * pitch_mm() * pitch_mm() * directions);
+      const int center = int(radius_px);
+      kernel.at<float>(center + int(o.row), center + int(o.col)) -= float(weight);
+      kernel.at<float>(center - int(o.row), center - int(o.col)) -= float(weight);
+      kernel.at<float>(center, center) += float(2 * weight);
+    }
+    add_filter("cv::filter2D, RingStencil",
+               [=](const cv::Mat& l, cv::Mat& k) { cv::filter2D(l, k, CV_32F, kernel); });
+    add_filter("cv::Laplacian, 5 x 5",
+               [=](const cv::Mat& l, cv::Mat& k) { cv::Laplacian(l, k, CV_32F, 5); });
+  }
+
+  template <class Filter>
+  void add_filter(const std::string& name, const Filter& filter) const {
+    const auto from = std::make_shared<Image<float>>(depth);
+    const bench::Memory memory;
+    const auto out = std::make_shared<Image<float>>(depth.rows(), depth.cols());
+    bench::add(
+        group() + "/" + name, scene.pixels(), memory.bytes(),
+        [=] {
+          const cv::Mat l(int(from->rows()), int(from->cols()), CV_32F, from->cells.data());
+          cv::Mat k(int(out->rows()), int(out->cols()), CV_32F, out->cells.data());
+          filter(l, k);
+        },
+        [](auto&) {});
+  }
+
+  void add_all() const {
+    const PlatePitch plate{pitch_mm()};
+    const PitchAtDepth at_depth(scene.pad.camera);
+    add_published<double>("published circle, double");
+    add_published<float>("published circle, float");
+    add_opencv();
+    bench::add_streaming(group(), scene.pixels());
+    add<PublishedTwiceMean<>, float>("PublishedTwiceMean<36>, float", plate);
+    add<SectionMean<>, float>("SectionMean<18>, float", plate);
+    add<ClampedMean<>, double>("ClampedMean<18>, double", plate);
+    add<ClampedMean<>, float>("ClampedMean<18>, float", plate);
+    add<ClampedMean<>, double>("ClampedMean<18>, double, PitchAtDepth", at_depth);
+    add<ClampedMean<>, float>("ClampedMean<18>, float, PitchAtDepth, the default", at_depth);
+    add<HessianFit<>, double>("HessianFit<18>, double", plate);
+    add<HessianFit<>, float>("HessianFit<18>, float", plate);
+    add<HessianFit<>, float>("HessianFit<18>, float, PitchAtDepth", at_depth);
+    add<HessianFit<9>, float>("HessianFit<9>, float", plate);
+    add<HessianFit<18, FittedValue::larger>, float>("HessianFit<18, larger>, float", plate);
+    add<HessianFit<18, FittedValue::smaller>, float>("HessianFit<18, smaller>, float", plate);
+    add<ClampedHessian<>, float>("ClampedHessian<18>, float", plate);
+    add<RingStencil<>, float>("RingStencil<18>, float", plate);
+  }
+};
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  cv::setNumThreads(1);
+  const Bench benches[] = {{bench::full_pad(), 10},
+                           {bench::full_pad(), 25},
+                           {bench::round_pad(), 10},
+                           {bench::round_pad(), 25}};
+  for (const Bench& b : benches) {
+    b.add_all();
+  }
+  return bench::run(argc, argv);
+}

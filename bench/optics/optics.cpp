@@ -1,0 +1,220 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+// Rays, points and pixels, one call for each pixel of an image. Errors are against long double at
+// the same pixel: of a ray its path factor, of the virtual heights the worse of the two, of a point
+// its place, of a pixel its distance from the one that the point was made of. "published": with
+// angles, one height, the sine of eq. 13.
+#include "fingerpad/optics/camera.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <opencv2/calib3d.hpp>
+#include <opencv2/imgproc.hpp>
+#include <string>
+#include <vector>
+
+#include "support/run.hpp"
+#include "support/scene.hpp"
+
+using namespace fingerpad;
+
+namespace {
+
+using Long = long double;
+constexpr Index rows = 480, cols = 640;
+constexpr std::size_t pixels = rows * cols;
+
+/// visit(k, row, col, depth) of each pixel.
+template <class S, class Visit>
+void each_pixel(const Visit& visit) {
+  for (Index i = 0; i < rows; ++i) {
+    for (Index j = 0; j < cols; ++j) {
+      visit(static_cast<std::size_t>(i * cols + j), S(i), S(j), S(1 + (i + j) % 12));
+    }
+  }
+}
+
+/// By the angles of Snell's law, as the slides have it, through a plate without thickness.
+template <class S>
+Ray<S> ray_by_angles(const Camera<S>& camera, const S& row, const S& col) {
+  const S x = col - camera.center_x_px, y = row - camera.center_y_px;
+  const S air = std::atan(std::sqrt(x * x + y * y) * tangent_per_px(camera));
+  const S fluid = std::asin(std::sin(air) / camera.refractive_index);
+  return {std::tan(air), std::tan(fluid), std::cos(fluid), camera.plate_distance_mm * std::tan(air),
+          1 + 1 / std::cos(fluid)};
+}
+
+double error(const Ray<Long>& a, const Ray<Long>& b) {
+  return static_cast<double>(a.path_factor - b.path_factor);
+}
+double error(const VirtualHeights<Long>& a, const VirtualHeights<Long>& b) {
+  return static_cast<double>((std::max)(std::abs(a.meridional_mm - b.meridional_mm),
+                                        std::abs(a.sagittal_mm - b.sagittal_mm)));
+}
+double error(const Point3<Long>& a, const Point3<Long>& b) {
+  return static_cast<double>(std::hypot(a.x - b.x, a.y - b.y));
+}
+double error(const Point2<Long>& a, const Point2<Long>& b) {
+  return static_cast<double>(std::hypot(a.x - b.x, a.y - b.y));
+}
+
+template <class S>
+Ray<Long> widened(const Ray<S>& r) {
+  return {Long(r.tan_air), Long(r.tan_fluid), Long(r.cos_fluid), Long(r.plate_rho_mm),
+          Long(r.path_factor)};
+}
+template <class S>
+VirtualHeights<Long> widened(const VirtualHeights<S>& h) {
+  return {Long(h.meridional_mm), Long(h.sagittal_mm)};
+}
+template <class S>
+Point3<Long> widened(const Point3<S>& p) {
+  return {Long(p.x), Long(p.y), Long(p.z)};
+}
+template <class S>
+Point2<Long> widened(const Point2<S>& p) {
+  return {Long(p.x), Long(p.y)};
+}
+
+/// call(k, row, col, depth) and truth(row, col, depth), in mm, px or 1.
+template <class S, class Call, class Truth>
+void add(const std::string& name,
+         const std::string& quantity,
+         const std::string& unit,
+         const Call& call,
+         const Truth& truth) {
+  using Result = decltype(call(std::size_t(0), S(0), S(0), S(1)));
+  const bench::Memory memory;
+  const auto out = std::make_shared<std::vector<Result>>(pixels);
+  bench::add(
+      name, pixels, memory.bytes(),
+      [=] {
+        each_pixel<S>([&, to = out->data()](std::size_t k, S row, S col, S depth) {
+          to[k] = call(k, row, col, depth);
+        });
+      },
+      [=](auto& counters) {
+        std::vector<double> errors;
+        each_pixel<Long>([&](std::size_t k, Long row, Long col, Long depth) {
+          errors.push_back(error(widened((*out)[k]), truth(row, col, depth)));
+        });
+        bench::note_errors(counters, quantity, unit, errors);
+      });
+}
+
+/// All calls with one camera in one scalar; CameraOf<S> is Camera<S> or OrthographicCamera<S>.
+template <class S, template <class> class CameraOf>
+struct Calls {
+  std::string row;
+  CameraOf<S> camera;
+  CameraOf<Long> exact = cast<Long>(camera);
+
+  Calls(const std::string& name, const CameraOf<double>& c) : row(name), camera(cast<S>(c)) {}
+
+  void add_rays() const {
+    const auto truth = [e = exact](Long i, Long j, Long) { return ray_at_pixel(e, i, j); };
+    const auto heights = [e = exact](Long i, Long j, Long) {
+      return AstigmaticHeights::heights(e, ray_at_pixel(e, i, j));
+    };
+    const auto add_heights = [&]<class Heights>(const std::string& name, Heights) {
+      add<S>(
+          "virtual heights/" + name, "height", "mm",
+          [c = camera](std::size_t, S i, S j, S) {
+            return Heights::heights(c, ray_at_pixel(c, i, j));
+          },
+          heights);
+    };
+    add<S>(
+        "ray/" + row, "path factor", "1",
+        [c = camera](std::size_t, S i, S j, S) { return ray_at_pixel(c, i, j); }, truth);
+    add_heights(row, AstigmaticHeights());
+    add_heights("SingleHeight, published, " + row, SingleHeight());
+  }
+  void add_published_rays() const {
+    add<S>(
+        "ray/published angles, " + row, "path factor", "1",
+        [c = camera](std::size_t, S i, S j, S) { return ray_by_angles(c, i, j); },
+        [e = exact](Long i, Long j, Long) { return ray_at_pixel(e, i, j); });
+  }
+  template <class Shift>
+  void add_shifted(const std::string& name) const {
+    add<S>(
+        "point/" + name, "point", "mm",
+        [c = camera](std::size_t, S i, S j, S z) { return point_at<Shift>(c, i, j, z); },
+        [e = exact](Long i, Long j, Long z) { return point_at(e, i, j, z); });
+  }
+  void add_points() const {
+    add<S>(
+        "point/" + row, "point", "mm",
+        [c = camera](std::size_t, S i, S j, S z) { return point_at(c, i, j, z); },
+        [e = exact](Long i, Long j, Long z) { return point_at(e, i, j, z); });
+  }
+  void add_pixels() const {
+    const auto points = std::make_shared<std::vector<Point3<S>>>(pixels);
+    each_pixel<Long>([&](std::size_t k, Long i, Long j, Long z) {
+      const auto p = point_at(exact, i, j, z);
+      (*points)[k] = {S(p.x), S(p.y), S(p.z)};
+    });
+    add<S>(
+        "pixel/" + row, "pixel", "px",
+        [c = camera, points](std::size_t k, S, S, S) { return pixel_of(c, (*points)[k]); },
+        [](Long i, Long j, Long) {
+          return Point2<Long>{j, i};
+        });
+  }
+};
+
+/// Straight rays of a camera with radial distortion, and an image carried from pixel to pixel.
+void add_all_opencv() {
+  const cv::Mat matrix = (cv::Mat_<double>(3, 3) << 1000, 0, 319.5, 0, 1000, 239.5, 0, 0, 1);
+  const std::vector<double> distortion{-0.1, 0.01, 0, 0};
+  cv::Mat from(int(pixels), 1, CV_32FC2), image(int(rows), int(cols), CV_32F, 1.0);
+  cv::Mat map[2] = {image.clone(), image.clone()};
+  each_pixel<float>([&](std::size_t k, float i, float j, float) {
+    from.at<cv::Point2f>(int(k)) = {j, i};
+    map[0].at<float>(int(k / cols), int(k % cols)) = j + 0.3F;
+    map[1].at<float>(int(k / cols), int(k % cols)) = i + 0.3F;
+  });
+  cv::Mat points = from.clone(), carried = image.clone();
+  constexpr long bytes = sizeof(float) * pixels;
+  for (const std::string group : {"ray", "point", "pixel"}) {
+    bench::add(
+        group + "/cv::undistortPoints, float", pixels, 2 * bytes,
+        [=]() mutable { cv::undistortPoints(from, points, matrix, distortion); }, [](auto&) {});
+    bench::add(
+        group + "/cv::remap, float, linear", pixels, bytes,
+        [=]() mutable { cv::remap(image, carried, map[0], map[1], cv::INTER_LINEAR); },
+        [](auto&) {});
+    bench::add_streaming(group, pixels);
+  }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  cv::setNumThreads(1);
+  const auto camera = bench::full_pad().pad.camera;
+  auto behind_plate = camera;
+  behind_plate.plate_thickness_mm = 5;
+  const OrthographicCamera<double> from_above;
+  const Calls<double, Camera> thin("double", camera), thick("double, plate of 5 mm", behind_plate);
+  const Calls<float, Camera> single("float", camera),
+      single_thick("float, plate of 5 mm", behind_plate);
+  const Calls<double, OrthographicCamera> heights("OrthographicCamera, double", from_above);
+  const Calls<float, OrthographicCamera> single_heights("OrthographicCamera, float", from_above);
+  thin.add_rays();
+  single.add_rays();
+  thick.add_rays();
+  single_thick.add_rays();
+  thin.add_published_rays();
+  single.add_published_rays();
+  const auto add_points = [](const auto&... calls) { (calls.add_points(), ...); };
+  const auto add_pixels = [](const auto&... calls) { (calls.add_pixels(), ...); };
+  add_points(thin, single, thick, single_thick, heights, single_heights);
+  thin.add_shifted<PublishedSineShift>("published, PublishedSineShift, double");
+  single.add_shifted<PublishedSineShift>("published, PublishedSineShift, float");
+  add_pixels(thin, single, thick, single_thick, heights, single_heights);
+  add_all_opencv();
+  return bench::run(argc, argv);
+}

@@ -1,0 +1,180 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+#pragma once
+// Effects on the stick ratio. Synthetic dots (tests/support/slipping_dots.hpp) with 0.14 px of
+// noise and the published thresholds, and dots of finite-element membranes (tests/data) with 0.06
+// px and the threshold that belongs to it:
+//   press                seen 1.15 times as large, all sticks
+//   drag                 dragged until hardly anything sticks
+//   reversal             and back
+//   twist                turned by 20 degrees, in place and while it is dragged
+//   normal force change  seen 1.15 and 0.85 times as large while it is dragged and slips
+//   rolling              finite elements: a ball that sticks and rolls; U = 1 px, as with 2 px
+//                        there is no answer
+//   wedge                finite elements: a cylinder, dragged
+//   tilted               finite elements: a tilted plate, dragged
+//   noisy                the drag with 0.28 px, twice what the thresholds are for
+//   dots lost            the drag with a fifth of the dots not found, others in each frame
+// Error: of the ratio, in frames with an answer, against what stuck since the frame that it was
+// compared with; of finite elements, against what stuck within the step.
+#include <cmath>
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "../../tests/support/slipping_dots.hpp"
+#include "../../tests/support/stick_scene.hpp"
+#include "fingerpad/slip/stick_ratio.hpp"
+#include "membranes.hpp"
+
+namespace bench::ablation {
+
+struct StickFrame {
+  test::PointsPx dots;
+  test::ContactFlags contact;
+  std::function<double(Index)> truth;  ///< the ratio, by the age of the reference
+};
+using StickRecording = std::vector<StickFrame>;
+
+struct StickRecordings {
+  Scene scene;
+  fingerpad::StickTest test;
+  std::vector<StickRecording> recordings;
+};
+
+/// Shown in eight directions.
+inline std::vector<StickRecording> slipping(test::SlipScene scene,
+                                            double noise_px = 0.14,
+                                            double lost_share = 0) {
+  std::vector<StickRecording> all;
+  for (int n = 0; n < 8; ++n) {
+    test::Random random(static_cast<std::uint64_t>(1 + n));
+    test::SlippingDots truth;
+    StickRecording recording;
+    const auto show = [&] {
+      auto dots = noisy(truth.dots, noise_px, random);
+      for (auto& p : dots.cells) {
+        if (lost_share > 0 && random.uniform() < lost_share) {
+          p = {test::nan, test::nan};
+        }
+      }
+      recording.push_back(
+          {dots, truth.contact, [truth](Index age) { return truth.stick_ratio(age); }});
+    };
+    show();
+    for (const auto& step : steps_of(scene, 2.4 * n)) {
+      truth.step(step);
+      show();
+    }
+    all.push_back(recording);
+  }
+  return all;
+}
+
+/// NAME_dots.pgm and stick_truth.csv, with noise of 0.06 px.
+inline std::vector<StickRecording> finite_elements(const std::string& name) {
+  const test::StickScene scene(name);
+  StickRecording exact;
+  for (Index k = 0; k < scene.steps(); ++k) {
+    const double sticks = scene.stick_ratio(k);
+    exact.push_back({scene.dots(k), scene.contact(k), [sticks](Index) { return sticks; }});
+  }
+  std::vector<StickRecording> all;
+  for (std::uint64_t seed = 1; seed <= 8; ++seed) {
+    test::Random random(seed);
+    all.push_back(exact);
+    for (StickFrame& frame : all.back()) {
+      frame.dots = noisy(frame.dots, 0.06, random);
+    }
+  }
+  return all;
+}
+
+inline std::vector<StickRecordings> stick_recordings() {
+  using enum test::SlipScene;
+  fingerpad::StickTest steady;  // 1 % of sticking dots are told to slip
+  steady.slip_px = 2 * 0.416 * 0.06 * std::sqrt(std::log(100.0));
+  fingerpad::StickTest closer = steady;
+  closer.reference_px = 1;
+  closer.store_px = 0.25;
+  std::vector<StickRecordings> all = {{Scene::press, {}, slipping(press)},
+                                      {Scene::drag, {}, slipping(shear)},
+                                      {Scene::reversal, {}, slipping(reversal)},
+                                      {Scene::twist, {}, slipping(turn)},
+                                      {Scene::twist, {}, slipping(shift_turn)},
+                                      {Scene::normal_force_change, {}, slipping(zoom_in)},
+                                      {Scene::normal_force_change, {}, slipping(zoom_out)},
+                                      {Scene::rolling, closer, finite_elements("roll")},
+                                      {Scene::wedge, steady, finite_elements("cylinder")},
+                                      {Scene::tilted, steady, finite_elements("tilt")},
+                                      {Scene::noisy, {}, slipping(shear, 0.28)},
+                                      {Scene::dots_lost, {}, slipping(shear, 0.14, 0.2)}};
+  return all;
+}
+
+template <class Ratio>
+Errors stick_errors(const StickRecordings& of) {
+  const Ratio ratio(21, 21, of.test);
+  test::DotStates states(21, 21);
+  Errors errors;
+  for (const StickRecording& recording : of.recordings) {
+    auto state = ratio.start();
+    for (const StickFrame& frame : recording) {
+      const auto r = ratio(frame.dots, frame.contact, states, state);
+      if (r.updated()) {
+        errors.add(static_cast<double>(r.stick_ratio) - frame.truth(r.reference_age));
+      }
+    }
+  }
+  return errors;
+}
+
+/// The default against it with one effect off.
+template <class Without>
+Effect stick_effect(const std::vector<StickRecordings>& all,
+                    const std::string& name,
+                    const std::string& on,
+                    const std::string& off) {
+  using With = fingerpad::StickRatio<>;
+  Effect effect{.name = name, .quantity = "stick ratio", .unit = "1", .on = on, .off = off};
+  for (const auto& recordings : all) {
+    effect.with_in(recordings.scene).add(stick_errors<With>(recordings));
+    effect.without_in(recordings.scene).add(stick_errors<Without>(recordings));
+  }
+  const StickRecording& drag = all[1].recordings.front();
+  const auto run = [&](const auto& ratio) {
+    return [&, states = test::DotStates(21, 21), state = ratio.start()]() mutable {
+      state = ratio.start();
+      for (const auto& frame : drag) {
+        ratio(frame.dots, frame.contact, states, state);
+      }
+    };
+  };
+  const With with(21, 21);
+  const Without without(21, 21);
+  auto run_with = run(with);
+  auto run_without = run(without);
+  effect.cost_us =
+      cost_us([&] { run_with(); }, [&] { run_without(); }, static_cast<double>(drag.size()));
+  return effect;
+}
+
+inline std::vector<Effect> stick_effects() {
+  using namespace fingerpad;
+  const auto all = stick_recordings();
+  return {stick_effect<StickRatio<StickConsensus<>, UpdatedReference<>, NoDenoising>>(
+              all, "denoise", "`ResidualMean`", "`NoDenoising`"),
+          stick_effect<StickRatio<StickConsensus<Freedom::scaling>>>(
+              all, "rotation cancel", "`StickConsensus<Freedom::similarity>`",
+              "`StickConsensus<Freedom::scaling>`"),
+          stick_effect<StickRatio<StickConsensus<Freedom::rigid>>>(
+              all, "scale cancel", "`StickConsensus<Freedom::similarity>`",
+              "`StickConsensus<Freedom::rigid>`"),
+          stick_effect<StickRatio<StickConsensus<>, FirstReference>>(
+              all, "reference update", "`UpdatedReference<>`", "`FirstReference`"),
+          stick_effect<StickRatio<ReferenceDotMotion<>>>(
+              all, "motion of many dots", "`StickConsensus<>`", "`ReferenceDotMotion<>`")};
+}
+
+}  // namespace bench::ablation

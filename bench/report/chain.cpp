@@ -1,0 +1,255 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+// The whole chain, a frame in, all results out (bench/report/chain/whole_chain.hpp), as JSON: error of
+// each result, time of each stage, the distribution of latencies over 10,000 frames, growth with
+// the size of the image, the number of dots and the length of the history, and two threads. Frames
+// and truth: bench/report/chain/pressed_frames.hpp. "chain FRAMES" times so many frames instead.
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <iostream>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "no_allocation/count.hpp"
+#include "chain/pressed_frames.hpp"
+
+using namespace fingerpad;
+using chain::Stage;
+using nlohmann::ordered_json;
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+using Milliseconds = std::chrono::duration<double, std::milli>;
+
+double share_of(const std::vector<double>& sorted, double share) {
+  return sorted[static_cast<std::size_t>(share * static_cast<double>(sorted.size() - 1))];
+}
+
+/// Times of one kind.
+class Times {
+ public:
+  explicit Times(int count = 0) { ms_.reserve(static_cast<std::size_t>(count)); }
+  void add(double ms) { ms_.push_back(ms); }
+  std::vector<double> sorted() const {
+    std::vector<double> all = ms_;
+    std::sort(all.begin(), all.end());
+    return all;
+  }
+  double median() const { return share_of(sorted(), 0.5); }
+
+ private:
+  std::vector<double> ms_;
+};
+
+/// Notes how long each stage took.
+struct Watch {
+  std::array<Times, chain::stage_names.size()> stage;
+  Clock::time_point last = Clock::now();
+
+  void operator()(Stage ended) {
+    const auto now = Clock::now();
+    stage[static_cast<std::size_t>(ended)].add(Milliseconds(now - last).count());
+    last = now;
+  }
+};
+
+template <class Recipe, class Crew = chain::OneThread, class Finger>
+auto chain_of(const Finger& finger) {
+  return chain::WholeChain<Recipe, decltype(finger.reference), Crew>(finger);
+}
+
+template <class Chain>
+ordered_json stages_of(Chain chain, const chain::PressedFrames& frames, int count) {
+  Watch watch;
+  Times whole;
+  for (int k = 0; k < count; ++k) {
+    watch.last = Clock::now();
+    const auto begin = watch.last;
+    chain(frames[static_cast<std::size_t>(k) % frames.size()].view(), watch);
+    whole.add(Milliseconds(Clock::now() - begin).count());
+  }
+  ordered_json out;
+  for (std::size_t s = 0; s < chain::stage_names.size(); ++s) {
+    out["stages_ms"][chain::stage_names[s]] = watch.stage[s].median();
+  }
+  out["whole_ms"] = whole.median();
+  return out;
+}
+
+/// {"unit", "median", "99 %", "worst", "found"} of each quantity.
+class Errors {
+ public:
+  void add(const std::string& quantity, const std::string& unit, double error) {
+    auto of = std::find_if(all_.begin(), all_.end(),
+                           [&](const Quantity& q) { return q.name == quantity; });
+    if (of == all_.end()) {
+      of = all_.insert(of, {quantity, unit});
+    }
+    ++of->asked;
+    if (error == error) {
+      of->errors.push_back(std::abs(error));
+    }
+  }
+  ordered_json summary() {
+    ordered_json out;
+    for (Quantity& q : all_) {
+      auto& of = out[q.name];
+      of["unit"] = q.unit;
+      std::sort(q.errors.begin(), q.errors.end());
+      if (!q.errors.empty()) {
+        of["median"] = share_of(q.errors, 0.5);
+        of["99 %"] = share_of(q.errors, 0.99);
+        of["worst"] = q.errors.back();
+      }
+      of["found"] = static_cast<double>(q.errors.size()) / q.asked;
+    }
+    return out;
+  }
+
+ private:
+  struct Quantity {
+    std::string name, unit;
+    double asked = 0;
+    std::vector<double> errors = {};
+  };
+  std::vector<Quantity> all_;
+};
+
+/// Where the plate has carried the point of it that is now at `now`, from the first frame on.
+double displacement_error_mm(const ObjectMotionResult<double>& r,
+                             const chain::PressedFrame& first,
+                             const chain::PressedFrame& frame) {
+  const auto& a = first.plate;
+  const auto& b = frame.plate;
+  const double x = r.position_mm.x - r.displacement_mm.x - a.shift_x_mm;
+  const double y = r.position_mm.y - r.displacement_mm.y - a.shift_y_mm;
+  const double c = std::cos(b.turn_rad - a.turn_rad), s = std::sin(b.turn_rad - a.turn_rad);
+  return std::hypot(c * x - s * y + b.shift_x_mm - r.position_mm.x,
+                    s * x + c * y + b.shift_y_mm - r.position_mm.y);
+}
+
+template <class Chain>
+ordered_json errors_of(Chain chain, const chain::PressedFrames& frames) {
+  Errors errors;
+  for (std::size_t k = 0; k < frames.size(); ++k) {
+    const auto& f = frames[k];
+    const auto r = chain(f.view());
+    for (Index i = 0; i < f.depth_mm.rows(); ++i) {
+      for (Index j = 0; j < f.depth_mm.cols(); ++j) {
+        if (f.depth_mm(i, j) == f.depth_mm(i, j)) {
+          errors.add("depth of a pixel", "mm",
+                     static_cast<double>(chain.depth_mm()(i, j)) - f.depth_mm(i, j));
+        }
+      }
+    }
+    const double degrees = 180 / std::numbers::pi;
+    const double f_z = std::abs(f.wrench.force_n.z);
+    errors.add("contact area", "share", r.contact.area_mm2 / f.contact_area_mm2() - 1);
+    errors.add("contact depth", "mm", r.contact.depth_mm - (13 - f.membrane.height(0)));
+    errors.add("object's turn", "deg",
+               degrees * (r.motion.angles.z_rad - f.plate.turn_rad + frames[0].plate.turn_rad));
+    errors.add("object's displacement", "mm", displacement_error_mm(r.motion, frames[0], f));
+    if (k > 0) {  // the first frame has nothing to compare with
+      errors.add("stick ratio", "1", static_cast<double>(r.stick.stick_ratio) - 1);
+    }
+    errors.add("normal force by look-up", "N",
+               r.normal.force_n - chain::pressure_mpa * f.contact_area_mm2());
+    errors.add("F_x, F_y", "N",
+               std::hypot(r.wrench.force_n.x - f.wrench.force_n.x,
+                          r.wrench.force_n.y - f.wrench.force_n.y));
+    errors.add("F_z", "share", (r.wrench.force_n.z - f.wrench.force_n.z) / f_z);
+    errors.add("M_z", "N mm", r.wrench.moment_n_mm.z - f.wrench.moment_n_mm.z);
+  }
+  return errors.summary();
+}
+
+template <class Chain>
+ordered_json latencies_of(Chain chain, const chain::PressedFrames& frames, int count) {
+  for (std::size_t k = 0; k < frames.size(); ++k) {
+    chain(frames[k].view());
+  }
+  Times times(count);
+  const long before = test::allocations();
+  double sum_ms = 0;
+  for (int k = 0; k < count; ++k) {
+    const auto begin = Clock::now();
+    chain(frames[static_cast<std::size_t>(k) % frames.size()].view());
+    const double ms = Milliseconds(Clock::now() - begin).count();
+    sum_ms += ms;
+    times.add(ms);
+  }
+  const long allocations = test::allocations() - before;
+  const std::vector<double> sorted = times.sorted();
+  ordered_json out;
+  out["frames"] = count;
+  out["allocations"] = allocations;
+  out["median_ms"] = share_of(sorted, 0.5);
+  out["99_ms"] = share_of(sorted, 0.99);
+  out["999_ms"] = share_of(sorted, 0.999);
+  out["worst_ms"] = sorted.back();
+  out["frames_per_s"] = 1000 * count / sum_ms;
+  for (int k = 0; k <= 1000; ++k) {
+    out["sorted_ms"].push_back(share_of(sorted, k / 1000.0));
+  }
+  return out;
+}
+
+/// Medians of the lean chain's stages over frames.
+ordered_json growth() {
+  ordered_json out = ordered_json::array();
+  const auto add = [&](const char* by, Index size, const auto& finger, const auto& frames,
+                       int count) {
+    auto stages = stages_of(chain_of<chain::Lean>(finger), frames, count);
+    stages["by"] = by;
+    stages["size"] = size;
+    out.push_back(stages);
+  };
+  for (const Index rows : {120, 240, 480, 960, 1440}) {
+    const chain::PressedFrames frames(rows, rows * 4 / 3, 2);
+    add("pixels", frames.pixels(), frames.finger(), frames, rows > 480 ? 30 : 200);
+  }
+  for (const Index dots : {11, 21, 41, 81}) {
+    const chain::PressedFrames frames(480, 640, 16, dots);
+    add("dots", dots * dots, frames.finger(), frames, 200);
+  }
+  const chain::PressedFrames frames;
+  for (const Index history : {16, 64, 256, 1024}) {
+    auto finger = frames.finger();
+    finger.stick_reference.capacity = history;
+    finger.stick_test.reference_px = 1e6;  // no frame is far enough: all are looked at
+    finger.stick_test.store_px = 0;
+    add("stored frames", history, finger, frames, static_cast<int>(2 * history) + 200);
+  }
+  return out;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  const int count = argc > 1 ? std::atoi(argv[1]) : 10000;
+  const chain::PressedFrames frames;
+  const auto finger = frames.finger();
+  ordered_json out;
+  const auto add = [&]<class Recipe>(const char* name, const Recipe&) {
+    const long before = test::bytes_taken();
+    const auto made = chain_of<Recipe>(finger);
+    auto& of = out["chains"][name];
+    of["bytes"] = test::bytes_taken() - before;
+    of.update(stages_of(chain_of<Recipe>(finger), frames, 400));
+    of["errors"] = errors_of(chain_of<Recipe>(finger), frames);
+  };
+  add("lean", chain::Lean());
+  add("default", chain::ByDefault());
+  add("least squares", chain::WithLeastSquares());
+  out["growth"] = growth();
+  const auto one = latencies_of(chain_of<chain::Lean>(finger), frames, count);
+  const auto two = latencies_of(chain_of<chain::Lean, chain::TwoThreads>(finger), frames, count);
+  out["latencies"] = {{"one thread", one}, {"two threads", two}};
+  std::cout << out.dump(1) << '\n';
+}

@@ -1,0 +1,248 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+// Stick ratio of 21 x 21 dots with 64 stored frames; "ns/pixel" is per frame. Timed: dots dragged
+// to and fro, all in contact. Error: of the ratio, in each frame of recordings in which dots are
+// dragged, turned and pressed, one by one and at once (tests/support/slipping_dots.hpp), with 0.14
+// px of noise; a frame without an answer (at rest, or too little moved) has none.
+#include "fingerpad/slip/stick_ratio.hpp"
+
+#include <cmath>
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <numbers>
+#include <opencv2/calib3d.hpp>
+#include <string>
+#include <vector>
+
+#include "../tests/support/slipping_dots.hpp"
+#include "support/naive_stick_ratio.hpp"
+#include "support/run.hpp"
+
+using namespace fingerpad;
+
+namespace {
+
+constexpr double noise_px = 0.14;
+
+/// Dragged to and fro for ever, all in contact, so that every frame looks for its reference among
+/// 64 stored ones.
+struct Recording {
+  explicit Recording(Index rows, Index cols, double step_px) {
+    test::Random random(1);
+    test::SlippingDots moving({.rows = rows, .cols = cols, .contact_pitches = 1e6});
+    contact = moving.contact;
+    for (int k = 0; k < 256; ++k) {
+      const double direction = k < 128 ? 0.3 : 0.3 + std::numbers::pi;
+      moving.step({.shift_px = step_px, .direction_rad = direction, .stick_share = 6.0 / 1e6});
+      frames.push_back(test::noisy(moving.dots, noise_px, random));
+    }
+  }
+  std::vector<test::PointsPx> frames;
+  test::ContactFlags contact;
+};
+
+const Recording& recording() {
+  static const Recording r(21, 21, 0.6);
+  return r;
+}
+
+/// A frame whose ratio is known, against any reference.
+struct KnownFrame {
+  bool begins;
+  test::PointsPx seen;
+  test::SlippingDots truth;
+};
+
+/// All scenes, each in six directions, on a contact that covers as much of the pattern at any size.
+const std::vector<KnownFrame>& known_frames(Index dots) {
+  static std::map<Index, std::vector<KnownFrame>> of_size;
+  std::vector<KnownFrame>& frames = of_size[dots];
+  if (frames.empty()) {
+    const double share = static_cast<double>(dots) / 21;
+    const test::DotPattern pattern{
+        .rows = dots, .cols = dots, .pitch_px = 19.5 / share, .contact_pitches = 8.2 * share};
+    for (const test::SlipScene scene : test::all_slip_scenes) {
+      for (int n = 0; n < 6; ++n) {
+        test::Random random(static_cast<std::uint64_t>(1 + n));
+        test::SlippingDots truth(pattern);
+        frames.push_back({true, test::noisy(truth.dots, noise_px, random), truth});
+        for (const test::SlipStep& step : steps_of(scene, 2.4 * n)) {
+          truth.step(step);
+          frames.push_back({false, test::noisy(truth.dots, noise_px, random), truth});
+        }
+      }
+    }
+  }
+  return frames;
+}
+
+template <class Ratio>
+std::vector<double> errors_of(const Ratio& ratio) {
+  std::vector<double> errors;
+  auto state = ratio.start();
+  test::DotStates states(ratio.rows(), ratio.cols());
+  for (const KnownFrame& frame : known_frames(ratio.rows())) {
+    if (frame.begins) {
+      state.reset();
+    }
+    const auto r = ratio(frame.seen, frame.truth.contact, states, state);
+    errors.push_back(r.updated() ? static_cast<double>(r.stick_ratio) -
+                                       frame.truth.stick_ratio(r.reference_age)
+                                 : test::nan);
+  }
+  return errors;
+}
+
+void note_ratio(bench::Counters& counters, const std::vector<double>& errors) {
+  bench::note_errors(counters, "stick ratio", "of 1", errors);
+}
+
+template <class Ratio, class... Parameters>
+void add(const std::string& name, const Recording& input, const Parameters&... parameters) {
+  struct Running {
+    Ratio ratio;
+    typename Ratio::State state = ratio.start();
+    test::DotStates states{ratio.rows(), ratio.cols()};
+    std::size_t k = 0;
+  };
+  const Index dots = input.contact.rows();
+  const bench::Memory memory;
+  const auto d = std::make_shared<Running>(Running{Ratio(dots, dots, parameters...)});
+  bench::add(
+      name, 1, memory.bytes(),
+      [d, &input] {
+        d->k = d->k + 1 < input.frames.size() ? d->k + 1 : 0;
+        benchmark::DoNotOptimize(d->ratio(input.frames[d->k], input.contact, d->states, d->state));
+      },
+      [d, errors = std::vector<double>()](auto& counters) mutable {
+        errors = errors.empty() ? errors_of(d->ratio) : errors;
+        note_ratio(counters, errors);
+      });
+}
+
+template <class Motion,
+          class Reference = UpdatedReference<>,
+          class Denoising = ResidualMean,
+          class S = float>
+void add_frame(const std::string& name) {
+  add<StickRatio<Motion, Reference, Denoising, S>>("frame of 21x21 dots/" + name, recording());
+}
+
+std::vector<bench::NaivePoint> naive_points(const test::PointsPx& dots) {
+  std::vector<bench::NaivePoint> points;
+  for (const auto& p : dots.cells) {
+    points.push_back({p.x, p.y});
+  }
+  return points;
+}
+
+bench::NaiveStickRatio naive_ratio(const test::ContactFlags& contact) {
+  return {21, 21, 64, std::vector<bool>(contact.cells.begin(), contact.cells.end())};
+}
+
+std::vector<double> naive_errors() {
+  std::vector<double> errors;
+  bench::NaiveStickRatio ratio = naive_ratio(recording().contact);
+  for (const KnownFrame& frame : known_frames(21)) {
+    if (frame.begins) {
+      ratio = naive_ratio(frame.truth.contact);
+    }
+    const double found = ratio(naive_points(frame.seen));
+    const int age = ratio.reference_age();
+    errors.push_back(age > 0 ? found - frame.truth.stick_ratio(age) : test::nan);
+  }
+  return errors;
+}
+
+void add_naive() {
+  struct Running {
+    bench::NaiveStickRatio ratio = naive_ratio(recording().contact);
+    std::vector<std::vector<bench::NaivePoint>> frames = {};
+    std::size_t k = 0;
+  };
+  const auto d = std::make_shared<Running>();
+  for (const auto& frame : recording().frames) {
+    d->frames.push_back(naive_points(frame));
+  }
+  const long stored = 64 * static_cast<long>(21 * 21 * sizeof(bench::NaivePoint));
+  bench::add(
+      "frame of 21x21 dots/naive: the slides in double, every stored frame", 1, stored,
+      [d] {
+        d->k = d->k + 1 < d->frames.size() ? d->k + 1 : 0;
+        benchmark::DoNotOptimize(d->ratio(d->frames[d->k]));
+      },
+      [errors = std::vector<double>()](auto& counters) mutable {
+        errors = errors.empty() ? naive_errors() : errors;
+        note_ratio(counters, errors);
+      });
+}
+
+/// The motion of the object between two frames, by random samples of the dots.
+void add_opencv() {
+  struct Data {
+    std::vector<cv::Point2f> from, to;
+    cv::Mat sticks, motion;
+  };
+  const auto d = std::make_shared<Data>();
+  const auto points = [](const test::PointsPx& dots) {
+    std::vector<cv::Point2f> out;
+    for (const auto& p : dots.cells) {
+      out.emplace_back(static_cast<float>(p.x), static_cast<float>(p.y));
+    }
+    return out;
+  };
+  d->from = points(recording().frames[0]);
+  d->to = points(recording().frames[8]);
+  const bench::Memory memory;
+  d->motion = cv::estimateAffinePartial2D(d->from, d->to, d->sticks, cv::RANSAC, 0.5);
+  bench::add(
+      "frame of 21x21 dots/cv::estimateAffinePartial2D, RANSAC", 1, memory.bytes(),
+      [d] {
+        d->motion = cv::estimateAffinePartial2D(d->from, d->to, d->sticks, cv::RANSAC, 0.5);
+        benchmark::DoNotOptimize(d->motion.data);
+      },
+      [](auto&) {});
+}
+
+void add_growth() {
+  static const Recording small(11, 11, 0.6), large(41, 41, 0.6), slow(21, 21, 0.05);
+  const auto name = [](const char* what) { return std::string("growth/") + what; };
+  using Default = StickRatio<>;
+  add<Default>(name("21x21 dots, 64 stored frames"), recording());
+  add<Default>(name("11x11 dots"), small);
+  add<Default>(name("41x41 dots"), large);
+  add<Default>(name("1024 stored frames"), recording(), StickTest(), StickConsensus<>(),
+               UpdatedReference<>{.capacity = 1024});
+  add<Default>(name("moving by 0.05 px a frame"), slow);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  cv::setNumThreads(1);
+  using Published = ReferenceDotMotion<Freedom::similarity, PublishedZoom>;
+  using Updated = UpdatedReference<>;
+  add_naive();
+  add_frame<Published, Updated, DotMean, double>("published policies, double");
+  add_frame<Published, Updated, DotMean>("published policies, float");
+  add_frame<ReferenceDotMotion<Freedom::similarity, PublishedZoom, CentralDot>, Updated, DotMean>(
+      "published policies, CentralDot, float");
+  add_frame<ReferenceDotMotion<>, Updated, DotMean>(
+      "ReferenceDotMotion<LeastSquaresZoom>, DotMean");
+  add_frame<ReferenceDotMotion<>>("ReferenceDotMotion<LeastSquaresZoom>, ResidualMean");
+  add_frame<StickConsensus<>>("StickConsensus, ResidualMean, float, the default");
+  add_frame<StickConsensus<>, Updated, ResidualMean, double>("the default in double");
+  add_frame<StickConsensus<Freedom::similarity, CentralDot>>("StickConsensus, CentralDot");
+  add_frame<StickConsensus<>, UpdatedReference<InStickRegion>>("d_max in the stick region");
+  add_frame<StickConsensus<>, Updated, DotMean>("StickConsensus, DotMean");
+  add_frame<StickConsensus<>, Updated, NoDenoising>("without denoising");
+  add_frame<StickConsensus<Freedom::rigid>>("without scale");
+  add_frame<StickConsensus<Freedom::scaling>>("without turn");
+  add_frame<StickConsensus<Freedom::translation>>("without turn and scale");
+  add_frame<StickConsensus<>, FirstReference>("FirstReference");
+  add_opencv();
+  bench::add_streaming("frame of 21x21 dots");
+  add_growth();
+  return bench::run(argc, argv);
+}

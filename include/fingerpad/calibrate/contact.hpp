@@ -1,0 +1,160 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+#pragma once
+// The threshold of the contact test, from frames of the free pad.
+// Source: the slides, consideration of calculation error: delta = min over the pad of E - 2 sigma,
+// where E is the statistic's mean over the frames and sigma its standard deviation.
+//
+// As published, the single worst pixel of the pad sets the threshold; a quantile instead of the
+// minimum does not fear it. And E - 2 sigma is as far from contact as noise allows, not where the
+// edge of contact is: a straight edge has half the level of the free pad, and so has the default.
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <vector>
+
+#include "fingerpad/contact/detail/camera_projection.hpp"
+#include "fingerpad/image/curvature_map.hpp"
+#include "fingerpad/core/expects.hpp"
+#include "fingerpad/core/grid.hpp"
+#include "fingerpad/core/scalar.hpp"
+
+namespace fingerpad {
+inline namespace v0 {
+
+/// delta = min(level_share x median of E, quantile over the pad of E - sigmas x sigma).
+/// The sigma of a single pixel, as published, takes dozens of frames to be known; that of the whole
+/// pad takes two.
+struct ThresholdRule {
+  double level_share = 0.5;  ///< in (0, 1]
+  double sigmas = 2;         ///< >= 0
+  double quantile = 0.001;   ///< in [0, 0.5]; share of the free pad that may be taken for contact
+  bool pooled_sigma = true;  ///< one sigma, the root mean square over the pad, for all pixels
+};
+
+/// The slides' rule: the worst pixel alone counts.
+constexpr ThresholdRule published_threshold_rule() {
+  return {1, 2, 0, false};
+}
+
+/// What the free pad is like. All curvatures in 1/mm.
+struct FreePadCurvature {
+  double threshold_per_mm = 0;  ///< delta, for ContactTest
+  double median_per_mm = 0;     ///< of E over the pad
+  double noise_per_mm = 0;      ///< root mean square of sigma over the pad; 0 from a single frame
+  double edge_noise_mm = 0;     ///< standard deviation that it alone would leave a point of a flat
+                                ///< object's edge; HalfLevelEdge, which smooths, comes to less
+  Index pixels = 0;             ///< with a curvature in every frame
+  int frames = 0;
+};
+
+/// Collects curvature statistics of the free pad. It must be the statistic, the ring and the camera
+/// of the contact test. Takes 24 bytes per pixel.
+template <class Statistic = ClampedMean<>, class CameraType = Camera<double>, scalar S = float>
+class FreePadCalibration {
+  using Map = CurvatureMap<Statistic, detail::projection_of<CameraType>, S>;
+
+ public:
+  /// Refuses bad parameters (parameter_error).
+  FreePadCalibration(const CameraType& camera,
+                     Index rows,
+                     Index cols,
+                     const CurvatureRing& ring = {})
+      : pixel_mm_(detail::pixel_size_mm(detail::projection_for(checked(camera)), 0)),
+        ring_px_(static_cast<double>(ring.radius_px)),
+        map_(ring, detail::projection_for(camera), rows, cols),
+        workspace_(map_.workspace()),
+        curvature_(static_cast<std::size_t>(rows * cols)),
+        mean_(curvature_.size(), 0),
+        squares_(curvature_.size(), 0) {}
+
+  /// Adds the depth map of a frame, mm; false, and nothing changed, if it has another size.
+  template <grid Depth>
+  bool add(const Depth& depth_mm) {
+    const StridedView<S> curvature(curvature_.data(), map_.rows(), map_.cols(), map_.cols());
+    if (!map_(depth_mm, curvature, workspace_).accepted) {
+      return false;
+    }
+    ++frames_;
+    for (std::size_t k = 0; k < mean_.size(); ++k) {
+      // a pixel that is once without curvature is NaN from then on
+      const double here = static_cast<double>(value(curvature_[k]));
+      const double change = here - mean_[k];
+      mean_[k] += change / frames_;
+      squares_[k] += change * (here - mean_[k]);
+    }
+    return true;
+  }
+
+  /// Refuses a rule out of range, no frames, no pixel with a curvature in all of them, and a pad
+  /// that the rule leaves no positive threshold (parameter_error).
+  FreePadCurvature fit(const ThresholdRule& rule = {}) const {
+    check(rule);
+    FreePadCurvature pad;
+    pad.frames = frames_;
+    std::vector<double> means;
+    std::vector<double> sigmas;
+    double variance = 0;
+    for (std::size_t k = 0; k < mean_.size(); ++k) {
+      if (is_finite(squares_[k])) {
+        const double of_pixel = frames_ > 1 ? squares_[k] / (frames_ - 1) : 0;
+        means.push_back(mean_[k]);
+        sigmas.push_back(std::sqrt(of_pixel));
+        variance += of_pixel;
+      }
+    }
+    pad.pixels = static_cast<Index>(means.size());
+    expects(frames_ > 0, "FreePadCalibration", "frames", static_cast<long long>(frames_), ">= 1");
+    expects(pad.pixels > 0, "FreePadCalibration", "pixels", static_cast<long long>(pad.pixels),
+            ">= 1 with a curvature in every frame");
+    pad.noise_per_mm = std::sqrt(variance / static_cast<double>(pad.pixels));
+    std::vector<double> lows = means;
+    for (std::size_t k = 0; k < lows.size(); ++k) {
+      lows[k] -= rule.sigmas * (rule.pooled_sigma ? pad.noise_per_mm : sigmas[k]);
+    }
+    pad.median_per_mm = quantile(means, 0.5);
+    pad.threshold_per_mm =
+        (std::min)(rule.level_share * pad.median_per_mm, quantile(lows, rule.quantile));
+    // the mean curvature across an edge rises by 4 / (pi r) of its jump per mm, see edge_level.hpp
+    pad.edge_noise_mm =
+        pad.noise_per_mm / pad.median_per_mm * 0.785398163397448 * ring_px_ * pixel_mm_;
+    expects(pad.threshold_per_mm > 0, "FreePadCalibration", "threshold_per_mm",
+            pad.threshold_per_mm,
+            "> 0: the pad bulges too little for its noise; a larger ring, or "
+            "more smoothing of the depth, helps");
+    return pad;
+  }
+
+ private:
+  static const CameraType& checked(const CameraType& camera) {
+    expects_valid(camera);
+    return camera;
+  }
+
+  static void check(const ThresholdRule& rule) {
+    expects(rule.level_share > 0 && rule.level_share <= 1, "ThresholdRule", "level_share",
+            rule.level_share, "in (0, 1]");
+    expects(is_finite(rule.sigmas) && rule.sigmas >= 0, "ThresholdRule", "sigmas", rule.sigmas,
+            "finite and >= 0");
+    expects(rule.quantile >= 0 && rule.quantile <= 0.5, "ThresholdRule", "quantile", rule.quantile,
+            "in [0, 0.5]");
+  }
+
+  static double quantile(std::vector<double>& values, double share) {
+    const auto at = static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
+    std::nth_element(values.begin(), values.begin() + at, values.end());
+    return values[static_cast<std::size_t>(at)];
+  }
+
+  double pixel_mm_;
+  double ring_px_;
+  Map map_;
+  typename Map::Workspace workspace_;
+  std::vector<S> curvature_;
+  std::vector<double> mean_;     ///< E of each pixel
+  std::vector<double> squares_;  ///< sum of squared deviations from it
+  int frames_ = 0;
+};
+
+}  // namespace v0
+}  // namespace fingerpad

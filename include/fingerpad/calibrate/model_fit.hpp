@@ -1,0 +1,233 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+#pragma once
+// Least squares by Gauss and Newton's method, each step by QR of the scaled Jacobian, with Huber's
+// weights where asked for. A model that is linear in its parameters is found in the first step, and
+// the second one refines it. Nothing forms normal equations.
+#include <Eigen/QR>
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "fingerpad/core/expects.hpp"
+#include "fingerpad/core/grid.hpp"
+#include "fingerpad/core/scalar.hpp"
+
+namespace fingerpad {
+inline namespace v0 {
+
+/// How a fit is made and what it refuses.
+struct FitOptions {
+  bool robust = false;               ///< Huber's loss: outliers weigh less
+  double threshold = 1.345;          ///< of Huber's loss, in standard deviations of a sample, > 0
+  int passes = 100;                  ///< steps at most, >= 2
+  double least_independence = 1e-5;  ///< a parameter of which the samples say less by itself, as a
+                                     ///< share of all they say of it, is refused; in (0, 1)
+  double least_explained = 0.5;  ///< share of the measured variance that the model must explain, or
+                                 ///< the samples contradict each other; in [0, 1)
+};
+
+/// Refuses what has no meaning (parameter_error).
+inline void expects_valid(const FitOptions& options) {
+  const char* const owner = "FitOptions";
+  expects(is_finite(options.threshold) && options.threshold > 0, owner, "threshold",
+          options.threshold, "finite and > 0");
+  expects(options.passes >= 2, owner, "passes", static_cast<long long>(options.passes), ">= 2");
+  expects(options.least_independence > 0 && options.least_independence < 1, owner,
+          "least_independence", options.least_independence, "in (0, 1)");
+  expects(options.least_explained >= 0 && options.least_explained < 1, owner, "least_explained",
+          options.least_explained, "in [0, 1)");
+}
+
+namespace detail {
+
+template <scalar S>
+struct ModelFit {
+  using Matrix = Eigen::Matrix<S, Eigen::Dynamic, Eigen::Dynamic>;
+  using Vector = Eigen::Matrix<S, Eigen::Dynamic, 1>;
+
+  Vector parameters;
+  Matrix covariance;
+  Vector residuals;  ///< measured less model, of each equation
+  Vector weights;    ///< 1, or less for an outlier
+  S residual_sd = S(0);
+  S explained = S(0);  ///< share of the measured variance
+  bool converged = false;
+};
+
+/// Standard deviation of normal residuals from their median size, which a third of outliers moves
+/// little.
+template <class Vector>
+typename Vector::Scalar robust_sd(const Vector& residuals, Index parameters) {
+  using S = typename Vector::Scalar;
+  using std::sqrt;
+  std::vector<S> sizes;
+  for (Index i = 0; i < residuals.size(); ++i) {
+    sizes.push_back(value(residuals(i)) < 0 ? S(-residuals(i)) : residuals(i));
+  }
+  const auto middle = sizes.begin() + static_cast<Index>(sizes.size() / 2);
+  std::nth_element(sizes.begin(), middle, sizes.end(),
+                   [](const S& a, const S& b) { return value(a) < value(b); });
+  const S freedom = S(static_cast<double>(residuals.size() - parameters));
+  return S(S(1.4826) * *middle * S(sqrt(S(S(static_cast<double>(residuals.size())) / freedom))));
+}
+
+/// One fit: measured values, a model, and the names of its parameters for refusals.
+/// `model.fill(parameters, values, jacobian)` computes the model; `has_constant`: it can follow any
+/// constant, so that what is to be explained is the variance about the mean.
+template <scalar S, class Model>
+class ModelFitter {
+  using Fit = ModelFit<S>;
+  using Matrix = typename Fit::Matrix;
+  using Vector = typename Fit::Vector;
+
+ public:
+  ModelFitter(const char* owner,
+              std::vector<std::string> names,
+              const Vector& measured,
+              const Model& model,
+              const FitOptions& options)
+      : owner_(owner),
+        names_(std::move(names)),
+        measured_(measured),
+        model_(model),
+        options_(options) {
+    expects_valid(options);
+    const Index count = static_cast<Index>(names_.size());
+    expects(measured.size() > count, owner, "usable samples",
+            static_cast<long long>(measured.size()),
+            ("> " + std::to_string(count) + ", the number of parameters").c_str());
+  }
+
+  Fit operator()(const Vector& start, bool has_constant) const {
+    Fit fit;
+    fit.parameters = start;
+    fit.weights = Vector::Constant(measured_.size(), S(1));
+    Vector values(measured_.size());
+    Matrix jacobian(measured_.size(), start.size());
+    for (int pass = 0; pass < options_.passes && !fit.converged; ++pass) {
+      model_.fill(fit.parameters, values, jacobian);
+      fit.residuals = measured_ - values;
+      reweigh(pass, fit);
+      fit.converged = step(jacobian, pass, fit);
+    }
+    model_.fill(fit.parameters, values, jacobian);
+    fit.residuals = measured_ - values;
+    judge(jacobian, has_constant, fit);
+    return fit;
+  }
+
+ private:
+  /// Huber's weights, from the second pass on.
+  void reweigh(int pass, Fit& fit) const {
+    if (!options_.robust || pass == 0) {
+      return;
+    }
+    const S limit = S(options_.threshold) * robust_sd(fit.residuals, fit.parameters.size());
+    for (Index i = 0; i < fit.residuals.size(); ++i) {
+      const S size = value(fit.residuals(i)) < 0 ? S(-fit.residuals(i)) : fit.residuals(i);
+      fit.weights(i) = value(size) > value(limit) ? S(limit / size) : S(1);
+    }
+  }
+
+  /// Columns of length 1, weighted; `lengths` of what they were.
+  Matrix scaled(const Matrix& jacobian, const Vector& weights, Vector& lengths) const {
+    using std::sqrt;
+    Matrix a = jacobian;
+    lengths.resize(a.cols());
+    for (Index i = 0; i < a.rows(); ++i) {
+      a.row(i) *= S(sqrt(weights(i)));
+    }
+    for (Index k = 0; k < a.cols(); ++k) {
+      const S length_sq = a.col(k).squaredNorm();
+      lengths(k) = value(length_sq) > 0 ? S(sqrt(length_sq)) : S(1);
+      a.col(k) /= lengths(k);
+    }
+    return a;
+  }
+
+  /// True when roundoff ends the search.
+  bool step(const Matrix& jacobian, int pass, Fit& fit) const {
+    using std::sqrt;
+    Vector lengths;
+    const Matrix a = scaled(jacobian, fit.weights, lengths);
+    const Eigen::HouseholderQR<Matrix> qr(a);
+    refuse_undetermined(qr);
+    Vector right = fit.residuals;
+    for (Index i = 0; i < right.size(); ++i) {
+      right(i) *= S(sqrt(fit.weights(i)));
+    }
+    const Vector move = qr.solve(right);
+    for (Index k = 0; k < move.size(); ++k) {
+      fit.parameters(k) += S(move(k) / lengths(k));
+    }
+    const auto moved = value(S(move.squaredNorm()));
+    const auto size = value(S(measured_.squaredNorm()));
+    const auto tiny = epsilon<S>() * 64;
+    return pass > 0 && !(moved > tiny * tiny * size);
+  }
+
+  /// What the samples say of a parameter beside those before it is the diagonal of R.
+  void refuse_undetermined(const Eigen::HouseholderQR<Matrix>& qr) const {
+    for (Index k = 0; k < qr.matrixQR().cols(); ++k) {
+      const S diagonal = qr.matrixQR()(k, k);
+      const S share = value(diagonal) < 0 ? S(-diagonal) : diagonal;
+      const std::string name = "what the samples tell of " + names_[static_cast<std::size_t>(k)];
+      const bool told = value(share) > value(S(options_.least_independence));
+      expects(told, owner_, name.c_str(), share,
+              "> least_independence: they are too few, too alike or tied to each other");
+    }
+  }
+
+  void judge(const Matrix& jacobian, bool has_constant, Fit& fit) const {
+    using std::sqrt;
+    const Index n = measured_.size(), p = fit.parameters.size();
+    const S freedom = S(static_cast<double>(n - p));
+    const S weight_sum = fit.weights.sum();
+    const S mean = has_constant ? S(fit.weights.dot(measured_) / weight_sum) : S(0);
+    S left_sq = S(0), all_sq = S(0), bounded_sq = S(0);
+    Index inside = 0;
+    for (Index i = 0; i < n; ++i) {
+      const S& w = fit.weights(i);
+      left_sq += S(w * square(fit.residuals(i)));
+      all_sq += S(w * square(S(measured_(i) - mean)));
+      bounded_sq += square(S(w * fit.residuals(i)));  // Huber's psi
+      inside += value(w) < 1 ? 0 : 1;
+    }
+    fit.explained = value(all_sq) > 0 ? S(S(1) - S(left_sq / all_sq)) : S(0);
+    const bool agrees =
+        value(fit.explained) >= value(S(options_.least_explained)) && value(fit.explained) > 0;
+    expects(agrees, owner_, "share of the measured variance that is explained", fit.explained,
+            ">= least_explained: the samples are constant or contradict each other");
+    fit.residual_sd = options_.robust ? robust_sd(fit.residuals, p) : S(sqrt(S(left_sq / freedom)));
+    S variance = left_sq / freedom;
+    if (options_.robust) {  // Huber 1981, section 7.6
+      const S count = S(static_cast<double>(n));
+      const S share = S(static_cast<double>((std::max)(inside, Index(1)))) / count;
+      const S correction = S(1) + S(S(static_cast<double>(p)) / count) * S((S(1) - share) / share);
+      variance = S(square(correction) * S(bounded_sq / freedom)) / square(share);
+    }
+    Vector lengths;
+    const Matrix a = scaled(jacobian, Vector::Constant(n, S(1)), lengths);
+    const Eigen::HouseholderQR<Matrix> qr(a);
+    const Matrix r = qr.matrixQR().topRows(p).template triangularView<Eigen::Upper>();
+    Matrix inverse = r.template triangularView<Eigen::Upper>().solve(Matrix::Identity(p, p));
+    for (Index k = 0; k < p; ++k) {
+      inverse.row(k) /= lengths(k);
+    }
+    fit.covariance = variance * (inverse * inverse.transpose());
+  }
+
+  const char* owner_;
+  std::vector<std::string> names_;
+  const Vector& measured_;
+  const Model& model_;
+  FitOptions options_;
+};
+
+}  // namespace detail
+}  // namespace v0
+}  // namespace fingerpad

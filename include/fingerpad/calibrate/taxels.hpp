@@ -1,0 +1,179 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+#pragma once
+// The noise of the taxels of an array of one's own, from a recording that is at rest for more than
+// half of the time: the standard deviation of each, the most that a window shows of it, and how
+// still the centroid is. The paper gives no rule for them. Medians over the windows are taken, so
+// that a touch or a slip now and then does not count as noise.
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <vector>
+
+#include "fingerpad/core/expects.hpp"
+#include "fingerpad/core/grid.hpp"
+#include "fingerpad/foam/taxel_features.hpp"
+
+namespace fingerpad {
+inline namespace v0 {
+
+/// Readings in the unit of the sensor.
+struct TaxelNoise {
+  Index rows = 0;
+  Index cols = 0;
+  std::vector<double> deviations;  ///< rows x cols, row by row: for TaxelFeatures. At least
+                                   ///< `typical`, as a taxel that rested will not once it is
+                                   ///< pressed; NaN: never read, a dead taxel
+  double typical = 0;              ///< of the taxels whose readings changed, root mean square
+  double largest_factor = 0;       ///< the most that any window spread, in `deviations` of its
+                                   ///< taxel: where nothing was touched, TaxelOptions::noise_factor
+                                   ///< must be above it
+  double centroid_deviation_mm = 0;  ///< of the centroid, in a window; NaN: never pressed
+  Index windows = 0;                 ///< that were looked at
+
+  StridedView<const double> view() const { return {deviations.data(), rows, cols, cols}; }
+};
+
+/// Gathers samples at rest. Level as that of the features.
+template <class Level = TrendRemoved>
+class TaxelNoiseCalibration {
+  using Features = TaxelFeatures<ZeroCrossings, Level, double>;
+
+ public:
+  /// Refuses bad parameters (parameter_error). Of the options, those that noise does not decide.
+  TaxelNoiseCalibration(Index rows, Index cols, const TaxelOptions<double>& options = {})
+      : features_(rows, cols, options),
+        state_(features_.start()),
+        window_(rows * cols, options.window),
+        centroid_(2, options.window),
+        held_(static_cast<std::size_t>(rows * cols), 0.0),
+        spread_(held_.size(), 0.0),
+        taxels_(held_.size()) {}
+
+  /// The next sample; false, and nothing changed, if the array has another size or the time is not
+  /// later. A clock that jumps begins a new window; a taxel that is bad is not judged in the window
+  /// in which it was.
+  template <grid Taxels>
+    requires std::constructible_from<double, cell_t<Taxels>>
+  bool add(const Taxels& taxels, double time_s) {
+    const FingerSample<double> sample = features_(taxels, time_s, state_);
+    if (sample.status == TaxelStatus::other_size || sample.status == TaxelStatus::time_not_later) {
+      return false;
+    }
+    const bool is_new = state_.samples() == 1;
+    in_window_ = is_new ? 0 : in_window_;
+    read(as_view(taxels));
+    const double centroid[2] = {sample.is_pressed() ? sample.center_x_mm : 0,
+                                sample.is_pressed() ? sample.center_y_mm : 0};
+    if (is_new) {
+      window_.restart(held_.data());
+      centroid_.restart(centroid);
+    } else {
+      window_.push(held_.data());
+      centroid_.push(centroid);
+    }
+    is_pressed_ = (in_window_ == 0 || is_pressed_) && sample.is_pressed();
+    if (++in_window_ == features_.options().window) {
+      judge();
+      in_window_ = 0;
+    }
+    return true;
+  }
+
+  /// Refuses a recording that does not tell (parameter_error): of less than four windows, or in
+  /// which no reading changed.
+  TaxelNoise choose() const {
+    const char* const owner = "TaxelNoiseCalibration";
+    expects(windows_ >= 4, owner, "windows", static_cast<long long>(windows_), ">= 4");
+    TaxelNoise noise;
+    noise.rows = features_.rows();
+    noise.cols = features_.cols();
+    noise.windows = windows_;
+    std::vector<double> squares;
+    double sum = 0;
+    Index changed = 0;
+    for (const Taxel& taxel : taxels_) {
+      squares.push_back(mean_square_of(taxel.variances));
+      sum += squares.back() > 0 ? squares.back() : 0;
+      changed += squares.back() > 0 ? 1 : 0;
+    }
+    expects(changed > 0, owner, "taxels whose readings change", static_cast<long long>(changed),
+            ">= 1");
+    noise.typical = std::sqrt(sum / static_cast<double>(changed));
+    for (std::size_t k = 0; k < taxels_.size(); ++k) {
+      const bool is_dead = taxels_[k].variances.empty();
+      const double deviation = (std::max)(noise.typical, std::sqrt(squares[k]));
+      noise.deviations.push_back(is_dead ? not_a_number<double>() : deviation);
+      for (const double variance : taxels_[k].variances) {
+        noise.largest_factor = (std::max)(noise.largest_factor, std::sqrt(variance) / deviation);
+      }
+    }
+    noise.centroid_deviation_mm = std::sqrt(mean_square_of(centroid_variances_));
+    return noise;
+  }
+
+ private:
+  struct Taxel {
+    std::vector<double> variances;  // of its windows
+    bool is_bad = false;            // in the present window
+  };
+
+  /// From the median of the windows' mean squares; NaN: there are none. What the mean or the line
+  /// takes of each is given back, and what the median of a chi-square is below its mean.
+  double mean_square_of(std::vector<double> variances) const {
+    if (variances.empty()) {
+      return not_a_number<double>();
+    }
+    std::sort(variances.begin(), variances.end());
+    const std::size_t half = variances.size() / 2;
+    const double median = (variances[half] + variances[(variances.size() - 1) / 2]) / 2;
+    const double n = static_cast<double>(features_.options().window);
+    const double freedom = n - (Level::has_slope ? 2 : 1);
+    const double median_share = std::pow(1 - 2 / (9 * freedom), 3);
+    return median * n / (freedom * median_share);
+  }
+
+  template <class View>
+  void read(const View& readings) {
+    for (Index i = 0; i < features_.rows(); ++i) {
+      for (Index j = 0; j < features_.cols(); ++j) {
+        const std::size_t k = static_cast<std::size_t>(i * features_.cols() + j);
+        const double reading = static_cast<double>(readings(i, j));
+        const bool good = is_finite(reading) && reading < features_.options().saturated_at;
+        held_[k] = good ? reading : held_[k];
+        taxels_[k].is_bad = (in_window_ > 0 && taxels_[k].is_bad) || !good;
+      }
+    }
+  }
+
+  void judge() {
+    ++windows_;
+    window_.variances(spread_.data());
+    for (std::size_t k = 0; k < taxels_.size(); ++k) {
+      Taxel& taxel = taxels_[k];
+      if (!taxel.is_bad) {
+        taxel.variances.push_back(spread_[k]);
+      }
+    }
+    if (is_pressed_) {
+      double spread[2];
+      centroid_.variances(spread);
+      centroid_variances_.push_back((spread[0] + spread[1]) / 2);
+    }
+  }
+
+  Features features_;
+  typename Features::State state_;
+  detail::TaxelWindow<Level, double> window_;
+  detail::TaxelWindow<Level, double> centroid_;
+  std::vector<double> held_;
+  std::vector<double> spread_;
+  std::vector<Taxel> taxels_;
+  std::vector<double> centroid_variances_;  // along either axis
+  Index in_window_ = 0;                     // samples of the present window
+  bool is_pressed_ = false;                 // in all of them
+  Index windows_ = 0;
+};
+
+}  // namespace v0
+}  // namespace fingerpad

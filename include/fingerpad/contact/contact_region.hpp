@@ -1,0 +1,216 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+#pragma once
+// Where the object touches the pad, from the depth map. A membrane under pressure that nothing
+// touches bulges outward (Young and Laplace: sigma1 K1 + sigma2 K2 = p > 0); where it is flat or
+// dented in all directions, something holds it.
+// Source: Ito et al. 2011, III.B, eqs. 1-12, and the slides, contact region. Published and
+// corrected forms in docs/errata.md, E012-E018.
+//
+// Parts: the curvature statistic (image/curvature_map.hpp), threshold, cleaning and edge
+// (contact/contact_policies.hpp), the level of the edge (contact/edge_level.hpp).
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <type_traits>
+#include <vector>
+
+#include "fingerpad/contact/detail/camera_projection.hpp"
+#include "fingerpad/contact/detail/cleaning.hpp"
+#include "fingerpad/contact/contact_policies.hpp"
+#include "fingerpad/image/curvature_map.hpp"
+#include "fingerpad/contact/detail/edge_finder.hpp"
+#include "fingerpad/image/mask_growth.hpp"
+#include "fingerpad/contact/detail/region_measures.hpp"
+#include "fingerpad/image/detail/regions.hpp"
+#include "fingerpad/image/detail/pixel_rays.hpp"
+#include "fingerpad/core/expects.hpp"
+#include "fingerpad/core/grid.hpp"
+#include "fingerpad/optics/camera.hpp"
+
+namespace fingerpad {
+inline namespace v0 {
+
+/// What a frame's contact is like. Without contact, areas are 0 and what has no value is NaN.
+struct ContactResult {
+  bool accepted = false;  ///< false: a grid or the workspace has another size; nothing written
+  Index contact_px = 0;   ///< pixels in contact
+  Index unknown_px = 0;   ///< pixels without depth, or with too little around them to tell
+  Index regions = 0;      ///< parts that the contact has
+  double area_mm2 = 0;    ///< of the contact, at its depth, projected on the plate
+  Point3<double> center_mm = {not_a_number<double>(), not_a_number<double>(),
+                              not_a_number<double>()};  ///< centroid of that area
+  double depth_mm = not_a_number<double>();  ///< D: free apex height less mean height of contact
+
+  bool in_contact() const { return contact_px > 0; }
+};
+
+/// The contact region of depth maps of one size.
+///   Statistic   ClampedMean<>, SectionMean<>, PublishedTwiceMean<>, HessianFit<>, RingStencil<>,
+///               ClampedHessian<>
+///   Edge        HalfLevelEdge, AtThreshold (published), WidenedByRing
+///   Cleaning    WithoutSpecks, LargestRegion, Hysteresis, NoCleaning (published)
+///   CameraType  Camera<double>, or OrthographicCamera<double> for height maps
+/// A pixel whose depth is missing is never contact; one whose ring is partly missing is judged by
+/// the directions that remain, or is unknown if these are too few (ContactTest::ring).
+///
+/// Const: threads may share one, each with a workspace of its own. Bounded time and no allocation
+/// per frame; O(rows cols directions).
+template <class Statistic = ClampedMean<>,
+          class Edge = HalfLevelEdge,
+          class Cleaning = WithoutSpecks,
+          class CameraType = Camera<double>,
+          scalar S = float>
+class ContactRegion {
+  using Projection = detail::projection_of<CameraType>;
+  using Curvature = CurvatureMap<Statistic, Projection, S>;
+  using Finder = detail::EdgeFinder<Edge, Statistic, Projection, S>;
+
+ public:
+  /// Refuses bad parameters (parameter_error).
+  ContactRegion(const CameraType& camera,
+                Index rows,
+                Index cols,
+                const ContactTest& test = {},
+                const Edge& edge = {},
+                const Cleaning& cleaning = {})
+      : test_(checked(camera, rows, cols, test, edge, cleaning)),
+        cleaning_(cleaning),
+        image_{rows, cols},
+        curvature_(test.ring, detail::projection_for(camera), rows, cols),
+        finder_(edge, test, detail::projection_for(camera), image_),
+        rays_(camera, rows, cols) {}
+
+  /// Memory that one frame at a time needs, taken up front; one per thread.
+  class Workspace {
+   public:
+    explicit Workspace(const ContactRegion& region)
+        : regions_(region.image_),
+          curvature_(region.curvature_.workspace()),
+          statistic_(static_cast<std::size_t>(region.image_.size()), not_a_number<S>()),
+          finder_(region.finder_.workspace()) {}
+
+    /// The statistic of the last frame, 1/mm; NaN where it is unknown.
+    StridedView<const S> statistic() const { return regions_.image().view(statistic_.data()); }
+
+   private:
+    friend class ContactRegion;
+    detail::Regions regions_;
+    typename Curvature::Workspace curvature_;
+    std::vector<S> statistic_;
+    typename Finder::Workspace finder_;
+  };
+  Workspace workspace() const { return Workspace(*this); }
+
+  /// Finds the contact in a depth map in mm. Cells of `mask` become a Touch if they are of that
+  /// type, else 255 (or true) in contact and 0 elsewhere.
+  template <grid Depth, class Mask>
+    requires(writable_grid<Mask>)
+  ContactResult operator()(const Depth& depth_mm, Mask&& mask, Workspace& w) const {
+    ContactResult result;
+    const auto depth = as_view(depth_mm);
+    const auto to = as_view(mask);
+    result.accepted = has_size(depth) && has_size(to) && w.regions_.image() == image_;
+    if (!result.accepted) {
+      return result;
+    }
+    const auto statistic = image_.view(w.statistic_.data());
+    const CurvatureResult curvature = curvature_(depth, statistic, w.curvature_);
+    result.accepted = curvature.accepted;  // false for a workspace with another ring
+    if (!result.accepted) {
+      return result;
+    }
+    result.unknown_px = curvature.unknown_px;
+    mark_seeds(statistic, w.regions_.marks());
+    detail::prepare(cleaning_, w.statistic_.data(), w.regions_);
+    const auto keep = [&](const auto& region) { return detail::keeps(cleaning_, region); };
+    result.regions = finder_(depth, w.statistic_.data(), keep, w.regions_, w.finder_);
+    write(w.regions_.marks(), to);
+    measure(w.regions_.marks(), depth, result);
+    return result;
+  }
+
+  Index rows() const { return image_.rows; }
+  Index cols() const { return image_.cols; }
+
+ private:
+  static const ContactTest& checked(const CameraType& camera,
+                                    Index rows,
+                                    Index cols,
+                                    const ContactTest& test,
+                                    const Edge& edge,
+                                    const Cleaning& cleaning) {
+    // areas need a neighbour on one side at least
+    expects(rows >= 2, "ContactRegion", "rows", static_cast<long long>(rows), ">= 2");
+    expects(cols >= 2, "ContactRegion", "cols", static_cast<long long>(cols), ">= 2");
+    expects_valid(camera);
+    expects_valid(test);
+    expects_valid(edge);
+    expects_valid(cleaning, test);
+    return test;
+  }
+
+  template <class G>
+  bool has_size(const G& g) const {
+    return g.rows() == image_.rows && g.cols() == image_.cols;
+  }
+
+  template <class View, class Marks>
+  void mark_seeds(const View& statistic, const Marks& marks) const {
+    const S threshold = S(test_.threshold_per_mm);
+    for (Index i = 0; i < image_.rows; ++i) {
+      detail::mark_below(threshold, statistic.row(i), image_.cols, marks.row(i));
+    }
+  }
+
+  template <class Cell>
+  static Cell as_cell(detail::Mark mark) {
+    using detail::Mark;
+    if constexpr (std::is_same_v<Cell, Touch>) {
+      const Touch other = mark == Mark::unknown ? Touch::unknown : Touch::none;
+      return mark == Mark::contact ? Touch::contact : other;
+    } else {
+      return static_cast<Cell>(mark == Mark::contact ? 255 : 0);
+    }
+  }
+
+  template <class To>
+  void write(const StridedView<detail::Mark>& marks, const To& to) const {
+    using Cell = cell_t<To>;
+    for (Index i = 0; i < image_.rows; ++i) {
+      const detail::Mark* row = marks.row(i);
+      if constexpr (std::is_same_v<To, StridedView<Cell>>) {
+        if (to.col_stride() == 1) {
+          std::transform(row, row + image_.cols, to.row(i), as_cell<Cell>);
+          continue;
+        }
+      }
+      for (Index j = 0; j < image_.cols; ++j) {
+        to(i, j) = as_cell<Cell>(row[j]);
+      }
+    }
+  }
+
+  template <class View>
+  void measure(const StridedView<detail::Mark>& marks,
+               const View& depth_mm,
+               ContactResult& result) const {
+    const detail::RegionMeasures sums(marks, depth_mm, rays_);
+    result.contact_px = sums.pixels();
+    if (result.in_contact()) {
+      result.area_mm2 = sums.area_mm2();
+      result.center_mm = sums.center_mm();
+      result.depth_mm = test_.free_apex_mm - result.center_mm.z;
+    }
+  }
+
+  ContactTest test_;
+  Cleaning cleaning_;
+  detail::BorderedImage image_;
+  Curvature curvature_;
+  Finder finder_;
+  detail::PixelRays<CameraType> rays_;
+};
+
+}  // namespace v0
+}  // namespace fingerpad

@@ -1,0 +1,247 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+#pragma once
+// From the seeds that the threshold found to the contact, for each policy of the edge.
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "fingerpad/contact/detail/camera_projection.hpp"
+#include "fingerpad/contact/contact_policies.hpp"
+#include "fingerpad/image/curvature_map.hpp"
+#include "fingerpad/contact/edge_level.hpp"
+#include "fingerpad/image/detail/mask_distance.hpp"
+#include "fingerpad/contact/detail/outside_level.hpp"
+#include "fingerpad/image/detail/regions.hpp"
+#include "fingerpad/image/detail/sparse_mean.hpp"
+#include "fingerpad/core/grid.hpp"
+#include "fingerpad/core/scalar.hpp"
+
+namespace fingerpad {
+inline namespace v0 {
+namespace detail {
+
+/// Turns the seeds of regions that `keep` wants into contact and returns the number of regions.
+/// `statistic` has the image's border.
+template <class Edge, class Statistic, class Projection, class S>
+class EdgeFinder;
+
+/// How many times the mean curvature of a free membrane a statistic is; 0: another curvature.
+template <class Statistic>
+inline constexpr int means_in = 1;
+template <int Directions>
+inline constexpr int means_in<PublishedTwiceMean<Directions>> = 2;
+template <int Directions>
+inline constexpr int means_in<HessianFit<Directions, FittedValue::larger>> = 0;
+template <int Directions>
+inline constexpr int means_in<HessianFit<Directions, FittedValue::smaller>> = 0;
+
+template <class Statistic, class Projection, class S>
+class EdgeFinder<AtThreshold, Statistic, Projection, S> {
+ public:
+  EdgeFinder(const AtThreshold&, const ContactTest&, const Projection&, const BorderedImage&) {}
+  struct Workspace {};
+  Workspace workspace() const { return {}; }
+
+  template <class Depth, class Keep>
+  Index operator()(const Depth&, const S*, const Keep& keep, Regions& regions, Workspace&) const {
+    return regions.for_each(keep, [](const Regions::Region&) {});
+  }
+};
+
+template <class Statistic, class Projection, class S>
+class EdgeFinder<WidenedByRing, Statistic, Projection, S> {
+ public:
+  EdgeFinder(const WidenedByRing& edge,
+             const ContactTest& test,
+             const Projection&,
+             const BorderedImage& image)
+      : image_(image), by_px_(edge.share * static_cast<double>(test.ring.radius_px)) {}
+  using Workspace = MaskDistance;
+  Workspace workspace() const { return MaskDistance(image_.rows, image_.cols); }
+
+  template <class Depth, class Keep>
+  Index operator()(
+      const Depth&, const S*, const Keep& keep, Regions& regions, Workspace& distance) const {
+    const Index count = regions.for_each(keep, [](const Regions::Region&) {});
+    const auto marks = regions.marks();
+    distance.measure([&](Index i, Index j) { return marks(i, j) == Mark::contact; });
+    for (Index i = 0; i < image_.rows; ++i) {
+      distance.row(i, [&](Index j, double squared) {
+        if (marks(i, j) == Mark::free && squared <= by_px_ * by_px_) {
+          marks(i, j) = Mark::contact;
+        }
+      });
+    }
+    return count;
+  }
+
+ private:
+  BorderedImage image_;
+  double by_px_;
+};
+
+template <class Statistic, class Projection, class S>
+class EdgeFinder<HalfLevelEdge, Statistic, Projection, S> {
+  static_assert(means_in<Statistic> > 0,
+                "HalfLevelEdge compares mean curvatures, which this statistic is not");
+  using MeanMap = CurvatureMap<SectionMean<>, Projection, S>;
+
+ public:
+  EdgeFinder(const HalfLevelEdge& edge,
+             const ContactTest& test,
+             const Projection& projection,
+             const BorderedImage& image)
+      : image_(image),
+        threshold_(S(test.threshold_per_mm)),
+        gap_mm_(edge.touching_gap_mm),
+        ring_px_(test.ring.radius_px),
+        projection_(projection),
+        mean_(test.ring, projection, image.rows, image.cols),
+        cell_(static_cast<std::size_t>(image.size())) {
+    const OutsideLevel<S> outside(image, ring_px_);
+    for (Index i = 0; i < image.rows; ++i) {
+      for (Index j = 0; j < image.cols; ++j) {
+        cell_[static_cast<std::size_t>(image.at(i, j))] =
+            static_cast<std::uint32_t>(outside.cell(i, j));
+      }
+    }
+  }
+
+  struct Workspace {
+    OutsideLevel<S> outside;
+    typename MeanMap::Workspace curvature;
+    SparseMean<S> smoothing;
+    std::vector<S> raw;    ///< mean curvature, with the image's border
+    std::vector<S> mean;   ///< the same, smoothed
+    std::vector<S> inner;  ///< of a region, to take a quantile of
+    std::vector<S> level;  ///< edge of the region at hand by cells of `outside`; NaN: not known yet
+  };
+  Workspace workspace() const {
+    const SparseMean<S> smoothing(image_.cols, spread_px());
+    Workspace w{OutsideLevel<S>(image_, ring_px_), mean_.workspace(), smoothing, {}, {}, {}, {}};
+    w.raw.assign(static_cast<std::size_t>(image_.size()), not_a_number<S>());
+    w.mean = w.raw;
+    w.inner.resize(static_cast<std::size_t>(2 * most_samples));
+    w.level.resize(static_cast<std::size_t>(w.outside.cells()));
+    return w;
+  }
+
+  template <class Depth, class Keep>
+  Index operator()(const Depth& depth_mm,
+                   const S* statistic,
+                   const Keep& keep,
+                   Regions& regions,
+                   Workspace& w) const {
+    const auto marks = regions.marks();
+    const Band rows = rows_with_seeds(marks);
+    if (rows.first >= rows.last) {
+      return 0;
+    }
+    w.outside.measure(image_.view(statistic), marks, threshold_);
+    // the region grows by a ring's radius at most
+    const Index first = (std::max)(rows.first - ring_px_, Index(0));
+    const Index last = (std::min)(rows.last + ring_px_, image_.rows);
+    mean_.band(first, last, depth_mm, image_.view(w.raw.data()), w.curvature);
+    w.smoothing(first, last, image_.view(w.raw.data()), image_.view(w.mean.data()));
+    return regions.for_each(keep,
+                            [&](Regions::Region& region) { place(depth_mm, regions, region, w); });
+  }
+
+ private:
+  struct Band {
+    Index first;
+    Index last;
+  };
+
+  template <class Marks>
+  static Band rows_with_seeds(const Marks& marks) {
+    Band rows{marks.rows(), 0};
+    for (Index i = 0; i < marks.rows(); ++i) {
+      const Mark* end = marks.row(i) + marks.cols();
+      if (find_mark(marks.row(i), end, Mark::seed) != end) {
+        rows.first = (std::min)(rows.first, i);
+        rows.last = i + 1;
+      }
+    }
+    return rows;
+  }
+
+  /// The region grows to where the mean curvature passes the level of the edge, and ends there.
+  template <class Depth>
+  void place(const Depth& depth_mm, Regions& regions, Regions::Region& region, Workspace& w) const {
+    const S inside = inside_level(regions, region, w);
+    const double pixel_mm = pixel_size_at(depth_mm, regions, region);
+    const double area_mm2 = static_cast<double>(region.pixels()) * pixel_mm * pixel_mm;
+    const S patch_mm = S(std::sqrt(area_mm2 / 3.14159265358979323846));
+    const S ring_mm = S(static_cast<double>(ring_px_) * pixel_mm);
+    const S spread_mm = S(static_cast<double>(spread_px()) * pixel_mm);
+    const auto edge = [&](const S& outside) {
+      return edge_level(inside, outside, S(gap_mm_), ring_mm, patch_mm, spread_mm);
+    };
+    std::fill(w.level.begin(), w.level.end(), not_a_number<S>());
+    const auto within = [&](Index at) {
+      const auto pixel = static_cast<std::size_t>(at);
+      S& level = w.level[cell_[pixel]];
+      if (!(level == level)) {
+        const S outside = w.outside[cell_[pixel]] / S(means_in<Statistic>);
+        level = outside > inside ? edge(outside) : inside;
+      }
+      return w.mean[pixel] < level;
+    };
+    regions.grow(region, ring_px_, within);
+    regions.trim(region, within);
+  }
+
+  /// Mean curvature of the object: a quarter of the pixels lie so deep inside that the ring sees
+  /// nothing else. NaN where none has one, as it may be beside missing depth.
+  S inside_level(const Regions& regions, const Regions::Region& region, Workspace& w) const {
+    S* end = w.inner.data();
+    for (Index k = region.begin; k < region.end; k += sparse(region)) {
+      *end = w.mean[static_cast<std::size_t>(regions.pixel(k))];
+      end += is_finite(*end) ? 1 : 0;
+    }
+    if (end == w.inner.data()) {
+      return not_a_number<S>();
+    }
+    S* quarter = w.inner.data() + (end - w.inner.data()) / 4;
+    std::nth_element(w.inner.data(), quarter, end);
+    return *quarter < S(0) ? *quarter : S(0);
+  }
+
+  /// Distance of what neighbouring pixels see, at the region's mean depth.
+  template <class Depth>
+  double pixel_size_at(const Depth& depth_mm,
+                       const Regions& regions,
+                       const Regions::Region& region) const {
+    double sum = 0;
+    double count = 0;
+    for (Index k = region.begin; k < region.end; k += sparse(region)) {
+      const Index pixel = regions.pixel(k) - image_.at(0, 0);
+      sum += static_cast<double>(depth_mm(pixel / image_.stride(), pixel % image_.stride()));
+      count += 1;
+    }
+    return detail::pixel_size_mm(projection_, sum / count);
+  }
+
+  /// A third of the ring: noise leaves the edge smooth, and the edge stays where it is.
+  Index spread_px() const { return (ring_px_ + 1) / 3; }
+
+  /// A region's properties come from a thousand of its pixels, or two.
+  static Index sparse(const Regions::Region& region) { return region.pixels() / most_samples + 1; }
+  static constexpr Index most_samples = 2000;
+
+  BorderedImage image_;
+  S threshold_;
+  double gap_mm_;
+  Index ring_px_;
+  Projection projection_;
+  MeanMap mean_;
+  std::vector<std::uint32_t> cell_;  ///< of `outside`, by the image's border
+};
+
+}  // namespace detail
+}  // namespace v0
+}  // namespace fingerpad

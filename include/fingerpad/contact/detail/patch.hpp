@@ -1,0 +1,186 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+#pragma once
+// Sums over the points of a patch: collected in blocks, so that the sums do not see the image's
+// type and run in vectors, and moved to the patch's centroid, so that they keep their digits.
+#include <array>
+#include <cstddef>
+#include <utility>
+
+#include "fingerpad/math/detail/small_matrices.hpp"
+#include "fingerpad/image/detail/row_lanes.hpp"
+#include "fingerpad/core/dots.hpp"
+#include "fingerpad/core/grid.hpp"
+#include "fingerpad/core/scalar.hpp"
+
+namespace fingerpad {
+inline namespace v0 {
+namespace detail {
+
+/// Some points, coordinate by coordinate.
+template <scalar S>
+struct PointBlock {
+  static constexpr Index capacity = 512;
+  S x[capacity];
+  S y[capacity];
+  S z[capacity];
+  Index count = 0;
+
+  void add(const Point3<S>& p) {
+    x[count] = p.x;
+    y[count] = p.y;
+    z[count] = p.z;
+    ++count;
+  }
+  bool full() const { return count == capacity; }
+};
+
+/// What one point, or a vector of them, adds to K sums.
+template <class V, std::size_t K>
+struct Terms {
+  V term[K];
+};
+
+template <class V, std::size_t K, std::size_t... I>
+[[gnu::always_inline]] inline void add_terms(Terms<V, K>& sums,
+                                             const Terms<V, K>& terms,
+                                             std::index_sequence<I...>) {
+  ((sums.term[I] = sums.term[I] + terms.term[I]), ...);
+}
+
+/// Adds to `sums` what the points of the block give: kernel.terms<V>(x, y, z) is Terms<V, K>, for V
+/// a vector of S, and S itself for the points that fill no vector.
+template <int VectorBytes = native_vector_bytes, std::size_t K, scalar S, class Kernel>
+void add_block(const PointBlock<S>& block, const Kernel& kernel, std::array<S, K>& sums) {
+  constexpr auto order = std::make_index_sequence<K>{};
+  constexpr int n = row_lanes<S, VectorBytes>;
+  Index j = 0;
+  if constexpr (n > 1) {
+    using V = typename RowVector<S, n>::type;
+    Terms<V, K> total{};
+    for (; j + n <= block.count; j += n) {
+      add_terms(
+          total,
+          kernel.template terms<V>(load_cells<V, S>(block.x + j), load_cells<V, S>(block.y + j),
+                                   load_cells<V, S>(block.z + j)),
+          order);
+    }
+    for (std::size_t k = 0; k < K; ++k) {
+      for (int lane = 0; lane < n; ++lane) {
+        sums[k] = sums[k] + total.term[k][lane];
+      }
+    }
+  }
+  for (; j < block.count; ++j) {
+    const Terms<S, K> one = kernel.template terms<S>(block.x[j], block.y[j], block.z[j]);
+    for (std::size_t k = 0; k < K; ++k) {
+      sums[k] = sums[k] + one.term[k];
+    }
+  }
+}
+
+/// First and second moments; with Fourth also those of q = x^2 + y^2 + z^2 with x, y, z and itself,
+/// which is all that a sphere needs.
+template <scalar S, bool Fourth>
+struct MomentKernel {
+  static constexpr std::size_t sums = Fourth ? 13 : 9;
+
+  template <class V>
+  [[gnu::always_inline]] Terms<V, sums> terms(const V& x, const V& y, const V& z) const {
+    const V xx = x * x;
+    const V yy = y * y;
+    const V zz = z * z;
+    const V xy = x * y;
+    const V xz = x * z;
+    const V yz = y * z;
+    if constexpr (Fourth) {
+      const V q = xx + yy + zz;
+      const V qx = q * x;
+      const V qy = q * y;
+      const V qz = q * z;
+      const V qq = q * q;
+      return {{x, y, z, xx, yy, zz, xy, xz, yz, qx, qy, qz, qq}};
+    } else {
+      return {{x, y, z, xx, yy, zz, xy, xz, yz}};
+    }
+  }
+};
+
+/// Mean moments of a patch about its centroid, in the sensor's directions.
+template <scalar S>
+struct PatchMoments {
+  Index pixels = 0;
+  S count = S(0);
+  Point3<S> centroid = {S(0), S(0), S(0)};
+  SmallMatrix<S, 3> second{};
+  Point3<S> third = {S(0), S(0), S(0)};  ///< mean of q (x, y, z)
+  S fourth = S(0);                       ///< mean of q^2
+};
+
+template <scalar S>
+Point3<S> times(const SmallMatrix<S, 3>& a, const Point3<S>& p) {
+  return {S(a[0][0] * p.x + a[0][1] * p.y + a[0][2] * p.z),
+          S(a[1][0] * p.x + a[1][1] * p.y + a[1][2] * p.z),
+          S(a[2][0] * p.x + a[2][1] * p.y + a[2][2] * p.z)};
+}
+
+/// Sums about `origin` as means about the centroid.
+template <scalar S, std::size_t K>
+PatchMoments<S> centered(Index pixels, const Point3<S>& origin, std::array<S, K> sums) {
+  PatchMoments<S> out;
+  out.pixels = pixels;
+  out.count = S(static_cast<double>(pixels));
+  for (S& sum : sums) {
+    sum = sum / out.count;
+  }
+  const Point3<S> m = {sums[0], sums[1], sums[2]};
+  const SmallMatrix<S, 3> raw = {
+      {{sums[3], sums[6], sums[7]}, {sums[6], sums[4], sums[8]}, {sums[7], sums[8], sums[5]}}};
+  out.centroid = moved(origin, S(1), m);
+  const std::array<S, 3> mean = {m.x, m.y, m.z};
+  for (std::size_t i = 0; i < 3; ++i) {
+    for (std::size_t j = 0; j < 3; ++j) {
+      out.second[i][j] = raw[i][j] - mean[i] * mean[j];
+    }
+  }
+  if constexpr (K > 9) {
+    const Point3<S> t = {sums[9], sums[10], sums[11]};
+    const S m_sq = dot(m, m);
+    const S trace = raw[0][0] + raw[1][1] + raw[2][2];
+    const Point3<S> raw_m = times(raw, m);
+    const S shift = S(2) * m_sq - trace;
+    out.third = moved(moved(t, S(-2), raw_m), shift, m);
+    out.fourth = sums[12] - S(4) * dot(m, t) + S(4) * dot(m, raw_m) + S(2) * m_sq * trace -
+                 S(3) * m_sq * m_sq;
+  }
+  return out;
+}
+
+/// How far the pixels spread in the image, in whole numbers: pixels in one line are seen exactly.
+struct PixelSpread {
+  double n = 0, i = 0, j = 0, ii = 0, ij = 0, jj = 0;
+
+  /// `count` pixels of row `row`, whose columns sum to j and their squares to jj.
+  void add_row(Index row, Index count, Index sum_j, Index sum_jj) {
+    const double r = static_cast<double>(row);
+    const double c = static_cast<double>(count);
+    n += c;
+    i += c * r;
+    j += static_cast<double>(sum_j);
+    ii += c * r * r;
+    ij += r * static_cast<double>(sum_j);
+    jj += static_cast<double>(sum_jj);
+  }
+  /// The spread across is below a thousandth of that along.
+  bool is_line() const {
+    const double rows = n * ii - i * i;
+    const double cols = n * jj - j * j;
+    const double both = n * ij - i * j;
+    const double trace = rows + cols;
+    return !(rows * cols - both * both > 1e-6 * trace * trace);
+  }
+};
+
+}  // namespace detail
+}  // namespace v0
+}  // namespace fingerpad

@@ -1,0 +1,298 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+#pragma once
+// Shape and irregularity of the object: within the contact the membrane lies on it, so the depth
+// map there is the object's own surface. Its points in mm, the plane, sphere or quadric nearest to
+// them, and what stands out from that. Source: Ito, Kim, Obinata, "Shape sensing by vision-based
+// tactile sensor for dexterous handling of robot hands" (slides), which name shape and irregularity
+// but give no equations; those of the fits stand in
+// detail/surface/{plane,sphere,quadric}_model.hpp.
+//
+// Normals point toward the object. Curvatures are positive where the object is convex.
+#include <array>
+#include <concepts>
+#include <type_traits>
+#include <utility>
+
+#include "fingerpad/image/detail/pixel_rays.hpp"
+#include "fingerpad/contact/detail/contact_pixels.hpp"
+#include "fingerpad/contact/detail/patch.hpp"
+#include "fingerpad/contact/plane_model.hpp"
+#include "fingerpad/contact/quadric_model.hpp"
+#include "fingerpad/contact/sphere_model.hpp"
+#include "fingerpad/contact/surface_points.hpp"
+#include "fingerpad/core/expects.hpp"
+#include "fingerpad/core/grid.hpp"
+#include "fingerpad/optics/camera.hpp"
+#include "fingerpad/core/scalar.hpp"
+
+namespace fingerpad {
+inline namespace v0 {
+
+struct SurfaceOptions {
+  Index least_px =
+      50;  ///< fewer pixels are refused (too_few), >= 1; a model needs its unknowns + 1
+  Index border_px = 0;  ///< strip along the contact's border to leave out, in [0, 1000]: there the
+                        ///< membrane is just leaving the object
+};
+
+/// Refuses what has no meaning (parameter_error).
+inline void expects_valid(const SurfaceOptions& options) {
+  expects(options.least_px >= 1, "SurfaceOptions", "least_px",
+          static_cast<long long>(options.least_px), ">= 1");
+  expects(options.border_px >= 0 && options.border_px <= 1000, "SurfaceOptions", "border_px",
+          static_cast<long long>(options.border_px), "in [0, 1000]");
+}
+
+enum class SurfaceStatus : unsigned char {
+  ok,
+  too_few,     ///< pixels in contact that have a depth
+  degenerate,  ///< the pixels do not determine the shape (all in one line, for the quadric also two
+               ///< level lines), or no camera could see it: depths beyond all reason
+};
+
+/// `shape` is a Plane, Sphere or Quadric; its numbers are finite where the status is ok, and NaN
+/// elsewhere.
+template <class Shape, scalar S = double>
+struct SurfaceResult {
+  bool accepted = false;  ///< false: a grid has another size than the fit; nothing written
+  SurfaceStatus status = SurfaceStatus::too_few;
+  Index pixels = 0;  ///< that were used
+  Shape shape = {};
+  S rms_mm = not_a_number<S>();      ///< of the distances from the shape
+  S largest_mm = not_a_number<S>();  ///< the distance largest in size, positive where the object
+                                     ///< stands out into the pad; NaN without a residual map
+  Index largest_row = -1;            ///< where that is
+  Index largest_col = -1;
+
+  bool ok() const { return status == SurfaceStatus::ok; }
+};
+
+/// Fits a shape to the contact.
+///   Model       PlaneModel, SphereModel or QuadricModel
+///   CameraType  Camera<S> or OrthographicCamera<S>; S is the number computed in. Depth maps may be
+///               of float, but sums of fourth powers want a double.
+///
+/// Pixels without contact or without a depth (not finite) change nothing. Standard errors are those
+/// of pixels with independent errors of the size of the rms. Depth maps are averaged over a window
+/// of some w x w pixels: their errors are alike within it, and the true standard error is about w
+/// times larger.
+///
+/// const, so that threads may share one; a frame takes no memory, throws nothing, and looks at the
+/// pixels once (plane) or twice, once more for the residual map.
+template <class Model = PlaneModel, class CameraType = Camera<double>>
+class SurfaceFit {
+ public:
+  using Scalar = detail::camera_scalar_t<CameraType>;
+  using Shape = typename Model::template Shape<Scalar>;
+  using Result = SurfaceResult<Shape, Scalar>;
+  static_assert(!std::same_as<Scalar, float>,
+                "the camera's numbers are what the sums are computed in: Camera<double>");
+
+  SurfaceFit(Index rows,
+             Index cols,
+             const CameraType& camera,
+             const SurfaceOptions& options = SurfaceOptions())
+      : rows_(rows),
+        cols_(cols),
+        options_(checked(rows, cols, camera, options)),
+        rays_(camera, rows, cols) {}
+
+  Index rows() const { return rows_; }
+  Index cols() const { return cols_; }
+
+  /// The shape of the object where `contact` is true.
+  template <grid Depth, contact_mask Mask>
+    requires(std::constructible_from<Scalar, cell_t<Depth>>)
+  Result operator()(const Depth& depth_mm, const Mask& contact) const {
+    const auto depth = as_view(depth_mm);
+    const auto mask = as_view(contact);
+    if (!has_size(depth) || !has_size(mask)) {
+      return {};
+    }
+    const detail::ContactPixels<Scalar, decltype(depth), decltype(mask)> pixels(depth, mask,
+                                                                                options_.border_px);
+    return fitted(pixels).result;
+  }
+
+  /// The same, and the distance of each pixel used from the shape, in mm: positive where the object
+  /// stands out into the pad; NaN elsewhere, and everywhere unless ok(). `residual_mm` may be the
+  /// depth map.
+  template <grid Depth, contact_mask Mask, writable_grid<Scalar> Residual>
+    requires(std::constructible_from<Scalar, cell_t<Depth>> && !std::integral<cell_t<Residual>>)
+  Result operator()(const Depth& depth_mm, const Mask& contact, Residual&& residual_mm) const {
+    const auto depth = as_view(depth_mm);
+    const auto mask = as_view(contact);
+    const auto out = as_view(std::forward<Residual>(residual_mm));
+    if (!has_size(depth) || !has_size(mask) || !has_size(out)) {
+      return {};
+    }
+    const detail::ContactPixels<Scalar, decltype(depth), decltype(mask)> pixels(depth, mask,
+                                                                                options_.border_px);
+    Fitted fit = fitted(pixels);
+    write_residuals(pixels, fit, out);
+    return fit.result;
+  }
+
+ private:
+  struct Fitted {
+    Result result;
+    detail::PixelBox box;
+  };
+
+  static const SurfaceOptions& checked(Index rows,
+                                       Index cols,
+                                       const CameraType& camera,
+                                       const SurfaceOptions& options) {
+    expects(rows >= 1, "SurfaceFit", "rows", static_cast<long long>(rows), ">= 1");
+    expects(cols >= 1, "SurfaceFit", "cols", static_cast<long long>(cols), ">= 1");
+    expects_valid(camera);
+    expects_valid(options);
+    return options;
+  }
+
+  template <class View>
+  bool has_size(const View& view) const {
+    return view.rows() == rows_ && view.cols() == cols_;
+  }
+
+  template <class Pixels>
+  Fitted fitted(const Pixels& pixels) const {
+    using std::sqrt;
+    Fitted fit;
+    Result& result = fit.result;
+    result.accepted = true;
+    detail::PixelSpread spread;
+    const detail::PatchMoments<Scalar> patch = moments(pixels, spread, fit.box);
+    result.pixels = patch.pixels;
+    if (patch.pixels < options_.least_px || patch.pixels <= Model::unknowns) {
+      return fit;
+    }
+    result.status = SurfaceStatus::degenerate;
+    Shape shape;
+    Scalar mean_sq = Scalar(0);
+    const auto add_up = [&](const auto& kernel) {
+      return sums_about(patch.centroid, pixels, fit.box, kernel);
+    };
+    if (!spread.is_line() && Model::fit(patch, add_up, shape, mean_sq) &&
+        Model::is_finite_shape(shape) && value(shape.normal.z) > 0 && is_finite(mean_sq)) {
+      result.status = SurfaceStatus::ok;
+      result.shape = shape;
+      result.rms_mm = value(mean_sq) > 0 ? Scalar(sqrt(mean_sq)) : Scalar(0);
+    }
+    return fit;
+  }
+
+  /// The first look at the pixels: moments about the first of them, moved to the centroid.
+  template <class Pixels>
+  detail::PatchMoments<Scalar> moments(const Pixels& pixels,
+                                       detail::PixelSpread& spread,
+                                       detail::PixelBox& box) const {
+    using Kernel = typename Model::template Moments<Scalar>;
+    std::array<Scalar, Kernel::sums> sums;
+    sums.fill(Scalar(0));
+    detail::PointBlock<Scalar> block;
+    Point3<Scalar> origin = {Scalar(0), Scalar(0), Scalar(0)};
+    Index total = 0;
+    box = {rows_, 0, cols_, 0};
+    for (Index i = 0; i < rows_; ++i) {
+      Index count = 0, sum_j = 0, sum_jj = 0, last = 0;
+      pixels.for_each_in_row(i, 0, cols_, [&](Index j, const Scalar& depth) {
+        const Point3<Scalar> p = rays_(i, j, depth);
+        if (total + count == 0) {
+          origin = p;
+        }
+        block.add(detail::difference(p, origin));
+        if (block.full()) {
+          flush(block, Kernel(), sums);
+        }
+        box.first_col = j < box.first_col ? j : box.first_col;
+        last = j + 1;
+        ++count;
+        sum_j += j;
+        sum_jj += j * j;
+      });
+      if (count > 0) {
+        spread.add_row(i, count, sum_j, sum_jj);
+        box.first_row = total == 0 ? i : box.first_row;
+        box.last_row = i + 1;
+        box.last_col = last > box.last_col ? last : box.last_col;
+        total += count;
+      }
+    }
+    flush(block, Kernel(), sums);
+    return detail::centered(total, origin, sums);
+  }
+
+  template <class Pixels, class Kernel>
+  std::array<Scalar, Kernel::sums> sums_about(const Point3<Scalar>& origin,
+                                              const Pixels& pixels,
+                                              const detail::PixelBox& box,
+                                              const Kernel& kernel) const {
+    std::array<Scalar, Kernel::sums> sums;
+    sums.fill(Scalar(0));
+    detail::PointBlock<Scalar> block;
+    for (Index i = box.first_row; i < box.last_row; ++i) {
+      pixels.for_each_in_row(i, box.first_col, box.last_col, [&](Index j, const Scalar& depth) {
+        block.add(detail::difference(rays_(i, j, depth), origin));
+        if (block.full()) {
+          flush(block, kernel, sums);
+        }
+      });
+    }
+    flush(block, kernel, sums);
+    return sums;
+  }
+
+  template <class Kernel, class Sums>
+  static void flush(detail::PointBlock<Scalar>& block, const Kernel& kernel, Sums& sums) {
+    detail::add_block(block, kernel, sums);
+    block.count = 0;
+  }
+
+  template <class Pixels, class Out>
+  void write_residuals(const Pixels& pixels, Fitted& fit, const Out& out) const {
+    using std::sqrt;
+    using Cell = std::remove_cvref_t<decltype(out(0, 0))>;
+    const Cell missing = static_cast<Cell>(not_a_number<Scalar>());
+    Result& result = fit.result;
+    Scalar sum_sq = Scalar(0);
+    Scalar largest = Scalar(0);
+    for (Index i = 0; i < rows_; ++i) {
+      Index next = 0;  // first column not written yet
+      const auto skip_to = [&](Index j) {
+        for (; next < j; ++next) {
+          out(i, next) = missing;
+        }
+      };
+      const bool within = result.ok() && i >= fit.box.first_row && i < fit.box.last_row;
+      pixels.for_each_in_row(i, fit.box.first_col, within ? fit.box.last_col : 0,
+                             [&](Index j, const Scalar& depth) {
+                               const Scalar r = result.shape.stands_out(rays_(i, j, depth));
+                               skip_to(j);
+                               out(i, j) = static_cast<Cell>(r);
+                               next = j + 1;
+                               const Scalar r_sq = r * r;
+                               sum_sq = sum_sq + r_sq;
+                               if (result.largest_row < 0 || largest < r_sq) {
+                                 largest = r_sq;
+                                 result.largest_mm = r;
+                                 result.largest_row = i;
+                                 result.largest_col = j;
+                               }
+                             });
+      skip_to(cols_);
+    }
+    if (result.ok()) {
+      result.rms_mm = sqrt(Scalar(sum_sq / Scalar(static_cast<double>(result.pixels))));
+    }
+  }
+
+  Index rows_;
+  Index cols_;
+  SurfaceOptions options_;
+  detail::PixelRays<CameraType> rays_;
+};
+
+}  // namespace v0
+}  // namespace fingerpad

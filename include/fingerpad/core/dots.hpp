@@ -1,0 +1,138 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+#pragma once
+// Vocabulary: dots printed inside the membrane. A dot grid is a grid whose cells are points, in the
+// order in which the dots are printed, so that a dot's neighbours in the grid are its neighbours on
+// the membrane. A dot that was not found is a point with a coordinate that is not finite.
+#include <concepts>
+#include <type_traits>
+
+#include "fingerpad/core/grid.hpp"
+#include "fingerpad/core/scalar.hpp"
+
+namespace fingerpad {
+inline namespace v0 {
+
+/// A point in the image (px) or on the plate (mm). x is along columns, y along rows.
+template <scalar S>
+struct Point2 {
+  S x;
+  S y;
+};
+
+/// A point in mm in the sensor's frame: origin at the centre of the plate's inner face, z into the
+/// pad, toward the object.
+template <scalar S>
+struct Point3 {
+  S x;
+  S y;
+  S z;
+};
+
+/// How coordinates are read from a point type: p[0], p[1] (and p[2]) as in Eigen vectors, cv::Vec
+/// and arrays; members x, y (and z) where there are any; specialise it for anything else.
+template <class P>
+struct point_traits {
+  static constexpr auto x(const P& p) { return p[0]; }
+  static constexpr auto y(const P& p) { return p[1]; }
+  static constexpr auto z(const P& p) { return p[2]; }
+};
+template <class P>
+  requires requires(const P& p) {
+    +p.x;
+    +p.y;
+  }
+struct point_traits<P> {
+  static constexpr auto x(const P& p) { return p.x; }
+  static constexpr auto y(const P& p) { return p.y; }
+  static constexpr auto z(const P& p) requires requires { +p.z; }
+  { return p.z; }
+};
+
+namespace detail {
+template <class P> concept has_coordinates = requires(const P& p) {
+  +p.x;
+}
+|| requires(const P& p) {
+  p[0];
+}
+|| requires {
+  point_traits<P>::adapted;
+};
+}  // namespace detail
+
+/// Models: Point2, Point3, cv::Point2f, cv::Vec2d, Eigen::Vector2d, std::array<float, 2>.
+template <class P> concept planar_point = detail::has_coordinates<P> && requires(const P& p) {
+  { point_traits<P>::x(p) } -> scalar;
+  { point_traits<P>::y(p) } -> scalar;
+};
+
+/// A planar point that also has a depth z.
+template <class P> concept spatial_point = planar_point<P> && requires(const P& p) {
+  { point_traits<P>::z(p) } -> scalar;
+};
+
+/// A grid of points in the order in which the dots are printed.
+template <class G> concept dot_grid = grid<G> && planar_point<cell_t<G>>;
+
+/// The same with depths, in mm.
+template <class G> concept spatial_dot_grid = dot_grid<G> && spatial_point<cell_t<G>>;
+
+/// True when the dot was found: x and y (and z where the point has it as a member) are finite.
+template <planar_point P>
+constexpr bool is_present(const P& p) {
+  using Traits = point_traits<P>;
+  bool present = is_finite(Traits::x(p)) && is_finite(Traits::y(p));
+  if constexpr (requires { +p.z; }) {
+    present = present && is_finite(Traits::z(p));
+  }
+  return present;
+}
+
+/// A place in the dot grid; row -1: none.
+struct DotIndex {
+  Index row = -1;
+  Index col = -1;
+
+  constexpr bool exists() const { return row >= 0; }
+  friend constexpr bool operator==(const DotIndex&, const DotIndex&) = default;
+};
+
+/// Calls visit(row, col, point) for each dot beside (row, col) that is present: 4 neighbours share
+/// a side, 8 also a corner. Returns how many there were. O(1), no allocation.
+template <int Neighbours = 8, dot_grid G, class Visit>
+  requires(Neighbours == 4 || Neighbours == 8)
+constexpr int for_each_neighbour(const G& dots, Index row, Index col, Visit&& visit) {
+  int found = 0;
+  for (Index i = row - 1; i <= row + 1; ++i) {
+    for (Index j = col - 1; j <= col + 1; ++j) {
+      const bool inside = i >= 0 && i < rows(dots) && j >= 0 && j < cols(dots);
+      const bool self = i == row && j == col;
+      const bool corner = i != row && j != col;
+      if (!inside || self || (Neighbours == 4 && corner)) {
+        continue;
+      }
+      const cell_t<G> p = grid_traits<G>::at(dots, i, j);
+      if (is_present(p)) {
+        visit(i, j, p);
+        ++found;
+      }
+    }
+  }
+  return found;
+}
+
+/// How many dots of the grid were found.
+template <dot_grid G>
+constexpr Index count_present(const G& dots) {
+  Index count = 0;
+  for (Index i = 0; i < rows(dots); ++i) {
+    for (Index j = 0; j < cols(dots); ++j) {
+      count += is_present(cell_t<G>(grid_traits<G>::at(dots, i, j))) ? 1 : 0;
+    }
+  }
+  return count;
+}
+
+}  // namespace v0
+}  // namespace fingerpad

@@ -1,0 +1,173 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+#pragma once
+// The law between depth and colour: light is absorbed along its path k l through the red fluid, and
+// in the red channel the fluid also scatters light back from every depth z < l.
+// Source: Ito, Kim, Obinata, "Shape sensing by vision-based tactile sensor" (slides), theory of the
+// intensity of light and modification of equation; printed errors are E001-E005 of docs/errata.md.
+//
+//   green = B exp(-c_green k l)
+//   kappa red = green exp(delta k l) + g W(l),  delta = c_green - c_red
+//   W(l) = c_red Int_0^l (z + h_m)(z + h_s) exp(-c_red k z) dz
+//
+// B is the membrane's brightness in green at depth 0, whatever its inclination, colour and dots; it
+// cancels when green is eliminated. Colours are grey levels, lengths mm, g grey levels per mm^2.
+#include <cmath>
+
+#include "fingerpad/core/expects.hpp"
+#include "fingerpad/optics/camera.hpp"
+#include "fingerpad/core/scalar.hpp"
+
+namespace fingerpad {
+inline namespace v0 {
+
+/// What the fluid does to light; defaults are the published values.
+template <scalar S = double>
+struct Absorption {
+  S c_red_per_mm = S(290) / S(10000);    ///< c_R, absorption of red, > 0
+  S c_green_per_mm = S(336) / S(10000);  ///< c_G, absorption of green, >= c_R
+  S kappa =
+      S(9924) / S(10000);  ///< alpha_G beta_G / (alpha_R beta_R), light source and camera, > 0
+  S max_depth_mm = S(14);  ///< depths are looked for in [0, max_depth_mm], > 0
+};
+
+/// Refuses what no fluid can have (parameter_error).
+template <scalar S>
+void expects_valid(const Absorption<S>& fluid) {
+  expects(is_finite(fluid.c_red_per_mm) && fluid.c_red_per_mm > S(0), "Absorption", "c_red_per_mm",
+          fluid.c_red_per_mm, "finite and > 0");
+  expects(is_finite(fluid.c_green_per_mm) && !(fluid.c_green_per_mm < fluid.c_red_per_mm),
+          "Absorption", "c_green_per_mm", fluid.c_green_per_mm, "finite and >= c_red_per_mm");
+  expects(is_finite(fluid.kappa) && fluid.kappa > S(0), "Absorption", "kappa", fluid.kappa,
+          "finite and > 0");
+  expects(is_finite(fluid.max_depth_mm) && fluid.max_depth_mm > S(0), "Absorption", "max_depth_mm",
+          fluid.max_depth_mm, "finite and > 0");
+}
+
+/// The same fluid in another scalar.
+template <scalar To, scalar From>
+Absorption<To> cast(const Absorption<From>& f) {
+  return {To(f.c_red_per_mm), To(f.c_green_per_mm), To(f.kappa), To(f.max_depth_mm)};
+}
+
+/// The pencil of light that comes back to one pixel.
+template <scalar S = double>
+struct Pencil {
+  S path_factor;             ///< k = 1 + 1/cos(phi_fluid), >= 2
+  VirtualHeights<S> height;  ///< where it seems to come from
+};
+
+/// The pencil of a ray, with one of the height policies of optics.hpp.
+template <class Heights = AstigmaticHeights, scalar S>
+Pencil<S> pencil_of(const Camera<S>& camera, const Ray<S>& ray) {
+  return {ray.path_factor, Heights::heights(camera, ray)};
+}
+
+namespace detail {
+
+/// Int_0^1 s^n exp(-t s) ds for n = 0, 1, 2.
+template <scalar S>
+struct ExponentialMoments {
+  S zeroth;
+  S first;
+  S second;
+};
+
+/// The moments for t >= 0, to a few epsilon everywhere. Below t = 4 the second comes from a series
+/// of positive terms and the others by the recurrence downward, so nothing cancels however small t
+/// is; from there on the recurrence upward loses nothing. At most 80 terms in 50 digits.
+template <scalar S>
+ExponentialMoments<S> exponential_moments(const S& t) {
+  using std::exp;
+  const S decay = exp(S(-t));
+  if (value(t) < scalar_real_t<S>(4)) {
+    S term = S(1) / S(3);
+    S sum = term;
+    for (int j = 4; j < 200 && value(term) > epsilon<S>() * value(sum) / 4; ++j) {
+      term = term * t / S(j);
+      sum = sum + term;
+    }
+    const S second = decay * sum;
+    const S first = (t * second + decay) / S(2);
+    const S zeroth = t * first + decay;
+    return {zeroth, first, second};
+  }
+  const S zeroth = (S(1) - decay) / t;
+  const S first = (zeroth - decay) / t;
+  const S second = (S(2) * first - decay) / t;
+  return {zeroth, first, second};
+}
+
+}  // namespace detail
+
+/// W(l): light scattered back by the fluid between the plate and depth l >= 0, in mm^2, for any
+/// c >= 0 (W = 0 at c = 0). Relative error <= 4 epsilon for c in [1e-6, 1] per mm. The published
+/// form Q1 (1 - E) + Q2 cancels to nothing at small c l; this sum has positive terms only.
+template <scalar S>
+S scattered_light(const S& depth_mm, const S& c_per_mm, const Pencil<S>& pencil) {
+  const S t = c_per_mm * (pencil.path_factor * depth_mm);
+  const auto m = detail::exponential_moments(t);
+  const S& h_m = pencil.height.meridional_mm;
+  const S& h_s = pencil.height.sagittal_mm;
+  const S sum = h_m * h_s * m.zeroth + depth_mm * ((h_m + h_s) * m.first + depth_mm * m.second);
+  return S(c_per_mm * depth_mm * sum);
+}
+
+/// dW/dl = c (l + h_m)(l + h_s) exp(-c k l), in mm.
+template <scalar S>
+S scattered_light_slope(const S& depth_mm, const S& c_per_mm, const Pencil<S>& pencil) {
+  using std::exp;
+  const S decay = exp(S(-(c_per_mm * (pencil.path_factor * depth_mm))));
+  return S(c_per_mm * (depth_mm + pencil.height.meridional_mm) *
+           (depth_mm + pencil.height.sagittal_mm) * decay);
+}
+
+/// Red and green of one pixel, in grey levels.
+template <scalar S = double>
+struct Colour {
+  S red;
+  S green;
+};
+
+/// Forward model: the colour of a membrane of brightness B (grey levels, green at depth 0) at
+/// depth l >= 0, in a fluid that scatters g (grey levels per mm^2).
+template <scalar S>
+Colour<S> colour_at_depth(const Absorption<S>& fluid,
+                          const Pencil<S>& pencil,
+                          const S& brightness,
+                          const S& scattering,
+                          const S& depth_mm) {
+  using std::exp;
+  const S path = pencil.path_factor * depth_mm;
+  const S scattered = scattering * scattered_light(depth_mm, fluid.c_red_per_mm, pencil);
+  const S green = brightness * exp(S(-(fluid.c_green_per_mm * path)));
+  const S red = (brightness * exp(S(-(fluid.c_red_per_mm * path))) + scattered) / fluid.kappa;
+  return {red, green};
+}
+
+/// The depth equation F(l) = green exp(delta k l) - kappa red + g W(l) and its slope. F rises
+/// strictly where green >= 0, g > 0 and delta >= 0, so it has at most one root. It replaces the
+/// published quotient f(l) = g - F/W, which is 0/0 at l = 0 and overflows at large l.
+template <scalar S>
+struct DepthEquation {
+  S value;
+  S slope;
+};
+
+template <scalar S>
+DepthEquation<S> depth_equation(const Absorption<S>& fluid,
+                                const Pencil<S>& pencil,
+                                const S& scattering,
+                                const Colour<S>& colour,
+                                const S& depth_mm) {
+  using std::exp;
+  const S delta_k = (fluid.c_green_per_mm - fluid.c_red_per_mm) * pencil.path_factor;
+  const S membrane = colour.green * exp(S(delta_k * depth_mm));
+  const S w = scattered_light(depth_mm, fluid.c_red_per_mm, pencil);
+  const S w_slope = scattered_light_slope(depth_mm, fluid.c_red_per_mm, pencil);
+  return {S(membrane - fluid.kappa * colour.red + scattering * w),
+          S(membrane * delta_k + scattering * w_slope)};
+}
+
+}  // namespace v0
+}  // namespace fingerpad

@@ -1,0 +1,278 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+#pragma once
+// Depth of a fluid-filled pad from the colour of its membrane, seen by one camera through the
+// fluid. Source: Ito, Kim, Obinata, "Shape sensing by vision-based tactile sensor" (slides). The
+// law is in depth/absorption.hpp; published and corrected forms in docs/errata.md,
+// E001-E007.
+//
+// Once per sensor: fit_reference() on a frame of the free pad. Per frame: the colours are averaged
+// over a window (depth/smoothing.hpp) and the depth equation is solved per pixel
+// (depth/depth_inverse.hpp, depth/detail/scatter_polynomial.hpp). The depth is that of the
+// membrane along the pixel's refracted ray, z in mm above the plate; point_at() in optics.hpp makes
+// it a point. Light from neighbouring membrane is compensated by neighbour_light.hpp, if at all.
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include "fingerpad/depth/detail/colour_rows.hpp"
+#include "fingerpad/depth/depth_inverse.hpp"
+#include "fingerpad/depth/depth_reference.hpp"
+#include "fingerpad/depth/depth_rows.hpp"
+#include "fingerpad/depth/detail/pad_area.hpp"
+#include "fingerpad/depth/pixel_status.hpp"
+#include "fingerpad/core/expects.hpp"
+#include "fingerpad/core/grid.hpp"
+#include "fingerpad/optics/camera.hpp"
+
+namespace fingerpad {
+inline namespace v0 {
+
+/// What became of a frame.
+struct DepthResult {
+  bool accepted = false;  ///< false: a grid or the workspace has another size than the reference;
+                          ///< nothing written
+  Index pad_pixels = 0;   ///< pixels at which the reference knows the pad
+  std::array<Index, pixel_status_count> count = {};  ///< pixels by PixelStatus
+
+  Index valid_pixels() const { return count[static_cast<std::size_t>(PixelStatus::ok)]; }
+};
+
+/// Depth of every pixel of a frame, in the scalar S.
+///   Smoothing  NoSmoothing, BoxMean (published), BiasFreeMean, or Anchored<> of the latter two
+///   Inverse    Bisection (published), Newton, ExponentialFree (float and double only)
+///   Heights    SingleHeight (published), AstigmaticHeights
+/// Const: threads may share one estimator, each with a workspace of its own, and may take a band of
+/// rows each. A call takes no memory and throws nothing; O(rows cols), whatever the window.
+template <class Smoothing = Anchored<BiasFreeMean>,
+          class Inverse = ExponentialFree<>,
+          class Heights = AstigmaticHeights,
+          scalar S = float,
+          class Scattering = RadialScattering<S>>
+class DepthEstimator {
+ public:
+  using Reference = DepthReference<S, Scattering, Heights>;
+
+  /// Refuses bad parameters (parameter_error).
+  DepthEstimator(const Camera<double>& camera,
+                 const Absorption<double>& fluid,
+                 const Reference& reference,
+                 Smoothing smoothing = {},
+                 Inverse inverse = {})
+      : DepthEstimator(detail::crop_to_pad(checked(camera, fluid, reference), reference),
+                       fluid,
+                       smoothing,
+                       inverse) {}
+
+  /// All memory that frames with cells of type Pixel need; one per thread. Refuses a grey scale
+  /// that makes no sense (parameter_error).
+  template <class Pixel>
+  class Workspace {
+   public:
+    Workspace(const DepthEstimator& estimator, const GreyScale& scale)
+        : area_(estimator.pad_),
+          rows_(estimator.setup_, estimator.smoothing_, scale),
+          scale_(scale),
+          red_(static_cast<std::size_t>(estimator.setup_.cols)),
+          green_(red_.size()),
+          depth_(red_.size()),
+          status_(red_.size()) {
+      expects_valid(scale);
+    }
+
+   private:
+    friend class DepthEstimator;
+    detail::PadArea area_;
+    detail::ColourRows<Pixel, S, Smoothing> rows_;
+    GreyScale scale_;
+    std::vector<S> red_;
+    std::vector<S> green_;
+    std::vector<S> depth_;
+    std::vector<PixelStatus> status_;
+  };
+  template <class Pixel>
+  Workspace<Pixel> workspace(const GreyScale& scale = grey_scale_of<Pixel>()) const {
+    return Workspace<Pixel>(*this, scale);
+  }
+
+  /// Depth in mm of a frame, NaN where there is none, from its red and green channel. A warm start
+  /// takes last frame's depth from `depth_mm`.
+  template <grid Red, grid Green, class Depth, class Pixel>
+    requires(writable_grid<Depth, S>)
+  DepthResult operator()(const Red& red,
+                         const Green& green,
+                         Depth&& depth_mm,
+                         Workspace<Pixel>& workspace) const {
+    const LazyView no_status(rows_, cols_, detail::IgnoredCell{});
+    return band(0, rows_, red, green, depth_mm, no_status, workspace);
+  }
+
+  /// The same, with a PixelStatus per pixel.
+  template <grid Red, grid Green, class Depth, class Status, class Pixel>
+    requires(writable_grid<Depth, S>&& writable_grid<Status, PixelStatus>)
+  DepthResult operator()(const Red& red,
+                         const Green& green,
+                         Depth&& depth_mm,
+                         Status&& status,
+                         Workspace<Pixel>& workspace) const {
+    return band(0, rows_, red, green, depth_mm, status, workspace);
+  }
+
+  /// Rows [first, last) of the frame only, for threads that share a frame; bit for bit what the
+  /// whole frame gives.
+  template <grid Red, grid Green, class Depth, class Status, class Pixel>
+    requires(writable_grid<Depth, S>)
+  DepthResult band(Index first,
+                   Index last,
+                   const Red& red,
+                   const Green& green,
+                   Depth&& depth_mm,
+                   Status&& status,
+                   Workspace<Pixel>& workspace)
+  const {
+    static_assert(std::is_same_v<cell_t<Red>, Pixel> && std::is_same_v<cell_t<Green>, Pixel>,
+                  "the workspace was made for another type of cell");
+    DepthResult result;
+    result.accepted = has_size(red) && has_size(green) && has_size(depth_mm) && has_size(status) &&
+                      workspace.area_ == pad_ && 0 <= first && first <= last && last <= rows_;
+    if (!result.accepted) {
+      return result;
+    }
+    result.pad_pixels = pad_pixels_;
+    const auto depth_view = as_view(depth_mm);
+    const auto status_view = as_view(status);
+    detail::fill_outside(pad_, first, last, depth_view,
+                         static_cast<cell_t<Depth>>(not_a_number<S>()));
+    detail::fill_outside(pad_, first, last, status_view, PixelStatus::outside_pad);
+    auto& outside = result.count[static_cast<std::size_t>(PixelStatus::outside_pad)];
+    outside = (last - first) * cols_;
+
+    const Index begin = (std::max)(first - pad_.row, Index(0));
+    const Index end = (std::min)(last - pad_.row, pad_.rows);
+    if (begin < end) {
+      outside -= (end - begin) * pad_.cols;
+      invert_rows(begin, end, detail::crop(as_view(red), pad_), detail::crop(as_view(green), pad_),
+                  detail::crop(depth_view, pad_), detail::crop(status_view, pad_), workspace,
+                  result);
+    }
+    return result;
+  }
+
+  Index rows() const { return rows_; }
+  Index cols() const { return cols_; }
+
+ private:
+  /// All work is done on the rectangle of pixels that holds the pad, in its own coordinates.
+  DepthEstimator(const detail::PadReference<S, Scattering, Heights>& pad,
+                 const Absorption<double>& fluid,
+                 Smoothing smoothing,
+                 Inverse inverse)
+      : rows_(pad.rows),
+        cols_(pad.cols),
+        pad_(pad.area),
+        smoothing_(smoothing),
+        solver_(pad.camera, fluid, pad.reference, inverse) {
+    setup_.rows = pad_.rows;
+    setup_.cols = pad_.cols;
+    for (const S& depth : pad.reference.depth_mm) {
+      setup_.in_pad.push_back(is_finite(depth) ? 1 : 0);
+      pad_pixels_ += setup_.in_pad.back();
+    }
+    if constexpr (detail::is_anchored<Smoothing>) {
+      setup_.anchor = detail::anchor_of(pad.camera, fluid, pad.reference);
+    }
+  }
+
+  static const Camera<double>& checked(const Camera<double>& camera,
+                                       const Absorption<double>& fluid,
+                                       const Reference& reference) {
+    expects_valid(camera);
+    expects_valid(fluid);
+    expects(reference.pixels_used > 0, "DepthEstimator", "reference.pixels_used",
+            static_cast<long long>(reference.pixels_used), "> 0, as fit_reference() gives it");
+    return camera;
+  }
+
+  template <class G>
+  bool has_size(const G& g) const {
+    return fingerpad::rows(g) == rows_ && fingerpad::cols(g) == cols_;
+  }
+
+  template <class Red, class Green, class Depth, class Status, class Pixel>
+  void invert_rows(Index begin,
+                   Index end,
+                   const Red& red,
+                   const Green& green,
+                   const Depth& depth,
+                   const Status& status,
+                   Workspace<Pixel>& w,
+                   DepthResult& result) const {
+    w.rows_.start(setup_, red, green, begin);
+    for (Index i = begin; i < end; ++i) {
+      w.rows_.next(setup_, red, green, w.red_.data(), w.green_.data());
+      if constexpr (Inverse::start == Start::previous_frame) {
+        detail::load_row(depth, i, w.depth_.data());
+      }
+      solver_.invert(i, pad_.cols, w.red_.data(), w.green_.data(), w.depth_.data(),
+                     w.status_.data());
+      explain(i, red, green, w, result);
+      detail::store_row(w.depth_.data(), depth, i);
+      detail::store_row(w.status_.data(), status, i);
+    }
+  }
+
+  /// Counts the row's pixels by status, and tells for those without a colour why they have none.
+  template <class Red, class Green, class Pixel>
+  void explain(Index row,
+               const Red& red,
+               const Green& green,
+               Workspace<Pixel>& w,
+               DepthResult& result) const {
+    const std::uint8_t* inside = setup_.in_pad.data() + row * pad_.cols;
+    PixelStatus* status = w.status_.data();
+    Index j = 0;
+    while (j < pad_.cols) {
+      const Index well = detail::count_well(inside + j, status + j, pad_.cols - j);
+      result.count[static_cast<std::size_t>(PixelStatus::ok)] += well;
+      j += well;
+      const Index out = detail::count_zeros(inside + j, pad_.cols - j);
+      std::fill_n(status + j, out, PixelStatus::outside_pad);
+      std::fill_n(w.depth_.begin() + j, out, not_a_number<S>());
+      result.count[static_cast<std::size_t>(PixelStatus::outside_pad)] += out;
+      j += out;
+      if (j < pad_.cols && inside[j] != 0 && status[j] != PixelStatus::ok) {
+        if (status[j] == PixelStatus::not_a_number) {
+          status[j] = detail::status_of_cells(red(row, j), green(row, j), w.scale_);
+        }
+        ++result.count[static_cast<std::size_t>(status[j])];
+        ++j;
+      }
+    }
+  }
+
+  Index rows_;
+  Index cols_;
+  detail::PadArea pad_;
+  Smoothing smoothing_;
+  detail::ColourSetup<S> setup_;
+  detail::DepthRows<Inverse, Heights, S, Scattering> solver_;
+  Index pad_pixels_ = 0;
+};
+
+template <scalar S,
+          class Scattering,
+          class Heights,
+          class Smoothing = Anchored<BiasFreeMean>,
+          class Inverse = ExponentialFree<>>
+DepthEstimator(const Camera<double>&,
+               const Absorption<double>&,
+               const DepthReference<S, Scattering, Heights>&,
+               Smoothing = {},
+               Inverse = {}) -> DepthEstimator<Smoothing, Inverse, Heights, S, Scattering>;
+
+}  // namespace v0
+}  // namespace fingerpad

@@ -1,0 +1,272 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+#pragma once
+// What the depth model takes from one frame of the free pad, whose shape is known: which pixels see
+// the pad, and how much the fluid scatters, g. Per pixel g = (kappa red - green exp(delta k l)) /
+// W, the published quotient; but at the rim W vanishes and so does all trust in it, while g depends
+// on the ray's angle only. So g is fitted as a polynomial in rho^2 by least squares on the depth
+// equation itself, which is linear in its coefficients and 0/0 nowhere.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <type_traits>
+#include <vector>
+
+#include "fingerpad/depth/absorption.hpp"
+#include "fingerpad/core/expects.hpp"
+#include "fingerpad/core/grid.hpp"
+#include "fingerpad/core/scalar.hpp"
+
+namespace fingerpad {
+inline namespace v0 {
+
+/// How stored intensities relate to grey levels 0..255, and which of them carry no information: a
+/// pixel counts only where both its channels lie strictly between the two limits.
+struct GreyScale {
+  double units_per_level = 1;  ///< stored units in one grey level: 1 for 8 bit, 256 for 16 bit
+  double dark = 0;             ///< in stored units
+  double saturated = 255;      ///< in stored units
+};
+
+/// Refuses a scale on which no pixel could count, or whose levels exceed those of an 8-bit image.
+inline void expects_valid(const GreyScale& scale) {
+  expects(scale.units_per_level > 0 && is_finite(scale.units_per_level), "GreyScale",
+          "units_per_level", scale.units_per_level, "finite and > 0");
+  expects(is_finite(scale.dark), "GreyScale", "dark", scale.dark, "finite");
+  expects(scale.saturated > scale.dark && scale.saturated <= 256 * scale.units_per_level,
+          "GreyScale", "saturated", scale.saturated, "in (dark, 256 units_per_level]");
+}
+
+/// The scale of a cell type: 16-bit images hold 256 times the grey level, all others the grey
+/// level.
+template <class Cell>
+constexpr GreyScale grey_scale_of() {
+  return std::is_same_v<Cell, std::uint16_t> ? GreyScale{256, 0, 255 * 256} : GreyScale{};
+}
+
+/// g as a polynomial of degree `Degree` in v = (rho / rho_max)^2; grey levels per mm^2.
+template <scalar S, int Degree = 3>
+struct RadialScattering {
+  std::array<S, static_cast<std::size_t>(Degree) + 1> coefficient = {};  ///< of 1, v, v^2, ...
+  S rho_max_mm = S(1);  ///< farthest pixel of the fit, on the plate
+
+  S at(const S& rho_sq_mm2) const {
+    const S v = rho_sq_mm2 / (rho_max_mm * rho_max_mm);
+    S g = coefficient[static_cast<std::size_t>(Degree)];
+    for (int j = Degree - 1; j >= 0; --j) {
+      g = g * v + coefficient[static_cast<std::size_t>(j)];
+    }
+    return g;
+  }
+  S operator()(Index /*row*/, Index /*col*/, const S& rho_sq_mm2) const { return at(rho_sq_mm2); }
+};
+
+/// g per pixel, the published quotient; NaN where the reference has no usable depth.
+template <scalar S>
+struct PixelScattering {
+  Index cols = 0;
+  std::vector<S> plane;  ///< rows x cols
+
+  S operator()(Index row, Index col, const S& /*rho_sq_mm2*/) const {
+    return plane[static_cast<std::size_t>(row * cols + col)];
+  }
+};
+
+/// The free pad, as the depth estimator needs it. The type remembers the policy of heights that g
+/// was fitted with, so that the estimator uses the same.
+template <scalar S, class Scattering = RadialScattering<S>, class Heights = AstigmaticHeights>
+struct DepthReference {
+  Index rows = 0;
+  Index cols = 0;
+  std::vector<S> depth_mm;  ///< rows x cols, of the free pad along each pixel's ray; NaN outside
+  Scattering scattering;
+  Index pixels_used = 0;
+  S residual_rms = S(0);  ///< of the depth equation at the known depths, grey levels
+
+  const S& depth(Index row, Index col) const {
+    return depth_mm[static_cast<std::size_t>(row * cols + col)];
+  }
+  bool in_pad(Index row, Index col) const { return is_finite(depth(row, col)); }
+};
+
+namespace detail {
+
+/// Solves the symmetric positive definite system a x = b in place of b by Cholesky's method; false
+/// where a pivot is lost to roundoff, that is, where the data do not determine x.
+template <std::size_t N>
+bool solve_positive_definite(std::array<std::array<double, N>, N>& a, std::array<double, N>& b) {
+  for (std::size_t j = 0; j < N; ++j) {
+    const double before = a[j][j];
+    for (std::size_t k = 0; k < j; ++k) {
+      a[j][j] -= a[j][k] * a[j][k];
+    }
+    if (!(a[j][j] > 1e3 * epsilon<double>() * before)) {
+      return false;
+    }
+    a[j][j] = std::sqrt(a[j][j]);
+    for (std::size_t i = j + 1; i < N; ++i) {
+      for (std::size_t k = 0; k < j; ++k) {
+        a[i][j] -= a[i][k] * a[j][k];
+      }
+      a[i][j] /= a[j][j];
+    }
+  }
+  for (std::size_t i = 0; i < N; ++i) {
+    for (std::size_t k = 0; k < i; ++k) {
+      b[i] -= a[i][k] * b[k];
+    }
+    b[i] /= a[i][i];
+  }
+  for (std::size_t i = N; i-- > 0;) {
+    for (std::size_t k = i + 1; k < N; ++k) {
+      b[i] -= a[k][i] * b[k];
+    }
+    b[i] /= a[i][i];
+  }
+  return true;
+}
+
+/// Calls visit(row, col, rho_sq, known, scattered) for every usable pixel of the reference, where
+/// the depth equation reads known = g * scattered.
+template <class Heights, class Red, class Green, class Depth, class Visit>
+void visit_reference(const Camera<double>& camera,
+                     const Absorption<double>& fluid,
+                     const GreyScale& scale,
+                     const Red& red,
+                     const Green& green,
+                     const Depth& depth_mm,
+                     Visit&& visit) {
+  const double delta = fluid.c_green_per_mm - fluid.c_red_per_mm;
+  const auto good = [&](double x) { return x > scale.dark && x < scale.saturated; };
+  for (Index i = 0; i < depth_mm.rows(); ++i) {
+    for (Index j = 0; j < depth_mm.cols(); ++j) {
+      const double l = static_cast<double>(depth_mm(i, j));
+      const double r = static_cast<double>(red(i, j));
+      const double b = static_cast<double>(green(i, j));
+      if (!(l > 0 && l <= fluid.max_depth_mm) || !good(r) || !good(b)) {
+        continue;
+      }
+      const auto ray = ray_at_pixel(camera, static_cast<double>(i), static_cast<double>(j));
+      const auto pencil = pencil_of<Heights>(camera, ray);
+      const double membrane = b * std::exp(delta * pencil.path_factor * l);
+      const double known = (fluid.kappa * r - membrane) / scale.units_per_level;
+      visit(i, j, square(ray.plate_rho_mm), known, scattered_light(l, fluid.c_red_per_mm, pencil));
+    }
+  }
+}
+
+/// Least squares of known = g(rho) scattered over the powers of v; in double, the cubic that is
+/// needed is far from losing digits. Refuses data that do not determine g.
+template <scalar S, int Degree, class Heights, class VisitAll>
+void fit_scattering(const VisitAll& visit_all,
+                    DepthReference<S, RadialScattering<S, Degree>, Heights>& reference) {
+  constexpr auto n = static_cast<std::size_t>(Degree + 1);
+  double rho_sq_max = 0;
+  visit_all([&](Index, Index, double rho_sq, double, double) {
+    rho_sq_max = (std::max)(rho_sq_max, rho_sq);
+  });
+  std::array<std::array<double, n>, n> normal = {};
+  std::array<double, n> g = {};
+  double known_sq = 0;
+  visit_all([&](Index, Index, double rho_sq, double known, double scattered) {
+    std::array<double, n> term = {scattered};
+    for (std::size_t a = 1; a < n; ++a) {
+      term[a] = term[a - 1] * rho_sq / rho_sq_max;
+    }
+    for (std::size_t a = 0; a < n; ++a) {
+      for (std::size_t b = 0; b < n; ++b) {
+        normal[a][b] += term[a] * term[b];
+      }
+      g[a] += term[a] * known;
+    }
+    known_sq += square(known);
+    ++reference.pixels_used;
+  });
+  const std::array<double, n> projected = g;
+  expects(reference.pixels_used > Degree && solve_positive_definite(normal, g), "fit_reference",
+          "pixels with a known depth", static_cast<long long>(reference.pixels_used),
+          "enough, and far enough apart, to determine the scattering over the radius");
+  double explained_sq = 0;
+  for (std::size_t a = 0; a < n; ++a) {
+    explained_sq += projected[a] * g[a];
+    reference.scattering.coefficient[a] = S(g[a]);
+  }
+  reference.scattering.rho_max_mm = S(std::sqrt(rho_sq_max));
+  const double left_sq = (std::max)(known_sq - explained_sq, 0.0);
+  reference.residual_rms = S(std::sqrt(left_sq / static_cast<double>(reference.pixels_used)));
+}
+
+/// The published quotient, pixel by pixel.
+template <scalar S, class Heights, class VisitAll>
+void fit_scattering(const VisitAll& visit_all,
+                    DepthReference<S, PixelScattering<S>, Heights>& reference) {
+  reference.scattering.cols = reference.cols;
+  reference.scattering.plane.assign(reference.depth_mm.size(), not_a_number<S>());
+  visit_all([&](Index row, Index col, double, double known, double scattered) {
+    reference.scattering.plane[static_cast<std::size_t>(row * reference.cols + col)] =
+        S(known / scattered);
+    ++reference.pixels_used;
+  });
+  expects(reference.pixels_used > 0, "fit_reference", "pixels with a known depth",
+          static_cast<long long>(reference.pixels_used), "at least 1");
+}
+
+}  // namespace detail
+
+/// How g is found; see RadialScattering.
+struct RadialFit {
+  template <scalar S>
+  using Scattering = RadialScattering<S>;
+};
+
+/// The published quotient, for comparison: noise of the reference goes into every later depth, and
+/// without bound toward the rim.
+struct PixelQuotient {
+  template <scalar S>
+  using Scattering = PixelScattering<S>;
+};
+
+/// The reference from one frame of the free pad (an average of many frames is better: store it as
+/// 16 bit or float) and its depth along each pixel's ray in mm, NaN outside the pad. Refuses grids
+/// of different sizes and data that do not determine g (parameter_error). O(rows cols); allocates.
+template <class Fit = RadialFit,
+          class Heights = AstigmaticHeights,
+          scalar S = float,
+          grid Red,
+          grid Green,
+          grid Depth>
+auto fit_reference(const Camera<double>& camera,
+                   const Absorption<double>& fluid,
+                   const Red& red,
+                   const Green& green,
+                   const Depth& depth_mm,
+                   const GreyScale& scale = grey_scale_of<cell_t<Red>>()) {
+  expects_valid(camera);
+  expects_valid(fluid);
+  expects_valid(scale);
+  expects(same_size(red, green) && same_size(red, depth_mm), "fit_reference", "rows of depth_mm",
+          static_cast<long long>(rows(depth_mm)), "of the same size as the red and green image");
+  using Scattering = typename Fit::template Scattering<S>;
+  DepthReference<S, Scattering, Heights> reference;
+  const auto depth_view = as_view(depth_mm);
+  reference.rows = depth_view.rows();
+  reference.cols = depth_view.cols();
+  for (Index i = 0; i < reference.rows; ++i) {
+    for (Index j = 0; j < reference.cols; ++j) {
+      const double l = static_cast<double>(depth_view(i, j));
+      const bool inside = l >= 0 && l <= fluid.max_depth_mm;
+      reference.depth_mm.push_back(inside ? S(l) : not_a_number<S>());
+    }
+  }
+  const auto visit = [&](auto&& visitor) {
+    detail::visit_reference<Heights>(camera, fluid, scale, as_view(red), as_view(green), depth_view,
+                                     visitor);
+  };
+  detail::fit_scattering(visit, reference);
+  return reference;
+}
+
+}  // namespace v0
+}  // namespace fingerpad

@@ -1,0 +1,128 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+#pragma once
+// Rows of a frame, of any kind of grid, to plain memory and back; and what is wrong with a pixel.
+#include <algorithm>
+#include <concepts>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <type_traits>
+
+#include "fingerpad/depth/depth_reference.hpp"
+#include "fingerpad/depth/pixel_status.hpp"
+#include "fingerpad/image/detail/window_sums.hpp"
+#include "fingerpad/core/grid.hpp"
+#include "fingerpad/core/scalar.hpp"
+
+namespace fingerpad {
+inline namespace v0 {
+namespace detail {
+
+/// Why a pixel without a smoothed colour has none: what is wrong with its own.
+template <class Cell>
+PixelStatus status_of_cells(const Cell& red, const Cell& green, const GreyScale& scale) {
+  using S = real_of_t<Cell>;
+  const auto r = static_cast<double>(value(S(red)));
+  const auto g = static_cast<double>(value(S(green)));
+  if (!is_finite(r) || !is_finite(g)) {
+    return PixelStatus::not_a_number;
+  }
+  if (r >= scale.saturated || g >= scale.saturated) {
+    return PixelStatus::saturated;
+  }
+  return r <= scale.dark || g <= scale.dark ? PixelStatus::dark : PixelStatus::not_a_number;
+}
+
+/// A status grid that nobody asked for.
+struct IgnoredCell {
+  struct Sink {
+    constexpr const Sink& operator=(PixelStatus) const { return *this; }
+  };
+  constexpr Sink operator()(Index, Index) const { return {}; }
+};
+
+template <class View, class S>
+void load_row(const View& view, Index row, S* to) {
+  for (Index j = 0; j < view.cols(); ++j) {
+    to[j] = static_cast<S>(view(row, j));
+  }
+}
+template <class S, class View>
+void store_row(const S* from, const View& view, Index row) {
+  for (Index j = 0; j < view.cols(); ++j) {
+    view(row, j) = static_cast<cell_t<View>>(from[j]);
+  }
+}
+template <class S>
+void store_row(const S* from, const StridedView<S>& view, Index row) {
+  if (view.col_stride() == 1) {
+    std::copy_n(from, view.cols(), view.row(row));
+    return;
+  }
+  for (Index j = 0; j < view.cols(); ++j) {
+    view(row, j) = from[j];
+  }
+}
+template <class View>
+void store_row(const PixelStatus*, const View& view, Index row) requires
+    std::is_same_v<decltype(view(row, Index(0))), IgnoredCell::Sink> {}
+
+/// Copies one row of each channel to plain memory.
+template <class Red, class Green, class Pixel>
+void load_pixels(const Red& red, const Green& green, Index row, Pixel* to_red, Pixel* to_green) {
+  for (Index j = 0; j < red.cols(); ++j) {
+    to_red[j] = static_cast<Pixel>(red(row, j));
+    to_green[j] = static_cast<Pixel>(green(row, j));
+  }
+}
+/// The same for images in plain memory. Two channels of one interleaved image are read together.
+template <std::unsigned_integral Pixel>
+void load_pixels(const StridedView<const Pixel>& red,
+                 const StridedView<const Pixel>& green,
+                 Index row,
+                 Pixel* to_red,
+                 Pixel* to_green) {
+  const Pixel* r = red.row(row);
+  const Pixel* g = green.row(row);
+  const Index step = red.col_stride();
+  const Index n = red.cols();
+  const auto bytes = static_cast<std::size_t>(n) * sizeof(Pixel);
+  if (step == 1 && green.col_stride() == 1) {
+    std::memcpy(to_red, r, bytes);
+    std::memcpy(to_green, g, bytes);
+    return;
+  }
+  Index done = 0;
+  const bool together = step == green.col_stride() && r - g < step && g - r < step;
+  if (together && (step == 3 || step == 4)) {
+    // Which channel is first in a pixel is not known, so the last pixel is left: a block that
+    // begins at the first of the two would reach past it.
+    const Pixel* first = (std::min)(r, g);
+    const auto red_at = static_cast<int>(r - first);
+    const auto green_at = static_cast<int>(g - first);
+    done = n - 1;
+    if (step == 3) {
+      load_interleaved_row<3>(first, done, red_at, green_at, to_red, to_green);
+    } else {
+      load_interleaved_row<4>(first, done, red_at, green_at, to_red, to_green);
+    }
+  }
+  for (Index j = done; j < n; ++j) {
+    to_red[j] = r[j * step];
+    to_green[j] = g[j * green.col_stride()];
+  }
+}
+template <std::unsigned_integral Pixel>
+void load_pixels(const StridedView<Pixel>& red,
+                 const StridedView<Pixel>& green,
+                 Index row,
+                 Pixel* to_red,
+                 Pixel* to_green) {
+  load_pixels(StridedView<const Pixel>(red), StridedView<const Pixel>(green), row, to_red,
+              to_green);
+}
+
+}  // namespace detail
+}  // namespace v0
+}  // namespace fingerpad

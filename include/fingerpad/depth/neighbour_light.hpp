@@ -1,0 +1,197 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+#pragma once
+// Light from the neighbouring membrane: it brightens a pixel and so shifts its depth, the more the
+// inclination psi of the membrane around it has changed since the reference frame.
+// Source: Ito, Kim, Obinata, "Shape sensing by vision-based tactile sensor" (slides), compensation
+// for approximation error; order of the values, names and psi repaired as E008-E010.
+//
+//   psi = atan|grad l|,   psi_sum = sum over the disc of radius r of [psi(t) - psi(t0)]
+//   m = m0 exp(n [l(t) - l(t0)]),   l' = max(l - m psi_sum, 0)
+//
+// l must be the smoothed depth: atan of the gradient of a noisy one measures the noise.
+#include <concepts>
+#include <cstddef>
+#include <utility>
+#include <vector>
+
+#include "fingerpad/depth/detail/inclination_sums.hpp"
+#include "fingerpad/image/detail/quick_math.hpp"
+#include "fingerpad/core/expects.hpp"
+#include "fingerpad/core/grid.hpp"
+#include "fingerpad/core/scalar.hpp"
+
+namespace fingerpad {
+inline namespace v0 {
+
+/// How neighbouring light acts; the defaults are the published values, in the order that their
+/// units demand (E008). All three are fit parameters (E009): see calibrate/neighbour_light.hpp.
+template <scalar S = double>
+struct NeighbourLight {
+  Index radius_px = 30;                   ///< r, radius of the disc, in [1, 1000]; published 1..50
+  S m0_mm_per_rad = S(886) / S(1000000);  ///< m0, mm of depth per rad summed over the disc, finite
+  S n_per_mm = S(224) / S(1000);          ///< n, growth of m with depth, finite
+};
+
+/// Refuses what has no meaning (parameter_error).
+template <scalar S>
+void expects_valid(const NeighbourLight<S>& light) {
+  expects(light.radius_px >= 1 && light.radius_px <= 1000, "NeighbourLight", "radius_px",
+          static_cast<long long>(light.radius_px), "in [1, 1000]");
+  expects(is_finite(light.m0_mm_per_rad), "NeighbourLight", "m0_mm_per_rad", light.m0_mm_per_rad,
+          "finite");
+  expects(is_finite(light.n_per_mm), "NeighbourLight", "n_per_mm", light.n_per_mm, "finite");
+}
+
+/// The equation for one pixel: depth less the light of its neighbours, never below 0. A depth that
+/// is not finite stays as it is; the reference depth must be finite.
+template <scalar S>
+inline S without_neighbour_light(const S& depth_mm,
+                                 const S& reference_depth_mm,
+                                 const S& psi_sum_rad,
+                                 const S& m0_mm_per_rad,
+                                 const S& n_per_mm) {
+  const S risen = depth_mm - reference_depth_mm;
+  const S m = m0_mm_per_rad * detail::quick_exp(S(n_per_mm * risen));
+  const S compensated = depth_mm - m * psi_sum_rad;
+  return value(compensated) < 0 ? S(0) : compensated;
+}
+
+struct NeighbourLightResult {
+  bool accepted = false;  ///< false: a grid or the workspace has another size than the reference;
+                          ///< nothing written
+  Index lost_px = 0;      ///< pixels of the reference whose inclination this frame does not show
+};
+
+/// Removes the light of the neighbouring membrane from depth maps. `Disc` is SteppedDisc<> (time
+/// independent of r) or ExactDisc; `S` is the number computed in.
+///
+/// Missing pixels (not finite) leave their neighbours a one-sided difference and drop out of the
+/// disc. If the reference has them, membrane is there and only was not seen: the disc's sum is
+/// scaled up to the number of pixels that the reference has in it. Elsewhere there is no membrane,
+/// and nothing is added for it.
+///
+/// Bounded time and no allocation per frame; const, so that threads may share one, each with its
+/// own workspace. Twice the work in frames where pixels of the reference are missing.
+template <class Disc = SteppedDisc<>, scalar S = float>
+class NeighbourLightCompensation {
+ public:
+  /// Memory that one frame at a time needs, taken up front.
+  using Workspace = typename detail::InclinationSums<Disc, S>::Workspace;
+
+  /// `pitch_mm` is the distance on the membrane between the points that neighbouring pixels see:
+  /// that is where the gradient is taken. It is the pitch on the plate times about 1 + l / h, h the
+  /// virtual height of optics.hpp; one number, for the mean depth of the pad, is enough, as m0 is
+  /// fitted with the same number and takes up a common factor. `reference_depth_mm` is smoothed as
+  /// the frames will be; NaN outside the pad.
+  template <grid Reference>
+  NeighbourLightCompensation(const NeighbourLight<S>& light,
+                             const S& pitch_mm,
+                             const Reference& reference_depth_mm)
+      : light_(checked(light, pitch_mm, as_view(reference_depth_mm))),
+        sums_(light.radius_px, pitch_mm, as_view(reference_depth_mm)) {
+    const auto reference = as_view(reference_depth_mm);
+    for (Index i = 0; i < rows(); ++i) {
+      for (Index j = 0; j < cols(); ++j) {
+        const S l = S(reference(i, j));
+        reference_.push_back(is_finite(l) ? l : S(0));
+        m0_.push_back(is_finite(l) ? light.m0_mm_per_rad : S(0));
+      }
+    }
+  }
+
+  Index rows() const { return sums_.rows(); }
+  Index cols() const { return sums_.cols(); }
+  Workspace workspace() const { return sums_.workspace(); }
+
+  /// Compensates `depth_mm` into `out`, which may be the same grid. NaN where the input is NaN and
+  /// nowhere else. A grid of another size than the reference is refused before anything is written.
+  template <grid Depth, writable_grid<S> Out>
+    requires(!std::integral<cell_t<Out>>)
+  NeighbourLightResult operator()(const Depth& depth_mm, Out&& out, Workspace& workspace) const {
+    const auto from = as_view(depth_mm);
+    const auto to = as_view(std::forward<Out>(out));
+    if (from.rows() != rows() || from.cols() != cols() || to.rows() != rows() ||
+        to.cols() != cols() || !sums_.fits(workspace)) {
+      return {};
+    }
+    sums_.scan(from, workspace);
+    for (Index i = 0; i < rows(); ++i) {
+      sums_.sum_row(i, workspace);
+      S* row_mm = workspace.lines[0].depth.data();
+      for (Index j = 0; j < cols(); ++j) {
+        row_mm[j] = S(from(i, j));
+      }
+      const Index first = i * cols();
+      compensate_row(cols(), reference_.data() + first, m0_.data() + first, workspace.sum.data(),
+                     light_.n_per_mm, row_mm);
+      for (Index j = 0; j < cols(); ++j) {
+        to(i, j) = static_cast<cell_t<Out>>(row_mm[j]);
+      }
+    }
+    return {true, workspace.lost_px};
+  }
+
+ private:
+  template <class View>
+  static const NeighbourLight<S>& checked(const NeighbourLight<S>& light,
+                                          const S& pitch_mm,
+                                          const View& reference) {
+    expects_valid(light);
+    expects(is_finite(pitch_mm) && value(pitch_mm) > 0, "NeighbourLightCompensation", "pitch_mm",
+            pitch_mm, "finite and > 0");
+    expects(reference.rows() >= 1, "NeighbourLightCompensation", "rows of reference_depth_mm",
+            static_cast<long long>(reference.rows()), ">= 1");
+    expects(reference.cols() >= 1, "NeighbourLightCompensation", "cols of reference_depth_mm",
+            static_cast<long long>(reference.cols()), ">= 1");
+    return light;
+  }
+
+  static void compensate_row(Index cols,
+                             const S* reference_mm,
+                             const S* m0_mm_per_rad,
+                             const S* psi_sum_rad,
+                             const S n_per_mm,
+                             S* __restrict depth_mm) {
+    for (Index j = 0; j < cols; ++j) {
+      depth_mm[j] = without_neighbour_light(depth_mm[j], reference_mm[j], psi_sum_rad[j],
+                                            m0_mm_per_rad[j], n_per_mm);
+    }
+  }
+
+  NeighbourLight<S> light_;
+  detail::InclinationSums<Disc, S> sums_;
+  std::vector<S> reference_;  // 0 where it is missing,
+  std::vector<S> m0_;         // and so is m0 there
+};
+
+/// No compensation: nothing to do where depth and output are one grid in memory, else a copy.
+struct NoNeighbourLight {
+  struct Workspace {};
+  Workspace workspace() const { return {}; }
+
+  template <grid Depth, writable_grid<cell_t<Depth>> Out>
+  NeighbourLightResult operator()(const Depth& depth_mm, Out&& out, Workspace&) const {
+    const auto from = as_view(depth_mm);
+    const auto to = as_view(std::forward<Out>(out));
+    if (!same_size(from, to)) {
+      return {};
+    }
+    if constexpr (strided_grid<Depth> && strided_grid<Out> &&
+                  std::same_as<cell_t<Depth>, cell_t<Out>>) {
+      if (from.data() == to.data() && from.row_stride() == to.row_stride() &&
+          from.col_stride() == to.col_stride()) {
+        return {true, 0};
+      }
+    }
+    for (Index i = 0; i < to.rows(); ++i) {
+      for (Index j = 0; j < to.cols(); ++j) {
+        to(i, j) = static_cast<cell_t<Out>>(from(i, j));
+      }
+    }
+    return {true, 0};
+  }
+};
+
+}  // namespace v0
+}  // namespace fingerpad

@@ -1,0 +1,280 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+#pragma once
+// The least force that holds an object, found with its weight and friction unknown. Source: "Pre-
+// Slip Sensing Using Tactile Sensor" (2007), its two experiments:
+//
+//   grasp-optimise-replace  the object hangs between the fingers; the grip is loosened step by step
+//                           until pre-slip is found, which is the least force. As a check the paper
+//                           goes on until the object slips as a whole, three to six steps later
+//   grasp-lift-replace      the object stands on a surface and is lifted with little force; where
+//                           pre-slip is found the lift waits and the grip is tightened
+//
+// Samples in, commands out: the caller moves the gripper, and tells at each sample what the fingers
+// say of slip, by preslip.hpp or by anything else.
+#include "fingerpad/foam/search_phase.hpp"
+#include "fingerpad/core/expects.hpp"
+#include "fingerpad/core/grid.hpp"
+#include "fingerpad/core/scalar.hpp"
+
+namespace fingerpad {
+inline namespace v0 {
+
+namespace detail {
+/// Whether `step` is a step that ends: at most a million go into the way.
+template <scalar S>
+bool divides(const S& step, const S& way) {
+  return is_finite(step) && value(step) > 0 && value(way) <= value(S(S(1000000) * step));
+}
+}  // namespace detail
+
+/// How the grip is loosened. The paper prints no values.
+template <scalar S = double>
+struct LoosenPlan {
+  S first_force_n = S(10);        ///< with which the object is held at first, > least_force_n
+  S least_force_n = S(1) / S(2);  ///< never less, >= 0
+  S step_n = S(1) / S(4);         ///< taken off at a time, > 0
+  Index settle_samples = 16;      ///< after each step, >= 0; a window of the taxels hides the step
+  Index watch_samples = 16;       ///< then, >= 1
+  Index margin_steps = 2;         ///< given back once pre-slip is found, >= 0
+  bool until_slipped = false;     ///< go on after pre-slip, as the paper does to check
+};
+
+/// Refuses what has no meaning (parameter_error).
+template <scalar S>
+void expects_valid(const LoosenPlan<S>& plan) {
+  const char* const owner = "LoosenPlan";
+  expects(is_finite(plan.least_force_n) && value(plan.least_force_n) >= 0, owner, "least_force_n",
+          plan.least_force_n, "finite and >= 0");
+  expects(is_finite(plan.first_force_n) && value(plan.first_force_n) > value(plan.least_force_n),
+          owner, "first_force_n", plan.first_force_n, "finite and > least_force_n");
+  expects(detail::divides(plan.step_n, S(plan.first_force_n - plan.least_force_n)), owner, "step_n",
+          plan.step_n, "finite and > 0, in at most a million steps from first to least force");
+  expects(plan.settle_samples >= 0, owner, "settle_samples",
+          static_cast<long long>(plan.settle_samples), ">= 0");
+  expects(plan.watch_samples >= 1, owner, "watch_samples",
+          static_cast<long long>(plan.watch_samples), ">= 1");
+  expects(plan.margin_steps >= 0 && plan.margin_steps <= 1000000, owner, "margin_steps",
+          static_cast<long long>(plan.margin_steps), "in [0, 1000000]");
+}
+
+template <scalar S = double>
+struct LoosenCommand {
+  S force_n = S(0);  ///< to grip with from now on, within the limits of the plan
+  SearchPhase phase = SearchPhase::settling;
+  Index steps = 0;                        ///< by which the grip has been loosened
+  S preslip_force_n = not_a_number<S>();  ///< at which pre-slip was found first; NaN: not yet
+  Index warning_steps = 0;                ///< loosened since then
+};
+
+/// Loosens step by step until pre-slip. Const, O(1), no memory from the heap; ends after at most
+/// (first - least) / step + 1 steps of news that is not missing.
+template <scalar S = double>
+class LoosenUntilPreslip {
+ public:
+  /// A value: copy it to go back to this sample later.
+  class State {
+   public:
+    const LoosenCommand<S>& command() const { return command_; }
+
+   private:
+    friend class LoosenUntilPreslip;
+    LoosenCommand<S> command_;
+    Index samples_ = 0;  // in this phase
+  };
+
+  /// Refuses bad parameters (parameter_error).
+  explicit LoosenUntilPreslip(const LoosenPlan<S>& plan = {}) : plan_(plan) { expects_valid(plan); }
+
+  const LoosenPlan<S>& plan() const { return plan_; }
+
+  State start() const {
+    State state;
+    state.command_.force_n = plan_.first_force_n;
+    return state;
+  }
+
+  /// What to do after one more sample.
+  LoosenCommand<S> operator()(SlipNews news, State& state) const {
+    LoosenCommand<S>& command = state.command_;
+    if (is_end(command.phase) || news == SlipNews::missing) {
+      return command;
+    }
+    if (news == SlipNews::slipped) {
+      command.phase = SearchPhase::slipped;
+      command.force_n = plan_.first_force_n;
+      return command;
+    }
+    ++state.samples_;
+    if (command.phase == SearchPhase::settling) {
+      if (state.samples_ > plan_.settle_samples) {
+        enter(SearchPhase::watching, state);
+        watch(news, state);
+      }
+    } else {
+      watch(news, state);
+    }
+    return command;
+  }
+
+ private:
+  static void enter(SearchPhase phase, State& state) {
+    state.command_.phase = phase;
+    state.samples_ = phase == SearchPhase::watching ? 1 : 0;
+  }
+
+  void watch(SlipNews news, State& state) const {
+    LoosenCommand<S>& command = state.command_;
+    const bool is_first = news == SlipNews::preslip && !is_finite(command.preslip_force_n);
+    if (is_first) {
+      command.preslip_force_n = command.force_n;
+      if (!plan_.until_slipped) {
+        const S margin = S(static_cast<int>(plan_.margin_steps)) * plan_.step_n;
+        const S held = command.force_n + margin;
+        command.force_n = value(held) < value(plan_.first_force_n) ? held : plan_.first_force_n;
+        command.phase = SearchPhase::found;
+        return;
+      }
+    }
+    if (state.samples_ >= plan_.watch_samples) {
+      loosen(state);
+    }
+  }
+
+  void loosen(State& state) const {
+    LoosenCommand<S>& command = state.command_;
+    if (!(value(plan_.least_force_n) < value(command.force_n))) {
+      command.phase = SearchPhase::at_limit;
+      return;
+    }
+    ++command.steps;
+    command.warning_steps += is_finite(command.preslip_force_n) ? 1 : 0;
+    // from the first force, so that rounding does not add up
+    const S taken = S(static_cast<int>(command.steps)) * plan_.step_n;
+    const S next = plan_.first_force_n - taken;
+    command.force_n = value(plan_.least_force_n) < value(next) ? next : plan_.least_force_n;
+    enter(SearchPhase::settling, state);
+  }
+
+  LoosenPlan<S> plan_;
+};
+
+/// How the object is lifted. The paper prints no values.
+template <scalar S = double>
+struct LiftPlan {
+  S first_force_n = S(1);          ///< with which it is gripped before the lift, > 0
+  S most_force_n = S(20);          ///< never more, >= first_force_n
+  S force_step_n = S(1) / S(2);    ///< by which the grip is tightened, > 0
+  S height_mm = S(50);             ///< to lift to, > 0
+  S height_step_mm = S(1) / S(4);  ///< lifted at each sample without pre-slip, > 0
+  Index settle_samples = 16;       ///< the lift waits after each tightening, >= 0
+};
+
+/// Refuses what has no meaning (parameter_error).
+template <scalar S>
+void expects_valid(const LiftPlan<S>& plan) {
+  const auto positive = [](const S& x, const char* name) {
+    expects(is_finite(x) && value(x) > 0, "LiftPlan", name, x, "finite and > 0");
+  };
+  positive(plan.first_force_n, "first_force_n");
+  expects(is_finite(plan.most_force_n) && value(plan.most_force_n) >= value(plan.first_force_n),
+          "LiftPlan", "most_force_n", plan.most_force_n, "finite and >= first_force_n");
+  positive(plan.height_mm, "height_mm");
+  expects(detail::divides(plan.force_step_n, S(plan.most_force_n - plan.first_force_n)), "LiftPlan",
+          "force_step_n", plan.force_step_n,
+          "finite and > 0, in at most a million steps from first to most force");
+  expects(detail::divides(plan.height_step_mm, plan.height_mm), "LiftPlan", "height_step_mm",
+          plan.height_step_mm, "finite and > 0, in at most a million steps to the height");
+  expects(plan.settle_samples >= 0, "LiftPlan", "settle_samples",
+          static_cast<long long>(plan.settle_samples), ">= 0");
+}
+
+template <scalar S = double>
+struct LiftCommand {
+  S force_n = S(0);    ///< to grip with from now on, within the limits of the plan
+  S height_mm = S(0);  ///< to lift to; back to 0 where the lift is given up
+  SearchPhase phase = SearchPhase::watching;
+  Index regrips = 0;  ///< how often the grip was tightened
+};
+
+/// Lifts, and tightens the grip where pre-slip shows. Const, O(1), no memory from the heap. At the
+/// largest force it gives up where pre-slip still shows; where the object slips as a whole, at
+/// once, with the grip as it is.
+template <scalar S = double>
+class LiftWithRegrip {
+ public:
+  /// A value: copy it to go back to this sample later.
+  class State {
+   public:
+    const LiftCommand<S>& command() const { return command_; }
+
+   private:
+    friend class LiftWithRegrip;
+    LiftCommand<S> command_;
+    Index samples_ = 0;       // of settling
+    Index height_steps_ = 0;  // lifted
+  };
+
+  /// Refuses bad parameters (parameter_error).
+  explicit LiftWithRegrip(const LiftPlan<S>& plan = {}) : plan_(plan) { expects_valid(plan); }
+
+  const LiftPlan<S>& plan() const { return plan_; }
+
+  State start() const {
+    State state;
+    state.command_.force_n = plan_.first_force_n;
+    return state;
+  }
+
+  /// What to do after one more sample.
+  LiftCommand<S> operator()(SlipNews news, State& state) const {
+    LiftCommand<S>& command = state.command_;
+    if (is_end(command.phase) || news == SlipNews::missing) {
+      return command;
+    }
+    if (news == SlipNews::slipped) {
+      give_up(SearchPhase::slipped, command);
+    } else if (command.phase == SearchPhase::settling && ++state.samples_ <= plan_.settle_samples) {
+      return command;
+    } else if (news == SlipNews::preslip) {
+      tighten(state);
+    } else {
+      lift(state);
+    }
+    return command;
+  }
+
+ private:
+  static void give_up(SearchPhase phase, LiftCommand<S>& command) {
+    command.phase = phase;
+    command.height_mm = S(0);
+  }
+
+  void tighten(State& state) const {
+    LiftCommand<S>& command = state.command_;
+    if (!(value(command.force_n) < value(plan_.most_force_n))) {
+      give_up(SearchPhase::at_limit, command);
+      return;
+    }
+    ++command.regrips;
+    const S added = S(static_cast<int>(command.regrips)) * plan_.force_step_n;
+    const S next = plan_.first_force_n + added;
+    command.force_n = value(next) < value(plan_.most_force_n) ? next : plan_.most_force_n;
+    command.phase = SearchPhase::settling;
+    state.samples_ = 0;
+  }
+
+  void lift(State& state) const {
+    LiftCommand<S>& command = state.command_;
+    ++state.height_steps_;
+    const S next = S(static_cast<int>(state.height_steps_)) * plan_.height_step_mm;
+    const bool is_up = !(value(next) < value(plan_.height_mm));
+    command.height_mm = is_up ? plan_.height_mm : next;
+    command.phase = is_up ? SearchPhase::lifted : SearchPhase::watching;
+  }
+
+  LiftPlan<S> plan_;
+};
+
+}  // namespace v0
+}  // namespace fingerpad

@@ -1,0 +1,54 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+#pragma once
+// What must be known of a foam array and of the window in which its vibrations are looked for.
+#include <limits>
+
+#include "fingerpad/core/expects.hpp"
+#include "fingerpad/core/grid.hpp"
+#include "fingerpad/core/scalar.hpp"
+
+namespace fingerpad {
+inline namespace v0 {
+
+/// The array and its window. Readings in the sensor's own unit (counts, V, N). The paper prints no
+/// values: the defaults suit arrays of 12-bit counts read 30 times a second.
+template <scalar S = double>
+struct TaxelOptions {
+  S pitch_mm = S(34) / S(10);        ///< between taxels, > 0
+  Index window = 16;                 ///< samples in which vibration is looked for, in [4, 4096]
+  S sample_period_s = S(1) / S(30);  ///< nominal, > 0; waves are counted in window times this
+  S longest_gap_s = S(1) / S(4);     ///< a longer time between samples begins a new window, > 0
+  S noise = S(6);                    ///< standard deviation of a taxel at rest, >= 0
+  S noise_factor = S(5) / S(2);      ///< vibration is more than this many of them, >= 0
+  S least_sum = S(0);                ///< a smaller sum of readings has no centroid, >= 0
+  S saturated_at = S((std::numeric_limits<scalar_real_t<S>>::infinity)());  ///< readings from here
+                                                                            ///< on do not count
+  Index stuck_after = 0;  ///< a reading that is not 0 and was the same so many times in a row does
+                          ///< not count, >= 0; 0: not looked for
+};
+
+/// Refuses what has no meaning (parameter_error).
+template <scalar S>
+void expects_valid(const TaxelOptions<S>& o) {
+  const auto positive = [](const S& x, const char* name) {
+    expects(is_finite(x) && value(x) > 0, "TaxelOptions", name, x, "finite and > 0");
+  };
+  const auto not_negative = [](const S& x, const char* name) {
+    expects(is_finite(x) && value(x) >= 0, "TaxelOptions", name, x, "finite and >= 0");
+  };
+  positive(o.pitch_mm, "pitch_mm");
+  expects(o.window >= 4 && o.window <= 4096, "TaxelOptions", "window",
+          static_cast<long long>(o.window), "in [4, 4096]");
+  positive(o.sample_period_s, "sample_period_s");
+  positive(o.longest_gap_s, "longest_gap_s");
+  not_negative(o.noise, "noise");
+  not_negative(o.noise_factor, "noise_factor");
+  not_negative(o.least_sum, "least_sum");
+  expects(value(o.saturated_at) > 0, "TaxelOptions", "saturated_at", o.saturated_at, "> 0");
+  expects(o.stuck_after >= 0, "TaxelOptions", "stuck_after", static_cast<long long>(o.stuck_after),
+          ">= 0");
+}
+
+}  // namespace v0
+}  // namespace fingerpad

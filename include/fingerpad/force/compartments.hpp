@@ -1,0 +1,212 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+#pragma once
+// The membrane cut into n x m segments M(i, j) by n lines from the rim to the line A_g and m + 1
+// lines around. Source: Ito, Kim, Obinata 2011, III.C.
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <numbers>
+#include <vector>
+
+#include "fingerpad/force/height_map.hpp"
+#include "fingerpad/force/detail/meridian.hpp"
+#include "fingerpad/core/detail/point_algebra.hpp"
+#include "fingerpad/core/dots.hpp"
+#include "fingerpad/core/grid.hpp"
+#include "fingerpad/core/scalar.hpp"
+
+namespace fingerpad {
+inline namespace v0 {
+
+/// Lines perpendicular to the contour lines, cut at equal steps of height: the published ones.
+/// Where the summit is level all around (a contact parallel to the plate) the lines around are
+/// contour lines. They crowd at the highest points of a summit that is not level.
+struct SteepestLines {
+  static constexpr bool straight = false;
+  static constexpr bool by_height = true;
+};
+
+/// Lines straight toward the middle of the contact (in plan), cut at equal steps along them.
+struct StraightLines {
+  static constexpr bool straight = true;
+  static constexpr bool by_height = false;
+};
+
+namespace detail::membrane {
+
+/// Nodes x(i, j): line i = 0 ... n - 1, row j = 0 (rim) ... m (A_g). Memory is taken once.
+template <scalar S>
+class Compartments {
+ public:
+  Compartments(Index columns, Index rows, const S& base_radius_mm, const LineSteps<S>& steps)
+      : columns_(columns),
+        rows_(rows),
+        base_radius_mm_(base_radius_mm),
+        steps_(steps),
+        nodes_(static_cast<std::size_t>(columns * (rows + 1))) {
+    // four times the way over a hemisphere
+    const S most = S(8) * base_radius_mm / steps.arc_mm;
+    const std::size_t points = static_cast<std::size_t>(value(most)) + 8;
+    lines_.assign(static_cast<std::size_t>(columns), Meridian<S>(points));
+    for (Meridian<S>& line : lines_) {
+      line = Meridian<S>(points);  // a copy would not keep the room
+    }
+  }
+
+  Index columns() const { return columns_; }
+  Index rows() const { return rows_; }
+  const Point3<S>& node(Index line, Index row) const {
+    return nodes_[static_cast<std::size_t>(row * columns_ + line)];
+  }
+  LineEnd end(Index line) const { return lines_[static_cast<std::size_t>(line)].end(); }
+  const Point3<S>& end_normal(Index line) const {
+    return lines_[static_cast<std::size_t>(line)].end_normal();
+  }
+  /// Lines that ended in a hole and were put between their neighbours.
+  Index broken() const { return broken_; }
+  /// Lines along which the membrane is level at its end.
+  Index level() const {
+    Index count = 0;
+    for (const Meridian<S>& line : lines_) {
+      count += line.is_level() ? 1 : 0;
+    }
+    return count;
+  }
+
+  /// Area within A_g in plan, as a polygon; `per_mm`: root of the sum of squares of its changes
+  /// when a line ends 1 mm further out.
+  S summit_area(S& per_mm) const {
+    using std::sqrt;
+    S area = S(0), squares = S(0);
+    for (Index i = 0; i < columns_; ++i) {
+      const Point3<S>& left = node(i == 0 ? columns_ - 1 : i - 1, rows_);
+      const Point3<S>& here = node(i, rows_);
+      const Point3<S>& right = node(i + 1 == columns_ ? 0 : i + 1, rows_);
+      area = area + (here.x * right.y - here.y * right.x) / S(2);
+      // the corner moves across the chord between its neighbours
+      squares = squares + (square(S(right.x - left.x)) + square(S(right.y - left.y))) / S(4);
+    }
+    per_mm = sqrt(squares);
+    return area;
+  }
+
+  /// Angle of line i at the rim.
+  S angle(Index line) const {
+    return S(2 * std::numbers::pi) * S(static_cast<double>(line)) /
+           S(static_cast<double>(columns_));
+  }
+
+  /// Lays the lines over `shape`; `center` is the middle of the contact. Lines that end in a hole
+  /// are put between their neighbours.
+  template <class Lines, class Shape>
+  void lay(const Shape& shape, const Point3<S>& center) {
+    using std::cos;
+    using std::sin;
+    S growth = S(0);
+    S level = S(0);
+    for (Index i = 0; i < columns_; ++i) {
+      Meridian<S>& line = lines_[static_cast<std::size_t>(i)];
+      const S at = angle(i);
+      line.template trace<Lines::straight>(
+          shape, {S(base_radius_mm_ * S(cos(at))), S(base_radius_mm_ * S(sin(at))), S(0)}, center,
+          steps_);
+      line.level_sums(center, steps_).add_growth(growth, level);
+    }
+    const S most = S(1) / S(20);  // per mm: more is noise
+    growth = value(level) == 0 ? S(0) : S(growth / level);
+    growth = growth > most ? most : (growth < S(-most) ? S(-most) : growth);
+    broken_ = 0;
+    for (Index i = 0; i < columns_; ++i) {
+      Meridian<S>& line = lines_[static_cast<std::size_t>(i)];
+      line.finish(line.level_sums(center, steps_).level_radius_sq(growth), center, steps_);
+      if (line.end() == LineEnd::hole) {
+        ++broken_;
+      } else {
+        cut<Lines::by_height>(i);
+      }
+    }
+    if (broken_ > 0 && broken_ < columns_) {
+      bridge();
+    }
+  }
+
+ private:
+  Point3<S>& at(Index line, Index row) {
+    return nodes_[static_cast<std::size_t>(row * columns_ + line)];
+  }
+
+  static S measure(const Point3<S>& a, const Point3<S>& b, bool by_height) {
+    using std::sqrt;
+    const S climb = b.z - a.z;
+    return by_height ? (climb < S(0) ? S(0) : climb) : S(sqrt(length_sq(difference(b, a))));
+  }
+
+  /// Nodes of a line at equal parts of its height or length.
+  template <bool ByHeight>
+  void cut(Index line) {
+    const std::vector<Point3<S>>& points = lines_[static_cast<std::size_t>(line)].points();
+    S total = S(0);
+    for (std::size_t k = 1; k < points.size(); ++k) {
+      total = total + measure(points[k - 1], points[k], ByHeight);
+    }
+    const S step = total / S(static_cast<double>(rows_));
+    at(line, 0) = points.front();
+    at(line, rows_) = points.back();
+    std::size_t k = 1;
+    S before = S(0);  // of point k - 1
+    S length = measure(points[0], points[1], ByHeight);
+    for (Index j = 1; j < rows_; ++j) {
+      const S wanted = step * S(static_cast<double>(j));
+      while (k + 1 < points.size() && before + length < wanted) {
+        before = before + length;
+        ++k;
+        length = measure(points[k - 1], points[k], ByHeight);
+      }
+      const S share = value(length) > 0 ? S((wanted - before) / length) : S(0);
+      at(line, j) = moved(points[k - 1], share, difference(points[k], points[k - 1]));
+    }
+  }
+
+  /// Broken lines lie between the whole ones on both sides, turned about the axis.
+  void bridge() {
+    for (Index i = 0; i < columns_; ++i) {
+      if (end(i) != LineEnd::hole) {
+        continue;
+      }
+      Index left = 1, right = 1;
+      while (end((i - left + columns_) % columns_) == LineEnd::hole) {
+        ++left;
+      }
+      while (end((i + right) % columns_) == LineEnd::hole) {
+        ++right;
+      }
+      const S share = S(static_cast<double>(left)) / S(static_cast<double>(left + right));
+      for (Index j = 0; j <= rows_; ++j) {
+        const Point3<S> a = turned(node((i - left + columns_) % columns_, j), left);
+        const Point3<S> b = turned(node((i + right) % columns_, j), -right);
+        at(i, j) = moved(a, share, difference(b, a));
+      }
+    }
+  }
+
+  Point3<S> turned(const Point3<S>& p, Index by) const {
+    using std::cos;
+    using std::sin;
+    const S c = cos(angle(by));
+    const S s = sin(angle(by));
+    return {S(c * p.x - s * p.y), S(s * p.x + c * p.y), p.z};
+  }
+
+  Index columns_;
+  Index rows_;
+  S base_radius_mm_;
+  LineSteps<S> steps_;
+  Index broken_ = 0;
+  std::vector<Point3<S>> nodes_;
+  std::vector<Meridian<S>> lines_;
+};
+
+}  // namespace detail::membrane
+}  // namespace v0
+}  // namespace fingerpad

@@ -1,0 +1,240 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+#pragma once
+// The rim with its side dots: from dots to the pull on each of n equal segments of the rim.
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <numbers>
+#include <vector>
+
+#include "fingerpad/force/rim_traction.hpp"
+#include "fingerpad/core/detail/point_algebra.hpp"
+#include "fingerpad/core/dots.hpp"
+#include "fingerpad/core/expects.hpp"
+#include "fingerpad/core/grid.hpp"
+#include "fingerpad/core/scalar.hpp"
+
+namespace fingerpad {
+inline namespace v0 {
+namespace detail::membrane {
+
+template <class S, class P>
+Point3<S> spatial_point_of(const P& p) {
+  using Traits = point_traits<P>;
+  return {S(Traits::x(p)), S(Traits::y(p)), S(Traits::z(p))};
+}
+
+/// What the frame's side dots said, dot by dot in the order of the angle.
+template <scalar S>
+struct RimPulls {
+  std::vector<RimPull<S>> dots;
+  std::vector<Point3<S>> along;     ///< d of each dot
+  std::vector<Point3<S>> segments;  ///< integral over each rim segment, mm times what a pull is in
+  Index missing = 0;                ///< not found, or with a coordinate that is no number
+  Index unstretched = 0;            ///< too little to tell a direction
+  Index slack = 0;                  ///< shorter than without stress
+  Index outward = 0;  ///< pulls that lean out of the pad: there the membrane bulges past the rim
+};
+
+/// Points of the rim in the order of their angle. Between them pulls are interpolated linearly.
+template <scalar S>
+class Rim {
+ public:
+  template <spatial_dot_grid Border, class Length>
+  Rim(const Border& border_mm, const Length& length_mm, const S& radius_mm, Index segments)
+      : radius_mm_(radius_mm), segments_(segments) {
+    const auto border = as_view(border_mm);
+    expects(border.rows() == 1 && border.cols() >= 6, "Wrench", "border columns",
+            static_cast<long long>(border.cols()), ">= 6, in one row");
+    for (Index k = 0; k < border.cols(); ++k) {
+      add(k, spatial_point_of<S>(cell_t<Border>(border(0, k))), S(length_mm(k)));
+    }
+    std::sort(points_.begin(), points_.end(),
+              [](const Place& a, const Place& b) { return value(a.angle) < value(b.angle); });
+    for (std::size_t k = 0; k < points_.size(); ++k) {
+      expects(gap_after(k) > S(1e-6), "Wrench", "angle between border points", gap_after(k), "> 0");
+      add_weights(k);
+    }
+  }
+
+  Index size() const { return static_cast<Index>(points_.size()); }
+  RimPulls<S> pulls() const {
+    RimPulls<S> out;
+    out.dots.resize(points_.size());
+    out.along.resize(points_.size());
+    out.segments.resize(static_cast<std::size_t>(segments_));
+    return out;
+  }
+  const Point3<S>& border(Index k) const {
+    return points_[static_cast<std::size_t>(k)].point.border;
+  }
+  const Point3<S>& tangent(Index k) const {
+    return points_[static_cast<std::size_t>(k)].point.tangent;
+  }
+  const S& angle(Index k) const { return points_[static_cast<std::size_t>(k)].angle; }
+  /// Column of the dots' grid that belongs to the k-th point.
+  Index column(Index k) const { return points_[static_cast<std::size_t>(k)].column; }
+  const S& length_mm(Index k) const { return points_[static_cast<std::size_t>(k)].point.length_mm; }
+  /// Length of rim for which the k-th point stands, mm.
+  const S& share_mm(Index k) const { return points_[static_cast<std::size_t>(k)].share_mm; }
+
+  /// Pulls from this frame's side dots (`Row::rows` rows of size() dots). `load_per_mm`: pressure
+  /// over mu t, 0 where that is not known.
+  template <class Row, class Law, class Dots>
+  void measure(const Dots& side_dots_mm,
+               const Row& row,
+               const Law& law,
+               const S& load_per_mm,
+               RimPulls<S>& out) const {
+    out.missing = out.unstretched = out.slack = out.outward = 0;
+    for (std::size_t k = 0; k < points_.size(); ++k) {
+      out.dots[k] = pull_at(points_[k], side_dots_mm, row, law, load_per_mm, out.along[k]);
+      const RimPullStatus status = out.dots[k].status;
+      out.missing += status == RimPullStatus::missing ? 1 : 0;
+      out.unstretched += status == RimPullStatus::unstretched ? 1 : 0;
+      out.slack += status == RimPullStatus::slack ? 1 : 0;
+      const Point3<S>& pull = out.dots[k].pull;
+      const Point3<S>& border = points_[k].point.border;
+      out.outward += value(S(pull.x * border.x + pull.y * border.y)) > 0 ? 1 : 0;
+    }
+  }
+
+  /// Fills what is not known from the neighbours on both sides, and integrates over the segments.
+  /// Needs one usable dot.
+  void integrate(RimPulls<S>& pulls) const {
+    fill_gaps(pulls.dots);
+    for (Point3<S>& sum : pulls.segments) {
+      sum = {S(0), S(0), S(0)};
+    }
+    for (const Weight& w : weights_) {
+      Point3<S>& sum = pulls.segments[w.segment];
+      sum = moved(sum, w.mm, pulls.dots[w.point].pull);
+    }
+  }
+
+ private:
+  struct Place {
+    Index column;
+    RimPoint<S> point;
+    S angle;
+    S share_mm = S(0);
+  };
+  struct Weight {
+    std::size_t segment;
+    std::size_t point;
+    S mm;
+  };
+
+  void add(Index column, const Point3<S>& border, const S& length_mm) {
+    using std::atan2;
+    using std::sqrt;
+    expects(is_finite_point(border), "Wrench", "border point", S(static_cast<double>(column)),
+            "finite");
+    expects(is_finite(length_mm) && value(length_mm) > 0, "Wrench", "side_dot_length_mm", length_mm,
+            "finite and > 0");
+    const S r = sqrt(S(border.x * border.x + border.y * border.y));
+    const S off = r - radius_mm_;
+    expects(value(off) < value(S(radius_mm_ / S(20))) && value(off) > value(S(-radius_mm_ / S(20))),
+            "Wrench", "distance of a border point from the axis", r,
+            "within 5 % of base_radius_mm");
+    Place place{column,
+                {border, {S(-border.y / r), S(border.x / r), S(0)}, length_mm, radius_mm_},
+                S(atan2(border.y, border.x))};
+    if (value(place.angle) < 0) {
+      place.angle = place.angle + S(2 * std::numbers::pi);
+    }
+    points_.push_back(place);
+  }
+
+  std::size_t after(std::size_t k) const { return k + 1 == points_.size() ? 0 : k + 1; }
+  S gap_after(std::size_t k) const {
+    const S turn = S(k + 1 == points_.size() ? 2 * std::numbers::pi : 0.0);
+    return S(points_[after(k)].angle + turn - points_[k].angle);
+  }
+
+  /// Shares of the points k and k + 1 in the segments that lie between them.
+  void add_weights(std::size_t k) {
+    const S step = S(2 * std::numbers::pi) / S(static_cast<double>(segments_));
+    const S gap = gap_after(k);
+    S from = points_[k].angle;
+    const S end = from + gap;
+    for (Index segment = static_cast<Index>(value(S(from / step))); from < end; ++segment) {
+      const S border = step * S(static_cast<double>(segment + 1));
+      if (!(border > from)) {
+        continue;
+      }
+      const S to = border < end ? border : end;
+      // mean of the second point's share over [from, to]
+      const S second = ((from + to) / S(2) - points_[k].angle) / gap;
+      const S mm = (to - from) * radius_mm_;
+      const std::size_t in = static_cast<std::size_t>(segment % segments_);
+      weights_.push_back({in, k, S(mm * (S(1) - second))});
+      weights_.push_back({in, after(k), S(mm * second)});
+      from = to;
+    }
+    points_[k].share_mm = points_[k].share_mm + gap * radius_mm_ / S(2);
+    points_[after(k)].share_mm = points_[after(k)].share_mm + gap * radius_mm_ / S(2);
+  }
+
+  template <class Row, class Law, class Dots>
+  RimPull<S> pull_at(const Place& place,
+                     const Dots& side_dots_mm,
+                     const Row& row,
+                     const Law& law,
+                     const S& load_per_mm,
+                     Point3<S>& along) const {
+    Point3<S> dot[Row::rows];
+    for (Index r = 0; r < Row::rows; ++r) {
+      dot[r] = spatial_point_of<S>(side_dots_mm(r, place.column));
+      if (!is_finite_point(dot[r])) {
+        return {};
+      }
+    }
+    along = row.along(place.point, dot, load_per_mm);
+    // no membrane stretches tenfold: such a dot is another one
+    if (!(value(length_sq(along)) < 100)) {
+      return {};
+    }
+    return law.pull(along, place.point.tangent);
+  }
+
+  void fill_gaps(std::vector<RimPull<S>>& dots) const {
+    const std::size_t n = dots.size();
+    for (std::size_t k = 0; k < n; ++k) {
+      if (dots[k].status == RimPullStatus::ok) {
+        continue;
+      }
+      std::size_t left = 1, right = 1;
+      while (dots[(k + n - left) % n].status != RimPullStatus::ok && left < n) {
+        ++left;
+      }
+      while (dots[(k + right) % n].status != RimPullStatus::ok && right < n) {
+        ++right;
+      }
+      const Point3<S> a = turned((k + n - left) % n, k, dots);
+      const Point3<S> b = turned((k + right) % n, k, dots);
+      const S share = S(static_cast<double>(left)) / S(static_cast<double>(left + right));
+      dots[k].pull = moved(a, share, difference(b, a));
+    }
+  }
+
+  /// The pull at point `from`, turned about the axis to point `to`.
+  Point3<S> turned(std::size_t from, std::size_t to, const std::vector<RimPull<S>>& dots) const {
+    const Point3<S>& e = points_[from].point.tangent;
+    const Point3<S>& f = points_[to].point.tangent;
+    const Point3<S>& p = dots[from].pull;
+    const S along = dot(p, e);
+    const S out = p.x * e.y - p.y * e.x;  // the radius is the tangent turned by -90 degrees
+    return {S(along * f.x + out * f.y), S(along * f.y - out * f.x), p.z};
+  }
+
+  S radius_mm_;
+  Index segments_;
+  std::vector<Place> points_;
+  std::vector<Weight> weights_;
+};
+
+}  // namespace detail::membrane
+}  // namespace v0
+}  // namespace fingerpad

@@ -1,0 +1,110 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+#pragma once
+// The forces on a segment and their balance. Source: Ito, Kim, Obinata 2011, III.D, eqs. 6-12.
+//
+// A segment M(i, j) has four borders: two pieces of the lines around, below (j) and above (j + 1),
+// and two of the lines from the rim, left (i) and right (i + 1). Across each runs a tension normal
+// to it, f_v or f_h, and a shear along it, tau_v or tau_h (N/mm), both in the membrane; the
+// pressure pushes on the area vector S. What a border pulls at the segment below or to the left of
+// it, it pulls the other way at the segment above or to the right.
+#include <cmath>
+#include <cstddef>
+#include <vector>
+
+#include "fingerpad/force/compartments.hpp"
+#include "fingerpad/core/detail/point_algebra.hpp"
+#include "fingerpad/core/dots.hpp"
+#include "fingerpad/core/grid.hpp"
+#include "fingerpad/core/scalar.hpp"
+
+namespace fingerpad {
+inline namespace v0 {
+namespace detail::membrane {
+
+/// A border of two segments. The forces on the segment on the near side (below, left) are
+/// f `normal` + tau `along`, each times the border's length, which the vectors contain.
+template <scalar S>
+struct Border {
+  Point3<S> along;   ///< from line i to i + 1, or from row j to j + 1; as long as the border, mm
+  Point3<S> normal;  ///< in the membrane, upward or toward line i + 1; as long as the border, mm
+};
+
+/// Borders and areas of all segments. Memory is taken once.
+template <scalar S>
+class Segments {
+ public:
+  Segments(Index columns, Index rows)
+      : columns_(columns),
+        rows_(rows),
+        around_(static_cast<std::size_t>(columns * (rows + 1))),
+        upward_(static_cast<std::size_t>(columns * rows)),
+        area_(static_cast<std::size_t>(columns * rows)) {}
+
+  Index columns() const { return columns_; }
+  Index rows() const { return rows_; }
+  Index next(Index line) const { return line + 1 == columns_ ? 0 : line + 1; }
+  Index previous(Index line) const { return line == 0 ? columns_ - 1 : line - 1; }
+
+  /// Between lines i and i + 1 in row j = 0 ... m.
+  const Border<S>& around(Index i, Index j) const { return around_[at(i, j)]; }
+  /// On line i, between rows j and j + 1.
+  const Border<S>& upward(Index i, Index j) const { return upward_[at(i, j)]; }
+  /// Area vector of M(i, j), out of the fluid, mm^2.
+  const Point3<S>& area(Index i, Index j) const { return area_[at(i, j)]; }
+
+  void measure(const Compartments<S>& nodes) {
+    for (Index j = 0; j < rows_; ++j) {
+      for (Index i = 0; i < columns_; ++i) {
+        const Point3<S>& a = nodes.node(i, j);
+        const Point3<S>& b = nodes.node(next(i), j);
+        const Point3<S>& c = nodes.node(next(i), j + 1);
+        const Point3<S>& d = nodes.node(i, j + 1);
+        area_[at(i, j)] = scaled(S(S(1) / S(2)), cross(difference(c, a), difference(d, b)));
+      }
+    }
+    for (Index j = 0; j <= rows_; ++j) {
+      for (Index i = 0; i < columns_; ++i) {
+        const Point3<S> along = difference(nodes.node(next(i), j), nodes.node(i, j));
+        // the membrane's normal at the border is the mean of both sides'
+        const Point3<S> out = j == 0       ? normal(i, 0)
+                              : j == rows_ ? sum(nodes.end_normal(i), nodes.end_normal(next(i)))
+                                           : sum(normal(i, j), normal(i, j - 1));
+        around_[at(i, j)] = {along, stretched(cross(out, along), along)};
+      }
+    }
+    for (Index j = 0; j < rows_; ++j) {
+      for (Index i = 0; i < columns_; ++i) {
+        const Point3<S> along = difference(nodes.node(i, j + 1), nodes.node(i, j));
+        const Point3<S> out = sum(normal(i, j), normal(previous(i), j));
+        upward_[at(i, j)] = {along, stretched(cross(along, out), along)};
+      }
+    }
+  }
+
+ private:
+  std::size_t at(Index i, Index j) const { return static_cast<std::size_t>(j * columns_ + i); }
+
+  Point3<S> normal(Index i, Index j) const {
+    const Point3<S>& a = area_[at(i, j)];
+    return value(length_sq(a)) > 0 ? unit(a) : Point3<S>{S(0), S(0), S(0)};
+  }
+
+  /// `direction` made as long as `like`; 0 where it has no direction.
+  static Point3<S> stretched(const Point3<S>& direction, const Point3<S>& like) {
+    using std::sqrt;
+    const S from = length_sq(direction);
+    return value(from) > 0 ? scaled(S(sqrt(S(length_sq(like) / from))), direction)
+                           : Point3<S>{S(0), S(0), S(0)};
+  }
+
+  Index columns_;
+  Index rows_;
+  std::vector<Border<S>> around_;
+  std::vector<Border<S>> upward_;
+  std::vector<Point3<S>> area_;
+};
+
+}  // namespace detail::membrane
+}  // namespace v0
+}  // namespace fingerpad

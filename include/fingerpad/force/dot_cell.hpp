@@ -1,0 +1,207 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+#pragma once
+// A cell of the dot grid: four dots and the membrane between them. Its energy is the mean over its
+// two diagonals, each of which makes two triangles of it, so that no diagonal is preferred.
+#include <array>
+#include <cmath>
+#include <cstddef>
+
+#include "fingerpad/core/detail/point_algebra.hpp"
+#include "fingerpad/force/membrane_triangle.hpp"
+#include "fingerpad/core/dots.hpp"
+#include "fingerpad/core/scalar.hpp"
+
+namespace fingerpad {
+inline namespace v0 {
+
+/// The principal tensions in a cell, N/mm; below 0 the membrane is slack there and would wrinkle.
+template <scalar S>
+struct CellTension {
+  S larger = not_a_number<S>();
+  S smaller = not_a_number<S>();
+  Point3<S> direction = detail::missing_point<S>();  ///< unit vector along which the larger pulls
+};
+
+namespace detail::traction {
+
+/// In the order around the cell: (row, col), (row, col + 1), (row + 1, col + 1), (row + 1, col).
+template <scalar S>
+using Corners = std::array<Point3<S>, 4>;
+
+/// The four triangles of the two diagonals are the cell's ears: a corner between the one before it
+/// and the one after it. Ears 1 and 3 share one diagonal, ears 0 and 2 the other.
+template <scalar S>
+Triangle<S> ear(const Corners<S>& x, std::size_t corner) {
+  return {x[(corner + 3) % 4], x[corner], x[(corner + 1) % 4]};
+}
+
+/// The two directions of the grid in the middle of a cell.
+template <scalar S>
+struct CellTangents {
+  Point3<S> along_row;
+  Point3<S> along_col;
+
+  explicit CellTangents(const Corners<S>& x)
+      : along_row(scaled(S(0.5), sum(difference(x[1], x[0]), difference(x[2], x[3])))),
+        along_col(scaled(S(0.5), sum(difference(x[3], x[0]), difference(x[2], x[1])))) {}
+};
+
+/// What is known of a cell before any frame.
+template <scalar S>
+struct StressFreeCell {
+  bool usable = false;  ///< all four dots are there, and no triangle is flat
+  std::array<StressFreeTriangle<S>, 4> ear = {};
+  std::array<S, 4> side_stiffness = {S(0), S(0), S(0), S(0)};  ///< from corner k to the next one
+  std::array<S, 2> diagonal_stiffness = {S(0), S(0)};          ///< from corner k to k + 2
+  /// Tangents of the grid -> an orthonormal pair in the cell's plane: column 1 of the inverse is
+  /// {to_first, 0}, column 2 {shear, to_second}.
+  S to_first = S(0), shear = S(0), to_second = S(0);
+  S upward = S(0);  ///< z of the normal by the order of rows and columns, times the area
+
+  StressFreeCell() = default;
+  explicit StressFreeCell(const Corners<S>& x) {
+    using std::sqrt;
+    for (std::size_t t = 0; t < 4; ++t) {
+      const Triangle<S> corners = traction::ear(x, t);
+      S longest_sq = S(0);
+      for (std::size_t k = 0; k < 3; ++k) {
+        const S edge_sq = length_sq(difference(corners[(k + 1) % 3], corners[k]));
+        longest_sq = longest_sq < edge_sq ? edge_sq : longest_sq;
+      }
+      const S doubled_sq = length_sq(twice_area_vector(corners));
+      // flatter than 1 : 1000 is a line; false for NaN
+      if (!(value(doubled_sq) > value(S(S(1e-6) * longest_sq * longest_sq)))) {
+        return;
+      }
+      ear[t] = stress_free(corners);
+    }
+    for (std::size_t k = 0; k < 4; ++k) {
+      const S here = ear[k].half_cotangent[0], there = ear[(k + 1) % 4].half_cotangent[2];
+      side_stiffness[k] = S(0.5) * (here + there);
+    }
+    for (std::size_t k = 0; k < 2; ++k) {
+      const S here = ear[k + 1].half_cotangent[1], there = ear[(k + 3) % 4].half_cotangent[1];
+      diagonal_stiffness[k] = S(0.5) * (here + there);
+    }
+    const CellTangents<S> g(x);
+    const S first = sqrt(length_sq(g.along_row));
+    const S slant = dot(g.along_row, g.along_col) / first;
+    const S second_sq = length_sq(g.along_col) - slant * slant;
+    if (!(value(first) > 0) || !(value(second_sq) > 0)) {
+      return;
+    }
+    const S second = sqrt(second_sq);
+    to_first = S(1) / first;
+    to_second = S(1) / second;
+    shear = -slant / (first * second);
+    upward = cross(g.along_row, g.along_col).z;
+    usable = is_finite(to_first) && is_finite(to_second) && is_finite(shear);
+  }
+};
+
+/// A cell as it is in a frame.
+template <scalar S>
+struct CellPull {
+  bool sound = false;    ///< else nothing else is meant
+  Corners<S> force;      ///< on each corner, N for mu t = 1 N/mm
+  Corners<S> area;       ///< each corner's share of the area vector, mm^2
+  Point3<S> whole_area;  ///< their sum
+};
+
+/// The squares of the largest and of the smallest stretch that are believed.
+template <scalar S>
+struct StretchLimits {
+  S high;
+  S low;
+
+  explicit StretchLimits(double largest)
+      : high(S(largest * largest)), low(S(1.0 / (largest * largest))) {}
+
+  /// True when both principal stretches lie between. Their squares are the roots of
+  /// s^2 - sq_sum s + area_ratio_sq, whose sign tells without computing them; false for NaN.
+  bool allow(const S& sq_sum, const S& area_ratio_sq) const {
+    const S above = high * (high - sq_sum) + area_ratio_sq;
+    const S below = low * (low - sq_sum) + area_ratio_sq;
+    return value(above) >= 0 && value(below) >= 0 && value(S(high + high - sq_sum)) >= 0 &&
+           value(S(sq_sum - low - low)) >= 0;
+  }
+};
+
+/// The pull of a cell: the mean of corner_forces() over its two diagonals, with what they share
+/// computed once. And whether it can be a piece of membrane: not folded along a diagonal, no
+/// principal stretch beyond the limits.
+template <scalar S>
+CellPull<S> cell_pull(const StressFreeCell<S>& free,
+                      const Corners<S>& x,
+                      const StretchLimits<S>& limits) {
+  CellPull<S> out;
+  const Corners<S> side = {difference(x[1], x[0]), difference(x[2], x[1]), difference(x[3], x[2]),
+                           difference(x[0], x[3])};
+  const std::array<Point3<S>, 2> diagonal = {difference(x[2], x[0]), difference(x[3], x[1])};
+  for (std::size_t k = 0; k < 4; ++k) {
+    out.force[k] = moved(scaled(free.side_stiffness[k], side[k]),
+                         S(-free.side_stiffness[(k + 3) % 4]), side[(k + 3) % 4]);
+    const S toward = k < 2 ? free.diagonal_stiffness[k] : S(-free.diagonal_stiffness[k - 2]);
+    out.force[k] = moved(out.force[k], toward, diagonal[k % 2]);
+  }
+  Corners<S> doubled;
+  for (std::size_t k = 0; k < 4; ++k) {
+    const StressFreeTriangle<S>& f = free.ear[k];
+    const std::size_t last = (k + 3) % 4, next = (k + 1) % 4;
+    doubled[k] = cross(side[last], side[k]);
+    const S sq_sum =
+        (f.half_cotangent[2] * length_sq(side[last]) + f.half_cotangent[0] * length_sq(side[k]) +
+         f.half_cotangent[1] * length_sq(diagonal[next % 2])) /
+        f.area_mm2;
+    const S area_ratio_sq = length_sq(doubled[k]) / S(S(4) * f.area_mm2 * f.area_mm2);
+    if (!limits.allow(sq_sum, area_ratio_sq)) {
+      return out;
+    }
+    const S resist = S(0.5) / S(S(4) * f.area_mm2 * area_ratio_sq * area_ratio_sq);
+    const Point3<S> on_last = scaled(resist, cross(doubled[k], side[k]));
+    const Point3<S> on_next = scaled(resist, cross(doubled[k], side[last]));
+    out.force[last] = sum(out.force[last], on_last);
+    out.force[next] = sum(out.force[next], on_next);
+    out.force[k] = difference(out.force[k], sum(on_last, on_next));
+  }
+  out.whole_area = scaled(S(0.5), sum(doubled[0], doubled[2]));
+  for (std::size_t k = 0; k < 4; ++k) {  // each ear has three corners: all but the one across
+    out.area[k] =
+        scaled(S(S(1) / S(12)), difference(scaled(S(4), out.whole_area), doubled[(k + 2) % 4]));
+  }
+  out.sound = value(dot(doubled[0], doubled[2])) > 0 && value(dot(doubled[1], doubled[3])) > 0;
+  return out;
+}
+
+/// The tensions in the middle of a cell, for mu t = 1 N/mm.
+template <scalar S>
+CellTension<S> cell_tension(const StressFreeCell<S>& free, const Corners<S>& x) {
+  using std::sqrt;
+  const CellTangents<S> g(x);
+  // the columns of F in an orthonormal pair of the stress-free plane
+  const Point3<S> first = scaled(free.to_first, g.along_row);
+  const Point3<S> second = moved(scaled(free.shear, g.along_row), free.to_second, g.along_col);
+  const S c11 = length_sq(first), c22 = length_sq(second), c12 = dot(first, second);
+  const S half_sum = S(0.5) * (c11 + c22), half_difference = S(0.5) * (c11 - c22);
+  const S spread_sq = half_difference * half_difference + c12 * c12;
+  // a root at 0 has no derivative
+  const S spread = value(spread_sq) > 0 ? S(sqrt(spread_sq)) : S(0);
+  const S area_ratio_sq = length_sq(cross(first, second));
+  const S area_ratio = sqrt(area_ratio_sq);
+  const S along_sq = half_sum + spread;
+  const S across_sq = area_ratio_sq / along_sq;
+  // the eigenvector (c12, spread - half_difference), in the form that does not cancel
+  const bool first_leads = value(half_difference) >= 0;
+  const S a = first_leads ? S(spread + half_difference) : c12;
+  const S b = first_leads ? c12 : S(spread - half_difference);
+  const bool alike = value(spread) == 0;
+  const Point3<S> pulled = alike ? first : moved(scaled(a, first), b, second);
+  const S per_length = S(1) / S(sqrt(length_sq(pulled)));
+  return {principal_tension(along_sq, area_ratio), principal_tension(across_sq, area_ratio),
+          scaled(per_length, pulled)};
+}
+
+}  // namespace detail::traction
+}  // namespace v0
+}  // namespace fingerpad

@@ -1,0 +1,234 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+#pragma once
+// From a depth map along camera rays, and the mask of the contact, to heights in plan.
+#include <cmath>
+#include <concepts>
+#include <cstddef>
+#include <vector>
+
+#include "fingerpad/force/height_map.hpp"
+#include "fingerpad/image/detail/pixel_rays.hpp"
+#include "fingerpad/core/dots.hpp"
+#include "fingerpad/core/expects.hpp"
+#include "fingerpad/core/grid.hpp"
+#include "fingerpad/optics/camera.hpp"
+#include "fingerpad/core/scalar.hpp"
+
+namespace fingerpad {
+inline namespace v0 {
+
+/// Fills height maps from the depth maps of a camera (or of an OrthographicCamera). Above a place
+/// in plan the pixel that sees the membrane there depends on the height that is looked for: it is
+/// found by Newton's method, from what depends on the place alone.
+///
+/// const, so that threads may share one; a frame takes no memory, throws nothing, and takes
+/// bounded time for each node.
+template <class CameraType = Camera<double>>
+class PadHeights {
+ public:
+  using Scalar = detail::camera_scalar_t<CameraType>;
+
+  /// For depth maps of rows x cols pixels; places within `half_width_mm` of Q along x and y, at
+  /// least the radius of the base and a node more.
+  PadHeights(Index rows,
+             Index cols,
+             const CameraType& camera,
+             const Scalar& half_width_mm = Scalar(39) / Scalar(2),
+             const Scalar& spacing_mm = Scalar(1) / Scalar(2))
+      : rows_(rows),
+        cols_(cols),
+        center_px_{camera.center_x_px, camera.center_y_px},
+        half_width_mm_(half_width_mm),
+        spacing_mm_(spacing_mm) {
+    expects(rows >= 2, "PadHeights", "rows", static_cast<long long>(rows), ">= 2");
+    expects(cols >= 2, "PadHeights", "cols", static_cast<long long>(cols), ">= 2");
+    expects_valid(camera);
+    const HeightMap<Scalar> nodes = map();
+    side_ = nodes.side();
+    sights_.reserve(static_cast<std::size_t>(side_ * side_));
+    for (Index i = 0; i < side_; ++i) {
+      for (Index j = 0; j < side_; ++j) {
+        sights_.push_back(sight(camera, nodes.position_mm(j), nodes.position_mm(i)));
+      }
+    }
+  }
+
+  /// Memory for the heights of a frame.
+  HeightMap<Scalar> map() const { return HeightMap<Scalar>(half_width_mm_, spacing_mm_); }
+
+  /// Fills `heights` (from map()); false where a size does not fit: nothing is written. Places that
+  /// no pixel with a depth sees have no height; a place is in contact as far as the pixels around
+  /// it are.
+  template <grid Depth, contact_mask Mask>
+    requires(std::constructible_from<Scalar, cell_t<Depth>>)
+  bool operator()(const Depth& depth_mm, const Mask& contact, HeightMap<Scalar>& heights) const {
+    const auto depth = as_view(depth_mm);
+    const auto mask = as_view(contact);
+    if (depth.rows() != rows_ || depth.cols() != cols_ || !same_size(depth, mask) ||
+        heights.side() != side_) {
+      return false;
+    }
+    heights.fill(
+        [&](Index i, Index j) { return height(depth, at(i, j), continued(heights, i, j)); },
+        [&](Index i, Index j, const S& z) { return contact_share(mask, at(i, j), z); });
+    return true;
+  }
+
+ private:
+  using S = Scalar;
+
+  /// Sights are exact up to this height, and no guess goes beyond: what a camera sees wildly deep
+  /// then reaches no farther than it is seen.
+  static constexpr int highest_mm = 20;
+
+  /// Where the membrane above a place is seen: at center + (x, y) / mm_per_px, which depends on its
+  /// height: mm_per_px = at_plate + rising z + bending z^2, nearly straight.
+  struct Sight {
+    S x, y;
+    S at_plate, rising, bending;
+  };
+
+  static Sight sight(const CameraType& camera, const S& x, const S& y) {
+    using std::sqrt;
+    // on the axis, the limit from beside it
+    const S r_sq = x * x + y * y;
+    const S r = value(r_sq) == 0 ? S(1) / S(1024) : S(sqrt(r_sq));
+    const S high = S(highest_mm);
+    const auto mm_per_px = [&](const S& z) {
+      return S(r / S(pixel_of(camera, Point3<S>{r, S(0), z}).x - camera.center_x_px));
+    };
+    const S low = mm_per_px(S(0));
+    const S middle = mm_per_px(S(high / S(2)));
+    const S top = mm_per_px(high);
+    const S bending = S(2) * (top - S(2) * middle + low) / (high * high);
+    return {x, y, low, S((top - low) / high - bending * high), bending};
+  }
+
+  const Sight& at(Index i, Index j) const {
+    return sights_[static_cast<std::size_t>(i * side_ + j)];
+  }
+
+  /// The pixel that sees a place at some height.
+  struct Sighting {
+    S x_px, y_px;  ///< from the center
+    S px_per_mm;
+    S nearer;  ///< by this share of x_px and y_px it is nearer to the center for each mm of height
+  };
+
+  static Sighting sighting(const Sight& s, const S& z) {
+    const S px_per_mm = S(1) / (s.at_plate + z * (s.rising + z * s.bending));
+    return {S(s.x * px_per_mm), S(s.y * px_per_mm), px_per_mm,
+            S((s.rising + S(2) * z * s.bending) * px_per_mm)};
+  }
+
+  /// The depth there, and how it changes with the height of the place.
+  struct Seen {
+    S depth_mm;
+    S per_mm;
+  };
+
+  /// Bilinear; NaN outside of the map and beside pixels without depth.
+  template <class View>
+  Seen seen(const View& depth, const Sight& s, const S& z) const {
+    const Sighting at = sighting(s, z);
+    const S x = center_px_.x + at.x_px;
+    const S y = center_px_.y + at.y_px;
+    const bool inside = value(x) >= 0 && value(y) >= 0 &&
+                        value(x) < static_cast<scalar_real_t<S>>(cols_ - 1) &&
+                        value(y) < static_cast<scalar_real_t<S>>(rows_ - 1);
+    if (!inside) {
+      return {not_a_number<S>(), not_a_number<S>()};
+    }
+    const Index j = static_cast<Index>(value(x));
+    const Index i = static_cast<Index>(value(y));
+    const S right = x - S(static_cast<double>(j));
+    const S down = y - S(static_cast<double>(i));
+    const S up_rise = S(depth(i, j + 1)) - S(depth(i, j));
+    const S low_rise = S(depth(i + 1, j + 1)) - S(depth(i + 1, j));
+    const S up = S(depth(i, j)) + right * up_rise;
+    const S low = S(depth(i + 1, j)) + right * low_rise;
+    const S outward = (up_rise + down * (low_rise - up_rise)) * at.x_px + (low - up) * at.y_px;
+    return {S(up + down * (low - up)), S(-outward * at.nearer)};
+  }
+
+  /// The height of a node if the two before it in its column go on straight; NaN at first.
+  static S continued(const HeightMap<S>& heights, Index i, Index j) {
+    if (i < 2) {
+      return not_a_number<S>();
+    }
+    return S(S(2) * heights.node(i - 1, j).height_mm - heights.node(i - 2, j).height_mm);
+  }
+
+  /// The z that is seen at its own height.
+  template <class View>
+  S height(const View& depth, const Sight& s, const S& guess) const {
+    if (value(guess) >= 0 && value(guess) <= highest_mm) {
+      const S near = root(depth, s, guess);
+      if (is_finite(near)) {
+        return near;
+      }
+    }
+    const S on_plate = seen(depth, s, S(0)).depth_mm;
+    // steep membrane is seen from further inside
+    return root(depth, s, is_finite(on_plate) ? on_plate : S(4));
+  }
+
+  template <class View>
+  S root(const View& depth, const Sight& s, S z) const {
+    constexpr int most_steps = 8;
+    const S close = S(1) / S(20);  // mm; the step that follows leaves some 0.001 mm
+    for (int step = 0; step < most_steps; ++step) {
+      const Seen here = seen(depth, s, z);
+      const S excess = here.depth_mm - z;
+      if (!is_finite(excess)) {
+        return not_a_number<S>();
+      }
+      const S slope = here.per_mm - S(1);
+      z = z - excess / (slope < S(-1) / S(10) ? slope : S(-1));
+      if (value(excess) < value(close) && value(excess) > value(S(-close))) {
+        return z;
+      }
+    }
+    return not_a_number<S>();
+  }
+
+  /// Of four places around a node, those where the mask says contact.
+  template <class View>
+  S contact_share(const View& mask, const Sight& s, const S& z) const {
+    if (!is_finite(z)) {
+      return S(0);
+    }
+    const Sighting at = sighting(s, z);
+    const S x = center_px_.x + at.x_px;
+    const S y = center_px_.y + at.y_px;
+    const S away = spacing_mm_ / S(4) * at.px_per_mm;
+    int touching = 0;
+    for (const Index row : {nearest(S(y - away), rows_), nearest(S(y + away), rows_)}) {
+      for (const Index col : {nearest(S(x - away), cols_), nearest(S(x + away), cols_)}) {
+        const bool inside = row >= 0 && col >= 0;
+        touching += inside && says_contact(mask(row, col)) ? 1 : 0;
+      }
+    }
+    return S(touching) / S(4);
+  }
+
+  /// -1 outside of the image.
+  static Index nearest(const S& px, Index count) {
+    const S shifted = px + S(1) / S(2);
+    const bool inside =
+        value(shifted) >= 0 && value(shifted) < static_cast<scalar_real_t<S>>(count);
+    return inside ? static_cast<Index>(value(shifted)) : Index(-1);
+  }
+
+  Index rows_;
+  Index cols_;
+  Point2<S> center_px_;
+  S half_width_mm_;
+  S spacing_mm_;
+  Index side_ = 0;
+  std::vector<Sight> sights_;
+};
+
+}  // namespace v0
+}  // namespace fingerpad

@@ -1,0 +1,171 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+#pragma once
+// The published iteration. Source: Ito, Kim, Obinata 2011, III.F, made explicit where the text
+// leaves a choice (docs/errata.md, E025-E027):
+//   1. column by column from the top down, eq. 12: vertical balance gives f_v
+//   2. segment by segment, eq. 6 along x and y: f_h on both sides, each found twice, averaged
+//   3. at the rim the direction of the pull gives tau_v, eq. 3
+//   4. row by row upward, eqs. 8 and 7: tau_h = (tau_v left + tau_v right) / 2, and tau_v of the
+//      next row = tau_h left + tau_h right - tau_v
+// and again, with the new tau_h in 1. Shear is advanced by its symmetry, not by the balance of
+// forces: it settles, but not on a solution of eqs. 6-8.
+#include <cmath>
+#include <cstddef>
+#include <vector>
+
+#include "fingerpad/force/rim_balance.hpp"
+
+namespace fingerpad {
+inline namespace v0 {
+
+struct PublishedIteration {
+  static constexpr auto magnitude = detail::membrane::Magnitude::of_column;
+  static constexpr bool finds_tensions = true;
+  int passes = 5;  ///< in [1, 100]; the forces no longer change after 5
+
+  template <scalar S>
+  struct Work {
+    Work(const PublishedIteration&, Index columns, Index rows)
+        : right(static_cast<std::size_t>(columns * rows)) {}
+    std::vector<S> right;  // f_h as the segment to its left finds it
+  };
+
+  template <bool, scalar S>
+  bool solve(const detail::membrane::Segments<S>& g,
+             const detail::membrane::Compartments<S>&,
+             const std::vector<Point3<S>>& pulls,
+             const S& pressure_mpa,
+             Work<S>& work,
+             detail::membrane::Tensions<S>& t) const {
+    zero(t.around_shear);
+    zero(t.upward_shear);
+    for (int pass = 0; pass < passes; ++pass) {
+      balance_columns(g, pressure_mpa, t);
+      balance_segments(g, pressure_mpa, work, t);
+      if (!shear_at_rim(g, pulls, t)) {
+        return false;
+      }
+      advance_shear(g, t);
+    }
+    bool good = true;
+    for (Index i = 0; i < g.columns(); ++i) {
+      const std::size_t k = at(g, i, 0);
+      const S load = t.around_normal[k] * g.around(i, 0).normal.z;
+      good = detail::membrane::force_along(pulls[k], load, t.rim[k]) && good;
+    }
+    return good;
+  }
+
+ private:
+  template <class Segments>
+  static std::size_t at(const Segments& g, Index i, Index j) {
+    return static_cast<std::size_t>(j * g.columns() + i);
+  }
+  template <scalar S>
+  static void zero(std::vector<S>& v) {
+    for (S& x : v) {
+      x = S(0);
+    }
+  }
+
+  /// Eq. 12 from the summit down, where f_v has no vertical component (eq. 11).
+  template <scalar S>
+  static void balance_columns(const detail::membrane::Segments<S>& g,
+                              const S& pressure_mpa,
+                              detail::membrane::Tensions<S>& t) {
+    for (Index i = 0; i < g.columns(); ++i) {
+      const Index right = g.next(i);
+      S load = S(0);
+      for (Index j = g.rows(); j-- > 0;) {
+        load = load + pressure_mpa * g.area(i, j).z +
+               t.upward_shear[at(g, right, j)] * g.upward(right, j).along.z -
+               t.upward_shear[at(g, i, j)] * g.upward(i, j).along.z;
+        t.around_normal[at(g, i, j)] = load / g.around(i, j).normal.z;
+        if (!is_finite(t.around_normal[at(g, i, j)])) {  // a level row
+          t.around_normal[at(g, i, j)] = S(0);
+        }
+      }
+      // 0 / 0 where the membrane is level: as below
+      t.around_normal[at(g, i, g.rows())] = t.around_normal[at(g, i, g.rows() - 1)];
+    }
+  }
+
+  /// Eq. 6 along x and y, for the tensions across the two lines beside each segment.
+  template <scalar S>
+  static void balance_segments(const detail::membrane::Segments<S>& g,
+                               const S& pressure_mpa,
+                               Work<S>& work,
+                               detail::membrane::Tensions<S>& t) {
+    for (Index j = 0; j < g.rows(); ++j) {
+      for (Index i = 0; i < g.columns(); ++i) {
+        const Index next = g.next(i);
+        const auto& low = g.around(i, j);
+        const auto& up = g.around(i, j + 1);
+        const auto& a = g.upward(i, j);
+        const auto& b = g.upward(next, j);
+        const S fl = t.around_normal[at(g, i, j)];
+        const S fu = t.around_normal[at(g, i, j + 1)];
+        const S sl = t.around_shear[at(g, i, j)];
+        const S su = t.around_shear[at(g, i, j + 1)];
+        const S sa = t.upward_shear[at(g, i, j)];
+        const S sb = t.upward_shear[at(g, next, j)];
+        const Point3<S>& area = g.area(i, j);
+        const S x = fl * low.normal.x - fu * up.normal.x + sl * low.along.x - su * up.along.x +
+                    sa * a.along.x - sb * b.along.x - pressure_mpa * area.x;
+        const S y = fl * low.normal.y - fu * up.normal.y + sl * low.along.y - su * up.along.y +
+                    sa * a.along.y - sb * b.along.y - pressure_mpa * area.y;
+        // -f_a a + f_b b = (x, y)
+        const S det = a.normal.y * b.normal.x - a.normal.x * b.normal.y;
+        const S fa = (x * b.normal.y - y * b.normal.x) / det;
+        const S fb = (x * a.normal.y - y * a.normal.x) / det;
+        t.upward_normal[at(g, i, j)] = is_finite(fa) ? fa : S(0);
+        work.right[at(g, next, j)] = is_finite(fb) ? fb : S(0);
+      }
+    }
+    for (std::size_t k = 0; k < work.right.size(); ++k) {
+      t.upward_normal[k] = (t.upward_normal[k] + work.right[k]) / S(2);
+    }
+  }
+
+  template <scalar S>
+  static bool shear_at_rim(const detail::membrane::Segments<S>& g,
+                           const std::vector<Point3<S>>& pulls,
+                           detail::membrane::Tensions<S>& t) {
+    using detail::dot;
+    bool good = true;
+    for (Index i = 0; i < g.columns(); ++i) {
+      const std::size_t k = at(g, i, 0);
+      const S across = dot(pulls[k], g.around(i, 0).normal);
+      good = good && value(across) > 0;
+      t.around_shear[k] =
+          t.around_normal[k] * dot(pulls[k], g.around(i, 0).along) / (good ? across : S(1));
+    }
+    return good;
+  }
+
+  template <scalar S>
+  static void advance_shear(const detail::membrane::Segments<S>& g,
+                            detail::membrane::Tensions<S>& t) {
+    for (Index j = 0; j < g.rows(); ++j) {
+      for (Index i = 0; i < g.columns(); ++i) {
+        t.upward_shear[at(g, i, j)] =
+            (t.around_shear[at(g, g.previous(i), j)] + t.around_shear[at(g, i, j)]) / S(2);
+      }
+      for (Index i = 0; i < g.columns(); ++i) {
+        t.around_shear[at(g, i, j + 1)] = t.upward_shear[at(g, i, j)] +
+                                          t.upward_shear[at(g, g.next(i), j)] -
+                                          t.around_shear[at(g, i, j)];
+      }
+    }
+  }
+};
+
+/// Refuses what has no meaning (parameter_error).
+inline void expects_valid(const PublishedIteration& iteration) {
+  expects(iteration.passes >= 1 && iteration.passes <= 100, "PublishedIteration", "passes",
+          static_cast<long long>(iteration.passes), "in [1, 100]");
+}
+
+}  // namespace v0
+}  // namespace fingerpad

@@ -1,0 +1,223 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+#pragma once
+// Ways to the membrane's forces on the rim that need no unknown inside: each column by itself, all
+// of them together, or the material alone.
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <numbers>
+#include <vector>
+
+#include "fingerpad/force/compartments.hpp"
+#include "fingerpad/force/detail/segments.hpp"
+#include "fingerpad/force/detail/tensions.hpp"
+#include "fingerpad/core/detail/point_algebra.hpp"
+#include "fingerpad/core/dots.hpp"
+#include "fingerpad/core/expects.hpp"
+#include "fingerpad/core/grid.hpp"
+#include "fingerpad/core/scalar.hpp"
+
+namespace fingerpad {
+inline namespace v0 {
+namespace detail::membrane {
+
+/// The vertical pull of column i by the pressure on it alone: eq. 12 without the shear between
+/// columns.
+template <scalar S>
+S column_load(const Segments<S>& segments, Index i, const S& pressure_mpa) {
+  S sum = S(0);
+  for (Index j = segments.rows(); j-- > 0;) {
+    sum = sum + segments.area(i, j).z;
+  }
+  return S(pressure_mpa * sum);
+}
+
+/// The force of direction `pull` with the vertical component `load`; false where there is none.
+template <scalar S>
+bool force_along(const Point3<S>& pull, const S& load, Point3<S>& force) {
+  const bool upward = value(pull.z) > 0;
+  force = upward ? scaled(S(load / pull.z), pull) : Point3<S>{S(0), S(0), S(0)};
+  return upward;
+}
+
+/// The vertical pull at the top of column i, if its tension is that of the rim.
+template <scalar S>
+S lift_at_top(const Segments<S>& segments, Index i, const Point3<S>& pull) {
+  using std::sqrt;
+  const S per_mm = S(sqrt(S(length_sq(pull) / length_sq(segments.around(i, 0).along))));
+  return S(per_mm * segments.around(i, segments.rows()).normal.z);
+}
+
+/// Force per pull with which the rim carries what is below A_g; not above 0 where it cannot.
+template <scalar S>
+S balanced_modulus(const Segments<S>& segments,
+                   const std::vector<Point3<S>>& pulls,
+                   const S& pressure_mpa) {
+  S load = S(0);
+  S lift = S(0);
+  for (Index i = 0; i < segments.columns(); ++i) {
+    const Point3<S>& pull = pulls[static_cast<std::size_t>(i)];
+    load = load + column_load(segments, i, pressure_mpa);
+    // where A_g is not level, what is above it pulls up or down, with about the tension of the rim
+    lift = lift + pull.z - lift_at_top(segments, i, pull);
+  }
+  return value(lift) > 0 ? S(load / lift) : S(0);
+}
+
+/// Scales the rim's forces so that together they carry what is below A_g: of the rows of an uneven
+/// mesh, which are not satisfied exactly, the sum is known better. False where they cannot.
+template <scalar S>
+bool carry_load(const Segments<S>& segments, const S& pressure_mpa, std::vector<Point3<S>>& rim) {
+  const S scale = balanced_modulus(segments, rim, pressure_mpa);
+  for (Point3<S>& force : rim) {
+    force = scaled(scale, force);
+  }
+  return is_finite(scale) && value(scale) > 0;
+}
+
+/// Force and moment about Q of the membrane on the base, from the forces on equal pieces of the rim
+/// (eqs. 4 and 5).
+template <scalar S>
+struct RimSum {
+  Point3<S> force_n;
+  Point3<S> moment_n_mm;
+};
+
+template <scalar S>
+RimSum<S> sum_of_rim(const std::vector<Point3<S>>& forces, const S& radius_mm) {
+  using std::cos;
+  using std::sin;
+  const S half = S(std::numbers::pi) / S(static_cast<double>(forces.size()));
+  // a piece of the rim: the mean of its points lies a little inside, and the sum of what turns
+  // about the axis along it is a little shorter than its parts together
+  const S arm = radius_mm * S(sin(half)) / half;
+  const S arm_along = radius_mm * half / S(sin(half));
+  RimSum<S> sums = {{S(0), S(0), S(0)}, {S(0), S(0), S(0)}};
+  for (std::size_t k = 0; k < forces.size(); ++k) {
+    const Point3<S>& f = forces[k];
+    const S at = half * S(static_cast<double>(2 * k + 1));
+    const S c = cos(at);
+    const S s = sin(at);
+    const Point3<S>& m = sums.moment_n_mm;
+    sums.force_n = sum(sums.force_n, f);
+    sums.moment_n_mm = {S(m.x + arm * s * f.z), S(m.y - arm * c * f.z),
+                        S(m.z + arm_along * (c * f.y - s * f.x))};
+  }
+  return sums;
+}
+
+/// Force per pull, root mean square.
+template <scalar S>
+S mean_factor(const std::vector<Point3<S>>& forces, const std::vector<Point3<S>>& pulls) {
+  using std::sqrt;
+  S force_sq = S(0), pull_sq = S(0);
+  for (std::size_t k = 0; k < forces.size(); ++k) {
+    force_sq = force_sq + length_sq(forces[k]);
+    pull_sq = pull_sq + length_sq(pulls[k]);
+  }
+  return S(sqrt(S(force_sq / pull_sq)));
+}
+
+/// What fixes the magnitude of a pull, and so how its noise spreads.
+enum class Magnitude : std::uint8_t {
+  of_all,     ///< the balance of all columns together
+  of_column,  ///< the balance of its own column
+  given,      ///< the material
+};
+
+}  // namespace detail::membrane
+
+/// One pass: each column carries the pressure on it, in the direction of its side dots. Takes the
+/// shear between columns for 0. Reference and first guess.
+struct ClosedForm {
+  static constexpr auto magnitude = detail::membrane::Magnitude::of_column;
+  static constexpr bool finds_tensions = false;
+  template <scalar S>
+  struct Work {
+    Work(const ClosedForm&, Index, Index) {}
+  };
+
+  template <bool, scalar S>
+  bool solve(const detail::membrane::Segments<S>& segments,
+             const detail::membrane::Compartments<S>&,
+             const std::vector<Point3<S>>& pulls,
+             const S& pressure_mpa,
+             Work<S>&,
+             detail::membrane::Tensions<S>& tensions) const {
+    bool good = true;
+    for (Index i = 0; i < segments.columns(); ++i) {
+      const std::size_t k = static_cast<std::size_t>(i);
+      const S load = detail::membrane::column_load(segments, i, pressure_mpa);
+      good = detail::membrane::force_along(pulls[k], load, tensions.rim[k]) && good;
+    }
+    return good;
+  }
+};
+
+/// All columns at once: the pulls are right up to one factor, mu t, and what they lift together is
+/// the pressure on the whole membrane below A_g. Needs no material constant, and of the shape
+/// nothing but the area of A_g.
+struct BalancedRim {
+  static constexpr auto magnitude = detail::membrane::Magnitude::of_all;
+  static constexpr bool finds_tensions = false;
+  template <scalar S>
+  struct Work {
+    Work(const BalancedRim&, Index, Index) {}
+  };
+
+  template <bool Magnitudes, scalar S>
+  bool solve(const detail::membrane::Segments<S>& segments,
+             const detail::membrane::Compartments<S>&,
+             const std::vector<Point3<S>>& pulls,
+             const S& pressure_mpa,
+             Work<S>&,
+             detail::membrane::Tensions<S>& tensions) const {
+    static_assert(Magnitudes, "a direction alone cannot be balanced: use ClampedRim");
+    const S modulus = detail::membrane::balanced_modulus(segments, pulls, pressure_mpa);
+    if (!(value(modulus) > 0)) {
+      return false;
+    }
+    for (std::size_t k = 0; k < pulls.size(); ++k) {
+      tensions.rim[k] = detail::scaled(modulus, pulls[k]);
+    }
+    return true;
+  }
+};
+
+/// The material's modulus is known (calibrate/rim.hpp): the pulls are forces. Needs no shape.
+struct KnownModulus {
+  static constexpr auto magnitude = detail::membrane::Magnitude::given;
+  static constexpr bool finds_tensions = false;
+  template <scalar S>
+  struct Work {
+    Work(const KnownModulus&, Index, Index) {}
+  };
+
+  double modulus_n_per_mm = 0.5;  ///< mu t: shear modulus times thickness, > 0
+
+  template <bool Magnitudes, scalar S>
+  bool solve(const detail::membrane::Segments<S>&,
+             const detail::membrane::Compartments<S>&,
+             const std::vector<Point3<S>>& pulls,
+             const S&,
+             Work<S>&,
+             detail::membrane::Tensions<S>& tensions) const {
+    static_assert(Magnitudes, "a direction alone has no magnitude: use ClampedRim");
+    for (std::size_t k = 0; k < pulls.size(); ++k) {
+      tensions.rim[k] = detail::scaled(S(modulus_n_per_mm), pulls[k]);
+    }
+    return true;
+  }
+};
+
+/// Refuses what has no meaning (parameter_error).
+inline void expects_valid(const ClosedForm&) {}
+inline void expects_valid(const BalancedRim&) {}
+inline void expects_valid(const KnownModulus& given) {
+  expects(is_finite(given.modulus_n_per_mm) && given.modulus_n_per_mm > 0, "KnownModulus",
+          "modulus_n_per_mm", given.modulus_n_per_mm, "finite and > 0");
+}
+
+}  // namespace v0
+}  // namespace fingerpad

@@ -1,0 +1,222 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+#pragma once
+// How the membrane pulls at its rim, from the side dots printed a little above it. The rim is
+// clamped: along it nothing stretches. With e the unit tangent of the rim and d the derivative of
+// the position along the stress-free membrane, away from the rim, the surface deformation gradient
+// is [d, e]. Split d = s e + d_n, d_n perpendicular to e and lambda = |d_n| (the area ratio J).
+//
+// Published (Ito, Kim, Obinata 2011, III.E): the pull has the direction of d. That of a
+// hyperelastic membrane has not: with W = mu t / 2 (|F|^2 + J^-2 - 3) per stress-free area
+// (incompressible neo-Hookean) the force per length of rim is
+//   T / (mu t) = dW / dd = s e + (lambda - lambda^-3) d_n / lambda.
+// A little stretch gives little normal tension, but shear is resisted in full: T leans further
+// sideways than d, by lambda^4 / (lambda^4 - 1).
+#include <cmath>
+#include <cstdint>
+
+#include "fingerpad/core/detail/point_algebra.hpp"
+#include "fingerpad/core/dots.hpp"
+#include "fingerpad/core/expects.hpp"
+#include "fingerpad/core/grid.hpp"
+#include "fingerpad/core/scalar.hpp"
+
+namespace fingerpad {
+inline namespace v0 {
+
+/// What a side dot tells.
+enum class RimPullStatus : std::uint8_t {
+  ok,
+  missing,      ///< the dot was not found
+  unstretched,  ///< stretched too little to tell where the membrane pulls
+  slack,        ///< shorter than without stress: the membrane pushes, or has folded
+};
+
+/// Pull of the membrane at a rim point.
+template <scalar S>
+struct RimPull {
+  RimPullStatus status = RimPullStatus::missing;
+  Point3<S> pull = {S(0), S(0), S(0)};  ///< T / (mu t), or only a direction; on the base
+};
+
+/// T / (mu t) of a clamped neo-Hookean rim; `along` is d, `tangent` the unit vector e. lambda > 0.
+template <scalar S>
+Point3<S> clamped_rim_pull(const Point3<S>& along, const Point3<S>& tangent) {
+  const S shear = detail::dot(along, tangent);
+  const Point3<S> across = detail::moved(along, S(-shear), tangent);
+  const S lambda_sq = detail::length_sq(across);
+  // (lambda - lambda^-3) / lambda
+  const S share = S(1) - S(1) / (lambda_sq * lambda_sq);
+  return {S(shear * tangent.x + share * across.x), S(shear * tangent.y + share * across.y),
+          S(shear * tangent.z + share * across.z)};
+}
+
+/// The direction of the side dots, as published: 72 % of the true tangential force of a drag, 36 %
+/// of the true moment of a twist, on a pad stretched by 8.5 %.
+struct PublishedDirection {
+  /// Whether pulls of different rim points can be compared.
+  static constexpr bool tells_magnitude = false;
+
+  template <scalar S>
+  RimPull<S> pull(const Point3<S>& along, const Point3<S>&) const {
+    return {RimPullStatus::ok, along};
+  }
+  /// By how much the pull changes when `along` changes by `change`.
+  template <scalar S>
+  Point3<S> change_of_pull(const Point3<S>&, const Point3<S>&, const Point3<S>& change) const {
+    return change;
+  }
+};
+
+/// The traction of a clamped neo-Hookean rim. Default.
+struct ClampedRim {
+  static constexpr bool tells_magnitude = true;
+
+  double least_stretch = 1.005;  ///< lambda; less does not tell a direction, in (1, 2]
+
+  template <scalar S>
+  RimPull<S> pull(const Point3<S>& along, const Point3<S>& tangent) const {
+    const S shear = detail::dot(along, tangent);
+    const S lambda_sq = detail::length_sq(along) - shear * shear;
+    const scalar_real_t<S> least = static_cast<scalar_real_t<S>>(least_stretch);
+    if (!(value(lambda_sq) >= least * least)) {
+      const bool shorter = value(lambda_sq) < 1;
+      return {shorter ? RimPullStatus::slack : RimPullStatus::unstretched, {S(0), S(0), S(0)}};
+    }
+    return {RimPullStatus::ok, clamped_rim_pull(along, tangent)};
+  }
+
+  template <scalar S>
+  Point3<S> change_of_pull(const Point3<S>& along,
+                           const Point3<S>& tangent,
+                           const Point3<S>& change) const {
+    const Point3<S> across = detail::moved(along, S(-detail::dot(along, tangent)), tangent);
+    const S shear = detail::dot(change, tangent);
+    const Point3<S> across_change = detail::moved(change, S(-shear), tangent);
+    const S lambda_sq = detail::length_sq(across);
+    const S per = S(1) / (lambda_sq * lambda_sq);
+    // of (1 - lambda^-4) d_n
+    const S stretching = S(4) * per / lambda_sq * detail::dot(across, change);
+    return detail::moved(
+        detail::moved(detail::scaled(shear, tangent), S(S(1) - per), across_change), stretching,
+        across);
+  }
+};
+
+/// Refuses what has no meaning (parameter_error).
+inline void expects_valid(const PublishedDirection&) {}
+inline void expects_valid(const ClampedRim& rim) {
+  expects(rim.least_stretch > 1 && rim.least_stretch <= 2, "ClampedRim", "least_stretch",
+          rim.least_stretch, "in (1, 2]");
+}
+
+/// A point of the rim.
+template <scalar S>
+struct RimPoint {
+  Point3<S> border;
+  Point3<S> tangent;  ///< unit vector along the rim, the way angles grow
+  S length_mm;        ///< from here to the side dot, along the stress-free membrane
+  S radius_mm;        ///< of the rim
+};
+
+/// One row of side dots: d is the chord from the rim to the dot, over its stress-free length.
+struct OneRow {
+  static constexpr Index rows = 1;
+  static constexpr bool needs_modulus = false;
+  /// Noise of d, over that of a dot and the length.
+  static constexpr double noise_gain = 1;
+
+  template <scalar S>
+  Point3<S> along(const RimPoint<S>& rim, const Point3<S>* dot, const S&) const {
+    return detail::scaled(S(S(1) / rim.length_mm), detail::difference(dot[0], rim.border));
+  }
+};
+
+/// Two rows, the second at twice the stress-free length: the derivative at the rim itself, to
+/// second order, d = (4 x1 - 3 x0 - x2) / (2 L).
+struct TwoRows {
+  static constexpr Index rows = 2;
+  static constexpr bool needs_modulus = false;
+  static constexpr double noise_gain = 2.0615528128088303;  // sqrt(4^2 + 1) / 2
+
+  template <scalar S>
+  Point3<S> along(const RimPoint<S>& rim, const Point3<S>* dot, const S&) const {
+    const Point3<S> first = detail::difference(dot[0], rim.border);
+    const Point3<S> second = detail::difference(dot[1], rim.border);
+    const S per = S(1) / (S(2) * rim.length_mm);
+    return {S(per * (S(4) * first.x - second.x)), S(per * (S(4) * first.y - second.y)),
+            S(per * (S(4) * first.z - second.z))};
+  }
+};
+
+/// One row, carried from the middle of the chord to the rim by the balance of the membrane there:
+/// how fast the chord's stretch, inclination and shear change along it. With s the arc from the
+/// rim, a its radius, phi the inclination (phi_0 without stress), and the tensions per mu t
+/// T1 = lambda - lambda^-3 and T2 = (1 - lambda^-2) / lambda:
+///   inclination  kappa_1 = (p / (mu t) - T2 sin(phi) / a) / T1          (normal balance)
+///   tension      dT1/ds = (T1 - T2) cos(phi) / a                        (balance along the line)
+///   hoop stretch dlambda_2/dS = (cos(phi_0) - lambda cos(phi)) / a      (geometry)
+///   shear        d(r rho P_e)/dS = 0, chord = s (1 + cos(phi_0) L / (2 a))  (torque)
+/// What changes along the rim is left out.
+struct ExtrapolatedRow {
+  static constexpr Index rows = 1;
+  static constexpr bool needs_modulus = true;
+  static constexpr double noise_gain = 1;
+
+  /// phi_0: inclination of the stress-free membrane at the rim, in [0, pi / 2]; of a spherical cap
+  /// 2 atan(height / radius). Has to be given.
+  double stress_free_inclination_rad = not_a_number<double>();
+
+  /// `load_per_mm`: pressure / (mu t), 1/mm; 0: not known yet, the chord itself.
+  template <scalar S>
+  Point3<S> along(const RimPoint<S>& rim, const Point3<S>* dot, const S& load_per_mm) const {
+    using std::cos;
+    using std::sin;
+    using std::sqrt;
+    const Point3<S> chord = OneRow().along(rim, dot, load_per_mm);
+    const S shear = detail::dot(chord, rim.tangent);
+    const Point3<S> across = detail::moved(chord, S(-shear), rim.tangent);
+    const S lambda = sqrt(detail::length_sq(across));
+    if (value(load_per_mm) == 0 || !(lambda > S(1001) / S(1000))) {
+      return chord;
+    }
+    // out of the pad, in the plane of the rim
+    const Point3<S> outward = {rim.tangent.y, S(-rim.tangent.x), S(0)};
+    const S sine = across.z / lambda;
+    const S cosine = -detail::dot(across, outward) / lambda;
+    const S cosine_free = S(cos(S(stress_free_inclination_rad)));
+    const S half = rim.length_mm / S(2);
+    const S inverse = S(1) / lambda;
+    const S inverse_cubed = inverse * inverse * inverse;
+    const S t1 = lambda - inverse_cubed;
+    const S t2 = inverse - inverse_cubed;
+
+    const S turn = (load_per_mm - t2 * sine / rim.radius_mm) / t1 * lambda * half;
+    const S tension_rise = lambda * (t1 - t2) * cosine / rim.radius_mm;
+    const S hoop_rise = (cosine_free - lambda * cosine) / rim.radius_mm;
+    // T1 = lambda / lambda_2 - (lambda lambda_2)^-3
+    const S stretch_rise = (tension_rise - (S(3) * inverse_cubed - lambda) * hoop_rise) /
+                           (S(1) + S(3) * inverse_cubed * inverse);
+    const S at_rim = lambda - stretch_rise * half;
+    const S shear_at_rim = shear * (S(1) - cosine_free * half / rim.radius_mm);
+    const bool plausible = turn < S(1) / S(2) && turn > S(-1) / S(2);
+    const S c = plausible ? S(cos(turn)) : S(1);
+    const S s = plausible ? S(sin(turn)) : S(0);
+    const S inward = at_rim * (cosine * c - sine * s);
+    const S up = at_rim * (sine * c + cosine * s);
+    return {S(shear_at_rim * rim.tangent.x - inward * outward.x),
+            S(shear_at_rim * rim.tangent.y - inward * outward.y), up};
+  }
+};
+
+/// Refuses what has no meaning (parameter_error).
+inline void expects_valid(const OneRow&) {}
+inline void expects_valid(const TwoRows&) {}
+inline void expects_valid(const ExtrapolatedRow& row) {
+  expects(row.stress_free_inclination_rad >= 0 && row.stress_free_inclination_rad <= 1.5707964,
+          "ExtrapolatedRow", "stress_free_inclination_rad", row.stress_free_inclination_rad,
+          "in [0, pi / 2]");
+}
+
+}  // namespace v0
+}  // namespace fingerpad

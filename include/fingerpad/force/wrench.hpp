@@ -1,0 +1,355 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+#pragma once
+// Force and moment in six axes, from the pressure in the pad, the shape of its membrane and the
+// side dots near the rim. Source: Ito, Kim, Obinata, "Multi-axis force measurement based on
+// vision-based fluid-type hemispherical tactile sensor" (2011); published and corrected forms in
+// docs/errata.md, E025-E027 and E043-E046.
+//
+// The base feels the pull of the membrane along the rim and the pressure on its area (eqs. 1, 2):
+//   F = integral of T ds - p S_base z,    M = integral of b x T ds.
+// F and M are what the object exerts on the pad, M about Q, the center of the base: a press gives
+// F_z < 0. The side dots tell how the membrane pulls (force/rim_traction.hpp); how much,
+// is found from the balance of the membrane between the rim and the line A_g where it touches the
+// object or is level: everywhere below it nothing but tension and pressure acts.
+#include <cmath>
+#include <concepts>
+#include <cstddef>
+#include <numbers>
+#include <vector>
+
+#include "fingerpad/force/compartments.hpp"
+#include "fingerpad/force/height_map.hpp"
+#include "fingerpad/force/least_squares.hpp"
+#include "fingerpad/force/detail/noise.hpp"
+#include "fingerpad/force/pad_heights.hpp"
+#include "fingerpad/force/published_iteration.hpp"
+#include "fingerpad/force/detail/rim.hpp"
+#include "fingerpad/force/rim_balance.hpp"
+#include "fingerpad/force/rim_traction.hpp"
+#include "fingerpad/force/detail/segments.hpp"
+#include "fingerpad/force/detail/tensions.hpp"
+#include "fingerpad/force/wrench_options.hpp"
+#include "fingerpad/force/wrench_result.hpp"
+#include "fingerpad/core/detail/point_algebra.hpp"
+#include "fingerpad/core/dots.hpp"
+#include "fingerpad/core/expects.hpp"
+#include "fingerpad/core/grid.hpp"
+#include "fingerpad/core/scalar.hpp"
+
+namespace fingerpad {
+inline namespace v0 {
+
+/// Six-axis force.
+///   Solver  LeastSquares (default), BalancedRim (as good, 15 times as fast, no inner tensions),
+///           PublishedIteration, ClosedForm, KnownModulus
+///   Row     OneRow (default), ExtrapolatedRow, TwoRows: how side dots tell d at the rim
+///   Law     ClampedRim (default), PublishedDirection
+///   Lines   StraightLines (default), SteepestLines (published)
+///
+/// Const: threads may share one estimator, each with a workspace of its own. A frame takes no
+/// memory, throws nothing, and takes O(columns rows) time, with LeastSquares O((columns rows)^1.5).
+template <class Solver = LeastSquares,
+          class Row = OneRow,
+          class Law = ClampedRim,
+          class Lines = StraightLines,
+          scalar S = double>
+class Wrench {
+ public:
+  /// All the memory of a frame. After it, what the frame's forces were found from.
+  class Workspace {
+   public:
+    /// Points of the rim, in the order of the angle, and the membrane's pull on the base there in
+    /// N/mm; NaN where the status of the frame gives no force.
+    Index rim_points() const { return static_cast<Index>(tension_.size()); }
+    const Point3<S>& rim_tension(Index k) const { return tension_[static_cast<std::size_t>(k)]; }
+    /// What the side dot of that point told; the pull of others is that of their neighbours.
+    RimPullStatus rim_status(Index k) const {
+      return pulls_.dots[static_cast<std::size_t>(k)].status;
+    }
+    /// Nodes of the mesh: line 0 ... columns - 1, row 0 (rim) ... rows (A_g).
+    const Point3<S>& node(Index line, Index row) const { return nodes_.node(line, row); }
+
+   private:
+    friend class Wrench;
+    Workspace(const Wrench& wrench)
+        : pulls_(wrench.rim_.pulls()),
+          nodes_(wrench.options_.columns,
+                 wrench.options_.rows,
+                 wrench.options_.base_radius_mm,
+                 {wrench.options_.line_step_mm, wrench.options_.blur_mm, wrench.options_.reach_mm}),
+          segments_(wrench.options_.columns, wrench.options_.rows),
+          tensions_(wrench.options_.columns, wrench.options_.rows),
+          work_(wrench.solver_, wrench.options_.columns, wrench.options_.rows),
+          tension_(static_cast<std::size_t>(wrench.rim_.size())) {}
+
+    detail::membrane::RimPulls<S> pulls_;
+    detail::membrane::Compartments<S> nodes_;
+    detail::membrane::Segments<S> segments_;
+    detail::membrane::Tensions<S> tensions_;
+    typename Solver::template Work<S> work_;
+    std::vector<Point3<S>> tension_;
+  };
+
+  /// `border_mm`: one row of points of the rim, one for each column of side dots, in any order, at
+  /// most 5 % off the circle, 6 or more.
+  template <spatial_dot_grid Border>
+  explicit Wrench(const Border& border_mm,
+                  const WrenchOptions<S>& options = {},
+                  const Solver& solver = {},
+                  const Row& row = {},
+                  const Law& law = {})
+      : Wrench(
+            border_mm,
+            [&](Index) { return options.side_dot_length_mm; },
+            options,
+            solver,
+            row,
+            law) {}
+
+  /// The same with the stress-free length of each side dot, from calibrate/rim.hpp.
+  template <spatial_dot_grid Border, class Length>
+    requires(std::invocable<const Length&, Index>)
+  Wrench(const Border& border_mm,
+         const Length& side_dot_length_mm,
+         const WrenchOptions<S>& options = {},
+         const Solver& solver = {},
+         const Row& row = {},
+         const Law& law = {})
+      : options_(checked(options, solver, row, law)),
+        solver_(solver),
+        row_(row),
+        law_(law),
+        rim_(border_mm, side_dot_length_mm, options.base_radius_mm, options.columns) {}
+
+  Index side_dots() const { return rim_.size(); }
+  const WrenchOptions<S>& options() const { return options_; }
+  Workspace workspace() const { return Workspace(*this); }
+
+  /// Force and moment of a frame. `shape` is the membrane (HeightMap, or any membrane_shape);
+  /// `side_dots_mm` has Row::rows rows, the one nearer to the rim first, and a column for each
+  /// border point; NaN: not found. Pressure in MPa above that of the air, at most 1e6. With `noise`
+  /// the result has a covariance.
+  template <class Shape, spatial_dot_grid Dots>
+    requires(membrane_shape<Shape, S>)
+  WrenchResult<S>
+  operator()(const Shape& shape,
+             const Dots& side_dots_mm,
+             const S& pressure_mpa,
+             Workspace& work,
+             const WrenchNoise<S>& noise = {}) const {
+    const auto dots = as_view(side_dots_mm);
+    WrenchResult<S> result;
+    if (dots.rows() != Row::rows || dots.cols() != rim_.size() ||
+        work.rim_points() != rim_.size() || work.segments_.columns() != options_.columns ||
+        work.segments_.rows() != options_.rows) {
+      return result;
+    }
+    result.accepted = true;
+    forget(work);
+    result.status = solve(shape, dots, pressure_mpa, work, result);
+    if (result.status == WrenchStatus::ok) {
+      add_up(pressure_mpa, work, noise, result);
+    } else if (result.status == WrenchStatus::no_contact) {
+      result.force_n = result.moment_n_mm = {S(0), S(0), S(0)};
+      result.summit_area_mm2 = S(0);
+    }
+    return result;
+  }
+
+ private:
+  static constexpr bool needs_shape = Solver::magnitude != detail::membrane::Magnitude::given;
+
+  static const WrenchOptions<S>& checked(const WrenchOptions<S>& options,
+                                         const Solver& solver,
+                                         const Row& row,
+                                         const Law& law) {
+    expects_valid(options);
+    expects_valid(solver);
+    expects_valid(row);
+    expects_valid(law);
+    return options;
+  }
+
+  static void forget(Workspace& work) {
+    for (Point3<S>& tension : work.tension_) {
+      tension = detail::missing_point<S>();
+    }
+  }
+
+  template <class Shape, class Dots>
+  WrenchStatus solve(const Shape& shape,
+                     const Dots& dots,
+                     const S& pressure_mpa,
+                     Workspace& work,
+                     WrenchResult<S>& result) const {
+    // no pad holds so much, and squares must stay finite
+    if (!(value(pressure_mpa) > 0) || S(1e6) < pressure_mpa) {
+      return WrenchStatus::bad_pressure;
+    }
+    const WrenchStatus shaped = lay_mesh(shape, work, result);
+    if (shaped != WrenchStatus::ok) {
+      return shaped;
+    }
+    const S pressure = pressure_mpa * chord_factor();
+    WrenchStatus pulled = measure_rim(dots, S(0), work, result);
+    if (Row::needs_modulus && pulled == WrenchStatus::ok) {
+      const S modulus = first_modulus(work, pressure);
+      if (value(modulus) > 0) {
+        pulled = measure_rim(dots, S(pressure_mpa / modulus), work, result);
+      }
+    }
+    if (pulled != WrenchStatus::ok) {
+      return pulled;
+    }
+    bool solved = solver_.template solve<Law::tells_magnitude>(
+        work.segments_, work.nodes_, work.pulls_.segments, pressure, work.work_, work.tensions_);
+    S residual = not_a_number<S>();
+    if constexpr (Solver::finds_tensions) {
+      residual =
+          detail::membrane::residual(work.segments_, work.nodes_, work.tensions_, pressure).force;
+    }
+    if constexpr (Solver::magnitude == detail::membrane::Magnitude::of_all) {
+      solved = solved && detail::membrane::carry_load(work.segments_, pressure, work.tensions_.rim);
+    }
+    result.residual = solved ? residual : not_a_number<S>();
+    return solved ? WrenchStatus::ok : WrenchStatus::not_solved;
+  }
+
+  template <class Shape>
+  WrenchStatus lay_mesh(const Shape& shape, Workspace& work, WrenchResult<S>& result) const {
+    if constexpr (needs_shape) {
+      Point3<S> center;
+      if (!detail::membrane::find_contact(shape, options_.base_radius_mm, center)) {
+        return WrenchStatus::no_contact;
+      }
+      work.nodes_.template lay<Lines>(shape, center);
+      result.broken_lines = work.nodes_.broken();
+      result.level_lines = work.nodes_.level();
+      if (3 * result.broken_lines > options_.columns) {
+        return WrenchStatus::no_shape;
+      }
+      if (result.level_lines == 0) {
+        return WrenchStatus::no_level_line;
+      }
+      work.segments_.measure(work.nodes_);
+    }
+    return WrenchStatus::ok;
+  }
+
+  template <class Dots>
+  WrenchStatus measure_rim(const Dots& dots,
+                           const S& load_per_mm,
+                           Workspace& work,
+                           WrenchResult<S>& result) const {
+    rim_.measure(dots, row_, law_, load_per_mm, work.pulls_);
+    result.missing = work.pulls_.missing;
+    result.slack = work.pulls_.slack;
+    result.unstretched = work.pulls_.unstretched + work.pulls_.slack;
+    result.outward = work.pulls_.outward;
+    if (3 * result.missing > rim_.size()) {
+      return WrenchStatus::too_few_side_dots;
+    }
+    if (3 * (result.missing + result.unstretched) > rim_.size()) {
+      return WrenchStatus::unstretched;
+    }
+    rim_.integrate(work.pulls_);
+    return WrenchStatus::ok;
+  }
+
+  /// mu t before the side dots have been carried to the rim.
+  S first_modulus(const Workspace& work, const S& pressure_mpa) const {
+    if constexpr (needs_shape) {
+      return detail::membrane::balanced_modulus(work.segments_, work.pulls_.segments, pressure_mpa);
+    } else {
+      return S(solver_.modulus_n_per_mm);
+    }
+  }
+
+  /// Area of a circle over that of the polygon of as many corners as there are lines: the mesh has
+  /// chords where rim and A_g are round, so the pressure on it is a little too small.
+  S chord_factor() const {
+    using std::sin;
+    if constexpr (!needs_shape) {
+      return S(1);
+    }
+    const S turn = S(2 * std::numbers::pi) / S(static_cast<double>(options_.columns));
+    return S(turn / S(sin(turn)));
+  }
+
+  S base_area_mm2() const {
+    return S(std::numbers::pi) * options_.base_radius_mm * options_.base_radius_mm;
+  }
+
+  /// Eqs. 4 and 5.
+  void add_up(const S& pressure_mpa,
+              Workspace& work,
+              const WrenchNoise<S>& noise,
+              WrenchResult<S>& result) const {
+    const auto [force, moment] =
+        detail::membrane::sum_of_rim(work.tensions_.rim, options_.base_radius_mm);
+    const S modulus = detail::membrane::mean_factor(work.tensions_.rim, work.pulls_.segments);
+    result.force_n = {force.x, force.y, S(force.z - pressure_mpa * base_area_mm2())};
+    result.moment_n_mm = moment;
+    if (Law::tells_magnitude) {
+      result.modulus_n_per_mm = modulus;
+    }
+    S edge_mm2 = S(0);
+    if constexpr (needs_shape) {
+      result.summit_area_mm2 = chord_factor() * work.nodes_.summit_area(edge_mm2);
+    }
+    keep_tensions(work);
+    if (value(noise.side_dot_mm) > 0 || value(noise.edge_mm) > 0 || value(noise.pressure_mpa) > 0) {
+      const S summit = needs_shape ? result.summit_area_mm2 : S(0);
+      result.covariance = detail::membrane::covariance_of<Solver::magnitude, Row>(
+          rim_, work.pulls_, law_,
+          detail::membrane::RimSolution<S>{force, moment, modulus, base_area_mm2(), summit,
+                                           edge_mm2, pressure_mpa},
+          noise);
+    }
+    bool finite = detail::is_finite_point(result.force_n) && detail::is_finite_point(moment);
+    for (std::size_t k = 0; k < 6; ++k) {
+      finite = finite && is_finite(result.covariance[k][k]);
+    }
+    if (!finite) {
+      result = failed(result);
+      forget(work);
+    }
+  }
+
+  static WrenchResult<S> failed(const WrenchResult<S>& from) {
+    WrenchResult<S> out;
+    out.accepted = true;
+    out.status = WrenchStatus::not_solved;
+    out.missing = from.missing;
+    out.unstretched = from.unstretched;
+    out.slack = from.slack;
+    out.outward = from.outward;
+    out.broken_lines = from.broken_lines;
+    out.level_lines = from.level_lines;
+    return out;
+  }
+
+  /// The tension at each border point: that of its segment, in the direction of its own pull.
+  void keep_tensions(Workspace& work) const {
+    using std::sqrt;
+    const S step = S(2 * std::numbers::pi) / S(static_cast<double>(options_.columns));
+    for (Index k = 0; k < rim_.size(); ++k) {
+      const Index in = static_cast<Index>(value(S(rim_.angle(k) / step))) % options_.columns;
+      const std::size_t segment = static_cast<std::size_t>(in);
+      const S factor = sqrt(S(detail::length_sq(work.tensions_.rim[segment]) /
+                              detail::length_sq(work.pulls_.segments[segment])));
+      work.tension_[static_cast<std::size_t>(k)] =
+          detail::scaled(factor, work.pulls_.dots[static_cast<std::size_t>(k)].pull);
+    }
+  }
+
+  WrenchOptions<S> options_;
+  Solver solver_;
+  Row row_;
+  Law law_;
+  detail::membrane::Rim<S> rim_;
+};
+
+}  // namespace v0
+}  // namespace fingerpad

@@ -1,0 +1,202 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+#pragma once
+// From a depth map to a map of curvature, by which contact is told from a free membrane: what a
+// pressure stretches bulges outward wherever nothing touches it.
+// Source: Ito et al. 2011, III.B (eqs. 1-12), and the slides, contact region; E012-E017.
+#include <algorithm>
+#include <cmath>
+#include <concepts>
+#include <cstddef>
+#include <utility>
+#include <vector>
+
+#include "fingerpad/image/detail/curvature_hessian.hpp"
+#include "fingerpad/image/curvature_projection.hpp"
+#include "fingerpad/image/detail/curvature_rows.hpp"
+#include "fingerpad/image/curvature_statistic.hpp"
+#include "fingerpad/image/detail/curvature_stencil.hpp"
+#include "fingerpad/image/curvature_ring.hpp"
+#include "fingerpad/image/detail/line_vector.hpp"
+#include "fingerpad/core/expects.hpp"
+#include "fingerpad/core/grid.hpp"
+#include "fingerpad/core/scalar.hpp"
+
+namespace fingerpad {
+inline namespace v0 {
+
+struct CurvatureResult {
+  bool accepted = false;  ///< false: a grid or the workspace has another size; nothing written
+  Index known_px = 0;     ///< pixels that got a curvature
+  Index unknown_px = 0;   ///< the others, which got NaN
+};
+
+/// Curvature statistics of depth maps of one size. `Statistic` and `Projection` are policies,
+/// `S` is the number computed in: float or double by vectors, any other one by one.
+///
+/// A pixel gets NaN where its depth is missing (not finite) or too few of its sections are
+/// complete; else the statistic of the complete ones. What is missing never reaches beyond its
+/// ring.
+///
+/// Rounding: in double about 1e-15 per mm. In float, sections by vectors are good to 2.1e-5 of
+/// themselves; depths, and with PitchAtDepth zeta, that are off by a unit in the last place e
+/// change a curvature by up to 4 e / r^2.
+///
+/// Const: threads may share one map, each with a workspace of its own, and take a band of rows
+/// each. Bounded time and no allocation per frame.
+template <class Statistic = ClampedMean<>, class Projection = PitchAtDepth, scalar S = float>
+class CurvatureMap {
+ public:
+  /// Memory that one frame at a time needs, taken up front.
+  struct Workspace {
+    detail::line_vector<S> cells;  ///< zeta, with a margin of NaN on every side
+    detail::line_vector<S> segment;
+    Index stride = 0;
+  };
+
+  CurvatureMap(const CurvatureRing& ring, const Projection& projection, Index rows, Index cols)
+      : units_(projection),
+        rows_(checked(ring, rows, cols)),
+        cols_(cols),
+        margin_((std::min)(ring.radius_px, (std::max)(rows, cols))),
+        stride_(stride_of(margin_, cols)),
+        least_((std::max)(
+            fewest,
+            static_cast<int>(std::ceil(ring.min_direction_share * Statistic::directions - 1e-9)))),
+        kernel_(
+            ring_offsets(margin_, Statistic::directions), stride_, units_.pitch, units_.per_mm) {}
+
+  Index rows() const { return rows_; }
+  Index cols() const { return cols_; }
+
+  Workspace workspace() const {
+    return {detail::line_vector<S>(size(), not_a_number<S>()),
+            detail::line_vector<S>(static_cast<std::size_t>(Strip::columns), not_a_number<S>()),
+            stride_};
+  }
+
+  /// Curvatures in 1/mm into `out`, which may be the depth map itself.
+  template <grid Depth, writable_grid<S> Out>
+    requires(!std::integral<cell_t<Out>>)
+  CurvatureResult operator()(const Depth& depth_mm, Out&& out, Workspace& workspace) const {
+    return band(0, rows_, depth_mm, out, workspace);
+  }
+
+  /// Only the rows [first, last) of the output, the same bits as in the whole; both grids have the
+  /// size of the image. Rows of the depth map up to the ring's radius beyond are read.
+  template <grid Depth, writable_grid<S> Out>
+    requires(!std::integral<cell_t<Out>>)
+  CurvatureResult band(
+      Index first, Index last, const Depth& depth_mm, Out&& out, Workspace& workspace)
+  const {
+    const auto from = as_view(depth_mm);
+    const auto to = as_view(out);
+    if (from.rows() != rows_ || from.cols() != cols_ || to.rows() != rows_ || to.cols() != cols_ ||
+        first < 0 || last < first || last > rows_ || !fits(workspace)) {
+      return {};
+    }
+    const Index end = (std::min)(rows_, last + margin_);
+    for (Index i = (std::max)(Index(0), first - margin_); i < end; ++i) {
+      load_row(from, i, cell(workspace, i, 0));
+    }
+    Index known = 0;
+    S* segment = workspace.segment.data();
+    for (Index j = 0; j < cols_; j += Strip::columns) {
+      const Index count = (std::min)(Strip::columns, cols_ - j);
+      Strip strip(kernel_, units_, least_);
+      for (Index i = first; i < last; ++i) {
+        const bool whole = strip.row(cell(workspace, i, j), count, segment);
+        known += whole ? count : count_known(segment, count);
+        store_segment(segment, count, to, i, j);
+      }
+    }
+    return {true, known, (last - first) * cols_ - known};
+  }
+
+ private:
+  using Kernel = detail::CurvatureKernel<Statistic, S>;
+  using Strip = detail::CurvatureStrip<Kernel,
+                                       detail::DepthUnits<Projection, S>,
+                                       S,
+                                       detail::curvature_vector_bytes<Statistic, S>>;
+  static constexpr int fewest = detail::fewest_sections<Statistic>;
+  static constexpr Index line = 64 / static_cast<Index>(sizeof(float));
+
+  static Index checked(const CurvatureRing& ring, Index rows, Index cols) {
+    expects_valid(ring);
+    expects(rows >= 1 && rows <= 1000000, "CurvatureMap", "rows", static_cast<long long>(rows),
+            "in [1, 1000000]");
+    expects(cols >= 1 && cols <= 1000000, "CurvatureMap", "cols", static_cast<long long>(cols),
+            "in [1, 1000000]");
+    return rows;
+  }
+
+  /// Margins to whole cache lines, and an odd number of lines in all: rows then lie in all sets of
+  /// a cache and not in a few.
+  static Index stride_of(Index margin, Index cols) {
+    const Index lines = (left_of(margin) + cols + margin) / line + 2;
+    return (lines + 1 - lines % 2) * line;
+  }
+  static Index left_of(Index margin) { return (margin + line - 1) / line * line; }
+
+  std::size_t size() const {
+    return static_cast<std::size_t>((rows_ + 2 * margin_) * stride_ + 2 * line);
+  }
+  bool fits(const Workspace& w) const {
+    return w.cells.size() == size() && w.stride == stride_ &&
+           w.segment.size() == static_cast<std::size_t>(Strip::columns);
+  }
+
+  S* cell(Workspace& workspace, Index row, Index col) const {
+    return workspace.cells.data() + (row + margin_) * stride_ + left_of(margin_) + col;
+  }
+
+  template <class View>
+  void load_row(const View& from, Index i, S* row) const {
+    if constexpr (detail::plain_rows<View, S>) {
+      if (from.col_stride() == 1) {
+        const auto* cells = from.row(i);
+        detail::for_each_cell<S>(cols_, [&]<class V>(Index j) {
+          const V depth_mm = detail::load_cells<V, S>(cells + j);
+          detail::store_cells<S>(row + j, units_.template flattened<V>(depth_mm));
+        });
+        return;
+      }
+    }
+    for (Index j = 0; j < cols_; ++j) {
+      row[j] = static_cast<S>(from(i, j));
+    }
+    detail::for_each_cell<S>(cols_, [&]<class V>(Index j) {
+      const V depth_mm = detail::load_cells<V, S>(row + j);
+      detail::store_cells<S>(row + j, units_.template flattened<V>(depth_mm));
+    });
+  }
+
+  static Index count_known(const S* segment, Index count) {
+    return std::count_if(segment, segment + count, [](const S& k) { return value(k) == value(k); });
+  }
+
+  template <class View>
+  static void store_segment(const S* segment, Index count, const View& to, Index i, Index first) {
+    if constexpr (detail::plain_rows<View, S>) {
+      if (to.col_stride() == 1) {
+        std::copy_n(segment, count, to.row(i) + first);
+        return;
+      }
+    }
+    for (Index j = 0; j < count; ++j) {
+      to(i, first + j) = static_cast<cell_t<View>>(segment[j]);
+    }
+  }
+
+  detail::DepthUnits<Projection, S> units_;
+  Index rows_;
+  Index cols_;
+  Index margin_;  // the ring's radius; a larger ring than the image has no complete section anyway
+  Index stride_;
+  int least_;
+  Kernel kernel_;
+};
+
+}  // namespace v0
+}  // namespace fingerpad

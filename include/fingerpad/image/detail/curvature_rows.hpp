@@ -1,0 +1,271 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+#pragma once
+// Curvature along a row, a vector of pixels at a time. Rows have a margin of NaN as wide as the
+// ring, so nothing tests bounds; a missing depth shows as a NaN in what the fast pass gives, and
+// only then a second pass leaves out the sections that are not complete.
+#include <array>
+#include <concepts>
+#include <cstddef>
+#include <type_traits>
+#include <vector>
+
+#include "fingerpad/image/curvature.hpp"
+#include "fingerpad/image/curvature_statistic.hpp"
+#include "fingerpad/image/curvature_ring.hpp"
+#include "fingerpad/image/detail/row_lanes.hpp"
+
+namespace fingerpad {
+inline namespace v0 {
+namespace detail {
+
+template <class Mask>
+[[gnu::always_inline]] inline bool any_lane(const Mask& mask) {
+  if constexpr (std::same_as<Mask, bool>) {
+    return mask;
+  } else {
+    using Word = std::remove_cvref_t<decltype(Mask{}[0])>;
+    return !all_zero<Word, static_cast<int>(sizeof(Mask) / sizeof(Word))>(mask);
+  }
+}
+
+/// True when some lane of `wanted` is not in `found`.
+template <class Mask>
+[[gnu::always_inline]] inline bool lacks(const Mask& wanted, const Mask& found) {
+  if constexpr (std::same_as<Mask, bool>) {
+    return wanted && !found;
+  } else {
+    return any_lane(Mask(wanted & ~found));
+  }
+}
+
+/// True where x is a number.
+template <class V>
+[[gnu::always_inline]] inline auto known(const V& x) {
+  if constexpr (scalar<V>) {
+    return value(x) == value(x);
+  } else {
+    return x == x;
+  }
+}
+
+/// Where at least `least` sections were counted.
+template <class V>
+[[gnu::always_inline]] inline auto at_least(const V& sections, int least) {
+  if constexpr (scalar<V>) {
+    return !(sections < V(least));
+  } else {
+    return sections >= whole<V>(least);
+  }
+}
+
+/// What the complete sections of a pixel give.
+template <class V>
+struct PartialCurvature {
+  V curvature;  ///< NaN when they are too few
+  V sections;   ///< their number
+};
+
+/// What a statistic computes per pixel. `cells` point to the center; `shrink` is 1 / (1 + c l) of
+/// curvature_projection.hpp. complete() is NaN when anything is missing; partial() uses the
+/// complete sections and is NaN when they are fewer than `least`.
+template <class Statistic, class S>
+class CurvatureKernel;
+
+/// Sections of equal radius in one group.
+template <class S, int Directions, bool Clamped, int Numerator>
+class SectionKernel {
+  static_assert(Directions >= 1);
+
+ public:
+  static constexpr int directions = Directions;
+
+  SectionKernel(const std::vector<RingOffset>& ring, Index stride, const S& pitch, const S& per_mm)
+      : scale_(S(2 * Numerator) * per_mm) {
+    using std::sqrt;
+    Index last_sq = -1;
+    for (std::size_t k = 0; k < ring.size(); ++k) {
+      step_[k] = ring[k].row * stride + ring[k].col;
+      if (ring[k].radius_sq() != last_sq) {
+        last_sq = ring[k].radius_sq();
+        const S radius_px = sqrt(S(static_cast<double>(last_sq)));
+        const S radius = radius_px * pitch;
+        group_[groups_++] = {radius, S(radius * radius), 0};
+      }
+      ++group_[groups_ - 1].sections;
+    }
+  }
+
+  template <class V>
+  [[gnu::always_inline]] V complete(const S* cells, const V& shrink) const {
+    V total{};
+    for_each_group<V>(shrink, [&](const Group& group, const Index* step, const V& radius_sq) {
+      V sum{};
+      for (int k = 0; k < group.sections; ++k) {
+        sum = sum + weighed(section_at<V>(cells, step[k], radius_sq));
+      }
+      total = total + sum * group.radius;
+    });
+    return total * (shrink * shrink * shrink * (scale_ / S(Directions)));
+  }
+
+  template <class V>
+  [[gnu::always_inline]] PartialCurvature<V> partial(const S* cells,
+                                                     const V& shrink,
+                                                     int least) const {
+    V total{};
+    V count{};
+    for_each_group<V>(shrink, [&](const Group& group, const Index* step, const V& radius_sq) {
+      V sum{};
+      for (int k = 0; k < group.sections; ++k) {
+        const V term = weighed(section_at<V>(cells, step[k], radius_sq));
+        const auto complete = known<V>(term);
+        sum = sum + (complete ? term : V{});
+        count = count + (complete ? whole<V>(1) : V{});
+      }
+      total = total + sum * group.radius;
+    });
+    const V mean = total * (shrink * shrink * shrink * scale_) / count;
+    const V nan = V{} + not_a_number<S>();
+    return {at_least<V>(count, least) ? mean : nan, count};
+  }
+
+ private:
+  struct Group {
+    S radius;
+    S radius_sq;
+    int sections;
+  };
+
+  template <class V, class Sections>
+  [[gnu::always_inline]] void for_each_group(const V& shrink, const Sections& sections) const {
+    const V shrink_sq = shrink * shrink;
+    const Index* step = step_.data();
+    for (std::size_t g = 0; g < groups_; ++g) {
+      sections(group_[g], step, V(shrink_sq * group_[g].radius_sq));
+      step += group_[g].sections;
+    }
+  }
+
+  template <class V>
+  [[gnu::always_inline]] static Section<V> section_at(const S* cells,
+                                                      Index step,
+                                                      const V& radius_sq) {
+    return section<V>(radius_sq, load_cells<V, S>(cells - step), load_cells<V, S>(cells),
+                      load_cells<V, S>(cells + step));
+  }
+
+  template <class V>
+  [[gnu::always_inline]] static V weighed(const Section<V>& k) {
+    if constexpr (Clamped) {
+      return not_negative<V>(k.bend) * k.inverse_root;
+    } else {
+      return k.bend * k.inverse_root;
+    }
+  }
+
+  std::array<Index, static_cast<std::size_t>(Directions)> step_{};
+  std::array<Group, static_cast<std::size_t>(Directions)> group_{};
+  std::size_t groups_ = 0;
+  S scale_;
+};
+
+template <int D, class S>
+class CurvatureKernel<PublishedTwiceMean<D>, S> : public SectionKernel<S, D, false, 2> {
+  using SectionKernel<S, D, false, 2>::SectionKernel;
+};
+template <int D, class S>
+class CurvatureKernel<SectionMean<D>, S> : public SectionKernel<S, D, false, 1> {
+  using SectionKernel<S, D, false, 1>::SectionKernel;
+};
+template <int D, class S>
+class CurvatureKernel<ClampedMean<D>, S> : public SectionKernel<S, D, true, 1> {
+  using SectionKernel<S, D, true, 1>::SectionKernel;
+};
+
+/// Sections without which a statistic has no meaning.
+template <class Statistic>
+inline constexpr int fewest_sections = 1;
+
+/// The width that a statistic is computed in: one at a time where it needs a function without a
+/// vector form.
+template <class Statistic, class S>
+inline constexpr int curvature_vector_bytes = native_vector_bytes;
+
+/// A strip of columns, gone through from top to bottom. Every pixel of a row is computed the fast
+/// way first, except in vectors of which no pixel had a whole ring in the row above; what comes out
+/// as NaN is then looked at again. Every pixel gets the same bits whichever way led to it.
+template <class Kernel, class Units, class S, int VectorBytes>
+class CurvatureStrip {
+  static constexpr int n = row_lanes<S, VectorBytes>;
+  using V = typename RowVector<S, n>::type;
+
+ public:
+  static constexpr Index columns = 128;  ///< with a ring around them they stay in the cache
+
+  CurvatureStrip(const Kernel& kernel, const Units& units, int least)
+      : kernel_(kernel), units_(units), least_(least) {}
+
+  /// `count` <= columns curvatures, rounded up to whole vectors, around cells[0] and on. True when
+  /// all rings were whole: nothing is missing.
+  bool row(const S* cells, Index count, S* out) {
+    const bool whole = all_whole(cells, count, out);
+    if (!whole) {
+      mend(cells, count, out);
+    }
+    return whole;
+  }
+
+ private:
+  bool all_whole(const S* cells, Index count, S* out) const {
+    bool tried = true;
+    V sum{};  // NaN when any of them is
+    for (Index j = 0; j < count; j += n) {
+      if (ragged_[j / n]) {
+        tried = false;
+      } else {
+        const V k = all_sections(cells + j);
+        sum = sum + k;
+        store_cells<S>(out + j, k);
+      }
+    }
+    return tried && !lacks(known<V>(V{}), known<V>(sum));
+  }
+
+  void mend(const S* cells, Index count, S* out) {
+    const V nan = V{} + not_a_number<S>();
+    for (Index j = 0; j < count; j += n) {
+      bool& ragged = ragged_[j / n];
+      const V zeta = load_cells<V, S>(cells + j);
+      const auto here = known<V>(zeta);
+      V k = ragged ? nan : load_cells<V, S>(out + j);
+      if (!any_lane(here)) {
+        ragged = true;
+      } else if (ragged || lacks(here, known<V>(k))) {
+        const PartialCurvature<V> rest =
+            kernel_.template partial<V>(cells + j, units_.template shrink<V>(zeta), least_);
+        if (ragged && any_lane(at_least<V>(rest.sections, Kernel::directions))) {
+          k = all_sections(cells + j);
+        }
+        const auto found = known<V>(k);
+        ragged = !any_lane(found);
+        k = found ? k : rest.curvature;
+      }
+      store_cells<S>(out + j, k);
+    }
+  }
+
+  [[gnu::always_inline]] V all_sections(const S* cells) const {
+    const V zeta = load_cells<V, S>(cells);
+    return kernel_.template complete<V>(cells, units_.template shrink<V>(zeta));
+  }
+
+  const Kernel& kernel_;
+  const Units& units_;
+  int least_;
+  bool ragged_[static_cast<std::size_t>(columns / n)] = {};
+};
+
+}  // namespace detail
+}  // namespace v0
+}  // namespace fingerpad

@@ -1,0 +1,121 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+#pragma once
+// What a camera's pixels see at a depth, with all that does not depend on the depth computed
+// beforehand: point_at() of optics.hpp without its square roots and divisions.
+#include <cmath>
+#include <cstddef>
+
+#include "fingerpad/image/detail/line_vector.hpp"
+#include "fingerpad/image/detail/row_lanes.hpp"
+#include "fingerpad/core/dots.hpp"
+#include "fingerpad/core/grid.hpp"
+#include "fingerpad/optics/camera.hpp"
+#include "fingerpad/core/scalar.hpp"
+
+namespace fingerpad {
+inline namespace v0 {
+namespace detail {
+
+template <class CameraType>
+class PixelRays;
+
+/// The point at a distance of (x, y) pixels from the center of the image.
+template <scalar S>
+Point3<S> point_beside(const S& x_px, const S& y_px, const S& mm_per_px, const S& depth_mm) {
+  return {S(x_px * mm_per_px), S(y_px * mm_per_px), depth_mm};
+}
+
+/// A pixel's ray is straight and lies in a plane with the axis: its point is (column - center, row
+/// - center) times a number that grows linearly with the depth. Two numbers per pixel.
+template <scalar S>
+class PixelRays<Camera<S>> {
+ public:
+  using Scalar = S;
+
+  PixelRays(const Camera<S>& camera, Index rows, Index cols)
+      : center_x_(camera.center_x_px), center_y_(camera.center_y_px), cols_(cols) {
+    at_plate_.reserve(static_cast<std::size_t>(rows * cols));
+    per_mm_.reserve(static_cast<std::size_t>(rows * cols));
+    for (Index i = 0; i < rows; ++i) {
+      for (Index j = 0; j < cols; ++j) {
+        const MmPerPx mm_per_px = ray(camera, i, j);
+        at_plate_.push_back(mm_per_px.at_plate);
+        per_mm_.push_back(mm_per_px.per_mm);
+      }
+    }
+  }
+
+  /// A column and a row from the center, px.
+  S x_px(Index col) const { return S(static_cast<double>(col)) - center_x_; }
+  S y_px(Index row) const { return S(static_cast<double>(row)) - center_y_; }
+
+  /// Of a pixel, or as many beside each other as V has lanes.
+  template <class V>
+  [[gnu::always_inline]] V mm_per_px(Index row, Index col, const V& depth_mm) const {
+    const Index at = row * cols_ + col;
+    return load_cells<V, S>(at_plate_.data() + at) +
+           load_cells<V, S>(per_mm_.data() + at) * depth_mm;
+  }
+
+  Point3<S> operator()(Index row, Index col, const S& depth_mm) const {
+    return point_beside(x_px(col), y_px(row), mm_per_px(row, col, depth_mm), depth_mm);
+  }
+
+ private:
+  struct MmPerPx {
+    S at_plate;
+    S per_mm;
+  };
+
+  static MmPerPx ray(const Camera<S>& camera, Index row, Index col) {
+    using std::sqrt;
+    const S x = S(static_cast<double>(col)) - camera.center_x_px;
+    const S y = S(static_cast<double>(row)) - camera.center_y_px;
+    const S r_sq = x * x + y * y;
+    // on the axis, the limit from beside it
+    const S r = value(r_sq) == 0 ? S(1) / S(1048576) : S(sqrt(r_sq));
+    // one depth, far enough for the difference of two points to keep its digits
+    const S far = S(64);
+    const S near_x = point_at(camera, camera.center_y_px, S(camera.center_x_px + r), S(0)).x;
+    const S far_x = point_at(camera, camera.center_y_px, S(camera.center_x_px + r), far).x;
+    return {S(near_x / r), S((far_x - near_x) / (far * r))};
+  }
+
+  S center_x_;
+  S center_y_;
+  Index cols_;
+  line_vector<S> at_plate_;
+  line_vector<S> per_mm_;
+};
+
+/// Nothing to remember.
+template <scalar S>
+class PixelRays<OrthographicCamera<S>> {
+ public:
+  using Scalar = S;
+
+  PixelRays(const OrthographicCamera<S>& camera, Index, Index) : camera_(camera) {}
+
+  S x_px(Index col) const { return S(static_cast<double>(col)) - camera_.center_x_px; }
+  S y_px(Index row) const { return S(static_cast<double>(row)) - camera_.center_y_px; }
+
+  template <class V>
+  [[gnu::always_inline]] V mm_per_px(Index, Index, const V&) const {
+    return V{} + camera_.pitch_mm;
+  }
+
+  Point3<S> operator()(Index row, Index col, const S& depth_mm) const {
+    return point_beside(x_px(col), y_px(row), camera_.pitch_mm, depth_mm);
+  }
+
+ private:
+  OrthographicCamera<S> camera_;
+};
+
+template <class CameraType>
+using camera_scalar_t = typename PixelRays<CameraType>::Scalar;
+
+}  // namespace detail
+}  // namespace v0
+}  // namespace fingerpad

@@ -1,0 +1,182 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+#pragma once
+// Connected regions of a mask (neighbours share a side), found one after the other and grown, in
+// memory taken up front: a pixel is in the queue once at most, and a region is a stretch of it.
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <vector>
+
+#include "fingerpad/image/detail/row_lanes.hpp"
+#include "fingerpad/core/grid.hpp"
+
+namespace fingerpad {
+inline namespace v0 {
+namespace detail {
+
+/// State of a pixel while regions are found.
+enum class Mark : std::uint8_t { free, unknown, seed, contact };
+
+inline const std::uint8_t* bytes_of(const Mark* marks) {
+  return reinterpret_cast<const std::uint8_t*>(marks);
+}
+inline std::uint8_t* bytes_of(Mark* marks) {
+  return reinterpret_cast<std::uint8_t*>(marks);
+}
+
+/// The first such mark in [first, last), or last.
+inline const Mark* find_mark(const Mark* first, const Mark* last, Mark which) {
+  const auto count = static_cast<std::size_t>(last - first);
+  const void* found = std::memchr(first, static_cast<int>(which), count);
+  return found == nullptr ? last : static_cast<const Mark*>(found);
+}
+
+/// Marks of a row of curvatures: seed below the threshold, unknown where there is none.
+template <class S>
+void mark_below(const S& threshold, const S* curvature, Index count, Mark* marks) {
+  for_each_cell<S>(count, [&]<class V>(Index j) {
+    const V k = load_cells<V, S>(curvature + j);
+    const V known = k == k ? V{} : V(V{} + S(static_cast<int>(Mark::unknown)));
+    const V mark = k < V{} + threshold ? V(V{} + S(static_cast<int>(Mark::seed))) : known;
+    store_cells<S>(bytes_of(marks + j), mark);
+  });
+}
+
+/// Pixels of an image within a border of one pixel, which is unknown for ever: no bounds to test.
+struct BorderedImage {
+  Index rows;
+  Index cols;
+
+  friend constexpr bool operator==(const BorderedImage&, const BorderedImage&) = default;
+  constexpr Index stride() const { return cols + 2; }
+  constexpr Index size() const { return (rows + 2) * stride(); }
+  /// Where the pixel (row, col) lies.
+  constexpr Index at(Index row, Index col) const { return (row + 1) * stride() + col + 1; }
+  /// The image in memory of size() cells.
+  template <class T>
+  constexpr StridedView<T> view(T* cells) const {
+    return {cells + at(0, 0), rows, cols, stride()};
+  }
+};
+
+class Regions {
+ public:
+  explicit Regions(const BorderedImage& image)
+      : image_(image),
+        mark_(static_cast<std::size_t>(image.size()), Mark::unknown),
+        queue_(static_cast<std::size_t>(image.rows * image.cols)) {}
+
+  const BorderedImage& image() const { return image_; }
+  Mark& mark(Index at) { return mark_[static_cast<std::size_t>(at)]; }
+  StridedView<Mark> marks() { return image_.view(mark_.data()); }
+
+  /// A region: the pixels queue[begin, end).
+  struct Region {
+    Index begin = 0;
+    Index end = 0;
+    Index pixels() const { return end - begin; }
+  };
+  Index pixel(Index k) const { return queue_[static_cast<std::size_t>(k)]; }
+  const Index* begin(const Region& region) const { return queue_.data() + region.begin; }
+  const Index* end(const Region& region) const { return queue_.data() + region.end; }
+
+  /// Finds the connected regions of seeds, which become contact, drops those for which keep(region)
+  /// is false, calls visit(region) for the others and returns how many these were. A region that
+  /// visit lets grow may swallow others before they are found.
+  template <class Keep, class Visit>
+  Index for_each(const Keep& keep, const Visit& visit) {
+    Index count = 0;
+    tail_ = 0;
+    for (Index at = next_seed(0); at < image_.size(); at = next_seed(at + 1)) {
+      Region region{tail_, tail_};
+      push(at);
+      spread(region.begin, image_.size(), [&](Index pixel) { return mark(pixel) == Mark::seed; });
+      region.end = tail_;
+      if (keep(region)) {
+        visit(region);
+        count += region.pixels() > 0 ? 1 : 0;
+      } else {
+        trim(region, [](Index) { return false; });
+      }
+    }
+    return count;
+  }
+
+  /// Adds to the region that was found last what borders on it and fulfils `belongs`, then what
+  /// borders on that, `layers` times.
+  template <class Belongs>
+  void grow(Region& region, Index layers, const Belongs& belongs) {
+    spread(region.begin, layers, [&](Index pixel) {
+      return (mark(pixel) == Mark::free || mark(pixel) == Mark::seed) && belongs(pixel);
+    });
+    region.end = tail_;
+  }
+
+  /// Frees what does not fulfil `belongs` of the region that was found last. It leaves the queue,
+  /// or a pixel that regions take in turns would be there twice.
+  template <class Belongs>
+  void trim(Region& region, const Belongs& belongs) {
+    tail_ = region.begin;
+    for (Index k = region.begin; k < region.end; ++k) {
+      const Index at = pixel(k);
+      if (belongs(at)) {
+        queue_[static_cast<std::size_t>(tail_)] = at;
+        ++tail_;
+      } else {
+        mark(at) = Mark::free;
+      }
+    }
+    region.end = tail_;
+  }
+
+  void set(const Region& region, Mark to) {
+    for (const Index* at = begin(region); at != end(region); ++at) {
+      mark(*at) = to;
+    }
+  }
+
+  /// What was found becomes seed again.
+  void reseed() {
+    for (const Index* at = queue_.data(); at != queue_.data() + tail_; ++at) {
+      if (mark(*at) == Mark::contact) {
+        mark(*at) = Mark::seed;
+      }
+    }
+  }
+
+ private:
+  Index next_seed(Index from) const {
+    const Mark* marks = mark_.data();
+    return find_mark(marks + from, marks + image_.size(), Mark::seed) - marks;
+  }
+
+  void push(Index at) {
+    mark(at) = Mark::contact;
+    queue_[static_cast<std::size_t>(tail_)] = at;
+    ++tail_;
+  }
+
+  template <class Belongs>
+  void spread(Index head, Index layers, const Belongs& belongs) {
+    for (Index layer = 0; layer < layers && head < tail_; ++layer) {
+      for (const Index layer_end = tail_; head < layer_end; ++head) {
+        const Index at = queue_[static_cast<std::size_t>(head)];
+        for (const Index beside : {at - 1, at + 1, at - image_.stride(), at + image_.stride()}) {
+          if (belongs(beside)) {
+            push(beside);
+          }
+        }
+      }
+    }
+  }
+
+  BorderedImage image_;
+  std::vector<Mark> mark_;
+  std::vector<Index> queue_;
+  Index tail_ = 0;
+};
+
+}  // namespace detail
+}  // namespace v0
+}  // namespace fingerpad

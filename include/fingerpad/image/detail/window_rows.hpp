@@ -1,0 +1,99 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+#pragma once
+// What both ways of summing over windows share: which pixels count, how rows come in and go out,
+// and the rule that turns a sum and a count into a mean. See window_sums.hpp.
+#include <array>
+#include <cmath>
+#include <concepts>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <type_traits>
+
+#include "fingerpad/core/expects.hpp"
+#include "fingerpad/core/grid.hpp"
+#include "fingerpad/core/scalar.hpp"
+
+namespace fingerpad {
+inline namespace v0 {
+namespace detail {
+
+/// A pixel counts when dark < red, green < saturated, which no NaN is.
+template <class S>
+struct ValueLimits {
+  S dark;
+  S saturated;
+};
+
+/// Limits are given as double for integer pixels (5.5 and infinity are fine), else as the pixel.
+template <class Pixel>
+using window_limits_t = ValueLimits<real_of_t<Pixel>>;
+
+/// What a mean is computed in: float for integer pixels, whose sums are exact, else the pixel type.
+template <class Pixel>
+using window_mean_t = std::conditional_t<std::integral<Pixel>, float, Pixel>;
+
+/// Where one row of means goes: `cols` elements each; count may be null.
+template <class Mean>
+struct MeanRows {
+  Mean* red;
+  Mean* green;
+  std::uint16_t* count = nullptr;
+};
+
+/// Integer pixels inside an open interval, as a closed one; empty as [1, 0].
+template <std::unsigned_integral Pixel>
+struct ClosedRange {
+  Pixel low;
+  Pixel high;
+
+  constexpr ClosedRange(const ValueLimits<double>& open) : low(1), high(0) {
+    constexpr double top = double((std::numeric_limits<Pixel>::max)());
+    if (!(open.dark < top) || !(open.saturated > 0)) {
+      return;
+    }
+    const double first = open.dark < 0 ? 0 : std::floor(open.dark) + 1;
+    const double last = open.saturated > top ? top : std::ceil(open.saturated) - 1;
+    if (first > last) {
+      return;
+    }
+    low = static_cast<Pixel>(first);
+    high = static_cast<Pixel>(last);
+  }
+};
+
+/// Half widths of the windows; refuses sizes that are even, out of range or not increasing.
+template <int Windows>
+std::array<Index, std::size_t(Windows)> window_radii(
+    const std::array<int, std::size_t(Windows)>& sizes_px) {
+  static_assert(Windows >= 1);
+  std::array<Index, std::size_t(Windows)> radii{};
+  int before = 1;
+  for (std::size_t k = 0; k < sizes_px.size(); ++k) {
+    const int size = sizes_px[k];
+    expects(size % 2 == 1 && size > before && size <= 255, "WindowSums", "window_px", size,
+            "odd, 3..255, and larger than the window before it");
+    before = size;
+    radii[k] = size / 2;
+  }
+  return radii;
+}
+
+/// A caller's row source: load(row, red, green), or load(row, red, green, inside) where it also
+/// fills one byte per pixel, nonzero where the pixel may count. All rows asked for lie in the
+/// image.
+template <class Load, class Pixel>
+concept masked_row_source = std::invocable<Load&, Index, Pixel*, Pixel*, std::uint8_t*>;
+template <class Load, class Pixel>
+concept row_source = masked_row_source<Load, Pixel> || std::invocable<Load&, Index, Pixel*, Pixel*>;
+
+/// The mean of integer pixels. Multiplying by the reciprocal is what box filters do, so that whole
+/// windows have their bits, and it lets both channels share one division.
+inline float window_mean(std::uint32_t sum, std::uint16_t count) {
+  return count == 0 ? not_a_number<float>() : float(sum) * (1.0f / float(count));
+}
+
+}  // namespace detail
+}  // namespace v0
+}  // namespace fingerpad

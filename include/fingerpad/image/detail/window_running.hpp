@@ -1,0 +1,212 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+#pragma once
+// Window means for any number: float, double, long double, a dual number, 50 digits, or integers.
+// Plain running sums, down the columns and then along the row. See window_sums.hpp for the
+// contract.
+#include <array>
+#include <concepts>
+#include <cstddef>
+#include <cstdint>
+#include <type_traits>
+#include <vector>
+
+#include "fingerpad/image/detail/window_rows.hpp"
+
+namespace fingerpad {
+inline namespace v0 {
+namespace detail {
+
+template <class Pixel, int Windows = 1>
+class RunningWindowSums {
+ public:
+  using Mean = window_mean_t<Pixel>;
+  using Sum = std::conditional_t<std::integral<Pixel>,
+                                 std::uint32_t,
+                                 std::conditional_t<std::same_as<Pixel, float>, double, Pixel>>;
+
+  RunningWindowSums(Index rows,
+                    Index cols,
+                    const std::array<int, std::size_t(Windows)>& window_px,
+                    const window_limits_t<Pixel>& limits,
+                    int green_windows = Windows,
+                    float scale = 1)
+      : rows_(rows),
+        cols_(cols),
+        radius_(window_radii<Windows>(window_px)),
+        limits_(limits),
+        green_windows_(std::size_t(green_windows)),
+        scale_(scale) {
+    expects(rows >= 1, "WindowSums", "rows", rows, ">= 1");
+    expects(cols >= 1, "WindowSums", "cols", cols, ">= 1");
+    ring_.resize(std::size_t(2 * radius_.back() + 2));
+    for (Row& row : ring_) {
+      row = Row{Pixels(size(), Pixel(0)), Pixels(size(), Pixel(0)), Bytes(size(), 1)};
+    }
+    for (ColumnSums& sums : sums_) {
+      sums = ColumnSums{Sums(size(), Sum(0)), Sums(size(), Sum(0)), Counts(size(), 0)};
+    }
+  }
+
+  /// Prepares for row `first_row`. Rounded sums would depend on where they began, so they begin
+  /// anew at fixed rows: bands of one image then agree in every bit.
+  template <row_source<Pixel> Load>
+  void start(Index first_row, Load&& load_row) {
+    next_row_ = first_row - first_row % restart_rows;
+    for (Index row = next_row_ - radius_.back(); row < next_row_ + radius_.back(); ++row) {
+      take_in(row, load_row);
+    }
+    while (next_row_ < first_row) {
+      slide(load_row);
+    }
+  }
+
+  Index next_row() const { return next_row_; }
+
+  /// Means of row next_row(), which then moves on by one.
+  template <row_source<Pixel> Load>
+  void advance(Load&& load_row, const MeanRows<Mean> (&out)[std::size_t(Windows)]) {
+    slide(load_row);
+    for (std::size_t k = 0; k < sums_.size(); ++k) {
+      average(k, out[k]);
+    }
+  }
+
+ private:
+  using Pixels = std::vector<Pixel>;
+  using Bytes = std::vector<std::uint8_t>;
+  using Sums = std::vector<Sum>;
+  using Counts = std::vector<std::uint16_t>;
+  struct Row {
+    Pixels red, green;
+    Bytes valid;
+  };
+  struct ColumnSums {
+    Sums red, green;
+    Counts count;
+  };
+  static constexpr Index restart_rows = 32;
+
+  std::size_t size() const { return std::size_t(cols_); }
+  bool in_image(Index row) const { return row >= 0 && row < rows_; }
+  Row& slot(Index row) { return ring_[std::size_t(row) % ring_.size()]; }
+
+  bool counts(const Pixel& v) const { return limits_.dark < v && v < limits_.saturated; }
+
+  template <class Load>
+  void take_in(Index row, Load& load_row) {
+    if (!in_image(row)) {
+      return;
+    }
+    Row& to = slot(row);
+    if constexpr (masked_row_source<Load, Pixel>) {
+      load_row(row, to.red.data(), to.green.data(), to.valid.data());
+    } else {
+      load_row(row, to.red.data(), to.green.data());
+    }
+    for (std::size_t j = 0; j < size(); ++j) {
+      const bool inside = !masked_row_source<Load, Pixel> || to.valid[j] != 0;
+      const bool valid = inside && counts(to.red[j]) && counts(to.green[j]);
+      to.valid[j] = valid;
+      if (!valid) {
+        to.red[j] = to.green[j] = Pixel(0);
+      }
+    }
+  }
+
+  template <class Load>
+  void slide(Load& load_row) {
+    const Index row = next_row_++;
+    take_in(row + radius_.back(), load_row);
+    for (std::size_t k = 0; k < sums_.size(); ++k) {
+      const Index r = radius_[k];
+      if (row % restart_rows != 0) {
+        add_row(sums_[k], row + r);
+        subtract_row(sums_[k], row - r - 1);
+        continue;
+      }
+      sums_[k].red.assign(size(), Sum(0));
+      sums_[k].green.assign(size(), Sum(0));
+      sums_[k].count.assign(size(), 0);
+      for (Index i = row - r; i <= row + r; ++i) {
+        add_row(sums_[k], i);
+      }
+    }
+  }
+
+  void add_row(ColumnSums& sums, Index row) {
+    if (!in_image(row)) {
+      return;
+    }
+    const Row& from = slot(row);
+    for (std::size_t j = 0; j < size(); ++j) {
+      sums.red[j] = Sum(sums.red[j] + Sum(from.red[j]));
+      sums.green[j] = Sum(sums.green[j] + Sum(from.green[j]));
+      sums.count[j] = std::uint16_t(sums.count[j] + from.valid[j]);
+    }
+  }
+
+  void subtract_row(ColumnSums& sums, Index row) {
+    if (!in_image(row)) {
+      return;
+    }
+    const Row& from = slot(row);
+    for (std::size_t j = 0; j < size(); ++j) {
+      sums.red[j] = Sum(sums.red[j] - Sum(from.red[j]));
+      sums.green[j] = Sum(sums.green[j] - Sum(from.green[j]));
+      sums.count[j] = std::uint16_t(sums.count[j] - from.valid[j]);
+    }
+  }
+
+  void average(std::size_t k, const MeanRows<Mean>& out) const {
+    const ColumnSums& sums = sums_[k];
+    const Index r = radius_[k];
+    Sum red(0), green(0);
+    int count = 0;
+    for (Index j = -r; j < cols_; ++j) {
+      if (j + r < cols_) {
+        const std::size_t in = std::size_t(j + r);
+        red = Sum(red + sums.red[in]);
+        green = Sum(green + sums.green[in]);
+        count += sums.count[in];
+      }
+      if (j > r) {
+        const std::size_t past = std::size_t(j - r - 1);
+        red = Sum(red - sums.red[past]);
+        green = Sum(green - sums.green[past]);
+        count -= sums.count[past];
+      }
+      if (j < 0) {
+        continue;
+      }
+      out.red[j] = mean(red, std::uint16_t(count));
+      if (k < green_windows_) {
+        out.green[j] = mean(green, std::uint16_t(count));
+      }
+      if (out.count != nullptr) {
+        out.count[j] = std::uint16_t(count);
+      }
+    }
+  }
+
+  Mean mean(const Sum& sum, std::uint16_t count) const {
+    if constexpr (std::integral<Pixel>) {
+      return window_mean(sum, count) * scale_;
+    } else {
+      return count == 0 ? not_a_number<Mean>() : Mean(sum / Sum(int(count)));
+    }
+  }
+
+  Index rows_, cols_;
+  std::array<Index, std::size_t(Windows)> radius_;
+  window_limits_t<Pixel> limits_;
+  std::size_t green_windows_;
+  float scale_;
+  Index next_row_ = 0;
+  std::vector<Row> ring_;
+  std::array<ColumnSums, std::size_t(Windows)> sums_;
+};
+
+}  // namespace detail
+}  // namespace v0
+}  // namespace fingerpad

@@ -1,0 +1,164 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+#pragma once
+// A disc of pixels as a pile of rectangles, for sums over the disc from a summed-area table.
+//
+//        ____            Rectangle k reaches half_cols[k] to each side and half_rows[k] up and
+//      _|____|_          down; wider ones are lower. Their union is the sum of all rectangles
+//     |_|____|_|         minus the overlaps of each with the next, half_cols[k + 1] by
+//       |____|           half_rows[k].
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <vector>
+
+#include "fingerpad/core/grid.hpp"
+
+namespace fingerpad {
+inline namespace v0 {
+namespace detail {
+
+struct DiscLevel {
+  Index half_rows;
+  Index half_cols;
+  Index overlap_half_cols;  ///< of the next, narrower rectangle; -1 for the last
+};
+
+/// sum = staircase_weight * (sum over the union) + square_weight * (sum over levels[square]).
+struct DiscShape {
+  std::vector<DiscLevel> levels;
+  std::ptrdiff_t square = -1;  ///< which level is square; -1: none is needed
+  double staircase_weight = 1;
+  double square_weight = 0;
+};
+
+/// Largest w with w^2 + row^2 <= radius^2.
+inline Index disc_half_width(Index radius, Index row) {
+  Index w = 0;
+  while ((w + 1) * (w + 1) + row * row <= radius * radius) {
+    ++w;
+  }
+  return w;
+}
+
+/// The union of rectangles with these falling half widths; half heights are the same numbers from
+/// the other end, so that rows and columns count alike.
+inline DiscShape staircase(const std::vector<Index>& half_cols) {
+  DiscShape shape;
+  const std::size_t n = half_cols.size();
+  for (std::size_t k = 0; k < n; ++k) {
+    shape.levels.push_back({half_cols[n - 1 - k], half_cols[k], k + 1 < n ? half_cols[k + 1] : -1});
+  }
+  return shape;
+}
+
+/// Half width of the staircase in a row; -1 above its top.
+inline Index staircase_half_width(const DiscShape& shape, Index row) {
+  for (const DiscLevel& level : shape.levels) {
+    if (row <= level.half_rows) {
+      return level.half_cols;
+    }
+  }
+  return -1;
+}
+
+/// Number of pixels and their second moment sum(x^2) of a figure given by half width per row.
+struct DiscMoments {
+  double area = 0;
+  double second = 0;
+
+  void add_row(Index half_width) {
+    const double w = static_cast<double>(half_width);
+    area += 2 * w + 1;
+    second += w * (w + 1) * (2 * w + 1) / 3;
+  }
+};
+
+}  // namespace detail
+
+/// Every pixel whose centre lies within the radius, as published. Cost per pixel grows with the
+/// radius: about 0.6 radius rectangles.
+struct ExactDisc {
+  static detail::DiscShape shape(Index radius_px) {
+    std::vector<Index> half_cols;
+    for (Index row = 0; row <= radius_px; ++row) {
+      const Index w = detail::disc_half_width(radius_px, row);
+      if (half_cols.empty() || half_cols.back() != w) {
+        half_cols.push_back(w);
+      }
+    }
+    return detail::staircase(half_cols);
+  }
+};
+
+/// At most `Levels` rectangles, weighted so that area and second moment are those of the disc:
+/// exact for a change of inclination up to second order over the disc, at a cost per pixel that
+/// does not depend on the radius. `Levels` is odd, so that the middle rectangle is a square.
+template <int Levels = 5>
+  requires(Levels >= 3 && Levels % 2 == 1)
+struct SteppedDisc {
+  static detail::DiscShape shape(Index radius_px) {
+    const detail::DiscShape exact = ExactDisc::shape(radius_px);
+    if (exact.levels.size() <= static_cast<std::size_t>(Levels)) {
+      return exact;
+    }
+    // The steps that share the fewest pixels with what the disc leaves out, over a few scales.
+    std::vector<Index> best;
+    Index best_difference = 0;
+    for (int percent = 95; percent <= 106; ++percent) {
+      const std::vector<Index> steps = steps_of(radius_px, percent / 100.0);
+      const Index difference = difference_from_disc(detail::staircase(steps), radius_px);
+      if (best.empty() || difference < best_difference) {
+        best = steps;
+        best_difference = difference;
+      }
+    }
+    return weighted(detail::staircase(best), radius_px);
+  }
+
+ private:
+  static std::vector<Index> steps_of(Index radius_px, double scale) {
+    std::vector<Index> steps;
+    for (int k = 0; k < Levels; ++k) {
+      const double angle = (k + 0.5) / Levels * 1.5707963267948966;
+      const double w = scale * static_cast<double>(radius_px) * std::cos(angle);
+      const Index whole = static_cast<Index>(w + 0.5);
+      steps.push_back(whole < radius_px ? whole : radius_px);
+    }
+    return steps;
+  }
+
+  static Index difference_from_disc(const detail::DiscShape& shape, Index radius_px) {
+    Index difference = 0;
+    for (Index row = 0; row <= radius_px; ++row) {
+      const Index a = detail::staircase_half_width(shape, row);
+      const Index b = detail::disc_half_width(radius_px, row);
+      difference += a < b ? b - a : a - b;
+    }
+    return difference;
+  }
+
+  static detail::DiscShape weighted(detail::DiscShape shape, Index radius_px) {
+    detail::DiscMoments disc, stairs, square;
+    shape.square = Levels / 2;
+    const Index side = shape.levels[static_cast<std::size_t>(shape.square)].half_cols;
+    for (Index row = -radius_px; row <= radius_px; ++row) {
+      const Index distance = row < 0 ? -row : row;
+      disc.add_row(detail::disc_half_width(radius_px, distance));
+      const Index w = detail::staircase_half_width(shape, distance);
+      if (w >= 0) {
+        stairs.add_row(w);
+      }
+      if (distance <= side) {
+        square.add_row(side);
+      }
+    }
+    const double determinant = stairs.area * square.second - square.area * stairs.second;
+    shape.staircase_weight = (disc.area * square.second - square.area * disc.second) / determinant;
+    shape.square_weight = (stairs.area * disc.second - disc.area * stairs.second) / determinant;
+    return shape;
+  }
+};
+
+}  // namespace v0
+}  // namespace fingerpad

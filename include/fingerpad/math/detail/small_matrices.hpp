@@ -1,0 +1,199 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+#pragma once
+// Symmetric matrices of a few rows, for every scalar: eigenvectors of 3x3 (Jacobi's rotations) and
+// the solution and inverse of normal equations (Cholesky, equilibrated).
+#include <array>
+#include <cmath>
+#include <cstddef>
+
+#include "fingerpad/core/detail/point_algebra.hpp"
+#include "fingerpad/core/dots.hpp"
+#include "fingerpad/core/scalar.hpp"
+
+namespace fingerpad {
+inline namespace v0 {
+namespace detail {
+
+template <scalar S, std::size_t N>
+using SmallMatrix = std::array<std::array<S, N>, N>;
+
+/// a or -a, whichever looks toward the object.
+template <scalar S>
+Point3<S> toward_object(const Point3<S>& a) {
+  const S side = S(value(a.z) < 0 ? -1 : 1);
+  return {S(side * a.x), S(side * a.y), S(side * a.z)};
+}
+/// A right-handed frame whose third axis is the unit vector n; u lies in the plane of x and n.
+template <scalar S>
+struct SurfaceFrame {
+  Point3<S> u;
+  Point3<S> v;
+  Point3<S> n;
+
+  static SurfaceFrame around(const Point3<S>& n) {
+    // the axis that n is least along keeps the cross product away from 0
+    const bool steep = value(S(n.x * n.x)) > 0.5;
+    const Point3<S> along = steep ? Point3<S>{S(0), S(1), S(0)} : Point3<S>{S(1), S(0), S(0)};
+    const Point3<S> v = unit(cross(n, along));
+    return {cross(v, n), v, n};
+  }
+  Point3<S> to_frame(const Point3<S>& p) const { return {dot(u, p), dot(v, p), dot(n, p)}; }
+  Point3<S> from_frame(const Point3<S>& p) const {
+    return {S(u.x * p.x + v.x * p.y + n.x * p.z), S(u.y * p.x + v.y * p.y + n.y * p.z),
+            S(u.z * p.x + v.z * p.y + n.z * p.z)};
+  }
+};
+
+/// Tangent of the angle by which a symmetric 2x2 block {pp, pq; pq, qq} is made diagonal, at
+/// most 1.
+template <scalar S>
+S jacobi_tangent(const S& pp, const S& qq, const S& pq) {
+  using std::sqrt;
+  if (value(pq) == 0) {
+    return S(0);
+  }
+  const S theta = (qq - pp) / (pq + pq);
+  if (!is_finite(theta) || value(S(theta * theta)) > 1e30) {
+    return S(pq / (qq - pp));
+  }
+  const S root = sqrt(S(theta * theta + S(1)));
+  return value(theta) < 0 ? S(S(1) / (theta - root)) : S(S(1) / (theta + root));
+}
+
+/// Eigenvalues, largest first, and the eigenvectors beside them.
+template <scalar S>
+struct Eigen3 {
+  std::array<S, 3> value;
+  std::array<Point3<S>, 3> vector;
+};
+
+/// One Jacobi rotation: a becomes diagonal in (p, q), the columns of `vectors` turn with it.
+template <scalar S>
+void jacobi_rotate(SmallMatrix<S, 3>& a, SmallMatrix<S, 3>& vectors, std::size_t p, std::size_t q) {
+  using std::sqrt;
+  const S t = jacobi_tangent(a[p][p], a[q][q], a[p][q]);
+  const S c = S(1) / S(sqrt(S(S(1) + t * t)));
+  const S s = t * c;
+  const std::size_t r = 3 - p - q;
+  const S shift = t * a[p][q];
+  a[p][p] = a[p][p] - shift;
+  a[q][q] = a[q][q] + shift;
+  a[p][q] = a[q][p] = S(0);
+  const S rp = c * a[r][p] - s * a[r][q];
+  const S rq = s * a[r][p] + c * a[r][q];
+  a[r][p] = a[p][r] = rp;
+  a[r][q] = a[q][r] = rq;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const S kp = c * vectors[k][p] - s * vectors[k][q];
+    const S kq = s * vectors[k][p] + c * vectors[k][q];
+    vectors[k][p] = kp;
+    vectors[k][q] = kq;
+  }
+}
+
+/// Eigenvectors of a symmetric matrix. Each sweep squares what is left beside the diagonal: eight
+/// are enough for fifty digits.
+template <scalar S>
+Eigen3<S> eigenvectors(SmallMatrix<S, 3> a) {
+  SmallMatrix<S, 3> vectors{};
+  for (std::size_t i = 0; i < 3; ++i) {
+    for (std::size_t j = 0; j < 3; ++j) {
+      vectors[i][j] = S(i == j ? 1 : 0);
+    }
+  }
+  for (int sweep = 0; sweep < 8; ++sweep) {
+    jacobi_rotate(a, vectors, 0, 1);
+    jacobi_rotate(a, vectors, 0, 2);
+    jacobi_rotate(a, vectors, 1, 2);
+  }
+  std::array<std::size_t, 3> order = {0, 1, 2};
+  const auto put_larger_first = [&](std::size_t i, std::size_t j) {
+    if (a[order[i]][order[i]] < a[order[j]][order[j]]) {
+      const std::size_t held = order[i];
+      order[i] = order[j];
+      order[j] = held;
+    }
+  };
+  put_larger_first(0, 1);
+  put_larger_first(1, 2);
+  put_larger_first(0, 1);
+  Eigen3<S> out{};
+  for (std::size_t k = 0; k < 3; ++k) {
+    const std::size_t c = order[k];
+    out.value[k] = a[c][c];
+    out.vector[k] = {vectors[0][c], vectors[1][c], vectors[2][c]};
+  }
+  return out;
+}
+
+/// Cholesky factor of a symmetric matrix whose columns are first brought to the same length, so
+/// that units do not matter. `good` is false where a column is (to `least` of its length) a
+/// combination of those before it.
+template <scalar S, std::size_t N>
+class NormalEquations {
+ public:
+  explicit NormalEquations(const SmallMatrix<S, N>& a, double least = 1e-9) {
+    using std::sqrt;
+    for (std::size_t i = 0; i < N; ++i) {
+      good = good && value(a[i][i]) > 0 && is_finite(a[i][i]);
+      scale_[i] = good ? S(S(1) / S(sqrt(a[i][i]))) : S(0);
+    }
+    for (std::size_t j = 0; j < N && good; ++j) {
+      S pivot = S(1);
+      for (std::size_t k = 0; k < j; ++k) {
+        pivot = pivot - factor_[j][k] * factor_[j][k];
+      }
+      good = value(pivot) > scalar_real_t<S>(least);
+      factor_[j][j] = good ? S(sqrt(pivot)) : S(1);
+      for (std::size_t i = j + 1; i < N; ++i) {
+        S sum = a[i][j] * scale_[i] * scale_[j];
+        for (std::size_t k = 0; k < j; ++k) {
+          sum = sum - factor_[i][k] * factor_[j][k];
+        }
+        factor_[i][j] = sum / factor_[j][j];
+      }
+    }
+  }
+
+  std::array<S, N> solve(std::array<S, N> b) const {
+    for (std::size_t i = 0; i < N; ++i) {
+      S sum = b[i] * scale_[i];
+      for (std::size_t k = 0; k < i; ++k) {
+        sum = sum - factor_[i][k] * b[k];
+      }
+      b[i] = sum / factor_[i][i];
+    }
+    for (std::size_t i = N; i-- > 0;) {
+      S sum = b[i];
+      for (std::size_t k = i + 1; k < N; ++k) {
+        sum = sum - factor_[k][i] * b[k];
+      }
+      b[i] = sum / factor_[i][i];
+    }
+    for (std::size_t i = 0; i < N; ++i) {
+      b[i] = b[i] * scale_[i];
+    }
+    return b;
+  }
+
+  /// h^T A^-1 h: the variance of h^T x where that of one equation is 1.
+  S variance(const std::array<S, N>& h) const {
+    const std::array<S, N> x = solve(h);
+    S sum = S(0);
+    for (std::size_t i = 0; i < N; ++i) {
+      sum = sum + x[i] * h[i];
+    }
+    return sum;
+  }
+
+  bool good = true;
+
+ private:
+  SmallMatrix<S, N> factor_{};
+  std::array<S, N> scale_{};
+};
+
+}  // namespace detail
+}  // namespace v0
+}  // namespace fingerpad

@@ -1,0 +1,149 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+#pragma once
+// Rotations and poses in three dimensions, and the angles about z, y and x in which the papers
+// state them. Source: Ito, Kim, Nagai, Obinata 2011, eq. 18: R = Rz(z) Ry(y) Rx(x). The slides take
+// y by asin first: half the digits are lost near 90 degrees, and roundoff above 1 gives NaN; here
+// every angle comes from atan2.
+#include <cmath>
+
+#include "fingerpad/core/detail/point_algebra.hpp"
+#include "fingerpad/core/dots.hpp"
+#include "fingerpad/core/scalar.hpp"
+
+namespace fingerpad {
+inline namespace v0 {
+
+/// A 3x3 matrix that turns vectors: x_now = R x_before. Rows before columns, identity by default.
+template <scalar S = double>
+struct Rotation {
+  S m[3][3] = {{S(1), S(0), S(0)}, {S(0), S(1), S(0)}, {S(0), S(0), S(1)}};
+
+  const S& operator()(Index row, Index col) const { return m[row][col]; }
+  Point3<S> operator()(const Point3<S>& v) const {
+    return {S(m[0][0] * v.x + m[0][1] * v.y + m[0][2] * v.z),
+            S(m[1][0] * v.x + m[1][1] * v.y + m[1][2] * v.z),
+            S(m[2][0] * v.x + m[2][1] * v.y + m[2][2] * v.z)};
+  }
+};
+
+/// The rotation back: the transpose.
+template <scalar S>
+Rotation<S> inverse(const Rotation<S>& r) {
+  return {{{r.m[0][0], r.m[1][0], r.m[2][0]},
+           {r.m[0][1], r.m[1][1], r.m[2][1]},
+           {r.m[0][2], r.m[1][2], r.m[2][2]}}};
+}
+
+/// First `first`, then `second`.
+template <scalar S>
+Rotation<S> operator*(const Rotation<S>& second, const Rotation<S>& first) {
+  Rotation<S> product;
+  for (int i = 0; i < 3; ++i) {
+    for (int j = 0; j < 3; ++j) {
+      product.m[i][j] = S(second.m[i][0] * first.m[0][j] + second.m[i][1] * first.m[1][j] +
+                          second.m[i][2] * first.m[2][j]);
+    }
+  }
+  return product;
+}
+
+/// A rigid motion: x_now = R x_before + t, in mm in the sensor's frame.
+template <scalar S = double>
+struct Pose {
+  Rotation<S> rotation = {};
+  Point3<S> translation_mm = {S(0), S(0), S(0)};
+
+  Point3<S> operator()(const Point3<S>& before) const {
+    return detail::sum(rotation(before), translation_mm);
+  }
+};
+
+template <scalar S>
+Pose<S> inverse(const Pose<S>& pose) {
+  const Rotation<S> back = inverse(pose.rotation);
+  return {back, detail::scaled(S(-1), back(pose.translation_mm))};
+}
+
+/// First `first`, then `second`.
+template <scalar S>
+Pose<S> operator*(const Pose<S>& second, const Pose<S>& first) {
+  return {second.rotation * first.rotation, second(first.translation_mm)};
+}
+
+/// Angles about the sensor's axes, in rad: R = Rz(z) Ry(y) Rx(x), x first. x and z in [-pi, pi],
+/// y in [-pi/2, pi/2].
+template <scalar S = double>
+struct Angles {
+  S x_rad = S(0);
+  S y_rad = S(0);
+  S z_rad = S(0);
+};
+
+/// The angles of a rotation. z is taken from what remains when x is undone, so that the angles
+/// give R back even where x and z by themselves are ill determined. In gimbal lock (y = +-90
+/// degrees) only x -+ z has a meaning; then z = 0.
+template <scalar S>
+Angles<S> zyx_angles(const Rotation<S>& r) {
+  using std::atan2;
+  using std::sqrt;
+  const S cos_y = sqrt(S(r.m[2][1] * r.m[2][1] + r.m[2][2] * r.m[2][2]));
+  const S y = atan2(S(-r.m[2][0]), cos_y);
+  if (!(value(cos_y) > 16 * epsilon<S>())) {
+    return {S(atan2(S(-r.m[1][2]), r.m[1][1])), y, S(0)};
+  }
+  const S sin_x = r.m[2][1] / cos_y;
+  const S cos_x = r.m[2][2] / cos_y;
+  const S sin_z = sin_x * r.m[0][2] - cos_x * r.m[0][1];
+  const S cos_z = cos_x * r.m[1][1] - sin_x * r.m[1][2];
+  return {S(atan2(r.m[2][1], r.m[2][2])), y, S(atan2(sin_z, cos_z))};
+}
+
+/// Rz(z) Ry(y) Rx(x).
+template <scalar S>
+Rotation<S> rotation_of(const Angles<S>& angles) {
+  using std::cos;
+  using std::sin;
+  const S cx = cos(angles.x_rad);
+  const S sx = sin(angles.x_rad);
+  const S cy = cos(angles.y_rad);
+  const S sy = sin(angles.y_rad);
+  const S cz = cos(angles.z_rad);
+  const S sz = sin(angles.z_rad);
+  return {{{S(cz * cy), S(cz * sy * sx - sz * cx), S(cz * sy * cx + sz * sx)},
+           {S(sz * cy), S(sz * sy * sx + cz * cx), S(sz * sy * cx - cz * sx)},
+           {S(-sy), S(cy * sx), S(cy * cx)}}};
+}
+
+/// The angle between two rotations, in rad: how far the one must be turned to become the other.
+/// From its sine and its cosine, so that small angles keep their digits.
+template <scalar S>
+S angle_between(const Rotation<S>& a, const Rotation<S>& b) {
+  using std::atan2;
+  using std::sqrt;
+  const Rotation<S> d = b * inverse(a);
+  const S x = d.m[2][1] - d.m[1][2];
+  const S y = d.m[0][2] - d.m[2][0];
+  const S z = d.m[1][0] - d.m[0][1];
+  const S twice_sine = sqrt(S(x * x + y * y + z * z));
+  return S(atan2(twice_sine, S(d.m[0][0] + d.m[1][1] + d.m[2][2] - S(1))));
+}
+
+namespace detail::motion {
+/// One Newton step toward the nearest rotation: R (3 - R^T R) / 2. Takes the roundoff out of long
+/// products; for matrices that are rotations but for roundoff.
+template <scalar S>
+Rotation<S> renormalized(const Rotation<S>& r) {
+  const Rotation<S> square = inverse(r) * r;
+  Rotation<S> factor;
+  for (int i = 0; i < 3; ++i) {
+    for (int j = 0; j < 3; ++j) {
+      factor.m[i][j] = ((i == j ? S(3) : S(0)) - square.m[i][j]) / S(2);
+    }
+  }
+  return r * factor;
+}
+}  // namespace detail::motion
+
+}  // namespace v0
+}  // namespace fingerpad

@@ -1,0 +1,309 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+#pragma once
+// How far a contact was carried along and how far it was turned about its normal, from the dots.
+// Source: Ito, Kim and Obinata, "Acquisition of Contact Force and Slippage ...", figure 5: the
+// displacement of the central dot and the rotation angle of the contact surface. They are what
+// shear.hpp and the compensations of normal_force.hpp start from.
+//
+// The angle is that of the rigid turn that carries the reference dots nearest to the dots,
+// theta = atan2(sum of cross products, sum of dot products) about the middles of both: it neither
+// wraps nor averages angles.
+//
+// Which dots matters: the central one stays with the object while the contact slips from its edge
+// inward, so its displacement tells how far the object went rather than how hard it pulls, most of
+// all after a reversal. All of the force goes through the membrane along the contact's edge, and
+// so EdgeDots is the default. docs/force/shear.md has the figures.
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <type_traits>
+#include <vector>
+
+#include "fingerpad/motion/detail/rigid_shift.hpp"
+#include "fingerpad/core/dots.hpp"
+#include "fingerpad/core/expects.hpp"
+#include "fingerpad/core/grid.hpp"
+#include "fingerpad/core/scalar.hpp"
+
+namespace fingerpad {
+inline namespace v0 {
+
+/// The dot in the middle of the dot grid, as published, or any other; the angle is that of all dots
+/// in contact.
+struct OneDot {
+  DotIndex dot = {};
+};
+inline OneDot central_dot(Index rows, Index cols) {
+  return {{rows / 2, cols / 2}};
+}
+/// All dots in contact.
+struct ContactDots {};
+/// The dots on both sides of the contact's edge: those in contact beside one that is not, and those
+/// beside one that is, among the eight neighbours.
+struct EdgeDots {};
+
+/// All dots count alike: least squares.
+struct PlainMean {
+  static constexpr bool is_robust = false;
+};
+/// Huber's M-estimate: a dot whose residual is more than `threshold` times what noise explains
+/// counts less, so that stuck and mistaken dots, up to a third or so, bias it little. The scale is
+/// that of the median residual, whose own derivative a dual number does not carry.
+struct HuberMean {
+  static constexpr bool is_robust = true;
+  double threshold = 1.5;  ///< in standard deviations, > 0
+  int passes = 10;         ///< of reweighting, in [1, 100]
+};
+
+enum class ShiftStatus : std::uint8_t {
+  measured,        ///< displacement and angle
+  one_place_only,  ///< the dots do not tell an angle: fewer than two, or all in one place
+  no_dots,         ///< none of the chosen dots is there in both frames
+  other_size,      ///< a grid is not of the reference's size, or the workspace is another's
+};
+
+/// "measured", "one place only", ...
+constexpr const char* name_of(ShiftStatus status) {
+  switch (status) {
+    case ShiftStatus::measured:
+      return "measured";
+    case ShiftStatus::one_place_only:
+      return "one place only";
+    case ShiftStatus::no_dots:
+      return "no dots";
+    case ShiftStatus::other_size:
+      return "other size";
+  }
+  return "unknown";
+}
+
+template <scalar S = double>
+struct ShiftResult {
+  ShiftStatus status = ShiftStatus::other_size;
+  Index dots = 0;                                                   ///< that took part
+  Point2<S> displacement = {not_a_number<S>(), not_a_number<S>()};  ///< in the unit of the dots
+  S rotation_rad = not_a_number<S>();  ///< from x toward y, in [-pi, pi]
+  S residual_rms = not_a_number<S>();  ///< distance of the dots from the rigid shift
+
+  bool has_displacement() const {
+    return status == ShiftStatus::measured || status == ShiftStatus::one_place_only;
+  }
+};
+
+/// Shift of the chosen `Dots` (EdgeDots, ContactDots, OneDot) against the reference frame, as a
+/// `Mean` (PlainMean, HuberMean). Dots in mm on the plate or in px; of dots in space, x and y.
+/// Const; a frame takes no memory and O(rows cols) time, times the passes of HuberMean.
+template <class Dots = EdgeDots, class Mean = PlainMean, scalar S = double>
+class ContactShift {
+ public:
+  /// What a frame writes on the way.
+  class Workspace {
+    friend class ContactShift;
+    std::vector<detail::DotPair<S>> pairs_;
+    std::vector<scalar_real_t<S>> residuals_;
+  };
+
+  /// `reference` are the dots of the free pad, or of any frame that counts as not displaced.
+  /// Refuses bad parameters (parameter_error).
+  template <dot_grid Grid>
+  explicit ContactShift(const Grid& reference, const Dots& dots = {}, const Mean& mean = {})
+      : dots_(dots), mean_(mean) {
+    const auto from = as_view(reference);
+    rows_ = from.rows();
+    cols_ = from.cols();
+    reference_.reserve(static_cast<std::size_t>(rows_ * cols_));
+    for (Index i = 0; i < rows_; ++i) {
+      for (Index j = 0; j < cols_; ++j) {
+        reference_.push_back(planar(from(i, j)));
+      }
+    }
+    check_choice();
+    if constexpr (Mean::is_robust) {
+      expects(mean.threshold > 0, "HuberMean", "threshold", mean.threshold, "> 0");
+      expects(mean.passes >= 1 && mean.passes <= 100, "HuberMean", "passes",
+              static_cast<long long>(mean.passes), "in [1, 100]");
+    }
+  }
+
+  Index rows() const { return rows_; }
+  Index cols() const { return cols_; }
+
+  Workspace workspace() const {
+    Workspace w;
+    w.pairs_.reserve(reference_.size());
+    w.residuals_.reserve(reference_.size());
+    return w;
+  }
+
+  /// The shift in a frame with these `dots`, of which those with a true `contact` touch the object.
+  template <dot_grid Grid, contact_mask Contact>
+  ShiftResult<S> operator()(const Grid& dots, const Contact& contact, Workspace& w) const {
+    const auto to = as_view(dots);
+    const auto flags = as_view(contact);
+    ShiftResult<S> result;
+    if (to.rows() != rows_ || to.cols() != cols_ || !same_size(to, flags) ||
+        w.pairs_.capacity() < reference_.size()) {
+      return result;
+    }
+    if constexpr (std::is_same_v<Dots, OneDot>) {
+      return shift_of_one(to, flags, w);
+    } else {
+      collect(to, flags, w);
+      return shift_of_pairs(w);
+    }
+  }
+
+ private:
+  using Pair = detail::DotPair<S>;
+  using Rigid = detail::RigidShift<S>;
+
+  template <planar_point P>
+  static Point2<S> planar(const P& p) {
+    return {S(point_traits<P>::x(p)), S(point_traits<P>::y(p))};
+  }
+  /// Found, and near enough that squares are finite in every scalar.
+  static bool is_placed(const Point2<S>& p) {
+    const auto within = [](const S& c) { return value(c) < 1000000 && -1000000 < value(c); };
+    return within(p.x) && within(p.y);
+  }
+  const Point2<S>& from_at(Index i, Index j) const {
+    return reference_[static_cast<std::size_t>(i * cols_ + j)];
+  }
+
+  void check_choice() const {
+    if constexpr (std::is_same_v<Dots, OneDot>) {
+      expects(dots_.dot.row >= 0 && dots_.dot.row < rows_, "OneDot", "row",
+              static_cast<long long>(dots_.dot.row), "in [0, rows)");
+      expects(dots_.dot.col >= 0 && dots_.dot.col < cols_, "OneDot", "col",
+              static_cast<long long>(dots_.dot.col), "in [0, cols)");
+    }
+  }
+
+  template <class View, class Flags>
+  void collect(const View& to, const Flags& flags, Workspace& w) const {
+    w.pairs_.clear();
+    for (Index i = 0; i < rows_; ++i) {
+      for (Index j = 0; j < cols_; ++j) {
+        const Point2<S> dot = planar(to(i, j));
+        if (is_placed(dot) && is_placed(from_at(i, j)) && is_chosen(to, flags, i, j)) {
+          w.pairs_.push_back({from_at(i, j), dot, S(1)});
+        }
+      }
+    }
+  }
+
+  template <class Flags>
+  static bool touches(const Flags& flags, Index i, Index j) {
+    return says_contact(cell_t<Flags>(flags(i, j)));
+  }
+  template <class Flags>
+  static bool is_unknown(const Flags& flags, Index i, Index j) {
+    if constexpr (std::is_same_v<cell_t<Flags>, Touch>) {
+      return flags(i, j) == Touch::unknown;
+    } else {
+      return false;
+    }
+  }
+
+  template <class View, class Flags>
+  bool is_chosen(const View& to, const Flags& flags, Index i, Index j) const {
+    if constexpr (std::is_same_v<Dots, EdgeDots>) {
+      return !is_unknown(flags, i, j) && is_beside_edge(to, flags, i, j);
+    } else {
+      return touches(flags, i, j);
+    }
+  }
+  /// A neighbour that was lost, or of which nothing is known, makes no edge.
+  template <class View, class Flags>
+  bool is_beside_edge(const View& to, const Flags& flags, Index i, Index j) const {
+    const bool inside = touches(flags, i, j);
+    for (Index k = (std::max)(i - 1, Index(0)); k < (std::min)(i + 2, rows_); ++k) {
+      for (Index l = (std::max)(j - 1, Index(0)); l < (std::min)(j + 2, cols_); ++l) {
+        if (touches(flags, k, l) != inside && !is_unknown(flags, k, l) &&
+            is_placed(planar(to(k, l)))) {
+          return true;
+        }
+      }
+    }
+    return false;
+  }
+
+  template <class View, class Flags>
+  ShiftResult<S> shift_of_one(const View& to, const Flags& flags, Workspace& w) const {
+    collect(to, flags, w);
+    ShiftResult<S> result = shift_of_pairs(w);
+    const Point2<S>& from = from_at(dots_.dot.row, dots_.dot.col);
+    const Point2<S> dot = planar(to(dots_.dot.row, dots_.dot.col));
+    if (!is_placed(from) || !is_placed(dot)) {
+      result.status = ShiftStatus::no_dots;
+      result.displacement = {not_a_number<S>(), not_a_number<S>()};
+      return result;
+    }
+    if (result.status == ShiftStatus::no_dots) {
+      result.status = ShiftStatus::one_place_only;
+    }
+    result.displacement = {S(dot.x - from.x), S(dot.y - from.y)};
+    return result;
+  }
+
+  ShiftResult<S> shift_of_pairs(Workspace& w) const {
+    ShiftResult<S> result;
+    result.status = ShiftStatus::no_dots;
+    if (w.pairs_.empty()) {
+      return result;
+    }
+    Rigid shift(w.pairs_);
+    const Point2<S> middle = shift.from();  // of all, whatever they count
+    if constexpr (Mean::is_robust) {
+      for (int pass = 0; pass < mean_.passes; ++pass) {
+        reweigh(shift, w);
+        shift = Rigid(w.pairs_);
+      }
+    }
+    result.dots = static_cast<Index>(w.pairs_.size());
+    result.displacement = shift.carried(middle);
+    result.status = shift.turns() ? ShiftStatus::measured : ShiftStatus::one_place_only;
+    result.rotation_rad = shift.angle_rad();
+    result.residual_rms = rms_of(shift, w);
+    return result;
+  }
+
+  static S rms_of(const Rigid& shift, const Workspace& w) {
+    using std::sqrt;
+    S sum = S(0);
+    for (const Pair& p : w.pairs_) {
+      sum = sum + S(p.weight * shift.residual_sq(p));
+    }
+    const S mean_sq = sum / shift.weight();
+    return value(mean_sq) > 0 ? S(sqrt(mean_sq)) : S(0);
+  }
+
+  void reweigh(const Rigid& shift, Workspace& w) const {
+    using std::sqrt;
+    using Real = scalar_real_t<S>;
+    w.residuals_.clear();
+    for (const Pair& p : w.pairs_) {
+      w.residuals_.push_back(value(shift.residual_sq(p)));
+    }
+    const auto middle = w.residuals_.begin() + static_cast<Index>(w.residuals_.size() / 2);
+    std::nth_element(w.residuals_.begin(), middle, w.residuals_.end());
+    // The median distance of plane noise is sqrt(2 ln 2) standard deviations of a coordinate.
+    const Real limit_sq = *middle * Real(mean_.threshold * mean_.threshold / 1.3862943611198906);
+    for (Pair& p : w.pairs_) {
+      const S residual = shift.residual_sq(p);
+      const bool far = value(residual) > limit_sq;
+      p.weight = far ? S(sqrt(S(S(limit_sq) / residual))) : S(1);
+    }
+  }
+
+  Dots dots_;
+  Mean mean_;
+  Index rows_ = 0;
+  Index cols_ = 0;
+  std::vector<Point2<S>> reference_;
+};
+
+}  // namespace v0
+}  // namespace fingerpad

@@ -1,0 +1,158 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+#pragma once
+// One frame of dots and contact flags as the methods read it, and the contact reference dot.
+// Source: Ito, Kim, Nagai, Obinata 2011, III.C: "the dot which displacement from the initial
+// position is biggest", among the dots in contact whose eight neighbours are there.
+#include <cmath>
+#include <concepts>
+#include <cstddef>
+#include <vector>
+
+#include "fingerpad/math/rotation.hpp"
+#include "fingerpad/core/detail/point_algebra.hpp"
+#include "fingerpad/core/dots.hpp"
+#include "fingerpad/core/grid.hpp"
+#include "fingerpad/core/scalar.hpp"
+
+namespace fingerpad {
+inline namespace v0 {
+
+namespace detail::motion {
+
+/// Found, and within a kilometre: squares of what passes are finite in every scalar.
+template <scalar S>
+constexpr bool is_placed(const Point3<S>& p) {
+  const auto within = [](const S& c) {
+    const scalar_real_t<S> v = value(c);
+    const scalar_real_t<S> reach = scalar_real_t<S>(1000000);
+    return v < reach && -reach < v;  // false for NaN
+  };
+  return within(p.x) && within(p.y) && within(p.z);
+}
+
+/// Any spatial point in the scalar S.
+template <scalar S, spatial_point P>
+constexpr Point3<S> spatial(const P& p) {
+  using Traits = point_traits<P>;
+  return {S(Traits::x(p)), S(Traits::y(p)), S(Traits::z(p))};
+}
+
+template <scalar S, class Dots, class Contact>
+class DotFrame {
+ public:
+  DotFrame(const Dots& dots_mm, const Contact& contact) : dots_(dots_mm), contact_(contact) {}
+
+  Index rows() const { return dots_.rows(); }
+  Index cols() const { return dots_.cols(); }
+  Point3<S> dot(Index row, Index col) const { return spatial<S>(cell_t<Dots>(dots_(row, col))); }
+  bool flagged(Index row, Index col) const {
+    return says_contact(cell_t<Contact>(contact_(row, col)));
+  }
+  bool found(Index row, Index col) const { return is_placed(dot(row, col)); }
+  bool in_contact(DotIndex d) const { return flagged(d.row, d.col) && found(d.row, d.col); }
+
+  bool any_flagged() const {
+    return any([this](Index i, Index j) { return flagged(i, j); });
+  }
+  bool any_found() const {
+    return any([this](Index i, Index j) { return found(i, j); });
+  }
+
+ private:
+  template <class Test>
+  bool any(const Test& test) const {
+    for (Index i = 0; i < rows(); ++i) {
+      for (Index j = 0; j < cols(); ++j) {
+        if (test(i, j)) {
+          return true;
+        }
+      }
+    }
+    return false;
+  }
+
+  Dots dots_;
+  Contact contact_;
+};
+
+/// The dots before anything touched them, rows x cols; NaN where one was not found.
+template <scalar S>
+struct InitialDots {
+  std::vector<Point3<S>> dots;
+  Index rows = 0;
+  Index cols = 0;
+
+  const Point3<S>& operator()(Index row, Index col) const {
+    return dots[static_cast<std::size_t>(row * cols + col)];
+  }
+};
+
+/// True when the dot and its eight neighbours are found, now and initially.
+template <scalar S, class Frame>
+bool is_complete(const Frame& frame, const InitialDots<S>& initial, DotIndex d) {
+  if (d.row < 1 || d.col < 1 || d.row > frame.rows() - 2 || d.col > frame.cols() - 2) {
+    return false;
+  }
+  for (Index i = d.row - 1; i <= d.row + 1; ++i) {
+    for (Index j = d.col - 1; j <= d.col + 1; ++j) {
+      if (!frame.found(i, j) || !is_placed(initial(i, j))) {
+        return false;
+      }
+    }
+  }
+  return true;
+}
+
+/// True when all of its eight neighbours touch the object as well; d must not lie on the border.
+template <class Frame>
+bool is_within_contact(const Frame& frame, DotIndex d) {
+  for (Index i = d.row - 1; i <= d.row + 1; ++i) {
+    for (Index j = d.col - 1; j <= d.col + 1; ++j) {
+      if (!frame.flagged(i, j)) {
+        return false;
+      }
+    }
+  }
+  return true;
+}
+
+/// The contact reference dot; of equal displacements the first in the order of rows. The dot
+/// `before` stays for as long as the largest displacement is not more than `margin_mm` above its
+/// own and its neighbourhood is wholly in contact. Neighbours are looked at only where a dot is in
+/// contact and moved further than the best.
+template <scalar S, class Frame>
+DotIndex reference_dot(const Frame& frame,
+                       const InitialDots<S>& initial,
+                       DotIndex before,
+                       const S& margin_mm) {
+  using std::sqrt;
+  DotIndex best;
+  S best_sq = S(-1);
+  const auto moved_sq = [&](Index i, Index j) {
+    return length_sq(difference(frame.dot(i, j), initial(i, j)));
+  };
+  for (Index i = 1; i < frame.rows() - 1; ++i) {
+    for (Index j = 1; j < frame.cols() - 1; ++j) {
+      if (!frame.flagged(i, j)) {
+        continue;
+      }
+      const S sq = moved_sq(i, j);
+      if (value(sq) > value(best_sq) && is_complete(frame, initial, {i, j})) {
+        best = {i, j};
+        best_sq = sq;
+      }
+    }
+  }
+  if (value(margin_mm) > 0 && before.exists() && is_complete(frame, initial, before) &&
+      is_within_contact(frame, before)) {
+    const S kept = sqrt(moved_sq(before.row, before.col)) + margin_mm;
+    return value(S(kept * kept)) < value(best_sq) ? best : before;
+  }
+  return best;
+}
+
+}  // namespace detail::motion
+
+}  // namespace v0
+}  // namespace fingerpad

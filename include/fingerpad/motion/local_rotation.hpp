@@ -1,0 +1,167 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+#pragma once
+// How a dot has turned with its eight neighbours, between two frames k and l. Source: Ito, Kim,
+// Nagai, Obinata 2011, eqs. 14-18. As printed, eq. 17 stacks the basis vectors as rows and is
+// solved by [n2, n2, n3]^-T: the first is n1 (E021), and for rows the result is the rotation seen
+// from the turned frame, transposed (E022). With columns:
+//   N = [n1 n2 n3],  n1 = q1/|q1|,  n2 = q2/|q2|,  n3 = n1 x n2,   R = N_l N_k^-1
+// n1 and n2 are orthogonal only while the neighbourhood is not sheared: R is no rotation (E023).
+#include <array>
+#include <cmath>
+#include <cstddef>
+
+#include "fingerpad/motion/motion_status.hpp"
+#include "fingerpad/motion/neighbourhood.hpp"
+#include "fingerpad/math/rigid_fit.hpp"
+
+namespace fingerpad {
+inline namespace v0 {
+
+/// Three vectors as the columns of a matrix.
+template <scalar S>
+struct Basis {
+  Point3<S> n1;
+  Point3<S> n2;
+  Point3<S> n3;
+  bool determined = false;  ///< false: n1 and n2 are missing or parallel
+};
+
+/// What turned between two frames.
+template <scalar S>
+struct LocalTurn {
+  Rotation<S> rotation = {};
+  MotionStatus status = MotionStatus::too_few_dots;
+};
+
+/// Eqs. 14-16.
+template <scalar S>
+Basis<S> published_basis(const GridDirections<S>& q) {
+  const S sq1 = detail::length_sq(q.q1);
+  const S sq2 = detail::length_sq(q.q2);
+  const Point3<S> n3 = detail::cross(q.q1, q.q2);
+  const S limit = S(collinear_spread_sq) * sq1 * sq2;
+  if (!(value(detail::length_sq(n3)) > value(limit))) {
+    return {};
+  }
+  const Point3<S> n1 = detail::unit(q.q1);
+  const Point3<S> n2 = detail::unit(q.q2);
+  return {n1, n2, detail::cross(n1, n2), true};
+}
+
+/// The orthonormal frame nearest to n1 and n2, which both deviate from it by the same angle:
+///   n3 = unit(n1 x n2),  s = unit(n1 + n2),  t = n3 x s,  n1' = (s - t)/sqrt 2,  n2' = (s +
+///   t)/sqrt 2
+/// A shear of the neighbourhood turns n1 and n2 against each other and leaves it where it is.
+template <scalar S>
+Basis<S> symmetric_frame(const GridDirections<S>& q) {
+  using std::sqrt;
+  const S sq1 = detail::length_sq(q.q1);
+  const S sq2 = detail::length_sq(q.q2);
+  const Point3<S> normal = detail::cross(q.q1, q.q2);
+  const S limit = S(collinear_spread_sq) * sq1 * sq2;
+  if (!(value(detail::length_sq(normal)) > value(limit))) {
+    return {};
+  }
+  const Point3<S> n3 = detail::unit(normal);
+  // n1 + n2, but for a factor: the shorter direction is stretched to the length of the other
+  const S stretch = sqrt(S(sq1 / sq2));
+  const Point3<S> s = detail::unit(detail::sum(q.q1, detail::scaled(stretch, q.q2)));
+  const Point3<S> t = detail::cross(n3, s);
+  const S half = sqrt(S(S(1) / S(2)));
+  return {detail::scaled(half, detail::difference(s, t)), detail::scaled(half, detail::sum(s, t)),
+          n3, true};
+}
+
+namespace detail::motion {
+/// N_l N_k^T.
+template <scalar S>
+Rotation<S> turn_between(const Basis<S>& k, const Basis<S>& l) {
+  const auto row = [](const S& a, const S& b, const S& c, const Basis<S>& n) {
+    return sum(sum(scaled(a, n.n1), scaled(b, n.n2)), scaled(c, n.n3));
+  };
+  const Point3<S> x = row(l.n1.x, l.n2.x, l.n3.x, k);
+  const Point3<S> y = row(l.n1.y, l.n2.y, l.n3.y, k);
+  const Point3<S> z = row(l.n1.z, l.n2.z, l.n3.z, k);
+  return {{{x.x, x.y, x.z}, {y.x, y.y, y.z}, {z.x, z.y, z.z}}};
+}
+
+/// The basis whose rows are those of N^-1: N_l N^-1 = N_l (inverse_transpose N)^T.
+template <scalar S>
+Basis<S> inverse_transposed(const Basis<S>& n) {
+  const Point3<S> c = cross(n.n1, n.n2);
+  const S inv = S(1) / dot(c, n.n3);
+  return {scaled(inv, cross(n.n2, n.n3)), scaled(inv, cross(n.n3, n.n1)), scaled(inv, c), true};
+}
+
+template <scalar S, class MakeBasis, class Between>
+LocalTurn<S> turn_of_bases(const Neighbourhood<S>& k,
+                           const Neighbourhood<S>& l,
+                           const MakeBasis& basis_of,
+                           const Between& between) {
+  const CommonDots common = common_dots(k, l);
+  if (common.count < 3) {
+    return {};
+  }
+  const Basis<S> before = basis_of(grid_directions(k, common));
+  const Basis<S> after = basis_of(grid_directions(l, common));
+  if (!before.determined || !after.determined) {
+    return {{}, MotionStatus::collinear};
+  }
+  return {between(before, after), MotionStatus::ok};
+}
+}  // namespace detail::motion
+
+/// Published, with E021 and E022 repaired: exact for rigid motions, else not even a rotation.
+struct PublishedBasis {
+  static constexpr bool gives_rotations = false;
+
+  template <scalar S>
+  static LocalTurn<S> turn(const Neighbourhood<S>& from, const Neighbourhood<S>& to) {
+    return detail::motion::turn_of_bases(
+        from, to, [](const GridDirections<S>& q) { return published_basis(q); },
+        [](const Basis<S>& k, const Basis<S>& l) {
+          return detail::motion::turn_between(detail::motion::inverse_transposed(k), l);
+        });
+  }
+};
+
+/// The same directions, made orthonormal without preference for either.
+struct SymmetricFrame {
+  static constexpr bool gives_rotations = true;
+
+  template <scalar S>
+  static LocalTurn<S> turn(const Neighbourhood<S>& from, const Neighbourhood<S>& to) {
+    return detail::motion::turn_of_bases(
+        from, to, [](const GridDirections<S>& q) { return symmetric_frame(q); },
+        [](const Basis<S>& k, const Basis<S>& l) { return detail::motion::turn_between(k, l); });
+  }
+};
+
+/// The rotation that carries the dots of the one frame nearest to those of the other.
+struct Kabsch {
+  static constexpr bool gives_rotations = true;
+
+  template <scalar S>
+  static LocalTurn<S> turn(const Neighbourhood<S>& from, const Neighbourhood<S>& to) {
+    std::array<std::size_t, 9> at = {};
+    std::size_t count = 0;
+    for (std::size_t k = 0; k < 9; ++k) {
+      if (from.found[k] && to.found[k]) {
+        at[count++] = k;
+      }
+    }
+    if (count < 3) {
+      return {};
+    }
+    const auto dot = [&at](const Neighbourhood<S>& n) {
+      return [&at, &n](Index k) { return n.dot[at[static_cast<std::size_t>(k)]]; };
+    };
+    const RigidFit<S> fit =
+        fit_rigid<S>(static_cast<Index>(count), dot(from), dot(to), [](Index) { return S(1); });
+    return {fit.pose.rotation, fit.determined ? MotionStatus::ok : MotionStatus::collinear};
+  }
+};
+
+}  // namespace v0
+}  // namespace fingerpad

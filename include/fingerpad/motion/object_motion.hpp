@@ -1,0 +1,184 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+#pragma once
+// How an object in contact has moved, from the dots of the membrane in space. Source: Ito, Kim,
+// Nagai, Obinata, "Acquisition of tactile information by vision-based tactile sensor for dexterous
+// handling of robot hands", III.C, eqs. 13-19; published and corrected forms in docs/errata.md,
+// E019-E024.
+//
+// While nothing slips, the dots in contact move with the object: the published way follows the one
+// that has moved furthest, with its eight neighbours; the default takes all of them. Dots in space
+// come from spatial_dots(), contact flags from contact_at_dots() (motion/spatial_dots.hpp).
+// What no dots can show: an object that slides as a whole, and one that is exchanged for another.
+#include <concepts>
+#include <cstddef>
+#include <utility>
+
+#include "fingerpad/motion/contact_map.hpp"
+#include "fingerpad/motion/detail/dot_frame.hpp"
+#include "fingerpad/motion/followed_dot.hpp"
+#include "fingerpad/motion/local_rotation.hpp"
+#include "fingerpad/motion/motion_status.hpp"
+#include "fingerpad/motion/spatial_dots.hpp"
+#include "fingerpad/core/expects.hpp"
+#include "fingerpad/core/grid.hpp"
+
+namespace fingerpad {
+inline namespace v0 {
+
+/// What a frame says of the object. Everything but `accepted` and `status` is the last known state
+/// where the status is not ok; before an object begins it is that of an object at rest.
+template <scalar S = double>
+struct ObjectMotionResult {
+  bool accepted = false;  ///< false: a grid has another size than the initial dots or the state
+                          ///< belongs to another estimator; nothing was done
+  MotionStatus status = MotionStatus::no_contact;
+  DotIndex reference = {};         ///< contact reference dot of this frame; row -1: there is none
+  bool reference_changed = false;  ///< it is another dot than in the frame before
+  bool begun = false;              ///< the object begins with this frame: pose is the identity
+  Index dots_used = 0;             ///< dots from which the pose was computed
+  Pose<S> pose = {};      ///< x_now = R x_first + t, from the frame in which the object began
+  Angles<S> angles = {};  ///< about z, y, x; with SumOfAngles the sums, which may exceed pi
+  Point3<S> position_mm = {not_a_number<S>(), not_a_number<S>(),
+                           not_a_number<S>()};  ///< where the point of the object is now that lay
+                                                ///< under the contact reference dot at first;
+                                                ///< NaN before an object has begun
+  Point3<S> displacement_mm = {S(0), S(0), S(0)};  ///< of that point
+  S residual_rms_mm = S(0);                        ///< of the dots used, against the rigid motion
+
+  bool ok() const { return status == MotionStatus::ok; }
+};
+
+template <scalar S = double>
+struct ObjectMotionOptions {
+  /// The contact reference dot stays as long as no other has moved further than it by more than
+  /// this, mm, >= 0; 0 as published, when noise may make it flicker between neighbours.
+  S reference_margin_mm = S(0);
+};
+
+/// Pose of the object in contact, frame by frame.
+///   Way   ContactMap (default), AnchoredComposition<Local>, SumOfAngles<Local> (published)
+///   Local SymmetricFrame, Kabsch, PublishedBasis
+/// Const: threads may share one estimator, each with a state of its own. A frame takes no memory,
+/// throws nothing, and needs O(rows cols) time.
+///
+/// The state begins an object with the first frame in which there is enough contact, and forgets it
+/// when no dot is in contact any more; the next contact is another object. Frames that give no pose
+/// although there is contact leave the last one standing and say why; the object is found again as
+/// soon as enough of the dots that were known come back into contact.
+template <class Way = ContactMap, scalar S = double>
+class ObjectMotion {
+ public:
+  /// A value: copy it to go back to this frame later.
+  class State {
+   public:
+    bool has_object() const { return has_object_; }
+
+   private:
+    friend class ObjectMotion;
+    explicit State(typename Way::template Track<S> track, Index rows, Index cols)
+        : track_(std::move(track)), rows_(rows), cols_(cols) {}
+
+    typename Way::template Track<S> track_;
+    DotIndex reference_ = {};
+    bool has_object_ = false;
+    Index rows_;
+    Index cols_;
+  };
+
+  /// `initial_mm` are the dots of the free pad; missing ones are never the reference dot.
+  template <spatial_dot_grid Dots>
+  explicit ObjectMotion(const Dots& initial_mm,
+                        const ObjectMotionOptions<S>& options = {},
+                        const Way& way = {})
+      : options_(options), way_(way) {
+    expects(is_finite(options.reference_margin_mm) && value(options.reference_margin_mm) >= 0,
+            "ObjectMotion", "reference_margin_mm", options.reference_margin_mm, "finite and >= 0");
+    const auto from = as_view(initial_mm);
+    initial_.rows = from.rows();
+    initial_.cols = from.cols();
+    for (Index i = 0; i < initial_.rows; ++i) {
+      for (Index j = 0; j < initial_.cols; ++j) {
+        initial_.dots.push_back(detail::motion::spatial<S>(cell_t<Dots>(from(i, j))));
+      }
+    }
+    way_.template track<S>(0, 0);  // refuses bad parameters
+  }
+
+  Index rows() const { return initial_.rows; }
+  Index cols() const { return initial_.cols; }
+
+  /// The state before any contact, with all the memory that frames will need.
+  State start() const { return State(way_.template track<S>(rows(), cols()), rows(), cols()); }
+
+  /// The object in a frame with dots `dots_mm` (NaN: not found) of which those with a true
+  /// `contact` touch it.
+  template <spatial_dot_grid Dots, contact_mask Contact>
+  ObjectMotionResult<S> operator()(const Dots& dots_mm,
+                                   const Contact& contact,
+                                   State& state) const {
+    const auto dots = as_view(dots_mm);
+    const auto flags = as_view(contact);
+    if (dots.rows() != rows() || dots.cols() != cols() || !same_size(dots, flags) ||
+        state.rows_ != rows() || state.cols_ != cols()) {
+      return {};
+    }
+    const detail::motion::DotFrame<S, decltype(dots), decltype(flags)> frame(dots, flags);
+    ObjectMotionResult<S> result;
+    result.accepted = true;
+    if (!frame.any_flagged()) {
+      return without_contact(frame.any_found(), state, result);
+    }
+    result.reference = detail::motion::reference_dot(frame, initial_, state.reference_,
+                                                     options_.reference_margin_mm);
+    result.reference_changed = state.reference_.exists() && result.reference.exists() &&
+                               result.reference != state.reference_;
+    state.reference_ = result.reference.exists() ? result.reference : state.reference_;
+    if (state.has_object_) {
+      result.status = way_.advance(frame, result.reference, state.track_);
+    } else {
+      result.status = way_.begin(frame, result.reference, state.track_);
+      result.begun = state.has_object_ = result.ok();
+    }
+    fill(state, result);
+    return result;
+  }
+
+ private:
+  ObjectMotionResult<S> without_contact(bool any_found,
+                                        State& state,
+                                        ObjectMotionResult<S>& result) const {
+    if (any_found || !state.has_object_) {
+      forget(state);
+    }
+    result.status = any_found ? MotionStatus::no_contact : MotionStatus::no_dots;
+    fill(state, result);
+    return result;
+  }
+
+  /// Keeps the memory: begin() writes whatever it reads.
+  static void forget(State& state) {
+    static_cast<detail::motion::Track<S>&>(state.track_) = {};
+    state.reference_ = {};
+    state.has_object_ = false;
+  }
+
+  static void fill(const State& state, ObjectMotionResult<S>& result) {
+    const auto& track = state.track_;
+    result.dots_used = result.ok() ? track.dots_used : 0;
+    result.pose = track.pose;
+    result.angles = track.angles;
+    result.residual_rms_mm = track.residual_rms_mm;
+    if (state.has_object_) {
+      result.position_mm = track.pose(track.start_mm);
+      result.displacement_mm = detail::difference(result.position_mm, track.start_mm);
+    }
+  }
+
+  ObjectMotionOptions<S> options_;
+  Way way_;
+  detail::motion::InitialDots<S> initial_;
+};
+
+}  // namespace v0
+}  // namespace fingerpad

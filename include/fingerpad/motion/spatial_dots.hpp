@@ -1,0 +1,128 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+#pragma once
+// From what a frame shows to what the motion of the object is computed from: dots in space, and
+// whether each is in contact. Source: Ito, Kim, Nagai, Obinata 2011, eq. 13, with E019 and E020
+// repaired: the depth is that of the dot's pixel.
+#include <concepts>
+#include <type_traits>
+#include <utility>
+
+#include "fingerpad/motion/detail/dot_frame.hpp"
+#include "fingerpad/optics/camera.hpp"
+
+namespace fingerpad {
+inline namespace v0 {
+
+/// The depth map between pixel centers, bilinearly; NaN outside of it and where one of the pixels
+/// that count is missing.
+template <scalar S, grid Depth>
+S depth_between_pixels(const Depth& depth_mm, const S& row, const S& col) {
+  const S last_row = S(static_cast<double>(rows(depth_mm) - 1));
+  const S last_col = S(static_cast<double>(cols(depth_mm) - 1));
+  const bool inside = value(row) >= 0 && value(col) >= 0 && value(row) <= value(last_row) &&
+                      value(col) <= value(last_col);  // false for NaN
+  if (!inside) {
+    return not_a_number<S>();
+  }
+  const Index i = static_cast<Index>(value(row));
+  const Index j = static_cast<Index>(value(col));
+  const S down = row - S(static_cast<double>(i));
+  const S right = col - S(static_cast<double>(j));
+  const auto share = [&](Index r, Index c, const S& weight) {
+    // a pixel without weight need not be there
+    return value(weight) == 0 ? S(0) : S(weight * S(grid_traits<Depth>::at(depth_mm, r, c)));
+  };
+  const S up = S(1) - down;
+  const S left = S(1) - right;
+  const S depth = share(i, j, S(up * left)) + share(i, j + 1, S(up * right)) +
+                  share(i + 1, j, S(down * left)) + share(i + 1, j + 1, S(down * right));
+  return is_finite(depth) ? depth : not_a_number<S>();
+}
+
+namespace detail::motion {
+/// A point of any type from three coordinates.
+template <class P, scalar S>
+P point_from(const Point3<S>& p) {
+  P out = P();
+  if constexpr (requires { out.x = out.y = out.z; }) {
+    using C = std::remove_cvref_t<decltype(out.x)>;
+    out.x = static_cast<C>(p.x);
+    out.y = static_cast<C>(p.y);
+    out.z = static_cast<C>(p.z);
+  } else {
+    using C = std::remove_cvref_t<decltype(out[0])>;
+    out[0] = static_cast<C>(p.x);
+    out[1] = static_cast<C>(p.y);
+    out[2] = static_cast<C>(p.z);
+  }
+  return out;
+}
+}  // namespace detail::motion
+
+struct SpatialDotsResult {
+  bool accepted = false;  ///< false: `out` has another size than the dot grid; nothing written
+  Index found = 0;        ///< dots that now have a place in space
+};
+
+/// The dots of a frame in mm, from where the image shows them (px) and the depth map (mm, along
+/// each pixel's ray). NaN where a dot was not found or has no depth. `Shift`: see point_at.
+/// Allocates nothing.
+template <class Shift = TangentShift, scalar S, dot_grid Dots, grid Depth, spatial_dot_grid Out>
+SpatialDotsResult spatial_dots(const Camera<S>& camera,
+                               const Dots& dots_px,
+                               const Depth& depth_mm,
+                               Out&& out_mm) {
+  const auto from = as_view(dots_px);
+  const auto depth = as_view(depth_mm);
+  const auto to = as_view(std::forward<Out>(out_mm));
+  if (!same_size(from, to)) {
+    return {};
+  }
+  SpatialDotsResult result{true, 0};
+  for (Index i = 0; i < from.rows(); ++i) {
+    for (Index j = 0; j < from.cols(); ++j) {
+      const cell_t<Dots> p = from(i, j);
+      using Traits = point_traits<cell_t<Dots>>;
+      const S row = S(Traits::y(p));
+      const S col = S(Traits::x(p));
+      const S l = depth_between_pixels(depth, row, col);
+      const bool known = is_finite(l);
+      to(i, j) = detail::motion::point_from<cell_t<Out>>(
+          known ? point_at<Shift>(camera, row, col, l) : detail::missing_point<S>());
+      result.found += known ? 1 : 0;
+    }
+  }
+  return result;
+}
+
+/// Which dots lie in contact: the flag of the mask's pixel nearest to each; false where a dot was
+/// not found or lies outside of the mask. False, and nothing written, when `out` has another size
+/// than the dot grid. Allocates nothing.
+template <dot_grid Dots, contact_mask Mask, writable_grid<bool> Out>
+bool contact_at_dots(const Dots& dots_px, const Mask& mask, Out&& out) {
+  const auto from = as_view(dots_px);
+  const auto flags = as_view(mask);
+  const auto to = as_view(std::forward<Out>(out));
+  if (!same_size(from, to)) {
+    return false;
+  }
+  const double last_row = static_cast<double>(flags.rows()) - 0.5;
+  const double last_col = static_cast<double>(flags.cols()) - 0.5;
+  for (Index i = 0; i < from.rows(); ++i) {
+    for (Index j = 0; j < from.cols(); ++j) {
+      const cell_t<Dots> p = from(i, j);
+      using Traits = point_traits<cell_t<Dots>>;
+      const auto row = static_cast<double>(value(Traits::y(p)));
+      const auto col = static_cast<double>(value(Traits::x(p)));
+      const bool inside = row > -0.5 && col > -0.5 && row < last_row && col < last_col;
+      const bool set = inside && says_contact(cell_t<Mask>(flags(static_cast<Index>(row + 0.5),
+                                                                 static_cast<Index>(col + 0.5))));
+      to(i, j) = static_cast<cell_t<Out>>(set);
+    }
+  }
+  return true;
+}
+
+}  // namespace v0
+}  // namespace fingerpad

@@ -1,0 +1,154 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+#pragma once
+// How near an object is to slipping, from the forces. Source: "Another Approach for Estimation of
+// Slippage Degree" of the slides on slip: at a macroscopic slip the ratio of tangential to normal
+// force is about the friction coefficient, mu0 = F0 / N0, and is remembered; from then on
+//
+//   F / N < F0 / N0   perfect contact or partial slip
+//   F / N ~ F0 / N0   macroscopic slip
+//
+// Coulomb's law holds badly for soft pads: mu0 is a memory of the last slip, not a constant.
+#include <cmath>
+#include <cstdint>
+
+#include "fingerpad/core/dots.hpp"
+#include "fingerpad/core/expects.hpp"
+#include "fingerpad/core/scalar.hpp"
+
+namespace fingerpad {
+inline namespace v0 {
+
+template <scalar S = double>
+struct FrictionTest {
+  S alarm_fraction = S(9) / S(10);   ///< F/N beyond this share of F0/N0 is an alarm, in (0, 1]
+  S least_normal_n = S(5) / S(100);  ///< a smaller normal force has no ratio, N, > 0
+};
+
+/// Refuses what has no meaning (parameter_error).
+template <scalar S>
+void expects_valid(const FrictionTest<S>& test) {
+  expects(value(test.alarm_fraction) > 0 && value(test.alarm_fraction) <= 1, "FrictionTest",
+          "alarm_fraction", test.alarm_fraction, "in (0, 1]");
+  expects(is_finite(test.least_normal_n) && value(test.least_normal_n) > 0, "FrictionTest",
+          "least_normal_n", test.least_normal_n, "finite and > 0");
+}
+
+enum class FrictionStatus : std::uint8_t {
+  held,            ///< F/N is below the alarm: perfect contact or partial slip
+  near_slip,       ///< F/N is about what it was at the last slip
+  sliding,         ///< the caller says so; F/N is remembered
+  no_slip_yet,     ///< nothing to compare with
+  no_contact,      ///< the normal force is too small, or pulls
+  no_force_known,  ///< a force is not finite
+};
+
+/// "held", "near slip", ...
+constexpr const char* name_of(FrictionStatus status) {
+  switch (status) {
+    case FrictionStatus::held:
+      return "held";
+    case FrictionStatus::near_slip:
+      return "near slip";
+    case FrictionStatus::sliding:
+      return "sliding";
+    case FrictionStatus::no_slip_yet:
+      return "no slip yet";
+    case FrictionStatus::no_contact:
+      return "no contact";
+    case FrictionStatus::no_force_known:
+      return "no force known";
+  }
+  return "unknown";
+}
+
+template <scalar S = double>
+struct FrictionResult {
+  FrictionStatus status = FrictionStatus::no_force_known;
+  bool alarm = false;                      ///< near slip, or the caller says that it slides
+  S ratio = not_a_number<S>();             ///< F / N; NaN: none
+  S remembered_ratio = not_a_number<S>();  ///< F0 / N0; NaN: none yet
+  S margin = not_a_number<S>();            ///< 1 - (F/N) / (F0/N0): 0 at slip; NaN where unknown
+};
+
+/// F/N against the ratio at the last macroscopic slip. Const, O(1), no memory from the heap.
+template <scalar S = double>
+class FrictionRatio {
+ public:
+  class State {
+   public:
+    bool has_slipped() const { return has_slipped_; }
+    void reset() { *this = State(); }
+
+   private:
+    friend class FrictionRatio;
+    State() = default;
+    S ratio_ = not_a_number<S>();
+    bool has_slipped_ = false;
+  };
+
+  /// Refuses bad parameters (parameter_error).
+  explicit FrictionRatio(const FrictionTest<S>& test = {}) : test_(test) { expects_valid(test); }
+
+  State start() const { return State(); }
+
+  /// `normal_n` is positive in a press. `sliding`: the object slips as a whole in this frame, for
+  /// example because the stick ratio is below a bound; while it lasts the ratio is remembered anew,
+  /// so that what stays is that of the last frame of the last slip.
+  FrictionResult<S> operator()(const S& tangential_n,
+                               const S& normal_n,
+                               bool sliding,
+                               State& state) const {
+    FrictionResult<S> result{FrictionStatus::no_force_known, sliding, not_a_number<S>(),
+                             state.ratio_, not_a_number<S>()};
+    if (!is_finite(tangential_n) || !is_finite(normal_n)) {
+      return result;
+    }
+    if (!(value(normal_n) >= value(test_.least_normal_n))) {
+      result.status = FrictionStatus::no_contact;
+      return result;
+    }
+    const S magnitude = value(tangential_n) < 0 ? S(-tangential_n) : tangential_n;
+    const S ratio = magnitude / normal_n;
+    if (!is_finite(ratio)) {
+      return result;
+    }
+    result.ratio = ratio;
+    if (sliding && value(ratio) > 0) {  // without a tangential force it says nothing
+      state.ratio_ = result.remembered_ratio = ratio;
+      state.has_slipped_ = true;
+    }
+    judge(sliding, state, result);
+    return result;
+  }
+
+  /// The same for the two components of the tangential force.
+  FrictionResult<S> operator()(const Point2<S>& tangential_n,
+                               const S& normal_n,
+                               bool sliding,
+                               State& state) const {
+    using std::sqrt;
+    const S sum_sq = square(tangential_n.x) + square(tangential_n.y);
+    return (*this)(value(sum_sq) > 0 ? S(sqrt(sum_sq)) : sum_sq, normal_n, sliding, state);
+  }
+
+ private:
+  void judge(bool sliding, const State& state, FrictionResult<S>& result) const {
+    if (!state.has_slipped_) {
+      result.status = sliding ? FrictionStatus::sliding : FrictionStatus::no_slip_yet;
+      return;
+    }
+    const S share = result.ratio / state.ratio_;
+    result.margin = S(1) - share;
+    const bool near_slip = value(share) >= value(test_.alarm_fraction);
+    result.alarm = sliding || near_slip;
+    result.status = sliding     ? FrictionStatus::sliding
+                    : near_slip ? FrictionStatus::near_slip
+                                : FrictionStatus::held;
+  }
+
+  FrictionTest<S> test_;
+};
+
+}  // namespace v0
+}  // namespace fingerpad

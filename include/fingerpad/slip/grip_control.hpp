@@ -1,0 +1,229 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+#pragma once
+// How hard to grip so that an object of unknown weight and friction does not slip, from the stick
+// ratio. Idea: Watanabe, Obinata, "Grip Force Control Using Vision-Based Tactile Sensor for
+// Dexterous Handling" (2008), as summed up by the paper on slippage ("Definition of stick ratio"):
+// the slippage degree is fed back in proportion; when all sticks the force is not increased, when
+// incipient slip shows it is increased before the object slips as a whole.
+//
+//   dF/dt = raise_gain (set_point - ratio)    where less than set_point sticks
+//         = -lower_gain (ratio - lower_above) where more than lower_above does, by default never
+//         = 0                                 in between
+//
+// The force itself is the only integrator, and it is kept within its limits: nothing winds up. The
+// form of the law, its limits and all defaults are this library's; the summary gives no formula.
+#include "fingerpad/slip/grip_status.hpp"
+#include "fingerpad/core/expects.hpp"
+#include "fingerpad/core/scalar.hpp"
+
+namespace fingerpad {
+inline namespace v0 {
+
+/// The law and its limits. Forces in N, rates in N/s, all finite.
+template <scalar S = double>
+struct GripLaw {
+  S set_point = S(8) / S(10);       ///< stick ratio below which the force is raised, in (0, 1)
+  S raise_gain_n_per_s = S(60);     ///< N/s for each unit of ratio below the set point, > 0
+  S lower_above = S(95) / S(100);   ///< ratio above which it is lowered, in [set_point, 1]
+  S lower_gain_n_per_s = S(0);      ///< N/s for each unit above that, >= 0; 0: held, never lowered
+  S rise_limit_n_per_s = S(40);     ///< what the gripper can do, > 0
+  S fall_limit_n_per_s = S(2);      ///< >= 0
+  S least_force_n = S(1) / S(2);    ///< >= 0
+  S most_force_n = S(20);           ///< what the object can bear, > least_force_n
+  S safe_force_n = S(10);           ///< no rise beyond this without a fresh ratio, within the two
+  S ratio_lasts_s = S(1) / S(10);   ///< how long a ratio is acted on while the dots do not move
+                                    ///< enough for the next, >= 0
+  S sliding_ratio = S(5) / S(10);   ///< at or below this the object may slide as a whole under dots
+                                    ///< that stand still: acted on for as long as it stands, in
+                                    ///< [0, set_point]
+  S blind_after_s = S(2) / S(10);   ///< how long a missing ratio is waited for unless the object
+                                    ///< was slipping when last seen, >= 0
+  S blind_rise_n_per_s = S(5);      ///< from then on the force is raised so, to the safe force,
+                                    ///< >= 0; 0: held
+  S longest_step_s = S(1) / S(10);  ///< a longer time between calls counts as this, > 0
+};
+
+/// Refuses what has no meaning (parameter_error).
+template <scalar S>
+void expects_valid(const GripLaw<S>& law) {
+  const auto check = [](bool good, const char* name, const S& given, const char* range) {
+    expects(good && is_finite(given), "GripLaw", name, given, range);
+  };
+  check(value(law.set_point) > 0 && value(law.set_point) < 1, "set_point", law.set_point,
+        "in (0, 1)");
+  check(value(law.raise_gain_n_per_s) > 0, "raise_gain_n_per_s", law.raise_gain_n_per_s,
+        "finite and > 0");
+  check(value(law.lower_above) >= value(law.set_point) && value(law.lower_above) <= 1,
+        "lower_above", law.lower_above, "in [set_point, 1]");
+  check(value(law.lower_gain_n_per_s) >= 0, "lower_gain_n_per_s", law.lower_gain_n_per_s,
+        "finite and >= 0");
+  check(value(law.rise_limit_n_per_s) > 0, "rise_limit_n_per_s", law.rise_limit_n_per_s,
+        "finite and > 0");
+  check(value(law.fall_limit_n_per_s) >= 0, "fall_limit_n_per_s", law.fall_limit_n_per_s,
+        "finite and >= 0");
+  check(value(law.least_force_n) >= 0, "least_force_n", law.least_force_n, "finite and >= 0");
+  check(value(law.most_force_n) > value(law.least_force_n), "most_force_n", law.most_force_n,
+        "finite and > least_force_n");
+  check(value(law.safe_force_n) >= value(law.least_force_n) &&
+            value(law.safe_force_n) <= value(law.most_force_n),
+        "safe_force_n", law.safe_force_n, "in [least_force_n, most_force_n]");
+  check(value(law.ratio_lasts_s) >= 0, "ratio_lasts_s", law.ratio_lasts_s, "finite and >= 0");
+  check(value(law.sliding_ratio) >= 0 && value(law.sliding_ratio) <= value(law.set_point),
+        "sliding_ratio", law.sliding_ratio, "in [0, set_point]");
+  check(value(law.blind_after_s) >= 0, "blind_after_s", law.blind_after_s, "finite and >= 0");
+  check(value(law.blind_rise_n_per_s) >= 0, "blind_rise_n_per_s", law.blind_rise_n_per_s,
+        "finite and >= 0");
+  check(value(law.longest_step_s) > 0, "longest_step_s", law.longest_step_s, "finite and > 0");
+}
+
+/// The equation: N/s for a stick ratio in [0, 1], within what the gripper can do.
+template <scalar S>
+S grip_rate(const GripLaw<S>& law, const S& ratio) {
+  if (value(ratio) < value(law.set_point)) {
+    const S rise = law.raise_gain_n_per_s * S(law.set_point - ratio);
+    return value(rise) < value(law.rise_limit_n_per_s) ? rise : law.rise_limit_n_per_s;
+  }
+  if (value(ratio) > value(law.lower_above)) {
+    const S fall = law.lower_gain_n_per_s * S(ratio - law.lower_above);
+    return value(fall) < value(law.fall_limit_n_per_s) ? S(-fall) : S(-law.fall_limit_n_per_s);
+  }
+  return S(0);
+}
+
+template <scalar S = double>
+struct GripResult {
+  S force_n = S(0);  ///< to be applied now; always finite and within the limits
+  GripStatus status = GripStatus::holding;
+  GripReason why = GripReason::no_time;
+};
+
+/// Grip force, call by call. Const: one serves any number of fingers, each with a state of its own.
+/// O(1), takes no memory, throws nothing, answers slip in the very call that shows it. With the
+/// same state, news and time step, a smaller ratio never gives a smaller force.
+template <scalar S = double>
+class GripControl {
+ public:
+  /// A value: copy it to go back to this call later.
+  class State {
+   public:
+    const S& force_n() const { return force_n_; }
+    /// The force that the gripper really applies, where it is measured and the gripper does not
+    /// follow; the next call goes on from there. Ignored if not finite.
+    void follow(const S& measured_n) { force_n_ = is_finite(measured_n) ? measured_n : force_n_; }
+    /// Back to the force it was started with.
+    void reset() { *this = State(start_n_); }
+
+   private:
+    friend class GripControl;
+    explicit State(const S& force_n) : start_n_(force_n), force_n_(force_n) {}
+
+    S start_n_;
+    S force_n_;
+    S ratio_age_s_ = S(0);   ///< since the last fresh ratio
+    S unseen_s_ = S(0);      ///< since the dots were seen
+    bool slipping_ = false;  ///< the last fresh ratio was below the set point
+  };
+
+  /// Refuses bad parameters (parameter_error).
+  explicit GripControl(const GripLaw<S>& law = {}) : law_(law) { expects_valid(law); }
+
+  const GripLaw<S>& law() const { return law_; }
+
+  State start() const { return State(law_.least_force_n); }
+  /// From the force with which the object was taken; brought within the limits, NaN: the least.
+  State start(const S& force_n) const { return State(within_limits(force_n)); }
+
+  /// The force for a stick ratio (not in [0, 1]: missing), `step_s` after the call before.
+  GripResult<S> operator()(const S& ratio, RatioNews news, const S& step_s, State& state) const {
+    state.force_n_ = within_limits(state.force_n_);
+    if (!is_finite(step_s) || !(value(step_s) > 0)) {
+      return {state.force_n_, GripStatus::holding, GripReason::no_time};
+    }
+    const Wish wish = wish_for(ratio, news, step_s, state);
+    const bool long_step = value(law_.longest_step_s) < value(step_s);
+    return apply(wish, long_step ? law_.longest_step_s : step_s, state);
+  }
+
+  /// The same where nothing but the ratio is known; NaN: missing.
+  GripResult<S> operator()(const S& ratio, const S& step_s, State& state) const {
+    return (*this)(ratio, RatioNews::fresh, step_s, state);
+  }
+
+ private:
+  struct Wish {
+    S rate_n_per_s;
+    S ceiling_n;
+    GripReason why;
+  };
+
+  Wish wish_for(const S& ratio, RatioNews news, const S& step_s, State& state) const {
+    const bool known = value(ratio) >= 0 && value(ratio) <= 1;
+    const bool none_yet = news == RatioNews::unmoved && !(value(ratio) == value(ratio));
+    if (news == RatioNews::missing || !(known || none_yet)) {
+      return without_ratio(step_s, state);
+    }
+    state.unseen_s_ = S(0);
+    return news == RatioNews::fresh ? by_fresh(ratio, state)
+                                    : by_standing(ratio, known, step_s, state);
+  }
+
+  Wish by_fresh(const S& ratio, State& state) const {
+    state.slipping_ = value(ratio) < value(law_.set_point);
+    state.ratio_age_s_ = S(0);
+    const GripReason why = state.slipping_                          ? GripReason::slipping
+                           : value(ratio) > value(law_.lower_above) ? GripReason::all_sticks
+                                                                    : GripReason::enough_sticks;
+    return {grip_rate(law_, ratio), law_.most_force_n, why};
+  }
+
+  /// Raises or holds: that nothing moves is no reason to let go.
+  Wish by_standing(const S& ratio, bool known, const S& step_s, State& state) const {
+    state.ratio_age_s_ = S(state.ratio_age_s_ + step_s);
+    if (known && value(ratio) < value(law_.set_point)) {
+      if (!(value(law_.ratio_lasts_s) < value(state.ratio_age_s_))) {
+        return {grip_rate(law_, ratio), law_.safe_force_n, GripReason::slipping};
+      }
+      if (value(ratio) <= value(law_.sliding_ratio)) {
+        return {grip_rate(law_, ratio), law_.safe_force_n, GripReason::may_slide};
+      }
+    }
+    return {S(0), law_.safe_force_n, GripReason::unmoved};
+  }
+
+  Wish without_ratio(const S& step_s, State& state) const {
+    state.unseen_s_ = S(state.unseen_s_ + step_s);
+    if (!state.slipping_ && !(value(law_.blind_after_s) < value(state.unseen_s_))) {
+      return {S(0), law_.safe_force_n, GripReason::waiting};
+    }
+    const bool fast = value(law_.rise_limit_n_per_s) < value(law_.blind_rise_n_per_s);
+    return {fast ? law_.rise_limit_n_per_s : law_.blind_rise_n_per_s, law_.safe_force_n,
+            GripReason::blind};
+  }
+
+  GripResult<S> apply(const Wish& wish, const S& step_s, State& state) const {
+    const S force = state.force_n_;
+    const bool rise = value(wish.rate_n_per_s) > 0;
+    const bool fall = value(wish.rate_n_per_s) < 0;
+    const bool at_limit = (rise && !(value(force) < value(wish.ceiling_n))) ||
+                          (fall && !(value(law_.least_force_n) < value(force)));
+    if (at_limit || !(rise || fall)) {
+      return {force, at_limit ? GripStatus::at_limit : GripStatus::holding, wish.why};
+    }
+    const S wanted = force + S(wish.rate_n_per_s * step_s);
+    state.force_n_ =
+        value(wish.ceiling_n) < value(wanted) && rise ? wish.ceiling_n : within_limits(wanted);
+    return {state.force_n_, rise ? GripStatus::raising : GripStatus::lowering, wish.why};
+  }
+
+  /// NaN becomes the least force.
+  S within_limits(const S& force_n) const {
+    const S raised = value(force_n) > value(law_.least_force_n) ? force_n : law_.least_force_n;
+    return value(raised) < value(law_.most_force_n) ? raised : law_.most_force_n;
+  }
+
+  GripLaw<S> law_;
+};
+
+}  // namespace v0
+}  // namespace fingerpad

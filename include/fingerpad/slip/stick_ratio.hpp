@@ -1,0 +1,227 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+#pragma once
+// The share of the contact that sticks to the object, from the dots printed in the membrane: 1 when
+// nothing slips, 0 when the object slips as a whole; long before, slip creeps in from the edge of
+// the contact. Source: Ito, Kim, Obinata, "Robust slippage degree estimation based on reference
+// update of vision-based tactile sensor", the talk with its backup slides; and "Acquisition of
+// contact force and slippage using a vision-based tactile sensor with a fluid-type touchpad",
+// eqs. 6-8. Published and corrected forms in docs/errata.md, E032-E038.
+//
+// A dot sticks that has moved, since a reference frame, as the object has; the reference is a
+// stored frame from which the dots have come far enough, in one direction, to tell. The steps lie
+// in detail/stick/ in this order: place_check, reference_choice, motion_between, denoising. What no
+// dots can show: an object that slides as a whole while the membrane stands still.
+#include <cmath>
+#include <cstdint>
+
+#include "fingerpad/slip/denoising.hpp"
+#include "fingerpad/slip/stick_result.hpp"
+#include "fingerpad/slip/detail/stick_state.hpp"
+#include "fingerpad/core/dots.hpp"
+#include "fingerpad/core/expects.hpp"
+#include "fingerpad/core/grid.hpp"
+
+namespace fingerpad {
+inline namespace v0 {
+
+/// When dots are compared, and what counts as slip. In px, or in whatever unit the dots are in.
+struct StickTest {
+  double reference_px = 2.0;  ///< U, > 0: the reference is the newest stored frame from which a dot
+                              ///< in contact has moved further
+  double store_px = 0.5;      ///< U_min (not printed), in [0, reference_px]: a frame is stored when
+                              ///< a dot has moved further from the newest stored one
+  double slip_px = 0.24;      ///< delta_0, > 0: a dot slips that differs from the object's motion
+                              ///< by more than this times d_max / U; for dots with other noise
+                              ///< than the published 0.06 px see calibrate/stick_ratio.hpp
+  Index least_dots = 5;       ///< >= 1: to compare; fewer give no ratio
+};
+inline void expects_valid(const StickTest& test) {
+  expects(is_finite(test.reference_px) && test.reference_px > 0, "StickTest", "reference_px",
+          test.reference_px, "finite and > 0");
+  expects(is_finite(test.store_px) && test.store_px >= 0 && test.store_px <= test.reference_px,
+          "StickTest", "store_px", test.store_px, "in [0, reference_px]");
+  expects(is_finite(test.slip_px) && test.slip_px > 0, "StickTest", "slip_px", test.slip_px,
+          "finite and > 0");
+  expects(test.least_dots >= 1, "StickTest", "least_dots", static_cast<long long>(test.least_dots),
+          ">= 1");
+}
+
+/// Stick ratio of a pad, frame by frame.
+///   Motion     StickConsensus<Freedom, Dot> (default), ReferenceDotMotion<Freedom, Zoom, Dot>
+///   Reference  UpdatedReference<Over> (default), FirstReference
+///   Denoising  ResidualMean (default), DotMean (published), NoDenoising
+/// Published: ReferenceDotMotion<Freedom::similarity, PublishedZoom>, UpdatedReference, DotMean.
+/// Const: threads may share one estimator, each with a state of its own. A frame takes no memory,
+/// throws nothing, and needs O(rows cols) time for each stored frame that it looks at, which are
+/// no more than `capacity` however long the recording is.
+template <class Motion = StickConsensus<>,
+          class Reference = UpdatedReference<>,
+          class Denoising = ResidualMean,
+          scalar S = float>
+class StickRatio {
+ public:
+  /// A value: copy it to go back to this frame later. All memory that frames need is in it.
+  using State = detail::stick::StickState<S>;
+
+  /// For a grid of rows x cols dots. Refuses bad parameters (parameter_error).
+  StickRatio(Index rows,
+             Index cols,
+             const StickTest& test = {},
+             const Motion& motion = {},
+             const Reference& reference = {},
+             const Denoising& denoising = {})
+      : test_(test), motion_(motion), reference_(reference), denoising_(denoising) {
+    expects(rows >= 1, "StickRatio", "rows", static_cast<long long>(rows), ">= 1");
+    expects(cols >= 1, "StickRatio", "cols", static_cast<long long>(cols), ">= 1");
+    expects_valid(test);
+    expects_valid(motion);
+    expects_valid(reference);
+    expects_valid(denoising);
+    layout_ = {rows, cols};
+    inner_ = detail::stick::inner_dots<S>(layout_);
+  }
+
+  Index rows() const { return layout_.rows; }
+  Index cols() const { return layout_.cols; }
+
+  /// The state before any frame.
+  State start() const { return State(layout_, detail::stick::capacity_of(reference_)); }
+
+  /// The ratio in a frame with dots `dots_px` (NaN: not found) of which those with a true `contact`
+  /// touch the object. Writes to `states` what each dot does.
+  template <dot_grid Dots, contact_mask Contact, class States>
+    requires(writable_grid<States>)
+  StickRatioResult<S>
+  operator()(const Dots& dots_px, const Contact& contact, States&& states, State& state) const {
+    return (*this)(dots_px, contact, states, state, not_a_number<double>());
+  }
+
+  /// The same at a time in s: a frame before the last one begins another recording, and all that
+  /// was before is forgotten.
+  template <dot_grid Dots, contact_mask Contact, class States>
+    requires(writable_grid<States>)
+  StickRatioResult<S>
+  operator()(const Dots& dots_px,
+             const Contact& contact,
+             States&& states,
+             State& state,
+             double time_s) const {
+    const auto dots = as_view(dots_px);
+    const auto touch = as_view(contact);
+    const auto to = as_view(states);
+    const bool accepted = dots.rows() == rows() && dots.cols() == cols() &&
+                          same_size(dots, touch) && same_size(dots, to) &&
+                          state.layout == layout_ &&
+                          state.repository.capacity() == detail::stick::capacity_of(reference_);
+    if (!accepted) {
+      return {};
+    }
+    const bool back = time_s < state.time_s;
+    if (back) {
+      state.reset();
+    }
+    state.time_s = is_finite(time_s) ? time_s : state.time_s;
+    ++state.frame;
+    state.given.read(layout_, dots, touch);
+    const StickStatus status = look(state);
+    StickRatioResult<S>& result = state.result;
+    result.status = back ? StickStatus::restarted : status;
+    detail::stick::settle_marks(state);
+    detail::stick::write_states(state, to);
+    if (status == StickStatus::updated) {
+      result.stick_ratio = S(result.stick) / S(result.stick + result.slip);
+    }
+    return result;
+  }
+
+ private:
+  using Choice = detail::stick::Choice<S>;
+  using Run = detail::stick::Run;
+
+  /// What this frame says; fills all of the result but the counts.
+  StickStatus look(State& state) const {
+    using namespace detail::stick;
+    StickRatioResult<S>& result = state.result;
+    result.accepted = true;
+    result.out_of_place = 0;
+    if (!state.given.any_touch()) {
+      return without_contact(state);
+    }
+    const Run run = layout_.run(state.given.first_row, state.given.last_row);
+    state.keep_of_now(run);
+    const PlacedDots placed =
+        prepare_dots(denoising_, state.given, layout_, run, inner_, state.scratch, state.now);
+    result.out_of_place = placed.out_of_place;
+    if (placed.dots < test_.least_dots) {
+      return any_found(state) ? StickStatus::too_few_dots : StickStatus::no_dots;
+    }
+    const Choice choice =
+        choose_reference(reference_, followed_dots(reference_, state, run), state.repository, run,
+                         S(square(test_.reference_px)), S(square(test_.store_px)));
+    result.furthest_px = length(choice.furthest_sq);
+    if (choice.standing) {
+      return StickStatus::standing;
+    }
+    const bool leap =
+        stores_all_along(reference_) && S(4) * S(square(test_.reference_px)) < choice.newest_sq;
+    if (leap && has_jumped(view(state.now), state.repository.dots(0), run, layout_.stride())) {
+      return StickStatus::jumped;
+    }
+    const StickStatus status =
+        choice.age < 0 ? StickStatus::no_reference : answer(choice, run, state);
+    if (is_stored(reference_, state.repository)) {
+      state.repository.store(state.now, state.frame);
+    }
+    return status;
+  }
+
+  bool any_found(const State& state) const {
+    return count_dots(view(state.given.found), layout_.run(0, rows() - 1)) > 0;
+  }
+
+  StickStatus without_contact(State& state) const {
+    if (!any_found(state)) {
+      return StickStatus::no_dots;
+    }
+    state.forget();
+    return StickStatus::no_contact;
+  }
+
+  /// The ratio against the chosen reference.
+  StickStatus answer(const Choice& choice, const Run& run, State& state) const {
+    using namespace detail::stick;
+    const FramePair<S> pair{view(state.now), state.repository.dots(choice.age), run, layout_,
+                            choice.furthest_sq};
+    const NearestDot reference = first_dot(dot_of(motion_), pair, state);
+    if (reference.pairs < test_.least_dots) {
+      return StickStatus::too_few_dots;
+    }
+    const S slip = S(test_.slip_px / test_.reference_px);
+    const S slip_sq = slip * slip * choice.furthest_sq;
+    const ObjectShift<S> shift = motion_between(motion_, pair, reference.cell, slip_sq);
+    mark_dots(denoising_, pair, shift, slip_sq, state.residuals, state.marks);
+    state.stick_center = centroid(pair.now, run, state.marks, DotMarks<S>::stick());
+    StickRatioResult<S>& result = state.result;
+    result.reference_age = static_cast<Index>(state.frame - state.repository.frame(choice.age));
+    result.angle_rad = shift.angle_rad();
+    result.scale = shift.scale();
+    result.reference_dot = layout_.dot_at(reference.cell);
+    return StickStatus::updated;
+  }
+
+  static S length(const S& sq) {
+    using std::sqrt;
+    return S(0) < sq ? S(sqrt(sq)) : S(0);
+  }
+
+  StickTest test_;
+  Motion motion_;
+  Reference reference_;
+  Denoising denoising_;
+  detail::stick::DotLayout layout_;
+  detail::line_vector<S> inner_;
+};
+
+}  // namespace v0
+}  // namespace fingerpad

@@ -1,0 +1,105 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+#pragma once
+// What a frame says of stick and slip.
+#include <cstdint>
+
+#include "fingerpad/core/dots.hpp"
+#include "fingerpad/core/grid.hpp"
+#include "fingerpad/core/scalar.hpp"
+
+namespace fingerpad {
+inline namespace v0 {
+
+/// What a dot does.
+enum class DotState : std::uint8_t {
+  none = 0,  ///< it does not touch the object
+  unknown =
+      1,      ///< it touches, but was missing or did not touch in the reference, or is missing now
+  slip = 2,   ///< it has not moved with the object since the reference
+  stick = 3,  ///< it has
+};
+
+enum class StickStatus : std::uint8_t {
+  updated,       ///< the ratio is that of this frame
+  standing,      ///< the dots have hardly moved since the newest stored frame
+  no_reference,  ///< no stored frame is far enough away in the direction of motion
+  too_few_dots,  ///< fewer dots to compare than StickTest::least_dots
+  no_contact,    ///< nothing touches: there is no ratio, and what was stored is forgotten
+  no_dots,       ///< no dot at all was found: nothing is known, nothing is forgotten
+  jumped,        ///< all dots carry the name of a neighbour: the frame is left out
+  restarted,     ///< time went back: all that was before is forgotten
+};
+
+/// "updated", "standing", ...
+constexpr const char* name_of(StickStatus status) {
+  switch (status) {
+    case StickStatus::updated:
+      return "updated";
+    case StickStatus::standing:
+      return "standing";
+    case StickStatus::no_reference:
+      return "no reference";
+    case StickStatus::too_few_dots:
+      return "too few dots";
+    case StickStatus::no_contact:
+      return "no contact";
+    case StickStatus::no_dots:
+      return "no dots";
+    case StickStatus::jumped:
+      return "jumped";
+    case StickStatus::restarted:
+      return "restarted";
+  }
+  return "unknown";
+}
+
+/// Where the status is not `updated`, stick_ratio and what follows `furthest_px` are those of the
+/// last frame with an answer.
+template <scalar S = float>
+struct StickRatioResult {
+  bool accepted = false;  ///< false: a grid has another size than the estimator, or the state
+                          ///< belongs to another estimator; nothing was done
+  StickStatus status = StickStatus::no_dots;
+  Index stick = 0, slip = 0, unknown = 0;  ///< dots in contact, as written to `states`
+  Index out_of_place =
+      0;  ///< dots in contact that are not between their neighbours: taken as missing
+  S furthest_px = S(0);  ///< d_max from the reference; without one from the newest stored frame
+  S stick_ratio =
+      not_a_number<S>();    ///< sticking dots / known dots, in [0, 1]; NaN: none known yet
+  Index reference_age = 0;  ///< frames from the reference to the answer
+  S angle_rad = S(0);       ///< by which the object has turned since the reference, from x to y
+  S scale = S(1);           ///< alpha: the object is seen 1 / scale as large as in the reference
+  DotIndex reference_dot =
+      {};  ///< where the search for sticking dots began; row -1: there was none
+
+  bool updated() const { return status == StickStatus::updated; }
+  Index dots_in_contact() const { return stick + slip + unknown; }
+};
+
+/// The stick ratio by area: of the dots known to stick or slip, the share of `cell_areas` that
+/// sticks; NaN where there is none. Areas that are not finite and positive are left out.
+/// O(rows cols).
+template <grid States, grid Areas>
+double stick_area_ratio(const States& states, const Areas& cell_areas) {
+  const auto of = as_view(states);
+  const auto areas = as_view(cell_areas);
+  if (!same_size(of, areas)) {
+    return not_a_number<double>();
+  }
+  double stick = 0, known = 0;
+  for (Index i = 0; i < of.rows(); ++i) {
+    for (Index j = 0; j < of.cols(); ++j) {
+      const DotState state = static_cast<DotState>(of(i, j));
+      const double area = static_cast<double>(value(areas(i, j)));
+      if (state >= DotState::slip && is_finite(area) && area > 0) {
+        known += area;
+        stick += state == DotState::stick ? area : 0;
+      }
+    }
+  }
+  return known > 0 ? stick / known : not_a_number<double>();
+}
+
+}  // namespace v0
+}  // namespace fingerpad

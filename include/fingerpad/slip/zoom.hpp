@@ -1,0 +1,125 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+#pragma once
+// Compensation of perspective: by how much the contact region is seen larger or smaller than in the
+// reference, as the normal force presses it toward the camera or lets it go. Source: slides
+// "Calculation of scale parameter alpha", "Elimination of parallel component" of 003.
+#include <array>
+#include <cmath>
+
+#include "fingerpad/slip/detail/object_shift.hpp"
+#include "fingerpad/image/detail/quick_math.hpp"
+#include "fingerpad/core/expects.hpp"
+
+namespace fingerpad {
+inline namespace v0 {
+
+/// alpha from the distances between neighbouring dots across the direction in which they move, sums
+/// of absolute values: as published. Where nothing moves there is no direction and alpha is 1
+/// (E036). Noise makes the larger sum of the two no larger than the other, but both larger.
+struct PublishedZoom {};
+
+/// The same by least squares, and the part along the motion is taken out the less, the less there
+/// is of motion: as much as 1 - (fading / motion)^2 of it where dots move by much more than
+/// `fading_px`, none where they stand still, so that a plain press has its alpha too.
+struct LeastSquaresZoom {
+  double fading_px = 0.25;  ///< > 0
+};
+inline void expects_valid(const PublishedZoom&) {}
+inline void expects_valid(const LeastSquaresZoom& zoom) {
+  expects(is_finite(zoom.fading_px) && zoom.fading_px > 0, "LeastSquaresZoom", "fading_px",
+          zoom.fading_px, "finite and > 0");
+}
+
+namespace detail::stick {
+
+/// Two frames to compare.
+template <class S>
+struct FramePair {
+  PlanesView<S> now, then;
+  Run run;
+  DotLayout layout;
+  S furthest_sq;  ///< d_max^2
+};
+
+/// Sums over pairs of neighbours: of what the distance was, and of what it is.
+template <class V>
+struct ZoomSums {
+  V then{}, now{};
+};
+
+/// Two neighbours: the vector between them then, and now with the object turned back; and the sum
+/// of their displacements.
+template <class V>
+struct NeighbourPair {
+  V then_x, then_y;
+  V now_x, now_y;
+  V motion_x, motion_y;
+};
+
+template <class S, class V>
+void add_pair(const PublishedZoom&, const NeighbourPair<V>& p, ZoomSums<V>& sums) {
+  const V zero{};
+  const V motion_sq = p.motion_x * p.motion_x + p.motion_y * p.motion_y;
+  const V then = p.then_x * p.motion_y - p.then_y * p.motion_x;
+  const V now = p.now_x * p.motion_y - p.now_y * p.motion_x;
+  const V then_size = choose(then < zero, V(zero - then), then);
+  const V now_size = choose(now < zero, V(zero - now), now);
+  // 1e-12: what moves less has no direction
+  const V per_motion = only_where(S(1e-12) < motion_sq, V(inverse_sqrt(motion_sq)));
+  const auto known = motion_sq < no_distance_sq<S>();
+  sums.then += only_where(known, V(then_size * per_motion));
+  sums.now += only_where(known, V(now_size * per_motion));
+}
+template <class S, class V>
+void add_pair(const LeastSquaresZoom& zoom, const NeighbourPair<V>& p, ZoomSums<V>& sums) {
+  const V motion_sq = p.motion_x * p.motion_x + p.motion_y * p.motion_y;
+  const V weight = S(1) / (motion_sq + S(zoom.fading_px * zoom.fading_px));
+  const V then_along = p.then_x * p.motion_x + p.then_y * p.motion_y;
+  const V now_along = p.now_x * p.motion_x + p.now_y * p.motion_y;
+  const V both = p.then_x * p.now_x + p.then_y * p.now_y - weight * then_along * now_along;
+  const V now = p.now_x * p.now_x + p.now_y * p.now_y - weight * now_along * now_along;
+  const auto known = motion_sq < no_distance_sq<S>();
+  sums.then += only_where(known, both);
+  sums.now += only_where(known, now);
+}
+
+/// alpha of the frames, `turned` being the object's motion without it; 1 where the pairs determine
+/// none or one that is not plausible.
+template <class Zoom, class S>
+S scale_between(const Zoom& zoom, const FramePair<S>& pair, const ObjectShift<S>& turned) {
+  using V = run_vector<S>;
+  const Index stride = pair.layout.stride();
+  const S object_x = turned.now_x - turned.then_x, object_y = turned.now_y - turned.then_y;
+  ZoomSums<V> sums;
+  struct Dot {
+    V tx, ty, nx, ny, dx, dy;  // then, now turned back, displacement
+  };
+  const auto dot = [&](Index k) {
+    const V nx = load_cells<V, S>(pair.now.x + k), ny = load_cells<V, S>(pair.now.y + k);
+    Dot d;
+    d.tx = load_cells<V, S>(pair.then.x + k);
+    d.ty = load_cells<V, S>(pair.then.y + k);
+    turned.residual(nx, ny, d.tx, d.ty, d.dx, d.dy);
+    d.nx = d.dx + d.tx;
+    d.ny = d.dy + d.ty;
+    d.dx += object_x;
+    d.dy += object_y;
+    return d;
+  };
+  for (Index k = pair.run.begin; k < pair.run.end; k += run_step<S>) {
+    const Dot a = dot(k);
+    for (const Index step : {Index(1), stride - 1, stride, stride + 1}) {
+      const Dot b = dot(k + step);
+      add_pair<S, V>(zoom,
+                     {a.tx - b.tx, a.ty - b.ty, a.nx - b.nx, a.ny - b.ny, a.dx + b.dx, a.dy + b.dy},
+                     sums);
+    }
+  }
+  const S alpha = sum_of_lanes<S>(sums.then) / sum_of_lanes<S>(sums.now);
+  return is_plausible_scale(alpha) ? alpha : S(1);
+}
+
+}  // namespace detail::stick
+}  // namespace v0
+}  // namespace fingerpad

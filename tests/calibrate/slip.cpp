@@ -1,0 +1,968 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+#include "fingerpad/calibrate/slip.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <cstdio>
+#include <limits>
+#include <numbers>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "support/catch.hpp"
+#include "support/generators.hpp"
+#include "support/numbers.hpp"
+#include "support/pad.hpp"
+#include "support/refusal.hpp"
+
+using namespace fingerpad;
+using test::begins_with;
+using test::Digits50;
+using test::Image;
+using test::Random;
+using test::refusal;
+
+namespace {
+
+using Points = Image<Point2<double>>;
+using Flags = Image<unsigned char>;
+
+constexpr double pitch_px = 19.5;
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+/// Gaussian to the far tail, which a sum of uniform numbers is not.
+Point2<double> gaussian_pair(Random& random) {
+  const double length = std::sqrt(-2 * std::log(1 - random.uniform()));
+  const double angle = 2 * std::numbers::pi * random.uniform();
+  return {length * std::cos(angle), length * std::sin(angle)};
+}
+
+Points pattern(Index rows, Index cols) {
+  Points dots(rows, cols);
+  for (Index i = 0; i < rows; ++i) {
+    for (Index j = 0; j < cols; ++j) {
+      dots(i, j) = {100 + pitch_px * static_cast<double>(j),
+                    50 + pitch_px * static_cast<double>(i)};
+    }
+  }
+  return dots;
+}
+
+Points noisy(Points dots, double noise_px, Random& random) {
+  for (auto& p : dots.cells) {
+    const auto off = gaussian_pair(random);
+    p = {p.x + noise_px * off.x, p.y + noise_px * off.y};
+  }
+  return dots;
+}
+
+Points moved(Points dots, double x_px, double y_px) {
+  for (auto& p : dots.cells) {
+    p = {p.x + x_px, p.y + y_px};
+  }
+  return dots;
+}
+
+void lose(Points& dots, double share, Random& random) {
+  for (auto& p : dots.cells) {
+    p.x = random.uniform() < share ? test::nan : p.x;
+  }
+}
+
+Flags disc(Index rows, Index cols, double radius) {
+  Flags contact(rows, cols);
+  for (Index i = 0; i < rows; ++i) {
+    for (Index j = 0; j < cols; ++j) {
+      const double row = static_cast<double>(i) - static_cast<double>(rows - 1) / 2;
+      const double col = static_cast<double>(j) - static_cast<double>(cols - 1) / 2;
+      contact(i, j) = std::hypot(row, col) < radius;
+    }
+  }
+  return contact;
+}
+
+struct MeanOfSeeds {
+  double sum = 0, squares = 0, count = 0;
+  void add(double x) { sum += x, squares += x * x, count += 1; }
+  double mean() const { return sum / count; }
+  double sd() const { return std::sqrt((squares - sum * sum / count) / (count - 1)); }
+  double error() const { return sd() / std::sqrt(count); }
+};
+
+/// An object that drags the membrane along while the stick disc shrinks from all of the contact to
+/// a small rest; dots outside of it stay behind, the more the further they are from it.
+struct Slipping {
+  double noise_px = 0.06;
+  double step_px = 0.5;
+  int frames = 120;
+  double last_radius = 2.5;  ///< of the stick disc, in pitches; 9: nothing slips
+  int turns_at = 1000;       ///< frame from which it moves back
+  std::uint64_t seed = 3;
+};
+
+struct Recording {
+  std::vector<Points> dots;
+  std::vector<double> truth;
+  Flags contact = disc(21, 21, 8.2);
+};
+
+Recording record(const Slipping& s) {
+  Recording recording;
+  Random random(s.seed);
+  Points dots = pattern(21, 21);
+  for (int t = 0; t < s.frames; ++t) {
+    const double share = std::clamp(4.0 * t / (3.0 * s.frames) - 0.2, 0.0, 1.0);
+    const double radius = 9 + share * (s.last_radius - 9);
+    const double step_px = t < s.turns_at ? s.step_px : -s.step_px;
+    double stick = 0, all = 0;
+    for (Index i = 0; i < 21; ++i) {
+      for (Index j = 0; j < 21; ++j) {
+        const double from = std::hypot(static_cast<double>(i) - 10.3, static_cast<double>(j) - 9.8);
+        const double lag = std::clamp((from - radius) / 1.5, 0.0, 0.9);
+        dots(i, j).x += step_px * (1 - lag);
+        dots(i, j).y += 0.3 * step_px * (1 - lag);
+        all += recording.contact(i, j) ? 1 : 0;
+        stick += recording.contact(i, j) && !(lag > 0) ? 1 : 0;
+      }
+    }
+    recording.dots.push_back(noisy(dots, s.noise_px, random));
+    recording.truth.push_back(stick / all);
+  }
+  return recording;
+}
+
+template <class Calibration>
+void add(const Recording& recording, Calibration& calibration) {
+  bool all = true;
+  for (const Points& dots : recording.dots) {
+    all = calibration.add(dots, recording.contact) && all;
+  }
+  CHECK(all);
+}
+
+const ReferenceCandidate& chosen_row(const StickTestChoice& choice) {
+  for (const ReferenceCandidate& row : choice.table) {
+    if (row.verdict == ReferenceVerdict::chosen) {
+      return row;
+    }
+  }
+  throw std::string("no row is chosen");
+}
+
+/// Of the ratio, where it is updated.
+double mean_error(const Recording& recording, const StickTest& test) {
+  const StickRatio<> estimator(21, 21, test);
+  auto state = estimator.start();
+  Image<DotState> states(21, 21);
+  MeanOfSeeds errors;
+  for (std::size_t t = 0; t < recording.dots.size(); ++t) {
+    const auto result = estimator(recording.dots[t], recording.contact, states, state);
+    if (result.updated()) {
+      errors.add(std::abs(static_cast<double>(result.stick_ratio) - recording.truth[t]));
+    }
+  }
+  return errors.mean();
+}
+
+RatioMeasures measures(const std::vector<double>& ratios) {
+  return measures_of(std::span<const double>(ratios));
+}
+
+}  // namespace
+
+TEST_CASE("dot noise: found again, whatever is lost and however the camera shakes", "[stick]") {
+  for (const double noise_px : {0.03, 0.14}) {
+    for (const double lost : {0.0, 0.3}) {
+      for (const Index size : {Index(5), Index(21)}) {
+        MeanOfSeeds noise, inner, edge, claimed;
+        for (std::uint64_t seed = 1; seed <= 12; ++seed) {
+          Random random(seed);
+          DotNoiseCalibration calibration(size, size + 1);
+          for (int t = 0; t < 12; ++t) {
+            auto dots = noisy(pattern(size, size + 1), noise_px, random);
+            dots = moved(dots, random.uniform(-3, 3), random.uniform(-3, 3));
+            lose(dots, lost, random);
+            CHECK(calibration.add(dots));
+          }
+          const DotNoise found = calibration.fit();
+          CHECK(found.frames == 12);
+          CHECK(found.out_of_place == 0);
+          CHECK(found.dots == size * (size + 1));
+          CHECK(std::abs(found.slow_share) < 0.25);
+          noise.add(found.noise_px);
+          claimed.add(found.noise_error_px);
+          if (lost == 0) {
+            inner.add(found.inner_px);
+            edge.add(found.edge_px);
+          }
+        }
+        CAPTURE(noise_px, lost, size, noise.mean(), noise.error(), claimed.mean());
+        CHECK(std::abs(noise.mean() - noise_px) < 2 * claimed.mean() / std::sqrt(12.0));
+        // the spread over 12 seeds is itself known to 21 %
+        CHECK(noise.sd() / claimed.mean() < 1.6);
+        CHECK(noise.sd() / claimed.mean() > 0.5);
+        if (lost == 0) {
+          CHECK(std::abs(inner.mean() - noise_px * denoising_gain({})) < 2.5 * inner.error());
+          const double sides =
+              static_cast<double>(4 * size - 6);  // of the pattern, without corners
+          const double at_edge = (sides * std::pow(denoising_gain({}, 3, 2), 2) +
+                                  4 * std::pow(denoising_gain({}, 2, 1), 2)) /
+                                 (sides + 4);
+          CHECK(std::abs(edge.mean() - noise_px * std::sqrt(at_edge)) < 2.5 * edge.error());
+        }
+      }
+    }
+  }
+}
+
+TEST_CASE("dot noise: a few dots in a few frames have no bias", "[stick]") {
+  // of 9 dots in 3 frames, places and motion take 11 of 27 numbers
+  for (const bool lost : {false, true}) {
+    MeanOfSeeds noise, inner, edge, largest;
+    for (std::uint64_t seed = 1; seed <= 1500; ++seed) {
+      Random random(seed);
+      DotNoiseCalibration calibration(3, 3);
+      for (int t = 0; t < 3; ++t) {
+        auto dots = moved(noisy(pattern(3, 3), 0.1, random), random.uniform(-3, 3), 0);
+        dots(t, 0).x = lost ? test::nan : dots(t, 0).x;
+        dots(2, 2).y = lost && t > 0 ? test::nan : dots(2, 2).y;  // once says nothing
+        calibration.add(dots);
+      }
+      const DotNoise found = calibration.fit();
+      noise.add(found.noise_px * found.noise_px);
+      inner.add(found.inner_px * found.inner_px);
+      edge.add(found.edge_px * found.edge_px);
+      largest.add(found.largest_px * found.largest_px);
+    }
+    CAPTURE(lost, noise.mean(), noise.error());
+    CHECK(std::abs(noise.mean() - 0.01) < 2.5 * noise.error());
+    if (!lost) {
+      const auto variance = [](int sides, int diagonals) {
+        return 0.01 * std::pow(denoising_gain({}, sides, diagonals), 2);
+      };
+      CHECK(std::abs(inner.mean() - variance(4, 4)) < 2.5 * inner.error());
+      CHECK(std::abs(edge.mean() - (variance(3, 2) + variance(2, 1)) / 2) < 2.5 * edge.error());
+    }
+    CHECK(largest.mean() > noise.mean());
+  }
+}
+
+TEST_CASE("dot noise: what averaging leaves", "[stick]") {
+  CHECK(denoising_gain({6, 2, 1}) == Approx(std::sqrt(36.0 + 16 + 4) / 18));
+  CHECK(denoising_gain({1, 1, 1}) == Approx(1.0 / 3));
+  CHECK(denoising_gain({1, 0, 0}) == 1);
+  CHECK(denoising_gain({6, 2, 1}, 0, 0) == 1);
+  CHECK(denoising_gain({6, 2, 1}, 3, 2) == Approx(std::sqrt(36.0 + 12 + 2) / 14));
+  CHECK(independent_dot_noise(0.1).gain() == Approx(denoising_gain({})));
+
+  // noise that neighbours share is averaged away less: of a mean over three dots in a row, a mean
+  // over nine keeps 9 sqrt(19 3) / 81 of 1/sqrt(3)
+  Random random(4);
+  DotNoiseCalibration calibration(40, 40, {1, 1, 1});
+  for (int t = 0; t < 20; ++t) {
+    const auto source = noisy(Points(40, 42), 0.2, random);
+    Points dots = pattern(40, 40);
+    for (Index i = 0; i < 40; ++i) {
+      for (Index j = 0; j < 40; ++j) {
+        for (Index k = 0; k < 3; ++k) {
+          dots(i, j).x += source(i, j + k).x / 3;
+          dots(i, j).y += source(i, j + k).y / 3;
+        }
+      }
+    }
+    calibration.add(dots);
+  }
+  const DotNoise noise = calibration.fit();
+  CHECK(noise.noise_px == Approx(0.2 / std::sqrt(3.0)).epsilon(0.01));
+  CHECK(noise.gain() == Approx(std::sqrt(3.0 * 19) / 27 * std::sqrt(3.0)).epsilon(0.02));
+}
+
+TEST_CASE("dot noise: the published measure holds the noise of two dots", "[stick]") {
+  // of the central dot and of the worst of the others, here the corners
+  MeanOfSeeds published, largest;
+  for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+    Random random(seed);
+    DotNoiseCalibration calibration(7, 7);
+    for (int t = 0; t < 400; ++t) {
+      auto dots = noisy(pattern(7, 7), 0.1, random);
+      for (const Index i : {0, 6}) {
+        for (const Index j : {0, 6}) {
+          const auto more = gaussian_pair(random);
+          dots(i, j).x += 0.3 * more.x;
+          dots(i, j).y += 0.3 * more.y;
+        }
+      }
+      calibration.add(moved(dots, random.uniform(-1, 1), 0));
+    }
+    published.add(calibration.fit().published_px);
+    largest.add(calibration.fit().largest_px);
+  }
+  // the largest of eight numbers, each known to 3.5 %
+  CHECK(published.mean() == Approx(1.05 * std::sqrt(0.01 + 0.1)).epsilon(0.04));
+  CHECK(largest.mean() == Approx(1.025 * std::sqrt(0.01 + 0.09)).epsilon(0.04));
+
+  Random random(1);
+  DotNoiseCalibration alike(7, 7);
+  for (int t = 0; t < 2000; ++t) {
+    alike.add(noisy(pattern(7, 7), 0.1, random));
+  }
+  CHECK(alike.fit().published_px == Approx(0.1 * std::sqrt(2.0)).epsilon(0.05));
+  CHECK(alike.fit().published_px / alike.fit().largest_px > 1.3);
+}
+
+TEST_CASE("dot noise: exchanged dots are left out, slow motion is said", "[stick]") {
+  const auto measured = [](bool exchange, double drift_px, bool only_contact) {
+    Random random(8);
+    DotNoiseCalibration calibration(15, 15);
+    const Flags contact = disc(15, 15, 5);
+    for (int t = 0; t < 30; ++t) {
+      auto dots = noisy(pattern(15, 15), 0.1, random);
+      for (Index j = 0; j < 15; ++j) {
+        dots(2, j).x += drift_px * t * static_cast<double>(j);
+      }
+      if (exchange && t % 10 == 3) {
+        std::swap(dots(4, 4), dots(9, 9));
+        dots(7, 7) = {infinity, 0};
+        dots(8, 7) = {1e30, 1e30};
+      }
+      CHECK((only_contact ? calibration.add(dots, contact) : calibration.add(dots)));
+    }
+    return calibration.fit();
+  };
+  const DotNoise good = measured(false, 0, false), bad = measured(true, 0, false);
+  CHECK(good.out_of_place == 0);
+  CHECK(bad.out_of_place == 9);
+  CHECK(bad.noise_px == Approx(good.noise_px).epsilon(0.01));
+  CHECK(bad.largest_px < 1.3 * 0.1);
+  CHECK(std::abs(good.slow_share) < 0.05);
+  const DotNoise creeping = measured(false, 0.005, false);
+  CHECK(creeping.noise_px > 1.2 * good.noise_px);
+  CHECK(creeping.slow_share ==
+        Approx(1 - std::pow(good.noise_px / creeping.noise_px, 2)).margin(0.05));
+  CHECK(measured(false, 0.005, true).noise_px == Approx(0.1).epsilon(0.05));  // row 2 is outside
+  CHECK(measured(false, 0, true).dots == 69);
+}
+
+TEST_CASE("dot noise: what it refuses", "[stick]") {
+  CHECK(begins_with(refusal([] { DotNoiseCalibration(0, 3); }), "DotNoiseCalibration: rows = 0"));
+  CHECK(begins_with(refusal([] { DotNoiseCalibration(3, -1); }), "DotNoiseCalibration: cols = -1"));
+  CHECK(begins_with(refusal([] {
+                      DotNoiseCalibration(3, 3, {0, 1, 1});
+                    }),
+                    "DotNoiseCalibration: weights.self = 0"));
+  DotNoiseCalibration calibration(3, 3);
+  const auto said = [&] { return refusal([&] { calibration.fit(); }); };
+  CHECK(begins_with(said(), "DotNoiseCalibration: frames = 0"));
+  CHECK_FALSE(calibration.add(Points(3, 4)));
+  CHECK_FALSE(calibration.add(Points(3, 3), Flags(3, 4, 1)));
+  CHECK(begins_with(said(), "DotNoiseCalibration: frames = 0"));
+  Random random(1);
+  const Points found = noisy(pattern(3, 3), 0.1, random);
+  calibration.add(found);
+  CHECK(begins_with(said(), "DotNoiseCalibration: frames = 1"));
+  const Points nothing(3, 3, {test::nan, test::nan});
+  for (int k = 0; k < 3; ++k) {
+    calibration.add(nothing);
+    calibration.add(found, Flags(3, 3, 0));
+  }
+  CHECK(begins_with(said(), "DotNoiseCalibration: dots = 0"));
+  calibration.add(found);
+  CHECK(begins_with(said(), "DotNoiseCalibration: noise_px = 0, must be > 0: the frames are the"));
+  calibration.add(noisy(found, 0.1, random));
+  CHECK(said() == "accepted");
+
+  // two dots that are never in the same frame have nothing to be compared with
+  DotNoiseCalibration apart(1, 2);
+  for (int t = 0; t < 6; ++t) {
+    Points dots = noisy(pattern(1, 2), 0.1, random);
+    dots(0, t % 2).y = test::nan;
+    apart.add(dots);
+  }
+  CHECK(begins_with(refusal([&] { apart.fit(); }), "DotNoiseCalibration: positions beyond"));
+}
+
+TEST_CASE("false slip: against fifty digits, however rare", "[stick]") {
+  const auto check = [](auto tag, double largest_exponent) {
+    using S = decltype(tag);
+    const S eps = std::numeric_limits<S>::epsilon();
+    for (double ratio = 0.01; ratio * ratio / 4 < largest_exponent; ratio *= 1.37) {
+      const S noise = S(0.0637), slip = S(ratio) * noise;
+      const Digits50 exact_ratio = Digits50(slip) / Digits50(noise);
+      const Digits50 x = exact_ratio * exact_ratio / 4;
+      const Digits50 p = exp(-x);
+      const S here = false_slip_probability(slip, noise);
+      CHECK(test::relative_error(Digits50(here), p) < (4 * x + 2) * Digits50(eps));
+      const S back = slip_threshold_for(noise, here);
+      const Digits50 exact_back = 2 * Digits50(noise) * sqrt(-log(Digits50(here)));
+      CHECK(test::relative_error(Digits50(back), exact_back) < 4 * Digits50(eps));
+      for (const Index dots : {Index(1), Index(7), Index(441), Index(100000)}) {
+        if (here < S(1)) {
+          const Digits50 n = Digits50(static_cast<double>(dots));
+          const Digits50 among = -expm1(n * log1p(-Digits50(here)));
+          CHECK(test::relative_error(Digits50(false_slip_among(here, dots)), among) <
+                4 * Digits50(eps));
+          const Digits50 each = -expm1(log1p(-Digits50(here)) / n);
+          CHECK(test::relative_error(Digits50(false_slip_of_each(here, dots)), each) <
+                4 * Digits50(eps));
+        }
+      }
+    }
+  };
+  check(float(), 80);
+  check(double(), 700);
+  check(static_cast<long double>(0), 11000);
+}
+
+TEST_CASE("false slip: ends of the range, units, slopes", "[stick]") {
+  CHECK(false_slip_probability(0.0, 0.1) == 1);
+  CHECK(false_slip_probability(0.1, 0.0) == 0);
+  CHECK(false_slip_probability(100.0, 0.1) == 0);
+  CHECK(std::isnan(false_slip_probability(0.0, 0.0)));
+  CHECK(std::isnan(false_slip_probability(test::nan, 0.1)));
+  CHECK(slip_threshold_for(0.1, 1.0) == 0);
+  CHECK_FALSE(std::signbit(slip_threshold_for(0.1, 1.0)));
+  CHECK(slip_threshold_for(0.1, 0.0) == infinity);
+  CHECK(std::isnan(slip_threshold_for(0.1, 1.01)));
+  CHECK(false_slip_among(0.0, 441) == 0);
+  CHECK(false_slip_among(1e-300, 441) == Approx(441e-300).epsilon(1e-14));
+  CHECK(false_slip_of_each(0.01, 1) == Approx(0.01).epsilon(1e-14));
+  CHECK(furthest_noise_px(0.1, 1) == Approx(0.2).epsilon(1e-15));
+  CHECK(furthest_noise_px(0.1, 4) == Approx(0.2 * std::sqrt(25.0 / 12)).epsilon(1e-15));
+  CHECK(furthest_noise_px(0.1, 0) == 0);
+  rc::prop("only the quotient counts, and p falls with it", [] {
+    const double noise = test::log_uniform(1e-3, 1e3), slip = noise * test::uniform(0, 20);
+    const double unit = std::ldexp(1.0, static_cast<int>(test::whole(-20, 20)));
+    RC_ASSERT(false_slip_probability(slip * unit, noise * unit) ==
+              false_slip_probability(slip, noise));
+    RC_ASSERT(false_slip_probability(slip * 1.001 + noise * 1e-3, noise) <
+              false_slip_probability(slip, noise));
+    const double p = test::log_uniform(1e-300, 1);
+    RC_ASSERT(std::abs(std::log(false_slip_probability(slip_threshold_for(noise, p), noise) / p)) <
+              1e-11);
+  });
+  const auto by_slip = [](const auto& slip) {
+    return false_slip_probability(slip, std::remove_cvref_t<decltype(slip)>(0.06));
+  };
+  CHECK(test::slope_by_dual(by_slip, 0.2) ==
+        Approx(-0.2 / (2 * 0.06 * 0.06) * by_slip(0.2)).epsilon(1e-13));
+}
+
+TEST_CASE("false slip: as often as drawn", "[stick]") {
+  // sigma of one position; the difference of two frames; 4 sigma, as published
+  Random random(11);
+  const int draws = 400000;
+  double beyond = 0, along_x = 0;
+  for (int k = 0; k < draws; ++k) {
+    const auto then = gaussian_pair(random), now = gaussian_pair(random);
+    beyond += std::hypot(now.x - then.x, now.y - then.y) > 4 ? 1 : 0;
+    along_x += std::abs(now.x) > 2 ? 1 : 0;
+  }
+  const double p = false_slip_probability(4.0, 1.0);
+  CHECK(p == Approx(0.0183156).epsilon(1e-5));
+  CHECK(std::abs(beyond / draws - p) < 3 * std::sqrt(p / draws));
+  // what 95.44 % is of: one axis of one position
+  CHECK(std::abs(along_x / draws - 0.0455) < 3 * std::sqrt(0.0455 / draws));
+
+  for (const Index dots : {Index(1), Index(12), Index(300)}) {
+    const int frames = dots == 300 ? 4000 : 40000;
+    const double limit = slip_threshold_for(0.1, false_slip_of_each(0.05, dots));
+    MeanOfSeeds furthest_sq;
+    double beyond_limit = 0;
+    for (int t = 0; t < frames; ++t) {
+      double sq = 0;
+      for (Index k = 0; k < dots; ++k) {
+        const auto off = gaussian_pair(random);
+        sq = std::max(sq, 0.02 * (off.x * off.x + off.y * off.y));
+      }
+      furthest_sq.add(sq);
+      beyond_limit += sq > limit * limit ? 1 : 0;
+    }
+    CAPTURE(dots);
+    CHECK(std::abs(furthest_sq.mean() - std::pow(furthest_noise_px(0.1, dots), 2)) <
+          3 * furthest_sq.error());
+    CHECK(std::abs(beyond_limit / frames - 0.05) < 3 * std::sqrt(0.05 / frames));
+  }
+}
+
+TEST_CASE("false slip: as often as the stick ratio says", "[stick]") {
+  // Everything sticks, so all that slips is false. d_max is the largest of many displacements and
+  // so is larger than the motion by noise, which widens the threshold in proportion.
+  const double noise_px = 0.05;
+  StickTest test;
+  test.slip_px = slip_threshold_for(noise_px, 0.05);
+  const StickRatio<StickConsensus<Freedom::translation>, UpdatedReference<>, NoDenoising, double>
+      estimator(41, 41, test);
+  auto state = estimator.start();
+  Image<DotState> states(41, 41);
+  const Flags contact(41, 41, 1);
+  Random random(2);
+  double slip = 0, expected = 0, dots = 0;
+  for (int t = 0; t < 40; ++t) {
+    const auto now = noisy(moved(pattern(41, 41), 2.5 * t, 0), noise_px, random);
+    const auto result = estimator(now, contact, states, state);
+    if (result.updated()) {
+      const double widened_px = test.slip_px * result.furthest_px / test.reference_px;
+      slip += static_cast<double>(result.slip);
+      expected += static_cast<double>(result.dots_in_contact()) *
+                  false_slip_probability(widened_px, noise_px);
+      dots += static_cast<double>(result.dots_in_contact());
+    }
+  }
+  CAPTURE(slip, expected, dots);
+  CHECK(dots > 39 * 1600);
+  CHECK(std::abs(slip - expected) < 3 * std::sqrt(expected));
+}
+
+TEST_CASE("thresholds from noise: no sticking dot slips more often than was asked", "[stick]") {
+  const auto share_of = [](const auto& motion, const auto& denoising, double share) {
+    const DotNoise noise = independent_dot_noise(0.06);
+    ReferenceSearch search;
+    search.false_slip = share;
+    const StickTest test = stick_test_for(441, noise, 2.0, search, motion, denoising);
+    const StickRatio estimator(21, 21, test, motion, UpdatedReference<>(), denoising);
+    Random random(5);
+    const Flags contact = disc(21, 21, 8.2);
+    Image<DotState> states(21, 21);
+    double slip = 0, dots = 0;
+    for (int t = 0; t < 300; ++t) {
+      auto state = estimator.start();
+      const auto then = noisy(pattern(21, 21), 0.06, random);
+      estimator(then, contact, states, state);
+      const auto now = noisy(moved(pattern(21, 21), 2.0, 1.0), 0.06, random);
+      const auto result = estimator(now, contact, states, state);
+      REQUIRE(result.updated());
+      slip += static_cast<double>(result.slip);
+      dots += static_cast<double>(result.dots_in_contact());
+    }
+    return slip / dots;
+  };
+  using Consensus = StickConsensus<Freedom::translation>;
+  using OneDot = ReferenceDotMotion<Freedom::translation>;
+  for (const double share : {0.02, 0.2}) {
+    // d_max is more than U by some 15 %, and only the edge has the noise that is reckoned with
+    for (const double got :
+         {share_of(Consensus(), NoDenoising(), share), share_of(Consensus(), ResidualMean(), share),
+          share_of(OneDot(), NoDenoising(), share)}) {
+      CHECK(got < share);
+      CHECK(got > share / 40);
+    }
+  }
+}
+
+TEST_CASE("thresholds from noise: which noise counts", "[stick]") {
+  DotNoise noise = independent_dot_noise(0.1);
+  const double nats = std::sqrt(-std::log(0.02));
+  const double placed = std::sqrt(-std::log(-std::expm1(std::log1p(-0.01) / 300)));
+  const StickTest plain = stick_test_for(300, noise, 3.0, {}, StickConsensus<>(), NoDenoising());
+  CHECK(plain.slip_px == Approx(2 * 0.1 * nats));
+  CHECK(plain.store_px == Approx(2 * 0.1 * placed));
+  CHECK(plain.reference_px == 3.0);
+  const StickTest mean = stick_test_for(300, noise, 3.0, {}, StickConsensus<>(), DotMean());
+  CHECK(mean.slip_px == Approx(plain.slip_px * denoising_gain({})));
+  CHECK(mean.store_px == Approx(plain.store_px * denoising_gain({})));
+  const StickTest usual = stick_test_for(300, noise);
+  CHECK(usual.slip_px == Approx(plain.slip_px * denoising_gain({}, 3, 2)));
+  CHECK(usual.store_px == Approx(plain.store_px));
+  CHECK(usual.reference_px == 2.0);
+  CHECK(stick_test_for(300, noise, 3.0, {}, ReferenceDotMotion<>()).slip_px ==
+        Approx(std::sqrt(2.0) * usual.slip_px));
+  // more than all of 300 dots reach in the mean, which are as far in 37 % of frames
+  CHECK(usual.store_px > furthest_noise_px(0.1, 300));
+
+  // a narrow pattern has no inner dots, an endless one no edge
+  noise.inner_px = test::nan;
+  CHECK(stick_test_for(300, noise).slip_px == Approx(usual.slip_px));
+  noise = independent_dot_noise(0.1);
+  noise.edge_px = test::nan;
+  CHECK(stick_test_for(300, noise).slip_px == Approx(mean.slip_px));
+
+  const auto said = [](const DotNoise& n, double reference_px, const ReferenceSearch& search = {}) {
+    return refusal([&] { stick_test_for(300, n, reference_px, search); });
+  };
+  CHECK(begins_with(said(independent_dot_noise(0.0), 2), "stick_test_for: noise of a dot = 0"));
+  CHECK(begins_with(said(independent_dot_noise(infinity), 2),
+                    "stick_test_for: noise of a dot = inf"));
+  noise.inner_px = test::nan;
+  CHECK(begins_with(said(noise, 2), "stick_test_for: noise of an averaged dot = nan"));
+  noise = independent_dot_noise(0.1);
+  CHECK(said(noise, 1) == "accepted");
+  for (const double bad : {usual.store_px, 0.0, test::nan, infinity}) {
+    CHECK(begins_with(said(noise, bad), "stick_test_for: reference_px = "));
+  }
+  CHECK(begins_with(refusal([&] { stick_test_for(0, noise); }), "stick_test_for: dots = 0"));
+}
+
+TEST_CASE("S and D by hand", "[stick]") {
+  const RatioMeasures falls = measures({1, 0.9, 0.9, 0.5, 0});
+  CHECK(falls.sum == Approx(3.3));
+  CHECK(falls.decreases == Approx(1));
+  CHECK(falls.rises == 0);  // all of D was there to measure
+  CHECK(falls.steps == 5);
+  CHECK(falls.sum_per_step() == Approx(0.66));
+  CHECK(falls.decreases_per_step() == Approx(0.2));
+  CHECK(falls.rises_per_step() == 0);
+
+  const RatioMeasures shakes = measures({1, 0.5, 0.75, 0.25, 0.5});
+  CHECK(shakes.decreases == 1);
+  CHECK(shakes.rises == 0.5);
+  // contact is lost between: nothing is compared across it
+  const RatioMeasures two = measures({test::nan, 1, 0.25, test::nan, test::nan, 1, 0.5, test::nan});
+  CHECK(two.sum == 2.75);
+  CHECK(two.decreases == 1.25);
+  CHECK(two.rises == 0);
+  CHECK(two.steps == 4);
+
+  const RatioMeasures none = measures({test::nan});
+  CHECK(none.steps == 0);
+  CHECK(none.sum == 0);
+  CHECK(std::isnan(none.sum_per_step()));
+  const std::vector<float> single = {0.5F, 0.75F};
+  CHECK(measures_of(std::span<const float>(single)).rises == 0.25);
+}
+
+TEST_CASE("S and D: laws", "[stick]") {
+  rc::prop("D' is D less the net drop; mirrored, D and D' change places", [] {
+    std::vector<double> ratios;
+    for (std::ptrdiff_t k = test::whole(1, 60); k > 0; --k) {
+      ratios.push_back(test::uniform(0, 1));
+    }
+    const RatioMeasures m = measures(ratios);
+    RC_ASSERT(std::abs(m.rises - (m.decreases - (ratios.front() - ratios.back()))) < 1e-13);
+    RC_ASSERT(m.rises >= 0);
+    auto turned = ratios;
+    std::reverse(turned.begin(), turned.end());
+    RC_ASSERT(std::abs(measures(turned).rises - m.decreases) < 1e-13);
+    for (double& r : turned) {
+      r = 1 - r;
+    }
+    RC_ASSERT(std::abs(measures(turned).rises - m.rises) < 1e-13);
+    RC_ASSERT(std::abs(measures(turned).sum + m.sum - static_cast<double>(m.steps)) < 1e-13);
+
+    auto kept = ratios;  // an answer that stands for some more frames
+    const auto at = static_cast<std::size_t>(test::whole(0, m.steps - 1));
+    kept.insert(kept.begin() + static_cast<std::ptrdiff_t>(at), 3, ratios[at]);
+    RC_ASSERT(measures(kept).decreases == m.decreases);
+    RC_ASSERT(measures(kept).rises == m.rises);
+    RC_ASSERT(std::abs(measures(kept).sum - m.sum - 3 * ratios[at]) < 1e-13);
+
+    std::sort(ratios.rbegin(), ratios.rend());
+    RC_ASSERT(measures(ratios).rises == 0);
+  });
+}
+
+TEST_CASE("choice of U: a recording that slips", "[stick]") {
+  for (const double noise_px : {0.02, 0.06, 0.14}) {
+    const Recording recording = record({.noise_px = noise_px});
+    StickTestCalibration<> calibration(21, 21, independent_dot_noise(noise_px));
+    add(recording, calibration);
+    const StickTestChoice choice = calibration.choose();
+    const ReferenceCandidate& row = chosen_row(choice);
+    CAPTURE(noise_px, row.test.reference_px);
+    REQUIRE(choice.table.size() == 13);
+    CHECK(choice.test.reference_px == row.test.reference_px);
+    CHECK(choice.test.slip_px ==
+          Approx(slip_threshold_for(noise_px * denoising_gain({}, 3, 2), 0.02)));
+    CHECK(choice.furthest_px > choice.test.store_px);
+
+    // the rule, from the table: the smallest of those that are not worse than the best
+    double best = infinity;
+    for (const auto& c : choice.table) {
+      best = c.updates >= 10 ? std::min(best, c.cost) : best;
+    }
+    bool passed = false;
+    for (std::size_t k = 0; k < choice.table.size(); ++k) {
+      const auto& c = choice.table[k];
+      CHECK(c.test.reference_px == Approx(0.5 * std::pow(2.0, static_cast<double>(k) / 3)));
+      if (c.test.reference_px <= std::max(c.test.slip_px, c.test.store_px)) {
+        CHECK(c.verdict == ReferenceVerdict::below_noise);
+        CHECK(c.updates == 0);
+        continue;
+      }
+      CHECK(c.behind == Approx(c.cost - best).margin(1e-9));
+      CHECK(c.ratios.steps == choice.steps);
+      CHECK(c.cost >= c.ratios.sum + c.ratios.rises - 1e-9);  // what is not known counts as stick
+      const bool as_good = !(c.behind > 2 * c.behind_error);
+      CHECK((c.verdict == ReferenceVerdict::worse) == !as_good);
+      CHECK((c.verdict == ReferenceVerdict::chosen) == (as_good && !passed));
+      passed = passed || as_good;
+    }
+
+    // with it, the ratio is right
+    CHECK(mean_error(recording, choice.test) < 0.1);
+    for (const auto& c : choice.table) {  // and one that was refused is worse
+      if (c.verdict == ReferenceVerdict::worse &&
+          c.test.reference_px < choice.test.reference_px / 1.5) {
+        CHECK(mean_error(recording, c.test) > mean_error(recording, choice.test));
+      }
+    }
+  }
+}
+
+TEST_CASE("choice of U: the table is what the stick ratio says", "[stick]") {
+  const Recording recording = record({.turns_at = 80});
+  ReferenceSearch search;
+  search.candidates = 3;
+  search.smallest_px = 1;
+  search.largest_px = 4;
+  StickTestCalibration<> calibration(21, 21, independent_dot_noise(0.06), search);
+  add(recording, calibration);
+  const StickTestChoice choice = calibration.choose();
+  std::vector<std::vector<double>> costs_of;
+  bool kept = false;
+  for (const ReferenceCandidate& c : choice.table) {
+    const StickRatio<> estimator(21, 21, c.test);
+    auto state = estimator.start();
+    Image<DotState> states(21, 21);
+    std::vector<double> ratios, costs;
+    Index updates = 0;
+    for (const Points& dots : recording.dots) {
+      const auto result = estimator(dots, recording.contact, states, state);
+      if (result.status == StickStatus::standing) {
+        continue;
+      }
+      const auto ratio = static_cast<double>(result.stick_ratio);
+      ratios.push_back(std::isnan(ratio) ? 1 : ratio);
+      costs.push_back(result.updated() ? ratio : 1);
+      kept = kept || (!result.updated() && ratio < 0.9);
+      const double before = ratios.size() > 1 ? ratios[ratios.size() - 2] : 1;
+      costs.back() += before < ratio ? ratio - before : 0;
+      updates += result.updated() ? 1 : 0;
+    }
+    CHECK(c.updates == updates);
+    CHECK(c.ratios.sum == Approx(measures(ratios).sum));
+    CHECK(c.ratios.decreases == Approx(measures(ratios).decreases));
+    CHECK(c.ratios.rises == Approx(measures(ratios).rises));
+    CHECK(c.cost == Approx(measures(costs).sum));
+    costs_of.push_back(costs);
+  }
+  CHECK(kept);  // where it turns round
+  std::size_t best = 0;
+  for (std::size_t k = 1; k < 3; ++k) {
+    best = choice.table[k].cost < choice.table[best].cost ? k : best;
+  }
+  for (std::size_t k = 0; k < 3; ++k) {
+    MeanOfSeeds differences;
+    for (std::size_t t = 0; t < costs_of[k].size(); ++t) {
+      differences.add(costs_of[k][t] - costs_of[best][t]);
+    }
+    CHECK(choice.table[k].behind == Approx(differences.sum));
+    CHECK(choice.table[k].behind_error ==
+          Approx(differences.sd() * std::sqrt(differences.count)).margin(1e-9));
+  }
+}
+
+TEST_CASE("choice of U: the table of a recording", "[stick]") {
+  for (const double noise_px : {0.06, 0.14}) {
+    const Recording recording = record({.noise_px = noise_px});
+    StickTestCalibration<> calibration(21, 21, independent_dot_noise(noise_px));
+    add(recording, calibration);
+    const StickTestChoice choice = calibration.choose();
+    std::string table =
+        "\n    U delta_0  U_min       S      D     D'    cost +- error updates error\n";
+    double chosen_error = 1, smallest_error = 1;
+    for (const ReferenceCandidate& c : choice.table) {
+      char line[200];
+      double error = test::nan;
+      if (c.verdict != ReferenceVerdict::below_noise) {
+        error = mean_error(recording, c.test);
+        smallest_error = std::min(smallest_error, error);
+        chosen_error = c.verdict == ReferenceVerdict::chosen ? error : chosen_error;
+      }
+      std::snprintf(line, sizeof line,
+                    "%5.2f  %.3f  %.3f  %6.2f %6.2f %6.2f  %6.2f +- %5.2f  %4d   %.3f  %s\n",
+                    c.test.reference_px, c.test.slip_px, c.test.store_px, c.ratios.sum,
+                    c.ratios.decreases, c.ratios.rises, c.cost, c.behind_error,
+                    static_cast<int>(c.updates), error, name_of(c.verdict));
+      table += line;
+    }
+    INFO(noise_px << table);
+    CHECK(chosen_error < smallest_error + 0.05);
+  }
+}
+
+TEST_CASE("choice of U: one that hardly ever answers is not considered", "[stick]") {
+  ReferenceSearch search;
+  search.smallest_px = 1;
+  search.largest_px = 55;
+  search.least_updates = 30;
+  StickTestCalibration<> calibration(21, 21, independent_dot_noise(0.06), search);
+  add(record({}), calibration);  // 60 px in all
+  const StickTestChoice choice = calibration.choose();
+  int rare = 0;
+  for (const ReferenceCandidate& c : choice.table) {
+    CHECK((c.verdict == ReferenceVerdict::rarely_updated) == (c.updates < 30));
+    rare += c.updates < 30 ? 1 : 0;
+  }
+  CHECK(rare >= 1);
+}
+
+TEST_CASE("choice of U: how long the pad stands, and lost contact, change nothing", "[stick]") {
+  const Recording recording = record({});
+  StickTestCalibration<> plain(21, 21, independent_dot_noise(0.06));
+  StickTestCalibration<> standing(21, 21, independent_dot_noise(0.06));
+  const Flags no_contact(21, 21, 0);
+  add(recording, plain);
+  standing.add(recording.dots[0], no_contact);
+  for (std::size_t t = 0; t < recording.dots.size(); ++t) {
+    for (int k = t % 20 == 7 ? 15 : 0; k >= 0; --k) {
+      CHECK(standing.add(recording.dots[t], recording.contact));
+    }
+  }
+  CHECK(standing.add(recording.dots[0], no_contact));
+  const StickTestChoice a = plain.choose(), b = standing.choose();
+  CHECK(a.steps == b.steps);
+  CHECK(a.test.reference_px == b.test.reference_px);
+  for (std::size_t k = 0; k < a.table.size(); ++k) {
+    CHECK(a.table[k].ratios.sum == b.table[k].ratios.sum);
+    CHECK(a.table[k].ratios.rises == b.table[k].ratios.rises);
+    CHECK(a.table[k].verdict == b.table[k].verdict);
+  }
+
+  // twice the same contact: everything doubles, the choice stays or gets finer
+  StickTestCalibration<> twice(21, 21, independent_dot_noise(0.06));
+  add(recording, twice);
+  twice.add(recording.dots[0], no_contact);
+  add(recording, twice);
+  const StickTestChoice c = twice.choose();
+  CHECK(c.steps == 2 * a.steps);
+  for (std::size_t k = 0; k < a.table.size(); ++k) {
+    CHECK(c.table[k].ratios.sum == Approx(2 * a.table[k].ratios.sum));
+    CHECK(c.table[k].ratios.rises == Approx(2 * a.table[k].ratios.rises));
+    CHECK(c.table[k].updates == 2 * a.table[k].updates);
+  }
+  // and so it does where time says that another recording begins
+  StickTestCalibration<> timed(21, 21, independent_dot_noise(0.06));
+  for (int pass = 0; pass < 2; ++pass) {
+    for (std::size_t t = 0; t < recording.dots.size(); ++t) {
+      timed.add(recording.dots[t], recording.contact, static_cast<double>(t));
+    }
+  }
+  const StickTestChoice d = timed.choose();
+  for (std::size_t k = 0; k < a.table.size(); ++k) {
+    CHECK(d.table[k].ratios.rises == Approx(2 * a.table[k].ratios.rises));
+    CHECK(d.table[k].updates == 2 * a.table[k].updates);
+  }
+}
+
+TEST_CASE("choice of U: other policies", "[stick]") {
+  const Recording recording = record({.noise_px = 0.02});
+  using Published = ReferenceDotMotion<Freedom::translation, PublishedZoom>;
+  StickTestCalibration<Published, UpdatedReference<>, DotMean, double> published(
+      21, 21, independent_dot_noise(0.02));
+  add(recording, published);
+  CHECK(chosen_row(published.choose()).slipping > 20);
+  // in the stick region, whether the pad stands depends on U
+  StickTestCalibration<StickConsensus<>, UpdatedReference<InStickRegion>> in_stick_region(
+      21, 21, independent_dot_noise(0.02));
+  const Recording turning =
+      record({.noise_px = 0.02, .step_px = 0.1, .frames = 300, .turns_at = 200});
+  add(turning, in_stick_region);
+  const StickTestChoice choice = in_stick_region.choose();
+  for (const ReferenceCandidate& c : choice.table) {
+    CHECK((c.verdict == ReferenceVerdict::below_noise || c.ratios.steps == choice.steps));
+  }
+  CHECK(chosen_row(choice).updates > 50);
+  StickTestCalibration<StickConsensus<>, FirstReference, NoDenoising> conventional(
+      21, 21, independent_dot_noise(0.02));
+  add(recording, conventional);
+  CHECK(chosen_row(conventional.choose()).updates > 80);
+}
+
+TEST_CASE("choice of U: what it refuses", "[stick]") {
+  const DotNoise noise = independent_dot_noise(0.06);
+  const auto make = [&](const ReferenceSearch& search) {
+    return refusal([&] { const StickTestCalibration<> none(21, 21, noise, search); });
+  };
+  CHECK(make({}) == "accepted");
+  CHECK(begins_with(make({.smallest_px = 0}), "ReferenceSearch: smallest_px = 0"));
+  CHECK(begins_with(make({.smallest_px = test::nan}), "ReferenceSearch: smallest_px = "));
+  CHECK(begins_with(make({.largest_px = 0.5}), "ReferenceSearch: largest_px = 0.5"));
+  CHECK(begins_with(make({.largest_px = infinity}), "ReferenceSearch: largest_px = inf"));
+  CHECK(begins_with(make({.candidates = 1}), "ReferenceSearch: candidates = 1"));
+  CHECK(begins_with(make({.candidates = 1001}), "ReferenceSearch: candidates = 1001"));
+  for (const double bad : {0.0, 1.0, test::nan}) {
+    CHECK(begins_with(make({.false_slip = bad}), "ReferenceSearch: false_slip = "));
+    CHECK(begins_with(make({.false_motion = bad}), "ReferenceSearch: false_motion = "));
+    CHECK(begins_with(make({.stick_and_slip = bad}), "ReferenceSearch: stick_and_slip = "));
+  }
+  CHECK(begins_with(make({.sampling_errors = -1}), "ReferenceSearch: sampling_errors = -1"));
+  CHECK(begins_with(make({.least_steps = 1}), "ReferenceSearch: least_steps = 1"));
+  CHECK(begins_with(make({.least_updates = 0}), "ReferenceSearch: least_updates = 0"));
+  CHECK(begins_with(make({.least_dots = 0}), "StickTest: least_dots = 0"));
+  CHECK(begins_with(refusal([&] { const StickTestCalibration<> none(0, 21, noise); }),
+                    "StickTestCalibration: rows = 0"));
+  CHECK(begins_with(refusal([&] { const StickTestCalibration<> none(21, 0, noise); }),
+                    "StickTestCalibration: cols = 0"));
+  // the largest U, just above the threshold, is tried even where powers round
+  const double least_px = stick_test_for(441, noise, 8).store_px;
+  for (double smallest_px = 0.1; smallest_px < least_px; smallest_px += 0.0137) {
+    StickTestCalibration<> barely(
+        21, 21, noise,
+        {.smallest_px = smallest_px, .largest_px = std::nextafter(least_px, 1.0), .candidates = 2});
+    CHECK(barely.add(pattern(21, 21), Flags(21, 21, 1)));
+  }
+  const DotNoise loud = independent_dot_noise(2);
+  CHECK(begins_with(refusal([&] { const StickTestCalibration<> none(21, 21, loud); }),
+                    "stick_test_for: reference_px = 8"));
+
+  const auto choose = [&](const Recording& recording, const ReferenceSearch& search = {}) {
+    StickTestCalibration<> calibration(21, 21, noise, search);
+    add(recording, calibration);
+    return refusal([&] { calibration.choose(); });
+  };
+  const std::string owner = "StickTestCalibration: ";
+  CHECK(choose(record({})) == "accepted");
+  CHECK(begins_with(choose(Recording()), owner + "frames with contact and motion = 0"));
+  CHECK(begins_with(choose(record({.frames = 15})), owner + "frames with contact and motion = 15"));
+  Recording free = record({});
+  free.contact = Flags(21, 21, 0);
+  CHECK(begins_with(choose(free), owner + "frames with contact and motion = 0"));
+  Recording lost = record({});
+  for (Points& dots : lost.dots) {
+    dots = Points(21, 21, {test::nan, test::nan});
+  }
+  CHECK(begins_with(choose(lost), owner + "largest displacement in px = 0"));
+  const Recording still = record({.step_px = 0, .frames = 60});
+  CHECK(begins_with(choose(still), owner + "frames with contact and motion = "));
+  CHECK(
+      begins_with(choose(still, {.least_steps = 2}), owner + "frames with contact and motion = 1"));
+  // noise that was measured too small makes steps, but no displacement
+  Recording shaken = record({.noise_px = 0.1, .step_px = 0, .frames = 60});
+  CHECK(begins_with(choose(shaken, {.smallest_px = 1}), owner + "largest displacement in px = 0."));
+  CHECK(begins_with(choose(record({.frames = 30}), {.least_updates = 100}),
+                    owner + "updated answers = "));
+  CHECK(begins_with(choose(record({.last_radius = 9})), owner + "answers that slip = "));
+  CHECK(begins_with(choose(record({}), {.stick_and_slip = 0.01}), owner + "answers that slip = "));
+  CHECK(begins_with(choose(record({}), {.stick_and_slip = 0.9999999}), "accepted"));
+  Recording slips = record({.frames = 240});
+  slips.dots.erase(slips.dots.begin(), slips.dots.begin() + 190);
+  CHECK(begins_with(choose(slips), owner + "answers that stick = "));
+
+  // grids of another size change nothing
+  StickTestCalibration<> calibration(21, 21, noise);
+  CHECK_FALSE(calibration.add(Points(21, 20), Flags(21, 20, 1)));
+  CHECK_FALSE(calibration.add(Points(21, 21), Flags(20, 21, 1)));
+  CHECK(begins_with(refusal([&] { calibration.choose(); }),
+                    owner + "frames with contact and motion = 0"));
+}
+
+TEST_CASE("choice of U: frames without dots are no harm", "[stick]") {
+  Recording recording = record({});
+  Random random(6);
+  for (std::size_t t = 0; t < recording.dots.size(); ++t) {
+    lose(recording.dots[t], t % 17 == 5 ? 1.0 : 0.1, random);
+  }
+  StickTestCalibration<> calibration(21, 21, independent_dot_noise(0.06));
+  add(recording, calibration);
+  const StickTestChoice choice = calibration.choose();
+  CHECK(choice.test.reference_px > 0.5);
+  CHECK(choice.test.reference_px < 8);
+  CHECK(std::string(name_of(ReferenceVerdict::chosen)) == "chosen");
+  CHECK(std::string(name_of(ReferenceVerdict::as_good)) == "as good");
+  CHECK(std::string(name_of(ReferenceVerdict::worse)) == "worse");
+  CHECK(std::string(name_of(ReferenceVerdict::rarely_updated)) == "rarely updated");
+  CHECK(std::string(name_of(ReferenceVerdict::below_noise)) == "below noise");
+}

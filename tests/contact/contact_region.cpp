@@ -1,0 +1,685 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+#include "fingerpad/contact/contact_region.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <opencv2/imgproc.hpp>
+#include <string>
+#include <type_traits>
+#include <vector>
+
+#include "support/catch.hpp"
+#include "support/refusal.hpp"
+#include "support/soap_film.hpp"
+
+using namespace fingerpad;
+using test::begins_with;
+using test::depths_of;
+using test::height_map;
+using test::Image;
+using test::pad_camera;
+using test::refusal;
+using test::RoundFilm;
+
+namespace {
+
+constexpr double infinite = std::numeric_limits<double>::infinity();
+
+struct Found {
+  ContactResult result;
+  Image<Touch> mask;
+};
+
+template <class Statistic = ClampedMean<>,
+          class Edge = HalfLevelEdge,
+          class Cleaning = WithoutSpecks,
+          class S,
+          class CameraType>
+Found find(const CameraType& camera,
+           const Image<S>& depth,
+           const ContactTest& test = {},
+           const Edge& edge = {},
+           const Cleaning& cleaning = {}) {
+  const ContactRegion<Statistic, Edge, Cleaning, CameraType, S> region(
+      camera, depth.rows(), depth.cols(), test, edge, cleaning);
+  auto workspace = region.workspace();
+  Found found{{}, Image<Touch>(depth.rows(), depth.cols(), Touch::unknown)};
+  found.result = region(depth, found.mask, workspace);
+  REQUIRE(found.result.accepted);
+  return found;
+}
+
+ContactTest with_ring(Index radius_px) {
+  ContactTest test;
+  test.ring.radius_px = radius_px;
+  return test;
+}
+
+template <class T>
+Index count(const Image<T>& mask, T what) {
+  return static_cast<Index>(std::count(mask.cells.begin(), mask.cells.end(), what));
+}
+
+/// Radius of the disc that has the area of the contact.
+double radius_of(const ContactResult& result) {
+  return std::sqrt(result.area_mm2 / 3.14159265358979323846);
+}
+
+/// Pixels around a contact of that radius, enough for the free membrane to be seen.
+Index pixels_for(double radius_mm, Index ring_px, double pitch_mm = 0.08) {
+  return 2 * static_cast<Index>(radius_mm / pitch_mm + 3.2 * static_cast<double>(ring_px)) + 1;
+}
+
+constexpr HalfLevelEdge no_gap{0};
+
+}  // namespace
+
+TEST_CASE("a round contact is found where it is", "[contact_region]") {
+  struct Case {
+    double radius_mm;
+    Index ring_px;
+    double map_share;     ///< of the area that may be missing or too much, of a height map
+    double camera_share;  ///< the same through a camera, where a large ring errs more
+  };
+  const Case cases[] = {{3, 12, 0.015, 0.02},  {3, 25, 0.015, 0.07}, {6, 25, 0.015, 0.045},
+                        {9, 12, 0.015, 0.015}, {2, 25, 0.03, 0.11},  {1.5, 25, 0.05, 0.18}};
+  const auto check = [](const auto& camera, const RoundFilm& film, Index ring_px, double share) {
+    const Index size = static_cast<Index>(2 * camera.center_x_px) + 1;
+    const auto depth = depths_of<float>(camera, film, size, size);
+    const ContactResult r = find(camera, depth, with_ring(ring_px), no_gap).result;
+    CHECK(r.regions == 1);
+    CHECK(r.area_mm2 == Approx(film.area_mm2()).epsilon(share));
+    CHECK(std::hypot(r.center_mm.x - film.x_mm, r.center_mm.y - film.y_mm) < 0.05);
+    CHECK(r.center_mm.z == Approx(film.top_mm).margin(1e-3));
+    CHECK(r.depth_mm == Approx(13 - film.top_mm).margin(1e-3));
+  };
+  for (const Case& c : cases) {
+    test::RoundContact contact;
+    contact.radius_mm = c.radius_mm;
+    contact.x_mm = 0.3;
+    contact.y_mm = -0.2;
+    const RoundFilm film(contact);
+    const Index size = pixels_for(c.radius_mm, c.ring_px);
+    INFO("radius " << c.radius_mm << " mm, ring " << c.ring_px << " px");
+    check(height_map(size, size), film, c.ring_px, c.map_share);
+    check(pad_camera(size, size), film, c.ring_px, c.camera_share);
+  }
+}
+
+TEST_CASE("what is nearer than the gap counts as touched", "[contact_region]") {
+  const Index size = pixels_for(6, 12, 0.16);
+  const auto camera = height_map(size, size, 0.16);
+  const RoundFilm film({});
+  const auto depth = depths_of<float>(camera, film, size, size);
+  const double edge = radius_of(find(camera, depth, with_ring(12), no_gap).result);
+  double before = edge;
+  for (const double gap : {0.003, 0.01, 0.03}) {
+    const double radius = radius_of(find(camera, depth, with_ring(12), HalfLevelEdge{gap}).result);
+    CHECK(radius > before);
+    const double law = std::sqrt(gap / film.free_per_mm);
+    CHECK(radius - edge > 0.9 * law);
+    CHECK(radius - edge < 1.1 * law);
+    before = radius;
+  }
+}
+
+TEST_CASE("a threshold near zero erodes by a ring's radius, and widening repairs it",
+          "[contact_region]") {
+  const Index size = pixels_for(6, 12, 0.16);
+  const auto camera = height_map(size, size, 0.16);
+  const auto depth = depths_of<float>(camera, RoundFilm({}), size, size);
+  ContactTest test = with_ring(12);
+  const double ring_mm = 12 * 0.16;
+  test.threshold_per_mm = 1e-4;
+  const double eroded = radius_of(find<ClampedMean<>, AtThreshold>(camera, depth, test).result);
+  CHECK(eroded == Approx(6 - 0.9 * ring_mm).margin(0.1));
+  for (const double share : {0.0, 0.5, 0.9, 1.0}) {
+    const auto found = find<ClampedMean<>, WidenedByRing>(camera, depth, test, {share});
+    CHECK(radius_of(found.result) == Approx(eroded + share * ring_mm).margin(0.1));
+  }
+  CHECK(radius_of(find<ClampedMean<>, WidenedByRing>(camera, depth, test).result) ==
+        Approx(6).margin(0.15));
+  test.threshold_per_mm = 0.025;  // half the level of the free pad lies near the edge by itself
+  CHECK(radius_of(find<ClampedMean<>, AtThreshold>(camera, depth, test).result) ==
+        Approx(6).margin(0.1));
+}
+
+TEST_CASE("a hole stays a hole, and a slit parts the contact", "[contact_region]") {
+  test::RoundContact ring;
+  ring.radius_mm = 7;
+  ring.hole_mm = 2.4;
+  const Index size = 145;
+  const auto camera = height_map(size, size, 0.16);
+  const auto annulus =
+      find(camera, depths_of<float>(camera, RoundFilm(ring), size, size), with_ring(6), no_gap);
+  CHECK(annulus.result.regions == 1);
+  CHECK(annulus.mask(size / 2, size / 2) == Touch::none);
+  CHECK(annulus.mask(size / 2, size / 2 + 29) == Touch::contact);
+  CHECK(annulus.result.area_mm2 == Approx(ring.area_mm2()).epsilon(0.08));
+
+  test::StripFilm strip;
+  strip.half_mm = 6;
+  for (const double slit : {0.0, 2.0}) {
+    strip.slit_mm = slit;
+    const auto found =
+        find(height_map(60, size, 0.16),
+             depths_of<float>(height_map(60, size, 0.16), strip, 60, size), with_ring(6), no_gap);
+    CHECK(found.result.regions == (slit > 0 ? 2 : 1));
+    CHECK(found.mask(30, size / 2) == (slit > 0 ? Touch::none : Touch::contact));
+    // straight edges, through the middle row
+    Index outermost = size / 2;
+    while (found.mask(30, outermost + 1) != Touch::none || outermost < size / 2 + 25) {
+      ++outermost;
+    }
+    CHECK(static_cast<double>(outermost - size / 2) * 0.16 == Approx(6).margin(0.25));
+  }
+}
+
+TEST_CASE("curved and tilted objects", "[contact_region]") {
+  const Index size = pixels_for(6, 12, 0.16);
+  const auto check = [&](const test::RoundContact& contact) {
+    INFO("curvature " << contact.object_per_mm << ", slope " << contact.slope);
+    // the edge is put as for an object that is not hollow
+    const double hollow = (std::max)(contact.object_per_mm, 0.0) * 12;
+    const RoundFilm film(contact);
+    const auto by = [&](const auto& camera, double share) {
+      const auto depth = depths_of<float>(camera, film, size, size);
+      const ContactResult r = find(camera, depth, with_ring(12), no_gap).result;
+      CHECK(r.regions == 1);
+      // on the plate: the area of the disc that touches, times the cosine of its tilt
+      CHECK(r.area_mm2 == Approx(film.area_mm2()).epsilon(share));
+      CHECK(r.center_mm.x == Approx(film.x_mm).margin(0.1));
+      CHECK(r.center_mm.y == Approx(film.y_mm).margin(0.05));
+      CHECK(r.center_mm.z == Approx(film.top_mm - contact.object_per_mm * 9).margin(0.08));
+    };
+    by(height_map(size, size, 0.16), 0.03 + hollow / 2);
+    by(pad_camera(size, size, 0.16), 0.05 + hollow);
+  };
+  for (const double h : {-0.1, -0.05, 0.005, 0.01}) {
+    test::RoundContact contact;
+    contact.object_per_mm = h;
+    contact.x_mm = 0.4;
+    check(contact);
+  }
+  for (const double slope : {0.05, 0.14}) {
+    test::RoundContact contact;
+    contact.slope = slope;
+    check(contact);
+  }
+}
+
+TEST_CASE("a free pad has no contact", "[contact_region]") {
+  for (const double curvature : {0.03, 0.05, 0.1}) {
+    test::RoundContact none;
+    none.radius_mm = 0;
+    none.free_per_mm = curvature;
+    const auto camera = pad_camera(80, 100, 0.16);
+    const auto found =
+        find(camera, depths_of<double>(camera, RoundFilm(none), 80, 100), with_ring(12));
+    CHECK_FALSE(found.result.in_contact());
+    CHECK(count(found.mask, Touch::contact) == 0);
+    CHECK(found.result.regions == 0);
+    CHECK(found.result.area_mm2 == 0);
+    CHECK(std::isnan(found.result.depth_mm));
+    CHECK(std::isnan(found.result.center_mm.x));
+    CHECK(std::isnan(found.result.center_mm.y));
+    CHECK(std::isnan(found.result.center_mm.z));
+  }
+}
+
+TEST_CASE("presets hold the published values", "[contact_region]") {
+  constexpr ContactTest paper = published_contact_test();
+  CHECK(paper.threshold_per_mm == 0.00015);
+  CHECK(paper.ring.radius_px == 10);
+  CHECK(PublishedTwiceMean<>::directions == 36);
+  const ContactTest slides;
+  CHECK(slides.ring.radius_px == 25);
+  CHECK(ClampedMean<>::directions == 18);
+}
+
+TEST_CASE("the published test finds a flat contact less the ring", "[contact_region]") {
+  const Index size = pixels_for(4, 10);
+  const auto camera = height_map(size, size);
+  test::RoundContact contact;
+  contact.radius_mm = 4;
+  const auto found = find<PublishedTwiceMean<>, AtThreshold, NoCleaning>(
+      camera, depths_of<double>(camera, RoundFilm(contact), size, size), published_contact_test());
+  CHECK(found.result.regions == 1);
+  CHECK(radius_of(found.result) == Approx(4 - 0.8).margin(0.1));
+}
+
+namespace {
+
+template <class... Types>
+struct Types_ {};
+template <class Statistic, class CameraType, class Scalar>
+struct Way {
+  using statistic = Statistic;
+  using camera = CameraType;
+  using number = Scalar;
+};
+using Plan = OrthographicCamera<double>;
+using Through = Camera<double>;
+
+Plan small_camera(const Plan&) {
+  return height_map(60, 64, 0.32);
+}
+Through small_camera(const Through&) {
+  return pad_camera(60, 64, 0.32);
+}
+
+template <class Edge, class Way, class... Cleaning>
+void check_edge(Types_<Cleaning...>) {
+  const auto camera = small_camera(typename Way::camera{});
+  const auto depth = depths_of<typename Way::number>(camera, RoundFilm({}), 60, 64);
+  ContactTest test = with_ring(5);
+  if constexpr (std::is_same_v<typename Way::statistic, PublishedTwiceMean<>>) {
+    test.threshold_per_mm *= 2;
+  }
+  const auto check = [&](const auto& cleaning) {
+    using C = std::decay_t<decltype(cleaning)>;
+    if constexpr (std::is_same_v<C, Hysteresis>) {
+      const Hysteresis loose{test.threshold_per_mm * 1.1};
+      const auto r = find<typename Way::statistic, Edge>(camera, depth, test, {}, loose).result;
+      CHECK(r.area_mm2 > 90);
+    } else {
+      const auto r = find<typename Way::statistic, Edge>(camera, depth, test, {}, cleaning).result;
+      CHECK(r.regions == 1);
+      // 113, and what the gap or the ring adds
+      const double expected = std::is_same_v<Edge, AtThreshold>     ? 113
+                              : std::is_same_v<Edge, WidenedByRing> ? 174
+                                                                    : 131;
+      CHECK(r.area_mm2 == Approx(expected).epsilon(0.15));
+      CHECK(r.depth_mm == Approx(3).margin(0.05));
+    }
+  };
+  (check(Cleaning{}), ...);
+}
+
+}  // namespace
+
+TEMPLATE_TEST_CASE("every combination of policies runs",
+                   "[contact_region]",
+                   (Way<ClampedMean<>, Through, float>),
+                   (Way<SectionMean<>, Plan, float>),
+                   (Way<PublishedTwiceMean<>, Through, double>),
+                   (Way<HessianFit<>, Plan, double>),
+                   (Way<ClampedHessian<>, Through, float>),
+                   (Way<RingStencil<>, Plan, float>)) {
+  const Types_<NoCleaning, WithoutSpecks, LargestRegion, Hysteresis> cleanings;
+  check_edge<AtThreshold, TestType>(cleanings);
+  check_edge<WidenedByRing, TestType>(cleanings);
+  check_edge<HalfLevelEdge, TestType>(cleanings);
+}
+
+TEST_CASE("specks are dropped, and the largest region is kept", "[contact_region]") {
+  // three flats in a bowl whose sections all bulge
+  const auto camera = height_map(80, 160, 0.16);
+  Image<float> depth(80, 160);
+  for (Index i = 0; i < 80; ++i) {
+    for (Index j = 0; j < 160; ++j) {
+      const double x = static_cast<double>(j % 80 - 40) * 0.16;
+      const double y = static_cast<double>(i - 40) * 0.16;
+      const double rho = std::hypot(x, y);
+      const double flat = j < 80 ? 3.2 : 1.2;
+      depth(i, j) = static_cast<float>(rho < flat ? 10 : 10 - 0.1 * (rho - flat) * (rho - flat));
+    }
+  }
+  const ContactTest test = with_ring(5);
+  const auto all = find<ClampedMean<>, AtThreshold, NoCleaning>(camera, depth, test);
+  const auto large = find<ClampedMean<>, AtThreshold, LargestRegion>(camera, depth, test);
+  REQUIRE(all.result.regions >= 2);
+  CHECK(large.result.regions == 1);
+  CHECK(large.mask(40, 40) == Touch::contact);
+  CHECK(large.mask(40, 120) == Touch::none);
+  CHECK(all.mask(40, 120) == Touch::contact);
+  const Index least = large.result.contact_px;
+  const auto exactly =
+      find<ClampedMean<>, AtThreshold>(camera, depth, test, {}, WithoutSpecks{least});
+  CHECK(exactly.mask.cells == large.mask.cells);
+  const auto none =
+      find<ClampedMean<>, AtThreshold>(camera, depth, test, {}, WithoutSpecks{least + 1});
+  CHECK_FALSE(none.result.in_contact());
+}
+
+TEST_CASE("the edge needs no free membrane in sight", "[contact_region]") {
+  // an image that shows little but the contact: the threshold then says what a free pad is like
+  const auto camera = height_map(40, 40, 0.16);
+  test::RoundContact contact;
+  contact.radius_mm = 2.3;
+  const auto depth = depths_of<float>(camera, RoundFilm(contact), 40, 40);
+  const auto found = find(camera, depth, with_ring(6), no_gap);
+  CHECK(found.result.regions == 1);
+  CHECK(found.result.area_mm2 == Approx(contact.area_mm2()).epsilon(0.13));
+  // and all of it in contact
+  const auto flat = find(camera, Image<float>(40, 40, 9.0F), with_ring(6));
+  CHECK(flat.result.contact_px + flat.result.unknown_px == 1600);
+  CHECK(flat.result.contact_px > 900);
+}
+
+TEST_CASE("other contacts, dropped or not, are no free membrane", "[contact_region]") {
+  // of two contacts side by side, cleaning has dropped the right one: it is no seed any more
+  const detail::BorderedImage image{60, 120};
+  Image<double> curvature(60, 120, 0.05);
+  Image<detail::Mark> marks(60, 120, detail::Mark::free);
+  for (Index i = 20; i < 40; ++i) {
+    for (Index j = 30; j < 50; ++j) {
+      curvature(i, j) = curvature(i, j + 30) = 0;
+      marks(i, j) = detail::Mark::seed;
+    }
+  }
+  detail::OutsideLevel<double> outside(image, 6);
+  outside.measure(curvature, marks, 0.025);
+  for (Index cell = 0; cell < outside.cells(); ++cell) {
+    CHECK(outside[static_cast<std::size_t>(cell)] == Approx(0.05).epsilon(1e-12));
+  }
+}
+
+TEST_CASE("a region may take what another has lost", "[contact_region]") {
+  // seed, free, seed: the first is dropped, the second grows over all three, and more pixels enter
+  // the queue in all than the image has
+  detail::Regions regions({1, 3});
+  const auto marks = regions.marks();
+  marks(0, 0) = detail::Mark::seed;
+  marks(0, 1) = detail::Mark::free;
+  marks(0, 2) = detail::Mark::seed;
+  int found = 0;
+  const auto second = [&](const detail::Regions::Region&) { return ++found == 2; };
+  const Index kept = regions.for_each(second, [&](detail::Regions::Region& region) {
+    regions.grow(region, 2, [](Index) { return true; });
+    CHECK(region.begin == 0);
+    CHECK(region.pixels() == 3);
+    regions.trim(region, [&](Index at) { return at != regions.image().at(0, 1); });
+    CHECK(region.pixels() == 2);
+  });
+  CHECK(kept == 1);
+  CHECK(marks(0, 0) == detail::Mark::contact);
+  CHECK(marks(0, 1) == detail::Mark::free);
+  CHECK(marks(0, 2) == detail::Mark::contact);
+}
+
+TEST_CASE("masks of bytes, of bool and of Touch say the same", "[contact_region]") {
+  const auto camera = height_map(60, 64, 0.32);
+  auto depth = depths_of<float>(camera, RoundFilm({}), 60, 64);
+  depth(30, 30) = std::numeric_limits<float>::quiet_NaN();
+  const ContactRegion<ClampedMean<>, HalfLevelEdge, WithoutSpecks, Plan> region(camera, 60, 64,
+                                                                                with_ring(5));
+  auto workspace = region.workspace();
+  Image<Touch> touch(60, 64);
+  Image<std::uint8_t> bytes(60, 64, 3);
+  Image<float> numbers(60, 64, 3.0F);
+  std::array<bool, 60 * 64> flags{};
+  const auto result = region(depth, touch, workspace);
+  region(depth, bytes, workspace);
+  region(depth, numbers, workspace);
+  region(depth, StridedView<bool>(flags.data(), 60, 64, 64), workspace);
+  for (std::size_t k = 0; k < flags.size(); ++k) {
+    const bool in = touch.cells[k] == Touch::contact;
+    REQUIRE(bytes.cells[k] == (in ? 255 : 0));
+    REQUIRE(numbers.cells[k] == (in ? 255.0F : 0.0F));
+    REQUIRE(flags[k] == in);
+  }
+  CHECK(count(touch, Touch::contact) == result.contact_px);
+  CHECK(count(touch, Touch::unknown) == result.unknown_px);
+  CHECK(touch(30, 30) == Touch::unknown);
+  // unknown is what has no statistic
+  const auto statistic = workspace.statistic();
+  for (Index i = 0; i < 60; ++i) {
+    for (Index j = 0; j < 64; ++j) {
+      REQUIRE((touch(i, j) == Touch::unknown) == std::isnan(statistic(i, j)));
+    }
+  }
+}
+
+TEST_CASE("missing depth is never contact and reaches no farther than its ring",
+          "[contact_region]") {
+  const auto camera = height_map(60, 64, 0.32);
+  const auto depth = depths_of<double>(camera, RoundFilm({}), 60, 64);
+  const Index ring = 5;
+  const auto far = [](Index i, Index j, double px) {
+    return std::hypot(static_cast<double>(i - 30), static_cast<double>(j - 38)) > px;
+  };
+  for (const double bad : {test::nan, infinite, -infinite, 1e30, -1e30}) {
+    auto spoilt = depth;
+    spoilt(30, 38) = bad;
+    spoilt(31, 38) = bad;
+    const auto plain = find<ClampedMean<>, AtThreshold, NoCleaning>(camera, depth, with_ring(ring));
+    const auto found =
+        find<ClampedMean<>, AtThreshold, NoCleaning>(camera, spoilt, with_ring(ring));
+    const auto wide =
+        find<ClampedMean<>, WidenedByRing, NoCleaning>(camera, spoilt, with_ring(ring));
+    const auto edge = find(camera, spoilt, with_ring(ring));
+    const auto edge_before = find(camera, depth, with_ring(ring));
+    CHECK(found.mask(30, 38) == Touch::unknown);
+    CHECK(wide.mask(30, 38) == Touch::unknown);
+    CHECK(edge.mask(30, 38) == Touch::unknown);
+    CHECK(edge.result.unknown_px == edge_before.result.unknown_px + 2);
+    Index moved = 0;
+    for (Index i = 0; i < 60; ++i) {
+      for (Index j = 0; j < 64; ++j) {
+        if (far(i, j, static_cast<double>(ring) + 1.5)) {
+          REQUIRE(found.mask(i, j) == plain.mask(i, j));
+          moved += edge.mask(i, j) == edge_before.mask(i, j) ? 0 : 1;
+        }
+      }
+    }
+    CHECK(moved <= 2);  // the level of the edge is a mean over what is known
+    CHECK(edge.result.area_mm2 == Approx(edge_before.result.area_mm2).epsilon(0.03));
+    CHECK(edge.result.depth_mm == Approx(edge_before.result.depth_mm).margin(1e-3));
+  }
+}
+
+TEST_CASE("missing neighbours count as just as deep", "[contact_region]") {
+  // a pixel of contact beside depths of 1e38 mm, seen by a camera whose rays would go with them
+  const auto camera = pad_camera(60, 64, 0.32);
+  auto depth = depths_of<float>(camera, RoundFilm({}), 60, 64);
+  const double area = find(camera, depth, with_ring(5)).result.area_mm2;
+  for (Index j = 20; j < 50; j += 7) {
+    depth(30, j) = 3e38F;
+  }
+  const ContactResult r = find(camera, depth, with_ring(5)).result;
+  CHECK(r.area_mm2 == Approx(area).epsilon(0.05));
+  CHECK(is_finite(r.depth_mm));
+}
+
+TEST_CASE("pixels at the image's end count as much as others", "[contact_region]") {
+  const OrthographicCamera<double> camera;
+  ContactTest test = with_ring(3);
+  test.ring.min_direction_share = 0.01;
+  const Image<double> plate(30, 41, 5.0);
+  const auto found = find<SectionMean<>, AtThreshold>(camera, plate, test);
+  CHECK(found.mask(0, 20) == Touch::contact);
+  CHECK(found.mask(29, 20) == Touch::contact);
+  CHECK(found.mask(15, 0) == Touch::contact);
+  CHECK(found.mask(15, 40) == Touch::contact);
+  const double pixel_mm2 = camera.pitch_mm * camera.pitch_mm;
+  const auto count = static_cast<double>(found.result.contact_px);
+  CHECK(found.result.area_mm2 == Approx(count * pixel_mm2).epsilon(1e-12));
+}
+
+TEST_CASE("an image smaller than the ring is unknown", "[contact_region]") {
+  for (const Index size : {2, 9}) {
+    const Image<float> depth(size, size + 1, 9.0F);
+    const auto found = find(height_map(size, size + 1), depth);
+    CHECK(found.result.unknown_px == size * (size + 1));
+    CHECK(count(found.mask, Touch::unknown) == size * (size + 1));
+    CHECK_FALSE(found.result.in_contact());
+  }
+  const Image<float> missing(30, 40, static_cast<float>(test::nan));
+  CHECK(find(height_map(30, 40), missing, with_ring(4)).result.unknown_px == 30 * 40);
+}
+
+TEST_CASE("a grid or a workspace of another size is not accepted", "[contact_region]") {
+  using Region = ContactRegion<ClampedMean<>, HalfLevelEdge, WithoutSpecks, Plan>;
+  const auto camera = height_map(60, 64, 0.32);
+  const Region region(camera, 60, 64, with_ring(5));
+  auto workspace = region.workspace();
+  const auto depth = depths_of<float>(camera, RoundFilm({}), 60, 64);
+  const auto refused = [&](const Image<float>& from, Image<std::uint8_t> to, auto& memory) {
+    std::fill(to.cells.begin(), to.cells.end(), std::uint8_t(7));
+    const ContactResult r = region(from, to, memory);
+    return !r.accepted && r.contact_px == 0 && r.unknown_px == 0 &&
+           count(to, std::uint8_t(7)) == to.rows() * to.cols();
+  };
+  const Image<std::uint8_t> mask(60, 64);
+  CHECK(refused(Image<float>(60, 63), mask, workspace));
+  CHECK(refused(Image<float>(61, 64), mask, workspace));
+  CHECK(refused(depth, Image<std::uint8_t>(64, 60), workspace));
+  auto transposed = Region(camera, 64, 60, with_ring(5)).workspace();
+  CHECK(refused(depth, mask, transposed));
+  auto other_ring = Region(camera, 60, 64, with_ring(9)).workspace();
+  CHECK(refused(depth, mask, other_ring));
+  CHECK_FALSE(refused(depth, mask, workspace));
+}
+
+TEST_CASE("bad parameters are refused by name", "[contact_region]") {
+  const auto with = [](const ContactTest& test) {
+    return refusal([&] { const ContactRegion<> region({}, 60, 60, test); });
+  };
+  ContactTest test;
+  CHECK(with(test) == "accepted");
+  for (const double bad : {0.0, -0.1, test::nan, infinite}) {
+    test = {};
+    test.threshold_per_mm = bad;
+    CHECK(begins_with(with(test), "ContactTest: threshold_per_mm = "));
+  }
+  test = {};
+  test.free_apex_mm = test::nan;
+  CHECK(begins_with(with(test), "ContactTest: free_apex_mm = nan"));
+  CHECK(with(with_ring(0)) == "CurvatureRing: radius_px = 0, must be in [1, 1000]");
+
+  const auto edge = [](const auto& e) {
+    using Edge = std::decay_t<decltype(e)>;
+    return refusal([&] { const ContactRegion<ClampedMean<>, Edge> region({}, 60, 60, {}, e); });
+  };
+  for (const double bad : {-0.01, 1.1, test::nan}) {
+    CHECK(begins_with(edge(HalfLevelEdge{bad}), "HalfLevelEdge: touching_gap_mm = "));
+    CHECK(begins_with(edge(WidenedByRing{bad}), "WidenedByRing: share = "));
+  }
+  const auto cleaning = [](const auto& c) {
+    using Cleaning = std::decay_t<decltype(c)>;
+    return refusal([&] {
+      const ContactRegion<ClampedMean<>, AtThreshold, Cleaning> region({}, 60, 60, {}, {}, c);
+    });
+  };
+  CHECK(cleaning(WithoutSpecks{0}) == "WithoutSpecks: min_px = 0, must be >= 1");
+  CHECK(cleaning(Hysteresis{0.025}) == "accepted");
+  CHECK(begins_with(cleaning(Hysteresis{0.0249}), "Hysteresis: loose_per_mm = "));
+  CHECK(begins_with(cleaning(Hysteresis{infinite}), "Hysteresis: loose_per_mm = "));
+  Camera<double> camera;
+  camera.refractive_index = 0.5;
+  CHECK(begins_with(refusal([&] { const ContactRegion<> region(camera, 60, 60); }),
+                    "Camera: refractive_index = 0.5"));
+  // a pixel without neighbours on either side has no area
+  for (const Index one : {0, 1}) {
+    CHECK(begins_with(refusal([&] { const ContactRegion<> region({}, one, 60); }),
+                      "ContactRegion: rows = "));
+    CHECK(begins_with(refusal([&] { const ContactRegion<> region({}, 60, one); }),
+                      "ContactRegion: cols = "));
+  }
+}
+
+namespace {
+
+Image<std::uint8_t> blobs(Index rows, Index cols, std::uint64_t seed) {
+  test::Random random(seed);
+  Image<std::uint8_t> mask(rows, cols);
+  for (int k = 0; k < 6; ++k) {
+    const Index row = random.whole(0, rows - 1);
+    const Index col = random.whole(0, cols - 1);
+    const double radius = random.uniform(0, 7);
+    for (Index i = 0; i < rows; ++i) {
+      for (Index j = 0; j < cols; ++j) {
+        if (std::hypot(static_cast<double>(i - row), static_cast<double>(j - col)) <= radius) {
+          mask(i, j) = 255;
+        }
+      }
+    }
+  }
+  return mask;
+}
+
+Image<std::uint8_t> changed(const Image<std::uint8_t>& mask, double by_px) {
+  const MaskGrowth growth(mask.rows(), mask.cols());
+  auto workspace = growth.workspace();
+  Image<std::uint8_t> out(mask.rows(), mask.cols(), 9);
+  REQUIRE(growth(mask, by_px, out, workspace));
+  return out;
+}
+
+cv::Mat as_mat(Image<std::uint8_t>& image) {
+  return cv::Mat(static_cast<int>(image.rows()), static_cast<int>(image.cols()), CV_8U,
+                 image.cells.data());
+}
+
+}  // namespace
+
+TEST_CASE("masks grow and shrink as by OpenCV with the same disc", "[contact_region]") {
+  for (const double by : {0.0, 1.0, 1.5, 4.0, 9.3}) {
+    auto mask = blobs(40, 57, static_cast<std::uint64_t>(10 * by));
+    const int reach = static_cast<int>(by);
+    cv::Mat disc = cv::Mat::zeros(2 * reach + 1, 2 * reach + 1, CV_8U);
+    for (int i = -reach; i <= reach; ++i) {
+      for (int j = -reach; j <= reach; ++j) {
+        disc.at<std::uint8_t>(i + reach, j + reach) = i * i + j * j <= by * by ? 1 : 0;
+      }
+    }
+    Image<std::uint8_t> grown(40, 57), shrunk(40, 57);
+    cv::Mat grown_mat = as_mat(grown);
+    cv::Mat shrunk_mat = as_mat(shrunk);
+    cv::dilate(as_mat(mask), grown_mat, disc);
+    cv::erode(as_mat(mask), shrunk_mat, disc);
+    CHECK(changed(mask, by).cells == grown.cells);
+    CHECK(changed(mask, -by).cells == shrunk.cells);
+  }
+}
+
+TEST_CASE("empty and full masks stay so, whatever the radius", "[contact_region]") {
+  const Image<std::uint8_t> empty(6, 9), full(6, 9, 255);
+  for (const double by : {0.0, 2.0, 14.0, 15.0, 1e9}) {
+    CHECK(changed(empty, by).cells == empty.cells);
+    CHECK(changed(empty, -by).cells == empty.cells);
+    CHECK(changed(full, by).cells == full.cells);
+    CHECK(changed(full, -by).cells == full.cells);
+  }
+  Image<std::uint8_t> corner(6, 9);
+  corner(0, 0) = 1;
+  CHECK(changed(corner, std::hypot(5, 8) + 1e-9).cells == full.cells);
+  CHECK(changed(corner, 1e9).cells == full.cells);
+  CHECK(changed(corner, -1e9).cells == empty.cells);
+  CHECK(changed(corner, std::hypot(5, 8) - 0.1)(5, 8) == 0);
+}
+
+TEST_CASE("growth in place, of other cells, and what it refuses", "[contact_region]") {
+  const auto mask = blobs(20, 30, 3);
+  const MaskGrowth growth(20, 30);
+  auto workspace = growth.workspace();
+  auto in_place = mask;
+  CHECK(growth(in_place, 2.0, in_place, workspace));
+  CHECK(in_place.cells == changed(mask, 2.0).cells);
+
+  // of a Touch mask only contact grows
+  Image<Touch> touch(20, 30, Touch::unknown);
+  std::transform(mask.cells.begin(), mask.cells.end(), touch.cells.begin(),
+                 [](std::uint8_t c) { return c > 0 ? Touch::contact : Touch::unknown; });
+  Image<Touch> out(20, 30, Touch::unknown);
+  CHECK(growth(touch, 2.0, out, workspace));
+  CHECK(count(out, Touch::contact) == count(in_place, std::uint8_t(255)));
+  CHECK(count(out, Touch::unknown) == 0);
+
+  Image<std::uint8_t> untouched(20, 30, 5);
+  auto other = MaskGrowth(30, 20).workspace();
+  Image<std::uint8_t> small(20, 29, 5);
+  CHECK_FALSE(growth(mask, 1.0, untouched, other));
+  CHECK_FALSE(growth(mask, 1.0, small, workspace));
+  CHECK_FALSE(growth(small, 1.0, untouched, workspace));
+  CHECK_FALSE(growth(mask, test::nan, untouched, workspace));
+  CHECK_FALSE(growth(mask, infinite, untouched, workspace));
+  CHECK(count(untouched, std::uint8_t(5)) == 600);
+  CHECK(count(small, std::uint8_t(5)) == 580);
+  CHECK(refusal([] { const MaskGrowth none(0, 3); }) == "MaskGrowth: rows = 0, must be >= 1");
+  CHECK(refusal([] { const MaskGrowth none(3, 0); }) == "MaskGrowth: cols = 0, must be >= 1");
+}

@@ -1,0 +1,56 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+// Masks of contact, and that every method reads them alike.
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "fingerpad/motion/object_motion.hpp"
+#include "fingerpad/contact/object_surface.hpp"
+#include "support/catch.hpp"
+#include "support/pad.hpp"
+
+using namespace fingerpad;
+using test::Image;
+
+static_assert(contact_mask<Image<unsigned char>> && contact_mask<Image<float>> &&
+              contact_mask<Image<Touch>>);
+static_assert(!contact_mask<Image<std::string>> && !contact_mask<int>);
+
+TEST_CASE("a cell says contact by being anything but nothing") {
+  CHECK(says_contact(255));
+  CHECK(says_contact(true));
+  CHECK(says_contact(static_cast<signed char>(-1)));
+  CHECK(says_contact(-0.5F));
+  CHECK_FALSE(says_contact(0));
+  CHECK_FALSE(says_contact(false));
+  CHECK_FALSE(says_contact(-0.0));
+  CHECK_FALSE(says_contact(std::numeric_limits<double>::quiet_NaN()));
+}
+
+TEST_CASE("what is unknown is no contact, for any method") {
+  CHECK(says_contact(Touch::contact));
+  CHECK_FALSE(says_contact(Touch::unknown));
+  CHECK_FALSE(says_contact(Touch::none));
+
+  // Three pixels in a row: contact, unknown, none.
+  Image<Touch> mask(1, 3, Touch::none);
+  mask(0, 0) = Touch::contact;
+  mask(0, 1) = Touch::unknown;
+  Image<Point2<double>> dots(1, 3);
+  for (Index j = 0; j < 3; ++j) {
+    dots(0, j) = {static_cast<double>(j), 0};
+  }
+  Image<unsigned char> in_contact(1, 3, 7);
+  REQUIRE(contact_at_dots(dots, mask, in_contact));
+  CHECK(in_contact.cells == std::vector<unsigned char>{1, 0, 0});
+
+  Image<Touch> patch(20, 30, Touch::unknown);
+  for (Index i = 4; i < 16; ++i) {
+    for (Index j = 5; j < 20; ++j) {
+      patch(i, j) = Touch::contact;
+    }
+  }
+  const SurfaceFit<PlaneModel, OrthographicCamera<double>> plane(20, 30, {});
+  CHECK(plane(Image<float>(20, 30, 9.0F), patch).pixels == 12 * 15);
+}

@@ -1,0 +1,437 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+#include "fingerpad/depth/neighbour_light.hpp"
+
+#include <Eigen/Core>
+#include <cmath>
+#include <cstdlib>
+#include <limits>
+#include <string>
+#include <vector>
+#include <xtensor/xtensor.hpp>
+
+#include "fingerpad/adapt/eigen.hpp"
+#include "fingerpad/adapt/opencv.hpp"
+#include "fingerpad/adapt/xtensor.hpp"
+#include "support/catch.hpp"
+#include "support/foreign_image.hpp"
+#include "support/generators.hpp"
+
+using namespace fingerpad;
+
+namespace {
+
+constexpr double missing = std::numeric_limits<double>::quiet_NaN();
+
+template <class S>
+using Map = Eigen::Array<S, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
+/// The pressed cap of a small pad with waves, so that nothing is symmetric; NaN outside the pad.
+Map<double> membrane(Index rows, Index cols, double pressed_mm, double phase) {
+  Map<double> l(rows, cols);
+  for (Index i = 0; i < rows; ++i) {
+    for (Index j = 0; j < cols; ++j) {
+      const double x = (static_cast<double>(j) - static_cast<double>(cols) / 2) / 8;
+      const double y = (static_cast<double>(i) - static_cast<double>(rows) / 2) / 8;
+      const double cap = 6 - 0.15 * (x * x + y * y);
+      const double wave = 0.2 * std::sin(x + phase) * std::cos(0.7 * y - phase);
+      l(i, j) = cap > 0.5 ? (std::min)(cap, 6 - pressed_mm) + wave * pressed_mm : missing;
+    }
+  }
+  return l;
+}
+
+/// Equal to the last bit, NaN where the other is NaN.
+template <class A, class B>
+bool identical(const A& a, const B& b) {
+  if (a.rows() != b.rows() || a.cols() != b.cols()) {
+    return false;
+  }
+  for (Index i = 0; i < a.rows(); ++i) {
+    for (Index j = 0; j < a.cols(); ++j) {
+      const bool both_nan = std::isnan(a(i, j)) && std::isnan(b(i, j));
+      if (!both_nan && a(i, j) != b(i, j)) {
+        return false;
+      }
+    }
+  }
+  return true;
+}
+
+template <class Disc, class S>
+Map<S> compensated(const NeighbourLight<S>& light, const Map<S>& reference, const Map<S>& depth) {
+  const NeighbourLightCompensation<Disc, S> compensation(light, S(0.125), reference);
+  auto workspace = compensation.workspace();
+  Map<S> out(depth.rows(), depth.cols());
+  REQUIRE(compensation(depth, out, workspace).accepted);
+  return out;
+}
+
+/// The definition, pixel by pixel over the disc, in double.
+double slow_psi(const Map<double>& l, Index i, Index j, double pitch) {
+  const auto at = [&](Index r, Index c) {
+    return r >= 0 && r < l.rows() && c >= 0 && c < l.cols() ? l(r, c) : missing;
+  };
+  const auto along = [&](double before, double here, double after) {
+    if (std::isnan(before)) return after - here;
+    return std::isnan(after) ? here - before : (after - before) / 2;
+  };
+  const double gx = along(at(i, j - 1), at(i, j), at(i, j + 1)) / pitch;
+  const double gy = along(at(i - 1, j), at(i, j), at(i + 1, j)) / pitch;
+  return std::isnan(l(i, j)) ? missing : std::atan(std::hypot(gx, gy));
+}
+
+Map<double> slow_compensation(const NeighbourLight<double>& light,
+                              const Map<double>& reference,
+                              const Map<double>& depth,
+                              double pitch) {
+  Map<double> change(depth.rows(), depth.cols()), known(depth.rows(), depth.cols());
+  for (Index i = 0; i < depth.rows(); ++i) {
+    for (Index j = 0; j < depth.cols(); ++j) {
+      known(i, j) = slow_psi(reference, i, j, pitch);
+      change(i, j) = slow_psi(depth, i, j, pitch) - known(i, j);
+    }
+  }
+  Map<double> out(depth.rows(), depth.cols());
+  for (Index i = 0; i < depth.rows(); ++i) {
+    for (Index j = 0; j < depth.cols(); ++j) {
+      double sum = 0, seen = 0, all = 0;
+      for (Index r = 0; r < depth.rows(); ++r) {
+        for (Index c = 0; c < depth.cols(); ++c) {
+          if ((r - i) * (r - i) + (c - j) * (c - j) <= light.radius_px * light.radius_px) {
+            all += std::isnan(known(r, c)) ? 0 : 1;
+            seen += std::isnan(change(r, c)) ? 0 : 1;
+            sum += std::isnan(change(r, c)) ? 0 : change(r, c);
+          }
+        }
+      }
+      const double risen = depth(i, j) - reference(i, j);
+      const double m =
+          std::isnan(risen) ? 0 : light.m0_mm_per_rad * std::exp(light.n_per_mm * risen);
+      const double l = depth(i, j) - m * (seen > 0 ? sum * all / seen : 0);
+      out(i, j) = l < 0 ? 0 : l;
+    }
+  }
+  return out;
+}
+
+NeighbourLight<double> random_light(Index largest_radius_px) {
+  return {test::whole(1, largest_radius_px), test::uniform(-0.004, 0.004),
+          test::uniform(-0.4, 0.4)};
+}
+
+template <class S>
+NeighbourLight<S> as(const NeighbourLight<double>& light) {
+  return {light.radius_px, S(light.m0_mm_per_rad), S(light.n_per_mm)};
+}
+
+/// Random clumps of missing pixels.
+void punch(Map<double>& l, Index clumps) {
+  for (Index k = 0; k < clumps; ++k) {
+    const Index i = test::whole(0, l.rows() - 1), j = test::whole(0, l.cols() - 1);
+    const Index h = (std::min)(test::whole(1, 4), l.rows() - i);
+    const Index w = (std::min)(test::whole(1, 4), l.cols() - j);
+    l.block(i, j, h, w).setConstant(missing);
+  }
+}
+
+std::string refusal(const NeighbourLight<float>& light, float pitch_mm, Index rows) {
+  try {
+    const Map<float> reference = Map<float>::Constant(rows, 4, 1.0F);
+    const NeighbourLightCompensation<> compensation(light, pitch_mm, reference);
+  } catch (const parameter_error& error) {
+    return error.what();
+  }
+  return "accepted";
+}
+
+}  // namespace
+
+TEST_CASE("neighbour light: nothing to compensate leaves the depth to the last bit") {
+  rc::prop("no change of shape", [] {
+    Map<double> l = membrane(37, 43, test::uniform(0, 3), test::uniform(0, 6));
+    punch(l, test::whole(0, 5));
+    const NeighbourLight<double> light = random_light(30);
+    RC_ASSERT(identical(compensated<SteppedDisc<>>(light, l, l), l));
+    const Map<float> single = l.cast<float>();
+    RC_ASSERT(identical(compensated<ExactDisc>(as<float>(light), single, single), single));
+  });
+  rc::prop("m0 = 0", [] {
+    NeighbourLight<double> light = random_light(30);
+    light.m0_mm_per_rad = 0;
+    const Map<double> l = membrane(37, 43, test::uniform(0, 3), 1);
+    RC_ASSERT(identical(compensated<SteppedDisc<>>(light, membrane(37, 43, 0, 0), l), l));
+  });
+}
+
+TEST_CASE("neighbour light: exact disc is the definition, with missing pixels or without") {
+  rc::prop("against the definition", [] {
+    Map<double> reference = membrane(29, 34, 0, 0);
+    Map<double> depth = membrane(29, 34, test::uniform(0, 3), test::uniform(0, 6));
+    punch(reference, test::whole(0, 3));
+    punch(depth, test::whole(0, 6));
+    const NeighbourLight<double> light = random_light(20);
+    const Map<double> truth = slow_compensation(light, reference, depth, 0.125);
+    const Map<double> fast = compensated<ExactDisc>(light, reference, depth);
+    const Map<float> single = compensated<ExactDisc, float>(
+        as<float>(light), reference.cast<float>(), depth.cast<float>());
+    const auto worse = [&](double error, double limit, Index k) {
+      const bool same = std::isnan(truth(k)) && std::isnan(error);
+      return !same && !(std::abs(error) <= limit);
+    };
+    for (Index k = 0; k < truth.size(); ++k) {
+      RC_ASSERT(!worse(fast(k) - truth(k), 1e-11, k));
+      RC_ASSERT(!worse(static_cast<double>(single(k)) - truth(k), 1e-4, k));
+    }
+  });
+}
+
+TEST_CASE("neighbour light: the stepped disc has the disc's area and second moment") {
+  for (Index radius = 1; radius <= 60; ++radius) {
+    const auto sum_of = [&](const detail::DiscShape& shape, auto&& weight) {
+      double stairs = 0, square = 0;
+      for (Index y = -radius; y <= radius; ++y) {
+        for (Index x = -radius; x <= radius; ++x) {
+          const Index w = detail::staircase_half_width(shape, std::abs(y));
+          stairs += std::abs(x) <= w ? weight(x, y) : 0;
+          if (shape.square >= 0) {
+            const Index side = shape.levels[static_cast<std::size_t>(shape.square)].half_cols;
+            square += std::abs(x) <= side && std::abs(y) <= side ? weight(x, y) : 0;
+          }
+        }
+      }
+      return shape.staircase_weight * stairs + shape.square_weight * square;
+    };
+    const auto one = [](Index, Index) { return 1.0; };
+    const auto xx = [](Index x, Index) { return static_cast<double>(x * x); };
+    const auto yy = [](Index, Index y) { return static_cast<double>(y * y); };
+    const detail::DiscShape exact = ExactDisc::shape(radius);
+    const detail::DiscShape stepped = SteppedDisc<>::shape(radius);
+    double pixels = 0;
+    for (Index y = -radius; y <= radius; ++y) {
+      for (Index x = -radius; x <= radius; ++x) {
+        pixels += x * x + y * y <= radius * radius ? 1 : 0;
+      }
+    }
+    CAPTURE(radius);
+    CHECK(sum_of(exact, one) == pixels);
+    CHECK(sum_of(stepped, one) == Approx(pixels).epsilon(1e-12));
+    CHECK(sum_of(stepped, xx) == Approx(sum_of(exact, xx)).epsilon(1e-12));
+    CHECK(sum_of(stepped, yy) == Approx(sum_of(exact, xx)).epsilon(1e-12));
+    CHECK(stepped.levels.size() <= 5);
+  }
+}
+
+TEST_CASE("neighbour light: the stepped disc is off by a small part of the correction") {
+  const Map<double> reference = membrane(96, 128, 0, 0);
+  const Map<double> depth = membrane(96, 128, 2.5, 1);
+  for (const Index radius : {8, 15, 30, 50}) {
+    const NeighbourLight<double> light{radius, 0.000886, 0.224};
+    const Map<double> exact = compensated<ExactDisc>(light, reference, depth);
+    const Map<double> stepped = compensated<SteppedDisc<>>(light, reference, depth);
+    double worst = 0, largest = 0;
+    for (Index k = 0; k < depth.size(); ++k) {
+      if (!std::isnan(depth(k))) {
+        worst = (std::max)(worst, std::abs(stepped(k) - exact(k)));
+        largest = (std::max)(largest, std::abs(exact(k) - depth(k)));
+      }
+    }
+    CAPTURE(radius, worst, largest);
+    CHECK(worst < 0.03 * largest);
+  }
+}
+
+TEST_CASE("neighbour light: the pad may lie anywhere in the image and be transposed or turned") {
+  rc::prop("to the last bit", [] {
+    const NeighbourLight<double> light = random_light(12);
+    Map<double> reference = membrane(32, 40, 0, 0);
+    Map<double> depth = membrane(32, 40, test::uniform(0, 3), test::uniform(0, 6));
+    punch(depth, 3);
+    const Map<double> plain = compensated<SteppedDisc<>>(light, reference, depth);
+
+    const Index up = test::whole(0, 20), left = test::whole(0, 20);
+    const auto shifted = [&](const Map<double>& l) {
+      Map<double> wide = Map<double>::Constant(64, 64, missing);
+      wide.block(up, left, 32, 40) = l;
+      return wide;
+    };
+    const Map<double> moved = compensated<SteppedDisc<>>(light, shifted(reference), shifted(depth));
+    RC_ASSERT(identical(moved, shifted(plain)));
+
+    const auto transposed = [](const Map<double>& l) { return Map<double>(l.transpose()); };
+    RC_ASSERT(identical(compensated<SteppedDisc<>>(light, transposed(reference), transposed(depth)),
+                        transposed(plain)));
+    const auto turned = [](const Map<double>& l) {
+      return Map<double>(l.transpose().rowwise().reverse());
+    };
+    RC_ASSERT(identical(compensated<SteppedDisc<>>(light, turned(reference), turned(depth)),
+                        turned(plain)));
+  });
+}
+
+TEST_CASE("neighbour light: a missing pixel changes nothing beyond its disc") {
+  rc::prop("missing pixels", [] {
+    const NeighbourLight<float> light = as<float>(random_light(8));
+    const Map<float> reference = membrane(32, 40, 0, 0).cast<float>();
+    const Map<float> depth = membrane(32, 40, 2, 1).cast<float>();
+    const Map<float> before = compensated<SteppedDisc<>>(light, reference, depth);
+    const Index i = test::whole(0, 31), j = test::whole(0, 39);
+    Map<float> hole = depth;
+    const float infinity = std::numeric_limits<float>::infinity();
+    hole(i, j) = *rc::gen::element(std::nanf(""), infinity, -infinity);
+    const Map<float> after = compensated<SteppedDisc<>>(light, reference, hole);
+    for (Index r = 0; r < 32; ++r) {
+      for (Index c = 0; c < 40; ++c) {
+        const bool here = r == i && c == j;
+        RC_ASSERT(std::isnan(after(r, c)) == std::isnan(hole(r, c)));
+        const double distance = std::hypot(static_cast<double>(r - i), static_cast<double>(c - j));
+        const bool far = distance > static_cast<double>(light.radius_px) * 1.5 + 1;
+        RC_ASSERT(here || !far || std::isnan(depth(r, c)) || after(r, c) == before(r, c));
+        RC_ASSERT(here || std::isnan(depth(r, c)) || std::isfinite(after(r, c)));
+      }
+    }
+  });
+}
+
+TEST_CASE("neighbour light: absurd depths stay finite and harm nobody") {
+  const Map<float> reference = membrane(24, 24, 0, 0).cast<float>();
+  Map<float> depth = reference;
+  depth(12, 12) = 3e38F;
+  depth(12, 13) = -3e38F;
+  depth(3, 12) = 1e-40F;
+  const Map<float> out = compensated<SteppedDisc<>>(NeighbourLight<float>{}, reference, depth);
+  for (Index k = 0; k < out.size(); ++k) {
+    CHECK(std::isnan(out(k)) == std::isnan(depth(k)));
+    CHECK((std::isnan(out(k)) || (out(k) >= 0 && std::isfinite(out(k)))));
+  }
+}
+
+TEST_CASE("neighbour light: same bits on every grid") {
+  const Index rows = 31, cols = 45;
+  const Map<float> reference = membrane(rows, cols, 0, 0).cast<float>();
+  Map<float> depth = membrane(rows, cols, 2, 1).cast<float>();
+  depth(10, 20) = std::nanf("");
+  const NeighbourLight<float> light{9, 0.002F, 0.2F};
+  const Map<float> expected = compensated<SteppedDisc<>>(light, reference, depth);
+  const NeighbourLightCompensation<> compensation(light, 0.125F, reference);
+  auto workspace = compensation.workspace();
+
+  const Eigen::ArrayXXf column_major = depth;
+  Eigen::ArrayXXf column_major_out(rows, cols);
+  REQUIRE(compensation(column_major, column_major_out, workspace).accepted);
+  CHECK(identical(column_major_out, expected));
+
+  cv::Mat_<float> image(static_cast<int>(rows), static_cast<int>(cols));
+  xt::xtensor<float, 2> tensor = xt::zeros<float>({rows, cols});
+  test::ForeignImage<float> foreign(rows, cols);
+  for (Index i = 0; i < rows; ++i) {
+    for (Index j = 0; j < cols; ++j) {
+      image(static_cast<int>(i), static_cast<int>(j)) = depth(i, j);
+      tensor(i, j) = depth(i, j);
+      grid_traits<test::ForeignImage<float>>::at(foreign, i, j) = depth(i, j);
+    }
+  }
+  REQUIRE(compensation(image, image, workspace).accepted);  // in place
+  CHECK(identical(as_view(image), expected));
+  REQUIRE(compensation(tensor, tensor, workspace).accepted);
+  CHECK(identical(as_view(tensor), expected));
+  REQUIRE(compensation(foreign, foreign, workspace).accepted);
+  CHECK(identical(as_view(foreign), expected));
+
+  Map<float> out(rows, cols);
+  const LazyView lazy(rows, cols, [&](Index i, Index j) { return depth(i, j); });
+  REQUIRE(compensation(lazy, out, workspace).accepted);
+  CHECK(identical(out, expected));
+  Map<float> flipped = depth.colwise().reverse();
+  REQUIRE(
+      compensation(flip_rows(as_view(flipped)), flip_rows(as_view(flipped)), workspace).accepted);
+  CHECK(identical(flip_rows(as_view(flipped)), expected));
+}
+
+TEST_CASE("neighbour light: other sizes are refused and nothing is written") {
+  const Map<float> reference = Map<float>::Constant(8, 9, 1.0F);
+  const NeighbourLightCompensation<> compensation({}, 0.1F, reference);
+  auto workspace = compensation.workspace();
+  Map<float> out = Map<float>::Constant(8, 9, 7.0F);
+  const Map<float> narrow = Map<float>::Constant(8, 8, 1.0F);
+  CHECK_FALSE(compensation(narrow, out, workspace).accepted);
+  CHECK((out == 7.0F).all());
+  Map<float> small_out = Map<float>::Constant(7, 9, 7.0F);
+  CHECK_FALSE(compensation(reference, small_out, workspace).accepted);
+  CHECK((small_out == 7.0F).all());
+  const NeighbourLightCompensation<> other({}, 0.1F, narrow);
+  auto other_workspace = other.workspace();
+  CHECK_FALSE(compensation(reference, out, other_workspace).accepted);
+  CHECK((out == 7.0F).all());
+}
+
+TEST_CASE("neighbour light: lost pixels are counted") {
+  const Map<float> reference = Map<float>::Constant(20, 20, 1.0F);
+  const NeighbourLightCompensation<> compensation({5, 0.001F, 0.2F}, 0.1F, reference);
+  auto workspace = compensation.workspace();
+  Map<float> depth = reference;
+  CHECK(compensation(depth, depth, workspace).lost_px == 0);
+  depth.block(3, 4, 2, 3).setConstant(std::nanf(""));
+  CHECK(compensation(depth, depth, workspace).lost_px == 6);
+}
+
+TEST_CASE("neighbour light: bad parameters are refused by name, value and range") {
+  CHECK(refusal({}, 0.1F, 4) == "accepted");
+  CHECK(refusal({0, 0.1F, 0.1F}, 0.1F, 4) == "NeighbourLight: radius_px = 0, must be in [1, 1000]");
+  CHECK(refusal({5, std::nanf(""), 0.1F}, 0.1F, 4) ==
+        "NeighbourLight: m0_mm_per_rad = nan, must be finite");
+  CHECK(refusal({5, 0.1F, INFINITY}, 0.1F, 4) == "NeighbourLight: n_per_mm = inf, must be finite");
+  CHECK(refusal({}, 0, 4) == "NeighbourLightCompensation: pitch_mm = 0, must be finite and > 0");
+  CHECK(refusal({}, 0.1F, 0) ==
+        "NeighbourLightCompensation: rows of reference_depth_mm = 0, must be >= 1");
+}
+
+TEST_CASE("neighbour light: none copies or does nothing") {
+  const NoNeighbourLight none;
+  auto workspace = none.workspace();
+  Map<float> depth = Map<float>::Constant(3, 4, 2.0F);
+  Map<float> out = Map<float>::Zero(3, 4);
+  CHECK(none(depth, depth, workspace).accepted);
+  CHECK(none(depth, out, workspace).accepted);
+  CHECK((out == 2.0F).all());
+  Map<float> other(3, 5);
+  CHECK_FALSE(none(depth, other, workspace).accepted);
+}
+
+TEST_CASE("neighbour light: other numbers") {
+  const Map<double> reference = membrane(24, 28, 0, 0);
+  const Map<double> depth = membrane(24, 28, 2, 1);
+  const NeighbourLight<double> light{7, 0.001, 0.2};
+  const Map<double> in_double = compensated<SteppedDisc<>>(light, reference, depth);
+  const Map<long double> in_long = compensated<SteppedDisc<>, long double>(
+      as<long double>(light), reference.cast<long double>(), depth.cast<long double>());
+  for (Index k = 0; k < depth.size(); ++k) {
+    if (!std::isnan(depth(k))) {
+      CHECK(static_cast<double>(in_long(k)) == Approx(in_double(k)).margin(1e-12));
+    }
+  }
+}
+
+TEST_CASE("quick functions of float keep their bounds") {
+  double exp_error = 0, angle_error = 0;
+  for (int k = -100000; k <= 100000; ++k) {
+    const float x = static_cast<float>(k) / 10000;
+    const double truth = std::exp(static_cast<double>(x));
+    exp_error =
+        (std::max)(exp_error, std::abs(static_cast<double>(detail::quick_exp(x)) / truth - 1));
+    const float slope_sq = std::exp(x);
+    const double angle = std::atan(std::sqrt(static_cast<double>(slope_sq)));
+    angle_error = (std::max)(angle_error,
+                             std::abs(static_cast<double>(detail::inclination(slope_sq)) - angle));
+  }
+  CAPTURE(exp_error, angle_error);
+  CHECK(exp_error < 1e-6);
+  CHECK(angle_error < 4e-7);
+  CHECK(detail::inclination(0.0F) == 0.0F);
+  CHECK(detail::inclination(INFINITY) == Approx(1.5707963F));
+  CHECK(std::isfinite(detail::inclination(std::nanf(""))));
+  CHECK(detail::quick_exp(0.0F) == 1.0F);
+  for (const float x : {1e30F, -1e30F, INFINITY, -INFINITY, std::nanf("")}) {
+    CHECK(std::isfinite(detail::quick_exp(x)));
+  }
+}

@@ -1,0 +1,494 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+#include "fingerpad/foam/holding_force.hpp"
+
+#include <cmath>
+#include <initializer_list>
+#include <limits>
+#include <string>
+#include <type_traits>
+
+#include "support/catch.hpp"
+#include "support/numbers.hpp"
+#include "support/refusal.hpp"
+
+using namespace fingerpad;
+
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+constexpr double none = std::numeric_limits<double>::quiet_NaN();
+
+/// '-' steady, 'p' pre-slip, 'x' slipped, 'm' missing
+SlipNews news_of(char letter) {
+  return letter == 'p'   ? SlipNews::preslip
+         : letter == 'x' ? SlipNews::slipped
+         : letter == 'm' ? SlipNews::missing
+                         : SlipNews::steady;
+}
+
+/// The command after the last of the news.
+template <class Search>
+auto tell(const Search& search, typename Search::State& state, const std::string& news) {
+  auto command = state.command();
+  for (const char letter : news) {
+    command = search(news_of(letter), state);
+  }
+  return command;
+}
+template <class Search>
+auto told(const Search& search, const std::string& news) {
+  auto state = search.start();
+  return tell(search, state, news);
+}
+
+/// The phase after each of the news: s(ettling), w(atching), F(ound), L(ifted), A(t limit), X.
+template <class Search>
+std::string phases(const Search& search, const std::string& news) {
+  auto state = search.start();
+  std::string all;
+  for (const char letter : news) {
+    all += "swFLAX"[static_cast<int>(search(news_of(letter), state).phase)];
+  }
+  return all;
+}
+/// The force after each of the news; plans here keep it a digit.
+template <class Search>
+std::string forces(const Search& search, const std::string& news) {
+  auto state = search.start();
+  std::string all;
+  for (const char letter : news) {
+    all += std::to_string(std::lround(search(news_of(letter), state).force_n));
+  }
+  return all;
+}
+
+LoosenPlan<double> short_plan() {
+  return {.first_force_n = 9,
+          .least_force_n = 7,
+          .step_n = 1,
+          .settle_samples = 2,
+          .watch_samples = 3,
+          .margin_steps = 1};
+}
+
+LiftPlan<double> short_lift() {
+  return {.first_force_n = 1,
+          .most_force_n = 3,
+          .force_step_n = 1,
+          .height_mm = 10,
+          .height_step_mm = 4,
+          .settle_samples = 2};
+}
+
+template <class Plan, class Field>
+void check_refused(Field Plan::*field, const std::string& name, std::initializer_list<Field> bad) {
+  const bool loosens = std::is_same_v<Plan, LoosenPlan<double>>;
+  for (const Field given : bad) {
+    Plan plan;
+    plan.*field = given;
+    CAPTURE(name, given);
+    const std::string said = test::refusal([&] {
+      if constexpr (std::is_same_v<Plan, LoosenPlan<double>>) {
+        LoosenUntilPreslip<double>{plan};
+      } else {
+        LiftWithRegrip<double>{plan};
+      }
+    });
+    const std::string owner = loosens ? "LoosenPlan" : "LiftPlan";
+    CHECK(test::begins_with(said, owner + ": " + name + " = "));
+  }
+}
+std::string refusal_of(const LoosenPlan<double>& plan) {
+  return test::refusal([&] { LoosenUntilPreslip<double>{plan}; });
+}
+std::string refusal_of(const LiftPlan<double>& plan) {
+  return test::refusal([&] { LiftWithRegrip<double>{plan}; });
+}
+
+}  // namespace
+
+TEST_CASE("loosening: settles, watches, loosens, down to the least force", "[holding_force]") {
+  const LoosenUntilPreslip<double> search(short_plan());
+  const auto first = search.start().command();
+  CHECK(first.force_n == 9);
+  CHECK(first.phase == SearchPhase::settling);
+  CHECK(first.steps == 0);
+  CHECK(std::isnan(first.preslip_force_n));
+  CHECK(first.warning_steps == 0);
+
+  const std::string steady(18, '-');
+  // the sample that follows the settling is the first to be watched
+  CHECK(phases(search, steady) ==
+        "sswws"
+        "sswws"
+        "sswwA"
+        "AAA");
+  CHECK(forces(search, steady) ==
+        "99998"
+        "88887"
+        "77777"
+        "777");
+  const auto end = told(search, steady);
+  CHECK(end.phase == SearchPhase::at_limit);
+  CHECK(end.steps == 2);
+  CHECK(end.force_n == 7);
+  CHECK(std::isnan(end.preslip_force_n));
+  CHECK(end.warning_steps == 0);
+}
+
+TEST_CASE("loosening: pre-slip ends it, with the margin given back", "[holding_force]") {
+  auto plan = short_plan();
+  const auto found = [&](const std::string& news) {
+    return told(LoosenUntilPreslip<double>(plan), news);
+  };
+  // at each of the three samples that are watched
+  for (const char* const news : {"-------p", "--------p", "---------p"}) {
+    CAPTURE(news);
+    const auto at_8 = found(news);
+    CHECK(at_8.phase == SearchPhase::found);
+    CHECK(at_8.preslip_force_n == 8);
+    CHECK(at_8.force_n == 9);
+    CHECK(at_8.steps == 1);
+    CHECK(at_8.warning_steps == 0);
+  }
+  CHECK(found("------------p").preslip_force_n == 7);
+  CHECK(found("------------p").force_n == 8);
+  plan.margin_steps = 0;
+  CHECK(found("------------p").force_n == 7);
+  plan.margin_steps = 2;
+  CHECK(found("------------p").force_n == 9);
+  plan.margin_steps = 1000000;  // never more than at first
+  CHECK(found("------------p").force_n == 9);
+  CHECK(found("--p").force_n == 9);
+  CHECK(found("--p").preslip_force_n == 9);
+  CHECK(found("--p").phase == SearchPhase::found);
+}
+
+TEST_CASE("loosening: while the last step settles, only a slip is listened to", "[holding_force]") {
+  const LoosenUntilPreslip<double> search(short_plan());
+  CHECK(phases(search,
+               "pp---"
+               "pp---"
+               "pp--p") ==
+        "sswws"
+        "sswws"
+        "sswwF");
+  CHECK(told(search,
+             "pp---"
+             "pp---")
+            .steps == 2);
+  for (const char* const news : {"x", "-x", "--x", "-----x", "-----px", "--------x"}) {
+    CAPTURE(news);
+    const auto end = told(search, news);
+    CHECK(end.phase == SearchPhase::slipped);
+    CHECK(end.force_n == 9);  // gripped as at first
+    CHECK(std::isnan(end.preslip_force_n));
+  }
+}
+
+TEST_CASE("loosening until the object slips counts the steps of warning", "[holding_force]") {
+  auto plan = short_plan();
+  plan.least_force_n = 1;
+  plan.until_slipped = true;
+  const LoosenUntilPreslip<double> search(plan);
+  auto state = search.start();
+  CHECK(tell(search, state,
+             "-----"
+             "--p")
+            .phase == SearchPhase::watching);
+  CHECK(state.command().preslip_force_n == 8);
+  CHECK(state.command().force_n == 8);
+  CHECK(state.command().warning_steps == 0);
+  auto now = tell(search, state, "p-");  // the rest of the watch: it is not cut short
+  CHECK(now.phase == SearchPhase::settling);
+  CHECK(now.force_n == 7);
+  CHECK(now.warning_steps == 1);
+  now = tell(search, state,
+             "pp-p-"
+             "--ppp");
+  CHECK(now.force_n == 5);
+  CHECK(now.preslip_force_n == 8);  // where it was found first
+  CHECK(now.warning_steps == 3);
+  CHECK(now.steps == 4);
+  now = tell(search, state, "x");
+  CHECK(now.phase == SearchPhase::slipped);
+  CHECK(now.force_n == 9);
+  CHECK(now.warning_steps == 3);
+  CHECK(now.preslip_force_n == 8);
+  // pre-slip on the last sample that is watched
+  now = told(search, "----p");
+  CHECK(now.force_n == 8);
+  CHECK(now.preslip_force_n == 9);
+  CHECK(now.warning_steps == 1);
+  // what never slips ends at the least force
+  now = told(search, "--p--" + std::string(40, '-'));
+  CHECK(now.phase == SearchPhase::at_limit);
+  CHECK(now.force_n == 1);
+  CHECK(now.warning_steps == 8);
+}
+
+TEST_CASE("loosening: without settling, one look at each force", "[holding_force]") {
+  auto plan = short_plan();
+  plan.settle_samples = 0;
+  plan.watch_samples = 1;
+  const LoosenUntilPreslip<double> search(plan);
+  CHECK(phases(search, "----") == "ssAA");
+  CHECK(forces(search, "----") == "8777");
+  CHECK(phases(search, "-p") == "sF");
+  CHECK(forces(search, "-p") == "89");
+  plan.watch_samples = 2;
+  CHECK(phases(LoosenUntilPreslip<double>(plan), "-------") == "wswswAA");
+  plan.settle_samples = 1;
+  plan.watch_samples = 1;
+  CHECK(phases(LoosenUntilPreslip<double>(plan), "-------") == "sssssAA");
+}
+
+TEST_CASE("loosening: forces do not collect rounding, and the last step may be short",
+          "[holding_force]") {
+  LoosenPlan<double> plan{.first_force_n = 10,
+                          .least_force_n = 0.25,
+                          .step_n = 0.1,
+                          .settle_samples = 0,
+                          .watch_samples = 1};
+  const LoosenUntilPreslip<double> search(plan);
+  auto state = search.start();
+  for (int k = 1; k <= 97; ++k) {
+    const auto now = search(SlipNews::steady, state);
+    CHECK(now.force_n == 10 - k * 0.1);
+    CHECK(now.steps == k);
+  }
+  CHECK(search(SlipNews::steady, state).force_n == 0.25);
+  CHECK(state.command().phase == SearchPhase::settling);
+  CHECK(search(SlipNews::steady, state).phase == SearchPhase::at_limit);
+  CHECK(state.command().steps == 98);
+  plan.step_n = 1000;  // one step to the least
+  CHECK(told(LoosenUntilPreslip<double>(plan), "-").force_n == 0.25);
+  CHECK(told(LoosenUntilPreslip<double>(plan), "--").phase == SearchPhase::at_limit);
+}
+
+TEST_CASE("searches: news that is missing changes nothing", "[holding_force]") {
+  const LoosenUntilPreslip<double> loosen(short_plan());
+  CHECK(phases(loosen,
+               "m-m-m-mm--m"
+               "--m--p") ==
+        "ssssswwwwss"
+        "ssswwF");
+  const LiftWithRegrip<double> lift(short_lift());
+  CHECK(phases(lift, "mpmmm-m-m-m") == "wssssssssww");
+  CHECK(told(lift, "mmmm").height_mm == 0);
+  CHECK(told(loosen, std::string(1000, 'm')).force_n == 9);
+}
+
+TEST_CASE("searches: an end is an end", "[holding_force]") {
+  const LoosenUntilPreslip<double> loosen(short_plan());
+  for (const std::string end : {"--p", "x", "---------------"}) {
+    for (const std::string more : {"-", "p", "x", "m", "--pp--xx--mm"}) {
+      CAPTURE(end, more);
+      auto state = loosen.start();
+      const auto before = tell(loosen, state, end);
+      CHECK(is_end(before.phase));
+      const auto after = tell(loosen, state, more);
+      CHECK(after.phase == before.phase);
+      CHECK(after.force_n == before.force_n);
+      CHECK(after.steps == before.steps);
+      CHECK(state.command().force_n == before.force_n);
+    }
+  }
+  const LiftWithRegrip<double> lift(short_lift());
+  for (const std::string end : {"---", "-x", "-p--p--p"}) {
+    for (const std::string more : {"-", "p", "x", "m", "--pp--xx--mm"}) {
+      CAPTURE(end, more);
+      auto state = lift.start();
+      const auto before = tell(lift, state, end);
+      CHECK(is_end(before.phase));
+      const auto after = tell(lift, state, more);
+      CHECK(after.phase == before.phase);
+      CHECK(after.force_n == before.force_n);
+      CHECK(after.height_mm == before.height_mm);
+      CHECK(after.regrips == before.regrips);
+    }
+  }
+}
+
+TEST_CASE("lifting: up in steps to the full height", "[holding_force]") {
+  const LiftWithRegrip<double> search(short_lift());
+  const auto first = search.start().command();
+  CHECK(first.force_n == 1);
+  CHECK(first.height_mm == 0);
+  CHECK(first.phase == SearchPhase::watching);
+  CHECK(first.regrips == 0);
+  auto state = search.start();
+  CHECK(tell(search, state, "-").height_mm == 4);
+  CHECK(tell(search, state, "-").height_mm == 8);
+  CHECK(state.command().phase == SearchPhase::watching);
+  CHECK(tell(search, state, "-").height_mm == 10);  // not 12
+  CHECK(state.command().phase == SearchPhase::lifted);
+  CHECK(state.command().force_n == 1);
+  // a step that divides the height ends on it
+  LiftPlan<double> plan = short_lift();
+  plan.height_step_mm = 5;
+  CHECK(told(LiftWithRegrip<double>(plan), "-").phase == SearchPhase::watching);
+  CHECK(told(LiftWithRegrip<double>(plan), "--").phase == SearchPhase::lifted);
+  plan.height_step_mm = 0.1;
+  auto slow = LiftWithRegrip<double>(plan).start();
+  for (int k = 1; k < 100; ++k) {
+    CHECK(LiftWithRegrip<double>(plan)(SlipNews::steady, slow).height_mm == k * 0.1);
+  }
+}
+
+TEST_CASE("lifting: pre-slip holds the lift and tightens the grip", "[holding_force]") {
+  const LiftWithRegrip<double> search(short_lift());
+  auto state = search.start();
+  auto now = tell(search, state, "-p");
+  CHECK(now.phase == SearchPhase::settling);
+  CHECK(now.force_n == 2);
+  CHECK(now.height_mm == 4);
+  CHECK(now.regrips == 1);
+  now = tell(search, state, "p-");  // not listened to
+  CHECK(now.phase == SearchPhase::settling);
+  CHECK(now.force_n == 2);
+  CHECK(now.height_mm == 4);
+  CHECK(tell(search, state, "-").height_mm == 8);
+  CHECK(state.command().phase == SearchPhase::watching);
+  now = tell(search, state, "p");
+  CHECK(now.force_n == 3);
+  CHECK(now.regrips == 2);
+  now = tell(search, state, "-p-");  // settled again, from the start
+  CHECK(now.phase == SearchPhase::lifted);
+  CHECK(now.height_mm == 10);
+  CHECK(now.force_n == 3);
+
+  // pre-slip at once after the settling
+  CHECK(told(search, "p--p").force_n == 3);
+  CHECK(phases(search, "pppppp") == "ssssss");
+  CHECK(forces(search, "pppppp") == "222333");
+  // at the largest force it gives up
+  now = told(search, "-p--p--p");
+  CHECK(now.phase == SearchPhase::at_limit);
+  CHECK(now.force_n == 3);
+  CHECK(now.height_mm == 0);
+  CHECK(now.regrips == 2);
+  // and does not where the largest force is enough
+  CHECK(told(search, "-p--p----").phase == SearchPhase::lifted);
+
+  LiftPlan<double> plan = short_lift();
+  plan.settle_samples = 0;
+  CHECK(forces(LiftWithRegrip<double>(plan), "pp-") == "233");
+  CHECK(phases(LiftWithRegrip<double>(plan), "pp-p") == "sswA");
+  plan.force_step_n = 1.5;  // the last step may be short
+  CHECK(told(LiftWithRegrip<double>(plan), "p").force_n == 2.5);
+  CHECK(told(LiftWithRegrip<double>(plan), "pp").force_n == 3);
+  plan.most_force_n = plan.first_force_n;  // nothing to tighten
+  CHECK(told(LiftWithRegrip<double>(plan), "p").phase == SearchPhase::at_limit);
+  CHECK(told(LiftWithRegrip<double>(plan), "-p").height_mm == 0);
+}
+
+TEST_CASE("lifting: an object that slips is put down at once", "[holding_force]") {
+  const LiftWithRegrip<double> search(short_lift());
+  for (const char* const news : {"x", "-x", "-px", "-p-x", "--p--x"}) {
+    CAPTURE(news);
+    const std::string before(news, std::string(news).size() - 1);
+    const auto end = told(search, news);
+    CHECK(end.phase == SearchPhase::slipped);
+    CHECK(end.height_mm == 0);
+    CHECK(end.force_n == told(search, before).force_n);
+    CHECK(end.regrips == told(search, before).regrips);
+  }
+}
+
+TEST_CASE("searches: bad plans are refused by name, value and range", "[holding_force]") {
+  using Loosen = LoosenPlan<double>;
+  CHECK(refusal_of(Loosen{}) == "accepted");
+  check_refused(&Loosen::first_force_n, "first_force_n", {0.5, 0.0, -1.0, none, infinity});
+  check_refused(&Loosen::least_force_n, "least_force_n", {-1e-9, none, infinity, -infinity});
+  check_refused(&Loosen::step_n, "step_n", {0.0, -1.0, none, infinity, 9.4e-6, 5e-324});
+  check_refused<Loosen, Index>(&Loosen::settle_samples, "settle_samples", {-1});
+  check_refused<Loosen, Index>(&Loosen::watch_samples, "watch_samples", {0, -1});
+  check_refused<Loosen, Index>(&Loosen::margin_steps, "margin_steps", {-1, 1000001});
+  CHECK(refusal_of(Loosen{.first_force_n = 2, .least_force_n = 2}) ==
+        "LoosenPlan: first_force_n = 2, must be finite and > least_force_n");
+  CHECK(refusal_of(Loosen{.least_force_n = -1}) ==
+        "LoosenPlan: least_force_n = -1, must be finite and >= 0");
+  CHECK(refusal_of(Loosen{.step_n = 0}) ==
+        "LoosenPlan: step_n = 0, must be finite and > 0, in at most a million steps from first to "
+        "least force");
+  CHECK(refusal_of(Loosen{.settle_samples = -2}) ==
+        "LoosenPlan: settle_samples = -2, must be >= 0");
+  CHECK(refusal_of(Loosen{.watch_samples = 0}) == "LoosenPlan: watch_samples = 0, must be >= 1");
+  CHECK(refusal_of(Loosen{.margin_steps = -3}) ==
+        "LoosenPlan: margin_steps = -3, must be in [0, 1000000]");
+  CHECK(refusal_of(Loosen{.least_force_n = 0}) == "accepted");
+  CHECK(refusal_of(Loosen{.step_n = 9.6e-6}) == "accepted");  // 989 583 steps
+  CHECK(refusal_of(Loosen{.step_n = 1e9}) == "accepted");
+  CHECK(refusal_of(Loosen{.settle_samples = 0, .watch_samples = 1, .margin_steps = 0}) ==
+        "accepted");
+  CHECK(refusal_of(Loosen{.margin_steps = 1000000}) == "accepted");
+
+  using Lift = LiftPlan<double>;
+  CHECK(refusal_of(Lift{}) == "accepted");
+  check_refused(&Lift::first_force_n, "first_force_n", {0.0, -1.0, none, infinity});
+  check_refused(&Lift::most_force_n, "most_force_n", {0.999, 0.0, -1.0, none, infinity});
+  check_refused(&Lift::force_step_n, "force_step_n", {0.0, -1.0, none, infinity, 1.8e-5});
+  check_refused(&Lift::height_mm, "height_mm", {0.0, -1.0, none, infinity});
+  check_refused(&Lift::height_step_mm, "height_step_mm", {0.0, -1.0, none, infinity, 4.9e-5});
+  check_refused<Lift, Index>(&Lift::settle_samples, "settle_samples", {-1});
+  CHECK(refusal_of(Lift{.first_force_n = 0}) ==
+        "LiftPlan: first_force_n = 0, must be finite and > 0");
+  CHECK(refusal_of(Lift{.most_force_n = 0.5}) ==
+        "LiftPlan: most_force_n = 0.5, must be finite and >= first_force_n");
+  CHECK(
+      refusal_of(Lift{.force_step_n = -1}) ==
+      "LiftPlan: force_step_n = -1, must be finite and > 0, in at most a million steps from first "
+      "to most force");
+  CHECK(refusal_of(Lift{.height_mm = 0}) == "LiftPlan: height_mm = 0, must be finite and > 0");
+  CHECK(refusal_of(Lift{.height_step_mm = 0}) ==
+        "LiftPlan: height_step_mm = 0, must be finite and > 0, in at most a million steps to the "
+        "height");
+  CHECK(refusal_of(Lift{.settle_samples = -1}) == "LiftPlan: settle_samples = -1, must be >= 0");
+  CHECK(refusal_of(Lift{.first_force_n = 20, .force_step_n = 0}) != "accepted");
+  CHECK(refusal_of(Lift{.first_force_n = 20}) == "accepted");  // nothing to tighten
+  CHECK(refusal_of(Lift{.force_step_n = 1.95e-5}) == "accepted");
+  CHECK(refusal_of(Lift{.height_step_mm = 5.1e-5, .settle_samples = 0}) == "accepted");
+}
+
+TEST_CASE("searches: names, ends and plans", "[holding_force]") {
+  const std::string names[] = {"settling", "watching", "found", "lifted", "at limit", "slipped"};
+  for (int k = 0; k < 6; ++k) {
+    CHECK(name_of(static_cast<SearchPhase>(k)) == names[k]);
+    CHECK(is_end(static_cast<SearchPhase>(k)) == (k >= 2));
+  }
+  CHECK(std::string(name_of(static_cast<SearchPhase>(99))) == "unknown");
+  CHECK(LoosenUntilPreslip<double>(short_plan()).plan().watch_samples == 3);
+  CHECK(LiftWithRegrip<double>(short_lift()).plan().settle_samples == 2);
+}
+
+TEMPLATE_TEST_CASE("searches: in any number",
+                   "[holding_force]",
+                   float,
+                   double,
+                   long double,
+                   test::Digits50,
+                   test::Lazy50,
+                   test::Dual<double>) {
+  using S = TestType;
+  const auto number = [](const S& x) { return static_cast<double>(value(x)); };
+  const LoosenUntilPreslip<S> loosen;
+  auto loosening = loosen.start();
+  for (int k = 0; k < 32 * 7; ++k) {
+    loosen(SlipNews::steady, loosening);
+  }
+  CHECK(number(loosening.command().force_n) == 8.25);
+  auto end = tell(loosen, loosening, std::string(16, '-') + "p");
+  CHECK(end.phase == SearchPhase::found);
+  CHECK(number(end.preslip_force_n) == 8.25);
+  CHECK(number(end.force_n) == 8.75);
+  const LiftWithRegrip<S> lift;
+  auto lifting = lift.start();
+  auto up = tell(lift, lifting, std::string("----p").append(17, '-'));
+  CHECK(number(up.force_n) == 1.5);
+  CHECK(number(up.height_mm) == 1.25);
+  up = tell(lift, lifting, std::string(195, '-'));
+  CHECK(up.phase == SearchPhase::lifted);
+  CHECK(number(up.height_mm) == 50);
+}

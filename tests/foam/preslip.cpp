@@ -1,0 +1,532 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+#include "fingerpad/foam/preslip.hpp"
+
+#include <array>
+#include <cmath>
+#include <limits>
+#include <string>
+#include <type_traits>
+#include <vector>
+
+#include "support/catch.hpp"
+#include "support/refusal.hpp"
+
+using namespace fingerpad;
+
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+constexpr double none = std::numeric_limits<double>::quiet_NaN();
+constexpr Index nowhere = FingerSample<>::no_location;
+constexpr Index most_index = (std::numeric_limits<Index>::max)();
+constexpr Index least_index = (std::numeric_limits<Index>::min)();
+
+using Sample = FingerSample<double>;
+template <std::size_t Fingers>
+using Hand = std::array<Sample, Fingers>;
+using Options = PreslipOptions<double>;
+using Cells = GraspLift<MovedToOtherCell>;
+using BothCells = GraspLift<MovedToOtherCell, BothAxes>;
+using Both = GraspLift<MovedBeyond, BothAxes>;
+
+Sample felt(Index location, Index waves, double x_mm = 0, double y_mm = 0) {
+  Sample sample;
+  sample.status = location >= 0 ? TaxelStatus::vibrating : TaxelStatus::quiet;
+  sample.location = location;
+  sample.waves = waves;
+  sample.center_x_mm = x_mm;
+  sample.center_y_mm = y_mm;
+  return sample;
+}
+
+/// Quiet, and pressed at a place.
+Sample silent(double x_mm = 0, double y_mm = 0) {
+  return felt(nowhere, 0, x_mm, y_mm);
+}
+
+template <class Rule>
+bool pair(const Sample& older, const Sample& later, const Options& options = {}) {
+  return is_preslip<Rule>(Hand<1>{older}, Hand<1>{later}, options);
+}
+
+/// Alarm, is it fresh, and how many samples ago.
+using Answer = std::array<std::int64_t, 3>;
+Answer answer(const PreslipResult& r) {
+  return {r.alarm ? 1 : 0, r.is_fresh ? 1 : 0, r.samples_ago};
+}
+constexpr Answer no_alarm{0, 0, PreslipResult::none};
+Answer fresh(std::int64_t samples_ago) {
+  return {1, 1, samples_ago};
+}
+Answer stands(std::int64_t samples_ago) {
+  return {1, 0, samples_ago};
+}
+
+template <std::size_t Fingers>
+Hand<Fingers> all(const Sample& sample) {
+  Hand<Fingers> hand;
+  hand.fill(sample);
+  return hand;
+}
+
+/// A rule and a way to search.
+template <class Rule_, class Search_>
+struct By {
+  using Rule = Rule_;
+  using Search = Search_;
+  template <std::size_t Fingers>
+  using Detector = Preslip<Rule, Fingers, Search>;
+};
+
+template <class Options_>
+std::string refusal_of(const Options_& options) {
+  return test::refusal([&] { Preslip<>{options}; });
+}
+
+void check_refused(Index Options::*field, const std::string& name, const std::string& range) {
+  for (const Index given :
+       {least_index, Index(-1), Index(0), Index(1), Index(65537), Index(1000001), most_index}) {
+    Options options;
+    options.*field = given;
+    const std::string said = refusal_of(options);
+    CAPTURE(name, given, said);
+    const std::string refused =
+        "PreslipOptions: " + name + " = " + std::to_string(given) + ", must be " + range;
+    CHECK((said == "accepted" || said == refused));
+  }
+}
+std::string with(Index Options::*field, Index given) {
+  Options options;
+  options.*field = given;
+  return refusal_of(options);
+}
+
+}  // namespace
+
+TEST_CASE("grasp-optimise: every clause of the rule is needed", "[preslip]") {
+  using Rule = GraspOptimise<>;
+  const Hand<2> older{felt(3, 5), felt(8, 2)};
+  const Hand<2> later{felt(4, 5), felt(9, 2)};
+  CHECK(is_preslip<Rule>(older, later));
+  CHECK(is_preslip<Rule>(later, older));  // equal waves have no order
+  for (const std::size_t finger : {0U, 1U}) {
+    CAPTURE(finger);
+    const auto changed = [&](Hand<2> hand, auto change) {
+      change(hand[finger]);
+      return hand;
+    };
+    const Index there = older[finger].location;
+    const auto elsewhere = [&](Sample& s) { s.location = there; };
+    const auto more = [](Sample& s) { ++s.waves; };
+    const auto fewer = [](Sample& s) { --s.waves; };
+    const auto lost = [](Sample& s) { s.location = nowhere; };
+    const auto none_seen = [](Sample& s) { s.waves = 0; };
+    CHECK_FALSE(is_preslip<Rule>(older, changed(later, elsewhere)));
+    CHECK_FALSE(is_preslip<Rule>(older, changed(later, more)));
+    CHECK_FALSE(is_preslip<Rule>(older, changed(later, fewer)));
+    CHECK_FALSE(is_preslip<Rule>(older, changed(later, lost)));
+    CHECK_FALSE(is_preslip<Rule>(changed(older, lost), later));
+    CHECK_FALSE(is_preslip<Rule>(changed(older, none_seen), changed(later, none_seen)));
+    // where the force is does not matter, nor whether there is any
+    const auto unpressed = [](Sample& s) { s.center_x_mm = none; };
+    const auto far = [](Sample& s) { s.center_y_mm = 1e300; };
+    CHECK(is_preslip<Rule>(older, changed(later, unpressed)));
+    CHECK(is_preslip<Rule>(changed(older, far), later));
+    // the waves of one finger are not compared with those of another
+    CHECK(is_preslip<Rule>(changed(older, more), changed(later, more)));
+  }
+  // the locations of one finger are not compared with those of another
+  CHECK(is_preslip<Rule>(Hand<2>{felt(3, 5), felt(4, 5)}, Hand<2>{felt(4, 5), felt(3, 5)}));
+}
+
+TEST_CASE("grasp-optimise: the last of three fingers counts as the first", "[preslip]") {
+  const Hand<3> older{felt(1, 2), felt(1, 3), felt(1, 4)};
+  const Hand<3> later{felt(2, 2), felt(2, 3), felt(2, 4)};
+  CHECK(is_preslip<GraspOptimise<>>(older, later));
+  CHECK(is_preslip<GraspOptimise<AnyPair>>(older, later));
+  for (std::size_t finger = 0; finger < 3; ++finger) {
+    Hand<3> same = later;
+    same[finger].location = 1;
+    CHECK_FALSE(is_preslip<GraspOptimise<>>(older, same));
+    CHECK_FALSE(is_preslip<GraspOptimise<AnyPair>>(older, same));
+  }
+}
+
+TEMPLATE_TEST_CASE("grasp-lift: every clause of the rule is needed",
+                   "[preslip]",
+                   GraspLift<>,
+                   Both,
+                   Cells,
+                   BothCells) {
+  using Rule = TestType;
+  const Sample older = felt(3, 4, 1, 1), later = felt(5, 6, 2, 2);
+  CHECK(pair<Rule>(older, later));
+  CHECK_FALSE(pair<Rule>(later, older));                    // waves fall
+  CHECK_FALSE(pair<Rule>(older, felt(3, 6, 2, 2)));         // location
+  CHECK_FALSE(pair<Rule>(older, felt(5, 4, 2, 2)));         // waves
+  CHECK_FALSE(pair<Rule>(older, felt(5, 3, 2, 2)));         // waves
+  CHECK_FALSE(pair<Rule>(older, felt(5, 6, 1, 1)));         // centroid
+  CHECK_FALSE(pair<Rule>(older, felt(nowhere, 6, 2, 2)));   // nothing vibrates now
+  CHECK_FALSE(pair<Rule>(older, felt(5, 6, none, 2)));      // nothing presses
+  CHECK_FALSE(pair<Rule>(older, felt(5, 6, 2, infinity)));  // the same
+  CHECK_FALSE(pair<Rule>(felt(3, 4, 1, none), later));
+  CHECK_FALSE(pair<Rule>(felt(3, 4, -infinity, 1), later));
+  // a finger that was silent had no location, which differs from any
+  CHECK(pair<Rule>(silent(1, 1), later));
+  CHECK(pair<Rule>(silent(1, 1), felt(0, 1, 2, 2)));
+  CHECK_FALSE(pair<Rule>(later, silent(1, 1)));
+  CHECK_FALSE(pair<Rule>(silent(1, 1), silent(2, 2)));
+  // waves that were counted before the location was lost still count
+  CHECK_FALSE(pair<Rule>(felt(nowhere, 6, 1, 1), later));
+}
+
+TEST_CASE("grasp-lift: one finger is enough, but it must fulfil the whole rule", "[preslip]") {
+  const Hand<2> older{felt(3, 4, 1, 1), felt(7, 4, 1, 1)};
+  const Sample pair_of_0 = felt(5, 6, 2, 2);
+  CHECK(is_preslip<GraspLift<>>(older, Hand<2>{pair_of_0, older[1]}));
+  CHECK(is_preslip<GraspLift<>>(older, Hand<2>{older[0], pair_of_0}));
+  CHECK(is_preslip<GraspLift<>>(older, Hand<2>{pair_of_0, felt(nowhere, 0, none, none)}));
+  CHECK(is_preslip<GraspLift<>>(older, Hand<2>{felt(nowhere, 0, none, none), pair_of_0}));
+  CHECK_FALSE(is_preslip<GraspLift<>>(older, older));
+  // location and waves of the one, centroid of the other
+  CHECK_FALSE(is_preslip<GraspLift<>>(older, Hand<2>{felt(5, 6, 1, 1), felt(7, 4, 2, 2)}));
+  CHECK_FALSE(is_preslip<GraspLift<>>(older, Hand<2>{felt(5, 4, 2, 2), felt(7, 6, 2, 2)}));
+}
+
+TEST_CASE("centroids differ from beyond the tolerance on", "[preslip]") {
+  const double tolerance = 0.25;
+  const Options options{.centroid_tolerance_mm = tolerance};
+  const auto moved = [&](double x_mm, double y_mm) {
+    return pair<GraspLift<>>(felt(3, 4, 1, 1), felt(5, 6, 1 + x_mm, 1 + y_mm), options);
+  };
+  const double beyond = tolerance + 1e-15;
+  for (const double sign : {1.0, -1.0}) {
+    CHECK_FALSE(moved(sign * tolerance, 0));
+    CHECK_FALSE(moved(0, sign * tolerance));
+    CHECK_FALSE(moved(sign * tolerance, -sign * tolerance));  // not along the diagonal
+    CHECK(moved(sign * beyond, 0));
+    CHECK(moved(0, sign * beyond));
+  }
+  // none: what is not the same differs
+  const Options exact{.centroid_tolerance_mm = 0};
+  CHECK_FALSE(pair<GraspLift<>>(felt(3, 4, 0, 1), felt(5, 6, -0.0, 1), exact));
+  CHECK(pair<GraspLift<>>(felt(3, 4, 0, 1), felt(5, 6, 5e-324, 1), exact));
+}
+
+TEST_CASE("centroids differ from one cell to another", "[preslip]") {
+  const Options options{.centroid_tolerance_mm = 0.5};
+  const auto differ = [&](double a_mm, double b_mm) {
+    const bool in_x = pair<Cells>(felt(3, 4, a_mm, 1), felt(5, 6, b_mm, 1), options);
+    const bool in_y = pair<Cells>(felt(3, 4, 1, a_mm), felt(5, 6, 1, b_mm), options);
+    CHECK(in_x == in_y);
+    return in_x;
+  };
+  CHECK_FALSE(differ(-0.25, 0.2499));  // the cell of 0 is [-0.25, 0.25)
+  CHECK(differ(0.2499, 0.25));
+  CHECK(differ(-0.2501, -0.25));
+  CHECK_FALSE(differ(0.25, 0.7499));
+  CHECK(differ(0.7499, 0.75));
+  CHECK_FALSE(differ(-0.75, -0.2501));
+  CHECK(differ(1e6, 1e6 + 0.5));
+}
+
+TEST_CASE("centroids differ along any axis or along both", "[preslip]") {
+  const auto check = [](double x_mm, double y_mm, bool any, bool both) {
+    const Sample older = felt(3, 4, 1, 1), later = felt(5, 6, 1 + x_mm, 1 + y_mm);
+    CHECK(pair<GraspLift<>>(older, later) == any);
+    CHECK(pair<Cells>(older, later) == any);
+    CHECK(pair<Both>(older, later) == both);
+    CHECK(pair<BothCells>(older, later) == both);
+  };
+  check(0, 0, false, false);
+  check(1, 0, true, false);
+  check(0, -1, true, false);
+  check(1, -1, true, true);
+  check(-1, 1, true, true);
+}
+
+TEST_CASE("samples with fewer waves than asked for are silent", "[preslip]") {
+  const auto optimise = [](Index waves, Index least) {
+    return pair<GraspOptimise<>>(felt(3, waves), felt(4, waves), {.least_waves = least});
+  };
+  CHECK(optimise(0, 0));  // as published: none and none are equal
+  CHECK_FALSE(optimise(0, 1));
+  CHECK(optimise(1, 1));
+  CHECK_FALSE(optimise(1, 2));
+  CHECK(optimise(2, 2));
+  // what has no location makes no pair, however few waves are asked for
+  CHECK_FALSE(pair<GraspOptimise<>>(silent(), felt(4, 0), {.least_waves = 0}));
+  CHECK_FALSE(pair<GraspOptimise<>>(felt(4, 0), silent(), {.least_waves = 0}));
+  const auto lift = [](Index before, Index now, Index least) {
+    return pair<GraspLift<>>(felt(3, before, 0, 0), felt(4, now, 1, 1), {.least_waves = least});
+  };
+  CHECK(lift(0, 1, 0));
+  CHECK_FALSE(lift(0, 0, 0));
+  CHECK(lift(0, 1, 1));
+  CHECK_FALSE(lift(0, 1, 2));
+  CHECK(lift(0, 2, 2));
+  CHECK(lift(1, 2, 2));  // the older one may be silent
+}
+
+TEST_CASE("waves and locations out of range", "[preslip]") {
+  const Options few{.most_waves = 8};
+  const auto optimise = [&](Index older, Index later, const Options& options) {
+    return pair<GraspOptimise<>>(felt(3, older), felt(4, later), options);
+  };
+  const auto lift = [&](Index older, Index later, const Options& options) {
+    return pair<GraspLift<>>(felt(3, older, 0, 0), felt(4, later, 1, 1), options);
+  };
+  // more than the most count as the most
+  CHECK(optimise(9, 12, few));
+  CHECK(optimise(8, most_index, few));
+  CHECK_FALSE(optimise(7, 8, few));
+  CHECK_FALSE(optimise(9, 12, {}));
+  CHECK_FALSE(lift(8, 12, few));
+  CHECK_FALSE(lift(9, most_index, few));
+  CHECK(lift(7, 12, few));
+  CHECK(lift(8, 12, {}));
+  CHECK(optimise(100, 90, {.least_waves = 80, .most_waves = 8}));
+  CHECK_FALSE(optimise(70, 90, {.least_waves = 80, .most_waves = 8}));
+  CHECK_FALSE(lift(70, 90, {.least_waves = 80, .most_waves = 8}));
+  CHECK(lift(7, 90, {.least_waves = 80, .most_waves = 8}));
+  // fewer than none are none
+  CHECK(lift(-3, 1, {}));
+  CHECK(lift(least_index, 1, {}));
+  CHECK_FALSE(lift(-3, -2, {.least_waves = 0}));
+  CHECK_FALSE(optimise(-3, -3, {.least_waves = 0}));
+  // locations before the first taxel are none
+  CHECK_FALSE(pair<GraspOptimise<>>(felt(-7, 2), felt(4, 2)));
+  CHECK_FALSE(pair<GraspOptimise<>>(felt(4, 2), felt(least_index, 2)));
+  CHECK(pair<GraspLift<>>(felt(least_index, 2, 0, 0), felt(4, 3, 1, 1)));
+  CHECK_FALSE(pair<GraspLift<>>(felt(4, 2, 0, 0), felt(-7, 3, 1, 1)));
+  // and so are those that 31 bits do not hold
+  constexpr Index last = (Index(1) << 31) - 1;
+  CHECK(pair<GraspOptimise<>>(felt(last, 2), felt(last - 1, 2)));
+  CHECK_FALSE(pair<GraspOptimise<>>(felt(last, 2), felt(last, 2)));
+  CHECK_FALSE(pair<GraspOptimise<>>(felt(last, 2), felt(last + 1, 2)));
+  CHECK_FALSE(pair<GraspOptimise<>>(felt(most_index, 2), felt(4, 2)));
+}
+
+TEMPLATE_TEST_CASE("pre-slip: an alarm begins with a pair and stands until its older sample leaves",
+                   "[preslip]",
+                   (By<GraspOptimise<>, AllPairs>),
+                   (By<GraspOptimise<>, NewestPairs>),
+                   (By<GraspOptimise<>, ConstantTime>),
+                   (By<GraspOptimise<AnyPair>, AllPairs>),
+                   (By<GraspOptimise<AnyPair>, NewestPairs>),
+                   (By<GraspOptimise<AnyPair>, ConstantTime>)) {
+  using Detector = typename TestType::template Detector<2>;
+  const Detector preslip({.history = 5});
+  auto state = preslip.start();
+  const auto see = [&](const Sample& sample) { return answer(preslip(all<2>(sample), state)); };
+  CHECK(see(felt(3, 5)) == no_alarm);  // nothing to be compared with
+  CHECK(see(felt(3, 5)) == no_alarm);
+  CHECK(see(felt(4, 5)) == fresh(1));
+  CHECK(see(silent()) == stands(2));
+  CHECK(see(silent()) == stands(3));
+  CHECK(see(silent()) == stands(4));
+  CHECK(see(silent()) == no_alarm);
+  CHECK(see(silent()) == no_alarm);  // nothing but the one sample at 4 and silence
+  // another pair prolongs it
+  CHECK(see(felt(1, 2)) == no_alarm);
+  CHECK(see(felt(2, 2)) == fresh(1));
+  CHECK(see(felt(2, 3)) == stands(2));
+  CHECK(see(felt(2, 2)) == fresh(3));  // with the older one, which is still there
+  CHECK(see(felt(1, 2)) == fresh(1));
+  CHECK(see(felt(2, 3)) == stands(2));
+  CHECK(see(felt(1, 2)) == fresh(3));  // not with the one before, which is at the same place
+  CHECK(see(silent()) == stands(4));
+  CHECK(see(silent()) == no_alarm);
+
+  state.reset();
+  CHECK(see(felt(3, 5)) == no_alarm);
+  CHECK(see(silent()) == no_alarm);
+  CHECK(see(silent()) == no_alarm);
+  CHECK(see(silent()) == no_alarm);
+  CHECK(see(felt(4, 5)) == fresh(4));  // the oldest of the history
+  state.reset();
+  CHECK(see(felt(3, 5)) == no_alarm);  // all are forgotten
+  CHECK(see(silent()) == no_alarm);
+  CHECK(see(silent()) == no_alarm);
+  CHECK(see(silent()) == no_alarm);
+  CHECK(see(silent()) == no_alarm);
+  CHECK(see(felt(4, 5)) == no_alarm);  // the first has left
+}
+
+TEMPLATE_TEST_CASE("pre-slip: what a lift stirs up and how long it stands",
+                   "[preslip]",
+                   (By<GraspLift<>, AllPairs>),
+                   (By<GraspLift<>, NewestPairs>),
+                   (By<Both, AllPairs>),
+                   (By<Both, NewestPairs>),
+                   (By<Cells, AllPairs>),
+                   (By<Cells, NewestPairs>),
+                   (By<Cells, ConstantTime>),
+                   (By<BothCells, AllPairs>),
+                   (By<BothCells, NewestPairs>),
+                   (By<BothCells, ConstantTime>)) {
+  using Detector = typename TestType::template Detector<2>;
+  const Detector preslip({.history = 4});
+  auto state = preslip.start();
+  const auto see = [&](const Sample& sample) {
+    return answer(preslip(Hand<2>{silent(5, 5), sample}, state));
+  };
+  CHECK(see(felt(3, 2, 1, 1)) == no_alarm);
+  CHECK(see(felt(4, 2, 2, 2)) == no_alarm);  // no more waves
+  CHECK(see(felt(4, 3, 2, 2)) == fresh(2));  // than the first, elsewhere
+  CHECK(see(felt(5, 3, 3, 3)) == fresh(2));  // than the second
+  CHECK(see(felt(5, 3, 3, 3)) == fresh(3));
+  CHECK(see(felt(5, 2, 3, 3)) == no_alarm);
+  CHECK(see(silent(3, 3)) == no_alarm);
+  CHECK(see(felt(6, 1, 3, 3)) == no_alarm);  // where it was silent
+  CHECK(see(felt(6, 1, 4, 4)) == fresh(2));
+  CHECK(see(silent(none, none)) == stands(3));
+  CHECK(see(silent(none, none)) == no_alarm);
+  CHECK(see(felt(6, 9, 8, 8)) == no_alarm);  // was at this place, or not pressed
+  CHECK(see(felt(7, 9, 8, 8)) == no_alarm);
+  CHECK(see(felt(7, 10, 9, 9)) == fresh(2));
+}
+
+TEMPLATE_TEST_CASE("pre-slip: the shortest history",
+                   "[preslip]",
+                   (By<GraspOptimise<>, AllPairs>),
+                   (By<GraspOptimise<>, NewestPairs>),
+                   (By<GraspOptimise<>, ConstantTime>),
+                   (By<GraspOptimise<AnyPair>, AllPairs>),
+                   (By<GraspOptimise<AnyPair>, NewestPairs>),
+                   (By<GraspOptimise<AnyPair>, ConstantTime>)) {
+  const typename TestType::template Detector<1> preslip({.history = 2});
+  auto state = preslip.start();
+  const auto see = [&](const Sample& sample) { return answer(preslip({sample}, state)); };
+  CHECK(see(felt(3, 5)) == no_alarm);
+  CHECK(see(felt(4, 5)) == fresh(1));
+  CHECK(see(felt(4, 5)) == no_alarm);
+  CHECK(see(felt(3, 5)) == fresh(1));
+  CHECK(see(silent()) == no_alarm);
+  CHECK(see(felt(4, 5)) == no_alarm);
+}
+
+TEMPLATE_TEST_CASE("pre-slip: fingers that slip one after the other",
+                   "[preslip]",
+                   AllPairs,
+                   NewestPairs,
+                   ConstantTime) {
+  const Options options{.history = 6};
+  const Preslip<GraspOptimise<SamePair>, 2, TestType> same(options);
+  const Preslip<GraspOptimise<AnyPair>, 2, TestType> any(options);
+  auto of_same = same.start();
+  auto of_any = any.start();
+  const auto check = [&](const Sample& left, const Sample& right, const Answer& result) {
+    CHECK(answer(same(Hand<2>{left, right}, of_same)) == no_alarm);
+    CHECK(answer(any(Hand<2>{left, right}, of_any)) == result);
+  };
+  check(felt(1, 2), silent(), no_alarm);
+  check(felt(2, 2), silent(), no_alarm);  // the left finger has a pair
+  check(silent(), felt(1, 7), no_alarm);
+  check(silent(), felt(2, 7), fresh(3));  // now each has its own
+  check(silent(), felt(1, 7), fresh(4));  // the newer one of the right finger changes nothing
+  check(silent(), silent(), stands(5));   // for the left one ends it
+  check(silent(), silent(), no_alarm);
+  check(felt(8, 3), silent(), no_alarm);
+  check(felt(7, 3), silent(), fresh(5));  // the right finger's pair is the older one now
+}
+
+TEMPLATE_TEST_CASE("pre-slip: a copied state goes its own way",
+                   "[preslip]",
+                   (By<GraspOptimise<>, AllPairs>),
+                   (By<GraspOptimise<>, NewestPairs>),
+                   (By<GraspOptimise<>, ConstantTime>),
+                   (By<GraspOptimise<AnyPair>, ConstantTime>),
+                   (By<Cells, AllPairs>),
+                   (By<Cells, NewestPairs>),
+                   (By<Cells, ConstantTime>)) {
+  const typename TestType::template Detector<1> preslip({.history = 8});
+  auto state = preslip.start();
+  const Sample nothing = silent(none, none);
+  const Sample first = felt(1, 2, 0, 0);
+  const Sample second = felt(2, detail::is_lift<typename TestType::Rule> ? 3 : 2, 1, 1);
+  CHECK(answer(preslip({first}, state)) == no_alarm);
+  auto copy = state;
+  CHECK(answer(preslip({second}, state)) == fresh(1));
+  CHECK(answer(preslip({nothing}, copy)) == no_alarm);
+  CHECK(answer(preslip({second}, copy)) == fresh(2));
+  CHECK(answer(preslip({nothing}, state)) == stands(2));
+  const auto before = copy;
+  copy.reset();
+  CHECK(answer(preslip({second}, copy)) == no_alarm);
+  copy = before;
+  CHECK(answer(preslip({nothing}, copy)) == stands(3));
+  auto other = preslip.start();
+  CHECK(answer(preslip({second}, other)) == no_alarm);
+}
+
+TEST_CASE("pre-slip: bad parameters are refused by name, value and range", "[preslip]") {
+  CHECK(refusal_of(Options{}) == "accepted");
+  check_refused(&Options::history, "history", "in [2, 1000000]");
+  check_refused(&Options::least_waves, "least_waves", ">= 0");
+  check_refused(&Options::most_waves, "most_waves", "in [1, 65536]");
+  CHECK(with(&Options::history, 1) == "PreslipOptions: history = 1, must be in [2, 1000000]");
+  CHECK(with(&Options::history, 1000001) ==
+        "PreslipOptions: history = 1000001, must be in [2, 1000000]");
+  CHECK(with(&Options::history, 2) == "accepted");
+  CHECK(with(&Options::history, least_index) != "accepted");
+  CHECK(with(&Options::least_waves, -1) == "PreslipOptions: least_waves = -1, must be >= 0");
+  CHECK(with(&Options::least_waves, 0) == "accepted");
+  CHECK(with(&Options::least_waves, most_index) == "accepted");
+  CHECK(with(&Options::most_waves, 0) == "PreslipOptions: most_waves = 0, must be in [1, 65536]");
+  CHECK(with(&Options::most_waves, 65537) ==
+        "PreslipOptions: most_waves = 65537, must be in [1, 65536]");
+  CHECK(with(&Options::most_waves, 1) == "accepted");
+  CHECK(with(&Options::most_waves, 65536) == "accepted");
+  const auto tolerance = [](double mm) { return Options{.centroid_tolerance_mm = mm}; };
+  for (const double bad : {-0.1, none, infinity, -infinity}) {
+    CAPTURE(bad);
+    CHECK(
+        test::begins_with(refusal_of(tolerance(bad)), "PreslipOptions: centroid_tolerance_mm = "));
+    CHECK(test::begins_with(test::refusal([&] { Preslip<GraspOptimise<>>{tolerance(bad)}; }),
+                            "PreslipOptions: centroid_tolerance_mm = "));
+  }
+  CHECK(refusal_of(tolerance(-0.5)) ==
+        "PreslipOptions: centroid_tolerance_mm = -0.5, must be finite and >= 0");
+  CHECK(refusal_of(tolerance(0)) == "accepted");
+  CHECK(test::refusal([&] { Preslip<GraspOptimise<>, 2, ConstantTime>{tolerance(0)}; }) ==
+        "accepted");
+  const std::string rounded =
+      "PreslipOptions: centroid_tolerance_mm = 0, must be > 0 where centroids are rounded to it";
+  CHECK(test::refusal([&] { Preslip<Cells>{tolerance(0)}; }) == rounded);
+  CHECK(test::refusal([&] { Preslip<BothCells, 2, ConstantTime>{tolerance(0)}; }) == rounded);
+  CHECK(test::refusal([&] { Preslip<Cells>{tolerance(5e-324)}; }) == "accepted");
+}
+
+TEST_CASE("pre-slip: what is written down of itself", "[preslip]") {
+  CHECK(Preslip<>({.history = 7}).options().history == 7);
+  STATIC_REQUIRE(
+      std::is_same_v<Preslip<>, Preslip<GraspLift<MovedBeyond, AnyAxis>, 2, NewestPairs, double>>);
+  STATIC_REQUIRE(std::is_same_v<GraspOptimise<>, GraspOptimise<SamePair>>);
+  STATIC_REQUIRE(std::is_copy_assignable_v<Preslip<>::State>);
+  STATIC_REQUIRE(PreslipResult::none == -1);
+  CHECK(std::string(GraspOptimise<>::name) == "grasp_optimise");
+  CHECK(std::string(Both::name) == "grasp_lift");
+  CHECK(answer(PreslipResult()) == no_alarm);
+}
+
+TEST_CASE("finger sample: when it is pressed, and when it vibrates", "[preslip]") {
+  const Sample empty;
+  CHECK_FALSE(empty.is_pressed());
+  CHECK_FALSE(empty.is_vibrating());
+  CHECK(empty.status == TaxelStatus::filling);
+  CHECK(felt(0, 1).is_vibrating());
+  CHECK_FALSE(felt(0, 0).is_vibrating());
+  CHECK_FALSE(felt(nowhere, 1).is_vibrating());
+  CHECK(felt(0, 1, 0, 0).is_pressed());
+  CHECK_FALSE(felt(0, 1, none, 0).is_pressed());
+  CHECK_FALSE(felt(0, 1, 0, infinity).is_pressed());
+  CHECK(std::string(name_of(TaxelStatus::vibrating)) == "vibrating");
+  CHECK(std::string(name_of(TaxelStatus::quiet)) == "quiet");
+  CHECK(std::string(name_of(TaxelStatus::filling)) == "filling");
+  CHECK(std::string(name_of(TaxelStatus::no_taxels)) == "no taxels");
+  CHECK(std::string(name_of(TaxelStatus::other_size)) == "other size");
+  CHECK(std::string(name_of(TaxelStatus::time_not_later)) == "time not later");
+  CHECK(std::string(name_of(static_cast<TaxelStatus>(99))) == "unknown");
+}

@@ -1,0 +1,515 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+#include "fingerpad/foam/taxel_features.hpp"
+
+#include <Eigen/Core>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <numbers>
+#include <opencv2/core.hpp>
+#include <string>
+#include <vector>
+
+#include "fingerpad/adapt/eigen.hpp"
+#include "fingerpad/adapt/opencv.hpp"
+#include "support/catch.hpp"
+#include "support/foreign_image.hpp"
+#include "support/numbers.hpp"
+#include "support/pad.hpp"
+#include "support/refusal.hpp"
+
+using namespace fingerpad;
+using test::Image;
+
+namespace {
+
+constexpr double tau = 2 * std::numbers::pi;
+constexpr double infinity = std::numeric_limits<double>::infinity();
+constexpr double period_s = 0.01;
+
+TaxelOptions<double> options() {
+  return {
+      .pitch_mm = 2, .window = 16, .sample_period_s = period_s, .longest_gap_s = 0.1, .noise = 0.1};
+}
+
+/// Array k of a recording whose taxel (row, col) reads `reading(k, row, col)`.
+template <class T = double, class Reading>
+Image<T> array(Index rows, Index cols, const Reading& reading) {
+  Image<T> taxels(rows, cols);
+  for (Index i = 0; i < rows; ++i) {
+    for (Index j = 0; j < cols; ++j) {
+      taxels(i, j) = static_cast<T>(reading(i, j));
+    }
+  }
+  return taxels;
+}
+
+/// The features after `count` samples of a clock that runs evenly.
+template <class Features, class Reading>
+FingerSample<double> after(const Features& features,
+                           typename Features::State& state,
+                           int count,
+                           const Reading& reading,
+                           int first = 0) {
+  FingerSample<double> sample;
+  for (int k = first; k < first + count; ++k) {
+    const auto taxels =
+        array(features.rows(), features.cols(), [&](Index i, Index j) { return reading(k, i, j); });
+    sample = features(taxels, k * period_s, state);
+  }
+  return sample;
+}
+template <class Features, class Reading>
+FingerSample<double> after(const Features& features, int count, const Reading& reading) {
+  auto state = features.start();
+  return after(features, state, count, reading);
+}
+
+/// A sine of `waves` in a window of 16 at one taxel, 10 elsewhere.
+struct Sine {
+  double waves;
+  Index row = 1;
+  Index col = 2;
+  double amplitude = 3;
+  double operator()(int k, Index i, Index j) const {
+    return 10 + (i == row && j == col ? amplitude * std::sin(tau * waves * (k + 0.3) / 16) : 0);
+  }
+};
+
+}  // namespace
+
+TEST_CASE("taxel features: centroid of force in mm, x along columns", "[taxel_features]") {
+  const TaxelFeatures features(3, 5, options());
+  const auto centroid_of = [&](std::vector<std::array<double, 3>> loads) {
+    return after(features, 1, [&](int, Index i, Index j) {
+      for (const auto& load : loads) {
+        if (load[0] == static_cast<double>(i) && load[1] == static_cast<double>(j)) {
+          return load[2];
+        }
+      }
+      return 0.0;
+    });
+  };
+  const auto one = centroid_of({{2, 4, 7}});
+  CHECK(one.center_x_mm == 8);
+  CHECK(one.center_y_mm == 4);
+  CHECK(one.sum == 7);
+  const auto two = centroid_of({{0, 0, 1}, {2, 4, 3}});
+  CHECK(two.center_x_mm == 6);
+  CHECK(two.center_y_mm == 3);
+  // readings below zero press nothing
+  const auto three = centroid_of({{0, 0, 1}, {2, 4, 3}, {1, 1, -5}});
+  CHECK(three.center_x_mm == 6);
+  CHECK(three.sum == 4);
+  const auto none = centroid_of({});
+  CHECK_FALSE(none.is_pressed());
+  CHECK(std::isnan(none.center_x_mm));
+  CHECK(none.sum == 0);
+}
+
+TEST_CASE("taxel features: a sum below the least has no centroid", "[taxel_features]") {
+  auto o = options();
+  o.least_sum = 150;
+  const TaxelFeatures features(3, 5, o);
+  CHECK(after(features, 1, [](int, Index, Index) { return 10.0; }).is_pressed());
+  CHECK_FALSE(after(features, 1, [](int, Index, Index) { return 9.9; }).is_pressed());
+}
+
+TEST_CASE("taxel features: the taxel that spreads most vibrates, of equals the first",
+          "[taxel_features]") {
+  const TaxelFeatures features(3, 5, options());
+  const auto two = [](double at_7, double at_11) {
+    return [=](int k, Index i, Index j) {
+      const double a = i * 5 + j == 7 ? at_7 : i * 5 + j == 11 ? at_11 : 0;
+      return 10 + a * (k % 4 < 2 ? 1 : -1);
+    };
+  };
+  CHECK(after(features, 16, two(1, 2)).location == 11);
+  CHECK(after(features, 16, two(2, 1)).location == 7);
+  CHECK(after(features, 16, two(2, 2)).location == 7);
+  CHECK(after(features, 16, two(2, 2)).status == TaxelStatus::vibrating);
+  // what does not spread beyond the noise does not vibrate: 2.5 times 0.1 by default
+  CHECK(after(features, 16, two(0.24, 0.24)).status == TaxelStatus::quiet);
+  CHECK(after(features, 16, two(0.24, 0.24)).location == FingerSample<double>::no_location);
+  CHECK(after(features, 16, two(0.24, 0.27)).location == 11);
+}
+
+TEST_CASE("taxel features: nothing vibrates before the window is full", "[taxel_features]") {
+  const TaxelFeatures features(3, 5, options());
+  auto state = features.start();
+  const auto early = after(features, state, 15, Sine{3});
+  CHECK(early.status == TaxelStatus::filling);
+  CHECK(early.location == FingerSample<double>::no_location);
+  CHECK(early.waves == 0);
+  CHECK(early.is_pressed());
+  const auto full = after(features, state, 1, Sine{3}, 15);
+  CHECK(full.status == TaxelStatus::vibrating);
+  CHECK(full.location == 7);
+  state.reset();
+  CHECK(after(features, state, 1, Sine{3}, 16).status == TaxelStatus::filling);
+}
+
+TEMPLATE_TEST_CASE("taxel features: as many waves as a sine has in the window",
+                   "[taxel_features]",
+                   ZeroCrossings,
+                   SpectralPeak) {
+  const TaxelFeatures<TestType> features(3, 5, options());
+  // a crossing may be missed where waves are shorter than three samples, and one wave less its line
+  // crosses it three times
+  const int least = std::is_same_v<TestType, SpectralPeak> ? 1 : 2;
+  const int most = std::is_same_v<TestType, SpectralPeak> ? 7 : 5;
+  for (int waves = least; waves <= most; ++waves) {
+    CAPTURE(waves);
+    const auto sample = after(features, 40, Sine{static_cast<double>(waves)});
+    CHECK(sample.waves == waves);
+    CHECK(sample.frequency_hz == Approx(waves / 0.16));
+    CHECK(sample.location == 7);
+  }
+}
+
+TEST_CASE("taxel features: rms of the vibrating taxel", "[taxel_features]") {
+  // over whole waves, of which a line takes almost nothing where they are many
+  const TaxelFeatures<ZeroCrossings, MeanRemoved> features(3, 5, options());
+  CHECK(after(features, 40, Sine{4}).deviation == Approx(3 / std::sqrt(2.0)));
+}
+
+TEST_CASE("taxel features: a step is one wave that has begun", "[taxel_features]") {
+  const TaxelFeatures<ZeroCrossings, MeanRemoved> features(3, 5, options());
+  const auto step = [](int at) {
+    return [=](int k, Index i, Index j) { return i == 1 && j == 1 && k >= at ? 5.0 : 9.0; };
+  };
+  CHECK(after(features, 24, step(15)).waves == 1);
+  CHECK(after(features, 24, step(15)).location == 6);
+  CHECK(after(features, 24, step(8)).status == TaxelStatus::quiet);  // out of the window
+  CHECK(after(features, 24, step(9)).status == TaxelStatus::vibrating);
+}
+
+TEST_CASE("taxel features: an even change of load is no vibration without its trend",
+          "[taxel_features]") {
+  const auto ramp = [](int k, Index i, Index j) {
+    return 100 + 3.0 * k + 0.1 * static_cast<double>(i * j) * k;
+  };
+  CHECK(after(TaxelFeatures<ZeroCrossings, TrendRemoved>(3, 5, options()), 100, ramp).status ==
+        TaxelStatus::quiet);
+  CHECK(after(TaxelFeatures<ZeroCrossings, MeanRemoved>(3, 5, options()), 100, ramp).status ==
+        TaxelStatus::vibrating);
+}
+
+TEST_CASE("taxel features: noise that crosses the mean is not counted within the hysteresis",
+          "[taxel_features]") {
+  const auto rippled = [](int k, Index, Index) {
+    return 10 + std::sin(tau * (k + 0.3) / 16) + (k % 2 == 0 ? 0.3 : -0.3);
+  };
+  const auto waves_with = [&](double hysteresis) {
+    return after(TaxelFeatures<ZeroCrossings, MeanRemoved>(1, 1, options(),
+                                                           ZeroCrossings{hysteresis}),
+                 16, rippled)
+        .waves;
+  };
+  CHECK(waves_with(0.5) == 1);
+  CHECK(waves_with(0.0) > 1);
+}
+
+TEMPLATE_TEST_CASE("taxel features: waves by the clock, not by the number of samples",
+                   "[taxel_features]",
+                   ZeroCrossings,
+                   SpectralPeak) {
+  // 25 Hz seen at 0.8 to 1.25 times the nominal rate: 4 waves in 0.16 s each time
+  for (const double rate : {0.8, 1.0, 1.25}) {
+    CAPTURE(rate);
+    auto o = options();
+    o.window = 64;
+    const TaxelFeatures<TestType> features(1, 1, o);
+    auto state = features.start();
+    FingerSample<double> sample;
+    for (int k = 0; k < 200; ++k) {
+      const double t = k * period_s / rate;
+      sample = features(array(1, 1, [&](Index, Index) { return 10 + std::sin(tau * 12.5 * t); }), t,
+                        state);
+    }
+    CHECK(sample.waves == 8);  // 12.5 Hz in the nominal 0.64 s
+    CHECK(sample.frequency_hz == Approx(12.5));
+  }
+}
+
+TEST_CASE("taxel features: the spectrum takes uneven times as they are", "[taxel_features]") {
+  // jitter of up to a third of the period, from a fixed sequence
+  auto o = options();
+  o.window = 32;
+  const TaxelFeatures<SpectralPeak> features(1, 1, o);
+  for (int waves = 2; waves <= 12; ++waves) {
+    CAPTURE(waves);
+    auto state = features.start();
+    FingerSample<double> sample;
+    for (int k = 0; k < 32; ++k) {
+      const double t = (k + 0.33 * std::sin(7.0 * k * k)) * period_s;
+      const double reading = 10 + std::sin(tau * waves * t / 0.32 + 0.4);
+      sample = features(array(1, 1, [&](Index, Index) { return reading; }), t, state);
+    }
+    CHECK(sample.waves == waves);
+  }
+}
+
+TEST_CASE("taxel features: times that do not grow are refused, jumps begin a new window",
+          "[taxel_features]") {
+  const TaxelFeatures features(3, 5, options());
+  auto state = features.start();
+  const auto taxels = array(3, 5, [](Index, Index) { return 10.0; });
+  const auto status_at = [&](double t) { return features(taxels, t, state).status; };
+  CHECK(status_at(test::nan) == TaxelStatus::time_not_later);
+  CHECK(status_at(infinity) == TaxelStatus::time_not_later);
+  CHECK(state.samples() == 0);
+  after(features, state, 16, Sine{3});
+  CHECK(state.samples() == 16);
+  CHECK(status_at(0.15) == TaxelStatus::time_not_later);  // the last one again
+  CHECK(status_at(0.10) == TaxelStatus::time_not_later);
+  CHECK(status_at(test::nan) == TaxelStatus::time_not_later);
+  CHECK(state.samples() == 16);
+  CHECK(after(features, state, 1, Sine{3}, 16).status == TaxelStatus::vibrating);
+  CHECK(status_at(0.26) == TaxelStatus::vibrating);  // 0.1 s later is no jump
+  CHECK(status_at(0.361) == TaxelStatus::filling);
+  CHECK(state.samples() == 1);
+  CHECK(status_at(0.37) == TaxelStatus::filling);
+  CHECK(status_at(0.1) == TaxelStatus::filling);  // a clock that was set back
+  CHECK(state.samples() == 1);
+}
+
+TEST_CASE("taxel features: bad taxels are left out and the others stay right", "[taxel_features]") {
+  auto o = options();
+  o.saturated_at = 4095;
+  const TaxelFeatures features(3, 5, o);
+  double bad = 0;
+  // taxel 7 vibrates by 3, taxel 11 by 1; taxel 7 is bad once, at sample 20
+  const auto reading = [&](int k, Index i, Index j) {
+    const Index taxel = i * 5 + j;
+    const double turn = k % 4 < 2 ? 1 : -1;
+    return taxel == 7 ? (k == 20 ? bad : 10 + 3 * turn) : 10 + (taxel == 11 ? turn : 0);
+  };
+  for (const double one : {test::nan, infinity, -infinity, 4095.0, 1e300}) {
+    CAPTURE(one);
+    bad = one;
+    auto state = features.start();
+    CHECK(after(features, state, 20, reading).location == 7);
+    const auto there = after(features, state, 1, reading, 20);
+    CHECK(there.left_out == 1);
+    CHECK(there.location == 11);
+    // the centroid without taxel 7, by hand: all are 10 but 11, which is 11
+    CHECK(there.sum == 141);
+    CHECK(there.center_x_mm == Approx(2 * (10.0 * (30 - 2) + 1 * 1) / 141));
+    const auto next = after(features, state, 1, reading, 21);
+    CHECK(next.left_out == 0);
+    CHECK(next.location == 11);
+    CHECK(after(features, state, 14, reading, 22).location == 11);
+    CHECK(after(features, state, 1, reading, 36).location == 7);  // a window after
+  }
+}
+
+TEST_CASE("taxel features: a taxel that is stuck does not count", "[taxel_features]") {
+  auto o = options();
+  o.stuck_after = 5;
+  const TaxelFeatures features(1, 3, o);
+  const auto reading = [](int k, Index, Index j) {
+    return j == 0 ? 0.0 : j == 1 ? 50.0 : 10 + 0.01 * (k % 2);
+  };
+  auto state = features.start();
+  const auto before = after(features, state, 5, reading);
+  CHECK(before.left_out == 0);
+  CHECK(before.sum >= 60);
+  const auto later = after(features, state, 1, reading, 5);
+  CHECK(later.left_out == 1);  // zero is not stuck: nothing presses there
+  CHECK(later.sum < 11);
+  CHECK(later.center_x_mm == 4);
+}
+
+TEST_CASE("taxel features: noise taxel by taxel, and dead ones", "[taxel_features]") {
+  const auto all_vibrate = [](int k, Index, Index) { return 10 + (k % 4 < 2 ? 1.0 : -1.0); };
+  Image<float> noise(2, 2, 1.0F);
+  noise(0, 0) = static_cast<float>(test::nan);
+  noise(1, 0) = 0.1F;
+  const TaxelFeatures features(noise, options());
+  const auto sample = after(features, 16, all_vibrate);
+  CHECK(sample.location == 2);
+  CHECK(sample.left_out == 1);
+  CHECK(sample.sum < 34);
+  noise(1, 0) = -1;
+  CHECK(after(TaxelFeatures(noise, options()), 16, all_vibrate).status == TaxelStatus::quiet);
+  CHECK(after(TaxelFeatures(Image<double>(2, 2, test::nan), options()), 16, all_vibrate).status ==
+        TaxelStatus::no_taxels);
+}
+
+TEST_CASE("taxel features: arrays that say nothing", "[taxel_features]") {
+  auto o = options();
+  o.saturated_at = 4095;
+  const TaxelFeatures features(3, 5, o);
+  const auto all = [&](double reading) {
+    return after(features, 20, [=](int, Index, Index) { return reading; });
+  };
+  CHECK(all(0).status == TaxelStatus::quiet);
+  CHECK_FALSE(all(0).is_pressed());
+  CHECK(all(4095).status == TaxelStatus::no_taxels);
+  CHECK(all(4095).left_out == 15);
+  CHECK(all(test::nan).status == TaxelStatus::no_taxels);
+  CHECK_FALSE(all(test::nan).is_pressed());
+  CHECK(all(7).status == TaxelStatus::quiet);
+  // one taxel alive
+  const auto one = after(features, 20, [](int k, Index i, Index j) {
+    return i == 2 && j == 3 ? 10 + (k % 4 < 2 ? 1.0 : -1.0) : test::nan;
+  });
+  CHECK(one.status == TaxelStatus::vibrating);
+  CHECK(one.location == 13);
+  CHECK(one.left_out == 14);
+  CHECK(one.center_x_mm == 6);
+  CHECK(one.center_y_mm == 4);
+}
+
+TEST_CASE("taxel features: an array of another size is refused and nothing changes",
+          "[taxel_features]") {
+  const TaxelFeatures features(3, 5, options());
+  auto state = features.start();
+  after(features, state, 16, Sine{3});
+  const auto other = features(Image<double>(5, 3, 9.0), 0.16, state);
+  CHECK(other.status == TaxelStatus::other_size);
+  CHECK(std::isnan(other.center_x_mm));
+  CHECK(features(Image<double>(0, 0), 0.16, state).status == TaxelStatus::other_size);
+  CHECK(after(features, state, 1, Sine{3}, 16).status == TaxelStatus::vibrating);
+  auto o = options();
+  o.window = 20;
+  auto of_another = TaxelFeatures(3, 5, o).start();
+  CHECK(features(Image<double>(3, 5, 9.0), 0.16, of_another).status == TaxelStatus::other_size);
+}
+
+TEST_CASE("taxel features: any grid and any cell", "[taxel_features]") {
+  const auto reading = [](int k, Index i, Index j) {
+    return 100 + static_cast<double>(i * 10 + j) + (i == 1 && j == 3 && k % 4 < 2 ? 7.0 : 0.0);
+  };
+  const TaxelFeatures features(3, 5, options());
+  const auto expected = after(features, 20, reading);
+  REQUIRE(expected.location == 8);
+  const auto same = [&](const auto& make) {
+    auto state = features.start();
+    FingerSample<double> sample;
+    for (int k = 0; k < 20; ++k) {
+      const auto taxels = make([&](Index i, Index j) { return reading(k, i, j); });
+      sample = features(taxels, k * period_s, state);
+    }
+    CHECK(sample.location == expected.location);
+    CHECK(sample.waves == expected.waves);
+    CHECK(sample.center_x_mm == expected.center_x_mm);
+    CHECK(sample.center_y_mm == expected.center_y_mm);
+    CHECK(sample.deviation == expected.deviation);
+  };
+  same([](const auto& f) { return array<std::uint8_t>(3, 5, f); });
+  same([](const auto& f) { return array<std::uint16_t>(3, 5, f); });
+  same([](const auto& f) { return array<int>(3, 5, f); });
+  same([](const auto& f) { return array<float>(3, 5, f); });
+  same([](const auto& f) {
+    test::ForeignImage<double> taxels(3, 5);
+    for (Index i = 0; i < 3; ++i) {
+      for (Index j = 0; j < 5; ++j) {
+        taxels.lines[static_cast<std::size_t>(i)][static_cast<std::size_t>(j)] = f(i, j);
+      }
+    }
+    return taxels;
+  });
+  same([](const auto& f) {
+    return Eigen::ArrayXXd(Eigen::ArrayXXd::NullaryExpr(
+        3, 5, [&](Eigen::Index i, Eigen::Index j) { return f(i, j); }));
+  });
+  same([](const auto& f) {
+    cv::Mat_<ushort> taxels(3, 5);
+    for (int i = 0; i < 3; ++i) {
+      for (int j = 0; j < 5; ++j) {
+        taxels(i, j) = static_cast<ushort>(f(i, j));
+      }
+    }
+    return taxels;
+  });
+  same([](const auto& f) { return LazyView(3, 5, f); });
+}
+
+TEMPLATE_TEST_CASE("taxel features: any scalar",
+                   "[taxel_features]",
+                   float,
+                   long double,
+                   test::Digits50,
+                   test::Lazy50) {
+  using S = TestType;
+  TaxelOptions<S> o;
+  o.pitch_mm = S(2);
+  o.sample_period_s = S(1) / S(64);
+  o.noise = S(1) / S(8);
+  const TaxelFeatures<ZeroCrossings, TrendRemoved, S> counted(2, 2, o);
+  const TaxelFeatures<SpectralPeak, TrendRemoved, S> measured(2, 2, o);
+  auto state = counted.start();
+  auto spectral = measured.start();
+  FingerSample<S> by_count, by_spectrum;
+  for (int k = 0; k < 20; ++k) {
+    Image<double> taxels(2, 2, 8.0);
+    taxels(1, 0) = k % 4 < 2 ? 9 : 7;
+    by_count = counted(taxels, S(S(k) / S(64)), state);
+    by_spectrum = measured(taxels, S(S(k) / S(64)), spectral);
+  }
+  CHECK(by_count.location == 2);
+  CHECK(by_count.waves == 4);
+  CHECK(by_spectrum.waves == 4);
+  CHECK(static_cast<double>(value(by_count.center_x_mm)) == Approx(2 * 16.0 / 31));
+}
+
+TEST_CASE("taxel features: derivative of the centroid", "[taxel_features]") {
+  using S = test::Dual<double>;
+  const TaxelFeatures<ZeroCrossings, TrendRemoved, S> features(1, 2);
+  auto state = features.start();
+  Image<S> taxels(1, 2, S(3.0));
+  taxels(0, 1) = S(1.0, 1.0);
+  const auto sample = features(taxels, S(0.0), state);
+  // x = pitch b / (a + b), dx/db = pitch a / (a + b)^2
+  CHECK(value(sample.center_x_mm) == Approx(3.4 / 4));
+  CHECK(sample.center_x_mm.d == Approx(3.4 * 3 / 16));
+}
+
+TEST_CASE("taxel features: bad parameters are refused by name", "[taxel_features]") {
+  const auto message = [](auto change) {
+    auto o = options();
+    change(o);
+    return test::refusal([&] { TaxelFeatures<>(3, 5, o); });
+  };
+  CHECK(message([](auto&) {}) == "accepted");
+  CHECK(message([](auto& o) { o.pitch_mm = 0; }) ==
+        "TaxelOptions: pitch_mm = 0, must be finite and > 0");
+  CHECK(message([](auto& o) { o.window = 3; }) == "TaxelOptions: window = 3, must be in [4, 4096]");
+  CHECK(message([](auto& o) { o.window = 4097; }) ==
+        "TaxelOptions: window = 4097, must be in [4, 4096]");
+  CHECK(message([](auto& o) { o.sample_period_s = -1; }) ==
+        "TaxelOptions: sample_period_s = -1, must be finite and > 0");
+  CHECK(message([](auto& o) { o.longest_gap_s = infinity; }) ==
+        "TaxelOptions: longest_gap_s = inf, must be finite and > 0");
+  CHECK(message([](auto& o) { o.noise = -1; }) ==
+        "TaxelOptions: noise = -1, must be finite and >= 0");
+  CHECK(message([](auto& o) { o.noise_factor = test::nan; }) ==
+        "TaxelOptions: noise_factor = nan, must be finite and >= 0");
+  CHECK(message([](auto& o) { o.least_sum = -1; }) ==
+        "TaxelOptions: least_sum = -1, must be finite and >= 0");
+  CHECK(message([](auto& o) { o.saturated_at = 0; }) ==
+        "TaxelOptions: saturated_at = 0, must be > 0");
+  CHECK(message([](auto& o) { o.stuck_after = -1; }) ==
+        "TaxelOptions: stuck_after = -1, must be >= 0");
+  CHECK(test::refusal([] { TaxelFeatures<>(0, 5); }) ==
+        "TaxelFeatures: rows = 0, must be in [1, 4096]");
+  CHECK(test::refusal([] { TaxelFeatures<>(5, 4097); }) ==
+        "TaxelFeatures: cols = 4097, must be in [1, 4096]");
+  CHECK(test::refusal([] { TaxelFeatures<>(Image<double>(0, 0)); }) ==
+        "TaxelFeatures: rows = 0, must be in [1, 4096]");
+  CHECK(test::refusal([] { TaxelFeatures<>(5, 5, {}, ZeroCrossings{1.0}); }) ==
+        "ZeroCrossings: hysteresis = 1, must be in [0, 1)");
+}
+
+TEST_CASE("taxel features: every status has a name", "[taxel_features]") {
+  CHECK(std::string(name_of(TaxelStatus::vibrating)) == "vibrating");
+  CHECK(std::string(name_of(TaxelStatus::quiet)) == "quiet");
+  CHECK(std::string(name_of(TaxelStatus::filling)) == "filling");
+  CHECK(std::string(name_of(TaxelStatus::no_taxels)) == "no taxels");
+  CHECK(std::string(name_of(TaxelStatus::other_size)) == "other size");
+  CHECK(std::string(name_of(TaxelStatus::time_not_later)) == "time not later");
+  CHECK(std::string(name_of(static_cast<TaxelStatus>(99))) == "unknown");
+}

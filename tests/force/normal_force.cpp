@@ -1,0 +1,664 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+#include "fingerpad/force/normal_force.hpp"
+
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include "fingerpad/adapt/eigen.hpp"
+#include "support/catch.hpp"
+#include "support/foreign_image.hpp"
+#include "support/pad.hpp"
+#include "support/refusal.hpp"
+
+using namespace fingerpad;
+using test::refusal;
+
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+constexpr double missing = test::nan;
+constexpr double degree = std::numbers::pi / 180;
+
+using Published = PublishedCompensation<>;
+using Scaled = ScaledCompensation<>;
+
+const NormalForce by_area(published_force_of_area());
+const NormalForce by_depth(published_force_of_depth());
+const NormalForce area_in_motion(published_force_of_area(), published_compensation_by_area());
+const NormalForce depth_in_motion(published_force_of_depth(), published_compensation_by_depth());
+
+/// Sums of printed decimals, done on paper: nothing but the roundoff of double may differ.
+Approx printed(double n) {
+  return Approx(n).epsilon(1e-14).margin(1e-14);
+}
+
+PolynomialForce<> line(double slope = 2) {
+  return {{0, slope, 0}, 1, 10};
+}
+PowerLawForce<> hertz() {  // F = (r / 2)^3
+  return {2, 1.0 / 3, 0.5, 8};
+}
+
+template <class Curve>
+std::string refused(const Curve& curve) {
+  return refusal([&] { NormalForce<Curve>{curve}; });
+}
+template <class Compensation>
+std::string refused_with(const Compensation& compensation) {
+  return refusal([&] { NormalForce<PolynomialForce<>, Compensation>(line(), compensation); });
+}
+std::string refused_with(const CurveErrors<3>& errors) {
+  using WithErrors = NormalForce<PolynomialForce<>, NoCompensation, CurveErrors<3>>;
+  return refusal([&] { WithErrors(line(), {}, errors); });
+}
+
+/// A measure, a displacement and an angle a row; `bad` of them cannot be answered, `beyond` of the
+/// others lie beyond the range of published_force_of_area.
+struct Samples {
+  test::Image<double> rows;
+  Index bad = 0;
+  Index beyond = 0;
+
+  explicit Samples(Index count) : rows(count, 4) {
+    test::Random random(static_cast<std::uint64_t>(count) + 1);
+    for (Index i = 0; i < count; ++i) {
+      rows(i, 0) = random.uniform(-20, 600);
+      rows(i, 1) = random.uniform(-3, 3);
+      rows(i, 2) = random.uniform(-3, 3);
+      rows(i, 3) = random.uniform(-0.1, 0.1);
+      if (i % 7 == 5) {
+        rows(i, i % 4) = i % 3 == 0 ? missing : i % 3 == 1 ? infinity : -infinity;
+        ++bad;
+      } else if (rows(i, 0) > 478) {
+        ++beyond;
+      }
+    }
+  }
+};
+
+/// Every row of the results is what a single frame gives, to the last bit.
+template <class Forces>
+void check_single_frames(const Samples& samples, const Forces& forces) {
+  for (Index i = 0; i < samples.rows.rows(); ++i) {
+    CAPTURE(i);
+    const auto& s = samples.rows;
+    const auto one = area_in_motion(s(i, 0), {s(i, 1), s(i, 2)}, s(i, 3));
+    CHECK(test::same_bits(one.force_n, static_cast<double>(cell_t<Forces>(forces(i, 0)))));
+  }
+}
+void check_counts(const SampleCounts& counts, const Samples& samples) {
+  CHECK(counts.accepted);
+  CHECK(counts.not_finite == samples.bad);
+  CHECK(counts.beyond_range == samples.beyond);
+}
+
+}  // namespace
+
+TEST_CASE("normal force: names of statuses", "[normal_force]") {
+  CHECK(std::string(name_of(ForceStatus::measured)) == "measured");
+  CHECK(std::string(name_of(ForceStatus::below_range)) == "below range");
+  CHECK(std::string(name_of(ForceStatus::beyond_range)) == "beyond range");
+  CHECK(std::string(name_of(ForceStatus::held_at_zero)) == "held at zero");
+  CHECK(std::string(name_of(ForceStatus::no_contact)) == "no contact");
+  CHECK(std::string(name_of(ForceStatus::not_finite)) == "not finite");
+  CHECK(std::string(name_of(static_cast<ForceStatus>(99))) == "unknown");
+}
+
+TEST_CASE("normal force: eq. 18", "[normal_force]") {
+  // 0.00008 S^2 + 0.0191 S + 0.6242
+  CHECK(by_area(50).force_n == printed(0.2 + 0.955 + 0.6242));
+  CHECK(by_area(100).force_n == printed(3.3342));
+  CHECK(by_area(250).force_n == printed(10.3992));
+  CHECK(by_area(478).force_n == printed(28.03272));
+  // 0.776 D^2 + 0.5563 D + 0.3435
+  CHECK(by_depth(1).force_n == printed(1.6758));
+  CHECK(by_depth(2.5).force_n == printed(6.58425));
+  CHECK(by_depth(4).force_n == printed(14.9847));
+  CHECK(by_depth(5.62).force_n == printed(27.9794004));
+  for (const double area : {18.0, 478.0}) {
+    CHECK(by_area(area).status == ForceStatus::measured);
+  }
+  for (const double depth : {0.63, 5.62}) {
+    CHECK(by_depth(depth).status == ForceStatus::measured);
+  }
+  // both ranges are about 1 to 28 N
+  CHECK(by_area(18).force_n == printed(0.99392));
+  CHECK(by_depth(0.63).force_n == printed(1.0019634));
+  // by the slope: 0.00016 S + 0.0191, 1.552 D + 0.5563
+  CHECK(by_area.curve().slope(100) == printed(0.0351));
+  CHECK(by_depth.curve().slope(4) == printed(6.7643));
+  CHECK((by_depth.curve().gradient(4) == std::array<double, 3>{1, 4, 16}));
+  CHECK(NormalForce(published_force_of_area<float>())(100.0F).force_n == Approx(3.3342F));
+}
+
+TEST_CASE("normal force: eqs. 21 and 22 beyond the blend", "[normal_force]") {
+  const auto area = [](double s, Point2<double> d, double deg = 0) {
+    return area_in_motion(s, d, deg * degree).force_n;
+  };
+  const auto depth = [](double h, Point2<double> d, double deg = 0) {
+    return depth_in_motion(h, d, deg * degree).force_n;
+  };
+  // 0.748 F_S - 0.637 d + 1.7
+  CHECK(area(100, {1.8, 2.4}) == printed(2.2829816));
+  CHECK(area(250, {-3, 4}) == printed(6.2936016));
+  CHECK(area(250, {1, 0}) == printed(7.7786016 - 0.637 + 1.7));  // where the blend ends
+  // 1.2 F_D + 0.509 d - 3.5
+  CHECK(depth(4, {0, -2}) == printed(15.49964));
+  CHECK(depth(2.5, {1.2, 0.9}) == printed(7.9011 + 0.7635 - 3.5));
+  // 1.2 F_S + 0.00171 theta - 1.8
+  CHECK(area(250, {0, 0}, 10) == printed(10.69614));
+  CHECK(area(100, {0, 0}, -20) == printed(4.00104 + 0.0342 - 1.8));
+  // 0.8 F_D - 0.00102 theta - 0.0518
+  CHECK(depth(2.5, {0, 0}, 10) == printed(5.2054));
+  CHECK(depth(4, {0, 0}, -2.5) == printed(11.98776 - 0.00255 - 0.0518));
+  // both at once: gain 1 - 0.252 + 0.2, and both shifts
+  CHECK(area(250, {3, 4}, 10) == printed(9.8584416 - 1.485 - 1.7829));
+  CHECK(depth(4, {2, 0}, 10) == printed(14.9847 + 1.018 - 3.5 - 0.0102 - 0.0518));
+  // plain where nothing moved
+  for (const double s : {50.0, 100.0, 250.0, 400.0}) {
+    CHECK(area(s, {0, 0}) == by_area(s).force_n);
+    CHECK(area(s, {0, 0}, -0.0) == by_area(s).force_n);
+  }
+  for (const double h : {1.0, 2.5, 4.0}) {
+    CHECK(depth(h, {0, 0}) == by_depth(h).force_n);
+  }
+  // half of it at half the blend: gain 0.874, shift (1.7 - 0.3185) / 2
+  CHECK(area(250, {0, 0.5}) == printed(9.0889008 + 0.69075));
+  CHECK(area(250, {0, 0}, 0.0085 / degree) ==
+        printed(1.1 * 10.3992 + (0.00171 * 0.0085 / degree - 1.8) / 2));
+  // and at a quarter, where 3/16 - 2/64 = 0.15625 of it counts: gain 0.960625
+  CHECK(area(250, {0.25, 0}) == printed(0.960625 * 10.3992 + 0.15625 * (1.7 - 0.15925)));
+}
+
+TEST_CASE("normal force: an affine equation is what it says", "[normal_force]") {
+  const Published by_area_moved = published_compensation_by_area();
+  CHECK(by_area_moved.displaced(10.3992, 5) == printed(6.2936016));
+  CHECK(by_area_moved.turned(10.3992, 10 * degree) == printed(10.69614));
+  CHECK(published_compensation_by_depth().displaced(14.9847, 2) == printed(15.49964));
+  CHECK(published_compensation_by_depth().turned(6.58425, 10 * degree) == printed(5.2054));
+  CHECK(AffineForce<>()(7, 3) == 7);
+}
+
+TEST_CASE("normal force: the scaled compensation", "[normal_force]") {
+  const NormalForce force(line(), Scaled{.per_mm_sq = 0.02, .per_rad_sq = -3});
+  CHECK(force(4).force_n == 8);
+  CHECK(force(4, {3, 4}).force_n == printed(8 * 1.5));
+  CHECK(force(4, {0, 0}, 0.2).force_n == printed(8 * 0.88));
+  CHECK(force(4, {-4, 3}, -0.2).force_n == printed(8 * 1.38));
+  CHECK(NormalForce(line(), Scaled{})(4, {3, 4}, 0.2).force_n == 8);
+}
+
+TEST_CASE("normal force: the power law and its inverse", "[normal_force]") {
+  const PowerLawForce<> curve = hertz();
+  const NormalForce force(curve);
+  CHECK(force(4).force_n == printed(8));
+  CHECK(force(1).force_n == printed(0.125));
+  CHECK(force(2).force_n == printed(1));
+  CHECK(curve.radius_mm(8) == printed(4));
+  CHECK(curve.radius_mm(0.125) == printed(1));
+  CHECK(curve.slope(4) == printed(6));  // 3 r^2 / 8
+  CHECK(curve.force_n(0) == 0);
+  CHECK(curve.force_n(-1) == 0);
+  CHECK(curve.slope(0) == 0);
+  CHECK(curve.radius_mm(0) == 0);
+  CHECK(curve.radius_mm(-3) == 0);
+  CHECK((curve.gradient(0) == std::array<double, 2>{0, 0}));
+  // dF/dc = -3 r^3 / c^4, dF/dgamma = -F log(r/c) / gamma^2
+  CHECK(curve.gradient(4)[0] == printed(-12));
+  CHECK(curve.gradient(4)[1] == printed(-72 * std::log(2.0)));
+  const PowerLawForce<> square{2, 0.5, 0.5, 8};
+  CHECK(NormalForce(square)(6).force_n == printed(9));
+  CHECK(square.radius_mm(9) == printed(6));
+}
+
+TEST_CASE("normal force: every degree", "[normal_force]") {
+  CHECK(NormalForce(PolynomialForce<1>{{3, 2}, 1, 10})(4).force_n == 11);
+  CHECK(NormalForce(PolynomialForce<3>{{1, 0, 0, 2}, 1, 10})(2).force_n == 17);
+  CHECK(NormalForce(PolynomialForce<4>{{1, 0, 0, 0, 2}, 1, 10})(2).force_n == 33);
+  const PolynomialForce<5> fifth{{1, 1, 1, 1, 1, 1}, 1, 10};
+  CHECK(NormalForce(fifth)(2).force_n == 63);
+  CHECK(fifth.slope(2) == 1 + 4 + 12 + 32 + 80);
+  CHECK((fifth.gradient(2) == std::array<double, 6>{1, 2, 4, 8, 16, 32}));
+}
+
+TEST_CASE("normal force: no contact, no force", "[normal_force]") {
+  for (const double none : {0.0, -0.0, -1e-300, -3.0, -1e300}) {
+    CAPTURE(none);
+    for (const auto& r :
+         {by_area(none), by_depth(none), area_in_motion(none), area_in_motion(none, {3, 4}, 0.5),
+          depth_in_motion(none, {3, 4}, -0.5), NormalForce(hertz())(none)}) {
+      CHECK(r.status == ForceStatus::no_contact);
+      CHECK(r.has_force());
+      CHECK(r.force_n == 0);
+      CHECK_FALSE(std::signbit(r.force_n));
+    }
+  }
+}
+
+TEST_CASE("normal force: below the range it fades out", "[normal_force]") {
+  const auto r = by_area(9);  // half the start: half of 0.00648 + 0.1719 + 0.6242
+  CHECK(r.status == ForceStatus::below_range);
+  CHECK(r.force_n == printed(0.40129));
+  // what a compensation adds fades, too: (0.748 * 0.80258 - 0.637 + 1.7) / 2
+  const auto moved = area_in_motion(9, {0, 1});
+  CHECK(moved.status == ForceStatus::below_range);
+  CHECK(moved.force_n == printed(0.83166492));
+  CHECK(by_area(18 - 1e-9).status == ForceStatus::below_range);
+  CHECK(by_area(18 - 1e-9).force_n == Approx(0.99392).epsilon(1e-9));
+  CHECK(by_area(1e-9).force_n < 1e-19);
+  CHECK(by_area(1e-9).force_n > 0);
+  // 27/64 of the way at a quarter: 3/16 - 2/64 of the force
+  CHECK(NormalForce(hertz())(0.125).force_n == printed(0.15625 * 0.000244140625));
+  // a curve that was identified from 0 on is not faded
+  CHECK(NormalForce(PolynomialForce<>{{0, 2, 0}, 0, 10})(1e-9).force_n == printed(2e-9));
+  CHECK(NormalForce(PolynomialForce<>{{0, 2, 0}, 0, 10})(1e-9).status == ForceStatus::measured);
+}
+
+TEST_CASE("normal force: beyond the range it goes on along the tangent", "[normal_force]") {
+  const auto r = by_area(578);  // 28.03272 + 100 (0.00016 * 478 + 0.0191)
+  CHECK(r.status == ForceStatus::beyond_range);
+  CHECK(r.force_n == printed(37.59072));
+  CHECK(by_area(1478).force_n == printed(28.03272 + 95.58));
+  CHECK(by_area(std::nextafter(478.0, 500.0)).status == ForceStatus::beyond_range);
+  // 64 + 24 (r - 8) instead of r^3 / 8
+  CHECK(NormalForce(hertz())(9).force_n == printed(88));
+  CHECK(NormalForce(hertz())(9).status == ForceStatus::beyond_range);
+  // a cubic that would turn down beyond the range does not
+  const PolynomialForce<3> bent{{0, 3, 0, -1}, 0.25, 0.9};
+  CHECK(NormalForce(bent)(5).force_n == printed(2.7 - 0.729 + 4.1 * (3 - 2.43)));
+  // value and slope are continuous: differences on both sides
+  for (const double h : {1e-3, 1e-4}) {
+    const double end = by_area(478).force_n;
+    CHECK((by_area(478 + h).force_n - end) / h == Approx(0.09558).epsilon(1e-7));
+    CHECK((end - by_area(478 - h).force_n) / h == Approx(0.09558).margin(1e-4 * h + 1e-8));
+  }
+}
+
+TEST_CASE("normal force: what a compensation makes negative is held at zero", "[normal_force]") {
+  // 1.2 * 1.6758 + 0.509 - 3.5 < 0
+  const auto r = depth_in_motion(1, {1, 0});
+  CHECK(r.status == ForceStatus::held_at_zero);
+  CHECK(r.force_n == 0);
+  CHECK(r.has_force());
+  const NormalForce scaled(line(), Scaled{.per_mm_sq = -1});
+  CHECK(scaled(4, {0.9, 0}).status == ForceStatus::measured);
+  CHECK(scaled(4, {1.1, 0}).status == ForceStatus::held_at_zero);
+  CHECK(scaled(0.5, {1.1, 0}).status == ForceStatus::held_at_zero);
+  CHECK(scaled(11, {1.1, 0}).status == ForceStatus::held_at_zero);
+  CHECK(scaled(0, {1.1, 0}).status == ForceStatus::no_contact);
+  CHECK(scaled(11, {1.1, 0}).force_n == 0);
+}
+
+TEST_CASE("normal force: what is no number gives none", "[normal_force]") {
+  const auto expect_none = [](const NormalForceResult<double>& r) {
+    CHECK(r.status == ForceStatus::not_finite);
+    CHECK_FALSE(r.has_force());
+    CHECK(std::isnan(r.force_n));
+    CHECK(std::isnan(r.variance_n2));
+  };
+  for (const double bad : {missing, infinity, -infinity}) {
+    CAPTURE(bad);
+    expect_none(by_area(bad));
+    expect_none(NormalForce(hertz())(bad));
+    expect_none(area_in_motion(bad));
+    expect_none(area_in_motion(100, {bad, 0}));
+    expect_none(area_in_motion(100, {0, bad}));
+    expect_none(area_in_motion(100, {0, 0}, bad));
+    expect_none(area_in_motion(0, {0, 0}, bad));  // even without contact: it was not computed
+    expect_none(NormalForce(line(), Scaled{})(4, {bad, 0}));
+    expect_none(NormalForce(line(), Scaled{})(4, {0, bad}));
+    expect_none(NormalForce(line(), Scaled{})(4, {0, 0}, bad));
+    // what is not looked at does no harm
+    CHECK(by_area(100, {bad, bad}, bad).force_n == by_area(100).force_n);
+  }
+  expect_none(NormalForceResult<double>());
+}
+
+TEST_CASE("normal force: curves that are refused", "[normal_force]") {
+  CHECK(refused(published_force_of_area()) == "accepted");
+  CHECK(refused(published_force_of_depth()) == "accepted");
+  CHECK(refused(hertz()) == "accepted");
+  const std::string owner = "PolynomialForce: ";
+  CHECK(refused(PolynomialForce<>{{missing, 1, 0}, 1, 2}) ==
+        owner + "coefficients = nan, must be finite");
+  CHECK(refused(PolynomialForce<>{{0, infinity, 0}, 1, 2}) ==
+        owner + "coefficients = inf, must be finite");
+  CHECK(refused(PolynomialForce<>{{0, 1, -infinity}, 1, 2}) ==
+        owner + "coefficients = -inf, must be finite");
+  CHECK(refused(PolynomialForce<>{}) == owner + "from = nan, must be finite and >= 0");
+  CHECK(refused(PolynomialForce<>{{0, 1, 0}, -0.5, 2}) ==
+        owner + "from = -0.5, must be finite and >= 0");
+  CHECK(refused(PolynomialForce<>{{0, 1, 0}, infinity, 2}) ==
+        owner + "from = inf, must be finite and >= 0");
+  CHECK(refused(PolynomialForce<>{{0, 1, 0}, 0, 2}) == "accepted");
+  CHECK(refused(PolynomialForce<>{{0, 1, 0}, 1}) == owner + "to = nan, must be finite and > from");
+  CHECK(refused(PolynomialForce<>{{0, 1, 0}, 2, 2}) == owner + "to = 2, must be finite and > from");
+  CHECK(refused(PolynomialForce<>{{0, 1, 0}, 2, infinity}) ==
+        owner + "to = inf, must be finite and > from");
+  // at either end, and between
+  const std::string slope = owner + "slope within the range = ";
+  CHECK(refused(PolynomialForce<>{{0, 1, -0.25}, 1, 3}) == slope + "-0.5, must be >= 0");
+  CHECK(refused(PolynomialForce<>{{0, -3, 1}, 1, 3}) == slope + "-1, must be >= 0");
+  CHECK(refused(PolynomialForce<1>{{1, -1}, 1, 3}) == slope + "-1, must be >= 0");
+  CHECK(refused(PolynomialForce<3>{{0, 11, -6, 1}, 1, 3}) == slope + "-0.25, must be >= 0");
+  CHECK(refused(PolynomialForce<3>{{0, 12, -6, 1}, 1, 3}) == "accepted");
+  CHECK(refused(PolynomialForce<>{{3, 0, 0}, 1, 3}) == "accepted");  // constant
+
+  const std::string power = "PowerLawForce: ";
+  CHECK(refused(PowerLawForce<>{}) == power + "coefficient_mm = nan, must be finite and > 0");
+  CHECK(refused(PowerLawForce<>{0, 0.3, 0, 5}) ==
+        power + "coefficient_mm = 0, must be finite and > 0");
+  CHECK(refused(PowerLawForce<>{-2, 0.3, 0, 5}) ==
+        power + "coefficient_mm = -2, must be finite and > 0");
+  CHECK(refused(PowerLawForce<>{infinity, 0.3, 0, 5}) ==
+        power + "coefficient_mm = inf, must be finite and > 0");
+  CHECK(refused(PowerLawForce<>{2, missing, 0, 5}) == power + "exponent = nan, must be in (0, 2]");
+  CHECK(refused(PowerLawForce<>{2, 0, 0, 5}) == power + "exponent = 0, must be in (0, 2]");
+  CHECK(refused(PowerLawForce<>{2, 2.25, 0, 5}) == power + "exponent = 2.25, must be in (0, 2]");
+  CHECK(refused(PowerLawForce<>{2, 2, 0, 5}) == "accepted");
+  CHECK(refused(PowerLawForce<>{2, 0.3, -1, 5}) == power + "from = -1, must be finite and >= 0");
+  CHECK(refused(PowerLawForce<>{2, 0.3}) == power + "from = nan, must be finite and >= 0");
+  CHECK(refused(PowerLawForce<>{2, 0.3, 5, 5}) == power + "to = 5, must be finite and > from");
+  CHECK(refused(PowerLawForce<>{2, 0.3, 1, infinity}) ==
+        power + "to = inf, must be finite and > from");
+  CHECK(refused(PowerLawForce<>{2, 0.3, 1}) == power + "to = nan, must be finite and > from");
+}
+
+TEST_CASE("normal force: compensations and errors that are refused", "[normal_force]") {
+  CHECK(refused_with(NoCompensation{}) == "accepted");
+  CHECK(refused_with(Scaled{-3, 4}) == "accepted");
+  CHECK(refused_with(Scaled{missing, 0}) == "ScaledCompensation: per_mm_sq = nan, must be finite");
+  CHECK(refused_with(Scaled{0, -infinity}) ==
+        "ScaledCompensation: per_rad_sq = -inf, must be finite");
+  CHECK(refused_with(Published{}) == "accepted");
+  CHECK(refused_with(published_compensation_by_area()) == "accepted");
+  CHECK(refused_with(published_compensation_by_depth()) == "accepted");
+  const std::string owner = "PublishedCompensation: ";
+  CHECK(refused_with(Published{.displaced = {missing, 0, 0}}) ==
+        owner + "displaced: gain = nan, must be finite");
+  CHECK(refused_with(Published{.displaced = {1, infinity, 0}}) ==
+        owner + "displaced: per_unit = inf, must be finite");
+  CHECK(refused_with(Published{.displaced = {1, 0, -infinity}}) ==
+        owner + "displaced: offset_n = -inf, must be finite");
+  CHECK(refused_with(Published{.turned = {infinity, 0, 0}}) ==
+        owner + "turned: gain = inf, must be finite");
+  CHECK(refused_with(Published{.turned = {1, missing, 0}}) ==
+        owner + "turned: per_unit = nan, must be finite");
+  CHECK(refused_with(Published{.turned = {1, 0, missing}}) ==
+        owner + "turned: offset_n = nan, must be finite");
+  for (const double bad : {0.0, -1.0, infinity, missing}) {
+    const std::string given = bad == 0 ? "0" : bad < 0 ? "-1" : bad > 0 ? "inf" : "nan";
+    CHECK(refused_with(Published{.blend_mm = bad}) ==
+          owner + "blend_mm = " + given + ", must be finite and > 0");
+    CHECK(refused_with(Published{.blend_rad = bad}) ==
+          owner + "blend_rad = " + given + ", must be finite and > 0");
+  }
+
+  CHECK(refused_with(CurveErrors<3>{}) == "accepted");
+  CurveErrors<3> errors;
+  errors.covariance[1][2] = missing;
+  CHECK(refused_with(errors) == "CurveErrors: covariance = nan, must be finite");
+  errors = {};
+  errors.covariance[2][2] = -0.5;
+  CHECK(refused_with(errors) == "CurveErrors: variance of a parameter = -0.5, must be >= 0");
+  CHECK(refused_with(CurveErrors<3>{.residual_sd_n = -1}) ==
+        "CurveErrors: residual_sd_n = -1, must be finite and >= 0");
+  CHECK(refused_with(CurveErrors<3>{.residual_sd_n = missing}) ==
+        "CurveErrors: residual_sd_n = nan, must be finite and >= 0");
+  CHECK(refused_with(CurveErrors<3>{.measure_sd = -0.25}) ==
+        "CurveErrors: measure_sd = -0.25, must be finite and >= 0");
+  CHECK(refused_with(CurveErrors<3>{.measure_sd = infinity}) ==
+        "CurveErrors: measure_sd = inf, must be finite and >= 0");
+}
+
+TEST_CASE("normal force: variance by hand", "[normal_force]") {
+  // gradient (1, 4, 16), slope 2
+  CurveErrors<3> errors;
+  errors.covariance = {{{0.04, 0.01, 0}, {0.01, 0.09, -0.002}, {0, -0.002, 0.0004}}};
+  const auto variance = [&](double measure) {
+    return NormalForce(line(), NoCompensation{}, errors)(measure).variance_n2;
+  };
+  const double by_parameters = 0.04 + 2 * 4 * 0.01 + 16 * 0.09 - 2 * 64 * 0.002 + 256 * 0.0004;
+  CHECK(variance(4) == printed(by_parameters));
+  errors.residual_sd_n = 0.5;
+  CHECK(variance(4) == printed(by_parameters + 0.25));
+  errors.measure_sd = 0.3;
+  CHECK(variance(4) == printed(by_parameters + 0.25 + 0.36));
+  CHECK(variance(0) == 0.25);
+  CHECK(variance(-3) == 0.25);
+  // a compensation's gain multiplies all but the residual
+  const NormalForce doubled(line(), Scaled{.per_mm_sq = 1}, errors);
+  CHECK(doubled(4, {1, 0}).variance_n2 == printed(4 * (by_parameters + 0.36) + 0.25));
+  CHECK(doubled(4, {0, 0}).variance_n2 == printed(by_parameters + 0.25 + 0.36));
+  // none without errors
+  CHECK(std::isnan(by_area(100).variance_n2));
+}
+
+TEST_CASE("normal force: two measures fused", "[normal_force]") {
+  using R = NormalForceResult<double>;
+  const auto at = [](double force, double variance) {
+    return R{ForceStatus::measured, force, variance};
+  };
+  // weights 1/4 and 1: (2/4 + 7) / (5/4)
+  const auto both = fused(at(2, 4), at(7, 1));
+  CHECK(both.force_n == printed(6));
+  CHECK(both.variance_n2 == printed(0.8));
+  CHECK(both.disagreement == printed(-std::sqrt(5.0)));
+  CHECK(both.sources == 2);
+  const auto twice = fused(at(3, 0.5), at(3, 0.5));
+  CHECK(twice.force_n == 3);
+  CHECK(twice.variance_n2 == 0.25);
+  CHECK(twice.disagreement == 0);
+  CHECK(twice.sources == 2);
+  // one is exact
+  const auto exact = fused(at(3, 0), at(5, 1));
+  CHECK(exact.force_n == 3);
+  CHECK(exact.variance_n2 == 0);
+  CHECK(exact.disagreement == -2);
+  CHECK(fused(at(5, 1), at(3, 0)).force_n == 3);
+  // both are: that they differ then has no measure
+  CHECK(fused(at(3, 0), at(3, 0)).disagreement == 0);
+  const auto exact_both = fused(at(3, 0), at(5, 0));
+  CHECK(exact_both.force_n == 4);
+  CHECK(exact_both.variance_n2 == 0);
+  CHECK(std::isnan(exact_both.disagreement));
+  CHECK(exact_both.sources == 2);
+  // only one
+  for (const R& lacking :
+       {R{}, at(9, missing), at(9, infinity), R{ForceStatus::not_finite, missing, 1}}) {
+    for (const auto& one : {fused(at(3, 0.5), lacking), fused(lacking, at(3, 0.5))}) {
+      CHECK(one.force_n == 3);
+      CHECK(one.variance_n2 == 0.5);
+      CHECK(std::isnan(one.disagreement));
+      CHECK(one.sources == 1);
+    }
+    const auto none = fused(lacking, lacking);
+    CHECK(std::isnan(none.force_n));
+    CHECK(std::isnan(none.variance_n2));
+    CHECK(std::isnan(none.disagreement));
+    CHECK(none.sources == 0);
+  }
+  // zero forces take part, too
+  CHECK(fused(R{ForceStatus::no_contact, 0, 1}, at(2, 1)).force_n == 1);
+  CHECK(fused(R{ForceStatus::held_at_zero, 0, 1}, at(2, 1)).sources == 2);
+}
+
+TEST_CASE("normal force: forces by area and by depth that agree, fused", "[normal_force]") {
+  CurveErrors<3> errors;
+  errors.covariance[0][0] = 0.01;
+  errors.residual_sd_n = 0.5;
+  errors.measure_sd = 5;
+  const NormalForce area(published_force_of_area(), NoCompensation{}, errors);
+  errors.residual_sd_n = 0.27;
+  errors.measure_sd = 0.02;
+  const NormalForce depth(published_force_of_depth(), NoCompensation{}, errors);
+  const auto a = area(225), d = depth(3);  // 9.0 and 9.0 N
+  const auto both = fused(a, d);
+  CHECK(both.force_n > (std::min)(a.force_n, d.force_n));
+  CHECK(both.force_n < (std::max)(a.force_n, d.force_n));
+  CHECK(both.variance_n2 < (std::min)(a.variance_n2, d.variance_n2));
+  CHECK(std::abs(both.disagreement) < 1);
+  // a sharper object: as deep, but of half the area
+  CHECK(std::abs(fused(area(110), depth(3)).disagreement) > 3);
+}
+
+TEST_CASE("normal force: batches are frame by frame in any layout", "[normal_force]") {
+  for (const Index count : {0, 1, 63, 64, 65, 128, 131, 200}) {
+    CAPTURE(count);
+    const Samples samples(count);
+    CHECK((count < 131 || (samples.bad > 10 && samples.beyond > 10)));
+    test::Image<double> forces(count, 1, -7);
+    check_counts(area_in_motion.for_samples(samples.rows, forces), samples);
+    check_single_frames(samples, forces);
+
+    // columns side by side in memory, and results in reverse
+    test::Image<double> columns(4, count);
+    auto turned = transpose(as_view(columns));
+    Eigen::MatrixXd eigen(count, 5);  // one column more than is read
+    Eigen::Matrix<double, Eigen::Dynamic, 4, Eigen::RowMajor> eigen_rows(count, 4);
+    test::ForeignImage<double> foreign(count, 4);
+    for (Index i = 0; i < count; ++i) {
+      eigen(i, 4) = missing;
+      for (Index j = 0; j < 4; ++j) {
+        turned(i, j) = eigen(i, j) = eigen_rows(i, j) = samples.rows(i, j);
+        foreign.lines[static_cast<std::size_t>(i)][static_cast<std::size_t>(j)] =
+            samples.rows(i, j);
+      }
+    }
+    test::Image<double> reversed(count, 1, -7);
+    check_counts(area_in_motion.for_samples(turned, flip_rows(as_view(reversed))), samples);
+    check_single_frames(samples, flip_rows(as_view(reversed)));
+
+    Eigen::VectorXd vector(count);
+    check_counts(area_in_motion.for_samples(eigen, vector), samples);
+    check_single_frames(samples, vector);
+    const LazyView lazy(count, 4, [&](Index i, Index j) { return samples.rows(i, j); });
+    test::Image<double> again(count, 1);
+    check_counts(area_in_motion.for_samples(lazy, again), samples);
+    check_single_frames(samples, again);
+    if (count == 0) {
+      continue;  // an empty grid has no column to point at, nor a foreign one any width
+    }
+    test::ForeignImage<double> results(count, 1);
+    check_counts(area_in_motion.for_samples(foreign, results), samples);
+    check_single_frames(samples, as_view(results));
+    test::Image<double> wide(count, 3, -7);  // into a column of something wider
+    check_counts(area_in_motion.for_samples(eigen_rows, region(as_view(wide), 0, 1, count, 1)),
+                 samples);
+    check_single_frames(samples, region(as_view(wide), 0, 1, count, 1));
+    for (Index i = 0; i < count; ++i) {
+      CHECK((wide(i, 0) == -7 && wide(i, 2) == -7));
+    }
+
+    // the same memory
+    auto in_place = samples.rows;
+    check_counts(area_in_motion.for_samples(in_place, region(as_view(in_place), 0, 0, count, 1)),
+                 samples);
+    check_single_frames(samples, in_place);
+  }
+}
+
+TEST_CASE("normal force: batches of measures alone, of integers and in other numbers",
+          "[normal_force]") {
+  const Samples samples(131);
+  test::Image<double> forces(131, 1);
+  const auto counts = by_area.for_samples(samples.rows, forces);
+  CHECK(counts.accepted);
+  Index bad = 0, beyond = 0;
+  for (Index i = 0; i < 131; ++i) {
+    const auto one = by_area(samples.rows(i, 0));
+    CHECK(test::same_bits(forces(i, 0), one.force_n));
+    bad += one.status == ForceStatus::not_finite ? 1 : 0;
+    beyond += one.status == ForceStatus::beyond_range ? 1 : 0;
+  }
+  CHECK(counts.not_finite == bad);
+  CHECK(counts.beyond_range == beyond);
+  CHECK((bad > 0 && beyond > 0));
+  CHECK(bad < samples.bad);  // motions that are no numbers are not looked at
+
+  const LazyView pixels(70, 1, [](Index i, Index) { return static_cast<int>(7 * i); });
+  test::Image<float> rounded(70, 1);
+  CHECK(by_area.for_samples(pixels, rounded).beyond_range == 1);
+  for (Index i = 0; i < 70; ++i) {
+    CHECK(rounded(i, 0) == static_cast<float>(by_area(static_cast<double>(7 * i)).force_n));
+  }
+  const NormalForce power(PowerLawForce<float>{2, 0.4F, 0.5F, 8});
+  const LazyView radii(70, 1, [](Index i, Index) { return 0.15F * static_cast<float>(i); });
+  CHECK(power.for_samples(radii, rounded).beyond_range == 16);
+  for (Index i = 0; i < 70; ++i) {
+    CHECK(rounded(i, 0) == power(0.15F * static_cast<float>(i)).force_n);
+  }
+}
+
+TEST_CASE("normal force: batches of other sizes are not touched", "[normal_force]") {
+  test::Image<double> forces(5, 1, -7);
+  const auto refuses = [&](const auto& force, Index rows, Index cols, auto&& into) {
+    const auto counts = force.for_samples(test::Image<double>(rows, cols, missing), into);
+    CHECK_FALSE(counts.accepted);
+    CHECK(counts.not_finite == 0);
+    CHECK(counts.beyond_range == 0);
+    for (const double f : forces.cells) {
+      CHECK(f == -7);
+    }
+  };
+  refuses(by_area, 4, 1, forces);
+  refuses(by_area, 6, 1, forces);
+  refuses(by_area, 5, 0, forces);
+  refuses(by_area, 0, 1, forces);
+  refuses(area_in_motion, 5, 3, forces);
+  refuses(area_in_motion, 5, 1, forces);
+  refuses(by_area, 1, 1, transpose(as_view(forces)));
+  refuses(by_area, 5, 1, region(as_view(forces), 0, 0, 5, 0));
+  // and one that fits is
+  CHECK(by_area.for_samples(test::Image<double>(5, 1, missing), forces).not_finite == 5);
+  CHECK(std::isnan(forces(4, 0)));
+}
+
+TEST_CASE("normal force: what is too large for a number is no answer", "[normal_force]") {
+  CHECK(refused(PowerLawForce<>{1, 1e-3, 0, 10}) ==  // 10^1000 N
+        "PowerLawForce: to = 10, must be where force and slope are finite");
+  CHECK(refused(PolynomialForce<>{{0, 1e308, 1e308}, 1, 10}) ==
+        "PolynomialForce: to = 10, must be where force and slope are finite");
+  const NormalForce<> force(PolynomialForce<>{{0, 1e10, 0}, 1, 10});
+  CHECK(force(1e299).status == ForceStatus::not_finite);
+  CHECK(std::isnan(force(1e299).force_n));
+  const std::vector<double> measures{0.5, 1e299};
+  std::vector<double> forces(2, -1);
+  const auto counts = force.for_samples(StridedView<const double>(measures.data(), 2, 1, 1),
+                                        StridedView<double>(forces.data(), 2, 1, 1));
+  CHECK(counts.not_finite == 1);
+  CHECK(is_finite(forces[0]));
+  CHECK(std::isnan(forces[1]));
+}
+
+TEST_CASE("normal force: no curve begins with a step", "[normal_force]") {
+  CHECK(
+      refused(PolynomialForce<>{{1, 1, 0}, 0, 10}) ==
+      "PolynomialForce: first of the coefficients = 1, must be 0 where from is 0: the force would "
+      "begin with a step");
+  const NormalForce<> nearly(PolynomialForce<>{{1, 1, 0}, 1e-310, 10});
+  CHECK(nearly(0).force_n == 0);
+  // a level curve is none that falls, whatever its sign
+  const NormalForce<> level(PolynomialForce<>{{-3, 0, 0}, 1, 3});
+  CHECK(level(2).status == ForceStatus::held_at_zero);
+}
+
+TEST_CASE("normal force: the variance knows how a compensation fades", "[normal_force]") {
+  CurveErrors<3> errors;
+  errors.measure_sd = 0.1;
+  const NormalForce force(published_force_of_area(), published_compensation_by_area(), errors);
+  for (const double area_mm2 : {2.0, 5.0, 9.0, 17.0, 100.0, 600.0}) {
+    const Point2<double> moved = {1, 0};
+    const double step = 1e-6 * area_mm2;
+    const double slope =
+        (force(area_mm2 + step, moved).force_n - force(area_mm2 - step, moved).force_n) /
+        (2 * step);
+    CHECK(std::sqrt(force(area_mm2, moved).variance_n2) ==
+          Approx(0.1 * std::abs(slope)).epsilon(1e-6));
+  }
+}

@@ -1,0 +1,270 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+#include "fingerpad/depth/absorption.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "support/catch.hpp"
+#include "support/generators.hpp"
+#include "support/numbers.hpp"
+
+using namespace fingerpad;
+using test::Digits50;
+using test::Dual;
+using test::Lazy50;
+
+namespace {
+
+template <class S>
+Pencil<S> pencil(double k, double h_m, double h_s) {
+  return {S(k), {S(h_m), S(h_s)}};
+}
+
+/// A pencil at random: every camera's k lies in [2, 2.6], heights from a lens to a wide camera.
+Pencil<double> any_pencil() {
+  return {test::uniform(2, 2.6), {test::log_uniform(1, 200), test::log_uniform(1, 200)}};
+}
+
+template <class S, class T>
+Pencil<S> as(const Pencil<T>& p) {
+  return {S(p.path_factor), {S(p.height.meridional_mm), S(p.height.sagittal_mm)}};
+}
+
+template <class S, class T>
+Absorption<S> as(const Absorption<T>& a) {
+  return {S(a.c_red_per_mm), S(a.c_green_per_mm), S(a.kappa), S(a.max_depth_mm)};
+}
+
+/// The slides' closed form, Q1 (1 - E) - Q2 E with two heights. In 50 digits it loses at most 36 of
+/// them where the tests go.
+Digits50 published_scattered_light(const Digits50& l,
+                                   const Digits50& c,
+                                   const Pencil<Digits50>& p) {
+  const Digits50& k = p.path_factor;
+  const Digits50 product = p.height.meridional_mm * p.height.sagittal_mm;
+  const Digits50 sum = p.height.meridional_mm + p.height.sagittal_mm;
+  const Digits50 e = exp(Digits50(-c * k * l));
+  const Digits50 q1 = product / k + sum / (c * k * k) + 2 / (c * c * k * k * k);
+  const Digits50 q2 = (l * l + sum * l) / k + 2 * l / (c * k * k);
+  return Digits50(q1 * (1 - e) - q2 * e);
+}
+
+/// Relative error of W in S, in epsilons of S, against the closed form at the very same inputs.
+template <class S>
+double error_in_epsilons(S l, S c, const Pencil<S>& p) {
+  const Digits50 reference = published_scattered_light(Digits50(l), Digits50(c), as<Digits50>(p));
+  const Digits50 error = test::relative_error(Digits50(scattered_light(l, c, p)), reference);
+  return static_cast<double>(error) / static_cast<double>(epsilon<S>());
+}
+
+/// A fluid, a pencil, scattering, brightness and depth at random.
+struct Sensor {
+  Absorption<double> fluid;
+  Pencil<double> light = any_pencil();
+  double brightness = test::whole(0, 9) == 0 ? 0.0 : test::uniform(1, 250);  // some are black dots
+  double scattering = test::log_uniform(1e-4, 1);
+  double depth_mm = test::log_uniform(1e-6, 14);
+
+  Sensor() {
+    fluid.c_red_per_mm = test::log_uniform(1e-4, 0.2);
+    fluid.c_green_per_mm = fluid.c_red_per_mm;  // the difference may be nothing
+    if (test::whole(0, 3) != 0) {
+      fluid.c_green_per_mm += test::log_uniform(1e-6, 0.1);
+    }
+    fluid.kappa = test::uniform(0.5, 2);
+  }
+};
+
+bool near(double a, double b, double scale, double epsilons) {
+  return std::abs(a - b) <= epsilons * epsilon<double>() * scale;
+}
+
+}  // namespace
+
+TEMPLATE_TEST_CASE("W is accurate to 4 epsilon", "[absorption]", float, double) {
+  using S = TestType;
+  rc::prop("at random c in [1e-6, 1] per mm and l in [1e-6, 14] mm", [] {
+    const S l = static_cast<S>(test::log_uniform(1.1e-6, 14));
+    const S c = static_cast<S>(test::log_uniform(1.1e-6, 1));
+    RC_ASSERT(error_in_epsilons(l, c, as<S>(any_pencil())) <= 4);
+  });
+  SECTION("on a fine sweep of the optical path, across the seam at 4") {
+    const auto p = pencil<S>(2.05, 66.5, 68.5);
+    double worst = 0;
+    for (double t = 1e-11; t < 28; t *= t < 1e-2 ? 1.7 : 1.013) {
+      const double l = (std::min)(14.0, t / 2.05);
+      worst =
+          (std::max)(worst, error_in_epsilons(static_cast<S>(l), static_cast<S>(t / 2.05 / l), p));
+    }
+    for (double t = 3.999; t < 4.001; t += 2e-5) {
+      worst =
+          (std::max)(worst, error_in_epsilons(static_cast<S>(t / 2), S(1), pencil<S>(2, 50, 9)));
+    }
+    INFO(worst);
+    CHECK(worst <= 4);
+  }
+}
+
+TEST_CASE("W in 50 digits is the published closed form", "[absorption]") {
+  rc::prop("to the digits that the closed form keeps", [] {
+    const auto p = as<Digits50>(any_pencil());
+    const Digits50 l(test::uniform(1, 14));
+    const Digits50 c(test::uniform(0.02, 1));
+    const Digits50 w = scattered_light(l, c, p);
+    RC_ASSERT(test::relative_error(w, published_scattered_light(l, c, p)) < Digits50("1e-44"));
+  });
+  rc::prop("also where products are expressions that hold references", [] {
+    const auto p = any_pencil();
+    const double l = test::uniform(0, 14);
+    const double c = test::uniform(0, 1);
+    const Lazy50 lazy = scattered_light(Lazy50(l), Lazy50(c), as<Lazy50>(p));
+    RC_ASSERT(Digits50(lazy) == scattered_light(Digits50(l), Digits50(c), as<Digits50>(p)));
+  });
+}
+
+TEMPLATE_TEST_CASE("laws of W", "[absorption]", float, double, long double) {
+  using S = TestType;
+  rc::prop("nothing scatters above depth 0, nor where nothing absorbs", [] {
+    const auto p = as<S>(any_pencil());
+    RC_ASSERT(scattered_light(S(0), S(test::uniform(0, 1)), p) == S(0));
+    RC_ASSERT(scattered_light(S(test::uniform(0, 14)), S(0), p) == S(0));
+  });
+  rc::prop("it grows with depth", [] {
+    const auto p = as<S>(any_pencil());
+    const S c = S(test::log_uniform(1e-6, 0.1));
+    const S l = S(test::uniform(0, 14));
+    RC_ASSERT(scattered_light(S(l + S(0.01)), c, p) > scattered_light(l, c, p));
+  });
+  rc::prop("it adds up over intervals: below a, and below b as seen through a", [] {
+    using std::exp;
+    const auto p = as<S>(any_pencil());
+    const S a = S(test::uniform(0, 7));
+    const S b = S(test::uniform(0, 7));
+    const S c = S(test::log_uniform(1e-6, 1));
+    auto seen_from_a = p;
+    seen_from_a.height.meridional_mm += a;
+    seen_from_a.height.sagittal_mm += a;
+    const S sum = scattered_light(a, c, p) +
+                  exp(S(-c * p.path_factor * a)) * scattered_light(b, c, seen_from_a);
+    RC_ASSERT(test::relative_error(scattered_light(S(a + b), c, p), sum) <= 20 * epsilon<S>());
+  });
+  rc::prop("lengths times two and absorption halved make four of it, to the last bit", [] {
+    const auto p = as<S>(any_pencil());
+    auto q = p;
+    q.height.meridional_mm *= 2;
+    q.height.sagittal_mm *= 2;
+    const S l = S(test::uniform(0, 14));
+    const S c = S(test::log_uniform(1e-6, 1));
+    RC_ASSERT(scattered_light(S(2 * l), S(c / 2), q) == 4 * scattered_light(l, c, p));
+  });
+  rc::prop("with c to 0 it is c times the volume of the pencil", [] {
+    const auto p = as<S>(any_pencil());
+    const S h_m = p.height.meridional_mm;
+    const S h_s = p.height.sagittal_mm;
+    const S l = S(test::uniform(0, 14));
+    const S c = S(test::log_uniform(1e-30, 1e-24));
+    const S volume = c * (h_m * h_s * l + (h_m + h_s) * l * l / 2 + l * l * l / 3);
+    RC_ASSERT(test::relative_error(scattered_light(l, c, p), volume) <= 6 * epsilon<S>());
+  });
+  rc::prop("the two heights are alike", [] {
+    const auto p = as<S>(any_pencil());
+    auto q = p;
+    std::swap(q.height.meridional_mm, q.height.sagittal_mm);
+    const S l = S(test::uniform(0, 14));
+    RC_ASSERT(scattered_light(l, S(0.03), q) == scattered_light(l, S(0.03), p));
+  });
+}
+
+TEST_CASE("the slope of W is its derivative", "[absorption]") {
+  rc::prop("by the dual number, on both sides of the seam", [] {
+    const auto p = any_pencil();
+    const double c = test::log_uniform(1e-6, 1);
+    const double l = test::uniform(1e-3, 14);
+    const auto w = [&](const Dual<double>& z) {
+      return scattered_light(z, Dual<double>(c), as<Dual<double>>(p));
+    };
+    const double slope = scattered_light_slope(l, c, p);
+    RC_ASSERT(near(test::slope_by_dual(w, l), slope, w(l).v / l + slope, 1000));
+  });
+  rc::prop("by central differences in 50 digits", [] {
+    const auto p = as<Digits50>(any_pencil());
+    const Digits50 c(test::log_uniform(1e-6, 1));
+    const Digits50 l(test::uniform(1e-3, 14));
+    const auto w = [&](const Digits50& z) { return scattered_light(z, c, p); };
+    const Digits50 by_difference = test::slope_by_difference(w, l, Digits50("1e-14"));
+    RC_ASSERT(test::relative_error(scattered_light_slope(l, c, p), by_difference) <
+              Digits50("1e-22"));
+  });
+}
+
+TEST_CASE("the forward model", "[absorption]") {
+  rc::prop("solves the depth equation, however bright the membrane is", [] {
+    const Sensor s;
+    const auto colour = colour_at_depth(s.fluid, s.light, s.brightness, s.scattering, s.depth_mm);
+    const auto f = depth_equation(s.fluid, s.light, s.scattering, colour, s.depth_mm);
+    // the exponents' own rounding counts: up to c k l of it
+    const double path = s.fluid.c_green_per_mm * s.light.path_factor * s.depth_mm;
+    RC_ASSERT(near(f.value, 0, s.fluid.kappa * colour.red, 8 + 4 * path));
+  });
+  rc::prop("is the product of brightness and absorption plus what the fluid scatters", [] {
+    const Sensor s;
+    const auto lit = colour_at_depth(s.fluid, s.light, s.brightness, s.scattering, s.depth_mm);
+    const auto dark = colour_at_depth(s.fluid, s.light, 0.0, s.scattering, s.depth_mm);
+    const auto path = s.light.path_factor * s.depth_mm;
+    const auto& a = s.fluid;
+    const double w = scattered_light(s.depth_mm, a.c_red_per_mm, s.light);
+    RC_ASSERT(dark.green == 0.0);
+    RC_ASSERT(near(dark.red, s.scattering * w / a.kappa, dark.red, 4));
+    RC_ASSERT(near(lit.green, s.brightness * std::exp(-a.c_green_per_mm * path), lit.green, 16));
+    const double membrane = s.brightness * std::exp(-a.c_red_per_mm * path) / a.kappa;
+    RC_ASSERT(near(lit.red, membrane + dark.red, lit.red, 16));
+  });
+  rc::prop("at depth 0 shows the membrane's own colour", [] {
+    const Sensor s;
+    const auto c = colour_at_depth(s.fluid, s.light, s.brightness, s.scattering, 0.0);
+    RC_ASSERT(c.green == s.brightness);
+    RC_ASSERT(c.red == s.brightness / s.fluid.kappa);
+  });
+}
+
+TEST_CASE("the depth equation", "[absorption]") {
+  rc::prop("rises strictly, so that it has one root at most", [] {
+    const Sensor s;
+    const auto colour = colour_at_depth(s.fluid, s.light, s.brightness, s.scattering, s.depth_mm);
+    const double l = test::uniform(0, 14);
+    const auto low = depth_equation(s.fluid, s.light, s.scattering, colour, l);
+    const auto high = depth_equation(s.fluid, s.light, s.scattering, colour, l + 0.01);
+    RC_ASSERT(low.slope > 0);
+    // in exact arithmetic; in double the rounding of kappa red may hide it where F hardly rises
+    const auto exact = [&](double z) {
+      const Colour<Digits50> c{Digits50(colour.red), Digits50(colour.green)};
+      return depth_equation(as<Digits50>(s.fluid), as<Digits50>(s.light), Digits50(s.scattering), c,
+                            Digits50(z));
+    };
+    RC_ASSERT(exact(l).value < exact(l + 0.01).value);
+    const double scale = s.fluid.kappa * colour.red + std::abs(high.value);
+    RC_ASSERT(near(low.value, static_cast<double>(exact(l).value), scale, 32));
+    RC_ASSERT(near(low.slope, static_cast<double>(exact(l).slope), low.slope, 32));
+  });
+  rc::prop("has the slope of its value", [] {
+    const Sensor s;
+    using D = Dual<double>;
+    const auto colour = colour_at_depth(s.fluid, s.light, s.brightness, s.scattering, s.depth_mm);
+    const auto f = depth_equation(as<D>(s.fluid), as<D>(s.light), D(s.scattering),
+                                  Colour<D>{D(colour.red), D(colour.green)}, D(s.depth_mm, 1));
+    RC_ASSERT(near(f.value.d, f.slope.v, std::abs(f.slope.v) + s.brightness / s.depth_mm, 1000));
+  });
+}
+
+TEST_CASE("the pencil of a ray takes k and heights from the optics", "[absorption]") {
+  const Camera<double> camera;
+  const auto ray = ray_at_pixel(camera, 10.0, 20.0);
+  const auto astigmatic = pencil_of(camera, ray);
+  const auto single = pencil_of<SingleHeight>(camera, ray);
+  CHECK(astigmatic.path_factor == ray.path_factor);
+  CHECK(astigmatic.height.sagittal_mm < astigmatic.height.meridional_mm);
+  CHECK(single.height.sagittal_mm == single.height.meridional_mm);
+  CHECK(single.height.meridional_mm == astigmatic.height.meridional_mm);
+}

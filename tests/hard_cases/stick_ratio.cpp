@@ -1,0 +1,292 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+// Numbers: against 50 digits, derivatives, angles at the cut, and motions that determine little.
+#include "fingerpad/slip/stick_ratio.hpp"
+
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include "support/catch.hpp"
+#include "support/numbers.hpp"
+#include "support/slipping_dots.hpp"
+
+namespace test {
+
+template <class Real>
+Dual<Real> atan2(const Dual<Real>& y, const Dual<Real>& x) {
+  using std::atan2;
+  return {Real(atan2(y.v, x.v)), Real((x.v * y.d - y.v * x.d) / (x.v * x.v + y.v * y.v))};
+}
+
+template <class Real>
+Dual<Real>& operator+=(Dual<Real>& a, const Dual<Real>& b) {
+  return a = a + b;
+}
+
+}  // namespace test
+
+using namespace fingerpad;
+using test::ContactFlags;
+using test::Digits50;
+using test::DotPattern;
+using test::DotStates;
+using test::PointsPx;
+using test::SlippingDots;
+
+namespace {
+
+constexpr double pi = std::numbers::pi;
+
+/// A motion and what is published of it, in any number.
+template <class Motion_, class Denoising_>
+struct Of {
+  using Motion = Motion_;
+  template <class S>
+  using Ratio = StickRatio<Motion_, UpdatedReference<>, Denoising_, S>;
+  template <class S>
+  static Ratio<S> ratio(Index rows, Index cols, const StickTest& test = {}) {
+    return Ratio<S>(rows, cols, test, Motion_(), {.capacity = 4});
+  }
+};
+using Default = Of<StickConsensus<>, ResidualMean>;
+using OneDot = Of<ReferenceDotMotion<>, ResidualMean>;
+using Published = Of<ReferenceDotMotion<Freedom::similarity, PublishedZoom>, DotMean>;
+
+/// Frames with positions that float holds exactly.
+std::vector<PointsPx> frames(std::uint64_t seed, const DotPattern& pattern) {
+  SlippingDots truth(pattern);
+  test::Random random(seed);
+  std::vector<PointsPx> out;
+  for (int k = 0; k < 6; ++k) {
+    out.push_back(noisy(truth.dots, 0.1, random));
+    for (auto& p : out.back().cells) {
+      p = {static_cast<double>(static_cast<float>(p.x)),
+           static_cast<double>(static_cast<float>(p.y))};
+    }
+    truth.step({.shift_px = 2.5,
+                .direction_rad = random.uniform(-3, 3),
+                .turn_rad = random.uniform(-0.03, 0.03),
+                .zoom = random.uniform(0.98, 1.02),
+                .stick_share = random.uniform(0.4, 0.9)});
+  }
+  return out;
+}
+
+template <class S>
+struct Answers {
+  std::vector<StickRatioResult<S>> results;
+  std::vector<DotStates> states;
+};
+
+template <class Policies, class S>
+Answers<S> follow(const std::vector<PointsPx>& recording,
+                  const ContactFlags& contact,
+                  const StickTest& test = {}) {
+  const auto ratio = Policies::template ratio<S>(contact.rows(), contact.cols(), test);
+  auto state = ratio.start();
+  Answers<S> answers;
+  DotStates states(contact.rows(), contact.cols());
+  for (const PointsPx& dots : recording) {
+    answers.results.push_back(ratio(dots, contact, states, state));
+    answers.states.push_back(states);
+  }
+  return answers;
+}
+
+template <class S>
+double off(const S& a, const Digits50& b) {
+  return std::abs(static_cast<double>(Digits50(Digits50(a) - b)));
+}
+
+/// One frame after another.
+template <class Policies, class S = double>
+StickRatioResult<S> between(const PointsPx& before,
+                            const PointsPx& after,
+                            const ContactFlags& contact,
+                            const StickTest& test = {}) {
+  return follow<Policies, S>({before, after}, contact, test).results.back();
+}
+
+}  // namespace
+
+TEMPLATE_TEST_CASE("stick ratios follow 50 digits", "[stick_ratio]", Default, OneDot, Published) {
+  // Dots that are not within rounding of the threshold have the same state. Positions of some
+  // hundred px have an error of 3e-5 px in float, a threshold is 0.2 px and more.
+  const DotPattern pattern{.rows = 11, .cols = 11, .contact_pitches = 5.2};
+  const ContactFlags contact = SlippingDots(pattern).contact;
+  int updated = 0;
+  for (std::uint64_t seed = 1; seed <= 12; ++seed) {
+    const auto recording = frames(seed, pattern);
+    const auto exact = follow<TestType, Digits50>(recording, contact);
+    StickTest lower, upper;
+    lower.slip_px *= 1 - 1e-3;
+    upper.slip_px *= 1 + 1e-3;
+    const auto low = follow<TestType, double>(recording, contact, lower);
+    const auto high = follow<TestType, double>(recording, contact, upper);
+    const auto in_float = follow<TestType, float>(recording, contact);
+    const auto in_double = follow<TestType, double>(recording, contact);
+    for (std::size_t k = 0; k < recording.size(); ++k) {
+      const auto& e = exact.results[k];
+      REQUIRE(in_double.results[k].status == e.status);
+      REQUIRE(in_float.results[k].status == e.status);
+      if (!e.updated()) {
+        continue;
+      }
+      ++updated;
+      CHECK(in_double.states[k].cells == exact.states[k].cells);
+      CHECK(off(in_double.results[k].angle_rad, e.angle_rad) < 1e-13);
+      CHECK(off(in_double.results[k].scale, e.scale) < 1e-13);
+      CHECK(off(in_double.results[k].furthest_px, e.furthest_px) < 1e-12);
+      CHECK(in_double.results[k].stick_ratio == Approx(static_cast<double>(e.stick_ratio)));
+      if (low.states[k].cells == high.states[k].cells) {
+        CHECK(in_float.states[k].cells == exact.states[k].cells);
+        CHECK(off(in_float.results[k].angle_rad, e.angle_rad) < 2e-6);
+        CHECK(off(in_float.results[k].scale, e.scale) < 2e-6);
+        CHECK(off(in_float.results[k].furthest_px, e.furthest_px) < 1e-4);
+      }
+    }
+  }
+  CHECK(updated > 40);
+}
+
+TEST_CASE("expression templates give the same stick ratio", "[stick_ratio]") {
+  const DotPattern pattern{.rows = 9, .cols = 9, .contact_pitches = 4.2};
+  const ContactFlags contact = SlippingDots(pattern).contact;
+  const auto recording = frames(3, pattern);
+  const auto a = follow<Default, Digits50>(recording, contact);
+  const auto b = follow<Default, test::Lazy50>(recording, contact);
+  for (std::size_t k = 0; k < recording.size(); ++k) {
+    CHECK(a.results[k].status == b.results[k].status);
+    CHECK(a.states[k].cells == b.states[k].cells);
+    CHECK(std::abs(static_cast<double>(test::Lazy50(
+              b.results[k].angle_rad - test::Lazy50(a.results[k].angle_rad)))) < 1e-40);
+  }
+}
+
+TEMPLATE_TEST_CASE("derivatives of the object's motion are those of differences",
+                   "[stick_ratio]",
+                   Default,
+                   OneDot,
+                   Published) {
+  const DotPattern pattern{.rows = 9, .cols = 9, .contact_pitches = 4.2};
+  const ContactFlags contact = SlippingDots(pattern).contact;
+  SlippingDots truth(pattern);
+  const PointsPx before = truth.dots;
+  test::Random random(4);
+  truth.step({.shift_px = 3, .turn_rad = 0.03, .zoom = 1.01, .stick_share = 0.8});
+  const PointsPx after = noisy(truth.dots, 0.02, random);
+  const auto motion = [&]<class S>(const S& x, bool scale, Index row, Index col) {
+    const auto ratio = TestType::template ratio<S>(9, 9);
+    auto state = ratio.start();
+    DotStates states(9, 9);
+    const auto dots = [&](const PointsPx& from, const S& add) {
+      return [&from, &add, row, col](Index i, Index j) {
+        const bool here = i == row && j == col;
+        return std::array<S, 2>{S(S(from(i, j).x) + (here ? add : S(0))), S(from(i, j).y)};
+      };
+    };
+    const S none(0);
+    ratio(LazyView(9, 9, dots(before, none)), contact, states, state);
+    const auto r = ratio(LazyView(9, 9, dots(after, x)), contact, states, state);
+    REQUIRE(r.updated());
+    return scale ? r.scale : r.angle_rad;
+  };
+  using Dual = test::Dual<Digits50>;
+  for (const bool scale : {false, true}) {
+    double largest = 0;
+    for (const auto& [row, col] : {std::pair<Index, Index>{4, 5}, {3, 4}, {5, 5}, {2, 6}}) {
+      const Digits50 dual = motion(Dual(Digits50(0), Digits50(1)), scale, row, col).d;
+      const Digits50 step("1e-12");
+      const Digits50 slope =
+          (motion(step, scale, row, col) - motion(Digits50(-step), scale, row, col)) / (2 * step);
+      CHECK(off(dual, slope) < 1e-20);
+      largest = std::max(largest, std::abs(static_cast<double>(slope)));
+    }
+    CHECK(largest > 1e-5);
+  }
+}
+
+TEMPLATE_TEST_CASE(
+    "angles near half a turn do not wrap", "[stick_ratio]", Default, OneDot, Published) {
+  const DotPattern pattern{.rows = 11, .cols = 11, .contact_pitches = 5.2};
+  for (const double angle : {pi - 1e-6, pi - 0.01, -pi + 1e-6, -pi + 0.01, 3.0, -3.0, pi / 2}) {
+    SlippingDots truth(pattern);
+    const PointsPx before = truth.dots;
+    truth.step({.shift_px = 3, .direction_rad = 1, .turn_rad = angle});
+    const auto r = between<TestType>(before, truth.dots, truth.contact);
+    REQUIRE(r.updated());
+    CHECK(r.angle_rad == Approx(angle).margin(1e-10));
+    CHECK(r.scale == Approx(1).margin(1e-3));
+    CHECK(r.stick_ratio == 1);
+  }
+  SlippingDots truth(pattern);
+  const PointsPx before = truth.dots;
+  truth.step({.turn_rad = pi});
+  const auto r = between<TestType>(before, truth.dots, truth.contact);
+  CHECK(std::abs(r.angle_rad) == Approx(pi));
+}
+
+TEST_CASE("a plain press has its scale", "[stick_ratio]") {
+  // Nothing moves along, q = 0 at the middle. What is published takes the part across the motion of
+  // each pair, which a press has all around the middle; without any motion it has no scale.
+  SlippingDots truth;
+  const PointsPx before = truth.dots;
+  truth.step({.zoom = 1.05});
+  for (const auto& r : {between<Default>(before, truth.dots, truth.contact),
+                        between<OneDot>(before, truth.dots, truth.contact),
+                        between<Published>(before, truth.dots, truth.contact)}) {
+    REQUIRE(r.updated());
+    CHECK(r.stick_ratio == 1);
+    CHECK(r.scale == Approx(1 / 1.05).margin(2e-3));
+    CHECK(std::abs(r.angle_rad) < 1e-12);
+  }
+  // By least squares exactly, if only the pressed dots move little against fading_px.
+  const StickRatio<ReferenceDotMotion<>, UpdatedReference<>, NoDenoising, double> wide(
+      21, 21, {.reference_px = 0.1, .store_px = 0, .slip_px = 0.05}, {.zoom = {.fading_px = 1e3}});
+  auto state = wide.start();
+  DotStates states(21, 21);
+  wide(before, truth.contact, states, state);
+  CHECK(wide(truth.dots, truth.contact, states, state).scale == Approx(1 / 1.05).margin(1e-6));
+  // A scale that no membrane has is none.
+  SlippingDots far;
+  far.step({.shift_px = 1, .zoom = 1.3});
+  CHECK(between<Default>(before, far.dots, far.contact).scale == 1);
+  CHECK(between<OneDot>(before, far.dots, far.contact).scale == 1);
+  CHECK(between<Published>(before, far.dots, far.contact).scale == 1);
+}
+
+TEMPLATE_TEST_CASE("dots on a line, and displacements that are all parallel",
+                   "[stick_ratio]",
+                   Default,
+                   OneDot,
+                   Published) {
+  for (const bool upright : {false, true}) {
+    const Index rows = upright ? 15 : 1, cols = upright ? 1 : 15;
+    const DotPattern pattern{.rows = rows, .cols = cols, .contact_pitches = 20};
+    for (const double direction : {0.0, pi / 4, pi / 2}) {
+      for (const double turn : {0.0, 0.04}) {
+        SlippingDots truth(pattern);
+        const PointsPx before = truth.dots;
+        truth.step({.shift_px = 4, .direction_rad = direction, .turn_rad = turn});
+        const auto r = between<TestType>(before, truth.dots, truth.contact);
+        CAPTURE(upright, direction, turn);
+        REQUIRE(r.updated());
+        CHECK(r.stick_ratio == 1);
+        CHECK(r.angle_rad == Approx(turn).margin(1e-12));
+        CHECK(r.scale == Approx(1).margin(1e-3));
+      }
+    }
+  }
+  // a whole field shifted: across the motion nothing tells the scale but what is across it
+  for (const double direction : {0.0, pi / 4, pi / 2, 1.0}) {
+    SlippingDots truth;
+    const PointsPx before = truth.dots;
+    truth.step({.shift_px = 8, .direction_rad = direction});
+    const auto r = between<TestType>(before, truth.dots, truth.contact);
+    REQUIRE(r.updated());
+    CHECK(r.stick_ratio == 1);
+    CHECK(r.scale == Approx(1).margin(1e-12));
+  }
+}

@@ -1,0 +1,157 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+// Arrays on which running sums lose digits, and long recordings.
+#include "fingerpad/foam/taxel_features.hpp"
+
+#include <cmath>
+#include <limits>
+#include <random>
+#include <vector>
+
+#include "support/catch.hpp"
+#include "support/pad.hpp"
+
+using namespace fingerpad;
+using test::Image;
+
+namespace {
+
+/// The deviation of taxel 0 of two, without line, by two passes in double over the last window.
+double deviation_by_hand(const std::vector<double>& readings, std::size_t n) {
+  const double length = static_cast<double>(n), middle = (length - 1) / 2;
+  const double* const first = readings.data() + readings.size() - n;
+  double mean = 0, tilt = 0, spread = 0, squares = 0;
+  for (std::size_t u = 0; u < n; ++u) {
+    mean += first[u] / length;
+  }
+  for (std::size_t u = 0; u < n; ++u) {
+    tilt += (static_cast<double>(u) - middle) * (first[u] - mean);
+    spread += (static_cast<double>(u) - middle) * (static_cast<double>(u) - middle);
+  }
+  for (std::size_t u = 0; u < n; ++u) {
+    const double left = first[u] - mean - tilt / spread * (static_cast<double>(u) - middle);
+    squares += left * left;
+  }
+  return std::sqrt(squares / length);
+}
+
+template <class S>
+TaxelOptions<S> options(Index window) {
+  TaxelOptions<S> o;
+  o.window = window;
+  o.sample_period_s = S(1);
+  o.longest_gap_s = S(10);
+  o.noise = S(0);
+  return o;
+}
+
+}  // namespace
+
+TEMPLATE_TEST_CASE("taxel features: a small vibration on a large load that wanders, for long",
+                   "[taxel_features]",
+                   float,
+                   double) {
+  // 4000 counts, a random walk over hundreds of them, a vibration of 8, for 20000 samples. The
+  // bound is that of one window, however long it runs: the sums are made anew within each
+  using S = TestType;
+  const Index window = GENERATE(8, 64);
+  const TaxelFeatures<ZeroCrossings, TrendRemoved, S> features(1, 1, options<S>(window));
+  auto state = features.start();
+  std::mt19937 random(5);
+  std::uniform_int_distribution<int> step(-8, 8);
+  std::vector<double> readings;
+  double level = 4000, worst = 0;
+  for (int k = 0; k < 20000; ++k) {
+    level += step(random);
+    level = level > 4400 || level < 3600 ? 4000 : level;
+    const double reading = level + (k % 4 < 2 ? 8 : -8);
+    readings.push_back(reading);
+    const auto sample = features(Image<S>(1, 1, static_cast<S>(reading)), S(k), state);
+    if (k % 7 == 0 && k > 100) {
+      const double exact = deviation_by_hand(readings, static_cast<std::size_t>(window));
+      worst = std::max(worst, std::fabs(static_cast<double>(sample.deviation) / exact - 1));
+    }
+  }
+  INFO("worst relative error " << worst << ", window " << window);
+  CHECK(worst < (std::is_same_v<S, float> ? 2e-6 : 1e-14));
+}
+
+TEMPLATE_TEST_CASE("taxel features: a huge reading is forgotten with its window",
+                   "[taxel_features]",
+                   float,
+                   double) {
+  // the sums of squares keep what it left over until they are made anew: at most one window more
+  using S = TestType;
+  auto o = options<S>(16);
+  o.noise = S(1);
+  const TaxelFeatures<ZeroCrossings, TrendRemoved, S> features(4, 4, o);
+  auto state = features.start();
+  Index false_alarms_late = 0;
+  for (int k = 0; k < 200; ++k) {
+    Image<S> taxels(4, 4, S(100));
+    taxels(1, 1) = k == 50 ? S(1e15) : S(100);
+    const auto sample = features(taxels, S(k), state);
+    if (k >= 50 && k < 66) {
+      CHECK(sample.location == 5);
+    }
+    false_alarms_late += k >= 50 + 2 * 16 && sample.is_vibrating() ? 1 : 0;
+  }
+  CHECK(false_alarms_late == 0);
+}
+
+TEMPLATE_TEST_CASE("taxel features: readings at the ends of what a number holds",
+                   "[taxel_features]",
+                   float,
+                   double) {
+  using S = TestType;
+  using Limits = std::numeric_limits<S>;
+  const TaxelFeatures<ZeroCrossings, TrendRemoved, S> features(2, 2, options<S>(8));
+  for (const S extreme : {Limits::max(), Limits::lowest(), Limits::denorm_min(), Limits::min()}) {
+    CAPTURE(extreme);
+    auto state = features.start();
+    for (int k = 0; k < 60; ++k) {
+      Image<S> taxels(2, 2, S(10));
+      taxels(0, 1) = k > 20 && k < 40 && k % 3 == 0 ? extreme : S(10);
+      taxels(1, 1) = k % 4 < 2 ? S(20) : S(10);
+      const auto sample = features(taxels, S(k), state);
+      CHECK(sample.waves >= 0);
+      CHECK(sample.waves <= 4);
+      CHECK_FALSE(std::isnan(sample.frequency_hz));
+      if (k >= 8 && (k <= 20 || k >= 40 + 16)) {
+        CHECK(sample.location == 3);
+        CHECK(sample.waves == 2);
+      }
+    }
+  }
+}
+
+TEST_CASE("taxel features: bursts of late samples keep the clock of the vibration",
+          "[taxel_features]") {
+  // a sensor that samples evenly, but whose samples are received late by up to two periods, in
+  // order
+  TaxelOptions<double> o;
+  o.window = 32;
+  o.sample_period_s = 0.032;
+  o.noise = 1;
+  const TaxelFeatures<ZeroCrossings> features(1, 1, o);
+  auto state = features.start();
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> late(0, 0.064);
+  double received = 0;
+  Index right = 0, near = 0, all = 0;
+  for (int k = 0; k < 2000; ++k) {
+    const double taken = k * 0.032;
+    received = std::max(received + 0.0002, taken + late(random));
+    const double reading = 500 + 40 * std::sin(2 * 3.14159265358979 * 6.0 / (32 * 0.032) * taken);
+    const auto sample = features(Image<double>(1, 1, reading), received, state);
+    REQUIRE(sample.status != TaxelStatus::time_not_later);
+    if (sample.is_vibrating()) {
+      ++all;
+      right += sample.waves == 6 ? 1 : 0;
+      near += sample.waves >= 5 && sample.waves <= 7 ? 1 : 0;
+    }
+  }
+  CHECK(all > 1900);
+  CHECK(near == all);
+  CHECK(right > all * 9 / 10);
+}

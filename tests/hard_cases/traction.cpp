@@ -1,0 +1,116 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+// The traction field against itself with fifty digits.
+#include "fingerpad/force/traction.hpp"
+
+#include <cmath>
+
+#include "support/catch.hpp"
+#include "support/numbers.hpp"
+#include "support/traction_scenes.hpp"
+
+using namespace fingerpad;
+using test::Digits50;
+using test::Lazy50;
+
+namespace {
+
+template <class S, class From>
+Triangle<S> as(const Triangle<From>& x) {
+  Triangle<S> out;
+  for (std::size_t k = 0; k < 3; ++k) {
+    out[k] = {S(x[k].x), S(x[k].y), S(x[k].z)};
+  }
+  return out;
+}
+
+/// Largest error of a load and of the force, by the pressure and by the largest component.
+struct Loss {
+  double load = 0;
+  double pressure = 0;
+  double force = 0;
+};
+
+template <class S>
+Loss loss_of(const test::TractionScene& s) {
+  const auto free = test::stress_free_dots();
+  // what S cannot hold is no error of the method: both begin with the numbers of S
+  test::Cells<Point3<S>> stored_free(21, 21), stored(21, 21);
+  for (std::size_t k = 0; k < free.cells.size(); ++k) {
+    const auto& f = free.cells[k];
+    const auto& d = s.dots.cells[k];
+    stored_free.cells[k] = {S(f.x), S(f.y), S(f.z)};
+    stored.cells[k] = {S(d.x), S(d.y), S(d.z)};
+  }
+  const TractionField<GivenModulus<S>, S> field(stored_free, GivenModulus<S>{S(0.5)});
+  const TractionField<GivenModulus<Digits50>, Digits50> exact(stored_free,
+                                                              GivenModulus<Digits50>{0.5});
+  auto maps = field.maps();
+  auto exact_maps = exact.maps();
+  const S p = S(s.pressure_mpa);
+  const auto r = field(stored, s.contact, p, maps);
+  const auto e = exact(stored, s.contact, Digits50(p), exact_maps);
+  REQUIRE(r.ok());
+  REQUIRE(e.ok());
+  REQUIRE(r.dots_loaded == e.dots_loaded);
+  Loss loss;
+  const auto off = [](const S& a, const Digits50& b) {
+    return std::abs(static_cast<double>(Digits50(a) - b));
+  };
+  for (Index i = 0; i < 21; ++i) {
+    for (Index j = 0; j < 21; ++j) {
+      if (is_finite(maps.pressure_mpa()(i, j))) {
+        const auto& a = maps.load_mpa()(i, j);
+        const auto& b = exact_maps.load_mpa()(i, j);
+        loss.load = (std::max)({loss.load, off(a.x, b.x), off(a.y, b.y), off(a.z, b.z)});
+        loss.pressure = (std::max)(loss.pressure,
+                                   off(maps.pressure_mpa()(i, j), exact_maps.pressure_mpa()(i, j)));
+      }
+    }
+  }
+  loss.load /= s.pressure_mpa;
+  loss.pressure /= s.pressure_mpa;
+  loss.force = (std::max)({off(r.force_n.x, e.force_n.x), off(r.force_n.y, e.force_n.y),
+                           off(r.force_n.z, e.force_n.z)}) /
+               s.largest_force_n();
+  return loss;
+}
+
+}  // namespace
+
+TEST_CASE("membrane triangle with fifty digits", "[traction][hard]") {
+  test::Gauss gauss(4);
+  double worst = 0;
+  for (int k = 0; k < 200; ++k) {
+    Triangle<double> free = {Point3<double>{0, 0, 0}, {1.5, 0, 0}, {0.3, 1.4, 0}};
+    Triangle<double> now = free;
+    for (std::size_t c = 0; c < 3; ++c) {
+      free[c] = detail::moved(free[c], 0.1, {gauss(), gauss(), gauss()});
+      now[c] = detail::moved(now[c], 0.2, {gauss(), gauss(), gauss()});
+    }
+    const auto force = corner_forces(stress_free(free), now);
+    const auto exact = corner_forces(stress_free(as<Digits50>(free)), as<Digits50>(now));
+    const auto lazy = corner_forces(stress_free(as<Lazy50>(free)), as<Lazy50>(now));
+    for (std::size_t c = 0; c < 3; ++c) {
+      const double scale = std::sqrt(static_cast<double>(detail::length_sq(exact[c])));
+      worst = (std::max)(
+          worst, std::abs(static_cast<double>(Digits50(force[c].x) - exact[c].x)) / (1 + scale));
+      CHECK(static_cast<double>(lazy[c].y) == static_cast<double>(exact[c].y));
+    }
+  }
+  INFO("worst error of a force " << worst);
+  CHECK(worst < 1e-13);
+}
+
+TEST_CASE("traction in double and in float against fifty digits", "[traction][hard]") {
+  for (const auto& s : test::traction_scenes()) {
+    const Loss in_double = loss_of<double>(s);
+    const Loss in_float = loss_of<float>(s);
+    CAPTURE(s.name, in_double.load, in_float.load, in_float.pressure, in_float.force);
+    CHECK(in_double.load < 1e-12);
+    CHECK(in_double.force < 1e-12);
+    CHECK(in_float.load < 1e-3);
+    CHECK(in_float.pressure < 1e-3);
+    CHECK(in_float.force < 1e-4);
+  }
+}

@@ -1,0 +1,209 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+// Window means at the limits of their arithmetic: largest windows of largest values, sums that run
+// over long columns, images smaller than the window, every way of computing them.
+#include "fingerpad/image/detail/window_sums.hpp"
+
+#include <array>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "support/catch.hpp"
+#include "support/generators.hpp"
+#include "support/numbers.hpp"
+#include "support/pad.hpp"
+
+using namespace fingerpad;
+using test::Frame;
+using test::Image;
+
+namespace {
+
+template <class Pixel>
+struct Means {
+  using Mean = detail::window_mean_t<Pixel>;
+  Image<Mean> red, green;
+  Image<std::uint16_t> count;
+};
+
+/// All means of a frame, from `first` on, with one window.
+template <int VectorBytes, class Pixel>
+Means<Pixel> means_of(const Frame<Pixel>& frame,
+                      const Image<std::uint8_t>& inside,
+                      int window,
+                      const detail::window_limits_t<Pixel>& limits,
+                      Index first = 0) {
+  using Mean = detail::window_mean_t<Pixel>;
+  const Index rows = frame.red.rows();
+  const Index cols = frame.red.cols();
+  Means<Pixel> out{Image<Mean>(rows, cols), Image<Mean>(rows, cols),
+                   Image<std::uint16_t>(rows, cols)};
+  const auto load = [&](Index row, Pixel* red, Pixel* green, std::uint8_t* valid) {
+    for (Index j = 0; j < cols; ++j) {
+      red[j] = frame.red(row, j);
+      green[j] = frame.green(row, j);
+      valid[j] = inside(row, j);
+    }
+  };
+  detail::WindowSums<Pixel, 1, VectorBytes> sums(rows, cols, {window}, limits);
+  sums.start(first, load);
+  for (Index i = first; i < rows; ++i) {
+    sums.advance(load, {{&out.red(i, 0), &out.green(i, 0), &out.count(i, 0)}});
+  }
+  return out;
+}
+
+constexpr int native = detail::native_vector_bytes;
+
+}  // namespace
+
+TEST_CASE("the largest window of the brightest 8-bit pixels", "[window]") {
+  const Frame<std::uint8_t> frame(260, 300, 255);
+  const Image<std::uint8_t> all(260, 300, 1);
+  const auto means = means_of<native>(frame, all, 255, {0, 256});
+  CHECK(means.count(130, 150) == 65025);
+  CHECK(means.red(130, 150) == 255.0f);
+  CHECK(means.green(130, 150) == 255.0f);
+  CHECK(means.count(0, 0) == 128 * 128);
+  CHECK(means.red(0, 0) == 255.0f);
+}
+
+TEST_CASE("the largest window of the brightest 16-bit pixels", "[window]") {
+  const Frame<std::uint16_t> frame(256, 270, 65535);
+  const Image<std::uint8_t> all(256, 270, 1);
+  const auto means = means_of<native>(frame, all, 255, {0, 65536});
+  CHECK(means.count(127, 140) == 65025);
+  // 65025 * 65535 fits 32 bits, and is rounded to float once, times a rounded reciprocal
+  CHECK(means.red(127, 140) == Approx(65535).epsilon(2e-7));
+  CHECK(means.green(0, 269) == Approx(65535).epsilon(2e-7));
+}
+
+TEMPLATE_TEST_CASE("whole numbers have exact sums, rounded as a box filter does",
+                   "[window]",
+                   std::uint8_t,
+                   std::uint16_t) {
+  rc::prop("by vectors and plainly, in any band", [] {
+    using Pixel = TestType;
+    const Index rows = test::whole(1, 30);
+    const Index cols = test::whole(1, 150);
+    test::Random random(static_cast<std::uint64_t>(test::whole(0, 1 << 30)));
+    Frame<Pixel> frame(rows, cols);
+    Image<std::uint8_t> inside(rows, cols);
+    const double share = test::uniform(0, 1);
+    constexpr Index top = (std::numeric_limits<Pixel>::max)();
+    for (std::size_t k = 0; k < frame.red.cells.size(); ++k) {
+      frame.red.cells[k] = static_cast<Pixel>(random.whole(0, top));
+      frame.green.cells[k] = static_cast<Pixel>(random.whole(0, top));
+      // any nonzero byte says that a pixel may count
+      inside.cells[k] = random.uniform() < share ? std::uint8_t(0)
+                                                 : static_cast<std::uint8_t>(random.whole(1, 255));
+    }
+    const double dark = static_cast<double>(test::whole(-1, top / 4)) + 0.5;
+    const double saturated = static_cast<double>(test::whole(top / 2, top + 1));
+    const int window = 3 + 2 * static_cast<int>(test::whole(0, 20));
+    const Index first = test::whole(0, rows - 1);
+    const auto fast = means_of<native>(frame, inside, window, {dark, saturated}, first);
+    const auto plain = means_of<0>(frame, inside, window, {dark, saturated}, first);
+    const Index r = window / 2;
+    for (Index i = first; i < rows; ++i) {
+      for (Index j = 0; j < cols; ++j) {
+        std::uint32_t red = 0, green = 0, count = 0;
+        for (Index p = (std::max)(i - r, Index(0)); p <= (std::min)(i + r, rows - 1); ++p) {
+          for (Index q = (std::max)(j - r, Index(0)); q <= (std::min)(j + r, cols - 1); ++q) {
+            const auto good = [&](Pixel x) { return x > dark && x < saturated; };
+            if (inside(p, q) != 0 && good(frame.red(p, q)) && good(frame.green(p, q))) {
+              red += frame.red(p, q);
+              green += frame.green(p, q);
+              ++count;
+            }
+          }
+        }
+        const auto mean = [&](std::uint32_t sum) {
+          return count == 0 ? std::numeric_limits<float>::quiet_NaN()
+                            : float(sum) * (1.0f / float(count));
+        };
+        RC_ASSERT(fast.count(i, j) == count);
+        RC_ASSERT(plain.count(i, j) == count);
+        RC_ASSERT(test::same_bits(fast.red(i, j), mean(red)));
+        RC_ASSERT(test::same_bits(fast.green(i, j), mean(green)));
+        RC_ASSERT(test::same_bits(plain.red(i, j), mean(red)));
+        RC_ASSERT(test::same_bits(plain.green(i, j), mean(green)));
+      }
+    }
+  });
+}
+
+TEMPLATE_TEST_CASE("rounding does not pile up down a long image",
+                   "[window]",
+                   float,
+                   double,
+                   long double,
+                   test::Digits50) {
+  // A bright band, then 400 rows of 1e-3 of it: what the band left behind would show.
+  using S = TestType;
+  const Index rows = 440;
+  Frame<S> frame(rows, 9);
+  const Image<std::uint8_t> all(rows, 9, 1);
+  for (Index i = 0; i < rows; ++i) {
+    for (Index j = 0; j < 9; ++j) {
+      const double wave = 1 + 0.3 * std::sin(static_cast<double>(3 * i + 5 * j));
+      frame.red(i, j) = S(i < 40 ? 250 * wave / 1.3 : 0.25 * wave);
+      frame.green(i, j) = S(100 * wave);
+    }
+  }
+  const auto means = means_of<native>(frame, all, 5, {S(0), S(255)});
+  double worst = 0;
+  for (Index i = 50; i < rows - 2; ++i) {
+    S sum(0);
+    for (Index p = i - 2; p <= i + 2; ++p) {
+      for (Index q = 2; q <= 6; ++q) {
+        sum += frame.red(p, q);
+      }
+    }
+    const S mean = S(sum / S(25));
+    worst = (std::max)(worst, static_cast<double>(test::relative_error(means.red(i, 4), mean)));
+  }
+  // float is summed in double; the others restart every 32 rows: 32 x 5 additions of 250 / 0.25
+  CHECK(worst <= 32 * 5 * 1000 * static_cast<double>(epsilon<S>()));
+  CHECK(worst <= 1e-6);
+}
+
+TEST_CASE("windows and images that cannot be are refused", "[window]") {
+  using Sums = detail::WindowSums<std::uint8_t, 2>;
+  CHECK_NOTHROW(Sums(1, 1, {3, 255}, {0, 255}));
+  CHECK_THROWS_AS(Sums(0, 1, {3, 5}, {0, 255}), parameter_error);
+  CHECK_THROWS_AS(Sums(1, 0, {3, 5}, {0, 255}), parameter_error);
+  CHECK_THROWS_AS(Sums(9, 9, {5, 5}, {0, 255}), parameter_error);
+  CHECK_THROWS_AS(Sums(9, 9, {5, 3}, {0, 255}), parameter_error);
+  CHECK_THROWS_AS(Sums(9, 9, {1, 3}, {0, 255}), parameter_error);
+  CHECK_THROWS_AS(Sums(9, 9, {4, 7}, {0, 255}), parameter_error);
+  CHECK_THROWS_AS(Sums(9, 9, {3, 257}, {0, 255}), parameter_error);
+}
+
+TEST_CASE("interleaved rows come apart", "[window]") {
+  rc::prop("for two to five channels and any length", [] {
+    const auto check = [](auto channels, auto pixel) {
+      using Pixel = decltype(pixel);
+      constexpr int c = decltype(channels)::value;
+      const Index n = test::whole(0, 100);
+      std::vector<Pixel> from(static_cast<std::size_t>(c * n));
+      for (std::size_t k = 0; k < from.size(); ++k) {
+        from[k] = static_cast<Pixel>(k * 7 + 1);
+      }
+      const int r = static_cast<int>(test::whole(0, c - 1));
+      const int g = static_cast<int>(test::whole(0, c - 1));
+      std::vector<Pixel> red(static_cast<std::size_t>(n)), green(red.size());
+      detail::load_interleaved_row<c>(from.data(), n, r, g, red.data(), green.data());
+      for (std::size_t k = 0; k < red.size(); ++k) {
+        RC_ASSERT(red[k] == from[k * c + static_cast<std::size_t>(r)]);
+        RC_ASSERT(green[k] == from[k * c + static_cast<std::size_t>(g)]);
+      }
+    };
+    check(std::integral_constant<int, 2>{}, std::uint8_t{});
+    check(std::integral_constant<int, 3>{}, std::uint8_t{});
+    check(std::integral_constant<int, 4>{}, std::uint8_t{});
+    check(std::integral_constant<int, 5>{}, std::uint8_t{});
+    check(std::integral_constant<int, 3>{}, std::uint16_t{});
+  });
+}

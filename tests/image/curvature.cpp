@@ -1,0 +1,451 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+#include <Eigen/Core>
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <limits>
+#include <string>
+
+#include "fingerpad/adapt/eigen.hpp"
+#include "fingerpad/adapt/opencv.hpp"
+#include "fingerpad/image/curvature_map.hpp"
+#include "support/catch.hpp"
+#include "support/foreign_image.hpp"
+#include "support/pad.hpp"
+#include "support/refusal.hpp"
+
+using namespace fingerpad;
+using test::Image;
+using test::refusal;
+
+namespace {
+
+constexpr double pi = 3.14159265358979323846;
+constexpr PlatePitch plate{0.0768};
+
+template <class S, class F>
+Image<S> depths(Index rows, Index cols, const F& depth_at_mm, double pitch_mm = plate.pitch_mm) {
+  Image<S> depth(rows, cols);
+  for (Index i = 0; i < rows; ++i) {
+    for (Index j = 0; j < cols; ++j) {
+      const double x = (static_cast<double>(j) - static_cast<double>(cols - 1) / 2) * pitch_mm;
+      const double y = (static_cast<double>(i) - static_cast<double>(rows - 1) / 2) * pitch_mm;
+      depth(i, j) = static_cast<S>(depth_at_mm(x, y));
+    }
+  }
+  return depth;
+}
+
+template <class Statistic, class S, class Projection = PlatePitch>
+Image<S> curvatures(const Image<S>& depth,
+                    const CurvatureRing& ring,
+                    const Projection& projection = plate) {
+  const CurvatureMap<Statistic, Projection, S> map(ring, projection, depth.rows(), depth.cols());
+  auto workspace = map.workspace();
+  Image<S> out(depth.rows(), depth.cols(), S(7));
+  REQUIRE(map(depth, out, workspace).accepted);
+  return out;
+}
+
+/// At the pixel in the middle of an image of odd size.
+template <class Statistic, class F, class Projection = PlatePitch>
+double in_the_middle(const F& depth_at_mm,
+                     Index radius_px = 10,
+                     const Projection& projection = plate) {
+  const Index size = 2 * radius_px + 1;
+  const Image<double> depth = depths<double>(size, size, depth_at_mm, projection.pitch_mm);
+  return curvatures<Statistic>(depth, {radius_px}, projection)(radius_px, radius_px);
+}
+
+}  // namespace
+
+TEST_CASE("curvature: (K1) is the circle through three points, bulging outward positive") {
+  const double radius = 20, angle = 0.03;
+  for (const double middle : {0.0, 0.4, -1.1}) {
+    // equally spaced in u: the ends lie at sin(middle) +- step
+    const double u = radius * std::sin(middle), step = radius * angle;
+    const auto dome = [&](double x) { return std::sqrt(radius * radius - x * x); };
+    const double k = section_curvature(step, dome(u - step), dome(u), dome(u + step));
+    CHECK(k == Approx(1 / radius).epsilon(1e-11));
+    CHECK(section_curvature(step, -dome(u - step), -dome(u), -dome(u + step)) == -k);
+    CHECK(circle_center_curvature(step, dome(u - step), dome(u), dome(u + step)) ==
+          Approx(k).epsilon(1e-10));
+    CHECK(circle_center_curvature(step, -dome(u - step), -dome(u), -dome(u + step)) ==
+          Approx(-k).epsilon(1e-10));
+  }
+  CHECK(section_curvature(0.768, 5.0, 5.0, 5.0) == 0);
+  CHECK(section_curvature(0.768, 5.0, 6.0, 7.0) == 0);
+  CHECK(std::isnan(circle_center_curvature(0.768, 5.0, 5.0, 5.0)));
+}
+
+TEST_CASE("curvature: vertical sections of a sphere carry the factor of their slope (E016)") {
+  const double sphere = 20, step = 1e-3;
+  for (const double degrees : {0.0, 20.0, 40.0, 60.0, 69.4}) {
+    const double alpha = degrees * pi / 180, x0 = sphere * std::sin(alpha);
+    const auto depth = [&](double x, double y) {
+      return std::sqrt(sphere * sphere - x * x - y * y);
+    };
+    const auto along = [&](double theta) {
+      const double x = step * std::cos(theta), y = step * std::sin(theta);
+      return section_curvature(step, depth(x0 - x, -y), depth(x0, 0), depth(x0 + x, y));
+    };
+    CHECK(along(0) == Approx(1 / sphere).epsilon(1e-5));
+    CHECK(along(pi / 2) == Approx(1 / (sphere * std::cos(alpha))).epsilon(1e-5));
+    double sum = 0;
+    for (int k = 0; k < 360; ++k) {
+      sum += along(pi * k / 360);
+    }
+    CHECK(sum / 360 == Approx(2 / pi * std::comp_ellint_1(std::sin(alpha)) / sphere).epsilon(1e-5));
+  }
+}
+
+TEST_CASE("curvature: normal curvatures of sphere, cylinder and saddle at any slope") {
+  for (const double slope : {0.0, 0.3, 1.5}) {
+    for (const double turn : {0.0, 0.7}) {
+      const double w = std::sqrt(1 + slope * slope), radius = 20;
+      const double c = std::cos(turn), s = std::sin(turn);
+      // second derivatives along and across the slope; l = sqrt(R^2 - ...) falls where l' < 0
+      const auto patch = [&](double along, double across) {
+        return SurfacePatch<double>{slope * c, slope * s, along * c * c + across * s * s,
+                                    (along - across) * s * c, along * s * s + across * c * c};
+      };
+      const auto sphere = patch(-w * w * w / radius, -w / radius);
+      CHECK(mean_curvature(sphere) == Approx(1 / radius));
+      CHECK(principal_curvatures(sphere).larger_per_mm == Approx(1 / radius));
+      CHECK(principal_curvatures(sphere).smaller_per_mm == Approx(1 / radius));
+      CHECK(clamped_mean_curvature(sphere) == Approx(1 / radius));
+      const auto cylinder = patch(-w * w * w / radius, 0);
+      CHECK(mean_curvature(cylinder) == Approx(0.5 / radius));
+      CHECK(principal_curvatures(cylinder).larger_per_mm == Approx(1 / radius));
+      CHECK(principal_curvatures(cylinder).smaller_per_mm == Approx(0).margin(1e-15));
+      CHECK(clamped_mean_curvature(cylinder) == Approx(0.5 / radius));
+      const auto saddle = patch(-w * w * w / radius, w / radius);
+      CHECK(mean_curvature(saddle) == Approx(0).margin(1e-15));
+      CHECK(principal_curvatures(saddle).larger_per_mm == Approx(1 / radius));
+      CHECK(principal_curvatures(saddle).smaller_per_mm == Approx(-1 / radius));
+      CHECK(clamped_mean_curvature(saddle) == Approx(1 / (pi * radius)));
+      CHECK(clamped_mean_curvature(patch(w * w * w / radius, w / radius)) == 0);
+    }
+  }
+}
+
+TEST_CASE("curvature: the closed form of the clamp is the mean over all directions") {
+  for (const double mean : {-0.06, -0.049, -0.02, 0.0, 0.01, 0.0499, 0.07}) {
+    const double half_range = 0.05;
+    double sum = 0;
+    for (int k = 0; k < 100000; ++k) {
+      sum += (std::max)(0.0, mean + half_range * std::cos(2 * pi * (k + 0.5) / 100000));
+    }
+    const detail::NormalCurvature<double> k{mean, half_range};
+    CHECK(detail::clamped_mean<double>(k) == Approx(sum / 100000).margin(1e-10));
+  }
+}
+
+TEST_CASE("curvature: maps of sphere, cylinder and saddle") {
+  const auto sphere = [](double x, double y) { return std::sqrt(400 - x * x - y * y) - 7; };
+  const auto cylinder = [](double x, double) { return std::sqrt(400 - x * x) - 7; };
+  const auto saddle = [](double x, double y) { return 8 + (y * y - x * x) / 40; };
+  CHECK(in_the_middle<SectionMean<>>(sphere) == Approx(0.05).epsilon(1e-4));
+  CHECK(in_the_middle<ClampedMean<>>(sphere) == Approx(0.05).epsilon(1e-4));
+  CHECK(in_the_middle<PublishedTwiceMean<>>(sphere) == Approx(0.1).epsilon(1e-4));
+  CHECK(in_the_middle<HessianFit<>>(sphere) == Approx(0.05).epsilon(1e-3));
+  CHECK(in_the_middle<HessianFit<9>>(sphere) == Approx(0.05).epsilon(1e-3));
+  CHECK(in_the_middle<RingStencil<>>(sphere) == Approx(0.05).epsilon(1e-3));
+
+  CHECK(in_the_middle<SectionMean<>>(cylinder) == Approx(0.025).epsilon(2e-3));
+  CHECK(in_the_middle<HessianFit<>>(cylinder) == Approx(0.025).epsilon(2e-3));
+  CHECK(in_the_middle<HessianFit<18, FittedValue::larger>>(cylinder) == Approx(0.05).epsilon(2e-3));
+  CHECK(in_the_middle<HessianFit<18, FittedValue::smaller>>(cylinder) == Approx(0).margin(2e-5));
+  CHECK(in_the_middle<ClampedHessian<>>(cylinder) == Approx(0.025).epsilon(2e-3));
+
+  CHECK(in_the_middle<SectionMean<>>(saddle) == Approx(0).margin(1e-6));
+  // the nearest pixels lie in directions that are not quite evenly spaced
+  CHECK(in_the_middle<ClampedMean<>>(saddle) == Approx(0.05 / pi).epsilon(6e-2));
+  CHECK(in_the_middle<ClampedMean<>>(saddle, 40) == Approx(0.05 / pi).epsilon(2e-2));
+  CHECK(in_the_middle<ClampedHessian<>>(saddle) == Approx(0.05 / pi).epsilon(2e-3));
+}
+
+TEST_CASE("curvature: on a slope sections, stencil and fit differ by the factors they document") {
+  const double sphere = 20, alpha = 40 * pi / 180;
+  const auto at_slope = [&](double x, double y) {
+    const double from_top = x + sphere * std::sin(alpha);
+    return std::sqrt(sphere * sphere - from_top * from_top - y * y);
+  };
+  const double c = std::cos(alpha);
+  CHECK(in_the_middle<SectionMean<>>(at_slope) ==
+        Approx(2 / pi * std::comp_ellint_1(std::sin(alpha)) / sphere).epsilon(5e-3));
+  CHECK(in_the_middle<HessianFit<>>(at_slope) == Approx(1 / sphere).epsilon(1e-2));
+  CHECK(in_the_middle<RingStencil<>>(at_slope) ==
+        Approx((1 / (c * c * c) + 1 / c) / 2 / sphere).epsilon(1e-2));
+}
+
+TEMPLATE_TEST_CASE("curvature: nothing flat is lost, but by the published form",
+                   "",
+                   PublishedTwiceMean<>,
+                   SectionMean<>,
+                   ClampedMean<>,
+                   HessianFit<>,
+                   ClampedHessian<>,
+                   RingStencil<>) {
+  const Index rows = 40, cols = 60, r = 10;
+  const CurvatureRing whole_rings{r, 1.0};
+  const auto flat = [&](const auto& depth_at_mm, double bound) {
+    const Image<float> depth = depths<float>(rows, cols, depth_at_mm);
+    const Image<float> k = curvatures<TestType>(depth, whole_rings);
+    for (Index i = 0; i < rows; ++i) {
+      for (Index j = 0; j < cols; ++j) {
+        const bool inside = i >= r && i < rows - r && j >= r && j < cols - r;
+        CAPTURE(i, j, k(i, j));
+        CHECK(std::isnan(k(i, j)) == !inside);
+        CHECK((!inside || std::abs(static_cast<double>(k(i, j))) <= bound));
+      }
+    }
+  };
+  flat([](double, double) { return 10.5; }, 0);
+  flat([](double x, double y) { return 8 + x / 16 - y / 8; }, 2e-5);  // depths rounded to float
+  flat([](double x, double) { return std::floor(x * 20) / 4; }, 1e4);
+}
+
+TEST_CASE("curvature: the published form loses what lies level in one direction") {
+  const auto published = [](const auto& depth_at_mm) {
+    double sum = 0;
+    for (const RingOffset& o : ring_offsets(10, 36)) {
+      const double x = static_cast<double>(o.col) * 0.0625, y = static_cast<double>(o.row) * 0.0625;
+      sum += circle_center_curvature(std::hypot(x, y), depth_at_mm(-x, -y), depth_at_mm(0.0, 0.0),
+                                     depth_at_mm(x, y));
+    }
+    return sum / 18;
+  };
+  CHECK(published([](double x, double y) { return std::sqrt(400 - x * x - y * y); }) ==
+        Approx(0.1).epsilon(1e-4));
+  CHECK(std::isnan(published([](double, double) { return 10.5; })));
+  CHECK(std::isnan(published([](double x, double) { return 10 + x / 4; })));
+  CHECK(std::isnan(published([](double, double y) { return 10 - y / 8; })));
+}
+
+TEST_CASE("curvature: seen through a camera a tilted plane stays flat, and a ball round") {
+  const double growth = 1 / 66.5;
+  const PitchAtDepth camera(0.0768, growth);
+  for (const double slope : {0.0, 0.1, 0.5, 1.0}) {
+    // the point at depth l is seen at x if it lies at x (1 + c l)
+    const auto plane = [&](double x, double y) {
+      const double lateral = x * 0.6 + y * 0.8;
+      return (8 + slope * lateral) / (1 - slope * lateral * growth);
+    };
+    CHECK(in_the_middle<SectionMean<>>(plane, 25, camera) == Approx(0).margin(1e-12));
+    CHECK(in_the_middle<ClampedHessian<>>(plane, 25, camera) == Approx(0).margin(1e-12));
+    CHECK(in_the_middle<RingStencil<>>(plane, 25) ==
+          Approx(-slope * slope * growth * (1 + 8 * growth)).epsilon(1e-2).margin(1e-12));
+  }
+  // a ball whose top is so far from the axis that the membrane slopes on the axis
+  for (const double degrees : {0.0, 25.0}) {
+    const double alpha = degrees * pi / 180;
+    const auto ball = [&](double x, double y) {
+      double l = 8;
+      for (int k = 0; k < 100; ++k) {
+        const double s = 1 + growth * l, from_top = x * s + 20 * std::sin(alpha);
+        l = std::sqrt(400 - from_top * from_top - y * y * s * s) - 20 * std::cos(alpha) + 8;
+      }
+      return l;
+    };
+    const double sections = 2 / pi * std::comp_ellint_1(std::sin(alpha)) / 20;
+    CHECK(in_the_middle<SectionMean<>>(ball, 10, camera) == Approx(sections).epsilon(5e-3));
+    CHECK(in_the_middle<HessianFit<>>(ball, 10, camera) == Approx(0.05).epsilon(5e-3));
+    CHECK(in_the_middle<SectionMean<>>(ball, 10) > 1.1 * sections);
+  }
+}
+
+TEST_CASE("curvature: what refraction off the axis leaves of a tilted plane") {
+  Camera<double> camera;  // rays of the exact camera, up to 27 degrees
+  camera.center_x_px = 60;
+  camera.center_y_px = 60;
+  camera.pitch_mm = 0.3;
+  const double slope = 0.5;
+  Image<double> depth(121, 121);
+  for (Index i = 0; i < 121; ++i) {
+    for (Index j = 0; j < 121; ++j) {
+      double l = 8;
+      for (int k = 0; k < 60; ++k) {
+        l = 8 + slope * point_at(camera, static_cast<double>(i), static_cast<double>(j), l).x;
+        l = (std::min)((std::max)(l, -10.0), 30.0);
+      }
+      depth(i, j) = l;
+    }
+  }
+  const Image<double> flat = curvatures<SectionMean<>>(depth, {6}, PitchAtDepth(camera));
+  const Image<double> bent = curvatures<SectionMean<>>(depth, {6}, PlatePitch{0.3});
+  double worst = 0, worst_bent = 0;
+  for (Index i = 20; i <= 100; ++i) {
+    for (Index j = 40; j <= 80; ++j) {  // depths of 4 to 12 mm
+      worst = (std::max)(worst, std::abs(flat(i, j)));
+      worst_bent = (std::max)(worst_bent, std::abs(bent(i, j)));
+    }
+  }
+  CAPTURE(worst, worst_bent);
+  CHECK(worst < 5e-4);
+  CHECK(worst_bent > 3e-3);
+}
+
+TEST_CASE("curvature: a ring is its own mirror image, at true distances") {
+  const auto slides = ring_offsets(25, 18);  // 25 cos(60 degrees) is half way between two pixels
+  CHECK(std::count(slides.begin(), slides.end(), RingOffset{22, 12}) == 1);
+  CHECK(std::count(slides.begin(), slides.end(), RingOffset{12, 22}) == 1);
+  for (const Index radius : {1, 2, 3, 10, 25, 30}) {
+    for (const int directions : {3, 9, 18, 36}) {
+      const auto ring = ring_offsets(radius, directions);
+      CHECK(ring.size() == static_cast<std::size_t>(directions));
+      const auto count = [&](const RingOffset& o) {
+        return std::count(ring.begin(), ring.end(), o) +
+               std::count(ring.begin(), ring.end(), RingOffset{-o.row, -o.col});
+      };
+      for (const RingOffset& o : ring) {
+        CAPTURE(radius, directions, o.row, o.col);
+        CHECK(std::abs(std::sqrt(static_cast<double>(o.radius_sq())) -
+                       static_cast<double>(radius)) < 0.71);
+        if (radius > 2) {
+          CHECK(count({o.row, -o.col}) == count(o));
+          CHECK((directions % 2 != 0 || count({o.col, o.row}) == count(o)));
+        }
+      }
+    }
+  }
+}
+
+TEST_CASE("curvature: same bits on every grid") {
+  const Index rows = 41, cols = 149;
+  Image<float> depth = depths<float>(rows, cols, [](double x, double y) {
+    return 9 - 0.02 * (x * x + y * y) + 0.1 * std::sin(3 * x + y);
+  });
+  depth(20, 30) = std::nanf("");
+  const CurvatureMap<ClampedMean<>, PlatePitch> map({5}, plate, rows, cols);
+  auto workspace = map.workspace();
+  Image<float> expected(rows, cols);
+  const CurvatureResult result = map(depth, expected, workspace);
+  CHECK(result.accepted);
+  CHECK(result.known_px + result.unknown_px == rows * cols);
+  CHECK(result.unknown_px == std::count_if(expected.cells.begin(), expected.cells.end(),
+                                           [](float k) { return std::isnan(k); }));
+
+  const auto same = [&](const auto& out) {
+    for (Index i = 0; i < rows; ++i) {
+      for (Index j = 0; j < cols; ++j) {
+        if (!test::same_bits(static_cast<float>(out(i, j)), expected(i, j))) {
+          return false;
+        }
+      }
+    }
+    return true;
+  };
+  Eigen::ArrayXXf column_major(rows, cols);
+  Eigen::ArrayXXd in_double(rows, cols);
+  cv::Mat_<float> image(static_cast<int>(rows), static_cast<int>(cols));
+  test::ForeignImage<float> foreign(rows, cols);
+  for (Index i = 0; i < rows; ++i) {
+    for (Index j = 0; j < cols; ++j) {
+      column_major(i, j) = depth(i, j);
+      in_double(i, j) = static_cast<double>(depth(i, j));
+      image(static_cast<int>(i), static_cast<int>(j)) = depth(i, j);
+      grid_traits<test::ForeignImage<float>>::at(foreign, i, j) = depth(i, j);
+    }
+  }
+  Image<double> wide(rows, cols);
+  REQUIRE(map(in_double, wide, workspace).accepted);
+  CHECK(same(wide));
+  REQUIRE(map(column_major, column_major, workspace).accepted);  // in place
+  CHECK(same(column_major));
+  REQUIRE(map(image, image, workspace).accepted);
+  CHECK(same(as_view(image)));
+  REQUIRE(map(foreign, foreign, workspace).accepted);
+  CHECK(same(as_view(foreign)));
+  Image<float> out(rows, cols);
+  const LazyView lazy(rows, cols, [&](Index i, Index j) { return depth(i, j); });
+  REQUIRE(map(lazy, out, workspace).accepted);
+  CHECK(same(out));
+  Image<float> whole_numbers(rows, cols);
+  const LazyView integers(rows, cols, [](Index i, Index j) { return static_cast<int>(i + j); });
+  CHECK(map(integers, whole_numbers, workspace).known_px > 0);
+}
+
+TEST_CASE("curvature: images smaller than the ring have no curvature") {
+  for (const Index size : {1, 2, 7}) {
+    const Image<float> depth(size, size + 1, 3.0F);
+    for (const Index radius : {6, 30, 1000}) {
+      const Image<float> k = curvatures<ClampedMean<>>(depth, {radius, 0.01});
+      CHECK(std::all_of(k.cells.begin(), k.cells.end(), [](float x) { return std::isnan(x); }));
+    }
+  }
+}
+
+TEST_CASE("curvature: other sizes are refused and nothing is written") {
+  const CurvatureMap<ClampedMean<>, PlatePitch> map({2}, plate, 9, 10);
+  auto workspace = map.workspace();
+  const Image<float> depth(9, 10, 1.0F), narrow(9, 9, 1.0F);
+  Image<float> out(9, 10, 7.0F), low(8, 10, 7.0F);
+  CHECK_FALSE(map(narrow, out, workspace).accepted);
+  CHECK_FALSE(map(depth, low, workspace).accepted);
+  CHECK_FALSE(map.band(-1, 4, depth, out, workspace).accepted);
+  CHECK_FALSE(map.band(3, 2, depth, out, workspace).accepted);
+  CHECK_FALSE(map.band(0, 10, depth, out, workspace).accepted);
+  const CurvatureMap<ClampedMean<>, PlatePitch> other({3}, plate, 9, 10);
+  auto foreign = other.workspace();
+  CHECK_FALSE(map(depth, out, foreign).accepted);
+  CHECK(out.cells == Image<float>(9, 10, 7.0F).cells);
+  CHECK(low.cells == Image<float>(8, 10, 7.0F).cells);
+  CHECK(map.band(4, 4, depth, out, workspace).accepted);
+}
+
+TEST_CASE("curvature: bad parameters are refused by name, value and range") {
+  const auto map = [](const CurvatureRing& ring, const auto& projection, Index rows, Index cols) {
+    return refusal([&] {
+      CurvatureMap<ClampedMean<>, std::decay_t<decltype(projection)>>(ring, projection, rows, cols);
+    });
+  };
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  CHECK(map({}, plate, 4, 5) == "accepted");
+  CHECK(map({0}, plate, 4, 5) == "CurvatureRing: radius_px = 0, must be in [1, 1000]");
+  CHECK(map({1001}, plate, 4, 5) == "CurvatureRing: radius_px = 1001, must be in [1, 1000]");
+  CHECK(map({5, 0}, plate, 4, 5) == "CurvatureRing: min_direction_share = 0, must be in (0, 1]");
+  CHECK(map({5, nan}, plate, 4, 5) ==
+        "CurvatureRing: min_direction_share = nan, must be in (0, 1]");
+  CHECK(map({}, PlatePitch{0}, 4, 5) == "PlatePitch: pitch_mm = 0, must be in [1e-9, 1e9]");
+  CHECK(map({}, PitchAtDepth(nan, 0.01), 4, 5) ==
+        "PitchAtDepth: pitch_mm = nan, must be in [1e-9, 1e9]");
+  CHECK(map({}, PitchAtDepth(0.1, -1), 4, 5) ==
+        "PitchAtDepth: growth_per_mm = -1, must be in [0, 1e9]");
+  CHECK(map({}, plate, 0, 5) == "CurvatureMap: rows = 0, must be in [1, 1000000]");
+  CHECK(map({}, plate, 4, -1) == "CurvatureMap: cols = -1, must be in [1, 1000000]");
+}
+
+TEST_CASE("curvature: a camera's pitch grows with depth as its rays spread") {
+  const Camera<double> camera;
+  const PitchAtDepth pitch(camera);
+  const double row = camera.center_y_px, col = camera.center_x_px + 1;
+  const auto spread = [&](double l) { return point_at(camera, row, col, l).x; };
+  CHECK(pitch.pitch_mm == camera.pitch_mm);
+  CHECK(spread(10) / spread(0) == Approx(1 + 10 * pitch.growth_per_mm).epsilon(1e-5));
+}
+
+#if defined(FINGERPAD_HAS_VECTORS)
+TEMPLATE_TEST_CASE("quick inverse roots keep their bounds", "", float, double) {
+  using S = TestType;
+  constexpr int n = detail::row_lanes<S>;
+  using V = detail::lanes<S, n>;
+  double worst = 0, worst_rough = 0;
+  for (int k = 0; k < 200000; ++k) {
+    const S x = static_cast<S>(std::exp(static_cast<double>(k) * 1.6e-3 / 2 - 80));
+    const V v = V{} + x;
+    const double truth = 1 / std::sqrt(static_cast<double>(x));
+    const auto error = [&](const V& found) {
+      return std::abs(static_cast<double>(found[n - 1]) / truth - 1);
+    };
+    worst = (std::max)(worst, error(detail::inverse_sqrt(v)));
+    worst_rough = (std::max)(worst_rough, error(detail::rough_inverse_sqrt(v)));
+  }
+  CAPTURE(worst, worst_rough);
+  CHECK(worst < (sizeof(S) == 4 ? 1e-6 : 2e-15));
+  CHECK(worst_rough < 2.1e-5);
+  CHECK(std::isfinite(detail::inverse_sqrt(V{})[0]));
+  CHECK(std::isnan(detail::inverse_sqrt(V{} + not_a_number<S>())[0]));
+}
+#endif

@@ -1,0 +1,873 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+#include "fingerpad/motion/contact_shift.hpp"
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <numbers>
+#include <opencv2/core.hpp>
+#include <string>
+#include <type_traits>
+#include <vector>
+
+#include "fingerpad/adapt/eigen.hpp"
+#include "fingerpad/adapt/opencv.hpp"
+#include "support/catch.hpp"
+#include "support/numbers.hpp"
+#include "support/pad.hpp"
+#include "support/refusal.hpp"
+
+namespace test {
+
+template <class Real>
+Dual<Real> atan2(const Dual<Real>& y, const Dual<Real>& x) {
+  using std::atan2;
+  return {Real(atan2(y.v, x.v)), Real((x.v * y.d - y.v * x.d) / (x.v * x.v + y.v * y.v))};
+}
+
+}  // namespace test
+
+using namespace fingerpad;
+using test::Digits50;
+using test::Image;
+
+namespace {
+
+constexpr double pi = std::numbers::pi;
+constexpr double infinity = std::numeric_limits<double>::infinity();
+using Points = Image<Point2<double>>;
+using Mask = Image<std::uint8_t>;
+
+/// A turn about the origin, then a shift.
+struct Rigid {
+  double angle_rad = 0;
+  double x = 0;
+  double y = 0;
+  Point2<double> operator()(const Point2<double>& p) const {
+    const double c = std::cos(angle_rad), s = std::sin(angle_rad);
+    return {c * p.x - s * p.y + x, s * p.x + c * p.y + y};
+  }
+};
+Points moved(Points dots, const Rigid& motion) {
+  for (auto& p : dots.cells) {
+    p = motion(p);
+  }
+  return dots;
+}
+
+/// Dots every 1.5 mm about the origin, none quite in its place.
+Points printed(Index rows = 21, Index cols = 21, double jitter_mm = 0.05) {
+  Points dots(rows, cols);
+  test::Random random(1);
+  for (Index i = 0; i < rows; ++i) {
+    for (Index j = 0; j < cols; ++j) {
+      dots(i, j) = {1.5 * static_cast<double>(j - cols / 2) + jitter_mm * random.uniform(-1, 1),
+                    1.5 * static_cast<double>(i - rows / 2) + jitter_mm * random.uniform(-1, 1)};
+    }
+  }
+  return dots;
+}
+/// Within so many steps of the middle.
+Mask disc(Index rows = 21, Index cols = 21, double radius = 5.2) {
+  Mask mask(rows, cols, 0);
+  for (Index i = 0; i < rows; ++i) {
+    for (Index j = 0; j < cols; ++j) {
+      const double r =
+          std::hypot(static_cast<double>(i - rows / 2), static_cast<double>(j - cols / 2));
+      mask(i, j) = r < radius ? 1 : 0;
+    }
+  }
+  return mask;
+}
+constexpr Index in_disc = 89;
+
+template <class Dots>
+Dots choice_for(Index rows, Index cols) {
+  if constexpr (std::is_same_v<Dots, OneDot>) {
+    return central_dot(rows, cols);
+  } else {
+    return {};
+  }
+}
+
+/// One frame.
+template <class Dots, class Mean = PlainMean, class S = double, class Free, class Grid, class Flags>
+ShiftResult<S> shift(const Free& free, const Grid& dots, const Flags& contact) {
+  const ContactShift<Dots, Mean, S> estimator(free, choice_for<Dots>(rows(free), cols(free)));
+  auto workspace = estimator.workspace();
+  return estimator(dots, contact, workspace);
+}
+
+/// Which dots take part: those whose place matters.
+template <class Dots, class Flags>
+Mask taking_part(const Points& dots, const Flags& contact) {
+  const ContactShift<Dots> estimator(dots, choice_for<Dots>(dots.rows(), dots.cols()));
+  auto workspace = estimator.workspace();
+  Mask part(dots.rows(), dots.cols(), 0);
+  for (Index i = 0; i < dots.rows(); ++i) {
+    for (Index j = 0; j < dots.cols(); ++j) {
+      Points pushed = dots;
+      pushed(i, j).x += 64;
+      const auto r = estimator(pushed, contact, workspace);
+      part(i, j) = r.has_displacement() && r.displacement.x > 0.1 ? 1 : 0;
+    }
+  }
+  return part;
+}
+
+bool has_no_answer(const ShiftResult<double>& r) {
+  return !r.has_displacement() && std::isnan(r.displacement.x) && std::isnan(r.displacement.y) &&
+         std::isnan(r.rotation_rad) && std::isnan(r.residual_rms) && r.dots == 0;
+}
+
+template <class Dots_, class Mean_>
+struct Way {
+  using Dots = Dots_;
+  using Mean = Mean_;
+};
+
+}  // namespace
+
+TEMPLATE_TEST_CASE("contact shift: rigid motions are found to rounding",
+                   "[contact_shift]",
+                   (Way<EdgeDots, PlainMean>),
+                   (Way<EdgeDots, HuberMean>),
+                   (Way<ContactDots, PlainMean>),
+                   (Way<ContactDots, HuberMean>),
+                   (Way<OneDot, PlainMean>),
+                   (Way<OneDot, HuberMean>)) {
+  using Dots = typename TestType::Dots;
+  using Mean = typename TestType::Mean;
+  const Points free = printed();
+  const Mask contact = disc();
+  for (const Rigid& motion : {Rigid{}, Rigid{0, 2, -1}, Rigid{0.1, 0, 0}, Rigid{-0.3, 0.5, 0.25},
+                              Rigid{1e-8, 0, 0}, Rigid{2.5, -3, 4}, Rigid{-pi / 2, 0, 0}}) {
+    CAPTURE(motion.angle_rad, motion.x);
+    const Points dots = moved(free, motion);
+    const auto r = shift<Dots, Mean>(free, dots, contact);
+    REQUIRE(r.status == ShiftStatus::measured);
+    CHECK(r.has_displacement());
+    CHECK(r.dots == (std::is_same_v<Dots, EdgeDots> ? 88 : in_disc));
+    CHECK(r.rotation_rad == Approx(motion.angle_rad).epsilon(1e-14).margin(1e-15));
+    CHECK(r.residual_rms < 1e-14);
+    if (std::is_same_v<Dots, OneDot>) {
+      CHECK(r.displacement.x == dots(10, 10).x - free(10, 10).x);
+      CHECK(r.displacement.y == dots(10, 10).y - free(10, 10).y);
+    } else if (motion.angle_rad == 0) {
+      CHECK(r.displacement.x == Approx(motion.x).margin(1e-14));
+      CHECK(r.displacement.y == Approx(motion.y).margin(1e-14));
+    }
+    const auto in_float = shift<Dots, Mean, float>(free, dots, contact);
+    REQUIRE(in_float.status == ShiftStatus::measured);
+    CHECK(static_cast<double>(in_float.rotation_rad) == Approx(motion.angle_rad).margin(1e-6));
+    // a robust mean of what differs only in roundings weighs the dots by them: its middle is no
+    // certain one, but what it is carried along by is, to how far the turn carries it
+    const double moved_by = Mean::is_robust ? 1.5 * std::abs(motion.angle_rad) : 0;
+    const auto close = [&](float a, double b) {
+      return std::abs(static_cast<double>(a) - b) < 1e-5 + moved_by;
+    };
+    CHECK(close(in_float.displacement.x, r.displacement.x));
+    CHECK(close(in_float.displacement.y, r.displacement.y));
+    CHECK(in_float.residual_rms < 1e-5F);
+  }
+}
+
+TEMPLATE_TEST_CASE("contact shift: angles near half a turn do not wrap",
+                   "[contact_shift]",
+                   EdgeDots,
+                   ContactDots,
+                   OneDot) {
+  const Points free = printed();
+  for (const double angle : {pi - 1e-7, pi - 0.01, -pi + 1e-7, -pi + 0.01, 3.0, -3.0}) {
+    // noise that takes some of the dots across the cut and not others
+    Points dots = moved(free, {angle, 1, 2});
+    test::Random random(2);
+    for (auto& p : dots.cells) {
+      p = {p.x + 0.02 * random.normal(), p.y + 0.02 * random.normal()};
+    }
+    const double plain = shift<TestType>(free, dots, disc()).rotation_rad;
+    const double robust = shift<TestType, HuberMean>(free, dots, disc()).rotation_rad;
+    CHECK(std::abs(std::remainder(plain - angle, 2 * pi)) < 2e-3);
+    CHECK(std::abs(std::remainder(robust - angle, 2 * pi)) < 2e-3);
+    CHECK(std::abs(plain) <= pi);
+  }
+  const auto r = shift<TestType>(free, moved(free, {pi, 0, 0}), disc());
+  CHECK(std::abs(r.rotation_rad) == Approx(pi));
+}
+
+TEST_CASE("contact shift: the rigid motion nearest to the dots", "[contact_shift]") {
+  // Four dots at the ends of a cross. Two are carried on by 1, two stay: the middle is carried by
+  // half, and none is turned.
+  Points free(3, 3, {test::nan, test::nan});
+  free(0, 1) = {0, -2};
+  free(1, 0) = {-2, 0};
+  free(1, 2) = {2, 0};
+  free(2, 1) = {0, 2};
+  const Mask all(3, 3, 1);
+  Points dots = free;
+  dots(1, 0).x += 1;
+  dots(1, 2).x += 1;
+  auto r = shift<ContactDots>(free, dots, all);
+  CHECK(r.dots == 4);
+  CHECK(r.displacement.x == 0.5);
+  CHECK(r.displacement.y == 0);
+  CHECK(r.rotation_rad == 0);
+  CHECK(r.residual_rms == 0.5);
+  // a shear by 1 along x over 4: cross products 2 * 2 * 0.5, dot products 4 * 4
+  dots = free;
+  dots(0, 1).x += 1;
+  dots(2, 1).x -= 1;
+  r = shift<ContactDots>(free, dots, all);
+  CHECK(r.rotation_rad == Approx(std::atan2(4, 16)).epsilon(1e-15));
+  CHECK(r.displacement.x == 0);
+  // grown evenly: no turn, and the residual is what it has grown
+  for (auto& p : dots.cells) {
+    p = {1.25 * p.x, 1.25 * p.y};
+  }
+  dots(0, 1) = {0, -2.5};
+  dots(2, 1) = {0, 2.5};
+  r = shift<ContactDots>(free, dots, all);
+  CHECK(r.rotation_rad == 0);
+  CHECK(r.residual_rms == 0.5);
+}
+
+TEST_CASE("contact shift: one dot", "[contact_shift]") {
+  const Points free = printed();
+  const Points dots = moved(free, {0.2, 1, -0.5});
+  const Mask contact = disc(), none(21, 21, 0);
+  CHECK(central_dot(21, 21).dot == DotIndex{10, 10});
+  CHECK(central_dot(8, 5).dot == DotIndex{4, 2});
+  CHECK(central_dot(1, 1).dot == DotIndex{0, 0});
+  const auto by = [&](const DotIndex& dot, const Points& frame, const Mask& mask) {
+    const ContactShift estimator(free, OneDot{dot});
+    auto workspace = estimator.workspace();
+    return estimator(frame, mask, workspace);
+  };
+  // its displacement, in contact or not; the angle is that of the dots in contact
+  for (const DotIndex dot : {DotIndex{10, 10}, {8, 12}, {0, 0}, {20, 3}}) {
+    const auto r = by(dot, dots, contact);
+    CHECK(r.status == ShiftStatus::measured);
+    CHECK(r.dots == in_disc);
+    CHECK(r.displacement.x == dots(dot.row, dot.col).x - free(dot.row, dot.col).x);
+    CHECK(r.displacement.y == dots(dot.row, dot.col).y - free(dot.row, dot.col).y);
+    CHECK(r.rotation_rad == Approx(0.2).epsilon(1e-14));
+  }
+  // without contact it still says how far it went, but nothing of a turn
+  auto r = by({10, 10}, dots, none);
+  CHECK(r.status == ShiftStatus::one_place_only);
+  CHECK(r.displacement.x == dots(10, 10).x - free(10, 10).x);
+  CHECK(std::isnan(r.rotation_rad));
+  CHECK(r.dots == 0);
+  // lost
+  Points lost = dots;
+  lost(10, 10).y = test::nan;
+  r = by({10, 10}, lost, contact);
+  CHECK(r.status == ShiftStatus::no_dots);
+  CHECK(!r.has_displacement());
+  CHECK(std::isnan(r.displacement.x));
+  CHECK(std::isnan(r.displacement.y));
+  CHECK(by({10, 11}, lost, contact).status == ShiftStatus::measured);
+  Points holes = free;
+  holes(10, 10).x = infinity;
+  r = shift<OneDot>(holes, dots, contact);
+  CHECK(r.status == ShiftStatus::no_dots);
+  CHECK(std::isnan(r.displacement.x));
+}
+
+TEST_CASE("contact shift: the dots on both sides of the edge", "[contact_shift]") {
+  const Points free = printed(7, 8, 0);
+  // # in contact, . not, o and + those of them that take part
+  const auto mask_of = [](const std::array<const char*, 7>& picture, const char* marks) {
+    Mask mask(7, 8, 0);
+    for (Index i = 0; i < 7; ++i) {
+      for (Index j = 0; j < 8; ++j) {
+        const char c = picture[static_cast<std::size_t>(i)][j];
+        mask(i, j) = std::string(marks).find(c) != std::string::npos ? 1 : 0;
+      }
+    }
+    return mask;
+  };
+  const auto check = [&](const std::array<const char*, 7>& picture) {
+    const Mask contact = mask_of(picture, "#o");
+    CHECK(taking_part<EdgeDots>(free, contact).cells == mask_of(picture, "o+").cells);
+    CHECK(taking_part<ContactDots>(free, contact).cells == contact.cells);
+    const auto count = [](const Mask& m) {
+      return static_cast<Index>(std::count(m.cells.begin(), m.cells.end(), 1));
+    };
+    CHECK(shift<EdgeDots>(free, free, contact).dots == count(mask_of(picture, "o+")));
+    CHECK(shift<ContactDots>(free, free, contact).dots == count(contact));
+  };
+  check({"........",  //
+         "..++++++",  //
+         ".++oooo+",  //
+         ".+oo##o+",  //
+         ".+o##oo+",  //
+         ".+oooo++",  //
+         ".++++++."});
+  check({"#o+.....",  // at the border of the grid there is no other side
+         "oo+.....",  //
+         "+++..+++",  //
+         ".....+o+",  //
+         ".....+++",  //
+         "++......",  //
+         "o+......"});
+  check({"########",  //
+         "##ooo###",  //
+         "##o+o###",  //
+         "##ooo###",  //
+         "########",  //
+         "######oo",  //
+         "######o+"});
+  // no edge at all
+  const auto full = shift<EdgeDots>(free, free, Mask(7, 8, 1));
+  CHECK(full.status == ShiftStatus::no_dots);
+  CHECK(has_no_answer(full));
+  CHECK(has_no_answer(shift<EdgeDots>(free, free, Mask(7, 8, 0))));
+}
+
+TEST_CASE("contact shift: what is not known makes no edge", "[contact_shift]") {
+  const Points free = printed(7, 7, 0);
+  Image<Touch> contact(7, 7, Touch::none);
+  for (Index i = 0; i < 7; ++i) {
+    for (Index j = 0; j < 3; ++j) {
+      contact(i, j) = Touch::contact;
+    }
+  }
+  const auto columns = [&](const Points& dots, const Image<Touch>& mask) {
+    const Mask part = taking_part<EdgeDots>(dots, mask);
+    std::string text;
+    for (Index j = 0; j < 7; ++j) {
+      text += part(3, j) != 0 ? 'x' : '-';
+    }
+    return text;
+  };
+  CHECK(columns(free, contact) == "--xx---");
+  SECTION("a ring of unknown dots between contact and not") {
+    for (Index i = 0; i < 7; ++i) {
+      contact(i, 3) = Touch::unknown;
+    }
+    CHECK(columns(free, contact) == "-------");
+    CHECK(shift<EdgeDots>(free, free, contact).status == ShiftStatus::no_dots);
+    CHECK(taking_part<ContactDots>(free, contact)(3, 2) == 1);
+    CHECK(taking_part<ContactDots>(free, contact)(3, 3) == 0);
+  }
+  SECTION("a ring of lost dots") {
+    Points dots = free;
+    for (Index i = 0; i < 7; ++i) {
+      dots(i, 3).x = test::nan;
+    }
+    CHECK(columns(dots, contact) == "-------");
+  }
+  SECTION("one of them, whose neighbours have others") {
+    Points dots = free;
+    dots(3, 3) = {0, infinity};
+    CHECK(columns(dots, contact) == "--x----");
+    contact(3, 3) = Touch::unknown;
+    CHECK(columns(free, contact) == "--x----");
+  }
+}
+
+TEST_CASE("contact shift: a mask in any form", "[contact_shift]") {
+  const Points free = printed();
+  const Points dots = moved(free, {0.1, 1, 2});
+  const Mask bytes = disc();
+  const auto check_same = [&](const auto& mask) {
+    for (const bool edge : {true, false}) {
+      const auto a =
+          edge ? shift<EdgeDots>(free, dots, bytes) : shift<ContactDots>(free, dots, bytes);
+      const auto b =
+          edge ? shift<EdgeDots>(free, dots, mask) : shift<ContactDots>(free, dots, mask);
+      CHECK(b.status == ShiftStatus::measured);
+      CHECK(a.dots == b.dots);
+      CHECK(a.displacement.x == b.displacement.x);
+      CHECK(a.rotation_rad == b.rotation_rad);
+    }
+  };
+  Image<float> numbers(21, 21, 0);
+  Image<double> gaps(21, 21, test::nan);
+  Image<Touch> touches(21, 21, Touch::none);
+  Image<std::uint8_t> white(21, 21, 0);
+  Eigen::Matrix<bool, Eigen::Dynamic, Eigen::Dynamic> bools(21, 21);
+  for (Index i = 0; i < 21; ++i) {
+    for (Index j = 0; j < 21; ++j) {
+      bools(i, j) = bytes(i, j) != 0;
+      if (bytes(i, j) != 0) {
+        numbers(i, j) = j % 2 == 0 ? 0.25F : -1.0F;
+        gaps(i, j) = 1;
+        touches(i, j) = Touch::contact;
+        white(i, j) = 255;
+      }
+    }
+  }
+  check_same(bools);
+  check_same(numbers);
+  check_same(gaps);  // a number that is none says no contact
+  check_same(touches);
+  check_same(white);
+  check_same(LazyView(21, 21, [&](Index i, Index j) { return bytes(i, j) != 0; }));
+}
+
+TEST_CASE("contact shift: dots of any type", "[contact_shift]") {
+  Points free = printed(9, 9);
+  for (auto& p : free.cells) {  // exact in float
+    p = {static_cast<double>(static_cast<float>(p.x)),
+         static_cast<double>(static_cast<float>(p.y))};
+  }
+  const Points dots = [&] {
+    Points d = moved(free, {0.05, 0.5, -1});
+    for (auto& p : d.cells) {
+      p = {static_cast<double>(static_cast<float>(p.x)),
+           static_cast<double>(static_cast<float>(p.y))};
+    }
+    return d;
+  }();
+  const Mask contact = disc(9, 9, 3);
+  const auto expected = shift<EdgeDots, HuberMean>(free, dots, contact);
+  const auto check = [&](const auto& f, const auto& d) {
+    const auto r = shift<EdgeDots, HuberMean>(f, d, contact);
+    CHECK(r.status == expected.status);
+    CHECK(r.dots == expected.dots);
+    CHECK(r.displacement.x == expected.displacement.x);
+    CHECK(r.displacement.y == expected.displacement.y);
+    CHECK(r.rotation_rad == expected.rotation_rad);
+    CHECK(r.residual_rms == expected.residual_rms);
+  };
+  const auto as = [&]<class P>(const Points& from, const auto& make, P) {
+    Image<P> to(9, 9, make(from.cells.front()));
+    for (std::size_t k = 0; k < to.cells.size(); ++k) {
+      to.cells[k] = make(from.cells[k]);
+    }
+    return to;
+  };
+  const auto f = [](double x) { return static_cast<float>(x); };
+  const auto small = [&](const auto& p) { return Point2<float>{f(p.x), f(p.y)}; };
+  // of dots in space the plane counts, whatever the depth
+  const auto space = [](const auto& p) { return Point3<double>{p.x, p.y, test::nan}; };
+  const auto pair = [&](const auto& p) { return std::array<float, 2>{f(p.x), f(p.y)}; };
+  const auto vector = [](const auto& p) { return Eigen::Vector2d(p.x, p.y); };
+  check(as(free, small, Point2<float>()), as(dots, small, Point2<float>()));
+  check(as(free, space, Point3<double>()), as(dots, space, Point3<double>()));
+  check(as(free, pair, std::array<float, 2>()), as(dots, pair, std::array<float, 2>()));
+  check(as(free, vector, Eigen::Vector2d()), as(dots, vector, Eigen::Vector2d()));
+  check(as(free, vector, Eigen::Vector2d()), as(dots, small, Point2<float>()));  // mixed
+  cv::Mat_<cv::Point2f> cv_free(9, 9), cv_dots(9, 9);
+  for (int i = 0; i < 9; ++i) {
+    for (int j = 0; j < 9; ++j) {
+      cv_free(i, j) = {f(free(i, j).x), f(free(i, j).y)};
+      cv_dots(i, j) = {f(dots(i, j).x), f(dots(i, j).y)};
+    }
+  }
+  check(cv_free, cv_dots);
+  // turned grids: the dots' order in memory is no matter
+  const StridedView<const Point2<double>> a(free.cells.data(), 9, 9, 9),
+      b(dots.cells.data(), 9, 9, 9);
+  const StridedView<const std::uint8_t> c(contact.cells.data(), 9, 9, 9);
+  const auto r = shift<EdgeDots>(transpose(a), transpose(b), transpose(c));
+  const auto plain = shift<EdgeDots>(free, dots, contact);
+  CHECK(r.rotation_rad == Approx(plain.rotation_rad).epsilon(1e-12));
+  CHECK(r.displacement.x == Approx(plain.displacement.x).epsilon(1e-12));
+}
+
+TEMPLATE_TEST_CASE("contact shift: dots that are missing do not count",
+                   "[contact_shift]",
+                   PlainMean,
+                   HuberMean) {
+  const Points free = printed();
+  const Rigid motion{0.1, 0.5, -0.25};
+  const Points dots = moved(free, motion);
+  const Mask contact = disc();
+  for (const double gone : {test::nan, infinity, -infinity, 1e300, -1e300, 1e7}) {
+    Points gaps = dots, holes = free;
+    Index left = in_disc;
+    for (Index k = 0; k < 21; ++k) {  // along two lines
+      gaps(k, 10).x = gone;
+      holes(10, k).y = gone;
+      left -= contact(k, 10) + contact(10, k);
+    }
+    left += 1;  // the middle is on both
+    CAPTURE(gone);
+    for (const auto& r : {shift<ContactDots, TestType>(holes, gaps, contact),
+                          shift<EdgeDots, TestType>(holes, gaps, contact)}) {
+      REQUIRE(r.status == ShiftStatus::measured);
+      CHECK(r.rotation_rad == Approx(0.1).epsilon(1e-13));
+      CHECK(r.residual_rms < 1e-13);
+    }
+    CHECK(shift<ContactDots, TestType>(holes, gaps, contact).dots == left);
+    const auto in_float = shift<ContactDots, TestType, float>(holes, gaps, contact);
+    REQUIRE(in_float.status == ShiftStatus::measured);
+    CHECK(in_float.dots == left);
+    CHECK(static_cast<double>(in_float.rotation_rad) == Approx(0.1).margin(1e-6));
+  }
+}
+
+TEMPLATE_TEST_CASE("contact shift: too few dots for an angle, or for anything",
+                   "[contact_shift]",
+                   PlainMean,
+                   HuberMean) {
+  const Points free = printed(5, 5, 0);
+  Points dots = moved(free, {0, 1, 2});
+  Mask contact(5, 5, 0);
+  SECTION("one") {
+    contact(1, 3) = 1;
+    const auto r = shift<ContactDots, TestType>(free, dots, contact);
+    CHECK(r.status == ShiftStatus::one_place_only);
+    CHECK(r.has_displacement());
+    CHECK(r.dots == 1);
+    CHECK(r.displacement.x == 1);
+    CHECK(r.displacement.y == 2);
+    CHECK(std::isnan(r.rotation_rad));
+    CHECK(r.residual_rms == 0);
+    // beside it are eight that are not in contact
+    CHECK(shift<EdgeDots, TestType>(free, dots, contact).dots == 9);
+  }
+  SECTION("two") {
+    contact(1, 3) = contact(4, 0) = 1;
+    const auto r = shift<ContactDots, TestType>(free, moved(free, {0.7, 0, 0}), contact);
+    CHECK(r.status == ShiftStatus::measured);
+    CHECK(r.dots == 2);
+    CHECK(r.rotation_rad == Approx(0.7).epsilon(1e-14));
+  }
+  SECTION("all in one place, in the frame or in the reference") {
+    test::Random random(4);
+    for (int k = 0; k < 50; ++k) {
+      // the rounded sum of 25 such places, over 25, is not the place
+      const Point2<double> place = {random.uniform(-20, 20), random.uniform(-20, 20)};
+      const Points heap(5, 5, place);
+      for (const auto& r : {shift<ContactDots, TestType>(free, heap, Mask(5, 5, 1)),
+                            shift<ContactDots, TestType>(heap, free, Mask(5, 5, 1)),
+                            shift<ContactDots, TestType>(heap, heap, Mask(5, 5, 1))}) {
+        CHECK(r.status == ShiftStatus::one_place_only);
+        CHECK(r.dots == 25);
+        CHECK(std::isnan(r.rotation_rad));
+        CHECK(is_finite(r.residual_rms));
+      }
+      const auto moved = shift<ContactDots, TestType>(free, heap, Mask(5, 5, 1)).displacement;
+      CHECK(std::abs(moved.x - place.x) < 1e-13);
+      CHECK(std::abs(moved.y - place.y) < 1e-13);
+    }
+  }
+  SECTION("none") {
+    for (auto& p : dots.cells) {
+      p.y = test::nan;
+    }
+    CHECK(shift<ContactDots, TestType>(free, dots, Mask(5, 5, 1)).status == ShiftStatus::no_dots);
+    CHECK(has_no_answer(shift<ContactDots, TestType>(free, dots, Mask(5, 5, 1))));
+    CHECK(has_no_answer(shift<ContactDots, TestType>(dots, free, Mask(5, 5, 1))));
+    CHECK(has_no_answer(shift<EdgeDots, TestType>(free, dots, disc(5, 5, 2))));
+    CHECK(has_no_answer(shift<ContactDots, TestType>(free, free, contact)));
+    const Points empty(0, 0);
+    const auto r = shift<ContactDots, TestType>(empty, empty, Mask(0, 0));
+    CHECK(r.status == ShiftStatus::no_dots);
+  }
+}
+
+TEST_CASE("contact shift: grids and workspaces of another size", "[contact_shift]") {
+  const Points free = printed(5, 6);
+  const ContactShift estimator(free, ContactDots());
+  CHECK(estimator.rows() == 5);
+  CHECK(estimator.cols() == 6);
+  auto workspace = estimator.workspace();
+  const auto refused = [&](const Points& dots, const Mask& mask) {
+    const auto r = estimator(dots, mask, workspace);
+    return r.status == ShiftStatus::other_size && has_no_answer(r);
+  };
+  CHECK(refused(printed(6, 5), Mask(6, 5, 1)));
+  CHECK(refused(printed(5, 5), Mask(5, 5, 1)));
+  CHECK(refused(printed(4, 6), Mask(5, 6, 1)));
+  CHECK(refused(free, Mask(6, 5, 1)));
+  CHECK(refused(free, Mask(5, 7, 1)));
+  CHECK(refused(Points(), Mask()));
+  CHECK(!refused(free, Mask(5, 6, 1)));
+
+  // of a smaller grid, which would have to grow
+  const ContactShift small(printed(3, 3), ContactDots());
+  auto its = small.workspace();
+  const auto r = estimator(free, Mask(5, 6, 1), its);
+  CHECK(r.status == ShiftStatus::other_size);
+  CHECK(has_no_answer(r));
+  CHECK(small(printed(3, 3), Mask(3, 3, 1), its).dots == 9);  // as good as before
+  decltype(its) nothing;
+  CHECK(estimator(free, Mask(5, 6, 1), nothing).status == ShiftStatus::other_size);
+  // a larger one will do
+  CHECK(small(printed(3, 3), Mask(3, 3, 1), workspace).status == ShiftStatus::measured);
+}
+
+namespace {
+
+enum class Mistake { stuck, mismatched };
+
+/// All dots carried along and turned, but some that stand still or were taken for others.
+Points with_mistakes(const Points& free,
+                     const Mask& contact,
+                     const Rigid& motion,
+                     double share,
+                     Mistake mistake,
+                     test::Random& random) {
+  Points dots = moved(free, motion);
+  std::vector<std::size_t> candidates;
+  for (std::size_t k = 0; k < dots.cells.size(); ++k) {
+    dots.cells[k].x += 0.01 * random.normal();
+    dots.cells[k].y += 0.01 * random.normal();
+    if (contact.cells[k] != 0) {
+      candidates.push_back(k);
+    }
+  }
+  const auto wrong = static_cast<std::size_t>(share * static_cast<double>(candidates.size()));
+  for (std::size_t n = 0; n < wrong; ++n) {
+    const auto last = static_cast<Index>(candidates.size() - n) - 1;
+    std::swap(candidates[static_cast<std::size_t>(random.whole(0, last))],
+              candidates[static_cast<std::size_t>(last)]);
+    const std::size_t k = candidates[static_cast<std::size_t>(last)];
+    if (mistake == Mistake::stuck) {
+      dots.cells[k] = free.cells[k];
+    } else {  // the dot to the right
+      dots.cells[k].x += 1.5;
+    }
+  }
+  return dots;
+}
+
+struct Bias {
+  double share = 0;      ///< of the displacement, the worst of the frames
+  double angle_rad = 0;  ///< likewise
+};
+
+template <class Mean>
+Bias bias_of(double share, Mistake mistake, double turn_rad = 0) {
+  const Points free = printed();
+  const Mask contact = disc();
+  test::Random random(11);
+  Bias worst;
+  for (int k = 0; k < 40; ++k) {
+    const Rigid motion{random.uniform(-turn_rad, turn_rad), random.uniform(0.5, 2),
+                       random.uniform(-1, 1)};
+    const Points dots = with_mistakes(free, contact, motion, share, mistake, random);
+    const auto r = shift<ContactDots, Mean>(free, dots, contact);
+    const auto exact = shift<ContactDots>(free, moved(free, motion), contact);
+    REQUIRE(r.status == ShiftStatus::measured);
+    const double off = std::hypot(r.displacement.x - exact.displacement.x,
+                                  r.displacement.y - exact.displacement.y);
+    worst.share =
+        (std::max)(worst.share, off / std::hypot(exact.displacement.x, exact.displacement.y));
+    worst.angle_rad = (std::max)(worst.angle_rad, std::abs(r.rotation_rad - exact.rotation_rad));
+  }
+  return worst;
+}
+
+}  // namespace
+
+TEST_CASE("contact shift: stuck and mistaken dots bias a robust mean little", "[contact_shift]") {
+  // Displacements of 0.5 to 2.2 mm, noise of 0.01 mm; the worst of forty frames.
+  for (const auto mistake : {Mistake::stuck, Mistake::mismatched}) {
+    for (const double turn_rad : {0.0, 0.1}) {
+      const auto of = [&]<class Mean>(double share, Mean) {
+        return bias_of<Mean>(share, mistake, turn_rad);
+      };
+      const Bias plain = of(0.3, PlainMean()), robust = of(0.3, HuberMean()),
+                 few = of(0.1, HuberMean()), no_plain = of(0, PlainMean()),
+                 none = of(0, HuberMean());
+      INFO("plain " << plain.share << ' ' << plain.angle_rad << ", robust " << robust.share << ' '
+                    << robust.angle_rad << ", a tenth " << few.share << ' ' << few.angle_rad
+                    << ", none " << none.share << ' ' << none.angle_rad << " (plain "
+                    << no_plain.share << ' ' << no_plain.angle_rad << ")");
+      CHECK(plain.share > 0.2);
+      CHECK(plain.angle_rad > 0.01);
+      CHECK(robust.angle_rad < 0.003);
+      CHECK(few.angle_rad < 0.001);
+      // The displacement is that of the middle of what counts. It is not where the middle of all
+      // is, and so a turn adds to it.
+      CHECK(robust.share < (turn_rad > 0 ? 0.06 : 0.03));
+      CHECK(few.share < (turn_rad > 0 ? 0.05 : 0.01));
+      // nothing wrong: as good as the plain mean, which is the best there is for such noise
+      CHECK(no_plain.share < 0.006);
+      CHECK(none.share < (turn_rad > 0 ? 0.02 : 0.006));
+    }
+  }
+}
+
+TEST_CASE("contact shift: a robust mean without outliers is the plain one", "[contact_shift]") {
+  const Points free = printed();
+  const Mask contact = disc();
+  test::Random random(3);
+  double apart = 0, wrong_plain = 0, wrong_robust = 0;
+  for (int k = 0; k < 50; ++k) {
+    const Points dots = with_mistakes(free, contact, {0, 1, 0}, 0, Mistake::stuck, random);
+    const auto plain = shift<ContactDots>(free, dots, contact);
+    const auto robust = shift<ContactDots, HuberMean>(free, dots, contact);
+    apart += square(plain.displacement.x - robust.displacement.x) / 50;
+    wrong_plain += square(plain.displacement.x - 1) / 50;
+    wrong_robust += square(robust.displacement.x - 1) / 50;
+    CHECK(plain.residual_rms == Approx(0.01 * std::sqrt(2.0)).epsilon(0.2));
+  }
+  INFO(apart << ' ' << wrong_plain << ' ' << wrong_robust);
+  CHECK(std::sqrt(wrong_plain) == Approx(0.01 / std::sqrt(89.0)).epsilon(0.3));
+  CHECK(wrong_robust < 1.3 * wrong_plain);
+  CHECK(apart < 0.3 * wrong_plain);
+  // a threshold that nothing reaches
+  const ContactShift wide(free, ContactDots(), HuberMean{.threshold = 1e6});
+  auto workspace = wide.workspace();
+  const Points dots = with_mistakes(free, contact, {0.1, 1, 0}, 0.2, Mistake::stuck, random);
+  const auto a = wide(dots, contact, workspace), b = shift<ContactDots>(free, dots, contact);
+  CHECK(a.displacement.x == b.displacement.x);
+  CHECK(a.rotation_rad == b.rotation_rad);
+}
+
+TEST_CASE("contact shift: bad parameters are refused by name", "[contact_shift]") {
+  const Points free = printed(5, 6);
+  const auto one = [&](Index row, Index col) {
+    return test::refusal([&] { ContactShift(free, OneDot{{row, col}}); });
+  };
+  CHECK(one(4, 5) == "accepted");
+  CHECK(one(-1, 0) == "OneDot: row = -1, must be in [0, rows)");
+  CHECK(one(5, 0) == "OneDot: row = 5, must be in [0, rows)");
+  CHECK(one(0, -1) == "OneDot: col = -1, must be in [0, cols)");
+  CHECK(one(0, 6) == "OneDot: col = 6, must be in [0, cols)");
+  CHECK(test::refusal([&] { ContactShift(free, OneDot()); }) ==
+        "OneDot: row = -1, must be in [0, rows)");
+  const auto huber = [&](double threshold, int passes) {
+    return test::refusal([&] { ContactShift(free, EdgeDots(), HuberMean{threshold, passes}); });
+  };
+  CHECK(huber(1.5, 1) == "accepted");
+  CHECK(huber(1.5, 100) == "accepted");
+  CHECK(huber(0, 10) == "HuberMean: threshold = 0, must be > 0");
+  CHECK(huber(-1, 10) == "HuberMean: threshold = -1, must be > 0");
+  CHECK(test::begins_with(huber(test::nan, 10), "HuberMean: threshold = "));
+  CHECK(huber(1.5, 0) == "HuberMean: passes = 0, must be in [1, 100]");
+  CHECK(huber(1.5, 101) == "HuberMean: passes = 101, must be in [1, 100]");
+}
+
+TEST_CASE("contact shift: names", "[contact_shift]") {
+  CHECK(std::string(name_of(ShiftStatus::measured)) == "measured");
+  CHECK(std::string(name_of(ShiftStatus::one_place_only)) == "one place only");
+  CHECK(std::string(name_of(ShiftStatus::no_dots)) == "no dots");
+  CHECK(std::string(name_of(ShiftStatus::other_size)) == "other size");
+  CHECK(std::string(name_of(static_cast<ShiftStatus>(77))) == "unknown");
+  CHECK(has_no_answer(ShiftResult<double>()));
+  static_assert(
+      std::is_same_v<decltype(ContactShift(Points())), ContactShift<EdgeDots, PlainMean, double>>);
+}
+
+namespace {
+
+/// The same dots in another number.
+template <class S>
+Image<std::array<S, 2>> as(const Points& dots) {
+  Image<std::array<S, 2>> out(dots.rows(), dots.cols());
+  for (std::size_t k = 0; k < dots.cells.size(); ++k) {
+    out.cells[k] = {S(dots.cells[k].x), S(dots.cells[k].y)};
+  }
+  return out;
+}
+/// To what float holds.
+Points rounded(Points dots) {
+  for (auto& p : dots.cells) {
+    p = {static_cast<double>(static_cast<float>(p.x)),
+         static_cast<double>(static_cast<float>(p.y))};
+  }
+  return dots;
+}
+
+/// Errors against 50 digits over angles from 1e-9 to 3, as found.
+template <class S, class Mean>
+std::array<double, 2> errors(double away, bool in_float) {
+  const Mask contact = disc();
+  std::array<double, 2> worst{};
+  for (const double angle : {0.0, 1e-9, -1e-7, 1e-5, 1e-3, -0.1, 1.0, -3.0}) {
+    const Points printed_there = moved(printed(), {0, away, -0.75 * away});
+    Points free = printed_there;
+    Points dots = moved(printed(), {angle, away + 0.25, -0.75 * away - 0.5});
+    test::Random random(5);
+    for (auto& p : dots.cells) {
+      p = {p.x + 0.01 * random.normal(), p.y + 0.01 * random.normal()};
+    }
+    if (in_float) {
+      free = rounded(free);
+      dots = rounded(dots);
+    }
+    const auto exact =
+        shift<EdgeDots, Mean, Digits50>(as<Digits50>(free), as<Digits50>(dots), contact);
+    const auto r = shift<EdgeDots, Mean, S>(as<S>(free), as<S>(dots), contact);
+    REQUIRE(r.status == exact.status);
+    const auto off = [](const S& a, const Digits50& b) {
+      return std::abs(static_cast<double>(Digits50(Digits50(a) - b)));
+    };
+    worst[0] = (std::max)({worst[0], off(r.displacement.x, exact.displacement.x),
+                           off(r.displacement.y, exact.displacement.y)});
+    worst[1] = (std::max)(worst[1], off(r.rotation_rad, exact.rotation_rad));
+  }
+  return worst;
+}
+
+}  // namespace
+
+TEMPLATE_TEST_CASE("contact shift: follows 50 digits", "[contact_shift]", PlainMean, HuberMean) {
+  // The weights of a robust mean follow residuals of 0.01, of which roundings are a larger share.
+  constexpr bool robust = TestType::is_robust;
+  SECTION("in double, about the origin, in a corner of an image, and far away") {
+    const auto [near_mm, near_rad] = errors<double, TestType>(0, false);
+    const auto [px, rad] = errors<double, TestType>(600, false);
+    const auto [far_mm, far_rad] = errors<double, TestType>(1e5, false);
+    INFO(near_mm << ' ' << near_rad << ", " << px << ' ' << rad << ", " << far_mm << ' '
+                 << far_rad);
+    CHECK(near_mm < (robust ? 1e-12 : 2e-14));
+    CHECK(near_rad < 2e-15);
+    CHECK(px < (robust ? 1e-10 : 1e-11));
+    CHECK(rad < (robust ? 1e-13 : 2e-15));
+    CHECK(far_mm < 1e-8);
+    CHECK(far_rad < (robust ? 1e-11 : 1e-13));
+  }
+  SECTION("in float, whose sums of places far from the origin are coarse") {
+    const auto [near_mm, near_rad] = errors<float, TestType>(0, true);
+    const auto [px, rad] = errors<float, TestType>(600, true);
+    INFO(near_mm << ' ' << near_rad << ", " << px << ' ' << rad);
+    CHECK(near_mm < (robust ? 5e-4 : 1e-5));
+    CHECK(near_rad < 1e-6);
+    CHECK(px < (robust ? 0.05 : 0.01));
+    CHECK(rad < 2e-5);
+  }
+}
+
+TEMPLATE_TEST_CASE("contact shift: derivatives are those of differences",
+                   "[contact_shift]",
+                   EdgeDots,
+                   ContactDots,
+                   OneDot) {
+  const Points free = printed(9, 9);
+  test::Random random(5);
+  Points dots = moved(free, {0.2, 0.5, -1});
+  for (auto& p : dots.cells) {
+    p = {p.x + 0.05 * random.normal(), p.y + 0.05 * random.normal()};
+  }
+  const Mask contact = disc(9, 9, 3);
+  for (const auto& [row, col] : {std::pair<Index, Index>{4, 4}, {2, 3}, {6, 5}, {4, 7}}) {
+    const auto at = [&, row = row, col = col]<class S>(const S& change) {
+      auto pushed = as<S>(dots);
+      pushed(row, col)[0] = S(pushed(row, col)[0] + change);
+      const auto r = shift<TestType, PlainMean, S>(as<S>(free), pushed, contact);
+      return std::array<S, 3>{r.displacement.x, r.displacement.y, r.rotation_rad};
+    };
+    using Dual = test::Dual<Digits50>;
+    const Digits50 h("1e-15");
+    const auto dual = at(Dual(Digits50(0), Digits50(1)));
+    const auto above = at(h), below = at(Digits50(-h));
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Digits50 slope = (above[k] - below[k]) / (2 * h);
+      CHECK(std::abs(static_cast<double>(Digits50(dual[k].d - slope))) < 1e-20);
+    }
+  }
+}
+
+TEST_CASE("contact shift: expression templates give the same", "[contact_shift]") {
+  const Points free = printed(9, 9), dots = moved(free, {0.2, 0.5, -1});
+  const Mask contact = disc(9, 9, 3);
+  const auto a =
+      shift<EdgeDots, HuberMean, Digits50>(as<Digits50>(free), as<Digits50>(dots), contact);
+  using test::Lazy50;
+  const auto b = shift<EdgeDots, HuberMean, Lazy50>(as<Lazy50>(free), as<Lazy50>(dots), contact);
+  CHECK(a.status == b.status);
+  CHECK(std::abs(static_cast<double>(Digits50(Digits50(b.rotation_rad) - a.rotation_rad))) < 1e-45);
+}

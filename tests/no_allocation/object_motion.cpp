@@ -1,0 +1,53 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+#include "fingerpad/motion/object_motion.hpp"
+
+#include "no_allocation/count.hpp"
+#include "support/catch.hpp"
+#include "support/rolling.hpp"
+
+using namespace fingerpad;
+
+TEMPLATE_TEST_CASE("object motion: a frame allocates nothing",
+                   "[object_motion]",
+                   ContactMap,
+                   AnchoredComposition<>,
+                   AnchoredComposition<Kabsch>,
+                   SumOfAngles<>) {
+  const test::RollingBall ball;
+  const ObjectMotion<TestType> motion(ball.initial(), {.reference_margin_mm = 0.2});
+  const long before_state = test::allocations();
+  auto state = motion.start();
+  CHECK((test::allocations() > before_state) == (std::is_same_v<TestType, ContactMap>));
+  test::Rolling roll(ball, -6, 0);
+  test::Gauss gauss(1);
+  long taken = 0;
+  for (int k = 0; k < 30; ++k) {
+    roll.step(-6 + 0.4 * k, 0.1 * k);
+    auto dots = noisy(roll.dots, roll.contact, gauss);
+    dots(10, 10).x = not_a_number<double>();
+    auto flags = roll.contact;
+    if (k == 20) {
+      flags = test::Flags(21, 21, 0);  // a new object begins
+    }
+    const long before = test::allocations();
+    motion(dots, flags, state);
+    taken += test::allocations() - before;
+  }
+  CHECK(taken == 0);
+}
+
+TEST_CASE("spatial dots: a frame allocates nothing", "[object_motion]") {
+  const Camera<double> camera;
+  test::Dots out(5, 6);
+  test::Cells<Point2<double>> dots(5, 6, {300, 200});
+  test::Cells<float> depth(480, 640, 9.0F);
+  test::Flags mask(480, 640, 1), flags(5, 6, 0);
+  const long before = test::allocations();
+  const auto result = spatial_dots(camera, dots, depth, out);
+  const bool sampled = contact_at_dots(dots, mask, flags);
+  const long after = test::allocations();
+  CHECK(result.found == 30);
+  CHECK(sampled);
+  CHECK(after == before);
+}

@@ -1,0 +1,86 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+#include "fingerpad/foam/preslip.hpp"
+
+#include <array>
+#include <type_traits>
+
+#include "no_allocation/count.hpp"
+#include "fingerpad/foam/holding_force.hpp"
+#include "support/catch.hpp"
+#include "support/numbers.hpp"
+
+using namespace fingerpad;
+
+namespace {
+
+template <class S, std::size_t Fingers>
+std::array<FingerSample<S>, Fingers> hand(int k) {
+  std::array<FingerSample<S>, Fingers> now;
+  for (std::size_t f = 0; f < Fingers; ++f) {
+    const int seed = k + static_cast<int>(f);
+    now[f].location = seed % 7 - 1;
+    now[f].waves = seed % 11 % 5;
+    now[f].center_x_mm = S(seed % 3) / S(4);
+    now[f].center_y_mm = seed % 13 == 0 ? not_a_number<S>() : S(seed % 5) / S(4);
+  }
+  return now;
+}
+
+}  // namespace
+
+TEMPLATE_TEST_CASE("pre-slip: a sample allocates nothing",
+                   "[preslip]",
+                   (Preslip<GraspOptimise<>, 2, AllPairs>),
+                   (Preslip<GraspOptimise<>, 2, NewestPairs>),
+                   (Preslip<GraspOptimise<>, 2, ConstantTime>),
+                   (Preslip<GraspOptimise<>, 3, ConstantTime, float>),
+                   (Preslip<GraspOptimise<AnyPair>, 2, AllPairs>),
+                   (Preslip<GraspOptimise<AnyPair>, 2, NewestPairs>),
+                   (Preslip<GraspOptimise<AnyPair>, 2, ConstantTime>),
+                   (Preslip<>),
+                   (Preslip<GraspLift<>, 2, AllPairs>),
+                   (Preslip<GraspLift<>, 2, NewestPairs, test::Dual<double>>),
+                   (Preslip<GraspLift<MovedToOtherCell>, 2, NewestPairs>),
+                   (Preslip<GraspLift<MovedToOtherCell>, 2, ConstantTime>),
+                   (Preslip<GraspLift<MovedToOtherCell, BothAxes>, 2, AllPairs>),
+                   (Preslip<GraspLift<MovedToOtherCell, BothAxes>, 2, ConstantTime>)) {
+  const auto run = []<class Rule, std::size_t Fingers, class Search, class S>(
+                       const Preslip<Rule, Fingers, Search, S>& preslip) {
+    const long before_state = test::allocations();
+    auto state = preslip.start();
+    CHECK(test::allocations() > before_state);
+    const auto copied = state;
+    int alarms = 0;
+    const auto last = hand<S, Fingers>(0);
+    const long before = test::allocations();
+    for (int k = 0; k < 300; ++k) {
+      if (k == 200) {
+        state.reset();
+      }
+      const auto now = hand<S, Fingers>(k * k);
+      alarms += preslip(now, state).alarm ? 1 : 0;
+      alarms += is_preslip<Rule>(last, now, preslip.options()) ? 1 : 0;
+    }
+    state = copied;  // of the same size: the memory is there
+    CHECK(test::allocations() == before);
+    CHECK(alarms > 0);
+  };
+  run(TestType({.history = 40}));
+}
+
+TEST_CASE("searches for the holding force: nothing is allocated", "[holding_force]") {
+  const LoosenUntilPreslip<double> loosen;
+  const LiftWithRegrip<double> lift;
+  const long before = test::allocations();
+  auto loosening = loosen.start();
+  auto lifting = lift.start();
+  for (int k = 0; k < 300; ++k) {
+    const auto news = k % 40 == 39 ? SlipNews::preslip : SlipNews::steady;
+    loosen(k > 200 ? news : SlipNews::steady, loosening);
+    lift(news, lifting);
+  }
+  CHECK(test::allocations() == before);
+  CHECK(loosening.command().phase == SearchPhase::found);
+  CHECK(lifting.command().regrips > 0);
+}

@@ -1,0 +1,320 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+#include "fingerpad/optics/camera.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "support/cameras.hpp"
+#include "support/catch.hpp"
+#include "support/generators.hpp"
+#include "support/numbers.hpp"
+
+using namespace fingerpad;
+using test::any_camera;
+using test::any_offset;
+using test::any_tangent;
+using test::as;
+using test::Digits50;
+using test::Dual;
+using test::near;
+
+namespace {
+
+double sine(double tangent) {
+  return tangent / std::sqrt(1 + tangent * tangent);
+}
+
+/// Distance from the axis at depth z on the ray of tangent t.
+template <class S>
+S reach(const Camera<S>& camera, const S& t, const S& z) {
+  const Ray<S> ray = ray_at_tangent(camera, t);
+  return S(ray.plate_rho_mm + z * ray.tan_fluid);
+}
+
+}  // namespace
+
+TEST_CASE("rays obey Snell's law", "[optics]") {
+  rc::prop("sin(phi_air) = n sin(phi_fluid), to 4 epsilon", [] {
+    const auto camera = any_camera();
+    const auto ray = ray_at_tangent(camera, any_tangent());
+    const double in_air = sine(ray.tan_air);
+    RC_ASSERT(near(camera.refractive_index * sine(ray.tan_fluid), in_air, in_air, 4));
+  });
+  rc::prop("tan, cos and k belong to one angle", [] {
+    const auto ray = ray_at_tangent(any_camera(), any_tangent());
+    const double inv_cos = std::sqrt(1 + ray.tan_fluid * ray.tan_fluid);
+    RC_ASSERT(near(ray.cos_fluid * inv_cos, 1.0, 1.0, 6));
+    RC_ASSERT(near(ray.path_factor, 1 + inv_cos, inv_cos, 6));
+    RC_ASSERT(ray.path_factor >= 2 - 4 * epsilon<double>());
+  });
+  rc::prop("without a change of index nothing is bent", [] {
+    auto camera = any_camera();
+    camera.refractive_index = 1;
+    camera.plate_index = 1;
+    const double t = any_tangent();
+    const auto ray = ray_at_tangent(camera, t);
+    RC_ASSERT(ray.tan_fluid == t);
+    RC_ASSERT(near(ray.plate_rho_mm, t * camera.plate_distance_mm, ray.plate_rho_mm, 4));
+    const auto h = AstigmaticHeights::heights(camera, ray);
+    RC_ASSERT(near(h.meridional_mm, camera.plate_distance_mm, h.meridional_mm, 16));
+    RC_ASSERT(near(h.sagittal_mm, camera.plate_distance_mm, h.sagittal_mm, 16));
+  });
+}
+
+TEST_CASE("the plate", "[optics]") {
+  rc::prop("of index 1 is air, of thickness 0 is not there", [] {
+    auto with = any_camera();
+    auto without = with;
+    without.plate_thickness_mm = 0;
+    if (test::whole(0, 1) == 1) {
+      with.plate_index = 1;
+    } else {
+      with.plate_thickness_mm = 0;
+    }
+    const double t = any_tangent();
+    const auto a = ray_at_tangent(with, t);
+    const auto b = ray_at_tangent(without, t);
+    RC_ASSERT(near(a.plate_rho_mm, b.plate_rho_mm, b.plate_rho_mm, 4));
+    const auto h = AstigmaticHeights::heights(with, a);
+    const auto expected = AstigmaticHeights::heights(without, b);
+    RC_ASSERT(near(h.meridional_mm, expected.meridional_mm, expected.meridional_mm, 16));
+    RC_ASSERT(near(h.sagittal_mm, expected.sagittal_mm, expected.sagittal_mm, 16));
+    RC_ASSERT(near(tangent_per_px(with), tangent_per_px(without), tangent_per_px(without), 4));
+  });
+  rc::prop("of the fluid's index is fluid", [] {
+    auto plate = any_camera();
+    plate.plate_index = plate.refractive_index;
+    auto fluid = plate;
+    fluid.plate_distance_mm -= plate.plate_thickness_mm;
+    fluid.plate_thickness_mm = 0;
+    const double t = any_tangent();
+    const double z = test::uniform(0, 15);
+    const double expected = reach(fluid, t, z + plate.plate_thickness_mm);
+    RC_ASSERT(near(reach(plate, t, z), expected, expected, 16));
+    const auto h = AstigmaticHeights::heights(plate, ray_at_tangent(plate, t));
+    const auto g = AstigmaticHeights::heights(fluid, ray_at_tangent(fluid, t));
+    const double thickness = plate.plate_thickness_mm;
+    RC_ASSERT(near(h.meridional_mm, g.meridional_mm + thickness, h.meridional_mm, 16));
+    RC_ASSERT(near(h.sagittal_mm, g.sagittal_mm + thickness, h.sagittal_mm, 16));
+  });
+  rc::prop("does not move the pixels' pitch near the axis", [] {
+    const auto camera = any_camera();
+    const auto ray = ray_at_pixel(camera, camera.center_y_px + 1e-4, camera.center_x_px);
+    RC_ASSERT(std::abs(ray.plate_rho_mm / (1e-4 * camera.pitch_mm) - 1) < 1e-7);
+  });
+}
+
+TEST_CASE("virtual heights", "[optics]") {
+  rc::prop("are the published closed form n h1 cos^3(phi1) / cos^3(phi2)", [] {
+    auto camera = any_camera();
+    camera.plate_thickness_mm = 0;
+    const double air = std::atan(any_tangent());
+    const double fluid = std::asin(std::sin(air) / camera.refractive_index);
+    const auto ray = ray_at_tangent(camera, std::tan(air));
+    const double ratio = std::cos(fluid) / std::cos(air);
+    const double nh = camera.refractive_index * camera.plate_distance_mm;
+    const auto one = SingleHeight::heights(camera, ray);
+    const auto two = AstigmaticHeights::heights(camera, ray);
+    RC_ASSERT(one.meridional_mm == one.sagittal_mm);
+    RC_ASSERT(std::abs(one.meridional_mm / (nh * std::pow(ratio, 3)) - 1) < 1e-13);
+    RC_ASSERT(two.meridional_mm == one.meridional_mm);
+    RC_ASSERT(std::abs(two.sagittal_mm / (nh * ratio) - 1) < 1e-13);
+  });
+
+  SECTION("at 20.5 degrees, 50 mm, water") {
+    const Camera<double> camera;
+    const auto ray = ray_at_tangent(camera, std::tan(20.5 / 180 * std::numbers::pi));
+    const auto h = AstigmaticHeights::heights(camera, ray);
+    CHECK(std::abs(h.meridional_mm - 72.7) < 0.1);
+    CHECK(std::abs(h.sagittal_mm - 68.5) < 0.1);
+  }
+}
+
+TEMPLATE_TEST_CASE(
+    "a point is seen by the pixel that looks at it", "[optics]", float, double, long double) {
+  using S = TestType;
+  rc::prop("pixel_of inverts point_at", [] {
+    const auto camera = as<S>(any_camera());
+    const auto offset = any_offset(as<double>(Camera<double>{}));
+    const S row = S(camera.center_y_px + S(offset.y));
+    const S col = S(camera.center_x_px + S(offset.x));
+    const Point3<S> point = point_at(camera, row, col, S(test::uniform(0, 20)));
+    const Point2<S> pixel = pixel_of(camera, point);
+    const S scale = S(1000 + std::hypot(offset.x, offset.y));
+    RC_ASSERT(near<S>(pixel.x, col, scale, 32));
+    RC_ASSERT(near<S>(pixel.y, row, scale, 32));
+  });
+}
+
+TEST_CASE("symmetry of the picture", "[optics]") {
+  rc::prop("a turned pixel sees the turned point", [] {
+    const auto camera = any_camera();
+    const auto p = any_offset(camera);
+    const double angle = test::uniform(-4, 4);
+    const double c = std::cos(angle);
+    const double s = std::sin(angle);
+    const double z = test::uniform(0, 15);
+    const auto at = [&](double x, double y) {
+      return point_at(camera, camera.center_y_px + y, camera.center_x_px + x, z);
+    };
+    const auto a = at(p.x, p.y);
+    const auto b = at(c * p.x - s * p.y, s * p.x + c * p.y);
+    const double scale = std::hypot(a.x, a.y) + 1000 * camera.pitch_mm;
+    RC_ASSERT(near(b.x, c * a.x - s * a.y, scale, 32));
+    RC_ASSERT(near(b.y, s * a.x + c * a.y, scale, 32));
+  });
+  rc::prop("a mirrored pixel sees the mirrored point, to the last bit", [] {
+    Camera<double> camera = any_camera();
+    camera.center_x_px = 319.5;
+    camera.center_y_px = 239.5;
+    const double x = static_cast<double>(test::whole(-2560, 2560)) / 8;
+    const double y = static_cast<double>(test::whole(-1920, 1920)) / 8;
+    const double z = test::uniform(0, 15);
+    const auto a = point_at(camera, 239.5 + y, 319.5 + x, z);
+    const auto left = point_at(camera, 239.5 + y, 319.5 - x, z);
+    const auto up = point_at(camera, 239.5 - y, 319.5 + x, z);
+    RC_ASSERT(left.x == -a.x);
+    RC_ASSERT(left.y == a.y);
+    RC_ASSERT(up.x == a.x);
+    RC_ASSERT(up.y == -a.y);
+    RC_ASSERT(a.z == z);
+    const double scale = std::abs(x) + std::abs(y);
+    RC_ASSERT(near(a.x * y, a.y * x, scale * (std::abs(a.x) + std::abs(a.y)), 4));  // one azimuth
+  });
+  rc::prop("a deeper point on the same ray lies farther out, by the tangent in the fluid", [] {
+    const auto camera = any_camera();
+    const auto p = any_offset(camera);
+    const double row = camera.center_y_px + p.y;
+    const double col = camera.center_x_px + p.x;
+    const double z = test::uniform(0, 15);
+    const double dz = test::uniform(0.01, 5);
+    const auto at = [&](double depth) {
+      const auto point = point_at(camera, row, col, depth);
+      return std::hypot(point.x, point.y);
+    };
+    const auto ray = ray_at_pixel(camera, row, col);
+    RC_ASSERT(at(z + dz) >= at(z));
+    RC_ASSERT(near(at(0), ray.plate_rho_mm, ray.plate_rho_mm, 16));
+    RC_ASSERT(near(at(z + dz) - at(z), dz * ray.tan_fluid, at(z + dz), 32));
+  });
+}
+
+TEMPLATE_TEST_CASE("the centre pixel looks along the axis, exactly",
+                   "[optics]",
+                   float,
+                   double,
+                   Digits50,
+                   Dual<double>) {
+  using S = TestType;
+  const Camera<S> camera;
+  const auto ray = ray_at_pixel(camera, camera.center_y_px, camera.center_x_px);
+  CHECK(ray.tan_air == S(0));
+  CHECK(ray.tan_fluid == S(0));
+  CHECK(ray.plate_rho_mm == S(0));
+  const auto point = point_at(camera, camera.center_y_px, camera.center_x_px, S(5));
+  CHECK(point.x == S(0));
+  CHECK(point.y == S(0));
+  CHECK(point.z == S(5));
+  const auto pixel = pixel_of(camera, point);
+  CHECK(pixel.x == camera.center_x_px);
+  CHECK(pixel.y == camera.center_y_px);
+  const auto k = value(ray.path_factor) - 2;
+  CHECK((k < 4 * epsilon<S>() && -k < 4 * epsilon<S>()));
+}
+
+TEST_CASE("grazing pixels stay finite and NaN stays NaN", "[optics]") {
+  const Camera<double> camera;
+  for (const double t : {10.0, 1e3, 1e6, 1e9}) {  // 84 degrees and beyond
+    const auto ray = ray_at_tangent(camera, t);
+    CHECK(is_finite(ray.path_factor));
+    CHECK(is_finite(ray.plate_rho_mm));
+    CHECK(ray.cos_fluid > 0.65);  // never beyond the critical angle, 48.75 degrees
+    CHECK(ray.tan_fluid < 1.1405);
+    const auto h = AstigmaticHeights::heights(camera, ray);
+    CHECK(is_finite(h.meridional_mm));
+    CHECK(h.meridional_mm > h.sagittal_mm);
+  }
+  const double missing = not_a_number<double>();
+  const auto point = point_at(camera, 100.0, 100.0, missing);
+  CHECK_FALSE(is_finite(point.x));
+  CHECK_FALSE(is_finite(point.y));
+  CHECK_FALSE(is_finite(point.z));
+  CHECK_FALSE(is_finite(ray_at_pixel(camera, missing, 0.0).path_factor));
+  CHECK_FALSE(is_finite(ray_at_pixel(camera, 0.0, missing).plate_rho_mm));
+  CHECK_FALSE(is_finite(pixel_of(camera, Point3<double>{missing, 1, 5}).x));
+  CHECK_FALSE(is_finite(pixel_of(camera, Point3<double>{missing, 1, 5}).y));
+}
+
+TEST_CASE("the published sine shift is short by the audit's numbers", "[optics]") {
+  const Camera<double> camera;
+  const auto missing_mm = [&](double t, double depth) {
+    const double col = camera.center_x_px + t / tangent_per_px(camera);
+    const double right = point_at(camera, camera.center_y_px, col, depth).x;
+    return right - point_at<PublishedSineShift>(camera, camera.center_y_px, col, depth).x;
+  };
+  CHECK(std::abs(missing_mm(std::tan(std::numbers::pi / 6), 13) - 0.387) < 0.001);
+
+  // Nowhere on a pad of radius 20 mm and height 13 mm is it more than 0.026 mm.
+  double worst = 0;
+  for (double t = 0; t < 0.37; t += 1e-3) {
+    double low = 0;
+    double high = 13;
+    while (high - low > 1e-9) {
+      const double depth = (low + high) / 2;
+      const bool inside = std::hypot(reach(camera, t, depth), depth + 7) < 20;
+      (inside ? low : high) = depth;
+    }
+    worst = std::max(worst, missing_mm(t, low));
+  }
+  CHECK(std::abs(worst - 0.0258) < 1e-4);
+}
+
+TEST_CASE("derivatives by the dual number are those of central differences", "[optics]") {
+  rc::prop("to 1e-6, by index, distance, pixel and depth", [] {
+    const auto camera = any_camera();
+    const auto offset = any_offset(camera);
+    const double row = camera.center_y_px + offset.y;
+    const double col = camera.center_x_px + offset.x;
+    const double z = test::uniform(0, 15);
+    const auto sum = [](const auto& p) { return p.x - p.y; };
+    const auto agree = [](const auto& f, double x) {
+      const double by_dual = test::slope_by_dual(f, x);
+      const double by_difference = test::slope_by_difference(f, x, 1e-5 * (1 + std::abs(x)));
+      RC_ASSERT(std::abs(by_dual - by_difference) <= 1e-6 * (1 + std::abs(by_difference)));
+    };
+    agree(
+        [&]<class S>(const S& n) {
+          auto c = as<S>(camera);
+          c.refractive_index = n;
+          return sum(point_at(c, S(row), S(col), S(z)));
+        },
+        camera.refractive_index);
+    agree(
+        [&]<class S>(const S& h) {
+          auto c = as<S>(camera);
+          c.plate_distance_mm = h;
+          const auto ray = ray_at_pixel(c, S(row), S(col));
+          return S(SingleHeight::heights(c, ray).meridional_mm * ray.path_factor);
+        },
+        camera.plate_distance_mm);
+    agree([&]<class S>(const S& x) { return sum(point_at(as<S>(camera), S(row), x, S(z))); }, col);
+    agree([&]<class S>(const S& d) { return sum(point_at(as<S>(camera), S(row), S(col), d)); }, z);
+    agree(
+        [&]<class S>(const S& x) {
+          return sum(pixel_of(as<S>(camera), Point3<S>{x, S(offset.y / 100), S(z)}));
+        },
+        1 + offset.x / 100);
+  });
+  rc::prop("and are those of the camera on the axis itself, where the radius has none", [] {
+    const auto camera = any_camera();
+    const auto k = [&](const auto& n) {
+      using S = std::remove_cvref_t<decltype(n)>;
+      auto c = as<S>(camera);
+      c.refractive_index = n;
+      return ray_at_pixel(c, c.center_y_px, c.center_x_px).path_factor;
+    };
+    RC_ASSERT(std::abs(test::slope_by_dual(k, camera.refractive_index)) < 1e-14);
+  });
+}

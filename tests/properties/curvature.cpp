@@ -1,0 +1,239 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+// What must hold for every membrane, with pixels missing anywhere, and every statistic.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "fingerpad/image/curvature_map.hpp"
+#include "support/catch.hpp"
+#include "support/generators.hpp"
+#include "support/pad.hpp"
+#include "support/turned.hpp"
+
+using namespace fingerpad;
+using test::Image;
+using test::mirrored;
+using test::transposed;
+using test::turned;
+
+namespace {
+
+/// A wavy membrane with holes; wide enough for whole vectors and a rest.
+template <class S>
+Image<S> any_membrane() {
+  Image<S> depth(test::whole(1, 30), test::whole(1, 60));
+  const double bend = test::uniform(-0.02, 0.02), wave = test::uniform(0, 0.3);
+  const double phase = test::uniform(0, 6), slope = test::uniform(-1, 1);
+  test::Random random(static_cast<std::uint64_t>(test::whole(0, 1 << 30)));
+  const double missing = test::whole(0, 2) == 0 ? 0 : test::uniform(0, 0.05);
+  for (Index i = 0; i < depth.rows(); ++i) {
+    for (Index j = 0; j < depth.cols(); ++j) {
+      const double x = static_cast<double>(j) / 8 - 3, y = static_cast<double>(i) / 8 - 2;
+      const double l = 9 + slope * x + bend * (x * x + y * y) + wave * std::sin(2 * x + y + phase);
+      depth(i, j) = random.uniform() < missing ? std::numeric_limits<S>::quiet_NaN() : S(l);
+    }
+  }
+  return depth;
+}
+
+CurvatureRing any_ring() {
+  return {test::whole(1, 8), test::uniform(0.05, 1)};
+}
+
+constexpr PlatePitch plate{0.125};
+
+template <class Statistic, class S, class Projection = PlatePitch>
+Image<S> curvatures(const Image<S>& depth,
+                    const CurvatureRing& ring,
+                    const Projection& projection = plate) {
+  const CurvatureMap<Statistic, Projection, S> map(ring, projection, depth.rows(), depth.cols());
+  auto workspace = map.workspace();
+  Image<S> out(depth.rows(), depth.cols(), S(7));
+  RC_ASSERT(map(depth, out, workspace).accepted);
+  return out;
+}
+
+/// The same pixels known, and |a - b| within a bound for numbers of order 1 per mm.
+template <class A, class B>
+bool close(const Image<A>& a, const Image<B>& b, double bound) {
+  for (std::size_t k = 0; k < a.cells.size(); ++k) {
+    const double x = static_cast<double>(a.cells[k]), y = static_cast<double>(b.cells[k]);
+    if (std::isnan(x) != std::isnan(y) ||
+        std::abs(x - y) > bound * (1 + std::abs(x) + std::abs(y))) {
+      return false;
+    }
+  }
+  return a.cells.size() == b.cells.size();
+}
+
+constexpr double rounding = 1e-9;  // of fits through few sections left, in double
+
+}  // namespace
+
+TEMPLATE_TEST_CASE("curvature turns and scales with the membrane",
+                   "[curvature]",
+                   PublishedTwiceMean<>,
+                   SectionMean<>,
+                   ClampedMean<>,
+                   HessianFit<>,
+                   ClampedHessian<>,
+                   RingStencil<>) {
+  rc::prop("transposed, mirrored, turned by 180 degrees", [] {
+    const Image<double> depth = any_membrane<double>();
+    const CurvatureRing ring = any_ring();
+    const Image<double> k = curvatures<TestType>(depth, ring);
+    RC_ASSERT(close(curvatures<TestType>(transposed(depth), ring), transposed(k), rounding));
+    RC_ASSERT(close(curvatures<TestType>(mirrored(depth), ring), mirrored(k), rounding));
+    RC_ASSERT(close(curvatures<TestType>(turned(depth), ring), turned(k), rounding));
+  });
+  rc::prop("moved along z, on the plate's own pitch", [] {
+    const Image<double> depth = any_membrane<double>();
+    const CurvatureRing ring = any_ring();
+    Image<double> moved = depth;
+    const double by = test::uniform(-5, 5);
+    for (double& l : moved.cells) {
+      l += by;
+    }
+    RC_ASSERT(
+        close(curvatures<TestType>(moved, ring), curvatures<TestType>(depth, ring), rounding));
+  });
+  rc::prop("scaled with its pitch and its camera", [] {
+    const Image<double> depth = any_membrane<double>();
+    const CurvatureRing ring = any_ring();
+    const double scale = test::log_uniform(1e-3, 1e3), growth = test::uniform(0, 0.03);
+    Image<double> scaled = depth;
+    for (double& l : scaled.cells) {
+      l *= scale;
+    }
+    Image<double> k =
+        curvatures<TestType>(scaled, ring, PitchAtDepth(0.125 * scale, growth / scale));
+    for (double& c : k.cells) {
+      c *= scale;
+    }
+    RC_ASSERT(close(k, curvatures<TestType>(depth, ring, PitchAtDepth(0.125, growth)), rounding));
+  });
+}
+
+TEMPLATE_TEST_CASE("curvature is the same however it is computed",
+                   "[curvature]",
+                   SectionMean<>,
+                   ClampedMean<>,
+                   HessianFit<>,
+                   ClampedHessian<>,
+                   RingStencil<>) {
+  rc::prop("by vectors or one by one", [] {
+    const Image<double> depth = any_membrane<double>();
+    CurvatureRing ring = any_ring();
+    Image<long double> slow(depth.rows(), depth.cols());
+    std::copy(depth.cells.begin(), depth.cells.end(), slow.cells.begin());
+    const PitchAtDepth camera(0.125, 0.015);
+    RC_ASSERT(close(curvatures<TestType>(depth, ring, camera),
+                    curvatures<TestType>(slow, ring, camera), rounding));
+  });
+  rc::prop("in bands of rows, to the last bit", [] {
+    const Image<float> depth = any_membrane<float>();
+    const CurvatureRing ring = any_ring();
+    const CurvatureMap<TestType, PlatePitch> map(ring, plate, depth.rows(), depth.cols());
+    auto workspace = map.workspace();
+    Image<float> whole(depth.rows(), depth.cols()), bands(depth.rows(), depth.cols(), 7.0F);
+    const CurvatureResult all = map(depth, whole, workspace);
+    const Index cut = test::whole(0, depth.rows());
+    auto other = map.workspace();
+    const CurvatureResult low = map.band(cut, depth.rows(), depth, bands, other);
+    RC_ASSERT(std::count(bands.cells.begin(), bands.cells.end(), 7.0F) >= cut * depth.cols());
+    const CurvatureResult high = map.band(0, cut, depth, bands, other);
+    RC_ASSERT(test::same_bits(whole, bands));
+    RC_ASSERT(low.known_px + high.known_px == all.known_px);
+    RC_ASSERT(low.unknown_px + high.unknown_px == all.unknown_px);
+    RC_ASSERT(map(depth, bands, workspace).known_px == all.known_px);  // nothing left over
+    RC_ASSERT(test::same_bits(whole, bands));
+  });
+}
+
+TEMPLATE_TEST_CASE("what is missing stays within its ring",
+                   "[curvature]",
+                   PublishedTwiceMean<>,
+                   ClampedMean<>,
+                   HessianFit<>,
+                   ClampedHessian<>,
+                   RingStencil<>) {
+  rc::prop("lost, infinite and absurd depths", [] {
+    const Image<float> depth = any_membrane<float>();
+    const CurvatureRing ring = any_ring();
+    Image<float> hole = depth;
+    const Index i = test::whole(0, depth.rows() - 1), j = test::whole(0, depth.cols() - 1);
+    const float infinity = std::numeric_limits<float>::infinity();
+    hole(i, j) = *rc::gen::element(std::nanf(""), -std::nanf(""), infinity, -infinity, 3e38F,
+                                   -3e38F, 1e-42F, 1e5F, -1e5F);
+    const PitchAtDepth camera(0.125, 0.015);
+    const Image<float> before = curvatures<TestType>(depth, ring, camera);
+    const Image<float> after = curvatures<TestType>(hole, ring, camera);
+    for (Index r = 0; r < depth.rows(); ++r) {
+      for (Index c = 0; c < depth.cols(); ++c) {
+        const double distance = std::hypot(static_cast<double>(r - i), static_cast<double>(c - j));
+        const bool far = distance > static_cast<double>(ring.radius_px) + 0.71;
+        RC_ASSERT(!far || test::same_bits(before(r, c), after(r, c)));
+        RC_ASSERT(!std::isinf(after(r, c)));
+        RC_ASSERT(std::isfinite(hole(r, c)) || std::isnan(after(r, c)));
+      }
+    }
+  });
+}
+
+TEST_CASE("pixels are known where enough sections are complete", "[curvature]") {
+  rc::prop("counted one by one", [] {
+    const Image<float> depth = any_membrane<float>();
+    const CurvatureRing ring = any_ring();
+    const Image<float> k = curvatures<ClampedMean<>>(depth, ring);
+    const auto offsets = ring_offsets(ring.radius_px, 18);
+    const auto there = [&](Index r, Index c) {
+      return r >= 0 && r < depth.rows() && c >= 0 && c < depth.cols() && !std::isnan(depth(r, c));
+    };
+    for (Index i = 0; i < depth.rows(); ++i) {
+      for (Index j = 0; j < depth.cols(); ++j) {
+        double mean = 0, count = 0;
+        for (const RingOffset& o : offsets) {
+          if (there(i, j) && there(i + o.row, j + o.col) && there(i - o.row, j - o.col)) {
+            const double radius = std::sqrt(static_cast<double>(o.radius_sq())) * plate.pitch_mm;
+            const auto at = [&](Index sign) {
+              return static_cast<double>(depth(i + sign * o.row, j + sign * o.col));
+            };
+            mean += (std::max)(0.0, section_curvature(radius, at(-1), at(0), at(1)));
+            count += 1;
+          }
+        }
+        const bool enough =
+            count >= (std::max)(1.0, std::ceil(ring.min_direction_share * 18 - 1e-9));
+        RC_ASSERT(std::isnan(k(i, j)) == !enough);
+        RC_ASSERT(!enough || std::abs(static_cast<double>(k(i, j)) - mean / count) <=
+                                 5e-6 + 5e-5 * mean / count);
+      }
+    }
+  });
+}
+
+TEST_CASE("statistics of one membrane are in order", "[curvature]") {
+  rc::prop("clamped >= plain, larger >= mean >= smaller, twice is twice", [] {
+    const Image<double> depth = any_membrane<double>();
+    CurvatureRing ring = any_ring();
+    const auto mean = curvatures<SectionMean<>>(depth, ring);
+    const auto clamped = curvatures<ClampedMean<>>(depth, ring);
+    const auto fitted = curvatures<HessianFit<>>(depth, ring);
+    const auto fitted_clamped = curvatures<ClampedHessian<>>(depth, ring);
+    const auto larger = curvatures<HessianFit<18, FittedValue::larger>>(depth, ring);
+    const auto smaller = curvatures<HessianFit<18, FittedValue::smaller>>(depth, ring);
+    const auto half = curvatures<SectionMean<36>>(depth, ring);
+    const auto twice = curvatures<PublishedTwiceMean<36>>(depth, ring);
+    for (std::size_t k = 0; k < depth.cells.size(); ++k) {
+      const double tiny = 1e-12 * (1 + std::abs(larger.cells[k]) + std::abs(smaller.cells[k]));
+      RC_ASSERT(!(clamped.cells[k] < mean.cells[k] - 1e-12) && !(clamped.cells[k] < 0));
+      RC_ASSERT(!(fitted_clamped.cells[k] < fitted.cells[k] - tiny));
+      RC_ASSERT(!(fitted_clamped.cells[k] < 0));
+      RC_ASSERT(!(larger.cells[k] < fitted.cells[k] - tiny));
+      RC_ASSERT(!(fitted.cells[k] < smaller.cells[k] - tiny));
+      RC_ASSERT(!(std::abs(twice.cells[k] - 2 * half.cells[k]) > 1e-12));
+    }
+  });
+}

@@ -1,0 +1,330 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+// What must hold for every plan and whatever the fingers say, and what is found of an object whose
+// friction is known.
+#include "fingerpad/foam/holding_force.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <vector>
+
+#include "support/catch.hpp"
+#include "support/generators.hpp"
+
+using namespace fingerpad;
+
+namespace {
+
+using News = std::vector<SlipNews>;
+
+LoosenPlan<double> any_loosen_plan() {
+  LoosenPlan<double> plan;
+  plan.least_force_n = test::whole(0, 1) == 0 ? 0 : test::uniform(0, 5);
+  plan.first_force_n = plan.least_force_n + test::uniform(0.01, 20);
+  plan.step_n = (plan.first_force_n - plan.least_force_n) / test::uniform(0.5, 25);
+  plan.settle_samples = test::whole(0, 5);
+  plan.watch_samples = test::whole(1, 5);
+  plan.margin_steps = test::whole(0, 4);
+  plan.until_slipped = test::whole(0, 1) == 0;
+  return plan;
+}
+
+LiftPlan<double> any_lift_plan() {
+  LiftPlan<double> plan;
+  plan.first_force_n = test::uniform(0.1, 5);
+  plan.most_force_n = plan.first_force_n + (test::whole(0, 3) == 0 ? 0 : test::uniform(0, 20));
+  plan.force_step_n =
+      (std::max)(plan.most_force_n - plan.first_force_n, 0.1) / test::uniform(0.5, 15);
+  plan.height_mm = test::uniform(1, 100);
+  plan.height_step_mm = plan.height_mm / test::uniform(0.5, 30);
+  plan.settle_samples = test::whole(0, 5);
+  return plan;
+}
+
+/// Mostly steady; slips seldom or never.
+News any_news(Index most) {
+  News news(static_cast<std::size_t>(test::whole(1, most)));
+  const Index slips = test::whole(0, 1), often = test::whole(1, 20);
+  for (SlipNews& one : news) {
+    const Index kind = test::whole(0, 60);
+    one = kind < often          ? SlipNews::preslip
+          : kind < 30           ? SlipNews::steady
+          : kind < 35           ? SlipNews::missing
+          : kind == 60 && slips ? SlipNews::slipped
+                                : SlipNews::steady;
+  }
+  return news;
+}
+
+template <class Search>
+auto after(const Search& search, const News& news) {
+  auto state = search.start();
+  for (const SlipNews one : news) {
+    search(one, state);
+  }
+  return state.command();
+}
+
+bool equal(double a, double b) {
+  return a == b || (std::isnan(a) && std::isnan(b));
+}
+bool equal(const LoosenCommand<double>& a, const LoosenCommand<double>& b) {
+  return a.force_n == b.force_n && a.phase == b.phase && a.steps == b.steps &&
+         equal(a.preslip_force_n, b.preslip_force_n) && a.warning_steps == b.warning_steps;
+}
+bool equal(const LiftCommand<double>& a, const LiftCommand<double>& b) {
+  return a.force_n == b.force_n && a.phase == b.phase && a.height_mm == b.height_mm &&
+         a.regrips == b.regrips;
+}
+
+/// Steps of this size that fit into the way, the last of which may be short.
+Index steps_in(double way, double step) {
+  return static_cast<Index>(std::ceil(way / step * (1 + 1e-12)));
+}
+
+/// As an object answers: it slips on some of its contact below one force, and as a whole below
+/// another.
+SlipNews object(double force_n, double begins_below_n, double slips_below_n) {
+  return force_n < slips_below_n    ? SlipNews::slipped
+         : force_n < begins_below_n ? SlipNews::preslip
+                                    : SlipNews::steady;
+}
+
+/// The command with which a search ends; what the object says may be missing for a while.
+template <class Search>
+auto end_of(const Search& search, double begins_below_n, double slips_below_n) {
+  auto state = search.start();
+  const Index seldom = test::whole(2, 10);
+  for (int k = 0; k < 100000 && !is_end(state.command().phase); ++k) {
+    const bool is_missing = k % seldom == 0;
+    const double force_n = state.command().force_n;
+    search(is_missing ? SlipNews::missing : object(force_n, begins_below_n, slips_below_n), state);
+  }
+  RC_ASSERT(is_end(state.command().phase));
+  return state.command();
+}
+
+template <class Search>
+void check_copies(const Search& search, const News& news) {
+  auto state = search.start();
+  const auto at = static_cast<std::size_t>(test::whole(0, static_cast<Index>(news.size()) - 1));
+  for (std::size_t k = 0; k < at; ++k) {
+    search(news[k], state);
+  }
+  auto copy = state;
+  News rest(news.begin() + static_cast<std::ptrdiff_t>(at), news.end());
+  for (const SlipNews one : rest) {
+    const auto command = search(one, state);
+    RC_ASSERT(equal(command, search(one, copy)));
+    RC_ASSERT(equal(command, state.command()));
+  }
+  RC_ASSERT(equal(after(search, news), state.command()));
+  // and what is missing might as well not have been asked
+  News heard;
+  std::copy_if(news.begin(), news.end(), std::back_inserter(heard),
+               [](SlipNews one) { return one != SlipNews::missing; });
+  RC_ASSERT(equal(after(search, heard), state.command()));
+}
+
+}  // namespace
+
+TEST_CASE("loosening whatever is told", "[holding_force][law]") {
+  rc::prop("the force keeps its limits and rises only at the end", [] {
+    const auto plan = any_loosen_plan();
+    const LoosenUntilPreslip<double> search(plan);
+    auto state = search.start();
+    for (const SlipNews one : any_news(120)) {
+      const auto before = state.command();
+      const auto now = search(one, state);
+      RC_ASSERT(now.force_n >= plan.least_force_n);
+      RC_ASSERT(now.force_n <= plan.first_force_n);
+      RC_ASSERT((now.force_n <= before.force_n || now.phase == SearchPhase::found ||
+                 now.phase == SearchPhase::slipped));
+      RC_ASSERT(before.force_n - now.force_n <= plan.step_n * (1 + 1e-12));
+      RC_ASSERT(now.steps - before.steps == (now.force_n < before.force_n ? 1 : 0));
+      const double stepped = plan.first_force_n - static_cast<double>(now.steps) * plan.step_n;
+      if (!is_end(now.phase) || now.phase == SearchPhase::at_limit) {
+        RC_ASSERT(now.force_n == (std::max)(stepped, plan.least_force_n));
+      }
+      // where pre-slip was found first stays known
+      RC_ASSERT(
+          (std::isnan(before.preslip_force_n) || now.preslip_force_n == before.preslip_force_n));
+      RC_ASSERT((!std::isnan(now.preslip_force_n) || now.warning_steps == 0));
+      RC_ASSERT(now.warning_steps <= now.steps);
+      RC_ASSERT((now.phase != SearchPhase::found || !plan.until_slipped));
+      RC_ASSERT(now.phase != SearchPhase::lifted);
+      RC_ASSERT((!is_end(before.phase) || equal(before, now)));
+    }
+  });
+  rc::prop("it ends in time", [] {
+    const auto plan = any_loosen_plan();
+    const LoosenUntilPreslip<double> search(plan);
+    const Index levels = steps_in(plan.first_force_n - plan.least_force_n, plan.step_n) + 1;
+    const Index bound = levels * (plan.settle_samples + plan.watch_samples);
+    // steady news takes the longest: all of the bound
+    const News steady(static_cast<std::size_t>(bound), SlipNews::steady);
+    RC_ASSERT(after(search, steady).phase == SearchPhase::at_limit);
+    RC_ASSERT(!is_end(after(search, News(steady.begin() + 1, steady.end())).phase));
+    auto state = search.start();
+    Index told = 0;
+    while (told < bound) {
+      for (const SlipNews one : any_news(50)) {
+        search(one, state);
+        told += one != SlipNews::missing ? 1 : 0;
+      }
+    }
+    RC_ASSERT(is_end(state.command().phase));
+  });
+  rc::prop("copies and repetitions give the same commands",
+           [] { check_copies(LoosenUntilPreslip<double>(any_loosen_plan()), any_news(100)); });
+  rc::prop("pre-slip that comes earlier finds a larger force", [] {
+    auto plan = any_loosen_plan();
+    plan.until_slipped = false;
+    const LoosenUntilPreslip<double> search(plan);
+    const Index samples = 30 * (plan.settle_samples + plan.watch_samples);
+    const Index early = test::whole(0, samples - 1), late = test::whole(early, samples - 1);
+    const auto from = [&](Index first) {
+      News news(static_cast<std::size_t>(samples + 20), SlipNews::preslip);
+      std::fill(news.begin(), news.begin() + first, SlipNews::steady);
+      return after(search, news);
+    };
+    const auto a = from(early), b = from(late);
+    RC_ASSERT(is_end(a.phase));
+    RC_ASSERT(is_end(b.phase));
+    RC_ASSERT((a.force_n >= b.force_n || b.phase == SearchPhase::at_limit));
+    RC_ASSERT(a.steps <= b.steps);
+    RC_ASSERT((a.phase == SearchPhase::found || b.phase == SearchPhase::at_limit));
+  });
+}
+
+TEST_CASE("loosening the grip of an object that is known", "[holding_force][law]") {
+  rc::prop("finds its least force within a step, and gives the margin back", [] {
+    auto plan = any_loosen_plan();
+    plan.until_slipped = false;
+    const double begins_n = test::uniform(plan.least_force_n, plan.first_force_n * 1.1);
+    const auto end = end_of(LoosenUntilPreslip<double>(plan), begins_n, 0);
+    const double small = 1e-12 * plan.first_force_n;
+    if (end.phase == SearchPhase::at_limit) {
+      RC_ASSERT(plan.least_force_n >= begins_n);
+      return;
+    }
+    RC_ASSERT(end.phase == SearchPhase::found);
+    RC_ASSERT(end.preslip_force_n < begins_n);
+    const double margin_n = static_cast<double>(plan.margin_steps) * plan.step_n;
+    const double least_n = (std::min)(begins_n, plan.first_force_n);
+    RC_ASSERT(end.preslip_force_n >= least_n - plan.step_n - small);
+    RC_ASSERT(std::abs(end.force_n -
+                       (std::min)(end.preslip_force_n + margin_n, plan.first_force_n)) <= small);
+    RC_ASSERT((plan.margin_steps == 0 || end.force_n >= least_n - small));  // it holds
+    RC_ASSERT(end.force_n <= least_n + margin_n);
+  });
+  rc::prop("counts the steps from the first sign to the slip", [] {
+    auto plan = any_loosen_plan();
+    plan.until_slipped = true;
+    const double begins_n = test::uniform(plan.least_force_n, plan.first_force_n);
+    const double slips_n = test::uniform(0, begins_n);
+    const auto end = end_of(LoosenUntilPreslip<double>(plan), begins_n, slips_n);
+    const double small = 1e-12 * plan.first_force_n;
+    if (slips_n <= plan.least_force_n + small) {
+      RC_ASSERT((end.phase == SearchPhase::at_limit || end.phase == SearchPhase::slipped));
+      return;
+    }
+    RC_ASSERT(end.phase == SearchPhase::slipped);
+    RC_ASSERT(end.force_n == plan.first_force_n);
+    // no step lies between the two forces: it slips without a warning
+    const auto first_below = [&](double force_n) {
+      Index step = 0;
+      while (!((std::max)(plan.first_force_n - static_cast<double>(step) * plan.step_n,
+                          plan.least_force_n) < force_n)) {
+        ++step;
+      }
+      return step;
+    };
+    const Index sign = first_below(begins_n), slip = first_below(slips_n);
+    RC_ASSERT(end.steps == slip);
+    RC_ASSERT(end.warning_steps == slip - sign);
+    RC_ASSERT(std::isnan(end.preslip_force_n) == (slip == sign));
+    const double apart = (begins_n - slips_n) / plan.step_n;
+    RC_ASSERT(static_cast<double>(end.warning_steps) <= std::ceil(apart + 1e-9));
+    const bool is_short = plan.first_force_n - static_cast<double>(slip) * plan.step_n <
+                          plan.least_force_n;  // the last step
+    RC_ASSERT((is_short || static_cast<double>(end.warning_steps) >= std::floor(apart - 1e-9)));
+  });
+}
+
+TEST_CASE("lifting whatever is told", "[holding_force][law]") {
+  rc::prop("force and height keep their limits and never fall before the end", [] {
+    const auto plan = any_lift_plan();
+    const LiftWithRegrip<double> search(plan);
+    auto state = search.start();
+    for (const SlipNews one : any_news(120)) {
+      const auto before = state.command();
+      const auto now = search(one, state);
+      RC_ASSERT(now.force_n >= plan.first_force_n);
+      RC_ASSERT(now.force_n <= plan.most_force_n);
+      RC_ASSERT(now.force_n >= before.force_n);
+      RC_ASSERT(now.force_n - before.force_n <= plan.force_step_n * (1 + 1e-12));
+      RC_ASSERT(now.regrips - before.regrips == (now.force_n > before.force_n ? 1 : 0));
+      RC_ASSERT(now.height_mm >= 0);
+      RC_ASSERT(now.height_mm <= plan.height_mm);
+      RC_ASSERT(now.height_mm - before.height_mm <= plan.height_step_mm * (1 + 1e-12));
+      const bool is_given_up =
+          now.phase == SearchPhase::slipped || now.phase == SearchPhase::at_limit;
+      RC_ASSERT((is_given_up ? now.height_mm == 0 : now.height_mm >= before.height_mm));
+      RC_ASSERT((now.phase == SearchPhase::lifted) == (now.height_mm == plan.height_mm));
+      // never both at once
+      RC_ASSERT((now.force_n == before.force_n || now.height_mm == before.height_mm));
+      RC_ASSERT(now.phase != SearchPhase::found);
+      RC_ASSERT((!is_end(before.phase) || equal(before, now)));
+    }
+  });
+  rc::prop("it ends in time", [] {
+    const auto plan = any_lift_plan();
+    const LiftWithRegrip<double> search(plan);
+    const Index regrips = steps_in(plan.most_force_n - plan.first_force_n, plan.force_step_n);
+    const Index lifts = steps_in(plan.height_mm, plan.height_step_mm);
+    // each tightening settles; then at the latest the last lift or the giving up
+    const Index bound = regrips * (1 + plan.settle_samples) + lifts;
+    auto state = search.start();
+    Index told = 0;
+    while (told < bound) {
+      for (const SlipNews one : any_news(50)) {
+        search(one, state);
+        told += one != SlipNews::missing ? 1 : 0;
+      }
+    }
+    RC_ASSERT(is_end(state.command().phase));
+    // the longest way: all but one lift, all tightenings, the last lift
+    News longest(static_cast<std::size_t>(lifts - 1), SlipNews::steady);
+    longest.insert(longest.end(), static_cast<std::size_t>(bound - lifts + 1), SlipNews::preslip);
+    longest.back() = SlipNews::steady;
+    RC_ASSERT(after(search, longest).phase == SearchPhase::lifted);
+    longest.pop_back();
+    RC_ASSERT(!is_end(after(search, longest).phase));
+  });
+  rc::prop("copies and repetitions give the same commands",
+           [] { check_copies(LiftWithRegrip<double>(any_lift_plan()), any_news(100)); });
+}
+
+TEST_CASE("lifting an object that is known", "[holding_force][law]") {
+  rc::prop("ends with it up and held within a step of its least force, or gives it up", [] {
+    const auto plan = any_lift_plan();
+    const double begins_n = test::uniform(0, plan.most_force_n * 1.2);
+    const double slips_n = test::uniform(0, begins_n);
+    const auto end = end_of(LiftWithRegrip<double>(plan), begins_n, slips_n);
+    if (plan.first_force_n < slips_n) {
+      RC_ASSERT(end.phase == SearchPhase::slipped);
+      RC_ASSERT(end.force_n == plan.first_force_n);
+    } else if (plan.most_force_n < begins_n) {
+      RC_ASSERT(end.phase == SearchPhase::at_limit);
+      RC_ASSERT(end.force_n == plan.most_force_n);
+    } else {
+      RC_ASSERT(end.phase == SearchPhase::lifted);
+      RC_ASSERT(end.height_mm == plan.height_mm);
+      RC_ASSERT(end.force_n >= begins_n);
+      RC_ASSERT(end.force_n <=
+                (std::max)(begins_n + plan.force_step_n * (1 + 1e-12), plan.first_force_n));
+    }
+  });
+}

@@ -1,0 +1,804 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+#include "fingerpad/slip/stick_ratio.hpp"
+
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "support/catch.hpp"
+#include "support/refusal.hpp"
+#include "support/slipping_dots.hpp"
+
+using namespace fingerpad;
+using test::ContactFlags;
+using test::DotPattern;
+using test::DotStates;
+using test::PointsPx;
+using test::refusal;
+using test::SlippingDots;
+using test::SlipStep;
+
+namespace {
+
+const Point2<double> missing{test::nan, test::nan};
+
+/// Dots of 9 x 9, all in contact, moved by (x, y).
+PointsPx shifted(double x, double y = 0, Index rows = 9, Index cols = 9) {
+  PointsPx dots(rows, cols);
+  for (Index i = 0; i < rows; ++i) {
+    for (Index j = 0; j < cols; ++j) {
+      dots(i, j) = {100 + 20 * static_cast<double>(j) + x, 100 + 20 * static_cast<double>(i) + y};
+    }
+  }
+  return dots;
+}
+
+/// An estimator of double and what it says, frame by frame.
+template <class Motion = StickConsensus<>,
+          class Reference = UpdatedReference<>,
+          class Denoising = ResidualMean>
+struct Follower {
+  using Ratio = StickRatio<Motion, Reference, Denoising, double>;
+  Ratio ratio;
+  typename Ratio::State state;
+  DotStates states;
+  ContactFlags all;
+
+  explicit Follower(const StickTest& test = {},
+                    const Motion& motion = {},
+                    const Reference& reference = {},
+                    const Denoising& denoising = {},
+                    Index rows = 9,
+                    Index cols = 9)
+      : ratio(rows, cols, test, motion, reference, denoising),
+        state(ratio.start()),
+        states(rows, cols),
+        all(rows, cols, 1) {}
+
+  StickRatioResult<double> operator()(const PointsPx& dots) { return (*this)(dots, all); }
+  StickRatioResult<double> operator()(const PointsPx& dots, const ContactFlags& contact) {
+    return ratio(dots, contact, states, state);
+  }
+  StickRatioResult<double> at(const PointsPx& dots, double time_s) {
+    return ratio(dots, all, states, state, time_s);
+  }
+};
+
+Index count(const DotStates& states, DotState what) {
+  return std::count(states.cells.begin(), states.cells.end(), what);
+}
+
+template <class S>
+bool same(const StickRatioResult<S>& a, const StickRatioResult<S>& b) {
+  return a.accepted == b.accepted && a.status == b.status && a.stick == b.stick &&
+         a.slip == b.slip && a.unknown == b.unknown && a.out_of_place == b.out_of_place &&
+         test::same_bits(a.stick_ratio, b.stick_ratio) && a.reference_age == b.reference_age &&
+         test::same_bits(a.furthest_px, b.furthest_px) && a.angle_rad == b.angle_rad &&
+         a.scale == b.scale && a.reference_dot == b.reference_dot;
+}
+
+}  // namespace
+
+TEST_CASE("stick ratio: names of statuses") {
+  CHECK(std::string(name_of(StickStatus::updated)) == "updated");
+  CHECK(std::string(name_of(StickStatus::standing)) == "standing");
+  CHECK(std::string(name_of(StickStatus::no_reference)) == "no reference");
+  CHECK(std::string(name_of(StickStatus::too_few_dots)) == "too few dots");
+  CHECK(std::string(name_of(StickStatus::no_contact)) == "no contact");
+  CHECK(std::string(name_of(StickStatus::no_dots)) == "no dots");
+  CHECK(std::string(name_of(StickStatus::jumped)) == "jumped");
+  CHECK(std::string(name_of(StickStatus::restarted)) == "restarted");
+}
+
+TEMPLATE_TEST_CASE("stick ratio: what moves as one sticks, and its motion is found",
+                   "[stick_ratio]",
+                   StickConsensus<>,
+                   ReferenceDotMotion<>) {
+  const double turn_rad = 0.05, zoom = 1.03;
+  SlippingDots dots;
+  const StickRatio<TestType, UpdatedReference<>, ResidualMean, double> ratio(21, 21);
+  auto state = ratio.start();
+  DotStates states(21, 21);
+  CHECK(ratio(dots.dots, dots.contact, states, state).status == StickStatus::no_reference);
+  const auto before = dots.dots;
+  dots.step({.shift_px = 3, .direction_rad = 0.7, .turn_rad = turn_rad, .zoom = zoom});
+  const auto r = ratio(dots.dots, dots.contact, states, state);
+  REQUIRE(r.accepted);
+  REQUIRE(r.updated());
+  CHECK(r.stick_ratio == 1);
+  CHECK(r.stick == 213);
+  CHECK((r.slip == 0 && r.unknown == 0 && r.out_of_place == 0));
+  CHECK(r.dots_in_contact() == 213);
+  CHECK(r.reference_age == 1);
+  // the published zoom takes the part along the motion for the whole, but for its weight
+  const double margin = std::is_same_v<TestType, StickConsensus<>> ? 1e-12 : 1e-3;
+  CHECK(r.angle_rad == Approx(turn_rad).margin(1e-12));
+  CHECK(r.scale == Approx(1 / zoom).margin(margin));
+  CHECK(r.reference_dot == DotIndex{10, 10});
+  double furthest = 0;
+  for (Index i = 0; i < 21; ++i) {
+    for (Index j = 0; j < 21; ++j) {
+      const bool touches = dots.contact(i, j) != 0;
+      CHECK(states(i, j) == (touches ? DotState::stick : DotState::none));
+      const double moved =
+          std::hypot(dots.dots(i, j).x - before(i, j).x, dots.dots(i, j).y - before(i, j).y);
+      furthest = touches ? std::max(furthest, moved) : furthest;
+    }
+  }
+  CHECK(r.furthest_px == Approx(furthest).epsilon(1e-12));
+}
+
+TEMPLATE_TEST_CASE("stick ratio: dots that stay behind slip",
+                   "[stick_ratio]",
+                   StickConsensus<>,
+                   (StickConsensus<Freedom::translation, CentralDot>),
+                   ReferenceDotMotion<>,
+                   ReferenceDotMotion<Freedom::rigid>) {
+  DotPattern pattern;
+  pattern.shear_pitches = 0;
+  SlippingDots truth(pattern);
+  const StickRatio<TestType> ratio(21, 21);
+  auto state = ratio.start();
+  DotStates states(21, 21);
+  ratio(truth.dots, truth.contact, states, state);
+  truth.step({.shift_px = 4, .direction_rad = 1, .stick_share = 0.6});
+  const auto r = ratio(truth.dots, truth.contact, states, state);
+  REQUIRE(r.updated());
+  for (Index i = 0; i < 21; ++i) {
+    for (Index j = 0; j < 21; ++j) {
+      CAPTURE(i, j);
+      CHECK(states(i, j) == (truth.contact(i, j) == 0   ? DotState::none
+                             : truth.has_stuck(i, j, 1) ? DotState::stick
+                                                        : DotState::slip));
+    }
+  }
+  CHECK(static_cast<double>(r.stick_ratio) == Approx(truth.stick_ratio(1)));
+  CHECK(r.stick == count(states, DotState::stick));
+  CHECK(r.slip == count(states, DotState::slip));
+}
+
+TEST_CASE("stick ratio: the reference is the newest stored frame further than U") {
+  Follower<> f;
+  const auto expect = [&](double x, StickStatus status, Index age, double furthest) {
+    const auto r = f(shifted(x));
+    CAPTURE(x, name_of(r.status), r.reference_age);
+    CHECK(r.status == status);
+    CHECK(r.furthest_px == Approx(furthest).margin(1e-9));
+    if (status == StickStatus::updated) {
+      CHECK(r.reference_age == age);
+      CHECK(r.stick_ratio == 1);
+    }
+  };
+  expect(0, StickStatus::no_reference, 0, 0);
+  expect(0, StickStatus::standing, 0, 0);
+  expect(0.4, StickStatus::standing, 0, 0.4);  // not stored
+  CHECK(f.state.stored_frames() == 1);
+  expect(0.5, StickStatus::standing, 0, 0.5);  // not above U_min
+  expect(0.625, StickStatus::no_reference, 0, 0.625);
+  CHECK(f.state.stored_frames() == 2);
+  expect(1.25, StickStatus::no_reference, 0, 0.625);
+  expect(2, StickStatus::no_reference, 0, 0.75);  // 2 from the first, not above U
+  expect(2.75, StickStatus::updated, 3, 2.125);   // from 0.625
+  expect(5, StickStatus::updated, 1, 2.25);       // fast: one frame is enough
+}
+
+TEST_CASE("stick ratio: behind a change of direction there is no reference") {
+  Follower<> f;
+  for (int k = 0; k <= 8; ++k) {  // 0 to 6
+    f(shifted(0.75 * k));
+  }
+  const auto updated = f(shifted(6.75));
+  CHECK(updated.updated());
+  CHECK(updated.reference_age == 3);
+  // back: the frames of the way there are as near, and farther ones are not looked at
+  CHECK(f(shifted(6)).status == StickStatus::no_reference);
+  CHECK(f(shifted(5.3)).status == StickStatus::no_reference);
+  const auto kept = f(shifted(4.76));  // 1.99 from the turn
+  CHECK(kept.status == StickStatus::no_reference);
+  CHECK(kept.stick_ratio == 1);
+  CHECK(kept.reference_age == 3);
+  const auto again = f(shifted(4));
+  CHECK(again.updated());
+  CHECK(again.furthest_px == Approx(2.75));
+  CHECK(again.reference_age == 4);
+}
+
+TEST_CASE("stick ratio: equal distances are no change of direction") {
+  Follower<> f;
+  f(shifted(0));
+  f(shifted(1.5, 0.5));
+  f(shifted(1.5, -0.5));
+  const auto r = f(shifted(3, 0));
+  CHECK(r.updated());
+  CHECK(r.reference_age == 3);
+}
+
+TEST_CASE("stick ratio: the oldest frame is forgotten") {
+  for (const Index capacity : {3, 4}) {
+    Follower<> f({}, {}, {.capacity = capacity});
+    StickRatioResult<double> r;
+    for (int k = 0; k < 20; ++k) {
+      r = f(shifted(0.625 * k));
+      CHECK(f.state.stored_frames() == std::min<Index>(k + 1, capacity));
+    }
+    CHECK(r.updated() == (capacity == 4));  // four steps are 2.5 px
+  }
+}
+
+TEST_CASE("stick ratio: the first reference stays") {
+  Follower<StickConsensus<>, FirstReference> f;
+  f(shifted(0));
+  CHECK(f(shifted(2)).status == StickStatus::no_reference);
+  for (int k = 1; k < 9; ++k) {
+    const auto r = f(shifted(2 + k));
+    CHECK(r.updated());
+    CHECK(r.reference_age == 1 + k);
+    CHECK(r.furthest_px == Approx(2 + k));
+  }
+  CHECK(f(shifted(1)).status == StickStatus::no_reference);  // back at where it was
+  CHECK(f.state.stored_frames() == 1);
+}
+
+TEST_CASE("stick ratio: the threshold grows with the displacement") {
+  // delta = 0.24 d_max / 2
+  for (const double moved_px : {2.5, 4.0, 10.0}) {
+    for (const double share : {0.99, 1.01}) {
+      Follower<ReferenceDotMotion<Freedom::translation>, UpdatedReference<>, NoDenoising> f;
+      f(shifted(0));
+      auto dots = shifted(moved_px);
+      dots(2, 6).x -= share * 0.12 * moved_px;
+      const auto r = f(dots);
+      REQUIRE(r.updated());
+      CHECK(r.furthest_px == Approx(moved_px));
+      CHECK(f.states(2, 6) == (share < 1 ? DotState::stick : DotState::slip));
+      CHECK(r.slip == (share < 1 ? 0 : 1));
+      CHECK(r.stick_ratio == Approx(1 - static_cast<double>(r.slip) / 81));
+    }
+  }
+}
+
+TEST_CASE("stick ratio: dots in contact only, and those that were") {
+  Follower<> f;
+  ContactFlags contact(9, 9, 1);
+  for (Index i = 0; i < 9; ++i) {
+    contact(i, 8) = 0;
+  }
+  auto dots = shifted(0);
+  f(dots, contact);
+  dots = shifted(3);
+  for (Index i = 0; i < 9; ++i) {
+    dots(i, 8).x += 7;  // not in contact: as if it were not there, were it not out of line
+  }
+  auto r = f(dots, contact);
+  CHECK(r.updated());
+  CHECK(r.furthest_px == Approx(3));
+  CHECK(r.stick == 72);
+  CHECK(r.dots_in_contact() == 72);
+  CHECK(f.states(4, 8) == DotState::none);
+  // New ones are unknown until a reference has them; of those that have left nothing is said.
+  contact = ContactFlags(9, 9, 1);
+  for (Index i = 0; i < 9; ++i) {
+    contact(i, 0) = 0;
+  }
+  r = f(shifted(6), contact);
+  CHECK(r.updated());
+  CHECK(r.unknown == 9);
+  CHECK(f.states(4, 8) == DotState::unknown);
+  CHECK(f.states(4, 0) == DotState::none);
+  CHECK(r.stick == 63);
+  CHECK(r.stick_ratio == 1);
+  r = f(shifted(9), contact);
+  CHECK(r.unknown == 0);
+  CHECK(r.stick == 72);
+}
+
+TEST_CASE("stick ratio: the search begins in the last stick region") {
+  // What sticks lies to the left; in the second step all the rest, twice as many dots, stays behind
+  // together. The centre of the contact lies among these.
+  const auto run = [](auto motion) {
+    Follower<decltype(motion)> f({}, motion);
+    f(shifted(0));
+    auto dots = shifted(4);
+    const auto hold = [&](Index from_col, double x, double y) {
+      for (Index i = 0; i < 9; ++i) {
+        for (Index j = from_col; j < 9; ++j) {
+          dots(i, j) = shifted(x, y)(i, j);
+        }
+      }
+    };
+    hold(6, 0, 0);
+    const auto first = f(dots);
+    CHECK(first.updated());
+    CHECK(first.stick == 54);
+    dots = shifted(8, 0);
+    hold(4, 4, 0);
+    hold(6, 0, 0);
+    return f(dots);
+  };
+  const auto tracked = run(StickConsensus<Freedom::translation, TrackedDot>());
+  CHECK(tracked.reference_dot.col < 4);
+  CHECK(tracked.stick == 36);
+  const auto central = run(StickConsensus<Freedom::translation, CentralDot>());
+  CHECK(central.reference_dot.row == 4);
+  CHECK(central.reference_dot.col >= tracked.reference_dot.col);
+  const auto dot = run(ReferenceDotMotion<Freedom::translation>());
+  CHECK(dot.stick == 36);
+}
+
+TEST_CASE("stick ratio: by area") {
+  DotStates states(2, 3);
+  states.cells = {DotState::stick, DotState::slip,    DotState::none,
+                  DotState::stick, DotState::unknown, DotState::slip};
+  test::Image<double> areas(2, 3, 1);
+  CHECK(stick_area_ratio(states, areas) == 0.5);
+  areas.cells = {1, 2, 50, 3, 50, 4};
+  CHECK(stick_area_ratio(states, areas) == 0.4);
+  areas.cells = {test::nan, 2, 1, 3, 1, std::numeric_limits<double>::infinity()};
+  CHECK(stick_area_ratio(states, areas) == 0.6);
+  areas.cells = {-5, 0, 1, 3, 1, 9};
+  CHECK(stick_area_ratio(states, areas) == 0.25);
+  CHECK(std::isnan(stick_area_ratio(DotStates(2, 3), areas)));
+  CHECK(std::isnan(stick_area_ratio(DotStates(3, 2), areas)));
+  CHECK(std::isnan(stick_area_ratio(DotStates(0, 0), test::Image<float>(0, 0))));
+}
+
+TEMPLATE_TEST_CASE("stick ratio: noise is averaged over neighbours",
+                   "[stick_ratio]",
+                   ResidualMean,
+                   DotMean,
+                   NoDenoising) {
+  // Weights 6, 2, 1 leave sqrt(36 + 4 * 4 + 4 * 1) / 18 of the noise. A threshold of 2 s
+  // sqrt(ln(1 / p)), s the noise that is left, is passed by p of the dots that have all neighbours.
+  const bool none = std::is_same_v<TestType, NoDenoising>;
+  const double left = none ? 1 : std::sqrt(56.0) / 18;
+  const double noise_px = 0.05, p = 0.05;
+  StickTest test;
+  test.slip_px = 2 * noise_px * left * std::sqrt(std::log(1 / p)) * 2 / 3;
+  double wrong = 0, all = 0;
+  test::Random random(7);
+  Follower<StickConsensus<>, UpdatedReference<>, TestType> f(test, {.most_passes = 10}, {}, {}, 21,
+                                                             21);
+  for (int k = 0; k < 200; ++k) {
+    const auto r = f(noisy(shifted(3.0 * (k % 2), 0, 21, 21), noise_px, random));
+    if (!r.updated()) {
+      continue;
+    }
+    const double threshold_share = r.furthest_px / 3;  // the noisiest dot sets it: a little more
+    CHECK(threshold_share < 1.1);
+    for (Index i = 2; i < 19; ++i) {
+      for (Index j = 2; j < 19; ++j) {
+        wrong += f.states(i, j) == DotState::slip ? 1 : 0;
+        ++all;
+      }
+    }
+  }
+  CHECK(all > 20000);
+  CAPTURE(wrong / all);
+  CHECK(wrong / all > 0.02);
+  CHECK(wrong / all < 0.06);
+}
+
+TEST_CASE("stick ratio: positions are averaged with their neighbours in pairs") {
+  // Where a dot misses its neighbour to the right, the mean over the others lies 2.4 px to the left
+  // of it, ten thresholds: it would slip whenever the neighbour comes or goes.
+  const PointsPx still = test::SlippingDots().dots;
+  double sum_px = 0, weights = 0;
+  for (Index i = -1; i <= 1; ++i) {
+    for (Index j = -1; j <= 1; ++j) {
+      const bool there = i != 0 || j != 1;
+      const double weight = i == 0 && j == 0 ? 6 : i == 0 || j == 0 ? 2 : 1;
+      sum_px += there ? weight * (still(10 + i, 10 + j).x - still(10, 10).x) : 0;
+      weights += there ? weight : 0;
+    }
+  }
+  CHECK(sum_px / weights == Approx(-2.44).margin(0.01));
+  const auto run = [](bool lost_at_first, bool lost_now) {
+    SlippingDots truth;
+    const StickRatio<ReferenceDotMotion<Freedom::translation>, UpdatedReference<>, DotMean> ratio(
+        21, 21);
+    auto state = ratio.start();
+    DotStates states(21, 21);
+    const auto frame = [&](bool lost) {
+      auto dots = truth.dots;
+      dots(10, 12) = lost ? missing : dots(10, 12);
+      return ratio(dots, truth.contact, states, state);
+    };
+    frame(lost_at_first);
+    truth.step({.shift_px = 3});
+    return frame(lost_now);
+  };
+  CHECK(run(false, false).stick == 213);
+  for (const auto& r : {run(true, true), run(true, false), run(false, true)}) {
+    CHECK(r.updated());
+    CHECK(r.slip == 0);
+    CHECK(r.unknown == 1);
+    CHECK(r.stick == 212);
+  }
+}
+
+TEST_CASE("stick ratio: copies of a state go on alike, and apart") {
+  Follower<> f;
+  f(shifted(0));
+  f(shifted(3));
+  auto copy = f.state;
+  const auto a = f(shifted(6));
+  DotStates states(9, 9);
+  f.ratio(shifted(1), f.all, states, copy);
+  auto other = f.state;
+  const auto b = f(shifted(9));
+  const auto c = f.ratio(shifted(9), f.all, states, other);
+  CHECK(same(b, c));
+  CHECK(states.cells == f.states.cells);
+  CHECK(a.reference_age == 1);
+  f.state.reset();
+  CHECK(f.state.stored_frames() == 0);
+  const auto fresh = f(shifted(0));
+  CHECK(fresh.status == StickStatus::no_reference);
+  CHECK(std::isnan(fresh.stick_ratio));
+  CHECK(fresh.reference_age == 0);
+}
+
+TEST_CASE("stick ratio, bad input: missing and NaN dots") {
+  const double infinity = std::numeric_limits<double>::infinity();
+  const std::vector<Point2<double>> none = {missing,         {test::nan, 100}, {100, test::nan},
+                                            {infinity, 100}, {100, -infinity}, {1e200, 0}};
+  for (const auto& p : none) {
+    CAPTURE(p.x, p.y);
+    Follower<> f;
+    f(shifted(0));
+    auto dots = shifted(3);
+    dots(4, 4) = p;
+    dots(0, 7) = p;
+    auto r = f(dots);
+    REQUIRE(r.updated());
+    CHECK(r.unknown == 2);  // not found: neither sticks nor slips
+    CHECK(f.states(4, 4) == DotState::unknown);
+    CHECK(r.stick == 79);
+    CHECK(r.stick_ratio == 1);
+    CHECK(r.furthest_px == Approx(3));
+    // back again, they are unknown as long as the reference lacks them
+    r = f(shifted(6));
+    CHECK(r.updated());
+    CHECK(r.unknown == 2);
+    r = f(shifted(9));
+    CHECK(r.updated());
+    CHECK(r.stick == 81);
+  }
+  SECTION("far away is not found, and makes those beside it doubtful at most") {
+    for (const double far : {1e3, 1e9, 1e30, 1e150}) {
+      Follower<> f;
+      f(shifted(0));
+      auto dots = shifted(3);
+      dots(4, 4) = {far, -far};
+      const auto r = f(dots);
+      REQUIRE(r.updated());
+      CHECK((r.unknown >= 1 && r.unknown <= 5));
+      CHECK(r.slip == 0);
+      CHECK(r.furthest_px == Approx(3));
+    }
+  }
+  SECTION("too few are no ratio, and the last one stands") {
+    for (const Index left : {4, 5}) {
+      Follower<> f;
+      f(shifted(0));
+      CHECK(f(shifted(3)).stick_ratio == 1);
+      auto dots = shifted(6);
+      for (Index k = left; k < 81; ++k) {
+        dots(k / 9, k % 9) = missing;
+      }
+      const auto r = f(dots);
+      CHECK(r.status == (left < 5 ? StickStatus::too_few_dots : StickStatus::updated));
+      CHECK(r.stick_ratio == 1);
+      CHECK(r.stick == (left < 5 ? 81 : 5));  // states stand with the ratio
+      CHECK(r.unknown == (left < 5 ? 0 : 76));
+    }
+  }
+}
+
+TEST_CASE("stick ratio, bad input: swapped dots") {
+  // Two that took each other's name are not between their neighbours: missing, not slipping, and
+  // not the furthest of all.
+  const auto run = [](DotIndex a, DotIndex b, Index out_of_place) {
+    Follower<> f;
+    f(shifted(0));
+    auto dots = shifted(3);
+    std::swap(dots(a.row, a.col), dots(b.row, b.col));
+    const auto r = f(dots);
+    REQUIRE(r.updated());
+    CHECK(r.furthest_px == Approx(3));
+    CHECK(r.out_of_place == out_of_place);
+    CHECK(r.unknown == out_of_place);
+    CHECK(r.slip == 0);
+    CHECK(f.states(a.row, a.col) == DotState::unknown);
+    CHECK(f.states(b.row, b.col) == DotState::unknown);
+    f(shifted(6));
+    CHECK(f(shifted(9)).stick == 81);
+  };
+  run({2, 3}, {6, 6}, 10);  // and of each the four beside
+  run({4, 4}, {4, 5}, 2);   // the others are in line still
+  run({4, 4}, {5, 5}, 4);
+}
+
+TEST_CASE("stick ratio, bad input: a misplaced corner of the pattern") {
+  // It lies between no two neighbours; left in, it would be the furthest dot and hide all slip.
+  for (const DotIndex corner : {DotIndex{0, 0}, DotIndex{0, 8}, DotIndex{8, 0}, DotIndex{8, 8}}) {
+    CAPTURE(corner.row, corner.col);
+    Follower<> f;
+    f(shifted(0));
+    auto dots = shifted(3);
+    dots(corner.row, corner.col).y += corner.row == 0 ? -30 : 30;
+    const auto r = f(dots);
+    REQUIRE(r.updated());
+    CHECK(r.out_of_place >= 1);  // and perhaps the one beside
+    CHECK(r.furthest_px == Approx(3));
+    CHECK(r.slip == 0);
+    CHECK(f.states(corner.row, corner.col) == DotState::unknown);
+  }
+}
+
+TEST_CASE("stick ratio: dots that stand still together are not the object") {
+  // A patch of 16 dots goes on with the object; the search begins among those that stand.
+  Follower<StickConsensus<Freedom::similarity, CentralDot>> f;
+  f(shifted(0));
+  auto dots = shifted(0);
+  for (Index i = 0; i < 4; ++i) {
+    for (Index j = 0; j < 4; ++j) {
+      dots(i, j).x += 3;
+    }
+  }
+  const auto r = f(dots);
+  REQUIRE(r.updated());
+  CHECK(f.states(1, 1) == DotState::stick);
+  CHECK(f.states(6, 6) == DotState::slip);
+  CHECK(r.stick <= 16);
+}
+
+TEST_CASE("stick ratio, bad input: a pattern that jumps by one pitch") {
+  for (const Index rows : {-1, 0, 1}) {
+    for (const Index cols : {-1, 0, 1}) {
+      const double x = 20 * static_cast<double>(cols), y = 20 * static_cast<double>(rows);
+      CAPTURE(rows, cols);
+      Follower<> f;
+      f(shifted(0));
+      CHECK(f(shifted(3)).stick_ratio == 1);
+      const Index stored = f.state.stored_frames();
+      auto r = f(shifted(3.7 + x, 0.4 + y));
+      CHECK(r.status == (rows == 0 && cols == 0 ? StickStatus::updated : StickStatus::jumped));
+      CHECK(r.stick_ratio == 1);
+      if (rows != 0 || cols != 0) {
+        CHECK(f.state.stored_frames() == stored);
+        CHECK(f(shifted(3.7 + x, 0.4 + y)).status == StickStatus::jumped);
+        CHECK(f.states(4, 4) == DotState::stick);  // as before
+      }
+      r = f(shifted(6));  // in step again
+      CHECK(r.updated());
+      CHECK(r.stick_ratio == 1);
+    }
+  }
+  SECTION("so does a pattern that turns or grows") {
+    SlippingDots dots;
+    const StickRatio ratio(21, 21);
+    auto state = ratio.start();
+    DotStates states(21, 21);
+    ratio(dots.dots, dots.contact, states, state);
+    dots.step({.shift_px = 19.5, .direction_rad = 0.01, .turn_rad = 0.02, .zoom = 1.01});
+    CHECK(ratio(dots.dots, dots.contact, states, state).status == StickStatus::jumped);
+  }
+  SECTION("fast but not by a pitch is motion") {
+    Follower<> f;
+    f(shifted(0));
+    CHECK(f(shifted(10)).updated());
+    CHECK(f(shifted(40)).updated());
+  }
+}
+
+TEST_CASE("stick ratio, bad input: all dots lost for some frames, then back") {
+  Follower<> f;
+  const PointsPx blank(9, 9, missing);
+  CHECK(f(blank).status == StickStatus::no_dots);
+  CHECK(std::isnan(f(blank).stick_ratio));
+  f(shifted(0));
+  auto held = shifted(3);
+  for (Index i = 0; i < 9; ++i) {
+    held(i, 0) = shifted(0)(i, 0);
+  }
+  const auto before = f(held);
+  REQUIRE(before.updated());
+  REQUIRE(before.slip == 9);
+  for (int k = 0; k < 5; ++k) {
+    const auto r = f(blank);
+    CHECK(r.accepted);
+    CHECK(r.status == StickStatus::no_dots);
+    CHECK(r.stick_ratio == before.stick_ratio);
+    CHECK(r.slip == 9);  // what was known stands
+    CHECK(f.states(3, 0) == DotState::slip);
+  }
+  // without contact flags, as nothing is found where anything could touch
+  CHECK(f(blank, ContactFlags(9, 9, 0)).status == StickStatus::no_dots);
+  const auto after = f(shifted(6));  // nothing was forgotten
+  CHECK(after.updated());
+  CHECK(after.reference_age == 7);
+}
+
+TEST_CASE("stick ratio, bad input: time going backwards") {
+  Follower<> f;
+  CHECK(f.at(shifted(0), 10).status == StickStatus::no_reference);
+  CHECK(f.at(shifted(3), 10.1).updated());
+  CHECK(f.at(shifted(6), 10.1).updated());  // twice the same time is no going back
+  const auto r = f.at(shifted(9), 10.05);
+  CHECK(r.status == StickStatus::restarted);
+  CHECK(std::isnan(r.stick_ratio));
+  CHECK(r.reference_age == 0);
+  CHECK(r.unknown == 81);
+  CHECK(f.state.stored_frames() == 1);
+  CHECK(f.at(shifted(12), 10.06).reference_age == 1);
+  // times that are no numbers say nothing
+  CHECK(f.at(shifted(15), test::nan).updated());
+  CHECK(f.at(shifted(18), std::numeric_limits<double>::infinity()).updated());
+  CHECK(f.at(shifted(21), 10.07).updated());
+  CHECK(f(shifted(24)).updated());
+  CHECK(f.at(shifted(27), -std::numeric_limits<double>::infinity()).status ==
+        StickStatus::restarted);
+  CHECK(f.at(shifted(30), -5).updated());
+}
+
+TEST_CASE("stick ratio, bad input: an empty contact mask") {
+  Follower<> f;
+  const ContactFlags none(9, 9, 0);
+  auto r = f(shifted(0), none);
+  CHECK(r.accepted);
+  CHECK(r.status == StickStatus::no_contact);
+  CHECK(std::isnan(r.stick_ratio));
+  CHECK(r.dots_in_contact() == 0);
+  f(shifted(0));
+  CHECK(f(shifted(3)).stick_ratio == 1);
+  r = f(shifted(6), none);
+  CHECK(r.status == StickStatus::no_contact);
+  CHECK(std::isnan(r.stick_ratio));  // of another contact
+  CHECK(r.reference_age == 0);
+  CHECK(!r.reference_dot.exists());
+  CHECK(count(f.states, DotState::none) == 81);
+  CHECK(f.state.stored_frames() == 0);
+  CHECK(f(shifted(9)).status == StickStatus::no_reference);
+  CHECK(f(shifted(12)).updated());
+}
+
+TEMPLATE_TEST_CASE("stick ratio, bad input: one single dot",
+                   "[stick_ratio]",
+                   StickConsensus<>,
+                   ReferenceDotMotion<>,
+                   (ReferenceDotMotion<Freedom::similarity, PublishedZoom>)) {
+  const auto run = [](const StickTest& test, Index rows, Index cols) {
+    Follower<TestType> f(test, {}, {}, {}, rows, cols);
+    f(shifted(0, 0, rows, cols));
+    return f(shifted(3, 0, rows, cols));
+  };
+  const auto r = run({}, 1, 1);
+  CHECK(r.accepted);
+  CHECK(r.status == StickStatus::too_few_dots);
+  CHECK(std::isnan(r.stick_ratio));
+  CHECK(r.unknown == 1);
+  const auto alone = run({.least_dots = 1}, 1, 1);  // it moves with itself
+  CHECK(alone.updated());
+  CHECK(alone.stick_ratio == 1);
+  CHECK(alone.angle_rad == 0);
+  CHECK(alone.scale == 1);
+  CHECK(alone.reference_dot == DotIndex{0, 0});
+  CHECK(run({.least_dots = 2}, 1, 2).stick_ratio == 1);
+  CHECK(run({.least_dots = 2}, 2, 1).stick_ratio == 1);
+  CHECK(run({}, 1, 9).stick_ratio == 1);
+  CHECK(run({}, 9, 1).stick_ratio == 1);
+  SECTION("in contact, of many") {
+    Follower<TestType> f({.least_dots = 1});
+    ContactFlags contact(9, 9, 0);
+    contact(8, 8) = 1;
+    f(shifted(0), contact);
+    const auto one = f(shifted(3), contact);
+    CHECK(one.updated());
+    CHECK(one.stick == 1);
+    CHECK(one.reference_dot == DotIndex{8, 8});
+  }
+}
+
+TEST_CASE("stick ratio, bad input: other sizes and foreign states are refused") {
+  const StickRatio ratio(9, 9);
+  auto state = ratio.start();
+  DotStates states(9, 9);
+  const ContactFlags all(9, 9, 1);
+  ratio(shifted(0), all, states, state);
+  ratio(shifted(3), all, states, state);
+  const DotStates written = states;
+  DotStates other_states(9, 8);
+  CHECK(!ratio(shifted(0, 0, 9, 8), all, states, state).accepted);
+  CHECK(!ratio(shifted(0, 0, 0, 0), all, states, state).accepted);
+  CHECK(!ratio(shifted(6), ContactFlags(8, 9), states, state).accepted);
+  CHECK(!ratio(shifted(6), all, other_states, state).accepted);
+  auto foreign = StickRatio(9, 8).start();
+  CHECK(!ratio(shifted(6), all, states, foreign).accepted);
+  auto turned = StickRatio(8, 9).start();
+  CHECK(!ratio(shifted(6), all, states, turned).accepted);
+  auto other_capacity =
+      StickRatio(9, 9, {}, StickConsensus<>(), UpdatedReference<>{.capacity = 63}).start();
+  const auto refused = ratio(shifted(6), all, states, other_capacity);
+  CHECK(!refused.accepted);
+  CHECK(!refused.updated());
+  CHECK(std::isnan(refused.stick_ratio));
+  CHECK(states.cells == written.cells);
+  CHECK(other_states.cells == DotStates(9, 8).cells);
+  CHECK(ratio(shifted(6), all, states, state).updated());  // the state is as it was
+}
+
+TEST_CASE("stick ratio: bad parameters are refused by name, value and range") {
+  const auto test_with = [](auto member, auto bad) {
+    StickTest test;
+    test.*member = bad;
+    return refusal([&] { StickRatio(9, 9, test); });
+  };
+  CHECK(test_with(&StickTest::reference_px, 0.0) ==
+        "StickTest: reference_px = 0, must be finite and > 0");
+  CHECK(test_with(&StickTest::reference_px, -2.0) ==
+        "StickTest: reference_px = -2, must be finite and > 0");
+  CHECK(test_with(&StickTest::store_px, 2.5) ==
+        "StickTest: store_px = 2.5, must be in [0, reference_px]");
+  CHECK(test_with(&StickTest::store_px, -0.5) ==
+        "StickTest: store_px = -0.5, must be in [0, reference_px]");
+  CHECK(test_with(&StickTest::slip_px, 0.0) == "StickTest: slip_px = 0, must be finite and > 0");
+  CHECK(test_with(&StickTest::least_dots, Index(0)) == "StickTest: least_dots = 0, must be >= 1");
+  for (const double bad : {test::nan, std::numeric_limits<double>::infinity()}) {
+    using test::begins_with;
+    CHECK(begins_with(test_with(&StickTest::reference_px, bad), "StickTest: reference_px = "));
+    CHECK(begins_with(test_with(&StickTest::store_px, bad), "StickTest: store_px = "));
+    CHECK(begins_with(test_with(&StickTest::slip_px, bad), "StickTest: slip_px = "));
+  }
+  CHECK(test_with(&StickTest::store_px, 0.0) == "accepted");
+  CHECK(test_with(&StickTest::store_px, 2.0) == "accepted");
+
+  CHECK(refusal([] { StickRatio(0, 9); }) == "StickRatio: rows = 0, must be >= 1");
+  CHECK(refusal([] { StickRatio(9, -1); }) == "StickRatio: cols = -1, must be >= 1");
+
+  const auto motion = [](const auto& m) { return refusal([&] { StickRatio(9, 9, {}, m); }); };
+  CHECK(motion(StickConsensus<>{.most_passes = -1}) ==
+        "StickConsensus: most_passes = -1, must be in [0, 100]");
+  CHECK(motion(StickConsensus<>{.most_passes = 101}) ==
+        "StickConsensus: most_passes = 101, must be in [0, 100]");
+  CHECK(motion(StickConsensus<>{.most_passes = 0}) == "accepted");
+  CHECK(motion(ReferenceDotMotion<>{.zoom = {.fading_px = 0}}) ==
+        "LeastSquaresZoom: fading_px = 0, must be finite and > 0");
+  CHECK(motion(ReferenceDotMotion<>{.zoom = {.fading_px = test::nan}}) ==
+        "LeastSquaresZoom: fading_px = nan, must be finite and > 0");
+
+  const auto capacity = [](Index n) {
+    return refusal([&] {
+      StickRatio(9, 9, {}, StickConsensus<>(), UpdatedReference<InStickRegion>{.capacity = n});
+    });
+  };
+  CHECK(capacity(0) == "UpdatedReference: capacity = 0, must be in [1, 4096]");
+  CHECK(capacity(4097) == "UpdatedReference: capacity = 4097, must be in [1, 4096]");
+  CHECK(capacity(1) == "accepted");
+
+  const auto denoising = [](const auto& d) {
+    return refusal([&] { StickRatio(9, 9, {}, StickConsensus<>(), UpdatedReference<>(), d); });
+  };
+  CHECK(denoising(ResidualMean{.weights = {.self = 0}}) ==
+        "ResidualMean: weights.self = 0, must be finite and > 0");
+  CHECK(denoising(ResidualMean{.weights = {.side = -1}}) ==
+        "ResidualMean: weights.side = -1, must be finite and >= 0");
+  CHECK(denoising(ResidualMean{.weights = {.diagonal = -1}}) ==
+        "ResidualMean: weights.diagonal = -1, must be finite and >= 0");
+  CHECK(denoising(ResidualMean{.gate = 0.5}) ==
+        "ResidualMean: gate = 0.5, must be finite and >= 1");
+  CHECK(denoising(ResidualMean{.gate = test::nan}) ==
+        "ResidualMean: gate = nan, must be finite and >= 1");
+  CHECK(denoising(DotMean{.weights = {.self = -1}}) ==
+        "DotMean: weights.self = -1, must be finite and > 0");
+  CHECK(denoising(DotMean{.weights = {.side = test::nan}}) ==
+        "DotMean: weights.side = nan, must be finite and >= 0");
+  CHECK(denoising(DotMean{.weights = {.diagonal = -0.5}}) ==
+        "DotMean: weights.diagonal = -0.5, must be finite and >= 0");
+  CHECK(denoising(DotMean{.weights = {1, 0, 0}}) == "accepted");
+  CHECK(denoising(NoDenoising()) == "accepted");
+}
