@@ -37,7 +37,7 @@ int main(int argc, char** argv) {
   const auto result = estimate(red_of(frame), green_of(frame), depth_mm, workspace);
 
   const float center = depth_mm(240, 240);
-  std::printf("%td of %td pixels have a depth; %.2f mm at the centre, %.2f mm in the free pad\n",
+  std::printf("%td of %td pixels have a depth; %.2f mm at the center, %.2f mm in the free pad\n",
               result.valid_pixels(), result.pad_pixels, static_cast<double>(center),
               static_cast<double>(shape(240, 240)));
   return result.accepted && center > 8.0f && center < shape(240, 240) + 0.5f ? 0 : 1;

@@ -22,7 +22,7 @@ int main() {
                                 .noise = object.noise_counts});
   const fingerpad::Preslip<fingerpad::GraspOptimise<>> preslip;  // two fingers
   const fingerpad::LoosenUntilPreslip loosen({.first_force_n = object.first_force_n,
-                                              .least_force_n = 0.1,
+                                              .min_force_n = 0.1,
                                               .step_n = 0.2,
                                               .settle_samples = 4,
                                               .watch_samples = 36,

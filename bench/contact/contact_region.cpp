@@ -13,9 +13,9 @@
 #include <string>
 #include <vector>
 
-#include "../tests/support/soap_film.hpp"
-#include "support/run.hpp"
-#include "support/scene.hpp"
+#include "support/soap_film.hpp"
+#include "bench/support/run.hpp"
+#include "bench/support/scene.hpp"
 
 using namespace fingerpad;
 using test::Image;

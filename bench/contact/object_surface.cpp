@@ -16,8 +16,8 @@
 #include <type_traits>
 #include <vector>
 
-#include "support/run.hpp"
-#include "support/scene.hpp"
+#include "bench/support/run.hpp"
+#include "bench/support/scene.hpp"
 
 using namespace fingerpad;
 using bench::Image;

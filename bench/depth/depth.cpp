@@ -10,8 +10,8 @@
 #include <string>
 #include <vector>
 
-#include "support/run.hpp"
-#include "support/scene.hpp"
+#include "bench/support/run.hpp"
+#include "bench/support/scene.hpp"
 
 using namespace fingerpad;
 using bench::Image;

@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "fingerpad/depth/depth.hpp"
-#include "support/run.hpp"
-#include "support/scene.hpp"
+#include "bench/support/run.hpp"
+#include "bench/support/scene.hpp"
 
 using namespace fingerpad;
 using bench::Image;

@@ -23,11 +23,11 @@
 #include <utility>
 #include <vector>
 
-#include "../examples/grip/foam_fingers.hpp"
-#include "../tests/support/foam_signals.hpp"
+#include "examples/grip/foam_fingers.hpp"
+#include "support/foam_signals.hpp"
 #include "fingerpad/foam/holding_force.hpp"
 #include "fingerpad/foam/taxel_features.hpp"
-#include "support/run.hpp"
+#include "bench/support/run.hpp"
 
 using namespace fingerpad;
 
@@ -248,7 +248,7 @@ void add_detection(const std::string& name) {
 template <class S>
 LoosenPlan<S> loosen_plan() {
   LoosenPlan<S> plan;
-  plan.least_force_n = S(1) / S(10);
+  plan.min_force_n = S(1) / S(10);
   plan.step_n = S(1) / S(5);
   plan.settle_samples = 4;
   plan.watch_samples = 36;

@@ -23,7 +23,7 @@
 
 #include "fingerpad/core/dots.hpp"
 #include "fingerpad/foam/preslip.hpp"
-#include "support/run.hpp"
+#include "bench/support/run.hpp"
 
 using namespace fingerpad;
 

@@ -13,8 +13,8 @@
 #include <type_traits>
 #include <vector>
 
-#include "support/contacts.hpp"
-#include "support/run.hpp"
+#include "bench/support/contacts.hpp"
+#include "bench/support/run.hpp"
 
 using namespace fingerpad;
 

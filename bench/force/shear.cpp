@@ -14,8 +14,8 @@
 #include <vector>
 
 #include "fingerpad/force/normal_force.hpp"
-#include "support/contacts.hpp"
-#include "support/run.hpp"
+#include "bench/support/contacts.hpp"
+#include "bench/support/run.hpp"
 
 using namespace fingerpad;
 

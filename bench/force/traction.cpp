@@ -12,8 +12,8 @@
 #include <string>
 #include <vector>
 
-#include "../tests/support/traction_scenes.hpp"
-#include "support/run.hpp"
+#include "support/traction_scenes.hpp"
+#include "bench/support/run.hpp"
 
 using namespace fingerpad;
 

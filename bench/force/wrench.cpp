@@ -17,9 +17,9 @@
 #include <string>
 #include <vector>
 
-#include "../tests/support/pressed_pad.hpp"
+#include "support/pressed_pad.hpp"
 #include "fingerpad/force/pad_heights.hpp"
-#include "support/run.hpp"
+#include "bench/support/run.hpp"
 
 using namespace fingerpad;
 using test::Image;

@@ -13,8 +13,8 @@
 #include <vector>
 
 #include "fingerpad/image/curvature_map.hpp"
-#include "support/run.hpp"
-#include "support/scene.hpp"
+#include "bench/support/run.hpp"
+#include "bench/support/scene.hpp"
 
 using namespace fingerpad;
 using bench::Image;

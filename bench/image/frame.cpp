@@ -9,8 +9,8 @@
 #include <string>
 
 #include "fingerpad/depth/depth.hpp"
-#include "support/run.hpp"
-#include "support/scene.hpp"
+#include "bench/support/run.hpp"
+#include "bench/support/scene.hpp"
 
 using namespace fingerpad;
 using bench::Image;

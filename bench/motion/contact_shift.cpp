@@ -15,7 +15,7 @@
 #include <type_traits>
 #include <vector>
 
-#include "support/run.hpp"
+#include "bench/support/run.hpp"
 
 using namespace fingerpad;
 

@@ -14,9 +14,9 @@
 #include <string>
 #include <vector>
 
-#include "../tests/support/pad.hpp"
-#include "../tests/support/rolling.hpp"
-#include "support/run.hpp"
+#include "support/pad.hpp"
+#include "support/rolling.hpp"
+#include "bench/support/run.hpp"
 
 using namespace fingerpad;
 

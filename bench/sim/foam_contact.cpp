@@ -19,7 +19,7 @@
 #include <string>
 #include <vector>
 
-#include "support/run.hpp"
+#include "bench/support/run.hpp"
 
 using namespace fingerpad;
 

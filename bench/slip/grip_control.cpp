@@ -13,10 +13,10 @@
 #include <string>
 #include <vector>
 
-#include "../examples/grip/camera.hpp"
+#include "examples/grip/camera.hpp"
 #include "fingerpad/slip/friction_ratio.hpp"
 #include "fingerpad/slip/stick_ratio.hpp"
-#include "support/run.hpp"
+#include "bench/support/run.hpp"
 
 using namespace fingerpad;
 

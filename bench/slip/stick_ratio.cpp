@@ -15,9 +15,9 @@
 #include <string>
 #include <vector>
 
-#include "../tests/support/slipping_dots.hpp"
-#include "support/naive_stick_ratio.hpp"
-#include "support/run.hpp"
+#include "support/slipping_dots.hpp"
+#include "bench/support/naive_stick_ratio.hpp"
+#include "bench/support/run.hpp"
 
 using namespace fingerpad;
 
@@ -221,16 +221,16 @@ void add_growth() {
 
 int main(int argc, char** argv) {
   cv::setNumThreads(1);
-  using Published = ReferenceDotMotion<Freedom::similarity, PublishedZoom>;
+  using Published = ReferenceDotMotion<Freedom::similarity, PublishedScale>;
   using Updated = UpdatedReference<>;
   add_naive();
   add_frame<Published, Updated, DotMean, double>("published policies, double");
   add_frame<Published, Updated, DotMean>("published policies, float");
-  add_frame<ReferenceDotMotion<Freedom::similarity, PublishedZoom, CentralDot>, Updated, DotMean>(
+  add_frame<ReferenceDotMotion<Freedom::similarity, PublishedScale, CentralDot>, Updated, DotMean>(
       "published policies, CentralDot, float");
   add_frame<ReferenceDotMotion<>, Updated, DotMean>(
-      "ReferenceDotMotion<LeastSquaresZoom>, DotMean");
-  add_frame<ReferenceDotMotion<>>("ReferenceDotMotion<LeastSquaresZoom>, ResidualMean");
+      "ReferenceDotMotion<LeastSquaresScale>, DotMean");
+  add_frame<ReferenceDotMotion<>>("ReferenceDotMotion<LeastSquaresScale>, ResidualMean");
   add_frame<StickConsensus<>>("StickConsensus, ResidualMean, float, the default");
   add_frame<StickConsensus<>, Updated, ResidualMean, double>("the default in double");
   add_frame<StickConsensus<Freedom::similarity, CentralDot>>("StickConsensus, CentralDot");

@@ -14,7 +14,7 @@
 #include <string>
 #include <vector>
 
-#include "../../tests/no_allocation/count.hpp"
+#include "no_allocation/count.hpp"
 
 namespace bench {
 

@@ -12,7 +12,7 @@
 #include <type_traits>
 #include <vector>
 
-#include "../../tests/support/pad.hpp"
+#include "support/pad.hpp"
 
 namespace bench {
 

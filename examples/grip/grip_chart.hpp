@@ -71,7 +71,7 @@ inline void paint(Canvas& canvas, const cv::Rect2d& box, const Panel& panel, dou
   for (double t = 0; t <= last_s; t += 2) {
     canvas.line({x_of(t), box.y}, {x_of(t), box.y + box.height}, 0.6, ink::pale);
     canvas.text({x_of(t), box.y + box.height + 18}, replay::format("%g", t), letter, ink::grey,
-                Align::centre);
+                Align::center);
   }
   for (const Curve& curve : panel.curves) {
     std::vector<Spot> spots;
@@ -126,7 +126,7 @@ inline cv::Mat grip_chart(const Run& with, const Run& without, double set_point)
     paint(canvas, {left, y, width, height}, panels[k], last_s);
   }
   canvas.text({left + width / 2, top + 4 * (height + gap) - 16}, "time, s", letter, ink::grey,
-              Align::centre);
+              Align::center);
   return canvas.finished();
 }
 

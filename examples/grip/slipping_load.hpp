@@ -94,22 +94,22 @@ class SlippingLoad {
 
   /// Brings the net to rest with the object where it is; the force with which it holds the object.
   double relax() {
-    const double most_mm = friction_limit_n() / touching_ / tip_.spring_n_per_mm;
+    const double max_mm = friction_limit_n() / touching_ / tip_.spring_n_per_mm;
     for (int sweep = 0; sweep < 12; ++sweep) {
       for (std::size_t k = 0; k < free_.size(); ++k) {
         if (free_[k] != 0) {
           const double rest_mm = neighbours_mm(k) / 4;
           shift_mm_[k] = touches_[k] == 0
                              ? shift_mm_[k] + 1.5 * (rest_mm - shift_mm_[k])
-                             : std::clamp(object_mm_ + slid_mm_[k], rest_mm - most_mm / 4,
-                                          rest_mm + most_mm / 4);
+                             : std::clamp(object_mm_ + slid_mm_[k], rest_mm - max_mm / 4,
+                                          rest_mm + max_mm / 4);
         }
       }
     }
     double held_mm = 0;
     for (std::size_t k = 0; k < free_.size(); ++k) {
       if (touches_[k] != 0) {
-        held_mm += std::clamp(4 * shift_mm_[k] - neighbours_mm(k), -most_mm, most_mm);
+        held_mm += std::clamp(4 * shift_mm_[k] - neighbours_mm(k), -max_mm, max_mm);
         slid_mm_[k] = shift_mm_[k] - object_mm_;
       }
     }

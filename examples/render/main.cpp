@@ -123,7 +123,7 @@ void render_all(const Options& options) {
     copy_unless_same(options.recording / file, options.out / file);
   }
   render::Noise noise(options.seed, options.lighting);
-  const auto centres = [&](const render::Step& step) {
+  const auto centers = [&](const render::Step& step) {
     return look(sensor.camera, membrane.triangles, step, size, 1, dot_mm).depth_mm;
   };
   const auto ideal = [&](const render::Step& step) {
@@ -133,13 +133,13 @@ void render_all(const Options& options) {
   const render::Step& free_pad = membrane.steps.front();
   replay::write_png(options.out / sensor.reference_frame,
                     averaged(ideal(free_pad), options.reference_frames, noise));
-  replay::write_depth_image(options.out / sensor.reference_depth, rounded(centres(free_pad)));
+  replay::write_depth_image(options.out / sensor.reference_depth, rounded(centers(free_pad)));
   for (std::size_t k = 0; k < membrane.steps.size(); ++k) {
     const render::Step& step = membrane.steps[k];
     replay::write_png(options.out / "frames" / numbered(k, "png"), noise.expose(ideal(step)));
     if (!options.truth.empty()) {
       fs::create_directories(options.truth);
-      replay::write_depth_image(options.truth / numbered(k, "tiff"), centres(step));
+      replay::write_depth_image(options.truth / numbered(k, "tiff"), centers(step));
     }
   }
   std::printf("%zu frames of %d x %d px in %s\n", membrane.steps.size(), size.width, size.height,

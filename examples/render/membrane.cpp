@@ -168,11 +168,11 @@ void meet_triangle(const Rays& rays,
 }
 
 void mark_dots(const Rays& rays, const std::vector<Point>& dots, double radius_mm, Sight& sight) {
-  for (const Point& centre : dots) {
+  for (const Point& center : dots) {
     std::vector<Point> reach;
     for (const double dx : {-radius_mm, radius_mm}) {
       for (const double dy : {-radius_mm, radius_mm}) {
-        reach.push_back({centre.x + dx, centre.y + dy, centre.z});
+        reach.push_back({center.x + dx, center.y + dy, center.z});
       }
     }
     const cv::Rect box = rays.around(reach, 3.0);
@@ -180,8 +180,8 @@ void mark_dots(const Rays& rays, const std::vector<Point>& dots, double radius_m
       for (int j = box.x; j < box.x + box.width; ++j) {
         const double depth = static_cast<double>(sight.depth_mm(i, j));
         const FluidRay& ray = rays(i, j);
-        const Point off = {ray.start.x + depth * ray.direction.x - centre.x,
-                           ray.start.y + depth * ray.direction.y - centre.y, depth - centre.z};
+        const Point off = {ray.start.x + depth * ray.direction.x - center.x,
+                           ray.start.y + depth * ray.direction.y - center.y, depth - center.z};
         if (dot(off, off) <= radius_mm * radius_mm) {
           sight.on_dot(i, j) = 1;
         }

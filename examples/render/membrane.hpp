@@ -17,7 +17,7 @@ using Point = fingerpad::Point3<double>;
 
 struct Step {
   std::vector<Point> nodes;
-  std::vector<Point> dots;  ///< centres of the printed dots
+  std::vector<Point> dots;  ///< centers of the printed dots
 };
 
 struct Membrane {
@@ -37,7 +37,7 @@ struct Sight {
 };
 
 /// Follows every refracted ray to the membrane. The ray that goes through (row, col) of the image
-/// is sample (samples (row + 1/2) - 1/2, ...); samples = 1 gives the rays of the pixels' centres.
+/// is sample (samples (row + 1/2) - 1/2, ...); samples = 1 gives the rays of the pixels' centers.
 Sight look(const fingerpad::Camera<double>& camera,
            const std::vector<std::array<int, 3>>& triangles,
            const Step& step,

@@ -80,14 +80,14 @@ void Canvas::polygon(const std::vector<Spot>& corners, const Ink& colour) {
                fraction_bits);
 }
 
-void Canvas::circle(Spot centre, double radius, double width, const Ink& colour) {
-  cv::circle(sheet_, large({centre}).front(),
+void Canvas::circle(Spot center, double radius, double width, const Ink& colour) {
+  cv::circle(sheet_, large({center}).front(),
              static_cast<int>(std::lround(radius * (scale << fraction_bits))), colour,
              strokes(width), cv::LINE_AA, fraction_bits);
 }
 
-void Canvas::disc(Spot centre, double radius, const Ink& colour) {
-  cv::circle(sheet_, large({centre}).front(),
+void Canvas::disc(Spot center, double radius, const Ink& colour) {
+  cv::circle(sheet_, large({center}).front(),
              static_cast<int>(std::lround(radius * (scale << fraction_bits))), colour, cv::FILLED,
              cv::LINE_AA, fraction_bits);
 }

@@ -21,7 +21,7 @@ inline const Ink white(255, 255, 255);
 inline const Ink accent(48, 40, 214);
 }  // namespace ink
 
-enum class Align { left, centre, right };
+enum class Align { left, center, right };
 
 class Canvas {
  public:
@@ -31,8 +31,8 @@ class Canvas {
   void curve(const std::vector<Spot>& spots, double width, const Ink& colour);
   void dashed_curve(const std::vector<Spot>& spots, double width, const Ink& colour);
   void polygon(const std::vector<Spot>& corners, const Ink& colour);
-  void circle(Spot centre, double radius, double width, const Ink& colour);
-  void disc(Spot centre, double radius, const Ink& colour);
+  void circle(Spot center, double radius, double width, const Ink& colour);
+  void disc(Spot center, double radius, const Ink& colour);
   /// `at` lies on the baseline; `height` is that of a capital letter.
   void text(Spot at,
             const std::string& words,

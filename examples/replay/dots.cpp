@@ -15,7 +15,7 @@
 namespace replay {
 namespace {
 
-constexpr int least_dots = 9;     // fewer in order are chance
+constexpr int min_dots = 9;     // fewer in order are chance
 constexpr int first_frames = 10;  // a camera's first frames may be dark
 
 /// Whether two grids mean the same dots by the same row and column.
@@ -46,7 +46,7 @@ DotSource::DotSource(const std::filesystem::path& folder,
   if (sensor.dots) {
     finder_ = std::make_unique<BlobFinder>(sensor, reference_depth);
     free_pad = order_free_pad(sensor, reference_depth, finder_->find(reference_image));
-    if (fingerpad::count_present(free_pad->found) < least_dots) {
+    if (fingerpad::count_present(free_pad->found) < min_dots) {
       free_pad.reset();
     }
   }

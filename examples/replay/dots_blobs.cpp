@@ -9,9 +9,9 @@
 namespace replay {
 namespace {
 
-constexpr float least_darkness = 0.08F;   // a dot is darker than the membrane by this share or more
-constexpr std::size_t most_spots = 4000;  // in a whole frame; more are its grain
-constexpr float least_light = 4.0F;       // grey levels of red + green; darker places show nothing
+constexpr float min_darkness = 0.08F;   // a dot is darker than the membrane by this share or more
+constexpr std::size_t max_spots = 4000;  // in a whole frame; more are its grain
+constexpr float min_light = 4.0F;       // grey levels of red + green; darker places show nothing
 constexpr float glare = 2.0F;  // light above this many times the pad's median is none of its own
 
 /// Median of the values where `mask` is positive; 0 where it is nowhere.
@@ -205,7 +205,7 @@ cv::Mat_<float> BlobFinder::darkness(const cv::Mat& image) const {
   for (int round = 0; round < 2; ++round) {
     around = light_around(light, membrane);
     cv::Mat bright;
-    cv::compare(light, around * static_cast<double>(1 - least_darkness), bright, cv::CMP_GT);
+    cv::compare(light, around * static_cast<double>(1 - min_darkness), bright, cv::CMP_GT);
     bright.convertTo(bright, CV_32F, 1.0 / 255);
     cv::multiply(pad, bright, membrane);
   }
@@ -213,7 +213,7 @@ cv::Mat_<float> BlobFinder::darkness(const cv::Mat& image) const {
   cv::Mat_<float> dark(light.size(), 0.0F);
   for (int i = 0; i < light.rows; ++i) {
     for (int j = 0; j < light.cols; ++j) {
-      if (pad(i, j) > 0 && around(i, j) > least_light) {
+      if (pad(i, j) > 0 && around(i, j) > min_light) {
         dark(i, j) = 1 - light(i, j) / around(i, j);
       }
     }
@@ -247,7 +247,7 @@ bool BlobFinder::looks_like_a_dot(const cv::Mat_<float>& dark, const cv::Vec2d& 
   }
   core /= core_count;
   ring /= ring_count;
-  return core >= static_cast<double>(least_darkness) && ring <= 0.5 * core;
+  return core >= static_cast<double>(min_darkness) && ring <= 0.5 * core;
 }
 
 Blobs BlobFinder::find(const cv::Mat& image) const {
@@ -260,9 +260,9 @@ Blobs BlobFinder::find(const cv::Mat& image) const {
   cv::Mat_<float> response;
   cv::subtract(fine, coarse, response);
   const int reach_px = (std::max)(static_cast<int>(std::lround(0.8 * radius_px_)), 1);
-  const Blobs rough = peaks(response, 0.25F * least_darkness, reach_px);
+  const Blobs rough = peaks(response, 0.25F * min_darkness, reach_px);
   Blobs found;
-  if (whole_frame_ && rough.size() > most_spots) {
+  if (whole_frame_ && rough.size() > max_spots) {
     return found;
   }
   for (std::size_t k = 0; k < rough.size(); ++k) {

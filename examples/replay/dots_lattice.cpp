@@ -16,10 +16,10 @@
 namespace replay {
 namespace {
 
-constexpr int least_dots = 9;             // fewer in order are chance
-constexpr std::size_t most_spots = 1200;  // more are the grain of the picture
+constexpr int min_dots = 9;             // fewer in order are chance
+constexpr std::size_t max_spots = 1200;  // more are the grain of the picture
 // In parts of the distance between neighbours:
-constexpr double most_uneven = 0.15;  // of a typical dot, from the middle of its neighbours
+constexpr double max_uneven = 0.15;  // of a typical dot, from the middle of its neighbours
 constexpr double alike = 0.2;         // two steps are the same
 constexpr double reach = 0.42;        // how far a spot may lie from where it is looked for
 
@@ -66,7 +66,7 @@ struct CommonStep {
 /// The step that most of `steps` are like, or the opposite of, among those that `allowed` lets
 /// through.
 template <class Allowed>
-CommonStep most_common(const std::vector<Step>& steps, const Allowed& allowed) {
+CommonStep max_common(const std::vector<Step>& steps, const Allowed& allowed) {
   CommonStep best;
   for (const Step& one : steps) {
     if (!allowed(one)) {
@@ -97,8 +97,8 @@ struct Steps {
 
 std::optional<Steps> steps_of(const Blobs& spots) {
   const std::vector<Step> all = steps_between(spots);
-  const CommonStep first = most_common(all, [](const Step&) { return true; });
-  const CommonStep second = most_common(all, [&](const Step& step) {
+  const CommonStep first = max_common(all, [](const Step&) { return true; });
+  const CommonStep second = max_common(all, [&](const Step& step) {
     const double length = cv::norm(step);
     return std::abs(step.dot(first.step)) < 0.5 * length * cv::norm(first.step) &&
            length < 2 * cv::norm(first.step);
@@ -345,7 +345,7 @@ Attempt refined(const cv::Mat& image, Attempt one, const DotPattern& given) {
 }  // namespace
 
 DotGrid lattice_of(const Blobs& spots) {
-  if (spots.size() < static_cast<std::size_t>(least_dots) || spots.size() > most_spots) {
+  if (spots.size() < static_cast<std::size_t>(min_dots) || spots.size() > max_spots) {
     return {};
   }
   const auto steps = steps_of(spots);
@@ -366,7 +366,7 @@ DotGrid lattice_of(const Blobs& spots) {
     grid(at.second - first.y, at.first - first.x) = map[spot];
   }
   grid = without_single_dots(grid);
-  return dots_in(grid) < least_dots || unevenness(grid) > most_uneven ? DotGrid() : grid;
+  return dots_in(grid) < min_dots || unevenness(grid) > max_uneven ? DotGrid() : grid;
 }
 
 std::optional<FoundPattern> find_pattern(const cv::Mat& image, const DotPattern& given) {
@@ -397,7 +397,7 @@ std::optional<FoundPattern> find_pattern(const cv::Mat& image, const DotPattern&
   if (given.rows > 0) {
     best.grid = window_of(best.grid, {given.cols, given.rows});
   }
-  if (dots_in(best.grid) < least_dots) {
+  if (dots_in(best.grid) < min_dots) {
     return std::nullopt;
   }
   return FoundPattern{{best.grid, flat(best.grid)}, best.look};

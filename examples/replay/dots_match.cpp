@@ -16,7 +16,7 @@ constexpr double growth_gate = 0.35;    // how far a spot may lie from where a d
 constexpr double largest_misfit = 0.3;  // how far a dot may lie from where its neighbours put it
 constexpr double strange = 8;           // times the median is much more than usual
 constexpr int around = 2;               // dots as far as this in the grid tell how a dot moves
-constexpr int least_neighbours = 3;
+constexpr int min_neighbours = 3;
 
 struct Neighbour {
   cv::Vec3d place;  ///< 1, row and column from the dot in question
@@ -102,7 +102,7 @@ cv::Vec2d move_of_neighbours(const DotGrid& moves, int row, int col, double spac
       }
     }
   }
-  if (neighbours.size() < static_cast<std::size_t>(least_neighbours)) {
+  if (neighbours.size() < static_cast<std::size_t>(min_neighbours)) {
     return no_dot();
   }
   // Once as it is; then moves that disagree with the median count less.
@@ -182,9 +182,9 @@ Labels Matcher::match(const cv::Mat_<uchar>& seeds, const DotGrid& moves) const 
   Labels labels = seed(seeds, moves);
   drop_misfits(labels);
   // What was dropped may grow again, and better, from what stayed.
-  constexpr int most_rounds = 5;
+  constexpr int max_rounds = 5;
   int count = -1;
-  for (int round = 0; round < most_rounds; ++round) {
+  for (int round = 0; round < max_rounds; ++round) {
     grow(labels);
     drop_misfits(labels);
     const int now = cv::countNonZero(labels >= 0);
@@ -301,7 +301,7 @@ void Matcher::drop_strangers(Labels& labels) const {
   }
   const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
   std::nth_element(sorted.begin(), middle, sorted.end());
-  const double limit = (std::max)(smoothness_.least_strange, strange * *middle);
+  const double limit = (std::max)(smoothness_.min_strange, strange * *middle);
   for (int i = 0; i < labels.rows; ++i) {
     for (int j = 0; j < labels.cols; ++j) {
       labels(i, j) = misfits(i, j) > limit ? -1 : labels(i, j);

@@ -38,7 +38,7 @@ class BlobMap {
 /// where its neighbours put it, and much further than is usual in the frame, is a shadow or half a
 /// dot. Behind an elastic pad a contact moves dots while those beside it stand still.
 struct Smoothness {
-  double least_strange = 0.10;
+  double min_strange = 0.10;
 };
 constexpr Smoothness membrane{};
 constexpr Smoothness elastic_pad{0.3};
@@ -67,11 +67,11 @@ class Matcher {
  private:
   Labels seed(const cv::Mat_<uchar>& seeds, const DotGrid& moves) const;
   void grow(Labels& labels) const;
-  bool grow_once(Labels& labels, int least_neighbours) const;
+  bool grow_once(Labels& labels, int min_neighbours) const;
   void drop_misfits(Labels& labels) const;
   void drop_strangers(Labels& labels) const;
   double misfit(const Labels& labels, int row, int col) const;
-  bool may_grow(const Labels& labels, int row, int col, int least_neighbours) const;
+  bool may_grow(const Labels& labels, int row, int col, int min_neighbours) const;
   cv::Vec2d move_of(const Labels& labels, int row, int col) const;
 
   const DotGrid& base_;

@@ -13,8 +13,8 @@ namespace {
 constexpr double longest_leap = 3.5;  // pitches that a dot may move from one frame to the next
 // Shares of the spots that labels explain:
 constexpr double nearly_all = 0.99;      // nothing better is looked for
-constexpr double most_of_all = 0.96;     // with less, leaps are tried
-constexpr double least_explained = 0.9;  // with less, the labels do not count
+constexpr double max_of_all = 0.96;     // with less, leaps are tried
+constexpr double min_explained = 0.9;  // with less, the labels do not count
 
 struct Guess {
   Labels labels;
@@ -160,7 +160,7 @@ DotGrid DotTracker::track(const Blobs& blobs) {
     guess(from_free, everywhere, at_rest);
     guess(from_free, border_, at_rest);
   }
-  if (!explains(*best_of_all(), most_of_all)) {
+  if (!explains(*best_of_all(), max_of_all)) {
     // After a leap any spot that is not too far may be the middle dot.
     const cv::Mat_<uchar> seeds = around_middle(free_.size(), middle_);
     const double reach_px = longest_leap * from_free.spacing_px(middle_.y, middle_.x);
@@ -175,7 +175,7 @@ DotGrid DotTracker::track(const Blobs& blobs) {
   drop_doubtful(*best, guesses);
   // Many spots without a label inside the print: the labels are somewhere else's.
   const DotGrid found =
-      best->count >= least_explained * most ? dots_of(best->labels, map) : no_dots(free_.size());
+      best->count >= min_explained * most ? dots_of(best->labels, map) : no_dots(free_.size());
   remember(found);
   return found;
 }

@@ -11,9 +11,9 @@ FoamActivity activity_of(const FoamRecording& recording,
                          const std::vector<FoamNoise>& noise,
                          const std::vector<FoamRow>& rows,
                          const std::vector<std::size_t>& asked,
-                         std::size_t most_bins) {
+                         std::size_t max_bins) {
   FoamActivity activity;
-  activity.bins = (std::min)(rows.size(), most_bins);
+  activity.bins = (std::min)(rows.size(), max_bins);
   activity.deviations.assign(asked.size(), std::vector<float>(recording.table.taxels(), 0.0F));
   for (std::size_t f = 0; f < noise.size(); ++f) {
     const FingerPlace& place = recording.sensor.fingers[f];

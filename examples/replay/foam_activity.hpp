@@ -30,6 +30,6 @@ FoamActivity activity_of(const FoamRecording& recording,
                          const std::vector<FoamNoise>& noise,
                          const std::vector<FoamRow>& rows,
                          const std::vector<std::size_t>& asked,
-                         std::size_t most_bins);
+                         std::size_t max_bins);
 
 }  // namespace replay

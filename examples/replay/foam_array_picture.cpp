@@ -162,13 +162,13 @@ class Strip {
     const FoamRow& now = row(column);
     const double x = layout_.middle(column);
     const Ink& colour = is_alarm ? ink::accent : ink::black;
-    canvas.text({x, y}, "frame " + std::to_string(now.frame), small_letter, colour, Align::centre);
+    canvas.text({x, y}, "frame " + std::to_string(now.frame), small_letter, colour, Align::center);
     if (!now.time_s.empty()) {
       canvas.text({x, y + 16}, format("%.3f s", std::stod(now.time_s)), small_letter, colour,
-                  Align::centre);
+                  Align::center);
     }
     if (is_alarm) {
-      canvas.text({x, y - 16}, "first alarm", small_letter, colour, Align::centre, true);
+      canvas.text({x, y - 16}, "first alarm", small_letter, colour, Align::center, true);
     }
   }
 
@@ -200,7 +200,7 @@ class Strip {
     paint_features(canvas, row(column).fingers[finger], place, corner, is_reading);
     if (recording_.fingers() > 1 && is_reading) {
       canvas.text({(corner.x + far.x) / 2, far.y + 16}, std::to_string(finger), small_letter,
-                  ink::grey, Align::centre);
+                  ink::grey, Align::center);
     }
   }
 

@@ -10,7 +10,7 @@
 namespace replay {
 namespace {
 
-constexpr double most_ticks = 10;
+constexpr double max_ticks = 10;
 constexpr double long_ago_s = 1e5;  // times from here on are those of a calendar
 
 }  // namespace
@@ -33,9 +33,9 @@ std::optional<std::size_t> first_alarm(const std::vector<FoamRow>& rows) {
 }
 
 const Ink& finger_ink(std::size_t finger) {
-  static const Ink inks[most_fingers] = {
+  static const Ink inks[max_fingers] = {
       {180, 110, 30}, {60, 140, 40}, {30, 140, 230}, {150, 60, 140}, {110, 110, 20}};
-  return inks[finger % most_fingers];
+  return inks[finger % max_fingers];
 }
 
 SampleAxis::SampleAxis(const FoamRecording& recording,
@@ -65,7 +65,7 @@ void SampleAxis::add_times(const std::vector<double>& k, const std::vector<doubl
   const bool is_calendar = std::abs(time_s.front()) >= long_ago_s;
   const double zero_s = is_calendar ? time_s.front() : 0;
   name_ = is_calendar ? "time since the first sample, s" : "time, s";
-  const double step_s = round_up((time_s.back() - time_s.front()) / most_ticks);
+  const double step_s = round_up((time_s.back() - time_s.front()) / max_ticks);
   std::size_t i = 1;
   double number = std::ceil((time_s.front() - zero_s) / step_s - 1e-9);
   for (; zero_s + number * step_s <= time_s.back(); ++number) {
@@ -80,7 +80,7 @@ void SampleAxis::add_times(const std::vector<double>& k, const std::vector<doubl
 
 void SampleAxis::add_frames(const std::vector<FoamRow>& rows) {
   name_ = "frame";
-  const double step = (std::max)(1.0, round_up(rows_ / most_ticks));
+  const double step = (std::max)(1.0, round_up(rows_ / max_ticks));
   for (double k = 0; k < rows_; k += step) {
     ticks_.push_back({k, std::to_string(rows[static_cast<std::size_t>(k)].frame)});
   }
@@ -89,9 +89,9 @@ void SampleAxis::add_frames(const std::vector<FoamRow>& rows) {
 void SampleAxis::paint(Canvas& canvas, double bottom) const {
   for (const Tick& tick : ticks_) {
     canvas.line({x(tick.k), bottom}, {x(tick.k), bottom + 4}, 0.8, ink::grey);
-    canvas.text({x(tick.k), bottom + 18}, tick.label, letter, ink::grey, Align::centre);
+    canvas.text({x(tick.k), bottom + 18}, tick.label, letter, ink::grey, Align::center);
   }
-  canvas.text({(left() + right()) / 2, bottom + 40}, name_, letter, ink::grey, Align::centre);
+  canvas.text({(left() + right()) / 2, bottom + 40}, name_, letter, ink::grey, Align::center);
 }
 
 }  // namespace replay

@@ -24,10 +24,10 @@ struct Panel {
   double highest;  ///< value at the upper edge; 0 at the lower
   double tick;
 
-  Panel(double y, double height, double largest, double least_tick)
+  Panel(double y, double height, double largest, double min_tick)
       : top_px(y),
         height_px(height),
-        tick((std::max)(least_tick, round_up((std::max)(largest, 1e-12) / 4))) {
+        tick((std::max)(min_tick, round_up((std::max)(largest, 1e-12) / 4))) {
     highest = tick * (std::max)(1.0, std::ceil(largest / tick - 1e-9));
   }
   double bottom_px() const { return top_px + height_px; }

@@ -17,21 +17,21 @@ constexpr double left = 128;
 constexpr double width = 660;
 constexpr double top = 96;
 constexpr double finger_gap = 10;
-constexpr std::size_t most_tracks = 40;
+constexpr std::size_t max_tracks = 40;
 const Ink empty_ink(246, 244, 243);
 
 /// Those that vibrate longest, still by finger, row and column.
 std::vector<TaxelTrack> longest(std::vector<TaxelTrack> tracks) {
-  if (tracks.size() > most_tracks) {
+  if (tracks.size() > max_tracks) {
     std::vector<long long> samples;
     for (const TaxelTrack& track : tracks) {
       samples.push_back(track.samples);
     }
-    const auto last = samples.begin() + static_cast<std::ptrdiff_t>(most_tracks - 1);
+    const auto last = samples.begin() + static_cast<std::ptrdiff_t>(max_tracks - 1);
     std::nth_element(samples.begin(), last, samples.end(), std::greater<>());
     const long long least = *last;
     std::erase_if(tracks, [&](const TaxelTrack& track) { return track.samples < least; });
-    tracks.resize((std::min)(tracks.size(), most_tracks));
+    tracks.resize((std::min)(tracks.size(), max_tracks));
   }
   return tracks;
 }
@@ -134,7 +134,7 @@ cv::Mat foam_frequency_picture(const std::string& title,
   }
   if (tracks.empty()) {
     canvas.text({left + width / 2, top + 68}, "no taxel vibrates by more than its noise", letter,
-                ink::grey, Align::centre);
+                ink::grey, Align::center);
   } else {
     paint_legend(canvas, {left + width + 24, top + 14, 14, 116}, scale, letter, "Hz");
   }

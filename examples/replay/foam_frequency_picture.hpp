@@ -12,7 +12,7 @@
 namespace replay {
 
 /// Samples side by side that are worth showing.
-constexpr std::size_t most_frequency_bins = 660;
+constexpr std::size_t max_frequency_bins = 660;
 
 cv::Mat foam_frequency_picture(const std::string& title,
                                const FoamRecording& recording,

@@ -20,7 +20,7 @@ namespace {
 namespace fs = std::filesystem;
 using Place = std::pair<int, int>;  // row and column
 
-constexpr int most_places = 4096;  // rows or columns
+constexpr int max_places = 4096;  // rows or columns
 constexpr double no_number = std::numeric_limits<double>::quiet_NaN();
 
 /// Reads up to four digits from `at` on.
@@ -30,7 +30,7 @@ std::optional<int> digits(const std::string& text, std::size_t& at) {
   for (; at < text.size() && at < first + 4 && text[at] >= '0' && text[at] <= '9'; ++at) {
     number = 10 * number + (text[at] - '0');
   }
-  return at > first && number < most_places ? std::optional<int>(number) : std::nullopt;
+  return at > first && number < max_places ? std::optional<int>(number) : std::nullopt;
 }
 
 /// "r3_c0"

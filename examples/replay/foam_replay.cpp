@@ -52,7 +52,7 @@ void write_pictures(const OutputFolder& output,
   const std::string title =
       name + ": " + (alarm ? "first alarm in " + alarm_words(rows[*alarm]) : "no alarm");
   const auto shown = shown_rows(rows, static_cast<int>(recording.sensor.taxels.window));
-  const FoamActivity activity = activity_of(recording, noise, rows, shown, most_frequency_bins);
+  const FoamActivity activity = activity_of(recording, noise, rows, shown, max_frequency_bins);
   write_png(output.file("pictures", "preslip.png"), foam_chart(title, recording, rows));
   write_png(output.file("pictures", "array.png"),
             foam_array_picture(title, recording, rows, shown, activity));

@@ -17,8 +17,8 @@ FingerPlace read_finger(const JsonSection& section) {
 
 std::vector<FingerPlace> read_fingers(const std::filesystem::path& file, const JsonSection& foam) {
   const nlohmann::json& list = foam.at("fingers");
-  if (!list.is_array() || list.empty() || list.size() > most_fingers) {
-    foam.refuse("fingers must be a list [...] of 1 to " + std::to_string(most_fingers) +
+  if (!list.is_array() || list.empty() || list.size() > max_fingers) {
+    foam.refuse("fingers must be a list [...] of 1 to " + std::to_string(max_fingers) +
                 " fingers");
   }
   std::vector<FingerPlace> fingers;
@@ -71,7 +71,7 @@ void read_options(const JsonSection& foam, FoamSensor& sensor) {
   integer("stuck_after", sensor.taxels.stuck_after);
   number("longest_gap_s", sensor.longest_gap_s);
   integer("history", sensor.rules.history);
-  integer("least_waves", sensor.rules.least_waves);
+  integer("least_waves", sensor.rules.min_waves);
   number("centroid_tolerance_mm", sensor.rules.centroid_tolerance_mm);
   if (foam.has("rule")) {
     const std::string rule = foam.one_of("rule", {"grasp_lift", "grasp_optimise", "both"});

@@ -19,7 +19,7 @@ struct FingerPlace {
   int cols = 0;
 };
 
-constexpr int most_fingers = 5;
+constexpr int max_fingers = 5;
 
 struct FoamSensor {
   std::vector<FingerPlace> fingers;        ///< none: the whole array is one

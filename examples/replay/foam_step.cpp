@@ -93,7 +93,7 @@ FoamStep::Rules FoamStep::rules_of(const FoamSensor& sensor) {
 }
 
 FoamStep::Rules FoamStep::make_rules(const FoamSensor& sensor) {
-  static_assert(most_fingers == 5);
+  static_assert(max_fingers == 5);
   switch (sensor.fingers.size()) {
     case 1:
       return rules_of<1>(sensor);

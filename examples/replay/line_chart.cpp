@@ -56,7 +56,7 @@ void paint_panel(Canvas& canvas, const cv::Rect2d& box, const LinePanel& panel, 
   const double stride = (std::max)(1.0, std::ceil(last / 12));
   for (double k = 0; k <= last; k += stride) {
     canvas.text({x_of(k), box.y + box.height + 18}, std::to_string(first_frame + int(k)), letter,
-                ink::grey, Align::centre);
+                ink::grey, Align::center);
   }
   for (std::size_t s = 0; s < panel.series.size(); ++s) {
     const LineSeries& line = panel.series[s];
@@ -99,7 +99,7 @@ cv::Mat line_chart(const std::string& title,
     const double y = 84 + static_cast<double>(k) * (height + gap);
     paint_panel(canvas, {72, y, width, height}, panels[k], first_frame);
   }
-  canvas.text({72 + width / 2, bottom - 14}, "frame", letter, ink::grey, Align::centre);
+  canvas.text({72 + width / 2, bottom - 14}, "frame", letter, ink::grey, Align::center);
   return canvas.finished();
 }
 

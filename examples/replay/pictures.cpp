@@ -148,7 +148,7 @@ cv::Mat Painter::side(const Scene& scene) const {
     const Spot top = at(free_depth_mm_);
     canvas.line(top, bottom, 1.2, ink::accent);
     canvas.text({top.x, top.y - letter}, format("%.2f mm", scene.section.dent_mm), letter,
-                ink::accent, Align::centre);
+                ink::accent, Align::center);
   }
   return canvas.finished();
 }
@@ -177,7 +177,7 @@ cv::Mat Painter::montage(const std::string& title, const std::vector<Scene>& sce
     const Scene& scene = scenes[k];
     const double x = left + static_cast<double>(k) * (cell + gap);
     canvas.text({x + cell / 2, 66}, caption(scene.frame, scene.time_s), letter, ink::black,
-                Align::centre);
+                Align::center);
     cv::Mat paper = canvas.area({x, camera_y, cell, height});
     displayed(scene.image, brightest_, paper.size()).copyTo(paper);
     paint_outline(canvas, {x, camera_y, cell, height}, scene.contact_mask, 1.6);

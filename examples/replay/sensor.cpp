@@ -16,7 +16,7 @@ using Section = JsonSection;
 
 fingerpad::Camera<double> read_camera(const Section& root) {
   const Section section = root.section(
-      "camera", {{"plate_distance_mm", "from the camera's centre to the plate's inner face, mm"},
+      "camera", {{"plate_distance_mm", "from the camera's center to the plate's inner face, mm"},
                  {"refractive_index", "of the fluid, 1.33 for water"},
                  {"center_px", "[x, y] of the pixel on the optical axis"},
                  {"pitch_mm", "size of a pixel on the plate's inner face, mm"}});

@@ -14,7 +14,7 @@
 namespace replay {
 namespace {
 
-constexpr int most_side_dots = 4096;
+constexpr int max_side_dots = 4096;
 
 SpaceGrid no_points(cv::Size size) {
   return SpaceGrid(size, cv::Vec3d::all(std::numeric_limits<double>::quiet_NaN()));
@@ -34,7 +34,7 @@ std::optional<SideDots> read_side_dots(const std::filesystem::path& file, int fr
       file, {"frame", "index", "border_x", "border_y", "border_z", "dot_x", "dot_y", "dot_z"});
   int count = 0;
   for (const auto& line : table.lines()) {
-    count = (std::max)(count, 1 + table.index(line, 1, most_side_dots, "side dots"));
+    count = (std::max)(count, 1 + table.index(line, 1, max_side_dots, "side dots"));
   }
   if (count == 0) {
     fail(file, "names no side dots");

@@ -68,7 +68,7 @@ void paint_axes(Canvas& canvas, const Frame2d& frame, double text_height, Labels
     const Spot at = frame.at({static_cast<double>(mm), 0});
     canvas.line(at, {at.x, at.y + tick}, 0.9, ink::black);
     canvas.text({at.x, at.y + tick + 1.6 * text_height}, std::to_string(mm), text_height,
-                ink::black, Align::centre);
+                ink::black, Align::center);
   }
   for (int mm = 0; mm <= frame.top_mm; mm += 5) {
     const Spot at = frame.at({-frame.half_width_mm, static_cast<double>(mm)});
@@ -81,10 +81,10 @@ void paint_axes(Canvas& canvas, const Frame2d& frame, double text_height, Labels
   if (labels == Labels::full) {
     const Spot middle = frame.at({0, 0});
     canvas.text({middle.x, middle.y + tick + 3.6 * text_height}, "x, mm", text_height, ink::black,
-                Align::centre);
+                Align::center);
     const Spot top = frame.at({-frame.half_width_mm, frame.top_mm});
     canvas.text({top.x, top.y - 1.2 * text_height}, "depth, mm", text_height, ink::black,
-                Align::centre);
+                Align::center);
   }
 }
 

@@ -45,10 +45,10 @@ void paint_frame_numbers(Canvas& canvas, const Panel& panel, int first_frame) {
   for (double k = 0; k <= panel.last; k += step) {
     canvas.text({panel.x(k), panel.box.y + panel.box.height + 20},
                 std::to_string(first_frame + static_cast<int>(k)), letter, ink::grey,
-                Align::centre);
+                Align::center);
   }
   canvas.text({panel.box.x + panel.box.width / 2, panel.box.y + panel.box.height + 44}, "frame",
-              letter, ink::grey, Align::centre);
+              letter, ink::grey, Align::center);
 }
 
 /// The last known ratio as a line of steps, and a mark at each new one.

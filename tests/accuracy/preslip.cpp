@@ -190,7 +190,7 @@ Loosening loosened(const grip::FoamFingersSetup& object, unsigned seed) {
                                                 .noise = object.noise_counts});
   const Preslip<Rule> rule;
   const LoosenUntilPreslip<> loosen({.first_force_n = object.first_force_n,
-                                     .least_force_n = 0.1,
+                                     .min_force_n = 0.1,
                                      .step_n = 0.2,
                                      .settle_samples = 4,
                                      .watch_samples = 36,

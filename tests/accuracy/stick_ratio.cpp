@@ -31,7 +31,7 @@ namespace {
 constexpr double noise_px = 0.14;  // for which the published 0.24 px are
 
 using Published =
-    StickRatio<ReferenceDotMotion<Freedom::similarity, PublishedZoom>, UpdatedReference<>, DotMean>;
+    StickRatio<ReferenceDotMotion<Freedom::similarity, PublishedScale>, UpdatedReference<>, DotMean>;
 
 /// Errors in every synthetic scene.
 class Errors {
@@ -190,14 +190,14 @@ struct SceneResult {
   double to_reference = 0;  ///< the same error against the area that slipped less than the
                             ///< threshold since the reference
   Index announced_from = 1000, announced_to = -1;  ///< steps; of all recordings
-  double most_sticking = 0;                        ///< the truth when slip is announced
+  double max_sticking = 0;                        ///< the truth when slip is announced
 
   std::string line(const std::string& name) const {
     std::ostringstream line;
     line << name << ": mean absolute error " << mean_abs << ", mean " << mean << ", over "
          << answers << " frames a recording; against slip since the reference " << to_reference
          << "; announced at steps " << announced_from << " to " << announced_to
-         << ", when as much as " << most_sticking << " sticks";
+         << ", when as much as " << max_sticking << " sticks";
     return line.str();
   }
 };
@@ -222,7 +222,7 @@ SceneResult follow(const StickScene& scene,
           ratio(noisy(scene.dots(k), jitter_px, random), scene.contact(k), states, state);
       if (r.updated() && r.stick_ratio < 0.5F && announced == never) {
         announced = k;
-        result.most_sticking = (std::max)(result.most_sticking, scene.stick_ratio(k));
+        result.max_sticking = (std::max)(result.max_sticking, scene.stick_ratio(k));
       }
       if (r.updated() && keep(k)) {
         const double found = static_cast<double>(r.stick_ratio);
@@ -262,7 +262,7 @@ TEST_CASE("stick ratio of finite-element membranes", "[stick_ratio]") {
     INFO(r.line(name) << "; all slips at step " << scene.first_slip_of_all());
     CHECK(r.mean_abs <= bound);
     CHECK(r.announced_to < scene.first_slip_of_all());
-    CHECK(r.most_sticking < 0.7);
+    CHECK(r.max_sticking < 0.7);
     return r;
   };
   // The truth is slip by 5 um within a step. What is found is slip by the threshold, 10 to 19 um,
@@ -301,5 +301,5 @@ TEST_CASE("no slip is announced on finite-element membranes that stick", "[stick
   const SceneResult dragged = follow(tilt, unknown, every_step);
   INFO(dragged.line("tilt"));
   CHECK(dragged.announced_to < tilt.first_slip_of_all());
-  CHECK(dragged.most_sticking < 0.9);
+  CHECK(dragged.max_sticking < 0.9);
 }

@@ -1064,14 +1064,14 @@ TEST_CASE("samples that do not tell the parameters are refused by name", "[calib
       CHECK_THROWS_AS(fit_linear_shear(all(good), ShearNormalisation<double>{bad, 0, 0}),
                       parameter_error);
       check_refused(normal(good, {.fit = {.threshold = bad}}), "FitOptions: threshold");
-      check_refused(normal(good, {.fit = {.least_independence = bad}}),
-                    "FitOptions: least_independence");
+      check_refused(normal(good, {.fit = {.min_independence = bad}}),
+                    "FitOptions: min_independence");
     }
     check_refused(normal(good, {.fit = {.passes = 1}}), "FitOptions: passes = 1, must be >= 2");
-    check_refused(normal(good, {.fit = {.least_independence = 1}}),
-                  "FitOptions: least_independence");
-    check_refused(normal(good, {.fit = {.least_explained = -0.1}}), "FitOptions: least_explained");
-    check_refused(normal(good, {.fit = {.least_explained = 1}}), "FitOptions: least_explained");
+    check_refused(normal(good, {.fit = {.min_independence = 1}}),
+                  "FitOptions: min_independence");
+    check_refused(normal(good, {.fit = {.min_explained = -0.1}}), "FitOptions: min_explained");
+    check_refused(normal(good, {.fit = {.min_explained = 1}}), "FitOptions: min_explained");
     PolynomialForce<2> falling{{0, -1, 0}, 0, 5};
     CHECK_THROWS_AS(fit_affine_force(all(good), falling, AffineBy::rotation), parameter_error);
   }
@@ -1173,7 +1173,7 @@ TEST_CASE("odd samples give numbers or a refusal", "[calibrate][force]") {
     options.robust = k % 3 == 0;
     options.threshold = random.uniform() < 0.2 ? 0.01 : options.threshold;
     options.passes = 10;
-    options.least_explained = random.uniform() < 0.5 ? 0 : options.least_explained;
+    options.min_explained = random.uniform() < 0.5 ? 0 : options.min_explained;
     const bool moved = random.uniform() < 0.5;
     const NormalForceFitOptions normal{moved, random.uniform() < 0.5, moved, !moved, options};
     check("fit_normal_force", k, [&] {

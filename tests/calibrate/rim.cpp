@@ -487,7 +487,7 @@ TEST_CASE("rim calibration: what it refuses", "[wrench]") {
   CHECK(levels({high, low}, {0.01, 0.02}) != "accepted");
   CHECK(begins_with(levels({low, high}, {0.01, 0.02}, {.max_condition = 2}),
                     owner + "condition number = "));
-  CHECK(begins_with(levels({low, high}, {0.01, 0.02}, {.least_stretch = 1.5}),
+  CHECK(begins_with(levels({low, high}, {0.01, 0.02}, {.min_stretch = 1.5}),
                     owner + "stretch of the side dots = "));
   Row few = high;
   for (std::size_t j = 0; j < 13; ++j) {
@@ -514,7 +514,7 @@ TEST_CASE("rim calibration: what it refuses", "[wrench]") {
                       "RimFitOptions: pressure_noise_mpa = "));
     CHECK(begins_with(levels({low, high}, {0.01, 0.02}, {.max_condition = bad}),
                       "RimFitOptions: max_condition = "));
-    CHECK(begins_with(levels({low, high}, {0.01, 0.02}, {.least_stretch = bad}),
-                      "RimFitOptions: least_stretch = "));
+    CHECK(begins_with(levels({low, high}, {0.01, 0.02}, {.min_stretch = bad}),
+                      "RimFitOptions: min_stretch = "));
   }
 }

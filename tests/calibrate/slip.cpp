@@ -787,7 +787,7 @@ TEST_CASE("choice of U: one that hardly ever answers is not considered", "[stick
   ReferenceSearch search;
   search.smallest_px = 1;
   search.largest_px = 55;
-  search.least_updates = 30;
+  search.min_updates = 30;
   StickTestCalibration<> calibration(21, 21, independent_dot_noise(0.06), search);
   add(record({}), calibration);  // 60 px in all
   const StickTestChoice choice = calibration.choose();
@@ -849,7 +849,7 @@ TEST_CASE("choice of U: how long the pad stands, and lost contact, change nothin
 
 TEST_CASE("choice of U: other policies", "[stick]") {
   const Recording recording = record({.noise_px = 0.02});
-  using Published = ReferenceDotMotion<Freedom::translation, PublishedZoom>;
+  using Published = ReferenceDotMotion<Freedom::translation, PublishedScale>;
   StickTestCalibration<Published, UpdatedReference<>, DotMean, double> published(
       21, 21, independent_dot_noise(0.02));
   add(recording, published);
@@ -889,19 +889,19 @@ TEST_CASE("choice of U: what it refuses", "[stick]") {
     CHECK(begins_with(make({.stick_and_slip = bad}), "ReferenceSearch: stick_and_slip = "));
   }
   CHECK(begins_with(make({.sampling_errors = -1}), "ReferenceSearch: sampling_errors = -1"));
-  CHECK(begins_with(make({.least_steps = 1}), "ReferenceSearch: least_steps = 1"));
-  CHECK(begins_with(make({.least_updates = 0}), "ReferenceSearch: least_updates = 0"));
-  CHECK(begins_with(make({.least_dots = 0}), "StickTest: least_dots = 0"));
+  CHECK(begins_with(make({.min_steps = 1}), "ReferenceSearch: min_steps = 1"));
+  CHECK(begins_with(make({.min_updates = 0}), "ReferenceSearch: min_updates = 0"));
+  CHECK(begins_with(make({.min_dots = 0}), "StickTest: min_dots = 0"));
   CHECK(begins_with(refusal([&] { const StickTestCalibration<> none(0, 21, noise); }),
                     "StickTestCalibration: rows = 0"));
   CHECK(begins_with(refusal([&] { const StickTestCalibration<> none(21, 0, noise); }),
                     "StickTestCalibration: cols = 0"));
   // the largest U, just above the threshold, is tried even where powers round
-  const double least_px = stick_test_for(441, noise, 8).store_px;
-  for (double smallest_px = 0.1; smallest_px < least_px; smallest_px += 0.0137) {
+  const double min_px = stick_test_for(441, noise, 8).store_px;
+  for (double smallest_px = 0.1; smallest_px < min_px; smallest_px += 0.0137) {
     StickTestCalibration<> barely(
         21, 21, noise,
-        {.smallest_px = smallest_px, .largest_px = std::nextafter(least_px, 1.0), .candidates = 2});
+        {.smallest_px = smallest_px, .largest_px = std::nextafter(min_px, 1.0), .candidates = 2});
     CHECK(barely.add(pattern(21, 21), Flags(21, 21, 1)));
   }
   const DotNoise loud = independent_dot_noise(2);
@@ -928,11 +928,11 @@ TEST_CASE("choice of U: what it refuses", "[stick]") {
   const Recording still = record({.step_px = 0, .frames = 60});
   CHECK(begins_with(choose(still), owner + "frames with contact and motion = "));
   CHECK(
-      begins_with(choose(still, {.least_steps = 2}), owner + "frames with contact and motion = 1"));
+      begins_with(choose(still, {.min_steps = 2}), owner + "frames with contact and motion = 1"));
   // noise that was measured too small makes steps, but no displacement
   Recording shaken = record({.noise_px = 0.1, .step_px = 0, .frames = 60});
   CHECK(begins_with(choose(shaken, {.smallest_px = 1}), owner + "largest displacement in px = 0."));
-  CHECK(begins_with(choose(record({.frames = 30}), {.least_updates = 100}),
+  CHECK(begins_with(choose(record({.frames = 30}), {.min_updates = 100}),
                     owner + "updated answers = "));
   CHECK(begins_with(choose(record({.last_radius = 9})), owner + "answers that slip = "));
   CHECK(begins_with(choose(record({}), {.stick_and_slip = 0.01}), owner + "answers that slip = "));

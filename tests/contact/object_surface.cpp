@@ -69,8 +69,8 @@ struct Object {
 
   double miss(const Point& p) const {
     const Point q = detail::difference(p, foot);
-    const double along = detail::dot(n, q);
-    return along - 0.5 * (k1 * square(detail::dot(a, q)) + k2 * square(detail::dot(b, q))) -
+    const double along = dot(n, q);
+    return along - 0.5 * (k1 * square(dot(a, q)) + k2 * square(dot(b, q))) -
            g * square(along);
   }
   /// Depth at which the pixel's ray, a straight line, meets it near the foot: `miss` is quadratic.
@@ -127,12 +127,12 @@ auto fit(const CameraType& camera,
 
 double apart(const Point& p, const Point& q) {
   const Point d = detail::difference(p, q);
-  return std::sqrt(detail::dot(d, d));
+  return std::sqrt(dot(d, d));
 }
 /// Between the lines along two unit vectors.
 double angle_between(const Point& p, const Point& q) {
-  const Point c = detail::cross(p, q);
-  return std::asin((std::min)(1.0, std::sqrt(detail::dot(c, c))));
+  const Point c = cross(p, q);
+  return std::asin((std::min)(1.0, std::sqrt(dot(c, c))));
 }
 
 const std::vector<Point> normals = {{0, 0, 1}, {0.2, -0.1, 1}, {-0.5, 0.4, 1}};
@@ -169,7 +169,7 @@ TEMPLATE_TEST_CASE("object surface: a plane is found with its tilt and distance"
     REQUIRE(r.ok());
     CHECK(r.pixels == 1257);
     CHECK(apart(r.shape.normal, object.n) < 1e-13);
-    CHECK(r.shape.distance_mm == Approx(detail::dot(object.n, object.foot)).epsilon(1e-13));
+    CHECK(r.shape.distance_mm == Approx(dot(object.n, object.foot)).epsilon(1e-13));
     CHECK(r.rms_mm < 1e-13);
     CHECK(std::abs(r.largest_mm) < 1e-12);
     CHECK(r.shape.tilt().total_rad == Approx(std::acos(object.n.z)).margin(1e-7));
@@ -227,7 +227,7 @@ TEMPLATE_TEST_CASE("object surface: a cylinder is found with its axis",
         CHECK(q.shape.curvature_1_per_mm * radius == Approx(1).epsilon(2e-3));
         CHECK(std::abs(q.shape.curvature_2_per_mm) < 1e-4);
         CHECK(angle_between(q.shape.direction_2, object.b) < 2e-3);
-        CHECK(std::abs(detail::dot(q.shape.direction_1, q.shape.direction_2)) < 1e-12);
+        CHECK(std::abs(dot(q.shape.direction_1, q.shape.direction_2)) < 1e-12);
       }
     }
   }
@@ -336,7 +336,7 @@ TEST_CASE("object surface: another size is refused and nothing written", "[surfa
 TEST_CASE("object surface: bad parameters are refused by name", "[surface]") {
   CHECK(refusal(0, 4, {}) == "SurfaceFit: rows = 0, must be >= 1");
   CHECK(refusal(4, -1, {}) == "SurfaceFit: cols = -1, must be >= 1");
-  CHECK(refusal(4, 4, {.least_px = 0}) == "SurfaceOptions: least_px = 0, must be >= 1");
+  CHECK(refusal(4, 4, {.min_px = 0}) == "SurfaceOptions: min_px = 0, must be >= 1");
   CHECK(refusal(4, 4, {.border_px = -1}) == "SurfaceOptions: border_px = -1, must be in [0, 1000]");
   CHECK(refusal(4, 4, {}, 0).find("OrthographicCamera: pitch_mm = 0") == 0);
   CHECK(refusal(1, 1, {}) == "accepted");
@@ -459,7 +459,7 @@ TEST_CASE("object surface: too few pixels", "[surface]") {
   const Image<double> depth = Object::sphere({0, 0, 1}, 18).depths(camera);
   Mask mask(height, width, 0);
   const auto status = [&](auto model, Index least) {
-    const auto r = fit<decltype(model)>(camera, depth, mask, {.least_px = least});
+    const auto r = fit<decltype(model)>(camera, depth, mask, {.min_px = least});
     CHECK(r.accepted);
     CHECK(r.ok() == std::isfinite(r.rms_mm));
     return r.status;
@@ -500,7 +500,7 @@ TEST_CASE("object surface: noise leaves the errors that are reported", "[surface
       const auto q = quadric(b, mask);
       REQUIRE((p.ok() && s.ok() && q.ok()));
       CHECK(p.rms_mm == Approx(noise_mm).epsilon(0.25));
-      distance += square(detail::dot(p.shape.normal, p.shape.center_mm) - 9 * p.shape.normal.z);
+      distance += square(dot(p.shape.normal, p.shape.center_mm) - 9 * p.shape.normal.z);
       curvature += square(s.shape.curvature_per_mm - 1 / 18.0);
       bias += s.shape.curvature_per_mm - 1 / 18.0;
       bent += square(q.shape.mean_curvature_per_mm() - 1 / 18.0);

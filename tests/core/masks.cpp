@@ -18,20 +18,20 @@ static_assert(contact_mask<Image<unsigned char>> && contact_mask<Image<float>> &
 static_assert(!contact_mask<Image<std::string>> && !contact_mask<int>);
 
 TEST_CASE("a cell says contact by being anything but nothing") {
-  CHECK(says_contact(255));
-  CHECK(says_contact(true));
-  CHECK(says_contact(static_cast<signed char>(-1)));
-  CHECK(says_contact(-0.5F));
-  CHECK_FALSE(says_contact(0));
-  CHECK_FALSE(says_contact(false));
-  CHECK_FALSE(says_contact(-0.0));
-  CHECK_FALSE(says_contact(std::numeric_limits<double>::quiet_NaN()));
+  CHECK(is_contact(255));
+  CHECK(is_contact(true));
+  CHECK(is_contact(static_cast<signed char>(-1)));
+  CHECK(is_contact(-0.5F));
+  CHECK_FALSE(is_contact(0));
+  CHECK_FALSE(is_contact(false));
+  CHECK_FALSE(is_contact(-0.0));
+  CHECK_FALSE(is_contact(std::numeric_limits<double>::quiet_NaN()));
 }
 
 TEST_CASE("what is unknown is no contact, for any method") {
-  CHECK(says_contact(Touch::contact));
-  CHECK_FALSE(says_contact(Touch::unknown));
-  CHECK_FALSE(says_contact(Touch::none));
+  CHECK(is_contact(Touch::contact));
+  CHECK_FALSE(is_contact(Touch::unknown));
+  CHECK_FALSE(is_contact(Touch::none));
 
   // Three pixels in a row: contact, unknown, none.
   Image<Touch> mask(1, 3, Touch::none);

@@ -11,7 +11,7 @@ extern "C" void switched_off(const FramePair<float>& pair,
                              const ObjectShift<float>& shift,
                              float slip_sq,
                              Residuals<float>& residuals,
-                             line_vector<float>& marks) {
+                             aligned_vector<float>& marks) {
   mark_dots(NoDenoising(), pair, shift, slip_sq, residuals, marks);
 }
 
@@ -19,7 +19,7 @@ extern "C" void without_effect(const FramePair<float>& pair,
                                const ObjectShift<float>& shift,
                                float slip_sq,
                                Residuals<float>&,
-                               line_vector<float>& marks) {
+                               aligned_vector<float>& marks) {
   using V = run_vector<float>;
   const V none = V{} + 1.0F, slips = V{} + 2.0F, sticks = V{} + 3.0F;
   for (Index k = pair.run.begin; k < pair.run.end; k += run_step<float>) {

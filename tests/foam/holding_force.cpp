@@ -65,7 +65,7 @@ std::string forces(const Search& search, const std::string& news) {
 
 LoosenPlan<double> short_plan() {
   return {.first_force_n = 9,
-          .least_force_n = 7,
+          .min_force_n = 7,
           .step_n = 1,
           .settle_samples = 2,
           .watch_samples = 3,
@@ -74,7 +74,7 @@ LoosenPlan<double> short_plan() {
 
 LiftPlan<double> short_lift() {
   return {.first_force_n = 1,
-          .most_force_n = 3,
+          .max_force_n = 3,
           .force_step_n = 1,
           .height_mm = 10,
           .height_step_mm = 4,
@@ -189,7 +189,7 @@ TEST_CASE("loosening: while the last step settles, only a slip is listened to", 
 
 TEST_CASE("loosening until the object slips counts the steps of warning", "[holding_force]") {
   auto plan = short_plan();
-  plan.least_force_n = 1;
+  plan.min_force_n = 1;
   plan.until_slipped = true;
   const LoosenUntilPreslip<double> search(plan);
   auto state = search.start();
@@ -247,7 +247,7 @@ TEST_CASE("loosening: without settling, one look at each force", "[holding_force
 TEST_CASE("loosening: forces do not collect rounding, and the last step may be short",
           "[holding_force]") {
   LoosenPlan<double> plan{.first_force_n = 10,
-                          .least_force_n = 0.25,
+                          .min_force_n = 0.25,
                           .step_n = 0.1,
                           .settle_samples = 0,
                           .watch_samples = 1};
@@ -379,7 +379,7 @@ TEST_CASE("lifting: pre-slip holds the lift and tightens the grip", "[holding_fo
   plan.force_step_n = 1.5;  // the last step may be short
   CHECK(told(LiftWithRegrip<double>(plan), "p").force_n == 2.5);
   CHECK(told(LiftWithRegrip<double>(plan), "pp").force_n == 3);
-  plan.most_force_n = plan.first_force_n;  // nothing to tighten
+  plan.max_force_n = plan.first_force_n;  // nothing to tighten
   CHECK(told(LiftWithRegrip<double>(plan), "p").phase == SearchPhase::at_limit);
   CHECK(told(LiftWithRegrip<double>(plan), "-p").height_mm == 0);
 }
@@ -401,15 +401,15 @@ TEST_CASE("searches: bad plans are refused by name, value and range", "[holding_
   using Loosen = LoosenPlan<double>;
   CHECK(refusal_of(Loosen{}) == "accepted");
   check_refused(&Loosen::first_force_n, "first_force_n", {0.5, 0.0, -1.0, none, infinity});
-  check_refused(&Loosen::least_force_n, "least_force_n", {-1e-9, none, infinity, -infinity});
+  check_refused(&Loosen::min_force_n, "min_force_n", {-1e-9, none, infinity, -infinity});
   check_refused(&Loosen::step_n, "step_n", {0.0, -1.0, none, infinity, 9.4e-6, 5e-324});
   check_refused<Loosen, Index>(&Loosen::settle_samples, "settle_samples", {-1});
   check_refused<Loosen, Index>(&Loosen::watch_samples, "watch_samples", {0, -1});
   check_refused<Loosen, Index>(&Loosen::margin_steps, "margin_steps", {-1, 1000001});
-  CHECK(refusal_of(Loosen{.first_force_n = 2, .least_force_n = 2}) ==
-        "LoosenPlan: first_force_n = 2, must be finite and > least_force_n");
-  CHECK(refusal_of(Loosen{.least_force_n = -1}) ==
-        "LoosenPlan: least_force_n = -1, must be finite and >= 0");
+  CHECK(refusal_of(Loosen{.first_force_n = 2, .min_force_n = 2}) ==
+        "LoosenPlan: first_force_n = 2, must be finite and > min_force_n");
+  CHECK(refusal_of(Loosen{.min_force_n = -1}) ==
+        "LoosenPlan: min_force_n = -1, must be finite and >= 0");
   CHECK(refusal_of(Loosen{.step_n = 0}) ==
         "LoosenPlan: step_n = 0, must be finite and > 0, in at most a million steps from first to "
         "least force");
@@ -418,7 +418,7 @@ TEST_CASE("searches: bad plans are refused by name, value and range", "[holding_
   CHECK(refusal_of(Loosen{.watch_samples = 0}) == "LoosenPlan: watch_samples = 0, must be >= 1");
   CHECK(refusal_of(Loosen{.margin_steps = -3}) ==
         "LoosenPlan: margin_steps = -3, must be in [0, 1000000]");
-  CHECK(refusal_of(Loosen{.least_force_n = 0}) == "accepted");
+  CHECK(refusal_of(Loosen{.min_force_n = 0}) == "accepted");
   CHECK(refusal_of(Loosen{.step_n = 9.6e-6}) == "accepted");  // 989 583 steps
   CHECK(refusal_of(Loosen{.step_n = 1e9}) == "accepted");
   CHECK(refusal_of(Loosen{.settle_samples = 0, .watch_samples = 1, .margin_steps = 0}) ==
@@ -428,15 +428,15 @@ TEST_CASE("searches: bad plans are refused by name, value and range", "[holding_
   using Lift = LiftPlan<double>;
   CHECK(refusal_of(Lift{}) == "accepted");
   check_refused(&Lift::first_force_n, "first_force_n", {0.0, -1.0, none, infinity});
-  check_refused(&Lift::most_force_n, "most_force_n", {0.999, 0.0, -1.0, none, infinity});
+  check_refused(&Lift::max_force_n, "max_force_n", {0.999, 0.0, -1.0, none, infinity});
   check_refused(&Lift::force_step_n, "force_step_n", {0.0, -1.0, none, infinity, 1.8e-5});
   check_refused(&Lift::height_mm, "height_mm", {0.0, -1.0, none, infinity});
   check_refused(&Lift::height_step_mm, "height_step_mm", {0.0, -1.0, none, infinity, 4.9e-5});
   check_refused<Lift, Index>(&Lift::settle_samples, "settle_samples", {-1});
   CHECK(refusal_of(Lift{.first_force_n = 0}) ==
         "LiftPlan: first_force_n = 0, must be finite and > 0");
-  CHECK(refusal_of(Lift{.most_force_n = 0.5}) ==
-        "LiftPlan: most_force_n = 0.5, must be finite and >= first_force_n");
+  CHECK(refusal_of(Lift{.max_force_n = 0.5}) ==
+        "LiftPlan: max_force_n = 0.5, must be finite and >= first_force_n");
   CHECK(
       refusal_of(Lift{.force_step_n = -1}) ==
       "LiftPlan: force_step_n = -1, must be finite and > 0, in at most a million steps from first "

@@ -19,8 +19,8 @@ namespace {
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double none = std::numeric_limits<double>::quiet_NaN();
 constexpr Index nowhere = FingerSample<>::no_location;
-constexpr Index most_index = (std::numeric_limits<Index>::max)();
-constexpr Index least_index = (std::numeric_limits<Index>::min)();
+constexpr Index max_index = (std::numeric_limits<Index>::max)();
+constexpr Index min_index = (std::numeric_limits<Index>::min)();
 
 using Sample = FingerSample<double>;
 template <std::size_t Fingers>
@@ -86,7 +86,7 @@ std::string refusal_of(const Options_& options) {
 
 void check_refused(Index Options::*field, const std::string& name, const std::string& range) {
   for (const Index given :
-       {least_index, Index(-1), Index(0), Index(1), Index(65537), Index(1000001), most_index}) {
+       {min_index, Index(-1), Index(0), Index(1), Index(65537), Index(1000001), max_index}) {
     Options options;
     options.*field = given;
     const std::string said = refusal_of(options);
@@ -248,7 +248,7 @@ TEST_CASE("centroids differ along any axis or along both", "[preslip]") {
 
 TEST_CASE("samples with fewer waves than asked for are silent", "[preslip]") {
   const auto optimise = [](Index waves, Index least) {
-    return pair<GraspOptimise<>>(felt(3, waves), felt(4, waves), {.least_waves = least});
+    return pair<GraspOptimise<>>(felt(3, waves), felt(4, waves), {.min_waves = least});
   };
   CHECK(optimise(0, 0));  // as published: none and none are equal
   CHECK_FALSE(optimise(0, 1));
@@ -256,10 +256,10 @@ TEST_CASE("samples with fewer waves than asked for are silent", "[preslip]") {
   CHECK_FALSE(optimise(1, 2));
   CHECK(optimise(2, 2));
   // what has no location makes no pair, however few waves are asked for
-  CHECK_FALSE(pair<GraspOptimise<>>(silent(), felt(4, 0), {.least_waves = 0}));
-  CHECK_FALSE(pair<GraspOptimise<>>(felt(4, 0), silent(), {.least_waves = 0}));
+  CHECK_FALSE(pair<GraspOptimise<>>(silent(), felt(4, 0), {.min_waves = 0}));
+  CHECK_FALSE(pair<GraspOptimise<>>(felt(4, 0), silent(), {.min_waves = 0}));
   const auto lift = [](Index before, Index now, Index least) {
-    return pair<GraspLift<>>(felt(3, before, 0, 0), felt(4, now, 1, 1), {.least_waves = least});
+    return pair<GraspLift<>>(felt(3, before, 0, 0), felt(4, now, 1, 1), {.min_waves = least});
   };
   CHECK(lift(0, 1, 0));
   CHECK_FALSE(lift(0, 0, 0));
@@ -270,7 +270,7 @@ TEST_CASE("samples with fewer waves than asked for are silent", "[preslip]") {
 }
 
 TEST_CASE("waves and locations out of range", "[preslip]") {
-  const Options few{.most_waves = 8};
+  const Options few{.max_waves = 8};
   const auto optimise = [&](Index older, Index later, const Options& options) {
     return pair<GraspOptimise<>>(felt(3, older), felt(4, later), options);
   };
@@ -279,33 +279,33 @@ TEST_CASE("waves and locations out of range", "[preslip]") {
   };
   // more than the most count as the most
   CHECK(optimise(9, 12, few));
-  CHECK(optimise(8, most_index, few));
+  CHECK(optimise(8, max_index, few));
   CHECK_FALSE(optimise(7, 8, few));
   CHECK_FALSE(optimise(9, 12, {}));
   CHECK_FALSE(lift(8, 12, few));
-  CHECK_FALSE(lift(9, most_index, few));
+  CHECK_FALSE(lift(9, max_index, few));
   CHECK(lift(7, 12, few));
   CHECK(lift(8, 12, {}));
-  CHECK(optimise(100, 90, {.least_waves = 80, .most_waves = 8}));
-  CHECK_FALSE(optimise(70, 90, {.least_waves = 80, .most_waves = 8}));
-  CHECK_FALSE(lift(70, 90, {.least_waves = 80, .most_waves = 8}));
-  CHECK(lift(7, 90, {.least_waves = 80, .most_waves = 8}));
+  CHECK(optimise(100, 90, {.min_waves = 80, .max_waves = 8}));
+  CHECK_FALSE(optimise(70, 90, {.min_waves = 80, .max_waves = 8}));
+  CHECK_FALSE(lift(70, 90, {.min_waves = 80, .max_waves = 8}));
+  CHECK(lift(7, 90, {.min_waves = 80, .max_waves = 8}));
   // fewer than none are none
   CHECK(lift(-3, 1, {}));
-  CHECK(lift(least_index, 1, {}));
-  CHECK_FALSE(lift(-3, -2, {.least_waves = 0}));
-  CHECK_FALSE(optimise(-3, -3, {.least_waves = 0}));
+  CHECK(lift(min_index, 1, {}));
+  CHECK_FALSE(lift(-3, -2, {.min_waves = 0}));
+  CHECK_FALSE(optimise(-3, -3, {.min_waves = 0}));
   // locations before the first taxel are none
   CHECK_FALSE(pair<GraspOptimise<>>(felt(-7, 2), felt(4, 2)));
-  CHECK_FALSE(pair<GraspOptimise<>>(felt(4, 2), felt(least_index, 2)));
-  CHECK(pair<GraspLift<>>(felt(least_index, 2, 0, 0), felt(4, 3, 1, 1)));
+  CHECK_FALSE(pair<GraspOptimise<>>(felt(4, 2), felt(min_index, 2)));
+  CHECK(pair<GraspLift<>>(felt(min_index, 2, 0, 0), felt(4, 3, 1, 1)));
   CHECK_FALSE(pair<GraspLift<>>(felt(4, 2, 0, 0), felt(-7, 3, 1, 1)));
   // and so are those that 31 bits do not hold
   constexpr Index last = (Index(1) << 31) - 1;
   CHECK(pair<GraspOptimise<>>(felt(last, 2), felt(last - 1, 2)));
   CHECK_FALSE(pair<GraspOptimise<>>(felt(last, 2), felt(last, 2)));
   CHECK_FALSE(pair<GraspOptimise<>>(felt(last, 2), felt(last + 1, 2)));
-  CHECK_FALSE(pair<GraspOptimise<>>(felt(most_index, 2), felt(4, 2)));
+  CHECK_FALSE(pair<GraspOptimise<>>(felt(max_index, 2), felt(4, 2)));
 }
 
 TEMPLATE_TEST_CASE("pre-slip: an alarm begins with a pair and stands until its older sample leaves",
@@ -464,21 +464,21 @@ TEMPLATE_TEST_CASE("pre-slip: a copied state goes its own way",
 TEST_CASE("pre-slip: bad parameters are refused by name, value and range", "[preslip]") {
   CHECK(refusal_of(Options{}) == "accepted");
   check_refused(&Options::history, "history", "in [2, 1000000]");
-  check_refused(&Options::least_waves, "least_waves", ">= 0");
-  check_refused(&Options::most_waves, "most_waves", "in [1, 65536]");
+  check_refused(&Options::min_waves, "min_waves", ">= 0");
+  check_refused(&Options::max_waves, "max_waves", "in [1, 65536]");
   CHECK(with(&Options::history, 1) == "PreslipOptions: history = 1, must be in [2, 1000000]");
   CHECK(with(&Options::history, 1000001) ==
         "PreslipOptions: history = 1000001, must be in [2, 1000000]");
   CHECK(with(&Options::history, 2) == "accepted");
-  CHECK(with(&Options::history, least_index) != "accepted");
-  CHECK(with(&Options::least_waves, -1) == "PreslipOptions: least_waves = -1, must be >= 0");
-  CHECK(with(&Options::least_waves, 0) == "accepted");
-  CHECK(with(&Options::least_waves, most_index) == "accepted");
-  CHECK(with(&Options::most_waves, 0) == "PreslipOptions: most_waves = 0, must be in [1, 65536]");
-  CHECK(with(&Options::most_waves, 65537) ==
-        "PreslipOptions: most_waves = 65537, must be in [1, 65536]");
-  CHECK(with(&Options::most_waves, 1) == "accepted");
-  CHECK(with(&Options::most_waves, 65536) == "accepted");
+  CHECK(with(&Options::history, min_index) != "accepted");
+  CHECK(with(&Options::min_waves, -1) == "PreslipOptions: min_waves = -1, must be >= 0");
+  CHECK(with(&Options::min_waves, 0) == "accepted");
+  CHECK(with(&Options::min_waves, max_index) == "accepted");
+  CHECK(with(&Options::max_waves, 0) == "PreslipOptions: max_waves = 0, must be in [1, 65536]");
+  CHECK(with(&Options::max_waves, 65537) ==
+        "PreslipOptions: max_waves = 65537, must be in [1, 65536]");
+  CHECK(with(&Options::max_waves, 1) == "accepted");
+  CHECK(with(&Options::max_waves, 65536) == "accepted");
   const auto tolerance = [](double mm) { return Options{.centroid_tolerance_mm = mm}; };
   for (const double bad : {-0.1, none, infinity, -infinity}) {
     CAPTURE(bad);

@@ -110,7 +110,7 @@ TEST_CASE("taxel features: centroid of force in mm, x along columns", "[taxel_fe
 
 TEST_CASE("taxel features: a sum below the least has no centroid", "[taxel_features]") {
   auto o = options();
-  o.least_sum = 150;
+  o.min_sum = 150;
   const TaxelFeatures features(3, 5, o);
   CHECK(after(features, 1, [](int, Index, Index) { return 10.0; }).is_pressed());
   CHECK_FALSE(after(features, 1, [](int, Index, Index) { return 9.9; }).is_pressed());
@@ -488,8 +488,8 @@ TEST_CASE("taxel features: bad parameters are refused by name", "[taxel_features
         "TaxelOptions: noise = -1, must be finite and >= 0");
   CHECK(message([](auto& o) { o.noise_factor = test::nan; }) ==
         "TaxelOptions: noise_factor = nan, must be finite and >= 0");
-  CHECK(message([](auto& o) { o.least_sum = -1; }) ==
-        "TaxelOptions: least_sum = -1, must be finite and >= 0");
+  CHECK(message([](auto& o) { o.min_sum = -1; }) ==
+        "TaxelOptions: min_sum = -1, must be finite and >= 0");
   CHECK(message([](auto& o) { o.saturated_at = 0; }) ==
         "TaxelOptions: saturated_at = 0, must be > 0");
   CHECK(message([](auto& o) { o.stuck_after = -1; }) ==

@@ -95,7 +95,7 @@ struct Membrane {
       const double angle = 2 * std::numbers::pi * (double(i) + 0.5) / double(columns);
       const auto slope = shape(S(rim_mm * std::cos(angle)), S(rim_mm * std::sin(angle)));
       const Point3<S> out{S(-slope.along_x), S(-slope.along_y), S(1)};
-      rim_normal.push_back(detail::unit(detail::cross(out, segments.around(i, 0).along)));
+      rim_normal.push_back(detail::unit(cross(out, segments.around(i, 0).along)));
     }
     lean(0);
   }

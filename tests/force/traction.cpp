@@ -125,7 +125,7 @@ TEST_CASE("membrane triangle: forces are the slope of the energy", "[traction]")
     CHECK(force[k].y == Approx(-slope(1)).margin(1e-13));
     CHECK(force[k].z == Approx(-slope(2)).margin(1e-13));
     sum = detail::sum(sum, force[k]);
-    moment = detail::sum(moment, detail::cross(pulled_triangle[k], force[k]));
+    moment = detail::sum(moment, cross(pulled_triangle[k], force[k]));
   }
   CHECK(size(sum) < 1e-14);
   CHECK(size(moment) < 1e-14);
@@ -486,8 +486,8 @@ TEST_CASE("traction: bad parameters are refused", "[traction]") {
   CHECK(test::begins_with(test::refusal([&] { TractionField(free, GivenModulus<double>{}); }),
                           "GivenModulus: mu_t_n_per_mm = "));
   CHECK(test::begins_with(
-      test::refusal([&] { TractionField(free, BalancedModulus{.least_dots = 0}); }),
-      "BalancedModulus: least_dots = 0, must be"));
+      test::refusal([&] { TractionField(free, BalancedModulus{.min_dots = 0}); }),
+      "BalancedModulus: min_dots = 0, must be"));
   CHECK(test::begins_with(test::refusal([] { TractionField(Dots(2, 5)); }),
                           "TractionField: rows = 2, must be"));
   CHECK(test::begins_with(test::refusal([] { TractionField(Dots(5, 2)); }),
@@ -559,7 +559,7 @@ TEST_CASE("traction: least squares would err where the balance does not", "[trac
         const Vector pull = detail::scaled(
             -1 / b.mu_t, detail::sum(detail::scaled(size(area), maps.load_mpa()(i, j)),
                                      detail::scaled(b.pressure(), area)));
-        along -= b.pressure() * detail::dot(pull, area);
+        along -= b.pressure() * dot(pull, area);
         square_sum += detail::length_sq(pull);
       }
     }

@@ -66,7 +66,7 @@ Vector any_step(test::Random& random) {
 /// Stored energy over mu t / 2 and per stress-free area: |F|^2 + J^-2 - 3, F = [d, e].
 template <class S>
 S energy(const Point3<S>& along, const Point3<S>& tangent) {
-  const S shear = detail::dot(along, tangent);
+  const S shear = dot(along, tangent);
   const S length = detail::length_sq(along);
   return S(length + S(1) + S(1) / S(length - shear * shear) - S(3));
 }
@@ -85,7 +85,7 @@ TEST_CASE("clamped rim: the pull is the derivative of the membrane's energy", "[
           return Digits50(energy(detail::moved(along, t, way), tangent) / Digits50(2));
         },
         Digits50(0), Digits50(1e-16));
-    CHECK(abs(Digits50(slope - detail::dot(pull, way))) < Digits50(1e-27));
+    CHECK(abs(Digits50(slope - dot(pull, way))) < Digits50(1e-27));
   }
 }
 
@@ -148,7 +148,7 @@ TEST_CASE("clamped rim: it leans further sideways than the dots, by l^4 / (l^4 -
   CHECK(ClampedRim().pull(Vector{-1.004, 0.2, 0}, e).status == RimPullStatus::unstretched);
   CHECK(ClampedRim().pull(Vector{-1.006, 0.2, 0}, e).status == RimPullStatus::ok);
   CHECK(ClampedRim().pull(Vector{-0.99, 0.9, 0}, e).status == RimPullStatus::slack);
-  CHECK(ClampedRim{.least_stretch = 1.1}.pull(Vector{-1.09, 0, 0}, e).status ==
+  CHECK(ClampedRim{.min_stretch = 1.1}.pull(Vector{-1.09, 0, 0}, e).status ==
         RimPullStatus::unstretched);
 }
 
@@ -365,7 +365,7 @@ struct InnerError {
 }  // namespace
 
 TEST_CASE("tensions within a flat press: the mesh converges", "[wrench]") {
-  const auto check = [](const auto& solver, const char* name, double most_residual) {
+  const auto check = [](const auto& solver, const char* name, double max_residual) {
     const InnerError coarse(solver, 18, 16), middle(solver, 36, 32), fine(solver, 72, 64);
     INFO(name << ", f_v off by at most " << coarse.tension << " at 18 x 16, " << middle.tension
               << " at 36 x 32, " << fine.tension << " at 72 x 64; residual " << coarse.residual
@@ -373,7 +373,7 @@ TEST_CASE("tensions within a flat press: the mesh converges", "[wrench]") {
     CHECK(fine.tension <= 0.01);
     CHECK(middle.tension < coarse.tension);
     CHECK(fine.tension < middle.tension);
-    CHECK(fine.residual <= most_residual);
+    CHECK(fine.residual <= max_residual);
   };
   check(PublishedIteration(), "published iteration", 0.15);
   check(LeastSquares(), "least squares", 1e-4);
@@ -887,8 +887,8 @@ TEST_CASE("wrench: bad parameters are refused by name, value and range", "[wrenc
        "KnownModulus: modulus_n_per_mm = -0.5");
   says(test::refusal([&] { Wrench<PublishedIteration>(rim.borders(), {}, {.passes = 0}); }),
        "PublishedIteration: passes = 0");
-  says(test::refusal([&] { Wrench<BalancedRim>(rim.borders(), {}, {}, {}, {.least_stretch = 1}); }),
-       "ClampedRim: least_stretch = 1");
+  says(test::refusal([&] { Wrench<BalancedRim>(rim.borders(), {}, {}, {}, {.min_stretch = 1}); }),
+       "ClampedRim: min_stretch = 1");
   says(test::refusal([&] { Wrench<KnownModulus, ExtrapolatedRow>{rim.borders()}; }),
        "ExtrapolatedRow: stress_free_inclination_rad = ");
   says(test::refusal([&] { Wrench<LeastSquares>(rim.borders(), {}, {.smoothness = 0}); }),

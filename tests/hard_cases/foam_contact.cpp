@@ -75,7 +75,7 @@ Rider<S> rider_of(double mass, double stiffness, double ratio) {
 
 /// The textbook's wave and lag in 50 digits, and how large they are within a period.
 struct Truth {
-  Digits50 wave, lag, most_wave, most_lag;
+  Digits50 wave, lag, max_wave, max_lag;
   Digits50 decay, natural_sq;
 
   template <class S>
@@ -89,13 +89,13 @@ struct Truth {
       const Digits50 w = sqrt(Digits50(-split));
       wave = gone * cos(Digits50(w * t));
       lag = gone * sin(Digits50(w * t)) / w;
-      most_wave = gone;
-      most_lag = gone * (w * t < 1 ? t : Digits50(1 / w));
+      max_wave = gone;
+      max_lag = gone * (w * t < 1 ? t : Digits50(1 / w));
     } else {
       const Digits50 r = sqrt(split);
       const Digits50 slow = exp(Digits50((r - decay) * t)), fast = exp(Digits50((-r - decay) * t));
-      most_wave = wave = (slow + fast) / 2;
-      most_lag = lag = split > 0 ? Digits50((slow - fast) / (2 * r)) : Digits50(t * gone);
+      max_wave = wave = (slow + fast) / 2;
+      max_lag = lag = split > 0 ? Digits50((slow - fast) / (2 * r)) : Digits50(t * gone);
     }
   }
 };
@@ -122,10 +122,10 @@ Answer answer(const Rider<S>& rider, const Truth& w, const Case& of, const Digit
   a.y = rise * t + held - lagging + (w.wave + w.decay * w.lag) * y + w.lag * v;
   a.v = rise + (w.wave - w.decay * w.lag) * v - w.natural_sq * w.lag * y;
   const Digits50 parts = abs(Digits50(rise * t)) + abs(held) + abs(lagging);
-  const Digits50 most = w.most_wave + w.decay * w.most_lag;
-  a.y_scale = (std::max)(Digits50(abs(a.y)), Digits50(parts + most * abs(y) + w.most_lag * abs(v)));
+  const Digits50 most = w.max_wave + w.decay * w.max_lag;
+  a.y_scale = (std::max)(Digits50(abs(a.y)), Digits50(parts + most * abs(y) + w.max_lag * abs(v)));
   a.v_scale =
-      abs(rise) + most * abs(v) + w.natural_sq * w.most_lag * abs(y) + sqrt(w.natural_sq) * parts;
+      abs(rise) + most * abs(v) + w.natural_sq * w.max_lag * abs(y) + sqrt(w.natural_sq) * parts;
   return a;
 }
 

@@ -41,7 +41,7 @@ Image<S> as(const Image<double>& image) {
 template <class Model, class CameraType, class S>
 auto fit(const CameraType& camera, const Image<S>& depth, const Mask& mask, Index least = 1) {
   const SurfaceFit<Model, CameraType> surface(depth.rows(), depth.cols(), camera,
-                                              {.least_px = least});
+                                              {.min_px = least});
   return surface(depth, mask);
 }
 

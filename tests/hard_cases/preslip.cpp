@@ -112,7 +112,7 @@ TEMPLATE_TEST_CASE("pre-slip: a hundred thousand samples alike",
 
 TEST_CASE("pre-slip: long histories of many values, by two searches", "[preslip]") {
   constexpr int samples = 6000;
-  const Options options{.history = 200, .least_waves = 0, .most_waves = 65536};
+  const Options options{.history = 200, .min_waves = 0, .max_waves = 65536};
   // a value that is not seen again for long fills the memory; few values keep it busy
   for (const Index values : {1, 2, 5, 60, 65536}) {
     CAPTURE(values);
@@ -144,7 +144,7 @@ TEST_CASE("pre-slip: every sample with waves of its own", "[preslip]") {
   // as many keys as samples, and in the end all of them again at another place
   const Index history = 4096;
   const Preslip<GraspOptimise<>, 2, ConstantTime> preslip(
-      {.history = history, .most_waves = 65536});
+      {.history = history, .max_waves = 65536});
   auto state = preslip.start();
   for (int round = 0; round < 3; ++round) {
     int fresh = 0;
@@ -158,7 +158,7 @@ TEST_CASE("pre-slip: every sample with waves of its own", "[preslip]") {
     CHECK(ago == (round == 0 ? PreslipResult::none : history - 1));
   }
   const Preslip<GraspOptimise<>, 2, ConstantTime> shorter(
-      {.history = history - 1, .most_waves = 65536});
+      {.history = history - 1, .max_waves = 65536});
   auto of_shorter = shorter.start();
   for (int round = 0; round < 3; ++round) {
     for (Index k = 0; k < history - 1; ++k) {

@@ -52,7 +52,7 @@ struct Of {
 };
 using Default = Of<StickConsensus<>, ResidualMean>;
 using OneDot = Of<ReferenceDotMotion<>, ResidualMean>;
-using Published = Of<ReferenceDotMotion<Freedom::similarity, PublishedZoom>, DotMean>;
+using Published = Of<ReferenceDotMotion<Freedom::similarity, PublishedScale>, DotMean>;
 
 /// Frames with positions that float holds exactly.
 std::vector<PointsPx> frames(std::uint64_t seed, const DotPattern& pattern) {

@@ -510,7 +510,7 @@ TEST_CASE("object motion: what remains of an affine grid has its directions") {
     }
     const auto basis = published_basis(grid_directions(n, all));
     const auto parallel = [](const Vector& a, const Vector& b) {
-      return Approx(1).margin(1e-14) == detail::dot(a, detail::unit(b));
+      return Approx(1).margin(1e-14) == dot(a, detail::unit(b));
     };
     CHECK((parallel(basis.n1, q1) && parallel(basis.n2, q2)));
     ++determined;

@@ -23,7 +23,7 @@ TEMPLATE_TEST_CASE("stick ratio: a frame allocates nothing",
                    (Of<StickConsensus<>, UpdatedReference<InStickRegion>, DotMean, double>),
                    (Of<StickConsensus<>, FirstReference, NoDenoising, long double>),
                    (Of<ReferenceDotMotion<>, UpdatedReference<>, ResidualMean, float>),
-                   (Of<ReferenceDotMotion<Freedom::similarity, PublishedZoom>,
+                   (Of<ReferenceDotMotion<Freedom::similarity, PublishedScale>,
                        UpdatedReference<>,
                        DotMean,
                        float>)) {

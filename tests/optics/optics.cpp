@@ -201,7 +201,7 @@ TEST_CASE("symmetry of the picture", "[optics]") {
   });
 }
 
-TEMPLATE_TEST_CASE("the centre pixel looks along the axis, exactly",
+TEMPLATE_TEST_CASE("the center pixel looks along the axis, exactly",
                    "[optics]",
                    float,
                    double,

@@ -239,7 +239,7 @@ TEMPLATE_TEST_CASE("a mirrored or transposed frame gives the mirrored or transpo
                    std::uint8_t,
                    std::uint16_t,
                    float) {
-  rc::prop("when the camera's centre goes with it", [] {
+  rc::prop("when the camera's center goes with it", [] {
     using Pixel = TestType;
     const Pad pad = any_pad();
     auto frame = pad.frame<Pixel>(pad.pressed_depths(test::uniform(0, 5)), 1, 7);

@@ -30,9 +30,9 @@ GripLaw<double> any_law() {
   law.lower_gain_n_per_s = zero_or(100);
   law.rise_limit_n_per_s = test::log_uniform(0.1, 100);
   law.fall_limit_n_per_s = zero_or(10);
-  law.least_force_n = zero_or(2);
-  law.most_force_n = law.least_force_n + test::uniform(0.1, 30);
-  law.safe_force_n = test::uniform(law.least_force_n, law.most_force_n);
+  law.min_force_n = zero_or(2);
+  law.max_force_n = law.min_force_n + test::uniform(0.1, 30);
+  law.safe_force_n = test::uniform(law.min_force_n, law.max_force_n);
   law.ratio_lasts_s = zero_or(0.5);
   law.sliding_ratio = zero_or(law.set_point);
   law.blind_after_s = zero_or(0.5);
@@ -85,8 +85,8 @@ TEST_CASE("grip force whatever is given", "[grip_control][law]") {
       const double step_s = any_step();
       const auto result = control(any_ratio(), any_news(), step_s, state);
       const double change = result.force_n - before;
-      RC_ASSERT(result.force_n >= law.least_force_n);
-      RC_ASSERT(result.force_n <= law.most_force_n);
+      RC_ASSERT(result.force_n >= law.min_force_n);
+      RC_ASSERT(result.force_n <= law.max_force_n);
       RC_ASSERT(state.force_n() == result.force_n);
       const double time_s = step_s > 0 && step_s < infinity ? step_s : 0;
       const double allowed_s = (std::min)(time_s, law.longest_step_s) + 1e-12;
@@ -148,8 +148,8 @@ TEST_CASE("grip force and stick ratio", "[grip_control][law]") {
     const double before = state.force_n();
     const auto result = control(test::uniform(0, 0.99) * law.set_point, 0.02, state);
     RC_ASSERT(result.why == GripReason::slipping);
-    RC_ASSERT(result.force_n > before || before == law.most_force_n);
-    RC_ASSERT((result.status == GripStatus::at_limit) == (before == law.most_force_n));
+    RC_ASSERT(result.force_n > before || before == law.max_force_n);
+    RC_ASSERT((result.status == GripStatus::at_limit) == (before == law.max_force_n));
   });
   rc::prop("between the set point and lower_above the force rests", [] {
     const GripLaw<double> law = any_law();
@@ -175,7 +175,7 @@ TEST_CASE("grip force and stick ratio", "[grip_control][law]") {
       control(ratio, 1.0 / 30, state);
     }
     const double needed_n = load_n / mu / (1 - law.set_point);
-    RC_ASSERT(ratio > law.set_point - 1e-2 || needed_n > law.most_force_n);
+    RC_ASSERT(ratio > law.set_point - 1e-2 || needed_n > law.max_force_n);
     const double last_step_n = (std::min)(law.raise_gain_n_per_s, law.rise_limit_n_per_s) / 30;
     RC_ASSERT(state.force_n() <= (std::max)(needed_n + last_step_n, 1.0));
   });

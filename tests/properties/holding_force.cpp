@@ -20,9 +20,9 @@ using News = std::vector<SlipNews>;
 
 LoosenPlan<double> any_loosen_plan() {
   LoosenPlan<double> plan;
-  plan.least_force_n = test::whole(0, 1) == 0 ? 0 : test::uniform(0, 5);
-  plan.first_force_n = plan.least_force_n + test::uniform(0.01, 20);
-  plan.step_n = (plan.first_force_n - plan.least_force_n) / test::uniform(0.5, 25);
+  plan.min_force_n = test::whole(0, 1) == 0 ? 0 : test::uniform(0, 5);
+  plan.first_force_n = plan.min_force_n + test::uniform(0.01, 20);
+  plan.step_n = (plan.first_force_n - plan.min_force_n) / test::uniform(0.5, 25);
   plan.settle_samples = test::whole(0, 5);
   plan.watch_samples = test::whole(1, 5);
   plan.margin_steps = test::whole(0, 4);
@@ -33,9 +33,9 @@ LoosenPlan<double> any_loosen_plan() {
 LiftPlan<double> any_lift_plan() {
   LiftPlan<double> plan;
   plan.first_force_n = test::uniform(0.1, 5);
-  plan.most_force_n = plan.first_force_n + (test::whole(0, 3) == 0 ? 0 : test::uniform(0, 20));
+  plan.max_force_n = plan.first_force_n + (test::whole(0, 3) == 0 ? 0 : test::uniform(0, 20));
   plan.force_step_n =
-      (std::max)(plan.most_force_n - plan.first_force_n, 0.1) / test::uniform(0.5, 15);
+      (std::max)(plan.max_force_n - plan.first_force_n, 0.1) / test::uniform(0.5, 15);
   plan.height_mm = test::uniform(1, 100);
   plan.height_step_mm = plan.height_mm / test::uniform(0.5, 30);
   plan.settle_samples = test::whole(0, 5);
@@ -137,7 +137,7 @@ TEST_CASE("loosening whatever is told", "[holding_force][law]") {
     for (const SlipNews one : any_news(120)) {
       const auto before = state.command();
       const auto now = search(one, state);
-      RC_ASSERT(now.force_n >= plan.least_force_n);
+      RC_ASSERT(now.force_n >= plan.min_force_n);
       RC_ASSERT(now.force_n <= plan.first_force_n);
       RC_ASSERT((now.force_n <= before.force_n || now.phase == SearchPhase::found ||
                  now.phase == SearchPhase::slipped));
@@ -145,7 +145,7 @@ TEST_CASE("loosening whatever is told", "[holding_force][law]") {
       RC_ASSERT(now.steps - before.steps == (now.force_n < before.force_n ? 1 : 0));
       const double stepped = plan.first_force_n - static_cast<double>(now.steps) * plan.step_n;
       if (!is_end(now.phase) || now.phase == SearchPhase::at_limit) {
-        RC_ASSERT(now.force_n == (std::max)(stepped, plan.least_force_n));
+        RC_ASSERT(now.force_n == (std::max)(stepped, plan.min_force_n));
       }
       // where pre-slip was found first stays known
       RC_ASSERT(
@@ -160,7 +160,7 @@ TEST_CASE("loosening whatever is told", "[holding_force][law]") {
   rc::prop("it ends in time", [] {
     const auto plan = any_loosen_plan();
     const LoosenUntilPreslip<double> search(plan);
-    const Index levels = steps_in(plan.first_force_n - plan.least_force_n, plan.step_n) + 1;
+    const Index levels = steps_in(plan.first_force_n - plan.min_force_n, plan.step_n) + 1;
     const Index bound = levels * (plan.settle_samples + plan.watch_samples);
     // steady news takes the longest: all of the bound
     const News steady(static_cast<std::size_t>(bound), SlipNews::steady);
@@ -202,31 +202,31 @@ TEST_CASE("loosening the grip of an object that is known", "[holding_force][law]
   rc::prop("finds its least force within a step, and gives the margin back", [] {
     auto plan = any_loosen_plan();
     plan.until_slipped = false;
-    const double begins_n = test::uniform(plan.least_force_n, plan.first_force_n * 1.1);
+    const double begins_n = test::uniform(plan.min_force_n, plan.first_force_n * 1.1);
     const auto end = end_of(LoosenUntilPreslip<double>(plan), begins_n, 0);
     const double small = 1e-12 * plan.first_force_n;
     if (end.phase == SearchPhase::at_limit) {
-      RC_ASSERT(plan.least_force_n >= begins_n);
+      RC_ASSERT(plan.min_force_n >= begins_n);
       return;
     }
     RC_ASSERT(end.phase == SearchPhase::found);
     RC_ASSERT(end.preslip_force_n < begins_n);
     const double margin_n = static_cast<double>(plan.margin_steps) * plan.step_n;
-    const double least_n = (std::min)(begins_n, plan.first_force_n);
-    RC_ASSERT(end.preslip_force_n >= least_n - plan.step_n - small);
+    const double min_n = (std::min)(begins_n, plan.first_force_n);
+    RC_ASSERT(end.preslip_force_n >= min_n - plan.step_n - small);
     RC_ASSERT(std::abs(end.force_n -
                        (std::min)(end.preslip_force_n + margin_n, plan.first_force_n)) <= small);
-    RC_ASSERT((plan.margin_steps == 0 || end.force_n >= least_n - small));  // it holds
-    RC_ASSERT(end.force_n <= least_n + margin_n);
+    RC_ASSERT((plan.margin_steps == 0 || end.force_n >= min_n - small));  // it holds
+    RC_ASSERT(end.force_n <= min_n + margin_n);
   });
   rc::prop("counts the steps from the first sign to the slip", [] {
     auto plan = any_loosen_plan();
     plan.until_slipped = true;
-    const double begins_n = test::uniform(plan.least_force_n, plan.first_force_n);
+    const double begins_n = test::uniform(plan.min_force_n, plan.first_force_n);
     const double slips_n = test::uniform(0, begins_n);
     const auto end = end_of(LoosenUntilPreslip<double>(plan), begins_n, slips_n);
     const double small = 1e-12 * plan.first_force_n;
-    if (slips_n <= plan.least_force_n + small) {
+    if (slips_n <= plan.min_force_n + small) {
       RC_ASSERT((end.phase == SearchPhase::at_limit || end.phase == SearchPhase::slipped));
       return;
     }
@@ -236,7 +236,7 @@ TEST_CASE("loosening the grip of an object that is known", "[holding_force][law]
     const auto first_below = [&](double force_n) {
       Index step = 0;
       while (!((std::max)(plan.first_force_n - static_cast<double>(step) * plan.step_n,
-                          plan.least_force_n) < force_n)) {
+                          plan.min_force_n) < force_n)) {
         ++step;
       }
       return step;
@@ -248,7 +248,7 @@ TEST_CASE("loosening the grip of an object that is known", "[holding_force][law]
     const double apart = (begins_n - slips_n) / plan.step_n;
     RC_ASSERT(static_cast<double>(end.warning_steps) <= std::ceil(apart + 1e-9));
     const bool is_short = plan.first_force_n - static_cast<double>(slip) * plan.step_n <
-                          plan.least_force_n;  // the last step
+                          plan.min_force_n;  // the last step
     RC_ASSERT((is_short || static_cast<double>(end.warning_steps) >= std::floor(apart - 1e-9)));
   });
 }
@@ -262,7 +262,7 @@ TEST_CASE("lifting whatever is told", "[holding_force][law]") {
       const auto before = state.command();
       const auto now = search(one, state);
       RC_ASSERT(now.force_n >= plan.first_force_n);
-      RC_ASSERT(now.force_n <= plan.most_force_n);
+      RC_ASSERT(now.force_n <= plan.max_force_n);
       RC_ASSERT(now.force_n >= before.force_n);
       RC_ASSERT(now.force_n - before.force_n <= plan.force_step_n * (1 + 1e-12));
       RC_ASSERT(now.regrips - before.regrips == (now.force_n > before.force_n ? 1 : 0));
@@ -282,7 +282,7 @@ TEST_CASE("lifting whatever is told", "[holding_force][law]") {
   rc::prop("it ends in time", [] {
     const auto plan = any_lift_plan();
     const LiftWithRegrip<double> search(plan);
-    const Index regrips = steps_in(plan.most_force_n - plan.first_force_n, plan.force_step_n);
+    const Index regrips = steps_in(plan.max_force_n - plan.first_force_n, plan.force_step_n);
     const Index lifts = steps_in(plan.height_mm, plan.height_step_mm);
     // each tightening settles; then at the latest the last lift or the giving up
     const Index bound = regrips * (1 + plan.settle_samples) + lifts;
@@ -310,15 +310,15 @@ TEST_CASE("lifting whatever is told", "[holding_force][law]") {
 TEST_CASE("lifting an object that is known", "[holding_force][law]") {
   rc::prop("ends with it up and held within a step of its least force, or gives it up", [] {
     const auto plan = any_lift_plan();
-    const double begins_n = test::uniform(0, plan.most_force_n * 1.2);
+    const double begins_n = test::uniform(0, plan.max_force_n * 1.2);
     const double slips_n = test::uniform(0, begins_n);
     const auto end = end_of(LiftWithRegrip<double>(plan), begins_n, slips_n);
     if (plan.first_force_n < slips_n) {
       RC_ASSERT(end.phase == SearchPhase::slipped);
       RC_ASSERT(end.force_n == plan.first_force_n);
-    } else if (plan.most_force_n < begins_n) {
+    } else if (plan.max_force_n < begins_n) {
       RC_ASSERT(end.phase == SearchPhase::at_limit);
-      RC_ASSERT(end.force_n == plan.most_force_n);
+      RC_ASSERT(end.force_n == plan.max_force_n);
     } else {
       RC_ASSERT(end.phase == SearchPhase::lifted);
       RC_ASSERT(end.height_mm == plan.height_mm);

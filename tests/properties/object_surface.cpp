@@ -113,7 +113,7 @@ struct Everything {
 
 template <class Model, class CameraType>
 auto fit(const CameraType& camera, const Image<double>& depth, const Mask& mask) {
-  return SurfaceFit<Model, CameraType>(depth.rows(), depth.cols(), camera, {.least_px = 1})(depth,
+  return SurfaceFit<Model, CameraType>(depth.rows(), depth.cols(), camera, {.min_px = 1})(depth,
                                                                                             mask);
 }
 
@@ -237,7 +237,7 @@ TEST_CASE("object surface: a pixel without depth is as one without contact", "[s
     Everything()([&](auto model, auto kind) {
       const auto camera = camera_for<decltype(kind)>(patch.size);
       const SurfaceFit<decltype(model), decltype(kind)> surface(patch.size, patch.size, camera,
-                                                                {.least_px = 1});
+                                                                {.min_px = 1});
       Image<double> a(patch.size, patch.size), b = a, c = a;
       const auto with_nan = surface(holed, patch.mask, a);
       const auto unset = surface(patch.depth, without, b);

@@ -76,9 +76,9 @@ FingerSample<double> any_sample(const Values& values, Bits& bits) {
 }
 
 template <std::size_t Fingers>
-History<Fingers> any_history(Index most_samples = 40) {
+History<Fingers> any_history(Index max_samples = 40) {
   const Values values;
-  History<Fingers> history(static_cast<std::size_t>(test::whole(1, most_samples)));
+  History<Fingers> history(static_cast<std::size_t>(test::whole(1, max_samples)));
   Bits bits;
   for (Hand<Fingers>& hand : history) {
     for (auto& sample : hand) {
@@ -90,8 +90,8 @@ History<Fingers> any_history(Index most_samples = 40) {
 
 Options any_options() {
   return {.history = test::whole(2, 14),
-          .least_waves = test::whole(0, 2),
-          .most_waves = test::whole(1, 6),
+          .min_waves = test::whole(0, 2),
+          .max_waves = test::whole(1, 6),
           .centroid_tolerance_mm = static_cast<double>(test::whole(1, 4)) / 16};
 }
 
@@ -330,8 +330,8 @@ TEST_CASE("pre-slip: what does not matter", "[preslip][law]") {
   rc::prop("how long a wave is", [] {
     const auto history = any_history<2>();
     Options options = any_options();
-    options.most_waves = 100;
-    options.least_waves = 1;
+    options.max_waves = 100;
+    options.min_waves = 1;
     const Index factor = test::whole(1, 16);
     const auto faster = changed(history, [&](auto& s, std::size_t) { s.waves = factor * s.waves; });
     for_all_rules([&](auto rule) {
@@ -361,14 +361,14 @@ TEST_CASE("pre-slip: alarms begin with the newest sample and end with the histor
   rc::prop("silence never begins one, and outlasts any", [] {
     auto history = any_history<2>();
     Options options = any_options();
-    options.least_waves = test::whole(1, 2);
+    options.min_waves = test::whole(1, 2);
     const std::size_t samples = history.size();
     Bits bits;
     for (Index k = 0; k < options.history; ++k) {
       Hand<2> silent;
       for (auto& sample : silent) {
         sample.location = bits(-1, 3);
-        sample.waves = bits(0, options.least_waves - 1);
+        sample.waves = bits(0, options.min_waves - 1);
         sample.center_x_mm = static_cast<double>(bits(-3, 3)) / 8;
         sample.center_y_mm = static_cast<double>(bits(-3, 3)) / 8;
       }
@@ -421,7 +421,7 @@ TEST_CASE("pre-slip: what can only add an alarm", "[preslip][law]") {
     RC_ASSERT(alarms_wherever(run<BeyondBoth>(history, options), run<Beyond>(history, options)));
     RC_ASSERT(alarms_wherever(run<CellsBoth>(history, options), run<Cells>(history, options)));
     Options fewer = options;
-    fewer.least_waves = test::whole(0, options.least_waves);
+    fewer.min_waves = test::whole(0, options.min_waves);
     for_all_rules([&](auto rule) {
       RC_ASSERT(alarms_wherever(run<decltype(rule)>(history, options),
                                 run<decltype(rule)>(history, fewer)));

@@ -102,7 +102,7 @@ struct Policies {
   }
 };
 using PublishedPolicies =
-    Policies<ReferenceDotMotion<Freedom::similarity, PublishedZoom>, UpdatedReference<>, DotMean>;
+    Policies<ReferenceDotMotion<Freedom::similarity, PublishedScale>, UpdatedReference<>, DotMean>;
 
 bool near(double a, double b, double margin = 1e-9) {
   return test::same_bits(a, b) || std::abs(a - b) <= margin * std::max(1.0, std::abs(b));
@@ -365,7 +365,7 @@ TEMPLATE_TEST_CASE(
     some.dots.emplace_back(rows, cols);
     const StickTest test{.reference_px = test::uniform(0.5, 3),
                          .store_px = test::uniform(0, 0.5),
-                         .least_dots = test::whole(1, 6)};
+                         .min_dots = test::whole(1, 6)};
     const auto ratio = TestType::ratio(some, test);
     auto state = ratio.start();
     const StickRatio in_float(rows, cols, test);
@@ -415,7 +415,7 @@ TEMPLATE_TEST_CASE(
         RC_ASSERT((r.reference_age >= 0 && r.reference_age <= k));
         RC_ASSERT(r.reference_dot.row < rows && r.reference_dot.col < cols);
         if (r.updated()) {
-          RC_ASSERT(r.stick + r.slip >= test.least_dots);
+          RC_ASSERT(r.stick + r.slip >= test.min_dots);
           RC_ASSERT(q ==
                     Approx(static_cast<double>(r.stick) / static_cast<double>(r.stick + r.slip)));
           RC_ASSERT((r.reference_age >= 1 && r.reference_dot.exists()));

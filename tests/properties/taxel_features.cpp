@@ -262,7 +262,7 @@ TEMPLATE_TEST_CASE("taxel features: whatever is read, what is said is in range",
     auto o = any_options();
     o.stuck_after = test::whole(0, 8);
     o.saturated_at = test::whole(0, 1) == 0 ? infinite : 4000;
-    o.least_sum = test::uniform(0, 100);
+    o.min_sum = test::uniform(0, 100);
     const TestType features(2, 3, o);
     auto state = features.start();
     double time = 0;

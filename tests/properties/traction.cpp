@@ -166,7 +166,7 @@ TEST_CASE("traction turns and shifts with the dots", "[traction][law]") {
     assert_same(
         before, after, small, [&](const Vector& q) { return turn(q); }, same_place);
     const Vector force = turn(before.result.force_n);
-    const Vector moment = detail::sum(turn(before.result.moment_n_mm), detail::cross(shift, force));
+    const Vector moment = detail::sum(turn(before.result.moment_n_mm), cross(shift, force));
     RC_ASSERT(distance(after.result.force_n, force) <= 1000 * small);
     RC_ASSERT(distance(after.result.moment_n_mm, moment) <= 1e5 * small);
   });
@@ -270,7 +270,7 @@ TEST_CASE("traction in other units of length", "[traction][law]") {
 TEST_CASE("the balanced mu t goes with the pressure", "[traction][law]") {
   rc::prop("and with it all loads", [] {
     const Pad pad = Pad::any();
-    const BalancedModulus balanced{.least_dots = 1};
+    const BalancedModulus balanced{.min_dots = 1};
     const Seen before = look(pad, balanced);
     RC_PRE(before.result.has_force());
     const double f = test::log_uniform(0.1, 10);
@@ -355,7 +355,7 @@ TEST_CASE("the sum of the loads over all dots, from the border alone", "[tractio
     }
     // the area vector of any surface is half the integral of x times dx along its border
     const auto along = [&](Index r0, Index c0, Index r1, Index c1) {
-      area = detail::moved(area, 0.5, detail::cross(pad.dots(r0, c0), pad.dots(r1, c1)));
+      area = detail::moved(area, 0.5, cross(pad.dots(r0, c0), pad.dots(r1, c1)));
     };
     for (Index j = 0; j + 1 < cols; ++j) {
       along(0, j, 0, j + 1);
@@ -425,7 +425,7 @@ TEST_CASE("traction of anything at all", "[traction][law][fuzz]") {
       assert_valid<float>(pad, TractionField<GivenModulus<float>, float>(
                                    pad.free, {static_cast<float>(mu_t)}, options));
     } else {
-      const BalancedModulus balanced{.least_dots = 1};
+      const BalancedModulus balanced{.min_dots = 1};
       assert_valid(pad, TractionField(pad.free, balanced, options));
       assert_valid<float>(pad, TractionField<BalancedModulus, float>(pad.free, balanced, options));
     }

@@ -105,8 +105,8 @@ TEST_CASE("friction ratio: bad parameters are refused by name", "[friction_ratio
                             "FrictionTest: alarm_fraction = "));
   }
   for (const double bad : {0.0, -1.0, none, infinity}) {
-    CHECK(test::begins_with(test::refusal([&] { FrictionRatio({.least_normal_n = bad}); }),
-                            "FrictionTest: least_normal_n = "));
+    CHECK(test::begins_with(test::refusal([&] { FrictionRatio({.min_normal_n = bad}); }),
+                            "FrictionTest: min_normal_n = "));
   }
 }
 

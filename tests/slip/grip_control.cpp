@@ -301,8 +301,8 @@ TEST_CASE("grip control: bad parameters are refused by name", "[grip_control]") 
   check_refused(&Law::lower_gain_n_per_s, "lower_gain_n_per_s", {-1, none, infinity});
   check_refused(&Law::rise_limit_n_per_s, "rise_limit_n_per_s", {0, -1, none, infinity});
   check_refused(&Law::fall_limit_n_per_s, "fall_limit_n_per_s", {-1, none, infinity});
-  check_refused(&Law::least_force_n, "least_force_n", {-1, none, infinity});
-  check_refused(&Law::most_force_n, "most_force_n", {0.5, 0, none, infinity});
+  check_refused(&Law::min_force_n, "min_force_n", {-1, none, infinity});
+  check_refused(&Law::max_force_n, "max_force_n", {0.5, 0, none, infinity});
   check_refused(&Law::safe_force_n, "safe_force_n", {0.4, 20.1, none});
   check_refused(&Law::ratio_lasts_s, "ratio_lasts_s", {-1, none, infinity});
   check_refused(&Law::sliding_ratio, "sliding_ratio", {-0.1, 0.81, none});

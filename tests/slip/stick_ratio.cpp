@@ -298,7 +298,7 @@ TEST_CASE("stick ratio: dots in contact only, and those that were") {
 
 TEST_CASE("stick ratio: the search begins in the last stick region") {
   // What sticks lies to the left; in the second step all the rest, twice as many dots, stays behind
-  // together. The centre of the contact lies among these.
+  // together. The center of the contact lies among these.
   const auto run = [](auto motion) {
     Follower<decltype(motion)> f({}, motion);
     f(shifted(0));
@@ -360,7 +360,7 @@ TEMPLATE_TEST_CASE("stick ratio: noise is averaged over neighbours",
   test.slip_px = 2 * noise_px * left * std::sqrt(std::log(1 / p)) * 2 / 3;
   double wrong = 0, all = 0;
   test::Random random(7);
-  Follower<StickConsensus<>, UpdatedReference<>, TestType> f(test, {.most_passes = 10}, {}, {}, 21,
+  Follower<StickConsensus<>, UpdatedReference<>, TestType> f(test, {.max_passes = 10}, {}, {}, 21,
                                                              21);
   for (int k = 0; k < 200; ++k) {
     const auto r = f(noisy(shifted(3.0 * (k % 2), 0, 21, 21), noise_px, random));
@@ -671,7 +671,7 @@ TEMPLATE_TEST_CASE("stick ratio, bad input: one single dot",
                    "[stick_ratio]",
                    StickConsensus<>,
                    ReferenceDotMotion<>,
-                   (ReferenceDotMotion<Freedom::similarity, PublishedZoom>)) {
+                   (ReferenceDotMotion<Freedom::similarity, PublishedScale>)) {
   const auto run = [](const StickTest& test, Index rows, Index cols) {
     Follower<TestType> f(test, {}, {}, {}, rows, cols);
     f(shifted(0, 0, rows, cols));
@@ -682,18 +682,18 @@ TEMPLATE_TEST_CASE("stick ratio, bad input: one single dot",
   CHECK(r.status == StickStatus::too_few_dots);
   CHECK(std::isnan(r.stick_ratio));
   CHECK(r.unknown == 1);
-  const auto alone = run({.least_dots = 1}, 1, 1);  // it moves with itself
+  const auto alone = run({.min_dots = 1}, 1, 1);  // it moves with itself
   CHECK(alone.updated());
   CHECK(alone.stick_ratio == 1);
   CHECK(alone.angle_rad == 0);
   CHECK(alone.scale == 1);
   CHECK(alone.reference_dot == DotIndex{0, 0});
-  CHECK(run({.least_dots = 2}, 1, 2).stick_ratio == 1);
-  CHECK(run({.least_dots = 2}, 2, 1).stick_ratio == 1);
+  CHECK(run({.min_dots = 2}, 1, 2).stick_ratio == 1);
+  CHECK(run({.min_dots = 2}, 2, 1).stick_ratio == 1);
   CHECK(run({}, 1, 9).stick_ratio == 1);
   CHECK(run({}, 9, 1).stick_ratio == 1);
   SECTION("in contact, of many") {
-    Follower<TestType> f({.least_dots = 1});
+    Follower<TestType> f({.min_dots = 1});
     ContactFlags contact(9, 9, 0);
     contact(8, 8) = 1;
     f(shifted(0), contact);
@@ -747,7 +747,7 @@ TEST_CASE("stick ratio: bad parameters are refused by name, value and range") {
   CHECK(test_with(&StickTest::store_px, -0.5) ==
         "StickTest: store_px = -0.5, must be in [0, reference_px]");
   CHECK(test_with(&StickTest::slip_px, 0.0) == "StickTest: slip_px = 0, must be finite and > 0");
-  CHECK(test_with(&StickTest::least_dots, Index(0)) == "StickTest: least_dots = 0, must be >= 1");
+  CHECK(test_with(&StickTest::min_dots, Index(0)) == "StickTest: min_dots = 0, must be >= 1");
   for (const double bad : {test::nan, std::numeric_limits<double>::infinity()}) {
     using test::begins_with;
     CHECK(begins_with(test_with(&StickTest::reference_px, bad), "StickTest: reference_px = "));
@@ -761,15 +761,15 @@ TEST_CASE("stick ratio: bad parameters are refused by name, value and range") {
   CHECK(refusal([] { StickRatio(9, -1); }) == "StickRatio: cols = -1, must be >= 1");
 
   const auto motion = [](const auto& m) { return refusal([&] { StickRatio(9, 9, {}, m); }); };
-  CHECK(motion(StickConsensus<>{.most_passes = -1}) ==
-        "StickConsensus: most_passes = -1, must be in [0, 100]");
-  CHECK(motion(StickConsensus<>{.most_passes = 101}) ==
-        "StickConsensus: most_passes = 101, must be in [0, 100]");
-  CHECK(motion(StickConsensus<>{.most_passes = 0}) == "accepted");
+  CHECK(motion(StickConsensus<>{.max_passes = -1}) ==
+        "StickConsensus: max_passes = -1, must be in [0, 100]");
+  CHECK(motion(StickConsensus<>{.max_passes = 101}) ==
+        "StickConsensus: max_passes = 101, must be in [0, 100]");
+  CHECK(motion(StickConsensus<>{.max_passes = 0}) == "accepted");
   CHECK(motion(ReferenceDotMotion<>{.zoom = {.fading_px = 0}}) ==
-        "LeastSquaresZoom: fading_px = 0, must be finite and > 0");
+        "LeastSquaresScale: fading_px = 0, must be finite and > 0");
   CHECK(motion(ReferenceDotMotion<>{.zoom = {.fading_px = test::nan}}) ==
-        "LeastSquaresZoom: fading_px = nan, must be finite and > 0");
+        "LeastSquaresScale: fading_px = nan, must be finite and > 0");
 
   const auto capacity = [](Index n) {
     return refusal([&] {

@@ -40,7 +40,7 @@ inline double any_tangent() {
   return test::uniform(0, 3.7);
 }
 
-/// A pixel that looks at most 60 degrees from the axis, relative to the centre pixel.
+/// A pixel that looks at most 60 degrees from the axis, relative to the center pixel.
 inline Point2<double> any_offset(const Camera<double>& camera) {
   const double r = test::uniform(0, 1.7) / tangent_per_px(camera);
   const double angle = test::uniform(-std::numbers::pi, std::numbers::pi);

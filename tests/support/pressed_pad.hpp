@@ -211,7 +211,7 @@ Wrench6 wrench_of(const RimOfDots& rim, const Load& load, double pressure_mpa) {
     const auto f = fingerpad::detail::scaled(step, fine.pull(k, load(fine.angle(k))));
     w.force_n = fingerpad::detail::sum(w.force_n, f);
     w.moment_n_mm =
-        fingerpad::detail::sum(w.moment_n_mm, fingerpad::detail::cross(fine.border(k), f));
+        fingerpad::detail::sum(w.moment_n_mm, cross(fine.border(k), f));
   }
   w.force_n.z -= pressure_mpa * std::numbers::pi * rim.radius_mm * rim.radius_mm;
   return w;

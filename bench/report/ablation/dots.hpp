@@ -23,8 +23,8 @@
 #include <string>
 #include <vector>
 
-#include "../../tests/support/slipping_dots.hpp"
-#include "../../tests/support/stick_scene.hpp"
+#include "support/slipping_dots.hpp"
+#include "support/stick_scene.hpp"
 #include "fingerpad/slip/stick_ratio.hpp"
 #include "membranes.hpp"
 

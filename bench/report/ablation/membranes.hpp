@@ -18,7 +18,7 @@
 #include <string>
 #include <vector>
 
-#include "../../tests/support/finite_elements.hpp"
+#include "support/finite_elements.hpp"
 #include "fingerpad/optics/camera.hpp"
 #include "table.hpp"
 

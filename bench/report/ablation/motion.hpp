@@ -24,7 +24,7 @@
 #include <string>
 #include <vector>
 
-#include "../../tests/support/rolling.hpp"
+#include "support/rolling.hpp"
 #include "fingerpad/motion/object_motion.hpp"
 #include "table.hpp"
 

@@ -15,8 +15,8 @@
 #include <string>
 #include <vector>
 
-#include "../../tests/support/rolling.hpp"
-#include "../../tests/support/wrench_frames.hpp"
+#include "support/rolling.hpp"
+#include "support/wrench_frames.hpp"
 #include "fingerpad/force/wrench.hpp"
 #include "membranes.hpp"
 

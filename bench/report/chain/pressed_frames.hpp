@@ -10,8 +10,8 @@
 #include <utility>
 #include <vector>
 
-#include "../../tests/support/pressed_pad.hpp"
-#include "../../tests/support/soap_film.hpp"
+#include "support/pressed_pad.hpp"
+#include "support/soap_film.hpp"
 #include "whole_chain.hpp"
 
 namespace chain {

@@ -105,7 +105,7 @@ inline Row sheared_dots() {
                for (const double shear : {0.02, 0.05, 0.1, 0.2}) {
                  const auto from = dots<S>(Rotation<double>(), 0);
                  const auto to = dots<S>(fingerpad::rotation_of(truth), shear);
-                 const auto add = [&](Tally& tally, const fingerpad::LocalTurn<S>& turn) {
+                 const auto add = [&](Tally& tally, const fingerpad::LocalRotation<S>& turn) {
                    const auto a = fingerpad::zyx_angles(turn.rotation);
                    const Digits50 degree(std::numbers::pi / 180);
                    tally.add(a.x_rad, Digits50(truth.x_rad), degree);
@@ -126,7 +126,7 @@ Rotation<S> published_turn(const Neighbourhood<S>& from, const Neighbourhood<S>&
   const auto basis = [](const Neighbourhood<S>& n) {
     const auto q = d::motion::directions_of_all(n.dot);
     const auto n1 = d::unit(q.q1), n2 = d::unit(q.q2);
-    return fingerpad::Basis<S>{n1, n2, d::cross(n1, n2), true};
+    return fingerpad::Basis<S>{n1, n2, fingerpad::cross(n1, n2), true};
   };
   return d::motion::turn_between(d::motion::inverse_transposed(basis(from)), basis(to));
 }

@@ -195,7 +195,7 @@ template <class Model, class S>
 auto shape_of(const test::Image<S>& depth, const fingerpad::OrthographicCamera<S>& camera) {
   using Wide = fingerpad::OrthographicCamera<wide_t<S>>;
   const fingerpad::SurfaceFit<Model, Wide> fit(depth.rows(), depth.cols(), in<wide_t<S>>(camera),
-                                               {.least_px = 10});
+                                               {.min_px = 10});
   return fit(depth, test::Image<unsigned char>(depth.rows(), depth.cols(), 1));
 }
 

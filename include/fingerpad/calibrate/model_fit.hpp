@@ -24,9 +24,9 @@ struct FitOptions {
   bool robust = false;               ///< Huber's loss: outliers weigh less
   double threshold = 1.345;          ///< of Huber's loss, in standard deviations of a sample, > 0
   int passes = 100;                  ///< steps at most, >= 2
-  double least_independence = 1e-5;  ///< a parameter of which the samples say less by itself, as a
+  double min_independence = 1e-5;  ///< a parameter of which the samples say less by itself, as a
                                      ///< share of all they say of it, is refused; in (0, 1)
-  double least_explained = 0.5;  ///< share of the measured variance that the model must explain, or
+  double min_explained = 0.5;  ///< share of the measured variance that the model must explain, or
                                  ///< the samples contradict each other; in [0, 1)
 };
 
@@ -36,10 +36,10 @@ inline void expects_valid(const FitOptions& options) {
   expects(is_finite(options.threshold) && options.threshold > 0, owner, "threshold",
           options.threshold, "finite and > 0");
   expects(options.passes >= 2, owner, "passes", static_cast<long long>(options.passes), ">= 2");
-  expects(options.least_independence > 0 && options.least_independence < 1, owner,
-          "least_independence", options.least_independence, "in (0, 1)");
-  expects(options.least_explained >= 0 && options.least_explained < 1, owner, "least_explained",
-          options.least_explained, "in [0, 1)");
+  expects(options.min_independence > 0 && options.min_independence < 1, owner,
+          "min_independence", options.min_independence, "in (0, 1)");
+  expects(options.min_explained >= 0 && options.min_explained < 1, owner, "min_explained",
+          options.min_explained, "in [0, 1)");
 }
 
 namespace detail {
@@ -176,9 +176,9 @@ class ModelFitter {
       const S diagonal = qr.matrixQR()(k, k);
       const S share = value(diagonal) < 0 ? S(-diagonal) : diagonal;
       const std::string name = "what the samples tell of " + names_[static_cast<std::size_t>(k)];
-      const bool told = value(share) > value(S(options_.least_independence));
+      const bool told = value(share) > value(S(options_.min_independence));
       expects(told, owner_, name.c_str(), share,
-              "> least_independence: they are too few, too alike or tied to each other");
+              "> min_independence: they are too few, too alike or tied to each other");
     }
   }
 
@@ -199,9 +199,9 @@ class ModelFitter {
     }
     fit.explained = value(all_sq) > 0 ? S(S(1) - S(left_sq / all_sq)) : S(0);
     const bool agrees =
-        value(fit.explained) >= value(S(options_.least_explained)) && value(fit.explained) > 0;
+        value(fit.explained) >= value(S(options_.min_explained)) && value(fit.explained) > 0;
     expects(agrees, owner_, "share of the measured variance that is explained", fit.explained,
-            ">= least_explained: the samples are constant or contradict each other");
+            ">= min_explained: the samples are constant or contradict each other");
     fit.residual_sd = options_.robust ? robust_sd(fit.residuals, p) : S(sqrt(S(left_sq / freedom)));
     S variance = left_sq / freedom;
     if (options_.robust) {  // Huber 1981, section 7.6

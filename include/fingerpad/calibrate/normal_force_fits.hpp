@@ -60,7 +60,7 @@ ModelFit<S> fit_rising(const std::vector<ForceSample<S>>& samples,
                        const FitOptions& options) {
   const PolynomialTerms all = terms;
   FitOptions any = options;
-  any.least_explained = 0;
+  any.min_explained = 0;
   ModelFit<S> best;
   S least = not_a_number<S>();
   const unsigned choices = 1U << all.columns.size();
@@ -86,9 +86,9 @@ ModelFit<S> fit_rising(const std::vector<ForceSample<S>>& samples,
       terms = some;
     }
   }
-  expects(is_finite(least) && value(best.explained) >= value(S(options.least_explained)),
+  expects(is_finite(least) && value(best.explained) >= value(S(options.min_explained)),
           "fit_normal_force", "share of the measured variance that a rising force explains",
-          best.explained, ">= least_explained: the force falls while the contact grows");
+          best.explained, ">= min_explained: the force falls while the contact grows");
   return best;
 }
 

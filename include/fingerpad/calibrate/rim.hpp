@@ -40,7 +40,7 @@ struct RimFitOptions {
   double pressure_noise_mpa = 0;  ///< that of a frame's pressure, >= 0: standard errors from
                                   ///< these; both 0: from the residual, of 3 pressures or more
   double max_condition = 1e4;     ///< refuse pressures that tell L from mu t worse than this, > 1
-  double least_stretch = 1.005;   ///< lambda at the lowest pressure, > 1
+  double min_stretch = 1.005;   ///< lambda at the lowest pressure, > 1
 };
 
 /// The rim of a pad. Usable as the lengths of `Wrench(border, fit, options)`: fit(k) is the length
@@ -143,7 +143,7 @@ class RimCalibration {
 
   static double as_double(const S& x) { return static_cast<double>(value(x)); }
 
-  void check(const RimFitOptions& options, long long least_levels) const {
+  void check(const RimFitOptions& options, long long min_levels) const {
     const char* const of_options = "RimFitOptions";
     const auto noise = [&](double sd, const char* name) {
       expects(is_finite(sd) && sd >= 0, of_options, name, sd, "finite and >= 0");
@@ -152,11 +152,11 @@ class RimCalibration {
     noise(options.pressure_noise_mpa, "pressure_noise_mpa");
     expects(is_finite(options.max_condition) && options.max_condition > 1, of_options,
             "max_condition", options.max_condition, "finite and > 1");
-    expects(is_finite(options.least_stretch) && options.least_stretch > 1, of_options,
-            "least_stretch", options.least_stretch, "finite and > 1");
-    expects(static_cast<long long>(levels_.size()) >= least_levels, owner, "levels of pressure",
+    expects(is_finite(options.min_stretch) && options.min_stretch > 1, of_options,
+            "min_stretch", options.min_stretch, "finite and > 1");
+    expects(static_cast<long long>(levels_.size()) >= min_levels, owner, "levels of pressure",
             static_cast<long long>(levels_.size()),
-            least_levels > 1 ? ">= 2; with one, fit_modulus or fit_length" : ">= 1");
+            min_levels > 1 ? ">= 2; with one, fit_modulus or fit_length" : ">= 1");
     const Index seen = detail::membrane::seen_in_all(rim_, levels_);
     expects(3 * seen >= 2 * rim_.size(), owner, "side dots that every level sees",
             static_cast<long long>(seen), ">= 2/3 of the border points");
@@ -227,14 +227,14 @@ class RimCalibration {
     for (std::size_t k = 0; k < levels_.size(); ++k) {
       const S lambda = balance.stretch(k, length);
       fit.stretch.push_back(lambda);
-      const bool enough = as_double(lambda) >= options.least_stretch;
+      const bool enough = as_double(lambda) >= options.min_stretch;
       if (k == 0 || !(value(lambda) >= value(least))) {
         least = lambda;
       }
       stretched = stretched && enough;
     }
     expects(stretched, owner, "stretch of the side dots", least,
-            ">= least_stretch at all pressures");
+            ">= min_stretch at all pressures");
     expects(is_finite(modulus) && value(modulus) > 0, owner, "membrane modulus", modulus, "> 0");
     fit.residual = balance.residual(length, modulus);
     const auto errors = balance.errors(length, modulus, length_found, modulus_found,

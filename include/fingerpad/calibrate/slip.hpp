@@ -48,7 +48,7 @@ class StickTestCalibration {
     const double largest_px = search.largest_px;
     const StickTest largest =
         stick_test_for(rows * cols, noise, largest_px, search, motion, denoising);
-    const double least_px = (std::max)(largest.slip_px, largest.store_px);
+    const double min_px = (std::max)(largest.slip_px, largest.store_px);
     for (int k = 0; k < search.candidates; ++k) {
       const double share = static_cast<double>(k) / (search.candidates - 1);
       ReferenceCandidate candidate;
@@ -57,7 +57,7 @@ class StickTestCalibration {
           k + 1 < search.candidates
               ? search.smallest_px * std::pow(largest_px / search.smallest_px, share)
               : largest_px;
-      if (candidate.test.reference_px > least_px) {
+      if (candidate.test.reference_px > min_px) {
         const Estimator estimator(rows, cols, candidate.test, motion, reference, denoising);
         runs_.push_back({estimator, estimator.start(), {}, {}, table_.size()});
       }
@@ -110,7 +110,7 @@ class StickTestCalibration {
     for (const Run& run : runs_) {
       ReferenceCandidate& candidate = choice.table[run.row];
       compare(run.costs, best.costs, candidate);
-      if (candidate.updates < search_.least_updates) {
+      if (candidate.updates < search_.min_updates) {
         candidate.verdict = ReferenceVerdict::rarely_updated;
       } else if (candidate.behind > search_.sampling_errors * candidate.behind_error) {
         candidate.verdict = ReferenceVerdict::worse;
@@ -145,22 +145,22 @@ class StickTestCalibration {
   /// The one with the lowest cost of those with enough answers.
   const Run& best_run(const StickTestChoice& choice) const {
     const char* const owner = "StickTestCalibration";
-    expects(choice.steps >= search_.least_steps, owner, "frames with contact and motion",
-            static_cast<long long>(choice.steps), ">= least_steps");
+    expects(choice.steps >= search_.min_steps, owner, "frames with contact and motion",
+            static_cast<long long>(choice.steps), ">= min_steps");
     const Run* best = nullptr;
-    Index most_updates = 0;
+    Index max_updates = 0;
     for (const Run& run : runs_) {
       const ReferenceCandidate& candidate = choice.table[run.row];
-      most_updates = (std::max)(most_updates, candidate.updates);
-      if (candidate.updates >= search_.least_updates) {
+      max_updates = (std::max)(max_updates, candidate.updates);
+      if (candidate.updates >= search_.min_updates) {
         best = best == nullptr || candidate.cost < choice.table[best->row].cost ? &run : best;
       }
     }
     const double smallest_px = choice.table[runs_.front().row].test.reference_px;
     expects(choice.furthest_px > smallest_px, owner, "largest displacement in px",
             choice.furthest_px, "> the smallest U that noise allows: the dots did not move");
-    expects(best != nullptr, owner, "updated answers", static_cast<long long>(most_updates),
-            ">= least_updates: the dots moved too little in one direction");
+    expects(best != nullptr, owner, "updated answers", static_cast<long long>(max_updates),
+            ">= min_updates: the dots moved too little in one direction");
     const ReferenceCandidate& row = choice.table[best->row];
     expects(row.sticking >= 3, owner, "answers that stick", static_cast<long long>(row.sticking),
             ">= 3 above stick_and_slip: the recording has to begin sticking");

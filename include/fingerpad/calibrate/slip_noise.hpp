@@ -27,7 +27,7 @@ struct DotNoise {
   double inner_px = 0;  ///< after averaging with DotWeights: dots with eight neighbours; NaN: none
   double edge_px = 0;   ///< dots that lack neighbours, averaged with those there are; NaN: none
   double published_px = 0;  ///< the largest sd, over dots and axes, of a position relative to the
-                            ///< dot nearest to the centre
+                            ///< dot nearest to the center
   double slow_share = 0;    ///< of the variance, what frames next to each other do not differ by:
                             ///< near 0 for noise, near 1 if the pad did not stand still; 0 from two
                             ///< frames, which cannot tell
@@ -91,7 +91,7 @@ class DotNoiseCalibration {
         const Point p = dots(i, j);
         const double x = static_cast<double>(value(point_traits<Point>::x(p)));
         const double y = static_cast<double>(value(point_traits<Point>::y(p)));
-        const bool there = says_contact(cell_t<Contact>(touch(i, j))) && is_finite(x + y);
+        const bool there = is_contact(cell_t<Contact>(touch(i, j))) && is_finite(x + y);
         x_.push_back(there ? x : not_a_number<double>());
         y_.push_back(there ? y : not_a_number<double>());
       }

@@ -32,11 +32,11 @@ struct ReferenceSearch {
                                ///< is taken for slipping; less for others. Published: 0.0183
   double false_motion = 0.01;  ///< in (0, 1): that a standing pad is taken for moving, for U_min
   double sampling_errors = 2;  ///< >= 0: how much worse than the best is as good
-  Index least_steps = 20;      ///< >= 2: frames with contact and motion
-  Index least_updates = 10;    ///< >= 1: frames with an answer of their own
+  Index min_steps = 20;      ///< >= 2: frames with contact and motion
+  Index min_updates = 10;    ///< >= 1: frames with an answer of their own
   double stick_and_slip = 0.5;  ///< in (0, 1): with the best U some answers have to be above and
                                 ///< some below, three each, since one may be wrong
-  Index least_dots = 5;         ///< as in StickTest
+  Index min_dots = 5;         ///< as in StickTest
 };
 inline void expects_valid(const ReferenceSearch& search) {
   const char* const owner = "ReferenceSearch";
@@ -53,10 +53,10 @@ inline void expects_valid(const ReferenceSearch& search) {
   in_unit(search.false_motion, "false_motion");
   expects(is_finite(search.sampling_errors) && search.sampling_errors >= 0, owner,
           "sampling_errors", search.sampling_errors, "finite and >= 0");
-  expects(search.least_steps >= 2, owner, "least_steps", static_cast<long long>(search.least_steps),
+  expects(search.min_steps >= 2, owner, "min_steps", static_cast<long long>(search.min_steps),
           ">= 2");
-  expects(search.least_updates >= 1, owner, "least_updates",
-          static_cast<long long>(search.least_updates), ">= 1");
+  expects(search.min_updates >= 1, owner, "min_updates",
+          static_cast<long long>(search.min_updates), ">= 1");
   in_unit(search.stick_and_slip, "stick_and_slip");
 }
 
@@ -136,8 +136,8 @@ template <Freedom Free, class Dot>
 double motion_noise_factor(const StickConsensus<Free, Dot>&) {
   return 1;
 }
-template <Freedom Free, class Zoom, class Dot>
-double motion_noise_factor(const ReferenceDotMotion<Free, Zoom, Dot>&) {
+template <Freedom Free, class Scale, class Dot>
+double motion_noise_factor(const ReferenceDotMotion<Free, Scale, Dot>&) {
   return 1.4142135623730951;
 }
 
@@ -166,7 +166,7 @@ StickTest stick_test_for(Index dots,
   test.slip_px = slip_threshold_for(compared_px * detail::stick::motion_noise_factor(motion),
                                     search.false_slip);
   test.store_px = slip_threshold_for(placed_px, false_slip_of_each(search.false_motion, dots));
-  test.least_dots = search.least_dots;
+  test.min_dots = search.min_dots;
   expects(is_finite(reference_px) && reference_px > (std::max)(test.slip_px, test.store_px), owner,
           "reference_px", reference_px, "finite and > slip_px and store_px, which noise sets");
   expects_valid(test);

@@ -30,7 +30,7 @@ namespace fingerpad {
 inline namespace v0 {
 
 struct SurfaceOptions {
-  Index least_px =
+  Index min_px =
       50;  ///< fewer pixels are refused (too_few), >= 1; a model needs its unknowns + 1
   Index border_px = 0;  ///< strip along the contact's border to leave out, in [0, 1000]: there the
                         ///< membrane is just leaving the object
@@ -38,8 +38,8 @@ struct SurfaceOptions {
 
 /// Refuses what has no meaning (parameter_error).
 inline void expects_valid(const SurfaceOptions& options) {
-  expects(options.least_px >= 1, "SurfaceOptions", "least_px",
-          static_cast<long long>(options.least_px), ">= 1");
+  expects(options.min_px >= 1, "SurfaceOptions", "min_px",
+          static_cast<long long>(options.min_px), ">= 1");
   expects(options.border_px >= 0 && options.border_px <= 1000, "SurfaceOptions", "border_px",
           static_cast<long long>(options.border_px), "in [0, 1000]");
 }
@@ -165,7 +165,7 @@ class SurfaceFit {
     detail::PixelSpread spread;
     const detail::PatchMoments<Scalar> patch = moments(pixels, spread, fit.box);
     result.pixels = patch.pixels;
-    if (patch.pixels < options_.least_px || patch.pixels <= Model::unknowns) {
+    if (patch.pixels < options_.min_px || patch.pixels <= Model::unknowns) {
       return fit;
     }
     result.status = SurfaceStatus::degenerate;

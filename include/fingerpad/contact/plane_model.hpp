@@ -47,7 +47,7 @@ struct Plane {
   Tilt<S> tilt() const { return tilt_of(normal); }
   /// Signed distance of p from the plane, mm; positive away from the object.
   S stands_out(const Point3<S>& p) const {
-    return S(-detail::dot(normal, detail::difference(p, center_mm)));
+    return S(-dot(normal, detail::difference(p, center_mm)));
   }
 };
 
@@ -72,7 +72,7 @@ struct PlaneModel {
     const detail::Eigen3<S> e = detail::eigenvectors(patch.second);
     plane.normal = detail::toward_object(e.vector[2]);
     plane.center_mm = patch.centroid;
-    plane.distance_mm = detail::dot(plane.normal, plane.center_mm);
+    plane.distance_mm = dot(plane.normal, plane.center_mm);
     mean_sq = value(e.value[2]) < 0 ? S(0) : e.value[2];
     const S across_sq = e.value[1];
     const S freedom = patch.count - S(unknowns);

@@ -54,9 +54,9 @@ struct Quadric {
     using std::sqrt;
     const auto& [a, b, c, d, e, f] = coefficients;
     const Point3<S> q = detail::difference(p, origin_mm);
-    const S x = detail::dot(u, q);
-    const S y = detail::dot(v, q);
-    const S z = detail::dot(w, q);
+    const S x = dot(u, q);
+    const S y = dot(v, q);
+    const S z = dot(w, q);
     const S height = a + x * (b + d * x + e * y) + y * (c + f * y);
     const S below = height - z * (S(1) - g_per_mm * z);
     const S along_u = b + S(2) * d * x + e * y;
@@ -232,7 +232,7 @@ struct QuadricModel {
     const S height = S(2) * a / (S(1) + root);
     const Point3<S> gradient = {S(-quadric.coefficients[1]), S(-quadric.coefficients[2]),
                                 S(S(1) - S(2) * g * height)};
-    const S length = sqrt(S(detail::dot(gradient, gradient)));
+    const S length = sqrt(S(dot(gradient, gradient)));
     const detail::SurfaceFrame<S> local = detail::SurfaceFrame<S>::around(detail::unit(gradient));
     const auto bent = [&](const Point3<S>& s, const Point3<S>& t) {
       return S(

@@ -39,8 +39,8 @@ struct Sphere {
   S stands_out(const Point3<S>& p) const {
     using std::sqrt;
     const Point3<S> q = detail::difference(p, point_mm);
-    const S along = detail::dot(normal, q);
-    const S twice = S(2) * along - curvature_per_mm * detail::dot(q, q);
+    const S along = dot(normal, q);
+    const S twice = S(2) * along - curvature_per_mm * dot(q, q);
     const S s_sq = S(1) - curvature_per_mm * twice;
     const S s = value(s_sq) > 0 ? S(sqrt(s_sq)) : S(0);  // 0 at the center
     return S(-twice / (S(1) + s));

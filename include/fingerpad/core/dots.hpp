@@ -8,26 +8,11 @@
 #include <type_traits>
 
 #include "fingerpad/core/grid.hpp"
+#include "fingerpad/core/point.hpp"
 #include "fingerpad/core/scalar.hpp"
 
 namespace fingerpad {
 inline namespace v0 {
-
-/// A point in the image (px) or on the plate (mm). x is along columns, y along rows.
-template <scalar S>
-struct Point2 {
-  S x;
-  S y;
-};
-
-/// A point in mm in the sensor's frame: origin at the centre of the plate's inner face, z into the
-/// pad, toward the object.
-template <scalar S>
-struct Point3 {
-  S x;
-  S y;
-  S z;
-};
 
 /// How coordinates are read from a point type: p[0], p[1] (and p[2]) as in Eigen vectors, cv::Vec
 /// and arrays; members x, y (and z) where there are any; specialise it for anything else.

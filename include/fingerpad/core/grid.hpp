@@ -273,7 +273,7 @@ enum class Touch : std::uint8_t { none = 0, unknown = 127, contact = 255 };
 /// Whether a cell of a mask says contact: bytes, bools and numbers that are not 0 (nor NaN), and of
 /// a Touch only contact.
 template <class Cell>
-constexpr bool says_contact(const Cell& cell) {
+constexpr bool is_contact(const Cell& cell) {
   if constexpr (std::is_same_v<Cell, Touch>) {
     return cell == Touch::contact;
   } else if constexpr (std::is_floating_point_v<Cell>) {

@@ -29,7 +29,7 @@ struct BoxMean {
   int window_px = 29;
 };
 
-/// a box(inner) - b box(outer), centred alike, with a - b = 1 and the second moments cancelling:
+/// a box(inner) - b box(outer), centered alike, with a - b = 1 and the second moments cancelling:
 /// exact for quadratic fields where nothing is cut. Inner and outer are 1.4 and 2.3 times
 /// window_px, which gives the noise of a BoxMean of window_px. window_px odd, 3..109.
 struct BiasFreeMean {

@@ -31,8 +31,8 @@ bool divides(const S& step, const S& way) {
 /// How the grip is loosened. The paper prints no values.
 template <scalar S = double>
 struct LoosenPlan {
-  S first_force_n = S(10);        ///< with which the object is held at first, > least_force_n
-  S least_force_n = S(1) / S(2);  ///< never less, >= 0
+  S first_force_n = S(10);        ///< with which the object is held at first, > min_force_n
+  S min_force_n = S(1) / S(2);  ///< never less, >= 0
   S step_n = S(1) / S(4);         ///< taken off at a time, > 0
   Index settle_samples = 16;      ///< after each step, >= 0; a window of the taxels hides the step
   Index watch_samples = 16;       ///< then, >= 1
@@ -44,11 +44,11 @@ struct LoosenPlan {
 template <scalar S>
 void expects_valid(const LoosenPlan<S>& plan) {
   const char* const owner = "LoosenPlan";
-  expects(is_finite(plan.least_force_n) && value(plan.least_force_n) >= 0, owner, "least_force_n",
-          plan.least_force_n, "finite and >= 0");
-  expects(is_finite(plan.first_force_n) && value(plan.first_force_n) > value(plan.least_force_n),
-          owner, "first_force_n", plan.first_force_n, "finite and > least_force_n");
-  expects(detail::divides(plan.step_n, S(plan.first_force_n - plan.least_force_n)), owner, "step_n",
+  expects(is_finite(plan.min_force_n) && value(plan.min_force_n) >= 0, owner, "min_force_n",
+          plan.min_force_n, "finite and >= 0");
+  expects(is_finite(plan.first_force_n) && value(plan.first_force_n) > value(plan.min_force_n),
+          owner, "first_force_n", plan.first_force_n, "finite and > min_force_n");
+  expects(detail::divides(plan.step_n, S(plan.first_force_n - plan.min_force_n)), owner, "step_n",
           plan.step_n, "finite and > 0, in at most a million steps from first to least force");
   expects(plan.settle_samples >= 0, owner, "settle_samples",
           static_cast<long long>(plan.settle_samples), ">= 0");
@@ -143,7 +143,7 @@ class LoosenUntilPreslip {
 
   void loosen(State& state) const {
     LoosenCommand<S>& command = state.command_;
-    if (!(value(plan_.least_force_n) < value(command.force_n))) {
+    if (!(value(plan_.min_force_n) < value(command.force_n))) {
       command.phase = SearchPhase::at_limit;
       return;
     }
@@ -152,7 +152,7 @@ class LoosenUntilPreslip {
     // from the first force, so that rounding does not add up
     const S taken = S(static_cast<int>(command.steps)) * plan_.step_n;
     const S next = plan_.first_force_n - taken;
-    command.force_n = value(plan_.least_force_n) < value(next) ? next : plan_.least_force_n;
+    command.force_n = value(plan_.min_force_n) < value(next) ? next : plan_.min_force_n;
     enter(SearchPhase::settling, state);
   }
 
@@ -163,7 +163,7 @@ class LoosenUntilPreslip {
 template <scalar S = double>
 struct LiftPlan {
   S first_force_n = S(1);          ///< with which it is gripped before the lift, > 0
-  S most_force_n = S(20);          ///< never more, >= first_force_n
+  S max_force_n = S(20);          ///< never more, >= first_force_n
   S force_step_n = S(1) / S(2);    ///< by which the grip is tightened, > 0
   S height_mm = S(50);             ///< to lift to, > 0
   S height_step_mm = S(1) / S(4);  ///< lifted at each sample without pre-slip, > 0
@@ -177,10 +177,10 @@ void expects_valid(const LiftPlan<S>& plan) {
     expects(is_finite(x) && value(x) > 0, "LiftPlan", name, x, "finite and > 0");
   };
   positive(plan.first_force_n, "first_force_n");
-  expects(is_finite(plan.most_force_n) && value(plan.most_force_n) >= value(plan.first_force_n),
-          "LiftPlan", "most_force_n", plan.most_force_n, "finite and >= first_force_n");
+  expects(is_finite(plan.max_force_n) && value(plan.max_force_n) >= value(plan.first_force_n),
+          "LiftPlan", "max_force_n", plan.max_force_n, "finite and >= first_force_n");
   positive(plan.height_mm, "height_mm");
-  expects(detail::divides(plan.force_step_n, S(plan.most_force_n - plan.first_force_n)), "LiftPlan",
+  expects(detail::divides(plan.force_step_n, S(plan.max_force_n - plan.first_force_n)), "LiftPlan",
           "force_step_n", plan.force_step_n,
           "finite and > 0, in at most a million steps from first to most force");
   expects(detail::divides(plan.height_step_mm, plan.height_mm), "LiftPlan", "height_step_mm",
@@ -252,14 +252,14 @@ class LiftWithRegrip {
 
   void tighten(State& state) const {
     LiftCommand<S>& command = state.command_;
-    if (!(value(command.force_n) < value(plan_.most_force_n))) {
+    if (!(value(command.force_n) < value(plan_.max_force_n))) {
       give_up(SearchPhase::at_limit, command);
       return;
     }
     ++command.regrips;
     const S added = S(static_cast<int>(command.regrips)) * plan_.force_step_n;
     const S next = plan_.first_force_n + added;
-    command.force_n = value(next) < value(plan_.most_force_n) ? next : plan_.most_force_n;
+    command.force_n = value(next) < value(plan_.max_force_n) ? next : plan_.max_force_n;
     command.phase = SearchPhase::settling;
     state.samples_ = 0;
   }

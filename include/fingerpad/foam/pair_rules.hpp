@@ -20,9 +20,9 @@ inline namespace v0 {
 template <scalar S = double>
 struct PreslipOptions {
   Index history = 100;    ///< samples that are compared, in [2, 1000000]
-  Index least_waves = 1;  ///< a later sample with fewer waves is silent, >= 0; 0 as published,
+  Index min_waves = 1;  ///< a later sample with fewer waves is silent, >= 0; 0 as published,
                           ///< where none and none are an equal frequency
-  Index most_waves = 64;  ///< more count as this, in [1, 65536]
+  Index max_waves = 64;  ///< more count as this, in [1, 65536]
   S centroid_tolerance_mm = S(1) / S(10);  ///< what the noise of a centroid explains, >= 0
 };
 
@@ -31,10 +31,10 @@ template <scalar S>
 void expects_valid(const PreslipOptions<S>& o) {
   expects(o.history >= 2 && o.history <= 1000000, "PreslipOptions", "history",
           static_cast<long long>(o.history), "in [2, 1000000]");
-  expects(o.least_waves >= 0, "PreslipOptions", "least_waves",
-          static_cast<long long>(o.least_waves), ">= 0");
-  expects(o.most_waves >= 1 && o.most_waves <= 65536, "PreslipOptions", "most_waves",
-          static_cast<long long>(o.most_waves), "in [1, 65536]");
+  expects(o.min_waves >= 0, "PreslipOptions", "min_waves",
+          static_cast<long long>(o.min_waves), ">= 0");
+  expects(o.max_waves >= 1 && o.max_waves <= 65536, "PreslipOptions", "max_waves",
+          static_cast<long long>(o.max_waves), "in [1, 65536]");
   expects(is_finite(o.centroid_tolerance_mm) && value(o.centroid_tolerance_mm) >= 0,
           "PreslipOptions", "centroid_tolerance_mm", o.centroid_tolerance_mm, "finite and >= 0");
 }
@@ -72,18 +72,18 @@ struct PairSide {
 };
 
 /// Beyond this a location counts as none; the arrays of TaxelFeatures have less.
-inline constexpr Index most_location = (std::numeric_limits<std::int32_t>::max)();
+inline constexpr Index max_location = (std::numeric_limits<std::int32_t>::max)();
 
 /// The most cells from the first taxel, so that two of them fit one 64-bit number.
-inline constexpr double most_cells = 1e9;
+inline constexpr double max_cells = 1e9;
 
 template <class Centroid, scalar S>
 PairSide pair_side(const FingerSample<S>& s, const PreslipOptions<S>& o) {
   PairSide side;
-  const bool has_location = s.location >= 0 && s.location <= most_location;
+  const bool has_location = s.location >= 0 && s.location <= max_location;
   side.location = static_cast<std::int32_t>(has_location ? s.location : Index(-1));
-  side.waves = static_cast<std::int32_t>(std::clamp(s.waves, Index(0), o.most_waves));
-  side.is_vibrating = side.location >= 0 && s.waves >= o.least_waves;
+  side.waves = static_cast<std::int32_t>(std::clamp(s.waves, Index(0), o.max_waves));
+  side.is_vibrating = side.location >= 0 && s.waves >= o.min_waves;
   side.is_pressed = s.is_pressed();
   side.x = static_cast<double>(value(s.center_x_mm));
   side.y = static_cast<double>(value(s.center_y_mm));
@@ -92,7 +92,7 @@ PairSide pair_side(const FingerSample<S>& s, const PreslipOptions<S>& o) {
     side.x = std::floor(side.x / size + 0.5);
     side.y = std::floor(side.y / size + 0.5);
     side.is_pressed =
-        side.is_pressed && std::fabs(side.x) <= most_cells && std::fabs(side.y) <= most_cells;
+        side.is_pressed && std::fabs(side.x) <= max_cells && std::fabs(side.y) <= max_cells;
   }
   return side;
 }

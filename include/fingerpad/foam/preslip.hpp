@@ -13,7 +13,7 @@
 // "Index 2 decreased until the latest data is located" is read as: until it meets index 1, for each
 // pair to be compared once (docs/errata.md, E042). What else the paper leaves open is a named
 // choice: SamePair or AnyPair, MovedBeyond or MovedToOtherCell, AnyAxis or BothAxes, and
-// PreslipOptions::least_waves.
+// PreslipOptions::min_waves.
 #include <algorithm>
 #include <array>
 #include <cstddef>

@@ -227,7 +227,7 @@ class TaxelFeatures {
       total = total + counted[lane];
     }
     sample.left_out = rows_ * cols_ - static_cast<Index>(total);
-    if (value(sample.sum) > 0 && value(sample.sum) >= value(options_.least_sum)) {
+    if (value(sample.sum) > 0 && value(sample.sum) >= value(options_.min_sum)) {
       sample.center_x_mm = total_x / sample.sum;
       sample.center_y_mm = total_y / sample.sum;
     }

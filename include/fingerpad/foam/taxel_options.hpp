@@ -21,7 +21,7 @@ struct TaxelOptions {
   S longest_gap_s = S(1) / S(4);     ///< a longer time between samples begins a new window, > 0
   S noise = S(6);                    ///< standard deviation of a taxel at rest, >= 0
   S noise_factor = S(5) / S(2);      ///< vibration is more than this many of them, >= 0
-  S least_sum = S(0);                ///< a smaller sum of readings has no centroid, >= 0
+  S min_sum = S(0);                ///< a smaller sum of readings has no centroid, >= 0
   S saturated_at = S((std::numeric_limits<scalar_real_t<S>>::infinity)());  ///< readings from here
                                                                             ///< on do not count
   Index stuck_after = 0;  ///< a reading that is not 0 and was the same so many times in a row does
@@ -44,7 +44,7 @@ void expects_valid(const TaxelOptions<S>& o) {
   positive(o.longest_gap_s, "longest_gap_s");
   not_negative(o.noise, "noise");
   not_negative(o.noise_factor, "noise_factor");
-  not_negative(o.least_sum, "least_sum");
+  not_negative(o.min_sum, "min_sum");
   expects(value(o.saturated_at) > 0, "TaxelOptions", "saturated_at", o.saturated_at, "> 0");
   expects(o.stuck_after >= 0, "TaxelOptions", "stuck_after", static_cast<long long>(o.stuck_after),
           ">= 0");

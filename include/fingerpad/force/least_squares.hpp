@@ -120,10 +120,10 @@ struct LeastSquares {
                                              const Point3<S>& pull) {
     using std::sqrt;
     const S length_squared = detail::length_sq(border.along);
-    const S along = detail::dot(pull, border.along) / length_squared;
+    const S along = dot(pull, border.along) / length_squared;
     const Point3<S> normal = detail::moved(pull, S(-along), border.along);
     const S stretch = sqrt(S(length_squared / detail::length_sq(normal)));
-    const bool known = is_finite(stretch) && value(S(detail::dot(normal, border.normal))) > 0;
+    const bool known = is_finite(stretch) && value(S(dot(normal, border.normal))) > 0;
     return {border.along, known ? detail::scaled(stretch, normal) : border.normal};
   }
 
@@ -139,8 +139,8 @@ struct LeastSquares {
       const detail::membrane::Border<S>& border = segments.around(static_cast<Index>(i), 0);
       work.rim[i] = leaning(border, pull[i]);
       const S length_squared = detail::length_sq(border.along);
-      const S normal = detail::dot(pull[i], work.rim[i].normal) / length_squared;
-      const S along = detail::dot(pull[i], border.along) / length_squared;
+      const S normal = dot(pull[i], work.rim[i].normal) / length_squared;
+      const S along = dot(pull[i], border.along) / length_squared;
       const bool known = is_finite(normal) && is_finite(along);
       work.pulls[i].normal = known ? R(normal) : R(0);
       work.pulls[i].along = known ? R(along) : R(0);

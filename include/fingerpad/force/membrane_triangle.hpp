@@ -33,7 +33,7 @@ struct StressFreeTriangle {
 /// Twice the area vector: normal to the triangle, by the order of its corners.
 template <scalar S>
 Point3<S> twice_area_vector(const Triangle<S>& x) {
-  return detail::cross(detail::difference(x[1], x[0]), detail::difference(x[2], x[0]));
+  return cross(detail::difference(x[1], x[0]), detail::difference(x[2], x[0]));
 }
 
 /// The corners must not lie on a line.
@@ -46,7 +46,7 @@ StressFreeTriangle<S> stress_free(const Triangle<S>& corners_mm) {
   for (std::size_t k = 0; k < 3; ++k) {
     const Point3<S> to_next = detail::difference(corners_mm[(k + 1) % 3], corners_mm[k]);
     const Point3<S> to_last = detail::difference(corners_mm[(k + 2) % 3], corners_mm[k]);
-    const S along = detail::dot(to_next, to_last);
+    const S along = dot(to_next, to_last);
     out.half_cotangent[k] = S(0.5) * along / twice_area;
   }
   return out;
@@ -85,7 +85,7 @@ std::array<Point3<S>, 3> corner_forces(const StressFreeTriangle<S>& free, const 
     const std::size_t next = (k + 1) % 3, last = (k + 2) % 3;
     const Point3<S> to_next = detail::difference(x[next], x[k]);
     const Point3<S> to_last = detail::difference(x[last], x[k]);
-    const Point3<S> turned = detail::cross(doubled, detail::difference(x[last], x[next]));
+    const Point3<S> turned = cross(doubled, detail::difference(x[last], x[next]));
     const Point3<S> pull = detail::moved(detail::scaled(free.half_cotangent[last], to_next),
                                          free.half_cotangent[next], to_last);
     force[k] = detail::moved(pull, resist, turned);

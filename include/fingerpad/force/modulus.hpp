@@ -59,16 +59,16 @@ void expects_valid(const GivenModulus<S>& modulus) {
 
 /// From the free part of each frame.
 struct BalancedModulus {
-  Index least_dots = 40;  ///< >= 1: of the free part; noise of mu t goes with its inverse root
+  Index min_dots = 40;  ///< >= 1: of the free part; noise of mu t goes with its inverse root
 
   template <scalar S>
   S operator()(const ModulusBalance<S>& balance) const {
-    return balance.dots < least_dots ? not_a_number<S>() : balance.mu_t_n_per_mm();
+    return balance.dots < min_dots ? not_a_number<S>() : balance.mu_t_n_per_mm();
   }
 };
 inline void expects_valid(const BalancedModulus& modulus) {
-  expects(modulus.least_dots >= 1, "BalancedModulus", "least_dots",
-          static_cast<long long>(modulus.least_dots), ">= 1");
+  expects(modulus.min_dots >= 1, "BalancedModulus", "min_dots",
+          static_cast<long long>(modulus.min_dots), ">= 1");
 }
 
 }  // namespace v0

@@ -176,9 +176,9 @@ class PadHeights {
 
   template <class View>
   S root(const View& depth, const Sight& s, S z) const {
-    constexpr int most_steps = 8;
+    constexpr int max_steps = 8;
     const S close = S(1) / S(20);  // mm; the step that follows leaves some 0.001 mm
-    for (int step = 0; step < most_steps; ++step) {
+    for (int step = 0; step < max_steps; ++step) {
       const Seen here = seen(depth, s, z);
       const S excess = here.depth_mm - z;
       if (!is_finite(excess)) {
@@ -207,7 +207,7 @@ class PadHeights {
     for (const Index row : {nearest(S(y - away), rows_), nearest(S(y + away), rows_)}) {
       for (const Index col : {nearest(S(x - away), cols_), nearest(S(x + away), cols_)}) {
         const bool inside = row >= 0 && col >= 0;
-        touching += inside && says_contact(mask(row, col)) ? 1 : 0;
+        touching += inside && is_contact(mask(row, col)) ? 1 : 0;
       }
     }
     return S(touching) / S(4);

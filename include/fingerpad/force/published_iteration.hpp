@@ -132,7 +132,6 @@ struct PublishedIteration {
   static bool shear_at_rim(const detail::membrane::Segments<S>& g,
                            const std::vector<Point3<S>>& pulls,
                            detail::membrane::Tensions<S>& t) {
-    using detail::dot;
     bool good = true;
     for (Index i = 0; i < g.columns(); ++i) {
       const std::size_t k = at(g, i, 0);

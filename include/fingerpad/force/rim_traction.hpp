@@ -42,7 +42,7 @@ struct RimPull {
 /// T / (mu t) of a clamped neo-Hookean rim; `along` is d, `tangent` the unit vector e. lambda > 0.
 template <scalar S>
 Point3<S> clamped_rim_pull(const Point3<S>& along, const Point3<S>& tangent) {
-  const S shear = detail::dot(along, tangent);
+  const S shear = dot(along, tangent);
   const Point3<S> across = detail::moved(along, S(-shear), tangent);
   const S lambda_sq = detail::length_sq(across);
   // (lambda - lambda^-3) / lambda
@@ -72,13 +72,13 @@ struct PublishedDirection {
 struct ClampedRim {
   static constexpr bool tells_magnitude = true;
 
-  double least_stretch = 1.005;  ///< lambda; less does not tell a direction, in (1, 2]
+  double min_stretch = 1.005;  ///< lambda; less does not tell a direction, in (1, 2]
 
   template <scalar S>
   RimPull<S> pull(const Point3<S>& along, const Point3<S>& tangent) const {
-    const S shear = detail::dot(along, tangent);
+    const S shear = dot(along, tangent);
     const S lambda_sq = detail::length_sq(along) - shear * shear;
-    const scalar_real_t<S> least = static_cast<scalar_real_t<S>>(least_stretch);
+    const scalar_real_t<S> least = static_cast<scalar_real_t<S>>(min_stretch);
     if (!(value(lambda_sq) >= least * least)) {
       const bool shorter = value(lambda_sq) < 1;
       return {shorter ? RimPullStatus::slack : RimPullStatus::unstretched, {S(0), S(0), S(0)}};
@@ -90,13 +90,13 @@ struct ClampedRim {
   Point3<S> change_of_pull(const Point3<S>& along,
                            const Point3<S>& tangent,
                            const Point3<S>& change) const {
-    const Point3<S> across = detail::moved(along, S(-detail::dot(along, tangent)), tangent);
-    const S shear = detail::dot(change, tangent);
+    const Point3<S> across = detail::moved(along, S(-dot(along, tangent)), tangent);
+    const S shear = dot(change, tangent);
     const Point3<S> across_change = detail::moved(change, S(-shear), tangent);
     const S lambda_sq = detail::length_sq(across);
     const S per = S(1) / (lambda_sq * lambda_sq);
     // of (1 - lambda^-4) d_n
-    const S stretching = S(4) * per / lambda_sq * detail::dot(across, change);
+    const S stretching = S(4) * per / lambda_sq * dot(across, change);
     return detail::moved(
         detail::moved(detail::scaled(shear, tangent), S(S(1) - per), across_change), stretching,
         across);
@@ -106,8 +106,8 @@ struct ClampedRim {
 /// Refuses what has no meaning (parameter_error).
 inline void expects_valid(const PublishedDirection&) {}
 inline void expects_valid(const ClampedRim& rim) {
-  expects(rim.least_stretch > 1 && rim.least_stretch <= 2, "ClampedRim", "least_stretch",
-          rim.least_stretch, "in (1, 2]");
+  expects(rim.min_stretch > 1 && rim.min_stretch <= 2, "ClampedRim", "min_stretch",
+          rim.min_stretch, "in (1, 2]");
 }
 
 /// A point of the rim.
@@ -127,8 +127,8 @@ struct OneRow {
   static constexpr double noise_gain = 1;
 
   template <scalar S>
-  Point3<S> along(const RimPoint<S>& rim, const Point3<S>* dot, const S&) const {
-    return detail::scaled(S(S(1) / rim.length_mm), detail::difference(dot[0], rim.border));
+  Point3<S> along(const RimPoint<S>& rim, const Point3<S>* side_dots, const S&) const {
+    return detail::scaled(S(S(1) / rim.length_mm), detail::difference(side_dots[0], rim.border));
   }
 };
 
@@ -140,9 +140,9 @@ struct TwoRows {
   static constexpr double noise_gain = 2.0615528128088303;  // sqrt(4^2 + 1) / 2
 
   template <scalar S>
-  Point3<S> along(const RimPoint<S>& rim, const Point3<S>* dot, const S&) const {
-    const Point3<S> first = detail::difference(dot[0], rim.border);
-    const Point3<S> second = detail::difference(dot[1], rim.border);
+  Point3<S> along(const RimPoint<S>& rim, const Point3<S>* side_dots, const S&) const {
+    const Point3<S> first = detail::difference(side_dots[0], rim.border);
+    const Point3<S> second = detail::difference(side_dots[1], rim.border);
     const S per = S(1) / (S(2) * rim.length_mm);
     return {S(per * (S(4) * first.x - second.x)), S(per * (S(4) * first.y - second.y)),
             S(per * (S(4) * first.z - second.z))};
@@ -169,12 +169,12 @@ struct ExtrapolatedRow {
 
   /// `load_per_mm`: pressure / (mu t), 1/mm; 0: not known yet, the chord itself.
   template <scalar S>
-  Point3<S> along(const RimPoint<S>& rim, const Point3<S>* dot, const S& load_per_mm) const {
+  Point3<S> along(const RimPoint<S>& rim, const Point3<S>* side_dots, const S& load_per_mm) const {
     using std::cos;
     using std::sin;
     using std::sqrt;
-    const Point3<S> chord = OneRow().along(rim, dot, load_per_mm);
-    const S shear = detail::dot(chord, rim.tangent);
+    const Point3<S> chord = OneRow().along(rim, side_dots, load_per_mm);
+    const S shear = dot(chord, rim.tangent);
     const Point3<S> across = detail::moved(chord, S(-shear), rim.tangent);
     const S lambda = sqrt(detail::length_sq(across));
     if (value(load_per_mm) == 0 || !(lambda > S(1001) / S(1000))) {
@@ -183,7 +183,7 @@ struct ExtrapolatedRow {
     // out of the pad, in the plane of the rim
     const Point3<S> outward = {rim.tangent.y, S(-rim.tangent.x), S(0)};
     const S sine = across.z / lambda;
-    const S cosine = -detail::dot(across, outward) / lambda;
+    const S cosine = -dot(across, outward) / lambda;
     const S cosine_free = S(cos(S(stress_free_inclination_rad)));
     const S half = rim.length_mm / S(2);
     const S inverse = S(1) / lambda;

@@ -17,7 +17,7 @@
 #include "fingerpad/image/curvature_statistic.hpp"
 #include "fingerpad/image/detail/curvature_stencil.hpp"
 #include "fingerpad/image/curvature_ring.hpp"
-#include "fingerpad/image/detail/line_vector.hpp"
+#include "fingerpad/core/detail/aligned_vector.hpp"
 #include "fingerpad/core/expects.hpp"
 #include "fingerpad/core/grid.hpp"
 #include "fingerpad/core/scalar.hpp"
@@ -49,8 +49,8 @@ class CurvatureMap {
  public:
   /// Memory that one frame at a time needs, taken up front.
   struct Workspace {
-    detail::line_vector<S> cells;  ///< zeta, with a margin of NaN on every side
-    detail::line_vector<S> segment;
+    detail::aligned_vector<S> cells;  ///< zeta, with a margin of NaN on every side
+    detail::aligned_vector<S> segment;
     Index stride = 0;
   };
 
@@ -70,8 +70,8 @@ class CurvatureMap {
   Index cols() const { return cols_; }
 
   Workspace workspace() const {
-    return {detail::line_vector<S>(size(), not_a_number<S>()),
-            detail::line_vector<S>(static_cast<std::size_t>(Strip::columns), not_a_number<S>()),
+    return {detail::aligned_vector<S>(size(), not_a_number<S>()),
+            detail::aligned_vector<S>(static_cast<std::size_t>(Strip::columns), not_a_number<S>()),
             stride_};
   }
 

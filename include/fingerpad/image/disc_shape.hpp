@@ -76,7 +76,7 @@ struct DiscMoments {
 
 }  // namespace detail
 
-/// Every pixel whose centre lies within the radius, as published. Cost per pixel grows with the
+/// Every pixel whose center lies within the radius, as published. Cost per pixel grows with the
 /// radius: about 0.6 radius rectangles.
 struct ExactDisc {
   static detail::DiscShape shape(Index radius_px) {

@@ -39,7 +39,7 @@ class MaskGrowth {
     // what is in no mask is farther than this
     const double reach = (std::min)(std::abs(by_px), static_cast<double>(rows_ + cols_ - 1));
     distance.measure(
-        [&](Index i, Index j) { return says_contact(cell_t<Mask>(from(i, j))) == grows; });
+        [&](Index i, Index j) { return is_contact(cell_t<Mask>(from(i, j))) == grows; });
     for (Index i = 0; i < rows_; ++i) {
       distance.row(i, [&](Index j, double squared_px) {
         const bool near = squared_px <= reach * reach;

@@ -193,7 +193,7 @@ RigidFit<S> fit_rigid(Index count, const From& from, const To& to, const Weight&
     const Point3<S> a = detail::difference(Point3<S>(from(k)), from_center);
     const Point3<S> b = detail::difference(Point3<S>(to(k)), to_center);
     const Point3<S> wa = detail::scaled(w, a);
-    from_sq = from_sq + detail::dot(wa, a);
+    from_sq = from_sq + dot(wa, a);
     to_sq = to_sq + w * detail::length_sq(b);
     covariance[0][0] = covariance[0][0] + wa.x * b.x;
     covariance[0][1] = covariance[0][1] + wa.x * b.y;

@@ -196,7 +196,7 @@ class ContactShift {
 
   template <class Flags>
   static bool touches(const Flags& flags, Index i, Index j) {
-    return says_contact(cell_t<Flags>(flags(i, j)));
+    return is_contact(cell_t<Flags>(flags(i, j)));
   }
   template <class Flags>
   static bool is_unknown(const Flags& flags, Index i, Index j) {

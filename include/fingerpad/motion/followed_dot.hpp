@@ -40,7 +40,7 @@ template <class Local, scalar S>
 DotStep<S> step_between(const Neighbourhood<S>& anchor, const Neighbourhood<S>& now) {
   using std::sqrt;
   DotStep<S> step;
-  const LocalTurn<S> turn = Local::turn(anchor, now);
+  const LocalRotation<S> turn = Local::turn(anchor, now);
   step.status = turn.status;
   step.now = now;
   if (turn.status != MotionStatus::ok) {

@@ -29,7 +29,7 @@ struct Basis {
 
 /// What turned between two frames.
 template <scalar S>
-struct LocalTurn {
+struct LocalRotation {
   Rotation<S> rotation = {};
   MotionStatus status = MotionStatus::too_few_dots;
 };
@@ -39,14 +39,14 @@ template <scalar S>
 Basis<S> published_basis(const GridDirections<S>& q) {
   const S sq1 = detail::length_sq(q.q1);
   const S sq2 = detail::length_sq(q.q2);
-  const Point3<S> n3 = detail::cross(q.q1, q.q2);
+  const Point3<S> n3 = cross(q.q1, q.q2);
   const S limit = S(collinear_spread_sq) * sq1 * sq2;
   if (!(value(detail::length_sq(n3)) > value(limit))) {
     return {};
   }
   const Point3<S> n1 = detail::unit(q.q1);
   const Point3<S> n2 = detail::unit(q.q2);
-  return {n1, n2, detail::cross(n1, n2), true};
+  return {n1, n2, cross(n1, n2), true};
 }
 
 /// The orthonormal frame nearest to n1 and n2, which both deviate from it by the same angle:
@@ -58,7 +58,7 @@ Basis<S> symmetric_frame(const GridDirections<S>& q) {
   using std::sqrt;
   const S sq1 = detail::length_sq(q.q1);
   const S sq2 = detail::length_sq(q.q2);
-  const Point3<S> normal = detail::cross(q.q1, q.q2);
+  const Point3<S> normal = cross(q.q1, q.q2);
   const S limit = S(collinear_spread_sq) * sq1 * sq2;
   if (!(value(detail::length_sq(normal)) > value(limit))) {
     return {};
@@ -67,7 +67,7 @@ Basis<S> symmetric_frame(const GridDirections<S>& q) {
   // n1 + n2, but for a factor: the shorter direction is stretched to the length of the other
   const S stretch = sqrt(S(sq1 / sq2));
   const Point3<S> s = detail::unit(detail::sum(q.q1, detail::scaled(stretch, q.q2)));
-  const Point3<S> t = detail::cross(n3, s);
+  const Point3<S> t = cross(n3, s);
   const S half = sqrt(S(S(1) / S(2)));
   return {detail::scaled(half, detail::difference(s, t)), detail::scaled(half, detail::sum(s, t)),
           n3, true};
@@ -95,7 +95,7 @@ Basis<S> inverse_transposed(const Basis<S>& n) {
 }
 
 template <scalar S, class MakeBasis, class Between>
-LocalTurn<S> turn_of_bases(const Neighbourhood<S>& k,
+LocalRotation<S> turn_of_bases(const Neighbourhood<S>& k,
                            const Neighbourhood<S>& l,
                            const MakeBasis& basis_of,
                            const Between& between) {
@@ -117,7 +117,7 @@ struct PublishedBasis {
   static constexpr bool gives_rotations = false;
 
   template <scalar S>
-  static LocalTurn<S> turn(const Neighbourhood<S>& from, const Neighbourhood<S>& to) {
+  static LocalRotation<S> turn(const Neighbourhood<S>& from, const Neighbourhood<S>& to) {
     return detail::motion::turn_of_bases(
         from, to, [](const GridDirections<S>& q) { return published_basis(q); },
         [](const Basis<S>& k, const Basis<S>& l) {
@@ -131,7 +131,7 @@ struct SymmetricFrame {
   static constexpr bool gives_rotations = true;
 
   template <scalar S>
-  static LocalTurn<S> turn(const Neighbourhood<S>& from, const Neighbourhood<S>& to) {
+  static LocalRotation<S> turn(const Neighbourhood<S>& from, const Neighbourhood<S>& to) {
     return detail::motion::turn_of_bases(
         from, to, [](const GridDirections<S>& q) { return symmetric_frame(q); },
         [](const Basis<S>& k, const Basis<S>& l) { return detail::motion::turn_between(k, l); });
@@ -143,7 +143,7 @@ struct Kabsch {
   static constexpr bool gives_rotations = true;
 
   template <scalar S>
-  static LocalTurn<S> turn(const Neighbourhood<S>& from, const Neighbourhood<S>& to) {
+  static LocalRotation<S> turn(const Neighbourhood<S>& from, const Neighbourhood<S>& to) {
     std::array<std::size_t, 9> at = {};
     std::size_t count = 0;
     for (std::size_t k = 0; k < 9; ++k) {

@@ -116,7 +116,7 @@ bool contact_at_dots(const Dots& dots_px, const Mask& mask, Out&& out) {
       const auto row = static_cast<double>(value(Traits::y(p)));
       const auto col = static_cast<double>(value(Traits::x(p)));
       const bool inside = row > -0.5 && col > -0.5 && row < last_row && col < last_col;
-      const bool set = inside && says_contact(cell_t<Mask>(flags(static_cast<Index>(row + 0.5),
+      const bool set = inside && is_contact(cell_t<Mask>(flags(static_cast<Index>(row + 0.5),
                                                                  static_cast<Index>(col + 0.5))));
       to(i, j) = static_cast<cell_t<Out>>(set);
     }

@@ -7,7 +7,7 @@
 // intensity of light; Ito, Kim, Nagai, Obinata 2011, eq. 13.
 //
 // No trigonometric function is needed: with t = tan(phi_air) = rho / h from the pixel, every cosine
-// is a square root, and nothing is 0/0 at the centre or overflows at grazing angles.
+// is a square root, and nothing is 0/0 at the center or overflows at grazing angles.
 //
 //        camera           rho = h t: where the ray meets the plate's inner face, from the axis
 //          |\  phi_air
@@ -24,10 +24,10 @@ namespace fingerpad {
 inline namespace v0 {
 
 /// Camera and plate. The pixel's direction is that of a pinhole: tan(phi_air) grows linearly with
-/// the distance from the centre pixel.
+/// the distance from the center pixel.
 template <scalar S = double>
 struct Camera {
-  S plate_distance_mm = S(50);           ///< camera centre to the plate's inner face, > 0
+  S plate_distance_mm = S(50);           ///< camera center to the plate's inner face, > 0
   S refractive_index = S(133) / S(100);  ///< of the fluid against air, >= 1 (water)
   S center_x_px = S(639) / S(2);         ///< pixel on the optical axis, along columns
   S center_y_px = S(479) / S(2);         ///< the same along rows
@@ -100,7 +100,7 @@ Ray<S> ray_at_tangent(const Camera<S>& camera, const S& t) {
           S(S(1) + inv_cos_fluid)};
 }
 
-/// Tangent per pixel of distance from the centre pixel.
+/// Tangent per pixel of distance from the center pixel.
 template <scalar S>
 S tangent_per_px(const Camera<S>& camera) {
   const S paraxial = camera.plate_distance_mm - camera.plate_thickness_mm +
@@ -108,7 +108,7 @@ S tangent_per_px(const Camera<S>& camera) {
   return S(camera.pitch_mm / paraxial);
 }
 
-/// The ray of the pixel at (row, col), which may lie between pixel centres.
+/// The ray of the pixel at (row, col), which may lie between pixel centers.
 template <scalar S>
 Ray<S> ray_at_pixel(const Camera<S>& camera, const S& row, const S& col) {
   using std::sqrt;

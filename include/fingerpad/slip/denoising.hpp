@@ -62,7 +62,7 @@ PlacedDots prepare_dots(const Denoising&,
                         const GivenDots<S>& given,
                         const DotLayout& layout,
                         const Run& run,
-                        const line_vector<S>&,
+                        const aligned_vector<S>&,
                         DotPlanes<S>&,
                         DotPlanes<S>& now) {
   PlacedDots counts = place_dots<true>(given, run, layout.stride(), now);
@@ -76,7 +76,7 @@ PlacedDots prepare_dots(const DotMean& mean,
                         const GivenDots<S>& given,
                         const DotLayout& layout,
                         const Run& run,
-                        const line_vector<S>& inner,
+                        const aligned_vector<S>& inner,
                         DotPlanes<S>& placed,
                         DotPlanes<S>& now) {
   using V = run_vector<S>;
@@ -119,7 +119,7 @@ struct Residuals {
   explicit Residuals(const DotLayout& layout) : planes(layout), counts(planes.x.size(), S(0)) {}
 
   DotPlanes<S> planes;
-  line_vector<S> counts;  ///< 1 or 0; where 0, so are x and y
+  aligned_vector<S> counts;  ///< 1 or 0; where 0, so are x and y
 };
 
 /// Dots of a frame, as numbers in a plane.
@@ -138,7 +138,7 @@ void mark_dots(const Denoising&,
                const ObjectShift<S>& shift,
                const S& slip_sq,
                Residuals<S>&,
-               line_vector<S>& marks) {
+               aligned_vector<S>& marks) {
   using V = run_vector<S>;
   const V unknown = V{} + DotMarks<S>::unknown(), slip = V{} + DotMarks<S>::slip(),
           stick = V{} + DotMarks<S>::stick();
@@ -183,7 +183,7 @@ void write_residuals(const FramePair<S>& pair,
                      const ObjectShift<S>& shift,
                      const S& gate_sq,
                      Residuals<S>& out,
-                     line_vector<S>& marks) {
+                     aligned_vector<S>& marks) {
   using V = run_vector<S>;
   const V one = V{} + S(1);
   const V unknown = V{} + DotMarks<S>::unknown(), slip = V{} + DotMarks<S>::slip();
@@ -209,7 +209,7 @@ void mark_dots(const ResidualMean& mean,
                const ObjectShift<S>& shift,
                const S& slip_sq,
                Residuals<S>& residuals,
-               line_vector<S>& marks) {
+               aligned_vector<S>& marks) {
   using V = run_vector<S>;
   write_residuals(pair, shift, S(slip_sq * S(mean.gate * mean.gate)), residuals, marks);
   const WeightedSum<S> around(mean.weights, pair.layout.stride());

@@ -22,7 +22,7 @@ inline namespace v0 {
 template <scalar S = double>
 struct FrictionTest {
   S alarm_fraction = S(9) / S(10);   ///< F/N beyond this share of F0/N0 is an alarm, in (0, 1]
-  S least_normal_n = S(5) / S(100);  ///< a smaller normal force has no ratio, N, > 0
+  S min_normal_n = S(5) / S(100);  ///< a smaller normal force has no ratio, N, > 0
 };
 
 /// Refuses what has no meaning (parameter_error).
@@ -30,8 +30,8 @@ template <scalar S>
 void expects_valid(const FrictionTest<S>& test) {
   expects(value(test.alarm_fraction) > 0 && value(test.alarm_fraction) <= 1, "FrictionTest",
           "alarm_fraction", test.alarm_fraction, "in (0, 1]");
-  expects(is_finite(test.least_normal_n) && value(test.least_normal_n) > 0, "FrictionTest",
-          "least_normal_n", test.least_normal_n, "finite and > 0");
+  expects(is_finite(test.min_normal_n) && value(test.min_normal_n) > 0, "FrictionTest",
+          "min_normal_n", test.min_normal_n, "finite and > 0");
 }
 
 enum class FrictionStatus : std::uint8_t {
@@ -104,7 +104,7 @@ class FrictionRatio {
     if (!is_finite(tangential_n) || !is_finite(normal_n)) {
       return result;
     }
-    if (!(value(normal_n) >= value(test_.least_normal_n))) {
+    if (!(value(normal_n) >= value(test_.min_normal_n))) {
       result.status = FrictionStatus::no_contact;
       return result;
     }

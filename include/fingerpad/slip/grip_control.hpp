@@ -29,8 +29,8 @@ struct GripLaw {
   S lower_gain_n_per_s = S(0);      ///< N/s for each unit above that, >= 0; 0: held, never lowered
   S rise_limit_n_per_s = S(40);     ///< what the gripper can do, > 0
   S fall_limit_n_per_s = S(2);      ///< >= 0
-  S least_force_n = S(1) / S(2);    ///< >= 0
-  S most_force_n = S(20);           ///< what the object can bear, > least_force_n
+  S min_force_n = S(1) / S(2);    ///< >= 0
+  S max_force_n = S(20);           ///< what the object can bear, > min_force_n
   S safe_force_n = S(10);           ///< no rise beyond this without a fresh ratio, within the two
   S ratio_lasts_s = S(1) / S(10);   ///< how long a ratio is acted on while the dots do not move
                                     ///< enough for the next, >= 0
@@ -62,12 +62,12 @@ void expects_valid(const GripLaw<S>& law) {
         "finite and > 0");
   check(value(law.fall_limit_n_per_s) >= 0, "fall_limit_n_per_s", law.fall_limit_n_per_s,
         "finite and >= 0");
-  check(value(law.least_force_n) >= 0, "least_force_n", law.least_force_n, "finite and >= 0");
-  check(value(law.most_force_n) > value(law.least_force_n), "most_force_n", law.most_force_n,
-        "finite and > least_force_n");
-  check(value(law.safe_force_n) >= value(law.least_force_n) &&
-            value(law.safe_force_n) <= value(law.most_force_n),
-        "safe_force_n", law.safe_force_n, "in [least_force_n, most_force_n]");
+  check(value(law.min_force_n) >= 0, "min_force_n", law.min_force_n, "finite and >= 0");
+  check(value(law.max_force_n) > value(law.min_force_n), "max_force_n", law.max_force_n,
+        "finite and > min_force_n");
+  check(value(law.safe_force_n) >= value(law.min_force_n) &&
+            value(law.safe_force_n) <= value(law.max_force_n),
+        "safe_force_n", law.safe_force_n, "in [min_force_n, max_force_n]");
   check(value(law.ratio_lasts_s) >= 0, "ratio_lasts_s", law.ratio_lasts_s, "finite and >= 0");
   check(value(law.sliding_ratio) >= 0 && value(law.sliding_ratio) <= value(law.set_point),
         "sliding_ratio", law.sliding_ratio, "in [0, set_point]");
@@ -130,7 +130,7 @@ class GripControl {
 
   const GripLaw<S>& law() const { return law_; }
 
-  State start() const { return State(law_.least_force_n); }
+  State start() const { return State(law_.min_force_n); }
   /// From the force with which the object was taken; brought within the limits, NaN: the least.
   State start(const S& force_n) const { return State(within_limits(force_n)); }
 
@@ -174,7 +174,7 @@ class GripControl {
     const GripReason why = state.slipping_                          ? GripReason::slipping
                            : value(ratio) > value(law_.lower_above) ? GripReason::all_sticks
                                                                     : GripReason::enough_sticks;
-    return {grip_rate(law_, ratio), law_.most_force_n, why};
+    return {grip_rate(law_, ratio), law_.max_force_n, why};
   }
 
   /// Raises or holds: that nothing moves is no reason to let go.
@@ -206,7 +206,7 @@ class GripControl {
     const bool rise = value(wish.rate_n_per_s) > 0;
     const bool fall = value(wish.rate_n_per_s) < 0;
     const bool at_limit = (rise && !(value(force) < value(wish.ceiling_n))) ||
-                          (fall && !(value(law_.least_force_n) < value(force)));
+                          (fall && !(value(law_.min_force_n) < value(force)));
     if (at_limit || !(rise || fall)) {
       return {force, at_limit ? GripStatus::at_limit : GripStatus::holding, wish.why};
     }
@@ -218,8 +218,8 @@ class GripControl {
 
   /// NaN becomes the least force.
   S within_limits(const S& force_n) const {
-    const S raised = value(force_n) > value(law_.least_force_n) ? force_n : law_.least_force_n;
-    return value(raised) < value(law_.most_force_n) ? raised : law_.most_force_n;
+    const S raised = value(force_n) > value(law_.min_force_n) ? force_n : law_.min_force_n;
+    return value(raised) < value(law_.max_force_n) ? raised : law_.max_force_n;
   }
 
   GripLaw<S> law_;

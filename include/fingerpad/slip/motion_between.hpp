@@ -7,7 +7,7 @@
 #include <array>
 #include <cmath>
 
-#include "fingerpad/slip/zoom.hpp"
+#include "fingerpad/slip/scale.hpp"
 #include "fingerpad/core/expects.hpp"
 
 namespace fingerpad {
@@ -21,9 +21,9 @@ struct CentralDot {};  ///< the dot nearest to the centroid of the contact
 
 /// Published: the object moves as the reference dot does, turns as its four neighbours do about it,
 /// and zooms as all neighbours in contact do. The noise of those dots is in every dot's answer.
-template <Freedom Free = Freedom::similarity, class Zoom = LeastSquaresZoom, class Dot = TrackedDot>
+template <Freedom Free = Freedom::similarity, class Scale = LeastSquaresScale, class Dot = TrackedDot>
 struct ReferenceDotMotion {
-  Zoom zoom = {};
+  Scale zoom = {};
 };
 
 /// The map that fits all sticking dots best. Beginning with the reference dot and its 24 nearest,
@@ -32,23 +32,23 @@ struct ReferenceDotMotion {
 /// from the one that has come furthest: the first has found dots that stand still together.
 template <Freedom Free = Freedom::similarity, class Dot = TrackedDot>
 struct StickConsensus {
-  int most_passes = 10;  ///< 0 to 100; two or three are the rule
+  int max_passes = 10;  ///< 0 to 100; two or three are the rule
 };
 
-template <Freedom Free, class Zoom, class Dot>
-void expects_valid(const ReferenceDotMotion<Free, Zoom, Dot>& motion) {
+template <Freedom Free, class Scale, class Dot>
+void expects_valid(const ReferenceDotMotion<Free, Scale, Dot>& motion) {
   expects_valid(motion.zoom);
 }
 template <Freedom Free, class Dot>
 void expects_valid(const StickConsensus<Free, Dot>& motion) {
-  expects(motion.most_passes >= 0 && motion.most_passes <= 100, "StickConsensus", "most_passes",
-          static_cast<long long>(motion.most_passes), "in [0, 100]");
+  expects(motion.max_passes >= 0 && motion.max_passes <= 100, "StickConsensus", "max_passes",
+          static_cast<long long>(motion.max_passes), "in [0, 100]");
 }
 
 namespace detail::stick {
 
-template <Freedom Free, class Zoom, class Dot>
-Dot dot_of(const ReferenceDotMotion<Free, Zoom, Dot>&) {
+template <Freedom Free, class Scale, class Dot>
+Dot dot_of(const ReferenceDotMotion<Free, Scale, Dot>&) {
   return {};
 }
 template <Freedom Free, class Dot>
@@ -82,8 +82,8 @@ void add_dot(const FramePair<S>& pair,
   }
 }
 
-template <Freedom Free, class Zoom, class Dot, class S>
-ObjectShift<S> motion_between(const ReferenceDotMotion<Free, Zoom, Dot>& policy,
+template <Freedom Free, class Scale, class Dot, class S>
+ObjectShift<S> motion_between(const ReferenceDotMotion<Free, Scale, Dot>& policy,
                               const FramePair<S>& pair,
                               Index reference,
                               const S&) {
@@ -170,13 +170,13 @@ PairSums<S> sums_of_followers(const FramePair<S>& pair,
 
 /// The map on which the dots around one agree with those that follow it.
 template <Freedom Free, class S>
-ObjectShift<S> consensus(const FramePair<S>& pair, Index from, const S& slip_sq, int most_passes) {
+ObjectShift<S> consensus(const FramePair<S>& pair, Index from, const S& slip_sq, int max_passes) {
   constexpr int fewest = 3;  // dots that a map can be wrong about
   const S hardly_more = S(1.005);
   const ObjectShift<S> about = shift_of_dot(pair, from);
   ObjectShift<S> shift = fit<Free>(sums_around(pair, from, about), about);
   S before = S(0);
-  for (int pass = 0; pass < most_passes; ++pass) {
+  for (int pass = 0; pass < max_passes; ++pass) {
     const PairSums<S> sums = sums_of_followers(pair, shift, slip_sq, about);
     if (sums.weight < S(fewest)) {
       break;
@@ -204,11 +204,11 @@ template <class S>
 Index furthest_outrunner(const FramePair<S>& pair, const ObjectShift<S>& shift) {
   const S zoom = shift.scale() - S(1);
   Index furthest = -1;
-  S least_sq = pair.furthest_sq / S(4);
+  S min_sq = pair.furthest_sq / S(4);
   for (Index k = pair.run.begin; k < pair.run.end; ++k) {
     const S dx = pair.now.x[k] - pair.then.x[k], dy = pair.now.y[k] - pair.then.y[k];
     const S sq = dx * dx + dy * dy;
-    if (least_sq < sq && sq < no_distance_sq<S>()) {
+    if (min_sq < sq && sq < no_distance_sq<S>()) {
       S rx, ry;
       shift.residual(pair.now.x[k], pair.now.y[k], pair.then.x[k], pair.then.y[k], rx, ry);
       const S from_x = zoom * (pair.now.x[k] - shift.now_x);
@@ -217,7 +217,7 @@ Index furthest_outrunner(const FramePair<S>& pair, const ObjectShift<S>& shift) 
       const S ahead = rx * dx + ry * dy;
       if (!zooms && sq < S(2) * ahead) {
         furthest = k;
-        least_sq = sq;
+        min_sq = sq;
       }
     }
   }
@@ -229,7 +229,7 @@ ObjectShift<S> motion_between(const StickConsensus<Free, Dot>& policy,
                               const FramePair<S>& pair,
                               Index reference,
                               const S& slip_sq) {
-  const ObjectShift<S> shift = consensus<Free>(pair, reference, slip_sq, policy.most_passes);
+  const ObjectShift<S> shift = consensus<Free>(pair, reference, slip_sq, policy.max_passes);
   if (!has_hardly_moved(shift, pair.furthest_sq)) {
     return shift;
   }
@@ -237,7 +237,7 @@ ObjectShift<S> motion_between(const StickConsensus<Free, Dot>& policy,
   if (ahead < 0) {
     return shift;
   }
-  const ObjectShift<S> other = consensus<Free>(pair, ahead, slip_sq, policy.most_passes);
+  const ObjectShift<S> other = consensus<Free>(pair, ahead, slip_sq, policy.max_passes);
   return has_hardly_moved(other, pair.furthest_sq) ? shift : other;
 }
 

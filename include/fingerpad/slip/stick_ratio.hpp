@@ -34,7 +34,7 @@ struct StickTest {
   double slip_px = 0.24;      ///< delta_0, > 0: a dot slips that differs from the object's motion
                               ///< by more than this times d_max / U; for dots with other noise
                               ///< than the published 0.06 px see calibrate/stick_ratio.hpp
-  Index least_dots = 5;       ///< >= 1: to compare; fewer give no ratio
+  Index min_dots = 5;       ///< >= 1: to compare; fewer give no ratio
 };
 inline void expects_valid(const StickTest& test) {
   expects(is_finite(test.reference_px) && test.reference_px > 0, "StickTest", "reference_px",
@@ -43,15 +43,15 @@ inline void expects_valid(const StickTest& test) {
           "StickTest", "store_px", test.store_px, "in [0, reference_px]");
   expects(is_finite(test.slip_px) && test.slip_px > 0, "StickTest", "slip_px", test.slip_px,
           "finite and > 0");
-  expects(test.least_dots >= 1, "StickTest", "least_dots", static_cast<long long>(test.least_dots),
+  expects(test.min_dots >= 1, "StickTest", "min_dots", static_cast<long long>(test.min_dots),
           ">= 1");
 }
 
 /// Stick ratio of a pad, frame by frame.
-///   Motion     StickConsensus<Freedom, Dot> (default), ReferenceDotMotion<Freedom, Zoom, Dot>
+///   Motion     StickConsensus<Freedom, Dot> (default), ReferenceDotMotion<Freedom, Scale, Dot>
 ///   Reference  UpdatedReference<Over> (default), FirstReference
 ///   Denoising  ResidualMean (default), DotMean (published), NoDenoising
-/// Published: ReferenceDotMotion<Freedom::similarity, PublishedZoom>, UpdatedReference, DotMean.
+/// Published: ReferenceDotMotion<Freedom::similarity, PublishedScale>, UpdatedReference, DotMean.
 /// Const: threads may share one estimator, each with a state of its own. A frame takes no memory,
 /// throws nothing, and needs O(rows cols) time for each stored frame that it looks at, which are
 /// no more than `capacity` however long the recording is.
@@ -153,7 +153,7 @@ class StickRatio {
     const PlacedDots placed =
         prepare_dots(denoising_, state.given, layout_, run, inner_, state.scratch, state.now);
     result.out_of_place = placed.out_of_place;
-    if (placed.dots < test_.least_dots) {
+    if (placed.dots < test_.min_dots) {
       return any_found(state) ? StickStatus::too_few_dots : StickStatus::no_dots;
     }
     const Choice choice =
@@ -194,7 +194,7 @@ class StickRatio {
     const FramePair<S> pair{view(state.now), state.repository.dots(choice.age), run, layout_,
                             choice.furthest_sq};
     const NearestDot reference = first_dot(dot_of(motion_), pair, state);
-    if (reference.pairs < test_.least_dots) {
+    if (reference.pairs < test_.min_dots) {
       return StickStatus::too_few_dots;
     }
     const S slip = S(test_.slip_px / test_.reference_px);
@@ -220,7 +220,7 @@ class StickRatio {
   Reference reference_;
   Denoising denoising_;
   detail::stick::DotLayout layout_;
-  detail::line_vector<S> inner_;
+  detail::aligned_vector<S> inner_;
 };
 
 }  // namespace v0

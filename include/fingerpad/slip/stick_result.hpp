@@ -24,7 +24,7 @@ enum class StickStatus : std::uint8_t {
   updated,       ///< the ratio is that of this frame
   standing,      ///< the dots have hardly moved since the newest stored frame
   no_reference,  ///< no stored frame is far enough away in the direction of motion
-  too_few_dots,  ///< fewer dots to compare than StickTest::least_dots
+  too_few_dots,  ///< fewer dots to compare than StickTest::min_dots
   no_contact,    ///< nothing touches: there is no ratio, and what was stored is forgotten
   no_dots,       ///< no dot at all was found: nothing is known, nothing is forgotten
   jumped,        ///< all dots carry the name of a neighbour: the frame is left out

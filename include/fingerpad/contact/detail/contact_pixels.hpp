@@ -23,7 +23,7 @@ inline constexpr bool is_byte_mask<StridedView<T>> = std::is_integral_v<T> && si
 
 template <class View>
 bool is_set(const View& mask, Index row, Index col) {
-  return says_contact(cell_t<View>(mask(row, col)));
+  return is_contact(cell_t<View>(mask(row, col)));
 }
 
 /// First column of [col, last) that is set, or a column before it; `last` if there is none.

@@ -124,7 +124,7 @@ class EdgeFinder<HalfLevelEdge, Statistic, Projection, S> {
     Workspace w{OutsideLevel<S>(image_, ring_px_), mean_.workspace(), smoothing, {}, {}, {}, {}};
     w.raw.assign(static_cast<std::size_t>(image_.size()), not_a_number<S>());
     w.mean = w.raw;
-    w.inner.resize(static_cast<std::size_t>(2 * most_samples));
+    w.inner.resize(static_cast<std::size_t>(2 * max_samples));
     w.level.resize(static_cast<std::size_t>(w.outside.cells()));
     return w;
   }
@@ -230,8 +230,8 @@ class EdgeFinder<HalfLevelEdge, Statistic, Projection, S> {
   Index spread_px() const { return (ring_px_ + 1) / 3; }
 
   /// A region's properties come from a thousand of its pixels, or two.
-  static Index sparse(const Regions::Region& region) { return region.pixels() / most_samples + 1; }
-  static constexpr Index most_samples = 2000;
+  static Index sparse(const Regions::Region& region) { return region.pixels() / max_samples + 1; }
+  static constexpr Index max_samples = 2000;
 
   BorderedImage image_;
   S threshold_;

@@ -4,7 +4,7 @@
 // Points in space as vectors, for every scalar.
 #include <cmath>
 
-#include "fingerpad/core/dots.hpp"
+#include "fingerpad/core/point.hpp"
 #include "fingerpad/core/scalar.hpp"
 
 namespace fingerpad {
@@ -29,14 +29,6 @@ Point3<S> moved(const Point3<S>& a, const S& s, const Point3<S>& b) {
   return {S(a.x + s * b.x), S(a.y + s * b.y), S(a.z + s * b.z)};
 }
 template <scalar S>
-S dot(const Point3<S>& a, const Point3<S>& b) {
-  return S(a.x * b.x + a.y * b.y + a.z * b.z);
-}
-template <scalar S>
-Point3<S> cross(const Point3<S>& a, const Point3<S>& b) {
-  return {S(a.y * b.z - a.z * b.y), S(a.z * b.x - a.x * b.z), S(a.x * b.y - a.y * b.x)};
-}
-template <scalar S>
 S length_sq(const Point3<S>& a) {
   return dot(a, a);
 }
@@ -50,10 +42,6 @@ Point3<S> unit(const Point3<S>& a) {
 template <scalar S>
 bool is_finite_point(const Point3<S>& p) {
   return is_finite(p.x) && is_finite(p.y) && is_finite(p.z);
-}
-template <scalar S>
-constexpr Point3<S> missing_point() {
-  return {not_a_number<S>(), not_a_number<S>(), not_a_number<S>()};
 }
 
 }  // namespace detail

@@ -83,7 +83,7 @@ class RememberedPairs<GraspOptimise<AnyPair>, Fingers> {
  public:
   template <scalar S>
   explicit RememberedPairs(const PreslipOptions<S>& o) {
-    by_waves_.fill(std::vector<LatestDiffering<1>>(static_cast<std::size_t>(o.most_waves + 1)));
+    by_waves_.fill(std::vector<LatestDiffering<1>>(static_cast<std::size_t>(o.max_waves + 1)));
   }
 
   void clear() {
@@ -121,7 +121,7 @@ class RememberedPairs<GraspLift<MovedToOtherCell, Axes>, Fingers> {
  public:
   template <scalar S>
   explicit RememberedPairs(const PreslipOptions<S>& o) {
-    by_waves_.fill(std::vector<Places>(static_cast<std::size_t>(o.most_waves + 1)));
+    by_waves_.fill(std::vector<Places>(static_cast<std::size_t>(o.max_waves + 1)));
   }
 
   void clear() {
@@ -158,7 +158,7 @@ class RememberedPairs<GraspLift<MovedToOtherCell, Axes>, Fingers> {
     if constexpr (by_axis) {
       return {x, y, side.location};
     } else {
-      return {x * (std::int64_t{1} << 32) + y, side.location};  // |x|, |y| <= most_cells
+      return {x * (std::int64_t{1} << 32) + y, side.location};  // |x|, |y| <= max_cells
     }
   }
 

@@ -99,7 +99,7 @@ void count_steps(const Touch& touch, FrameMemory<S>& frame, TractionResult<S>& r
   };
   for (Index i = 0; i < frame.rows; ++i) {
     for (Index j = 0; j < frame.cols; ++j) {
-      const bool touches = says_contact(std::remove_cvref_t<decltype(touch(i, j))>(touch(i, j)));
+      const bool touches = is_contact(std::remove_cvref_t<decltype(touch(i, j))>(touch(i, j)));
       frame.steps[frame.dot_at(i, j)] = touches ? 0 : far_away;
       result.dots_in_contact += touches ? 1 : 0;
       look(i, j, 1);

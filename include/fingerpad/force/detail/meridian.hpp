@@ -88,9 +88,9 @@ struct LevelSums {
 template <scalar S>
 class Meridian {
  public:
-  explicit Meridian(std::size_t most_points) : most_(most_points) {
-    points_.reserve(most_points);
-    rises_.reserve(most_points);
+  explicit Meridian(std::size_t max_points) : most_(max_points) {
+    points_.reserve(max_points);
+    rises_.reserve(max_points);
   }
 
   /// From the rim to the end, one step apart but for the first and the last.

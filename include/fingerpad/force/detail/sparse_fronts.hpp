@@ -40,23 +40,23 @@ class FrontalCholesky {
       : dissection_(columns, rows), unknowns_(2 * dissection_.numbers().count()) {
     std::size_t factor = 0;
     std::size_t open = 0;
-    std::size_t most_open = 0;
-    std::size_t most_gathered = 0;
+    std::size_t max_open = 0;
+    std::size_t max_gathered = 0;
     for (const Front& front : dissection_.fronts()) {
       factor_at_.push_back(factor);
       factor += height(front) * 2 * front.eliminated;
       // its own remainder is made above those of its parts, then takes their place
-      most_open = (std::max)(most_open, open + remainder_size(front));
+      max_open = (std::max)(max_open, open + remainder_size(front));
       if (!front.is_segment) {
         open -= remainder_size(dissection_.fronts()[front.first]);
         open -= remainder_size(dissection_.fronts()[front.second]);
       }
       open += remainder_size(front);
-      most_gathered = (std::max)(most_gathered, height(front));
+      max_gathered = (std::max)(max_gathered, height(front));
     }
     factor_.assign(factor, R(0));
-    remainders_.assign(most_open, R(0));
-    gathered_.assign(most_gathered, R(0));
+    remainders_.assign(max_open, R(0));
+    gathered_.assign(max_gathered, R(0));
   }
 
   const BorderNumbers& numbers() const { return dissection_.numbers(); }

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <cstddef>
 
-#include "fingerpad/image/detail/line_vector.hpp"
+#include "fingerpad/core/detail/aligned_vector.hpp"
 #include "fingerpad/image/detail/row_lanes.hpp"
 #include "fingerpad/core/dots.hpp"
 #include "fingerpad/core/grid.hpp"
@@ -85,8 +85,8 @@ class PixelRays<Camera<S>> {
   S center_x_;
   S center_y_;
   Index cols_;
-  line_vector<S> at_plate_;
-  line_vector<S> per_mm_;
+  aligned_vector<S> at_plate_;
+  aligned_vector<S> per_mm_;
 };
 
 /// Nothing to remember.

@@ -16,7 +16,7 @@
 #include <vector>
 
 #include "fingerpad/image/detail/lanes.hpp"
-#include "fingerpad/image/detail/line_vector.hpp"
+#include "fingerpad/core/detail/aligned_vector.hpp"
 #include "fingerpad/image/detail/window_block.hpp"
 #include "fingerpad/image/detail/window_rows.hpp"
 
@@ -103,8 +103,8 @@ class VectorWindowSums {
   /// Holds window sums of a row: 255 * 255 = 65025 for 8 bits, all of 32 bits for 16.
   using Lane = std::conditional_t<sizeof(Pixel) == 1, std::uint16_t, std::uint32_t>;
   struct Sums {
-    line_vector<std::uint32_t> red, green;
-    line_vector<std::uint16_t> count;
+    aligned_vector<std::uint32_t> red, green;
+    aligned_vector<std::uint16_t> count;
   };
   static constexpr int wide = Bytes / 4;  // lanes of sums and means
   static constexpr int half = Bytes / 2;  // lanes of counts: two vectors of sums
@@ -282,12 +282,12 @@ class VectorWindowSums {
   Index padded_ = 0, margin_ = 0, pitch_ = 0, ring_rows_ = 0;
   Index began_ = 0, next_row_ = 0;
   float missing_ = not_a_number<float>();  // a variable: GCC 12 builds a constant one lane by lane
-  line_vector<Pixel> red_, green_;
-  line_vector<Lane> red_ring_, green_ring_;
-  line_vector<std::uint8_t> valid_, valid_ring_;
+  aligned_vector<Pixel> red_, green_;
+  aligned_vector<Lane> red_ring_, green_ring_;
+  aligned_vector<std::uint8_t> valid_, valid_ring_;
   std::array<Sums, std::size_t(Windows)> sums_;
   std::vector<Cover> cover_;
-  line_vector<float> weight_;
+  aligned_vector<float> weight_;
 };
 
 }  // namespace detail

@@ -47,7 +47,7 @@ class DotFrame {
   Index cols() const { return dots_.cols(); }
   Point3<S> dot(Index row, Index col) const { return spatial<S>(cell_t<Dots>(dots_(row, col))); }
   bool flagged(Index row, Index col) const {
-    return says_contact(cell_t<Contact>(contact_(row, col)));
+    return is_contact(cell_t<Contact>(contact_(row, col)));
   }
   bool found(Index row, Index col) const { return is_placed(dot(row, col)); }
   bool in_contact(DotIndex d) const { return flagged(d.row, d.col) && found(d.row, d.col); }

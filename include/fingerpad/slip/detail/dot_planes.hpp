@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <cstddef>
 
-#include "fingerpad/image/detail/line_vector.hpp"
+#include "fingerpad/core/detail/aligned_vector.hpp"
 #include "fingerpad/image/detail/run_lanes.hpp"
 #include "fingerpad/core/dots.hpp"
 #include "fingerpad/core/grid.hpp"
@@ -52,7 +52,7 @@ struct DotPlanes {
   explicit DotPlanes(const DotLayout& layout)
       : x(layout.cells<S>(), not_a_number<S>()), y(x.size(), not_a_number<S>()) {}
 
-  line_vector<S> x, y;
+  aligned_vector<S> x, y;
 };
 
 /// A run of two planes that others own.
@@ -93,7 +93,7 @@ void with_row(const View& view, Index i, const Use& use) {
 template <class S>
 struct GivenDots {
   DotPlanes<S> found;    ///< whatever was given, NaN or not
-  line_vector<S> touch;  ///< 0 in contact, else NaN: found + touch are the dots in contact
+  aligned_vector<S> touch;  ///< 0 in contact, else NaN: found + touch are the dots in contact
   Index first_row = 0, last_row = -1;  ///< with a flag of contact
 
   GivenDots() = default;
@@ -122,7 +122,7 @@ struct GivenDots {
       });
       with_row(contact, i, [&](const auto& row_contact) {
         for (Index j = 0; j < layout.cols; ++j) {
-          const bool touches = says_contact(cell_t<Contact>(row_contact(j)));
+          const bool touches = is_contact(cell_t<Contact>(row_contact(j)));
           t[j] = touches ? S(0) : not_a_number<S>();
           row_touch |= touches;
         }

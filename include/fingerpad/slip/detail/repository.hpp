@@ -64,7 +64,7 @@ class Repository {
   }
 
   Index cells_ = 0;
-  line_vector<S> x_, y_;
+  aligned_vector<S> x_, y_;
   std::vector<std::int64_t> frames_;
   Index newest_ = -1;
   Index size_ = 0;

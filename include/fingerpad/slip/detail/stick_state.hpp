@@ -52,7 +52,7 @@ class StickState {
   DotPlanes<S> now;    // of it, the dots in contact, in their places
   DotPlanes<S> scratch;
   Residuals<S> residuals;
-  line_vector<S> marks;                   // what each dot did in the last answer
+  aligned_vector<S> marks;                   // what each dot did in the last answer
   Point2<S> stick_center = {S(0), S(0)};  // of the last answer
   Repository<S> repository;
   StickRatioResult<S> result;
@@ -86,7 +86,7 @@ PlanesView<S> followed_dots(const Reference&, StickState<S>& state, const Run&) 
 template <class S>
 Point2<S> centroid(const PlanesView<S>& now,
                    const Run& run,
-                   const line_vector<S>& marks,
+                   const aligned_vector<S>& marks,
                    const S& least) {
   using V = run_vector<S>;
   const V zero = V{} + S(0), one = V{} + S(1), lowest = V{} + least;
@@ -113,9 +113,9 @@ struct NearestDot {
 template <class S>
 NearestDot nearest_dot(const FramePair<S>& pair,
                        const Point2<S>& center,
-                       const line_vector<S>& marks,
+                       const aligned_vector<S>& marks,
                        const S& least,
-                       line_vector<S>& minus_distance_sq) {
+                       aligned_vector<S>& minus_distance_sq) {
   using V = run_vector<S>;
   const V zero = V{} + S(0), one = V{} + S(1), lowest = V{} + least;
   const V far = zero - no_distance_sq<S>();
@@ -198,8 +198,8 @@ void write_states(const StickState<S>& state, const States& to) {
 
 /// 0 for dots that have eight neighbours in the grid, else NaN.
 template <class S>
-line_vector<S> inner_dots(const DotLayout& layout) {
-  line_vector<S> inner(layout.cells<S>(), not_a_number<S>());
+aligned_vector<S> inner_dots(const DotLayout& layout) {
+  aligned_vector<S> inner(layout.cells<S>(), not_a_number<S>());
   for (Index i = 1; i + 1 < layout.rows; ++i) {
     for (Index j = 1; j + 1 < layout.cols; ++j) {
       inner[static_cast<std::size_t>(layout.at(i, j))] = S(0);

@@ -17,17 +17,17 @@ inline namespace v0 {
 /// alpha from the distances between neighbouring dots across the direction in which they move, sums
 /// of absolute values: as published. Where nothing moves there is no direction and alpha is 1
 /// (E036). Noise makes the larger sum of the two no larger than the other, but both larger.
-struct PublishedZoom {};
+struct PublishedScale {};
 
 /// The same by least squares, and the part along the motion is taken out the less, the less there
 /// is of motion: as much as 1 - (fading / motion)^2 of it where dots move by much more than
 /// `fading_px`, none where they stand still, so that a plain press has its alpha too.
-struct LeastSquaresZoom {
+struct LeastSquaresScale {
   double fading_px = 0.25;  ///< > 0
 };
-inline void expects_valid(const PublishedZoom&) {}
-inline void expects_valid(const LeastSquaresZoom& zoom) {
-  expects(is_finite(zoom.fading_px) && zoom.fading_px > 0, "LeastSquaresZoom", "fading_px",
+inline void expects_valid(const PublishedScale&) {}
+inline void expects_valid(const LeastSquaresScale& zoom) {
+  expects(is_finite(zoom.fading_px) && zoom.fading_px > 0, "LeastSquaresScale", "fading_px",
           zoom.fading_px, "finite and > 0");
 }
 
@@ -44,7 +44,7 @@ struct FramePair {
 
 /// Sums over pairs of neighbours: of what the distance was, and of what it is.
 template <class V>
-struct ZoomSums {
+struct ScaleSums {
   V then{}, now{};
 };
 
@@ -58,7 +58,7 @@ struct NeighbourPair {
 };
 
 template <class S, class V>
-void add_pair(const PublishedZoom&, const NeighbourPair<V>& p, ZoomSums<V>& sums) {
+void add_pair(const PublishedScale&, const NeighbourPair<V>& p, ScaleSums<V>& sums) {
   const V zero{};
   const V motion_sq = p.motion_x * p.motion_x + p.motion_y * p.motion_y;
   const V then = p.then_x * p.motion_y - p.then_y * p.motion_x;
@@ -72,7 +72,7 @@ void add_pair(const PublishedZoom&, const NeighbourPair<V>& p, ZoomSums<V>& sums
   sums.now += only_where(known, V(now_size * per_motion));
 }
 template <class S, class V>
-void add_pair(const LeastSquaresZoom& zoom, const NeighbourPair<V>& p, ZoomSums<V>& sums) {
+void add_pair(const LeastSquaresScale& zoom, const NeighbourPair<V>& p, ScaleSums<V>& sums) {
   const V motion_sq = p.motion_x * p.motion_x + p.motion_y * p.motion_y;
   const V weight = S(1) / (motion_sq + S(zoom.fading_px * zoom.fading_px));
   const V then_along = p.then_x * p.motion_x + p.then_y * p.motion_y;
@@ -86,12 +86,12 @@ void add_pair(const LeastSquaresZoom& zoom, const NeighbourPair<V>& p, ZoomSums<
 
 /// alpha of the frames, `turned` being the object's motion without it; 1 where the pairs determine
 /// none or one that is not plausible.
-template <class Zoom, class S>
-S scale_between(const Zoom& zoom, const FramePair<S>& pair, const ObjectShift<S>& turned) {
+template <class Scale, class S>
+S scale_between(const Scale& zoom, const FramePair<S>& pair, const ObjectShift<S>& turned) {
   using V = run_vector<S>;
   const Index stride = pair.layout.stride();
   const S object_x = turned.now_x - turned.then_x, object_y = turned.now_y - turned.then_y;
-  ZoomSums<V> sums;
+  ScaleSums<V> sums;
   struct Dot {
     V tx, ty, nx, ny, dx, dy;  // then, now turned back, displacement
   };

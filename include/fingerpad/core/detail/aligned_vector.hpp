@@ -12,18 +12,18 @@ namespace detail {
 
 /// Memory that begins on a cache line, so that aligned vectors never straddle two.
 template <class T>
-struct LineAllocator {
+struct AlignedAllocator {
   using value_type = T;
   static constexpr std::align_val_t line{64};
-  LineAllocator() = default;
+  AlignedAllocator() = default;
   template <class U>
-  constexpr LineAllocator(const LineAllocator<U>&) {}
+  constexpr AlignedAllocator(const AlignedAllocator<U>&) {}
   T* allocate(std::size_t n) { return static_cast<T*>(::operator new(n * sizeof(T), line)); }
   void deallocate(T* p, std::size_t) { ::operator delete(p, line); }
-  friend bool operator==(const LineAllocator&, const LineAllocator&) { return true; }
+  friend bool operator==(const AlignedAllocator&, const AlignedAllocator&) { return true; }
 };
 template <class T>
-using line_vector = std::vector<T, LineAllocator<T>>;
+using aligned_vector = std::vector<T, AlignedAllocator<T>>;
 
 }  // namespace detail
 }  // namespace v0
