@@ -7,7 +7,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "../../bench/report/hard_cases/all.hpp"
+#include "bench/report/hard_cases/all.hpp"
 #include "support/catch.hpp"
 
 namespace {

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
-#include "../../bench/chain/pressed_frames.hpp"
+#include "bench/report/chain/pressed_frames.hpp"
 #include "no_allocation/count.hpp"
 #include "support/catch.hpp"
 

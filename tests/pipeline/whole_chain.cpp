@@ -1,11 +1,11 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
-// All methods one after another, as bench/chain puts them together: results that are true, the same
+// All methods one after another, as bench/report/chain puts them together: results that are true, the same
 // from run to run and from one thread and two.
 #include <cmath>
 #include <vector>
 
-#include "../bench/chain/pressed_frames.hpp"
+#include "bench/report/chain/pressed_frames.hpp"
 #include "support/catch.hpp"
 
 using namespace chain;
