@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
-// The whole chain, a frame in, all results out (bench/report/chain/whole_chain.hpp), as JSON: error of
+// The whole chain, a frame in, all results out (pipeline/fingertip.hpp), as JSON: error of
 // each result, time of each stage, the distribution of latencies over 10,000 frames, growth with
 // the size of the image, the number of dots and the length of the history, and two threads. Frames
 // and truth: bench/report/chain/pressed_frames.hpp. "chain FRAMES" times so many frames instead.
@@ -15,11 +15,11 @@
 #include <string>
 #include <vector>
 
-#include "no_allocation/count.hpp"
 #include "chain/pressed_frames.hpp"
+#include "no_allocation/count.hpp"
 
 using namespace fingerpad;
-using chain::Stage;
+using chain::touch_of;
 using nlohmann::ordered_json;
 
 namespace {
@@ -52,16 +52,16 @@ struct Watch {
   std::array<Times, chain::stage_names.size()> stage;
   Clock::time_point last = Clock::now();
 
-  void operator()(Stage ended) {
+  void operator()(FingertipStage ended) {
     const auto now = Clock::now();
     stage[static_cast<std::size_t>(ended)].add(Milliseconds(now - last).count());
     last = now;
   }
 };
 
-template <class Recipe, class Crew = chain::OneThread, class Finger>
-auto chain_of(const Finger& finger) {
-  return chain::WholeChain<Recipe, decltype(finger.reference), Crew>(finger);
+template <class Methods, class Options>
+auto chain_of(const Options& options) {
+  return Fingertip<decltype(options.reference), Methods>(options);
 }
 
 template <class Chain>
@@ -71,7 +71,7 @@ ordered_json stages_of(Chain chain, const chain::PressedFrames& frames, int coun
   for (int k = 0; k < count; ++k) {
     watch.last = Clock::now();
     const auto begin = watch.last;
-    chain(frames[static_cast<std::size_t>(k) % frames.size()].view(), watch);
+    touch_of(chain, frames[static_cast<std::size_t>(k) % frames.size()].view(), watch);
     whole.add(Milliseconds(Clock::now() - begin).count());
   }
   ordered_json out;
@@ -139,7 +139,7 @@ ordered_json errors_of(Chain chain, const chain::PressedFrames& frames) {
   Errors errors;
   for (std::size_t k = 0; k < frames.size(); ++k) {
     const auto& f = frames[k];
-    const auto r = chain(f.view());
+    const auto r = touch_of(chain, f.view());
     for (Index i = 0; i < f.depth_mm.rows(); ++i) {
       for (Index j = 0; j < f.depth_mm.cols(); ++j) {
         if (f.depth_mm(i, j) == f.depth_mm(i, j)) {
@@ -172,14 +172,14 @@ ordered_json errors_of(Chain chain, const chain::PressedFrames& frames) {
 template <class Chain>
 ordered_json latencies_of(Chain chain, const chain::PressedFrames& frames, int count) {
   for (std::size_t k = 0; k < frames.size(); ++k) {
-    chain(frames[k].view());
+    touch_of(chain, frames[k].view());
   }
   Times times(count);
   const long before = test::allocations();
   double sum_ms = 0;
   for (int k = 0; k < count; ++k) {
     const auto begin = Clock::now();
-    chain(frames[static_cast<std::size_t>(k) % frames.size()].view());
+    touch_of(chain, frames[static_cast<std::size_t>(k) % frames.size()].view());
     const double ms = Milliseconds(Clock::now() - begin).count();
     sum_ms += ms;
     times.add(ms);
@@ -203,28 +203,28 @@ ordered_json latencies_of(Chain chain, const chain::PressedFrames& frames, int c
 /// Medians of the lean chain's stages over frames.
 ordered_json growth() {
   ordered_json out = ordered_json::array();
-  const auto add = [&](const char* by, Index size, const auto& finger, const auto& frames,
+  const auto add = [&](const char* by, Index size, const auto& options, const auto& frames,
                        int count) {
-    auto stages = stages_of(chain_of<chain::Lean>(finger), frames, count);
+    auto stages = stages_of(chain_of<chain::Lean>(options), frames, count);
     stages["by"] = by;
     stages["size"] = size;
     out.push_back(stages);
   };
   for (const Index rows : {120, 240, 480, 960, 1440}) {
     const chain::PressedFrames frames(rows, rows * 4 / 3, 2);
-    add("pixels", frames.pixels(), frames.finger(), frames, rows > 480 ? 30 : 200);
+    add("pixels", frames.pixels(), frames.options(), frames, rows > 480 ? 30 : 200);
   }
   for (const Index dots : {11, 21, 41, 81}) {
     const chain::PressedFrames frames(480, 640, 16, dots);
-    add("dots", dots * dots, frames.finger(), frames, 200);
+    add("dots", dots * dots, frames.options(), frames, 200);
   }
   const chain::PressedFrames frames;
   for (const Index history : {16, 64, 256, 1024}) {
-    auto finger = frames.finger();
-    finger.stick_reference.capacity = history;
-    finger.stick_test.reference_px = 1e6;  // no frame is far enough: all are looked at
-    finger.stick_test.store_px = 0;
-    add("stored frames", history, finger, frames, static_cast<int>(2 * history) + 200);
+    auto options = frames.options();
+    options.stick_reference.capacity = history;
+    options.stick_test.reference_px = 1e6;  // no frame is far enough: all are looked at
+    options.stick_test.store_px = 0;
+    add("stored frames", history, options, frames, static_cast<int>(2 * history) + 200);
   }
   return out;
 }
@@ -234,22 +234,22 @@ ordered_json growth() {
 int main(int argc, char** argv) {
   const int count = argc > 1 ? std::atoi(argv[1]) : 10000;
   const chain::PressedFrames frames;
-  const auto finger = frames.finger();
+  const auto options = frames.options();
   ordered_json out;
-  const auto add = [&]<class Recipe>(const char* name, const Recipe&) {
+  const auto add = [&]<class Methods>(const char* name, const Methods&) {
     const long before = test::bytes_taken();
-    const auto made = chain_of<Recipe>(finger);
+    const auto made = chain_of<Methods>(options);
     auto& of = out["chains"][name];
     of["bytes"] = test::bytes_taken() - before;
-    of.update(stages_of(chain_of<Recipe>(finger), frames, 400));
-    of["errors"] = errors_of(chain_of<Recipe>(finger), frames);
+    of.update(stages_of(chain_of<Methods>(options), frames, 400));
+    of["errors"] = errors_of(chain_of<Methods>(options), frames);
   };
   add("lean", chain::Lean());
   add("default", chain::ByDefault());
   add("least squares", chain::WithLeastSquares());
   out["growth"] = growth();
-  const auto one = latencies_of(chain_of<chain::Lean>(finger), frames, count);
-  const auto two = latencies_of(chain_of<chain::Lean, chain::TwoThreads>(finger), frames, count);
+  const auto one = latencies_of(chain_of<chain::Lean>(options), frames, count);
+  const auto two = latencies_of(chain_of<chain::Shared<chain::Lean>>(options), frames, count);
   out["latencies"] = {{"one thread", one}, {"two threads", two}};
   std::cout << out.dump(1) << '\n';
 }

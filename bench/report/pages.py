@@ -169,7 +169,7 @@ def write_chain(build, docs, about):
 
 A frame in, all results out: 640 x 480 8-bit BGR frame to smoothing, depth, contact region, motion of
 the object, stick ratio, look-up forces and six-axis force, put together in
-[bench/report/chain/whole_chain.hpp](../bench/report/chain/whole_chain.hpp); the dots are given. Written by
+[pipeline/fingertip.hpp](../include/fingerpad/pipeline/fingertip.hpp); the dots are given. Written by
 `bench/report/run`.
 
 {about}
@@ -196,7 +196,7 @@ follow the area.
 
 {count} frames of the lean chain, one after another. Two threads share the depth's rows and work on
 dots and six-axis force side by side; their results are the same to the last bit, as they are from run
-to run (`tests/pipeline/whole_chain.cpp`).
+to run (`tests/pipeline/fingertip.cpp`).
 
 ![Share of frames that take longer](whole_chain/latency.png)
 

@@ -24,6 +24,7 @@
 #include "fingerpad/motion/object_motion.hpp"
 #include "fingerpad/contact/object_surface.hpp"
 #include "fingerpad/optics/camera.hpp"
+#include "fingerpad/pipeline/fingertip.hpp"
 #include "fingerpad/foam/preslip.hpp"
 #include "fingerpad/core/scalar.hpp"
 #include "fingerpad/force/shear.hpp"

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// Who works on a frame: this thread alone, or with one more.
+// Two threads that work on a frame, as an executor of Fingertip.
 #include <atomic>
 #include <thread>
 
@@ -10,21 +10,6 @@
 namespace chain {
 
 using fingerpad::Index;
-
-struct OneThread {
-  static constexpr int threads = 1;
-
-  /// work(thread, first, last) for all rows.
-  template <class Work>
-  void bands(Index rows, const Work& work) {
-    work(0, 0, rows);
-  }
-  template <class First, class Second>
-  void both(const First& first, const Second& second) {
-    first();
-    second();
-  }
-};
 
 /// Calls take no memory: the second thread lives as long as this, and is handed the address of its
 /// work.

@@ -10,9 +10,9 @@
 #include <utility>
 #include <vector>
 
+#include "chains.hpp"
 #include "support/pressed_pad.hpp"
 #include "support/soap_film.hpp"
-#include "whole_chain.hpp"
 
 namespace chain {
 
@@ -64,9 +64,9 @@ struct PressedFrame {
   test::Image<Point3<double>> side_dots_mm;
   test::Wrench6 wrench;
 
-  Frame view() const {
-    return {fingerpad::as_view(image.red), fingerpad::as_view(image.green), dots_px.view(),
-            fingerpad::as_view(side_dots_mm), pressure_mpa};
+  Inputs view() const {
+    return {
+        {image.red, image.green}, dots_px.view(), fingerpad::as_view(side_dots_mm), pressure_mpa};
   }
   double contact_area_mm2() const { return std::numbers::pi * plate.contact_mm * plate.contact_mm; }
 };
@@ -84,30 +84,33 @@ class PressedFrames {
     for (int k = 0; k < count; ++k) {
       frames_.push_back(made(Plate(k, count), static_cast<std::uint64_t>(k + 1)));
     }
+    free_dots_ = free_dots();
+    const auto borders = rim_of(frames_.front().membrane).borders();
+    rim_ = Plane<Point3<double>>(1, borders.cols());
+    rim_.cells = borders.cells;
   }
 
   std::size_t size() const { return frames_.size(); }
   const PressedFrame& operator[](std::size_t k) const { return frames_[k]; }
   Index pixels() const { return pad_.rows * pad_.cols; }
 
-  auto finger() const {
-    const auto reference = pad_.reference<float>();
-    const test::RimOfDots rim = rim_of(frames_.front().membrane);
-    const auto borders = rim.borders();
-    Plane<Point3<double>> border(1, borders.cols());
-    border.cells = borders.cells;
-    Finger<std::remove_const_t<decltype(reference)>> f{
-        pad_.camera, pad_.fluid, reference, pad_.rows, pad_.cols, free_dots(), border};
+  /// Refers to this object.
+  auto options() const {
+    auto reference = pad_.reference<float>();
+    fingerpad::FingertipOptions<decltype(reference)> f{pad_.camera, pad_.fluid,
+                                                       std::move(reference), pad_.rows, pad_.cols};
+    f.free_dots_mm = free_dots_.view();
+    f.rim_mm = rim_.view();
     // windows and rings as wide on the pad as those by default are at 640 x 480
     const double scale = static_cast<double>(pad_.cols) / 640;
     f.smoothing_px = 2 * static_cast<int>(14 * scale) + 1;
-    f.contact_test.ring.radius_px = static_cast<Index>(25 * scale);
+    f.contact.ring.radius_px = static_cast<Index>(25 * scale);
     // what the plate's pressure on the area says; by depth, a line between two of the frames
     f.force_of_area = {{0, pressure_mpa, 0}, 50, 400};
     const auto of_depth = [&](double contact_mm) {
       test::RoundPad<test::FilmSide> pad;
       pad.contact_mm = contact_mm;
-      return std::pair{f.contact_test.free_apex_mm - pad.height(0),
+      return std::pair{f.contact.free_apex_mm - pad.height(0),
                        pressure_mpa * std::numbers::pi * contact_mm * contact_mm};
     };
     const auto [less_mm, less_n] = of_depth(7.6);
@@ -193,6 +196,8 @@ class PressedFrames {
   test::Pad pad_;
   Index dots_;
   std::vector<PressedFrame> frames_;
+  Plane<Point3<double>> free_dots_{0, 0};
+  Plane<Point3<double>> rim_{0, 0};
 };
 
 }  // namespace chain
