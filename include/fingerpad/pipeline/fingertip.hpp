@@ -69,6 +69,9 @@ struct FingertipOptions {
   StridedView<const Point3<double>> rim_mm = {};  ///< where side dots are fixed; one row
   WrenchOptions<double> wrench = {};
 };
+template <class Reference>
+FingertipOptions(const Camera<double>&, const Absorption<double>&, const Reference&, Index, Index)
+    -> FingertipOptions<Reference>;
 
 /// Red and green channel of a frame, as views.
 template <class Red, class Green>
