@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "fingerpad/force/wrench_result.hpp"
 #include "fingerpad/core/dots.hpp"
+#include "fingerpad/force/wrench_options.hpp"
 #include "recording.hpp"
 
 namespace replay {

@@ -9,7 +9,7 @@
 #include <string>
 
 #include "fingerpad/adapt/opencv.hpp"
-#include "fingerpad/depth/detail/colour_rows.hpp"
+#include "fingerpad/depth/depth.hpp"
 #include "support/catch.hpp"
 #include "support/generators.hpp"
 #include "support/pad.hpp"

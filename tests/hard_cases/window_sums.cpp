@@ -2,13 +2,12 @@
 // SPDX-License-Identifier: MIT
 // Window means at the limits of their arithmetic: largest windows of largest values, sums that run
 // over long columns, images smaller than the window, every way of computing them.
-#include "fingerpad/image/detail/window_sums.hpp"
-
 #include <array>
 #include <cmath>
 #include <limits>
 #include <vector>
 
+#include "fingerpad/depth/depth.hpp"
 #include "support/catch.hpp"
 #include "support/generators.hpp"
 #include "support/numbers.hpp"

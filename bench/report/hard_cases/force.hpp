@@ -10,7 +10,7 @@
 #include <numbers>
 #include <vector>
 
-#include "fingerpad/force/membrane_triangle.hpp"
+#include "fingerpad/force/dot_cell.hpp"
 #include "fingerpad/force/normal_force.hpp"
 #include "fingerpad/force/shear.hpp"
 #include "fingerpad/force/wrench.hpp"

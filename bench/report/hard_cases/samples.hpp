@@ -8,7 +8,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "fingerpad/image/detail/window_sums.hpp"
+#include "fingerpad/depth/depth.hpp"
 #include "fingerpad/foam/taxel_features.hpp"
 #include "row.hpp"
 #include "support/pad.hpp"

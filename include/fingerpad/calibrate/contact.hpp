@@ -13,11 +13,11 @@
 #include <cstddef>
 #include <vector>
 
-#include "fingerpad/contact/detail/camera_projection.hpp"
-#include "fingerpad/image/curvature_map.hpp"
 #include "fingerpad/core/expects.hpp"
 #include "fingerpad/core/grid.hpp"
 #include "fingerpad/core/scalar.hpp"
+#include "fingerpad/image/curvature_map.hpp"
+#include "fingerpad/image/curvature_projection.hpp"
 
 namespace fingerpad {
 inline namespace v0 {

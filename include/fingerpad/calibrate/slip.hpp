@@ -11,10 +11,8 @@
 #include <span>
 #include <vector>
 
-#include "fingerpad/calibrate/slip_measures.hpp"
 #include "fingerpad/calibrate/slip_noise.hpp"
 #include "fingerpad/calibrate/slip_search.hpp"
-#include "fingerpad/calibrate/slip_threshold.hpp"
 #include "fingerpad/core/dots.hpp"
 #include "fingerpad/core/expects.hpp"
 #include "fingerpad/core/grid.hpp"

@@ -3,9 +3,11 @@
 #pragma once
 // What the contact test is made of, beside the curvature statistic: the threshold, where the edge
 // is put, and how specks are cleaned away. Policies; what is not asked for costs nothing.
-#include "fingerpad/image/curvature_ring.hpp"
 #include "fingerpad/core/expects.hpp"
+#include "fingerpad/core/grid.hpp"
 #include "fingerpad/core/scalar.hpp"
+#include "fingerpad/image/curvature_options.hpp"
+#include "fingerpad/image/detail/regions.hpp"
 
 namespace fingerpad {
 inline namespace v0 {
@@ -88,6 +90,47 @@ inline void expects_valid(const Hysteresis& cleaning, const ContactTest& test) {
           "Hysteresis", "loose_per_mm", cleaning.loose_per_mm,
           "finite and >= threshold_per_mm of the test");
 }
+
+namespace detail {
+
+// Which of the regions that the threshold found are contact: prepare() changes the seeds where that
+// depends on all of them, keeps() judges each region.
+
+constexpr auto keep_all = [](const Regions::Region&) { return true; };
+
+template <class Cleaning, class S>
+void prepare(const Cleaning&, const S*, Regions&) {}
+
+template <class S>
+void prepare(const LargestRegion&, const S*, Regions& regions) {
+  Regions::Region largest;
+  regions.for_each(keep_all, [&](const Regions::Region& region) {
+    const bool larger = region.pixels() > largest.pixels();
+    regions.set(larger ? largest : region, Mark::free);
+    largest = larger ? region : largest;
+  });
+  regions.set(largest, Mark::seed);
+}
+
+/// `statistic` has the image's border.
+template <class S>
+void prepare(const Hysteresis& cleaning, const S* statistic, Regions& regions) {
+  const S loose = S(cleaning.loose_per_mm);
+  regions.for_each(keep_all, [&](Regions::Region& region) {
+    regions.grow(region, regions.image().size(), [&](Index at) { return statistic[at] < loose; });
+  });
+  regions.reseed();
+}
+
+template <class Cleaning>
+bool keeps(const Cleaning&, const Regions::Region&) {
+  return true;
+}
+inline bool keeps(const WithoutSpecks& cleaning, const Regions::Region& region) {
+  return region.pixels() >= cleaning.min_px;
+}
+
+}  // namespace detail
 
 }  // namespace v0
 }  // namespace fingerpad

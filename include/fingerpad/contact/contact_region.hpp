@@ -15,17 +15,16 @@
 #include <type_traits>
 #include <vector>
 
-#include "fingerpad/contact/detail/camera_projection.hpp"
-#include "fingerpad/contact/detail/cleaning.hpp"
 #include "fingerpad/contact/contact_policies.hpp"
-#include "fingerpad/image/curvature_map.hpp"
 #include "fingerpad/contact/detail/edge_finder.hpp"
-#include "fingerpad/image/mask_growth.hpp"
 #include "fingerpad/contact/detail/region_measures.hpp"
-#include "fingerpad/image/detail/regions.hpp"
-#include "fingerpad/image/detail/pixel_rays.hpp"
 #include "fingerpad/core/expects.hpp"
 #include "fingerpad/core/grid.hpp"
+#include "fingerpad/image/curvature_map.hpp"
+#include "fingerpad/image/curvature_projection.hpp"
+#include "fingerpad/image/detail/pixel_rays.hpp"
+#include "fingerpad/image/detail/regions.hpp"
+#include "fingerpad/image/mask_growth.hpp"
 #include "fingerpad/optics/camera.hpp"
 
 namespace fingerpad {

@@ -14,32 +14,29 @@
 #include <type_traits>
 #include <utility>
 
-#include "fingerpad/image/detail/pixel_rays.hpp"
-#include "fingerpad/contact/detail/contact_pixels.hpp"
 #include "fingerpad/contact/detail/patch.hpp"
-#include "fingerpad/contact/plane_model.hpp"
 #include "fingerpad/contact/quadric_model.hpp"
-#include "fingerpad/contact/sphere_model.hpp"
+#include "fingerpad/contact/surface_models.hpp"
 #include "fingerpad/contact/surface_points.hpp"
 #include "fingerpad/core/expects.hpp"
 #include "fingerpad/core/grid.hpp"
-#include "fingerpad/optics/camera.hpp"
 #include "fingerpad/core/scalar.hpp"
+#include "fingerpad/image/detail/pixel_rays.hpp"
+#include "fingerpad/optics/camera.hpp"
 
 namespace fingerpad {
 inline namespace v0 {
 
 struct SurfaceOptions {
-  Index min_px =
-      50;  ///< fewer pixels are refused (too_few), >= 1; a model needs its unknowns + 1
+  Index min_px = 50;  ///< fewer pixels are refused (too_few), >= 1; a model needs its unknowns + 1
   Index border_px = 0;  ///< strip along the contact's border to leave out, in [0, 1000]: there the
                         ///< membrane is just leaving the object
 };
 
 /// Refuses what has no meaning (parameter_error).
 inline void expects_valid(const SurfaceOptions& options) {
-  expects(options.min_px >= 1, "SurfaceOptions", "min_px",
-          static_cast<long long>(options.min_px), ">= 1");
+  expects(options.min_px >= 1, "SurfaceOptions", "min_px", static_cast<long long>(options.min_px),
+          ">= 1");
   expects(options.border_px >= 0 && options.border_px <= 1000, "SurfaceOptions", "border_px",
           static_cast<long long>(options.border_px), "in [0, 1000]");
 }

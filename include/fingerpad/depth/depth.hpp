@@ -19,14 +19,13 @@
 #include <utility>
 #include <vector>
 
-#include "fingerpad/depth/detail/colour_rows.hpp"
+#include "fingerpad/core/expects.hpp"
+#include "fingerpad/core/grid.hpp"
 #include "fingerpad/depth/depth_inverse.hpp"
 #include "fingerpad/depth/depth_reference.hpp"
 #include "fingerpad/depth/depth_rows.hpp"
+#include "fingerpad/depth/detail/colour_rows.hpp"
 #include "fingerpad/depth/detail/pad_area.hpp"
-#include "fingerpad/depth/pixel_status.hpp"
-#include "fingerpad/core/expects.hpp"
-#include "fingerpad/core/grid.hpp"
 #include "fingerpad/optics/camera.hpp"
 
 namespace fingerpad {

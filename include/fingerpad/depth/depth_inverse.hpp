@@ -7,13 +7,27 @@
 //   newton_depth   Newton's method on F, bracketed, to the roundoff of any scalar
 //   (the exponential-free form for whole rows is in scatter_polynomial.hpp)
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
 
-#include "fingerpad/depth/absorption.hpp"
-#include "fingerpad/depth/pixel_status.hpp"
 #include "fingerpad/core/scalar.hpp"
+#include "fingerpad/depth/absorption.hpp"
 
 namespace fingerpad {
 inline namespace v0 {
+
+// What became of a pixel. Where the status is not `ok` the depth is NaN; it is never clamped.
+
+enum class PixelStatus : std::uint8_t {
+  ok = 0,            ///< the depth is right
+  below_range = 1,   ///< the colours ask for a depth below zero
+  above_range = 2,   ///< the colours ask for a depth above max_depth_mm
+  not_a_number = 3,  ///< a colour is NaN or infinite
+  dark = 4,          ///< a colour is at or below the dark limit
+  saturated = 5,     ///< a colour is at or above the saturation limit
+  outside_pad = 6,   ///< the reference has no depth here
+};
+inline constexpr std::size_t pixel_status_count = 7;
 
 /// A depth and whether it may be used; depth_mm is NaN unless the status is ok.
 template <scalar S>

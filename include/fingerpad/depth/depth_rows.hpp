@@ -12,7 +12,6 @@
 #include "fingerpad/depth/depth_inverse.hpp"
 #include "fingerpad/depth/depth_reference.hpp"
 #include "fingerpad/depth/detail/invert_row.hpp"
-#include "fingerpad/depth/pixel_status.hpp"
 #include "fingerpad/depth/detail/scatter_polynomial.hpp"
 
 namespace fingerpad {

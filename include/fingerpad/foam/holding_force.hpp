@@ -12,13 +12,57 @@
 //
 // Samples in, commands out: the caller moves the gripper, and tells at each sample what the fingers
 // say of slip, by preslip.hpp or by anything else.
-#include "fingerpad/foam/search_phase.hpp"
+#include <cstdint>
+
 #include "fingerpad/core/expects.hpp"
 #include "fingerpad/core/grid.hpp"
 #include "fingerpad/core/scalar.hpp"
 
 namespace fingerpad {
 inline namespace v0 {
+
+// What the searches for the holding force are told at each sample, and what they say they do.
+
+/// What the fingers say at one sample.
+enum class SlipNews : std::uint8_t {
+  steady,   ///< no sign of slip
+  preslip,  ///< some of the contact begins to slip
+  slipped,  ///< the object slips as a whole, or is gone
+  missing,  ///< nothing can be told: the command stays as it is
+};
+
+enum class SearchPhase : std::uint8_t {
+  settling,  ///< what the last command stirred up dies away; news but `slipped` is not listened to
+  watching,  ///< pre-slip is waited for
+  found,     ///< loosening: the least force is known. The end
+  lifted,    ///< lifting: at the full height. The end
+  at_limit,  ///< the force cannot be lowered or raised further. The end
+  slipped,   ///< the object slipped as a whole. The end
+};
+
+/// "settling", "watching", ...
+constexpr const char* name_of(SearchPhase phase) {
+  switch (phase) {
+    case SearchPhase::settling:
+      return "settling";
+    case SearchPhase::watching:
+      return "watching";
+    case SearchPhase::found:
+      return "found";
+    case SearchPhase::lifted:
+      return "lifted";
+    case SearchPhase::at_limit:
+      return "at limit";
+    case SearchPhase::slipped:
+      return "slipped";
+  }
+  return "unknown";
+}
+
+/// No command changes after these.
+constexpr bool is_end(SearchPhase phase) {
+  return phase != SearchPhase::settling && phase != SearchPhase::watching;
+}
 
 namespace detail {
 /// Whether `step` is a step that ends: at most a million go into the way.

@@ -21,14 +21,12 @@
 #include <cstdint>
 #include <vector>
 
-#include "fingerpad/foam/finger_sample.hpp"
-#include "fingerpad/foam/detail/taxel_health.hpp"
-#include "fingerpad/foam/taxel_options.hpp"
-#include "fingerpad/foam/taxel_window.hpp"
-#include "fingerpad/foam/wave_count.hpp"
 #include "fingerpad/core/expects.hpp"
 #include "fingerpad/core/grid.hpp"
 #include "fingerpad/core/scalar.hpp"
+#include "fingerpad/foam/detail/taxel_health.hpp"
+#include "fingerpad/foam/finger_sample.hpp"
+#include "fingerpad/foam/taxel_options.hpp"
 
 namespace fingerpad {
 inline namespace v0 {

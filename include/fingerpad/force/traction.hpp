@@ -16,16 +16,13 @@
 #include <utility>
 #include <vector>
 
-#include "fingerpad/force/dot_cell.hpp"
-#include "fingerpad/force/detail/frame_loads.hpp"
-#include "fingerpad/force/detail/frame_pulls.hpp"
-#include "fingerpad/force/modulus.hpp"
-#include "fingerpad/force/traction_maps.hpp"
-#include "fingerpad/force/traction_result.hpp"
-#include "fingerpad/force/traction_status.hpp"
 #include "fingerpad/core/dots.hpp"
 #include "fingerpad/core/expects.hpp"
 #include "fingerpad/core/grid.hpp"
+#include "fingerpad/force/detail/frame_loads.hpp"
+#include "fingerpad/force/dot_cell.hpp"
+#include "fingerpad/force/traction_maps.hpp"
+#include "fingerpad/force/traction_result.hpp"
 
 namespace fingerpad {
 inline namespace v0 {

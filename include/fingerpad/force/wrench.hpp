@@ -18,24 +18,23 @@
 #include <numbers>
 #include <vector>
 
-#include "fingerpad/force/compartments.hpp"
-#include "fingerpad/force/height_map.hpp"
-#include "fingerpad/force/least_squares.hpp"
-#include "fingerpad/force/detail/noise.hpp"
-#include "fingerpad/force/pad_heights.hpp"
-#include "fingerpad/force/published_iteration.hpp"
-#include "fingerpad/force/detail/rim.hpp"
-#include "fingerpad/force/rim_balance.hpp"
-#include "fingerpad/force/rim_traction.hpp"
-#include "fingerpad/force/detail/segments.hpp"
-#include "fingerpad/force/detail/tensions.hpp"
-#include "fingerpad/force/wrench_options.hpp"
-#include "fingerpad/force/wrench_result.hpp"
 #include "fingerpad/core/detail/point_algebra.hpp"
 #include "fingerpad/core/dots.hpp"
 #include "fingerpad/core/expects.hpp"
 #include "fingerpad/core/grid.hpp"
 #include "fingerpad/core/scalar.hpp"
+#include "fingerpad/force/compartments.hpp"
+#include "fingerpad/force/detail/noise.hpp"
+#include "fingerpad/force/detail/rim.hpp"
+#include "fingerpad/force/detail/segments.hpp"
+#include "fingerpad/force/detail/tensions.hpp"
+#include "fingerpad/force/height_map.hpp"
+#include "fingerpad/force/least_squares.hpp"
+#include "fingerpad/force/pad_heights.hpp"
+#include "fingerpad/force/published_iteration.hpp"
+#include "fingerpad/force/rim_balance.hpp"
+#include "fingerpad/force/rim_traction.hpp"
+#include "fingerpad/force/wrench_options.hpp"
 
 namespace fingerpad {
 inline namespace v0 {

@@ -2,6 +2,11 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 // Pad and mesh of the six-axis force.
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+#include "fingerpad/core/dots.hpp"
 #include "fingerpad/core/expects.hpp"
 #include "fingerpad/core/grid.hpp"
 #include "fingerpad/core/scalar.hpp"
@@ -43,6 +48,80 @@ void expects_valid(const WrenchOptions<S>& o) {
   expects(is_finite(o.blur_mm) && value(o.blur_mm) >= 0, owner, "blur_mm", o.blur_mm,
           "finite and >= 0");
 }
+
+// What a frame says of force and moment, and how sure that is.
+
+enum class WrenchStatus : std::uint8_t {
+  ok,
+  no_contact,         ///< the membrane touches nothing: force and moment are 0
+  bad_pressure,       ///< not finite, not above 0, or above all reason
+  too_few_side_dots,  ///< more than a third were not found
+  unstretched,        ///< more than a third do not tell a direction: too little stretch, or slack
+  no_shape,           ///< more than a third of the lines run into holes
+  no_level_line,      ///< nowhere between rim and contact is the membrane level, so its shape does
+                      ///< not tell how much it pulls (KnownModulus needs no such line)
+  not_solved,         ///< the equations have no solution, or one that pulls downward
+};
+
+/// "ok", "no contact", ...
+constexpr const char* name_of(WrenchStatus status) {
+  switch (status) {
+    case WrenchStatus::ok:
+      return "ok";
+    case WrenchStatus::no_contact:
+      return "no contact";
+    case WrenchStatus::bad_pressure:
+      return "bad pressure";
+    case WrenchStatus::too_few_side_dots:
+      return "too few side dots";
+    case WrenchStatus::unstretched:
+      return "unstretched";
+    case WrenchStatus::no_shape:
+      return "no shape";
+    case WrenchStatus::no_level_line:
+      return "no level line";
+    case WrenchStatus::not_solved:
+      return "not solved";
+  }
+  return "unknown";
+}
+
+/// Standard deviations of what a wrench is computed from; independent errors.
+template <scalar S = double>
+struct WrenchNoise {
+  S side_dot_mm = S(0);   ///< of each coordinate of each side dot
+  S edge_mm = S(0);       ///< of the place of A_g on each line
+  S pressure_mpa = S(0);  ///< of the pressure
+};
+
+/// All numbers are finite where the status is ok or no_contact, and NaN elsewhere.
+template <scalar S = double>
+struct WrenchResult {
+  bool accepted = false;  ///< false: side dots of another size than the border, or a workspace of
+                          ///< another estimator; nothing was done
+  WrenchStatus status = WrenchStatus::no_contact;
+  Point3<S> force_n = {not_a_number<S>(), not_a_number<S>(), not_a_number<S>()};
+  Point3<S> moment_n_mm = {not_a_number<S>(), not_a_number<S>(), not_a_number<S>()};  ///< about Q
+  /// Of (F_x, F_y, F_z, M_x, M_y, M_z), in N and N mm, to first order in the noise; 0 without. As
+  /// if all pulls were scaled together (with ClosedForm and PublishedIteration: each column by
+  /// itself). LeastSquares evens out noise of the side dots, so its true deviations are smaller,
+  /// those of M_x and M_y much smaller; noise of A_g it spreads further than told.
+  std::array<std::array<S, 6>, 6> covariance{};
+  S summit_area_mm2 = not_a_number<S>();   ///< within A_g, in plan; NaN for KnownModulus
+  S modulus_n_per_mm = not_a_number<S>();  ///< mu t that this frame would have: mean of tension
+                                           ///< over pull; NaN for PublishedDirection
+  S residual = not_a_number<S>();  ///< of eqs. 6 and 7, rms over the segments, as a share of the
+                                   ///< pressure's; NaN where the solver finds no inner tensions
+  Index missing = 0;               ///< side dots that were not found
+  Index unstretched = 0;           ///< side dots that do not tell a direction, slack ones included
+  Index slack = 0;                 ///< side dots shorter than without stress
+  Index outward = 0;       ///< rim points where the membrane bulges past the rim: the camera
+                           ///< does not see it there
+  Index broken_lines = 0;  ///< that ran into holes and were put between their neighbours
+  Index level_lines = 0;   ///< along which the membrane is level at A_g
+
+  bool ok() const { return status == WrenchStatus::ok || status == WrenchStatus::no_contact; }
+};
 
 }  // namespace v0
 }  // namespace fingerpad

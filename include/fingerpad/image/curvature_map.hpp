@@ -11,16 +11,14 @@
 #include <utility>
 #include <vector>
 
-#include "fingerpad/image/detail/curvature_hessian.hpp"
-#include "fingerpad/image/curvature_projection.hpp"
-#include "fingerpad/image/detail/curvature_rows.hpp"
-#include "fingerpad/image/curvature_statistic.hpp"
-#include "fingerpad/image/detail/curvature_stencil.hpp"
-#include "fingerpad/image/curvature_ring.hpp"
 #include "fingerpad/core/detail/aligned_vector.hpp"
 #include "fingerpad/core/expects.hpp"
 #include "fingerpad/core/grid.hpp"
 #include "fingerpad/core/scalar.hpp"
+#include "fingerpad/image/curvature_options.hpp"
+#include "fingerpad/image/curvature_projection.hpp"
+#include "fingerpad/image/detail/curvature_hessian.hpp"
+#include "fingerpad/image/detail/curvature_rows.hpp"
 
 namespace fingerpad {
 inline namespace v0 {

@@ -14,14 +14,13 @@
 #include <cstddef>
 #include <utility>
 
+#include "fingerpad/core/expects.hpp"
+#include "fingerpad/core/grid.hpp"
 #include "fingerpad/motion/contact_map.hpp"
 #include "fingerpad/motion/detail/dot_frame.hpp"
 #include "fingerpad/motion/followed_dot.hpp"
 #include "fingerpad/motion/local_rotation.hpp"
-#include "fingerpad/motion/motion_status.hpp"
 #include "fingerpad/motion/spatial_dots.hpp"
-#include "fingerpad/core/expects.hpp"
-#include "fingerpad/core/grid.hpp"
 
 namespace fingerpad {
 inline namespace v0 {

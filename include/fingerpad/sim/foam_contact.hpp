@@ -12,15 +12,13 @@
 //   Kelvin-Voigt, Maxwell, both in series    creep                      creep.hpp
 //
 // (in detail/foam/). docs/sim/foam_contact.md has what the model can tell and what it cannot.
-#include "fingerpad/sim/contact_friction.hpp"
-#include "fingerpad/sim/creep.hpp"
-#include "fingerpad/sim/detail/free_wave.hpp"
-#include "fingerpad/sim/rider.hpp"
-#include "fingerpad/sim/detail/rider_step.hpp"
-#include "fingerpad/sim/slip_load.hpp"
-#include "fingerpad/sim/two_word.hpp"
 #include "fingerpad/core/expects.hpp"
 #include "fingerpad/core/scalar.hpp"
+#include "fingerpad/sim/contact_friction.hpp"
+#include "fingerpad/sim/creep.hpp"
+#include "fingerpad/sim/mass_spring_damper.hpp"
+#include "fingerpad/sim/slip_load.hpp"
+#include "fingerpad/sim/two_word.hpp"
 
 namespace fingerpad {
 inline namespace v0 {

@@ -9,11 +9,11 @@
 //   y = z^2 / 2p + sin(a t)                       while lifting
 #include <cmath>
 
-#include "fingerpad/sim/contact_friction.hpp"
-#include "fingerpad/sim/rider.hpp"
-#include "fingerpad/sim/two_word.hpp"
 #include "fingerpad/core/expects.hpp"
 #include "fingerpad/core/scalar.hpp"
+#include "fingerpad/sim/contact_friction.hpp"
+#include "fingerpad/sim/mass_spring_damper.hpp"
+#include "fingerpad/sim/two_word.hpp"
 
 namespace fingerpad {
 inline namespace v0 {

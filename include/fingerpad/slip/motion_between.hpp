@@ -7,8 +7,8 @@
 #include <array>
 #include <cmath>
 
-#include "fingerpad/slip/scale.hpp"
 #include "fingerpad/core/expects.hpp"
+#include "fingerpad/slip/object_shift.hpp"
 
 namespace fingerpad {
 inline namespace v0 {
@@ -21,7 +21,9 @@ struct CentralDot {};  ///< the dot nearest to the centroid of the contact
 
 /// Published: the object moves as the reference dot does, turns as its four neighbours do about it,
 /// and zooms as all neighbours in contact do. The noise of those dots is in every dot's answer.
-template <Freedom Free = Freedom::similarity, class Scale = LeastSquaresScale, class Dot = TrackedDot>
+template <Freedom Free = Freedom::similarity,
+          class Scale = LeastSquaresScale,
+          class Dot = TrackedDot>
 struct ReferenceDotMotion {
   Scale zoom = {};
 };

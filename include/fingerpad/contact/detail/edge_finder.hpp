@@ -8,16 +8,16 @@
 #include <cstdint>
 #include <vector>
 
-#include "fingerpad/contact/detail/camera_projection.hpp"
 #include "fingerpad/contact/contact_policies.hpp"
-#include "fingerpad/image/curvature_map.hpp"
-#include "fingerpad/contact/edge_level.hpp"
-#include "fingerpad/image/detail/mask_distance.hpp"
 #include "fingerpad/contact/detail/outside_level.hpp"
-#include "fingerpad/image/detail/regions.hpp"
-#include "fingerpad/image/detail/sparse_mean.hpp"
+#include "fingerpad/contact/edge_level.hpp"
 #include "fingerpad/core/grid.hpp"
 #include "fingerpad/core/scalar.hpp"
+#include "fingerpad/image/curvature_map.hpp"
+#include "fingerpad/image/curvature_projection.hpp"
+#include "fingerpad/image/detail/regions.hpp"
+#include "fingerpad/image/detail/sparse_mean.hpp"
+#include "fingerpad/image/mask_growth.hpp"
 
 namespace fingerpad {
 inline namespace v0 {

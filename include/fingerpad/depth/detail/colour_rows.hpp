@@ -15,14 +15,12 @@
 #include <type_traits>
 #include <vector>
 
-#include "fingerpad/depth/detail/anchor.hpp"
+#include "fingerpad/core/grid.hpp"
 #include "fingerpad/depth/depth_reference.hpp"
 #include "fingerpad/depth/detail/frame_rows.hpp"
 #include "fingerpad/depth/smoothing.hpp"
-#include "fingerpad/depth/detail/valid_pixels.hpp"
 #include "fingerpad/image/detail/row_lanes.hpp"
 #include "fingerpad/image/detail/window_sums.hpp"
-#include "fingerpad/core/grid.hpp"
 
 namespace fingerpad {
 inline namespace v0 {

@@ -3,21 +3,103 @@
 #pragma once
 // Rows of a frame, of any kind of grid, to plain memory and back; and what is wrong with a pixel.
 #include <algorithm>
+#include <cmath>
 #include <concepts>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
 #include <type_traits>
+#include <vector>
 
-#include "fingerpad/depth/depth_reference.hpp"
-#include "fingerpad/depth/pixel_status.hpp"
-#include "fingerpad/image/detail/window_sums.hpp"
 #include "fingerpad/core/grid.hpp"
 #include "fingerpad/core/scalar.hpp"
+#include "fingerpad/depth/absorption.hpp"
+#include "fingerpad/depth/depth_inverse.hpp"
+#include "fingerpad/depth/depth_reference.hpp"
+#include "fingerpad/depth/smoothing.hpp"
+#include "fingerpad/image/detail/lanes.hpp"
+#include "fingerpad/image/detail/window_rows.hpp"
+#include "fingerpad/image/detail/window_sums.hpp"
+#include "fingerpad/optics/camera.hpp"
 
 namespace fingerpad {
 inline namespace v0 {
+
 namespace detail {
+
+// What an anchored mean is anchored at: the colours that the free pad's known shape predicts.
+
+/// Per pixel, what an anchored mean needs of the free pad's depth l0: the residual
+/// r = rise green - kappa red + scattered is F(l0), 0 where the membrane is where it was.
+template <class S>
+struct Anchor {
+  std::vector<S> rise;       ///< exp(delta k l0)
+  std::vector<S> scattered;  ///< g W(l0), grey levels
+  S kappa = S(1);
+};
+
+template <class Smoothing>
+inline constexpr bool is_anchored = false;
+template <class Mean>
+inline constexpr bool is_anchored<Anchored<Mean>> = true;
+
+/// The anchor at the free pad of `reference`. Outside the pad, where nothing is averaged, it holds
+/// harmless numbers.
+template <class S, class Scattering, class Heights>
+Anchor<S> anchor_of(const Camera<double>& camera,
+                    const Absorption<double>& fluid,
+                    const DepthReference<S, Scattering, Heights>& reference) {
+  const double delta = fluid.c_green_per_mm - fluid.c_red_per_mm;
+  Anchor<S> anchor;
+  anchor.kappa = S(fluid.kappa);
+  for (Index i = 0; i < reference.rows; ++i) {
+    for (Index j = 0; j < reference.cols; ++j) {
+      S rise = S(1);
+      S scattered = S(0);
+      if (reference.in_pad(i, j)) {
+        const auto ray = ray_at_pixel(camera, static_cast<double>(i), static_cast<double>(j));
+        const auto pencil = pencil_of<Heights>(camera, ray);
+        const auto l = static_cast<double>(value(reference.depth(i, j)));
+        const S g = reference.scattering(i, j, S(square(ray.plate_rho_mm)));
+        rise = S(std::exp(delta * pencil.path_factor * l));
+        scattered = g * S(scattered_light(l, fluid.c_red_per_mm, pencil));
+      }
+      anchor.rise.push_back(rise);
+      anchor.scattered.push_back(scattered);
+    }
+  }
+  return anchor;
+}
+
+// Which pixels of a row count: those inside the pad with both channels within a closed range.
+
+/// valid[j] becomes nonzero where inside[j] is and both channels are in `range`.
+template <std::unsigned_integral Pixel, int VectorBytes = native_vector_bytes>
+void mark_valid(const ClosedRange<Pixel>& range,
+                const Pixel* red,
+                const Pixel* green,
+                const std::uint8_t* inside,
+                std::uint8_t* valid,
+                Index count) {
+  Index j = 0;
+#if defined(FINGERPAD_HAS_VECTORS)
+  constexpr int n = VectorBytes / static_cast<int>(sizeof(Pixel));
+  using V = lanes<Pixel, n>;
+  const V low = V{} + range.low;
+  const V high = V{} + range.high;
+  for (; j + n <= count; j += n) {
+    const V r = load<Pixel, n>(red + j);
+    const V g = load<Pixel, n>(green + j);
+    const V in_range = V((r >= low) & (r <= high) & (g >= low) & (g <= high));
+    store(valid + j, convert<std::uint8_t, n>(in_range) & load<std::uint8_t, n>(inside + j));
+  }
+#endif
+  for (; j < count; ++j) {
+    const bool in_range = red[j] >= range.low && red[j] <= range.high && green[j] >= range.low &&
+                          green[j] <= range.high;
+    valid[j] = in_range ? inside[j] : std::uint8_t(0);
+  }
+}
 
 /// Why a pixel without a smoothed colour has none: what is wrong with its own.
 template <class Cell>
@@ -124,5 +206,6 @@ void load_pixels(const StridedView<Pixel>& red,
 }
 
 }  // namespace detail
+
 }  // namespace v0
 }  // namespace fingerpad

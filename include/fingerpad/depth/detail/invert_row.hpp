@@ -12,7 +12,7 @@
 #include <limits>
 #include <type_traits>
 
-#include "fingerpad/depth/pixel_status.hpp"
+#include "fingerpad/depth/depth_inverse.hpp"
 #include "fingerpad/depth/detail/scatter_polynomial.hpp"
 #include "fingerpad/image/detail/row_lanes.hpp"
 

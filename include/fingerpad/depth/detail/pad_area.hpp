@@ -7,9 +7,9 @@
 #include <cstdint>
 #include <cstring>
 
-#include "fingerpad/depth/depth_reference.hpp"
-#include "fingerpad/depth/pixel_status.hpp"
 #include "fingerpad/core/grid.hpp"
+#include "fingerpad/depth/depth_inverse.hpp"
+#include "fingerpad/depth/depth_reference.hpp"
 #include "fingerpad/optics/camera.hpp"
 
 namespace fingerpad {

@@ -9,15 +9,196 @@
 #include <cstdint>
 #include <vector>
 
-#include "fingerpad/foam/detail/latest_differing.hpp"
+#include "fingerpad/core/expects.hpp"
 #include "fingerpad/foam/detail/pair_history.hpp"
 #include "fingerpad/foam/pair_rules.hpp"
-#include "fingerpad/foam/detail/wave_table.hpp"
-#include "fingerpad/core/expects.hpp"
 
 namespace fingerpad {
 inline namespace v0 {
+
 namespace detail {
+
+// "Which was the latest sample that differs from this one in every coordinate?", in O(1) and with
+// 2, 5 or 16 samples remembered of any number (1, 2 or 3 coordinates).
+//
+// Why so few are enough. The latest sample of all answers each question but those that share a
+// coordinate with it. For the questions that share its coordinate d, the latest sample that differs
+// there answers, but for those that share one more coordinate with it, and so on: at most one
+// sample for each way to fix coordinates one after the other. A new sample answers first wherever
+// it can; where it cannot, a sample remembered before does, so no other need be kept.
+
+template <std::size_t Coordinates>
+class LatestDiffering {
+  static_assert(Coordinates >= 1 && Coordinates <= 3, "at most three coordinates");
+
+ public:
+  using Point = std::array<std::int64_t, Coordinates>;
+  static constexpr std::int64_t none = -1;
+
+  void clear() { count_ = 0; }
+
+  /// The number of the latest sample that differs from `point` in every coordinate.
+  std::int64_t operator()(const Point& point) const {
+    const std::size_t found = first(entries_, count_, point, all);
+    return found < count_ ? entries_[found].number : none;
+  }
+
+  /// Samples come in the order of their numbers.
+  void add(const Point& point, std::int64_t number) {
+    Selection selection;
+    selection.candidates[0] = {point, number};
+    for (std::size_t i = 0; i < count_; ++i) {
+      selection.candidates[i + 1] = entries_[i];
+    }
+    selection.count = count_ + 1;
+    select({}, 0, selection);
+    count_ = 0;
+    for (std::size_t i = 0; i < selection.count; ++i) {
+      if (selection.is_kept[i]) {
+        entries_[count_++] = selection.candidates[i];
+      }
+    }
+  }
+
+ private:
+  struct Entry {
+    Point point = {};
+    std::int64_t number = none;
+  };
+  static constexpr std::size_t most = Coordinates == 1 ? 2 : Coordinates == 2 ? 5 : 16;
+  static constexpr unsigned all = (1U << Coordinates) - 1U;
+
+  struct Selection {
+    std::array<Entry, most + 1> candidates;  // latest first
+    std::array<bool, most + 1> is_kept = {};
+    std::size_t count = 0;
+  };
+
+  /// The first of `entries` that differs from `point` in the coordinates of the set `fixed`.
+  template <std::size_t N>
+  static std::size_t first(const std::array<Entry, N>& entries,
+                           std::size_t count,
+                           const Point& point,
+                           unsigned fixed) {
+    for (std::size_t i = 0; i < count; ++i) {
+      bool differs = true;
+      for (std::size_t d = 0; d < Coordinates; ++d) {
+        differs = differs && ((fixed >> d & 1U) == 0 || entries[i].point[d] != point[d]);
+      }
+      if (differs) {
+        return i;
+      }
+    }
+    return count;
+  }
+
+  /// Keeps what answers the questions that have the `fixed` coordinates in common with `point`.
+  static void select(const Point& point, unsigned fixed, Selection& selection) {
+    const std::size_t found = first(selection.candidates, selection.count, point, fixed);
+    if (found == selection.count) {
+      return;
+    }
+    selection.is_kept[found] = true;
+    for (std::size_t d = 0; d < Coordinates; ++d) {
+      if ((fixed >> d & 1U) == 0) {
+        Point next = point;
+        next[d] = selection.candidates[found].point[d];
+        select(next, fixed | 1U << d, selection);
+      }
+    }
+  }
+
+  std::array<Entry, most> entries_;  // latest first
+  std::size_t count_ = 0;
+};
+
+// A table from the waves of all fingers to what is remembered of the samples that had them. Open
+// addressing of fixed size with at most half of the places taken; a key is removed with its last
+// sample, and those behind it move up, so that a look-up never gets longer with time.
+
+template <std::size_t Fingers, class Memory>
+class WaveTable {
+ public:
+  using Key = std::array<std::int64_t, Fingers>;
+
+  explicit WaveTable(std::size_t samples) {
+    std::size_t places = 4;
+    while (places < 2 * samples) {
+      places *= 2;
+    }
+    places_.resize(places);
+  }
+
+  void clear() {
+    for (Place& place : places_) {
+      place.samples = 0;
+    }
+  }
+
+  /// What is remembered for this key; null: no sample has it.
+  const Memory* find(const Key& key) const {
+    const Place& place = places_[place_of(key)];
+    return place.samples > 0 ? &place.memory : nullptr;
+  }
+
+  /// The memory of a key that gets one sample more.
+  Memory& add(const Key& key) {
+    Place& place = places_[place_of(key)];
+    if (place.samples == 0) {
+      place.key = key;
+      place.memory.clear();
+    }
+    ++place.samples;
+    return place.memory;
+  }
+
+  /// One sample of the key, added before, is gone.
+  void remove(const Key& key) {
+    std::size_t hole = place_of(key);
+    if (--places_[hole].samples > 0) {
+      return;
+    }
+    for (std::size_t i = next(hole); places_[i].samples > 0; i = next(i)) {
+      const std::size_t from_home = (i - home(places_[i].key)) & mask();
+      const std::size_t from_hole = (i - hole) & mask();
+      if (from_home >= from_hole) {  // its search would stop at the hole
+        places_[hole] = places_[i];
+        places_[i].samples = 0;
+        hole = i;
+      }
+    }
+  }
+
+ private:
+  struct Place {
+    Key key = {};
+    std::int64_t samples = 0;
+    Memory memory;
+  };
+
+  std::size_t mask() const { return places_.size() - 1; }
+  std::size_t next(std::size_t i) const { return (i + 1) & mask(); }
+
+  std::size_t home(const Key& key) const {
+    std::uint64_t mixed = 0;
+    for (const std::int64_t waves : key) {
+      mixed = (mixed ^ static_cast<std::uint64_t>(waves)) * 0x9E3779B97F4A7C15U;  // 2^64 / golden
+      mixed ^= mixed >> 32;
+    }
+    return static_cast<std::size_t>(mixed) & mask();
+  }
+
+  /// Where the key is, or where it would go.
+  std::size_t place_of(const Key& key) const {
+    std::size_t i = home(key);
+    while (places_[i].samples > 0 && places_[i].key != key) {
+      i = next(i);
+    }
+    return i;
+  }
+
+  std::vector<Place> places_;
+};
 
 template <class Rule, std::size_t Fingers>
 class RememberedPairs {
@@ -166,5 +347,6 @@ class RememberedPairs<GraspLift<MovedToOtherCell, Axes>, Fingers> {
 };
 
 }  // namespace detail
+
 }  // namespace v0
 }  // namespace fingerpad

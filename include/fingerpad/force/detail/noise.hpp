@@ -6,13 +6,13 @@
 #include <array>
 #include <cstddef>
 
-#include "fingerpad/force/detail/rim.hpp"
-#include "fingerpad/force/rim_balance.hpp"
-#include "fingerpad/force/wrench_result.hpp"
 #include "fingerpad/core/detail/point_algebra.hpp"
 #include "fingerpad/core/dots.hpp"
 #include "fingerpad/core/grid.hpp"
 #include "fingerpad/core/scalar.hpp"
+#include "fingerpad/force/detail/rim.hpp"
+#include "fingerpad/force/rim_balance.hpp"
+#include "fingerpad/force/wrench_options.hpp"
 
 namespace fingerpad {
 inline namespace v0 {

@@ -11,8 +11,7 @@
 #include <vector>
 
 #include "fingerpad/image/curvature.hpp"
-#include "fingerpad/image/curvature_statistic.hpp"
-#include "fingerpad/image/curvature_ring.hpp"
+#include "fingerpad/image/curvature_options.hpp"
 #include "fingerpad/image/detail/row_lanes.hpp"
 
 namespace fingerpad {

@@ -1,9 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// The fits of tangential force and moment: definitions of calibrate/force.hpp, which includes this
-// file.
+// Calibration of tangential force and moment by look-up: the fits. calibrate/force.hpp tells what
+// they share.
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <span>
@@ -11,11 +12,75 @@
 #include <utility>
 #include <vector>
 
-#include "fingerpad/calibrate/force.hpp"
-#include "fingerpad/calibrate/detail/usable_samples.hpp"
+#include "fingerpad/calibrate/detail/force_models.hpp"
+#include "fingerpad/calibrate/force_samples.hpp"
+#include "fingerpad/calibrate/model_fit.hpp"
+#include "fingerpad/core/expects.hpp"
+#include "fingerpad/core/grid.hpp"
+#include "fingerpad/core/scalar.hpp"
+#include "fingerpad/force/detail/zeros.hpp"
+#include "fingerpad/force/shear_map.hpp"
 
 namespace fingerpad {
 inline namespace v0 {
+
+/// Where an exponent of the normalisation is looked for.
+template <scalar S = double>
+struct ExponentSearch {
+  bool search = true;  ///< false: `given` is kept
+  S given = S(0);
+  S lowest = S(-2);
+  S highest = S(6);
+  int steps = 80;  ///< of the first search, >= 2
+};
+
+/// One half of a Shear: force from displacement, or moment from rotation.
+template <int Degree = 1, scalar S = double>
+struct ShearFit {
+  OddPolynomial<Degree, S> polynomial;
+  S exponent = S(0);
+  std::array<S, static_cast<std::size_t>(Degree)> standard_errors =
+      detail::zeros<S, static_cast<std::size_t>(Degree)>();
+  S exponent_sd = S(0);  ///< 0 if it was given
+  std::array<std::array<S, static_cast<std::size_t>(Degree) + 1>,
+             static_cast<std::size_t>(Degree) + 1>
+      covariance = {};   ///< of the coefficients and, last, the exponent
+  S residual_sd = S(0);  ///< of a component of the force in N, or of the moment in N mm
+  std::vector<ForceResidual<S>> residuals;  ///< of a force x and y in turn
+  S explained = S(0);
+  bool converged = false;
+};
+
+/// Tangential force from displacement, and moment from rotation, both normalised by
+/// (measure / reference) to an exponent. Use the samples with a measure > 0 that have both.
+template <int Degree = 1, scalar S = double>
+ShearFit<Degree, S> fit_tangential_force(std::span<const ForceSample<S>> samples,
+                                         const S& reference,
+                                         const ExponentSearch<S>& exponent = {},
+                                         const FitOptions& options = {});
+template <int Degree = 1, scalar S = double>
+ShearFit<Degree, S> fit_moment(std::span<const ForceSample<S>> samples,
+                               const S& reference,
+                               const ExponentSearch<S>& exponent = {},
+                               const FitOptions& options = {});
+
+/// A linear map of both components with offsets, for axes that are not those of the image. The
+/// normalisation is given; the moment is not fitted.
+template <scalar S = double>
+struct LinearShearFit {
+  LinearShear<S> map;                            ///< its moment is 0
+  std::array<S, 3> x_standard_errors;            ///< of x_by_x, x_by_y, offset_n.x
+  std::array<S, 3> y_standard_errors;            ///< of y_by_x, y_by_y, offset_n.y
+  std::array<std::array<S, 3>, 3> x_covariance;  ///< of these
+  std::array<std::array<S, 3>, 3> y_covariance;
+  Point2<S> residual_sd_n;
+  std::vector<ForceResidual<S>> residuals;  ///< all of x, then all of y
+};
+template <scalar S = double>
+LinearShearFit<S> fit_linear_shear(std::span<const ForceSample<S>> samples,
+                                   const ShearNormalisation<S>& normalisation,
+                                   const FitOptions& options = {});
+
 namespace detail {
 
 /// The search along the exponent, then all together.

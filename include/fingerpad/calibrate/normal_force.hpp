@@ -1,8 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// The fits of the normal force: definitions of calibrate/force.hpp, which includes this file.
+// Calibration of the normal force by look-up: the fits. calibrate/force.hpp tells what they share.
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <span>
@@ -10,11 +11,81 @@
 #include <utility>
 #include <vector>
 
-#include "fingerpad/calibrate/force.hpp"
-#include "fingerpad/calibrate/detail/usable_samples.hpp"
+#include "fingerpad/calibrate/detail/force_models.hpp"
+#include "fingerpad/calibrate/force_samples.hpp"
+#include "fingerpad/calibrate/model_fit.hpp"
+#include "fingerpad/core/expects.hpp"
+#include "fingerpad/core/grid.hpp"
+#include "fingerpad/core/scalar.hpp"
+#include "fingerpad/force/compensation.hpp"
+#include "fingerpad/force/detail/zeros.hpp"
+#include "fingerpad/force/force_curve.hpp"
+#include "fingerpad/force/force_errors.hpp"
 
 namespace fingerpad {
 inline namespace v0 {
+
+/// What a polynomial of the normal force must be, and what else is fitted with it.
+struct NormalForceFitOptions {
+  bool through_zero = true;  ///< no force without contact; the published curves do without
+  bool rising = true;        ///< it never falls from 0 to the largest measure
+  bool displaced = false;    ///< also the compensation for displacement
+  bool turned = false;       ///< also the one for rotation
+  FitOptions fit = {};
+};
+
+template <int Degree = 2, scalar S = double>
+struct NormalForceFit {
+  PolynomialForce<Degree, S> curve;
+  CurveErrors<PolynomialForce<Degree, S>::parameters, S> errors;
+  ScaledCompensation<S> compensation;  ///< 0 where it was not asked for
+  S per_mm_sq_sd = S(0);               ///< standard errors
+  S per_rad_sq_sd = S(0);
+  std::vector<ForceResidual<S>> residuals;
+  S explained = S(0);        ///< share of the measured variance
+  bool held_rising = false;  ///< without `rising` it would have fallen somewhere; the covariance is
+                             ///< then that of the parameters that were left free
+  bool converged = false;    ///< false: Huber's weights still moved in the last pass
+};
+
+/// Normal force from area or depth: least squares for F = P(measure) (1 + a |d|^2 + b theta^2) with
+/// a polynomial P of this degree. Uses the samples with a measure > 0 and a normal force.
+/// Allocates; O(passes samples Degree^2).
+template <int Degree = 2, scalar S = double>
+NormalForceFit<Degree, S> fit_normal_force(std::span<const ForceSample<S>> samples,
+                                           const NormalForceFitOptions& options = {});
+
+/// Eq. 21 or 22 for a curve: F = gain F_plain + per_unit |x| + offset by least squares, with |x|
+/// the displacement in mm or the angle in rad.
+enum class AffineBy { displacement, rotation };
+template <scalar S = double>
+struct AffineForceFit {
+  AffineForce<S> force;
+  std::array<S, 3> standard_errors;            ///< of gain, per_unit and offset_n
+  std::array<std::array<S, 3>, 3> covariance;  ///< of these
+  S residual_sd_n = S(0);
+  std::vector<ForceResidual<S>> residuals;
+};
+template <class Curve, scalar S = typename Curve::number>
+AffineForceFit<S> fit_affine_force(std::span<const ForceSample<S>> samples,
+                                   const Curve& curve,
+                                   AffineBy by,
+                                   const FitOptions& options = {});
+
+/// Elastic pads: r = c f^gamma by least squares in r; the measure of a sample is the radius.
+template <scalar S = double>
+struct PowerLawFit {
+  PowerLawForce<S> curve;
+  CurveErrors<2, S> errors;                 ///< its residual_sd_n is that of forces by the inverse
+  S residual_sd_mm = S(0);                  ///< of radii
+  std::vector<ForceResidual<S>> residuals;  ///< of forces by the inverse
+  S explained = S(0);
+  bool converged = false;
+};
+template <scalar S = double>
+PowerLawFit<S> fit_power_law(std::span<const ForceSample<S>> samples,
+                             const FitOptions& options = {});
+
 namespace detail {
 
 /// A polynomial with some of its columns: first without a compensation, then with it.
