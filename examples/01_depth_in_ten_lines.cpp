@@ -40,5 +40,5 @@ int main(int argc, char** argv) {
   std::printf("%td of %td pixels have a depth; %.2f mm at the center, %.2f mm in the free pad\n",
               result.valid_pixels(), result.pad_pixels, static_cast<double>(center),
               static_cast<double>(shape(240, 240)));
-  return result.accepted && center > 8.0f && center < shape(240, 240) + 0.5f ? 0 : 1;
+  return result.ok() && center > 8.0f && center < shape(240, 240) + 0.5f ? 0 : 1;
 }

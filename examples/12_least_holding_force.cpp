@@ -40,9 +40,9 @@ int main() {
       samples[f] = features(hand.readings(f), hand.time_s(), fingers[f]);
     }
     const bool alarm = preslip(samples, history).is_fresh;
-    command = loosen(hand.has_slipped() ? fingerpad::SlipNews::slipped
-                     : alarm            ? fingerpad::SlipNews::preslip
-                                        : fingerpad::SlipNews::steady,
+    command = loosen(hand.has_slipped() ? fingerpad::SlipSignal::slipped
+                     : alarm            ? fingerpad::SlipSignal::preslip
+                                        : fingerpad::SlipSignal::steady,
                      search);
     if (!warned && command.preslip_force_n > 0) {
       warned = true;

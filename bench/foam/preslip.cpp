@@ -23,11 +23,11 @@
 #include <utility>
 #include <vector>
 
+#include "bench/support/run.hpp"
 #include "examples/grip/foam_fingers.hpp"
-#include "support/foam_signals.hpp"
 #include "fingerpad/foam/holding_force.hpp"
 #include "fingerpad/foam/taxel_features.hpp"
-#include "bench/support/run.hpp"
+#include "support/foam_signals.hpp"
 
 using namespace fingerpad;
 
@@ -277,7 +277,7 @@ const Loosened& loosened() {
       auto search = loosen.start();
       auto& hands = runs.recordings.emplace_back();
       while (!hand.has_slipped()) {
-        hand.advance(loosen(SlipNews::steady, search).force_n);
+        hand.advance(loosen(SlipSignal::steady, search).force_n);
         auto& samples = hands.emplace_back();
         for (std::size_t f = 0; f < 2; ++f) {
           samples[f] = features(hand.readings(f), hand.time_s(), fingers[f]);
@@ -298,7 +298,7 @@ struct Loosening {
 
   LoosenCommand<S> next(const std::vector<Hand>& hands) {
     const bool alarm = watching.next(hands).is_fresh;
-    return loosen(alarm ? SlipNews::preslip : SlipNews::steady, search);
+    return loosen(alarm ? SlipSignal::preslip : SlipSignal::steady, search);
   }
 };
 
@@ -341,7 +341,7 @@ struct Lifting {
     if (is_end(state.command().phase)) {
       state = lift.start();
     }
-    return lift(++k % 25 == 0 ? SlipNews::preslip : SlipNews::steady, state);
+    return lift(++k % 25 == 0 ? SlipSignal::preslip : SlipSignal::steady, state);
   }
 };
 

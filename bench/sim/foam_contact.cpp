@@ -3,10 +3,11 @@
 // The foam contact model ("ns/pixel" is per call, or per step). "textbook": the underdamped
 // solution by exp, cos and sin as they are. "printed": both integrals of eq. 10 by the trapezoidal
 // rule, from 0; eq. 9 with its constants exchanged. Errors:
-//   closed form        share of the amplitude, of an undamped rider at 1000 times up to 10^4 and of
+//   closed form        share of the amplitude, of an undamped oscillator at 1000 times up to 10^4
+//   and of
 //                      the row's own up to 20
 //   ramp load          mm, at 1000 times up to 40
-//   steps              share, each 100th of 10^5 steps of 0.1, of an undamped rider or of the
+//   steps              share, each 100th of 10^5 steps of 0.1, of an undamped oscillator or of the
 //   strain
 //                      of a held stress
 //   lift               mm, at ten times up to 40; the time is that of the whole lift
@@ -46,26 +47,26 @@ struct Times {
 };
 
 template <class S>
-S textbook(const Rider<S>& rider, const S& time) {
-  const S s = rider.damping_n_s_per_mm / (2 * rider.mass_n_s2_per_mm);
-  const S w = std::sqrt(rider.stiffness_n_per_mm / rider.mass_n_s2_per_mm - s * s);
+S textbook(const MassSpringDamper<S>& oscillator, const S& time) {
+  const S s = oscillator.damping_n_s_per_mm / (2 * oscillator.mass_n_s2_per_mm);
+  const S w = std::sqrt(oscillator.stiffness_n_per_mm / oscillator.mass_n_s2_per_mm - s * s);
   return std::exp(-s * time) * (std::cos(w * time) + s / w * std::sin(w * time));
 }
 
-/// of(rider, time): the position after a start at 1.
+/// of(oscillator, time): the position after a start at 1.
 template <class S, class Solution>
 void add_closed_form(const std::string& name, double damping, const Solution& of) {
   const auto times = std::make_shared<Times<S>>();
-  const Rider<S> rider{S(1), static_cast<S>(damping), S(1)};
+  const MassSpringDamper<S> oscillator{S(1), static_cast<S>(damping), S(1)};
   bench::add(
-      "closed form/" + in<S>(name), 1, sizeof(rider),
-      [=] { benchmark::DoNotOptimize(of(rider, times->next())); },
+      "closed form/" + in<S>(name), 1, sizeof(oscillator),
+      [=] { benchmark::DoNotOptimize(of(oscillator, times->next())); },
       [=](auto& counters) {
-        const Rider<S> undamped{S(0.37), S(0), S(2.9)};
-        const auto errors = [&](const Rider<S>& of_rider, double step) {
-          const Rider<Long> truth{static_cast<Long>(of_rider.mass_n_s2_per_mm),
-                                  static_cast<Long>(of_rider.damping_n_s_per_mm),
-                                  static_cast<Long>(of_rider.stiffness_n_per_mm)};
+        const MassSpringDamper<S> undamped{S(0.37), S(0), S(2.9)};
+        const auto errors = [&](const MassSpringDamper<S>& of_rider, double step) {
+          const MassSpringDamper<Long> truth{static_cast<Long>(of_rider.mass_n_s2_per_mm),
+                                             static_cast<Long>(of_rider.damping_n_s_per_mm),
+                                             static_cast<Long>(of_rider.stiffness_n_per_mm)};
           std::vector<double> all;
           for (int k = 0; k < 1000; ++k) {
             const S t = static_cast<S>(step * k);
@@ -75,14 +76,14 @@ void add_closed_form(const std::string& name, double damping, const Solution& of
           return all;
         };
         bench::note_errors(counters, "undamped", "share", errors(undamped, 10));
-        bench::note_errors(counters, "damped", "share", errors(rider, 0.02));
+        bench::note_errors(counters, "damped", "share", errors(oscillator, 0.02));
       });
 }
 
 template <class S>
 void add_closed_forms() {
-  const auto ours = [](const Rider<S>& rider, const S& t) {
-    return free_motion(rider, {S(1), S(0)}, t).position_mm;
+  const auto ours = [](const MassSpringDamper<S>& oscillator, const S& t) {
+    return free_motion(oscillator, {S(1), S(0)}, t).position_mm;
   };
   add_closed_form<S>("published: textbook, damping ratio 0.5", 1, &textbook<S>);
   add_closed_form<S>("free_motion, damping ratio 0.5", 1, ours);
@@ -94,13 +95,14 @@ template <class S>
 S printed_response(const RampLoad<S>& load, const S& time) {
   const Motion<S> at_start = printed_particular_solution(load, S(0));
   return printed_particular_solution(load, time).position_mm +
-         free_motion(Rider<S>{}, {-at_start.position_mm, -at_start.velocity_mm_per_s}, time)
+         free_motion(MassSpringDamper<S>{}, {-at_start.position_mm, -at_start.velocity_mm_per_s},
+                     time)
              .position_mm;
 }
 
 template <class S>
 S response(const RampLoad<S>& load, const S& time) {
-  return ramp_response(Rider<S>{}, load, Motion<S>{}, time).position_mm;
+  return ramp_response(MassSpringDamper<S>{}, load, Motion<S>{}, time).position_mm;
 }
 
 template <class S, class Solution>
@@ -157,13 +159,13 @@ void add_hold(const std::string& name, bool jitter) {
     }
   };
   const bench::Memory memory;
-  const auto d = std::make_shared<Data>(Data{Hold(Rider<S>{}, S(0.1))});
+  const auto d = std::make_shared<Data>(Data{Hold(MassSpringDamper<S>{}, S(0.1))});
   add_steps<S>(
       name, memory.bytes(),
       [=](const S& before, const S& after) { return d->next(before, after, jitter); },
       [=] {
         const auto undamped =
-            std::make_shared<Data>(Data{Hold(Rider<S>{S(1), S(0), S(1)}, S(0.1))});
+            std::make_shared<Data>(Data{Hold(MassSpringDamper<S>{S(1), S(0), S(1)}, S(0.1))});
         return [=] { return undamped->next(S(0), S(0), jitter); };
       },
       [](const S& found, Long time) { return off(found, std::cos(time)); });
@@ -250,7 +252,7 @@ void add_lift(const std::string& name, int steps, const Lift& of) {
 template <class Words>
 void add_causal(const std::string& name, int steps) {
   add_lift(name, steps, [](const LiftLoad<double>& load, double time, int count) {
-    return causal_response<Words>(Rider<double>{}, load, time, count).position_mm;
+    return causal_response<Words>(MassSpringDamper<double>{}, load, time, count).position_mm;
   });
 }
 

@@ -13,10 +13,10 @@
 #include <string>
 #include <vector>
 
+#include "bench/support/run.hpp"
 #include "examples/grip/camera.hpp"
 #include "fingerpad/slip/friction_ratio.hpp"
 #include "fingerpad/slip/stick_ratio.hpp"
-#include "bench/support/run.hpp"
 
 using namespace fingerpad;
 
@@ -43,8 +43,8 @@ struct Gripping {
   Calls calls = {};
 
   S next() {
-    const auto news = calls.k % 4 == 0 ? RatioNews::fresh : RatioNews::unmoved;
-    const S force = control(S(calls.next()), news, S(0.01), state).force_n;
+    const auto update = calls.k % 4 == 0 ? RatioUpdate::fresh : RatioUpdate::unmoved;
+    const S force = control(S(calls.next()), update, S(0.01), state).force_n;
     if (calls.k % 64 == 0) {
       state.reset();
     }
@@ -110,7 +110,8 @@ Outcome run(const GripLaw<S>* law, double friction, double rise_n_per_s) {
     load.advance((std::min)(first_n + rise_n_per_s * time_s, last_n), force_n, frame_s);
     camera.look_at(load);
     const auto stick = stick_ratio(camera.dots(), camera.touch(), states_out, stick_state);
-    const auto grip = control(S(stick.stick_ratio), news_of(stick.status), S(frame_s), grip_state);
+    const auto grip =
+        control(S(stick.stick_ratio), update_of(stick.status), S(frame_s), grip_state);
     force_n = law != nullptr ? double(grip.force_n) : force_n;
   }
   return {load.slip_mm(), force_n * friction / last_n - 1};

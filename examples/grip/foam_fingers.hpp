@@ -7,8 +7,8 @@
 // Each taxel carries its share of the grip, largest in the middle of the contact (Hertz), bears
 // friction K N^beta, and holds the object by a spring along the finger. The object sinks until the
 // springs carry its weight; where a spring would pull harder than friction bears, the taxel slips
-// on. A taxel that slips shakes: its speed is the load of a rider on the foam, whose motion is felt
-// as normal force.
+// on. A taxel that slips shakes: its speed is the load of a oscillator on the foam, whose motion is
+// felt as normal force.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -16,8 +16,8 @@
 #include <random>
 #include <vector>
 
-#include "fingerpad/sim/foam_contact.hpp"
 #include "fingerpad/core/grid.hpp"
+#include "fingerpad/sim/foam_contact.hpp"
 
 namespace grip {
 
@@ -28,10 +28,10 @@ struct FoamFingersSetup {
   double first_force_n = 10;                                 // that each finger presses with
   double weight_n = 4.1;                                     // of the object
   fingerpad::PolymerFriction<> friction = {.factor = 0.35};  // of one taxel
-  double contact_radius_mm = 22;                 // at the first force; goes with its cube root
-  double shear_stiffness_n_per_mm = 0.05;        // of one taxel
-  fingerpad::Rider<> rider = {1e-5, 6e-5, 0.3};  // about 28 Hz
-  double drag_n_s_per_mm = 0.03;                 // load on the rider for each mm/s of slip
+  double contact_radius_mm = 22;           // at the first force; goes with its cube root
+  double shear_stiffness_n_per_mm = 0.05;  // of one taxel
+  fingerpad::MassSpringDamper<> oscillator = {1e-5, 6e-5, 0.3};  // about 28 Hz
+  double drag_n_s_per_mm = 0.03;  // load on the oscillator for each mm/s of slip
   double counts_per_n = 800;
   double noise_counts = 4;
   double rate_hz = 100;
@@ -43,7 +43,7 @@ class FoamFingers {
  public:
   FoamFingers(const FoamFingersSetup& setup, unsigned seed)
       : setup_(setup),
-        hold_(setup.rider, 1 / setup.rate_hz),
+        hold_(setup.oscillator, 1 / setup.rate_hz),
         force_n_(setup.first_force_n),
         random_(seed) {
     for (Finger& finger : fingers_) {
@@ -53,7 +53,7 @@ class FoamFingers {
       finger.center_y_mm = place(random_);
       finger.slip_mm.assign(taxels(), 0.0);
       finger.load_n.assign(taxels(), 0.0);
-      finger.riders.assign(taxels(), hold_.start());
+      finger.oscillators.assign(taxels(), hold_.start());
       finger.readings.assign(taxels(), 0.0);
     }
     for (int k = 0; k < 100; ++k) {  // let it come to rest
@@ -87,8 +87,8 @@ class FoamFingers {
     double sunk_mm = 0;  // the object, against the finger
     bool has_slipped = false;
     std::vector<double> slip_mm;  // of the object over each taxel
-    std::vector<double> load_n;   // on each rider
-    std::vector<fingerpad::FirstOrderHold<>::State> riders;
+    std::vector<double> load_n;   // on each oscillator
+    std::vector<fingerpad::FirstOrderHold<>::State> oscillators;
     std::vector<double> readings;
   };
 
@@ -123,8 +123,8 @@ class FoamFingers {
       const double slipped = std::max(0.0, (pull - bears) / setup_.shear_stiffness_n_per_mm);
       finger.slip_mm[k] += slipped;
       const double load = normal[k] > 0 ? setup_.drag_n_s_per_mm * slipped * setup_.rate_hz : 0.0;
-      const double shakes = setup_.rider.stiffness_n_per_mm *
-                            hold_(finger.load_n[k], load, finger.riders[k]).position_mm;
+      const double shakes = setup_.oscillator.stiffness_n_per_mm *
+                            hold_(finger.load_n[k], load, finger.oscillators[k]).position_mm;
       finger.load_n[k] = load;
       const double felt = normal[k] > 0 ? normal[k] + shakes : 0.0;
       finger.readings[k] =

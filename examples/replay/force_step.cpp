@@ -7,8 +7,8 @@
 
 #include "fingerpad/adapt/opencv.hpp"
 #include "fingerpad/force/normal_force.hpp"
-#include "fingerpad/motion/object_motion.hpp"
 #include "fingerpad/force/shear.hpp"
+#include "fingerpad/motion/object_motion.hpp"
 
 namespace replay {
 namespace {
@@ -70,7 +70,7 @@ class LookUp {
 
   ForceFrame operator()(const ContactResult& contact, const FrameDots& dots) {
     ForceFrame frame;
-    if (!contact.accepted) {
+    if (!contact.ok()) {
       return frame;
     }
     if (meter_) {

@@ -201,8 +201,8 @@ void FramesCsv::write(const FrameRow& row) {
   const auto& contact = row.contact;
   stream_ << row.frame << ',' << row.time_s << ',' << cell(row.valid_share) << ','
           << cell(row.depth_mean_mm) << ',' << cell(row.depth_max_mm) << ','
-          << cell(contact.accepted ? contact.area_mm2 : none) << ',' << cell(contact.depth_mm)
-          << ',' << cell(contact.center_mm.x) << ',' << cell(contact.center_mm.y);
+          << cell(contact.ok() ? contact.area_mm2 : none) << ',' << cell(contact.depth_mm) << ','
+          << cell(contact.center_mm.x) << ',' << cell(contact.center_mm.y);
   const auto& motion = row.motion;
   if (motion.reference.exists()) {
     stream_ << ',' << motion.reference.row << ',' << motion.reference.col;

@@ -61,7 +61,7 @@ struct FrameRow {
   fingerpad::WrenchResult<double> wrench;  ///< not ok(), and empty in the file: no answer
   double pressure_mpa = 0;                 ///< NaN: not known
 
-  bool has_wrench() const { return wrench.accepted && wrench.ok(); }
+  bool has_wrench() const { return wrench.ok() && wrench.ok(); }
 };
 
 class FramesCsv {

@@ -206,9 +206,9 @@ Loosening loosened(const grip::FoamFingersSetup& object, unsigned seed) {
       samples[f] = features(hand.readings(f), hand.time_s(), fingers[f]);
     }
     const bool alarm = rule(samples, history).is_fresh;
-    command = loosen(hand.has_slipped() ? SlipNews::slipped
-                     : alarm            ? SlipNews::preslip
-                                        : SlipNews::steady,
+    command = loosen(hand.has_slipped() ? SlipSignal::slipped
+                     : alarm            ? SlipSignal::preslip
+                                        : SlipSignal::steady,
                      search);
   }
   return {command, hand.force_n()};

@@ -70,7 +70,7 @@ struct Case {
   bool reads(const Depth& from) {
     Image<std::uint8_t> out(rows_of_map, cols_of_map, 3);
     const ContactResult r = region(from, out, workspace);
-    return r.accepted && out.cells == mask.cells && r.area_mm2 == result.area_mm2 &&
+    return r.ok() && out.cells == mask.cells && r.area_mm2 == result.area_mm2 &&
            r.depth_mm == result.depth_mm && r.unknown_px == result.unknown_px;
   }
   template <class Depth>
@@ -82,7 +82,7 @@ struct Case {
   bool writes(Mask&& to) {
     const auto view = as_view(to);
     using Cell = cell_t<Mask>;
-    if (!region(depth, to, workspace).accepted) {
+    if (!region(depth, to, workspace).ok()) {
       return false;
     }
     for (Index i = 0; i < rows_of_map; ++i) {

@@ -102,7 +102,7 @@ struct Case {
   bool writes(Depth&& depth, Status&& status) {
     fill_from(depth, Image<float>(pad.rows, pad.cols, -1));
     const auto result = estimator(frame.red, frame.green, depth, status, workspace);
-    return result.accepted && holds(depth, expected.depth_mm) && holds(status, expected.status);
+    return result.ok() && holds(depth, expected.depth_mm) && holds(status, expected.status);
   }
 };
 
@@ -225,7 +225,7 @@ TEST_CASE("depth and status are written into every grid", "[adapt][depth]") {
 
   // a double grid takes what float computes
   RowMajor<double> wider(rows, cols);
-  CHECK(c.estimator(c.frame.red, c.frame.green, wider, status, c.workspace).accepted);
+  CHECK(c.estimator(c.frame.red, c.frame.green, wider, status, c.workspace).ok());
   const RowMajor<float> narrowed = wider.cast<float>();
   CHECK(holds(narrowed, c.expected.depth_mm));
 }

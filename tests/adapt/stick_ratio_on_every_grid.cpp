@@ -72,7 +72,7 @@ struct Case {
     auto copy = state;
     const auto r = ratio(from, flags, to, copy);
     const auto view = as_view(to);
-    bool same = r.accepted && r.status == result.status && r.stick_ratio == result.stick_ratio &&
+    bool same = r.accepted() && r.status == result.status && r.stick_ratio == result.stick_ratio &&
                 r.angle_rad == result.angle_rad && r.scale == result.scale &&
                 r.furthest_px == result.furthest_px && r.reference_dot == result.reference_dot;
     for (Index i = 0; i < n; ++i) {

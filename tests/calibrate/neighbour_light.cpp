@@ -127,7 +127,7 @@ TEST_CASE("calibration of neighbour light: compensation with the fit removes the
                                                                        reference);
   auto workspace = compensation.workspace();
   Map out(64, 80);
-  REQUIRE(compensation(measured[0], out, workspace).accepted);
+  REQUIRE(compensation(measured[0], out, workspace).ok());
   for (Index k = 0; k < out.size(); ++k) {
     if (!std::isnan(truth[0](k))) {
       CHECK(out(k) == Approx((std::max)(truth[0](k), 0.0)).margin(1e-9));

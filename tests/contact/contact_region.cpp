@@ -48,7 +48,7 @@ Found find(const CameraType& camera,
   auto workspace = region.workspace();
   Found found{{}, Image<Touch>(depth.rows(), depth.cols(), Touch::unknown)};
   found.result = region(depth, found.mask, workspace);
-  REQUIRE(found.result.accepted);
+  REQUIRE(found.result.ok());
   return found;
 }
 
@@ -521,7 +521,7 @@ TEST_CASE("a grid or a workspace of another size is not accepted", "[contact_reg
   const auto refused = [&](const Image<float>& from, Image<std::uint8_t> to, auto& memory) {
     std::fill(to.cells.begin(), to.cells.end(), std::uint8_t(7));
     const ContactResult r = region(from, to, memory);
-    return !r.accepted && r.contact_px == 0 && r.unknown_px == 0 &&
+    return !r.ok() && r.contact_px == 0 && r.unknown_px == 0 &&
            count(to, std::uint8_t(7)) == to.rows() * to.cols();
   };
   const Image<std::uint8_t> mask(60, 64);

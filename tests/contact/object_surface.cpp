@@ -70,8 +70,7 @@ struct Object {
   double miss(const Point& p) const {
     const Point q = detail::difference(p, foot);
     const double along = dot(n, q);
-    return along - 0.5 * (k1 * square(dot(a, q)) + k2 * square(dot(b, q))) -
-           g * square(along);
+    return along - 0.5 * (k1 * square(dot(a, q)) + k2 * square(dot(b, q))) - g * square(along);
   }
   /// Depth at which the pixel's ray, a straight line, meets it near the foot: `miss` is quadratic.
   template <class CameraType>
@@ -139,7 +138,7 @@ const std::vector<Point> normals = {{0, 0, 1}, {0.2, -0.1, 1}, {-0.5, 0.4, 1}};
 
 template <class Result>
 bool is_empty(const Result& r) {
-  return !r.accepted && !r.ok() && r.pixels == 0 && std::isnan(r.rms_mm);
+  return !r.accepted() && !r.ok() && r.pixels == 0 && std::isnan(r.rms_mm);
 }
 
 std::string refusal(Index r, Index c, const SurfaceOptions& options, double pitch_mm = 0.1) {
@@ -460,7 +459,7 @@ TEST_CASE("object surface: too few pixels", "[surface]") {
   Mask mask(height, width, 0);
   const auto status = [&](auto model, Index least) {
     const auto r = fit<decltype(model)>(camera, depth, mask, {.min_px = least});
-    CHECK(r.accepted);
+    CHECK(r.accepted());
     CHECK(r.ok() == std::isfinite(r.rms_mm));
     return r.status;
   };

@@ -179,7 +179,7 @@ TEST_CASE("a frame of another size is refused and nothing written", "[depth]") {
     Image<float> depth(depth_rows, c, -7);
     Image<PixelStatus> status(r, status_cols, PixelStatus::dark);
     const auto result = estimator(red, green, depth, status, workspace);
-    CHECK_FALSE(result.accepted);
+    CHECK_FALSE(result.ok());
     CHECK(result.valid_pixels() == 0);
     CHECK(depth.cells == Image<float>(depth_rows, c, -7).cells);
     CHECK(status.cells == Image<PixelStatus>(r, status_cols, PixelStatus::dark).cells);
@@ -192,17 +192,17 @@ TEST_CASE("a frame of another size is refused and nothing written", "[depth]") {
   const auto untouched = e;
   const std::pair<Index, Index> no_bands[] = {{-1, r}, {0, r + 1}, {4, 3}};
   for (const auto& [first, last] : no_bands) {
-    CHECK_FALSE(estimator.band(first, last, good.red, good.green, e.depth_mm, e.status, workspace)
-                    .accepted);
+    CHECK_FALSE(
+        estimator.band(first, last, good.red, good.green, e.depth_mm, e.status, workspace).ok());
   }
   // the workspace of an estimator for another pad
   auto foreign =
       fine_pad().estimator<BoxMean, ExponentialFree<>, float>().workspace<std::uint8_t>();
-  CHECK_FALSE(estimator(good.red, good.green, e.depth_mm, e.status, foreign).accepted);
+  CHECK_FALSE(estimator(good.red, good.green, e.depth_mm, e.status, foreign).ok());
   CHECK(e.depth_mm.cells == untouched.depth_mm.cells);
   CHECK(e.status.cells == untouched.status.cells);
   // and the workspace is none the worse for it
-  CHECK(estimator(good.red, good.green, e.depth_mm, workspace).accepted);
+  CHECK(estimator(good.red, good.green, e.depth_mm, workspace).ok());
 }
 
 TEST_CASE("threads may share an estimator and a frame", "[depth]") {

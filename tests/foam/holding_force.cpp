@@ -20,45 +20,45 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double none = std::numeric_limits<double>::quiet_NaN();
 
 /// '-' steady, 'p' pre-slip, 'x' slipped, 'm' missing
-SlipNews news_of(char letter) {
-  return letter == 'p'   ? SlipNews::preslip
-         : letter == 'x' ? SlipNews::slipped
-         : letter == 'm' ? SlipNews::missing
-                         : SlipNews::steady;
+SlipSignal update_of(char letter) {
+  return letter == 'p'   ? SlipSignal::preslip
+         : letter == 'x' ? SlipSignal::slipped
+         : letter == 'm' ? SlipSignal::missing
+                         : SlipSignal::steady;
 }
 
-/// The command after the last of the news.
+/// The command after the last of the signal.
 template <class Search>
-auto tell(const Search& search, typename Search::State& state, const std::string& news) {
+auto tell(const Search& search, typename Search::State& state, const std::string& signal) {
   auto command = state.command();
-  for (const char letter : news) {
-    command = search(news_of(letter), state);
+  for (const char letter : signal) {
+    command = search(update_of(letter), state);
   }
   return command;
 }
 template <class Search>
-auto told(const Search& search, const std::string& news) {
+auto told(const Search& search, const std::string& signal) {
   auto state = search.start();
-  return tell(search, state, news);
+  return tell(search, state, signal);
 }
 
-/// The phase after each of the news: s(ettling), w(atching), F(ound), L(ifted), A(t limit), X.
+/// The phase after each of the signal: s(ettling), w(atching), F(ound), L(ifted), A(t limit), X.
 template <class Search>
-std::string phases(const Search& search, const std::string& news) {
+std::string phases(const Search& search, const std::string& signal) {
   auto state = search.start();
   std::string all;
-  for (const char letter : news) {
-    all += "swFLAX"[static_cast<int>(search(news_of(letter), state).phase)];
+  for (const char letter : signal) {
+    all += "swFLAX"[static_cast<int>(search(update_of(letter), state).phase)];
   }
   return all;
 }
-/// The force after each of the news; plans here keep it a digit.
+/// The force after each of the signal; plans here keep it a digit.
 template <class Search>
-std::string forces(const Search& search, const std::string& news) {
+std::string forces(const Search& search, const std::string& signal) {
   auto state = search.start();
   std::string all;
-  for (const char letter : news) {
-    all += std::to_string(std::lround(search(news_of(letter), state).force_n));
+  for (const char letter : signal) {
+    all += std::to_string(std::lround(search(update_of(letter), state).force_n));
   }
   return all;
 }
@@ -139,13 +139,13 @@ TEST_CASE("loosening: settles, watches, loosens, down to the least force", "[hol
 
 TEST_CASE("loosening: pre-slip ends it, with the margin given back", "[holding_force]") {
   auto plan = short_plan();
-  const auto found = [&](const std::string& news) {
-    return told(LoosenUntilPreslip<double>(plan), news);
+  const auto found = [&](const std::string& signal) {
+    return told(LoosenUntilPreslip<double>(plan), signal);
   };
   // at each of the three samples that are watched
-  for (const char* const news : {"-------p", "--------p", "---------p"}) {
-    CAPTURE(news);
-    const auto at_8 = found(news);
+  for (const char* const signal : {"-------p", "--------p", "---------p"}) {
+    CAPTURE(signal);
+    const auto at_8 = found(signal);
     CHECK(at_8.phase == SearchPhase::found);
     CHECK(at_8.preslip_force_n == 8);
     CHECK(at_8.force_n == 9);
@@ -178,9 +178,9 @@ TEST_CASE("loosening: while the last step settles, only a slip is listened to", 
              "pp---"
              "pp---")
             .steps == 2);
-  for (const char* const news : {"x", "-x", "--x", "-----x", "-----px", "--------x"}) {
-    CAPTURE(news);
-    const auto end = told(search, news);
+  for (const char* const signal : {"x", "-x", "--x", "-----x", "-----px", "--------x"}) {
+    CAPTURE(signal);
+    const auto end = told(search, signal);
     CHECK(end.phase == SearchPhase::slipped);
     CHECK(end.force_n == 9);  // gripped as at first
     CHECK(std::isnan(end.preslip_force_n));
@@ -254,20 +254,20 @@ TEST_CASE("loosening: forces do not collect rounding, and the last step may be s
   const LoosenUntilPreslip<double> search(plan);
   auto state = search.start();
   for (int k = 1; k <= 97; ++k) {
-    const auto now = search(SlipNews::steady, state);
+    const auto now = search(SlipSignal::steady, state);
     CHECK(now.force_n == 10 - k * 0.1);
     CHECK(now.steps == k);
   }
-  CHECK(search(SlipNews::steady, state).force_n == 0.25);
+  CHECK(search(SlipSignal::steady, state).force_n == 0.25);
   CHECK(state.command().phase == SearchPhase::settling);
-  CHECK(search(SlipNews::steady, state).phase == SearchPhase::at_limit);
+  CHECK(search(SlipSignal::steady, state).phase == SearchPhase::at_limit);
   CHECK(state.command().steps == 98);
   plan.step_n = 1000;  // one step to the least
   CHECK(told(LoosenUntilPreslip<double>(plan), "-").force_n == 0.25);
   CHECK(told(LoosenUntilPreslip<double>(plan), "--").phase == SearchPhase::at_limit);
 }
 
-TEST_CASE("searches: news that is missing changes nothing", "[holding_force]") {
+TEST_CASE("searches: signal that is missing changes nothing", "[holding_force]") {
   const LoosenUntilPreslip<double> loosen(short_plan());
   CHECK(phases(loosen,
                "m-m-m-mm--m"
@@ -333,7 +333,7 @@ TEST_CASE("lifting: up in steps to the full height", "[holding_force]") {
   plan.height_step_mm = 0.1;
   auto slow = LiftWithRegrip<double>(plan).start();
   for (int k = 1; k < 100; ++k) {
-    CHECK(LiftWithRegrip<double>(plan)(SlipNews::steady, slow).height_mm == k * 0.1);
+    CHECK(LiftWithRegrip<double>(plan)(SlipSignal::steady, slow).height_mm == k * 0.1);
   }
 }
 
@@ -386,10 +386,10 @@ TEST_CASE("lifting: pre-slip holds the lift and tightens the grip", "[holding_fo
 
 TEST_CASE("lifting: an object that slips is put down at once", "[holding_force]") {
   const LiftWithRegrip<double> search(short_lift());
-  for (const char* const news : {"x", "-x", "-px", "-p-x", "--p--x"}) {
-    CAPTURE(news);
-    const std::string before(news, std::string(news).size() - 1);
-    const auto end = told(search, news);
+  for (const char* const signal : {"x", "-x", "-px", "-p-x", "--p--x"}) {
+    CAPTURE(signal);
+    const std::string before(signal, std::string(signal).size() - 1);
+    const auto end = told(search, signal);
     CHECK(end.phase == SearchPhase::slipped);
     CHECK(end.height_mm == 0);
     CHECK(end.force_n == told(search, before).force_n);
@@ -476,7 +476,7 @@ TEMPLATE_TEST_CASE("searches: in any number",
   const LoosenUntilPreslip<S> loosen;
   auto loosening = loosen.start();
   for (int k = 0; k < 32 * 7; ++k) {
-    loosen(SlipNews::steady, loosening);
+    loosen(SlipSignal::steady, loosening);
   }
   CHECK(number(loosening.command().force_n) == 8.25);
   auto end = tell(loosen, loosening, std::string(16, '-') + "p");

@@ -92,7 +92,7 @@ void check_single_frames(const Samples& samples, const Forces& forces) {
   }
 }
 void check_counts(const SampleCounts& counts, const Samples& samples) {
-  CHECK(counts.accepted);
+  CHECK(counts.ok());
   CHECK(counts.not_finite == samples.bad);
   CHECK(counts.beyond_range == samples.beyond);
 }
@@ -568,7 +568,7 @@ TEST_CASE("normal force: batches of measures alone, of integers and in other num
   const Samples samples(131);
   test::Image<double> forces(131, 1);
   const auto counts = by_area.for_samples(samples.rows, forces);
-  CHECK(counts.accepted);
+  CHECK(counts.ok());
   Index bad = 0, beyond = 0;
   for (Index i = 0; i < 131; ++i) {
     const auto one = by_area(samples.rows(i, 0));
@@ -599,7 +599,7 @@ TEST_CASE("normal force: batches of other sizes are not touched", "[normal_force
   test::Image<double> forces(5, 1, -7);
   const auto refuses = [&](const auto& force, Index rows, Index cols, auto&& into) {
     const auto counts = force.for_samples(test::Image<double>(rows, cols, missing), into);
-    CHECK_FALSE(counts.accepted);
+    CHECK_FALSE(counts.ok());
     CHECK(counts.not_finite == 0);
     CHECK(counts.beyond_range == 0);
     for (const double f : forces.cells) {

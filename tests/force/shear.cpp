@@ -371,7 +371,7 @@ TEST_CASE("shear: many samples, in whatever layout", "[shear]") {
   const auto samples = some_samples(n);
   test::Image<double> expected(n, 3);
   const auto counts = shear.for_samples(samples, expected);
-  REQUIRE(counts.accepted);
+  REQUIRE(counts.ok());
   CHECK(counts.not_finite > 15);
   CHECK(counts.beyond_range > 30);
 
@@ -385,7 +385,7 @@ TEST_CASE("shear: many samples, in whatever layout", "[shear]") {
     return same_bits(copy, expected);
   };
   const auto same_counts = [&](const SampleCounts& c) {
-    return c.accepted && c.not_finite == counts.not_finite && c.beyond_range == counts.beyond_range;
+    return c.ok() && c.not_finite == counts.not_finite && c.beyond_range == counts.beyond_range;
   };
   using test::Image;
   SECTION("a column in a row of memory") {
@@ -453,7 +453,7 @@ TEST_CASE("shear: many samples, in whatever layout", "[shear]") {
     Image<int> in(70, 4, 1);
     in(69, 0) = 200;
     Image<double> out(70, 3);
-    CHECK(Shear(published_shear_by_area(), ones()).for_samples(in, out).accepted);
+    CHECK(Shear(published_shear_by_area(), ones()).for_samples(in, out).ok());
     CHECK(out(69, 0) == Approx(1.56916819579350147).epsilon(1e-14));
     CHECK(out(69, 2) == Approx(3.24900958542494209).epsilon(1e-14));
   }
@@ -476,7 +476,7 @@ TEST_CASE("shear: many samples, and what is said of them", "[shear]") {
     }
   }
   const auto counts = shear.for_samples(samples, out);
-  CHECK(counts.accepted);
+  CHECK(counts.ok());
   CHECK(counts.not_finite == 3);
   CHECK(counts.beyond_range == 3);
   CHECK((out(4, 0) == 0 && out(4, 1) == 0 && out(4, 2) == 0));
@@ -495,7 +495,7 @@ TEST_CASE("shear: samples of another size are refused and nothing is written", "
     for (const double cell : out.cells) {
       untouched = untouched && cell == 7;
     }
-    return !counts.accepted && untouched && counts.not_finite == 0 && counts.beyond_range == 0;
+    return !counts.ok() && untouched && counts.not_finite == 0 && counts.beyond_range == 0;
   };
   CHECK(refused(70, 3, 70, 3));
   CHECK(refused(70, 0, 70, 3));
@@ -508,7 +508,7 @@ TEST_CASE("shear: samples of another size are refused and nothing is written", "
   CHECK(!refused(70, 5, 70, 3));  // columns beyond the fourth are not looked at
   const test::Image<double> empty(0, 4);
   test::Image<double> out(0, 3);
-  CHECK(shear.for_samples(empty, out).accepted);
+  CHECK(shear.for_samples(empty, out).ok());
 }
 
 TEST_CASE("shear: the estimator is a value of some numbers", "[shear]") {

@@ -419,7 +419,7 @@ TEST_CASE("traction: statuses", "[traction]") {
 
   for (const double p : {0.0, -0.01, missing, std::numeric_limits<double>::infinity()}) {
     const auto r = given(dots, middle, p, maps);
-    CHECK(r.accepted);
+    CHECK(r.accepted());
     CHECK(r.status == TractionStatus::bad_pressure);
     CHECK(!r.has_force());
     CHECK(std::isnan(r.force_n.x));
@@ -437,10 +437,10 @@ TEST_CASE("traction: statuses", "[traction]") {
   CHECK(balanced(hollow, none, 0.02, maps).status == TractionStatus::no_balance);
   CHECK(given(test::no_dots(n, n), middle, 0.02, maps).status == TractionStatus::too_few_dots);
 
-  CHECK(!given(flat(8, 1.5), middle, 0.02, maps).accepted);
-  CHECK(!given(dots, touch(10, 4, 4), 0.02, maps).accepted);
+  CHECK(!given(flat(8, 1.5), middle, 0.02, maps).accepted());
+  CHECK(!given(dots, touch(10, 4, 4), 0.02, maps).accepted());
   auto other = TractionField(flat(8, 1.5)).maps();
-  CHECK(!given(dots, middle, 0.02, other).accepted);
+  CHECK(!given(dots, middle, 0.02, other).accepted());
 
   CHECK(name_of(TractionStatus::ok) == std::string("ok"));
   CHECK(name_of(TractionStatus::no_contact) == std::string("no contact"));
@@ -485,9 +485,9 @@ TEST_CASE("traction: bad parameters are refused", "[traction]") {
   CHECK(test::begins_with(modulus(missing), "GivenModulus: mu_t_n_per_mm = "));
   CHECK(test::begins_with(test::refusal([&] { TractionField(free, GivenModulus<double>{}); }),
                           "GivenModulus: mu_t_n_per_mm = "));
-  CHECK(test::begins_with(
-      test::refusal([&] { TractionField(free, BalancedModulus{.min_dots = 0}); }),
-      "BalancedModulus: min_dots = 0, must be"));
+  CHECK(
+      test::begins_with(test::refusal([&] { TractionField(free, BalancedModulus{.min_dots = 0}); }),
+                        "BalancedModulus: min_dots = 0, must be"));
   CHECK(test::begins_with(test::refusal([] { TractionField(Dots(2, 5)); }),
                           "TractionField: rows = 2, must be"));
   CHECK(test::begins_with(test::refusal([] { TractionField(Dots(5, 2)); }),
@@ -521,7 +521,7 @@ TEST_CASE("traction: into the caller's own grids", "[traction]") {
     }
   }
   Eigen::MatrixXf small(20, 21);
-  CHECK(!field(dots, contact, s.pressure_mpa, maps, small, load).accepted);
+  CHECK(!field(dots, contact, s.pressure_mpa, maps, small, load).accepted());
 }
 
 TEST_CASE("traction: derivatives with respect to the pressure", "[traction]") {

@@ -388,7 +388,7 @@ TEST_CASE("an inflated cap that touches nothing", "[wrench]") {
   const auto check = [&](const auto& wrench) {
     auto workspace = wrench.workspace();
     const auto r = wrench(cap, dots, pressed_mpa, workspace, {0.01, 0.1, 1e-4});
-    CHECK(r.accepted);
+    CHECK(r.accepted());
     CHECK(r.status == WrenchStatus::no_contact);
     CHECK(r.ok());
     CHECK(size(r.force_n) == 0);
@@ -907,12 +907,13 @@ TEST_CASE("wrench: frames of another size are not looked at", "[wrench]") {
   const Wrench<BalancedRim> other(rim.borders(), test::exact_options(36, 31));
   auto workspace = wrench.workspace();
   auto foreign = other.workspace();
-  CHECK_FALSE(wrench(pad, rim.dots(load, 2), pressed_mpa, workspace).accepted);
-  CHECK_FALSE(wrench(pad, test::Image<Vector>(1, 71, {0, 0, 0}), pressed_mpa, workspace).accepted);
-  CHECK_FALSE(wrench(pad, rim.dots(load), pressed_mpa, foreign).accepted);
+  CHECK_FALSE(wrench(pad, rim.dots(load, 2), pressed_mpa, workspace).accepted());
+  CHECK_FALSE(
+      wrench(pad, test::Image<Vector>(1, 71, {0, 0, 0}), pressed_mpa, workspace).accepted());
+  CHECK_FALSE(wrench(pad, rim.dots(load), pressed_mpa, foreign).accepted());
   const auto r = wrench(pad, rim.dots(load, 2), pressed_mpa, workspace);
   CHECK(r.force_n.z != r.force_n.z);
-  CHECK(wrench(pad, rim.dots(load), pressed_mpa, workspace).accepted);
+  CHECK(wrench(pad, rim.dots(load), pressed_mpa, workspace).accepted());
 }
 
 TEST_CASE("wrench: names of what can happen", "[wrench]") {

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
-// Numbers: the rider's closed form and its steps against 50 digits over times of 10^4 and all kinds
-// of damping, the lift against quadrature, creep, powers of the load, derivatives.
+// Numbers: the oscillator's closed form and its steps against 50 digits over times of 10^4 and all
+// kinds of damping, the lift against quadrature, creep, powers of the load, derivatives.
 //
 // What an error is relative to: the larger of |y| and the sizes of the parts that it is the sum of,
 // each as large as it is within a period at that time; of a velocity also sqrt(k/m) times the parts
@@ -65,9 +65,9 @@ constexpr double bound() {
   return std::is_same_v<S, float> ? 1e-5 : 1e-12;
 }
 
-/// A rider whose damping is this ratio as nearly as the type can say.
+/// A oscillator whose damping is this ratio as nearly as the type can say.
 template <class S>
-Rider<S> rider_of(double mass, double stiffness, double ratio) {
+MassSpringDamper<S> rider_of(double mass, double stiffness, double ratio) {
   const S m = static_cast<S>(mass), k = static_cast<S>(stiffness);
   const double critical = 2 * std::sqrt(static_cast<double>(m) * static_cast<double>(k));
   return {m, static_cast<S>(ratio * critical), k};
@@ -79,10 +79,10 @@ struct Truth {
   Digits50 decay, natural_sq;
 
   template <class S>
-  Truth(const Rider<S>& rider, const Digits50& t) {
-    const Digits50 m(rider.mass_n_s2_per_mm), c(rider.damping_n_s_per_mm);
+  Truth(const MassSpringDamper<S>& oscillator, const Digits50& t) {
+    const Digits50 m(oscillator.mass_n_s2_per_mm), c(oscillator.damping_n_s_per_mm);
     decay = c / (2 * m);
-    natural_sq = Digits50(rider.stiffness_n_per_mm) / m;
+    natural_sq = Digits50(oscillator.stiffness_n_per_mm) / m;
     const Digits50 split = decay * decay - natural_sq;
     const Digits50 gone = exp(Digits50(-decay * t));
     if (split < 0) {
@@ -113,8 +113,11 @@ struct Answer {
 };
 
 template <class S>
-Answer answer(const Rider<S>& rider, const Truth& w, const Case& of, const Digits50& t) {
-  const Digits50 k(rider.stiffness_n_per_mm), c(rider.damping_n_s_per_mm);
+Answer answer(const MassSpringDamper<S>& oscillator,
+              const Truth& w,
+              const Case& of,
+              const Digits50& t) {
+  const Digits50 k(oscillator.stiffness_n_per_mm), c(oscillator.damping_n_s_per_mm);
   const Digits50 rise = Digits50(of.load.rise_n_per_s) / k, held = Digits50(of.load.start_n) / k;
   const Digits50 lagging = c * rise / k;
   const Digits50 y = of.start.position_mm - (held - lagging), v = of.start.velocity_mm_per_s - rise;
@@ -156,14 +159,14 @@ template <class S>
 double worst_closed_form(double ratio) {
   double worst = 0;
   for (const auto& [mass, stiffness] : masses_and_springs) {
-    const Rider<S> rider = rider_of<S>(mass, stiffness, ratio);
+    const MassSpringDamper<S> oscillator = rider_of<S>(mass, stiffness, ratio);
     for (const double time :
          {0.0, 1e-6, 0.01, 0.7, 1.0, 3.3, 12.5, 40.0, 86.0, 177.5, 640.0, 1419.5, 3333.3, 1e4}) {
       const S t = static_cast<S>(time);
-      const Truth truth(rider, Digits50(t));
+      const Truth truth(oscillator, Digits50(t));
       for (const Case& of : cases) {
-        const Motion<S> motion = ramp_response(rider, as<S>(of.load), as<S>(of.start), t);
-        worst = (std::max)(worst, off(motion, answer(rider, truth, of, Digits50(t))));
+        const Motion<S> motion = ramp_response(oscillator, as<S>(of.load), as<S>(of.start), t);
+        worst = (std::max)(worst, off(motion, answer(oscillator, truth, of, Digits50(t))));
       }
     }
   }
@@ -174,8 +177,8 @@ double worst_closed_form(double ratio) {
 template <class S, class Words>
 double worst_of_steps(double mass, double stiffness, double ratio) {
   double worst = 0;
-  const Rider<S> rider = rider_of<S>(mass, stiffness, ratio);
-  const FirstOrderHold<S, Words> hold(rider, S(0.125));
+  const MassSpringDamper<S> oscillator = rider_of<S>(mass, stiffness, ratio);
+  const FirstOrderHold<S, Words> hold(oscillator, S(0.125));
   for (const Case& of : {Case{{0, 0}, {1, -1}}, Case{{1, 0.0625}, {0, 0}}}) {
     const RampLoad<S> load = as<S>(of.load);
     auto state = hold.start(as<S>(of.start));
@@ -185,8 +188,8 @@ double worst_of_steps(double mass, double stiffness, double ratio) {
       const Motion<S> motion = hold(load(S(t - S(0.125))), load(t), state);
       if (n == look || n == 80000) {
         look *= 8;
-        const Truth truth(rider, Digits50(t));
-        worst = (std::max)(worst, off(motion, answer(rider, truth, of, Digits50(t))));
+        const Truth truth(oscillator, Digits50(t));
+        worst = (std::max)(worst, off(motion, answer(oscillator, truth, of, Digits50(t))));
       }
     }
   }
@@ -210,11 +213,12 @@ TEST_CASE("foam contact: the closed form follows 50 digits in other types", "[fo
   for (const Damping& damping : dampings) {
     CHECK(worst_closed_form<long double>(damping.ratio) < 1e-15);
   }
-  const Rider<test::Lazy50> lazy{test::Lazy50(1), test::Lazy50(0.25), test::Lazy50(4)};
-  const Rider<Digits50> rider{Digits50(1), Digits50(0.25), Digits50(4)};
+  const MassSpringDamper<test::Lazy50> lazy{test::Lazy50(1), test::Lazy50(0.25), test::Lazy50(4)};
+  const MassSpringDamper<Digits50> oscillator{Digits50(1), Digits50(0.25), Digits50(4)};
   const auto motion = ramp_response(lazy, RampLoad<test::Lazy50>{test::Lazy50(1), test::Lazy50(2)},
                                     Motion<test::Lazy50>{}, test::Lazy50(30));
-  const Answer truth = answer(rider, Truth(rider, Digits50(30)), {{1, 2}, {0, 0}}, Digits50(30));
+  const Answer truth =
+      answer(oscillator, Truth(oscillator, Digits50(30)), {{1, 2}, {0, 0}}, Digits50(30));
   CHECK(abs(Digits50(Digits50(motion.position_mm) - truth.y)) < Digits50("1e-46"));
   CHECK(abs(Digits50(Digits50(motion.velocity_mm_per_s) - truth.v)) < Digits50("1e-46"));
 }
@@ -240,18 +244,18 @@ TEMPLATE_TEST_CASE("foam contact: steps tiny and huge follow 50 digits",
   using S = TestType;
   const double epsilon = static_cast<double>(std::numeric_limits<S>::epsilon());
   for (const Damping& damping : dampings) {
-    const Rider<S> rider = rider_of<S>(0.37, 2.9, damping.ratio);
+    const MassSpringDamper<S> oscillator = rider_of<S>(0.37, 2.9, damping.ratio);
     for (const double length : {1e-12, 1e-7, 1e-3, 0.02, 0.3, 1.0, 7.7, 60.0, 1e3, 1e4, 1e6}) {
       const S step = static_cast<S>(length);
-      const Truth truth(rider, Digits50(step));
-      const FirstOrderHold<S, OneWord> hold(rider, step);
+      const Truth truth(oscillator, Digits50(step));
+      const FirstOrderHold<S, OneWord> hold(oscillator, step);
       for (const Case& of : cases) {
         const RampLoad<S> load = as<S>(of.load);
         auto state = hold.start(as<S>(of.start));
         const S end = load(step);
         // the load is linear between what it is at both ends, rounded
         const Digits50 rise = (Digits50(end) - Digits50(load.start_n)) / Digits50(step);
-        const Answer a = answer(rider, truth, of, Digits50(step));
+        const Answer a = answer(oscillator, truth, of, Digits50(step));
         const Digits50 rounding = abs(Digits50(rise - of.load.rise_n_per_s)) * Digits50(step);
         const Motion<S> motion = hold(load.start_n, end, state);
         CAPTURE(damping.name, length);
@@ -259,13 +263,14 @@ TEMPLATE_TEST_CASE("foam contact: steps tiny and huge follow 50 digits",
               8 * epsilon * a.y_scale + rounding + Digits50((std::numeric_limits<S>::min)()));
       }
     }
-    // of a load on a rider at rest even the smallest step has all digits: f t^2 / 2m and f t / m
+    // of a load on a oscillator at rest even the smallest step has all digits: f t^2 / 2m and f t /
+    // m
     const S step = static_cast<S>(1e-12);
-    const FirstOrderHold<S, OneWord> hold(rider, step);
+    const FirstOrderHold<S, OneWord> hold(oscillator, step);
     auto state = hold.start();
     const Motion<S> motion = hold(S(1), S(1), state);
-    const Digits50 h(step), m(rider.mass_n_s2_per_mm);
-    const Digits50 drag = Digits50(rider.damping_n_s_per_mm) / m * h;
+    const Digits50 h(step), m(oscillator.mass_n_s2_per_mm);
+    const Digits50 drag = Digits50(oscillator.damping_n_s_per_mm) / m * h;
     CHECK(off(motion.position_mm, Digits50(h * h / (2 * m) * (1 - drag / 3)), Digits50(h * h)) <
           8 * epsilon);
     CHECK(off(motion.velocity_mm_per_s, Digits50(h / m * (1 - drag / 2)), h) < 8 * epsilon);
@@ -302,7 +307,9 @@ TEMPLATE_TEST_CASE("foam contact: the lift follows quadrature", "[foam_contact]"
   const double of_gentle = 2.8009407050775539372775000664187,
                of_strong = 48.763874197811345788827258595392;
   const auto error = [](const LiftLoad<S>& load, int steps, double exact) {
-    return static_cast<double>(causal_response(Rider<S>{}, load, S(40), steps).position_mm) - exact;
+    return static_cast<double>(
+               causal_response(MassSpringDamper<S>{}, load, S(40), steps).position_mm) -
+           exact;
   };
   std::string seen;
   for (const int steps : {400, 2000, 4000}) {
@@ -386,9 +393,9 @@ TEST_CASE("foam contact: derivatives are those of differences", "[foam_contact]"
   for (const double time : {0.25, 3.0, 20.0}) {
     for (const double c : {0.01, 0.5, 1.99, 2.0, 2.01, 7.0}) {
       const auto motion_by = [&]<class S>(const S& damping, const S& stiffness) {
-        const Rider<S> rider{S(1), damping, stiffness};
-        const auto closed = ramp_response(rider, {S(1), S(2)}, {S(1), S(-1)}, S(time));
-        const FirstOrderHold<S> hold(rider, S(time));
+        const MassSpringDamper<S> oscillator{S(1), damping, stiffness};
+        const auto closed = ramp_response(oscillator, {S(1), S(2)}, {S(1), S(-1)}, S(time));
+        const FirstOrderHold<S> hold(oscillator, S(time));
         auto state = hold.start({S(1), S(-1)});
         const auto stepped = hold(S(1), S(S(1) + S(S(2) * S(time))), state);
         return std::pair{closed, stepped};

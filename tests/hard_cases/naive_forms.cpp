@@ -116,7 +116,7 @@ TEST_CASE("naive forms of the membrane's balance lose what the stable ones keep"
 TEST_CASE("naive forms of the dots' motion lose what the stable ones keep", "[naive]") {
   check(stick);
 }
-TEST_CASE("naive forms of the foam's rider lose what the stable ones keep", "[naive]") {
+TEST_CASE("naive forms of the foam's oscillator lose what the stable ones keep", "[naive]") {
   check(foam);
 }
 TEST_CASE("naive forms of forces by look-up lose what the stable ones keep", "[naive]") {

@@ -503,8 +503,8 @@ TEST_CASE("batches of normal forces in numbers with derivatives and with many di
       samples50(i, j) = Digits50(cell);
     }
   }
-  CHECK(force.for_samples(samples, forces).accepted);
-  CHECK(force50.for_samples(samples50, forces50).accepted);
+  CHECK(force.for_samples(samples, forces).ok());
+  CHECK(force50.for_samples(samples50, forces50).ok());
   for (Index i = 0; i < 70; ++i) {
     const auto one = force(samples(i, 0), {samples(i, 1), samples(i, 2)}, samples(i, 3)).force_n;
     CHECK(forces(i, 0).value() == one.value());

@@ -80,7 +80,7 @@ template <class S>
 bool consistent(const WrenchResult<S>& r) {
   const auto finite = [](const Point3<S>& p) { return detail::is_finite_point(p); };
   const auto missing = [](const Point3<S>& p) { return p.x != p.x && p.y != p.y && p.z != p.z; };
-  if (!r.accepted) {
+  if (!r.accepted()) {
     return missing(r.force_n) && missing(r.moment_n_mm);
   }
   for (const auto& row : r.covariance) {
@@ -125,7 +125,7 @@ WrenchResult<double> measure(const Shape& shape,
   const W wrench(rim_of(film).borders(), small());
   auto workspace = wrench.workspace();
   const auto r = wrench(shape, dots, pressure_mpa, workspace, {0.005, 0.1, 1e-5});
-  CHECK(r.accepted);
+  CHECK(r.accepted());
   CHECK(consistent(r));
   for (Index k = 0; k < workspace.rim_points(); ++k) {
     const bool known = detail::is_finite_point(workspace.rim_tension(k));
@@ -275,7 +275,7 @@ TEST_CASE("wrench: odd contacts", "[wrench]") {
   // off center
   const auto aside =
       measure<Balanced>(touching([](double x, double y) { return std::hypot(x - 3, y + 2) < 4; }));
-  CHECK(aside.accepted);
+  CHECK(aside.accepted());
 }
 
 TEST_CASE("wrench: shapes that no membrane has", "[wrench]") {
@@ -370,7 +370,7 @@ void fuzz() {
     }
     const auto r = wrench(map, as<S>(dots), S(any_number(pressed_mpa)), workspace,
                           {S(0.005), S(0.1), S(1e-5)});
-    RC_ASSERT(r.accepted);
+    RC_ASSERT(r.accepted());
     RC_ASSERT(consistent(r));
     RC_ASSERT(r.missing >= 0);
     RC_ASSERT(r.missing + r.unstretched <= 72);

@@ -44,7 +44,7 @@ Image<S> curvatures(const Image<S>& depth,
   const CurvatureMap<Statistic, Projection, S> map(ring, projection, depth.rows(), depth.cols());
   auto workspace = map.workspace();
   Image<S> out(depth.rows(), depth.cols(), S(7));
-  REQUIRE(map(depth, out, workspace).accepted);
+  REQUIRE(map(depth, out, workspace).ok());
   return out;
 }
 
@@ -322,7 +322,7 @@ TEST_CASE("curvature: same bits on every grid") {
   auto workspace = map.workspace();
   Image<float> expected(rows, cols);
   const CurvatureResult result = map(depth, expected, workspace);
-  CHECK(result.accepted);
+  CHECK(result.ok());
   CHECK(result.known_px + result.unknown_px == rows * cols);
   CHECK(result.unknown_px == std::count_if(expected.cells.begin(), expected.cells.end(),
                                            [](float k) { return std::isnan(k); }));
@@ -350,17 +350,17 @@ TEST_CASE("curvature: same bits on every grid") {
     }
   }
   Image<double> wide(rows, cols);
-  REQUIRE(map(in_double, wide, workspace).accepted);
+  REQUIRE(map(in_double, wide, workspace).ok());
   CHECK(same(wide));
-  REQUIRE(map(column_major, column_major, workspace).accepted);  // in place
+  REQUIRE(map(column_major, column_major, workspace).ok());  // in place
   CHECK(same(column_major));
-  REQUIRE(map(image, image, workspace).accepted);
+  REQUIRE(map(image, image, workspace).ok());
   CHECK(same(as_view(image)));
-  REQUIRE(map(foreign, foreign, workspace).accepted);
+  REQUIRE(map(foreign, foreign, workspace).ok());
   CHECK(same(as_view(foreign)));
   Image<float> out(rows, cols);
   const LazyView lazy(rows, cols, [&](Index i, Index j) { return depth(i, j); });
-  REQUIRE(map(lazy, out, workspace).accepted);
+  REQUIRE(map(lazy, out, workspace).ok());
   CHECK(same(out));
   Image<float> whole_numbers(rows, cols);
   const LazyView integers(rows, cols, [](Index i, Index j) { return static_cast<int>(i + j); });
@@ -382,17 +382,17 @@ TEST_CASE("curvature: other sizes are refused and nothing is written") {
   auto workspace = map.workspace();
   const Image<float> depth(9, 10, 1.0F), narrow(9, 9, 1.0F);
   Image<float> out(9, 10, 7.0F), low(8, 10, 7.0F);
-  CHECK_FALSE(map(narrow, out, workspace).accepted);
-  CHECK_FALSE(map(depth, low, workspace).accepted);
-  CHECK_FALSE(map.band(-1, 4, depth, out, workspace).accepted);
-  CHECK_FALSE(map.band(3, 2, depth, out, workspace).accepted);
-  CHECK_FALSE(map.band(0, 10, depth, out, workspace).accepted);
+  CHECK_FALSE(map(narrow, out, workspace).ok());
+  CHECK_FALSE(map(depth, low, workspace).ok());
+  CHECK_FALSE(map.band(-1, 4, depth, out, workspace).ok());
+  CHECK_FALSE(map.band(3, 2, depth, out, workspace).ok());
+  CHECK_FALSE(map.band(0, 10, depth, out, workspace).ok());
   const CurvatureMap<ClampedMean<>, PlatePitch> other({3}, plate, 9, 10);
   auto foreign = other.workspace();
-  CHECK_FALSE(map(depth, out, foreign).accepted);
+  CHECK_FALSE(map(depth, out, foreign).ok());
   CHECK(out.cells == Image<float>(9, 10, 7.0F).cells);
   CHECK(low.cells == Image<float>(8, 10, 7.0F).cells);
-  CHECK(map.band(4, 4, depth, out, workspace).accepted);
+  CHECK(map.band(4, 4, depth, out, workspace).ok());
 }
 
 TEST_CASE("curvature: bad parameters are refused by name, value and range") {

@@ -373,7 +373,7 @@ TEMPLATE_TEST_CASE("object motion: statuses",
   }
 
   auto result = motion(free, none, state);
-  CHECK(result.accepted);
+  CHECK(result.accepted());
   CHECK(result.status == MotionStatus::no_contact);
   CHECK(!is_finite(result.position_mm.x));
   result = motion(free, all, state);
@@ -555,13 +555,13 @@ TEST_CASE("object motion: other sizes are refused and the state stays as it is")
   const ObjectMotion<> motion(free);
   auto state = motion.start();
   motion(free, Flags(7, 7, 1), state);
-  CHECK(!motion(Dots(7, 8), Flags(7, 8, 1), state).accepted);
-  CHECK(!motion(free, Flags(8, 7, 1), state).accepted);
-  CHECK(!motion(Dots(0, 0), Flags(0, 0, 1), state).accepted);
+  CHECK(!motion(Dots(7, 8), Flags(7, 8, 1), state).accepted());
+  CHECK(!motion(free, Flags(8, 7, 1), state).accepted());
+  CHECK(!motion(Dots(0, 0), Flags(0, 0, 1), state).accepted());
   CHECK(state.has_object());
   const ObjectMotion<> other(Dots(8, 7));
   auto foreign = other.start();
-  CHECK(!motion(free, Flags(7, 7, 1), foreign).accepted);
+  CHECK(!motion(free, Flags(7, 7, 1), foreign).accepted());
 }
 
 TEST_CASE("object motion: bad parameters are refused by name") {
@@ -599,7 +599,7 @@ TEST_CASE("spatial dots: depth is read between pixels, at the dot's own pixel (E
   dots(0, 6) = {4, 2};  // the last column
   Dots out(1, 7);
   const auto result = spatial_dots(camera, dots, depth, out);
-  CHECK(result.accepted);
+  CHECK(result.ok());
   CHECK(result.found == 4);
   const auto expected = point_at(camera, 2.5, 1.25, 10 + 1.25 - 0.3125);
   CHECK(out(0, 0).x == Approx(expected.x));
@@ -612,7 +612,7 @@ TEST_CASE("spatial dots: depth is read between pixels, at the dot's own pixel (E
     CHECK(std::isnan(out(0, missing).z));
   }
   Dots other_size(2, 7);
-  CHECK(!spatial_dots(camera, dots, depth, other_size).accepted);
+  CHECK(!spatial_dots(camera, dots, depth, other_size).ok());
   cv::Mat_<cv::Vec3f> image(1, 7);
   CHECK(spatial_dots(camera, dots, depth, image).found == 4);
   CHECK(static_cast<double>(image(0, 0)[2]) == Approx(expected.z));

@@ -64,8 +64,8 @@ TEMPLATE_TEST_CASE("normal force: neither a frame nor many of them allocate",
   CHECK(after == before);
   CHECK(answers > 150);
   CHECK(sources == 200 + answers);
-  CHECK(counts.accepted);
+  CHECK(counts.ok());
   CHECK(counts.not_finite == 200 - answers);
   CHECK(counts.beyond_range > 0);
-  CHECK_FALSE(refused.accepted);
+  CHECK_FALSE(refused.ok());
 }

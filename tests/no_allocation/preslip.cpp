@@ -5,8 +5,8 @@
 #include <array>
 #include <type_traits>
 
-#include "no_allocation/count.hpp"
 #include "fingerpad/foam/holding_force.hpp"
+#include "no_allocation/count.hpp"
 #include "support/catch.hpp"
 #include "support/numbers.hpp"
 
@@ -76,9 +76,9 @@ TEST_CASE("searches for the holding force: nothing is allocated", "[holding_forc
   auto loosening = loosen.start();
   auto lifting = lift.start();
   for (int k = 0; k < 300; ++k) {
-    const auto news = k % 40 == 39 ? SlipNews::preslip : SlipNews::steady;
-    loosen(k > 200 ? news : SlipNews::steady, loosening);
-    lift(news, lifting);
+    const auto signal = k % 40 == 39 ? SlipSignal::preslip : SlipSignal::steady;
+    loosen(k > 200 ? signal : SlipSignal::steady, loosening);
+    lift(signal, lifting);
   }
   CHECK(test::allocations() == before);
   CHECK(loosening.command().phase == SearchPhase::found);

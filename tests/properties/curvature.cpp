@@ -51,7 +51,7 @@ Image<S> curvatures(const Image<S>& depth,
   const CurvatureMap<Statistic, Projection, S> map(ring, projection, depth.rows(), depth.cols());
   auto workspace = map.workspace();
   Image<S> out(depth.rows(), depth.cols(), S(7));
-  RC_ASSERT(map(depth, out, workspace).accepted);
+  RC_ASSERT(map(depth, out, workspace).ok());
   return out;
 }
 

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
-// What must hold for every rider, every load and every foam.
+// What must hold for every oscillator, every load and every foam.
 #include "fingerpad/sim/foam_contact.hpp"
 
 #include <algorithm>
@@ -15,44 +15,47 @@ using namespace fingerpad;
 namespace {
 
 /// Of any damping: none, critical, nearly so, far from it.
-Rider<double> any_rider() {
-  Rider<double> rider;
-  rider.mass_n_s2_per_mm = test::log_uniform(1e-3, 10);
-  rider.stiffness_n_per_mm = test::log_uniform(1e-2, 100);
-  const double critical = 2 * std::sqrt(rider.mass_n_s2_per_mm * rider.stiffness_n_per_mm);
+MassSpringDamper<double> any_rider() {
+  MassSpringDamper<double> oscillator;
+  oscillator.mass_n_s2_per_mm = test::log_uniform(1e-3, 10);
+  oscillator.stiffness_n_per_mm = test::log_uniform(1e-2, 100);
+  const double critical =
+      2 * std::sqrt(oscillator.mass_n_s2_per_mm * oscillator.stiffness_n_per_mm);
   const double some[] = {
       0, 1 - 1e-9, 1, 1 + 1e-9, test::uniform(0, 2), test::log_uniform(1e-3, 50)};
-  rider.damping_n_s_per_mm = critical * some[test::whole(0, 5)];
-  return rider;
+  oscillator.damping_n_s_per_mm = critical * some[test::whole(0, 5)];
+  return oscillator;
 }
-double frequency(const Rider<double>& rider) {
-  return std::sqrt(rider.stiffness_n_per_mm / rider.mass_n_s2_per_mm);
+double frequency(const MassSpringDamper<double>& oscillator) {
+  return std::sqrt(oscillator.stiffness_n_per_mm / oscillator.mass_n_s2_per_mm);
 }
-Motion<double> any_motion(const Rider<double>& rider) {
-  return {test::uniform(-2, 2), test::uniform(-2, 2) * frequency(rider)};
+Motion<double> any_motion(const MassSpringDamper<double>& oscillator) {
+  return {test::uniform(-2, 2), test::uniform(-2, 2) * frequency(oscillator)};
 }
 /// From far below a period to many.
-double any_time(const Rider<double>& rider) {
-  return test::log_uniform(1e-4, 100) / frequency(rider);
+double any_time(const MassSpringDamper<double>& oscillator) {
+  return test::log_uniform(1e-4, 100) / frequency(oscillator);
 }
 
 /// The distance of two motions, with the velocity counted in periods.
-double apart(const Rider<double>& rider, const Motion<double>& a, const Motion<double>& b) {
+double apart(const MassSpringDamper<double>& oscillator,
+             const Motion<double>& a,
+             const Motion<double>& b) {
   return std::abs(a.position_mm - b.position_mm) +
-         std::abs(a.velocity_mm_per_s - b.velocity_mm_per_s) / frequency(rider);
+         std::abs(a.velocity_mm_per_s - b.velocity_mm_per_s) / frequency(oscillator);
 }
-double energy(const Rider<double>& rider, const Motion<double>& motion) {
-  return (rider.mass_n_s2_per_mm * motion.velocity_mm_per_s * motion.velocity_mm_per_s +
-          rider.stiffness_n_per_mm * motion.position_mm * motion.position_mm) /
+double energy(const MassSpringDamper<double>& oscillator, const Motion<double>& motion) {
+  return (oscillator.mass_n_s2_per_mm * motion.velocity_mm_per_s * motion.velocity_mm_per_s +
+          oscillator.stiffness_n_per_mm * motion.position_mm * motion.position_mm) /
          2;
 }
 /// One step of FirstOrderHold, in one word.
-Motion<double> stepped(const Rider<double>& rider,
+Motion<double> stepped(const MassSpringDamper<double>& oscillator,
                        const Motion<double>& start,
                        double before,
                        double after,
                        double time) {
-  const FirstOrderHold<double, OneWord> hold(rider, time);
+  const FirstOrderHold<double, OneWord> hold(oscillator, time);
   auto state = hold.start(start);
   return hold(before, after, state);
 }
@@ -64,112 +67,118 @@ Burgers<double> any_foam() {
 
 }  // namespace
 
-TEST_CASE("the rider's motion", "[foam_contact][law]") {
+TEST_CASE("the oscillator's motion", "[foam_contact][law]") {
   rc::prop("is linear in start and load", [] {
-    const Rider<double> rider = any_rider();
-    const Motion<double> a = any_motion(rider), b = any_motion(rider);
+    const MassSpringDamper<double> oscillator = any_rider();
+    const Motion<double> a = any_motion(oscillator), b = any_motion(oscillator);
     const double f = test::uniform(-3, 3), g = test::uniform(-3, 3), p = test::uniform(-3, 3);
-    const double time = any_time(rider), scale = 1 + 3 * 7 / rider.stiffness_n_per_mm;
+    const double time = any_time(oscillator), scale = 1 + 3 * 7 / oscillator.stiffness_n_per_mm;
     const Motion<double> start{a.position_mm + p * b.position_mm,
                                a.velocity_mm_per_s + p * b.velocity_mm_per_s};
-    const auto of_a = stepped(rider, a, f, 0, time), of_b = stepped(rider, b, 0, g, time);
-    const auto of_both = stepped(rider, start, f, p * g, time);
+    const auto of_a = stepped(oscillator, a, f, 0, time), of_b = stepped(oscillator, b, 0, g, time);
+    const auto of_both = stepped(oscillator, start, f, p * g, time);
     const Motion<double> sum{of_a.position_mm + p * of_b.position_mm,
                              of_a.velocity_mm_per_s + p * of_b.velocity_mm_per_s};
-    RC_ASSERT(apart(rider, of_both, sum) < 1e-13 * 10 * scale);
+    RC_ASSERT(apart(oscillator, of_both, sum) < 1e-13 * 10 * scale);
   });
   rc::prop("over two steps is that over their sum", [] {
-    const Rider<double> rider = any_rider();
-    const Motion<double> start = any_motion(rider);
-    const double one = any_time(rider), two = any_time(rider);
+    const MassSpringDamper<double> oscillator = any_rider();
+    const Motion<double> start = any_motion(oscillator);
+    const double one = any_time(oscillator), two = any_time(oscillator);
     const double f = test::uniform(-3, 3), rise = test::uniform(-3, 3) / (one + two);
     const double middle = f + rise * one, end = f + rise * (one + two);
-    const auto halfway = stepped(rider, start, f, middle, one);
-    const auto in_two = stepped(rider, halfway, middle, end, two);
-    const auto at_once = stepped(rider, start, f, end, one + two);
+    const auto halfway = stepped(oscillator, start, f, middle, one);
+    const auto in_two = stepped(oscillator, halfway, middle, end, two);
+    const auto at_once = stepped(oscillator, start, f, end, one + two);
     // the sum of the times is rounded: 200 rad of phase by 1e-16
-    RC_ASSERT(apart(rider, in_two, at_once) < 1e-12 * (1 + 1 / rider.stiffness_n_per_mm) * 8);
+    RC_ASSERT(apart(oscillator, in_two, at_once) <
+              1e-12 * (1 + 1 / oscillator.stiffness_n_per_mm) * 8);
   });
   rc::prop("by steps of any lengths is the closed form", [] {
-    const Rider<double> rider = any_rider();
-    const Motion<double> start = any_motion(rider);
-    const RampLoad<double> load{test::uniform(-3, 3), test::uniform(-1, 1) * frequency(rider)};
-    const FirstOrderHold<double, OneWord> hold(rider, 1 / frequency(rider));
+    const MassSpringDamper<double> oscillator = any_rider();
+    const Motion<double> start = any_motion(oscillator);
+    const RampLoad<double> load{test::uniform(-3, 3), test::uniform(-1, 1) * frequency(oscillator)};
+    const FirstOrderHold<double, OneWord> hold(oscillator, 1 / frequency(oscillator));
     auto state = hold.start(start);
     double time = 0;
     Motion<double> motion = start;
     for (int k = 0; k < 5; ++k) {
       const double before = time;
-      time += any_time(rider) / 5;
+      time += any_time(oscillator) / 5;
       motion = hold(load(before), load(time), time - before, state);
     }
-    const double lag = rider.damping_n_s_per_mm / rider.stiffness_n_per_mm;
+    const double lag = oscillator.damping_n_s_per_mm / oscillator.stiffness_n_per_mm;
     const double most =
-        4 + (3 + std::abs(load.rise_n_per_s) * (time + lag)) / rider.stiffness_n_per_mm;
-    RC_ASSERT(apart(rider, motion, ramp_response(rider, load, start, time)) < 1e-12 * most);
+        4 + (3 + std::abs(load.rise_n_per_s) * (time + lag)) / oscillator.stiffness_n_per_mm;
+    RC_ASSERT(apart(oscillator, motion, ramp_response(oscillator, load, start, time)) <
+              1e-12 * most);
   });
   rc::prop("never gains energy without a load, and keeps it without damping", [] {
-    Rider<double> rider = any_rider();
-    const FirstOrderHold<double, TwoWords> hold(rider, any_time(rider));
-    auto state = hold.start(any_motion(rider));
-    double before = energy(rider, state.motion());
+    MassSpringDamper<double> oscillator = any_rider();
+    const FirstOrderHold<double, TwoWords> hold(oscillator, any_time(oscillator));
+    auto state = hold.start(any_motion(oscillator));
+    double before = energy(oscillator, state.motion());
     const double first = before;
     for (int k = 0; k < 20; ++k) {
-      const double now = energy(rider, hold(0.0, 0.0, state));
+      const double now = energy(oscillator, hold(0.0, 0.0, state));
       RC_ASSERT(now <= before * (1 + 1e-14));
       before = now;
     }
-    RC_ASSERT(rider.damping_n_s_per_mm > 0 || before > first * (1 - 1e-14));
+    RC_ASSERT(oscillator.damping_n_s_per_mm > 0 || before > first * (1 - 1e-14));
   });
   rc::prop("comes to rest at load over stiffness", [] {
-    Rider<double> rider = any_rider();
-    rider.damping_n_s_per_mm += 0.1 * std::sqrt(rider.mass_n_s2_per_mm * rider.stiffness_n_per_mm);
-    const double load = test::uniform(-3, 3), rest = load / rider.stiffness_n_per_mm;
+    MassSpringDamper<double> oscillator = any_rider();
+    oscillator.damping_n_s_per_mm +=
+        0.1 * std::sqrt(oscillator.mass_n_s2_per_mm * oscillator.stiffness_n_per_mm);
+    const double load = test::uniform(-3, 3), rest = load / oscillator.stiffness_n_per_mm;
     // the slowest decay has the time c/k, the fastest mass 20 periods
-    const double time =
-        50 * (rider.damping_n_s_per_mm / rider.stiffness_n_per_mm) + 1000 / frequency(rider);
-    const Motion<double> start = any_motion(rider), still{rest, 0};
-    RC_ASSERT(apart(rider, stepped(rider, start, load, load, time), still) <
+    const double time = 50 * (oscillator.damping_n_s_per_mm / oscillator.stiffness_n_per_mm) +
+                        1000 / frequency(oscillator);
+    const Motion<double> start = any_motion(oscillator), still{rest, 0};
+    RC_ASSERT(apart(oscillator, stepped(oscillator, start, load, load, time), still) <
               1e-13 * (1 + std::abs(rest)));
-    RC_ASSERT(apart(rider, stepped(rider, still, load, load, time), still) <
+    RC_ASSERT(apart(oscillator, stepped(oscillator, still, load, load, time), still) <
               1e-14 * std::abs(rest));
   });
   rc::prop("does not depend on the unit of force or of time", [] {
-    const Rider<double> rider = any_rider();
-    const Motion<double> start = any_motion(rider);
-    const double time = any_time(rider), force = test::log_uniform(1e-3, 1e3);
+    const MassSpringDamper<double> oscillator = any_rider();
+    const Motion<double> start = any_motion(oscillator);
+    const double time = any_time(oscillator), force = test::log_uniform(1e-3, 1e3);
     const double slower = test::log_uniform(1e-3, 1e3), f = test::uniform(-1, 1);
-    const auto motion = ramp_response(rider, {f, f / time}, start, time);
-    const Rider<double> other{rider.mass_n_s2_per_mm * force * slower * slower,
-                              rider.damping_n_s_per_mm * force * slower,
-                              rider.stiffness_n_per_mm * force};
+    const auto motion = ramp_response(oscillator, {f, f / time}, start, time);
+    const MassSpringDamper<double> other{oscillator.mass_n_s2_per_mm * force * slower * slower,
+                                         oscillator.damping_n_s_per_mm * force * slower,
+                                         oscillator.stiffness_n_per_mm * force};
     const Motion<double> other_start{start.position_mm, start.velocity_mm_per_s / slower};
     const double other_time = time * slower;
     auto same = ramp_response(other, {f * force, f * force / other_time}, other_start, other_time);
     same.velocity_mm_per_s *= slower;
-    const double lag = rider.damping_n_s_per_mm / rider.stiffness_n_per_mm / time;
-    RC_ASSERT(apart(rider, motion, same) < 1e-12 * (5 + (3 + lag) / rider.stiffness_n_per_mm));
+    const double lag = oscillator.damping_n_s_per_mm / oscillator.stiffness_n_per_mm / time;
+    RC_ASSERT(apart(oscillator, motion, same) <
+              1e-12 * (5 + (3 + lag) / oscillator.stiffness_n_per_mm));
   });
   rc::prop("has no step at critical damping, or anywhere else", [] {
-    Rider<double> rider = any_rider();
-    const double critical = 2 * std::sqrt(rider.mass_n_s2_per_mm * rider.stiffness_n_per_mm);
-    rider.damping_n_s_per_mm = critical;
-    Rider<double> near = rider;
+    MassSpringDamper<double> oscillator = any_rider();
+    const double critical =
+        2 * std::sqrt(oscillator.mass_n_s2_per_mm * oscillator.stiffness_n_per_mm);
+    oscillator.damping_n_s_per_mm = critical;
+    MassSpringDamper<double> near = oscillator;
     const double by = test::log_uniform(1e-14, 1e-6);
     near.damping_n_s_per_mm *= test::whole(0, 1) == 0 ? 1 - by : 1 + by;
-    const Motion<double> start = any_motion(rider);
-    const double time = any_time(rider);
+    const Motion<double> start = any_motion(oscillator);
+    const double time = any_time(oscillator);
     // |dy/d(ratio)| <= w t e^(-w t) (1 + w t) |y| and the like: below 4 for |y|, |v|/w <= 2
-    RC_ASSERT(apart(rider, free_motion(rider, start, time), free_motion(near, start, time)) <
-              16 * by + 1e-14);
+    RC_ASSERT(apart(oscillator, free_motion(oscillator, start, time),
+                    free_motion(near, start, time)) < 16 * by + 1e-14);
   });
   rc::prop("in a frame that moves with the start stays in it", [] {
-    const Rider<double> rider = any_rider();
-    const double speed = test::uniform(-2, 2), at = test::uniform(-2, 2), time = any_time(rider);
+    const MassSpringDamper<double> oscillator = any_rider();
+    const double speed = test::uniform(-2, 2), at = test::uniform(-2, 2),
+                 time = any_time(oscillator);
     const double end = at + speed * time;
-    const auto motion = stepped(rider, {at, speed}, frame_load(rider, {at, speed}),
-                                frame_load(rider, {end, speed}), time);
-    const double lag = rider.damping_n_s_per_mm / rider.stiffness_n_per_mm;
+    const auto motion = stepped(oscillator, {at, speed}, frame_load(oscillator, {at, speed}),
+                                frame_load(oscillator, {end, speed}), time);
+    const double lag = oscillator.damping_n_s_per_mm / oscillator.stiffness_n_per_mm;
     RC_ASSERT(std::abs(motion.position_mm - end) < 1e-13 * (4 + std::abs(speed) * (time + lag)));
   });
 }

@@ -53,8 +53,8 @@ double any_step() {
   return kind < 8 ? odd[kind] : test::uniform(0.001, 0.1);
 }
 
-RatioNews any_news() {
-  return static_cast<RatioNews>(test::whole(0, 2));
+RatioUpdate any_news() {
+  return static_cast<RatioUpdate>(test::whole(0, 2));
 }
 
 using State = GripControl<double>::State;
@@ -108,7 +108,7 @@ TEST_CASE("grip force whatever is given", "[grip_control][law]") {
       const auto result =
           by_nan ? control(none, any_step(), state)
                  : control(any_ratio(),
-                           test::whole(0, 1) == 0 ? RatioNews::unmoved : RatioNews::missing,
+                           test::whole(0, 1) == 0 ? RatioUpdate::unmoved : RatioUpdate::missing,
                            any_step(), state);
       RC_ASSERT(result.force_n >= before);
       RC_ASSERT(result.force_n <= (std::max)(before, law.safe_force_n));
@@ -125,10 +125,10 @@ TEST_CASE("grip force and stick ratio", "[grip_control][law]") {
     State high = any_state(control);
     State low = high;
     const double a = test::uniform(0, 1), b = test::uniform(0, 1);
-    const RatioNews news = test::whole(0, 1) == 0 ? RatioNews::fresh : RatioNews::unmoved;
+    const RatioUpdate update = test::whole(0, 1) == 0 ? RatioUpdate::fresh : RatioUpdate::unmoved;
     const double step_s = test::uniform(0.001, 0.1);
-    RC_ASSERT(control((std::min)(a, b), news, step_s, low).force_n >=
-              control((std::max)(a, b), news, step_s, high).force_n);
+    RC_ASSERT(control((std::min)(a, b), update, step_s, low).force_n >=
+              control((std::max)(a, b), update, step_s, high).force_n);
   });
   rc::prop("nor along a whole history of fresh ratios", [] {
     const GripControl control(any_law());

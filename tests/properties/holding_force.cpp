@@ -16,7 +16,7 @@ using namespace fingerpad;
 
 namespace {
 
-using News = std::vector<SlipNews>;
+using News = std::vector<SlipSignal>;
 
 LoosenPlan<double> any_loosen_plan() {
   LoosenPlan<double> plan;
@@ -44,23 +44,23 @@ LiftPlan<double> any_lift_plan() {
 
 /// Mostly steady; slips seldom or never.
 News any_news(Index most) {
-  News news(static_cast<std::size_t>(test::whole(1, most)));
+  News signal(static_cast<std::size_t>(test::whole(1, most)));
   const Index slips = test::whole(0, 1), often = test::whole(1, 20);
-  for (SlipNews& one : news) {
+  for (SlipSignal& one : signal) {
     const Index kind = test::whole(0, 60);
-    one = kind < often          ? SlipNews::preslip
-          : kind < 30           ? SlipNews::steady
-          : kind < 35           ? SlipNews::missing
-          : kind == 60 && slips ? SlipNews::slipped
-                                : SlipNews::steady;
+    one = kind < often          ? SlipSignal::preslip
+          : kind < 30           ? SlipSignal::steady
+          : kind < 35           ? SlipSignal::missing
+          : kind == 60 && slips ? SlipSignal::slipped
+                                : SlipSignal::steady;
   }
-  return news;
+  return signal;
 }
 
 template <class Search>
-auto after(const Search& search, const News& news) {
+auto after(const Search& search, const News& signal) {
   auto state = search.start();
-  for (const SlipNews one : news) {
+  for (const SlipSignal one : signal) {
     search(one, state);
   }
   return state.command();
@@ -85,10 +85,10 @@ Index steps_in(double way, double step) {
 
 /// As an object answers: it slips on some of its contact below one force, and as a whole below
 /// another.
-SlipNews object(double force_n, double begins_below_n, double slips_below_n) {
-  return force_n < slips_below_n    ? SlipNews::slipped
-         : force_n < begins_below_n ? SlipNews::preslip
-                                    : SlipNews::steady;
+SlipSignal object(double force_n, double begins_below_n, double slips_below_n) {
+  return force_n < slips_below_n    ? SlipSignal::slipped
+         : force_n < begins_below_n ? SlipSignal::preslip
+                                    : SlipSignal::steady;
 }
 
 /// The command with which a search ends; what the object says may be missing for a while.
@@ -99,31 +99,32 @@ auto end_of(const Search& search, double begins_below_n, double slips_below_n) {
   for (int k = 0; k < 100000 && !is_end(state.command().phase); ++k) {
     const bool is_missing = k % seldom == 0;
     const double force_n = state.command().force_n;
-    search(is_missing ? SlipNews::missing : object(force_n, begins_below_n, slips_below_n), state);
+    search(is_missing ? SlipSignal::missing : object(force_n, begins_below_n, slips_below_n),
+           state);
   }
   RC_ASSERT(is_end(state.command().phase));
   return state.command();
 }
 
 template <class Search>
-void check_copies(const Search& search, const News& news) {
+void check_copies(const Search& search, const News& signal) {
   auto state = search.start();
-  const auto at = static_cast<std::size_t>(test::whole(0, static_cast<Index>(news.size()) - 1));
+  const auto at = static_cast<std::size_t>(test::whole(0, static_cast<Index>(signal.size()) - 1));
   for (std::size_t k = 0; k < at; ++k) {
-    search(news[k], state);
+    search(signal[k], state);
   }
   auto copy = state;
-  News rest(news.begin() + static_cast<std::ptrdiff_t>(at), news.end());
-  for (const SlipNews one : rest) {
+  News rest(signal.begin() + static_cast<std::ptrdiff_t>(at), signal.end());
+  for (const SlipSignal one : rest) {
     const auto command = search(one, state);
     RC_ASSERT(equal(command, search(one, copy)));
     RC_ASSERT(equal(command, state.command()));
   }
-  RC_ASSERT(equal(after(search, news), state.command()));
+  RC_ASSERT(equal(after(search, signal), state.command()));
   // and what is missing might as well not have been asked
   News heard;
-  std::copy_if(news.begin(), news.end(), std::back_inserter(heard),
-               [](SlipNews one) { return one != SlipNews::missing; });
+  std::copy_if(signal.begin(), signal.end(), std::back_inserter(heard),
+               [](SlipSignal one) { return one != SlipSignal::missing; });
   RC_ASSERT(equal(after(search, heard), state.command()));
 }
 
@@ -134,7 +135,7 @@ TEST_CASE("loosening whatever is told", "[holding_force][law]") {
     const auto plan = any_loosen_plan();
     const LoosenUntilPreslip<double> search(plan);
     auto state = search.start();
-    for (const SlipNews one : any_news(120)) {
+    for (const SlipSignal one : any_news(120)) {
       const auto before = state.command();
       const auto now = search(one, state);
       RC_ASSERT(now.force_n >= plan.min_force_n);
@@ -162,16 +163,16 @@ TEST_CASE("loosening whatever is told", "[holding_force][law]") {
     const LoosenUntilPreslip<double> search(plan);
     const Index levels = steps_in(plan.first_force_n - plan.min_force_n, plan.step_n) + 1;
     const Index bound = levels * (plan.settle_samples + plan.watch_samples);
-    // steady news takes the longest: all of the bound
-    const News steady(static_cast<std::size_t>(bound), SlipNews::steady);
+    // steady signal takes the longest: all of the bound
+    const News steady(static_cast<std::size_t>(bound), SlipSignal::steady);
     RC_ASSERT(after(search, steady).phase == SearchPhase::at_limit);
     RC_ASSERT(!is_end(after(search, News(steady.begin() + 1, steady.end())).phase));
     auto state = search.start();
     Index told = 0;
     while (told < bound) {
-      for (const SlipNews one : any_news(50)) {
+      for (const SlipSignal one : any_news(50)) {
         search(one, state);
-        told += one != SlipNews::missing ? 1 : 0;
+        told += one != SlipSignal::missing ? 1 : 0;
       }
     }
     RC_ASSERT(is_end(state.command().phase));
@@ -185,9 +186,9 @@ TEST_CASE("loosening whatever is told", "[holding_force][law]") {
     const Index samples = 30 * (plan.settle_samples + plan.watch_samples);
     const Index early = test::whole(0, samples - 1), late = test::whole(early, samples - 1);
     const auto from = [&](Index first) {
-      News news(static_cast<std::size_t>(samples + 20), SlipNews::preslip);
-      std::fill(news.begin(), news.begin() + first, SlipNews::steady);
-      return after(search, news);
+      News signal(static_cast<std::size_t>(samples + 20), SlipSignal::preslip);
+      std::fill(signal.begin(), signal.begin() + first, SlipSignal::steady);
+      return after(search, signal);
     };
     const auto a = from(early), b = from(late);
     RC_ASSERT(is_end(a.phase));
@@ -258,7 +259,7 @@ TEST_CASE("lifting whatever is told", "[holding_force][law]") {
     const auto plan = any_lift_plan();
     const LiftWithRegrip<double> search(plan);
     auto state = search.start();
-    for (const SlipNews one : any_news(120)) {
+    for (const SlipSignal one : any_news(120)) {
       const auto before = state.command();
       const auto now = search(one, state);
       RC_ASSERT(now.force_n >= plan.first_force_n);
@@ -289,16 +290,16 @@ TEST_CASE("lifting whatever is told", "[holding_force][law]") {
     auto state = search.start();
     Index told = 0;
     while (told < bound) {
-      for (const SlipNews one : any_news(50)) {
+      for (const SlipSignal one : any_news(50)) {
         search(one, state);
-        told += one != SlipNews::missing ? 1 : 0;
+        told += one != SlipSignal::missing ? 1 : 0;
       }
     }
     RC_ASSERT(is_end(state.command().phase));
     // the longest way: all but one lift, all tightenings, the last lift
-    News longest(static_cast<std::size_t>(lifts - 1), SlipNews::steady);
-    longest.insert(longest.end(), static_cast<std::size_t>(bound - lifts + 1), SlipNews::preslip);
-    longest.back() = SlipNews::steady;
+    News longest(static_cast<std::size_t>(lifts - 1), SlipSignal::steady);
+    longest.insert(longest.end(), static_cast<std::size_t>(bound - lifts + 1), SlipSignal::preslip);
+    longest.back() = SlipSignal::steady;
     RC_ASSERT(after(search, longest).phase == SearchPhase::lifted);
     longest.pop_back();
     RC_ASSERT(!is_end(after(search, longest).phase));

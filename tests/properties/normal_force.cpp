@@ -457,10 +457,10 @@ TEMPLATE_TEST_CASE("normal force: many frames at once are each frame",
     const auto reversed = flip_rows(as_view(samples));
     test::Image<double> a(count, 1), b(count, 1), c(count, 1), d(count, 1);
     const SampleCounts counts = force.for_samples(samples, a);
-    RC_ASSERT(counts.accepted);
+    RC_ASSERT(counts.ok());
     for (const SampleCounts& same : {force.for_samples(by_columns, b), force.for_samples(lazy, c),
                                      force.for_samples(reversed, flip_rows(as_view(d)))}) {
-      RC_ASSERT(same.accepted);
+      RC_ASSERT(same.ok());
       RC_ASSERT(same.not_finite == counts.not_finite);
       RC_ASSERT(same.beyond_range == counts.beyond_range);
     }
@@ -486,7 +486,7 @@ TEMPLATE_TEST_CASE("normal force: many frames at once are each frame",
     test::Image<double> forces(test::whole(0, 3), test::whole(0, 2), -7.0);
     const bool fits =
         samples.cols() >= needed && forces.cols() == 1 && forces.rows() == samples.rows();
-    RC_ASSERT(force.for_samples(samples, forces).accepted == fits);
+    RC_ASSERT(force.for_samples(samples, forces).ok() == fits);
     for (const double f : forces.cells) {
       RC_ASSERT((f == -7) == !fits);
     }

@@ -334,7 +334,7 @@ TEMPLATE_TEST_CASE("nothing is worse than a status",
         f = test::whole(0, 99) < share ? 1 : 0;
       }
       const auto result = motion(dots, flags, state);
-      RC_ASSERT(result.accepted == !other);
+      RC_ASSERT(result.accepted() == !other);
       RC_ASSERT(finite(result));
       RC_ASSERT(!result.ok() || (result.dots_used >= 3 && result.residual_rms_mm >= 0));
       const auto single = in_float(dots, flags, float_state);
@@ -351,9 +351,8 @@ TEST_CASE("dots on a line determine no rotation", "[object_motion][law]") {
         test::turned_by({test::uniform(-3, 3), test::uniform(-3, 3), 0})({1, 0, 0});
     for (std::size_t k = 0; k < 9; ++k) {
       const double s = test::uniform(-0.2, 0.2) + static_cast<double>(k);
-      a.dot[k] =
-          detail::sum(detail::scaled(s, along),
-                              Vector{test::uniform(-0.02, 0.02), test::uniform(-0.02, 0.02), 10});
+      a.dot[k] = detail::sum(detail::scaled(s, along),
+                             Vector{test::uniform(-0.02, 0.02), test::uniform(-0.02, 0.02), 10});
       a.found[k] = true;
     }
     Neighbourhood<double> b = a;

@@ -114,7 +114,7 @@ struct Everything {
 template <class Model, class CameraType>
 auto fit(const CameraType& camera, const Image<double>& depth, const Mask& mask) {
   return SurfaceFit<Model, CameraType>(depth.rows(), depth.cols(), camera, {.min_px = 1})(depth,
-                                                                                            mask);
+                                                                                          mask);
 }
 
 bool all_finite(const Plane<double>& p) {
@@ -289,7 +289,7 @@ TEST_CASE("object surface: whatever comes in, an ok result holds finite numbers"
       const SurfaceFit<decltype(model), decltype(camera)> surface(rows, cols, camera, options);
       Image<double> residual(rows, cols, 7);
       const auto r = surface(depth, mask, residual);
-      RC_ASSERT(r.accepted);
+      RC_ASSERT(r.accepted());
       const auto numbers = std::count_if(residual.cells.begin(), residual.cells.end(),
                                          [](double x) { return std::isfinite(x); });
       if (r.ok()) {

@@ -349,7 +349,7 @@ void check_batch(const ShearNormalisation<S>& normalisation, const Map& map, int
     samples(i, 3) = sometimes<S>(any_rotation());
   }
   const auto counts = shear.for_samples(samples, results);
-  RC_ASSERT(counts.accepted);
+  RC_ASSERT(counts.ok());
   Index not_finite = 0, beyond = 0;
   bool doubtful = false;  // at the end of the range, where a last bit decides
   for (Index i = 0; i < n; ++i) {

@@ -391,7 +391,7 @@ TEMPLATE_TEST_CASE(
       }
       const double time_s = bad(static_cast<double>(k));
       const auto check = [&](const auto& r) {
-        RC_ASSERT(r.accepted == !other);
+        RC_ASSERT(r.accepted() == !other);
         if (other) {
           RC_ASSERT(std::count(states.cells.begin(), states.cells.end(),
                                static_cast<DotState>(77)) == std::ssize(states.cells));

@@ -116,7 +116,7 @@ template <class S = double, class Field>
 void assert_valid(const Pad& pad, const Field& field) {
   auto maps = field.maps();
   const auto r = field(pad.dots, pad.contact, static_cast<S>(pad.pressure), maps);
-  RC_ASSERT(r.accepted);
+  RC_ASSERT(r.accepted());
   const bool has_force = r.has_force();
   RC_ASSERT(has_force == is_finite(r.mu_t_n_per_mm));
   RC_ASSERT(!has_force || r.dots_loaded > 0);

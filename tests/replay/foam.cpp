@@ -449,7 +449,7 @@ TEST_CASE("what sensor.json leaves out is as documented") {
   CHECK(text_of(taxels,
                 with_foam(R"("fingers": [{"first_row": 0, "rows": 6, "first_col": 0, "cols": 4}],
       "pitch_mm": 3.4, "window": 16, "sample_period_s": 0.03125, "noise_factor": 2.5,
-      "stuck_after": 0, "longest_gap_s": 0.25, "history": 100, "min_waves": 1,
+      "stuck_after": 0, "longest_gap_s": 0.25, "history": 100, "least_waves": 1,
       "centroid_tolerance_mm": 0.1, "rule": "both")")) == expected);
 }
 
@@ -459,7 +459,7 @@ TEST_CASE("each key of sensor.json reaches the features or the rules") {
   const std::string key =
       GENERATE(R"("pitch_mm": 1)", R"("window": 8)", R"("sample_period_s": 0.05)", R"("noise": 30)",
                R"("noise_factor": 20)", R"("saturated_at": 200)", R"("longest_gap_s": 0.01)",
-               R"("history": 2)", R"("min_waves": 4)", R"("centroid_tolerance_mm": 3)");
+               R"("history": 2)", R"("least_waves": 4)", R"("centroid_tolerance_mm": 3)");
   INFO(key);
   CHECK(text_of(taxels, with_foam(key)) != expected);
 }

@@ -93,85 +93,86 @@ TEST_CASE("foam contact: Hertz's sphere and its stiffness about a mean load", "[
   CHECK(is_nan(hertz_depth(sphere, none)));
 }
 
-TEST_CASE("foam contact: the rider left alone", "[foam_contact]") {
+TEST_CASE("foam contact: the oscillator left alone", "[foam_contact]") {
   const Motion<double> at_one{1, 0}, pushed{0, 1};
   SECTION("published, m = c = k = 1") {
-    const Rider<double> rider;
+    const MassSpringDamper<double> oscillator;
     const double half_s = 2 * pi / std::sqrt(3.0);
-    check_motion(free_motion(rider, at_one, half_s), -0.163033534821580, 0);
-    check_motion(free_motion(rider, pushed, half_s), 0, -0.163033534821580);
-    CHECK(damping_ratio(rider) == 0.5);
+    check_motion(free_motion(oscillator, at_one, half_s), -0.163033534821580, 0);
+    check_motion(free_motion(oscillator, pushed, half_s), 0, -0.163033534821580);
+    CHECK(damping_ratio(oscillator) == 0.5);
   }
   SECTION("undamped") {
-    const Rider<double> rider{1, 0, 1};
-    check_motion(free_motion(rider, at_one, 1.0), std::cos(1.0), -std::sin(1.0));
-    check_motion(free_motion(rider, pushed, 100.0), std::sin(100.0), std::cos(100.0));
+    const MassSpringDamper<double> oscillator{1, 0, 1};
+    check_motion(free_motion(oscillator, at_one, 1.0), std::cos(1.0), -std::sin(1.0));
+    check_motion(free_motion(oscillator, pushed, 100.0), std::sin(100.0), std::cos(100.0));
   }
   SECTION("critical: (1 + t) e^-t") {
-    const Rider<double> rider{1, 2, 1};
-    check_motion(free_motion(rider, at_one, 1.0), 2 / std::exp(1.0), -1 / std::exp(1.0));
-    check_motion(free_motion(rider, pushed, 3.0), 3 / std::exp(3.0), -2 / std::exp(3.0));
-    CHECK(damping_ratio(rider) == 1);
+    const MassSpringDamper<double> oscillator{1, 2, 1};
+    check_motion(free_motion(oscillator, at_one, 1.0), 2 / std::exp(1.0), -1 / std::exp(1.0));
+    check_motion(free_motion(oscillator, pushed, 3.0), 3 / std::exp(3.0), -2 / std::exp(3.0));
+    CHECK(damping_ratio(oscillator) == 1);
   }
   SECTION("strong: decays 1/2 and 2 per s") {
-    const Rider<double> rider{1, 2.5, 1};
+    const MassSpringDamper<double> oscillator{1, 2.5, 1};
     const double slow = std::exp(-1.5), fast = std::exp(-6.0);
-    check_motion(free_motion(rider, at_one, 3.0), (4 * slow - fast) / 3,
+    check_motion(free_motion(oscillator, at_one, 3.0), (4 * slow - fast) / 3,
                  (-2 * slow + 2 * fast) / 3);
-    check_motion(free_motion(rider, pushed, 3.0), 2 * (slow - fast) / 3, (4 * fast - slow) / 3);
+    check_motion(free_motion(oscillator, pushed, 3.0), 2 * (slow - fast) / 3,
+                 (4 * fast - slow) / 3);
   }
   SECTION("time 0 is the start, times that are none have no answer") {
     for (const double c : {0.0, 1.0, 2.0, 40.0}) {
-      const Rider<double> rider{1, c, 1};
-      const auto motion = free_motion(rider, {3, -4}, 0.0);
+      const MassSpringDamper<double> oscillator{1, c, 1};
+      const auto motion = free_motion(oscillator, {3, -4}, 0.0);
       CHECK(motion.position_mm == 3);
       CHECK(motion.velocity_mm_per_s == -4);
       for (const double time : {-1.0, none, infinity, -infinity}) {
-        CHECK(is_nan(free_motion(rider, at_one, time)));
-        CHECK(is_nan(ramp_response(rider, {1, 1}, at_one, time)));
+        CHECK(is_nan(free_motion(oscillator, at_one, time)));
+        CHECK(is_nan(ramp_response(oscillator, {1, 1}, at_one, time)));
       }
     }
   }
   SECTION("nothing overflows: e^(t/2) of eq. 10 does beyond 1419, in float beyond 177") {
     for (const double time : {1500.0, 1e6, 1e100}) {
-      check_motion(free_motion(Rider<double>{}, at_one, time), 0, 0);
-      check_motion(free_motion(Rider<double>{1, 40, 1}, at_one, 40 * time), 0, 0);
+      check_motion(free_motion(MassSpringDamper<double>{}, at_one, time), 0, 0);
+      check_motion(free_motion(MassSpringDamper<double>{1, 40, 1}, at_one, 40 * time), 0, 0);
     }
-    const auto single = free_motion(Rider<float>{}, Motion<float>{1, 1}, 1e30F);
+    const auto single = free_motion(MassSpringDamper<float>{}, Motion<float>{1, 1}, 1e30F);
     CHECK((single.position_mm == 0 && single.velocity_mm_per_s == 0));
   }
 }
 
 TEST_CASE("foam contact: under a ramp load (eq. 9, E039)", "[foam_contact]") {
   const RampLoad<double> load{2, 3};
-  check_motion(particular_solution(Rider<double>{}, load, 4.0), 11, 3);
-  check_motion(particular_solution(Rider<double>{1, 2, 4}, load, 4.0), 3.125, 0.75);
+  check_motion(particular_solution(MassSpringDamper<double>{}, load, 4.0), 11, 3);
+  check_motion(particular_solution(MassSpringDamper<double>{1, 2, 4}, load, 4.0), 3.125, 0.75);
   check_motion(printed_particular_solution(load, 4.0), 9, 2);
   CHECK(load(4.0) == 14);
   // from rest, m = k = 1 without damping: A (1 - cos t) + B (t - sin t)
-  check_motion(ramp_response(Rider<double>{1, 0, 1}, load, {}, 5.0),
+  check_motion(ramp_response(MassSpringDamper<double>{1, 0, 1}, load, {}, 5.0),
                2 * (1 - std::cos(5.0)) + 3 * (5 - std::sin(5.0)),
                2 * std::sin(5.0) + 3 * (1 - std::cos(5.0)));
-  // a frame that moves along carries the rider with it
-  const Rider<double> rider{1, 2, 4};
-  CHECK(frame_load(rider, {0.5, 3}) == 8);
+  // a frame that moves along carries the oscillator with it
+  const MassSpringDamper<double> oscillator{1, 2, 4};
+  CHECK(frame_load(oscillator, {0.5, 3}) == 8);
 }
 
 TEST_CASE("foam contact: residual of the printed solution", "[foam_contact]") {
-  const Rider<double> rider;
+  const MassSpringDamper<double> oscillator;
   const RampLoad<double> load{1, 3};
   for (const double t : {0.0, 1.0, 2.0, 10.0, 40.0}) {
     const auto printed = printed_particular_solution(load, t);
-    const auto corrected = particular_solution(rider, load, t);
-    const double printed_n = residual(rider, printed, 0.0, load(t));
-    const double corrected_n = residual(rider, corrected, 0.0, load(t));
+    const auto corrected = particular_solution(oscillator, load, t);
+    const double printed_n = residual(oscillator, printed, 0.0, load(t));
+    const double corrected_n = residual(oscillator, corrected, 0.0, load(t));
     INFO("t = " << t << " s, load " << load(t) << " N, residual: printed " << printed_n
                 << " N, corrected " << corrected_n << " N");
     CHECK(printed_n == (load.start_n - load.rise_n_per_s) * (t - 1));
     CHECK(corrected_n == 0);
   }
   // right only where A = B
-  CHECK(residual(rider, printed_particular_solution<double>({2, 2}, 7.0), 0.0, 16.0) == 0);
+  CHECK(residual(oscillator, printed_particular_solution<double>({2, 2}, 7.0), 0.0, 16.0) == 0);
 }
 
 TEST_CASE("foam contact: loads while a contact point slips (eqs. 6-8)", "[foam_contact]") {
@@ -220,8 +221,8 @@ TEST_CASE("foam contact: loads while lifting (eq. 10)", "[foam_contact]") {
 }
 
 TEMPLATE_TEST_CASE("foam contact: exact steps", "[foam_contact]", OneWord, TwoWords) {
-  const Rider<double> rider{1, 0, 1};
-  const FirstOrderHold<double, TestType> hold(rider, pi / 2);
+  const MassSpringDamper<double> oscillator{1, 0, 1};
+  const FirstOrderHold<double, TestType> hold(oscillator, pi / 2);
   auto state = hold.start({1, 0});
   SECTION("without load") {
     check_motion(hold(0.0, 0.0, state), 0, -1);
@@ -267,24 +268,25 @@ TEMPLATE_TEST_CASE("foam contact: exact steps", "[foam_contact]", OneWord, TwoWo
     auto again = bookmark;
     CHECK(hold(1.0, 2.0, again).position_mm == once.position_mm);
     static_assert(std::is_trivially_copyable_v<typename FirstOrderHold<float, TestType>::State>);
-    CHECK(hold.rider().mass_n_s2_per_mm == 1);
+    CHECK(hold.oscillator().mass_n_s2_per_mm == 1);
   }
 }
 
 TEST_CASE("foam contact: the causal integral", "[foam_contact]") {
   // of a ramp a single step is exact
-  const Rider<double> rider{0.5, 0.3, 4};
+  const MassSpringDamper<double> oscillator{0.5, 0.3, 4};
   const RampLoad<double> ramp{1, 2};
-  const auto closed = ramp_response(rider, ramp, {}, 3.0);
-  check_motion(causal_response(rider, ramp, 3.0, 1), closed.position_mm, closed.velocity_mm_per_s);
-  check_motion(causal_response<OneWord>(rider, ramp, 3.0, 50), closed.position_mm,
+  const auto closed = ramp_response(oscillator, ramp, {}, 3.0);
+  check_motion(causal_response(oscillator, ramp, 3.0, 1), closed.position_mm,
                closed.velocity_mm_per_s);
-  check_motion(causal_response(rider, ramp, 0.0, 5), 0, 0);
+  check_motion(causal_response<OneWord>(oscillator, ramp, 3.0, 50), closed.position_mm,
+               closed.velocity_mm_per_s);
+  check_motion(causal_response(oscillator, ramp, 0.0, 5), 0, 0);
   for (const double time : {-1.0, none, infinity}) {
-    CHECK(is_nan(causal_response(rider, ramp, time, 5)));
+    CHECK(is_nan(causal_response(oscillator, ramp, time, 5)));
   }
-  CHECK(is_nan(causal_response(rider, ramp, 3.0, 0)));
-  CHECK(is_nan(causal_response(rider, ramp, 0.0, -1)));
+  CHECK(is_nan(causal_response(oscillator, ramp, 3.0, 0)));
+  CHECK(is_nan(causal_response(oscillator, ramp, 0.0, -1)));
 }
 
 TEST_CASE("foam contact: creep, recovery, relaxation", "[foam_contact]") {
@@ -345,10 +347,13 @@ TEST_CASE("foam contact: strain under a history of stress", "[foam_contact]") {
 }
 
 TEST_CASE("foam contact: bad parameters are refused by name", "[foam_contact]") {
-  using R = Rider<double>;
-  check_refused("Rider", &R::mass_n_s2_per_mm, "mass_n_s2_per_mm", {0, -1, none, infinity});
-  check_refused("Rider", &R::damping_n_s_per_mm, "damping_n_s_per_mm", {-1e-9, none, infinity});
-  check_refused("Rider", &R::stiffness_n_per_mm, "stiffness_n_per_mm", {0, -1, none, infinity});
+  using R = MassSpringDamper<double>;
+  check_refused("MassSpringDamper", &R::mass_n_s2_per_mm, "mass_n_s2_per_mm",
+                {0, -1, none, infinity});
+  check_refused("MassSpringDamper", &R::damping_n_s_per_mm, "damping_n_s_per_mm",
+                {-1e-9, none, infinity});
+  check_refused("MassSpringDamper", &R::stiffness_n_per_mm, "stiffness_n_per_mm",
+                {0, -1, none, infinity});
   using F = PolymerFriction<double>;
   check_refused("PolymerFriction", &F::factor, "factor", {0, -1, none, infinity});
   check_refused("PolymerFriction", &F::exponent, "exponent", {0, -1, 1.01, none, infinity});
@@ -391,7 +396,7 @@ TEST_CASE("foam contact: bad parameters are refused by name", "[foam_contact]") 
   CHECK(test::begins_with(test::refusal([] {
                             FirstOrderHold<double>({1, -1, 1}, 1);
                           }),
-                          "Rider: damping_n_s_per_mm = "));
+                          "MassSpringDamper: damping_n_s_per_mm = "));
   CHECK(test::begins_with(test::refusal([] {
                             Creep<double>({{0, 1}, {}}, 1);
                           }),

@@ -28,15 +28,15 @@ GripLaw<double> lowering_law() {
   return law;
 }
 
-/// Calls with the same news for a time; the last answer.
+/// Calls with the same update for a time; the last answer.
 GripResult<double> after(const GripControl<>& control,
                          GripControl<>::State& state,
                          double time_s,
                          double ratio,
-                         RatioNews news = RatioNews::fresh) {
+                         RatioUpdate update = RatioUpdate::fresh) {
   GripResult<double> result;
   for (int k = 0; k < std::lround(time_s / 0.01); ++k) {
-    result = control(ratio, news, 0.01, state);
+    result = control(ratio, update, 0.01, state);
   }
   return result;
 }
@@ -145,7 +145,7 @@ TEST_CASE("grip control: dots that stand still", "[grip_control]") {
   SECTION("after a ratio that was good, or before any: the force is held for ever") {
     for (const double ratio : {none, 0.7, 1.0}) {
       auto state = control.start(3);
-      const auto result = after(control, state, 1000, ratio, RatioNews::unmoved);
+      const auto result = after(control, state, 1000, ratio, RatioUpdate::unmoved);
       CHECK(result.force_n == 3);
       CHECK(result.status == GripStatus::holding);
       CHECK(result.why == GripReason::unmoved);
@@ -154,34 +154,34 @@ TEST_CASE("grip control: dots that stand still", "[grip_control]") {
   SECTION("a ratio below the set point is acted on for a while") {
     auto state = control.start(3);
     control(0.6, 0.01, state);
-    const auto result = after(control, state, 0.05, 0.6, RatioNews::unmoved);
+    const auto result = after(control, state, 0.05, 0.6, RatioUpdate::unmoved);
     CHECK(result.why == GripReason::slipping);
     CHECK(result.force_n == Approx(3 + 1.0 * 0.06));
-    const auto later = after(control, state, 100, 0.6, RatioNews::unmoved);
+    const auto later = after(control, state, 100, 0.6, RatioUpdate::unmoved);
     CHECK(later.why == GripReason::unmoved);
     CHECK(later.force_n == Approx(3 + 1.0 * 0.11).margin(0.011));
     control(0.6, 0.01, state);  // another one lasts as long again
-    CHECK(control(0.6, RatioNews::unmoved, 0.01, state).why == GripReason::slipping);
+    CHECK(control(0.6, RatioUpdate::unmoved, 0.01, state).why == GripReason::slipping);
   }
   SECTION("an object that may slide over them is gripped harder, up to the safe force") {
     auto state = control.start(3);
     control(0.4, 0.01, state);
-    const auto result = after(control, state, 1, 0.4, RatioNews::unmoved);
+    const auto result = after(control, state, 1, 0.4, RatioUpdate::unmoved);
     CHECK(result.status == GripStatus::raising);
     CHECK(result.why == GripReason::may_slide);
     CHECK(result.force_n == Approx(3 + 3 * 1.01));
-    const auto later = after(control, state, 100, 0.4, RatioNews::unmoved);
+    const auto later = after(control, state, 100, 0.4, RatioUpdate::unmoved);
     CHECK(later.status == GripStatus::at_limit);
     CHECK(later.force_n == 10);
     // a fresh ratio goes beyond
     CHECK(control(0.4, 0.01, state).force_n > 10);
     // and a standing one does not take back what a fresh one has asked for
-    CHECK(control(0.4, RatioNews::unmoved, 0.01, state).force_n > 10);
+    CHECK(control(0.4, RatioUpdate::unmoved, 0.01, state).force_n > 10);
   }
   SECTION("nothing is ever let go") {
     const GripControl lowering(lowering_law());
     auto state = lowering.start(3);
-    CHECK(after(lowering, state, 10, 1.0, RatioNews::unmoved).force_n == 3);
+    CHECK(after(lowering, state, 10, 1.0, RatioUpdate::unmoved).force_n == 3);
     CHECK(lowering(1.0, 0.01, state).force_n < 3);
   }
 }
@@ -189,7 +189,7 @@ TEST_CASE("grip control: dots that stand still", "[grip_control]") {
 TEST_CASE("grip control: no ratio", "[grip_control]") {
   const GripControl control(plain);
   const auto blind = [&](auto& state, double time_s) {
-    return after(control, state, time_s, 0.9, RatioNews::missing);
+    return after(control, state, time_s, 0.9, RatioUpdate::missing);
   };
   SECTION("is waited for, then the force goes up to the safe one and stays") {
     auto state = control.start(3);
@@ -231,10 +231,10 @@ TEST_CASE("grip control: no ratio", "[grip_control]") {
     for (const double ratio : {none, infinity, -infinity, -0.001, 1.001, 1e300}) {
       auto state = control.start(3);
       CHECK(control(ratio, 0.01, state).why == GripReason::waiting);
-      CHECK(control(ratio, RatioNews::missing, 0.01, state).why == GripReason::waiting);
+      CHECK(control(ratio, RatioUpdate::missing, 0.01, state).why == GripReason::waiting);
     }
     auto state = control.start(3);
-    CHECK(control(7.0, RatioNews::unmoved, 0.01, state).why == GripReason::waiting);
+    CHECK(control(7.0, RatioUpdate::unmoved, 0.01, state).why == GripReason::waiting);
   }
 }
 
@@ -276,13 +276,13 @@ TEST_CASE("grip control: the state is a value", "[grip_control]") {
   static_assert(std::is_trivially_copyable_v<GripControl<float>::State>);
 }
 
-TEST_CASE("grip control: news of a stick ratio", "[grip_control]") {
-  CHECK(news_of(StickStatus::updated) == RatioNews::fresh);
-  CHECK(news_of(StickStatus::standing) == RatioNews::unmoved);
-  CHECK(news_of(StickStatus::no_reference) == RatioNews::unmoved);
+TEST_CASE("grip control: update of a stick ratio", "[grip_control]") {
+  CHECK(update_of(StickStatus::updated) == RatioUpdate::fresh);
+  CHECK(update_of(StickStatus::standing) == RatioUpdate::unmoved);
+  CHECK(update_of(StickStatus::no_reference) == RatioUpdate::unmoved);
   for (const auto status : {StickStatus::too_few_dots, StickStatus::no_contact,
                             StickStatus::no_dots, StickStatus::jumped, StickStatus::restarted}) {
-    CHECK(news_of(status) == RatioNews::missing);
+    CHECK(update_of(status) == RatioUpdate::missing);
   }
 }
 

@@ -74,7 +74,7 @@ Index count(const DotStates& states, DotState what) {
 
 template <class S>
 bool same(const StickRatioResult<S>& a, const StickRatioResult<S>& b) {
-  return a.accepted == b.accepted && a.status == b.status && a.stick == b.stick &&
+  return a.accepted() == b.accepted() && a.status == b.status && a.stick == b.stick &&
          a.slip == b.slip && a.unknown == b.unknown && a.out_of_place == b.out_of_place &&
          test::same_bits(a.stick_ratio, b.stick_ratio) && a.reference_age == b.reference_age &&
          test::same_bits(a.furthest_px, b.furthest_px) && a.angle_rad == b.angle_rad &&
@@ -107,7 +107,7 @@ TEMPLATE_TEST_CASE("stick ratio: what moves as one sticks, and its motion is fou
   const auto before = dots.dots;
   dots.step({.shift_px = 3, .direction_rad = 0.7, .turn_rad = turn_rad, .zoom = zoom});
   const auto r = ratio(dots.dots, dots.contact, states, state);
-  REQUIRE(r.accepted);
+  REQUIRE(r.accepted());
   REQUIRE(r.updated());
   CHECK(r.stick_ratio == 1);
   CHECK(r.stick == 213);
@@ -611,7 +611,7 @@ TEST_CASE("stick ratio, bad input: all dots lost for some frames, then back") {
   REQUIRE(before.slip == 9);
   for (int k = 0; k < 5; ++k) {
     const auto r = f(blank);
-    CHECK(r.accepted);
+    CHECK(r.accepted());
     CHECK(r.status == StickStatus::no_dots);
     CHECK(r.stick_ratio == before.stick_ratio);
     CHECK(r.slip == 9);  // what was known stands
@@ -650,7 +650,7 @@ TEST_CASE("stick ratio, bad input: an empty contact mask") {
   Follower<> f;
   const ContactFlags none(9, 9, 0);
   auto r = f(shifted(0), none);
-  CHECK(r.accepted);
+  CHECK(r.accepted());
   CHECK(r.status == StickStatus::no_contact);
   CHECK(std::isnan(r.stick_ratio));
   CHECK(r.dots_in_contact() == 0);
@@ -678,7 +678,7 @@ TEMPLATE_TEST_CASE("stick ratio, bad input: one single dot",
     return f(shifted(3, 0, rows, cols));
   };
   const auto r = run({}, 1, 1);
-  CHECK(r.accepted);
+  CHECK(r.accepted());
   CHECK(r.status == StickStatus::too_few_dots);
   CHECK(std::isnan(r.stick_ratio));
   CHECK(r.unknown == 1);
@@ -713,18 +713,18 @@ TEST_CASE("stick ratio, bad input: other sizes and foreign states are refused") 
   ratio(shifted(3), all, states, state);
   const DotStates written = states;
   DotStates other_states(9, 8);
-  CHECK(!ratio(shifted(0, 0, 9, 8), all, states, state).accepted);
-  CHECK(!ratio(shifted(0, 0, 0, 0), all, states, state).accepted);
-  CHECK(!ratio(shifted(6), ContactFlags(8, 9), states, state).accepted);
-  CHECK(!ratio(shifted(6), all, other_states, state).accepted);
+  CHECK(!ratio(shifted(0, 0, 9, 8), all, states, state).accepted());
+  CHECK(!ratio(shifted(0, 0, 0, 0), all, states, state).accepted());
+  CHECK(!ratio(shifted(6), ContactFlags(8, 9), states, state).accepted());
+  CHECK(!ratio(shifted(6), all, other_states, state).accepted());
   auto foreign = StickRatio(9, 8).start();
-  CHECK(!ratio(shifted(6), all, states, foreign).accepted);
+  CHECK(!ratio(shifted(6), all, states, foreign).accepted());
   auto turned = StickRatio(8, 9).start();
-  CHECK(!ratio(shifted(6), all, states, turned).accepted);
+  CHECK(!ratio(shifted(6), all, states, turned).accepted());
   auto other_capacity =
       StickRatio(9, 9, {}, StickConsensus<>(), UpdatedReference<>{.capacity = 63}).start();
   const auto refused = ratio(shifted(6), all, states, other_capacity);
-  CHECK(!refused.accepted);
+  CHECK(!refused.accepted());
   CHECK(!refused.updated());
   CHECK(std::isnan(refused.stick_ratio));
   CHECK(states.cells == written.cells);

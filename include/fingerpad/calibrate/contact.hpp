@@ -72,7 +72,7 @@ class FreePadCalibration {
   template <grid Depth>
   bool add(const Depth& depth_mm) {
     const StridedView<S> curvature(curvature_.data(), map_.rows(), map_.cols(), map_.cols());
-    if (!map_(depth_mm, curvature, workspace_).accepted) {
+    if (!map_(depth_mm, curvature, workspace_).ok()) {
       return false;
     }
     ++frames_;

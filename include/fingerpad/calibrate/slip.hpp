@@ -72,7 +72,7 @@ class StickTestCalibration {
     bool stands = false;  // as the smallest U says; with InStickRegion others may differ
     for (Run& run : runs_) {
       const auto result = run.estimator(dots_px, contact, states, run.state, time_s);
-      if (!result.accepted) {
+      if (!result.accepted()) {
         return false;
       }
       if (&run == &runs_.front()) {

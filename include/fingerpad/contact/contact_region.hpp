@@ -20,6 +20,7 @@
 #include "fingerpad/contact/detail/region_measures.hpp"
 #include "fingerpad/core/expects.hpp"
 #include "fingerpad/core/grid.hpp"
+#include "fingerpad/core/status.hpp"
 #include "fingerpad/image/curvature_map.hpp"
 #include "fingerpad/image/curvature_projection.hpp"
 #include "fingerpad/image/detail/pixel_rays.hpp"
@@ -32,15 +33,16 @@ inline namespace v0 {
 
 /// What a frame's contact is like. Without contact, areas are 0 and what has no value is NaN.
 struct ContactResult {
-  bool accepted = false;  ///< false: a grid or the workspace has another size; nothing written
-  Index contact_px = 0;   ///< pixels in contact
-  Index unknown_px = 0;   ///< pixels without depth, or with too little around them to tell
-  Index regions = 0;      ///< parts that the contact has
-  double area_mm2 = 0;    ///< of the contact, at its depth, projected on the plate
+  FrameStatus status = FrameStatus::refused;
+  Index contact_px = 0;  ///< pixels in contact
+  Index unknown_px = 0;  ///< pixels without depth, or with too little around them to tell
+  Index regions = 0;     ///< parts that the contact has
+  double area_mm2 = 0;   ///< of the contact, at its depth, projected on the plate
   Point3<double> center_mm = {not_a_number<double>(), not_a_number<double>(),
                               not_a_number<double>()};  ///< centroid of that area
   double depth_mm = not_a_number<double>();  ///< D: free apex height less mean height of contact
 
+  bool ok() const { return status == FrameStatus::ok; }
   bool in_contact() const { return contact_px > 0; }
 };
 
@@ -109,16 +111,15 @@ class ContactRegion {
     ContactResult result;
     const auto depth = as_view(depth_mm);
     const auto to = as_view(mask);
-    result.accepted = has_size(depth) && has_size(to) && w.regions_.image() == image_;
-    if (!result.accepted) {
+    if (!has_size(depth) || !has_size(to) || w.regions_.image() != image_) {
       return result;
     }
     const auto statistic = image_.view(w.statistic_.data());
     const CurvatureResult curvature = curvature_(depth, statistic, w.curvature_);
-    result.accepted = curvature.accepted;  // false for a workspace with another ring
-    if (!result.accepted) {
+    if (!curvature.ok()) {  // a workspace with another ring
       return result;
     }
+    result.status = FrameStatus::ok;
     result.unknown_px = curvature.unknown_px;
     mark_seeds(statistic, w.regions_.marks());
     detail::prepare(cleaning_, w.statistic_.data(), w.regions_);

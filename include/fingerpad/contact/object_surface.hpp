@@ -46,14 +46,14 @@ enum class SurfaceStatus : unsigned char {
   too_few,     ///< pixels in contact that have a depth
   degenerate,  ///< the pixels do not determine the shape (all in one line, for the quadric also two
                ///< level lines), or no camera could see it: depths beyond all reason
+  refused,     ///< a grid, state or workspace has another size: nothing was done
 };
 
 /// `shape` is a Plane, Sphere or Quadric; its numbers are finite where the status is ok, and NaN
 /// elsewhere.
 template <class Shape, scalar S = double>
 struct SurfaceResult {
-  bool accepted = false;  ///< false: a grid has another size than the fit; nothing written
-  SurfaceStatus status = SurfaceStatus::too_few;
+  SurfaceStatus status = SurfaceStatus::refused;
   Index pixels = 0;  ///< that were used
   Shape shape = {};
   S rms_mm = not_a_number<S>();      ///< of the distances from the shape
@@ -62,6 +62,7 @@ struct SurfaceResult {
   Index largest_row = -1;            ///< where that is
   Index largest_col = -1;
 
+  bool accepted() const { return status != SurfaceStatus::refused; }
   bool ok() const { return status == SurfaceStatus::ok; }
 };
 
@@ -158,7 +159,7 @@ class SurfaceFit {
     using std::sqrt;
     Fitted fit;
     Result& result = fit.result;
-    result.accepted = true;
+    result.status = SurfaceStatus::too_few;
     detail::PixelSpread spread;
     const detail::PatchMoments<Scalar> patch = moments(pixels, spread, fit.box);
     result.pixels = patch.pixels;

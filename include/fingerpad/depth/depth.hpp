@@ -21,6 +21,7 @@
 
 #include "fingerpad/core/expects.hpp"
 #include "fingerpad/core/grid.hpp"
+#include "fingerpad/core/status.hpp"
 #include "fingerpad/depth/depth_inverse.hpp"
 #include "fingerpad/depth/depth_reference.hpp"
 #include "fingerpad/depth/depth_rows.hpp"
@@ -33,11 +34,11 @@ inline namespace v0 {
 
 /// What became of a frame.
 struct DepthResult {
-  bool accepted = false;  ///< false: a grid or the workspace has another size than the reference;
-                          ///< nothing written
-  Index pad_pixels = 0;   ///< pixels at which the reference knows the pad
+  FrameStatus status = FrameStatus::refused;
+  Index pad_pixels = 0;  ///< pixels at which the reference knows the pad
   std::array<Index, pixel_status_count> count = {};  ///< pixels by PixelStatus
 
+  bool ok() const { return status == FrameStatus::ok; }
   Index valid_pixels() const { return count[static_cast<std::size_t>(PixelStatus::ok)]; }
 };
 
@@ -136,11 +137,11 @@ class DepthEstimator {
     static_assert(std::is_same_v<cell_t<Red>, Pixel> && std::is_same_v<cell_t<Green>, Pixel>,
                   "the workspace was made for another type of cell");
     DepthResult result;
-    result.accepted = has_size(red) && has_size(green) && has_size(depth_mm) && has_size(status) &&
-                      workspace.area_ == pad_ && 0 <= first && first <= last && last <= rows_;
-    if (!result.accepted) {
+    if (!(has_size(red) && has_size(green) && has_size(depth_mm) && has_size(status) &&
+          workspace.area_ == pad_ && 0 <= first && first <= last && last <= rows_)) {
       return result;
     }
+    result.status = FrameStatus::ok;
     result.pad_pixels = pad_pixels_;
     const auto depth_view = as_view(depth_mm);
     const auto status_view = as_view(status);

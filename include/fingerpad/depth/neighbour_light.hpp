@@ -15,11 +15,12 @@
 #include <utility>
 #include <vector>
 
-#include "fingerpad/depth/detail/inclination_sums.hpp"
-#include "fingerpad/image/detail/quick_math.hpp"
 #include "fingerpad/core/expects.hpp"
 #include "fingerpad/core/grid.hpp"
 #include "fingerpad/core/scalar.hpp"
+#include "fingerpad/core/status.hpp"
+#include "fingerpad/depth/detail/inclination_sums.hpp"
+#include "fingerpad/image/detail/quick_math.hpp"
 
 namespace fingerpad {
 inline namespace v0 {
@@ -58,9 +59,10 @@ inline S without_neighbour_light(const S& depth_mm,
 }
 
 struct NeighbourLightResult {
-  bool accepted = false;  ///< false: a grid or the workspace has another size than the reference;
-                          ///< nothing written
-  Index lost_px = 0;      ///< pixels of the reference whose inclination this frame does not show
+  FrameStatus status = FrameStatus::refused;
+  Index lost_px = 0;  ///< pixels of the reference whose inclination this frame does not show
+
+  bool ok() const { return status == FrameStatus::ok; }
 };
 
 /// Removes the light of the neighbouring membrane from depth maps. `Disc` is SteppedDisc<> (time
@@ -129,7 +131,7 @@ class NeighbourLightCompensation {
         to(i, j) = static_cast<cell_t<Out>>(row_mm[j]);
       }
     }
-    return {true, workspace.lost_px};
+    return {FrameStatus::ok, workspace.lost_px};
   }
 
  private:
@@ -181,7 +183,7 @@ struct NoNeighbourLight {
                   std::same_as<cell_t<Depth>, cell_t<Out>>) {
       if (from.data() == to.data() && from.row_stride() == to.row_stride() &&
           from.col_stride() == to.col_stride()) {
-        return {true, 0};
+        return {FrameStatus::ok, 0};
       }
     }
     for (Index i = 0; i < to.rows(); ++i) {
@@ -189,7 +191,7 @@ struct NoNeighbourLight {
         to(i, j) = static_cast<cell_t<Out>>(from(i, j));
       }
     }
-    return {true, 0};
+    return {FrameStatus::ok, 0};
   }
 };
 

@@ -24,7 +24,7 @@ inline namespace v0 {
 // What the searches for the holding force are told at each sample, and what they say they do.
 
 /// What the fingers say at one sample.
-enum class SlipNews : std::uint8_t {
+enum class SlipSignal : std::uint8_t {
   steady,   ///< no sign of slip
   preslip,  ///< some of the contact begins to slip
   slipped,  ///< the object slips as a whole, or is gone
@@ -32,7 +32,8 @@ enum class SlipNews : std::uint8_t {
 };
 
 enum class SearchPhase : std::uint8_t {
-  settling,  ///< what the last command stirred up dies away; news but `slipped` is not listened to
+  settling,  ///< what the last command stirred up dies away; signal but `slipped` is not listened
+             ///< to
   watching,  ///< pre-slip is waited for
   found,     ///< loosening: the least force is known. The end
   lifted,    ///< lifting: at the full height. The end
@@ -75,13 +76,13 @@ bool divides(const S& step, const S& way) {
 /// How the grip is loosened. The paper prints no values.
 template <scalar S = double>
 struct LoosenPlan {
-  S first_force_n = S(10);        ///< with which the object is held at first, > min_force_n
+  S first_force_n = S(10);      ///< with which the object is held at first, > min_force_n
   S min_force_n = S(1) / S(2);  ///< never less, >= 0
-  S step_n = S(1) / S(4);         ///< taken off at a time, > 0
-  Index settle_samples = 16;      ///< after each step, >= 0; a window of the taxels hides the step
-  Index watch_samples = 16;       ///< then, >= 1
-  Index margin_steps = 2;         ///< given back once pre-slip is found, >= 0
-  bool until_slipped = false;     ///< go on after pre-slip, as the paper does to check
+  S step_n = S(1) / S(4);       ///< taken off at a time, > 0
+  Index settle_samples = 16;    ///< after each step, >= 0; a window of the taxels hides the step
+  Index watch_samples = 16;     ///< then, >= 1
+  Index margin_steps = 2;       ///< given back once pre-slip is found, >= 0
+  bool until_slipped = false;   ///< go on after pre-slip, as the paper does to check
 };
 
 /// Refuses what has no meaning (parameter_error).
@@ -112,7 +113,7 @@ struct LoosenCommand {
 };
 
 /// Loosens step by step until pre-slip. Const, O(1), no memory from the heap; ends after at most
-/// (first - least) / step + 1 steps of news that is not missing.
+/// (first - least) / step + 1 steps of signal that is not missing.
 template <scalar S = double>
 class LoosenUntilPreslip {
  public:
@@ -139,12 +140,12 @@ class LoosenUntilPreslip {
   }
 
   /// What to do after one more sample.
-  LoosenCommand<S> operator()(SlipNews news, State& state) const {
+  LoosenCommand<S> operator()(SlipSignal signal, State& state) const {
     LoosenCommand<S>& command = state.command_;
-    if (is_end(command.phase) || news == SlipNews::missing) {
+    if (is_end(command.phase) || signal == SlipSignal::missing) {
       return command;
     }
-    if (news == SlipNews::slipped) {
+    if (signal == SlipSignal::slipped) {
       command.phase = SearchPhase::slipped;
       command.force_n = plan_.first_force_n;
       return command;
@@ -153,10 +154,10 @@ class LoosenUntilPreslip {
     if (command.phase == SearchPhase::settling) {
       if (state.samples_ > plan_.settle_samples) {
         enter(SearchPhase::watching, state);
-        watch(news, state);
+        watch(signal, state);
       }
     } else {
-      watch(news, state);
+      watch(signal, state);
     }
     return command;
   }
@@ -167,9 +168,9 @@ class LoosenUntilPreslip {
     state.samples_ = phase == SearchPhase::watching ? 1 : 0;
   }
 
-  void watch(SlipNews news, State& state) const {
+  void watch(SlipSignal signal, State& state) const {
     LoosenCommand<S>& command = state.command_;
-    const bool is_first = news == SlipNews::preslip && !is_finite(command.preslip_force_n);
+    const bool is_first = signal == SlipSignal::preslip && !is_finite(command.preslip_force_n);
     if (is_first) {
       command.preslip_force_n = command.force_n;
       if (!plan_.until_slipped) {
@@ -207,7 +208,7 @@ class LoosenUntilPreslip {
 template <scalar S = double>
 struct LiftPlan {
   S first_force_n = S(1);          ///< with which it is gripped before the lift, > 0
-  S max_force_n = S(20);          ///< never more, >= first_force_n
+  S max_force_n = S(20);           ///< never more, >= first_force_n
   S force_step_n = S(1) / S(2);    ///< by which the grip is tightened, > 0
   S height_mm = S(50);             ///< to lift to, > 0
   S height_step_mm = S(1) / S(4);  ///< lifted at each sample without pre-slip, > 0
@@ -271,16 +272,16 @@ class LiftWithRegrip {
   }
 
   /// What to do after one more sample.
-  LiftCommand<S> operator()(SlipNews news, State& state) const {
+  LiftCommand<S> operator()(SlipSignal signal, State& state) const {
     LiftCommand<S>& command = state.command_;
-    if (is_end(command.phase) || news == SlipNews::missing) {
+    if (is_end(command.phase) || signal == SlipSignal::missing) {
       return command;
     }
-    if (news == SlipNews::slipped) {
+    if (signal == SlipSignal::slipped) {
       give_up(SearchPhase::slipped, command);
     } else if (command.phase == SearchPhase::settling && ++state.samples_ <= plan_.settle_samples) {
       return command;
-    } else if (news == SlipNews::preslip) {
+    } else if (signal == SlipSignal::preslip) {
       tighten(state);
     } else {
       lift(state);

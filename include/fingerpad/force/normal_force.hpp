@@ -19,15 +19,15 @@
 #include <cmath>
 #include <cstddef>
 
+#include "fingerpad/core/dots.hpp"
+#include "fingerpad/core/expects.hpp"
+#include "fingerpad/core/grid.hpp"
+#include "fingerpad/core/scalar.hpp"
 #include "fingerpad/force/compensation.hpp"
 #include "fingerpad/force/force_curve.hpp"
 #include "fingerpad/force/force_errors.hpp"
 #include "fingerpad/force/force_status.hpp"
 #include "fingerpad/force/sample_block.hpp"
-#include "fingerpad/core/dots.hpp"
-#include "fingerpad/core/expects.hpp"
-#include "fingerpad/core/grid.hpp"
-#include "fingerpad/core/scalar.hpp"
 
 namespace fingerpad {
 inline namespace v0 {
@@ -106,7 +106,7 @@ class NormalForce {
     if (in.cols() < static_cast<Index>(needed) || out.cols() != 1 || out.rows() != in.rows()) {
       return counts;
     }
-    counts.accepted = true;
+    counts.status = FrameStatus::ok;
     detail::for_each_block<S, needed, 1>(in, out, [&](const auto& block, auto& forces) {
       int not_finite = 0, beyond = 0;
       for (std::size_t k = 0; k < block.size; ++k) {

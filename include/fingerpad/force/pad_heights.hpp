@@ -7,13 +7,13 @@
 #include <cstddef>
 #include <vector>
 
-#include "fingerpad/force/height_map.hpp"
-#include "fingerpad/image/detail/pixel_rays.hpp"
 #include "fingerpad/core/dots.hpp"
 #include "fingerpad/core/expects.hpp"
 #include "fingerpad/core/grid.hpp"
-#include "fingerpad/optics/camera.hpp"
 #include "fingerpad/core/scalar.hpp"
+#include "fingerpad/force/height_map.hpp"
+#include "fingerpad/image/detail/pixel_rays.hpp"
+#include "fingerpad/optics/camera.hpp"
 
 namespace fingerpad {
 inline namespace v0 {
@@ -46,10 +46,10 @@ class PadHeights {
     expects_valid(camera);
     const HeightMap<Scalar> nodes = map();
     side_ = nodes.side();
-    sights_.reserve(static_cast<std::size_t>(side_ * side_));
+    projections_.reserve(static_cast<std::size_t>(side_ * side_));
     for (Index i = 0; i < side_; ++i) {
       for (Index j = 0; j < side_; ++j) {
-        sights_.push_back(sight(camera, nodes.position_mm(j), nodes.position_mm(i)));
+        projections_.push_back(projection(camera, nodes.position_mm(j), nodes.position_mm(i)));
       }
     }
   }
@@ -78,18 +78,18 @@ class PadHeights {
  private:
   using S = Scalar;
 
-  /// Sights are exact up to this height, and no guess goes beyond: what a camera sees wildly deep
-  /// then reaches no farther than it is seen.
+  /// Projections are exact up to this height, and no guess goes beyond: what a camera sees wildly
+  /// deep then reaches no farther than it is seen.
   static constexpr int highest_mm = 20;
 
   /// Where the membrane above a place is seen: at center + (x, y) / mm_per_px, which depends on its
   /// height: mm_per_px = at_plate + rising z + bending z^2, nearly straight.
-  struct Sight {
+  struct Projection {
     S x, y;
     S at_plate, rising, bending;
   };
 
-  static Sight sight(const CameraType& camera, const S& x, const S& y) {
+  static Projection projection(const CameraType& camera, const S& x, const S& y) {
     using std::sqrt;
     // on the axis, the limit from beside it
     const S r_sq = x * x + y * y;
@@ -105,18 +105,18 @@ class PadHeights {
     return {x, y, low, S((top - low) / high - bending * high), bending};
   }
 
-  const Sight& at(Index i, Index j) const {
-    return sights_[static_cast<std::size_t>(i * side_ + j)];
+  const Projection& at(Index i, Index j) const {
+    return projections_[static_cast<std::size_t>(i * side_ + j)];
   }
 
   /// The pixel that sees a place at some height.
-  struct Sighting {
+  struct ProjectedPlace {
     S x_px, y_px;  ///< from the center
     S px_per_mm;
     S nearer;  ///< by this share of x_px and y_px it is nearer to the center for each mm of height
   };
 
-  static Sighting sighting(const Sight& s, const S& z) {
+  static ProjectedPlace projected(const Projection& s, const S& z) {
     const S px_per_mm = S(1) / (s.at_plate + z * (s.rising + z * s.bending));
     return {S(s.x * px_per_mm), S(s.y * px_per_mm), px_per_mm,
             S((s.rising + S(2) * z * s.bending) * px_per_mm)};
@@ -130,8 +130,8 @@ class PadHeights {
 
   /// Bilinear; NaN outside of the map and beside pixels without depth.
   template <class View>
-  Seen seen(const View& depth, const Sight& s, const S& z) const {
-    const Sighting at = sighting(s, z);
+  Seen seen(const View& depth, const Projection& s, const S& z) const {
+    const ProjectedPlace at = projected(s, z);
     const S x = center_px_.x + at.x_px;
     const S y = center_px_.y + at.y_px;
     const bool inside = value(x) >= 0 && value(y) >= 0 &&
@@ -162,7 +162,7 @@ class PadHeights {
 
   /// The z that is seen at its own height.
   template <class View>
-  S height(const View& depth, const Sight& s, const S& guess) const {
+  S height(const View& depth, const Projection& s, const S& guess) const {
     if (value(guess) >= 0 && value(guess) <= highest_mm) {
       const S near = root(depth, s, guess);
       if (is_finite(near)) {
@@ -175,7 +175,7 @@ class PadHeights {
   }
 
   template <class View>
-  S root(const View& depth, const Sight& s, S z) const {
+  S root(const View& depth, const Projection& s, S z) const {
     constexpr int max_steps = 8;
     const S close = S(1) / S(20);  // mm; the step that follows leaves some 0.001 mm
     for (int step = 0; step < max_steps; ++step) {
@@ -195,11 +195,11 @@ class PadHeights {
 
   /// Of four places around a node, those where the mask says contact.
   template <class View>
-  S contact_share(const View& mask, const Sight& s, const S& z) const {
+  S contact_share(const View& mask, const Projection& s, const S& z) const {
     if (!is_finite(z)) {
       return S(0);
     }
-    const Sighting at = sighting(s, z);
+    const ProjectedPlace at = projected(s, z);
     const S x = center_px_.x + at.x_px;
     const S y = center_px_.y + at.y_px;
     const S away = spacing_mm_ / S(4) * at.px_per_mm;
@@ -227,7 +227,7 @@ class PadHeights {
   S half_width_mm_;
   S spacing_mm_;
   Index side_ = 0;
-  std::vector<Sight> sights_;
+  std::vector<Projection> projections_;
 };
 
 }  // namespace v0

@@ -10,15 +10,18 @@
 
 #include "fingerpad/core/grid.hpp"
 #include "fingerpad/core/scalar.hpp"
+#include "fingerpad/core/status.hpp"
 
 namespace fingerpad {
 inline namespace v0 {
 
 /// What a call on many samples has to say of them.
 struct SampleCounts {
-  bool accepted = false;   ///< false: a grid has another size, and nothing was written
+  FrameStatus status = FrameStatus::refused;
   Index not_finite = 0;    ///< of the samples: no answer, NaN
   Index beyond_range = 0;  ///< of the others: the measure is larger than any identified
+
+  bool ok() const { return status == FrameStatus::ok; }
 };
 
 namespace detail {

@@ -223,7 +223,7 @@ class Shear {
     if (in.cols() < 4 || out.cols() != 3 || out.rows() != in.rows()) {
       return counts;
     }
-    counts.accepted = true;
+    counts.status = FrameStatus::ok;
     const S one_over_reference = S(1) / normalisation_.reference;
     detail::for_each_block<S, 4, 3>(in, out, [&](const auto& block, auto& results) {
       std::array<S, detail::block_samples> by_displacement, by_rotation;

@@ -99,10 +99,10 @@ class TractionField {
     const auto dots = as_view(dots_mm);
     const auto touch = as_view(contact);
     TractionResult<S> result;
-    result.accepted = has_size(dots) && has_size(touch) && has_size(maps);
-    if (!result.accepted) {
+    if (!has_size(dots) || !has_size(touch) || !has_size(maps)) {
       return result;
     }
+    result.status = TractionStatus::too_few_dots;
     auto& frame = maps.memory_;
     detail::traction::read_dots(dots, frame);
     detail::traction::bridge_dots(frame, result);
@@ -139,7 +139,7 @@ class TractionField {
       return {};
     }
     const TractionResult<S> result = (*this)(dots_mm, contact, pressure_mpa, maps);
-    for (Index i = 0; result.accepted && i < rows_; ++i) {
+    for (Index i = 0; result.accepted() && i < rows_; ++i) {
       for (Index j = 0; j < cols_; ++j) {
         to_pressure(i, j) = static_cast<cell_t<Pressure>>(maps.pressure_mpa()(i, j));
         to_load(i, j) = detail::traction::point_as<cell_t<Load>>(maps.load_mpa()(i, j));

@@ -23,6 +23,7 @@ enum class TractionStatus : std::uint8_t {
   bad_pressure,  ///< <= 0, above 10^6 MPa or NaN: nothing is known
   too_few_dots,  ///< no dot was found with all its neighbours: nothing is known
   no_balance,    ///< BalancedModulus: the free part is too small, or does not hold the pressure
+  refused,       ///< a grid, state or workspace has another size: nothing was done
 };
 
 /// "ok", "no contact", ...
@@ -40,6 +41,8 @@ constexpr const char* name_of(TractionStatus status) {
       return "too few dots";
     case TractionStatus::no_balance:
       return "no balance";
+    case TractionStatus::refused:
+      return "refused";
   }
   return "unknown";
 }
@@ -113,9 +116,7 @@ inline void expects_valid(const BalancedModulus& modulus) {
 /// that is not known is NaN.
 template <scalar S = double>
 struct TractionResult {
-  bool accepted =
-      false;  ///< false: a grid has another size than the stress-free dots; nothing done
-  TractionStatus status = TractionStatus::too_few_dots;
+  TractionStatus status = TractionStatus::refused;
   Point3<S> force_n = detail::missing_point<S>();      ///< that the object exerts on the pad
   Point3<S> moment_n_mm = detail::missing_point<S>();  ///< about the origin
   S mu_t_n_per_mm = not_a_number<S>();                 ///< that was used
@@ -131,6 +132,7 @@ struct TractionResult {
   Index cells_slack = 0;    ///< with a tension below 0
   S smallest_tension_n_per_mm = not_a_number<S>();  ///< of all cells
 
+  bool accepted() const { return status != TractionStatus::refused; }
   bool ok() const { return status == TractionStatus::ok; }
   bool has_force() const {
     return ok() || status == TractionStatus::no_contact || status == TractionStatus::incomplete;

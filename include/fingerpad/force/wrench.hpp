@@ -144,7 +144,6 @@ class Wrench {
         work.segments_.rows() != options_.rows) {
       return result;
     }
-    result.accepted = true;
     forget(work);
     result.status = solve(shape, dots, pressure_mpa, work, result);
     if (result.status == WrenchStatus::ok) {
@@ -318,7 +317,6 @@ class Wrench {
 
   static WrenchResult<S> failed(const WrenchResult<S>& from) {
     WrenchResult<S> out;
-    out.accepted = true;
     out.status = WrenchStatus::not_solved;
     out.missing = from.missing;
     out.unstretched = from.unstretched;

@@ -61,6 +61,7 @@ enum class WrenchStatus : std::uint8_t {
   no_level_line,      ///< nowhere between rim and contact is the membrane level, so its shape does
                       ///< not tell how much it pulls (KnownModulus needs no such line)
   not_solved,         ///< the equations have no solution, or one that pulls downward
+  refused,            ///< a grid, state or workspace has another size: nothing was done
 };
 
 /// "ok", "no contact", ...
@@ -82,6 +83,8 @@ constexpr const char* name_of(WrenchStatus status) {
       return "no level line";
     case WrenchStatus::not_solved:
       return "not solved";
+    case WrenchStatus::refused:
+      return "refused";
   }
   return "unknown";
 }
@@ -97,9 +100,7 @@ struct WrenchNoise {
 /// All numbers are finite where the status is ok or no_contact, and NaN elsewhere.
 template <scalar S = double>
 struct WrenchResult {
-  bool accepted = false;  ///< false: side dots of another size than the border, or a workspace of
-                          ///< another estimator; nothing was done
-  WrenchStatus status = WrenchStatus::no_contact;
+  WrenchStatus status = WrenchStatus::refused;
   Point3<S> force_n = {not_a_number<S>(), not_a_number<S>(), not_a_number<S>()};
   Point3<S> moment_n_mm = {not_a_number<S>(), not_a_number<S>(), not_a_number<S>()};  ///< about Q
   /// Of (F_x, F_y, F_z, M_x, M_y, M_z), in N and N mm, to first order in the noise; 0 without. As
@@ -120,6 +121,7 @@ struct WrenchResult {
   Index broken_lines = 0;  ///< that ran into holes and were put between their neighbours
   Index level_lines = 0;   ///< along which the membrane is level at A_g
 
+  bool accepted() const { return status != WrenchStatus::refused; }
   bool ok() const { return status == WrenchStatus::ok || status == WrenchStatus::no_contact; }
 };
 

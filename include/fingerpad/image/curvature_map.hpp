@@ -15,6 +15,7 @@
 #include "fingerpad/core/expects.hpp"
 #include "fingerpad/core/grid.hpp"
 #include "fingerpad/core/scalar.hpp"
+#include "fingerpad/core/status.hpp"
 #include "fingerpad/image/curvature_options.hpp"
 #include "fingerpad/image/curvature_projection.hpp"
 #include "fingerpad/image/detail/curvature_hessian.hpp"
@@ -24,9 +25,11 @@ namespace fingerpad {
 inline namespace v0 {
 
 struct CurvatureResult {
-  bool accepted = false;  ///< false: a grid or the workspace has another size; nothing written
-  Index known_px = 0;     ///< pixels that got a curvature
-  Index unknown_px = 0;   ///< the others, which got NaN
+  FrameStatus status = FrameStatus::refused;
+  Index known_px = 0;    ///< pixels that got a curvature
+  Index unknown_px = 0;  ///< the others, which got NaN
+
+  bool ok() const { return status == FrameStatus::ok; }
 };
 
 /// Curvature statistics of depth maps of one size. `Statistic` and `Projection` are policies,
@@ -108,7 +111,7 @@ class CurvatureMap {
         store_segment(segment, count, to, i, j);
       }
     }
-    return {true, known, (last - first) * cols_ - known};
+    return {FrameStatus::ok, known, (last - first) * cols_ - known};
   }
 
  private:

@@ -15,8 +15,8 @@
 #include <cstddef>
 #include <vector>
 
-#include "fingerpad/motion/followed_dot.hpp"
 #include "fingerpad/core/expects.hpp"
+#include "fingerpad/motion/followed_dot.hpp"
 
 namespace fingerpad {
 inline namespace v0 {
@@ -38,7 +38,7 @@ struct ContactMap {
   };
   /// One dot in contact in this frame. `cell` is its entry.
   template <scalar S>
-  struct Sight {
+  struct Observation {
     std::size_t cell = 0;
     Point3<S> place_mm = {S(0), S(0), S(0)};  ///< of the entry
     Point3<S> dot_mm = {S(0), S(0), S(0)};
@@ -49,8 +49,8 @@ struct ContactMap {
   template <scalar S>
   struct Track : detail::motion::Track<S> {
     std::vector<Entry<S>> map;
-    std::vector<Sight<S>> sights;      // those on the map first
-    std::vector<std::size_t> leaving;  // cells of the map that are seen out of contact
+    std::vector<Observation<S>> observations;  // those on the map first
+    std::vector<std::size_t> leaving;          // cells of the map that are seen out of contact
     std::vector<scalar_real_t<S>> sorted;
   };
 
@@ -63,7 +63,7 @@ struct ContactMap {
     const auto cells = static_cast<std::size_t>(rows * cols);
     Track<S> t;
     t.map.resize(cells);
-    t.sights.resize(cells);
+    t.observations.resize(cells);
     t.leaving.resize(cells);
     t.sorted.resize(cells);
     return t;
@@ -76,7 +76,7 @@ struct ContactMap {
     if (seen.fresh < dots_to_begin) {
       return MotionStatus::too_few_dots;
     }
-    const Sight<S>* const s = t.sights.data() + t.sights.size() - seen.fresh;
+    const Observation<S>* const s = t.observations.data() + t.observations.size() - seen.fresh;
     const auto dot = [s](Index k) { return s[k].dot_mm; };
     const auto one = [](Index) { return S(1); };
     if (!fit_rigid<S>(seen.fresh, dot, dot, one).determined) {
@@ -123,7 +123,7 @@ struct ContactMap {
     Index left = 0;
   };
 
-  /// A new entry has the error of the pose in it besides that of its dot: half a sight.
+  /// A new entry has the error of the pose in it besides that of its dot: half a observation.
   template <scalar S>
   static S first_weight() {
     return S(1) / S(2);
@@ -134,7 +134,7 @@ struct ContactMap {
   template <scalar S, class Frame>
   static Seen look(const Frame& frame, Track<S>& t) {
     Seen seen;
-    const std::size_t end = t.sights.size();
+    const std::size_t end = t.observations.size();
     std::size_t cell = 0;
     for (Index i = 0; i < frame.rows(); ++i) {
       for (Index j = 0; j < frame.cols(); ++j, ++cell) {
@@ -151,7 +151,7 @@ struct ContactMap {
         const std::size_t at = known ? static_cast<std::size_t>(seen.known++)
                                      : end - static_cast<std::size_t>(++seen.fresh);
         const S prior = entry.weight / (entry.weight + S(1));
-        t.sights[at] = {cell, entry.place_mm, frame.dot(i, j), prior, S(1), S(0)};
+        t.observations[at] = {cell, entry.place_mm, frame.dot(i, j), prior, S(1), S(0)};
       }
     }
     return seen;
@@ -159,7 +159,7 @@ struct ContactMap {
 
   template <scalar S>
   static RigidFit<S> fit_map(const Seen& seen, const Track<S>& t) {
-    const Sight<S>* const s = t.sights.data();
+    const Observation<S>* const s = t.observations.data();
     return fit_rigid<S>(
         seen.known, [=](Index k) -> const Point3<S>& { return s[k].place_mm; },
         [=](Index k) -> const Point3<S>& { return s[k].dot_mm; },
@@ -169,7 +169,7 @@ struct ContactMap {
   template <scalar S>
   static void residuals(const Pose<S>& pose, const Seen& seen, Track<S>& t) {
     for (Index k = 0; k < seen.known; ++k) {
-      Sight<S>& s = t.sights[static_cast<std::size_t>(k)];
+      Observation<S>& s = t.observations[static_cast<std::size_t>(k)];
       s.residual_sq = detail::length_sq(detail::difference(s.dot_mm, pose(s.place_mm)));
     }
   }
@@ -178,7 +178,7 @@ struct ContactMap {
   static scalar_real_t<S> median_residual_sq(const Seen& seen, Track<S>& t) {
     for (Index k = 0; k < seen.known; ++k) {
       const auto at = static_cast<std::size_t>(k);
-      t.sorted[at] = value(t.sights[at].residual_sq);
+      t.sorted[at] = value(t.observations[at].residual_sq);
     }
     const auto middle = t.sorted.begin() + seen.known / 2;
     std::nth_element(t.sorted.begin(), middle, t.sorted.begin() + seen.known);
@@ -188,7 +188,7 @@ struct ContactMap {
   template <scalar S>
   static void weigh(const S& bound_sq, const Seen& seen, Track<S>& t) {
     for (Index k = 0; k < seen.known; ++k) {
-      Sight<S>& s = t.sights[static_cast<std::size_t>(k)];
+      Observation<S>& s = t.observations[static_cast<std::size_t>(k)];
       const S ratio = bound_sq / (bound_sq + s.residual_sq);
       s.trust = ratio * ratio;
     }
@@ -222,7 +222,7 @@ struct ContactMap {
     S sum = S(0);
     S mass = S(0);
     for (Index k = 0; k < seen.known; ++k) {
-      const Sight<S>& s = t.sights[static_cast<std::size_t>(k)];
+      const Observation<S>& s = t.observations[static_cast<std::size_t>(k)];
       sum = sum + s.trust * s.residual_sq;
       mass = mass + s.trust;
     }
@@ -240,7 +240,7 @@ struct ContactMap {
   void refine(const scalar_real_t<S>& median_sq, const Seen& seen, Track<S>& t) const {
     const Pose<S> back = inverse(t.pose);
     for (Index k = 0; k < seen.known; ++k) {
-      const Sight<S>& s = t.sights[static_cast<std::size_t>(k)];
+      const Observation<S>& s = t.observations[static_cast<std::size_t>(k)];
       Entry<S>& entry = t.map[s.cell];
       const Point3<S> place = back(s.dot_mm);
       if (value(s.residual_sq) > 36 * median_sq && robust_passes > 0) {
@@ -257,9 +257,9 @@ struct ContactMap {
   template <scalar S>
   static void enter(const Seen& seen, Track<S>& t) {
     const Pose<S> back = inverse(t.pose);
-    const std::size_t first = t.sights.size() - static_cast<std::size_t>(seen.fresh);
-    for (std::size_t k = first; k < t.sights.size(); ++k) {
-      t.map[t.sights[k].cell] = {back(t.sights[k].dot_mm), first_weight<S>()};
+    const std::size_t first = t.observations.size() - static_cast<std::size_t>(seen.fresh);
+    for (std::size_t k = first; k < t.observations.size(); ++k) {
+      t.map[t.observations[k].cell] = {back(t.observations[k].dot_mm), first_weight<S>()};
     }
   }
 };

@@ -28,6 +28,7 @@ enum class MotionStatus : std::uint8_t {
   too_few_dots,      ///< fewer than three dots to go by, or too few to begin with
   collinear,         ///< the dots to go by lie on a line: they determine no rotation
   lost,              ///< what was followed has left the contact, and nothing known is in it
+  refused,           ///< a grid, state or workspace has another size: nothing was done
 };
 
 /// "ok", "no contact", ...
@@ -47,6 +48,8 @@ constexpr const char* name_of(MotionStatus status) {
       return "collinear";
     case MotionStatus::lost:
       return "lost";
+    case MotionStatus::refused:
+      return "refused";
   }
   return "unknown";
 }
@@ -250,9 +253,9 @@ Basis<S> inverse_transposed(const Basis<S>& n) {
 
 template <scalar S, class MakeBasis, class Between>
 LocalRotation<S> turn_of_bases(const Neighbourhood<S>& k,
-                           const Neighbourhood<S>& l,
-                           const MakeBasis& basis_of,
-                           const Between& between) {
+                               const Neighbourhood<S>& l,
+                               const MakeBasis& basis_of,
+                               const Between& between) {
   const CommonDots common = common_dots(k, l);
   if (common.count < 3) {
     return {};

@@ -25,13 +25,11 @@
 namespace fingerpad {
 inline namespace v0 {
 
-/// What a frame says of the object. Everything but `accepted` and `status` is the last known state
+/// What a frame says of the object. Everything but `status` is the last known state
 /// where the status is not ok; before an object begins it is that of an object at rest.
 template <scalar S = double>
 struct ObjectMotionResult {
-  bool accepted = false;  ///< false: a grid has another size than the initial dots or the state
-                          ///< belongs to another estimator; nothing was done
-  MotionStatus status = MotionStatus::no_contact;
+  MotionStatus status = MotionStatus::refused;
   DotIndex reference = {};         ///< contact reference dot of this frame; row -1: there is none
   bool reference_changed = false;  ///< it is another dot than in the frame before
   bool begun = false;              ///< the object begins with this frame: pose is the identity
@@ -45,6 +43,7 @@ struct ObjectMotionResult {
   Point3<S> displacement_mm = {S(0), S(0), S(0)};  ///< of that point
   S residual_rms_mm = S(0);                        ///< of the dots used, against the rigid motion
 
+  bool accepted() const { return status != MotionStatus::refused; }
   bool ok() const { return status == MotionStatus::ok; }
 };
 
@@ -124,7 +123,7 @@ class ObjectMotion {
     }
     const detail::motion::DotFrame<S, decltype(dots), decltype(flags)> frame(dots, flags);
     ObjectMotionResult<S> result;
-    result.accepted = true;
+    result.status = MotionStatus::no_contact;
     if (!frame.any_flagged()) {
       return without_contact(frame.any_found(), state, result);
     }

@@ -8,6 +8,7 @@
 #include <type_traits>
 #include <utility>
 
+#include "fingerpad/core/status.hpp"
 #include "fingerpad/motion/detail/dot_frame.hpp"
 #include "fingerpad/optics/camera.hpp"
 
@@ -61,8 +62,10 @@ P point_from(const Point3<S>& p) {
 }  // namespace detail::motion
 
 struct SpatialDotsResult {
-  bool accepted = false;  ///< false: `out` has another size than the dot grid; nothing written
-  Index found = 0;        ///< dots that now have a place in space
+  FrameStatus status = FrameStatus::refused;
+  Index found = 0;  ///< dots that now have a place in space
+
+  bool ok() const { return status == FrameStatus::ok; }
 };
 
 /// The dots of a frame in mm, from where the image shows them (px) and the depth map (mm, along
@@ -79,7 +82,7 @@ SpatialDotsResult spatial_dots(const Camera<S>& camera,
   if (!same_size(from, to)) {
     return {};
   }
-  SpatialDotsResult result{true, 0};
+  SpatialDotsResult result{FrameStatus::ok, 0};
   for (Index i = 0; i < from.rows(); ++i) {
     for (Index j = 0; j < from.cols(); ++j) {
       const cell_t<Dots> p = from(i, j);
@@ -117,7 +120,7 @@ bool contact_at_dots(const Dots& dots_px, const Mask& mask, Out&& out) {
       const auto col = static_cast<double>(value(Traits::x(p)));
       const bool inside = row > -0.5 && col > -0.5 && row < last_row && col < last_col;
       const bool set = inside && is_contact(cell_t<Mask>(flags(static_cast<Index>(row + 0.5),
-                                                                 static_cast<Index>(col + 0.5))));
+                                                               static_cast<Index>(col + 0.5))));
       to(i, j) = static_cast<cell_t<Out>>(set);
     }
   }

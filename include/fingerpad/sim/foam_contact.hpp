@@ -6,7 +6,8 @@
 // and corrected forms in docs/errata.md, E039-E041.
 //
 //   F = K N^beta, A = A_1 N^(2/3)            friction and contact area  contact_friction.hpp
-//   m y'' + c (y' - y_ie') + k (y - y_ie)    rider, closed form         rider.hpp, free_wave.hpp
+//   m y'' + c (y' - y_ie') + k (y - y_ie)    oscillator, closed form         oscillator.hpp,
+//   free_wave.hpp
 //     = f(t)                                 step by step               FirstOrderHold, below
 //   f = A + B t, cbrt(C + D sin at)(A + B t) loads in slip, in a lift   slip_load.hpp
 //   Kelvin-Voigt, Maxwell, both in series    creep                      creep.hpp
@@ -24,8 +25,8 @@ namespace fingerpad {
 inline namespace v0 {
 
 /// How FirstOrderHold keeps the motion from step to step. One word rounds it in every step, and the
-/// roundings add up where a rider does not forget them: half an epsilon for each step, at most. Two
-/// words round it only where it is read. Numbers that are not built-in have one word.
+/// roundings add up where a oscillator does not forget them: half an epsilon for each step, at
+/// most. Two words round it only where it is read. Numbers that are not built-in have one word.
 struct OneWord {
   template <scalar S>
   using number = S;
@@ -35,9 +36,9 @@ struct TwoWords {
   using number = detail::foam::wide_t<S>;
 };
 
-/// The rider step by step, exact where the load is linear within a step, whatever the damping and
-/// the step. Const: one serves any number of riders, each with a state of its own. O(1), no memory
-/// from the heap.
+/// The oscillator step by step, exact where the load is linear within a step, whatever the damping
+/// and the step. Const: one serves any number of oscillators, each with a state of its own. O(1),
+/// no memory from the heap.
 template <scalar S = double, class Words = TwoWords>
 class FirstOrderHold {
   using W = typename Words::template number<S>;
@@ -58,17 +59,19 @@ class FirstOrderHold {
   };
 
   /// For samples `step_s` apart. Refuses bad parameters (parameter_error), and a step so long that
-  /// a rider still swings but no digit of its phase is left: some 10^27 periods in double, 10^12 in
-  /// float.
-  FirstOrderHold(const Rider<S>& rider, const S& step_s)
-      : rider_(checked(rider)),
-        rates_(rider.mass_n_s2_per_mm, rider.damping_n_s_per_mm, rider.stiffness_n_per_mm) {
+  /// a oscillator still swings but no digit of its phase is left: some 10^27 periods in double,
+  /// 10^12 in float.
+  FirstOrderHold(const MassSpringDamper<S>& oscillator, const S& step_s)
+      : oscillator_(checked(oscillator)),
+        rates_(oscillator.mass_n_s2_per_mm,
+               oscillator.damping_n_s_per_mm,
+               oscillator.stiffness_n_per_mm) {
     const bool forward = is_finite(step_s) && value(step_s) > 0;
     expects(forward && coefficients(step_s, of_step_), "FirstOrderHold", "step_s", step_s,
             "finite, > 0 and within the digits of the phase");
   }
 
-  const Rider<S>& rider() const { return rider_; }
+  const MassSpringDamper<S>& oscillator() const { return oscillator_; }
   State start(const Motion<S>& motion = {}) const { return State(motion); }
 
   /// The motion at the end of a step, with the load at both ends of it in N. A load may jump
@@ -95,9 +98,9 @@ class FirstOrderHold {
     W v_by_y = W(0), v_by_v = W(0), v_by_before = W(0), v_by_after = W(0);
   };
 
-  static const Rider<S>& checked(const Rider<S>& rider) {
-    expects_valid(rider);
-    return rider;
+  static const MassSpringDamper<S>& checked(const MassSpringDamper<S>& oscillator) {
+    expects_valid(oscillator);
+    return oscillator;
   }
   static Motion<S> no_motion() { return {not_a_number<S>(), not_a_number<S>()}; }
 
@@ -109,7 +112,7 @@ class FirstOrderHold {
     const Wide lost = rates_.natural_sq * a.raised;  // of a start at 1
     const Wide slowed = lost + Wide(damped + damped);
     const bool short_step = value(slowed) < scalar_real_t<Wide>(1) / scalar_real_t<Wide>(2);
-    const Wide mass = Wide(rider_.mass_n_s2_per_mm);
+    const Wide mass = Wide(oscillator_.mass_n_s2_per_mm);
     const Wide y_by_after = Wide(a.ramped / a.step) / mass;
     const Wide v_by_after = Wide(a.raised / a.step) / mass;
     to.kept = W(short_step ? 1 : 0);
@@ -143,24 +146,27 @@ class FirstOrderHold {
     return state.motion();
   }
 
-  Rider<S> rider_;
-  detail::foam::RiderRates<S> rates_;
+  MassSpringDamper<S> oscillator_;
+  detail::foam::MassSpringDamperRates<S> rates_;
   Coefficients of_step_;
 };
 
 /// y_p of any load, by the causal integral of eq. 10: (1/m) Int_0^t lag(t - u) f(u) du, with `lag`
-/// the rider's answer to a push (2/sqrt(3) e^(-t/2) sin(sqrt(3)/2 t) for m = c = k = 1). The load
-/// is taken as linear between `steps` + 1 samples of it, so the error falls with the square of the
-/// step. NaN for a time that is negative or not finite, and for no steps.
+/// the oscillator's answer to a push (2/sqrt(3) e^(-t/2) sin(sqrt(3)/2 t) for m = c = k = 1). The
+/// load is taken as linear between `steps` + 1 samples of it, so the error falls with the square of
+/// the step. NaN for a time that is negative or not finite, and for no steps.
 template <class Words = TwoWords, scalar S, class Load>
-Motion<S> causal_response(const Rider<S>& rider, const Load& load, const S& time_s, int steps) {
+Motion<S> causal_response(const MassSpringDamper<S>& oscillator,
+                          const Load& load,
+                          const S& time_s,
+                          int steps) {
   if (value(time_s) == 0 && steps > 0) {
     return {};
   }
   if (!(value(time_s) > 0) || !is_finite(time_s) || steps <= 0) {
     return {not_a_number<S>(), not_a_number<S>()};
   }
-  const FirstOrderHold<S, Words> hold(rider, S(time_s / S(steps)));
+  const FirstOrderHold<S, Words> hold(oscillator, S(time_s / S(steps)));
   auto state = hold.start();
   S before = load(S(0));
   for (int k = 1; k <= steps; ++k) {

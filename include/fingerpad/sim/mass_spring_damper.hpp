@@ -1,10 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// What a rider does within a step of time h, for a load that is linear in it. All of it is entire
-// in h, s and D (free_wave.hpp): by its Taylor series over a step so short that nothing cancels,
-// which is then doubled as often as needed. So one formula serves any damping and any step, tiny or
-// huge, and any number type: there is no function in it.
+// What a oscillator does within a step of time h, for a load that is linear in it. All of it is
+// entire in h, s and D (free_wave.hpp): by its Taylor series over a step so short that nothing
+// cancels, which is then doubled as often as needed. So one formula serves any damping and any
+// step, tiny or huge, and any number type: there is no function in it.
 #include <cmath>
 #include <limits>
 
@@ -30,13 +30,13 @@ namespace foam {
 
 /// s, D and k/m with the digits of `wide_t<S>`.
 template <scalar S>
-struct RiderRates {
+struct MassSpringDamperRates {
   using W = wide_t<S>;
   W decay;       ///< s, 1/s
   W natural_sq;  ///< k/m, 1/s^2
   W split;       ///< D, 1/s^2: < 0 swings, > 0 creeps
 
-  RiderRates(const S& mass, const S& damping, const S& stiffness)
+  MassSpringDamperRates(const S& mass, const S& damping, const S& stiffness)
       : decay(W(damping) / W(S(mass + mass))),
         natural_sq(W(stiffness) / W(mass)),
         split(W(decay * decay) - natural_sq) {}
@@ -67,7 +67,7 @@ FreeWave<R> entire_pair(const R& x) {
 
 /// D < 0, by sine and cosine of the phase.
 template <scalar S, class R = narrow_t<wide_t<S>>>
-FreeWave<R> swinging(const RiderRates<S>& rates, const wide_t<S>& time) {
+FreeWave<R> swinging(const MassSpringDamperRates<S>& rates, const wide_t<S>& time) {
   using std::cos;
   using std::exp;
   using std::sin;
@@ -82,7 +82,7 @@ FreeWave<R> swinging(const RiderRates<S>& rates, const wide_t<S>& time) {
 
 /// D > 0, by two decays; the slow one is (k/m) / (s + sqrt(D)), since s - sqrt(D) would cancel.
 template <scalar S, class R = narrow_t<wide_t<S>>>
-FreeWave<R> creeping(const RiderRates<S>& rates, const wide_t<S>& time) {
+FreeWave<R> creeping(const MassSpringDamperRates<S>& rates, const wide_t<S>& time) {
   using std::exp;
   using std::sqrt;
   using W = wide_t<S>;
@@ -95,7 +95,7 @@ FreeWave<R> creeping(const RiderRates<S>& rates, const wide_t<S>& time) {
 }
 
 template <scalar S, class R = narrow_t<wide_t<S>>>
-FreeWave<R> free_wave(const RiderRates<S>& rates, const S& time_s) {
+FreeWave<R> free_wave(const MassSpringDamperRates<S>& rates, const S& time_s) {
   using std::exp;
   using W = wide_t<S>;
   if (!(value(time_s) >= 0) || !is_finite(time_s)) {
@@ -118,7 +118,7 @@ FreeWave<R> free_wave(const RiderRates<S>& rates, const S& time_s) {
 }  // namespace foam
 }  // namespace detail
 
-// The rider on the contact (paper, eqs. 3-8) and its motion in closed form:
+// The oscillator on the contact (paper, eqs. 3-8) and its motion in closed form:
 //
 //   m y'' + c (y' - y_ie') + k (y - y_ie) = f(t)
 //
@@ -126,7 +126,7 @@ FreeWave<R> free_wave(const RiderRates<S>& rates, const S& time_s) {
 
 /// A mass on a spring and a dashpot, with the values of the paper.
 template <scalar S = double>
-struct Rider {
+struct MassSpringDamper {
   S mass_n_s2_per_mm = S(1);    ///< m > 0; 0.001 is 1 kg
   S damping_n_s_per_mm = S(1);  ///< c >= 0
   S stiffness_n_per_mm = S(1);  ///< k > 0: without a spring there is no place to come to rest at
@@ -134,28 +134,28 @@ struct Rider {
 
 /// Refuses what has no meaning (parameter_error).
 template <scalar S>
-void expects_valid(const Rider<S>& rider) {
+void expects_valid(const MassSpringDamper<S>& oscillator) {
   const auto check = [](bool good, const char* name, const S& given, const char* range) {
-    expects(good && is_finite(given), "Rider", name, given, range);
+    expects(good && is_finite(given), "MassSpringDamper", name, given, range);
   };
-  check(value(rider.mass_n_s2_per_mm) > 0, "mass_n_s2_per_mm", rider.mass_n_s2_per_mm,
+  check(value(oscillator.mass_n_s2_per_mm) > 0, "mass_n_s2_per_mm", oscillator.mass_n_s2_per_mm,
         "finite and > 0");
-  check(value(rider.damping_n_s_per_mm) >= 0, "damping_n_s_per_mm", rider.damping_n_s_per_mm,
-        "finite and >= 0");
-  check(value(rider.stiffness_n_per_mm) > 0, "stiffness_n_per_mm", rider.stiffness_n_per_mm,
-        "finite and > 0");
+  check(value(oscillator.damping_n_s_per_mm) >= 0, "damping_n_s_per_mm",
+        oscillator.damping_n_s_per_mm, "finite and >= 0");
+  check(value(oscillator.stiffness_n_per_mm) > 0, "stiffness_n_per_mm",
+        oscillator.stiffness_n_per_mm, "finite and > 0");
 }
 
-/// c / (2 sqrt(m k)): below 1 the rider swings, above it creeps back.
+/// c / (2 sqrt(m k)): below 1 the oscillator swings, above it creeps back.
 template <scalar S>
-S damping_ratio(const Rider<S>& rider) {
+S damping_ratio(const MassSpringDamper<S>& oscillator) {
   using std::sqrt;
-  const S product = rider.mass_n_s2_per_mm * rider.stiffness_n_per_mm;
+  const S product = oscillator.mass_n_s2_per_mm * oscillator.stiffness_n_per_mm;
   const S root = sqrt(product);
-  return S(rider.damping_n_s_per_mm / S(root + root));
+  return S(oscillator.damping_n_s_per_mm / S(root + root));
 }
 
-/// Where the rider is and how fast it goes.
+/// Where the oscillator is and how fast it goes.
 template <scalar S = double>
 struct Motion {
   S position_mm = S(0);
@@ -173,27 +173,29 @@ struct RampLoad {
 
 /// What a moving frame, at y_ie with the speed y_ie', adds to the load: c y_ie' + k y_ie.
 template <scalar S>
-S frame_load(const Rider<S>& rider, const Motion<S>& frame) {
-  return S(S(rider.damping_n_s_per_mm * frame.velocity_mm_per_s) +
-           S(rider.stiffness_n_per_mm * frame.position_mm));
+S frame_load(const MassSpringDamper<S>& oscillator, const Motion<S>& frame) {
+  return S(S(oscillator.damping_n_s_per_mm * frame.velocity_mm_per_s) +
+           S(oscillator.stiffness_n_per_mm * frame.position_mm));
 }
 
 /// m y'' + c y' + k y - f in N: 0 for every solution.
 template <scalar S>
-S residual(const Rider<S>& rider,
+S residual(const MassSpringDamper<S>& oscillator,
            const Motion<S>& motion,
            const S& acceleration_mm_per_s2,
            const S& load_n) {
-  const S inertia = rider.mass_n_s2_per_mm * acceleration_mm_per_s2;
-  return S(S(inertia + frame_load(rider, motion)) - load_n);
+  const S inertia = oscillator.mass_n_s2_per_mm * acceleration_mm_per_s2;
+  return S(S(inertia + frame_load(oscillator, motion)) - load_n);
 }
 
 /// y_p of the ramp load: (B/k) t + A/k - c B/k^2 (E039).
 template <scalar S>
-Motion<S> particular_solution(const Rider<S>& rider, const RampLoad<S>& load, const S& time_s) {
-  const S speed = load.rise_n_per_s / rider.stiffness_n_per_mm;
-  const S drag = rider.damping_n_s_per_mm * speed;
-  return {S(S(S(load.start_n - drag) / rider.stiffness_n_per_mm) + S(speed * time_s)), speed};
+Motion<S> particular_solution(const MassSpringDamper<S>& oscillator,
+                              const RampLoad<S>& load,
+                              const S& time_s) {
+  const S speed = load.rise_n_per_s / oscillator.stiffness_n_per_mm;
+  const S drag = oscillator.damping_n_s_per_mm * speed;
+  return {S(S(S(load.start_n - drag) / oscillator.stiffness_n_per_mm) + S(speed * time_s)), speed};
 }
 
 /// The particular solution as printed in eq. 9, for m = c = k = 1: A (t - 1) + B, with A and B
@@ -203,13 +205,15 @@ Motion<S> printed_particular_solution(const RampLoad<S>& load, const S& time_s) 
   return {S(S(load.start_n * S(time_s - S(1))) + load.rise_n_per_s), load.start_n};
 }
 
-/// y_c: the rider left alone, a time after `start`. Exact for any damping; a time that is negative
-/// or no number gives NaN.
+/// y_c: the oscillator left alone, a time after `start`. Exact for any damping; a time that is
+/// negative or no number gives NaN.
 template <scalar S>
-Motion<S> free_motion(const Rider<S>& rider, const Motion<S>& start, const S& time_s) {
+Motion<S> free_motion(const MassSpringDamper<S>& oscillator,
+                      const Motion<S>& start,
+                      const S& time_s) {
   using R = detail::foam::narrow_t<detail::foam::wide_t<S>>;
-  const detail::foam::RiderRates<S> rates(rider.mass_n_s2_per_mm, rider.damping_n_s_per_mm,
-                                          rider.stiffness_n_per_mm);
+  const detail::foam::MassSpringDamperRates<S> rates(
+      oscillator.mass_n_s2_per_mm, oscillator.damping_n_s_per_mm, oscillator.stiffness_n_per_mm);
   const detail::foam::FreeWave<R> wave = detail::foam::free_wave(rates, time_s);
   const R decay = R(rates.decay), natural_sq = R(rates.natural_sq);
   const R y = R(start.position_mm), v = R(start.velocity_mm_per_s);
@@ -222,15 +226,15 @@ Motion<S> free_motion(const Rider<S>& rider, const Motion<S>& start, const S& ti
 /// The full solution y = y_c + y_p of eq. 8 for the ramp load, from any start. For times far below
 /// a period and a start at rest both parts nearly cancel: FirstOrderHold has no such loss.
 template <scalar S>
-Motion<S> ramp_response(const Rider<S>& rider,
+Motion<S> ramp_response(const MassSpringDamper<S>& oscillator,
                         const RampLoad<S>& load,
                         const Motion<S>& start,
                         const S& time_s) {
-  const Motion<S> at_start = particular_solution(rider, load, S(0));
-  const Motion<S> forced = particular_solution(rider, load, time_s);
+  const Motion<S> at_start = particular_solution(oscillator, load, S(0));
+  const Motion<S> forced = particular_solution(oscillator, load, time_s);
   const Motion<S> difference{S(start.position_mm - at_start.position_mm),
                              S(start.velocity_mm_per_s - at_start.velocity_mm_per_s)};
-  const Motion<S> left = free_motion(rider, difference, time_s);
+  const Motion<S> left = free_motion(oscillator, difference, time_s);
   return {S(forced.position_mm + left.position_mm),
           S(forced.velocity_mm_per_s + left.velocity_mm_per_s)};
 }
@@ -251,7 +255,9 @@ struct StepAnswers {
 /// For (2 s + sqrt(k/m)) h <= `size` <= 1/2. With g = lag, g'' = -2 s g' - (k/m) g gives one
 /// derivative at 0 after another.
 template <scalar S, class W>
-StepAnswers<W> short_step(const RiderRates<S>& rates, const W& step, scalar_real_t<W> size) {
+StepAnswers<W> short_step(const MassSpringDamperRates<S>& rates,
+                          const W& step,
+                          scalar_real_t<W> size) {
   const W drag = W(rates.decay + rates.decay) * step;
   const W spring = W(rates.natural_sq * step) * step;
   W derivative(0), next(step);  // the n-th of g, times h^n
@@ -278,7 +284,7 @@ StepAnswers<W> short_step(const RiderRates<S>& rates, const W& step, scalar_real
 
 /// The answers after twice the time.
 template <scalar S, class W>
-StepAnswers<W> doubled(const RiderRates<S>& rates, const StepAnswers<W>& a) {
+StepAnswers<W> doubled(const MassSpringDamperRates<S>& rates, const StepAnswers<W>& a) {
   const W kept = a.wave + W(rates.decay * a.lag);  // of a start at 1
   const W once_more = W(1) + kept;
   return {W(a.step + a.step), W(W(a.wave * a.wave) + W(rates.split * W(a.lag * a.lag))),
@@ -286,9 +292,9 @@ StepAnswers<W> doubled(const RiderRates<S>& rates, const StepAnswers<W>& a) {
           W(W(once_more * a.ramped) + W(W(a.step + a.lag) * a.raised))};
 }
 
-/// The fastest rate of a rider, 1/s: a bound for both its frequency and its decays.
+/// The fastest rate of a oscillator, 1/s: a bound for both its frequency and its decays.
 template <scalar S>
-scalar_real_t<wide_t<S>> fastest_rate(const RiderRates<S>& rates) {
+scalar_real_t<wide_t<S>> fastest_rate(const MassSpringDamperRates<S>& rates) {
   using std::sqrt;
   using Real = scalar_real_t<wide_t<S>>;
   const Real decay = value(rates.decay), natural_sq = value(rates.natural_sq);
@@ -298,7 +304,7 @@ scalar_real_t<wide_t<S>> fastest_rate(const RiderRates<S>& rates) {
 /// Whether a step is short enough for the digits of its phase, or so long that the phase does not
 /// matter, as nothing is left of the motion.
 template <scalar S>
-bool knows_phase(const RiderRates<S>& rates, const S& step_s) {
+bool knows_phase(const MassSpringDamperRates<S>& rates, const S& step_s) {
   using W = wide_t<S>;
   using Real = scalar_real_t<W>;
   const Real step = value(W(step_s));
@@ -309,7 +315,7 @@ bool knows_phase(const RiderRates<S>& rates, const S& step_s) {
 
 /// For step_s > 0 and finite.
 template <scalar S, class W = wide_t<S>>
-StepAnswers<W> step_answers(const RiderRates<S>& rates, const S& step_s) {
+StepAnswers<W> step_answers(const MassSpringDamperRates<S>& rates, const S& step_s) {
   using Real = scalar_real_t<W>;
   const Real rate = fastest_rate(rates);
   W step = W(step_s);

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// The load on the rider while a contact point slips (paper, eqs. 5-8 and the second case).
+// The load on the oscillator while a contact point slips (paper, eqs. 5-8 and the second case).
 //
 //   x = H t                                       slip                                        (6)
 //   f = (c_a H + k_a (H t - x_ie)) / mu           both suspensions carry the same force       (7)

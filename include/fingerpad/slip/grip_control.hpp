@@ -24,24 +24,24 @@ inline namespace v0 {
 // What grip control is told of the stick ratio, and what it says of its answer.
 
 /// What the camera had to say on the stick ratio since the last call.
-enum class RatioNews : std::uint8_t {
+enum class RatioUpdate : std::uint8_t {
   fresh,    ///< the ratio is that of now
   unmoved,  ///< the dots were seen and have not moved enough to tell more: the last ratio stands
   missing,  ///< nothing usable was seen
 };
 
-/// The news that a status of the stick ratio brings.
+/// The update that a status of the stick ratio brings.
 template <class StickStatus>
   requires requires {
     StickStatus::updated;
     StickStatus::standing;
     StickStatus::no_reference;
   }
-constexpr RatioNews news_of(StickStatus status) {
+constexpr RatioUpdate update_of(StickStatus status) {
   const bool unmoved = status == StickStatus::standing || status == StickStatus::no_reference;
-  return status == StickStatus::updated ? RatioNews::fresh
-         : unmoved                      ? RatioNews::unmoved
-                                        : RatioNews::missing;
+  return status == StickStatus::updated ? RatioUpdate::fresh
+         : unmoved                      ? RatioUpdate::unmoved
+                                        : RatioUpdate::missing;
 }
 
 enum class GripStatus : std::uint8_t {
@@ -110,8 +110,8 @@ struct GripLaw {
   S lower_gain_n_per_s = S(0);      ///< N/s for each unit above that, >= 0; 0: held, never lowered
   S rise_limit_n_per_s = S(40);     ///< what the gripper can do, > 0
   S fall_limit_n_per_s = S(2);      ///< >= 0
-  S min_force_n = S(1) / S(2);    ///< >= 0
-  S max_force_n = S(20);           ///< what the object can bear, > min_force_n
+  S min_force_n = S(1) / S(2);      ///< >= 0
+  S max_force_n = S(20);            ///< what the object can bear, > min_force_n
   S safe_force_n = S(10);           ///< no rise beyond this without a fresh ratio, within the two
   S ratio_lasts_s = S(1) / S(10);   ///< how long a ratio is acted on while the dots do not move
                                     ///< enough for the next, >= 0
@@ -181,7 +181,7 @@ struct GripResult {
 
 /// Grip force, call by call. Const: one serves any number of fingers, each with a state of its own.
 /// O(1), takes no memory, throws nothing, answers slip in the very call that shows it. With the
-/// same state, news and time step, a smaller ratio never gives a smaller force.
+/// same state, update and time step, a smaller ratio never gives a smaller force.
 template <scalar S = double>
 class GripControl {
  public:
@@ -216,40 +216,43 @@ class GripControl {
   State start(const S& force_n) const { return State(within_limits(force_n)); }
 
   /// The force for a stick ratio (not in [0, 1]: missing), `step_s` after the call before.
-  GripResult<S> operator()(const S& ratio, RatioNews news, const S& step_s, State& state) const {
+  GripResult<S> operator()(const S& ratio,
+                           RatioUpdate update,
+                           const S& step_s,
+                           State& state) const {
     state.force_n_ = within_limits(state.force_n_);
     if (!is_finite(step_s) || !(value(step_s) > 0)) {
       return {state.force_n_, GripStatus::holding, GripReason::no_time};
     }
-    const Wish wish = wish_for(ratio, news, step_s, state);
+    const RateCommand command = command_for(ratio, update, step_s, state);
     const bool long_step = value(law_.longest_step_s) < value(step_s);
-    return apply(wish, long_step ? law_.longest_step_s : step_s, state);
+    return apply(command, long_step ? law_.longest_step_s : step_s, state);
   }
 
   /// The same where nothing but the ratio is known; NaN: missing.
   GripResult<S> operator()(const S& ratio, const S& step_s, State& state) const {
-    return (*this)(ratio, RatioNews::fresh, step_s, state);
+    return (*this)(ratio, RatioUpdate::fresh, step_s, state);
   }
 
  private:
-  struct Wish {
+  struct RateCommand {
     S rate_n_per_s;
     S ceiling_n;
     GripReason why;
   };
 
-  Wish wish_for(const S& ratio, RatioNews news, const S& step_s, State& state) const {
+  RateCommand command_for(const S& ratio, RatioUpdate update, const S& step_s, State& state) const {
     const bool known = value(ratio) >= 0 && value(ratio) <= 1;
-    const bool none_yet = news == RatioNews::unmoved && !(value(ratio) == value(ratio));
-    if (news == RatioNews::missing || !(known || none_yet)) {
+    const bool none_yet = update == RatioUpdate::unmoved && !(value(ratio) == value(ratio));
+    if (update == RatioUpdate::missing || !(known || none_yet)) {
       return without_ratio(step_s, state);
     }
     state.unseen_s_ = S(0);
-    return news == RatioNews::fresh ? by_fresh(ratio, state)
-                                    : by_standing(ratio, known, step_s, state);
+    return update == RatioUpdate::fresh ? by_fresh(ratio, state)
+                                        : by_standing(ratio, known, step_s, state);
   }
 
-  Wish by_fresh(const S& ratio, State& state) const {
+  RateCommand by_fresh(const S& ratio, State& state) const {
     state.slipping_ = value(ratio) < value(law_.set_point);
     state.ratio_age_s_ = S(0);
     const GripReason why = state.slipping_                          ? GripReason::slipping
@@ -259,7 +262,7 @@ class GripControl {
   }
 
   /// Raises or holds: that nothing moves is no reason to let go.
-  Wish by_standing(const S& ratio, bool known, const S& step_s, State& state) const {
+  RateCommand by_standing(const S& ratio, bool known, const S& step_s, State& state) const {
     state.ratio_age_s_ = S(state.ratio_age_s_ + step_s);
     if (known && value(ratio) < value(law_.set_point)) {
       if (!(value(law_.ratio_lasts_s) < value(state.ratio_age_s_))) {
@@ -272,7 +275,7 @@ class GripControl {
     return {S(0), law_.safe_force_n, GripReason::unmoved};
   }
 
-  Wish without_ratio(const S& step_s, State& state) const {
+  RateCommand without_ratio(const S& step_s, State& state) const {
     state.unseen_s_ = S(state.unseen_s_ + step_s);
     if (!state.slipping_ && !(value(law_.blind_after_s) < value(state.unseen_s_))) {
       return {S(0), law_.safe_force_n, GripReason::waiting};
@@ -282,19 +285,19 @@ class GripControl {
             GripReason::blind};
   }
 
-  GripResult<S> apply(const Wish& wish, const S& step_s, State& state) const {
+  GripResult<S> apply(const RateCommand& command, const S& step_s, State& state) const {
     const S force = state.force_n_;
-    const bool rise = value(wish.rate_n_per_s) > 0;
-    const bool fall = value(wish.rate_n_per_s) < 0;
-    const bool at_limit = (rise && !(value(force) < value(wish.ceiling_n))) ||
+    const bool rise = value(command.rate_n_per_s) > 0;
+    const bool fall = value(command.rate_n_per_s) < 0;
+    const bool at_limit = (rise && !(value(force) < value(command.ceiling_n))) ||
                           (fall && !(value(law_.min_force_n) < value(force)));
     if (at_limit || !(rise || fall)) {
-      return {force, at_limit ? GripStatus::at_limit : GripStatus::holding, wish.why};
+      return {force, at_limit ? GripStatus::at_limit : GripStatus::holding, command.why};
     }
-    const S wanted = force + S(wish.rate_n_per_s * step_s);
-    state.force_n_ =
-        value(wish.ceiling_n) < value(wanted) && rise ? wish.ceiling_n : within_limits(wanted);
-    return {state.force_n_, rise ? GripStatus::raising : GripStatus::lowering, wish.why};
+    const S wanted = force + S(command.rate_n_per_s * step_s);
+    state.force_n_ = value(command.ceiling_n) < value(wanted) && rise ? command.ceiling_n
+                                                                      : within_limits(wanted);
+    return {state.force_n_, rise ? GripStatus::raising : GripStatus::lowering, command.why};
   }
 
   /// NaN becomes the least force.

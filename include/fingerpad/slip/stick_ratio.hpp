@@ -15,12 +15,12 @@
 #include <cmath>
 #include <cstdint>
 
-#include "fingerpad/slip/denoising.hpp"
-#include "fingerpad/slip/stick_result.hpp"
-#include "fingerpad/slip/detail/stick_state.hpp"
 #include "fingerpad/core/dots.hpp"
 #include "fingerpad/core/expects.hpp"
 #include "fingerpad/core/grid.hpp"
+#include "fingerpad/slip/denoising.hpp"
+#include "fingerpad/slip/detail/stick_state.hpp"
+#include "fingerpad/slip/stick_result.hpp"
 
 namespace fingerpad {
 inline namespace v0 {
@@ -34,7 +34,7 @@ struct StickTest {
   double slip_px = 0.24;      ///< delta_0, > 0: a dot slips that differs from the object's motion
                               ///< by more than this times d_max / U; for dots with other noise
                               ///< than the published 0.06 px see calibrate/stick_ratio.hpp
-  Index min_dots = 5;       ///< >= 1: to compare; fewer give no ratio
+  Index min_dots = 5;         ///< >= 1: to compare; fewer give no ratio
 };
 inline void expects_valid(const StickTest& test) {
   expects(is_finite(test.reference_px) && test.reference_px > 0, "StickTest", "reference_px",
@@ -143,7 +143,6 @@ class StickRatio {
   StickStatus look(State& state) const {
     using namespace detail::stick;
     StickRatioResult<S>& result = state.result;
-    result.accepted = true;
     result.out_of_place = 0;
     if (!state.given.any_touch()) {
       return without_contact(state);

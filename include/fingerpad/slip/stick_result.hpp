@@ -29,6 +29,7 @@ enum class StickStatus : std::uint8_t {
   no_dots,       ///< no dot at all was found: nothing is known, nothing is forgotten
   jumped,        ///< all dots carry the name of a neighbour: the frame is left out
   restarted,     ///< time went back: all that was before is forgotten
+  refused,       ///< a grid, state or workspace has another size: nothing was done
 };
 
 /// "updated", "standing", ...
@@ -50,6 +51,8 @@ constexpr const char* name_of(StickStatus status) {
       return "jumped";
     case StickStatus::restarted:
       return "restarted";
+    case StickStatus::refused:
+      return "refused";
   }
   return "unknown";
 }
@@ -58,9 +61,7 @@ constexpr const char* name_of(StickStatus status) {
 /// last frame with an answer.
 template <scalar S = float>
 struct StickRatioResult {
-  bool accepted = false;  ///< false: a grid has another size than the estimator, or the state
-                          ///< belongs to another estimator; nothing was done
-  StickStatus status = StickStatus::no_dots;
+  StickStatus status = StickStatus::refused;
   Index stick = 0, slip = 0, unknown = 0;  ///< dots in contact, as written to `states`
   Index out_of_place =
       0;  ///< dots in contact that are not between their neighbours: taken as missing
@@ -73,6 +74,9 @@ struct StickRatioResult {
   DotIndex reference_dot =
       {};  ///< where the search for sticking dots began; row -1: there was none
 
+  bool accepted() const { return status != StickStatus::refused; }
+  /// Whether the ratio may be used: of this frame, or still that of the last answer.
+  bool ok() const { return accepted() && is_finite(stick_ratio); }
   bool updated() const { return status == StickStatus::updated; }
   Index dots_in_contact() const { return stick + slip + unknown; }
 };

@@ -38,7 +38,7 @@ class StickState {
   void forget() {
     repository.clear();
     std::fill(marks.begin(), marks.end(), S(0));
-    result = StickRatioResult<S>{.accepted = true};
+    result = StickRatioResult<S>{.status = StickStatus::no_dots};
   }
 
   /// No dot of this frame but those of `run`, still to be written.
@@ -52,7 +52,7 @@ class StickState {
   DotPlanes<S> now;    // of it, the dots in contact, in their places
   DotPlanes<S> scratch;
   Residuals<S> residuals;
-  aligned_vector<S> marks;                   // what each dot did in the last answer
+  aligned_vector<S> marks;                // what each dot did in the last answer
   Point2<S> stick_center = {S(0), S(0)};  // of the last answer
   Repository<S> repository;
   StickRatioResult<S> result;
