@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "replay/canvas.hpp"
-#include "replay/picture_parts.hpp"
+#include "replay/pictures/canvas.hpp"
+#include "replay/pictures/picture_parts.hpp"
 
 namespace grip {
 

@@ -6,7 +6,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "replay/failure.hpp"
+#include "replay/io/failure.hpp"
 
 namespace load_trials {
 namespace {

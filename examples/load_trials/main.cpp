@@ -15,7 +15,7 @@
 #include "fingerpad/calibrate/force.hpp"
 #include "fingerpad/motion/contact_shift.hpp"
 #include "loads.hpp"
-#include "replay/failure.hpp"
+#include "replay/io/failure.hpp"
 
 namespace {
 

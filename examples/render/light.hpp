@@ -7,7 +7,7 @@
 #include <opencv2/core.hpp>
 #include <random>
 
-#include "../replay/sensor.hpp"
+#include "../replay/io/sensor.hpp"
 #include "membrane.hpp"
 
 namespace render {

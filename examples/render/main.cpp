@@ -8,9 +8,9 @@
 #include <filesystem>
 #include <string>
 
-#include "../replay/failure.hpp"
-#include "../replay/images.hpp"
-#include "../replay/sensor.hpp"
+#include "../replay/io/failure.hpp"
+#include "../replay/io/images.hpp"
+#include "../replay/io/sensor.hpp"
 #include "light.hpp"
 #include "membrane.hpp"
 

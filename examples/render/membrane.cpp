@@ -13,7 +13,7 @@
 #include <cstddef>
 #include <limits>
 
-#include "../replay/failure.hpp"
+#include "../replay/io/failure.hpp"
 
 namespace render {
 namespace {

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
-#include "chain.hpp"
+#include "replay/chain.hpp"
 
 #include <algorithm>
 #include <chrono>
@@ -9,7 +9,7 @@
 #include <limits>
 #include <string>
 
-#include "failure.hpp"
+#include "replay/io/failure.hpp"
 
 namespace replay {
 namespace {

@@ -6,17 +6,17 @@
 #include <optional>
 #include <vector>
 
-#include "contact_step.hpp"
-#include "depth_step.hpp"
-#include "dots.hpp"
-#include "force_step.hpp"
-#include "motion_step.hpp"
-#include "pictures.hpp"
-#include "recording.hpp"
-#include "replay.hpp"
-#include "stick_step.hpp"
-#include "traction_step.hpp"
-#include "wrench_step.hpp"
+#include "replay/dots/dots.hpp"
+#include "replay/io/recording.hpp"
+#include "replay/pictures/pictures.hpp"
+#include "replay/replay.hpp"
+#include "replay/steps/contact_step.hpp"
+#include "replay/steps/depth_step.hpp"
+#include "replay/steps/force_step.hpp"
+#include "replay/steps/motion_step.hpp"
+#include "replay/steps/stick_step.hpp"
+#include "replay/steps/traction_step.hpp"
+#include "replay/steps/wrench_step.hpp"
 
 namespace replay {
 

@@ -7,7 +7,7 @@
 #include <map>
 #include <string>
 
-#include "replay.hpp"
+#include "replay/replay.hpp"
 
 int main(int argc, char** argv) {
   CLI::App app(

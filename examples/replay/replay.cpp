@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
-#include "replay.hpp"
+#include "replay/replay.hpp"
 
 #include <algorithm>
 #include <charconv>
@@ -9,14 +9,14 @@
 #include <limits>
 #include <stdexcept>
 
-#include "chain.hpp"
-#include "failure.hpp"
-#include "foam_recording.hpp"
-#include "foam_replay.hpp"
-#include "interrupt.hpp"
-#include "progress.hpp"
-#include "recording.hpp"
-#include "writer.hpp"
+#include "replay/chain.hpp"
+#include "replay/foam/recording.hpp"
+#include "replay/foam/replay.hpp"
+#include "replay/io/failure.hpp"
+#include "replay/io/interrupt.hpp"
+#include "replay/io/progress.hpp"
+#include "replay/io/recording.hpp"
+#include "replay/io/writer.hpp"
 
 namespace replay {
 namespace {

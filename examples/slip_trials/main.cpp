@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "measures.hpp"
-#include "replay/failure.hpp"
+#include "replay/io/failure.hpp"
 #include "trials.hpp"
 
 namespace {

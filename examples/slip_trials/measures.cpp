@@ -8,10 +8,10 @@
 #include <limits>
 #include <opencv2/core.hpp>
 
-#include "replay/dots.hpp"
-#include "replay/failure.hpp"
-#include "replay/motion_step.hpp"
-#include "replay/stick_step.hpp"
+#include "replay/dots/dots.hpp"
+#include "replay/io/failure.hpp"
+#include "replay/steps/motion_step.hpp"
+#include "replay/steps/stick_step.hpp"
 
 namespace slip_trials {
 namespace {

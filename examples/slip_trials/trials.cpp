@@ -8,7 +8,7 @@
 #include <set>
 #include <sstream>
 
-#include "replay/failure.hpp"
+#include "replay/io/failure.hpp"
 
 namespace slip_trials {
 namespace {

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
-#include "replay/dots.hpp"
+#include "replay/dots/dots.hpp"
 
 #include <unistd.h>
 
@@ -15,10 +15,10 @@
 #include <string>
 #include <vector>
 
-#include "replay/dots_match.hpp"
-#include "replay/dots_track.hpp"
-#include "replay/failure.hpp"
-#include "replay/recording.hpp"
+#include "replay/dots/match.hpp"
+#include "replay/dots/track.hpp"
+#include "replay/io/failure.hpp"
+#include "replay/io/recording.hpp"
 #include "support/catch.hpp"
 
 namespace fs = std::filesystem;

@@ -18,10 +18,10 @@
 #include <string>
 #include <vector>
 
-#include "replay/dots.hpp"
-#include "replay/dots_lattice.hpp"
-#include "replay/failure.hpp"
-#include "replay/images.hpp"
+#include "replay/dots/dots.hpp"
+#include "replay/dots/lattice.hpp"
+#include "replay/io/failure.hpp"
+#include "replay/io/images.hpp"
 #include "replay/replay.hpp"
 #include "support/catch.hpp"
 

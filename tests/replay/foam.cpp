@@ -20,7 +20,7 @@
 #include <vector>
 
 #include "foam/recording.hpp"
-#include "replay/failure.hpp"
+#include "replay/io/failure.hpp"
 #include "replay/replay.hpp"
 #include "support/catch.hpp"
 

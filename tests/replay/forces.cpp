@@ -15,11 +15,11 @@
 #include <vector>
 
 #include "replay/chain.hpp"
-#include "replay/failure.hpp"
+#include "replay/io/failure.hpp"
+#include "replay/io/side_dots.hpp"
+#include "replay/io/signals.hpp"
+#include "replay/io/true_forces.hpp"
 #include "replay/replay.hpp"
-#include "replay/side_dots.hpp"
-#include "replay/signals.hpp"
-#include "replay/true_forces.hpp"
 #include "support/catch.hpp"
 
 namespace fs = std::filesystem;

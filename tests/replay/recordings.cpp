@@ -15,11 +15,11 @@
 #include <opencv2/videoio.hpp>
 #include <string>
 
-#include "replay/depth_step.hpp"
-#include "replay/failure.hpp"
-#include "replay/images.hpp"
-#include "replay/recording.hpp"
+#include "replay/io/failure.hpp"
+#include "replay/io/images.hpp"
+#include "replay/io/recording.hpp"
 #include "replay/replay.hpp"
+#include "replay/steps/depth_step.hpp"
 #include "support/catch.hpp"
 
 namespace fs = std::filesystem;

@@ -1,0 +1,120 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+#include "replay/foam/sensor.hpp"
+
+#include <string>
+
+#include "replay/io/failure.hpp"
+#include "replay/io/json_section.hpp"
+
+namespace replay {
+namespace {
+
+FingerPlace read_finger(const JsonSection& section) {
+  return {section.integer("first_row", 0), section.positive_integer("rows"),
+          section.integer("first_col", 0), section.positive_integer("cols")};
+}
+
+std::vector<FingerPlace> read_fingers(const std::filesystem::path& file, const JsonSection& foam) {
+  const nlohmann::json& list = foam.at("fingers");
+  if (!list.is_array() || list.empty() || list.size() > max_fingers) {
+    foam.refuse("fingers must be a list [...] of 1 to " + std::to_string(max_fingers) + " fingers");
+  }
+  std::vector<FingerPlace> fingers;
+  for (const nlohmann::json& entry : list) {
+    const std::string name = "foam.fingers[" + std::to_string(fingers.size()) + "]";
+    fingers.push_back(read_finger(JsonSection(file, name, entry,
+                                              {{"first_row", "of the array, counted from 0"},
+                                               {"rows", "how many rows the finger has"},
+                                               {"first_col", "of the array, counted from 0"},
+                                               {"cols", "how many columns the finger has"}})));
+  }
+  return fingers;
+}
+
+/// What sensor.json may know of a foam array, and what of other sensors.
+JsonSection foam_section(const JsonSection& root) {
+  return root.section(
+      "foam", {{"fingers", "where the fingers are in the array"},
+               {"pitch_mm", "between taxels, mm"},
+               {"window", "samples in which vibration is looked for"},
+               {"sample_period_s", "nominal, s"},
+               {"noise", "standard deviation of a taxel at rest, in the unit of the readings"},
+               {"noise_factor", "vibration is more than this many of them"},
+               {"saturated_at", "readings from here on do not count"},
+               {"stuck_after", "equal readings in a row do not count from here on"},
+               {"longest_gap_s", "a longer time between samples begins a new window, s"},
+               {"history", "samples that are compared"},
+               {"least_waves", "a sample with fewer waves is silent"},
+               {"centroid_tolerance_mm", "what the noise of a centroid explains, mm"},
+               {"rule", "grasp_lift, grasp_optimise or both"}});
+}
+
+void read_options(const JsonSection& foam, FoamSensor& sensor) {
+  const auto number = [&](const char* key, auto& target) {
+    if (foam.has(key)) {
+      target = foam.number(key);
+    }
+  };
+  const auto integer = [&](const char* key, auto& target) {
+    if (foam.has(key)) {
+      target = foam.integer(key, 0);
+    }
+  };
+  number("pitch_mm", sensor.taxels.pitch_mm);
+  integer("window", sensor.taxels.window);
+  number("sample_period_s", sensor.sample_period_s);
+  number("noise", sensor.noise);
+  number("noise_factor", sensor.taxels.noise_factor);
+  number("saturated_at", sensor.taxels.saturated_at);
+  integer("stuck_after", sensor.taxels.stuck_after);
+  number("longest_gap_s", sensor.longest_gap_s);
+  integer("history", sensor.rules.history);
+  integer("least_waves", sensor.rules.min_waves);
+  number("centroid_tolerance_mm", sensor.rules.centroid_tolerance_mm);
+  if (foam.has("rule")) {
+    const std::string rule = foam.one_of("rule", {"grasp_lift", "grasp_optimise", "both"});
+    sensor.grasp_lift = rule != "grasp_optimise";
+    sensor.grasp_optimise = rule != "grasp_lift";
+  }
+  fingerpad::TaxelOptions<double> all = sensor.taxels;
+  all.noise = sensor.noise.value_or(all.noise);
+  all.sample_period_s = sensor.sample_period_s.value_or(all.sample_period_s);
+  all.longest_gap_s = sensor.longest_gap_s.value_or(all.longest_gap_s);
+  foam.check([&] { expects_valid(all); });
+  foam.check([&] { expects_valid(sensor.rules); });
+}
+
+/// Sections that other recordings have say that files were mixed up.
+void refuse_other_sections(const std::filesystem::path& file, const nlohmann::json& content) {
+  for (const char* other : {"camera", "absorption", "pad", "reference", "video", "smoothing_px",
+                            "dots", "rim", "neighbour_light", "force", "stick"}) {
+    if (content.is_object() && content.contains(other)) {
+      fail(file, std::string("has ") + other +
+                     ", which a recording with taxels.csv does not need: keep the frames of a "
+                     "camera in a recording of their own");
+    }
+  }
+}
+
+}  // namespace
+
+FoamSensor read_foam_sensor(const std::filesystem::path& file) {
+  FoamSensor sensor;
+  if (!std::filesystem::exists(file)) {
+    return sensor;
+  }
+  const nlohmann::json content = parse_json(file);
+  refuse_other_sections(file, content);
+  const JsonSection root(file, "", content, {{"foam", "a foam array"}});
+  if (root.has("foam")) {
+    const JsonSection foam = foam_section(root);
+    if (foam.has("fingers")) {
+      sensor.fingers = read_fingers(file, foam);
+    }
+    read_options(foam, sensor);
+  }
+  return sensor;
+}
+
+}  // namespace replay

@@ -1,0 +1,178 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+#include "replay/io/recording.hpp"
+
+#include <algorithm>
+#include <system_error>
+
+#include "replay/io/failure.hpp"
+#include "replay/io/images.hpp"
+
+namespace replay {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string size_of(const cv::Mat& image) {
+  return std::to_string(image.cols) + " x " + std::to_string(image.rows) + " px";
+}
+
+cv::VideoCapture opened(const fs::path& file) {
+  std::error_code error;
+  if (!fs::is_regular_file(file, error)) {
+    fail(file, "there is no such video (\"video\" in sensor.json names it)");
+  }
+  cv::VideoCapture video;
+  try {
+    const QuietCodecs quiet;
+    video.open(file.string());
+  } catch (const cv::Exception&) {
+    video.release();
+  }
+  if (!video.isOpened()) {
+    fail(file, "cannot be read as a video (damaged, or no decoder for it)");
+  }
+  return video;
+}
+
+}  // namespace
+
+FrameSource FrameSource::of_folder(const fs::path& folder) {
+  FrameSource source;
+  std::error_code error;
+  fs::directory_iterator entries(folder, error);
+  if (error) {
+    fail(folder, "there is no such folder (it holds the frames; sensor.json names no video)");
+  }
+  for (const fs::directory_entry& entry : entries) {
+    const std::string name = entry.path().filename().string();
+    if (entry.is_regular_file(error) && name.front() != '.') {
+      source.files_.push_back(entry.path());
+    }
+  }
+  if (source.files_.empty()) {
+    fail(folder, "holds no frames");
+  }
+  std::sort(source.files_.begin(), source.files_.end());
+  source.count_ = static_cast<int>(source.files_.size());
+  return source;
+}
+
+FrameSource FrameSource::of_video(const fs::path& file) {
+  FrameSource source;
+  source.is_video_ = true;
+  source.files_ = {file};
+  source.video_ = opened(file);
+  // Counted, because the number in a video's header is an estimate.
+  const QuietCodecs quiet;
+  while (source.video_.grab()) {
+    ++source.count_;
+  }
+  if (source.count_ == 0) {
+    fail(file, "holds no frames");
+  }
+  return source;
+}
+
+void FrameSource::seek(int first) {
+  position_ = first;
+  if (is_video_) {
+    video_ = opened(files_.front());
+    const QuietCodecs quiet;
+    for (int i = 0; i < first; ++i) {
+      video_.grab();
+    }
+  }
+}
+
+fs::path FrameSource::last_file() const {
+  const int last = is_video_ ? 0 : (std::max)(position_ - 1, 0);
+  return files_[static_cast<std::size_t>(last)];
+}
+
+cv::Mat FrameSource::next() {
+  ++position_;
+  if (!is_video_) {
+    return read_colour_image(last_file());
+  }
+  cv::Mat frame;
+  try {
+    const QuietCodecs quiet;
+    video_.read(frame);
+  } catch (const cv::Exception&) {
+    frame.release();
+  }
+  if (frame.empty()) {
+    fail(last_file(), "frame " + std::to_string(position_ - 1) + " cannot be decoded");
+  }
+  expects_colour_image(frame, last_file());
+  return frame;
+}
+
+cv::Mat next_frame(FrameSource& frames, cv::Size size) {
+  cv::Mat image = frames.next();
+  if (image.size() != size) {
+    fail(frames.last_file(), "is " + size_of(image) + ", but the reference is " +
+                                 std::to_string(size.width) + " x " + std::to_string(size.height) +
+                                 " px");
+  }
+  return image;
+}
+
+namespace {
+
+/// The picture of the free pad and its depth.
+void read_reference(const fs::path& folder, Recording& recording) {
+  const fs::path frame_file = folder / recording.sensor.reference_frame;
+  const fs::path depth_file = folder / recording.sensor.reference_depth;
+  recording.reference = read_colour_image(frame_file);
+  recording.reference_depth = read_depth_image(depth_file);
+  if (recording.reference_depth.size() != recording.reference.size()) {
+    fail(depth_file, "is " + size_of(recording.reference_depth) + ", but " +
+                         frame_file.filename().string() + " is " + size_of(recording.reference));
+  }
+}
+
+/// The picture that a dots-only recording names, or its first frame.
+void read_first_picture(const fs::path& folder, Recording& recording) {
+  if (recording.sensor.reference_frame.empty()) {
+    recording.frames.seek(0);
+    recording.reference = recording.frames.next();
+  } else {
+    recording.reference = read_colour_image(folder / recording.sensor.reference_frame);
+  }
+}
+
+}  // namespace
+
+Recording open_recording(const fs::path& folder) {
+  std::error_code error;
+  if (!fs::is_directory(folder, error)) {
+    fail(folder, "there is no such folder");
+  }
+  Recording recording;
+  recording.sensor = read_sensor(folder / "sensor.json");
+  if (!recording.sensor.dots_only) {
+    read_reference(folder, recording);
+  }
+  const auto& video = recording.sensor.video;
+  recording.frames =
+      video ? FrameSource::of_video(folder / *video) : FrameSource::of_folder(folder / "frames");
+  if (recording.sensor.dots_only) {
+    read_first_picture(folder, recording);
+  } else if (fs::is_directory(folder / "free", error)) {
+    recording.free_frames = FrameSource::of_folder(folder / "free");
+  }
+  recording.signals = read_signals(folder / "signals.csv", recording.frames.size());
+  if (!recording.sensor.dots_only) {
+    recording.true_forces = read_true_forces(folder / "forces.csv", recording.frames.size());
+    recording.side_dots = read_side_dots(folder / "side_dots.csv", recording.frames.size());
+    if (const auto& dots = recording.sensor.dots) {
+      recording.stress_free_dots =
+          read_stress_free_dots(folder / "stress_free_dots.csv", {dots->cols, dots->rows});
+    }
+  }
+  return recording;
+}
+
+}  // namespace replay

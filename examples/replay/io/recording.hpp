@@ -1,0 +1,63 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+#pragma once
+// A recording on disk: sensor.json, the free pad, the frames (a folder or a video), the signals and
+// the dots beside the rim.
+// Everything that can be checked before the first frame is checked by open_recording().
+#include <filesystem>
+#include <map>
+#include <opencv2/core.hpp>
+#include <opencv2/videoio.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "replay/io/sensor.hpp"
+#include "replay/io/side_dots.hpp"
+#include "replay/io/signals.hpp"
+#include "replay/io/true_forces.hpp"
+
+namespace replay {
+
+/// The frames, one after the other.
+class FrameSource {
+ public:
+  /// Files of a folder, sorted by name (hidden ones left out), or a video file; throws Failure.
+  static FrameSource of_folder(const std::filesystem::path& folder);
+  static FrameSource of_video(const std::filesystem::path& file);
+
+  int size() const { return count_; }
+  /// Starts at frame `first`, in [0, size()].
+  void seek(int first);
+  /// The next frame, 8- or 16-bit colour; throws Failure.
+  cv::Mat next();
+  /// Which file the last frame came from, for messages.
+  std::filesystem::path last_file() const;
+
+ private:
+  std::vector<std::filesystem::path> files_;  ///< one per frame, or the video alone
+  cv::VideoCapture video_;
+  bool is_video_ = false;
+  int count_ = 0;
+  int position_ = 0;
+};
+
+/// The next frame, which must be of `size`; throws Failure.
+cv::Mat next_frame(FrameSource& frames, cv::Size size);
+
+struct Recording {
+  Sensor sensor;
+  cv::Mat reference;  ///< the free pad, 8- or 16-bit colour; dots only: may be the first frame
+  cv::Mat_<float> reference_depth;  ///< mm, NaN outside the pad; dots only: empty
+  FrameSource frames;
+  FrameSource free_frames;  ///< more frames of the free pad; may be none
+  Signals signals;
+  std::map<int, TrueForce> true_forces;  ///< by frame; may be none
+  std::optional<SideDots> side_dots;
+  std::optional<SpaceGrid> stress_free_dots;
+};
+
+/// Opens and checks a recording; throws Failure.
+Recording open_recording(const std::filesystem::path& folder);
+
+}  // namespace replay

@@ -1,0 +1,291 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+#include "replay/io/sensor.hpp"
+
+#include <algorithm>
+#include <tuple>
+#include <vector>
+
+#include "replay/io/failure.hpp"
+#include "replay/io/json_section.hpp"
+
+namespace replay {
+namespace {
+
+using Section = JsonSection;
+
+fingerpad::Camera<double> read_camera(const Section& root) {
+  const Section section = root.section(
+      "camera", {{"plate_distance_mm", "from the camera's center to the plate's inner face, mm"},
+                 {"refractive_index", "of the fluid, 1.33 for water"},
+                 {"center_px", "[x, y] of the pixel on the optical axis"},
+                 {"pitch_mm", "size of a pixel on the plate's inner face, mm"}});
+  fingerpad::Camera<double> camera;
+  camera.plate_distance_mm = section.number("plate_distance_mm");
+  camera.refractive_index = section.number("refractive_index");
+  std::tie(camera.center_x_px, camera.center_y_px) = section.pair("center_px");
+  camera.pitch_mm = section.number("pitch_mm");
+  expects_valid(camera);
+  return camera;
+}
+
+fingerpad::Absorption<double> read_absorption(const Section& root) {
+  const Section section =
+      root.section("absorption", {{"c_red_per_mm", "absorption of red light in the fluid, 1/mm"},
+                                  {"c_green_per_mm", "absorption of green light, 1/mm"},
+                                  {"kappa", "ratio of light and camera in green to those in red"},
+                                  {"max_depth_mm", "depths are looked for up to here, mm"}});
+  fingerpad::Absorption<double> absorption;
+  absorption.c_red_per_mm = section.number("c_red_per_mm");
+  absorption.c_green_per_mm = section.number("c_green_per_mm");
+  absorption.kappa = section.number("kappa");
+  absorption.max_depth_mm = section.number("max_depth_mm");
+  expects_valid(absorption);
+  return absorption;
+}
+
+Pad read_pad(const Section& root) {
+  const Section section =
+      root.section("pad", {{"base_radius_mm", "radius of the pad on the plate, mm"},
+                           {"apex_height_mm", "height of the free pad above the plate, mm"}});
+  return {section.positive("base_radius_mm"), section.positive("apex_height_mm")};
+}
+
+Dots read_dots(const Section& root) {
+  const Section section = root.section("dots", {{"rows", "rows of printed dots"},
+                                                {"cols", "columns of printed dots"},
+                                                {"pitch_mm", "between neighbouring dots, mm"},
+                                                {"diameter_mm", "of a printed dot, mm"}});
+  return {section.positive_integer("rows"), section.positive_integer("cols"),
+          section.positive("pitch_mm"), section.positive("diameter_mm")};
+}
+
+DotPattern read_pattern(const Section& root) {
+  const Section section =
+      root.section("dots", {{"rows", "rows of dots; counted without it"},
+                            {"cols", "columns of dots, where rows is given"},
+                            {"diameter_px", "of a dot; measured without it"},
+                            {"bright", "whether dots are brighter than the ground around them"}});
+  DotPattern pattern;
+  if (section.has("rows") || section.has("cols")) {
+    pattern.rows = section.positive_integer("rows");
+    pattern.cols = section.positive_integer("cols");
+  }
+  if (section.has("diameter_px")) {
+    pattern.diameter_px = section.positive("diameter_px");
+  }
+  if (section.has("bright")) {
+    pattern.bright = section.truth("bright");
+  }
+  return pattern;
+}
+
+fingerpad::StickTest read_stick(const Section& root) {
+  const Section section =
+      root.section("stick", {{"reference_px", "dots are compared over moves longer than this, px"},
+                             {"store_px", "a frame is stored after a move longer than this, px"},
+                             {"slip_px", "a dot that is off by this at reference_px slips, px"}});
+  fingerpad::StickTest test;
+  const auto read = [&](const char* key, double& value) {
+    value = section.has(key) ? section.number(key) : value;
+  };
+  read("reference_px", test.reference_px);
+  read("store_px", test.store_px);
+  read("slip_px", test.slip_px);
+  expects_valid(test);
+  return test;
+}
+
+/// Whether the file names anything that depth needs.
+bool names_depth(const Section& root) {
+  for (const char* key :
+       {"camera", "absorption", "pad", "smoothing_px", "rim", "neighbour_light", "force"}) {
+    if (root.has(key)) {
+      return true;
+    }
+  }
+  return root.has("reference") && root.at("reference").contains("depth");
+}
+
+Rim read_rim(const Section& root) {
+  const Section section = root.section(
+      "rim", {{"side_dot_length_mm", "stress-free length from the rim to its side dot, mm"},
+              {"membrane_modulus_n_per_mm", "shear modulus times thickness, N/mm"},
+              {"stress_free_inclination_rad", "of the stress-free membrane at the rim, rad"}});
+  Rim rim;
+  rim.side_dot_length_mm = section.positive("side_dot_length_mm");
+  if (section.has("membrane_modulus_n_per_mm")) {
+    rim.membrane_modulus_n_per_mm = section.positive("membrane_modulus_n_per_mm");
+  }
+  if (section.has("stress_free_inclination_rad")) {
+    rim.stress_free_inclination_rad = section.positive("stress_free_inclination_rad");
+  }
+  return rim;
+}
+
+/// `unit` is that of the measure, as keys have it.
+NormalForceLookUp read_normal_force(const Section& force,
+                                    const std::string& key,
+                                    const std::string& unit,
+                                    bool needs_residual) {
+  const Section section = force.section(
+      key,
+      {{"coefficients", "normal force in N, the constant first, then by powers of the measure"},
+       {"from_" + unit, "the smallest contact of the calibration"},
+       {"to_" + unit, "the largest contact of the calibration"},
+       {"residual_n", "what the calibration left, N; by_area and by_depth are weighted by it"},
+       {"per_mm_sq", "share of the force by which it changes for each squared mm of shift"},
+       {"per_rad_sq", "the same for each squared rad"}});
+  NormalForceLookUp look_up;
+  look_up.curve.coefficients =
+      section.numbers<NormalForceLookUp::Curve::parameters>("coefficients");
+  look_up.curve.from = section.number("from_" + unit);
+  look_up.curve.to = section.number("to_" + unit);
+  if (needs_residual || section.has("residual_n")) {
+    look_up.residual_n = section.positive("residual_n");
+  }
+  look_up.compensation.per_mm_sq = section.has("per_mm_sq") ? section.number("per_mm_sq") : 0;
+  look_up.compensation.per_rad_sq = section.has("per_rad_sq") ? section.number("per_rad_sq") : 0;
+  section.check([&] { expects_valid(look_up.curve); });
+  section.check([&] { expects_valid(look_up.compensation); });
+  return look_up;
+}
+
+ShearLookUp read_shear(const Section& force) {
+  const Section section = force.section(
+      "shear", {{"by", "the measure that displacement and rotation count by, area or depth"},
+                {"reference", "the measure at which they count as they are, mm^2 or mm"},
+                {"displacement_exponent", "of measure / reference"},
+                {"rotation_exponent", "of measure / reference"},
+                {"force_n_per_mm", "odd polynomial of the displacement, the linear one first"},
+                {"moment_n_mm_per_rad", "odd polynomial of the rotation, the linear one first"},
+                {"to_mm", "the largest displacement of the calibration, as it counts"},
+                {"to_rad", "the largest rotation of the calibration, as it counts"}});
+  constexpr std::size_t most = ShearLookUp::Map().force.size;
+  ShearLookUp look_up;
+  look_up.by = section.one_of("by", {"area", "depth"}) == "area" ? ContactMeasure::area
+                                                                 : ContactMeasure::depth;
+  look_up.normalisation.reference = section.number("reference");
+  look_up.normalisation.displacement_exponent = section.number("displacement_exponent");
+  look_up.normalisation.rotation_exponent = section.number("rotation_exponent");
+  look_up.map.force.coefficients = section.numbers<most>("force_n_per_mm");
+  look_up.map.force.to = section.number("to_mm");
+  look_up.map.moment.coefficients = section.numbers<most>("moment_n_mm_per_rad");
+  look_up.map.moment.to = section.number("to_rad");
+  section.check([&] { expects_valid(look_up.normalisation); });
+  section.check([&] { expects_valid(look_up.map); });
+  return look_up;
+}
+
+ForceLookUp read_force(const Section& root) {
+  const Section section =
+      root.section("force", {{"by_area", "normal force by contact area"},
+                             {"by_depth", "normal force by contact depth"},
+                             {"shear", "tangential force and moment by shift and rotation"}});
+  const bool both = section.has("by_area") && section.has("by_depth");
+  ForceLookUp look_up;
+  if (section.has("by_area")) {
+    look_up.by_area = read_normal_force(section, "by_area", "mm2", both);
+  }
+  if (section.has("by_depth")) {
+    look_up.by_depth = read_normal_force(section, "by_depth", "mm", both);
+  }
+  if (section.has("shear")) {
+    look_up.shear = read_shear(section);
+  }
+  if (!look_up.by_area && !look_up.by_depth && !look_up.shear) {
+    section.refuse("holds no curve");
+  }
+  return look_up;
+}
+
+NeighbourLight read_neighbour_light(const Section& root) {
+  const Section section =
+      root.section("neighbour_light", {{"radius_px", "of the disc that sends light, px"},
+                                       {"m0_mm_per_rad", "its strength, mm per rad"},
+                                       {"n_per_mm", "how its strength grows with depth, 1/mm"}});
+  return {section.positive_integer("radius_px"), section.number("m0_mm_per_rad"),
+          section.number("n_per_mm")};
+}
+
+void read_dots_only(const Section& root, Sensor& sensor) {
+  if (root.has("dots")) {
+    sensor.pattern = read_pattern(root);
+  }
+  if (root.has("reference")) {
+    const Section reference =
+        root.section("reference", {{"frame", "picture of the dots before anything touches them"}});
+    sensor.reference_frame = reference.path("frame");
+  }
+}
+
+}  // namespace
+
+Sensor read_sensor(const std::filesystem::path& file) {
+  const nlohmann::json content = parse_json(file);
+  const Section root(file, "", content,
+                     {{"camera", "position and resolution of the camera"},
+                      {"absorption", "how the fluid absorbs light"},
+                      {"pad", "size of the free pad"},
+                      {"reference", "a frame of the free pad and its known depth"},
+                      {"video", "a video in the place of the folder frames/"},
+                      {"smoothing_px", "width of the smoothing window, px"},
+                      {"dots", "the printed dots"},
+                      {"rim", "the dots at the rim"},
+                      {"neighbour_light", "compensation of light from neighbouring membrane"},
+                      {"force", "curves that tell forces from contact and shift"},
+                      {"stick", "when dots are compared, and what counts as slip"},
+                      {"foam", "a foam array"}});
+  if (root.has("foam")) {
+    fail(file, "has a section foam, but there is no taxels.csv with the array's readings");
+  }
+  Sensor sensor;
+  if (root.has("video")) {
+    sensor.video = root.path("video");
+  }
+  if (root.has("stick")) {
+    try {
+      sensor.stick = read_stick(root);
+    } catch (const fingerpad::parameter_error& error) {
+      fail(file, error.what());
+    }
+  }
+  sensor.dots_only = !names_depth(root);
+  if (sensor.dots_only) {
+    read_dots_only(root, sensor);
+    return sensor;
+  }
+  try {
+    sensor.camera = read_camera(root);
+    sensor.absorption = read_absorption(root);
+  } catch (const fingerpad::parameter_error& error) {
+    fail(file, error.what());
+  }
+  sensor.pad = read_pad(root);
+  const Section reference =
+      root.section("reference", {{"frame", "picture of the free pad, a PNG file"},
+                                 {"depth", "its depth in mm per pixel, a 32-bit float TIFF file"}});
+  sensor.reference_frame = reference.path("frame");
+  sensor.reference_depth = reference.path("depth");
+  if (root.has("smoothing_px")) {
+    sensor.smoothing_px = root.positive_integer("smoothing_px");
+    if (*sensor.smoothing_px % 2 == 0) {
+      fail(file, "smoothing_px = " + std::to_string(*sensor.smoothing_px) + ", must be odd");
+    }
+  }
+  if (root.has("dots")) {
+    sensor.dots = read_dots(root);
+  }
+  if (root.has("force")) {
+    sensor.force = read_force(root);
+  }
+  if (root.has("rim")) {
+    sensor.rim = read_rim(root);
+  }
+  if (root.has("neighbour_light")) {
+    sensor.neighbour_light = read_neighbour_light(root);
+  }
+  return sensor;
+}
+
+}  // namespace replay

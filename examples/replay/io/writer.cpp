@@ -1,0 +1,147 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+#include "replay/io/writer.hpp"
+
+#include <algorithm>
+#include <string>
+#include <utility>
+
+#include "replay/io/images.hpp"
+#include "replay/pictures/force_chart.hpp"
+#include "replay/pictures/motion_chart.hpp"
+#include "replay/pictures/stick_chart.hpp"
+#include "replay/pictures/wrench_chart.hpp"
+
+namespace replay {
+namespace {
+
+constexpr int montage_columns = 6;
+
+/// The grey level that only the brightest hundredth of the free pad's pixels exceed.
+double brightest_level(const cv::Mat& image) {
+  const double units = image.depth() == CV_16U ? 256 : 1;
+  cv::Mat levels;
+  image.convertTo(levels, CV_8U, 1 / units);
+  std::vector<int> count(256, 0);
+  for (int i = 0; i < levels.rows; ++i) {
+    for (int j = 0; j < levels.cols * levels.channels(); ++j) {
+      ++count[levels.ptr<uchar>(i)[j]];
+    }
+  }
+  const double total = static_cast<double>(levels.total()) * levels.channels();
+  double above = 0;
+  int level = 255;
+  while (level > 0 && above + count[static_cast<std::size_t>(level)] < 0.01 * total) {
+    above += count[static_cast<std::size_t>(level)];
+    --level;
+  }
+  return level;
+}
+
+/// Whether frame number `done` of `total` has a column in the montage; they lie evenly.
+bool in_montage(int done, int total) {
+  const int columns = (std::min)(total, montage_columns);
+  for (int k = 0; k < columns; ++k) {
+    if (done == (columns == 1 ? 0 : (k * (total - 1) + (columns - 1) / 2) / (columns - 1))) {
+      return true;
+    }
+  }
+  return false;
+}
+
+}  // namespace
+
+Writer::Writer(const Recording& recording,
+               const Options& options,
+               const DotGrid& initial_dots,
+               int total)
+    : options_(options),
+      brightest_(brightest_level(recording.reference)),
+      initial_dots_(initial_dots),
+      total_(total),
+      output_(options.out),
+      table_(output_.file("frames.csv")) {
+  if (!recording.sensor.dots_only) {
+    painter_.emplace(recording.sensor, recording.reference_depth, brightest_);
+  }
+  if (!initial_dots.empty()) {
+    dots_.emplace(output_.file("dots.csv"));
+  }
+}
+
+void Writer::operator()(Scene scene) {
+  with_force_ = with_force_ || scene.force.looked_up;
+  with_wrench_ = with_wrench_ || scene.wrench.present;
+  rows_.push_back({scene.frame, scene.time_s, scene.valid_share, scene.depth_mean_mm,
+                   scene.depth_max_mm, scene.contact, scene.dots.motion, scene.dots.stick.present(),
+                   scene.dots.stick.result, scene.force, scene.truth, scene.wrench.result,
+                   scene.pressure_mpa});
+  table_.write(rows_.back());
+  if (dots_) {
+    dots_->write(scene.frame, scene.dots);
+  }
+  if (options_.raw && painter_) {
+    write_depth_image(file("depth", "", scene, ".tiff"), scene.depth_mm);
+    write_png(file("contact", "", scene, ".png"), scene.contact_mask);
+  }
+  if (options_.pictures) {
+    write_pictures(scene);
+    if (painter_ && in_montage(static_cast<int>(rows_.size()) - 1, total_)) {
+      columns_.push_back(std::move(scene));
+    }
+  }
+}
+
+void Writer::write_pictures(Scene& scene) {
+  if (painter_) {
+    scene.section = painter_->find_section(scene.depth_mm);
+    write_png(file("pictures", "depth_", scene, ".png"), painter_->depth(scene));
+    write_png(file("pictures", "side_", scene, ".png"), painter_->side(scene));
+    write_png(file("pictures", "contact_", scene, ".png"), painter_->contact(scene, initial_dots_));
+    if (scene.wrench.present) {
+      write_png(file("pictures", "rim_", scene, ".png"), painter_->rim(scene));
+    }
+    if (scene.traction.present()) {
+      write_png(file("pictures", "traction_", scene, ".png"), painter_->traction(scene));
+    }
+  }
+  if (dots_) {
+    // The first frames of a camera may be dark, and nothing better is known without a free pad.
+    const double brightest = painter_ ? brightest_ : brightest_level(scene.image);
+    write_png(file("pictures", "stick_", scene, ".png"), stick_picture(scene, brightest));
+  }
+}
+
+void Writer::finish() {
+  if (options_.pictures) {
+    const std::string name = std::filesystem::canonical(options_.recording).filename().string();
+    const std::string title = name + ": " + std::to_string(rows_.size()) + " frames";
+    if (painter_) {
+      write_png(output_.file("pictures", "montage.png"), painter_->montage(title, columns_));
+      write_png(output_.file("pictures", "motion.png"), motion_chart(title, rows_));
+      if (with_force_) {
+        write_png(output_.file("pictures", "forces.png"), force_chart(title, rows_));
+      }
+      if (with_wrench_) {
+        write_png(output_.file("pictures", "wrench.png"), wrench_chart(title, rows_));
+      }
+    }
+    if (dots_) {
+      write_png(output_.file("pictures", "stick_ratio.png"), stick_chart(title, rows_));
+    }
+  }
+  table_.close();
+  if (dots_) {
+    dots_->close();
+  }
+  output_.publish();
+}
+
+std::filesystem::path Writer::file(const char* folder,
+                                   const char* stem,
+                                   const Scene& scene,
+                                   const char* extension) const {
+  return output_.file(folder, numbered(stem, scene.frame, extension));
+}
+
+}  // namespace replay

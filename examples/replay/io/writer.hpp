@@ -1,0 +1,54 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+#pragma once
+// All that is written of a recording, into a folder that appears when it is complete.
+#include <filesystem>
+#include <optional>
+#include <vector>
+
+#include "replay/io/output.hpp"
+#include "replay/io/recording.hpp"
+#include "replay/pictures/pictures.hpp"
+#include "replay/pictures/stick_picture.hpp"
+#include "replay/replay.hpp"
+
+namespace replay {
+
+class Writer {
+ public:
+  /// For `total` frames of a recording whose free pad has `initial_dots`, which may be none. The
+  /// options must outlive the writer. Throws Failure, here and below.
+  Writer(const Recording& recording,
+         const Options& options,
+         const DotGrid& initial_dots,
+         int total);
+
+  void operator()(Scene scene);
+  /// Writes what concerns all frames, and moves the folder to its place.
+  void finish();
+
+  const std::vector<FrameRow>& rows() const { return rows_; }
+  const std::filesystem::path& place() const { return output_.place(); }
+
+ private:
+  std::filesystem::path file(const char* folder,
+                             const char* stem,
+                             const Scene& scene,
+                             const char* extension) const;
+  void write_pictures(Scene& scene);
+
+  const Options& options_;
+  std::optional<Painter> painter_;  ///< none where the recording is of dots only
+  double brightest_;
+  DotGrid initial_dots_;
+  int total_;
+  bool with_force_ = false;
+  bool with_wrench_ = false;
+  OutputFolder output_;
+  FramesCsv table_;
+  std::optional<DotsCsv> dots_;
+  std::vector<FrameRow> rows_;
+  std::vector<Scene> columns_;  ///< of the montage
+};
+
+}  // namespace replay

@@ -1,0 +1,82 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+#pragma once
+// What a person would look at: false-colour depth, a side view, the contact over the camera's
+// image, and a recording at a glance.
+#include <limits>
+#include <opencv2/core.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "replay/io/sensor.hpp"
+#include "replay/io/true_forces.hpp"
+#include "replay/pictures/depth_colours.hpp"
+#include "replay/steps/contact_step.hpp"
+#include "replay/steps/force_step.hpp"
+#include "replay/steps/motion_step.hpp"
+#include "replay/steps/traction_step.hpp"
+#include "replay/steps/wrench_step.hpp"
+
+namespace replay {
+
+/// The row that a side view shows.
+struct Section {
+  int row = 0;
+  int col = 0;         ///< of the point that chose the row
+  double dent_mm = 0;  ///< how far it lies below the free pad; 0: nothing presses the pad
+};
+
+constexpr double not_known = std::numeric_limits<double>::quiet_NaN();
+
+/// One frame, as far as pictures need it.
+struct Scene {
+  int frame = 0;
+  std::string time_s;        ///< empty where unknown
+  cv::Mat image;             ///< 8- or 16-bit colour
+  cv::Mat_<float> depth_mm;  ///< empty where the recording is of dots only
+  Section section;
+  double valid_share = not_known;
+  double depth_mean_mm = not_known;  ///< where no pixel is valid
+  double depth_max_mm = not_known;
+  double pressure_mpa = not_known;
+  cv::Mat_<uchar> contact_mask;  ///< nonzero: in contact; empty as the depth
+  ContactResult contact;
+  FrameDots dots;
+  ForceFrame force;
+  std::optional<TrueForce> truth;
+  WrenchFrame wrench;
+  TractionFrame traction;
+};
+
+class Painter {
+ public:
+  /// `brightest` is the grey level that shows as white in the camera's pictures.
+  Painter(const Sensor& sensor, const cv::Mat_<float>& free_depth_mm, double brightest);
+
+  /// The row through the deepest dent, or, on a free pad, through the point of the largest depth.
+  Section find_section(const cv::Mat_<float>& depth_mm) const;
+
+  cv::Mat depth(const Scene& scene) const;
+  cv::Mat side(const Scene& scene) const;
+  /// `initial_px` are the free pad's dots.
+  cv::Mat contact(const Scene& scene, const DotGrid& initial_px) const;
+  /// What the membrane pulls the rim with, over the camera's image.
+  cv::Mat rim(const Scene& scene) const;
+  /// Contact pressure and shear at the dots, over the camera's image.
+  cv::Mat traction(const Scene& scene) const;
+  /// One column a scene: camera image, depth, its change and side view.
+  cv::Mat montage(const std::string& title, const std::vector<Scene>& scenes) const;
+
+ private:
+  fingerpad::Camera<double> camera_;
+  cv::Mat_<float> free_depth_mm_;
+  cv::Mat_<uchar> in_pad_;
+  double half_width_mm_;  ///< of side views
+  double dot_pitch_px_;   ///< at the plate; 0 without dots
+  double top_mm_;         ///< of the depth scale
+  ColourScale scale_;
+  double brightest_;
+};
+
+}  // namespace replay

@@ -1,0 +1,61 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+#include "replay/steps/motion_step.hpp"
+
+#include <limits>
+
+#include "fingerpad/adapt/opencv.hpp"
+
+namespace replay {
+
+FrameDots dots_alone(const DotGrid& dots_px) {
+  FrameDots frame;
+  frame.dots_px = dots_px;
+  frame.dots_mm =
+      cv::Mat_<cv::Vec3d>(dots_px.size(), cv::Vec3d::all(std::numeric_limits<double>::quiet_NaN()));
+  frame.in_contact.create(dots_px.size());
+  for (int i = 0; i < dots_px.rows; ++i) {
+    for (int j = 0; j < dots_px.cols; ++j) {
+      frame.in_contact(i, j) = is_present(dots_px(i, j)) ? 1 : 0;
+    }
+  }
+  return frame;
+}
+
+MotionStep::MotionStep(const Sensor& sensor,
+                       const DotGrid& initial_px,
+                       const cv::Mat_<float>& free_depth_mm)
+    : camera_(sensor.camera),
+      dot_radius_px_(sensor.dots ? sensor.dots->diameter_mm / 2 / camera_.pitch_mm : 0.0),
+      growth_(free_depth_mm.rows, free_depth_mm.cols),
+      growth_workspace_(growth_.workspace()) {
+  if (!initial_px.empty()) {
+    motion_.emplace(in_space(initial_px, free_depth_mm));
+    state_.emplace(motion_->start());
+  }
+}
+
+cv::Mat_<cv::Vec3d> MotionStep::in_space(const DotGrid& dots_px,
+                                         const cv::Mat_<float>& depth_mm) const {
+  cv::Mat_<cv::Vec3d> dots_mm(dots_px.size());
+  fingerpad::spatial_dots(camera_, dots_px, depth_mm, dots_mm);
+  return dots_mm;
+}
+
+FrameDots MotionStep::operator()(const DotGrid& dots_px,
+                                 const cv::Mat_<float>& depth_mm,
+                                 const cv::Mat_<uchar>& contact) {
+  FrameDots frame;
+  if (motion_) {
+    frame.dots_px = dots_px;
+    frame.dots_mm = in_space(dots_px, depth_mm);
+    frame.in_contact.create(dots_px.size());
+    cv::Mat_<uchar> inner(contact.size());
+    growth_(contact, -dot_radius_px_, inner, growth_workspace_);
+    fingerpad::contact_at_dots(dots_px, inner, frame.in_contact);
+    frame.motion = (*motion_)(frame.dots_mm, frame.in_contact, *state_);
+  }
+  return frame;
+}
+
+}  // namespace replay

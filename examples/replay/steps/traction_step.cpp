@@ -1,0 +1,45 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+#include "replay/steps/traction_step.hpp"
+
+#include <memory>
+
+#include "fingerpad/adapt/opencv.hpp"
+#include "fingerpad/force/traction.hpp"
+
+namespace replay {
+namespace {
+
+struct Chain {
+  fingerpad::TractionField<> field;
+  fingerpad::TractionMaps<double> maps = field.maps();
+};
+
+}  // namespace
+
+TractionStep make_traction_step(const Recording& recording) {
+  if (!recording.stress_free_dots) {
+    return {};
+  }
+  // Shared, because a std::function is copied and maps should not be.
+  const auto chain =
+      std::make_shared<Chain>(Chain{fingerpad::TractionField<>(*recording.stress_free_dots)});
+  return [chain](const FrameDots& dots, double pressure_mpa) {
+    TractionFrame frame;
+    frame.result = chain->field(dots.dots_mm, dots.in_contact, pressure_mpa, chain->maps);
+    if (frame.result.accepted()) {
+      frame.pressure_mpa.create(dots.dots_px.size());
+      frame.shear_mpa.create(dots.dots_px.size());
+      for (int i = 0; i < dots.dots_px.rows; ++i) {
+        for (int j = 0; j < dots.dots_px.cols; ++j) {
+          const auto& shear = chain->maps.shear_mpa()(i, j);
+          frame.pressure_mpa(i, j) = chain->maps.pressure_mpa()(i, j);
+          frame.shear_mpa(i, j) = {shear.x, shear.y, shear.z};
+        }
+      }
+    }
+    return frame;
+  };
+}
+
+}  // namespace replay

@@ -1,0 +1,29 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+#pragma once
+// From the dots of a frame and their stress-free places to what the object exerts on each of them,
+// with the library's traction.hpp; the only place of the program that knows it.
+#include <functional>
+#include <opencv2/core.hpp>
+
+#include "fingerpad/force/traction_result.hpp"
+#include "replay/io/recording.hpp"
+#include "replay/steps/motion_step.hpp"
+
+namespace replay {
+
+/// Maps are grids of dots, NaN where nothing is known; empty where the recording has no stress-free
+/// dots.
+struct TractionFrame {
+  fingerpad::TractionResult<double> result;
+  cv::Mat_<double> pressure_mpa;  ///< of the contact
+  cv::Mat_<cv::Vec3d> shear_mpa;  ///< along the membrane
+  bool present() const { return !pressure_mpa.empty(); }
+};
+
+using TractionStep = std::function<TractionFrame(const FrameDots& dots, double pressure_mpa)>;
+
+/// Empty where the recording has no stress_free_dots.csv. Throws fingerpad::parameter_error.
+TractionStep make_traction_step(const Recording& recording);
+
+}  // namespace replay
