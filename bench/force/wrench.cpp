@@ -8,6 +8,7 @@
 // of a mesh: heights of its nodes. "heights in plan": all heights in a disc of 18 mm, with the blur
 // of a frame.
 #include "fingerpad/force/wrench.hpp"
+#include "fingerpad/published/wrench.hpp"
 
 #include <cmath>
 #include <cstdint>

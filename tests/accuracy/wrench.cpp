@@ -3,6 +3,7 @@
 // Force and moment of finite-element membranes against the truth: by their exact shape and side
 // dots, and by noisy frames. test_accuracy "[wrench]" -s prints all figures.
 #include "fingerpad/force/wrench.hpp"
+#include "fingerpad/published/wrench.hpp"
 
 #include <algorithm>
 #include <array>

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #include "fingerpad/force/wrench.hpp"
+#include "fingerpad/published/wrench.hpp"
 
 #include <array>
 #include <cmath>

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 // Inputs that no pad gives on a good day.
 #include "fingerpad/force/wrench.hpp"
+#include "fingerpad/published/wrench.hpp"
 
 #include <cmath>
 #include <functional>

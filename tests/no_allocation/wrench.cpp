@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #include "fingerpad/force/wrench.hpp"
+#include "fingerpad/published/wrench.hpp"
 
 #include "no_allocation/count.hpp"
 #include "fingerpad/force/pad_heights.hpp"

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 // What must hold for every pad, every load and every way.
 #include "fingerpad/force/wrench.hpp"
+#include "fingerpad/published/wrench.hpp"
 
 #include <algorithm>
 #include <cmath>

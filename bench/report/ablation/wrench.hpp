@@ -18,6 +18,7 @@
 #include "support/rolling.hpp"
 #include "support/wrench_frames.hpp"
 #include "fingerpad/force/wrench.hpp"
+#include "fingerpad/published/wrench.hpp"
 #include "membranes.hpp"
 
 namespace bench::ablation {

@@ -7,6 +7,7 @@
 
 #include "crew.hpp"
 #include "fingerpad/pipeline/fingertip.hpp"
+#include "fingerpad/published/wrench.hpp"
 #include "plane.hpp"
 
 namespace chain {

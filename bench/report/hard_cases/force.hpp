@@ -14,6 +14,7 @@
 #include "fingerpad/force/normal_force.hpp"
 #include "fingerpad/force/shear.hpp"
 #include "fingerpad/force/wrench.hpp"
+#include "fingerpad/published/wrench.hpp"
 #include "row.hpp"
 #include "support/pressed_pad.hpp"
 

@@ -31,7 +31,6 @@
 #include "fingerpad/force/height_map.hpp"
 #include "fingerpad/force/least_squares.hpp"
 #include "fingerpad/force/pad_heights.hpp"
-#include "fingerpad/force/published_iteration.hpp"
 #include "fingerpad/force/rim_balance.hpp"
 #include "fingerpad/force/rim_traction.hpp"
 #include "fingerpad/force/wrench_options.hpp"

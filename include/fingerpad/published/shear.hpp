@@ -1,0 +1,36 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+#pragma once
+// Tangential force and moment as printed: Ito, Kim, Obinata, "Acquisition of contact force and
+// slippage using a vision-based tactile sensor with a fluid-type touchpad", eqs. 4 and 5:
+// displacement and rotation normalised by area or depth, one straight line for each. The slopes
+// belong to a pad; the source prints none in numbers, so they are given.
+#include "fingerpad/force/shear.hpp"
+
+namespace fingerpad {
+inline namespace v0 {
+namespace published {
+
+template <scalar S = double>
+using Shear = fingerpad::Shear<RadialShear<1, S>>;
+
+/// The measure is the contact's area in mm^2.
+template <scalar S = double>
+Shear<S> shear_by_area(const S& force_n_per_mm, const S& moment_n_mm_per_rad) {
+  RadialShear<1, S> map;
+  map.force.coefficients[0] = force_n_per_mm;
+  map.moment.coefficients[0] = moment_n_mm_per_rad;
+  return Shear<S>(published_shear_by_area<S>(), map);
+}
+/// The measure is the contact's depth in mm.
+template <scalar S = double>
+Shear<S> shear_by_depth(const S& force_n_per_mm, const S& moment_n_mm_per_rad) {
+  RadialShear<1, S> map;
+  map.force.coefficients[0] = force_n_per_mm;
+  map.moment.coefficients[0] = moment_n_mm_per_rad;
+  return Shear<S>(published_shear_by_depth<S>(), map);
+}
+
+}  // namespace published
+}  // namespace v0
+}  // namespace fingerpad

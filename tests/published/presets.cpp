@@ -1,0 +1,195 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+// Each published method under its one name: that it is the method as printed, told by what only the
+// printed form does.
+#include <array>
+#include <cmath>
+#include <vector>
+
+#include "fingerpad/published/contact_region.hpp"
+#include "fingerpad/published/depth.hpp"
+#include "fingerpad/published/normal_force.hpp"
+#include "fingerpad/published/object_motion.hpp"
+#include "fingerpad/published/preslip.hpp"
+#include "fingerpad/published/shear.hpp"
+#include "fingerpad/published/stick_ratio.hpp"
+#include "fingerpad/published/wrench.hpp"
+#include "support/catch.hpp"
+#include "support/numbers.hpp"
+#include "support/pad.hpp"
+#include "support/slipping_dots.hpp"
+
+using namespace fingerpad;
+using test::Image;
+using test::Pad;
+
+TEST_CASE("published depth: the free pad is found, where one height for all rays is the light's",
+          "[published]") {
+  const Pad pad;
+  const Image<double> free = pad.free_depths();
+  const auto frame = pad.frame<double, SingleHeight>(free);
+  const auto reference =
+      published::depth_reference<double>(pad.camera, pad.fluid, frame.red, frame.green, free);
+  const auto estimate = published::depth_estimator(pad.camera, pad.fluid, reference, 3);
+  auto workspace = estimate.workspace<double>();
+  Image<double> depth(pad.rows, pad.cols);
+  const DepthResult result = estimate(frame.red, frame.green, depth, workspace);
+  CHECK(result.ok());
+  CHECK(result.valid_pixels() > 1500);
+  // 16 halvings of 18 mm and the mean over 3 px of a dome
+  CHECK(depth(24, 28) == Approx(free(24, 28)).margin(0.05));
+  CHECK(depth(24, 20) == Approx(free(24, 20)).margin(0.05));
+}
+
+TEST_CASE("published contact region: free membrane is none, a flat one is contact", "[published]") {
+  Camera<double> camera;
+  camera.pitch_mm = 0.25;
+  camera.center_x_px = camera.center_y_px = 49.5;
+  const auto region = published::contact_region(camera, 100, 100);
+  auto workspace = region.workspace();
+  Image<float> depth(100, 100);
+  Image<unsigned char> mask(100, 100);
+  const auto area_of = [&](double press_mm) {
+    for (Index i = 0; i < 100; ++i) {
+      for (Index j = 0; j < 100; ++j) {
+        const double x = 0.25 * (static_cast<double>(j) - 49.5);
+        const double y = 0.25 * (static_cast<double>(i) - 49.5);
+        const double z = std::sqrt(400 - x * x - y * y) - 7;
+        depth(i, j) = static_cast<float>((std::min)(z, 13 - press_mm));
+      }
+    }
+    return region(depth, mask, workspace).area_mm2;
+  };
+  CHECK(area_of(0) == 0);
+  CHECK(area_of(1.5) > 10);
+}
+
+TEST_CASE("published object motion: Euler angles of steps are added up", "[published]") {
+  // a patch of dots rotated about z and then about x: the sum is not the rotation
+  const auto motion = published::object_motion([] {
+    Image<Point3<double>> dots(7, 7);
+    for (Index i = 0; i < 7; ++i) {
+      for (Index j = 0; j < 7; ++j) {
+        dots(i, j) = {2.0 * static_cast<double>(j - 3), 2.0 * static_cast<double>(i - 3), 10};
+      }
+    }
+    return dots;
+  }());
+  auto state = motion.start();
+  const Image<unsigned char> all(7, 7, 1);
+  Image<Point3<double>> dots(7, 7);
+  const double angle = 0.2;
+  const auto frame = [&](double about_x, double about_z) {
+    const double cx = std::cos(about_x), sx = std::sin(about_x);
+    const double cz = std::cos(about_z), sz = std::sin(about_z);
+    for (Index i = 0; i < 7; ++i) {
+      for (Index j = 0; j < 7; ++j) {
+        const double x = 2.0 * static_cast<double>(j - 3), y = 2.0 * static_cast<double>(i - 3);
+        const double y1 = sz * x + cz * y;  // first about z, then about x
+        dots(i, j) = {cz * x - sz * y, cx * y1, 10 + sx * y1};
+      }
+    }
+    return motion(dots, all, state);
+  };
+  REQUIRE(frame(0, 0).ok());
+  REQUIRE(frame(0, angle).ok());
+  const auto last = frame(angle, angle);
+  REQUIRE(last.ok());
+  // the exact composition has -0.04 about y
+  CHECK(last.angles.x_rad == Approx(angle).epsilon(1e-6));
+  CHECK(last.angles.y_rad == Approx(0).margin(1e-6));
+  CHECK(last.angles.z_rad == Approx(angle).epsilon(1e-6));
+}
+
+TEST_CASE("published stick ratio: dots that move as one stick", "[published]") {
+  const auto ratio = published::stick_ratio<double>(9, 9);
+  auto state = ratio.start();
+  const test::ContactFlags all(9, 9, 1);
+  test::DotStates states(9, 9);
+  test::PointsPx dots(9, 9);
+  StickRatioResult<double> result;
+  for (int k = 0; k < 10; ++k) {
+    for (Index i = 0; i < 9; ++i) {
+      for (Index j = 0; j < 9; ++j) {
+        const bool slips = k > 5 && i == 0;  // a row stays behind
+        const double x = slips ? 5 * 0.8 : k * 0.8;
+        dots(i, j) = {100 + 20 * static_cast<double>(j) + x, 100 + 20 * static_cast<double>(i)};
+      }
+    }
+    result = ratio(dots, all, states, state);
+    if (k == 5) {
+      CHECK(result.ok());
+      CHECK(result.stick_ratio == 1);
+    }
+  }
+  CHECK(result.ok());
+  CHECK(result.stick_ratio < 1);
+  CHECK(result.stick_ratio > 0.7);
+}
+
+TEST_CASE("published normal force: the printed curves", "[published]") {
+  const auto by_area = published::normal_force_by_area();
+  const auto by_depth = published::normal_force_by_depth();
+  CHECK(by_area(100).force_n == Approx(0.6242 + 0.0191 * 100 + 0.00008 * 100 * 100));
+  CHECK(by_depth(3).force_n == Approx(0.3435 + 0.5563 * 3 + 0.776 * 9));
+  // eq. 21 far beyond where it is blended in
+  const double plain = by_area(300).force_n;
+  CHECK(by_area(300, {3, 0}).force_n == Approx(0.748 * plain - 0.637 * 3 + 1.7));
+}
+
+TEST_CASE("published shear: straight lines, normalised by the printed exponents", "[published]") {
+  const auto by_area = published::shear_by_area(2.0, 300.0);
+  CHECK(by_area(100, {0.5, 0}, 0.1).tangential_force_n.x == Approx(1.0));
+  CHECK(by_area(100, {0.5, 0}, 0.1).moment_n_mm == Approx(30));
+  CHECK(by_area(200, {0.5, 0}, 0.1).tangential_force_n.x == Approx(std::pow(2, 0.65)));
+  CHECK(by_area(200, {0.5, 0}, 0.1).moment_n_mm == Approx(30 * std::pow(2, 1.7)));
+  const auto by_depth = published::shear_by_depth(2.0, 300.0);
+  CHECK(by_depth(20, {0.5, 0}, 0.1).tangential_force_n.x == Approx(std::pow(2, 0.75)));
+  CHECK(by_depth(20, {0.5, 0}, 0.1).moment_n_mm == Approx(30 * std::pow(2, 2.2)));
+}
+
+TEST_CASE("published pre-slip rules: what makes a pair", "[published]") {
+  const auto sample = [](double x, Index location, Index waves) {
+    FingerSample<double> s;
+    s.status = TaxelStatus::vibrating;
+    s.center_x_mm = x;
+    s.center_y_mm = 0;
+    s.location = location;
+    s.waves = waves;
+    return s;
+  };
+  const auto alarm = [](const auto& rule, const auto& older, const auto& later) {
+    auto state = rule.start();
+    CHECK_FALSE(rule(std::array{older, older}, state).alarm);
+    return rule(std::array{later, later}, state).alarm;
+  };
+  const auto optimise = published::grasp_optimise();
+  CHECK(alarm(optimise, sample(1, 3, 4), sample(1, 5, 4)));        // another taxel, as many waves
+  CHECK_FALSE(alarm(optimise, sample(1, 3, 4), sample(1, 5, 5)));  // more waves
+  const auto lift = published::grasp_lift();
+  CHECK(alarm(lift, sample(1, 3, 4), sample(9, 5, 5)));        // force has moved, and more waves
+  CHECK_FALSE(alarm(lift, sample(1, 3, 4), sample(9, 5, 4)));  // as many
+  CHECK_FALSE(alarm(lift, sample(1, 3, 4), sample(1, 5, 5)));  // force stays
+}
+
+TEST_CASE("published wrench: its columns and rows, and what it refuses", "[published]") {
+  const auto options = published::wrench_options();
+  CHECK(options.columns == 72);
+  CHECK(options.rows == 65);
+  std::vector<Point3<double>> rim;
+  for (int k = 0; k < 36; ++k) {
+    const double angle = 3.14159265358979 * k / 18;
+    rim.push_back({18 * std::cos(angle), 18 * std::sin(angle), 0});
+  }
+  const StridedView<const Point3<double>> border(rim.data(), 1, 36, 36);
+  auto with_length = options;
+  with_length.base_radius_mm = 18;
+  with_length.side_dot_length_mm = 0.8;
+  const auto wrench = published::wrench(border, with_length);
+  auto workspace = wrench.workspace();
+  const HeightMap<double> nowhere(19.5, 0.5);
+  const StridedView<const Point3<double>> few(rim.data(), 1, 35, 35);
+  const auto refused = wrench(nowhere, few, 0.01, workspace);
+  CHECK(refused.status == WrenchStatus::refused);
+  CHECK_FALSE(refused.ok());
+}
