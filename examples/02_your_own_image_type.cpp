@@ -75,8 +75,8 @@ int main() {
                                            fingerpad::Anchored<fingerpad::BoxMean>{{7}});
   auto workspace = estimate.workspace<std::uint8_t>();
   std::vector<float> depth_mm(rows * cols);
-  estimate(PackedChannel{&frame, 16}, PackedChannel{&frame, 8},
-           fingerpad::StridedView<float>(depth_mm.data(), rows, cols, cols), workspace);
+  (void)estimate(PackedChannel{&frame, 16}, PackedChannel{&frame, 8},
+                 fingerpad::StridedView<float>(depth_mm.data(), rows, cols, cols), workspace);
 
   const double center = static_cast<double>(depth_mm[60 * cols + 80]);
   std::printf("a plate 9 mm above the base is seen at %.2f mm; a step of a colour is 0.5 mm\n",

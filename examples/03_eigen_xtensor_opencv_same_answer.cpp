@@ -60,10 +60,10 @@ int main() {
   xt::xtensor<float, 2> xtensor({rows, cols});
   cv::Mat1f opencv(rows, cols);
   const auto result = estimate(red, green, lazy, workspace);
-  estimate(eigen_red, eigen_green, eigen, workspace);
-  estimate(xt_red, xt_green, xtensor, workspace);
-  estimate(fingerpad::channel<std::uint8_t>(image, 2), fingerpad::channel<std::uint8_t>(image, 1),
-           opencv, workspace);
+  (void)estimate(eigen_red, eigen_green, eigen, workspace);
+  (void)estimate(xt_red, xt_green, xtensor, workspace);
+  (void)estimate(fingerpad::channel<std::uint8_t>(image, 2),
+                 fingerpad::channel<std::uint8_t>(image, 1), opencv, workspace);
 
   const auto same = [&](const float* other) {
     return std::memcmp(lazy.data(), other, sizeof(float) * std::size_t(rows * cols)) == 0;

@@ -11,8 +11,8 @@
 #include "fingerpad/adapt/opencv.hpp"
 #include "fingerpad/calibrate/contact.hpp"
 #include "fingerpad/contact/contact_region.hpp"
-#include "fingerpad/depth/depth.hpp"
 #include "fingerpad/contact/object_surface.hpp"
+#include "fingerpad/depth/depth.hpp"
 
 int main(int argc, char** argv) {
   const std::string recording = argc > 1 ? argv[1] : FINGERPAD_EXAMPLE_RECORDING;
@@ -45,7 +45,7 @@ int main(int argc, char** argv) {
   // Every frame.
   cv::Mat1f depth_mm(frame.size());
   cv::Mat1b mask(frame.size());
-  depth_of(red(frame), green(frame), depth_mm, depth_workspace);
+  (void)depth_of(red(frame), green(frame), depth_mm, depth_workspace);
   const fingerpad::ContactResult contact = contact_of(depth_mm, mask, workspace);
   const auto surface = surface_of(depth_mm, mask);
 

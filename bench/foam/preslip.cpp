@@ -315,7 +315,7 @@ void add_loosening(const std::string& name) {
         for (std::size_t n = 0; n < loosened().recordings.size(); ++n) {
           Loosening<Rule, S> run;
           for (std::size_t k = 0; k < loosened().recordings[n].size(); ++k) {
-            run.next(loosened().recordings[n]);
+            (void)run.next(loosened().recordings[n]);
           }
           const double warned_n = static_cast<double>(run.search.command().preslip_force_n);
           errors.push_back(warned_n / loosened().slip_force_n[n] - 1);

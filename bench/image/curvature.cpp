@@ -12,9 +12,9 @@
 #include <string>
 #include <vector>
 
-#include "fingerpad/image/curvature_map.hpp"
 #include "bench/support/run.hpp"
 #include "bench/support/scene.hpp"
+#include "fingerpad/image/curvature_map.hpp"
 
 using namespace fingerpad;
 using bench::Image;
@@ -63,7 +63,7 @@ struct Bench {
                                                                depth.rows(), depth.cols());
     auto workspace = map.workspace();
     Image<long double> out(depth.rows(), depth.cols());
-    map(depth, out, workspace);
+    (void)map(depth, out, workspace);
     return out;
   }
 
@@ -91,7 +91,7 @@ struct Bench {
     const auto workspace = std::make_shared<typename Map::Workspace>(map->workspace());
     const auto out = std::make_shared<Image<S>>(depth.rows(), depth.cols());
     add_map<Statistic>(name, projection, out, memory.bytes(),
-                       [=] { (*map)(*from, *out, *workspace); });
+                       [=] { (void)(*map)(*from, *out, *workspace); });
   }
 
   /// Eqs. 10 and 11, with nearest pixels and their true distances.

@@ -14,9 +14,9 @@
 #include <string>
 #include <vector>
 
+#include "bench/support/run.hpp"
 #include "support/pad.hpp"
 #include "support/rolling.hpp"
-#include "bench/support/run.hpp"
 
 using namespace fingerpad;
 
@@ -175,9 +175,8 @@ RollErrors roll_errors(const ObjectMotion<Way, S>& motion) {
                                  static_cast<double>(r.pose.translation_mm.y),
                                  static_cast<double>(r.pose.translation_mm.z)};
       errors.attitude_deg.push_back(degrees * angle_between(turn, roll.truth[k].rotation));
-      const auto off =
-          detail::difference(Pose<double>{turn, shift}(touched), roll.truth[k](touched));
-      errors.place_mm.push_back(std::sqrt(detail::length_sq(off)));
+      const auto off = (Pose<double>{turn, shift}(touched)) - roll.truth[k](touched);
+      errors.place_mm.push_back(std::sqrt(squared_norm(off)));
     }
   }
   return errors;
@@ -273,7 +272,7 @@ void add_spatial_dots(const std::string& name) {
           const Point3<double> off{static_cast<double>(p.x) - truth.x,
                                    static_cast<double>(p.y) - truth.y,
                                    static_cast<double>(p.z) - truth.z};
-          errors.push_back(std::sqrt(detail::length_sq(off)));
+          errors.push_back(std::sqrt(squared_norm(off)));
         }
         bench::note_errors(counters, "place", "mm", errors);
       });

@@ -3,7 +3,6 @@
 // Force and moment of finite-element membranes against the truth: by their exact shape and side
 // dots, and by noisy frames. test_accuracy "[wrench]" -s prints all figures.
 #include "fingerpad/force/wrench.hpp"
-#include "fingerpad/published/wrench.hpp"
 
 #include <algorithm>
 #include <array>
@@ -19,6 +18,7 @@
 #include "fingerpad/contact/contact_region.hpp"
 #include "fingerpad/depth/depth.hpp"
 #include "fingerpad/force/pad_heights.hpp"
+#include "fingerpad/published/wrench.hpp"
 #include "support/catch.hpp"
 #include "support/finite_elements.hpp"
 #include "support/rolling.hpp"
@@ -317,7 +317,7 @@ class Rendered {
         pad.camera, pad.rows, pad.cols, test_);
     auto workspace = region.workspace();
     Image<std::uint8_t> mask(pad.rows, pad.cols);
-    region(depth, mask, workspace);
+    (void)region(depth, mask, workspace);
     auto map = heights_.map();
     REQUIRE(heights_(depth, mask, map));
     return made_.emplace(key, map).first->second;

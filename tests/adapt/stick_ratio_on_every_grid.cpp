@@ -57,7 +57,7 @@ struct Case {
       dots(8, 9).y = static_cast<float>(test::nan);
       contact = truth.contact;
       if (k < 2) {
-        ratio(dots, contact, states, state);
+        (void)ratio(dots, contact, states, state);
       }
       truth.step({.shift_px = 2.5, .direction_rad = 1, .turn_rad = 0.01, .stick_share = 0.6});
     }

@@ -530,7 +530,7 @@ TEST_CASE("thresholds from noise: no sticking dot slips more often than was aske
     for (int t = 0; t < 300; ++t) {
       auto state = estimator.start();
       const auto then = noisy(pattern(21, 21), 0.06, random);
-      estimator(then, contact, states, state);
+      (void)estimator(then, contact, states, state);
       const auto now = noisy(moved(pattern(21, 21), 2.0, 1.0), 0.06, random);
       const auto result = estimator(now, contact, states, state);
       REQUIRE(result.updated());
@@ -927,8 +927,7 @@ TEST_CASE("choice of U: what it refuses", "[stick]") {
   CHECK(begins_with(choose(lost), owner + "largest displacement in px = 0"));
   const Recording still = record({.step_px = 0, .frames = 60});
   CHECK(begins_with(choose(still), owner + "frames with contact and motion = "));
-  CHECK(
-      begins_with(choose(still, {.min_steps = 2}), owner + "frames with contact and motion = 1"));
+  CHECK(begins_with(choose(still, {.min_steps = 2}), owner + "frames with contact and motion = 1"));
   // noise that was measured too small makes steps, but no displacement
   Recording shaken = record({.noise_px = 0.1, .step_px = 0, .frames = 60});
   CHECK(begins_with(choose(shaken, {.smallest_px = 1}), owner + "largest displacement in px = 0."));

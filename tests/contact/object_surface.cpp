@@ -38,7 +38,7 @@ struct Object {
   double g = 0;
 
   static Object plane(const Point& normal) {
-    const auto frame = detail::SurfaceFrame<double>::around(detail::unit(normal));
+    const auto frame = detail::SurfaceFrame<double>::around(normalized(normal));
     Object object;
     object.n = frame.n;
     object.a = frame.u;
@@ -68,7 +68,7 @@ struct Object {
   }
 
   double miss(const Point& p) const {
-    const Point q = detail::difference(p, foot);
+    const Point q = p - foot;
     const double along = dot(n, q);
     return along - 0.5 * (k1 * square(dot(a, q)) + k2 * square(dot(b, q))) - g * square(along);
   }
@@ -125,7 +125,7 @@ auto fit(const CameraType& camera,
 }
 
 double apart(const Point& p, const Point& q) {
-  const Point d = detail::difference(p, q);
+  const Point d = p - q;
   return std::sqrt(dot(d, d));
 }
 /// Between the lines along two unit vectors.
@@ -201,7 +201,7 @@ TEMPLATE_TEST_CASE("object surface: spheres that dent the pad and hollow ones",
       CHECK(r.rms_mm < 1e-12);
       CHECK(std::abs(object.miss(r.shape.point_mm)) < 1e-12);
       if (std::abs(radius) < 100) {
-        CHECK(apart(r.shape.center_mm(), detail::moved(object.foot, radius, object.n)) < 1e-10);
+        CHECK(apart(r.shape.center_mm(), object.foot + radius * object.n) < 1e-10);
       }
       const auto q = fit<QuadricModel>(camera, object.depths(camera), mask);
       REQUIRE(q.ok());
@@ -310,7 +310,7 @@ TEMPLATE_TEST_CASE("object surface: the residual map is written where the fit lo
   CHECK(without.rms_mm == Approx(r.rms_mm).margin(1e-7));
   CHECK(std::isnan(without.largest_mm));
   Image<double> both = depth;
-  surface(both, mask, both);
+  (void)surface(both, mask, both);
   CHECK(test::same_bits(both, residual));
   mask.cells.assign(mask.cells.size(), 0);
   CHECK_FALSE(surface(depth, mask, residual).ok());

@@ -219,8 +219,8 @@ TEST_CASE("threads may share an estimator and a frame", "[depth]") {
     threads.emplace_back([&, k] {
       auto workspace = estimator.workspace<std::uint8_t>();
       for (int again = 0; again < 5; ++again) {
-        estimator.band(k * pad.rows / count, (k + 1) * pad.rows / count, frame.red, frame.green,
-                       shared.depth_mm, shared.status, workspace);
+        (void)estimator.band(k * pad.rows / count, (k + 1) * pad.rows / count, frame.red,
+                             frame.green, shared.depth_mm, shared.status, workspace);
       }
     });
   }

@@ -476,7 +476,7 @@ TEMPLATE_TEST_CASE("searches: in any number",
   const LoosenUntilPreslip<S> loosen;
   auto loosening = loosen.start();
   for (int k = 0; k < 32 * 7; ++k) {
-    loosen(SlipSignal::steady, loosening);
+    (void)loosen(SlipSignal::steady, loosening);
   }
   CHECK(number(loosening.command().force_n) == 8.25);
   auto end = tell(loosen, loosening, std::string(16, '-') + "p");

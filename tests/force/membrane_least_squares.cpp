@@ -95,7 +95,7 @@ struct Membrane {
       const double angle = 2 * std::numbers::pi * (double(i) + 0.5) / double(columns);
       const auto slope = shape(S(rim_mm * std::cos(angle)), S(rim_mm * std::sin(angle)));
       const Point3<S> out{S(-slope.along_x), S(-slope.along_y), S(1)};
-      rim_normal.push_back(detail::unit(cross(out, segments.around(i, 0).along)));
+      rim_normal.push_back(normalized(cross(out, segments.around(i, 0).along)));
     }
     lean(0);
   }
@@ -106,9 +106,9 @@ struct Membrane {
     for (Index i = 0; i < segments.columns(); ++i) {
       const auto& border = segments.around(i, 0);
       const double angle = 2 * std::numbers::pi * (double(i - turn) + 0.5) / double(pull.size());
-      const S length = std::sqrt(detail::length_sq(border.along));
-      pull[std::size_t(i)] = detail::moved(detail::scaled(length, rim_normal[std::size_t(i)]),
-                                           S(shear * std::sin(angle)), border.along);
+      const S length = std::sqrt(squared_norm(border.along));
+      pull[std::size_t(i)] =
+          length * rim_normal[std::size_t(i)] + S(shear * std::sin(angle)) * border.along;
     }
   }
 
@@ -168,7 +168,7 @@ void fill_evenly(Membrane<S>& m, double tension_n_per_mm, double around_n_per_mm
   std::fill(t.around_shear.begin(), t.around_shear.end(), S(0));
   std::fill(t.upward_shear.begin(), t.upward_shear.end(), S(0));
   for (std::size_t i = 0; i < t.rim.size(); ++i) {
-    t.rim[i] = detail::scaled(S(tension_n_per_mm), m.pull[i]);
+    t.rim[i] = S(tension_n_per_mm) * m.pull[i];
   }
 }
 
@@ -288,7 +288,7 @@ TEMPLATE_TEST_CASE("least squares: float loses no more than 1e-3", "[membrane]",
   given.lean(0.1);
   REQUIRE(given.solve());
   const Point3<double> a = exact.rim_force(), b = given.rim_force();
-  CHECK(std::sqrt(detail::length_sq(detail::difference(a, b)) / detail::length_sq(a)) < 1e-4);
+  CHECK(std::sqrt(squared_norm(a - b) / squared_norm(a)) < 1e-4);
 }
 
 TEST_CASE("least squares: the true pull up to a factor changes nothing", "[membrane]") {
@@ -298,20 +298,18 @@ TEST_CASE("least squares: the true pull up to a factor changes nothing", "[membr
   const std::vector<Point3<double>> truth = leaning.tensions.rim;
   const auto difference_of = [&](double factor, double uneven) {
     for (std::size_t i = 0; i < truth.size(); ++i) {
-      leaning.pull[i] = detail::scaled(i % 12 < 6 ? factor : factor * (1 + uneven), truth[i]);
+      leaning.pull[i] = (i % 12 < 6 ? factor : factor * (1 + uneven)) * truth[i];
     }
     LeastSquares solver;
     solver.magnitude_weight = 10;
     REQUIRE(leaning.solve<true>(solver));
     double worst = 0;
     for (std::size_t i = 0; i < truth.size(); ++i) {
-      worst = std::max(
-          worst,
-          std::sqrt(detail::length_sq(detail::difference(leaning.tensions.rim[i], truth[i]))));
+      worst = std::max(worst, std::sqrt(squared_norm(leaning.tensions.rim[i] - truth[i])));
     }
     return worst;
   };
-  const double pull_n = std::sqrt(detail::length_sq(truth[0]));
+  const double pull_n = std::sqrt(squared_norm(truth[0]));
   CHECK(difference_of(1, 0) < 1e-4 * pull_n);
   CHECK(difference_of(7, 0) < 1e-4 * pull_n);
   CHECK(difference_of(1, 0.2) > 1e-2 * pull_n);
@@ -325,7 +323,7 @@ TEST_CASE("least squares: pulls that nobody knows, and shapes with no solution",
   press.pull[3] = detail::missing_point<double>();
   press.pull[20] = {0, 0, 0};
   REQUIRE(press.solve());
-  CHECK(std::sqrt(detail::length_sq(detail::difference(press.rim_force(), all))) < 0.02 * 2);
+  CHECK(std::sqrt(squared_norm(press.rim_force() - all)) < 0.02 * 2);
   REQUIRE(press.solve<true>());
   std::fill(press.pull.begin(), press.pull.end(), detail::missing_point<double>());
   CHECK(press.solve<true>());

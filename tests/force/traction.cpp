@@ -41,15 +41,15 @@ Dots flat(Index n, double pitch) {
 }
 Dots cap(Index n, double pitch, double radius, double stretch) {
   return sheet(n, pitch, [=](double x, double y) {
-    return detail::scaled(stretch, Vector{x, y, std::sqrt(radius * radius - x * x - y * y)});
+    return stretch * Vector{x, y, std::sqrt(radius * radius - x * x - y * y)};
   });
 }
 
 double size(const Vector& a) {
-  return std::sqrt(detail::length_sq(a));
+  return std::sqrt(squared_norm(a));
 }
 double distance(const Vector& a, const Vector& b) {
-  return size(detail::difference(a, b));
+  return size(a - b);
 }
 
 Flags touch(Index n, Index first, Index last) {
@@ -124,8 +124,8 @@ TEST_CASE("membrane triangle: forces are the slope of the energy", "[traction]")
     CHECK(force[k].x == Approx(-slope(0)).margin(1e-13));
     CHECK(force[k].y == Approx(-slope(1)).margin(1e-13));
     CHECK(force[k].z == Approx(-slope(2)).margin(1e-13));
-    sum = detail::sum(sum, force[k]);
-    moment = detail::sum(moment, cross(pulled_triangle[k], force[k]));
+    sum = sum + force[k];
+    moment = moment + cross(pulled_triangle[k], force[k]);
   }
   CHECK(size(sum) < 1e-14);
   CHECK(size(moment) < 1e-14);
@@ -150,15 +150,15 @@ TEST_CASE("dot cell: the pull is the mean over both diagonals", "[traction]") {
     const auto f = corner_forces(stress_free(ear(free, k)), corners);
     for (std::size_t c = 0; c < 3; ++c) {
       const std::size_t at = (k + 3 + c) % 4;
-      force[at] = detail::moved(force[at], 0.5, f[c]);
-      area[at] = detail::moved(area[at], 1.0 / 12, twice_area_vector(corners));
+      force[at] = force[at] + 0.5 * f[c];
+      area[at] = area[at] + 1.0 / 12 * twice_area_vector(corners);
     }
   }
   Vector sum{0, 0, 0};
   for (std::size_t k = 0; k < 4; ++k) {
     CHECK(distance(pull.force[k], force[k]) < 1e-14);
     CHECK(distance(pull.area[k], area[k]) < 1e-14);
-    sum = detail::sum(sum, pull.area[k]);
+    sum = sum + pull.area[k];
   }
   CHECK(distance(sum, pull.whole_area) < 1e-14);
 }
@@ -270,7 +270,7 @@ TEST_CASE("traction: moment about the origin", "[traction]") {
   auto maps = field.maps();
   auto dots = flat(n, 1);
   for (auto& p : dots.cells) {
-    p = detail::sum(p, Vector{3, 5, 10});
+    p = p + Vector{3, 5, 10};
   }
   const double p = 0.02;
   const auto r = field(dots, touch(n, 4, 4), p, maps);
@@ -556,11 +556,10 @@ TEST_CASE("traction: least squares would err where the balance does not", "[trac
       for (Index j = 1; j + 1 < n; ++j) {
         // the pull for mu t = 1 N/mm: what is left of the load without the pressure
         const Vector& area = maps.area_mm2()(i, j);
-        const Vector pull = detail::scaled(
-            -1 / b.mu_t, detail::sum(detail::scaled(size(area), maps.load_mpa()(i, j)),
-                                     detail::scaled(b.pressure(), area)));
+        const Vector pull =
+            -1 / b.mu_t * (size(area) * maps.load_mpa()(i, j) + b.pressure() * area);
         along -= b.pressure() * dot(pull, area);
-        square_sum += detail::length_sq(pull);
+        square_sum += squared_norm(pull);
       }
     }
   }

@@ -172,9 +172,9 @@ TEST_CASE("object surface: the sphere is the one of least square distance", "[su
       for (const double step : {1e-3, 1e-2, 1e-1}) {
         Sphere<double> bent = r.shape, moved = r.shape, turned = r.shape, other = r.shape;
         bent.curvature_per_mm += sign * step * r.shape.curvature_sd_per_mm;
-        moved.point_mm = detail::moved(moved.point_mm, sign * step * 0.0015, f.n);
-        turned.normal = detail::unit(detail::moved(f.n, sign * step * 0.0008, f.u));
-        other.normal = detail::unit(detail::moved(f.n, sign * step * 0.0008, f.v));
+        moved.point_mm = moved.point_mm + sign * step * 0.0015 * f.n;
+        turned.normal = normalized(f.n + sign * step * 0.0008 * f.u);
+        other.normal = normalized(f.n + sign * step * 0.0008 * f.v);
         CHECK(sum_sq(bent) > least);
         CHECK(sum_sq(moved) > least);
         CHECK(sum_sq(turned) > least);

@@ -98,9 +98,8 @@ TEST_CASE("the rigid fit is the best there is", "[rotation]") {
                  to = detail::motion::center(after, all);
       Digits50 sum(0);
       for (std::size_t k = 0; k < 9; ++k) {
-        const auto there = turn(detail::difference(before.dot[k], from));
-        sum += detail::length_sq(
-            detail::difference(detail::difference(after.dot[k], to), there));
+        const auto there = turn(before.dot[k] - from);
+        sum += squared_norm(after.dot[k] - to - there);
       }
       return sum;
     };

@@ -188,7 +188,7 @@ TEMPLATE_TEST_CASE("derivatives of the object's motion are those of differences"
       };
     };
     const S none(0);
-    ratio(LazyView(9, 9, dots(before, none)), contact, states, state);
+    (void)ratio(LazyView(9, 9, dots(before, none)), contact, states, state);
     const auto r = ratio(LazyView(9, 9, dots(after, x)), contact, states, state);
     REQUIRE(r.updated());
     return scale ? r.scale : r.angle_rad;
@@ -247,7 +247,7 @@ TEST_CASE("a plain press has its scale", "[stick_ratio]") {
       21, 21, {.reference_px = 0.1, .store_px = 0, .slip_px = 0.05}, {.zoom = {.fading_px = 1e3}});
   auto state = wide.start();
   DotStates states(21, 21);
-  wide(before, truth.contact, states, state);
+  (void)wide(before, truth.contact, states, state);
   CHECK(wide(truth.dots, truth.contact, states, state).scale == Approx(1 / 1.05).margin(1e-6));
   // A scale that no membrane has is none.
   SlippingDots far;

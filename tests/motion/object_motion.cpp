@@ -127,12 +127,11 @@ TEST_CASE("object motion: summed angles err as the table says, composed rotation
     std::function<Vector(int)> turn;
   };
   const auto about = [](Vector axis, double angle_deg) {
-    const double s = angle_deg * degree / 300 / std::sqrt(detail::length_sq(axis));
-    return [=](int) { return detail::scaled(s, axis); };
+    const double s = angle_deg * degree / 300 / std::sqrt(squared_norm(axis));
+    return [=](int) { return s * axis; };
   };
   const auto then = [](Vector first, Vector second, double angle_deg) {
-    return
-        [=](int k) { return detail::scaled(angle_deg * degree / 150, k < 150 ? first : second); };
+    return [=](int k) { return angle_deg * degree / 150 * (k < 150 ? first : second); };
   };
   const auto circle = [](double radius_deg) {
     return [=](int k) {
@@ -204,9 +203,9 @@ TEST_CASE("object motion: a rolled ball, without noise") {
     CHECK(changes >= 8);
     CHECK(result.residual_rms_mm < 1e-12);
     const Vector center{-6, 1, ball.depth_mm + ball.radius_mm};
-    const Vector moved = detail::difference(result.pose(center), center);
+    const Vector moved = result.pose(center) - center;
     return std::pair{error_deg(result.pose.rotation, r.pose.rotation),
-                     std::sqrt(detail::length_sq(detail::difference(moved, {12, 6, 0})))};
+                     norm(moved - Vector{12, 6, 0})};
   };
   const auto [map_deg, map_mm] = run(ContactMap());
   CHECK(map_deg < 1e-10);
@@ -285,7 +284,7 @@ TEST_CASE("object motion: dots that slip do not drag the pose") {
   const auto run = [&](ContactMap way) {
     const ObjectMotion<ContactMap> motion(ball.initial(), {}, way);
     auto state = motion.start();
-    motion(roll.dots, roll.contact, state);
+    (void)motion(roll.dots, roll.contact, state);
     Dots slipped = roll.dots;
     for (Index i = 7; i < 9; ++i) {
       for (Index j = 0; j < 21; ++j) {
@@ -425,7 +424,7 @@ TEMPLATE_TEST_CASE("object motion: statuses",
         first(i, 0) = first(i, 1) = first(i, 2) = 1;
       }
       auto other = motion.start();
-      motion(free, first, other);
+      (void)motion(free, first, other);
       CHECK(motion(moved, elsewhere, other).status == MotionStatus::lost);
       CHECK(motion(moved, first, other).ok());
     } else {
@@ -449,8 +448,8 @@ TEMPLATE_TEST_CASE("object motion: statuses",
   }
   SECTION("a copy of the state goes its own way") {
     auto copy = state;
-    motion(blank, none, copy);
-    motion(turned(free, pose * pose), all, copy);
+    (void)motion(blank, none, copy);
+    (void)motion(turned(free, pose * pose), all, copy);
     CHECK(error_deg(motion(moved, all, state).pose.rotation, pose.rotation) < 1e-10);
   }
 }
@@ -510,7 +509,7 @@ TEST_CASE("object motion: what remains of an affine grid has its directions") {
     }
     const auto basis = published_basis(grid_directions(n, all));
     const auto parallel = [](const Vector& a, const Vector& b) {
-      return Approx(1).margin(1e-14) == dot(a, detail::unit(b));
+      return Approx(1).margin(1e-14) == dot(a, normalized(b));
     };
     CHECK((parallel(basis.n1, q1) && parallel(basis.n2, q2)));
     ++determined;
@@ -537,7 +536,7 @@ TEST_CASE("object motion: the same on every grid of dots and of flags") {
   const LazyView lazy_flags(7, 7, [](Index i, Index j) { return i + j != 5; });
   const ObjectMotion<> motion(free);
   auto state = motion.start();
-  motion(free, lazy_flags, state);
+  (void)motion(free, lazy_flags, state);
   auto second = state, third = state;
   const auto a = motion(moved, lazy_flags, state);
   const auto b = motion(eigen, flags, second);
@@ -554,7 +553,7 @@ TEST_CASE("object motion: other sizes are refused and the state stays as it is")
   const Dots free = small_grid();
   const ObjectMotion<> motion(free);
   auto state = motion.start();
-  motion(free, Flags(7, 7, 1), state);
+  (void)motion(free, Flags(7, 7, 1), state);
   CHECK(!motion(Dots(7, 8), Flags(7, 8, 1), state).accepted());
   CHECK(!motion(free, Flags(8, 7, 1), state).accepted());
   CHECK(!motion(Dots(0, 0), Flags(0, 0, 1), state).accepted());

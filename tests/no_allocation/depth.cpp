@@ -4,8 +4,8 @@
 
 #include <opencv2/core.hpp>
 
-#include "no_allocation/count.hpp"
 #include "fingerpad/adapt/opencv.hpp"
+#include "no_allocation/count.hpp"
 #include "support/catch.hpp"
 #include "support/pad.hpp"
 
@@ -20,9 +20,9 @@ long taken(const Estimator& estimator, const Red& red, const Green& green, Works
   test::Estimate<S> e(rows(red), cols(red));
   const long before = test::allocations();
   for (int again = 0; again < 3; ++again) {
-    estimator(red, green, e.depth_mm, e.status, workspace);
-    estimator(red, green, e.depth_mm, workspace);
-    estimator.band(5, 9, red, green, e.depth_mm, e.status, workspace);
+    (void)estimator(red, green, e.depth_mm, e.status, workspace);
+    (void)estimator(red, green, e.depth_mm, workspace);
+    (void)estimator.band(5, 9, red, green, e.depth_mm, e.status, workspace);
   }
   return test::allocations() - before;
 }

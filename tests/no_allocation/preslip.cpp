@@ -77,8 +77,8 @@ TEST_CASE("searches for the holding force: nothing is allocated", "[holding_forc
   auto lifting = lift.start();
   for (int k = 0; k < 300; ++k) {
     const auto signal = k % 40 == 39 ? SlipSignal::preslip : SlipSignal::steady;
-    loosen(k > 200 ? signal : SlipSignal::steady, loosening);
-    lift(signal, lifting);
+    (void)loosen(k > 200 ? signal : SlipSignal::steady, loosening);
+    (void)lift(signal, lifting);
   }
   CHECK(test::allocations() == before);
   CHECK(loosening.command().phase == SearchPhase::found);

@@ -64,7 +64,7 @@ State any_state(const GripControl<>& control) {
   State state = control.start(test::uniform(-1, 40));
   const auto calls = test::whole(0, 8);
   for (int k = 0; k < calls; ++k) {
-    control(any_ratio(), any_news(), any_step(), state);
+    (void)control(any_ratio(), any_news(), any_step(), state);
   }
   if (test::whole(0, 3) == 0) {
     state.follow(test::uniform(-10, 100));
@@ -79,7 +79,8 @@ TEST_CASE("grip force whatever is given", "[grip_control][law]") {
     const GripLaw<double> law = any_law();
     const GripControl control(law);
     State state = any_state(control);
-    control(none, 0.001, state);  // a force that was followed is within the limits from here on
+    (void)control(none, 0.001,
+                  state);  // a force that was followed is within the limits from here on
     for (int k = 0; k < 30; ++k) {
       const double before = state.force_n();
       const double step_s = any_step();
@@ -113,7 +114,7 @@ TEST_CASE("grip force whatever is given", "[grip_control][law]") {
       RC_ASSERT(result.force_n >= before);
       RC_ASSERT(result.force_n <= (std::max)(before, law.safe_force_n));
       if (test::whole(0, 4) == 0) {
-        control(test::uniform(0, 1), 0.01, state);
+        (void)control(test::uniform(0, 1), 0.01, state);
       }
     }
   });
@@ -144,7 +145,7 @@ TEST_CASE("grip force and stick ratio", "[grip_control][law]") {
     const GripLaw<double> law = any_law();
     const GripControl control(law);
     State state = any_state(control);
-    control(law.set_point, 0.001, state);
+    (void)control(law.set_point, 0.001, state);
     const double before = state.force_n();
     const auto result = control(test::uniform(0, 0.99) * law.set_point, 0.02, state);
     RC_ASSERT(result.why == GripReason::slipping);
@@ -155,7 +156,7 @@ TEST_CASE("grip force and stick ratio", "[grip_control][law]") {
     const GripLaw<double> law = any_law();
     const GripControl control(law);
     State state = any_state(control);
-    control(law.set_point, 0.001, state);
+    (void)control(law.set_point, 0.001, state);
     const double before = state.force_n();
     const double ratio = law.set_point + test::uniform(0, 1) * (law.lower_above - law.set_point);
     RC_ASSERT(control(ratio, 0.02, state).force_n == before);
@@ -172,7 +173,7 @@ TEST_CASE("grip force and stick ratio", "[grip_control][law]") {
     double ratio = 0;
     for (int k = 0; k < 30 * 600; ++k) {
       ratio = (std::max)(0.0, 1 - load_n / (mu * state.force_n()));
-      control(ratio, 1.0 / 30, state);
+      (void)control(ratio, 1.0 / 30, state);
     }
     const double needed_n = load_n / mu / (1 - law.set_point);
     RC_ASSERT(ratio > law.set_point - 1e-2 || needed_n > law.max_force_n);

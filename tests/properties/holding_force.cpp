@@ -61,7 +61,7 @@ template <class Search>
 auto after(const Search& search, const News& signal) {
   auto state = search.start();
   for (const SlipSignal one : signal) {
-    search(one, state);
+    (void)search(one, state);
   }
   return state.command();
 }
@@ -99,8 +99,8 @@ auto end_of(const Search& search, double begins_below_n, double slips_below_n) {
   for (int k = 0; k < 100000 && !is_end(state.command().phase); ++k) {
     const bool is_missing = k % seldom == 0;
     const double force_n = state.command().force_n;
-    search(is_missing ? SlipSignal::missing : object(force_n, begins_below_n, slips_below_n),
-           state);
+    (void)search(is_missing ? SlipSignal::missing : object(force_n, begins_below_n, slips_below_n),
+                 state);
   }
   RC_ASSERT(is_end(state.command().phase));
   return state.command();
@@ -111,7 +111,7 @@ void check_copies(const Search& search, const News& signal) {
   auto state = search.start();
   const auto at = static_cast<std::size_t>(test::whole(0, static_cast<Index>(signal.size()) - 1));
   for (std::size_t k = 0; k < at; ++k) {
-    search(signal[k], state);
+    (void)search(signal[k], state);
   }
   auto copy = state;
   News rest(signal.begin() + static_cast<std::ptrdiff_t>(at), signal.end());
@@ -171,7 +171,7 @@ TEST_CASE("loosening whatever is told", "[holding_force][law]") {
     Index told = 0;
     while (told < bound) {
       for (const SlipSignal one : any_news(50)) {
-        search(one, state);
+        (void)search(one, state);
         told += one != SlipSignal::missing ? 1 : 0;
       }
     }
@@ -291,7 +291,7 @@ TEST_CASE("lifting whatever is told", "[holding_force][law]") {
     Index told = 0;
     while (told < bound) {
       for (const SlipSignal one : any_news(50)) {
-        search(one, state);
+        (void)search(one, state);
         told += one != SlipSignal::missing ? 1 : 0;
       }
     }

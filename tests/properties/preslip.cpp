@@ -476,7 +476,7 @@ TEST_CASE("pre-slip: a copied state gives the same answers", "[preslip][law]") {
       const Preslip<decltype(rule), 2, decltype(search)> preslip(options);
       auto state = preslip.start();
       for (std::size_t k = 0; k < at; ++k) {
-        preslip(history[k], state);
+        (void)preslip(history[k], state);
       }
       auto copy = state;
       Results first;

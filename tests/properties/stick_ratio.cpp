@@ -237,7 +237,7 @@ TEMPLATE_TEST_CASE("a dot that begins to slip never raises the ratio",
     for (Index slipping = 0; outer.size() > 40; ++slipping) {
       auto state = ratio.start();
       DotStates states(13, 13);
-      ratio(before, truth.contact, states, state);
+      (void)ratio(before, truth.contact, states, state);
       const auto r = ratio(dots, truth.contact, states, state);
       RC_ASSERT(r.updated());
       RC_ASSERT(r.slip == slipping);
@@ -315,7 +315,7 @@ TEST_CASE("dots lost at random change the ratio by the sampling error", "[stick_
       const auto said = [&] {
         auto state = ratio.start();
         DotStates states(21, 21);
-        ratio(before, truth.contact, states, state);
+        (void)ratio(before, truth.contact, states, state);
         return ratio(after, truth.contact, states, state);
       };
       const auto all = said();

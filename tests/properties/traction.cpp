@@ -19,10 +19,10 @@ using Vector = Point3<double>;
 namespace {
 
 double size(const Vector& a) {
-  return std::sqrt(detail::length_sq(a));
+  return std::sqrt(squared_norm(a));
 }
 double distance(const Vector& a, const Vector& b) {
-  return size(detail::difference(a, b));
+  return size(a - b);
 }
 Vector any_vector(double largest) {
   return {test::uniform(-largest, largest), test::uniform(-largest, largest),
@@ -46,10 +46,9 @@ struct Pad {
       for (Index j = 0; j < cols; ++j) {
         const double x = 1.5 * static_cast<double>(j - cols / 2);
         const double y = 1.5 * static_cast<double>(i - rows / 2);
-        pad.free(i, j) = detail::sum(Vector{x, y, 12 - (x * x + y * y) / 40}, any_vector(0.1));
+        pad.free(i, j) = Vector{x, y, 12 - (x * x + y * y) / 40} + any_vector(0.1);
         const Vector& f = pad.free(i, j);
-        pad.dots(i, j) =
-            detail::sum(Vector{stretch_x * f.x, stretch_y * f.y, 1.1 * f.z}, any_vector(0.1));
+        pad.dots(i, j) = Vector{stretch_x * f.x, stretch_y * f.y, 1.1 * f.z} + any_vector(0.1);
         pad.contact(i, j) = std::hypot(x - 1, y + 1) < 3 ? 1 : 0;
       }
     }
@@ -120,15 +119,15 @@ void assert_valid(const Pad& pad, const Field& field) {
   const bool has_force = r.has_force();
   RC_ASSERT(has_force == is_finite(r.mu_t_n_per_mm));
   RC_ASSERT(!has_force || r.dots_loaded > 0);
-  RC_ASSERT(detail::is_finite_point(r.force_n) == has_force);
-  RC_ASSERT(detail::is_finite_point(r.moment_n_mm) == has_force);
+  RC_ASSERT(is_finite(r.force_n) == has_force);
+  RC_ASSERT(is_finite(r.moment_n_mm) == has_force);
   RC_ASSERT(is_finite(r.free_load_rms_mpa) == (has_force && r.balance.dots > 0));
   Index loaded = 0, slack = 0;
   for (Index i = 0; i < pad.dots.rows(); ++i) {
     for (Index j = 0; j < pad.dots.cols(); ++j) {
       const bool known = is_finite(maps.pressure_mpa()(i, j));
-      RC_ASSERT(detail::is_finite_point(maps.load_mpa()(i, j)) == known);
-      RC_ASSERT(detail::is_finite_point(maps.shear_mpa()(i, j)) == known);
+      RC_ASSERT(is_finite(maps.load_mpa()(i, j)) == known);
+      RC_ASSERT(is_finite(maps.shear_mpa()(i, j)) == known);
       loaded += known ? 1 : 0;
     }
   }
@@ -138,7 +137,7 @@ void assert_valid(const Pad& pad, const Field& field) {
       const auto& t = maps.tension_n_per_mm()(i, j);
       const bool known = is_finite(t.larger);
       RC_ASSERT(is_finite(t.smaller) == known);
-      RC_ASSERT(detail::is_finite_point(t.direction) == known);
+      RC_ASSERT(is_finite(t.direction) == known);
       const auto larger = static_cast<double>(t.larger), smaller = static_cast<double>(t.smaller);
       RC_ASSERT(!known || larger >= smaller - 1e-5 * std::abs(smaller));
       slack += known && t.smaller < 0 ? 1 : 0;
@@ -157,16 +156,16 @@ TEST_CASE("traction turns and shifts with the dots", "[traction][law]") {
     const Rotation<double> turn = test::turned_by(any_vector(1.5));
     const Vector shift = any_vector(20);
     Pad moved = pad;
-    moved.dots = mapped(pad.dots, [&](const Vector& x) { return detail::sum(turn(x), shift); });
+    moved.dots = mapped(pad.dots, [&](const Vector& x) { return turn(x) + shift; });
     // the stress-free shape may lie anywhere: only its side toward +z counts
     const Rotation<double> other = test::turned_by(any_vector(0.5));
-    moved.free = mapped(pad.free, [&](const Vector& x) { return detail::sum(other(x), shift); });
+    moved.free = mapped(pad.free, [&](const Vector& x) { return other(x) + shift; });
     const Seen after = look(moved);
     const double small = 1e-11 * typical_load(pad);
     assert_same(
         before, after, small, [&](const Vector& q) { return turn(q); }, same_place);
     const Vector force = turn(before.result.force_n);
-    const Vector moment = detail::sum(turn(before.result.moment_n_mm), cross(shift, force));
+    const Vector moment = turn(before.result.moment_n_mm) + cross(shift, force);
     RC_ASSERT(distance(after.result.force_n, force) <= 1000 * small);
     RC_ASSERT(distance(after.result.moment_n_mm, moment) <= 1e5 * small);
   });
@@ -235,11 +234,11 @@ TEST_CASE("traction is linear in pressure and mu t together", "[traction][law]")
     for (Index i = 0; i < pad.dots.rows(); ++i) {
       for (Index j = 0; j < pad.dots.cols(); ++j) {
         const Vector& q = sum.maps.load_mpa()(i, j);
-        RC_ASSERT(!is_finite(q.x) || distance(q, detail::sum(one.maps.load_mpa()(i, j),
-                                                             two.maps.load_mpa()(i, j))) <= small);
+        RC_ASSERT(!is_finite(q.x) ||
+                  distance(q, one.maps.load_mpa()(i, j) + two.maps.load_mpa()(i, j)) <= small);
       }
     }
-    RC_ASSERT(distance(sum.result.force_n, detail::sum(one.result.force_n, two.result.force_n)) <=
+    RC_ASSERT(distance(sum.result.force_n, one.result.force_n + two.result.force_n) <=
               1000 * small);
   });
 }
@@ -250,7 +249,7 @@ TEST_CASE("traction in other units of length", "[traction][law]") {
     const Seen before = look(pad);
     RC_PRE(before.result.has_force());
     const double f = test::log_uniform(0.01, 100);
-    const auto larger = [&](const Vector& x) { return detail::scaled(f, x); };
+    const auto larger = [&](const Vector& x) { return f * x; };
     Pad other = pad;
     other.free = mapped(pad.free, larger);
     other.dots = mapped(pad.dots, larger);
@@ -259,11 +258,10 @@ TEST_CASE("traction in other units of length", "[traction][law]") {
     const double small = 1e-11 * typical_load(pad);
     assert_same(
         before, after, small, [](const Vector& q) { return q; }, same_place);
-    RC_ASSERT(distance(after.result.force_n, detail::scaled(f * f, before.result.force_n)) <=
+    RC_ASSERT(distance(after.result.force_n, f * f * before.result.force_n) <=
               1000 * f * f * small);
-    RC_ASSERT(
-        distance(after.result.moment_n_mm, detail::scaled(f * f * f, before.result.moment_n_mm)) <=
-        1e5 * f * f * f * small);
+    RC_ASSERT(distance(after.result.moment_n_mm, f * f * f * before.result.moment_n_mm) <=
+              1e5 * f * f * f * small);
   });
 }
 
@@ -280,8 +278,8 @@ TEST_CASE("the balanced mu t goes with the pressure", "[traction][law]") {
     const double mu_t = before.result.mu_t_n_per_mm;
     RC_ASSERT(std::abs(after.result.mu_t_n_per_mm - f * mu_t) <= 1e-12 * f * mu_t);
     assert_same(
-        before, after, 1e-10 * f * (pad.pressure + mu_t),
-        [&](const Vector& q) { return detail::scaled(f, q); }, same_place, f);
+        before, after, 1e-10 * f * (pad.pressure + mu_t), [&](const Vector& q) { return f * q; },
+        same_place, f);
     // given that mu t, the same comes out
     const Seen given = look(pad, GivenModulus{mu_t});
     RC_ASSERT(distance(given.result.force_n, before.result.force_n) <=
@@ -300,7 +298,7 @@ TEST_CASE("the sum of the loads is what crosses the border", "[traction][law]") 
     for (Index i = 1; i + 1 < pad.dots.rows(); ++i) {
       for (Index j = 1; j + 1 < pad.dots.cols(); ++j) {
         if (pad.contact(i, j) != 0) {  // with the ring, all its neighbours are summed
-          other.dots(i, j) = detail::sum(other.dots(i, j), any_vector(0.2));
+          other.dots(i, j) = other.dots(i, j) + any_vector(0.2);
           ++moved;
         }
       }
@@ -346,8 +344,8 @@ TEST_CASE("the sum of the loads over all dots, from the border alone", "[tractio
           for (std::size_t c = 0; c < 3; ++c) {
             const std::size_t at = (k + 3 + c) % 4;
             if (row[at] == 0 || col[at] == 0 || row[at] + 1 == rows || col[at] + 1 == cols) {
-              pull = detail::moved(pull, 0.5, of[c]);
-              area = detail::moved(area, -1.0 / 12, doubled);
+              pull = pull + 0.5 * of[c];
+              area = area + -1.0 / 12 * doubled;
             }
           }
         }
@@ -355,7 +353,7 @@ TEST_CASE("the sum of the loads over all dots, from the border alone", "[tractio
     }
     // the area vector of any surface is half the integral of x times dx along its border
     const auto along = [&](Index r0, Index c0, Index r1, Index c1) {
-      area = detail::moved(area, 0.5, cross(pad.dots(r0, c0), pad.dots(r1, c1)));
+      area = area + 0.5 * cross(pad.dots(r0, c0), pad.dots(r1, c1));
     };
     for (Index j = 0; j + 1 < cols; ++j) {
       along(0, j, 0, j + 1);
@@ -365,7 +363,7 @@ TEST_CASE("the sum of the loads over all dots, from the border alone", "[tractio
       along(i, cols - 1, i + 1, cols - 1);
       along(i + 1, 0, i, 0);
     }
-    const Vector expected = detail::moved(detail::scaled(pad.mu_t, pull), -pad.pressure, area);
+    const Vector expected = pad.mu_t * pull + -pad.pressure * area;
     RC_ASSERT(distance(seen.result.force_n, expected) <= 1e-10 * typical_load(pad));
   });
 }

@@ -98,10 +98,10 @@ TEST_CASE("grip control: the same time in finer steps gives the same force", "[g
   const GripControl control(plain);
   auto coarse = control.start(3), fine = control.start(3);
   for (int k = 0; k < 10; ++k) {
-    control(0.4, 0.08, coarse);
+    (void)control(0.4, 0.08, coarse);
   }
   for (int k = 0; k < 800; ++k) {
-    control(0.4, 0.001, fine);
+    (void)control(0.4, 0.001, fine);
   }
   CHECK(coarse.force_n() == Approx(5.4));
   CHECK(fine.force_n() == Approx(5.4));
@@ -130,7 +130,7 @@ TEST_CASE("grip control: a gripper that lags does not wind it up either", "[grip
   auto state = control.start(3);
   for (int k = 0; k < 100; ++k) {
     state.follow(3.5);  // it is stuck
-    control(0.2, 0.01, state);
+    (void)control(0.2, 0.01, state);
   }
   CHECK(state.force_n() == Approx(3.55));
   state.follow(none);
@@ -153,19 +153,19 @@ TEST_CASE("grip control: dots that stand still", "[grip_control]") {
   }
   SECTION("a ratio below the set point is acted on for a while") {
     auto state = control.start(3);
-    control(0.6, 0.01, state);
+    (void)control(0.6, 0.01, state);
     const auto result = after(control, state, 0.05, 0.6, RatioUpdate::unmoved);
     CHECK(result.why == GripReason::slipping);
     CHECK(result.force_n == Approx(3 + 1.0 * 0.06));
     const auto later = after(control, state, 100, 0.6, RatioUpdate::unmoved);
     CHECK(later.why == GripReason::unmoved);
     CHECK(later.force_n == Approx(3 + 1.0 * 0.11).margin(0.011));
-    control(0.6, 0.01, state);  // another one lasts as long again
+    (void)control(0.6, 0.01, state);  // another one lasts as long again
     CHECK(control(0.6, RatioUpdate::unmoved, 0.01, state).why == GripReason::slipping);
   }
   SECTION("an object that may slide over them is gripped harder, up to the safe force") {
     auto state = control.start(3);
-    control(0.4, 0.01, state);
+    (void)control(0.4, 0.01, state);
     const auto result = after(control, state, 1, 0.4, RatioUpdate::unmoved);
     CHECK(result.status == GripStatus::raising);
     CHECK(result.why == GripReason::may_slide);
@@ -193,7 +193,7 @@ TEST_CASE("grip control: no ratio", "[grip_control]") {
   };
   SECTION("is waited for, then the force goes up to the safe one and stays") {
     auto state = control.start(3);
-    control(0.9, 0.01, state);
+    (void)control(0.9, 0.01, state);
     auto result = blind(state, 0.19);
     CHECK(result.status == GripStatus::holding);
     CHECK(result.why == GripReason::waiting);
@@ -211,7 +211,7 @@ TEST_CASE("grip control: no ratio", "[grip_control]") {
   }
   SECTION("is not waited for when the object was slipping") {
     auto state = control.start(3);
-    control(0.6, 0.01, state);
+    (void)control(0.6, 0.01, state);
     CHECK(blind(state, 0.01).why == GripReason::blind);
     CHECK(state.force_n() > 3.01);
   }

@@ -144,7 +144,7 @@ TEMPLATE_TEST_CASE("stick ratio: dots that stay behind slip",
   const StickRatio<TestType> ratio(21, 21);
   auto state = ratio.start();
   DotStates states(21, 21);
-  ratio(truth.dots, truth.contact, states, state);
+  (void)ratio(truth.dots, truth.contact, states, state);
   truth.step({.shift_px = 4, .direction_rad = 1, .stick_share = 0.6});
   const auto r = ratio(truth.dots, truth.contact, states, state);
   REQUIRE(r.updated());
@@ -189,7 +189,7 @@ TEST_CASE("stick ratio: the reference is the newest stored frame further than U"
 TEST_CASE("stick ratio: behind a change of direction there is no reference") {
   Follower<> f;
   for (int k = 0; k <= 8; ++k) {  // 0 to 6
-    f(shifted(0.75 * k));
+    (void)f(shifted(0.75 * k));
   }
   const auto updated = f(shifted(6.75));
   CHECK(updated.updated());
@@ -209,9 +209,9 @@ TEST_CASE("stick ratio: behind a change of direction there is no reference") {
 
 TEST_CASE("stick ratio: equal distances are no change of direction") {
   Follower<> f;
-  f(shifted(0));
-  f(shifted(1.5, 0.5));
-  f(shifted(1.5, -0.5));
+  (void)f(shifted(0));
+  (void)f(shifted(1.5, 0.5));
+  (void)f(shifted(1.5, -0.5));
   const auto r = f(shifted(3, 0));
   CHECK(r.updated());
   CHECK(r.reference_age == 3);
@@ -231,7 +231,7 @@ TEST_CASE("stick ratio: the oldest frame is forgotten") {
 
 TEST_CASE("stick ratio: the first reference stays") {
   Follower<StickConsensus<>, FirstReference> f;
-  f(shifted(0));
+  (void)f(shifted(0));
   CHECK(f(shifted(2)).status == StickStatus::no_reference);
   for (int k = 1; k < 9; ++k) {
     const auto r = f(shifted(2 + k));
@@ -248,7 +248,7 @@ TEST_CASE("stick ratio: the threshold grows with the displacement") {
   for (const double moved_px : {2.5, 4.0, 10.0}) {
     for (const double share : {0.99, 1.01}) {
       Follower<ReferenceDotMotion<Freedom::translation>, UpdatedReference<>, NoDenoising> f;
-      f(shifted(0));
+      (void)f(shifted(0));
       auto dots = shifted(moved_px);
       dots(2, 6).x -= share * 0.12 * moved_px;
       const auto r = f(dots);
@@ -268,7 +268,7 @@ TEST_CASE("stick ratio: dots in contact only, and those that were") {
     contact(i, 8) = 0;
   }
   auto dots = shifted(0);
-  f(dots, contact);
+  (void)f(dots, contact);
   dots = shifted(3);
   for (Index i = 0; i < 9; ++i) {
     dots(i, 8).x += 7;  // not in contact: as if it were not there, were it not out of line
@@ -301,7 +301,7 @@ TEST_CASE("stick ratio: the search begins in the last stick region") {
   // together. The center of the contact lies among these.
   const auto run = [](auto motion) {
     Follower<decltype(motion)> f({}, motion);
-    f(shifted(0));
+    (void)f(shifted(0));
     auto dots = shifted(4);
     const auto hold = [&](Index from_col, double x, double y) {
       for (Index i = 0; i < 9; ++i) {
@@ -407,7 +407,7 @@ TEST_CASE("stick ratio: positions are averaged with their neighbours in pairs") 
       dots(10, 12) = lost ? missing : dots(10, 12);
       return ratio(dots, truth.contact, states, state);
     };
-    frame(lost_at_first);
+    (void)frame(lost_at_first);
     truth.step({.shift_px = 3});
     return frame(lost_now);
   };
@@ -422,12 +422,12 @@ TEST_CASE("stick ratio: positions are averaged with their neighbours in pairs") 
 
 TEST_CASE("stick ratio: copies of a state go on alike, and apart") {
   Follower<> f;
-  f(shifted(0));
-  f(shifted(3));
+  (void)f(shifted(0));
+  (void)f(shifted(3));
   auto copy = f.state;
   const auto a = f(shifted(6));
   DotStates states(9, 9);
-  f.ratio(shifted(1), f.all, states, copy);
+  (void)f.ratio(shifted(1), f.all, states, copy);
   auto other = f.state;
   const auto b = f(shifted(9));
   const auto c = f.ratio(shifted(9), f.all, states, other);
@@ -449,7 +449,7 @@ TEST_CASE("stick ratio, bad input: missing and NaN dots") {
   for (const auto& p : none) {
     CAPTURE(p.x, p.y);
     Follower<> f;
-    f(shifted(0));
+    (void)f(shifted(0));
     auto dots = shifted(3);
     dots(4, 4) = p;
     dots(0, 7) = p;
@@ -471,7 +471,7 @@ TEST_CASE("stick ratio, bad input: missing and NaN dots") {
   SECTION("far away is not found, and makes those beside it doubtful at most") {
     for (const double far : {1e3, 1e9, 1e30, 1e150}) {
       Follower<> f;
-      f(shifted(0));
+      (void)f(shifted(0));
       auto dots = shifted(3);
       dots(4, 4) = {far, -far};
       const auto r = f(dots);
@@ -484,7 +484,7 @@ TEST_CASE("stick ratio, bad input: missing and NaN dots") {
   SECTION("too few are no ratio, and the last one stands") {
     for (const Index left : {4, 5}) {
       Follower<> f;
-      f(shifted(0));
+      (void)f(shifted(0));
       CHECK(f(shifted(3)).stick_ratio == 1);
       auto dots = shifted(6);
       for (Index k = left; k < 81; ++k) {
@@ -504,7 +504,7 @@ TEST_CASE("stick ratio, bad input: swapped dots") {
   // not the furthest of all.
   const auto run = [](DotIndex a, DotIndex b, Index out_of_place) {
     Follower<> f;
-    f(shifted(0));
+    (void)f(shifted(0));
     auto dots = shifted(3);
     std::swap(dots(a.row, a.col), dots(b.row, b.col));
     const auto r = f(dots);
@@ -515,7 +515,7 @@ TEST_CASE("stick ratio, bad input: swapped dots") {
     CHECK(r.slip == 0);
     CHECK(f.states(a.row, a.col) == DotState::unknown);
     CHECK(f.states(b.row, b.col) == DotState::unknown);
-    f(shifted(6));
+    (void)f(shifted(6));
     CHECK(f(shifted(9)).stick == 81);
   };
   run({2, 3}, {6, 6}, 10);  // and of each the four beside
@@ -528,7 +528,7 @@ TEST_CASE("stick ratio, bad input: a misplaced corner of the pattern") {
   for (const DotIndex corner : {DotIndex{0, 0}, DotIndex{0, 8}, DotIndex{8, 0}, DotIndex{8, 8}}) {
     CAPTURE(corner.row, corner.col);
     Follower<> f;
-    f(shifted(0));
+    (void)f(shifted(0));
     auto dots = shifted(3);
     dots(corner.row, corner.col).y += corner.row == 0 ? -30 : 30;
     const auto r = f(dots);
@@ -543,7 +543,7 @@ TEST_CASE("stick ratio, bad input: a misplaced corner of the pattern") {
 TEST_CASE("stick ratio: dots that stand still together are not the object") {
   // A patch of 16 dots goes on with the object; the search begins among those that stand.
   Follower<StickConsensus<Freedom::similarity, CentralDot>> f;
-  f(shifted(0));
+  (void)f(shifted(0));
   auto dots = shifted(0);
   for (Index i = 0; i < 4; ++i) {
     for (Index j = 0; j < 4; ++j) {
@@ -563,7 +563,7 @@ TEST_CASE("stick ratio, bad input: a pattern that jumps by one pitch") {
       const double x = 20 * static_cast<double>(cols), y = 20 * static_cast<double>(rows);
       CAPTURE(rows, cols);
       Follower<> f;
-      f(shifted(0));
+      (void)f(shifted(0));
       CHECK(f(shifted(3)).stick_ratio == 1);
       const Index stored = f.state.stored_frames();
       auto r = f(shifted(3.7 + x, 0.4 + y));
@@ -584,13 +584,13 @@ TEST_CASE("stick ratio, bad input: a pattern that jumps by one pitch") {
     const StickRatio ratio(21, 21);
     auto state = ratio.start();
     DotStates states(21, 21);
-    ratio(dots.dots, dots.contact, states, state);
+    (void)ratio(dots.dots, dots.contact, states, state);
     dots.step({.shift_px = 19.5, .direction_rad = 0.01, .turn_rad = 0.02, .zoom = 1.01});
     CHECK(ratio(dots.dots, dots.contact, states, state).status == StickStatus::jumped);
   }
   SECTION("fast but not by a pitch is motion") {
     Follower<> f;
-    f(shifted(0));
+    (void)f(shifted(0));
     CHECK(f(shifted(10)).updated());
     CHECK(f(shifted(40)).updated());
   }
@@ -601,7 +601,7 @@ TEST_CASE("stick ratio, bad input: all dots lost for some frames, then back") {
   const PointsPx blank(9, 9, missing);
   CHECK(f(blank).status == StickStatus::no_dots);
   CHECK(std::isnan(f(blank).stick_ratio));
-  f(shifted(0));
+  (void)f(shifted(0));
   auto held = shifted(3);
   for (Index i = 0; i < 9; ++i) {
     held(i, 0) = shifted(0)(i, 0);
@@ -654,7 +654,7 @@ TEST_CASE("stick ratio, bad input: an empty contact mask") {
   CHECK(r.status == StickStatus::no_contact);
   CHECK(std::isnan(r.stick_ratio));
   CHECK(r.dots_in_contact() == 0);
-  f(shifted(0));
+  (void)f(shifted(0));
   CHECK(f(shifted(3)).stick_ratio == 1);
   r = f(shifted(6), none);
   CHECK(r.status == StickStatus::no_contact);
@@ -674,7 +674,7 @@ TEMPLATE_TEST_CASE("stick ratio, bad input: one single dot",
                    (ReferenceDotMotion<Freedom::similarity, PublishedScale>)) {
   const auto run = [](const StickTest& test, Index rows, Index cols) {
     Follower<TestType> f(test, {}, {}, {}, rows, cols);
-    f(shifted(0, 0, rows, cols));
+    (void)f(shifted(0, 0, rows, cols));
     return f(shifted(3, 0, rows, cols));
   };
   const auto r = run({}, 1, 1);
@@ -696,7 +696,7 @@ TEMPLATE_TEST_CASE("stick ratio, bad input: one single dot",
     Follower<TestType> f({.min_dots = 1});
     ContactFlags contact(9, 9, 0);
     contact(8, 8) = 1;
-    f(shifted(0), contact);
+    (void)f(shifted(0), contact);
     const auto one = f(shifted(3), contact);
     CHECK(one.updated());
     CHECK(one.stick == 1);
@@ -709,8 +709,8 @@ TEST_CASE("stick ratio, bad input: other sizes and foreign states are refused") 
   auto state = ratio.start();
   DotStates states(9, 9);
   const ContactFlags all(9, 9, 1);
-  ratio(shifted(0), all, states, state);
-  ratio(shifted(3), all, states, state);
+  (void)ratio(shifted(0), all, states, state);
+  (void)ratio(shifted(3), all, states, state);
   const DotStates written = states;
   DotStates other_states(9, 8);
   CHECK(!ratio(shifted(0, 0, 9, 8), all, states, state).accepted());

@@ -208,10 +208,9 @@ Wrench6 wrench_of(const RimOfDots& rim, const Load& load, double pressure_mpa) {
   fine.count = 7200;  // the sum of a smooth function over a circle
   const double step = 2 * std::numbers::pi * rim.radius_mm / static_cast<double>(fine.count);
   for (Index k = 0; k < fine.count; ++k) {
-    const auto f = fingerpad::detail::scaled(step, fine.pull(k, load(fine.angle(k))));
-    w.force_n = fingerpad::detail::sum(w.force_n, f);
-    w.moment_n_mm =
-        fingerpad::detail::sum(w.moment_n_mm, cross(fine.border(k), f));
+    const auto f = step * fine.pull(k, load(fine.angle(k)));
+    w.force_n = w.force_n + f;
+    w.moment_n_mm = w.moment_n_mm + cross(fine.border(k), f);
   }
   w.force_n.z -= pressure_mpa * std::numbers::pi * rim.radius_mm * rim.radius_mm;
   return w;

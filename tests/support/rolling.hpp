@@ -64,7 +64,7 @@ inline fingerpad::Neighbourhood<double> nine_dots() {
 
 /// The rotation by the vector `turn` (axis times angle).
 inline fingerpad::Rotation<double> turned_by(const fingerpad::Point3<double>& turn) {
-  const double angle = std::sqrt(fingerpad::detail::length_sq(turn));
+  const double angle = std::sqrt(squared_norm(turn));
   const double half = angle / 2;
   const double s = angle > 0 ? std::sin(half) / angle : 0.5;
   return fingerpad::detail::motion::rotation_of_quaternion<double>(
@@ -114,7 +114,7 @@ class Rolling {
     const Rotation<double> turn = turned_by({-dy / ball_.radius_mm, dx / ball_.radius_mm, 0});
     const Point3<double> center{x_, y_, ball_.depth_mm + ball_.radius_mm};
     const Point3<double> next{x_mm, y_mm, ball_.depth_mm + ball_.radius_mm};
-    const Pose<double> motion{turn, detail::difference(next, turn(center))};
+    const Pose<double> motion{turn, next - turn(center)};
     pose = motion * pose;
     pose.rotation = detail::motion::renormalized(pose.rotation);
     x_ = x_mm;

@@ -248,7 +248,7 @@ StickError error_of(const Ratio& ratio,
     Random random(static_cast<std::uint64_t>(1 + n));
     SlippingDots truth(pattern);
     auto state = ratio.start();
-    ratio(noisy(truth.dots, noise_px, random), truth.contact, states, state);
+    (void)ratio(noisy(truth.dots, noise_px, random), truth.contact, states, state);
     for (const SlipStep& step : steps_of(scene, 2.4 * n)) {
       truth.step(step);
       const auto r = ratio(noisy(truth.dots, noise_px, random), truth.contact, states, state);

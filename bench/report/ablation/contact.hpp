@@ -61,7 +61,7 @@ class ContactVariant {
   }
 
   /// The work of a frame.
-  void run(const Image<float>& depth_mm) { region_(depth_mm, mask_, workspace_); }
+  void run(const Image<float>& depth_mm) { (void)region_(depth_mm, mask_, workspace_); }
 
  private:
   static double threshold(const CameraType& camera, const std::vector<Image<float>>& free_mm) {

@@ -68,7 +68,7 @@ class DepthEffects {
     auto depth = measured(estimator_, lit);
     neighbours_.without_in(seen.of.scene).add(depth_errors(seen, depth));
     auto workspace = light_->workspace();
-    (*light_)(depth, depth, workspace);
+    (void)(*light_)(depth, depth, workspace);
     neighbours_.with_in(seen.of.scene).add(depth_errors(seen, depth));
     return by_default;
   }
@@ -81,7 +81,7 @@ class DepthEffects {
           typename std::remove_cvref_t<decltype(estimator)>::template Workspace<std::uint8_t>>(
           estimator.template workspace<std::uint8_t>());
       auto depth = std::make_shared<Image<float>>(pad_.rows, pad_.cols);
-      return [&, workspace, depth] { estimator(frame.red, frame.green, *depth, *workspace); };
+      return [&, workspace, depth] { (void)estimator(frame.red, frame.green, *depth, *workspace); };
     };
     place_.cost_us = cost_us(work(estimator_), work(*straight_estimator_));
     smoothing_.cost_us = cost_us(work(estimator_), work(*raw_));
@@ -89,7 +89,7 @@ class DepthEffects {
     const auto depth = measured(estimator_, frame);
     Image<float> out(pad_.rows, pad_.cols);
     auto workspace = light_->workspace();
-    neighbours_.cost_us = cost_us([&] { (*light_)(depth, out, workspace); }, [] {});
+    neighbours_.cost_us = cost_us([&] { (void)(*light_)(depth, out, workspace); }, [] {});
     return {place_, neighbours_, smoothing_, anchor_};
   }
 
@@ -108,7 +108,7 @@ class DepthEffects {
     for (int pass = 0; pass < 6; ++pass) {
       std::transform(lit.cells.begin(), lit.cells.end(), seen.cells.begin(),
                      [](double l) { return static_cast<float>(l); });
-      (*exact_light_)(seen, out, workspace);
+      (void)(*exact_light_)(seen, out, workspace);
       for (std::size_t k = 0; k < lit.cells.size(); ++k) {
         const double light = static_cast<double>(seen.cells[k]) - static_cast<double>(out.cells[k]);
         lit.cells[k] = (std::max)(truth_mm.cells[k] + light, 0.01 * truth_mm.cells[k]);

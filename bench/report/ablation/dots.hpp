@@ -23,10 +23,10 @@
 #include <string>
 #include <vector>
 
-#include "support/slipping_dots.hpp"
-#include "support/stick_scene.hpp"
 #include "fingerpad/slip/stick_ratio.hpp"
 #include "membranes.hpp"
+#include "support/slipping_dots.hpp"
+#include "support/stick_scene.hpp"
 
 namespace bench::ablation {
 
@@ -147,7 +147,7 @@ Effect stick_effect(const std::vector<StickRecordings>& all,
     return [&, states = test::DotStates(21, 21), state = ratio.start()]() mutable {
       state = ratio.start();
       for (const auto& frame : drag) {
-        ratio(frame.dots, frame.contact, states, state);
+        (void)ratio(frame.dots, frame.contact, states, state);
       }
     };
   };

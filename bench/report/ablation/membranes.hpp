@@ -18,8 +18,8 @@
 #include <string>
 #include <vector>
 
-#include "support/finite_elements.hpp"
 #include "fingerpad/optics/camera.hpp"
+#include "support/finite_elements.hpp"
 #include "table.hpp"
 
 namespace bench::ablation {

@@ -24,8 +24,8 @@
 #include <string>
 #include <vector>
 
-#include "support/rolling.hpp"
 #include "fingerpad/motion/object_motion.hpp"
+#include "support/rolling.hpp"
 #include "table.hpp"
 
 namespace bench::ablation {
@@ -68,10 +68,8 @@ inline MotionRecording recording_of(const Held& held, double noise, std::uint64_
   for (int k = 0; k < frames; ++k) {
     const double share = static_cast<double>(k) / (frames - 1);
     const auto about = held.pose(share);
-    const fingerpad::Pose<double> pose{
-        about.rotation,
-        fingerpad::detail::sum(about.translation_mm,
-                               fingerpad::detail::difference(middle, about.rotation(middle)))};
+    const fingerpad::Pose<double> pose{about.rotation,
+                                       about.translation_mm + middle - about.rotation(middle)};
     for (std::size_t c = 0; c < free.cells.size(); ++c) {
       const auto& f = free.cells[c];
       const double r = std::hypot(f.x, f.y);
@@ -198,10 +196,9 @@ PoseErrors pose_errors(const Motion& motion, const MotionRecordings& of) {
       }
       const double none = std::numeric_limits<double>::quiet_NaN();
       const double angle = angle_between(r.pose.rotation, frame.truth.rotation);
-      const auto off =
-          fingerpad::detail::difference(r.pose(of.middle_mm), frame.truth(of.middle_mm));
+      const auto off = r.pose(of.middle_mm) - frame.truth(of.middle_mm);
       errors.attitude_deg.add(r.ok() ? 180 / std::numbers::pi * angle : none);
-      errors.place_mm.add(r.ok() ? std::sqrt(fingerpad::detail::length_sq(off)) : none);
+      errors.place_mm.add(r.ok() ? std::sqrt(squared_norm(off)) : none);
     }
   }
   return errors;
@@ -225,7 +222,7 @@ class MotionEffects {
     const auto run = [&](const auto& motion) {
       auto state = motion.start();
       for (const auto& frame : twist) {
-        motion(frame.dots, frame.contact, state);
+        (void)motion(frame.dots, frame.contact, state);
       }
     };
     row.cost_us =

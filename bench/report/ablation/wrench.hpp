@@ -15,11 +15,11 @@
 #include <string>
 #include <vector>
 
-#include "support/rolling.hpp"
-#include "support/wrench_frames.hpp"
 #include "fingerpad/force/wrench.hpp"
 #include "fingerpad/published/wrench.hpp"
 #include "membranes.hpp"
+#include "support/rolling.hpp"
+#include "support/wrench_frames.hpp"
 
 namespace bench::ablation {
 
@@ -84,8 +84,8 @@ class WrenchEffects {
     const auto& heights = test::exact_heights(drag.heights);
     const SideDots dots = test::rows_of(drag.dots, 1);
     force.cost_us = moment.cost_us =
-        cost_us([&] { with(heights, dots, drag.pressure_mpa, work_with); },
-                [&] { without(heights, dots, drag.pressure_mpa, work_without); });
+        cost_us([&] { (void)with(heights, dots, drag.pressure_mpa, work_with); },
+                [&] { (void)without(heights, dots, drag.pressure_mpa, work_without); });
     effects.push_back(force);
     effects.push_back(moment);
   }
@@ -100,14 +100,13 @@ class WrenchEffects {
 
   template <class W>
   static void note(const W& wrench, const Shown& s, Errors& force, Errors& moment) {
-    using fingerpad::detail::difference, fingerpad::detail::length_sq;
     auto workspace = wrench.workspace();
     for (std::uint64_t seed = 1; seed <= 8; ++seed) {
       const auto dots = seen_dots(test::rows_of(s.frame.dots, 1), s.noise, s.lost_share, seed);
       const auto r =
           wrench(test::exact_heights(s.frame.heights), dots, s.frame.pressure_mpa, workspace);
-      force.add(std::sqrt(length_sq(difference(r.force_n, s.frame.force_n))));
-      moment.add(std::sqrt(length_sq(difference(r.moment_n_mm, s.frame.moment_n_mm))));
+      force.add(norm(r.force_n - s.frame.force_n));
+      moment.add(norm(r.moment_n_mm - s.frame.moment_n_mm));
     }
   }
 

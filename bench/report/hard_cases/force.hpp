@@ -222,8 +222,7 @@ S twice_area_of_edges(const fingerpad::Triangle<S>& x) {
   using std::sqrt;
   std::array<S, 3> edge;
   for (std::size_t k = 0; k < 3; ++k) {
-    edge[k] =
-        sqrt(fingerpad::detail::length_sq(fingerpad::detail::difference(x[(k + 1) % 3], x[k])));
+    edge[k] = sqrt(squared_norm(x[(k + 1) % 3] - x[k]));
   }
   const S half = (edge[0] + edge[1] + edge[2]) / S(2);
   const S product = half * (half - edge[0]) * (half - edge[1]) * (half - edge[2]);
@@ -240,7 +239,7 @@ inline Row thin_triangle() {
                  const Digits50 exact = Digits50(x[1].x) * Digits50(x[2].y);
                  f.naive.add_relative(twice_area_of_edges(x), exact);
                  const auto area = fingerpad::twice_area_vector(x);
-                 f.stable.add_relative(std::sqrt(fingerpad::detail::length_sq(area)), exact);
+                 f.stable.add_relative(std::sqrt(squared_norm(area)), exact);
                }
                return f;
              });

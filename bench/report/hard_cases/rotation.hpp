@@ -125,7 +125,7 @@ Rotation<S> published_turn(const Neighbourhood<S>& from, const Neighbourhood<S>&
   namespace d = fingerpad::detail;
   const auto basis = [](const Neighbourhood<S>& n) {
     const auto q = d::motion::directions_of_all(n.dot);
-    const auto n1 = d::unit(q.q1), n2 = d::unit(q.q2);
+    const auto n1 = normalized(q.q1), n2 = normalized(q.q2);
     return fingerpad::Basis<S>{n1, n2, fingerpad::cross(n1, n2), true};
   };
   return d::motion::turn_between(d::motion::inverse_transposed(basis(from)), basis(to));

@@ -98,7 +98,7 @@ fingerpad::StickRatioResult<S> stick_ratio_between(const test::PointsPx& then,
       ratio(contact.rows(), contact.cols());
   auto state = ratio.start();
   test::DotStates states(contact.rows(), contact.cols());
-  ratio(then, contact, states, state);
+  (void)ratio(then, contact, states, state);
   return ratio(now, contact, states, state);
 }
 

@@ -44,7 +44,9 @@ class NeighbourLightStep {
     workspace_.emplace(compensation_->workspace());
   }
 
-  void operator()(cv::Mat_<float>& depth_mm) { (*compensation_)(depth_mm, depth_mm, *workspace_); }
+  void operator()(cv::Mat_<float>& depth_mm) {
+    (void)(*compensation_)(depth_mm, depth_mm, *workspace_);
+  }
 
  private:
   using Compensation = fingerpad::NeighbourLightCompensation<>;

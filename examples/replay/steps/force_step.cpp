@@ -41,8 +41,8 @@ class ShiftMeter {
  private:
   static cv::Mat_<cv::Vec3d> in_space(const Recording& recording, const DotGrid& initial_px) {
     cv::Mat_<cv::Vec3d> dots_mm(initial_px.size());
-    fingerpad::spatial_dots(recording.sensor.camera, initial_px, recording.reference_depth,
-                            dots_mm);
+    (void)fingerpad::spatial_dots(recording.sensor.camera, initial_px, recording.reference_depth,
+                                  dots_mm);
     return dots_mm;
   }
 

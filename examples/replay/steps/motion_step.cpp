@@ -38,7 +38,7 @@ MotionStep::MotionStep(const Sensor& sensor,
 cv::Mat_<cv::Vec3d> MotionStep::in_space(const DotGrid& dots_px,
                                          const cv::Mat_<float>& depth_mm) const {
   cv::Mat_<cv::Vec3d> dots_mm(dots_px.size());
-  fingerpad::spatial_dots(camera_, dots_px, depth_mm, dots_mm);
+  (void)fingerpad::spatial_dots(camera_, dots_px, depth_mm, dots_mm);
   return dots_mm;
 }
 

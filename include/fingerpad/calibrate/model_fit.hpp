@@ -4,7 +4,7 @@
 // Least squares by Gauss and Newton's method, each step by QR of the scaled Jacobian, with Huber's
 // weights where asked for. A model that is linear in its parameters is found in the first step, and
 // the second one refines it. Nothing forms normal equations.
-#include <Eigen/QR>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -15,19 +15,20 @@
 #include "fingerpad/core/expects.hpp"
 #include "fingerpad/core/grid.hpp"
 #include "fingerpad/core/scalar.hpp"
+#include "fingerpad/math/detail/householder_qr.hpp"
 
 namespace fingerpad {
 inline namespace v0 {
 
 /// How a fit is made and what it refuses.
 struct FitOptions {
-  bool robust = false;               ///< Huber's loss: outliers weigh less
-  double threshold = 1.345;          ///< of Huber's loss, in standard deviations of a sample, > 0
-  int passes = 100;                  ///< steps at most, >= 2
+  bool robust = false;             ///< Huber's loss: outliers weigh less
+  double threshold = 1.345;        ///< of Huber's loss, in standard deviations of a sample, > 0
+  int passes = 100;                ///< steps at most, >= 2
   double min_independence = 1e-5;  ///< a parameter of which the samples say less by itself, as a
-                                     ///< share of all they say of it, is refused; in (0, 1)
+                                   ///< share of all they say of it, is refused; in (0, 1)
   double min_explained = 0.5;  ///< share of the measured variance that the model must explain, or
-                                 ///< the samples contradict each other; in [0, 1)
+                               ///< the samples contradict each other; in [0, 1)
 };
 
 /// Refuses what has no meaning (parameter_error).
@@ -36,8 +37,8 @@ inline void expects_valid(const FitOptions& options) {
   expects(is_finite(options.threshold) && options.threshold > 0, owner, "threshold",
           options.threshold, "finite and > 0");
   expects(options.passes >= 2, owner, "passes", static_cast<long long>(options.passes), ">= 2");
-  expects(options.min_independence > 0 && options.min_independence < 1, owner,
-          "min_independence", options.min_independence, "in (0, 1)");
+  expects(options.min_independence > 0 && options.min_independence < 1, owner, "min_independence",
+          options.min_independence, "in (0, 1)");
   expects(options.min_explained >= 0 && options.min_explained < 1, owner, "min_explained",
           options.min_explained, "in [0, 1)");
 }
@@ -154,7 +155,7 @@ class ModelFitter {
     using std::sqrt;
     Vector lengths;
     const Matrix a = scaled(jacobian, fit.weights, lengths);
-    const Eigen::HouseholderQR<Matrix> qr(a);
+    const HouseholderQr<S> qr(a);
     refuse_undetermined(qr);
     Vector right = fit.residuals;
     for (Index i = 0; i < right.size(); ++i) {
@@ -171,9 +172,9 @@ class ModelFitter {
   }
 
   /// What the samples say of a parameter beside those before it is the diagonal of R.
-  void refuse_undetermined(const Eigen::HouseholderQR<Matrix>& qr) const {
-    for (Index k = 0; k < qr.matrixQR().cols(); ++k) {
-      const S diagonal = qr.matrixQR()(k, k);
+  void refuse_undetermined(const HouseholderQr<S>& qr) const {
+    for (Index k = 0; k < static_cast<Index>(names_.size()); ++k) {
+      const S diagonal = qr.diagonal(k);
       const S share = value(diagonal) < 0 ? S(-diagonal) : diagonal;
       const std::string name = "what the samples tell of " + names_[static_cast<std::size_t>(k)];
       const bool told = value(share) > value(S(options_.min_independence));
@@ -212,13 +213,11 @@ class ModelFitter {
     }
     Vector lengths;
     const Matrix a = scaled(jacobian, Vector::Constant(n, S(1)), lengths);
-    const Eigen::HouseholderQR<Matrix> qr(a);
-    const Matrix r = qr.matrixQR().topRows(p).template triangularView<Eigen::Upper>();
-    Matrix inverse = r.template triangularView<Eigen::Upper>().solve(Matrix::Identity(p, p));
+    Matrix inverse = HouseholderQr<S>(a).inverse_of_r();
     for (Index k = 0; k < p; ++k) {
       inverse.row(k) /= lengths(k);
     }
-    fit.covariance = variance * (inverse * inverse.transpose());
+    fit.covariance = variance * inverse.lazyProduct(inverse.transpose());
   }
 
   const char* owner_;

@@ -32,7 +32,7 @@ namespace fingerpad {
 inline namespace v0 {
 
 /// What a frame's contact is like. Without contact, areas are 0 and what has no value is NaN.
-struct ContactResult {
+struct [[nodiscard]] ContactResult {
   FrameStatus status = FrameStatus::refused;
   Index contact_px = 0;  ///< pixels in contact
   Index unknown_px = 0;  ///< pixels without depth, or with too little around them to tell

@@ -52,7 +52,7 @@ enum class SurfaceStatus : unsigned char {
 /// `shape` is a Plane, Sphere or Quadric; its numbers are finite where the status is ok, and NaN
 /// elsewhere.
 template <class Shape, scalar S = double>
-struct SurfaceResult {
+struct [[nodiscard]] SurfaceResult {
   SurfaceStatus status = SurfaceStatus::refused;
   Index pixels = 0;  ///< that were used
   Shape shape = {};
@@ -200,7 +200,7 @@ class SurfaceFit {
         if (total + count == 0) {
           origin = p;
         }
-        block.add(detail::difference(p, origin));
+        block.add(p - origin);
         if (block.full()) {
           flush(block, Kernel(), sums);
         }
@@ -232,7 +232,7 @@ class SurfaceFit {
     detail::PointBlock<Scalar> block;
     for (Index i = box.first_row; i < box.last_row; ++i) {
       pixels.for_each_in_row(i, box.first_col, box.last_col, [&](Index j, const Scalar& depth) {
-        block.add(detail::difference(rays_(i, j, depth), origin));
+        block.add(rays_(i, j, depth) - origin);
         if (block.full()) {
           flush(block, kernel, sums);
         }

@@ -17,9 +17,9 @@
 #include <cstddef>
 
 #include "fingerpad/contact/detail/patch.hpp"
-#include "fingerpad/math/detail/small_matrices.hpp"
 #include "fingerpad/core/dots.hpp"
 #include "fingerpad/core/scalar.hpp"
+#include "fingerpad/math/detail/small_matrices.hpp"
 
 namespace fingerpad {
 inline namespace v0 {
@@ -53,7 +53,7 @@ struct Quadric {
   S stands_out(const Point3<S>& p) const {
     using std::sqrt;
     const auto& [a, b, c, d, e, f] = coefficients;
-    const Point3<S> q = detail::difference(p, origin_mm);
+    const Point3<S> q = p - origin_mm;
     const S x = dot(u, q);
     const S y = dot(v, q);
     const S z = dot(w, q);
@@ -148,7 +148,7 @@ struct QuadricModel {
     }
     for (const Point3<S>& p :
          {q.direction_1, q.direction_2, q.point_mm, q.normal, q.origin_mm, q.u, q.v, q.w}) {
-      finite = finite && detail::is_finite_point(p);
+      finite = finite && is_finite(p);
     }
     return finite;
   }
@@ -233,7 +233,7 @@ struct QuadricModel {
     const Point3<S> gradient = {S(-quadric.coefficients[1]), S(-quadric.coefficients[2]),
                                 S(S(1) - S(2) * g * height)};
     const S length = sqrt(S(dot(gradient, gradient)));
-    const detail::SurfaceFrame<S> local = detail::SurfaceFrame<S>::around(detail::unit(gradient));
+    const detail::SurfaceFrame<S> local = detail::SurfaceFrame<S>::around(normalized(gradient));
     const auto bent = [&](const Point3<S>& s, const Point3<S>& t) {
       return S(
           (S(2) * (d * s.x * t.x + f * s.y * t.y + g * s.z * t.z) + e * (s.x * t.y + s.y * t.x)) /
@@ -243,14 +243,14 @@ struct QuadricModel {
                               bent(local.v, local.v));
     const detail::SurfaceFrame<S> axes = {quadric.u, quadric.v, quadric.w};
     const Point3<S> zero = {S(0), S(0), S(0)};
-    const Point3<S> along = detail::moved(detail::moved(zero, k.cos, local.u), k.sin, local.v);
-    const Point3<S> aside = detail::moved(detail::moved(zero, S(-k.sin), local.u), k.cos, local.v);
+    const Point3<S> along = zero + k.cos * local.u + k.sin * local.v;
+    const Point3<S> aside = zero + S(-k.sin) * local.u + k.cos * local.v;
     quadric.curvature_1_per_mm = k.first;
     quadric.curvature_2_per_mm = k.second;
     quadric.direction_1 = axes.from_frame(along);
     quadric.direction_2 = axes.from_frame(aside);
     quadric.normal = axes.from_frame(local.n);
-    quadric.point_mm = detail::moved(quadric.origin_mm, height, quadric.w);
+    quadric.point_mm = quadric.origin_mm + height * quadric.w;
     const auto error = [&](const Point3<S>& t) {
       const std::array<S, 6> h = {
           S(0), S(0), S(0), S(S(2) * t.x * t.x), S(S(2) * t.x * t.y), S(S(2) * t.y * t.y)};

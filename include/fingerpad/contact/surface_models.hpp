@@ -56,9 +56,7 @@ struct Plane {
 
   Tilt<S> tilt() const { return tilt_of(normal); }
   /// Signed distance of p from the plane, mm; positive away from the object.
-  S stands_out(const Point3<S>& p) const {
-    return S(-dot(normal, detail::difference(p, center_mm)));
-  }
+  S stands_out(const Point3<S>& p) const { return S(-dot(normal, p - center_mm)); }
 };
 
 /// Policy of SurfaceFit.
@@ -71,9 +69,8 @@ struct PlaneModel {
 
   template <scalar S>
   static bool is_finite_shape(const Plane<S>& p) {
-    return detail::is_finite_point(p.normal) && is_finite(p.distance_mm) &&
-           detail::is_finite_point(p.center_mm) && is_finite(p.distance_sd_mm) &&
-           is_finite(p.tilt_sd_rad);
+    return is_finite(p.normal) && is_finite(p.distance_mm) && is_finite(p.center_mm) &&
+           is_finite(p.distance_sd_mm) && is_finite(p.tilt_sd_rad);
   }
 
   /// The plane of a patch into `plane`, and the mean square distance from it.
@@ -112,12 +109,12 @@ struct Sphere {
   bool is_convex() const { return value(curvature_per_mm) > 0; }
   /// Negative: a hollow object. Infinite where the patch is exactly flat.
   S radius_mm() const { return S(S(1) / curvature_per_mm); }
-  Point3<S> center_mm() const { return detail::moved(point_mm, radius_mm(), normal); }
+  Point3<S> center_mm() const { return point_mm + radius_mm() * normal; }
 
   /// Signed distance of p from the sphere, mm; positive on the side away from the object.
   S stands_out(const Point3<S>& p) const {
     using std::sqrt;
-    const Point3<S> q = detail::difference(p, point_mm);
+    const Point3<S> q = p - point_mm;
     const S along = dot(normal, q);
     const S twice = S(2) * along - curvature_per_mm * dot(q, q);
     const S s_sq = S(1) - curvature_per_mm * twice;
@@ -172,8 +169,8 @@ struct SphereModel {
 
   template <scalar S>
   static bool is_finite_shape(const Sphere<S>& s) {
-    return is_finite(s.curvature_per_mm) && detail::is_finite_point(s.point_mm) &&
-           detail::is_finite_point(s.normal) && is_finite(s.curvature_sd_per_mm);
+    return is_finite(s.curvature_per_mm) && is_finite(s.point_mm) && is_finite(s.normal) &&
+           is_finite(s.curvature_sd_per_mm);
   }
 
   /// The sphere of a patch, and the mean square distance from it. `add_up(kernel)` gives the sums
@@ -205,8 +202,8 @@ struct SphereModel {
     sum_sq = value(sum_sq) < 0 ? S(0) : sum_sq;
     mean_sq = sum_sq / patch.count;
     const detail::SurfaceFrame<S>& f = start.frame;
-    sphere.normal = detail::unit(detail::moved(detail::moved(f.n, step[1], f.u), step[2], f.v));
-    sphere.point_mm = detail::moved(patch.centroid, S(start.height + step[0]), sphere.normal);
+    sphere.normal = normalized(f.n + step[1] * f.u + step[2] * f.v);
+    sphere.point_mm = patch.centroid + S(start.height + step[0]) * sphere.normal;
     sphere.curvature_per_mm = start.curvature + step[3];
     sphere.curvature_sd_per_mm = standard_error(patch.count, sum_sq, equations);
     return true;
@@ -241,7 +238,7 @@ struct SphereModel {
     const S norm = sqrt(norm_sq);
     start.curvature = S(2) * c[2] / norm;
     const Point3<S> gradient = {S(-c[0]), S(-c[1]), S(1)};
-    start.frame = detail::SurfaceFrame<S>::around(plane.from_frame(detail::unit(gradient)));
+    start.frame = detail::SurfaceFrame<S>::around(plane.from_frame(normalized(gradient)));
     // the centroid lies at the signed distance d along the normal: d = 2 Q / (1 + s), Q = -a / N
     const S at_center = -offset / norm;
     const S s_sq = S(1) - S(2) * start.curvature * at_center;

@@ -33,7 +33,7 @@ namespace fingerpad {
 inline namespace v0 {
 
 /// What became of a frame.
-struct DepthResult {
+struct [[nodiscard]] DepthResult {
   FrameStatus status = FrameStatus::refused;
   Index pad_pixels = 0;  ///< pixels at which the reference knows the pad
   std::array<Index, pixel_status_count> count = {};  ///< pixels by PixelStatus

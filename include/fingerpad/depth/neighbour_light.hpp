@@ -58,7 +58,7 @@ inline S without_neighbour_light(const S& depth_mm,
   return value(compensated) < 0 ? S(0) : compensated;
 }
 
-struct NeighbourLightResult {
+struct [[nodiscard]] NeighbourLightResult {
   FrameStatus status = FrameStatus::refused;
   Index lost_px = 0;  ///< pixels of the reference whose inclination this frame does not show
 

@@ -104,7 +104,7 @@ void expects_valid(const LoosenPlan<S>& plan) {
 }
 
 template <scalar S = double>
-struct LoosenCommand {
+struct [[nodiscard]] LoosenCommand {
   S force_n = S(0);  ///< to grip with from now on, within the limits of the plan
   SearchPhase phase = SearchPhase::settling;
   Index steps = 0;                        ///< by which the grip has been loosened
@@ -235,7 +235,7 @@ void expects_valid(const LiftPlan<S>& plan) {
 }
 
 template <scalar S = double>
-struct LiftCommand {
+struct [[nodiscard]] LiftCommand {
   S force_n = S(0);    ///< to grip with from now on, within the limits of the plan
   S height_mm = S(0);  ///< to lift to; back to 0 where the lift is given up
   SearchPhase phase = SearchPhase::watching;

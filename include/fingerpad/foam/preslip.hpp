@@ -123,7 +123,7 @@ struct ConstantTime {
   using Memory = detail::NewestAgainst<Rule, Fingers, detail::RememberedPairs<Rule, Fingers>>;
 };
 
-struct PreslipResult {
+struct [[nodiscard]] PreslipResult {
   static constexpr std::int64_t none = -1;
 
   bool alarm = false;     ///< the history holds a pair that fulfils the rule

@@ -9,12 +9,12 @@
 #include <numbers>
 #include <vector>
 
-#include "fingerpad/force/height_map.hpp"
-#include "fingerpad/force/detail/meridian.hpp"
-#include "fingerpad/core/detail/point_algebra.hpp"
 #include "fingerpad/core/dots.hpp"
 #include "fingerpad/core/grid.hpp"
+#include "fingerpad/core/point.hpp"
 #include "fingerpad/core/scalar.hpp"
+#include "fingerpad/force/detail/meridian.hpp"
+#include "fingerpad/force/height_map.hpp"
 
 namespace fingerpad {
 inline namespace v0 {
@@ -139,7 +139,7 @@ class Compartments {
   static S measure(const Point3<S>& a, const Point3<S>& b, bool by_height) {
     using std::sqrt;
     const S climb = b.z - a.z;
-    return by_height ? (climb < S(0) ? S(0) : climb) : S(sqrt(length_sq(difference(b, a))));
+    return by_height ? (climb < S(0) ? S(0) : climb) : S(sqrt(squared_norm(b - a)));
   }
 
   /// Nodes of a line at equal parts of its height or length.
@@ -164,7 +164,7 @@ class Compartments {
         length = measure(points[k - 1], points[k], ByHeight);
       }
       const S share = value(length) > 0 ? S((wanted - before) / length) : S(0);
-      at(line, j) = moved(points[k - 1], share, difference(points[k], points[k - 1]));
+      at(line, j) = points[k - 1] + share * (points[k] - points[k - 1]);
     }
   }
 
@@ -185,7 +185,7 @@ class Compartments {
       for (Index j = 0; j <= rows_; ++j) {
         const Point3<S> a = turned(node((i - left + columns_) % columns_, j), left);
         const Point3<S> b = turned(node((i + right) % columns_, j), -right);
-        at(i, j) = moved(a, share, difference(b, a));
+        at(i, j) = a + share * (b - a);
       }
     }
   }

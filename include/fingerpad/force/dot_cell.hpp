@@ -7,8 +7,8 @@
 #include <cmath>
 #include <cstddef>
 
-#include "fingerpad/core/detail/point_algebra.hpp"
 #include "fingerpad/core/dots.hpp"
+#include "fingerpad/core/point.hpp"
 #include "fingerpad/core/scalar.hpp"
 
 namespace fingerpad {
@@ -36,7 +36,7 @@ struct StressFreeTriangle {
 /// Twice the area vector: normal to the triangle, by the order of its corners.
 template <scalar S>
 Point3<S> twice_area_vector(const Triangle<S>& x) {
-  return cross(detail::difference(x[1], x[0]), detail::difference(x[2], x[0]));
+  return cross(x[1] - x[0], x[2] - x[0]);
 }
 
 /// The corners must not lie on a line.
@@ -44,11 +44,11 @@ template <scalar S>
 StressFreeTriangle<S> stress_free(const Triangle<S>& corners_mm) {
   using std::sqrt;
   StressFreeTriangle<S> out;
-  const S twice_area = sqrt(detail::length_sq(twice_area_vector(corners_mm)));
+  const S twice_area = sqrt(squared_norm(twice_area_vector(corners_mm)));
   out.area_mm2 = S(0.5) * twice_area;
   for (std::size_t k = 0; k < 3; ++k) {
-    const Point3<S> to_next = detail::difference(corners_mm[(k + 1) % 3], corners_mm[k]);
-    const Point3<S> to_last = detail::difference(corners_mm[(k + 2) % 3], corners_mm[k]);
+    const Point3<S> to_next = corners_mm[(k + 1) % 3] - corners_mm[k];
+    const Point3<S> to_last = corners_mm[(k + 2) % 3] - corners_mm[k];
     const S along = dot(to_next, to_last);
     out.half_cotangent[k] = S(0.5) * along / twice_area;
   }
@@ -60,7 +60,7 @@ template <scalar S>
 S stretch_sq_sum(const StressFreeTriangle<S>& free, const Triangle<S>& x) {
   S sum = S(0);
   for (std::size_t k = 0; k < 3; ++k) {
-    const S edge_sq = detail::length_sq(detail::difference(x[(k + 2) % 3], x[(k + 1) % 3]));
+    const S edge_sq = squared_norm(x[(k + 2) % 3] - x[(k + 1) % 3]);
     sum = sum + free.half_cotangent[k] * edge_sq;
   }
   return S(sum / free.area_mm2);
@@ -70,7 +70,7 @@ S stretch_sq_sum(const StressFreeTriangle<S>& free, const Triangle<S>& x) {
 template <scalar S>
 S stored_energy(const StressFreeTriangle<S>& free, const Triangle<S>& x) {
   using std::sqrt;
-  const S area = S(0.5) * S(sqrt(detail::length_sq(twice_area_vector(x))));
+  const S area = S(0.5) * S(sqrt(squared_norm(twice_area_vector(x))));
   const S shrunk = free.area_mm2 / area;
   return S(S(0.5) * free.area_mm2 * (stretch_sq_sum(free, x) + shrunk * shrunk - S(3)));
 }
@@ -80,18 +80,18 @@ S stored_energy(const StressFreeTriangle<S>& free, const Triangle<S>& x) {
 template <scalar S>
 std::array<Point3<S>, 3> corner_forces(const StressFreeTriangle<S>& free, const Triangle<S>& x) {
   const Point3<S> doubled = twice_area_vector(x);
-  const S shrunk_sq = S(4) * free.area_mm2 * free.area_mm2 / detail::length_sq(doubled);  // J^-2
+  const S shrunk_sq = S(4) * free.area_mm2 * free.area_mm2 / squared_norm(doubled);  // J^-2
   // dA/dx of a corner is half the opposite edge, turned about the normal
   const S resist = shrunk_sq * shrunk_sq / S(S(4) * free.area_mm2);
   std::array<Point3<S>, 3> force;
   for (std::size_t k = 0; k < 3; ++k) {
     const std::size_t next = (k + 1) % 3, last = (k + 2) % 3;
-    const Point3<S> to_next = detail::difference(x[next], x[k]);
-    const Point3<S> to_last = detail::difference(x[last], x[k]);
-    const Point3<S> turned = cross(doubled, detail::difference(x[last], x[next]));
-    const Point3<S> pull = detail::moved(detail::scaled(free.half_cotangent[last], to_next),
-                                         free.half_cotangent[next], to_last);
-    force[k] = detail::moved(pull, resist, turned);
+    const Point3<S> to_next = x[next] - x[k];
+    const Point3<S> to_last = x[last] - x[k];
+    const Point3<S> turned = cross(doubled, x[last] - x[next]);
+    const Point3<S> pull =
+        free.half_cotangent[last] * to_next + free.half_cotangent[next] * to_last;
+    force[k] = pull + resist * turned;
   }
   return force;
 }
@@ -132,8 +132,8 @@ struct CellTangents {
   Point3<S> along_col;
 
   explicit CellTangents(const Corners<S>& x)
-      : along_row(scaled(S(0.5), sum(difference(x[1], x[0]), difference(x[2], x[3])))),
-        along_col(scaled(S(0.5), sum(difference(x[3], x[0]), difference(x[2], x[1])))) {}
+      : along_row(S(0.5) * (x[1] - x[0] + x[2] - x[3])),
+        along_col(S(0.5) * (x[3] - x[0] + x[2] - x[1])) {}
 };
 
 /// What is known of a cell before any frame.
@@ -155,10 +155,10 @@ struct StressFreeCell {
       const Triangle<S> corners = traction::ear(x, t);
       S longest_sq = S(0);
       for (std::size_t k = 0; k < 3; ++k) {
-        const S edge_sq = length_sq(difference(corners[(k + 1) % 3], corners[k]));
+        const S edge_sq = squared_norm(corners[(k + 1) % 3] - corners[k]);
         longest_sq = longest_sq < edge_sq ? edge_sq : longest_sq;
       }
-      const S doubled_sq = length_sq(twice_area_vector(corners));
+      const S doubled_sq = squared_norm(twice_area_vector(corners));
       // flatter than 1 : 1000 is a line; false for NaN
       if (!(value(doubled_sq) > value(S(S(1e-6) * longest_sq * longest_sq)))) {
         return;
@@ -174,9 +174,9 @@ struct StressFreeCell {
       diagonal_stiffness[k] = S(0.5) * (here + there);
     }
     const CellTangents<S> g(x);
-    const S first = sqrt(length_sq(g.along_row));
+    const S first = sqrt(squared_norm(g.along_row));
     const S slant = dot(g.along_row, g.along_col) / first;
-    const S second_sq = length_sq(g.along_col) - slant * slant;
+    const S second_sq = squared_norm(g.along_col) - slant * slant;
     if (!(value(first) > 0) || !(value(second_sq) > 0)) {
       return;
     }
@@ -225,39 +225,37 @@ CellPull<S> cell_pull(const StressFreeCell<S>& free,
                       const Corners<S>& x,
                       const StretchLimits<S>& limits) {
   CellPull<S> out;
-  const Corners<S> side = {difference(x[1], x[0]), difference(x[2], x[1]), difference(x[3], x[2]),
-                           difference(x[0], x[3])};
-  const std::array<Point3<S>, 2> diagonal = {difference(x[2], x[0]), difference(x[3], x[1])};
+  const Corners<S> side = {x[1] - x[0], x[2] - x[1], x[3] - x[2], x[0] - x[3]};
+  const std::array<Point3<S>, 2> diagonal = {x[2] - x[0], x[3] - x[1]};
   for (std::size_t k = 0; k < 4; ++k) {
-    out.force[k] = moved(scaled(free.side_stiffness[k], side[k]),
-                         S(-free.side_stiffness[(k + 3) % 4]), side[(k + 3) % 4]);
+    out.force[k] =
+        free.side_stiffness[k] * side[k] + S(-free.side_stiffness[(k + 3) % 4]) * side[(k + 3) % 4];
     const S toward = k < 2 ? free.diagonal_stiffness[k] : S(-free.diagonal_stiffness[k - 2]);
-    out.force[k] = moved(out.force[k], toward, diagonal[k % 2]);
+    out.force[k] = out.force[k] + toward * diagonal[k % 2];
   }
   Corners<S> doubled;
   for (std::size_t k = 0; k < 4; ++k) {
     const StressFreeTriangle<S>& f = free.ear[k];
     const std::size_t last = (k + 3) % 4, next = (k + 1) % 4;
     doubled[k] = cross(side[last], side[k]);
-    const S sq_sum =
-        (f.half_cotangent[2] * length_sq(side[last]) + f.half_cotangent[0] * length_sq(side[k]) +
-         f.half_cotangent[1] * length_sq(diagonal[next % 2])) /
-        f.area_mm2;
-    const S area_ratio_sq = length_sq(doubled[k]) / S(S(4) * f.area_mm2 * f.area_mm2);
+    const S sq_sum = (f.half_cotangent[2] * squared_norm(side[last]) +
+                      f.half_cotangent[0] * squared_norm(side[k]) +
+                      f.half_cotangent[1] * squared_norm(diagonal[next % 2])) /
+                     f.area_mm2;
+    const S area_ratio_sq = squared_norm(doubled[k]) / S(S(4) * f.area_mm2 * f.area_mm2);
     if (!limits.allow(sq_sum, area_ratio_sq)) {
       return out;
     }
     const S resist = S(0.5) / S(S(4) * f.area_mm2 * area_ratio_sq * area_ratio_sq);
-    const Point3<S> on_last = scaled(resist, cross(doubled[k], side[k]));
-    const Point3<S> on_next = scaled(resist, cross(doubled[k], side[last]));
-    out.force[last] = sum(out.force[last], on_last);
-    out.force[next] = sum(out.force[next], on_next);
-    out.force[k] = difference(out.force[k], sum(on_last, on_next));
+    const Point3<S> on_last = resist * cross(doubled[k], side[k]);
+    const Point3<S> on_next = resist * cross(doubled[k], side[last]);
+    out.force[last] = out.force[last] + on_last;
+    out.force[next] = out.force[next] + on_next;
+    out.force[k] = out.force[k] - (on_last + on_next);
   }
-  out.whole_area = scaled(S(0.5), sum(doubled[0], doubled[2]));
+  out.whole_area = S(0.5) * (doubled[0] + doubled[2]);
   for (std::size_t k = 0; k < 4; ++k) {  // each ear has three corners: all but the one across
-    out.area[k] =
-        scaled(S(S(1) / S(12)), difference(scaled(S(4), out.whole_area), doubled[(k + 2) % 4]));
+    out.area[k] = S(S(1) / S(12)) * (S(4) * out.whole_area - doubled[(k + 2) % 4]);
   }
   out.sound = value(dot(doubled[0], doubled[2])) > 0 && value(dot(doubled[1], doubled[3])) > 0;
   return out;
@@ -269,14 +267,14 @@ CellTension<S> cell_tension(const StressFreeCell<S>& free, const Corners<S>& x) 
   using std::sqrt;
   const CellTangents<S> g(x);
   // the columns of F in an orthonormal pair of the stress-free plane
-  const Point3<S> first = scaled(free.to_first, g.along_row);
-  const Point3<S> second = moved(scaled(free.shear, g.along_row), free.to_second, g.along_col);
-  const S c11 = length_sq(first), c22 = length_sq(second), c12 = dot(first, second);
+  const Point3<S> first = free.to_first * g.along_row;
+  const Point3<S> second = free.shear * g.along_row + free.to_second * g.along_col;
+  const S c11 = squared_norm(first), c22 = squared_norm(second), c12 = dot(first, second);
   const S half_sum = S(0.5) * (c11 + c22), half_difference = S(0.5) * (c11 - c22);
   const S spread_sq = half_difference * half_difference + c12 * c12;
   // a root at 0 has no derivative
   const S spread = value(spread_sq) > 0 ? S(sqrt(spread_sq)) : S(0);
-  const S area_ratio_sq = length_sq(cross(first, second));
+  const S area_ratio_sq = squared_norm(cross(first, second));
   const S area_ratio = sqrt(area_ratio_sq);
   const S along_sq = half_sum + spread;
   const S across_sq = area_ratio_sq / along_sq;
@@ -285,10 +283,10 @@ CellTension<S> cell_tension(const StressFreeCell<S>& free, const Corners<S>& x) 
   const S a = first_leads ? S(spread + half_difference) : c12;
   const S b = first_leads ? c12 : S(spread - half_difference);
   const bool alike = value(spread) == 0;
-  const Point3<S> pulled = alike ? first : moved(scaled(a, first), b, second);
-  const S per_length = S(1) / S(sqrt(length_sq(pulled)));
+  const Point3<S> pulled = alike ? first : (a * first + b * second);
+  const S per_length = S(1) / S(sqrt(squared_norm(pulled)));
   return {principal_tension(along_sq, area_ratio), principal_tension(across_sq, area_ratio),
-          scaled(per_length, pulled)};
+          per_length * pulled};
 }
 
 }  // namespace detail::traction

@@ -25,10 +25,10 @@
 #include <type_traits>
 #include <vector>
 
-#include "fingerpad/core/detail/point_algebra.hpp"
 #include "fingerpad/core/dots.hpp"
 #include "fingerpad/core/expects.hpp"
 #include "fingerpad/core/grid.hpp"
+#include "fingerpad/core/point.hpp"
 #include "fingerpad/core/scalar.hpp"
 #include "fingerpad/force/compartments.hpp"
 #include "fingerpad/force/detail/segments.hpp"
@@ -62,19 +62,19 @@ class SegmentRows {
     const Point3<R> c = as<R>(nodes.node(next, j + 1));
     const Point3<R> d = as<R>(nodes.node(i, j + 1));
     const R quarter = R(1) / R(4);
-    const Point3<R> upward = scaled(quarter, difference(sum(c, d), sum(a, b)));
-    const Point3<R> onward = scaled(quarter, difference(sum(b, c), sum(a, d)));
+    const Point3<R> upward = quarter * (c + d - (a + b));
+    const Point3<R> onward = quarter * (b + c - (a + d));
     const Point3<R> area = as<R>(segments.area(i, j));
-    const R size = sqrt(length_sq(area));
+    const R size = sqrt(squared_norm(area));
     has_area_ = value(size) > 0;
     if (!has_area_) {
       return;
     }
     root_ = sqrt(size);
-    out_ = scaled(R(R(1) / size), area);
-    set(0, low, R(-1), scaled(R(-1), upward));
+    out_ = R(R(1) / size) * area;
+    set(0, low, R(-1), R(-1) * upward);
     set(1, segments.around(i, j + 1), R(1), upward);
-    set(2, segments.upward(i, j), R(-1), scaled(R(-1), onward));
+    set(2, segments.upward(i, j), R(-1), R(-1) * onward);
     set(3, segments.upward(next, j), R(1), onward);
   }
 
@@ -102,9 +102,9 @@ class SegmentRows {
   template <scalar S>
   void set(std::size_t border, const Border<S>& of, const R& sign, const Point3<R>& arm) {
     const R over_root = sign / root_;
-    force_[2 * border] = scaled(over_root, as<R>(of.normal));
-    force_[2 * border + 1] = scaled(over_root, as<R>(of.along));
-    const Point3<R> turning = scaled(R(R(1) / root_), cross(out_, arm));  // out . (arm x f)
+    force_[2 * border] = over_root * as<R>(of.normal);
+    force_[2 * border + 1] = over_root * as<R>(of.along);
+    const Point3<R> turning = R(R(1) / root_) * cross(out_, arm);  // out . (arm x f)
     torque_[2 * border] = dot(turning, force_[2 * border]);
     torque_[2 * border + 1] = dot(turning, force_[2 * border + 1]);
   }
@@ -198,12 +198,12 @@ struct LeastSquares {
   static detail::membrane::Border<S> leaning(const detail::membrane::Border<S>& border,
                                              const Point3<S>& pull) {
     using std::sqrt;
-    const S length_squared = detail::length_sq(border.along);
+    const S length_squared = squared_norm(border.along);
     const S along = dot(pull, border.along) / length_squared;
-    const Point3<S> normal = detail::moved(pull, S(-along), border.along);
-    const S stretch = sqrt(S(length_squared / detail::length_sq(normal)));
+    const Point3<S> normal = pull + S(-along) * border.along;
+    const S stretch = sqrt(S(length_squared / squared_norm(normal)));
     const bool known = is_finite(stretch) && value(S(dot(normal, border.normal))) > 0;
-    return {border.along, known ? detail::scaled(stretch, normal) : border.normal};
+    return {border.along, known ? (stretch * normal) : border.normal};
   }
 
   /// Sum of the squares of the equations of the common factor.
@@ -217,7 +217,7 @@ struct LeastSquares {
     for (std::size_t i = 0; i < work.pulls.size(); ++i) {
       const detail::membrane::Border<S>& border = segments.around(static_cast<Index>(i), 0);
       work.rim[i] = leaning(border, pull[i]);
-      const S length_squared = detail::length_sq(border.along);
+      const S length_squared = squared_norm(border.along);
       const S normal = dot(pull[i], work.rim[i].normal) / length_squared;
       const S along = dot(pull[i], border.along) / length_squared;
       const bool known = is_finite(normal) && is_finite(along);

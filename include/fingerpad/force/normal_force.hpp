@@ -33,7 +33,7 @@ namespace fingerpad {
 inline namespace v0 {
 
 template <scalar S = double>
-struct NormalForceResult {
+struct [[nodiscard]] NormalForceResult {
   ForceStatus status = ForceStatus::not_finite;
   S force_n = not_a_number<S>();      ///< >= 0; NaN only where not finite
   S variance_n2 = not_a_number<S>();  ///< NaN without CurveErrors; beyond the range it is that of
@@ -171,7 +171,7 @@ class NormalForce {
 
 /// A force from two measures.
 template <scalar S = double>
-struct FusedForce {
+struct [[nodiscard]] FusedForce {
   S force_n = not_a_number<S>();
   S variance_n2 = not_a_number<S>();
   S disagreement = not_a_number<S>();  ///< difference over its standard deviation: beyond 3 or so

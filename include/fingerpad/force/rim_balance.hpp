@@ -9,14 +9,14 @@
 #include <numbers>
 #include <vector>
 
-#include "fingerpad/force/compartments.hpp"
-#include "fingerpad/force/detail/segments.hpp"
-#include "fingerpad/force/detail/tensions.hpp"
-#include "fingerpad/core/detail/point_algebra.hpp"
 #include "fingerpad/core/dots.hpp"
 #include "fingerpad/core/expects.hpp"
 #include "fingerpad/core/grid.hpp"
+#include "fingerpad/core/point.hpp"
 #include "fingerpad/core/scalar.hpp"
+#include "fingerpad/force/compartments.hpp"
+#include "fingerpad/force/detail/segments.hpp"
+#include "fingerpad/force/detail/tensions.hpp"
 
 namespace fingerpad {
 inline namespace v0 {
@@ -37,7 +37,7 @@ S column_load(const Segments<S>& segments, Index i, const S& pressure_mpa) {
 template <scalar S>
 bool force_along(const Point3<S>& pull, const S& load, Point3<S>& force) {
   const bool upward = value(pull.z) > 0;
-  force = upward ? scaled(S(load / pull.z), pull) : Point3<S>{S(0), S(0), S(0)};
+  force = upward ? (S(load / pull.z) * pull) : Point3<S>{S(0), S(0), S(0)};
   return upward;
 }
 
@@ -45,7 +45,7 @@ bool force_along(const Point3<S>& pull, const S& load, Point3<S>& force) {
 template <scalar S>
 S lift_at_top(const Segments<S>& segments, Index i, const Point3<S>& pull) {
   using std::sqrt;
-  const S per_mm = S(sqrt(S(length_sq(pull) / length_sq(segments.around(i, 0).along))));
+  const S per_mm = S(sqrt(S(squared_norm(pull) / squared_norm(segments.around(i, 0).along))));
   return S(per_mm * segments.around(i, segments.rows()).normal.z);
 }
 
@@ -71,7 +71,7 @@ template <scalar S>
 bool carry_load(const Segments<S>& segments, const S& pressure_mpa, std::vector<Point3<S>>& rim) {
   const S scale = balanced_modulus(segments, rim, pressure_mpa);
   for (Point3<S>& force : rim) {
-    force = scaled(scale, force);
+    force = scale * force;
   }
   return is_finite(scale) && value(scale) > 0;
 }
@@ -100,7 +100,7 @@ RimSum<S> sum_of_rim(const std::vector<Point3<S>>& forces, const S& radius_mm) {
     const S c = cos(at);
     const S s = sin(at);
     const Point3<S>& m = sums.moment_n_mm;
-    sums.force_n = sum(sums.force_n, f);
+    sums.force_n += f;
     sums.moment_n_mm = {S(m.x + arm * s * f.z), S(m.y - arm * c * f.z),
                         S(m.z + arm_along * (c * f.y - s * f.x))};
   }
@@ -113,8 +113,8 @@ S mean_factor(const std::vector<Point3<S>>& forces, const std::vector<Point3<S>>
   using std::sqrt;
   S force_sq = S(0), pull_sq = S(0);
   for (std::size_t k = 0; k < forces.size(); ++k) {
-    force_sq = force_sq + length_sq(forces[k]);
-    pull_sq = pull_sq + length_sq(pulls[k]);
+    force_sq = force_sq + squared_norm(forces[k]);
+    pull_sq = pull_sq + squared_norm(pulls[k]);
   }
   return S(sqrt(S(force_sq / pull_sq)));
 }
@@ -179,7 +179,7 @@ struct BalancedRim {
       return false;
     }
     for (std::size_t k = 0; k < pulls.size(); ++k) {
-      tensions.rim[k] = detail::scaled(modulus, pulls[k]);
+      tensions.rim[k] = modulus * pulls[k];
     }
     return true;
   }
@@ -205,7 +205,7 @@ struct KnownModulus {
              detail::membrane::Tensions<S>& tensions) const {
     static_assert(Magnitudes, "a direction alone has no magnitude: use ClampedRim");
     for (std::size_t k = 0; k < pulls.size(); ++k) {
-      tensions.rim[k] = detail::scaled(S(modulus_n_per_mm), pulls[k]);
+      tensions.rim[k] = S(modulus_n_per_mm) * pulls[k];
     }
     return true;
   }

@@ -15,10 +15,10 @@
 #include <cmath>
 #include <cstdint>
 
-#include "fingerpad/core/detail/point_algebra.hpp"
 #include "fingerpad/core/dots.hpp"
 #include "fingerpad/core/expects.hpp"
 #include "fingerpad/core/grid.hpp"
+#include "fingerpad/core/point.hpp"
 #include "fingerpad/core/scalar.hpp"
 
 namespace fingerpad {
@@ -43,8 +43,8 @@ struct RimPull {
 template <scalar S>
 Point3<S> clamped_rim_pull(const Point3<S>& along, const Point3<S>& tangent) {
   const S shear = dot(along, tangent);
-  const Point3<S> across = detail::moved(along, S(-shear), tangent);
-  const S lambda_sq = detail::length_sq(across);
+  const Point3<S> across = along + S(-shear) * tangent;
+  const S lambda_sq = squared_norm(across);
   // (lambda - lambda^-3) / lambda
   const S share = S(1) - S(1) / (lambda_sq * lambda_sq);
   return {S(shear * tangent.x + share * across.x), S(shear * tangent.y + share * across.y),
@@ -77,7 +77,7 @@ struct ClampedRim {
   template <scalar S>
   RimPull<S> pull(const Point3<S>& along, const Point3<S>& tangent) const {
     const S shear = dot(along, tangent);
-    const S lambda_sq = detail::length_sq(along) - shear * shear;
+    const S lambda_sq = squared_norm(along) - shear * shear;
     const scalar_real_t<S> least = static_cast<scalar_real_t<S>>(min_stretch);
     if (!(value(lambda_sq) >= least * least)) {
       const bool shorter = value(lambda_sq) < 1;
@@ -90,24 +90,22 @@ struct ClampedRim {
   Point3<S> change_of_pull(const Point3<S>& along,
                            const Point3<S>& tangent,
                            const Point3<S>& change) const {
-    const Point3<S> across = detail::moved(along, S(-dot(along, tangent)), tangent);
+    const Point3<S> across = along + S(-dot(along, tangent)) * tangent;
     const S shear = dot(change, tangent);
-    const Point3<S> across_change = detail::moved(change, S(-shear), tangent);
-    const S lambda_sq = detail::length_sq(across);
+    const Point3<S> across_change = change + S(-shear) * tangent;
+    const S lambda_sq = squared_norm(across);
     const S per = S(1) / (lambda_sq * lambda_sq);
     // of (1 - lambda^-4) d_n
     const S stretching = S(4) * per / lambda_sq * dot(across, change);
-    return detail::moved(
-        detail::moved(detail::scaled(shear, tangent), S(S(1) - per), across_change), stretching,
-        across);
+    return shear * tangent + S(S(1) - per) * across_change + stretching * across;
   }
 };
 
 /// Refuses what has no meaning (parameter_error).
 inline void expects_valid(const PublishedDirection&) {}
 inline void expects_valid(const ClampedRim& rim) {
-  expects(rim.min_stretch > 1 && rim.min_stretch <= 2, "ClampedRim", "min_stretch",
-          rim.min_stretch, "in (1, 2]");
+  expects(rim.min_stretch > 1 && rim.min_stretch <= 2, "ClampedRim", "min_stretch", rim.min_stretch,
+          "in (1, 2]");
 }
 
 /// A point of the rim.
@@ -128,7 +126,7 @@ struct OneRow {
 
   template <scalar S>
   Point3<S> along(const RimPoint<S>& rim, const Point3<S>* side_dots, const S&) const {
-    return detail::scaled(S(S(1) / rim.length_mm), detail::difference(side_dots[0], rim.border));
+    return S(S(1) / rim.length_mm) * (side_dots[0] - rim.border);
   }
 };
 
@@ -141,8 +139,8 @@ struct TwoRows {
 
   template <scalar S>
   Point3<S> along(const RimPoint<S>& rim, const Point3<S>* side_dots, const S&) const {
-    const Point3<S> first = detail::difference(side_dots[0], rim.border);
-    const Point3<S> second = detail::difference(side_dots[1], rim.border);
+    const Point3<S> first = side_dots[0] - rim.border;
+    const Point3<S> second = side_dots[1] - rim.border;
     const S per = S(1) / (S(2) * rim.length_mm);
     return {S(per * (S(4) * first.x - second.x)), S(per * (S(4) * first.y - second.y)),
             S(per * (S(4) * first.z - second.z))};
@@ -175,8 +173,8 @@ struct ExtrapolatedRow {
     using std::sqrt;
     const Point3<S> chord = OneRow().along(rim, side_dots, load_per_mm);
     const S shear = dot(chord, rim.tangent);
-    const Point3<S> across = detail::moved(chord, S(-shear), rim.tangent);
-    const S lambda = sqrt(detail::length_sq(across));
+    const Point3<S> across = chord + S(-shear) * rim.tangent;
+    const S lambda = sqrt(squared_norm(across));
     if (value(load_per_mm) == 0 || !(lambda > S(1001) / S(1000))) {
       return chord;
     }

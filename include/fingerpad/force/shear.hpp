@@ -159,7 +159,7 @@ S moment_about_origin(const S& moment_n_mm, const Point2<S>& force_n, const Poin
 }
 
 template <scalar S = double>
-struct ShearResult {
+struct [[nodiscard]] ShearResult {
   ForceStatus force_status = ForceStatus::not_finite;
   ForceStatus moment_status = ForceStatus::not_finite;
   Point2<S> tangential_force_n = {not_a_number<S>(), not_a_number<S>()};

@@ -6,11 +6,11 @@
 #include <cstdint>
 #include <vector>
 
-#include "fingerpad/core/detail/point_algebra.hpp"
-#include "fingerpad/force/dot_cell.hpp"
 #include "fingerpad/core/dots.hpp"
 #include "fingerpad/core/grid.hpp"
+#include "fingerpad/core/point.hpp"
 #include "fingerpad/core/scalar.hpp"
+#include "fingerpad/force/dot_cell.hpp"
 
 namespace fingerpad {
 inline namespace v0 {

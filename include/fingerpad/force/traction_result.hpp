@@ -4,10 +4,10 @@
 // What a frame of the traction field says as a whole.
 #include <cstdint>
 
-#include "fingerpad/core/detail/point_algebra.hpp"
 #include "fingerpad/core/dots.hpp"
 #include "fingerpad/core/expects.hpp"
 #include "fingerpad/core/grid.hpp"
+#include "fingerpad/core/point.hpp"
 #include "fingerpad/core/scalar.hpp"
 
 namespace fingerpad {
@@ -78,7 +78,7 @@ struct ModulusBalance {
   ModulusBalance& operator+=(const ModulusBalance& other) {
     dots += other.dots;
     pressing_mpa = pressing_mpa + other.pressing_mpa;
-    holding_per_mm = holding_per_mm + other.holding_per_mm;
+    holding_per_mm += other.holding_per_mm;
     return *this;
   }
 };
@@ -115,7 +115,7 @@ inline void expects_valid(const BalancedModulus& modulus) {
 /// `force_n` and `moment_n_mm` are finite where there is a force (see has_force). Any other number
 /// that is not known is NaN.
 template <scalar S = double>
-struct TractionResult {
+struct [[nodiscard]] TractionResult {
   TractionStatus status = TractionStatus::refused;
   Point3<S> force_n = detail::missing_point<S>();      ///< that the object exerts on the pad
   Point3<S> moment_n_mm = detail::missing_point<S>();  ///< about the origin

@@ -18,10 +18,10 @@
 #include <numbers>
 #include <vector>
 
-#include "fingerpad/core/detail/point_algebra.hpp"
 #include "fingerpad/core/dots.hpp"
 #include "fingerpad/core/expects.hpp"
 #include "fingerpad/core/grid.hpp"
+#include "fingerpad/core/point.hpp"
 #include "fingerpad/core/scalar.hpp"
 #include "fingerpad/force/compartments.hpp"
 #include "fingerpad/force/detail/noise.hpp"
@@ -304,7 +304,7 @@ class Wrench {
                                            edge_mm2, pressure_mpa},
           noise);
     }
-    bool finite = detail::is_finite_point(result.force_n) && detail::is_finite_point(moment);
+    bool finite = is_finite(result.force_n) && is_finite(moment);
     for (std::size_t k = 0; k < 6; ++k) {
       finite = finite && is_finite(result.covariance[k][k]);
     }
@@ -333,10 +333,10 @@ class Wrench {
     for (Index k = 0; k < rim_.size(); ++k) {
       const Index in = static_cast<Index>(value(S(rim_.angle(k) / step))) % options_.columns;
       const std::size_t segment = static_cast<std::size_t>(in);
-      const S factor = sqrt(S(detail::length_sq(work.tensions_.rim[segment]) /
-                              detail::length_sq(work.pulls_.segments[segment])));
+      const S factor = sqrt(S(squared_norm(work.tensions_.rim[segment]) /
+                              squared_norm(work.pulls_.segments[segment])));
       work.tension_[static_cast<std::size_t>(k)] =
-          detail::scaled(factor, work.pulls_.dots[static_cast<std::size_t>(k)].pull);
+          factor * work.pulls_.dots[static_cast<std::size_t>(k)].pull;
     }
   }
 

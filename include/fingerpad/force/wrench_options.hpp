@@ -99,7 +99,7 @@ struct WrenchNoise {
 
 /// All numbers are finite where the status is ok or no_contact, and NaN elsewhere.
 template <scalar S = double>
-struct WrenchResult {
+struct [[nodiscard]] WrenchResult {
   WrenchStatus status = WrenchStatus::refused;
   Point3<S> force_n = {not_a_number<S>(), not_a_number<S>(), not_a_number<S>()};
   Point3<S> moment_n_mm = {not_a_number<S>(), not_a_number<S>(), not_a_number<S>()};  ///< about Q

@@ -24,7 +24,7 @@
 namespace fingerpad {
 inline namespace v0 {
 
-struct CurvatureResult {
+struct [[nodiscard]] CurvatureResult {
   FrameStatus status = FrameStatus::refused;
   Index known_px = 0;    ///< pixels that got a curvature
   Index unknown_px = 0;  ///< the others, which got NaN

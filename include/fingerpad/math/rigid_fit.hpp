@@ -10,9 +10,9 @@
 #include <cmath>
 #include <cstddef>
 
-#include "fingerpad/math/rotation.hpp"
 #include "fingerpad/core/dots.hpp"
 #include "fingerpad/core/scalar.hpp"
+#include "fingerpad/math/rotation.hpp"
 
 namespace fingerpad {
 inline namespace v0 {
@@ -176,25 +176,25 @@ RigidFit<S> fit_rigid(Index count, const From& from, const To& to, const Weight&
   for (Index k = 0; k < count; ++k) {
     const S w = weight(k);
     mass = mass + w;
-    from_center = detail::sum(from_center, detail::scaled(w, Point3<S>(from(k))));
-    to_center = detail::sum(to_center, detail::scaled(w, Point3<S>(to(k))));
+    from_center = from_center + (w * Point3<S>(from(k)));
+    to_center = to_center + (w * Point3<S>(to(k)));
   }
   if (!(value(mass) > 0)) {
     return {};
   }
-  from_center = detail::scaled(S(S(1) / mass), from_center);
-  to_center = detail::scaled(S(S(1) / mass), to_center);
+  from_center = S(S(1) / mass) * from_center;
+  to_center = S(S(1) / mass) * to_center;
 
   S covariance[3][3] = {{S(0), S(0), S(0)}, {S(0), S(0), S(0)}, {S(0), S(0), S(0)}};
   S from_sq = S(0);
   S to_sq = S(0);
   for (Index k = 0; k < count; ++k) {
     const S w = weight(k);
-    const Point3<S> a = detail::difference(Point3<S>(from(k)), from_center);
-    const Point3<S> b = detail::difference(Point3<S>(to(k)), to_center);
-    const Point3<S> wa = detail::scaled(w, a);
+    const Point3<S> a = (Point3<S>(from(k))) - from_center;
+    const Point3<S> b = (Point3<S>(to(k))) - to_center;
+    const Point3<S> wa = w * a;
     from_sq = from_sq + dot(wa, a);
-    to_sq = to_sq + w * detail::length_sq(b);
+    to_sq = to_sq + w * squared_norm(b);
     covariance[0][0] = covariance[0][0] + wa.x * b.x;
     covariance[0][1] = covariance[0][1] + wa.x * b.y;
     covariance[0][2] = covariance[0][2] + wa.x * b.z;
@@ -208,13 +208,13 @@ RigidFit<S> fit_rigid(Index count, const From& from, const To& to, const Weight&
   // A spread that is roundoff of the coordinates is none.
   const auto is_roundoff = [&](const S& spread_sq, const Point3<S>& center) {
     const scalar_real_t<S> tiny = 64 * epsilon<S>();
-    return !(value(spread_sq) > tiny * tiny * value(S(mass * detail::length_sq(center))));
+    return !(value(spread_sq) > tiny * tiny * value(S(mass * squared_norm(center))));
   };
   RigidFit<S> fit;
   fit.determined = !is_roundoff(from_sq, from_center) && !is_roundoff(to_sq, to_center) &&
                    best_rotation(covariance, from_sq, to_sq, fit.pose.rotation);
   if (fit.determined) {
-    fit.pose.translation_mm = detail::difference(to_center, fit.pose.rotation(from_center));
+    fit.pose.translation_mm = to_center - fit.pose.rotation(from_center);
   }
   return fit;
 }

@@ -7,8 +7,8 @@
 // every angle comes from atan2.
 #include <cmath>
 
-#include "fingerpad/core/detail/point_algebra.hpp"
 #include "fingerpad/core/dots.hpp"
+#include "fingerpad/core/point.hpp"
 #include "fingerpad/core/scalar.hpp"
 
 namespace fingerpad {
@@ -54,15 +54,13 @@ struct Pose {
   Rotation<S> rotation = {};
   Point3<S> translation_mm = {S(0), S(0), S(0)};
 
-  Point3<S> operator()(const Point3<S>& before) const {
-    return detail::sum(rotation(before), translation_mm);
-  }
+  Point3<S> operator()(const Point3<S>& before) const { return rotation(before) + translation_mm; }
 };
 
 template <scalar S>
 Pose<S> inverse(const Pose<S>& pose) {
   const Rotation<S> back = inverse(pose.rotation);
-  return {back, detail::scaled(S(-1), back(pose.translation_mm))};
+  return {back, S(-1) * back(pose.translation_mm)};
 }
 
 /// First `first`, then `second`.

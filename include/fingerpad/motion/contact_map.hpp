@@ -85,11 +85,10 @@ struct ContactMap {
     enter(seen, t);
     Point3<S> center = {S(0), S(0), S(0)};
     for (Index k = 0; k < seen.fresh; ++k) {
-      center = detail::sum(center, dot(k));
+      center = center + dot(k);
     }
-    t.start_mm = reference.exists()
-                     ? frame.dot(reference.row, reference.col)
-                     : detail::scaled(S(S(1) / S(static_cast<double>(seen.fresh))), center);
+    t.start_mm = reference.exists() ? frame.dot(reference.row, reference.col)
+                                    : (S(S(1) / S(static_cast<double>(seen.fresh))) * center);
     t.dots_used = seen.fresh;
     return MotionStatus::ok;
   }
@@ -170,7 +169,7 @@ struct ContactMap {
   static void residuals(const Pose<S>& pose, const Seen& seen, Track<S>& t) {
     for (Index k = 0; k < seen.known; ++k) {
       Observation<S>& s = t.observations[static_cast<std::size_t>(k)];
-      s.residual_sq = detail::length_sq(detail::difference(s.dot_mm, pose(s.place_mm)));
+      s.residual_sq = squared_norm(s.dot_mm - pose(s.place_mm));
     }
   }
 
@@ -249,8 +248,8 @@ struct ContactMap {
       }
       entry.weight = entry.weight + s.trust;
       const S share = s.trust / entry.weight;
-      const Point3<S> step = detail::scaled(share, detail::difference(place, entry.place_mm));
-      entry.place_mm = detail::sum(entry.place_mm, step);
+      const Point3<S> step = share * (place - entry.place_mm);
+      entry.place_mm += step;
     }
   }
 

@@ -21,11 +21,11 @@
 #include <type_traits>
 #include <vector>
 
-#include "fingerpad/motion/detail/rigid_shift.hpp"
 #include "fingerpad/core/dots.hpp"
 #include "fingerpad/core/expects.hpp"
 #include "fingerpad/core/grid.hpp"
 #include "fingerpad/core/scalar.hpp"
+#include "fingerpad/motion/detail/rigid_shift.hpp"
 
 namespace fingerpad {
 inline namespace v0 {
@@ -80,7 +80,7 @@ constexpr const char* name_of(ShiftStatus status) {
 }
 
 template <scalar S = double>
-struct ShiftResult {
+struct [[nodiscard]] ShiftResult {
   ShiftStatus status = ShiftStatus::other_size;
   Index dots = 0;                                                   ///< that took part
   Point2<S> displacement = {not_a_number<S>(), not_a_number<S>()};  ///< in the unit of the dots

@@ -49,12 +49,12 @@ DotStep<S> step_between(const Neighbourhood<S>& anchor, const Neighbourhood<S>& 
   const CommonDots common = common_dots(anchor, now);
   const Point3<S> before = center(anchor, common);
   const Point3<S> after = center(now, common);
-  step.pose = {turn.rotation, difference(after, turn.rotation(before))};
+  step.pose = {turn.rotation, after - turn.rotation(before)};
   step.dots_used = common.count;
   S sum_sq = S(0);
   for (std::size_t k = 0; k < 9; ++k) {
     if (common.found[k]) {
-      sum_sq = sum_sq + length_sq(difference(now.dot[k], step.pose(anchor.dot[k])));
+      sum_sq = sum_sq + squared_norm(now.dot[k] - step.pose(anchor.dot[k]));
     }
   }
   sum_sq = sum_sq / S(static_cast<double>(common.count));
@@ -176,10 +176,10 @@ struct SumOfAngles {
     const Angles<S> turned = zyx_angles(step.pose.rotation);
     t.angles = {S(t.angles.x_rad + turned.x_rad), S(t.angles.y_rad + turned.y_rad),
                 S(t.angles.z_rad + turned.z_rad)};
-    t.displacement_mm = detail::sum(t.displacement_mm, moved(t.followed.anchor, step));
+    t.displacement_mm += moved(t.followed.anchor, step);
     const Rotation<S> rotation = rotation_of(t.angles);
-    const Point3<S> position = detail::sum(t.start_mm, t.displacement_mm);
-    t.pose = {rotation, detail::difference(position, rotation(t.start_mm))};
+    const Point3<S> position = t.start_mm + t.displacement_mm;
+    t.pose = {rotation, position - rotation(t.start_mm)};
     t.followed.anchor = step.now;
     if (reference.exists() && reference != t.followed.index) {
       t.followed = detail::motion::follow<S>(frame, reference);
@@ -194,8 +194,7 @@ struct SumOfAngles {
     CommonDots self = {{false, false, false, false, true, false, false, false, false}, 1};
     const CommonDots all = common_dots(anchor, step.now);
     const CommonDots& used = all.found[4] ? self : all;
-    return detail::difference(detail::motion::center(step.now, used),
-                              detail::motion::center(anchor, used));
+    return detail::motion::center(step.now, used) - detail::motion::center(anchor, used);
   }
 };
 

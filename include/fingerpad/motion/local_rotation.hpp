@@ -98,8 +98,7 @@ namespace detail::motion {
 template <scalar S>
 GridDirections<S> directions_of_all(const std::array<Point3<S>, 9>& p) {
   const auto steps = [&](std::size_t a, std::size_t b, std::size_t c, std::size_t by) {
-    return sum(sum(difference(p[a + by], p[a]), difference(p[b + by], p[b])),
-               difference(p[c + by], p[c]));
+    return p[a + by] - p[a] + p[b + by] - p[b] + p[c + by] - p[c];
   };
   return {steps(0, 3, 6, 2), steps(0, 1, 2, 6)};
 }
@@ -134,10 +133,9 @@ GridDirections<S> directions_of_some(const std::array<Point3<S>, 9>& p,
     const int u = n * (k % 3 - 1) - su, v = n * (k / 3 - 1) - sv;
     const auto at = static_cast<std::size_t>(k);
     if (found[at]) {
-      const Point3<S> from_first =
-          difference(p[at], p[first]);  // 0, not roundoff, if all are equal
-      q.q1 = sum(q.q1, scaled(S(cvv * u - cuv * v), from_first));
-      q.q2 = sum(q.q2, scaled(S(cuu * v - cuv * u), from_first));
+      const Point3<S> from_first = p[at] - p[first];  // 0, not roundoff, if all are equal
+      q.q1 = q.q1 + S(cvv * u - cuv * v) * from_first;
+      q.q2 = q.q2 + S(cuu * v - cuv * u) * from_first;
     }
   }
   return q;
@@ -161,9 +159,9 @@ template <scalar S>
 Point3<S> center(const Neighbourhood<S>& n, const CommonDots& common) {
   Point3<S> c = {S(0), S(0), S(0)};
   for (std::size_t k = 0; k < 9; ++k) {
-    c = common.found[k] ? sum(c, n.dot[k]) : c;
+    c = common.found[k] ? (c + n.dot[k]) : c;
   }
-  return scaled(S(S(1) / S(static_cast<double>(common.count))), c);
+  return S(S(1) / S(static_cast<double>(common.count))) * c;
 }
 
 }  // namespace detail::motion
@@ -194,40 +192,39 @@ struct LocalRotation {
 /// Eqs. 14-16.
 template <scalar S>
 Basis<S> published_basis(const GridDirections<S>& q) {
-  const S sq1 = detail::length_sq(q.q1);
-  const S sq2 = detail::length_sq(q.q2);
+  const S sq1 = squared_norm(q.q1);
+  const S sq2 = squared_norm(q.q2);
   const Point3<S> n3 = cross(q.q1, q.q2);
   const S limit = S(collinear_spread_sq) * sq1 * sq2;
-  if (!(value(detail::length_sq(n3)) > value(limit))) {
+  if (!(value(squared_norm(n3)) > value(limit))) {
     return {};
   }
-  const Point3<S> n1 = detail::unit(q.q1);
-  const Point3<S> n2 = detail::unit(q.q2);
+  const Point3<S> n1 = normalized(q.q1);
+  const Point3<S> n2 = normalized(q.q2);
   return {n1, n2, cross(n1, n2), true};
 }
 
 /// The orthonormal frame nearest to n1 and n2, which both deviate from it by the same angle:
-///   n3 = unit(n1 x n2),  s = unit(n1 + n2),  t = n3 x s,  n1' = (s - t)/sqrt 2,  n2' = (s +
-///   t)/sqrt 2
+///   n3 = normalized(n1 x n2),  s = normalized(n1 + n2),  t = n3 x s,  n1' = (s - t)/sqrt 2,  n2' =
+///   (s + t)/sqrt 2
 /// A shear of the neighbourhood turns n1 and n2 against each other and leaves it where it is.
 template <scalar S>
 Basis<S> symmetric_frame(const GridDirections<S>& q) {
   using std::sqrt;
-  const S sq1 = detail::length_sq(q.q1);
-  const S sq2 = detail::length_sq(q.q2);
+  const S sq1 = squared_norm(q.q1);
+  const S sq2 = squared_norm(q.q2);
   const Point3<S> normal = cross(q.q1, q.q2);
   const S limit = S(collinear_spread_sq) * sq1 * sq2;
-  if (!(value(detail::length_sq(normal)) > value(limit))) {
+  if (!(value(squared_norm(normal)) > value(limit))) {
     return {};
   }
-  const Point3<S> n3 = detail::unit(normal);
+  const Point3<S> n3 = normalized(normal);
   // n1 + n2, but for a factor: the shorter direction is stretched to the length of the other
   const S stretch = sqrt(S(sq1 / sq2));
-  const Point3<S> s = detail::unit(detail::sum(q.q1, detail::scaled(stretch, q.q2)));
+  const Point3<S> s = normalized(q.q1 + stretch * q.q2);
   const Point3<S> t = cross(n3, s);
   const S half = sqrt(S(S(1) / S(2)));
-  return {detail::scaled(half, detail::difference(s, t)), detail::scaled(half, detail::sum(s, t)),
-          n3, true};
+  return {half * (s - t), half * (s + t), n3, true};
 }
 
 namespace detail::motion {
@@ -235,7 +232,7 @@ namespace detail::motion {
 template <scalar S>
 Rotation<S> turn_between(const Basis<S>& k, const Basis<S>& l) {
   const auto row = [](const S& a, const S& b, const S& c, const Basis<S>& n) {
-    return sum(sum(scaled(a, n.n1), scaled(b, n.n2)), scaled(c, n.n3));
+    return a * n.n1 + b * n.n2 + c * n.n3;
   };
   const Point3<S> x = row(l.n1.x, l.n2.x, l.n3.x, k);
   const Point3<S> y = row(l.n1.y, l.n2.y, l.n3.y, k);
@@ -248,7 +245,7 @@ template <scalar S>
 Basis<S> inverse_transposed(const Basis<S>& n) {
   const Point3<S> c = cross(n.n1, n.n2);
   const S inv = S(1) / dot(c, n.n3);
-  return {scaled(inv, cross(n.n2, n.n3)), scaled(inv, cross(n.n3, n.n1)), scaled(inv, c), true};
+  return {inv * cross(n.n2, n.n3), inv * cross(n.n3, n.n1), inv * c, true};
 }
 
 template <scalar S, class MakeBasis, class Between>

@@ -28,7 +28,7 @@ inline namespace v0 {
 /// What a frame says of the object. Everything but `status` is the last known state
 /// where the status is not ok; before an object begins it is that of an object at rest.
 template <scalar S = double>
-struct ObjectMotionResult {
+struct [[nodiscard]] ObjectMotionResult {
   MotionStatus status = MotionStatus::refused;
   DotIndex reference = {};         ///< contact reference dot of this frame; row -1: there is none
   bool reference_changed = false;  ///< it is another dot than in the frame before
@@ -169,7 +169,7 @@ class ObjectMotion {
     result.residual_rms_mm = track.residual_rms_mm;
     if (state.has_object_) {
       result.position_mm = track.pose(track.start_mm);
-      result.displacement_mm = detail::difference(result.position_mm, track.start_mm);
+      result.displacement_mm = result.position_mm - track.start_mm;
     }
   }
 

@@ -61,7 +61,7 @@ P point_from(const Point3<S>& p) {
 }
 }  // namespace detail::motion
 
-struct SpatialDotsResult {
+struct [[nodiscard]] SpatialDotsResult {
   FrameStatus status = FrameStatus::refused;
   Index found = 0;  ///< dots that now have a place in space
 

@@ -100,7 +100,7 @@ constexpr const char* name_of(FingertipStatus status) {
 }
 
 /// What a frame says. The result of a stage that is switched off is its own default: no answer.
-struct FingertipResult {
+struct [[nodiscard]] FingertipResult {
   FingertipStatus status = FingertipStatus::refused;
   DepthResult depth;
   ContactResult contact;
@@ -148,12 +148,12 @@ class Fingertip {
             dot_grid Dots,
             spatial_dot_grid SideDots,
             class Watch = detail::NoWatch>
-  [[nodiscard]] FingertipResult operator()(const ColorFrame<Red, Green>& frame,
-                                           const Dots& dots_px,
-                                           const SideDots& side_dots_mm,
-                                           double pressure_mpa,
-                                           double time_s = not_a_number<double>(),
-                                           Watch&& watch = {}) {
+  FingertipResult operator()(const ColorFrame<Red, Green>& frame,
+                             const Dots& dots_px,
+                             const SideDots& side_dots_mm,
+                             double pressure_mpa,
+                             double time_s = not_a_number<double>(),
+                             Watch&& watch = {}) {
     FingertipResult touch;
     if (!image_.fits(frame) || !dots_.fits(dots_px)) {
       return touch;
@@ -177,10 +177,10 @@ class Fingertip {
   /// The same for a fingertip that needs no side dots.
   template <class Red, class Green, dot_grid Dots>
     requires(!has_wrench)
-  [[nodiscard]] FingertipResult operator()(const ColorFrame<Red, Green>& frame,
-                                           const Dots& dots_px,
-                                           double pressure_mpa,
-                                           double time_s = not_a_number<double>()) {
+  FingertipResult operator()(const ColorFrame<Red, Green>& frame,
+                             const Dots& dots_px,
+                             double pressure_mpa,
+                             double time_s = not_a_number<double>()) {
     return (*this)(frame, dots_px, StridedView<const Point3<double>>(), pressure_mpa, time_s);
   }
 
@@ -327,7 +327,7 @@ class Fingertip {
                 double time_s,
                 FingertipResult& touch,
                 Watch& watch) {
-      spatial_dots(image.camera, dots_px, image.depth.view(), at_mm.view());
+      (void)spatial_dots(image.camera, dots_px, image.depth.view(), at_mm.view());
       contact_at_dots(dots_px, region.mask.view(), touching.view());
       touch.motion = motion(at_mm.view(), touching.view(), motion_state);
       watch(FingertipStage::motion);

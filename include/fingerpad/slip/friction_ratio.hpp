@@ -21,8 +21,8 @@ inline namespace v0 {
 
 template <scalar S = double>
 struct FrictionTest {
-  S alarm_fraction = S(9) / S(10);   ///< F/N beyond this share of F0/N0 is an alarm, in (0, 1]
-  S min_normal_n = S(5) / S(100);  ///< a smaller normal force has no ratio, N, > 0
+  S alarm_fraction = S(9) / S(10);  ///< F/N beyond this share of F0/N0 is an alarm, in (0, 1]
+  S min_normal_n = S(5) / S(100);   ///< a smaller normal force has no ratio, N, > 0
 };
 
 /// Refuses what has no meaning (parameter_error).
@@ -63,7 +63,7 @@ constexpr const char* name_of(FrictionStatus status) {
 }
 
 template <scalar S = double>
-struct FrictionResult {
+struct [[nodiscard]] FrictionResult {
   FrictionStatus status = FrictionStatus::no_force_known;
   bool alarm = false;                      ///< near slip, or the caller says that it slides
   S ratio = not_a_number<S>();             ///< F / N; NaN: none

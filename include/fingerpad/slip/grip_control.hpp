@@ -173,7 +173,7 @@ S grip_rate(const GripLaw<S>& law, const S& ratio) {
 }
 
 template <scalar S = double>
-struct GripResult {
+struct [[nodiscard]] GripResult {
   S force_n = S(0);  ///< to be applied now; always finite and within the limits
   GripStatus status = GripStatus::holding;
   GripReason why = GripReason::no_time;

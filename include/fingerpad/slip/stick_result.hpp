@@ -60,7 +60,7 @@ constexpr const char* name_of(StickStatus status) {
 /// Where the status is not `updated`, stick_ratio and what follows `furthest_px` are those of the
 /// last frame with an answer.
 template <scalar S = float>
-struct StickRatioResult {
+struct [[nodiscard]] StickRatioResult {
   StickStatus status = StickStatus::refused;
   Index stick = 0, slip = 0, unknown = 0;  ///< dots in contact, as written to `states`
   Index out_of_place =

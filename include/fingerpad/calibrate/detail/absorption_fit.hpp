@@ -5,11 +5,13 @@
 // delta = c_green - c_red it is linear in kappa and in the coefficients of g, which a QR
 // factorisation eliminates; Levenberg and Marquardt's method moves the two that are left, as
 // (ln c_red, delta), so that c_red > 0, with delta held at >= 0. Nothing forms normal equations.
-#include <Eigen/QR>
+#include <Eigen/Core>
 #include <cmath>
+#include <utility>
 
-#include "fingerpad/depth/absorption.hpp"
 #include "fingerpad/core/scalar.hpp"
+#include "fingerpad/depth/absorption.hpp"
+#include "fingerpad/math/detail/householder_qr.hpp"
 
 namespace fingerpad {
 inline namespace v0 {
@@ -100,26 +102,26 @@ class AbsorptionProblem {
 
   /// Eliminates the linear parameters. Where asked for, also gives the residual and its Jacobian
   /// in (ln c_red, delta), both in the space that the linear parameters cannot reach; that Jacobian
-  /// leaves out how this space turns (Kaufman), which changes steps but not the minimum.
+  /// leaves out how this space rotates (Kaufman), which changes steps but not the minimum.
   Point project(const S& c_red, const S& delta, Vector* residual, Matrix* jacobian) const {
     Matrix a(size(), Linear), rest(size(), 3);
     for (Index i = 0; i < size(); ++i) {
       fill_linear(i, c_red, a);
       rest(i, 0) = row_weight_(i) * membrane(i, delta);
     }
-    const Eigen::HouseholderQR<Matrix> qr(a);
+    const HouseholderQr<S> qr(std::move(a));
     Point p{c_red, delta, qr.solve(-rest.col(0))};
     for (Index i = 0; i < size(); ++i) {
       rest(i, 1) = c_red * by_c_red(i, p);
       rest(i, 2) = by_delta(i, delta);
     }
-    const Matrix turned = qr.householderQ().adjoint() * rest;
+    qr.apply_transposed(rest);
     const Index left = size() - Linear;
-    const Vector r = turned.col(0).tail(left);
+    const Vector r = rest.col(0).tail(left);
     p.cost = r.squaredNorm();
     if (residual != nullptr) {
       *residual = r;
-      *jacobian = turned.bottomRightCorner(left, 2);
+      *jacobian = rest.bottomRightCorner(left, 2);
     }
     return p;
   }
@@ -211,7 +213,7 @@ AbsorptionDescent descend(const Problem& problem, typename Problem::Point& p, in
     }
     Vector right = Vector::Zero(r.size() + 2);
     right.head(r.size()) = -r;
-    const Vector step = Eigen::HouseholderQR<Matrix>(damped).solve(right);
+    const Vector step = HouseholderQr<S>(damped).solve(right);
     const S limited = step(0) > S(1) ? S(1) : (step(0) < S(-1) ? S(-1) : S(step(0)));
     const S c_red = p.c_red * exp(limited);
     const S free_delta = p.delta + step(1);

@@ -4,6 +4,7 @@
 // A force or moment as an odd polynomial of something displaced or turned, normalised by a power of
 // the contact's measure: y = sum over k of c_k (u |x|)^(k-1) u x, u = (measure / reference)^T. The
 // exponent T is found by a search along it, then together with the coefficients.
+#include <Eigen/Core>
 #include <array>
 #include <cmath>
 #include <cstddef>
@@ -11,14 +12,13 @@
 #include <string>
 #include <vector>
 
-#include <Eigen/QR>
-
 #include "fingerpad/calibrate/force_samples.hpp"
 #include "fingerpad/calibrate/model_fit.hpp"
 #include "fingerpad/core/dots.hpp"
 #include "fingerpad/core/grid.hpp"
 #include "fingerpad/core/scalar.hpp"
 #include "fingerpad/force/force_curve.hpp"
+#include "fingerpad/math/detail/householder_qr.hpp"
 
 namespace fingerpad {
 inline namespace v0 {
@@ -203,8 +203,8 @@ class ShearModel {
         a(i, k) = column(e, exponent, k);
       }
     }
-    coefficients = Eigen::HouseholderQR<Matrix>(a).solve(b);
-    const Vector left = b - a * coefficients;
+    coefficients = HouseholderQr<S>(a).solve(b);
+    const Vector left = b - a.lazyProduct(coefficients);
     return robust ? S(left.cwiseAbs().sum()) : S(left.squaredNorm());
   }
 

@@ -9,11 +9,11 @@
 
 #include "fingerpad/calibrate/detail/rim_equations.hpp"
 #include "fingerpad/calibrate/detail/rim_frames.hpp"
-#include "fingerpad/force/rim_traction.hpp"
-#include "fingerpad/core/detail/point_algebra.hpp"
 #include "fingerpad/core/dots.hpp"
 #include "fingerpad/core/grid.hpp"
+#include "fingerpad/core/point.hpp"
 #include "fingerpad/core/scalar.hpp"
+#include "fingerpad/force/rim_traction.hpp"
 
 namespace fingerpad {
 inline namespace v0 {
@@ -146,7 +146,7 @@ class FreeRimBalance {
  private:
   /// |C|^2: of the part of D across the rim.
   S across_sq(const Point3<S>& lever, std::size_t column) const {
-    return S(length_sq(lever) - square(dot(lever, rim_[column].tangent)));
+    return S(squared_norm(lever) - square(dot(lever, rim_[column].tangent)));
   }
 
   /// Length of dot j over the mean length of those dots that every level sees.
@@ -166,7 +166,7 @@ class FreeRimBalance {
           const S dot_length = length * shares_[j];
           const RimPoint<S> point{rim_[j].border, rim_[j].tangent, dot_length, rim_.radius_mm()};
           const Point3<S>* dots = &level.dot_mm[j * static_cast<std::size_t>(Row::rows)];
-          lever_mm_[k][j] = scaled(dot_length, row_.along(point, dots, load));
+          lever_mm_[k][j] = dot_length * row_.along(point, dots, load);
         }
       }
     }
@@ -235,7 +235,7 @@ class FreeRimBalance {
         continue;
       }
       const S dot_length = length * shares_[j];
-      const Point3<S> along = scaled(S(S(1) / dot_length), lever_mm_[k][j]);
+      const Point3<S> along = S(S(1) / dot_length) * lever_mm_[k][j];
       S gain = S(0);
       for (const Point3<S>& axis : {Point3<S>{S(1), S(0), S(0)}, Point3<S>{S(0), S(1), S(0)},
                                     Point3<S>{S(0), S(0), S(1)}}) {

@@ -5,12 +5,12 @@
 #include <cstddef>
 #include <vector>
 
-#include "fingerpad/force/detail/rim.hpp"
-#include "fingerpad/core/detail/point_algebra.hpp"
 #include "fingerpad/core/dots.hpp"
 #include "fingerpad/core/expects.hpp"
 #include "fingerpad/core/grid.hpp"
+#include "fingerpad/core/point.hpp"
 #include "fingerpad/core/scalar.hpp"
+#include "fingerpad/force/detail/rim.hpp"
 
 namespace fingerpad {
 inline namespace v0 {
@@ -74,12 +74,12 @@ struct RimLevel {
       bool found = true;
       for (Index r = 0; r < Row::rows; ++r) {
         dot[r] = spatial_point_of<S>(dots(r, static_cast<Index>(j)));
-        found = found && is_finite_point(dot[r]);
+        found = found && is_finite(dot[r]);
       }
       count[j] += found ? 1 : 0;
       for (std::size_t r = 0; found && r < static_cast<std::size_t>(Row::rows); ++r) {
         Point3<S>& mean = dot_mm[j * static_cast<std::size_t>(Row::rows) + r];
-        mean = moved(mean, S(S(1) / S(count[j])), difference(dot[r], mean));
+        mean = mean + S(S(1) / S(count[j])) * (dot[r] - mean);
       }
     }
   }

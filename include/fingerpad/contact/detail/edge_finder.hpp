@@ -144,7 +144,7 @@ class EdgeFinder<HalfLevelEdge, Statistic, Projection, S> {
     // the region grows by a ring's radius at most
     const Index first = (std::max)(rows.first - ring_px_, Index(0));
     const Index last = (std::min)(rows.last + ring_px_, image_.rows);
-    mean_.band(first, last, depth_mm, image_.view(w.raw.data()), w.curvature);
+    (void)mean_.band(first, last, depth_mm, image_.view(w.raw.data()), w.curvature);
     w.smoothing(first, last, image_.view(w.raw.data()), image_.view(w.mean.data()));
     return regions.for_each(keep,
                             [&](Regions::Region& region) { place(depth_mm, regions, region, w); });

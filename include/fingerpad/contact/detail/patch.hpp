@@ -7,11 +7,11 @@
 #include <cstddef>
 #include <utility>
 
-#include "fingerpad/math/detail/small_matrices.hpp"
-#include "fingerpad/image/detail/row_lanes.hpp"
 #include "fingerpad/core/dots.hpp"
 #include "fingerpad/core/grid.hpp"
 #include "fingerpad/core/scalar.hpp"
+#include "fingerpad/image/detail/row_lanes.hpp"
+#include "fingerpad/math/detail/small_matrices.hpp"
 
 namespace fingerpad {
 inline namespace v0 {
@@ -136,7 +136,7 @@ PatchMoments<S> centered(Index pixels, const Point3<S>& origin, std::array<S, K>
   const Point3<S> m = {sums[0], sums[1], sums[2]};
   const SmallMatrix<S, 3> raw = {
       {{sums[3], sums[6], sums[7]}, {sums[6], sums[4], sums[8]}, {sums[7], sums[8], sums[5]}}};
-  out.centroid = moved(origin, S(1), m);
+  out.centroid = origin + m;
   const std::array<S, 3> mean = {m.x, m.y, m.z};
   for (std::size_t i = 0; i < 3; ++i) {
     for (std::size_t j = 0; j < 3; ++j) {
@@ -149,7 +149,7 @@ PatchMoments<S> centered(Index pixels, const Point3<S>& origin, std::array<S, K>
     const S trace = raw[0][0] + raw[1][1] + raw[2][2];
     const Point3<S> raw_m = times(raw, m);
     const S shift = S(2) * m_sq - trace;
-    out.third = moved(moved(t, S(-2), raw_m), shift, m);
+    out.third = t + S(-2) * raw_m + shift * m;
     out.fourth = sums[12] - S(4) * dot(m, t) + S(4) * dot(m, raw_m) + S(2) * m_sq * trace -
                  S(3) * m_sq * m_sq;
   }

@@ -8,9 +8,9 @@
 #include <type_traits>
 #include <vector>
 
-#include "fingerpad/core/detail/point_algebra.hpp"
 #include "fingerpad/core/dots.hpp"
 #include "fingerpad/core/grid.hpp"
+#include "fingerpad/core/point.hpp"
 #include "fingerpad/core/scalar.hpp"
 #include "fingerpad/force/dot_cell.hpp"
 #include "fingerpad/force/traction_maps.hpp"
@@ -38,15 +38,15 @@ Point3<S> bridged_dot(Index row, Index col, const Found& found, const At& at) {
   for (std::size_t k = 0; k < 4; ++k) {
     const Index i = step[k][0], j = step[k][1];
     if (found(row + i, col + j) && found(row - i, col - j)) {
-      sums[k / 2] = sum(sums[k / 2], sum(at(row + i, col + j), at(row - i, col - j)));
+      sums[k / 2] = sums[k / 2] + at(row + i, col + j) + at(row - i, col - j);
       ++pairs[k / 2];
     }
   }
   if (pairs[0] == 2 && pairs[1] == 2) {
-    return moved(scaled(S(0.5), sums[0]), S(-0.25), sums[1]);
+    return S(0.5) * sums[0] + S(-0.25) * sums[1];
   }
   const std::size_t use = pairs[0] > 0 ? 0 : 1;
-  return pairs[use] == 0 ? missing_point<S>() : scaled(S(S(0.5) / S(pairs[use])), sums[use]);
+  return pairs[use] == 0 ? missing_point<S>() : (S(S(0.5) / S(pairs[use])) * sums[use]);
 }
 
 // The geometry of a frame: where the dots are, which belong to the contact, and what the cells pull
@@ -58,7 +58,7 @@ template <scalar S, class P>
 Point3<S> dot_of(const P& p) {
   using Traits = point_traits<P>;
   const Point3<S> dot = {S(Traits::x(p)), S(Traits::y(p)), S(Traits::z(p))};
-  const bool placed = is_finite_point(dot) && length_sq(dot) < S(1e12);
+  const bool placed = is_finite(dot) && squared_norm(dot) < S(1e12);
   return placed ? dot : missing_point<S>();
 }
 
@@ -87,7 +87,7 @@ void read_dots(const Dots& dots, FrameMemory<S>& frame) {
       const std::size_t k = frame.dot_at(i, j);
       frame.place[k] = dot_of<S, std::remove_cvref_t<decltype(dots(i, j))>>(dots(i, j));
       frame.flags[k] = 0;
-      if (is_finite_point(frame.place[k])) {
+      if (is_finite(frame.place[k])) {
         frame.set(k, found);
       }
     }
@@ -107,7 +107,7 @@ void bridge_dots(FrameMemory<S>& frame, TractionResult<S>& result) {
         continue;
       }
       frame.place[k] = bridged_dot<S>(i, j, is_found, at);
-      if (is_finite_point(frame.place[k])) {
+      if (is_finite(frame.place[k])) {
         frame.set(k, bridged);
         ++result.dots_bridged;
       }
@@ -173,10 +173,10 @@ void pull_cell(const StressFreeCell<S>& free,
     return;
   }
   frame.cell[cell] = all_found ? CellState::found : CellState::bridged;
-  frame.cell_area[cell] = scaled(outward, pull.whole_area);
+  frame.cell_area[cell] = outward * pull.whole_area;
   for (std::size_t c = 0; c < 4; ++c) {
-    frame.pull[k[c]] = sum(frame.pull[k[c]], pull.force[c]);
-    frame.area[k[c]] = moved(frame.area[k[c]], outward, pull.area[c]);
+    frame.pull[k[c]] = frame.pull[k[c]] + pull.force[c];
+    frame.area[k[c]] = frame.area[k[c]] + outward * pull.area[c];
   }
   if (all_found) {
     frame.tension[cell] = cell_tension(free, x);
@@ -241,7 +241,7 @@ ModulusBalance<S> balance_of(const S& pressure_mpa, Index ring, const FrameMemor
       ++balance.dots;
       balance.pressing_mpa = balance.pressing_mpa + pressure_mpa;
       balance.holding_per_mm =
-          balance.holding_per_mm - dot(frame.pull[k], frame.area[k]) / length_sq(frame.area[k]);
+          balance.holding_per_mm - dot(frame.pull[k], frame.area[k]) / squared_norm(frame.area[k]);
     }
   }
   return balance;
@@ -271,20 +271,20 @@ template <scalar S>
 Point3<S> force_on(const S& pressure_mpa, const S& mu_t, const FrameMemory<S>& f, std::size_t k) {
   const S push = -pressure_mpa;
   const S pull = -mu_t;
-  return moved(scaled(push, f.area[k]), pull, f.pull[k]);
+  return push * f.area[k] + pull * f.pull[k];
 }
 
 /// The load of one dot, in a part along its normal and one along the membrane.
 template <scalar S>
 void write_load(const S& pressure_mpa, const S& mu_t, std::size_t k, FrameMemory<S>& frame) {
   using std::sqrt;
-  const S per_area = S(1) / S(sqrt(length_sq(frame.area[k])));
-  const Point3<S> normal = scaled(per_area, frame.area[k]);
-  const Point3<S> load = scaled(per_area, force_on(pressure_mpa, mu_t, frame, k));
+  const S per_area = S(1) / S(sqrt(squared_norm(frame.area[k])));
+  const Point3<S> normal = per_area * frame.area[k];
+  const Point3<S> load = per_area * force_on(pressure_mpa, mu_t, frame, k);
   const S pressing = -dot(load, normal);
   frame.load[k] = load;
   frame.pressure[k] = pressing;
-  frame.shear[k] = moved(load, pressing, normal);
+  frame.shear[k] = load + pressing * normal;
 }
 
 /// All loads; none without a modulus.
@@ -301,7 +301,7 @@ void write_loads(const S& pressure_mpa,
     frame.pressure[k] = not_a_number<S>();
     if (is_finite(mu_t) && frame.has(k, loaded)) {
       write_load(pressure_mpa, mu_t, k, frame);
-      sum_sq = is_free(frame, k, ring) ? S(sum_sq + length_sq(frame.load[k])) : sum_sq;
+      sum_sq = is_free(frame, k, ring) ? S(sum_sq + squared_norm(frame.load[k])) : sum_sq;
     }
   }
   if (is_finite(mu_t) && result.balance.dots > 0) {
@@ -331,9 +331,9 @@ void sum_loads(const S& pressure_mpa,
     }
     ++result.dots_summed;
     const S weight = S(static_cast<double>(fade + 1 - beyond)) / S(static_cast<double>(fade + 1));
-    const Point3<S> force = scaled(weight, force_on(pressure_mpa, mu_t, frame, k));
-    result.force_n = sum(result.force_n, force);
-    result.moment_n_mm = sum(result.moment_n_mm, cross(frame.place[k], force));
+    const Point3<S> force = weight * force_on(pressure_mpa, mu_t, frame, k);
+    result.force_n += force;
+    result.moment_n_mm += cross(frame.place[k], force);
   }
 }
 

@@ -18,11 +18,11 @@
 #include <cstdint>
 #include <vector>
 
-#include "fingerpad/force/height_map.hpp"
-#include "fingerpad/core/detail/point_algebra.hpp"
-#include "fingerpad/math/detail/small_matrices.hpp"
 #include "fingerpad/core/dots.hpp"
+#include "fingerpad/core/point.hpp"
 #include "fingerpad/core/scalar.hpp"
+#include "fingerpad/force/height_map.hpp"
+#include "fingerpad/math/detail/small_matrices.hpp"
 
 namespace fingerpad {
 inline namespace v0 {
@@ -238,7 +238,7 @@ class Meridian {
       y = y - rise * dir_y_;
     }
     const bool known = is_finite(x) && is_finite(y);
-    end_normal_ = known ? unit(Point3<S>{S(-x), S(-y), S(1)}) : Point3<S>{S(0), S(0), S(1)};
+    end_normal_ = known ? normalized(Point3<S>{S(-x), S(-y), S(1)}) : Point3<S>{S(0), S(0), S(1)};
   }
 
   static S distance(const Point3<S>& a, const Point3<S>& b) {
@@ -274,7 +274,7 @@ class Meridian {
   void shorten(std::size_t k, S share) {
     share = is_finite(share) ? share : S(1);
     share = share < S(0) ? S(0) : (share > S(1) ? S(1) : share);
-    points_[k] = moved(points_[k - 1], share, difference(points_[k], points_[k - 1]));
+    points_[k] = points_[k - 1] + share * (points_[k] - points_[k - 1]);
     points_.resize(k + 1);
   }
 

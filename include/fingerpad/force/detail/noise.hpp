@@ -6,9 +6,9 @@
 #include <array>
 #include <cstddef>
 
-#include "fingerpad/core/detail/point_algebra.hpp"
 #include "fingerpad/core/dots.hpp"
 #include "fingerpad/core/grid.hpp"
+#include "fingerpad/core/point.hpp"
 #include "fingerpad/core/scalar.hpp"
 #include "fingerpad/force/detail/rim.hpp"
 #include "fingerpad/force/rim_balance.hpp"
@@ -57,16 +57,16 @@ void add_dot(const Rim<S>& rim,
              const RimSolution<S>& found,
              CovarianceSum<S>& sum) {
   const S weight = found.modulus_n_per_mm * rim.share_mm(k);
-  Point3<S> force = scaled(weight, change);
+  Point3<S> force = weight * change;
   if constexpr (Fixed == Magnitude::of_column) {
     // the vertical component stays
-    force = moved(force, S(-weight * change.z / pull.z), pull);
+    force = force + S(-weight * change.z / pull.z) * pull;
   }
   Point3<S> moment = cross(rim.border(k), force);
   if constexpr (Fixed == Magnitude::of_all) {
     const S rescaled = -force.z / found.force_n.z;
-    force = moved(force, rescaled, found.force_n);
-    moment = moved(moment, rescaled, found.moment_n_mm);
+    force = force + rescaled * found.force_n;
+    moment = moment + rescaled * found.moment_n_mm;
   }
   sum.add(force, moment);
 }
@@ -95,10 +95,10 @@ std::array<std::array<S, 6>, 6> covariance_of(const Rim<S>& rim,
   } else {
     const S per = noise.pressure_mpa / found.pressure_mpa;
     const Point3<S> base = {S(0), S(0), S(-found.pressure_mpa * found.base_area_mm2)};
-    sum.add(scaled(per, detail::sum(found.force_n, base)), scaled(per, found.moment_n_mm));
+    sum.add(per * (found.force_n + base), per * found.moment_n_mm);
     const S lost =
         -found.edge_moment_mm2 * noise.edge_mm / (found.base_area_mm2 - found.summit_area_mm2);
-    sum.add(scaled(lost, found.force_n), scaled(lost, found.moment_n_mm));
+    sum.add(lost * found.force_n, lost * found.moment_n_mm);
   }
   return sum.get();
 }

@@ -8,12 +8,12 @@
 #include <numbers>
 #include <vector>
 
-#include "fingerpad/force/rim_traction.hpp"
-#include "fingerpad/core/detail/point_algebra.hpp"
 #include "fingerpad/core/dots.hpp"
 #include "fingerpad/core/expects.hpp"
 #include "fingerpad/core/grid.hpp"
+#include "fingerpad/core/point.hpp"
 #include "fingerpad/core/scalar.hpp"
+#include "fingerpad/force/rim_traction.hpp"
 
 namespace fingerpad {
 inline namespace v0 {
@@ -109,7 +109,7 @@ class Rim {
     }
     for (const Weight& w : weights_) {
       Point3<S>& sum = pulls.segments[w.segment];
-      sum = moved(sum, w.mm, pulls.dots[w.point].pull);
+      sum = sum + w.mm * pulls.dots[w.point].pull;
     }
   }
 
@@ -129,8 +129,7 @@ class Rim {
   void add(Index column, const Point3<S>& border, const S& length_mm) {
     using std::atan2;
     using std::sqrt;
-    expects(is_finite_point(border), "Wrench", "border point", S(static_cast<double>(column)),
-            "finite");
+    expects(is_finite(border), "Wrench", "border point", S(static_cast<double>(column)), "finite");
     expects(is_finite(length_mm) && value(length_mm) > 0, "Wrench", "side_dot_length_mm", length_mm,
             "finite and > 0");
     const S r = sqrt(S(border.x * border.x + border.y * border.y));
@@ -187,13 +186,13 @@ class Rim {
     Point3<S> dot[Row::rows];
     for (Index r = 0; r < Row::rows; ++r) {
       dot[r] = spatial_point_of<S>(side_dots_mm(r, place.column));
-      if (!is_finite_point(dot[r])) {
+      if (!is_finite(dot[r])) {
         return {};
       }
     }
     along = row.along(place.point, dot, load_per_mm);
     // no membrane stretches tenfold: such a dot is another one
-    if (!(value(length_sq(along)) < 100)) {
+    if (!(value(squared_norm(along)) < 100)) {
       return {};
     }
     return law.pull(along, place.point.tangent);
@@ -215,7 +214,7 @@ class Rim {
       const Point3<S> a = turned((k + n - left) % n, k, dots);
       const Point3<S> b = turned((k + right) % n, k, dots);
       const S share = S(static_cast<double>(left)) / S(static_cast<double>(left + right));
-      dots[k].pull = moved(a, share, difference(b, a));
+      dots[k].pull = a + share * (b - a);
     }
   }
 

@@ -12,11 +12,11 @@
 #include <cstddef>
 #include <vector>
 
-#include "fingerpad/force/compartments.hpp"
-#include "fingerpad/core/detail/point_algebra.hpp"
 #include "fingerpad/core/dots.hpp"
 #include "fingerpad/core/grid.hpp"
+#include "fingerpad/core/point.hpp"
 #include "fingerpad/core/scalar.hpp"
+#include "fingerpad/force/compartments.hpp"
 
 namespace fingerpad {
 inline namespace v0 {
@@ -60,23 +60,23 @@ class Segments {
         const Point3<S>& b = nodes.node(next(i), j);
         const Point3<S>& c = nodes.node(next(i), j + 1);
         const Point3<S>& d = nodes.node(i, j + 1);
-        area_[at(i, j)] = scaled(S(S(1) / S(2)), cross(difference(c, a), difference(d, b)));
+        area_[at(i, j)] = S(S(1) / S(2)) * cross(c - a, d - b);
       }
     }
     for (Index j = 0; j <= rows_; ++j) {
       for (Index i = 0; i < columns_; ++i) {
-        const Point3<S> along = difference(nodes.node(next(i), j), nodes.node(i, j));
+        const Point3<S> along = nodes.node(next(i), j) - nodes.node(i, j);
         // the membrane's normal at the border is the mean of both sides'
         const Point3<S> out = j == 0       ? normal(i, 0)
-                              : j == rows_ ? sum(nodes.end_normal(i), nodes.end_normal(next(i)))
-                                           : sum(normal(i, j), normal(i, j - 1));
+                              : j == rows_ ? (nodes.end_normal(i) + nodes.end_normal(next(i)))
+                                           : (normal(i, j) + normal(i, j - 1));
         around_[at(i, j)] = {along, stretched(cross(out, along), along)};
       }
     }
     for (Index j = 0; j < rows_; ++j) {
       for (Index i = 0; i < columns_; ++i) {
-        const Point3<S> along = difference(nodes.node(i, j + 1), nodes.node(i, j));
-        const Point3<S> out = sum(normal(i, j), normal(previous(i), j));
+        const Point3<S> along = nodes.node(i, j + 1) - nodes.node(i, j);
+        const Point3<S> out = normal(i, j) + normal(previous(i), j);
         upward_[at(i, j)] = {along, stretched(cross(along, out), along)};
       }
     }
@@ -87,14 +87,14 @@ class Segments {
 
   Point3<S> normal(Index i, Index j) const {
     const Point3<S>& a = area_[at(i, j)];
-    return value(length_sq(a)) > 0 ? unit(a) : Point3<S>{S(0), S(0), S(0)};
+    return value(squared_norm(a)) > 0 ? normalized(a) : Point3<S>{S(0), S(0), S(0)};
   }
 
   /// `direction` made as long as `like`; 0 where it has no direction.
   static Point3<S> stretched(const Point3<S>& direction, const Point3<S>& like) {
     using std::sqrt;
-    const S from = length_sq(direction);
-    return value(from) > 0 ? scaled(S(sqrt(S(length_sq(like) / from))), direction)
+    const S from = squared_norm(direction);
+    return value(from) > 0 ? (S(sqrt(S(squared_norm(like) / from))) * direction)
                            : Point3<S>{S(0), S(0), S(0)};
   }
 

@@ -7,12 +7,12 @@
 #include <cstddef>
 #include <vector>
 
-#include "fingerpad/force/compartments.hpp"
-#include "fingerpad/force/detail/segments.hpp"
-#include "fingerpad/core/detail/point_algebra.hpp"
 #include "fingerpad/core/dots.hpp"
 #include "fingerpad/core/grid.hpp"
+#include "fingerpad/core/point.hpp"
 #include "fingerpad/core/scalar.hpp"
+#include "fingerpad/force/compartments.hpp"
+#include "fingerpad/force/detail/segments.hpp"
 
 namespace fingerpad {
 inline namespace v0 {
@@ -38,7 +38,7 @@ struct Tensions {
 /// Force of a border on the segment on its near side, N.
 template <scalar S>
 Point3<S> border_force(const Border<S>& border, const S& normal, const S& shear) {
-  return sum(scaled(normal, border.normal), scaled(shear, border.along));
+  return normal * border.normal + shear * border.along;
 }
 
 /// A segment's unbalanced force and its unbalanced torque about its own normal.
@@ -64,11 +64,11 @@ Unbalanced<S> unbalanced(const Segments<S>& segments,
   const S half = S(1) / S(2);
   const Point3<S>& area = segments.area(i, j);
   // half the diagonals: the arms of opposite borders about the mean of the nodes
-  const Point3<S> first = difference(nodes.node(next, j + 1), nodes.node(i, j));
-  const Point3<S> second = difference(nodes.node(i, j + 1), nodes.node(next, j));
+  const Point3<S> first = nodes.node(next, j + 1) - nodes.node(i, j);
+  const Point3<S> second = nodes.node(i, j + 1) - nodes.node(next, j);
   const S quarter = half * half;
-  const Point3<S> upward = scaled(quarter, sum(first, second));
-  const Point3<S> onward = scaled(quarter, difference(first, second));
+  const Point3<S> upward = quarter * (first + second);
+  const Point3<S> onward = quarter * (first - second);
 
   const Point3<S> f_low = j == 0 ? tensions.rim[low]
                                  : border_force(segments.around(i, j), tensions.around_normal[low],
@@ -79,12 +79,10 @@ Unbalanced<S> unbalanced(const Segments<S>& segments,
       border_force(segments.upward(i, j), tensions.upward_normal[low], tensions.upward_shear[low]);
   const Point3<S> f_right = border_force(segments.upward(next, j), tensions.upward_normal[right],
                                          tensions.upward_shear[right]);
-  const Point3<S> force =
-      moved(sum(difference(f_up, f_low), difference(f_right, f_left)), pressure_mpa, area);
-  const Point3<S> torque =
-      sum(cross(upward, sum(f_up, f_low)), cross(onward, sum(f_right, f_left)));
-  const bool flat = !(value(length_sq(area)) > 0);
-  return {force, flat ? S(0) : dot(torque, unit(area))};
+  const Point3<S> force = f_up - f_low + f_right - f_left + pressure_mpa * area;
+  const Point3<S> torque = cross(upward, f_up + f_low) + cross(onward, f_right + f_left);
+  const bool flat = !(value(squared_norm(area)) > 0);
+  return {force, flat ? S(0) : dot(torque, normalized(area))};
 }
 
 /// How far tensions are from balance, as shares of what the pressure does.
@@ -107,13 +105,13 @@ Imbalance<S> residual(const Segments<S>& segments,
   S total = S(0);
   for (Index j = 0; j < segments.rows(); ++j) {
     for (Index i = 0; i < segments.columns(); ++i) {
-      const S area_sq = length_sq(segments.area(i, j));
+      const S area_sq = squared_norm(segments.area(i, j));
       if (!(value(area_sq) > 0)) {
         continue;
       }
       const Unbalanced<S> left = unbalanced(segments, nodes, tensions, pressure_mpa, i, j);
       const S area = sqrt(area_sq);
-      force = force + length_sq(left.force_n) / area;
+      force = force + squared_norm(left.force_n) / area;
       torque = torque + square(left.torque_nmm) / area_sq;
       total = total + area;
     }

@@ -7,8 +7,8 @@
 #include <cmath>
 #include <cstddef>
 
-#include "fingerpad/core/detail/point_algebra.hpp"
 #include "fingerpad/core/dots.hpp"
+#include "fingerpad/core/point.hpp"
 #include "fingerpad/core/scalar.hpp"
 
 namespace fingerpad {
@@ -35,7 +35,7 @@ struct SurfaceFrame {
     // the axis that n is least along keeps the cross product away from 0
     const bool steep = value(S(n.x * n.x)) > 0.5;
     const Point3<S> along = steep ? Point3<S>{S(0), S(1), S(0)} : Point3<S>{S(1), S(0), S(0)};
-    const Point3<S> v = unit(cross(n, along));
+    const Point3<S> v = normalized(cross(n, along));
     return {cross(v, n), v, n};
   }
   Point3<S> to_frame(const Point3<S>& p) const { return {dot(u, p), dot(v, p), dot(n, p)}; }

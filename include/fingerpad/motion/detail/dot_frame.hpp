@@ -9,11 +9,11 @@
 #include <cstddef>
 #include <vector>
 
-#include "fingerpad/math/rotation.hpp"
-#include "fingerpad/core/detail/point_algebra.hpp"
 #include "fingerpad/core/dots.hpp"
 #include "fingerpad/core/grid.hpp"
+#include "fingerpad/core/point.hpp"
 #include "fingerpad/core/scalar.hpp"
+#include "fingerpad/math/rotation.hpp"
 
 namespace fingerpad {
 inline namespace v0 {
@@ -130,7 +130,7 @@ DotIndex reference_dot(const Frame& frame,
   DotIndex best;
   S best_sq = S(-1);
   const auto moved_sq = [&](Index i, Index j) {
-    return length_sq(difference(frame.dot(i, j), initial(i, j)));
+    return squared_norm(frame.dot(i, j) - initial(i, j));
   };
   for (Index i = 1; i < frame.rows() - 1; ++i) {
     for (Index j = 1; j < frame.cols() - 1; ++j) {

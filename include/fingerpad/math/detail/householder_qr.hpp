@@ -1,0 +1,167 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+#pragma once
+// Least squares by Householder's reflections, for every scalar. Eigen's factorisation is blocked,
+// which gains nothing for a dozen columns: with it fit_absorption takes 4.7 times as long to
+// compile.
+#include <Eigen/Core>
+#include <cmath>
+#include <utility>
+
+#include "fingerpad/core/grid.hpp"
+#include "fingerpad/core/scalar.hpp"
+
+namespace fingerpad {
+inline namespace v0 {
+namespace detail {
+
+/// A = Q R, with at least as many rows as columns.
+template <scalar S>
+class HouseholderQr {
+ public:
+  using Matrix = Eigen::Matrix<S, Eigen::Dynamic, Eigen::Dynamic>;
+  using Vector = Eigen::Matrix<S, Eigen::Dynamic, 1>;
+
+  explicit HouseholderQr(Matrix a) : a_(std::move(a)), factor_(a_.cols()) {
+    for (Index k = 0; k < a_.cols(); ++k) {
+      factor_(k) = reflect(k);
+      for (Index j = k + 1; j < a_.cols(); ++j) {
+        apply(k, a_, j);
+      }
+    }
+  }
+
+  /// R(k, k): what column k says beside those before it.
+  const S& diagonal(Index k) const { return a_(k, k); }
+
+  /// Q^T b, in place of each column of b.
+  template <class Columns>
+  void apply_transposed(Columns& b) const {
+    for (Index j = 0; j < b.cols(); ++j) {
+      for (Index k = 0; k < a_.cols(); ++k) {
+        apply(k, b, j);
+      }
+    }
+  }
+
+  /// x with the least |A x - b|.
+  Vector solve(Vector b) const {
+    apply_transposed(b);
+    Vector x = b.head(a_.cols());
+    back_substitute(x, 0);
+    return x;
+  }
+
+  /// R^-1, upper triangular: the covariance of x is R^-1 R^-T.
+  Matrix inverse_of_r() const {
+    Matrix inverse = Matrix::Identity(a_.cols(), a_.cols());
+    for (Index j = 0; j < a_.cols(); ++j) {
+      back_substitute(inverse, j);
+    }
+    return inverse;
+  }
+
+  Matrix r() const {
+    Matrix r = Matrix::Zero(a_.cols(), a_.cols());
+    for (Index j = 0; j < a_.cols(); ++j) {
+      for (Index i = 0; i <= j; ++i) {
+        r(i, j) = a_(i, j);
+      }
+    }
+    return r;
+  }
+
+ private:
+  /// Column k becomes the vector of its reflection, with its leading 1 left out: R(k, k) stands
+  /// there. Returns the factor 2 / |v|^2.
+  S reflect(Index k) {
+    using std::sqrt;
+    S below_sq = S(0);
+    for (Index i = k + 1; i < a_.rows(); ++i) {
+      below_sq += square(a_(i, k));
+    }
+    const S head = a_(k, k);
+    if (!(below_sq > S(0))) {
+      return S(0);
+    }
+    const S length = sqrt(S(square(head) + below_sq));
+    const S r = head > S(0) ? S(-length) : length;
+    const S lead = head - r;  // no cancellation: r has the other sign
+    for (Index i = k + 1; i < a_.rows(); ++i) {
+      a_(i, k) = a_(i, k) / lead;
+    }
+    a_(k, k) = r;
+    return S(-lead / r);
+  }
+
+  template <class Columns>
+  void apply(Index k, Columns& b, Index j) const {
+    S sum = b(k, j);
+    for (Index i = k + 1; i < a_.rows(); ++i) {
+      sum += a_(i, k) * b(i, j);
+    }
+    sum = factor_(k) * sum;
+    b(k, j) -= sum;
+    for (Index i = k + 1; i < a_.rows(); ++i) {
+      b(i, j) -= sum * a_(i, k);
+    }
+  }
+
+  template <class Columns>
+  void back_substitute(Columns& x, Index j) const {
+    for (Index i = a_.cols() - 1; i >= 0; --i) {
+      S left = x(i, j);
+      for (Index k = i + 1; k < a_.cols(); ++k) {
+        left -= a_(i, k) * x(k, j);
+      }
+      x(i, j) = left / a_(i, i);
+    }
+  }
+
+  Matrix a_;       // R on and above the diagonal, the reflections' vectors below
+  Vector factor_;  // 0: column k needs none
+};
+
+/// The largest over the smallest singular value of a small square matrix, by Jacobi's one-sided
+/// rotations; infinite, or not a number, where it is singular.
+template <class Matrix>
+auto condition_number(Matrix a) {
+  using S = typename Matrix::Scalar;
+  using std::sqrt;
+  const Index n = a.cols();
+  bool rotated = true;
+  for (int sweep = 0; rotated && sweep < 60; ++sweep) {
+    rotated = false;
+    for (Index p = 0; p < n; ++p) {
+      for (Index q = p + 1; q < n; ++q) {
+        const S pp = a.col(p).squaredNorm(), qq = a.col(q).squaredNorm();
+        const S pq = a.col(p).dot(a.col(q));
+        if (!(square(pq) > square(S(epsilon<S>())) * pp * qq)) {
+          continue;
+        }
+        rotated = true;
+        const S zeta = (qq - pp) / (S(2) * pq);
+        const S root = sqrt(S(S(1) + square(zeta)));
+        const S t = S(1) / (zeta > S(0) ? S(zeta + root) : S(zeta - root));
+        const S c = S(1) / sqrt(S(S(1) + square(t)));
+        const S s = c * t;
+        for (Index i = 0; i < a.rows(); ++i) {
+          const S x = a(i, p), y = a(i, q);
+          a(i, p) = c * x - s * y;
+          a(i, q) = s * x + c * y;
+        }
+      }
+    }
+  }
+  S largest = S(0), smallest = a.col(0).norm();
+  for (Index k = 0; k < n; ++k) {
+    const S size = a.col(k).norm();
+    largest = size > largest ? size : largest;
+    smallest = size < smallest ? size : smallest;
+  }
+  return S(largest / smallest);
+}
+
+}  // namespace detail
+}  // namespace v0
+}  // namespace fingerpad
