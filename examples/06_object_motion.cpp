@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
-// A plate is pressed into the pad, rocked and turned: its pose from the dots that stick to it.
+// A plate is pressed into the pad, rocked and rotated: its pose from the dots that stick to it.
 #include <cmath>
 #include <cstdio>
 #include <vector>

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
-// Force and moment in six axes: a plate is pressed into the pad and turned about its normal. Known
+// Force and moment in six axes: a plate is pressed into the pad and rotated about its normal. Known
 // are the pressure of the fluid, the shape of the membrane and the dots beside its rim.
 #include <cmath>
 #include <cstdio>

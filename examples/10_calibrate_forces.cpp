@@ -87,7 +87,7 @@ struct Normal {
 Normal fit_normal(Samples samples, const Measure& by) {
   const auto fitted = [&](bool compensated) {
     fingerpad::NormalForceFitOptions options;
-    options.displaced = options.turned = compensated;
+    options.displaced = options.rotated = compensated;
     const auto fit = [&](Samples some) {
       return fingerpad::fit_normal_force<degree>(some, options);
     };
@@ -108,7 +108,7 @@ Normal fit_normal(Samples samples, const Measure& by) {
   }
   if (best.fit.per_mm_sq_sd > 0) {
     print("displaced, 1/mm^2", best.fit.compensation.per_mm_sq, best.fit.per_mm_sq_sd);
-    print("turned, 1/rad^2", best.fit.compensation.per_rad_sq, best.fit.per_rad_sq_sd);
+    print("rotated, 1/rad^2", best.fit.compensation.per_rad_sq, best.fit.per_rad_sq_sd);
   }
   print("N", best.fit.errors.residual_sd_n, best.left_out);
   return best;

@@ -1,14 +1,13 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 // Six-axis force by every solver. "ns/pixel" is per frame: mesh, side dots, forces; the shape is
-// given. Truth: 24 films pressed flat, dragged and turned by forces of every direction and size at
+// given. Truth: 24 films pressed flat, dragged and rotated by forces of every direction and size at
 // 5 to 20 kPa, whose force, moment and side dots are known in closed form
 // (tests/support/pressed_pad.hpp). Errors: of F_z, of F_x and F_y together, M_x and M_y together
 // and M_z, in shares of the truth; "residual": of eqs. 6 and 7, rms, as a share of the pressure's;
 // of a mesh: heights of its nodes. "heights in plan": all heights in a disc of 18 mm, with the blur
 // of a frame.
 #include "fingerpad/force/wrench.hpp"
-#include "fingerpad/published/wrench.hpp"
 
 #include <cmath>
 #include <cstdint>
@@ -18,9 +17,10 @@
 #include <string>
 #include <vector>
 
-#include "support/pressed_pad.hpp"
-#include "fingerpad/force/pad_heights.hpp"
 #include "bench/support/run.hpp"
+#include "fingerpad/force/pad_heights.hpp"
+#include "fingerpad/published/wrench.hpp"
+#include "support/pressed_pad.hpp"
 
 using namespace fingerpad;
 using test::Image;

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: MIT
 // Displacement and rotation of a contact from 21 x 21 dots, 69 of them in contact ("ns/pixel" is
 // per dot of the grid), with 0.005 mm of noise; "stuck" rows with every seventh dot left where it
-// was. Errors: over 1000 contacts of 4 to 9 mm, displaced by up to 1 mm and turned by up to 0.1
+// was. Errors: over 1000 contacts of 4 to 9 mm, displaced by up to 1 mm and rotated by up to 0.1
 // rad.
 #include "fingerpad/motion/contact_shift.hpp"
 

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 // Motion of an object from the dots in contact. "ns/pixel" is per update, per frame or per dot.
-// Errors of a rotation: of neighbourhoods turned by any angle, measured with noise, and of such
+// Errors of a rotation: of neighbourhoods rotated by any angle, measured with noise, and of such
 // that are sheared by 0.2. Errors of a frame: of attitude and place in all frames of ten balls that
 // roll 30 mm. Errors of dots in space: against the rays. Noise: 0.02 mm in the plane, 0.05 mm in
 // depth.
@@ -59,10 +59,10 @@ void note_turns(bench::Counters& counters) {
   for (int k = 0; k < 1000; ++k) {
     const auto before = test::nine_dots();
     const auto turn = test::turned_by({0.1 * gauss(), 0.1 * gauss(), 0.3 * gauss()});
-    auto turned = before, measured = before, shear = before;
+    auto rotated = before, measured = before, shear = before;
     const double c = std::cos(0.01 * k), s = std::sin(0.01 * k);
     for (std::size_t i = 0; i < 9; ++i) {
-      auto& p = turned.dot[i];
+      auto& p = rotated.dot[i];
       p = turn(p);
       measured.dot[i] = {p.x + 0.02 * gauss(), p.y + 0.02 * gauss(), p.z + 0.05 * gauss()};
       // a shear by 0.2 turns by atan(0.1) about the normal besides deforming
@@ -71,7 +71,7 @@ void note_turns(bench::Counters& counters) {
       q = {q.x + c * along, q.y + s * along, q.z};
     }
     noisy.push_back(turn_error_deg<Local, S>(before, measured, turn));
-    exact.push_back(turn_error_deg<Local, S>(before, turned, turn));
+    exact.push_back(turn_error_deg<Local, S>(before, rotated, turn));
     sheared.push_back(
         turn_error_deg<Local, S>(before, shear, test::turned_by({0, 0, -std::atan(0.1)})));
   }

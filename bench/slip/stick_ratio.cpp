@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: MIT
 // Stick ratio of 21 x 21 dots with 64 stored frames; "ns/pixel" is per frame. Timed: dots dragged
 // to and fro, all in contact. Error: of the ratio, in each frame of recordings in which dots are
-// dragged, turned and pressed, one by one and at once (tests/support/slipping_dots.hpp), with 0.14
+// dragged, rotated and pressed, one by one and at once (tests/support/slipping_dots.hpp), with 0.14
 // px of noise; a frame without an answer (at rest, or too little moved) has none.
 #include "fingerpad/slip/stick_ratio.hpp"
 
@@ -15,9 +15,9 @@
 #include <string>
 #include <vector>
 
-#include "support/slipping_dots.hpp"
 #include "bench/support/naive_stick_ratio.hpp"
 #include "bench/support/run.hpp"
+#include "support/slipping_dots.hpp"
 
 using namespace fingerpad;
 

@@ -38,11 +38,11 @@ class NaiveStickRatio {
     ++frame_;
     age_ = 0;
     const int newest = static_cast<int>(furthest.size()) - 1;
-    int turned = std::max(newest, 0);  // i_C
-    while (turned > 0 && at(furthest, turned - 1) > at(furthest, turned)) {
-      --turned;
+    int rotated = std::max(newest, 0);  // i_C
+    while (rotated > 0 && at(furthest, rotated - 1) > at(furthest, rotated)) {
+      --rotated;
     }
-    for (int i = newest; i >= turned; --i) {
+    for (int i = newest; i >= rotated; --i) {
       if (at(furthest, i) > 2.0) {
         const Stored& reference = repository_[static_cast<std::size_t>(i)];
         ratio_ = ratio_against(now, reference.dots);

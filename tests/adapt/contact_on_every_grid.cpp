@@ -113,8 +113,8 @@ TEST_CASE("contact is read from every grid", "[adapt][contact_region]") {
   const auto mapping = test::LayoutStride::right(static_cast<test::MdIndex>(rows_of_map),
                                                  static_cast<test::MdIndex>(cols_of_map));
   CHECK(c.reads(test::TestMdspan<const float>(c.depth.cells.data(), mapping)));
-  std::vector<float> turned(static_cast<std::size_t>(4 * rows_of_map * cols_of_map));
-  const StridedView<float> back(&turned.back(), rows_of_map, cols_of_map, -4 * cols_of_map, -2);
+  std::vector<float> rotated(static_cast<std::size_t>(4 * rows_of_map * cols_of_map));
+  const StridedView<float> back(&rotated.back(), rows_of_map, cols_of_map, -4 * cols_of_map, -2);
   fill_from(back, c.depth);
   CHECK(c.reads(back));
   CHECK(

@@ -160,8 +160,8 @@ TEMPLATE_TEST_CASE(
   CHECK(c.reads(Span(red.cells.data(), mapping), Span(green.cells.data(), mapping)));
 
   // stored upside down and back to front, with space between
-  std::vector<Pixel> turned(static_cast<std::size_t>(2 * 2 * rows * cols));
-  const StridedView<Pixel> back(&turned.back(), rows, cols, -4 * cols, -2);
+  std::vector<Pixel> rotated(static_cast<std::size_t>(2 * 2 * rows * cols));
+  const StridedView<Pixel> back(&rotated.back(), rows, cols, -4 * cols, -2);
   fill_from(back, red);
   CHECK(c.reads(back, StridedView<const Pixel>(green.cells.data(), rows, cols, cols)));
 

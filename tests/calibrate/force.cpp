@@ -78,7 +78,7 @@ struct Pad {
   }
 };
 
-/// Contacts of all sizes, displaced and turned, of five loads; without forces.
+/// Contacts of all sizes, displaced and rotated, of five loads; without forces.
 template <class S = double>
 std::vector<ForceSample<S>> contacts(int count, Random& random) {
   std::vector<ForceSample<S>> samples;
@@ -205,7 +205,7 @@ TEST_CASE("curves of the normal force are found within their errors", "[calibrat
         [&](Random& random) {
           const auto samples = measured(pad, way.samples, way.noise, 1, random);
           NormalForceFitOptions options;
-          options.displaced = options.turned = true;
+          options.displaced = options.rotated = true;
           options.fit = options_of(way);
           const auto fit = fit_normal_force<2>(all(samples), options);
           const auto& c = fit.errors.covariance;
@@ -416,7 +416,7 @@ double error_without_noise(bool robust) {
     s.moment_n_mm = pad.turn(s, pad.turn_2);
   }
   const auto normal =
-      fit_normal_force<2>(all(samples), {.displaced = true, .turned = true, .fit = options});
+      fit_normal_force<2>(all(samples), {.displaced = true, .rotated = true, .fit = options});
   compare(normal.curve.coefficients[1], pad.linear);
   compare(normal.curve.coefficients[2], pad.square_term);
   compare(normal.compensation.per_mm_sq, pad.per_mm_sq);
@@ -503,7 +503,7 @@ struct Number {
 std::vector<Number> all_fits(const Samples& samples, const FitOptions& options) {
   std::vector<Number> numbers;
   const auto normal =
-      fit_normal_force<2>(all(samples), {.displaced = true, .turned = true, .fit = options});
+      fit_normal_force<2>(all(samples), {.displaced = true, .rotated = true, .fit = options});
   for (int k = 1; k <= 2; ++k) {
     const auto i = static_cast<std::size_t>(k);
     numbers.push_back({normal.curve.coefficients[i], 1, -k});
@@ -592,12 +592,12 @@ TEST_CASE("a calibration depends neither on order nor on units", "[calibrate][fo
     Samples samples = any_samples();
     const auto before = fit_tangential_force<2>(all(samples), 2.0);
     const double angle = test::uniform(-3, 3), c = std::cos(angle), s = std::sin(angle);
-    const auto turned = [&](const Point2<double>& p) {
+    const auto rotated = [&](const Point2<double>& p) {
       return Point2<double>{c * p.x - s * p.y, s * p.x + c * p.y};
     };
     for (Sample& sample : samples) {
-      sample.displacement_mm = turned(sample.displacement_mm);
-      sample.tangential_force_n = turned(sample.tangential_force_n);
+      sample.displacement_mm = rotated(sample.displacement_mm);
+      sample.tangential_force_n = rotated(sample.tangential_force_n);
     }
     const auto after = fit_tangential_force<2>(all(samples), 2.0);
     RC_ASSERT(std::abs(after.exponent - before.exponent) < 1e-9);
@@ -756,10 +756,10 @@ TEST_CASE("options add what they name and nothing else", "[calibrate][force]") {
   const auto fit = [&](const NormalForceFitOptions& options) {
     return fit_normal_force<2>(all(samples), options);
   };
-  const auto both = fit({.through_zero = false, .displaced = true, .turned = true});
+  const auto both = fit({.through_zero = false, .displaced = true, .rotated = true});
   CHECK(both.curve.coefficients[0] == Approx(0.6).margin(0.1));
   CHECK(both.errors.residual_sd_n == Approx(0.05).margin(0.015));
-  const auto zero = fit({.displaced = true, .turned = true});
+  const auto zero = fit({.displaced = true, .rotated = true});
   CHECK(zero.curve.coefficients[0] == 0);
   CHECK(zero.errors.covariance[0][0] == 0);
   CHECK(zero.errors.residual_sd_n > both.errors.residual_sd_n);
@@ -767,13 +767,13 @@ TEST_CASE("options add what they name and nothing else", "[calibrate][force]") {
   CHECK(displaced.compensation.per_mm_sq == Approx(pad.per_mm_sq).margin(0.02));
   CHECK(displaced.compensation.per_rad_sq == 0);
   CHECK(displaced.per_rad_sq_sd == 0);
-  const auto turned = fit({.through_zero = false, .turned = true});
-  CHECK(turned.compensation.per_mm_sq == 0);
-  CHECK(turned.compensation.per_rad_sq == Approx(pad.per_rad_sq).margin(4));
+  const auto rotated = fit({.through_zero = false, .rotated = true});
+  CHECK(rotated.compensation.per_mm_sq == 0);
+  CHECK(rotated.compensation.per_rad_sq == Approx(pad.per_rad_sq).margin(4));
   const auto neither = fit({.through_zero = false});
   CHECK(neither.compensation.per_mm_sq == 0);
   CHECK(neither.compensation.per_rad_sq == 0);
-  CHECK(neither.errors.residual_sd_n > turned.errors.residual_sd_n);
+  CHECK(neither.errors.residual_sd_n > rotated.errors.residual_sd_n);
   CHECK(neither.explained < both.explained);
   CHECK(both.curve.from == std::min_element(samples.begin(), samples.end(), [](auto& a, auto& b) {
                              return a.measure < b.measure;
@@ -806,7 +806,7 @@ TEST_CASE("residuals are complete and in order", "[calibrate][force]") {
     }
     return found;
   };
-  const auto normal = fit_normal_force<2>(all(samples), {.displaced = true, .turned = true});
+  const auto normal = fit_normal_force<2>(all(samples), {.displaced = true, .rotated = true});
   CHECK(normal.residuals.size() == usable.size());
   CHECK(places(normal.residuals, 0, 1, usable.size()) == usable);
   const NormalForce<PolynomialForce<2>, ScaledCompensation<>> force(normal.curve,
@@ -985,7 +985,7 @@ TEST_CASE("samples that do not tell the parameters are refused by name", "[calib
     check_refused(turn(still), "fit_moment: what the samples tell of coefficient 1");
     check_refused(normal(still, {.displaced = true}),
                   "fit_normal_force: what the samples tell of per_mm_sq");
-    check_refused(normal(still, {.turned = true}),
+    check_refused(normal(still, {.rotated = true}),
                   "fit_normal_force: what the samples tell of per_rad_sq");
     check_refused(affine(still, AffineBy::displacement),
                   "fit_affine_force: what the samples tell of per_unit");
@@ -994,7 +994,7 @@ TEST_CASE("samples that do not tell the parameters are refused by name", "[calib
     const auto tied = changed(good, [](Sample& s) {
       s.rotation_rad = 0.1 * std::hypot(s.displacement_mm.x, s.displacement_mm.y);
     });
-    check_refused(normal(tied, {.displaced = true, .turned = true}),
+    check_refused(normal(tied, {.displaced = true, .rotated = true}),
                   "fit_normal_force: what the samples tell of per_rad_sq");
     const auto one_size = changed(good, [](Sample& s) {
       s.measure = 3;
@@ -1068,8 +1068,7 @@ TEST_CASE("samples that do not tell the parameters are refused by name", "[calib
                     "FitOptions: min_independence");
     }
     check_refused(normal(good, {.fit = {.passes = 1}}), "FitOptions: passes = 1, must be >= 2");
-    check_refused(normal(good, {.fit = {.min_independence = 1}}),
-                  "FitOptions: min_independence");
+    check_refused(normal(good, {.fit = {.min_independence = 1}}), "FitOptions: min_independence");
     check_refused(normal(good, {.fit = {.min_explained = -0.1}}), "FitOptions: min_explained");
     check_refused(normal(good, {.fit = {.min_explained = 1}}), "FitOptions: min_explained");
     PolynomialForce<2> falling{{0, -1, 0}, 0, 5};
@@ -1097,7 +1096,7 @@ TEST_CASE("samples that are no numbers are left out", "[calibrate][force]") {
       with.insert(with.begin() + 11, s);
     }
   }
-  const NormalForceFitOptions options{.displaced = true, .turned = true};
+  const NormalForceFitOptions options{.displaced = true, .rotated = true};
   CHECK(fit_normal_force<2>(all(with), options).curve.coefficients ==
         fit_normal_force<2>(all(good), options).curve.coefficients);
   CHECK(fit_tangential_force<1>(all(with), 2.0).exponent ==

@@ -216,14 +216,14 @@ TEST_CASE("rim calibration: units and the order of levels and dots do not matter
   CHECK(backward.stretch[0] == Approx(fit.stretch[3]));
 
   // columns that run the other way round, or begin elsewhere
-  const auto turned = [](Row row) {
+  const auto rotated = [](Row row) {
     std::reverse(row.begin(), row.end());
     std::rotate(row.begin(), row.begin() + 7, row.end());
     return row;
   };
-  RimCalibration<> other(grid_of(turned(pad.border())), radius_mm);
+  RimCalibration<> other(grid_of(rotated(pad.border())), radius_mm);
   for (std::size_t k = 0; k < 4; ++k) {
-    CHECK(other.add(k, grid_of(turned(pad.dots(four_pressures[k]))), four_pressures[k]));
+    CHECK(other.add(k, grid_of(rotated(pad.dots(four_pressures[k]))), four_pressures[k]));
   }
   const auto again = other.fit();
   CHECK(again.modulus_n_per_mm == Approx(fit.modulus_n_per_mm).epsilon(1e-12));

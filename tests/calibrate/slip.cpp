@@ -632,14 +632,14 @@ TEST_CASE("S and D: laws", "[stick]") {
     const RatioMeasures m = measures(ratios);
     RC_ASSERT(std::abs(m.rises - (m.decreases - (ratios.front() - ratios.back()))) < 1e-13);
     RC_ASSERT(m.rises >= 0);
-    auto turned = ratios;
-    std::reverse(turned.begin(), turned.end());
-    RC_ASSERT(std::abs(measures(turned).rises - m.decreases) < 1e-13);
-    for (double& r : turned) {
+    auto rotated = ratios;
+    std::reverse(rotated.begin(), rotated.end());
+    RC_ASSERT(std::abs(measures(rotated).rises - m.decreases) < 1e-13);
+    for (double& r : rotated) {
       r = 1 - r;
     }
-    RC_ASSERT(std::abs(measures(turned).rises - m.rises) < 1e-13);
-    RC_ASSERT(std::abs(measures(turned).sum + m.sum - static_cast<double>(m.steps)) < 1e-13);
+    RC_ASSERT(std::abs(measures(rotated).rises - m.rises) < 1e-13);
+    RC_ASSERT(std::abs(measures(rotated).sum + m.sum - static_cast<double>(m.steps)) < 1e-13);
 
     auto kept = ratios;  // an answer that stands for some more frames
     const auto at = static_cast<std::size_t>(test::whole(0, m.steps - 1));

@@ -409,14 +409,14 @@ TEST_CASE("taxel noise: what is refused changes nothing", "[taxel_noise]") {
   TaxelNoiseCalibration<> plain(2, 3), disturbed(2, 3);
   Random random(71);
   for (Index k = 0; k < samples; ++k) {
-    Array taxels(2, 3), wild(2, 3, 1e6), turned(3, 2, 1e6), empty(0, 0);
+    Array taxels(2, 3), wild(2, 3, 1e6), rotated(3, 2, 1e6), empty(0, 0);
     for (auto& reading : taxels.cells) {
       reading = 800 + 7 * gaussian(random);
     }
     const double time_s = period_s * static_cast<double>(k);
     CHECK(plain.add(taxels, time_s));
     CHECK(disturbed.add(taxels, time_s));
-    CHECK_FALSE(disturbed.add(turned, time_s + 0.01));
+    CHECK_FALSE(disturbed.add(rotated, time_s + 0.01));
     CHECK_FALSE(disturbed.add(empty, time_s + 0.01));
     CHECK_FALSE(disturbed.add(wild, time_s));
     CHECK_FALSE(disturbed.add(wild, time_s - 0.01));

@@ -6,6 +6,6 @@
 int main() {
   const float cells[] = {1, 2, 3, 4, 5, 6};
   const fingerpad::StridedView<const float> image(cells, 2, 3, 3);
-  const auto turned = fingerpad::transpose(image);
-  return fingerpad::rows(turned) == 3 && turned(2, 1) == 6.0f ? 0 : 1;
+  const auto rotated = fingerpad::transpose(image);
+  return fingerpad::rows(rotated) == 3 && rotated(2, 1) == 6.0f ? 0 : 1;
 }

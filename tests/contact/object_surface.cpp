@@ -51,7 +51,7 @@ struct Object {
     object.g = 0.5 / radius_mm;
     return object;
   }
-  /// Its axis is turned by `angle` in the tangent plane.
+  /// Its axis is rotated by `angle` in the tangent plane.
   static Object cylinder(const Point& normal, double radius_mm, double angle) {
     Object object = saddle(normal, 1 / radius_mm, 0, angle);
     object.g = 0.5 / radius_mm;

@@ -241,7 +241,7 @@ TEST_CASE("neighbour light: the stepped disc is off by a small part of the corre
   }
 }
 
-TEST_CASE("neighbour light: the pad may lie anywhere in the image and be transposed or turned") {
+TEST_CASE("neighbour light: the pad may lie anywhere in the image and be transposed or rotated") {
   rc::prop("to the last bit", [] {
     const NeighbourLight<double> light = random_light(12);
     Map<double> reference = membrane(32, 40, 0, 0);
@@ -261,11 +261,11 @@ TEST_CASE("neighbour light: the pad may lie anywhere in the image and be transpo
     const auto transposed = [](const Map<double>& l) { return Map<double>(l.transpose()); };
     RC_ASSERT(identical(compensated<SteppedDisc<>>(light, transposed(reference), transposed(depth)),
                         transposed(plain)));
-    const auto turned = [](const Map<double>& l) {
+    const auto rotated = [](const Map<double>& l) {
       return Map<double>(l.transpose().rowwise().reverse());
     };
-    RC_ASSERT(identical(compensated<SteppedDisc<>>(light, turned(reference), turned(depth)),
-                        turned(plain)));
+    RC_ASSERT(identical(compensated<SteppedDisc<>>(light, rotated(reference), rotated(depth)),
+                        rotated(plain)));
   });
 }
 

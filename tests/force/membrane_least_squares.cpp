@@ -234,7 +234,7 @@ TEMPLATE_TEST_CASE("least squares: a flat disc pulled sideways", "[membrane]", d
   REQUIRE(press.solve());
   CHECK(std::abs(press.rim_force().x / -0.050044 - 1) < 0.01);
   CHECK(std::abs(press.rim_force().y) < 1e-5);
-  // and the lean turned by some columns turns the force
+  // and the lean rotated by some columns turns the force
   const Point3<double> before = press.rim_force();
   press.lean(0.01, 9);
   REQUIRE(press.solve());
@@ -242,21 +242,22 @@ TEMPLATE_TEST_CASE("least squares: a flat disc pulled sideways", "[membrane]", d
   CHECK(std::abs(press.rim_force().x) < 1e-5);
 }
 
-TEST_CASE("least squares: a turned membrane has the same tensions", "[membrane]") {
+TEST_CASE("least squares: a rotated membrane has the same tensions", "[membrane]") {
   for (const Index columns : {24, 25}) {
     const Index rows = 17;
     Membrane<double> here(Leaning<double>{}, columns, rows);
-    Membrane<double> turned(Leaning<double>{2 * std::numbers::pi / double(columns)}, columns, rows);
+    Membrane<double> rotated(Leaning<double>{2 * std::numbers::pi / double(columns)}, columns,
+                             rows);
     here.lean(0.1);
-    turned.lean(0.1, 1);
+    rotated.lean(0.1, 1);
     REQUIRE(here.solve());
-    REQUIRE(turned.solve());
+    REQUIRE(rotated.solve());
     double worst = 0;
     for (Index j = 0; j < rows; ++j) {
       for (Index i = 0; i < columns; ++i) {
         const auto a = std::size_t(j * columns + i);
         const auto b = std::size_t(j * columns + here.segments.next(i));
-        const Tensions<double>&t = here.tensions, &u = turned.tensions;
+        const Tensions<double>&t = here.tensions, &u = rotated.tensions;
         worst = std::max({worst, std::abs(t.around_normal[a] - u.around_normal[b]),
                           std::abs(t.around_shear[a] - u.around_shear[b]),
                           std::abs(t.upward_normal[a] - u.upward_normal[b]),

@@ -178,9 +178,9 @@ TEST_CASE("normal force: eqs. 21 and 22 beyond the blend", "[normal_force]") {
 TEST_CASE("normal force: an affine equation is what it says", "[normal_force]") {
   const Published by_area_moved = published_compensation_by_area();
   CHECK(by_area_moved.displaced(10.3992, 5) == printed(6.2936016));
-  CHECK(by_area_moved.turned(10.3992, 10 * degree) == printed(10.69614));
+  CHECK(by_area_moved.rotated(10.3992, 10 * degree) == printed(10.69614));
   CHECK(published_compensation_by_depth().displaced(14.9847, 2) == printed(15.49964));
-  CHECK(published_compensation_by_depth().turned(6.58425, 10 * degree) == printed(5.2054));
+  CHECK(published_compensation_by_depth().rotated(6.58425, 10 * degree) == printed(5.2054));
   CHECK(AffineForce<>()(7, 3) == 7);
 }
 
@@ -385,12 +385,12 @@ TEST_CASE("normal force: compensations and errors that are refused", "[normal_fo
         owner + "displaced: per_unit = inf, must be finite");
   CHECK(refused_with(Published{.displaced = {1, 0, -infinity}}) ==
         owner + "displaced: offset_n = -inf, must be finite");
-  CHECK(refused_with(Published{.turned = {infinity, 0, 0}}) ==
-        owner + "turned: gain = inf, must be finite");
-  CHECK(refused_with(Published{.turned = {1, missing, 0}}) ==
-        owner + "turned: per_unit = nan, must be finite");
-  CHECK(refused_with(Published{.turned = {1, 0, missing}}) ==
-        owner + "turned: offset_n = nan, must be finite");
+  CHECK(refused_with(Published{.rotated = {infinity, 0, 0}}) ==
+        owner + "rotated: gain = inf, must be finite");
+  CHECK(refused_with(Published{.rotated = {1, missing, 0}}) ==
+        owner + "rotated: per_unit = nan, must be finite");
+  CHECK(refused_with(Published{.rotated = {1, 0, missing}}) ==
+        owner + "rotated: offset_n = nan, must be finite");
   for (const double bad : {0.0, -1.0, infinity, missing}) {
     const std::string given = bad == 0 ? "0" : bad < 0 ? "-1" : bad > 0 ? "inf" : "nan";
     CHECK(refused_with(Published{.blend_mm = bad}) ==
@@ -518,20 +518,20 @@ TEST_CASE("normal force: batches are frame by frame in any layout", "[normal_for
 
     // columns side by side in memory, and results in reverse
     test::Image<double> columns(4, count);
-    auto turned = transpose(as_view(columns));
+    auto rotated = transpose(as_view(columns));
     Eigen::MatrixXd eigen(count, 5);  // one column more than is read
     Eigen::Matrix<double, Eigen::Dynamic, 4, Eigen::RowMajor> eigen_rows(count, 4);
     test::ForeignImage<double> foreign(count, 4);
     for (Index i = 0; i < count; ++i) {
       eigen(i, 4) = missing;
       for (Index j = 0; j < 4; ++j) {
-        turned(i, j) = eigen(i, j) = eigen_rows(i, j) = samples.rows(i, j);
+        rotated(i, j) = eigen(i, j) = eigen_rows(i, j) = samples.rows(i, j);
         foreign.lines[static_cast<std::size_t>(i)][static_cast<std::size_t>(j)] =
             samples.rows(i, j);
       }
     }
     test::Image<double> reversed(count, 1, -7);
-    check_counts(area_in_motion.for_samples(turned, flip_rows(as_view(reversed))), samples);
+    check_counts(area_in_motion.for_samples(rotated, flip_rows(as_view(reversed))), samples);
     check_single_frames(samples, flip_rows(as_view(reversed)));
 
     Eigen::VectorXd vector(count);

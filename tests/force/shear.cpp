@@ -464,7 +464,7 @@ TEST_CASE("shear: many samples, and what is said of them", "[shear]") {
   test::Image<double> samples(8, 4), out(8, 3);
   const double rows[8][4] = {{1, 0.5, 0, 0.1},      // within
                              {1, 1, 1.2, 0.1},      // displaced beyond
-                             {1, 0.5, 0, -0.6},     // turned beyond
+                             {1, 0.5, 0, -0.6},     // rotated beyond
                              {1, 2, 0, 0.6},        // both, one sample
                              {0, 9, 9, 9},          // no contact: nothing is beyond
                              {1, none, 0, 0.1},     // no force

@@ -269,9 +269,9 @@ TEMPLATE_TEST_CASE("a compensation that cancels the force", "[normal_force]", fl
       PolynomialForce<2, Digits50>{{Digits50(c[0]), Digits50(c[1]), Digits50(c[2])},
                                    Digits50(curve.from),
                                    Digits50(curve.to)},
-      PublishedCompensation<Digits50>{exactly(compensation.displaced), exactly(compensation.turned),
-                                      Digits50(compensation.blend_mm),
-                                      Digits50(compensation.blend_rad)});
+      PublishedCompensation<Digits50>{
+          exactly(compensation.displaced), exactly(compensation.rotated),
+          Digits50(compensation.blend_mm), Digits50(compensation.blend_rad)});
   // where the sum is 0 along the axis x, by 50 digits
   Digits50 low(2), high(4);
   const Digits50 depth_mm(S(1));

@@ -170,14 +170,14 @@ TEST_CASE("object surface: the sphere is the one of least square distance", "[su
     const auto f = detail::SurfaceFrame<double>::around(r.shape.normal);
     for (const double sign : {-1.0, 1.0}) {
       for (const double step : {1e-3, 1e-2, 1e-1}) {
-        Sphere<double> bent = r.shape, moved = r.shape, turned = r.shape, other = r.shape;
+        Sphere<double> bent = r.shape, moved = r.shape, rotated = r.shape, other = r.shape;
         bent.curvature_per_mm += sign * step * r.shape.curvature_sd_per_mm;
         moved.point_mm = moved.point_mm + sign * step * 0.0015 * f.n;
-        turned.normal = normalized(f.n + sign * step * 0.0008 * f.u);
+        rotated.normal = normalized(f.n + sign * step * 0.0008 * f.u);
         other.normal = normalized(f.n + sign * step * 0.0008 * f.v);
         CHECK(sum_sq(bent) > least);
         CHECK(sum_sq(moved) > least);
-        CHECK(sum_sq(turned) > least);
+        CHECK(sum_sq(rotated) > least);
         CHECK(sum_sq(other) > least);
       }
     }

@@ -244,7 +244,7 @@ TEST_CASE("a plain press has its scale", "[stick_ratio]") {
   }
   // By least squares exactly, if only the pressed dots move little against fading_px.
   const StickRatio<ReferenceDotMotion<>, UpdatedReference<>, NoDenoising, double> wide(
-      21, 21, {.reference_px = 0.1, .store_px = 0, .slip_px = 0.05}, {.zoom = {.fading_px = 1e3}});
+      21, 21, {.reference_px = 0.1, .store_px = 0, .slip_px = 0.05}, {.scale = {.fading_px = 1e3}});
   auto state = wide.start();
   DotStates states(21, 21);
   (void)wide(before, truth.contact, states, state);

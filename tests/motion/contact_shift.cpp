@@ -201,7 +201,7 @@ TEMPLATE_TEST_CASE("contact shift: angles near half a turn do not wrap",
 
 TEST_CASE("contact shift: the rigid motion nearest to the dots", "[contact_shift]") {
   // Four dots at the ends of a cross. Two are carried on by 1, two stay: the middle is carried by
-  // half, and none is turned.
+  // half, and none is rotated.
   Points free(3, 3, {test::nan, test::nan});
   free(0, 1) = {0, -2};
   free(1, 0) = {-2, 0};
@@ -462,7 +462,7 @@ TEST_CASE("contact shift: dots of any type", "[contact_shift]") {
     }
   }
   check(cv_free, cv_dots);
-  // turned grids: the dots' order in memory is no matter
+  // rotated grids: the dots' order in memory is no matter
   const StridedView<const Point2<double>> a(free.cells.data(), 9, 9, 9),
       b(dots.cells.data(), 9, 9, 9);
   const StridedView<const std::uint8_t> c(contact.cells.data(), 9, 9, 9);
@@ -600,7 +600,7 @@ namespace {
 
 enum class Mistake { stuck, mismatched };
 
-/// All dots carried along and turned, but some that stand still or were taken for others.
+/// All dots carried along and rotated, but some that stand still or were taken for others.
 Points with_mistakes(const Points& free,
                      const Mask& contact,
                      const Rigid& motion,

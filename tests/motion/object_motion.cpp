@@ -25,14 +25,14 @@ namespace {
 constexpr double degree = std::numbers::pi / 180;
 using Vector = Point3<double>;
 
-Neighbourhood<double> turned(Neighbourhood<double> n, const Rotation<double>& r) {
+Neighbourhood<double> rotated(Neighbourhood<double> n, const Rotation<double>& r) {
   for (auto& p : n.dot) {
     p = r(p);
   }
   return n;
 }
 
-Dots turned(Dots dots, const Pose<double>& pose) {
+Dots rotated(Dots dots, const Pose<double>& pose) {
   for (auto& p : dots.cells) {
     p = pose(p);
   }
@@ -59,7 +59,7 @@ double path_error_deg(const Turn& turn) {
   auto result = motion(free, contact, state);
   for (int k = 0; k < 300; ++k) {
     pose = Pose<double>{test::turned_by(turn(k)), {0, 0, 0}} * pose;
-    result = motion(turned(free, pose), contact, state);
+    result = motion(rotated(free, pose), contact, state);
   }
   return error_deg(result.pose.rotation, pose.rotation);
 }
@@ -78,7 +78,7 @@ TEST_CASE("object motion: the published basis as printed and as repaired (E021, 
   const auto k = test::nine_dots();
   const Rotation<double> true_turn =
       rotation_of(Angles<double>{20.6 * degree, 8.9 * degree, 6.7 * degree});
-  const auto l = turned(k, true_turn);
+  const auto l = rotated(k, true_turn);
   CHECK(error_deg(PublishedBasis::turn(k, l).rotation, true_turn) < 1e-12);
 
   // Eq. 17 with the vectors as rows: N_l^T = R N_k^T. Right only from an upright frame, and then
@@ -334,7 +334,7 @@ TEST_CASE("object motion: the contact reference dot") {
     holes(2, 2).y = std::nan("");
     const ObjectMotion<> with_holes(holes);
     auto other = with_holes.start();
-    dots = turned(free, {{}, {0, 0, -1}});
+    dots = rotated(free, {{}, {0, 0, -1}});
     CHECK(with_holes(dots, contact, other).reference == DotIndex{1, 4});
   }
   SECTION("it stays within the margin, and changes are reported") {
@@ -379,7 +379,7 @@ TEMPLATE_TEST_CASE("object motion: statuses",
   CHECK(result.ok());
   CHECK(result.begun);
   CHECK(result.position_mm.x == free(1, 1).x);
-  const Dots moved = turned(free, pose);
+  const Dots moved = rotated(free, pose);
   result = motion(moved, all, state);
   CHECK(result.ok());
   CHECK(result.position_mm.x == Approx(pose(free(1, 1)).x));
@@ -396,7 +396,7 @@ TEMPLATE_TEST_CASE("object motion: statuses",
       CHECK(held.position_mm.x == result.position_mm.x);
       CHECK(held.dots_used == 0);
     }
-    const auto again = motion(turned(free, pose * pose), all, state);
+    const auto again = motion(rotated(free, pose * pose), all, state);
     CHECK(again.ok());
     CHECK(!again.begun);
     if (!std::is_same_v<TestType, SumOfAngles<>>) {
@@ -449,7 +449,7 @@ TEMPLATE_TEST_CASE("object motion: statuses",
   SECTION("a copy of the state goes its own way") {
     auto copy = state;
     (void)motion(blank, none, copy);
-    (void)motion(turned(free, pose * pose), all, copy);
+    (void)motion(rotated(free, pose * pose), all, copy);
     CHECK(error_deg(motion(moved, all, state).pose.rotation, pose.rotation) < 1e-10);
   }
 }
@@ -464,7 +464,7 @@ TEST_CASE("object motion: a neighbourhood uses the dots that remain") {
   const auto k = test::nine_dots();
   const Rotation<double> turn = rotation_of(Angles<double>{0.2, -0.3, 0.4});
   const auto check = [&](std::vector<std::size_t> kept, MotionStatus expected) {
-    auto l = turned(k, turn);
+    auto l = rotated(k, turn);
     l.found = {};
     for (const std::size_t at : kept) {
       l.found[at] = true;
@@ -519,7 +519,7 @@ TEST_CASE("object motion: what remains of an affine grid has its directions") {
 
 TEST_CASE("object motion: the same on every grid of dots and of flags") {
   const Dots free = small_grid();
-  const Dots moved = turned(free, {rotation_of(Angles<double>{0.1, 0.2, 0.3}), {1, 2, -1}});
+  const Dots moved = rotated(free, {rotation_of(Angles<double>{0.1, 0.2, 0.3}), {1, 2, -1}});
   Eigen::Matrix<Eigen::Vector3d, Eigen::Dynamic, Eigen::Dynamic> eigen(7, 7);
   Eigen::Array<bool, Eigen::Dynamic, Eigen::Dynamic> flags(7, 7);
   cv::Mat_<cv::Vec3d> image(7, 7);

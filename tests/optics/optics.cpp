@@ -1,11 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
-#include "fingerpad/optics/camera.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
+#include "fingerpad/optics/camera.hpp"
 #include "support/cameras.hpp"
 #include "support/catch.hpp"
 #include "support/generators.hpp"
@@ -149,7 +148,7 @@ TEMPLATE_TEST_CASE(
 }
 
 TEST_CASE("symmetry of the picture", "[optics]") {
-  rc::prop("a turned pixel sees the turned point", [] {
+  rc::prop("a rotated pixel sees the rotated point", [] {
     const auto camera = any_camera();
     const auto p = any_offset(camera);
     const double angle = test::uniform(-4, 4);

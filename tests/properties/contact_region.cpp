@@ -11,8 +11,8 @@
 
 #include "support/catch.hpp"
 #include "support/generators.hpp"
+#include "support/rotated.hpp"
 #include "support/soap_film.hpp"
-#include "support/turned.hpp"
 
 using namespace fingerpad;
 using test::Image;
@@ -136,17 +136,17 @@ TEST_CASE("the contact turns with the membrane", "[contact_region]") {
     const ContactTest test = any_test();
     const Found found = find_in(depth, test);
     // in double no curvature comes as near the threshold as sums in another order differ
-    const Found turned = find_in(transposed(depth), test);
+    const Found rotated = find_in(transposed(depth), test);
     const Found flipped = find_in(mirrored(depth), test);
     const Found upset = find_in(transposed(mirrored(transposed(depth))), test);
-    RC_ASSERT(turned.mask.cells == transposed(found.mask).cells);
+    RC_ASSERT(rotated.mask.cells == transposed(found.mask).cells);
     RC_ASSERT(flipped.mask.cells == mirrored(found.mask).cells);
     RC_ASSERT(upset.mask.cells == transposed(mirrored(transposed(found.mask))).cells);
-    RC_ASSERT(turned.result.unknown_px == found.result.unknown_px);
-    RC_ASSERT(turned.result.regions == found.result.regions);
+    RC_ASSERT(rotated.result.unknown_px == found.result.unknown_px);
+    RC_ASSERT(rotated.result.regions == found.result.regions);
     if (found.result.in_contact()) {
-      RC_ASSERT(std::abs(turned.result.area_mm2 - found.result.area_mm2) < 1e-3);
-      RC_ASSERT(std::abs(turned.result.center_mm.x - found.result.center_mm.y) < 1e-3);
+      RC_ASSERT(std::abs(rotated.result.area_mm2 - found.result.area_mm2) < 1e-3);
+      RC_ASSERT(std::abs(rotated.result.center_mm.x - found.result.center_mm.y) < 1e-3);
       RC_ASSERT(std::abs(flipped.result.center_mm.x + found.result.center_mm.x) < 1e-3);
       RC_ASSERT(std::abs(flipped.result.depth_mm - found.result.depth_mm) < 1e-4);
     }
@@ -165,8 +165,8 @@ TEST_CASE("so does its edge, but for the lattice that its level is taken on", "[
     const WithoutSpecks specks{20};
     const Found found = find_in<HalfLevelEdge>(depth, test, specks);
     RC_ASSERT(found.result.regions == 1);
-    const Found turned = find_in<HalfLevelEdge>(transposed(depth), test, specks);
-    RC_ASSERT(turned.mask.cells == transposed(found.mask).cells);
+    const Found rotated = find_in<HalfLevelEdge>(transposed(depth), test, specks);
+    RC_ASSERT(rotated.mask.cells == transposed(found.mask).cells);
     const Found flipped = find_in<HalfLevelEdge>(mirrored(depth), test, specks);
     RC_ASSERT(differing(flipped.mask, mirrored(found.mask)) <= found.result.contact_px / 50);
   });

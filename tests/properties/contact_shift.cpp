@@ -28,12 +28,12 @@ struct Rigid {
   double angle_rad;
   double x;
   double y;
-  Point2<double> turned(const Point2<double>& p) const {
+  Point2<double> rotated(const Point2<double>& p) const {
     const double c = std::cos(angle_rad), s = std::sin(angle_rad);
     return {c * p.x - s * p.y, s * p.x + c * p.y};
   }
   Point2<double> operator()(const Point2<double>& p) const {
-    const auto t = turned(p);
+    const auto t = rotated(p);
     return {t.x + x, t.y + y};
   }
 };
@@ -132,13 +132,13 @@ TEMPLATE_TEST_CASE("contact shift: the axes are a matter of choice",
                    (Way<ContactDots, PlainMean>),
                    (Way<ContactDots, HuberMean>),
                    (Way<OneDot, PlainMean>)) {
-  rc::prop("turned and shifted with all dots of both frames, the shift turns with them", [] {
+  rc::prop("rotated and shifted with all dots of both frames, the shift turns with them", [] {
     const Scene s = any_scene();
     const Rigid view = any_motion();
     const auto a = TestType::of(s);
     const auto b = TestType::of({mapped(s.free, view), mapped(s.dots, view), s.contact});
     RC_ASSERT(a.status == ShiftStatus::measured && b.status == a.status && a.dots == b.dots);
-    RC_ASSERT(apart(b.displacement, view.turned(a.displacement)) < tolerance<TestType>);
+    RC_ASSERT(apart(b.displacement, view.rotated(a.displacement)) < tolerance<TestType>);
     RC_ASSERT(apart(a.rotation_rad, b.rotation_rad) < tolerance<TestType>);
     RC_ASSERT(std::abs(a.residual_rms - b.residual_rms) < tolerance<TestType>);
   });

@@ -10,13 +10,13 @@
 #include "support/catch.hpp"
 #include "support/generators.hpp"
 #include "support/pad.hpp"
-#include "support/turned.hpp"
+#include "support/rotated.hpp"
 
 using namespace fingerpad;
 using test::Image;
 using test::mirrored;
+using test::rotated;
 using test::transposed;
-using test::turned;
 
 namespace {
 
@@ -80,13 +80,13 @@ TEMPLATE_TEST_CASE("curvature turns and scales with the membrane",
                    HessianFit<>,
                    ClampedHessian<>,
                    RingStencil<>) {
-  rc::prop("transposed, mirrored, turned by 180 degrees", [] {
+  rc::prop("transposed, mirrored, rotated by 180 degrees", [] {
     const Image<double> depth = any_membrane<double>();
     const CurvatureRing ring = any_ring();
     const Image<double> k = curvatures<TestType>(depth, ring);
     RC_ASSERT(close(curvatures<TestType>(transposed(depth), ring), transposed(k), rounding));
     RC_ASSERT(close(curvatures<TestType>(mirrored(depth), ring), mirrored(k), rounding));
-    RC_ASSERT(close(curvatures<TestType>(turned(depth), ring), turned(k), rounding));
+    RC_ASSERT(close(curvatures<TestType>(rotated(depth), ring), rotated(k), rounding));
   });
   rc::prop("moved along z, on the plate's own pitch", [] {
     const Image<double> depth = any_membrane<double>();

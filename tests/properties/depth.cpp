@@ -11,7 +11,7 @@
 #include "support/catch.hpp"
 #include "support/generators.hpp"
 #include "support/pad.hpp"
-#include "support/turned.hpp"
+#include "support/rotated.hpp"
 
 using namespace fingerpad;
 using test::Frame;
@@ -93,7 +93,7 @@ void spoil(Frame<Pixel>& frame, int share) {
 }
 
 template <class Pixel, class Turn>
-Frame<Pixel> turned(const Frame<Pixel>& frame, const Turn& turn) {
+Frame<Pixel> rotated(const Frame<Pixel>& frame, const Turn& turn) {
   Frame<Pixel> out(0, 0);
   out.red = turn(frame.red);
   out.green = turn(frame.green);
@@ -255,13 +255,13 @@ TEMPLATE_TEST_CASE("a mirrored or transposed frame gives the mirrored or transpo
     mirror.camera.center_x_px = static_cast<double>(pad.cols - 1) - pad.camera.center_x_px;
     // the reference's depths differ by roundoff, and so, in 8 bit, does the step they are stored in
     const auto flip = [](const auto& image) { return mirrored(image); };
-    RC_ASSERT(difference(depth_of(mirror, turned(frame, flip)), mirrored(depth)) <=
+    RC_ASSERT(difference(depth_of(mirror, rotated(frame, flip)), mirrored(depth)) <=
               bound_mm::anchored_8_bit);
     Pad turn = pad;
     std::swap(turn.rows, turn.cols);
     std::swap(turn.camera.center_x_px, turn.camera.center_y_px);
     const auto swap = [](const auto& image) { return transposed(image); };
-    RC_ASSERT(difference(depth_of(turn, turned(frame, swap)), transposed(depth)) <=
+    RC_ASSERT(difference(depth_of(turn, rotated(frame, swap)), transposed(depth)) <=
               bound_mm::anchored_8_bit);
   });
 }

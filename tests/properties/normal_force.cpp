@@ -328,15 +328,15 @@ TEMPLATE_TEST_CASE("normal force: a compensation knows no direction",
     const Vector d = any_displacement();
     const double rotation = test::uniform(-0.3, 0.3);
     const double moved = force(measure, d, rotation).force_n;
-    // mirrored, turned by a right angle, twisted the other way: to the last bit
+    // mirrored, rotated by a right angle, twisted the other way: to the last bit
     for (const Vector& other : {Vector{-d.x, d.y}, Vector{d.x, -d.y}, Vector{-d.x, -d.y},
                                 Vector{d.y, d.x}, Vector{-d.y, d.x}}) {
       RC_ASSERT(force(measure, other, rotation).force_n == moved);
       RC_ASSERT(force(measure, other, -rotation).force_n == moved);
     }
     const double turn = test::uniform(-3, 3), c = std::cos(turn), s = std::sin(turn);
-    const double turned = force(measure, {c * d.x - s * d.y, s * d.x + c * d.y}, rotation).force_n;
-    RC_ASSERT(std::abs(turned - moved) <= 1e-12 * (100 + 10 * scale_of(curve) + moved));
+    const double rotated = force(measure, {c * d.x - s * d.y, s * d.x + c * d.y}, rotation).force_n;
+    RC_ASSERT(std::abs(rotated - moved) <= 1e-12 * (100 + 10 * scale_of(curve) + moved));
   });
 }
 
@@ -372,13 +372,13 @@ TEST_CASE("normal force: the published compensation between its ends", "[normal_
       return found >= low - margin && found <= high + margin;
     };
     RC_ASSERT(between(force(m, along(1, length)).force_n, published.displaced(plain, length)));
-    RC_ASSERT(between(force(m, {0, 0}, -angle).force_n, published.turned(plain, angle)));
+    RC_ASSERT(between(force(m, {0, 0}, -angle).force_n, published.rotated(plain, angle)));
     // and beyond them each is the printed one, and both their sum
     const double far = published.blend_mm * test::uniform(1, 4) + 1e-9;
     const double wide = published.blend_rad * test::uniform(1, 4) + 1e-9;
     const double margin = 1e-13 * (300 + 10 * scale_of(curve));
     const double by_length = published.displaced(plain, far);
-    const double by_angle = published.turned(plain, wide);
+    const double by_angle = published.rotated(plain, wide);
     const auto off = [&](double found, double expected) {
       return std::abs(found - (std::max)(0.0, expected));
     };
@@ -405,7 +405,7 @@ TEST_CASE("normal force: units do not matter", "[normal_force][law]") {
         curve.from * area,
         curve.to * area};
     const PublishedCompensation<> other{affine(published.displaced, length),
-                                        affine(published.turned, angle),
+                                        affine(published.rotated, angle),
                                         published.blend_mm * length, published.blend_rad * angle};
     CurveErrors<3> errors{.residual_sd_n = test::uniform(0, 1), .measure_sd = test::uniform(0, 1)};
     errors.covariance[0][0] = test::uniform(0, 1);

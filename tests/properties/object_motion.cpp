@@ -201,7 +201,7 @@ TEMPLATE_TEST_CASE("the motion back is the inverse",
   });
 }
 
-TEMPLATE_TEST_CASE("a scene seen mirrored, transposed or turned gives that motion",
+TEMPLATE_TEST_CASE("a scene seen mirrored, transposed or rotated gives that motion",
                    "[object_motion][law]",
                    ContactMap,
                    AnchoredComposition<>,

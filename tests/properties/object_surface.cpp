@@ -22,7 +22,7 @@ constexpr double infinite = std::numeric_limits<double>::infinity();
 using Point = Point3<double>;
 using Mask = Image<unsigned char>;
 
-/// A square image, so that it can be turned about its center.
+/// A square image, so that it can be rotated about its center.
 struct Patch {
   Index size;
   Image<double> depth;
@@ -129,7 +129,7 @@ bool all_finite(const Quadric<double>& q) {
 
 }  // namespace
 
-TEST_CASE("object surface: turned and mirrored scenes give turned and mirrored shapes",
+TEST_CASE("object surface: rotated and mirrored scenes give rotated and mirrored shapes",
           "[surface]") {
   rc::prop("a quarter turn about the axis, and a mirror", [] {
     const Patch patch = any_patch();
@@ -141,11 +141,11 @@ TEST_CASE("object surface: turned and mirrored scenes give turned and mirrored s
       RC_ASSERT(before.ok());
       // x to y, y to -x
       const auto turn = [&](Index i, Index j) { return std::pair<Index, Index>(j, last - i); };
-      const auto turned = fit<Model>(camera, placed(patch.depth, turn), placed(patch.mask, turn));
-      RC_ASSERT(turned.ok());
-      RC_ASSERT(near(turned.rms_mm, before.rms_mm, 1e-7));
+      const auto rotated = fit<Model>(camera, placed(patch.depth, turn), placed(patch.mask, turn));
+      RC_ASSERT(rotated.ok());
+      RC_ASSERT(near(rotated.rms_mm, before.rms_mm, 1e-7));
       RC_ASSERT(is_moved(
-          before.shape, turned.shape,
+          before.shape, rotated.shape,
           [](const Point& p, bool) {
             return Point{-p.y, p.x, p.z};
           },

@@ -302,12 +302,12 @@ TEST_CASE("pre-slip: what does not matter", "[preslip][law]") {
     const auto cells =
         moved(options.centroid_tolerance_mm * static_cast<double>(test::whole(-1000, 1000)),
               options.centroid_tolerance_mm * static_cast<double>(test::whole(-1000, 1000)));
-    const auto turned =
+    const auto rotated =
         changed(history, [](auto& s, std::size_t) { std::swap(s.center_x_mm, s.center_y_mm); });
     for_all_rules([&](auto rule) {
       using Rule = decltype(rule);
       const Results results = run<Rule>(history, options);
-      RC_ASSERT(equal(results, run<Rule>(turned, options)));
+      RC_ASSERT(equal(results, run<Rule>(rotated, options)));
       RC_ASSERT(equal(results, run<Rule>(cells, options)));
       RC_ASSERT((Rule::Centroid::is_rounded || equal(results, run<Rule>(any, options))));
     });

@@ -65,7 +65,7 @@ double length(const Point2<double>& p) {
 bool near(double a, double b, double scale, double epsilons) {
   return std::abs(a - b) <= epsilons * ulp * std::abs(scale);
 }
-Point2<double> turned(const Point2<double>& p, double angle) {
+Point2<double> rotated(const Point2<double>& p, double angle) {
   const double c = std::cos(angle), s = std::sin(angle);
   return {c * p.x - s * p.y, s * p.x + c * p.y};
 }
@@ -87,8 +87,8 @@ TEMPLATE_TEST_CASE("shear: a round pad looks the same from every side",
     const double measure = any_measure(), theta = any_rotation();
     const auto d = any_displacement();
     const double angle = test::uniform(-std::numbers::pi, std::numbers::pi);
-    const auto r = shear(measure, d, theta), t = shear(measure, turned(d, angle), theta);
-    const auto expected = turned(r.tangential_force_n, angle);
+    const auto r = shear(measure, d, theta), t = shear(measure, rotated(d, angle), theta);
+    const auto expected = rotated(r.tangential_force_n, angle);
     const double size = length(expected);
     RC_ASSERT(near(t.tangential_force_n.x, expected.x, size, 20));
     RC_ASSERT(near(t.tangential_force_n.y, expected.y, size, 20));
@@ -148,7 +148,7 @@ TEMPLATE_TEST_CASE(
     const Shear shear(shear_without_measure(), map);
     const double angle = test::uniform(-std::numbers::pi, std::numbers::pi);
     const auto force = [&](double size) {
-      return length(shear(1.0, turned({size, 0}, angle), 0).tangential_force_n);
+      return length(shear(1.0, rotated({size, 0}, angle), 0).tangential_force_n);
     };
     const auto moment = [&](double size) { return shear(1.0, {0, 0}, size).moment_n_mm; };
     const auto smooth = [](const auto& f, double to) {
@@ -308,7 +308,7 @@ TEST_CASE("shear: moments about other points", "[shear][law]") {
   rc::prop("turning everything changes nothing", [=] {
     const auto force = any_point(), center = any_point();
     const double moment = test::uniform(-100, 100), angle = test::uniform(-4, 4);
-    RC_ASSERT(near(moment_about_origin(moment, turned(force, angle), turned(center, angle)),
+    RC_ASSERT(near(moment_about_origin(moment, rotated(force, angle), rotated(center, angle)),
                    moment_about_origin(moment, force, center), 1000, 8));
   });
 }

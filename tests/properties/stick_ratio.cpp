@@ -34,7 +34,7 @@ struct Recording {
   Index cols() const { return dots[0].cols(); }
 };
 
-/// An object dragged, turned and pressed any way, while its stick disc changes any way.
+/// An object dragged, rotated and pressed any way, while its stick disc changes any way.
 Recording any_recording(double lost_share = 0) {
   DotPattern pattern{.rows = 13, .cols = 12, .contact_pitches = test::uniform(3.5, 5.5)};
   pattern.disc_row = test::uniform(-1, 1);
@@ -95,8 +95,8 @@ struct Policies {
   using Ratio = StickRatio<Motion, Reference, Denoising, double>;
   static Ratio ratio(const Recording& r, const StickTest& test = {}, double scale = 1) {
     Motion motion;
-    if constexpr (requires { motion.zoom.fading_px; }) {
-      motion.zoom.fading_px *= scale;
+    if constexpr (requires { motion.scale.fading_px; }) {
+      motion.scale.fading_px *= scale;
     }
     return Ratio(r.rows(), r.cols(), test, motion);
   }
@@ -149,7 +149,7 @@ TEMPLATE_TEST_CASE("stick and slip do not depend on how the image is held",
                    (Policies<StickConsensus<>, FirstReference, DotMean>),
                    Policies<ReferenceDotMotion<>>,
                    PublishedPolicies) {
-  rc::prop("shifted, turned, mirrored, enlarged with the thresholds", [] {
+  rc::prop("shifted, rotated, mirrored, enlarged with the thresholds", [] {
     const Recording recording = any_recording(test::whole(0, 1) == 0 ? 0 : 0.05);
     const Said said = follow(TestType::ratio(recording), recording);
     const double shift_x = test::uniform(-500, 500), shift_y = test::uniform(-500, 500);

@@ -140,7 +140,7 @@ TEMPLATE_TEST_CASE("taxel features: laws", "[taxel_features]", ZeroCrossings, Sp
     }
   });
 
-  rc::prop("an array that is turned over is felt turned over", [] {
+  rc::prop("an array that is rotated over is felt rotated over", [] {
     const auto recording = any_recording(3, 4, 60);
     const Features features(3, 4, any_options());
     const Features across(4, 3, features.options());
@@ -155,15 +155,15 @@ TEMPLATE_TEST_CASE("taxel features: laws", "[taxel_features]", ZeroCrossings, Sp
       transposed.push_back(t);
     }
     const auto plain = features_of(features, recording);
-    const auto turned = features_of(across, transposed);
+    const auto rotated = features_of(across, transposed);
     for (std::size_t n = 0; n < plain.size(); ++n) {
-      RC_ASSERT(plain[n].status == turned[n].status);
+      RC_ASSERT(plain[n].status == rotated[n].status);
       // of equals another may be the first
-      RC_ASSERT(std::fabs(plain[n].deviation - turned[n].deviation) <= 1e-9 * plain[n].deviation);
+      RC_ASSERT(std::fabs(plain[n].deviation - rotated[n].deviation) <= 1e-9 * plain[n].deviation);
       RC_ASSERT(!plain[n].is_pressed() ||
-                std::fabs(plain[n].center_x_mm - turned[n].center_y_mm) < 1e-12);
+                std::fabs(plain[n].center_x_mm - rotated[n].center_y_mm) < 1e-12);
       RC_ASSERT(!plain[n].is_pressed() ||
-                std::fabs(plain[n].center_y_mm - turned[n].center_x_mm) < 1e-12);
+                std::fabs(plain[n].center_y_mm - rotated[n].center_x_mm) < 1e-12);
     }
   });
 

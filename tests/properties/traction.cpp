@@ -316,8 +316,8 @@ TEST_CASE("the sum of the loads is what crosses the border", "[traction][law]") 
 
 TEST_CASE("the sum of the loads over all dots, from the border alone", "[traction][law]") {
   // All interior dots are summed. What holds them is what the cells along the border of the grid
-  // pull the border dots with, turned round, and the pressure on the area that the border's dots do
-  // not take.
+  // pull the border dots with, rotated round, and the pressure on the area that the border's dots
+  // do not take.
   rc::prop("force", [] {
     Pad pad = Pad::any();
     for (auto& flag : pad.contact.cells) {

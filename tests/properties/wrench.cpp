@@ -38,8 +38,8 @@ struct Placed {
   }
   /// A moment of forces: of an axial vector.
   Vector moment(const Vector& m) const {
-    const Vector turned = (*this)(m);
-    return mirrored ? Vector{-turned.x, -turned.y, -turned.z} : turned;
+    const Vector rotated = (*this)(m);
+    return mirrored ? Vector{-rotated.x, -rotated.y, -rotated.z} : rotated;
   }
   Vector back(const Vector& p) const {
     const double c = std::cos(turn_rad) / scale, s = std::sin(turn_rad) / scale;
@@ -148,7 +148,7 @@ struct Way {
 
 }  // namespace
 
-TEMPLATE_TEST_CASE("wrench: what is turned, mirrored or scaled",
+TEMPLATE_TEST_CASE("wrench: what is rotated, mirrored or scaled",
                    "[wrench][law]",
                    Way<BalancedRim>,
                    Way<ClosedForm>,
@@ -162,17 +162,17 @@ TEMPLATE_TEST_CASE("wrench: what is turned, mirrored or scaled",
     const RimOfDots rim = rim_of_48();
     const auto dots = rim.dots(AnyLoad());
     const auto still = measure<W>(shape, rim.borders(), dots);
-    Lopsided turned = shape;
-    turned.placed.turn_rad =
+    Lopsided rotated = shape;
+    rotated.placed.turn_rad =
         2 * pi * static_cast<double>(test::whole(1, columns - 1)) / static_cast<double>(columns);
     const auto r =
-        measure<W>(turned, moved(rim.borders(), turned.placed), moved(dots, turned.placed));
+        measure<W>(rotated, moved(rim.borders(), rotated.placed), moved(dots, rotated.placed));
     RC_ASSERT(r.status == still.status);
     if (still.status == WrenchStatus::ok) {
       // but for the mesh on which the middle of the contact is looked for
       const double allowed = TestType::needs_balance ? 0.03 : 1e-9;
-      RC_ASSERT(far(r.force_n, turned.placed(still.force_n)) <= allowed * force_scale(still));
-      RC_ASSERT(far(r.moment_n_mm, turned.placed(still.moment_n_mm)) <=
+      RC_ASSERT(far(r.force_n, rotated.placed(still.force_n)) <= allowed * force_scale(still));
+      RC_ASSERT(far(r.moment_n_mm, rotated.placed(still.moment_n_mm)) <=
                 allowed * moment_scale(still));
     }
   });

@@ -166,7 +166,7 @@ std::string lines_of(int frame, const DotGrid& dots) {
   return lines;
 }
 
-cv::Mat turned(const cv::Mat& image, double degrees) {
+cv::Mat rotated(const cv::Mat& image, double degrees) {
   const auto& camera = press().recording.sensor.camera;
   const cv::Point2f axis(static_cast<float>(camera.center_x_px),
                          static_cast<float>(camera.center_y_px));
@@ -203,10 +203,10 @@ TEST_CASE("a 16-bit frame shows the dots of the 8-bit frame") {
         1e-4);
 }
 
-TEST_CASE("a print that is turned is found turned") {
+TEST_CASE("a print that is rotated is found rotated") {
   const double degrees = GENERATE(-8.0, 3.0, 8.0);
   const auto& recording = press().recording;
-  const replay::DotSource source(bundled, recording.sensor, turned(recording.reference, degrees),
+  const replay::DotSource source(bundled, recording.sensor, rotated(recording.reference, degrees),
                                  recording.reference_depth, 1);
   REQUIRE(source.present());
   const double angle = degrees * CV_PI / 180;

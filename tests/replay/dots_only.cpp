@@ -41,7 +41,7 @@ struct Pad {
   double fall = 0.5;                ///< of the light from the left border to the right one
 };
 
-/// Rows x cols of dots around the middle of the frame, turned from x to y.
+/// Rows x cols of dots around the middle of the frame, rotated from x to y.
 DotGrid grid_of(cv::Size size, double pitch_px, double turn_degrees) {
   const double c = std::cos(turn_degrees * CV_PI / 180);
   const double s = std::sin(turn_degrees * CV_PI / 180);
@@ -187,7 +187,7 @@ TEST_CASE("a grid of dots is found without a word about it") {
   const double turn_degrees = GENERATE(-30, 0, 8, 40);
   pad.radius_px = GENERATE(2.5, 6.0);
   const DotGrid truth = grid_of({7, 5}, 5 * pad.radius_px, turn_degrees);
-  INFO("bright " << pad.bright << ", turned " << turn_degrees << ", radius " << pad.radius_px);
+  INFO("bright " << pad.bright << ", rotated " << turn_degrees << ", radius " << pad.radius_px);
   const auto found = replay::find_pattern(drawn(pad, truth), {});
   REQUIRE(found);
   CHECK(found->look.bright == pad.bright);

@@ -402,14 +402,14 @@ TEST_CASE("either rule may be left out") {
 TEST_CASE("the order of the columns and the way of the file do not matter") {
   const Taxels taxels = taxels_of(rows, cols, samples, creeping);
   const std::string expected = text_of(taxels);
-  Taxels turned = taxels;
-  std::reverse(turned.header.begin(), turned.header.end());
-  std::rotate(turned.header.begin(), turned.header.begin() + 7, turned.header.end());
-  for (auto& line : turned.lines) {
+  Taxels rotated = taxels;
+  std::reverse(rotated.header.begin(), rotated.header.end());
+  std::rotate(rotated.header.begin(), rotated.header.begin() + 7, rotated.header.end());
+  for (auto& line : rotated.lines) {
     std::reverse(line.begin(), line.end());
     std::rotate(line.begin(), line.begin() + 7, line.end());
   }
-  CHECK(text_of(turned) == expected);
+  CHECK(text_of(rotated) == expected);
 
   std::string text = "\xEF\xBB\xBF";  // as a spreadsheet would write it
   for (const char c : taxels.text()) {

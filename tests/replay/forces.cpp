@@ -459,7 +459,7 @@ TEST_CASE("replay: forces are what the curves say of area, depth and shift", "[l
     CHECK(number(line, "normal_force_n") ==
           Approx(0.02 * number(line, "contact_area_mm2")).margin(1e-5));
   }
-  SECTION("by area, displaced and turned") {
+  SECTION("by area, displaced and rotated") {
     set_force(work,
               R"({"by_area": {"coefficients": [0, 0.02], "from_mm2": 3, "to_mm2": 340,
                              "per_mm_sq": 0.5, "per_rad_sq": 10000}})");

@@ -138,8 +138,8 @@ TEST_CASE("friction ratio: laws", "[friction_ratio][law]") {
              auto state = friction.start();
              (void)friction(test::uniform(0.1, 5), test::uniform(0.1, 5), true, state);
              const auto a = friction(force, normal, false, state);
-             const Point2<double> turned{force * std::cos(angle), force * std::sin(angle)};
-             const auto b = friction(turned, normal, false, state);
+             const Point2<double> rotated{force * std::cos(angle), force * std::sin(angle)};
+             const auto b = friction(rotated, normal, false, state);
              const auto c = friction(-factor * force, factor * normal, false, state);
              RC_ASSERT(std::abs(a.margin - b.margin) < 1e-12 * (1 + std::abs(a.margin)));
              RC_ASSERT(std::abs(a.margin - c.margin) < 1e-12 * (1 + std::abs(a.margin)));

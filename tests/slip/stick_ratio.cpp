@@ -719,8 +719,8 @@ TEST_CASE("stick ratio, bad input: other sizes and foreign states are refused") 
   CHECK(!ratio(shifted(6), all, other_states, state).accepted());
   auto foreign = StickRatio(9, 8).start();
   CHECK(!ratio(shifted(6), all, states, foreign).accepted());
-  auto turned = StickRatio(8, 9).start();
-  CHECK(!ratio(shifted(6), all, states, turned).accepted());
+  auto rotated = StickRatio(8, 9).start();
+  CHECK(!ratio(shifted(6), all, states, rotated).accepted());
   auto other_capacity =
       StickRatio(9, 9, {}, StickConsensus<>(), UpdatedReference<>{.capacity = 63}).start();
   const auto refused = ratio(shifted(6), all, states, other_capacity);
@@ -766,9 +766,9 @@ TEST_CASE("stick ratio: bad parameters are refused by name, value and range") {
   CHECK(motion(StickConsensus<>{.max_passes = 101}) ==
         "StickConsensus: max_passes = 101, must be in [0, 100]");
   CHECK(motion(StickConsensus<>{.max_passes = 0}) == "accepted");
-  CHECK(motion(ReferenceDotMotion<>{.zoom = {.fading_px = 0}}) ==
+  CHECK(motion(ReferenceDotMotion<>{.scale = {.fading_px = 0}}) ==
         "LeastSquaresScale: fading_px = 0, must be finite and > 0");
-  CHECK(motion(ReferenceDotMotion<>{.zoom = {.fading_px = test::nan}}) ==
+  CHECK(motion(ReferenceDotMotion<>{.scale = {.fading_px = test::nan}}) ==
         "LeastSquaresScale: fading_px = nan, must be finite and > 0");
 
   const auto capacity = [](Index n) {

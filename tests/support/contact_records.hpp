@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// Contacts of finite-element membranes, step by step: how large, how far carried along and turned,
+// Contacts of finite-element membranes, step by step: how large, how far carried along and rotated,
 // and their true loads. See tests/data/README.md.
 #include <algorithm>
 #include <cstdlib>

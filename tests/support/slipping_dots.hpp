@@ -150,7 +150,7 @@ enum class SlipScene {
   press,       ///< seen 1.15 times as large, all sticks
   zoom_in,     ///< the same while it is dragged and slips
   zoom_out,    ///< seen 0.85 times as large while it is dragged and slips
-  everything,  ///< dragged, turned and pressed, twice
+  everything,  ///< dragged, rotated and pressed, twice
 };
 inline constexpr std::array all_slip_scenes = {
     SlipScene::shear,   SlipScene::reversal,   SlipScene::slips,

@@ -7,7 +7,7 @@
 //   press                seen 1.15 times as large, all sticks
 //   drag                 dragged until hardly anything sticks
 //   reversal             and back
-//   twist                turned by 20 degrees, in place and while it is dragged
+//   twist                rotated by 20 degrees, in place and while it is dragged
 //   normal force change  seen 1.15 and 0.85 times as large while it is dragged and slips
 //   rolling              finite elements: a ball that sticks and rolls; U = 1 px, as with 2 px
 //                        there is no answer

@@ -7,8 +7,8 @@
 //   press                flat plate, 3.5 mm deep
 //   drag                 flat plate dragged half way to slip, and slipping
 //   reversal             the same half way back
-//   twist                flat plate turned half way to slip, and slipping
-//   normal force change  flat plate deeper step by step while it is dragged and turned
+//   twist                flat plate rotated half way to slip, and slipping
+//   normal force change  flat plate deeper step by step while it is dragged and rotated
 //   rolling              ball of 18 mm, half way of rolling
 //   wedge                cylinder of 12 mm, pressed, and dragged: an edge, as it were
 //   tilted               plate tilted by 8 degrees, pressed, and dragged

@@ -7,11 +7,11 @@
 //   press                carried 2 mm deeper
 //   drag                 dragged by 3 mm, while the patch slips from its edge to 3.8 mm
 //   reversal             the same, and back
-//   twist                turned by 20 degrees, while it slips
+//   twist                rotated by 20 degrees, while it slips
 //   normal force change  2 mm deeper and back, the patch growing from 3.5 to 6 mm and shrinking
 //   rolling              tests/support/rolling.hpp: a ball of 18 mm rolled along a circle
 //   wedge                a strip 3 dots wide touches; rocked by 10 degrees about its long axis,
-//                        then turned by 20 about z
+//                        then rotated by 20 about z
 //   tilted               tilted by 15 degrees, then in all directions, once around
 //   noisy                the tilt with three times the noise
 //   dots lost            the tilt with a fifth of the dots not found, others in each frame

@@ -73,11 +73,11 @@ inline Row small_angle() {
         Forms f;
         const auto other = fingerpad::rotation_of(Angles<S>{S(0.4), S(-0.7), S(1.1)});
         for (const double angle : sweep(1e-9, 1, 3)) {
-          const auto turned = fingerpad::rotation_of(Angles<S>{S(0), S(0), S(angle)}) * other;
-          const auto d = turned * fingerpad::inverse(other);
+          const auto rotated = fingerpad::rotation_of(Angles<S>{S(0), S(0), S(angle)}) * other;
+          const auto d = rotated * fingerpad::inverse(other);
           const S trace = d.m[0][0] + d.m[1][1] + d.m[2][2];
           f.naive.add_absolute(std::acos((trace - S(1)) / S(2)), Digits50(S(angle)));
-          f.stable.add_absolute(fingerpad::angle_between(other, turned), Digits50(S(angle)));
+          f.stable.add_absolute(fingerpad::angle_between(other, rotated), Digits50(S(angle)));
         }
         return f;
       });

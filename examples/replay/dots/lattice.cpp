@@ -325,7 +325,7 @@ Attempt attempt(const cv::Mat& image, const SpotLook& look) {
   return one;
 }
 
-/// With radius and pitch as they turned out to be, where that finds as many dots.
+/// With radius and pitch as they rotated out to be, where that finds as many dots.
 Attempt refined(const cv::Mat& image, Attempt one, const DotPattern& given) {
   constexpr int rounds = 2;
   for (int round = 0; round < rounds && !one.grid.empty(); ++round) {

@@ -3,7 +3,7 @@
 #pragma once
 // A grid of dots that nothing is known of: its dots' size, dark or bright, its two directions and
 // how many rows and columns it has all come from one frame. The rows are those directions that run
-// more nearly along the frame's; a grid may be turned, sheared, and bent a little from dot to dot.
+// more nearly along the frame's; a grid may be rotated, sheared, and bent a little from dot to dot.
 #include <opencv2/core.hpp>
 #include <optional>
 

@@ -57,7 +57,7 @@ std::string words_of_motion(const FrameDots& dots) {
   }
   const auto& moved = motion.displacement_mm;
   const auto degrees = [](double rad) { return rounded(rad / degree, 10); };
-  return format("object moved (%.2f, %.2f, %.2f) mm,  turned (%.1f, %.1f, %.1f) degrees",
+  return format("object moved (%.2f, %.2f, %.2f) mm,  rotated (%.1f, %.1f, %.1f) degrees",
                 rounded(moved.x, 100), rounded(moved.y, 100), rounded(moved.z, 100),
                 degrees(motion.angles.x_rad), degrees(motion.angles.y_rad),
                 degrees(motion.angles.z_rad));

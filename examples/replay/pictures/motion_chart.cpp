@@ -20,7 +20,7 @@ cv::Mat motion_chart(const std::string& title, const std::vector<FrameRow>& rows
       return row.motion.ok() ? row.motion.displacement_mm.*axis : none;
     };
   };
-  const auto turned = [](double fingerpad::Angles<double>::*axis) {
+  const auto rotated = [](double fingerpad::Angles<double>::*axis) {
     return [axis](const FrameRow& row) {
       return row.motion.ok() ? row.motion.angles.*axis / degree : none;
     };
@@ -36,9 +36,9 @@ cv::Mat motion_chart(const std::string& title, const std::vector<FrameRow>& rows
        {line_series("x", rows, moved(&Point::x)), line_series("y", rows, moved(&Point::y)),
         line_series("z", rows, moved(&Point::z))}},
       {"rotation of the object, degrees",
-       {line_series("about x", rows, turned(&Angles::x_rad)),
-        line_series("about y", rows, turned(&Angles::y_rad)),
-        line_series("about z", rows, turned(&Angles::z_rad))}}};
+       {line_series("about x", rows, rotated(&Angles::x_rad)),
+        line_series("about y", rows, rotated(&Angles::y_rad)),
+        line_series("about z", rows, rotated(&Angles::z_rad))}}};
   return line_chart(title, panels, rows.front().frame);
 }
 

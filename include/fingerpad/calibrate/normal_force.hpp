@@ -30,7 +30,7 @@ struct NormalForceFitOptions {
   bool through_zero = true;  ///< no force without contact; the published curves do without
   bool rising = true;        ///< it never falls from 0 to the largest measure
   bool displaced = false;    ///< also the compensation for displacement
-  bool turned = false;       ///< also the one for rotation
+  bool rotated = false;      ///< also the one for rotation
   FitOptions fit = {};
 };
 
@@ -102,7 +102,7 @@ ModelFit<S> fit_columns(const std::vector<ForceSample<S>>& samples,
   const Index columns = static_cast<Index>(terms.columns.size());
   const ModelFit<S> first = ModelFitter<S, PolynomialModel<Degree, S>>(
       owner, plain.names(), forces, plain, options)(Vector::Zero(columns), constant);
-  if (!terms.displaced && !terms.turned) {
+  if (!terms.displaced && !terms.rotated) {
     return first;
   }
   const PolynomialModel<Degree, S> whole(samples, to, terms);
@@ -170,7 +170,7 @@ NormalForceFit<Degree, S> fit_normal_force(std::span<const ForceSample<S>> sampl
                                            const NormalForceFitOptions& options) {
   using Fit = detail::ModelFit<S>;
   const auto usable = detail::usable_samples(samples, [&](const ForceSample<S>& s) {
-    const bool moved = options.displaced || options.turned;
+    const bool moved = options.displaced || options.rotated;
     return is_finite(s.normal_force_n) && (!moved || detail::has_finite_motion(s));
   });
   typename Fit::Vector forces(static_cast<Index>(usable.samples.size()));
@@ -181,7 +181,7 @@ NormalForceFit<Degree, S> fit_normal_force(std::span<const ForceSample<S>> sampl
     from = value(s.measure) >= value(from) ? from : s.measure;
     to = value(s.measure) <= value(to) ? to : s.measure;
   }
-  detail::PolynomialTerms terms{{}, options.displaced, options.turned};
+  detail::PolynomialTerms terms{{}, options.displaced, options.rotated};
   for (std::size_t k = options.through_zero ? 1 : 0; k <= static_cast<std::size_t>(Degree); ++k) {
     terms.columns.push_back(k);
   }
@@ -218,7 +218,7 @@ NormalForceFit<Degree, S> fit_normal_force(std::span<const ForceSample<S>> sampl
     result.per_mm_sq_sd = sqrt(fit.covariance(next, next));
     ++next;
   }
-  if (options.turned) {
+  if (options.rotated) {
     result.compensation.per_rad_sq = fit.parameters(next);
     result.per_rad_sq_sd = sqrt(fit.covariance(next, next));
   }

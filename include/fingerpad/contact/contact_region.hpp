@@ -47,11 +47,16 @@ struct [[nodiscard]] ContactResult {
 };
 
 /// The contact region of depth maps of one size.
-///   Statistic   ClampedMean<>, SectionMean<>, PublishedTwiceMean<>, HessianFit<>, RingStencil<>,
-///               ClampedHessian<>
-///   Edge        HalfLevelEdge, AtThreshold (published), WidenedByRing
-///   Cleaning    WithoutSpecks, LargestRegion, Hysteresis, NoCleaning (published)
-///   CameraType  Camera<double>, or OrthographicCamera<double> for height maps
+///   Statistic   ClampedMean<>       take this for any object, saddles of the free pad included
+///               RingStencil<9>      take this when time counts and contacts are flat
+///   Edge        HalfLevelEdge       take this when the area matters
+///               AtThreshold         take this when only the place of the contact matters
+///   Cleaning    WithoutSpecks       take this: regions as small as noise makes them are dropped
+///               Hysteresis          take this when a weak contact falls apart
+///   CameraType  Camera<double>      take this for depth maps along a camera's rays
+///               OrthographicCamera  take this for height maps
+/// The other statistics, WidenedByRing, LargestRegion and NoCleaning are what these are compared
+/// with; published/contact_region.hpp is the test as printed.
 /// A pixel whose depth is missing is never contact; one whose ring is partly missing is judged by
 /// the directions that remain, or is unknown if these are too few (ContactTest::ring).
 ///

@@ -43,9 +43,14 @@ struct [[nodiscard]] DepthResult {
 };
 
 /// Depth of every pixel of a frame, in the scalar S.
-///   Smoothing  NoSmoothing, BoxMean (published), BiasFreeMean, or Anchored<> of the latter two
-///   Inverse    Bisection (published), Newton, ExponentialFree (float and double only)
-///   Heights    SingleHeight (published), AstigmaticHeights
+///   Smoothing  Anchored<BiasFreeMean>  take this for curved membrane, where a mean has a bias
+///              Anchored<BoxMean>       take this when time counts and contacts are flat
+///   Inverse    ExponentialFree<>       take this for float and double
+///              Newton<>                take this for other numbers, and for derivatives
+///   Heights    AstigmaticHeights       take this; a pinhole's rays meet at two heights in the
+///   fluid
+/// NoSmoothing, means that are not anchored, Bisection and SingleHeight are what the method is
+/// compared with; published/depth.hpp is the method as printed.
 /// Const: threads may share one estimator, each with a workspace of its own, and may take a band of
 /// rows each. A call takes no memory and throws nothing; O(rows cols), whatever the window.
 template <class Smoothing = Anchored<BiasFreeMean>,

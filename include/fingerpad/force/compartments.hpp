@@ -168,7 +168,7 @@ class Compartments {
     }
   }
 
-  /// Broken lines lie between the whole ones on both sides, turned about the axis.
+  /// Broken lines lie between the whole ones on both sides, rotated about the axis.
   void bridge() {
     for (Index i = 0; i < columns_; ++i) {
       if (end(i) != LineEnd::hole) {
@@ -183,14 +183,14 @@ class Compartments {
       }
       const S share = S(static_cast<double>(left)) / S(static_cast<double>(left + right));
       for (Index j = 0; j <= rows_; ++j) {
-        const Point3<S> a = turned(node((i - left + columns_) % columns_, j), left);
-        const Point3<S> b = turned(node((i + right) % columns_, j), -right);
+        const Point3<S> a = rotated(node((i - left + columns_) % columns_, j), left);
+        const Point3<S> b = rotated(node((i + right) % columns_, j), -right);
         at(i, j) = a + share * (b - a);
       }
     }
   }
 
-  Point3<S> turned(const Point3<S>& p, Index by) const {
+  Point3<S> rotated(const Point3<S>& p, Index by) const {
     using std::cos;
     using std::sin;
     const S c = cos(angle(by));

@@ -1,14 +1,14 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// How the normal force that a curve gives changes when the contact is also displaced or turned.
+// How the normal force that a curve gives changes when the contact is also displaced or rotated.
 // Every way is affine in the plain force: F = gain F_plain + shift, both functions of the
 // displacement's length and of the angle.
 #include <cmath>
 
-#include "fingerpad/force/detail/smooth_step.hpp"
 #include "fingerpad/core/expects.hpp"
 #include "fingerpad/core/scalar.hpp"
+#include "fingerpad/force/detail/smooth_step.hpp"
 
 namespace fingerpad {
 inline namespace v0 {
@@ -26,8 +26,8 @@ struct NoCompensation {
 };
 
 /// The consistent form: F = F_plain (1 + a |d|^2 + b theta^2). It is the plain force where nothing
-/// is displaced or turned, takes both at once, and is even and smooth in both, as the symmetry of a
-/// round pad asks. The published one (eqs. 21 and 22) is none of that.
+/// is displaced or rotated, takes both at once, and is even and smooth in both, as the symmetry of
+/// a round pad asks. The published one (eqs. 21 and 22) is none of that.
 template <scalar S = double>
 struct ScaledCompensation {
   static constexpr bool reads_motion = true;
@@ -36,8 +36,8 @@ struct ScaledCompensation {
   S per_rad_sq = S(0);  ///< b, 1/rad^2, finite
 
   ForceChange<S> operator()(const S& displacement_sq_mm2, const S& rotation_rad) const {
-    const S turned = per_rad_sq * square(rotation_rad);
-    return {S(S(S(1) + S(per_mm_sq * displacement_sq_mm2)) + turned), S(0)};
+    const S rotated = per_rad_sq * square(rotation_rad);
+    return {S(S(S(1) + S(per_mm_sq * displacement_sq_mm2)) + rotated), S(0)};
   }
 };
 
@@ -53,16 +53,16 @@ struct AffineForce {
   }
 };
 
-/// Eq. 21 for a displaced contact and eq. 22 for a turned one. Neither equals the plain force where
-/// nothing moved, and nothing is said of both at once. So each is blended in: its part grows from 0
-/// to 1 over `blend_mm` or `blend_rad`, beyond which it is the printed equation, and where both act
-/// their changes add.
+/// Eq. 21 for a displaced contact and eq. 22 for a rotated one. Neither equals the plain force
+/// where nothing moved, and nothing is said of both at once. So each is blended in: its part grows
+/// from 0 to 1 over `blend_mm` or `blend_rad`, beyond which it is the printed equation, and where
+/// both act their changes add.
 template <scalar S = double>
 struct PublishedCompensation {
   static constexpr bool reads_motion = true;
 
   AffineForce<S> displaced = {};
-  AffineForce<S> turned = {};
+  AffineForce<S> rotated = {};
   S blend_mm = S(1);              ///< finite, > 0
   S blend_rad = S(17) / S(1000);  ///< about a degree; finite, > 0
 
@@ -74,8 +74,8 @@ struct PublishedCompensation {
     const S d = detail::smooth_step(S(length / blend_mm));
     const S t = detail::smooth_step(S(angle / blend_rad));
     const S d_shift = S(displaced.per_unit * length) + displaced.offset_n;
-    const S t_shift = S(turned.per_unit * angle) + turned.offset_n;
-    return {S(S(S(1) + S(d * S(displaced.gain - S(1)))) + S(t * S(turned.gain - S(1)))),
+    const S t_shift = S(rotated.per_unit * angle) + rotated.offset_n;
+    return {S(S(S(1) + S(d * S(displaced.gain - S(1)))) + S(t * S(rotated.gain - S(1)))),
             S(S(d * d_shift) + S(t * t_shift))};
   }
 };
@@ -112,7 +112,7 @@ void expects_valid(const PublishedCompensation<S>& compensation) {
     expects(is_finite(force.offset_n), name, "offset_n", force.offset_n, "finite");
   };
   check(compensation.displaced, "PublishedCompensation: displaced");
-  check(compensation.turned, "PublishedCompensation: turned");
+  check(compensation.rotated, "PublishedCompensation: rotated");
   expects(is_finite(compensation.blend_mm) && value(compensation.blend_mm) > 0,
           "PublishedCompensation", "blend_mm", compensation.blend_mm, "finite and > 0");
   expects(is_finite(compensation.blend_rad) && value(compensation.blend_rad) > 0,

@@ -81,17 +81,17 @@ template <scalar S>
 std::array<Point3<S>, 3> corner_forces(const StressFreeTriangle<S>& free, const Triangle<S>& x) {
   const Point3<S> doubled = twice_area_vector(x);
   const S shrunk_sq = S(4) * free.area_mm2 * free.area_mm2 / squared_norm(doubled);  // J^-2
-  // dA/dx of a corner is half the opposite edge, turned about the normal
+  // dA/dx of a corner is half the opposite edge, rotated about the normal
   const S resist = shrunk_sq * shrunk_sq / S(S(4) * free.area_mm2);
   std::array<Point3<S>, 3> force;
   for (std::size_t k = 0; k < 3; ++k) {
     const std::size_t next = (k + 1) % 3, last = (k + 2) % 3;
     const Point3<S> to_next = x[next] - x[k];
     const Point3<S> to_last = x[last] - x[k];
-    const Point3<S> turned = cross(doubled, x[last] - x[next]);
+    const Point3<S> rotated = cross(doubled, x[last] - x[next]);
     const Point3<S> pull =
         free.half_cotangent[last] * to_next + free.half_cotangent[next] * to_last;
-    force[k] = pull + resist * turned;
+    force[k] = pull + resist * rotated;
   }
   return force;
 }

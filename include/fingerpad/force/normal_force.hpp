@@ -8,7 +8,7 @@
 //   F_z = p_in S_c                                                   (2)
 //   F_z = F_S(S_c) or F_D(D), quadratic                              (3), (18)
 //   r_c = c f^gamma, for elastic pads                                (1)
-//   F_z = gain F + slope |d| + offset, displaced or turned           (21), (22)
+//   F_z = gain F + slope |d| + offset, displaced or rotated           (21), (22)
 //
 // Pressure, contact area and depth rise together, so one of them tells the force once a calibration
 // has tied them (calibrate/force.hpp). A curve holds for objects of the shape that it was
@@ -62,7 +62,7 @@ class NormalForce {
   }
 
   /// One frame. `displacement_mm` and `rotation_rad` are how far the contact was carried along and
-  /// turned; without a compensation they are not looked at.
+  /// rotated; without a compensation they are not looked at.
   NormalForceResult<S> operator()(const S& measure,
                                   const Point2<S>& displacement_mm = {S(0), S(0)},
                                   const S& rotation_rad = S(0)) const {

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 // Tangential force and moment about the contact's normal by look-up: from how far the dots were
-// carried along and turned, counted by how large the contact is. Source: Ito, Kim and Obinata,
+// carried along and rotated, counted by how large the contact is. Source: Ito, Kim and Obinata,
 // "Acquisition of Contact Force and Slippage ...", "Method for measuring tangential force" and
 // "... moment around normal direction":
 //

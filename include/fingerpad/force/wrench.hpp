@@ -39,11 +39,15 @@ namespace fingerpad {
 inline namespace v0 {
 
 /// Six-axis force.
-///   Solver  LeastSquares (default), BalancedRim (as good, 15 times as fast, no inner tensions),
-///           PublishedIteration, ClosedForm, KnownModulus
-///   Row     OneRow (default), ExtrapolatedRow, TwoRows: how side dots tell d at the rim
-///   Law     ClampedRim (default), PublishedDirection
-///   Lines   StraightLines (default), SteepestLines (published)
+///   Solver  LeastSquares     take this for the tensions inside the membrane, too
+///           BalancedRim      take this for force and moment alone: as good, 15 times as fast
+///   Row     OneRow           take this for one row of side dots
+///           TwoRows          take this for two, which tell d at the rim itself
+///   Law     ClampedRim       take this: what a clamped rim of rubber pulls
+///   Lines   StraightLines    take this: they stay apart on a summit that is not level
+/// ExtrapolatedRow takes the membrane's curvature out of one row, ClosedForm is a first guess,
+/// KnownModulus takes mu t from a calibration and needs no shape. PublishedDirection and
+/// SteepestLines are printed forms; published/wrench.hpp is the whole method as printed.
 ///
 /// Const: threads may share one estimator, each with a workspace of its own. A frame takes no
 /// memory, throws nothing, and takes O(columns rows) time, with LeastSquares O((columns rows)^1.5).

@@ -113,7 +113,7 @@ Rotation<S> rotation_of(const Angles<S>& angles) {
            {S(-sy), S(cy * sx), S(cy * cx)}}};
 }
 
-/// The angle between two rotations, in rad: how far the one must be turned to become the other.
+/// The angle between two rotations, in rad: how far the one must be rotated to become the other.
 /// From its sine and its cosine, so that small angles keep their digits.
 template <scalar S>
 S angle_between(const Rotation<S>& a, const Rotation<S>& b) {

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// How far a contact was carried along and how far it was turned about its normal, from the dots.
+// How far a contact was carried along and how far it was rotated about its normal, from the dots.
 // Source: Ito, Kim and Obinata, "Acquisition of Contact Force and Slippage ...", figure 5: the
 // displacement of the central dot and the rotation angle of the contact surface. They are what
 // shear.hpp and the compensations of normal_force.hpp start from.

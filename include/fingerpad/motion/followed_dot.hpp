@@ -173,9 +173,9 @@ struct SumOfAngles {
     }
     t.dots_used = step.dots_used;
     t.residual_rms_mm = step.residual_rms_mm;
-    const Angles<S> turned = zyx_angles(step.pose.rotation);
-    t.angles = {S(t.angles.x_rad + turned.x_rad), S(t.angles.y_rad + turned.y_rad),
-                S(t.angles.z_rad + turned.z_rad)};
+    const Angles<S> rotated = zyx_angles(step.pose.rotation);
+    t.angles = {S(t.angles.x_rad + rotated.x_rad), S(t.angles.y_rad + rotated.y_rad),
+                S(t.angles.z_rad + rotated.z_rad)};
     t.displacement_mm += moved(t.followed.anchor, step);
     const Rotation<S> rotation = rotation_of(t.angles);
     const Point3<S> position = t.start_mm + t.displacement_mm;

@@ -1,10 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// How a dot has turned with its eight neighbours, between two frames k and l. Source: Ito, Kim,
+// How a dot has rotated with its eight neighbours, between two frames k and l. Source: Ito, Kim,
 // Nagai, Obinata 2011, eqs. 14-18. As printed, eq. 17 stacks the basis vectors as rows and is
 // solved by [n2, n2, n3]^-T: the first is n1 (E021), and for rows the result is the rotation seen
-// from the turned frame, transposed (E022). With columns:
+// from the rotated frame, transposed (E022). With columns:
 //   N = [n1 n2 n3],  n1 = q1/|q1|,  n2 = q2/|q2|,  n3 = n1 x n2,   R = N_l N_k^-1
 // n1 and n2 are orthogonal only while the neighbourhood is not sheared: R is no rotation (E023).
 #include <array>
@@ -55,7 +55,7 @@ constexpr const char* name_of(MotionStatus status) {
 }
 
 // A dot with its eight neighbours, and the two directions in which the papers measure how it has
-// turned. Source: Ito, Kim, Nagai, Obinata 2011, eqs. 14 and 15:
+// rotated. Source: Ito, Kim, Nagai, Obinata 2011, eqs. 14 and 15:
 //   q1 = sum over k of p(I+1, J+k) - p(I-1, J+k)     along the columns of the grid
 //   q2 = sum over k of p(I+k, J+1) - p(I+k, J-1)     along its rows
 // (I-th from the left, J-th from the top). These are the slopes of the affine map from the grid to
@@ -182,7 +182,7 @@ struct Basis {
   bool determined = false;  ///< false: n1 and n2 are missing or parallel
 };
 
-/// What turned between two frames.
+/// What rotated between two frames.
 template <scalar S>
 struct LocalRotation {
   Rotation<S> rotation = {};

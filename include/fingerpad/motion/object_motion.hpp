@@ -55,8 +55,11 @@ struct ObjectMotionOptions {
 };
 
 /// Pose of the object in contact, frame by frame.
-///   Way   ContactMap (default), AnchoredComposition<Local>, SumOfAngles<Local> (published)
-///   Local SymmetricFrame, Kabsch, PublishedBasis
+///   Way   ContactMap                   take this: all dots that stick, with the least noise
+///         AnchoredComposition<Kabsch>  take this for the printed dot and its neighbours, but with
+///                                      rotations composed as rotations
+/// SumOfAngles, SymmetricFrame and PublishedBasis are printed forms; published/object_motion.hpp is
+/// the whole of them.
 /// Const: threads may share one estimator, each with a state of its own. A frame takes no memory,
 /// throws nothing, and needs O(rows cols) time.
 ///

@@ -121,7 +121,7 @@ enum class FingertipStage : std::uint8_t {
   stick,
   look_up,
   heights,
-  wrench,
+  wrench
 };
 
 /// Not const: a frame changes depth map, mask, dots, and what is remembered of the object. One

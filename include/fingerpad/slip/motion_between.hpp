@@ -19,13 +19,14 @@ using detail::stick::Freedom;
 struct TrackedDot {};  ///< the sticking dot nearest to the centroid of the last stick region
 struct CentralDot {};  ///< the dot nearest to the centroid of the contact
 
-/// Published: the object moves as the reference dot does, turns as its four neighbours do about it,
-/// and zooms as all neighbours in contact do. The noise of those dots is in every dot's answer.
+/// Published: the object moves as the reference dot does, rotates as its four neighbours do about
+/// it, and scales as all neighbours in contact do. The noise of those dots is in every dot's
+/// answer.
 template <Freedom Free = Freedom::similarity,
           class Scale = LeastSquaresScale,
           class Dot = TrackedDot>
 struct ReferenceDotMotion {
-  Scale zoom = {};
+  Scale scale = {};
 };
 
 /// The map that fits all sticking dots best. Beginning with the reference dot and its 24 nearest,
@@ -39,7 +40,7 @@ struct StickConsensus {
 
 template <Freedom Free, class Scale, class Dot>
 void expects_valid(const ReferenceDotMotion<Free, Scale, Dot>& motion) {
-  expects_valid(motion.zoom);
+  expects_valid(motion.scale);
 }
 template <Freedom Free, class Dot>
 void expects_valid(const StickConsensus<Free, Dot>& motion) {
@@ -107,7 +108,7 @@ ObjectShift<S> motion_between(const ReferenceDotMotion<Free, Scale, Dot>& policy
     }
   }
   if constexpr (may_scale(Free)) {
-    const S alpha = scale_between(policy.zoom, pair, shift);
+    const S alpha = scale_between(policy.scale, pair, shift);
     shift.cosine = alpha * shift.cosine;
     shift.sine = alpha * shift.sine;
   }
@@ -204,7 +205,7 @@ bool has_hardly_moved(const ObjectShift<S>& shift, const S& furthest_sq) {
 /// scale alone has moved by a quarter of that says nothing.
 template <class S>
 Index furthest_outrunner(const FramePair<S>& pair, const ObjectShift<S>& shift) {
-  const S zoom = shift.scale() - S(1);
+  const S growth = shift.scale() - S(1);
   Index furthest = -1;
   S min_sq = pair.furthest_sq / S(4);
   for (Index k = pair.run.begin; k < pair.run.end; ++k) {
@@ -213,11 +214,11 @@ Index furthest_outrunner(const FramePair<S>& pair, const ObjectShift<S>& shift) 
     if (min_sq < sq && sq < no_distance_sq<S>()) {
       S rx, ry;
       shift.residual(pair.now.x[k], pair.now.y[k], pair.then.x[k], pair.then.y[k], rx, ry);
-      const S from_x = zoom * (pair.now.x[k] - shift.now_x);
-      const S from_y = zoom * (pair.now.y[k] - shift.now_y);
-      const bool zooms = sq < S(16) * (from_x * from_x + from_y * from_y);
+      const S from_x = growth * (pair.now.x[k] - shift.now_x);
+      const S from_y = growth * (pair.now.y[k] - shift.now_y);
+      const bool by_growth = sq < S(16) * (from_x * from_x + from_y * from_y);
       const S ahead = rx * dx + ry * dy;
-      if (!zooms && sq < S(2) * ahead) {
+      if (!by_growth && sq < S(2) * ahead) {
         furthest = k;
         min_sq = sq;
       }

@@ -85,7 +85,7 @@ struct PairSums {
 /// What may differ between two frames of one object, besides where it is.
 enum class Freedom {
   translation,  ///< nothing: it is shifted
-  rigid,        ///< it is turned about the line of sight
+  rigid,        ///< it is rotated about the line of sight
   scaling,      ///< it is seen larger or smaller, as the normal force changes
   similarity,   ///< both
 };
@@ -147,9 +147,9 @@ struct LeastSquaresScale {
   double fading_px = 0.25;  ///< > 0
 };
 inline void expects_valid(const PublishedScale&) {}
-inline void expects_valid(const LeastSquaresScale& zoom) {
-  expects(is_finite(zoom.fading_px) && zoom.fading_px > 0, "LeastSquaresScale", "fading_px",
-          zoom.fading_px, "finite and > 0");
+inline void expects_valid(const LeastSquaresScale& scale) {
+  expects(is_finite(scale.fading_px) && scale.fading_px > 0, "LeastSquaresScale", "fading_px",
+          scale.fading_px, "finite and > 0");
 }
 
 namespace detail::stick {
@@ -169,7 +169,7 @@ struct ScaleSums {
   V then{}, now{};
 };
 
-/// Two neighbours: the vector between them then, and now with the object turned back; and the sum
+/// Two neighbours: the vector between them then, and now with the object rotated back; and the sum
 /// of their displacements.
 template <class V>
 struct NeighbourPair {
@@ -193,9 +193,9 @@ void add_pair(const PublishedScale&, const NeighbourPair<V>& p, ScaleSums<V>& su
   sums.now += only_where(known, V(now_size * per_motion));
 }
 template <class S, class V>
-void add_pair(const LeastSquaresScale& zoom, const NeighbourPair<V>& p, ScaleSums<V>& sums) {
+void add_pair(const LeastSquaresScale& scale, const NeighbourPair<V>& p, ScaleSums<V>& sums) {
   const V motion_sq = p.motion_x * p.motion_x + p.motion_y * p.motion_y;
-  const V weight = S(1) / (motion_sq + S(zoom.fading_px * zoom.fading_px));
+  const V weight = S(1) / (motion_sq + S(scale.fading_px * scale.fading_px));
   const V then_along = p.then_x * p.motion_x + p.then_y * p.motion_y;
   const V now_along = p.now_x * p.motion_x + p.now_y * p.motion_y;
   const V both = p.then_x * p.now_x + p.then_y * p.now_y - weight * then_along * now_along;
@@ -205,23 +205,23 @@ void add_pair(const LeastSquaresScale& zoom, const NeighbourPair<V>& p, ScaleSum
   sums.now += only_where(known, now);
 }
 
-/// alpha of the frames, `turned` being the object's motion without it; 1 where the pairs determine
+/// alpha of the frames, `rotated` being the object's motion without it; 1 where the pairs determine
 /// none or one that is not plausible.
 template <class Scale, class S>
-S scale_between(const Scale& zoom, const FramePair<S>& pair, const ObjectShift<S>& turned) {
+S scale_between(const Scale& scale, const FramePair<S>& pair, const ObjectShift<S>& rotated) {
   using V = run_vector<S>;
   const Index stride = pair.layout.stride();
-  const S object_x = turned.now_x - turned.then_x, object_y = turned.now_y - turned.then_y;
+  const S object_x = rotated.now_x - rotated.then_x, object_y = rotated.now_y - rotated.then_y;
   ScaleSums<V> sums;
   struct Dot {
-    V tx, ty, nx, ny, dx, dy;  // then, now turned back, displacement
+    V tx, ty, nx, ny, dx, dy;  // then, now rotated back, displacement
   };
   const auto dot = [&](Index k) {
     const V nx = load_cells<V, S>(pair.now.x + k), ny = load_cells<V, S>(pair.now.y + k);
     Dot d;
     d.tx = load_cells<V, S>(pair.then.x + k);
     d.ty = load_cells<V, S>(pair.then.y + k);
-    turned.residual(nx, ny, d.tx, d.ty, d.dx, d.dy);
+    rotated.residual(nx, ny, d.tx, d.ty, d.dx, d.dy);
     d.nx = d.dx + d.tx;
     d.ny = d.dy + d.ty;
     d.dx += object_x;
@@ -232,7 +232,7 @@ S scale_between(const Scale& zoom, const FramePair<S>& pair, const ObjectShift<S
     const Dot a = dot(k);
     for (const Index step : {Index(1), stride - 1, stride, stride + 1}) {
       const Dot b = dot(k + step);
-      add_pair<S, V>(zoom,
+      add_pair<S, V>(scale,
                      {a.tx - b.tx, a.ty - b.ty, a.nx - b.nx, a.ny - b.ny, a.dx + b.dx, a.dy + b.dy},
                      sums);
     }

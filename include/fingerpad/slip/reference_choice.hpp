@@ -82,7 +82,7 @@ struct InStickRegion {};  ///< of those that stuck in the last answer; of all be
 
 /// Published: of the stored frames, the newest from which the dots have moved further than U, as
 /// long as the distance grows from frame to frame further back. Where it begins to shrink the
-/// object has turned round, and no frame from there on is looked at; equal distances go on.
+/// object has rotated round, and no frame from there on is looked at; equal distances go on.
 template <class Over = InContact>
 struct UpdatedReference {
   Index capacity = 64;  ///< 1 to 4096 frames; when it is full the oldest one is forgotten

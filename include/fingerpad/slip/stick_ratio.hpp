@@ -48,13 +48,15 @@ inline void expects_valid(const StickTest& test) {
 }
 
 /// Stick ratio of a pad, frame by frame.
-///   Motion     StickConsensus<Freedom, Dot> (default), ReferenceDotMotion<Freedom, Scale, Dot>
-///   Reference  UpdatedReference<Over> (default), FirstReference
-///   Denoising  ResidualMean (default), DotMean (published), NoDenoising
-/// Published: ReferenceDotMotion<Freedom::similarity, PublishedScale>, UpdatedReference, DotMean.
-/// Const: threads may share one estimator, each with a state of its own. A frame takes no memory,
-/// throws nothing, and needs O(rows cols) time for each stored frame that it looks at, which are
-/// no more than `capacity` however long the recording is.
+///   Motion     StickConsensus<>    take this: the motion of all dots that stick together
+///   Reference  UpdatedReference<>  take this when the object moves on or turns back
+///              FirstReference      take this for one short push from the first contact
+///   Denoising  ResidualMean        take this for dots as a camera finds them
+///              NoDenoising         take this when their noise is far below slip_px
+/// ReferenceDotMotion and DotMean are printed forms; published/stick_ratio.hpp is the whole of
+/// them. Const: threads may share one estimator, each with a state of its own. A frame takes no
+/// memory, throws nothing, and needs O(rows cols) time for each stored frame that it looks at,
+/// which are no more than `capacity` however long the recording is.
 template <class Motion = StickConsensus<>,
           class Reference = UpdatedReference<>,
           class Denoising = ResidualMean,

@@ -69,7 +69,7 @@ struct [[nodiscard]] StickRatioResult {
   S stick_ratio =
       not_a_number<S>();    ///< sticking dots / known dots, in [0, 1]; NaN: none known yet
   Index reference_age = 0;  ///< frames from the reference to the answer
-  S angle_rad = S(0);       ///< by which the object has turned since the reference, from x to y
+  S angle_rad = S(0);       ///< by which the object has rotated since the reference, from x to y
   S scale = S(1);           ///< alpha: the object is seen 1 / scale as large as in the reference
   DotIndex reference_dot =
       {};  ///< where the search for sticking dots began; row -1: there was none

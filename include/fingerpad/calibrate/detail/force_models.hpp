@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// A force or moment as an odd polynomial of something displaced or turned, normalised by a power of
-// the contact's measure: y = sum over k of c_k (u |x|)^(k-1) u x, u = (measure / reference)^T. The
-// exponent T is found by a search along it, then together with the coefficients.
+// A force or moment as an odd polynomial of something displaced or rotated, normalised by a power
+// of the contact's measure: y = sum over k of c_k (u |x|)^(k-1) u x, u = (measure / reference)^T.
+// The exponent T is found by a search along it, then together with the coefficients.
 #include <Eigen/Core>
 #include <array>
 #include <cmath>
@@ -59,7 +59,7 @@ constexpr auto rising_basis() {
 struct PolynomialTerms {
   std::vector<std::size_t> columns;  ///< of the basis
   bool displaced = false;            ///< per_mm_sq
-  bool turned = false;               ///< per_rad_sq
+  bool rotated = false;              ///< per_rad_sq
 };
 
 template <int Degree, scalar S>
@@ -83,7 +83,7 @@ class PolynomialModel {
       if (terms_.displaced) {
         factor += S(parameters(next++) * displaced_sq);
       }
-      if (terms_.turned) {
+      if (terms_.rotated) {
         factor += S(parameters(next) * turned_sq);
       }
       S plain = S(0);
@@ -98,7 +98,7 @@ class PolynomialModel {
       if (terms_.displaced) {
         jacobian(i, next++) = plain * displaced_sq;
       }
-      if (terms_.turned) {
+      if (terms_.rotated) {
         jacobian(i, next) = plain * turned_sq;
       }
     }
@@ -112,7 +112,7 @@ class PolynomialModel {
     if (terms_.displaced) {
       names.emplace_back("per_mm_sq");
     }
-    if (terms_.turned) {
+    if (terms_.rotated) {
       names.emplace_back("per_rad_sq");
     }
     return names;

@@ -211,20 +211,20 @@ class Rim {
       while (dots[(k + right) % n].status != RimPullStatus::ok && right < n) {
         ++right;
       }
-      const Point3<S> a = turned((k + n - left) % n, k, dots);
-      const Point3<S> b = turned((k + right) % n, k, dots);
+      const Point3<S> a = rotated((k + n - left) % n, k, dots);
+      const Point3<S> b = rotated((k + right) % n, k, dots);
       const S share = S(static_cast<double>(left)) / S(static_cast<double>(left + right));
       dots[k].pull = a + share * (b - a);
     }
   }
 
-  /// The pull at point `from`, turned about the axis to point `to`.
-  Point3<S> turned(std::size_t from, std::size_t to, const std::vector<RimPull<S>>& dots) const {
+  /// The pull at point `from`, rotated about the axis to point `to`.
+  Point3<S> rotated(std::size_t from, std::size_t to, const std::vector<RimPull<S>>& dots) const {
     const Point3<S>& e = points_[from].point.tangent;
     const Point3<S>& f = points_[to].point.tangent;
     const Point3<S>& p = dots[from].pull;
     const S along = dot(p, e);
-    const S out = p.x * e.y - p.y * e.x;  // the radius is the tangent turned by -90 degrees
+    const S out = p.x * e.y - p.y * e.x;  // the radius is the tangent rotated by -90 degrees
     return {S(along * f.x + out * f.y), S(along * f.y - out * f.x), p.z};
   }
 

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 // The rigid shift in the plane that carries weighted dots nearest to where they are now: middle to
-// middle, and turned by atan2(sum of cross products, sum of dot products) about it.
+// middle, and rotated by atan2(sum of cross products, sum of dot products) about it.
 #include <cmath>
 #include <vector>
 
@@ -48,18 +48,18 @@ class RigidShift {
   /// How far it carries a place.
   Point2<S> carried(const Point2<S>& place) const {
     const Point2<S> arm = {S(place.x - from_.x), S(place.y - from_.y)};
-    const Point2<S> end = turned(arm);
+    const Point2<S> end = rotated(arm);
     return {S(S(to_.x - from_.x) + S(end.x - arm.x)), S(S(to_.y - from_.y) + S(end.y - arm.y))};
   }
 
   /// Squared distance of a dot from where it is carried.
   S residual_sq(const DotPair<S>& p) const {
-    const Point2<S> end = turned({S(p.from.x - from_.x), S(p.from.y - from_.y)});
+    const Point2<S> end = rotated({S(p.from.x - from_.x), S(p.from.y - from_.y)});
     return S(square(S(S(p.to.x - to_.x) - end.x)) + square(S(S(p.to.y - to_.y) - end.y)));
   }
 
  private:
-  Point2<S> turned(const Point2<S>& v) const {
+  Point2<S> rotated(const Point2<S>& v) const {
     return {S(S(cosine_ * v.x) - S(sine_ * v.y)), S(S(sine_ * v.x) + S(cosine_ * v.y))};
   }
 

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// Images turned and mirrored, for laws of symmetry.
+// Images rotated and mirrored, for laws of symmetry.
 #include <algorithm>
 
 #include "support/pad.hpp"
@@ -21,7 +21,7 @@ Image<T> transposed(const Image<T>& image) {
 
 /// By half a turn.
 template <class T>
-Image<T> turned(const Image<T>& image) {
+Image<T> rotated(const Image<T>& image) {
   Image<T> out = image;
   std::reverse(out.cells.begin(), out.cells.end());
   return out;
