@@ -1,10 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// Everything but the adapters, which bring their libraries with them (see adapt/).
+// Everything but the adapters, which bring their libraries with them (see adapt/). The fits of light
+// and forces need Eigen and are here where Eigen is found.
 #include "fingerpad/calibrate/contact.hpp"
-#include "fingerpad/calibrate/depth.hpp"
-#include "fingerpad/calibrate/force.hpp"
 #include "fingerpad/calibrate/neighbour_light.hpp"
 #include "fingerpad/calibrate/rim.hpp"
 #include "fingerpad/calibrate/slip.hpp"
@@ -44,3 +43,8 @@
 #include "fingerpad/slip/friction_ratio.hpp"
 #include "fingerpad/slip/grip_control.hpp"
 #include "fingerpad/slip/stick_ratio.hpp"
+
+#if __has_include(<Eigen/Core>)
+#include "fingerpad/calibrate/depth.hpp"
+#include "fingerpad/calibrate/force.hpp"
+#endif

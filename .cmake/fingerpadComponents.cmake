@@ -1,0 +1,31 @@
+# SPDX-FileCopyrightText: 2026 The fingerpad authors
+# SPDX-License-Identifier: MIT
+# The optional components and the libraries that they need; read by the build and by the installed
+# package alike.
+set(fingerpad_COMPONENTS eigen mdspan opencv xtensor)
+
+# Looks for what a component needs: fingerpad_<name>_FOUND, fingerpad_<name>_LIBRARY to link, and
+# fingerpad_<name>_NEEDS, the library's name for people.
+macro(fingerpad_find_component name)
+  set(fingerpad_${name}_FOUND FALSE)
+  set(fingerpad_${name}_LIBRARY "")
+  set(fingerpad_${name}_NEEDS "")
+  if("${name}" STREQUAL "eigen") # grids and dual numbers of Eigen; calibrations of light and forces
+    find_package(Eigen3 3.4 QUIET NO_MODULE)
+    set(fingerpad_eigen_FOUND ${Eigen3_FOUND})
+    set(fingerpad_eigen_LIBRARY Eigen3::Eigen)
+    set(fingerpad_eigen_NEEDS "Eigen 3.4")
+  elseif("${name}" STREQUAL "mdspan")
+    set(fingerpad_mdspan_FOUND TRUE) # whichever mdspan the user has: nothing is included
+  elseif("${name}" STREQUAL "opencv")
+    find_package(OpenCV QUIET COMPONENTS core)
+    set(fingerpad_opencv_FOUND ${OpenCV_FOUND})
+    set(fingerpad_opencv_LIBRARY opencv_core)
+    set(fingerpad_opencv_NEEDS "OpenCV")
+  elseif("${name}" STREQUAL "xtensor")
+    find_package(xtensor QUIET)
+    set(fingerpad_xtensor_FOUND ${xtensor_FOUND})
+    set(fingerpad_xtensor_LIBRARY xtensor)
+    set(fingerpad_xtensor_NEEDS "xtensor")
+  endif()
+endmacro()
