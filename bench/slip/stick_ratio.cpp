@@ -4,7 +4,7 @@
 // to and fro, all in contact. Error: of the ratio, in each frame of recordings in which dots are
 // dragged, rotated and pressed, one by one and at once (tests/support/slipping_dots.hpp), with 0.14
 // px of noise; a frame without an answer (at rest, or too little moved) has none.
-#include "fingerpad/slip/stick_ratio.hpp"
+#include "fingerpad/published/stick_ratio.hpp"
 
 #include <cmath>
 #include <cstdint>
@@ -122,7 +122,7 @@ void add(const std::string& name, const Recording& input, const Parameters&... p
 }
 
 template <class Motion,
-          class Reference = UpdatedReference<>,
+          class Reference = UpdatedReference,
           class Denoising = ResidualMean,
           class S = float>
 void add_frame(const std::string& name) {
@@ -213,7 +213,7 @@ void add_growth() {
   add<Default>(name("11x11 dots"), small);
   add<Default>(name("41x41 dots"), large);
   add<Default>(name("1024 stored frames"), recording(), StickTest(), StickConsensus<>(),
-               UpdatedReference<>{.capacity = 1024});
+               UpdatedReference{.capacity = 1024});
   add<Default>(name("moving by 0.05 px a frame"), slow);
 }
 
@@ -221,26 +221,20 @@ void add_growth() {
 
 int main(int argc, char** argv) {
   cv::setNumThreads(1);
-  using Published = ReferenceDotMotion<Freedom::similarity, PublishedScale>;
-  using Updated = UpdatedReference<>;
-  add_naive();
+  using Published = published::ReferenceDotMotion<>;
+  using Updated = UpdatedReference;
+  using published::DotMean;
   add_frame<Published, Updated, DotMean, double>("published policies, double");
   add_frame<Published, Updated, DotMean>("published policies, float");
-  add_frame<ReferenceDotMotion<Freedom::similarity, PublishedScale, CentralDot>, Updated, DotMean>(
-      "published policies, CentralDot, float");
-  add_frame<ReferenceDotMotion<>, Updated, DotMean>(
-      "ReferenceDotMotion<LeastSquaresScale>, DotMean");
-  add_frame<ReferenceDotMotion<>>("ReferenceDotMotion<LeastSquaresScale>, ResidualMean");
+  add_frame<Published>("published::ReferenceDotMotion, ResidualMean");
   add_frame<StickConsensus<>>("StickConsensus, ResidualMean, float, the default");
   add_frame<StickConsensus<>, Updated, ResidualMean, double>("the default in double");
-  add_frame<StickConsensus<Freedom::similarity, CentralDot>>("StickConsensus, CentralDot");
-  add_frame<StickConsensus<>, UpdatedReference<InStickRegion>>("d_max in the stick region");
-  add_frame<StickConsensus<>, Updated, DotMean>("StickConsensus, DotMean");
+  add_frame<StickConsensus<>, Updated, DotMean>("StickConsensus, published::DotMean");
   add_frame<StickConsensus<>, Updated, NoDenoising>("without denoising");
   add_frame<StickConsensus<Freedom::rigid>>("without scale");
-  add_frame<StickConsensus<Freedom::scaling>>("without turn");
-  add_frame<StickConsensus<Freedom::translation>>("without turn and scale");
-  add_frame<StickConsensus<>, FirstReference>("FirstReference");
+  add_frame<StickConsensus<Freedom::scaling>>("without rotation");
+  add_frame<StickConsensus<Freedom::translation>>("without rotation and scale");
+  add_frame<StickConsensus<>, published::FirstReference>("published::FirstReference");
   add_opencv();
   bench::add_streaming("frame of 21x21 dots");
   add_growth();

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: MIT
 // Stick ratios against the truth: of synthetic dots, with each effect and without it, and of dots
 // of finite-element membranes. test_accuracy "[stick_ratio]" -s prints all figures.
-#include "fingerpad/slip/stick_ratio.hpp"
+#include "fingerpad/published/stick_ratio.hpp"
 
 #include <array>
 #include <cmath>
@@ -30,8 +30,7 @@ namespace {
 
 constexpr double noise_px = 0.14;  // for which the published 0.24 px are
 
-using Published =
-    StickRatio<ReferenceDotMotion<Freedom::similarity, PublishedScale>, UpdatedReference<>, DotMean>;
+using Published = StickRatio<published::ReferenceDotMotion<>, UpdatedReference, published::DotMean>;
 
 /// Errors in every synthetic scene.
 class Errors {
@@ -109,12 +108,13 @@ TEST_CASE("stick ratio of synthetic dots, by the width of the shear zone", "[sti
 TEST_CASE("stick ratio of synthetic dots, each effect left out", "[stick_ratio]") {
   const Index n = 21;
   const Errors all("all effects", StickRatio(n, n));
-  const Errors first("first reference", StickRatio<StickConsensus<>, FirstReference>(n, n));
+  const Errors first("first reference",
+                     StickRatio<StickConsensus<>, published::FirstReference>(n, n));
   const Errors no_turn("no turn", StickRatio<StickConsensus<Freedom::scaling>>(n, n));
   const Errors no_zoom("no zoom", StickRatio<StickConsensus<Freedom::rigid>>(n, n));
   const Errors noisy("no denoising",
-                     StickRatio<StickConsensus<>, UpdatedReference<>, NoDenoising>(n, n));
-  const Errors one_dot("one dot", StickRatio<ReferenceDotMotion<>>(n, n));
+                     StickRatio<StickConsensus<>, UpdatedReference, NoDenoising>(n, n));
+  const Errors one_dot("one dot", StickRatio<published::ReferenceDotMotion<>>(n, n));
   const Errors published("published", Published(n, n));
   show({&all, &first, &no_turn, &no_zoom, &noisy, &one_dot, &published});
   // Without it, the scene of an effect fails: far above the goal, and several times worse than
@@ -190,7 +190,7 @@ struct SceneResult {
   double to_reference = 0;  ///< the same error against the area that slipped less than the
                             ///< threshold since the reference
   Index announced_from = 1000, announced_to = -1;  ///< steps; of all recordings
-  double max_sticking = 0;                        ///< the truth when slip is announced
+  double max_sticking = 0;                         ///< the truth when slip is announced
 
   std::string line(const std::string& name) const {
     std::ostringstream line;

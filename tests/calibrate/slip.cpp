@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "fingerpad/published/stick_ratio.hpp"
 #include "support/catch.hpp"
 #include "support/generators.hpp"
 #include "support/numbers.hpp"
@@ -493,7 +494,7 @@ TEST_CASE("false slip: as often as the stick ratio says", "[stick]") {
   const double noise_px = 0.05;
   StickTest test;
   test.slip_px = slip_threshold_for(noise_px, 0.05);
-  const StickRatio<StickConsensus<Freedom::translation>, UpdatedReference<>, NoDenoising, double>
+  const StickRatio<StickConsensus<Freedom::translation>, UpdatedReference, NoDenoising, double>
       estimator(41, 41, test);
   auto state = estimator.start();
   Image<DotState> states(41, 41);
@@ -522,7 +523,7 @@ TEST_CASE("thresholds from noise: no sticking dot slips more often than was aske
     ReferenceSearch search;
     search.false_slip = share;
     const StickTest test = stick_test_for(441, noise, 2.0, search, motion, denoising);
-    const StickRatio estimator(21, 21, test, motion, UpdatedReference<>(), denoising);
+    const StickRatio estimator(21, 21, test, motion, UpdatedReference(), denoising);
     Random random(5);
     const Flags contact = disc(21, 21, 8.2);
     Image<DotState> states(21, 21);
@@ -540,7 +541,7 @@ TEST_CASE("thresholds from noise: no sticking dot slips more often than was aske
     return slip / dots;
   };
   using Consensus = StickConsensus<Freedom::translation>;
-  using OneDot = ReferenceDotMotion<Freedom::translation>;
+  using OneDot = published::ReferenceDotMotion<Freedom::translation>;
   for (const double share : {0.02, 0.2}) {
     // d_max is more than U by some 15 %, and only the edge has the noise that is reckoned with
     for (const double got :
@@ -560,14 +561,15 @@ TEST_CASE("thresholds from noise: which noise counts", "[stick]") {
   CHECK(plain.slip_px == Approx(2 * 0.1 * nats));
   CHECK(plain.store_px == Approx(2 * 0.1 * placed));
   CHECK(plain.reference_px == 3.0);
-  const StickTest mean = stick_test_for(300, noise, 3.0, {}, StickConsensus<>(), DotMean());
+  const StickTest mean =
+      stick_test_for(300, noise, 3.0, {}, StickConsensus<>(), published::DotMean());
   CHECK(mean.slip_px == Approx(plain.slip_px * denoising_gain({})));
   CHECK(mean.store_px == Approx(plain.store_px * denoising_gain({})));
   const StickTest usual = stick_test_for(300, noise);
   CHECK(usual.slip_px == Approx(plain.slip_px * denoising_gain({}, 3, 2)));
   CHECK(usual.store_px == Approx(plain.store_px));
   CHECK(usual.reference_px == 2.0);
-  CHECK(stick_test_for(300, noise, 3.0, {}, ReferenceDotMotion<>()).slip_px ==
+  CHECK(stick_test_for(300, noise, 3.0, {}, published::ReferenceDotMotion<>()).slip_px ==
         Approx(std::sqrt(2.0) * usual.slip_px));
   // more than all of 300 dots reach in the mean, which are as far in 37 % of frames
   CHECK(usual.store_px > furthest_noise_px(0.1, 300));
@@ -849,23 +851,12 @@ TEST_CASE("choice of U: how long the pad stands, and lost contact, change nothin
 
 TEST_CASE("choice of U: other policies", "[stick]") {
   const Recording recording = record({.noise_px = 0.02});
-  using Published = ReferenceDotMotion<Freedom::translation, PublishedScale>;
-  StickTestCalibration<Published, UpdatedReference<>, DotMean, double> published(
+  using Published = published::ReferenceDotMotion<Freedom::translation>;
+  StickTestCalibration<Published, UpdatedReference, published::DotMean, double> published(
       21, 21, independent_dot_noise(0.02));
   add(recording, published);
   CHECK(chosen_row(published.choose()).slipping > 20);
-  // in the stick region, whether the pad stands depends on U
-  StickTestCalibration<StickConsensus<>, UpdatedReference<InStickRegion>> in_stick_region(
-      21, 21, independent_dot_noise(0.02));
-  const Recording turning =
-      record({.noise_px = 0.02, .step_px = 0.1, .frames = 300, .turns_at = 200});
-  add(turning, in_stick_region);
-  const StickTestChoice choice = in_stick_region.choose();
-  for (const ReferenceCandidate& c : choice.table) {
-    CHECK((c.verdict == ReferenceVerdict::below_noise || c.ratios.steps == choice.steps));
-  }
-  CHECK(chosen_row(choice).updates > 50);
-  StickTestCalibration<StickConsensus<>, FirstReference, NoDenoising> conventional(
+  StickTestCalibration<StickConsensus<>, published::FirstReference, NoDenoising> conventional(
       21, 21, independent_dot_noise(0.02));
   add(recording, conventional);
   CHECK(chosen_row(conventional.choose()).updates > 80);

@@ -23,7 +23,7 @@
 #include <string>
 #include <vector>
 
-#include "fingerpad/slip/stick_ratio.hpp"
+#include "fingerpad/published/stick_ratio.hpp"
 #include "membranes.hpp"
 #include "support/slipping_dots.hpp"
 #include "support/stick_scene.hpp"
@@ -163,18 +163,17 @@ Effect stick_effect(const std::vector<StickRecordings>& all,
 inline std::vector<Effect> stick_effects() {
   using namespace fingerpad;
   const auto all = stick_recordings();
-  return {stick_effect<StickRatio<StickConsensus<>, UpdatedReference<>, NoDenoising>>(
-              all, "denoise", "`ResidualMean`", "`NoDenoising`"),
-          stick_effect<StickRatio<StickConsensus<Freedom::scaling>>>(
-              all, "rotation cancel", "`StickConsensus<Freedom::similarity>`",
-              "`StickConsensus<Freedom::scaling>`"),
-          stick_effect<StickRatio<StickConsensus<Freedom::rigid>>>(
-              all, "scale cancel", "`StickConsensus<Freedom::similarity>`",
-              "`StickConsensus<Freedom::rigid>`"),
-          stick_effect<StickRatio<StickConsensus<>, FirstReference>>(
-              all, "reference update", "`UpdatedReference<>`", "`FirstReference`"),
-          stick_effect<StickRatio<ReferenceDotMotion<>>>(
-              all, "motion of many dots", "`StickConsensus<>`", "`ReferenceDotMotion<>`")};
+  return {
+      stick_effect<StickRatio<StickConsensus<>, UpdatedReference, NoDenoising>>(
+          all, "denoise", "`ResidualMean`", "`NoDenoising`"),
+      stick_effect<StickRatio<StickConsensus<Freedom::scaling>>>(
+          all, "rotation cancel", "`StickConsensus<>`", "`StickConsensus<Freedom::scaling>`"),
+      stick_effect<StickRatio<StickConsensus<Freedom::rigid>>>(
+          all, "scale cancel", "`StickConsensus<>`", "`StickConsensus<Freedom::rigid>`"),
+      stick_effect<StickRatio<StickConsensus<>, published::FirstReference>>(
+          all, "reference update", "`UpdatedReference`", "`published::FirstReference`"),
+      stick_effect<StickRatio<published::ReferenceDotMotion<>>>(
+          all, "motion of many dots", "`StickConsensus<>`", "`published::ReferenceDotMotion<>`")};
 }
 
 }  // namespace bench::ablation

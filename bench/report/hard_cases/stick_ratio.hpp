@@ -42,12 +42,12 @@ struct Cross {
   T angle_of_sums() const {
     fingerpad::detail::stick::PairSums<T> sums;
     for (std::size_t k = 0; k < 4; ++k) {
-      sums.add(T(1), T(now[k][0]), T(now[k][1]), T(then[k][0]), T(then[k][1]));
+      sums.add(T(1), {T(now[k][0]), T(now[k][1])}, {T(then[k][0]), T(then[k][1])});
     }
-    fingerpad::detail::stick::ObjectShift<T> shift;
-    shift.cosine = sums.along;
-    shift.sine = sums.across;
-    return shift.angle_rad();
+    fingerpad::detail::stick::Similarity<T> map;
+    map.cosine = sums.along;
+    map.sine = sums.across;
+    return map.angle_rad();
   }
 };
 
@@ -93,7 +93,7 @@ template <class S>
 fingerpad::StickRatioResult<S> stick_ratio_between(const test::PointsPx& then,
                                                    const test::PointsPx& now,
                                                    const test::ContactFlags& contact) {
-  const fingerpad::StickRatio<fingerpad::StickConsensus<>, fingerpad::UpdatedReference<>,
+  const fingerpad::StickRatio<fingerpad::StickConsensus<>, fingerpad::UpdatedReference,
                               fingerpad::ResidualMean, S>
       ratio(contact.rows(), contact.cols());
   auto state = ratio.start();

@@ -24,7 +24,7 @@ inline namespace v0 {
 /// Runs the stick ratio with all U of the search over a recording, frame by frame as they come.
 /// The recording: at least one contact that begins sticking and slips at last, better several.
 template <class Motion = StickConsensus<>,
-          class Reference = UpdatedReference<>,
+          class Reference = UpdatedReference,
           class Denoising = ResidualMean,
           scalar S = float>
 class StickTestCalibration {
@@ -69,7 +69,7 @@ class StickTestCalibration {
   bool add(const Dots& dots_px, const Contact& contact, double time_s = not_a_number<double>()) {
     const Index cols = runs_.front().estimator.cols();
     const StridedView<DotState> states(states_.data(), runs_.front().estimator.rows(), cols, cols);
-    bool stands = false;  // as the smallest U says; with InStickRegion others may differ
+    bool stands = false;  // as the smallest U says
     for (Run& run : runs_) {
       const auto result = run.estimator(dots_px, contact, states, run.state, time_s);
       if (!result.accepted()) {

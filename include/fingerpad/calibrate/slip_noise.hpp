@@ -11,10 +11,10 @@
 #include <vector>
 
 #include "fingerpad/calibrate/detail/slip_positions.hpp"
-#include "fingerpad/slip/denoising.hpp"
 #include "fingerpad/core/dots.hpp"
 #include "fingerpad/core/expects.hpp"
 #include "fingerpad/core/grid.hpp"
+#include "fingerpad/slip/stick_steps.hpp"
 
 namespace fingerpad {
 inline namespace v0 {

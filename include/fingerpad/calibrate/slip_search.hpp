@@ -145,11 +145,11 @@ struct ReferenceSearch {
                                ///< is taken for slipping; less for others. Published: 0.0183
   double false_motion = 0.01;  ///< in (0, 1): that a standing pad is taken for moving, for U_min
   double sampling_errors = 2;  ///< >= 0: how much worse than the best is as good
-  Index min_steps = 20;      ///< >= 2: frames with contact and motion
-  Index min_updates = 10;    ///< >= 1: frames with an answer of their own
+  Index min_steps = 20;        ///< >= 2: frames with contact and motion
+  Index min_updates = 10;      ///< >= 1: frames with an answer of their own
   double stick_and_slip = 0.5;  ///< in (0, 1): with the best U some answers have to be above and
                                 ///< some below, three each, since one may be wrong
-  Index min_dots = 5;         ///< as in StickTest
+  Index min_dots = 5;           ///< as in StickTest
 };
 inline void expects_valid(const ReferenceSearch& search) {
   const char* const owner = "ReferenceSearch";
@@ -168,8 +168,8 @@ inline void expects_valid(const ReferenceSearch& search) {
           "sampling_errors", search.sampling_errors, "finite and >= 0");
   expects(search.min_steps >= 2, owner, "min_steps", static_cast<long long>(search.min_steps),
           ">= 2");
-  expects(search.min_updates >= 1, owner, "min_updates",
-          static_cast<long long>(search.min_updates), ">= 1");
+  expects(search.min_updates >= 1, owner, "min_updates", static_cast<long long>(search.min_updates),
+          ">= 1");
   in_unit(search.stick_and_slip, "stick_and_slip");
 }
 
@@ -227,31 +227,22 @@ namespace detail::stick {
 inline double compared_noise_px(const NoDenoising&, const DotNoise& noise) {
   return noise.noise_px;
 }
-inline double compared_noise_px(const DotMean&, const DotNoise& noise) {
-  return noise.inner_px;  // dots at the edge of the pattern are not averaged
-}
 inline double compared_noise_px(const ResidualMean&, const DotNoise& noise) {
   return noise.edge_px > noise.inner_px || !is_finite(noise.inner_px) ? noise.edge_px
                                                                       : noise.inner_px;
 }
 /// sigma of a position in d_max.
-template <class Denoising>
-double placed_noise_px(const Denoising&, const DotNoise& noise) {
+inline double placed_noise_px(const NoDenoising&, const DotNoise& noise) {
   return noise.noise_px;
 }
-inline double placed_noise_px(const DotMean&, const DotNoise& noise) {
-  return noise.inner_px;
+inline double placed_noise_px(const ResidualMean&, const DotNoise& noise) {
+  return noise.noise_px;
 }
 
-/// By how much the object's motion adds to a dot's noise: of many dots next to nothing, of one
-/// reference dot as much again.
-template <Freedom Free, class Dot>
-double motion_noise_factor(const StickConsensus<Free, Dot>&) {
+/// By how much the object's motion adds to a dot's noise: of many dots next to nothing.
+template <Freedom Free>
+double motion_noise_factor(const StickConsensus<Free>&) {
   return 1;
-}
-template <Freedom Free, class Scale, class Dot>
-double motion_noise_factor(const ReferenceDotMotion<Free, Scale, Dot>&) {
-  return 1.4142135623730951;
 }
 
 }  // namespace detail::stick
@@ -268,16 +259,18 @@ StickTest stick_test_for(Index dots,
   const char* const owner = "stick_test_for";
   expects_valid(search);
   expects(dots >= 1, owner, "dots", static_cast<long long>(dots), ">= 1");
-  const double compared_px = detail::stick::compared_noise_px(denoising, noise);
-  const double placed_px = detail::stick::placed_noise_px(denoising, noise);
+  using detail::stick::compared_noise_px;  // published policies bring their own
+  using detail::stick::motion_noise_factor;
+  using detail::stick::placed_noise_px;
+  const double compared_px = compared_noise_px(denoising, noise);
+  const double placed_px = placed_noise_px(denoising, noise);
   expects(is_finite(placed_px) && placed_px > 0, owner, "noise of a dot", placed_px,
           "finite and > 0");
   expects(is_finite(compared_px) && compared_px > 0, owner, "noise of an averaged dot", compared_px,
           "finite and > 0");
   StickTest test;
   test.reference_px = reference_px;
-  test.slip_px = slip_threshold_for(compared_px * detail::stick::motion_noise_factor(motion),
-                                    search.false_slip);
+  test.slip_px = slip_threshold_for(compared_px * motion_noise_factor(motion), search.false_slip);
   test.store_px = slip_threshold_for(placed_px, false_slip_of_each(search.false_motion, dots));
   test.min_dots = search.min_dots;
   expects(is_finite(reference_px) && reference_px > (std::max)(test.slip_px, test.store_px), owner,

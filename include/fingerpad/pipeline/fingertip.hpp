@@ -61,7 +61,7 @@ struct FingertipOptions {
   ContactTest contact = {};
   StridedView<const Point3<double>> free_dots_mm = {};  ///< printed dots of the free pad; NaN: none
   StickTest stick_test = {};
-  UpdatedReference<> stick_reference = {};
+  UpdatedReference stick_reference = {};
   PolynomialForce<> force_of_area = {};   ///< N, of mm^2
   PolynomialForce<> force_of_depth = {};  ///< N, of mm
   double force_sd_n = 0.1;                ///< standard deviation of both, > 0

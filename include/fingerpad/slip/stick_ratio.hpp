@@ -9,18 +9,18 @@
 // eqs. 6-8. Published and corrected forms in docs/errata.md, E032-E038.
 //
 // A dot sticks that has moved, since a reference frame, as the object has; the reference is a
-// stored frame from which the dots have come far enough, in one direction, to tell. The steps lie
-// in detail/stick/ in this order: place_check, reference_choice, motion_between, denoising. What no
-// dots can show: an object that slides as a whole while the membrane stands still.
+// stored frame from which the dots have come far enough, in one direction, to tell. The steps are
+// in stick_steps.hpp. What no dots can show: an object that slides as a whole while the membrane
+// stands still.
 #include <cmath>
 #include <cstdint>
 
 #include "fingerpad/core/dots.hpp"
 #include "fingerpad/core/expects.hpp"
 #include "fingerpad/core/grid.hpp"
-#include "fingerpad/slip/denoising.hpp"
 #include "fingerpad/slip/detail/stick_state.hpp"
 #include "fingerpad/slip/stick_result.hpp"
+#include "fingerpad/slip/stick_steps.hpp"
 
 namespace fingerpad {
 inline namespace v0 {
@@ -48,17 +48,16 @@ inline void expects_valid(const StickTest& test) {
 }
 
 /// Stick ratio of a pad, frame by frame.
-///   Motion     StickConsensus<>    take this: the motion of all dots that stick together
-///   Reference  UpdatedReference<>  take this when the object moves on or turns back
-///              FirstReference      take this for one short push from the first contact
-///   Denoising  ResidualMean        take this for dots as a camera finds them
-///              NoDenoising         take this when their noise is far below slip_px
-/// ReferenceDotMotion and DotMean are printed forms; published/stick_ratio.hpp is the whole of
+///   Motion     StickConsensus<>  the motion of all dots that stick together
+///   Reference  UpdatedReference  a stored frame far enough back
+///   Denoising  ResidualMean      take this for dots as a camera finds them
+///              NoDenoising       take this when their noise is far below slip_px
+/// The printed forms are policies too: published/stick_ratio.hpp has them, and the whole of
 /// them. Const: threads may share one estimator, each with a state of its own. A frame takes no
 /// memory, throws nothing, and needs O(rows cols) time for each stored frame that it looks at,
 /// which are no more than `capacity` however long the recording is.
 template <class Motion = StickConsensus<>,
-          class Reference = UpdatedReference<>,
+          class Reference = UpdatedReference,
           class Denoising = ResidualMean,
           scalar S = float>
 class StickRatio {
@@ -81,14 +80,13 @@ class StickRatio {
     expects_valid(reference);
     expects_valid(denoising);
     layout_ = {rows, cols};
-    inner_ = detail::stick::inner_dots<S>(layout_);
   }
 
   Index rows() const { return layout_.rows; }
   Index cols() const { return layout_.cols; }
 
   /// The state before any frame.
-  State start() const { return State(layout_, detail::stick::capacity_of(reference_)); }
+  State start() const { return State(layout_, reference_.capacity); }
 
   /// The ratio in a frame with dots `dots_px` (NaN: not found) of which those with a true `contact`
   /// touch the object. Writes to `states` what each dot does.
@@ -115,7 +113,7 @@ class StickRatio {
     const bool accepted = dots.rows() == rows() && dots.cols() == cols() &&
                           same_size(dots, touch) && same_size(dots, to) &&
                           state.layout == layout_ &&
-                          state.repository.capacity() == detail::stick::capacity_of(reference_);
+                          state.repository.capacity() == reference_.capacity;
     if (!accepted) {
       return {};
     }
@@ -125,12 +123,11 @@ class StickRatio {
     }
     state.time_s = is_finite(time_s) ? time_s : state.time_s;
     ++state.frame;
-    state.given.read(layout_, dots, touch);
+    state.given.read(dots, touch);
     const StickStatus status = look(state);
     StickRatioResult<S>& result = state.result;
     result.status = back ? StickStatus::restarted : status;
-    detail::stick::settle_marks(state);
-    detail::stick::write_states(state, to);
+    detail::stick::settle_marks(state, to);
     if (status == StickStatus::updated) {
       result.stick_ratio = S(result.stick) / S(result.stick + result.slip);
     }
@@ -139,50 +136,42 @@ class StickRatio {
 
  private:
   using Choice = detail::stick::Choice<S>;
-  using Run = detail::stick::Run;
 
   /// What this frame says; fills all of the result but the counts.
   StickStatus look(State& state) const {
     using namespace detail::stick;
     StickRatioResult<S>& result = state.result;
+    const auto& touching = state.given.touching;
     result.out_of_place = 0;
-    if (!state.given.any_touch()) {
+    if (touching.empty()) {
       return without_contact(state);
     }
-    const Run run = layout_.run(state.given.first_row, state.given.last_row);
-    state.keep_of_now(run);
-    const PlacedDots placed =
-        prepare_dots(denoising_, state.given, layout_, run, inner_, state.scratch, state.now);
+    const PlacedDots placed = place_dots(state.given, layout_, state.now);
+    denoise_positions(denoising_, state.given, layout_, state.now);
     result.out_of_place = placed.out_of_place;
     if (placed.dots < test_.min_dots) {
-      return any_found(state) ? StickStatus::too_few_dots : StickStatus::no_dots;
+      return state.given.count > 0 ? StickStatus::too_few_dots : StickStatus::no_dots;
     }
-    const Choice choice =
-        choose_reference(reference_, followed_dots(reference_, state, run), state.repository, run,
-                         S(square(test_.reference_px)), S(square(test_.store_px)));
+    const S reference_sq = S(square(test_.reference_px));
+    const Choice choice = choose_reference(reference_, touching, state.now.data(), state.repository,
+                                           reference_sq, S(square(test_.store_px)));
     result.furthest_px = length(choice.furthest_sq);
     if (choice.standing) {
       return StickStatus::standing;
     }
-    const bool leap =
-        stores_all_along(reference_) && S(4) * S(square(test_.reference_px)) < choice.newest_sq;
-    if (leap && has_jumped(view(state.now), state.repository.dots(0), run, layout_.stride())) {
+    const bool leap = S(4) * reference_sq < choice.newest_sq;
+    if (leap && has_jumped(touching, state.now.data(), state.repository.dots(0), layout_)) {
       return StickStatus::jumped;
     }
-    const StickStatus status =
-        choice.age < 0 ? StickStatus::no_reference : answer(choice, run, state);
+    const StickStatus status = choice.age < 0 ? StickStatus::no_reference : answer(choice, state);
     if (is_stored(reference_, state.repository)) {
       state.repository.store(state.now, state.frame);
     }
     return status;
   }
 
-  bool any_found(const State& state) const {
-    return count_dots(view(state.given.found), layout_.run(0, rows() - 1)) > 0;
-  }
-
   StickStatus without_contact(State& state) const {
-    if (!any_found(state)) {
+    if (state.given.count == 0) {
       return StickStatus::no_dots;
     }
     state.forget();
@@ -190,24 +179,24 @@ class StickRatio {
   }
 
   /// The ratio against the chosen reference.
-  StickStatus answer(const Choice& choice, const Run& run, State& state) const {
+  StickStatus answer(const Choice& choice, State& state) const {
     using namespace detail::stick;
-    const FramePair<S> pair{view(state.now), state.repository.dots(choice.age), run, layout_,
-                            choice.furthest_sq};
-    const NearestDot reference = first_dot(dot_of(motion_), pair, state);
-    if (reference.pairs < test_.min_dots) {
+    const FramePair<S> pair{state.now.data(), state.repository.dots(choice.age),
+                            state.given.touching, layout_, choice.furthest_sq};
+    if (count_pairs(pair) < test_.min_dots) {
       return StickStatus::too_few_dots;
     }
+    const Index reference = first_dot(pair, state);
     const S slip = S(test_.slip_px / test_.reference_px);
     const S slip_sq = slip * slip * choice.furthest_sq;
-    const ObjectShift<S> shift = motion_between(motion_, pair, reference.cell, slip_sq);
-    mark_dots(denoising_, pair, shift, slip_sq, state.residuals, state.marks);
-    state.stick_center = centroid(pair.now, run, state.marks, DotMarks<S>::stick());
+    const Similarity<S> map = motion_between(motion_, pair, reference, slip_sq);
+    mark_dots(denoising_, pair, map, slip_sq, state.residuals, state.marks);
+    state.stick_center = centroid(pair, state.marks, DotState::stick);
     StickRatioResult<S>& result = state.result;
     result.reference_age = static_cast<Index>(state.frame - state.repository.frame(choice.age));
-    result.angle_rad = shift.angle_rad();
-    result.scale = shift.scale();
-    result.reference_dot = layout_.dot_at(reference.cell);
+    result.angle_rad = map.angle_rad();
+    result.scale = map.scale();
+    result.reference_dot = layout_.dot_at(reference);
     return StickStatus::updated;
   }
 
@@ -221,7 +210,6 @@ class StickRatio {
   Reference reference_;
   Denoising denoising_;
   detail::stick::DotLayout layout_;
-  detail::aligned_vector<S> inner_;
 };
 
 }  // namespace v0

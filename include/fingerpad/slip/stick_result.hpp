@@ -81,29 +81,5 @@ struct [[nodiscard]] StickRatioResult {
   Index dots_in_contact() const { return stick + slip + unknown; }
 };
 
-/// The stick ratio by area: of the dots known to stick or slip, the share of `cell_areas` that
-/// sticks; NaN where there is none. Areas that are not finite and positive are left out.
-/// O(rows cols).
-template <grid States, grid Areas>
-double stick_area_ratio(const States& states, const Areas& cell_areas) {
-  const auto of = as_view(states);
-  const auto areas = as_view(cell_areas);
-  if (!same_size(of, areas)) {
-    return not_a_number<double>();
-  }
-  double stick = 0, known = 0;
-  for (Index i = 0; i < of.rows(); ++i) {
-    for (Index j = 0; j < of.cols(); ++j) {
-      const DotState state = static_cast<DotState>(of(i, j));
-      const double area = static_cast<double>(value(areas(i, j)));
-      if (state >= DotState::slip && is_finite(area) && area > 0) {
-        known += area;
-        stick += state == DotState::stick ? area : 0;
-      }
-    }
-  }
-  return known > 0 ? stick / known : not_a_number<double>();
-}
-
 }  // namespace v0
 }  // namespace fingerpad

@@ -10,9 +10,9 @@
 #include <utility>
 #include <vector>
 
-#include "fingerpad/slip/denoising.hpp"
 #include "fingerpad/core/grid.hpp"
 #include "fingerpad/core/scalar.hpp"
+#include "fingerpad/slip/stick_steps.hpp"
 
 namespace fingerpad {
 inline namespace v0 {

@@ -1,0 +1,172 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+#pragma once
+// Frames of dots as the stick ratio reads and stores them: points in the order of the dot grid, NaN
+// where there is none. NaN makes every comparison false, so that a missing dot needs no flag.
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "fingerpad/core/dots.hpp"
+#include "fingerpad/core/grid.hpp"
+#include "fingerpad/core/scalar.hpp"
+#include "fingerpad/slip/stick_result.hpp"
+
+namespace fingerpad {
+inline namespace v0 {
+namespace detail::stick {
+
+/// Squares of distances from here on are no distances between dots, NaN neither.
+template <class S>
+constexpr S no_distance_sq() {
+  return S(1e18);
+}
+template <class S>
+constexpr bool is_distance_sq(const S& sq) {
+  return sq < no_distance_sq<S>();
+}
+
+template <class S>
+constexpr Point2<S> no_dot() {
+  return {not_a_number<S>(), not_a_number<S>()};
+}
+
+struct DotLayout {
+  Index rows = 0;
+  Index cols = 0;
+
+  Index size() const { return rows * cols; }
+  DotIndex dot_at(Index k) const { return {k / cols, k % cols}; }
+  friend constexpr bool operator==(const DotLayout&, const DotLayout&) = default;
+};
+
+template <class P>
+using Dots = std::vector<P>;
+
+template <class P>
+const P& at(const Dots<P>& dots, Index k) {
+  return dots[static_cast<std::size_t>(k)];
+}
+template <class P>
+P& at(Dots<P>& dots, Index k) {
+  return dots[static_cast<std::size_t>(k)];
+}
+
+/// The dot `down` rows and `right` columns from dot k; NaN outside of the grid.
+template <class S>
+Point2<S> beside(const Point2<S>* dots, const DotLayout& layout, Index k, Index down, Index right) {
+  const DotIndex d = layout.dot_at(k);
+  const bool inside = d.row + down >= 0 && d.row + down < layout.rows && d.col + right >= 0 &&
+                      d.col + right < layout.cols;
+  return inside ? dots[k + down * layout.cols + right] : no_dot<S>();
+}
+
+/// A frame as it was given.
+template <class S>
+struct GivenDots {
+  Dots<Point2<S>> found;        ///< NaN where none was found
+  std::vector<Index> touching;  ///< the cells with a flag of contact, found or not
+  Index count = 0;              ///< of the dots found
+
+  GivenDots() = default;
+  explicit GivenDots(const DotLayout& layout)
+      : found(static_cast<std::size_t>(layout.size()), no_dot<S>()) {
+    touching.reserve(found.size());
+  }
+
+  template <class DotsView, class Contact>
+  void read(const DotsView& dots, const Contact& contact) {
+    using Traits = point_traits<cell_t<DotsView>>;
+    touching.clear();
+    count = 0;
+    Index k = 0;
+    for (Index i = 0; i < dots.rows(); ++i) {
+      for (Index j = 0; j < dots.cols(); ++j, ++k) {
+        const cell_t<DotsView> given = dots(i, j);
+        const Point2<S> p = {S(Traits::x(given)), S(Traits::y(given))};
+        const bool there = is_distance_sq(squared_norm(p));
+        at(found, k) = there ? p : no_dot<S>();
+        count += there ? 1 : 0;
+        if (is_contact(cell_t<Contact>(contact(i, j)))) {
+          touching.push_back(k);
+        }
+      }
+    }
+  }
+};
+
+/// The latest frames, at most `capacity`; a new one takes the place of the oldest.
+template <class P>
+class Repository {
+ public:
+  Repository() = default;
+  Repository(const DotLayout& layout, Index capacity)
+      : cells_(layout.size()),
+        dots_(static_cast<std::size_t>(cells_ * capacity)),
+        frames_(static_cast<std::size_t>(capacity)) {}
+
+  Index size() const { return size_; }
+  Index capacity() const { return static_cast<Index>(frames_.size()); }
+
+  /// `age` 0: the newest.
+  const P* dots(Index age) const { return dots_.data() + slot(age) * cells_; }
+  std::int64_t frame(Index age) const { return frames_[static_cast<std::size_t>(slot(age))]; }
+
+  void store(const Dots<P>& dots, std::int64_t frame) {
+    newest_ = newest_ + 1 < capacity() ? newest_ + 1 : 0;
+    size_ = size_ < capacity() ? size_ + 1 : size_;
+    frames_[static_cast<std::size_t>(newest_)] = frame;
+    std::copy(dots.begin(), dots.end(), dots_.begin() + newest_ * cells_);
+  }
+  void clear() { size_ = 0; }
+
+ private:
+  Index slot(Index age) const {
+    return newest_ >= age ? newest_ - age : newest_ - age + capacity();
+  }
+
+  Index cells_ = 0;
+  Dots<P> dots_;
+  std::vector<std::int64_t> frames_;
+  Index newest_ = -1;
+  Index size_ = 0;
+};
+
+/// d_max^2: the largest displacement of a dot of `touching` that both frames have; -1 if there is
+/// none.
+template <class P>
+auto furthest_sq(const std::vector<Index>& touching, const P* now, const P* before)
+    -> decltype(squared_norm(*now)) {
+  using S = decltype(squared_norm(*now));
+  S furthest = S(-1);
+  for (const Index k : touching) {
+    const S sq = squared_norm(now[k] - before[k]);
+    furthest = furthest < sq ? sq : furthest;
+  }
+  return furthest;
+}
+
+/// Two frames to compare.
+template <class S>
+struct FramePair {
+  const Point2<S>* now;
+  const Point2<S>* then;
+  const std::vector<Index>& touching;  ///< now
+  DotLayout layout;
+  S furthest_sq;  ///< d_max^2
+};
+
+/// With which stored frame the present one is compared.
+template <class S>
+struct Choice {
+  Index age = -1;         ///< in the repository; -1: no frame will do
+  S furthest_sq = S(-1);  ///< d_max^2 from it; else from the newest stored frame
+  S newest_sq = S(-1);    ///< d_max^2 from a frame of a moment ago, from which a leap is a leap of
+                          ///< names; -1: there is none
+  bool standing = false;
+};
+
+}  // namespace detail::stick
+}  // namespace v0
+}  // namespace fingerpad

@@ -1,0 +1,123 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+#pragma once
+// Dots that carry another dot's name: two exchanged, one found at a spot of glare, or the whole
+// pattern taken for its neighbour. One such dot would be the furthest of all and set the threshold.
+#include <algorithm>
+
+#include "fingerpad/slip/detail/dot_frames.hpp"
+
+namespace fingerpad {
+inline namespace v0 {
+namespace detail::stick {
+
+/// Whether dot k lies further than half a pitch from the middle of the two dots beside it; false
+/// where one of the three is missing.
+template <class S>
+bool is_out_of_line(
+    const Point2<S>* dots, const DotLayout& layout, Index k, Index down, Index right) {
+  const Point2<S> a = beside(dots, layout, k, -down, -right);
+  const Point2<S> b = beside(dots, layout, k, down, right);
+  const Point2<S> off = a + b - S(2) * dots[k];           // twice the distance
+  return squared_norm(b - a) < S(4) * squared_norm(off);  // b - a: two pitches
+}
+
+/// The corners of the pattern lie between no two neighbours: they are held against the line through
+/// the next two, along their row and their column.
+template <class S>
+bool is_corner_out_of_line(const Point2<S>* dots, const DotLayout& layout, Index k) {
+  const DotIndex d = layout.dot_at(k);
+  const bool corner =
+      (d.row == 0 || d.row == layout.rows - 1) && (d.col == 0 || d.col == layout.cols - 1);
+  if (!corner) {
+    return false;
+  }
+  const auto is_off = [&](Index down, Index right) {
+    const Point2<S> next = beside(dots, layout, k, down, right);
+    const Point2<S> along = next - beside(dots, layout, k, 2 * down, 2 * right);
+    return squared_norm(along) < S(4) * squared_norm(dots[k] - next - along);
+  };
+  return is_off(0, d.col == 0 ? 1 : -1) || is_off(d.row == 0 ? 1 : -1, 0);
+}
+
+template <class S>
+bool is_out_of_place(const Point2<S>* dots, const DotLayout& layout, Index k) {
+  return is_out_of_line(dots, layout, k, 0, 1) || is_out_of_line(dots, layout, k, 1, 0) ||
+         is_corner_out_of_line(dots, layout, k);
+}
+
+struct PlacedDots {
+  Index dots = 0;          ///< in contact and in place
+  Index out_of_place = 0;  ///< in contact and found, but not where their neighbours say
+};
+
+/// Writes to `now` the dots in contact that are where their neighbours say; all others are missing.
+template <class S>
+PlacedDots place_dots(const GivenDots<S>& given, const DotLayout& layout, Dots<Point2<S>>& now) {
+  std::fill(now.begin(), now.end(), no_dot<S>());
+  PlacedDots placed;
+  for (const Index k : given.touching) {
+    if (!is_finite(at(given.found, k))) {
+      continue;
+    }
+    if (is_out_of_place(given.found.data(), layout, k)) {
+      ++placed.out_of_place;
+    } else {
+      ++placed.dots;
+      at(now, k) = at(given.found, k);
+    }
+  }
+  return placed;
+}
+
+/// Mean of vectors, and of their squares.
+template <class S>
+struct MeanOfVectors {
+  Point2<S> sum = {S(0), S(0)};
+  S sum_sq = S(0);
+  int count = 0;
+
+  void add(const Point2<S>& v) {
+    if (is_distance_sq(squared_norm(v))) {
+      sum += v;
+      sum_sq = sum_sq + squared_norm(v);
+      ++count;
+    }
+  }
+  Point2<S> mean() const { return sum / S((std::max)(count, 1)); }
+  S spread_sq() const { return sum_sq / S((std::max)(count, 1)) - squared_norm(mean()); }
+};
+
+/// True when the dots have all moved by one pitch of the pattern, along rows, columns or diagonals,
+/// to a quarter of a pitch: the names have jumped, not the dots.
+template <class S>
+bool has_jumped(const std::vector<Index>& touching,
+                const Point2<S>* now,
+                const Point2<S>* before,
+                const DotLayout& layout) {
+  MeanOfVectors<S> moved, across, down;
+  for (const Index k : touching) {
+    moved.add(now[k] - before[k]);
+    across.add(beside(before, layout, k, 0, 1) - before[k]);
+    down.add(beside(before, layout, k, 1, 0) - before[k]);
+  }
+  const Point2<S> next_col = across.mean(), next_row = down.mean();
+  const S col_sq = squared_norm(next_col), row_sq = squared_norm(next_row);
+  const S near_sq = (col_sq < row_sq ? col_sq : row_sq) / S(16);
+  if (!(S(0) < near_sq) || !(moved.spread_sq() < near_sq)) {
+    return false;
+  }
+  for (int i = -1; i <= 1; ++i) {
+    for (int j = -1; j <= 1; ++j) {
+      const Point2<S> off = moved.mean() - S(i) * next_row - S(j) * next_col;
+      if ((i != 0 || j != 0) && squared_norm(off) < near_sq) {
+        return true;
+      }
+    }
+  }
+  return false;
+}
+
+}  // namespace detail::stick
+}  // namespace v0
+}  // namespace fingerpad

@@ -1,0 +1,319 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+#pragma once
+// The steps of the stick ratio and the choices in each: with which stored frame the present one is
+// compared, how the object has moved in between, and which dots have followed it. Source: Ito, Kim,
+// Obinata, "Robust slippage degree estimation based on reference update of vision-based tactile
+// sensor", the talk with its backup slides. Printed forms: published/stick_ratio.hpp.
+#include <array>
+#include <cmath>
+#include <cstddef>
+
+#include "fingerpad/core/expects.hpp"
+#include "fingerpad/slip/detail/dot_places.hpp"
+#include "fingerpad/slip/detail/similarity.hpp"
+
+namespace fingerpad {
+inline namespace v0 {
+
+/// Of the stored frames, the newest from which the dots in contact have moved further than U, as
+/// long as the distance grows from frame to frame further back. Where it begins to shrink the
+/// object has turned round, and no frame from there on is looked at; equal distances go on.
+struct UpdatedReference {
+  Index capacity = 64;  ///< 1 to 4096 frames; when it is full the oldest one is forgotten
+};
+
+/// What may differ between two frames of one object, besides where it is.
+enum class Freedom {
+  translation,  ///< nothing: it is shifted
+  rigid,        ///< it is rotated about the line of sight
+  scaling,      ///< it is seen larger or smaller, as the normal force changes
+  similarity,   ///< both
+};
+constexpr bool may_rotate(Freedom f) {
+  return f == Freedom::rigid || f == Freedom::similarity;
+}
+constexpr bool may_scale(Freedom f) {
+  return f == Freedom::scaling || f == Freedom::similarity;
+}
+
+/// The map that fits all sticking dots best. Beginning with the reference dot and its 24 nearest,
+/// dots that follow the map are taken, and the map fitted to them, until they hardly become more.
+/// Where a dot has outrun the map, which none can that the object drags, the search begins anew
+/// from the one that has come furthest: the first has found dots that stand still together.
+template <Freedom Free = Freedom::similarity>
+struct StickConsensus {
+  int max_passes = 10;  ///< 0 to 100; two or three are the rule
+};
+
+/// Weights of a dot, of its four neighbours and of those across; > 0, >= 0, >= 0. The defaults
+/// leave 0.42 of the noise, as the published 0.06 of 0.14 px.
+struct DotWeights {
+  double self = 6;      ///< S1
+  double side = 2;      ///< S2
+  double diagonal = 1;  ///< S3
+};
+
+/// Less noise: what is left of the displacements when the object's motion is taken out is averaged
+/// over neighbours in contact. Neighbours that slip by more than `gate` times the threshold are
+/// left out, so that they do not smear into the sticking dots beside them.
+struct ResidualMean {
+  DotWeights weights = {};
+  double gate = 6;  ///< >= 1
+};
+
+/// A dot is judged by itself.
+struct NoDenoising {};
+
+inline void expects_valid(const UpdatedReference& reference) {
+  expects(reference.capacity >= 1 && reference.capacity <= 4096, "UpdatedReference", "capacity",
+          static_cast<long long>(reference.capacity), "in [1, 4096]");
+}
+template <Freedom Free>
+void expects_valid(const StickConsensus<Free>& motion) {
+  expects(motion.max_passes >= 0 && motion.max_passes <= 100, "StickConsensus", "max_passes",
+          static_cast<long long>(motion.max_passes), "in [0, 100]");
+}
+inline void expects_valid(const DotWeights& weights, const char* owner) {
+  expects(is_finite(weights.self) && weights.self > 0, owner, "weights.self", weights.self,
+          "finite and > 0");
+  expects(is_finite(weights.side) && weights.side >= 0, owner, "weights.side", weights.side,
+          "finite and >= 0");
+  expects(is_finite(weights.diagonal) && weights.diagonal >= 0, owner, "weights.diagonal",
+          weights.diagonal, "finite and >= 0");
+}
+inline void expects_valid(const ResidualMean& mean) {
+  expects_valid(mean.weights, "ResidualMean");
+  expects(is_finite(mean.gate) && mean.gate >= 1, "ResidualMean", "gate", mean.gate,
+          "finite and >= 1");
+}
+inline void expects_valid(const NoDenoising&) {}
+
+namespace detail::stick {
+
+// ---- with which frame the present one is compared
+
+template <class P, class S>
+Choice<S> choose_reference(const UpdatedReference&,
+                           const std::vector<Index>& touching,
+                           const P* now,
+                           const Repository<P>& stored,
+                           const S& reference_sq,
+                           const S& store_sq) {
+  Choice<S> choice;
+  S before = S(-1);
+  for (Index age = 0; age < stored.size(); ++age) {
+    const S sq = furthest_sq(touching, now, stored.dots(age));
+    if (age == 0) {
+      choice.newest_sq = choice.furthest_sq = sq;
+      choice.standing = !(sq < S(0)) && !(store_sq < sq);
+    }
+    if (choice.standing || sq < before) {
+      break;
+    }
+    if (reference_sq < sq) {
+      choice.age = age;
+      choice.furthest_sq = sq;
+      break;
+    }
+    before = sq;
+  }
+  return choice;
+}
+
+/// Whether a frame that is not standing is kept for later.
+template <class P>
+bool is_stored(const UpdatedReference&, const Repository<P>&) {
+  return true;
+}
+
+// ---- how the object has moved
+
+/// Adds dot k, as seen from the origins of `about`, if both frames have it.
+template <class S>
+void add_dot(const FramePair<S>& pair,
+             Index k,
+             const S& weight,
+             const Similarity<S>& about,
+             PairSums<S>& sums) {
+  const Point2<S> now = pair.now[k] - about.now_at, then = pair.then[k] - about.then_at;
+  if (is_distance_sq(S(squared_norm(now) + squared_norm(then)))) {
+    sums.add(weight, now, then);
+  }
+}
+
+/// The reference dot and the 24 around it, with binomial weights.
+template <class S>
+PairSums<S> sums_around(const FramePair<S>& pair, Index reference, const Similarity<S>& about) {
+  constexpr std::array<int, 5> binomial = {1, 4, 6, 4, 1};
+  PairSums<S> sums;
+  const DotIndex center = pair.layout.dot_at(reference);
+  for (Index i = -2; i <= 2; ++i) {
+    for (Index j = -2; j <= 2; ++j) {
+      const bool inside = center.row + i >= 0 && center.row + i < pair.layout.rows &&
+                          center.col + j >= 0 && center.col + j < pair.layout.cols;
+      if (inside) {
+        const int weight =
+            binomial[static_cast<std::size_t>(i + 2)] * binomial[static_cast<std::size_t>(j + 2)];
+        add_dot(pair, reference + i * pair.layout.cols + j, S(weight), about, sums);
+      }
+    }
+  }
+  return sums;
+}
+
+template <Freedom Free, class S>
+Similarity<S> fit(const PairSums<S>& sums, const Similarity<S>& about) {
+  return fit<may_rotate(Free), may_scale(Free)>(sums, about);
+}
+
+/// The map on which the dots around one agree with those that follow it.
+template <Freedom Free, class S>
+Similarity<S> consensus(const FramePair<S>& pair, Index from, const S& slip_sq, int max_passes) {
+  constexpr int fewest = 3;  // dots that a map can be wrong about
+  const S hardly_more = S(1.005);
+  const Similarity<S> about = {S(1), S(0), pair.now[from], pair.then[from]};
+  Similarity<S> map = fit<Free>(sums_around(pair, from, about), about);
+  S before = S(0);
+  for (int pass = 0; pass < max_passes; ++pass) {
+    PairSums<S> sums;
+    for (const Index k : pair.touching) {
+      if (squared_norm(map.residual(pair.now[k], pair.then[k])) < slip_sq) {
+        sums.add(S(1), pair.now[k] - about.now_at, pair.then[k] - about.then_at);
+      }
+    }
+    if (sums.weight < S(fewest)) {
+      break;
+    }
+    map = fit<Free>(sums, about);
+    if (!(hardly_more * before < sums.weight)) {
+      break;
+    }
+    before = sums.weight;
+  }
+  return map;
+}
+
+/// Whether the object, as seen from the origins of the map, has come less than half of d_max.
+template <class S>
+bool has_hardly_moved(const Similarity<S>& map, const S& furthest_sq) {
+  return S(4) * squared_norm(map.now_at - map.then_at) < furthest_sq;
+}
+
+/// Of the dots that have come half of d_max at least, and that the map leaves with more than half
+/// of it, in its direction, the one that has come furthest; -1 if there is none. A dot that the
+/// scale alone has moved by a quarter of that says nothing.
+template <class S>
+Index furthest_outrunner(const FramePair<S>& pair, const Similarity<S>& map) {
+  const S growth = map.scale() - S(1);
+  Index furthest = -1;
+  S min_sq = pair.furthest_sq / S(4);
+  for (const Index k : pair.touching) {
+    const Point2<S> moved = pair.now[k] - pair.then[k];
+    const S sq = squared_norm(moved);
+    if (min_sq < sq && is_distance_sq(sq)) {
+      const Point2<S> grown = growth * (pair.now[k] - map.now_at);
+      const S ahead = dot(map.residual(pair.now[k], pair.then[k]), moved);
+      if (!(sq < S(16) * squared_norm(grown)) && sq < S(2) * ahead) {
+        furthest = k;
+        min_sq = sq;
+      }
+    }
+  }
+  return furthest;
+}
+
+template <Freedom Free, class S>
+Similarity<S> motion_between(const StickConsensus<Free>& policy,
+                             const FramePair<S>& pair,
+                             Index reference,
+                             const S& slip_sq) {
+  const Similarity<S> map = consensus<Free>(pair, reference, slip_sq, policy.max_passes);
+  if (!has_hardly_moved(map, pair.furthest_sq)) {
+    return map;
+  }
+  const Index ahead = furthest_outrunner(pair, map);
+  if (ahead < 0) {
+    return map;
+  }
+  const Similarity<S> other = consensus<Free>(pair, ahead, slip_sq, policy.max_passes);
+  return has_hardly_moved(other, pair.furthest_sq) ? map : other;
+}
+
+// ---- which dots have followed it
+
+/// What becomes of the positions before anything is compared: nothing, by default.
+template <class Denoising, class S>
+void denoise_positions(const Denoising&, const GivenDots<S>&, const DotLayout&, Dots<Point2<S>>&) {}
+
+template <class S>
+DotState state_of(const S& residual_sq, const S& slip_sq) {
+  return !is_distance_sq(residual_sq) ? DotState::unknown
+         : residual_sq < slip_sq      ? DotState::stick
+                                      : DotState::slip;
+}
+
+/// Marks the dots in contact: those that follow the object to within the square root of slip_sq
+/// stick. `residuals` is room to work in.
+template <class Denoising, class S>
+void mark_dots(const Denoising&,
+               const FramePair<S>& pair,
+               const Similarity<S>& map,
+               const S& slip_sq,
+               Dots<Point2<S>>&,
+               std::vector<DotState>& marks) {
+  for (const Index k : pair.touching) {
+    const S sq = squared_norm(map.residual(pair.now[k], pair.then[k]));
+    marks[static_cast<std::size_t>(k)] = state_of(sq, slip_sq);
+  }
+}
+
+/// The mean of a dot's residual and its neighbours'; NaN ones do not count.
+template <class S>
+Point2<S> mean_around(const DotWeights& weights,
+                      const Point2<S>* residuals,
+                      const DotLayout& layout,
+                      Index k) {
+  Point2<S> sum = {S(0), S(0)};
+  double weight = 0;
+  for (Index i = -1; i <= 1; ++i) {
+    for (Index j = -1; j <= 1; ++j) {
+      const Point2<S> r = beside(residuals, layout, k, i, j);
+      if (r.x == r.x) {
+        const double w = i == 0 && j == 0   ? weights.self
+                         : i == 0 || j == 0 ? weights.side
+                                            : weights.diagonal;
+        sum += S(w) * r;
+        weight += w;
+      }
+    }
+  }
+  return sum / S(weight);
+}
+
+template <class S>
+void mark_dots(const ResidualMean& mean,
+               const FramePair<S>& pair,
+               const Similarity<S>& map,
+               const S& slip_sq,
+               Dots<Point2<S>>& residuals,
+               std::vector<DotState>& marks) {
+  const S gate_sq = slip_sq * S(mean.gate * mean.gate);
+  std::fill(residuals.begin(), residuals.end(), no_dot<S>());
+  for (const Index k : pair.touching) {
+    const Point2<S> residual = map.residual(pair.now[k], pair.then[k]);
+    const S sq = squared_norm(residual);
+    marks[static_cast<std::size_t>(k)] = is_distance_sq(sq) ? DotState::slip : DotState::unknown;
+    at(residuals, k) = sq < gate_sq ? residual : no_dot<S>();
+  }
+  for (const Index k : pair.touching) {
+    if (at(residuals, k).x == at(residuals, k).x) {
+      const S sq = squared_norm(mean_around(mean.weights, residuals.data(), pair.layout, k));
+      marks[static_cast<std::size_t>(k)] = state_of(sq, slip_sq);
+    }
+  }
+}
+
+}  // namespace detail::stick
+}  // namespace v0
+}  // namespace fingerpad
