@@ -3,7 +3,7 @@
 // Contact regions of a round pad from exact depths, small and large ones. The errors are those of
 // the area, as a share of it, and of the center, over 30 contacts: of areas within a fifth of the
 // group's, up to 2 mm off the axis, flat or bulging, level or tilted. It is what the method leaves,
-// without noise. Of masks that grow it is that of the area, over 30 discs.
+// without noise.
 #include "fingerpad/contact/contact_region.hpp"
 
 #include <cmath>
@@ -13,9 +13,10 @@
 #include <string>
 #include <vector>
 
-#include "support/soap_film.hpp"
 #include "bench/support/run.hpp"
 #include "bench/support/scene.hpp"
+#include "fingerpad/published/contact_region.hpp"
+#include "support/soap_film.hpp"
 
 using namespace fingerpad;
 using test::Image;
@@ -85,19 +86,14 @@ struct Bench {
     return errors;
   }
 
-  template <class Statistic,
-            class S = float,
-            class Edge = HalfLevelEdge,
-            class Cleaning = WithoutSpecks,
-            class Scenes>
+  template <class Statistic, class S = float, class Edge = HalfLevelEdge, class Scenes>
   void add_region(const std::string& name,
                   const Scenes& scenes,
                   const ContactTest& test = {},
-                  const Edge& edge = {},
-                  const Cleaning& cleaning = {}) const {
-    using Region = ContactRegion<Statistic, Edge, Cleaning, CameraType, S>;
+                  const Edge& edge = {}) const {
+    using Region = ContactRegion<Statistic, Edge, CameraType, S>;
     const bench::Memory memory;
-    const auto region = std::make_shared<Region>(camera, rows, cols, test, edge, cleaning);
+    const auto region = std::make_shared<Region>(camera, rows, cols, test, edge);
     const auto workspace = std::make_shared<typename Region::Workspace>(*region);
     const auto mask = std::make_shared<Image<std::uint8_t>>(rows, cols);
     const auto errors = bench::kept([=] { return errors_of(*region, *workspace, scenes()); });
@@ -125,97 +121,19 @@ struct Bench {
   }
 
   void add_all() const {
-    using Published = PublishedTwiceMean<>;
     const auto scenes = bench::kept([this] { return varied(); });
     const HalfLevelEdge no_gap{0};
-    ContactTest near_zero;
-    near_zero.threshold_per_mm = 0.001;
-    add_region<Published, float, AtThreshold, NoCleaning>("published test", scenes,
-                                                          published_contact_test());
+    add_region<published::TwiceMean<>, float, AtThreshold>("published test", scenes,
+                                                           published::contact_test());
     add_region<ClampedMean<>>("default, with its gap", scenes);
     add_region<ClampedMean<>>("default, no gap", scenes, {}, no_gap);
     add_region<ClampedMean<>, double>("default, no gap, double", scenes, {}, no_gap);
-    add_region<ClampedMean<>, float, HalfLevelEdge, Hysteresis>("Hysteresis, no gap", scenes, {},
-                                                                no_gap);
-    add_region<ClampedMean<>, float, HalfLevelEdge, LargestRegion>("LargestRegion, no gap", scenes,
-                                                                   {}, no_gap);
     add_region<ClampedMean<>, float, AtThreshold>("AtThreshold, half of the free pad", scenes);
-    add_region<ClampedMean<>, float, WidenedByRing>("WidenedByRing, threshold near 0", scenes,
-                                                    near_zero);
-    add_region<SectionMean<>, float, AtThreshold>("AtThreshold, SectionMean", scenes);
-    add_region<HessianFit<>, float, AtThreshold>("AtThreshold, HessianFit", scenes);
-    add_region<ClampedHessian<>, float, AtThreshold>("AtThreshold, ClampedHessian", scenes);
+    add_region<published::SectionMean<>, float, AtThreshold>("AtThreshold, published::SectionMean",
+                                                             scenes);
     add_region<RingStencil<>, float, AtThreshold>("AtThreshold, RingStencil", scenes);
     bench::add_streaming(group, pixels);
     add_opencv();
-  }
-};
-
-/// Discs, the first of 110 mm^2, that grow by 22.5 px.
-class Growth {
- public:
-  void add_all() const {
-    const MaskGrowth growth(rows, cols);
-    const bench::Memory memory;
-    const auto workspace = std::make_shared<MaskGrowth::Workspace>(growth.workspace());
-    add("MaskGrowth", memory,
-        [=](const auto& from, auto& out) { growth(from, by_px, out, *workspace); });
-    const auto disc = cv::getStructuringElement(cv::MORPH_ELLIPSE, {45, 45});
-    add("cv::dilate", {}, [=](auto& from, auto& out) {
-      cv::Mat to = as_mat(out);
-      cv::dilate(as_mat(from), to, disc);
-    });
-    add("cv::distanceTransform", {},
-        [outside = cv::Mat(), distance = cv::Mat()](auto& from, auto& out) mutable {
-          cv::Mat to = as_mat(out);
-          cv::threshold(as_mat(from), outside, 0, 255, cv::THRESH_BINARY_INV);
-          cv::distanceTransform(outside, distance, cv::DIST_L2, cv::DIST_MASK_PRECISE);
-          cv::compare(distance, by_px, to, cv::CMP_LE);
-        });
-    bench::add_streaming(group, pixels);
-  }
-
- private:
-  static constexpr const char* group = "mask grown by 22.5 px";
-  static constexpr double by_px = 22.5;
-
-  /// Off the middle of a pixel by `off_px`.
-  static Image<std::uint8_t> disc(double radius_px, double off_px) {
-    Image<std::uint8_t> mask(rows, cols);
-    for (Index i = 0; i < rows; ++i) {
-      for (Index j = 0; j < cols; ++j) {
-        const double y = static_cast<double>(i) - 240 - off_px;
-        const double x = static_cast<double>(j) - 320 - off_px;
-        mask(i, j) = x * x + y * y <= square(radius_px) ? 255 : 0;
-      }
-    }
-    return mask;
-  }
-
-  template <class Work>
-  static void add(const std::string& name, const bench::Memory& memory, Work work) {
-    const auto out = std::make_shared<Image<std::uint8_t>>(rows, cols);
-    const long bytes = memory.bytes();
-    const auto timed = std::make_shared<Image<std::uint8_t>>(disc(77.05, 0.5));
-    const auto note = [=](auto& counters) mutable {
-      std::vector<double> errors;
-      test::Random random(5);
-      for (int k = 0; k < 30; ++k) {
-        const double radius_px = random.uniform(40, 120);
-        auto mask = disc(radius_px, random.uniform());
-        work(mask, *out);
-        double count = 0;
-        for (const std::uint8_t cell : out->cells) {
-          count += cell != 0 ? 1 : 0;
-        }
-        const double truth = std::numbers::pi * square(radius_px + by_px);
-        errors.push_back((count - truth) / truth);
-      }
-      bench::note_errors(counters, "area", "share", errors);
-    };
-    bench::add(
-        std::string(group) + "/" + name, pixels, bytes, [=]() mutable { work(*timed, *out); },
-        note);
   }
 };
 
@@ -230,6 +148,5 @@ int main(int argc, char** argv) {
   little.add_all();
   large.add_all();
   flat.add_all();
-  Growth().add_all();
   return bench::run(argc, argv);
 }

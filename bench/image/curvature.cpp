@@ -15,6 +15,7 @@
 #include "bench/support/run.hpp"
 #include "bench/support/scene.hpp"
 #include "fingerpad/image/curvature_map.hpp"
+#include "fingerpad/published/contact_region.hpp"
 
 using namespace fingerpad;
 using bench::Image;
@@ -37,19 +38,21 @@ struct Bench {
   Image<double> truth = true_curvatures();
 
   double pitch_mm() const { return scene.pad.camera.pitch_mm; }
+  OrthographicCamera<double> from_afar() const { return {.pitch_mm = pitch_mm()}; }
   std::string group() const { return scene.name + ", radius " + std::to_string(radius_px) + " px"; }
 
   /// 1 / radius where the ring sees the free sphere alone, else NaN.
   Image<double> true_curvatures() const {
     const double plate_mm = scene.pressed_mm(scene.pad.rows / 2, scene.pad.cols / 2);
-    const auto ring = ring_offsets(radius_px, directions);
+    const auto ring = detail::ring_offsets(radius_px, directions);
     Image<double> curvature(depth.rows(), depth.cols(), test::nan);
     for (Index i = radius_px; i < depth.rows() - radius_px; ++i) {
       for (Index j = radius_px; j < depth.cols() - radius_px; ++j) {
-        const bool is_free = std::all_of(ring.begin(), ring.end(), [&](const RingOffset& o) {
-          return scene.pressed_mm(i - o.row, j - o.col) < plate_mm &&
-                 scene.pressed_mm(i + o.row, j + o.col) < plate_mm;
-        });
+        const bool is_free =
+            std::all_of(ring.begin(), ring.end(), [&](const detail::RingOffset& o) {
+              return scene.pressed_mm(i - o.row, j - o.col) < plate_mm &&
+                     scene.pressed_mm(i + o.row, j + o.col) < plate_mm;
+            });
         curvature(i, j) = is_free ? 1 / scene.pad.sphere_radius_mm : test::nan;
       }
     }
@@ -57,10 +60,10 @@ struct Bench {
   }
 
   /// The same statistic of the same depths in long double.
-  template <class Statistic, class Projection>
-  Image<long double> exact(const Projection& projection) const {
-    const CurvatureMap<Statistic, Projection, long double> map({radius_px}, projection,
-                                                               depth.rows(), depth.cols());
+  template <class Statistic, class CameraType>
+  Image<long double> exact(const CameraType& camera) const {
+    const CurvatureMap<Statistic, CameraType, long double> map(camera, depth.rows(), depth.cols(),
+                                                               {radius_px});
     auto workspace = map.workspace();
     Image<long double> out(depth.rows(), depth.cols());
     (void)map(depth, out, workspace);
@@ -68,29 +71,29 @@ struct Bench {
   }
 
   /// Adds work(), which fills `out`.
-  template <class Statistic, class Image, class Projection, class Work>
+  template <class Statistic, class Image, class CameraType, class Work>
   void add_map(const std::string& name,
-               const Projection& projection,
+               const CameraType& camera,
                const std::shared_ptr<Image>& out,
                long bytes,
                const Work& work) const {
-    const auto same = bench::kept([=, this] { return exact<Statistic>(projection); });
+    const auto same = bench::kept([=, this] { return exact<Statistic>(camera); });
     bench::add(group() + "/" + name, scene.pixels(), bytes, work, [=, this](auto& counters) {
       bench::note_errors(counters, "curvature", "1/mm", bench::errors_of(*out, truth));
       bench::note_errors(counters, "rounding", "1/mm", bench::errors_of(*out, same()));
     });
   }
 
-  template <class Statistic, class S, class Projection>
-  void add(const std::string& name, const Projection& projection) const {
-    using Map = CurvatureMap<Statistic, Projection, S>;
+  template <class Statistic, class S, class CameraType>
+  void add(const std::string& name, const CameraType& camera) const {
+    using Map = CurvatureMap<Statistic, CameraType, S>;
     const auto from = std::make_shared<Image<S>>(as<S>(depth));
     const bench::Memory memory;
     const auto map =
-        std::make_shared<Map>(CurvatureRing{radius_px}, projection, depth.rows(), depth.cols());
+        std::make_shared<Map>(camera, depth.rows(), depth.cols(), CurvatureRing{radius_px});
     const auto workspace = std::make_shared<typename Map::Workspace>(map->workspace());
     const auto out = std::make_shared<Image<S>>(depth.rows(), depth.cols());
-    add_map<Statistic>(name, projection, out, memory.bytes(),
+    add_map<Statistic>(name, camera, out, memory.bytes(),
                        [=] { (void)(*map)(*from, *out, *workspace); });
   }
 
@@ -101,9 +104,9 @@ struct Bench {
     const bench::Memory memory;
     const auto out =
         std::make_shared<Image<S>>(depth.rows(), depth.cols(), std::numeric_limits<S>::quiet_NaN());
-    const auto ring = ring_offsets(radius_px, directions);
+    const auto ring = detail::ring_offsets(radius_px, directions);
     std::vector<S> radius_mm;
-    for (const RingOffset& o : ring) {
+    for (const detail::RingOffset& o : ring) {
       radius_mm.push_back(S(std::sqrt(double(o.radius_sq())) * pitch_mm()));
     }
     const auto work = [=, r = radius_px] {
@@ -113,20 +116,20 @@ struct Bench {
           S sum = S(0);
           for (std::size_t k = 0; k < ring.size(); ++k) {
             const auto [row, col] = ring[k];
-            sum += circle_center_curvature(radius_mm[k], l(i - row, j - col), l(i, j),
-                                           l(i + row, j + col));
+            sum += published::circle_center_curvature(radius_mm[k], l(i - row, j - col), l(i, j),
+                                                      l(i + row, j + col));
           }
           (*out)(i, j) = sum / S(directions);
         }
       }
     };
-    add_map<SectionMean<>>(name, PlatePitch{pitch_mm()}, out, memory.bytes(), work);
+    add_map<published::SectionMean<>>(name, from_afar(), out, memory.bytes(), work);
   }
 
   void add_opencv() const {
     const int size = int(2 * radius_px + 1);
     cv::Mat kernel = cv::Mat::zeros(size, size, CV_32F);
-    for (const RingOffset& o : ring_offsets(radius_px, directions)) {
+    for (const detail::RingOffset& o : detail::ring_offsets(radius_px, directions)) {
       const double weight = 1 / (double(o.radius_sq()) * pitch_mm() * pitch_mm() * directions);
       const int center = int(radius_px);
       kernel.at<float>(center + int(o.row), center + int(o.col)) -= float(weight);
@@ -155,25 +158,18 @@ struct Bench {
   }
 
   void add_all() const {
-    const PlatePitch plate{pitch_mm()};
-    const PitchAtDepth at_depth(scene.pad.camera);
+    const auto plate = from_afar();
+    const Camera<double>& camera = scene.pad.camera;
     add_published<double>("published circle, double");
     add_published<float>("published circle, float");
     add_opencv();
     bench::add_streaming(group(), scene.pixels());
-    add<PublishedTwiceMean<>, float>("PublishedTwiceMean<36>, float", plate);
-    add<SectionMean<>, float>("SectionMean<18>, float", plate);
+    add<published::TwiceMean<>, float>("published::TwiceMean<36>, float", plate);
+    add<published::SectionMean<>, float>("published::SectionMean<18>, float", plate);
     add<ClampedMean<>, double>("ClampedMean<18>, double", plate);
     add<ClampedMean<>, float>("ClampedMean<18>, float", plate);
-    add<ClampedMean<>, double>("ClampedMean<18>, double, PitchAtDepth", at_depth);
-    add<ClampedMean<>, float>("ClampedMean<18>, float, PitchAtDepth, the default", at_depth);
-    add<HessianFit<>, double>("HessianFit<18>, double", plate);
-    add<HessianFit<>, float>("HessianFit<18>, float", plate);
-    add<HessianFit<>, float>("HessianFit<18>, float, PitchAtDepth", at_depth);
-    add<HessianFit<9>, float>("HessianFit<9>, float", plate);
-    add<HessianFit<18, FittedValue::larger>, float>("HessianFit<18, larger>, float", plate);
-    add<HessianFit<18, FittedValue::smaller>, float>("HessianFit<18, smaller>, float", plate);
-    add<ClampedHessian<>, float>("ClampedHessian<18>, float", plate);
+    add<ClampedMean<>, double>("ClampedMean<18>, double, through a camera", camera);
+    add<ClampedMean<>, float>("ClampedMean<18>, float, through a camera, the default", camera);
     add<RingStencil<>, float>("RingStencil<18>, float", plate);
   }
 };

@@ -47,7 +47,7 @@ COMPARED = [
     ("depth of a noisy frame", "frame", "round pad", "published: BoxMean + Bisection in double",
      "Anchored<BiasFreeMean> + ExponentialFree<>", None),
     ("curvature", "curvature", "round pad, radius 10 px", "published circle, double",
-     "ClampedMean<18>, float, PitchAtDepth, the default", None),
+     "ClampedMean<18>, float, through a camera, the default", None),
     ("contact's area", "contact_region", "350 mm^2", "published test", "default, with its gap", None),
     ("attitude of a rolling ball", "object_motion", "frame of 21x21 dots",
      "published: SumOfAngles<PublishedBasis>", "ContactMap, double, the default", None),

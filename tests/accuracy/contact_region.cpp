@@ -46,7 +46,7 @@ Overlap overlap(const CameraType& camera,
 }
 
 template <class CameraType>
-using Region = ContactRegion<ClampedMean<>, HalfLevelEdge, WithoutSpecks, CameraType>;
+using Region = ContactRegion<ClampedMean<>, HalfLevelEdge, CameraType>;
 
 /// A height map of 0.08 mm per pixel.
 struct Exact {

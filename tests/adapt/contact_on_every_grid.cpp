@@ -46,8 +46,7 @@ void fill_from(Grid&& grid, const Image<T>& from) {
 }
 
 struct Case {
-  using Region =
-      ContactRegion<ClampedMean<>, HalfLevelEdge, WithoutSpecks, OrthographicCamera<double>>;
+  using Region = ContactRegion<ClampedMean<>, HalfLevelEdge, OrthographicCamera<double>>;
   Image<float> depth;
   Region region;
   Region::Workspace workspace;
@@ -134,23 +133,4 @@ TEST_CASE("contact is written into every grid", "[adapt][contact_region]") {
   std::vector<std::uint8_t> memory(static_cast<std::size_t>(rows_of_map * cols_of_map));
   CHECK(c.writes(
       StridedView<std::uint8_t>(&memory.back(), rows_of_map, cols_of_map, -cols_of_map, -1)));
-}
-
-TEST_CASE("masks grow in every grid", "[adapt][contact_region]") {
-  const Case c;
-  const MaskGrowth growth(rows_of_map, cols_of_map);
-  auto workspace = growth.workspace();
-  Image<std::uint8_t> expected(rows_of_map, cols_of_map);
-  REQUIRE(growth(c.mask, 2.5, expected, workspace));
-  ColMajor<std::uint8_t> from(rows_of_map, cols_of_map);
-  fill_from(from, c.mask);
-  cv::Mat_<std::uint8_t> to(static_cast<int>(rows_of_map), static_cast<int>(cols_of_map));
-  CHECK(growth(from, 2.5, to, workspace));
-  bool same = true;
-  for (Index i = 0; i < rows_of_map; ++i) {
-    for (Index j = 0; j < cols_of_map; ++j) {
-      same = same && to(static_cast<int>(i), static_cast<int>(j)) == expected(i, j);
-    }
-  }
-  CHECK(same);
 }

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "fingerpad/contact/contact_region.hpp"
+#include "fingerpad/published/contact_region.hpp"
 #include "support/catch.hpp"
 #include "support/refusal.hpp"
 #include "support/soap_film.hpp"
@@ -66,7 +67,8 @@ TEST_CASE("calibration: half of the free pad's curvature", "[contact_region]") {
 TEST_CASE("calibration: the rules by definition", "[contact_region]") {
   const Index rows = 60, cols = 66;
   const auto camera = test::height_map(rows, cols, 0.16);
-  const CurvatureMap<ClampedMean<>, PlatePitch, double> map({8}, PlatePitch{0.16}, rows, cols);
+  const CurvatureMap<ClampedMean<>, OrthographicCamera<double>, double> map({.pitch_mm = 0.16},
+                                                                            rows, cols, {8});
   FreePadCalibration<ClampedMean<>, Plan, double> calibration(camera, rows, cols, {8});
   auto workspace = map.workspace();
   test::Random random(5);
@@ -187,9 +189,8 @@ TEST_CASE("calibration: the noise of the edge", "[contact_region]") {
     calibration.add(noisy);
   }
   const FreePadCurvature pad = calibration.fit();
-  CurvatureRing ring_shape{ring};
-  const CurvatureMap<SectionMean<>, PlatePitch, float> mean(ring_shape, PlatePitch{0.08}, rows,
-                                                            cols);
+  const CurvatureMap<published::SectionMean<>, OrthographicCamera<double>> mean({.pitch_mm = 0.08},
+                                                                                rows, cols, {ring});
   auto workspace = mean.workspace();
   const auto spread = [&](const auto& film) {
     const auto exact = test::depths_of<float>(camera, film, rows, cols);

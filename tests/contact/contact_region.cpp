@@ -6,11 +6,11 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <opencv2/imgproc.hpp>
 #include <string>
 #include <type_traits>
 #include <vector>
 
+#include "fingerpad/published/contact_region.hpp"
 #include "support/catch.hpp"
 #include "support/refusal.hpp"
 #include "support/soap_film.hpp"
@@ -33,18 +33,13 @@ struct Found {
   Image<Touch> mask;
 };
 
-template <class Statistic = ClampedMean<>,
-          class Edge = HalfLevelEdge,
-          class Cleaning = WithoutSpecks,
-          class S,
-          class CameraType>
+template <class Statistic = ClampedMean<>, class Edge = HalfLevelEdge, class S, class CameraType>
 Found find(const CameraType& camera,
            const Image<S>& depth,
            const ContactTest& test = {},
-           const Edge& edge = {},
-           const Cleaning& cleaning = {}) {
-  const ContactRegion<Statistic, Edge, Cleaning, CameraType, S> region(
-      camera, depth.rows(), depth.cols(), test, edge, cleaning);
+           const Edge& edge = {}) {
+  const ContactRegion<Statistic, Edge, CameraType, S> region(camera, depth.rows(), depth.cols(),
+                                                             test, edge);
   auto workspace = region.workspace();
   Found found{{}, Image<Touch>(depth.rows(), depth.cols(), Touch::unknown)};
   found.result = region(depth, found.mask, workspace);
@@ -52,8 +47,9 @@ Found find(const CameraType& camera,
   return found;
 }
 
-ContactTest with_ring(Index radius_px) {
+ContactTest with_ring(Index radius_px, Index min_region_px = 200) {
   ContactTest test;
+  test.min_region_px = min_region_px;
   test.ring.radius_px = radius_px;
   return test;
 }
@@ -126,8 +122,7 @@ TEST_CASE("what is nearer than the gap counts as touched", "[contact_region]") {
   }
 }
 
-TEST_CASE("a threshold near zero erodes by a ring's radius, and widening repairs it",
-          "[contact_region]") {
+TEST_CASE("a threshold near zero erodes by a ring's radius", "[contact_region]") {
   const Index size = pixels_for(6, 12, 0.16);
   const auto camera = height_map(size, size, 0.16);
   const auto depth = depths_of<float>(camera, RoundFilm({}), size, size);
@@ -136,12 +131,6 @@ TEST_CASE("a threshold near zero erodes by a ring's radius, and widening repairs
   test.threshold_per_mm = 1e-4;
   const double eroded = radius_of(find<ClampedMean<>, AtThreshold>(camera, depth, test).result);
   CHECK(eroded == Approx(6 - 0.9 * ring_mm).margin(0.1));
-  for (const double share : {0.0, 0.5, 0.9, 1.0}) {
-    const auto found = find<ClampedMean<>, WidenedByRing>(camera, depth, test, {share});
-    CHECK(radius_of(found.result) == Approx(eroded + share * ring_mm).margin(0.1));
-  }
-  CHECK(radius_of(find<ClampedMean<>, WidenedByRing>(camera, depth, test).result) ==
-        Approx(6).margin(0.15));
   test.threshold_per_mm = 0.025;  // half the level of the free pad lies near the edge by itself
   CHECK(radius_of(find<ClampedMean<>, AtThreshold>(camera, depth, test).result) ==
         Approx(6).margin(0.1));
@@ -231,10 +220,11 @@ TEST_CASE("a free pad has no contact", "[contact_region]") {
 }
 
 TEST_CASE("presets hold the published values", "[contact_region]") {
-  constexpr ContactTest paper = published_contact_test();
+  constexpr ContactTest paper = published::contact_test();
   CHECK(paper.threshold_per_mm == 0.00015);
   CHECK(paper.ring.radius_px == 10);
-  CHECK(PublishedTwiceMean<>::directions == 36);
+  CHECK(paper.min_region_px == 1);
+  CHECK(published::TwiceMean<>::directions == 36);
   const ContactTest slides;
   CHECK(slides.ring.radius_px == 25);
   CHECK(ClampedMean<>::directions == 18);
@@ -245,16 +235,14 @@ TEST_CASE("the published test finds a flat contact less the ring", "[contact_reg
   const auto camera = height_map(size, size);
   test::RoundContact contact;
   contact.radius_mm = 4;
-  const auto found = find<PublishedTwiceMean<>, AtThreshold, NoCleaning>(
-      camera, depths_of<double>(camera, RoundFilm(contact), size, size), published_contact_test());
+  const auto found = find<published::TwiceMean<>, AtThreshold>(
+      camera, depths_of<double>(camera, RoundFilm(contact), size, size), published::contact_test());
   CHECK(found.result.regions == 1);
   CHECK(radius_of(found.result) == Approx(4 - 0.8).margin(0.1));
 }
 
 namespace {
 
-template <class... Types>
-struct Types_ {};
 template <class Statistic, class CameraType, class Scalar>
 struct Way {
   using statistic = Statistic;
@@ -271,32 +259,19 @@ Through small_camera(const Through&) {
   return pad_camera(60, 64, 0.32);
 }
 
-template <class Edge, class Way, class... Cleaning>
-void check_edge(Types_<Cleaning...>) {
+template <class Edge, class Way>
+void check_edge() {
   const auto camera = small_camera(typename Way::camera{});
   const auto depth = depths_of<typename Way::number>(camera, RoundFilm({}), 60, 64);
   ContactTest test = with_ring(5);
-  if constexpr (std::is_same_v<typename Way::statistic, PublishedTwiceMean<>>) {
+  if constexpr (std::is_same_v<typename Way::statistic, published::TwiceMean<>>) {
     test.threshold_per_mm *= 2;
   }
-  const auto check = [&](const auto& cleaning) {
-    using C = std::decay_t<decltype(cleaning)>;
-    if constexpr (std::is_same_v<C, Hysteresis>) {
-      const Hysteresis loose{test.threshold_per_mm * 1.1};
-      const auto r = find<typename Way::statistic, Edge>(camera, depth, test, {}, loose).result;
-      CHECK(r.area_mm2 > 90);
-    } else {
-      const auto r = find<typename Way::statistic, Edge>(camera, depth, test, {}, cleaning).result;
-      CHECK(r.regions == 1);
-      // 113, and what the gap or the ring adds
-      const double expected = std::is_same_v<Edge, AtThreshold>     ? 113
-                              : std::is_same_v<Edge, WidenedByRing> ? 174
-                                                                    : 131;
-      CHECK(r.area_mm2 == Approx(expected).epsilon(0.15));
-      CHECK(r.depth_mm == Approx(3).margin(0.05));
-    }
-  };
-  (check(Cleaning{}), ...);
+  const auto r = find<typename Way::statistic, Edge>(camera, depth, test).result;
+  CHECK(r.regions == 1);
+  const double expected = std::is_same_v<Edge, AtThreshold> ? 113 : 131;  // and what the gap adds
+  CHECK(r.area_mm2 == Approx(expected).epsilon(0.15));
+  CHECK(r.depth_mm == Approx(3).margin(0.05));
 }
 
 }  // namespace
@@ -304,18 +279,14 @@ void check_edge(Types_<Cleaning...>) {
 TEMPLATE_TEST_CASE("every combination of policies runs",
                    "[contact_region]",
                    (Way<ClampedMean<>, Through, float>),
-                   (Way<SectionMean<>, Plan, float>),
-                   (Way<PublishedTwiceMean<>, Through, double>),
-                   (Way<HessianFit<>, Plan, double>),
-                   (Way<ClampedHessian<>, Through, float>),
+                   (Way<published::SectionMean<>, Plan, float>),
+                   (Way<published::TwiceMean<>, Through, double>),
                    (Way<RingStencil<>, Plan, float>)) {
-  const Types_<NoCleaning, WithoutSpecks, LargestRegion, Hysteresis> cleanings;
-  check_edge<AtThreshold, TestType>(cleanings);
-  check_edge<WidenedByRing, TestType>(cleanings);
-  check_edge<HalfLevelEdge, TestType>(cleanings);
+  check_edge<AtThreshold, TestType>();
+  check_edge<HalfLevelEdge, TestType>();
 }
 
-TEST_CASE("specks are dropped, and the largest region is kept", "[contact_region]") {
+TEST_CASE("specks are dropped", "[contact_region]") {
   // three flats in a bowl whose sections all bulge
   const auto camera = height_map(80, 160, 0.16);
   Image<float> depth(80, 160);
@@ -328,21 +299,19 @@ TEST_CASE("specks are dropped, and the largest region is kept", "[contact_region
       depth(i, j) = static_cast<float>(rho < flat ? 10 : 10 - 0.1 * (rho - flat) * (rho - flat));
     }
   }
-  const ContactTest test = with_ring(5);
-  const auto all = find<ClampedMean<>, AtThreshold, NoCleaning>(camera, depth, test);
-  const auto large = find<ClampedMean<>, AtThreshold, LargestRegion>(camera, depth, test);
+  const auto with_least = [&](Index pixels) {
+    return find<ClampedMean<>, AtThreshold>(camera, depth, with_ring(5, pixels));
+  };
+  const auto all = with_least(1);
+  const auto large = with_least(all.result.contact_px / 2);
   REQUIRE(all.result.regions >= 2);
   CHECK(large.result.regions == 1);
   CHECK(large.mask(40, 40) == Touch::contact);
   CHECK(large.mask(40, 120) == Touch::none);
   CHECK(all.mask(40, 120) == Touch::contact);
   const Index least = large.result.contact_px;
-  const auto exactly =
-      find<ClampedMean<>, AtThreshold>(camera, depth, test, {}, WithoutSpecks{least});
-  CHECK(exactly.mask.cells == large.mask.cells);
-  const auto none =
-      find<ClampedMean<>, AtThreshold>(camera, depth, test, {}, WithoutSpecks{least + 1});
-  CHECK_FALSE(none.result.in_contact());
+  CHECK(with_least(least).mask.cells == large.mask.cells);
+  CHECK_FALSE(with_least(least + 1).result.in_contact());
 }
 
 TEST_CASE("the edge needs no free membrane in sight", "[contact_region]") {
@@ -405,8 +374,7 @@ TEST_CASE("masks of bytes, of bool and of Touch say the same", "[contact_region]
   const auto camera = height_map(60, 64, 0.32);
   auto depth = depths_of<float>(camera, RoundFilm({}), 60, 64);
   depth(30, 30) = std::numeric_limits<float>::quiet_NaN();
-  const ContactRegion<ClampedMean<>, HalfLevelEdge, WithoutSpecks, Plan> region(camera, 60, 64,
-                                                                                with_ring(5));
+  const ContactRegion<ClampedMean<>, HalfLevelEdge, Plan> region(camera, 60, 64, with_ring(5));
   auto workspace = region.workspace();
   Image<Touch> touch(60, 64);
   Image<std::uint8_t> bytes(60, 64, 3);
@@ -446,15 +414,11 @@ TEST_CASE("missing depth is never contact and reaches no farther than its ring",
     auto spoilt = depth;
     spoilt(30, 38) = bad;
     spoilt(31, 38) = bad;
-    const auto plain = find<ClampedMean<>, AtThreshold, NoCleaning>(camera, depth, with_ring(ring));
-    const auto found =
-        find<ClampedMean<>, AtThreshold, NoCleaning>(camera, spoilt, with_ring(ring));
-    const auto wide =
-        find<ClampedMean<>, WidenedByRing, NoCleaning>(camera, spoilt, with_ring(ring));
+    const auto plain = find<ClampedMean<>, AtThreshold>(camera, depth, with_ring(ring, 1));
+    const auto found = find<ClampedMean<>, AtThreshold>(camera, spoilt, with_ring(ring, 1));
     const auto edge = find(camera, spoilt, with_ring(ring));
     const auto edge_before = find(camera, depth, with_ring(ring));
     CHECK(found.mask(30, 38) == Touch::unknown);
-    CHECK(wide.mask(30, 38) == Touch::unknown);
     CHECK(edge.mask(30, 38) == Touch::unknown);
     CHECK(edge.result.unknown_px == edge_before.result.unknown_px + 2);
     Index moved = 0;
@@ -490,7 +454,7 @@ TEST_CASE("pixels at the image's end count as much as others", "[contact_region]
   ContactTest test = with_ring(3);
   test.ring.min_direction_share = 0.01;
   const Image<double> plate(30, 41, 5.0);
-  const auto found = find<SectionMean<>, AtThreshold>(camera, plate, test);
+  const auto found = find<published::SectionMean<>, AtThreshold>(camera, plate, test);
   CHECK(found.mask(0, 20) == Touch::contact);
   CHECK(found.mask(29, 20) == Touch::contact);
   CHECK(found.mask(15, 0) == Touch::contact);
@@ -513,7 +477,7 @@ TEST_CASE("an image smaller than the ring is unknown", "[contact_region]") {
 }
 
 TEST_CASE("a grid or a workspace of another size is not accepted", "[contact_region]") {
-  using Region = ContactRegion<ClampedMean<>, HalfLevelEdge, WithoutSpecks, Plan>;
+  using Region = ContactRegion<ClampedMean<>, HalfLevelEdge, Plan>;
   const auto camera = height_map(60, 64, 0.32);
   const Region region(camera, 60, 64, with_ring(5));
   auto workspace = region.workspace();
@@ -549,6 +513,7 @@ TEST_CASE("bad parameters are refused by name", "[contact_region]") {
   test = {};
   test.free_apex_mm = test::nan;
   CHECK(begins_with(with(test), "ContactTest: free_apex_mm = nan"));
+  CHECK(with(with_ring(9, 0)) == "ContactTest: min_region_px = 0, must be >= 1");
   CHECK(with(with_ring(0)) == "CurvatureRing: radius_px = 0, must be in [1, 1000]");
 
   const auto edge = [](const auto& e) {
@@ -557,18 +522,7 @@ TEST_CASE("bad parameters are refused by name", "[contact_region]") {
   };
   for (const double bad : {-0.01, 1.1, test::nan}) {
     CHECK(begins_with(edge(HalfLevelEdge{bad}), "HalfLevelEdge: touching_gap_mm = "));
-    CHECK(begins_with(edge(WidenedByRing{bad}), "WidenedByRing: share = "));
   }
-  const auto cleaning = [](const auto& c) {
-    using Cleaning = std::decay_t<decltype(c)>;
-    return refusal([&] {
-      const ContactRegion<ClampedMean<>, AtThreshold, Cleaning> region({}, 60, 60, {}, {}, c);
-    });
-  };
-  CHECK(cleaning(WithoutSpecks{0}) == "WithoutSpecks: min_px = 0, must be >= 1");
-  CHECK(cleaning(Hysteresis{0.025}) == "accepted");
-  CHECK(begins_with(cleaning(Hysteresis{0.0249}), "Hysteresis: loose_per_mm = "));
-  CHECK(begins_with(cleaning(Hysteresis{infinite}), "Hysteresis: loose_per_mm = "));
   Camera<double> camera;
   camera.refractive_index = 0.5;
   CHECK(begins_with(refusal([&] { const ContactRegion<> region(camera, 60, 60); }),
@@ -580,106 +534,4 @@ TEST_CASE("bad parameters are refused by name", "[contact_region]") {
     CHECK(begins_with(refusal([&] { const ContactRegion<> region({}, 60, one); }),
                       "ContactRegion: cols = "));
   }
-}
-
-namespace {
-
-Image<std::uint8_t> blobs(Index rows, Index cols, std::uint64_t seed) {
-  test::Random random(seed);
-  Image<std::uint8_t> mask(rows, cols);
-  for (int k = 0; k < 6; ++k) {
-    const Index row = random.whole(0, rows - 1);
-    const Index col = random.whole(0, cols - 1);
-    const double radius = random.uniform(0, 7);
-    for (Index i = 0; i < rows; ++i) {
-      for (Index j = 0; j < cols; ++j) {
-        if (std::hypot(static_cast<double>(i - row), static_cast<double>(j - col)) <= radius) {
-          mask(i, j) = 255;
-        }
-      }
-    }
-  }
-  return mask;
-}
-
-Image<std::uint8_t> changed(const Image<std::uint8_t>& mask, double by_px) {
-  const MaskGrowth growth(mask.rows(), mask.cols());
-  auto workspace = growth.workspace();
-  Image<std::uint8_t> out(mask.rows(), mask.cols(), 9);
-  REQUIRE(growth(mask, by_px, out, workspace));
-  return out;
-}
-
-cv::Mat as_mat(Image<std::uint8_t>& image) {
-  return cv::Mat(static_cast<int>(image.rows()), static_cast<int>(image.cols()), CV_8U,
-                 image.cells.data());
-}
-
-}  // namespace
-
-TEST_CASE("masks grow and shrink as by OpenCV with the same disc", "[contact_region]") {
-  for (const double by : {0.0, 1.0, 1.5, 4.0, 9.3}) {
-    auto mask = blobs(40, 57, static_cast<std::uint64_t>(10 * by));
-    const int reach = static_cast<int>(by);
-    cv::Mat disc = cv::Mat::zeros(2 * reach + 1, 2 * reach + 1, CV_8U);
-    for (int i = -reach; i <= reach; ++i) {
-      for (int j = -reach; j <= reach; ++j) {
-        disc.at<std::uint8_t>(i + reach, j + reach) = i * i + j * j <= by * by ? 1 : 0;
-      }
-    }
-    Image<std::uint8_t> grown(40, 57), shrunk(40, 57);
-    cv::Mat grown_mat = as_mat(grown);
-    cv::Mat shrunk_mat = as_mat(shrunk);
-    cv::dilate(as_mat(mask), grown_mat, disc);
-    cv::erode(as_mat(mask), shrunk_mat, disc);
-    CHECK(changed(mask, by).cells == grown.cells);
-    CHECK(changed(mask, -by).cells == shrunk.cells);
-  }
-}
-
-TEST_CASE("empty and full masks stay so, whatever the radius", "[contact_region]") {
-  const Image<std::uint8_t> empty(6, 9), full(6, 9, 255);
-  for (const double by : {0.0, 2.0, 14.0, 15.0, 1e9}) {
-    CHECK(changed(empty, by).cells == empty.cells);
-    CHECK(changed(empty, -by).cells == empty.cells);
-    CHECK(changed(full, by).cells == full.cells);
-    CHECK(changed(full, -by).cells == full.cells);
-  }
-  Image<std::uint8_t> corner(6, 9);
-  corner(0, 0) = 1;
-  CHECK(changed(corner, std::hypot(5, 8) + 1e-9).cells == full.cells);
-  CHECK(changed(corner, 1e9).cells == full.cells);
-  CHECK(changed(corner, -1e9).cells == empty.cells);
-  CHECK(changed(corner, std::hypot(5, 8) - 0.1)(5, 8) == 0);
-}
-
-TEST_CASE("growth in place, of other cells, and what it refuses", "[contact_region]") {
-  const auto mask = blobs(20, 30, 3);
-  const MaskGrowth growth(20, 30);
-  auto workspace = growth.workspace();
-  auto in_place = mask;
-  CHECK(growth(in_place, 2.0, in_place, workspace));
-  CHECK(in_place.cells == changed(mask, 2.0).cells);
-
-  // of a Touch mask only contact grows
-  Image<Touch> touch(20, 30, Touch::unknown);
-  std::transform(mask.cells.begin(), mask.cells.end(), touch.cells.begin(),
-                 [](std::uint8_t c) { return c > 0 ? Touch::contact : Touch::unknown; });
-  Image<Touch> out(20, 30, Touch::unknown);
-  CHECK(growth(touch, 2.0, out, workspace));
-  CHECK(count(out, Touch::contact) == count(in_place, std::uint8_t(255)));
-  CHECK(count(out, Touch::unknown) == 0);
-
-  Image<std::uint8_t> untouched(20, 30, 5);
-  auto other = MaskGrowth(30, 20).workspace();
-  Image<std::uint8_t> small(20, 29, 5);
-  CHECK_FALSE(growth(mask, 1.0, untouched, other));
-  CHECK_FALSE(growth(mask, 1.0, small, workspace));
-  CHECK_FALSE(growth(small, 1.0, untouched, workspace));
-  CHECK_FALSE(growth(mask, test::nan, untouched, workspace));
-  CHECK_FALSE(growth(mask, infinite, untouched, workspace));
-  CHECK(count(untouched, std::uint8_t(5)) == 600);
-  CHECK(count(small, std::uint8_t(5)) == 580);
-  CHECK(refusal([] { const MaskGrowth none(0, 3); }) == "MaskGrowth: rows = 0, must be >= 1");
-  CHECK(refusal([] { const MaskGrowth none(3, 0); }) == "MaskGrowth: cols = 0, must be >= 1");
 }

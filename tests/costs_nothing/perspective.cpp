@@ -3,10 +3,10 @@
 // The camera's perspective in the curvature of a height map.
 #include <limits>
 
-#include "fingerpad/image/curvature_projection.hpp"
+#include "fingerpad/image/curvature_map.hpp"
 
 using namespace fingerpad;
-using Units = detail::DepthUnits<PlatePitch, float>;
+using Units = detail::DepthUnits<OrthographicCamera<double>, float>;
 
 extern "C" void switched_off(const Units& units, const float* depth_mm, float* zeta, float* size) {
   for (int k = 0; k < 640; ++k) {

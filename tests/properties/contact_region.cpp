@@ -9,6 +9,7 @@
 #include <opencv2/imgproc.hpp>
 #include <vector>
 
+#include "fingerpad/published/contact_region.hpp"
 #include "support/catch.hpp"
 #include "support/generators.hpp"
 #include "support/rotated.hpp"
@@ -26,11 +27,10 @@ using Plan = OrthographicCamera<double>;
 constexpr double pitch_mm = 0.32;
 
 template <class Edge = AtThreshold,
-          class Cleaning = NoCleaning,
           class CameraType = Plan,
           class Statistic = ClampedMean<>,
           class S = double>
-using Region = ContactRegion<Statistic, Edge, Cleaning, CameraType, S>;
+using Region = ContactRegion<Statistic, Edge, CameraType, S>;
 
 struct Found {
   ContactResult result;
@@ -52,6 +52,7 @@ Found find(const R& region, const Image<S>& depth) {
 
 ContactTest any_test() {
   ContactTest test;
+  test.min_region_px = 1;
   test.ring.radius_px = test::whole(4, 6);
   test.threshold_per_mm = test::uniform(0.01, 0.04);
   return test;
@@ -121,11 +122,9 @@ Plan camera_of(const Image<double>& depth) {
   return test::height_map(depth.rows(), depth.cols(), pitch_mm);
 }
 
-template <class Edge = AtThreshold, class Cleaning = NoCleaning>
-Found find_in(const Image<double>& depth, const ContactTest& test, const Cleaning& cleaning = {}) {
-  return find(
-      Region<Edge, Cleaning>(camera_of(depth), depth.rows(), depth.cols(), test, {}, cleaning),
-      depth);
+template <class Edge = AtThreshold>
+Found find_in(const Image<double>& depth, const ContactTest& test) {
+  return find(Region<Edge>(camera_of(depth), depth.rows(), depth.cols(), test), depth);
 }
 
 }  // namespace
@@ -162,12 +161,12 @@ TEST_CASE("so does its edge, but for the lattice that its level is taken on", "[
         test::depths_of<double>(test::height_map(45, 41, pitch_mm), RoundFilm(contact), 45, 41);
     ContactTest test;
     test.ring.radius_px = test::whole(4, 6);
-    const WithoutSpecks specks{20};
-    const Found found = find_in<HalfLevelEdge>(depth, test, specks);
+    test.min_region_px = 20;
+    const Found found = find_in<HalfLevelEdge>(depth, test);
     RC_ASSERT(found.result.regions == 1);
-    const Found rotated = find_in<HalfLevelEdge>(transposed(depth), test, specks);
+    const Found rotated = find_in<HalfLevelEdge>(transposed(depth), test);
     RC_ASSERT(rotated.mask.cells == transposed(found.mask).cells);
-    const Found flipped = find_in<HalfLevelEdge>(mirrored(depth), test, specks);
+    const Found flipped = find_in<HalfLevelEdge>(mirrored(depth), test);
     RC_ASSERT(differing(flipped.mask, mirrored(found.mask)) <= found.result.contact_px / 50);
   });
 }
@@ -200,13 +199,13 @@ TEST_CASE("the larger the contact, the larger the area", "[contact_region]") {
       const auto depth = test::depths_of<double>(camera, RoundFilm(contact), 44, 44);
       ContactTest test;
       test.ring.radius_px = 4;
-      return find_in<Edge, NoCleaning>(depth, test).result.area_mm2;
+      test.min_region_px = 1;
+      return find_in<Edge>(depth, test).result.area_mm2;
     };
-    const double before[] = {area(AtThreshold{}), area(WidenedByRing{}), area(HalfLevelEdge{})};
+    const double before[] = {area(AtThreshold{}), area(HalfLevelEdge{})};
     contact.radius_mm += test::uniform(0.1, 1);
     RC_ASSERT(area(AtThreshold{}) >= before[0]);
-    RC_ASSERT(area(WidenedByRing{}) >= before[1]);
-    RC_ASSERT(area(HalfLevelEdge{}) >= before[2]);
+    RC_ASSERT(area(HalfLevelEdge{}) >= before[1]);
   });
 }
 
@@ -219,24 +218,14 @@ TEST_CASE("cleaning keeps the regions that it says", "[contact_region]") {
     RC_ASSERT(all.result.regions == static_cast<Index>(sizes.size()));
 
     const Index least = test::whole(1, 200);
-    const Found large = find_in(depth, test, WithoutSpecks{least});
+    ContactTest cleaned = test;
+    cleaned.min_region_px = least;
+    const Found large = find_in(depth, cleaned);
     const auto kept =
         std::count_if(sizes.begin(), sizes.end(), [&](Index size) { return size >= least; });
     RC_ASSERT(within(large.mask, all.mask));
     RC_ASSERT(large.result.regions == kept);
     RC_ASSERT(static_cast<Index>(parts(large.mask).size()) == kept);
-
-    const Found largest = find_in(depth, test, LargestRegion{});
-    RC_ASSERT(within(largest.mask, all.mask));
-    RC_ASSERT(largest.result.contact_px == (sizes.empty() ? 0 : sizes.front()));
-
-    const double loose = test.threshold_per_mm + test::uniform(0, 0.03);
-    ContactTest looser = test;
-    looser.threshold_per_mm = loose;
-    const Found grown = find_in(depth, test, Hysteresis{loose});
-    RC_ASSERT(within(all.mask, grown.mask));
-    RC_ASSERT(within(grown.mask, find_in(depth, looser).mask));
-    RC_ASSERT(grown.result.regions <= all.result.regions);
   });
 }
 
@@ -296,14 +285,14 @@ void check_anything(const R& region, typename R::Workspace& used, const Image<do
   RC_ASSERT(fresh.result.regions == r.regions);
 }
 
-template <class Edge, class Cleaning, class CameraType, class Statistic, class S>
-void fuzz(const CameraType& camera, Index rows, Index cols, const Cleaning& cleaning = {}) {
+template <class Edge, class CameraType, class Statistic, class S>
+void fuzz(const CameraType& camera, Index rows, Index cols, Index min_region_px = 1) {
   ContactTest test;
   test.ring.radius_px = test::whole(1, 7);
   test.ring.min_direction_share = test::uniform(0.01, 1);
   test.threshold_per_mm = test::log_uniform(1e-3, 0.03);
-  const Region<Edge, Cleaning, CameraType, Statistic, S> region(camera, rows, cols, test, {},
-                                                                cleaning);
+  test.min_region_px = min_region_px;
+  const Region<Edge, CameraType, Statistic, S> region(camera, rows, cols, test);
   auto workspace = region.workspace();
   for (int frame = 0; frame < 3; ++frame) {
     check_anything(region, workspace, anything(rows, cols));
@@ -318,47 +307,11 @@ TEST_CASE("whatever the frame, the result can be read", "[contact_region]") {
     const auto plan = test::height_map(rows, cols, pitch_mm);
     const auto through = test::pad_camera(rows, cols, pitch_mm);
     using Through = Camera<double>;
-    const WithoutSpecks specks{test::whole(1, 30)};
-    const Hysteresis loose{test::uniform(0.03, 0.1)};
-    fuzz<HalfLevelEdge, WithoutSpecks, Plan, ClampedMean<>, double>(plan, rows, cols, specks);
-    fuzz<HalfLevelEdge, NoCleaning, Through, ClampedMean<>, float>(through, rows, cols);
-    fuzz<HalfLevelEdge, Hysteresis, Plan, ClampedHessian<>, float>(plan, rows, cols, loose);
-    fuzz<HalfLevelEdge, LargestRegion, Plan, RingStencil<>, float>(plan, rows, cols);
-    fuzz<WidenedByRing, NoCleaning, Through, SectionMean<>, float>(through, rows, cols);
-    fuzz<AtThreshold, WithoutSpecks, Plan, PublishedTwiceMean<>, double>(plan, rows, cols, specks);
-  });
-}
-
-TEST_CASE("growth is by distance", "[contact_region]") {
-  rc::prop("against every pair of pixels", [] {
-    const Index rows = test::whole(1, 14), cols = test::whole(1, 14);
-    Image<std::uint8_t> mask(rows, cols);
-    const auto often = test::whole(0, 4);
-    for (auto& cell : mask.cells) {
-      cell = test::whole(0, 20) < often * often ? 1 : 0;
-    }
-    const double by = test::uniform(-20, 20);
-    const MaskGrowth growth(rows, cols);
-    auto workspace = growth.workspace();
-    Image<std::uint8_t> out(rows, cols), back(rows, cols);
-    RC_ASSERT(growth(mask, by, out, workspace));
-    for (Index i = 0; i < rows; ++i) {
-      for (Index j = 0; j < cols; ++j) {
-        bool near = false;
-        for (Index k = 0; k < rows * cols; ++k) {
-          const auto di = static_cast<double>(k / cols - i), dj = static_cast<double>(k % cols - j);
-          const bool in = mask.cells[static_cast<std::size_t>(k)] != 0;
-          near = near || (in == (by >= 0) && di * di + dj * dj <= by * by);
-        }
-        RC_ASSERT((out(i, j) != 0) == (near == (by >= 0)));
-      }
-    }
-    // growing, then shrinking, loses nothing; the other way round gains nothing
-    RC_ASSERT(growth(out, -by, back, workspace));
-    for (std::size_t k = 0; k < mask.cells.size(); ++k) {
-      const bool is = back.cells[k] != 0, was = mask.cells[k] != 0;
-      const bool kept = by >= 0 ? is || !was : was || !is;
-      RC_ASSERT(kept);
-    }
+    const Index specks = test::whole(1, 30);
+    fuzz<HalfLevelEdge, Plan, ClampedMean<>, double>(plan, rows, cols, specks);
+    fuzz<HalfLevelEdge, Through, ClampedMean<>, float>(through, rows, cols);
+    fuzz<HalfLevelEdge, Plan, RingStencil<>, float>(plan, rows, cols);
+    fuzz<AtThreshold, Through, published::SectionMean<>, float>(through, rows, cols);
+    fuzz<AtThreshold, Plan, published::TwiceMean<>, double>(plan, rows, cols, specks);
   });
 }

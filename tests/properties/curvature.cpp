@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "fingerpad/image/curvature_map.hpp"
+#include "fingerpad/published/contact_region.hpp"
 #include "support/catch.hpp"
 #include "support/generators.hpp"
 #include "support/pad.hpp"
@@ -42,13 +43,30 @@ CurvatureRing any_ring() {
   return {test::whole(1, 8), test::uniform(0.05, 1)};
 }
 
-constexpr PlatePitch plate{0.125};
+using Plan = OrthographicCamera<double>;
+using Through = Camera<double>;
 
-template <class Statistic, class S, class Projection = PlatePitch>
+/// A height map's camera.
+Plan plan(double pitch_mm) {
+  Plan camera;
+  camera.pitch_mm = pitch_mm;
+  return camera;
+}
+/// A camera whose pitch grows with depth by that share per mm.
+Through through(double pitch_mm, double growth_per_mm) {
+  Through camera;
+  camera.pitch_mm = pitch_mm;
+  camera.plate_distance_mm = 1 / (growth_per_mm * camera.refractive_index);
+  return camera;
+}
+
+const Plan plate = plan(0.125);
+
+template <class Statistic, class S, class CameraType = Plan>
 Image<S> curvatures(const Image<S>& depth,
                     const CurvatureRing& ring,
-                    const Projection& projection = plate) {
-  const CurvatureMap<Statistic, Projection, S> map(ring, projection, depth.rows(), depth.cols());
+                    const CameraType& camera = plate) {
+  const CurvatureMap<Statistic, CameraType, S> map(camera, depth.rows(), depth.cols(), ring);
   auto workspace = map.workspace();
   Image<S> out(depth.rows(), depth.cols(), S(7));
   RC_ASSERT(map(depth, out, workspace).ok());
@@ -74,11 +92,9 @@ constexpr double rounding = 1e-9;  // of fits through few sections left, in doub
 
 TEMPLATE_TEST_CASE("curvature turns and scales with the membrane",
                    "[curvature]",
-                   PublishedTwiceMean<>,
-                   SectionMean<>,
+                   published::TwiceMean<>,
+                   published::SectionMean<>,
                    ClampedMean<>,
-                   HessianFit<>,
-                   ClampedHessian<>,
                    RingStencil<>) {
   rc::prop("transposed, mirrored, rotated by 180 degrees", [] {
     const Image<double> depth = any_membrane<double>();
@@ -102,40 +118,37 @@ TEMPLATE_TEST_CASE("curvature turns and scales with the membrane",
   rc::prop("scaled with its pitch and its camera", [] {
     const Image<double> depth = any_membrane<double>();
     const CurvatureRing ring = any_ring();
-    const double scale = test::log_uniform(1e-3, 1e3), growth = test::uniform(0, 0.03);
+    const double scale = test::log_uniform(1e-3, 1e3), growth = test::uniform(1e-3, 0.03);
     Image<double> scaled = depth;
     for (double& l : scaled.cells) {
       l *= scale;
     }
-    Image<double> k =
-        curvatures<TestType>(scaled, ring, PitchAtDepth(0.125 * scale, growth / scale));
+    Image<double> k = curvatures<TestType>(scaled, ring, through(0.125 * scale, growth / scale));
     for (double& c : k.cells) {
       c *= scale;
     }
-    RC_ASSERT(close(k, curvatures<TestType>(depth, ring, PitchAtDepth(0.125, growth)), rounding));
+    RC_ASSERT(close(k, curvatures<TestType>(depth, ring, through(0.125, growth)), rounding));
   });
 }
 
 TEMPLATE_TEST_CASE("curvature is the same however it is computed",
                    "[curvature]",
-                   SectionMean<>,
+                   published::SectionMean<>,
                    ClampedMean<>,
-                   HessianFit<>,
-                   ClampedHessian<>,
                    RingStencil<>) {
   rc::prop("by vectors or one by one", [] {
     const Image<double> depth = any_membrane<double>();
     CurvatureRing ring = any_ring();
     Image<long double> slow(depth.rows(), depth.cols());
     std::copy(depth.cells.begin(), depth.cells.end(), slow.cells.begin());
-    const PitchAtDepth camera(0.125, 0.015);
+    const Through camera = through(0.125, 0.015);
     RC_ASSERT(close(curvatures<TestType>(depth, ring, camera),
                     curvatures<TestType>(slow, ring, camera), rounding));
   });
   rc::prop("in bands of rows, to the last bit", [] {
     const Image<float> depth = any_membrane<float>();
     const CurvatureRing ring = any_ring();
-    const CurvatureMap<TestType, PlatePitch> map(ring, plate, depth.rows(), depth.cols());
+    const CurvatureMap<TestType, Plan> map(plate, depth.rows(), depth.cols(), ring);
     auto workspace = map.workspace();
     Image<float> whole(depth.rows(), depth.cols()), bands(depth.rows(), depth.cols(), 7.0F);
     const CurvatureResult all = map(depth, whole, workspace);
@@ -154,10 +167,8 @@ TEMPLATE_TEST_CASE("curvature is the same however it is computed",
 
 TEMPLATE_TEST_CASE("what is missing stays within its ring",
                    "[curvature]",
-                   PublishedTwiceMean<>,
+                   published::TwiceMean<>,
                    ClampedMean<>,
-                   HessianFit<>,
-                   ClampedHessian<>,
                    RingStencil<>) {
   rc::prop("lost, infinite and absurd depths", [] {
     const Image<float> depth = any_membrane<float>();
@@ -167,7 +178,7 @@ TEMPLATE_TEST_CASE("what is missing stays within its ring",
     const float infinity = std::numeric_limits<float>::infinity();
     hole(i, j) = *rc::gen::element(std::nanf(""), -std::nanf(""), infinity, -infinity, 3e38F,
                                    -3e38F, 1e-42F, 1e5F, -1e5F);
-    const PitchAtDepth camera(0.125, 0.015);
+    const Through camera = through(0.125, 0.015);
     const Image<float> before = curvatures<TestType>(depth, ring, camera);
     const Image<float> after = curvatures<TestType>(hole, ring, camera);
     for (Index r = 0; r < depth.rows(); ++r) {
@@ -187,14 +198,14 @@ TEST_CASE("pixels are known where enough sections are complete", "[curvature]") 
     const Image<float> depth = any_membrane<float>();
     const CurvatureRing ring = any_ring();
     const Image<float> k = curvatures<ClampedMean<>>(depth, ring);
-    const auto offsets = ring_offsets(ring.radius_px, 18);
+    const auto offsets = detail::ring_offsets(ring.radius_px, 18);
     const auto there = [&](Index r, Index c) {
       return r >= 0 && r < depth.rows() && c >= 0 && c < depth.cols() && !std::isnan(depth(r, c));
     };
     for (Index i = 0; i < depth.rows(); ++i) {
       for (Index j = 0; j < depth.cols(); ++j) {
         double mean = 0, count = 0;
-        for (const RingOffset& o : offsets) {
+        for (const detail::RingOffset& o : offsets) {
           if (there(i, j) && there(i + o.row, j + o.col) && there(i - o.row, j - o.col)) {
             const double radius = std::sqrt(static_cast<double>(o.radius_sq())) * plate.pitch_mm;
             const auto at = [&](Index sign) {
@@ -215,24 +226,15 @@ TEST_CASE("pixels are known where enough sections are complete", "[curvature]") 
 }
 
 TEST_CASE("statistics of one membrane are in order", "[curvature]") {
-  rc::prop("clamped >= plain, larger >= mean >= smaller, twice is twice", [] {
+  rc::prop("clamped >= plain, twice is twice", [] {
     const Image<double> depth = any_membrane<double>();
     CurvatureRing ring = any_ring();
-    const auto mean = curvatures<SectionMean<>>(depth, ring);
+    const auto mean = curvatures<published::SectionMean<>>(depth, ring);
     const auto clamped = curvatures<ClampedMean<>>(depth, ring);
-    const auto fitted = curvatures<HessianFit<>>(depth, ring);
-    const auto fitted_clamped = curvatures<ClampedHessian<>>(depth, ring);
-    const auto larger = curvatures<HessianFit<18, FittedValue::larger>>(depth, ring);
-    const auto smaller = curvatures<HessianFit<18, FittedValue::smaller>>(depth, ring);
-    const auto half = curvatures<SectionMean<36>>(depth, ring);
-    const auto twice = curvatures<PublishedTwiceMean<36>>(depth, ring);
+    const auto half = curvatures<published::SectionMean<36>>(depth, ring);
+    const auto twice = curvatures<published::TwiceMean<36>>(depth, ring);
     for (std::size_t k = 0; k < depth.cells.size(); ++k) {
-      const double tiny = 1e-12 * (1 + std::abs(larger.cells[k]) + std::abs(smaller.cells[k]));
       RC_ASSERT(!(clamped.cells[k] < mean.cells[k] - 1e-12) && !(clamped.cells[k] < 0));
-      RC_ASSERT(!(fitted_clamped.cells[k] < fitted.cells[k] - tiny));
-      RC_ASSERT(!(fitted_clamped.cells[k] < 0));
-      RC_ASSERT(!(larger.cells[k] < fitted.cells[k] - tiny));
-      RC_ASSERT(!(fitted.cells[k] < smaller.cells[k] - tiny));
       RC_ASSERT(!(std::abs(twice.cells[k] - 2 * half.cells[k]) > 1e-12));
     }
   });

@@ -20,6 +20,7 @@
 #include "depth.hpp"
 #include "fingerpad/calibrate/contact.hpp"
 #include "fingerpad/contact/contact_region.hpp"
+#include "fingerpad/published/contact_region.hpp"
 #include "membranes.hpp"
 
 namespace bench::ablation {
@@ -27,17 +28,18 @@ namespace bench::ablation {
 /// A region and all that it needs.
 template <class Statistic = fingerpad::ClampedMean<>,
           class Edge = fingerpad::HalfLevelEdge,
-          class Cleaning = fingerpad::WithoutSpecks,
           class CameraType = Camera<double>>
 class ContactVariant {
-  using Region = fingerpad::ContactRegion<Statistic, Edge, Cleaning, CameraType>;
+  using Region = fingerpad::ContactRegion<Statistic, Edge, CameraType>;
 
  public:
-  ContactVariant(const CameraType& camera, const std::vector<Image<float>>& free_mm)
+  ContactVariant(const CameraType& camera,
+                 const std::vector<Image<float>>& free_mm,
+                 Index min_region_px = fingerpad::ContactTest().min_region_px)
       : region_(camera,
                 free_mm.front().rows(),
                 free_mm.front().cols(),
-                {.threshold_per_mm = threshold(camera, free_mm)}),
+                {.threshold_per_mm = threshold(camera, free_mm), .min_region_px = min_region_px}),
         workspace_(region_.workspace()),
         mask_(region_.rows(), region_.cols()) {}
 
@@ -143,18 +145,16 @@ class ContactEffects {
 
   ContactVariant<> all_{pad_.camera, free_};
   ContactVariant<fingerpad::ClampedMean<1>> one_direction_{pad_.camera, free_};
-  ContactVariant<fingerpad::SectionMean<>> unclamped_{pad_.camera, free_};
+  ContactVariant<fingerpad::published::SectionMean<>> unclamped_{pad_.camera, free_};
   ContactVariant<fingerpad::ClampedMean<>,
                  fingerpad::HalfLevelEdge,
-                 fingerpad::WithoutSpecks,
                  fingerpad::OrthographicCamera<double>>
       orthographic_{from_afar_, free_};
   ContactVariant<fingerpad::ClampedMean<>, fingerpad::AtThreshold> at_threshold_{pad_.camera,
                                                                                  free_};
-  ContactVariant<fingerpad::SectionMean<>, fingerpad::AtThreshold> unclamped_at_threshold_{
-      pad_.camera, free_};
-  ContactVariant<fingerpad::ClampedMean<>, fingerpad::HalfLevelEdge, fingerpad::NoCleaning>
-      uncleaned_{pad_.camera, free_};
+  ContactVariant<fingerpad::published::SectionMean<>, fingerpad::AtThreshold>
+      unclamped_at_threshold_{pad_.camera, free_};
+  ContactVariant<> uncleaned_{pad_.camera, free_, 1};
 
   static constexpr const char* of_region = "contact region";
   static constexpr const char* share = "share";
@@ -167,12 +167,12 @@ class ContactEffects {
                 .quantity = of_region,
                 .unit = share,
                 .on = "`ClampedMean<>`",
-                .off = "`SectionMean<>`"};
+                .off = "`published::SectionMean<>`"};
   Effect plain_clamp_{.name = "clamp without placed edge",
                       .quantity = of_region,
                       .unit = share,
                       .on = "`ClampedMean<>`, `AtThreshold`",
-                      .off = "`SectionMean<>`, `AtThreshold`"};
+                      .off = "`published::SectionMean<>`, `AtThreshold`"};
   Effect perspective_{.name = "perspective",
                       .quantity = of_region,
                       .unit = share,
@@ -191,8 +191,8 @@ class ContactEffects {
   Effect cleaning_{.name = "cleaning",
                    .quantity = of_region,
                    .unit = share,
-                   .on = "`WithoutSpecks`",
-                   .off = "`NoCleaning`"};
+                   .on = "`min_region_px` 200",
+                   .off = "`min_region_px` 1"};
 };
 
 }  // namespace bench::ablation

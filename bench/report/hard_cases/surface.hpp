@@ -10,8 +10,9 @@
 #include <type_traits>
 #include <utility>
 
-#include "fingerpad/image/curvature.hpp"
 #include "fingerpad/contact/object_surface.hpp"
+#include "fingerpad/image/curvature.hpp"
+#include "fingerpad/published/contact_region.hpp"
 #include "row.hpp"
 #include "support/pad.hpp"
 
@@ -32,7 +33,8 @@ inline Row flat_section() {
           const S after = S(middle + rise - bend);
           const Digits50 exact = fingerpad::section_curvature(Digits50(r), Digits50(before),
                                                               Digits50(center), Digits50(after));
-          f.naive.add_absolute(fingerpad::circle_center_curvature(r, before, center, after), exact);
+          f.naive.add_absolute(
+              fingerpad::published::circle_center_curvature(r, before, center, after), exact);
           f.stable.add_absolute(fingerpad::section_curvature(r, before, center, after), exact);
         }
         return f;
@@ -62,7 +64,9 @@ inline Row flat_contact() {
                    const double y = 0.0768 * std::round(10 * std::sin(at));
                    const S r = S(std::hypot(x, y));
                    const S before = depth(-x, -y), middle = depth(0, 0), after = depth(x, y);
-                   circle += fingerpad::circle_center_curvature(r, before, middle, after) / S(18);
+                   circle +=
+                       fingerpad::published::circle_center_curvature(r, before, middle, after) /
+                       S(18);
                    menger += fingerpad::section_curvature(r, before, middle, after) / S(18);
                    exact += fingerpad::section_curvature(Digits50(r), Digits50(before),
                                                          Digits50(middle), Digits50(after)) /
@@ -70,46 +74,6 @@ inline Row flat_contact() {
                  }
                  f.naive.add_absolute(circle, exact);
                  f.stable.add_absolute(menger, exact);
-               }
-               return f;
-             });
-}
-
-/// Half the difference of the principal curvatures from their mean and Gauss' product.
-template <class S>
-S half_range_of_invariants(const fingerpad::SurfacePatch<S>& p) {
-  using std::sqrt;
-  const S fx = p.slope_x, fy = p.slope_y;
-  const S w_sq = S(1) + fx * fx + fy * fy;
-  const S w = sqrt(w_sq);
-  const S twice = (S(1) + fy * fy) * p.bend_xx_per_mm - S(2) * fx * fy * p.bend_xy_per_mm +
-                  (S(1) + fx * fx) * p.bend_yy_per_mm;
-  const S mean = twice / (S(2) * w_sq * w);
-  const S gauss =
-      (p.bend_xx_per_mm * p.bend_yy_per_mm - p.bend_xy_per_mm * p.bend_xy_per_mm) / (w_sq * w_sq);
-  const S difference = mean * mean - gauss;
-  return S(sqrt(difference));
-}
-
-inline Row umbilic() {
-  return row("curvature", "half the difference of both principal curvatures, on a sphere; 1/mm",
-             "I^(-1/2) II I^(-1/2), then a sum of squares", []<class S>(S) {
-               Forms f;
-               test::Random random(5);
-               for (int k = 0; k < 500; ++k) {
-                 const double fx = random.uniform(-1.2, 1.2), fy = random.uniform(-1.2, 1.2);
-                 const double w = std::sqrt(1 + fx * fx + fy * fy);
-                 const double bend = -w / 20;  // radius 20 mm
-                 const fingerpad::SurfacePatch<S> p{S(fx), S(fy), S(bend * (1 + fx * fx)),
-                                                    S(bend * fx * fy), S(bend * (1 + fy * fy))};
-                 const fingerpad::SurfacePatch<Digits50> exact_patch{
-                     Digits50(p.slope_x), Digits50(p.slope_y), Digits50(p.bend_xx_per_mm),
-                     Digits50(p.bend_xy_per_mm), Digits50(p.bend_yy_per_mm)};
-                 const Digits50 exact = half_range_of_invariants(exact_patch);
-                 const auto principal = fingerpad::principal_curvatures(p);
-                 f.naive.add_absolute(half_range_of_invariants(p), exact);
-                 f.stable.add_absolute(
-                     S((principal.larger_per_mm - principal.smaller_per_mm) / S(2)), exact);
                }
                return f;
              });

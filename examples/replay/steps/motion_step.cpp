@@ -3,6 +3,7 @@
 #include "replay/steps/motion_step.hpp"
 
 #include <limits>
+#include <opencv2/imgproc.hpp>
 
 #include "fingerpad/adapt/opencv.hpp"
 
@@ -26,9 +27,7 @@ MotionStep::MotionStep(const Sensor& sensor,
                        const DotGrid& initial_px,
                        const cv::Mat_<float>& free_depth_mm)
     : camera_(sensor.camera),
-      dot_radius_px_(sensor.dots ? sensor.dots->diameter_mm / 2 / camera_.pitch_mm : 0.0),
-      growth_(free_depth_mm.rows, free_depth_mm.cols),
-      growth_workspace_(growth_.workspace()) {
+      dot_radius_px_(sensor.dots ? sensor.dots->diameter_mm / 2 / camera_.pitch_mm : 0.0) {
   if (!initial_px.empty()) {
     motion_.emplace(in_space(initial_px, free_depth_mm));
     state_.emplace(motion_->start());
@@ -50,8 +49,10 @@ FrameDots MotionStep::operator()(const DotGrid& dots_px,
     frame.dots_px = dots_px;
     frame.dots_mm = in_space(dots_px, depth_mm);
     frame.in_contact.create(dots_px.size());
+    cv::Mat_<float> from_edge_px;  // distance to the nearest pixel that does not touch
+    cv::distanceTransform(contact, from_edge_px, cv::DIST_L2, cv::DIST_MASK_PRECISE);
     cv::Mat_<uchar> inner(contact.size());
-    growth_(contact, -dot_radius_px_, inner, growth_workspace_);
+    cv::compare(from_edge_px, dot_radius_px_, inner, cv::CMP_GT);
     fingerpad::contact_at_dots(dots_px, inner, frame.in_contact);
     frame.motion = (*motion_)(frame.dots_mm, frame.in_contact, *state_);
   }

@@ -44,8 +44,6 @@ class MotionStep {
 
   fingerpad::Camera<double> camera_;
   double dot_radius_px_;
-  fingerpad::MaskGrowth growth_;
-  fingerpad::MaskGrowth::Workspace growth_workspace_;
   std::optional<Motion> motion_;
   std::optional<Motion::State> state_;
 };

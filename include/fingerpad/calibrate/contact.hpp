@@ -17,7 +17,7 @@
 #include "fingerpad/core/grid.hpp"
 #include "fingerpad/core/scalar.hpp"
 #include "fingerpad/image/curvature_map.hpp"
-#include "fingerpad/image/curvature_projection.hpp"
+#include "fingerpad/image/detail/depth_units.hpp"
 
 namespace fingerpad {
 inline namespace v0 {
@@ -52,7 +52,7 @@ struct FreePadCurvature {
 /// of the contact test. Takes 24 bytes per pixel.
 template <class Statistic = ClampedMean<>, class CameraType = Camera<double>, scalar S = float>
 class FreePadCalibration {
-  using Map = CurvatureMap<Statistic, detail::projection_of<CameraType>, S>;
+  using Map = CurvatureMap<Statistic, CameraType, S>;
 
  public:
   /// Refuses bad parameters (parameter_error).
@@ -60,9 +60,9 @@ class FreePadCalibration {
                      Index rows,
                      Index cols,
                      const CurvatureRing& ring = {})
-      : pixel_mm_(detail::pixel_size_mm(detail::projection_for(checked(camera)), 0)),
+      : pixel_mm_(detail::pixel_pitch(checked(camera)).at_plate_mm),
         ring_px_(static_cast<double>(ring.radius_px)),
-        map_(ring, detail::projection_for(camera), rows, cols),
+        map_(camera, rows, cols, ring),
         workspace_(map_.workspace()),
         curvature_(static_cast<std::size_t>(rows * cols)),
         mean_(curvature_.size(), 0),

@@ -7,25 +7,23 @@
 // Source: Ito et al. 2011, III.B, eqs. 1-12, and the slides, contact region. Published and
 // corrected forms in docs/errata.md, E012-E018.
 //
-// Parts: the curvature statistic (image/curvature_map.hpp), threshold, cleaning and edge
-// (contact/contact_policies.hpp), the level of the edge (contact/edge_level.hpp).
+// Parts: the curvature statistic (image/curvature_map.hpp), threshold and edge
+// (contact/contact_test.hpp), the level of the edge (contact/edge_level.hpp).
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <type_traits>
 #include <vector>
 
-#include "fingerpad/contact/contact_policies.hpp"
+#include "fingerpad/contact/contact_test.hpp"
 #include "fingerpad/contact/detail/edge_finder.hpp"
 #include "fingerpad/contact/detail/region_measures.hpp"
 #include "fingerpad/core/expects.hpp"
 #include "fingerpad/core/grid.hpp"
 #include "fingerpad/core/status.hpp"
 #include "fingerpad/image/curvature_map.hpp"
-#include "fingerpad/image/curvature_projection.hpp"
 #include "fingerpad/image/detail/pixel_rays.hpp"
 #include "fingerpad/image/detail/regions.hpp"
-#include "fingerpad/image/mask_growth.hpp"
 #include "fingerpad/optics/camera.hpp"
 
 namespace fingerpad {
@@ -51,12 +49,9 @@ struct [[nodiscard]] ContactResult {
 ///               RingStencil<9>      take this when time counts and contacts are flat
 ///   Edge        HalfLevelEdge       take this when the area matters
 ///               AtThreshold         take this when only the place of the contact matters
-///   Cleaning    WithoutSpecks       take this: regions as small as noise makes them are dropped
-///               Hysteresis          take this when a weak contact falls apart
 ///   CameraType  Camera<double>      take this for depth maps along a camera's rays
 ///               OrthographicCamera  take this for height maps
-/// The other statistics, WidenedByRing, LargestRegion and NoCleaning are what these are compared
-/// with; published/contact_region.hpp is the test as printed.
+/// published/contact_region.hpp is the test as printed.
 /// A pixel whose depth is missing is never contact; one whose ring is partly missing is judged by
 /// the directions that remain, or is unknown if these are too few (ContactTest::ring).
 ///
@@ -64,13 +59,11 @@ struct [[nodiscard]] ContactResult {
 /// per frame; O(rows cols directions).
 template <class Statistic = ClampedMean<>,
           class Edge = HalfLevelEdge,
-          class Cleaning = WithoutSpecks,
           class CameraType = Camera<double>,
           scalar S = float>
 class ContactRegion {
-  using Projection = detail::projection_of<CameraType>;
-  using Curvature = CurvatureMap<Statistic, Projection, S>;
-  using Finder = detail::EdgeFinder<Edge, Statistic, Projection, S>;
+  using Curvature = CurvatureMap<Statistic, CameraType, S>;
+  using Finder = detail::EdgeFinder<Edge, Statistic, CameraType, S>;
 
  public:
   /// Refuses bad parameters (parameter_error).
@@ -78,13 +71,11 @@ class ContactRegion {
                 Index rows,
                 Index cols,
                 const ContactTest& test = {},
-                const Edge& edge = {},
-                const Cleaning& cleaning = {})
-      : test_(checked(camera, rows, cols, test, edge, cleaning)),
-        cleaning_(cleaning),
+                const Edge& edge = {})
+      : test_(checked(camera, rows, cols, test, edge)),
         image_{rows, cols},
-        curvature_(test.ring, detail::projection_for(camera), rows, cols),
-        finder_(edge, test, detail::projection_for(camera), image_),
+        curvature_(camera, rows, cols, test.ring),
+        finder_(edge, test, camera, image_),
         rays_(camera, rows, cols) {}
 
   /// Memory that one frame at a time needs, taken up front; one per thread.
@@ -127,8 +118,9 @@ class ContactRegion {
     result.status = FrameStatus::ok;
     result.unknown_px = curvature.unknown_px;
     mark_seeds(statistic, w.regions_.marks());
-    detail::prepare(cleaning_, w.statistic_.data(), w.regions_);
-    const auto keep = [&](const auto& region) { return detail::keeps(cleaning_, region); };
+    const auto keep = [this](const detail::Regions::Region& region) {
+      return region.pixels() >= test_.min_region_px;
+    };
     result.regions = finder_(depth, w.statistic_.data(), keep, w.regions_, w.finder_);
     write(w.regions_.marks(), to);
     measure(w.regions_.marks(), depth, result);
@@ -139,19 +131,14 @@ class ContactRegion {
   Index cols() const { return image_.cols; }
 
  private:
-  static const ContactTest& checked(const CameraType& camera,
-                                    Index rows,
-                                    Index cols,
-                                    const ContactTest& test,
-                                    const Edge& edge,
-                                    const Cleaning& cleaning) {
+  static const ContactTest& checked(
+      const CameraType& camera, Index rows, Index cols, const ContactTest& test, const Edge& edge) {
     // areas need a neighbour on one side at least
     expects(rows >= 2, "ContactRegion", "rows", static_cast<long long>(rows), ">= 2");
     expects(cols >= 2, "ContactRegion", "cols", static_cast<long long>(cols), ">= 2");
     expects_valid(camera);
     expects_valid(test);
     expects_valid(edge);
-    expects_valid(cleaning, test);
     return test;
   }
 
@@ -210,7 +197,6 @@ class ContactRegion {
   }
 
   ContactTest test_;
-  Cleaning cleaning_;
   detail::BorderedImage image_;
   Curvature curvature_;
   Finder finder_;

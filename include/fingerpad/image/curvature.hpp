@@ -15,12 +15,16 @@
 // radius R at slope tan(alpha) it is 1/R along the gradient and 1/(R cos(alpha)) across it, and its
 // mean over all directions is (2 / pi) K_ell(sin(alpha)) / R, K_ell the complete elliptic integral:
 // 1.03, 1.14 and 1.37 times 1/R at 20, 40 and 60 degrees. Its sign is that of the normal curvature.
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <type_traits>
+#include <vector>
 
-#include "fingerpad/image/detail/quick_math.hpp"
+#include "fingerpad/core/expects.hpp"
+#include "fingerpad/core/grid.hpp"
 #include "fingerpad/core/scalar.hpp"
+#include "fingerpad/image/detail/quick_math.hpp"
 
 namespace fingerpad {
 inline namespace v0 {
@@ -67,86 +71,93 @@ S section_curvature(const S& radius_mm, const S& before_mm, const S& center_mm, 
   return S(S(2) * radius_mm * k.bend * k.inverse_root);
 }
 
-/// The same by the center of the circle, as published (eqs. 10 and 11 in the plane of the section,
-/// repaired by E012-E014), for comparison: NaN on a level section, and few digits on a flat one.
-template <scalar S>
-S circle_center_curvature(const S& radius_mm,
-                          const S& before_mm,
-                          const S& center_mm,
-                          const S& after_mm) {
-  using std::sqrt;
-  const S r_sq = radius_mm * radius_mm;
-  const S before_sq = before_mm * before_mm;
-  const S center_sq = center_mm * center_mm;
-  const S after_sq = after_mm * after_mm;
-  const S z = (S(2) * r_sq + before_sq + after_sq - S(2) * center_sq) /
-              (S(2) * (before_mm + after_mm - S(2) * center_mm));
-  const S u =
-      (r_sq + after_sq - center_sq - S(2) * (after_mm - center_mm) * z) / (S(2) * radius_mm);
-  const S height = center_mm - z;
-  const S radius_of_circle = sqrt(S(u * u + height * height));
-  const S curvature = S(1) / radius_of_circle;
-  return value(height) < 0 ? S(-curvature) : curvature;
-}
-
-/// First and second derivatives of depth over the plane of the plate.
-template <class S = double>
-struct SurfacePatch {
-  S slope_x;
-  S slope_y;
-  S bend_xx_per_mm;
-  S bend_xy_per_mm;
-  S bend_yy_per_mm;
+/// The ring of pixels on which curvature is measured: sections through the center pixel in evenly
+/// spaced directions, each with one pixel at either end. An end is the pixel nearest to the circle,
+/// and its true distance is what counts as the radius: interpolation would bias the second
+/// difference by up to curvature px^2 / 4 per sample. Default: the slides' radius, 1.92 mm on the
+/// published pad.
+struct CurvatureRing {
+  Index radius_px = 25;              ///< in [1, 1000]
+  double min_direction_share = 0.5;  ///< sections that must be complete, in (0, 1]
 };
 
-template <class S = double>
-struct PrincipalCurvatures {
-  S larger_per_mm;
-  S smaller_per_mm;
+/// Refuses what has no meaning (parameter_error).
+inline void expects_valid(const CurvatureRing& ring) {
+  expects(ring.radius_px >= 1 && ring.radius_px <= 1000, "CurvatureRing", "radius_px",
+          static_cast<long long>(ring.radius_px), "in [1, 1000]");
+  expects(ring.min_direction_share > 0 && ring.min_direction_share <= 1, "CurvatureRing",
+          "min_direction_share", ring.min_direction_share, "in (0, 1]");
+}
+
+// What is made of the curvatures in all directions, in 1/mm. A statistic says how many directions
+// it takes, how many times the mean it is, and whether negative curvatures count as 0.
+
+/// The slides' mean with negative curvatures as 0: below p / (2 sigma) only in contact, and 0
+/// wherever the object is convex or flat. Take this for any object and any pad.
+template <int Directions = 18>
+struct ClampedMean {
+  static constexpr int directions = Directions;
+  static constexpr int means = 1;
+  static constexpr bool clamped = true;
+};
+
+/// Center less ring, linear in depth: for small slopes only. At a slope s it overstates normal
+/// curvature by the factor (1 + s^2)^(3/2) along the slope and (1 + s^2)^(1/2) across it. Take this
+/// when time counts and contacts are flat.
+template <int Directions = 18>
+struct RingStencil {
+  static constexpr int directions = Directions;
+  static constexpr int means = 1;
+  static constexpr bool linear = true;
 };
 
 namespace detail {
 
-/// Normal curvature in the direction theta from a principal one: mean + half_range cos(2 theta).
-template <class V>
-struct NormalCurvature {
-  V mean;        ///< H, half of what Young and Laplace's equation weighs against the pressure
-  V half_range;  ///< >= 0
+/// The plain mean, which the edge of contact is placed by.
+template <int Directions = 18>
+struct PlainMean {
+  static constexpr int directions = Directions;
+  static constexpr int means = 1;
+  static constexpr bool clamped = false;
 };
 
-/// sqrt(x) for x >= 0.
-template <class V>
-[[gnu::always_inline]] inline V root_of(const V& x) {
-  if constexpr (scalar<V>) {
-    using std::sqrt;
-    return value(x) > 0 ? V(sqrt(x)) : V(x);
-  } else {
-    return x * inverse_sqrt(x);
-  }
+/// One end of a section, counted from the center; the other end is opposite.
+struct RingOffset {
+  Index row;
+  Index col;
+
+  constexpr Index radius_sq() const { return row * row + col * col; }
+  friend constexpr bool operator==(const RingOffset&, const RingOffset&) = default;
+};
+
+/// The pixel nearest to radius (cos, sin) of pi step / (2 directions), an angle of the first
+/// octant; ties go to the center, whatever the rounding of the cosine.
+inline RingOffset ring_offset_in_octant(Index radius_px, int step, int directions) {
+  const double angle = 1.5707963267948966 * step / directions;
+  const auto nearest = [&](double unit) {
+    return static_cast<Index>(std::ceil(static_cast<double>(radius_px) * unit - 0.5 - 1e-9));
+  };
+  return {nearest(std::sin(angle)), nearest(std::cos(angle))};
 }
 
-/// The second derivatives taken into the tangent plane by I^(-1/2) = 1 - c g g^T, where the metric
-/// I is 1 + g g^T: no difference that cancels, for half_range either.
-template <class V>
-[[gnu::always_inline]] inline NormalCurvature<V> normal_curvature(const SurfacePatch<V>& p) {
-  const V w_sq = p.slope_x * p.slope_x + p.slope_y * p.slope_y + whole<V>(1);
-  const V inv_w = inverse_sqrt(w_sq);
-  const V c = inv_w / (w_sq * inv_w + whole<V>(1));
-  const V x = p.bend_xx_per_mm * p.slope_x + p.bend_xy_per_mm * p.slope_y;
-  const V y = p.bend_xy_per_mm * p.slope_x + p.bend_yy_per_mm * p.slope_y;
-  const V along = c * (x * p.slope_x + y * p.slope_y);
-  const V to_x = c * (along * p.slope_x - x - x);
-  const V to_y = c * (along * p.slope_y - y - y);
-  const V xx = p.bend_xx_per_mm + to_x * p.slope_x;
-  const V yy = p.bend_yy_per_mm + to_y * p.slope_y;
-  const V cross = to_x * p.slope_y + to_y * p.slope_x;
-  const V two_xy = p.bend_xy_per_mm + p.bend_xy_per_mm + cross;
-  const V difference = xx - yy;
-  const V range_sq = difference * difference + two_xy * two_xy;
-  const V root = root_of<V>(range_sq);
-  const V sum = xx + yy;
-  const V scale = inv_w / whole<V>(2);
-  return {V(-sum * scale), V(root * scale)};
+/// One end of each section in the directions pi k / directions, from the shortest to the longest.
+/// The set is its own mirror image in both axes and, for an even number of directions, under
+/// exchange of rows and columns.
+inline std::vector<RingOffset> ring_offsets(Index radius_px, int directions) {
+  std::vector<RingOffset> offsets;
+  for (int k = 0; k < directions; ++k) {
+    const bool beyond_vertical = 2 * k > directions;
+    const int quarter = 2 * (beyond_vertical ? directions - k : k);  // of pi / (2 directions)
+    const bool steep = 2 * quarter > directions;
+    const RingOffset end =
+        ring_offset_in_octant(radius_px, steep ? directions - quarter : quarter, directions);
+    const RingOffset unfolded = steep ? RingOffset{end.col, end.row} : end;
+    offsets.push_back({unfolded.row, beyond_vertical ? -unfolded.col : unfolded.col});
+  }
+  std::stable_sort(offsets.begin(), offsets.end(), [](const RingOffset& a, const RingOffset& b) {
+    return a.radius_sq() < b.radius_sq();
+  });
+  return offsets;
 }
 
 /// x where it is positive, else 0; not_a_number() stays.
@@ -167,56 +178,6 @@ template <class V>
   }
 }
 
-/// Mean over theta of max(0, mean + half_range cos(2 theta)).
-template <class V>
-[[gnu::always_inline]] inline V clamped_mean(const NormalCurvature<V>& k) {
-  const V above = not_negative<V>(k.mean);
-  if constexpr (scalar<V>) {
-    using std::atan2;
-    using std::sqrt;
-    const V size = value(k.mean) < 0 ? V(-k.mean) : V(k.mean);
-    if (!(value(size) < value(k.half_range))) {
-      return above;
-    }
-    // what the other side adds, sqrt(d^2 - H^2) - |H| acos(|H| / d), over pi; the angle by atan2,
-    // since acos loses half of the digits near 1
-    const V product = (k.half_range - size) * (k.half_range + size);
-    const V root = sqrt(product);
-    const V angle = atan2(root, size);
-    return V(above + (root - size * angle) / V(3.14159265358979323846));
-  } else {
-    const V size = k.mean < V{} ? -k.mean : k.mean;
-    const V ratio = size < k.half_range ? size / k.half_range : V{} + 1;
-    const V rest = 1 - ratio;
-    // what the other side adds is d (1 - v)^(3/2) p(v), v = |H| / d, with p to 4e-7
-    V p = V{} + 3.99186604e-4F;
-    p = p * ratio - 1.89743204e-3F;
-    p = p * ratio + 5.80879904e-3F;
-    p = p * ratio - 2.25143274e-2F;
-    p = p * ratio + 3.18309474e-1F;
-    return above + k.half_range * (rest * root_of<V>(rest)) * p;
-  }
-}
-
 }  // namespace detail
-
-/// H = (k1 + k2) / 2 in 1/mm.
-template <scalar S>
-S mean_curvature(const SurfacePatch<S>& patch) {
-  return detail::normal_curvature<S>(patch).mean;
-}
-
-template <scalar S>
-PrincipalCurvatures<S> principal_curvatures(const SurfacePatch<S>& patch) {
-  const detail::NormalCurvature<S> k = detail::normal_curvature<S>(patch);
-  return {S(k.mean + k.half_range), S(k.mean - k.half_range)};
-}
-
-/// Mean over all directions of the normal curvature with its negative values as 0, in closed form.
-template <scalar S>
-S clamped_mean_curvature(const SurfacePatch<S>& patch) {
-  return detail::clamped_mean<S>(detail::normal_curvature<S>(patch));
-}
-
 }  // namespace v0
 }  // namespace fingerpad

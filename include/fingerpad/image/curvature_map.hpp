@@ -16,10 +16,10 @@
 #include "fingerpad/core/grid.hpp"
 #include "fingerpad/core/scalar.hpp"
 #include "fingerpad/core/status.hpp"
-#include "fingerpad/image/curvature_options.hpp"
-#include "fingerpad/image/curvature_projection.hpp"
-#include "fingerpad/image/detail/curvature_hessian.hpp"
+#include "fingerpad/image/curvature.hpp"
 #include "fingerpad/image/detail/curvature_rows.hpp"
+#include "fingerpad/image/detail/depth_units.hpp"
+#include "fingerpad/optics/camera.hpp"
 
 namespace fingerpad {
 inline namespace v0 {
@@ -32,20 +32,24 @@ struct [[nodiscard]] CurvatureResult {
   bool ok() const { return status == FrameStatus::ok; }
 };
 
-/// Curvature statistics of depth maps of one size. `Statistic` and `Projection` are policies,
-/// `S` is the number computed in: float or double by vectors, any other one by one.
+/// Curvature statistics of depth maps of one size, in the number S: float or double by vectors, any
+/// other one by one.
+///   Statistic   ClampedMean<>       take this for any object, saddles of the free pad included
+///               RingStencil<>       take this when time counts and contacts are flat
+///   CameraType  Camera<double>      take this for depth maps along a camera's rays
+///               OrthographicCamera  take this for height maps
 ///
 /// A pixel gets NaN where its depth is missing (not finite) or too few of its sections are
 /// complete; else the statistic of the complete ones. What is missing never reaches beyond its
 /// ring.
 ///
 /// Rounding: in double about 1e-15 per mm. In float, sections by vectors are good to 2.1e-5 of
-/// themselves; depths, and with PitchAtDepth zeta, that are off by a unit in the last place e
+/// themselves; depths, and through a camera zeta, that are off by a unit in the last place e
 /// change a curvature by up to 4 e / r^2.
 ///
 /// Const: threads may share one map, each with a workspace of its own, and take a band of rows
 /// each. Bounded time and no allocation per frame.
-template <class Statistic = ClampedMean<>, class Projection = PitchAtDepth, scalar S = float>
+template <class Statistic = ClampedMean<>, class CameraType = Camera<double>, scalar S = float>
 class CurvatureMap {
  public:
   /// Memory that one frame at a time needs, taken up front.
@@ -55,17 +59,20 @@ class CurvatureMap {
     Index stride = 0;
   };
 
-  CurvatureMap(const CurvatureRing& ring, const Projection& projection, Index rows, Index cols)
-      : units_(projection),
+  /// rows, cols in [1, 1e6]. Refuses bad parameters (parameter_error).
+  CurvatureMap(const CameraType& camera, Index rows, Index cols, const CurvatureRing& ring = {})
+      : units_(detail::pixel_pitch(camera)),
         rows_(checked(ring, rows, cols)),
         cols_(cols),
         margin_((std::min)(ring.radius_px, (std::max)(rows, cols))),
         stride_(stride_of(margin_, cols)),
         least_((std::max)(
-            fewest,
+            1,
             static_cast<int>(std::ceil(ring.min_direction_share * Statistic::directions - 1e-9)))),
-        kernel_(
-            ring_offsets(margin_, Statistic::directions), stride_, units_.pitch, units_.per_mm) {}
+        kernel_(detail::ring_offsets(margin_, Statistic::directions),
+                stride_,
+                units_.pitch,
+                units_.per_mm) {}
 
   Index rows() const { return rows_; }
   Index cols() const { return cols_; }
@@ -116,11 +123,8 @@ class CurvatureMap {
 
  private:
   using Kernel = detail::CurvatureKernel<Statistic, S>;
-  using Strip = detail::CurvatureStrip<Kernel,
-                                       detail::DepthUnits<Projection, S>,
-                                       S,
-                                       detail::curvature_vector_bytes<Statistic, S>>;
-  static constexpr int fewest = detail::fewest_sections<Statistic>;
+  using Units = detail::DepthUnits<CameraType, S>;
+  using Strip = detail::CurvatureStrip<Kernel, Units, S>;
   static constexpr Index line = 64 / static_cast<Index>(sizeof(float));
 
   static Index checked(const CurvatureRing& ring, Index rows, Index cols) {
@@ -154,21 +158,15 @@ class CurvatureMap {
 
   template <class View>
   void load_row(const View& from, Index i, S* row) const {
+    const S* cells = row;
     if constexpr (detail::plain_rows<View, S>) {
-      if (from.col_stride() == 1) {
-        const auto* cells = from.row(i);
-        detail::for_each_cell<S>(cols_, [&]<class V>(Index j) {
-          const V depth_mm = detail::load_cells<V, S>(cells + j);
-          detail::store_cells<S>(row + j, units_.template flattened<V>(depth_mm));
-        });
-        return;
-      }
+      cells = from.col_stride() == 1 ? from.row(i) : row;
     }
-    for (Index j = 0; j < cols_; ++j) {
+    for (Index j = 0; cells == row && j < cols_; ++j) {
       row[j] = static_cast<S>(from(i, j));
     }
     detail::for_each_cell<S>(cols_, [&]<class V>(Index j) {
-      const V depth_mm = detail::load_cells<V, S>(row + j);
+      const V depth_mm = detail::load_cells<V, S>(cells + j);
       detail::store_cells<S>(row + j, units_.template flattened<V>(depth_mm));
     });
   }
@@ -190,7 +188,7 @@ class CurvatureMap {
     }
   }
 
-  detail::DepthUnits<Projection, S> units_;
+  Units units_;
   Index rows_;
   Index cols_;
   Index margin_;  // the ring's radius; a larger ring than the image has no complete section anyway

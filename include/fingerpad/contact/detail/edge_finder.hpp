@@ -8,16 +8,15 @@
 #include <cstdint>
 #include <vector>
 
-#include "fingerpad/contact/contact_policies.hpp"
+#include "fingerpad/contact/contact_test.hpp"
 #include "fingerpad/contact/detail/outside_level.hpp"
 #include "fingerpad/contact/edge_level.hpp"
 #include "fingerpad/core/grid.hpp"
 #include "fingerpad/core/scalar.hpp"
 #include "fingerpad/image/curvature_map.hpp"
-#include "fingerpad/image/curvature_projection.hpp"
+#include "fingerpad/image/detail/depth_units.hpp"
 #include "fingerpad/image/detail/regions.hpp"
 #include "fingerpad/image/detail/sparse_mean.hpp"
-#include "fingerpad/image/mask_growth.hpp"
 
 namespace fingerpad {
 inline namespace v0 {
@@ -25,23 +24,13 @@ namespace detail {
 
 /// Turns the seeds of regions that `keep` wants into contact and returns the number of regions.
 /// `statistic` has the image's border.
-template <class Edge, class Statistic, class Projection, class S>
+template <class Edge, class Statistic, class CameraType, class S>
 class EdgeFinder;
 
-/// How many times the mean curvature of a free membrane a statistic is; 0: another curvature.
-template <class Statistic>
-inline constexpr int means_in = 1;
-template <int Directions>
-inline constexpr int means_in<PublishedTwiceMean<Directions>> = 2;
-template <int Directions>
-inline constexpr int means_in<HessianFit<Directions, FittedValue::larger>> = 0;
-template <int Directions>
-inline constexpr int means_in<HessianFit<Directions, FittedValue::smaller>> = 0;
-
-template <class Statistic, class Projection, class S>
-class EdgeFinder<AtThreshold, Statistic, Projection, S> {
+template <class Statistic, class CameraType, class S>
+class EdgeFinder<AtThreshold, Statistic, CameraType, S> {
  public:
-  EdgeFinder(const AtThreshold&, const ContactTest&, const Projection&, const BorderedImage&) {}
+  EdgeFinder(const AtThreshold&, const ContactTest&, const CameraType&, const BorderedImage&) {}
   struct Workspace {};
   Workspace workspace() const { return {}; }
 
@@ -51,55 +40,21 @@ class EdgeFinder<AtThreshold, Statistic, Projection, S> {
   }
 };
 
-template <class Statistic, class Projection, class S>
-class EdgeFinder<WidenedByRing, Statistic, Projection, S> {
- public:
-  EdgeFinder(const WidenedByRing& edge,
-             const ContactTest& test,
-             const Projection&,
-             const BorderedImage& image)
-      : image_(image), by_px_(edge.share * static_cast<double>(test.ring.radius_px)) {}
-  using Workspace = MaskDistance;
-  Workspace workspace() const { return MaskDistance(image_.rows, image_.cols); }
-
-  template <class Depth, class Keep>
-  Index operator()(
-      const Depth&, const S*, const Keep& keep, Regions& regions, Workspace& distance) const {
-    const Index count = regions.for_each(keep, [](const Regions::Region&) {});
-    const auto marks = regions.marks();
-    distance.measure([&](Index i, Index j) { return marks(i, j) == Mark::contact; });
-    for (Index i = 0; i < image_.rows; ++i) {
-      distance.row(i, [&](Index j, double squared) {
-        if (marks(i, j) == Mark::free && squared <= by_px_ * by_px_) {
-          marks(i, j) = Mark::contact;
-        }
-      });
-    }
-    return count;
-  }
-
- private:
-  BorderedImage image_;
-  double by_px_;
-};
-
-template <class Statistic, class Projection, class S>
-class EdgeFinder<HalfLevelEdge, Statistic, Projection, S> {
-  static_assert(means_in<Statistic> > 0,
-                "HalfLevelEdge compares mean curvatures, which this statistic is not");
-  using MeanMap = CurvatureMap<SectionMean<>, Projection, S>;
+template <class Statistic, class CameraType, class S>
+class EdgeFinder<HalfLevelEdge, Statistic, CameraType, S> {
+  using MeanMap = CurvatureMap<PlainMean<>, CameraType, S>;
 
  public:
   EdgeFinder(const HalfLevelEdge& edge,
              const ContactTest& test,
-             const Projection& projection,
+             const CameraType& camera,
              const BorderedImage& image)
       : image_(image),
         threshold_(S(test.threshold_per_mm)),
         gap_mm_(edge.touching_gap_mm),
         ring_px_(test.ring.radius_px),
-        projection_(projection),
-        mean_(test.ring, projection, image.rows, image.cols),
+        pitch_(pixel_pitch(camera)),
+        mean_(camera, image.rows, image.cols, test.ring),
         cell_(static_cast<std::size_t>(image.size())) {
     const OutsideLevel<S> outside(image, ring_px_);
     for (Index i = 0; i < image.rows; ++i) {
@@ -186,7 +141,7 @@ class EdgeFinder<HalfLevelEdge, Statistic, Projection, S> {
       const auto pixel = static_cast<std::size_t>(at);
       S& level = w.level[cell_[pixel]];
       if (!(level == level)) {
-        const S outside = w.outside[cell_[pixel]] / S(means_in<Statistic>);
+        const S outside = w.outside[cell_[pixel]] / S(Statistic::means);
         level = outside > inside ? edge(outside) : inside;
       }
       return w.mean[pixel] < level;
@@ -223,7 +178,7 @@ class EdgeFinder<HalfLevelEdge, Statistic, Projection, S> {
       sum += static_cast<double>(depth_mm(pixel / image_.stride(), pixel % image_.stride()));
       count += 1;
     }
-    return detail::pixel_size_mm(projection_, sum / count);
+    return pitch_.at_depth(sum / count);
   }
 
   /// A third of the ring: noise leaves the edge smooth, and the edge stays where it is.
@@ -237,7 +192,7 @@ class EdgeFinder<HalfLevelEdge, Statistic, Projection, S> {
   S threshold_;
   double gap_mm_;
   Index ring_px_;
-  Projection projection_;
+  PixelPitch pitch_;
   MeanMap mean_;
   std::vector<std::uint32_t> cell_;  ///< of `outside`, by the image's border
 };

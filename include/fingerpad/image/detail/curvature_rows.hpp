@@ -11,7 +11,6 @@
 #include <vector>
 
 #include "fingerpad/image/curvature.hpp"
-#include "fingerpad/image/curvature_options.hpp"
 #include "fingerpad/image/detail/row_lanes.hpp"
 
 namespace fingerpad {
@@ -65,22 +64,19 @@ struct PartialCurvature {
   V sections;   ///< their number
 };
 
-/// What a statistic computes per pixel. `cells` point to the center; `shrink` is 1 / (1 + c l) of
-/// curvature_projection.hpp. complete() is NaN when anything is missing; partial() uses the
-/// complete sections and is NaN when they are fewer than `least`.
-template <class Statistic, class S>
-class CurvatureKernel;
+// What a statistic computes per pixel. `cells` point to the center; `shrink` is 1 / (1 + c l) of
+// depth_units.hpp. complete() is NaN when anything is missing; partial() uses the
+// complete sections and is NaN when they are fewer than `least`.
 
 /// Sections of equal radius in one group.
-template <class S, int Directions, bool Clamped, int Numerator>
+template <class Statistic, class S>
 class SectionKernel {
-  static_assert(Directions >= 1);
-
  public:
-  static constexpr int directions = Directions;
+  static constexpr int directions = Statistic::directions;
+  static_assert(directions >= 1);
 
   SectionKernel(const std::vector<RingOffset>& ring, Index stride, const S& pitch, const S& per_mm)
-      : scale_(S(2 * Numerator) * per_mm) {
+      : scale_(S(2 * Statistic::means) * per_mm) {
     using std::sqrt;
     Index last_sq = -1;
     for (std::size_t k = 0; k < ring.size(); ++k) {
@@ -105,7 +101,7 @@ class SectionKernel {
       }
       total = total + sum * group.radius;
     });
-    return total * (shrink * shrink * shrink * (scale_ / S(Directions)));
+    return total * (shrink * shrink * shrink * (scale_ / S(directions)));
   }
 
   template <class V>
@@ -156,47 +152,96 @@ class SectionKernel {
 
   template <class V>
   [[gnu::always_inline]] static V weighed(const Section<V>& k) {
-    if constexpr (Clamped) {
+    if constexpr (Statistic::clamped) {
       return not_negative<V>(k.bend) * k.inverse_root;
     } else {
       return k.bend * k.inverse_root;
     }
   }
 
-  std::array<Index, static_cast<std::size_t>(Directions)> step_{};
-  std::array<Group, static_cast<std::size_t>(Directions)> group_{};
+  std::array<Index, static_cast<std::size_t>(directions)> step_{};
+  std::array<Group, static_cast<std::size_t>(directions)> group_{};
   std::size_t groups_ = 0;
   S scale_;
 };
 
-template <int D, class S>
-class CurvatureKernel<PublishedTwiceMean<D>, S> : public SectionKernel<S, D, false, 2> {
-  using SectionKernel<S, D, false, 2>::SectionKernel;
-};
-template <int D, class S>
-class CurvatureKernel<SectionMean<D>, S> : public SectionKernel<S, D, false, 1> {
-  using SectionKernel<S, D, false, 1>::SectionKernel;
-};
-template <int D, class S>
-class CurvatureKernel<ClampedMean<D>, S> : public SectionKernel<S, D, true, 1> {
-  using SectionKernel<S, D, true, 1>::SectionKernel;
-};
+// Curvature linear in depth: what each section lacks of its center, over the radius squared.
 
-/// Sections without which a statistic has no meaning.
-template <class Statistic>
-inline constexpr int fewest_sections = 1;
-
-/// The width that a statistic is computed in: one at a time where it needs a function without a
-/// vector form.
 template <class Statistic, class S>
-inline constexpr int curvature_vector_bytes = native_vector_bytes;
+class StencilKernel {
+ public:
+  static constexpr int directions = Statistic::directions;
+
+  StencilKernel(const std::vector<RingOffset>& ring,
+                Index stride,
+                const S& pitch,
+                const S& per_mm) {
+    for (std::size_t k = 0; k < ring.size(); ++k) {
+      const S radius_sq = S(static_cast<double>(ring[k].radius_sq())) * pitch * pitch;
+      section_[k] = {ring[k].row * stride + ring[k].col, S(per_mm / radius_sq)};
+    }
+  }
+
+  template <class V>
+  [[gnu::always_inline]] V complete(const S* cells, const V&) const {
+    const V center = load_cells<V, S>(cells);
+    V total{};
+    for (const Weighted& at : section_) {
+      total = total + at.weight * bend_at<V>(cells, center, at.step);
+    }
+    return total * (S(1) / S(directions));
+  }
+
+  template <class V>
+  [[gnu::always_inline]] PartialCurvature<V> partial(const S* cells, const V&, int least) const {
+    const V center = load_cells<V, S>(cells);
+    V total{};
+    V count{};
+    for (const Weighted& at : section_) {
+      const V bend = bend_at<V>(cells, center, at.step);
+      const auto complete = known<V>(bend);
+      total = total + at.weight * (complete ? bend : V{});
+      count = count + (complete ? whole<V>(1) : V{});
+    }
+    const V mean = total / count;
+    const V nan = V{} + not_a_number<S>();
+    return {at_least<V>(count, least) ? mean : nan, count};
+  }
+
+ private:
+  struct Weighted {
+    Index step;
+    S weight;
+  };
+
+  template <class V>
+  [[gnu::always_inline]] static V bend_at(const S* cells, const V& center, Index step) {
+    const V before = load_cells<V, S>(cells - step);
+    const V after = load_cells<V, S>(cells + step);
+    return (center - before) - (after - center);
+  }
+
+  std::array<Weighted, static_cast<std::size_t>(directions)> section_;
+};
+
+template <class Statistic, class S>
+struct CurvatureKernelOf {
+  using type = SectionKernel<Statistic, S>;
+};
+template <class Statistic, class S>
+  requires(Statistic::linear)
+struct CurvatureKernelOf<Statistic, S> {
+  using type = StencilKernel<Statistic, S>;
+};
+template <class Statistic, class S>
+using CurvatureKernel = typename CurvatureKernelOf<Statistic, S>::type;
 
 /// A strip of columns, gone through from top to bottom. Every pixel of a row is computed the fast
 /// way first, except in vectors of which no pixel had a whole ring in the row above; what comes out
 /// as NaN is then looked at again. Every pixel gets the same bits whichever way led to it.
-template <class Kernel, class Units, class S, int VectorBytes>
+template <class Kernel, class Units, class S>
 class CurvatureStrip {
-  static constexpr int n = row_lanes<S, VectorBytes>;
+  static constexpr int n = row_lanes<S>;
   using V = typename RowVector<S, n>::type;
 
  public:

@@ -8,8 +8,8 @@
 #include <cstring>
 #include <vector>
 
-#include "fingerpad/image/detail/row_lanes.hpp"
 #include "fingerpad/core/grid.hpp"
+#include "fingerpad/image/detail/row_lanes.hpp"
 
 namespace fingerpad {
 inline namespace v0 {
@@ -128,21 +128,6 @@ class Regions {
       }
     }
     region.end = tail_;
-  }
-
-  void set(const Region& region, Mark to) {
-    for (const Index* at = begin(region); at != end(region); ++at) {
-      mark(*at) = to;
-    }
-  }
-
-  /// What was found becomes seed again.
-  void reseed() {
-    for (const Index* at = queue_.data(); at != queue_.data() + tail_; ++at) {
-      if (mark(*at) == Mark::contact) {
-        mark(*at) = Mark::seed;
-      }
-    }
   }
 
  private:

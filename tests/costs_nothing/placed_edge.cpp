@@ -1,21 +1,19 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
-// The placed edge of a contact and the cleaning of its mask: what is below the threshold touches.
+// The placed edge of a contact: what is below the threshold touches.
 #include "fingerpad/contact/contact_region.hpp"
 
 using namespace fingerpad;
 using namespace fingerpad::detail;
-using Finder = EdgeFinder<AtThreshold, SectionMean<>, PlatePitch, float>;
+using Finder = EdgeFinder<AtThreshold, ClampedMean<>, OrthographicCamera<double>, float>;
+constexpr auto keep_all = [](const Regions::Region&) { return true; };
 
 extern "C" Index switched_off(const Finder& finder,
                               const StridedView<const float>& depth_mm,
                               const float* statistic,
                               Regions& regions) {
-  const NoCleaning cleaning;
   Finder::Workspace none;
-  prepare(cleaning, statistic, regions);
-  const auto keep = [&](const auto& region) { return keeps(cleaning, region); };
-  return finder(depth_mm, statistic, keep, regions, none);
+  return finder(depth_mm, statistic, keep_all, regions, none);
 }
 
 extern "C" Index without_effect(const Finder&,

@@ -1,0 +1,114 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+#pragma once
+// How far apart the points are that neighbouring pixels see.
+//
+// Looking through a camera, that distance grows with depth, s = pitch (1 + c l), and a tilted plane
+// looks hollow: by 2 c slope^2 / ((1 + c l) (1 + slope^2)^(3/2)) in a section along the slope,
+// which is 5e-3 per mm at a slope of 1/2. Both are undone at once: with zeta = l / (1 + c l) planes
+// are planes again, for a camera at 1/c behind the plate, and
+//   K = K of (K1) for radius r / (1 + c l) and depths zeta, over (1 + c l)^2
+// on the axis. A flat section stays flat; where K is not 0 it is off by a share of the order of
+// c x slope, x the distance from the axis. Refraction makes c fall off the axis (3 % at 20
+// degrees), which leaves less than 5e-4 per mm of a plane with slope 1/2
+// (tests/image/curvature.cpp).
+#include <algorithm>
+#include <cmath>
+
+#include "fingerpad/core/expects.hpp"
+#include "fingerpad/core/scalar.hpp"
+#include "fingerpad/image/detail/row_lanes.hpp"
+#include "fingerpad/optics/camera.hpp"
+
+namespace fingerpad {
+inline namespace v0 {
+namespace detail {
+
+/// Distance in mm of the points that neighbouring pixels see, pitch (1 + c l).
+struct PixelPitch {
+  double at_plate_mm;    ///< in [1e-9, 1e9]
+  double growth_per_mm;  ///< c, in [0, 1e9]: 1 / virtual height of the camera on the axis
+
+  double at_depth(double depth_mm) const { return at_plate_mm * (1 + growth_per_mm * depth_mm); }
+};
+
+inline PixelPitch checked(const PixelPitch& pitch) {
+  expects(pitch.at_plate_mm >= 1e-9 && pitch.at_plate_mm <= 1e9, "CurvatureMap", "camera.pitch_mm",
+          pitch.at_plate_mm, "in [1e-9, 1e9]");
+  expects(pitch.growth_per_mm >= 0 && pitch.growth_per_mm <= 1e9, "CurvatureMap",
+          "growth of the pitch per mm", pitch.growth_per_mm, "in [0, 1e9]");
+  return pitch;
+}
+
+template <scalar S>
+PixelPitch pixel_pitch(const Camera<S>& camera) {
+  const auto pitch_mm = static_cast<double>(value(camera.pitch_mm));
+  const auto index = static_cast<double>(value(camera.refractive_index));
+  const auto per_px = static_cast<double>(value(tangent_per_px(camera)));
+  return checked({pitch_mm, per_px / pitch_mm * tangent_ratio(0.0, index)});
+}
+template <scalar S>
+PixelPitch pixel_pitch(const OrthographicCamera<S>& camera) {
+  return checked({static_cast<double>(value(camera.pitch_mm)), 0});
+}
+
+template <class CameraType>
+inline constexpr bool sees_perspective = true;
+template <scalar S>
+inline constexpr bool sees_perspective<OrthographicCamera<S>> = false;
+
+/// Depths in units of about one pitch, a power of two so that nothing is rounded: the products of
+/// six lengths in (K1) then stay far from the limits of float. Depths beyond a million units, or
+/// next to the camera, are missing.
+template <class CameraType, class S>
+struct DepthUnits {
+  static constexpr bool at_depth = sees_perspective<CameraType>;
+
+  explicit DepthUnits(const PixelPitch& pitch_mm) {
+    int exponent = 0;
+    std::frexp(pitch_mm.at_plate_mm, &exponent);
+    const double unit_mm = std::ldexp(1.0, exponent);
+    pitch = S(pitch_mm.at_plate_mm / unit_mm);
+    per_mm = S(1 / unit_mm);
+    const double growth = pitch_mm.growth_per_mm;
+    growth_per_unit = S(growth) * S(unit_mm);
+    const double nearest = growth > 0 ? -0.99 / (growth * unit_mm) : -1e6;
+    lowest = scalar_real_t<S>((std::max)(nearest, -1e6));
+  }
+
+  /// zeta, in units; NaN for what is missing.
+  template <class V>
+  [[gnu::always_inline]] V flattened(const V& depth_mm) const {
+    const V l = depth_mm * per_mm;
+    V zeta = l;
+    if constexpr (at_depth) {
+      zeta = l / (1 + growth_per_unit * l);
+    }
+    const V nan = V{} + not_a_number<S>();
+    if constexpr (scalar<V>) {
+      return value(l) > lowest && value(l) < highest ? zeta : nan;
+    } else {
+      return ((l > lowest) & (l < highest)) ? zeta : nan;
+    }
+  }
+
+  /// 1 / (1 + c l).
+  template <class V>
+  [[gnu::always_inline]] V shrink(const V& zeta) const {
+    if constexpr (at_depth) {
+      return 1 - growth_per_unit * zeta;
+    } else {
+      return V{} + 1;
+    }
+  }
+
+  S pitch;            ///< units per pixel
+  S per_mm;           ///< units per mm
+  S growth_per_unit;  ///< c
+  scalar_real_t<S> lowest;
+  scalar_real_t<S> highest = scalar_real_t<S>(1000000);
+};
+
+}  // namespace detail
+}  // namespace v0
+}  // namespace fingerpad
