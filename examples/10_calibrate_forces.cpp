@@ -79,14 +79,14 @@ void print(const char* unit, double residual, const LeftOut& left_out) {
 }
 
 struct Normal {
-  fingerpad::NormalForceFit<degree> fit;
+  fingerpad::NormalForceFit<fingerpad::PolynomialForce<degree>> fit;
   LeftOut left_out;
 };
 
 /// With a compensation for displacement and rotation where that tells unseen loads better.
 Normal fit_normal(Samples samples, const Measure& by) {
   const auto fitted = [&](bool compensated) {
-    fingerpad::NormalForceFitOptions options;
+    fingerpad::FitOptions options;
     options.displaced = options.rotated = compensated;
     const auto fit = [&](Samples some) {
       return fingerpad::fit_normal_force<degree>(some, options);
@@ -126,8 +126,8 @@ Shear fit_shear(Samples samples, const Measure& by) {
   all.force = fit_tangential_force(samples, by.reference);
   all.moment = fit_moment(samples, by.reference);
   const auto fit = [&](Samples some) {
-    const auto force = fit_tangential_force(some, by.reference, {false, all.force.exponent});
-    const auto moment = fit_moment(some, by.reference, {false, all.moment.exponent});
+    const auto force = fit_tangential_force(some, by.reference, all.force.exponent);
+    const auto moment = fit_moment(some, by.reference, all.moment.exponent);
     return fingerpad::Shear<>({by.reference, force.exponent, moment.exponent},
                               {force.polynomial, moment.polynomial});
   };

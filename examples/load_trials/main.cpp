@@ -108,7 +108,7 @@ void print_row(const char* name, const Displaced& samples, const Fit& fit) {
 auto linear_map(bool robust) {
   return [robust](std::span<const ForceSample<double>> samples) {
     const auto fit = fingerpad::fit_linear_shear(samples, fingerpad::shear_without_measure(),
-                                                 {.robust = robust});
+                                                 {.robust = robust, .min_explained = 0.5});
     return [map = fit.map](const Point2<double>& d) { return map.force_n(d); };
   };
 }

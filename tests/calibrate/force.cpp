@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <set>
 #include <span>
 #include <string>
@@ -16,6 +17,7 @@
 #include "fingerpad/adapt/autodiff.hpp"
 #include "fingerpad/force/normal_force.hpp"
 #include "fingerpad/force/shear.hpp"
+#include "fingerpad/published/normal_force.hpp"
 #include "support/catch.hpp"
 #include "support/generators.hpp"
 #include "support/numbers.hpp"
@@ -204,9 +206,8 @@ TEST_CASE("curves of the normal force are found within their errors", "[calibrat
         {"linear", "square", "per_mm_sq", "per_rad_sq"}, way.fits, 1,
         [&](Random& random) {
           const auto samples = measured(pad, way.samples, way.noise, 1, random);
-          NormalForceFitOptions options;
+          FitOptions options = options_of(way);
           options.displaced = options.rotated = true;
-          options.fit = options_of(way);
           const auto fit = fit_normal_force<2>(all(samples), options);
           const auto& c = fit.errors.covariance;
           return std::array<std::array<double, 3>, 4>{
@@ -223,7 +224,8 @@ TEST_CASE("curves of the normal force are found within their errors", "[calibrat
         [&](Random& random) {
           const auto samples = measured(cubic, way.samples, way.noise, 1, random);
           const auto fit = fit_normal_force<3>(
-              all(samples), {.through_zero = false, .rising = false, .fit = options_of(way)});
+              all(samples),
+              {.robust = way.robust, .passes = 25, .through_zero = false, .rising = false});
           const auto& c = fit.errors.covariance;
           const auto& p = fit.curve.coefficients;
           // The variance of a force takes all of the covariance.
@@ -262,19 +264,20 @@ TEST_CASE("elastic pads and the published compensation are found within their er
                {fit.curve.exponent, pad.gamma, sd(c[1][1])}}};
         },
         way.slack);
-    for (const auto by : {AffineBy::displacement, AffineBy::rotation}) {
+    for (const auto by : {published::AffineBy::displacement, published::AffineBy::rotation}) {
       check_coverage<3>(
           {"gain", "per_unit", "offset_n"}, way.fits, 4,
           [&](Random& random) {
             Samples samples = contacts(way.samples, random);
             for (Sample& s : samples) {
-              const double size = by == AffineBy::rotation
+              const double size = by == published::AffineBy::rotation
                                       ? std::abs(s.rotation_rad)
                                       : std::hypot(s.displacement_mm.x, s.displacement_mm.y);
               s.normal_force_n =
                   pad.affine(pad.plain(s.measure), size) + error_of(way.noise, random);
             }
-            const auto fit = fit_affine_force(all(samples), pad.curve(), by, options_of(way));
+            const auto fit =
+                published::fit_affine_force(all(samples), pad.curve(), by, options_of(way));
             return std::array<std::array<double, 3>, 3>{
                 {{fit.force.gain, pad.affine.gain, fit.standard_errors[0]},
                  {fit.force.per_unit, pad.affine.per_unit, fit.standard_errors[1]},
@@ -314,8 +317,8 @@ void check_shear_coverage(const Way& way, bool given) {
       [&](Random& random) {
         const auto samples = measured(pad, way.samples, way.noise, Degree, random);
         const auto fit = fit_tangential_force<Degree>(
-            all(samples), pad.reference,
-            {.search = !given, .given = pad.pull_exponent, .steps = 12}, options_of(way));
+            all(samples), pad.reference, given ? std::optional(pad.pull_exponent) : std::nullopt,
+            options_of(way));
         return row(fit, pad.pull_1, second * pad.pull_2, pad.pull_exponent);
       },
       way.slack);
@@ -323,9 +326,9 @@ void check_shear_coverage(const Way& way, bool given) {
       {"c_1", "c_n or the slope at twice the reference", "rotation_exponent"}, way.fits, 6,
       [&](Random& random) {
         const auto samples = measured(pad, way.samples, way.noise, Degree, random);
-        const auto fit = fit_moment<Degree>(
-            all(samples), pad.reference,
-            {.search = !given, .given = pad.turn_exponent, .steps = 12}, options_of(way));
+        const auto fit = fit_moment<Degree>(all(samples), pad.reference,
+                                            given ? std::optional(pad.turn_exponent) : std::nullopt,
+                                            options_of(way));
         return row(fit, pad.turn_1, second * pad.turn_2, pad.turn_exponent);
       },
       way.slack);
@@ -415,18 +418,18 @@ double error_without_noise(bool robust) {
     s.tangential_force_n = pad.pull(s, pad.pull_2);
     s.moment_n_mm = pad.turn(s, pad.turn_2);
   }
-  const auto normal =
-      fit_normal_force<2>(all(samples), {.displaced = true, .rotated = true, .fit = options});
+  const auto normal = fit_normal_force<2>(
+      all(samples), {.robust = options.robust, .displaced = true, .rotated = true});
   compare(normal.curve.coefficients[1], pad.linear);
   compare(normal.curve.coefficients[2], pad.square_term);
   compare(normal.compensation.per_mm_sq, pad.per_mm_sq);
   compare(normal.compensation.per_rad_sq, pad.per_rad_sq);
   CHECK(value(normal.curve.coefficients[0]) == 0);
-  const auto pull = fit_tangential_force<2>(all(samples), pad.reference, {.steps = 10}, options);
+  const auto pull = fit_tangential_force<2>(all(samples), pad.reference, {}, options);
   compare(pull.polynomial.coefficients[0], pad.pull_1);
   compare(pull.polynomial.coefficients[1], pad.pull_2);
   compare(pull.exponent, pad.pull_exponent);
-  const auto turn = fit_moment<2>(all(samples), pad.reference, {.steps = 10}, options);
+  const auto turn = fit_moment<2>(all(samples), pad.reference, {}, options);
   compare(turn.polynomial.coefficients[0], pad.turn_1);
   compare(turn.polynomial.coefficients[1], pad.turn_2);
   compare(turn.exponent, pad.turn_exponent);
@@ -439,7 +442,8 @@ double error_without_noise(bool robust) {
     s.tangential_force_n =
         pad.linear_map.force_n({S(u * s.displacement_mm.x), S(u * s.displacement_mm.y)});
   }
-  const auto affine = fit_affine_force(all(shifted), pad.curve(), AffineBy::displacement, options);
+  const auto affine = published::fit_affine_force(all(shifted), pad.curve(),
+                                                  published::AffineBy::displacement, options);
   compare(affine.force.gain, pad.affine.gain);
   compare(affine.force.per_unit, pad.affine.per_unit);
   compare(affine.force.offset_n, pad.affine.offset_n);
@@ -490,6 +494,7 @@ Samples any_samples(int count = 30) {
 FitOptions any_options() {
   FitOptions options;
   options.robust = test::whole(0, 1) == 1;
+  options.min_explained = 0.5;
   return options;
 }
 
@@ -502,8 +507,8 @@ struct Number {
 };
 std::vector<Number> all_fits(const Samples& samples, const FitOptions& options) {
   std::vector<Number> numbers;
-  const auto normal =
-      fit_normal_force<2>(all(samples), {.displaced = true, .rotated = true, .fit = options});
+  const auto normal = fit_normal_force<2>(
+      all(samples), {.robust = options.robust, .displaced = true, .rotated = true});
   for (int k = 1; k <= 2; ++k) {
     const auto i = static_cast<std::size_t>(k);
     numbers.push_back({normal.curve.coefficients[i], 1, -k});
@@ -515,14 +520,14 @@ std::vector<Number> all_fits(const Samples& samples, const FitOptions& options) 
                                  {normal.per_mm_sq_sd},
                                  {normal.per_rad_sq_sd},
                                  {normal.explained}});
-  const auto pull = fit_tangential_force<2>(all(samples), 2.0, {.steps = 10}, options);
+  const auto pull = fit_tangential_force<2>(all(samples), 2.0, {}, options);
   numbers.insert(numbers.end(), {{pull.polynomial.coefficients[0], 1},
                                  {pull.polynomial.coefficients[1], 1},
                                  {pull.standard_errors[0], 1},
                                  {pull.exponent},
                                  {pull.exponent_sd},
                                  {pull.polynomial.to}});
-  const auto turn = fit_moment<1>(all(samples), 2.0, {.steps = 10}, options);
+  const auto turn = fit_moment<1>(all(samples), 2.0, {}, options);
   numbers.insert(numbers.end(),
                  {{turn.polynomial.coefficients[0], 1}, {turn.exponent}, {turn.residual_sd, 1}});
   const auto linear = fit_linear_shear(all(samples), shear_without_measure(), options);
@@ -573,7 +578,8 @@ TEST_CASE("a calibration depends neither on order nor on units", "[calibrate][fo
   });
   rc::prop("the unit of the measure, to the last bit", [] {
     Samples samples = any_samples();
-    const NormalForceFitOptions options{.displaced = true, .fit = any_options()};
+    FitOptions options = any_options();
+    options.displaced = true;
     const int power = static_cast<int>(test::whole(-20, 20));
     const auto before = fit_normal_force<2>(all(samples), options);
     for (Sample& s : samples) {
@@ -639,7 +645,7 @@ TEST_CASE("the covariance is that which the forces' errors carry into the parame
     dual.normal_force_n = S(s.normal_force_n, count, k);
     samples.push_back(dual);
   }
-  const NormalForceFitOptions options{.through_zero = false, .rising = false};
+  const FitOptions options{.through_zero = false, .rising = false};
   const auto dual = fit_normal_force<2>(all(samples), options);
   const auto fit = fit_normal_force<2>(all(plain), options);
   for (std::size_t i = 0; i <= 2; ++i) {
@@ -663,8 +669,8 @@ TEST_CASE("Huber's loss withstands gross outliers", "[calibrate][force]") {
     double worst = 0;
     for (int k = 0; k < 20; ++k) {
       const auto samples = measured(pad, 100, noise, 1, random);
-      const auto robust = fit_normal_force<2>(all(samples), {.fit = {.robust = true}});
-      const auto plain = fit_normal_force<2>(all(samples));
+      const auto robust = fit_normal_force<2>(all(samples), {.robust = true, .min_explained = 0.5});
+      const auto plain = fit_normal_force<2>(all(samples), {.min_explained = 0.5});
       for (const double at : {1.0, 3.0, 5.0}) {
         const double standard_error = sd(robust.errors.variance_n2(robust.curve.gradient(at), 0) -
                                          square(robust.errors.residual_sd_n));
@@ -697,7 +703,7 @@ TEST_CASE("a force that would fall is held", "[calibrate][force]") {
   for (Sample& s : saturated) {
     s.normal_force_n = 4 * s.measure - 0.6 * square(s.measure) + 0.05 * random.normal();
   }
-  const auto fit = fit_normal_force<2>(all(saturated));
+  const auto fit = fit_normal_force<2>(all(saturated), {.min_explained = 0.5});
   CHECK(fit.held_rising);
   CHECK(lowest_slope(fit.curve) > -1e-12);
   const auto free = fit_normal_force<2>(all(saturated), {.rising = false});
@@ -721,7 +727,7 @@ TEST_CASE("a force that would fall is held", "[calibrate][force]") {
     CHECK(lowest_slope(fitted.curve) > -1e-9);
     (void)NormalForce(fitted.curve, NoCompensation{}, fitted.errors);
   };
-  for (int k = 0; k < 60; ++k) {
+  for (int k = 0; k < 80; ++k) {
     const double a = random.uniform(-2, 6), b = random.uniform(-1.5, 1.5);
     const double c = random.uniform(-0.2, 0.2);
     Samples samples = contacts(25, random);
@@ -729,8 +735,8 @@ TEST_CASE("a force that would fall is held", "[calibrate][force]") {
       const double m = s.measure;
       s.normal_force_n = m * (a + m * (b + m * c)) + 0.2 * random.normal();
     }
-    const NormalForceFitOptions options{.through_zero = k % 2 == 0,
-                                        .fit = {.robust = k % 3 == 0, .passes = 20}};
+    const FitOptions options{
+        .robust = k % 3 == 0, .passes = 20, .min_explained = 0, .through_zero = k % 2 == 0};
     for (const std::string& message :
          {refusal([&] { make(fit_normal_force<1>(all(samples), options)); }),
           refusal([&] { make(fit_normal_force<2>(all(samples), options)); }),
@@ -753,7 +759,7 @@ TEST_CASE("options add what they name and nothing else", "[calibrate][force]") {
   Random random(14);
   const Pad<> pad{.constant = 0.6};
   const Samples samples = measured(pad, 80, {}, 1, random);
-  const auto fit = [&](const NormalForceFitOptions& options) {
+  const auto fit = [&](const FitOptions& options) {
     return fit_normal_force<2>(all(samples), options);
   };
   const auto both = fit({.through_zero = false, .displaced = true, .rotated = true});
@@ -854,7 +860,9 @@ TEST_CASE("predictions never use the load that is left out", "[calibrate][force]
   for (Sample& s : samples) {
     s.load = loads[static_cast<std::size_t>(s.load)];
   }
-  const auto fit = [](std::span<const Sample> rest) { return fit_normal_force<2>(rest); };
+  const auto fit = [](std::span<const Sample> rest) {
+    return fit_normal_force<2>(rest, {.min_explained = 0.5});
+  };
   const auto predicted = [](const auto& model, const Sample& s) {
     return model.curve.force_n(s.measure);
   };
@@ -920,14 +928,14 @@ Samples changed(Samples samples, const Change& change) {
 TEST_CASE("samples that do not tell the parameters are refused by name", "[calibrate][force]") {
   Random random(17);
   const Samples good = measured({}, 40, {}, 1, random);
-  const auto normal = [](const Samples& samples, const NormalForceFitOptions& options = {}) {
+  const auto normal = [](const Samples& samples, const FitOptions& options = {}) {
     return [&samples, options] { return fit_normal_force<2>(all(samples), options); };
   };
-  const auto pull = [](const Samples& samples, const ExponentSearch<>& search = {}) {
-    return [&samples, search] { return fit_tangential_force<1>(all(samples), 2.0, search); };
+  const auto pull = [](const Samples& samples, const std::optional<double>& exponent = {}) {
+    return [&samples, exponent] { return fit_tangential_force<1>(all(samples), 2.0, exponent); };
   };
-  const auto turn = [](const Samples& samples, const ExponentSearch<>& search = {}) {
-    return [&samples, search] { return fit_moment<2>(all(samples), 2.0, search); };
+  const auto turn = [](const Samples& samples, const std::optional<double>& exponent = {}) {
+    return [&samples, exponent] { return fit_moment<2>(all(samples), 2.0, exponent); };
   };
   const auto linear = [](const Samples& samples) {
     return [&samples] { return fit_linear_shear(all(samples), shear_without_measure()); };
@@ -935,8 +943,9 @@ TEST_CASE("samples that do not tell the parameters are refused by name", "[calib
   const auto elastic = [](const Samples& samples) {
     return [&samples] { return fit_power_law<double>(all(samples)); };
   };
-  const auto affine = [](const Samples& samples, AffineBy by) {
-    return [&samples, by] { return fit_affine_force(all(samples), Pad<>().curve(), by); };
+  const auto affine = [](const Samples& samples, published::AffineBy by) {
+    return
+        [&samples, by] { return published::fit_affine_force(all(samples), Pad<>().curve(), by); };
   };
 
   SECTION("too few") {
@@ -950,8 +959,10 @@ TEST_CASE("samples that do not tell the parameters are refused by name", "[calib
     check_refused(linear(none), "fit_linear_shear: usable samples = 0");
     check_refused(elastic(two), "fit_power_law: usable samples = 2, must be > 2");
     check_refused(elastic(none), "fit_power_law: usable samples = 0");
-    check_refused(affine(two, AffineBy::rotation), "fit_affine_force: usable samples = 2");
-    check_refused(affine(none, AffineBy::rotation), "fit_affine_force: usable samples = 0");
+    check_refused(affine(two, published::AffineBy::rotation),
+                  "fit_affine_force: usable samples = 2");
+    check_refused(affine(none, published::AffineBy::rotation),
+                  "fit_affine_force: usable samples = 0");
   }
   SECTION("all measures alike") {
     const auto alike = changed(good, [](Sample& s) { s.measure = 3; });
@@ -959,9 +970,9 @@ TEST_CASE("samples that do not tell the parameters are refused by name", "[calib
     check_refused(pull(alike),
                   "fit_tangential_force: what the samples tell of displacement_exponent");
     check_refused(turn(alike), "fit_moment: what the samples tell of rotation_exponent");
-    check_refused(affine(alike, AffineBy::displacement),
+    check_refused(affine(alike, published::AffineBy::displacement),
                   "fit_affine_force: what the samples tell of offset_n");
-    CHECK(refusal(pull(alike, {.search = false, .given = 0.7})) == "accepted");
+    CHECK(refusal(pull(alike, 0.7)) == "accepted");
     const auto at_reference = changed(good, [](Sample& s) { s.measure = 2; });
     check_refused(pull(at_reference),
                   "fit_tangential_force: what the samples tell of displacement_exponent");
@@ -987,9 +998,9 @@ TEST_CASE("samples that do not tell the parameters are refused by name", "[calib
                   "fit_normal_force: what the samples tell of per_mm_sq");
     check_refused(normal(still, {.rotated = true}),
                   "fit_normal_force: what the samples tell of per_rad_sq");
-    check_refused(affine(still, AffineBy::displacement),
+    check_refused(affine(still, published::AffineBy::displacement),
                   "fit_affine_force: what the samples tell of per_unit");
-    check_refused(affine(still, AffineBy::rotation),
+    check_refused(affine(still, published::AffineBy::rotation),
                   "fit_affine_force: what the samples tell of per_unit");
     const auto tied = changed(good, [](Sample& s) {
       s.rotation_rad = 0.1 * std::hypot(s.displacement_mm.x, s.displacement_mm.y);
@@ -1000,8 +1011,7 @@ TEST_CASE("samples that do not tell the parameters are refused by name", "[calib
       s.measure = 3;
       s.rotation_rad = s.rotation_rad < 0 ? -0.1 : 0.1;
     });
-    check_refused(turn(one_size, {.search = false, .given = 1}),
-                  "fit_moment: what the samples tell of coefficient 2");
+    check_refused(turn(one_size, 1), "fit_moment: what the samples tell of coefficient 2");
   }
   SECTION("forces that are constant, 0, or nothing but noise") {
     const auto constant = changed(good, [](Sample& s) { s.normal_force_n = 2; });
@@ -1010,7 +1020,7 @@ TEST_CASE("samples that do not tell the parameters are refused by name", "[calib
     check_refused(normal(constant, {.through_zero = false}),
                   "fit_normal_force: share of the measured variance");
     check_refused(elastic(constant), "fit_power_law: what the samples tell of exponent");
-    check_refused(affine(constant, AffineBy::displacement),
+    check_refused(affine(constant, published::AffineBy::displacement),
                   "fit_affine_force: share of the measured variance");
     const auto zero = changed(good, [](Sample& s) {
       s.normal_force_n = s.moment_n_mm = 0;
@@ -1026,12 +1036,11 @@ TEST_CASE("samples that do not tell the parameters are refused by name", "[calib
     });
     check_refused(normal(noise, {.through_zero = false}),
                   "fit_normal_force: share of the measured variance");
-    check_refused(pull(noise, {.search = false}),
-                  "fit_tangential_force: share of the measured variance");
-    check_refused(turn(noise, {.search = false}), "fit_moment: share of the measured variance");
+    check_refused(pull(noise, 0), "fit_tangential_force: share of the measured variance");
+    check_refused(turn(noise, 0), "fit_moment: share of the measured variance");
     check_refused(linear(noise), "fit_linear_shear: share of the measured variance");
     check_refused(elastic(noise), "fit_power_law: share of the measured variance");
-    check_refused(affine(noise, AffineBy::rotation),
+    check_refused(affine(noise, published::AffineBy::rotation),
                   "fit_affine_force: share of the measured variance");
   }
   SECTION("a force that falls while the contact grows") {
@@ -1048,31 +1057,39 @@ TEST_CASE("samples that do not tell the parameters are refused by name", "[calib
     check_refused(elastic(too_fast), "fit_power_law: exponent = 2.5, must be in (0, 2]");
   }
   SECTION("an exponent outside the search") {
-    const ExponentSearch<> low{.lowest = -1, .highest = 0.3}, high{.lowest = 2.5, .highest = 3};
-    check_refused(pull(good, low), "fit_tangential_force: displacement_exponent");
-    check_refused(pull(good, high), "fit_tangential_force: displacement_exponent");
-    check_refused(turn(good, low), "fit_moment: rotation_exponent");
-    check_refused(turn(good, high), "fit_moment: rotation_exponent");
+    const auto steep = changed(good, [](Sample& s) {
+      const double u = std::pow(s.measure / 2, 6.4);
+      s.tangential_force_n = {u * s.displacement_mm.x, u * s.displacement_mm.y};
+      s.moment_n_mm = u * s.rotation_rad;
+    });
+    check_refused(pull(steep), "fit_tangential_force: displacement_exponent = 6.4");
+    check_refused(turn(steep), "fit_moment: rotation_exponent = 6.4");
+    const auto falling = changed(good, [](Sample& s) {
+      const double u = std::pow(s.measure / 2, -2.3);
+      s.tangential_force_n = {u * s.displacement_mm.x, u * s.displacement_mm.y};
+      s.moment_n_mm = u * s.rotation_rad;
+    });
+    check_refused(pull(falling), "fit_tangential_force: displacement_exponent = -2.3");
+    check_refused(turn(falling), "fit_moment: rotation_exponent = -2.3");
   }
   SECTION("bad options") {
-    check_refused(pull(good, {.steps = 1}), "ExponentSearch: steps = 1, must be >= 2");
-    check_refused(pull(good, {.lowest = 1, .highest = 1}), "ExponentSearch: highest");
-    check_refused(pull(good, {.search = false, .given = test::nan}), "");
+    check_refused(pull(good, test::nan), "fit_tangential_force: displacement_exponent = ");
+    check_refused(turn(good, infinity), "fit_moment: rotation_exponent = inf, must be finite");
     for (const double bad : {0.0, -1.0, test::nan, infinity}) {
       CHECK_THROWS_AS(fit_tangential_force<1>(all(good), bad), parameter_error);
       CHECK_THROWS_AS(fit_moment<1>(all(good), bad), parameter_error);
       CHECK_THROWS_AS(fit_linear_shear(all(good), ShearNormalisation<double>{bad, 0, 0}),
                       parameter_error);
-      check_refused(normal(good, {.fit = {.threshold = bad}}), "FitOptions: threshold");
-      check_refused(normal(good, {.fit = {.min_independence = bad}}),
-                    "FitOptions: min_independence");
+      check_refused(normal(good, {.threshold = bad}), "FitOptions: threshold");
+      check_refused(normal(good, {.min_independence = bad}), "FitOptions: min_independence");
     }
-    check_refused(normal(good, {.fit = {.passes = 1}}), "FitOptions: passes = 1, must be >= 2");
-    check_refused(normal(good, {.fit = {.min_independence = 1}}), "FitOptions: min_independence");
-    check_refused(normal(good, {.fit = {.min_explained = -0.1}}), "FitOptions: min_explained");
-    check_refused(normal(good, {.fit = {.min_explained = 1}}), "FitOptions: min_explained");
+    check_refused(normal(good, {.passes = 1}), "FitOptions: passes = 1, must be >= 2");
+    check_refused(normal(good, {.min_independence = 1}), "FitOptions: min_independence");
+    check_refused(normal(good, {.min_explained = -0.1}), "FitOptions: min_explained");
+    check_refused(normal(good, {.min_explained = 1}), "FitOptions: min_explained");
     PolynomialForce<2> falling{{0, -1, 0}, 0, 5};
-    CHECK_THROWS_AS(fit_affine_force(all(good), falling, AffineBy::rotation), parameter_error);
+    CHECK_THROWS_AS(published::fit_affine_force(all(good), falling, published::AffineBy::rotation),
+                    parameter_error);
   }
 }
 
@@ -1096,13 +1113,15 @@ TEST_CASE("samples that are no numbers are left out", "[calibrate][force]") {
       with.insert(with.begin() + 11, s);
     }
   }
-  const NormalForceFitOptions options{.displaced = true, .rotated = true};
+  const FitOptions options{.displaced = true, .rotated = true};
   CHECK(fit_normal_force<2>(all(with), options).curve.coefficients ==
         fit_normal_force<2>(all(good), options).curve.coefficients);
   CHECK(fit_tangential_force<1>(all(with), 2.0).exponent ==
         fit_tangential_force<1>(all(good), 2.0).exponent);
-  CHECK(fit_affine_force(all(with), Pad<>().curve(), AffineBy::rotation).force.gain ==
-        fit_affine_force(all(good), Pad<>().curve(), AffineBy::rotation).force.gain);
+  CHECK(published::fit_affine_force(all(with), Pad<>().curve(), published::AffineBy::rotation)
+            .force.gain ==
+        published::fit_affine_force(all(good), Pad<>().curve(), published::AffineBy::rotation)
+            .force.gain);
 }
 
 namespace {
@@ -1174,7 +1193,10 @@ TEST_CASE("odd samples give numbers or a refusal", "[calibrate][force]") {
     options.passes = 10;
     options.min_explained = random.uniform() < 0.5 ? 0 : options.min_explained;
     const bool moved = random.uniform() < 0.5;
-    const NormalForceFitOptions normal{moved, random.uniform() < 0.5, moved, !moved, options};
+    FitOptions normal = options;
+    normal.through_zero = normal.displaced = moved;
+    normal.rising = random.uniform() < 0.5;
+    normal.rotated = !moved;
     check("fit_normal_force", k, [&] {
       const auto fit = fit_normal_force<2>(all(samples), normal);
       return finite_array(fit.curve.coefficients) && finite_errors(fit.errors) &&
@@ -1183,17 +1205,17 @@ TEST_CASE("odd samples give numbers or a refusal", "[calibrate][force]") {
              finite_residuals(fit.residuals);
     });
     check("fit_affine_force", k, [&] {
-      const auto fit = fit_affine_force(all(samples), Pad<>().curve(), AffineBy::rotation, options);
+      const auto fit = published::fit_affine_force(all(samples), Pad<>().curve(),
+                                                   published::AffineBy::rotation, options);
       return finite(fit.force.gain, fit.force.per_unit, fit.force.offset_n, fit.residual_sd_n) &&
              finite_array(fit.standard_errors) && finite_residuals(fit.residuals);
     });
     check("fit_power_law", k, [&] {
       const auto fit = fit_power_law<double>(all(samples), options);
-      return finite(fit.curve.coefficient_mm, fit.curve.exponent, fit.residual_sd_mm,
-                    fit.explained) &&
+      return finite(fit.curve.coefficient_mm, fit.curve.exponent, fit.explained) &&
              finite_errors(fit.errors) && finite_residuals(fit.residuals);
     });
-    const ExponentSearch<> exponent{.search = moved, .given = 1, .steps = 5};
+    const std::optional<double> exponent = moved ? std::nullopt : std::optional(1.0);
     check("fit_tangential_force", k, [&] {
       return finite_shear(fit_tangential_force<1>(all(samples), 2.0, exponent, options));
     });

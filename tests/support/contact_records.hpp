@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "fingerpad/calibrate/force_samples.hpp"
+#include "fingerpad/calibrate/force.hpp"
 #include "fingerpad/core/dots.hpp"
 #include "support/finite_elements.hpp"
 

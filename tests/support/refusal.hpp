@@ -12,7 +12,7 @@ namespace test {
 template <class F>
 std::string refusal(const F& construct) {
   try {
-    construct();
+    (void)construct();
   } catch (const fingerpad::parameter_error& error) {
     return error.what();
   }

@@ -6,12 +6,14 @@
 // the second one refines it. Nothing forms normal equations.
 #include <Eigen/Core>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
-#include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "fingerpad/calibrate/fit.hpp"
 #include "fingerpad/core/expects.hpp"
 #include "fingerpad/core/grid.hpp"
 #include "fingerpad/core/scalar.hpp"
@@ -19,29 +21,6 @@
 
 namespace fingerpad {
 inline namespace v0 {
-
-/// How a fit is made and what it refuses.
-struct FitOptions {
-  bool robust = false;             ///< Huber's loss: outliers weigh less
-  double threshold = 1.345;        ///< of Huber's loss, in standard deviations of a sample, > 0
-  int passes = 100;                ///< steps at most, >= 2
-  double min_independence = 1e-5;  ///< a parameter of which the samples say less by itself, as a
-                                   ///< share of all they say of it, is refused; in (0, 1)
-  double min_explained = 0.5;  ///< share of the measured variance that the model must explain, or
-                               ///< the samples contradict each other; in [0, 1)
-};
-
-/// Refuses what has no meaning (parameter_error).
-inline void expects_valid(const FitOptions& options) {
-  const char* const owner = "FitOptions";
-  expects(is_finite(options.threshold) && options.threshold > 0, owner, "threshold",
-          options.threshold, "finite and > 0");
-  expects(options.passes >= 2, owner, "passes", static_cast<long long>(options.passes), ">= 2");
-  expects(options.min_independence > 0 && options.min_independence < 1, owner, "min_independence",
-          options.min_independence, "in (0, 1)");
-  expects(options.min_explained >= 0 && options.min_explained < 1, owner, "min_explained",
-          options.min_explained, "in [0, 1)");
-}
 
 namespace detail {
 
@@ -55,8 +34,39 @@ struct ModelFit {
   Vector residuals;  ///< measured less model, of each equation
   Vector weights;    ///< 1, or less for an outlier
   S residual_sd = S(0);
-  S explained = S(0);  ///< share of the measured variance
+  S explained = S(0);  ///< share of the measured variance about the mean
+  S left_sq = S(0);    ///< weighted sum of squared residuals
+  S worst_sq = S(0);   ///< largest squared residual
+  S worst_sds = S(0);  ///< largest residual in standard deviations that outliers do not raise
   bool converged = false;
+};
+
+/// What is fitted. A base class, so that the fitter is compiled once for all of them.
+template <scalar S>
+class FitModel {
+ public:
+  using Matrix = typename ModelFit<S>::Matrix;
+  using Vector = typename ModelFit<S>::Vector;
+  /// Values and Jacobian for these parameters.
+  virtual void fill(const Vector& parameters, Vector& values, Matrix& jacobian) const = 0;
+
+ protected:
+  ~FitModel() = default;
+};
+
+/// y = a p with given columns.
+template <scalar S>
+class LinearModel final : public FitModel<S> {
+ public:
+  using typename FitModel<S>::Matrix;
+  using typename FitModel<S>::Vector;
+  explicit LinearModel(Index rows, Index cols) : columns(rows, cols) {}
+  void fill(const Vector& parameters, Vector& values, Matrix& jacobian) const override {
+    values = columns.lazyProduct(parameters);
+    jacobian = columns;
+  }
+
+  Matrix columns;
 };
 
 /// Standard deviation of normal residuals from their median size, which a third of outliers moves
@@ -77,9 +87,7 @@ typename Vector::Scalar robust_sd(const Vector& residuals, Index parameters) {
 }
 
 /// One fit: measured values, a model, and the names of its parameters for refusals.
-/// `model.fill(parameters, values, jacobian)` computes the model; `has_constant`: it can follow any
-/// constant, so that what is to be explained is the variance about the mean.
-template <scalar S, class Model>
+template <scalar S>
 class ModelFitter {
   using Fit = ModelFit<S>;
   using Matrix = typename Fit::Matrix;
@@ -89,7 +97,7 @@ class ModelFitter {
   ModelFitter(const char* owner,
               std::vector<std::string> names,
               const Vector& measured,
-              const Model& model,
+              const FitModel<S>& model,
               const FitOptions& options)
       : owner_(owner),
         names_(std::move(names)),
@@ -103,7 +111,7 @@ class ModelFitter {
             ("> " + std::to_string(count) + ", the number of parameters").c_str());
   }
 
-  Fit operator()(const Vector& start, bool has_constant) const {
+  Fit operator()(const Vector& start) const {
     Fit fit;
     fit.parameters = start;
     fit.weights = Vector::Constant(measured_.size(), S(1));
@@ -117,7 +125,7 @@ class ModelFitter {
     }
     model_.fill(fit.parameters, values, jacobian);
     fit.residuals = measured_ - values;
-    judge(jacobian, has_constant, fit);
+    judge(jacobian, fit);
     return fit;
   }
 
@@ -183,28 +191,27 @@ class ModelFitter {
     }
   }
 
-  void judge(const Matrix& jacobian, bool has_constant, Fit& fit) const {
+  void judge(const Matrix& jacobian, Fit& fit) const {
     using std::sqrt;
     const Index n = measured_.size(), p = fit.parameters.size();
     const S freedom = S(static_cast<double>(n - p));
-    const S weight_sum = fit.weights.sum();
-    const S mean = has_constant ? S(fit.weights.dot(measured_) / weight_sum) : S(0);
-    S left_sq = S(0), all_sq = S(0), bounded_sq = S(0);
+    const S mean = fit.weights.dot(measured_) / fit.weights.sum();
+    S all_sq = S(0), bounded_sq = S(0);
     Index inside = 0;
     for (Index i = 0; i < n; ++i) {
       const S& w = fit.weights(i);
-      left_sq += S(w * square(fit.residuals(i)));
+      fit.left_sq += S(w * square(fit.residuals(i)));
       all_sq += S(w * square(S(measured_(i) - mean)));
       bounded_sq += square(S(w * fit.residuals(i)));  // Huber's psi
       inside += value(w) < 1 ? 0 : 1;
+      const S residual_sq = square(S(fit.residuals(i)));
+      fit.worst_sq = value(residual_sq) > value(fit.worst_sq) ? residual_sq : fit.worst_sq;
     }
-    fit.explained = value(all_sq) > 0 ? S(S(1) - S(left_sq / all_sq)) : S(0);
-    const bool agrees =
-        value(fit.explained) >= value(S(options_.min_explained)) && value(fit.explained) > 0;
-    expects(agrees, owner_, "share of the measured variance that is explained", fit.explained,
-            ">= min_explained: the samples are constant or contradict each other");
-    fit.residual_sd = options_.robust ? robust_sd(fit.residuals, p) : S(sqrt(S(left_sq / freedom)));
-    S variance = left_sq / freedom;
+    fit.explained = value(all_sq) > 0 ? S(S(1) - S(fit.left_sq / all_sq)) : S(0);
+    const S usual = robust_sd(fit.residuals, p);
+    fit.worst_sds = value(usual) > 0 ? S(S(sqrt(fit.worst_sq)) / usual) : S(0);
+    fit.residual_sd = options_.robust ? usual : S(sqrt(S(fit.left_sq / freedom)));
+    S variance = fit.left_sq / freedom;
     if (options_.robust) {  // Huber 1981, section 7.6
       const S count = S(static_cast<double>(n));
       const S share = S(static_cast<double>((std::max)(inside, Index(1)))) / count;
@@ -223,9 +230,48 @@ class ModelFitter {
   const char* owner_;
   std::vector<std::string> names_;
   const Vector& measured_;
-  const Model& model_;
+  const FitModel<S>& model_;
   FitOptions options_;
 };
+
+/// Refuses a model that does not explain the samples; `cause` says what may be wrong.
+template <scalar S>
+void expects_explained(const ModelFit<S>& fit,
+                       const FitOptions& options,
+                       const char* owner,
+                       const char* cause = "") {
+  const bool agrees =
+      value(fit.explained) >= value(S(options.min_explained)) && value(fit.explained) > 0;
+  const std::string range =
+      std::string(">= min_explained: the samples are constant or contradict each other") + cause;
+  expects(agrees, owner, "share of the measured variance that is explained", fit.explained,
+          range.c_str());
+}
+
+template <scalar S, std::size_t N>
+std::array<S, N> standard_errors_of(const ModelFit<S>& fit) {
+  using std::sqrt;
+  std::array<S, N> errors;
+  for (std::size_t k = 0; k < N; ++k) {
+    const Index i = static_cast<Index>(k);
+    errors[k] = value(fit.covariance(i, i)) > 0 ? S(sqrt(fit.covariance(i, i))) : S(0);
+  }
+  return errors;
+}
+
+/// The covariance of the first parameters; 0 for what was not fitted.
+template <scalar S, std::size_t N>
+std::array<std::array<S, N>, N> covariance_of(const ModelFit<S>& fit) {
+  std::array<std::array<S, N>, N> covariance;
+  for (std::size_t i = 0; i < N; ++i) {
+    for (std::size_t j = 0; j < N; ++j) {
+      const Index row = static_cast<Index>(i), col = static_cast<Index>(j);
+      const bool fitted = row < fit.covariance.rows() && col < fit.covariance.cols();
+      covariance[i][j] = fitted ? S(fit.covariance(row, col)) : S(0);
+    }
+  }
+  return covariance;
+}
 
 }  // namespace detail
 }  // namespace v0

@@ -1,0 +1,117 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+#pragma once
+// Which samples of a force a fit can use, and mistakes that they show. See calibrate/force.hpp.
+#include <cmath>
+#include <cstddef>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "fingerpad/calibrate/detail/model_fit.hpp"
+#include "fingerpad/calibrate/fit.hpp"
+#include "fingerpad/core/point.hpp"
+#include "fingerpad/core/scalar.hpp"
+
+namespace fingerpad {
+inline namespace v0 {
+namespace detail {
+
+/// The samples that a fit can use, and which they were.
+template <class Sample>
+struct UsableSamples {
+  std::vector<Sample> samples;
+  std::vector<std::size_t> places;
+};
+
+template <class Sample, class Usable>
+UsableSamples<Sample> usable_samples(std::span<const Sample> samples, const Usable& usable) {
+  UsableSamples<Sample> result;
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    const Sample& s = samples[i];
+    if (is_finite(s.measure) && value(s.measure) > 0 && usable(s)) {
+      result.samples.push_back(s);
+      result.places.push_back(i);
+    }
+  }
+  return result;
+}
+
+template <class Sample>
+bool has_finite_motion(const Sample& s) {
+  return is_finite(s.displacement_mm) && is_finite(s.rotation_rad);
+}
+
+/// What a fit needs of the samples' units: which of them it looks at.
+struct UnitsLookedAt {
+  bool displacement = false;
+  bool rotation = false;
+  bool moment = false;
+};
+
+/// A unit that cannot be the one that is asked for. The bounds hold for every fingertip: a contact
+/// of 0.05 mm or 0.05 mm^2 is not seen, a moment has a lever of more than 0.05 mm.
+template <class Sample>
+FitStatus unit_mistake(const std::vector<Sample>& samples, const UnitsLookedAt& looked_at) {
+  double measure = 0, displacement = 0, rotation = 0, force = 0, moment = 0;
+  const auto raise = [](double& largest, const auto& x) {
+    const double size = std::abs(static_cast<double>(value(x)));
+    largest = size > largest && is_finite(size) ? size : largest;
+  };
+  for (const Sample& s : samples) {
+    raise(measure, s.measure);
+    raise(displacement, s.displacement_mm.x);
+    raise(displacement, s.displacement_mm.y);
+    raise(rotation, s.rotation_rad);
+    raise(force, s.normal_force_n);
+    raise(moment, s.moment_n_mm);
+  }
+  if (measure < 0.05) {
+    return FitStatus::measure_not_in_mm;
+  }
+  if (looked_at.displacement && displacement < 0.01) {
+    return FitStatus::displacement_not_in_mm;
+  }
+  if (looked_at.rotation && rotation > 1.6) {
+    return FitStatus::rotation_not_in_rad;
+  }
+  return looked_at.moment && moment < 0.05 * force ? FitStatus::moment_not_in_n_mm : FitStatus::ok;
+}
+
+/// An outlier is a sample more than ten standard deviations off that makes most of what is left. In
+/// this order: what makes the parameters wrong before what makes them inexact.
+template <scalar S>
+FitStatus status_of(const ModelFit<S>& fit,
+                    FitStatus units,
+                    FitStatus mistake,
+                    const FitOptions& options) {
+  if (units != FitStatus::ok || mistake != FitStatus::ok) {
+    return units != FitStatus::ok ? units : mistake;
+  }
+  if (!fit.converged) {
+    return FitStatus::not_converged;
+  }
+  const bool is_most = value(S(S(2) * fit.worst_sq)) > value(fit.left_sq);
+  const bool is_off = !options.robust && is_most && value(fit.worst_sds) > 10;
+  return is_off ? FitStatus::has_outlier : FitStatus::ok;
+}
+
+/// "; " and the likely cause, for refusals.
+inline std::string cause_of(FitStatus mistake) {
+  return mistake == FitStatus::ok ? std::string() : std::string("; ") + name_of(mistake);
+}
+
+template <scalar S, class Residual>
+void add_residuals(const ModelFit<S>& fit,
+                   const typename ModelFit<S>::Vector& measured,
+                   const std::vector<std::size_t>& places,
+                   std::vector<Residual>& residuals) {
+  for (Index i = 0; i < measured.size(); ++i) {
+    residuals.push_back({places[static_cast<std::size_t>(i)], measured(i),
+                         S(measured(i) - fit.residuals(i)), fit.weights(i)});
+  }
+}
+
+}  // namespace detail
+}  // namespace v0
+}  // namespace fingerpad

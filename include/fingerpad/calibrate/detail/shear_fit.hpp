@@ -1,0 +1,284 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+#pragma once
+// Tangential force and moment as a model, its fit, and what its residuals say of the measurement.
+// See calibrate/force.hpp.
+#include <Eigen/Core>
+#include <cmath>
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "fingerpad/calibrate/detail/force_checks.hpp"
+#include "fingerpad/calibrate/detail/model_fit.hpp"
+#include "fingerpad/calibrate/fit.hpp"
+#include "fingerpad/core/expects.hpp"
+#include "fingerpad/core/grid.hpp"
+#include "fingerpad/core/point.hpp"
+#include "fingerpad/core/scalar.hpp"
+#include "fingerpad/math/detail/householder_qr.hpp"
+
+namespace fingerpad {
+inline namespace v0 {
+namespace detail {
+
+// A force or moment as an odd polynomial of something displaced or rotated, normalised by a power
+// of the contact's measure: y = sum over k of c_k (u |x|)^(k-1) u x, u = (measure / reference)^T.
+// The exponent T is found by a search along it, then together with the coefficients.
+
+/// One equation: a component of x and of y, and the length of the whole x.
+template <scalar S>
+struct ShearEquation {
+  S log_measure;  ///< log(measure / reference)
+  S component;
+  S length;
+  S measured;
+  std::size_t sample;
+};
+
+template <scalar S>
+class ShearModel final : public FitModel<S> {
+ public:
+  using typename FitModel<S>::Matrix;
+  using typename FitModel<S>::Vector;
+
+  /// With the exponent as the last parameter, unless it is `given`.
+  ShearModel(const std::vector<ShearEquation<S>>& equations,
+             Index degree,
+             const std::optional<S>& given)
+      : equations_(equations), degree_(degree), given_(given) {}
+
+  Index size() const { return degree_ + (given_ ? 0 : 1); }
+
+  void fill(const Vector& parameters, Vector& values, Matrix& jacobian) const override {
+    const S exponent = given_ ? *given_ : S(parameters(degree_));
+    for (Index i = 0; i < values.size(); ++i) {
+      const ShearEquation<S>& e = equations_[static_cast<std::size_t>(i)];
+      S value = S(0), by_log = S(0);
+      for (Index k = 0; k < degree_; ++k) {
+        const S term = column(e, exponent, k);
+        value += S(parameters(k) * term);
+        by_log += S(S(static_cast<int>(k) + 1) * S(parameters(k) * term));
+        jacobian(i, k) = term;
+      }
+      values(i) = value;
+      if (!given_) {
+        jacobian(i, degree_) = by_log * e.log_measure;
+      }
+    }
+  }
+
+  /// The best coefficients for an exponent, and what they leave: the sum of squares or, if robust,
+  /// of sizes.
+  S left_at(const S& exponent, bool robust, Vector& coefficients) const {
+    const Index n = static_cast<Index>(equations_.size());
+    Matrix a(n, degree_);
+    Vector b(n);
+    for (Index i = 0; i < n; ++i) {
+      const ShearEquation<S>& e = equations_[static_cast<std::size_t>(i)];
+      b(i) = e.measured;
+      for (Index k = 0; k < degree_; ++k) {
+        a(i, k) = column(e, exponent, k);
+      }
+    }
+    coefficients = HouseholderQr<S>(a).solve(b);
+    const Vector left = b - a.lazyProduct(coefficients);
+    return robust ? S(left.cwiseAbs().sum()) : S(left.squaredNorm());
+  }
+
+ private:
+  static S column(const ShearEquation<S>& e, const S& exponent, Index k) {
+    using std::exp;
+    const S factor = exp(S(exponent * e.log_measure));
+    S term = factor * e.component;
+    for (Index i = 0; i < k; ++i) {
+      term = term * S(factor * e.length);
+    }
+    return term;
+  }
+
+  const std::vector<ShearEquation<S>>& equations_;
+  Index degree_;
+  std::optional<S> given_;
+};
+
+/// The fit of a shear model: a search along the exponent from -2 to 6, then all together.
+template <scalar S>
+ModelFit<S> fit_shear_model(const char* owner,
+                            const std::vector<std::string>& names,
+                            const typename ModelFit<S>::Vector& measured,
+                            const ShearModel<S>& model,
+                            Index degree,
+                            const FitOptions& options) {
+  using Vector = typename ModelFit<S>::Vector;
+  const S lowest = S(-2), highest = S(6);
+  constexpr int steps = 80;
+  const ModelFitter<S> fitter(owner, names, measured, model, options);
+  Vector start = Vector::Zero(model.size()), coefficients;
+  const bool searched = model.size() > degree;
+  S least = not_a_number<S>();
+  for (int k = 0; searched && k <= steps; ++k) {
+    const S at = lowest + S(S(highest - lowest) * S(S(k) / S(steps)));
+    const S left = model.left_at(at, options.robust, coefficients);
+    if (!(value(left) >= value(least)) && is_finite(left)) {
+      least = left;
+      start.head(degree) = coefficients;
+      start(degree) = at;
+    }
+  }
+  ModelFit<S> fit = fitter(start);
+  const bool inside = !searched || (value(fit.parameters(degree)) >= value(lowest) &&
+                                    value(fit.parameters(degree)) <= value(highest));
+  expects(inside, owner, names.back().c_str(), S(fit.parameters(fit.parameters.size() - 1)),
+          "in [-2, 6]: the samples do not tell it");
+  return fit;
+}
+
+/// What a fit leaves of a force along a displacement, at the fit's own normalisation.
+template <scalar S>
+struct PlaneForce {
+  Point2<S> normalised;  ///< u d
+  Point2<S> force;
+  Point2<S> left;  ///< of it, what the fit does not explain
+};
+
+/// The likely mistake in how forces and displacements were measured; ok: none that can be seen. A
+/// constant, or a rotation, is one where it explains more than half of what is left, and is more
+/// than a tenth of the largest force, or of the force along the displacement.
+template <scalar S>
+FitStatus mistake_in(const std::vector<PlaneForce<S>>& samples) {
+  const auto exceeds = [](const S& a, const S& b) { return value(a) > value(b); };
+  S dd = S(0), ff = S(0), left_sq = S(0), largest_sq = S(0);
+  S along = S(0), across = S(0), mirrored_x = S(0), mirrored_y = S(0);
+  Point2<S> sum = {S(0), S(0)};
+  for (const PlaneForce<S>& s : samples) {
+    const Point2<S>&d = s.normalised, &f = s.force;
+    sum += s.left;
+    left_sq = left_sq + squared_norm(s.left);
+    dd = dd + squared_norm(d);
+    ff = ff + squared_norm(f);
+    along = along + dot(d, f);
+    across = across + S(d.x * f.y - d.y * f.x);
+    mirrored_x = mirrored_x + S(d.x * f.x - d.y * f.y);
+    mirrored_y = mirrored_y + S(d.x * f.y + d.y * f.x);
+    largest_sq = exceeds(squared_norm(f), largest_sq) ? squared_norm(f) : largest_sq;
+  }
+  const S by_rotation = S(square(along) + square(across)) / dd;  // sums of squares explained
+  const S by_mirror = S(square(mirrored_x) + square(mirrored_y)) / dd;
+  if (exceeds(S(S(2) * by_mirror), ff) && exceeds(ff, S(S(2) * by_rotation))) {
+    return FitStatus::axes_exchanged;
+  }
+  if (exceeds(S(0), along) && exceeds(S(S(2) * by_rotation), ff)) {
+    return FitStatus::sign_reversed;
+  }
+  const S count = S(static_cast<double>(samples.size()));
+  const S by_constant = squared_norm(sum) / count;
+  if (exceeds(S(S(2) * by_constant), left_sq) &&
+      exceeds(S(S(100) * S(by_constant / count)), largest_sq)) {
+    return FitStatus::gauge_not_tared;
+  }
+  if (exceeds(S(S(2) * S(square(across) / dd)), left_sq) &&
+      exceeds(S(S(100) * square(across)), square(along))) {
+    return FitStatus::gauge_rotated;
+  }
+  return FitStatus::ok;
+}
+
+/// Equations of a force come in pairs, x and y; those of a moment alone.
+template <scalar S>
+FitStatus mistake_in(const ModelFit<S>& fit,
+                     const std::vector<ShearEquation<S>>& equations,
+                     const S& exponent,
+                     std::size_t components) {
+  using std::exp;
+  std::vector<PlaneForce<S>> forces;
+  for (std::size_t i = 0; i + components <= equations.size(); i += components) {
+    const ShearEquation<S>& x = equations[i];
+    const ShearEquation<S>& y = equations[i + components - 1];
+    const S u = exp(S(exponent * x.log_measure));
+    const Index at = static_cast<Index>(i);
+    const S none = S(0);
+    forces.push_back({{S(u * x.component), components > 1 ? S(u * y.component) : none},
+                      {x.measured, components > 1 ? y.measured : none},
+                      {fit.residuals(at), components > 1 ? S(fit.residuals(at + 1)) : none}});
+  }
+  return mistake_in(forces);
+}
+
+/// The result. `places`: of the sample behind each equation.
+template <class Result, scalar S>
+Result shear_fit_of(const ModelFit<S>& fit,
+                    const typename ModelFit<S>::Vector& measured,
+                    const std::vector<ShearEquation<S>>& equations,
+                    const std::optional<S>& given) {
+  using std::exp;
+  using std::sqrt;
+  constexpr std::size_t degree = Result::size;
+  constexpr Index last = static_cast<Index>(degree);
+  Result result;
+  result.exponent = given ? *given : S(fit.parameters(last));
+  result.standard_errors = standard_errors_of<S, degree>(fit);
+  result.exponent_sd = given ? S(0) : S(sqrt(fit.covariance(last, last)));
+  result.covariance = covariance_of<S, degree + 1>(fit);
+  result.polynomial.to = S(0);
+  std::vector<std::size_t> places;
+  for (const ShearEquation<S>& e : equations) {
+    const S length = S(exp(S(result.exponent * e.log_measure))) * e.length;
+    result.polynomial.to =
+        value(length) > value(result.polynomial.to) ? length : result.polynomial.to;
+    places.push_back(e.sample);
+  }
+  for (std::size_t k = 0; k < result.standard_errors.size(); ++k) {
+    result.polynomial.coefficients[k] = fit.parameters(static_cast<Index>(k));
+  }
+  result.residual_sd = fit.residual_sd;
+  add_residuals(fit, measured, places, result.residuals);
+  result.explained = fit.explained;
+  result.largest_residual_sds = fit.worst_sds;
+  return result;
+}
+
+/// The parts that force and moment share.
+template <class Result, class Sample, scalar S>
+Result fit_shear(const char* owner,
+                 const char* exponent_name,
+                 std::size_t components,
+                 const std::vector<Sample>& samples,
+                 const std::vector<ShearEquation<S>>& equations,
+                 const std::optional<S>& exponent,
+                 const FitOptions& options) {
+  typename ModelFit<S>::Vector measured(static_cast<Index>(equations.size()));
+  for (std::size_t i = 0; i < equations.size(); ++i) {
+    measured(static_cast<Index>(i)) = equations[i].measured;
+  }
+  constexpr Index degree = static_cast<Index>(Result::size);
+  expects(!exponent || is_finite(*exponent), owner, exponent_name, exponent.value_or(S(0)),
+          "finite");
+  std::vector<std::string> names;
+  for (std::size_t k = 1; k <= Result::size; ++k) {
+    names.push_back("coefficient " + std::to_string(k));
+  }
+  if (!exponent) {
+    names.emplace_back(exponent_name);
+  }
+  const ShearModel<S> model(equations, degree, exponent);
+  const ModelFit<S> fit = fit_shear_model(owner, names, measured, model, degree, options);
+  Result result = shear_fit_of<Result>(fit, measured, equations, exponent);
+  const FitStatus mistake = mistake_in(fit, equations, result.exponent, components);
+  expects_explained(fit, options, owner, cause_of(mistake).c_str());
+  const bool is_moment = components == 1;
+  const FitStatus units = unit_mistake(samples, {!is_moment, is_moment, is_moment});
+  result.status = status_of(fit, units, mistake, options);
+  return result;
+}
+
+template <scalar S>
+void expects_reference(const S& reference, const char* owner) {
+  expects(is_finite(reference) && value(reference) > 0, owner, "reference", reference,
+          "finite and > 0");
+}
+
+}  // namespace detail
+}  // namespace v0
+}  // namespace fingerpad

@@ -1,0 +1,98 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+#pragma once
+// What all calibrations share: how forces are fitted, and what a fit says of its samples. Samples
+// that do not determine the parameters are refused (parameter_error). Samples that determine them,
+// but look as if something had gone wrong, give parameters and a status that names the likely
+// cause.
+#include <cstdint>
+
+#include "fingerpad/core/expects.hpp"
+#include "fingerpad/core/scalar.hpp"
+
+namespace fingerpad {
+inline namespace v0 {
+
+/// How forces are fitted and what is refused.
+struct FitOptions {
+  bool robust = false;             ///< Huber's loss: outliers weigh less
+  double threshold = 1.345;        ///< of Huber's loss, in standard deviations of a sample, > 0
+  int passes = 100;                ///< steps at most, >= 2
+  double min_independence = 1e-5;  ///< a parameter of which the samples say less by itself, as a
+                                   ///< share of all they say of it, is refused; in (0, 1)
+  double min_explained = 0.9;      ///< share of the variance about the mean that the model must
+                                   ///< explain, or the samples contradict each other; in [0, 1)
+  // fit_normal_force alone
+  bool through_zero = true;  ///< no force without contact; the published curves do without
+  bool rising = true;        ///< it never falls from 0 to the largest measure
+  bool displaced = false;    ///< also fits the compensation for displacement
+  bool rotated = false;      ///< also fits the one for rotation
+};
+
+/// Refuses what has no meaning (parameter_error).
+inline void expects_valid(const FitOptions& options) {
+  const char* const owner = "FitOptions";
+  expects(is_finite(options.threshold) && options.threshold > 0, owner, "threshold",
+          options.threshold, "finite and > 0");
+  expects(options.passes >= 2, owner, "passes", static_cast<long long>(options.passes), ">= 2");
+  expects(options.min_independence > 0 && options.min_independence < 1, owner, "min_independence",
+          options.min_independence, "in (0, 1)");
+  expects(options.min_explained >= 0 && options.min_explained < 1, owner, "min_explained",
+          options.min_explained, "in [0, 1)");
+}
+
+/// Whether a fit can be trusted; if not, what is the likely cause.
+enum class FitStatus : std::uint8_t {
+  ok,
+  not_converged,
+  measure_not_in_mm,
+  displacement_not_in_mm,
+  rotation_not_in_rad,
+  moment_not_in_n_mm,
+  gauge_not_tared,
+  gauge_rotated,
+  axes_exchanged,
+  sign_reversed,
+  has_outlier,
+  depths_not_in_mm,
+  colours_unexplained,
+  scatters_no_light,
+};
+
+/// The cause in words.
+constexpr const char* name_of(FitStatus status) {
+  switch (status) {
+    case FitStatus::ok:
+      return "ok";
+    case FitStatus::not_converged:
+      return "not converged: more samples, or fewer parameters";
+    case FitStatus::measure_not_in_mm:
+      return "no measure reaches 0.05: areas in mm^2, depths and radii in mm?";
+    case FitStatus::displacement_not_in_mm:
+      return "no displacement reaches 0.01: in mm?";
+    case FitStatus::rotation_not_in_rad:
+      return "a rotation beyond a right angle: in rad?";
+    case FitStatus::moment_not_in_n_mm:
+      return "moments of less than 0.05 mm times the normal force: in N mm?";
+    case FitStatus::gauge_not_tared:
+      return "a constant would explain most of what is left: was the gauge tared?";
+    case FitStatus::gauge_rotated:
+      return "forces stand askew to the displacements: is the gauge rotated against the image?";
+    case FitStatus::axes_exchanged:
+      return "forces mirror the displacements: are x and y exchanged, or one of them reversed?";
+    case FitStatus::sign_reversed:
+      return "forces point against the displacements: is the sign of an axis reversed?";
+    case FitStatus::has_outlier:
+      return "a sample lies far off the others: a dot mistaken, a gauge bumped? Fit robustly";
+    case FitStatus::depths_not_in_mm:
+      return "no depth reaches 0.1: in mm?";
+    case FitStatus::colours_unexplained:
+      return "the colours do not follow from the depths: other order, other place, other frame?";
+    case FitStatus::scatters_no_light:
+      return "g is not positive everywhere: are red and green exchanged?";
+  }
+  return "unknown";
+}
+
+}  // namespace v0
+}  // namespace fingerpad
