@@ -73,7 +73,7 @@ bool find_first_alarm(const Recording& recording) {
   std::vector<TaxelFeatures<>> features;  // once; each finger has its own noise and its own state
   std::vector<TaxelFeatures<>::State> states;
   for (std::size_t k = 0; k < Fingers; ++k) {
-    TaxelNoiseCalibration<> calibration(rows, recording.cols, options);
+    TaxelNoiseCalibration calibration(rows, recording.cols, options);
     for (const Sample& sample : recording.samples) {
       calibration.add(finger(sample, k), sample.time_s);
     }
@@ -109,8 +109,8 @@ bool find_first_alarm(const Recording& recording) {
 
 template <std::size_t Fingers>
 bool look(const Recording& recording) {
-  const bool in_hold = find_first_alarm<GraspOptimise<>, Fingers>(recording);
-  const bool in_lift = find_first_alarm<GraspLift<>, Fingers>(recording);
+  const bool in_hold = find_first_alarm<GraspOptimise, Fingers>(recording);
+  const bool in_lift = find_first_alarm<GraspLift, Fingers>(recording);
   return in_hold && in_lift;
 }
 

@@ -20,7 +20,7 @@ int main() {
       fingerpad::TaxelOptions<>{.pitch_mm = object.pitch_mm,
                                 .sample_period_s = 1 / object.rate_hz,
                                 .noise = object.noise_counts});
-  const fingerpad::Preslip<fingerpad::GraspOptimise<>> preslip;  // two fingers
+  const fingerpad::Preslip<fingerpad::GraspOptimise> preslip;  // two fingers
   const fingerpad::LoosenUntilPreslip loosen({.first_force_n = object.first_force_n,
                                               .min_force_n = 0.1,
                                               .step_n = 0.2,
@@ -40,9 +40,9 @@ int main() {
       samples[f] = features(hand.readings(f), hand.time_s(), fingers[f]);
     }
     const bool alarm = preslip(samples, history).is_fresh;
-    command = loosen(hand.has_slipped() ? fingerpad::SlipSignal::slipped
-                     : alarm            ? fingerpad::SlipSignal::preslip
-                                        : fingerpad::SlipSignal::steady,
+    command = loosen(hand.has_slipped() ? fingerpad::PreslipStatus::slipped
+                     : alarm            ? fingerpad::PreslipStatus::preslip
+                                        : fingerpad::PreslipStatus::steady,
                      search);
     if (!warned && command.preslip_force_n > 0) {
       warned = true;

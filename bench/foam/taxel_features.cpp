@@ -21,9 +21,9 @@
 #include <type_traits>
 #include <vector>
 
+#include "bench/support/run.hpp"
 #include "fingerpad/core/dots.hpp"
 #include "fingerpad/foam/preslip.hpp"
-#include "bench/support/run.hpp"
 
 using namespace fingerpad;
 
@@ -67,7 +67,7 @@ std::vector<double> window_of(const std::vector<Cell>& readings,
 
 /// The rms beside a straight line, or beside the mean, in two passes.
 template <class T>
-T rms_of(const std::vector<double>& window, bool without_trend) {
+T rms_of(const std::vector<double>& window) {
   const T length = static_cast<T>(window.size()), middle = (length - 1) / 2;
   T mean = 0, tilt = 0, spread = 0, squares = 0;
   for (std::size_t u = 0; u < window.size(); ++u) {
@@ -76,7 +76,7 @@ T rms_of(const std::vector<double>& window, bool without_trend) {
     tilt += at * reading;
     spread += at * at;
   }
-  const T slope = without_trend ? tilt / spread : 0;
+  const T slope = tilt / spread;
   for (std::size_t u = 0; u < window.size(); ++u) {
     const T line = mean + slope * (static_cast<T>(u) - middle);
     const T beside = static_cast<T>(window[u]) - line;
@@ -86,8 +86,8 @@ T rms_of(const std::vector<double>& window, bool without_trend) {
 }
 
 /// Errors of an rms against two passes in long double.
-double rms_error(double rms, const std::vector<double>& window, bool without_trend) {
-  const long double truth = rms_of<long double>(window, without_trend);
+double rms_error(double rms, const std::vector<double>& window) {
+  const long double truth = rms_of<long double>(window);
   return static_cast<double>(static_cast<long double>(rms) / truth - 1);
 }
 
@@ -116,10 +116,10 @@ struct FeatureErrors {
   }
 };
 
-template <class Cell, class S, class Waves, class Level>
+template <class Cell, class S, class Waves>
 struct Hand {
-  using Features = TaxelFeatures<Waves, Level, S>;
-  using Rule = Preslip<GraspLift<>, 3, NewestPairs, S>;
+  using Features = TaxelFeatures<Waves, S>;
+  using Rule = Preslip<GraspLift, 3, S>;
 
   explicit Hand(Index window)
       : features(rows, cols, options(window)), rule(PreslipOptions<S>{.history = 1000}) {}
@@ -134,7 +134,7 @@ struct Hand {
 
   void step(const std::vector<Cell>& readings, bool with_rule) {
     n = n + 1 < period ? n + 1 : 0;
-    time = time + S(1);
+    time += 1;
     const StridedView<const Cell> taxels(readings.data() + n * rows * cols, rows, cols, cols);
     for (std::size_t f = 0; f < 3; ++f) {
       samples[f] = features(taxels, time, fingers[f]);
@@ -151,15 +151,15 @@ struct Hand {
   typename Rule::State history = rule.start();
   std::array<FingerSample<S>, 3> samples;
   PreslipResult result;
-  S time = S(0);
+  double time = 0;
   Index n = 0;
 };
 
 /// Adds those of a round of the recording, after one that fills the window.
-template <class Cell, class S, class Waves, class Level>
+template <class Cell, class S, class Waves>
 void add_errors(double turn_rad, Index window, FeatureErrors& errors) {
   const auto readings = recording<Cell>(turn_rad);
-  Hand<Cell, S, Waves, Level> hand(window);
+  Hand<Cell, S, Waves> hand(window);
   const double pitch_mm = static_cast<double>(hand.features.options().pitch_mm);
   for (Index k = 0; k < 2 * period; ++k) {
     hand.step(readings, false);
@@ -173,31 +173,29 @@ void add_errors(double turn_rad, Index window, FeatureErrors& errors) {
     if (turn_rad > 0) {
       const bool found = sample.location == vibrating_taxel;
       const auto of = window_of(readings, vibrating_taxel, hand.n, window);
-      const bool without_trend = std::is_same_v<Level, TrendRemoved>;
       const double waves = turn_rad / (2 * std::numbers::pi) * static_cast<double>(window);
       const double none = not_a_number<double>();
-      errors.rms.push_back(
-          found ? rms_error(static_cast<double>(sample.deviation), of, without_trend) : none);
+      errors.rms.push_back(found ? rms_error(static_cast<double>(sample.deviation), of) : none);
       errors.waves.push_back(found ? static_cast<double>(sample.waves) - waves : none);
     }
   }
 }
 
-template <class Cell, class S, class Waves, class Level>
+template <class Cell, class S, class Waves>
 FeatureErrors errors_of(bool vibrates, Index window) {
   FeatureErrors errors;
   for (int k = 0; k < (vibrates ? 12 : 1); ++k) {
-    add_errors<Cell, S, Waves, Level>(vibrates ? 0.5 + 0.14 * k : 0, window, errors);
+    add_errors<Cell, S, Waves>(vibrates ? 0.5 + 0.14 * k : 0, window, errors);
   }
   return errors;
 }
 
-template <class Cell, class S, class Waves = ZeroCrossings, class Level = TrendRemoved>
+template <class Cell, class S, class Waves = ZeroCrossings>
 void add(const std::string& name, bool vibrates, Index window, bool with_rule) {
   const auto readings =
       std::make_shared<const std::vector<Cell>>(recording<Cell>(vibrates ? timed_turn_rad : 0));
   const bench::Memory memory;
-  const auto hand = std::make_shared<Hand<Cell, S, Waves, Level>>(window);
+  const auto hand = std::make_shared<Hand<Cell, S, Waves>>(window);
   bench::add(
       name, static_cast<std::size_t>(3 * rows * cols), memory.bytes(),
       [=] {
@@ -205,8 +203,7 @@ void add(const std::string& name, bool vibrates, Index window, bool with_rule) {
         benchmark::DoNotOptimize(hand->samples);
       },
       [=, errors = FeatureErrors()](auto& counters) mutable {
-        errors = errors.centroid_mm.empty() ? errors_of<Cell, S, Waves, Level>(vibrates, window)
-                                            : errors;
+        errors = errors.centroid_mm.empty() ? errors_of<Cell, S, Waves>(vibrates, window) : errors;
         errors.note(counters);
       });
 }
@@ -222,7 +219,7 @@ void add_two_passes(const std::string& group, Index window) {
         for (int finger = 0; finger < 3; ++finger) {
           double most = 0;
           for (Index k = 0; k < rows * cols; ++k) {
-            most = std::max(most, rms_of<double>(window_of(*readings, k, n, window), true));
+            most = std::max(most, rms_of<double>(window_of(*readings, k, n, window)));
           }
           benchmark::DoNotOptimize(most);
         }
@@ -231,7 +228,7 @@ void add_two_passes(const std::string& group, Index window) {
         std::vector<double> errors;
         for (Index u = 0; u < period; ++u) {
           const auto of = window_of(*readings, vibrating_taxel, u, window);
-          errors.push_back(rms_error(rms_of<double>(of, true), of, true));
+          errors.push_back(rms_error(rms_of<double>(of), of));
         }
         bench::note_errors(counters, "rms", "share", errors);
       });
@@ -282,15 +279,12 @@ int main(int argc, char** argv) {
   add<Counts, float>("quiet/window 16, float", false, 16, false);
   add<float, float>("quiet/window 16, float readings", false, 16, false);
   add<Counts, double>("quiet/window 64, double", false, 64, false);
-  add<Counts, double, ZeroCrossings, MeanRemoved>("quiet/window 16, MeanRemoved", false, 16, false);
   add<Counts, double>("quiet/window 16, hand", false, 16, true);
   bench::add_streaming("quiet");
   for (const Index window : {16, 64}) {
     const std::string group = "vibrating, window " + std::to_string(window) + "/";
     add<Counts, double>(group + "ZeroCrossings, double, the default", true, window, false);
     add<Counts, float>(group + "ZeroCrossings, float", true, window, false);
-    add<Counts, double, ZeroCrossings, MeanRemoved>(group + "ZeroCrossings, MeanRemoved", true,
-                                                    window, false);
     add<Counts, double, SpectralPeak>(group + "SpectralPeak, double", true, window, false);
     add<Counts, float, SpectralPeak>(group + "SpectralPeak, float", true, window, false);
     add<Counts, double>(group + "ZeroCrossings, hand", true, window, true);

@@ -150,33 +150,33 @@ TEST_CASE("pre-slip of known signals: slip is found", "[preslip]") {
     CHECK(d.found >= 0.99 * d.scenes);
     CHECK(d.early == 0);
   };
-  check("grasp-optimise, one patch", detection<GraspOptimise<>>(120, 1));
-  check("grasp-optimise, three patches", detection<GraspOptimise<>>(120, 3));
-  check("grasp-lift, one patch", detection<GraspLift<>>(120, 1));
-  check("grasp-lift, three patches", detection<GraspLift<>>(120, 3));
-  check("grasp-optimise, spectrum", detection<GraspOptimise<>, SpectralPeak>(120, 3));
-  check("grasp-lift, spectrum", detection<GraspLift<>, SpectralPeak>(120, 3));
+  check("grasp-optimise, one patch", detection<GraspOptimise>(120, 1));
+  check("grasp-optimise, three patches", detection<GraspOptimise>(120, 3));
+  check("grasp-lift, one patch", detection<GraspLift>(120, 1));
+  check("grasp-lift, three patches", detection<GraspLift>(120, 3));
+  check("grasp-optimise, spectrum", detection<GraspOptimise, SpectralPeak>(120, 3));
+  check("grasp-lift, spectrum", detection<GraspLift, SpectralPeak>(120, 3));
 }
 
 TEST_CASE("pre-slip of known signals: grasp-optimise needs two taxels that vibrate alike",
           "[preslip]") {
   // one taxel stays the strongest, so its location never differs: what the rule cannot see
-  const Detection d = detection<GraspOptimise<>>(40, 1, 1);
+  const Detection d = detection<GraspOptimise>(40, 1, 1);
   show("grasp-optimise, patches of one taxel", d);
   CHECK(d.found <= 2);
-  CHECK(detection<GraspLift<>>(40, 1, 1).found == 40);
+  CHECK(detection<GraspLift>(40, 1, 1).found == 40);
 }
 
 TEST_CASE("pre-slip of known signals: no alarm where nothing slips", "[preslip]") {
   // the goal is at most one alarm in ten minutes
-  CHECK(false_alarms<GraspOptimise<>>(20, 31, 1) == 0);
-  CHECK(false_alarms<GraspLift<>>(20, 31, 2) == 0);
+  CHECK(false_alarms<GraspOptimise>(20, 31, 1) == 0);
+  CHECK(false_alarms<GraspLift>(20, 31, 2) == 0);
 }
 
 namespace {
 
 struct Loosening {
-  LoosenCommand<double> end;
+  HoldingCommand<double> end;
   double slipped_at_n = 0;
 };
 
@@ -198,7 +198,7 @@ Loosening loosened(const grip::FoamFingersSetup& object, unsigned seed) {
   std::array<TaxelFeatures<>::State, 2> fingers{features.start(), features.start()};
   auto history = rule.start();
   auto search = loosen.start();
-  LoosenCommand<double> command = search.command();
+  HoldingCommand<double> command = search.command();
   while (!is_end(command.phase)) {
     hand.advance(command.force_n);
     std::array<FingerSample<double>, 2> samples;
@@ -206,9 +206,9 @@ Loosening loosened(const grip::FoamFingersSetup& object, unsigned seed) {
       samples[f] = features(hand.readings(f), hand.time_s(), fingers[f]);
     }
     const bool alarm = rule(samples, history).is_fresh;
-    command = loosen(hand.has_slipped() ? SlipSignal::slipped
-                     : alarm            ? SlipSignal::preslip
-                                        : SlipSignal::steady,
+    command = loosen(hand.has_slipped() ? PreslipStatus::slipped
+                     : alarm            ? PreslipStatus::preslip
+                                        : PreslipStatus::steady,
                      search);
   }
   return {command, hand.force_n()};
@@ -237,6 +237,6 @@ void every_loosening_is_warned_of(const std::string& name) {
 }  // namespace
 
 TEST_CASE("pre-slip of a simulated object: a warning before it slips", "[preslip]") {
-  every_loosening_is_warned_of<GraspOptimise<>>("grasp-optimise");
-  every_loosening_is_warned_of<GraspLift<>>("grasp-lift");
+  every_loosening_is_warned_of<GraspOptimise>("grasp-optimise");
+  every_loosening_is_warned_of<GraspLift>("grasp-lift");
 }

@@ -32,14 +32,14 @@ double gaussian(Random& random) {
 }
 
 /// Sample k of a recording, reading(k, row, col, noise of deviation 1).
-template <class Level = TrendRemoved, class Reading>
-TaxelNoiseCalibration<Level> recorded(Index rows,
-                                      Index cols,
-                                      Index samples,
-                                      std::uint64_t seed,
-                                      const Reading& reading,
-                                      const Options& options = {}) {
-  TaxelNoiseCalibration<Level> calibration(rows, cols, options);
+template <class Reading>
+TaxelNoiseCalibration recorded(Index rows,
+                               Index cols,
+                               Index samples,
+                               std::uint64_t seed,
+                               const Reading& reading,
+                               const Options& options = {}) {
+  TaxelNoiseCalibration calibration(rows, cols, options);
   Random random(seed);
   Array taxels(rows, cols);
   Index added = 0;
@@ -56,10 +56,10 @@ TaxelNoiseCalibration<Level> recorded(Index rows,
 }
 
 /// Of one taxel: what was found, in deviations of its noise.
-template <class Level = TrendRemoved, class Reading>
+template <class Reading>
 double found(Index windows, std::uint64_t seed, const Reading& reading, Index window = 16) {
   const Options options{.window = window};
-  return recorded<Level>(
+  return recorded(
              1, 1, windows * window, seed,
              [&](Index k, Index, Index, double noise) { return reading(k, noise); }, options)
       .choose()
@@ -74,8 +74,8 @@ double standard_error(Index windows, Index freedoms) {
          std::sqrt(std::numbers::pi / (2 * static_cast<double>(windows)));
 }
 
-/// Mean square about the mean or the line, by the textbook.
-double mean_square(const std::vector<double>& y, bool with_slope) {
+/// Mean square about the line, by the textbook.
+double mean_square(const std::vector<double>& y) {
   const double n = static_cast<double>(y.size());
   double mean = 0, product = 0, squares = 0;
   for (const double value : y) {
@@ -86,7 +86,7 @@ double mean_square(const std::vector<double>& y, bool with_slope) {
     product += from_middle * (y[u] - mean);
     squares += from_middle * from_middle;
   }
-  const double slope = with_slope ? product / squares : 0;
+  const double slope = product / squares;
   double sum = 0;
   for (std::size_t u = 0; u < y.size(); ++u) {
     sum += square(y[u] - mean - slope * (static_cast<double>(u) - (n - 1) / 2));
@@ -121,22 +121,19 @@ TEST_CASE("taxel noise: gaussian noise is found within its sampling error", "[ta
   CHECK(std::abs(mean - 1) <= 0.004);
 }
 
-TEMPLATE_TEST_CASE("taxel noise: no window is too short or too long",
-                   "[taxel_noise]",
-                   TrendRemoved,
-                   MeanRemoved) {
+TEST_CASE("taxel noise: no window is too short or too long", "[taxel_noise]") {
   for (const Index window : {4, 5, 16, 64}) {
     CAPTURE(window);
     const Index windows = 20001 / window;
-    const double ratio = found<TestType>(
+    const double ratio = found(
         windows, 3, [](Index, double noise) { return 800 + 0.5 * noise; }, window);
-    const Index freedoms = window - (TestType::has_slope ? 2 : 1);
+    const Index freedoms = window - 2;
     // and what the median of a chi-square is said to be below its mean is good to 0.7 %
     CHECK(std::abs(ratio / 0.5 - 1) <= 3 * standard_error(windows, freedoms) + 0.007);
   }
 }
 
-TEST_CASE("taxel noise: a drift is not noise, where the trend is removed", "[taxel_noise]") {
+TEST_CASE("taxel noise: a drift is not noise", "[taxel_noise]") {
   const double bound = 3 * standard_error(101, 14);
   for (const double drift : {-3.0, 0.4, 20.0}) {  // a sample
     CAPTURE(drift);
@@ -147,9 +144,6 @@ TEST_CASE("taxel noise: a drift is not noise, where the trend is removed", "[tax
     const double with = found(101, 5, drifting), without = found(101, 5, resting);
     CHECK(std::abs(with / 7 - 1) <= bound);
     CHECK(with == Approx(without).epsilon(1e-9));  // the same noise, the same answer
-    // a line over 16 samples has a mean square of (16^2 - 1) / 12 of its slope
-    const double expected = std::sqrt(49 + drift * drift * 255 / 12 * 16 / 15);
-    CHECK(found<MeanRemoved>(101, 5, drifting) == Approx(expected).epsilon(0.08));
   }
   // a slow wave is nearly straight in a window
   const auto slow = [](Index k, double noise) {
@@ -210,10 +204,7 @@ TEST_CASE("taxel noise: each taxel has its own, but none less than is typical", 
   CHECK(refusal([&] { TaxelFeatures<>{noise.view()}; }) == "accepted");
 }
 
-TEMPLATE_TEST_CASE("taxel noise: the most that a window spread",
-                   "[taxel_noise]",
-                   TrendRemoved,
-                   MeanRemoved) {
+TEST_CASE("taxel noise: the most that a window spread", "[taxel_noise]") {
   const Index rows = 2, cols = 3, windows = 30, window = 16;
   std::vector<std::vector<double>> of(static_cast<std::size_t>(rows * cols));
   const auto reading = [&](Index, Index i, Index j, double noise) {
@@ -221,14 +212,13 @@ TEMPLATE_TEST_CASE("taxel noise: the most that a window spread",
     of[static_cast<std::size_t>(i * cols + j)].push_back(now);
     return now;
   };
-  const TaxelNoise noise = recorded<TestType>(rows, cols, windows * window, 21, reading).choose();
+  const TaxelNoise noise = recorded(rows, cols, windows * window, 21, reading).choose();
   double largest = 0;
   for (std::size_t k = 0; k < of.size(); ++k) {
     for (Index w = 0; w < windows; ++w) {
       const auto begin = of[k].begin() + w * window;
       const std::vector<double> one(begin, begin + window);
-      largest = (std::max)(largest,
-                           std::sqrt(mean_square(one, TestType::has_slope)) / noise.deviations[k]);
+      largest = (std::max)(largest, std::sqrt(mean_square(one)) / noise.deviations[k]);
     }
   }
   CHECK(noise.largest_factor == Approx(largest).epsilon(1e-9));
@@ -240,7 +230,7 @@ TEMPLATE_TEST_CASE("taxel noise: the most that a window spread",
   for (const double share : {1.0001, 0.9999}) {
     Options options;
     options.noise_factor = share * noise.largest_factor;
-    const TaxelFeatures<ZeroCrossings, TestType> features(noise.view(), options);
+    const TaxelFeatures<> features(noise.view(), options);
     auto state = features.start();
     Array taxels(rows, cols);
     int vibrating = 0;
@@ -372,7 +362,7 @@ TEST_CASE("taxel noise: a dead taxel takes nothing from what is typical", "[taxe
 
 TEST_CASE("taxel noise: a clock that jumps begins a new window", "[taxel_noise]") {
   const auto run = [](Index samples, Index between_jumps, double jump_s) {
-    TaxelNoiseCalibration<> calibration(1, 2);
+    TaxelNoiseCalibration calibration(1, 2);
     Random random(61);
     double time_s = 5;
     for (Index k = 0; k < samples; ++k) {
@@ -406,7 +396,7 @@ TEST_CASE("taxel noise: a clock that jumps begins a new window", "[taxel_noise]"
 
 TEST_CASE("taxel noise: what is refused changes nothing", "[taxel_noise]") {
   const Index samples = 16 * 6;
-  TaxelNoiseCalibration<> plain(2, 3), disturbed(2, 3);
+  TaxelNoiseCalibration plain(2, 3), disturbed(2, 3);
   Random random(71);
   for (Index k = 0; k < samples; ++k) {
     Array taxels(2, 3), wild(2, 3, 1e6), rotated(3, 2, 1e6), empty(0, 0);
@@ -431,7 +421,7 @@ TEST_CASE("taxel noise: recordings that do not tell are refused", "[taxel_noise]
   const auto said = [](const auto& calibration) {
     return refusal([&] { (void)calibration.choose(); });
   };
-  CHECK(said(TaxelNoiseCalibration<>(2, 2)) == "TaxelNoiseCalibration: windows = 0, must be >= 4");
+  CHECK(said(TaxelNoiseCalibration(2, 2)) == "TaxelNoiseCalibration: windows = 0, must be >= 4");
   CHECK(said(recorded(2, 2, 63, 1, noisy)) == "TaxelNoiseCalibration: windows = 3, must be >= 4");
   CHECK(said(recorded(2, 2, 64, 1, noisy)) == "accepted");
   CHECK(recorded(2, 2, 16 * 8 + 7, 1, noisy).choose().windows == 8);
@@ -443,13 +433,13 @@ TEST_CASE("taxel noise: recordings that do not tell are refused", "[taxel_noise]
   CHECK(said(recorded(2, 2, 640, 1, [](Index, Index, Index, double) { return 4095.0; },
                       {.saturated_at = 4095})) == unchanged);
   // and options that mean nothing
-  CHECK(refusal([] { TaxelNoiseCalibration<>(0, 3); }) ==
+  CHECK(refusal([] { TaxelNoiseCalibration(0, 3); }) ==
         "TaxelFeatures: rows = 0, must be in [1, 4096]");
-  CHECK(refusal([] { TaxelNoiseCalibration<>(3, -1); }) ==
+  CHECK(refusal([] { TaxelNoiseCalibration(3, -1); }) ==
         "TaxelFeatures: cols = -1, must be in [1, 4096]");
-  CHECK(refusal([] { TaxelNoiseCalibration<>(3, 3, {.window = 3}); }) ==
+  CHECK(refusal([] { TaxelNoiseCalibration(3, 3, {.window = 3}); }) ==
         "TaxelOptions: window = 3, must be in [4, 4096]");
-  CHECK(test::begins_with(refusal([] { TaxelNoiseCalibration<>(3, 3, {.pitch_mm = none}); }),
+  CHECK(test::begins_with(refusal([] { TaxelNoiseCalibration(3, 3, {.pitch_mm = none}); }),
                           "TaxelOptions: pitch_mm = "));
 }
 
@@ -466,7 +456,7 @@ TEST_CASE("taxel noise: what the options say of noise does not matter", "[taxel_
 TEST_CASE("taxel noise: whole counts of an integer array", "[taxel_noise]") {
   for (const double deviation : {1.0, 3.0, 6.0}) {
     CAPTURE(deviation);
-    TaxelNoiseCalibration<> calibration(6, 6);
+    TaxelNoiseCalibration calibration(6, 6);
     Random random(81);
     test::Image<std::uint16_t> counts(6, 6);
     for (Index k = 0; k < 16 * 200; ++k) {

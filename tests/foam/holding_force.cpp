@@ -20,11 +20,11 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double none = std::numeric_limits<double>::quiet_NaN();
 
 /// '-' steady, 'p' pre-slip, 'x' slipped, 'm' missing
-SlipSignal update_of(char letter) {
-  return letter == 'p'   ? SlipSignal::preslip
-         : letter == 'x' ? SlipSignal::slipped
-         : letter == 'm' ? SlipSignal::missing
-                         : SlipSignal::steady;
+PreslipStatus update_of(char letter) {
+  return letter == 'p'   ? PreslipStatus::preslip
+         : letter == 'x' ? PreslipStatus::slipped
+         : letter == 'm' ? PreslipStatus::cannot_tell
+                         : PreslipStatus::steady;
 }
 
 /// The command after the last of the signal.
@@ -63,7 +63,7 @@ std::string forces(const Search& search, const std::string& signal) {
   return all;
 }
 
-LoosenPlan<double> short_plan() {
+LoosenOptions<double> short_plan() {
   return {.first_force_n = 9,
           .min_force_n = 7,
           .step_n = 1,
@@ -72,7 +72,7 @@ LoosenPlan<double> short_plan() {
           .margin_steps = 1};
 }
 
-LiftPlan<double> short_lift() {
+LiftOptions<double> short_lift() {
   return {.first_force_n = 1,
           .max_force_n = 3,
           .force_step_n = 1,
@@ -83,26 +83,26 @@ LiftPlan<double> short_lift() {
 
 template <class Plan, class Field>
 void check_refused(Field Plan::*field, const std::string& name, std::initializer_list<Field> bad) {
-  const bool loosens = std::is_same_v<Plan, LoosenPlan<double>>;
+  const bool loosens = std::is_same_v<Plan, LoosenOptions<double>>;
   for (const Field given : bad) {
     Plan plan;
     plan.*field = given;
     CAPTURE(name, given);
     const std::string said = test::refusal([&] {
-      if constexpr (std::is_same_v<Plan, LoosenPlan<double>>) {
+      if constexpr (std::is_same_v<Plan, LoosenOptions<double>>) {
         LoosenUntilPreslip<double>{plan};
       } else {
         LiftWithRegrip<double>{plan};
       }
     });
-    const std::string owner = loosens ? "LoosenPlan" : "LiftPlan";
+    const std::string owner = loosens ? "LoosenOptions" : "LiftOptions";
     CHECK(test::begins_with(said, owner + ": " + name + " = "));
   }
 }
-std::string refusal_of(const LoosenPlan<double>& plan) {
+std::string refusal_of(const LoosenOptions<double>& plan) {
   return test::refusal([&] { LoosenUntilPreslip<double>{plan}; });
 }
-std::string refusal_of(const LiftPlan<double>& plan) {
+std::string refusal_of(const LiftOptions<double>& plan) {
   return test::refusal([&] { LiftWithRegrip<double>{plan}; });
 }
 
@@ -246,21 +246,21 @@ TEST_CASE("loosening: without settling, one look at each force", "[holding_force
 
 TEST_CASE("loosening: forces do not collect rounding, and the last step may be short",
           "[holding_force]") {
-  LoosenPlan<double> plan{.first_force_n = 10,
-                          .min_force_n = 0.25,
-                          .step_n = 0.1,
-                          .settle_samples = 0,
-                          .watch_samples = 1};
+  LoosenOptions<double> plan{.first_force_n = 10,
+                             .min_force_n = 0.25,
+                             .step_n = 0.1,
+                             .settle_samples = 0,
+                             .watch_samples = 1};
   const LoosenUntilPreslip<double> search(plan);
   auto state = search.start();
   for (int k = 1; k <= 97; ++k) {
-    const auto now = search(SlipSignal::steady, state);
+    const auto now = search(PreslipStatus::steady, state);
     CHECK(now.force_n == 10 - k * 0.1);
     CHECK(now.steps == k);
   }
-  CHECK(search(SlipSignal::steady, state).force_n == 0.25);
+  CHECK(search(PreslipStatus::steady, state).force_n == 0.25);
   CHECK(state.command().phase == SearchPhase::settling);
-  CHECK(search(SlipSignal::steady, state).phase == SearchPhase::at_limit);
+  CHECK(search(PreslipStatus::steady, state).phase == SearchPhase::at_limit);
   CHECK(state.command().steps == 98);
   plan.step_n = 1000;  // one step to the least
   CHECK(told(LoosenUntilPreslip<double>(plan), "-").force_n == 0.25);
@@ -306,7 +306,7 @@ TEST_CASE("searches: an end is an end", "[holding_force]") {
       CHECK(after.phase == before.phase);
       CHECK(after.force_n == before.force_n);
       CHECK(after.height_mm == before.height_mm);
-      CHECK(after.regrips == before.regrips);
+      CHECK(after.steps == before.steps);
     }
   }
 }
@@ -317,7 +317,7 @@ TEST_CASE("lifting: up in steps to the full height", "[holding_force]") {
   CHECK(first.force_n == 1);
   CHECK(first.height_mm == 0);
   CHECK(first.phase == SearchPhase::watching);
-  CHECK(first.regrips == 0);
+  CHECK(first.steps == 0);
   auto state = search.start();
   CHECK(tell(search, state, "-").height_mm == 4);
   CHECK(tell(search, state, "-").height_mm == 8);
@@ -326,14 +326,14 @@ TEST_CASE("lifting: up in steps to the full height", "[holding_force]") {
   CHECK(state.command().phase == SearchPhase::lifted);
   CHECK(state.command().force_n == 1);
   // a step that divides the height ends on it
-  LiftPlan<double> plan = short_lift();
+  LiftOptions<double> plan = short_lift();
   plan.height_step_mm = 5;
   CHECK(told(LiftWithRegrip<double>(plan), "-").phase == SearchPhase::watching);
   CHECK(told(LiftWithRegrip<double>(plan), "--").phase == SearchPhase::lifted);
   plan.height_step_mm = 0.1;
   auto slow = LiftWithRegrip<double>(plan).start();
   for (int k = 1; k < 100; ++k) {
-    CHECK(LiftWithRegrip<double>(plan)(SlipSignal::steady, slow).height_mm == k * 0.1);
+    CHECK(LiftWithRegrip<double>(plan)(PreslipStatus::steady, slow).height_mm == k * 0.1);
   }
 }
 
@@ -344,7 +344,7 @@ TEST_CASE("lifting: pre-slip holds the lift and tightens the grip", "[holding_fo
   CHECK(now.phase == SearchPhase::settling);
   CHECK(now.force_n == 2);
   CHECK(now.height_mm == 4);
-  CHECK(now.regrips == 1);
+  CHECK(now.steps == 1);
   now = tell(search, state, "p-");  // not listened to
   CHECK(now.phase == SearchPhase::settling);
   CHECK(now.force_n == 2);
@@ -353,7 +353,7 @@ TEST_CASE("lifting: pre-slip holds the lift and tightens the grip", "[holding_fo
   CHECK(state.command().phase == SearchPhase::watching);
   now = tell(search, state, "p");
   CHECK(now.force_n == 3);
-  CHECK(now.regrips == 2);
+  CHECK(now.steps == 2);
   now = tell(search, state, "-p-");  // settled again, from the start
   CHECK(now.phase == SearchPhase::lifted);
   CHECK(now.height_mm == 10);
@@ -368,11 +368,11 @@ TEST_CASE("lifting: pre-slip holds the lift and tightens the grip", "[holding_fo
   CHECK(now.phase == SearchPhase::at_limit);
   CHECK(now.force_n == 3);
   CHECK(now.height_mm == 0);
-  CHECK(now.regrips == 2);
+  CHECK(now.steps == 2);
   // and does not where the largest force is enough
   CHECK(told(search, "-p--p----").phase == SearchPhase::lifted);
 
-  LiftPlan<double> plan = short_lift();
+  LiftOptions<double> plan = short_lift();
   plan.settle_samples = 0;
   CHECK(forces(LiftWithRegrip<double>(plan), "pp-") == "233");
   CHECK(phases(LiftWithRegrip<double>(plan), "pp-p") == "sswA");
@@ -393,12 +393,12 @@ TEST_CASE("lifting: an object that slips is put down at once", "[holding_force]"
     CHECK(end.phase == SearchPhase::slipped);
     CHECK(end.height_mm == 0);
     CHECK(end.force_n == told(search, before).force_n);
-    CHECK(end.regrips == told(search, before).regrips);
+    CHECK(end.steps == told(search, before).steps);
   }
 }
 
 TEST_CASE("searches: bad plans are refused by name, value and range", "[holding_force]") {
-  using Loosen = LoosenPlan<double>;
+  using Loosen = LoosenOptions<double>;
   CHECK(refusal_of(Loosen{}) == "accepted");
   check_refused(&Loosen::first_force_n, "first_force_n", {0.5, 0.0, -1.0, none, infinity});
   check_refused(&Loosen::min_force_n, "min_force_n", {-1e-9, none, infinity, -infinity});
@@ -407,17 +407,18 @@ TEST_CASE("searches: bad plans are refused by name, value and range", "[holding_
   check_refused<Loosen, Index>(&Loosen::watch_samples, "watch_samples", {0, -1});
   check_refused<Loosen, Index>(&Loosen::margin_steps, "margin_steps", {-1, 1000001});
   CHECK(refusal_of(Loosen{.first_force_n = 2, .min_force_n = 2}) ==
-        "LoosenPlan: first_force_n = 2, must be finite and > min_force_n");
+        "LoosenOptions: first_force_n = 2, must be finite and > min_force_n");
   CHECK(refusal_of(Loosen{.min_force_n = -1}) ==
-        "LoosenPlan: min_force_n = -1, must be finite and >= 0");
-  CHECK(refusal_of(Loosen{.step_n = 0}) ==
-        "LoosenPlan: step_n = 0, must be finite and > 0, in at most a million steps from first to "
-        "least force");
+        "LoosenOptions: min_force_n = -1, must be finite and >= 0");
+  CHECK(
+      refusal_of(Loosen{.step_n = 0}) ==
+      "LoosenOptions: step_n = 0, must be finite and > 0, in at most a million steps from first to "
+      "least force");
   CHECK(refusal_of(Loosen{.settle_samples = -2}) ==
-        "LoosenPlan: settle_samples = -2, must be >= 0");
-  CHECK(refusal_of(Loosen{.watch_samples = 0}) == "LoosenPlan: watch_samples = 0, must be >= 1");
+        "LoosenOptions: settle_samples = -2, must be >= 0");
+  CHECK(refusal_of(Loosen{.watch_samples = 0}) == "LoosenOptions: watch_samples = 0, must be >= 1");
   CHECK(refusal_of(Loosen{.margin_steps = -3}) ==
-        "LoosenPlan: margin_steps = -3, must be in [0, 1000000]");
+        "LoosenOptions: margin_steps = -3, must be in [0, 1000000]");
   CHECK(refusal_of(Loosen{.min_force_n = 0}) == "accepted");
   CHECK(refusal_of(Loosen{.step_n = 9.6e-6}) == "accepted");  // 989 583 steps
   CHECK(refusal_of(Loosen{.step_n = 1e9}) == "accepted");
@@ -425,7 +426,7 @@ TEST_CASE("searches: bad plans are refused by name, value and range", "[holding_
         "accepted");
   CHECK(refusal_of(Loosen{.margin_steps = 1000000}) == "accepted");
 
-  using Lift = LiftPlan<double>;
+  using Lift = LiftOptions<double>;
   CHECK(refusal_of(Lift{}) == "accepted");
   check_refused(&Lift::first_force_n, "first_force_n", {0.0, -1.0, none, infinity});
   check_refused(&Lift::max_force_n, "max_force_n", {0.999, 0.0, -1.0, none, infinity});
@@ -434,18 +435,19 @@ TEST_CASE("searches: bad plans are refused by name, value and range", "[holding_
   check_refused(&Lift::height_step_mm, "height_step_mm", {0.0, -1.0, none, infinity, 4.9e-5});
   check_refused<Lift, Index>(&Lift::settle_samples, "settle_samples", {-1});
   CHECK(refusal_of(Lift{.first_force_n = 0}) ==
-        "LiftPlan: first_force_n = 0, must be finite and > 0");
+        "LiftOptions: first_force_n = 0, must be finite and > 0");
   CHECK(refusal_of(Lift{.max_force_n = 0.5}) ==
-        "LiftPlan: max_force_n = 0.5, must be finite and >= first_force_n");
+        "LiftOptions: max_force_n = 0.5, must be finite and >= first_force_n");
+  CHECK(refusal_of(Lift{.force_step_n = -1}) ==
+        "LiftOptions: force_step_n = -1, must be finite and > 0, in at most a million steps from "
+        "first "
+        "to most force");
+  CHECK(refusal_of(Lift{.height_mm = 0}) == "LiftOptions: height_mm = 0, must be finite and > 0");
   CHECK(
-      refusal_of(Lift{.force_step_n = -1}) ==
-      "LiftPlan: force_step_n = -1, must be finite and > 0, in at most a million steps from first "
-      "to most force");
-  CHECK(refusal_of(Lift{.height_mm = 0}) == "LiftPlan: height_mm = 0, must be finite and > 0");
-  CHECK(refusal_of(Lift{.height_step_mm = 0}) ==
-        "LiftPlan: height_step_mm = 0, must be finite and > 0, in at most a million steps to the "
-        "height");
-  CHECK(refusal_of(Lift{.settle_samples = -1}) == "LiftPlan: settle_samples = -1, must be >= 0");
+      refusal_of(Lift{.height_step_mm = 0}) ==
+      "LiftOptions: height_step_mm = 0, must be finite and > 0, in at most a million steps to the "
+      "height");
+  CHECK(refusal_of(Lift{.settle_samples = -1}) == "LiftOptions: settle_samples = -1, must be >= 0");
   CHECK(refusal_of(Lift{.first_force_n = 20, .force_step_n = 0}) != "accepted");
   CHECK(refusal_of(Lift{.first_force_n = 20}) == "accepted");  // nothing to tighten
   CHECK(refusal_of(Lift{.force_step_n = 1.95e-5}) == "accepted");
@@ -459,8 +461,8 @@ TEST_CASE("searches: names, ends and plans", "[holding_force]") {
     CHECK(is_end(static_cast<SearchPhase>(k)) == (k >= 2));
   }
   CHECK(std::string(name_of(static_cast<SearchPhase>(99))) == "unknown");
-  CHECK(LoosenUntilPreslip<double>(short_plan()).plan().watch_samples == 3);
-  CHECK(LiftWithRegrip<double>(short_lift()).plan().settle_samples == 2);
+  CHECK(LoosenUntilPreslip<double>(short_plan()).options().watch_samples == 3);
+  CHECK(LiftWithRegrip<double>(short_lift()).options().settle_samples == 2);
 }
 
 TEMPLATE_TEST_CASE("searches: in any number",
@@ -476,7 +478,7 @@ TEMPLATE_TEST_CASE("searches: in any number",
   const LoosenUntilPreslip<S> loosen;
   auto loosening = loosen.start();
   for (int k = 0; k < 32 * 7; ++k) {
-    (void)loosen(SlipSignal::steady, loosening);
+    (void)loosen(PreslipStatus::steady, loosening);
   }
   CHECK(number(loosening.command().force_n) == 8.25);
   auto end = tell(loosen, loosening, std::string(16, '-') + "p");

@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "fingerpad/published/preslip.hpp"
 #include "support/catch.hpp"
 #include "support/numbers.hpp"
 
@@ -21,8 +22,6 @@ namespace {
 using Options = PreslipOptions<double>;
 template <std::size_t Fingers, class S = double>
 using Hand = std::array<FingerSample<S>, Fingers>;
-using Cells = GraspLift<MovedToOtherCell>;
-using CellsBoth = GraspLift<MovedToOtherCell, BothAxes>;
 constexpr double largest = (std::numeric_limits<double>::max)();
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double none = std::numeric_limits<double>::quiet_NaN();
@@ -30,6 +29,7 @@ constexpr double none = std::numeric_limits<double>::quiet_NaN();
 template <class S = double>
 FingerSample<S> felt(Index location, Index waves, double x_mm = 0, double y_mm = 0) {
   FingerSample<S> sample;
+  sample.status = TaxelStatus::vibrating;
   sample.location = location;
   sample.waves = waves;
   sample.center_x_mm = S(x_mm);
@@ -41,25 +41,25 @@ bool equal(const PreslipResult& a, const PreslipResult& b) {
   return a.alarm == b.alarm && a.is_fresh == b.is_fresh && a.samples_ago == b.samples_ago;
 }
 
-/// In how many of the samples two searches differ. Sample k is hand(k).
-template <class Rule, std::size_t Fingers, class One, class Other, class Make>
+/// In how many of the samples both searches differ. Sample k is hand(k).
+template <class Rule, std::size_t Fingers, class Make>
 int differences(int samples, const Options& options, const Make& hand) {
-  const Preslip<Rule, Fingers, One> one(options);
-  const Preslip<Rule, Fingers, Other> other(options);
-  auto of_one = one.start();
-  auto of_other = other.start();
+  const Preslip<Rule, Fingers> newest(options);
+  const published::StackScan<Rule, Fingers> whole(options);
+  auto of_newest = newest.start();
+  auto of_whole = whole.start();
   int count = 0;
   for (int k = 0; k < samples; ++k) {
     const Hand<Fingers> now = hand(k);
-    count += equal(one(now, of_one), other(now, of_other)) ? 0 : 1;
+    count += equal(newest(now, of_newest), whole(now, of_whole)) ? 0 : 1;
   }
   return count;
 }
 
 /// The number of samples with an alarm, and with a fresh one.
-template <class Rule, class Search, std::size_t Fingers, class Make>
+template <class Rule, std::size_t Fingers, class Make>
 std::pair<int, int> alarms(int samples, const Options& options, const Make& hand) {
-  const Preslip<Rule, Fingers, Search> preslip(options);
+  const Preslip<Rule, Fingers> preslip(options);
   auto state = preslip.start();
   std::pair<int, int> count{0, 0};
   for (int k = 0; k < samples; ++k) {
@@ -83,95 +83,31 @@ class Bits {
 
 }  // namespace
 
-TEMPLATE_TEST_CASE("pre-slip: a hundred thousand samples alike",
-                   "[preslip]",
-                   NewestPairs,
-                   ConstantTime) {
+TEST_CASE("pre-slip: a hundred thousand samples alike", "[preslip]") {
   constexpr int samples = 100000;
   const Options options{.history = 50};
   const auto alike = [](int) { return Hand<2>{felt(3, 5), felt(4, 5)}; };
-  CHECK(alarms<GraspOptimise<>, TestType, 2>(samples, options, alike) == std::pair{0, 0});
-  CHECK(alarms<GraspOptimise<AnyPair>, TestType, 2>(samples, options, alike) == std::pair{0, 0});
-  CHECK(alarms<Cells, TestType, 2>(samples, options, alike) == std::pair{0, 0});
+  CHECK(alarms<GraspOptimise, 2>(samples, options, alike) == std::pair{0, 0});
+  CHECK(alarms<GraspLift, 2>(samples, options, alike) == std::pair{0, 0});
   // two places in turn: from the second sample on, each makes a pair with the one before
   const auto in_turn = [](int k) { return Hand<2>{felt(k % 2, 5), felt(1 - k % 2, 5)}; };
-  CHECK(alarms<GraspOptimise<>, TestType, 2>(samples, options, in_turn) ==
-        std::pair{samples - 1, samples - 1});
+  CHECK(alarms<GraspOptimise, 2>(samples, options, in_turn) == std::pair{samples - 1, samples - 1});
   // a wave that comes every 60 samples, at another place: no two are ever in the history
   const auto seldom = [](int k) {
     const Index location = k % 60 == 0 ? k / 60 % 7 : FingerSample<>::no_location;
     return Hand<2>{felt(location, 5), felt(location, 5)};
   };
-  CHECK(alarms<GraspOptimise<>, TestType, 2>(samples, options, seldom) == std::pair{0, 0});
-  CHECK(alarms<GraspOptimise<AnyPair>, TestType, 2>(samples, options, seldom) == std::pair{0, 0});
-  const Options longer{.history =
-                           61};  // now there are: each is seen with the last one, for a sample
+  CHECK(alarms<GraspOptimise, 2>(samples, options, seldom) == std::pair{0, 0});
+  const Options longer{.history = 61};  // now there are: each is seen with the last, for a sample
   const int pairs = (samples - 1) / 60;
-  CHECK(alarms<GraspOptimise<>, TestType, 2>(samples, longer, seldom) == std::pair{pairs, pairs});
-}
-
-TEST_CASE("pre-slip: long histories of many values, by two searches", "[preslip]") {
-  constexpr int samples = 6000;
-  const Options options{.history = 200, .min_waves = 0, .max_waves = 65536};
-  // a value that is not seen again for long fills the memory; few values keep it busy
-  for (const Index values : {1, 2, 5, 60, 65536}) {
-    CAPTURE(values);
-    const auto hand = [values](Bits& bits) {
-      return [values, &bits](int) {
-        Hand<3> now;
-        for (auto& sample : now) {
-          sample = felt(bits(-1, values), bits(0, values), static_cast<double>(bits(0, values)),
-                        static_cast<double>(bits(0, 2)));
-        }
-        return now;
-      };
-    };
-    Bits bits(static_cast<std::uint64_t>(values));
-    CHECK(differences<GraspOptimise<>, 3, NewestPairs, ConstantTime>(samples, options,
-                                                                     hand(bits)) == 0);
-    CHECK(differences<GraspOptimise<AnyPair>, 3, NewestPairs, ConstantTime>(samples, options,
-                                                                            hand(bits)) == 0);
-    if (values <= 60) {  // else most of the time goes into numbers of waves
-      CHECK(differences<Cells, 3, NewestPairs, ConstantTime>(samples / 4, options, hand(bits)) ==
-            0);
-      CHECK(differences<CellsBoth, 3, NewestPairs, ConstantTime>(samples / 4, options,
-                                                                 hand(bits)) == 0);
-    }
-  }
-}
-
-TEST_CASE("pre-slip: every sample with waves of its own", "[preslip]") {
-  // as many keys as samples, and in the end all of them again at another place
-  const Index history = 4096;
-  const Preslip<GraspOptimise<>, 2, ConstantTime> preslip({.history = history, .max_waves = 65536});
-  auto state = preslip.start();
-  for (int round = 0; round < 3; ++round) {
-    int fresh = 0;
-    std::int64_t ago = 0;
-    for (Index k = 0; k < history - 1; ++k) {
-      const auto result = preslip({felt(round, 1 + 16 * k), felt(round, 65536 - 16 * k)}, state);
-      fresh += result.is_fresh ? 1 : 0;
-      ago = result.samples_ago;
-    }
-    CHECK(fresh == (round == 0 ? 0 : history - 1));
-    CHECK(ago == (round == 0 ? PreslipResult::none : history - 1));
-  }
-  const Preslip<GraspOptimise<>, 2, ConstantTime> shorter(
-      {.history = history - 1, .max_waves = 65536});
-  auto of_shorter = shorter.start();
-  for (int round = 0; round < 3; ++round) {
-    for (Index k = 0; k < history - 1; ++k) {
-      CHECK_FALSE(
-          shorter({felt(round, 1 + 16 * k), felt(round, 65536 - 16 * k)}, of_shorter).alarm);
-    }
-  }
+  CHECK(alarms<GraspOptimise, 2>(samples, longer, seldom) == std::pair{pairs, pairs});
 }
 
 TEST_CASE("pre-slip: centroids at the ends of their range", "[preslip]") {
   const auto lift = [](double a_mm, double b_mm, double tolerance_mm) {
     const Options options{.centroid_tolerance_mm = tolerance_mm};
-    return is_preslip<GraspLift<>>(Hand<1>{felt(1, 1, a_mm, 0)}, Hand<1>{felt(2, 2, b_mm, 0)},
-                                   options);
+    return is_preslip<GraspLift>(Hand<1>{felt(1, 1, a_mm, 0)}, Hand<1>{felt(2, 2, b_mm, 0)},
+                                 options);
   };
   CHECK(lift(largest, -largest, 1));        // their difference is infinite
   CHECK(lift(-largest, largest, largest));  // and beyond any tolerance
@@ -182,39 +118,9 @@ TEST_CASE("pre-slip: centroids at the ends of their range", "[preslip]") {
   CHECK_FALSE(lift(0, -infinity, 1));
   CHECK_FALSE(lift(infinity, -infinity, 1));
   CHECK_FALSE(lift(none, 0, 0));
-
-  const auto cells = [](double a_mm, double b_mm, double cell_mm) {
-    const Options options{.centroid_tolerance_mm = cell_mm};
-    return is_preslip<Cells>(Hand<1>{felt(1, 1, a_mm, 0)}, Hand<1>{felt(2, 2, b_mm, 0)}, options);
-  };
-  CHECK(cells(1e9, -1e9, 1));
-  CHECK(cells(1e9, 1e9 - 1, 1));
-  CHECK_FALSE(cells(1e9, 1e9, 1));
-  CHECK_FALSE(cells(1e9 + 1, 0, 1));  // too far to be counted in cells
-  CHECK_FALSE(cells(0, -1e9 - 1, 1));
-  CHECK_FALSE(cells(largest, 0, 1));
-  CHECK_FALSE(cells(1, 0, 5e-324));
-  CHECK(cells(5e-324, 0, 5e-324));
-  CHECK_FALSE(cells(1e300, -1e300, largest));
-  CHECK(cells(largest, -largest, largest));
 }
 
-TEST_CASE("pre-slip: no two cells are taken for one", "[preslip]") {
-  // as far apart in y as makes up for a step in x where both are packed too closely
-  const Preslip<Cells, 1, ConstantTime> preslip({.centroid_tolerance_mm = 1});
-  for (int bits = 0; bits <= 30; ++bits) {
-    CAPTURE(bits);
-    const double apart = std::ldexp(1.0, bits);
-    auto state = preslip.start();
-    (void)preslip({felt(1, 1, 0, 1e9)}, state);
-    CHECK(preslip({felt(2, 2, 1, 1e9 - apart)}, state).is_fresh);
-    state.reset();
-    (void)preslip({felt(1, 1, 1, -1e9)}, state);
-    CHECK(preslip({felt(2, 2, 0, -1e9 + apart)}, state).is_fresh);
-  }
-}
-
-TEST_CASE("pre-slip: all searches agree at the ends of the range", "[preslip]") {
+TEST_CASE("pre-slip: both searches agree at the ends of the range", "[preslip]") {
   const double ends[] = {0,    -0.0,     5e-324, -5e-324,     1e-300,  0.05,  -0.05,     0.0500001,
                          0.15, 1e8,      -1e8,   1e8 + 0.049, 1e8 - 1, 1e300, -largest,  largest,
                          none, infinity, 1,      -infinity,   1e9,     -1e9,  123456.75, 5e7};
@@ -231,12 +137,8 @@ TEST_CASE("pre-slip: all searches agree at the ends of the range", "[preslip]") 
       }
       return now;
     };
-    CHECK(differences<GraspLift<>, 2, AllPairs, NewestPairs>(2000, options, hand) == 0);
-    CHECK(differences<GraspOptimise<>, 2, AllPairs, ConstantTime>(2000, options, hand) == 0);
-    CHECK(differences<GraspOptimise<AnyPair>, 2, AllPairs, ConstantTime>(2000, options, hand) == 0);
-    CHECK(differences<Cells, 2, AllPairs, NewestPairs>(2000, options, hand) == 0);
-    CHECK(differences<Cells, 2, AllPairs, ConstantTime>(2000, options, hand) == 0);
-    CHECK(differences<CellsBoth, 2, AllPairs, ConstantTime>(2000, options, hand) == 0);
+    CHECK(differences<GraspLift, 2>(2000, options, hand) == 0);
+    CHECK(differences<GraspOptimise, 2>(2000, options, hand) == 0);
   }
 }
 
@@ -248,11 +150,10 @@ TEMPLATE_TEST_CASE("pre-slip: the same answers in any number",
                    test::Lazy50,
                    test::Dual<double>) {
   using S = TestType;
-  const auto check = [](auto rule, auto search) {
+  const auto check = [](auto rule) {
     using Rule = decltype(rule);
-    using Search = decltype(search);
-    const Preslip<Rule, 2, Search, S> preslip({.history = 12, .centroid_tolerance_mm = S(0.125)});
-    const Preslip<Rule, 2, Search> reference({.history = 12, .centroid_tolerance_mm = 0.125});
+    const Preslip<Rule, 2, S> preslip({.history = 12, .centroid_tolerance_mm = S(0.125)});
+    const Preslip<Rule, 2> reference({.history = 12, .centroid_tolerance_mm = 0.125});
     auto state = preslip.start();
     auto of_reference = reference.start();
     Bits bits(5);
@@ -283,92 +184,44 @@ TEMPLATE_TEST_CASE("pre-slip: the same answers in any number",
     CHECK(alarms > 10);
     CHECK(alarms < 400);
   };
-  check(GraspOptimise<>(), ConstantTime());
-  check(GraspLift<>(), NewestPairs());
-  check(CellsBoth(), ConstantTime());
+  check(GraspOptimise());
+  check(GraspLift());
 }
 
 TEST_CASE("pre-slip: a derivative that is not a number changes nothing", "[preslip]") {
   using S = test::Dual<double>;
   auto older = felt<S>(1, 1, 0, 0), later = felt<S>(2, 2, 1, 0);
   later.center_x_mm.d = none;
-  CHECK(is_preslip<GraspLift<>>(Hand<1, S>{older}, Hand<1, S>{later}));
+  CHECK(is_preslip<GraspLift>(Hand<1, S>{older}, Hand<1, S>{later}));
 }
 
-TEST_CASE("pre-slip: the longest history", "[preslip]") {
-  const Options options{.history = 1000000};
-  const auto check = [&](auto rule, auto search) {
-    const Preslip<decltype(rule), 1, decltype(search)> preslip(options);
+TEMPLATE_TEST_CASE("pre-slip: the longest history", "[preslip]", GraspOptimise, GraspLift) {
+  const Preslip<TestType, 1> preslip({.history = 1000000});
+  auto state = preslip.start();
+  CHECK_FALSE(preslip({felt(1, 1, 0, 0)}, state).alarm);
+  CHECK_FALSE(preslip({felt(FingerSample<>::no_location, 0, none, none)}, state).alarm);
+  const auto result = preslip({felt(2, TestType::on_all_fingers ? 1 : 2, 1, 1)}, state);
+  CHECK(result.is_fresh);
+  CHECK(result.samples_ago == 2);
+  state.reset();
+  CHECK_FALSE(preslip({felt(3, 3, 0, 0)}, state).alarm);
+}
+
+TEMPLATE_TEST_CASE("pre-slip: a pair as old as a history", "[preslip]", GraspOptimise, GraspLift) {
+  const Index history = 3000;
+  const Preslip<TestType, 1> preslip({.history = history});
+  const auto first = felt(1, 1, 0, 0);
+  const auto last = felt(2, TestType::on_all_fingers ? 1 : 2, 1, 1);
+  const auto silent = felt(FingerSample<>::no_location, 0, none, none);
+  for (const Index between : {history - 2, history - 1}) {
     auto state = preslip.start();
-    CHECK_FALSE(preslip({felt(1, 1, 0, 0)}, state).alarm);
-    CHECK_FALSE(preslip({felt(FingerSample<>::no_location, 0, none, none)}, state).alarm);
-    const auto result = preslip({felt(2, detail::is_lift<decltype(rule)> ? 2 : 1, 1, 1)}, state);
-    CHECK(result.is_fresh);
-    CHECK(result.samples_ago == 2);
-    state.reset();
-    CHECK_FALSE(preslip({felt(3, 3, 0, 0)}, state).alarm);
-  };
-  check(GraspOptimise<>(), AllPairs());
-  check(GraspOptimise<>(), NewestPairs());
-  check(GraspOptimise<>(), ConstantTime());
-  check(GraspLift<>(), NewestPairs());
-  check(CellsBoth(), ConstantTime());
-}
-
-TEST_CASE("pre-slip: a pair as old as a long history", "[preslip]") {
-  const Index history = 30000;
-  const auto check = [&](auto rule, auto search) {
-    const Preslip<decltype(rule), 1, decltype(search)> preslip({.history = history});
-    const auto first = felt(1, 1, 0, 0);
-    const auto last = felt(2, detail::is_lift<decltype(rule)> ? 2 : 1, 1, 1);
-    const auto silent = felt(FingerSample<>::no_location, 0, none, none);
-    for (const Index between : {history - 2, history - 1}) {
-      auto state = preslip.start();
-      (void)preslip({first}, state);
-      for (Index k = 0; k < between; ++k) {
-        (void)preslip({silent}, state);
-      }
-      const auto result = preslip({last}, state);
-      CHECK(result.alarm == (between == history - 2));
-      CHECK(result.samples_ago == (result.alarm ? history - 1 : PreslipResult::none));
-      CHECK_FALSE(preslip({silent}, state).alarm);
+    (void)preslip({first}, state);
+    for (Index k = 0; k < between; ++k) {
+      (void)preslip({silent}, state);
     }
-  };
-  check(GraspOptimise<>(), NewestPairs());
-  check(GraspOptimise<>(), ConstantTime());
-  check(GraspOptimise<AnyPair>(), ConstantTime());
-  check(GraspLift<>(), NewestPairs());
-  check(Cells(), ConstantTime());
-  check(CellsBoth(), ConstantTime());
-}
-
-TEST_CASE("the table of waves stays right at its fullest", "[preslip]") {
-  struct Number {
-    std::int64_t number = 0;
-    void clear() { number = 0; }
-  };
-  // tables so small that every key has neighbours, and searches go round the end
-  for (const std::size_t capacity : {1U, 2U, 3U, 4U, 5U, 8U, 16U, 33U}) {
-    CAPTURE(capacity);
-    detail::WaveTable<1, Number> table(capacity);
-    Bits bits(capacity);
-    std::vector<std::int64_t> keys;
-    int wrong = 0;
-    for (std::int64_t k = 0; k < 3000; ++k) {
-      if (keys.size() == capacity) {
-        const auto at = keys.begin() + bits(0, static_cast<Index>(capacity) - 1);
-        const std::int64_t gone = *at;
-        keys.erase(at);
-        table.remove({gone});
-        wrong += table.find({gone}) == nullptr ? 0 : 1;
-      }
-      table.add({k * 4096}).number = k;
-      keys.push_back(k * 4096);
-      for (const std::int64_t key : keys) {
-        const Number* const found = table.find({key});
-        wrong += found != nullptr && found->number * 4096 == key ? 0 : 1;
-      }
-    }
-    CHECK(wrong == 0);
+    const auto result = preslip({last}, state);
+    CHECK(result.alarm == (between == history - 2));
+    CHECK(result.samples_ago == (result.alarm ? history - 1 : PreslipResult::none));
+    CHECK_FALSE(preslip({silent}, state).alarm);
   }
 }

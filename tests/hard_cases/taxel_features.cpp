@@ -55,7 +55,7 @@ TEMPLATE_TEST_CASE("taxel features: a small vibration on a large load that wande
   // bound is that of one window, however long it runs: the sums are made anew within each
   using S = TestType;
   const Index window = GENERATE(8, 64);
-  const TaxelFeatures<ZeroCrossings, TrendRemoved, S> features(1, 1, options<S>(window));
+  const TaxelFeatures<ZeroCrossings, S> features(1, 1, options<S>(window));
   auto state = features.start();
   std::mt19937 random(5);
   std::uniform_int_distribution<int> step(-8, 8);
@@ -66,7 +66,7 @@ TEMPLATE_TEST_CASE("taxel features: a small vibration on a large load that wande
     level = level > 4400 || level < 3600 ? 4000 : level;
     const double reading = level + (k % 4 < 2 ? 8 : -8);
     readings.push_back(reading);
-    const auto sample = features(Image<S>(1, 1, static_cast<S>(reading)), S(k), state);
+    const auto sample = features(Image<S>(1, 1, static_cast<S>(reading)), k, state);
     if (k % 7 == 0 && k > 100) {
       const double exact = deviation_by_hand(readings, static_cast<std::size_t>(window));
       worst = std::max(worst, std::fabs(static_cast<double>(sample.deviation) / exact - 1));
@@ -84,13 +84,13 @@ TEMPLATE_TEST_CASE("taxel features: a huge reading is forgotten with its window"
   using S = TestType;
   auto o = options<S>(16);
   o.noise = S(1);
-  const TaxelFeatures<ZeroCrossings, TrendRemoved, S> features(4, 4, o);
+  const TaxelFeatures<ZeroCrossings, S> features(4, 4, o);
   auto state = features.start();
   Index false_alarms_late = 0;
   for (int k = 0; k < 200; ++k) {
     Image<S> taxels(4, 4, S(100));
     taxels(1, 1) = k == 50 ? S(1e15) : S(100);
-    const auto sample = features(taxels, S(k), state);
+    const auto sample = features(taxels, k, state);
     if (k >= 50 && k < 66) {
       CHECK(sample.location == 5);
     }
@@ -105,7 +105,7 @@ TEMPLATE_TEST_CASE("taxel features: readings at the ends of what a number holds"
                    double) {
   using S = TestType;
   using Limits = std::numeric_limits<S>;
-  const TaxelFeatures<ZeroCrossings, TrendRemoved, S> features(2, 2, options<S>(8));
+  const TaxelFeatures<ZeroCrossings, S> features(2, 2, options<S>(8));
   for (const S extreme : {Limits::max(), Limits::lowest(), Limits::denorm_min(), Limits::min()}) {
     CAPTURE(extreme);
     auto state = features.start();
@@ -113,7 +113,7 @@ TEMPLATE_TEST_CASE("taxel features: readings at the ends of what a number holds"
       Image<S> taxels(2, 2, S(10));
       taxels(0, 1) = k > 20 && k < 40 && k % 3 == 0 ? extreme : S(10);
       taxels(1, 1) = k % 4 < 2 ? S(20) : S(10);
-      const auto sample = features(taxels, S(k), state);
+      const auto sample = features(taxels, k, state);
       CHECK(sample.waves >= 0);
       CHECK(sample.waves <= 4);
       CHECK_FALSE(std::isnan(sample.frequency_hz));

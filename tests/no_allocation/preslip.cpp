@@ -3,9 +3,9 @@
 #include "fingerpad/foam/preslip.hpp"
 
 #include <array>
-#include <type_traits>
 
 #include "fingerpad/foam/holding_force.hpp"
+#include "fingerpad/published/preslip.hpp"
 #include "no_allocation/count.hpp"
 #include "support/catch.hpp"
 #include "support/numbers.hpp"
@@ -31,22 +31,12 @@ std::array<FingerSample<S>, Fingers> hand(int k) {
 
 TEMPLATE_TEST_CASE("pre-slip: a sample allocates nothing",
                    "[preslip]",
-                   (Preslip<GraspOptimise<>, 2, AllPairs>),
-                   (Preslip<GraspOptimise<>, 2, NewestPairs>),
-                   (Preslip<GraspOptimise<>, 2, ConstantTime>),
-                   (Preslip<GraspOptimise<>, 3, ConstantTime, float>),
-                   (Preslip<GraspOptimise<AnyPair>, 2, AllPairs>),
-                   (Preslip<GraspOptimise<AnyPair>, 2, NewestPairs>),
-                   (Preslip<GraspOptimise<AnyPair>, 2, ConstantTime>),
+                   (Preslip<GraspOptimise, 3, float>),
                    (Preslip<>),
-                   (Preslip<GraspLift<>, 2, AllPairs>),
-                   (Preslip<GraspLift<>, 2, NewestPairs, test::Dual<double>>),
-                   (Preslip<GraspLift<MovedToOtherCell>, 2, NewestPairs>),
-                   (Preslip<GraspLift<MovedToOtherCell>, 2, ConstantTime>),
-                   (Preslip<GraspLift<MovedToOtherCell, BothAxes>, 2, AllPairs>),
-                   (Preslip<GraspLift<MovedToOtherCell, BothAxes>, 2, ConstantTime>)) {
-  const auto run = []<class Rule, std::size_t Fingers, class Search, class S>(
-                       const Preslip<Rule, Fingers, Search, S>& preslip) {
+                   (Preslip<GraspLift, 2, test::Dual<double>>),
+                   (published::StackScan<GraspLift>)) {
+  const auto run = []<template <class, std::size_t, class> class Search, class Rule,
+                      std::size_t Fingers, class S>(const Search<Rule, Fingers, S>& preslip) {
     const long before_state = test::allocations();
     auto state = preslip.start();
     CHECK(test::allocations() > before_state);
@@ -76,11 +66,11 @@ TEST_CASE("searches for the holding force: nothing is allocated", "[holding_forc
   auto loosening = loosen.start();
   auto lifting = lift.start();
   for (int k = 0; k < 300; ++k) {
-    const auto signal = k % 40 == 39 ? SlipSignal::preslip : SlipSignal::steady;
-    (void)loosen(k > 200 ? signal : SlipSignal::steady, loosening);
+    const auto signal = k % 40 == 39 ? PreslipStatus::preslip : PreslipStatus::steady;
+    (void)loosen(k > 200 ? signal : PreslipStatus::steady, loosening);
     (void)lift(signal, lifting);
   }
   CHECK(test::allocations() == before);
   CHECK(loosening.command().phase == SearchPhase::found);
-  CHECK(lifting.command().regrips > 0);
+  CHECK(lifting.command().steps > 0);
 }

@@ -16,10 +16,10 @@ using namespace fingerpad;
 
 namespace {
 
-using News = std::vector<SlipSignal>;
+using News = std::vector<PreslipStatus>;
 
-LoosenPlan<double> any_loosen_plan() {
-  LoosenPlan<double> plan;
+LoosenOptions<double> any_loosen_plan() {
+  LoosenOptions<double> plan;
   plan.min_force_n = test::whole(0, 1) == 0 ? 0 : test::uniform(0, 5);
   plan.first_force_n = plan.min_force_n + test::uniform(0.01, 20);
   plan.step_n = (plan.first_force_n - plan.min_force_n) / test::uniform(0.5, 25);
@@ -30,8 +30,8 @@ LoosenPlan<double> any_loosen_plan() {
   return plan;
 }
 
-LiftPlan<double> any_lift_plan() {
-  LiftPlan<double> plan;
+LiftOptions<double> any_lift_plan() {
+  LiftOptions<double> plan;
   plan.first_force_n = test::uniform(0.1, 5);
   plan.max_force_n = plan.first_force_n + (test::whole(0, 3) == 0 ? 0 : test::uniform(0, 20));
   plan.force_step_n =
@@ -46,13 +46,13 @@ LiftPlan<double> any_lift_plan() {
 News any_news(Index most) {
   News signal(static_cast<std::size_t>(test::whole(1, most)));
   const Index slips = test::whole(0, 1), often = test::whole(1, 20);
-  for (SlipSignal& one : signal) {
+  for (PreslipStatus& one : signal) {
     const Index kind = test::whole(0, 60);
-    one = kind < often          ? SlipSignal::preslip
-          : kind < 30           ? SlipSignal::steady
-          : kind < 35           ? SlipSignal::missing
-          : kind == 60 && slips ? SlipSignal::slipped
-                                : SlipSignal::steady;
+    one = kind < often          ? PreslipStatus::preslip
+          : kind < 30           ? PreslipStatus::steady
+          : kind < 35           ? PreslipStatus::cannot_tell
+          : kind == 60 && slips ? PreslipStatus::slipped
+                                : PreslipStatus::steady;
   }
   return signal;
 }
@@ -60,7 +60,7 @@ News any_news(Index most) {
 template <class Search>
 auto after(const Search& search, const News& signal) {
   auto state = search.start();
-  for (const SlipSignal one : signal) {
+  for (const PreslipStatus one : signal) {
     (void)search(one, state);
   }
   return state.command();
@@ -69,13 +69,10 @@ auto after(const Search& search, const News& signal) {
 bool equal(double a, double b) {
   return a == b || (std::isnan(a) && std::isnan(b));
 }
-bool equal(const LoosenCommand<double>& a, const LoosenCommand<double>& b) {
-  return a.force_n == b.force_n && a.phase == b.phase && a.steps == b.steps &&
-         equal(a.preslip_force_n, b.preslip_force_n) && a.warning_steps == b.warning_steps;
-}
-bool equal(const LiftCommand<double>& a, const LiftCommand<double>& b) {
-  return a.force_n == b.force_n && a.phase == b.phase && a.height_mm == b.height_mm &&
-         a.regrips == b.regrips;
+bool equal(const HoldingCommand<double>& a, const HoldingCommand<double>& b) {
+  return a.force_n == b.force_n && a.height_mm == b.height_mm && a.phase == b.phase &&
+         a.steps == b.steps && equal(a.preslip_force_n, b.preslip_force_n) &&
+         a.warning_steps == b.warning_steps;
 }
 
 /// Steps of this size that fit into the way, the last of which may be short.
@@ -85,10 +82,10 @@ Index steps_in(double way, double step) {
 
 /// As an object answers: it slips on some of its contact below one force, and as a whole below
 /// another.
-SlipSignal object(double force_n, double begins_below_n, double slips_below_n) {
-  return force_n < slips_below_n    ? SlipSignal::slipped
-         : force_n < begins_below_n ? SlipSignal::preslip
-                                    : SlipSignal::steady;
+PreslipStatus object(double force_n, double begins_below_n, double slips_below_n) {
+  return force_n < slips_below_n    ? PreslipStatus::slipped
+         : force_n < begins_below_n ? PreslipStatus::preslip
+                                    : PreslipStatus::steady;
 }
 
 /// The command with which a search ends; what the object says may be missing for a while.
@@ -99,7 +96,7 @@ auto end_of(const Search& search, double begins_below_n, double slips_below_n) {
   for (int k = 0; k < 100000 && !is_end(state.command().phase); ++k) {
     const bool is_missing = k % seldom == 0;
     const double force_n = state.command().force_n;
-    (void)search(is_missing ? SlipSignal::missing : object(force_n, begins_below_n, slips_below_n),
+    (void)search(is_missing ? PreslipStatus::cannot_tell : object(force_n, begins_below_n, slips_below_n),
                  state);
   }
   RC_ASSERT(is_end(state.command().phase));
@@ -115,7 +112,7 @@ void check_copies(const Search& search, const News& signal) {
   }
   auto copy = state;
   News rest(signal.begin() + static_cast<std::ptrdiff_t>(at), signal.end());
-  for (const SlipSignal one : rest) {
+  for (const PreslipStatus one : rest) {
     const auto command = search(one, state);
     RC_ASSERT(equal(command, search(one, copy)));
     RC_ASSERT(equal(command, state.command()));
@@ -124,7 +121,7 @@ void check_copies(const Search& search, const News& signal) {
   // and what is missing might as well not have been asked
   News heard;
   std::copy_if(signal.begin(), signal.end(), std::back_inserter(heard),
-               [](SlipSignal one) { return one != SlipSignal::missing; });
+               [](PreslipStatus one) { return one != PreslipStatus::cannot_tell; });
   RC_ASSERT(equal(after(search, heard), state.command()));
 }
 
@@ -135,7 +132,7 @@ TEST_CASE("loosening whatever is told", "[holding_force][law]") {
     const auto plan = any_loosen_plan();
     const LoosenUntilPreslip<double> search(plan);
     auto state = search.start();
-    for (const SlipSignal one : any_news(120)) {
+    for (const PreslipStatus one : any_news(120)) {
       const auto before = state.command();
       const auto now = search(one, state);
       RC_ASSERT(now.force_n >= plan.min_force_n);
@@ -164,15 +161,15 @@ TEST_CASE("loosening whatever is told", "[holding_force][law]") {
     const Index levels = steps_in(plan.first_force_n - plan.min_force_n, plan.step_n) + 1;
     const Index bound = levels * (plan.settle_samples + plan.watch_samples);
     // steady signal takes the longest: all of the bound
-    const News steady(static_cast<std::size_t>(bound), SlipSignal::steady);
+    const News steady(static_cast<std::size_t>(bound), PreslipStatus::steady);
     RC_ASSERT(after(search, steady).phase == SearchPhase::at_limit);
     RC_ASSERT(!is_end(after(search, News(steady.begin() + 1, steady.end())).phase));
     auto state = search.start();
     Index told = 0;
     while (told < bound) {
-      for (const SlipSignal one : any_news(50)) {
+      for (const PreslipStatus one : any_news(50)) {
         (void)search(one, state);
-        told += one != SlipSignal::missing ? 1 : 0;
+        told += one != PreslipStatus::cannot_tell ? 1 : 0;
       }
     }
     RC_ASSERT(is_end(state.command().phase));
@@ -186,8 +183,8 @@ TEST_CASE("loosening whatever is told", "[holding_force][law]") {
     const Index samples = 30 * (plan.settle_samples + plan.watch_samples);
     const Index early = test::whole(0, samples - 1), late = test::whole(early, samples - 1);
     const auto from = [&](Index first) {
-      News signal(static_cast<std::size_t>(samples + 20), SlipSignal::preslip);
-      std::fill(signal.begin(), signal.begin() + first, SlipSignal::steady);
+      News signal(static_cast<std::size_t>(samples + 20), PreslipStatus::preslip);
+      std::fill(signal.begin(), signal.begin() + first, PreslipStatus::steady);
       return after(search, signal);
     };
     const auto a = from(early), b = from(late);
@@ -259,14 +256,14 @@ TEST_CASE("lifting whatever is told", "[holding_force][law]") {
     const auto plan = any_lift_plan();
     const LiftWithRegrip<double> search(plan);
     auto state = search.start();
-    for (const SlipSignal one : any_news(120)) {
+    for (const PreslipStatus one : any_news(120)) {
       const auto before = state.command();
       const auto now = search(one, state);
       RC_ASSERT(now.force_n >= plan.first_force_n);
       RC_ASSERT(now.force_n <= plan.max_force_n);
       RC_ASSERT(now.force_n >= before.force_n);
       RC_ASSERT(now.force_n - before.force_n <= plan.force_step_n * (1 + 1e-12));
-      RC_ASSERT(now.regrips - before.regrips == (now.force_n > before.force_n ? 1 : 0));
+      RC_ASSERT(now.steps - before.steps == (now.force_n > before.force_n ? 1 : 0));
       RC_ASSERT(now.height_mm >= 0);
       RC_ASSERT(now.height_mm <= plan.height_mm);
       RC_ASSERT(now.height_mm - before.height_mm <= plan.height_step_mm * (1 + 1e-12));
@@ -290,16 +287,16 @@ TEST_CASE("lifting whatever is told", "[holding_force][law]") {
     auto state = search.start();
     Index told = 0;
     while (told < bound) {
-      for (const SlipSignal one : any_news(50)) {
+      for (const PreslipStatus one : any_news(50)) {
         (void)search(one, state);
-        told += one != SlipSignal::missing ? 1 : 0;
+        told += one != PreslipStatus::cannot_tell ? 1 : 0;
       }
     }
     RC_ASSERT(is_end(state.command().phase));
     // the longest way: all but one lift, all tightenings, the last lift
-    News longest(static_cast<std::size_t>(lifts - 1), SlipSignal::steady);
-    longest.insert(longest.end(), static_cast<std::size_t>(bound - lifts + 1), SlipSignal::preslip);
-    longest.back() = SlipSignal::steady;
+    News longest(static_cast<std::size_t>(lifts - 1), PreslipStatus::steady);
+    longest.insert(longest.end(), static_cast<std::size_t>(bound - lifts + 1), PreslipStatus::preslip);
+    longest.back() = PreslipStatus::steady;
     RC_ASSERT(after(search, longest).phase == SearchPhase::lifted);
     longest.pop_back();
     RC_ASSERT(!is_end(after(search, longest).phase));

@@ -77,8 +77,7 @@ inline Row small_vibration() {
                options.sample_period_s = S(1);
                options.longest_gap_s = S(10);
                options.noise = S(0);
-               const fingerpad::TaxelFeatures<fingerpad::ZeroCrossings, fingerpad::MeanRemoved, S>
-                   features(1, 1, options);
+               const fingerpad::TaxelFeatures<fingerpad::ZeroCrossings, S> features(1, 1, options);
                auto state = features.start();
                test::Random random(5);
                std::vector<S> readings;
@@ -96,18 +95,24 @@ inline Row small_vibration() {
                    sum -= gone;
                    squares -= gone * gone;
                  }
-                 const auto sample = features(test::Image<S>(1, 1, reading), S(k), state);
+                 const auto sample = features(test::Image<S>(1, 1, reading), k, state);
                  if (k % 7 == 0 && k > 100) {
-                   Digits50 mean(0), left(0);
-                   for (std::size_t u = readings.size() - 8; u < readings.size(); ++u) {
-                     mean += Digits50(readings[u]) / 8;
+                   Digits50 mean(0), tilt(0), left(0);
+                   const std::size_t first = readings.size() - 8;
+                   for (int u = 0; u < 8; ++u) {
+                     const Digits50 reading(readings[first + static_cast<std::size_t>(u)]);
+                     mean += reading / 8;
+                     tilt += reading * (u - 3.5);
+                     left += reading * reading / 8;
                    }
-                   for (std::size_t u = readings.size() - 8; u < readings.size(); ++u) {
-                     const Digits50 off = Digits50(readings[u]) - mean;
-                     left += off * off / 8;
+                   // the sum of (u - 3.5)^2 is 42
+                   const Digits50 exact = sqrt(Digits50(left - mean * mean - tilt * tilt / 336));
+                   S of_moment = S(0);  // as if it ran like the other sums
+                   for (int u = 0; u < 8; ++u) {
+                     of_moment += readings[first + static_cast<std::size_t>(u)] * S(u - 3.5);
                    }
-                   const Digits50 exact = sqrt(left);
-                   const S of_sums = squares / S(8) - (sum / S(8)) * (sum / S(8));
+                   const S of_sums = squares / S(8) - (sum / S(8)) * (sum / S(8)) -
+                                     of_moment * of_moment / S(336);
                    f.naive.add_relative(std::sqrt(of_sums), exact);
                    f.stable.add_relative(sample.deviation, exact);
                  }

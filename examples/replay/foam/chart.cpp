@@ -157,11 +157,11 @@ cv::Mat foam_chart(const std::string& title,
               Align::left, true);
   double y = first_rule;
   if (sensor.grasp_lift) {
-    paint_rule(canvas, axis, y, fingerpad::GraspLift<>::name, rows, &FoamAlarm::grasp_lift);
+    paint_rule(canvas, axis, y, fingerpad::GraspLift::name, rows, &FoamAlarm::grasp_lift);
     y += 50;
   }
   if (sensor.grasp_optimise) {
-    paint_rule(canvas, axis, y, fingerpad::GraspOptimise<>::name, rows, &FoamAlarm::grasp_optimise);
+    paint_rule(canvas, axis, y, fingerpad::GraspOptimise::name, rows, &FoamAlarm::grasp_optimise);
   }
   axis.paint(canvas, bottom);
   return canvas.finished();

@@ -47,8 +47,8 @@ class OneRule {
 }  // namespace
 
 std::string FoamAlarm::names() const {
-  const std::string lift = fingerpad::GraspLift<>::name;
-  const std::string optimise = fingerpad::GraspOptimise<>::name;
+  const std::string lift = fingerpad::GraspLift::name;
+  const std::string optimise = fingerpad::GraspOptimise::name;
   return any() ? grasp_lift && grasp_optimise ? optimise + "+" + lift
                  : grasp_lift                 ? lift
                                               : optimise
@@ -66,7 +66,7 @@ FoamNoise noise_of(const FoamRecording& recording, int finger) {
     return {std::vector<double>(taxels, *noise)};
   }
   try {
-    fingerpad::TaxelNoiseCalibration<> calibration(first.rows(), first.cols(),
+    fingerpad::TaxelNoiseCalibration calibration(first.rows(), first.cols(),
                                                    recording.sensor.taxels);
     for (int sample = 0; sample < recording.table.samples(); ++sample) {
       calibration.add(recording.finger(sample, finger),
@@ -82,8 +82,8 @@ FoamNoise noise_of(const FoamRecording& recording, int finger) {
 template <std::size_t Fingers>
 FoamStep::Rules FoamStep::rules_of(const FoamSensor& sensor) {
   using namespace fingerpad;
-  return [lift = OneRule<GraspLift<>, Fingers>(sensor),
-          optimise = OneRule<GraspOptimise<>, Fingers>(sensor), with_lift = sensor.grasp_lift,
+  return [lift = OneRule<GraspLift, Fingers>(sensor),
+          optimise = OneRule<GraspOptimise, Fingers>(sensor), with_lift = sensor.grasp_lift,
           with_optimise =
               sensor.grasp_optimise](const std::vector<FingerSample<double>>& fingers) mutable {
     std::array<FingerSample<double>, Fingers> newest;

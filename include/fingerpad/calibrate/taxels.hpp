@@ -34,10 +34,9 @@ struct TaxelNoise {
   StridedView<const double> view() const { return {deviations.data(), rows, cols, cols}; }
 };
 
-/// Gathers samples at rest. Level as that of the features.
-template <class Level = TrendRemoved>
+/// Gathers samples at rest.
 class TaxelNoiseCalibration {
-  using Features = TaxelFeatures<ZeroCrossings, Level, double>;
+  using Features = TaxelFeatures<ZeroCrossings, double>;
 
  public:
   /// Refuses bad parameters (parameter_error). Of the options, those that noise does not decide.
@@ -47,7 +46,6 @@ class TaxelNoiseCalibration {
         window_(rows * cols, options.window),
         centroid_(2, options.window),
         held_(static_cast<std::size_t>(rows * cols), 0.0),
-        spread_(held_.size(), 0.0),
         taxels_(held_.size()) {}
 
   /// The next sample; false, and nothing changed, if the array has another size or the time is not
@@ -118,7 +116,7 @@ class TaxelNoiseCalibration {
     bool is_bad = false;            // in the present window
   };
 
-  /// From the median of the windows' mean squares; NaN: there are none. What the mean or the line
+  /// From the median of the windows' mean squares; NaN: there are none. What the line
   /// takes of each is given back, and what the median of a chi-square is below its mean.
   double mean_square_of(std::vector<double> variances) const {
     if (variances.empty()) {
@@ -128,7 +126,7 @@ class TaxelNoiseCalibration {
     const std::size_t half = variances.size() / 2;
     const double median = (variances[half] + variances[(variances.size() - 1) / 2]) / 2;
     const double n = static_cast<double>(features_.options().window);
-    const double freedom = n - (Level::has_slope ? 2 : 1);
+    const double freedom = n - 2;
     const double median_share = std::pow(1 - 2 / (9 * freedom), 3);
     return median * n / (freedom * median_share);
   }
@@ -148,26 +146,22 @@ class TaxelNoiseCalibration {
 
   void judge() {
     ++windows_;
-    window_.variances(spread_.data());
     for (std::size_t k = 0; k < taxels_.size(); ++k) {
       Taxel& taxel = taxels_[k];
       if (!taxel.is_bad) {
-        taxel.variances.push_back(spread_[k]);
+        taxel.variances.push_back(window_.variance(static_cast<Index>(k)));
       }
     }
     if (is_pressed_) {
-      double spread[2];
-      centroid_.variances(spread);
-      centroid_variances_.push_back((spread[0] + spread[1]) / 2);
+      centroid_variances_.push_back((centroid_.variance(0) + centroid_.variance(1)) / 2);
     }
   }
 
   Features features_;
-  typename Features::State state_;
-  detail::TaxelWindow<Level, double> window_;
-  detail::TaxelWindow<Level, double> centroid_;
+  Features::State state_;
+  detail::TaxelWindow<double> window_;
+  detail::TaxelWindow<double> centroid_;
   std::vector<double> held_;
-  std::vector<double> spread_;
   std::vector<Taxel> taxels_;
   std::vector<double> centroid_variances_;  // along either axis
   Index in_window_ = 0;                     // samples of the present window

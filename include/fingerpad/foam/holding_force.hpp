@@ -11,29 +11,19 @@
 //                           pre-slip is found the lift waits and the grip is tightened
 //
 // Samples in, commands out: the caller moves the gripper, and tells at each sample what the fingers
-// say of slip, by preslip.hpp or by anything else.
+// say of slip, by preslip.hpp or by anything else. While that cannot be told the command stays.
 #include <cstdint>
 
 #include "fingerpad/core/expects.hpp"
 #include "fingerpad/core/grid.hpp"
 #include "fingerpad/core/scalar.hpp"
+#include "fingerpad/foam/preslip_status.hpp"
 
 namespace fingerpad {
 inline namespace v0 {
 
-// What the searches for the holding force are told at each sample, and what they say they do.
-
-/// What the fingers say at one sample.
-enum class SlipSignal : std::uint8_t {
-  steady,   ///< no sign of slip
-  preslip,  ///< some of the contact begins to slip
-  slipped,  ///< the object slips as a whole, or is gone
-  missing,  ///< nothing can be told: the command stays as it is
-};
-
 enum class SearchPhase : std::uint8_t {
-  settling,  ///< what the last command stirred up dies away; signal but `slipped` is not listened
-             ///< to
+  settling,  ///< what the last command stirred up dies away: only `slipped` is listened to
   watching,  ///< pre-slip is waited for
   found,     ///< loosening: the least force is known. The end
   lifted,    ///< lifting: at the full height. The end
@@ -65,6 +55,17 @@ constexpr bool is_end(SearchPhase phase) {
   return phase != SearchPhase::settling && phase != SearchPhase::watching;
 }
 
+/// What to do from now on, within the limits of the options.
+template <scalar S = double>
+struct [[nodiscard]] HoldingCommand {
+  S force_n = S(0);    ///< to grip with
+  S height_mm = S(0);  ///< to lift to; 0 again where the lift is given up, and while loosening
+  SearchPhase phase = SearchPhase::settling;
+  Index steps = 0;                        ///< by which the grip has been loosened or tightened
+  S preslip_force_n = not_a_number<S>();  ///< loosening: at which pre-slip was found first
+  Index warning_steps = 0;                ///< loosened since then
+};
+
 namespace detail {
 /// Whether `step` is a step that ends: at most a million go into the way.
 template <scalar S>
@@ -75,7 +76,7 @@ bool divides(const S& step, const S& way) {
 
 /// How the grip is loosened. The paper prints no values.
 template <scalar S = double>
-struct LoosenPlan {
+struct LoosenOptions {
   S first_force_n = S(10);      ///< with which the object is held at first, > min_force_n
   S min_force_n = S(1) / S(2);  ///< never less, >= 0
   S step_n = S(1) / S(4);       ///< taken off at a time, > 0
@@ -87,30 +88,23 @@ struct LoosenPlan {
 
 /// Refuses what has no meaning (parameter_error).
 template <scalar S>
-void expects_valid(const LoosenPlan<S>& plan) {
-  const char* const owner = "LoosenPlan";
-  expects(is_finite(plan.min_force_n) && value(plan.min_force_n) >= 0, owner, "min_force_n",
-          plan.min_force_n, "finite and >= 0");
-  expects(is_finite(plan.first_force_n) && value(plan.first_force_n) > value(plan.min_force_n),
-          owner, "first_force_n", plan.first_force_n, "finite and > min_force_n");
-  expects(detail::divides(plan.step_n, S(plan.first_force_n - plan.min_force_n)), owner, "step_n",
-          plan.step_n, "finite and > 0, in at most a million steps from first to least force");
-  expects(plan.settle_samples >= 0, owner, "settle_samples",
-          static_cast<long long>(plan.settle_samples), ">= 0");
-  expects(plan.watch_samples >= 1, owner, "watch_samples",
-          static_cast<long long>(plan.watch_samples), ">= 1");
-  expects(plan.margin_steps >= 0 && plan.margin_steps <= 1000000, owner, "margin_steps",
-          static_cast<long long>(plan.margin_steps), "in [0, 1000000]");
+void expects_valid(const LoosenOptions<S>& options) {
+  const char* const owner = "LoosenOptions";
+  expects(is_finite(options.min_force_n) && value(options.min_force_n) >= 0, owner, "min_force_n",
+          options.min_force_n, "finite and >= 0");
+  expects(
+      is_finite(options.first_force_n) && value(options.first_force_n) > value(options.min_force_n),
+      owner, "first_force_n", options.first_force_n, "finite and > min_force_n");
+  expects(detail::divides(options.step_n, S(options.first_force_n - options.min_force_n)), owner,
+          "step_n", options.step_n,
+          "finite and > 0, in at most a million steps from first to least force");
+  expects(options.settle_samples >= 0, owner, "settle_samples",
+          static_cast<long long>(options.settle_samples), ">= 0");
+  expects(options.watch_samples >= 1, owner, "watch_samples",
+          static_cast<long long>(options.watch_samples), ">= 1");
+  expects(options.margin_steps >= 0 && options.margin_steps <= 1000000, owner, "margin_steps",
+          static_cast<long long>(options.margin_steps), "in [0, 1000000]");
 }
-
-template <scalar S = double>
-struct [[nodiscard]] LoosenCommand {
-  S force_n = S(0);  ///< to grip with from now on, within the limits of the plan
-  SearchPhase phase = SearchPhase::settling;
-  Index steps = 0;                        ///< by which the grip has been loosened
-  S preslip_force_n = not_a_number<S>();  ///< at which pre-slip was found first; NaN: not yet
-  Index warning_steps = 0;                ///< loosened since then
-};
 
 /// Loosens step by step until pre-slip. Const, O(1), no memory from the heap; ends after at most
 /// (first - least) / step + 1 steps of signal that is not missing.
@@ -120,39 +114,41 @@ class LoosenUntilPreslip {
   /// A value: copy it to go back to this sample later.
   class State {
    public:
-    const LoosenCommand<S>& command() const { return command_; }
+    const HoldingCommand<S>& command() const { return command_; }
 
    private:
     friend class LoosenUntilPreslip;
-    LoosenCommand<S> command_;
+    HoldingCommand<S> command_;
     Index samples_ = 0;  // in this phase
   };
 
   /// Refuses bad parameters (parameter_error).
-  explicit LoosenUntilPreslip(const LoosenPlan<S>& plan = {}) : plan_(plan) { expects_valid(plan); }
+  explicit LoosenUntilPreslip(const LoosenOptions<S>& options = {}) : options_(options) {
+    expects_valid(options);
+  }
 
-  const LoosenPlan<S>& plan() const { return plan_; }
+  const LoosenOptions<S>& options() const { return options_; }
 
   State start() const {
     State state;
-    state.command_.force_n = plan_.first_force_n;
+    state.command_.force_n = options_.first_force_n;
     return state;
   }
 
   /// What to do after one more sample.
-  LoosenCommand<S> operator()(SlipSignal signal, State& state) const {
-    LoosenCommand<S>& command = state.command_;
-    if (is_end(command.phase) || signal == SlipSignal::missing) {
+  HoldingCommand<S> operator()(PreslipStatus signal, State& state) const {
+    HoldingCommand<S>& command = state.command_;
+    if (is_end(command.phase) || signal == PreslipStatus::cannot_tell) {
       return command;
     }
-    if (signal == SlipSignal::slipped) {
+    if (signal == PreslipStatus::slipped) {
       command.phase = SearchPhase::slipped;
-      command.force_n = plan_.first_force_n;
+      command.force_n = options_.first_force_n;
       return command;
     }
     ++state.samples_;
     if (command.phase == SearchPhase::settling) {
-      if (state.samples_ > plan_.settle_samples) {
+      if (state.samples_ > options_.settle_samples) {
         enter(SearchPhase::watching, state);
         watch(signal, state);
       }
@@ -168,45 +164,46 @@ class LoosenUntilPreslip {
     state.samples_ = phase == SearchPhase::watching ? 1 : 0;
   }
 
-  void watch(SlipSignal signal, State& state) const {
-    LoosenCommand<S>& command = state.command_;
-    const bool is_first = signal == SlipSignal::preslip && !is_finite(command.preslip_force_n);
+  void watch(PreslipStatus signal, State& state) const {
+    HoldingCommand<S>& command = state.command_;
+    const bool is_first = signal == PreslipStatus::preslip && !is_finite(command.preslip_force_n);
     if (is_first) {
       command.preslip_force_n = command.force_n;
-      if (!plan_.until_slipped) {
-        const S margin = S(static_cast<int>(plan_.margin_steps)) * plan_.step_n;
+      if (!options_.until_slipped) {
+        const S margin = S(static_cast<int>(options_.margin_steps)) * options_.step_n;
         const S held = command.force_n + margin;
-        command.force_n = value(held) < value(plan_.first_force_n) ? held : plan_.first_force_n;
+        command.force_n =
+            value(held) < value(options_.first_force_n) ? held : options_.first_force_n;
         command.phase = SearchPhase::found;
         return;
       }
     }
-    if (state.samples_ >= plan_.watch_samples) {
+    if (state.samples_ >= options_.watch_samples) {
       loosen(state);
     }
   }
 
   void loosen(State& state) const {
-    LoosenCommand<S>& command = state.command_;
-    if (!(value(plan_.min_force_n) < value(command.force_n))) {
+    HoldingCommand<S>& command = state.command_;
+    if (!(value(options_.min_force_n) < value(command.force_n))) {
       command.phase = SearchPhase::at_limit;
       return;
     }
     ++command.steps;
     command.warning_steps += is_finite(command.preslip_force_n) ? 1 : 0;
     // from the first force, so that rounding does not add up
-    const S taken = S(static_cast<int>(command.steps)) * plan_.step_n;
-    const S next = plan_.first_force_n - taken;
-    command.force_n = value(plan_.min_force_n) < value(next) ? next : plan_.min_force_n;
+    const S taken = S(static_cast<int>(command.steps)) * options_.step_n;
+    const S next = options_.first_force_n - taken;
+    command.force_n = value(options_.min_force_n) < value(next) ? next : options_.min_force_n;
     enter(SearchPhase::settling, state);
   }
 
-  LoosenPlan<S> plan_;
+  LoosenOptions<S> options_;
 };
 
 /// How the object is lifted. The paper prints no values.
 template <scalar S = double>
-struct LiftPlan {
+struct LiftOptions {
   S first_force_n = S(1);          ///< with which it is gripped before the lift, > 0
   S max_force_n = S(20);           ///< never more, >= first_force_n
   S force_step_n = S(1) / S(2);    ///< by which the grip is tightened, > 0
@@ -217,30 +214,24 @@ struct LiftPlan {
 
 /// Refuses what has no meaning (parameter_error).
 template <scalar S>
-void expects_valid(const LiftPlan<S>& plan) {
+void expects_valid(const LiftOptions<S>& options) {
   const auto positive = [](const S& x, const char* name) {
-    expects(is_finite(x) && value(x) > 0, "LiftPlan", name, x, "finite and > 0");
+    expects(is_finite(x) && value(x) > 0, "LiftOptions", name, x, "finite and > 0");
   };
-  positive(plan.first_force_n, "first_force_n");
-  expects(is_finite(plan.max_force_n) && value(plan.max_force_n) >= value(plan.first_force_n),
-          "LiftPlan", "max_force_n", plan.max_force_n, "finite and >= first_force_n");
-  positive(plan.height_mm, "height_mm");
-  expects(detail::divides(plan.force_step_n, S(plan.max_force_n - plan.first_force_n)), "LiftPlan",
-          "force_step_n", plan.force_step_n,
+  positive(options.first_force_n, "first_force_n");
+  expects(
+      is_finite(options.max_force_n) && value(options.max_force_n) >= value(options.first_force_n),
+      "LiftOptions", "max_force_n", options.max_force_n, "finite and >= first_force_n");
+  positive(options.height_mm, "height_mm");
+  expects(detail::divides(options.force_step_n, S(options.max_force_n - options.first_force_n)),
+          "LiftOptions", "force_step_n", options.force_step_n,
           "finite and > 0, in at most a million steps from first to most force");
-  expects(detail::divides(plan.height_step_mm, plan.height_mm), "LiftPlan", "height_step_mm",
-          plan.height_step_mm, "finite and > 0, in at most a million steps to the height");
-  expects(plan.settle_samples >= 0, "LiftPlan", "settle_samples",
-          static_cast<long long>(plan.settle_samples), ">= 0");
+  expects(detail::divides(options.height_step_mm, options.height_mm), "LiftOptions",
+          "height_step_mm", options.height_step_mm,
+          "finite and > 0, in at most a million steps to the height");
+  expects(options.settle_samples >= 0, "LiftOptions", "settle_samples",
+          static_cast<long long>(options.settle_samples), ">= 0");
 }
-
-template <scalar S = double>
-struct [[nodiscard]] LiftCommand {
-  S force_n = S(0);    ///< to grip with from now on, within the limits of the plan
-  S height_mm = S(0);  ///< to lift to; back to 0 where the lift is given up
-  SearchPhase phase = SearchPhase::watching;
-  Index regrips = 0;  ///< how often the grip was tightened
-};
 
 /// Lifts, and tightens the grip where pre-slip shows. Const, O(1), no memory from the heap. At the
 /// largest force it gives up where pre-slip still shows; where the object slips as a whole, at
@@ -251,37 +242,41 @@ class LiftWithRegrip {
   /// A value: copy it to go back to this sample later.
   class State {
    public:
-    const LiftCommand<S>& command() const { return command_; }
+    const HoldingCommand<S>& command() const { return command_; }
 
    private:
     friend class LiftWithRegrip;
-    LiftCommand<S> command_;
+    HoldingCommand<S> command_;
     Index samples_ = 0;       // of settling
     Index height_steps_ = 0;  // lifted
   };
 
   /// Refuses bad parameters (parameter_error).
-  explicit LiftWithRegrip(const LiftPlan<S>& plan = {}) : plan_(plan) { expects_valid(plan); }
+  explicit LiftWithRegrip(const LiftOptions<S>& options = {}) : options_(options) {
+    expects_valid(options);
+  }
 
-  const LiftPlan<S>& plan() const { return plan_; }
+  const LiftOptions<S>& options() const { return options_; }
 
   State start() const {
     State state;
-    state.command_.force_n = plan_.first_force_n;
+    state.command_.force_n = options_.first_force_n;
+    state.command_.phase = SearchPhase::watching;
     return state;
   }
 
   /// What to do after one more sample.
-  LiftCommand<S> operator()(SlipSignal signal, State& state) const {
-    LiftCommand<S>& command = state.command_;
-    if (is_end(command.phase) || signal == SlipSignal::missing) {
+  HoldingCommand<S> operator()(PreslipStatus signal, State& state) const {
+    HoldingCommand<S>& command = state.command_;
+    if (is_end(command.phase) || signal == PreslipStatus::cannot_tell) {
       return command;
     }
-    if (signal == SlipSignal::slipped) {
+    if (signal == PreslipStatus::slipped) {
       give_up(SearchPhase::slipped, command);
-    } else if (command.phase == SearchPhase::settling && ++state.samples_ <= plan_.settle_samples) {
+    } else if (command.phase == SearchPhase::settling &&
+               ++state.samples_ <= options_.settle_samples) {
       return command;
-    } else if (signal == SlipSignal::preslip) {
+    } else if (signal == PreslipStatus::preslip) {
       tighten(state);
     } else {
       lift(state);
@@ -290,35 +285,35 @@ class LiftWithRegrip {
   }
 
  private:
-  static void give_up(SearchPhase phase, LiftCommand<S>& command) {
+  static void give_up(SearchPhase phase, HoldingCommand<S>& command) {
     command.phase = phase;
     command.height_mm = S(0);
   }
 
   void tighten(State& state) const {
-    LiftCommand<S>& command = state.command_;
-    if (!(value(command.force_n) < value(plan_.max_force_n))) {
+    HoldingCommand<S>& command = state.command_;
+    if (!(value(command.force_n) < value(options_.max_force_n))) {
       give_up(SearchPhase::at_limit, command);
       return;
     }
-    ++command.regrips;
-    const S added = S(static_cast<int>(command.regrips)) * plan_.force_step_n;
-    const S next = plan_.first_force_n + added;
-    command.force_n = value(next) < value(plan_.max_force_n) ? next : plan_.max_force_n;
+    ++command.steps;
+    const S added = S(static_cast<int>(command.steps)) * options_.force_step_n;
+    const S next = options_.first_force_n + added;
+    command.force_n = value(next) < value(options_.max_force_n) ? next : options_.max_force_n;
     command.phase = SearchPhase::settling;
     state.samples_ = 0;
   }
 
   void lift(State& state) const {
-    LiftCommand<S>& command = state.command_;
+    HoldingCommand<S>& command = state.command_;
     ++state.height_steps_;
-    const S next = S(static_cast<int>(state.height_steps_)) * plan_.height_step_mm;
-    const bool is_up = !(value(next) < value(plan_.height_mm));
-    command.height_mm = is_up ? plan_.height_mm : next;
+    const S next = S(static_cast<int>(state.height_steps_)) * options_.height_step_mm;
+    const bool is_up = !(value(next) < value(options_.height_mm));
+    command.height_mm = is_up ? options_.height_mm : next;
     command.phase = is_up ? SearchPhase::lifted : SearchPhase::watching;
   }
 
-  LiftPlan<S> plan_;
+  LiftOptions<S> options_;
 };
 
 }  // namespace v0

@@ -10,126 +10,159 @@
 //   grasp-lift      centroid(a) != centroid(b) and location(a) != location(b)
 //                   and waves(b) > waves(a)                                  on any finger
 //
-// "Index 2 decreased until the latest data is located" is read as: until it meets index 1, for each
-// pair to be compared once (docs/errata.md, E042). What else the paper leaves open is a named
-// choice: SamePair or AnyPair, MovedBeyond or MovedToOtherCell, AnyAxis or BothAxes, and
-// PreslipOptions::min_waves.
+// Each pair is compared once (docs/errata.md, E042): the newest sample with those before it. The
+// scan of the whole stack as published, with the same answers, is in published/preslip.hpp.
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
+#include <vector>
 
 #include "fingerpad/core/expects.hpp"
 #include "fingerpad/core/grid.hpp"
 #include "fingerpad/core/scalar.hpp"
-#include "fingerpad/foam/detail/pair_history.hpp"
-#include "fingerpad/foam/detail/remembered_pairs.hpp"
 #include "fingerpad/foam/finger_sample.hpp"
-#include "fingerpad/foam/pair_rules.hpp"
+#include "fingerpad/foam/preslip_status.hpp"
 
 namespace fingerpad {
 inline namespace v0 {
 
-// Three ways to find out whether a history of samples holds a pair that fulfils a rule. All give
-// the same answer: of the pairs found, the one whose older sample is the latest, for that pair
-// stays in the history longest.
-//
-//   AllPairs      as published: both indices go through the whole history. O(history^2)
-//   NewestPairs   pairs of earlier samples were looked at before; only those with the newest are
-//                 new. O(history)
-//   ConstantTime  remembers, for each number of waves, the few samples that can still be asked for.
-//                 O(1), and for grasp-lift O(waves)
-
-/// As published: index 1 goes from the oldest sample on, and for each of its places index 2 from
-/// the newest sample down to it.
-struct AllPairs {
-  template <class Rule, std::size_t Fingers>
-  class Memory {
-    static constexpr std::size_t tracks = detail::tracks<Rule, Fingers>();
-
-   public:
-    template <scalar S>
-    explicit Memory(const PreslipOptions<S>& o) : history_(o.history) {}
-
-    void clear() { history_.clear(); }
-
-    detail::FoundPairs<tracks> operator()(const detail::HandSides<Fingers>& newest,
-                                          double tolerance) {
-      history_.add(newest);
-      detail::FoundPairs<tracks> found;
-      const std::int64_t last = history_.newest();
-      for (std::size_t track = 0; track < tracks; ++track) {
-        for (std::int64_t index_1 = history_.oldest(); index_1 < last; ++index_1) {
-          for (std::int64_t index_2 = last; index_2 > index_1; --index_2) {
-            if (detail::holds<Rule>(history_[index_1], history_[index_2], track, tolerance)) {
-              found.add(track, last - index_1, index_2 == last);
-            }
-          }
-        }
-      }
-      return found;
-    }
-
-   private:
-    detail::SideHistory<Fingers> history_;
-  };
+/// What a rule compares with. The paper prints no values.
+template <scalar S = double>
+struct PreslipOptions {
+  Index history = 100;  ///< samples that are compared, in [2, 1000000]
+  Index min_waves = 1;  ///< a later sample with fewer waves is silent, >= 0; 0 as published, where
+                        ///< none and none are an equal frequency
+  S centroid_tolerance_mm = S(1) / S(10);  ///< what the noise of a centroid explains, >= 0: a
+                                           ///< centroid differs that is farther off along an axis
 };
+
+/// Refuses what has no meaning (parameter_error).
+template <scalar S>
+void expects_valid(const PreslipOptions<S>& o) {
+  expects(o.history >= 2 && o.history <= 1000000, "PreslipOptions", "history",
+          static_cast<long long>(o.history), "in [2, 1000000]");
+  expects(o.min_waves >= 0, "PreslipOptions", "min_waves", static_cast<long long>(o.min_waves),
+          ">= 0");
+  expects(is_finite(o.centroid_tolerance_mm) && value(o.centroid_tolerance_mm) >= 0,
+          "PreslipOptions", "centroid_tolerance_mm", o.centroid_tolerance_mm, "finite and >= 0");
+}
 
 namespace detail {
 
-/// Pairs of the newest sample with what `Past` remembers of the earlier ones; pairs found before
-/// stand as long as they are in the history.
-template <class Rule, std::size_t Fingers, class Past>
-class NewestAgainst {
-  static constexpr std::size_t tracks = detail::tracks<Rule, Fingers>();
+/// A finger's sample as the rules see it.
+struct PairSide {
+  double x_mm = 0;
+  double y_mm = 0;
+  Index location = -1;
+  Index waves = 0;
+  bool is_pressed = false;
+  bool is_vibrating = false;  // has a location, and waves enough
+};
 
+template <scalar S>
+PairSide pair_side(const FingerSample<S>& s, const PreslipOptions<S>& o) {
+  PairSide side;
+  side.location = (std::max)(s.location, Index(-1));
+  side.waves = (std::max)(s.waves, Index(0));
+  side.is_vibrating = side.location >= 0 && s.waves >= o.min_waves;
+  side.is_pressed = s.is_pressed();
+  side.x_mm = static_cast<double>(value(s.center_x_mm));
+  side.y_mm = static_cast<double>(value(s.center_y_mm));
+  return side;
+}
+
+/// All fingers at one time.
+template <std::size_t Fingers>
+using HandSides = std::array<PairSide, Fingers>;
+
+template <std::size_t Fingers, scalar S>
+HandSides<Fingers> hand_sides(const std::array<FingerSample<S>, Fingers>& samples,
+                              const PreslipOptions<S>& options) {
+  HandSides<Fingers> sides;
+  for (std::size_t f = 0; f < Fingers; ++f) {
+    sides[f] = pair_side(samples[f], options);
+  }
+  return sides;
+}
+
+/// Whether two samples of the hand fulfil the rule.
+template <class Rule, std::size_t Fingers>
+bool holds(const HandSides<Fingers>& older, const HandSides<Fingers>& later, double tolerance_mm) {
+  std::size_t fingers = 0;
+  for (std::size_t f = 0; f < Fingers; ++f) {
+    fingers += Rule::holds(older[f], later[f], tolerance_mm) ? 1U : 0U;
+  }
+  return fingers >= (Rule::on_all_fingers ? Fingers : 1U);
+}
+
+/// The last samples of the hand, numbered 0, 1, 2, ... from the start.
+template <std::size_t Fingers>
+class SideHistory {
  public:
-  template <scalar S>
-  explicit NewestAgainst(const PreslipOptions<S>& o) : past_(o), standing_(o.history) {}
+  explicit SideHistory(Index size) : sides_(static_cast<std::size_t>(size)) {}
 
-  void clear() {
-    past_.clear();
-    standing_.clear();
-  }
-
-  FoundPairs<tracks> operator()(const HandSides<Fingers>& newest, double tolerance) {
-    const std::int64_t number = standing_.begin_sample();
-    for (std::size_t track = 0; track < tracks; ++track) {
-      if (can_be_later<Rule>(newest, track)) {
-        standing_.add(track, past_.latest(newest, number, track, tolerance));
-      }
-    }
-    past_.add(newest, number);
-    return standing_.found();
-  }
+  void clear() { count_ = 0; }
+  Index size() const { return static_cast<Index>(sides_.size()); }
+  std::int64_t newest() const { return count_ - 1; }
+  std::int64_t oldest() const { return (std::max)(std::int64_t{0}, count_ - size()); }
+  const HandSides<Fingers>& operator[](std::int64_t number) const { return sides_[place(number)]; }
+  /// In the place of the oldest, once there is no other.
+  void add(const HandSides<Fingers>& sides) { sides_[place(count_++)] = sides; }
 
  private:
-  Past past_;
-  StandingPairs<tracks> standing_;
+  std::size_t place(std::int64_t number) const {
+    return static_cast<std::size_t>(number) % sides_.size();
+  }
+  std::vector<HandSides<Fingers>> sides_;
+  std::int64_t count_ = 0;
 };
 
 }  // namespace detail
 
-/// The newest sample against the earlier ones, from the latest back to the first that fits.
-struct NewestPairs {
-  template <class Rule, std::size_t Fingers>
-  using Memory = detail::NewestAgainst<Rule, Fingers, detail::SideColumns<Rule, Fingers>>;
+/// First experiment: another taxel vibrates, with the same number of waves, on all fingers. Take
+/// this when an object hangs between fingers that press alike and the grip is loosened.
+struct GraspOptimise {
+  static constexpr const char* name = "grasp_optimise";
+  static constexpr bool on_all_fingers = true;
+
+  static bool holds(const detail::PairSide& older, const detail::PairSide& later, double) {
+    return older.is_vibrating && later.is_vibrating && older.location != later.location &&
+           older.waves == later.waves;
+  }
 };
 
-/// Only what can still be asked for is remembered. Centroids must be rounded (MovedToOtherCell):
-/// with a tolerance, any number of samples can each be the only answer to some question.
-struct ConstantTime {
-  template <class Rule, std::size_t Fingers>
-  using Memory = detail::NewestAgainst<Rule, Fingers, detail::RememberedPairs<Rule, Fingers>>;
+/// Second experiment: force has moved, another taxel vibrates, and with more waves, on any finger.
+/// Take this in all other cases. A sample in which nothing vibrates has no location, which differs
+/// from any.
+struct GraspLift {
+  static constexpr const char* name = "grasp_lift";
+  static constexpr bool on_all_fingers = false;
+
+  static bool holds(const detail::PairSide& older,
+                    const detail::PairSide& later,
+                    double tolerance_mm) {
+    return older.is_pressed && later.is_pressed && later.is_vibrating &&
+           older.location != later.location && later.waves > older.waves &&
+           (std::fabs(older.x_mm - later.x_mm) > tolerance_mm ||
+            std::fabs(older.y_mm - later.y_mm) > tolerance_mm);
+  }
 };
 
 struct [[nodiscard]] PreslipResult {
   static constexpr std::int64_t none = -1;
 
+  PreslipStatus status = PreslipStatus::cannot_tell;  ///< what to act on: `preslip` where the
+                                                      ///< newest sample completes a pair
   bool alarm = false;     ///< the history holds a pair that fulfils the rule
   bool is_fresh = false;  ///< the newest sample is the later one of such a pair
   std::int64_t samples_ago =
       none;  ///< when the older one was taken, of the pair that stays longest
+
+  /// Whether the fingers could be judged.
+  bool ok() const { return status != PreslipStatus::cannot_tell; }
 };
 
 /// Whether one older and one later sample of all fingers fulfil the rule: the predicate alone.
@@ -137,68 +170,76 @@ template <class Rule, std::size_t Fingers, scalar S>
 bool is_preslip(const std::array<FingerSample<S>, Fingers>& older,
                 const std::array<FingerSample<S>, Fingers>& later,
                 const PreslipOptions<S>& options = {}) {
-  const auto a = detail::hand_sides<Rule>(older, options);
-  const auto b = detail::hand_sides<Rule>(later, options);
-  const double apart = detail::apart_by<typename Rule::Centroid>(options);
-  bool on_all_tracks = true;
-  for (std::size_t track = 0; track < detail::tracks<Rule, Fingers>(); ++track) {
-    on_all_tracks = on_all_tracks && detail::holds<Rule>(a, b, track, apart);
-  }
-  return on_all_tracks;
+  return detail::holds<Rule>(detail::hand_sides(older, options), detail::hand_sides(later, options),
+                             static_cast<double>(value(options.centroid_tolerance_mm)));
 }
 
-/// A rule over a history of samples. Rule: GraspOptimise or GraspLift; Search: AllPairs,
-/// NewestPairs or ConstantTime, which all give the same answers. Const; each hand has a state of
-/// its own. A sample allocates and throws nothing; its time is that of Search.
-template <class Rule = GraspLift<>,
-          std::size_t Fingers = 2,
-          class Search = NewestPairs,
-          scalar S = double>
+namespace detail {
+/// `is_fresh` is what the newest sample says where all fingers can be judged.
+template <std::size_t Fingers, scalar S>
+PreslipStatus preslip_status(const std::array<FingerSample<S>, Fingers>& newest, bool is_fresh) {
+  const bool can_tell = std::all_of(newest.begin(), newest.end(), [](const FingerSample<S>& s) {
+    return s.status == TaxelStatus::vibrating || s.status == TaxelStatus::quiet;
+  });
+  return is_fresh   ? PreslipStatus::preslip
+         : can_tell ? PreslipStatus::steady
+                    : PreslipStatus::cannot_tell;
+}
+}  // namespace detail
+
+/// A rule over a history of samples. Rule: GraspLift or GraspOptimise. Const; each hand has a state
+/// of its own. A sample takes O(history) and allocates and throws nothing.
+template <class Rule = GraspLift, std::size_t Fingers = 2, scalar S = double>
 class Preslip {
   static_assert(Fingers >= 1, "at least one finger");
-  using Memory = typename Search::template Memory<Rule, Fingers>;
 
  public:
   /// The history. A value: copy it to go back to this sample later.
   class State {
    public:
     /// Forgets all samples.
-    void reset() { memory_.clear(); }
+    void reset() {
+      history_.clear();
+      older_ = PreslipResult::none;
+    }
 
    private:
     friend class Preslip;
-    explicit State(const PreslipOptions<S>& options) : memory_(options) {}
-    Memory memory_;
+    explicit State(Index history) : history_(history) {}
+    detail::SideHistory<Fingers> history_;
+    std::int64_t older_ = PreslipResult::none;  // of the pairs found, the latest older sample
   };
 
   /// Refuses bad parameters (parameter_error).
   explicit Preslip(const PreslipOptions<S>& options = {}) : options_(options) {
     expects_valid(options);
-    expects(!Rule::Centroid::is_rounded || value(options.centroid_tolerance_mm) > 0,
-            "PreslipOptions", "centroid_tolerance_mm", options.centroid_tolerance_mm,
-            "> 0 where centroids are rounded to it");
   }
 
   const PreslipOptions<S>& options() const { return options_; }
 
   /// Takes all memory.
-  State start() const { return State(options_); }
+  State start() const { return State(options_.history); }
 
   /// Adds the newest sample of all fingers to the history and says what the history then shows. A
   /// finger that does not vibrate, is not pressed, or whose sample could not be taken makes no pair
-  /// beyond what that says; it never hides those of the others. A location of 2^31 or more is none.
+  /// beyond what that says; it never hides those of the others, and never counts as steady. The
+  /// state of an estimator with another history is refused: nothing is done, `cannot_tell`.
   PreslipResult operator()(const std::array<FingerSample<S>, Fingers>& newest, State& state) const {
-    const auto found = state.memory_(detail::hand_sides<Rule>(newest, options_),
-                                     detail::apart_by<typename Rule::Centroid>(options_));
-    PreslipResult result{true, false, 0};
-    for (std::size_t track = 0; track < found.samples_ago.size(); ++track) {
-      if (found.samples_ago[track] == detail::no_sample) {
-        return {};
-      }
-      // where each finger has its own pair, the first to leave the history ends the alarm
-      result.samples_ago = (std::max)(result.samples_ago, found.samples_ago[track]);
-      result.is_fresh = result.is_fresh || found.with_newest[track];
+    PreslipResult result;
+    auto& history = state.history_;
+    if (history.size() != options_.history) {
+      return result;
     }
+    history.add(detail::hand_sides(newest, options_));
+    const double tolerance = static_cast<double>(value(options_.centroid_tolerance_mm));
+    const std::int64_t last = history.newest();
+    for (std::int64_t older = last - 1; older >= history.oldest() && !result.is_fresh; --older) {
+      result.is_fresh = detail::holds<Rule>(history[older], history[last], tolerance);
+      state.older_ = result.is_fresh ? (std::max)(state.older_, older) : state.older_;
+    }
+    result.alarm = state.older_ != PreslipResult::none && state.older_ >= history.oldest();
+    result.samples_ago = result.alarm ? last - state.older_ : PreslipResult::none;
+    result.status = detail::preslip_status(newest, result.is_fresh);
     return result;
   }
 

@@ -1,9 +1,11 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// The frequency rules of the foam fingers as printed: the first experiment's (grasp_optimise) and
-// the second's (grasp_lift), over all pairs of samples of the history. docs/foam/preslip.md.
+// The rules of pre-slip as printed: both indices go through the whole stack at each sample, and a
+// sample without waves is not silent. docs/foam/preslip.md.
+#include <array>
 #include <cstddef>
+#include <cstdint>
 
 #include "fingerpad/foam/preslip.hpp"
 
@@ -19,15 +21,63 @@ PreslipOptions<S> preslip_options() {
   return options;
 }
 
+/// The scan of the stack: index 1 goes from the oldest sample on, and for each of its places index
+/// 2 from the newest sample down to it (E042). O(history^2); the answers are those of
+/// fingerpad::Preslip.
+template <class Rule, std::size_t Fingers = 2, scalar S = double>
+class StackScan {
+ public:
+  class State {
+   public:
+    void reset() { stack_.clear(); }
+
+   private:
+    friend class StackScan;
+    explicit State(Index history) : stack_(history) {}
+    detail::SideHistory<Fingers> stack_;
+  };
+
+  explicit StackScan(const PreslipOptions<S>& options = preslip_options<S>()) : options_(options) {
+    expects_valid(options);
+  }
+  const PreslipOptions<S>& options() const { return options_; }
+  State start() const { return State(options_.history); }
+
+  PreslipResult operator()(const std::array<FingerSample<S>, Fingers>& newest, State& state) const {
+    PreslipResult result;
+    auto& stack = state.stack_;
+    if (stack.size() != options_.history) {
+      return result;
+    }
+    stack.add(detail::hand_sides(newest, options_));
+    const double tolerance = static_cast<double>(value(options_.centroid_tolerance_mm));
+    const std::int64_t last = stack.newest();
+    for (std::int64_t index_1 = stack.oldest(); index_1 < last; ++index_1) {
+      for (std::int64_t index_2 = last; index_2 > index_1; --index_2) {
+        if (detail::holds<Rule>(stack[index_1], stack[index_2], tolerance)) {
+          result.alarm = true;
+          result.is_fresh = result.is_fresh || index_2 == last;
+          result.samples_ago = last - index_1;  // in the end of the latest
+        }
+      }
+    }
+    result.status = detail::preslip_status(newest, result.is_fresh);
+    return result;
+  }
+
+ private:
+  PreslipOptions<S> options_;
+};
+
 template <std::size_t Fingers = 2, scalar S = double>
-Preslip<GraspOptimise<>, Fingers, AllPairs, S> grasp_optimise(
+StackScan<GraspOptimise, Fingers, S> grasp_optimise(
     const PreslipOptions<S>& options = preslip_options<S>()) {
-  return Preslip<GraspOptimise<>, Fingers, AllPairs, S>(options);
+  return StackScan<GraspOptimise, Fingers, S>(options);
 }
 template <std::size_t Fingers = 2, scalar S = double>
-Preslip<GraspLift<>, Fingers, AllPairs, S> grasp_lift(
+StackScan<GraspLift, Fingers, S> grasp_lift(
     const PreslipOptions<S>& options = preslip_options<S>()) {
-  return Preslip<GraspLift<>, Fingers, AllPairs, S>(options);
+  return StackScan<GraspLift, Fingers, S>(options);
 }
 
 }  // namespace published

@@ -1,0 +1,34 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+#pragma once
+// What the fingers say of slip at one sample: the answer of the rules of pre-slip, and what the
+// searches for the holding force are told.
+#include <cstdint>
+
+namespace fingerpad {
+inline namespace v0 {
+
+enum class PreslipStatus : std::uint8_t {
+  steady,      ///< all fingers can be judged, and nothing slips
+  preslip,     ///< some of the contact begins to slip
+  slipped,     ///< the object slips as a whole, or is gone; no rule says this, a caller may
+  cannot_tell  ///< a finger cannot be judged: neither steady nor slipping
+};
+
+/// "steady", "preslip", ...
+constexpr const char* name_of(PreslipStatus status) {
+  switch (status) {
+    case PreslipStatus::steady:
+      return "steady";
+    case PreslipStatus::preslip:
+      return "preslip";
+    case PreslipStatus::slipped:
+      return "slipped";
+    case PreslipStatus::cannot_tell:
+      return "cannot tell";
+  }
+  return "unknown";
+}
+
+}  // namespace v0
+}  // namespace fingerpad

@@ -1,0 +1,142 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+#pragma once
+// How many waves of vibration one taxel shows in its window: the paper's "number of sensed
+// vibrating waves", which it calls frequency. Two ways, a policy of TaxelFeatures.
+#include <cmath>
+#include <cstddef>
+#include <numbers>
+#include <vector>
+
+#include "fingerpad/core/expects.hpp"
+#include "fingerpad/core/grid.hpp"
+#include "fingerpad/core/scalar.hpp"
+
+namespace fingerpad {
+inline namespace v0 {
+namespace detail {
+
+/// One taxel in its window: what is left without mean or line, and the receive times, oldest first.
+template <scalar S>
+struct WaveWindow {
+  const S* residual;
+  const double* time_s;
+  Index length;
+  S rms;         // of the residual, > 0
+  S duration_s;  // in which waves are counted: length times the nominal period
+
+  /// From the oldest sample to one period beyond the newest, by the clock.
+  S span_s() const {
+    const double length_s = time_s[length - 1] - time_s[0];
+    return S(length_s / static_cast<double>(length - 1) * static_cast<double>(length));
+  }
+};
+
+/// x >= 0 rounded to the nearest whole number, halves up, at most `most`.
+template <scalar S>
+Index rounded(const S& x, Index most) {
+  using Real = scalar_real_t<S>;
+  const Real half_up = value(x) + Real(0.5);
+  return half_up < Real(static_cast<int>(most)) ? static_cast<Index>(half_up) : most;
+}
+
+}  // namespace detail
+
+/// Counts how often the signal crosses its line. Take this by default: it tells a step, as of a
+/// taxel that lets go, as one wave that has begun, and takes O(window).
+/// A crossing counts when the signal goes beyond `hysteresis` times its rms on the other side, so
+/// that noise on a slow wave does not; a wave has two. Of waves shorter than three samples some are
+/// missed.
+struct ZeroCrossings {
+  double hysteresis = 0.5;  ///< in [0, 1)
+
+  void check() const {
+    expects(hysteresis >= 0 && hysteresis < 1, "ZeroCrossings", "hysteresis", hysteresis,
+            "in [0, 1)");
+  }
+
+  /// No memory of its own.
+  template <scalar S>
+  struct Scratch {
+    explicit Scratch(Index) {}
+  };
+
+  template <scalar S>
+  Index operator()(const detail::WaveWindow<S>& window, Scratch<S>&) const {
+    const auto beyond = static_cast<scalar_real_t<S>>(hysteresis) * value(window.rms);
+    int side = 0;
+    int crossings = 0;
+    for (Index u = 0; u < window.length; ++u) {
+      const auto r = value(window.residual[u]);
+      const int now = r > beyond ? 1 : r < -beyond ? -1 : side;
+      crossings += now != side && side != 0 ? 1 : 0;
+      side = now;
+    }
+    const S waves = S((crossings + 1) / 2);
+    return detail::rounded(S(waves * S(window.duration_s / window.span_s())), window.length / 2);
+  }
+};
+
+/// Counts the waves of the strongest line of the spectrum within a Hann window. Take this when the
+/// clock is uneven or waves are shorter than three samples: it takes the times as they are.
+/// O(window^2 / 2) for the one taxel.
+struct SpectralPeak {
+  void check() const {}
+
+  template <scalar S>
+  struct Scratch {
+    explicit Scratch(Index length)
+        : real(static_cast<std::size_t>(length), S(0)), imaginary(real), cosine(real), sine(real) {}
+    std::vector<S> real, imaginary;  // residual times window times the k-th power of the turn
+    std::vector<S> cosine, sine;     // one turn for each wave in the window
+  };
+
+  template <scalar S>
+  Index operator()(const detail::WaveWindow<S>& window, Scratch<S>& scratch) const {
+    prepare(window, scratch);
+    Index best = 1;
+    scalar_real_t<S> most = -1;
+    for (Index k = 1; k <= window.length / 2; ++k) {
+      const auto power = value(turn(window.length, scratch));
+      if (power > most) {
+        most = power;
+        best = k;
+      }
+    }
+    return best;
+  }
+
+ private:
+  template <scalar S>
+  static void prepare(const detail::WaveWindow<S>& window, Scratch<S>& scratch) {
+    using std::cos;
+    using std::sin;
+    const S pi = S(std::numbers::pi_v<long double>);
+    const double middle = (window.time_s[0] + window.time_s[window.length - 1]) / 2;
+    for (std::size_t u = 0; u < static_cast<std::size_t>(window.length); ++u) {
+      const S phase = S(S(2) * pi) * S(S(window.time_s[u] - middle) / window.duration_s);
+      scratch.cosine[u] = S(cos(phase));
+      scratch.sine[u] = S(sin(phase));
+      const bool inside = value(phase) > -value(pi) && value(phase) < value(pi);
+      scratch.real[u] = inside ? S(window.residual[u] * S(S(1) + scratch.cosine[u])) : S(0);
+      scratch.imaginary[u] = S(0);
+    }
+  }
+
+  /// Turns every term by one more wave and returns the power of their sum.
+  template <scalar S>
+  static S turn(Index length, Scratch<S>& scratch) {
+    S real_sum = S(0), imaginary_sum = S(0);
+    for (std::size_t u = 0; u < static_cast<std::size_t>(length); ++u) {
+      const S real = scratch.real[u], imaginary = scratch.imaginary[u];
+      scratch.real[u] = S(real * scratch.cosine[u]) - S(imaginary * scratch.sine[u]);
+      scratch.imaginary[u] = S(real * scratch.sine[u]) + S(imaginary * scratch.cosine[u]);
+      real_sum = real_sum + scratch.real[u];
+      imaginary_sum = imaginary_sum + scratch.imaginary[u];
+    }
+    return S(square(real_sum) + square(imaginary_sum));
+  }
+};
+
+}  // namespace v0
+}  // namespace fingerpad
