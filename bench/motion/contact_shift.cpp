@@ -4,7 +4,7 @@
 // per dot of the grid), with 0.005 mm of noise; "stuck" rows with every seventh dot left where it
 // was. Errors: over 1000 contacts of 4 to 9 mm, displaced by up to 1 mm and rotated by up to 0.1
 // rad.
-#include "fingerpad/motion/contact_shift.hpp"
+#include "fingerpad/published/contact_shift.hpp"
 
 #include <cmath>
 #include <memory>
@@ -18,6 +18,7 @@
 #include "bench/support/run.hpp"
 
 using namespace fingerpad;
+using fingerpad::published::central_dot;
 
 namespace {
 

@@ -5,7 +5,7 @@
 // that are sheared by 0.2. Errors of a frame: of attitude and place in all frames of ten balls that
 // roll 30 mm. Errors of dots in space: against the rays. Noise: 0.02 mm in the plane, 0.05 mm in
 // depth.
-#include "fingerpad/motion/object_motion.hpp"
+#include "fingerpad/published/object_motion.hpp"
 
 #include <cmath>
 #include <memory>
@@ -19,6 +19,12 @@
 #include "support/rolling.hpp"
 
 using namespace fingerpad;
+using fingerpad::detail::motion::Neighbourhood;
+using fingerpad::published::AnchoredComposition;
+using fingerpad::published::Kabsch;
+using fingerpad::published::PublishedBasis;
+using fingerpad::published::SumOfAngles;
+using fingerpad::published::SymmetricFrame;
 
 namespace {
 

@@ -15,7 +15,7 @@
 
 #include "bench/support/run.hpp"
 #include "examples/grip/camera.hpp"
-#include "fingerpad/slip/friction_ratio.hpp"
+#include "fingerpad/published/friction_ratio.hpp"
 #include "fingerpad/slip/stick_ratio.hpp"
 
 using namespace fingerpad;
@@ -54,8 +54,8 @@ struct Gripping {
 
 template <class S>
 struct Rubbing {
-  FrictionRatio<S> friction;
-  typename FrictionRatio<S>::State state = friction.start();
+  published::FrictionRatio<S> friction;
+  typename published::FrictionRatio<S>::State state = friction.start();
   Calls calls = {};
 
   S next() {

@@ -221,6 +221,7 @@ void add_growth() {
 
 int main(int argc, char** argv) {
   cv::setNumThreads(1);
+  add_naive();
   using Published = published::ReferenceDotMotion<>;
   using Updated = UpdatedReference;
   using published::DotMean;

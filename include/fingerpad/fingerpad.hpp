@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// Everything but the adapters, which bring their libraries with them (see adapt/). The fits of light
-// and forces need Eigen and are here where Eigen is found.
+// Everything but the adapters, which bring their libraries with them (see adapt/). The fits of
+// light and forces need Eigen and are here where Eigen is found.
 #include "fingerpad/calibrate/contact.hpp"
 #include "fingerpad/calibrate/neighbour_light.hpp"
 #include "fingerpad/calibrate/rim.hpp"
@@ -32,7 +32,9 @@
 #include "fingerpad/optics/camera.hpp"
 #include "fingerpad/pipeline/fingertip.hpp"
 #include "fingerpad/published/contact_region.hpp"
+#include "fingerpad/published/contact_shift.hpp"
 #include "fingerpad/published/depth.hpp"
+#include "fingerpad/published/friction_ratio.hpp"
 #include "fingerpad/published/normal_force.hpp"
 #include "fingerpad/published/object_motion.hpp"
 #include "fingerpad/published/preslip.hpp"
@@ -40,7 +42,6 @@
 #include "fingerpad/published/stick_ratio.hpp"
 #include "fingerpad/published/wrench.hpp"
 #include "fingerpad/sim/foam_contact.hpp"
-#include "fingerpad/slip/friction_ratio.hpp"
 #include "fingerpad/slip/grip_control.hpp"
 #include "fingerpad/slip/stick_ratio.hpp"
 

@@ -3,13 +3,20 @@
 #include <cmath>
 #include <numbers>
 
-#include "fingerpad/motion/object_motion.hpp"
+#include "fingerpad/published/object_motion.hpp"
 #include "support/catch.hpp"
 #include "support/generators.hpp"
 #include "support/numbers.hpp"
 #include "support/rolling.hpp"
 
 using namespace fingerpad;
+using fingerpad::detail::motion::common_dots;
+using fingerpad::detail::motion::CommonDots;
+using fingerpad::detail::motion::Neighbourhood;
+using fingerpad::published::AnchoredComposition;
+using fingerpad::published::Kabsch;
+using fingerpad::published::PublishedBasis;
+using fingerpad::published::SymmetricFrame;
 using test::Digits50;
 
 namespace {

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
-#include "fingerpad/motion/contact_shift.hpp"
+#include "fingerpad/published/contact_shift.hpp"
 
 #include <Eigen/Core>
 #include <algorithm>
@@ -32,6 +32,8 @@ Dual<Real> atan2(const Dual<Real>& y, const Dual<Real>& x) {
 }  // namespace test
 
 using namespace fingerpad;
+using fingerpad::published::central_dot;
+using fingerpad::published::OneDot;
 using test::Digits50;
 using test::Image;
 
@@ -573,7 +575,7 @@ TEST_CASE("contact shift: grids and workspaces of another size", "[contact_shift
   auto workspace = estimator.workspace();
   const auto refused = [&](const Points& dots, const Mask& mask) {
     const auto r = estimator(dots, mask, workspace);
-    return r.status == ShiftStatus::other_size && has_no_answer(r);
+    return r.status == ShiftStatus::refused && has_no_answer(r);
   };
   CHECK(refused(printed(6, 5), Mask(6, 5, 1)));
   CHECK(refused(printed(5, 5), Mask(5, 5, 1)));
@@ -587,11 +589,11 @@ TEST_CASE("contact shift: grids and workspaces of another size", "[contact_shift
   const ContactShift small(printed(3, 3), ContactDots());
   auto its = small.workspace();
   const auto r = estimator(free, Mask(5, 6, 1), its);
-  CHECK(r.status == ShiftStatus::other_size);
+  CHECK(r.status == ShiftStatus::refused);
   CHECK(has_no_answer(r));
   CHECK(small(printed(3, 3), Mask(3, 3, 1), its).dots == 9);  // as good as before
   decltype(its) nothing;
-  CHECK(estimator(free, Mask(5, 6, 1), nothing).status == ShiftStatus::other_size);
+  CHECK(estimator(free, Mask(5, 6, 1), nothing).status == ShiftStatus::refused);
   // a larger one will do
   CHECK(small(printed(3, 3), Mask(3, 3, 1), workspace).status == ShiftStatus::measured);
 }
@@ -744,7 +746,7 @@ TEST_CASE("contact shift: names", "[contact_shift]") {
   CHECK(std::string(name_of(ShiftStatus::measured)) == "measured");
   CHECK(std::string(name_of(ShiftStatus::one_place_only)) == "one place only");
   CHECK(std::string(name_of(ShiftStatus::no_dots)) == "no dots");
-  CHECK(std::string(name_of(ShiftStatus::other_size)) == "other size");
+  CHECK(std::string(name_of(ShiftStatus::refused)) == "refused");
   CHECK(std::string(name_of(static_cast<ShiftStatus>(77))) == "unknown");
   CHECK(has_no_answer(ShiftResult<double>()));
   static_assert(

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
-#include "fingerpad/motion/object_motion.hpp"
+#include "fingerpad/published/object_motion.hpp"
 
 #include <Eigen/Core>
 #include <Eigen/LU>
@@ -17,6 +17,16 @@
 #include "support/rolling.hpp"
 
 using namespace fingerpad;
+using fingerpad::detail::motion::common_dots;
+using fingerpad::detail::motion::CommonDots;
+using fingerpad::detail::motion::grid_directions;
+using fingerpad::detail::motion::Neighbourhood;
+using fingerpad::detail::motion::published_basis;
+using fingerpad::published::AnchoredComposition;
+using fingerpad::published::Kabsch;
+using fingerpad::published::PublishedBasis;
+using fingerpad::published::SumOfAngles;
+using fingerpad::published::SymmetricFrame;
 using test::Dots;
 using test::Flags;
 

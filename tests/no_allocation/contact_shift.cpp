@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
-#include "fingerpad/motion/contact_shift.hpp"
+#include "fingerpad/published/contact_shift.hpp"
 
 #include <cstdint>
 #include <type_traits>
@@ -10,6 +10,8 @@
 #include "support/pad.hpp"
 
 using namespace fingerpad;
+using fingerpad::published::central_dot;
+using fingerpad::published::OneDot;
 
 namespace {
 

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "fingerpad/slip/grip_control.hpp"
 
-#include "fingerpad/slip/friction_ratio.hpp"
+#include "fingerpad/published/friction_ratio.hpp"
 #include "no_allocation/count.hpp"
 #include "support/catch.hpp"
 
@@ -26,7 +26,7 @@ TEST_CASE("grip control: nothing allocates", "[grip_control]") {
 
 TEST_CASE("friction ratio: nothing allocates", "[friction_ratio]") {
   const long before = test::allocations();
-  const FrictionRatio<double> friction;
+  const published::FrictionRatio<double> friction;
   auto state = friction.start();
   bool alarm = false;
   for (int k = 0; k < 300; ++k) {

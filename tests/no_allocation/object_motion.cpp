@@ -1,12 +1,15 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
-#include "fingerpad/motion/object_motion.hpp"
+#include "fingerpad/published/object_motion.hpp"
 
 #include "no_allocation/count.hpp"
 #include "support/catch.hpp"
 #include "support/rolling.hpp"
 
 using namespace fingerpad;
+using fingerpad::published::AnchoredComposition;
+using fingerpad::published::Kabsch;
+using fingerpad::published::SumOfAngles;
 
 TEMPLATE_TEST_CASE("object motion: a frame allocates nothing",
                    "[object_motion]",

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 // What must hold for every object, every motion and every way.
-#include "fingerpad/motion/object_motion.hpp"
+#include "fingerpad/published/object_motion.hpp"
 
 #include <cmath>
 #include <limits>
@@ -12,6 +12,12 @@
 #include "support/rolling.hpp"
 
 using namespace fingerpad;
+using fingerpad::detail::motion::Neighbourhood;
+using fingerpad::published::AnchoredComposition;
+using fingerpad::published::Kabsch;
+using fingerpad::published::PublishedBasis;
+using fingerpad::published::SumOfAngles;
+using fingerpad::published::SymmetricFrame;
 using test::Dots;
 using test::Flags;
 

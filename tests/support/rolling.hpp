@@ -11,7 +11,7 @@
 #include <random>
 #include <vector>
 
-#include "fingerpad/motion/object_motion.hpp"
+#include "fingerpad/published/object_motion.hpp"
 
 namespace test {
 
@@ -51,8 +51,8 @@ using Dots = Cells<fingerpad::Point3<double>>;
 using Flags = Cells<unsigned char>;
 
 /// Nine dots 1.5 mm apart on a ball of 18 mm.
-inline fingerpad::Neighbourhood<double> nine_dots() {
-  fingerpad::Neighbourhood<double> n;
+inline fingerpad::detail::motion::Neighbourhood<double> nine_dots() {
+  fingerpad::detail::motion::Neighbourhood<double> n;
   for (std::size_t k = 0; k < 9; ++k) {
     const double x = 1.5 * static_cast<double>(k % 3) - 1.5;
     const double y = 1.5 * static_cast<double>(k / 3) - 1.5;

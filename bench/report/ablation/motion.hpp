@@ -24,7 +24,7 @@
 #include <string>
 #include <vector>
 
-#include "fingerpad/motion/object_motion.hpp"
+#include "fingerpad/published/object_motion.hpp"
 #include "support/rolling.hpp"
 #include "table.hpp"
 
@@ -256,6 +256,10 @@ class MotionEffects {
 
 inline std::vector<Effect> motion_effects() {
   using namespace fingerpad;
+  using published::AnchoredComposition;
+  using published::PublishedBasis;
+  using published::SumOfAngles;
+  using published::SymmetricFrame;
   MotionEffects all;
   all.add("exact composition", "`AnchoredComposition<SymmetricFrame>`",
           "`SumOfAngles<SymmetricFrame>`", AnchoredComposition<SymmetricFrame>(),

@@ -9,16 +9,16 @@
 #include <numbers>
 #include <vector>
 
-#include "fingerpad/motion/object_motion.hpp"
+#include "fingerpad/published/object_motion.hpp"
 #include "row.hpp"
 #include "support/pad.hpp"
 
 namespace hard {
 
 using fingerpad::Angles;
-using fingerpad::Neighbourhood;
 using fingerpad::Point3;
 using fingerpad::Rotation;
+using fingerpad::detail::motion::Neighbourhood;
 
 /// The slides' order: y by asin first.
 template <class S>
@@ -105,15 +105,16 @@ inline Row sheared_dots() {
                for (const double shear : {0.02, 0.05, 0.1, 0.2}) {
                  const auto from = dots<S>(Rotation<double>(), 0);
                  const auto to = dots<S>(fingerpad::rotation_of(truth), shear);
-                 const auto add = [&](Tally& tally, const fingerpad::LocalRotation<S>& turn) {
+                 const auto add = [&](Tally& tally,
+                                      const fingerpad::detail::motion::LocalRotation<S>& turn) {
                    const auto a = fingerpad::zyx_angles(turn.rotation);
                    const Digits50 degree(std::numbers::pi / 180);
                    tally.add(a.x_rad, Digits50(truth.x_rad), degree);
                    tally.add(a.y_rad, Digits50(truth.y_rad), degree);
                    tally.add(a.z_rad, Digits50(truth.z_rad), degree);
                  };
-                 add(f.naive, fingerpad::PublishedBasis::turn(from, to));
-                 add(f.stable, fingerpad::SymmetricFrame::turn(from, to));
+                 add(f.naive, fingerpad::published::PublishedBasis::turn(from, to));
+                 add(f.stable, fingerpad::published::SymmetricFrame::turn(from, to));
                }
                return f;
              });
@@ -126,7 +127,7 @@ Rotation<S> published_turn(const Neighbourhood<S>& from, const Neighbourhood<S>&
   const auto basis = [](const Neighbourhood<S>& n) {
     const auto q = d::motion::directions_of_all(n.dot);
     const auto n1 = normalized(q.q1), n2 = normalized(q.q2);
-    return fingerpad::Basis<S>{n1, n2, fingerpad::cross(n1, n2), true};
+    return d::motion::Basis<S>{n1, n2, fingerpad::cross(n1, n2), true};
   };
   return d::motion::turn_between(d::motion::inverse_transposed(basis(from)), basis(to));
 }
@@ -159,7 +160,7 @@ inline Row collinear_dots() {
                    tally.add_absolute(worst, Digits50(0));
                  };
                  add(f.naive, published_turn(from, to));
-                 const auto turn = fingerpad::SymmetricFrame::turn(from, to);
+                 const auto turn = fingerpad::published::SymmetricFrame::turn(from, to);
                  if (turn.status == fingerpad::MotionStatus::ok) {
                    add(f.stable, turn.rotation);
                  } else {

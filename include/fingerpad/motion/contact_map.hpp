@@ -16,7 +16,9 @@
 #include <vector>
 
 #include "fingerpad/core/expects.hpp"
-#include "fingerpad/motion/followed_dot.hpp"
+#include "fingerpad/math/rigid_fit.hpp"
+#include "fingerpad/motion/detail/dot_frame.hpp"
+#include "fingerpad/motion/motion_result.hpp"
 
 namespace fingerpad {
 inline namespace v0 {

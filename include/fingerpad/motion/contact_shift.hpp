@@ -30,14 +30,6 @@
 namespace fingerpad {
 inline namespace v0 {
 
-/// The dot in the middle of the dot grid, as published, or any other; the angle is that of all dots
-/// in contact.
-struct OneDot {
-  DotIndex dot = {};
-};
-inline OneDot central_dot(Index rows, Index cols) {
-  return {{rows / 2, cols / 2}};
-}
 /// All dots in contact.
 struct ContactDots {};
 /// The dots on both sides of the contact's edge: those in contact beside one that is not, and those
@@ -61,7 +53,7 @@ enum class ShiftStatus : std::uint8_t {
   measured,        ///< displacement and angle
   one_place_only,  ///< the dots do not tell an angle: fewer than two, or all in one place
   no_dots,         ///< none of the chosen dots is there in both frames
-  other_size,      ///< a grid is not of the reference's size, or the workspace is another's
+  refused,         ///< a grid is not of the reference's size, or the workspace is another's
 };
 
 /// "measured", "one place only", ...
@@ -73,27 +65,39 @@ constexpr const char* name_of(ShiftStatus status) {
       return "one place only";
     case ShiftStatus::no_dots:
       return "no dots";
-    case ShiftStatus::other_size:
-      return "other size";
+    case ShiftStatus::refused:
+      return "refused";
   }
   return "unknown";
 }
 
 template <scalar S = double>
 struct [[nodiscard]] ShiftResult {
-  ShiftStatus status = ShiftStatus::other_size;
+  ShiftStatus status = ShiftStatus::refused;
   Index dots = 0;                                                   ///< that took part
   Point2<S> displacement = {not_a_number<S>(), not_a_number<S>()};  ///< in the unit of the dots
   S rotation_rad = not_a_number<S>();  ///< from x toward y, in [-pi, pi]
   S residual_rms = not_a_number<S>();  ///< distance of the dots from the rigid shift
 
+  bool ok() const { return status == ShiftStatus::measured; }
   bool has_displacement() const {
     return status == ShiftStatus::measured || status == ShiftStatus::one_place_only;
   }
 };
 
-/// Shift of the chosen `Dots` (EdgeDots, ContactDots, OneDot) against the reference frame, as a
-/// `Mean` (PlainMean, HuberMean). Dots in mm on the plate or in px; of dots in space, x and y.
+namespace detail {
+/// A choice that names a dot, as published::OneDot does.
+template <class Dots> concept names_one_dot = requires(const Dots& dots) {
+  dots.dot.row;
+};
+}  // namespace detail
+
+/// Shift of some dots against the reference frame. Dots in mm on the plate or in px; of dots in
+/// space, x and y.
+///   Dots  EdgeDots     take this for shear.hpp: all of the force goes through them
+///         ContactDots  take this for where the object went
+///   Mean  PlainMean    take this while no dot is stuck or mistaken
+///         HuberMean    take this when some are
 /// Const; a frame takes no memory and O(rows cols) time, times the passes of HuberMean.
 template <class Dots = EdgeDots, class Mean = PlainMean, scalar S = double>
 class ContactShift {
@@ -147,7 +151,7 @@ class ContactShift {
         w.pairs_.capacity() < reference_.size()) {
       return result;
     }
-    if constexpr (std::is_same_v<Dots, OneDot>) {
+    if constexpr (detail::names_one_dot<Dots>) {
       return shift_of_one(to, flags, w);
     } else {
       collect(to, flags, w);
@@ -173,7 +177,7 @@ class ContactShift {
   }
 
   void check_choice() const {
-    if constexpr (std::is_same_v<Dots, OneDot>) {
+    if constexpr (detail::names_one_dot<Dots>) {
       expects(dots_.dot.row >= 0 && dots_.dot.row < rows_, "OneDot", "row",
               static_cast<long long>(dots_.dot.row), "in [0, rows)");
       expects(dots_.dot.col >= 0 && dots_.dot.col < cols_, "OneDot", "col",

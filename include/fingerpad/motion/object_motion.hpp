@@ -18,34 +18,11 @@
 #include "fingerpad/core/grid.hpp"
 #include "fingerpad/motion/contact_map.hpp"
 #include "fingerpad/motion/detail/dot_frame.hpp"
-#include "fingerpad/motion/followed_dot.hpp"
-#include "fingerpad/motion/local_rotation.hpp"
+#include "fingerpad/motion/motion_result.hpp"
 #include "fingerpad/motion/spatial_dots.hpp"
 
 namespace fingerpad {
 inline namespace v0 {
-
-/// What a frame says of the object. Everything but `status` is the last known state
-/// where the status is not ok; before an object begins it is that of an object at rest.
-template <scalar S = double>
-struct [[nodiscard]] ObjectMotionResult {
-  MotionStatus status = MotionStatus::refused;
-  DotIndex reference = {};         ///< contact reference dot of this frame; row -1: there is none
-  bool reference_changed = false;  ///< it is another dot than in the frame before
-  bool begun = false;              ///< the object begins with this frame: pose is the identity
-  Index dots_used = 0;             ///< dots from which the pose was computed
-  Pose<S> pose = {};      ///< x_now = R x_first + t, from the frame in which the object began
-  Angles<S> angles = {};  ///< about z, y, x; with SumOfAngles the sums, which may exceed pi
-  Point3<S> position_mm = {not_a_number<S>(), not_a_number<S>(),
-                           not_a_number<S>()};  ///< where the point of the object is now that lay
-                                                ///< under the contact reference dot at first;
-                                                ///< NaN before an object has begun
-  Point3<S> displacement_mm = {S(0), S(0), S(0)};  ///< of that point
-  S residual_rms_mm = S(0);                        ///< of the dots used, against the rigid motion
-
-  bool accepted() const { return status != MotionStatus::refused; }
-  bool ok() const { return status == MotionStatus::ok; }
-};
 
 template <scalar S = double>
 struct ObjectMotionOptions {
@@ -55,11 +32,8 @@ struct ObjectMotionOptions {
 };
 
 /// Pose of the object in contact, frame by frame.
-///   Way   ContactMap                   take this: all dots that stick, with the least noise
-///         AnchoredComposition<Kabsch>  take this for the printed dot and its neighbours, but with
-///                                      rotations composed as rotations
-/// SumOfAngles, SymmetricFrame and PublishedBasis are printed forms; published/object_motion.hpp is
-/// the whole of them.
+///   Way   ContactMap  all dots that stick, with the least noise
+/// The printed forms are ways too: published/object_motion.hpp.
 /// Const: threads may share one estimator, each with a state of its own. A frame takes no memory,
 /// throws nothing, and needs O(rows cols) time.
 ///

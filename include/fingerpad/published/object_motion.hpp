@@ -6,11 +6,176 @@
 // rotation of the contact reference dot from a basis of its neighbours, and Euler angles that are
 // added up from frame to frame. The sum errs as rotations do not commute: docs/errata.md,
 // E019-E024.
+#include <array>
+#include <cstddef>
+
 #include "fingerpad/motion/object_motion.hpp"
+#include "fingerpad/published/detail/followed_dot.hpp"
 
 namespace fingerpad {
 inline namespace v0 {
 namespace published {
+
+/// Published, with E021 and E022 repaired: exact for rigid motions, else not even a rotation.
+struct PublishedBasis {
+  static constexpr bool gives_rotations = false;
+
+  template <scalar S>
+  static detail::motion::LocalRotation<S> turn(const detail::motion::Neighbourhood<S>& from,
+                                               const detail::motion::Neighbourhood<S>& to) {
+    return detail::motion::turn_of_bases(
+        from, to,
+        [](const detail::motion::GridDirections<S>& q) {
+          return detail::motion::published_basis(q);
+        },
+        [](const detail::motion::Basis<S>& k, const detail::motion::Basis<S>& l) {
+          return detail::motion::turn_between(detail::motion::inverse_transposed(k), l);
+        });
+  }
+};
+
+/// The same directions, made orthonormal without preference for either.
+struct SymmetricFrame {
+  static constexpr bool gives_rotations = true;
+
+  template <scalar S>
+  static detail::motion::LocalRotation<S> turn(const detail::motion::Neighbourhood<S>& from,
+                                               const detail::motion::Neighbourhood<S>& to) {
+    return detail::motion::turn_of_bases(
+        from, to,
+        [](const detail::motion::GridDirections<S>& q) {
+          return detail::motion::symmetric_frame(q);
+        },
+        [](const detail::motion::Basis<S>& k, const detail::motion::Basis<S>& l) {
+          return detail::motion::turn_between(k, l);
+        });
+  }
+};
+
+/// The rotation that carries the dots of the one frame nearest to those of the other.
+struct Kabsch {
+  static constexpr bool gives_rotations = true;
+
+  template <scalar S>
+  static detail::motion::LocalRotation<S> turn(const detail::motion::Neighbourhood<S>& from,
+                                               const detail::motion::Neighbourhood<S>& to) {
+    std::array<std::size_t, 9> at = {};
+    std::size_t count = 0;
+    for (std::size_t k = 0; k < 9; ++k) {
+      if (from.found[k] && to.found[k]) {
+        at[count++] = k;
+      }
+    }
+    if (count < 3) {
+      return {};
+    }
+    const auto dot = [&at](const detail::motion::Neighbourhood<S>& n) {
+      return [&at, &n](Index k) { return n.dot[at[static_cast<std::size_t>(k)]]; };
+    };
+    const RigidFit<S> fit =
+        fit_rigid<S>(static_cast<Index>(count), dot(from), dot(to), [](Index) { return S(1); });
+    return {fit.pose.rotation, fit.determined ? MotionStatus::ok : MotionStatus::collinear};
+  }
+};
+
+/// Published: the angles and the displacement of the object are the sums of those of the steps from
+/// frame to frame, each of the dot that was the contact reference dot before it. Noise grows with
+/// the number of frames only where the dot changes, but the error of summed angles is there without
+/// any: see docs/motion/object_motion.md.
+template <class Local = PublishedBasis>
+struct SumOfAngles {
+  template <scalar S>
+  struct Track : detail::motion::Track<S> {
+    detail::motion::FollowedDot<S> followed = {};
+    Point3<S> displacement_mm = {S(0), S(0), S(0)};
+  };
+  template <scalar S>
+  Track<S> track(Index, Index) const {
+    return {};
+  }
+
+  template <scalar S, class Frame>
+  MotionStatus begin(const Frame& frame, DotIndex reference, Track<S>& t) const {
+    return detail::motion::begin_following<S>(frame, reference, t);
+  }
+
+  template <scalar S, class Frame>
+  MotionStatus advance(const Frame& frame, DotIndex reference, Track<S>& t) const {
+    const detail::motion::DotStep<S> step =
+        detail::motion::next_step<Local>(frame, reference, t.followed);
+    if (step.status != MotionStatus::ok) {
+      return step.status;
+    }
+    t.dots_used = step.dots_used;
+    t.residual_rms_mm = step.residual_rms_mm;
+    const Angles<S> rotated = zyx_angles(step.pose.rotation);
+    t.angles = {S(t.angles.x_rad + rotated.x_rad), S(t.angles.y_rad + rotated.y_rad),
+                S(t.angles.z_rad + rotated.z_rad)};
+    t.displacement_mm += moved(t.followed.anchor, step);
+    const Rotation<S> rotation = rotation_of(t.angles);
+    const Point3<S> position = t.start_mm + t.displacement_mm;
+    t.pose = {rotation, position - rotation(t.start_mm)};
+    t.followed.anchor = step.now;
+    if (reference.exists() && reference != t.followed.index) {
+      t.followed = detail::motion::follow<S>(frame, reference);
+    }
+    return MotionStatus::ok;
+  }
+
+ private:
+  /// Of the dot itself, or of its neighbours where it is missing.
+  template <scalar S>
+  static Point3<S> moved(const detail::motion::Neighbourhood<S>& anchor,
+                         const detail::motion::DotStep<S>& step) {
+    detail::motion::CommonDots self = {
+        {false, false, false, false, true, false, false, false, false}, 1};
+    const detail::motion::CommonDots all = detail::motion::common_dots(anchor, step.now);
+    const detail::motion::CommonDots& used = all.found[4] ? self : all;
+    return detail::motion::center(step.now, used) - detail::motion::center(anchor, used);
+  }
+};
+
+/// The exact composition: the pose is that of the followed dot since its anchor frame, after the
+/// pose of the object in that frame; only when another dot becomes the contact reference dot is it
+/// composed. So noise grows with the number of changes, not with that of the frames.
+template <class Local = SymmetricFrame>
+struct AnchoredComposition {
+  static_assert(Local::gives_rotations, "only rotations can be composed: use SymmetricFrame");
+
+  template <scalar S>
+  struct Track : detail::motion::Track<S> {
+    detail::motion::FollowedDot<S> followed = {};
+    Pose<S> at_anchor = {};
+  };
+  template <scalar S>
+  Track<S> track(Index, Index) const {
+    return {};
+  }
+
+  template <scalar S, class Frame>
+  MotionStatus begin(const Frame& frame, DotIndex reference, Track<S>& t) const {
+    return detail::motion::begin_following<S>(frame, reference, t);
+  }
+
+  template <scalar S, class Frame>
+  MotionStatus advance(const Frame& frame, DotIndex reference, Track<S>& t) const {
+    const detail::motion::DotStep<S> step =
+        detail::motion::next_step<Local>(frame, reference, t.followed);
+    if (step.status != MotionStatus::ok) {
+      return step.status;
+    }
+    t.dots_used = step.dots_used;
+    t.residual_rms_mm = step.residual_rms_mm;
+    t.pose = step.pose * t.at_anchor;
+    t.angles = zyx_angles(t.pose.rotation);
+    if (reference.exists() && reference != t.followed.index) {
+      t.pose.rotation = detail::motion::renormalized(t.pose.rotation);
+      t.at_anchor = t.pose;
+      t.followed = detail::motion::follow<S>(frame, reference);
+    }
+    return MotionStatus::ok;
+  }
+};
 
 template <scalar S = double>
 using ObjectMotion = fingerpad::ObjectMotion<SumOfAngles<PublishedBasis>, S>;

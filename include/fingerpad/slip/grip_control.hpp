@@ -177,6 +177,9 @@ struct [[nodiscard]] GripResult {
   S force_n = S(0);  ///< to be applied now; always finite and within the limits
   GripStatus status = GripStatus::holding;
   GripReason why = GripReason::no_time;
+
+  /// False: the time step was no time, and nothing was done.
+  bool ok() const { return why != GripReason::no_time; }
 };
 
 /// Grip force, call by call. Const: one serves any number of fingers, each with a state of its own.

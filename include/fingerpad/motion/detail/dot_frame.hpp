@@ -152,6 +152,16 @@ DotIndex reference_dot(const Frame& frame,
   return best;
 }
 
+/// What every way of accumulation keeps.
+template <scalar S>
+struct Track {
+  Pose<S> pose = {};
+  Angles<S> angles = {};
+  Point3<S> start_mm = {S(0), S(0), S(0)};  ///< the point whose position is reported, at first
+  Index dots_used = 0;
+  S residual_rms_mm = S(0);
+};
+
 }  // namespace detail::motion
 
 }  // namespace v0

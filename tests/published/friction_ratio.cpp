@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
-#include "fingerpad/slip/friction_ratio.hpp"
+#include "fingerpad/published/friction_ratio.hpp"
 
 #include <cmath>
 #include <limits>
@@ -12,6 +12,9 @@
 #include "support/refusal.hpp"
 
 using namespace fingerpad;
+using fingerpad::published::FrictionRatio;
+using fingerpad::published::FrictionStatus;
+using fingerpad::published::FrictionTest;
 
 namespace {
 constexpr double infinity = std::numeric_limits<double>::infinity();

@@ -18,6 +18,7 @@
 
 namespace fingerpad {
 inline namespace v0 {
+namespace published {
 
 template <scalar S = double>
 struct FrictionTest {
@@ -69,6 +70,9 @@ struct [[nodiscard]] FrictionResult {
   S ratio = not_a_number<S>();             ///< F / N; NaN: none
   S remembered_ratio = not_a_number<S>();  ///< F0 / N0; NaN: none yet
   S margin = not_a_number<S>();            ///< 1 - (F/N) / (F0/N0): 0 at slip; NaN where unknown
+
+  /// Whether there is a ratio.
+  bool ok() const { return is_finite(ratio); }
 };
 
 /// F/N against the ratio at the last macroscopic slip. Const, O(1), no memory from the heap.
@@ -150,5 +154,6 @@ class FrictionRatio {
   FrictionTest<S> test_;
 };
 
+}  // namespace published
 }  // namespace v0
 }  // namespace fingerpad

@@ -10,49 +10,14 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
-#include <cstdint>
 
 #include "fingerpad/math/rigid_fit.hpp"
 #include "fingerpad/motion/detail/dot_frame.hpp"
+#include "fingerpad/motion/motion_result.hpp"
 
 namespace fingerpad {
 inline namespace v0 {
-
-// What became of the object in a frame.
-
-enum class MotionStatus : std::uint8_t {
-  ok,
-  no_contact,        ///< dots are there and none is in contact: the object is gone
-  no_dots,           ///< no dot at all was found: nothing can be said of the object
-  no_reference_dot,  ///< no dot in contact has all its neighbours, and none was being followed
-  too_few_dots,      ///< fewer than three dots to go by, or too few to begin with
-  collinear,         ///< the dots to go by lie on a line: they determine no rotation
-  lost,              ///< what was followed has left the contact, and nothing known is in it
-  refused,           ///< a grid, state or workspace has another size: nothing was done
-};
-
-/// "ok", "no contact", ...
-constexpr const char* name_of(MotionStatus status) {
-  switch (status) {
-    case MotionStatus::ok:
-      return "ok";
-    case MotionStatus::no_contact:
-      return "no contact";
-    case MotionStatus::no_dots:
-      return "no dots";
-    case MotionStatus::no_reference_dot:
-      return "no reference dot";
-    case MotionStatus::too_few_dots:
-      return "too few dots";
-    case MotionStatus::collinear:
-      return "collinear";
-    case MotionStatus::lost:
-      return "lost";
-    case MotionStatus::refused:
-      return "refused";
-  }
-  return "unknown";
-}
+namespace detail::motion {
 
 // A dot with its eight neighbours, and the two directions in which the papers measure how it has
 // rotated. Source: Ito, Kim, Nagai, Obinata 2011, eqs. 14 and 15:
@@ -91,8 +56,6 @@ struct GridDirections {
   Point3<S> q1;
   Point3<S> q2;
 };
-
-namespace detail::motion {
 
 /// The sums as printed, for nine dots.
 template <scalar S>
@@ -164,13 +127,10 @@ Point3<S> center(const Neighbourhood<S>& n, const CommonDots& common) {
   return S(S(1) / S(static_cast<double>(common.count))) * c;
 }
 
-}  // namespace detail::motion
-
 /// q1 and q2 over the dots of `common`.
 template <scalar S>
 GridDirections<S> grid_directions(const Neighbourhood<S>& n, const CommonDots& common) {
-  return common.count == 9 ? detail::motion::directions_of_all(n.dot)
-                           : detail::motion::directions_of_some(n.dot, common.found);
+  return common.count == 9 ? directions_of_all(n.dot) : directions_of_some(n.dot, common.found);
 }
 
 /// Three vectors as the columns of a matrix.
@@ -227,7 +187,6 @@ Basis<S> symmetric_frame(const GridDirections<S>& q) {
   return {half * (s - t), half * (s + t), n3, true};
 }
 
-namespace detail::motion {
 /// N_l N_k^T.
 template <scalar S>
 Rotation<S> turn_between(const Basis<S>& k, const Basis<S>& l) {
@@ -264,58 +223,7 @@ LocalRotation<S> turn_of_bases(const Neighbourhood<S>& k,
   }
   return {between(before, after), MotionStatus::ok};
 }
+
 }  // namespace detail::motion
-
-/// Published, with E021 and E022 repaired: exact for rigid motions, else not even a rotation.
-struct PublishedBasis {
-  static constexpr bool gives_rotations = false;
-
-  template <scalar S>
-  static LocalRotation<S> turn(const Neighbourhood<S>& from, const Neighbourhood<S>& to) {
-    return detail::motion::turn_of_bases(
-        from, to, [](const GridDirections<S>& q) { return published_basis(q); },
-        [](const Basis<S>& k, const Basis<S>& l) {
-          return detail::motion::turn_between(detail::motion::inverse_transposed(k), l);
-        });
-  }
-};
-
-/// The same directions, made orthonormal without preference for either.
-struct SymmetricFrame {
-  static constexpr bool gives_rotations = true;
-
-  template <scalar S>
-  static LocalRotation<S> turn(const Neighbourhood<S>& from, const Neighbourhood<S>& to) {
-    return detail::motion::turn_of_bases(
-        from, to, [](const GridDirections<S>& q) { return symmetric_frame(q); },
-        [](const Basis<S>& k, const Basis<S>& l) { return detail::motion::turn_between(k, l); });
-  }
-};
-
-/// The rotation that carries the dots of the one frame nearest to those of the other.
-struct Kabsch {
-  static constexpr bool gives_rotations = true;
-
-  template <scalar S>
-  static LocalRotation<S> turn(const Neighbourhood<S>& from, const Neighbourhood<S>& to) {
-    std::array<std::size_t, 9> at = {};
-    std::size_t count = 0;
-    for (std::size_t k = 0; k < 9; ++k) {
-      if (from.found[k] && to.found[k]) {
-        at[count++] = k;
-      }
-    }
-    if (count < 3) {
-      return {};
-    }
-    const auto dot = [&at](const Neighbourhood<S>& n) {
-      return [&at, &n](Index k) { return n.dot[at[static_cast<std::size_t>(k)]]; };
-    };
-    const RigidFit<S> fit =
-        fit_rigid<S>(static_cast<Index>(count), dot(from), dot(to), [](Index) { return S(1); });
-    return {fit.pose.rotation, fit.determined ? MotionStatus::ok : MotionStatus::collinear};
-  }
-};
-
 }  // namespace v0
 }  // namespace fingerpad
