@@ -15,6 +15,7 @@
 
 #include "bench/support/contacts.hpp"
 #include "bench/support/run.hpp"
+#include "fingerpad/published/normal_force.hpp"
 
 using namespace fingerpad;
 
@@ -66,24 +67,14 @@ auto number_of(const Estimator& estimator) {
   };
 }
 
-/// make(S()) gives a NormalForce in the scalar S: one contact at a time, and all in one call.
+/// make(S()) gives a NormalForce in the scalar S.
 template <class S, class Make>
-void add_both(const std::string& type,
-              const std::string& name,
-              const Make& make,
-              double largest = largest_mm2) {
-  const auto plain = [=](auto number) { return number_of(make(number)); };
-  add_each<S>("one frame, " + type + "/" + name, largest, plain);
-  const auto contacts = std::make_shared<bench::Contacts<S>>(largest);
-  const bench::Memory memory;
-  const auto out = std::make_shared<std::vector<S>>(contacts->frames);
-  bench::add(
-      "many frames, " + type + "/" + name, out->size(), memory.bytes(),
-      [=, estimator = make(S())] {
-        estimator.for_samples(contacts->samples(),
-                              StridedView<S>(out->data(), contacts->frames, 1, 1));
-      },
-      [=](auto& counters) { note(counters, plain(Long()), *contacts, *out); });
+void add_plain(const std::string& type,
+               const std::string& name,
+               const Make& make,
+               double largest = largest_mm2) {
+  add_each<S>("one frame, " + type + "/" + name, largest,
+              [=](auto number) { return number_of(make(number)); });
 }
 
 template <class S>
@@ -133,28 +124,28 @@ void add_all(const std::string& type) {
       return T(T(0.748) * plain - T(0.637) * sqrt(d.x * d.x + d.y * d.y) + T(1.7));
     };
   });
-  add_both<S>(type, "NoCompensation",
-              []<class T>(T) { return NormalForce(published_force_of_area<T>()); });
-  add_both<S>(type, "ScaledCompensation",
-              []<class T>(T) { return NormalForce(published_force_of_area<T>(), scaling<T>); });
-  add_both<S>(type, "PublishedCompensation, published", []<class T>(T) {
-    return NormalForce(published_force_of_area<T>(), published_compensation_by_area<T>());
+  add_plain<S>(type, "NoCompensation",
+               []<class T>(T) { return NormalForce(published::force_of_area<T>()); });
+  add_plain<S>(type, "ScaledCompensation",
+               []<class T>(T) { return NormalForce(published::force_of_area<T>(), scaling<T>); });
+  add_plain<S>(type, "published::Compensation, published", []<class T>(T) {
+    return NormalForce(published::force_of_area<T>(), published::compensation_by_area<T>());
   });
-  add_both<S>(
-      type, "PublishedCompensation by depth, published",
+  add_plain<S>(
+      type, "published::Compensation by depth, published",
       []<class T>(T) {
-        return NormalForce(published_force_of_depth<T>(), published_compensation_by_depth<T>());
+        return NormalForce(published::force_of_depth<T>(), published::compensation_by_depth<T>());
       },
       largest_depth_mm);
-  add_both<S>(type, "PolynomialForce<3>", []<class T>(T) {
+  add_plain<S>(type, "PolynomialForce<3>", []<class T>(T) {
     return NormalForce(
         PolynomialForce<3, T>{{T(0), T(0.02), T(1e-5), T(1e-7)}, T(0), T(largest_mm2)});
   });
-  add_both<S>(type, "PolynomialForce<5>", []<class T>(T) {
+  add_plain<S>(type, "PolynomialForce<5>", []<class T>(T) {
     return NormalForce(PolynomialForce<5, T>{
         {T(0), T(0.02), T(1e-5), T(1e-7), T(1e-10), T(1e-13)}, T(0), T(largest_mm2)});
   });
-  add_both<S>(
+  add_plain<S>(
       type, "PowerLawForce",
       []<class T>(T) {
         const T third = T(1) / T(3);
@@ -162,19 +153,17 @@ void add_all(const std::string& type) {
       },
       largest_radius_mm);
   add_each<S>(single + "/ScaledCompensation, variance", largest_mm2, []<class T>(T) {
-    return number_of(NormalForce(published_force_of_area<T>(), scaling<T>, some_errors<3, T>()));
+    return number_of(NormalForce(published::force_of_area<T>(), scaling<T>, some_errors<3, T>()));
   });
   add_each<S>(single + "/fused, by area and by depth", largest_mm2, []<class T>(T) {
-    const NormalForce by_area(published_force_of_area<T>(), scaling<T>, some_errors<3, T>());
-    const NormalForce by_depth(published_force_of_depth<T>(), scaling<T>, some_errors<3, T>());
+    const NormalForce by_area(published::force_of_area<T>(), scaling<T>, some_errors<3, T>());
+    const NormalForce by_depth(published::force_of_depth<T>(), scaling<T>, some_errors<3, T>());
     return [=](const T& area, const Point2<T>& d, const T& angle) {
       return fused(by_area(area, d, angle), by_depth(area / T(80), d, angle)).force_n;
     };
   });
-  for (const std::string& group : {single, "many frames, " + type}) {
-    bench::add_streaming(group, static_cast<std::size_t>(bench::Contacts<S>::frames));
-    add_opencv<S>(group);
-  }
+  bench::add_streaming(single, static_cast<std::size_t>(bench::Contacts<S>::frames));
+  add_opencv<S>(single);
 }
 
 }  // namespace

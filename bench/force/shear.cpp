@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
-// Tangential force and moment by look-up, of 4096 contacts ("ns/pixel" is per contact), frame by
-// frame and many frames in one call. "as printed": eqs. 4 and 5 by std::pow and a line each, with
+// Tangential force and moment by look-up, of 4096 contacts ("ns/pixel" is per contact).
+// "as printed": eqs. 4 and 5 by std::pow and a line each, with
 // nothing about contact or bad input. Errors: of each contact's moment and of the force along x
 // from long double, as shares of the largest. "with normal force": that by area and by depth, fused
 // by their variances, besides.
@@ -13,9 +13,11 @@
 #include <string>
 #include <vector>
 
-#include "fingerpad/force/normal_force.hpp"
 #include "bench/support/contacts.hpp"
 #include "bench/support/run.hpp"
+#include "fingerpad/force/normal_force.hpp"
+#include "fingerpad/published/normal_force.hpp"
+#include "fingerpad/published/shear.hpp"
 
 using namespace fingerpad;
 
@@ -81,18 +83,6 @@ void add_each(const std::string& name,
       [=](auto& counters) { note_shear(counters, *contacts, truth, *out); });
 }
 
-/// The same all at once.
-template <class S, class Map, class TrueMap>
-void add_batch(const std::string& name, const Shear<Map>& shear, const Shear<TrueMap>& truth) {
-  const auto contacts = std::make_shared<bench::Contacts<S>>(largest_mm2);
-  const bench::Memory memory;
-  const auto out = std::make_shared<Out<S>>(contacts->frames);
-  bench::add(
-      row<S>(name + ", for_samples"), static_cast<std::size_t>(contacts->frames), memory.bytes(),
-      [=] { shear.for_samples(contacts->samples(), out->view()); },
-      [=](auto& counters) { note_shear(counters, *contacts, truth, *out); });
-}
-
 template <class Result, class To>
 void fill(const Result& result, const To& to, Index k) {
   to(k, 0) = result.tangential_force_n.x;
@@ -134,7 +124,8 @@ ShearNormalisation<Long> exactly(const ShearNormalisation<S>& n) {
 
 template <class S>
 void add_all() {
-  const auto by_area = published_shear_by_area<S>(), by_depth = published_shear_by_depth<S>();
+  const auto by_area = published::shear_normalisation_by_area<S>(),
+             by_depth = published::shear_normalisation_by_depth<S>();
   const auto by_radius = shear_by_radius<S>(S(6));
   const Shear shear(by_area, linear<S>());
   const Shear shear_curved(by_area, curved<S>());
@@ -159,8 +150,8 @@ void add_all() {
   add_shear<S>("RadialShear<1> by radius", Shear(by_radius, linear<S>()),
                Shear(exactly(by_radius), linear<Long>()), largest_mm);
   const CurveErrors<3, S> errors{{{{S(1e-4), 0, 0}, {0, S(1e-6), 0}, {0, 0, S(1e-9)}}}, S(0.1)};
-  const NormalForce force_by_area(published_force_of_area<S>(), ScaledCompensation<S>{}, errors);
-  const NormalForce force_by_depth(published_force_of_depth<S>(), ScaledCompensation<S>{}, errors);
+  const NormalForce force_by_area(published::force_of_area<S>(), ScaledCompensation<S>{}, errors);
+  const NormalForce force_by_depth(published::force_of_depth<S>(), ScaledCompensation<S>{}, errors);
   add_each<S>(
       "with normal force",
       [=](const S& area, const Point2<S>& d, const S& theta, const auto& to, Index k) {
@@ -170,9 +161,6 @@ void add_all() {
         fill(shear(area, d, theta), to, k);
       },
       truth);
-  add_batch<S>("RadialShear<1>", shear, truth);
-  add_batch<S>("RadialShear<2>", shear_curved, truth_curved);
-  add_batch<S>("LinearShear", shear_any, truth_any);
 }
 
 /// One power of each contact; the look-up has two.

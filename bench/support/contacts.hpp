@@ -31,7 +31,6 @@ struct Contacts {
   S& at(fingerpad::Index frame, fingerpad::Index column) {
     return cells[static_cast<std::size_t>(column * frames + frame)];
   }
-  fingerpad::StridedView<const S> samples() const { return {cells.data(), frames, 4, 1, frames}; }
 };
 
 /// Differences, as shares of the largest value of `truth`.

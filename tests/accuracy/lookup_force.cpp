@@ -102,9 +102,7 @@ double full_scale_n() {
 }
 
 template <int Degree>
-using Force = NormalForce<PolynomialForce<Degree>,
-                          NoCompensation,
-                          CurveErrors<PolynomialForce<Degree>::parameters>>;
+using Force = NormalForce<PolynomialForce<Degree>>;
 
 template <int Degree>
 Force<Degree> calibrated(const Scenes& scenes, ContactMeasure measure) {
@@ -221,8 +219,8 @@ namespace {
 
 /// What a half that is not tested is filled with.
 template <int Degree>
-OddPolynomial<Degree> any_polynomial() {
-  OddPolynomial<Degree> polynomial;
+detail::OddPolynomial<Degree> any_polynomial() {
+  detail::OddPolynomial<Degree> polynomial;
   polynomial.coefficients.fill(1);
   polynomial.to = 1;
   return polynomial;

@@ -52,7 +52,7 @@ struct Pad {
   S pull_1 = S(2), pull_2 = S(0.6), pull_exponent = S(0.7);
   S turn_1 = S(40), turn_2 = S(30), turn_exponent = S(1.6);
   S radius_mm = S(2.2), gamma = S(0.38);
-  AffineForce<S> affine = {S(0.8), S(-0.6), S(0.7)};
+  published::AffineForce<S> affine = {S(0.8), S(-0.6), S(0.7)};
   LinearShear<S> linear_map = {S(1.9), S(-0.3), S(0.2), S(2.4), {S(0.4), S(-0.25)}, S(0), S(0)};
 
   PolynomialForce<3, S> curve() const {
@@ -389,8 +389,7 @@ TEST_CASE("a calibration tells how far the next force is off", "[calibrate][forc
     PolynomialForce<2> curve = fit.curve;
     curve.from = 0.1;
     curve.to = 6;
-    const NormalForce<PolynomialForce<2>, NoCompensation, CurveErrors<3>> force(curve, {},
-                                                                                fit.errors);
+    const NormalForce<> force(curve, {}, fit.errors);
     const double at = random.uniform(0.4, 5);
     const auto found = force(at);
     predicted.add(found.force_n, pad.plain(at) + error_of(noise, random), sd(found.variance_n2));

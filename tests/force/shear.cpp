@@ -12,6 +12,7 @@
 
 #include "fingerpad/adapt/eigen.hpp"
 #include "fingerpad/adapt/opencv.hpp"
+#include "fingerpad/published/shear.hpp"
 #include "support/catch.hpp"
 #include "support/numbers.hpp"
 #include "support/pad.hpp"
@@ -75,35 +76,23 @@ std::string refusal_of(const Normalisation& normalisation, const Map& map) {
   return test::refusal([&] { Shear<Map>(normalisation, map); });
 }
 
-/// Samples with contact and without, beyond the ranges of bent(), and with gaps.
-test::Image<double> some_samples(Index rows, Index cols = 4) {
-  test::Image<double> samples(rows, cols, none);
-  for (Index i = 0; i < rows; ++i) {
-    const double t = static_cast<double>(i);
-    samples(i, 0) = i % 11 == 3 ? -t : 5 + 7 * t;
-    samples(i, 1) = std::sin(t);
-    samples(i, 2) = i % 13 == 5 ? none : std::cos(2 * t);
-    samples(i, 3) = i % 17 == 6 ? infinity : 0.3 * std::sin(3 * t);
-  }
-  return samples;
-}
-
 }  // namespace
 
 TEST_CASE("shear: normalised as published (eqs. 4 and 5)", "[shear]") {
   // 2^20 to the 0.65 is 2^13, to the 1.7 is 2^34; 2^20 to the 0.75 is 2^15, to the 2.2 is 2^44.
   SECTION("by area") {
-    check_factors(published_shear_by_area(), {{100, 1, 1},
-                                              {25, 0.40612619817811776130, 0.09473228540689988014},
-                                              {50, 0.63728031365963107185, 0.30778610333622907112},
-                                              {200, 1.56916819579350147144, 3.24900958542494209043},
-                                              {300, 2.04234363194535116445, 6.47300783992377929866},
-                                              {478, 2.76457344940414283662, 14.2898419122327119320},
-                                              {104857600, 8192, 17179869184},
-                                              {100 / 1048576.0, 1 / 8192.0, 1 / 17179869184.0}});
+    check_factors(published::shear_normalisation_by_area(),
+                  {{100, 1, 1},
+                   {25, 0.40612619817811776130, 0.09473228540689988014},
+                   {50, 0.63728031365963107185, 0.30778610333622907112},
+                   {200, 1.56916819579350147144, 3.24900958542494209043},
+                   {300, 2.04234363194535116445, 6.47300783992377929866},
+                   {478, 2.76457344940414283662, 14.2898419122327119320},
+                   {104857600, 8192, 17179869184},
+                   {100 / 1048576.0, 1 / 8192.0, 1 / 17179869184.0}});
   }
   SECTION("by depth") {
-    check_factors(published_shear_by_depth(),
+    check_factors(published::shear_normalisation_by_depth(),
                   {{10, 1, 1},
                    {1, 0.17782794100389228012, 0.00630957344480193249},
                    {2, 0.29906975624424410838, 0.02899118654710782125},
@@ -114,7 +103,7 @@ TEST_CASE("shear: normalised as published (eqs. 4 and 5)", "[shear]") {
                    {10 / 1048576.0, 1 / 32768.0, 1 / 17592186044416.0}});
   }
   SECTION("the reference size counts as it is") {
-    const auto r = Shear(published_shear_by_area(), bent())(100.0, {0.3, 0.4}, 0.25);
+    const auto r = Shear(published::shear_normalisation_by_area(), bent())(100.0, {0.3, 0.4}, 0.25);
     CHECK(r.normalised_displacement_mm.x == 0.3);
     CHECK(r.normalised_rotation_rad == 0.25);
   }
@@ -220,7 +209,7 @@ TEST_CASE("shear: any linear map", "[shear]") {
   CHECK(r.tangential_force_n.y == 0);
   CHECK(r.moment_n_mm == 0);
   // with its own axes
-  const Shear sized(published_shear_by_area(), slanted());
+  const Shear sized(published::shear_normalisation_by_area(), slanted());
   r = sized(200.0, {1, 2}, 0.25);
   CHECK(r.tangential_force_n.x == Approx(1.56916819579350147 + 0.125).epsilon(1e-14));
   CHECK(r.tangential_force_n.y == Approx(6.25 * 1.56916819579350147 - 0.25).epsilon(1e-14));
@@ -231,7 +220,7 @@ TEST_CASE("shear: any linear map", "[shear]") {
 }
 
 TEST_CASE("shear: without contact there is no force, whatever is displaced", "[shear]") {
-  const Shear shear(published_shear_by_area(), bent());
+  const Shear shear(published::shear_normalisation_by_area(), bent());
   for (const double measure : {0.0, -0.0, -1e-300, -7.0, -1e300}) {
     for (const double size : {0.0, 0.1, 1.0, 1e6}) {
       const auto r = shear(measure, {size, -size}, size);
@@ -249,7 +238,7 @@ TEST_CASE("shear: without contact there is no force, whatever is displaced", "[s
 }
 
 TEST_CASE("shear: force and moment fail each by itself", "[shear]") {
-  const Shear shear(published_shear_by_area(), bent());
+  const Shear shear(published::shear_normalisation_by_area(), bent());
   const auto good = shear(80.0, {0.2, -0.1}, 0.05);
   const auto no_force = [](const ShearResult<double>& r) {
     return r.force_status == ForceStatus::not_finite && !r.has_force() &&
@@ -304,7 +293,9 @@ TEST_CASE("shear: bad parameters are refused by name", "[shear]") {
         "ShearNormalisation: rotation_exponent = -inf, must be finite");
   CHECK(test::begins_with(normalised({100, 1, none}), "ShearNormalisation: rotation_exponent = "));
 
-  const auto mapped = [](const auto& map) { return refusal_of(published_shear_by_area(), map); };
+  const auto mapped = [](const auto& map) {
+    return refusal_of(published::shear_normalisation_by_area(), map);
+  };
   CHECK(mapped(ones()) == "accepted");
   CHECK(mapped(bent()) == "accepted");
   CHECK(mapped(slanted()) == "accepted");
@@ -365,157 +356,13 @@ TEST_CASE("shear: bad parameters are refused by name", "[shear]") {
   CHECK(mapped(map) == "LinearShear: offset_n.y = inf, must be finite");
 }
 
-TEST_CASE("shear: many samples, in whatever layout", "[shear]") {
-  const Shear shear(published_shear_by_area(), bent());
-  const Index n = 150;
-  const auto samples = some_samples(n);
-  test::Image<double> expected(n, 3);
-  const auto counts = shear.for_samples(samples, expected);
-  REQUIRE(counts.ok());
-  CHECK(counts.not_finite > 15);
-  CHECK(counts.beyond_range > 30);
-
-  const auto same = [&](const auto& results) {
-    test::Image<double> copy(n, 3);
-    for (Index i = 0; i < n; ++i) {
-      for (Index j = 0; j < 3; ++j) {
-        copy(i, j) = results(i, j);
-      }
-    }
-    return same_bits(copy, expected);
-  };
-  const auto same_counts = [&](const SampleCounts& c) {
-    return c.ok() && c.not_finite == counts.not_finite && c.beyond_range == counts.beyond_range;
-  };
-  using test::Image;
-  SECTION("a column in a row of memory") {
-    std::vector<double> in(4 * 150), out(3 * 150);
-    const StridedView<double> from(in.data(), n, 4, 1, n), to(out.data(), n, 3, 1, n);
-    for (Index i = 0; i < n; ++i) {
-      for (Index j = 0; j < 4; ++j) {
-        from(i, j) = samples(i, j);
-      }
-    }
-    CHECK(same_counts(shear.for_samples(from, to)));
-    CHECK(same(to));
-  }
-  SECTION("with further columns on either side, and back to front") {
-    Image<double> wide(n, 9, none), out(n, 5, 7.0);
-    const StridedView<double> from(wide.cells.data() + 2, n, 7, 9);
-    for (Index i = 0; i < n; ++i) {
-      for (Index j = 0; j < 4; ++j) {
-        from(n - 1 - i, j) = samples(i, j);
-      }
-    }
-    const StridedView<double> to(out.cells.data() + 1, n, 3, 5);
-    CHECK(same_counts(shear.for_samples(flip_rows(from), to)));
-    CHECK(same(to));
-    for (Index i = 0; i < n; ++i) {
-      CHECK((out(i, 0) == 7 && out(i, 4) == 7));
-    }
-  }
-  SECTION("in place") {
-    Image<double> both = samples;
-    const StridedView<double> to(both.cells.data() + 1, n, 3, 4);
-    CHECK(same_counts(shear.for_samples(both, to)));
-    CHECK(same(to));
-    CHECK(both(20, 0) == samples(20, 0));
-  }
-  SECTION("matrices of Eigen") {
-    Eigen::MatrixXd in(n, 4), out(n, 3);
-    for (Index i = 0; i < n; ++i) {
-      for (Index j = 0; j < 4; ++j) {
-        in(i, j) = samples(i, j);
-      }
-    }
-    CHECK(same_counts(shear.for_samples(in, out)));
-    CHECK(same(out));
-  }
-  SECTION("matrices of OpenCV") {
-    cv::Mat_<double> in(static_cast<int>(n), 4), out(static_cast<int>(n), 3);
-    for (int i = 0; i < in.rows; ++i) {
-      for (int j = 0; j < 4; ++j) {
-        in(i, j) = samples(i, j);
-      }
-    }
-    CHECK(same_counts(shear.for_samples(in, out)));
-    CHECK(same([&](Index i, Index j) { return out(static_cast<int>(i), static_cast<int>(j)); }));
-  }
-  SECTION("computed on demand, and stored in single precision") {
-    const LazyView from(n, 4, [&](Index i, Index j) { return samples(i, j); });
-    Image<float> out(n, 3);
-    CHECK(same_counts(shear.for_samples(from, out)));
-    for (std::size_t k = 0; k < out.cells.size(); ++k) {
-      CHECK(same_bits(out.cells[k], static_cast<float>(expected.cells[k])));
-    }
-  }
-  SECTION("whole numbers") {
-    Image<int> in(70, 4, 1);
-    in(69, 0) = 200;
-    Image<double> out(70, 3);
-    CHECK(Shear(published_shear_by_area(), ones()).for_samples(in, out).ok());
-    CHECK(out(69, 0) == Approx(1.56916819579350147).epsilon(1e-14));
-    CHECK(out(69, 2) == Approx(3.24900958542494209).epsilon(1e-14));
-  }
-}
-
-TEST_CASE("shear: many samples, and what is said of them", "[shear]") {
-  const Shear shear(shear_without_measure(), bent());
-  test::Image<double> samples(8, 4), out(8, 3);
-  const double rows[8][4] = {{1, 0.5, 0, 0.1},      // within
-                             {1, 1, 1.2, 0.1},      // displaced beyond
-                             {1, 0.5, 0, -0.6},     // rotated beyond
-                             {1, 2, 0, 0.6},        // both, one sample
-                             {0, 9, 9, 9},          // no contact: nothing is beyond
-                             {1, none, 0, 0.1},     // no force
-                             {1, 2, 0, infinity},   // no moment, and the force beyond
-                             {infinity, 0, 0, 0}};  // neither
-  for (Index i = 0; i < 8; ++i) {
-    for (Index j = 0; j < 4; ++j) {
-      samples(i, j) = rows[i][j];
-    }
-  }
-  const auto counts = shear.for_samples(samples, out);
-  CHECK(counts.ok());
-  CHECK(counts.not_finite == 3);
-  CHECK(counts.beyond_range == 3);
-  CHECK((out(4, 0) == 0 && out(4, 1) == 0 && out(4, 2) == 0));
-  CHECK((std::isnan(out(5, 0)) && std::isnan(out(5, 1)) && is_finite(out(5, 2))));
-  CHECK((is_finite(out(6, 0)) && is_finite(out(6, 1)) && std::isnan(out(6, 2))));
-  CHECK((std::isnan(out(7, 0)) && std::isnan(out(7, 1)) && std::isnan(out(7, 2))));
-}
-
-TEST_CASE("shear: samples of another size are refused and nothing is written", "[shear]") {
-  const Shear shear(published_shear_by_area(), ones());
-  const auto refused = [&](Index in_rows, Index in_cols, Index out_rows, Index out_cols) {
-    const test::Image<double> in(in_rows, in_cols, 1.0);
-    test::Image<double> out(out_rows, out_cols, 7.0);
-    const auto counts = shear.for_samples(in, out);
-    bool untouched = true;
-    for (const double cell : out.cells) {
-      untouched = untouched && cell == 7;
-    }
-    return !counts.ok() && untouched && counts.not_finite == 0 && counts.beyond_range == 0;
-  };
-  CHECK(refused(70, 3, 70, 3));
-  CHECK(refused(70, 0, 70, 3));
-  CHECK(refused(70, 4, 69, 3));
-  CHECK(refused(70, 4, 71, 3));
-  CHECK(refused(70, 4, 70, 2));
-  CHECK(refused(70, 4, 70, 4));
-  CHECK(refused(0, 4, 1, 3));
-  CHECK(!refused(70, 4, 70, 3));
-  CHECK(!refused(70, 5, 70, 3));  // columns beyond the fourth are not looked at
-  const test::Image<double> empty(0, 4);
-  test::Image<double> out(0, 3);
-  CHECK(shear.for_samples(empty, out).ok());
-}
-
 TEST_CASE("shear: the estimator is a value of some numbers", "[shear]") {
   static_assert(std::is_trivially_copyable_v<Shear<RadialShear<3, float>>>);
   static_assert(std::is_trivially_copyable_v<Shear<LinearShear<double>>>);
-  static_assert(std::is_same_v<decltype(Shear(published_shear_by_area(), ones())), Shear<>>);
-  const Shear<RadialShear<1, float>> shear(published_shear_by_area<float>(), {{{2.0F}}, {{3.0F}}});
+  static_assert(
+      std::is_same_v<decltype(Shear(published::shear_normalisation_by_area(), ones())), Shear<>>);
+  const Shear<RadialShear<1, float>> shear(published::shear_normalisation_by_area<float>(),
+                                           {{{2.0F}}, {{3.0F}}});
   const auto r = shear(200.0F, {1.0F, 0.0F}, 1.0F);
   CHECK(r.tangential_force_n.x == Approx(2 * 1.56916819579350147).epsilon(1e-6));
   CHECK(r.moment_n_mm == Approx(3 * 3.24900958542494209).epsilon(1e-6));

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "fingerpad/adapt/autodiff.hpp"
+#include "fingerpad/published/normal_force.hpp"
 #include "support/catch.hpp"
 #include "support/numbers.hpp"
 #include "support/pad.hpp"
@@ -84,7 +85,7 @@ struct Scaled {
 struct Published {
   static constexpr std::size_t size = 8;
   template <class S>
-  static PublishedCompensation<S> compensation(const S* p) {
+  static published::Compensation<S> compensation(const S* p) {
     return {{p[0], p[1], p[2]}, {p[3], p[4], p[5]}, p[6], p[7]};
   }
   static std::array<double, size> draw(test::Random& random) {
@@ -111,8 +112,7 @@ struct Of {
     errors.residual_sd_n = S(0.125);
     errors.measure_sd = S(0.25);
     return NormalForce<std::remove_const_t<decltype(curve)>,
-                       std::remove_const_t<decltype(compensation)>, Errors>(curve, compensation,
-                                                                            errors);
+                       std::remove_const_t<decltype(compensation)>>(curve, compensation, errors);
   }
   template <class S>
   static NormalForceResult<S> result(const std::array<S, size>& p) {
@@ -240,10 +240,10 @@ TEST_CASE("the published equations hold in all of 50 digits", "[normal_force]") 
       {n("0.6242"), n("0.0191"), n("0.00008")}, Digits50(18), Digits50(478)};
   const PolynomialForce<2, Digits50> depth{
       {n("0.3435"), n("0.5563"), n("0.776")}, n("0.63"), n("5.62")};
-  const PublishedCompensation<Digits50> by_area{{n("0.748"), n("-0.637"), n("1.7")},
-                                                {n("1.2"), n("0.1"), n("-1.8")}};
-  const PublishedCompensation<Digits50> by_depth{{n("1.2"), n("0.509"), n("-3.5")},
-                                                 {n("0.8"), n("-0.06"), n("-0.0518")}};
+  const published::Compensation<Digits50> by_area{{n("0.748"), n("-0.637"), n("1.7")},
+                                                  {n("1.2"), n("0.1"), n("-1.8")}};
+  const published::Compensation<Digits50> by_depth{{n("1.2"), n("0.509"), n("-3.5")},
+                                                   {n("0.8"), n("-0.06"), n("-0.0518")}};
   const NormalForce a(area, by_area);
   const NormalForce d(depth, by_depth);
   const Digits50 none(0);
@@ -258,25 +258,26 @@ TEST_CASE("the published equations hold in all of 50 digits", "[normal_force]") 
 TEMPLATE_TEST_CASE("a compensation that cancels the force", "[normal_force]", float, double) {
   // 1.2 F + 0.509 d - 3.5 around 0: off by roundoff of what is added up, and never below 0.
   using S = TestType;
-  const auto curve = published_force_of_depth<S>();
-  const auto compensation = published_compensation_by_depth<S>();
+  const auto curve = published::force_of_depth<S>();
+  const auto compensation = published::compensation_by_depth<S>();
   const NormalForce force(curve, compensation);
-  const auto exactly = [](const AffineForce<S>& a) {
-    return AffineForce<Digits50>{Digits50(a.gain), Digits50(a.per_unit), Digits50(a.offset_n)};
+  const auto exactly = [](const published::AffineForce<S>& a) {
+    return published::AffineForce<Digits50>{Digits50(a.gain), Digits50(a.per_unit),
+                                            Digits50(a.offset_n)};
   };
   const auto& c = curve.coefficients;
   const NormalForce exact(
       PolynomialForce<2, Digits50>{{Digits50(c[0]), Digits50(c[1]), Digits50(c[2])},
                                    Digits50(curve.from),
                                    Digits50(curve.to)},
-      PublishedCompensation<Digits50>{
+      published::Compensation<Digits50>{
           exactly(compensation.displaced), exactly(compensation.rotated),
           Digits50(compensation.blend_mm), Digits50(compensation.blend_rad)});
   // where the sum is 0 along the axis x, by 50 digits
   Digits50 low(2), high(4);
   const Digits50 depth_mm(S(1));
   const auto sum = [&](const Digits50& x) {
-    const auto change = PublishedCompensation<Digits50>{
+    const auto change = published::Compensation<Digits50>{
         exactly(compensation.displaced), {}, Digits50(1), Digits50(1)}(square(x), Digits50(0));
     return Digits50(change.gain * exact(depth_mm).force_n + change.shift_n);
   };
@@ -313,7 +314,7 @@ TEMPLATE_TEST_CASE("the largest and the smallest contacts", "[normal_force]", fl
   using S = TestType;
   const S max = std::numeric_limits<S>::max(), least = std::numeric_limits<S>::denorm_min();
   const S normal = std::numeric_limits<S>::min();
-  const auto curve = published_force_of_area<S>();
+  const auto curve = published::force_of_area<S>();
   const NormalForce force(curve);
   const auto& c = curve.coefficients;
   const NormalForce exact(PolynomialForce<2, Digits50>{
@@ -483,32 +484,5 @@ TEST_CASE("slopes and gradients of curves are derivatives", "[normal_force]") {
     CHECK(close(again.derivatives()(3), 1));
     CHECK(std::abs(again.derivatives()(0)) < 1e-12 * m);
     CHECK(std::abs(again.derivatives()(1)) < 1e-11 * m);
-  }
-}
-
-TEST_CASE("batches of normal forces in numbers with derivatives and with many digits",
-          "[normal_force]") {
-  using D = Eigen::AutoDiffScalar<Eigen::Matrix<double, 4, 1>>;
-  test::Random random(10);
-  const auto p = PublishedPolynomial::draw(random);
-  const auto force = PublishedPolynomial::force(in<D>(p));
-  const auto force50 = PublishedPolynomial::force(in<Digits50>(p));
-  test::Image<D> samples(70, 4, D(0)), forces(70, 1, D(0));
-  test::Image<Digits50> samples50(70, 4), forces50(70, 1);
-  for (Index i = 0; i < 70; ++i) {
-    const auto q = PublishedPolynomial::draw(random);
-    for (Index j = 0; j < 4; ++j) {
-      const double cell = q[static_cast<std::size_t>(j)];
-      samples(i, j) = D(cell, 4, static_cast<int>(j));
-      samples50(i, j) = Digits50(cell);
-    }
-  }
-  CHECK(force.for_samples(samples, forces).ok());
-  CHECK(force50.for_samples(samples50, forces50).ok());
-  for (Index i = 0; i < 70; ++i) {
-    const auto one = force(samples(i, 0), {samples(i, 1), samples(i, 2)}, samples(i, 3)).force_n;
-    CHECK(forces(i, 0).value() == one.value());
-    CHECK(forces(i, 0).derivatives() == one.derivatives());
-    CHECK(off(one.value(), forces50(i, 0)) < 1e-13 * (20 + one.value()));
   }
 }

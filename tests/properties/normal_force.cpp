@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "fingerpad/adapt/eigen.hpp"
+#include "fingerpad/published/normal_force.hpp"
 #include "support/catch.hpp"
 #include "support/generators.hpp"
 #include "support/pad.hpp"
@@ -82,11 +83,11 @@ struct Any<ScaledCompensation<>> {
   }
 };
 template <>
-struct Any<PublishedCompensation<>> {
-  static PublishedCompensation<> compensation() {
+struct Any<published::Compensation<>> {
+  static published::Compensation<> compensation() {
     const auto any = [](double unit) {
-      return AffineForce<>{test::uniform(-0.5, 2), test::uniform(-1, 1) * unit,
-                           test::uniform(-4, 4)};
+      return published::AffineForce<>{test::uniform(-0.5, 2), test::uniform(-1, 1) * unit,
+                                      test::uniform(-4, 4)};
     };
     return {any(1), any(30), test::log_uniform(0.1, 3), test::log_uniform(0.002, 0.1)};
   }
@@ -101,10 +102,10 @@ struct Of {
 using Plain = Of<PolynomialForce<>, NoCompensation>;
 using Cubic = Of<PolynomialForce<3>, ScaledCompensation<>>;
 using Scaled = Of<PolynomialForce<>, ScaledCompensation<>>;
-using Published = Of<PolynomialForce<>, PublishedCompensation<>>;
+using Published = Of<PolynomialForce<>, published::Compensation<>>;
 using PlainPower = Of<PowerLawForce<>, NoCompensation>;
 using ScaledPower = Of<PowerLawForce<>, ScaledCompensation<>>;
-using PublishedPower = Of<PowerLawForce<>, PublishedCompensation<>>;
+using PublishedPower = Of<PowerLawForce<>, published::Compensation<>>;
 
 Vector any_displacement() {
   return {test::uniform(-4, 4), test::uniform(-4, 4)};
@@ -359,7 +360,7 @@ TEST_CASE("normal force: the scaled compensation multiplies", "[normal_force][la
 TEST_CASE("normal force: the published compensation between its ends", "[normal_force][law]") {
   rc::prop("lies between the plain force and the printed equation at that place", [] {
     const auto curve = any_rising<2>();
-    auto published = Any<PublishedCompensation<>>::compensation();
+    auto published = Any<published::Compensation<>>::compensation();
     const double m = test::uniform(1, curve.to / curve.from) * curve.from;
     const double plain = curve.force_n(m);
     const NormalForce force(curve, published);
@@ -391,22 +392,22 @@ TEST_CASE("normal force: the published compensation between its ends", "[normal_
 TEST_CASE("normal force: units do not matter", "[normal_force][law]") {
   rc::prop("to the last bit, if they differ by powers of 2", [] {
     const auto curve = any_rising<2>();
-    const auto published = Any<PublishedCompensation<>>::compensation();
+    const auto published = Any<published::Compensation<>>::compensation();
     const double area = std::ldexp(1.0, static_cast<int>(test::whole(-9, 9)));
     const double newton = std::ldexp(1.0, static_cast<int>(test::whole(-9, 9)));
     const double length = std::ldexp(1.0, static_cast<int>(test::whole(-9, 9)));
     const double angle = std::ldexp(1.0, static_cast<int>(test::whole(-9, 9)));
-    const auto affine = [&](const AffineForce<>& a, double unit) {
-      return AffineForce<>{a.gain, a.per_unit * newton / unit, a.offset_n * newton};
+    const auto affine = [&](const published::AffineForce<>& a, double unit) {
+      return published::AffineForce<>{a.gain, a.per_unit * newton / unit, a.offset_n * newton};
     };
     const auto& c = curve.coefficients;
     const PolynomialForce<> other_curve{
         {c[0] * newton, c[1] * newton / area, c[2] * newton / (area * area)},
         curve.from * area,
         curve.to * area};
-    const PublishedCompensation<> other{affine(published.displaced, length),
-                                        affine(published.rotated, angle),
-                                        published.blend_mm * length, published.blend_rad * angle};
+    const published::Compensation<> other{affine(published.displaced, length),
+                                          affine(published.rotated, angle),
+                                          published.blend_mm * length, published.blend_rad * angle};
     CurveErrors<3> errors{.residual_sd_n = test::uniform(0, 1), .measure_sd = test::uniform(0, 1)};
     errors.covariance[0][0] = test::uniform(0, 1);
     CurveErrors<3> other_errors{.residual_sd_n = errors.residual_sd_n * newton,
@@ -422,74 +423,6 @@ TEST_CASE("normal force: units do not matter", "[normal_force][law]") {
     RC_ASSERT(a.status == b.status);
     RC_ASSERT(a.force_n * newton == b.force_n);
     RC_ASSERT(a.variance_n2 * newton * newton == b.variance_n2);
-  });
-}
-
-TEMPLATE_TEST_CASE("normal force: many frames at once are each frame",
-                   "[normal_force][law]",
-                   Plain,
-                   Cubic,
-                   Published,
-                   PlainPower,
-                   PublishedPower) {
-  rc::prop("to the last bit, in any layout and for any number of them", [] {
-    const auto curve = Any<typename TestType::Curve>::accepted();
-    const typename TestType::Force force(curve,
-                                         Any<typename TestType::Compensation>::compensation());
-    const Index count = test::whole(0, 200);
-    const Index columns = (TestType::Compensation::reads_motion ? 4 : 1) + test::whole(0, 2);
-    const auto share = test::whole(0, 50);
-    test::Random random(static_cast<std::uint64_t>(test::whole(0, 1 << 30)));
-    test::Image<double> samples(count, columns);
-    for (Index i = 0; i < count; ++i) {
-      for (Index j = 0; j < columns; ++j) {
-        samples(i, j) = random.whole(0, 99) >= share
-                            ? (j == 0 ? random.uniform(-0.2, 1.3) * curve.to
-                                      : random.uniform(-3, 3) * (j == 3 ? 0.1 : 1))
-                        : random.whole(0, 1) == 0 ? test::nan
-                                                  : infinity;
-      }
-    }
-    const Eigen::MatrixXd by_columns =
-        Eigen::Map<const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>>(
-            samples.cells.data(), count, columns);
-    const LazyView lazy(count, columns, [&](Index i, Index j) { return samples(i, j); });
-    const auto reversed = flip_rows(as_view(samples));
-    test::Image<double> a(count, 1), b(count, 1), c(count, 1), d(count, 1);
-    const SampleCounts counts = force.for_samples(samples, a);
-    RC_ASSERT(counts.ok());
-    for (const SampleCounts& same : {force.for_samples(by_columns, b), force.for_samples(lazy, c),
-                                     force.for_samples(reversed, flip_rows(as_view(d)))}) {
-      RC_ASSERT(same.ok());
-      RC_ASSERT(same.not_finite == counts.not_finite);
-      RC_ASSERT(same.beyond_range == counts.beyond_range);
-    }
-    RC_ASSERT(test::same_bits(a, b));
-    RC_ASSERT(test::same_bits(a, c));
-    RC_ASSERT(test::same_bits(a, d));
-    Index not_finite = 0, beyond = 0;
-    for (Index i = 0; i < count; ++i) {
-      const auto at = [&](Index j) { return j < columns ? samples(i, j) : 0; };
-      const auto one = force(at(0), {at(1), at(2)}, at(3));
-      RC_ASSERT(test::same_bits(a(i, 0), one.force_n));
-      not_finite += one.status == ForceStatus::not_finite ? 1 : 0;
-      beyond += one.has_force() && at(0) > curve.to ? 1 : 0;
-    }
-    RC_ASSERT(counts.not_finite == not_finite);
-    RC_ASSERT(counts.beyond_range == beyond);
-  });
-  rc::prop("and grids of other sizes are not touched", [] {
-    const typename TestType::Force force(Any<typename TestType::Curve>::accepted(),
-                                         Any<typename TestType::Compensation>::compensation());
-    const Index needed = TestType::Compensation::reads_motion ? 4 : 1;
-    const test::Image<double> samples(test::whole(0, 3), test::whole(0, 5), 1.0);
-    test::Image<double> forces(test::whole(0, 3), test::whole(0, 2), -7.0);
-    const bool fits =
-        samples.cols() >= needed && forces.cols() == 1 && forces.rows() == samples.rows();
-    RC_ASSERT(force.for_samples(samples, forces).ok() == fits);
-    for (const double f : forces.cells) {
-      RC_ASSERT((f == -7) == !fits);
-    }
   });
 }
 
@@ -549,7 +482,7 @@ double said_over_drawn(const Curve& curve,
                        double rotation,
                        int draws) {
   const CurveErrors<N> errors{spread.covariance(), residual_sd, measure_sd};
-  const NormalForce<Curve, Compensation, CurveErrors<N>> force(curve, compensation, errors);
+  const NormalForce<Curve, Compensation> force(curve, compensation, errors);
   const auto said = force(measure, displacement, rotation);
   REQUIRE(said.force_n > 0);
   test::Random random(static_cast<std::uint64_t>(1000 * measure));
@@ -584,12 +517,12 @@ TEST_CASE("normal force: the variance is that of parameters and measures drawn a
   };
   Spread<3> spread;
   spread.factor = {{{0.02, 0, 0}, {-1e-4, 2e-4, 0}, {1e-7, -3e-7, 2e-7}}};
-  const auto area = published_force_of_area();
+  const auto area = published::force_of_area();
   for (const double measure : {9.0, 40.0, 450.0}) {
     agrees(area, spread, NoCompensation{}, measure, 0.3);
     agrees(area, spread, ScaledCompensation<>{0.05, 3}, measure, 0.3);
   }
-  agrees(area, spread, published_compensation_by_area(), 200, 0.3);
+  agrees(area, spread, published::compensation_by_area(), 200, 0.3);
   const PowerLawForce<> power{3, 0.4, 0.5, 8};
   Spread<2> of_power;
   of_power.factor = {{{0.004, 0}, {1e-4, 3e-4}}};

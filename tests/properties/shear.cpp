@@ -11,6 +11,7 @@
 #include <numbers>
 #include <vector>
 
+#include "fingerpad/published/shear.hpp"
 #include "support/catch.hpp"
 #include "support/generators.hpp"
 #include "support/pad.hpp"
@@ -22,8 +23,8 @@ namespace {
 constexpr double ulp = std::numeric_limits<double>::epsilon();
 
 template <int Degree, class S = double>
-OddPolynomial<Degree, S> any_rising() {
-  OddPolynomial<Degree, S> p;
+detail::OddPolynomial<Degree, S> any_rising() {
+  detail::OddPolynomial<Degree, S> p;
   for (S& c : p.coefficients) {
     c = static_cast<S>(test::log_uniform(0.1, 100));
   }
@@ -334,96 +335,7 @@ bool agree(S a, S b, double scale, double epsilons) {
   return off <= epsilons * static_cast<double>(std::numeric_limits<S>::epsilon()) * scale;
 }
 
-/// The power of the batch and that of a frame are each off by (1 + |T log ratio|) epsilons and
-/// half as much again; a polynomial of degree n makes n of one.
-template <class S, class Map>
-void check_batch(const ShearNormalisation<S>& normalisation, const Map& map, int degree) {
-  const Shear<Map> shear(normalisation, map);
-  const Index n = test::whole(0, 3) == 0 ? test::whole(0, 9) : test::whole(10, 200);
-  test::Image<S> samples(n, 4), results(n, 3, S(7));
-  for (Index i = 0; i < n; ++i) {
-    const auto d = any_displacement();
-    samples(i, 0) = sometimes<S>((test::whole(0, 9) == 0 ? -1 : 1) * any_measure());
-    samples(i, 1) = sometimes<S>(d.x);
-    samples(i, 2) = sometimes<S>(d.y);
-    samples(i, 3) = sometimes<S>(any_rotation());
-  }
-  const auto counts = shear.for_samples(samples, results);
-  RC_ASSERT(counts.ok());
-  Index not_finite = 0, beyond = 0;
-  bool doubtful = false;  // at the end of the range, where a last bit decides
-  for (Index i = 0; i < n; ++i) {
-    const Point2<S> d{samples(i, 1), samples(i, 2)};
-    const auto r = shear(samples(i, 0), d, samples(i, 3));
-    const double ratio = static_cast<double>(samples(i, 0) / normalisation.reference);
-    const double y = ratio > 0 ? std::log(ratio) : 0;
-    const auto bound = [&](S exponent) {
-      return degree * (8 + 3 * std::abs(static_cast<double>(exponent) * y));
-    };
-    const auto &f = r.tangential_force_n, &u = r.normalised_displacement_mm;
-    const double size = std::hypot(static_cast<double>(f.x), static_cast<double>(f.y));
-    const double by_force = bound(normalisation.displacement_exponent);
-    RC_ASSERT(agree(results(i, 0), f.x, size, by_force));
-    RC_ASSERT(agree(results(i, 1), f.y, size, by_force));
-    RC_ASSERT(agree(results(i, 2), r.moment_n_mm, static_cast<double>(std::abs(r.moment_n_mm)),
-                    bound(normalisation.rotation_exponent)));
-    const bool both = r.has_force() && r.has_moment();
-    not_finite += both ? 0 : 1;
-    beyond += both && (r.force_status == ForceStatus::beyond_range ||
-                       r.moment_status == ForceStatus::beyond_range)
-                  ? 1
-                  : 0;
-    for (const double change : {1 - 1e-4, 1 + 1e-4}) {
-      const S c = static_cast<S>(change);
-      doubtful =
-          doubtful || map.within(Point2<S>{c * u.x, c * u.y}) != map.within(u) ||
-          map.within(S(c * r.normalised_rotation_rad)) != map.within(r.normalised_rotation_rad);
-    }
-  }
-  RC_ASSERT(counts.not_finite == not_finite);
-  RC_ASSERT(doubtful || counts.beyond_range == beyond);
-}
-
 }  // namespace
-
-TEMPLATE_TEST_CASE("shear: many samples at once are single ones", "[shear][law]", double, float) {
-  rc::prop("of a straight map",
-           [] { check_batch(any_normalisation<TestType>(), any_radial<1, TestType>(), 1); });
-  rc::prop("of a bent one",
-           [] { check_batch(any_normalisation<TestType>(), any_radial<3, TestType>(), 3); });
-}
-
-TEST_CASE("shear: many samples at once of a linear map are single ones", "[shear][law]") {
-  rc::prop("wherever they stand among the others", [] {
-    LinearShear<> map = any_linear();
-    const double k = std::abs(map.x_by_x) + std::abs(map.x_by_y) + std::abs(map.y_by_x) +
-                     std::abs(map.y_by_y) + std::abs(map.moment_n_mm_per_rad);
-    map.offset_n = {test::uniform(-3, 3), test::uniform(-3, 3)};
-    map.moment_offset_n_mm = test::uniform(-3, 3);
-    const auto normalisation = any_normalisation();
-    const Shear shear(normalisation, map);
-    const Index n = test::whole(1, 150);
-    const double measure = any_measure(), theta = any_rotation();
-    const auto d = any_displacement();
-    test::Image<double> samples(n, 4), results(n, 3);
-    for (Index i = 0; i < n; ++i) {
-      samples(i, 0) = measure;
-      samples(i, 1) = d.x;
-      samples(i, 2) = d.y;
-      samples(i, 3) = theta;
-    }
-    shear.for_samples(samples, results);
-    const auto r = shear(measure, d, theta);
-    const double y = std::abs(std::log(measure / normalisation.reference));
-    const double scale =
-        3 + k * (length(r.normalised_displacement_mm) + std::abs(r.normalised_rotation_rad));
-    for (Index i = 0; i < n; ++i) {
-      RC_ASSERT(agree(results(i, 0), r.tangential_force_n.x, scale, 10 + 9 * y));
-      RC_ASSERT(agree(results(i, 1), r.tangential_force_n.y, scale, 10 + 9 * y));
-      RC_ASSERT(agree(results(i, 2), r.moment_n_mm, scale, 10 + 9 * y));
-    }
-  });
-}
 
 TEMPLATE_TEST_CASE("shear: whatever is measured, the answer says what it is worth",
                    "[shear][law]",
@@ -446,7 +358,7 @@ TEMPLATE_TEST_CASE("shear: whatever is measured, the answer says what it is wort
     return k < 11 ? odd[k] : static_cast<S>(test::uniform(-10, 10));
   };
   rc::prop("finite where there is one, 0 without contact, else NaN", [=] {
-    const Shear shear(published_shear_by_area<S>(), any_radial<3, S>());
+    const Shear shear(published::shear_normalisation_by_area<S>(), any_radial<3, S>());
     const S measure = any_number(), theta = any_number();
     const Point2<S> d{any_number(), any_number()};
     const auto r = shear(measure, d, theta);
@@ -461,20 +373,5 @@ TEMPLATE_TEST_CASE("shear: whatever is measured, the answer says what it is wort
     RC_ASSERT((r.moment_status == ForceStatus::no_contact) == (gone && r.has_moment()));
     RC_ASSERT(!gone || !r.has_force() || (f.x == 0 && f.y == 0));
     RC_ASSERT(!gone || !r.has_moment() || r.moment_n_mm == 0);
-    // and the same among others
-    test::Image<S> samples(17, 4, S(1)), results(17, 3);
-    const Index row = test::whole(0, 16);
-    samples(row, 0) = measure;
-    samples(row, 1) = d.x;
-    samples(row, 2) = d.y;
-    samples(row, 3) = theta;
-    const auto counts = shear.for_samples(samples, results);
-    RC_ASSERT(counts.not_finite == (r.has_force() && r.has_moment() ? 0 : 1));
-    RC_ASSERT(is_finite(results(row, 0)) == r.has_force());
-    RC_ASSERT(is_finite(results(row, 1)) == r.has_force());
-    RC_ASSERT(is_finite(results(row, 2)) == r.has_moment());
-    for (Index i = 0; i < 17; ++i) {
-      RC_ASSERT(i == row || (is_finite(results(i, 0)) && is_finite(results(i, 2))));
-    }
   });
 }

@@ -14,6 +14,8 @@
 #include "fingerpad/force/normal_force.hpp"
 #include "fingerpad/force/shear.hpp"
 #include "fingerpad/force/wrench.hpp"
+#include "fingerpad/published/normal_force.hpp"
+#include "fingerpad/published/shear.hpp"
 #include "fingerpad/published/wrench.hpp"
 #include "row.hpp"
 #include "support/pressed_pad.hpp"
@@ -44,8 +46,8 @@ inline Row below_range() {
              "eq. 21 by depth, shallow contacts moved by 1 mm; how far below 0, N",
              "faded out below the range, then held at 0 with a status", []<class S>(S) {
                Forms f;
-               const auto curve = fingerpad::published_force_of_depth<S>();
-               const auto compensation = fingerpad::published_compensation_by_depth<S>();
+               const auto curve = fingerpad::published::force_of_depth<S>();
+               const auto compensation = fingerpad::published::compensation_by_depth<S>();
                const fingerpad::NormalForce force(curve, compensation);
                for (const double depth : {-0.5, 0.0, 0.01, 0.1, 0.3, 0.63, 0.9, 1.2}) {
                  const S d = S(depth);

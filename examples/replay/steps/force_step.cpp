@@ -14,16 +14,14 @@ namespace replay {
 namespace {
 
 using Result = fingerpad::NormalForceResult<double>;
-using Errors = fingerpad::CurveErrors<NormalForceLookUp::Curve::parameters>;
-using Normal =
-    fingerpad::NormalForce<NormalForceLookUp::Curve, fingerpad::ScaledCompensation<>, Errors>;
+using Normal = fingerpad::NormalForce<NormalForceLookUp::Curve, fingerpad::ScaledCompensation<>>;
 using Shift = fingerpad::ContactShift<>;
 
 std::optional<Normal> normal_of(const std::optional<NormalForceLookUp>& given) {
   if (!given) {
     return {};
   }
-  Errors errors;
+  Normal::Errors errors;
   errors.residual_sd_n = given->residual_n;
   return Normal(given->curve, given->compensation, errors);
 }

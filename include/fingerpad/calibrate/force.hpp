@@ -29,11 +29,10 @@
 #include "fingerpad/core/grid.hpp"
 #include "fingerpad/core/point.hpp"
 #include "fingerpad/core/scalar.hpp"
-#include "fingerpad/force/compensation.hpp"
 #include "fingerpad/force/detail/zeros.hpp"
 #include "fingerpad/force/force_curve.hpp"
-#include "fingerpad/force/force_errors.hpp"
-#include "fingerpad/force/shear_map.hpp"
+#include "fingerpad/force/normal_force.hpp"
+#include "fingerpad/force/shear.hpp"
 
 namespace fingerpad {
 inline namespace v0 {
@@ -146,7 +145,7 @@ struct [[nodiscard]] ShearFit {
   static constexpr std::size_t size = static_cast<std::size_t>(Degree);
 
   FitStatus status = FitStatus::not_converged;
-  OddPolynomial<Degree, S> polynomial = {};
+  detail::OddPolynomial<Degree, S> polynomial = {};
   S exponent = S(0);
   std::array<S, size> standard_errors = detail::zeros<S, size>();
   S exponent_sd = S(0);  ///< 0 if it was given

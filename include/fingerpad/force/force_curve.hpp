@@ -1,16 +1,16 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// Normal force as a function of one measure of the contact: its area in mm^2, its depth in mm or
-// its radius in mm. A curve says how the force rises, and over which range that was identified.
+// Normal force as a function of one measure of the contact, its area in mm^2, its depth in mm or
+// its radius in mm, and how certain that function is. calibrate/force.hpp fills both in. A curve
+// says how the force rises, and over which range that was identified.
 #include <array>
 #include <cmath>
 #include <cstddef>
 
-#include "fingerpad/force/detail/smooth_step.hpp"
-#include "fingerpad/force/detail/zeros.hpp"
 #include "fingerpad/core/expects.hpp"
 #include "fingerpad/core/scalar.hpp"
+#include "fingerpad/force/detail/zeros.hpp"
 
 namespace fingerpad {
 inline namespace v0 {
@@ -30,7 +30,7 @@ struct PolynomialForce {
   S force_n(const S& measure) const {
     S sum = coefficients[parameters - 1];
     for (std::size_t k = parameters - 1; k-- > 0;) {
-      sum = S(sum * measure) + coefficients[k];
+      sum = sum * measure + coefficients[k];
     }
     return sum;
   }
@@ -38,7 +38,7 @@ struct PolynomialForce {
   S slope(const S& measure) const {
     S sum = S(Degree) * coefficients[parameters - 1];
     for (int k = Degree - 1; k >= 1; --k) {
-      sum = S(sum * measure) + S(S(k) * coefficients[static_cast<std::size_t>(k)]);
+      sum = sum * measure + S(k) * coefficients[static_cast<std::size_t>(k)];
     }
     return sum;
   }
@@ -46,23 +46,22 @@ struct PolynomialForce {
   std::array<S, parameters> gradient(const S& measure) const {
     std::array<S, parameters> powers;
     powers[0] = S(1);
-    for (std::size_t k = 1; k < powers.size(); ++k) {
+    for (std::size_t k = 1; k < parameters; ++k) {
       powers[k] = powers[k - 1] * measure;
     }
     return powers;
   }
+  /// The slope's derivative by each coefficient.
+  std::array<S, parameters> slope_gradient(const S& measure) const {
+    const std::array<S, parameters> powers = gradient(measure);
+    std::array<S, parameters> slopes;
+    slopes[0] = S(0);
+    for (std::size_t k = 1; k < parameters; ++k) {
+      slopes[k] = S(static_cast<int>(k)) * powers[k - 1];
+    }
+    return slopes;
+  }
 };
-
-/// Ito, Kim and Obinata, eq. 18, over about 1 to 28 N, where both curves rise together. They give
-/// 0.62 N and 0.34 N without contact, which NormalForce fades out.
-template <scalar S = double>
-PolynomialForce<2, S> published_force_of_area() {
-  return {{S(0.6242), S(0.0191), S(0.00008)}, S(18), S(478)};
-}
-template <scalar S = double>
-PolynomialForce<2, S> published_force_of_depth() {
-  return {{S(0.3435), S(0.5563), S(0.776)}, S(0.63), S(5.62)};
-}
 
 /// Elastic pads: the contact radius grows with a power of the force, r_c = c f^gamma (eq. 1 there,
 /// after Xydas and Kao 1999; gamma is 1/3 for Hertz's contact). The measure is the radius. The
@@ -79,31 +78,29 @@ struct PowerLawForce {
 
   S force_n(const S& radius_mm) const {
     using std::exp;
-    using std::log;
-    if (!(value(radius_mm) > 0)) {
-      return S(0);
-    }
-    const S ratio = radius_mm / coefficient_mm;
-    const S log_ratio = log(ratio);
-    return S(exp(S(log_ratio / exponent)));
+    return value(radius_mm) > 0 ? S(exp(S(log_ratio(radius_mm) / exponent))) : S(0);
   }
   S slope(const S& radius_mm) const {
-    if (!(value(radius_mm) > 0)) {
-      return S(0);
-    }
     const S force = force_n(radius_mm);
-    return value(force) > 0 ? S(S(force / radius_mm) / exponent) : S(0);
+    return value(force) > 0 ? S(force / radius_mm / exponent) : S(0);
   }
   /// dF by the coefficient and by the exponent.
   std::array<S, parameters> gradient(const S& radius_mm) const {
-    using std::log;
     if (!(value(radius_mm) > 0)) {
       return {S(0), S(0)};
     }
     const S force = force_n(radius_mm);
-    const S ratio = radius_mm / coefficient_mm;
-    const S log_ratio = log(ratio);
-    return {S(-force / S(exponent * coefficient_mm)), S(S(-force * log_ratio) / square(exponent))};
+    return {S(-force / S(exponent * coefficient_mm)),
+            S(-force * log_ratio(radius_mm) / square(exponent))};
+  }
+  /// The slope's derivative by each of the two.
+  std::array<S, parameters> slope_gradient(const S& radius_mm) const {
+    if (!(value(radius_mm) > 0)) {
+      return {S(0), S(0)};
+    }
+    const S steep = slope(radius_mm);
+    return {S(-steep / S(exponent * coefficient_mm)),
+            S(-steep * (log_ratio(radius_mm) / exponent + S(1)) / exponent)};
   }
   /// The inverse; 0 for a force that does not press.
   S radius_mm(const S& force) const {
@@ -115,7 +112,52 @@ struct PowerLawForce {
     const S log_force = log(force);
     return S(coefficient_mm * S(exp(S(exponent * log_force))));
   }
+
+ private:
+  S log_ratio(const S& radius_mm) const {
+    using std::log;
+    const S ratio = radius_mm / coefficient_mm;
+    return log(ratio);
+  }
 };
+
+/// How uncertain a force is that a curve gives: by the curve's parameters, by what the calibration
+/// could not explain, and by noise of the measure beyond that in the calibration.
+template <std::size_t Parameters, scalar S = double>
+struct CurveErrors {
+  static constexpr std::size_t size = Parameters;
+
+  std::array<std::array<S, size>, size> covariance =
+      detail::zero_matrix<S, size>();  ///< of the parameters: symmetric and not indefinite
+  S residual_sd_n = S(0);              ///< standard deviation of a sample about the curve, N, >= 0
+  S measure_sd = S(0);                 ///< noise of the measure that the samples did not have, >= 0
+
+  /// Variance in N^2 of the force at a measure where the curve has this gradient and slope.
+  S variance_n2(const std::array<S, size>& gradient, const S& slope) const {
+    S sum = square(residual_sd_n) + square(S(slope * measure_sd));
+    for (std::size_t i = 0; i < size; ++i) {
+      for (std::size_t j = 0; j < size; ++j) {
+        sum = sum + gradient[i] * covariance[i][j] * gradient[j];
+      }
+    }
+    return sum;
+  }
+};
+
+namespace detail {
+
+/// Refuses a range that is none, and a curve without an end.
+template <class Curve>
+void expects_range(const Curve& curve, const char* owner) {
+  expects(is_finite(curve.from) && value(curve.from) >= 0, owner, "from", curve.from,
+          "finite and >= 0");
+  expects(is_finite(curve.to) && value(curve.to) > value(curve.from), owner, "to", curve.to,
+          "finite and > from");
+  expects(is_finite(curve.force_n(curve.to)) && is_finite(curve.slope(curve.to)), owner, "to",
+          curve.to, "where force and slope are finite");
+}
+
+}  // namespace detail
 
 /// Refuses what has no meaning (parameter_error), and a force that falls while the contact grows.
 template <int Degree, scalar S>
@@ -124,23 +166,17 @@ void expects_valid(const PolynomialForce<Degree, S>& curve) {
   for (const S& coefficient : curve.coefficients) {
     expects(is_finite(coefficient), owner, "coefficients", coefficient, "finite");
   }
-  expects(is_finite(curve.from) && value(curve.from) >= 0, owner, "from", curve.from,
-          "finite and >= 0");
+  detail::expects_range(curve, owner);
   const S& constant = curve.coefficients[0];
   expects(value(curve.from) > 0 || value(constant) == 0, owner, "first of the coefficients",
           constant, "0 where from is 0: the force would begin with a step");
-  expects(is_finite(curve.to) && value(curve.to) > value(curve.from), owner, "to", curve.to,
-          "finite and > from");
   constexpr int steps = Degree > 2 ? 16 : 1;  // a slope of first degree is lowest at an end
   const S end = curve.force_n(curve.to);
-  const S end_slope = curve.slope(curve.to);
-  expects(is_finite(end) && is_finite(end_slope), owner, "to", curve.to,
-          "where force and slope are finite");
   const S size = value(end) < 0 ? S(-end) : end;
-  const S rounding = S(64 * epsilon<S>()) * S(size / curve.to);  // of the slope of a level end
+  const S rounding = S(64 * epsilon<S>()) * size / curve.to;  // of the slope of a level end
   for (int k = 0; k <= steps; ++k) {
     const S share = S(k) / S(steps);
-    const S slope = curve.slope(S(curve.from + S(share * S(curve.to - curve.from))));
+    const S slope = curve.slope(S(curve.from + share * (curve.to - curve.from)));
     expects(value(slope) >= -value(rounding), owner, "slope within the range", slope, ">= 0");
   }
 }
@@ -151,62 +187,23 @@ void expects_valid(const PowerLawForce<S>& curve) {
           "coefficient_mm", curve.coefficient_mm, "finite and > 0");
   expects(value(curve.exponent) > 0 && value(curve.exponent) <= 2, owner, "exponent",
           curve.exponent, "in (0, 2]");
-  expects(is_finite(curve.from) && value(curve.from) >= 0, owner, "from", curve.from,
-          "finite and >= 0");
-  expects(is_finite(curve.to) && value(curve.to) > value(curve.from), owner, "to", curve.to,
-          "finite and > from");
-  const S end = curve.force_n(curve.to);
-  const S end_slope = curve.slope(curve.to);
-  expects(is_finite(end) && is_finite(end_slope), owner, "to", curve.to,
-          "where force and slope are finite");
+  detail::expects_range(curve, owner);
+}
+template <std::size_t Parameters, scalar S>
+void expects_valid(const CurveErrors<Parameters, S>& errors) {
+  const char* const owner = "CurveErrors";
+  for (std::size_t i = 0; i < errors.size; ++i) {
+    for (const S& entry : errors.covariance[i]) {
+      expects(is_finite(entry), owner, "covariance", entry, "finite");
+    }
+    expects(value(errors.covariance[i][i]) >= 0, owner, "variance of a parameter",
+            errors.covariance[i][i], ">= 0");
+  }
+  expects(is_finite(errors.residual_sd_n) && value(errors.residual_sd_n) >= 0, owner,
+          "residual_sd_n", errors.residual_sd_n, "finite and >= 0");
+  expects(is_finite(errors.measure_sd) && value(errors.measure_sd) >= 0, owner, "measure_sd",
+          errors.measure_sd, "finite and >= 0");
 }
 
-namespace detail {
-
-/// A curve over all measures: none where there is no contact, faded in smoothly below the range,
-/// and beyond it carried on along the tangent, since a polynomial may do anything there.
-template <class Curve>
-class WholeCurve {
- public:
-  using S = typename Curve::number;
-
-  explicit WholeCurve(const Curve& curve)
-      : curve_(curve),
-        end_slope_(curve.slope(curve.to)),
-        one_over_from_(value(curve.from) > value(S(1e-30)) ? S(S(1) / curve.from) : S(1e30)) {}
-
-  const Curve& curve() const { return curve_; }
-
-  /// The same for whatever is not a number as for no contact: look at the measure first.
-  S force_n(const S& measure) const {
-    const S held = held_within(measure);
-    const S past = measure - held;
-    const S beyond = value(past) > 0 ? past : S(0);
-    const S force = curve_.force_n(held) + S(end_slope_ * beyond);
-    return S(force * fade(measure));
-  }
-  /// dF/dm.
-  S slope(const S& measure) const {
-    const S held = held_within(measure);
-    return S(S(curve_.slope(held) * fade(measure)) + S(curve_.force_n(held) * fade_slope(measure)));
-  }
-  /// How much of the force is faded in, in [0, 1]: 1 from the start of the range on.
-  S fade(const S& measure) const { return smooth_step(S(held_within(measure) * one_over_from_)); }
-  S fade_slope(const S& measure) const {
-    return S(smooth_step_slope(S(held_within(measure) * one_over_from_)) * one_over_from_);
-  }
-
- private:
-  S held_within(const S& measure) const {
-    const S above = value(measure) > 0 ? measure : S(0);
-    return value(above) <= value(curve_.to) ? above : curve_.to;
-  }
-
-  Curve curve_;
-  S end_slope_;
-  S one_over_from_;
-};
-
-}  // namespace detail
 }  // namespace v0
 }  // namespace fingerpad

@@ -7,12 +7,16 @@
 namespace fingerpad {
 inline namespace v0 {
 
+/// From the best to the worst.
 enum class ForceStatus : std::uint8_t {
+  no_contact,    ///< the measure is 0 or negative: no force, whatever is displaced
   measured,      ///< within the range that was identified
-  below_range,   ///< a smaller contact than any identified: the force fades to 0 with it
+  below_range,   ///< a smaller contact than any identified: the force fades to 0 with it. Always:
+                 ///< is the measure in another unit?
   beyond_range,  ///< a larger one, or a larger shift: the curve goes on along its tangent
   held_at_zero,  ///< the curve or a compensation is negative there
-  no_contact,    ///< the measure is 0 or negative: no force, whatever is displaced
+  disagreeing,   ///< area and depth tell forces further apart than their errors allow: the contact
+                 ///< is not like those of the calibration, or a measure is in another unit
   not_finite,    ///< what it is computed from is no number, or it is too large for one
 };
 
@@ -29,11 +33,19 @@ constexpr const char* name_of(ForceStatus status) {
       return "held at zero";
     case ForceStatus::no_contact:
       return "no contact";
+    case ForceStatus::disagreeing:
+      return "disagreeing";
     case ForceStatus::not_finite:
       return "not finite";
   }
   return "unknown";
 }
+
+namespace detail {
+constexpr ForceStatus worse(ForceStatus a, ForceStatus b) {
+  return a < b ? b : a;
+}
+}  // namespace detail
 
 }  // namespace v0
 }  // namespace fingerpad

@@ -8,7 +8,6 @@
 //   F_z = p_in S_c                                                   (2)
 //   F_z = F_S(S_c) or F_D(D), quadratic                              (3), (18)
 //   r_c = c f^gamma, for elastic pads                                (1)
-//   F_z = gain F + slope |d| + offset, displaced or rotated           (21), (22)
 //
 // Pressure, contact area and depth rise together, so one of them tells the force once a calibration
 // has tied them (calibrate/force.hpp). A curve holds for objects of the shape that it was
@@ -18,47 +17,162 @@
 // without contact, whatever moved, and rises from there without a step.
 #include <cmath>
 #include <cstddef>
+#include <optional>
 
-#include "fingerpad/core/dots.hpp"
 #include "fingerpad/core/expects.hpp"
-#include "fingerpad/core/grid.hpp"
+#include "fingerpad/core/point.hpp"
 #include "fingerpad/core/scalar.hpp"
-#include "fingerpad/force/compensation.hpp"
 #include "fingerpad/force/force_curve.hpp"
-#include "fingerpad/force/force_errors.hpp"
 #include "fingerpad/force/force_status.hpp"
-#include "fingerpad/force/sample_block.hpp"
 
 namespace fingerpad {
 inline namespace v0 {
+
+namespace detail {
+
+/// 3 x^2 - 2 x^3 for x held below 1: from 0 at 0 to 1 from 1 on, with slope 0 at both ends.
+template <scalar S>
+S smooth_step(const S& share) {
+  const S x = value(share) < 1 ? share : S(1);
+  return S(x * x * (S(3) - S(2) * x));
+}
+template <scalar S>
+S smooth_step_slope(const S& share) {
+  const S x = value(share) < 1 ? share : S(1);
+  return S(S(6) * x * (S(1) - x));
+}
+
+/// What a displacement and a rotation make of the plain force: gain F + shift.
+template <scalar S>
+struct ForceChange {
+  S gain;
+  S shift_n;
+};
+
+/// A curve over all measures: none where there is no contact, faded in smoothly below the range,
+/// and beyond it carried on along the tangent, since a polynomial may do anything there.
+template <class Curve>
+class WholeCurve {
+ public:
+  using S = typename Curve::number;
+
+  explicit WholeCurve(const Curve& curve)
+      : curve_(curve),
+        end_slope_(curve.slope(curve.to)),
+        one_over_from_(value(curve.from) > value(S(1e-30)) ? S(S(1) / curve.from) : S(1e30)) {}
+
+  const Curve& curve() const { return curve_; }
+
+  /// The same for whatever is not a number as for no contact: look at the measure first.
+  S force_n(const S& measure) const {
+    return S((curve_.force_n(held_within(measure)) + end_slope_ * beyond(measure)) * fade(measure));
+  }
+  /// dF/dm.
+  S slope(const S& measure) const {
+    const S held = held_within(measure);
+    return S(curve_.slope(held) * fade(measure) + curve_.force_n(held) * fade_slope(measure));
+  }
+  /// dF by each of the curve's parameters.
+  auto gradient(const S& measure) const {
+    const S held = held_within(measure), past = beyond(measure), faded = fade(measure);
+    auto gradient = curve_.gradient(held);
+    const auto steeper = curve_.slope_gradient(held);
+    for (std::size_t k = 0; k < gradient.size(); ++k) {
+      gradient[k] = (gradient[k] + past * steeper[k]) * faded;
+    }
+    return gradient;
+  }
+  /// How far the curve itself is from its tangent, beyond the range: nothing tells which is right.
+  S bend_n(const S& measure) const {
+    return value(beyond(measure)) > 0 ? S(curve_.force_n(measure) - force_n(measure)) : S(0);
+  }
+  /// How much of the force is faded in, in [0, 1]: 1 from the start of the range on.
+  S fade(const S& measure) const { return smooth_step(S(held_within(measure) * one_over_from_)); }
+  S fade_slope(const S& measure) const {
+    return S(smooth_step_slope(S(held_within(measure) * one_over_from_)) * one_over_from_);
+  }
+
+ private:
+  S held_within(const S& measure) const {
+    const S above = value(measure) > 0 ? measure : S(0);
+    return value(above) <= value(curve_.to) ? above : curve_.to;
+  }
+  S beyond(const S& measure) const {
+    return value(measure) > value(curve_.to) ? S(measure - curve_.to) : S(0);
+  }
+
+  Curve curve_;
+  S end_slope_;
+  S one_over_from_;
+};
+
+}  // namespace detail
+
+/// Measures of a contact that is pressed alone. Displacement and angle are not looked at.
+struct NoCompensation {
+  static constexpr bool reads_motion = false;
+};
+
+/// F = F_plain (1 + a |d|^2 + b theta^2): the plain force where nothing is displaced or rotated,
+/// both at once, even and smooth in both, as the symmetry of a round pad asks. The published one
+/// (eqs. 21 and 22, published/normal_force.hpp) is none of that.
+template <scalar S = double>
+struct ScaledCompensation {
+  static constexpr bool reads_motion = true;
+
+  S per_mm_sq = S(0);   ///< a, 1/mm^2, finite
+  S per_rad_sq = S(0);  ///< b, 1/rad^2, finite
+
+  detail::ForceChange<S> operator()(const S& displacement_sq_mm2, const S& rotation_rad) const {
+    return {S(S(1) + per_mm_sq * displacement_sq_mm2 + per_rad_sq * rotation_rad * rotation_rad),
+            S(0)};
+  }
+};
+
+/// Refuses what has no meaning (parameter_error).
+inline void expects_valid(const NoCompensation&) {}
+template <scalar S>
+void expects_valid(const ScaledCompensation<S>& compensation) {
+  expects(is_finite(compensation.per_mm_sq), "ScaledCompensation", "per_mm_sq",
+          compensation.per_mm_sq, "finite");
+  expects(is_finite(compensation.per_rad_sq), "ScaledCompensation", "per_rad_sq",
+          compensation.per_rad_sq, "finite");
+}
 
 template <scalar S = double>
 struct [[nodiscard]] NormalForceResult {
   ForceStatus status = ForceStatus::not_finite;
   S force_n = not_a_number<S>();      ///< >= 0; NaN only where not finite
-  S variance_n2 = not_a_number<S>();  ///< NaN without CurveErrors; beyond the range it is that of
-                                      ///< the curve carried on as it is, and grows fast
+  S variance_n2 = not_a_number<S>();  ///< NaN without CurveErrors; beyond the range that of the
+                                      ///< tangent, and how far the curve itself is from it
 
+  /// Whether the calibration vouches for the force.
+  bool ok() const { return status == ForceStatus::measured || status == ForceStatus::no_contact; }
   bool has_force() const { return status != ForceStatus::not_finite; }
 };
 
-/// The normal force from one measure of the contact: `Curve` PolynomialForce (of area in mm^2 or of
-/// depth in mm) or PowerLawForce (of the radius in mm); `Compensation` none, ScaledCompensation or
-/// PublishedCompensation; `Errors` none or CurveErrors. Const, O(1), no memory from the heap.
-template <class Curve = PolynomialForce<>,
-          class Compensation = NoCompensation,
-          class Errors = NoErrors>
+/// The normal force from one measure of the contact.
+///   Curve         PolynomialForce     take this for fluid pads: of area in mm^2 or depth in mm
+///                 PowerLawForce       take this for elastic pads: of the radius in mm
+///   Compensation  NoCompensation      take this where the contact is pressed alone
+///                 ScaledCompensation  take this where it is also displaced or rotated, and
+///                                     calibrated so
+/// Const, O(1), no memory from the heap.
+template <class Curve = PolynomialForce<>, class Compensation = NoCompensation>
 class NormalForce {
  public:
   using S = typename Curve::number;
+  using Errors = CurveErrors<Curve::parameters, S>;
 
-  /// Refuses bad parameters (parameter_error).
-  explicit NormalForce(const Curve& curve,
-                       const Compensation& compensation = {},
-                       const Errors& errors = {})
-      : curve_(checked(curve)), compensation_(compensation), errors_(errors) {
+  /// Without errors there is no variance. Refuses bad parameters (parameter_error).
+  explicit NormalForce(const Curve& curve, const Compensation& compensation = {})
+      : curve_(checked(curve)), compensation_(compensation) {
     expects_valid(compensation);
+  }
+  NormalForce(const Curve& curve, const Compensation& compensation, const Errors& errors)
+      : NormalForce(curve, compensation) {
     expects_valid(errors);
+    errors_ = errors;
   }
 
   /// One frame. `displacement_mm` and `rotation_rad` are how far the contact was carried along and
@@ -67,12 +181,9 @@ class NormalForce {
                                   const Point2<S>& displacement_mm = {S(0), S(0)},
                                   const S& rotation_rad = S(0)) const {
     NormalForceResult<S> result;
-    if (!is_finite(measure) || !knows_motion(displacement_mm, rotation_rad)) {
-      return result;
-    }
-    const ForceChange<S> change = change_by(displacement_mm, rotation_rad);
+    const detail::ForceChange<S> change = change_by(displacement_mm, rotation_rad);
     const S force = force_of(measure, change);
-    if (!is_finite(force)) {  // too large for a number
+    if (!is_finite(measure) || !is_finite(force)) {
       return result;
     }
     result.force_n = value(force) > 0 ? force : S(0);
@@ -81,54 +192,10 @@ class NormalForce {
                     : value(measure) < value(curve().from) ? ForceStatus::below_range
                     : value(measure) > value(curve().to)   ? ForceStatus::beyond_range
                                                            : ForceStatus::measured;
-    if constexpr (Errors::known) {
-      auto gradient = curve().gradient(value(measure) > 0 ? measure : S(0));
-      const S gain = change.gain * curve_.fade(measure);
-      for (S& by_parameter : gradient) {
-        by_parameter = by_parameter * gain;
-      }
-      const S slope =
-          S(change.gain * curve_.slope(measure)) + S(change.shift_n * curve_.fade_slope(measure));
-      result.variance_n2 = errors_.variance_n2(gradient, slope);
+    if (errors_) {
+      result.variance_n2 = variance_n2(measure, change);
     }
     return result;
-  }
-
-  /// Many frames: `samples` has a row for each, with the measure in column 0 and, for a
-  /// compensation, the displacement's x and y and the angle in columns 1 to 3; `forces_n` has one
-  /// column. NaN where there is no answer. O(rows), vector code where the compiler can.
-  template <grid Samples, writable_grid<S> Forces>
-  SampleCounts for_samples(const Samples& samples, Forces&& forces_n) const {
-    constexpr std::size_t needed = Compensation::reads_motion ? 4 : 1;
-    const auto in = as_view(samples);
-    const auto out = as_view(forces_n);
-    SampleCounts counts;
-    if (in.cols() < static_cast<Index>(needed) || out.cols() != 1 || out.rows() != in.rows()) {
-      return counts;
-    }
-    counts.status = FrameStatus::ok;
-    detail::for_each_block<S, needed, 1>(in, out, [&](const auto& block, auto& forces) {
-      int not_finite = 0, beyond = 0;
-      for (std::size_t k = 0; k < block.size; ++k) {
-        const S& measure = block.column[0][k];
-        bool known = is_finite(measure);
-        ForceChange<S> change{S(1), S(0)};
-        if constexpr (Compensation::reads_motion) {
-          const Point2<S> displacement{block.column[1][k], block.column[2][k]};
-          known = known & knows_motion(displacement, block.column[3][k]);
-          change = change_by(displacement, block.column[3][k]);
-        }
-        const S force = force_of(measure, change);
-        known = known & is_finite(force);
-        const S held = value(force) > 0 ? force : S(0);
-        forces.column[0][k] = known ? held : not_a_number<S>();
-        not_finite += static_cast<int>(!known);
-        beyond += static_cast<int>(known) & static_cast<int>(value(measure) > value(curve().to));
-      }
-      counts.not_finite += not_finite;
-      counts.beyond_range += beyond;
-    });
-    return counts;
   }
 
   const Curve& curve() const { return curve_.curve(); }
@@ -138,68 +205,81 @@ class NormalForce {
     expects_valid(curve);
     return curve;
   }
-  static bool knows_motion(const Point2<S>& displacement_mm, const S& rotation_rad) {
+
+  detail::ForceChange<S> change_by(const Point2<S>& displacement_mm, const S& rotation_rad) const {
     if constexpr (Compensation::reads_motion) {
-      const S size_sq = square(displacement_mm.x) + square(displacement_mm.y);
-      return is_finite(S(size_sq + square(rotation_rad)));
-    } else {
-      return true;
-    }
-  }
-  ForceChange<S> change_by(const Point2<S>& displacement_mm, const S& rotation_rad) const {
-    if constexpr (Compensation::reads_motion) {
-      const S size_sq = square(displacement_mm.x) + square(displacement_mm.y);
-      return compensation_(size_sq, rotation_rad);
+      return compensation_(squared_norm(displacement_mm), rotation_rad);
     } else {
       return {S(1), S(0)};
     }
   }
+
   /// What the compensation adds fades with the contact, too.
-  S force_of(const S& measure, const ForceChange<S>& change) const {
+  S force_of(const S& measure, const detail::ForceChange<S>& change) const {
     if constexpr (Compensation::reads_motion) {
-      const S shift = change.shift_n * curve_.fade(measure);
-      return S(S(change.gain * curve_.force_n(measure)) + shift);
+      return S(change.gain * curve_.force_n(measure) + change.shift_n * curve_.fade(measure));
     } else {  // times 1 and plus 0 would not be left out by itself
       return curve_.force_n(measure);
     }
   }
 
+  S variance_n2(const S& measure, const detail::ForceChange<S>& change) const {
+    auto gradient = curve_.gradient(measure);
+    for (S& by_parameter : gradient) {
+      by_parameter = by_parameter * change.gain;
+    }
+    const S slope =
+        change.gain * curve_.slope(measure) + change.shift_n * curve_.fade_slope(measure);
+    const S bend = change.gain * curve_.bend_n(measure);
+    return S(errors_->variance_n2(gradient, slope) + bend * bend);
+  }
+
   detail::WholeCurve<Curve> curve_;
   Compensation compensation_;
-  Errors errors_;
+  std::optional<Errors> errors_;
 };
 
 /// A force from two measures.
 template <scalar S = double>
 struct [[nodiscard]] FusedForce {
+  ForceStatus status = ForceStatus::not_finite;  ///< the worse of those that took part, or
+                                                 ///< disagreeing
   S force_n = not_a_number<S>();
   S variance_n2 = not_a_number<S>();
-  S disagreement = not_a_number<S>();  ///< difference over its standard deviation: beyond 3 or so
-                                       ///< the contact is not like those of the calibration
+  S disagreement = not_a_number<S>();  ///< difference over its standard deviation
   int sources = 0;                     ///< how many of the two took part
+
+  /// Whether the calibration vouches for the force.
+  bool ok() const { return status == ForceStatus::measured || status == ForceStatus::no_contact; }
+  bool has_force() const { return status != ForceStatus::not_finite; }
 };
 
 /// Forces by area and by depth combined by their variances, whose errors are taken for independent.
-/// One without a force or without a variance does not take part.
+/// One without a force or without a variance does not take part; two further apart than
+/// `max_disagreement` standard deviations disagree.
 template <scalar S>
-FusedForce<S> fused(const NormalForceResult<S>& a, const NormalForceResult<S>& b) {
+FusedForce<S> fused(const NormalForceResult<S>& a,
+                    const NormalForceResult<S>& b,
+                    double max_disagreement = 3) {
   using std::sqrt;
   const bool with_a = a.has_force() && is_finite(a.variance_n2);
   const bool with_b = b.has_force() && is_finite(b.variance_n2);
   if (!with_a || !with_b) {
     const NormalForceResult<S>& one = with_a ? a : b;
-    return with_a || with_b ? FusedForce<S>{one.force_n, one.variance_n2, not_a_number<S>(), 1}
-                            : FusedForce<S>{};
+    return with_a || with_b
+               ? FusedForce<S>{one.status, one.force_n, one.variance_n2, not_a_number<S>(), 1}
+               : FusedForce<S>{};
   }
   const S sum = a.variance_n2 + b.variance_n2;
   const S difference = a.force_n - b.force_n;
-  if (!(value(sum) > 0)) {
-    const S mean = S(a.force_n + b.force_n) / S(2);
-    return {mean, S(0), value(difference) == 0 ? S(0) : not_a_number<S>(), 2};
-  }
-  const S share_of_a = b.variance_n2 / sum;
-  return {S(b.force_n + S(share_of_a * difference)), S(share_of_a * a.variance_n2),
-          S(difference / S(sqrt(sum))), 2};
+  const bool exact = !(value(sum) > 0);
+  const S share_of_a = exact ? S(S(1) / S(2)) : S(b.variance_n2 / sum);
+  const S disagreement = value(difference) == 0 ? S(0)
+                         : exact                ? not_a_number<S>()
+                                                : S(difference / S(sqrt(sum)));
+  const bool agree = square(value(disagreement)) <= max_disagreement * max_disagreement;
+  return {agree ? detail::worse(a.status, b.status) : ForceStatus::disagreeing,
+          S(b.force_n + share_of_a * difference), S(share_of_a * a.variance_n2), disagreement, 2};
 }
 
 }  // namespace v0

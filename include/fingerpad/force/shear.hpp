@@ -9,134 +9,183 @@
 //   d_nor     = (S_c / S_ref)^T_S d     or (D / D_ref)^T_D d          (4)
 //   theta_nor = (S_c / S_ref)^R_S theta or (D / D_ref)^R_D theta      (5)
 //
-// with (5) corrected (docs/errata.md, E031), then a map from these to force and moment. Forces are
-// what the object exerts on the pad: a pad that is dragged along x is pushed along x. The moment is
-// about the normal through the middle of the contact.
+// with (5) corrected (docs/errata.md, E031), then a map from these to force and moment: "the
+// relationship between the normalized displacement and tangential force is almost linear"; its
+// slopes are not printed, so calibrate/force.hpp identifies them. Forces are what the object exerts
+// on the pad: a pad that is dragged along x is pushed along x. The moment is about the normal
+// through the middle of the contact.
 //
 // Which dots: contact_shift.hpp. The paper takes the central one.
 #include <array>
 #include <cmath>
 #include <cstddef>
-#include <cstdint>
-#include <type_traits>
 
-#include "fingerpad/core/dots.hpp"
 #include "fingerpad/core/expects.hpp"
-#include "fingerpad/core/grid.hpp"
+#include "fingerpad/core/point.hpp"
 #include "fingerpad/core/scalar.hpp"
 #include "fingerpad/force/force_status.hpp"
-#include "fingerpad/force/sample_block.hpp"
-#include "fingerpad/force/shear_map.hpp"
-#include "fingerpad/image/detail/lanes.hpp"
 
 namespace fingerpad {
 inline namespace v0 {
 
+/// How a contact's size stiffens it: displacement and rotation count by (measure / reference) to
+/// these exponents.
+template <scalar S = double>
+struct ShearNormalisation {
+  S reference = not_a_number<S>();  ///< in the measure's unit, finite, > 0
+  S displacement_exponent = S(0);   ///< T_S or T_D, finite; the sources have it > 0
+  S rotation_exponent = S(0);       ///< R_S or R_D, likewise
+};
+
+/// Elastic pads, by the contact radius: the tangential stiffness of a round contact is proportional
+/// to its radius, the torsional one to its cube (Johnson, Contact Mechanics). The slides on elastic
+/// pads show the look-up by displacement and radius without a formula.
+template <scalar S = double>
+ShearNormalisation<S> shear_by_radius(const S& reference_mm) {
+  return {reference_mm, S(1), S(3)};
+}
+/// Where no size of the contact is known: give any positive measure.
+template <scalar S = double>
+ShearNormalisation<S> shear_without_measure() {
+  return {S(1), S(0), S(0)};
+}
+
 namespace detail {
 
-// Two powers of each number of a row, which share one logarithm. For float and double vector code
-// in double: x^t = exp(t log x), with log from the odd series of (m - 1)/(m + 1) for m within
-// [1/sqrt 2, sqrt 2], and exp from its series within half a doubling. Every other scalar uses its
-// own functions.
+/// c_1 x + c_2 x |x| + c_3 x |x|^2 + ...: odd, as a force must be that turns with its displacement.
+template <int Degree = 1, scalar S = double>
+struct OddPolynomial {
+  static_assert(Degree >= 1 && Degree <= 4);
+  static constexpr std::size_t size = static_cast<std::size_t>(Degree);
 
-#if defined(FINGERPAD_HAS_VECTORS)
-/// A whole number in a double as an integer lane, and back, by the place where a double's last bit
-/// counts 1: without AVX-512 there is no instruction for it.
-constexpr double whole_shift = 6755399441055744.0;  // 1.5 * 2^52
+  std::array<S, size> coefficients = none();  ///< c_1 first, finite, c_1 > 0
+  S to = not_a_number<S>();  ///< the largest |x| identified, > 0; beyond it along the tangent.
+                             ///< NaN: not known, for Degree 1 only
 
-/// log x for normal x > 0; relative error 1e-15 but near 1, where it is absolute.
-template <class V>
-[[gnu::always_inline]] inline V log_of(const V& x) {
-  using Bits = lanes<std::int64_t, static_cast<int>(sizeof(V) / 8)>;
-  const Bits root_half = Bits{} + std::int64_t{0x3FE6A09E667F3BCD};
-  const Bits doublings = (Bits(x) - root_half) >> 52;
-  const V m = V(Bits(x) - (doublings << 52));
-  const V exponent = V(doublings + Bits(V{} + whole_shift)) - whole_shift;
-  const V t = (m - 1.0) / (m + 1.0);
-  const V u = t * t;
-  V p = V{} + 2.0 / 21;
-  p = p * u + 2.0 / 19;
-  p = p * u + 2.0 / 17;
-  p = p * u + 2.0 / 15;
-  p = p * u + 2.0 / 13;
-  p = p * u + 2.0 / 11;
-  p = p * u + 2.0 / 9;
-  p = p * u + 2.0 / 7;
-  p = p * u + 2.0 / 5;
-  p = p * u + 2.0 / 3;
-  p = p * u + 2.0;
-  return exponent * 0.69314718055994530942 + t * p;
-}
-
-/// exp y, with y held within [-700, 700]; relative error 1e-15 and what y itself is off by.
-template <class V>
-[[gnu::always_inline]] inline V exp_of(const V& y) {
-  using Bits = lanes<std::int64_t, static_cast<int>(sizeof(V) / 8)>;
-  const V low = V{} - 700.0, high = V{} + 700.0;
-  const V above = choose(Bits(y > low), y, low);
-  const V held = choose(Bits(above < high), above, high);
-  const V shifted = held * 1.44269504088896340736 + whole_shift;
-  const V doublings = shifted - whole_shift;
-  const V f = (held - doublings * 0.693147180369123816490) - doublings * 1.90821492927058770002e-10;
-  V p = V{} + 1.0 / 479001600;
-  p = p * f + 1.0 / 39916800;
-  p = p * f + 1.0 / 3628800;
-  p = p * f + 1.0 / 362880;
-  p = p * f + 1.0 / 40320;
-  p = p * f + 1.0 / 5040;
-  p = p * f + 1.0 / 720;
-  p = p * f + 1.0 / 120;
-  p = p * f + 1.0 / 24;
-  p = p * f + 1.0 / 6;
-  p = p * f + 0.5;
-  p = p * f + 1.0;
-  p = p * f + 1.0;
-  return V(Bits(p) + (Bits(shifted) << 52));
-}
-
-/// Powers of Bytes / 8 numbers; 0 for those that are not > 0, and none beyond exp(700).
-template <int Bytes, class S>
-[[gnu::always_inline]] inline void power_lanes(
-    const S* x, double factor, double s, double t, S* power_s, S* power_t) {
-  constexpr int n = Bytes / 8;
-  using V = lanes<double, n>;
-  using Bits = lanes<std::int64_t, n>;
-  const V number = convert<double, n>(load<S, n>(x));
-  const V given = number * factor;
-  const V least = V{} + 1e-290, zero{};
-  const Bits positive = Bits(number > zero);
-  const V log_x = log_of<V>(choose(Bits(given > least), given, least));
-  store(power_s, convert<S, n>(choose(positive, exp_of<V>(log_x * s), zero)));
-  store(power_t, convert<S, n>(choose(positive, exp_of<V>(log_x * t), zero)));
-}
-#endif
-
-/// power_s[i] = (x[i] factor)^s and power_t[i] likewise, 0 where x[i] is not > 0, for i < n.
-template <scalar S>
-void power_rows(
-    const S* x, std::size_t n, const S& factor, const S& s, const S& t, S* power_s, S* power_t) {
-  using std::exp;
-  using std::log;
-  std::size_t i = 0;
-#if defined(FINGERPAD_HAS_VECTORS)
-  if constexpr (std::is_same_v<S, double> || std::is_same_v<S, float>) {
-    constexpr std::size_t step = native_vector_bytes / 8;
-    for (; i + step <= n; i += step) {
-      power_lanes<native_vector_bytes>(x + i, static_cast<double>(factor), static_cast<double>(s),
-                                       static_cast<double>(t), power_s + i, power_t + i);
+  /// The polynomial over x, by which a vector x is multiplied.
+  S gain(const S& length) const {
+    const bool beyond = value(length) > value(to);
+    const S held = beyond ? to : length;
+    S sum = coefficients[size - 1];
+    S slope = S(Degree) * coefficients[size - 1];
+    for (std::size_t k = size - 1; k-- > 0;) {
+      sum = sum * held + coefficients[k];
+      slope = slope * held + S(static_cast<int>(k) + 1) * coefficients[k];
+    }
+    if constexpr (Degree == 1) {
+      return sum;
+    } else {
+      return beyond ? S((sum * held + slope * (length - held)) / length) : sum;
     }
   }
-#endif
-  for (; i < n; ++i) {
-    const bool positive = value(x[i]) > 0;
-    const S given = positive ? S(x[i] * factor) : S(1);
-    const S log_x = log(given);
-    power_s[i] = positive ? S(exp(S(s * log_x))) : S(0);
-    power_t[i] = positive ? S(exp(S(t * log_x))) : S(0);
+
+ private:
+  static constexpr std::array<S, size> none() {
+    std::array<S, size> coefficients{};
+    coefficients.fill(not_a_number<S>());
+    return coefficients;
   }
-}
+};
 
 }  // namespace detail
+
+/// The same in all directions, as in the paper with Degree 1: a force along the displacement.
+template <int Degree = 1, scalar S = double>
+struct RadialShear {
+  using number = S;
+
+  detail::OddPolynomial<Degree, S> force = {};   ///< N/mm, N/mm^2, ...
+  detail::OddPolynomial<Degree, S> moment = {};  ///< N mm/rad, N mm/rad^2, ...
+
+  Point2<S> force_n(const Point2<S>& normalised_mm) const {
+    const S gain = Degree == 1 ? force.coefficients[0] : force.gain(length_of(normalised_mm));
+    return gain * normalised_mm;
+  }
+  S moment_n_mm(const S& normalised_rad) const {
+    return S(moment.gain(size_of(normalised_rad)) * normalised_rad);
+  }
+  bool within(const Point2<S>& normalised_mm) const {
+    return !(value(squared_norm(normalised_mm)) > value(square(force.to)));
+  }
+  bool within(const S& normalised_rad) const {
+    return !(value(size_of(normalised_rad)) > value(moment.to));
+  }
+
+ private:
+  /// Its derivative at 0 is taken as 0; nothing depends on it there.
+  static S length_of(const Point2<S>& v) {
+    using std::sqrt;
+    const S sum_sq = squared_norm(v);
+    return value(sum_sq) > 0 ? S(sqrt(sum_sq)) : S(0);
+  }
+  static S size_of(const S& x) { return value(x) < 0 ? S(-x) : x; }
+};
+
+/// Any linear map, for sensors that are not round or whose axes are not those of the image:
+/// F = K d + offset, M = c theta + offset.
+template <scalar S = double>
+struct LinearShear {
+  using number = S;
+
+  S x_by_x = not_a_number<S>();  ///< K, N/mm, finite
+  S x_by_y = not_a_number<S>();
+  S y_by_x = not_a_number<S>();
+  S y_by_y = not_a_number<S>();
+  Point2<S> offset_n = {S(0), S(0)};          ///< finite
+  S moment_n_mm_per_rad = not_a_number<S>();  ///< finite
+  S moment_offset_n_mm = S(0);                ///< finite
+
+  Point2<S> force_n(const Point2<S>& d) const {
+    return {S(x_by_x * d.x + x_by_y * d.y + offset_n.x),
+            S(y_by_x * d.x + y_by_y * d.y + offset_n.y)};
+  }
+  S moment_n_mm(const S& normalised_rad) const {
+    return S(moment_n_mm_per_rad * normalised_rad + moment_offset_n_mm);
+  }
+  bool within(const Point2<S>&) const { return true; }
+  bool within(const S&) const { return true; }
+};
+
+/// Refuses what has no meaning (parameter_error).
+template <scalar S>
+void expects_valid(const ShearNormalisation<S>& normalisation) {
+  const char* const owner = "ShearNormalisation";
+  expects(is_finite(normalisation.reference) && value(normalisation.reference) > 0, owner,
+          "reference", normalisation.reference, "finite and > 0");
+  expects(is_finite(normalisation.displacement_exponent), owner, "displacement_exponent",
+          normalisation.displacement_exponent, "finite");
+  expects(is_finite(normalisation.rotation_exponent), owner, "rotation_exponent",
+          normalisation.rotation_exponent, "finite");
+}
+template <int Degree, scalar S>
+void expects_valid(const RadialShear<Degree, S>& map) {
+  const auto check = [](const detail::OddPolynomial<Degree, S>& polynomial, const char* owner) {
+    for (const S& coefficient : polynomial.coefficients) {
+      expects(is_finite(coefficient), owner, "coefficients", coefficient, "finite");
+    }
+    expects(value(polynomial.coefficients[0]) > 0, owner, "first of the coefficients",
+            polynomial.coefficients[0], "> 0");
+    const bool unknown = !(value(polynomial.to) == value(polynomial.to));
+    expects((unknown && Degree == 1) || (is_finite(polynomial.to) && value(polynomial.to) > 0),
+            owner, "to", polynomial.to, "finite and > 0, or NaN for degree 1");
+  };
+  check(map.force, "RadialShear: force");
+  check(map.moment, "RadialShear: moment");
+}
+template <scalar S>
+void expects_valid(const LinearShear<S>& map) {
+  const auto check = [](const S& given, const char* name) {
+    expects(is_finite(given), "LinearShear", name, given, "finite");
+  };
+  check(map.x_by_x, "x_by_x");
+  check(map.x_by_y, "x_by_y");
+  check(map.y_by_x, "y_by_x");
+  check(map.y_by_y, "y_by_y");
+  check(map.offset_n.x, "offset_n.x");
+  check(map.offset_n.y, "offset_n.y");
+  check(map.moment_n_mm_per_rad, "moment_n_mm_per_rad");
+  check(map.moment_offset_n_mm, "moment_offset_n_mm");
+}
 
 /// (measure / reference)^exponent; 0 without contact, so that nothing is amplified there.
 template <scalar S>
@@ -147,17 +196,17 @@ S shear_factor(const S& measure, const S& reference, const S& exponent) {
     return S(0);
   }
   const S ratio = measure / reference;
-  const S log_ratio = log(ratio);
-  return S(exp(S(exponent * log_ratio)));
+  return S(exp(S(exponent * S(log(ratio)))));
 }
 
 /// About the sensor's origin: that about the contact's middle at `center_mm`, and what the force
 /// there adds.
 template <scalar S>
 S moment_about_origin(const S& moment_n_mm, const Point2<S>& force_n, const Point2<S>& center_mm) {
-  return S(moment_n_mm + S(S(center_mm.x * force_n.y) - S(center_mm.y * force_n.x)));
+  return S(moment_n_mm + center_mm.x * force_n.y - center_mm.y * force_n.x);
 }
 
+/// Force and moment fail each by itself.
 template <scalar S = double>
 struct [[nodiscard]] ShearResult {
   ForceStatus force_status = ForceStatus::not_finite;
@@ -167,12 +216,18 @@ struct [[nodiscard]] ShearResult {
   Point2<S> normalised_displacement_mm = {not_a_number<S>(), not_a_number<S>()};
   S normalised_rotation_rad = not_a_number<S>();
 
+  /// The worse of both.
+  ForceStatus status() const { return detail::worse(force_status, moment_status); }
+  /// Whether the calibration vouches for both.
+  bool ok() const { return status() <= ForceStatus::measured; }
   bool has_force() const { return force_status != ForceStatus::not_finite; }
   bool has_moment() const { return moment_status != ForceStatus::not_finite; }
 };
 
-/// `Map` RadialShear<Degree> (published with Degree 1) or LinearShear. Const, O(1), no memory from
-/// the heap.
+/// Tangential force and moment by look-up.
+///   Map  RadialShear<Degree>  take this for round pads; published with Degree 1
+///        LinearShear          take this for others, or axes that are not those of the image
+/// Const, O(1), no memory from the heap.
 template <class Map = RadialShear<>>
 class Shear {
  public:
@@ -185,8 +240,8 @@ class Shear {
     expects_valid(map);
   }
 
-  /// One frame. Force and moment fail each by itself: NaN where the measure or what it comes from
-  /// is not finite; 0 without contact.
+  /// One frame: NaN where the measure or what force or moment come from is not finite; 0 without
+  /// contact.
   ShearResult<S> operator()(const S& measure,
                             const Point2<S>& displacement_mm,
                             const S& rotation_rad) const {
@@ -198,83 +253,28 @@ class Shear {
     }
     const bool contact = value(measure) > 0;
     const S ratio = contact ? S(measure / normalisation_.reference) : S(1);
-    const S log_ratio = log(ratio);
-    if (is_finite(displacement_mm.x) && is_finite(displacement_mm.y)) {
-      const S factor = contact ? S(exp(S(normalisation_.displacement_exponent * log_ratio))) : S(0);
-      fill_force({S(factor * displacement_mm.x), S(factor * displacement_mm.y)}, contact, result);
+    const S log_ratio = log(ratio);  // once for both powers
+    const auto factor = [&](const S& exponent) {
+      return contact ? S(exp(S(exponent * log_ratio))) : S(0);
+    };
+    const Point2<S> d = factor(normalisation_.displacement_exponent) * displacement_mm;
+    const Point2<S> force = contact ? map_.force_n(d) : Point2<S>{S(0), S(0)};
+    if (is_finite(displacement_mm) && is_finite(force)) {
+      result.normalised_displacement_mm = d;
+      result.tangential_force_n = force;
+      result.force_status = status_of(contact, map_.within(d));
     }
-    if (is_finite(rotation_rad)) {
-      const S factor = contact ? S(exp(S(normalisation_.rotation_exponent * log_ratio))) : S(0);
-      fill_moment(S(factor * rotation_rad), contact, result);
+    const S theta = factor(normalisation_.rotation_exponent) * rotation_rad;
+    const S moment = contact ? map_.moment_n_mm(theta) : S(0);
+    if (is_finite(rotation_rad) && is_finite(moment)) {
+      result.normalised_rotation_rad = theta;
+      result.moment_n_mm = moment;
+      result.moment_status = status_of(contact, map_.within(theta));
     }
     return result;
   }
 
-  /// Many frames: a row of `samples` for each, with columns measure, displacement's x and y, angle;
-  /// a row of `shear` with force's x and y in N and the moment in N mm. NaN as in a single frame,
-  /// and where one of them is; `not_finite` counts samples without force or without moment.
-  /// O(rows), vector code where the compiler can. Powers in double within 2 (1 + T log(measure /
-  /// reference)) units in the last place.
-  template <grid Samples, writable_grid<S> Results>
-  SampleCounts for_samples(const Samples& samples, Results&& shear) const {
-    const auto in = as_view(samples);
-    const auto out = as_view(shear);
-    SampleCounts counts;
-    if (in.cols() < 4 || out.cols() != 3 || out.rows() != in.rows()) {
-      return counts;
-    }
-    counts.status = FrameStatus::ok;
-    const S one_over_reference = S(1) / normalisation_.reference;
-    detail::for_each_block<S, 4, 3>(in, out, [&](const auto& block, auto& results) {
-      std::array<S, detail::block_samples> by_displacement, by_rotation;
-      detail::power_rows(block.column[0].data(), block.size, one_over_reference,
-                         normalisation_.displacement_exponent, normalisation_.rotation_exponent,
-                         by_displacement.data(), by_rotation.data());
-      int not_finite = 0, beyond = 0;
-      for (std::size_t k = 0; k < block.size; ++k) {
-        const bool known = is_finite(block.column[0][k]);
-        const bool contact = value(block.column[0][k]) > 0;
-        const Point2<S> d{S(by_displacement[k] * block.column[1][k]),
-                          S(by_displacement[k] * block.column[2][k])};
-        const S theta = by_rotation[k] * block.column[3][k];
-        const Point2<S> force = map_.force_n(d);
-        const S moment = map_.moment_n_mm(theta);
-        const bool has_force = known & is_finite(S(S(d.x + d.y) + S(force.x + force.y)));
-        const bool has_moment = known & is_finite(S(theta + moment));
-        const S none = not_a_number<S>();
-        results.column[0][k] = has_force ? (contact ? force.x : S(0)) : none;
-        results.column[1][k] = has_force ? (contact ? force.y : S(0)) : none;
-        results.column[2][k] = has_moment ? (contact ? moment : S(0)) : none;
-        const int answered = static_cast<int>(has_force) & static_cast<int>(has_moment);
-        const int within = static_cast<int>(map_.within(d)) & static_cast<int>(map_.within(theta));
-        not_finite += 1 - answered;
-        beyond += answered & (1 - within);
-      }
-      counts.not_finite += not_finite;
-      counts.beyond_range += beyond;
-    });
-    return counts;
-  }
-
  private:
-  void fill_force(const Point2<S>& normalised, bool contact, ShearResult<S>& result) const {
-    const Point2<S> force = contact ? map_.force_n(normalised) : Point2<S>{S(0), S(0)};
-    if (!is_finite(S(force.x + force.y))) {
-      return;  // too large for a number
-    }
-    result.normalised_displacement_mm = normalised;
-    result.tangential_force_n = force;
-    result.force_status = status_of(contact, map_.within(normalised));
-  }
-  void fill_moment(const S& normalised, bool contact, ShearResult<S>& result) const {
-    const S moment = contact ? map_.moment_n_mm(normalised) : S(0);
-    if (!is_finite(moment)) {
-      return;
-    }
-    result.normalised_rotation_rad = normalised;
-    result.moment_n_mm = moment;
-    result.moment_status = status_of(contact, map_.within(normalised));
-  }
   static ForceStatus status_of(bool contact, bool within) {
     return !contact ? ForceStatus::no_contact
            : within ? ForceStatus::measured

@@ -62,9 +62,10 @@ struct FingertipOptions {
   StridedView<const Point3<double>> free_dots_mm = {};  ///< printed dots of the free pad; NaN: none
   StickTest stick_test = {};
   UpdatedReference stick_reference = {};
-  PolynomialForce<> force_of_area = {};   ///< N, of mm^2
-  PolynomialForce<> force_of_depth = {};  ///< N, of mm
-  double force_sd_n = 0.1;                ///< standard deviation of both, > 0
+  PolynomialForce<> force_of_area = {};                         ///< N, of mm^2
+  PolynomialForce<> force_of_depth = {};                        ///< N, of mm
+  double force_sd_n = 0.1;                                      ///< standard deviation of both, > 0
+  ShearNormalisation<> shear_normalisation = {100, 0.65, 1.7};  ///< by area in mm^2, as printed
   RadialShear<> shear = {};
   StridedView<const Point3<double>> rim_mm = {};  ///< where side dots are fixed; one row
   WrenchOptions<double> wrench = {};
@@ -284,7 +285,7 @@ class Fingertip {
 
   /// What the printed dots say.
   struct DotStage {
-    using ByLookUp = NormalForce<PolynomialForce<>, NoCompensation, CurveErrors<3>>;
+    using ByLookUp = NormalForce<>;
     Grid<Point3<double>> at_mm;
     Grid<std::uint8_t> touching;
     ObjectMotion<> motion;
@@ -309,7 +310,7 @@ class Fingertip {
           shift_work(shift.workspace()),
           by_area(o.force_of_area, {}, {.residual_sd_n = o.force_sd_n}),
           by_depth(o.force_of_depth, {}, {.residual_sd_n = o.force_sd_n}),
-          shear(published_shear_by_area(), o.shear) {}
+          shear(o.shear_normalisation, o.shear) {}
 
     template <class Dots>
     bool fits(const Dots& dots_px) const {

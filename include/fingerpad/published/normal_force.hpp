@@ -11,24 +11,107 @@
 #include <vector>
 
 #include "fingerpad/calibrate/force.hpp"
+#include "fingerpad/core/expects.hpp"
+#include "fingerpad/core/scalar.hpp"
 #include "fingerpad/force/normal_force.hpp"
 
 namespace fingerpad {
 inline namespace v0 {
 namespace published {
 
+/// gain F + per_unit |x| + offset_n: one of eqs. 21 and 22.
 template <scalar S = double>
-using NormalForce = fingerpad::NormalForce<PolynomialForce<2, S>, PublishedCompensation<S>>;
+struct AffineForce {
+  S gain = S(1);
+  S per_unit = S(0);  ///< N/mm or N/rad
+  S offset_n = S(0);
+
+  S operator()(const S& plain_n, const S& size) const {
+    return S(gain * plain_n + per_unit * size + offset_n);
+  }
+};
+
+/// Eq. 21 for a displaced contact and eq. 22 for a rotated one. Neither equals the plain force
+/// where nothing moved, and nothing is said of both at once. So each is blended in: its part grows
+/// from 0 to 1 over `blend_mm` or `blend_rad`, beyond which it is the printed equation, and where
+/// both act their changes add.
+template <scalar S = double>
+struct Compensation {
+  static constexpr bool reads_motion = true;
+
+  AffineForce<S> displaced = {};
+  AffineForce<S> rotated = {};
+  S blend_mm = S(1);              ///< finite, > 0
+  S blend_rad = S(17) / S(1000);  ///< about a degree; finite, > 0
+
+  detail::ForceChange<S> operator()(const S& displacement_sq_mm2, const S& rotation_rad) const {
+    using std::sqrt;
+    // a root at 0 has no derivative
+    const bool still = value(displacement_sq_mm2) == 0;
+    const S length = still ? S(0) : S(sqrt(displacement_sq_mm2));
+    const S angle = value(rotation_rad) < 0 ? S(-rotation_rad) : rotation_rad;
+    const S d = detail::smooth_step(S(length / blend_mm));
+    const S t = detail::smooth_step(S(angle / blend_rad));
+    return {S(S(1) + d * (displaced.gain - S(1)) + t * (rotated.gain - S(1))),
+            S(d * (displaced.per_unit * length + displaced.offset_n) +
+              t * (rotated.per_unit * angle + rotated.offset_n))};
+  }
+};
+
+/// Refuses what has no meaning (parameter_error).
+template <scalar S>
+void expects_valid(const Compensation<S>& compensation) {
+  const auto check = [](const AffineForce<S>& force, const char* name) {
+    expects(is_finite(force.gain), name, "gain", force.gain, "finite");
+    expects(is_finite(force.per_unit), name, "per_unit", force.per_unit, "finite");
+    expects(is_finite(force.offset_n), name, "offset_n", force.offset_n, "finite");
+  };
+  check(compensation.displaced, "published::Compensation: displaced");
+  check(compensation.rotated, "published::Compensation: rotated");
+  const char* const owner = "published::Compensation";
+  expects(is_finite(compensation.blend_mm) && value(compensation.blend_mm) > 0, owner, "blend_mm",
+          compensation.blend_mm, "finite and > 0");
+  expects(is_finite(compensation.blend_rad) && value(compensation.blend_rad) > 0, owner,
+          "blend_rad", compensation.blend_rad, "finite and > 0");
+}
+
+/// Eq. 18, over about 1 to 28 N, where both curves rise together. They give 0.62 N and 0.34 N
+/// without contact, which NormalForce fades out.
+template <scalar S = double>
+PolynomialForce<2, S> force_of_area() {
+  return {{S(0.6242), S(0.0191), S(0.00008)}, S(18), S(478)};
+}
+template <scalar S = double>
+PolynomialForce<2, S> force_of_depth() {
+  return {{S(0.3435), S(0.5563), S(0.776)}, S(0.63), S(5.62)};
+}
+
+/// Eqs. 21 and 22. The displacement is in mm (the paper says m) and the angle in rad (there in
+/// degrees). Eqs. 19 and 20 give the same twice more with other numbers, under which the force
+/// falls with depth and turns negative: docs/errata.md, E029 and E030.
+template <scalar S = double>
+Compensation<S> compensation_by_area() {
+  const S degrees_per_rad = S(57.295779513082320877);
+  return {{S(0.748), S(-0.637), S(1.7)}, {S(1.2), S(S(0.00171) * degrees_per_rad), S(-1.8)}};
+}
+template <scalar S = double>
+Compensation<S> compensation_by_depth() {
+  const S degrees_per_rad = S(57.295779513082320877);
+  return {{S(1.2), S(0.509), S(-3.5)}, {S(0.8), S(S(-0.00102) * degrees_per_rad), S(-0.0518)}};
+}
+
+template <scalar S = double>
+using NormalForce = fingerpad::NormalForce<PolynomialForce<2, S>, Compensation<S>>;
 
 /// The measure is the contact's area in mm^2.
 template <scalar S = double>
 NormalForce<S> normal_force_by_area() {
-  return NormalForce<S>(published_force_of_area<S>(), published_compensation_by_area<S>());
+  return NormalForce<S>(force_of_area<S>(), compensation_by_area<S>());
 }
 /// The measure is the contact's depth in mm.
 template <scalar S = double>
 NormalForce<S> normal_force_by_depth() {
-  return NormalForce<S>(published_force_of_depth<S>(), published_compensation_by_depth<S>());
+  return NormalForce<S>(force_of_depth<S>(), compensation_by_depth<S>());
 }
 
 /// Eq. 21 or 22 for a curve: F = gain F_plain + per_unit |x| + offset, with |x| the displacement in

@@ -11,6 +11,17 @@ namespace fingerpad {
 inline namespace v0 {
 namespace published {
 
+/// The constants of "Measurement results of tangential force" and "... of rotational moment": by
+/// contact area in mm^2, and by contact depth in mm.
+template <scalar S = double>
+ShearNormalisation<S> shear_normalisation_by_area() {
+  return {S(100), S(0.65), S(1.7)};
+}
+template <scalar S = double>
+ShearNormalisation<S> shear_normalisation_by_depth() {
+  return {S(10), S(0.75), S(2.2)};
+}
+
 template <scalar S = double>
 using Shear = fingerpad::Shear<RadialShear<1, S>>;
 
@@ -20,7 +31,7 @@ Shear<S> shear_by_area(const S& force_n_per_mm, const S& moment_n_mm_per_rad) {
   RadialShear<1, S> map;
   map.force.coefficients[0] = force_n_per_mm;
   map.moment.coefficients[0] = moment_n_mm_per_rad;
-  return Shear<S>(published_shear_by_area<S>(), map);
+  return Shear<S>(shear_normalisation_by_area<S>(), map);
 }
 /// The measure is the contact's depth in mm.
 template <scalar S = double>
@@ -28,7 +39,7 @@ Shear<S> shear_by_depth(const S& force_n_per_mm, const S& moment_n_mm_per_rad) {
   RadialShear<1, S> map;
   map.force.coefficients[0] = force_n_per_mm;
   map.moment.coefficients[0] = moment_n_mm_per_rad;
-  return Shear<S>(published_shear_by_depth<S>(), map);
+  return Shear<S>(shear_normalisation_by_depth<S>(), map);
 }
 
 }  // namespace published
