@@ -40,7 +40,7 @@ int main(int argc, char** argv) {
   test.threshold_per_mm = free_pad.fit().threshold_per_mm;
   const fingerpad::ContactRegion<> contact_of(camera, shape.rows, shape.cols, test);
   auto workspace = contact_of.workspace();  // the last memory that is taken
-  const fingerpad::SurfaceFit<fingerpad::QuadricModel> surface_of(shape.rows, shape.cols, camera);
+  const fingerpad::SurfaceFit<fingerpad::Quadric<>> surface_of(shape.rows, shape.cols, camera);
 
   // Every frame.
   cv::Mat1f depth_mm(frame.size());

@@ -136,7 +136,7 @@ struct Bench {
   template <class Model>
   void add(const std::string& name, Index border_px = 0) const {
     using Fit = SurfaceFit<Model, CameraType>;
-    constexpr bool is_flat = std::is_same_v<Model, PlaneModel>;
+    constexpr bool is_flat = std::is_same_v<Model, Plane<>>;
     const SurfaceOptions options{50, border_px};
     const bench::Memory memory;
     const auto fit = std::make_shared<Fit>(height_px, width_px, camera, options);
@@ -192,10 +192,10 @@ struct Bench {
         },
         [](auto&) {});
     bench::add_streaming(group, pixels);
-    add<PlaneModel>("plane");
-    add<SphereModel>("sphere");
-    add<QuadricModel>("quadric");
-    add<QuadricModel>("quadric, border of 6 px left out", 6);
+    add<Plane<>>("plane");
+    add<Sphere<>>("sphere");
+    add<Quadric<>>("quadric");
+    add<Quadric<>>("quadric, border of 6 px left out", 6);
     add_opencv();
   }
 };

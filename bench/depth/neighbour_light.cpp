@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: MIT
 // Removal of the neighbouring membrane's light from a depth map, for small to large discs. The
 // error is that of each pixel that this changes, against the sum over every pixel of the disc in
-// long double; of NoNeighbourLight it is the whole of the light.
+// long double.
 #include "fingerpad/depth/neighbour_light.hpp"
 
 #include <memory>
@@ -12,6 +12,7 @@
 
 #include "bench/support/run.hpp"
 #include "bench/support/scene.hpp"
+#include "fingerpad/published/neighbour_light.hpp"
 
 using namespace fingerpad;
 using bench::Image;
@@ -40,7 +41,7 @@ struct Bench {
 
   /// NaN where no light is to be removed.
   Image<long double> truth() const {
-    const auto compensate = compensation<ExactDisc, long double>();
+    const auto compensate = compensation<published::ExactDisc, long double>();
     auto workspace = compensate.workspace();
     Image<long double> out(scene.pad.rows, scene.pad.cols);
     (void)compensate(pressed, out, workspace);
@@ -96,12 +97,10 @@ struct Bench {
   void add_all() const {
     const auto exact = bench::kept([this] { return truth(); });
     const cv::Size window(int(2 * radius_px + 1), int(2 * radius_px + 1));
-    add<ExactDisc, double>("ExactDisc, double, published", exact);
-    add<ExactDisc, float>("ExactDisc, float", exact);
-    add<SteppedDisc<>, double>("SteppedDisc<5>, double", exact);
-    add<SteppedDisc<>, float>("SteppedDisc<5>, float, the default", exact);
-    add<SteppedDisc<3>, float>("SteppedDisc<3>, float", exact);
-    add<float>("NoNeighbourLight, to another image", NoNeighbourLight(), exact, bench::Memory());
+    add<published::ExactDisc, double>("published::ExactDisc, double", exact);
+    add<published::ExactDisc, float>("published::ExactDisc, float", exact);
+    add<detail::SteppedDisc, double>("SteppedDisc, double", exact);
+    add<detail::SteppedDisc, float>("SteppedDisc, float, the default", exact);
     bench::add_streaming(group(), scene.pixels());
     add_opencv("cv::boxFilter of the disc's size",
                [=](const cv::Mat& from, cv::Mat& to) { cv::boxFilter(from, to, CV_32F, window); });

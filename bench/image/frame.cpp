@@ -8,9 +8,10 @@
 #include <opencv2/imgproc.hpp>
 #include <string>
 
-#include "fingerpad/depth/depth.hpp"
 #include "bench/support/run.hpp"
 #include "bench/support/scene.hpp"
+#include "fingerpad/depth/depth.hpp"
+#include "fingerpad/published/depth.hpp"
 
 using namespace fingerpad;
 using bench::Image;
@@ -84,15 +85,16 @@ struct Bench {
   void add_all() const {
     using Default = Anchored<BiasFreeMean>;
     add<BoxMean, Bisection, double>("published: BoxMean + Bisection in double");
-    add<BoxMean, Bisection, double, SingleHeight>("BoxMean + Bisection in double, SingleHeight");
-    add_quotient<BoxMean, Bisection, SingleHeight, double>(
-        "BoxMean + Bisection in double, SingleHeight, PixelQuotient");
+    add<BoxMean, Bisection, double, published::SingleHeight>(
+        "BoxMean + Bisection in double, SingleHeight");
+    add_quotient<BoxMean, Bisection, published::SingleHeight, double>(
+        "BoxMean + Bisection in double, published::SingleHeight, PixelQuotient");
     add_fast<NoSmoothing>("NoSmoothing");
     add_fast<BoxMean>("BoxMean");
     add_fast<BiasFreeMean>("BiasFreeMean");
     add_fast<Anchored<BoxMean>>("Anchored<BoxMean>");
     add_fast<Default>("Anchored<BiasFreeMean>");
-    add<Default, ExponentialFree<>, float, SingleHeight>("the default, SingleHeight");
+    add<Default, ExponentialFree<>, float, published::SingleHeight>("the default, SingleHeight");
     add_quotient<Default, ExponentialFree<>, AstigmaticHeights, float>(
         "the default, PixelQuotient");
     add<Default, ExponentialFree<>, double>("the default in double");

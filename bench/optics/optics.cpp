@@ -4,8 +4,6 @@
 // the same pixel: of a ray its path factor, of the virtual heights the worse of the two, of a point
 // its place, of a pixel its distance from the one that the point was made of. "published": with
 // angles, one height, the sine of eq. 13.
-#include "fingerpad/optics/camera.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <memory>
@@ -16,6 +14,8 @@
 
 #include "bench/support/run.hpp"
 #include "bench/support/scene.hpp"
+#include "fingerpad/optics/camera.hpp"
+#include "fingerpad/published/camera.hpp"
 
 using namespace fingerpad;
 
@@ -48,7 +48,7 @@ Ray<S> ray_by_angles(const Camera<S>& camera, const S& row, const S& col) {
 double error(const Ray<Long>& a, const Ray<Long>& b) {
   return static_cast<double>(a.path_factor - b.path_factor);
 }
-double error(const VirtualHeights<Long>& a, const VirtualHeights<Long>& b) {
+double error(const detail::VirtualHeights<Long>& a, const detail::VirtualHeights<Long>& b) {
   return static_cast<double>((std::max)(std::abs(a.meridional_mm - b.meridional_mm),
                                         std::abs(a.sagittal_mm - b.sagittal_mm)));
 }
@@ -65,7 +65,7 @@ Ray<Long> widened(const Ray<S>& r) {
           Long(r.path_factor)};
 }
 template <class S>
-VirtualHeights<Long> widened(const VirtualHeights<S>& h) {
+detail::VirtualHeights<Long> widened(const detail::VirtualHeights<S>& h) {
   return {Long(h.meridional_mm), Long(h.sagittal_mm)};
 }
 template <class S>
@@ -129,7 +129,7 @@ struct Calls {
         "ray/" + row, "path factor", "1",
         [c = camera](std::size_t, S i, S j, S) { return ray_at_pixel(c, i, j); }, truth);
     add_heights(row, AstigmaticHeights());
-    add_heights("SingleHeight, published, " + row, SingleHeight());
+    add_heights("SingleHeight, published, " + row, published::SingleHeight());
   }
   void add_published_rays() const {
     add<S>(
@@ -137,11 +137,10 @@ struct Calls {
         [c = camera](std::size_t, S i, S j, S) { return ray_by_angles(c, i, j); },
         [e = exact](Long i, Long j, Long) { return ray_at_pixel(e, i, j); });
   }
-  template <class Shift>
-  void add_shifted(const std::string& name) const {
+  void add_published_points(const std::string& name) const {
     add<S>(
         "point/" + name, "point", "mm",
-        [c = camera](std::size_t, S i, S j, S z) { return point_at<Shift>(c, i, j, z); },
+        [c = camera](std::size_t, S i, S j, S z) { return published::point_at(c, i, j, z); },
         [e = exact](Long i, Long j, Long z) { return point_at(e, i, j, z); });
   }
   void add_points() const {
@@ -212,8 +211,8 @@ int main(int argc, char** argv) {
   const auto add_points = [](const auto&... calls) { (calls.add_points(), ...); };
   const auto add_pixels = [](const auto&... calls) { (calls.add_pixels(), ...); };
   add_points(thin, single, thick, single_thick, heights, single_heights);
-  thin.add_shifted<PublishedSineShift>("published, PublishedSineShift, double");
-  single.add_shifted<PublishedSineShift>("published, PublishedSineShift, float");
+  thin.add_published_points("published sine, double");
+  single.add_published_points("published sine, float");
   add_pixels(thin, single, thick, single_thick, heights, single_heights);
   add_all_opencv();
   return bench::run(argc, argv);

@@ -4,6 +4,8 @@
 // Everything but the adapters, which bring their libraries with them (see adapt/). The fits of
 // light and forces need Eigen and are here where Eigen is found.
 #include "fingerpad/calibrate/contact.hpp"
+#include "fingerpad/calibrate/depth.hpp"
+#include "fingerpad/calibrate/force.hpp"
 #include "fingerpad/calibrate/neighbour_light.hpp"
 #include "fingerpad/calibrate/rim.hpp"
 #include "fingerpad/calibrate/slip.hpp"
@@ -31,10 +33,12 @@
 #include "fingerpad/motion/object_motion.hpp"
 #include "fingerpad/optics/camera.hpp"
 #include "fingerpad/pipeline/fingertip.hpp"
+#include "fingerpad/published/camera.hpp"
 #include "fingerpad/published/contact_region.hpp"
 #include "fingerpad/published/contact_shift.hpp"
 #include "fingerpad/published/depth.hpp"
 #include "fingerpad/published/friction_ratio.hpp"
+#include "fingerpad/published/neighbour_light.hpp"
 #include "fingerpad/published/normal_force.hpp"
 #include "fingerpad/published/object_motion.hpp"
 #include "fingerpad/published/preslip.hpp"
@@ -44,8 +48,3 @@
 #include "fingerpad/sim/foam_contact.hpp"
 #include "fingerpad/slip/grip_control.hpp"
 #include "fingerpad/slip/stick_ratio.hpp"
-
-#if __has_include(<Eigen/Core>)
-#include "fingerpad/calibrate/depth.hpp"
-#include "fingerpad/calibrate/force.hpp"
-#endif

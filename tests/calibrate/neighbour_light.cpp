@@ -38,8 +38,8 @@ Map membrane(double pressed_mm, double shift_mm) {
 /// compensation's own sums.
 Frames truths(const NeighbourLight<double>& light, const Map& reference, const Frames& measured) {
   Frames truth;
-  const detail::InclinationSums<SteppedDisc<>, double> sums(light.radius_px, pitch_mm,
-                                                            as_view(reference));
+  const detail::InclinationSums<detail::SteppedDisc, double> sums(light.radius_px, pitch_mm,
+                                                                  as_view(reference));
   auto workspace = sums.workspace();
   for (const Map& l : measured) {
     truth.push_back(l);
@@ -123,8 +123,8 @@ TEST_CASE("calibration of neighbour light: compensation with the fit removes the
   const Frames measured = {membrane(2, 1)};
   const Frames truth = truths(light, reference, measured);
   const auto fit = fit_of(reference, measured, truth, {5, 9, -1, 1, 3});
-  const NeighbourLightCompensation<SteppedDisc<>, double> compensation(fit.light, pitch_mm,
-                                                                       reference);
+  const NeighbourLightCompensation<detail::SteppedDisc, double> compensation(fit.light, pitch_mm,
+                                                                             reference);
   auto workspace = compensation.workspace();
   Map out(64, 80);
   REQUIRE(compensation(measured[0], out, workspace).ok());

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "fingerpad/motion/object_motion.hpp"
 #include "fingerpad/contact/object_surface.hpp"
+#include "fingerpad/motion/object_motion.hpp"
 #include "support/catch.hpp"
 #include "support/pad.hpp"
 
@@ -51,6 +51,6 @@ TEST_CASE("what is unknown is no contact, for any method") {
       patch(i, j) = Touch::contact;
     }
   }
-  const SurfaceFit<PlaneModel, OrthographicCamera<double>> plane(20, 30, {});
+  const SurfaceFit<Plane<>, OrthographicCamera<double>> plane(20, 30, {});
   CHECK(plane(Image<float>(20, 30, 9.0F), patch).pixels == 12 * 15);
 }

@@ -13,6 +13,7 @@
 #include "fingerpad/adapt/eigen.hpp"
 #include "fingerpad/adapt/opencv.hpp"
 #include "fingerpad/adapt/xtensor.hpp"
+#include "fingerpad/published/neighbour_light.hpp"
 #include "support/catch.hpp"
 #include "support/foreign_image.hpp"
 #include "support/generators.hpp"
@@ -152,15 +153,16 @@ TEST_CASE("neighbour light: nothing to compensate leaves the depth to the last b
     Map<double> l = membrane(37, 43, test::uniform(0, 3), test::uniform(0, 6));
     punch(l, test::whole(0, 5));
     const NeighbourLight<double> light = random_light(30);
-    RC_ASSERT(identical(compensated<SteppedDisc<>>(light, l, l), l));
+    RC_ASSERT(identical(compensated<detail::SteppedDisc>(light, l, l), l));
     const Map<float> single = l.cast<float>();
-    RC_ASSERT(identical(compensated<ExactDisc>(as<float>(light), single, single), single));
+    RC_ASSERT(
+        identical(compensated<published::ExactDisc>(as<float>(light), single, single), single));
   });
   rc::prop("m0 = 0", [] {
     NeighbourLight<double> light = random_light(30);
     light.m0_mm_per_rad = 0;
     const Map<double> l = membrane(37, 43, test::uniform(0, 3), 1);
-    RC_ASSERT(identical(compensated<SteppedDisc<>>(light, membrane(37, 43, 0, 0), l), l));
+    RC_ASSERT(identical(compensated<detail::SteppedDisc>(light, membrane(37, 43, 0, 0), l), l));
   });
 }
 
@@ -172,8 +174,8 @@ TEST_CASE("neighbour light: exact disc is the definition, with missing pixels or
     punch(depth, test::whole(0, 6));
     const NeighbourLight<double> light = random_light(20);
     const Map<double> truth = slow_compensation(light, reference, depth, 0.125);
-    const Map<double> fast = compensated<ExactDisc>(light, reference, depth);
-    const Map<float> single = compensated<ExactDisc, float>(
+    const Map<double> fast = compensated<published::ExactDisc>(light, reference, depth);
+    const Map<float> single = compensated<published::ExactDisc, float>(
         as<float>(light), reference.cast<float>(), depth.cast<float>());
     const auto worse = [&](double error, double limit, Index k) {
       const bool same = std::isnan(truth(k)) && std::isnan(error);
@@ -205,8 +207,8 @@ TEST_CASE("neighbour light: the stepped disc has the disc's area and second mome
     const auto one = [](Index, Index) { return 1.0; };
     const auto xx = [](Index x, Index) { return static_cast<double>(x * x); };
     const auto yy = [](Index, Index y) { return static_cast<double>(y * y); };
-    const detail::DiscShape exact = ExactDisc::shape(radius);
-    const detail::DiscShape stepped = SteppedDisc<>::shape(radius);
+    const detail::DiscShape exact = published::ExactDisc::shape(radius);
+    const detail::DiscShape stepped = detail::SteppedDisc::shape(radius);
     double pixels = 0;
     for (Index y = -radius; y <= radius; ++y) {
       for (Index x = -radius; x <= radius; ++x) {
@@ -227,8 +229,8 @@ TEST_CASE("neighbour light: the stepped disc is off by a small part of the corre
   const Map<double> depth = membrane(96, 128, 2.5, 1);
   for (const Index radius : {8, 15, 30, 50}) {
     const NeighbourLight<double> light{radius, 0.000886, 0.224};
-    const Map<double> exact = compensated<ExactDisc>(light, reference, depth);
-    const Map<double> stepped = compensated<SteppedDisc<>>(light, reference, depth);
+    const Map<double> exact = compensated<published::ExactDisc>(light, reference, depth);
+    const Map<double> stepped = compensated<detail::SteppedDisc>(light, reference, depth);
     double worst = 0, largest = 0;
     for (Index k = 0; k < depth.size(); ++k) {
       if (!std::isnan(depth(k))) {
@@ -247,7 +249,7 @@ TEST_CASE("neighbour light: the pad may lie anywhere in the image and be transpo
     Map<double> reference = membrane(32, 40, 0, 0);
     Map<double> depth = membrane(32, 40, test::uniform(0, 3), test::uniform(0, 6));
     punch(depth, 3);
-    const Map<double> plain = compensated<SteppedDisc<>>(light, reference, depth);
+    const Map<double> plain = compensated<detail::SteppedDisc>(light, reference, depth);
 
     const Index up = test::whole(0, 20), left = test::whole(0, 20);
     const auto shifted = [&](const Map<double>& l) {
@@ -255,16 +257,18 @@ TEST_CASE("neighbour light: the pad may lie anywhere in the image and be transpo
       wide.block(up, left, 32, 40) = l;
       return wide;
     };
-    const Map<double> moved = compensated<SteppedDisc<>>(light, shifted(reference), shifted(depth));
+    const Map<double> moved =
+        compensated<detail::SteppedDisc>(light, shifted(reference), shifted(depth));
     RC_ASSERT(identical(moved, shifted(plain)));
 
     const auto transposed = [](const Map<double>& l) { return Map<double>(l.transpose()); };
-    RC_ASSERT(identical(compensated<SteppedDisc<>>(light, transposed(reference), transposed(depth)),
-                        transposed(plain)));
+    RC_ASSERT(
+        identical(compensated<detail::SteppedDisc>(light, transposed(reference), transposed(depth)),
+                  transposed(plain)));
     const auto rotated = [](const Map<double>& l) {
       return Map<double>(l.transpose().rowwise().reverse());
     };
-    RC_ASSERT(identical(compensated<SteppedDisc<>>(light, rotated(reference), rotated(depth)),
+    RC_ASSERT(identical(compensated<detail::SteppedDisc>(light, rotated(reference), rotated(depth)),
                         rotated(plain)));
   });
 }
@@ -274,12 +278,12 @@ TEST_CASE("neighbour light: a missing pixel changes nothing beyond its disc") {
     const NeighbourLight<float> light = as<float>(random_light(8));
     const Map<float> reference = membrane(32, 40, 0, 0).cast<float>();
     const Map<float> depth = membrane(32, 40, 2, 1).cast<float>();
-    const Map<float> before = compensated<SteppedDisc<>>(light, reference, depth);
+    const Map<float> before = compensated<detail::SteppedDisc>(light, reference, depth);
     const Index i = test::whole(0, 31), j = test::whole(0, 39);
     Map<float> hole = depth;
     const float infinity = std::numeric_limits<float>::infinity();
     hole(i, j) = *rc::gen::element(std::nanf(""), infinity, -infinity);
-    const Map<float> after = compensated<SteppedDisc<>>(light, reference, hole);
+    const Map<float> after = compensated<detail::SteppedDisc>(light, reference, hole);
     for (Index r = 0; r < 32; ++r) {
       for (Index c = 0; c < 40; ++c) {
         const bool here = r == i && c == j;
@@ -299,7 +303,8 @@ TEST_CASE("neighbour light: absurd depths stay finite and harm nobody") {
   depth(12, 12) = 3e38F;
   depth(12, 13) = -3e38F;
   depth(3, 12) = 1e-40F;
-  const Map<float> out = compensated<SteppedDisc<>>(NeighbourLight<float>{}, reference, depth);
+  const Map<float> out =
+      compensated<detail::SteppedDisc>(NeighbourLight<float>{}, reference, depth);
   for (Index k = 0; k < out.size(); ++k) {
     CHECK(std::isnan(out(k)) == std::isnan(depth(k)));
     CHECK((std::isnan(out(k)) || (out(k) >= 0 && std::isfinite(out(k)))));
@@ -312,7 +317,7 @@ TEST_CASE("neighbour light: same bits on every grid") {
   Map<float> depth = membrane(rows, cols, 2, 1).cast<float>();
   depth(10, 20) = std::nanf("");
   const NeighbourLight<float> light{9, 0.002F, 0.2F};
-  const Map<float> expected = compensated<SteppedDisc<>>(light, reference, depth);
+  const Map<float> expected = compensated<detail::SteppedDisc>(light, reference, depth);
   const NeighbourLightCompensation<> compensation(light, 0.125F, reference);
   auto workspace = compensation.workspace();
 
@@ -385,24 +390,12 @@ TEST_CASE("neighbour light: bad parameters are refused by name, value and range"
         "NeighbourLightCompensation: rows of reference_depth_mm = 0, must be >= 1");
 }
 
-TEST_CASE("neighbour light: none copies or does nothing") {
-  const NoNeighbourLight none;
-  auto workspace = none.workspace();
-  Map<float> depth = Map<float>::Constant(3, 4, 2.0F);
-  Map<float> out = Map<float>::Zero(3, 4);
-  CHECK(none(depth, depth, workspace).ok());
-  CHECK(none(depth, out, workspace).ok());
-  CHECK((out == 2.0F).all());
-  Map<float> other(3, 5);
-  CHECK_FALSE(none(depth, other, workspace).ok());
-}
-
 TEST_CASE("neighbour light: other numbers") {
   const Map<double> reference = membrane(24, 28, 0, 0);
   const Map<double> depth = membrane(24, 28, 2, 1);
   const NeighbourLight<double> light{7, 0.001, 0.2};
-  const Map<double> in_double = compensated<SteppedDisc<>>(light, reference, depth);
-  const Map<long double> in_long = compensated<SteppedDisc<>, long double>(
+  const Map<double> in_double = compensated<detail::SteppedDisc>(light, reference, depth);
+  const Map<long double> in_long = compensated<detail::SteppedDisc, long double>(
       as<long double>(light), reference.cast<long double>(), depth.cast<long double>());
   for (Index k = 0; k < depth.size(); ++k) {
     if (!std::isnan(depth(k))) {

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "fingerpad/depth/depth_reference.hpp"
+#include "fingerpad/published/depth.hpp"
 #include "support/catch.hpp"
 #include "support/generators.hpp"
 #include "support/pad.hpp"
@@ -96,7 +97,7 @@ TEST_CASE("the pixel quotient is the published formula", "[reference]") {
   const Pad pad;
   const auto depth = pad.free_depths();
   const auto frame = pad.frame<double>(depth, 0.5, 3);
-  const auto reference = fit_reference<PixelQuotient, SingleHeight, double>(
+  const auto reference = fit_reference<PixelQuotient, published::SingleHeight, double>(
       pad.camera, pad.fluid, frame.red, frame.green, depth);
   double worst = 0;
   for (Index i = 0; i < pad.rows; ++i) {
@@ -105,7 +106,7 @@ TEST_CASE("the pixel quotient is the published formula", "[reference]") {
       REQUIRE((g == g) == (depth(i, j) > 0));
       if (g == g) {
         const double expected =
-            published_quotient(pad.fluid, pad.pencil<SingleHeight>(i, j),
+            published_quotient(pad.fluid, pad.pencil<published::SingleHeight>(i, j),
                                Colour<double>{frame.red(i, j), frame.green(i, j)}, depth(i, j));
         // (near the rim the published form itself cancels)
         if (depth(i, j) > 0.5) {

@@ -1,11 +1,11 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
-#include "fingerpad/depth/absorption.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
+#include "fingerpad/depth/absorption.hpp"
+#include "fingerpad/published/depth.hpp"
 #include "support/catch.hpp"
 #include "support/generators.hpp"
 #include "support/numbers.hpp"
@@ -262,7 +262,7 @@ TEST_CASE("the pencil of a ray takes k and heights from the optics", "[absorptio
   const Camera<double> camera;
   const auto ray = ray_at_pixel(camera, 10.0, 20.0);
   const auto astigmatic = pencil_of(camera, ray);
-  const auto single = pencil_of<SingleHeight>(camera, ray);
+  const auto single = pencil_of<published::SingleHeight>(camera, ray);
   CHECK(astigmatic.path_factor == ray.path_factor);
   CHECK(astigmatic.height.sagittal_mm < astigmatic.height.meridional_mm);
   CHECK(single.height.sagittal_mm == single.height.meridional_mm);

@@ -96,12 +96,12 @@ void follows_50_digits(const CameraType& camera) {
   const Mask mask(rows, cols, 1);
   const auto exact_camera = as<Digits50>(camera);
   const Image<Digits50> exact_depth = as<Digits50>(depth);
-  const auto plane = fit<PlaneModel>(camera, depth, mask);
-  const auto sphere = fit<SphereModel>(camera, depth, mask);
-  const auto quadric = fit<QuadricModel>(camera, depth, mask);
-  const auto exact_plane = fit<PlaneModel>(exact_camera, exact_depth, mask);
-  const auto exact_sphere = fit<SphereModel>(exact_camera, exact_depth, mask);
-  const auto exact_quadric = fit<QuadricModel>(exact_camera, exact_depth, mask);
+  const auto plane = fit<Plane<>>(camera, depth, mask);
+  const auto sphere = fit<Sphere<>>(camera, depth, mask);
+  const auto quadric = fit<Quadric<>>(camera, depth, mask);
+  const auto exact_plane = fit<Plane<>>(exact_camera, exact_depth, mask);
+  const auto exact_sphere = fit<Sphere<>>(exact_camera, exact_depth, mask);
+  const auto exact_quadric = fit<Quadric<>>(exact_camera, exact_depth, mask);
   RC_ASSERT((plane.ok() && sphere.ok() && quadric.ok()));
   RC_ASSERT((exact_plane.ok() && exact_sphere.ok() && exact_quadric.ok()));
   RC_ASSERT(error(plane.shape.normal, exact_plane.shape.normal) < 1e-11);
@@ -141,9 +141,9 @@ TEST_CASE("object surface: numbers whose sums are expressions", "[surface]") {
   const OrthographicCamera<test::Lazy50> camera = as<test::Lazy50>(centered_on(9, 9, 0.5));
   const Mask mask(9, 9, 1);
   const auto curvature = [](const auto& k) { return static_cast<double>(k); };
-  CHECK(fit<PlaneModel>(camera, depth, mask).ok());
-  CHECK(curvature(fit<SphereModel>(camera, depth, mask).shape.curvature_per_mm) == Approx(0.05));
-  CHECK(curvature(fit<QuadricModel>(camera, depth, mask).shape.curvature_1_per_mm) == Approx(0.05));
+  CHECK(fit<Plane<>>(camera, depth, mask).ok());
+  CHECK(curvature(fit<Sphere<>>(camera, depth, mask).shape.curvature_per_mm) == Approx(0.05));
+  CHECK(curvature(fit<Quadric<>>(camera, depth, mask).shape.curvature_1_per_mm) == Approx(0.05));
 }
 
 TEST_CASE("object surface: the sphere is the one of least square distance", "[surface]") {
@@ -154,7 +154,7 @@ TEST_CASE("object surface: the sphere is the one of least square distance", "[su
     const Flat camera = centered_on(size, size, 0.2);
     const Image<double> depth = bowl(size, size, 0.2, curvature, 0.05);
     const Mask mask(size, size, 1);
-    const auto r = fit<SphereModel>(camera, depth, mask);
+    const auto r = fit<Sphere<>>(camera, depth, mask);
     REQUIRE(r.ok());
     const auto sum_sq = [&](const Sphere<double>& s) {
       double sum = 0;
@@ -189,16 +189,16 @@ TEST_CASE("object surface: nearly flat, and flat", "[surface]") {
   const Flat camera = centered_on(size, size, 0.2);
   const Mask mask(size, size, 1);
   for (const double radius : {1e6, -1e6, 1e9}) {
-    const auto s = fit<SphereModel>(camera, bowl(size, size, 0.2, 1 / radius), mask);
-    const auto q = fit<QuadricModel>(camera, bowl(size, size, 0.2, 1 / radius), mask);
+    const auto s = fit<Sphere<>>(camera, bowl(size, size, 0.2, 1 / radius), mask);
+    const auto q = fit<Quadric<>>(camera, bowl(size, size, 0.2, 1 / radius), mask);
     REQUIRE((s.ok() && q.ok()));
     CHECK(std::abs(s.shape.curvature_per_mm - 1 / radius) < 1e-15);
     CHECK(std::abs(q.shape.mean_curvature_per_mm() - 1 / radius) < 1e-15);
   }
   const Image<double> flat(size, size, 9);
-  const auto p = fit<PlaneModel>(camera, flat, mask);
-  const auto s = fit<SphereModel>(camera, flat, mask);
-  const auto q = fit<QuadricModel>(camera, flat, mask);
+  const auto p = fit<Plane<>>(camera, flat, mask);
+  const auto s = fit<Sphere<>>(camera, flat, mask);
+  const auto q = fit<Quadric<>>(camera, flat, mask);
   REQUIRE((p.ok() && s.ok() && q.ok()));
   CHECK(p.shape.distance_mm == 9);
   CHECK(p.rms_mm == 0);
@@ -216,25 +216,25 @@ TEST_CASE("object surface: a patch of ten pixels, and one far from the axis", "[
   tiny(12, 9) = 1;
   const Flat camera = centered_on(20, 20, 0.08);
   const Image<double> depth = bowl(20, 20, 0.08, 1 / 18.0);
-  const auto s = fit<SphereModel>(camera, depth, tiny);
-  const auto q = fit<QuadricModel>(camera, depth, tiny);
+  const auto s = fit<Sphere<>>(camera, depth, tiny);
+  const auto q = fit<Quadric<>>(camera, depth, tiny);
   REQUIRE((s.ok() && q.ok()));
   CHECK(s.shape.radius_mm() == Approx(18).epsilon(1e-8));
   CHECK(1 / q.shape.curvature_1_per_mm == Approx(18).epsilon(1e-8));
-  CHECK(fit<PlaneModel>(camera, depth, tiny).ok());
+  CHECK(fit<Plane<>>(camera, depth, tiny).ok());
 
   const Flat far{-1e4, 2e4, 0.08};  // a kilometer of image away from the patch
   const Mask all(20, 20, 1);
-  const auto f = fit<SphereModel>(far, bowl(20, 20, 0.08, 1 / 18.0), all);
+  const auto f = fit<Sphere<>>(far, bowl(20, 20, 0.08, 1 / 18.0), all);
   REQUIRE(f.ok());
   CHECK(f.shape.radius_mm() == Approx(18).epsilon(1e-7));
   Camera<double> oblique;  // 50 degrees from the axis
   oblique.center_x_px = -600;
   oblique.center_y_px = -400;
   const Image<double> level(20, 20, 9);
-  const auto p = fit<PlaneModel>(oblique, level, all);
+  const auto p = fit<Plane<>>(oblique, level, all);
   REQUIRE(p.ok());
-  CHECK(p.shape.tilt().total_rad < 1e-12);
+  CHECK(std::hypot(p.shape.normal.x, p.shape.normal.y) < 1e-12);
   CHECK(p.shape.distance_mm == Approx(9).epsilon(1e-13));
 }
 
@@ -242,9 +242,9 @@ TEST_CASE("object surface: pixels in one line determine nothing", "[surface]") {
   const auto refused = [](const auto& camera, const Mask& mask) {
     for (const double noise : {0.0, 0.05}) {
       const Image<double> depth = bowl(40, 40, 0.08, 0.05, noise);
-      CHECK(fit<PlaneModel>(camera, depth, mask).status == SurfaceStatus::degenerate);
-      CHECK(fit<SphereModel>(camera, depth, mask).status == SurfaceStatus::degenerate);
-      CHECK(fit<QuadricModel>(camera, depth, mask).status == SurfaceStatus::degenerate);
+      CHECK(fit<Plane<>>(camera, depth, mask).status == SurfaceStatus::degenerate);
+      CHECK(fit<Sphere<>>(camera, depth, mask).status == SurfaceStatus::degenerate);
+      CHECK(fit<Quadric<>>(camera, depth, mask).status == SurfaceStatus::degenerate);
     }
   };
   Mask row(40, 40, 0), col(40, 40, 0), diagonal(40, 40, 0), rows(40, 40, 0), dot(40, 40, 0);
@@ -259,13 +259,12 @@ TEST_CASE("object surface: pixels in one line determine nothing", "[surface]") {
   // two lines: where they are level, nothing says how the object bends across
   const Flat camera = centered_on(40, 40, 0.08);
   const Image<double> depth = bowl(40, 40, 0.08, 0.05);
-  CHECK(fit<PlaneModel>(camera, depth, rows).ok());
-  CHECK(fit<SphereModel>(camera, depth, rows).shape.curvature_per_mm == Approx(0.05));
-  CHECK(fit<QuadricModel>(camera, Image<double>(40, 40, 9), rows).status ==
-        SurfaceStatus::degenerate);
+  CHECK(fit<Plane<>>(camera, depth, rows).ok());
+  CHECK(fit<Sphere<>>(camera, depth, rows).shape.curvature_per_mm == Approx(0.05));
+  CHECK(fit<Quadric<>>(camera, Image<double>(40, 40, 9), rows).status == SurfaceStatus::degenerate);
   dot(3, 4) = 1;
-  CHECK(fit<PlaneModel>(camera, depth, dot).status == SurfaceStatus::too_few);
-  CHECK(fit<PlaneModel>(camera, depth, dot).pixels == 1);
+  CHECK(fit<Plane<>>(camera, depth, dot).status == SurfaceStatus::too_few);
+  CHECK(fit<Plane<>>(camera, depth, dot).pixels == 1);
 }
 
 TEST_CASE("object surface: depths beyond all reason", "[surface]") {
@@ -274,8 +273,8 @@ TEST_CASE("object surface: depths beyond all reason", "[surface]") {
   for (const double z : {1e300, -1e300, 1e160}) {
     Image<double> depth = bowl(20, 20, 0.08, 0.05);
     depth(5, 6) = z;
-    CHECK(fit<PlaneModel>(camera, depth, mask).status == SurfaceStatus::degenerate);
-    CHECK(fit<SphereModel>(camera, depth, mask).status == SurfaceStatus::degenerate);
-    CHECK(fit<QuadricModel>(camera, depth, mask).status == SurfaceStatus::degenerate);
+    CHECK(fit<Plane<>>(camera, depth, mask).status == SurfaceStatus::degenerate);
+    CHECK(fit<Sphere<>>(camera, depth, mask).status == SurfaceStatus::degenerate);
+    CHECK(fit<Quadric<>>(camera, depth, mask).status == SurfaceStatus::degenerate);
   }
 }

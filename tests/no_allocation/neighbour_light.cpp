@@ -5,6 +5,7 @@
 #include <cmath>
 #include <vector>
 
+#include "fingerpad/published/neighbour_light.hpp"
 #include "no_allocation/count.hpp"
 #include "support/catch.hpp"
 
@@ -15,7 +16,7 @@ TEST_CASE("neighbour light: a frame allocates nothing") {
   const StridedView<float> reference_view(reference.data(), 48, 64, 64);
   const StridedView<float> view(depth.data(), 48, 64, 64);
   const NeighbourLightCompensation<> stepped({}, 0.1F, reference_view);
-  const NeighbourLightCompensation<ExactDisc> exact({}, 0.1F, reference_view);
+  const NeighbourLightCompensation<published::ExactDisc> exact({}, 0.1F, reference_view);
   auto workspace = stepped.workspace();
   auto exact_workspace = exact.workspace();
   const long before = test::allocations();

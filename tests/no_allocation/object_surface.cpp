@@ -16,9 +16,9 @@ TEST_CASE("object surface: a frame allocates nothing") {
   }
   const StridedView<float> view(depth.data(), 48, 64, 64), out(residual.data(), 48, 64, 64);
   const StridedView<unsigned char> mask(contact.data(), 48, 64, 64);
-  const SurfaceFit<PlaneModel> plane(48, 64, Camera<double>(), {.border_px = 2});
-  const SurfaceFit<SphereModel> sphere(48, 64, Camera<double>());
-  const SurfaceFit<QuadricModel, OrthographicCamera<double>> quadric(48, 64, {});
+  const SurfaceFit<Plane<>> plane(48, 64, Camera<double>(), {.border_px = 2});
+  const SurfaceFit<Sphere<>> sphere(48, 64, Camera<double>());
+  const SurfaceFit<Quadric<>, OrthographicCamera<double>> quadric(48, 64, {});
   const long before = test::allocations();
   bool good = true;
   for (int frame = 0; frame < 3; ++frame) {

@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "fingerpad/optics/camera.hpp"
+#include "fingerpad/published/camera.hpp"
 #include "support/cameras.hpp"
 #include "support/catch.hpp"
 #include "support/generators.hpp"
@@ -114,7 +115,7 @@ TEST_CASE("virtual heights", "[optics]") {
     const auto ray = ray_at_tangent(camera, std::tan(air));
     const double ratio = std::cos(fluid) / std::cos(air);
     const double nh = camera.refractive_index * camera.plate_distance_mm;
-    const auto one = SingleHeight::heights(camera, ray);
+    const auto one = published::SingleHeight::heights(camera, ray);
     const auto two = AstigmaticHeights::heights(camera, ray);
     RC_ASSERT(one.meridional_mm == one.sagittal_mm);
     RC_ASSERT(std::abs(one.meridional_mm / (nh * std::pow(ratio, 3)) - 1) < 1e-13);
@@ -251,7 +252,7 @@ TEST_CASE("the published sine shift is short by the audit's numbers", "[optics]"
   const auto missing_mm = [&](double t, double depth) {
     const double col = camera.center_x_px + t / tangent_per_px(camera);
     const double right = point_at(camera, camera.center_y_px, col, depth).x;
-    return right - point_at<PublishedSineShift>(camera, camera.center_y_px, col, depth).x;
+    return right - published::point_at(camera, camera.center_y_px, col, depth).x;
   };
   CHECK(std::abs(missing_mm(std::tan(std::numbers::pi / 6), 13) - 0.387) < 0.001);
 
@@ -295,7 +296,7 @@ TEST_CASE("derivatives by the dual number are those of central differences", "[o
           auto c = as<S>(camera);
           c.plate_distance_mm = h;
           const auto ray = ray_at_pixel(c, S(row), S(col));
-          return S(SingleHeight::heights(c, ray).meridional_mm * ray.path_factor);
+          return S(published::SingleHeight::heights(c, ray).meridional_mm * ray.path_factor);
         },
         camera.plate_distance_mm);
     agree([&]<class S>(const S& x) { return sum(point_at(as<S>(camera), S(row), x, S(z))); }, col);

@@ -1,13 +1,14 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 // What must hold for every sensor, every frame and every policy.
-#include "fingerpad/depth/depth.hpp"
+#include "fingerpad/published/depth.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 #include <utility>
 
+#include "fingerpad/depth/depth.hpp"
 #include "support/catch.hpp"
 #include "support/generators.hpp"
 #include "support/pad.hpp"
@@ -111,12 +112,12 @@ double difference(const Image<S>& a, const Image<S>& b) {
 TEMPLATE_TEST_CASE("what the forward model shows, the inverse finds",
                    "[depth][law]",
                    (Way<Bisection, double>),
-                   (Way<Bisection, float, SingleHeight>),
+                   (Way<Bisection, float, published::SingleHeight>),
                    (Way<Newton<>, double>),
-                   (Way<Newton<>, double, SingleHeight>),
+                   (Way<Newton<>, double, published::SingleHeight>),
                    (Way<Newton<>, float>),
                    (Way<ExponentialFree<>, float>),
-                   (Way<ExponentialFree<9, 10, 8>, double, SingleHeight>)) {
+                   (Way<ExponentialFree<9, 10, 8>, double, published::SingleHeight>)) {
   rc::prop("on random sensors, with printed dots", [] {
     using S = typename TestType::scalar;
     using Heights = typename TestType::heights;

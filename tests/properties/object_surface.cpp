@@ -102,12 +102,12 @@ struct Everything {
   template <class Check>
   void operator()(const Check& check) const {
     using Flat = OrthographicCamera<double>;
-    check(PlaneModel(), Camera<double>());
-    check(SphereModel(), Camera<double>());
-    check(QuadricModel(), Camera<double>());
-    check(PlaneModel(), Flat());
-    check(SphereModel(), Flat());
-    check(QuadricModel(), Flat());
+    check(Plane<>(), Camera<double>());
+    check(Sphere<>(), Camera<double>());
+    check(Quadric<>(), Camera<double>());
+    check(Plane<>(), Flat());
+    check(Sphere<>(), Flat());
+    check(Quadric<>(), Flat());
   }
 };
 
@@ -118,13 +118,13 @@ auto fit(const CameraType& camera, const Image<double>& depth, const Mask& mask)
 }
 
 bool all_finite(const Plane<double>& p) {
-  return PlaneModel::is_finite_shape(p);
+  return detail::PlaneModel::is_finite_shape(p);
 }
 bool all_finite(const Sphere<double>& s) {
-  return SphereModel::is_finite_shape(s);
+  return detail::SphereModel::is_finite_shape(s);
 }
 bool all_finite(const Quadric<double>& q) {
-  return QuadricModel::is_finite_shape(q);
+  return detail::QuadricModel::is_finite_shape(q);
 }
 
 }  // namespace
@@ -212,9 +212,9 @@ TEST_CASE("object surface: a scene of another size, or higher up", "[surface]") 
           },
           1));
     };
-    check(PlaneModel());
-    check(SphereModel());
-    check(QuadricModel());
+    check(Plane<>());
+    check(Sphere<>());
+    check(Quadric<>());
   });
 }
 
@@ -254,9 +254,9 @@ TEST_CASE("object surface: a model with more unknowns fits no worse", "[surface]
   rc::prop("plane, sphere, quadric", [] {
     const Patch patch = any_patch();
     const auto camera = camera_for<OrthographicCamera<double>>(patch.size);
-    const auto plane = fit<PlaneModel>(camera, patch.depth, patch.mask);
-    const auto sphere = fit<SphereModel>(camera, patch.depth, patch.mask);
-    const auto quadric = fit<QuadricModel>(camera, patch.depth, patch.mask);
+    const auto plane = fit<Plane<>>(camera, patch.depth, patch.mask);
+    const auto sphere = fit<Sphere<>>(camera, patch.depth, patch.mask);
+    const auto quadric = fit<Quadric<>>(camera, patch.depth, patch.mask);
     RC_ASSERT((plane.ok() && sphere.ok() && quadric.ok()));
     // one Gauss-Newton step, and distances to first order: a share of the curved part is left
     RC_ASSERT(sphere.rms_mm <= 1.01 * plane.rms_mm + 1e-7);

@@ -27,7 +27,7 @@ TEST_CASE("published depth: the free pad is found, where one height for all rays
           "[published]") {
   const Pad pad;
   const Image<double> free = pad.free_depths();
-  const auto frame = pad.frame<double, SingleHeight>(free);
+  const auto frame = pad.frame<double, published::SingleHeight>(free);
   const auto reference =
       published::depth_reference<double>(pad.camera, pad.fluid, frame.red, frame.green, free);
   const auto estimate = published::depth_estimator(pad.camera, pad.fluid, reference, 3);

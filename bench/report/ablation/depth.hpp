@@ -15,6 +15,7 @@
 
 #include "fingerpad/depth/depth.hpp"
 #include "fingerpad/depth/neighbour_light.hpp"
+#include "fingerpad/published/neighbour_light.hpp"
 #include "membranes.hpp"
 
 namespace bench::ablation {
@@ -41,9 +42,9 @@ class DepthEffects {
     const auto free = measured(estimator_, frame_of(pad, free_mm, 98, 0.25));
     light_ = std::make_unique<fingerpad::NeighbourLightCompensation<>>(
         fingerpad::NeighbourLight<float>(), float(pitch_mm()), free);
-    exact_light_ =
-        std::make_unique<fingerpad::NeighbourLightCompensation<fingerpad::ExactDisc, float>>(
-            fingerpad::NeighbourLight<float>(), float(pitch_mm()), free_mm);
+    exact_light_ = std::make_unique<
+        fingerpad::NeighbourLightCompensation<fingerpad::published::ExactDisc, float>>(
+        fingerpad::NeighbourLight<float>(), float(pitch_mm()), free_mm);
   }
 
   const fingerpad::DepthEstimator<>& estimator() const { return estimator_; }
@@ -153,7 +154,8 @@ class DepthEffects {
   std::unique_ptr<Raw> raw_;
   std::unique_ptr<Box> box_;
   std::unique_ptr<fingerpad::NeighbourLightCompensation<>> light_;
-  std::unique_ptr<fingerpad::NeighbourLightCompensation<fingerpad::ExactDisc, float>> exact_light_;
+  std::unique_ptr<fingerpad::NeighbourLightCompensation<fingerpad::published::ExactDisc, float>>
+      exact_light_;
 
   Effect place_{.name = "refraction",
                 .quantity = "place of a pixel's point",
@@ -164,7 +166,7 @@ class DepthEffects {
                      .quantity = "depth in frames with such light",
                      .unit = "mm",
                      .on = "`NeighbourLightCompensation<>`",
-                     .off = "`NoNeighbourLight`"};
+                     .off = "not called"};
   Effect smoothing_{.name = "smoothing",
                     .quantity = "depth",
                     .unit = "mm",

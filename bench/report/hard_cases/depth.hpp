@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "fingerpad/depth/depth.hpp"
+#include "fingerpad/published/depth.hpp"
 #include "row.hpp"
 #include "support/pad.hpp"
 
@@ -212,8 +213,8 @@ inline Row grazing_rays() {
                  const Digits50 exact = height_by_angles(exact_camera, Digits50(tangent));
                  f.naive.add_relative(height_by_angles(camera, tangent), exact);
                  const auto ray = fingerpad::ray_at_tangent(camera, tangent);
-                 f.stable.add_relative(fingerpad::SingleHeight::heights(camera, ray).meridional_mm,
-                                       exact);
+                 f.stable.add_relative(
+                     fingerpad::published::SingleHeight::heights(camera, ray).meridional_mm, exact);
                }
                return f;
              });

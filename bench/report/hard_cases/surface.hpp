@@ -187,8 +187,8 @@ inline Row nearly_flat_sphere() {
           f.naive.add_absolute(curvature_by_center(depth, camera),
                                curvature_by_center(exact_depth, exact_camera));
           f.stable.add_absolute(
-              shape_of<fingerpad::SphereModel>(depth, camera).shape.curvature_per_mm,
-              shape_of<fingerpad::SphereModel>(exact_depth, exact_camera).shape.curvature_per_mm);
+              shape_of<fingerpad::Sphere<>>(depth, camera).shape.curvature_per_mm,
+              shape_of<fingerpad::Sphere<>>(exact_depth, exact_camera).shape.curvature_per_mm);
         }
         return f;
       });
@@ -216,7 +216,7 @@ inline Row patch_far_away() {
                    })[0];
                  };
                  const auto along_x = []<class T>(const test::Image<T>& d, const auto& c) {
-                   const auto n = shape_of<fingerpad::PlaneModel>(d, c).shape.normal;
+                   const auto n = shape_of<fingerpad::Plane<>>(d, c).shape.normal;
                    return wide_t<T>(-n.x / n.z);
                  };
                  const auto exact_depth = in<Digits50>(depth);

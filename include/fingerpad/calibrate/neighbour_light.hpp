@@ -11,9 +11,9 @@
 #include <span>
 #include <vector>
 
-#include "fingerpad/depth/detail/inclination_sums.hpp"
 #include "fingerpad/core/expects.hpp"
 #include "fingerpad/core/grid.hpp"
+#include "fingerpad/depth/detail/inclination_sums.hpp"
 #include "fingerpad/depth/neighbour_light.hpp"
 
 namespace fingerpad {
@@ -115,7 +115,7 @@ inline LightAtN best_along_n(const std::vector<LightSample>& samples, double low
 /// where reference, measured and true depth are finite. Refuses frames without a change of
 /// inclination, or whose change of depth is too uniform to tell n from m0 (parameter_error).
 /// Allocates; O(radii (frames rows cols + 70 pixels)).
-template <class Disc = SteppedDisc<>, grid Reference, grid Measured, grid True>
+template <class Disc = detail::SteppedDisc, grid Reference, grid Measured, grid True>
 NeighbourLightFit fit_neighbour_light(double pitch_mm,
                                       const Reference& reference_mm,
                                       std::span<const Measured> measured_mm,

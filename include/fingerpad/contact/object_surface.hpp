@@ -5,8 +5,7 @@
 // map there is the object's own surface. Its points in mm, the plane, sphere or quadric nearest to
 // them, and what stands out from that. Source: Ito, Kim, Obinata, "Shape sensing by vision-based
 // tactile sensor for dexterous handling of robot hands" (slides), which name shape and irregularity
-// but give no equations; those of the fits stand in
-// detail/surface/{plane,sphere,quadric}_model.hpp.
+// but give no equations; those of the fits stand in surface_models.hpp and quadric_model.hpp.
 //
 // Normals point toward the object. Curvatures are positive where the object is convex.
 #include <array>
@@ -66,8 +65,21 @@ struct [[nodiscard]] SurfaceResult {
   bool ok() const { return status == SurfaceStatus::ok; }
 };
 
+namespace detail {
+
+template <scalar S>
+PlaneModel model_for(const Plane<S>&);
+template <scalar S>
+SphereModel model_for(const Sphere<S>&);
+template <scalar S>
+QuadricModel model_for(const Quadric<S>&);
+template <class Shape>
+using model_of = decltype(model_for(Shape{}));
+
+}  // namespace detail
+
 /// Fits a shape to the contact.
-///   Model       PlaneModel, SphereModel or QuadricModel
+///   ShapeType   Plane<>, Sphere<> or Quadric<>, in the camera's number
 ///   CameraType  Camera<S> or OrthographicCamera<S>; S is the number computed in. Depth maps may be
 ///               of float, but sums of fourth powers want a double.
 ///
@@ -78,8 +90,10 @@ struct [[nodiscard]] SurfaceResult {
 ///
 /// const, so that threads may share one; a frame takes no memory, throws nothing, and looks at the
 /// pixels once (plane) or twice, once more for the residual map.
-template <class Model = PlaneModel, class CameraType = Camera<double>>
+template <class ShapeType = Plane<>, class CameraType = Camera<double>>
 class SurfaceFit {
+  using Model = detail::model_of<ShapeType>;
+
  public:
   using Scalar = detail::camera_scalar_t<CameraType>;
   using Shape = typename Model::template Shape<Scalar>;

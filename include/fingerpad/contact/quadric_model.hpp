@@ -128,13 +128,11 @@ S tied_g(const std::array<S, 6>& c) {
   return S(S(0.5) * k.first * (S(1) + ratio * ratio_sq) / (S(1) + ratio_sq));
 }
 
-}  // namespace detail
-
-/// Policy of SurfaceFit.
+/// How a Quadric is fitted.
 struct QuadricModel {
   static constexpr int unknowns = 6;
   template <scalar S>
-  using Moments = detail::MomentKernel<S, false>;
+  using Moments = MomentKernel<S, false>;
   template <scalar S>
   using Shape = Quadric<S>;
 
@@ -156,22 +154,22 @@ struct QuadricModel {
   /// The quadric of a patch, and the mean square distance from it. `add_up(kernel)` gives the sums
   /// of a kernel over the points relative to the patch's centroid.
   template <scalar S, class AddUp>
-  static bool fit(const detail::PatchMoments<S>& patch,
+  static bool fit(const PatchMoments<S>& patch,
                   const AddUp& add_up,
                   Quadric<S>& quadric,
                   S& mean_sq) {
-    const detail::Eigen3<S> e = detail::eigenvectors(patch.second);
-    const Point3<S> n = detail::toward_object(e.vector[2]);
-    const detail::QuadricKernel<S> kernel{detail::SurfaceFrame<S>::around(n)};
+    const Eigen3<S> e = eigenvectors(patch.second);
+    const Point3<S> n = toward_object(e.vector[2]);
+    const QuadricKernel<S> kernel{SurfaceFrame<S>::around(n)};
     const auto s = add_up(kernel);
     const S& count = patch.count;
-    const detail::SmallMatrix<S, 6> a = {{{count, s[0], s[1], s[2], s[3], s[4]},
-                                          {s[0], s[2], s[3], s[5], s[6], s[7]},
-                                          {s[1], s[3], s[4], s[6], s[7], s[8]},
-                                          {s[2], s[5], s[6], s[9], s[10], s[11]},
-                                          {s[3], s[6], s[7], s[10], s[11], s[12]},
-                                          {s[4], s[7], s[8], s[11], s[12], s[13]}}};
-    const detail::NormalEquations<S, 6> equations(a);
+    const SmallMatrix<S, 6> a = {{{count, s[0], s[1], s[2], s[3], s[4]},
+                                  {s[0], s[2], s[3], s[5], s[6], s[7]},
+                                  {s[1], s[3], s[4], s[6], s[7], s[8]},
+                                  {s[2], s[5], s[6], s[9], s[10], s[11]},
+                                  {s[3], s[6], s[7], s[10], s[11], s[12]},
+                                  {s[4], s[7], s[8], s[11], s[12], s[13]}}};
+    const NormalEquations<S, 6> equations(a);
     if (!equations.good) {
       return false;
     }
@@ -204,7 +202,7 @@ struct QuadricModel {
     q.g_per_mm = S(0);
     for (int round = 0; round < 60; ++round) {
       const S before = q.g_per_mm;
-      q.g_per_mm = detail::tied_g(q.coefficients);
+      q.g_per_mm = tied_g(q.coefficients);
       for (std::size_t k = 0; k < 6; ++k) {
         q.coefficients[k] = c_w[k] - q.g_per_mm * c_w_sq[k];
       }
@@ -218,9 +216,7 @@ struct QuadricModel {
   /// Principal curvatures at the centroid's foot: the quadric as F = w - g w^2 - ... = 0 bends by
   /// t^T (Hessian of -F) t / |grad F| along a tangent t.
   template <scalar S>
-  static void bend(const detail::NormalEquations<S, 6>& equations,
-                   const S& variance,
-                   Quadric<S>& quadric) {
+  static void bend(const NormalEquations<S, 6>& equations, const S& variance, Quadric<S>& quadric) {
     using std::sqrt;
     const S& a = quadric.coefficients[0];
     const S& d = quadric.coefficients[3];
@@ -233,15 +229,14 @@ struct QuadricModel {
     const Point3<S> gradient = {S(-quadric.coefficients[1]), S(-quadric.coefficients[2]),
                                 S(S(1) - S(2) * g * height)};
     const S length = sqrt(S(dot(gradient, gradient)));
-    const detail::SurfaceFrame<S> local = detail::SurfaceFrame<S>::around(normalized(gradient));
+    const SurfaceFrame<S> local = SurfaceFrame<S>::around(normalized(gradient));
     const auto bent = [&](const Point3<S>& s, const Point3<S>& t) {
       return S(
           (S(2) * (d * s.x * t.x + f * s.y * t.y + g * s.z * t.z) + e * (s.x * t.y + s.y * t.x)) /
           length);
     };
-    const detail::Eigen2<S> k(bent(local.u, local.u), bent(local.u, local.v),
-                              bent(local.v, local.v));
-    const detail::SurfaceFrame<S> axes = {quadric.u, quadric.v, quadric.w};
+    const Eigen2<S> k(bent(local.u, local.u), bent(local.u, local.v), bent(local.v, local.v));
+    const SurfaceFrame<S> axes = {quadric.u, quadric.v, quadric.w};
     const Point3<S> zero = {S(0), S(0), S(0)};
     const Point3<S> along = zero + k.cos * local.u + k.sin * local.v;
     const Point3<S> aside = zero + S(-k.sin) * local.u + k.cos * local.v;
@@ -262,5 +257,6 @@ struct QuadricModel {
   }
 };
 
+}  // namespace detail
 }  // namespace v0
 }  // namespace fingerpad

@@ -23,27 +23,6 @@ inline namespace v0 {
 
 // The plane nearest to a patch: orthogonal regression, from the moments alone.
 
-/// Angles of a direction n with n.z > 0, as turns of the z axis: n = Ry(about_y) Rx(about_x) z.
-template <scalar S = double>
-struct Tilt {
-  S about_x_rad;
-  S about_y_rad;
-  S total_rad;  ///< between n and the z axis
-};
-
-template <scalar S>
-Tilt<S> tilt_of(const Point3<S>& n) {
-  using std::atan2;
-  using std::sqrt;
-  const S across = sqrt(S(n.x * n.x + n.z * n.z));
-  const S aside_sq = n.x * n.x + n.y * n.y;
-  const S aside = value(aside_sq) == 0 ? S(0) : S(sqrt(aside_sq));
-  const S about_x = atan2(S(-n.y), across);
-  const S about_y = atan2(n.x, n.z);
-  const S total = atan2(aside, n.z);
-  return {about_x, about_y, total};
-}
-
 /// A plane in mm. Standard errors hold for pixels whose errors are independent (see SurfaceFit).
 template <scalar S = double>
 struct Plane {
@@ -54,16 +33,17 @@ struct Plane {
                                                      ///< center
   S tilt_sd_rad = not_a_number<S>();                 ///< of the normal, where it is least certain
 
-  Tilt<S> tilt() const { return tilt_of(normal); }
   /// Signed distance of p from the plane, mm; positive away from the object.
   S stands_out(const Point3<S>& p) const { return S(-dot(normal, p - center_mm)); }
 };
 
-/// Policy of SurfaceFit.
+namespace detail {
+
+/// How a Plane is fitted.
 struct PlaneModel {
   static constexpr int unknowns = 3;
   template <scalar S>
-  using Moments = detail::MomentKernel<S, false>;
+  using Moments = MomentKernel<S, false>;
   template <scalar S>
   using Shape = Plane<S>;
 
@@ -75,9 +55,9 @@ struct PlaneModel {
 
   /// The plane of a patch into `plane`, and the mean square distance from it.
   template <scalar S, class AddUp>
-  static bool fit(const detail::PatchMoments<S>& patch, const AddUp&, Plane<S>& plane, S& mean_sq) {
-    const detail::Eigen3<S> e = detail::eigenvectors(patch.second);
-    plane.normal = detail::toward_object(e.vector[2]);
+  static bool fit(const PatchMoments<S>& patch, const AddUp&, Plane<S>& plane, S& mean_sq) {
+    const Eigen3<S> e = eigenvectors(patch.second);
+    plane.normal = toward_object(e.vector[2]);
     plane.center_mm = patch.centroid;
     plane.distance_mm = dot(plane.normal, plane.center_mm);
     mean_sq = value(e.value[2]) < 0 ? S(0) : e.value[2];
@@ -96,6 +76,8 @@ struct PlaneModel {
     return value(x) > 0 ? S(sqrt(x)) : S(0);
   }
 };
+
+}  // namespace detail
 
 /// A sphere in mm, or a plane where the curvature is 0. Standard errors hold for pixels whose
 /// errors are independent (see SurfaceFit).
@@ -157,13 +139,11 @@ struct SphereStepKernel {
   }
 };
 
-}  // namespace detail
-
-/// Policy of SurfaceFit.
+/// How a Sphere is fitted.
 struct SphereModel {
   static constexpr int unknowns = 4;
   template <scalar S>
-  using Moments = detail::MomentKernel<S, true>;
+  using Moments = MomentKernel<S, true>;
   template <scalar S>
   using Shape = Sphere<S>;
 
@@ -176,20 +156,20 @@ struct SphereModel {
   /// The sphere of a patch, and the mean square distance from it. `add_up(kernel)` gives the sums
   /// of a kernel over the points relative to the patch's centroid.
   template <scalar S, class AddUp>
-  static bool fit(const detail::PatchMoments<S>& patch,
+  static bool fit(const PatchMoments<S>& patch,
                   const AddUp& add_up,
                   Sphere<S>& sphere,
                   S& mean_sq) {
-    detail::SphereStepKernel<S> start;
+    SphereStepKernel<S> start;
     if (!algebraic(patch, start)) {
       return false;
     }
     const std::array<S, 15> s = add_up(start);
-    const detail::SmallMatrix<S, 4> a = {{{s[0], s[1], s[2], s[3]},
-                                          {s[1], s[4], s[5], s[6]},
-                                          {s[2], s[5], s[7], s[8]},
-                                          {s[3], s[6], s[8], s[9]}}};
-    const detail::NormalEquations<S, 4> equations(a);
+    const SmallMatrix<S, 4> a = {{{s[0], s[1], s[2], s[3]},
+                                  {s[1], s[4], s[5], s[6]},
+                                  {s[2], s[5], s[7], s[8]},
+                                  {s[3], s[6], s[8], s[9]}}};
+    const NormalEquations<S, 4> equations(a);
     if (!equations.good) {
       return false;
     }
@@ -201,7 +181,7 @@ struct SphereModel {
     }
     sum_sq = value(sum_sq) < 0 ? S(0) : sum_sq;
     mean_sq = sum_sq / patch.count;
-    const detail::SurfaceFrame<S>& f = start.frame;
+    const SurfaceFrame<S>& f = start.frame;
     sphere.normal = normalized(f.n + step[1] * f.u + step[2] * f.v);
     sphere.point_mm = patch.centroid + S(start.height + step[0]) * sphere.normal;
     sphere.curvature_per_mm = start.curvature + step[3];
@@ -213,18 +193,18 @@ struct SphereModel {
   /// Height w of the patch in the frame of its best plane, by least squares of
   /// w = a + b u + c v + e (u^2 + v^2 + w^2): needs the moments only.
   template <scalar S>
-  static bool algebraic(const detail::PatchMoments<S>& patch, detail::SphereStepKernel<S>& start) {
+  static bool algebraic(const PatchMoments<S>& patch, SphereStepKernel<S>& start) {
     using std::sqrt;
-    const detail::Eigen3<S> e = detail::eigenvectors(patch.second);
-    const Point3<S> n = detail::toward_object(e.vector[2]);
-    const detail::SurfaceFrame<S> plane = detail::SurfaceFrame<S>::around(n);
+    const Eigen3<S> e = eigenvectors(patch.second);
+    const Point3<S> n = toward_object(e.vector[2]);
+    const SurfaceFrame<S> plane = SurfaceFrame<S>::around(n);
     const Point3<S> t = plane.to_frame(patch.third);
-    const Point3<S> mu = plane.to_frame(detail::times(patch.second, plane.u));
-    const Point3<S> mv = plane.to_frame(detail::times(patch.second, plane.v));
+    const Point3<S> mu = plane.to_frame(times(patch.second, plane.u));
+    const Point3<S> mv = plane.to_frame(times(patch.second, plane.v));
     const S mean_q = patch.second[0][0] + patch.second[1][1] + patch.second[2][2];
     const S q_var = patch.fourth - mean_q * mean_q;
-    const detail::SmallMatrix<S, 3> a = {{{mu.x, mu.y, t.x}, {mu.y, mv.y, t.y}, {t.x, t.y, q_var}}};
-    const detail::NormalEquations<S, 3> equations(a);
+    const SmallMatrix<S, 3> a = {{{mu.x, mu.y, t.x}, {mu.y, mv.y, t.y}, {t.x, t.y, q_var}}};
+    const NormalEquations<S, 3> equations(a);
     if (!equations.good) {
       return false;
     }
@@ -238,7 +218,7 @@ struct SphereModel {
     const S norm = sqrt(norm_sq);
     start.curvature = S(2) * c[2] / norm;
     const Point3<S> gradient = {S(-c[0]), S(-c[1]), S(1)};
-    start.frame = detail::SurfaceFrame<S>::around(plane.from_frame(normalized(gradient)));
+    start.frame = SurfaceFrame<S>::around(plane.from_frame(normalized(gradient)));
     // the centroid lies at the signed distance d along the normal: d = 2 Q / (1 + s), Q = -a / N
     const S at_center = -offset / norm;
     const S s_sq = S(1) - S(2) * start.curvature * at_center;
@@ -248,9 +228,7 @@ struct SphereModel {
   }
 
   template <scalar S>
-  static S standard_error(const S& count,
-                          const S& sum_sq,
-                          const detail::NormalEquations<S, 4>& equations) {
+  static S standard_error(const S& count, const S& sum_sq, const NormalEquations<S, 4>& equations) {
     using std::sqrt;
     const S freedom = count - S(unknowns);
     const S unit_variance = equations.variance({S(0), S(0), S(0), S(1)});
@@ -259,5 +237,6 @@ struct SphereModel {
   }
 };
 
+}  // namespace detail
 }  // namespace v0
 }  // namespace fingerpad

@@ -15,8 +15,8 @@
 #include <cmath>
 
 #include "fingerpad/core/expects.hpp"
-#include "fingerpad/optics/camera.hpp"
 #include "fingerpad/core/scalar.hpp"
+#include "fingerpad/optics/camera.hpp"
 
 namespace fingerpad {
 inline namespace v0 {
@@ -53,8 +53,8 @@ Absorption<To> cast(const Absorption<From>& f) {
 /// The pencil of light that comes back to one pixel.
 template <scalar S = double>
 struct Pencil {
-  S path_factor;             ///< k = 1 + 1/cos(phi_fluid), >= 2
-  VirtualHeights<S> height;  ///< where it seems to come from
+  S path_factor;                     ///< k = 1 + 1/cos(phi_fluid), >= 2
+  detail::VirtualHeights<S> height;  ///< where it seems to come from
 };
 
 /// The pencil of a ray, with one of the height policies of optics.hpp.

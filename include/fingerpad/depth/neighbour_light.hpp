@@ -65,8 +65,9 @@ struct [[nodiscard]] NeighbourLightResult {
   bool ok() const { return status == FrameStatus::ok; }
 };
 
-/// Removes the light of the neighbouring membrane from depth maps. `Disc` is SteppedDisc<> (time
-/// independent of r) or ExactDisc; `S` is the number computed in.
+/// Removes the light of the neighbouring membrane from depth maps, computed in the number S. The
+/// time does not depend on r: the disc is five nested rectangles of its area and second moment.
+/// published::ExactDisc is every pixel of it.
 ///
 /// Missing pixels (not finite) leave their neighbours a one-sided difference and drop out of the
 /// disc. If the reference has them, membrane is there and only was not seen: the disc's sum is
@@ -75,7 +76,7 @@ struct [[nodiscard]] NeighbourLightResult {
 ///
 /// Bounded time and no allocation per frame; const, so that threads may share one, each with its
 /// own workspace. Twice the work in frames where pixels of the reference are missing.
-template <class Disc = SteppedDisc<>, scalar S = float>
+template <class Disc = detail::SteppedDisc, scalar S = float>
 class NeighbourLightCompensation {
  public:
   /// Memory that one frame at a time needs, taken up front.
@@ -165,34 +166,6 @@ class NeighbourLightCompensation {
   detail::InclinationSums<Disc, S> sums_;
   std::vector<S> reference_;  // 0 where it is missing,
   std::vector<S> m0_;         // and so is m0 there
-};
-
-/// No compensation: nothing to do where depth and output are one grid in memory, else a copy.
-struct NoNeighbourLight {
-  struct Workspace {};
-  Workspace workspace() const { return {}; }
-
-  template <grid Depth, writable_grid<cell_t<Depth>> Out>
-  NeighbourLightResult operator()(const Depth& depth_mm, Out&& out, Workspace&) const {
-    const auto from = as_view(depth_mm);
-    const auto to = as_view(std::forward<Out>(out));
-    if (!same_size(from, to)) {
-      return {};
-    }
-    if constexpr (strided_grid<Depth> && strided_grid<Out> &&
-                  std::same_as<cell_t<Depth>, cell_t<Out>>) {
-      if (from.data() == to.data() && from.row_stride() == to.row_stride() &&
-          from.col_stride() == to.col_stride()) {
-        return {FrameStatus::ok, 0};
-      }
-    }
-    for (Index i = 0; i < to.rows(); ++i) {
-      for (Index j = 0; j < to.cols(); ++j) {
-        to(i, j) = static_cast<cell_t<Out>>(from(i, j));
-      }
-    }
-    return {FrameStatus::ok, 0};
-  }
 };
 
 }  // namespace v0

@@ -69,9 +69,9 @@ struct [[nodiscard]] SpatialDotsResult {
 };
 
 /// The dots of a frame in mm, from where the image shows them (px) and the depth map (mm, along
-/// each pixel's ray). NaN where a dot was not found or has no depth. `Shift`: see point_at.
-/// Allocates nothing.
-template <class Shift = TangentShift, scalar S, dot_grid Dots, grid Depth, spatial_dot_grid Out>
+/// each pixel's ray). NaN where a dot was not found or has no depth. Allocates
+/// nothing.
+template <scalar S, dot_grid Dots, grid Depth, spatial_dot_grid Out>
 SpatialDotsResult spatial_dots(const Camera<S>& camera,
                                const Dots& dots_px,
                                const Depth& depth_mm,
@@ -91,8 +91,8 @@ SpatialDotsResult spatial_dots(const Camera<S>& camera,
       const S col = S(Traits::x(p));
       const S l = depth_between_pixels(depth, row, col);
       const bool known = is_finite(l);
-      to(i, j) = detail::motion::point_from<cell_t<Out>>(
-          known ? point_at<Shift>(camera, row, col, l) : detail::missing_point<S>());
+      to(i, j) = detail::motion::point_from<cell_t<Out>>(known ? point_at(camera, row, col, l)
+                                                               : detail::missing_point<S>());
       result.found += known ? 1 : 0;
     }
   }

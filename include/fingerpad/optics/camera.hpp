@@ -73,6 +73,14 @@ S tangent_ratio(const S& t_sq, const S& n) {
   return S(1) / root;
 }
 
+/// Heights of the point from which the returning pencil seems to come, above the plate: the area
+/// that a pixel sees at depth z grows as (z + meridional_mm)(z + sagittal_mm).
+template <scalar S = double>
+struct VirtualHeights {
+  S meridional_mm;
+  S sagittal_mm;
+};
+
 }  // namespace detail
 
 /// One pixel's ray, all that the depth model needs of it.
@@ -120,26 +128,12 @@ Ray<S> ray_at_pixel(const Camera<S>& camera, const S& row, const S& col) {
   return ray_at_tangent(camera, S(r * tangent_per_px(camera)));
 }
 
-/// Heights of the point from which the returning pencil seems to come, above the plate: the area
-/// that a pixel sees at depth z grows as (z + meridional_mm)(z + sagittal_mm).
-template <scalar S = double>
-struct VirtualHeights {
-  S meridional_mm;
-  S sagittal_mm;
-};
-
-/// Published single height, used for both directions: h2 = n h1 cos^3(phi1) / cos^3(phi2), with
-/// phi1 in the fluid and phi2 in air (closed form of the slides' chain of differentials).
-struct SingleHeight {
-  template <scalar S>
-  static VirtualHeights<S> heights(const Camera<S>& camera, const Ray<S>& ray);
-};
-
-/// The refracted pencil is astigmatic (erratum E007): the height differs along and across the
-/// plane of the ray. Exact for thin pencils; 72.7 and 68.5 mm at 20 degrees where n h1 = 66.5 mm.
+/// Where the returning pencil seems to come from. It is astigmatic (erratum E007): the height
+/// differs along and across the plane of the ray. Exact for thin pencils; 72.7 and 68.5 mm at 20
+/// degrees where n h1 = 66.5 mm.
 struct AstigmaticHeights {
   template <scalar S>
-  static VirtualHeights<S> heights(const Camera<S>& camera, const Ray<S>& ray) {
+  static detail::VirtualHeights<S> heights(const Camera<S>& camera, const Ray<S>& ray) {
     using std::sqrt;
     const S t_sq = ray.tan_air * ray.tan_air;
     const S inv_cos_air = sqrt(S(S(1) + t_sq));
@@ -157,36 +151,9 @@ struct AstigmaticHeights {
   }
 };
 
-template <scalar S>
-VirtualHeights<S> SingleHeight::heights(const Camera<S>& camera, const Ray<S>& ray) {
-  const VirtualHeights<S> both = AstigmaticHeights::heights(camera, ray);
-  return {both.meridional_mm, both.meridional_mm};
-}
-
-/// How far from its place on the plate a point at depth z appears, per mm of depth and per unit of
-/// tan(phi_air). Corrected eq. 13: tan(phi_fluid), because z is a depth (E019).
-struct TangentShift {
-  template <scalar S>
-  static S per_tangent(const Camera<S>& camera, const S& t_sq) {
-    return detail::tangent_ratio(t_sq, camera.refractive_index);
-  }
-};
-
-/// Eq. 13 as printed, sin(phi_fluid) in the place of the tangent: right only where z is a length
-/// along the ray. For comparison: at most 0.026 mm short on a pad 50 mm from the camera, 0.39 mm at
-/// 30 degrees and 13 mm of depth.
-struct PublishedSineShift {
-  template <scalar S>
-  static S per_tangent(const Camera<S>& camera, const S& t_sq) {
-    using std::sqrt;
-    const S root = sqrt(S(S(1) + t_sq));
-    return S(S(1) / (camera.refractive_index * root));
-  }
-};
-
 /// The point seen at (row, col) when its depth is depth_mm; NaN depth gives NaN. Ito et al. 2011,
-/// eq. 13 (corrected form by default, see the policies above).
-template <class Shift = TangentShift, scalar S>
+/// eq. 13, with tan(phi_fluid) in the place of its sine, because z is a depth (E019).
+template <scalar S>
 Point3<S> point_at(const Camera<S>& camera, const S& row, const S& col, const S& depth_mm) {
   const S scale = tangent_per_px(camera);
   const S tx = (col - camera.center_x_px) * scale;
@@ -194,12 +161,13 @@ Point3<S> point_at(const Camera<S>& camera, const S& row, const S& col, const S&
   const S t_sq = tx * tx + ty * ty;
   const S in_air = camera.plate_distance_mm - camera.plate_thickness_mm;
   const S in_plate = camera.plate_thickness_mm * detail::tangent_ratio(t_sq, camera.plate_index);
-  const S rho_per_t = in_air + in_plate + depth_mm * Shift::per_tangent(camera, t_sq);
+  const S rho_per_t =
+      in_air + in_plate + depth_mm * detail::tangent_ratio(t_sq, camera.refractive_index);
   return {S(tx * rho_per_t), S(ty * rho_per_t), depth_mm};
 }
 
-/// The pixel that sees `point` (x along columns, y along rows); inverse of point_at with
-/// TangentShift. Needs point.z >= 0. The distance from the axis is concave in t, so Newton's method
+/// The pixel that sees `point` (x along columns, y along rows); inverse of point_at.
+/// Needs point.z >= 0. The distance from the axis is concave in t, so Newton's method
 /// from the paraxial ray rises to the root without a safeguard: three to five steps in double,
 /// eight at most up to 50 digits.
 template <scalar S>

@@ -6,6 +6,7 @@
 // scattering for each pixel, the mean over 29 x 29 px, one height for all rays, bisection. What is
 // wrong with it, and what the default does instead: docs/errata.md and docs/depth/depth.md.
 #include "fingerpad/depth/depth.hpp"
+#include "fingerpad/published/camera.hpp"
 
 namespace fingerpad {
 inline namespace v0 {

@@ -15,8 +15,8 @@
 
 #include "fingerpad/core/grid.hpp"
 #include "fingerpad/core/scalar.hpp"
+#include "fingerpad/image/detail/disc_sums.hpp"
 #include "fingerpad/image/detail/quick_math.hpp"
-#include "fingerpad/image/disc_sums.hpp"
 
 namespace fingerpad {
 inline namespace v0 {

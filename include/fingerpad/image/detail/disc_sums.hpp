@@ -84,32 +84,27 @@ struct DiscMoments {
   }
 };
 
-}  // namespace detail
-
-/// Every pixel whose center lies within the radius, as published. Cost per pixel grows with the
-/// radius: about 0.6 radius rectangles.
-struct ExactDisc {
-  static detail::DiscShape shape(Index radius_px) {
-    std::vector<Index> half_cols;
-    for (Index row = 0; row <= radius_px; ++row) {
-      const Index w = detail::disc_half_width(radius_px, row);
-      if (half_cols.empty() || half_cols.back() != w) {
-        half_cols.push_back(w);
-      }
+/// Every pixel whose center lies within the radius: about 0.6 radius rectangles.
+inline DiscShape exact_disc(Index radius_px) {
+  std::vector<Index> half_cols;
+  for (Index row = 0; row <= radius_px; ++row) {
+    const Index w = disc_half_width(radius_px, row);
+    if (half_cols.empty() || half_cols.back() != w) {
+      half_cols.push_back(w);
     }
-    return detail::staircase(half_cols);
   }
-};
+  return staircase(half_cols);
+}
 
-/// At most `Levels` rectangles, weighted so that area and second moment are those of the disc:
-/// exact for a change of inclination up to second order over the disc, at a cost per pixel that
-/// does not depend on the radius. `Levels` is odd, so that the middle rectangle is a square.
-template <int Levels = 5>
-  requires(Levels >= 3 && Levels % 2 == 1)
+/// At most five rectangles, weighted so that area and second moment are those of the disc: exact
+/// for a change of inclination up to second order over the disc, at a cost per pixel that does not
+/// depend on the radius. Their number is odd, so that the middle rectangle is a square.
 struct SteppedDisc {
-  static detail::DiscShape shape(Index radius_px) {
-    const detail::DiscShape exact = ExactDisc::shape(radius_px);
-    if (exact.levels.size() <= static_cast<std::size_t>(Levels)) {
+  static constexpr int levels = 5;
+
+  static DiscShape shape(Index radius_px) {
+    const DiscShape exact = exact_disc(radius_px);
+    if (exact.levels.size() <= static_cast<std::size_t>(levels)) {
       return exact;
     }
     // The steps that share the fewest pixels with what the disc leaves out, over a few scales.
@@ -117,20 +112,20 @@ struct SteppedDisc {
     Index best_difference = 0;
     for (int percent = 95; percent <= 106; ++percent) {
       const std::vector<Index> steps = steps_of(radius_px, percent / 100.0);
-      const Index difference = difference_from_disc(detail::staircase(steps), radius_px);
+      const Index difference = difference_from_disc(staircase(steps), radius_px);
       if (best.empty() || difference < best_difference) {
         best = steps;
         best_difference = difference;
       }
     }
-    return weighted(detail::staircase(best), radius_px);
+    return weighted(staircase(best), radius_px);
   }
 
  private:
   static std::vector<Index> steps_of(Index radius_px, double scale) {
     std::vector<Index> steps;
-    for (int k = 0; k < Levels; ++k) {
-      const double angle = (k + 0.5) / Levels * 1.5707963267948966;
+    for (int k = 0; k < levels; ++k) {
+      const double angle = (k + 0.5) / levels * 1.5707963267948966;
       const double w = scale * static_cast<double>(radius_px) * std::cos(angle);
       const Index whole = static_cast<Index>(w + 0.5);
       steps.push_back(whole < radius_px ? whole : radius_px);
@@ -138,24 +133,24 @@ struct SteppedDisc {
     return steps;
   }
 
-  static Index difference_from_disc(const detail::DiscShape& shape, Index radius_px) {
+  static Index difference_from_disc(const DiscShape& shape, Index radius_px) {
     Index difference = 0;
     for (Index row = 0; row <= radius_px; ++row) {
-      const Index a = detail::staircase_half_width(shape, row);
-      const Index b = detail::disc_half_width(radius_px, row);
+      const Index a = staircase_half_width(shape, row);
+      const Index b = disc_half_width(radius_px, row);
       difference += a < b ? b - a : a - b;
     }
     return difference;
   }
 
-  static detail::DiscShape weighted(detail::DiscShape shape, Index radius_px) {
-    detail::DiscMoments disc, stairs, square;
-    shape.square = Levels / 2;
+  static DiscShape weighted(DiscShape shape, Index radius_px) {
+    DiscMoments disc, stairs, square;
+    shape.square = levels / 2;
     const Index side = shape.levels[static_cast<std::size_t>(shape.square)].half_cols;
     for (Index row = -radius_px; row <= radius_px; ++row) {
       const Index distance = row < 0 ? -row : row;
-      disc.add_row(detail::disc_half_width(radius_px, distance));
-      const Index w = detail::staircase_half_width(shape, distance);
+      disc.add_row(disc_half_width(radius_px, distance));
+      const Index w = staircase_half_width(shape, distance);
       if (w >= 0) {
         stairs.add_row(w);
       }
@@ -169,8 +164,6 @@ struct SteppedDisc {
     return shape;
   }
 };
-
-namespace detail {
 
 /// How sums of inclinations are kept.
 template <scalar S>
