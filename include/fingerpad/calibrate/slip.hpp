@@ -1,18 +1,23 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// The parameters of the stick ratio for a sensor of one's own: delta_0 from the noise of its dots
-// (calibrate/slip_noise.hpp, calibration_threshold.hpp), U_min from the same, and U from
-// a recording in which slip begins, by the measures S and D (calibration_measures.hpp). Source:
-// "Selection of delta_0" and "Selection of U" of 003, corrected: docs/errata.md, E037, E038.
+// U of the stick ratio for a sensor of one's own, from a recording in which slip begins; delta_0
+// and U_min from the noise of its dots are in slip_noise.hpp. Source: "Selection of U" of 003,
+// corrected: docs/errata.md, E038.
+//
+// Published: "desirable: U, S and D are small", and U = 2.0 px by eye. Here the best is the U with
+// the lowest S + D' (published::measures_of), in which a step counts 1 that has no answer of its
+// own: slip is not seen then, and an old answer that happens to be low is no merit. Of those that
+// are not worse by more than two standard errors, which the recording hardly tells apart, the
+// smallest is taken, as it answers soonest. D' alone would choose a U so small or so large that
+// nothing is ever seen to slip. Frames on which the pad stands still are no steps: how long it
+// stands says nothing of U.
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <span>
 #include <vector>
 
 #include "fingerpad/calibrate/slip_noise.hpp"
-#include "fingerpad/calibrate/slip_search.hpp"
 #include "fingerpad/core/dots.hpp"
 #include "fingerpad/core/expects.hpp"
 #include "fingerpad/core/grid.hpp"
@@ -21,45 +26,64 @@
 namespace fingerpad {
 inline namespace v0 {
 
-/// Runs the stick ratio with all U of the search over a recording, frame by frame as they come.
-/// The recording: at least one contact that begins sticking and slips at last, better several.
+/// The choice, and what each U makes of the recording.
+struct [[nodiscard]] StickTestFit {
+  struct Row {
+    StickTest test;
+    Index updates = 0;                       ///< frames with an answer of their own; 0 where U is
+                                             ///< below both thresholds, and was not tried
+    double cost = not_a_number<double>();    ///< S + D', unknown ratios counted as 1
+    double behind = not_a_number<double>();  ///< cost less that of the best
+    double behind_error = not_a_number<double>();  ///< its sampling error: the standard deviation
+                                                   ///< of the sum of as many independent steps
+    bool chosen = false;
+  };
+
+  StickTest test;          ///< for StickRatio
+  std::vector<Row> table;  ///< from the smallest U to the largest
+  Index steps = 0;         ///< frames with contact and motion
+  double furthest_px = 0;  ///< the largest d_max of the smallest U that was tried
+};
+
+/// Runs the stick ratio with all U over a recording, frame by frame as they come. The recording: at
+/// least one contact that begins sticking and slips at last, better several.
 template <class Motion = StickConsensus<>,
           class Reference = UpdatedReference,
           class Denoising = ResidualMean,
           scalar S = float>
 class StickTestCalibration {
   using Estimator = StickRatio<Motion, Reference, Denoising, S>;
+  using Row = StickTestFit::Row;
+  static constexpr const char* owner = "StickTestCalibration";
+  static constexpr Index min_steps = 20, min_updates = 10;
 
  public:
   /// Refuses bad parameters, and noise that leaves no U of the search (parameter_error).
   StickTestCalibration(Index rows,
                        Index cols,
                        const DotNoise& noise,
-                       const ReferenceSearch& search = {},
+                       const StickTestOptions& options = {},
                        const Motion& motion = {},
                        const Reference& reference = {},
-                       const Denoising& denoising = {})
-      : search_(search) {
-    expects_valid(search);
-    expects(rows >= 1, "StickTestCalibration", "rows", static_cast<long long>(rows), ">= 1");
-    expects(cols >= 1, "StickTestCalibration", "cols", static_cast<long long>(cols), ">= 1");
-    const double largest_px = search.largest_px;
+                       const Denoising& denoising = {}) {
+    expects_valid(options);
+    expects(rows >= 1, owner, "rows", static_cast<long long>(rows), ">= 1");
+    expects(cols >= 1, owner, "cols", static_cast<long long>(cols), ">= 1");
+    const double largest_px = options.largest_px;
     const StickTest largest =
-        stick_test_for(rows * cols, noise, largest_px, search, motion, denoising);
-    const double min_px = (std::max)(largest.slip_px, largest.store_px);
-    for (int k = 0; k < search.candidates; ++k) {
-      const double share = static_cast<double>(k) / (search.candidates - 1);
-      ReferenceCandidate candidate;
-      candidate.test = largest;
-      candidate.test.reference_px =
-          k + 1 < search.candidates
-              ? search.smallest_px * std::pow(largest_px / search.smallest_px, share)
-              : largest_px;
-      if (candidate.test.reference_px > min_px) {
-        const Estimator estimator(rows, cols, candidate.test, motion, reference, denoising);
-        runs_.push_back({estimator, estimator.start(), {}, {}, table_.size()});
+        stick_test_for(rows * cols, noise, largest_px, options, motion, denoising);
+    const double ratio = largest_px / options.smallest_px;
+    for (int k = 0; k < options.candidates; ++k) {
+      Row row{largest};
+      if (k + 1 < options.candidates) {
+        const double share = static_cast<double>(k) / (options.candidates - 1);
+        row.test.reference_px = options.smallest_px * std::pow(ratio, share);
       }
-      table_.push_back(candidate);
+      if (row.test.reference_px > (std::max)(largest.slip_px, largest.store_px)) {
+        const Estimator estimator(rows, cols, row.test, motion, reference, denoising);
+        runs_.push_back({estimator, estimator.start(), table_.size()});
+      }
+      table_.push_back(row);
     }
     states_.assign(static_cast<std::size_t>(rows * cols), DotState::none);
   }
@@ -80,105 +104,91 @@ class StickTestCalibration {
         furthest_px_ = (std::max)(furthest_px_, furthest_px);
         stands = result.status == StickStatus::standing;
       }
-      const double ratio = static_cast<double>(value(result.stick_ratio));
       if (result.status == StickStatus::restarted || result.status == StickStatus::no_contact) {
-        run.ratios.push_back(not_a_number<double>());
-        run.costs.push_back(not_a_number<double>());
+        run.before = not_a_number<double>();
+        run.costs.push_back(run.before);
       } else if (!stands) {
+        const double ratio = static_cast<double>(value(result.stick_ratio));
         add_step(is_finite(ratio) ? ratio : 1, result.updated(), run);
       }
     }
     return true;
   }
 
-  /// Refuses recordings that do not tell (parameter_error): of too few frames, without motion, with
-  /// too few answers, without stick or without slip.
-  StickTestChoice choose() const {
-    StickTestChoice choice;
-    choice.table = table_;
-    choice.furthest_px = furthest_px_;
+  /// Refuses recordings that do not tell (parameter_error): of fewer than 20 frames with motion,
+  /// with fewer than 10 answers, without three that stick or three that slip.
+  StickTestFit fit() const {
+    StickTestFit fit;
+    fit.table = table_;
+    fit.furthest_px = furthest_px_;
     for (const Run& run : runs_) {
-      choice.table[run.row].ratios = measures_of(std::span<const double>(run.ratios));
-      choice.table[run.row].cost = sum_of(run.costs);
-    }
-    const ReferenceCandidate& first = choice.table[runs_.front().row];
-    choice.steps = first.ratios.steps;
-    const Run& best = best_run(choice);
-    bool chosen = false;
-    for (const Run& run : runs_) {
-      ReferenceCandidate& candidate = choice.table[run.row];
-      compare(run.costs, best.costs, candidate);
-      if (candidate.updates < search_.min_updates) {
-        candidate.verdict = ReferenceVerdict::rarely_updated;
-      } else if (candidate.behind > search_.sampling_errors * candidate.behind_error) {
-        candidate.verdict = ReferenceVerdict::worse;
-      } else {
-        candidate.verdict = chosen ? ReferenceVerdict::as_good : ReferenceVerdict::chosen;
-        choice.test = chosen ? choice.test : candidate.test;
-        chosen = true;
+      double& cost = fit.table[run.row].cost = 0;
+      for (const double c : run.costs) {
+        cost += is_finite(c) ? c : 0;
       }
     }
-    return choice;
+    for (const double c : runs_.front().costs) {
+      fit.steps += is_finite(c) ? 1 : 0;
+    }
+    const Run& best = best_run(fit);
+    bool chosen = false;
+    for (const Run& run : runs_) {
+      Row& row = fit.table[run.row];
+      compare(run.costs, best.costs, row);
+      row.chosen = !chosen && row.updates >= min_updates && !(row.behind > 2 * row.behind_error);
+      fit.test = row.chosen ? row.test : fit.test;
+      chosen = chosen || row.chosen;
+    }
+    return fit;
   }
 
  private:
   struct Run {
     Estimator estimator;
     typename Estimator::State state;
-    std::vector<double> ratios;  ///< of the steps; NaN: no contact
-    std::vector<double> costs;   ///< of the steps, likewise
-    std::size_t row;             ///< of the table
+    std::size_t row;                         ///< of the table
+    std::vector<double> costs = {};          ///< of the steps; NaN: no contact
+    double before = not_a_number<double>();  ///< the ratio of the last step
+    Index sticking = 0;                      ///< answers above a half
+    Index slipping = 0;                      ///< and below
   };
 
   void add_step(double ratio, bool updated, Run& run) {
-    const double before = run.ratios.empty() ? ratio : run.ratios.back();
-    run.ratios.push_back(ratio);
-    run.costs.push_back((updated ? ratio : 1) + (before < ratio ? ratio - before : 0));
-    ReferenceCandidate& candidate = table_[run.row];
-    candidate.updates += updated ? 1 : 0;
-    candidate.sticking += updated && ratio > search_.stick_and_slip ? 1 : 0;
-    candidate.slipping += updated && ratio < search_.stick_and_slip ? 1 : 0;
+    run.costs.push_back((updated ? ratio : 1) + (run.before < ratio ? ratio - run.before : 0));
+    run.before = ratio;
+    table_[run.row].updates += updated ? 1 : 0;
+    run.sticking += updated && ratio > 0.5 ? 1 : 0;
+    run.slipping += updated && ratio < 0.5 ? 1 : 0;
   }
 
   /// The one with the lowest cost of those with enough answers.
-  const Run& best_run(const StickTestChoice& choice) const {
-    const char* const owner = "StickTestCalibration";
-    expects(choice.steps >= search_.min_steps, owner, "frames with contact and motion",
-            static_cast<long long>(choice.steps), ">= min_steps");
+  const Run& best_run(const StickTestFit& fit) const {
+    expects(fit.steps >= min_steps, owner, "frames with contact and motion",
+            static_cast<long long>(fit.steps), ">= 20");
     const Run* best = nullptr;
     Index max_updates = 0;
     for (const Run& run : runs_) {
-      const ReferenceCandidate& candidate = choice.table[run.row];
-      max_updates = (std::max)(max_updates, candidate.updates);
-      if (candidate.updates >= search_.min_updates) {
-        best = best == nullptr || candidate.cost < choice.table[best->row].cost ? &run : best;
+      const Row& row = fit.table[run.row];
+      max_updates = (std::max)(max_updates, row.updates);
+      if (row.updates >= min_updates) {
+        best = best == nullptr || row.cost < fit.table[best->row].cost ? &run : best;
       }
     }
-    const double smallest_px = choice.table[runs_.front().row].test.reference_px;
-    expects(choice.furthest_px > smallest_px, owner, "largest displacement in px",
-            choice.furthest_px, "> the smallest U that noise allows: the dots did not move");
+    const double smallest_px = fit.table[runs_.front().row].test.reference_px;
+    expects(fit.furthest_px > smallest_px, owner, "largest displacement in px", fit.furthest_px,
+            "> the smallest U that noise allows: the dots did not move");
     expects(best != nullptr, owner, "updated answers", static_cast<long long>(max_updates),
-            ">= min_updates: the dots moved too little in one direction");
-    const ReferenceCandidate& row = choice.table[best->row];
-    expects(row.sticking >= 3, owner, "answers that stick", static_cast<long long>(row.sticking),
-            ">= 3 above stick_and_slip: the recording has to begin sticking");
-    expects(row.slipping >= 3, owner, "answers that slip", static_cast<long long>(row.slipping),
-            ">= 3 below stick_and_slip: the recording has to slip at last");
+            ">= 10: the dots moved too little in one direction");
+    expects(best->sticking >= 3, owner, "answers that stick",
+            static_cast<long long>(best->sticking),
+            ">= 3 above 0.5: the recording has to begin sticking");
+    expects(best->slipping >= 3, owner, "answers that slip", static_cast<long long>(best->slipping),
+            ">= 3 below 0.5: the recording has to slip at last");
     return *best;
   }
 
-  static double sum_of(const std::vector<double>& costs) {
-    double sum = 0;
-    for (const double cost : costs) {
-      sum += is_finite(cost) ? cost : 0;
-    }
-    return sum;
-  }
-
   /// The frames are the same for both, so their steps are compared one by one.
-  static void compare(const std::vector<double>& costs,
-                      const std::vector<double>& best,
-                      ReferenceCandidate& candidate) {
+  static void compare(const std::vector<double>& costs, const std::vector<double>& best, Row& row) {
     double count = 0, sum = 0, squares = 0;
     for (std::size_t k = 0; k < costs.size(); ++k) {
       const double more = costs[k] - best[k];
@@ -187,13 +197,12 @@ class StickTestCalibration {
       squares += is_finite(more) ? more * more : 0;
     }
     const double deviations = squares - sum * sum / count;
-    candidate.behind = sum;
-    candidate.behind_error = std::sqrt((std::max)(deviations, 0.0) * count / (count - 1));
+    row.behind = sum;
+    row.behind_error = std::sqrt((std::max)(deviations, 0.0) * count / (count - 1));
   }
 
-  ReferenceSearch search_;
-  std::vector<ReferenceCandidate> table_;
-  std::vector<Run> runs_;  ///< of the candidates that noise allows, smallest U first
+  std::vector<Row> table_;
+  std::vector<Run> runs_;  ///< of the U that noise allows, smallest first
   std::vector<DotState> states_;
   double furthest_px_ = 0;
 };

@@ -1,12 +1,14 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// Noise of dot positions, from frames of a pad on which nothing moves. Source: "Method to decrease
-// of data variation of dots" of 003.
+// Noise of dot positions, from frames of a pad on which nothing moves, and the thresholds of the
+// stick ratio that follow from it. Source: "Method to decrease of data variation of dots" and
+// "Selection of delta_0" of 003.
 //
 // Published: "standard deviation of relative dot position in reference to central dot". That holds
 // the noise of two positions, sqrt(2) times that of one, and the central dot's is in all of them.
 // Here each frame's mean motion is taken out instead, which holds the noise of none.
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
@@ -14,7 +16,8 @@
 #include "fingerpad/core/dots.hpp"
 #include "fingerpad/core/expects.hpp"
 #include "fingerpad/core/grid.hpp"
-#include "fingerpad/slip/stick_steps.hpp"
+#include "fingerpad/core/scalar.hpp"
+#include "fingerpad/slip/stick_ratio.hpp"
 
 namespace fingerpad {
 inline namespace v0 {
@@ -144,6 +147,141 @@ class DotNoiseCalibration {
   std::vector<double> x_, y_;
   int frames_ = 0;
 };
+
+// The threshold of slip from the noise of the dots, and the probability that it is wrong.
+// Source: "Selection of delta_0" of 003, corrected (docs/errata.md, E037).
+//
+// A dot is tested by the difference of its positions in two frames. With Gaussian noise of standard
+// deviation sigma per axis in each, both axes of the difference have sigma sqrt(2), and its length
+// r is Rayleigh distributed:
+//   p = P(r > delta_0) = exp(-delta_0^2 / (4 sigma^2)).
+// The published delta_0 = 4 sigma, said to hold 95.44 %, holds 1 - exp(-4) = 98.17 %: 1.83 % of the
+// sticking dots are taken for slipping.
+
+/// p: that of a sticking dot which seems to move by more than `slip_px` between two frames; 0 for
+/// noise 0. noise_px >= 0: sigma of one position, per axis, as it is compared: after denoising.
+/// With x = slip^2 / (4 noise^2) the relative error is at most (4 x + 2) epsilon, as much as 2
+/// epsilon in an argument make.
+template <scalar S>
+S false_slip_probability(const S& slip_px, const S& noise_px) {
+  using std::exp;
+  const S ratio = slip_px / noise_px;
+  const S exponent = ratio * ratio / S(-4);
+  return S(exp(exponent));
+}
+
+/// delta_0 that a sticking dot passes with this probability, in (0, 1]; NaN where it is > 1. The
+/// relative error is a few epsilon, however small the probability.
+template <scalar S>
+S slip_threshold_for(const S& noise_px, const S& probability) {
+  using std::log;
+  using std::sqrt;
+  const S nats = S(0) - S(log(probability));  // not -0 for probability 1
+  const S root = sqrt(nats);
+  return S(S(2) * noise_px * root);
+}
+
+/// That of at least one in `dots` independent dots, each of which has `probability`, in [0, 1).
+template <scalar S>
+S false_slip_among(const S& probability, Index dots) {
+  using std::expm1;
+  using std::log1p;
+  const S minus = S(0) - probability;
+  const S nats = S(static_cast<double>(dots)) * S(log1p(minus));
+  return S(S(0) - S(expm1(nats)));
+}
+
+/// The probability of each of `dots` for which that of at least one is `among`, in [0, 1).
+template <scalar S>
+S false_slip_of_each(const S& among, Index dots) {
+  using std::expm1;
+  using std::log1p;
+  const S minus = S(0) - among;
+  const S nats = S(log1p(minus)) / S(static_cast<double>(dots));
+  return S(S(0) - S(expm1(nats)));
+}
+
+/// How often noise may be mistaken, and which U are tried.
+struct StickTestOptions {
+  double false_slip = 0.02;    ///< in (0, 1): probability that a sticking dot that lacks neighbours
+                               ///< is taken for slipping; less for others. Published: 0.0183
+  double false_motion = 0.01;  ///< in (0, 1): that a standing pad is taken for moving, for U_min
+  double smallest_px = 0.5;    ///< U, > 0
+  double largest_px = 8;       ///< > smallest_px
+  int candidates = 13;         ///< 2 to 1000, in equal ratios; by default three to the octave
+};
+inline void expects_valid(const StickTestOptions& options) {
+  const char* const owner = "StickTestOptions";
+  const auto in_unit = [&](double share, const char* name) {
+    expects(share > 0 && share < 1, owner, name, share, "in (0, 1)");
+  };
+  in_unit(options.false_slip, "false_slip");
+  in_unit(options.false_motion, "false_motion");
+  expects(is_finite(options.smallest_px) && options.smallest_px > 0, owner, "smallest_px",
+          options.smallest_px, "finite and > 0");
+  expects(is_finite(options.largest_px) && options.largest_px > options.smallest_px, owner,
+          "largest_px", options.largest_px, "finite and > smallest_px");
+  expects(options.candidates >= 2 && options.candidates <= 1000, owner, "candidates",
+          static_cast<long long>(options.candidates), "in [2, 1000]");
+}
+
+namespace detail::stick {
+
+/// sigma of a position in the difference that is compared with delta_0: that of the dots with the
+/// most noise of those that are averaged.
+inline double compared_noise_px(const NoDenoising&, const DotNoise& noise) {
+  return noise.noise_px;
+}
+inline double compared_noise_px(const ResidualMean&, const DotNoise& noise) {
+  return noise.edge_px > noise.inner_px || !is_finite(noise.inner_px) ? noise.edge_px
+                                                                      : noise.inner_px;
+}
+/// sigma of a position in d_max.
+inline double placed_noise_px(const NoDenoising&, const DotNoise& noise) {
+  return noise.noise_px;
+}
+inline double placed_noise_px(const ResidualMean&, const DotNoise& noise) {
+  return noise.noise_px;
+}
+
+/// By how much the object's motion adds to a dot's noise: of many dots next to nothing.
+template <Freedom Free>
+double motion_noise_factor(const StickConsensus<Free>&) {
+  return 1;
+}
+
+}  // namespace detail::stick
+
+/// delta_0 and U_min for a sensor with this noise, U being given (by default the published one).
+/// Refuses noise that makes U too small (parameter_error).
+template <class Motion = StickConsensus<>, class Denoising = ResidualMean>
+StickTest stick_test_for(Index dots,
+                         const DotNoise& noise,
+                         double reference_px = StickTest{}.reference_px,
+                         const StickTestOptions& options = {},
+                         const Motion& motion = {},
+                         const Denoising& denoising = {}) {
+  const char* const owner = "stick_test_for";
+  expects_valid(options);
+  expects(dots >= 1, owner, "dots", static_cast<long long>(dots), ">= 1");
+  using detail::stick::compared_noise_px;  // published policies bring their own
+  using detail::stick::motion_noise_factor;
+  using detail::stick::placed_noise_px;
+  const double compared_px = compared_noise_px(denoising, noise);
+  const double placed_px = placed_noise_px(denoising, noise);
+  expects(is_finite(placed_px) && placed_px > 0, owner, "noise of a dot", placed_px,
+          "finite and > 0");
+  expects(is_finite(compared_px) && compared_px > 0, owner, "noise of an averaged dot", compared_px,
+          "finite and > 0");
+  StickTest test;
+  test.reference_px = reference_px;
+  test.slip_px = slip_threshold_for(compared_px * motion_noise_factor(motion), options.false_slip);
+  test.store_px = slip_threshold_for(placed_px, false_slip_of_each(options.false_motion, dots));
+  expects(is_finite(reference_px) && reference_px > (std::max)(test.slip_px, test.store_px), owner,
+          "reference_px", reference_px, "finite and > slip_px and store_px, which noise sets");
+  expects_valid(test);
+  return test;
+}
 
 }  // namespace v0
 }  // namespace fingerpad

@@ -33,7 +33,7 @@ struct StickTest {
                               ///< a dot has moved further from the newest stored one
   double slip_px = 0.24;      ///< delta_0, > 0: a dot slips that differs from the object's motion
                               ///< by more than this times d_max / U; for dots with other noise
-                              ///< than the published 0.06 px see calibrate/stick_ratio.hpp
+                              ///< than the published 0.06 px see calibrate/slip.hpp
   Index min_dots = 5;         ///< >= 1: to compare; fewer give no ratio
 };
 inline void expects_valid(const StickTest& test) {
