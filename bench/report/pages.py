@@ -4,7 +4,7 @@
 """Writes the report: pages.py BUILD DOCS COMPILER, from what the benchmarks left in BUILD.
 
 docs/speed_and_error.md and docs/whole_chain.md with their pictures, and the tables within
-docs/hard_cases.md and docs/what_a_scene_needs.md.
+docs/hard_cases.md, docs/papers.md and docs/what_a_scene_needs.md.
 """
 import csv
 import io
@@ -222,6 +222,7 @@ def main():
     write_methods(build, docs, about)
     write_chain(build, docs, about)
     replace_table(docs / "hard_cases.md", "hard_cases", (build / "hard_cases.md").read_text("utf-8"))
+    replace_table(docs / "papers.md", "papers", (build / "papers.md").read_text("utf-8"))
     replace_table(docs / "what_a_scene_needs.md", "ablation",
                   (build / "ablation.md").read_text("utf-8"))
     with open(build / "ablation.csv", encoding="utf-8") as file:

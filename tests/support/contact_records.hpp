@@ -45,7 +45,7 @@ inline std::vector<ContactRecord> read_contact_records() {
       records.push_back(r);
     }
   }
-  REQUIRE(records.size() == 207);
+  require_data(records.size() == 207, "contacts.csv has not 207 contacts");
   return records;
 }
 

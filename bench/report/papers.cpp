@@ -1,0 +1,46 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+// Every figure that the papers print beside what the published methods and the defaults make of the
+// nearest experiment that can be made here. No google-benchmark program: it prints the Markdown
+// tables of docs/papers.md. What each experiment is stands where it is made:
+//   papers/shape.hpp, location.hpp    noisy frames of finite-element membranes
+//   papers/six_axis.hpp, rim.hpp      their shapes, frames and side dots
+//   papers/look_up.hpp                their contacts
+//   papers/slippage.hpp               their dots
+//   papers/preslip.hpp                simulated foam fingers
+//   papers/rates.hpp                  time
+// With the name of a section's first word (Shape, Position, Six-axis, ...) it prints that alone.
+#include <iostream>
+#include <string>
+
+#include "papers/location.hpp"
+#include "papers/look_up.hpp"
+#include "papers/preslip.hpp"
+#include "papers/rates.hpp"
+#include "papers/rim.hpp"
+#include "papers/shape.hpp"
+#include "papers/six_axis.hpp"
+#include "papers/slippage.hpp"
+
+int main(int argc, char** argv) {
+  using namespace bench::papers;
+  const std::string only = argc > 1 ? argv[1] : "";
+  const auto wanted = [&](const std::string& name) { return only.empty() || only == name; };
+  const auto section = [&](const std::string& name, Section (*make)()) {
+    if (wanted(name)) {
+      print(std::cout, make());
+    }
+  };
+  section("Shape", shape_section);
+  section("Contact", contact_section);
+  section("Position", location_section);
+  section("Six-axis", six_axis_section);
+  if (wanted("rim")) {
+    print_rim(std::cout);
+  }
+  section("Forces", look_up_section);
+  section("Slippage", slippage_section);
+  section("Pre-slip", preslip_section);
+  section("Rates", rates_section);
+  return 0;
+}

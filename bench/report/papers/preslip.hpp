@@ -1,0 +1,133 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+#pragma once
+// Foam fingers: how many steps before the slip a loosening grip is warned of it, and how often a
+// grip that does not change, on which nothing slips, is warned of nothing. A warning counts only
+// beside its false alarms: a rule that always alarms warns before every slip.
+#include <algorithm>
+#include <array>
+#include <string>
+#include <vector>
+
+#include "examples/grip/foam_fingers.hpp"
+#include "fingerpad/foam/holding_force.hpp"
+#include "fingerpad/foam/preslip.hpp"
+#include "fingerpad/foam/taxel_features.hpp"
+#include "fingerpad/published/preslip.hpp"
+#include "table.hpp"
+
+namespace bench::papers {
+
+struct Warnings {
+  int runs = 0, warned = 0, at_once = 0;  ///< at_once: within the first step, at full grip
+  int fewest = 1000, most = 0;            ///< steps of warning
+  double false_per_minute = 0;            ///< while the grip stays as it is
+
+  std::string steps() const {
+    return std::to_string(fewest) + " to " + std::to_string(most) + " steps, in " +
+           std::to_string(warned) + " of " + std::to_string(runs) + " runs";
+  }
+  std::string alarms() const {
+    return number(false_per_minute) + " a minute; " + std::to_string(at_once) + " of " +
+           std::to_string(runs) + " runs warned in the first step";
+  }
+};
+
+/// Both fingers, from readings to an alarm.
+template <class Rule>
+class Watch {
+ public:
+  Watch(const Rule& rule, const grip::FoamFingersSetup& object)
+      : features_(object.rows,
+                  object.cols,
+                  fingerpad::TaxelOptions<>{.pitch_mm = object.pitch_mm,
+                                            .sample_period_s = 1 / object.rate_hz,
+                                            .noise = object.noise_counts}),
+        rule_(rule),
+        fingers_{features_.start(), features_.start()},
+        history_(rule_.start()) {}
+
+  bool alarms(const grip::FoamFingers& hand) {
+    std::array<fingerpad::FingerSample<double>, 2> samples;
+    for (std::size_t f = 0; f < 2; ++f) {
+      samples[f] = features_(hand.readings(f), hand.time_s(), fingers_[f]);
+    }
+    return rule_(samples, history_).is_fresh;
+  }
+
+ private:
+  fingerpad::TaxelFeatures<> features_;
+  Rule rule_;
+  std::array<fingerpad::TaxelFeatures<>::State, 2> fingers_;
+  decltype(std::declval<const Rule&>().start()) history_;
+};
+
+inline grip::FoamFingersSetup object_of(unsigned seed) {
+  grip::FoamFingersSetup object;
+  object.friction.factor = 0.25 + 0.05 * (seed % 4);
+  object.weight_n = 2.5 + 0.7 * (seed % 3);
+  return object;
+}
+
+template <class Rule>
+Warnings warnings_of(const Rule& rule) {
+  using namespace fingerpad;
+  Warnings w;
+  constexpr double held_s = 20;
+  for (unsigned seed = 0; seed < 10; ++seed) {
+    const grip::FoamFingersSetup object = object_of(seed);
+    grip::FoamFingers hand(object, seed);
+    Watch<Rule> watch(rule, object);
+    const LoosenUntilPreslip<> loosen({.first_force_n = object.first_force_n,
+                                       .min_force_n = 0.1,
+                                       .step_n = 0.2,
+                                       .settle_samples = 4,
+                                       .watch_samples = 36,
+                                       .until_slipped = true});
+    auto search = loosen.start();
+    LoosenCommand<double> command = search.command();
+    while (!is_end(command.phase)) {
+      hand.advance(command.force_n);
+      const bool alarm = watch.alarms(hand);
+      command = loosen(hand.has_slipped() ? SlipSignal::slipped
+                       : alarm            ? SlipSignal::preslip
+                                          : SlipSignal::steady,
+                       search);
+    }
+    ++w.runs;
+    if (command.warning_steps > 0) {
+      ++w.warned;
+      w.at_once += command.warning_steps + 1 >= command.steps ? 1 : 0;
+      w.fewest = (std::min)(w.fewest, static_cast<int>(command.warning_steps));
+      w.most = (std::max)(w.most, static_cast<int>(command.warning_steps));
+    }
+    grip::FoamFingers still(object, seed + 100);
+    Watch<Rule> idle(rule, object);
+    for (int k = 0; k < held_s * object.rate_hz; ++k) {
+      still.advance(object.first_force_n);
+      w.false_per_minute += idle.alarms(still) ? 6 / held_s : 0;  // 10 runs
+    }
+  }
+  return w;
+}
+
+inline Section preslip_section() {
+  using namespace fingerpad;
+  const auto old_optimise = warnings_of(published::grasp_optimise());
+  const auto optimise = warnings_of(Preslip<GraspOptimise<>>());
+  const auto old_lift = warnings_of(published::grasp_lift());
+  const auto lift = warnings_of(Preslip<GraspLift<>>());
+  const std::string nearest =
+      "object between simulated foam fingers, loosened by 0.2 N a step until it falls";
+  const std::string held = "the same objects held for 20 s by a grip that does not change";
+  return {"Pre-slip of foam fingers [P]",
+          {{"grasp, optimise, replace, ten trials", "steps from the warning to the slip",
+            "3 to 6, in 10 of 10", old_optimise.steps(), optimise.steps(), nearest},
+           {"", "false alarms", "not said", old_optimise.alarms(), optimise.alarms(), held},
+           {"grasp, lift, replace, ten trials", "steps from the warning to the slip",
+            "3 to 6, in 10 of 10", old_lift.steps(), lift.steps(),
+            nearest + "; the lift is not simulated"},
+           {"", "false alarms", "not said", old_lift.alarms(), lift.alarms(), held}}};
+}
+
+}  // namespace bench::papers

@@ -1,0 +1,107 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+#pragma once
+// How many frames a second each method treats, on one thread: the best of several runs. The printed
+// rates are those of whole programs on a PC of 2010; docs/whole_chain.md times the chain.
+#include <chrono>
+#include <string>
+#include <vector>
+
+#include "bench/support/scene_frames.hpp"
+#include "fingerpad/published/contact_region.hpp"
+#include "fingerpad/published/depth.hpp"
+#include "shape.hpp"
+#include "six_axis.hpp"
+#include "slippage.hpp"
+#include "table.hpp"
+
+namespace bench::papers {
+
+/// Frames a second; a call of `work` treats so many.
+template <class Work>
+std::string rate(const Work& work, double frames = 1) {
+  using Clock = std::chrono::steady_clock;
+  double best_s = 1e9, all_s = 0;
+  for (int k = 0; k < 3 || (all_s < 0.5 && k < 1000); ++k) {
+    const auto start = Clock::now();
+    work();
+    const double s = std::chrono::duration<double>(Clock::now() - start).count();
+    best_s = s < best_s ? s : best_s;
+    all_s += s;
+  }
+  const double hz = frames / best_s;
+  return hz > 1e4 ? std::to_string(static_cast<long>(hz / 1000)) + " kHz" : number(hz) + " Hz";
+}
+
+template <class Estimator>
+std::string depth_rate(const Estimator& estimator, const test::Frame<std::uint8_t>& frame) {
+  auto workspace = estimator.template workspace<std::uint8_t>();
+  test::Image<float> depth(frame.red.rows(), frame.red.cols());
+  return rate([&] { (void)estimator(frame.red, frame.green, depth, workspace); });
+}
+
+template <class Region>
+std::string region_rate(const Region& region, const test::Image<float>& depth) {
+  auto workspace = region.workspace();
+  test::Image<std::uint8_t> mask(depth.rows(), depth.cols());
+  return rate([&] { (void)region(depth, mask, workspace); });
+}
+
+template <class W>
+std::string wrench_rate(const W& wrench) {
+  const test::WrenchFrame& f = test::wrench_frames()[1];
+  const auto dots = test::rows_of(f.dots, 1);
+  auto workspace = wrench.workspace();
+  return rate(
+      [&] { (void)wrench(test::exact_heights(f.heights), dots, f.pressure_mpa, workspace); });
+}
+
+template <class Ratio>
+std::string stick_rate(const Ratio& ratio) {
+  const test::StickScene drag("drag");
+  test::DotStates states(21, 21);
+  auto state = ratio.start();
+  return rate(
+      [&] {
+        for (fingerpad::Index step = 0; step < drag.steps(); ++step) {
+          (void)ratio(drag.dots(step), drag.contact(step), states, state);
+        }
+      },
+      static_cast<double>(drag.steps()));
+}
+
+inline Section rates_section() {
+  using namespace fingerpad;
+  SceneFrames& frames = SceneFrames::instance();
+  const test::Pad& pad = frames.pad();
+  const SceneFrame& press = frames("press");
+  const test::Scene scene;
+  const DepthEstimator<> depth(pad.camera, pad.fluid, scene.reference(frames.free_mm()));
+  const auto free = scene.frame(frames.free_mm(), 7);
+  const auto old_depth =
+      published::depth_estimator(pad.camera, pad.fluid,
+                                 published::depth_reference<float>(pad.camera, pad.fluid, free.red,
+                                                                   free.green, frames.free_mm()));
+  auto options = published::wrench_options();
+  WrenchOptions<double> by_default;
+  options.side_dot_length_mm = by_default.side_dot_length_mm = 0.79995;
+  const auto rim = test::rim_border();
+  const std::string nearest = "640 x 480 px, one thread of this machine";
+  return {
+      "Rates",
+      {{"shape [S]", "frames a second", "about 1 Hz", depth_rate(old_depth, press.frame),
+        depth_rate(depth, press.frame), nearest},
+       {"contact and location [C]", "frames a second", "about 2 Hz",
+        region_rate(published::contact_region(pad.camera, pad.rows, pad.cols), press.measured_mm),
+        region_rate(ContactRegion<>(pad.camera, pad.rows, pad.cols), press.measured_mm),
+        "contact region, the same"},
+       {"stick ratio [R]", "frames a second", "about 4 Hz",
+        stick_rate(published::stick_ratio<float>(21, 21)), stick_rate(StickRatio<>(21, 21)),
+        "21 x 21 dots that are found"},
+       {"six-axis force [M]", "frames a second", "1.0 Hz",
+        wrench_rate(published::wrench(rim, options)), wrench_rate(Wrench<>(rim, by_default)),
+        "shape that is given; published 72 x 65 segments, default 36 x 30"},
+       {"camera", "frames a second", "30 Hz", "", "", ""}}};
+}
+
+}  // namespace bench::papers

@@ -1,0 +1,141 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+#pragma once
+// Objects that move over finite-element membranes, frame by frame as the camera sees them: dots in
+// space from noisy frames (scene_frames.hpp) and dots with 0.06 px of noise, contact as measured,
+// and the object's true pose (tests/data/motion_poses.csv).
+#include <cmath>
+#include <cstdint>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "fingerpad/motion/object_motion.hpp"
+#include "scene_frames.hpp"
+#include "support/stick_scene.hpp"
+
+namespace bench {
+
+using SpatialDots = test::Image<fingerpad::Point3<double>>;
+
+struct SceneMotionFrame {
+  SpatialDots dots_mm;
+  test::ContactFlags contact;
+  fingerpad::Pose<double> truth;  ///< of the object, from the first frame of the recording
+};
+
+struct SceneMotion {
+  SpatialDots initial_mm;
+  fingerpad::Point3<double> middle_mm;  ///< of the contact in the first frame
+  std::vector<SceneMotionFrame> frames;
+};
+
+struct PoseRecord {
+  fingerpad::Index step;
+  std::string heights;
+  fingerpad::Pose<double> pose;
+};
+
+inline std::vector<PoseRecord> pose_records(const std::string& scene) {
+  auto file = test::open_data("motion_poses.csv", "scene,step,heights,");
+  std::string line, name, step, heights, cell;
+  std::getline(file, line);
+  std::vector<PoseRecord> records;
+  while (std::getline(file, line)) {
+    std::istringstream cells(line);
+    std::getline(cells, name, ',');
+    std::getline(cells, step, ',');
+    std::getline(cells, heights, ',');
+    double pose[6];
+    for (double& number : pose) {
+      std::getline(cells, cell, ',');
+      number = std::stod(cell);
+    }
+    if (name == scene) {
+      const fingerpad::Angles<double> angles{pose[3], pose[4], pose[5]};
+      records.push_back(
+          {std::stol(step), heights, {rotation_of(angles), {pose[0], pose[1], pose[2]}}});
+    }
+  }
+  test::require_data(!records.empty(), "motion_poses.csv has no " + scene);
+  return records;
+}
+
+/// Dots in space from the measured depths of one frame.
+inline SpatialDots dots_in_space(const test::PointsPx& dots_px, const test::Image<float>& depth) {
+  SpatialDots out(dots_px.rows(), dots_px.cols());
+  (void)fingerpad::spatial_dots(SceneFrames::instance().pad().camera, dots_px, depth, out);
+  return out;
+}
+
+inline SceneMotion scene_motion(const std::string& scene, std::uint64_t seed) {
+  SceneFrames& frames = SceneFrames::instance();
+  const test::StickScene dots(scene);
+  test::Random random(seed);
+  constexpr double jitter_px = 0.06;
+  SceneMotion motion;
+  motion.initial_mm =
+      dots_in_space(noisy(dots.dots(0), jitter_px, random), frames("free", seed).measured_mm);
+  const auto records = pose_records(scene);
+  const auto first = inverse(records.front().pose);
+  for (const PoseRecord& record : records) {
+    const SceneFrame& frame = frames(record.heights, seed);
+    const auto seen = noisy(dots.dots(record.step), jitter_px, random);
+    test::ContactFlags contact(seen.rows(), seen.cols());
+    (void)fingerpad::contact_at_dots(seen, frame.measured, contact);
+    motion.frames.push_back({dots_in_space(seen, frame.measured_mm), contact, record.pose * first});
+  }
+  fingerpad::Point3<double> sum{0, 0, 0};
+  double count = 0;
+  const auto& begin = motion.frames.front();
+  for (std::size_t k = 0; k < begin.dots_mm.cells.size(); ++k) {
+    const auto& p = begin.dots_mm.cells[k];
+    if (begin.contact.cells[k] != 0 && !std::isnan(p.z)) {
+      sum = sum + p;
+      count += 1;
+    }
+  }
+  motion.middle_mm = {sum.x / count, sum.y / count, sum.z / count};
+  return motion;
+}
+
+struct SceneMotionErrors {
+  std::vector<double> attitude_deg;  ///< the angle of what is left
+  std::vector<double> about_deg[3];  ///< of the angles about x, y and z
+  std::vector<double> plane_mm;      ///< of the middle of the first contact, in the plane
+  std::vector<double> depth_mm;      ///< and along z
+  int no_answer = 0;
+};
+
+/// Every frame but the first, with noises 1 to `seeds`.
+template <class Way>
+SceneMotionErrors motion_on_scene(const std::string& scene, const Way& way, std::uint64_t seeds) {
+  constexpr double degrees = 57.29577951308232;
+  SceneMotionErrors errors;
+  for (std::uint64_t seed = 1; seed <= seeds; ++seed) {
+    const SceneMotion recording = scene_motion(scene, seed);
+    const fingerpad::ObjectMotion<Way> motion(recording.initial_mm, {}, way);
+    auto state = motion.start();
+    for (const SceneMotionFrame& frame : recording.frames) {
+      const auto r = motion(frame.dots_mm, frame.contact, state);
+      if (r.begun) {
+        continue;
+      }
+      if (!r.ok()) {
+        ++errors.no_answer;
+        continue;
+      }
+      const auto truth = zyx_angles(frame.truth.rotation);
+      const auto off = r.pose(recording.middle_mm) - frame.truth(recording.middle_mm);
+      errors.attitude_deg.push_back(degrees * angle_between(r.pose.rotation, frame.truth.rotation));
+      errors.about_deg[0].push_back(degrees * (r.angles.x_rad - truth.x_rad));
+      errors.about_deg[1].push_back(degrees * (r.angles.y_rad - truth.y_rad));
+      errors.about_deg[2].push_back(degrees * (r.angles.z_rad - truth.z_rad));
+      errors.plane_mm.push_back(std::hypot(off.x, off.y));
+      errors.depth_mm.push_back(off.z);
+    }
+  }
+  return errors;
+}
+
+}  // namespace bench
