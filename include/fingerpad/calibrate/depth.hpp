@@ -15,9 +15,11 @@
 #include <cmath>
 #include <cstddef>
 #include <span>
+#include <type_traits>
 #include <vector>
 
 #include "fingerpad/calibrate/detail/absorption_fit.hpp"
+#include "fingerpad/calibrate/fit.hpp"
 #include "fingerpad/core/expects.hpp"
 #include "fingerpad/core/scalar.hpp"
 #include "fingerpad/depth/absorption.hpp"
@@ -51,27 +53,24 @@ DepthSample<S> depth_sample(const Camera<S>& camera,
   return {pencil_of<Heights>(camera, ray), square(ray.plate_rho_mm), depth_mm, colour, weight};
 }
 
-struct AbsorptionFitOptions {
-  double grey_noise = 0;       ///< sd of a colour of weight 1, grey levels; 0: from the residuals
-  double max_condition = 1e8;  ///< refuse samples that determine the parameters worse than this
-  int max_iterations = 200;
-};
-
 /// The fluid, and how well it is known. Parameters are in the order c_red, delta, kappa, g_0, ...
 template <scalar S = double, int Degree = 0>
-struct AbsorptionFit {
+struct [[nodiscard]] AbsorptionFit {
   static constexpr int parameters = 4 + Degree;
   using Covariance = Eigen::Matrix<S, parameters, parameters, Eigen::DontAlign>;
 
-  Absorption<S> fluid;
-  RadialScattering<S, Degree> scattering;
-  Covariance covariance;  ///< NaN with as many samples as parameters and no given grey_noise
-  S condition;            ///< of dF / d ln(parameter); 6e3 for depths of 0.5, 4, 8 and 12 mm
-  S residual_rms;         ///< of F, grey levels
-  S grey_noise;           ///< sd of a colour of weight 1: as given, else as the residuals say
-  int iterations;
-  bool converged;
-  bool delta_at_limit;  ///< the samples would rather have delta < 0; it is 0
+  FitStatus status = FitStatus::not_converged;
+  Absorption<S> fluid = {};
+  RadialScattering<S, Degree> scattering = {};
+  Covariance covariance = {};  ///< NaN with as many samples as parameters and no given grey_noise
+  S condition = S(0);          ///< of dF / d ln(parameter); 6e3 for depths of 0.5, 4, 8 and 12 mm
+  S residual_rms = S(0);       ///< of F, grey levels
+  S grey_noise = S(0);         ///< sd of a colour of weight 1: as given, else as the residuals say
+  S explained = S(0);          ///< of the variance of F that a fit without depths leaves, for equal
+                               ///< degrees of freedom; NaN with as many samples as parameters
+  bool delta_at_limit = false;  ///< the samples would rather have delta < 0; it is 0
+
+  bool ok() const { return status == FitStatus::ok; }
 };
 
 /// sd in mm of the depth found from this sample's colours, as far as it comes from the uncertainty
@@ -145,23 +144,68 @@ S expects_valid(std::span<const DepthSample<S>> samples, int degree) {
   return rho_sq;
 }
 
+/// Sizes of the parameters, for a condition number that no unit changes; delta may be 0.
+template <class Point>
+auto sizes_of(const Point& p) {
+  using S = std::remove_cvref_t<decltype(p.delta)>;
+  Eigen::Matrix<S, Point::linear_size + 2, 1, Eigen::DontAlign> size;
+  const S delta_size = p.delta * S(10) < p.c_red ? S(p.c_red / S(10)) : p.delta;
+  size << p.c_red, delta_size, p.linear;
+  size.template tail<Point::linear_size - 1>().setConstant(p.linear(1));
+  return size.cwiseAbs().eval();
+}
+
+/// Share of the variance that depths explain: beside the fit of kappa and g alone to F without
+/// absorption and with W = 1, both by their degrees of freedom.
+template <class Problem>
+auto explained_by_depth(const Problem& problem, const typename Problem::Point& p) {
+  using S = std::remove_cvref_t<decltype(p.cost)>;
+  const Index left = problem.size() - Problem::Point::linear_size - 2;
+  return left > 0 ? S(S(1) - S(p.cost / S(static_cast<double>(left))) /
+                                 S(problem.left_without_depth() / S(static_cast<double>(left + 2))))
+                  : not_a_number<S>();
+}
+
+/// What a fit that settled may still get wrong.
+template <scalar S, int Degree>
+FitStatus mistake_in(const AbsorptionFit<S, Degree>& fit, std::span<const DepthSample<S>> samples) {
+  S deepest = S(0), g_least = fit.scattering.at(S(0));
+  for (const DepthSample<S>& s : samples) {
+    deepest = s.depth_mm < deepest ? deepest : s.depth_mm;
+    const S g = fit.scattering.at(s.rho_sq_mm2);
+    g_least = g < g_least ? g : g_least;
+  }
+  if (deepest < S(0.1)) {
+    return FitStatus::depths_not_in_mm;
+  }
+  if (!(g_least > S(0))) {
+    return FitStatus::scatters_no_light;
+  }
+  if (!is_finite(fit.explained)) {
+    return FitStatus::nothing_to_check;
+  }
+  return fit.explained < S(0.9) ? FitStatus::colours_unexplained : FitStatus::ok;
+}
+
 }  // namespace detail
 
 /// Finds the fluid and g, a polynomial of degree `Degree` in rho^2, from at least 4 + Degree
 /// samples at 3 or more depths; with no more than that there can be two exact solutions (4 % of
 /// random sensors), of which this is the one with the smaller delta: give one depth more. Samples
-/// that do not determine them are refused with what is lacking
-/// (parameter_error). Allocates; O(samples) per iteration, some 700 trial fluids to begin with.
+/// that do not determine them are refused with what is lacking (parameter_error). `grey_noise`: sd
+/// of a colour of weight 1, grey levels; 0: from the residuals. Allocates; O(samples) per
+/// iteration, some 700 trial fluids to begin with.
 template <int Degree = 0, scalar S = double>
 AbsorptionFit<S, Degree> fit_absorption(std::span<const DepthSample<S>> samples,
-                                        const AbsorptionFitOptions& options = {}) {
+                                        const std::type_identity_t<S>& grey_noise = S(0)) {
   using std::sqrt;
   using Equations = std::vector<detail::AbsorptionEquation<S>>;
   using Problem = detail::AbsorptionProblem<S, Degree + 2, Equations>;
   using Matrix = typename Problem::Matrix;
   const char* const owner = "fit_absorption";
-  constexpr int n = 4 + Degree;
 
+  expects(is_finite(grey_noise) && !(grey_noise < S(0)), owner, "grey_noise", grey_noise,
+          "finite and >= 0");
   const S rho_sq = detail::expects_valid(samples, Degree);
   const S rho_sq_max = rho_sq > S(0) ? rho_sq : S(1);
   Equations equations;
@@ -173,32 +217,24 @@ AbsorptionFit<S, Degree> fit_absorption(std::span<const DepthSample<S>> samples,
   expects(is_finite(p.cost), owner, "residual", p.cost,
           "finite with kappa > 0 and g > 0: are red and green right?");
   AbsorptionFit<S, Degree> fit;
-  fit.iterations = 0;
+  bool converged = false;
   for (int round = 0; round < 3; ++round) {  // the noise of F depends, weakly, on the fit
     problem.weigh(p);
-    const auto descent = detail::descend(problem, p, options.max_iterations);
-    fit.iterations += descent.iterations;
-    fit.converged = descent.converged;
+    converged = detail::descend(problem, p, 200);
   }
 
-  const Matrix jacobian = problem.full_jacobian(p);
-  Eigen::Matrix<S, n, 1, Eigen::DontAlign> size;
-  const S delta_size = p.delta * S(10) < p.c_red ? S(p.c_red / S(10)) : p.delta;  // may be 0
-  size << p.c_red, delta_size, p.linear;
-  size.template tail<Degree + 1>().setConstant(p.linear(1));
-  size = size.cwiseAbs();
-  const Matrix relative = jacobian * size.asDiagonal();
-  const detail::HouseholderQr<S> qr(relative);
+  const auto size = detail::sizes_of(p);
+  const detail::HouseholderQr<S> qr(problem.full_jacobian(p) * size.asDiagonal());
   fit.condition = detail::condition_number(qr.r());
-  expects(is_finite(fit.condition) && fit.condition < S(options.max_condition), owner,
-          "condition number", fit.condition,
-          "< max_condition: the depths must spread over several mm, and differ at every radius");
+  expects(is_finite(fit.condition) && fit.condition < S(1e8), owner, "condition number",
+          fit.condition,
+          "< 1e8: the depths must spread over several mm, and differ at every radius");
 
   fit.fluid.c_red_per_mm = p.c_red;
   fit.fluid.c_green_per_mm = p.c_red + p.delta;
   fit.fluid.kappa = p.linear(0);
-  for (int j = 0; j <= Degree; ++j) {
-    fit.scattering.coefficient[static_cast<std::size_t>(j)] = p.linear(1 + j);
+  for (std::size_t j = 0; j < fit.scattering.coefficient.size(); ++j) {
+    fit.scattering.coefficient[j] = p.linear(static_cast<Index>(j) + 1);
   }
   fit.scattering.rho_max_mm = sqrt(rho_sq_max);
   fit.delta_at_limit = !(p.delta > S(0));
@@ -208,17 +244,15 @@ AbsorptionFit<S, Degree> fit_absorption(std::span<const DepthSample<S>> samples,
     const S g = fit.scattering.at(s.rho_sq_mm2);
     residual_sq += square(depth_equation(fit.fluid, s.pencil, g, s.colour, s.depth_mm).value);
   }
-  const int count = static_cast<int>(samples.size());
+  const int count = static_cast<int>(samples.size()), left = count - (4 + Degree);
   fit.residual_rms = sqrt(S(residual_sq / S(count)));
-  if (options.grey_noise > 0) {
-    fit.grey_noise = S(options.grey_noise);
-  } else {
-    fit.grey_noise = count > n ? S(sqrt(S(p.cost / S(count - n)))) : not_a_number<S>();
-  }
-
+  const S by_residual = left > 0 ? S(sqrt(S(p.cost / S(left)))) : not_a_number<S>();
+  fit.grey_noise = grey_noise > S(0) ? grey_noise : by_residual;
   // (J^T J)^-1 = R^-1 R^-T, for parameters relative to their size.
   const Matrix scaled = size.asDiagonal() * qr.inverse_of_r() * fit.grey_noise;
   fit.covariance = scaled.lazyProduct(scaled.transpose());
+  fit.explained = detail::explained_by_depth(problem, p);
+  fit.status = converged ? detail::mistake_in(fit, samples) : FitStatus::not_converged;
   return fit;
 }
 

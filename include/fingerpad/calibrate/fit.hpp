@@ -45,6 +45,8 @@ inline void expects_valid(const FitOptions& options) {
 enum class FitStatus : std::uint8_t {
   ok,
   not_converged,
+  nothing_to_check,
+  at_end_of_search,
   measure_not_in_mm,
   displacement_not_in_mm,
   rotation_not_in_rad,
@@ -66,6 +68,10 @@ constexpr const char* name_of(FitStatus status) {
       return "ok";
     case FitStatus::not_converged:
       return "not converged: more samples, or fewer parameters";
+    case FitStatus::nothing_to_check:
+      return "as many samples as parameters: nothing is left to check them by";
+    case FitStatus::at_end_of_search:
+      return "the best lies at an end of the search: other frames, or a wider search";
     case FitStatus::measure_not_in_mm:
       return "no measure reaches 0.05: areas in mm^2, depths and radii in mm?";
     case FitStatus::displacement_not_in_mm:

@@ -55,6 +55,7 @@ struct AbsorptionEquation {
 /// c_red and delta, and the linear parameters that belong to them: kappa, g_0, g_1, ...
 template <scalar S, int Linear>
 struct AbsorptionPoint {
+  static constexpr int linear_size = Linear;
   S c_red;
   S delta;
   Eigen::Matrix<S, Linear, 1, Eigen::DontAlign> linear;
@@ -126,6 +127,21 @@ class AbsorptionProblem {
     return p;
   }
 
+  /// Sum of squares that the linear parameters leave where no depth counts: delta = 0 and W = 1.
+  S left_without_depth() const {
+    Matrix a(size(), Linear), green(size(), 1);
+    for (Index i = 0; i < size(); ++i) {
+      a(i, 0) = -row_weight_(i) * sample(i).colour.red;
+      green(i, 0) = row_weight_(i) * sample(i).colour.green;
+      a(i, 1) = row_weight_(i);
+      for (int k = 2; k < Linear; ++k) {
+        a(i, k) = a(i, k - 1) * sample(i).v;
+      }
+    }
+    HouseholderQr<S>(std::move(a)).apply_transposed(green);
+    return S(green.bottomRows(size() - Linear).squaredNorm());
+  }
+
   /// d(weighted F)/d(c_red, delta, kappa, g_0, ...): size x (2 + Linear).
   Matrix full_jacobian(const Point& p) const {
     Matrix a(size(), Linear), j(size(), 2 + Linear);
@@ -179,27 +195,21 @@ bool is_physical(const Point& p) {
   return is_finite(p.cost) && p.linear(0) > 0 && p.linear(1) > 0;
 }
 
-struct AbsorptionDescent {
-  int iterations = 0;
-  bool converged = false;
-};
-
-/// Levenberg and Marquardt from p downhill, to where roundoff stops it.
+/// Levenberg and Marquardt from p downhill, to where roundoff stops it; true if it did.
 template <class Problem>
-AbsorptionDescent descend(const Problem& problem, typename Problem::Point& p, int max_iterations) {
+bool descend(const Problem& problem, typename Problem::Point& p, int max_iterations) {
   using std::exp;
   using std::sqrt;
   using S = typename Problem::Vector::Scalar;
   using Vector = typename Problem::Vector;
   using Matrix = typename Problem::Matrix;
   const S tiny = S(4) * epsilon<S>();
-  AbsorptionDescent result;
+  bool converged = false;
   S damping = S(1) / S(1000);
   Vector r;
   Matrix j;
   p = problem.project(p.c_red, p.delta, &r, &j);
-  while (result.iterations < max_iterations && !result.converged) {
-    ++result.iterations;
+  for (int iteration = 0; iteration < max_iterations && !converged; ++iteration) {
     // At the limit delta = 0, delta only moves if that is downhill.
     const bool at_limit = !(p.delta > S(0)) && j.col(1).dot(r) > S(0);
     Matrix damped = Matrix::Zero(r.size() + 2, 2);
@@ -229,14 +239,14 @@ AbsorptionDescent descend(const Problem& problem, typename Problem::Point& p, in
       r = new_r;
       j = new_j;
       damping = damping / S(10);
-      result.converged = !(moved > tiny) || !gained;
+      converged = !(moved > tiny) || !gained;
     } else {
       damping = damping < tiny ? tiny : S(damping * S(10));
       // Uphill however short the step: nothing is left to gain.
-      result.converged = !(moved > tiny) || damping > S(1) / tiny;
+      converged = !(moved > tiny) || damping > S(1) / tiny;
     }
   }
-  return result;
+  return converged;
 }
 
 /// The lowest minimum below a coarse grid of every fluid that a pad could hold: for each delta the
