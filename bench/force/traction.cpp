@@ -12,8 +12,8 @@
 #include <string>
 #include <vector>
 
-#include "support/traction_scenes.hpp"
 #include "bench/support/run.hpp"
+#include "support/traction_scenes.hpp"
 
 using namespace fingerpad;
 
@@ -73,20 +73,17 @@ Errors errors_of(const Field& field, double noise_mm, int frames) {
   return errors;
 }
 
-template <class Modulus, class S = double>
-void add_frame(const std::string& name,
-               const Modulus& modulus,
-               const TractionOptions& options = {}) {
+template <class S = double>
+void add_frame(const std::string& name, const TractionOptions<S>& options = {}) {
   struct Running {
-    TractionField<Modulus, S> field;
-    TractionMaps<S> maps = field.maps();
+    TractionField<S> field;
+    typename TractionField<S>::Maps maps = field.maps();
   };
   const test::TractionScene& scene = test::traction_scenes()[1];
   const auto dots = as<S>(scene.dots);
   const test::Dots stress_free = test::stress_free_dots();
   const bench::Memory memory;
-  const auto d =
-      std::make_shared<Running>(Running{TractionField<Modulus, S>(stress_free, modulus, options)});
+  const auto d = std::make_shared<Running>(Running{TractionField<S>(stress_free, options)});
   bench::add(
       "frame of 21x21 dots/" + name, 1, memory.bytes(),
       [d, dots, &scene] {
@@ -122,13 +119,13 @@ void add_opencv() {
 
 int main(int argc, char** argv) {
   cv::setNumThreads(1);
-  add_frame("GivenModulus, double", GivenModulus{0.5});
-  add_frame<GivenModulus<float>, float>("GivenModulus, float", GivenModulus{0.5F});
-  add_frame("BalancedModulus, double, the default", BalancedModulus{});
-  add_frame<BalancedModulus, float>("BalancedModulus, float", BalancedModulus{});
-  add_frame("GivenModulus, abrupt end of the sums", GivenModulus{0.5}, {.fade_dots = 0});
-  add_frame("GivenModulus, no ring, abrupt end", GivenModulus{0.5},
-            {.ring_dots = 0, .fade_dots = 0});
+  add_frame("mu t given, double", {.mu_t_n_per_mm = 0.5});
+  add_frame<float>("mu t given, float", {.mu_t_n_per_mm = 0.5F});
+  add_frame("mu t from the balance, double, the default");
+  add_frame<float>("mu t from the balance, float");
+  add_frame("mu t given, abrupt end of the sums", {.mu_t_n_per_mm = 0.5, .fade_dots = 0});
+  add_frame("mu t given, no ring, abrupt end",
+            {.mu_t_n_per_mm = 0.5, .ring_dots = 0, .fade_dots = 0});
   add_opencv();
   bench::add_streaming("frame of 21x21 dots");
   return bench::run(argc, argv);

@@ -64,7 +64,7 @@ double largest(const std::array<double, 3>& parts) {
 }  // namespace
 
 TEST_CASE("traction of finite-element membranes, mu t given", "[traction]") {
-  const TractionField field(test::stress_free_dots(), GivenModulus{true_mu_t});
+  const TractionField field(test::stress_free_dots(), {.mu_t_n_per_mm = true_mu_t});
   Table table("mu t given, exact dots");
   for (const TractionScene& s : test::traction_scenes()) {
     const TractionError e = traction_error(field, s);
@@ -120,7 +120,7 @@ TEST_CASE("traction of finite-element membranes, noisy dots", "[traction]") {
 
 TEST_CASE("traction of finite-element membranes, mean of frames", "[traction]") {
   // Dots averaged over 16 frames have a quarter of the noise, and so have all loads.
-  const TractionField field(test::stress_free_dots(), GivenModulus{true_mu_t});
+  const TractionField field(test::stress_free_dots(), {.mu_t_n_per_mm = true_mu_t});
   const TractionScene s = test::traction_scene("drag");
   test::Gauss gauss(5);
   auto maps = field.maps();
@@ -159,7 +159,7 @@ TEST_CASE("mu t from frames of the free pad", "[traction]") {
   CHECK(exact.cells_slack == 0);
 
   test::Gauss gauss(3);
-  ModulusBalance<double> balance;
+  detail::traction::ModulusBalance<double> balance;
   double sum = 0, sum_sq = 0;
   const int frames = 50;
   for (int k = 0; k < frames; ++k) {
@@ -190,7 +190,7 @@ TEST_CASE("what noise of the dots does to a load", "[traction]") {
         dots(i, j) = stretch * free(i, j);
       }
     }
-    const TractionField field(free, GivenModulus{mu_t});
+    const TractionField field(free, {.mu_t_n_per_mm = mu_t});
     auto maps = field.maps();
     test::Gauss gauss(6);
     double shear_sq = 0, normal_sq = 0, count = 0;

@@ -6,12 +6,14 @@
 #include <cmath>
 
 #include "support/catch.hpp"
+#include "support/membrane_triangle.hpp"
 #include "support/numbers.hpp"
 #include "support/traction_scenes.hpp"
 
 using namespace fingerpad;
 using test::Digits50;
 using test::Lazy50;
+using test::Triangle;
 
 namespace {
 
@@ -42,9 +44,8 @@ Loss loss_of(const test::TractionScene& s) {
     stored_free.cells[k] = {S(f.x), S(f.y), S(f.z)};
     stored.cells[k] = {S(d.x), S(d.y), S(d.z)};
   }
-  const TractionField<GivenModulus<S>, S> field(stored_free, GivenModulus<S>{S(0.5)});
-  const TractionField<GivenModulus<Digits50>, Digits50> exact(stored_free,
-                                                              GivenModulus<Digits50>{0.5});
+  const TractionField<S> field(stored_free, {.mu_t_n_per_mm = S(0.5)});
+  const TractionField<Digits50> exact(stored_free, {.mu_t_n_per_mm = Digits50(0.5)});
   auto maps = field.maps();
   auto exact_maps = exact.maps();
   const S p = S(s.pressure_mpa);
@@ -88,9 +89,10 @@ TEST_CASE("membrane triangle with fifty digits", "[traction][hard]") {
       free[c] = free[c] + 0.1 * Point3<double>{gauss(), gauss(), gauss()};
       now[c] = now[c] + 0.2 * Point3<double>{gauss(), gauss(), gauss()};
     }
-    const auto force = corner_forces(stress_free(free), now);
-    const auto exact = corner_forces(stress_free(as<Digits50>(free)), as<Digits50>(now));
-    const auto lazy = corner_forces(stress_free(as<Lazy50>(free)), as<Lazy50>(now));
+    const auto force = test::corner_forces(test::stress_free(free), now);
+    const auto exact =
+        test::corner_forces(test::stress_free(as<Digits50>(free)), as<Digits50>(now));
+    const auto lazy = test::corner_forces(test::stress_free(as<Lazy50>(free)), as<Lazy50>(now));
     for (std::size_t c = 0; c < 3; ++c) {
       const double scale = std::sqrt(static_cast<double>(squared_norm(exact[c])));
       worst = (std::max)(

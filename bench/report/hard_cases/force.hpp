@@ -10,12 +10,11 @@
 #include <numbers>
 #include <vector>
 
-#include "fingerpad/force/dot_cell.hpp"
 #include "fingerpad/force/normal_force.hpp"
 #include "fingerpad/force/shear.hpp"
+#include "fingerpad/force/traction.hpp"
 #include "fingerpad/force/wrench.hpp"
 #include "fingerpad/published/normal_force.hpp"
-#include "fingerpad/published/shear.hpp"
 #include "fingerpad/published/wrench.hpp"
 #include "row.hpp"
 #include "support/pressed_pad.hpp"
@@ -220,7 +219,7 @@ inline Row march_from_rim() {
 
 /// Twice the area of a triangle from its edges, by Heron.
 template <class S>
-S twice_area_of_edges(const fingerpad::Triangle<S>& x) {
+S twice_area_of_edges(const fingerpad::detail::traction::Triangle<S>& x) {
   using std::sqrt;
   std::array<S, 3> edge;
   for (std::size_t k = 0; k < 3; ++k) {
@@ -236,11 +235,11 @@ inline Row thin_triangle() {
              "half the cross product", []<class S>(S) {
                Forms f;
                for (const double high : sweep(1e-9, 1, 2)) {
-                 const fingerpad::Triangle<S> x = {
+                 const fingerpad::detail::traction::Triangle<S> x = {
                      Point3<S>{S(0), S(0), S(0)}, {S(1.5), S(0), S(0)}, {S(0.7), S(high), S(0)}};
                  const Digits50 exact = Digits50(x[1].x) * Digits50(x[2].y);
                  f.naive.add_relative(twice_area_of_edges(x), exact);
-                 const auto area = fingerpad::twice_area_vector(x);
+                 const auto area = fingerpad::detail::traction::twice_area_vector(x);
                  f.stable.add_relative(std::sqrt(squared_norm(area)), exact);
                }
                return f;

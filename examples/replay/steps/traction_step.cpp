@@ -12,7 +12,7 @@ namespace {
 
 struct Chain {
   fingerpad::TractionField<> field;
-  fingerpad::TractionMaps<double> maps = field.maps();
+  fingerpad::TractionField<>::Maps maps = field.maps();
 };
 
 }  // namespace
@@ -27,7 +27,7 @@ TractionStep make_traction_step(const Recording& recording) {
   return [chain](const FrameDots& dots, double pressure_mpa) {
     TractionFrame frame;
     frame.result = chain->field(dots.dots_mm, dots.in_contact, pressure_mpa, chain->maps);
-    if (frame.result.accepted()) {
+    if (frame.result.status != fingerpad::TractionStatus::refused) {
       frame.pressure_mpa.create(dots.dots_px.size());
       frame.shear_mpa.create(dots.dots_px.size());
       for (int i = 0; i < dots.dots_px.rows; ++i) {

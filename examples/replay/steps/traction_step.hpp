@@ -6,7 +6,7 @@
 #include <functional>
 #include <opencv2/core.hpp>
 
-#include "fingerpad/force/traction_result.hpp"
+#include "fingerpad/force/traction.hpp"
 #include "replay/io/recording.hpp"
 #include "replay/steps/motion_step.hpp"
 

@@ -10,24 +10,97 @@
 // Discrete, the divergence is what the cells around a dot pull it with, the derivative of their
 // stored energy. So rigid motions change nothing, and the sum of the loads over a patch is the pull
 // across its border and the pressure on it, to rounding: the mesh blurs a load by about one pitch,
-// but loses none of it. The steps lie in detail/traction/ in this order: membrane_triangle,
-// dot_cell, frame_pulls, modulus, frame_loads.
+// but loses none of it. The steps lie in detail/, in this order: dot_cell, traction_memory,
+// frame_loads.
+//
+// Where mu t (shear modulus times thickness of the stress-free membrane) is not given, it comes
+// from the free part of each frame, where the membrane alone holds the pressure: the mean of the
+// normal loads is 0, so with f the pull on a dot for mu t = 1 N/mm, A its area and n its normal,
+// sum p = -mu t sum f . n / A. Least squares of mu t f + p A n would be biased: noise of the dots
+// adds to f . f, and mu t comes out too small; f . n it leaves alone.
 #include <cstddef>
-#include <utility>
+#include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "fingerpad/core/dots.hpp"
 #include "fingerpad/core/expects.hpp"
 #include "fingerpad/core/grid.hpp"
+#include "fingerpad/core/point.hpp"
+#include "fingerpad/core/scalar.hpp"
+#include "fingerpad/force/detail/dot_cell.hpp"
 #include "fingerpad/force/detail/frame_loads.hpp"
-#include "fingerpad/force/dot_cell.hpp"
-#include "fingerpad/force/traction_maps.hpp"
-#include "fingerpad/force/traction_result.hpp"
+#include "fingerpad/force/detail/traction_memory.hpp"
 
 namespace fingerpad {
 inline namespace v0 {
 
+enum class TractionStatus : std::uint8_t {
+  ok,
+  no_contact,    ///< no dot is in contact: force and moment are 0; the maps are there
+  incomplete,    ///< force and moment miss the share of some dots in contact or beside them, which
+                 ///< have no load: they lie on the edge of the grid, or dots were not found
+  bad_pressure,  ///< <= 0, above 10^6 MPa or NaN: nothing is known
+  too_few_dots,  ///< no dot was found with all its neighbours: nothing is known
+  no_balance,  ///< without a given mu t: the free part is too small, or does not hold the pressure
+  refused,     ///< a grid, state or workspace has another size: nothing was done
+};
+
+/// "ok", "no contact", ...
+constexpr const char* name_of(TractionStatus status) {
+  switch (status) {
+    case TractionStatus::ok:
+      return "ok";
+    case TractionStatus::no_contact:
+      return "no contact";
+    case TractionStatus::incomplete:
+      return "incomplete";
+    case TractionStatus::bad_pressure:
+      return "bad pressure";
+    case TractionStatus::too_few_dots:
+      return "too few dots";
+    case TractionStatus::no_balance:
+      return "no balance";
+    case TractionStatus::refused:
+      return "refused";
+  }
+  return "unknown";
+}
+
+/// `force_n` and `moment_n_mm` are finite where there is a force (see has_force). Any other number
+/// that is not known is NaN.
+template <scalar S = double>
+struct [[nodiscard]] TractionResult {
+  TractionStatus status = TractionStatus::refused;
+  Point3<S> force_n = detail::missing_point<S>();      ///< that the object exerts on the pad
+  Point3<S> moment_n_mm = detail::missing_point<S>();  ///< about the origin
+  S mu_t_n_per_mm = not_a_number<S>();                 ///< that was used
+  detail::traction::ModulusBalance<S> balance =
+      {};                                   ///< what the free part says of mu t, whichever was used
+  S free_load_rms_mpa = not_a_number<S>();  ///< of the loads on the free part, where there are
+                                            ///< none: the error of a single dot's load
+  Index dots_in_contact = 0;
+  Index dots_summed = 0;    ///< whose loads make the force
+  Index dots_left_out = 0;  ///< in contact or in the ring around it, but without a load
+  Index dots_bridged = 0;   ///< not found, but put between their neighbours for the sums
+  Index dots_loaded = 0;    ///< that have a load in the maps, if there is a modulus
+  Index cells_refused = 0;  ///< folded, or stretched beyond measure
+  Index cells_slack = 0;    ///< with a tension below 0
+  S smallest_tension_n_per_mm = not_a_number<S>();  ///< of all cells
+
+  bool ok() const { return status == TractionStatus::ok; }
+  bool has_force() const {
+    return ok() || status == TractionStatus::no_contact || status == TractionStatus::incomplete;
+  }
+};
+
+template <scalar S = double>
 struct TractionOptions {
+  std::optional<S> mu_t_n_per_mm = {};  ///< shear modulus times thickness, in (0, 1e6]: measured on
+                                        ///< the material, or the sum of the `balance` of frames of
+                                        ///< the free pad. Empty: from the free part of each frame
+  Index min_free_dots = 40;  ///< >= 1: of the free part, where mu t is empty; its noise goes with
+                             ///< their inverse root
   Index ring_dots = 1;  ///< in [0, 5]: force and moment are summed over the dots in contact and
                         ///< this many around it, to which the mesh carries a share of the load at
                         ///< the contact's edge. What lies outside is the free part: its load is 0
@@ -37,7 +110,12 @@ struct TractionOptions {
   double largest_stretch = 5.0;  ///< in (1, 1000]: a cell with a principal stretch above this or
                                  ///< below its inverse is no membrane: wrong dots
 };
-inline void expects_valid(const TractionOptions& options) {
+template <scalar S>
+void expects_valid(const TractionOptions<S>& options) {
+  expects(!options.mu_t_n_per_mm || detail::traction::is_measure(*options.mu_t_n_per_mm),
+          "TractionOptions", "mu_t_n_per_mm", options.mu_t_n_per_mm.value_or(S(0)), "in (0, 1e6]");
+  expects(options.min_free_dots >= 1, "TractionOptions", "min_free_dots",
+          static_cast<long long>(options.min_free_dots), ">= 1");
   expects(options.ring_dots >= 0 && options.ring_dots <= 5, "TractionOptions", "ring_dots",
           static_cast<long long>(options.ring_dots), "in [0, 5]");
   expects(options.fade_dots >= 0 && options.fade_dots <= 20, "TractionOptions", "fade_dots",
@@ -47,22 +125,51 @@ inline void expects_valid(const TractionOptions& options) {
 }
 
 /// The traction field of a pad.
-///   Modulus  BalancedModulus (default), GivenModulus<S>
 /// Const: threads may share one, each with maps of its own. A frame takes no memory, throws
 /// nothing, and needs O(rows cols) time.
-template <class Modulus = BalancedModulus, scalar S = double>
+template <scalar S = double>
 class TractionField {
  public:
-  /// `stress_free_mm`: where the dots are when the membrane carries nothing, neither pressure nor
-  /// touch; only its shape counts, not where it lies. NaN: no such dot. Rows and columns may run
-  /// any way; out of the pad is the side on which z grows. Refuses bad parameters and fewer than
-  /// 3 x 3 dots (parameter_error).
+  /// What the last frame said of each dot and of each cell; NaN where it said nothing. A value, of
+  /// which each thread needs one of its own. Views hold as long as the maps do.
+  class Maps {
+   public:
+    Index rows() const { return memory_.rows; }
+    Index cols() const { return memory_.cols; }
+
+    /// What the object exerts on the pad, MPa: per area as it is now.
+    StridedView<const Point3<S>> load_mpa() const { return dots(memory_.load); }
+    /// How hard it presses into the pad: -load . n, with n out of the pad.
+    StridedView<const S> pressure_mpa() const { return dots(memory_.pressure); }
+    /// The part of the load along the membrane.
+    StridedView<const Point3<S>> shear_mpa() const { return dots(memory_.shear); }
+    /// Area that belongs to the dot, along n, mm^2; a load times its length is a force.
+    StridedView<const Point3<S>> area_mm2() const { return dots(memory_.area); }
+    /// Principal tensions of the cell between dots (i, j) and (i + 1, j + 1), N/mm; one row and one
+    /// column less than there are dots.
+    StridedView<const detail::traction::CellTension<S>> tension_n_per_mm() const {
+      return {memory_.tension.data(), rows() - 1, cols() - 1, cols() - 1};
+    }
+
+   private:
+    friend class TractionField;
+
+    Maps(Index rows, Index cols) : memory_(rows, cols) {}
+    template <class T>
+    StridedView<const T> dots(const std::vector<T>& values) const {
+      return {values.data(), rows(), cols(), cols()};
+    }
+
+    detail::traction::FrameMemory<S> memory_;
+  };
+
+  /// `stress_free_mm`: where the dots are when the membrane carries nothing, neither pressure
+  /// nor touch; only its shape counts, not where it lies. NaN: no such dot. Rows and columns
+  /// may run any way; out of the pad is the side on which z grows. Refuses bad parameters and
+  /// fewer than 3 x 3 dots (parameter_error).
   template <spatial_dot_grid Dots>
-  explicit TractionField(const Dots& stress_free_mm,
-                         const Modulus& modulus = {},
-                         const TractionOptions& options = {})
-      : modulus_(modulus), options_(options), limits_(options.largest_stretch) {
-    expects_valid(modulus);
+  explicit TractionField(const Dots& stress_free_mm, const TractionOptions<S>& options = {})
+      : options_(options), limits_(options.largest_stretch) {
     expects_valid(options);
     const auto from = as_view(stress_free_mm);
     rows_ = from.rows();
@@ -87,7 +194,7 @@ class TractionField {
   Index cols() const { return cols_; }
 
   /// Maps without a frame, with all the memory that frames will need.
-  TractionMaps<S> maps() const { return TractionMaps<S>(rows_, cols_); }
+  Maps maps() const { return Maps(rows_, cols_); }
 
   /// The loads in a frame with dots `dots_mm` (NaN: not found), of which those with a true
   /// `contact` touch the object, at `pressure_mpa` of the fluid above that outside.
@@ -95,7 +202,7 @@ class TractionField {
   TractionResult<S> operator()(const Dots& dots_mm,
                                const Contact& contact,
                                const S& pressure_mpa,
-                               TractionMaps<S>& maps) const {
+                               Maps& maps) const {
     const auto dots = as_view(dots_mm);
     const auto touch = as_view(contact);
     TractionResult<S> result;
@@ -123,31 +230,6 @@ class TractionField {
     return result;
   }
 
-  /// The same, and writes contact pressure and load of each dot into the caller's own grids.
-  template <spatial_dot_grid Dots, contact_mask Contact, class Pressure, class Load>
-    requires(writable_grid<Pressure, S>&& writable_grid<Load>&& spatial_dot_grid<Load>)
-  TractionResult<S>
-  operator()(const Dots& dots_mm,
-             const Contact& contact,
-             const S& pressure_mpa,
-             TractionMaps<S>& maps,
-             Pressure&& contact_pressure_mpa,
-             Load&& load_mpa) const {
-    const auto to_pressure = as_view(std::forward<Pressure>(contact_pressure_mpa));
-    const auto to_load = as_view(std::forward<Load>(load_mpa));
-    if (!has_size(to_pressure) || !has_size(to_load)) {
-      return {};
-    }
-    const TractionResult<S> result = (*this)(dots_mm, contact, pressure_mpa, maps);
-    for (Index i = 0; result.accepted() && i < rows_; ++i) {
-      for (Index j = 0; j < cols_; ++j) {
-        to_pressure(i, j) = static_cast<cell_t<Pressure>>(maps.pressure_mpa()(i, j));
-        to_load(i, j) = detail::traction::point_as<cell_t<Load>>(maps.load_mpa()(i, j));
-      }
-    }
-    return result;
-  }
-
  private:
   using Memory = detail::traction::FrameMemory<S>;
 
@@ -167,14 +249,16 @@ class TractionField {
       return not_a_number<S>();
     }
     result.balance = detail::traction::balance_of(pressure_mpa, options_.ring_dots, frame);
-    const S mu_t = modulus_(result.balance);
+    const S balanced = result.balance.dots < options_.min_free_dots
+                           ? not_a_number<S>()
+                           : result.balance.mu_t_n_per_mm();
+    const S mu_t = options_.mu_t_n_per_mm.value_or(balanced);
     const bool known = detail::traction::is_measure(mu_t);
     result.status = known ? TractionStatus::ok : TractionStatus::no_balance;
     return known ? mu_t : not_a_number<S>();
   }
 
-  Modulus modulus_;
-  TractionOptions options_;
+  TractionOptions<S> options_;
   detail::traction::StretchLimits<S> limits_;
   Index rows_ = 0;
   Index cols_ = 0;
@@ -184,11 +268,8 @@ class TractionField {
 
 template <spatial_dot_grid Dots>
 explicit TractionField(const Dots&) -> TractionField<>;
-template <spatial_dot_grid Dots>
-TractionField(const Dots&, const BalancedModulus&, const TractionOptions& = {}) -> TractionField<>;
-template <spatial_dot_grid Dots, scalar S>
-TractionField(const Dots&, const GivenModulus<S>&, const TractionOptions& = {})
-    -> TractionField<GivenModulus<S>, S>;
+template <spatial_dot_grid Dots, scalar S = double>
+TractionField(const Dots&, const TractionOptions<S>&) -> TractionField<S>;
 
 }  // namespace v0
 }  // namespace fingerpad

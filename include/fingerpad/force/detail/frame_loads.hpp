@@ -12,9 +12,8 @@
 #include "fingerpad/core/grid.hpp"
 #include "fingerpad/core/point.hpp"
 #include "fingerpad/core/scalar.hpp"
-#include "fingerpad/force/dot_cell.hpp"
-#include "fingerpad/force/traction_maps.hpp"
-#include "fingerpad/force/traction_result.hpp"
+#include "fingerpad/force/detail/dot_cell.hpp"
+#include "fingerpad/force/detail/traction_memory.hpp"
 
 namespace fingerpad {
 inline namespace v0 {
@@ -62,24 +61,6 @@ Point3<S> dot_of(const P& p) {
   return placed ? dot : missing_point<S>();
 }
 
-/// A point of the caller's type.
-template <class P, scalar S>
-P point_as(const Point3<S>& p) {
-  P out = P();
-  if constexpr (requires { out.x = out.y = out.z; }) {
-    using C = std::remove_cvref_t<decltype(out.x)>;
-    out.x = static_cast<C>(p.x);
-    out.y = static_cast<C>(p.y);
-    out.z = static_cast<C>(p.z);
-  } else {
-    using C = std::remove_cvref_t<decltype(out[0])>;
-    out[0] = static_cast<C>(p.x);
-    out[1] = static_cast<C>(p.y);
-    out[2] = static_cast<C>(p.z);
-  }
-  return out;
-}
-
 template <scalar S, class Dots>
 void read_dots(const Dots& dots, FrameMemory<S>& frame) {
   for (Index i = 0; i < frame.rows; ++i) {
@@ -94,8 +75,8 @@ void read_dots(const Dots& dots, FrameMemory<S>& frame) {
   }
 }
 
-template <scalar S>
-void bridge_dots(FrameMemory<S>& frame, TractionResult<S>& result) {
+template <scalar S, class Result>
+void bridge_dots(FrameMemory<S>& frame, Result& result) {
   const auto is_found = [&](Index i, Index j) {
     return frame.inside(i, j) && frame.has(frame.dot_at(i, j), found);
   };
@@ -117,8 +98,8 @@ void bridge_dots(FrameMemory<S>& frame, TractionResult<S>& result) {
 
 /// Steps from each dot to the nearest in contact, where a step leads to any of the eight
 /// neighbours: what the four before it know, in the order of rows, and then the four after it.
-template <scalar S, class Touch>
-void count_steps(const Touch& touch, FrameMemory<S>& frame, TractionResult<S>& result) {
+template <scalar S, class Touch, class Result>
+void count_steps(const Touch& touch, FrameMemory<S>& frame, Result& result) {
   const auto look = [&](Index i, Index j, Index way) {
     const std::size_t k = frame.dot_at(i, j);
     constexpr Index before[4][2] = {{-1, -1}, {-1, 0}, {-1, 1}, {0, -1}};
@@ -145,14 +126,14 @@ void count_steps(const Touch& touch, FrameMemory<S>& frame, TractionResult<S>& r
 }
 
 /// One cell's share of what pulls its corners.
-template <scalar S>
+template <scalar S, class Result>
 void pull_cell(const StressFreeCell<S>& free,
                Index i,
                Index j,
                const StretchLimits<S>& limits,
                const S& outward,
                FrameMemory<S>& frame,
-               TractionResult<S>& result) {
+               Result& result) {
   const std::size_t cell = frame.cell_at(i, j);
   frame.cell[cell] = CellState::unknown;
   frame.tension[cell] = {};
@@ -183,12 +164,12 @@ void pull_cell(const StressFreeCell<S>& free,
   }
 }
 
-template <scalar S>
+template <scalar S, class Result>
 void pull_cells(const std::vector<StressFreeCell<S>>& cells,
                 const StretchLimits<S>& limits,
                 const S& outward,
                 FrameMemory<S>& frame,
-                TractionResult<S>& result) {
+                Result& result) {
   for (std::size_t k = 0; k < frame.pull.size(); ++k) {
     frame.pull[k] = frame.area[k] = {S(0), S(0), S(0)};
   }
@@ -201,8 +182,8 @@ void pull_cells(const std::vector<StressFreeCell<S>>& cells,
 
 /// A dot has a load when the four cells around it are known and all look to the same side: else the
 /// membrane would be folded there.
-template <scalar S>
-void settle_dots(FrameMemory<S>& frame, TractionResult<S>& result) {
+template <scalar S, class Result>
+void settle_dots(FrameMemory<S>& frame, Result& result) {
   for (Index i = 1; i + 1 < frame.rows; ++i) {
     for (Index j = 1; j + 1 < frame.cols; ++j) {
       const std::size_t k = frame.dot_at(i, j);
@@ -248,8 +229,8 @@ ModulusBalance<S> balance_of(const S& pressure_mpa, Index ring, const FrameMemor
 }
 
 /// The tensions for `mu_t` (NaN: unknown), and what stands out among them.
-template <scalar S>
-void write_tensions(const S& mu_t, FrameMemory<S>& frame, TractionResult<S>& result) {
+template <scalar S, class Result>
+void write_tensions(const S& mu_t, FrameMemory<S>& frame, Result& result) {
   for (std::size_t k = 0; k < frame.tension.size(); ++k) {
     CellTension<S>& tension = frame.tension[k];
     if (frame.cell[k] != CellState::found || !is_finite(mu_t)) {
@@ -288,12 +269,9 @@ void write_load(const S& pressure_mpa, const S& mu_t, std::size_t k, FrameMemory
 }
 
 /// All loads; none without a modulus.
-template <scalar S>
-void write_loads(const S& pressure_mpa,
-                 const S& mu_t,
-                 Index ring,
-                 FrameMemory<S>& frame,
-                 TractionResult<S>& result) {
+template <scalar S, class Result>
+void write_loads(
+    const S& pressure_mpa, const S& mu_t, Index ring, FrameMemory<S>& frame, Result& result) {
   using std::sqrt;
   S sum_sq = S(0);
   for (std::size_t k = 0; k < frame.flags.size(); ++k) {
@@ -312,13 +290,13 @@ void write_loads(const S& pressure_mpa,
 
 /// Force and moment: the loads of the dots in contact and of the ring around it, and with less and
 /// less weight those of `fade` dots more, bridged dots included.
-template <scalar S>
+template <scalar S, class Result>
 void sum_loads(const S& pressure_mpa,
                const S& mu_t,
                Index ring,
                Index fade,
                const FrameMemory<S>& frame,
-               TractionResult<S>& result) {
+               Result& result) {
   result.force_n = result.moment_n_mm = {S(0), S(0), S(0)};
   for (std::size_t k = 0; k < frame.flags.size(); ++k) {
     const Index beyond = frame.steps[k] > ring ? frame.steps[k] - ring : 0;

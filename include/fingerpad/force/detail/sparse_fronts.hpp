@@ -13,10 +13,10 @@
 #include <cstddef>
 #include <vector>
 
-#include "fingerpad/force/detail/sparse_dissection.hpp"
-#include "fingerpad/force/detail/sparse_kernels.hpp"
 #include "fingerpad/core/grid.hpp"
 #include "fingerpad/core/scalar.hpp"
+#include "fingerpad/force/detail/sparse_dissection.hpp"
+#include "fingerpad/force/detail/sparse_kernels.hpp"
 
 namespace fingerpad {
 inline namespace v0 {

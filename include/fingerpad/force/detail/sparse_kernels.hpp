@@ -10,8 +10,8 @@
 #include <cstddef>
 #include <type_traits>
 
-#include "fingerpad/image/detail/lanes.hpp"
 #include "fingerpad/core/scalar.hpp"
+#include "fingerpad/image/detail/lanes.hpp"
 
 namespace fingerpad {
 inline namespace v0 {

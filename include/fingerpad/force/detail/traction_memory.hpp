@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// The maps of a frame, and the memory that frames need.
+// The memory that frames need.
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -10,15 +10,38 @@
 #include "fingerpad/core/grid.hpp"
 #include "fingerpad/core/point.hpp"
 #include "fingerpad/core/scalar.hpp"
-#include "fingerpad/force/dot_cell.hpp"
+#include "fingerpad/force/detail/dot_cell.hpp"
 
 namespace fingerpad {
 inline namespace v0 {
 
-template <class Modulus, scalar S>
-class TractionField;
-
 namespace detail::traction {
+
+/// A pressure (MPa) or mu t (N/mm) there can be. Squares of larger ones might overflow.
+template <scalar S>
+bool is_measure(const S& x) {
+  return value(x) > 0 && !(S(1e6) < x);  // false for NaN
+}
+
+/// The two sides of the balance. Add up those of several frames, of the free pad say.
+template <scalar S>
+struct ModulusBalance {
+  Index dots = 0;           ///< of the free part
+  S pressing_mpa = S(0);    ///< sum p
+  S holding_per_mm = S(0);  ///< -sum f . n / A, MPa for mu t = 1 N/mm
+
+  /// NaN where the membrane does not hold the pressure.
+  S mu_t_n_per_mm() const {
+    return value(holding_per_mm) > 0 && value(pressing_mpa) > 0 ? S(pressing_mpa / holding_per_mm)
+                                                                : not_a_number<S>();
+  }
+  ModulusBalance& operator+=(const ModulusBalance& other) {
+    dots += other.dots;
+    pressing_mpa = pressing_mpa + other.pressing_mpa;
+    holding_per_mm += other.holding_per_mm;
+    return *this;
+  }
+};
 
 /// What is known of a dot in a frame.
 enum DotFlag : std::uint8_t {
@@ -76,41 +99,5 @@ struct FrameMemory {
 };
 
 }  // namespace detail::traction
-
-/// What the last frame said of each dot and of each cell; NaN where it said nothing. A value, of
-/// which each thread needs one of its own. Views hold as long as the maps do.
-template <scalar S = double>
-class TractionMaps {
- public:
-  Index rows() const { return memory_.rows; }
-  Index cols() const { return memory_.cols; }
-
-  /// What the object exerts on the pad, MPa: per area as it is now.
-  StridedView<const Point3<S>> load_mpa() const { return dots(memory_.load); }
-  /// How hard it presses into the pad: -load . n, with n out of the pad.
-  StridedView<const S> pressure_mpa() const { return dots(memory_.pressure); }
-  /// The part of the load along the membrane.
-  StridedView<const Point3<S>> shear_mpa() const { return dots(memory_.shear); }
-  /// Area that belongs to the dot, along n, mm^2; a load times its length is a force.
-  StridedView<const Point3<S>> area_mm2() const { return dots(memory_.area); }
-  /// Principal tensions of the cell between dots (i, j) and (i + 1, j + 1), N/mm; one row and one
-  /// column less than there are dots.
-  StridedView<const CellTension<S>> tension_n_per_mm() const {
-    return {memory_.tension.data(), rows() - 1, cols() - 1, cols() - 1};
-  }
-
- private:
-  template <class Modulus, scalar T>
-  friend class TractionField;
-
-  TractionMaps(Index rows, Index cols) : memory_(rows, cols) {}
-  template <class T>
-  StridedView<const T> dots(const std::vector<T>& values) const {
-    return {values.data(), rows(), cols(), cols()};
-  }
-
-  detail::traction::FrameMemory<S> memory_;
-};
-
 }  // namespace v0
 }  // namespace fingerpad
