@@ -27,6 +27,8 @@ using namespace fingerpad;
 namespace {
 
 using Long = long double;
+template <class S>
+using Motion = typename MassSpringDamper<S>::Motion;
 
 template <class S>
 std::string in(const std::string& name) {
@@ -147,9 +149,9 @@ void add_steps(
       });
 }
 
-template <class S, class Words>
+template <class S>
 void add_hold(const std::string& name, bool jitter) {
-  using Hold = FirstOrderHold<S, Words>;
+  using Hold = FirstOrderHold<S>;
   struct Data {
     Hold hold;
     typename Hold::State state = hold.start({S(1), S(0)});
@@ -194,10 +196,8 @@ void add_creep() {
 
 template <class S>
 void add_all_steps() {
-  add_hold<S, TwoWords>("TwoWords, the default", false);
-  add_hold<S, OneWord>("OneWord", false);
-  add_hold<S, TwoWords>("TwoWords, another length each time", true);
-  add_hold<S, OneWord>("OneWord, another length each time", true);
+  add_hold<S>("FirstOrderHold", false);
+  add_hold<S>("FirstOrderHold, another length each time", true);
   add_creep<S>();
 }
 
@@ -249,17 +249,15 @@ void add_lift(const std::string& name, int steps, const Lift& of) {
       });
 }
 
-template <class Words>
 void add_causal(const std::string& name, int steps) {
   add_lift(name, steps, [](const LiftLoad<double>& load, double time, int count) {
-    return causal_response<Words>(MassSpringDamper<double>{}, load, time, count).position_mm;
+    return causal_response(MassSpringDamper<double>{}, load, time, count).position_mm;
   });
 }
 
 void add_lifts(int steps) {
   add_lift("published: printed, trapezoidal rule", steps, &printed_lift);
-  add_causal<TwoWords>("causal_response, the default", steps);
-  add_causal<OneWord>("causal_response, OneWord", steps);
+  add_causal("causal_response", steps);
 }
 
 /// of(load) and truth(load) for loads of all sizes.
@@ -289,7 +287,6 @@ template <class S>
 void add_powers() {
   const PolymerFriction<S> friction{S(0.75)};
   const HertzContact<S> hertz{S(10), S(0.125)};
-  const auto area = hertz_area(hertz);
   const Long beta = static_cast<Long>(friction.exponent);
   const auto true_friction = [=](Long load) { return 0.75L * std::pow(load, beta); };
   add_power<S>(
@@ -302,7 +299,7 @@ void add_powers() {
       "friction_force", [=](const S& load) { return friction_force(friction, load); },
       true_friction);
   add_power<S>(
-      "contact_area, HertzContact", [=](const S& load) { return contact_area(area, load); },
+      "contact_area, HertzContact", [=](const S& load) { return contact_area(hertz, load); },
       [](Long load) {
         return std::acos(-1.0L) * std::pow(3 * load * 10 / (4 * 0.125L), 2 / 3.0L);
       });

@@ -7,7 +7,7 @@
 // Each taxel carries its share of the grip, largest in the middle of the contact (Hertz), bears
 // friction K N^beta, and holds the object by a spring along the finger. The object sinks until the
 // springs carry its weight; where a spring would pull harder than friction bears, the taxel slips
-// on. A taxel that slips shakes: its speed is the load of a oscillator on the foam, whose motion is
+// on. A taxel that slips shakes: its speed is the load of an oscillator on the foam, whose motion is
 // felt as normal force.
 #include <algorithm>
 #include <array>

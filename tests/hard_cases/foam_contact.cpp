@@ -43,6 +43,8 @@ Dual<Real> cos(const Dual<Real>& a) {
 
 using namespace fingerpad;
 using test::Digits50;
+template <class S>
+using Motion = typename MassSpringDamper<S>::Motion;
 
 namespace {
 
@@ -65,7 +67,10 @@ constexpr double bound() {
   return std::is_same_v<S, float> ? 1e-5 : 1e-12;
 }
 
-/// A oscillator whose damping is this ratio as nearly as the type can say.
+template <class Wide>
+constexpr double wide_epsilon = static_cast<double>(std::numeric_limits<Wide>::epsilon());
+
+/// An oscillator whose damping is this ratio as nearly as the type can say.
 template <class S>
 MassSpringDamper<S> rider_of(double mass, double stiffness, double ratio) {
   const S m = static_cast<S>(mass), k = static_cast<S>(stiffness);
@@ -140,12 +145,12 @@ double off(const S& a, const Digits50& b, const Digits50& scale) {
 }
 
 template <class S>
-double off(const Motion<S>& a, const Answer& b) {
+double off_motion(const Motion<S>& a, const Answer& b) {
   return (std::max)(off(a.position_mm, b.y, b.y_scale), off(a.velocity_mm_per_s, b.v, b.v_scale));
 }
 
 template <class S>
-Motion<S> as(const Motion<double>& m) {
+Motion<S> motion_as(const Motion<double>& m) {
   return {S(m.position_mm), S(m.velocity_mm_per_s)};
 }
 template <class S>
@@ -165,8 +170,10 @@ double worst_closed_form(double ratio) {
       const S t = static_cast<S>(time);
       const Truth truth(oscillator, Digits50(t));
       for (const Case& of : cases) {
-        const Motion<S> motion = ramp_response(oscillator, as<S>(of.load), as<S>(of.start), t);
-        worst = (std::max)(worst, off(motion, answer(oscillator, truth, of, Digits50(t))));
+        const Motion<S> motion =
+            ramp_response(oscillator, as<S>(of.load), motion_as<S>(of.start), t);
+        worst =
+            (std::max)(worst, off_motion<S>(motion, answer(oscillator, truth, of, Digits50(t))));
       }
     }
   }
@@ -174,14 +181,14 @@ double worst_closed_form(double ratio) {
 }
 
 /// Up to time 10^4 in steps of 1/8; the worst of looks after 8, 64, 512, ... steps and at the end.
-template <class S, class Words>
+template <class S>
 double worst_of_steps(double mass, double stiffness, double ratio) {
   double worst = 0;
   const MassSpringDamper<S> oscillator = rider_of<S>(mass, stiffness, ratio);
-  const FirstOrderHold<S, Words> hold(oscillator, S(0.125));
+  const FirstOrderHold<S> hold(oscillator, S(0.125));
   for (const Case& of : {Case{{0, 0}, {1, -1}}, Case{{1, 0.0625}, {0, 0}}}) {
     const RampLoad<S> load = as<S>(of.load);
-    auto state = hold.start(as<S>(of.start));
+    auto state = hold.start(motion_as<S>(of.start));
     int look = 8;
     for (int n = 1; n <= 80000; ++n) {
       const S t = S(0.125) * static_cast<S>(n);
@@ -189,7 +196,8 @@ double worst_of_steps(double mass, double stiffness, double ratio) {
       if (n == look || n == 80000) {
         look *= 8;
         const Truth truth(oscillator, Digits50(t));
-        worst = (std::max)(worst, off(motion, answer(oscillator, truth, of, Digits50(t))));
+        worst =
+            (std::max)(worst, off_motion<S>(motion, answer(oscillator, truth, of, Digits50(t))));
       }
     }
   }
@@ -211,7 +219,12 @@ TEMPLATE_TEST_CASE("foam contact: the closed form follows 50 digits",
 
 TEST_CASE("foam contact: the closed form follows 50 digits in other types", "[foam_contact]") {
   for (const Damping& damping : dampings) {
-    CHECK(worst_closed_form<long double>(damping.ratio) < 1e-15);
+    // not carried in a wider number: the phase at the end is 6e5 rad, and near critical damping D
+    // cancels, by which a wave that is gone after 11000 rad is off by half of their square
+    const bool is_critical = std::abs(damping.ratio - 1) < 1e-6;
+    const double lost = is_critical ? 11000.0 * 11000 / 2 : 6e5;
+    const double epsilon = static_cast<double>(std::numeric_limits<long double>::epsilon());
+    CHECK(worst_closed_form<long double>(damping.ratio) / epsilon < 4 * lost);
   }
   const MassSpringDamper<test::Lazy50> lazy{test::Lazy50(1), test::Lazy50(0.25), test::Lazy50(4)};
   const MassSpringDamper<Digits50> oscillator{Digits50(1), Digits50(0.25), Digits50(4)};
@@ -225,15 +238,10 @@ TEST_CASE("foam contact: the closed form follows 50 digits in other types", "[fo
 
 TEMPLATE_TEST_CASE("foam contact: 80000 steps follow 50 digits", "[foam_contact]", double, float) {
   for (const auto& [ratio, name] : dampings) {
-    const double two = (std::max)(worst_of_steps<TestType, TwoWords>(1, 1, ratio),
-                                  worst_of_steps<TestType, TwoWords>(0.37, 2.9, ratio));
-    const double one = (std::max)(worst_of_steps<TestType, OneWord>(1, 1, ratio),
-                                  worst_of_steps<TestType, OneWord>(0.37, 2.9, ratio));
-    INFO("damping ratio " << name << ": TwoWords " << brief(two) << ", OneWord " << brief(one));
-    CHECK(two < bound<TestType>());
-    // half an epsilon for each step, at most
-    const double epsilon = static_cast<double>(std::numeric_limits<TestType>::epsilon());
-    CHECK(one < 0.5 * 80000 * epsilon);
+    const double worst = (std::max)(worst_of_steps<TestType>(1, 1, ratio),
+                                    worst_of_steps<TestType>(0.37, 2.9, ratio));
+    INFO("damping ratio " << name << ": worst error " << brief(worst));
+    CHECK(worst < bound<TestType>());
   }
 }
 
@@ -248,25 +256,32 @@ TEMPLATE_TEST_CASE("foam contact: steps tiny and huge follow 50 digits",
     for (const double length : {1e-12, 1e-7, 1e-3, 0.02, 0.3, 1.0, 7.7, 60.0, 1e3, 1e4, 1e6}) {
       const S step = static_cast<S>(length);
       const Truth truth(oscillator, Digits50(step));
-      const FirstOrderHold<S, OneWord> hold(oscillator, step);
+      const FirstOrderHold<S> hold(oscillator, step);
       for (const Case& of : cases) {
         const RampLoad<S> load = as<S>(of.load);
-        auto state = hold.start(as<S>(of.start));
+        auto state = hold.start(motion_as<S>(of.start));
         const S end = load(step);
         // the load is linear between what it is at both ends, rounded
         const Digits50 rise = (Digits50(end) - Digits50(load.start_n)) / Digits50(step);
         const Answer a = answer(oscillator, truth, of, Digits50(step));
         const Digits50 rounding = abs(Digits50(rise - of.load.rise_n_per_s)) * Digits50(step);
+        // the fastest rate times the step, in the number that S is computed in
+        const double phase = length * (1 + 2 * damping.ratio) * std::sqrt(2.9 / 0.37);
+        const double of_phase =
+            4 * phase *
+            (std::is_same_v<S, float> ? wide_epsilon<double> : wide_epsilon<long double>);
         const Motion<S> motion = hold(load.start_n, end, state);
         CAPTURE(damping.name, length);
         CHECK(abs(Digits50(Digits50(motion.position_mm) - a.y)) <=
-              8 * epsilon * a.y_scale + rounding + Digits50((std::numeric_limits<S>::min)()));
+              (8 * epsilon + of_phase) * a.y_scale + rounding +
+                  Digits50((std::numeric_limits<S>::min)()));
       }
     }
-    // of a load on a oscillator at rest even the smallest step has all digits: f t^2 / 2m and f t /
+    // of a load on an oscillator at rest even the smallest step has all digits: f t^2 / 2m and f t
+    // /
     // m
     const S step = static_cast<S>(1e-12);
-    const FirstOrderHold<S, OneWord> hold(oscillator, step);
+    const FirstOrderHold<S> hold(oscillator, step);
     auto state = hold.start();
     const Motion<S> motion = hold(S(1), S(1), state);
     const Digits50 h(step), m(oscillator.mass_n_s2_per_mm);
@@ -282,10 +297,10 @@ TEMPLATE_TEST_CASE("foam contact: many tiny steps do not lose the spring",
                    double,
                    float) {
   // 1 - h^2/2 rounds to nearly nothing but 1: what is added in a step must not be taken from it.
-  // Worst in 200000 steps 90 epsilons in double, 170 in float; taken from it, 42000.
+  // Taken from it, 42000 epsilons in 200000 steps.
   using S = TestType;
   const S step = static_cast<S>(3e-4);
-  const FirstOrderHold<S, OneWord> hold({S(1), S(0), S(1)}, step);
+  const FirstOrderHold<S> hold({S(1), S(0), S(1)}, step);
   auto state = hold.start({S(1), S(0)});
   double worst = 0;
   for (int n = 1; n <= 200000; ++n) {
@@ -329,11 +344,13 @@ TEMPLATE_TEST_CASE("foam contact: the lift follows quadrature", "[foam_contact]"
 TEMPLATE_TEST_CASE("foam contact: creep follows 50 digits", "[foam_contact]", double, float) {
   using S = TestType;
   const S e = std::numeric_limits<S>::epsilon();
-  const KelvinVoigt<S> element{S(0.37), S(2.9)};
-  const Maxwell<S> flowing{S(1.7), S(53)};
+  const S rigid = std::numeric_limits<S>::infinity();
+  const Burgers<S> both{S(1.7), S(53), S(0.37), S(2.9)};
+  const Burgers<S> element{rigid, rigid, S(0.37), S(2.9)}, flowing{S(1.7), S(53), rigid, rigid};
   for (const double time : {0.0, 1e-30, 1e-9, 1e-4, 0.1, 3.0, 7.8, 8.0, 40.0, 1e3, 1e9}) {
     const S t = static_cast<S>(time);
-    const Digits50 modulus(element.modulus_mpa), eta(element.viscosity_mpa_s), at(t);
+    const Digits50 modulus(element.kelvin_voigt_modulus_mpa),
+        eta(element.kelvin_voigt_viscosity_mpa_s), at(t);
     const Digits50 delays = modulus * at / eta;
     const Digits50 exact = -expm1(Digits50(-delays)) / modulus;
     CAPTURE(time);
@@ -344,11 +361,11 @@ TEMPLATE_TEST_CASE("foam contact: creep follows 50 digits", "[foam_contact]", do
     CHECK(abs(Digits50(recovery(element, t)) - left) <=
           4 * Digits50(e) * scale + Digits50((std::numeric_limits<S>::min)()));
     const Digits50 steady =
-        1 / Digits50(flowing.modulus_mpa) + at / Digits50(flowing.viscosity_mpa_s);
+        1 / Digits50(flowing.maxwell_modulus_mpa) + at / Digits50(flowing.maxwell_viscosity_mpa_s);
     CHECK(abs(Digits50(creep_compliance(flowing, t)) - steady) <= 2 * Digits50(e) * steady);
     if (time > 0) {
       // a stress that rises from 0 to 1 within one step, of any length
-      const Creep<S> creep({flowing, element}, t);
+      const Creep<S> creep(both, t);
       auto state = creep.start();
       creep(S(0), S(1), state);
       const Digits50 risen = (delays + expm1(Digits50(-delays))) / (delays * modulus);
@@ -356,7 +373,7 @@ TEMPLATE_TEST_CASE("foam contact: creep follows 50 digits", "[foam_contact]", do
       const Digits50 small = delays / 2 / modulus * (1 - delays / 3);
       const Digits50 delayed = time < 1e-8 ? small : risen;
       CHECK(abs(Digits50(state.delayed()) - delayed) <= 16 * Digits50(e) * delayed);
-      const Digits50 viscous = at / (2 * Digits50(flowing.viscosity_mpa_s));
+      const Digits50 viscous = at / (2 * Digits50(flowing.maxwell_viscosity_mpa_s));
       CHECK(abs(Digits50(state.viscous()) - viscous) <= 4 * Digits50(e) * viscous);
     }
   }
@@ -366,15 +383,11 @@ TEMPLATE_TEST_CASE("foam contact: friction follows 50 digits", "[foam_contact]",
   using S = TestType;
   const double e = static_cast<double>(std::numeric_limits<S>::epsilon());
   const PolymerFriction<S> friction{S(0.7), S(0.625)};
-  const ContactArea<S> area{S(3), S(0.625)};
   for (const double load : {1e-37, 1e-20, 1e-6, 0.02, 1.0, 4.0, 300.0, 1e20}) {
     const S n = static_cast<S>(load);
     const Digits50 exact_n(n), power = exp(Digits50(Digits50(0.625) * log(exact_n)));
-    const Digits50 rest = exact_n / power;
     CHECK(off(friction_force(friction, n), Digits50(Digits50(friction.factor) * power),
               Digits50(Digits50(friction.factor) * power)) < 2 * e);
-    CHECK(off(contact_area(area, n), Digits50(3 * power), Digits50(3 * power)) < 2 * e);
-    CHECK(off(contact_stress(area, n), Digits50(rest / 3), Digits50(rest / 3)) < 2 * e);
   }
 }
 
@@ -410,7 +423,7 @@ TEST_CASE("foam contact: derivatives are those of differences", "[foam_contact]"
   }
   for (const double load : {0.01, 1.0, 30.0}) {
     check([]<class S>(const S& n) { return friction_force(PolymerFriction<S>{}, n); }, load);
-    check([]<class S>(const S& n) { return contact_stress(ContactArea<S>{}, n); }, load);
+    check([]<class S>(const S& n) { return contact_stress(HertzContact<S>{}, n); }, load);
     check([]<class S>(const S& t) { return creep_compliance(Burgers<S>{}, t); }, load);
     // the stiffness is the slope of the load
     const HertzContact<Dual> hertz{Dual(Digits50(3)), Dual(Digits50("0.2"))};
@@ -422,50 +435,7 @@ TEST_CASE("foam contact: derivatives are those of differences", "[foam_contact]"
   for (const double load : {0.0, -2.0}) {
     const Dual none = friction_force(PolymerFriction<Dual>{}, Dual(Digits50(load), Digits50(1)));
     CHECK((none.v == 0 && none.d == 0));
-    const Dual stress = contact_stress(ContactArea<Dual>{}, Dual(Digits50(load), Digits50(1)));
+    const Dual stress = contact_stress(HertzContact<Dual>{}, Dual(Digits50(load), Digits50(1)));
     CHECK((stress.v == 0 && stress.d == 0));
   }
-}
-
-TEST_CASE("foam contact: two words are twice the digits", "[foam_contact]") {
-  using Two = detail::foam::TwoWord<double>;
-  const auto exact = [](const Two& a) { return Digits50(Digits50(a.hi) + Digits50(a.lo)); };
-  const Two a = Two(1) / Two(3), b = Two(2) / Two(7), tiny(1e-20);
-  const auto close = [&](const Two& x, const Digits50& y) {
-    return abs(Digits50(exact(x) - y)) < Digits50("4e-32") * abs(y);
-  };
-  const Digits50 third = Digits50(1) / 3, sevenths = Digits50(2) / 7;
-  CHECK(close(a, third));
-  CHECK(close(b, sevenths));
-  CHECK(close(a + b, third + sevenths));
-  CHECK(close(a - b, third - sevenths));
-  CHECK(close(a * b, third * sevenths));
-  CHECK(close(a / b, third / sevenths));
-  CHECK(close(sqrt(a), sqrt(third)));
-  CHECK(close((Two(1) + tiny) - Two(1), Digits50(1e-20)));
-  CHECK(close(-a, -third));
-  // a phase of 10^6 rad
-  const Two phase = Two(3000003) * a;
-  const double angle = static_cast<double>(Digits50(3000003) * third - 1000001);
-  CHECK(angle == 0);
-  CHECK(sin(phase) == Approx(std::sin(1000001.0)).epsilon(1e-15));
-  CHECK(sin(Two(1e6) * a) ==
-        Approx(static_cast<double>(sin(Digits50(1000000 * third)))).epsilon(4e-16));
-  CHECK(cos(Two(1e6) * a) ==
-        Approx(static_cast<double>(cos(Digits50(1000000 * third)))).epsilon(4e-16));
-  const Digits50 grown = exp(Digits50(1900 * third));
-  CHECK(exp(Two(1900) * a) == Approx(static_cast<double>(grown)).epsilon(4e-16));
-  CHECK(a < b + b);
-  CHECK_FALSE(a < a);
-  CHECK(a == Two(1) / Two(3));
-  // no NaN comes of what is too large for a number
-  const Two huge(1e308);
-  const double infinity = std::numeric_limits<double>::infinity();
-  CHECK((huge * huge).hi == infinity);
-  CHECK((huge * huge).lo == 0);
-  CHECK((huge + huge).hi == infinity);
-  CHECK((huge / Two(1e-308)).hi == infinity);
-  CHECK((a / (huge * huge)).hi == 0);
-  CHECK(exp(-(huge * huge)) == 0);
-  CHECK(sqrt(Two(0)).hi == 0);
 }

@@ -13,8 +13,9 @@
 namespace hard {
 
 using fingerpad::MassSpringDamper;
-using fingerpad::Motion;
 using fingerpad::RampLoad;
+template <class S>
+using Motion = typename MassSpringDamper<S>::Motion;
 
 template <class To, class From>
 MassSpringDamper<To> as(const MassSpringDamper<From>& r) {
@@ -96,7 +97,7 @@ inline Row strong_damping() {
 
 inline Row long_swing() {
   return row("foam oscillator", "no damping, k/m = 7.8, times to 1e4; of the amplitude",
-             "phase sqrt(-D) t in two words", []<class S>(S) {
+             "the phase sqrt(-D) t; float in double", []<class S>(S) {
                Forms f;
                const MassSpringDamper<S> oscillator{S(0.37), S(0), S(2.9)};
                const Digits50 size = sqrt(Digits50(oscillator.mass_n_s2_per_mm) /
@@ -146,7 +147,7 @@ inline Row long_times() {
 
 inline Row many_steps() {
   return row("foam oscillator", "80000 steps of 1/8 without damping; of the amplitude",
-             "`TwoWords`: the motion in two words between the steps", []<class S>(S) {
+             "`FirstOrderHold`: only what a step adds is rounded; float in double", []<class S>(S) {
                Forms f;
                const MassSpringDamper<S> oscillator{S(0.37), S(0), S(2.9)};
                const Digits50 rate = sqrt(Digits50(oscillator.stiffness_n_per_mm) /
@@ -175,7 +176,7 @@ inline Row many_steps() {
 }
 
 inline Row short_step() {
-  return row("foam oscillator", "a load on a oscillator at rest, after 1e-6 to 0.1; relative",
+  return row("foam oscillator", "a load on an oscillator at rest, after 1e-6 to 0.1; relative",
              "`FirstOrderHold`: Taylor series of a short step, doubled", []<class S>(S) {
                Forms f;
                const MassSpringDamper<S> oscillator;

@@ -100,10 +100,10 @@ inline Row small_vibration() {
                    Digits50 mean(0), tilt(0), left(0);
                    const std::size_t first = readings.size() - 8;
                    for (int u = 0; u < 8; ++u) {
-                     const Digits50 reading(readings[first + static_cast<std::size_t>(u)]);
-                     mean += reading / 8;
-                     tilt += reading * (u - 3.5);
-                     left += reading * reading / 8;
+                     const Digits50 one(readings[first + static_cast<std::size_t>(u)]);
+                     mean += one / 8;
+                     tilt += one * (u - 3.5);
+                     left += one * one / 8;
                    }
                    // the sum of (u - 3.5)^2 is 42
                    const Digits50 exact = sqrt(Digits50(left - mean * mean - tilt * tilt / 336));

@@ -9,6 +9,7 @@
 // the force.
 #include <cmath>
 #include <concepts>
+#include <numbers>
 
 #include "fingerpad/core/expects.hpp"
 #include "fingerpad/core/scalar.hpp"
@@ -84,35 +85,6 @@ S inverse_friction_coefficient(const PolymerFriction<S>& friction, const S& norm
   return S(detail::foam::positive_power(normal_n, exponent) / friction.factor);
 }
 
-/// A = A_1 N^exponent.
-template <scalar S = double>
-struct ContactArea {
-  S area_at_1_n_mm2 = S(1);  ///< A_1 > 0
-  S exponent = S(2) / S(3);  ///< in (0, 1]: 2/3 for elastic bodies, 1 for hard ones (eq. 2)
-};
-
-/// Refuses what has no meaning (parameter_error).
-template <scalar S>
-void expects_valid(const ContactArea<S>& area) {
-  expects(is_finite(area.area_at_1_n_mm2) && value(area.area_at_1_n_mm2) > 0, "ContactArea",
-          "area_at_1_n_mm2", area.area_at_1_n_mm2, "finite and > 0");
-  expects(value(area.exponent) > 0 && value(area.exponent) <= 1, "ContactArea", "exponent",
-          area.exponent, "in (0, 1]");
-}
-
-/// mm^2; 0 where nothing presses.
-template <scalar S>
-S contact_area(const ContactArea<S>& area, const S& normal_n) {
-  return S(area.area_at_1_n_mm2 * detail::foam::positive_power(normal_n, area.exponent));
-}
-
-/// N / A in MPa, as a power of its own: 0 where nothing presses, not 0/0.
-template <scalar S>
-S contact_stress(const ContactArea<S>& area, const S& normal_n) {
-  const S exponent = S(1) - area.exponent;
-  return S(detail::foam::positive_power(normal_n, exponent) / area.area_at_1_n_mm2);
-}
-
 /// A sphere on an elastic half-space. The paper prints no values.
 template <scalar S = double>
 struct HertzContact {
@@ -140,11 +112,17 @@ S hertz_depth(const HertzContact<S>& hertz, const S& normal_n) {
   return positive_cube_root(S(S(load * load) / hertz.radius_mm));
 }
 
-/// A = pi R depth as a power of the load.
+/// A = pi R depth, mm^2: a power 2/3 of the load, 0 where nothing presses.
 template <scalar S>
-ContactArea<S> hertz_area(const HertzContact<S>& hertz) {
-  const S pi = S(3.14159265358979323846264338327950288L);
-  return {S(S(pi * hertz.radius_mm) * hertz_depth(hertz, S(1))), S(S(2) / S(3))};
+S contact_area(const HertzContact<S>& hertz, const S& normal_n) {
+  const S pi = S(std::numbers::pi_v<long double>);
+  return S(S(pi * hertz.radius_mm) * hertz_depth(hertz, normal_n));
+}
+
+/// N / A in MPa, as a power 1/3 of its own: 0 where nothing presses, not 0/0.
+template <scalar S>
+S contact_stress(const HertzContact<S>& hertz, const S& normal_n) {
+  return S(detail::foam::positive_cube_root(normal_n) / contact_area(hertz, S(1)));
 }
 
 /// k_s, the stiffness about a mean load: dN/d(depth) = (6 R E*^2 N)^(1/3), N/mm.

@@ -47,95 +47,68 @@ bool can_pass(const S& time_s) {
   return value(time_s) >= 0 && is_finite(time_s);
 }
 
-template <scalar S>
-void expects_element(const char* owner, const S& modulus_mpa, const S& viscosity_mpa_s) {
-  expects(is_finite(modulus_mpa) && value(modulus_mpa) > 0, owner, "modulus_mpa", modulus_mpa,
-          "finite and > 0");
-  expects(is_finite(viscosity_mpa_s) && value(viscosity_mpa_s) > 0, owner, "viscosity_mpa_s",
-          viscosity_mpa_s, "finite and > 0");
-}
-
 }  // namespace foam
 }  // namespace detail
 
-/// Spring and dashpot side by side. The paper prints no values.
-template <scalar S = double>
-struct KelvinVoigt {
-  S modulus_mpa = S(1);      ///< E > 0
-  S viscosity_mpa_s = S(1);  ///< eta > 0; eta / E is the time of the delay
-};
-
-/// Spring and dashpot one after the other.
-template <scalar S = double>
-struct Maxwell {
-  S modulus_mpa = S(1);      ///< E > 0
-  S viscosity_mpa_s = S(1);  ///< eta > 0; eta / E is the time in which stress relaxes
-};
-
-/// Both in series: "the composition model".
+/// "The composition model": Maxwell's element in series with Kelvin and Voigt's. Without one of the
+/// two, make its modulus and viscosity infinite. The paper prints no values.
 template <scalar S = double>
 struct Burgers {
-  Maxwell<S> maxwell = {};
-  KelvinVoigt<S> kelvin_voigt = {};
+  S maxwell_modulus_mpa = S(1);           ///< E > 0: what gives way at once
+  S maxwell_viscosity_mpa_s = S(1);       ///< eta > 0: what flows; stress relaxes in eta / E
+  S kelvin_voigt_modulus_mpa = S(1);      ///< E > 0: what gives way with delay
+  S kelvin_voigt_viscosity_mpa_s = S(1);  ///< eta > 0; the delay is eta / E
 };
 
-/// Refuse what has no meaning (parameter_error).
-template <scalar S>
-void expects_valid(const KelvinVoigt<S>& element) {
-  detail::foam::expects_element("KelvinVoigt", element.modulus_mpa, element.viscosity_mpa_s);
-}
-template <scalar S>
-void expects_valid(const Maxwell<S>& element) {
-  detail::foam::expects_element("Maxwell", element.modulus_mpa, element.viscosity_mpa_s);
-}
+/// Refuses what has no meaning (parameter_error).
 template <scalar S>
 void expects_valid(const Burgers<S>& foam) {
-  expects_valid(foam.maxwell);
-  expects_valid(foam.kelvin_voigt);
+  const auto positive = [](const S& given, const char* name) {
+    expects(value(given) > 0, "Burgers", name, given, "> 0; infinite: rigid");
+  };
+  positive(foam.maxwell_modulus_mpa, "maxwell_modulus_mpa");
+  positive(foam.maxwell_viscosity_mpa_s, "maxwell_viscosity_mpa_s");
+  positive(foam.kelvin_voigt_modulus_mpa, "kelvin_voigt_modulus_mpa");
+  positive(foam.kelvin_voigt_viscosity_mpa_s, "kelvin_voigt_viscosity_mpa_s");
 }
 
 /// Creep: the strain of 1 MPa after it has acted for a time, 1/MPa. NaN for a time that is negative
 /// or not finite.
 template <scalar S>
-S creep_compliance(const KelvinVoigt<S>& element, const S& time_s) {
+S creep_compliance(const Burgers<S>& foam, const S& time_s) {
   if (!detail::foam::can_pass(time_s)) {
     return not_a_number<S>();
   }
-  const S delays = S(element.modulus_mpa * time_s) / element.viscosity_mpa_s;
-  if (!is_finite(delays)) {
-    return S(S(1) / element.modulus_mpa);
-  }
-  return S(detail::foam::decay_means(delays).first * S(time_s / element.viscosity_mpa_s));
-}
-template <scalar S>
-S creep_compliance(const Maxwell<S>& element, const S& time_s) {
-  return detail::foam::can_pass(time_s)
-             ? S(S(S(1) / element.modulus_mpa) + S(time_s / element.viscosity_mpa_s))
-             : not_a_number<S>();
-}
-template <scalar S>
-S creep_compliance(const Burgers<S>& foam, const S& time_s) {
-  return S(creep_compliance(foam.maxwell, time_s) + creep_compliance(foam.kelvin_voigt, time_s));
+  const S delays = S(foam.kelvin_voigt_modulus_mpa * time_s) / foam.kelvin_voigt_viscosity_mpa_s;
+  const S delayed = is_finite(delays) ? S(detail::foam::decay_means(delays).first *
+                                          S(time_s / foam.kelvin_voigt_viscosity_mpa_s))
+                                      : S(S(1) / foam.kelvin_voigt_modulus_mpa);
+  const S at_once = S(1) / foam.maxwell_modulus_mpa;
+  return S(S(at_once + delayed) + S(time_s / foam.maxwell_viscosity_mpa_s));
 }
 
 /// Recovery: the share of a delayed strain that is left a time after unloading.
 template <scalar S>
-S recovery(const KelvinVoigt<S>& element, const S& time_s) {
+S recovery(const Burgers<S>& foam, const S& time_s) {
+  using std::exp;
+  return detail::foam::can_pass(time_s) ? S(exp(S(S(-S(foam.kelvin_voigt_modulus_mpa * time_s)) /
+                                                  foam.kelvin_voigt_viscosity_mpa_s)))
+                                        : not_a_number<S>();
+}
+
+/// Relaxation: the stress of a strain of 1 that is held from time 0 on, MPa, of Maxwell's element
+/// alone.
+template <scalar S>
+S relaxation_modulus(const Burgers<S>& foam, const S& time_s) {
   using std::exp;
   return detail::foam::can_pass(time_s)
-             ? S(exp(S(S(-S(element.modulus_mpa * time_s)) / element.viscosity_mpa_s)))
+             ? S(foam.maxwell_modulus_mpa *
+                 S(exp(S(S(-S(foam.maxwell_modulus_mpa * time_s)) / foam.maxwell_viscosity_mpa_s))))
              : not_a_number<S>();
 }
 
-/// Relaxation: the stress of a strain of 1 that is held from time 0 on, MPa.
-template <scalar S>
-S relaxation_modulus(const Maxwell<S>& element, const S& time_s) {
-  return S(element.modulus_mpa *
-           recovery(KelvinVoigt<S>{element.modulus_mpa, element.viscosity_mpa_s}, time_s));
-}
-
 /// Strain under any history of stress, exact where the stress is linear from sample to sample.
-/// Const, O(1), no memory from the heap. KelvinVoigt or Maxwell alone: make the other one stiff.
+/// Const, O(1), no memory from the heap.
 template <scalar S = double>
 class Creep {
  public:
@@ -188,16 +161,16 @@ class Creep {
   };
 
   Factors factors(const S& step_s) const {
-    const KelvinVoigt<S>& element = foam_.kelvin_voigt;
-    const S delays = S(element.modulus_mpa * step_s) / element.viscosity_mpa_s;
+    const S viscosity = foam_.kelvin_voigt_viscosity_mpa_s;
+    const S delays = S(foam_.kelvin_voigt_modulus_mpa * step_s) / viscosity;
     if (!is_finite(delays)) {
-      return {S(0), S(0), S(0), S(S(1) / element.modulus_mpa)};
+      return {S(0), S(0), S(0), S(S(1) / foam_.kelvin_voigt_modulus_mpa)};
     }
     const detail::foam::DecayMeans<S> means = detail::foam::decay_means(delays);
     const bool short_step = value(delays) <= 1;
-    const S flow = step_s / element.viscosity_mpa_s;
+    const S flow = step_s / viscosity;
     return {S(short_step ? 1 : 0),
-            short_step ? S(-S(means.first * delays)) : recovery(element, step_s),
+            short_step ? S(-S(means.first * delays)) : recovery(foam_, step_s),
             S(flow * S(means.first - means.second)), S(flow * means.second)};
   }
 
@@ -209,9 +182,9 @@ class Creep {
     const S given = S(by.by_before * before) + S(by.by_after * after);
     const S change = S(by.by_delayed * state.delayed_) + given;
     const S mean = S(before + after) / S(2);
-    state.elastic_ = after / foam_.maxwell.modulus_mpa;
+    state.elastic_ = after / foam_.maxwell_modulus_mpa;
     state.delayed_ = S(by.kept * state.delayed_) + change;
-    state.viscous_ = state.viscous_ + S(mean * S(step_s / foam_.maxwell.viscosity_mpa_s));
+    state.viscous_ = state.viscous_ + S(mean * S(step_s / foam_.maxwell_viscosity_mpa_s));
     return state.strain();
   }
 

@@ -1,128 +1,21 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// What a oscillator does within a step of time h, for a load that is linear in it. All of it is
-// entire in h, s and D (free_wave.hpp): by its Taylor series over a step so short that nothing
-// cancels, which is then doubled as often as needed. So one formula serves any damping and any
-// step, tiny or huge, and any number type: there is no function in it.
-#include <cmath>
-#include <limits>
-
-#include "fingerpad/core/expects.hpp"
-#include "fingerpad/core/scalar.hpp"
-#include "fingerpad/sim/two_word.hpp"
-
-namespace fingerpad {
-inline namespace v0 {
-
-namespace detail {
-
-// The motion of a damped oscillator without load. With s = c/2m and D = s^2 - k/m every such motion
-// is e^{-st} [C1 C(D t^2) + C2 t S(D t^2)], where
-//
-//   C(x) = 1 + x/2! + x^2/4! + ... = cosh sqrt(x) = cos sqrt(-x)
-//   S(x) = 1 + x/3! + x^2/5! + ... = sinh sqrt(x) / sqrt(x) = sin sqrt(-x) / sqrt(-x)
-//
-// have no branch at critical damping (D = 0). The phase sqrt(-D) t is carried in two words, and
-// neither function is taken without its decay: nothing overflows, however long the time.
-
-namespace foam {
-
-/// s, D and k/m with the digits of `wide_t<S>`.
-template <scalar S>
-struct MassSpringDamperRates {
-  using W = wide_t<S>;
-  W decay;       ///< s, 1/s
-  W natural_sq;  ///< k/m, 1/s^2
-  W split;       ///< D, 1/s^2: < 0 swings, > 0 creeps
-
-  MassSpringDamperRates(const S& mass, const S& damping, const S& stiffness)
-      : decay(W(damping) / W(S(mass + mass))),
-        natural_sq(W(stiffness) / W(mass)),
-        split(W(decay * decay) - natural_sq) {}
-};
-
-/// e^{-st} C(D t^2) and e^{-st} t S(D t^2).
-template <class R>
-struct FreeWave {
-  R wave;
-  R lag;
-};
-
-/// C(x) and S(x) by their series, for |x| <= 1.
-template <scalar R>
-FreeWave<R> entire_pair(const R& x) {
-  FreeWave<R> sum{R(1), R(1)};
-  R even(1), odd(1);
-  scalar_real_t<R> size(1);
-  for (int n = 1; size > epsilon<R>(); ++n) {
-    even = R(even * x) / R((2 * n - 1) * (2 * n));
-    odd = R(odd * x) / R((2 * n) * (2 * n + 1));
-    sum.wave = sum.wave + even;
-    sum.lag = sum.lag + odd;
-    size = size / scalar_real_t<R>((2 * n - 1) * (2 * n));
-  }
-  return sum;
-}
-
-/// D < 0, by sine and cosine of the phase.
-template <scalar S, class R = narrow_t<wide_t<S>>>
-FreeWave<R> swinging(const MassSpringDamperRates<S>& rates, const wide_t<S>& time) {
-  using std::cos;
-  using std::exp;
-  using std::sin;
-  using std::sqrt;
-  using W = wide_t<S>;
-  const W frequency = sqrt(W(-rates.split));
-  const W phase = frequency * time;
-  const R decayed = exp(W(-W(rates.decay * time)));
-  const R in_phase = cos(phase), out_of_phase = sin(phase);
-  return {R(decayed * in_phase), R(R(decayed * out_of_phase) / R(frequency))};
-}
-
-/// D > 0, by two decays; the slow one is (k/m) / (s + sqrt(D)), since s - sqrt(D) would cancel.
-template <scalar S, class R = narrow_t<wide_t<S>>>
-FreeWave<R> creeping(const MassSpringDamperRates<S>& rates, const wide_t<S>& time) {
-  using std::exp;
-  using std::sqrt;
-  using W = wide_t<S>;
-  const W root = sqrt(rates.split);
-  const W slow = rates.natural_sq / W(rates.decay + root);
-  const R slow_part = exp(W(-W(slow * time)));
-  const R fast_share = exp(W(-W(W(root + root) * time)));
-  const R half = slow_part / R(2);
-  return {R(half * R(R(1) + fast_share)), R(R(half * R(R(1) - fast_share)) / R(root))};
-}
-
-template <scalar S, class R = narrow_t<wide_t<S>>>
-FreeWave<R> free_wave(const MassSpringDamperRates<S>& rates, const S& time_s) {
-  using std::exp;
-  using W = wide_t<S>;
-  if (!(value(time_s) >= 0) || !is_finite(time_s)) {
-    return {not_a_number<R>(), not_a_number<R>()};
-  }
-  const W time = W(time_s);
-  const W scaled = W(rates.split * time) * time;
-  const scalar_real_t<W> x = value(scaled);
-  if (x < -1) {
-    return swinging(rates, time);
-  }
-  if (1 < x) {
-    return creeping(rates, time);
-  }
-  const R decayed = exp(W(-W(rates.decay * time)));
-  const FreeWave<R> pair = entire_pair(R(scaled));
-  return {R(decayed * pair.wave), R(R(decayed * R(time)) * pair.lag)};
-}
-
-}  // namespace foam
-}  // namespace detail
-
-// The oscillator on the contact (paper, eqs. 3-8) and its motion in closed form:
+// The mass-spring-damper on the contact (paper, eqs. 3-8), in closed form and step by step:
 //
 //   m y'' + c (y' - y_ie') + k (y - y_ie) = f(t)
 //
-// Published are m = c = k = 1. Units: mm, N, s, so that masses are in N s^2/mm = 1000 kg.
+// Published are m = c = k = 1. Units: mm, N, s, so that masses are in N s^2/mm = 1000 kg. Float is
+// computed in double and double in long double: without damping a motion is as exact as the phase
+// sqrt(k/m) t in that number.
+#include <cmath>
+
+#include "fingerpad/core/expects.hpp"
+#include "fingerpad/core/scalar.hpp"
+#include "fingerpad/sim/detail/oscillation.hpp"
+
+namespace fingerpad {
+inline namespace v0 {
 
 /// A mass on a spring and a dashpot, with the values of the paper.
 template <scalar S = double>
@@ -130,6 +23,12 @@ struct MassSpringDamper {
   S mass_n_s2_per_mm = S(1);    ///< m > 0; 0.001 is 1 kg
   S damping_n_s_per_mm = S(1);  ///< c >= 0
   S stiffness_n_per_mm = S(1);  ///< k > 0: without a spring there is no place to come to rest at
+
+  /// Where the mass is and how fast it goes.
+  struct Motion {
+    S position_mm = S(0);
+    S velocity_mm_per_s = S(0);
+  };
 };
 
 /// Refuses what has no meaning (parameter_error).
@@ -155,13 +54,6 @@ S damping_ratio(const MassSpringDamper<S>& oscillator) {
   return S(oscillator.damping_n_s_per_mm / S(root + root));
 }
 
-/// Where the oscillator is and how fast it goes.
-template <scalar S = double>
-struct Motion {
-  S position_mm = S(0);
-  S velocity_mm_per_s = S(0);
-};
-
 /// f(t) = A + B t, the load of eq. 8.
 template <scalar S = double>
 struct RampLoad {
@@ -173,7 +65,8 @@ struct RampLoad {
 
 /// What a moving frame, at y_ie with the speed y_ie', adds to the load: c y_ie' + k y_ie.
 template <scalar S>
-S frame_load(const MassSpringDamper<S>& oscillator, const Motion<S>& frame) {
+S frame_load(const MassSpringDamper<S>& oscillator,
+             const typename MassSpringDamper<S>::Motion& frame) {
   return S(S(oscillator.damping_n_s_per_mm * frame.velocity_mm_per_s) +
            S(oscillator.stiffness_n_per_mm * frame.position_mm));
 }
@@ -181,7 +74,7 @@ S frame_load(const MassSpringDamper<S>& oscillator, const Motion<S>& frame) {
 /// m y'' + c y' + k y - f in N: 0 for every solution.
 template <scalar S>
 S residual(const MassSpringDamper<S>& oscillator,
-           const Motion<S>& motion,
+           const typename MassSpringDamper<S>::Motion& motion,
            const S& acceleration_mm_per_s2,
            const S& load_n) {
   const S inertia = oscillator.mass_n_s2_per_mm * acceleration_mm_per_s2;
@@ -190,9 +83,9 @@ S residual(const MassSpringDamper<S>& oscillator,
 
 /// y_p of the ramp load: (B/k) t + A/k - c B/k^2 (E039).
 template <scalar S>
-Motion<S> particular_solution(const MassSpringDamper<S>& oscillator,
-                              const RampLoad<S>& load,
-                              const S& time_s) {
+typename MassSpringDamper<S>::Motion particular_solution(const MassSpringDamper<S>& oscillator,
+                                                         const RampLoad<S>& load,
+                                                         const S& time_s) {
   const S speed = load.rise_n_per_s / oscillator.stiffness_n_per_mm;
   const S drag = oscillator.damping_n_s_per_mm * speed;
   return {S(S(S(load.start_n - drag) / oscillator.stiffness_n_per_mm) + S(speed * time_s)), speed};
@@ -201,17 +94,18 @@ Motion<S> particular_solution(const MassSpringDamper<S>& oscillator,
 /// The particular solution as printed in eq. 9, for m = c = k = 1: A (t - 1) + B, with A and B
 /// exchanged. Its residual is (A - B) (t - 1).
 template <scalar S>
-Motion<S> printed_particular_solution(const RampLoad<S>& load, const S& time_s) {
+typename MassSpringDamper<S>::Motion printed_particular_solution(const RampLoad<S>& load,
+                                                                 const S& time_s) {
   return {S(S(load.start_n * S(time_s - S(1))) + load.rise_n_per_s), load.start_n};
 }
 
 /// y_c: the oscillator left alone, a time after `start`. Exact for any damping; a time that is
 /// negative or no number gives NaN.
 template <scalar S>
-Motion<S> free_motion(const MassSpringDamper<S>& oscillator,
-                      const Motion<S>& start,
-                      const S& time_s) {
-  using R = detail::foam::narrow_t<detail::foam::wide_t<S>>;
+typename MassSpringDamper<S>::Motion free_motion(const MassSpringDamper<S>& oscillator,
+                                                 const typename MassSpringDamper<S>::Motion& start,
+                                                 const S& time_s) {
+  using R = detail::foam::wide_t<S>;
   const detail::foam::MassSpringDamperRates<S> rates(
       oscillator.mass_n_s2_per_mm, oscillator.damping_n_s_per_mm, oscillator.stiffness_n_per_mm);
   const detail::foam::FreeWave<R> wave = detail::foam::free_wave(rates, time_s);
@@ -226,112 +120,157 @@ Motion<S> free_motion(const MassSpringDamper<S>& oscillator,
 /// The full solution y = y_c + y_p of eq. 8 for the ramp load, from any start. For times far below
 /// a period and a start at rest both parts nearly cancel: FirstOrderHold has no such loss.
 template <scalar S>
-Motion<S> ramp_response(const MassSpringDamper<S>& oscillator,
-                        const RampLoad<S>& load,
-                        const Motion<S>& start,
-                        const S& time_s) {
-  const Motion<S> at_start = particular_solution(oscillator, load, S(0));
-  const Motion<S> forced = particular_solution(oscillator, load, time_s);
-  const Motion<S> difference{S(start.position_mm - at_start.position_mm),
-                             S(start.velocity_mm_per_s - at_start.velocity_mm_per_s)};
-  const Motion<S> left = free_motion(oscillator, difference, time_s);
+typename MassSpringDamper<S>::Motion ramp_response(
+    const MassSpringDamper<S>& oscillator,
+    const RampLoad<S>& load,
+    const typename MassSpringDamper<S>::Motion& start,
+    const S& time_s) {
+  const auto at_start = particular_solution(oscillator, load, S(0));
+  const auto forced = particular_solution(oscillator, load, time_s);
+  const typename MassSpringDamper<S>::Motion difference{
+      S(start.position_mm - at_start.position_mm),
+      S(start.velocity_mm_per_s - at_start.velocity_mm_per_s)};
+  const auto left = free_motion(oscillator, difference, time_s);
   return {S(forced.position_mm + left.position_mm),
           S(forced.velocity_mm_per_s + left.velocity_mm_per_s)};
 }
 
-namespace detail {
-namespace foam {
+/// The oscillator step by step, exact where the load is linear within a step, whatever the damping
+/// and the step. Const: one serves any number of oscillators, each with a state of its own. O(1),
+/// no memory from the heap.
+template <scalar S = double>
+class FirstOrderHold {
+  using W = detail::foam::wide_t<S>;
+  using Motion = typename MassSpringDamper<S>::Motion;
 
-/// Answers after a step, for m = 1.
-template <scalar W>
-struct StepAnswers {
-  W step;    ///< h, s
-  W wave;    ///< e^{-sh} C(D h^2)
-  W lag;     ///< e^{-sh} h S(D h^2), the answer to a start with speed 1
-  W raised;  ///< to a load of 1, from rest: the integral of lag
-  W ramped;  ///< to a load that rises by 1 per s, from rest: the integral of that
+ public:
+  /// A value: copy it to go back to this sample later.
+  class State {
+   public:
+    Motion motion() const { return {S(position_), S(velocity_)}; }
+
+   private:
+    friend class FirstOrderHold;
+    explicit State(const Motion& motion)
+        : position_(W(motion.position_mm)), velocity_(W(motion.velocity_mm_per_s)) {}
+
+    W position_;
+    W velocity_;
+  };
+
+  /// For samples `step_s` apart. Refuses bad parameters (parameter_error), and a step so long that
+  /// an oscillator still swings but no digit of its phase is left: some 10^12 periods.
+  FirstOrderHold(const MassSpringDamper<S>& oscillator, const S& step_s)
+      : oscillator_(checked(oscillator)),
+        rates_(oscillator.mass_n_s2_per_mm,
+               oscillator.damping_n_s_per_mm,
+               oscillator.stiffness_n_per_mm) {
+    const bool forward = is_finite(step_s) && value(step_s) > 0;
+    expects(forward && coefficients(step_s, of_step_), "FirstOrderHold", "step_s", step_s,
+            "finite, > 0 and within the digits of the phase");
+  }
+
+  const MassSpringDamper<S>& oscillator() const { return oscillator_; }
+  State start(const Motion& motion = {}) const { return State(motion); }
+
+  /// The motion at the end of a step, with the load at both ends of it in N. A load may jump
+  /// between two steps. One that is not finite is no step: the answer is NaN, the state stays.
+  Motion operator()(const S& before_n, const S& after_n, State& state) const {
+    return advance(of_step_, before_n, after_n, state);
+  }
+
+  /// A step of another length, as of a clock that jitters; its coefficients are computed anew. A
+  /// step that the constructor would refuse is none: NaN, the state stays.
+  Motion operator()(const S& before_n, const S& after_n, const S& step_s, State& state) const {
+    Coefficients by;
+    if (!is_finite(step_s) || !(value(step_s) > 0) || !coefficients(step_s, by)) {
+      return no_motion();
+    }
+    return advance(by, before_n, after_n, state);
+  }
+
+ private:
+  /// y += y_by_y y + y_by_v v + ..., or y = ... where hardly anything is left of it.
+  struct Coefficients {
+    W kept = W(0);  ///< 1 or 0
+    W y_by_y = W(0), y_by_v = W(0), y_by_before = W(0), y_by_after = W(0);
+    W v_by_y = W(0), v_by_v = W(0), v_by_before = W(0), v_by_after = W(0);
+  };
+
+  static const MassSpringDamper<S>& checked(const MassSpringDamper<S>& oscillator) {
+    expects_valid(oscillator);
+    return oscillator;
+  }
+  static Motion no_motion() { return {not_a_number<S>(), not_a_number<S>()}; }
+
+  /// False where the phase is lost.
+  bool coefficients(const S& step_s, Coefficients& to) const {
+    const detail::foam::StepAnswers<W> a = detail::foam::step_answers(rates_, step_s);
+    const W damped = rates_.decay * a.lag;
+    const W lost = rates_.natural_sq * a.raised;  // of a start at 1
+    const W slowed = lost + W(damped + damped);
+    const bool short_step = value(slowed) < scalar_real_t<W>(1) / scalar_real_t<W>(2);
+    const W mass = W(oscillator_.mass_n_s2_per_mm);
+    const W y_by_after = W(a.ramped / a.step) / mass;
+    const W v_by_after = W(a.raised / a.step) / mass;
+    to.kept = W(short_step ? 1 : 0);
+    to.y_by_y = W(short_step ? W(-lost) : W(a.wave + damped));
+    to.y_by_v = a.lag;
+    to.y_by_before = W(W(a.raised / mass) - y_by_after);
+    to.y_by_after = y_by_after;
+    to.v_by_y = W(-W(rates_.natural_sq * a.lag));
+    to.v_by_v = W(short_step ? W(-slowed) : W(a.wave - damped));
+    to.v_by_before = W(W(a.lag / mass) - v_by_after);
+    to.v_by_after = v_by_after;
+    return detail::foam::knows_phase(rates_, step_s) && is_finite(a.ramped) &&
+           is_finite(to.v_by_before);
+  }
+
+  Motion advance(const Coefficients& by, const S& before_n, const S& after_n, State& state) const {
+    if (!is_finite(before_n) || !is_finite(after_n)) {
+      return no_motion();
+    }
+    const W before = W(before_n), after = W(after_n);
+    const W y = state.position_, v = state.velocity_;
+    const W y_loaded = W(by.y_by_before * before) + W(by.y_by_after * after);
+    const W v_loaded = W(by.v_by_before * before) + W(by.v_by_after * after);
+    const W y_change = W(W(by.y_by_y * y) + W(by.y_by_v * v)) + y_loaded;
+    const W v_change = W(W(by.v_by_y * y) + W(by.v_by_v * v)) + v_loaded;
+    state.position_ = W(by.kept * y) + y_change;
+    state.velocity_ = W(by.kept * v) + v_change;
+    return state.motion();
+  }
+
+  MassSpringDamper<S> oscillator_;
+  detail::foam::MassSpringDamperRates<S> rates_;
+  Coefficients of_step_;
 };
 
-/// For (2 s + sqrt(k/m)) h <= `size` <= 1/2. With g = lag, g'' = -2 s g' - (k/m) g gives one
-/// derivative at 0 after another.
-template <scalar S, class W>
-StepAnswers<W> short_step(const MassSpringDamperRates<S>& rates,
-                          const W& step,
-                          scalar_real_t<W> size) {
-  const W drag = W(rates.decay + rates.decay) * step;
-  const W spring = W(rates.natural_sq * step) * step;
-  W derivative(0), next(step);  // the n-th of g, times h^n
-  W share(1);                   // 1 / n!
-  StepAnswers<W> sum{step, W(0), W(0), W(0), W(0)};
-  scalar_real_t<W> bound(1);
-  for (int n = 0; bound > epsilon<W>(); ++n) {
-    const W term = derivative * share;
-    const W once = term / W(n + 1);
-    sum.lag = sum.lag + term;
-    sum.raised = sum.raised + once;
-    sum.ramped = sum.ramped + W(once / W(n + 2));
-    const W after = W(-W(drag * next)) - W(spring * derivative);
-    derivative = next;
-    next = after;
-    share = share / W(n + 1);
-    bound = bound * size / scalar_real_t<W>(n + 1);
+/// y_p of any load, by the causal integral of eq. 10: (1/m) Int_0^t lag(t - u) f(u) du, with `lag`
+/// the oscillator's answer to a push (2/sqrt(3) e^(-t/2) sin(sqrt(3)/2 t) for m = c = k = 1). The
+/// load is taken as linear between `steps` + 1 samples of it, so the error falls with the square of
+/// the step. NaN for a time that is negative or not finite, and for no steps.
+template <scalar S, class Load>
+typename MassSpringDamper<S>::Motion causal_response(const MassSpringDamper<S>& oscillator,
+                                                     const Load& load,
+                                                     const S& time_s,
+                                                     int steps) {
+  if (value(time_s) == 0 && steps > 0) {
+    return {};
   }
-  sum.raised = sum.raised * step;
-  sum.ramped = W(sum.ramped * step) * step;
-  sum.wave = W(W(1) - W(rates.natural_sq * sum.raised)) - W(rates.decay * sum.lag);
-  return sum;
-}
-
-/// The answers after twice the time.
-template <scalar S, class W>
-StepAnswers<W> doubled(const MassSpringDamperRates<S>& rates, const StepAnswers<W>& a) {
-  const W kept = a.wave + W(rates.decay * a.lag);  // of a start at 1
-  const W once_more = W(1) + kept;
-  return {W(a.step + a.step), W(W(a.wave * a.wave) + W(rates.split * W(a.lag * a.lag))),
-          W(W(a.wave + a.wave) * a.lag), W(W(once_more * a.raised) + W(a.lag * a.lag)),
-          W(W(once_more * a.ramped) + W(W(a.step + a.lag) * a.raised))};
-}
-
-/// The fastest rate of a oscillator, 1/s: a bound for both its frequency and its decays.
-template <scalar S>
-scalar_real_t<wide_t<S>> fastest_rate(const MassSpringDamperRates<S>& rates) {
-  using std::sqrt;
-  using Real = scalar_real_t<wide_t<S>>;
-  const Real decay = value(rates.decay), natural_sq = value(rates.natural_sq);
-  return Real(decay + decay + Real(sqrt(natural_sq)));
-}
-
-/// Whether a step is short enough for the digits of its phase, or so long that the phase does not
-/// matter, as nothing is left of the motion.
-template <scalar S>
-bool knows_phase(const MassSpringDamperRates<S>& rates, const S& step_s) {
-  using W = wide_t<S>;
-  using Real = scalar_real_t<W>;
-  const Real step = value(W(step_s));
-  const Real uncertain = Real(epsilon<W>() * fastest_rate(rates)) * step;
-  const Real decays = Real(value(rates.decay)) * step;
-  return uncertain < Real(1) / Real(1000) || Real(1000) * (Real(1) + uncertain) < decays;
-}
-
-/// For step_s > 0 and finite.
-template <scalar S, class W = wide_t<S>>
-StepAnswers<W> step_answers(const MassSpringDamperRates<S>& rates, const S& step_s) {
-  using Real = scalar_real_t<W>;
-  const Real rate = fastest_rate(rates);
-  W step = W(step_s);
-  int doublings = 0;
-  for (; Real(rate * value(step)) > Real(1) / Real(2); ++doublings) {
-    step = step / W(2);
+  if (!(value(time_s) > 0) || !is_finite(time_s) || steps <= 0) {
+    return {not_a_number<S>(), not_a_number<S>()};
   }
-  StepAnswers<W> answers = short_step(rates, step, Real(rate * value(step)));
-  for (int k = 0; k < doublings; ++k) {
-    answers = doubled(rates, answers);
+  const FirstOrderHold<S> hold(oscillator, S(time_s / S(steps)));
+  auto state = hold.start();
+  S before = load(S(0));
+  for (int k = 1; k <= steps; ++k) {
+    const S after = load(S(S(time_s * S(k)) / S(steps)));
+    hold(before, after, state);
+    before = after;
   }
-  return answers;
+  return state.motion();
 }
-
-}  // namespace foam
-}  // namespace detail
 
 }  // namespace v0
 }  // namespace fingerpad

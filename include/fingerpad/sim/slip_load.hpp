@@ -13,7 +13,6 @@
 #include "fingerpad/core/scalar.hpp"
 #include "fingerpad/sim/contact_friction.hpp"
 #include "fingerpad/sim/mass_spring_damper.hpp"
-#include "fingerpad/sim/two_word.hpp"
 
 namespace fingerpad {
 inline namespace v0 {
@@ -80,10 +79,8 @@ struct LiftLoad {
 
   S operator()(const S& time_s) const {
     using std::sin;
-    using W = detail::foam::wide_t<S>;
-    using R = detail::foam::narrow_t<W>;
-    const R wave = sin(W(W(frequency_rad_per_s) * W(time_s)));
-    const S root = detail::foam::positive_cube_root(S(middle + S(swing * S(wave))));
+    const S wave = S(sin(S(frequency_rad_per_s * time_s)));
+    const S root = detail::foam::positive_cube_root(S(middle + S(swing * wave)));
     return S(root * drag(time_s));
   }
 };
