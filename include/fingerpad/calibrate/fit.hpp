@@ -56,6 +56,8 @@ enum class FitStatus : std::uint8_t {
   axes_exchanged,
   sign_reversed,
   has_outlier,
+  pressure_not_in_mpa,
+  pressure_unbalanced,
   depths_not_in_mm,
   colours_unexplained,
   scatters_no_light,
@@ -90,6 +92,10 @@ constexpr const char* name_of(FitStatus status) {
       return "forces point against the displacements: is the sign of an axis reversed?";
     case FitStatus::has_outlier:
       return "a sample lies far off the others: a dot mistaken, a gauge bumped? Fit robustly";
+    case FitStatus::pressure_not_in_mpa:
+      return "a pressure above 0.2: in MPa, above that around the pad?";
+    case FitStatus::pressure_unbalanced:
+      return "pressure and pull of the rim do not balance: pressures of the same frames, tared?";
     case FitStatus::depths_not_in_mm:
       return "no depth reaches 0.1: in mm?";
     case FitStatus::colours_unexplained:

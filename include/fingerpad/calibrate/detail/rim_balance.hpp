@@ -1,13 +1,12 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// From the side dots of the free pad to the equations of its balance, and the errors of their
-// solution. See calibrate/rim.hpp.
+// From the side dots of the free pad to the equations of its vertical balance,
+// mu t (A / L - B L^3) = p a / 2, their solutions and the errors of these. See calibrate/rim.hpp.
 #include <cmath>
 #include <cstddef>
 #include <vector>
 
-#include "fingerpad/calibrate/detail/rim_equations.hpp"
 #include "fingerpad/calibrate/detail/rim_frames.hpp"
 #include "fingerpad/core/dots.hpp"
 #include "fingerpad/core/grid.hpp"
@@ -18,6 +17,61 @@
 namespace fingerpad {
 inline namespace v0 {
 namespace detail::membrane {
+
+/// Of a level of pressure.
+template <scalar S>
+struct RimEquation {
+  S a;
+  S b;
+  S pull;  ///< p a / 2, N/mm
+  /// For mu t = 1.
+  S mean_pull(const S& length) const { return S(a / length - b * length * length * length); }
+};
+
+/// Root of the ratio of the eigenvalues of [aa ab; ab bb], columns scaled to length 1.
+template <scalar S>
+S condition_of(const S& aa, const S& ab, const S& bb) {
+  using std::sqrt;
+  const S cosine_sq = ab * ab / (aa * bb);
+  const S cosine = sqrt(cosine_sq);
+  return S(sqrt(S((S(1) + cosine) / (S(1) - cosine))));
+}
+
+/// Both unknowns.
+template <scalar S>
+struct RimUnknowns {
+  S u;  ///< mu t / L
+  S v;  ///< mu t L^3
+  S condition;
+};
+
+/// Least squares, all levels alike.
+template <scalar S>
+RimUnknowns<S> both_of(const std::vector<RimEquation<S>>& equations) {
+  S aa = S(0), ab = S(0), bb = S(0), ap = S(0), bp = S(0);
+  for (const RimEquation<S>& e : equations) {
+    aa = aa + e.a * e.a;
+    ab = ab + e.a * e.b;
+    bb = bb + e.b * e.b;
+    ap = ap + e.a * e.pull;
+    bp = bp + e.b * e.pull;
+  }
+  const S determinant = aa * bb - ab * ab;
+  return {S((ap * bb - bp * ab) / determinant), S((ap * ab - bp * aa) / determinant),
+          condition_of(aa, ab, bb)};
+}
+
+/// mu t for a given L.
+template <scalar S>
+S modulus_of(const S& length, const std::vector<RimEquation<S>>& equations) {
+  S gp = S(0), gg = S(0);
+  for (const RimEquation<S>& e : equations) {
+    const S g = e.mean_pull(length);
+    gp = gp + g * e.pull;
+    gg = gg + g * g;
+  }
+  return S(gp / gg);
+}
 
 /// The rim at all levels of pressure. Refers to rim, levels and row.
 template <class Row, scalar S>
@@ -97,7 +151,6 @@ class FreeRimBalance {
   Errors errors(const S& length,
                 const S& modulus,
                 bool length_found,
-                bool modulus_found,
                 const S& dot_noise,
                 const S& pressure_noise) const {
     using std::sqrt;
@@ -105,8 +158,7 @@ class FreeRimBalance {
     S ll = S(0), lm = S(0), mm = S(0);
     S vl = S(0), vlm = S(0), vm = S(0);  // J^T V J
     const bool noisy = value(dot_noise) > 0 || value(pressure_noise) > 0;
-    const int free_levels =
-        static_cast<int>(levels_.size()) - (length_found ? 1 : 0) - (modulus_found ? 1 : 0);
+    const int free_levels = static_cast<int>(levels_.size()) - (length_found ? 2 : 1);
     S squares = S(0);
     for (const RimEquation<S>& e : equations_) {
       squares = squares + square(S(modulus * e.mean_pull(length) - e.pull));
@@ -117,7 +169,7 @@ class FreeRimBalance {
       const S l = length_found
                       ? S(-modulus * (e.a / length + S(3) * e.b * length * length * length))
                       : S(0);
-      const S m = modulus_found ? S(modulus * e.mean_pull(length)) : S(0);
+      const S m = modulus * e.mean_pull(length);
       const S v = noisy ? variance(k, length, modulus, dot_noise, pressure_noise) : by_residual;
       ll = ll + l * l;
       lm = lm + l * m;
@@ -127,9 +179,6 @@ class FreeRimBalance {
       vm = vm + v * m * m;
     }
     const S zero = S(0), one = S(1);
-    if (!modulus_found) {
-      return {S(length * sqrt(vl) / ll), zero, zero, one};
-    }
     if (!length_found) {
       return {zero, S(modulus * sqrt(vm) / mm), zero, one};
     }
