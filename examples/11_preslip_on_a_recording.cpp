@@ -77,7 +77,7 @@ bool find_first_alarm(const Recording& recording) {
     for (const Sample& sample : recording.samples) {
       calibration.add(finger(sample, k), sample.time_s);
     }
-    features.emplace_back(calibration.choose().view(), options);
+    features.emplace_back(calibration.fit().view(), options);
     states.push_back(features.back().start());
   }
   const Preslip<Rule, Fingers> preslip;

@@ -355,7 +355,7 @@ TEST_CASE("dot noise: what it refuses", "[stick]") {
                     }),
                     "DotNoiseCalibration: weights.self = 0"));
   DotNoiseCalibration calibration(3, 3);
-  const auto said = [&] { return refusal([&] { calibration.fit(); }); };
+  const auto said = [&] { return refusal([&] { (void)calibration.fit(); }); };
   CHECK(begins_with(said(), "DotNoiseCalibration: frames = 0"));
   CHECK_FALSE(calibration.add(Points(3, 4)));
   CHECK_FALSE(calibration.add(Points(3, 3), Flags(3, 4, 1)));
@@ -382,7 +382,7 @@ TEST_CASE("dot noise: what it refuses", "[stick]") {
     dots(0, t % 2).y = test::nan;
     apart.add(dots);
   }
-  CHECK(begins_with(refusal([&] { apart.fit(); }), "DotNoiseCalibration: positions beyond"));
+  CHECK(begins_with(refusal([&] { (void)apart.fit(); }), "DotNoiseCalibration: positions beyond"));
 }
 
 TEST_CASE("false slip: against fifty digits, however rare", "[stick]") {
@@ -823,7 +823,7 @@ TEST_CASE("choice of U: what it refuses", "[stick]") {
   const auto choose = [&](const Recording& recording, const StickTestOptions& search = {}) {
     StickTestCalibration<> calibration(21, 21, noise, search);
     add(recording, calibration);
-    return refusal([&] { calibration.fit(); });
+    return refusal([&] { (void)calibration.fit(); });
   };
   const std::string owner = "StickTestCalibration: ";
   CHECK(choose(record({})) == "accepted");
@@ -854,7 +854,7 @@ TEST_CASE("choice of U: what it refuses", "[stick]") {
   StickTestCalibration<> calibration(21, 21, noise);
   CHECK_FALSE(calibration.add(Points(21, 20), Flags(21, 20, 1)));
   CHECK_FALSE(calibration.add(Points(21, 21), Flags(20, 21, 1)));
-  CHECK(begins_with(refusal([&] { calibration.fit(); }),
+  CHECK(begins_with(refusal([&] { (void)calibration.fit(); }),
                     owner + "frames with contact and motion = 0"));
 }
 

@@ -62,7 +62,7 @@ double found(Index windows, std::uint64_t seed, const Reading& reading, Index wi
   return recorded(
              1, 1, windows * window, seed,
              [&](Index k, Index, Index, double noise) { return reading(k, noise); }, options)
-      .choose()
+      .fit()
       .typical;
 }
 
@@ -181,7 +181,7 @@ TEST_CASE("taxel noise: each taxel has its own, but none less than is typical", 
   const auto calibration = recorded(3, 4, 16 * 400, 9, [&](Index, Index i, Index j, double noise) {
     return i == 2 && j == 0 ? 3.0 : 500 + deviation(i, j) * noise;
   });
-  const TaxelNoise noise = calibration.choose();
+  const TaxelNoise noise = calibration.fit();
   CHECK(noise.rows == 3);
   CHECK(noise.cols == 4);
   CHECK(noise.windows == 400);
@@ -212,7 +212,7 @@ TEST_CASE("taxel noise: the most that a window spread", "[taxel_noise]") {
     of[static_cast<std::size_t>(i * cols + j)].push_back(now);
     return now;
   };
-  const TaxelNoise noise = recorded(rows, cols, windows * window, 21, reading).choose();
+  const TaxelNoise noise = recorded(rows, cols, windows * window, 21, reading).fit();
   double largest = 0;
   for (std::size_t k = 0; k < of.size(); ++k) {
     for (Index w = 0; w < windows; ++w) {
@@ -273,7 +273,7 @@ TEST_CASE("taxel noise: how still the centroid is", "[taxel_noise]") {
     return load(i, j) + deviation * noise;
   };
   const Options options{.pitch_mm = pitch_mm};
-  const auto noise = recorded(rows, cols, 16 * 400, 31, pressed, options).choose();
+  const auto noise = recorded(rows, cols, 16 * 400, 31, pressed, options).fit();
   // Both axes are judged at once: with some 28 freedoms the median is nearer to the mean than is
   // taken into account, by 2.4 % of the variance.
   CHECK(std::abs(noise.centroid_deviation_mm / expected_mm - 1) <=
@@ -283,7 +283,7 @@ TEST_CASE("taxel noise: how still the centroid is", "[taxel_noise]") {
   const auto sometimes = [&](Index k, Index i, Index j, double one) {
     return k / 16 % 4 == 3 ? -1 - std::abs(one) : pressed(k, i, j, one);
   };
-  const auto seldom = recorded(rows, cols, 16 * 400, 31, sometimes, options).choose();
+  const auto seldom = recorded(rows, cols, 16 * 400, 31, sometimes, options).fit();
   CHECK(seldom.windows == 400);
   CHECK(std::abs(seldom.centroid_deviation_mm / expected_mm - 1) <=
         3 * standard_error(300, 28) + 0.013);
@@ -292,13 +292,13 @@ TEST_CASE("taxel noise: how still the centroid is", "[taxel_noise]") {
     const auto let_go = [&](Index k, Index i, Index j, double one) {
       return k % every == every / 2 ? -1 - std::abs(one) : pressed(k, i, j, one);
     };
-    CHECK(std::isnan(recorded(rows, cols, 64, 31, let_go, options).choose().centroid_deviation_mm));
+    CHECK(std::isnan(recorded(rows, cols, 64, 31, let_go, options).fit().centroid_deviation_mm));
   }
 }
 
 TEST_CASE("taxel noise: taxels that are bad for a while or always", "[taxel_noise]") {
   const auto good = [](Index, Index, Index, double noise) { return 800 + 7 * noise; };
-  const auto reference = recorded(2, 2, 16 * 99, 41, good).choose();
+  const auto reference = recorded(2, 2, 16 * 99, 41, good).fit();
   for (const double bad : {none, infinity, -infinity, 4095.0, 1e300}) {
     CAPTURE(bad);
     const Options options{.saturated_at = 4095};
@@ -309,7 +309,7 @@ TEST_CASE("taxel noise: taxels that are bad for a while or always", "[taxel_nois
                               return i == 0 && j == 1 ? bad : good(k, i, j, noise);
                             },
                             options)
-                            .choose();
+                            .fit();
     CHECK(std::isnan(always.deviations[1]));
     CHECK(always.windows == 99);
     for (const std::size_t k : {0U, 2U, 3U}) {
@@ -326,7 +326,7 @@ TEST_CASE("taxel noise: taxels that are bad for a while or always", "[taxel_nois
                 return is_bad ? bad : i == 0 && j == 1 ? 800 + 20 * noise : good(k, i, j, noise);
               },
               options)
-              .choose();
+              .fit();
       CHECK(seldom.deviations[1] == Approx(20).epsilon(4 * standard_error(49, 14)));
       CHECK(seldom.largest_factor < 2.5);
       CHECK(seldom.typical == Approx(std::sqrt((400 + 3 * 49) / 4.0)).epsilon(0.1));
@@ -338,7 +338,7 @@ TEST_CASE("taxel noise: taxels that are bad for a while or always", "[taxel_nois
                              return k % 16 == 7 && i == 0 && j == 1 ? bad : good(k, i, j, noise);
                            },
                            options)
-                           .choose();
+                           .fit();
     CHECK(std::isnan(often.deviations[1]));
   }
   // just below saturation counts
@@ -346,14 +346,14 @@ TEST_CASE("taxel noise: taxels that are bad for a while or always", "[taxel_nois
       recorded(1, 1, 64, 1,
                [](Index k, Index, Index, double) { return k % 2 == 0 ? 4094.0 : 4093.0; },
                {.saturated_at = 4095})
-          .choose();
+          .fit();
   CHECK(high.deviations[0] > 0.4);
 }
 
 TEST_CASE("taxel noise: a dead taxel takes nothing from what is typical", "[taxel_noise]") {
   const auto noise = recorded(1, 3, 16 * 200, 51, [](Index, Index, Index j, double one) {
                        return j == 0 ? none : j == 1 ? 12.0 : 800 + 7 * one;
-                     }).choose();
+                     }).fit();
   CHECK(noise.typical == Approx(7).epsilon(0.04));
   CHECK(std::isnan(noise.deviations[0]));
   CHECK(noise.deviations[1] == noise.typical);  // it rested
@@ -379,19 +379,19 @@ TEST_CASE("taxel noise: a clock that jumps begins a new window", "[taxel_noise]"
   };
   for (const double jump_s : {0.3, 1000.0, -1000.0, -0.3}) {
     CAPTURE(jump_s);
-    CHECK(refusal([&] { run(800, 15, jump_s).choose(); }) ==
+    CHECK(refusal([&] { (void)run(800, 15, jump_s).fit(); }) ==
           "TaxelNoiseCalibration: windows = 0, must be >= 4");
-    const auto whole = run(16 * 100, 16, jump_s).choose();
+    const auto whole = run(16 * 100, 16, jump_s).fit();
     CHECK(whole.windows == 100);
     CHECK(whole.typical == Approx(7).epsilon(0.1));
     CHECK(whole.largest_factor < 2.5);
-    const auto cut = run(16 * 100, 25, jump_s).choose();  // one window of each 25 samples
+    const auto cut = run(16 * 100, 25, jump_s).fit();  // one window of each 25 samples
     CHECK(cut.windows == 64);
     CHECK(cut.typical == Approx(7).epsilon(0.1));
     CHECK(cut.largest_factor < 2.5);
   }
   // what is no jump goes on
-  CHECK(run(160, 10, 0.25).choose().windows == 10);
+  CHECK(run(160, 10, 0.25).fit().windows == 10);
 }
 
 TEST_CASE("taxel noise: what is refused changes nothing", "[taxel_noise]") {
@@ -413,18 +413,18 @@ TEST_CASE("taxel noise: what is refused changes nothing", "[taxel_noise]") {
     CHECK_FALSE(disturbed.add(wild, none));
     CHECK_FALSE(disturbed.add(wild, infinity));
   }
-  CHECK(same_noise(plain.choose(), disturbed.choose()));
+  CHECK(same_noise(plain.fit(), disturbed.fit()));
 }
 
 TEST_CASE("taxel noise: recordings that do not tell are refused", "[taxel_noise]") {
   const auto noisy = [](Index, Index, Index, double noise) { return 800 + noise; };
   const auto said = [](const auto& calibration) {
-    return refusal([&] { (void)calibration.choose(); });
+    return refusal([&] { (void)(void)calibration.fit(); });
   };
   CHECK(said(TaxelNoiseCalibration(2, 2)) == "TaxelNoiseCalibration: windows = 0, must be >= 4");
   CHECK(said(recorded(2, 2, 63, 1, noisy)) == "TaxelNoiseCalibration: windows = 3, must be >= 4");
   CHECK(said(recorded(2, 2, 64, 1, noisy)) == "accepted");
-  CHECK(recorded(2, 2, 16 * 8 + 7, 1, noisy).choose().windows == 8);
+  CHECK(recorded(2, 2, 16 * 8 + 7, 1, noisy).fit().windows == 8);
   const std::string unchanged =
       "TaxelNoiseCalibration: taxels whose readings change = 0, must be >= 1";
   CHECK(said(recorded(2, 2, 640, 1, [](Index, Index, Index, double) { return 0.1; })) == unchanged);
@@ -445,12 +445,12 @@ TEST_CASE("taxel noise: recordings that do not tell are refused", "[taxel_noise]
 
 TEST_CASE("taxel noise: what the options say of noise does not matter", "[taxel_noise]") {
   const auto noisy = [](Index, Index, Index, double noise) { return 800 + 7 * noise; };
-  const auto plain = recorded(2, 2, 640, 5, noisy).choose();
+  const auto plain = recorded(2, 2, 640, 5, noisy).fit();
   for (const double factor : {0.0, 1000.0}) {
-    CHECK(same_noise(
-        plain, recorded(2, 2, 640, 5, noisy, {.noise = 100, .noise_factor = factor}).choose()));
+    CHECK(same_noise(plain,
+                     recorded(2, 2, 640, 5, noisy, {.noise = 100, .noise_factor = factor}).fit()));
   }
-  CHECK(same_noise(plain, recorded(2, 2, 640, 5, noisy).choose()));
+  CHECK(same_noise(plain, recorded(2, 2, 640, 5, noisy).fit()));
 }
 
 TEST_CASE("taxel noise: whole counts of an integer array", "[taxel_noise]") {
@@ -467,6 +467,6 @@ TEST_CASE("taxel noise: whole counts of an integer array", "[taxel_noise]") {
     }
     // rounding adds 1/12 to the variance
     const double expected = std::sqrt(deviation * deviation + 1.0 / 12);
-    CHECK(calibration.choose().typical == Approx(expected).epsilon(0.015));
+    CHECK(calibration.fit().typical == Approx(expected).epsilon(0.015));
   }
 }

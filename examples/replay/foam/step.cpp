@@ -72,7 +72,7 @@ FoamNoise noise_of(const FoamRecording& recording, int finger) {
       calibration.add(recording.finger(sample, finger),
                       recording.table.times_s[static_cast<std::size_t>(sample)]);
     }
-    return {calibration.choose().deviations};
+    return {calibration.fit().deviations};
   } catch (const fingerpad::parameter_error&) {  // too short, or without any noise
     const double noise = thousandth * largest_reading(recording);
     return {std::vector<double>(taxels, noise), false};

@@ -13,6 +13,7 @@
 #include <cstddef>
 #include <vector>
 
+#include "fingerpad/calibrate/fit.hpp"
 #include "fingerpad/core/expects.hpp"
 #include "fingerpad/core/grid.hpp"
 #include "fingerpad/core/scalar.hpp"
@@ -32,13 +33,9 @@ struct ThresholdRule {
   bool pooled_sigma = true;  ///< one sigma, the root mean square over the pad, for all pixels
 };
 
-/// The slides' rule: the worst pixel alone counts.
-constexpr ThresholdRule published_threshold_rule() {
-  return {1, 2, 0, false};
-}
-
 /// What the free pad is like. All curvatures in 1/mm.
-struct FreePadCurvature {
+struct [[nodiscard]] FreePadCurvature {
+  FitStatus status = FitStatus::ok;
   double threshold_per_mm = 0;  ///< delta, for ContactTest
   double median_per_mm = 0;     ///< of E over the pad
   double noise_per_mm = 0;      ///< root mean square of sigma over the pad; 0 from a single frame
@@ -46,6 +43,8 @@ struct FreePadCurvature {
                                 ///< object's edge; HalfLevelEdge, which smooths, comes to less
   Index pixels = 0;             ///< with a curvature in every frame
   int frames = 0;
+
+  bool ok() const { return status == FitStatus::ok; }
 };
 
 /// Collects curvature statistics of the free pad. It must be the statistic, the ring and the camera
@@ -122,6 +121,11 @@ class FreePadCalibration {
             pad.threshold_per_mm,
             "> 0: the pad bulges too little for its noise; a larger ring, or "
             "more smoothing of the depth, helps");
+    if (pad.median_per_mm < 1e-3) {  // as of a sphere of a metre: no pad is as flat
+      pad.status = FitStatus::depths_not_in_mm;
+    } else if (2 * means.size() < mean_.size()) {
+      pad.status = FitStatus::depths_missing;
+    }
     return pad;
   }
 

@@ -59,8 +59,11 @@ enum class FitStatus : std::uint8_t {
   pressure_not_in_mpa,
   pressure_unbalanced,
   depths_not_in_mm,
+  depths_missing,
   colours_unexplained,
   scatters_no_light,
+  pad_moved,
+  taxels_missing,
 };
 
 /// The cause in words.
@@ -97,11 +100,17 @@ constexpr const char* name_of(FitStatus status) {
     case FitStatus::pressure_unbalanced:
       return "pressure and pull of the rim do not balance: pressures of the same frames, tared?";
     case FitStatus::depths_not_in_mm:
-      return "no depth reaches 0.1: in mm?";
+      return "depths too small for a pad: in mm?";
+    case FitStatus::depths_missing:
+      return "fewer than half of the pixels have a depth: calibration, exposure, frame?";
     case FitStatus::colours_unexplained:
       return "the colours do not follow from the depths: other order, other place, other frame?";
     case FitStatus::scatters_no_light:
       return "g is not positive everywhere: are red and green exchanged?";
+    case FitStatus::pad_moved:
+      return "dots move slowly, not as noise does: did the pad stand still?";
+    case FitStatus::taxels_missing:
+      return "fewer than half of the taxels gave readings in range: bytes, range, order?";
   }
   return "unknown";
 }

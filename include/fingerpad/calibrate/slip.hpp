@@ -28,6 +28,7 @@ inline namespace v0 {
 
 /// The choice, and what each U makes of the recording.
 struct [[nodiscard]] StickTestFit {
+  FitStatus status = FitStatus::ok;
   struct Row {
     StickTest test;
     Index updates = 0;                       ///< frames with an answer of their own; 0 where U is
@@ -43,6 +44,8 @@ struct [[nodiscard]] StickTestFit {
   std::vector<Row> table;  ///< from the smallest U to the largest
   Index steps = 0;         ///< frames with contact and motion
   double furthest_px = 0;  ///< the largest d_max of the smallest U that was tried
+
+  bool ok() const { return status == FitStatus::ok; }
 };
 
 /// Runs the stick ratio with all U over a recording, frame by frame as they come. The recording: at
@@ -139,6 +142,8 @@ class StickTestCalibration {
       fit.test = row.chosen ? row.test : fit.test;
       chosen = chosen || row.chosen;
     }
+    const bool at_end = &best == &runs_.back() && runs_.size() > 1;
+    fit.status = at_end ? FitStatus::at_end_of_search : FitStatus::ok;
     return fit;
   }
 

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "fingerpad/calibrate/detail/slip_positions.hpp"
+#include "fingerpad/calibrate/fit.hpp"
 #include "fingerpad/core/dots.hpp"
 #include "fingerpad/core/expects.hpp"
 #include "fingerpad/core/grid.hpp"
@@ -23,7 +24,8 @@ namespace fingerpad {
 inline namespace v0 {
 
 /// Standard deviations of one position, per axis, in px or whatever unit the dots are in.
-struct DotNoise {
+struct [[nodiscard]] DotNoise {
+  FitStatus status = FitStatus::ok;
   double noise_px = 0;        ///< root mean square over dots and axes
   double noise_error_px = 0;  ///< its standard error, of noise that differs from frame to frame
   double largest_px = 0;      ///< of a single dot, both axes together
@@ -39,6 +41,7 @@ struct DotNoise {
       0;  ///< positions left out as further than a quarter of a pitch from the mean
   int frames = 0;
 
+  bool ok() const { return status == FitStatus::ok; }
   /// Of the noise, what averaging leaves, as measured; denoising_gain() if neighbours are
   /// independent.
   double gain() const { return inner_px / noise_px; }
@@ -129,6 +132,7 @@ class DotNoiseCalibration {
     // without motion, differences keep 1 - 1 / dots of their variance
     const detail::stick::SumOfSquares steps = rest.steps();
     noise.slow_share = 1 - steps.sum / (4 * steps.count * variance * (1 - 1 / rest.dots_found));
+    noise.status = noise.slow_share > 0.5 ? FitStatus::pad_moved : FitStatus::ok;
     // places and motion take (1 - 1 / frames) (gain^2 - 1 / dots) of the variance of means
     const double frames_of_dot = rest.positions / rest.dots_found;
     const double dots_of_frame = rest.positions / rest.frames_found;

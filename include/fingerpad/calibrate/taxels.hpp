@@ -10,6 +10,7 @@
 #include <cstddef>
 #include <vector>
 
+#include "fingerpad/calibrate/fit.hpp"
 #include "fingerpad/core/expects.hpp"
 #include "fingerpad/core/grid.hpp"
 #include "fingerpad/foam/taxel_features.hpp"
@@ -18,7 +19,8 @@ namespace fingerpad {
 inline namespace v0 {
 
 /// Readings in the unit of the sensor.
-struct TaxelNoise {
+struct [[nodiscard]] TaxelNoise {
+  FitStatus status = FitStatus::ok;
   Index rows = 0;
   Index cols = 0;
   std::vector<double> deviations;  ///< rows x cols, row by row: for TaxelFeatures. At least
@@ -31,6 +33,7 @@ struct TaxelNoise {
   double centroid_deviation_mm = 0;  ///< of the centroid, in a window; NaN: never pressed
   Index windows = 0;                 ///< that were looked at
 
+  bool ok() const { return status == FitStatus::ok; }
   StridedView<const double> view() const { return {deviations.data(), rows, cols, cols}; }
 };
 
@@ -80,7 +83,7 @@ class TaxelNoiseCalibration {
 
   /// Refuses a recording that does not tell (parameter_error): of less than four windows, or in
   /// which no reading changed.
-  TaxelNoise choose() const {
+  TaxelNoise fit() const {
     const char* const owner = "TaxelNoiseCalibration";
     expects(windows_ >= 4, owner, "windows", static_cast<long long>(windows_), ">= 4");
     TaxelNoise noise;
@@ -106,6 +109,11 @@ class TaxelNoiseCalibration {
         noise.largest_factor = (std::max)(noise.largest_factor, std::sqrt(variance) / deviation);
       }
     }
+    const auto read = std::count_if(noise.deviations.begin(), noise.deviations.end(),
+                                    [](double deviation) { return is_finite(deviation); });
+    noise.status = 2 * read < static_cast<std::ptrdiff_t>(taxels_.size())
+                       ? FitStatus::taxels_missing
+                       : FitStatus::ok;
     noise.centroid_deviation_mm = std::sqrt(mean_square_of(centroid_variances_));
     return noise;
   }

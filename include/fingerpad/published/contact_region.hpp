@@ -7,6 +7,7 @@
 // It misses half of a flat contact in noise: docs/errata.md, E018.
 #include <cmath>
 
+#include "fingerpad/calibrate/contact.hpp"
 #include "fingerpad/contact/contact_region.hpp"
 
 namespace fingerpad {
@@ -52,6 +53,11 @@ constexpr ContactTest contact_test() {
   ContactTest test{0.00015, 13, {10}};
   test.min_region_px = 1;
   return test;
+}
+
+/// The slides' rule of the threshold, E - 2 sigma: the worst pixel alone counts.
+constexpr ThresholdRule threshold_rule() {
+  return {1, 2, 0, false};
 }
 
 template <scalar S = float>
