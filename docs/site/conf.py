@@ -1,0 +1,19 @@
+# SPDX-FileCopyrightText: 2026 The fingerpad authors
+# SPDX-License-Identifier: MIT
+"""Sphinx: the pages of docs/ and a page for each public header."""
+project = "fingerpad"
+copyright = "2026 The fingerpad authors"
+extensions = ["myst_parser", "breathe"]
+include_patterns = ["index.md", "docs/*.md", "docs/*/*.md", "examples/data/README.md",
+                    "tests/data/README.md", "reference/**"]
+myst_heading_anchors = 4
+myst_enable_extensions = ["dollarmath"]
+suppress_warnings = ["myst.header"]
+breathe_default_project = "fingerpad"
+breathe_projects = {"fingerpad": "xml"}
+primary_domain = "cpp"
+highlight_language = "cpp"
+html_theme = "furo"
+html_title = "fingerpad"
+html_show_sphinx = False
+html_copy_source = False
