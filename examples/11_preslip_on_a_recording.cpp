@@ -16,8 +16,7 @@
 #include <vector>
 
 #include "fingerpad/calibrate/taxels.hpp"
-#include "fingerpad/foam/preslip.hpp"
-#include "fingerpad/foam/taxel_features.hpp"
+#include "fingerpad/pipeline/foam_hand.hpp"
 
 using namespace fingerpad;
 
@@ -61,57 +60,69 @@ Recording read(const char* file) {
   return recording;
 }
 
-template <class Rule, std::size_t Fingers>
-bool find_first_alarm(const Recording& recording) {
-  const Index rows = recording.rows / Index(Fingers);
-  const auto finger = [&](const Sample& sample, std::size_t k) {  // no copy
-    const double* const first = sample.readings.data() + Index(k) * rows * recording.cols;
-    return StridedView<const double>(first, rows, recording.cols, recording.cols);
-  };
+/// Both rules, to compare them.
+struct BothRules : FoamHandMethods {
+  static constexpr bool has_grasp_optimise = true;
+};
 
-  const TaxelOptions<> options;
-  std::vector<TaxelFeatures<>> features;  // once; each finger has its own noise and its own state
-  std::vector<TaxelFeatures<>::State> states;
-  for (std::size_t k = 0; k < Fingers; ++k) {
-    TaxelNoiseCalibration calibration(rows, recording.cols, options);
-    for (const Sample& sample : recording.samples) {
-      calibration.add(finger(sample, k), sample.time_s);
-    }
-    features.emplace_back(calibration.fit().view(), options);
-    states.push_back(features.back().start());
-  }
-  const Preslip<Rule, Fingers> preslip;
-  auto history = preslip.start();
-
-  for (const Sample& sample : recording.samples) {  // each as it is received
-    std::array<FingerSample<>, Fingers> felt;
-    for (std::size_t k = 0; k < Fingers; ++k) {
-      felt[k] = features[k](finger(sample, k), sample.time_s, states[k]);
-    }
-    if (preslip(felt, history).alarm) {
-      std::printf("%s: first alarm at %.3f s\n", Rule::name, sample.time_s);
-      for (const FingerSample<>& f : felt) {
-        std::printf("  centroid (%.2f, %.2f) mm, ", f.center_x_mm, f.center_y_mm);
-        if (f.is_vibrating()) {
-          std::printf("row %td col %td vibrates, waves: %td, %.2f Hz\n",
-                      f.location / recording.cols, f.location % recording.cols, f.waves,
-                      f.frequency_hz);
-        } else {
-          std::printf("%s\n", name_of(f.status));
-        }
-      }
-      return true;
+template <class Result>
+void print_alarm(const char* rule, double time_s, const Result& felt, Index cols) {
+  std::printf("%s: first alarm at %.3f s\n", rule, time_s);
+  for (const FingerSample<>& f : felt.fingers) {
+    std::printf("  centroid (%.2f, %.2f) mm, ", f.center_x_mm, f.center_y_mm);
+    if (f.is_vibrating()) {
+      std::printf("row %td col %td vibrates, waves: %td, %.2f Hz\n", f.location / cols,
+                  f.location % cols, f.waves, f.frequency_hz);
+    } else {
+      std::printf("%s\n", name_of(f.status));
     }
   }
-  std::printf("%s: no alarm in %zu samples\n", Rule::name, recording.samples.size());
-  return false;
 }
 
+/// Whether both rules find something.
 template <std::size_t Fingers>
 bool look(const Recording& recording) {
-  const bool in_hold = find_first_alarm<GraspOptimise, Fingers>(recording);
-  const bool in_lift = find_first_alarm<GraspLift, Fingers>(recording);
-  return in_hold && in_lift;
+  const Index rows = recording.rows / Index(Fingers), cols = recording.cols;
+  const auto fingers_of = [&](const Sample& sample) {  // no copy
+    std::array<StridedView<const double>, Fingers> fingers;
+    for (std::size_t f = 0; f < Fingers; ++f) {
+      fingers[f] = {sample.readings.data() + Index(f) * rows * cols, rows, cols, cols};
+    }
+    return fingers;
+  };
+
+  // Once: each finger has a noise of its own.
+  FoamHandOptions<Fingers> options;
+  std::vector<TaxelNoise> noise;
+  for (std::size_t f = 0; f < Fingers; ++f) {
+    TaxelNoiseCalibration calibration(rows, cols, options.taxels);
+    for (const Sample& sample : recording.samples) {
+      calibration.add(fingers_of(sample)[f], sample.time_s);
+    }
+    noise.push_back(calibration.fit());
+  }
+  for (std::size_t f = 0; f < Fingers; ++f) {
+    options.fingers[f] = {rows, cols, noise[f].view()};
+  }
+  FoamHand<Fingers, BothRules> hand(options);
+
+  bool in_hold = false, in_lift = false;
+  for (const Sample& sample : recording.samples) {  // each as it is received
+    const auto felt = hand(fingers_of(sample), sample.time_s);
+    if (felt.grasp_lift.is_fresh && !in_lift) {
+      print_alarm(GraspLift::name, sample.time_s, felt, cols);
+      in_lift = true;
+    }
+    if (felt.grasp_optimise.is_fresh && !in_hold) {
+      print_alarm(GraspOptimise::name, sample.time_s, felt, cols);
+      in_hold = true;
+    }
+  }
+  if (!in_lift || !in_hold) {
+    std::printf("%s: no alarm in %zu samples\n", in_lift ? GraspOptimise::name : GraspLift::name,
+                recording.samples.size());
+  }
+  return in_lift && in_hold;
 }
 
 int main(int argc, char** argv) {

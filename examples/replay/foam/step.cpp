@@ -9,11 +9,11 @@
 
 #include "fingerpad/calibrate/taxels.hpp"
 #include "fingerpad/core/expects.hpp"
+#include "fingerpad/pipeline/foam_hand.hpp"
 
 namespace replay {
 namespace {
 
-using fingerpad::FingerSample;
 using fingerpad::TaxelStatus;
 
 constexpr double thousandth = 1e-3;
@@ -29,19 +29,9 @@ double largest_reading(const FoamRecording& recording) {
   return largest;
 }
 
-template <class Rule, std::size_t Fingers>
-class OneRule {
- public:
-  explicit OneRule(const FoamSensor& sensor) : rule_(sensor.rules), state_(rule_.start()) {}
-
-  bool operator()(const std::array<FingerSample<double>, Fingers>& newest) {
-    return rule_(newest, state_).is_fresh;
-  }
-
- private:
-  using Preslip = fingerpad::Preslip<Rule, Fingers>;
-  Preslip rule_;
-  typename Preslip::State state_;
+/// Both rules; sensor.json says which of them are told.
+struct Methods : fingerpad::FoamHandMethods {
+  static constexpr bool has_grasp_optimise = true;
 };
 
 }  // namespace
@@ -67,7 +57,7 @@ FoamNoise noise_of(const FoamRecording& recording, int finger) {
   }
   try {
     fingerpad::TaxelNoiseCalibration calibration(first.rows(), first.cols(),
-                                                   recording.sensor.taxels);
+                                                 recording.sensor.taxels);
     for (int sample = 0; sample < recording.table.samples(); ++sample) {
       calibration.add(recording.finger(sample, finger),
                       recording.table.times_s[static_cast<std::size_t>(sample)]);
@@ -80,58 +70,56 @@ FoamNoise noise_of(const FoamRecording& recording, int finger) {
 }
 
 template <std::size_t Fingers>
-FoamStep::Rules FoamStep::rules_of(const FoamSensor& sensor) {
-  using namespace fingerpad;
-  return [lift = OneRule<GraspLift, Fingers>(sensor),
-          optimise = OneRule<GraspOptimise, Fingers>(sensor), with_lift = sensor.grasp_lift,
-          with_optimise =
-              sensor.grasp_optimise](const std::vector<FingerSample<double>>& fingers) mutable {
-    std::array<FingerSample<double>, Fingers> newest;
-    std::copy_n(fingers.begin(), Fingers, newest.begin());
-    return FoamAlarm{with_lift && lift(newest), with_optimise && optimise(newest)};
+FoamStep::Hand FoamStep::hand_of(const FoamRecording& recording,
+                                 const std::vector<FoamNoise>& noise) {
+  fingerpad::FoamHandOptions<Fingers> options;
+  options.taxels = recording.sensor.taxels;
+  options.rules = recording.sensor.rules;
+  for (std::size_t f = 0; f < Fingers; ++f) {
+    const auto size = recording.finger(0, static_cast<int>(f));
+    options.fingers[f] = {size.rows(),
+                          size.cols(),
+                          {noise[f].deviations.data(), size.rows(), size.cols(), size.cols()}};
+  }
+  return [&recording, hand = fingerpad::FoamHand<Fingers, Methods>(options)](int sample,
+                                                                             FoamRow& row) mutable {
+    std::array<fingerpad::StridedView<const double>, Fingers> readings;
+    for (std::size_t f = 0; f < Fingers; ++f) {
+      readings[f] = recording.finger(sample, static_cast<int>(f));
+    }
+    const auto felt = hand(readings, recording.table.times_s[static_cast<std::size_t>(sample)]);
+    row.fingers.assign(felt.fingers.begin(), felt.fingers.end());
+    row.alarm = {recording.sensor.grasp_lift && felt.grasp_lift.is_fresh,
+                 recording.sensor.grasp_optimise && felt.grasp_optimise.is_fresh};
   };
 }
 
-FoamStep::Rules FoamStep::make_rules(const FoamSensor& sensor) {
+FoamStep::Hand FoamStep::make_hand(const FoamRecording& recording,
+                                   const std::vector<FoamNoise>& noise) {
   static_assert(max_fingers == 5);
-  switch (sensor.fingers.size()) {
+  switch (recording.fingers()) {
     case 1:
-      return rules_of<1>(sensor);
+      return hand_of<1>(recording, noise);
     case 2:
-      return rules_of<2>(sensor);
+      return hand_of<2>(recording, noise);
     case 3:
-      return rules_of<3>(sensor);
+      return hand_of<3>(recording, noise);
     case 4:
-      return rules_of<4>(sensor);
+      return hand_of<4>(recording, noise);
     default:
-      return rules_of<5>(sensor);
+      return hand_of<5>(recording, noise);
   }
 }
 
 FoamStep::FoamStep(const FoamRecording& recording, const std::vector<FoamNoise>& noise)
-    : recording_(recording), rules_(make_rules(recording.sensor)) {
-  for (int k = 0; k < recording.fingers(); ++k) {
-    const auto size = recording.finger(0, k);
-    const fingerpad::StridedView<const double> deviations(
-        noise[static_cast<std::size_t>(k)].deviations.data(), size.rows(), size.cols(),
-        size.cols());
-    features_.emplace_back(deviations, recording.sensor.taxels);
-    states_.push_back(features_.back().start());
-  }
-}
+    : recording_(recording), hand_(make_hand(recording, noise)) {}
 
 FoamRow FoamStep::operator()(int sample) {
   const auto k = static_cast<std::size_t>(sample);
   FoamRow row{sample, recording_.table.frames[k], recording_.table.times[k], {}, {}};
-  row.fingers.resize(features_.size());
+  row.fingers.reserve(static_cast<std::size_t>(recording_.fingers()));
   const auto start = std::chrono::steady_clock::now();
-  for (std::size_t f = 0; f < features_.size(); ++f) {
-    row.fingers[f] = features_[f](recording_.finger(sample, static_cast<int>(f)),
-                                  recording_.table.times_s[k], states_[f]);
-  }
-  if (row.was_taken()) {  // all fingers have the same time
-    row.alarm = rules_(row.fingers);
-  }
+  hand_(sample, row);
   const std::chrono::duration<double, std::micro> passed = std::chrono::steady_clock::now() - start;
   us_.push_back(passed.count());
   return row;

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// From the samples of a foam array to features and pre-slip, with the library's taxel_features.hpp
-// and preslip.hpp; the only place of the program that knows the rules.
+// From the samples of a foam array to features and pre-slip, by the library's foam_hand.hpp; the
+// only place of the program that knows the rules.
 #include <functional>
 #include <string>
 #include <vector>
@@ -56,17 +56,15 @@ class FoamStep {
   double median_us() const;
 
  private:
-  using Features = fingerpad::TaxelFeatures<>;
-  using Rules = std::function<FoamAlarm(const std::vector<fingerpad::FingerSample<double>>&)>;
+  /// Fills fingers and alarm of a row.
+  using Hand = std::function<void(int sample, FoamRow& row)>;
 
   template <std::size_t Fingers>
-  static Rules rules_of(const FoamSensor& sensor);
-  static Rules make_rules(const FoamSensor& sensor);
+  static Hand hand_of(const FoamRecording& recording, const std::vector<FoamNoise>& noise);
+  static Hand make_hand(const FoamRecording& recording, const std::vector<FoamNoise>& noise);
 
   const FoamRecording& recording_;
-  std::vector<Features> features_;  ///< one a finger
-  std::vector<Features::State> states_;
-  Rules rules_;
+  Hand hand_;
   std::vector<double> us_;
 };
 
