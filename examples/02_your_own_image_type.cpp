@@ -71,8 +71,7 @@ int main() {
 
   const auto reference = fingerpad::fit_reference(camera, fluid, PackedChannel{&free_pad, 16},
                                                   PackedChannel{&free_pad, 8}, shape);
-  const fingerpad::DepthEstimator estimate(camera, fluid, reference,
-                                           fingerpad::Anchored<fingerpad::BoxMean>{{7}});
+  const fingerpad::DepthEstimator estimate(camera, fluid, reference, fingerpad::AnchoredMean{7});
   auto workspace = estimate.workspace<std::uint8_t>();
   std::vector<float> depth_mm(rows * cols);
   (void)estimate(PackedChannel{&frame, 16}, PackedChannel{&frame, 8},

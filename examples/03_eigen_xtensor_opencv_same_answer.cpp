@@ -9,6 +9,7 @@
 #include "fingerpad/adapt/opencv.hpp"
 #include "fingerpad/adapt/xtensor.hpp"
 #include "fingerpad/depth/depth.hpp"
+#include "fingerpad/published/depth.hpp"
 #if __has_include(<xtensor/containers/xtensor.hpp>)
 #include <xtensor/containers/xtensor.hpp>
 #else
@@ -41,7 +42,8 @@ int main() {
                                   [&](Index i, Index j) { return level(i, j, &Colour::green); });
 
   const auto reference = fingerpad::fit_reference(camera, fluid, red, green, shape);
-  const fingerpad::DepthEstimator estimate(camera, fluid, reference, fingerpad::BoxMean{5});
+  const fingerpad::DepthEstimator estimate(camera, fluid, reference,
+                                           fingerpad::published::BoxMean{5});
   auto workspace = estimate.workspace<std::uint8_t>();
 
   // The same frame in three more libraries: columns first, rows first, and interleaved.

@@ -3,7 +3,7 @@
 // Depth from smoothed planes of red and green, every way there is. The error is that of each pixel
 // against the root in long double of the same equation with the same inputs. What depends on the
 // pixel only (its pencil and g) is made before the clock starts, for every way alike.
-#include "fingerpad/depth/depth.hpp"
+#include "fingerpad/published/depth.hpp"
 
 #include <memory>
 #include <opencv2/core.hpp>
@@ -12,6 +12,7 @@
 
 #include "bench/support/run.hpp"
 #include "bench/support/scene.hpp"
+#include "fingerpad/depth/depth.hpp"
 
 using namespace fingerpad;
 using bench::Image;
@@ -90,7 +91,7 @@ double bisection(const Absorption<double>& fluid,
   double depth = fluid.max_depth_mm / 2;
   double step = depth / 2;
   for (int i = 2; i < 16; ++i) {
-    depth += published_quotient(fluid, pencil, colour, depth) < g ? -step : step;
+    depth += published::quotient(fluid, pencil, colour, depth) < g ? -step : step;
     step /= 2;
   }
   return depth;
@@ -168,7 +169,7 @@ struct Bench {
                              std::to_string(Degree) +
                              (Radial == 3 ? ">" : ", " + std::to_string(Radial) + ">");
     add_rows<float, Order, Degree, Radial>(name, single.reference);
-    DepthReference<float, PixelScattering<float>> planar;
+    DepthReference<float, published::PixelScattering<float>> planar;
     planar.rows = single.reference.rows;
     planar.cols = single.reference.cols;
     planar.depth_mm = single.reference.depth_mm;
@@ -219,10 +220,10 @@ struct Bench {
 
   void add_pixelwise() const {
     each_pixel<double>("bisect_depth, double", [](const auto& in, std::size_t k) {
-      return bisect_depth(in.fluid, in.pencils[k], in.g[k], in.colour(k));
+      return published::bisect_depth(in.fluid, in.pencils[k], in.g[k], in.colour(k));
     });
     each_pixel<float>("bisect_depth, float", [](const auto& in, std::size_t k) {
-      return bisect_depth(in.fluid, in.pencils[k], in.g[k], in.colour(k));
+      return published::bisect_depth(in.fluid, in.pencils[k], in.g[k], in.colour(k));
     });
     each_pixel<double>("newton_depth, double, cold", [](const auto& in, std::size_t k) {
       return newton_depth(in.fluid, in.pencils[k], in.g[k], in.colour(k));

@@ -8,9 +8,10 @@
 #include <type_traits>
 #include <vector>
 
-#include "fingerpad/depth/depth.hpp"
 #include "bench/support/run.hpp"
 #include "bench/support/scene.hpp"
+#include "fingerpad/depth/depth.hpp"
+#include "fingerpad/published/depth.hpp"
 
 using namespace fingerpad;
 using bench::Image;
@@ -79,7 +80,7 @@ struct Bench {
     for (const S l : reference.depth_mm) {
       setup->in_pad.push_back(is_finite(l) ? 1 : 0);
     }
-    if constexpr (detail::is_anchored<Smoothing>) {
+    if constexpr (Smoothing::anchored) {
       setup->anchor = detail::anchor_of(scene.pad.camera, scene.pad.fluid, reference);
     }
     using Rows = detail::ColourRows<Pixel, S, Smoothing>;
@@ -96,11 +97,10 @@ struct Bench {
   template <class Red, class Green>
   void add_all_ours(const std::string& group, const Red& red, const Green& green) const {
     add_ours<NoSmoothing>(group, "NoSmoothing", red, green);
-    add_ours<BoxMean>(group, "BoxMean, published", red, green);
-    add_ours<BiasFreeMean>(group, "BiasFreeMean", red, green);
-    add_ours<Anchored<BoxMean>>(group, "Anchored<BoxMean>", red, green);
-    add_ours<Anchored<BiasFreeMean>>(group, "Anchored<BiasFreeMean>, the default", red, green);
-    add_ours<Anchored<BiasFreeMean>, double>(group, "Anchored<BiasFreeMean>, double", red, green);
+    add_ours<published::BoxMean>(group, "published::BoxMean", red, green);
+    add_ours<AnchoredMean>(group, "AnchoredMean", red, green);
+    add_ours<BiasFreeMean>(group, "BiasFreeMean, the default", red, green);
+    add_ours<BiasFreeMean, double>(group, "BiasFreeMean, double", red, green);
     bench::add_streaming(scene.name + ", " + group, scene.pixels());
   }
 

@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: MIT
 // The whole step: a noisy 8-bit frame, BGR BGR ..., to depth in mm and a status per pixel. The
 // error is that of each pixel under the plate and around it, all of the pad that is seen, against
-// its true depth. The reference is of a frame without noise, but for PixelQuotient, which takes one
-// noisy 8-bit frame.
+// its true depth. The reference is of a frame without noise, but for the quotient per pixel, which
+// takes one noisy 8-bit frame.
 #include <memory>
 #include <opencv2/imgproc.hpp>
 #include <string>
@@ -50,8 +50,8 @@ struct Bench {
   void add(const std::string& name) const {
     const auto free = scene.pad.frame<double>(scene.free_mm);
     add_with<Inverse, Smoothing>(
-        name, fit_reference<RadialFit, Heights, S>(scene.pad.camera, scene.pad.fluid, free.red,
-                                                   free.green, scene.free_mm));
+        name, fit_reference<Heights, S>(scene.pad.camera, scene.pad.fluid, free.red, free.green,
+                                        scene.free_mm));
   }
 
   /// g pixel by pixel, as published, from an 8-bit frame with noise.
@@ -59,8 +59,8 @@ struct Bench {
   void add_quotient(const std::string& name) const {
     const auto free = scene.pad.frame<std::uint8_t>(scene.free_mm, scene.noise, 2);
     add_with<Inverse, Smoothing>(
-        name, fit_reference<PixelQuotient, Heights, S>(scene.pad.camera, scene.pad.fluid, free.red,
-                                                       free.green, scene.free_mm));
+        name, published::depth_reference<S, Heights>(scene.pad.camera, scene.pad.fluid, free.red,
+                                                     free.green, scene.free_mm));
   }
 
   template <class Smoothing>
@@ -83,27 +83,25 @@ struct Bench {
   }
 
   void add_all() const {
-    using Default = Anchored<BiasFreeMean>;
-    add<BoxMean, Bisection, double>("published: BoxMean + Bisection in double");
-    add<BoxMean, Bisection, double, published::SingleHeight>(
-        "BoxMean + Bisection in double, SingleHeight");
-    add_quotient<BoxMean, Bisection, published::SingleHeight, double>(
-        "BoxMean + Bisection in double, published::SingleHeight, PixelQuotient");
+    using Default = BiasFreeMean;
+    add<published::BoxMean, published::Bisection, double>(
+        "published: BoxMean + Bisection in double");
+    add<published::BoxMean, published::Bisection, double, published::SingleHeight>(
+        "published: BoxMean + Bisection in double, SingleHeight");
+    add_quotient<published::BoxMean, published::Bisection, published::SingleHeight, double>(
+        "published: BoxMean + Bisection in double, SingleHeight, quotient per pixel");
     add_fast<NoSmoothing>("NoSmoothing");
-    add_fast<BoxMean>("BoxMean");
+    add_fast<published::BoxMean>("published::BoxMean");
     add_fast<BiasFreeMean>("BiasFreeMean");
-    add_fast<Anchored<BoxMean>>("Anchored<BoxMean>");
-    add_fast<Default>("Anchored<BiasFreeMean>");
+    add_fast<AnchoredMean>("AnchoredMean");
     add<Default, ExponentialFree<>, float, published::SingleHeight>("the default, SingleHeight");
     add_quotient<Default, ExponentialFree<>, AstigmaticHeights, float>(
-        "the default, PixelQuotient");
+        "the default, published::depth_reference");
     add<Default, ExponentialFree<>, double>("the default in double");
     add<Default, ExponentialFree<9, 12, 8>, double>(
-        "Anchored<BiasFreeMean> + ExponentialFree<9, 12, 8> in double");
-    add<Default, Newton<>, double>("Anchored<BiasFreeMean> + Newton<> in double");
-    add<Default, Newton<Start::previous_frame>, double>(
-        "Anchored<BiasFreeMean> + Newton<Start::previous_frame> in double");
-    add<Default, Newton<>>("Anchored<BiasFreeMean> + Newton<>");
+        "BiasFreeMean + ExponentialFree<9, 12, 8> in double");
+    add<Default, Newton, double>("BiasFreeMean + Newton in double");
+    add<Default, Newton>("BiasFreeMean + Newton");
     bench::add_streaming(scene.name, scene.pixels());
     add_opencv();
   }

@@ -45,7 +45,7 @@ COMPARED = [
     ("depth of a pixel", "depth", "full pad, depths up to 14 mm", "published bisection, double",
      "exponential-free float <3, 6>", None),
     ("depth of a noisy frame", "frame", "round pad", "published: BoxMean + Bisection in double",
-     "Anchored<BiasFreeMean> + ExponentialFree<>", None),
+     "BiasFreeMean + ExponentialFree<>", None),
     ("curvature", "curvature", "round pad, radius 10 px", "published circle, double",
      "ClampedMean<18>, float, through a camera, the default", None),
     ("contact's area", "contact_region", "350 mm^2", "published test", "default, with its gap", None),
@@ -176,7 +176,7 @@ the object, stick ratio, look-up forces and six-axis force, put together in
 
 Three chains. **default**: the policies by default, with the published iteration as solver of the
 six-axis force. **least squares**: the same with the default solver. **lean**: what a flat contact on
-a pad with dark dots cannot do without: `Anchored<BoxMean>`, `ExponentialFree<2, 5>`, `RingStencil<9>`,
+a pad with dark dots cannot do without: `AnchoredMean`, `ExponentialFree<2, 5>`, `RingStencil<9>`,
 `AtThreshold`.
 
 ![Time of each stage](whole_chain/stages.png)

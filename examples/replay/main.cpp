@@ -34,7 +34,6 @@ int main(int argc, char** argv) {
   const std::map<std::string, replay::Smoothing> policies = {
       {"none", replay::Smoothing::none},
       {"box", replay::Smoothing::box},
-      {"bias-free", replay::Smoothing::bias_free},
       {"anchored", replay::Smoothing::anchored}};
   app.add_option("RECORDING", options.recording, "the recording's folder")->required();
   app.add_option("--out", options.out, "the folder to write")->required()->option_text("DIR");
@@ -44,8 +43,8 @@ int main(int argc, char** argv) {
       "(255 in contact, else 0)");
   app.add_option_function<std::string>(
          "--smoothing", [&](const std::string& name) { options.smoothing = policies.at(name); },
-         "none, box, bias-free or anchored (default; none without smoothing_px)")
-      ->check(CLI::IsMember({"none", "box", "bias-free", "anchored"}))
+         "none, box or anchored (default; none without smoothing_px)")
+      ->check(CLI::IsMember({"none", "box", "anchored"}))
       ->option_text("POLICY");
   app.add_option("--frames", frames, "only frames A to B-1, counted from 0; A or B may be left out")
       ->option_text("A:B");

@@ -2,11 +2,12 @@
 // SPDX-License-Identifier: MIT
 // Depth error on full-size frames of finite-element membranes: refracted rays, printed dots, 8 bit,
 // one grey level of noise in each channel. See tests/data/README.md for the shapes.
-#include "fingerpad/depth/depth.hpp"
+#include "fingerpad/published/depth.hpp"
 
 #include <cmath>
 #include <string>
 
+#include "fingerpad/depth/depth.hpp"
 #include "support/catch.hpp"
 #include "support/finite_elements.hpp"
 
@@ -74,9 +75,9 @@ TEST_CASE("depth of noisy frames of finite-element membranes", "[depth]") {
     for (int noise = 0; noise < 2; ++noise) {
       const auto frame = scene.frame(truth, ++seed);
       INFO(name << ", noise of seed " << seed);
-      check(error_of<Anchored<BiasFreeMean>>(scene, reference, frame, truth), bound_mm::best);
-      check(error_of<Anchored<BoxMean>>(scene, reference, frame, truth), bound_mm::best);
-      check(error_of<BoxMean>(scene, reference, frame, truth), bound_mm::box);
+      check(error_of<BiasFreeMean>(scene, reference, frame, truth), bound_mm::best);
+      check(error_of<AnchoredMean>(scene, reference, frame, truth), bound_mm::best);
+      check(error_of<published::BoxMean>(scene, reference, frame, truth), bound_mm::box);
     }
   }
 }

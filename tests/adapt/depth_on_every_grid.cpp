@@ -17,6 +17,7 @@
 #include "fingerpad/adapt/opencv.hpp"
 #include "fingerpad/adapt/xtensor.hpp"
 #include "fingerpad/depth/depth.hpp"
+#include "fingerpad/published/depth.hpp"
 #include "support/catch.hpp"
 #include "support/foreign_image.hpp"
 #include "support/pad.hpp"
@@ -129,7 +130,7 @@ cv::Mat interleaved(const Frame<Pixel>& frame, int channels) {
 TEMPLATE_TEST_CASE(
     "a frame is read from every grid", "[adapt][depth]", std::uint8_t, std::uint16_t, float) {
   using Pixel = TestType;
-  Case<Pixel, Anchored<BiasFreeMean>> c;
+  Case<Pixel, BiasFreeMean> c;
   const Index rows = c.pad.rows;
   const Index cols = c.pad.cols;
   const auto& red = c.frame.red;
@@ -179,7 +180,7 @@ TEMPLATE_TEST_CASE(
 TEMPLATE_TEST_CASE("also plain and through windows of colours",
                    "[adapt][depth]",
                    NoSmoothing,
-                   BoxMean,
+                   published::BoxMean,
                    BiasFreeMean) {
   Case<std::uint8_t, TestType> c;
   const cv::Mat image = interleaved(c.frame, 3);
@@ -191,7 +192,7 @@ TEMPLATE_TEST_CASE("also plain and through windows of colours",
 }
 
 TEST_CASE("depth and status are written into every grid", "[adapt][depth]") {
-  Case<std::uint8_t, Anchored<BiasFreeMean>> c;
+  Case<std::uint8_t, BiasFreeMean> c;
   const Index rows = c.pad.rows;
   const Index cols = c.pad.cols;
   const int r = static_cast<int>(rows);

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
-#include "fingerpad/depth/depth.hpp"
+#include "fingerpad/published/depth.hpp"
 
 #include <array>
 #include <cmath>
@@ -9,6 +9,7 @@
 #include <thread>
 #include <vector>
 
+#include "fingerpad/depth/depth.hpp"
 #include "support/catch.hpp"
 #include "support/generators.hpp"
 #include "support/numbers.hpp"
@@ -160,15 +161,15 @@ TEMPLATE_TEST_CASE("with a fifth of the pixels lost, the others are as good as t
     }
   };
   for (std::uint64_t seed = 1; seed <= 3; ++seed) {
-    check(Anchored<BoxMean>{{7}}, {3, 3, 1}, seed);
-    check(Anchored<BiasFreeMean>{{5}}, {3, 5, 120.0 / 72}, seed);
+    check(AnchoredMean{7}, {3, 3, 1}, seed);
+    check(BiasFreeMean{5}, {3, 5, 120.0 / 72}, seed);
   }
   CHECK(lost > 0);  // or nothing was proved about them
 }
 
 TEST_CASE("a frame of another size is refused and nothing written", "[depth]") {
   const Pad pad;
-  const auto estimator = pad.estimator<BoxMean, ExponentialFree<>, float>();
+  const auto estimator = pad.estimator<published::BoxMean, ExponentialFree<>, float>();
   auto workspace = estimator.workspace<std::uint8_t>();
   const auto good = pad.frame<std::uint8_t>(pad.free_depths());
   const Index r = pad.rows;
@@ -196,8 +197,9 @@ TEST_CASE("a frame of another size is refused and nothing written", "[depth]") {
         estimator.band(first, last, good.red, good.green, e.depth_mm, e.status, workspace).ok());
   }
   // the workspace of an estimator for another pad
-  auto foreign =
-      fine_pad().estimator<BoxMean, ExponentialFree<>, float>().workspace<std::uint8_t>();
+  auto foreign = fine_pad()
+                     .estimator<published::BoxMean, ExponentialFree<>, float>()
+                     .workspace<std::uint8_t>();
   CHECK_FALSE(estimator(good.red, good.green, e.depth_mm, e.status, foreign).ok());
   CHECK(e.depth_mm.cells == untouched.depth_mm.cells);
   CHECK(e.status.cells == untouched.status.cells);
@@ -210,7 +212,7 @@ TEST_CASE("threads may share an estimator and a frame", "[depth]") {
   auto frame = pad.frame<std::uint8_t>(pad.pressed_depths(2), 1, 4);
   test::Random random(2);
   spoil_in_clumps(frame, 0.2, random);
-  const auto estimator = pad.estimator<Anchored<BiasFreeMean>, ExponentialFree<>, float>({{9}});
+  const auto estimator = pad.estimator<BiasFreeMean, ExponentialFree<>, float>({9});
   const auto alone = test::estimate<float>(estimator, frame);
   test::Estimate<float> shared(pad.rows, pad.cols);
   std::vector<std::thread> threads;
@@ -234,10 +236,9 @@ TEST_CASE("threads may share an estimator and a frame", "[depth]") {
 TEMPLATE_TEST_CASE("a 16-bit frame of 256 times the 8-bit levels has the same depth",
                    "[depth]",
                    NoSmoothing,
-                   BoxMean,
-                   BiasFreeMean,
-                   Anchored<BoxMean>,
-                   Anchored<BiasFreeMean>) {
+                   published::BoxMean,
+                   AnchoredMean,
+                   BiasFreeMean) {
   const Pad pad = fine_pad();
   auto frame = pad.frame<std::uint8_t>(pad.pressed_depths(2), 1, 4);
   test::Random random(3);
@@ -259,8 +260,7 @@ TEMPLATE_TEST_CASE("a 16-bit frame of 256 times the 8-bit levels has the same de
   same(test::estimate<float>(estimator, deep), 1e-5);
   // float frames are averaged as they are, not in steps of 1/128 grey level: 2.2 (sum of the
   // weights) times half a step, at 0.75 mm per level
-  same(test::estimate<float>(estimator, single),
-       detail::is_anchored<TestType> ? 2.2 / 256 * 0.75 : 5e-5);
+  same(test::estimate<float>(estimator, single), TestType::anchored ? 2.2 / 256 * 0.75 : 5e-5);
 }
 
 TEST_CASE("every number type gives the same depth", "[depth]") {
@@ -268,8 +268,7 @@ TEST_CASE("every number type gives the same depth", "[depth]") {
   const auto frame = pad.frame<std::uint8_t>(pad.pressed_depths(3), 1, 8);
   const auto with = [&](auto s) {
     using S = decltype(s);
-    const auto e =
-        test::estimate<S>(pad.estimator<Anchored<BiasFreeMean>, Newton<>, S>({{5}}), frame);
+    const auto e = test::estimate<S>(pad.estimator<BiasFreeMean, Newton, S>({5}), frame);
     Image<double> depth(pad.rows, pad.cols);
     for (std::size_t k = 0; k < depth.cells.size(); ++k) {
       depth.cells[k] = static_cast<double>(value(e.depth_mm.cells[k]));
@@ -334,9 +333,9 @@ TEST_CASE("a dual number carries the derivative of depth", "[depth]") {
       (of_red ? more.red : more.green).cells[k] += h;
       (of_red ? less.red : less.green).cells[k] -= h;
     }
-    using Smoothing = Anchored<BiasFreeMean>;
-    const auto dual = pad.estimator<Smoothing, Newton<>, D>({{5}});
-    const auto real = pad.estimator<Smoothing, Newton<>, double>({{5}});
+    using Smoothing = BiasFreeMean;
+    const auto dual = pad.estimator<Smoothing, Newton, D>({5});
+    const auto real = pad.estimator<Smoothing, Newton, double>({5});
     const auto e = test::estimate<D>(dual, seeded);
     const auto up = test::estimate<double>(real, more).depth_mm;
     const auto down = test::estimate<double>(real, less).depth_mm;
@@ -388,8 +387,9 @@ TEST_CASE("an estimator refuses what cannot be, and says why", "[depth]") {
   CHECK_THAT(message([&] { DepthEstimator<>(pad.camera, pad.fluid, DepthReference<float>()); }),
              StartsWith("DepthEstimator: reference.pixels_used = 0, must be > 0"));
   for (const int halvings : {-1, 1, 101}) {
-    CHECK_THAT(message([&] { pad.estimator<NoSmoothing, Bisection, float>({}, {halvings}); }),
-               StartsWith("Bisection: halvings = " + std::to_string(halvings)));
+    CHECK_THAT(
+        message([&] { pad.estimator<NoSmoothing, published::Bisection, float>({}, {halvings}); }),
+        StartsWith("Bisection: halvings = " + std::to_string(halvings)));
   }
   CHECK(message([&] { DepthEstimator<>(pad.camera, pad.fluid, reference); }) == "accepted");
 }

@@ -97,8 +97,8 @@ TEST_CASE("the pixel quotient is the published formula", "[reference]") {
   const Pad pad;
   const auto depth = pad.free_depths();
   const auto frame = pad.frame<double>(depth, 0.5, 3);
-  const auto reference = fit_reference<PixelQuotient, published::SingleHeight, double>(
-      pad.camera, pad.fluid, frame.red, frame.green, depth);
+  const auto reference =
+      published::depth_reference<double>(pad.camera, pad.fluid, frame.red, frame.green, depth);
   double worst = 0;
   for (Index i = 0; i < pad.rows; ++i) {
     for (Index j = 0; j < pad.cols; ++j) {
@@ -106,8 +106,8 @@ TEST_CASE("the pixel quotient is the published formula", "[reference]") {
       REQUIRE((g == g) == (depth(i, j) > 0));
       if (g == g) {
         const double expected =
-            published_quotient(pad.fluid, pad.pencil<published::SingleHeight>(i, j),
-                               Colour<double>{frame.red(i, j), frame.green(i, j)}, depth(i, j));
+            published::quotient(pad.fluid, pad.pencil<published::SingleHeight>(i, j),
+                                Colour<double>{frame.red(i, j), frame.green(i, j)}, depth(i, j));
         // (near the rim the published form itself cancels)
         if (depth(i, j) > 0.5) {
           worst = (std::max)(worst, std::abs(g / expected - 1));
@@ -124,13 +124,14 @@ TEST_CASE("an estimator with the pixel quotient finds the depth it was made from
   const auto frame = pad.frame<double>(depth);
   const auto check = [&](auto s, auto inverse, double bound_mm) {
     using S = decltype(s);
-    const auto reference = pad.reference<S, PixelQuotient>();
+    const auto reference = published::depth_reference<S, AstigmaticHeights>(
+        pad.camera, pad.fluid, frame.red, frame.green, depth);
     const DepthEstimator estimator(pad.camera, pad.fluid, reference, NoSmoothing{}, inverse);
     const auto pressed = pad.pressed_depths(3);
     const auto e = test::estimate<S>(estimator, pad.frame<double>(pressed));
     CHECK(test::largest_error(e.depth_mm, pressed) <= bound_mm);
   };
-  check(double(), Newton<>(), 1e-10);
+  check(double(), Newton(), 1e-10);
   check(double(), ExponentialFree<9, 12, 8>(), 1e-10);
   check(float(), ExponentialFree<>(), 5e-5);
 }
@@ -233,9 +234,9 @@ TEST_CASE("a reference that determines nothing is refused", "[reference]") {
              Contains("same size"));
   const Image<double> nothing(pad.rows, pad.cols, test::nan);
   CHECK_THAT(refusal([&] {
-               fit_reference<PixelQuotient>(pad.camera, pad.fluid, frame.red, frame.green, nothing);
+               published::depth_reference(pad.camera, pad.fluid, frame.red, frame.green, nothing);
              }),
-             StartsWith(refused + "0"));
+             StartsWith("depth_reference: pixels with a known depth = 0"));
   Absorption<double> fluid = pad.fluid;
   fluid.kappa = 0;
   CHECK_THAT(refusal([&] { fit_reference(pad.camera, fluid, frame.red, frame.green, depth); }),

@@ -1,13 +1,14 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 // Every way to find a depth against the root in fifty digits of the equation with the same inputs.
-#include "fingerpad/depth/depth.hpp"
+#include "fingerpad/published/depth.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <vector>
 
+#include "fingerpad/depth/depth.hpp"
 #include "support/catch.hpp"
 #include "support/generators.hpp"
 #include "support/numbers.hpp"
@@ -185,7 +186,7 @@ TEST_CASE("the bisection stays within the half-width it states", "[depth]") {
     const double half_width = std::ldexp(18.0, 1 - halvings);
     const double error = worst_error<double>(
         [&](const auto& fluid, const auto& light, const auto& g, const auto& colour) {
-          return bisect_depth(fluid, light, g, colour, halvings);
+          return published::bisect_depth(fluid, light, g, colour, halvings);
         });
     INFO(halvings);
     CHECK(error <= half_width + 1e-9);  // some depths lie just between two of its values
@@ -196,18 +197,18 @@ TEST_CASE("the bisection stays within the half-width it states", "[depth]") {
 TEST_CASE("the published quotient has no value where the published bisection starts", "[depth]") {
   // E006: at depth 0 it is (b - kappa r) / 0, and the sign of its infinity is the wrong one.
   const Pixel<double> p(fluid_with(published_delta), 50, 6);
-  const double at_start = published_quotient(p.fluid, p.light, p.colour, 0.0);
+  const double at_start = published::quotient(p.fluid, p.light, p.colour, 0.0);
   CHECK_FALSE(is_finite(at_start));
   CHECK_FALSE(at_start >= p.g);  // so the first step would go up, out of the fluid
-  CHECK(published_quotient(p.fluid, p.light, p.colour, 1e-3) > p.g);
+  CHECK(published::quotient(p.fluid, p.light, p.colour, 1e-3) > p.g);
   const auto exact = static_cast<double>(p.exact);
-  CHECK(published_quotient(p.fluid, p.light, p.colour, exact) == Approx(p.g).epsilon(1e-10));
+  CHECK(published::quotient(p.fluid, p.light, p.colour, exact) == Approx(p.g).epsilon(1e-10));
 }
 
 TEST_CASE("a depth beyond either end of the range is refused, never clamped", "[depth]") {
   const auto solvers = [](const Pixel<double>& p) {
     return std::vector<DepthRoot<double>>{newton_depth(p.fluid, p.light, p.g, p.colour),
-                                          bisect_depth(p.fluid, p.light, p.g, p.colour)};
+                                          published::bisect_depth(p.fluid, p.light, p.g, p.colour)};
   };
   const auto expect = [&](const Pixel<double>& p, PixelStatus status) {
     for (const auto& root : solvers(p)) {

@@ -1,10 +1,11 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
-#include "fingerpad/depth/depth.hpp"
+#include "fingerpad/published/depth.hpp"
 
 #include <opencv2/core.hpp>
 
 #include "fingerpad/adapt/opencv.hpp"
+#include "fingerpad/depth/depth.hpp"
 #include "no_allocation/count.hpp"
 #include "support/catch.hpp"
 #include "support/pad.hpp"
@@ -39,14 +40,14 @@ struct Step {
 
 TEMPLATE_TEST_CASE("no frame takes memory",
                    "[depth]",
-                   (Step<NoSmoothing, Bisection, std::uint8_t, float>),
-                   (Step<BoxMean, ExponentialFree<>, std::uint8_t, float>),
+                   (Step<NoSmoothing, published::Bisection, std::uint8_t, float>),
+                   (Step<published::BoxMean, ExponentialFree<>, std::uint8_t, float>),
                    (Step<BiasFreeMean, ExponentialFree<>, std::uint16_t, float>),
-                   (Step<Anchored<BoxMean>, Newton<>, std::uint8_t, float>),
-                   (Step<Anchored<BiasFreeMean>, ExponentialFree<>, std::uint8_t, float>),
-                   (Step<Anchored<BiasFreeMean>, ExponentialFree<>, float, float>),
-                   (Step<BiasFreeMean, Newton<Start::previous_frame>, double, double>),
-                   (Step<BoxMean, ExponentialFree<9, 12, 8>, std::uint8_t, double>)) {
+                   (Step<AnchoredMean, Newton, std::uint8_t, float>),
+                   (Step<BiasFreeMean, ExponentialFree<>, std::uint8_t, float>),
+                   (Step<BiasFreeMean, ExponentialFree<>, float, float>),
+                   (Step<BiasFreeMean, Newton, double, double>),
+                   (Step<published::BoxMean, ExponentialFree<9, 12, 8>, std::uint8_t, double>)) {
   using S = typename TestType::scalar;
   using Pixel = typename TestType::pixel;
   const Pad pad;

@@ -76,7 +76,6 @@ accuracy() {
     fail "$1 is less accurate than that"
 }
 accuracy anchored 0.030 0.040
-accuracy bias-free 0.030 0.070
 accuracy box 0.045 0.060
 accuracy none 0.7 0.7
 

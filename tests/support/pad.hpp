@@ -214,18 +214,17 @@ struct Pad {
   }
 
   /// What fit_reference() makes of a frame of the free pad without noise.
-  template <class S, class Fit = fingerpad::RadialFit, class Heights = fingerpad::AstigmaticHeights>
+  template <class S, class Heights = fingerpad::AstigmaticHeights>
   auto reference(const fingerpad::GreyScale& scale = {}) const {
     const Image<double> depth = free_depths();
     const auto free = frame<double, Heights>(depth);
-    return fingerpad::fit_reference<Fit, Heights, S>(camera, fluid, free.red, free.green, depth,
-                                                     scale);
+    return fingerpad::fit_reference<Heights, S>(camera, fluid, free.red, free.green, depth, scale);
   }
 
   template <class Smoothing, class Inverse, class S, class Heights = fingerpad::AstigmaticHeights>
   auto estimator(Smoothing smoothing = {}, Inverse inverse = {}) const {
     return fingerpad::DepthEstimator<Smoothing, Inverse, Heights, S>(
-        camera, fluid, reference<S, fingerpad::RadialFit, Heights>(), smoothing, inverse);
+        camera, fluid, reference<S, Heights>(), smoothing, inverse);
   }
 };
 

@@ -15,6 +15,7 @@
 
 #include "fingerpad/depth/depth.hpp"
 #include "fingerpad/depth/neighbour_light.hpp"
+#include "fingerpad/published/depth.hpp"
 #include "fingerpad/published/neighbour_light.hpp"
 #include "membranes.hpp"
 
@@ -96,7 +97,7 @@ class DepthEffects {
 
  private:
   using Raw = fingerpad::DepthEstimator<fingerpad::NoSmoothing>;
-  using Box = fingerpad::DepthEstimator<fingerpad::BoxMean>;
+  using Box = fingerpad::DepthEstimator<fingerpad::published::BoxMean>;
 
   double pitch_mm() const { return 1.1 * pad_.camera.pitch_mm; }
 
@@ -170,13 +171,13 @@ class DepthEffects {
   Effect smoothing_{.name = "smoothing",
                     .quantity = "depth",
                     .unit = "mm",
-                    .on = "`Anchored<BiasFreeMean>`",
+                    .on = "`BiasFreeMean`",
                     .off = "`NoSmoothing`"};
   Effect anchor_{.name = "anchored mean",
                  .quantity = "depth",
                  .unit = "mm",
-                 .on = "`Anchored<BiasFreeMean>`",
-                 .off = "`BoxMean`"};
+                 .on = "`BiasFreeMean`",
+                 .off = "`published::BoxMean`"};
 };
 
 }  // namespace bench::ablation

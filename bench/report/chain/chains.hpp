@@ -28,7 +28,7 @@ struct ByDefault : fingerpad::FingertipMethods {
 };
 /// The least that a flat contact on a pad with dark dots needs.
 struct Lean : ByDefault {
-  using Smoothing = fingerpad::Anchored<fingerpad::BoxMean>;
+  using Smoothing = fingerpad::AnchoredMean;
   using Inverse = fingerpad::ExponentialFree<2, 5>;
   using Statistic = fingerpad::RingStencil<9>;
   using Edge = fingerpad::AtThreshold;

@@ -94,7 +94,7 @@ S published_bisection(const SeenPixel<S>& p, bool repaired) {
   S depth = repaired ? S(p.fluid.max_depth_mm / S(2)) : S(0);
   S step = repaired ? S(depth / S(2)) : S(p.fluid.max_depth_mm / S(2));
   for (int i = repaired ? 2 : 0; i < 16; ++i) {
-    const S f = fingerpad::published_quotient(p.fluid, p.light, p.colour, depth);
+    const S f = fingerpad::published::quotient(p.fluid, p.light, p.colour, depth);
     depth = f >= p.g ? S(depth + step) : S(depth - step);
     step = step / S(2);
   }
@@ -164,7 +164,7 @@ inline Row saturated_pixels() {
                  }
                }
                const auto estimator =
-                   pad.estimator<fingerpad::BoxMean, fingerpad::Newton<>, S>({5});
+                   pad.estimator<fingerpad::published::BoxMean, fingerpad::Newton, S>({5});
                const auto clean = test::estimate<S>(estimator, frame);
                for (fingerpad::Index i : {24, 25}) {
                  frame.red(i, 28) = frame.red(i, 29) = S(255);

@@ -47,9 +47,8 @@ inline Row scattering_at_rim() {
                  red(0, j) = S(c.red);
                  green(0, j) = S(c.green);
                }
-               const auto reference =
-                   fingerpad::fit_reference<fingerpad::RadialFit, fingerpad::AstigmaticHeights, S>(
-                       camera, fluid, red, green, depth);
+               const auto reference = fingerpad::fit_reference<fingerpad::AstigmaticHeights, S>(
+                   camera, fluid, red, green, depth);
                const auto fluid_s = fingerpad::cast<S>(fluid);
                const S delta = fluid_s.c_green_per_mm - fluid_s.c_red_per_mm;
                for (fingerpad::Index j = 0; j < n; ++j) {

@@ -9,6 +9,7 @@
 #include "fingerpad/adapt/opencv.hpp"
 #include "fingerpad/depth/depth.hpp"
 #include "fingerpad/depth/neighbour_light.hpp"
+#include "fingerpad/published/depth.hpp"
 
 namespace replay {
 namespace {
@@ -114,21 +115,15 @@ DepthStep make_chain(const Recording& recording, Policy smoothing) {
 }  // namespace
 
 DepthStep make_depth_step(const Recording& recording, Smoothing smoothing, int window_px) {
-  using fingerpad::Anchored;
-  using fingerpad::BiasFreeMean;
-  using fingerpad::BoxMean;
-  using fingerpad::NoSmoothing;
   switch (smoothing) {
     case Smoothing::none:
-      return make_chain(recording, NoSmoothing{});
+      return make_chain(recording, fingerpad::NoSmoothing{});
     case Smoothing::box:
-      return make_chain(recording, BoxMean{window_px});
-    case Smoothing::bias_free:
-      return make_chain(recording, BiasFreeMean{window_px});
+      return make_chain(recording, fingerpad::published::BoxMean{window_px});
     case Smoothing::anchored:
       break;
   }
-  return make_chain(recording, Anchored<BiasFreeMean>{BiasFreeMean{window_px}});
+  return make_chain(recording, fingerpad::BiasFreeMean{window_px});
 }
 
 }  // namespace replay

@@ -12,7 +12,7 @@
 
 namespace replay {
 
-enum class Smoothing { none, box, bias_free, anchored };
+enum class Smoothing { none, box, anchored };
 
 struct FrameDepth {
   fingerpad::Index valid_pixels = 0;

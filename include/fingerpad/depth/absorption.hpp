@@ -145,21 +145,25 @@ Colour<S> colour_at_depth(const Absorption<S>& fluid,
   return {red, green};
 }
 
-/// The depth equation F(l) = green exp(delta k l) - kappa red + g W(l) and its slope. F rises
-/// strictly where green >= 0, g > 0 and delta >= 0, so it has at most one root. It replaces the
-/// published quotient f(l) = g - F/W, which is 0/0 at l = 0 and overflows at large l.
+namespace detail {
+
 template <scalar S>
-struct DepthEquation {
+struct ValueAndSlope {
   S value;
   S slope;
 };
 
+}  // namespace detail
+
+/// The depth equation F(l) = green exp(delta k l) - kappa red + g W(l) and its slope. F rises
+/// strictly where green >= 0, g > 0 and delta >= 0, so it has at most one root. It replaces the
+/// published quotient f(l) = g - F/W, which is 0/0 at l = 0 and overflows at large l.
 template <scalar S>
-DepthEquation<S> depth_equation(const Absorption<S>& fluid,
-                                const Pencil<S>& pencil,
-                                const S& scattering,
-                                const Colour<S>& colour,
-                                const S& depth_mm) {
+detail::ValueAndSlope<S> depth_equation(const Absorption<S>& fluid,
+                                        const Pencil<S>& pencil,
+                                        const S& scattering,
+                                        const Colour<S>& colour,
+                                        const S& depth_mm) {
   using std::exp;
   const S delta_k = (fluid.c_green_per_mm - fluid.c_red_per_mm) * pencil.path_factor;
   const S membrane = colour.green * exp(S(delta_k * depth_mm));

@@ -24,8 +24,8 @@
 #include "fingerpad/core/status.hpp"
 #include "fingerpad/depth/depth_inverse.hpp"
 #include "fingerpad/depth/depth_reference.hpp"
-#include "fingerpad/depth/depth_rows.hpp"
 #include "fingerpad/depth/detail/colour_rows.hpp"
+#include "fingerpad/depth/detail/depth_rows.hpp"
 #include "fingerpad/depth/detail/pad_area.hpp"
 #include "fingerpad/optics/camera.hpp"
 
@@ -43,17 +43,15 @@ struct [[nodiscard]] DepthResult {
 };
 
 /// Depth of every pixel of a frame, in the scalar S.
-///   Smoothing  Anchored<BiasFreeMean>  take this for curved membrane, where a mean has a bias
-///              Anchored<BoxMean>       take this when time counts and contacts are flat
-///   Inverse    ExponentialFree<>       take this for float and double
-///              Newton<>                take this for other numbers, and for derivatives
-///   Heights    AstigmaticHeights       take this; a pinhole's rays meet at two heights in the
-///   fluid
-/// NoSmoothing, means that are not anchored, Bisection and SingleHeight are what the method is
-/// compared with; published/depth.hpp is the method as printed.
+///   Smoothing  BiasFreeMean       take this for curved contacts and by default
+///              AnchoredMean       take this when time counts and contacts are flat
+///              NoSmoothing        take this for frames without noise
+///   Inverse    ExponentialFree<>  take this for float and double
+///              Newton             take this for other numbers, and for derivatives
+/// Heights and Scattering are those of the reference. published/depth.hpp is the method as printed.
 /// Const: threads may share one estimator, each with a workspace of its own, and may take a band of
 /// rows each. A call takes no memory and throws nothing; O(rows cols), whatever the window.
-template <class Smoothing = Anchored<BiasFreeMean>,
+template <class Smoothing = BiasFreeMean,
           class Inverse = ExponentialFree<>,
           class Heights = AstigmaticHeights,
           scalar S = float,
@@ -104,8 +102,7 @@ class DepthEstimator {
     return Workspace<Pixel>(*this, scale);
   }
 
-  /// Depth in mm of a frame, NaN where there is none, from its red and green channel. A warm start
-  /// takes last frame's depth from `depth_mm`.
+  /// Depth in mm of a frame, NaN where there is none, from its red and green channel.
   template <grid Red, grid Green, class Depth, class Pixel>
     requires(writable_grid<Depth, S>)
   DepthResult operator()(const Red& red,
@@ -187,7 +184,7 @@ class DepthEstimator {
       setup_.in_pad.push_back(is_finite(depth) ? 1 : 0);
       pad_pixels_ += setup_.in_pad.back();
     }
-    if constexpr (detail::is_anchored<Smoothing>) {
+    if constexpr (Smoothing::anchored) {
       setup_.anchor = detail::anchor_of(pad.camera, fluid, pad.reference);
     }
   }
@@ -219,9 +216,6 @@ class DepthEstimator {
     w.rows_.start(setup_, red, green, begin);
     for (Index i = begin; i < end; ++i) {
       w.rows_.next(setup_, red, green, w.red_.data(), w.green_.data());
-      if constexpr (Inverse::start == Start::previous_frame) {
-        detail::load_row(depth, i, w.depth_.data());
-      }
       solver_.invert(i, pad_.cols, w.red_.data(), w.green_.data(), w.depth_.data(),
                      w.status_.data());
       explain(i, red, green, w, result);
@@ -271,7 +265,7 @@ class DepthEstimator {
 template <scalar S,
           class Scattering,
           class Heights,
-          class Smoothing = Anchored<BiasFreeMean>,
+          class Smoothing = BiasFreeMean,
           class Inverse = ExponentialFree<>>
 DepthEstimator(const Camera<double>&,
                const Absorption<double>&,

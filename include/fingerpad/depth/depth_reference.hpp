@@ -14,10 +14,10 @@
 #include <type_traits>
 #include <vector>
 
-#include "fingerpad/depth/absorption.hpp"
 #include "fingerpad/core/expects.hpp"
 #include "fingerpad/core/grid.hpp"
 #include "fingerpad/core/scalar.hpp"
+#include "fingerpad/depth/absorption.hpp"
 
 namespace fingerpad {
 inline namespace v0 {
@@ -49,6 +49,7 @@ constexpr GreyScale grey_scale_of() {
 /// g as a polynomial of degree `Degree` in v = (rho / rho_max)^2; grey levels per mm^2.
 template <scalar S, int Degree = 3>
 struct RadialScattering {
+  static constexpr bool is_radial = true;
   std::array<S, static_cast<std::size_t>(Degree) + 1> coefficient = {};  ///< of 1, v, v^2, ...
   S rho_max_mm = S(1);  ///< farthest pixel of the fit, on the plate
 
@@ -61,17 +62,8 @@ struct RadialScattering {
     return g;
   }
   S operator()(Index /*row*/, Index /*col*/, const S& rho_sq_mm2) const { return at(rho_sq_mm2); }
-};
-
-/// g per pixel, the published quotient; NaN where the reference has no usable depth.
-template <scalar S>
-struct PixelScattering {
-  Index cols = 0;
-  std::vector<S> plane;  ///< rows x cols
-
-  S operator()(Index row, Index col, const S& /*rho_sq_mm2*/) const {
-    return plane[static_cast<std::size_t>(row * cols + col)];
-  }
+  /// The same in another part of the image.
+  RadialScattering cropped(Index, Index, Index, Index) const { return *this; }
 };
 
 /// The free pad, as the depth estimator needs it. The type remembers the policy of heights that g
@@ -198,70 +190,51 @@ void fit_scattering(const VisitAll& visit_all,
   reference.residual_rms = S(std::sqrt(left_sq / static_cast<double>(reference.pixels_used)));
 }
 
-/// The published quotient, pixel by pixel.
-template <scalar S, class Heights, class VisitAll>
-void fit_scattering(const VisitAll& visit_all,
-                    DepthReference<S, PixelScattering<S>, Heights>& reference) {
-  reference.scattering.cols = reference.cols;
-  reference.scattering.plane.assign(reference.depth_mm.size(), not_a_number<S>());
-  visit_all([&](Index row, Index col, double, double known, double scattered) {
-    reference.scattering.plane[static_cast<std::size_t>(row * reference.cols + col)] =
-        S(known / scattered);
-    ++reference.pixels_used;
-  });
-  expects(reference.pixels_used > 0, "fit_reference", "pixels with a known depth",
-          static_cast<long long>(reference.pixels_used), "at least 1");
-}
-
-}  // namespace detail
-
-/// How g is found; see RadialScattering.
-struct RadialFit {
-  template <scalar S>
-  using Scattering = RadialScattering<S>;
-};
-
-/// The published quotient, for comparison: noise of the reference goes into every later depth, and
-/// without bound toward the rim.
-struct PixelQuotient {
-  template <scalar S>
-  using Scattering = PixelScattering<S>;
-};
-
-/// The reference from one frame of the free pad (an average of many frames is better: store it as
-/// 16 bit or float) and its depth along each pixel's ray in mm, NaN outside the pad. Refuses grids
-/// of different sizes and data that do not determine g (parameter_error). O(rows cols); allocates.
-template <class Fit = RadialFit,
-          class Heights = AstigmaticHeights,
-          scalar S = float,
-          grid Red,
-          grid Green,
-          grid Depth>
-auto fit_reference(const Camera<double>& camera,
+/// A reference without its scattering: the free pad's depth. Refuses what has no meaning.
+template <class Reference, class S, class Red, class Green, class Depth>
+Reference free_pad(const Camera<double>& camera,
                    const Absorption<double>& fluid,
                    const Red& red,
                    const Green& green,
                    const Depth& depth_mm,
-                   const GreyScale& scale = grey_scale_of<cell_t<Red>>()) {
+                   const GreyScale& scale) {
   expects_valid(camera);
   expects_valid(fluid);
   expects_valid(scale);
   expects(same_size(red, green) && same_size(red, depth_mm), "fit_reference", "rows of depth_mm",
-          static_cast<long long>(rows(depth_mm)), "of the same size as the red and green image");
-  using Scattering = typename Fit::template Scattering<S>;
-  DepthReference<S, Scattering, Heights> reference;
-  const auto depth_view = as_view(depth_mm);
-  reference.rows = depth_view.rows();
-  reference.cols = depth_view.cols();
+          static_cast<long long>(depth_mm.rows()), "of the same size as the red and green image");
+  Reference reference;
+  reference.rows = depth_mm.rows();
+  reference.cols = depth_mm.cols();
   for (Index i = 0; i < reference.rows; ++i) {
     for (Index j = 0; j < reference.cols; ++j) {
-      const double l = static_cast<double>(depth_view(i, j));
+      const double l = static_cast<double>(depth_mm(i, j));
       const bool inside = l >= 0 && l <= fluid.max_depth_mm;
       reference.depth_mm.push_back(inside ? S(l) : not_a_number<S>());
     }
   }
+  return reference;
+}
+
+}  // namespace detail
+
+/// The reference from one frame of the free pad (an average of many frames is better: store it as
+/// 16 bit or float) and its depth along each pixel's ray in mm, NaN outside the pad. Refuses grids
+/// of different sizes and data that do not determine g (parameter_error). O(rows cols); allocates.
+template <class Heights = AstigmaticHeights, scalar S = float, grid Red, grid Green, grid Depth>
+DepthReference<S, RadialScattering<S>, Heights> fit_reference(
+    const Camera<double>& camera,
+    const Absorption<double>& fluid,
+    const Red& red,
+    const Green& green,
+    const Depth& depth_mm,
+    const GreyScale& scale = grey_scale_of<cell_t<Red>>()) {
+  using Reference = DepthReference<S, RadialScattering<S>, Heights>;
+  const auto depth = as_view(depth_mm);
+  auto reference =
+      detail::free_pad<Reference, S>(camera, fluid, as_view(red), as_view(green), depth, scale);
   const auto visit = [&](auto&& visitor) {
-    detail::visit_reference<Heights>(camera, fluid, scale, as_view(red), as_view(green), depth_view,
+    detail::visit_reference<Heights>(camera, fluid, scale, as_view(red), as_view(green), depth,
                                      visitor);
   };
   detail::fit_scattering(visit, reference);

@@ -39,7 +39,7 @@ struct FingertipMethods {
   static constexpr bool has_dots = true;     ///< object motion, stick ratio, forces by look-up
   static constexpr bool has_wrench = true;   ///< six-axis force from pressure and side dots
 
-  using Smoothing = Anchored<BiasFreeMean>;
+  using Smoothing = BiasFreeMean;
   using Inverse = ExponentialFree<>;
   using Statistic = ClampedMean<>;
   using Edge = HalfLevelEdge;
@@ -234,7 +234,7 @@ class Fingertip {
 
     explicit ImageStage(const Options& o)
         : camera(o.camera),
-          estimate(o.camera, o.fluid, o.reference, {{o.smoothing_px}}),
+          estimate(o.camera, o.fluid, o.reference, {o.smoothing_px}),
           work(Executor::threads, estimate.template workspace<Pixel>()),
           depth(o.rows, o.cols),
           status(o.rows, o.cols) {

@@ -5,6 +5,12 @@
 // vision-based tactile sensor for dexterous handling of robot hands", III.A. A quotient of the
 // scattering for each pixel, the mean over 29 x 29 px, one height for all rays, bisection. What is
 // wrong with it, and what the default does instead: docs/errata.md and docs/depth/depth.md.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <vector>
+
 #include "fingerpad/depth/depth.hpp"
 #include "fingerpad/published/camera.hpp"
 
@@ -12,20 +18,138 @@ namespace fingerpad {
 inline namespace v0 {
 namespace published {
 
+/// The mean of the colours over a square window.
+struct BoxMean {
+  static constexpr bool anchored = false;
+  int window_px = 29;  ///< odd, 3..255
+
+  std::array<int, 1> windows_px() const { return {window_px}; }
+};
+
+/// The published quotient f(l) = g at the depth l > 0 of a pixel, as printed after the repairs
+/// E003-E005: (b_G e^{c_G k l} - kappa b_R e^{c_R k l}) / (Q1 (1 - e^{c_R k l}) + Q2). It is 0/0 at
+/// l = 0, so never ask for it there.
+template <scalar S>
+S quotient(const Absorption<S>& fluid,
+           const Pencil<S>& pencil,
+           const Colour<S>& colour,
+           const S& depth_mm) {
+  using std::exp;
+  const S& c = fluid.c_red_per_mm;
+  const S& k = pencil.path_factor;
+  const S& l = depth_mm;
+  const S product = pencil.height.meridional_mm * pencil.height.sagittal_mm;
+  const S sum = pencil.height.meridional_mm + pencil.height.sagittal_mm;
+  const S ck = c * k;
+  const S q1 = (product + (sum + S(2) / ck) / ck) / k;
+  const S q2 = (l * l + sum * l + S(2) * l / ck) / k;
+  const S e_red = exp(S(ck * l));
+  const S e_green = exp(S(fluid.c_green_per_mm * k * l));
+  return S((colour.green * e_green - fluid.kappa * colour.red * e_red) /
+           (q1 * (S(1) - e_red) + q2));
+}
+
+/// The published bisection of `halvings` halvings: half-width max_depth / 2^(halvings - 1) at the
+/// end (0.43 um for 16 and 14 mm). As printed it starts at l = 0, where f is 0/0 and every pixel
+/// goes astray (E006); here the first step is taken unconditionally, to the middle.
+template <scalar S>
+DepthRoot<S> bisect_depth(const Absorption<S>& fluid,
+                          const Pencil<S>& pencil,
+                          const S& scattering,
+                          const Colour<S>& colour,
+                          int halvings = 16) {
+  const PixelStatus range = detail::range_of_root(fluid, pencil, scattering, colour);
+  if (range != PixelStatus::ok) {
+    return {not_a_number<S>(), range};
+  }
+  S depth = fluid.max_depth_mm / S(2);
+  S step = depth / S(2);
+  for (int i = 2; i < halvings; ++i) {
+    const bool root_is_deeper = !(quotient(fluid, pencil, colour, depth) < scattering);
+    depth = root_is_deeper ? S(depth + step) : S(depth - step);
+    step = step / S(2);
+  }
+  return {depth, PixelStatus::ok};
+}
+
+/// The published bisection, in any scalar.
+struct Bisection {
+  int halvings = 16;  ///< in 2..100
+
+  template <scalar S>
+  DepthRoot<S> operator()(const Absorption<S>& fluid,
+                          const Pencil<S>& pencil,
+                          const S& scattering,
+                          const Colour<S>& colour) const {
+    return bisect_depth(fluid, pencil, scattering, colour, halvings);
+  }
+};
+
+/// Refuses what has no meaning (parameter_error).
+inline void expects_valid(const Bisection& inverse) {
+  expects(inverse.halvings >= 2 && inverse.halvings <= 100, "Bisection", "halvings",
+          static_cast<long long>(inverse.halvings), "in 2..100");
+}
+
+/// g per pixel, the published quotient; NaN where the reference has no usable depth.
+template <scalar S>
+struct PixelScattering {
+  static constexpr bool is_radial = false;
+  Index cols = 0;
+  std::vector<S> plane;  ///< rows x cols
+
+  const S* row(Index i) const { return plane.data() + i * cols; }
+  S operator()(Index i, Index j, const S& /*rho_sq_mm2*/) const { return row(i)[j]; }
+
+  PixelScattering cropped(Index first_row, Index first_col, Index rows, Index cropped_cols) const {
+    PixelScattering out{cropped_cols, {}};
+    for (Index i = 0; i < rows; ++i) {
+      const S* from = row(first_row + i) + first_col;
+      out.plane.insert(out.plane.end(), from, from + cropped_cols);
+    }
+    return out;
+  }
+  S largest() const {
+    S found = S(0);
+    for (const S& g : plane) {
+      found = is_finite(g) ? (std::max)(found, g) : found;
+    }
+    return found;
+  }
+};
+
+/// The free pad as printed: the noise of the reference goes into every later depth, and without
+/// bound toward the rim. Refuses what fit_reference refuses (parameter_error).
+template <scalar S = float, class Heights = SingleHeight, grid Red, grid Green, grid Depth>
+DepthReference<S, PixelScattering<S>, Heights> depth_reference(
+    const Camera<double>& camera,
+    const Absorption<double>& fluid,
+    const Red& red,
+    const Green& green,
+    const Depth& depth_mm,
+    const GreyScale& scale = grey_scale_of<cell_t<Red>>()) {
+  using Reference = DepthReference<S, PixelScattering<S>, Heights>;
+  const auto depth = as_view(depth_mm);
+  auto reference =
+      detail::free_pad<Reference, S>(camera, fluid, as_view(red), as_view(green), depth, scale);
+  PixelScattering<S>& g = reference.scattering;
+  g.cols = reference.cols;
+  g.plane.assign(reference.depth_mm.size(), not_a_number<S>());
+  detail::visit_reference<Heights>(
+      camera, fluid, scale, as_view(red), as_view(green), depth,
+      [&](Index row, Index col, double, double known, double scattered) {
+        g.plane[static_cast<std::size_t>(row * g.cols + col)] = S(known / scattered);
+        ++reference.pixels_used;
+      });
+  expects(reference.pixels_used > 0, "depth_reference", "pixels with a known depth",
+          static_cast<long long>(reference.pixels_used), "at least 1");
+  return reference;
+}
+
 /// Depth as printed, in the scalar S.
 template <scalar S = float>
 using DepthEstimator =
     fingerpad::DepthEstimator<BoxMean, Bisection, SingleHeight, S, PixelScattering<S>>;
-
-/// The free pad as printed: see fit_reference, which this calls.
-template <scalar S = float, grid Red, grid Green, grid Depth>
-auto depth_reference(const Camera<double>& camera,
-                     const Absorption<double>& fluid,
-                     const Red& red,
-                     const Green& green,
-                     const Depth& depth_mm) {
-  return fit_reference<PixelQuotient, SingleHeight, S>(camera, fluid, red, green, depth_mm);
-}
 
 /// `reference` from depth_reference(). Refuses bad parameters (parameter_error).
 template <scalar S>

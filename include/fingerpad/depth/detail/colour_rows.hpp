@@ -12,6 +12,7 @@
 #include <cstdint>
 #include <cstring>
 #include <limits>
+#include <tuple>
 #include <type_traits>
 #include <vector>
 
@@ -92,10 +93,10 @@ class PlainRows {
 /// Everything that is averaged passes through as `Element`: first = offset + units * what it means.
 template <class Pixel, class S, class Smoothing>
 class MeanRowsOf {
-  using Windows = WindowsOf<Smoothing>;
-  static constexpr int windows = Windows::count;
+  static constexpr auto windows =
+      static_cast<int>(std::tuple_size_v<decltype(Smoothing().windows_px())>);
   static constexpr bool exact = averages_integers<Pixel, S>;
-  static constexpr bool anchored = Windows::anchored;
+  static constexpr bool anchored = Smoothing::anchored;
   using Element = std::conditional_t<!exact, S, std::conditional_t<anchored, std::uint16_t, Pixel>>;
   using Limit = real_of_t<Element>;
 
@@ -104,12 +105,11 @@ class MeanRowsOf {
       : scale_(scale),
         sums_(setup.rows,
               setup.cols,
-              Windows::sizes_px(smoothing),
+              smoothing.windows_px(),
               limits(scale),
-              anchored ? 1 : windows,
               anchored ? 1.0f : static_cast<float>(1 / scale.units_per_level)) {
     const auto size = static_cast<std::size_t>(setup.cols);
-    const auto weight = window_weights(Windows::sizes_px(smoothing));
+    const auto weight = window_weights(smoothing.windows_px());
     for (std::size_t k = 0; k < weight.size(); ++k) {
       weight_[k] = S(weight[k]);
       mean_[k].red.resize(size);
@@ -129,7 +129,8 @@ class MeanRowsOf {
   void next(
       const ColourSetup<S>& setup, const Red& red, const Green& green, S* to_red, S* to_green) {
     MeanRows<S> out[static_cast<std::size_t>(windows)];
-    if constexpr (windows == 1 && !anchored) {  // the means are what is wanted
+    if constexpr (!anchored) {  // the means are what is wanted
+      static_assert(windows == 1);
       out[0] = {to_red, to_green};
       sums_.advance(source(setup, red, green), out);
     } else {
@@ -219,25 +220,22 @@ class MeanRowsOf {
     }
   }
 
-  /// Weighs the means and turns them back into grey levels. Where the inner window holds no valid
-  /// pixel its mean is NaN, and so is the row.
+  /// Weighs the means and turns residuals back into red. Where the inner window holds no valid
+  /// pixel its mean is NaN, and so is the row. One window will do for green: its share in the
+  /// equation is small.
   void finish(const ColourSetup<S>& setup, Index row, S* to_red, S* to_green) const {
-    const S* rise = anchored ? setup.anchor.rise.data() + row * setup.cols : nullptr;
-    const S* scattered = anchored ? setup.anchor.scattered.data() + row * setup.cols : nullptr;
+    const S* rise = setup.anchor.rise.data() + row * setup.cols;
+    const S* scattered = setup.anchor.scattered.data() + row * setup.cols;
     const S per_kappa = S(1) / setup.anchor.kappa;
     for_each_cell<S>(setup.cols, [&]<class V>(Index j) {
-      V red = weighted<V>(mean_.front().red, mean_.back().red, j);
+      V residual = weighted<V>(mean_.front().red, mean_.back().red, j);
       V green = load_cells<V, S>(mean_.front().green.data() + j);
-      if constexpr (anchored) {  // one window will do for green: its share in the equation is small
-        if constexpr (exact) {
-          green = green * (S(1) / S(green_units));
-          red = (red - S(residual_zero)) * (S(1) / S(residual_units));
-        }
-        red = (load_cells<V, S>(rise + j) * green + load_cells<V, S>(scattered + j) - red) *
-              per_kappa;
-      } else {
-        green = weighted<V>(mean_.front().green, mean_.back().green, j);
+      if constexpr (exact) {
+        green = green * (S(1) / S(green_units));
+        residual = (residual - S(residual_zero)) * (S(1) / S(residual_units));
       }
+      const V membrane = load_cells<V, S>(rise + j) * green;
+      const V red = (membrane + load_cells<V, S>(scattered + j) - residual) * per_kappa;
       store_cells<S>(to_red + j, red);
       store_cells<S>(to_green + j, green);
     });

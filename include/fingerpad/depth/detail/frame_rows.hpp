@@ -38,11 +38,6 @@ struct Anchor {
   S kappa = S(1);
 };
 
-template <class Smoothing>
-inline constexpr bool is_anchored = false;
-template <class Mean>
-inline constexpr bool is_anchored<Anchored<Mean>> = true;
-
 /// The anchor at the free pad of `reference`. Outside the pad, where nothing is averaged, it holds
 /// harmless numbers.
 template <class S, class Scattering, class Heights>
@@ -124,12 +119,6 @@ struct IgnoredCell {
   constexpr Sink operator()(Index, Index) const { return {}; }
 };
 
-template <class View, class S>
-void load_row(const View& view, Index row, S* to) {
-  for (Index j = 0; j < view.cols(); ++j) {
-    to[j] = static_cast<S>(view(row, j));
-  }
-}
 template <class S, class View>
 void store_row(const S* from, const View& view, Index row) {
   for (Index j = 0; j < view.cols(); ++j) {

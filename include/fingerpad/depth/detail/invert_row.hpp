@@ -141,6 +141,44 @@ ColumnSpan covered_columns(const Table& table, std::ptrdiff_t row, std::ptrdiff_
   return {first, last < first ? first : last};
 }
 
+/// Pixels that are inverted between two looks at what became of them.
+inline constexpr std::ptrdiff_t inversion_block = 64;
+
+/// Depths of a block of pixels from column `first` on. False when one of them has none.
+template <int Order, class V, class Table, class Scalar, class Gain>
+[[gnu::always_inline]] inline bool invert_block(const Table& table,
+                                                std::ptrdiff_t row,
+                                                std::ptrdiff_t first,
+                                                const Scalar* red,
+                                                const Scalar* green,
+                                                Gain gain,
+                                                Scalar* depth_mm) noexcept {
+  constexpr auto width = std::ptrdiff_t(sizeof(V) / sizeof(Scalar));
+  Scalar steps[std::size_t(width)];
+  for (std::ptrdiff_t i = 0; i < width; ++i) {
+    steps[i] = Scalar(i) - table.center_col_px;
+  }
+  const V ramp = load_cells<V, Scalar>(steps);
+  const Scalar dy = (Scalar(row) - table.center_row_px) * table.u_root_per_px;
+  const Scalar dy_sq = dy * dy;
+  auto bad = V{} != V{};
+  for (std::ptrdiff_t i = 0; i < inversion_block; i += width) {
+    const V dx = (ramp + Scalar(first + i)) * table.u_root_per_px;
+    const V u = dx * dx + dy_sq;
+    const V r = load_cells<V, Scalar>(red + i);
+    const V b = load_cells<V, Scalar>(green + i);
+    V l;
+    if constexpr (std::is_null_pointer_v<Gain>) {
+      l = invert<Order>(table, u, r, b, nullptr);
+    } else {
+      l = invert<Order>(table, u, r, b, load_cells<V, Scalar>(gain + i));
+    }
+    bad = bad | (l != l);
+    store_cells<Scalar>(depth_mm + i, l);
+  }
+  return !any(bad);
+}
+
 /// Depths of one image row. `gain` is a row of g, or nullptr when g is folded into the table; a
 /// pixel whose g is not positive gets no depth. An output may be an input of the same column.
 template <int Order, int VectorBytes = native_vector_bytes, class Table, class Scalar, class Gain>
@@ -153,73 +191,42 @@ void invert_row(const Table& table,
                 Scalar* depth_mm,
                 PixelStatus* status) noexcept {
   constexpr bool has_gain = !std::is_null_pointer_v<Gain>;
-  constexpr int width = row_lanes<Scalar, VectorBytes>;
-  constexpr std::ptrdiff_t block = 64;
-  using V = typename RowVector<Scalar, width>::type;
+  constexpr auto block = inversion_block;
+  using V = typename RowVector<Scalar, row_lanes<Scalar, VectorBytes>>::type;
   const Table local = table;  // out of reach of the outputs, so it can stay in registers
   const auto [begin, end] = covered_columns(table, row, cols);
-  const auto leave_out = [&](std::ptrdiff_t first, std::ptrdiff_t last) {
-    for (std::ptrdiff_t col = first; col < last; ++col) {
-      depth_mm[col] = std::numeric_limits<Scalar>::quiet_NaN();
-      status[col] = PixelStatus::outside_pad;
-    }
-  };
-  leave_out(0, begin);
-  leave_out(end, cols);
-
-  V ramp = {};
-  Scalar steps[std::size_t(width)];
-  for (int i = 0; i < width; ++i) {
-    steps[i] = Scalar(i) - local.center_col_px;
-  }
-  std::memcpy(&ramp, steps, sizeof ramp);
-  const Scalar dy = (Scalar(row) - local.center_row_px) * local.u_root_per_px;
-  const Scalar dy_sq = dy * dy;
-  for (std::ptrdiff_t first = begin; first < end; first += block) {
-    const std::ptrdiff_t count = end - first < block ? end - first : block;
-    const std::size_t bytes = std::size_t(count) * sizeof(Scalar);
-    Scalar spare[4][std::size_t(block)];
-    const Scalar* r = red + first;
-    const Scalar* b = green + first;
-    const Scalar* g = nullptr;
+  std::fill(depth_mm, depth_mm + begin, std::numeric_limits<Scalar>::quiet_NaN());
+  std::fill(depth_mm + end, depth_mm + cols, std::numeric_limits<Scalar>::quiet_NaN());
+  std::fill(status, status + begin, PixelStatus::outside_pad);
+  std::fill(status + end, status + cols, PixelStatus::outside_pad);
+  PixelStatus code[std::size_t(block)];
+  std::ptrdiff_t first = begin;
+  for (; first + block <= end; first += block) {
+    Gain g = gain;
     if constexpr (has_gain) {
-      g = gain + first;
+      g += first;
     }
-    Scalar* d = depth_mm + first;
-    if (count < block) {
-      std::memset(spare, 0, sizeof spare);
-      r = static_cast<const Scalar*>(std::memcpy(spare[0], r, bytes));
-      b = static_cast<const Scalar*>(std::memcpy(spare[1], b, bytes));
-      if constexpr (has_gain) {
-        g = static_cast<const Scalar*>(std::memcpy(spare[2], g, bytes));
-      }
-      d = spare[3];
-    }
-    auto bad = V{} != V{};
-    for (std::ptrdiff_t i = 0; i < block; i += width) {
-      const V dx = (ramp + Scalar(first + i)) * local.u_root_per_px;
-      const V u = dx * dx + dy_sq;
-      V l;
-      if constexpr (has_gain) {
-        l = invert<Order>(local, u, load_cells<V, Scalar>(r + i), load_cells<V, Scalar>(b + i),
-                          load_cells<V, Scalar>(g + i));
-      } else {
-        l = invert<Order>(local, u, load_cells<V, Scalar>(r + i), load_cells<V, Scalar>(b + i),
-                          nullptr);
-      }
-      bad = bad | (l != l);
-      std::memcpy(d + i, &l, sizeof l);
-    }
-    if (count == block && !any(bad)) {
+    if (invert_block<Order, V>(local, row, first, red + first, green + first, g,
+                               depth_mm + first)) {
       std::fill_n(status + first, block, PixelStatus::ok);
     } else {
-      PixelStatus code[std::size_t(block)];
-      write_status<block>(d, code);
-      std::memcpy(status + first, code, std::size_t(count));
-      if (count < block) {
-        std::memcpy(depth_mm + first, d, bytes);
-      }
+      write_status<std::size_t(block)>(depth_mm + first, code);
+      std::copy_n(code, block, status + first);
     }
+  }
+  if (const std::ptrdiff_t rest = end - first; rest > 0) {
+    Scalar spare[4][std::size_t(block)] = {};
+    std::copy_n(red + first, rest, spare[0]);
+    std::copy_n(green + first, rest, spare[1]);
+    if constexpr (has_gain) {
+      std::copy_n(gain + first, rest, spare[2]);
+      invert_block<Order, V>(local, row, first, spare[0], spare[1], spare[2], spare[3]);
+    } else {
+      invert_block<Order, V>(local, row, first, spare[0], spare[1], nullptr, spare[3]);
+    }
+    write_status<std::size_t(block)>(spare[3], code);
+    std::copy_n(code, rest, status + first);
+    std::copy_n(spare[3], rest, depth_mm + first);
   }
 }
 }  // namespace detail

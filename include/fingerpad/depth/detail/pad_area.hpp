@@ -36,21 +36,6 @@ struct PadReference {
   DepthReference<S, Scattering, Heights> reference;
 };
 
-template <class S, int Degree>
-RadialScattering<S, Degree> crop_scattering(const RadialScattering<S, Degree>& g, const PadArea&) {
-  return g;
-}
-template <class S>
-PixelScattering<S> crop_scattering(const PixelScattering<S>& g, const PadArea& area) {
-  PixelScattering<S> cropped{area.cols, {}};
-  for (Index i = 0; i < area.rows; ++i) {
-    for (Index j = 0; j < area.cols; ++j) {
-      cropped.plane.push_back(g(area.row + i, area.col + j, S(0)));
-    }
-  }
-  return cropped;
-}
-
 template <class S, class Scattering, class Heights>
 PadReference<S, Scattering, Heights> crop_to_pad(
     const Camera<double>& camera, const DepthReference<S, Scattering, Heights>& reference) {
@@ -74,7 +59,7 @@ PadReference<S, Scattering, Heights> crop_to_pad(
   pad.camera.center_y_px -= static_cast<double>(area.row);
   pad.reference.rows = area.rows;
   pad.reference.cols = area.cols;
-  pad.reference.scattering = crop_scattering(reference.scattering, area);
+  pad.reference.scattering = reference.scattering.cropped(area.row, area.col, area.rows, area.cols);
   for (Index i = 0; i < area.rows; ++i) {
     for (Index j = 0; j < area.cols; ++j) {
       pad.reference.depth_mm.push_back(reference.depth(area.row + i, area.col + j));

@@ -148,7 +148,11 @@ double error_bound_mm(const Table& table,
       const double w = sum(table.scatter, s, u, w_slope) - l * w_over_l(l, rho);
       const double e = sum(table.exp_minus_1, s, u, e_slope) - std::expm1(l * delta_k(rho));
       const double miss = gain * std::abs(w) + green_max * std::abs(e);
-      bound = (std::max)(bound, domain.l_max_mm * miss / (gain * w_slope));
+      const double error_mm = domain.l_max_mm * miss / (gain * w_slope);
+      if (!(w_slope > 0 && error_mm >= 0)) {  // not rising, or not a number
+        return std::numeric_limits<double>::infinity();
+      }
+      bound = (std::max)(bound, error_mm);
     }
   }
   return bound;

@@ -34,12 +34,11 @@ using window_limits_t = ValueLimits<real_of_t<Pixel>>;
 template <class Pixel>
 using window_mean_t = std::conditional_t<std::integral<Pixel>, float, Pixel>;
 
-/// Where one row of means goes: `cols` elements each; count may be null.
+/// Where one row of means goes: `cols` elements each; green of the first window only.
 template <class Mean>
 struct MeanRows {
   Mean* red;
   Mean* green;
-  std::uint16_t* count = nullptr;
 };
 
 /// Integer pixels inside an open interval, as a closed one; empty as [1, 0].

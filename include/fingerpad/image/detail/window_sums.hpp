@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// Means of two channels over square windows, with the number of pixels behind each, down the rows.
+// Means of two channels over square windows, down the rows.
 // A window holds the valid pixels of w x w (odd, 3..255) around a pixel: those of the image, inside
 // the caller's mask, with both channels between the limits. Where none is, the mean is NaN.
 //
@@ -11,12 +11,13 @@
 //
 //   WindowSums<std::uint8_t, 2> sums(rows, cols, {33, 55}, {0, 255});
 //   sums.start(first, load_row);  // load_row(row, red, green) or (row, red, green, inside)
-//   for (Index row = first; row < last; ++row) sums.advance(load_row, {{r33, g33}, {r55, g55}});
+//   for (Index row = first; row < last; ++row) sums.advance(load_row, {{r33, g33}, {r55,
+//   nullptr}});
 //
-// Two more arguments of the constructor: green_windows limits green to the first so many windows,
-// and scale multiplies the means of integers. load_row is asked for rows in order, once each, from
-// half a window before `first` on (the plain path, which starts anew every 32 rows, may begin that
-// much earlier).
+// Green is averaged over the first window only: {{r33, g33}, {r55, nullptr}}. One more argument of
+// the constructor, scale, multiplies the means of integers. load_row is asked for rows in order,
+// once each, from half a window before `first` on (the plain path, which starts anew every 32 rows,
+// may begin that much earlier).
 #include <array>
 #include <concepts>
 #include <cstddef>
@@ -29,9 +30,6 @@
 #include "fingerpad/image/detail/lanes.hpp"
 #include "fingerpad/image/detail/window_rows.hpp"
 #include "fingerpad/image/detail/window_vector.hpp"
-
-#if defined(FINGERPAD_HAS_VECTORS)
-#endif
 
 namespace fingerpad {
 inline namespace v0 {
@@ -117,13 +115,11 @@ class RunningWindowSums {
                     Index cols,
                     const std::array<int, std::size_t(Windows)>& window_px,
                     const window_limits_t<Pixel>& limits,
-                    int green_windows = Windows,
                     float scale = 1)
       : rows_(rows),
         cols_(cols),
         radius_(window_radii<Windows>(window_px)),
         limits_(limits),
-        green_windows_(std::size_t(green_windows)),
         scale_(scale) {
     expects(rows >= 1, "WindowSums", "rows", rows, ">= 1");
     expects(cols >= 1, "WindowSums", "cols", cols, ">= 1");
@@ -268,11 +264,8 @@ class RunningWindowSums {
         continue;
       }
       out.red[j] = mean(red, std::uint16_t(count));
-      if (k < green_windows_) {
+      if (k == 0) {
         out.green[j] = mean(green, std::uint16_t(count));
-      }
-      if (out.count != nullptr) {
-        out.count[j] = std::uint16_t(count);
       }
     }
   }
@@ -288,7 +281,6 @@ class RunningWindowSums {
   Index rows_, cols_;
   std::array<Index, std::size_t(Windows)> radius_;
   window_limits_t<Pixel> limits_;
-  std::size_t green_windows_;
   float scale_;
   Index next_row_ = 0;
   std::vector<Row> ring_;

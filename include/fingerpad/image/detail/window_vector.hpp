@@ -87,13 +87,11 @@ class VectorWindowSums {
                    Index cols,
                    const std::array<int, std::size_t(Windows)>& window_px,
                    const ValueLimits<double>& limits,
-                   int green_windows = Windows,
                    float scale = 1)
       : rows_(rows),
         cols_(cols),
         radius_(window_radii<Windows>(window_px)),
         range_(limits),
-        green_windows_(std::size_t(green_windows)),
         scale_(scale) {
     expects(rows >= 1, "WindowSums", "rows", rows, ">= 1");
     expects(cols >= 1, "WindowSums", "cols", cols, ">= 1");
@@ -213,7 +211,7 @@ class VectorWindowSums {
     slide_counts(k, in, past);
     const auto slide_both = [&]<bool Signed>(std::bool_constant<Signed>) {
       slide_sums<Emit, Signed>(k, red_ring_.data(), in, past, sums_[k].red.data(), out.red);
-      if (k < green_windows_) {
+      if (k == 0) {
         slide_sums<Emit, Signed>(k, green_ring_.data(), in, past, sums_[k].green.data(), out.green);
       }
     };
@@ -222,11 +220,6 @@ class VectorWindowSums {
       slide_both(std::true_type{});
     } else {
       slide_both(std::false_type{});
-    }
-    if constexpr (Emit) {
-      if (out.count != nullptr) {
-        std::copy_n(sums_[k].count.data(), cols_, out.count);
-      }
     }
   }
 
@@ -267,8 +260,6 @@ class VectorWindowSums {
         store(sum + j + wide, Wide{});
         if constexpr (Emit) {
           store(to, missing);
-        }
-        if constexpr (Emit) {
           store(to + wide, missing);
         }
         return;
@@ -329,7 +320,6 @@ class VectorWindowSums {
   Index rows_, cols_;
   std::array<Index, std::size_t(Windows)> radius_;
   ClosedRange<Pixel> range_;
-  std::size_t green_windows_;
   float scale_;
   Index padded_ = 0, margin_ = 0, pitch_ = 0, ring_rows_ = 0;
   Index began_ = 0, next_row_ = 0;
