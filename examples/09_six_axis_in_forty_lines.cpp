@@ -18,8 +18,12 @@ double sine(double r) {
   return 0.9 * radius / (radius * radius - touch * touch) * (r * r - touch * touch) / r;
 }
 
+struct Slope {
+  double height_mm, along_x, along_y;
+};
+
 struct Pad {  // level under the plate, from there down to the rim a surface of constant curvature
-  fingerpad::HeightAndSlope<double> operator()(double x, double y) const {
+  Slope operator()(double x, double y) const {
     const double r = std::fmax(std::hypot(x, y), touch);
     const auto steepness = [](double at) { return std::tan(std::asin(sine(at))); };
     double height = 0;

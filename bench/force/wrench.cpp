@@ -76,8 +76,8 @@ Image<Point3<S>> as(const Image<Point3<double>>& from) {
 }
 
 template <class S>
-HeightMap<S> heights_of(const Film& pad) {
-  HeightMap<S> map(S(19.5), S(0.5));
+detail::membrane::HeightMap<S> heights_of(const Film& pad) {
+  detail::membrane::HeightMap<S> map(S(19.5), S(0.5));
   map.fill([&](Index i, Index j) { return pad(map.position_mm(j), map.position_mm(i)).height_mm; },
            [&](Index i, Index j, const auto&...) {
              return S(pad.in_contact(map.position_mm(j), map.position_mm(i)) ? 1 : 0);
@@ -87,9 +87,9 @@ HeightMap<S> heights_of(const Film& pad) {
 
 /// The shapes of all loads.
 template <class S>
-const std::vector<HeightMap<S>>& shapes() {
-  static const std::vector<HeightMap<S>> all = [] {
-    std::vector<HeightMap<S>> list;
+const std::vector<detail::membrane::HeightMap<S>>& shapes() {
+  static const std::vector<detail::membrane::HeightMap<S>> all = [] {
+    std::vector<detail::membrane::HeightMap<S>> list;
     for (const Load& load : loads()) {
       list.push_back(heights_of<S>(load.pad));
     }
@@ -231,26 +231,25 @@ void add_opencv(const std::string& group, Index columns) {
 
 void add_all(Index columns, Index rows) {
   const std::string group = std::to_string(columns) + "x" + std::to_string(rows) + " segments";
-  add_frame<PublishedIteration, OneRow, PublishedDirection, SteepestLines>(
+  add_frame<published::Iteration, OneRow, published::Direction, published::SteepestLines>(
       group, "published: iteration, rim, lines", columns, rows);
   add_mesh<StraightLines, double>(group, "mesh alone", columns, rows);
-  add_mesh<SteepestLines, double>(group, "mesh alone, SteepestLines", columns, rows);
-  add_frame<PublishedIteration>(group, "PublishedIteration", columns, rows);
-  add_frame<ClosedForm>(group, "ClosedForm", columns, rows);
+  add_mesh<published::SteepestLines, double>(group, "mesh alone, SteepestLines", columns, rows);
+  add_frame<published::Iteration>(group, "published::Iteration", columns, rows);
+  add_frame<published::ClosedForm>(group, "published::ClosedForm", columns, rows);
   add_frame<BalancedRim>(group, "BalancedRim", columns, rows);
-  add_frame<BalancedRim, ExtrapolatedRow>(group, "BalancedRim, ExtrapolatedRow", columns, rows,
-                                          {1.06});
+  add_frame<BalancedRim, OneRow>(group, "BalancedRim, with the inclination", columns, rows, {1.06});
   add_frame<BalancedRim, TwoRows>(group, "BalancedRim, TwoRows", columns, rows);
   add_frame<KnownModulus>(group, "KnownModulus", columns, rows);
   add_frame<LeastSquares>(group, "LeastSquares, double, the default", columns, rows);
-  add_frame<LeastSquares, OneRow, PublishedDirection>(group, "LeastSquares, PublishedDirection",
-                                                      columns, rows);
-  add_frame<LeastSquares, OneRow, ClampedRim, SteepestLines>(group, "LeastSquares, SteepestLines",
-                                                             columns, rows);
+  add_frame<LeastSquares, OneRow, published::Direction>(group, "LeastSquares, published::Direction",
+                                                        columns, rows);
+  add_frame<LeastSquares, OneRow, ClampedRim, published::SteepestLines>(
+      group, "LeastSquares, SteepestLines", columns, rows);
   add_frame<BalancedRim, OneRow, ClampedRim, StraightLines, float>(group, "BalancedRim, float",
                                                                    columns, rows);
-  add_frame<PublishedIteration, OneRow, ClampedRim, StraightLines, float>(
-      group, "PublishedIteration, float", columns, rows);
+  add_frame<published::Iteration, OneRow, ClampedRim, StraightLines, float>(
+      group, "published::Iteration, float", columns, rows);
   add_frame<LeastSquares, OneRow, ClampedRim, StraightLines, float>(group, "LeastSquares, float",
                                                                     columns, rows);
   add_opencv(group, columns);
@@ -266,7 +265,7 @@ void add_heights(const std::string& name) {
   };
   struct InPlan {
     PadHeights<Camera<S>> heights{480, 640, Camera<S>()};
-    HeightMap<S> map = heights.map();
+    detail::membrane::HeightMap<S> map = heights.map();
   };
   const auto picture = std::make_shared<Picture>();
   const Film& pad = picture->pad;

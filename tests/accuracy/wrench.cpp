@@ -41,12 +41,12 @@ enum class Share {
 };
 
 struct Input {
-  std::function<const HeightMap<double>&(const WrenchFrame&)> heights;
+  std::function<const PadHeights<>::Map&(const WrenchFrame&)> heights;
   std::function<Image<Point3<double>>(const WrenchFrame&)> dots;
 };
 
 Input exact_input() {
-  return {[](const WrenchFrame& f) -> const HeightMap<double>& { return exact_heights(f.heights); },
+  return {[](const WrenchFrame& f) -> const PadHeights<>::Map& { return exact_heights(f.heights); },
           [](const WrenchFrame& f) { return f.dots; }};
 }
 
@@ -159,7 +159,8 @@ WrenchOptions<double> exact_options() {
   return options;
 }
 
-using Published = Wrench<PublishedIteration, OneRow, PublishedDirection, SteepestLines>;
+using Published =
+    Wrench<published::Iteration, OneRow, published::Direction, published::SteepestLines>;
 
 /// Mean errors; the bounds are about a quarter above what was measured.
 void at_most(const Errors& e, double fxy, double fz, double mxy, double mz) {
@@ -177,18 +178,18 @@ TEST_CASE("wrench of finite-element membranes, exact shape and side dots", "[wre
   const auto options = exact_options();
   auto two_rows = options;
   two_rows.side_dot_length_mm = 0.8;
-  const ExtrapolatedRow extrapolated{stress_free_inclination_rad};
+  const OneRow extrapolated{stress_free_inclination_rad};
   const Input input = exact_input();
   const Wrench<BalancedRim> balanced(rim, options);
-  const Wrench<BalancedRim, ExtrapolatedRow> carried(rim, options, {}, extrapolated);
+  const Wrench<BalancedRim> carried(rim, options, {}, extrapolated);
   const Wrench<BalancedRim, TwoRows> balanced_two(rim, two_rows);
   const Wrench<LeastSquares> squares(rim, options);
-  const Wrench<LeastSquares, ExtrapolatedRow> squares_carried(rim, options, {}, extrapolated);
+  const Wrench<LeastSquares> squares_carried(rim, options, {}, extrapolated);
   const Wrench<LeastSquares, TwoRows> squares_two(rim, two_rows);
-  const Wrench<KnownModulus, ExtrapolatedRow> given_carried(
-      rim, options, {.modulus_n_per_mm = true_modulus}, extrapolated);
-  const Wrench<ClosedForm> closed(rim, options);
-  const Wrench<PublishedIteration> corrected(rim, options);
+  const Wrench<KnownModulus> given_carried(rim, options, {.modulus_n_per_mm = true_modulus},
+                                           extrapolated);
+  const Wrench<published::ClosedForm> closed(rim, options);
+  const Wrench<published::Iteration> corrected(rim, options);
   const Wrench<KnownModulus> given(rim, options, {.modulus_n_per_mm = true_modulus});
   const Wrench<KnownModulus, TwoRows> given_two(rim, two_rows, {.modulus_n_per_mm = true_modulus});
   const Published published(rim, options);
@@ -244,7 +245,7 @@ TEST_CASE("the published rim finds too little of drag and twist", "[wrench]") {
   const Published published(rim, exact_options());
   const Wrench<BalancedRim> balanced(rim, exact_options());
   const Input input = exact_input();
-  const Wrench<ClosedForm, OneRow, PublishedDirection> columns(rim, exact_options());
+  const Wrench<published::ClosedForm, OneRow, published::Direction> columns(rim, exact_options());
   const double column_drag = errors_of(columns, 1, input, "drag").gain[0];
   const double column_twist = errors_of(columns, 1, input, "twist").gain[3];
   const double drag = errors_of(published, 1, input, "drag").gain[0];
@@ -294,7 +295,7 @@ class Rendered {
     test_.threshold_per_mm = calibration.fit().threshold_per_mm;
   }
 
-  const HeightMap<double>& heights(const WrenchFrame& f, Seen seen) {
+  const PadHeights<>::Map& heights(const WrenchFrame& f, Seen seen) {
     if (seen == Seen::exact) {
       return exact_heights(f.heights);
     }
@@ -330,7 +331,7 @@ class Rendered {
   DepthEstimator<> estimator_;
   PadHeights<Camera<double>> heights_;
   ContactTest test_;
-  std::map<std::pair<std::string, Seen>, HeightMap<double>> made_;
+  std::map<std::pair<std::string, Seen>, PadHeights<>::Map> made_;
 };
 
 Image<Point3<double>> jittered(Image<Point3<double>> dots, const Noise& noise, std::uint64_t seed) {
@@ -353,16 +354,14 @@ TEST_CASE("wrench of finite-element membranes, noisy frames", "[wrench]") {
   auto two_rows = options;
   two_rows.side_dot_length_mm = 0.8;
   const Wrench<BalancedRim> balanced(rim, options);
-  const Wrench<BalancedRim, ExtrapolatedRow> carried(rim, options, {},
-                                                     {stress_free_inclination_rad});
+  const Wrench<BalancedRim> carried(rim, options, {}, {stress_free_inclination_rad});
   const Wrench<BalancedRim, TwoRows> two(rim, two_rows);
   const Wrench<LeastSquares> squares(rim, options);
-  const Wrench<LeastSquares, ExtrapolatedRow> squares_carried(rim, options, {},
-                                                              {stress_free_inclination_rad});
+  const Wrench<LeastSquares> squares_carried(rim, options, {}, {stress_free_inclination_rad});
   const Wrench<KnownModulus> given(rim, options, {.modulus_n_per_mm = true_modulus});
-  const Wrench<PublishedIteration> corrected(rim, options);
+  const Wrench<published::Iteration> corrected(rim, options);
   const auto input = [&](const Noise& noise) {
-    return Input{[&rendered, noise](const WrenchFrame& f) -> const HeightMap<double>& {
+    return Input{[&rendered, noise](const WrenchFrame& f) -> const PadHeights<>::Map& {
                    return rendered.heights(f, noise.seen);
                  },
                  [noise](const WrenchFrame& f) { return jittered(f.dots, noise, f.number); }};

@@ -356,9 +356,8 @@ TEST_CASE("rim calibration: finite elements of a free pad", "[wrench]") {
   CHECK(calibration.fit_modulus(0.79995).modulus_n_per_mm == Approx(0.5135).margin(1e-3));
 
   // carried to the rim: the cap is 11 mm high without stress
-  RimCalibration<ExtrapolatedRow> at_rim(
-      grid_of(pad.border), radius_mm,
-      {.stress_free_inclination_rad = 2 * std::atan(11 / radius_mm)});
+  RimCalibration<OneRow> at_rim(grid_of(pad.border), radius_mm,
+                                {.stress_free_inclination_rad = 2 * std::atan(11 / radius_mm)});
   add_all(pad, at_rim);
   const auto fit = at_rim.fit();
   CHECK(fit.length_mm == Approx(0.79995).margin(4e-4));
@@ -387,7 +386,7 @@ TEST_CASE("rim calibration: float", "[wrench]") {
     return points;
   };
   const auto border = narrow(free.border);
-  RimCalibration<ExtrapolatedRow, float> at_rim(
+  RimCalibration<OneRow, float> at_rim(
       grid_of(border), 18.735F, {.stress_free_inclination_rad = 2 * std::atan(11 / radius_mm)});
   for (std::size_t k = 0; k < 4; ++k) {
     const auto dots = narrow(free.dots[k]);
@@ -436,9 +435,11 @@ TEST_CASE("rim calibration: what it refuses", "[wrench]") {
   CHECK(begins_with(refusal([&] { const RimCalibration<> refused(grid_of(border), none); }),
                     owner + "base_radius_mm = "));
   CHECK(refusal([&] { const RimCalibration<> refused(grid_of(border), 30); }) != "accepted");
-  CHECK(begins_with(
-      refusal([&] { const RimCalibration<ExtrapolatedRow> refused(grid_of(border), radius_mm); }),
-      "ExtrapolatedRow: stress_free_inclination_rad = "));
+  CHECK(begins_with(refusal([&] {
+                      const RimCalibration<> refused(grid_of(border), radius_mm,
+                                                     OneRow{not_a_number<double>()});
+                    }),
+                    "OneRow: stress_free_inclination_rad = "));
 
   // frames that are no use: nothing is added
   RimCalibration<> calibration(grid_of(border), radius_mm);

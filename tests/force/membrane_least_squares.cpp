@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "fingerpad/force/least_squares.hpp"
+#include "fingerpad/force/wrench.hpp"
 #include "support/catch.hpp"
 #include "support/refusal.hpp"
 
@@ -30,7 +31,7 @@ struct Cap {
   S radius_mm = S(25);
 
   S foot() const { return S(std::sqrt(radius_mm * radius_mm - S(rim_mm * rim_mm))); }
-  HeightAndSlope<S> operator()(const S& x, const S& y) const {
+  detail::membrane::HeightAndSlope<S> operator()(const S& x, const S& y) const {
     const S z = std::sqrt(radius_mm * radius_mm - x * x - y * y);
     return {S(z - foot()), S(-x / z), S(-y / z)};
   }
@@ -45,7 +46,7 @@ struct FlatPress {
   static constexpr double bend_mm =
       ((rim_mm - disc_mm) * (rim_mm - disc_mm) + height_mm * height_mm) / (2 * height_mm);
 
-  HeightAndSlope<S> operator()(const S& x, const S& y) const {
+  detail::membrane::HeightAndSlope<S> operator()(const S& x, const S& y) const {
     const S r = std::sqrt(x * x + y * y);
     const S out = r - S(disc_mm);
     if (out <= S(0)) {
@@ -67,7 +68,7 @@ template <class S>
 struct Leaning {
   S turn = S(0);
 
-  HeightAndSlope<S> operator()(const S& x, const S& y) const {
+  detail::membrane::HeightAndSlope<S> operator()(const S& x, const S& y) const {
     const S c = std::cos(turn), s = std::sin(turn);
     const S u = c * x + s * y, v = c * y - s * x;
     const S a = S(rim_mm * rim_mm);

@@ -291,7 +291,7 @@ TEST_CASE("the balanced mu t goes with the pressure", "[traction][law]") {
 TEST_CASE("the sum of the loads is what crosses the border", "[traction][law]") {
   rc::prop("wherever the dots inside lie: action is reaction", [] {
     const Pad pad = Pad::any();
-    const TractionOptions abrupt{.ring_dots = 1, .fade_dots = 0, .largest_stretch = 1000};
+    const TractionOptions<> abrupt{.ring_dots = 1, .fade_dots = 0, .largest_stretch = 1000};
     const Seen before = look(pad, abrupt);
     RC_PRE(before.result.has_force() && before.result.dots_left_out == 0);
     Pad other = pad;

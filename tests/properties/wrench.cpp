@@ -57,7 +57,7 @@ struct Lopsided {
     return {{.contact_mm =
                  contact_mm * (1 + oval * std::cos(2 * at) + triangle * std::cos(3 * at + 1))}};
   }
-  HeightAndSlope<double> operator()(double x, double y) const {
+  detail::membrane::HeightAndSlope<double> operator()(double x, double y) const {
     const Vector p = placed.back({x, y, 0});
     const auto h = along(std::atan2(p.y, p.x))(p.x, p.y);
     // the slope around the axis is small and left out, the same in every place
@@ -151,10 +151,10 @@ struct Way {
 TEMPLATE_TEST_CASE("wrench: what is rotated, mirrored or scaled",
                    "[wrench][law]",
                    Way<BalancedRim>,
-                   Way<ClosedForm>,
+                   Way<published::ClosedForm>,
                    Way<KnownModulus>,
-                   Way<PublishedIteration>,
-                   (Way<PublishedIteration, PublishedDirection>),
+                   Way<published::Iteration>,
+                   (Way<published::Iteration, published::Direction>),
                    (Way<LeastSquares>)) {
   using W = typename TestType::W;
   rc::prop("force and moment turn with the pad, by whole columns", [] {
@@ -243,9 +243,9 @@ TEMPLATE_TEST_CASE("wrench: what is rotated, mirrored or scaled",
 TEMPLATE_TEST_CASE("wrench: side dots as they come",
                    "[wrench][law]",
                    Way<BalancedRim>,
-                   Way<ClosedForm>,
+                   Way<published::ClosedForm>,
                    Way<KnownModulus>,
-                   Way<PublishedIteration>,
+                   Way<published::Iteration>,
                    (Way<LeastSquares>)) {
   using W = typename TestType::W;
   rc::prop("in any order", [] {

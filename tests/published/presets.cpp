@@ -6,6 +6,7 @@
 #include <cmath>
 #include <vector>
 
+#include "fingerpad/force/pad_heights.hpp"
 #include "fingerpad/published/contact_region.hpp"
 #include "fingerpad/published/depth.hpp"
 #include "fingerpad/published/normal_force.hpp"
@@ -187,7 +188,7 @@ TEST_CASE("published wrench: its columns and rows, and what it refuses", "[publi
   with_length.side_dot_length_mm = 0.8;
   const auto wrench = published::wrench(border, with_length);
   auto workspace = wrench.workspace();
-  const HeightMap<double> nowhere(19.5, 0.5);
+  const PadHeights<>::Map nowhere(19.5, 0.5);
   const StridedView<const Point3<double>> few(rim.data(), 1, 35, 35);
   const auto refused = wrench(nowhere, few, 0.01, workspace);
   CHECK(refused.status == WrenchStatus::refused);

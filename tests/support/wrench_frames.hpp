@@ -13,6 +13,7 @@
 #include <string>
 #include <vector>
 
+#include "fingerpad/force/pad_heights.hpp"
 #include "fingerpad/force/wrench.hpp"
 #include "finite_elements.hpp"
 
@@ -97,15 +98,15 @@ inline Image<Point3<double>> rows_of(const Image<Point3<double>>& dots, Index ro
 }
 
 /// Shapes of the membranes, exactly as the finite elements have them.
-inline const fingerpad::HeightMap<double>& exact_heights(const std::string& name) {
-  static std::map<std::string, fingerpad::HeightMap<double>> all;
+inline const fingerpad::PadHeights<>::Map& exact_heights(const std::string& name) {
+  static std::map<std::string, fingerpad::PadHeights<>::Map> all;
   const auto found = all.find(name);
   if (found != all.end()) {
     return found->second;
   }
   const Membrane membrane(name);
   const TrueContact contact(name);
-  fingerpad::HeightMap<double> map(19.5, 0.5);
+  fingerpad::PadHeights<>::Map map(19.5, 0.5);
   map.fill(
       [&](Index i, Index j) {
         const double x = map.position_mm(j), y = map.position_mm(i);

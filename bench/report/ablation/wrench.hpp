@@ -118,20 +118,22 @@ inline std::vector<Effect> wrench_effects() {
   WrenchOptions<double> options;
   options.side_dot_length_mm = 0.79995;  // chord of 0.8 mm of a sphere of 21.45 mm
   const auto rim = test::rim_border();
-  const ExtrapolatedRow carried{1.0623};  // of a cap 11 mm high: 2 atan(11 / 18.735)
+  const OneRow carried{1.0623};  // of a cap 11 mm high: 2 atan(11 / 18.735)
   const Wrench<> squares(rim, options);
-  const Wrench<LeastSquares, ExtrapolatedRow> extrapolated(rim, options, {}, carried);
-  const Wrench<PublishedIteration> clamped(rim, options);
-  const Wrench<PublishedIteration, OneRow, PublishedDirection> published(rim, options);
-  const Wrench<ClosedForm> columns(rim, options);
+  const Wrench<LeastSquares> extrapolated(rim, options, {}, carried);
+  const Wrench<published::Iteration> clamped(rim, options);
+  const Wrench<published::Iteration, OneRow, published::Direction> published(rim, options);
+  const Wrench<published::ClosedForm> columns(rim, options);
   const Wrench<BalancedRim> balanced(rim, options);
   const WrenchEffects scenes;
   std::vector<Effect> effects;
-  scenes.add("shear terms", "`LeastSquares`", "`ClosedForm`", squares, columns, effects);
-  scenes.add("shear terms as published", "`PublishedIteration`", "`ClosedForm`", clamped, columns,
+  scenes.add("shear terms", "`LeastSquares`", "`published::ClosedForm`", squares, columns, effects);
+  scenes.add("shear terms as published", "`published::Iteration`", "`published::ClosedForm`",
+             clamped, columns, effects);
+  scenes.add("corrected rim", "`ClampedRim`", "`published::Direction`", clamped, published,
              effects);
-  scenes.add("corrected rim", "`ClampedRim`", "`PublishedDirection`", clamped, published, effects);
-  scenes.add("extrapolated rim", "`ExtrapolatedRow`", "`OneRow`", extrapolated, squares, effects);
+  scenes.add("extrapolated rim", "`OneRow{inclination}`", "`OneRow`", extrapolated, squares,
+             effects);
   scenes.add("inner balance", "`LeastSquares`", "`BalancedRim`", squares, balanced, effects);
   return effects;
 }

@@ -24,7 +24,7 @@ constexpr std::array<const char*, 7> stage_names = {
 struct WithLeastSquares : fingerpad::FingertipMethods {};
 /// The methods by default, but the solver that the chain's budget is for.
 struct ByDefault : fingerpad::FingertipMethods {
-  using Solver = fingerpad::PublishedIteration;
+  using Solver = fingerpad::published::Iteration;
 };
 /// The least that a flat contact on a pad with dark dots needs.
 struct Lean : ByDefault {

@@ -81,8 +81,8 @@ struct CutFilm {
     for (Index i = 0; i < columns; ++i) {
       pulls.push_back(segments.around(i, 0).normal);
     }
-    const fingerpad::PublishedIteration iteration;
-    fingerpad::PublishedIteration::Work<S> work(iteration, columns, rows);
+    const fingerpad::published::Iteration iteration;
+    fingerpad::published::Iteration::Work<S> work(iteration, columns, rows);
     iteration.solve<false>(segments, nodes, pulls, pressure, work, tensions);
   }
   S tension(Index i, Index j) const {

@@ -24,6 +24,10 @@ fingerpad::WrenchOptions<double> options_of(const Sensor& sensor) {
   return options;
 }
 
+fingerpad::OneRow row_of(const Sensor& sensor) {
+  return {.stress_free_inclination_rad = sensor.rim->stress_free_inclination_rad};
+}
+
 /// Columns of the border in the order of their angle, in which Wrench tells the tensions.
 std::vector<int> by_angle(const SpaceGrid& border_mm) {
   std::vector<std::pair<double, int>> columns;
@@ -62,10 +66,9 @@ struct Chain {
 };
 
 /// Everything that lives as long as the frames come.
-template <class Row>
 class Forces {
  public:
-  Forces(const Recording& recording, const Row& row)
+  explicit Forces(const Recording& recording)
       : recording_(recording),
         no_dots_(recording.side_dots->border_mm.size(),
                  cv::Vec3d::all(std::numeric_limits<double>::quiet_NaN())),
@@ -75,13 +78,17 @@ class Forces {
                  recording.sensor.pad.base_radius_mm + 2 * node_mm,
                  node_mm),
         map_(heights_.map()),
-        by_shape_{ByShape(recording.side_dots->border_mm, options_of(recording.sensor), {}, row)} {
+        by_shape_{ByShape(recording.side_dots->border_mm,
+                          options_of(recording.sensor),
+                          {},
+                          row_of(recording.sensor))} {
     const auto& modulus = recording.sensor.rim->membrane_modulus_n_per_mm;
     if (modulus) {
       fingerpad::KnownModulus given;
       given.modulus_n_per_mm = *modulus;
-      by_modulus_.emplace(Chain<ByModulus>{
-          ByModulus(recording.side_dots->border_mm, options_of(recording.sensor), given, row)});
+      by_modulus_.emplace(
+          Chain<ByModulus>{ByModulus(recording.side_dots->border_mm, options_of(recording.sensor),
+                                     given, row_of(recording.sensor))});
     }
   }
 
@@ -108,25 +115,16 @@ class Forces {
   }
 
  private:
-  using ByShape = fingerpad::Wrench<fingerpad::LeastSquares, Row>;
-  using ByModulus = fingerpad::Wrench<fingerpad::KnownModulus, Row>;
+  using ByShape = fingerpad::Wrench<fingerpad::LeastSquares>;
+  using ByModulus = fingerpad::Wrench<fingerpad::KnownModulus>;
 
   const Recording& recording_;
   SpaceGrid no_dots_;
   fingerpad::PadHeights<fingerpad::Camera<double>> heights_;
-  fingerpad::HeightMap<double> map_;
+  fingerpad::PadHeights<>::Map map_;
   Chain<ByShape> by_shape_;
   std::optional<Chain<ByModulus>> by_modulus_;
 };
-
-template <class Row>
-WrenchStep forces(const Recording& recording, const Row& row) {
-  // Shared, because a std::function is copied and a workspace should not be.
-  const auto all = std::make_shared<Forces<Row>>(recording, row);
-  return [all](int frame, const cv::Mat_<float>& depth_mm, const cv::Mat_<uchar>& contact) {
-    return (*all)(frame, depth_mm, contact);
-  };
-}
 
 }  // namespace
 
@@ -142,13 +140,11 @@ WrenchStep make_wrench_step(const Recording& recording) {
   if (!lacking_for_wrench(recording).empty()) {
     return {};
   }
-  const auto& inclination = recording.sensor.rim->stress_free_inclination_rad;
-  if (inclination) {
-    fingerpad::ExtrapolatedRow row;
-    row.stress_free_inclination_rad = *inclination;
-    return forces(recording, row);
-  }
-  return forces(recording, fingerpad::OneRow{});
+  // Shared, because a std::function is copied and a workspace should not be.
+  const auto all = std::make_shared<Forces>(recording);
+  return [all](int frame, const cv::Mat_<float>& depth_mm, const cv::Mat_<uchar>& contact) {
+    return (*all)(frame, depth_mm, contact);
+  };
 }
 
 }  // namespace replay

@@ -15,8 +15,8 @@
 //
 // One pressure gives mu t for a known L. OneRow takes the chord for the
 // derivative at the rim, so mu t comes out 1.4 % too large for side dots of 0.8 mm on a rim of
-// 18.7 mm, and L 0.1 % too small; ExtrapolatedRow leaves 0.1 % and 0.03 % (finite elements, see
-// tests/calibrate/rim.cpp).
+// 18.7 mm, and L 0.1 % too small; with the inclination 0.1 % and 0.03 % are left (finite elements,
+// see tests/calibrate/rim.cpp).
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -64,7 +64,7 @@ struct [[nodiscard]] RimFit {
 };
 
 /// Collects frames of the free pad at one pressure or several, then fits. `Row` as in Wrench; the
-/// standard errors leave out that what an ExtrapolatedRow says depends on L and mu t.
+/// standard errors leave out that what OneRow says with an inclination depends on L and mu t.
 template <class Row = OneRow, scalar S = double>
 class RimCalibration {
  public:
@@ -177,7 +177,7 @@ class RimCalibration {
     S change = S(0);
     // in float the equations leave more than that
     const double least = (std::max)(1e-10, 1e4 * static_cast<double>(epsilon<S>()));
-    if constexpr (Row::needs_modulus) {
+    if (row_.needs_modulus()) {
       change = S(1);
       for (int round = 0; round < 200 && as_double(change) > least; ++round) {
         balance.correct(found.length, found.modulus);

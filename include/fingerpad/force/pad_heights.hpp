@@ -11,7 +11,7 @@
 #include "fingerpad/core/expects.hpp"
 #include "fingerpad/core/grid.hpp"
 #include "fingerpad/core/scalar.hpp"
-#include "fingerpad/force/height_map.hpp"
+#include "fingerpad/force/detail/height_map.hpp"
 #include "fingerpad/image/detail/pixel_rays.hpp"
 #include "fingerpad/optics/camera.hpp"
 
@@ -28,6 +28,8 @@ template <class CameraType = Camera<double>>
 class PadHeights {
  public:
   using Scalar = detail::camera_scalar_t<CameraType>;
+  /// Heights on a square mesh in plan about Q: the shape that Wrench is given.
+  using Map = detail::membrane::HeightMap<Scalar>;
 
   /// For depth maps of rows x cols pixels; places within `half_width_mm` of Q along x and y, at
   /// least the radius of the base and a node more.
@@ -44,7 +46,7 @@ class PadHeights {
     expects(rows >= 2, "PadHeights", "rows", static_cast<long long>(rows), ">= 2");
     expects(cols >= 2, "PadHeights", "cols", static_cast<long long>(cols), ">= 2");
     expects_valid(camera);
-    const HeightMap<Scalar> nodes = map();
+    const Map nodes = map();
     side_ = nodes.side();
     projections_.reserve(static_cast<std::size_t>(side_ * side_));
     for (Index i = 0; i < side_; ++i) {
@@ -55,14 +57,14 @@ class PadHeights {
   }
 
   /// Memory for the heights of a frame.
-  HeightMap<Scalar> map() const { return HeightMap<Scalar>(half_width_mm_, spacing_mm_); }
+  Map map() const { return Map(half_width_mm_, spacing_mm_); }
 
   /// Fills `heights` (from map()); false where a size does not fit: nothing is written. Places that
   /// no pixel with a depth sees have no height; a place is in contact as far as the pixels around
   /// it are.
   template <grid Depth, contact_mask Mask>
     requires(std::constructible_from<Scalar, cell_t<Depth>>)
-  bool operator()(const Depth& depth_mm, const Mask& contact, HeightMap<Scalar>& heights) const {
+  bool operator()(const Depth& depth_mm, const Mask& contact, Map& heights) const {
     const auto depth = as_view(depth_mm);
     const auto mask = as_view(contact);
     if (depth.rows() != rows_ || depth.cols() != cols_ || !same_size(depth, mask) ||
@@ -153,7 +155,7 @@ class PadHeights {
   }
 
   /// The height of a node if the two before it in its column go on straight; NaN at first.
-  static S continued(const HeightMap<S>& heights, Index i, Index j) {
+  static S continued(const Map& heights, Index i, Index j) {
     if (i < 2) {
       return not_a_number<S>();
     }

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// Ways to the membrane's forces on the rim that need no unknown inside: each column by itself, all
-// of them together, or the material alone.
+// Ways to the membrane's forces on the rim that need no unknown inside: all columns together, or
+// the material alone.
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -14,7 +14,7 @@
 #include "fingerpad/core/grid.hpp"
 #include "fingerpad/core/point.hpp"
 #include "fingerpad/core/scalar.hpp"
-#include "fingerpad/force/compartments.hpp"
+#include "fingerpad/force/detail/compartments.hpp"
 #include "fingerpad/force/detail/segments.hpp"
 #include "fingerpad/force/detail/tensions.hpp"
 
@@ -128,33 +128,6 @@ enum class Magnitude : std::uint8_t {
 
 }  // namespace detail::membrane
 
-/// One pass: each column carries the pressure on it, in the direction of its side dots. Takes the
-/// shear between columns for 0. Reference and first guess.
-struct ClosedForm {
-  static constexpr auto magnitude = detail::membrane::Magnitude::of_column;
-  static constexpr bool finds_tensions = false;
-  template <scalar S>
-  struct Work {
-    Work(const ClosedForm&, Index, Index) {}
-  };
-
-  template <bool, scalar S>
-  bool solve(const detail::membrane::Segments<S>& segments,
-             const detail::membrane::Compartments<S>&,
-             const std::vector<Point3<S>>& pulls,
-             const S& pressure_mpa,
-             Work<S>&,
-             detail::membrane::Tensions<S>& tensions) const {
-    bool good = true;
-    for (Index i = 0; i < segments.columns(); ++i) {
-      const std::size_t k = static_cast<std::size_t>(i);
-      const S load = detail::membrane::column_load(segments, i, pressure_mpa);
-      good = detail::membrane::force_along(pulls[k], load, tensions.rim[k]) && good;
-    }
-    return good;
-  }
-};
-
 /// All columns at once: the pulls are right up to one factor, mu t, and what they lift together is
 /// the pressure on the whole membrane below A_g. Needs no material constant, and of the shape
 /// nothing but the area of A_g.
@@ -212,7 +185,6 @@ struct KnownModulus {
 };
 
 /// Refuses what has no meaning (parameter_error).
-inline void expects_valid(const ClosedForm&) {}
 inline void expects_valid(const BalancedRim&) {}
 inline void expects_valid(const KnownModulus& given) {
   expects(is_finite(given.modulus_n_per_mm) && given.modulus_n_per_mm > 0, "KnownModulus",

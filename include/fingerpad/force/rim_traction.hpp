@@ -14,6 +14,7 @@
 // sideways than d, by lambda^4 / (lambda^4 - 1).
 #include <cmath>
 #include <cstdint>
+#include <optional>
 
 #include "fingerpad/core/dots.hpp"
 #include "fingerpad/core/expects.hpp"
@@ -23,6 +24,8 @@
 
 namespace fingerpad {
 inline namespace v0 {
+
+namespace detail::membrane {
 
 /// What a side dot tells.
 enum class RimPullStatus : std::uint8_t {
@@ -39,6 +42,17 @@ struct RimPull {
   Point3<S> pull = {S(0), S(0), S(0)};  ///< T / (mu t), or only a direction; on the base
 };
 
+/// A point of the rim.
+template <scalar S>
+struct RimPoint {
+  Point3<S> border;
+  Point3<S> tangent;  ///< unit vector along the rim, the way angles grow
+  S length_mm;        ///< from here to the side dot, along the stress-free membrane
+  S radius_mm;        ///< of the rim
+};
+
+}  // namespace detail::membrane
+
 /// T / (mu t) of a clamped neo-Hookean rim; `along` is d, `tangent` the unit vector e. lambda > 0.
 template <scalar S>
 Point3<S> clamped_rim_pull(const Point3<S>& along, const Point3<S>& tangent) {
@@ -47,43 +61,25 @@ Point3<S> clamped_rim_pull(const Point3<S>& along, const Point3<S>& tangent) {
   const S lambda_sq = squared_norm(across);
   // (lambda - lambda^-3) / lambda
   const S share = S(1) - S(1) / (lambda_sq * lambda_sq);
-  return {S(shear * tangent.x + share * across.x), S(shear * tangent.y + share * across.y),
-          S(shear * tangent.z + share * across.z)};
+  return shear * tangent + share * across;
 }
 
-/// The direction of the side dots, as published: 72 % of the true tangential force of a drag, 36 %
-/// of the true moment of a twist, on a pad stretched by 8.5 %.
-struct PublishedDirection {
-  /// Whether pulls of different rim points can be compared.
-  static constexpr bool tells_magnitude = false;
-
-  template <scalar S>
-  RimPull<S> pull(const Point3<S>& along, const Point3<S>&) const {
-    return {RimPullStatus::ok, along};
-  }
-  /// By how much the pull changes when `along` changes by `change`.
-  template <scalar S>
-  Point3<S> change_of_pull(const Point3<S>&, const Point3<S>&, const Point3<S>& change) const {
-    return change;
-  }
-};
-
-/// The traction of a clamped neo-Hookean rim. Default.
+/// The traction of a clamped neo-Hookean rim.
 struct ClampedRim {
   static constexpr bool tells_magnitude = true;
 
   double min_stretch = 1.005;  ///< lambda; less does not tell a direction, in (1, 2]
 
   template <scalar S>
-  RimPull<S> pull(const Point3<S>& along, const Point3<S>& tangent) const {
+  detail::membrane::RimPull<S> pull(const Point3<S>& along, const Point3<S>& tangent) const {
     const S shear = dot(along, tangent);
     const S lambda_sq = squared_norm(along) - shear * shear;
     const scalar_real_t<S> least = static_cast<scalar_real_t<S>>(min_stretch);
     if (!(value(lambda_sq) >= least * least)) {
-      const bool shorter = value(lambda_sq) < 1;
-      return {shorter ? RimPullStatus::slack : RimPullStatus::unstretched, {S(0), S(0), S(0)}};
+      using enum detail::membrane::RimPullStatus;
+      return {value(lambda_sq) < 1 ? slack : unstretched, {S(0), S(0), S(0)}};
     }
-    return {RimPullStatus::ok, clamped_rim_pull(along, tangent)};
+    return {detail::membrane::RimPullStatus::ok, clamped_rim_pull(along, tangent)};
   }
 
   template <scalar S>
@@ -102,87 +98,60 @@ struct ClampedRim {
 };
 
 /// Refuses what has no meaning (parameter_error).
-inline void expects_valid(const PublishedDirection&) {}
 inline void expects_valid(const ClampedRim& rim) {
   expects(rim.min_stretch > 1 && rim.min_stretch <= 2, "ClampedRim", "min_stretch", rim.min_stretch,
           "in (1, 2]");
 }
 
-/// A point of the rim.
-template <scalar S>
-struct RimPoint {
-  Point3<S> border;
-  Point3<S> tangent;  ///< unit vector along the rim, the way angles grow
-  S length_mm;        ///< from here to the side dot, along the stress-free membrane
-  S radius_mm;        ///< of the rim
-};
-
-/// One row of side dots: d is the chord from the rim to the dot, over its stress-free length.
-struct OneRow {
-  static constexpr Index rows = 1;
-  static constexpr bool needs_modulus = false;
-  /// Noise of d, over that of a dot and the length.
-  static constexpr double noise_gain = 1;
-
-  template <scalar S>
-  Point3<S> along(const RimPoint<S>& rim, const Point3<S>* side_dots, const S&) const {
-    return S(S(1) / rim.length_mm) * (side_dots[0] - rim.border);
-  }
-};
-
-/// Two rows, the second at twice the stress-free length: the derivative at the rim itself, to
-/// second order, d = (4 x1 - 3 x0 - x2) / (2 L).
-struct TwoRows {
-  static constexpr Index rows = 2;
-  static constexpr bool needs_modulus = false;
-  static constexpr double noise_gain = 2.0615528128088303;  // sqrt(4^2 + 1) / 2
-
-  template <scalar S>
-  Point3<S> along(const RimPoint<S>& rim, const Point3<S>* side_dots, const S&) const {
-    const Point3<S> first = side_dots[0] - rim.border;
-    const Point3<S> second = side_dots[1] - rim.border;
-    const S per = S(1) / (S(2) * rim.length_mm);
-    return {S(per * (S(4) * first.x - second.x)), S(per * (S(4) * first.y - second.y)),
-            S(per * (S(4) * first.z - second.z))};
-  }
-};
-
-/// One row, carried from the middle of the chord to the rim by the balance of the membrane there:
-/// how fast the chord's stretch, inclination and shear change along it. With s the arc from the
-/// rim, a its radius, phi the inclination (phi_0 without stress), and the tensions per mu t
-/// T1 = lambda - lambda^-3 and T2 = (1 - lambda^-2) / lambda:
+/// One row of side dots: d is the chord from the rim to the dot, over its stress-free length. With
+/// the inclination of the stress-free membrane it is carried from the middle of the chord to the
+/// rim by the balance of the membrane there: how fast the chord's stretch, inclination and shear
+/// change along it. With s the arc from the rim, a its radius, phi the inclination (phi_0 without
+/// stress), and the tensions per mu t T1 = lambda - lambda^-3 and T2 = (1 - lambda^-2) / lambda:
 ///   inclination  kappa_1 = (p / (mu t) - T2 sin(phi) / a) / T1          (normal balance)
 ///   tension      dT1/ds = (T1 - T2) cos(phi) / a                        (balance along the line)
 ///   hoop stretch dlambda_2/dS = (cos(phi_0) - lambda cos(phi)) / a      (geometry)
 ///   shear        d(r rho P_e)/dS = 0, chord = s (1 + cos(phi_0) L / (2 a))  (torque)
 /// What changes along the rim is left out.
-struct ExtrapolatedRow {
+struct OneRow {
   static constexpr Index rows = 1;
-  static constexpr bool needs_modulus = true;
+  /// Noise of d, over that of a dot and the length.
   static constexpr double noise_gain = 1;
 
-  /// phi_0: inclination of the stress-free membrane at the rim, in [0, pi / 2]; of a spherical cap
-  /// 2 atan(height / radius). Has to be given.
-  double stress_free_inclination_rad = not_a_number<double>();
+  /// phi_0, in [0, pi / 2]; of a spherical cap 2 atan(height / radius). Empty: the chord itself.
+  std::optional<double> stress_free_inclination_rad = {};
+
+  /// Whether d depends on mu t.
+  bool needs_modulus() const { return stress_free_inclination_rad.has_value(); }
 
   /// `load_per_mm`: pressure / (mu t), 1/mm; 0: not known yet, the chord itself.
   template <scalar S>
-  Point3<S> along(const RimPoint<S>& rim, const Point3<S>* side_dots, const S& load_per_mm) const {
+  Point3<S> along(const detail::membrane::RimPoint<S>& rim,
+                  const Point3<S>* side_dots,
+                  const S& load_per_mm) const {
+    const Point3<S> chord = (side_dots[0] - rim.border) / rim.length_mm;
+    return needs_modulus() && !(value(load_per_mm) == 0) ? at_rim(rim, chord, load_per_mm) : chord;
+  }
+
+ private:
+  template <scalar S>
+  Point3<S> at_rim(const detail::membrane::RimPoint<S>& rim,
+                   const Point3<S>& chord,
+                   const S& load_per_mm) const {
     using std::cos;
     using std::sin;
     using std::sqrt;
-    const Point3<S> chord = OneRow().along(rim, side_dots, load_per_mm);
     const S shear = dot(chord, rim.tangent);
     const Point3<S> across = chord + S(-shear) * rim.tangent;
     const S lambda = sqrt(squared_norm(across));
-    if (value(load_per_mm) == 0 || !(lambda > S(1001) / S(1000))) {
+    if (!(lambda > S(1001) / S(1000))) {
       return chord;
     }
     // out of the pad, in the plane of the rim
     const Point3<S> outward = {rim.tangent.y, S(-rim.tangent.x), S(0)};
     const S sine = across.z / lambda;
     const S cosine = -dot(across, outward) / lambda;
-    const S cosine_free = S(cos(S(stress_free_inclination_rad)));
+    const S cosine_free = cos(S(*stress_free_inclination_rad));
     const S half = rim.length_mm / S(2);
     const S inverse = S(1) / lambda;
     const S inverse_cubed = inverse * inverse * inverse;
@@ -207,13 +176,29 @@ struct ExtrapolatedRow {
   }
 };
 
+/// Two rows, the second at twice the stress-free length: the derivative at the rim itself, to
+/// second order, d = (4 x1 - 3 x0 - x2) / (2 L).
+struct TwoRows {
+  static constexpr Index rows = 2;
+  static constexpr bool needs_modulus() { return false; }
+  static constexpr double noise_gain = 2.0615528128088303;  // sqrt(4^2 + 1) / 2
+
+  template <scalar S>
+  Point3<S> along(const detail::membrane::RimPoint<S>& rim,
+                  const Point3<S>* side_dots,
+                  const S&) const {
+    const Point3<S> first = side_dots[0] - rim.border;
+    const Point3<S> second = side_dots[1] - rim.border;
+    return (S(4) * first - second) / S(S(2) * rim.length_mm);
+  }
+};
+
 /// Refuses what has no meaning (parameter_error).
-inline void expects_valid(const OneRow&) {}
 inline void expects_valid(const TwoRows&) {}
-inline void expects_valid(const ExtrapolatedRow& row) {
-  expects(row.stress_free_inclination_rad >= 0 && row.stress_free_inclination_rad <= 1.5707964,
-          "ExtrapolatedRow", "stress_free_inclination_rad", row.stress_free_inclination_rad,
-          "in [0, pi / 2]");
+inline void expects_valid(const OneRow& row) {
+  const double inclination = row.stress_free_inclination_rad.value_or(0);
+  expects(inclination >= 0 && inclination <= 1.5707964, "OneRow", "stress_free_inclination_rad",
+          inclination, "in [0, pi / 2]");
 }
 
 }  // namespace v0

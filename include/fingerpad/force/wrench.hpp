@@ -23,14 +23,12 @@
 #include "fingerpad/core/grid.hpp"
 #include "fingerpad/core/point.hpp"
 #include "fingerpad/core/scalar.hpp"
-#include "fingerpad/force/compartments.hpp"
+#include "fingerpad/force/detail/compartments.hpp"
 #include "fingerpad/force/detail/noise.hpp"
 #include "fingerpad/force/detail/rim.hpp"
 #include "fingerpad/force/detail/segments.hpp"
 #include "fingerpad/force/detail/tensions.hpp"
-#include "fingerpad/force/height_map.hpp"
 #include "fingerpad/force/least_squares.hpp"
-#include "fingerpad/force/pad_heights.hpp"
 #include "fingerpad/force/rim_balance.hpp"
 #include "fingerpad/force/rim_traction.hpp"
 #include "fingerpad/force/wrench_options.hpp"
@@ -38,16 +36,33 @@
 namespace fingerpad {
 inline namespace v0 {
 
+/// Lines straight toward the middle of the contact (in plan), cut at equal steps along them.
+struct StraightLines {
+  static constexpr bool straight = true;
+  static constexpr bool by_height = false;
+};
+
+/// A shape of the membrane. Places are in mm about Q, the center of the base:
+///   shape(x, y)             a struct with height_mm and its rise along_x and along_y, all finite,
+///                           or the height NaN
+///   shape.in_contact(x, y)  whether the membrane touches the object
+template <class T, class S>
+concept membrane_shape = requires(const T& shape, const S& x, const S& y) {
+  S(shape(x, y).height_mm);
+  S(shape(x, y).along_x);
+  S(shape(x, y).along_y);
+  { shape.in_contact(x, y) } -> std::convertible_to<bool>;
+};
+
 /// Six-axis force.
-///   Solver  LeastSquares     take this for the tensions inside the membrane, too
-///           BalancedRim      take this for force and moment alone: as good, 15 times as fast
-///   Row     OneRow           take this for one row of side dots
-///           TwoRows          take this for two, which tell d at the rim itself
-///   Law     ClampedRim       take this: what a clamped rim of rubber pulls
-///   Lines   StraightLines    take this: they stay apart on a summit that is not level
-/// ExtrapolatedRow takes the membrane's curvature out of one row, ClosedForm is a first guess,
-/// KnownModulus takes mu t from a calibration and needs no shape. PublishedDirection and
-/// SteepestLines are printed forms; published/wrench.hpp is the whole method as printed.
+///   Solver  LeastSquares  take this for the tensions inside the membrane, too
+///           BalancedRim   take this for force and moment alone: as good, 15 times as fast
+///           KnownModulus  take this where mu t is calibrated and the shape is not known
+///   Row     OneRow        take this for one row of side dots
+///           TwoRows       take this for two, which tell d at the rim itself
+/// ClampedRim is what a clamped rim of rubber pulls, StraightLines are lines that stay apart on a
+/// summit that is not level; published/wrench.hpp has other laws and lines, and the whole method as
+/// printed.
 ///
 /// Const: threads may share one estimator, each with a workspace of its own. A frame takes no
 /// memory, throws nothing, and takes O(columns rows) time, with LeastSquares O((columns rows)^1.5).
@@ -65,10 +80,6 @@ class Wrench {
     /// N/mm; NaN where the status of the frame gives no force.
     Index rim_points() const { return static_cast<Index>(tension_.size()); }
     const Point3<S>& rim_tension(Index k) const { return tension_[static_cast<std::size_t>(k)]; }
-    /// What the side dot of that point told; the pull of others is that of their neighbours.
-    RimPullStatus rim_status(Index k) const {
-      return pulls_.dots[static_cast<std::size_t>(k)].status;
-    }
     /// Nodes of the mesh: line 0 ... columns - 1, row 0 (rim) ... rows (A_g).
     const Point3<S>& node(Index line, Index row) const { return nodes_.node(line, row); }
 
@@ -128,7 +139,8 @@ class Wrench {
   const WrenchOptions<S>& options() const { return options_; }
   Workspace workspace() const { return Workspace(*this); }
 
-  /// Force and moment of a frame. `shape` is the membrane (HeightMap, or any membrane_shape);
+  /// Force and moment of a frame. `shape` is the membrane (the map of PadHeights, or any
+  /// membrane_shape);
   /// `side_dots_mm` has Row::rows rows, the one nearer to the rim first, and a column for each
   /// border point; NaN: not found. Pressure in MPa above that of the air, at most 1e6. With `noise`
   /// the result has a covariance.
@@ -194,7 +206,7 @@ class Wrench {
     }
     const S pressure = pressure_mpa * chord_factor();
     WrenchStatus pulled = measure_rim(dots, S(0), work, result);
-    if (Row::needs_modulus && pulled == WrenchStatus::ok) {
+    if (row_.needs_modulus() && pulled == WrenchStatus::ok) {
       const S modulus = first_modulus(work, pressure);
       if (value(modulus) > 0) {
         pulled = measure_rim(dots, S(pressure_mpa / modulus), work, result);

@@ -104,13 +104,13 @@ struct [[nodiscard]] WrenchResult {
   Point3<S> force_n = {not_a_number<S>(), not_a_number<S>(), not_a_number<S>()};
   Point3<S> moment_n_mm = {not_a_number<S>(), not_a_number<S>(), not_a_number<S>()};  ///< about Q
   /// Of (F_x, F_y, F_z, M_x, M_y, M_z), in N and N mm, to first order in the noise; 0 without. As
-  /// if all pulls were scaled together (with ClosedForm and PublishedIteration: each column by
-  /// itself). LeastSquares evens out noise of the side dots, so its true deviations are smaller,
-  /// those of M_x and M_y much smaller; noise of A_g it spreads further than told.
+  /// if all pulls were scaled together (with the published solvers: each column by itself).
+  /// LeastSquares evens out noise of the side dots, so its true deviations are smaller, those of
+  /// M_x and M_y much smaller; noise of A_g it spreads further than told.
   std::array<std::array<S, 6>, 6> covariance{};
   S summit_area_mm2 = not_a_number<S>();   ///< within A_g, in plan; NaN for KnownModulus
   S modulus_n_per_mm = not_a_number<S>();  ///< mu t that this frame would have: mean of tension
-                                           ///< over pull; NaN for PublishedDirection
+                                           ///< over pull; NaN for published::Direction
   S residual = not_a_number<S>();  ///< of eqs. 6 and 7, rms over the segments, as a share of the
                                    ///< pressure's; NaN where the solver finds no inner tensions
   Index missing = 0;               ///< side dots that were not found
@@ -121,7 +121,6 @@ struct [[nodiscard]] WrenchResult {
   Index broken_lines = 0;  ///< that ran into holes and were put between their neighbours
   Index level_lines = 0;   ///< along which the membrane is level at A_g
 
-  bool accepted() const { return status != WrenchStatus::refused; }
   bool ok() const { return status == WrenchStatus::ok || status == WrenchStatus::no_contact; }
 };
 

@@ -345,7 +345,7 @@ class Fingertip {
   struct BalanceStage {
     using Solver = Wrench<typename Methods::Solver>;
     PadHeights<> heights;
-    HeightMap<double> map;
+    PadHeights<>::Map map;
     Solver wrench;
     typename Solver::Workspace work;
 

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// The published iteration. Source: Ito, Kim, Obinata 2011, III.F, made explicit where the text
-// leaves a choice (docs/errata.md, E025-E027):
+// The six-axis force as printed. Source: Ito, Kim, Obinata 2011. The iteration, III.F, made
+// explicit where the text leaves a choice (docs/errata.md, E025-E027):
 //   1. column by column from the top down, eq. 12: vertical balance gives f_v
 //   2. segment by segment, eq. 6 along x and y: f_h on both sides, each found twice, averaged
 //   3. at the rim the direction of the pull gives tau_v, eq. 3
@@ -20,14 +20,73 @@
 namespace fingerpad {
 inline namespace v0 {
 
-struct PublishedIteration {
+namespace published {
+
+/// The direction of the side dots, as published: 72 % of the true tangential force of a drag, 36 %
+/// of the true moment of a twist, on a pad stretched by 8.5 %.
+struct Direction {
+  /// Whether pulls of different rim points can be compared.
+  static constexpr bool tells_magnitude = false;
+
+  template <scalar S>
+  detail::membrane::RimPull<S> pull(const Point3<S>& along, const Point3<S>&) const {
+    return {detail::membrane::RimPullStatus::ok, along};
+  }
+  /// By how much the pull changes when `along` changes by `change`.
+  template <scalar S>
+  Point3<S> change_of_pull(const Point3<S>&, const Point3<S>&, const Point3<S>& change) const {
+    return change;
+  }
+};
+
+inline void expects_valid(const Direction&) {}
+
+/// Lines perpendicular to the contour lines, cut at equal steps of height: the published ones.
+/// Where the summit is level all around (a contact parallel to the plate) the lines around are
+/// contour lines. They crowd at the highest points of a summit that is not level.
+struct SteepestLines {
+  static constexpr bool straight = false;
+  static constexpr bool by_height = true;
+};
+
+/// One pass: each column carries the pressure on it, in the direction of its side dots. Takes the
+/// shear between columns for 0. Reference and first guess.
+struct ClosedForm {
+  static constexpr auto magnitude = detail::membrane::Magnitude::of_column;
+  static constexpr bool finds_tensions = false;
+  template <scalar S>
+  struct Work {
+    Work(const ClosedForm&, Index, Index) {}
+  };
+
+  template <bool, scalar S>
+  bool solve(const detail::membrane::Segments<S>& segments,
+             const detail::membrane::Compartments<S>&,
+             const std::vector<Point3<S>>& pulls,
+             const S& pressure_mpa,
+             Work<S>&,
+             detail::membrane::Tensions<S>& tensions) const {
+    bool good = true;
+    for (Index i = 0; i < segments.columns(); ++i) {
+      const std::size_t k = static_cast<std::size_t>(i);
+      const S load = detail::membrane::column_load(segments, i, pressure_mpa);
+      good = detail::membrane::force_along(pulls[k], load, tensions.rim[k]) && good;
+    }
+    return good;
+  }
+};
+
+inline void expects_valid(const ClosedForm&) {}
+
+/// The printed iteration.
+struct Iteration {
   static constexpr auto magnitude = detail::membrane::Magnitude::of_column;
   static constexpr bool finds_tensions = true;
   int passes = 5;  ///< in [1, 100]; the forces no longer change after 5
 
   template <scalar S>
   struct Work {
-    Work(const PublishedIteration&, Index columns, Index rows)
+    Work(const Iteration&, Index columns, Index rows)
         : right(static_cast<std::size_t>(columns * rows)) {}
     std::vector<S> right;  // f_h as the segment to its left finds it
   };
@@ -162,18 +221,16 @@ struct PublishedIteration {
 };
 
 /// Refuses what has no meaning (parameter_error).
-inline void expects_valid(const PublishedIteration& iteration) {
-  expects(iteration.passes >= 1 && iteration.passes <= 100, "PublishedIteration", "passes",
+inline void expects_valid(const Iteration& iteration) {
+  expects(iteration.passes >= 1 && iteration.passes <= 100, "published::Iteration", "passes",
           static_cast<long long>(iteration.passes), "in [1, 100]");
 }
 
-/// The six-axis force as printed: the direction of the side dots, steepest lines, 72 columns and 65
+/// The direction of the side dots, steepest lines, 72 columns and 65
 /// rows of segments, the tensions by iteration. It loses 28 % of a drag and 64 % of a twist:
 /// docs/errata.md, E043.
-namespace published {
-
 template <scalar S = double>
-using Wrench = fingerpad::Wrench<PublishedIteration, OneRow, PublishedDirection, SteepestLines, S>;
+using Wrench = fingerpad::Wrench<Iteration, OneRow, Direction, SteepestLines, S>;
 
 template <scalar S = double>
 WrenchOptions<S> wrench_options() {

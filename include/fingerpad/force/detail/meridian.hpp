@@ -21,7 +21,7 @@
 #include "fingerpad/core/dots.hpp"
 #include "fingerpad/core/point.hpp"
 #include "fingerpad/core/scalar.hpp"
-#include "fingerpad/force/height_map.hpp"
+#include "fingerpad/force/detail/height_map.hpp"
 #include "fingerpad/math/detail/small_matrices.hpp"
 
 namespace fingerpad {
@@ -118,7 +118,7 @@ class Meridian {
       return;
     }
     while (points_.size() < most_) {
-      const HeightAndSlope<S> here = shape(at.x, at.y);
+      const auto here = shape(at.x, at.y);
       if (!is_finite(here.height_mm)) {
         break;
       }
@@ -228,7 +228,8 @@ class Meridian {
     return S(-(end_normal_.x * dir_x_ + end_normal_.y * dir_y_) / end_normal_.z);
   }
 
-  void end_at(const HeightAndSlope<S>& here) {
+  template <class Slope>
+  void end_at(const Slope& here) {
     end_ = touched_ == 0 ? LineEnd::summit : LineEnd::edge;
     S x = here.along_x;
     S y = here.along_y;

@@ -16,7 +16,7 @@
 #include "fingerpad/core/grid.hpp"
 #include "fingerpad/core/point.hpp"
 #include "fingerpad/core/scalar.hpp"
-#include "fingerpad/force/compartments.hpp"
+#include "fingerpad/force/detail/compartments.hpp"
 
 namespace fingerpad {
 inline namespace v0 {

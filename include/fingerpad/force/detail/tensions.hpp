@@ -11,7 +11,7 @@
 #include "fingerpad/core/grid.hpp"
 #include "fingerpad/core/point.hpp"
 #include "fingerpad/core/scalar.hpp"
-#include "fingerpad/force/compartments.hpp"
+#include "fingerpad/force/detail/compartments.hpp"
 #include "fingerpad/force/detail/segments.hpp"
 
 namespace fingerpad {

@@ -16,6 +16,8 @@
 namespace fingerpad {
 inline namespace v0 {
 
+namespace detail::membrane {
+
 /// Height of the membrane above a place, and its rise along x and y; NaN where there is none.
 template <scalar S>
 struct HeightAndSlope {
@@ -24,16 +26,6 @@ struct HeightAndSlope {
   S along_y;
 };
 
-/// A shape of the membrane. Places are in mm about Q, the center of the base:
-///   shape(x, y)             HeightAndSlope<S>, all finite or the height NaN
-///   shape.in_contact(x, y)  whether the membrane touches the object
-template <class T, class S>
-concept membrane_shape = requires(const T& shape, const S& x, const S& y) {
-  { shape(x, y) } -> std::convertible_to<HeightAndSlope<S>>;
-  { shape.in_contact(x, y) } -> std::convertible_to<bool>;
-};
-
-namespace detail::membrane {
 /// Middle of the contact, from a mesh of places all over the base; false where none touches.
 template <class Shape, scalar S>
 bool find_contact(const Shape& shape, const S& base_radius_mm, Point3<S>& center) {
@@ -58,11 +50,9 @@ bool find_contact(const Shape& shape, const S& base_radius_mm, Point3<S>& center
   center = {S(x_sum / S(count)), S(y_sum / S(count)), S(0)};
   return true;
 }
-}  // namespace detail::membrane
-
 /// Heights on a square mesh in plan about Q; between the nodes heights and slopes are interpolated
 /// bilinearly, slopes being central differences. 24 bytes a node in double.
-template <scalar S = double>
+template <scalar S>
 class HeightMap {
  public:
   /// Memory for places within `half_width_mm` > 0 of Q along x and y, nodes `spacing_mm` > 0 apart.
@@ -171,5 +161,6 @@ class HeightMap {
   std::vector<S> share_;
 };
 
+}  // namespace detail::membrane
 }  // namespace v0
 }  // namespace fingerpad

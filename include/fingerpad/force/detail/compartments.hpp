@@ -13,25 +13,11 @@
 #include "fingerpad/core/grid.hpp"
 #include "fingerpad/core/point.hpp"
 #include "fingerpad/core/scalar.hpp"
+#include "fingerpad/force/detail/height_map.hpp"
 #include "fingerpad/force/detail/meridian.hpp"
-#include "fingerpad/force/height_map.hpp"
 
 namespace fingerpad {
 inline namespace v0 {
-
-/// Lines perpendicular to the contour lines, cut at equal steps of height: the published ones.
-/// Where the summit is level all around (a contact parallel to the plate) the lines around are
-/// contour lines. They crowd at the highest points of a summit that is not level.
-struct SteepestLines {
-  static constexpr bool straight = false;
-  static constexpr bool by_height = true;
-};
-
-/// Lines straight toward the middle of the contact (in plan), cut at equal steps along them.
-struct StraightLines {
-  static constexpr bool straight = true;
-  static constexpr bool by_height = false;
-};
 
 namespace detail::membrane {
 
