@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: MIT
 # The optional components and the libraries that they need; read by the build and by the installed
 # package alike.
-set(fingerpad_COMPONENTS eigen mdspan opencv xtensor)
+set(fingerpad_COMPONENTS dot_finder eigen mdspan opencv xtensor)
 
 # Looks for what a component needs: fingerpad_<name>_FOUND, fingerpad_<name>_LIBRARY to link, and
 # fingerpad_<name>_NEEDS, the library's name for people.
@@ -10,7 +10,12 @@ macro(fingerpad_find_component name)
   set(fingerpad_${name}_FOUND FALSE)
   set(fingerpad_${name}_LIBRARY "")
   set(fingerpad_${name}_NEEDS "")
-  if("${name}" STREQUAL "eigen") # grids and dual numbers of Eigen; calibrations of light and forces
+  if("${name}" STREQUAL "dot_finder") # printed dots in frames
+    find_package(OpenCV QUIET COMPONENTS core imgproc)
+    set(fingerpad_dot_finder_FOUND ${OpenCV_FOUND})
+    set(fingerpad_dot_finder_LIBRARY opencv_core opencv_imgproc)
+    set(fingerpad_dot_finder_NEEDS "OpenCV")
+  elseif("${name}" STREQUAL "eigen") # grids and dual numbers of Eigen; calibrations of light and forces
     find_package(Eigen3 3.4 QUIET NO_MODULE)
     set(fingerpad_eigen_FOUND ${Eigen3_FOUND})
     set(fingerpad_eigen_LIBRARY Eigen3::Eigen)

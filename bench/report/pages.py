@@ -38,6 +38,7 @@ METHODS = {
     "shear": ("Tangential force and moment", ["4096 contacts"]),
     "taxel_features": ("Taxel features", ["vibrating, window 16"]),
     "preslip": ("Pre-slip", ["detection"]),
+    "dot_finder": ("Printed dots", ["21x21 dots, radius 4.4 px"]),
     "foam_contact": ("Foam contact", ["steps", "lift, 2000 steps"]),
 }
 # The published way against the default: (label, program, group, published row, our row, quantity).

@@ -1,6 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
-// A program that looks at the same cells through OpenCV and through xtensor.
+// A program that looks at the same cells through OpenCV and through xtensor, and for dots in a
+// picture that shows none.
+#include "fingerpad/adapt/dot_finder.hpp"
 #include "fingerpad/adapt/mdspan.hpp"
 #include "fingerpad/adapt/opencv.hpp"
 #include "fingerpad/adapt/xtensor.hpp"
@@ -15,5 +17,6 @@ int main() {
   const xt::xarray<float> array = {{1, 2, 3}, {4, 5, 6}};
   const auto a = fingerpad::as_view(image);
   const auto b = fingerpad::as_view(array);
-  return fingerpad::same_size(a, b) && a(1, 2) == b(1, 2) ? 0 : 1;
+  const fingerpad::DotFinder dots(cv::Mat(60, 80, CV_8UC3, cv::Scalar::all(50)));
+  return fingerpad::same_size(a, b) && a(1, 2) == b(1, 2) && !dots.ok() ? 0 : 1;
 }

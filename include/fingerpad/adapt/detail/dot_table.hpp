@@ -1,0 +1,278 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+#pragma once
+// What the parts of the dot finder share: a grid that owns its cells, the spots of a frame by
+// place, and what the dots around one say of it.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <numeric>
+#include <utility>
+#include <vector>
+
+#include "fingerpad/core/dots.hpp"
+#include "fingerpad/core/grid.hpp"
+#include "fingerpad/core/point.hpp"
+#include "fingerpad/core/scalar.hpp"
+
+namespace fingerpad {
+inline namespace v0 {
+namespace detail {
+
+using Place = Point2<double>;
+
+constexpr Place no_place() {
+  return {not_a_number<double>(), not_a_number<double>()};
+}
+
+/// A grid that owns its cells.
+template <class T>
+class Table {
+ public:
+  Table() = default;
+  Table(Index rows, Index cols, const T& value)
+      : rows_(rows), cols_(cols), cells_(static_cast<std::size_t>(rows * cols), value) {}
+  Index rows() const { return rows_; }
+  Index cols() const { return cols_; }
+  T& operator()(Index i, Index j) { return cells_[static_cast<std::size_t>(i * cols_ + j)]; }
+  const T& operator()(Index i, Index j) const {
+    return cells_[static_cast<std::size_t>(i * cols_ + j)];
+  }
+  bool contains(Index i, Index j) const { return i >= 0 && i < rows_ && j >= 0 && j < cols_; }
+  std::vector<T>& cells() { return cells_; }
+  const std::vector<T>& cells() const { return cells_; }
+  StridedView<const T> view() const { return {cells_.data(), rows_, cols_, cols_}; }
+
+ private:
+  Index rows_ = 0;
+  Index cols_ = 0;
+  std::vector<T> cells_;
+};
+
+using Places = Table<Place>;
+/// Median of values that are reordered; the upper one of an even number. At least one value.
+template <class Iterator>
+double median_of(Iterator first, Iterator last) {
+  const Iterator middle = first + (last - first) / 2;
+  std::nth_element(first, middle, last);
+  return static_cast<double>(*middle);
+}
+
+/// The spots of a frame, to ask for the nearest one to a place: sorted by rows. They must outlive
+/// the map. A question takes O(log spots + spots in a strip of 2 reach_px) time.
+class SpotMap {
+ public:
+  explicit SpotMap(const std::vector<Place>& spots) : spots_(&spots), order_(spots.size()) {
+    std::iota(order_.begin(), order_.end(), 0);
+    std::sort(order_.begin(), order_.end(), [&](int a, int b) {
+      return std::pair((*this)[a].y, (*this)[a].x) < std::pair((*this)[b].y, (*this)[b].x);
+    });
+  }
+
+  struct Hit {
+    int spot = -1;  ///< none within reach
+    double distance_px = 0;
+  };
+
+  /// The nearest spot other than `but`.
+  Hit nearest(const Place& place, double reach_px, int but = -1) const {
+    Hit hit{-1, reach_px};
+    const auto above = [&](int spot, double y) { return (*this)[spot].y < y; };
+    for (auto k = std::lower_bound(order_.begin(), order_.end(), place.y - reach_px, above);
+         k != order_.end() && (*this)[*k].y <= place.y + reach_px; ++k) {
+      const Place off = (*this)[*k] - place;
+      if (std::abs(off.x) <= hit.distance_px && *k != but && norm(off) <= hit.distance_px) {
+        hit = {*k, norm(off)};
+      }
+    }
+    return hit;
+  }
+
+  const Place& operator[](int spot) const { return (*spots_)[static_cast<std::size_t>(spot)]; }
+  int size() const { return static_cast<int>(spots_->size()); }
+
+ private:
+  const std::vector<Place>* spots_;
+  std::vector<int> order_;
+};
+
+/// Values of the dots around one: at most 2 away in the grid.
+class Neighbours {
+ public:
+  static constexpr Index reach = 2;
+
+  void add(Index down, Index right, const Place& value) {
+    rows_[count_] = static_cast<double>(down);
+    cols_[count_] = static_cast<double>(right);
+    values_[count_++] = value;
+  }
+
+  /// Value at the middle of the plane through the values, near ones counting more and those that
+  /// are off the median by `scale` or more counting less; NaN where there are fewer than three. The
+  /// slopes are held back a little, so that neighbours in one line do no harm.
+  Place at_middle(double scale) const {
+    if (count_ < 3) {
+      return no_place();
+    }
+    constexpr double hold = 0.05;
+    // Moves that are all alike need no median: their weights would change by less than 1e-4.
+    const Place middle = spread() < 0.1 * scale ? values_[0] : median();
+    double s = 0, r = 0, c = 0, rr = hold, rc = 0, cc = hold;
+    Place b{0, 0}, br{0, 0}, bc{0, 0};
+    for (std::size_t k = 0; k < count_; ++k) {
+      const double off_sq = squared_norm(values_[k] - middle) / (scale * scale);
+      const double distance_sq = rows_[k] * rows_[k] + cols_[k] * cols_[k];
+      const double weight = 1 / (distance_sq * (1 + off_sq * off_sq));
+      const double by_row = weight * rows_[k];
+      const double by_col = weight * cols_[k];
+      s += weight;
+      r += by_row;
+      c += by_col;
+      rr += by_row * rows_[k];
+      rc += by_row * cols_[k];
+      cc += by_col * cols_[k];
+      b += weight * values_[k];
+      br += by_row * values_[k];
+      bc += by_col * values_[k];
+    }
+    // First row of the inverse of [s r c; r rr rc; c rc cc], by cofactors.
+    const double at_b = rr * cc - rc * rc;
+    const double at_br = c * rc - r * cc;
+    const double at_bc = r * rc - c * rr;
+    return (at_b * b + at_br * br + at_bc * bc) / (s * at_b + r * at_br + c * at_bc);
+  }
+
+ private:
+  static constexpr std::size_t most = (2 * reach + 1) * (2 * reach + 1) - 1;
+
+  double spread() const {
+    Place low = values_[0];
+    Place high = low;
+    for (std::size_t k = 1; k < count_; ++k) {
+      low = {(std::min)(low.x, values_[k].x), (std::min)(low.y, values_[k].y)};
+      high = {(std::max)(high.x, values_[k].x), (std::max)(high.y, values_[k].y)};
+    }
+    return norm(high - low);
+  }
+
+  Place median() const {
+    std::array<double, most> x{}, y{};
+    for (std::size_t k = 0; k < count_; ++k) {
+      x[k] = values_[k].x;
+      y[k] = values_[k].y;
+    }
+    return {median_of(x.begin(), x.begin() + static_cast<std::ptrdiff_t>(count_)),
+            median_of(y.begin(), y.begin() + static_cast<std::ptrdiff_t>(count_))};
+  }
+
+  std::size_t count_ = 0;
+  std::array<double, most> rows_{}, cols_{};
+  std::array<Place, most> values_{};
+};
+
+/// What the dots around (row, col) say of it; `value_at(i, j)` is NaN where nothing is known.
+template <class ValueAt>
+Place by_neighbours(
+    Index rows, Index cols, Index row, Index col, double scale, const ValueAt& value_at) {
+  constexpr Index reach = Neighbours::reach;
+  Neighbours around;
+  for (Index i = (std::max)(row - reach, Index{0}); i <= (std::min)(row + reach, rows - 1); ++i) {
+    for (Index j = (std::max)(col - reach, Index{0}); j <= (std::min)(col + reach, cols - 1); ++j) {
+      if (i != row || j != col) {
+        const Place value = value_at(i, j);
+        if (is_finite(value)) {
+          around.add(i - row, j - col, value);
+        }
+      }
+    }
+  }
+  return around.at_middle(scale);
+}
+
+/// Distance of each dot to the nearest of its four neighbours; their mean where it has none.
+inline Table<double> spacings_px(const Places& dots) {
+  Table<double> spacing(dots.rows(), dots.cols(), 0.0);
+  double sum = 0;
+  int count = 0;
+  for (Index i = 0; i < dots.rows(); ++i) {
+    for (Index j = 0; j < dots.cols(); ++j) {
+      double nearest = std::numeric_limits<double>::infinity();
+      for_each_neighbour<4>(dots, i, j, [&](Index, Index, const Place& other) {
+        nearest = std::fmin(nearest, norm(other - dots(i, j)));
+      });
+      if (is_finite(nearest) && nearest > 0) {
+        spacing(i, j) = nearest;
+        sum += nearest;
+        ++count;
+      }
+    }
+  }
+  for (double& each : spacing.cells()) {
+    each = each > 0 || count == 0 ? each : sum / count;
+  }
+  return spacing;
+}
+
+/// A grid whose steps along rows and columns are everywhere the mean of those in `dots`, which
+/// holds at least one of each.
+inline Places flattened(const Places& dots) {
+  Place right{0, 0}, down{0, 0}, first{0, 0};
+  double rights = 0, downs = 0, all = 0;
+  const auto add = [](const Place& step, Place& sum, double& count) {
+    if (is_finite(step)) {
+      sum += step;
+      count += 1;
+    }
+  };
+  for (Index i = 0; i < dots.rows(); ++i) {
+    for (Index j = 0; j < dots.cols(); ++j) {
+      add(j + 1 < dots.cols() ? dots(i, j + 1) - dots(i, j) : no_place(), right, rights);
+      add(i + 1 < dots.rows() ? dots(i + 1, j) - dots(i, j) : no_place(), down, downs);
+    }
+  }
+  right = right / rights;
+  down = down / downs;
+  const auto steps_to = [&](Index i, Index j) {
+    return static_cast<double>(i) * down + static_cast<double>(j) * right;
+  };
+  Places flat = dots;
+  for (Index i = 0; i < dots.rows(); ++i) {
+    for (Index j = 0; j < dots.cols(); ++j) {
+      add(dots(i, j) - steps_to(i, j), first, all);
+    }
+  }
+  for (Index i = 0; i < dots.rows(); ++i) {
+    for (Index j = 0; j < dots.cols(); ++j) {
+      flat(i, j) = first / all + steps_to(i, j);
+    }
+  }
+  return flat;
+}
+
+/// Every dot of the grid: those that are missing continue the bend of their neighbours, outward
+/// from where dots are known.
+inline Places extrapolated(Places dots) {
+  const Places flat = flattened(dots);
+  for (bool grown = true; grown;) {
+    grown = false;
+    const Places known = dots;
+    for (Index i = 0; i < dots.rows(); ++i) {
+      for (Index j = 0; j < dots.cols(); ++j) {
+        if (!is_finite(known(i, j))) {
+          const double pitch_px = norm(flat(1 % dots.rows(), 1 % dots.cols()) - flat(0, 0));
+          dots(i, j) = flat(i, j) +
+                       by_neighbours(dots.rows(), dots.cols(), i, j, pitch_px,
+                                     [&](Index r, Index c) { return known(r, c) - flat(r, c); });
+          grown = grown || is_finite(dots(i, j));
+        }
+      }
+    }
+  }
+  return dots;
+}
+
+}  // namespace detail
+}  // namespace v0
+}  // namespace fingerpad

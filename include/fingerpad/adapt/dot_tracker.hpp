@@ -1,0 +1,323 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+#pragma once
+// Which spot of a frame is which printed dot, from frame to frame: the half of the dot finder that
+// looks at no image, for those who find spots in a way of their own. Several guesses of how the
+// dots moved are grown into labels; the one with the most and the most regular labels is taken.
+// Where two guesses do nearly as well but disagree, the dots they disagree about count as lost.
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "fingerpad/adapt/detail/dot_matcher.hpp"
+#include "fingerpad/core/dots.hpp"
+#include "fingerpad/core/expects.hpp"
+#include "fingerpad/core/grid.hpp"
+
+namespace fingerpad {
+inline namespace v0 {
+
+enum class DotStatus : std::uint8_t {
+  ok,
+  lost,     ///< too few dots were recognised for any of them to be believed: all are NaN
+  refused,  ///< frame or grid of another size or type: nothing was written
+};
+
+/// "ok", "lost" or "refused".
+constexpr const char* name_of(DotStatus status) {
+  constexpr std::array<const char*, 3> names = {"ok", "lost", "refused"};
+  return names[static_cast<std::size_t>(status)];
+}
+
+struct [[nodiscard]] DotResult {
+  DotStatus status = DotStatus::refused;
+  Index found = 0;     ///< dots that have a place in this frame
+  Index expected = 0;  ///< dots that the free pad shows
+  Index spots = 0;     ///< what looked like a dot in this frame, dots or not
+
+  bool ok() const { return status == DotStatus::ok; }
+};
+
+struct DotTrackerOptions {
+  /// A dot farther than this from where its neighbours put it may be lost, in parts of the pitch;
+  /// > 0. Take 0.1 for a membrane over a fluid, which moves smoothly, and 0.3 for dots behind an
+  /// elastic pad, where a contact moves dots while those beside it stand still.
+  double max_off = 0.1;
+};
+
+/// Const: what is remembered of a pad is a State. Memory: O(dots).
+class DotTracker {
+  using Place = detail::Place;
+  using Places = detail::Places;
+
+ public:
+  /// Where the dots of one pad were in the last frame, and how they moved. A value: copy it to try
+  /// something, assign start() to forget.
+  class State {
+    friend DotTracker;
+    Places last, velocity;  // px, px a frame; NaN and 0 where unknown
+  };
+
+  /// `free_px` are the dots of the free pad in px, NaN where one was not seen; `places_px`, of the
+  /// same size, says where those that were not seen should be (NaN: nowhere). Refuses grids of
+  /// different sizes, fewer than 9 dots and bad options (parameter_error).
+  template <dot_grid Dots, dot_grid AllDots>
+  DotTracker(const Dots& free_px, const AllDots& places_px, const DotTrackerOptions& options = {})
+      : max_off_(options.max_off) {
+    expects(options.max_off > 0, "DotTracker", "max_off", options.max_off, "> 0");
+    expects(same_size(free_px, places_px), "DotTracker", "places_px",
+            static_cast<long long>(fingerpad::rows(places_px)), "of the size of free_px");
+    const Places found = copied(free_px);
+    count_ = count_present(found);
+    expects(count_ >= 9, "DotTracker", "free_px", static_cast<long long>(count_),
+            "a grid of 9 or more dots that were found");
+    free_ = filled(found, copied(places_px), copied(places_px));
+    spacing_px_ = detail::spacings_px(free_);
+    border_ = border_of(found);
+    find_middle(found);
+  }
+  /// The same where nothing is known of dots that were not seen: neighbours tell their places.
+  template <dot_grid Dots>
+  explicit DotTracker(const Dots& free_px, const DotTrackerOptions& options = {})
+      : DotTracker(free_px, detail::extrapolated(copied(free_px)), options) {}
+
+  Index rows() const { return free_.rows(); }
+  Index cols() const { return free_.cols(); }
+  /// Every dot on the free pad: where it was seen, or where it should be.
+  StridedView<const Point2<double>> places_px() const { return free_.view(); }
+
+  State start() const {
+    State state;
+    state.last = free_;
+    state.velocity = Places(rows(), cols(), Place{0, 0});
+    return state;
+  }
+
+  /// The dots among the spots of the next frame, in the order in which they are printed; NaN where
+  /// one is lost. Spots in any order; those that are not finite, or farther out than 1e6 px, are
+  /// none. Takes O(dots + spots) time where dots move little between frames, up to 60 times that
+  /// after a leap; a few buffers of the size of the dots are allocated.
+  template <dot_grid Dots>
+  DotResult operator()(const std::vector<Point2<double>>& spots,
+                       Dots& dots_px,
+                       State& state) const {
+    DotResult result;
+    if (fingerpad::rows(dots_px) != rows() || fingerpad::cols(dots_px) != cols() ||
+        !same_size(state.last, free_)) {
+      return result;
+    }
+    const std::vector<Place> good = usable(spots);
+    const detail::SpotMap map(good);
+    const Places found = track(map, state);
+    result.spots = map.size();
+    result.expected = count_;
+    result.found = count_present(found);
+    result.status = result.found > 0 ? DotStatus::ok : DotStatus::lost;
+    remember(found, state);
+    for (Index i = 0; i < rows(); ++i) {
+      for (Index j = 0; j < cols(); ++j) {
+        using Cell = cell_t<Dots>;
+        using Coordinate = std::remove_cvref_t<decltype(point_traits<Cell>::x(Cell()))>;
+        grid_traits<Dots>::at(dots_px, i, j) =
+            Cell{static_cast<Coordinate>(found(i, j).x), static_cast<Coordinate>(found(i, j).y)};
+      }
+    }
+    return result;
+  }
+
+ private:
+  // Shares of the dots that labels explain:
+  static constexpr double nearly_all = 0.99;    // nothing better is looked for
+  static constexpr double max_of_all = 0.96;    // with less, leaps are tried
+  static constexpr double min_explained = 0.9;  // with less, the labels do not count
+  static constexpr double longest_leap = 3.5;   // pitches, from one frame to the next
+
+  struct Guess {
+    detail::Labels labels;
+    int count = 0;
+    double score = 0;
+
+    bool explains(double share, int most) const {
+      return count >= share * most && score >= 0.95 * count;
+    }
+  };
+
+  template <dot_grid Dots>
+  static Places copied(const Dots& dots) {
+    Places all(fingerpad::rows(dots), fingerpad::cols(dots), detail::no_place());
+    for (Index i = 0; i < all.rows(); ++i) {
+      for (Index j = 0; j < all.cols(); ++j) {
+        using Traits = point_traits<cell_t<Dots>>;
+        const cell_t<Dots> dot = grid_traits<Dots>::at(dots, i, j);
+        all(i, j) = {static_cast<double>(Traits::x(dot)), static_cast<double>(Traits::y(dot))};
+      }
+    }
+    return all;
+  }
+
+  static std::vector<Place> usable(const std::vector<Place>& spots) {
+    constexpr double far_px = 1e6;
+    std::vector<Place> good;
+    good.reserve(spots.size());
+    for (const Place& spot : spots) {
+      if (std::fabs(spot.x) < far_px && std::fabs(spot.y) < far_px) {
+        good.push_back(spot);
+      }
+    }
+    return good;
+  }
+
+  /// `found` where it is known. Elsewhere `base`, moved as the neighbours of the dot have moved.
+  static Places filled(const Places& found, const Places& base, const Places& otherwise) {
+    Places all = found;
+    for (Index i = 0; i < found.rows(); ++i) {
+      for (Index j = 0; j < found.cols(); ++j) {
+        if (!is_finite(found(i, j))) {
+          constexpr double scale_px = 10;
+          const Place place = base(i, j) + detail::by_neighbours(found.rows(), found.cols(), i, j,
+                                                                 scale_px, [&](Index r, Index c) {
+                                                                   return found(r, c) - base(r, c);
+                                                                 });
+          all(i, j) = is_finite(place) ? place : otherwise(i, j);
+        }
+      }
+    }
+    return all;
+  }
+
+  /// The dots that lack one of eight neighbours: the rim holds them.
+  static detail::Table<char> border_of(const Places& dots) {
+    detail::Table<char> border(dots.rows(), dots.cols(), 0);
+    for (Index i = 0; i < dots.rows(); ++i) {
+      for (Index j = 0; j < dots.cols(); ++j) {
+        const auto nothing = [](Index, Index, const Place&) {};
+        border(i, j) = is_finite(dots(i, j)) && for_each_neighbour(dots, i, j, nothing) < 8 ? 1 : 0;
+      }
+    }
+    return border;
+  }
+
+  void find_middle(const Places& dots) {
+    Place sum{0, 0};
+    for (const Place& dot : dots.cells()) {
+      sum += is_finite(dot) ? dot : Place{0, 0};
+    }
+    const Place middle = sum / static_cast<double>(count_);
+    double nearest = std::numeric_limits<double>::infinity();
+    for (Index i = 0; i < dots.rows(); ++i) {
+      for (Index j = 0; j < dots.cols(); ++j) {
+        const double distance = norm(dots(i, j) - middle);
+        if (distance < nearest) {
+          nearest = distance;
+          middle_ = {i, j};
+        }
+      }
+    }
+  }
+
+  Places track(const detail::SpotMap& spots, const State& state) const {
+    const detail::Table<double> last_spacing_px = detail::spacings_px(state.last);
+    const detail::DotMatcher from_last(state.last, last_spacing_px, spots, max_off_);
+    const detail::DotMatcher from_free(free_, spacing_px_, spots, max_off_);
+    const int most = (std::min)(static_cast<int>(count_), spots.size());
+    const auto everywhere = [](Index, Index) { return true; };
+    const auto border = [this](Index i, Index j) { return border_(i, j) != 0; };
+    const auto at_rest = [](Index, Index) { return Place{0, 0}; };
+    std::vector<Guess> guesses;
+    const auto explains_all = [&](const detail::DotMatcher& matcher, const auto& seeds,
+                                  const auto& move) {
+      Guess guess;
+      guess.labels = matcher.match(seeds, move);
+      guess.count = detail::count_labels(guess.labels);
+      guess.score = from_free.score(guess.labels);
+      guesses.push_back(guess);
+      return guess.explains(nearly_all, most);
+    };
+    const auto best = [&] {
+      return std::max_element(guesses.begin(), guesses.end(),
+                              [](const Guess& a, const Guess& b) { return a.score < b.score; });
+    };
+    // Small steps first: mostly they are all it takes.
+    if (!explains_all(from_last, everywhere, at_rest) &&
+        !explains_all(from_last, everywhere,
+                      [&](Index i, Index j) { return state.velocity(i, j); })) {
+      explains_all(from_last, border, at_rest);
+      explains_all(from_free, everywhere, at_rest);
+      explains_all(from_free, border, at_rest);
+      if (!best()->explains(max_of_all, most)) {
+        leap(spots, state, [&](const auto& seeds, const auto& move) {
+          return explains_all(from_last, seeds, move);
+        });
+      }
+    }
+    Guess taken = *best();
+    drop_doubtful(taken, guesses);
+    // Many spots without a label inside the print: the labels are somewhere else's.
+    return taken.count >= min_explained * most ? places_of(taken.labels, spots)
+                                               : Places(rows(), cols(), detail::no_place());
+  }
+
+  /// After a leap any spot that is not too far may be the middle dot: tries them, the nearest
+  /// first, until `explains_all(seeds, move)`.
+  template <class ExplainsAll>
+  void leap(const detail::SpotMap& spots,
+            const State& state,
+            const ExplainsAll& explains_all) const {
+    constexpr std::size_t max_tries = 50;
+    const Place middle = state.last(middle_.row, middle_.col);
+    const double reach_px = longest_leap * spacing_px_(middle_.row, middle_.col);
+    std::vector<Place> near;
+    for (int k = 0; k < spots.size(); ++k) {
+      if (norm(spots[k] - middle) <= reach_px) {
+        near.push_back(spots[k]);
+      }
+    }
+    std::sort(near.begin(), near.end(),
+              [&](const Place& a, const Place& b) { return norm(a - middle) < norm(b - middle); });
+    near.resize((std::min)(near.size(), max_tries));
+    const auto beside_middle = [&](Index i, Index j) {
+      return std::abs(i - middle_.row) <= 1 && std::abs(j - middle_.col) <= 1;
+    };
+    for (const Place& spot : near) {
+      if (explains_all(beside_middle, [&](Index, Index) { return spot - middle; })) {
+        return;
+      }
+    }
+  }
+
+  /// Dots about which a guess that does nearly as well disagrees are lost.
+  static void drop_doubtful(Guess& best, const std::vector<Guess>& guesses) {
+    constexpr double nearly = 0.985;
+    for (const Guess& other : guesses) {
+      if (other.score < nearly * best.score) {
+        continue;
+      }
+      for (std::size_t k = 0; k < best.labels.cells().size(); ++k) {
+        int& label = best.labels.cells()[k];
+        const int others = other.labels.cells()[k];
+        label = label >= 0 && others >= 0 && label != others ? -1 : label;
+      }
+    }
+  }
+
+  void remember(const Places& found, State& state) const {
+    const Places now = filled(found, free_, state.last);
+    for (Index i = 0; i < rows(); ++i) {
+      for (Index j = 0; j < cols(); ++j) {
+        const Place move = now(i, j) - state.last(i, j);
+        state.velocity(i, j) = is_finite(move) ? move : Place{0, 0};
+      }
+    }
+    state.last = now;
+  }
+
+  double max_off_;
+  Places free_;  ///< every dot on the free pad: seen there, or where it should be
+  detail::Table<double> spacing_px_;
+  detail::Table<char> border_;
+  DotIndex middle_;  ///< the dot in the middle
+  Index count_ = 0;  ///< dots seen on the free pad
+};
+
+}  // namespace v0
+}  // namespace fingerpad

@@ -1,0 +1,480 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+#include "fingerpad/adapt/dot_finder.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <opencv2/core.hpp>
+#include <random>
+#include <vector>
+
+#include "support/catch.hpp"
+#include "support/printed_dots.hpp"
+
+using namespace fingerpad;
+using test::DotPlaces;
+using test::Print;
+
+namespace {
+
+constexpr double pi = 3.14159265358979323846;
+
+DotPlaces lost_everywhere(const DotPlaces& like) {
+  return DotPlaces(like.size(), cv::Vec2d::all(0));
+}
+
+/// The free pad's dots as the finder has them.
+DotPlaces free_of(const DotFinder& finder) {
+  DotPlaces dots(static_cast<int>(finder.rows()), static_cast<int>(finder.cols()));
+  const auto view = finder.free_px();
+  for (int i = 0; i < dots.rows; ++i) {
+    for (int j = 0; j < dots.cols; ++j) {
+      dots(i, j) = {view(i, j).x, view(i, j).y};
+    }
+  }
+  return dots;
+}
+
+/// Dots in `frame`, which follows the free pad.
+DotPlaces dots_in(const DotFinder& finder, const cv::Mat& frame) {
+  DotPlaces dots(static_cast<int>(finder.rows()), static_cast<int>(finder.cols()));
+  auto state = finder.start();
+  CHECK(finder(frame, dots, state).ok());
+  return dots;
+}
+
+bool same(const DotPlaces& a, const DotPlaces& b) {
+  return a.size() == b.size() && std::equal(a.begin(), a.end(), b.begin(), [](auto p, auto q) {
+           return (p == q) || (!is_present(p) && !is_present(q));
+         });
+}
+
+}  // namespace
+
+TEST_CASE("dots: a grid is found without a word about it, to a fraction of a pixel") {
+  Print print;
+  const bool bright = GENERATE(false, true);
+  if (bright) {
+    std::swap(print.ink, print.ground);
+  }
+  print.rows = 5;
+  print.cols = 7;
+  print.rotation_rad = GENERATE(-30, 0, 8, 40) * pi / 180;
+  print.radius_px = GENERATE(2.5, 4.0, 6.0);
+  print.pitch_px = 5 * print.radius_px;
+  print.noise = 1;
+  INFO("bright " << bright << ", rotated " << print.rotation_rad << ", radius " << print.radius_px);
+  const DotFinder finder(test::picture_of(print, test::places_of(print)));
+  REQUIRE(finder.ok());
+  REQUIRE(finder.rows() == print.rows);
+  REQUIRE(finder.cols() == print.cols);
+  CHECK(finder.pattern().bright == bright);
+  CHECK(std::abs(finder.pattern().radius_px - print.radius_px) < 0.1 * print.radius_px + 0.3);
+  CHECK(std::abs(finder.pattern().pitch_px - print.pitch_px) < 0.1);
+  const auto errors = test::errors_of(free_of(finder), test::places_of(print));
+  CHECK(errors.count == print.rows * print.cols);
+  CHECK(errors.rms_px < 0.06);
+  CHECK(errors.worst_px < 0.15);
+}
+
+TEST_CASE("dots: a frame that is moved has its dots moved alike") {
+  Print print;
+  print.fall = 0;
+  const DotPlaces truth = test::places_of(print);
+  const DotFinder finder(test::picture_of(print, truth));
+  REQUIRE(finder.ok());
+  const cv::Vec2d by(GENERATE(-3, 0, 5), GENERATE(-4, 1));
+  const DotPlaces found = dots_in(finder, test::picture_of(print, test::moved(truth, by)));
+  CHECK(test::errors_of(found, test::moved(free_of(finder), by)).count == print.rows * print.cols);
+  CHECK(test::errors_of(found, test::moved(free_of(finder), by)).worst_px < 0.03);
+}
+
+TEST_CASE("dots: a picture that is rotated by 90 degrees has its dots rotated") {
+  Print print;
+  print.rotation_rad = 0.1;
+  const cv::Mat picture = test::picture_of(print, test::places_of(print));
+  cv::Mat rotated;
+  cv::rotate(picture, rotated, cv::ROTATE_90_CLOCKWISE);
+  const DotFinder upright(picture);
+  const DotFinder turned(rotated);
+  REQUIRE(upright.ok());
+  REQUIRE(turned.rows() == upright.cols());
+  REQUIRE(turned.cols() == upright.rows());
+  const DotPlaces dots = free_of(upright);
+  DotPlaces expected(dots.cols, dots.rows);
+  for (int i = 0; i < dots.rows; ++i) {
+    for (int j = 0; j < dots.cols; ++j) {
+      expected(j, dots.rows - 1 - i) = {picture.rows - 1 - dots(i, j)[1], dots(i, j)[0]};
+    }
+  }
+  CHECK(test::errors_of(free_of(turned), expected).count == print.rows * print.cols);
+  CHECK(test::errors_of(free_of(turned), expected).worst_px < 0.03);
+}
+
+TEST_CASE("dots: what is lost is NaN, the others stay, and it comes back under its own name") {
+  Print print;
+  const DotPlaces truth = test::places_of(print);
+  const DotFinder finder(test::picture_of(print, truth));
+  REQUIRE(finder.ok());
+  auto state = finder.start();
+  DotPlaces dots(print.rows, print.cols);
+  for (int frame = 0; frame < 6; ++frame) {
+    const DotPlaces now = test::moved(truth, {2.0 * frame, 0.5 * frame});
+    DotPlaces shown = now.clone();
+    const bool hides = frame == 2 || frame == 3;
+    if (hides) {
+      shown(2, 3) = shown(2, 4) = shown(7, 10) = cv::Vec2d::all(std::nan(""));
+    }
+    const DotResult result = finder(test::picture_of(print, shown), dots, state);
+    INFO("frame " << frame);
+    CHECK(result.ok());
+    CHECK(result.found == truth.rows * truth.cols - (hides ? 3 : 0));
+    CHECK(result.expected == truth.rows * truth.cols);
+    for (const cv::Point at : {cv::Point(3, 2), cv::Point(4, 2), cv::Point(10, 7)}) {
+      CHECK(is_present(dots(at)) == !hides);
+    }
+    CHECK(test::errors_of(dots, now).worst_px < 0.1);
+  }
+}
+
+TEST_CASE("dots: specks that are no dots take no name and move no dot") {
+  Print print;
+  const DotPlaces truth = test::places_of(print);
+  const DotFinder finder(test::picture_of(print, truth));
+  REQUIRE(finder.ok());
+  std::mt19937 random(20110801);
+  std::uniform_real_distribution<double> unit(0, 1);
+  std::vector<cv::Vec2d> specks;
+  while (specks.size() < 30) {  // beside dots, not on them
+    const cv::Vec2d speck(320 * unit(random), 240 * unit(random));
+    const bool beside = std::all_of(truth.begin(), truth.end(), [&](const cv::Vec2d& dot) {
+      return cv::norm(dot - speck) > 1.9 * print.radius_px;
+    });
+    if (beside) {
+      specks.push_back(speck);
+    }
+  }
+  const DotPlaces found = dots_in(finder, test::picture_of(print, truth, specks));
+  CHECK(test::errors_of(found, truth).count == truth.rows * truth.cols);
+  CHECK(test::errors_of(found, truth).worst_px < 0.1);
+}
+
+TEST_CASE("dots: what hides a part of the frame hides only dots there") {
+  Print print;
+  const DotPlaces truth = test::places_of(print);
+  const DotFinder finder(test::picture_of(print, truth));
+  REQUIRE(finder.ok());
+  cv::Mat frame = test::picture_of(print, truth);
+  const cv::Rect hidden(90, 80, 40, 30);
+  frame(hidden) = cv::Scalar::all(GENERATE(0, 40, 255));
+  const DotPlaces found = dots_in(finder, frame);
+  const cv::Rect near(hidden.tl() - cv::Point(11, 11), hidden.br() + cv::Point(11, 11));
+  for (int i = 0; i < truth.rows; ++i) {
+    for (int j = 0; j < truth.cols; ++j) {
+      const cv::Point at(cv::Point2d(truth(i, j)[0], truth(i, j)[1]));
+      INFO("row " << i << ", col " << j);
+      CHECK((near.contains(at) || is_present(found(i, j))));
+      CHECK_FALSE((hidden.contains(at) && is_present(found(i, j))));
+    }
+  }
+  CHECK(test::errors_of(found, truth).worst_px < 0.1 * print.pitch_px);  // half-hidden dots
+}
+
+TEST_CASE("dots: the order of the spots does not matter") {
+  Print print;
+  const DotPlaces truth = test::places_of(print);
+  const DotTracker tracker(truth);
+  std::vector<Point2<double>> spots;
+  for (const cv::Vec2d& dot : truth) {
+    spots.push_back({dot[0] + 3, dot[1] - 2});
+  }
+  spots.push_back({100.5, 100.5});
+  DotPlaces first(truth.size()), second(truth.size());
+  auto state = tracker.start();
+  REQUIRE(tracker(spots, first, state).ok());
+  std::shuffle(spots.begin(), spots.end(), std::mt19937(7));
+  state = tracker.start();
+  REQUIRE(tracker(spots, second, state).ok());
+  CHECK(same(first, second));
+  CHECK(test::errors_of(first, test::moved(truth, {3, -2})).worst_px < 1e-12);
+}
+
+TEST_CASE("dots: smooth moves of several pitches at once keep the labels") {
+  // A square print held at the rim; the middle moves and turns as one.
+  constexpr int count = 19;
+  constexpr double pitch_px = 17;
+  std::mt19937 random(20110801);
+  std::uniform_real_distribution<double> unit(-1, 1);
+  DotPlaces free_pad(count, count);
+  for (int i = 0; i < count; ++i) {
+    for (int j = 0; j < count; ++j) {
+      free_pad(i, j) = pitch_px * cv::Vec2d(j, i) + cv::Vec2d(50, 50);
+    }
+  }
+  const DotTracker tracker(free_pad);
+  const cv::Vec2d center = free_pad(count / 2, count / 2);
+  for (int trial = 0; trial < 4; ++trial) {
+    const cv::Vec2d shift = pitch_px * cv::Vec2d(1.5 * unit(random), 1.5 * unit(random));
+    const double rotation = 0.4 * unit(random);
+    DotPlaces truth(count, count);
+    std::vector<Point2<double>> spots;
+    for (int i = 0; i < count; ++i) {
+      for (int j = 0; j < count; ++j) {
+        const cv::Vec2d from = free_pad(i, j) - center;
+        const double rest = (std::max)(0.0, 1 - from.dot(from) / std::pow(11 * pitch_px, 2));
+        const double angle = rotation * rest * rest;
+        const cv::Matx22d rotated(std::cos(angle), -std::sin(angle), std::sin(angle),
+                                  std::cos(angle));
+        truth(i, j) = center + rotated * from + rest * rest * shift;
+        if (unit(random) < 0.9) {  // one in twenty is not seen
+          spots.push_back(
+              {truth(i, j)[0] + 0.1 * unit(random), truth(i, j)[1] + 0.1 * unit(random)});
+        }
+      }
+    }
+    for (int k = 0; k < 10; ++k) {  // and some spots are no dots
+      spots.push_back(
+          {center[0] + 9 * pitch_px * unit(random), center[1] + 9 * pitch_px * unit(random)});
+    }
+    DotPlaces found(count, count);
+    auto state = tracker.start();
+    const DotResult result = tracker(spots, found, state);
+    INFO("trial " << trial << ", shift " << shift << " px, rotation " << rotation);
+    CHECK(result.found > 85 * count * count / 100);
+    CHECK(test::errors_of(found, truth).worst_px < pitch_px / 2);
+  }
+}
+
+TEST_CASE("dots: a frame without them loses them, and the next one has them again") {
+  Print print;
+  const DotPlaces truth = test::places_of(print);
+  const DotFinder finder(test::picture_of(print, truth));
+  REQUIRE(finder.ok());
+  auto state = finder.start();
+  DotPlaces dots(print.rows, print.cols);
+  const DotResult black = finder(cv::Mat(print.frame, CV_8UC3, cv::Scalar::all(0)), dots, state);
+  CHECK(black.status == DotStatus::lost);
+  CHECK_FALSE(black.ok());
+  CHECK(count_present(dots) == 0);
+  const DotPlaces next = test::moved(truth, {4, 3});
+  CHECK(finder(test::picture_of(print, next), dots, state).ok());
+  CHECK(test::errors_of(dots, next).count == print.rows * print.cols);
+}
+
+TEST_CASE("dots: what is no frame of the pad is refused and writes nothing") {
+  Print print;
+  const DotPlaces truth = test::places_of(print);
+  const DotFinder finder(test::picture_of(print, truth));
+  REQUIRE(finder.ok());
+  auto state = finder.start();
+  DotPlaces dots = lost_everywhere(truth);
+  DotPlaces smaller(print.rows, print.cols - 1, cv::Vec2d::all(0));
+  const cv::Mat good = test::picture_of(print, truth);
+  const auto refuses = [&](const cv::Mat& frame, DotPlaces& out) {
+    const DotResult result = finder(frame, out, state);
+    CHECK(result.status == DotStatus::refused);
+    CHECK_FALSE(result.ok());
+    CHECK(cv::countNonZero(out.reshape(1)) == 0);
+  };
+  refuses(cv::Mat(), dots);
+  refuses(good(cv::Rect(0, 0, 319, 240)), dots);
+  refuses(cv::Mat(print.frame, CV_32FC3, cv::Scalar::all(0.5)), dots);
+  refuses(cv::Mat(print.frame, CV_8UC2, cv::Scalar::all(9)), dots);
+  refuses(good, smaller);
+}
+
+TEST_CASE("dots: a free frame without a grid says so") {
+  cv::Mat noise(240, 320, CV_8UC3);
+  cv::theRNG().state = 20110801;
+  cv::randn(noise, cv::Scalar::all(60), cv::Scalar::all(1));
+  Print few;
+  few.rows = few.cols = 2;
+  for (const cv::Mat& frame :
+       {noise, cv::Mat(240, 320, CV_8UC3, cv::Scalar(90, 120, 100)), cv::Mat(),
+        cv::Mat(3, 3, CV_8UC3, cv::Scalar::all(0)), test::picture_of(few, test::places_of(few))}) {
+    const DotFinder finder(frame);
+    CHECK_FALSE(finder.ok());
+    CHECK(finder.rows() == 0);
+  }
+}
+
+TEST_CASE("dots: 16 bit, one channel and four show what 8 bit and three show") {
+  Print print;
+  const DotPlaces truth = test::places_of(print);
+  const cv::Mat free_frame = test::picture_of(print, truth);
+  const cv::Mat frame = test::picture_of(print, test::moved(truth, {3, 2}));
+  const DotFinder finder(free_frame);
+  REQUIRE(finder.ok());
+  const DotPlaces found = dots_in(finder, frame);
+  cv::Mat wide, grey, four;
+  frame.convertTo(wide, CV_16U, 256);
+  cv::extractChannel(frame, grey, 1);
+  four = cv::Mat(frame.size(), CV_8UC4, cv::Scalar::all(77));
+  cv::mixChannels(std::vector<cv::Mat>{frame}, std::vector<cv::Mat>{four}, {0, 0, 1, 1, 2, 2});
+  for (const cv::Mat& other : {wide, grey, four}) {
+    const auto errors = test::errors_of(dots_in(finder, other), found);
+    CHECK(errors.count == print.rows * print.cols);
+    CHECK(errors.worst_px < 0.01);  // a frame that is made smaller is rounded to its own type
+  }
+}
+
+TEST_CASE("dots: channels that are left out do no harm") {
+  Print print;
+  const DotPlaces truth = test::places_of(print);
+  cv::Mat frame = test::picture_of(print, truth);
+  for (int i = 0; i < frame.rows; ++i) {
+    for (int j = 0; j < frame.cols; ++j) {
+      frame.at<cv::Vec3b>(i, j)[0] = static_cast<unsigned char>((37 * i + 101 * j) % 256);
+    }
+  }
+  DotFinderOptions options;
+  options.color_weights = {0, 1, 1};
+  const DotFinder finder(frame, options);
+  REQUIRE(finder.ok());
+  CHECK(test::errors_of(free_of(finder), truth).worst_px < 0.1);
+}
+
+TEST_CASE("dots: rows and columns that are given are kept") {
+  Print print;
+  print.rows = 5;
+  print.cols = 7;
+  const DotPlaces truth = test::places_of(print);
+  const cv::Mat frame = test::picture_of(print, truth);
+  DotFinderOptions options;
+  SECTION("fewer than the frame shows: the first") {
+    options.pattern.rows = 5;
+    options.pattern.cols = 6;
+    const DotFinder finder(frame, options);
+    REQUIRE(finder.ok());
+    CHECK(test::errors_of(free_of(finder), truth(cv::Rect(0, 0, 6, 5))).worst_px < 0.1);
+  }
+  SECTION("fewer, and where their middle is") {
+    options.pattern.rows = 5;
+    options.pattern.cols = 6;
+    options.pattern.middle_px = {truth(2, 4)[0] - 8, truth(2, 4)[1]};
+    const DotFinder finder(frame, options);
+    REQUIRE(finder.ok());
+    CHECK(test::errors_of(free_of(finder), truth(cv::Rect(1, 0, 6, 5))).worst_px < 0.1);
+  }
+  SECTION("more: a row that comes into sight later has its place") {
+    options.pattern.rows = 6;
+    options.pattern.cols = 7;
+    const DotFinder finder(frame, options);
+    REQUIRE(finder.ok());
+    CHECK(count_present(free_of(finder)) == 35);
+    print.rows = 6;
+    DotPlaces all(6, 7);
+    for (int j = 0; j < 7; ++j) {
+      for (int i = 0; i < 6; ++i) {
+        all(i, j) = truth(0, j) + i * (truth(1, j) - truth(0, j));
+      }
+    }
+    const DotPlaces found = dots_in(finder, test::picture_of(print, all));
+    CHECK(test::errors_of(found, all).count == 42);
+    CHECK(test::errors_of(found, all).worst_px < 0.1);
+  }
+}
+
+TEST_CASE("dots: what lies in a grid but is faint is not taken for the dots") {
+  // The blocks of a compressed picture: more of them than there are dots.
+  Print print;
+  print.rows = 4;
+  print.cols = 6;
+  print.pitch_px = 44;
+  print.radius_px = 7;
+  print.ground = 117;
+  print.ink = 28;
+  print.fall = 0;
+  const DotPlaces truth = test::places_of(print);
+  cv::Mat frame = test::picture_of(print, truth);
+  for (int y = 8; y < frame.rows; y += 16) {
+    for (int x = 8; x < frame.cols; x += 16) {
+      cv::Mat block(frame, cv::Rect(x - 3, y - 3, 6, 6));
+      block *= 1.16;
+    }
+  }
+  const DotFinder finder(frame);
+  REQUIRE(finder.ok());
+  CHECK(finder.pattern().bright == false);
+  REQUIRE(finder.cols() == 6);
+  CHECK(test::errors_of(free_of(finder), truth).worst_px < 1);
+}
+
+TEST_CASE("dots: where they cannot be, none is found") {
+  Print print;
+  const DotPlaces truth = test::places_of(print);
+  DotFinderOptions options;
+  options.where = cv::Mat_<unsigned char>(print.frame, 0);
+  options.where(cv::Rect(0, 0, 170, 240)) = 1;
+  const DotFinder finder(test::picture_of(print, truth), options);
+  REQUIRE(finder.ok());
+  for (const cv::Vec2d& dot : free_of(finder)) {
+    CHECK((!is_present(dot) || dot[0] < 170));
+  }
+  CHECK(finder.cols() == 6);
+}
+
+TEST_CASE("dots: a state is a value") {
+  Print print;
+  const DotPlaces truth = test::places_of(print);
+  const DotFinder finder(test::picture_of(print, truth));
+  REQUIRE(finder.ok());
+  const cv::Mat one = test::picture_of(print, test::moved(truth, {4, 0}));
+  const cv::Mat two = test::picture_of(print, test::moved(truth, {8, 1}));
+  DotPlaces dots(truth.size()), again(truth.size());
+  auto state = finder.start();
+  CHECK(finder(one, dots, state).ok());
+  auto copy = state;
+  CHECK(finder(two, dots, state).ok());
+  CHECK(finder(two, again, copy).ok());
+  CHECK(same(dots, again));
+}
+
+TEST_CASE("dots: options that cannot be are refused with their name") {
+  const Print print;
+  const cv::Mat frame = test::picture_of(print, test::places_of(print));
+  const auto refused = [&](const char* name, auto change) {
+    DotFinderOptions options;
+    change(options);
+    INFO(name);
+    CHECK_THROWS_WITH(DotFinder(frame, options), Catch::Matchers::Contains(name));
+  };
+  refused("pattern.rows", [](auto& o) { o.pattern.rows = o.pattern.cols = 2000; });
+  refused("pattern.cols", [](auto& o) { o.pattern.rows = 5; });
+  refused("pattern.radius_px", [](auto& o) { o.pattern.radius_px = 0.5; });
+  refused("pattern.radius_px", [](auto& o) { o.pattern.radius_px = std::nan(""); });
+  refused("pattern.pitch_px", [](auto& o) { o.pattern.pitch_px = 20; });
+  refused("pattern.pitch_px", [](auto& o) {
+    o.pattern.radius_px = 5;
+    o.pattern.pitch_px = 1e30;
+  });
+  refused("min_contrast", [](auto& o) { o.min_contrast = 0; });
+  refused("color_weights", [](auto& o) { o.color_weights = {0, -1, 1}; });
+  refused("color_weights", [](auto& o) { o.color_weights = {0, 0, 0}; });
+  refused("where", [](auto& o) { o.where = cv::Mat_<unsigned char>(5, 5, 1); });
+  refused("max_off", [](auto& o) { o.tracker.max_off = 0; });
+  CHECK_THROWS_WITH(DotTracker(DotPlaces(3, 2, cv::Vec2d(1, 1))),
+                    Catch::Matchers::Contains("free_px"));
+}
+
+TEST_CASE("dots: garbage among the spots is none") {
+  Print print;
+  const DotPlaces truth = test::places_of(print);
+  const DotTracker tracker(truth);
+  std::vector<Point2<double>> spots;
+  for (const cv::Vec2d& dot : truth) {
+    spots.push_back({dot[0], dot[1]});
+  }
+  const double inf = std::numeric_limits<double>::infinity();
+  for (const double bad : {std::nan(""), inf, -inf, 1e300}) {
+    spots.insert(spots.begin() + 3, {bad, 5});
+    spots.push_back({5, bad});
+  }
+  DotPlaces found(truth.size());
+  auto state = tracker.start();
+  const DotResult result = tracker(spots, found, state);
+  CHECK(result.ok());
+  CHECK(result.spots == truth.rows * truth.cols);
+  CHECK(test::errors_of(found, truth).worst_px == 0);
+}
