@@ -3,7 +3,7 @@
 // Contact regions of a round pad from exact depths, small and large ones. The errors are those of
 // the area, as a share of it, and of the center, over 30 contacts: of areas within a fifth of the
 // group's, up to 2 mm off the axis, flat or bulging, level or tilted. It is what the method leaves,
-// without noise.
+// without noise. "On scenes": of finite-element membranes, from noisy frames.
 #include "fingerpad/contact/contact_region.hpp"
 
 #include <cmath>
@@ -15,6 +15,7 @@
 
 #include "bench/support/run.hpp"
 #include "bench/support/scene.hpp"
+#include "bench/support/scene_contact.hpp"
 #include "fingerpad/published/contact_region.hpp"
 #include "support/soap_film.hpp"
 
@@ -101,6 +102,9 @@ struct Bench {
         group + "/" + name, pixels, memory.bytes(),
         [=, from = timed] { benchmark::DoNotOptimize((*region)(from->depth, *mask, *workspace)); },
         [=](auto& counters) {
+          if constexpr (std::is_same_v<CameraType, Camera<double>>) {
+            bench::note_area_on_scenes<Region>(counters, test, edge);
+          }
           bench::note_errors(counters, "area", "share", errors().area);
           bench::note_errors(counters, "center", "mm", errors().center_mm);
         });

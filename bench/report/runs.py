@@ -45,7 +45,19 @@ class Row:
         return self.name.startswith(("streaming", "cv::"))
 
     def main_error(self):
-        return next(iter(self.errors.items()), (None, None))
+        """The first; of finite-element scenes if there is one, for no method's law made these."""
+        on_scenes = [(q, e) for q, e in self.errors.items() if is_on_scenes(q)]
+        return next(iter(on_scenes or self.errors.items()), (None, None))
+
+
+def is_on_scenes(quantity):
+    return quantity.endswith(" on scenes")
+
+
+def main_quantity(rows):
+    """(quantity, Error) that a group is shown by; of finite-element scenes if a row has it."""
+    mains = [r.main_error() for r in rows if r.errors]
+    return next((m for m in mains if is_on_scenes(m[0])), next(iter(mains), (None, None)))
 
 
 def read_errors(row, benchmark):

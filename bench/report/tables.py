@@ -4,7 +4,7 @@
 """Markdown tables of speed against error: tables.py O2.json NATIVE.json prints those of a program."""
 import sys
 
-from runs import FLAGS, read
+from runs import FLAGS, main_quantity, read
 
 
 def number(x, digits=2):
@@ -55,7 +55,7 @@ def print_group(group, rows, out):
     unit, unit_s = time_unit(rows)
     ways = [row for row in rows if not row.is_yardstick]
     yardsticks = [row for row in rows if row.is_yardstick]
-    quantity, error = next((r.main_error() for r in rows if r.errors), (None, None))
+    quantity, error = main_quantity(rows)
     heading = f"error of {quantity}, {error.unit}" if error else "error"
     columns = ["", f"-O2, {unit}", f"native, {unit}"]
     columns += ["ns per item"] if any(r.pixels > 1.5 for r in ways) else []

@@ -4,6 +4,7 @@
 // to and fro, all in contact. Error: of the ratio, in each frame of recordings in which dots are
 // dragged, rotated and pressed, one by one and at once (tests/support/slipping_dots.hpp), with 0.14
 // px of noise; a frame without an answer (at rest, or too little moved) has none.
+// "On scenes": the same noise on dots of finite-element membranes.
 #include "fingerpad/published/stick_ratio.hpp"
 
 #include <cmath>
@@ -17,6 +18,7 @@
 
 #include "bench/support/naive_stick_ratio.hpp"
 #include "bench/support/run.hpp"
+#include "bench/support/scene_stick.hpp"
 #include "support/slipping_dots.hpp"
 
 using namespace fingerpad;
@@ -116,6 +118,9 @@ void add(const std::string& name, const Recording& input, const Parameters&... p
         benchmark::DoNotOptimize(d->ratio(input.frames[d->k], input.contact, d->states, d->state));
       },
       [d, errors = std::vector<double>()](auto& counters) mutable {
+        if (d->ratio.rows() == 21) {
+          bench::note_stick_on_scenes(counters, d->ratio, noise_px);
+        }
         errors = errors.empty() ? errors_of(d->ratio) : errors;
         note_ratio(counters, errors);
       });

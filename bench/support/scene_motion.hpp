@@ -6,10 +6,13 @@
 // and the object's true pose (tests/data/motion_poses.csv).
 #include <cmath>
 #include <cstdint>
+#include <map>
 #include <sstream>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "bench/support/run.hpp"
 #include "fingerpad/motion/object_motion.hpp"
 #include "scene_frames.hpp"
 #include "support/stick_scene.hpp"
@@ -68,7 +71,7 @@ inline SpatialDots dots_in_space(const test::PointsPx& dots_px, const test::Imag
   return out;
 }
 
-inline SceneMotion scene_motion(const std::string& scene, std::uint64_t seed) {
+inline SceneMotion make_scene_motion(const std::string& scene, std::uint64_t seed) {
   SceneFrames& frames = SceneFrames::instance();
   const test::StickScene dots(scene);
   test::Random random(seed);
@@ -99,6 +102,29 @@ inline SceneMotion scene_motion(const std::string& scene, std::uint64_t seed) {
   return motion;
 }
 
+/// Made once.
+inline const SceneMotion& scene_motion(const std::string& scene, std::uint64_t seed) {
+  static std::map<std::pair<std::string, std::uint64_t>, SceneMotion> made;
+  const auto key = std::pair{scene, seed};
+  const auto found = made.find(key);
+  return found != made.end() ? found->second
+                             : made.emplace(key, make_scene_motion(scene, seed)).first->second;
+}
+
+template <class S>
+fingerpad::Pose<double> in_double(const fingerpad::Pose<S>& pose) {
+  fingerpad::Pose<double> out;
+  for (int i = 0; i < 3; ++i) {
+    for (int j = 0; j < 3; ++j) {
+      out.rotation.m[i][j] = static_cast<double>(pose.rotation.m[i][j]);
+    }
+  }
+  const auto& t = pose.translation_mm;
+  out.translation_mm = {static_cast<double>(t.x), static_cast<double>(t.y),
+                        static_cast<double>(t.z)};
+  return out;
+}
+
 struct SceneMotionErrors {
   std::vector<double> attitude_deg;  ///< the angle of what is left
   std::vector<double> about_deg[3];  ///< of the angles about x, y and z
@@ -107,14 +133,15 @@ struct SceneMotionErrors {
   int no_answer = 0;
 };
 
-/// Every frame but the first, with noises 1 to `seeds`.
-template <class Way>
-SceneMotionErrors motion_on_scene(const std::string& scene, const Way& way, std::uint64_t seeds) {
+/// Every frame but the first, with noises 1 to `seeds`; `make` gives the method from the dots of
+/// the free pad.
+template <class Make>
+SceneMotionErrors motion_on_scene(const std::string& scene, const Make& make, std::uint64_t seeds) {
   constexpr double degrees = 57.29577951308232;
   SceneMotionErrors errors;
   for (std::uint64_t seed = 1; seed <= seeds; ++seed) {
-    const SceneMotion recording = scene_motion(scene, seed);
-    const fingerpad::ObjectMotion<Way> motion(recording.initial_mm, {}, way);
+    const SceneMotion& recording = scene_motion(scene, seed);
+    const auto motion = make(recording.initial_mm);
     auto state = motion.start();
     for (const SceneMotionFrame& frame : recording.frames) {
       const auto r = motion(frame.dots_mm, frame.contact, state);
@@ -126,16 +153,27 @@ SceneMotionErrors motion_on_scene(const std::string& scene, const Way& way, std:
         continue;
       }
       const auto truth = zyx_angles(frame.truth.rotation);
-      const auto off = r.pose(recording.middle_mm) - frame.truth(recording.middle_mm);
-      errors.attitude_deg.push_back(degrees * angle_between(r.pose.rotation, frame.truth.rotation));
-      errors.about_deg[0].push_back(degrees * (r.angles.x_rad - truth.x_rad));
-      errors.about_deg[1].push_back(degrees * (r.angles.y_rad - truth.y_rad));
-      errors.about_deg[2].push_back(degrees * (r.angles.z_rad - truth.z_rad));
+      const fingerpad::Pose<double> found = in_double(r.pose);
+      const auto off = found(recording.middle_mm) - frame.truth(recording.middle_mm);
+      errors.attitude_deg.push_back(degrees * angle_between(found.rotation, frame.truth.rotation));
+      errors.about_deg[0].push_back(degrees * (static_cast<double>(r.angles.x_rad) - truth.x_rad));
+      errors.about_deg[1].push_back(degrees * (static_cast<double>(r.angles.y_rad) - truth.y_rad));
+      errors.about_deg[2].push_back(degrees * (static_cast<double>(r.angles.z_rad) - truth.z_rad));
       errors.plane_mm.push_back(std::hypot(off.x, off.y));
       errors.depth_mm.push_back(off.z);
     }
   }
   return errors;
+}
+
+/// Notes errors of attitude and place called "... on scenes", of the ball that rolls.
+template <class Make>
+void note_motion_on_scene(Counters& counters, const Make& make) {
+  SceneMotionErrors errors = motion_on_scene("roll", make, 4);
+  errors.attitude_deg.resize(
+      errors.attitude_deg.size() + static_cast<std::size_t>(errors.no_answer), test::nan);
+  note_errors(counters, "attitude on scenes", "deg", errors.attitude_deg);
+  note_errors(counters, "place on scenes", "mm", errors.depth_mm);
 }
 
 }  // namespace bench

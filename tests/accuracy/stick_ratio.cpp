@@ -22,6 +22,7 @@ using test::ContactFlags;
 using test::DotPattern;
 using test::DotStates;
 using test::PointsPx;
+using test::SlippedLess;
 using test::SlipScene;
 using test::StickError;
 using test::StickScene;
@@ -147,35 +148,6 @@ TEST_CASE("stick ratio of synthetic dots, each effect left out", "[stick_ratio]"
 }
 
 namespace {
-
-/// Of the area in contact in a step and `age` steps earlier, the share that slipped less than a
-/// length in between.
-class SlippedLess {
- public:
-  explicit SlippedLess(const std::string& name, Index steps) : shares_(steps, ages * lengths) {
-    auto file = test::open_data(name + "_slip.pgm", "P5\n96 " + std::to_string(steps) + "\n255\n");
-    for (int& share : shares_.cells) {
-      share = file.get();
-    }
-    test::require_data(file.good(), name + "_slip.pgm is too short");
-  }
-  /// NaN where it is not known.
-  double operator()(Index step, Index age, double length_mm) const {
-    const double place = std::log(length_mm / 0.002) / std::log(1.5);
-    if (age < 1 || age > ages || !(place >= 0 && place < lengths - 1)) {
-      return test::nan;
-    }
-    const Index t = static_cast<Index>(place);
-    const double u = place - static_cast<double>(t);
-    const int low = shares_(step, (age - 1) * lengths + t);
-    const int high = shares_(step, (age - 1) * lengths + t + 1);
-    return high == 255 ? test::nan : ((1 - u) * low + u * high) / 250;
-  }
-
- private:
-  static constexpr Index ages = 8, lengths = 12;
-  test::Image<int> shares_;
-};
 
 constexpr double jitter_px = 0.06;
 constexpr Index recordings = 20;

@@ -3,6 +3,7 @@
 #pragma once
 // Printed dots of a finite-element membrane, step by step while an object moves on it, and what
 // sticks (tests/data/README.md).
+#include <cmath>
 #include <cstddef>
 #include <fstream>
 #include <string>
@@ -85,6 +86,35 @@ class StickScene {
 
   std::string name_;
   std::vector<Frame> frames_;
+};
+
+/// Of the area in contact in a step and `age` steps earlier, the share that slipped less than a
+/// length in between.
+class SlippedLess {
+ public:
+  explicit SlippedLess(const std::string& name, Index steps) : shares_(steps, ages * lengths) {
+    auto file = open_data(name + "_slip.pgm", "P5\n96 " + std::to_string(steps) + "\n255\n");
+    for (int& share : shares_.cells) {
+      share = file.get();
+    }
+    require_data(file.good(), name + "_slip.pgm is too short");
+  }
+  /// NaN where it is not known.
+  double operator()(Index step, Index age, double length_mm) const {
+    const double place = std::log(length_mm / 0.002) / std::log(1.5);
+    if (age < 1 || age > ages || !(place >= 0 && place < lengths - 1)) {
+      return nan;
+    }
+    const Index t = static_cast<Index>(place);
+    const double u = place - static_cast<double>(t);
+    const int low = shares_(step, (age - 1) * lengths + t);
+    const int high = shares_(step, (age - 1) * lengths + t + 1);
+    return high == 255 ? nan : ((1 - u) * low + u * high) / 250;
+  }
+
+ private:
+  static constexpr Index ages = 8, lengths = 12;
+  Image<int> shares_;
 };
 
 }  // namespace test

@@ -14,10 +14,12 @@ namespace bench::papers {
 inline Section location_section() {
   using namespace fingerpad;
   constexpr std::uint64_t seeds = 4;
-  const auto old_drag = motion_on_scene("drag", SumOfAngles<PublishedBasis>(), seeds);
-  const auto drag = motion_on_scene("drag", ContactMap(), seeds);
-  const auto old_roll = motion_on_scene("roll", SumOfAngles<PublishedBasis>(), seeds);
-  const auto roll = motion_on_scene("roll", ContactMap(), seeds);
+  const auto printed = [](const SpatialDots& free) { return published::object_motion(free); };
+  const auto by_default = [](const SpatialDots& free) { return ObjectMotion<>(free); };
+  const auto old_drag = motion_on_scene("drag", printed, seeds);
+  const auto drag = motion_on_scene("drag", by_default, seeds);
+  const auto old_roll = motion_on_scene("roll", printed, seeds);
+  const auto roll = motion_on_scene("roll", by_default, seeds);
   const auto worst = [](const std::vector<double>& e) { return number(Spread(e).worst); };
   const std::string press = "plate pressed by 1.4 mm more, then dragged 1.0 mm; it begins to slip";
   const std::string ball = "sphere of 18 mm that rolls by 20 degrees about y";

@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 #include <span>
 #include <string>
 #include <utility>
@@ -17,6 +18,7 @@
 #include "fingerpad/calibrate/force.hpp"
 #include "fingerpad/force/normal_force.hpp"
 #include "fingerpad/force/shear.hpp"
+#include "fingerpad/published/normal_force.hpp"
 #include "support/contact_records.hpp"
 #include "table.hpp"
 
@@ -52,7 +54,8 @@ inline std::vector<double> published_normal(const std::string& scene,
   }
   const bool turns = scene == "twist";
   const auto fit =
-      fit_affine_force(span_of(on), curve, turns ? AffineBy::rotation : AffineBy::displacement);
+      fit_affine_force(span_of(on), curve,
+                       turns ? published::AffineBy::rotation : published::AffineBy::displacement);
   for (const auto& s : on) {
     const double size =
         turns ? std::abs(s.rotation_rad) : std::hypot(s.displacement_mm.x, s.displacement_mm.y);
@@ -88,15 +91,14 @@ inline ShearErrors tangential(const std::vector<std::string>& from,
                               const std::string& on,
                               test::ContactMeasure measure,
                               test::ContactDotsOf dots,
-                              const fingerpad::ExponentSearch<>& exponent) {
+                              std::optional<double> exponent) {
   using namespace fingerpad;
   const Samples seen = samples_of(from, measure, dots);
   const auto fit = fit_tangential_force<1>(span_of(seen), reference_of(measure), exponent);
-  OddPolynomial<1> any;
-  any.coefficients.fill(1);
-  any.to = 1;
-  const Shear<RadialShear<1>> shear({reference_of(measure), fit.exponent, 0},
-                                    {fit.polynomial, any});
+  RadialShear<1> map;
+  map.force = fit.polynomial;
+  map.moment.coefficients = {1};
+  const Shear<RadialShear<1>> shear({reference_of(measure), fit.exponent, 0}, map);
   ShearErrors out;
   for (const auto& s : samples_of({on}, measure, dots)) {
     const auto f = shear(s.measure, s.displacement_mm, 0).tangential_force_n;
@@ -110,15 +112,14 @@ inline ShearErrors moment(const std::vector<std::string>& from,
                           const std::string& on,
                           test::ContactMeasure measure,
                           test::ContactDotsOf dots,
-                          const fingerpad::ExponentSearch<>& exponent) {
+                          std::optional<double> exponent) {
   using namespace fingerpad;
   const Samples seen = samples_of(from, measure, dots);
   const auto fit = fit_moment<1>(span_of(seen), reference_of(measure), exponent);
-  OddPolynomial<1> any;
-  any.coefficients.fill(1);
-  any.to = 1;
-  const Shear<RadialShear<1>> shear({reference_of(measure), 0, fit.exponent},
-                                    {any, fit.polynomial});
+  RadialShear<1> map;
+  map.moment = fit.polynomial;
+  map.force.coefficients = {1};
+  const Shear<RadialShear<1>> shear({reference_of(measure), 0, fit.exponent}, map);
   ShearErrors out;
   for (const auto& s : samples_of({on}, measure, dots)) {
     out.errors.push_back(shear(s.measure, {0, 0}, s.rotation_rad).moment_n_mm - s.moment_n_mm);
@@ -154,16 +155,14 @@ inline Section look_up_section() {
     section.rows.push_back(
         {"force along the plate" + by, "error, mean / largest, of the largest",
          "\"almost linear\" (Fig. 14)",
-         cell(tangential({"drag"}, "drag", measure, ContactDotsOf::center,
-                         {.search = false, .given = by_area ? 0.65 : 0.75})),
+         cell(tangential({"drag"}, "drag", measure, ContactDotsOf::center, by_area ? 0.65 : 0.75)),
          cell(tangential({"mix"}, "drag", measure, ContactDotsOf::edge, {})),
          "plate dragged to slip and back; published fitted to it, default to another scene"});
-    section.rows.push_back({"moment" + by, "error, mean / largest, of the largest",
-                            "\"linear\" (Fig. 15)",
-                            cell(moment({"twist"}, "twist", measure, ContactDotsOf::center,
-                                        {.search = false, .given = by_area ? 1.7 : 2.2})),
-                            cell(moment({"mix"}, "twist", measure, ContactDotsOf::edge, {})),
-                            "plate turned to slip; the same"});
+    section.rows.push_back(
+        {"moment" + by, "error, mean / largest, of the largest", "\"linear\" (Fig. 15)",
+         cell(moment({"twist"}, "twist", measure, ContactDotsOf::center, by_area ? 1.7 : 2.2)),
+         cell(moment({"mix"}, "twist", measure, ContactDotsOf::edge, {})),
+         "plate turned to slip; the same"});
   }
   return section;
 }

@@ -10,7 +10,6 @@
 #include <vector>
 
 #include "examples/grip/foam_fingers.hpp"
-#include "fingerpad/foam/holding_force.hpp"
 #include "fingerpad/foam/preslip.hpp"
 #include "fingerpad/foam/taxel_features.hpp"
 #include "fingerpad/published/preslip.hpp"
@@ -78,28 +77,23 @@ Warnings warnings_of(const Rule& rule) {
     const grip::FoamFingersSetup object = object_of(seed);
     grip::FoamFingers hand(object, seed);
     Watch<Rule> watch(rule, object);
-    const LoosenUntilPreslip<> loosen({.first_force_n = object.first_force_n,
-                                       .min_force_n = 0.1,
-                                       .step_n = 0.2,
-                                       .settle_samples = 4,
-                                       .watch_samples = 36,
-                                       .until_slipped = true});
-    auto search = loosen.start();
-    LoosenCommand<double> command = search.command();
-    while (!is_end(command.phase)) {
-      hand.advance(command.force_n);
-      const bool alarm = watch.alarms(hand);
-      command = loosen(hand.has_slipped() ? SlipSignal::slipped
-                       : alarm            ? SlipSignal::preslip
-                                          : SlipSignal::steady,
-                       search);
+    constexpr double step_n = 0.2;
+    constexpr int samples_a_step = 40;
+    int step = 0, warned_at = -1;
+    while (!hand.has_slipped() && step * step_n < object.first_force_n) {
+      for (int k = 0; k < samples_a_step && !hand.has_slipped(); ++k) {
+        hand.advance(object.first_force_n - step * step_n);
+        warned_at = watch.alarms(hand) && warned_at < 0 ? step : warned_at;
+      }
+      ++step;
     }
     ++w.runs;
-    if (command.warning_steps > 0) {
+    if (warned_at >= 0) {
+      const int steps = step - 1 - warned_at;  // until the one in which it falls
       ++w.warned;
-      w.at_once += command.warning_steps + 1 >= command.steps ? 1 : 0;
-      w.fewest = (std::min)(w.fewest, static_cast<int>(command.warning_steps));
-      w.most = (std::max)(w.most, static_cast<int>(command.warning_steps));
+      w.at_once += warned_at == 0 ? 1 : 0;
+      w.fewest = (std::min)(w.fewest, steps);
+      w.most = (std::max)(w.most, steps);
     }
     grip::FoamFingers still(object, seed + 100);
     Watch<Rule> idle(rule, object);
@@ -114,9 +108,9 @@ Warnings warnings_of(const Rule& rule) {
 inline Section preslip_section() {
   using namespace fingerpad;
   const auto old_optimise = warnings_of(published::grasp_optimise());
-  const auto optimise = warnings_of(Preslip<GraspOptimise<>>());
+  const auto optimise = warnings_of(Preslip<GraspOptimise>());
   const auto old_lift = warnings_of(published::grasp_lift());
-  const auto lift = warnings_of(Preslip<GraspLift<>>());
+  const auto lift = warnings_of(Preslip<GraspLift>());
   const std::string nearest =
       "object between simulated foam fingers, loosened by 0.2 N a step until it falls";
   const std::string held = "the same objects held for 20 s by a grip that does not change";

@@ -1,0 +1,37 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+#pragma once
+// Errors of contact areas on finite-element membranes, in depths of noisy frames as the default
+// measures them; the true area is the finite elements' own (tests/data/contacts.csv). By one
+// threshold for all, that of half of the free pad's curvature, where a method has none of its own.
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "bench/support/run.hpp"
+#include "bench/support/scene_frames.hpp"
+#include "support/contact_records.hpp"
+
+namespace bench {
+
+template <class Region, class Test, class Edge>
+void note_area_on_scenes(Counters& counters, const Test& test, const Edge& edge) {
+  SceneFrames& frames = SceneFrames::instance();
+  const test::Pad& pad = frames.pad();
+  const Region region(pad.camera, pad.rows, pad.cols, test, edge);
+  auto workspace = region.workspace();
+  test::Image<std::uint8_t> mask(pad.rows, pad.cols);
+  std::vector<double> errors;
+  for (const auto& [name, step] :
+       {std::pair{"press", 20}, {"tilt", 16}, {"cylinder", 10}, {"roll", 18}}) {
+    for (const test::ContactRecord& r : test::contact_records({name})) {
+      for (std::uint64_t seed = 1; seed <= 3 && r.step == step; ++seed) {
+        const auto found = region(frames(name, seed).measured_mm, mask, workspace);
+        errors.push_back(found.area_mm2 / r.area_mm2 - 1);
+      }
+    }
+  }
+  note_errors(counters, "area on scenes", "share", errors);
+}
+
+}  // namespace bench
