@@ -47,5 +47,7 @@
 #include "fingerpad/published/stick_ratio.hpp"
 #include "fingerpad/published/wrench.hpp"
 #include "fingerpad/sim/foam_contact.hpp"
+#include "fingerpad/slip/friction_limit.hpp"
 #include "fingerpad/slip/grip_control.hpp"
+#include "fingerpad/slip/spatial_stick_ratio.hpp"
 #include "fingerpad/slip/stick_ratio.hpp"

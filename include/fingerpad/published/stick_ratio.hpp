@@ -224,12 +224,13 @@ Similarity<S> motion_between(const published::ReferenceDotMotion<Free>&,
 
 template <class S>
 void denoise_positions(const published::DotMean& mean,
-                       const GivenDots<S>& given,
+                       const GivenDots<Point2<S>>& given,
                        const DotLayout& layout,
                        Dots<Point2<S>>& now) {
   const auto placed = [&](const DotIndex& d, Index down, Index right) {
     const Index k = (d.row + down) * layout.cols + d.col + right;
-    return is_out_of_place(given.found.data(), layout, k) ? no_dot<S>() : at(given.found, k);
+    return is_out_of_place(given.found.data(), layout, k) ? no_dot<Point2<S>>()
+                                                          : at(given.found, k);
   };
   constexpr std::array<std::pair<int, int>, 4> steps = {{{0, 1}, {1, 0}, {1, -1}, {1, 1}}};
   for (const Index k : given.touching) {

@@ -127,7 +127,7 @@ class StickRatio {
     const StickStatus status = look(state);
     StickRatioResult<S>& result = state.result;
     result.status = back ? StickStatus::restarted : status;
-    detail::stick::settle_marks(state, to);
+    detail::stick::settle_marks(layout_, state.given.touching, state.marks, result, to);
     if (status == StickStatus::updated) {
       result.stick_ratio = S(result.stick) / S(result.stick + result.slip);
     }

@@ -7,6 +7,7 @@
 #include "fingerpad/core/dots.hpp"
 #include "fingerpad/core/grid.hpp"
 #include "fingerpad/core/scalar.hpp"
+#include "fingerpad/math/rotation.hpp"
 
 namespace fingerpad {
 inline namespace v0 {
@@ -73,6 +74,32 @@ struct [[nodiscard]] StickRatioResult {
   S scale = S(1);           ///< alpha: the object is seen 1 / scale as large as in the reference
   DotIndex reference_dot =
       {};  ///< where the search for sticking dots began; row -1: there was none
+
+  bool accepted() const { return status != StickStatus::refused; }
+  /// Whether the ratio may be used: of this frame, or still that of the last answer.
+  bool ok() const { return accepted() && is_finite(stick_ratio); }
+  bool updated() const { return status == StickStatus::updated; }
+  Index dots_in_contact() const { return stick + slip + unknown; }
+};
+
+/// How far a dot has slipped since the reference, along the surface.
+template <scalar S = double>
+struct DotSlip {
+  Point3<S> slip_mm = {not_a_number<S>(), not_a_number<S>(), not_a_number<S>()};
+  S sd_mm = not_a_number<S>();  ///< of one component along the surface, level; by the noise alone
+};
+
+/// Where the status is not `updated`, what follows `out_of_place` is that of the last answer.
+template <scalar S = double>
+struct [[nodiscard]] SpatialStickResult {
+  StickStatus status = StickStatus::refused;
+  Index stick = 0, slip = 0, unknown = 0;  ///< dots in contact, as written to `states`
+  Index out_of_place = 0;  ///< dots in contact that are not between their neighbours: left out
+  S stick_ratio = not_a_number<S>();  ///< sticking dots / known dots, in [0, 1]; NaN: none yet
+  S ratio_sd = not_a_number<S>();     ///< of it, by the noise of the dots near the threshold
+  S furthest_mm = S(0);               ///< d_max from the reference
+  Index reference_age = 0;            ///< frames from the reference to the answer
+  Pose<S> motion = {};                ///< of the object since the reference, if anything sticks
 
   bool accepted() const { return status != StickStatus::refused; }
   /// Whether the ratio may be used: of this frame, or still that of the last answer.

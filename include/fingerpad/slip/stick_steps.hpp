@@ -244,7 +244,10 @@ Similarity<S> motion_between(const StickConsensus<Free>& policy,
 
 /// What becomes of the positions before anything is compared: nothing, by default.
 template <class Denoising, class S>
-void denoise_positions(const Denoising&, const GivenDots<S>&, const DotLayout&, Dots<Point2<S>>&) {}
+void denoise_positions(const Denoising&,
+                       const GivenDots<Point2<S>>&,
+                       const DotLayout&,
+                       Dots<Point2<S>>&) {}
 
 template <class S>
 DotState state_of(const S& residual_sq, const S& slip_sq) {
@@ -299,12 +302,12 @@ void mark_dots(const ResidualMean& mean,
                Dots<Point2<S>>& residuals,
                std::vector<DotState>& marks) {
   const S gate_sq = slip_sq * S(mean.gate * mean.gate);
-  std::fill(residuals.begin(), residuals.end(), no_dot<S>());
+  std::fill(residuals.begin(), residuals.end(), no_dot<Point2<S>>());
   for (const Index k : pair.touching) {
     const Point2<S> residual = map.residual(pair.now[k], pair.then[k]);
     const S sq = squared_norm(residual);
     marks[static_cast<std::size_t>(k)] = is_distance_sq(sq) ? DotState::slip : DotState::unknown;
-    at(residuals, k) = sq < gate_sq ? residual : no_dot<S>();
+    at(residuals, k) = sq < gate_sq ? residual : no_dot<Point2<S>>();
   }
   for (const Index k : pair.touching) {
     if (at(residuals, k).x == at(residuals, k).x) {

@@ -27,9 +27,18 @@ constexpr bool is_distance_sq(const S& sq) {
   return sq < no_distance_sq<S>();
 }
 
-template <class S>
-constexpr Point2<S> no_dot() {
-  return {not_a_number<S>(), not_a_number<S>()};
+template <class P>
+using coordinate = decltype(P::x);
+
+/// A dot that is not there: all coordinates NaN.
+template <class P>
+constexpr P no_dot() {
+  constexpr auto nan = [] { return not_a_number<coordinate<P>>(); };
+  if constexpr (requires(P p) { p.z; }) {
+    return {nan(), nan(), nan()};
+  } else {
+    return {nan(), nan()};
+  }
 }
 
 struct DotLayout {
@@ -54,24 +63,24 @@ P& at(Dots<P>& dots, Index k) {
 }
 
 /// The dot `down` rows and `right` columns from dot k; NaN outside of the grid.
-template <class S>
-Point2<S> beside(const Point2<S>* dots, const DotLayout& layout, Index k, Index down, Index right) {
+template <class P>
+P beside(const P* dots, const DotLayout& layout, Index k, Index down, Index right) {
   const DotIndex d = layout.dot_at(k);
   const bool inside = d.row + down >= 0 && d.row + down < layout.rows && d.col + right >= 0 &&
                       d.col + right < layout.cols;
-  return inside ? dots[k + down * layout.cols + right] : no_dot<S>();
+  return inside ? dots[k + down * layout.cols + right] : no_dot<P>();
 }
 
-/// A frame as it was given.
-template <class S>
+/// A frame as it was given, of points in the image or in space.
+template <class P>
 struct GivenDots {
-  Dots<Point2<S>> found;        ///< NaN where none was found
+  Dots<P> found;                ///< NaN where none was found
   std::vector<Index> touching;  ///< the cells with a flag of contact, found or not
   Index count = 0;              ///< of the dots found
 
   GivenDots() = default;
   explicit GivenDots(const DotLayout& layout)
-      : found(static_cast<std::size_t>(layout.size()), no_dot<S>()) {
+      : found(static_cast<std::size_t>(layout.size()), no_dot<P>()) {
     touching.reserve(found.size());
   }
 
@@ -84,9 +93,14 @@ struct GivenDots {
     for (Index i = 0; i < dots.rows(); ++i) {
       for (Index j = 0; j < dots.cols(); ++j, ++k) {
         const cell_t<DotsView> given = dots(i, j);
-        const Point2<S> p = {S(Traits::x(given)), S(Traits::y(given))};
+        P p = no_dot<P>();
+        p.x = coordinate<P>(Traits::x(given));
+        p.y = coordinate<P>(Traits::y(given));
+        if constexpr (requires { p.z; }) {
+          p.z = coordinate<P>(Traits::z(given));
+        }
         const bool there = is_distance_sq(squared_norm(p));
-        at(found, k) = there ? p : no_dot<S>();
+        at(found, k) = there ? p : no_dot<P>();
         count += there ? 1 : 0;
         if (is_contact(cell_t<Contact>(contact(i, j)))) {
           touching.push_back(k);
@@ -166,6 +180,29 @@ struct Choice {
                           ///< names; -1: there is none
   bool standing = false;
 };
+
+/// Settles what each dot does: marks of dots that do not touch any more are dropped, dots that
+/// newly touch are unknown. Counts them, and writes them to `to`.
+template <class Result, class States>
+void settle_marks(const DotLayout& layout,
+                  const std::vector<Index>& all_touching,
+                  std::vector<DotState>& marks,
+                  Result& result,
+                  const States& to) {
+  auto touching = all_touching.begin();
+  result.stick = result.slip = result.unknown = 0;
+  for (Index k = 0; k < layout.size(); ++k) {
+    DotState& mark = marks[static_cast<std::size_t>(k)];
+    const bool touches = touching != all_touching.end() && *touching == k;
+    touching += touches ? 1 : 0;
+    mark = !touches ? DotState::none : mark == DotState::none ? DotState::unknown : mark;
+    result.stick += mark == DotState::stick ? 1 : 0;
+    result.slip += mark == DotState::slip ? 1 : 0;
+    result.unknown += mark == DotState::unknown ? 1 : 0;
+    const DotIndex d = layout.dot_at(k);
+    to(d.row, d.col) = static_cast<cell_t<States>>(mark);
+  }
+}
 
 }  // namespace detail::stick
 }  // namespace v0

@@ -13,19 +13,18 @@ namespace detail::stick {
 
 /// Whether dot k lies further than half a pitch from the middle of the two dots beside it; false
 /// where one of the three is missing.
-template <class S>
-bool is_out_of_line(
-    const Point2<S>* dots, const DotLayout& layout, Index k, Index down, Index right) {
-  const Point2<S> a = beside(dots, layout, k, -down, -right);
-  const Point2<S> b = beside(dots, layout, k, down, right);
-  const Point2<S> off = a + b - S(2) * dots[k];           // twice the distance
-  return squared_norm(b - a) < S(4) * squared_norm(off);  // b - a: two pitches
+template <class P>
+bool is_out_of_line(const P* dots, const DotLayout& layout, Index k, Index down, Index right) {
+  const P a = beside(dots, layout, k, -down, -right);
+  const P b = beside(dots, layout, k, down, right);
+  const P off = a + b - coordinate<P>(2) * dots[k];                   // twice the distance
+  return squared_norm(b - a) < coordinate<P>(4) * squared_norm(off);  // b - a: two pitches
 }
 
 /// The corners of the pattern lie between no two neighbours: they are held against the line through
 /// the next two, along their row and their column.
-template <class S>
-bool is_corner_out_of_line(const Point2<S>* dots, const DotLayout& layout, Index k) {
+template <class P>
+bool is_corner_out_of_line(const P* dots, const DotLayout& layout, Index k) {
   const DotIndex d = layout.dot_at(k);
   const bool corner =
       (d.row == 0 || d.row == layout.rows - 1) && (d.col == 0 || d.col == layout.cols - 1);
@@ -33,15 +32,15 @@ bool is_corner_out_of_line(const Point2<S>* dots, const DotLayout& layout, Index
     return false;
   }
   const auto is_off = [&](Index down, Index right) {
-    const Point2<S> next = beside(dots, layout, k, down, right);
-    const Point2<S> along = next - beside(dots, layout, k, 2 * down, 2 * right);
-    return squared_norm(along) < S(4) * squared_norm(dots[k] - next - along);
+    const P next = beside(dots, layout, k, down, right);
+    const P along = next - beside(dots, layout, k, 2 * down, 2 * right);
+    return squared_norm(along) < coordinate<P>(4) * squared_norm(dots[k] - next - along);
   };
   return is_off(0, d.col == 0 ? 1 : -1) || is_off(d.row == 0 ? 1 : -1, 0);
 }
 
-template <class S>
-bool is_out_of_place(const Point2<S>* dots, const DotLayout& layout, Index k) {
+template <class P>
+bool is_out_of_place(const P* dots, const DotLayout& layout, Index k) {
   return is_out_of_line(dots, layout, k, 0, 1) || is_out_of_line(dots, layout, k, 1, 0) ||
          is_corner_out_of_line(dots, layout, k);
 }
@@ -52,9 +51,9 @@ struct PlacedDots {
 };
 
 /// Writes to `now` the dots in contact that are where their neighbours say; all others are missing.
-template <class S>
-PlacedDots place_dots(const GivenDots<S>& given, const DotLayout& layout, Dots<Point2<S>>& now) {
-  std::fill(now.begin(), now.end(), no_dot<S>());
+template <class P>
+PlacedDots place_dots(const GivenDots<P>& given, const DotLayout& layout, Dots<P>& now) {
+  std::fill(now.begin(), now.end(), no_dot<P>());
   PlacedDots placed;
   for (const Index k : given.touching) {
     if (!is_finite(at(given.found, k))) {

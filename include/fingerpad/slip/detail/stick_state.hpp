@@ -40,8 +40,8 @@ class StickState {
   }
 
   DotLayout layout;
-  GivenDots<S> given;   // this frame
-  Dots<Point2<S>> now;  // of it, the dots in contact, in their places
+  GivenDots<Point2<S>> given;  // this frame
+  Dots<Point2<S>> now;         // of it, the dots in contact, in their places
   Dots<Point2<S>> residuals;
   std::vector<DotState> marks;            // what each dot did in the last answer
   Point2<S> stick_center = {S(0), S(0)};  // of the last answer
@@ -103,26 +103,6 @@ Index count_pairs(const FramePair<S>& pair) {
     count += is_distance_sq(squared_norm(pair.now[k] - pair.then[k])) ? 1 : 0;
   }
   return count;
-}
-
-/// Settles what each dot does: marks of dots that do not touch any more are dropped, dots that
-/// newly touch are unknown. Counts them, and writes them to `to`.
-template <class S, class States>
-void settle_marks(StickState<S>& state, const States& to) {
-  auto touching = state.given.touching.begin();
-  StickRatioResult<S>& result = state.result;
-  result.stick = result.slip = result.unknown = 0;
-  for (Index k = 0; k < state.layout.size(); ++k) {
-    DotState& mark = state.marks[static_cast<std::size_t>(k)];
-    const bool touches = touching != state.given.touching.end() && *touching == k;
-    touching += touches ? 1 : 0;
-    mark = !touches ? DotState::none : mark == DotState::none ? DotState::unknown : mark;
-    result.stick += mark == DotState::stick ? 1 : 0;
-    result.slip += mark == DotState::slip ? 1 : 0;
-    result.unknown += mark == DotState::unknown ? 1 : 0;
-    const DotIndex d = state.layout.dot_at(k);
-    to(d.row, d.col) = static_cast<cell_t<States>>(mark);
-  }
 }
 
 }  // namespace detail::stick

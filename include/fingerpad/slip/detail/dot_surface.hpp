@@ -1,0 +1,89 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+#pragma once
+// The surface on which the dots in contact lie: its normals, and axes along it.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+
+#include "fingerpad/math/detail/small_matrices.hpp"
+
+namespace fingerpad {
+inline namespace v0 {
+namespace detail::stick {
+
+/// u up the slope, v level, n the normal: along these the noise of the axes is independent.
+template <class S>
+SurfaceFrame<S> slope_frame(const Point3<S>& n) {
+  const S level_sq = n.x * n.x + n.y * n.y;
+  using std::sqrt;
+  const S level = level_sq > S(0) ? S(sqrt(level_sq)) : S(0);
+  const Point3<S> v =
+      level > S(0) ? Point3<S>{S(n.y / level), S(-n.x / level), S(0)} : Point3<S>{S(0), S(1), S(0)};
+  return {cross(v, n), v, n};
+}
+
+/// The slope and the bend of a surface z = c0 + c1 x + c2 y + c3 x^2 + c4 x y + c5 y^2 about a
+/// middle.
+template <class S>
+struct Quadric {
+  std::array<S, 6> c = {S(0), S(0), S(0), S(0), S(0), S(0)};
+  Point3<S> middle = {S(0), S(0), S(0)};
+  Index dots = 0;
+
+  static std::array<S, 6> terms(const S& x, const S& y) {
+    return {S(1), x, y, S(x * x), S(x * y), S(y * y)};
+  }
+  /// Toward the object.
+  Point3<S> normal(const Point3<S>& p) const {
+    const S x = p.x - middle.x, y = p.y - middle.y;
+    const S zx = c[1] + S(2) * c[3] * x + c[4] * y, zy = c[2] + c[4] * x + S(2) * c[5] * y;
+    return normalized(Point3<S>{S(-zx), S(-zy), S(1)});
+  }
+};
+
+/// Through all points that for_each(visit) visits, twice; a plane where they do not determine a
+/// bend, level where they determine no plane.
+template <class S, class ForEach>
+Quadric<S> quadric_through(const ForEach& for_each) {
+  Quadric<S> q;
+  for_each([&](const Point3<S>& p) {
+    q.middle += p;
+    ++q.dots;
+  });
+  q.middle = q.middle / S(static_cast<double>((std::max)(q.dots, Index(1))));
+  SmallMatrix<S, 6> a{};
+  std::array<S, 6> b{};
+  for_each([&](const Point3<S>& p) {
+    const auto t = Quadric<S>::terms(S(p.x - q.middle.x), S(p.y - q.middle.y));
+    const S z = p.z - q.middle.z;
+    for (std::size_t i = 0; i < 6; ++i) {
+      b[i] = b[i] + t[i] * z;
+      for (std::size_t j = 0; j <= i; ++j) {
+        a[i][j] = a[i][j] + t[i] * t[j];
+      }
+    }
+  });
+  const NormalEquations<S, 6> bent(a, 1e-3);
+  if (bent.good) {
+    q.c = bent.solve(b);
+    return q;
+  }
+  SmallMatrix<S, 3> flat{};
+  for (std::size_t i = 0; i < 3; ++i) {
+    for (std::size_t j = 0; j <= i; ++j) {
+      flat[i][j] = a[i][j];
+    }
+  }
+  const NormalEquations<S, 3> plane(flat, 1e-6);
+  if (plane.good) {
+    const auto c = plane.solve({b[0], b[1], b[2]});
+    q.c = {c[0], c[1], c[2], S(0), S(0), S(0)};
+  }
+  return q;
+}
+
+}  // namespace detail::stick
+}  // namespace v0
+}  // namespace fingerpad

@@ -1,0 +1,312 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+#pragma once
+// One rigid motion in space of the dots that stick, fitted to those that follow it.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <vector>
+
+#include "fingerpad/math/detail/small_matrices.hpp"
+#include "fingerpad/math/rotation.hpp"
+#include "fingerpad/slip/detail/dot_frames.hpp"
+#include "fingerpad/slip/detail/dot_surface.hpp"
+
+namespace fingerpad {
+inline namespace v0 {
+namespace detail::stick {
+
+/// A neighbour of a dot in the list of pairs, -1: none; and its weight in the mean.
+struct NeighbourPair {
+  int pair = -1;
+  int weight = 0;
+};
+
+/// One dot of two frames, and the surface where it is now.
+template <class S>
+struct SpatialPair {
+  Index cell = 0;
+  Point3<S> then = {S(0), S(0), S(0)};
+  Point3<S> now = {S(0), S(0), S(0)};
+  Point3<S> carried = {S(0), S(0), S(0)};  ///< from `then` by the motion
+  SurfaceFrame<S> surface;
+  S info_u = S(0), info_v = S(0);  ///< 1 / variance of a slip along u and v, of one position
+  S weight = S(0);
+  Point3<S> slip = {S(0), S(0), S(0)};
+  S slip_sq = S(0);                          ///< in variances of one position
+  Point3<S> mean_slip = {S(0), S(0), S(0)};  ///< averaged over neighbours
+  S mean_sq = S(0);
+  std::array<NeighbourPair, 8> neighbours = {};
+};
+
+/// Weights of a dot and its neighbours in the mean of their slips: 6, 2 beside it, 1 across.
+constexpr int neighbour_weight(Index down, Index right) {
+  return down == 0 && right == 0 ? 6 : down == 0 || right == 0 ? 2 : 1;
+}
+/// Of the noise, what that mean leaves.
+inline double neighbour_gain() {
+  return std::sqrt(36.0 + 4 * 4 + 4 * 1) / 18;
+}
+
+template <class S>
+struct AxisNoise {
+  S lateral_info;  ///< 1 / variance
+  S depth_info;
+};
+
+/// Gives each pair the dots beside it; `pair_at` is the place in the list of each cell, -1: none.
+template <class S>
+void set_neighbours(const DotLayout& layout,
+                    const std::vector<Index>& pair_at,
+                    std::vector<SpatialPair<S>>& pairs) {
+  for (SpatialPair<S>& p : pairs) {
+    const DotIndex d = layout.dot_at(p.cell);
+    auto next = p.neighbours.begin();
+    for (Index i = (std::max)(d.row - 1, Index(0)); i <= (std::min)(d.row + 1, layout.rows - 1);
+         ++i) {
+      for (Index j = (std::max)(d.col - 1, Index(0)); j <= (std::min)(d.col + 1, layout.cols - 1);
+           ++j) {
+        if (i != d.row || j != d.col) {
+          *next++ = {static_cast<int>(at(pair_at, i * layout.cols + j)),
+                     neighbour_weight(i - d.row, j - d.col)};
+        }
+      }
+    }
+  }
+}
+
+/// Gives each pair the surface at its dot.
+template <class S>
+void set_surface(const AxisNoise<S>& noise, std::vector<SpatialPair<S>>& pairs) {
+  const auto surface = quadric_through<S>([&](const auto& visit) {
+    for (const SpatialPair<S>& p : pairs) {
+      visit(p.now);
+    }
+  });
+  for (SpatialPair<S>& p : pairs) {
+    p.surface = slope_frame(surface.normal(p.now));
+    const auto info = [&](const Point3<S>& a) {
+      return S(noise.lateral_info * (a.x * a.x + a.y * a.y) + noise.depth_info * a.z * a.z);
+    };
+    p.info_u = info(p.surface.u);
+    p.info_v = info(p.surface.v);
+  }
+}
+
+/// The slip of a dot against a motion, by generalised least squares: what of its residual lies
+/// along the normal is noise, and depth, which is known worse, counts only where the surface is
+/// inclined.
+template <class S>
+void set_slip(const Pose<S>& motion, const AxisNoise<S>& noise, SpatialPair<S>& p) {
+  p.carried = motion(p.then);
+  const Point3<S> r = p.now - p.carried;
+  const Point3<S> w = {S(noise.lateral_info * r.x), S(noise.lateral_info * r.y),
+                       S(noise.depth_info * r.z)};
+  const S along_u = dot(p.surface.u, w), along_v = dot(p.surface.v, w);
+  const S u = along_u / p.info_u, v = along_v / p.info_v;
+  p.slip = u * p.surface.u + v * p.surface.v;
+  p.slip_sq = u * along_u + v * along_v;
+}
+
+/// The square of a slip at a dot, in variances of one position.
+template <class S>
+S in_variances(const Point3<S>& slip, const SpatialPair<S>& p) {
+  const S u = dot(slip, p.surface.u), v = dot(slip, p.surface.v);
+  return u * u * p.info_u + v * v * p.info_v;
+}
+
+/// Of the variance of "sticks" or "slips", what noise makes of a dot whose averaged slip is near
+/// the limit: p (1 - p), p by the logistic curve nearest to the normal one.
+template <class S>
+S doubt_of(const S& mean_sq, const S& limit) {
+  using std::exp;
+  using std::sqrt;
+  const S sd = S(neighbour_gain() * 1.4142135623730951);  // of two frames
+  const S off = (S(sqrt(mean_sq)) - S(sqrt(limit))) / sd;
+  const S grown = exp(S(S(-1.702) * (off < S(0) ? S(-off) : off)));
+  return grown / ((S(1) + grown) * (S(1) + grown));
+}
+
+template <class S>
+Point3<S> middle_of(const std::vector<SpatialPair<S>>& pairs) {
+  Point3<S> sum = {S(0), S(0), S(0)};
+  for (const SpatialPair<S>& p : pairs) {
+    sum += p.now;
+  }
+  return sum / S(static_cast<double>(pairs.size()));
+}
+
+/// Mean square distance of neighbours in contact; 1 if there are none.
+template <class S>
+S mean_pitch_sq(const std::vector<Index>& touching, const Point3<S>* now, const DotLayout& layout) {
+  S sum = S(0);
+  int count = 0;
+  for (const Index k : touching) {
+    for (const Index step : {Index(0), Index(1)}) {
+      const S sq = squared_norm(beside(now, layout, k, step, 1 - step) - now[k]);
+      if (is_distance_sq(sq)) {
+        sum = sum + sq;
+        ++count;
+      }
+    }
+  }
+  return count > 0 ? S(sum / S(count)) : S(1);
+}
+
+/// Weights of a bell 4/3 pitches wide around a place.
+template <class S>
+void weigh_around(const Point3<S>& from, const S& pitch_sq, std::vector<SpatialPair<S>>& pairs) {
+  using std::exp;
+  for (SpatialPair<S>& p : pairs) {
+    const S d = squared_norm(p.now - from) / pitch_sq;
+    p.weight = d < S(100) ? S(exp(S(S(-9.0 / 32) * d))) : S(0);
+  }
+}
+
+/// Weight 1 for the dots within the limit of a motion; how many they are.
+template <class S>
+Index weigh_followers(const Pose<S>& motion,
+                      const AxisNoise<S>& noise,
+                      const S& limit,
+                      std::vector<SpatialPair<S>>& pairs) {
+  Index followers = 0;
+  for (SpatialPair<S>& p : pairs) {
+    set_slip(motion, noise, p);
+    const bool follows = p.slip_sq < limit;
+    p.weight = S(follows ? 1 : 0);
+    followers += follows ? 1 : 0;
+  }
+  return followers;
+}
+
+/// Weights of a bell as wide as the slip of the dot that is `rank` from the least; `sorted` is room
+/// to work in.
+template <class S>
+void weigh_nearest(Index rank, std::vector<S>& sorted, std::vector<SpatialPair<S>>& pairs) {
+  using std::exp;
+  std::size_t count = 0;
+  for (const SpatialPair<S>& p : pairs) {
+    sorted[count++] = p.slip_sq;
+  }
+  const auto middle = sorted.begin() + rank;
+  std::nth_element(sorted.begin(), middle, sorted.begin() + static_cast<Index>(count));
+  const S width = *middle > S(0) ? *middle : S(1);
+  for (SpatialPair<S>& p : pairs) {
+    const S ratio = p.slip_sq / width;
+    p.weight = ratio < S(100) ? S(exp(S(ratio / S(-2)))) : S(0);
+  }
+}
+
+/// d_max^2: the largest displacement of a dot that both frames have, -1 if there is none. Its depth
+/// is that of the plane through the depth displacements of all, which a rigid motion follows: one
+/// dot's depth is known too badly.
+template <class S>
+S furthest_rigid_sq(const std::vector<Index>& touching,
+                    const Point3<S>* now,
+                    const Point3<S>* then) {
+  S count = S(0);
+  Point3<S> middle = {S(0), S(0), S(0)};
+  for (const Index k : touching) {
+    if (is_finite(then[k]) && is_finite(now[k])) {
+      middle += now[k];
+      count = count + S(1);
+    }
+  }
+  if (!(count > S(0))) {
+    return S(-1);
+  }
+  middle = middle / count;
+  SmallMatrix<S, 3> a{};
+  std::array<S, 3> b{};
+  for (const Index k : touching) {
+    const S x = now[k].x - middle.x, y = now[k].y - middle.y, z = now[k].z - then[k].z;
+    if (is_finite(z)) {
+      a[1][1] = a[1][1] + x * x;
+      a[2][1] = a[2][1] + x * y;
+      a[2][2] = a[2][2] + y * y;
+      b = {S(b[0] + z), S(b[1] + x * z), S(b[2] + y * z)};
+    }
+  }
+  a[0][0] = count;  // x and y are counted from their middles
+  const NormalEquations<S, 3> plane(a, 1e-6);
+  const std::array<S, 3> c =
+      plane.good ? plane.solve(b) : std::array<S, 3>{S(b[0] / count), S(0), S(0)};
+  S furthest = S(-1);
+  for (const Index k : touching) {
+    const Point3<S> d = now[k] - then[k];
+    const S z = c[0] + c[1] * (now[k].x - middle.x) + c[2] * (now[k].y - middle.y);
+    const S sq = d.x * d.x + d.y * d.y + z * z;
+    furthest = furthest < sq ? sq : furthest;
+  }
+  return furthest;
+}
+
+/// One step of Gauss and Newton, from where the pairs are `carried`, toward the rigid motion that
+/// fits the weighted pairs best; false where they do not determine it.
+template <class S>
+bool refine_motion(const std::vector<SpatialPair<S>>& pairs,
+                   const AxisNoise<S>& noise,
+                   Pose<S>& motion) {
+  Point3<S> center = {S(0), S(0), S(0)};
+  S mass = S(0);
+  for (const SpatialPair<S>& p : pairs) {
+    center += p.weight * p.carried;
+    mass = mass + p.weight;
+  }
+  if (!(mass > S(0))) {
+    return false;
+  }
+  center = center / mass;
+  SmallMatrix<S, 6> a{};
+  std::array<S, 6> b{};
+  for (const SpatialPair<S>& p : pairs) {
+    if (!(p.weight > S(0))) {
+      continue;
+    }
+    const Point3<S> q = p.carried - center, r = p.now - p.carried;
+    const S l = p.weight * noise.lateral_info, d = p.weight * noise.depth_info;
+    // rows: x: (0, qz, -qy | 1 0 0), y: (-qz, 0, qx | 0 1 0), z: (qy, -qx, 0 | 0 0 1)
+    a[0][0] = a[0][0] + l * q.z * q.z + d * q.y * q.y;
+    a[1][1] = a[1][1] + l * q.z * q.z + d * q.x * q.x;
+    a[2][2] = a[2][2] + l * (q.x * q.x + q.y * q.y);
+    a[1][0] = a[1][0] - d * q.x * q.y;
+    a[2][0] = a[2][0] - l * q.x * q.z;
+    a[2][1] = a[2][1] - l * q.y * q.z;
+    a[3][1] = a[3][1] + l * q.z;
+    a[3][2] = a[3][2] - l * q.y;
+    a[4][0] = a[4][0] - l * q.z;
+    a[4][2] = a[4][2] + l * q.x;
+    a[5][0] = a[5][0] + d * q.y;
+    a[5][1] = a[5][1] - d * q.x;
+    a[3][3] = a[3][3] + l;
+    a[5][5] = a[5][5] + d;
+    b[0] = b[0] - l * q.z * r.y + d * q.y * r.z;
+    b[1] = b[1] + l * q.z * r.x - d * q.x * r.z;
+    b[2] = b[2] + l * (q.x * r.y - q.y * r.x);
+    b[3] = b[3] + l * r.x;
+    b[4] = b[4] + l * r.y;
+    b[5] = b[5] + d * r.z;
+  }
+  a[4][4] = a[3][3];
+  const NormalEquations<S, 6> normal(a, 1e-6);
+  if (!normal.good) {
+    return false;
+  }
+  const auto x = normal.solve(b);
+  using std::sqrt;
+  // the rotation of a quaternion (1, w / 2): right to the third order of w
+  const S hx = x[0] / S(2), hy = x[1] / S(2), hz = x[2] / S(2);
+  const S n = S(1) + hx * hx + hy * hy + hz * hz, two = S(2) / n;
+  const Rotation<S> turn = {
+      {{S(S(1) - two * (hy * hy + hz * hz)), S(two * (hx * hy - hz)), S(two * (hx * hz + hy))},
+       {S(two * (hx * hy + hz)), S(S(1) - two * (hx * hx + hz * hz)), S(two * (hy * hz - hx))},
+       {S(two * (hx * hz - hy)), S(two * (hy * hz + hx)), S(S(1) - two * (hx * hx + hy * hy))}}};
+  const Pose<S> step = {turn, center + Point3<S>{x[3], x[4], x[5]} - turn(center)};
+  motion = step * motion;
+  return true;
+}
+
+}  // namespace detail::stick
+}  // namespace v0
+}  // namespace fingerpad

@@ -1,0 +1,239 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+#pragma once
+// Whether an object slides as a whole, from the force and the moment that the contact carries
+// against the limit at the last slide. It sees what no dots can show: an object that slides over a
+// membrane that stands still, or that carries all dots along alike. The load of a contact,
+//
+//   L = hypot(F_t / F_n, M_n / (arm F_n)),
+//
+// F_n across and F_t along its mean normal, M_n about that normal through its middle, and `arm` the
+// mean distance of the contact from its middle, is the friction coefficient while it slides under
+// an even pressure: an ellipse through both axes of the true limit curve of force and moment (Howe,
+// Cutkosky, "Practical force-motion models for sliding manipulation", 1996). Published for forces
+// alone, "F / N ~ F0 / N0": published/friction_ratio.hpp.
+#include <cmath>
+#include <cstdint>
+
+#include "fingerpad/core/dots.hpp"
+#include "fingerpad/core/expects.hpp"
+#include "fingerpad/core/grid.hpp"
+#include "fingerpad/core/scalar.hpp"
+#include "fingerpad/slip/detail/dot_surface.hpp"
+#include "fingerpad/slip/grip_control.hpp"
+
+namespace fingerpad {
+inline namespace v0 {
+
+/// What a contact carries. NaN where it is not known; a moment that is not known counts as none.
+template <scalar S = double>
+struct ContactLoad {
+  S normal_n = not_a_number<S>();      ///< F_n, positive in a press
+  S tangential_n = not_a_number<S>();  ///< F_t
+  S moment_n_mm = S(0);                ///< M_n
+  S arm_mm = S(0);                     ///< > 0 where the moment counts
+};
+
+/// From the six-axis force and moment (what the object exerts on the pad, about Q) and the dots in
+/// contact; NaN with fewer than three of them. Takes no memory, O(rows cols).
+template <scalar S, spatial_dot_grid Dots, contact_mask Contact>
+ContactLoad<S> contact_load(const Point3<S>& force_n,
+                            const Point3<S>& moment_n_mm,
+                            const Dots& dots_mm,
+                            const Contact& contact) {
+  using namespace detail::stick;
+  const auto dots = as_view(dots_mm);
+  const auto touch = as_view(contact);
+  ContactLoad<S> load;
+  if (!same_size(dots, touch)) {
+    return load;
+  }
+  const auto for_each = [&](const auto& visit) {
+    using Traits = point_traits<cell_t<Dots>>;
+    for (Index i = 0; i < dots.rows(); ++i) {
+      for (Index j = 0; j < dots.cols(); ++j) {
+        const cell_t<Dots> given = dots(i, j);
+        const Point3<S> p = {S(Traits::x(given)), S(Traits::y(given)), S(Traits::z(given))};
+        if (is_contact(cell_t<Contact>(touch(i, j))) && is_finite(p)) {
+          visit(p);
+        }
+      }
+    }
+  };
+  const auto surface = quadric_through<S>(for_each);
+  if (surface.dots < 3) {
+    return load;
+  }
+  Point3<S> sum = {S(0), S(0), S(0)};
+  for_each([&](const Point3<S>& p) { sum += surface.normal(p); });
+  const Point3<S> normal = normalized(sum);
+  S arms = S(0);
+  for_each([&](const Point3<S>& p) {
+    const Point3<S> arm = p - surface.middle;
+    arms = arms + norm(arm - dot(arm, normal) * normal);
+  });
+  load.normal_n = -dot(force_n, normal);
+  load.tangential_n = norm(force_n + load.normal_n * normal);
+  load.moment_n_mm = dot(moment_n_mm - cross(surface.middle, force_n), normal);
+  load.arm_mm = arms / S(static_cast<double>(surface.dots));
+  return load;
+}
+
+/// The equation: L. NaN without a normal force.
+template <scalar S>
+S friction_of(const ContactLoad<S>& load) {
+  using std::sqrt;
+  const S along = load.tangential_n / load.normal_n;
+  const bool turns = is_finite(load.moment_n_mm) && value(load.arm_mm) > 0;
+  const S about = turns ? S(load.moment_n_mm / (load.arm_mm * load.normal_n)) : S(0);
+  const S sq = along * along + about * about;
+  return value(load.normal_n) > 0 ? (value(sq) > 0 ? S(sqrt(sq)) : sq) : not_a_number<S>();
+}
+
+struct FrictionLimitOptions {
+  double slide_fraction = 0.95;  ///< in (0, 1]: at this share of the limit the object slides; 1
+                                 ///< less three times the noise of L, 1.5 % of forces
+  double learn_below = 0.2;  ///< stick ratio by the dots below which the limit is learnt, in (0, 1)
+  double max_rise = 1.15;    ///< > 1: a limit rises by no more than this factor a frame
+  double min_normal_n = 0.05;  ///< a smaller normal force has no ratio, N, > 0
+};
+inline void expects_valid(const FrictionLimitOptions& o) {
+  const auto check = [](bool good, const char* name, double given, const char* range) {
+    expects(good && is_finite(given), "FrictionLimitOptions", name, given, range);
+  };
+  check(o.slide_fraction > 0 && o.slide_fraction <= 1, "slide_fraction", o.slide_fraction,
+        "in (0, 1]");
+  check(o.learn_below > 0 && o.learn_below < 1, "learn_below", o.learn_below, "in (0, 1)");
+  check(o.max_rise > 1, "max_rise", o.max_rise, "finite and > 1");
+  check(o.min_normal_n > 0, "min_normal_n", o.min_normal_n, "finite and > 0");
+}
+
+enum class FrictionLimitStatus : std::uint8_t {
+  held,      ///< L is below the limit
+  sliding,   ///< L is at the limit: nothing sticks, whatever the dots say
+  no_limit,  ///< nothing has slid yet: the dots alone answer
+  no_load,   ///< no normal force, or a force that is not finite: the dots alone answer
+};
+
+/// "held", "sliding", ...
+constexpr const char* name_of(FrictionLimitStatus status) {
+  switch (status) {
+    case FrictionLimitStatus::held:
+      return "held";
+    case FrictionLimitStatus::sliding:
+      return "sliding";
+    case FrictionLimitStatus::no_limit:
+      return "no limit";
+    case FrictionLimitStatus::no_load:
+      return "no load";
+  }
+  return "unknown";
+}
+
+/// What an answer rests on.
+enum class SlipEvidence : std::uint8_t { none, dots, friction, both };
+
+/// The fused answer.
+template <scalar S = double>
+struct [[nodiscard]] SlipResult {
+  FrictionLimitStatus status = FrictionLimitStatus::no_load;
+  SlipEvidence evidence = SlipEvidence::none;
+  S stick_ratio = not_a_number<S>();          ///< in [0, 1]; NaN: neither says anything
+  RatioUpdate update = RatioUpdate::missing;  ///< how fresh it is, for GripControl
+  S friction = not_a_number<S>();             ///< L
+  S limit = not_a_number<S>();                ///< at the last slide; NaN: none yet
+  S margin = not_a_number<S>();               ///< 1 - L / limit; NaN where unknown
+
+  bool ok() const { return is_finite(stick_ratio); }
+};
+
+/// The dots and friction together. Const, O(1), takes no memory, throws nothing.
+template <scalar S = double>
+class FrictionLimit {
+ public:
+  /// A value: copy it to go back to this frame later.
+  class State {
+   public:
+    const S& limit() const { return limit_; }
+    void reset() { *this = State(); }
+
+   private:
+    friend class FrictionLimit;
+    State() = default;
+    S limit_ = not_a_number<S>();
+  };
+
+  /// Refuses bad parameters (parameter_error).
+  explicit FrictionLimit(const FrictionLimitOptions& options = {}) : options_(options) {
+    expects_valid(options);
+  }
+
+  State start() const { return State(); }
+
+  /// `stick_ratio` and `update` are those of the dots (NaN: none). The limit outlives a contact: it
+  /// belongs to the object, so reset the state when another one is taken.
+  SlipResult<S> operator()(const ContactLoad<S>& load,
+                           const S& stick_ratio,
+                           RatioUpdate update,
+                           State& state) const {
+    SlipResult<S> result;
+    const bool known = value(stick_ratio) >= 0 && value(stick_ratio) <= 1;
+    result.stick_ratio = known ? stick_ratio : not_a_number<S>();
+    result.update = update;
+    result.evidence = known ? SlipEvidence::dots : SlipEvidence::none;
+    result.friction =
+        value(load.normal_n) >= options_.min_normal_n ? friction_of(load) : not_a_number<S>();
+    result.limit = state.limit_;
+    if (!is_finite(result.friction)) {
+      return result;
+    }
+    const bool dots_slide =
+        known && update == RatioUpdate::fresh && value(stick_ratio) < options_.learn_below;
+    if (dots_slide) {
+      learn(result.friction, state);
+    } else if (known && update == RatioUpdate::fresh && 2 * value(stick_ratio) > 1 &&
+               value(result.friction) > options_.max_rise * value(state.limit_)) {
+      state.limit_ = not_a_number<S>();  // it holds beyond what was taken for the limit
+    }
+    judge(dots_slide, state, result);
+    return result;
+  }
+
+ private:
+  void learn(const S& friction, State& state) const {
+    if (!is_finite(state.limit_)) {
+      state.limit_ = value(friction) > 0 ? friction : state.limit_;
+      return;
+    }
+    if (value(friction) < options_.slide_fraction * value(state.limit_)) {
+      return;  // the dots slip at another place than the limit: it stands
+    }
+    const S top = S(options_.max_rise) * state.limit_;
+    const S toward = value(friction) < value(top) ? friction : top;
+    // up soon, down slowly: noise makes the mean a little too high, never too low
+    const S share = value(toward) > value(state.limit_) ? S(1) / S(2) : S(1) / S(10);
+    state.limit_ = state.limit_ + share * S(toward - state.limit_);
+  }
+
+  void judge(bool dots_slide, const State& state, SlipResult<S>& result) const {
+    result.limit = state.limit_;
+    if (!is_finite(state.limit_)) {
+      result.status = FrictionLimitStatus::no_limit;
+      return;
+    }
+    result.margin = S(1) - result.friction / state.limit_;
+    if (!(value(result.friction) > options_.slide_fraction * value(state.limit_))) {
+      result.status = FrictionLimitStatus::held;
+      return;
+    }
+    result.status = FrictionLimitStatus::sliding;
+    result.evidence = dots_slide ? SlipEvidence::both : SlipEvidence::friction;
+    result.stick_ratio = S(0);
+    result.update = RatioUpdate::fresh;
+  }
+
+  FrictionLimitOptions options_;
+};
+
+}  // namespace v0
+}  // namespace fingerpad

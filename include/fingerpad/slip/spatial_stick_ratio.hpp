@@ -1,0 +1,310 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+#pragma once
+// The share of the contact that sticks to the object, from the dots in space. Dots of a rolling,
+// tilting or deepening object move by different amounts in the image although all stick; in space
+// one rigid motion follows them. What a dot's displacement differs from that motion, along the
+// surface, is its slip. The reference and the share of the threshold are those of the way in the
+// image (stick_ratio.hpp); docs/slip/spatial_stick_ratio.md has the figures.
+//
+// Take this where there is depth, and stick_ratio.hpp where there is none. Neither sees an object
+// that slides as a whole while the membrane stands still: friction_limit.hpp does.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+#include "fingerpad/core/dots.hpp"
+#include "fingerpad/core/expects.hpp"
+#include "fingerpad/core/grid.hpp"
+#include "fingerpad/slip/detail/dot_places.hpp"
+#include "fingerpad/slip/detail/rigid_consensus.hpp"
+#include "fingerpad/slip/detail/spatial_state.hpp"
+#include "fingerpad/slip/stick_result.hpp"
+
+namespace fingerpad {
+inline namespace v0 {
+
+/// Noise of one dot's place, and what counts as slip. All thresholds follow from the noise:
+///   delta_0 = 2 gain lateral_mm sqrt(ln(1 / false_slip)), gain 0.416 by averaging over neighbours,
+///   U = delta_0 / slip_share: the reference is the newest stored frame from which a dot in contact
+///   has moved further; a frame is stored when a dot has moved U / 4 from the newest stored one.
+struct SpatialStickTest {
+  double lateral_mm = 0.005;     ///< sd along x and along y, > 0: 0.06 px of a pixel of 0.08 mm
+  double depth_mm = 0.025;       ///< sd along z, > 0; it counts where the surface is inclined
+  double slip_share = 1.0 / 18;  ///< in (0, 0.5]: a dot slips that slips by more than this share of
+                                 ///< the longest move
+  double false_slip = 0.01;      ///< in (0, 0.5]: of the dots that stick, the share told to slip
+  Index min_dots = 6;            ///< >= 6: to compare; fewer give no ratio
+  Index capacity = 64;           ///< stored frames, in [1, 4096]; then the oldest is forgotten
+};
+inline void expects_valid(const SpatialStickTest& test) {
+  const auto check = [](bool good, const char* name, double given, const char* range) {
+    expects(good && is_finite(given), "SpatialStickTest", name, given, range);
+  };
+  check(test.lateral_mm > 0, "lateral_mm", test.lateral_mm, "finite and > 0");
+  check(test.depth_mm > 0, "depth_mm", test.depth_mm, "finite and > 0");
+  check(test.slip_share > 0 && test.slip_share <= 0.5, "slip_share", test.slip_share,
+        "in (0, 0.5]");
+  check(test.false_slip > 0 && test.false_slip <= 0.5, "false_slip", test.false_slip,
+        "in (0, 0.5]");
+  expects(test.min_dots >= 6, "SpatialStickTest", "min_dots", static_cast<long long>(test.min_dots),
+          ">= 6");
+  expects(test.capacity >= 1 && test.capacity <= 4096, "SpatialStickTest", "capacity",
+          static_cast<long long>(test.capacity), "in [1, 4096]");
+}
+
+/// Stick ratio of a pad whose dots are known in space, frame by frame. Const: threads may share one
+/// estimator, each with a state of its own. A frame takes no memory, throws nothing, and needs
+/// O(rows cols) time and O(dots in contact) for each stored frame that it looks at, no more than
+/// `capacity`.
+template <scalar S = double>
+class SpatialStickRatio {
+ public:
+  /// A value: copy it to go back to this frame later. All memory that frames need is in it.
+  using State = detail::stick::SpatialState<S>;
+
+  /// For a grid of rows x cols dots. Refuses bad parameters (parameter_error).
+  SpatialStickRatio(Index rows, Index cols, const SpatialStickTest& test = {}) : test_(test) {
+    expects(rows >= 1, "SpatialStickRatio", "rows", static_cast<long long>(rows), ">= 1");
+    expects(cols >= 1, "SpatialStickRatio", "cols", static_cast<long long>(cols), ">= 1");
+    expects_valid(test);
+    layout_ = {rows, cols};
+    noise_ = {S(1 / (test.lateral_mm * test.lateral_mm)), S(1 / (test.depth_mm * test.depth_mm))};
+    const double gain = detail::stick::neighbour_gain();
+    slip_quantile_ = 4 * gain * gain * std::log(1 / test.false_slip);
+    reference_mm_ = test.lateral_mm * std::sqrt(slip_quantile_) / test.slip_share;
+  }
+
+  Index rows() const { return layout_.rows; }
+  Index cols() const { return layout_.cols; }
+  /// U, mm.
+  double reference_mm() const { return reference_mm_; }
+
+  /// The state before any frame, with all the memory that frames will need.
+  State start() const { return State(layout_, test_.capacity); }
+
+  /// The ratio in a frame with dots `dots_mm` (NaN: not found) of which those with a true `contact`
+  /// touch the object. Writes to `states` what each dot does.
+  template <spatial_dot_grid Dots, contact_mask Contact, class States>
+    requires(writable_grid<States>)
+  SpatialStickResult<S>
+  operator()(const Dots& dots_mm, const Contact& contact, States&& states, State& state) const {
+    const auto dots = as_view(dots_mm);
+    const auto touch = as_view(contact);
+    const auto to = as_view(states);
+    if (dots.rows() != rows() || dots.cols() != cols() || !same_size(dots, touch) ||
+        !same_size(dots, to) || !(state.layout == layout_) ||
+        state.repository.capacity() != test_.capacity) {
+      return {};
+    }
+    ++state.frame;
+    state.given.read(dots, touch);
+    state.result.status = look(state);
+    detail::stick::settle_marks(state.layout, state.given.touching, state.marks, state.result, to);
+    return state.result;
+  }
+
+ private:
+  using Pairs = std::vector<detail::stick::SpatialPair<S>>;
+
+  /// What this frame says; fills all of the result but the counts.
+  StickStatus look(State& state) const {
+    using namespace detail::stick;
+    state.result.out_of_place = 0;
+    if (state.given.touching.empty()) {
+      if (state.given.count == 0) {
+        return StickStatus::no_dots;
+      }
+      state.forget();
+      return StickStatus::no_contact;
+    }
+    const PlacedDots placed = place_dots(state.given, layout_, state.now);
+    state.result.out_of_place = placed.out_of_place;
+    if (placed.dots < test_.min_dots) {
+      return state.given.count > 0 ? StickStatus::too_few_dots : StickStatus::no_dots;
+    }
+    const Choice<S> choice = choose(state);
+    const StickStatus status = choice.age >= 0   ? answer(choice, state)
+                               : choice.standing ? StickStatus::standing
+                                                 : StickStatus::no_reference;
+    if (!choice.standing) {
+      state.repository.store(state.now, state.frame);
+    }
+    return status;
+  }
+
+  /// As UpdatedReference, but a frame that stands still is compared too.
+  detail::stick::Choice<S> choose(const State& state) const {
+    using namespace detail::stick;
+    const S reference_sq = S(reference_mm_ * reference_mm_);
+    Choice<S> choice;
+    S before = S(-1);
+    for (Index age = 0; age < state.repository.size(); ++age) {
+      const S sq =
+          furthest_rigid_sq(state.given.touching, state.now.data(), state.repository.dots(age));
+      if (age == 0) {
+        choice.standing = !(sq < S(0)) && !(reference_sq / S(16) < sq);
+      }
+      if (sq < before) {
+        break;
+      }
+      if (reference_sq < sq) {
+        choice.age = age;
+        choice.furthest_sq = sq;
+        break;
+      }
+      before = sq;
+    }
+    return choice;
+  }
+
+  StickStatus answer(const detail::stick::Choice<S>& choice, State& state) const {
+    using namespace detail::stick;
+    using std::sqrt;
+    collect(state.repository.dots(choice.age), state);
+    if (static_cast<Index>(state.pairs.size()) < test_.min_dots) {
+      return StickStatus::too_few_dots;
+    }
+    SpatialStickResult<S>& result = state.result;
+    const S relative = S(choice.furthest_sq / S(reference_mm_ * reference_mm_));
+    const S limit = S(slip_quantile_) * relative;
+    const Point3<S> from = state.has_center ? state.stick_center : middle_of(state.pairs);
+    Pose<S> motion;
+    if (!consensus(from, limit, state, motion)) {
+      return StickStatus::too_few_dots;
+    }
+    mark(limit, state);
+    result.furthest_mm = S(sqrt(choice.furthest_sq));
+    result.reference_age = static_cast<Index>(state.frame - state.repository.frame(choice.age));
+    result.motion = motion;
+    return StickStatus::updated;
+  }
+
+  /// The dots that both frames have, with the surface at each.
+  void collect(const Point3<S>* then, State& state) const {
+    using namespace detail::stick;
+    state.pairs.clear();
+    std::fill(state.pair_at.begin(), state.pair_at.end(), Index(-1));
+    for (const Index k : state.given.touching) {
+      if (is_finite(then[k]) && is_finite(at(state.now, k))) {
+        at(state.pair_at, k) = static_cast<Index>(state.pairs.size());
+        SpatialPair<S> pair;
+        pair.cell = k;
+        pair.then = then[k];
+        pair.now = at(state.now, k);
+        pair.carried = pair.then;
+        state.pairs.push_back(pair);
+      }
+    }
+    set_neighbours(layout_, state.pair_at, state.pairs);
+    set_surface(noise_, state.pairs);
+  }
+
+  /// The rigid motion on which the dots around `from` agree with those that follow it: dots within
+  /// the limit are taken, and the motion fitted to them, until they become no more; then weights by
+  /// the averaged slip take out the pull of dots that slip a little.
+  bool consensus(const Point3<S>& from, const S& limit, State& state, Pose<S>& motion) const {
+    using namespace detail::stick;
+    Pairs& pairs = state.pairs;
+    weigh_around(from, mean_pitch_sq(state.given.touching, state.now.data(), layout_), pairs);
+    if (!refine_motion(pairs, noise_, motion)) {
+      return false;
+    }
+    Index before = -1;
+    for (int pass = 0; pass < max_passes; ++pass) {
+      const Index followers = weigh_followers(motion, noise_, limit, pairs);
+      if (followers < min_followers) {
+        weigh_nearest(min_followers, state.sorted, pairs);
+      }
+      if (!refine_motion(pairs, noise_, motion)) {
+        return false;
+      }
+      if (followers == before) {
+        break;
+      }
+      before = followers;
+    }
+    // of averaged slips, noise explains a mean of 4 gain^2: weights fall to a fourth at twice that
+    const double gain = neighbour_gain();
+    const S width = S(8 * gain * gain);
+    for (int pass = 0; pass < 4; ++pass) {
+      weigh_followers(motion, noise_, limit, pairs);
+      average_slips(limit, state);
+      if (pass == 3) {
+        break;
+      }
+      for (SpatialPair<S>& p : pairs) {
+        const S ratio = width / (width + p.mean_sq);
+        p.weight = ratio * ratio;
+      }
+      if (!refine_motion(pairs, noise_, motion)) {
+        return false;
+      }
+    }
+    return true;
+  }
+
+  /// Slips averaged over neighbours; those that slip by more than six thresholds do not count.
+  void average_slips(const S& limit, State& state) const {
+    using namespace detail::stick;
+    const S gate = S(36) * limit;
+    for (SpatialPair<S>& p : state.pairs) {
+      p.mean_slip = p.slip;
+      p.mean_sq = p.slip_sq;
+      if (!(p.slip_sq < gate)) {
+        continue;
+      }
+      Point3<S> sum = S(neighbour_weight(0, 0)) * p.slip;
+      int weight = neighbour_weight(0, 0);
+      for (const NeighbourPair& n : p.neighbours) {
+        if (n.pair >= 0 && at(state.pairs, n.pair).slip_sq < gate) {
+          sum += S(n.weight) * at(state.pairs, n.pair).slip;
+          weight += n.weight;
+        }
+      }
+      p.mean_slip = sum / S(weight);
+      p.mean_sq = in_variances(p.mean_slip, p);
+    }
+  }
+
+  /// Marks each dot of both frames, and writes its slip.
+  void mark(const S& limit, State& state) const {
+    using namespace detail::stick;
+    using std::sqrt;
+    state.clear_answer();
+    Point3<S> center = {S(0), S(0), S(0)};
+    int stick = 0;
+    S doubt = S(0);
+    for (const SpatialPair<S>& p : state.pairs) {
+      const bool sticks = p.mean_sq < limit;
+      at(state.marks, p.cell) = sticks ? DotState::stick : DotState::slip;
+      at(state.dot_slips, p.cell) = {p.mean_slip, S(sqrt(S(2) / p.info_v))};
+      stick += sticks ? 1 : 0;
+      center = sticks ? center + p.now : center;
+      doubt = doubt + doubt_of(p.mean_sq, limit);
+    }
+    if (stick > 0) {
+      state.stick_center = center / S(stick);
+      state.has_center = true;
+    }
+    const S all = S(static_cast<double>(state.pairs.size()));
+    state.result.stick_ratio = S(stick) / all;
+    // neighbours share their noise: as if there were gain^2 as many dots
+    state.result.ratio_sd = S(sqrt(S(doubt / all))) / S(sqrt(all)) / S(neighbour_gain());
+  }
+
+  static constexpr int max_passes = 6;
+  static constexpr Index min_followers = 4;
+
+  SpatialStickTest test_;
+  detail::stick::DotLayout layout_;
+  detail::stick::AxisNoise<S> noise_;
+  double slip_quantile_ = 0;  ///< of the squared slip of a sticking dot, in variances of a position
+  double reference_mm_ = 0;
+};
+
+}  // namespace v0
+}  // namespace fingerpad

@@ -1,0 +1,35 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+#include "fingerpad/slip/spatial_stick_ratio.hpp"
+
+#include "count.hpp"
+#include "fingerpad/slip/friction_limit.hpp"
+#include "support/catch.hpp"
+#include "support/slipping_patch.hpp"
+
+using namespace fingerpad;
+
+TEST_CASE("stick ratio in space and friction limit: no frame allocates", "[spatial_stick]") {
+  const SpatialStickRatio<double> ratio(21, 21);
+  const FrictionLimit<double> limit;
+  auto state = ratio.start();
+  auto limit_state = limit.start();
+  test::SlippingPatch patch;
+  test::Image<DotState> states(21, 21);
+  test::Random random(1);
+  long taken = 0;
+  int updated = 0;
+  for (int k = 0; k < 40; ++k) {
+    const auto dots = noisy(patch.dots, 0.005, 0.025, random);
+    const long before = test::allocations();
+    const auto r = ratio(dots, patch.contact, states, state);
+    const auto load =
+        contact_load(Point3<double>{0.1 * k, 0, -5}, Point3<double>{1, 2, 3}, dots, patch.contact);
+    (void)limit(load, r.stick_ratio, update_of(r.status), limit_state);
+    taken += test::allocations() - before;
+    updated += r.updated() ? 1 : 0;
+    patch.step(test::moved_by({0, 0.002, 0.002}, {0, 0, 28}, {0.1, 0, 0}), 1.2 - 0.03 * k);
+  }
+  CHECK(updated > 20);
+  CHECK(taken == 0);
+}

@@ -1,0 +1,170 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+#include "fingerpad/slip/friction_limit.hpp"
+
+#include <cmath>
+#include <limits>
+#include <string>
+
+#include "support/catch.hpp"
+#include "support/refusal.hpp"
+#include "support/slipping_patch.hpp"
+
+using namespace fingerpad;
+
+namespace {
+
+constexpr double none = std::numeric_limits<double>::quiet_NaN();
+
+ContactLoad<double> pull(double tangential_n, double normal_n = 4) {
+  return {normal_n, tangential_n, 0, 0};
+}
+
+}  // namespace
+
+TEST_CASE("friction limit: the load of a contact from force, moment and dots", "[friction_limit]") {
+  // a flat patch about (0, 0, 10); its mean distance from the middle is 2/3 of its radius
+  const test::SlippingPatch patch(0.6, 5.9, std::numeric_limits<double>::infinity());
+  const Point3<double> force{0.3, 0.4, -2};
+  // a moment of 1.5 about the normal through (0, 0, 10), and what the force has about Q
+  const Point3<double> arm{0, 0, 10};
+  const Point3<double> moment = cross(arm, force) + Point3<double>{0, 0, 1.5};
+  const auto load = contact_load(force, moment, patch.dots, patch.contact);
+  CHECK(load.normal_n == Approx(2));
+  CHECK(load.tangential_n == Approx(0.5));
+  CHECK(load.moment_n_mm == Approx(1.5));
+  CHECK(load.arm_mm == Approx(2.0 / 3 * 5.9).epsilon(0.01));
+  CHECK(friction_of(load) == Approx(std::hypot(0.25, 1.5 / (load.arm_mm * 2))));
+  SECTION("it turns with the pad") {
+    const auto turn = test::moved_by({0.2, -0.3, 0.5}, {1, 2, 3}, {0, 0, 1});
+    auto dots = patch.dots;
+    for (auto& p : dots.cells) {
+      p = turn(p);
+    }
+    const auto f = turn.rotation(force);
+    const auto m = turn.rotation(moment) + cross(turn.translation_mm, f);
+    const auto other = contact_load(f, m, dots, patch.contact);
+    CHECK(other.normal_n == Approx(2));
+    CHECK(other.tangential_n == Approx(0.5));
+    CHECK(other.moment_n_mm == Approx(1.5));
+    CHECK(other.arm_mm == Approx(load.arm_mm));
+  }
+  SECTION("what is missing has no load") {
+    const test::Image<std::uint8_t> free(21, 21, 0);
+    CHECK(!is_finite(contact_load(force, moment, patch.dots, free).normal_n));
+    CHECK(!is_finite(contact_load(force, moment, patch.dots, test::Image<int>(2, 2)).normal_n));
+    CHECK(!is_finite(friction_of(ContactLoad<double>{})));
+    CHECK(!is_finite(friction_of(pull(1, -2))));
+    CHECK(friction_of(ContactLoad<double>{2, 1, none, 3}) == 0.5);  // the force alone
+    CHECK(friction_of(ContactLoad<double>{2, 1, 7, 0}) == 0.5);
+  }
+}
+
+TEST_CASE("friction limit: learnt when the dots slide, answers when they do not",
+          "[friction_limit]") {
+  const FrictionLimit<double> limit;
+  auto state = limit.start();
+  auto r = limit(pull(1), 0.9, RatioUpdate::fresh, state);
+  CHECK(r.status == FrictionLimitStatus::no_limit);
+  CHECK(r.evidence == SlipEvidence::dots);
+  CHECK(r.stick_ratio == 0.9);
+  CHECK(r.friction == 0.25);
+  CHECK(!is_finite(r.margin));
+
+  r = limit(pull(2.2), 0.1, RatioUpdate::fresh, state);
+  CHECK(r.status == FrictionLimitStatus::sliding);
+  CHECK(r.evidence == SlipEvidence::both);
+  CHECK(r.stick_ratio == 0);
+  CHECK(r.limit == 0.55);
+  CHECK(r.margin == Approx(0).margin(1e-12));
+
+  // the dots rest, and agree with one another; friction goes on
+  r = limit(pull(2.2), 0.95, RatioUpdate::fresh, state);
+  CHECK(r.status == FrictionLimitStatus::sliding);
+  CHECK(r.evidence == SlipEvidence::friction);
+  CHECK(r.stick_ratio == 0);
+  r = limit(pull(2.15), none, RatioUpdate::missing, state);
+  CHECK(r.stick_ratio == 0);
+  CHECK(r.update == RatioUpdate::fresh);
+  CHECK(r.ok());
+
+  // the load falls: the dots are asked again
+  r = limit(pull(1.5), 0.95, RatioUpdate::unmoved, state);
+  CHECK(r.status == FrictionLimitStatus::held);
+  CHECK(r.evidence == SlipEvidence::dots);
+  CHECK(r.stick_ratio == 0.95);
+  CHECK(r.update == RatioUpdate::unmoved);
+  CHECK(r.margin == Approx(1 - 1.5 / 2.2));
+
+  // a frame without force leaves the dots alone
+  r = limit(ContactLoad<double>{}, 0.4, RatioUpdate::fresh, state);
+  CHECK(r.status == FrictionLimitStatus::no_load);
+  CHECK(r.stick_ratio == 0.4);
+  CHECK(!limit(pull(1, 0.01), none, RatioUpdate::missing, state).ok());
+  state.reset();
+  CHECK(!is_finite(state.limit()));
+}
+
+TEST_CASE("friction limit: what it learns", "[friction_limit]") {
+  const FrictionLimit<double> limit;
+  auto state = limit.start();
+  const auto slide = [&](double tangential_n) {
+    (void)limit(pull(tangential_n), 0.1, RatioUpdate::fresh, state);
+    return state.limit();
+  };
+  SECTION("it rises soon, by no more than max_rise, and falls slowly") {
+    CHECK(slide(2) == 0.5);
+    CHECK(slide(4) == Approx(0.5 * 1.075));  // half of the way to 1.15
+    const double before = state.limit();
+    CHECK(slide(4 * 0.97 * before) == Approx(before * 0.997));
+    CHECK(slide(4 * 0.9 * state.limit()) == state.limit());  // below: the limit stands
+  }
+  SECTION("noise of 1.5 % makes no bias to speak of, and misses next to no slide") {
+    test::Random random(3);
+    (void)slide(2.2);
+    int missed = 0;
+    for (int k = 0; k < 3000; ++k) {
+      const double noise = 1 + 0.015 * random.normal();
+      missed +=
+          limit(pull(2.2 * noise), k % 3 == 0 ? 0.1 : 0.7, RatioUpdate::fresh, state).status ==
+                  FrictionLimitStatus::sliding
+              ? 0
+              : 1;
+    }
+    CHECK(state.limit() == Approx(0.55).epsilon(0.025));
+    CHECK(missed < 60);
+  }
+  SECTION("answers that are kept teach nothing") {
+    (void)limit(pull(2), 0.1, RatioUpdate::unmoved, state);
+    CHECK(!is_finite(state.limit()));
+    (void)limit(pull(0), 0.1, RatioUpdate::fresh, state);
+    CHECK(!is_finite(state.limit()));  // nothing pulls
+  }
+  SECTION("a limit that the object holds beyond is forgotten") {
+    (void)slide(1);
+    const auto r = limit(pull(1.6), 0.9, RatioUpdate::fresh, state);
+    CHECK(r.status == FrictionLimitStatus::no_limit);
+    CHECK(r.stick_ratio == 0.9);
+    (void)slide(2);
+    // but not where dots may be taken along alike
+    CHECK(limit(pull(2.1), 0.9, RatioUpdate::fresh, state).stick_ratio == 0);
+    CHECK(limit(pull(3), 0.3, RatioUpdate::fresh, state).stick_ratio == 0);
+  }
+}
+
+TEST_CASE("friction limit: names, and parameters that are refused", "[friction_limit]") {
+  CHECK(std::string(name_of(FrictionLimitStatus::held)) == "held");
+  CHECK(std::string(name_of(FrictionLimitStatus::sliding)) == "sliding");
+  CHECK(std::string(name_of(FrictionLimitStatus::no_limit)) == "no limit");
+  CHECK(std::string(name_of(FrictionLimitStatus::no_load)) == "no load");
+  const auto with = [](const FrictionLimitOptions& o) {
+    return test::refusal([&] { const FrictionLimit<double> limit(o); });
+  };
+  CHECK(with({}) == "accepted");
+  CHECK(with({.slide_fraction = 1.1}) ==
+        "FrictionLimitOptions: slide_fraction = 1.1, must be in (0, 1]");
+  CHECK(with({.learn_below = 0}) == "FrictionLimitOptions: learn_below = 0, must be in (0, 1)");
+  CHECK(with({.max_rise = 1}) == "FrictionLimitOptions: max_rise = 1, must be finite and > 1");
+  CHECK(with({.min_normal_n = 0}) ==
+        "FrictionLimitOptions: min_normal_n = 0, must be finite and > 0");
+}

@@ -1,0 +1,241 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+#include "fingerpad/slip/spatial_stick_ratio.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "support/catch.hpp"
+#include "support/refusal.hpp"
+#include "support/slipping_patch.hpp"
+
+using namespace fingerpad;
+using test::SlippingPatch;
+
+namespace {
+
+using Dots = test::Image<Point3<double>>;
+using Flags = test::Image<std::uint8_t>;
+using States = test::Image<DotState>;
+const Point3<double> missing{test::nan, test::nan, test::nan};
+
+struct Follower {
+  SpatialStickRatio<double> ratio;
+  SpatialStickRatio<double>::State state;
+  States states{21, 21};
+
+  explicit Follower(const SpatialStickTest& test = {})
+      : ratio(21, 21, test), state(ratio.start()) {}
+  SpatialStickResult<double> operator()(const Dots& dots, const Flags& contact) {
+    return ratio(dots, contact, states, state);
+  }
+};
+
+constexpr double degree = 0.017453292519943295;
+
+}  // namespace
+
+TEST_CASE("stick ratio in space: what moves as one sticks, and its motion is found",
+          "[spatial_stick]") {
+  // A ball rolls by 2 degrees about y: in the image no shift, rotation and scale follow its dots.
+  for (const auto& motion :
+       {test::moved_by({0, 2 * degree, 0}, {0, 0, 28}, {0, 0, 0}),
+        test::moved_by({1 * degree, -1 * degree, 3 * degree}, {2, 1, 15}, {0.3, 0.1, 0.2}),
+        test::moved_by({0, 0, 0}, {0, 0, 0}, {0, 0, -0.4})}) {
+    SlippingPatch patch;
+    Follower f;
+    CHECK(f(patch.dots, patch.contact).status == StickStatus::no_reference);
+    patch.step(motion);
+    const auto r = f(patch.dots, patch.contact);
+    REQUIRE(r.updated());
+    CHECK(r.ok());
+    CHECK(r.stick_ratio == 1);
+    CHECK(r.reference_age == 1);
+    CHECK((r.slip == 0 && r.unknown == 0 && r.out_of_place == 0));
+    CHECK(r.stick == std::count(patch.contact.cells.begin(), patch.contact.cells.end(), 1));
+    CHECK(angle_between(r.motion.rotation, motion.rotation) < 1e-6);
+    CHECK(norm(r.motion({1, 2, 10}) - motion({1, 2, 10})) < 1e-6);
+    CHECK(r.ratio_sd < 0.01);
+  }
+}
+
+TEST_CASE("stick ratio in space: dots that stay behind slip, by how much is known",
+          "[spatial_stick]") {
+  SlippingPatch patch;
+  Follower f;
+  (void)f(patch.dots, patch.contact);
+  const auto motion = test::moved_by({0, 0, 0}, {0, 0, 0}, {0.3, 0.1, 0});
+  patch.step(motion, 0.7);
+  const auto r = f(patch.dots, patch.contact);
+  REQUIRE(r.updated());
+  CHECK(r.stick_ratio == Approx(patch.stick_ratio()).margin(0.1));
+  const auto slips = f.state.slips();
+  double worst = 0;
+  for (Index i = 0; i < 21; ++i) {
+    for (Index j = 0; j < 21; ++j) {
+      CAPTURE(i, j);
+      const DotSlip<double> dot = slips(i, j);
+      if (patch.contact(i, j) == 0) {
+        CHECK(!is_finite(dot.slip_mm));
+        CHECK(f.states(i, j) == DotState::none);
+        continue;
+      }
+      CHECK(dot.sd_mm == Approx(0.005 * std::sqrt(2.0)).epsilon(0.01));
+      if (patch.slipped_mm(i, j) > 0.25) {  // beyond the gate nothing is averaged
+        CHECK(f.states(i, j) == DotState::slip);
+        // against the motion, level as it was seen: the dot stayed behind
+        const double lag = patch.slipped_mm(i, j) / std::hypot(0.3, 0.1);
+        worst = std::max(worst, std::hypot(dot.slip_mm.x + 0.3 * lag, dot.slip_mm.y + 0.1 * lag));
+      }
+    }
+  }
+  CHECK(worst < 0.01);
+}
+
+TEST_CASE("stick ratio in space: reference, contact and time as in the image", "[spatial_stick]") {
+  SlippingPatch patch;
+  Follower f;
+  const double step_mm = f.ratio.reference_mm() / 3.2;
+  const auto motion = test::moved_by({0, 0, 0}, {0, 0, 0}, {step_mm, 0, 0});
+  CHECK(f(patch.dots, patch.contact).status == StickStatus::no_reference);
+  CHECK(f(patch.dots, patch.contact).status == StickStatus::standing);
+  for (int k = 0; k < 3; ++k) {
+    patch.step(motion);
+    CHECK(f(patch.dots, patch.contact).status == StickStatus::no_reference);
+  }
+  patch.step(motion);
+  CHECK(f(patch.dots, patch.contact).updated());
+  // at rest it is compared again: the answer is as fresh as the frame
+  const auto again = f(patch.dots, patch.contact);
+  CHECK(again.updated());
+  CHECK(again.stick_ratio == 1);
+  // back: behind the turn there is no reference
+  const auto back = test::moved_by({0, 0, 0}, {0, 0, 0}, {-step_mm, 0, 0});
+  patch.step(back);
+  CHECK(f(patch.dots, patch.contact).status == StickStatus::no_reference);
+  SECTION("lost contact forgets, lost dots do not") {
+    const Index stored = f.state.stored_frames();
+    CHECK(f(Dots(21, 21, missing), patch.contact).status == StickStatus::no_dots);
+    CHECK(f.state.stored_frames() == stored);
+    const auto free = f(patch.dots, Flags(21, 21, 0));
+    CHECK(free.status == StickStatus::no_contact);
+    CHECK(!free.ok());
+    CHECK(f.state.stored_frames() == 0);
+    CHECK(std::count(f.states.cells.begin(), f.states.cells.end(), DotState::none) == 441);
+  }
+}
+
+TEST_CASE("stick ratio in space, bad input", "[spatial_stick]") {
+  const auto motion = test::moved_by({0, 1 * degree, 0}, {0, 0, 28}, {0.1, 0, 0});
+  const double infinity = std::numeric_limits<double>::infinity();
+  SECTION("missing dots are unknown and poison nothing") {
+    for (const Point3<double>& bad :
+         {missing, Point3<double>{test::nan, 0, 10}, Point3<double>{0, infinity, 10},
+          Point3<double>{0, 0, 1e200}, Point3<double>{0, 0, test::nan}}) {
+      SlippingPatch patch;
+      Follower f;
+      (void)f(patch.dots, patch.contact);
+      patch.step(motion);
+      Dots dots = patch.dots;
+      dots(10, 10) = bad;
+      dots(8, 11) = bad;
+      const auto r = f(dots, patch.contact);
+      REQUIRE(r.updated());
+      CHECK(r.stick_ratio == 1);
+      CHECK(f.states(10, 10) == DotState::unknown);
+      CHECK(r.unknown == 2);
+      CHECK(!is_finite(f.state.slips()(10, 10).slip_mm));
+    }
+  }
+  SECTION("exchanged dots are out of place") {
+    SlippingPatch patch;
+    Follower f;
+    (void)f(patch.dots, patch.contact);
+    patch.step(motion);
+    Dots dots = patch.dots;
+    std::swap(dots(10, 10), dots(12, 9));
+    const auto r = f(dots, patch.contact);
+    REQUIRE(r.updated());
+    CHECK(r.out_of_place >= 2);
+    CHECK(r.slip == 0);
+  }
+  SECTION("few dots, dots on a line, dots in one place") {
+    SlippingPatch patch;
+    for (const int kind : {0, 1, 2}) {
+      Follower f;
+      Flags contact(21, 21, 0);
+      Dots before = patch.dots;
+      for (Index j = 0; j < 21; ++j) {
+        contact(10, j) = 1;
+        contact(11, j) = kind == 0 ? 0 : 1;
+      }
+      if (kind == 0) {
+        contact = Flags(21, 21, 0);
+        contact(10, 10) = contact(10, 11) = contact(11, 10) = 1;
+      }
+      if (kind == 2) {
+        before = Dots(21, 21, {1, 2, 3});
+      }
+      (void)f(before, contact);
+      for (auto& p : before.cells) {
+        p.x += 0.5;
+      }
+      const auto r = f(before, contact);
+      CHECK((!r.updated() || r.stick_ratio == 1));
+    }
+  }
+  SECTION("other sizes and foreign states are refused") {
+    SlippingPatch patch;
+    Follower f;
+    CHECK(!f(Dots(20, 21, missing), patch.contact).accepted());
+    CHECK(!f(patch.dots, Flags(21, 20, 1)).accepted());
+    auto other = SpatialStickRatio<double>(21, 21, {.capacity = 3}).start();
+    const auto refused = f.ratio(patch.dots, patch.contact, f.states, other);
+    CHECK(refused.status == StickStatus::refused);
+    CHECK(!refused.ok());
+  }
+}
+
+TEST_CASE("stick ratio in space: bad parameters are refused by name, value and range",
+          "[spatial_stick]") {
+  const auto with = [](const SpatialStickTest& test) {
+    return test::refusal([&] { SpatialStickRatio<double>(9, 9, test); });
+  };
+  CHECK(with({}) == "accepted");
+  CHECK(with({.lateral_mm = 0}) == "SpatialStickTest: lateral_mm = 0, must be finite and > 0");
+  CHECK(with({.depth_mm = -1}) == "SpatialStickTest: depth_mm = -1, must be finite and > 0");
+  CHECK(with({.slip_share = 0.6}) == "SpatialStickTest: slip_share = 0.6, must be in (0, 0.5]");
+  CHECK(with({.false_slip = 0}) == "SpatialStickTest: false_slip = 0, must be in (0, 0.5]");
+  CHECK(with({.min_dots = 5}) == "SpatialStickTest: min_dots = 5, must be >= 6");
+  CHECK(with({.capacity = 0}) == "SpatialStickTest: capacity = 0, must be in [1, 4096]");
+  CHECK(test::refusal([] { SpatialStickRatio<double>(0, 9); }) ==
+        "SpatialStickRatio: rows = 0, must be >= 1");
+}
+
+TEST_CASE("stick ratio in space: noise makes as many dots slip as was asked", "[spatial_stick]") {
+  // All stick; a threshold for 1 % of dots, the averaged slips of neighbours not being independent.
+  double slip = 0, all = 0, sd = 0, spread = 0;
+  int frames = 0;
+  test::Random random(5);
+  for (int n = 0; n < 60; ++n) {
+    SlippingPatch patch;
+    Follower f;
+    (void)f(noisy(patch.dots, 0.005, 0.025, random), patch.contact);
+    patch.step(test::moved_by({0, 0.6 * degree, 0}, {0, 0, 28}, {0, 0, 0}));  // just beyond U
+    const auto r = f(noisy(patch.dots, 0.005, 0.025, random), patch.contact);
+    if (r.updated()) {
+      slip += static_cast<double>(r.slip);
+      all += static_cast<double>(r.slip + r.stick);
+      sd += square(r.ratio_sd);
+      spread += square(1 - r.stick_ratio);
+      ++frames;
+    }
+  }
+  REQUIRE(frames > 30);
+  CAPTURE(slip / all, std::sqrt(sd / frames), std::sqrt(spread / frames));
+  CHECK(slip / all < 0.03);
+  // the standard deviation that is told is that of the answers, within a factor of two
+  CHECK(std::sqrt(sd / frames) > 0.5 * std::sqrt(spread / frames));
+  CHECK(std::sqrt(sd / frames) < 4 * std::sqrt(spread / frames));
+}
