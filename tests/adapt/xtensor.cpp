@@ -70,6 +70,25 @@ TEST_CASE("xtensor's adaptors and views share memory", "[xtensor]") {
   auto one_of_stack = xt::view(stack, 1, xt::all(), xt::all());
   check_strided(one_of_stack);
   CHECK(as_view(one_of_stack).data() == &stack(1, 0, 0));
+
+  xt::xtensor<double, 3> colours({6, 4, 3});
+  auto green = xt::view(colours, xt::all(), xt::all(), 1);
+  STATIC_REQUIRE(strided_grid<decltype(green)>);
+  CHECK(as_view(green).data() == &colours(0, 0, 1));
+  CHECK(&as_view(green)(5, 3) == &colours(5, 3, 1));
+}
+
+TEST_CASE("xtensor arrays of another rank are grids without cells", "[xtensor]") {
+  using Array = xt::xarray<double>;
+  const std::vector<Array> others = {Array::from_shape({24}), Array::from_shape({6, 4, 3}),
+                                     Array(3.0)};
+  for (const Array& other : others) {
+    CHECK(rows(other) == 0);
+    CHECK(cols(other) == 0);
+    const auto view = as_view(other);
+    CHECK((view.rows() == 0 && view.cols() == 0 && view.row_stride() == 0));
+    CHECK_FALSE(same_size(other, Array::from_shape({6, 4})));
+  }
 }
 
 TEST_CASE("xtensor grids of one row or one column", "[xtensor]") {

@@ -3,6 +3,7 @@
 #include "fingerpad/core/grid.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <utility>
 #include <vector>
@@ -12,6 +13,7 @@
 #include "support/foreign_image.hpp"
 #include "support/generators.hpp"
 #include "support/numbers.hpp"
+#include "support/refusal.hpp"
 #include "support/weighted_sum.hpp"
 
 using namespace fingerpad;
@@ -80,7 +82,7 @@ void check_cells(View derived, View v, Index rows, Index cols, const Place& plac
 
 static_assert(grid<ForeignImage<double>> && grid<const ForeignImage<double>&>);
 static_assert(grid<View> && grid<LazyInts> && grid<MemberGrid> && grid<StridedView<const int>>);
-static_assert(!grid<int> && !grid<OnlySizes> && !grid<std::vector<int>> && !grid<void>);
+static_assert(!grid<int> && !grid<OnlySizes> && !grid<void>);
 static_assert(std::is_void_v<cell_t<OnlySizes>> && std::same_as<cell_t<const View&>, int>);
 static_assert(std::same_as<cell_t<StridedView<const float>>, float>);
 
@@ -231,4 +233,25 @@ TEST_CASE("one sum on every kind of grid, to the last bit", "[grid]") {
   const LazyView reals(7, 5, [](Index i, Index j) { return static_cast<double>(9 * i + j); });
   STATIC_REQUIRE(std::same_as<decltype(test::weighted_sum(bytes)), double>);
   CHECK(test::weighted_sum(bytes) == test::weighted_sum(reals));
+}
+
+TEST_CASE("vectors, arrays and spans as grids", "[grid]") {
+  std::vector<int> cells = {1, 2, 3, 4, 5, 6, 7};
+  const auto grid = grid_of(cells, 2, 3);
+  STATIC_REQUIRE(std::same_as<decltype(grid), const StridedView<int>>);
+  CHECK(rows(grid) == 2);
+  CHECK(grid(1, 0) == 4);
+  grid(1, 2) = 60;
+  CHECK(cells[5] == 60);
+  const std::array<double, 4> fixed = {1, 2, 3, 4};
+  STATIC_REQUIRE(std::same_as<decltype(grid_of(fixed, 2, 2)), StridedView<const double>>);
+  CHECK(grid_of(fixed, 2, 2)(1, 1) == 4);
+  CHECK(grid_of(cells, 0, 5).rows() == 0);
+  CHECK(test::refusal([&] { (void)grid_of(cells, 3, 3); }) ==
+        "grid_of: number of cells = 7, must be >= rows * cols");
+  CHECK(test::refusal([&] { (void)grid_of(cells, -1, 3); }) == "grid_of: rows = -1, must be >= 0");
+  const Index huge = Index(1) << 62;
+  CHECK(test::refusal([&] { (void)grid_of(cells, huge, 4); }) ==
+        "grid_of: cols = 4, must be such that rows * cols <= 1e8");
+  CHECK(test::refusal([&] { (void)grid_of(cells, 4, huge); }) != "accepted");
 }

@@ -29,6 +29,14 @@ struct grid_traits<cv::Mat_<T>> {
   static Index col_stride(const Image&) { return 1; }
 };
 
+/// A cv::Mat does not say what its pixels are.
+template <std::same_as<cv::Mat> M>
+struct grid_traits<M> {
+  static_assert(!std::same_as<M, cv::Mat>,
+                "a cv::Mat does not say what its pixels are: pass cv::Mat_<T>(image), or "
+                "fingerpad::channel<T>(image, c) of a colour image");
+};
+
 /// Channel `c` of `image` (B = 0, G = 1, R = 2 as OpenCV reads colour files), viewed as T, which
 /// must be the type of its values; refuses another type or a channel that is not there
 /// (parameter_error). The image must outlive the view.

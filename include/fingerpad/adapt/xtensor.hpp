@@ -2,8 +2,10 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 // xtensor containers, adaptors and views of two dimensions as grids. Those in plain memory become
-// strided views; other expressions are read cell by cell. Both header layouts of xtensor (flat, as
-// in 0.24, and in folders, as from 0.26 on) are found.
+// strided views; other expressions are read cell by cell. Another number of dimensions does not
+// compile; where it is only known when running (xt::xarray), it is a grid without rows and columns,
+// which every method refuses as one of another size. Both header layouts of xtensor (flat, as in
+// 0.24, and in folders, as from 0.26 on) are found.
 #if __has_include(<xtensor/core/xexpression.hpp>)
 #include <xtensor/core/xexpression.hpp>
 #else
@@ -22,19 +24,27 @@ template <class G> concept xtensor_in_memory = requires(G& g) {
   g.data() + g.data_offset();
   g.strides();
 };
+
+/// Of an xtensor expression; 0: known only when running.
+template <class G>
+inline constexpr std::size_t rank_when_compiling = 0;
+template <class G>
+  requires(G::rank < static_cast<std::size_t>(-1))
+inline constexpr std::size_t rank_when_compiling<G> = G::rank;
 }  // namespace detail
 
 template <class G>
   requires(xt::is_xexpression<G>::value)
 struct grid_traits<G> {
-  static Index rows(const G& g) { return static_cast<Index>(g.shape()[0]); }
-  static Index cols(const G& g) { return static_cast<Index>(g.shape()[1]); }
-  static decltype(auto) at(const G& g, Index row, Index col) {
-    return g(static_cast<std::size_t>(row), static_cast<std::size_t>(col));
-  }
-  static decltype(auto) at(G& g, Index row, Index col) {
-    return g(static_cast<std::size_t>(row), static_cast<std::size_t>(col));
-  }
+  static constexpr std::size_t rank = detail::rank_when_compiling<G>;
+  static_assert(rank == 0 || rank == 2,
+                "a grid has two dimensions: pass one plane of the tensor, xt::view(tensor, "
+                "xt::all(), xt::all(), k)");
+  static bool is_plane(const G& g) { return rank == 2 || g.dimension() == 2; }
+  static Index rows(const G& g) { return is_plane(g) ? static_cast<Index>(g.shape()[0]) : 0; }
+  static Index cols(const G& g) { return is_plane(g) ? static_cast<Index>(g.shape()[1]) : 0; }
+  static decltype(auto) at(const G& g, Index row, Index col) { return cell(g, row, col); }
+  static decltype(auto) at(G& g, Index row, Index col) { return cell(g, row, col); }
   static auto* data(const G& g) requires(detail::xtensor_in_memory<const G>) {
     return g.data() + g.data_offset();
   }
@@ -42,10 +52,20 @@ struct grid_traits<G> {
     return g.data() + g.data_offset();
   }
   static Index row_stride(const G& g) requires(detail::xtensor_in_memory<const G>) {
-    return static_cast<Index>(g.strides()[0]);
+    return is_plane(g) ? static_cast<Index>(g.strides()[0]) : 0;
   }
   static Index col_stride(const G& g) requires(detail::xtensor_in_memory<const G>) {
-    return static_cast<Index>(g.strides()[1]);
+    return is_plane(g) ? static_cast<Index>(g.strides()[1]) : 0;
+  }
+
+ private:
+  template <class T>
+  static decltype(auto) cell(T& g, Index row, Index col) {
+    if constexpr (detail::xtensor_in_memory<T>) {  // g(row, col) of 0.24 fails for view(t, ., ., k)
+      return *(data(g) + row * row_stride(g) + col * col_stride(g));
+    } else {
+      return g(static_cast<std::size_t>(row), static_cast<std::size_t>(col));
+    }
   }
 };
 

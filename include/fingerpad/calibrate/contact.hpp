@@ -59,7 +59,7 @@ class FreePadCalibration {
                      Index rows,
                      Index cols,
                      const CurvatureRing& ring = {})
-      : pixel_mm_(detail::pixel_pitch(checked(camera)).at_plate_mm),
+      : pixel_mm_(detail::pixel_pitch(checked(camera, rows, cols)).at_plate_mm),
         ring_px_(static_cast<double>(ring.radius_px)),
         map_(camera, rows, cols, ring),
         workspace_(map_.workspace()),
@@ -130,7 +130,8 @@ class FreePadCalibration {
   }
 
  private:
-  static const CameraType& checked(const CameraType& camera) {
+  static const CameraType& checked(const CameraType& camera, Index rows, Index cols) {
+    expects_grid_size("FreePadCalibration", rows, cols);
     expects_valid(camera);
     return camera;
   }

@@ -70,8 +70,7 @@ class StickTestCalibration {
                        const Reference& reference = {},
                        const Denoising& denoising = {}) {
     expects_valid(options);
-    expects(rows >= 1, owner, "rows", static_cast<long long>(rows), ">= 1");
-    expects(cols >= 1, owner, "cols", static_cast<long long>(cols), ">= 1");
+    expects_grid_size(owner, rows, cols);
     const double largest_px = options.largest_px;
     const StickTest largest =
         stick_test_for(rows * cols, noise, largest_px, options, motion, denoising);

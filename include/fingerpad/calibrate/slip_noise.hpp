@@ -73,8 +73,7 @@ class DotNoiseCalibration {
   /// Refuses bad parameters (parameter_error). `weights`: those of the denoising.
   DotNoiseCalibration(Index rows, Index cols, const DotWeights& weights = {})
       : rows_(rows), cols_(cols), weights_(weights) {
-    expects(rows >= 1, "DotNoiseCalibration", "rows", static_cast<long long>(rows), ">= 1");
-    expects(cols >= 1, "DotNoiseCalibration", "cols", static_cast<long long>(cols), ">= 1");
+    expects_grid_size("DotNoiseCalibration", rows, cols);
     expects_valid(weights, "DotNoiseCalibration");
   }
 

@@ -62,6 +62,10 @@ template <class Statistic = ClampedMean<>,
           class CameraType = Camera<double>,
           scalar S = float>
 class ContactRegion {
+  static_assert(
+      !scalar<Statistic>,
+      "the scalar comes last: ContactRegion<ClampedMean<>, HalfLevelEdge, Camera<double>, double>");
+
   using Curvature = CurvatureMap<Statistic, CameraType, S>;
   using Finder = detail::EdgeFinder<Edge, Statistic, CameraType, S>;
 

@@ -12,8 +12,12 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <string>
 #include <type_traits>
 #include <utility>
+
+#include "fingerpad/core/expects.hpp"
+#include "fingerpad/core/version.hpp"  // first: it refuses older dialects
 
 namespace fingerpad {
 inline namespace v0 {
@@ -29,13 +33,33 @@ template <class G> concept has_size_members = requires(const G& g) {
 template <class G> concept has_call_operator = requires(G& g, Index i) {
   g(i, i);
 };
+
+// What is likely to be taken for a grid and is none.
+template <class G> concept has_cells_in_a_row = !has_size_members<G> && requires(const G& g) {
+  g.data() + g.size();
+  g[0];
+};
+template <class Cell> concept has_channels = requires(const Cell& cell) {
+  cell[0];
+};
+template <class G> concept has_size_fields = requires(const G& g) {
+  g.rows + g.cols;
+};
 }  // namespace detail
 
 /// The one customisation point. Required: static rows(g), cols(g), at(g, row, col), where `at` of
 /// a mutable grid returns something that can be assigned to. Optional, for grids in plain memory:
-/// static data(g), row_stride(g), col_stride(g), strides counted in cells.
+/// static data(g), row_stride(g), col_stride(g), strides counted in cells. The two mistakes that
+/// are made most are told in one line, wherever a grid is asked for.
 template <class G>
 struct grid_traits {
+  static_assert(!detail::has_cells_in_a_row<G>,
+                "a vector has no rows and columns: pass fingerpad::grid_of(vector, rows, cols)");
+  static_assert(
+      !detail::has_size_fields<G>,
+      "a cv::Mat does not say what its pixels are: include fingerpad/adapt/opencv.hpp and "
+      "pass cv::Mat_<T>(image), or fingerpad::channel<T>(image, c) of a colour image");
+
   static constexpr Index rows(const G& g) requires(detail::has_size_members<G>) {
     return static_cast<Index>(g.rows());
   }
@@ -223,6 +247,30 @@ template <grid G>
 constexpr auto as_view(G&& view) {
   return view;
 }
+
+/// Refuses sizes that no image, dot grid or array has: rows and cols >= `min`, 100 million cells.
+inline void expects_grid_size(const char* owner, Index rows, Index cols, Index min = 1) {
+  constexpr Index max_cells = 100000000;
+  const std::string at_least = ">= " + std::to_string(min);
+  expects(rows >= min, owner, "rows", static_cast<long long>(rows), at_least.c_str());
+  expects(cols >= min, owner, "cols", static_cast<long long>(cols), at_least.c_str());
+  expects(rows == 0 || cols <= max_cells / rows, owner, "cols", static_cast<long long>(cols),
+          "such that rows * cols <= 1e8");
+}
+
+/// The first rows x cols cells of a vector, array or span as a grid, row by row, without a copy.
+/// Refuses fewer cells (parameter_error). The cells must outlive the view.
+template <detail::has_cells_in_a_row Cells>
+auto grid_of(Cells& cells, Index rows, Index cols) {
+  expects_grid_size("grid_of", rows, cols, 0);
+  expects(static_cast<Index>(cells.size()) >= rows * cols, "grid_of", "number of cells",
+          static_cast<long long>(cells.size()), ">= rows * cols");
+  using T = std::remove_pointer_t<decltype(cells.data())>;
+  return StridedView<T>(cells.data(), rows, cols, cols);
+}
+template <detail::has_cells_in_a_row Cells>
+  requires(!std::is_lvalue_reference_v<Cells>)
+auto grid_of(Cells&& temporary, Index rows, Index cols) = delete;
 
 /// The rectangle of `row_count` x `col_count` cells whose first cell is (row, col).
 template <class T>

@@ -12,6 +12,8 @@
 #include <limits>
 #include <type_traits>
 
+#include "fingerpad/core/version.hpp"  // first: it refuses older dialects
+
 #if defined(__FINITE_MATH_ONLY__) && __FINITE_MATH_ONLY__
 #error \
     "fingerpad marks missing data by NaN: compile with -fno-finite-math-only (part of -ffast-math)"

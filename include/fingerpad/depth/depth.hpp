@@ -57,6 +57,10 @@ template <class Smoothing = BiasFreeMean,
           scalar S = float,
           class Scattering = RadialScattering<S>>
 class DepthEstimator {
+  static_assert(!scalar<Smoothing>,
+                "the scalar comes last: DepthEstimator<BiasFreeMean, ExponentialFree<>, "
+                "AstigmaticHeights, double>");
+
  public:
   using Reference = DepthReference<S, Scattering, Heights>;
 
@@ -136,6 +140,8 @@ class DepthEstimator {
                    Status&& status,
                    Workspace<Pixel>& workspace)
   const {
+    static_assert(!detail::has_channels<cell_t<Red>> && !detail::has_channels<cell_t<Green>>,
+                  "a colour image is no channel: pass fingerpad::channel<T>(image, c) of it");
     static_assert(std::is_same_v<cell_t<Red>, Pixel> && std::is_same_v<cell_t<Green>, Pixel>,
                   "the workspace was made for another type of cell");
     DepthResult result;

@@ -39,6 +39,8 @@ inline namespace v0 {
 /// O(rows cols window). Nothing is allocated or thrown.
 template <class Waves = ZeroCrossings, scalar S = double>
 class TaxelFeatures {
+  static_assert(!scalar<Waves>, "the scalar comes last: TaxelFeatures<ZeroCrossings, double>");
+
   using Real = scalar_real_t<S>;
 
  public:

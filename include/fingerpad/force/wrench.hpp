@@ -72,6 +72,10 @@ template <class Solver = LeastSquares,
           class Lines = StraightLines,
           scalar S = double>
 class Wrench {
+  static_assert(
+      !scalar<Solver>,
+      "the scalar comes last: Wrench<LeastSquares, OneRow, ClampedRim, StraightLines, double>");
+
  public:
   /// All the memory of a frame. After it, what the frame's forces were found from.
   class Workspace {

@@ -101,6 +101,8 @@ template <class Dots> concept names_one_dot = requires(const Dots& dots) {
 /// Const; a frame takes no memory and O(rows cols) time, times the passes of HuberMean.
 template <class Dots = EdgeDots, class Mean = PlainMean, scalar S = double>
 class ContactShift {
+  static_assert(!scalar<Dots>, "the scalar comes last: ContactShift<EdgeDots, PlainMean, double>");
+
  public:
   /// What a frame writes on the way.
   class Workspace {

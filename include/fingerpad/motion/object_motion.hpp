@@ -43,6 +43,8 @@ struct ObjectMotionOptions {
 /// soon as enough of the dots that were known come back into contact.
 template <class Way = ContactMap, scalar S = double>
 class ObjectMotion {
+  static_assert(!scalar<Way>, "the scalar comes last: ObjectMotion<ContactMap, double>");
+
  public:
   /// A value: copy it to go back to this frame later.
   class State {

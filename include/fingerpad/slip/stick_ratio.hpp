@@ -61,6 +61,10 @@ template <class Motion = StickConsensus<>,
           class Denoising = ResidualMean,
           scalar S = float>
 class StickRatio {
+  static_assert(!scalar<Motion>,
+                "the scalar comes last: StickRatio<StickConsensus<>, UpdatedReference, "
+                "ResidualMean, double>");
+
  public:
   /// A value: copy it to go back to this frame later. All memory that frames need is in it.
   using State = detail::stick::StickState<S>;

@@ -1,0 +1,17 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+// An older dialect is refused in a line, not in thousands.
+// first error: fingerpad needs C\+\+20: compile with -std=c\+\+20
+// flags: -std=c++17
+#include "fingerpad/slip/stick_ratio.hpp"
+
+#ifdef FINGERPAD_MUST_NOT_COMPILE
+static void good_or_bad() {}
+#else
+static void good_or_bad() {
+  (void)fingerpad::StickRatio<>(9, 9);
+}
+#endif
+int main() {
+  good_or_bad();
+}

@@ -1,0 +1,33 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+// A colour image is no channel: the first error says what to pass.
+// first error: a colour image is no channel: pass fingerpad::channel<T>\(image, c\) of it
+#include "fingerpad/adapt/opencv.hpp"
+#include "fingerpad/depth/depth.hpp"
+
+using Estimator = fingerpad::DepthEstimator<>;
+
+#ifdef FINGERPAD_MUST_NOT_COMPILE
+static void good_or_bad() {
+  const auto depth = [](const Estimator& estimator, const cv::Mat_<cv::Vec3b>& image) {
+    auto workspace = estimator.workspace<unsigned char>();
+    cv::Mat_<float> depth_mm(image.size());
+    return estimator(image, image, depth_mm, workspace);
+  };
+  (void)depth;
+}
+#else
+static void good_or_bad() {
+  const auto depth = [](const Estimator& estimator, const cv::Mat_<cv::Vec3b>& image) {
+    auto workspace = estimator.workspace<unsigned char>();
+    cv::Mat_<float> depth_mm(image.size());
+    const auto red = fingerpad::channel<unsigned char>(image, 2);
+    const auto green = fingerpad::channel<unsigned char>(image, 1);
+    return estimator(red, green, depth_mm, workspace);
+  };
+  (void)depth;
+}
+#endif
+int main() {
+  good_or_bad();
+}

@@ -1,0 +1,24 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+// A cv::Mat does not say what its pixels are: the first error says what to pass.
+// first error: a cv::Mat does not say what its pixels are: pass cv::Mat_<T>\(image\)
+#include "fingerpad/adapt/opencv.hpp"
+#include "fingerpad/contact/contact_region.hpp"
+
+const fingerpad::ContactRegion<> contact_region(fingerpad::Camera<>(), 480, 640);
+auto workspace = contact_region.workspace();
+cv::Mat depth_map(480, 640, CV_32F), mask(480, 640, CV_8U);
+
+#ifdef FINGERPAD_MUST_NOT_COMPILE
+static void good_or_bad() {
+  (void)contact_region(depth_map, mask, workspace);
+}
+#else
+static void good_or_bad() {
+  cv::Mat_<unsigned char> to(mask);
+  (void)contact_region(cv::Mat_<float>(depth_map), to, workspace);
+}
+#endif
+int main() {
+  good_or_bad();
+}

@@ -1,0 +1,22 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+// The same before the adapter is included.
+// first error: include fingerpad/adapt/opencv.hpp and pass cv::Mat_<T>\(image\)
+#include <opencv2/core/mat.hpp>
+
+#include "fingerpad/core/grid.hpp"
+
+cv::Mat depth_mm(480, 640, CV_32F);
+
+#ifdef FINGERPAD_MUST_NOT_COMPILE
+static void good_or_bad() {
+  (void)fingerpad::rows(depth_mm);
+}
+#else
+static void good_or_bad() {
+  (void)depth_mm.rows;
+}
+#endif
+int main() {
+  good_or_bad();
+}

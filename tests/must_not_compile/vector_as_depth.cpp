@@ -1,0 +1,26 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+// A vector has no rows and columns: the first error says what to pass.
+// first error: a vector has no rows and columns: pass fingerpad::grid_of\(vector, rows, cols\)
+#include <vector>
+
+#include "fingerpad/contact/contact_region.hpp"
+
+const fingerpad::ContactRegion<> contact_region(fingerpad::Camera<>(), 480, 640);
+auto workspace = contact_region.workspace();
+std::vector<float> depth_map(480 * 640);
+std::vector<unsigned char> mask(480 * 640);
+
+#ifdef FINGERPAD_MUST_NOT_COMPILE
+static void good_or_bad() {
+  (void)contact_region(depth_map, mask, workspace);
+}
+#else
+static void good_or_bad() {
+  using fingerpad::grid_of;
+  (void)contact_region(grid_of(depth_map, 480, 640), grid_of(mask, 480, 640), workspace);
+}
+#endif
+int main() {
+  good_or_bad();
+}
