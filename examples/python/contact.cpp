@@ -1,0 +1,72 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+#include <cstdint>
+#include <mutex>
+
+#include "fingerpad/contact/contact_region.hpp"
+#include "python/arrays.hpp"
+#include "python/parts.hpp"
+
+namespace python {
+namespace {
+
+using fingerpad::ContactResult;
+using fingerpad::ContactTest;
+
+/// A contact region with its workspace; calls from several threads take turns.
+class Region {
+  using Method = fingerpad::ContactRegion<>;
+
+ public:
+  Region(const fingerpad::Camera<double>& camera, Index rows, Index cols, const ContactTest& test)
+      : region_(camera, rows, cols, test), work_(region_.workspace()) {}
+
+  py::tuple operator()(const py::array& depth_mm) {
+    auto [mask, mask_view] = new_array<std::uint8_t>(region_.rows(), region_.cols());
+    const auto depth = view_of<float>(depth_mm, "depth_mm");
+    const ContactResult result = [&, to = mask_view] {
+      const py::gil_scoped_release release;
+      const std::scoped_lock lock(mutex_);
+      return region_(depth, to, work_);
+    }();
+    if (!result.ok()) {
+      throw py::value_error("depth_mm must have the shape (" + std::to_string(region_.rows()) +
+                            ", " + std::to_string(region_.cols()) + ")");
+    }
+    return py::make_tuple(mask, result);
+  }
+
+ private:
+  Method region_;
+  Method::Workspace work_;
+  std::mutex mutex_;
+};
+
+}  // namespace
+
+void bind_contact(py::module_& module) {
+  bind_options<ContactTest>(module, "ContactTest", "What is contact; see contact/contact_test.hpp.")
+      .def_readwrite("threshold_per_mm", &ContactTest::threshold_per_mm)
+      .def_readwrite("free_apex_mm", &ContactTest::free_apex_mm)
+      .def_readwrite("min_region_px", &ContactTest::min_region_px);
+  py::class_<ContactResult>(module, "ContactResult", "The contact of a frame.")
+      .def_property_readonly("ok", &ContactResult::ok)
+      .def_property_readonly("in_contact", &ContactResult::in_contact)
+      .def_readonly("contact_px", &ContactResult::contact_px)
+      .def_readonly("unknown_px", &ContactResult::unknown_px)
+      .def_readonly("regions", &ContactResult::regions)
+      .def_readonly("area_mm2", &ContactResult::area_mm2)
+      .def_readonly("depth_mm", &ContactResult::depth_mm)
+      .def_property_readonly("center_mm", [](const ContactResult& contact) {
+        return py::make_tuple(contact.center_mm.x, contact.center_mm.y, contact.center_mm.z);
+      });
+  py::class_<Region>(module, "ContactRegion",
+                     "Where the object touches; contact/contact_region.hpp.")
+      .def(py::init<const fingerpad::Camera<double>&, Index, Index, const ContactTest&>(),
+           py::arg("camera"), py::arg("rows"), py::arg("cols"), py::arg("test") = ContactTest())
+      .def("__call__", &Region::operator(), py::arg("depth_mm"),
+           "mask, contact = region(depth_mm)\n\n"
+           "depth_mm: float32 (rows, cols), NaN where unknown; mask: uint8, 255 in contact.");
+}
+
+}  // namespace python

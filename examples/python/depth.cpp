@@ -1,0 +1,134 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+#include "fingerpad/depth/depth.hpp"
+
+#include <cstdint>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <tuple>
+
+#include "python/arrays.hpp"
+#include "python/parts.hpp"
+
+namespace python {
+namespace {
+
+using fingerpad::Absorption;
+using fingerpad::Camera;
+using fingerpad::DepthResult;
+using fingerpad::PixelStatus;
+using Reference = fingerpad::DepthReference<float>;
+
+Reference fit(const Camera<double>& camera,
+              const Absorption<double>& fluid,
+              const py::array& red,
+              const py::array& green,
+              const py::array& depth_mm) {
+  return with_pixel_of(red, [&](auto pixel) {
+    using Pixel = decltype(pixel);
+    const auto r = view_of<Pixel>(red, "red"), g = view_of<Pixel>(green, "green");
+    if (py::isinstance<py::array_t<float>>(depth_mm)) {
+      return fit_reference(camera, fluid, r, g, view_of<float>(depth_mm, "depth_mm"));
+    }
+    return fit_reference(camera, fluid, r, g, view_of<double>(depth_mm, "depth_mm"));
+  });
+}
+
+/// A depth estimator with the workspaces that it needs; calls from several threads take turns.
+class Estimator {
+  using Method = fingerpad::DepthEstimator<>;
+  template <class Pixel>
+  using Workspace = std::optional<Method::Workspace<Pixel>>;
+
+ public:
+  Estimator(const Camera<double>& camera,
+            const Absorption<double>& fluid,
+            const Reference& reference,
+            int smoothing_px)
+      : estimate_(camera, fluid, reference, {smoothing_px}) {}
+
+  Index rows() const { return estimate_.rows(); }
+  Index cols() const { return estimate_.cols(); }
+
+  py::tuple operator()(const py::array& red, const py::array& green) {
+    auto [depth, depth_view] = new_array<float>(rows(), cols());
+    auto [status, status_view] = new_array<std::uint8_t>(rows(), cols());
+    fingerpad::StridedView<PixelStatus> statuses(reinterpret_cast<PixelStatus*>(status_view.row(0)),
+                                                 rows(), cols(), cols());
+    const DepthResult result = with_pixel_of(red, [&, to = depth_view](auto pixel) {
+      using Pixel = decltype(pixel);
+      const auto r = view_of<Pixel>(red, "red"), g = view_of<Pixel>(green, "green");
+      const py::gil_scoped_release release;
+      const std::scoped_lock lock(mutex_);
+      auto& work = std::get<Workspace<Pixel>>(workspaces_);
+      if (!work) {
+        work.emplace(estimate_.workspace<Pixel>());
+      }
+      return estimate_(r, g, to, statuses, *work);
+    });
+    if (!result.ok()) {
+      throw py::value_error("red and green must have the reference's size, " +
+                            std::to_string(rows()) + " x " + std::to_string(cols()));
+    }
+    return py::make_tuple(depth, status, result);
+  }
+
+ private:
+  Method estimate_;
+  std::mutex mutex_;
+  std::tuple<Workspace<std::uint8_t>, Workspace<std::uint16_t>, Workspace<float>, Workspace<double>>
+      workspaces_;
+};
+
+}  // namespace
+
+void bind_depth(py::module_& module) {
+  bind_options<Camera<double>>(module, "Camera", "Camera and plate; see optics/camera.hpp.")
+      .def_readwrite("plate_distance_mm", &Camera<double>::plate_distance_mm)
+      .def_readwrite("refractive_index", &Camera<double>::refractive_index)
+      .def_readwrite("center_x_px", &Camera<double>::center_x_px)
+      .def_readwrite("center_y_px", &Camera<double>::center_y_px)
+      .def_readwrite("pitch_mm", &Camera<double>::pitch_mm)
+      .def_readwrite("plate_thickness_mm", &Camera<double>::plate_thickness_mm)
+      .def_readwrite("plate_index", &Camera<double>::plate_index);
+  bind_options<Absorption<double>>(module, "Absorption", "The fluid; see depth/absorption.hpp.")
+      .def_readwrite("c_red_per_mm", &Absorption<double>::c_red_per_mm)
+      .def_readwrite("c_green_per_mm", &Absorption<double>::c_green_per_mm)
+      .def_readwrite("kappa", &Absorption<double>::kappa)
+      .def_readwrite("max_depth_mm", &Absorption<double>::max_depth_mm);
+
+  py::enum_<PixelStatus>(module, "PixelStatus", "Why a pixel has no depth.")
+      .value("ok", PixelStatus::ok)
+      .value("below_range", PixelStatus::below_range)
+      .value("above_range", PixelStatus::above_range)
+      .value("not_a_number", PixelStatus::not_a_number)
+      .value("dark", PixelStatus::dark)
+      .value("saturated", PixelStatus::saturated)
+      .value("outside_pad", PixelStatus::outside_pad);
+  py::class_<DepthResult>(module, "DepthResult", "How many pixels of the pad have which status.")
+      .def_property_readonly("ok", &DepthResult::ok)
+      .def_readonly("pad_pixels", &DepthResult::pad_pixels)
+      .def("count", [](const DepthResult& result, PixelStatus status) {
+        return result.count[static_cast<std::size_t>(status)];
+      });
+  py::class_<Reference>(module, "DepthReference", "What the light of the free pad says.")
+      .def_readonly("residual_rms", &Reference::residual_rms)
+      .def_readonly("pixels_used", &Reference::pixels_used);
+  module.def("fit_reference", &fit, py::arg("camera"), py::arg("fluid"), py::arg("red"),
+             py::arg("green"), py::arg("depth_mm"),
+             "The reference from a frame of the free pad.\n\n"
+             "red, green: (rows, cols), uint8, uint16, float32 or float64.\n"
+             "depth_mm: (rows, cols), float32 or float64, along each pixel's ray; NaN outside.");
+  py::class_<Estimator>(module, "DepthEstimator", "Depth from red and green; see depth/depth.hpp.")
+      .def(py::init<const Camera<double>&, const Absorption<double>&, const Reference&, int>(),
+           py::arg("camera"), py::arg("fluid"), py::arg("reference"), py::arg("smoothing_px") = 29)
+      .def_property_readonly("rows", &Estimator::rows)
+      .def_property_readonly("cols", &Estimator::cols)
+      .def("__call__", &Estimator::operator(), py::arg("red"), py::arg("green"),
+           "depth_mm, status, result = estimate(red, green)\n\n"
+           "depth_mm: float32 (rows, cols), NaN where there is none.\n"
+           "status: uint8 (rows, cols), a PixelStatus each.");
+}
+
+}  // namespace python

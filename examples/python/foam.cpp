@@ -1,0 +1,79 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+#include <pybind11/stl.h>
+
+#include <array>
+#include <string>
+
+#include "fingerpad/pipeline/foam_hand.hpp"
+#include "python/arrays.hpp"
+#include "python/parts.hpp"
+
+namespace python {
+namespace {
+
+using fingerpad::FingerSample;
+using fingerpad::PreslipStatus;
+using Options = fingerpad::FoamHandOptions<>;
+using Taxels = fingerpad::TaxelOptions<double>;
+using Rules = fingerpad::PreslipOptions<double>;
+using Hand = fingerpad::FoamHand<>;
+
+Hand make_hand(Index rows, Index cols, const Taxels& taxels, const Rules& rules) {
+  Options options;
+  options.fingers.fill({rows, cols});
+  options.taxels = taxels;
+  options.rules = rules;
+  return Hand(options);
+}
+
+Hand::Result feel(Hand& hand, const std::array<py::array, 2>& readings, double time_s) {
+  return hand(std::array{view_of<double>(readings[0], "readings[0]"),
+                         view_of<double>(readings[1], "readings[1]")},
+              time_s);
+}
+
+}  // namespace
+
+void bind_foam(py::module_& module) {
+  bind_options<Taxels>(module, "TaxelOptions", "How taxels are read; see foam/taxel_options.hpp.")
+      .def_readwrite("pitch_mm", &Taxels::pitch_mm)
+      .def_readwrite("window", &Taxels::window)
+      .def_readwrite("sample_period_s", &Taxels::sample_period_s)
+      .def_readwrite("noise", &Taxels::noise)
+      .def_readwrite("noise_factor", &Taxels::noise_factor)
+      .def_readwrite("min_sum", &Taxels::min_sum)
+      .def_readwrite("saturated_at", &Taxels::saturated_at);
+  bind_options<Rules>(module, "PreslipOptions", "What the rules compare; see foam/preslip.hpp.")
+      .def_readwrite("history", &Rules::history)
+      .def_readwrite("min_waves", &Rules::min_waves)
+      .def_readwrite("centroid_tolerance_mm", &Rules::centroid_tolerance_mm);
+  py::enum_<PreslipStatus>(module, "PreslipStatus", "Whether the held object is about to slip.")
+      .value("steady", PreslipStatus::steady)
+      .value("preslip", PreslipStatus::preslip)
+      .value("cannot_tell", PreslipStatus::cannot_tell);
+  py::class_<FingerSample<double>>(module, "FingerSample", "What one finger feels.")
+      .def_property_readonly("status",
+                             [](const FingerSample<double>& s) { return name_of(s.status); })
+      .def_readonly("center_x_mm", &FingerSample<double>::center_x_mm)
+      .def_readonly("center_y_mm", &FingerSample<double>::center_y_mm)
+      .def_readonly("sum", &FingerSample<double>::sum)
+      .def_readonly("location", &FingerSample<double>::location)
+      .def_readonly("waves", &FingerSample<double>::waves)
+      .def_readonly("frequency_hz", &FingerSample<double>::frequency_hz);
+  py::class_<Hand::Result>(module, "FoamHandResult", "What a sample of all fingers says.")
+      .def_property_readonly("ok", &Hand::Result::ok)
+      .def_readonly("status", &Hand::Result::status)
+      .def_readonly("fingers", &Hand::Result::fingers);
+  py::class_<Hand>(module, "FoamHand",
+                   "Two foam fingers; see pipeline/foam_hand.hpp. It remembers samples, so one\n"
+                   "object serves one hand and one thread.")
+      .def(py::init(&make_hand), py::arg("rows"), py::arg("cols"), py::arg("taxels") = Taxels(),
+           py::arg("rules") = Rules())
+      .def("__call__", &feel, py::arg("readings"), py::arg("time_s"),
+           "felt = hand((left, right), time_s)\n\n"
+           "left, right: float64 (rows, cols), NaN where missing.")
+      .def("reset", &Hand::reset);
+}
+
+}  // namespace python

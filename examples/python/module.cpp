@@ -1,0 +1,19 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+// The Python module `fingerpad`: the methods on NumPy arrays, without a copy and with the same bits
+// as in C++. What is slow runs without Python's lock.
+#include <pybind11/pybind11.h>
+
+#include "fingerpad/core/expects.hpp"
+#include "python/parts.hpp"
+
+PYBIND11_MODULE(fingerpad, module) {
+  namespace py = pybind11;
+  module.doc() =
+      "Touch from camera frames: depth, contact, motion, slip and force of soft fingertips.\n"
+      "Units: mm, N, N mm, rad, MPa, px, s. Images are arrays (rows, cols).";
+  py::register_exception<fingerpad::parameter_error>(module, "ParameterError", PyExc_ValueError);
+  python::bind_depth(module);
+  python::bind_contact(module);
+  python::bind_foam(module);
+}

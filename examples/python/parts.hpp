@@ -1,0 +1,41 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+#pragma once
+// The module's parts, a file each, and how structs of options become Python classes.
+#include <pybind11/pybind11.h>
+
+namespace python {
+
+void bind_depth(pybind11::module_& module);
+void bind_contact(pybind11::module_& module);
+void bind_foam(pybind11::module_& module);
+
+/// A struct of settings as a class with keyword arguments: Camera(pitch_mm=0.1). Unknown names are
+/// refused.
+template <class Options>
+pybind11::class_<Options> bind_options(pybind11::module_& module,
+                                       const char* name,
+                                       const char* doc) {
+  namespace py = pybind11;
+  return py::class_<Options>(module, name, doc)
+      .def(py::init([](const py::kwargs& given) {
+        py::object options = py::cast(Options());
+        for (const auto& [field, value] : given) {
+          py::setattr(options, field, value);
+        }
+        return options.cast<Options>();
+      }))
+      .def("__repr__", [name](const py::object& self) {
+        py::list fields;
+        for (const auto& field : self.attr("__dir__")()) {
+          const auto text = field.cast<std::string>();
+          if (text.front() != '_') {
+            fields.append(text + "=" + std::string(py::repr(self.attr(field))));
+          }
+        }
+        return std::string(name) + "(" + py::str(", ").attr("join")(fields).cast<std::string>() +
+               ")";
+      });
+}
+
+}  // namespace python
