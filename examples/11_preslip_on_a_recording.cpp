@@ -2,8 +2,10 @@
 // SPDX-License-Identifier: MIT
 // When does a held object begin to slip? Foam fingers tell by vibrations, without a coefficient of
 // friction. Prints when each rule first alarms, and what the fingers felt then.
-//   11_preslip_on_a_recording [TAXELS.csv [FINGERS]]
+//   11_preslip_on_a_recording [TAXELS.csv [FINGERS [QUIET_UNTIL_S]]]
 // The fingers (1 to 3, 2 when left out) share the rows of the table evenly, one below the other.
+// The noise is that of the part until QUIET_UNTIL_S (3 when left out), in which nothing may be
+// touched.
 #include <array>
 #include <cmath>
 #include <cstdio>
@@ -81,7 +83,7 @@ void print_alarm(const char* rule, double time_s, const Result& felt, Index cols
 
 /// Whether both rules find something.
 template <std::size_t Fingers>
-bool look(const Recording& recording) {
+bool look(const Recording& recording, double quiet_until_s) {
   const Index rows = recording.rows / Index(Fingers), cols = recording.cols;
   const auto fingers_of = [&](const Sample& sample) {  // no copy
     std::array<StridedView<const double>, Fingers> fingers;
@@ -97,7 +99,9 @@ bool look(const Recording& recording) {
   for (std::size_t f = 0; f < Fingers; ++f) {
     TaxelNoiseCalibration calibration(rows, cols, options.taxels);
     for (const Sample& sample : recording.samples) {
-      calibration.add(fingers_of(sample)[f], sample.time_s);
+      if (sample.time_s <= quiet_until_s) {
+        calibration.add(fingers_of(sample)[f], sample.time_s);
+      }
     }
     noise.push_back(calibration.fit());
   }
@@ -133,9 +137,10 @@ int main(int argc, char** argv) {
     if (fingers < 1 || fingers > 3 || recording.rows % fingers != 0) {
       throw std::runtime_error("the rows of 1 to 3 fingers must share the array evenly");
     }
-    const bool found = fingers == 1   ? look<1>(recording)
-                       : fingers == 2 ? look<2>(recording)
-                                      : look<3>(recording);
+    const double quiet_until_s = argc > 3 ? std::atof(argv[3]) : 3;
+    const bool found = fingers == 1   ? look<1>(recording, quiet_until_s)
+                       : fingers == 2 ? look<2>(recording, quiet_until_s)
+                                      : look<3>(recording, quiet_until_s);
     return found || argc > 1 ? 0 : 1;  // the bundled recording has both
   } catch (const std::exception& error) {
     std::fprintf(stderr, "%s\n", error.what());

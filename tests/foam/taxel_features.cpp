@@ -211,11 +211,11 @@ TEST_CASE("taxel features: noise that crosses the mean is not counted within the
   CHECK(waves_with(0.0) > 4);
 }
 
-TEMPLATE_TEST_CASE("taxel features: waves by the clock, not by the number of samples",
+TEMPLATE_TEST_CASE("taxel features: waves of the window, frequency by the clock",
                    "[taxel_features]",
                    ZeroCrossings,
                    SpectralPeak) {
-  // 25 Hz seen at 0.8 to 1.25 times the nominal rate: 4 waves in 0.16 s each time
+  // 12.5 Hz seen at 0.8 to 1.25 times the nominal rate: 10 to 6.4 waves in 64 samples
   for (const double rate : {0.8, 1.0, 1.25}) {
     CAPTURE(rate);
     auto o = options();
@@ -228,9 +228,38 @@ TEMPLATE_TEST_CASE("taxel features: waves by the clock, not by the number of sam
       sample = features(array(1, 1, [&](Index, Index) { return 10 + std::sin(tau * 12.5 * t); }), t,
                         state);
     }
-    CHECK(sample.waves == 8);  // 12.5 Hz in the nominal 0.64 s
-    CHECK(sample.frequency_hz == Approx(12.5));
+    const double window_s = 64 * period_s / rate;
+    CHECK(std::abs(static_cast<double>(sample.waves) - 12.5 * window_s) <= 0.5);
+    CHECK(sample.frequency_hz == Approx(static_cast<double>(sample.waves) / window_s));
   }
+}
+
+TEST_CASE("taxel features: a gap counts as at most two periods and is told", "[taxel_features]") {
+  auto o = options();
+  o.longest_gap_s = 2;
+  const TaxelFeatures features(3, 5, o);
+  for (const double gap_s : {0.021, 0.3, 1.99}) {
+    CAPTURE(gap_s);
+    auto state = features.start(), without = features.start();
+    double time_s = 0;
+    for (int k = 0; k < 40; ++k) {
+      time_s += k == 20 ? gap_s : period_s;
+      const auto taxels = array(3, 5, [&](Index i, Index j) { return Sine{4}(k, i, j); });
+      const auto sample = features(taxels, time_s, state);
+      const auto even = features(taxels, k * period_s, without);
+      CHECK(sample.status == even.status);
+      CHECK(sample.waves == even.waves);
+      CHECK(sample.location == even.location);
+      CHECK(sample.gaps == (k >= 20 && k < 35 ? 1 : 0));
+      // as if the window were a period longer
+      CHECK(sample.frequency_hz ==
+            Approx(k >= 20 && k < 35 ? even.frequency_hz * 15 / 16 : even.frequency_hz));
+    }
+  }
+  // no gap: two periods
+  auto state = features.start();
+  CHECK(features(array(3, 5, [](Index, Index) { return 10; }), 0, state).gaps == 0);
+  CHECK(features(array(3, 5, [](Index, Index) { return 11; }), 0.02, state).gaps == 0);
 }
 
 TEST_CASE("taxel features: the spectrum takes uneven times as they are", "[taxel_features]") {
@@ -345,13 +374,13 @@ TEST_CASE("taxel features: arrays that say nothing", "[taxel_features]") {
   const auto all = [&](double reading) {
     return after(features, 20, [=](int, Index, Index) { return reading; });
   };
-  CHECK(all(0).status == TaxelStatus::quiet);
+  CHECK(all(0).status == TaxelStatus::frozen);
   CHECK_FALSE(all(0).is_pressed());
   CHECK(all(4095).status == TaxelStatus::no_taxels);
   CHECK(all(4095).left_out == 15);
   CHECK(all(test::nan).status == TaxelStatus::no_taxels);
   CHECK_FALSE(all(test::nan).is_pressed());
-  CHECK(all(7).status == TaxelStatus::quiet);
+  CHECK(all(7).status == TaxelStatus::frozen);
   // one taxel alive
   const auto one = after(features, 20, [](int k, Index i, Index j) {
     return i == 2 && j == 3 ? 10 + (k % 4 < 2 ? 1.0 : -1.0) : test::nan;
@@ -505,11 +534,11 @@ TEST_CASE("taxel features: bad parameters are refused by name", "[taxel_features
 }
 
 TEST_CASE("taxel features: every status has a name", "[taxel_features]") {
-  CHECK(std::string(name_of(TaxelStatus::vibrating)) == "vibrating");
-  CHECK(std::string(name_of(TaxelStatus::quiet)) == "quiet");
-  CHECK(std::string(name_of(TaxelStatus::filling)) == "filling");
-  CHECK(std::string(name_of(TaxelStatus::no_taxels)) == "no taxels");
-  CHECK(std::string(name_of(TaxelStatus::other_size)) == "other size");
-  CHECK(std::string(name_of(TaxelStatus::time_not_later)) == "time not later");
-  CHECK(std::string(name_of(static_cast<TaxelStatus>(99))) == "unknown");
+  std::string all;
+  for (int k = 0; k < 10; ++k) {
+    all += std::string(name_of(static_cast<TaxelStatus>(k))) + ", ";
+  }
+  CHECK(all ==
+        "vibrating, quiet, filling, no taxels, frozen, too weak, clock jumps, other size, "
+        "time not later, unknown, ");
 }

@@ -19,6 +19,7 @@ std::array<FingerSample<S>, Fingers> hand(int k) {
   std::array<FingerSample<S>, Fingers> now;
   for (std::size_t f = 0; f < Fingers; ++f) {
     const int seed = k + static_cast<int>(f);
+    now[f].status = TaxelStatus::vibrating;
     now[f].location = seed % 7 - 1;
     now[f].waves = seed % 11 % 5;
     now[f].center_x_mm = S(seed % 3) / S(4);

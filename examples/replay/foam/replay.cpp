@@ -74,11 +74,9 @@ void print_fingers(const FoamRecording& recording, const std::vector<FoamNoise>&
         ++dead;
       }
     }
-    std::printf("%s %d x %d taxels, noise %.3g to %.3g%s%s\n",
+    std::printf("%s %d x %d taxels, noise %.3g to %.3g (%s)%s\n",
                 f == 0 ? "fingers     " : "            ", place.rows, place.cols, least, most,
-                recording.sensor.noise ? " (sensor.json)"
-                : noise[f].is_known    ? " (of this recording)"
-                                       : " (assumed: the recording does not tell)",
+                noise[f].source.c_str(),
                 dead > 0 ? (", " + std::to_string(dead) + " dead").c_str() : "");
   }
 }

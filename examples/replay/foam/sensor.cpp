@@ -40,9 +40,10 @@ JsonSection foam_section(const JsonSection& root) {
                {"window", "samples in which vibration is looked for"},
                {"sample_period_s", "nominal, s"},
                {"noise", "standard deviation of a taxel at rest, in the unit of the readings"},
+               {"quiet_until_s", "nothing is touched or slips from the first sample until then, s"},
                {"noise_factor", "vibration is more than this many of them"},
                {"saturated_at", "readings from here on do not count"},
-               {"stuck_after", "equal readings in a row do not count from here on"},
+               {"stuck_after", "so many equal readings in a row are frozen"},
                {"longest_gap_s", "a longer time between samples begins a new window, s"},
                {"history", "samples that are compared"},
                {"least_waves", "a sample with fewer waves is silent"},
@@ -65,6 +66,7 @@ void read_options(const JsonSection& foam, FoamSensor& sensor) {
   integer("window", sensor.taxels.window);
   number("sample_period_s", sensor.sample_period_s);
   number("noise", sensor.noise);
+  number("quiet_until_s", sensor.quiet_until_s);
   number("noise_factor", sensor.taxels.noise_factor);
   number("saturated_at", sensor.taxels.saturated_at);
   integer("stuck_after", sensor.taxels.stuck_after);

@@ -24,12 +24,13 @@ constexpr int max_fingers = 5;
 struct FoamSensor {
   std::vector<FingerPlace> fingers;        ///< none: the whole array is one
   fingerpad::TaxelOptions<double> taxels;  ///< but for what follows
-  std::optional<double> noise;             ///< none: from the recording
+  std::optional<double> noise;             ///< none: from the quiet part of the recording
+  std::optional<double> quiet_until_s;     ///< none: its first windows are taken to be quiet
   std::optional<double> sample_period_s;   ///< none: from the recording
   std::optional<double> longest_gap_s;     ///< none: the library's, at least four periods
   fingerpad::PreslipOptions<double> rules;
   bool grasp_lift = true;
-  bool grasp_optimise = true;
+  bool grasp_optimise = false;
 };
 
 /// Reads and checks `file`, which may be absent; throws Failure.

@@ -10,6 +10,8 @@
 #include "fingerpad/calibrate/taxels.hpp"
 #include "fingerpad/core/expects.hpp"
 #include "fingerpad/pipeline/foam_hand.hpp"
+#include "replay/io/failure.hpp"
+#include "replay/pictures/picture_parts.hpp"
 
 namespace replay {
 namespace {
@@ -52,20 +54,34 @@ bool FoamRow::was_taken() const {
 FoamNoise noise_of(const FoamRecording& recording, int finger) {
   const auto first = recording.finger(0, finger);
   const auto taxels = static_cast<std::size_t>(first.rows() * first.cols());
-  if (const auto& noise = recording.sensor.noise) {
-    return {std::vector<double>(taxels, *noise)};
+  const FoamSensor& sensor = recording.sensor;
+  if (sensor.noise) {
+    return {std::vector<double>(taxels, *sensor.noise), "sensor.json"};
   }
+  const auto first_windows = static_cast<int>(4 * sensor.taxels.window);
+  const auto is_quiet = [&](int sample) {
+    const double time_s = recording.table.times_s[static_cast<std::size_t>(sample)];
+    return sensor.quiet_until_s ? !(time_s > *sensor.quiet_until_s) : sample < first_windows;
+  };
   try {
-    fingerpad::TaxelNoiseCalibration calibration(first.rows(), first.cols(),
-                                                 recording.sensor.taxels);
-    for (int sample = 0; sample < recording.table.samples(); ++sample) {
+    fingerpad::TaxelNoiseCalibration calibration(first.rows(), first.cols(), sensor.taxels);
+    for (int sample = 0; sample < recording.table.samples() && is_quiet(sample); ++sample) {
       calibration.add(recording.finger(sample, finger),
                       recording.table.times_s[static_cast<std::size_t>(sample)]);
     }
-    return {calibration.fit().deviations};
-  } catch (const fingerpad::parameter_error&) {  // too short, or without any noise
+    const std::string until = sensor.quiet_until_s ? format("until %.4g s", *sensor.quiet_until_s)
+                                                   : format("of the first %.0f samples",
+                                                            static_cast<double>(first_windows)) +
+                                                         ", taken to be quiet";
+    return {calibration.fit().deviations, until};
+  } catch (const fingerpad::parameter_error& error) {  // too short, or without any noise
+    if (sensor.quiet_until_s) {
+      fail("sensor.json",
+           "foam.quiet_until_s = " + format("%.4g", *sensor.quiet_until_s) + ": " + error.what());
+    }
     const double noise = thousandth * largest_reading(recording);
-    return {std::vector<double>(taxels, noise), false};
+    return {std::vector<double>(taxels, noise),
+            "a thousandth of the largest reading: the first samples do not tell"};
   }
 }
 

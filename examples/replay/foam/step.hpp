@@ -38,11 +38,12 @@ struct FoamRow {
 /// The noise of the taxels of one finger at rest.
 struct FoamNoise {
   std::vector<double> deviations;  ///< row by row; NaN: dead
-  bool is_known = true;  ///< false: the recording does not tell, a thousandth of the largest
-                         ///< reading is taken
+  std::string source;              ///< where it is from, in words
 };
 
-/// As sensor.json says, or from the whole recording.
+/// As sensor.json says; else of the part that it states to be quiet, or of the first four windows;
+/// where these do not tell a thousandth of the largest reading. Throws Failure where the stated
+/// part does not tell.
 FoamNoise noise_of(const FoamRecording& recording, int finger);
 
 class FoamStep {

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 // What one foam finger says at one time: what the paper stores at each location T_i of its stack.
+#include <array>
+#include <cstddef>
 #include <cstdint>
 
 #include "fingerpad/core/grid.hpp"
@@ -11,31 +13,25 @@ namespace fingerpad {
 inline namespace v0 {
 
 enum class TaxelStatus : std::uint8_t {
-  vibrating,      ///< a taxel moves by more than its noise: location and waves are known
-  quiet,          ///< none does
-  filling,        ///< too few samples since the start or the last jump of the clock to tell
-  no_taxels,      ///< all are dead, saturated, stuck or missing
-  other_size,     ///< the array or the state is not of the size of the features: nothing was done
-  time_not_later  ///< the time is missing or not later than the last one: nothing was done
+  vibrating,    ///< a taxel moves by more than its noise: location and waves are known
+  quiet,        ///< none does, and all can be judged
+  filling,      ///< too few samples since the start or a new clock to tell
+  no_taxels,    ///< all are dead, saturated, stuck, flickering or missing
+  frozen,       ///< no reading has changed for long, or ever: a dead array, or nothing touches it
+  too_weak,     ///< all readings are below what counts as vibration: nothing presses, or the noise
+                ///< is given in another unit
+  clock_jumps,  ///< windows do not fill, or most steps of the clock are gaps: time in seconds?
+  other_size,   ///< the array or the state is not of the size of the features: nothing was done
+  time_not_later,  ///< the time is missing or not later than the last one: nothing was done
 };
 
 /// "vibrating", "quiet", ...
 constexpr const char* name_of(TaxelStatus status) {
-  switch (status) {
-    case TaxelStatus::vibrating:
-      return "vibrating";
-    case TaxelStatus::quiet:
-      return "quiet";
-    case TaxelStatus::filling:
-      return "filling";
-    case TaxelStatus::no_taxels:
-      return "no taxels";
-    case TaxelStatus::other_size:
-      return "other size";
-    case TaxelStatus::time_not_later:
-      return "time not later";
-  }
-  return "unknown";
+  constexpr std::array<const char*, 9> names = {"vibrating",   "quiet",      "filling",
+                                                "no taxels",   "frozen",     "too weak",
+                                                "clock jumps", "other size", "time not later"};
+  const auto k = static_cast<std::size_t>(status);
+  return k < names.size() ? names[k] : "unknown";
 }
 
 template <scalar S = double>
@@ -51,6 +47,15 @@ struct FingerSample {
   S frequency_hz = S(0);              ///< the same by the clock
   S deviation = S(0);                 ///< rms of the vibrating element, in the unit of the readings
   Index left_out = 0;                 ///< taxels that do not count now
+  Index frozen = 0;        ///< taxels whose reading has not changed for long, 0 or another
+  Index gaps = 0;          ///< steps of the clock in the window that are longer than two periods
+  bool has_rested = true;  ///< a window was quiet since the start: what vibrates now has begun to
+
+  /// Whether slip can be judged: what vibrates where nothing ever rested may be noise or swapped
+  /// bytes.
+  bool can_tell() const {
+    return has_rested && (status == TaxelStatus::vibrating || status == TaxelStatus::quiet);
+  }
 
   bool is_pressed() const { return is_finite(center_x_mm) && is_finite(center_y_mm); }
   bool is_vibrating() const { return location != no_location && waves > 0; }

@@ -67,8 +67,8 @@ PairSide pair_side(const FingerSample<S>& s, const PreslipOptions<S>& o) {
   PairSide side;
   side.location = (std::max)(s.location, Index(-1));
   side.waves = (std::max)(s.waves, Index(0));
-  side.is_vibrating = side.location >= 0 && s.waves >= o.min_waves;
-  side.is_pressed = s.is_pressed();
+  side.is_vibrating = s.can_tell() && side.location >= 0 && s.waves >= o.min_waves;
+  side.is_pressed = s.can_tell() && s.is_pressed();
   side.x_mm = static_cast<double>(value(s.center_x_mm));
   side.y_mm = static_cast<double>(value(s.center_y_mm));
   return side;
@@ -178,9 +178,8 @@ namespace detail {
 /// `is_fresh` is what the newest sample says where all fingers can be judged.
 template <std::size_t Fingers, scalar S>
 PreslipStatus preslip_status(const std::array<FingerSample<S>, Fingers>& newest, bool is_fresh) {
-  const bool can_tell = std::all_of(newest.begin(), newest.end(), [](const FingerSample<S>& s) {
-    return s.status == TaxelStatus::vibrating || s.status == TaxelStatus::quiet;
-  });
+  const bool can_tell = std::all_of(newest.begin(), newest.end(),
+                                    [](const FingerSample<S>& s) { return s.can_tell(); });
   return is_fresh   ? PreslipStatus::preslip
          : can_tell ? PreslipStatus::steady
                     : PreslipStatus::cannot_tell;
@@ -221,8 +220,8 @@ class Preslip {
   State start() const { return State(options_.history); }
 
   /// Adds the newest sample of all fingers to the history and says what the history then shows. A
-  /// finger that does not vibrate, is not pressed, or whose sample could not be taken makes no pair
-  /// beyond what that says; it never hides those of the others, and never counts as steady. The
+  /// finger that cannot be judged makes no pair; it never hides those of the others, and never
+  /// counts as steady. The
   /// state of an estimator with another history is refused: nothing is done, `cannot_tell`.
   PreslipResult operator()(const std::array<FingerSample<S>, Fingers>& newest, State& state) const {
     PreslipResult result;

@@ -12,8 +12,8 @@
 //              row-major order
 //   waves      crossings of that line, or the strongest line of the spectrum
 //
-// Taxels that are dead, saturated, stuck or missing are left out, and come back a whole window
-// after they were last bad.
+// Taxels that are dead, saturated, stuck, flickering or missing are left out, and come back a whole
+// window after they were last bad.
 #include <algorithm>
 #include <cmath>
 #include <concepts>
@@ -35,7 +35,7 @@ inline namespace v0 {
 
 /// Features of one finger, sample by sample. Waves: ZeroCrossings or SpectralPeak. Const: one
 /// serves any number of fingers of its size, each with a state of its own. A sample takes
-/// O(rows cols) time, and what Waves says while a taxel vibrates; after a jump of the clock
+/// O(rows cols) time, and what Waves says while a taxel vibrates; with a new clock
 /// O(rows cols window). Nothing is allocated or thrown.
 template <class Waves = ZeroCrossings, scalar S = double>
 class TaxelFeatures {
@@ -48,8 +48,11 @@ class TaxelFeatures {
   class State {
    public:
     /// Forgets all samples.
-    void reset() { samples_ = 0; }
-    /// Samples since the start or the last jump of the clock, at most a window.
+    void reset() {
+      samples_ = 0;
+      unfilled_for_ = 0;
+    }
+    /// Samples since the start or the last new clock, at most a window.
     Index samples() const { return samples_; }
 
    private:
@@ -59,18 +62,28 @@ class TaxelFeatures {
           held_(static_cast<std::size_t>(taxels), S(0)),
           same_for_(held_.size(), 0),
           bad_for_(held_.size(), 0),
+          returned_for_(held_.size(), 0),
           time_s_(static_cast<std::size_t>(length), 0.0),
+          is_gap_(time_s_.size(), 0),
           residual_(time_s_.size(), S(0)),
           scratch_(length) {}
 
     detail::TaxelWindow<S> window_;
-    std::vector<S> held_;          // the last good reading of each taxel
-    std::vector<Index> same_for_;  // samples for which it did not change
-    std::vector<Index> bad_for_;   // samples until it can vibrate again
-    std::vector<double> time_s_;   // of the window, oldest first
+    std::vector<S> held_;               // the last good reading of each taxel
+    std::vector<Index> same_for_;       // samples for which it did not change
+    std::vector<Index> bad_for_;        // samples until it can vibrate again
+    std::vector<Index> returned_for_;   // samples for which its return from 0 is remembered
+    std::vector<double> time_s_;        // of the window, oldest first; gaps shortened
+    std::vector<std::uint8_t> is_gap_;  // before each of them
     std::vector<S> residual_;
     typename Waves::template Scratch<S> scratch_;
     Index samples_ = 0;
+    Index unfilled_for_ = 0;    // samples since the window was last full
+    Index unchanged_for_ = 0;   // samples since any reading changed
+    double last_time_s_ = 0;    // as received
+    Real typical_ = Real(0);    // reading of the last sample, of those that press
+    bool has_changed_ = false;  // since the start or the last new clock
+    bool has_rested_ = false;
   };
 
   /// Refuses bad parameters (parameter_error).
@@ -110,8 +123,9 @@ class TaxelFeatures {
   State start() const { return State(rows_ * cols_, options_.window); }
 
   /// The features at `time_s`, when the sample was received. NaN, infinite and saturated readings
-  /// are left out. A time that is NaN or not later than the last is refused; one that is earlier by
-  /// more than the longest gap is a new clock, which begins a new window.
+  /// are left out; so is a taxel that twice in a window comes back from 0 to more than others read
+  /// (a loose contact). A time that is NaN or not later than the last is refused; one that is
+  /// earlier by more than a window is a new clock.
   template <grid Taxels>
     requires std::constructible_from<S, cell_t<Taxels>> FingerSample<S>
   operator()(const Taxels& taxels, double time_s, State& state) const {
@@ -127,17 +141,17 @@ class TaxelFeatures {
       sample.status = TaxelStatus::time_not_later;
       return sample;
     }
-    if (clock == Clock::jumped) {
+    if (clock == Clock::is_new) {
       forget(state);
     }
     read(readings, sample, state);
     store(time_s, state);
-    find_vibration(sample, state);
+    judge(sample, state);
     return sample;
   }
 
  private:
-  enum class Clock : std::uint8_t { runs, jumped, not_later };
+  enum class Clock : std::uint8_t { runs, is_new, not_later };
 
   static constexpr Real infinite() { return (std::numeric_limits<Real>::infinity)(); }
 
@@ -160,25 +174,35 @@ class TaxelFeatures {
       return Clock::not_later;
     }
     if (state.samples_ == 0) {
-      return Clock::jumped;
+      return Clock::is_new;
     }
-    const double step = time_s - state.time_s_.back();
-    const double gap = static_cast<double>(value(options_.longest_gap_s));
-    return step > gap || step < -gap ? Clock::jumped : step > 0 ? Clock::runs : Clock::not_later;
+    const double step = time_s - state.last_time_s_;
+    const double longest = static_cast<double>(value(options_.longest_gap_s));
+    const double window = period_s() * static_cast<double>(options_.window);
+    const bool is_new = step > longest || step < -(std::min)(window, longest);
+    return is_new ? Clock::is_new : step > 0 ? Clock::runs : Clock::not_later;
   }
+
+  double period_s() const { return static_cast<double>(value(options_.sample_period_s)); }
 
   static void forget(State& state) {
     state.samples_ = 0;
+    state.unchanged_for_ = 0;
+    state.typical_ = Real(0);
+    state.has_changed_ = state.has_rested_ = false;
     std::fill(state.held_.begin(), state.held_.end(), S(0));
     std::fill(state.same_for_.begin(), state.same_for_.end(), 0);
     std::fill(state.bad_for_.begin(), state.bad_for_.end(), 0);
+    std::fill(state.returned_for_.begin(), state.returned_for_.end(), 0);
   }
 
   /// Takes over what can be used of the readings, and finds the centroid of what presses.
   template <class View>
   void read(const View& readings, FingerSample<S>& sample, State& state) const {
     S sum_x = S(0), sum_y = S(0);
+    Index pressed = 0;
     std::size_t k = 0;
+    ++state.unchanged_for_;
     for (Index i = 0; i < rows_; ++i) {
       S row_sum = S(0);
       for (Index j = 0; j < cols_; ++j, ++k) {
@@ -188,11 +212,14 @@ class TaxelFeatures {
         } else if (value(reading) > 0) {
           row_sum = row_sum + reading;
           sum_x = sum_x + S(reading * S(static_cast<int>(j)));
+          ++pressed;
         }
+        sample.frozen += is_frozen(k, state) ? 1 : 0;
       }
       sample.sum = sample.sum + row_sum;
       sum_y = sum_y + S(row_sum * S(static_cast<int>(i)));
     }
+    state.typical_ = pressed > 0 ? value(sample.sum) / Real(static_cast<double>(pressed)) : Real(0);
     if (value(sample.sum) > 0 && value(sample.sum) >= value(options_.min_sum)) {
       sample.center_x_mm = S(sum_x * options_.pitch_mm) / sample.sum;
       sample.center_y_mm = S(sum_y * options_.pitch_mm) / sample.sum;
@@ -209,57 +236,119 @@ class TaxelFeatures {
       return false;
     }
     bad_for = bad_for > 0 ? bad_for - 1 : 0;
-    const bool is_same = value(reading) == value(state.held_[k]);
+    const Real before = value(state.held_[k]);
+    const bool is_same = state.samples_ > 0 && value(reading) == before;
+    if (!is_same && state.samples_ > 0) {
+      state.unchanged_for_ = 0;
+      state.has_changed_ = true;
+    }
     state.same_for_[k] = is_same ? state.same_for_[k] + 1 : 0;
+    look_for_flicker(before, value(reading), k, state);
     state.held_[k] = reading;
-    return !is_stuck(k, state) && floor_[k] < infinite();
+    const bool flickers = bad_for > 0 && state.returned_for_[k] > 0;
+    return floor_[k] < infinite() && !flickers && !(is_frozen(k, state) && value(reading) != 0);
   }
 
-  /// Where 0 is read nothing presses.
-  bool is_stuck(std::size_t k, const State& state) const {
-    return options_.stuck_after > 0 && state.same_for_[k] >= options_.stuck_after &&
-           value(state.held_[k]) != 0;
+  /// A taxel that comes back from 0 to more than others read, twice in a window, is a loose
+  /// contact.
+  void look_for_flicker(const Real& before, const Real& now, std::size_t k, State& state) const {
+    Index& returned_for = state.returned_for_[k];
+    returned_for = returned_for > 0 ? returned_for - 1 : 0;
+    if (state.samples_ > 0 && before == 0 && now > state.typical_ && now * now > floor_[k]) {
+      state.bad_for_[k] = returned_for > 0 ? options_.window : state.bad_for_[k];
+      returned_for = options_.window;
+    }
   }
 
+  bool is_frozen(std::size_t k, const State& state) const {
+    return options_.stuck_after > 0 && state.same_for_[k] >= options_.stuck_after;
+  }
+
+  /// The sample's time, and its readings; a gap counts as two periods.
   void store(double time_s, State& state) const {
     if (state.samples_ == 0) {
       state.window_.restart(state.held_.data());
       std::fill(state.time_s_.begin(), state.time_s_.end(), time_s);
+      std::fill(state.is_gap_.begin(), state.is_gap_.end(), std::uint8_t{0});
     } else {
+      const double step = time_s - state.last_time_s_, longest = 2 * period_s();
+      const double now_s = state.time_s_.back() + (std::min)(step, longest);
       state.window_.push(state.held_.data());
       std::move(state.time_s_.begin() + 1, state.time_s_.end(), state.time_s_.begin());
-      state.time_s_.back() = time_s;
+      std::move(state.is_gap_.begin() + 1, state.is_gap_.end(), state.is_gap_.begin());
+      state.time_s_.back() = now_s;
+      state.is_gap_.back() = step > longest ? 1 : 0;
     }
+    state.last_time_s_ = time_s;
     state.samples_ = (std::min)(state.samples_ + 1, options_.window);
+    const bool is_full = state.samples_ == options_.window;
+    state.unfilled_for_ =
+        is_full ? 0 : (std::min)(state.unfilled_for_ + 1, 2 * options_.window + 1);
   }
 
-  void find_vibration(FingerSample<S>& sample, State& state) const {
-    if (sample.left_out == rows_ * cols_) {
+  /// What the sample says of vibration, or why it says nothing.
+  void judge(FingerSample<S>& sample, State& state) const {
+    sample.has_rested = state.has_rested_;
+    sample.gaps = std::count(state.is_gap_.begin() + 1, state.is_gap_.end(), std::uint8_t{1});
+    if (state.unfilled_for_ > 2 * options_.window || 2 * sample.gaps > options_.window) {
+      sample.status = TaxelStatus::clock_jumps;
+    } else if (sample.left_out == rows_ * cols_ && sample.frozen == 0) {
       sample.status = TaxelStatus::no_taxels;
-      return;
+    } else if (state.samples_ < options_.window) {
+      sample.status = TaxelStatus::filling;
+    } else if (sample.left_out == rows_ * cols_ || is_frozen(state)) {
+      sample.status = TaxelStatus::frozen;
+    } else if (!find_vibration(sample, state)) {
+      sample.status = status_without_vibration(state);
+      state.has_rested_ = state.has_rested_ || sample.status == TaxelStatus::quiet;
+      sample.has_rested = state.has_rested_;
     }
-    if (state.samples_ < options_.window) {
-      return;
+  }
+
+  /// Whether no taxel has changed for long, or ever.
+  bool is_frozen(const State& state) const {
+    return options_.stuck_after > 0 &&
+           (!state.has_changed_ || state.unchanged_for_ >= options_.stuck_after);
+  }
+
+  /// Quiet where some taxel that can be judged reads so much that it could vibrate.
+  TaxelStatus status_without_vibration(const State& state) const {
+    TaxelStatus status = TaxelStatus::no_taxels;
+    for (std::size_t k = 0; k < floor_.size(); ++k) {
+      if (can_vibrate(k, state)) {
+        const Real reading = value(state.held_[k]);
+        const bool presses = reading > 0 && reading * reading > floor_[k];
+        status =
+            presses || status == TaxelStatus::quiet ? TaxelStatus::quiet : TaxelStatus::too_weak;
+      }
     }
-    sample.status = TaxelStatus::quiet;
+    return status;
+  }
+
+  /// Whether its whole window is good.
+  bool can_vibrate(std::size_t k, const State& state) const {
+    return floor_[k] < infinite() && state.bad_for_[k] == 0 && !is_frozen(k, state);
+  }
+
+  bool find_vibration(FingerSample<S>& sample, State& state) const {
     const Index strongest = strongest_taxel(state);
     if (strongest == FingerSample<S>::no_location) {
-      return;
+      return false;
     }
     const S mean_square = state.window_.residuals(strongest, state.residual_.data());
     if (!(value(mean_square) > 0)) {
-      return;
+      return false;
     }
     using std::sqrt;
-    const S duration = options_.sample_period_s * S(static_cast<int>(options_.window));
     const S rms = S(sqrt(mean_square));
     const detail::WaveWindow<S> window{state.residual_.data(), state.time_s_.data(),
-                                       options_.window, rms, duration};
+                                       options_.window, rms};
     sample.status = TaxelStatus::vibrating;
     sample.location = strongest;
     sample.waves = waves_(window, state.scratch_);
-    sample.frequency_hz = S(static_cast<int>(sample.waves)) / duration;
+    sample.frequency_hz = S(static_cast<double>(sample.waves) / window.span_s());
     sample.deviation = rms;
+    return true;
   }
 
   /// The first of those whose variance is largest, of those beyond their floor.
@@ -268,8 +357,7 @@ class TaxelFeatures {
     Real largest = Real(0);
     for (std::size_t k = 0; k < floor_.size(); ++k) {
       const Real variance = value(state.window_.variance(static_cast<Index>(k)));
-      if (variance > largest && variance > floor_[k] && state.bad_for_[k] == 0 &&
-          !is_stuck(k, state)) {
+      if (variance > largest && variance > floor_[k] && can_vibrate(k, state)) {
         largest = variance;
         strongest = static_cast<Index>(k);
       }

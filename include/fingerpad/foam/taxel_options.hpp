@@ -17,15 +17,16 @@ template <scalar S = double>
 struct TaxelOptions {
   S pitch_mm = S(34) / S(10);        ///< between taxels, > 0
   Index window = 16;                 ///< samples in which vibration is looked for, in [4, 4096]
-  S sample_period_s = S(1) / S(30);  ///< nominal, > 0; waves are counted in window times this
-  S longest_gap_s = S(1) / S(4);     ///< a longer time between samples begins a new window, > 0
-  S noise = S(6);                    ///< standard deviation of a taxel at rest, >= 0
-  S noise_factor = S(5) / S(2);      ///< vibration is more than this many of them, >= 0
-  S min_sum = S(0);                  ///< a smaller sum of readings has no centroid, >= 0
+  S sample_period_s = S(1) / S(30);  ///< nominal, > 0
+  S longest_gap_s = S(2);  ///< a gap counts as at most two periods; a longer one than this, or a
+                           ///< clock that is set back, begins a new window, > 0
+  S noise = S(6);          ///< standard deviation of a taxel at rest, >= 0
+  S noise_factor = S(5) / S(2);  ///< vibration is more than this many of them, >= 0
+  S min_sum = S(0);              ///< a smaller sum of readings has no centroid, >= 0
   S saturated_at = S((std::numeric_limits<scalar_real_t<S>>::infinity)());  ///< readings from here
                                                                             ///< on do not count
-  Index stuck_after = 0;  ///< a reading that is not 0 and was the same so many times in a row does
-                          ///< not count, >= 0; 0: not looked for
+  Index stuck_after = 30;  ///< a reading that was the same so many times in a row is frozen, and
+                           ///< does not count if it is not 0, >= 0; 0: not looked for
 };
 
 /// Refuses what has no meaning (parameter_error).

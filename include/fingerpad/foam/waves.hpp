@@ -2,7 +2,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 // How many waves of vibration one taxel shows in its window: the paper's "number of sensed
-// vibrating waves", which it calls frequency. Two ways, a policy of TaxelFeatures.
+// vibrating waves", which it calls frequency; per window of samples, so that a gap of the clock
+// does not make fewer of them. Two ways, a policy of TaxelFeatures.
 #include <cmath>
 #include <cstddef>
 #include <numbers>
@@ -16,29 +17,20 @@ namespace fingerpad {
 inline namespace v0 {
 namespace detail {
 
-/// One taxel in its window: what is left without mean or line, and the receive times, oldest first.
+/// One taxel in its window, oldest sample first.
 template <scalar S>
 struct WaveWindow {
-  const S* residual;
-  const double* time_s;
+  const S* residual;     // what is left without the line
+  const double* time_s;  // by the clock, gaps shortened
   Index length;
-  S rms;         // of the residual, > 0
-  S duration_s;  // in which waves are counted: length times the nominal period
+  S rms;  // of the residual, > 0
 
-  /// From the oldest sample to one period beyond the newest, by the clock.
-  S span_s() const {
+  /// From the oldest sample to one period beyond the newest.
+  double span_s() const {
     const double length_s = time_s[length - 1] - time_s[0];
-    return S(length_s / static_cast<double>(length - 1) * static_cast<double>(length));
+    return length_s / static_cast<double>(length - 1) * static_cast<double>(length);
   }
 };
-
-/// x >= 0 rounded to the nearest whole number, halves up, at most `most`.
-template <scalar S>
-Index rounded(const S& x, Index most) {
-  using Real = scalar_real_t<S>;
-  const Real half_up = value(x) + Real(0.5);
-  return half_up < Real(static_cast<int>(most)) ? static_cast<Index>(half_up) : most;
-}
 
 }  // namespace detail
 
@@ -72,8 +64,7 @@ struct ZeroCrossings {
       crossings += now != side && side != 0 ? 1 : 0;
       side = now;
     }
-    const S waves = S((crossings + 1) / 2);
-    return detail::rounded(S(waves * S(window.duration_s / window.span_s())), window.length / 2);
+    return (crossings + 1) / 2;
   }
 };
 
@@ -112,9 +103,10 @@ struct SpectralPeak {
     using std::cos;
     using std::sin;
     const S pi = S(std::numbers::pi_v<long double>);
+    const double span = window.span_s();
     const double middle = (window.time_s[0] + window.time_s[window.length - 1]) / 2;
     for (std::size_t u = 0; u < static_cast<std::size_t>(window.length); ++u) {
-      const S phase = S(S(2) * pi) * S(S(window.time_s[u] - middle) / window.duration_s);
+      const S phase = S(S(2) * pi) * S((window.time_s[u] - middle) / span);
       scratch.cosine[u] = S(cos(phase));
       scratch.sine[u] = S(sin(phase));
       const bool inside = value(phase) > -value(pi) && value(phase) < value(pi);
