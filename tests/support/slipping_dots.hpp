@@ -91,6 +91,19 @@ class SlippingDots {
     object_y_px_ = zoomed(object_y_px_ + shift_y, pattern_.middle_y_px, s.zoom);
   }
 
+  /// Dots that did not follow in the last step go back by this share of their way from home.
+  void spring_back(double share) {
+    for (Index i = 0; i < dots.rows(); ++i) {
+      for (Index j = 0; j < dots.cols(); ++j) {
+        if (stuck_steps_(i, j) == 0) {
+          auto& p = dots(i, j);
+          p.x += share * (pattern_.home_x_px(j) - p.x);
+          p.y += share * (pattern_.home_y_px(i) - p.y);
+        }
+      }
+    }
+  }
+
   /// Whether a dot has followed the object in each of the last `steps` steps.
   bool has_stuck(Index row, Index col, Index steps) const {
     return contact(row, col) != 0 && stuck_steps_(row, col) >= steps;

@@ -190,7 +190,8 @@ template <Freedom Free, class S>
 Similarity<S> motion_between(const published::ReferenceDotMotion<Free>&,
                              const FramePair<S>& pair,
                              Index reference,
-                             const S&) {
+                             const S&,
+                             bool) {
   using std::sqrt;
   Similarity<S> map = {S(1), S(0), pair.now[reference], pair.then[reference]};
   if constexpr (may_rotate(Free)) {

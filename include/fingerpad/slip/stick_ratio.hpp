@@ -193,7 +193,8 @@ class StickRatio {
     const Index reference = first_dot(pair, state);
     const S slip = S(test_.slip_px / test_.reference_px);
     const S slip_sq = slip * slip * choice.furthest_sq;
-    const Similarity<S> map = motion_between(motion_, pair, reference, slip_sq);
+    const bool mostly_slipped = S(2) * state.result.stick_ratio < S(1);
+    const Similarity<S> map = motion_between(motion_, pair, reference, slip_sq, mostly_slipped);
     mark_dots(denoising_, pair, map, slip_sq, state.residuals, state.marks);
     state.stick_center = centroid(pair, state.marks, DotState::stick);
     StickRatioResult<S>& result = state.result;

@@ -40,7 +40,8 @@ constexpr bool may_scale(Freedom f) {
 /// The map that fits all sticking dots best. Beginning with the reference dot and its 24 nearest,
 /// dots that follow the map are taken, and the map fitted to them, until they hardly become more.
 /// Where a dot has outrun the map, which none can that the object drags, the search begins anew
-/// from the one that has come furthest: the first has found dots that stand still together.
+/// from the one that has come furthest: the first has found dots that stand still together. Where
+/// most dots slipped in the last answer, standing dots are never taken for the object.
 template <Freedom Free = Freedom::similarity>
 struct StickConsensus {
   int max_passes = 10;  ///< 0 to 100; two or three are the rule
@@ -223,11 +224,25 @@ Index furthest_outrunner(const FramePair<S>& pair, const Similarity<S>& map) {
   return furthest;
 }
 
+/// The shift of one dot and of those that follow it.
+template <class S>
+Similarity<S> shift_with(const FramePair<S>& pair, Index from, const S& slip_sq) {
+  const Similarity<S> about = {S(1), S(0), pair.now[from], pair.then[from]};
+  PairSums<S> sums;
+  for (const Index k : pair.touching) {
+    if (squared_norm(about.residual(pair.now[k], pair.then[k])) < slip_sq) {
+      add_dot(pair, k, S(1), about, sums);
+    }
+  }
+  return fit<Freedom::translation>(sums, about);
+}
+
 template <Freedom Free, class S>
 Similarity<S> motion_between(const StickConsensus<Free>& policy,
                              const FramePair<S>& pair,
                              Index reference,
-                             const S& slip_sq) {
+                             const S& slip_sq,
+                             bool mostly_slipped) {
   const Similarity<S> map = consensus<Free>(pair, reference, slip_sq, policy.max_passes);
   if (!has_hardly_moved(map, pair.furthest_sq)) {
     return map;
@@ -237,7 +252,11 @@ Similarity<S> motion_between(const StickConsensus<Free>& policy,
     return map;
   }
   const Similarity<S> other = consensus<Free>(pair, ahead, slip_sq, policy.max_passes);
-  return has_hardly_moved(other, pair.furthest_sq) ? map : other;
+  if (!has_hardly_moved(other, pair.furthest_sq)) {
+    return other;
+  }
+  // dots that slipped and now agree to stand are not the object: it has gone on with the last few
+  return mostly_slipped ? shift_with(pair, ahead, slip_sq) : map;
 }
 
 // ---- which dots have followed it
