@@ -11,12 +11,9 @@
 #include <iterator>
 #include <opencv2/core.hpp>
 #include <opencv2/imgproc.hpp>
-#include <random>
 #include <string>
 #include <vector>
 
-#include "replay/dots/match.hpp"
-#include "replay/dots/track.hpp"
 #include "replay/io/failure.hpp"
 #include "replay/io/recording.hpp"
 #include "support/catch.hpp"
@@ -279,56 +276,6 @@ TEST_CASE("without a word about dots there are none") {
                            press().recording.reference_depth, 11);
   CHECK_FALSE(source.present());
   CHECK(source.of(0, press().frames[0]).empty());
-}
-
-TEST_CASE("smooth moves of several pitches keep the labels") {
-  // A square print of 19 x 19 dots held at the rim; the middle moves and turns as one.
-  constexpr int count = 19;
-  constexpr double pitch_px = 17;
-  std::mt19937 random(20110801);
-  std::uniform_real_distribution<double> unit(-1, 1);
-  for (int trial = 0; trial < 4; ++trial) {
-    replay::FirstOrder free_pad;
-    free_pad.found = DotGrid(count, count);
-    for (int i = 0; i < count; ++i) {
-      for (int j = 0; j < count; ++j) {
-        free_pad.found(i, j) = pitch_px * cv::Vec2d(j, i) + cv::Vec2d(50, 50);
-      }
-    }
-    free_pad.expected = free_pad.found;
-    replay::DotTracker tracker(free_pad);
-    const cv::Vec2d center = free_pad.found(count / 2, count / 2);
-    const cv::Vec2d shift = pitch_px * cv::Vec2d(1.5 * unit(random), 1.5 * unit(random));
-    const double turn = 0.4 * unit(random);
-    DotGrid truth(count, count);
-    replay::Blobs blobs;
-    for (int i = 0; i < count; ++i) {
-      for (int j = 0; j < count; ++j) {
-        const cv::Vec2d from = free_pad.found(i, j) - center;
-        const double rest = (std::max)(0.0, 1 - from.dot(from) / std::pow(11 * pitch_px, 2));
-        const double angle = turn * rest * rest;
-        const cv::Matx22d rotation(std::cos(angle), -std::sin(angle), std::sin(angle),
-                                   std::cos(angle));
-        truth(i, j) = center + rotation * from + rest * rest * shift;
-        if (unit(random) < 0.9) {  // one in twenty is not seen
-          blobs.push_back(truth(i, j) + 0.1 * cv::Vec2d(unit(random), unit(random)));
-        }
-      }
-    }
-    for (int k = 0; k < 10; ++k) {  // and some spots are no dots
-      blobs.push_back(center + 9 * pitch_px * cv::Vec2d(unit(random), unit(random)));
-    }
-    const DotGrid found = tracker.track(blobs);
-    INFO("trial " << trial << ", shift " << shift << " px, turn " << turn);
-    CHECK(static_cast<int>(fingerpad::count_present(found)) > 85 * count * count / 100);
-    int wrong = 0;
-    for (int i = 0; i < count; ++i) {
-      for (int j = 0; j < count; ++j) {
-        wrong += cv::norm(found(i, j) - truth(i, j)) > pitch_px / 2 ? 1 : 0;
-      }
-    }
-    CHECK(wrong == 0);
-  }
 }
 
 TEST_CASE("dots.csv is read as it was written, and goes before the frames") {

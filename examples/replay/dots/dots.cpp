@@ -3,109 +3,155 @@
 #include "replay/dots/dots.hpp"
 
 #include <algorithm>
-#include <optional>
+#include <utility>
 #include <vector>
 
 #include "replay/dots/file.hpp"
-#include "replay/dots/lattice.hpp"
-#include "replay/dots/match.hpp"
-#include "replay/dots/order.hpp"
 #include "replay/io/failure.hpp"
 
 namespace replay {
 namespace {
 
-constexpr int min_dots = 9;       // fewer in order are chance
 constexpr int first_frames = 10;  // a camera's first frames may be dark
 
+DotGrid free_dots(const fingerpad::DotFinder& finder) {
+  DotGrid dots(static_cast<int>(finder.rows()), static_cast<int>(finder.cols()));
+  const auto found = finder.free_px();
+  for (int i = 0; i < dots.rows; ++i) {
+    for (int j = 0; j < dots.cols; ++j) {
+      dots(i, j) = {found(i, j).x, found(i, j).y};
+    }
+  }
+  return dots;
+}
+
 /// Whether two grids mean the same dots by the same row and column.
-bool agree(const DotGrid& a, const DotGrid& b) {
-  const BlobMap nothing{Blobs{}};
-  const Matcher spacing(a, nothing);
-  std::vector<double> distances;
+bool agree(const DotGrid& a, const DotGrid& b, double pitch_px) {
+  int both = 0;
+  int near = 0;
   for (int i = 0; i < a.rows; ++i) {
     for (int j = 0; j < a.cols; ++j) {
       if (is_present(a(i, j)) && is_present(b(i, j))) {
-        distances.push_back(cv::norm(a(i, j) - b(i, j)) / spacing.spacing_px(i, j));
+        ++both;
+        near += cv::norm(a(i, j) - b(i, j)) < 0.5 * pitch_px ? 1 : 0;
       }
     }
   }
-  const auto near = std::count_if(distances.begin(), distances.end(),
-                                  [](double distance) { return distance < 0.5; });
-  return 2 * near > static_cast<std::ptrdiff_t>(distances.size());
+  return 2 * near > both;
+}
+
+fingerpad::DotFinder finder_of(const std::filesystem::path& folder,
+                               const cv::Mat& free_frame,
+                               const fingerpad::DotFinderOptions& options) {
+  try {
+    return fingerpad::DotFinder(free_frame, options);
+  } catch (const fingerpad::parameter_error& error) {
+    fail(folder / "sensor.json", std::string("section dots: ") + error.what());
+  }
 }
 
 }  // namespace
+
+fingerpad::DotFinderOptions print_of(const Sensor& sensor, const cv::Mat_<float>& reference_depth) {
+  fingerpad::DotFinderOptions options;
+  options.where = cv::Mat_<uchar>(reference_depth.size(), uchar{0});
+  std::vector<float> depths_mm;
+  for (int i = 0; i < reference_depth.rows; ++i) {
+    for (int j = 0; j < reference_depth.cols; ++j) {
+      if (std::isfinite(reference_depth(i, j))) {
+        options.where(i, j) = 1;
+        depths_mm.push_back(reference_depth(i, j));
+      }
+    }
+  }
+  if (depths_mm.empty()) {
+    return options;
+  }
+  const auto middle = depths_mm.begin() + static_cast<std::ptrdiff_t>(depths_mm.size() / 2);
+  std::nth_element(depths_mm.begin(), middle, depths_mm.end());
+  const auto x_px = [&](double x_mm) {
+    return pixel_of(sensor.camera, fingerpad::Point3<double>{x_mm, 0, static_cast<double>(*middle)})
+        .x;
+  };
+  const double px_per_mm = x_px(0.5) - x_px(-0.5);
+  options.pattern.rows = sensor.dots->rows;
+  options.pattern.cols = sensor.dots->cols;
+  options.pattern.radius_px = sensor.dots->diameter_mm / 2 * px_per_mm;
+  options.pattern.pitch_px = sensor.dots->pitch_mm * px_per_mm;
+  options.pattern.bright = false;
+  options.pattern.middle_px = {sensor.camera.center_x_px, sensor.camera.center_y_px};
+  options.color_weights = {0, 1, 1};  // the fluid's light is red and green
+  return options;
+}
+
+void DotSource::read(const std::filesystem::path& file, int frame_count, cv::Size size) {
+  how_ = "dots.csv";
+  listed_ = read_dots(file, frame_count, size.empty() ? std::nullopt : std::optional(size));
+  initial_ = listed_.begin()->second;
+}
+
+void DotSource::follow(fingerpad::DotFinder finder) {
+  how_ = "found in the frames";
+  initial_ = free_dots(finder);
+  state_ = finder.start();
+  finder_ = std::move(finder);
+}
 
 DotSource::DotSource(const std::filesystem::path& folder,
                      const Sensor& sensor,
                      const cv::Mat& reference_image,
                      const cv::Mat_<float>& reference_depth,
                      int frame_count) {
-  std::optional<FirstOrder> free_pad;
+  std::optional<fingerpad::DotFinder> finder;
   if (sensor.dots) {
-    finder_ = std::make_unique<BlobFinder>(sensor, reference_depth);
-    free_pad = order_free_pad(sensor, reference_depth, finder_->find(reference_image));
-    if (fingerpad::count_present(free_pad->found) < min_dots) {
-      free_pad.reset();
-    }
+    finder = finder_of(folder, reference_image, print_of(sensor, reference_depth));
   }
-  const std::filesystem::path file = folder / "dots.csv";
-  if (std::filesystem::exists(file)) {
-    how_ = "dots.csv";
-    std::optional<cv::Size> size;
-    if (sensor.dots) {
-      size = cv::Size(sensor.dots->cols, sensor.dots->rows);
+  const bool found = finder && finder->ok();
+  if (std::filesystem::exists(folder / "dots.csv")) {
+    const cv::Size size = sensor.dots ? cv::Size(sensor.dots->cols, sensor.dots->rows) : cv::Size();
+    read(folder / "dots.csv", frame_count, size);
+    if (found && count_present(finder->free_px()) > fingerpad::count_present(initial_) &&
+        agree(free_dots(*finder), initial_, finder->pattern().pitch_px)) {
+      initial_ = free_dots(*finder);
     }
-    listed_ = read_dots(file, frame_count, size);
-    initial_ = listed_.begin()->second;
-    if (free_pad &&
-        fingerpad::count_present(free_pad->found) > fingerpad::count_present(initial_) &&
-        agree(free_pad->found, initial_)) {
-      initial_ = free_pad->found;
-    }
-  } else if (free_pad) {
-    how_ = "found in the frames";
-    initial_ = free_pad->found;
-    tracker_ = std::make_unique<DotTracker>(*free_pad);
+  } else if (found) {
+    follow(std::move(*finder));
   }
 }
 
 DotSource DotSource::of_dots_only(const std::filesystem::path& folder, Recording& recording) {
   DotSource source;
   const DotPattern& given = recording.sensor.pattern;
-  const std::filesystem::path file = folder / "dots.csv";
-  if (std::filesystem::exists(file)) {
-    source.how_ = "dots.csv";
-    std::optional<cv::Size> size;
-    if (given.rows > 0) {
-      size = cv::Size(given.cols, given.rows);
-    }
-    source.listed_ = read_dots(file, recording.frames.size(), size);
-    source.initial_ = source.listed_.begin()->second;
+  if (std::filesystem::exists(folder / "dots.csv")) {
+    source.read(folder / "dots.csv", recording.frames.size(), {given.cols, given.rows});
     return source;
   }
-  auto pattern = find_pattern(recording.reference, given);
+  fingerpad::DotFinderOptions options;
+  options.pattern.rows = given.rows;
+  options.pattern.cols = given.cols;
+  options.pattern.radius_px = given.diameter_px / 2;
+  options.pattern.bright = given.bright;
+  options.tracker.max_off = 0.3;  // behind an elastic pad
+  auto finder = finder_of(folder, recording.reference, options);
   const int tried = (std::min)(first_frames, recording.frames.size());
   recording.frames.seek(0);
-  for (int frame = 0; frame < tried && !pattern; ++frame) {
-    pattern = find_pattern(next_frame(recording.frames, recording.reference.size()), given);
+  for (int frame = 0; frame < tried && !finder.ok(); ++frame) {
+    finder = finder_of(folder, next_frame(recording.frames, recording.reference.size()), options);
   }
-  if (!pattern) {
+  if (!finder.ok()) {
     fail(folder, "none of the first " + std::to_string(tried) +
                      " frames shows a grid of nine or more dots (\"dots\" in sensor.json may say "
                      "what they look like, or dots.csv where they are)");
   }
-  source.how_ = "found in the frames";
-  source.initial_ = pattern->order.found;
-  source.finder_ = std::make_unique<BlobFinder>(recording.reference.size(), pattern->look);
-  source.tracker_ = std::make_unique<DotTracker>(pattern->order, elastic_pad);
+  source.follow(std::move(finder));
   return source;
 }
 
 DotGrid DotSource::of(int frame, const cv::Mat& image) {
-  if (tracker_) {
-    return tracker_->track(finder_->find(image));
+  if (finder_) {
+    DotGrid dots = no_dots(initial_.size());
+    (void)(*finder_)(image, dots, *state_);
+    return dots;
   }
   const auto listed = listed_.find(frame);
   return listed == listed_.end() ? no_dots(initial_.size()) : listed->second.clone();

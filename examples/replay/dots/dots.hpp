@@ -2,17 +2,16 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 // The printed dots of a recording, frame by frame and in print order: read from dots.csv where the
-// recording has it, else found in the frames where sensor.json says what is printed or the
-// recording is of dots only.
+// recording has it, else found in the frames, with the library's dot_finder.hpp, where sensor.json
+// says what is printed or the recording is of dots only.
 #include <filesystem>
 #include <map>
-#include <memory>
 #include <opencv2/core.hpp>
+#include <optional>
 #include <string>
 
-#include "replay/dots/blobs.hpp"
+#include "fingerpad/adapt/dot_finder.hpp"
 #include "replay/dots/grid.hpp"
-#include "replay/dots/track.hpp"
 #include "replay/io/recording.hpp"
 #include "replay/io/sensor.hpp"
 
@@ -41,7 +40,7 @@ class DotSource {
 
   /// The free pad's dots. With dots.csv: those of the first frame that it names, or those found in
   /// the reference, if these are more and are the same dots (half of those that both have lie
-  /// within half a spacing).
+  /// within half a pitch).
   DotGrid initial() const { return initial_.clone(); }
 
   /// The dots of a frame; all NaN for a frame that dots.csv does not name. Found dots are followed
@@ -50,11 +49,18 @@ class DotSource {
 
  private:
   DotSource() = default;
+  void read(const std::filesystem::path& file, int frame_count, cv::Size size);
+  void follow(fingerpad::DotFinder finder);
+
   std::string how_ = "none";
   DotGrid initial_;
   std::map<int, DotGrid> listed_;
-  std::unique_ptr<BlobFinder> finder_;
-  std::unique_ptr<DotTracker> tracker_;
+  std::optional<fingerpad::DotFinder> finder_;
+  std::optional<fingerpad::DotFinder::State> state_;
 };
+
+/// What is looked for on the free pad: the print of sensor.json's section on dots, as large as it
+/// appears at the pad's median depth, where the pad has a depth.
+fingerpad::DotFinderOptions print_of(const Sensor& sensor, const cv::Mat_<float>& reference_depth);
 
 }  // namespace replay

@@ -18,7 +18,7 @@ namespace replay {
 namespace {
 
 const std::vector<std::string> header = {"frame", "row", "col", "x_px", "y_px"};
-constexpr int largest_print = 4096;  // rows or columns that a file may ask for by itself
+constexpr int largest_print = 100;  // rows or columns that a file may ask for by itself
 
 struct Line {
   int frame = 0;

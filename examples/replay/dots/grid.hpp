@@ -4,7 +4,6 @@
 // The printed dots of one frame, as the library takes them: a grid of pixels in print order.
 #include <limits>
 #include <opencv2/core.hpp>
-#include <vector>
 
 #include "fingerpad/adapt/opencv.hpp"
 #include "fingerpad/core/dots.hpp"
@@ -21,8 +20,5 @@ inline cv::Vec2d no_dot() {
 inline DotGrid no_dots(cv::Size size) {
   return DotGrid(size, no_dot());
 }
-
-/// Centers of dark spots, in any order.
-using Blobs = std::vector<cv::Vec2d>;
 
 }  // namespace replay

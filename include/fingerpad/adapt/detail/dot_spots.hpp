@@ -159,7 +159,7 @@ class SpotFinder {
   }
 
   Frame look_at(const cv::Mat& frame) const {
-    Frame seen{frame, light_of(shrunk(frame, fine_)), {}, 0};
+    Frame seen{frame, shrunk(light_of(frame), fine_), {}, 0};
     const cv::Mat_<float> light = shrunk(seen.light, coarse_);
     seen.brightest = glare * median_light(light);
     seen.ground = ground_of(seen, light);
