@@ -231,7 +231,9 @@ ModelFit<S> fit_rising(const std::vector<PressedContact<S>>& samples,
   }
   expects(is_finite(least) && value(best.explained) >= value(S(options.min_explained)),
           "fit_normal_force", "share of the measured variance that a rising force explains",
-          best.explained, ">= min_explained: the force falls while the contact grows");
+          best.explained,
+          ">= min_explained: the force falls while the contact grows, or is not that of these "
+          "contacts");
   return best;
 }
 

@@ -135,7 +135,7 @@ ModelFit<S> fit_shear_model(const char* owner,
   return fit;
 }
 
-/// What a fit leaves of a force along a displacement, at the fit's own normalisation.
+/// A force beside the displacement that should cause it, at some normalisation.
 template <scalar S>
 struct PlaneForce {
   Point2<S> normalised;  ///< u d
@@ -143,34 +143,81 @@ struct PlaneForce {
   Point2<S> left;  ///< of it, what the fit does not explain
 };
 
-/// The likely mistake in how forces and displacements were measured; ok: none that can be seen. A
-/// constant, or a rotation, is one where it explains more than half of what is left, and is more
-/// than a tenth of the largest force, or of the force along the displacement.
-template <scalar S>
-FitStatus mistake_in(const std::vector<PlaneForce<S>>& samples) {
-  const auto exceeds = [](const S& a, const S& b) { return value(a) > value(b); };
-  S dd = S(0), ff = S(0), left_sq = S(0), largest_sq = S(0);
-  S along = S(0), across = S(0), mirrored_x = S(0), mirrored_y = S(0);
-  Point2<S> sum = {S(0), S(0)};
-  for (const PlaneForce<S>& s : samples) {
-    const Point2<S>&d = s.normalised, &f = s.force;
-    sum += s.left;
-    left_sq = left_sq + squared_norm(s.left);
-    dd = dd + squared_norm(d);
-    ff = ff + squared_norm(f);
-    along = along + dot(d, f);
-    across = across + S(d.x * f.y - d.y * f.x);
-    mirrored_x = mirrored_x + S(d.x * f.x - d.y * f.y);
-    mirrored_y = mirrored_y + S(d.x * f.y + d.y * f.x);
-    largest_sq = exceeds(squared_norm(f), largest_sq) ? squared_norm(f) : largest_sq;
+/// Equations of a force come in pairs, x and y; those of a moment alone. `left`: of each equation.
+template <scalar S, class Left>
+std::vector<PlaneForce<S>> plane_forces(const std::vector<ShearEquation<S>>& equations,
+                                        const S& exponent,
+                                        std::size_t components,
+                                        const Left& left) {
+  using std::exp;
+  std::vector<PlaneForce<S>> forces;
+  for (std::size_t i = 0; i + components <= equations.size(); i += components) {
+    const ShearEquation<S>& x = equations[i];
+    const S u = exp(S(exponent * x.log_measure));
+    PlaneForce<S> f{{S(u * x.component), S(0)}, {x.measured, S(0)}, {left(i), S(0)}};
+    if (components > 1) {
+      const ShearEquation<S>& y = equations[i + 1];
+      f.normalised.y = u * y.component;
+      f.force.y = y.measured;
+      f.left.y = left(i + 1);
+    }
+    forces.push_back(f);
   }
-  const S by_rotation = S(square(along) + square(across)) / dd;  // sums of squares explained
-  const S by_mirror = S(square(mirrored_x) + square(mirrored_y)) / dd;
-  if (exceeds(S(S(2) * by_mirror), ff) && exceeds(ff, S(S(2) * by_rotation))) {
+  return forces;
+}
+
+/// How forces lie to displacements, as sums over all samples.
+template <scalar S>
+struct ForceDirections {
+  S dd = S(0), ff = S(0), along = S(0), across = S(0), mirrored_x = S(0), mirrored_y = S(0);
+
+  explicit ForceDirections(const std::vector<PlaneForce<S>>& samples) {
+    for (const PlaneForce<S>& s : samples) {
+      const Point2<S>&d = s.normalised, &f = s.force;
+      dd = dd + squared_norm(d);
+      ff = ff + squared_norm(f);
+      along = along + dot(d, f);
+      across = across + S(d.x * f.y - d.y * f.x);
+      mirrored_x = mirrored_x + S(d.x * f.x - d.y * f.y);
+      mirrored_y = mirrored_y + S(d.x * f.y + d.y * f.x);
+    }
+  }
+  /// Sums of squares that a rotation with a scale explains, and a mirror with one.
+  S by_rotation() const { return S(S(square(along) + square(across)) / dd); }
+  S by_mirror() const { return S(S(square(mirrored_x) + square(mirrored_y)) / dd); }
+  static bool exceeds(const S& a, const S& b) { return value(a) > value(b); }
+};
+
+/// Axes with which no fit can succeed: mirrored, or rotated by more than 45 degrees.
+template <scalar S>
+FitStatus wrong_axes(const std::vector<PlaneForce<S>>& samples) {
+  const ForceDirections<S> sums(samples);
+  const auto exceeds = sums.exceeds;
+  if (exceeds(S(S(2) * sums.by_mirror()), sums.ff) &&
+      exceeds(sums.ff, S(S(2) * sums.by_rotation()))) {
     return FitStatus::axes_exchanged;
   }
-  if (exceeds(S(0), along) && exceeds(S(S(2) * by_rotation), ff)) {
+  const bool across = exceeds(square(sums.across), square(sums.along));
+  return across && exceeds(S(S(2) * sums.by_rotation()), sums.ff) ? FitStatus::gauge_rotated
+                                                                  : FitStatus::ok;
+}
+
+/// The likely mistake behind what a fit leaves; ok: none that can be seen. A constant, or a
+/// rotation, is one where it explains more than half of it, and is more than a tenth of the largest
+/// force, or of the force along the displacement.
+template <scalar S>
+FitStatus mistake_in(const std::vector<PlaneForce<S>>& samples) {
+  const ForceDirections<S> sums(samples);
+  const auto exceeds = sums.exceeds;
+  if (exceeds(S(0), sums.along) && exceeds(S(S(2) * sums.by_rotation()), sums.ff)) {
     return FitStatus::sign_reversed;
+  }
+  S left_sq = S(0), largest_sq = S(0);
+  Point2<S> sum = {S(0), S(0)};
+  for (const PlaneForce<S>& s : samples) {
+    sum += s.left;
+    left_sq = left_sq + squared_norm(s.left);
+    largest_sq = exceeds(squared_norm(s.force), largest_sq) ? squared_norm(s.force) : largest_sq;
   }
   const S count = S(static_cast<double>(samples.size()));
   const S by_constant = squared_norm(sum) / count;
@@ -178,32 +225,10 @@ FitStatus mistake_in(const std::vector<PlaneForce<S>>& samples) {
       exceeds(S(S(100) * S(by_constant / count)), largest_sq)) {
     return FitStatus::gauge_not_tared;
   }
-  if (exceeds(S(S(2) * S(square(across) / dd)), left_sq) &&
-      exceeds(S(S(100) * square(across)), square(along))) {
-    return FitStatus::gauge_rotated;
-  }
-  return FitStatus::ok;
-}
-
-/// Equations of a force come in pairs, x and y; those of a moment alone.
-template <scalar S>
-FitStatus mistake_in(const ModelFit<S>& fit,
-                     const std::vector<ShearEquation<S>>& equations,
-                     const S& exponent,
-                     std::size_t components) {
-  using std::exp;
-  std::vector<PlaneForce<S>> forces;
-  for (std::size_t i = 0; i + components <= equations.size(); i += components) {
-    const ShearEquation<S>& x = equations[i];
-    const ShearEquation<S>& y = equations[i + components - 1];
-    const S u = exp(S(exponent * x.log_measure));
-    const Index at = static_cast<Index>(i);
-    const S none = S(0);
-    forces.push_back({{S(u * x.component), components > 1 ? S(u * y.component) : none},
-                      {x.measured, components > 1 ? y.measured : none},
-                      {fit.residuals(at), components > 1 ? S(fit.residuals(at + 1)) : none}});
-  }
-  return mistake_in(forces);
+  const S across_sq = square(sums.across);
+  const bool explains = exceeds(S(S(2) * S(across_sq / sums.dd)), left_sq);
+  const bool matters = exceeds(S(S(100) * across_sq), square(sums.along));
+  return explains && matters ? FitStatus::gauge_rotated : FitStatus::ok;
 }
 
 /// The result. `places`: of the sample behind each equation.
@@ -262,10 +287,17 @@ Result fit_shear(const char* owner,
   if (!exponent) {
     names.emplace_back(exponent_name);
   }
+  const FitStatus axes =
+      wrong_axes(plane_forces(equations, exponent.value_or(S(0)), components,
+                              [&](std::size_t i) -> const S& { return equations[i].measured; }));
+  expects(axes == FitStatus::ok, owner, "usable samples", static_cast<long long>(samples.size()),
+          (std::string("such that forces follow displacements; ") + name_of(axes)).c_str());
   const ShearModel<S> model(equations, degree, exponent);
   const ModelFit<S> fit = fit_shear_model(owner, names, measured, model, degree, options);
   Result result = shear_fit_of<Result>(fit, measured, equations, exponent);
-  const FitStatus mistake = mistake_in(fit, equations, result.exponent, components);
+  const FitStatus mistake = mistake_in(plane_forces(
+      equations, result.exponent, components,
+      [&](std::size_t i) -> const S& { return fit.residuals(static_cast<Index>(i)); }));
   expects_explained(fit, options, owner, cause_of(mistake).c_str());
   const bool is_moment = components == 1;
   const FitStatus units = unit_mistake(samples, {!is_moment, is_moment, is_moment});

@@ -1,0 +1,467 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+// Mistakes that are made when a sensor is calibrated, and what is said of each: the name of a
+// status, or the message with which the samples are refused. "ok" where nothing can tell, with the
+// reason.
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "fingerpad/calibrate/contact.hpp"
+#include "fingerpad/calibrate/depth.hpp"
+#include "fingerpad/calibrate/force.hpp"
+#include "fingerpad/calibrate/rim.hpp"
+#include "fingerpad/calibrate/slip.hpp"
+#include "fingerpad/calibrate/taxels.hpp"
+#include "support/catch.hpp"
+#include "support/pad.hpp"
+#include "support/refusal.hpp"
+
+using namespace fingerpad;
+using test::Image;
+using test::Random;
+
+namespace {
+
+/// What a fit says: the name of its status, or why it refused.
+template <class Fit>
+std::string said(const Fit& fit) {
+  std::string status;
+  const std::string refused = test::refusal([&] { status = name_of(fit().status); });
+  return refused == "accepted" ? status : refused;
+}
+
+struct Mistake {
+  const char* name;
+  std::function<std::string()> says;
+  const char* expected;  ///< part of it
+};
+
+void check(const std::vector<Mistake>& mistakes) {
+  for (const Mistake& mistake : mistakes) {
+    const std::string says = mistake.says();
+    INFO(mistake.name << ": " << says);
+    CHECK(says.find(mistake.expected) != std::string::npos);
+  }
+}
+
+// ---- forces
+
+using Forces = std::vector<ForceSample<double>>;
+
+/// A press of twelve loads and a drag and a twist at three depths, as a gauge and a camera see
+/// them.
+Forces forces() {
+  Random random(1);
+  Forces samples;
+  for (int k = 0; k < 60; ++k) {
+    ForceSample<double> s;
+    s.measure = 0.5 + 0.4 * (k % 12);
+    const double angle = 0.7 * k, length = 0.1 * (k % 7), u = std::pow(s.measure / 2, 0.7);
+    s.displacement_mm = {length * std::cos(angle), length * std::sin(angle)};
+    s.rotation_rad = 0.02 * (k % 9 - 4);
+    s.normal_force_n = 0.55 * s.measure + 0.6 * s.measure * s.measure + 0.02 * random.normal();
+    s.tangential_force_n = {2 * u * s.displacement_mm.x + 0.01 * random.normal(),
+                            2 * u * s.displacement_mm.y + 0.01 * random.normal()};
+    s.moment_n_mm = 150 * u * s.rotation_rad + 0.05 * random.normal();
+    s.load = k % 12;
+    samples.push_back(s);
+  }
+  return samples;
+}
+
+using Change = std::function<void(ForceSample<double>&)>;
+
+Forces changed(const Change& change) {
+  Forces samples = forces();
+  for (ForceSample<double>& s : samples) {
+    change(s);
+  }
+  return samples;
+}
+
+std::function<std::string()> normal(const Change& change) {
+  return [=] {
+    const Forces samples = changed(change);
+    return said([&] {
+      return fit_normal_force<2>(std::span<const ForceSample<double>>(samples), {.rotated = true});
+    });
+  };
+}
+std::function<std::string()> tangential(const Change& change) {
+  return [=] {
+    const Forces samples = changed(change);
+    return said(
+        [&] { return fit_tangential_force<1>(std::span<const ForceSample<double>>(samples), 2); });
+  };
+}
+std::function<std::string()> moment(const Change& change) {
+  return [=] {
+    const Forces samples = changed(change);
+    return said([&] { return fit_moment<1>(std::span<const ForceSample<double>>(samples), 2); });
+  };
+}
+
+void rotate(Point2<double>& p, double angle) {
+  p = {p.x * std::cos(angle) - p.y * std::sin(angle),
+       p.x * std::sin(angle) + p.y * std::cos(angle)};
+}
+
+/// Forces of no contact in particular.
+Change any_force() {
+  return [random = Random(7)](ForceSample<double>& s) mutable {
+    s.normal_force_n = 10 * random.uniform();
+    s.tangential_force_n = {random.normal(), random.normal()};
+    s.moment_n_mm = random.normal();
+  };
+}
+
+// ---- depth
+
+using Colours = std::vector<DepthSample<double>>;
+
+Colours colours() {
+  const Camera<double> camera;
+  const Absorption<double> fluid;
+  Random random(2);
+  Colours samples;
+  for (int k = 0; k < 20; ++k) {
+    auto s = depth_sample(camera, 239.5, 319.5 + 10 * (k % 5), 0.3 + 0.6 * k, Colour<double>{});
+    s.colour = colour_at_depth(fluid, s.pencil, 57.0, 0.0163, s.depth_mm);
+    s.colour.red += 0.03 * random.normal();
+    s.colour.green += 0.03 * random.normal();
+    samples.push_back(s);
+  }
+  return samples;
+}
+
+template <int Degree = 0>
+std::function<std::string()> absorption(const std::function<void(Colours&)>& change) {
+  return [=] {
+    Colours samples = colours();
+    change(samples);
+    return said(
+        [&] { return fit_absorption<Degree>(std::span<const DepthSample<double>>(samples)); });
+  };
+}
+
+/// Some are refused, some are fitted; none is to be trusted.
+std::string random_colours() {
+  std::string unexplained;
+  for (std::uint64_t seed = 1; seed <= 40; ++seed) {
+    const std::string says = absorption([random = Random(seed)](Colours& samples) mutable {
+      for (auto& s : samples) {
+        s.colour = {20 + 100 * random.uniform(), 20 + 100 * random.uniform()};
+      }
+    })();
+    if (says == "ok") {
+      return says;
+    }
+    unexplained = test::begins_with(says, "fit_absorption") ? unexplained : says;
+  }
+  return unexplained;
+}
+
+}  // namespace
+
+TEST_CASE("mistakes: forces by look-up", "[mistakes]") {
+  check({
+      {"none", normal([](auto&) {}), "ok"},
+      {"none", tangential([](auto&) {}), "ok"},
+      {"none", moment([](auto&) {}), "ok"},
+      {"random forces", normal(any_force()), "not that of these contacts"},
+      {"random forces", tangential(any_force()), "contradict each other"},
+      {"random forces", moment(any_force()), "they are too few, too alike or tied to each other"},
+      {"forces along x and y exchanged",
+       tangential([](auto& s) { std::swap(s.tangential_force_n.x, s.tangential_force_n.y); }),
+       "are x and y exchanged"},
+      {"one axis reversed", tangential([](auto& s) { s.tangential_force_n.x *= -1; }),
+       "one of them reversed"},
+      {"force on the object, not on the pad", tangential([](auto& s) {
+         s.tangential_force_n = {-s.tangential_force_n.x, -s.tangential_force_n.y};
+       }),
+       "sign of an axis reversed"},
+      {"moment on the object", moment([](auto& s) { s.moment_n_mm *= -1; }),
+       "sign of an axis reversed"},
+      {"normal force negative, as a wrench has it", normal([](auto& s) { s.normal_force_n *= -1; }),
+       "the force falls while the contact grows"},
+      {"normal force and measure exchanged",  // a contact that grows ever less is as likely
+       normal([](auto& s) { std::swap(s.normal_force_n, s.measure); }), "ok"},
+      {"gauge not tared", normal([](auto& s) { s.normal_force_n += 6; }), "was the gauge tared?"},
+      {"gauge not tared", tangential([](auto& s) { s.tangential_force_n.y += 0.9; }),
+       "was the gauge tared?"},
+      {"gauge not tared", moment([](auto& s) { s.moment_n_mm += 9; }), "was the gauge tared?"},
+      {"gauge rotated by 15 degrees",
+       tangential([](auto& s) { rotate(s.tangential_force_n, 0.26); }), "is the gauge rotated"},
+      {"gauge rotated by 30 degrees",
+       tangential([](auto& s) { rotate(s.tangential_force_n, 0.52); }), "is the gauge rotated"},
+      {"gauge rotated by 90 degrees",
+       tangential([](auto& s) { rotate(s.tangential_force_n, 1.57); }), "is the gauge rotated"},
+      {"area in m^2", normal([](auto& s) { s.measure *= 1e-6; }), "areas in mm^2"},
+      {"depth in m", normal([](auto& s) { s.measure *= 1e-3; }), "depths and radii in mm"},
+      {"displacement in m", tangential([](auto& s) {
+         s.displacement_mm = {s.displacement_mm.x / 1000, s.displacement_mm.y / 1000};
+       }),
+       "no displacement reaches 0.01"},
+      {"rotation in degrees", moment([](auto& s) { s.rotation_rad *= 57.3; }), "in rad?"},
+      {"rotation in degrees", normal([](auto& s) { s.rotation_rad *= 57.3; }), "in rad?"},
+      {"moment in N m", moment([](auto& s) { s.moment_n_mm /= 1000; }), "in N mm?"},
+      {"a bumped gauge",
+       normal([k = 0](auto& s) mutable { s.normal_force_n += k++ == 30 ? 3 : 0; }), "gauge bumped"},
+      {"one load alone", normal([](auto& s) { s.measure = 2; }), "must be > the smallest"},
+      {"shifted by one", tangential([before = Point2<double>{0, 0}](auto& s) mutable {
+         std::swap(before, s.tangential_force_n);
+       }),
+       "contradict each other"},
+      {"stuck gauge", normal([](auto& s) { s.normal_force_n = 4; }), "not that of these contacts"},
+      {"nothing measured", normal([](auto& s) { s.normal_force_n = test::nan; }),
+       "usable samples = 0"},
+  });
+}
+
+TEST_CASE("mistakes: the fluid", "[mistakes]") {
+  check({
+      {"none", absorption([](Colours&) {}), "ok"},
+      {"random colours", random_colours, "the colours do not follow from the depths"},
+      {"depths of another order", absorption([](Colours& samples) {
+         for (std::size_t k = 0; k < samples.size(); ++k) {
+           samples[k].depth_mm = 0.3 + 0.6 * static_cast<double>(7 * k % 20);
+         }
+       }),
+       "the colours do not follow from the depths"},
+      {"depths in m", absorption([](Colours& samples) {
+         for (auto& s : samples) {
+           s.depth_mm /= 1000;
+         }
+       }),
+       "in mm"},
+      {"red and green exchanged", absorption([](Colours& samples) {
+         for (auto& s : samples) {
+           std::swap(s.colour.red, s.colour.green);
+         }
+       }),
+       "are red and green right?"},
+      {"g negative at the rim", absorption<1>([](Colours& samples) {
+         for (auto& s : samples) {
+           const double g = 0.0163 * (1 - 1.2 * s.rho_sq_mm2 / samples[4].rho_sq_mm2);
+           s.colour = colour_at_depth(Absorption<double>{}, s.pencil, 57.0, g, s.depth_mm);
+         }
+       }),
+       "g is not positive everywhere"},
+      {"four samples", absorption([](Colours& samples) {
+         samples = {samples[0], samples[6], samples[12], samples[19]};
+       }),
+       "nothing is left to check them by"},
+      {"one depth", absorption([](Colours& samples) {
+         for (auto& s : samples) {
+           s.depth_mm = 4;
+         }
+       }),
+       "number of distinct depths = 1"},
+      {"colour NaN", absorption([](Colours& samples) { samples[3].colour.red = test::nan; }),
+       "colour.red = "},
+      {"saturated", absorption([](Colours& samples) {
+         for (auto& s : samples) {
+           s.colour = {255, 255};
+         }
+       }),
+       "the depths must spread"},
+  });
+}
+
+namespace {
+
+// ---- frames
+
+/// Dots of a standing pad with 0.06 px of noise, changed frame by frame.
+std::function<std::string()> standing(
+    const std::function<void(Image<Point2<double>>&, int)>& change, Index rows = 9) {
+  return [=] {
+    return said([&] {
+      Random random(4);
+      DotNoiseCalibration calibration(rows, 9);
+      for (int t = 0; t < 30; ++t) {
+        Image<Point2<double>> dots(rows, 9);
+        for (Index i = 0; i < rows; ++i) {
+          for (Index j = 0; j < 9; ++j) {
+            dots(i, j) = {100 + 19.5 * static_cast<double>(j) + 0.06 * random.normal(),
+                          50 + 19.5 * static_cast<double>(i) + 0.06 * random.normal()};
+          }
+        }
+        change(dots, t);
+        calibration.add(dots);
+      }
+      return calibration.fit();
+    });
+  };
+}
+
+/// Readings of 6 x 4 taxels at rest, every 30th of a second or as `period_s` says.
+std::function<std::string()> resting(const std::function<double(double, Index, Index)>& reading,
+                                     double period_s = 1.0 / 30) {
+  return [=] {
+    return said([&] {
+      Random random(5);
+      TaxelNoiseCalibration calibration(6, 4);
+      Image<double> taxels(6, 4);
+      for (Index k = 0; k < 600; ++k) {
+        for (Index i = 0; i < 24; ++i) {
+          taxels(i / 4, i % 4) = reading(500 + 2 * random.normal(), i, k);
+        }
+        calibration.add(taxels, period_s * static_cast<double>(k));
+      }
+      return calibration.fit();
+    });
+  };
+}
+
+/// Depth maps of a free pad, a cap of 40 mm radius with 1 um of noise; `scale` of the unit.
+std::function<std::string()> free_pad(double scale, double share_seen, double noise_mm = 0.001) {
+  return [=] {
+    return said([&] {
+      Random random(6);
+      OrthographicCamera<double> camera;
+      camera.pitch_mm = 0.16;
+      FreePadCalibration<ClampedMean<>, OrthographicCamera<double>> calibration(camera, 60, 80,
+                                                                                {8});
+      for (int t = 0; t < 4; ++t) {
+        Image<double> depth(60, 80);
+        for (Index i = 0; i < 60; ++i) {
+          for (Index j = 0; j < 80; ++j) {
+            const double x = 0.16 * static_cast<double>(j - 40);
+            const double y = 0.16 * static_cast<double>(i - 30);
+            const double l = std::sqrt(1600 - x * x - y * y) - 28 + noise_mm * random.normal();
+            depth(i, j) = static_cast<double>(i) < 60 * share_seen ? scale * l : test::nan;
+          }
+        }
+        calibration.add(depth);
+      }
+      return calibration.fit();
+    });
+  };
+}
+
+/// Side dots of a flat free rim, 36 around a radius of 18 mm, at two pressures.
+struct RimMistake {
+  double pressure = 1;       ///< unit over MPa
+  double unlike = 1;         ///< the second pressure over what it is
+  double length = 1;         ///< unit over mm
+  bool exchanged = false;    ///< the frames of the two pressures
+  bool upside_down = false;  ///< z points into the plate
+};
+std::function<std::string()> rim(const RimMistake& mistake, int levels = 2) {
+  return [=] {
+    return said([&] {
+      std::vector<Point3<double>> border;
+      for (int j = 0; j < 36; ++j) {
+        const double angle = 0.17453292519943295 * j;
+        border.push_back({18 * std::cos(angle), 18 * std::sin(angle), 0});
+      }
+      RimCalibration<> calibration(grid_of(border, 1, 36), 18);
+      for (int k = 0; k < levels; ++k) {
+        const double lambda = 1.1 + 0.08 * (mistake.exchanged ? levels - 1 - k : k);
+        const double true_lambda = 1.1 + 0.08 * k;
+        auto dots = border;
+        for (auto& d : dots) {
+          d = {d.x * mistake.length, d.y * mistake.length, 0.8 * lambda * mistake.length};
+          d.z = mistake.upside_down ? -d.z : d.z;
+        }
+        const double pull = 0.5 * (true_lambda - std::pow(true_lambda, -3));
+        const double pressure = 2 * pull / 18 * (k == 1 ? mistake.unlike : 1);
+        calibration.add(static_cast<std::size_t>(k), grid_of(dots, 1, 36),
+                        pressure * mistake.pressure);
+      }
+      return calibration.fit();
+    });
+  };
+}
+
+}  // namespace
+
+TEST_CASE("mistakes: noise of the dots", "[mistakes]") {
+  using Dots = Image<Point2<double>>;
+  check({
+      {"none", standing([](Dots&, int) {}), "ok"},
+      {"the pad is stretched meanwhile", standing([](Dots& dots, int t) {
+         for (auto& p : dots.cells) {
+           p.x *= 1 + 2e-4 * t;
+         }
+       }),
+       "did the pad stand still?"},
+      {"the same frame again and again", standing([](Dots& dots, int) {
+         for (std::size_t k = 0; k < dots.cells.size(); ++k) {
+           dots.cells[k] = {20.0 * static_cast<double>(k % 9), 20.0 * static_cast<double>(k / 9)};
+         }
+       }),
+       "the frames are the same"},
+      {"all dots lost", standing([](Dots& dots, int) {
+         for (auto& p : dots.cells) {
+           p.x = test::nan;
+         }
+       }),
+       "dots = 0"},
+      {"dots in mm",  // noise is in the dots' unit, whatever it is
+       standing([](Dots& dots, int) {
+         for (auto& p : dots.cells) {
+           p = {p.x * 0.06, p.y * 0.06};
+         }
+       }),
+       "ok"},
+      {"dots 0..1", standing([](Dots& dots, int) {
+         for (auto& p : dots.cells) {
+           p = {p.x / 640, p.y / 480};
+         }
+       }),
+       "ok"},
+      {"no dots", standing([](Dots&, int) {}, 0), "rows = 0"},
+      {"a grid that no camera sees", standing([](Dots&, int) {}, Index(1) << 60), "rows * cols"},
+  });
+}
+
+TEST_CASE("mistakes: noise of the taxels", "[mistakes]") {
+  check({
+      {"none", resting([](double r, Index, Index) { return r; }), "ok"},
+      {"a dead array", resting([](double, Index, Index) { return 0.0; }),
+       "taxels whose readings change = 0"},
+      {"most readings at full scale",  // as rest without noise looks
+       resting([](double r, Index i, Index) { return i < 20 ? 4095.0 : r; }), "ok"},
+      {"most readings missing",
+       resting([](double r, Index i, Index) { return i < 20 ? test::nan : r; }), "in range"},
+      {"one dead taxel", resting([](double r, Index i, Index) { return i == 3 ? test::nan : r; }),
+       "ok"},
+      {"time in ms", resting([](double r, Index, Index) { return r; }, 1000.0 / 30), "windows = "},
+      {"time stands still", resting([](double r, Index, Index) { return r; }, 0), "windows = 0"},
+  });
+}
+
+TEST_CASE("mistakes: threshold of the contact", "[mistakes]") {
+  check({
+      {"none", free_pad(1, 1), "ok"},
+      {"depths in m", free_pad(1e-3, 1), "in mm?"},
+      {"most depths missing", free_pad(1, 0.4), "fewer than half of the pixels"},
+      {"no depth at all", free_pad(1, 0), "pixels = 0"},
+      {"height for depth", free_pad(-1, 1), "bulges too little"},
+      {"no smoothing", free_pad(1, 1, 0.2), "bulges too little"},
+  });
+}
+
+TEST_CASE("mistakes: the rim", "[mistakes]") {
+  check({
+      {"none", rim({}), "ok"},
+      {"pressure in kPa", rim({.pressure = 1e3}), "in MPa"},
+      {"pressure in Pa", rim({.pressure = 1e6}), "in MPa"},
+      {"frames of the two pressures exchanged", rim({.exchanged = true}), "must be"},
+      {"one of two pressures absolute",  // two pressures fit any two numbers
+       rim({.unlike = 1 + 0.1 / 0.03}), "ok"},
+      {"one of four pressures absolute", rim({.unlike = 1 + 0.1 / 0.03}, 4),
+       "are pressures and dots right?"},
+      {"one of four pressures of another frame", rim({.unlike = 1.4}, 4), "do not balance"},
+      {"z into the plate", rim({.upside_down = true}), "must be"},
+      {"dots in m", rim({.length = 1e-3}), "must be"},
+      {"one pressure alone", rim({}, 1), "with one, fit_modulus"},
+  });
+}
