@@ -39,8 +39,8 @@ struct Loads {
   int no_answer = 0;
 };
 
-inline const PadHeights<>::Map& measured_heights(const std::string& name) {
-  static std::map<std::string, PadHeights<>::Map> all;
+inline const fingerpad::PadHeights<>::Map& measured_heights(const std::string& name) {
+  static std::map<std::string, fingerpad::PadHeights<>::Map> all;
   const auto found = all.find(name);
   if (found != all.end()) {
     return found->second;

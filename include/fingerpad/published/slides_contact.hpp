@@ -1,0 +1,113 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+#pragma once
+// The contact region word for word as paper and slides have it: Ito, Kim, Nagai, Obinata,
+// "Acquisition of tactile information by vision-based tactile sensor for dexterous handling of
+// robot hands": circles through three points of the membrane in many sections (E012 repaired), by
+// plain loops over every fifth pixel. Three tests: eq. 12; the slides' mean of curvatures of which
+// negative ones count as 0; and the slides' first one, every direction below delta_R. A level
+// section has no circle: its curvature is NaN and passes no test (E013). Heights are orthographic,
+// as printed.
+#include <cmath>
+#include <cstdint>
+#include <numbers>
+#include <utility>
+
+#include "fingerpad/core/expects.hpp"
+#include "fingerpad/core/grid.hpp"
+#include "fingerpad/core/scalar.hpp"
+#include "fingerpad/published/contact_region.hpp"
+
+namespace fingerpad {
+inline namespace v0 {
+namespace published {
+
+enum class ContactCondition : std::uint8_t {
+  twice_mean,       ///< eq. 12: the sum over 2n directions, divided by n
+  clamped_mean,     ///< f of the slides: the mean over n directions, negative ones set to 0
+  every_direction,  ///< 1/R' < delta_R in each of n directions
+};
+
+struct SlidesContactOptions {
+  ContactCondition condition = ContactCondition::twice_mean;
+  double threshold_per_mm = 0.00015;  ///< delta, delta_f or delta_R, finite
+  int directions = 18;                ///< n, >= 1
+  double radius_px = 10;              ///< r, >= 1; 25 px in the slides
+  double pitch_mm = 0.08;             ///< of a pixel on the membrane, > 0
+  int step_px = 5;                    ///< "changing the center point P by 5 pixel", >= 1
+};
+
+/// 1/R' of the section at the angle theta through (row, col), by the circle through the nearest
+/// pixels r before and after it and itself; NaN outside of the map and on a level section.
+template <scalar S, grid Depth>
+S section_curvature(const Depth& depth_mm,
+                    Index row,
+                    Index col,
+                    double theta_rad,
+                    double radius_px,
+                    double pitch_mm) {
+  const auto offset = [&](double direction) {
+    return static_cast<Index>(std::lround(radius_px * direction));
+  };
+  const Index down = offset(std::sin(theta_rad)), right = offset(std::cos(theta_rad));
+  const auto at = [&](Index i, Index j) {
+    const bool inside = i >= 0 && j >= 0 && i < rows(depth_mm) && j < cols(depth_mm);
+    return inside ? S(grid_traits<Depth>::at(depth_mm, i, j)) : not_a_number<S>();
+  };
+  const S reach = S(pitch_mm * std::hypot(static_cast<double>(down), static_cast<double>(right)));
+  return circle_center_curvature(reach, at(row - down, col - right), at(row, col),
+                                 at(row + down, col + right));
+}
+
+/// Whether the membrane touches at (row, col).
+template <scalar S = double, grid Depth>
+bool touches(const Depth& depth_mm, Index row, Index col, const SlidesContactOptions& o) {
+  const bool twice = o.condition == ContactCondition::twice_mean;
+  const int count = twice ? 2 * o.directions : o.directions;
+  const S threshold = S(o.threshold_per_mm);
+  S sum = S(0);
+  bool all_below = true;
+  for (int i = 1; i <= count; ++i) {
+    const S k = section_curvature<S>(depth_mm, row, col, std::numbers::pi * i / count, o.radius_px,
+                                     o.pitch_mm);
+    const bool clamps = o.condition == ContactCondition::clamped_mean && k < S(0);
+    sum += clamps ? S(0) : k;
+    all_below = all_below && k < threshold;  // false for NaN
+  }
+  const S mean = sum / S(o.directions);  // eq. 12 divides 2n curvatures by n
+  return o.condition == ContactCondition::every_direction ? all_below : mean < threshold;
+}
+
+/// The contact of a height map: every pixel has the answer of the center of its block of step_px x
+/// step_px. Returns the area that touches in mm^2; NaN, and nothing written, where the mask has
+/// another size. Refuses bad parameters (parameter_error). O(pixels directions / step_px^2).
+template <scalar S = double, grid Depth, writable_grid<bool> Mask>
+double contact_by_slides(const Depth& depth_mm, Mask&& mask, const SlidesContactOptions& o = {}) {
+  const char* const owner = "SlidesContactOptions";
+  expects(is_finite(o.threshold_per_mm), owner, "threshold_per_mm", o.threshold_per_mm, "finite");
+  expects(o.directions >= 1, owner, "directions", static_cast<long long>(o.directions), ">= 1");
+  expects(o.radius_px >= 1, owner, "radius_px", o.radius_px, ">= 1");
+  expects(is_finite(o.pitch_mm) && o.pitch_mm > 0, owner, "pitch_mm", o.pitch_mm, "> 0");
+  expects(o.step_px >= 1, owner, "step_px", static_cast<long long>(o.step_px), ">= 1");
+  const auto to = as_view(std::forward<Mask>(mask));
+  if (!same_size(depth_mm, to)) {
+    return not_a_number<double>();
+  }
+  double touching_px = 0;
+  for (Index top = 0; top < to.rows(); top += o.step_px) {
+    for (Index left = 0; left < to.cols(); left += o.step_px) {
+      const bool set = touches<S>(depth_mm, top + o.step_px / 2, left + o.step_px / 2, o);
+      for (Index i = top; i < top + o.step_px && i < to.rows(); ++i) {
+        for (Index j = left; j < left + o.step_px && j < to.cols(); ++j) {
+          to(i, j) = static_cast<cell_t<Mask>>(set);
+          touching_px += set ? 1 : 0;
+        }
+      }
+    }
+  }
+  return touching_px * o.pitch_mm * o.pitch_mm;
+}
+
+}  // namespace published
+}  // namespace v0
+}  // namespace fingerpad

@@ -1,0 +1,233 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+// Printed forms that stand alone: each by its equation done by hand, and by what it is known to do.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include "fingerpad/calibrate/depth.hpp"
+#include "fingerpad/published/absorption.hpp"
+#include "fingerpad/published/camera.hpp"
+#include "fingerpad/published/neighbour_light_fit.hpp"
+#include "fingerpad/published/normal_force_first_forms.hpp"
+#include "fingerpad/published/slides_contact.hpp"
+#include "support/catch.hpp"
+#include "support/numbers.hpp"
+#include "support/pad.hpp"
+
+using namespace fingerpad;
+using test::Image;
+using test::Pad;
+
+namespace {
+
+using Known = published::KnownDepth<double>;
+
+/// What a pixel of the published pad sees at a depth, with noise of so many grey levels.
+Known known(
+    const Pad& pad, Index row, Index col, double depth_mm, double red = 0, double green = 0) {
+  auto colour = pad.colour<published::SingleHeight>(row, col, depth_mm, 57);
+  colour.red += red;
+  colour.green += green;
+  return {pad.pencil<published::SingleHeight>(row, col), depth_mm, colour};
+}
+
+}  // namespace
+
+TEST_CASE("published quotient: it is g at every depth", "[published]") {
+  const Pad pad;
+  for (const double depth_mm : {0.5, 3.0, 8.0, 13.0}) {
+    for (const Index col : {28, 40}) {
+      const Known k = known(pad, 24, col, depth_mm);
+      CHECK(published::scattering_quotient(pad.fluid, k.pencil, k.depth_mm, k.colour) ==
+            Approx(pad.g(24, col)).epsilon(1e-9));
+    }
+  }
+  // 0 / 0 at the plate: E006
+  const Known none = known(pad, 24, 28, 0);
+  CHECK_FALSE(is_finite(published::scattering_quotient(pad.fluid, none.pencil, 0.0, none.colour)));
+}
+
+TEST_CASE("published identification: three equations give back the fluid", "[published]") {
+  Pad pad;
+  for (const auto& [c_red, c_green, kappa] :
+       {std::array{0.0290, 0.0336, 0.9924}, {0.022, 0.031, 0.9}, {0.04, 0.05, 1.1}}) {
+    pad.fluid = {c_red, c_green, kappa};
+    const auto at = [&](double depth_mm) { return known(pad, 24, 28, depth_mm); };
+    const auto found = published::identify_absorption(at(12), std::array{at(1), at(4), at(8)},
+                                                      Absorption<double>{0.03, 0.035, 1.0});
+    CAPTURE(c_red, found.iterations, found.residual);
+    CHECK(found.ok());
+    CHECK(found.fluid.c_red_per_mm == Approx(c_red).epsilon(1e-4));
+    CHECK(found.fluid.c_green_per_mm == Approx(c_green).epsilon(1e-4));
+    CHECK(found.fluid.kappa == Approx(kappa).epsilon(1e-5));
+    CHECK(found.residual < 1e-12);
+  }
+}
+
+TEST_CASE("published identification: depths that are one, and noise", "[published]") {
+  const Pad pad;
+  const Known one = known(pad, 24, 28, 5);
+  const auto same =
+      published::identify_absorption(known(pad, 24, 28, 12), std::array{one, one, one});
+  // one equation thrice: solved somewhere, or refused, but never by these three numbers
+  CHECK_FALSE((same.ok() && std::abs(same.fluid.c_red_per_mm - 0.029) > 1e-6));
+  // 0.03 grey levels at one depth move c_R by a tenth and more, but depths hardly
+  const auto noisy = published::identify_absorption(
+      known(pad, 24, 28, 12),
+      std::array{known(pad, 24, 28, 1, 0.03), known(pad, 24, 28, 4), known(pad, 24, 28, 8)});
+  CHECK(std::abs(noisy.fluid.c_red_per_mm / 0.029 - 1) > 0.1);
+}
+
+TEST_CASE("published fit of the neighbouring light: a line of logarithms", "[published]") {
+  std::vector<published::LoggedLight> pixels;
+  for (int k = 0; k < 50; ++k) {
+    const double risen = -3 + 0.08 * k, psi = 20 + 15 * std::sin(0.7 * k);
+    pixels.push_back({8e-4 * std::exp(0.2 * risen) * psi, risen, psi});
+  }
+  const auto exact = published::fit_by_logarithms(pixels);
+  CHECK(exact.ok());
+  CHECK(exact.m0_mm_per_rad == Approx(8e-4));
+  CHECK(exact.n_per_mm == Approx(0.2));
+  CHECK(exact.sum_sq < 1e-20);
+  CHECK(exact.used == 50);
+  // what has no logarithm is left out
+  pixels[3].error_mm = -0.01;
+  pixels[7].psi_sum_rad = 0;
+  const auto fewer = published::fit_by_logarithms(pixels);
+  CHECK(fewer.left_out == 2);
+  CHECK(fewer.n_per_mm == Approx(0.2));
+  // least squares of logarithms: a factor on one pixel weighs by its place, not by its size
+  pixels = {{std::exp(0.0), 0, 1}, {std::exp(1.0), 1, 1}, {std::exp(5.0), 2, 1}};
+  const auto bent = published::fit_by_logarithms(pixels);
+  CHECK(bent.n_per_mm == Approx(2.5));
+  CHECK(std::log(bent.m0_mm_per_rad) == Approx(-0.5));
+  CHECK(bent.sum_sq == Approx(0.25 + 1 + 0.25));
+  CHECK_FALSE(published::fit_by_logarithms(std::span(pixels).first(1)).ok());
+}
+
+TEST_CASE("published circle through three points", "[published]") {
+  // a sphere of 20 mm, any direction: nearest pixels have their own distance
+  Image<double> sphere(41, 41), level(41, 41, 9.0);
+  for (Index i = 0; i < 41; ++i) {
+    for (Index j = 0; j < 41; ++j) {
+      const double x = 0.1 * static_cast<double>(j - 20), y = 0.1 * static_cast<double>(i - 20);
+      sphere(i, j) = std::sqrt(400 - x * x - y * y);
+    }
+  }
+  for (int k = 0; k < 18; ++k) {
+    CHECK(published::section_curvature<double>(sphere, 20, 20, k * std::numbers::pi / 18, 10,
+                                               0.1) == Approx(0.05).epsilon(1e-9));
+  }
+  CHECK(std::isnan(published::section_curvature<double>(level, 20, 20, 0.3, 10, 0.1)));
+  CHECK(std::isnan(published::section_curvature<double>(sphere, 2, 20, 1.5, 10, 0.1)));
+}
+
+TEST_CASE("published contact conditions: what each lets pass", "[published]") {
+  using published::ContactCondition;
+  using published::SlidesContactOptions;
+  const auto surface = [](double along_x, double along_y) {
+    Image<double> z(61, 61);
+    for (Index i = 0; i < 61; ++i) {
+      for (Index j = 0; j < 61; ++j) {
+        const double x = 0.08 * static_cast<double>(j - 30), y = 0.08 * static_cast<double>(i - 30);
+        // bulging is positive: the membrane is seen from inside
+        z(i, j) = 9 - (along_x * x * x + along_y * y * y) / 2;
+      }
+    }
+    return z;
+  };
+  const auto touches = [&](ContactCondition condition, double along_x, double along_y,
+                           double threshold = 0.01) {
+    SlidesContactOptions o;
+    o.condition = condition;
+    o.threshold_per_mm = threshold;
+    return published::touches(surface(along_x, along_y), 30, 30, o);
+  };
+  const auto twice = ContactCondition::twice_mean, clamped = ContactCondition::clamped_mean,
+             every = ContactCondition::every_direction;
+  // pressed by a ball: all
+  CHECK(touches(twice, -0.05, -0.05));
+  CHECK(touches(clamped, -0.05, -0.05));
+  CHECK(touches(every, -0.05, -0.05));
+  // free: none
+  CHECK_FALSE(touches(twice, 0.05, 0.05));
+  CHECK_FALSE(touches(clamped, 0.05, 0.05));
+  CHECK_FALSE(touches(every, 0.05, 0.05));
+  // a free saddle: only the plain mean errs (E017)
+  CHECK(touches(twice, 0.05, -0.06));
+  CHECK_FALSE(touches(clamped, 0.05, -0.06));
+  CHECK_FALSE(touches(every, 0.05, -0.06));
+  // a cylinder that bulges in one direction by a little: the mean of 18 directions is half of it,
+  // twice the mean is all of it, and one direction has all of it
+  CHECK(touches(clamped, 0.015, -1e-6));
+  CHECK_FALSE(touches(every, 0.015, -1e-6));
+  CHECK_FALSE(touches(twice, 0.015, -1e-6));
+  // twice the mean of a sphere is 2 / R (E015)
+  CHECK_FALSE(touches(twice, 0.05, 0.05, 0.0999));
+  CHECK(touches(twice, 0.05, 0.05, 0.1001));
+  CHECK_FALSE(touches(clamped, 0.05, 0.05, 0.0499));
+  CHECK(touches(clamped, 0.05, 0.05, 0.0501));
+}
+
+TEST_CASE("published contact region: centers every 5 pixels", "[published]") {
+  // bulging on the left of column 52, pressed in on the right
+  Image<double> z(60, 103);
+  for (Index i = 0; i < 60; ++i) {
+    for (Index j = 0; j < 103; ++j) {
+      const double x = 0.08 * static_cast<double>(j - 52), y = 0.08 * static_cast<double>(i - 30);
+      z(i, j) = 9 - (j < 52 ? 0.05 : -0.05) * (x * x + y * y) / 2;
+    }
+  }
+  Image<unsigned char> mask(60, 103, 9);
+  published::SlidesContactOptions o;
+  o.threshold_per_mm = 0.001;
+  const double area = published::contact_by_slides(z, mask, o);
+  double set = 0;
+  for (Index i = 0; i < 60; ++i) {
+    for (Index j = 0; j < 103; ++j) {
+      CHECK(mask(i, j) == mask(i / 5 * 5, j / 5 * 5));  // a block has one answer
+      set += mask(i, j) != 0 ? 1 : 0;
+    }
+  }
+  CHECK(area == Approx(set * 0.08 * 0.08));
+  CHECK(set > 0);
+  CHECK(mask(31, 71) != 0);
+  CHECK(mask(31, 31) == 0);
+  CHECK(mask(31, 101) == 0);  // no ring beyond the edge
+  // the answer is that of the block's center
+  CHECK((mask(30, 70) != 0) == published::touches(z, 32, 72, o));
+  Image<unsigned char> other(60, 100, 9);
+  CHECK(std::isnan(published::contact_by_slides(z, other, o)));
+  CHECK(other(0, 0) == 9);
+  o.step_px = 0;
+  CHECK_THROWS_AS(published::contact_by_slides(z, mask, o), parameter_error);
+}
+
+TEST_CASE("published flat contact: F = p S", "[published]") {
+  CHECK(published::flat_contact_force_n(0.02, 300.0) == Approx(6.0));
+  CHECK(published::flat_contact_force_n(0.0, 300.0) == 0);
+  CHECK(std::isnan(published::flat_contact_force_n(-0.02, 300.0)));
+  CHECK(std::isnan(published::flat_contact_force_n(0.02, test::nan)));
+}
+
+TEST_CASE("published eqs. 19 and 20: as printed, and falling with depth", "[published]") {
+  constexpr double degree = std::numbers::pi / 180;
+  const auto area = published::first_compensation_by_area();
+  const auto depth = published::first_compensation_by_depth();
+  CHECK(area.displaced(10, 3) == Approx(0.748 * 10 - 0.637 * 3 + 1.7));
+  CHECK(depth.displaced(10, 3) == Approx(-0.356 * 10 + 0.548 * 3 + 0.2));
+  CHECK(area.rotated(10, 20 * degree) == Approx(1.2 * 10 + 0.00171 * 20 - 1.0));
+  CHECK(depth.rotated(10, 20 * degree) == Approx(-0.272 * 10 - 0.0074 * 20 + 0.5));
+  // E029: what eqs. 21 and 22 mend
+  CHECK(depth.displaced(20, 3) < depth.displaced(10, 3));
+  const auto later = published::compensation_by_depth();
+  CHECK(later.displaced(20, 3) > later.displaced(10, 3));
+  // they go where those go
+  const NormalForce<PolynomialForce<2>, published::Compensation<double>> force(
+      published::force_of_area(), area);
+  const double plain = force(300).force_n;
+  CHECK(force(300, {3, 0}).force_n == Approx(0.748 * plain - 0.637 * 3 + 1.7));
+}
