@@ -635,3 +635,64 @@ TEST_CASE("spatial dots: depth is read between pixels, at the dot's own pixel (E
   Flags turned_size(7, 1);
   CHECK(!contact_at_dots(dots, mask, turned_size));
 }
+
+TEST_CASE("object motion: dots that slip do not count, and are entered anew") {
+  // Half of the dots stay behind, which is more than a robust fit bears.
+  const Dots free = small_grid();
+  const Flags contact(7, 7, 1);
+  const ObjectMotion motion(free);
+  auto state = motion.start(), blind = motion.start();
+  Flags slips(7, 7, 0);
+  (void)motion(free, contact, slips, state);
+  (void)motion(free, contact, blind);
+  const Pose<double> pose = {test::turned_by({0, 0, 0.1}), {0.4, 0.1, 0}};
+  Dots dots = rotated(free, pose);
+  for (Index i = 0; i < 7; ++i) {
+    for (Index j = 0; j < 4; ++j) {
+      dots(i, j) = free(i, j);
+      slips(i, j) = 1;
+    }
+  }
+  const auto seen = motion(dots, contact, slips, state);
+  REQUIRE(seen.ok());
+  CHECK(seen.dots_used == 21);
+  CHECK(error_deg(seen.pose.rotation, pose.rotation) < 1e-9);
+  CHECK(norm(seen.pose({1, 2, 10}) - pose({1, 2, 10})) < 1e-9);
+  CHECK(error_deg(motion(dots, contact, blind).pose.rotation, pose.rotation) > 1);
+  // they hold on again, where they are now
+  const Dots later = rotated(dots, pose);
+  const auto all = motion(later, contact, Flags(7, 7, 0), state);
+  REQUIRE(all.ok());
+  (void)motion(rotated(later, pose), contact, Flags(7, 7, 0), state);
+  const auto after = motion(rotated(rotated(later, pose), pose), contact, Flags(7, 7, 0), state);
+  CHECK(after.dots_used == 49);
+  CHECK(error_deg(after.pose.rotation, test::turned_by({0, 0, 0.4})) < 1e-6);
+}
+
+TEST_CASE(
+    "object motion: while the object slides nothing is known of it, after that it is another") {
+  const Dots free = small_grid();
+  const Flags contact(7, 7, 1);
+  const ObjectMotion motion(free);
+  auto state = motion.start();
+  (void)motion(free, contact, Flags(7, 7, 0), state);
+  const Pose<double> pose = {test::turned_by({0, 0, 0.1}), {0.4, 0.1, 0}};
+  const auto moved = motion(rotated(free, pose), contact, Flags(7, 7, 0), state);
+  REQUIRE(moved.ok());
+  Flags slips(7, 7, 1);
+  for (Index j = 0; j < 7; ++j) {
+    slips(0, j) = 0;  // 7 of 49 are fewer than a fifth
+  }
+  const auto slides = motion(free, contact, slips, state);
+  CHECK(slides.status == MotionStatus::slipping);
+  CHECK(std::string(name_of(slides.status)) == "slipping");
+  CHECK_FALSE(slides.ok());
+  CHECK(error_deg(slides.pose.rotation, pose.rotation) < 1e-9);  // the last that is known
+  CHECK_FALSE(state.has_object());
+  const auto next = motion(free, contact, Flags(7, 7, 0), state);
+  CHECK(next.ok());
+  CHECK(next.begun);
+  // no contact is no slide; other sizes are refused
+  CHECK(motion(free, Flags(7, 7, 0), slips, state).status == MotionStatus::no_contact);
+  CHECK_FALSE(motion(free, contact, Flags(6, 7, 0), state).accepted());
+}

@@ -19,6 +19,7 @@ enum class MotionStatus : std::uint8_t {
   too_few_dots,      ///< fewer than three dots to go by, or too few to begin with
   collinear,         ///< the dots to go by lie on a line: they determine no rotation
   lost,              ///< what was followed has left the contact, and nothing known is in it
+  slipping,          ///< fewer than a fifth of the dots in contact stick: the pose is not known
   refused,           ///< a grid, state or workspace has another size: nothing was done
 };
 
@@ -39,6 +40,8 @@ constexpr const char* name_of(MotionStatus status) {
       return "collinear";
     case MotionStatus::lost:
       return "lost";
+    case MotionStatus::slipping:
+      return "slipping";
     case MotionStatus::refused:
       return "refused";
   }

@@ -100,7 +100,41 @@ class ObjectMotion {
         state.rows_ != rows() || state.cols_ != cols()) {
       return {};
     }
-    const detail::motion::DotFrame<S, decltype(dots), decltype(flags)> frame(dots, flags);
+    return follow(detail::motion::DotFrame<S, decltype(dots), decltype(flags)>(dots, flags), state);
+  }
+
+  /// The same where it is known which dots slip: they do not count, and are entered anew where they
+  /// hold on again. Take this with the stick ratio: dots that slip bend the pose. Where fewer than
+  /// a fifth stick the status is `slipping`, the pose that of before; after it another object
+  /// begins, as nobody knows how far the first has slid.
+  template <spatial_dot_grid Dots, contact_mask Contact, contact_mask Slips>
+  ObjectMotionResult<S> operator()(const Dots& dots_mm,
+                                   const Contact& contact,
+                                   const Slips& slips,
+                                   State& state) const {
+    const auto dots = as_view(dots_mm);
+    const auto flags = as_view(contact);
+    const auto slipping = as_view(slips);
+    if (dots.rows() != rows() || dots.cols() != cols() || !same_size(dots, flags) ||
+        !same_size(dots, slipping) || state.rows_ != rows() || state.cols_ != cols()) {
+      return {};
+    }
+    using Frame = detail::motion::DotFrame<S, decltype(dots), decltype(flags)>;
+    const detail::motion::SteadyFrame<Frame, decltype(slipping)> frame(Frame(dots, flags),
+                                                                       slipping);
+    if (frame.slides()) {
+      ObjectMotionResult<S> result;
+      result.status = MotionStatus::slipping;
+      fill(state, result);
+      forget(state);
+      return result;
+    }
+    return follow(frame, state);
+  }
+
+ private:
+  template <class Frame>
+  ObjectMotionResult<S> follow(const Frame& frame, State& state) const {
     ObjectMotionResult<S> result;
     result.status = MotionStatus::no_contact;
     if (!frame.any_flagged()) {
@@ -121,7 +155,6 @@ class ObjectMotion {
     return result;
   }
 
- private:
   ObjectMotionResult<S> without_contact(bool any_found,
                                         State& state,
                                         ObjectMotionResult<S>& result) const {

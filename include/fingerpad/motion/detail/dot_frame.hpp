@@ -76,6 +76,32 @@ class DotFrame {
   Contact contact_;
 };
 
+/// A frame of which only the dots that do not slip count as in contact.
+template <class Frame, class Slips>
+class SteadyFrame : public Frame {
+ public:
+  SteadyFrame(const Frame& frame, const Slips& slips) : Frame(frame), slips_(slips) {
+    for (Index i = 0; i < this->rows(); ++i) {
+      for (Index j = 0; j < this->cols(); ++j) {
+        const bool touches = Frame::flagged(i, j) && this->found(i, j);
+        touching_ += touches ? 1 : 0;
+        steady_ += touches && flagged(i, j) ? 1 : 0;
+      }
+    }
+  }
+
+  bool flagged(Index row, Index col) const {
+    return Frame::flagged(row, col) && !is_contact(cell_t<Slips>(slips_(row, col)));
+  }
+  /// Whether fewer than a fifth of the dots in contact hold the object: their motion is not its.
+  bool slides() const { return touching_ > 0 && 5 * steady_ < touching_; }
+
+ private:
+  Slips slips_;
+  Index touching_ = 0;
+  Index steady_ = 0;
+};
+
 /// The dots before anything touched them, rows x cols; NaN where one was not found.
 template <scalar S>
 struct InitialDots {
