@@ -324,8 +324,8 @@ TEST_CASE("object surface: another size is refused and nothing written", "[surfa
 }
 
 TEST_CASE("object surface: bad parameters are refused by name", "[surface]") {
-  CHECK(refusal(0, 4, {}) == "SurfaceFit: rows = 0, must be >= 1");
-  CHECK(refusal(4, -1, {}) == "SurfaceFit: cols = -1, must be >= 1");
+  CHECK(refusal(0, 4, {}) == "SurfaceFit: rows = 0, must be in [1, 1000000]");
+  CHECK(refusal(4, -1, {}) == "SurfaceFit: cols = -1, must be in [1, 1000000]");
   CHECK(refusal(4, 4, {.min_px = 0}) == "SurfaceOptions: min_px = 0, must be >= 1");
   CHECK(refusal(4, 4, {.border_px = -1}) == "SurfaceOptions: border_px = -1, must be in [0, 1000]");
   CHECK(refusal(4, 4, {}, 0).find("OrthographicCamera: pitch_mm = 0") == 0);

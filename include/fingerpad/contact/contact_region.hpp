@@ -22,6 +22,7 @@
 #include "fingerpad/core/grid.hpp"
 #include "fingerpad/core/status.hpp"
 #include "fingerpad/image/curvature_map.hpp"
+#include "fingerpad/image/detail/image_size.hpp"
 #include "fingerpad/image/detail/pixel_rays.hpp"
 #include "fingerpad/image/detail/regions.hpp"
 #include "fingerpad/optics/camera.hpp"
@@ -137,9 +138,7 @@ class ContactRegion {
  private:
   static const ContactTest& checked(
       const CameraType& camera, Index rows, Index cols, const ContactTest& test, const Edge& edge) {
-    // areas need a neighbour on one side at least
-    expects(rows >= 2, "ContactRegion", "rows", static_cast<long long>(rows), ">= 2");
-    expects(cols >= 2, "ContactRegion", "cols", static_cast<long long>(cols), ">= 2");
+    detail::expects_image_size("ContactRegion", rows, cols, 2);  // areas need a neighbour
     expects_valid(camera);
     expects_valid(test);
     expects_valid(edge);

@@ -20,6 +20,7 @@
 #include "fingerpad/core/expects.hpp"
 #include "fingerpad/core/grid.hpp"
 #include "fingerpad/core/scalar.hpp"
+#include "fingerpad/image/detail/image_size.hpp"
 #include "fingerpad/image/detail/pixel_rays.hpp"
 #include "fingerpad/optics/camera.hpp"
 
@@ -156,8 +157,7 @@ class SurfaceFit {
                                        Index cols,
                                        const CameraType& camera,
                                        const SurfaceOptions& options) {
-    expects(rows >= 1, "SurfaceFit", "rows", static_cast<long long>(rows), ">= 1");
-    expects(cols >= 1, "SurfaceFit", "cols", static_cast<long long>(cols), ">= 1");
+    detail::expects_image_size("SurfaceFit", rows, cols);
     expects_valid(camera);
     expects_valid(options);
     return options;

@@ -16,7 +16,10 @@
 
 #if defined(__FINITE_MATH_ONLY__) && __FINITE_MATH_ONLY__
 #error \
-    "fingerpad marks missing data by NaN: compile with -fno-finite-math-only (part of -ffast-math)"
+    "fingerpad marks missing data by NaN: compile without -ffast-math or -ffinite-math-only"
+#endif
+#if defined(__ASSOCIATIVE_MATH__)  // GCC 12 tells; clang does not
+#error "fingerpad rounds and sums in a set order: compile without -ffast-math or -fassociative-math"
 #endif
 
 namespace fingerpad {

@@ -11,6 +11,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <type_traits>
 #include <vector>
 
@@ -76,6 +77,8 @@ struct DepthReference {
   Scattering scattering;
   Index pixels_used = 0;
   S residual_rms = S(0);  ///< of the depth equation at the known depths, grey levels
+  S rim_green = S(0);  ///< mean of green near the rim, grey levels: by it frames show whether the
+                       ///< light is still the same; 0: not known
 
   const S& depth(Index row, Index col) const {
     return depth_mm[static_cast<std::size_t>(row * cols + col)];
@@ -190,6 +193,100 @@ void fit_scattering(const VisitAll& visit_all,
   reference.residual_rms = S(std::sqrt(left_sq / static_cast<double>(reference.pixels_used)));
 }
 
+/// The free pad's shape: its deepest point within range, its pixels, how many of them lie at depth
+/// 0 or beyond max_depth_mm, and how far their centroid is from the optical axis, as a share of the
+/// radius of a disc of their number.
+struct FreePadShape {
+  double deepest_mm = 0;
+  double pixels = 0;
+  double at_zero = 0;
+  double too_deep = 0;
+  double off_axis = 0;
+};
+
+template <class Depth>
+FreePadShape shape_of_free_pad(const Camera<double>& camera,
+                               double max_depth_mm,
+                               const Depth& depth_mm) {
+  FreePadShape shape;
+  double sum_x = 0;
+  double sum_y = 0;
+  bool reaches_border = false;
+  for (Index i = 0; i < depth_mm.rows(); ++i) {
+    for (Index j = 0; j < depth_mm.cols(); ++j) {
+      const double l = static_cast<double>(depth_mm(i, j));
+      if (!is_finite(l) || l < 0) {
+        continue;
+      }
+      shape.deepest_mm = l > max_depth_mm ? shape.deepest_mm : (std::max)(shape.deepest_mm, l);
+      shape.too_deep += l > max_depth_mm ? 1 : 0;
+      shape.pixels += 1;
+      shape.at_zero += l == 0 ? 1 : 0;
+      sum_x += static_cast<double>(j) - camera.center_x_px;
+      sum_y += static_cast<double>(i) - camera.center_y_px;
+      reaches_border = reaches_border || i == 0 || j == 0 || i + 1 == depth_mm.rows() ||
+                       j + 1 == depth_mm.cols();
+    }
+  }
+  // else part of the pad is not seen, and its center not known, or there is no pad at all
+  if (!reaches_border && shape.pixels >= 100) {
+    shape.off_axis = std::sqrt(3.14159265358979 * (square(sum_x) + square(sum_y)) /
+                               (shape.pixels * square(shape.pixels)));
+  }
+  return shape;
+}
+
+/// Refuses shapes that no free pad has, with the likely mistake.
+inline void expects_free_pad(const FreePadShape& shape, double max_depth_mm) {
+  constexpr const char* owner = "fit_reference";
+  if (shape.pixels == 0) {
+    return;  // told by the fit
+  }
+  expects(shape.too_deep <= 0.01 * shape.pixels, owner, "share of pixels beyond max_depth_mm",
+          shape.too_deep / shape.pixels, "<= 0.01: raise max_depth_mm, or give mm");
+  expects(shape.deepest_mm >= 0.1 * max_depth_mm, owner, "deepest point of depth_mm",
+          shape.deepest_mm, ">= a tenth of max_depth_mm: give mm, not m");
+  expects(shape.at_zero <= 0.1 * shape.pixels, owner, "share of pixels at depth 0",
+          shape.at_zero / shape.pixels, "<= 0.1: outside of the pad depth_mm is NaN");
+  expects(shape.off_axis <= 0.25, owner, "distance of the pad's center from the axis, in radii",
+          shape.off_axis, "<= 0.25: camera.center_x_px, center_y_px are not those of this image");
+}
+
+/// Refuses scatterings that no fluid has: g is that of one fluid, and a lens darkens toward the rim
+/// by less than half. Noise of the three grey levels that a poor camera has leaves a residual of 5.
+template <scalar S, int Degree, class Heights>
+void expects_scattering(const Camera<double>& camera,
+                        const DepthReference<S, RadialScattering<S, Degree>, Heights>& reference) {
+  constexpr const char* owner = "fit_reference";
+  const auto residual = static_cast<double>(value(reference.residual_rms));
+  double least = (std::numeric_limits<double>::infinity)();
+  double most = -least;
+  for (Index i = 0; i < reference.rows; ++i) {
+    for (Index j = 0; j < reference.cols; ++j) {
+      if (reference.in_pad(i, j)) {
+        const auto ray = ray_at_pixel(camera, static_cast<double>(i), static_cast<double>(j));
+        const auto g =
+            static_cast<double>(value(reference.scattering.at(S(square(ray.plate_rho_mm)))));
+        least = (std::min)(least, g);
+        most = (std::max)(most, g);
+      }
+    }
+  }
+  expects(least > 0, owner, "scattering of the fluid", least,
+          "> 0: are red and green exchanged, is depth_mm the height of the free pad, and are the "
+          "constants of absorption those of this fluid?");
+  expects(
+      least >= 0.5 * most, owner, "least scattering, as a share of the largest", least / most,
+      ">= 0.5: is the frame one of the free pad, and depth_mm its height along each pixel's ray?");
+  expects(residual <= 5, owner, "residual in grey levels", residual,
+          "<= 5: do red, green and depth_mm show the same free pad?");
+}
+
+/// Depth up to which a pixel of a free pad counts as near the rim: a press hardly moves it.
+inline double rim_depth_mm(double deepest_mm) {
+  return 0.2 * deepest_mm;
+}
+
 /// A reference without its scattering: the free pad's depth. Refuses what has no meaning.
 template <class Reference, class S, class Red, class Green, class Depth>
 Reference free_pad(const Camera<double>& camera,
@@ -213,6 +310,22 @@ Reference free_pad(const Camera<double>& camera,
       reference.depth_mm.push_back(inside ? S(l) : not_a_number<S>());
     }
   }
+  const FreePadShape shape = shape_of_free_pad(camera, fluid.max_depth_mm, depth_mm);
+  expects_free_pad(shape, fluid.max_depth_mm);
+  double light = 0;
+  double count = 0;
+  for (Index i = 0; i < reference.rows; ++i) {
+    for (Index j = 0; j < reference.cols; ++j) {
+      const double l = static_cast<double>(depth_mm(i, j));
+      const double green_here = static_cast<double>(green(i, j));
+      if (l >= 0 && l <= rim_depth_mm(shape.deepest_mm) && green_here > scale.dark &&
+          green_here < scale.saturated) {
+        light += green_here / scale.units_per_level;
+        count += 1;
+      }
+    }
+  }
+  reference.rim_green = S(count > 0 ? light / count : 0);
   return reference;
 }
 
@@ -220,7 +333,8 @@ Reference free_pad(const Camera<double>& camera,
 
 /// The reference from one frame of the free pad (an average of many frames is better: store it as
 /// 16 bit or float) and its depth along each pixel's ray in mm, NaN outside the pad. Refuses grids
-/// of different sizes and data that do not determine g (parameter_error). O(rows cols); allocates.
+/// of different sizes, data that do not determine g, and what cannot be a free pad, with the likely
+/// mistake (parameter_error). O(rows cols); allocates.
 template <class Heights = AstigmaticHeights, scalar S = float, grid Red, grid Green, grid Depth>
 DepthReference<S, RadialScattering<S>, Heights> fit_reference(
     const Camera<double>& camera,
@@ -238,6 +352,7 @@ DepthReference<S, RadialScattering<S>, Heights> fit_reference(
                                      visitor);
   };
   detail::fit_scattering(visit, reference);
+  detail::expects_scattering(camera, reference);
   return reference;
 }
 

@@ -121,7 +121,7 @@ class NeighbourLightCompensation {
     sums_.scan(from, workspace);
     for (Index i = 0; i < rows(); ++i) {
       sums_.sum_row(i, workspace);
-      S* row_mm = workspace.lines[0].depth.data();
+      S* row_mm = workspace.row_mm.data();
       for (Index j = 0; j < cols(); ++j) {
         row_mm[j] = S(from(i, j));
       }

@@ -19,6 +19,7 @@
 #include "fingerpad/image/curvature.hpp"
 #include "fingerpad/image/detail/curvature_rows.hpp"
 #include "fingerpad/image/detail/depth_units.hpp"
+#include "fingerpad/image/detail/image_size.hpp"
 #include "fingerpad/optics/camera.hpp"
 
 namespace fingerpad {
@@ -59,7 +60,7 @@ class CurvatureMap {
     Index stride = 0;
   };
 
-  /// rows, cols in [1, 1e6]. Refuses bad parameters (parameter_error).
+  /// rows, cols in [1, 1e6], 1e8 pixels at most. Refuses bad parameters (parameter_error).
   CurvatureMap(const CameraType& camera, Index rows, Index cols, const CurvatureRing& ring = {})
       : units_(detail::pixel_pitch(camera)),
         rows_(checked(ring, rows, cols)),
@@ -129,10 +130,7 @@ class CurvatureMap {
 
   static Index checked(const CurvatureRing& ring, Index rows, Index cols) {
     expects_valid(ring);
-    expects(rows >= 1 && rows <= 1000000, "CurvatureMap", "rows", static_cast<long long>(rows),
-            "in [1, 1000000]");
-    expects(cols >= 1 && cols <= 1000000, "CurvatureMap", "cols", static_cast<long long>(cols),
-            "in [1, 1000000]");
+    detail::expects_image_size("CurvatureMap", rows, cols);
     return rows;
   }
 

@@ -259,9 +259,7 @@ class Fingertip {
       });
       result = parts[0];
       for (std::size_t k = 1; k < parts.size(); ++k) {
-        for (std::size_t s = 0; s < result.count.size(); ++s) {
-          result.count[s] += parts[k].count[s];
-        }
+        result.add(parts[k]);
       }
     }
   };
@@ -389,7 +387,7 @@ class Fingertip {
     const bool dots = !has_dots || (touch.motion.ok() && is_finite(touch.stick.stick_ratio) &&
                                     touch.normal.sources > 0);
     const bool wrench = !has_wrench || touch.wrench.ok();
-    return dots && wrench ? FingertipStatus::ok : FingertipStatus::partial;
+    return touch.depth.ok() && dots && wrench ? FingertipStatus::ok : FingertipStatus::partial;
   }
 
   [[no_unique_address]] Executor executor_;

@@ -143,6 +143,11 @@ DepthReference<S, PixelScattering<S>, Heights> depth_reference(
       });
   expects(reference.pixels_used > 0, "depth_reference", "pixels with a known depth",
           static_cast<long long>(reference.pixels_used), "at least 1");
+  const auto good = std::count_if(g.plane.begin(), g.plane.end(),
+                                  [](const S& x) { return is_finite(x) && value(x) > 0; });
+  expects(2 * good > reference.pixels_used, "depth_reference", "pixels with g > 0",
+          static_cast<long long>(good),
+          "more than half: are red and green exchanged, is depth_mm the height of the free pad?");
   return reference;
 }
 

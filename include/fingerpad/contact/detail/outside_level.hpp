@@ -8,9 +8,9 @@
 #include <cstddef>
 #include <vector>
 
-#include "fingerpad/image/detail/regions.hpp"
 #include "fingerpad/core/grid.hpp"
 #include "fingerpad/core/scalar.hpp"
+#include "fingerpad/image/detail/regions.hpp"
 
 namespace fingerpad {
 inline namespace v0 {

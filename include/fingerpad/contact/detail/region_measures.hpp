@@ -8,10 +8,10 @@
 #include <iterator>
 #include <numeric>
 
-#include "fingerpad/image/detail/regions.hpp"
-#include "fingerpad/image/detail/row_lanes.hpp"
 #include "fingerpad/core/dots.hpp"
 #include "fingerpad/core/grid.hpp"
+#include "fingerpad/image/detail/regions.hpp"
+#include "fingerpad/image/detail/row_lanes.hpp"
 
 namespace fingerpad {
 inline namespace v0 {
@@ -32,7 +32,8 @@ class LaneSum {
 
 /// Sums over the pixels of a region, in double: there may be a million of them. The area on the
 /// plate under a pixel is that of differences between its neighbours; one that is unknown is taken
-/// to be as deep. Linear in the differences along each axis, so noise does not add up.
+/// to be as deep, and so are all where the surface would be seen from behind, which no camera does.
+/// Linear in the differences along each axis, so noise does not add up.
 template <class Depth, class Rays>
 class RegionMeasures {
  public:
@@ -109,8 +110,10 @@ class RegionMeasures {
     const V across_y = y * (right - left);
     const V down_x = x * (down - up);
     const V down_y = (y + to_down) * down - (y - to_up) * up;
-    const V area = (across_x * down_y - across_y * down_x) * run.per_span;
-    const V moment = area * rays_.template mm_per_px<V>(i, j, depth);
+    const V seen = (across_x * down_y - across_y * down_x) * run.per_span;
+    const V mm_per_px = rays_.template mm_per_px<V>(i, j, depth);
+    const V area = seen > V{} ? seen : V(mm_per_px * mm_per_px);
+    const V moment = area * mm_per_px;
     area_.add(area);
     x_.add(V(x * moment));
     y_.add(V(y * moment));

@@ -207,7 +207,8 @@ class MeanRowsOf {
         const V low = V{} + S(1);
         const V high = V{} + S(65535);
         store_cells<S>(first + j, stored < low ? low : stored > high ? high : stored);
-        store_cells<S>(second + j, green * S(green_units));
+        const V scaled = green * S(green_units);
+        store_cells<S>(second + j, scaled > high ? high : scaled);
       });
     } else {
       const Counts<Pixel> counts{scale_};

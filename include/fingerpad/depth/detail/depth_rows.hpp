@@ -93,8 +93,10 @@ class DepthRows<ExponentialFree<Order, Degree, Radial>, Heights, S, Scattering> 
       gain = static_cast<double>(reference.scattering.largest());
     }
     const double bound = error_bound_mm(table_, domain, w_over_l, delta_k, 255.0, gain);
-    expects(bound <= 0.005, "ExponentialFree", "error of the polynomials in mm", bound,
-            "<= 0.005: take a higher Degree or Radial, or Newton");
+    expects(
+        bound <= 0.005, "ExponentialFree", "error of the polynomials in mm", bound,
+        "<= 0.005: is the reference of the free pad? If g or the angle of view really varies so "
+        "much, take a higher Degree or Radial");
   }
 
   void invert(

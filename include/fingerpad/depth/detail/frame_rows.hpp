@@ -56,8 +56,10 @@ Anchor<S> anchor_of(const Camera<double>& camera,
         const auto pencil = pencil_of<Heights>(camera, ray);
         const auto l = static_cast<double>(value(reference.depth(i, j)));
         const S g = reference.scattering(i, j, S(square(ray.plate_rho_mm)));
-        rise = S(std::exp(delta * pencil.path_factor * l));
-        scattered = g * S(scattered_light(l, fluid.c_red_per_mm, pencil));
+        if (is_finite(g)) {
+          rise = S(std::exp(delta * pencil.path_factor * l));
+          scattered = g * S(scattered_light(l, fluid.c_red_per_mm, pencil));
+        }
       }
       anchor.rise.push_back(rise);
       anchor.scattered.push_back(scattered);

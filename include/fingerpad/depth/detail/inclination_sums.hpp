@@ -39,7 +39,8 @@ class InclinationSums {
           lost(static_cast<std::size_t>(rows * cols), 0),
           psi(static_cast<std::size_t>(cols), T(0)),
           present(static_cast<std::size_t>(cols), 0),
-          sum(static_cast<std::size_t>(cols), S(0)) {
+          sum(static_cast<std::size_t>(cols), S(0)),
+          row_mm(static_cast<std::size_t>(cols), S(0)) {
       for (Line& line : lines) {
         line = {std::vector<S>(static_cast<std::size_t>(cols + 2), S(0)),
                 std::vector<S>(static_cast<std::size_t>(cols + 2), S(0))};
@@ -55,7 +56,8 @@ class InclinationSums {
     std::vector<std::uint8_t> lost;  ///< 1 where the reference has psi and the frame has not
     std::vector<T> psi;
     std::vector<std::uint8_t> present;
-    std::vector<S> sum;  ///< the row that sum_row made, rad
+    std::vector<S> sum;     ///< the row that sum_row made, rad
+    std::vector<S> row_mm;  ///< a row of depths
     Line lines[3];
     Index lost_px = 0;
   };

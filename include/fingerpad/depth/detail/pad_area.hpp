@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <cstring>
+#include <vector>
 
 #include "fingerpad/core/grid.hpp"
 #include "fingerpad/depth/depth_inverse.hpp"
@@ -59,6 +60,7 @@ PadReference<S, Scattering, Heights> crop_to_pad(
   pad.camera.center_y_px -= static_cast<double>(area.row);
   pad.reference.rows = area.rows;
   pad.reference.cols = area.cols;
+  pad.reference.rim_green = reference.rim_green;
   pad.reference.scattering = reference.scattering.cropped(area.row, area.col, area.rows, area.cols);
   for (Index i = 0; i < area.rows; ++i) {
     for (Index j = 0; j < area.cols; ++j) {
@@ -66,6 +68,21 @@ PadReference<S, Scattering, Heights> crop_to_pad(
     }
   }
   return pad;
+}
+
+/// 1 for each pixel that has a depth in the reference and a g > 0; another would spoil its window.
+template <class S, class Scattering, class Heights>
+std::vector<std::uint8_t> usable_pixels(const Camera<double>& camera,
+                                        const DepthReference<S, Scattering, Heights>& reference) {
+  std::vector<std::uint8_t> usable;
+  for (Index i = 0; i < reference.rows; ++i) {
+    for (Index j = 0; j < reference.cols; ++j) {
+      const auto ray = ray_at_pixel(camera, static_cast<double>(i), static_cast<double>(j));
+      const S g = reference.scattering(i, j, S(square(ray.plate_rho_mm)));
+      usable.push_back(reference.in_pad(i, j) && is_finite(g) && value(g) > 0 ? 1 : 0);
+    }
+  }
+  return usable;
 }
 
 /// A view of the pad's rectangle in a frame.

@@ -58,8 +58,8 @@ template <scalar S>
 inline constexpr bool sees_perspective<OrthographicCamera<S>> = false;
 
 /// Depths in units of about one pitch, a power of two so that nothing is rounded: the products of
-/// six lengths in (K1) then stay far from the limits of float. Depths beyond a million units, or
-/// next to the camera, are missing.
+/// six lengths in (K1) then stay far from the limits of float. Depths beyond 4096 units,
+/// more than any pad is deep, or next to the camera, are missing.
 template <class CameraType, class S>
 struct DepthUnits {
   static constexpr bool at_depth = sees_perspective<CameraType>;
@@ -72,8 +72,8 @@ struct DepthUnits {
     per_mm = S(1 / unit_mm);
     const double growth = pitch_mm.growth_per_mm;
     growth_per_unit = S(growth) * S(unit_mm);
-    const double nearest = growth > 0 ? -0.99 / (growth * unit_mm) : -1e6;
-    lowest = scalar_real_t<S>((std::max)(nearest, -1e6));
+    const double nearest = growth > 0 ? -0.99 / (growth * unit_mm) : -4096.0;
+    lowest = scalar_real_t<S>((std::max)(nearest, -4096.0));
   }
 
   /// zeta, in units; NaN for what is missing.
@@ -106,7 +106,7 @@ struct DepthUnits {
   S per_mm;           ///< units per mm
   S growth_per_unit;  ///< c
   scalar_real_t<S> lowest;
-  scalar_real_t<S> highest = scalar_real_t<S>(1000000);
+  scalar_real_t<S> highest = scalar_real_t<S>(4096);
 };
 
 }  // namespace detail

@@ -7,11 +7,11 @@
 #include <cstddef>
 
 #include "fingerpad/core/detail/aligned_vector.hpp"
-#include "fingerpad/image/detail/row_lanes.hpp"
 #include "fingerpad/core/dots.hpp"
 #include "fingerpad/core/grid.hpp"
-#include "fingerpad/optics/camera.hpp"
 #include "fingerpad/core/scalar.hpp"
+#include "fingerpad/image/detail/row_lanes.hpp"
+#include "fingerpad/optics/camera.hpp"
 
 namespace fingerpad {
 inline namespace v0 {

@@ -9,8 +9,8 @@
 #include <cmath>
 #include <cstdint>
 
-#include "fingerpad/image/detail/lanes.hpp"
 #include "fingerpad/core/scalar.hpp"
+#include "fingerpad/image/detail/lanes.hpp"
 
 namespace fingerpad {
 inline namespace v0 {

@@ -8,8 +8,8 @@
 #include <cstring>
 #include <type_traits>
 
-#include "fingerpad/image/detail/lanes.hpp"
 #include "fingerpad/core/grid.hpp"
+#include "fingerpad/image/detail/lanes.hpp"
 
 namespace fingerpad {
 inline namespace v0 {

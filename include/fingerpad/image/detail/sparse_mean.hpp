@@ -6,9 +6,9 @@
 #include <cstddef>
 #include <vector>
 
-#include "fingerpad/image/detail/row_lanes.hpp"
 #include "fingerpad/core/grid.hpp"
 #include "fingerpad/core/scalar.hpp"
+#include "fingerpad/image/detail/row_lanes.hpp"
 
 namespace fingerpad {
 inline namespace v0 {

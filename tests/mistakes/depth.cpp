@@ -1,0 +1,402 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+// Mistakes with depth and contact, and what is said of each.
+#include "fingerpad/depth/depth.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "fingerpad/contact/contact_region.hpp"
+#include "fingerpad/contact/object_surface.hpp"
+#include "fingerpad/depth/neighbour_light.hpp"
+#include "fingerpad/published/depth.hpp"
+#include "support/catch.hpp"
+#include "support/pad.hpp"
+#include "support/refusal.hpp"
+#include "support/soap_film.hpp"
+
+using namespace fingerpad;
+using test::Image;
+using test::Pad;
+using test::refusal;
+using Frame8 = test::Frame<std::uint8_t>;
+
+namespace {
+
+/// What a user gives for the reference.
+struct Given {
+  Pad pad;
+  Image<double> depth_mm = pad.free_depths();
+  Frame8 frame = pad.frame<std::uint8_t>(depth_mm, 1, 3);
+};
+
+std::string said_of(const Given& given) {
+  return refusal([&] {
+    const auto reference = fit_reference(given.pad.camera, given.pad.fluid, given.frame.red,
+                                         given.frame.green, given.depth_mm);
+    const DepthEstimator<> estimator(given.pad.camera, given.pad.fluid, reference);
+  });
+}
+
+template <class Change>
+void each_pixel(Given& given, const Change& change) {
+  for (Index i = 0; i < given.pad.rows; ++i) {
+    for (Index j = 0; j < given.pad.cols; ++j) {
+      change(i, j, given.depth_mm(i, j));
+    }
+  }
+}
+
+/// Rows read one after the other with a stride that is off by `px`.
+Frame8 sheared(const Frame8& frame, Index px) {
+  Frame8 out = frame;
+  const Index cols = frame.red.cols();
+  for (Index k = 0; k < frame.red.rows() * cols; ++k) {
+    const auto from = static_cast<std::size_t>((std::max)(k - k / cols * px, Index(0)));
+    out.red.cells[static_cast<std::size_t>(k)] = frame.red.cells[from];
+    out.green.cells[static_cast<std::size_t>(k)] = frame.green.cells[from];
+  }
+  return out;
+}
+
+Frame8 times(Frame8 frame, double factor) {
+  for (auto* channel : {&frame.red, &frame.green}) {
+    for (std::uint8_t& cell : channel->cells) {
+      cell = static_cast<std::uint8_t>((std::min)(factor * cell, 255.0));
+    }
+  }
+  return frame;
+}
+
+struct Mistake {
+  const char* what;
+  void (*make)(Given&);
+  const char* said;  ///< is part of what is said
+};
+
+constexpr const char* exchanged = "are red and green exchanged";
+
+const Mistake with_the_reference[] = {
+    {"none", [](Given&) {}, "accepted"},
+    {"red and green exchanged", [](Given& g) { std::swap(g.frame.red, g.frame.green); }, exchanged},
+    {"free shape in metres",
+     [](Given& g) { each_pixel(g, [](Index, Index, double& l) { l /= 1000; }); }, "not m"},
+    {"free shape in micrometres",
+     [](Given& g) { each_pixel(g, [](Index, Index, double& l) { l *= 1000; }); }, "give mm"},
+    {"max_depth_mm smaller than the pad", [](Given& g) { g.pad.fluid.max_depth_mm = 9; },
+     "raise max_depth_mm"},
+    {"center of another crop", [](Given& g) { g.pad.camera.center_x_px += 10; },
+     "center_x_px, center_y_px are not those of this image"},
+    {"shape 0 outside of the pad",
+     [](Given& g) { each_pixel(g, [](Index, Index, double& l) { l = l == l ? l : 0; }); },
+     "outside of the pad depth_mm is NaN"},
+    {"shape in plan, not along rays",
+     [](Given& g) {
+       each_pixel(g, [&](Index i, Index j, double& l) {
+         const auto& c = g.pad.camera;
+         const double x = (static_cast<double>(j) - c.center_x_px) * c.pitch_mm;
+         const double y = (static_cast<double>(i) - c.center_y_px) * c.pitch_mm;
+         const double r = g.pad.sphere_radius_mm;
+         const double height = std::sqrt(r * r - x * x - y * y) - (r - g.pad.height_mm);
+         l = height > 0 ? height : test::nan;
+       });
+     },
+     "its height along each pixel's ray"},
+    {"shape as indentation",
+     [](Given& g) { each_pixel(g, [](Index, Index, double& l) { l = 13 - l; }); },
+     "is depth_mm the height of the free pad"},
+    {"a pressed frame for the reference",
+     [](Given& g) { g.frame = g.pad.frame<std::uint8_t>(g.pad.pressed_depths(3), 1, 3); },
+     "is the reference of the free pad?"},
+    {"constants of another fluid", [](Given& g) { g.pad.fluid.c_green_per_mm = 0.1; },
+     "are the constants of absorption those of this fluid"},
+    {"plain grey", [](Given& g) { g.frame = Frame8(g.pad.rows, g.pad.cols, 128); }, exchanged},
+    {"noise",
+     [](Given& g) {
+       test::Random random(3);
+       for (auto* channel : {&g.frame.red, &g.frame.green}) {
+         for (std::uint8_t& cell : channel->cells) {
+           cell = static_cast<std::uint8_t>(random.whole(1, 254));
+         }
+       }
+     },
+     "fit_reference: "},
+    {"row stride without padding", [](Given& g) { g.frame = sheared(g.frame, 5); },
+     "is the frame one of the free pad"},
+};
+
+/// A camera that sees the pad as finely as cameras do, and frames of another light.
+Pad fine_pad() {
+  Pad pad;
+  pad.rows = 240;
+  pad.cols = 320;
+  pad.camera.pitch_mm = 0.16;
+  pad.camera.center_x_px = 159.5;
+  pad.camera.center_y_px = 119.5;
+  return pad;
+}
+
+struct FrameMistake {
+  const char* what;
+  Frame8 (*make)(const Frame8&);
+  DepthStatus said;
+};
+
+const FrameMistake with_a_frame[] = {
+    {"none", [](const Frame8& f) { return f; }, DepthStatus::ok},
+    {"lamp 10 % darker", [](const Frame8& f) { return times(f, 0.9); },
+     DepthStatus::pad_has_changed},
+    {"lamp 10 % brighter", [](const Frame8& f) { return times(f, 1.1); },
+     DepthStatus::pad_has_changed},
+    {"lamp off", [](const Frame8& f) { return times(f, 0); }, DepthStatus::pad_has_changed},
+    {"lens saturated", [](const Frame8& f) { return times(f, 9); }, DepthStatus::pad_has_changed},
+    {"row stride without padding", [](const Frame8& f) { return sheared(f, 5); },
+     DepthStatus::pad_has_changed},
+    {"red and green exchanged",
+     [](const Frame8& f) {
+       Frame8 out = f;
+       std::swap(out.red, out.green);
+       return out;
+     },
+     DepthStatus::pad_has_changed},
+    {"a frame of another size", [](const Frame8&) { return Frame8(240, 319, 60); },
+     DepthStatus::refused},
+};
+
+}  // namespace
+
+TEST_CASE("mistakes with the reference are refused with their likely cause", "[mistakes]") {
+  for (const Mistake& mistake : with_the_reference) {
+    Given given;
+    mistake.make(given);
+    const std::string said = said_of(given);
+    CAPTURE(mistake.what, said);
+    CHECK(said.find(mistake.said) != std::string::npos);
+  }
+}
+
+TEST_CASE("mistakes with the reference are refused as printed, too", "[mistakes]") {
+  Given given;
+  const auto said = [&](const auto& red, const auto& green) {
+    return refusal([&] {
+      (void)published::depth_reference(given.pad.camera, given.pad.fluid, red, green,
+                                       given.depth_mm);
+    });
+  };
+  CHECK(said(given.frame.red, given.frame.green) == "accepted");
+  CHECK(said(given.frame.green, given.frame.red).find(exchanged) != std::string::npos);
+}
+
+TEST_CASE("a frame that is not of this pad and lamp is told", "[mistakes]") {
+  const Pad pad = fine_pad();
+  const auto estimator = pad.estimator<BiasFreeMean, ExponentialFree<>, float>();
+  auto workspace = estimator.workspace<std::uint8_t>();
+  Image<float> depth(pad.rows, pad.cols);
+  for (const double pressed_mm : {0.0, 3.0}) {
+    const auto frame = pad.frame<std::uint8_t>(pad.pressed_depths(pressed_mm), 1, 5);
+    for (const FrameMistake& mistake : with_a_frame) {
+      const auto seen = mistake.make(frame);
+      const DepthResult result = estimator(seen.red, seen.green, depth, workspace);
+      CAPTURE(mistake.what, pressed_mm, result.rim_light, result.rim_lit, result.rim_pixels);
+      CHECK(name_of(result.status) == std::string(name_of(mistake.said)));
+    }
+  }
+}
+
+TEST_CASE("the light at the rim is that of all bands together", "[mistakes]") {
+  const Pad pad = fine_pad();
+  const auto estimator = pad.estimator<BiasFreeMean, ExponentialFree<>, float>();
+  auto workspace = estimator.workspace<std::uint8_t>();
+  Image<float> depth(pad.rows, pad.cols);
+  Image<PixelStatus> status(pad.rows, pad.cols);
+  const auto frame = times(pad.frame<std::uint8_t>(pad.pressed_depths(2), 1, 5), 0.9);
+  const DepthResult whole = estimator(frame.red, frame.green, depth, workspace);
+  DepthResult sum = estimator.band(0, 70, frame.red, frame.green, depth, status, workspace);
+  sum.add(estimator.band(70, 240, frame.red, frame.green, depth, status, workspace));
+  CHECK(sum.count == whole.count);
+  CHECK(sum.rim_pixels == whole.rim_pixels);
+  CHECK(sum.rim_light == Approx(whole.rim_light));
+  CHECK(sum.status == whole.status);
+}
+
+TEST_CASE("a depth that is ok lies in [0, max_depth_mm]", "[mistakes]") {
+  // constants of absorption and references as wrong as is accepted; colours of all kinds
+  test::Random random(11);
+  for (int k = 0; k < 40; ++k) {
+    Pad pad;
+    pad.fluid.c_green_per_mm = random.uniform(0.029, 0.1);
+    pad.fluid.kappa = random.uniform(0.5, 1.5);
+    pad.scattering = random.uniform(-0.01, 0.05);
+    pad.scattering_loss = random.uniform(-0.5, 0.5);
+    Image<float> depth(pad.rows, pad.cols);
+    Image<PixelStatus> status(pad.rows, pad.cols);
+    Frame8 frame(pad.rows, pad.cols);
+    for (auto* channel : {&frame.red, &frame.green}) {
+      for (std::uint8_t& cell : channel->cells) {
+        cell = static_cast<std::uint8_t>(random.whole(0, 255));
+      }
+    }
+    const auto check = [&](const auto& estimator) {
+      auto workspace = estimator.template workspace<std::uint8_t>();
+      (void)estimator(frame.red, frame.green, depth, status, workspace);
+      for (std::size_t p = 0; p < depth.cells.size(); ++p) {
+        const auto l = static_cast<double>(depth.cells[p]);
+        const bool within = l >= 0 && l <= pad.fluid.max_depth_mm;
+        REQUIRE(within == (status.cells[p] == PixelStatus::ok));
+      }
+    };
+    (void)refusal([&] { check(pad.estimator<NoSmoothing, ExponentialFree<>, float>()); });
+    (void)refusal([&] { check(pad.estimator<NoSmoothing, Newton, float>()); });
+    (void)refusal([&] { check(pad.estimator<BiasFreeMean, ExponentialFree<>, float>({5})); });
+  }
+}
+
+TEST_CASE("a bad pixel of the reference spoils no other", "[mistakes]") {
+  Pad pad = fine_pad();
+  const auto free = pad.free_depths();
+  const auto clean = pad.frame<std::uint8_t>(free, 1, 3);
+  const auto pressed = pad.frame<std::uint8_t>(pad.pressed_depths(3), 1, 4);
+  const auto depth_with = [&](const Frame8& seen) {
+    const auto reference = published::depth_reference<float, AstigmaticHeights>(
+        pad.camera, pad.fluid, seen.red, seen.green, free);
+    const DepthEstimator estimator(pad.camera, pad.fluid, reference, BiasFreeMean{29});
+    return test::estimate<float>(estimator, pressed).depth_mm;
+  };
+  const auto before = depth_with(clean);
+  for (const Index size : {1, 9}) {
+    Frame8 spoilt = clean;
+    for (Index i = 0; i < size; ++i) {
+      for (Index j = 0; j < size; ++j) {
+        spoilt.red(100 + i, 150 + j) = spoilt.green(100 + i, 150 + j) = 255;
+      }
+    }
+    const auto after = depth_with(spoilt);
+    double worst = 0;
+    for (std::size_t k = 0; k < after.cells.size(); ++k) {
+      const double change = std::abs(static_cast<double>(after.cells[k] - before.cells[k]));
+      worst = change > worst ? change : worst;
+    }
+    CAPTURE(size, worst);
+    // what the window has lost of its pixels, and no more
+    CHECK(worst < (size == 1 ? 0.02 : 0.15));
+    CHECK(std::isnan(after(100, 150)));
+  }
+}
+
+TEST_CASE("no pixel of a frame goes into the next frame's light", "[mistakes]") {
+  Image<double> free(60, 64), pressed(60, 64);
+  for (Index i = 0; i < 60; ++i) {
+    for (Index j = 0; j < 64; ++j) {
+      const double x = static_cast<double>(j - 32), y = static_cast<double>(i - 30);
+      free(i, j) = 12 - 0.003 * (x * x + y * y);
+      pressed(i, j) = (std::min)(free(i, j), 10.0);
+    }
+  }
+  auto rough = pressed;
+  for (Index j = 0; j < 64; j += 3) {
+    rough(59, j) = rough(0, j) = test::nan;
+  }
+  const NeighbourLightCompensation<> compensation({5}, 0.16F, free);
+  Image<float> out(60, 64), fresh(60, 64);
+  auto used = compensation.workspace();
+  REQUIRE(compensation(rough, out, used).ok());
+  REQUIRE(compensation(pressed, out, used).ok());
+  auto unused = compensation.workspace();
+  REQUIRE(compensation(pressed, fresh, unused).ok());
+  CHECK(test::same_bits(out, fresh));
+}
+
+TEST_CASE("12-bit pixels above their scale are left out, whatever the width", "[mistakes]") {
+  const Pad pad;
+  const GreyScale scale{16, 0, 255 * 16};
+  const auto depth = pad.pressed_depths(2);
+  const auto levels = pad.frame<double>(depth, 1, 4);
+  test::Frame<std::uint16_t> frame(pad.rows, pad.cols), other(pad.rows, pad.cols);
+  for (std::size_t k = 0; k < frame.red.cells.size(); ++k) {
+    const bool wild = k % 7 == 0;
+    frame.red.cells[k] = static_cast<std::uint16_t>(levels.red.cells[k] * 16);
+    frame.green.cells[k] = wild ? 65535 : static_cast<std::uint16_t>(levels.green.cells[k] * 16);
+    other.red.cells[k] = frame.red.cells[k];
+    other.green.cells[k] = wild ? 4080 : frame.green.cells[k];
+  }
+  const auto estimator = pad.estimator<BiasFreeMean, ExponentialFree<>, float>({5});
+  const auto seen = test::estimate<float>(estimator, frame, scale);
+  CHECK(test::same_bits(seen.depth_mm, test::estimate<float>(estimator, other, scale).depth_mm));
+  CHECK(seen.result.valid_pixels() > 1000);
+}
+
+TEST_CASE("wild finite depths move no contact and make no negative area", "[mistakes]") {
+  const auto check = [](const auto& camera) {
+    const auto depth = test::depths_of<float>(camera, test::RoundFilm({}), 60, 64);
+    ContactTest contact_test;
+    contact_test.ring.radius_px = 5;
+    using CameraType = std::decay_t<decltype(camera)>;
+    const ContactRegion<ClampedMean<>, HalfLevelEdge, CameraType> region(camera, 60, 64,
+                                                                         contact_test);
+    auto workspace = region.workspace();
+    Image<std::uint8_t> mask(60, 64);
+    const ContactResult before = region(depth, mask, workspace);
+    for (const float wild : {5000.0F, -5000.0F, 60.0F, -60.0F, 1e30F, -1e30F}) {
+      auto spoilt = depth;
+      spoilt(30, 32) = wild;
+      const ContactResult after = region(spoilt, mask, workspace);
+      CAPTURE(wild, after.depth_mm, before.depth_mm, after.area_mm2, before.area_mm2);
+      // 60 mm may be a depth: it counts as one pixel of a thousand
+      CHECK(std::abs(after.depth_mm - before.depth_mm) < (std::abs(wild) < 100 ? 0.1 : 0.005));
+      CHECK(after.area_mm2 == Approx(before.area_mm2).epsilon(0.1));
+    }
+  };
+  check(test::height_map(60, 64, 0.32));
+  check(test::pad_camera(60, 64, 0.32));
+}
+
+TEST_CASE("images larger than any are refused by name", "[mistakes]") {
+  const auto said = [](Index rows, Index cols) {
+    return std::array{refusal([&] { const ContactRegion<> r({}, rows, cols); }),
+                      refusal([&] { const CurvatureMap<> r({}, rows, cols); }),
+                      refusal([&] { const SurfaceFit<> r(rows, cols, {}); })};
+  };
+  const auto enormous = std::numeric_limits<Index>::max();
+  for (const auto& [rows, cols, what] : {std::tuple<Index, Index, const char*>{-1, 60, "rows = -1"},
+                                         {enormous, 60, "rows = "},
+                                         {60, enormous, "cols = "},
+                                         {1000000, 1000000, "rows times cols = 1000000000000"}}) {
+    for (const std::string& message : said(rows, cols)) {
+      CAPTURE(message);
+      CHECK(message.find(what) != std::string::npos);
+    }
+  }
+}
+
+TEST_CASE("a copied workspace is as good as the first", "[mistakes]") {
+  const Pad pad;
+  const auto frame = pad.frame<std::uint8_t>(pad.pressed_depths(2), 1, 5);
+  const auto estimator = pad.estimator<BiasFreeMean, ExponentialFree<>, float>({5});
+  auto first = estimator.workspace<std::uint8_t>();
+  auto copy = first;
+  Image<float> a(pad.rows, pad.cols), b(pad.rows, pad.cols);
+  CHECK(estimator(frame.red, frame.green, a, first).valid_pixels() > 1000);
+  CHECK(estimator(frame.red, frame.green, b, copy).valid_pixels() > 1000);
+  CHECK(test::same_bits(a, b));
+
+  ContactTest contact_test;
+  contact_test.ring.radius_px = 3;
+  const ContactRegion<> region(pad.camera, pad.rows, pad.cols, contact_test);
+  auto region_first = region.workspace();
+  auto region_copy = region_first;
+  Image<std::uint8_t> mask(pad.rows, pad.cols), other(pad.rows, pad.cols);
+  CHECK(region(a, mask, region_first).ok());
+  CHECK(region(a, other, region_copy).ok());
+  CHECK(mask.cells == other.cells);
+
+  const NeighbourLightCompensation<> compensation({5}, 0.8F, pad.free_depths());
+  auto light_first = compensation.workspace();
+  auto light_copy = light_first;
+  CHECK(compensation(a, a, light_first).ok());
+  CHECK(compensation(b, b, light_copy).ok());
+  CHECK(test::same_bits(a, b));
+}
