@@ -21,6 +21,7 @@
 #include <type_traits>
 #include <vector>
 
+#include "fingerpad/core/detail/reserved_vector.hpp"
 #include "fingerpad/core/dots.hpp"
 #include "fingerpad/core/expects.hpp"
 #include "fingerpad/core/grid.hpp"
@@ -107,8 +108,8 @@ class ContactShift {
   /// What a frame writes on the way.
   class Workspace {
     friend class ContactShift;
-    std::vector<detail::DotPair<S>> pairs_;
-    std::vector<scalar_real_t<S>> residuals_;
+    detail::ReservedVector<detail::DotPair<S>> pairs_;
+    detail::ReservedVector<scalar_real_t<S>> residuals_;
   };
 
   /// `reference` are the dots of the free pad, or of any frame that counts as not displaced.

@@ -18,6 +18,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "fingerpad/core/detail/reserved_vector.hpp"
 #include "fingerpad/core/dots.hpp"
 #include "fingerpad/core/point.hpp"
 #include "fingerpad/core/scalar.hpp"
@@ -88,10 +89,8 @@ struct LevelSums {
 template <scalar S>
 class Meridian {
  public:
-  explicit Meridian(std::size_t max_points) : most_(max_points) {
-    points_.reserve(max_points);
-    rises_.reserve(max_points);
-  }
+  explicit Meridian(std::size_t max_points)
+      : most_(max_points), points_(max_points), rises_(max_points) {}
 
   /// From the rim to the end, one step apart but for the first and the last.
   const std::vector<Point3<S>>& points() const { return points_; }
@@ -285,8 +284,8 @@ class Meridian {
   Point3<S> end_normal_ = {S(0), S(0), S(1)};
   S dir_x_ = S(0);
   S dir_y_ = S(0);
-  std::vector<Point3<S>> points_;
-  std::vector<S> rises_;
+  ReservedVector<Point3<S>> points_;
+  ReservedVector<S> rises_;
 };
 
 }  // namespace detail::membrane

@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "fingerpad/core/detail/reserved_vector.hpp"
 #include "fingerpad/core/dots.hpp"
 #include "fingerpad/core/grid.hpp"
 #include "fingerpad/core/scalar.hpp"
@@ -74,15 +75,13 @@ P beside(const P* dots, const DotLayout& layout, Index k, Index down, Index righ
 /// A frame as it was given, of points in the image or in space.
 template <class P>
 struct GivenDots {
-  Dots<P> found;                ///< NaN where none was found
-  std::vector<Index> touching;  ///< the cells with a flag of contact, found or not
-  Index count = 0;              ///< of the dots found
+  Dots<P> found;                   ///< NaN where none was found
+  ReservedVector<Index> touching;  ///< the cells with a flag of contact, found or not
+  Index count = 0;                 ///< of the dots found
 
   GivenDots() = default;
   explicit GivenDots(const DotLayout& layout)
-      : found(static_cast<std::size_t>(layout.size()), no_dot<P>()) {
-    touching.reserve(found.size());
-  }
+      : found(static_cast<std::size_t>(layout.size()), no_dot<P>()), touching(found.size()) {}
 
   template <class DotsView, class Contact>
   void read(const DotsView& dots, const Contact& contact) {

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "fingerpad/core/detail/reserved_vector.hpp"
 #include "fingerpad/core/grid.hpp"
 #include "fingerpad/slip/detail/rigid_consensus.hpp"
 
@@ -31,13 +32,12 @@ class SpatialState {
       : layout(layout_of_dots),
         given(layout),
         now(given.found),
+        pairs(given.found.size()),
         pair_at(given.found.size(), -1),
         sorted(given.found.size()),
         dot_slips(given.found.size()),
         marks(given.found.size(), DotState::none),
-        repository(layout, capacity) {
-    pairs.reserve(given.found.size());
-  }
+        repository(layout, capacity) {}
 
   /// The contact is over: nothing of it is comparable with the next.
   void forget() {
@@ -52,7 +52,7 @@ class SpatialState {
   DotLayout layout;
   GivenDots<Point3<S>> given;  // this frame
   Dots<Point3<S>> now;         // of it, the dots in contact, in their places
-  std::vector<SpatialPair<S>> pairs;
+  ReservedVector<SpatialPair<S>> pairs;
   std::vector<Index> pair_at;
   std::vector<S> sorted;
   std::vector<DotSlip<S>> dot_slips;

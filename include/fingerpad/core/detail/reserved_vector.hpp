@@ -1,0 +1,33 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+#pragma once
+// A vector whose copies have its capacity too. A copied State or Workspace must not take memory in
+// a frame, and a copied std::vector forgets what was reserved.
+#include <cstddef>
+#include <vector>
+
+namespace fingerpad {
+inline namespace v0 {
+namespace detail {
+
+template <class T>
+class ReservedVector : public std::vector<T> {
+ public:
+  explicit ReservedVector(std::size_t capacity = 0) { this->reserve(capacity); }
+  ReservedVector(const ReservedVector& other) : std::vector<T>() { *this = other; }
+  ReservedVector(ReservedVector&&) noexcept = default;
+  ReservedVector& operator=(const ReservedVector& other) {
+    if (this != &other) {
+      this->clear();
+      this->reserve(other.capacity());
+      this->insert(this->end(), other.begin(), other.end());
+    }
+    return *this;
+  }
+  ReservedVector& operator=(ReservedVector&&) noexcept = default;
+  ~ReservedVector() = default;
+};
+
+}  // namespace detail
+}  // namespace v0
+}  // namespace fingerpad

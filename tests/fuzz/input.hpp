@@ -1,0 +1,149 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+#pragma once
+// What the fuzzer's bytes mean: sizes, parameters, and grids with gaps between rows and cells.
+// Zeros follow where the bytes end.
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <limits>
+#include <type_traits>
+#include <vector>
+
+#include "fingerpad/core/expects.hpp"
+#include "fingerpad/core/grid.hpp"
+#include "no_allocation/count.hpp"
+
+namespace fuzz {
+
+using fingerpad::Index;
+
+class Input {
+ public:
+  Input(const std::uint8_t* data, std::size_t size) : data_(data), left_(size) {}
+
+  bool is_empty() const { return left_ == 0; }
+  std::uint8_t byte() {
+    if (left_ == 0) {
+      return 0;
+    }
+    --left_;
+    return *data_++;
+  }
+  bool flag() { return (byte() & 1) != 0; }
+  Index whole(Index min, Index max) {
+    const unsigned word = byte() | unsigned(byte()) << 8;
+    return min + static_cast<Index>(word) % (max - min + 1);
+  }
+
+  /// In [min, max], or, once in 16, a value that nobody expects.
+  double number(double min, double max) {
+    const std::uint8_t kind = byte();
+    if (kind >= 240) {
+      return strange(kind & 15);
+    }
+    return min + (max - min) * static_cast<double>(whole(0, 65535)) / 65535;
+  }
+  /// The same as a cell: integers wrap, as a camera's would.
+  template <class T>
+  T cell(double min, double max) {
+    if constexpr (std::is_integral_v<T>) {
+      return static_cast<T>(whole(0, 65535));
+    } else {
+      return static_cast<T>(number(min, max));
+    }
+  }
+
+ private:
+  static double strange(int kind) {
+    using Limits = std::numeric_limits<double>;
+    const double values[] = {Limits::quiet_NaN(),
+                             Limits::infinity(),
+                             -Limits::infinity(),
+                             0,
+                             -0.0,
+                             Limits::denorm_min(),
+                             1e-30,
+                             -1e-30,
+                             1e30,
+                             -1e30,
+                             Limits::max(),
+                             Limits::lowest(),
+                             1e-300,
+                             1e9,
+                             -1e9,
+                             -1};
+    return values[kind];
+  }
+
+  const std::uint8_t* data_;
+  std::size_t left_;
+};
+
+/// A grid of its own memory, with gaps, whose cells come from the input: a few of them one by one,
+/// the others repeated, so that short inputs fill large grids.
+template <class T>
+class Grid {
+ public:
+  Grid(Index rows, Index cols, Index gap = 0)
+      : rows_(rows), cols_(cols), step_(1 + gap), stride_(cols * step_ + gap) {
+    cells_.resize(static_cast<std::size_t>(rows * stride_ + 1));
+  }
+  Grid(Input& input, Index rows, Index cols, double min, double max)
+      : Grid(rows, cols, input.whole(0, 2)) {
+    fill(input, [&] { return input.cell<T>(min, max); });
+  }
+
+  template <class MakeCell>
+  void fill(Input& input, const MakeCell& make) {
+    std::vector<T> few;
+    for (Index k = 1 + input.whole(0, 63); k > 0; --k) {
+      few.push_back(make());
+    }
+    const auto step = static_cast<std::size_t>(input.whole(1, 7));
+    for (std::size_t k = 0; k < cells_.size(); ++k) {
+      cells_[k] = few[k * step % few.size()];
+    }
+  }
+
+  fingerpad::StridedView<T> view() { return {cells_.data(), rows_, cols_, stride_, step_}; }
+  fingerpad::StridedView<const T> view() const {
+    return {cells_.data(), rows_, cols_, stride_, step_};
+  }
+  bool operator==(const Grid& other) const {
+    return cells_.size() == other.cells_.size() &&
+           std::memcmp(cells_.data(), other.cells_.data(), cells_.size() * sizeof(T)) == 0;
+  }
+
+ private:
+  Index rows_, cols_, step_, stride_;
+  std::vector<T> cells_;
+};
+
+/// Ends the run: the input is kept by the fuzzer.
+inline void require(bool holds, const char* what) {
+  if (!holds) {
+    std::fprintf(stderr, "does not hold: %s\n", what);
+    std::abort();
+  }
+}
+
+/// The result of a frame, which throws nothing and takes no memory.
+template <class Frame>
+auto frame(const Frame& call) noexcept {
+  const long before = test::allocations();
+  auto result = call();
+  require(test::allocations() == before, "a frame takes no memory");
+  return result;
+}
+
+/// Whether two numbers have the same bits.
+template <class T>
+bool same_bits(const T& a, const T& b) {
+  return std::memcmp(&a, &b, sizeof(T)) == 0;
+}
+
+}  // namespace fuzz
