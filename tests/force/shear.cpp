@@ -181,11 +181,13 @@ TEST_CASE("shear: a straight line needs no range, but reports the one it has", "
   const Shear closed(shear_without_measure(), RadialShear<>{{{2.0}, 1.0}, {{3.0}, 0.5}});
   for (const double size : {0.5, 5.0, 5e5}) {
     const auto a = open(1.0, {size, 0}, size), b = closed(1.0, {size, 0}, size);
-    CHECK(a.force_status == ForceStatus::measured);
-    CHECK(a.moment_status == ForceStatus::measured);
+    // neither 100 mm nor half a turn are those of a fingertip
+    const bool far = size > 100, turned = size > 3.2;
+    CHECK(a.force_status == (far ? ForceStatus::implausible : ForceStatus::measured));
+    CHECK(a.moment_status == (turned ? ForceStatus::implausible : ForceStatus::measured));
     const auto expected = size > 1 ? ForceStatus::beyond_range : ForceStatus::measured;
-    CHECK(b.force_status == expected);
-    CHECK(b.moment_status == expected);
+    CHECK(b.force_status == (far ? ForceStatus::implausible : expected));
+    CHECK(b.moment_status == (turned ? ForceStatus::implausible : expected));
     CHECK(a.tangential_force_n.x == 2 * size);
     CHECK(b.tangential_force_n.x == 2 * size);
     CHECK(a.moment_n_mm == 3 * size);
@@ -214,9 +216,11 @@ TEST_CASE("shear: any linear map", "[shear]") {
   CHECK(r.tangential_force_n.x == Approx(1.56916819579350147 + 0.125).epsilon(1e-14));
   CHECK(r.tangential_force_n.y == Approx(6.25 * 1.56916819579350147 - 0.25).epsilon(1e-14));
   CHECK(r.moment_n_mm == Approx(10 * 3.24900958542494209 + 0.5).epsilon(1e-14));
-  // no displacement is beyond what it knows
-  CHECK(shear(1.0, {1e6, 0}, 1e6).force_status == ForceStatus::measured);
-  CHECK(shear(1.0, {1e6, 0}, 1e6).moment_status == ForceStatus::measured);
+  // no displacement of a fingertip is beyond what it knows
+  CHECK(shear(1.0, {99, 0}, -3.1).ok());
+  CHECK(shear(1.0, {101, 0}, 0.1).force_status == ForceStatus::implausible);
+  CHECK(shear(1.0, {101, 0}, 0.1).moment_status == ForceStatus::measured);
+  CHECK(shear(1.0, {1, 0}, -15).moment_status == ForceStatus::implausible);
 }
 
 TEST_CASE("shear: without contact there is no force, whatever is displaced", "[shear]") {

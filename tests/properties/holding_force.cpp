@@ -96,8 +96,9 @@ auto end_of(const Search& search, double begins_below_n, double slips_below_n) {
   for (int k = 0; k < 100000 && !is_end(state.command().phase); ++k) {
     const bool is_missing = k % seldom == 0;
     const double force_n = state.command().force_n;
-    (void)search(is_missing ? PreslipStatus::cannot_tell : object(force_n, begins_below_n, slips_below_n),
-                 state);
+    (void)search(
+        is_missing ? PreslipStatus::cannot_tell : object(force_n, begins_below_n, slips_below_n),
+        state);
   }
   RC_ASSERT(is_end(state.command().phase));
   return state.command();
@@ -295,7 +296,8 @@ TEST_CASE("lifting whatever is told", "[holding_force][law]") {
     RC_ASSERT(is_end(state.command().phase));
     // the longest way: all but one lift, all tightenings, the last lift
     News longest(static_cast<std::size_t>(lifts - 1), PreslipStatus::steady);
-    longest.insert(longest.end(), static_cast<std::size_t>(bound - lifts + 1), PreslipStatus::preslip);
+    longest.insert(longest.end(), static_cast<std::size_t>(bound - lifts + 1),
+                   PreslipStatus::preslip);
     longest.back() = PreslipStatus::steady;
     RC_ASSERT(after(search, longest).phase == SearchPhase::lifted);
     longest.pop_back();

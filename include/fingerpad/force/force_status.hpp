@@ -4,6 +4,9 @@
 // What a force by look-up is worth.
 #include <cstdint>
 
+#include "fingerpad/core/point.hpp"
+#include "fingerpad/core/scalar.hpp"
+
 namespace fingerpad {
 inline namespace v0 {
 
@@ -15,6 +18,8 @@ enum class ForceStatus : std::uint8_t {
                  ///< is the measure in another unit?
   beyond_range,  ///< a larger one, or a larger shift: the curve goes on along its tangent
   held_at_zero,  ///< the curve or a compensation is negative there
+  implausible,   ///< a displacement above 100 mm or a rotation by more than half a turn: in px, um,
+                 ///< degrees?
   disagreeing,   ///< area and depth tell forces further apart than their errors allow: the contact
                  ///< is not like those of the calibration, or a measure is in another unit
   not_finite,    ///< what it is computed from is no number, or it is too large for one
@@ -33,6 +38,8 @@ constexpr const char* name_of(ForceStatus status) {
       return "held at zero";
     case ForceStatus::no_contact:
       return "no contact";
+    case ForceStatus::implausible:
+      return "implausible: not in mm, rad?";
     case ForceStatus::disagreeing:
       return "disagreeing";
     case ForceStatus::not_finite:
@@ -42,6 +49,17 @@ constexpr const char* name_of(ForceStatus status) {
 }
 
 namespace detail {
+
+/// What no contact of a fingertip has; false for what is not finite.
+template <class S>
+constexpr bool beyond_displacement(const Point2<S>& displacement_mm) {
+  return is_finite(displacement_mm) && value(squared_norm(displacement_mm)) > 1e4;
+}
+template <class S>
+constexpr bool beyond_rotation(const S& rotation_rad) {
+  return is_finite(rotation_rad) && (value(rotation_rad) > 3.2 || value(rotation_rad) < -3.2);
+}
+
 constexpr ForceStatus worse(ForceStatus a, ForceStatus b) {
   return a < b ? b : a;
 }

@@ -187,11 +187,12 @@ class NormalForce {
       return result;
     }
     result.force_n = value(force) > 0 ? force : S(0);
-    result.status = value(measure) <= 0                    ? ForceStatus::no_contact
-                    : value(force) < 0                     ? ForceStatus::held_at_zero
-                    : value(measure) < value(curve().from) ? ForceStatus::below_range
-                    : value(measure) > value(curve().to)   ? ForceStatus::beyond_range
-                                                           : ForceStatus::measured;
+    result.status = value(measure) <= 0                      ? ForceStatus::no_contact
+                    : is_wild(displacement_mm, rotation_rad) ? ForceStatus::implausible
+                    : value(force) < 0                       ? ForceStatus::held_at_zero
+                    : value(measure) < value(curve().from)   ? ForceStatus::below_range
+                    : value(measure) > value(curve().to)     ? ForceStatus::beyond_range
+                                                             : ForceStatus::measured;
     if (errors_) {
       result.variance_n2 = variance_n2(measure, change);
     }
@@ -204,6 +205,11 @@ class NormalForce {
   static const Curve& checked(const Curve& curve) {
     expects_valid(curve);
     return curve;
+  }
+
+  static bool is_wild(const Point2<S>& displacement_mm, const S& rotation_rad) {
+    return Compensation::reads_motion &&
+           (detail::beyond_displacement(displacement_mm) || detail::beyond_rotation(rotation_rad));
   }
 
   detail::ForceChange<S> change_by(const Point2<S>& displacement_mm, const S& rotation_rad) const {

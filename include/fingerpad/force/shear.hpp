@@ -262,21 +262,24 @@ class Shear {
     if (is_finite(displacement_mm) && is_finite(force)) {
       result.normalised_displacement_mm = d;
       result.tangential_force_n = force;
-      result.force_status = status_of(contact, map_.within(d));
+      result.force_status =
+          status_of(contact, detail::beyond_displacement(displacement_mm), map_.within(d));
     }
     const S theta = factor(normalisation_.rotation_exponent) * rotation_rad;
     const S moment = contact ? map_.moment_n_mm(theta) : S(0);
     if (is_finite(rotation_rad) && is_finite(moment)) {
       result.normalised_rotation_rad = theta;
       result.moment_n_mm = moment;
-      result.moment_status = status_of(contact, map_.within(theta));
+      result.moment_status =
+          status_of(contact, detail::beyond_rotation(rotation_rad), map_.within(theta));
     }
     return result;
   }
 
  private:
-  static ForceStatus status_of(bool contact, bool within) {
+  static ForceStatus status_of(bool contact, bool wild, bool within) {
     return !contact ? ForceStatus::no_contact
+           : wild   ? ForceStatus::implausible
            : within ? ForceStatus::measured
                     : ForceStatus::beyond_range;
   }

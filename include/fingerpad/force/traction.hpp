@@ -40,8 +40,11 @@ enum class TractionStatus : std::uint8_t {
   no_contact,    ///< no dot is in contact: force and moment are 0; the maps are there
   incomplete,    ///< force and moment miss the share of some dots in contact or beside them, which
                  ///< have no load: they lie on the edge of the grid, or dots were not found
-  bad_pressure,  ///< <= 0, above 10^6 MPa or NaN: nothing is known
-  too_few_dots,  ///< no dot was found with all its neighbours: nothing is known
+  bad_pressure,  ///< <= 0 or not finite: nothing is known
+  pressure_not_in_mpa,   ///< above max_pressure_mpa: kPa, Pa? Nothing is known
+  not_of_this_membrane,  ///< most cells are folded or stretched beyond measure: dots in another
+                         ///< order or unit, or of another pad
+  too_few_dots,          ///< no dot was found with all its neighbours: nothing is known
   no_balance,  ///< without a given mu t: the free part is too small, or does not hold the pressure
   refused,     ///< a grid, state or workspace has another size: nothing was done
 };
@@ -57,6 +60,10 @@ constexpr const char* name_of(TractionStatus status) {
       return "incomplete";
     case TractionStatus::bad_pressure:
       return "bad pressure";
+    case TractionStatus::pressure_not_in_mpa:
+      return "pressure not in MPa";
+    case TractionStatus::not_of_this_membrane:
+      return "not of this membrane";
     case TractionStatus::too_few_dots:
       return "too few dots";
     case TractionStatus::no_balance:
@@ -84,6 +91,7 @@ struct [[nodiscard]] TractionResult {
   Index dots_left_out = 0;  ///< in contact or in the ring around it, but without a load
   Index dots_bridged = 0;   ///< not found, but put between their neighbours for the sums
   Index dots_loaded = 0;    ///< that have a load in the maps, if there is a modulus
+  Index cells_taken = 0;    ///< that pull their dots
   Index cells_refused = 0;  ///< folded, or stretched beyond measure
   Index cells_slack = 0;    ///< with a tension below 0
   S smallest_tension_n_per_mm = not_a_number<S>();  ///< of all cells
@@ -107,8 +115,9 @@ struct TractionOptions {
   Index fade_dots = 3;  ///< in [0, 20]: over this many dots more the weight in the sums falls to 0.
                         ///< The true sums do not change by that; an abrupt end, 0, makes them
                         ///< noisy, since all the pull across one line of dots then counts
-  double largest_stretch = 5.0;  ///< in (1, 1000]: a cell with a principal stretch above this or
-                                 ///< below its inverse is no membrane: wrong dots
+  double max_pressure_mpa = 0.2;  ///< > 0: more is taken for kPa or Pa
+  double largest_stretch = 5.0;   ///< in (1, 1000]: a cell with a principal stretch above this or
+                                  ///< below its inverse is no membrane: wrong dots
 };
 template <scalar S>
 void expects_valid(const TractionOptions<S>& options) {
@@ -120,6 +129,8 @@ void expects_valid(const TractionOptions<S>& options) {
           static_cast<long long>(options.ring_dots), "in [0, 5]");
   expects(options.fade_dots >= 0 && options.fade_dots <= 20, "TractionOptions", "fade_dots",
           static_cast<long long>(options.fade_dots), "in [0, 20]");
+  expects(is_finite(options.max_pressure_mpa) && options.max_pressure_mpa > 0, "TractionOptions",
+          "max_pressure_mpa", options.max_pressure_mpa, "finite and > 0");
   expects(options.largest_stretch > 1 && options.largest_stretch <= 1000, "TractionOptions",
           "largest_stretch", options.largest_stretch, "in (1, 1000]");
 }
@@ -242,6 +253,14 @@ class TractionField {
   S modulus_of(const S& pressure_mpa, const Memory& frame, TractionResult<S>& result) const {
     if (!detail::traction::is_measure(pressure_mpa)) {
       result.status = TractionStatus::bad_pressure;
+      return not_a_number<S>();
+    }
+    if (value(pressure_mpa) > options_.max_pressure_mpa) {
+      result.status = TractionStatus::pressure_not_in_mpa;
+      return not_a_number<S>();
+    }
+    if (2 * result.cells_refused > result.cells_refused + result.cells_taken) {
+      result.status = TractionStatus::not_of_this_membrane;
       return not_a_number<S>();
     }
     if (result.dots_loaded == 0) {

@@ -137,7 +137,13 @@ class Wrench {
         solver_(solver),
         row_(row),
         law_(law),
-        rim_(border_mm, side_dot_length_mm, options.base_radius_mm, options.columns) {}
+        rim_(border_mm, side_dot_length_mm, options.base_radius_mm, options.columns) {
+    if constexpr (requires { S(side_dot_length_mm.modulus_n_per_mm); }) {
+      if (!options_.calibrated_modulus_n_per_mm) {
+        options_.calibrated_modulus_n_per_mm = S(side_dot_length_mm.modulus_n_per_mm);
+      }
+    }
+  }
 
   Index side_dots() const { return rim_.size(); }
   const WrenchOptions<S>& options() const { return options_; }
@@ -146,7 +152,7 @@ class Wrench {
   /// Force and moment of a frame. `shape` is the membrane (the map of PadHeights, or any
   /// membrane_shape);
   /// `side_dots_mm` has Row::rows rows, the one nearer to the rim first, and a column for each
-  /// border point; NaN: not found. Pressure in MPa above that of the air, at most 1e6. With `noise`
+  /// border point; NaN: not found. Pressure in MPa above that of the air. With `noise`
   /// the result has a covariance.
   template <class Shape, spatial_dot_grid Dots>
     requires(membrane_shape<Shape, S>)
@@ -175,6 +181,8 @@ class Wrench {
   }
 
  private:
+  static constexpr bool balances_all =
+      Solver::magnitude == detail::membrane::Magnitude::of_all && Solver::finds_tensions;
   static constexpr bool needs_shape = Solver::magnitude != detail::membrane::Magnitude::given;
 
   static const WrenchOptions<S>& checked(const WrenchOptions<S>& options,
@@ -200,9 +208,11 @@ class Wrench {
                      const S& pressure_mpa,
                      Workspace& work,
                      WrenchResult<S>& result) const {
-    // no pad holds so much, and squares must stay finite
-    if (!(value(pressure_mpa) > 0) || S(1e6) < pressure_mpa) {
+    if (!(value(pressure_mpa) > 0) || !is_finite(pressure_mpa)) {
       return WrenchStatus::bad_pressure;
+    }
+    if (pressure_mpa > options_.max_pressure_mpa) {
+      return WrenchStatus::pressure_not_in_mpa;
     }
     const WrenchStatus shaped = lay_mesh(shape, work, result);
     if (shaped != WrenchStatus::ok) {
@@ -229,8 +239,23 @@ class Wrench {
     if constexpr (Solver::magnitude == detail::membrane::Magnitude::of_all) {
       solved = solved && detail::membrane::carry_load(work.segments_, pressure, work.tensions_.rim);
     }
-    result.residual = solved ? residual : not_a_number<S>();
-    return solved ? WrenchStatus::ok : WrenchStatus::not_solved;
+    if (!solved) {
+      return WrenchStatus::not_solved;
+    }
+    if (balances_all && !(residual <= options_.max_residual)) {
+      return WrenchStatus::unbalanced;
+    }
+    result.residual = residual;
+    return is_as_calibrated(work) ? WrenchStatus::ok : WrenchStatus::modulus_not_as_calibrated;
+  }
+
+  bool is_as_calibrated(const Workspace& work) const {
+    if (!Law::tells_magnitude || !options_.calibrated_modulus_n_per_mm) {
+      return true;
+    }
+    const S ratio = detail::membrane::mean_factor(work.tensions_.rim, work.pulls_.segments) /
+                    *options_.calibrated_modulus_n_per_mm;
+    return ratio < S(3) && S(1) < S(3) * ratio;
   }
 
   template <class Shape>
@@ -249,6 +274,10 @@ class Wrench {
       if (result.level_lines == 0) {
         return WrenchStatus::no_level_line;
       }
+      const S top = work.nodes_.top_mm();
+      if (!(top > options_.side_dot_length_mm / S(2)) || top > S(2) * options_.base_radius_mm) {
+        return WrenchStatus::shape_not_in_mm;
+      }
       work.segments_.measure(work.nodes_);
     }
     return WrenchStatus::ok;
@@ -264,6 +293,12 @@ class Wrench {
     result.slack = work.pulls_.slack;
     result.unstretched = work.pulls_.unstretched + work.pulls_.slack;
     result.outward = work.pulls_.outward;
+    if (!rim_.in_order(work.pulls_)) {
+      return WrenchStatus::side_dots_in_another_order;
+    }
+    if (3 * work.pulls_.below > rim_.size()) {
+      return WrenchStatus::side_dots_below_base;
+    }
     if (3 * result.missing > rim_.size()) {
       return WrenchStatus::too_few_side_dots;
     }

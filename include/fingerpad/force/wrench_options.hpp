@@ -5,6 +5,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 
 #include "fingerpad/core/dots.hpp"
 #include "fingerpad/core/expects.hpp"
@@ -26,6 +27,14 @@ struct WrenchOptions {
                             ///< a node of the height map, and half of the half width over which a
                             ///< depth map was averaged; more makes the edge less certain
   S reach_mm = S(4);        ///< how far beyond that the membrane's inclination is read, >= 4 steps
+  // what is refused as implausible
+  S max_pressure_mpa = S(2) / S(10);  ///< more is taken for kPa or Pa, > 0
+  S max_residual = S(1) / S(10);  ///< of eqs. 6 and 7, where the solver balances all of them, > 0:
+                                  ///< more, and shape and side dots contradict each other
+  std::optional<S> calibrated_modulus_n_per_mm = {};  ///< mu t from calibrate/rim.hpp, > 0: a frame
+                                                      ///< more than three times off is refused.
+                                                      ///< Empty: that of the fit that the lengths
+                                                      ///< come from, if there is one
 };
 
 template <scalar S>
@@ -45,6 +54,9 @@ void expects_valid(const WrenchOptions<S>& o) {
           o.line_step_mm, "in [base_radius_mm / 1000, base_radius_mm / 10]");
   expects(is_finite(o.reach_mm) && !(o.reach_mm < S(4) * o.line_step_mm), owner, "reach_mm",
           o.reach_mm, "finite and >= 4 line_step_mm");
+  positive(o.max_pressure_mpa, "max_pressure_mpa");
+  positive(o.max_residual, "max_residual");
+  positive(o.calibrated_modulus_n_per_mm.value_or(S(1)), "calibrated_modulus_n_per_mm");
   expects(is_finite(o.blur_mm) && value(o.blur_mm) >= 0, owner, "blur_mm", o.blur_mm,
           "finite and >= 0");
 }
@@ -54,14 +66,26 @@ void expects_valid(const WrenchOptions<S>& o) {
 enum class WrenchStatus : std::uint8_t {
   ok,
   no_contact,         ///< the membrane touches nothing: force and moment are 0
-  bad_pressure,       ///< not finite, not above 0, or above all reason
+  bad_pressure,       ///< not finite or not above 0
   too_few_side_dots,  ///< more than a third were not found
   unstretched,        ///< more than a third do not tell a direction: too little stretch, or slack
   no_shape,           ///< more than a third of the lines run into holes
   no_level_line,      ///< nowhere between rim and contact is the membrane level, so its shape does
                       ///< not tell how much it pulls (KnownModulus needs no such line)
   not_solved,         ///< the equations have no solution, or one that pulls downward
-  refused,            ///< a grid, state or workspace has another size: nothing was done
+  // the likely mistakes
+  pressure_not_in_mpa,  ///< above max_pressure_mpa: kPa, Pa?
+  shape_not_in_mm,      ///< lower than the side dots, or higher than the base is wide: m, um?
+  side_dots_in_another_order,  ///< more than a third lie nearer to another border point than to
+                               ///< their own, or nowhere near it, or all are carried along the rim
+                               ///< by half their distance: shifted, mirrored, rows exchanged, in
+                               ///< px?
+  side_dots_below_base,        ///< more than a third: does z point into the pad?
+  modulus_not_as_calibrated,   ///< mu t comes out more than three times off: absolute pressure
+                               ///< instead of that above the air's, or dots of another pad?
+  unbalanced,  ///< eqs. 6 and 7 are left with more than max_residual: shape and side dots are not
+               ///< of the same frame, pad or unit
+  refused,     ///< a grid, state or workspace has another size: nothing was done
 };
 
 /// "ok", "no contact", ...
@@ -83,6 +107,18 @@ constexpr const char* name_of(WrenchStatus status) {
       return "no level line";
     case WrenchStatus::not_solved:
       return "not solved";
+    case WrenchStatus::pressure_not_in_mpa:
+      return "pressure not in MPa";
+    case WrenchStatus::shape_not_in_mm:
+      return "shape not in mm";
+    case WrenchStatus::side_dots_in_another_order:
+      return "side dots in another order";
+    case WrenchStatus::side_dots_below_base:
+      return "side dots below the base";
+    case WrenchStatus::modulus_not_as_calibrated:
+      return "modulus not as calibrated: absolute pressure?";
+    case WrenchStatus::unbalanced:
+      return "unbalanced";
     case WrenchStatus::refused:
       return "refused";
   }
@@ -122,6 +158,9 @@ struct [[nodiscard]] WrenchResult {
   Index level_lines = 0;   ///< along which the membrane is level at A_g
 
   bool ok() const { return status == WrenchStatus::ok || status == WrenchStatus::no_contact; }
+  /// How hard the object presses, positive, as in the look-ups; and what drags along the pad.
+  S normal_force_n() const { return -force_n.z; }
+  Point2<S> tangential_force_n() const { return {force_n.x, force_n.y}; }
 };
 
 }  // namespace v0

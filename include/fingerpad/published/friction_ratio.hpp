@@ -36,11 +36,13 @@ void expects_valid(const FrictionTest<S>& test) {
 }
 
 enum class FrictionStatus : std::uint8_t {
-  held,            ///< F/N is below the alarm: perfect contact or partial slip
-  near_slip,       ///< F/N is about what it was at the last slip
-  sliding,         ///< the caller says so; F/N is remembered
-  no_slip_yet,     ///< nothing to compare with
-  no_contact,      ///< the normal force is too small, or pulls
+  held,             ///< F/N is below the alarm: perfect contact or partial slip
+  near_slip,        ///< F/N is about what it was at the last slip
+  sliding,          ///< the caller says so; F/N is remembered
+  no_slip_yet,      ///< nothing to compare with
+  no_contact,       ///< the normal force is too small
+  negative_normal,  ///< as large as that of a press, but negative: F_z of a wrench? Give the force
+                    ///< as a point, or WrenchResult::normal_force_n()
   no_force_known,  ///< a force is not finite
 };
 
@@ -57,6 +59,8 @@ constexpr const char* name_of(FrictionStatus status) {
       return "no slip yet";
     case FrictionStatus::no_contact:
       return "no contact";
+    case FrictionStatus::negative_normal:
+      return "negative normal force: F_z of a wrench?";
     case FrictionStatus::no_force_known:
       return "no force known";
   }
@@ -109,7 +113,8 @@ class FrictionRatio {
       return result;
     }
     if (!(value(normal_n) >= value(test_.min_normal_n))) {
-      result.status = FrictionStatus::no_contact;
+      const bool pulls = value(normal_n) <= -value(test_.min_normal_n);
+      result.status = pulls ? FrictionStatus::negative_normal : FrictionStatus::no_contact;
       return result;
     }
     const S magnitude = value(tangential_n) < 0 ? S(-tangential_n) : tangential_n;
@@ -134,6 +139,11 @@ class FrictionRatio {
     using std::sqrt;
     const S sum_sq = square(tangential_n.x) + square(tangential_n.y);
     return (*this)(value(sum_sq) > 0 ? S(sqrt(sum_sq)) : sum_sq, normal_n, sliding, state);
+  }
+
+  /// The same for the force on the pad as WrenchResult has it: F_z < 0 in a press.
+  FrictionResult<S> operator()(const Point3<S>& force_n, bool sliding, State& state) const {
+    return (*this)(Point2<S>{force_n.x, force_n.y}, S(-force_n.z), sliding, state);
   }
 
  private:

@@ -60,6 +60,15 @@ class Compartments {
     return count;
   }
 
+  /// The highest end of a line.
+  S top_mm() const {
+    S top = node(0, rows_).z;
+    for (Index i = 1; i < columns_; ++i) {
+      top = node(i, rows_).z > top ? node(i, rows_).z : top;
+    }
+    return top;
+  }
+
   /// Area within A_g in plan, as a polygon; `per_mm`: root of the sum of squares of its changes
   /// when a line ends 1 mm further out.
   S summit_area(S& per_mm) const {

@@ -153,6 +153,7 @@ void pull_cell(const StressFreeCell<S>& free,
     ++result.cells_refused;
     return;
   }
+  ++result.cells_taken;
   frame.cell[cell] = all_found ? CellState::found : CellState::bridged;
   frame.cell_area[cell] = outward * pull.whole_area;
   for (std::size_t c = 0; c < 4; ++c) {

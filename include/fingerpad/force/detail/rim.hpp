@@ -34,6 +34,9 @@ struct RimPulls {
   Index missing = 0;                ///< not found, or with a coordinate that is no number
   Index unstretched = 0;            ///< too little to tell a direction
   Index slack = 0;                  ///< shorter than without stress
+  Index misplaced = 0;              ///< nearer to another border point, or nowhere near their own
+  Index below = 0;                  ///< the base
+  S carried_mm = S(0);              ///< along the rim, mean of those that are near their own
   Index outward = 0;  ///< pulls that lean out of the pad: there the membrane bulges past the rim
 };
 
@@ -88,6 +91,7 @@ class Rim {
                const S& load_per_mm,
                RimPulls<S>& out) const {
     out.missing = out.unstretched = out.slack = out.outward = 0;
+    find_misplaced<Row>(side_dots_mm, out);
     for (std::size_t k = 0; k < points_.size(); ++k) {
       out.dots[k] = pull_at(points_[k], side_dots_mm, row, law, load_per_mm, out.along[k]);
       const RimPullStatus status = out.dots[k].status;
@@ -98,6 +102,16 @@ class Rim {
       const Point3<S>& border = points_[k].point.border;
       out.outward += value(S(pull.x * border.x + pull.y * border.y)) > 0 ? 1 : 0;
     }
+  }
+
+  /// Whether the side dots are those of these border points. All may be carried along by what
+  /// shears a membrane, at most a quarter of its length, but not to the next border point.
+  bool in_order(const RimPulls<S>& pulls) const {
+    const S spacing = S(2 * std::numbers::pi) * radius_mm_ / S(static_cast<double>(size()));
+    const S shear = points_.front().point.length_mm / S(4);
+    const S most = spacing / S(2) > shear ? S(spacing / S(2)) : shear;
+    const S& carried = pulls.carried_mm;
+    return 3 * pulls.misplaced <= size() && carried < most && -carried < most;
   }
 
   /// Fills what is not known from the neighbours on both sides, and integrates over the segments.
@@ -174,6 +188,31 @@ class Rim {
     }
     points_[k].share_mm = points_[k].share_mm + gap * radius_mm_ / S(2);
     points_[after(k)].share_mm = points_[after(k)].share_mm + gap * radius_mm_ / S(2);
+  }
+
+  template <class Row, class Dots>
+  void find_misplaced(const Dots& side_dots_mm, RimPulls<S>& out) const {
+    out.misplaced = out.below = 0;
+    out.carried_mm = S(0);
+    Index near = 0;
+    for (const Place& place : points_) {
+      const auto away = [&](Index row) {
+        return spatial_point_of<S>(side_dots_mm(row, place.column)) - place.point.border;
+      };
+      const Point3<S> first = away(0), last = away(Row::rows - 1);
+      if (!is_finite(squared_norm(first)) || !is_finite(squared_norm(last))) {
+        continue;  // missing
+      }
+      const S most = S(10) * place.point.length_mm;  // no membrane stretches tenfold
+      if (!(squared_norm(first) < most * most) || squared_norm(last) < squared_norm(first)) {
+        ++out.misplaced;
+        continue;
+      }
+      ++near;
+      out.carried_mm += dot(first, place.point.tangent);
+      out.below += value(first.z) < 0 ? 1 : 0;
+    }
+    out.carried_mm = near > 0 ? S(out.carried_mm / S(static_cast<double>(near))) : S(0);
   }
 
   template <class Row, class Law, class Dots>
