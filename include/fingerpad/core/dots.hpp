@@ -6,6 +6,7 @@
 // the membrane. A dot that was not found is a point with a coordinate that is not finite.
 #include <concepts>
 #include <type_traits>
+#include <utility>
 
 #include "fingerpad/core/grid.hpp"
 #include "fingerpad/core/point.hpp"
@@ -72,6 +73,62 @@ constexpr bool is_present(const P& p) {
     present = present && is_finite(Traits::z(p));
   }
   return present;
+}
+
+// Dots that lie in memory in other ways than as a grid of points, read without a copy. What does
+// not fit together is a dot grid without dots, which every method refuses as one of another size.
+
+namespace detail {
+template <int Coordinates, scalar S>
+constexpr auto point_of_coordinates(const S& x, const S& y, const S& z) {
+  if constexpr (Coordinates == 3) {
+    return Point3<S>{x, y, z};
+  } else {
+    return Point2<S>{x, y};
+  }
+}
+}  // namespace detail
+
+/// Dots whose coordinates are planes of their own: two, or a third with depths. The planes must
+/// outlive the view.
+template <class X, class Y>
+  requires(grid<X>&& grid<Y>)
+constexpr auto dots_of_planes(X&& x, Y&& y) {
+  const auto from_x = as_view(std::forward<X>(x));
+  const auto from_y = as_view(std::forward<Y>(y));
+  const bool fits = same_size(from_x, from_y);
+  return LazyView(fits ? rows(from_x) : 0, fits ? cols(from_x) : 0, [=](Index i, Index j) {
+    using S = cell_t<X>;
+    return Point2<S>{from_x(i, j), static_cast<S>(from_y(i, j))};
+  });
+}
+template <class X, class Y, class Z>
+  requires(grid<X>&& grid<Y>&& grid<Z>)
+constexpr auto dots_of_planes(X&& x, Y&& y, Z&& z) {
+  const auto from_x = as_view(std::forward<X>(x));
+  const auto from_y = as_view(std::forward<Y>(y));
+  const auto from_z = as_view(std::forward<Z>(z));
+  const bool fits = same_size(from_x, from_y) && same_size(from_x, from_z);
+  return LazyView(fits ? rows(from_x) : 0, fits ? cols(from_x) : 0, [=](Index i, Index j) {
+    using S = cell_t<X>;
+    return Point3<S>{from_x(i, j), static_cast<S>(from_y(i, j)), static_cast<S>(from_z(i, j))};
+  });
+}
+
+/// rows x cols dots from a matrix with a row for each dot, row by row of the pattern, and a column
+/// for each of 2 or 3 coordinates. The matrix must outlive the view.
+template <int Coordinates = 2, class Matrix>
+  requires(grid<Matrix>)
+constexpr auto dots_of_matrix(Matrix&& matrix, Index row_count, Index col_count) {
+  static_assert(Coordinates == 2 || Coordinates == 3);
+  const auto from = as_view(std::forward<Matrix>(matrix));
+  const bool fits = cols(from) == Coordinates && row_count > 0 && rows(from) % row_count == 0 &&
+                    rows(from) / row_count == col_count;
+  return LazyView(fits ? row_count : 0, fits ? col_count : 0, [=](Index i, Index j) {
+    const Index k = i * col_count + j;
+    return detail::point_of_coordinates<Coordinates>(from(k, 0), from(k, 1),
+                                                     from(k, Coordinates - 1));
+  });
 }
 
 /// A place in the dot grid; row -1: none.
