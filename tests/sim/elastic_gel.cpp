@@ -1,0 +1,180 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+#include "fingerpad/sim/elastic_gel.hpp"
+
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "support/catch.hpp"
+#include "support/generators.hpp"
+#include "support/numbers.hpp"
+#include "support/refusal.hpp"
+
+using namespace fingerpad;
+using test::begins_with;
+using test::refusal;
+
+namespace {
+
+constexpr double pi = std::numbers::pi;
+using Point = Point2<double>;
+
+double shear_mpa(const GelPad& pad) {
+  return pad.young_mpa / (2 * (1 + pad.poisson));
+}
+
+/// Surface displacement by summing Boussinesq's and Cerruti's point loads over the contact, in
+/// rings about the point: the pole of the kernels cancels with the ring's area.
+Point3<double> by_point_loads(const GelPad& pad, const GelContact<>& contact, const Point& at) {
+  const double a = contact.radius_mm();
+  const double c = contact.stick_radius_mm();
+  const double p0 = 2 * a * pad.young_mpa / (1 - pad.poisson * pad.poisson) / (pi * pad.ball_mm);
+  const Point q = contact.shear_n();
+  const double force = std::hypot(q.x, q.y);
+  const Point along = force > 0 ? q / force : Point{0, 0};
+  const auto bump = [](double r, double radius) {
+    return r < radius ? std::sqrt(1 - r * r / (radius * radius)) : 0.0;
+  };
+  const double nu = pad.poisson;
+  const double factor = 1 / (2 * pi * shear_mpa(pad));
+  Point3<double> u = {0, 0, 0};
+  constexpr int rings = 1600;
+  constexpr int spokes = 720;
+  const double far = norm(Point(at - contact.ball_mm())) + a;
+  const double ds = far / rings;
+  const double da = 2 * pi / spokes;
+  for (int k = 0; k < rings; ++k) {
+    const double s = (k + 0.5) * ds;
+    for (int m = 0; m < spokes; ++m) {
+      const double angle = (m + 0.5) * da;
+      const Point to = {std::cos(angle), std::sin(angle)};  // from the point to the load
+      const double r = norm(Point(at + s * to - contact.ball_mm()));
+      if (r >= a) {
+        continue;
+      }
+      const double pressure = p0 * bump(r, a);
+      const double shear = pad.friction * p0 * (bump(r, a) - (c > 0 ? c / a * bump(r, c) : 0));
+      const double area = ds * da;  // times s, which the kernels divide by
+      const double turned = shear * nu * dot(to, along);
+      u.x += area * factor * (shear * (1 - nu) * along.x + turned * to.x);
+      u.y += area * factor * (shear * (1 - nu) * along.y + turned * to.y);
+      // under a normal load the surface goes in, and toward the load
+      u.z -= area * factor * (1 - nu) * pressure;
+      u.x += area * factor * (1 - 2 * nu) / 2 * pressure * to.x;
+      u.y += area * factor * (1 - 2 * nu) / 2 * pressure * to.y;
+    }
+  }
+  return u;
+}
+
+}  // namespace
+
+TEST_CASE("elastic gel: closed forms are the sums of point loads", "[elastic_gel]") {
+  for (const double poisson : {0.5, 0.3}) {
+    const GelPad pad{.young_mpa = 0.3, .poisson = poisson, .ball_mm = 8, .friction = 0.5};
+    GelContact<> contact(pad);
+    contact.drag(1.2, {0, 0});
+    const double far = contact.max_pull_mm();
+    for (const double share : {0.4, 1.5}) {
+      contact.drag(1.2, {0.8 * share * far, 0.6 * share * far});
+      CHECK(contact.slides() == (share > 1));
+      for (const Point& p : {Point{0.1, 0.2}, Point{1.9, -0.7}, Point{4.1, 2.6}}) {
+        const Point at = contact.ball_mm() + p;
+        const auto closed = contact.displacement_mm(at);
+        const auto summed = by_point_loads(pad, contact, at);
+        const double size = norm(summed);
+        CHECK(std::abs(closed.x - summed.x) < 1e-3 * size);
+        CHECK(std::abs(closed.y - summed.y) < 1e-3 * size);
+        CHECK(std::abs(closed.z - summed.z) < 1e-3 * size);
+      }
+    }
+  }
+}
+
+TEST_CASE("elastic gel: Hertz, and Cattaneo's share that sticks", "[elastic_gel]") {
+  const GelPad pad;
+  GelContact<> contact(pad);
+  CHECK(!contact.touches());
+  CHECK(std::isnan(contact.stick_share()));
+  CHECK(contact.displacement_mm({1, 2}).z == 0);
+  contact.drag(1.5, {0, 0});
+  const double a = contact.radius_mm();
+  CHECK(a * a * a == Approx(3 * 1.5 * 10 / (4 * 0.2 / 0.75)));
+  CHECK(contact.stick_share() == 1);
+  CHECK(contact.displacement_mm({0, 0}).z == Approx(-contact.depth_mm()));
+
+  const double far = contact.max_pull_mm();
+  contact.drag(1.5, {far / 2, 0});
+  CHECK(contact.stick_share() == Approx(0.5));
+  // Q = mu P (1 - (c / a)^3)
+  CHECK(contact.shear_n().x == Approx(0.6 * 1.5 * (1 - std::pow(0.5, 1.5))));
+  CHECK(contact.shear_n().y == 0);
+  contact.drag(1.5, {3 * far, 0});
+  CHECK(contact.slides());
+  CHECK(contact.stick_share() == 0);
+  CHECK(contact.shear_n().x == Approx(0.9));
+  contact.drag(0, {3 * far, 0});
+  CHECK(contact.displacement_mm({3 * far, 0}).x == 0);
+}
+
+TEST_CASE("elastic gel: what sticks goes with the ball, what slips stays behind", "[elastic_gel]") {
+  rc::prop("for every gel, load and direction", [] {
+    const GelPad pad{.young_mpa = test::log_uniform(0.05, 2),
+                     .poisson = test::uniform(0, 0.5),
+                     .ball_mm = test::log_uniform(3, 40),
+                     .friction = test::uniform(0.1, 1.5)};
+    GelContact<> contact(pad);
+    const double force = test::log_uniform(0.05, 20);
+    contact.drag(force, {0, 0});
+    // without the tangential pull: what the normal load does, which is not to be counted
+    const double angle = test::uniform(0, 2 * pi);
+    const Point along = {std::cos(angle), std::sin(angle)};
+    const double pull = test::uniform(0.05, 1) * contact.max_pull_mm();
+    GelContact<> pressed(pad, pull * along);
+    pressed.drag(force, pull * along);
+    contact.drag(force, pull * along);
+    const double r = test::uniform(0, 1);
+    const double at_angle = test::uniform(0, 2 * pi);
+    const auto carried = [&](double radius) {
+      const Point p = pull * along + radius * Point{std::cos(at_angle), std::sin(at_angle)};
+      const auto both = contact.displacement_mm(p);
+      const auto normal = pressed.displacement_mm(p);
+      return dot(Point{both.x - normal.x, both.y - normal.y}, along);
+    };
+    const double inside = carried(r * contact.stick_radius_mm());
+    RC_ASSERT(std::abs(inside - pull) < 1e-9 * pull);
+    const double a = contact.radius_mm();
+    const double c = contact.stick_radius_mm();
+    const double outside = carried(c + (a - c) * test::uniform(0.01, 1));
+    RC_ASSERT(outside < pull);
+    RC_ASSERT(outside > 0.0);
+  });
+}
+
+TEST_CASE("elastic gel: fifty digits and duals", "[elastic_gel]") {
+  using test::Digits50;
+  const GelPad pad;
+  GelContact<Digits50> fine(pad);
+  GelContact<> plain(pad);
+  fine.drag(Digits50(1.5), {Digits50(0), Digits50(0)});
+  plain.drag(1.5, {0, 0});
+  fine.drag(Digits50(1.5), {Digits50(0.5), Digits50(0.25)});
+  plain.drag(1.5, {0.5, 0.25});
+  for (const Point& p : {Point{1, 2}, Point{5, -3}}) {
+    const auto a = fine.displacement_mm({Digits50(p.x), Digits50(p.y)});
+    const auto b = plain.displacement_mm(p);
+    CHECK(b.x == Approx(static_cast<double>(a.x)).epsilon(1e-13));
+    CHECK(b.y == Approx(static_cast<double>(a.y)).epsilon(1e-12).margin(1e-14));
+    CHECK(b.z == Approx(static_cast<double>(a.z)).epsilon(1e-13));
+  }
+}
+
+TEST_CASE("elastic gel: bad parameters are refused by name", "[elastic_gel]") {
+  const auto refused = [](const GelPad& pad) { return refusal([&] { GelContact<>{pad}; }); };
+  CHECK(begins_with(refused({.young_mpa = 0}), "GelPad: young_mpa = 0"));
+  CHECK(begins_with(refused({.poisson = 0.6}), "GelPad: poisson = 0.6"));
+  CHECK(begins_with(refused({.ball_mm = -1}), "GelPad: ball_mm = -1"));
+  CHECK(begins_with(refused({.friction = -0.1}), "GelPad: friction = -0.1"));
+  CHECK(refused({}) == "accepted");
+}
