@@ -1,0 +1,361 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+#pragma once
+// Where the object touches a pad whose depth nobody knows: by how much the frame differs from the
+// free pad. For gel pads lit from the side (GelSight, DIGIT and their kin), with printed dots or
+// without, and for gels that darken where they are pressed.
+// The difference is relative, (now / gain) / free - 1, so that lamps may be uneven; the gain of
+// each channel is the median of now / free, so that exposure and white balance may change. Dots
+// are left out, since they move with the gel under a contact as well as beside it.
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <type_traits>
+#include <vector>
+
+#include "fingerpad/contact/contact_region.hpp"
+#include "fingerpad/contact/detail/frame_difference.hpp"
+#include "fingerpad/core/expects.hpp"
+#include "fingerpad/core/grid.hpp"
+#include "fingerpad/core/scalar.hpp"
+#include "fingerpad/image/detail/cell_filter.hpp"
+#include "fingerpad/image/detail/regions.hpp"
+#include "fingerpad/image/detail/row_lanes.hpp"
+
+namespace fingerpad {
+inline namespace v0 {
+
+/// What counts as contact. Lengths in px of the frame.
+struct DifferenceTest {
+  Index cell_px = 4;          ///< contact is told for cells of so many pixels squared; 1..16
+  double smoothing_px = 7;    ///< sd of the Gaussian mean of the difference; half a dot; in
+                              ///< [cell_px / 2, 16 cell_px]
+  double dot_px = 14;         ///< diameter of the printed dots; 0: there are none; <= 16 cell_px
+  double dot_contrast = 0.1;  ///< a cell is of a dot that is darker than the mean around it by this
+                              ///< share; in (0, 1)
+  double min_difference = 0.02;  ///< no threshold below this share of the free pad's brightness,
+                                 ///< however quiet the free frames are; in (0, 1)
+  double noise_factor = 1;       ///< threshold / what a hundredth of a free frame exceeds; >= 1
+  double max_gap_px = 28;  ///< gaps in a contact up to this are closed, two dots' diameters; >= 0
+  Index min_region_px = 800;  ///< smaller regions are dropped; >= 0
+  double saturated = 254;     ///< cells that are as bright in a channel say nothing; > 0
+  double mm_per_px = 0.05;    ///< for the area; finite, > 0
+};
+inline void expects_valid(const DifferenceTest& test) {
+  constexpr const char* owner = "DifferenceTest";
+  expects(test.cell_px >= 1 && test.cell_px <= 16, owner, "cell_px",
+          static_cast<long long>(test.cell_px), "in [1, 16]");
+  const double cell = static_cast<double>(test.cell_px);
+  expects(test.smoothing_px >= cell / 2 && test.smoothing_px <= 16 * cell, owner, "smoothing_px",
+          test.smoothing_px, "in [cell_px / 2, 16 cell_px]");
+  expects(test.dot_px >= 0 && test.dot_px <= 16 * cell, owner, "dot_px", test.dot_px,
+          "in [0, 16 cell_px]");
+  expects(test.dot_contrast > 0 && test.dot_contrast < 1, owner, "dot_contrast", test.dot_contrast,
+          "in (0, 1)");
+  expects(test.min_difference > 0 && test.min_difference < 1, owner, "min_difference",
+          test.min_difference, "in (0, 1)");
+  expects(is_finite(test.noise_factor) && test.noise_factor >= 1, owner, "noise_factor",
+          test.noise_factor, "finite and >= 1");
+  expects(test.max_gap_px >= 0 && test.max_gap_px <= 32 * cell, owner, "max_gap_px",
+          test.max_gap_px, "in [0, 32 cell_px]");
+  expects(test.min_region_px >= 0, owner, "min_region_px",
+          static_cast<long long>(test.min_region_px), ">= 0");
+  expects(test.saturated > 0, owner, "saturated", test.saturated, "> 0");
+  expects(is_finite(test.mm_per_px) && test.mm_per_px > 0, owner, "mm_per_px", test.mm_per_px,
+          "finite and > 0");
+}
+
+/// The contact in frames of one size. Pixels are numbers (Channels = 1) or have them as pixel[c]
+/// (cv::Vec3b, std::array). Const: threads may share one, each with a workspace of its own. Bounded
+/// time and no allocation per frame; O(rows cols), fastest for a strided view of packed bytes.
+/// Right while less than half of the frame is touched: what most of it shows is taken for free.
+template <int Channels = 3, scalar S = float>
+class ContactByDifference {
+  static_assert(Channels >= 1);
+  using Difference = detail::FrameDifference<Channels, S>;
+  using Colours = detail::CellColours<Channels, S>;
+
+ public:
+  /// From frames of the free pad, a range of grids; two or more tell the noise, one does not.
+  /// Refuses no frame, frames of different sizes and bad parameters (parameter_error).
+  template <class FreeFrames>
+  explicit ContactByDifference(const FreeFrames& free_frames, const DifferenceTest& test = {})
+      : test_(checked(test)), layout_(layout_of(free_frames, test)), free_(colours()) {
+    learn(free_frames);
+  }
+
+  /// Memory that one frame at a time needs, taken up front; one per thread.
+  class Workspace {
+   public:
+    explicit Workspace(const ContactByDifference& contact)
+        : difference_(contact.layout_),
+          opening_(contact.layout_.cell_rows(), contact.layout_.cell_cols(), 1),
+          closing_(contact.layout_.cell_rows(), contact.layout_.cell_cols(), contact.half_gap()),
+          mask_(contact.layout_.cell_rows(), contact.layout_.cell_cols(), contact.pad()),
+          regions_({contact.layout_.cell_rows(), contact.layout_.cell_cols()}) {}
+
+    /// The difference from the free pad in the last frame, cell by cell: root mean square over the
+    /// channels, as a share of the free brightness; NaN where it is unknown. The threshold is for
+    /// it, and a slide of the contact is seen in it.
+    StridedView<const S> difference() const { return difference_.length().view(); }
+    /// The last frame's contact, cell by cell: 1, else 0.
+    StridedView<const S> contact() const { return mask_.view(); }
+
+   private:
+    friend class ContactByDifference;
+    Difference difference_;
+    detail::CellMorphology<S> opening_;
+    detail::CellMorphology<S> closing_;
+    detail::PaddedCells<S> mask_;
+    detail::Regions regions_;
+  };
+  Workspace workspace() const { return Workspace(*this); }
+
+  /// Writes to `mask` as ContactRegion does: a Touch, or 255 in contact and 0 elsewhere. The area
+  /// is flat, at mm_per_px; the center counts from the image's own. Depths are NaN.
+  template <grid Frame, class Mask>
+    requires(writable_grid<Mask>)
+  ContactResult operator()(const Frame& frame, Mask&& mask, Workspace& w) const {
+    ContactResult result;
+    const auto from = as_view(frame);
+    const auto to = as_view(mask);
+    if (!has_size(from) || !has_size(to) || w.difference_.layout() != layout_) {
+      return result;
+    }
+    result.status = FrameStatus::ok;
+    w.difference_.read(from);
+    w.difference_.compare(free_);
+    mark(w);
+    result.regions = fill_and_drop(w);
+    write(w, to);
+    measure(w, result);
+    return result;
+  }
+
+  Index rows() const { return layout_.rows; }
+  Index cols() const { return layout_.cols; }
+  /// Differences above it are contact.
+  double threshold() const { return threshold_; }
+
+ private:
+  static const DifferenceTest& checked(const DifferenceTest& test) {
+    expects_valid(test);
+    return test;
+  }
+  template <class FreeFrames>
+  static detail::CellLayout layout_of(const FreeFrames& frames, const DifferenceTest& test) {
+    Index height = 0;
+    Index width = 0;
+    long long count = 0;
+    for (const auto& frame : frames) {
+      const auto view = as_view(frame);
+      height = count == 0 ? view.rows() : height;
+      width = count == 0 ? view.cols() : width;
+      expects(view.rows() == height && view.cols() == width, "ContactByDifference",
+              "free_frames of another size, number", count, "of the first one's size");
+      ++count;
+    }
+    expects(count > 0, "ContactByDifference", "free_frames", count, "one or more");
+    expects(height >= 1 && width >= 1, "ContactByDifference", "pixels of a free frame",
+            static_cast<long long>(height * width), ">= 1");
+    return {height,        width, test.cell_px, test.smoothing_px, test.dot_px, test.dot_contrast,
+            test.saturated};
+  }
+
+  Index pad() const { return Difference(layout_).pad(); }
+  Colours colours() const { return {layout_.cell_rows(), layout_.cell_cols(), pad()}; }
+  Index half_gap() const {
+    return static_cast<Index>(std::lround(layout_.in_cells(test_.max_gap_px / 2)));
+  }
+  template <class G>
+  bool has_size(const G& g) const {
+    return g.rows() == layout_.rows && g.cols() == layout_.cols;
+  }
+  template <class Visit>
+  void for_cells(const Visit& visit) const {
+    for (Index i = 0; i < layout_.cell_rows(); ++i) {
+      for (Index j = 0; j < layout_.cell_cols(); ++j) {
+        visit(i, j);
+      }
+    }
+  }
+
+  /// The free pad as the frames' mean; the noise as what each differs from the mean of the others.
+  template <class FreeFrames>
+  void learn(const FreeFrames& frames) {
+    Difference difference(layout_);
+    std::vector<Colours> seen;
+    for (const auto& frame : frames) {
+      difference.read(as_view(frame));
+      seen.push_back(difference.now());
+    }
+    std::vector<double> noise;
+    std::size_t k = 0;
+    for (const auto& frame : frames) {
+      if (seen.size() > 1) {
+        set_free(seen, k);
+        difference.read(as_view(frame));
+        difference.compare(free_);
+        noise.push_back(exceeded_in_a_hundredth(difference.length()));
+      }
+      ++k;
+    }
+    set_free(seen, seen.size());
+    threshold_ = test_.min_difference;
+    if (!noise.empty()) {  // the median, since one of them may not be free after all
+      const auto middle = noise.begin() + static_cast<std::ptrdiff_t>(noise.size() / 2);
+      std::nth_element(noise.begin(), middle, noise.end());
+      threshold_ = (std::max)(threshold_, test_.noise_factor * *middle);
+    }
+  }
+
+  /// The mean of all but one; a cell counts that all of them know.
+  void set_free(const std::vector<Colours>& seen, std::size_t without) {
+    const S share = S(1.0 / static_cast<double>(seen.size() - (without < seen.size() ? 1 : 0)));
+    for_cells([&](Index i, Index j) {
+      S weight = S(1);
+      S mean[Channels] = {};
+      for (std::size_t k = 0; k < seen.size(); ++k) {
+        if (k != without) {
+          weight = S(weight * seen[k].weight(i, j));
+          for (std::size_t c = 0; c < std::size_t(Channels); ++c) {
+            mean[c] = S(mean[c] + seen[k].mean[c](i, j) * share);
+          }
+        }
+      }
+      free_.weight(i, j) = weight;
+      for (std::size_t c = 0; c < std::size_t(Channels); ++c) {
+        free_.mean[c](i, j) = mean[c];
+      }
+    });
+  }
+
+  double exceeded_in_a_hundredth(const detail::PaddedCells<S>& length) const {
+    std::vector<double> known;
+    for_cells([&](Index i, Index j) {
+      if (is_finite(length(i, j))) {
+        known.push_back(static_cast<double>(value(length(i, j))));
+      }
+    });
+    if (known.empty()) {
+      return 0;
+    }
+    const auto at = known.begin() + static_cast<std::ptrdiff_t>(known.size() * 99 / 100);
+    std::nth_element(known.begin(), at, known.end());
+    return *at;
+  }
+
+  /// Cells above the threshold, opened and closed.
+  void mark(Workspace& w) const {
+    const S threshold = S(threshold_);
+    const detail::PaddedCells<S>& length = w.difference_.length();
+    for (Index i = 0; i < length.rows(); ++i) {
+      detail::for_each_cell<S>(length.cols(), [&]<class V>(Index j) {
+        const V d = detail::load_cells<V, S>(length.row(i) + j);
+        detail::store_cells<S>(w.mask_.row(i) + j, d > V{} + threshold ? V(V{} + S(1)) : V{});
+      });
+    }
+    w.opening_.shrink(w.mask_);
+    w.opening_.grow(w.mask_);
+    w.closing_.grow(w.mask_);
+    w.closing_.shrink(w.mask_);
+  }
+
+  /// Fills holes, which is what is not contact and does not reach the image's edge, and drops
+  /// small regions. Returns how many are left.
+  Index fill_and_drop(Workspace& w) const {
+    using detail::Mark;
+    using Region = detail::Regions::Region;
+    const auto paint = [&](Mark contact, Mark other) {
+      const auto marks = w.regions_.marks();
+      for_cells([&](Index i, Index j) { marks(i, j) = S(0) < w.mask_(i, j) ? contact : other; });
+    };
+    const auto set = [&](const Region& region, const S& to) {
+      const Index stride = w.regions_.image().stride();
+      for (const Index* at = w.regions_.begin(region); at != w.regions_.end(region); ++at) {
+        w.mask_(*at / stride - 1, *at % stride - 1) = to;
+      }
+    };
+    const auto is_hole = [&](const Region& region) { return !reaches_edge(w.regions_, region); };
+    paint(Mark::free, Mark::seed);
+    w.regions_.for_each(is_hole, [&](const Region& region) { set(region, S(1)); });
+    paint(Mark::seed, Mark::free);
+    const auto is_large = [&](const Region& region) {
+      const bool large = region.pixels() * layout_.cell_px * layout_.cell_px >= test_.min_region_px;
+      if (!large) {
+        set(region, S(0));
+      }
+      return large;
+    };
+    return w.regions_.for_each(is_large, [](const Region&) {});
+  }
+
+  bool reaches_edge(const detail::Regions& regions, const detail::Regions::Region& region) const {
+    const Index stride = regions.image().stride();
+    return std::any_of(regions.begin(region), regions.end(region), [&](Index at) {
+      const Index row = at / stride;
+      const Index col = at % stride;
+      return row == 1 || row == layout_.cell_rows() || col == 1 || col == layout_.cell_cols();
+    });
+  }
+
+  template <class Cell>
+  Cell cell_of(const Workspace& w, Index i, Index j) const {
+    const bool touched = S(0) < w.mask_(i, j);
+    if constexpr (std::is_same_v<Cell, Touch>) {
+      const Touch other = is_finite(w.difference_.length()(i, j)) ? Touch::none : Touch::unknown;
+      return touched ? Touch::contact : other;
+    } else {
+      return static_cast<Cell>(touched ? 255 : 0);
+    }
+  }
+
+  template <class To>
+  void write(const Workspace& w, const To& to) const {
+    const Index size = layout_.cell_px;
+    for_cells([&](Index i, Index j) {
+      const auto cell = cell_of<cell_t<To>>(w, i, j);
+      const Index last_row = (std::min)((i + 1) * size, rows());
+      const Index last_col = (std::min)((j + 1) * size, cols());
+      for (Index row = i * size; row < last_row; ++row) {
+        for (Index col = j * size; col < last_col; ++col) {
+          to(row, col) = cell;
+        }
+      }
+    });
+  }
+
+  void measure(const Workspace& w, ContactResult& result) const {
+    double x = 0;
+    double y = 0;
+    for_cells([&](Index i, Index j) {
+      const Index first_row = i * layout_.cell_px;
+      const Index first_col = j * layout_.cell_px;
+      const Index height = (std::min)(layout_.cell_px, rows() - first_row);
+      const Index width = (std::min)(layout_.cell_px, cols() - first_col);
+      const double pixels = static_cast<double>(height * width);
+      if (S(0) < w.mask_(i, j)) {
+        result.contact_px += height * width;
+        x += pixels * (static_cast<double>(first_col) + static_cast<double>(width - 1) / 2);
+        y += pixels * (static_cast<double>(first_row) + static_cast<double>(height - 1) / 2);
+      } else if (!is_finite(w.difference_.length()(i, j))) {
+        result.unknown_px += height * width;
+      }
+    });
+    if (result.in_contact()) {
+      const double count = static_cast<double>(result.contact_px);
+      result.area_mm2 = count * test_.mm_per_px * test_.mm_per_px;
+      result.center_mm.x = (x / count - static_cast<double>(cols() - 1) / 2) * test_.mm_per_px;
+      result.center_mm.y = (y / count - static_cast<double>(rows() - 1) / 2) * test_.mm_per_px;
+    }
+  }
+
+  DifferenceTest test_;
+  detail::CellLayout layout_;
+  Colours free_;
+  double threshold_ = 0;
+};
+
+}  // namespace v0
+}  // namespace fingerpad
