@@ -1,0 +1,115 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+// What of the published six-axis force no result of a symmetric load shows: f_h, which is solved
+// for and not used, and how the lines run.
+#include "fingerpad/published/wrench.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "support/catch.hpp"
+#include "support/pressed_pad.hpp"
+
+using namespace fingerpad;
+using test::ArcSide;
+using test::pressed_mpa;
+using test::RimLoad;
+using test::RoundPad;
+
+namespace {
+
+/// Largest error of f_h on a pad pressed flat, as a share of the largest, but for `skipped` rows at
+/// either end: at the rim the membrane's edge counts twice, at the summit f_v is 0 / 0. Truth: f_v
+/// K_1 + f_h K_2 = p, with the arc's curvature along the meridian and sin(phi) / r around.
+double around_error(Index columns, Index rows, Index skipped) {
+  using namespace detail::membrane;
+  const RoundPad<ArcSide> pad;
+  const auto dots_at_rim = rim_of(pad);
+  const double t0 = pad.tension(pad.radius_mm, pressed_mpa);
+  const Rim<double> rim(
+      dots_at_rim.borders(), [](Index) { return 0.8; }, pad.radius_mm, columns);
+  auto pulls = rim.pulls();
+  rim.measure(dots_at_rim.dots([&](double) {
+    return RimLoad{t0, 0};
+  }),
+              OneRow(), ClampedRim(), 0.0, pulls);
+  rim.integrate(pulls);
+  Compartments<double> nodes(columns, rows, pad.radius_mm, {0.1, 0, 1});
+  nodes.lay<published::SteepestLines>(pad, {0, 0, 0});
+  Segments<double> segments(columns, rows);
+  segments.measure(nodes);
+  Tensions<double> tensions(columns, rows);
+  const published::Iteration iteration;
+  published::Iteration::Work<double> work(iteration, columns, rows);
+  const double p = pressed_mpa;
+  REQUIRE(iteration.solve<true>(segments, nodes, pulls.segments, p, work, tensions));
+  double worst = 0, largest = 0;
+  for (Index j = skipped; j + skipped < rows; ++j) {
+    const auto &low = nodes.node(3, j), &up = nodes.node(3, j + 1);
+    const double r = (std::hypot(low.x, low.y) + std::hypot(up.x, up.y)) / 2;
+    const double truth = (p - pad.tension(r, p) / pad.bend_mm()) * r / pad.sine(r);
+    const double found = tensions.upward_normal[static_cast<std::size_t>(j * columns + 3)];
+    worst = (std::max)(worst, std::abs(found - truth));
+    largest = (std::max)(largest, std::abs(truth));
+  }
+  return worst / largest;
+}
+
+/// Level at the rim; its summit is 2.8 mm off the middle.
+struct Mound {
+  template <class S>
+  detail::membrane::HeightAndSlope<S> operator()(const S& x, const S& y) const {
+    constexpr double r = 18.735;
+    const double u = value(x) / r, v = value(y) / r, lean = 1 + 0.3 * u, cap = 1 - u * u - v * v;
+    return {S(9 * cap * lean), S(9 * (-2 * u * lean + 0.3 * cap) / r), S(9 * -2 * v * lean / r)};
+  }
+  template <class S>
+  bool in_contact(const S& x, const S& y) const {
+    return (*this)(x, y).height_mm > 8.5;
+  }
+};
+
+}  // namespace
+
+TEST_CASE("published iteration: f_h of a flat press, in closed form", "[published]") {
+  CHECK(around_error(36, 32, 5) < 0.05);
+}
+
+TEST_CASE("published six-axis force: its lines are the steepest, cut at equal steps of height",
+          "[published]") {
+  const RoundPad<ArcSide> pad;
+  const auto rim = rim_of(pad);
+  auto options = published::wrench_options();
+  options.blur_mm = 0.1;
+  const auto wrench = published::wrench(rim.borders(), options);
+  auto workspace = wrench.workspace();
+  (void)wrench(pad, rim.dots([&](double) {
+    return RimLoad{pad.tension(pad.radius_mm, pressed_mpa), 0};
+  }),
+               pressed_mpa, workspace);
+  double least = 1e9, most = 0;
+  for (Index j = 0; j < 65; ++j) {
+    const double step = workspace.node(7, j + 1).z - workspace.node(7, j).z;
+    least = (std::min)(least, step);
+    most = (std::max)(most, step);
+  }
+  CHECK(least == Approx(9.0 / 65).margin(4e-3));
+  CHECK(most == Approx(9.0 / 65).margin(4e-3));
+  // where the summit is off the middle, a line runs along the gradient, not toward the summit
+  const Mound mound;
+  (void)wrench(mound, rim.dots([&](double) {
+    return RimLoad{pad.tension(pad.radius_mm, pressed_mpa), 0};
+  }),
+               pressed_mpa, workspace);
+  for (const Index column : {9, 18, 27, 45, 54, 63}) {
+    for (Index j = 5; j < 40; ++j) {
+      const auto &a = workspace.node(column, j), &b = workspace.node(column, j + 1);
+      const auto at = mound((a.x + b.x) / 2, (a.y + b.y) / 2);
+      const double dx = b.x - a.x, dy = b.y - a.y;
+      const double across = dx * at.along_y - dy * at.along_x;
+      CAPTURE(column, j);
+      CHECK(std::abs(across) < 0.03 * std::hypot(dx, dy) * std::hypot(at.along_x, at.along_y));
+    }
+  }
+}
