@@ -54,13 +54,14 @@ struct Bench {
                                         scene.free_mm));
   }
 
-  /// g pixel by pixel, as published, from an 8-bit frame with noise.
-  template <class Smoothing, class Inverse, class Heights, class S>
+  /// g pixel by pixel, as published, from an 8-bit frame with noise whose colours were averaged by
+  /// Before.
+  template <class Before, class Smoothing, class Inverse, class Heights, class S>
   void add_quotient(const std::string& name) const {
     const auto free = scene.pad.frame<std::uint8_t>(scene.free_mm, scene.noise, 2);
     add_with<Inverse, Smoothing>(
         name, published::depth_reference<S, Heights>(scene.pad.camera, scene.pad.fluid, free.red,
-                                                     free.green, scene.free_mm));
+                                                     free.green, scene.free_mm, Before()));
   }
 
   template <class Smoothing>
@@ -84,18 +85,20 @@ struct Bench {
 
   void add_all() const {
     using Default = BiasFreeMean;
-    add<published::BoxMean, published::Bisection, double>(
+    using published::Bisection;
+    using published::BoxMean;
+    using published::SingleHeight;
+    add_quotient<BoxMean, BoxMean, Bisection, SingleHeight, double>(
         "published: BoxMean + Bisection in double");
-    add<published::BoxMean, published::Bisection, double, published::SingleHeight>(
-        "published: BoxMean + Bisection in double, SingleHeight");
-    add_quotient<published::BoxMean, published::Bisection, published::SingleHeight, double>(
-        "published: BoxMean + Bisection in double, SingleHeight, quotient per pixel");
+    add_quotient<NoSmoothing, BoxMean, Bisection, SingleHeight, double>(
+        "published, g of the raw reference");
+    add<BoxMean, Bisection, double, SingleHeight>("published, radial g");
     add_fast<NoSmoothing>("NoSmoothing");
     add_fast<published::BoxMean>("published::BoxMean");
     add_fast<BiasFreeMean>("BiasFreeMean");
     add_fast<AnchoredMean>("AnchoredMean");
-    add<Default, ExponentialFree<>, float, published::SingleHeight>("the default, SingleHeight");
-    add_quotient<Default, ExponentialFree<>, AstigmaticHeights, float>(
+    add<Default, ExponentialFree<>, float, SingleHeight>("the default, SingleHeight");
+    add_quotient<BoxMean, Default, ExponentialFree<>, AstigmaticHeights, float>(
         "the default, published::depth_reference");
     add<Default, ExponentialFree<>, double>("the default in double");
     add<Default, ExponentialFree<9, 12, 8>, double>(

@@ -97,8 +97,8 @@ TEST_CASE("the pixel quotient is the published formula", "[reference]") {
   const Pad pad;
   const auto depth = pad.free_depths();
   const auto frame = pad.frame<double>(depth, 0.5, 3);
-  const auto reference =
-      published::depth_reference<double>(pad.camera, pad.fluid, frame.red, frame.green, depth);
+  const auto reference = published::depth_reference<double>(pad.camera, pad.fluid, frame.red,
+                                                            frame.green, depth, NoSmoothing{});
   double worst = 0;
   for (Index i = 0; i < pad.rows; ++i) {
     for (Index j = 0; j < pad.cols; ++j) {
@@ -125,7 +125,7 @@ TEST_CASE("an estimator with the pixel quotient finds the depth it was made from
   const auto check = [&](auto s, auto inverse, double bound_mm) {
     using S = decltype(s);
     const auto reference = published::depth_reference<S, AstigmaticHeights>(
-        pad.camera, pad.fluid, frame.red, frame.green, depth);
+        pad.camera, pad.fluid, frame.red, frame.green, depth, NoSmoothing{});
     const DepthEstimator estimator(pad.camera, pad.fluid, reference, NoSmoothing{}, inverse);
     const auto pressed = pad.pressed_depths(3);
     const auto e = test::estimate<S>(estimator, pad.frame<double>(pressed));
@@ -134,6 +134,28 @@ TEST_CASE("an estimator with the pixel quotient finds the depth it was made from
   check(double(), Newton(), 1e-10);
   check(double(), ExponentialFree<9, 12, 8>(), 1e-10);
   check(float(), ExponentialFree<>(), 5e-5);
+}
+
+TEST_CASE("averaged alike, the reference frame itself has the free pad's depth", "[reference]") {
+  const Pad pad;
+  const auto depth = pad.free_depths();
+  const auto frame = pad.frame<std::uint8_t>(depth, 1, 3);
+  const auto error_with = [&](const auto& smoothing) {
+    const auto reference = published::depth_reference<double>(pad.camera, pad.fluid, frame.red,
+                                                              frame.green, depth, smoothing);
+    const DepthEstimator estimator(pad.camera, pad.fluid, reference, published::BoxMean{9},
+                                   Newton());
+    const auto e = test::estimate<double>(estimator, frame);
+    double worst = 0;
+    for (std::size_t k = 0; k < depth.cells.size(); ++k) {
+      if (depth.cells[k] > 2) {
+        worst = (std::max)(worst, std::abs(e.depth_mm.cells[k] - depth.cells[k]));
+      }
+    }
+    return worst;
+  };
+  CHECK(error_with(published::BoxMean{9}) < 1e-10);
+  CHECK_FALSE(error_with(NoSmoothing{}) < 0.5);
 }
 
 TEST_CASE("the units of the grey scale do not matter", "[reference]") {

@@ -262,7 +262,7 @@ TEST_CASE("a bad pixel of the reference spoils no other", "[mistakes]") {
   const auto pressed = pad.frame<std::uint8_t>(pad.pressed_depths(3), 1, 4);
   const auto depth_with = [&](const Frame8& seen) {
     const auto reference = published::depth_reference<float, AstigmaticHeights>(
-        pad.camera, pad.fluid, seen.red, seen.green, free);
+        pad.camera, pad.fluid, seen.red, seen.green, free, NoSmoothing{});
     const DepthEstimator estimator(pad.camera, pad.fluid, reference, BiasFreeMean{29});
     return test::estimate<float>(estimator, pressed).depth_mm;
   };

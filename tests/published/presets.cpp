@@ -29,8 +29,8 @@ TEST_CASE("published depth: the free pad is found, where one height for all rays
   const Pad pad;
   const Image<double> free = pad.free_depths();
   const auto frame = pad.frame<double, published::SingleHeight>(free);
-  const auto reference =
-      published::depth_reference<double>(pad.camera, pad.fluid, frame.red, frame.green, free);
+  const auto reference = published::depth_reference<double>(
+      pad.camera, pad.fluid, frame.red, frame.green, free, published::BoxMean{3});
   const auto estimate = published::depth_estimator(pad.camera, pad.fluid, reference, 3);
   auto workspace = estimate.workspace<double>();
   Image<double> depth(pad.rows, pad.cols);

@@ -194,14 +194,14 @@ void fit_scattering(const VisitAll& visit_all,
 }
 
 /// The free pad's shape: its deepest point within range, its pixels, how many of them lie at depth
-/// 0 or beyond max_depth_mm, and how far their centroid is from the optical axis, as a share of the
-/// radius of a disc of their number.
+/// 0, how far their centroid is from the optical axis, in radii of a disc of their number, and
+/// which share of those in the middle lies beyond max_depth_mm.
 struct FreePadShape {
   double deepest_mm = 0;
   double pixels = 0;
   double at_zero = 0;
-  double too_deep = 0;
   double off_axis = 0;
+  double too_deep = 0;
 };
 
 template <class Depth>
@@ -209,30 +209,44 @@ FreePadShape shape_of_free_pad(const Camera<double>& camera,
                                double max_depth_mm,
                                const Depth& depth_mm) {
   FreePadShape shape;
+  const auto each_pixel = [&](auto&& visit) {
+    for (Index i = 0; i < depth_mm.rows(); ++i) {
+      for (Index j = 0; j < depth_mm.cols(); ++j) {
+        const double l = static_cast<double>(depth_mm(i, j));
+        if (is_finite(l) && l >= 0) {
+          visit(i, j, l);
+        }
+      }
+    }
+  };
   double sum_x = 0;
   double sum_y = 0;
   bool reaches_border = false;
-  for (Index i = 0; i < depth_mm.rows(); ++i) {
-    for (Index j = 0; j < depth_mm.cols(); ++j) {
-      const double l = static_cast<double>(depth_mm(i, j));
-      if (!is_finite(l) || l < 0) {
-        continue;
-      }
-      shape.deepest_mm = l > max_depth_mm ? shape.deepest_mm : (std::max)(shape.deepest_mm, l);
-      shape.too_deep += l > max_depth_mm ? 1 : 0;
-      shape.pixels += 1;
-      shape.at_zero += l == 0 ? 1 : 0;
-      sum_x += static_cast<double>(j) - camera.center_x_px;
-      sum_y += static_cast<double>(i) - camera.center_y_px;
-      reaches_border = reaches_border || i == 0 || j == 0 || i + 1 == depth_mm.rows() ||
-                       j + 1 == depth_mm.cols();
-    }
-  }
+  each_pixel([&](Index i, Index j, double l) {
+    shape.deepest_mm = l > max_depth_mm ? shape.deepest_mm : (std::max)(shape.deepest_mm, l);
+    shape.pixels += 1;
+    shape.at_zero += l == 0 ? 1 : 0;
+    sum_x += static_cast<double>(j) - camera.center_x_px;
+    sum_y += static_cast<double>(i) - camera.center_y_px;
+    reaches_border =
+        reaches_border || i == 0 || j == 0 || i + 1 == depth_mm.rows() || j + 1 == depth_mm.cols();
+  });
+  const double radius_sq = shape.pixels / 3.14159265358979;
   // else part of the pad is not seen, and its center not known, or there is no pad at all
   if (!reaches_border && shape.pixels >= 100) {
-    shape.off_axis = std::sqrt(3.14159265358979 * (square(sum_x) + square(sum_y)) /
-                               (shape.pixels * square(shape.pixels)));
+    shape.off_axis =
+        std::sqrt((square(sum_x) + square(sum_y)) / (radius_sq * square(shape.pixels)));
   }
+  double middle = 0;
+  double deep = 0;
+  each_pixel([&](Index i, Index j, double l) {
+    const double x = static_cast<double>(j) - sum_x / shape.pixels - camera.center_x_px;
+    const double y = static_cast<double>(i) - sum_y / shape.pixels - camera.center_y_px;
+    const bool in_middle = square(x) + square(y) <= radius_sq / 16;
+    middle += in_middle ? 1 : 0;
+    deep += in_middle && l > max_depth_mm ? 1 : 0;
+  });
+  shape.too_deep = middle > 0 ? deep / middle : 0;
   return shape;
 }
 
@@ -242,8 +256,8 @@ inline void expects_free_pad(const FreePadShape& shape, double max_depth_mm) {
   if (shape.pixels == 0) {
     return;  // told by the fit
   }
-  expects(shape.too_deep <= 0.01 * shape.pixels, owner, "share of pixels beyond max_depth_mm",
-          shape.too_deep / shape.pixels, "<= 0.01: raise max_depth_mm, or give mm");
+  expects(shape.too_deep <= 0.5, owner, "share of the pad's middle beyond max_depth_mm",
+          shape.too_deep, "<= 0.5: raise max_depth_mm, or give mm");
   expects(shape.deepest_mm >= 0.1 * max_depth_mm, owner, "deepest point of depth_mm",
           shape.deepest_mm, ">= a tenth of max_depth_mm: give mm, not m");
   expects(shape.at_zero <= 0.1 * shape.pixels, owner, "share of pixels at depth 0",

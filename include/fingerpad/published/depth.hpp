@@ -118,25 +118,52 @@ struct PixelScattering {
   }
 };
 
-/// The free pad as printed: the noise of the reference goes into every later depth, and without
-/// bound toward the rim. Refuses what fit_reference refuses (parameter_error).
-template <scalar S = float, class Heights = SingleHeight, grid Red, grid Green, grid Depth>
+/// The free pad as printed: its colours b(t0) are averaged as those of every frame are, then g is a
+/// quotient for each pixel, without bound toward the rim. NoSmoothing{} takes the colours as they
+/// are: their noise then goes into every later depth. Refuses what fit_reference refuses
+/// (parameter_error).
+template <scalar S = float,
+          class Heights = SingleHeight,
+          class Smoothing = BoxMean,
+          grid Red,
+          grid Green,
+          grid Depth>
 DepthReference<S, PixelScattering<S>, Heights> depth_reference(
     const Camera<double>& camera,
     const Absorption<double>& fluid,
     const Red& red,
     const Green& green,
     const Depth& depth_mm,
+    const Smoothing& smoothing = {},
     const GreyScale& scale = grey_scale_of<cell_t<Red>>()) {
   using Reference = DepthReference<S, PixelScattering<S>, Heights>;
+  const auto from_red = as_view(red);
+  const auto from_green = as_view(green);
   const auto depth = as_view(depth_mm);
   auto reference =
-      detail::free_pad<Reference, S>(camera, fluid, as_view(red), as_view(green), depth, scale);
+      detail::free_pad<Reference, S>(camera, fluid, from_red, from_green, depth, scale);
+  detail::ColourSetup<double> setup{reference.rows, reference.cols, {}, {}};
+  for (const S& l : reference.depth_mm) {
+    setup.in_pad.push_back(is_finite(l) ? 1 : 0);
+  }
+  const auto size = static_cast<std::size_t>(setup.rows * setup.cols);
+  std::vector<double> red_levels(size);
+  std::vector<double> green_levels(size);
+  detail::ColourRows<cell_t<Red>, double, Smoothing> colours(setup, smoothing, scale);
+  colours.start(setup, from_red, from_green, 0);
+  for (Index i = 0; i < setup.rows; ++i) {
+    const Index first = i * setup.cols;
+    colours.next(setup, from_red, from_green, red_levels.data() + first,
+                 green_levels.data() + first);
+  }
   PixelScattering<S>& g = reference.scattering;
   g.cols = reference.cols;
-  g.plane.assign(reference.depth_mm.size(), not_a_number<S>());
+  g.plane.assign(size, not_a_number<S>());
+  const auto levels_of = [&](const std::vector<double>& plane) {
+    return StridedView<const double>(plane.data(), setup.rows, setup.cols, setup.cols);
+  };
   detail::visit_reference<Heights>(
-      camera, fluid, scale, as_view(red), as_view(green), depth,
+      camera, fluid, GreyScale{}, levels_of(red_levels), levels_of(green_levels), depth,
       [&](Index row, Index col, double, double known, double scattered) {
         g.plane[static_cast<std::size_t>(row * g.cols + col)] = S(known / scattered);
         ++reference.pixels_used;
