@@ -7,8 +7,8 @@
 // Each taxel carries its share of the grip, largest in the middle of the contact (Hertz), bears
 // friction K N^beta, and holds the object by a spring along the finger. The object sinks until the
 // springs carry its weight; where a spring would pull harder than friction bears, the taxel slips
-// on. A taxel that slips shakes: its speed is the load of an oscillator on the foam, whose motion is
-// felt as normal force.
+// on. A taxel that slips shakes: its speed is the load of an oscillator on the foam, whose motion
+// is felt as normal force.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -77,6 +77,8 @@ class FoamFingers {
   }
   double time_s() const { return time_s_; }
   double force_n() const { return force_n_; }
+  /// The farthest that the object slipped over a taxel of this finger in this sample.
+  double slipped_mm(std::size_t finger) const { return fingers_[finger].slipped_mm; }
   /// Friction cannot hold the object on one of the fingers any more.
   bool has_slipped() const { return fingers_[0].has_slipped || fingers_[1].has_slipped; }
   const FoamFingersSetup& setup() const { return setup_; }
@@ -86,6 +88,7 @@ class FoamFingers {
     double center_x_mm = 0, center_y_mm = 0;
     double sunk_mm = 0;  // the object, against the finger
     bool has_slipped = false;
+    double slipped_mm = 0;        // in this sample, the most
     std::vector<double> slip_mm;  // of the object over each taxel
     std::vector<double> load_n;   // on each oscillator
     std::vector<fingerpad::FirstOrderHold<>::State> oscillators;
@@ -117,11 +120,13 @@ class FoamFingers {
   void advance(Finger& finger) {
     const std::vector<double> normal = pressures(finger);
     sink(finger, normal);
+    finger.slipped_mm = 0;
     for (std::size_t k = 0; k < normal.size(); ++k) {
       const double bears = friction_force(setup_.friction, normal[k]);
       const double pull = setup_.shear_stiffness_n_per_mm * (finger.sunk_mm - finger.slip_mm[k]);
       const double slipped = std::max(0.0, (pull - bears) / setup_.shear_stiffness_n_per_mm);
       finger.slip_mm[k] += slipped;
+      finger.slipped_mm = std::max(finger.slipped_mm, normal[k] > 0 ? slipped : 0.0);
       const double load = normal[k] > 0 ? setup_.drag_n_s_per_mm * slipped * setup_.rate_hz : 0.0;
       const double shakes = setup_.oscillator.stiffness_n_per_mm *
                             hold_(finger.load_n[k], load, finger.oscillators[k]).position_mm;

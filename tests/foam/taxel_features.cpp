@@ -135,6 +135,39 @@ TEST_CASE("taxel features: the taxel that spreads most vibrates, of equals the f
   CHECK(after(features, 16, two(0.24, 0.27)).location == 11);
 }
 
+TEST_CASE("taxel features: every taxel that vibrates is listed", "[taxel_features]") {
+  // taxels 3, 7, 11 and 12, with 2, 4, 4 and 8 waves in 16 samples; 12 is the strongest
+  const auto reading = [](int k, Index i, Index j) {
+    const auto wave = [k](int period) { return k % period < period / 2 ? 1.0 : -1.0; };
+    const Index taxel = i * 5 + j;
+    const double vibration = taxel == 3 ? wave(8) : taxel == 7 || taxel == 11 ? 2 * wave(4) : 0;
+    return 10 + (k < 20 ? 0.01 * (k % 2) : taxel == 12 ? 3 * wave(2) : vibration);
+  };
+  const TaxelFeatures features(3, 5, options());
+  auto state = features.start();
+  CHECK(after(features, state, 20, reading).vibration_count == 0);
+  CHECK(state.vibrating().empty());
+  const auto sample = after(features, state, 32, reading, 20);
+  const auto listed = state.vibrating();
+  REQUIRE(listed.size() == 4);
+  const Index places[] = {3, 7, 11, 12}, waves[] = {2, 4, 4, 8};
+  for (std::size_t k = 0; k < 4; ++k) {
+    CHECK(listed[k].location == places[k]);
+    CHECK(listed[k].waves == waves[k]);
+    CHECK(listed[k].deviation <= sample.deviation);
+  }
+  CHECK(sample.location == 12);
+  CHECK(sample.has_rested);
+  REQUIRE(sample.vibration_count == 3);  // by their waves, the strongest first
+  CHECK(sample.vibrations[0].location == 12);
+  CHECK(sample.vibrations[0].waves == 8);
+  CHECK_FALSE(sample.vibrations[0].is_several);
+  CHECK(sample.vibrations[1].waves == 2);
+  CHECK_FALSE(sample.vibrations[1].is_several);
+  CHECK(sample.vibrations[2].waves == 4);
+  CHECK(sample.vibrations[2].is_several);
+}
+
 TEST_CASE("taxel features: nothing vibrates before the window is full", "[taxel_features]") {
   const TaxelFeatures features(3, 5, options());
   auto state = features.start();

@@ -183,5 +183,5 @@ TEST_CASE("foam hand: bad parameters are refused by name", "[foam_hand]") {
   CHECK(said([](auto& o) { o.taxels.window = 3; }) ==
         "TaxelOptions: window = 3, must be in [4, 4096]");
   CHECK(said([](auto& o) { o.rules.history = 1; }) ==
-        "PreslipOptions: history = 1, must be in [2, 1000000]");
+        "PreslipOptions: history = 1, must be in [2, 100000]");
 }

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 // What one foam finger says at one time: what the paper stores at each location T_i of its stack.
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -37,6 +38,14 @@ constexpr const char* name_of(TaxelStatus status) {
 template <scalar S = double>
 struct FingerSample {
   static constexpr Index no_location = -1;
+  static constexpr std::size_t max_vibrations = 16;
+
+  /// The taxels that vibrate with one number of waves.
+  struct Vibration {
+    Index waves = 0;
+    Index location = no_location;  ///< of one of them
+    bool is_several = false;       ///< there is another one
+  };
 
   TaxelStatus status = TaxelStatus::filling;
   S center_x_mm = not_a_number<S>();  ///< centroid of force, from the middle of the first taxel
@@ -50,6 +59,23 @@ struct FingerSample {
   Index frozen = 0;        ///< taxels whose reading has not changed for long, 0 or another
   Index gaps = 0;          ///< steps of the clock in the window that are longer than two periods
   bool has_rested = true;  ///< a window was quiet since the start: what vibrates now has begun to
+
+  std::array<Vibration, max_vibrations> vibrations = {};  ///< of all that vibrate, by their waves;
+                                                          ///< that of `location` first
+  Index vibration_count = 0;
+
+  /// One more taxel that vibrates. Numbers of waves beyond `max_vibrations` are left out.
+  void add_vibration(const Vibration& one) {
+    const auto end = vibrations.begin() + vibration_count;
+    const auto same = std::find_if(vibrations.begin(), end,
+                                   [&](const Vibration& v) { return v.waves == one.waves; });
+    if (same != end) {
+      same->is_several = same->is_several || one.is_several || same->location != one.location;
+    } else if (end != vibrations.end()) {
+      *end = one;
+      ++vibration_count;
+    }
+  }
 
   /// Whether slip can be judged: what vibrates where nothing ever rested may be noise or swapped
   /// bytes.

@@ -10,8 +10,11 @@
 //   grasp-lift      centroid(a) != centroid(b) and location(a) != location(b)
 //                   and waves(b) > waves(a)                                  on any finger
 //
-// Each pair is compared once (docs/errata.md, E042): the newest sample with those before it. The
-// scan of the whole stack as published, with the same answers, is in published/preslip.hpp.
+// "If there exist some tactile elements having the same frequency, then pre-slip can be
+// recognized": location and waves are those of any element that vibrates, for grasp-optimise of a
+// on any finger. Each pair is compared once (docs/errata.md, E042): the newest sample with those
+// before it. The scan of the whole stack as published, with the same answers, is in
+// published/preslip.hpp.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -32,7 +35,7 @@ inline namespace v0 {
 /// What a rule compares with. The paper prints no values.
 template <scalar S = double>
 struct PreslipOptions {
-  Index history = 100;  ///< samples that are compared, in [2, 1000000]
+  Index history = 100;  ///< samples that are compared, in [2, 100000]
   Index min_waves = 1;  ///< a later sample with fewer waves is silent, >= 0; 0 as published, where
                         ///< none and none are an equal frequency
   S centroid_tolerance_mm = S(1) / S(10);  ///< what the noise of a centroid explains, >= 0: a
@@ -42,8 +45,8 @@ struct PreslipOptions {
 /// Refuses what has no meaning (parameter_error).
 template <scalar S>
 void expects_valid(const PreslipOptions<S>& o) {
-  expects(o.history >= 2 && o.history <= 1000000, "PreslipOptions", "history",
-          static_cast<long long>(o.history), "in [2, 1000000]");
+  expects(o.history >= 2 && o.history <= 100000, "PreslipOptions", "history",
+          static_cast<long long>(o.history), "in [2, 100000]");
   expects(o.min_waves >= 0, "PreslipOptions", "min_waves", static_cast<long long>(o.min_waves),
           ">= 0");
   expects(is_finite(o.centroid_tolerance_mm) && value(o.centroid_tolerance_mm) >= 0,
@@ -54,24 +57,64 @@ namespace detail {
 
 /// A finger's sample as the rules see it.
 struct PairSide {
+  struct Vibration {
+    Index location;
+    std::int32_t waves;
+    bool is_several;
+    bool is_enough;  // as many waves as a later sample must have
+  };
   double x_mm = 0;
   double y_mm = 0;
-  Index location = -1;
+  Index location = -1;  // of the strongest, with its waves
   Index waves = 0;
   bool is_pressed = false;
-  bool is_vibrating = false;  // has a location, and waves enough
+  bool is_vibrating = false;  // the strongest has a location, and waves enough
+  std::int32_t count = 0;
+  std::array<Vibration, FingerSample<>::max_vibrations> vibrations = {};
+
+  const Vibration* begin() const { return vibrations.data(); }
+  const Vibration* end() const { return vibrations.data() + count; }
 };
+
+/// Whether a holds another taxel than the one, or those, of b.
+inline bool differ(const PairSide::Vibration& a, const PairSide::Vibration& b) {
+  return a.is_several || b.is_several || a.location != b.location;
+}
 
 template <scalar S>
 PairSide pair_side(const FingerSample<S>& s, const PreslipOptions<S>& o) {
   PairSide side;
+  if (!s.can_tell()) {
+    return side;
+  }
+  constexpr Index most = (std::numeric_limits<std::int32_t>::max)();
+  const auto add = [&](Index location, Index waves, bool is_several) {
+    if (location >= 0) {
+      const auto counted = static_cast<std::int32_t>(std::clamp(waves, Index(0), most));
+      side.vibrations[static_cast<std::size_t>(side.count++)] = {location, counted, is_several,
+                                                                 waves >= o.min_waves};
+    }
+  };
   side.location = (std::max)(s.location, Index(-1));
   side.waves = (std::max)(s.waves, Index(0));
-  side.is_vibrating = s.can_tell() && side.location >= 0 && s.waves >= o.min_waves;
-  side.is_pressed = s.can_tell() && s.is_pressed();
+  side.is_vibrating = side.location >= 0 && s.waves >= o.min_waves;
+  side.is_pressed = s.is_pressed();
   side.x_mm = static_cast<double>(value(s.center_x_mm));
   side.y_mm = static_cast<double>(value(s.center_y_mm));
+  for (Index k = 0; k < s.vibration_count; ++k) {
+    const auto& v = s.vibrations[static_cast<std::size_t>(k)];
+    add(v.location, v.waves, v.is_several);
+  }
+  if (s.vibration_count == 0) {  // not listed: the strongest is all that is known
+    add(side.location, s.waves, false);
+  }
   return side;
+}
+
+/// Whether the centroid is farther off along an axis.
+inline bool has_moved(const PairSide& a, const PairSide& b, double tolerance_mm) {
+  return a.is_pressed && b.is_pressed &&
+         (std::fabs(a.x_mm - b.x_mm) > tolerance_mm || std::fabs(a.y_mm - b.y_mm) > tolerance_mm);
 }
 
 /// All fingers at one time.
@@ -86,16 +129,6 @@ HandSides<Fingers> hand_sides(const std::array<FingerSample<S>, Fingers>& sample
     sides[f] = pair_side(samples[f], options);
   }
   return sides;
-}
-
-/// Whether two samples of the hand fulfil the rule.
-template <class Rule, std::size_t Fingers>
-bool holds(const HandSides<Fingers>& older, const HandSides<Fingers>& later, double tolerance_mm) {
-  std::size_t fingers = 0;
-  for (std::size_t f = 0; f < Fingers; ++f) {
-    fingers += Rule::holds(older[f], later[f], tolerance_mm) ? 1U : 0U;
-  }
-  return fingers >= (Rule::on_all_fingers ? Fingers : 1U);
 }
 
 /// The last samples of the hand, numbered 0, 1, 2, ... from the start.
@@ -122,32 +155,71 @@ class SideHistory {
 
 }  // namespace detail
 
-/// First experiment: another taxel vibrates, with the same number of waves, on all fingers. Take
-/// this when an object hangs between fingers that press alike and the grip is loosened.
+/// First experiment: on all fingers a taxel vibrates with as many waves as another taxel, of this
+/// or another finger, at an earlier time. Take this when an object hangs between fingers that press
+/// alike and the grip is loosened.
 struct GraspOptimise {
   static constexpr const char* name = "grasp_optimise";
-  static constexpr bool on_all_fingers = true;
 
-  static bool holds(const detail::PairSide& older, const detail::PairSide& later, double) {
-    return older.is_vibrating && later.is_vibrating && older.location != later.location &&
-           older.waves == later.waves;
+  template <std::size_t Fingers>
+  static bool holds(const detail::HandSides<Fingers>& older,
+                    const detail::HandSides<Fingers>& later,
+                    double) {
+    for (std::size_t f = 0; f < Fingers; ++f) {
+      if (!is_alike(older, later[f], f)) {
+        return false;
+      }
+    }
+    return true;
+  }
+
+ private:
+  template <std::size_t Fingers>
+  static bool is_alike(const detail::HandSides<Fingers>& older,
+                       const detail::PairSide& later,
+                       std::size_t finger) {
+    for (std::size_t g = 0; g < Fingers; ++g) {
+      for (const auto& a : older[g]) {
+        for (const auto& b : later) {
+          if (a.waves == b.waves && b.is_enough && (g != finger || detail::differ(a, b))) {
+            return true;
+          }
+        }
+      }
+    }
+    return false;
   }
 };
 
-/// Second experiment: force has moved, another taxel vibrates, and with more waves, on any finger.
-/// Take this in all other cases. A sample in which nothing vibrates has no location, which differs
-/// from any.
+/// Second experiment: on any finger force has moved, and a taxel vibrates with more waves than
+/// another one did, or where nothing did. Take this in all other cases.
 struct GraspLift {
   static constexpr const char* name = "grasp_lift";
-  static constexpr bool on_all_fingers = false;
 
-  static bool holds(const detail::PairSide& older,
-                    const detail::PairSide& later,
+  template <std::size_t Fingers>
+  static bool holds(const detail::HandSides<Fingers>& older,
+                    const detail::HandSides<Fingers>& later,
                     double tolerance_mm) {
-    return older.is_pressed && later.is_pressed && later.is_vibrating &&
-           older.location != later.location && later.waves > older.waves &&
-           (std::fabs(older.x_mm - later.x_mm) > tolerance_mm ||
-            std::fabs(older.y_mm - later.y_mm) > tolerance_mm);
+    for (std::size_t f = 0; f < Fingers; ++f) {
+      if (detail::has_moved(older[f], later[f], tolerance_mm) && has_risen(older[f], later[f])) {
+        return true;
+      }
+    }
+    return false;
+  }
+
+ private:
+  static bool has_risen(const detail::PairSide& older, const detail::PairSide& later) {
+    for (const auto& b : later) {
+      bool is_above = older.count == 0;
+      for (const auto& a : older) {
+        is_above = is_above || (a.waves < b.waves && detail::differ(a, b));
+      }
+      if (is_above && b.is_enough && b.waves > 0) {
+        return true;
+      }
+    }
+    return false;
   }
 };
 
@@ -170,8 +242,8 @@ template <class Rule, std::size_t Fingers, scalar S>
 bool is_preslip(const std::array<FingerSample<S>, Fingers>& older,
                 const std::array<FingerSample<S>, Fingers>& later,
                 const PreslipOptions<S>& options = {}) {
-  return detail::holds<Rule>(detail::hand_sides(older, options), detail::hand_sides(later, options),
-                             static_cast<double>(value(options.centroid_tolerance_mm)));
+  return Rule::holds(detail::hand_sides(older, options), detail::hand_sides(later, options),
+                     static_cast<double>(value(options.centroid_tolerance_mm)));
 }
 
 namespace detail {
@@ -186,7 +258,8 @@ PreslipStatus preslip_status(const std::array<FingerSample<S>, Fingers>& newest,
 }
 }  // namespace detail
 
-/// A rule over a history of samples. Rule: GraspLift or GraspOptimise. Const; each hand has a state
+/// A rule over a history of samples. Rule: GraspLift or GraspOptimise (as printed: those of
+/// published/preslip.hpp). Const; each hand has a state
 /// of its own. A sample takes O(history) and allocates and throws nothing.
 template <class Rule = GraspLift, std::size_t Fingers = 2, scalar S = double>
 class Preslip {
@@ -233,7 +306,7 @@ class Preslip {
     const double tolerance = static_cast<double>(value(options_.centroid_tolerance_mm));
     const std::int64_t last = history.newest();
     for (std::int64_t older = last - 1; older >= history.oldest() && !result.is_fresh; --older) {
-      result.is_fresh = detail::holds<Rule>(history[older], history[last], tolerance);
+      result.is_fresh = Rule::holds(history[older], history[last], tolerance);
       state.older_ = result.is_fresh ? (std::max)(state.older_, older) : state.older_;
     }
     result.alarm = state.older_ != PreslipResult::none && state.older_ >= history.oldest();

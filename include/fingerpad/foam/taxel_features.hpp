@@ -12,6 +12,7 @@
 //              row-major order
 //   waves      crossings of that line, or the strongest line of the spectrum
 //
+// "Some tactile elements" may vibrate: all of them are listed, each with its waves.
 // Taxels that are dead, saturated, stuck, flickering or missing are left out, and come back a whole
 // window after they were last bad.
 #include <algorithm>
@@ -20,6 +21,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <span>
 #include <vector>
 
 #include "fingerpad/core/expects.hpp"
@@ -35,7 +37,7 @@ inline namespace v0 {
 
 /// Features of one finger, sample by sample. Waves: ZeroCrossings or SpectralPeak. Const: one
 /// serves any number of fingers of its size, each with a state of its own. A sample takes
-/// O(rows cols) time, and what Waves says while a taxel vibrates; with a new clock
+/// O(rows cols) time, and what Waves says for each taxel that vibrates; with a new clock
 /// O(rows cols window). Nothing is allocated or thrown.
 template <class Waves = ZeroCrossings, scalar S = double>
 class TaxelFeatures {
@@ -47,8 +49,19 @@ class TaxelFeatures {
   /// The window of one finger. A value: copy it to go back to this sample later.
   class State {
    public:
+    /// One taxel that vibrates.
+    struct Vibrating {
+      Index location;
+      Index waves;
+      S deviation;  // rms, in the unit of the readings
+    };
+
+    /// All that vibrate in the newest sample, row by row.
+    std::span<const Vibrating> vibrating() const { return vibrating_; }
+
     /// Forgets all samples.
     void reset() {
+      vibrating_.clear();
       samples_ = 0;
       unfilled_for_ = 0;
     }
@@ -66,7 +79,9 @@ class TaxelFeatures {
           time_s_(static_cast<std::size_t>(length), 0.0),
           is_gap_(time_s_.size(), 0),
           residual_(time_s_.size(), S(0)),
-          scratch_(length) {}
+          scratch_(length) {
+      vibrating_.reserve(held_.size());
+    }
 
     detail::TaxelWindow<S> window_;
     std::vector<S> held_;               // the last good reading of each taxel
@@ -76,6 +91,7 @@ class TaxelFeatures {
     std::vector<double> time_s_;        // of the window, oldest first; gaps shortened
     std::vector<std::uint8_t> is_gap_;  // before each of them
     std::vector<S> residual_;
+    std::vector<Vibrating> vibrating_;
     typename Waves::template Scratch<S> scratch_;
     Index samples_ = 0;
     Index unfilled_for_ = 0;    // samples since the window was last full
@@ -288,6 +304,7 @@ class TaxelFeatures {
 
   /// What the sample says of vibration, or why it says nothing.
   void judge(FingerSample<S>& sample, State& state) const {
+    state.vibrating_.clear();
     sample.has_rested = state.has_rested_;
     sample.gaps = std::count(state.is_gap_.begin() + 1, state.is_gap_.end(), std::uint8_t{1});
     if (state.unfilled_for_ > 2 * options_.window || 2 * sample.gaps > options_.window) {
@@ -330,39 +347,43 @@ class TaxelFeatures {
     return floor_[k] < infinite() && state.bad_for_[k] == 0 && !is_frozen(k, state);
   }
 
+  /// Lists what vibrates; the strongest is the sample's own. False: nothing does.
   bool find_vibration(FingerSample<S>& sample, State& state) const {
-    const Index strongest = strongest_taxel(state);
-    if (strongest == FingerSample<S>::no_location) {
+    for (std::size_t k = 0; k < floor_.size(); ++k) {
+      const Index location = static_cast<Index>(k);
+      if (value(state.window_.variance(location)) > floor_[k] && can_vibrate(k, state)) {
+        list(location, state);
+      }
+    }
+    if (state.vibrating_.empty()) {
       return false;
     }
-    const S mean_square = state.window_.residuals(strongest, state.residual_.data());
-    if (!(value(mean_square) > 0)) {
-      return false;
-    }
-    using std::sqrt;
-    const S rms = S(sqrt(mean_square));
-    const detail::WaveWindow<S> window{state.residual_.data(), state.time_s_.data(),
-                                       options_.window, rms};
+    const auto& most = *std::max_element(
+        state.vibrating_.begin(), state.vibrating_.end(),
+        [](const auto& a, const auto& b) { return value(a.deviation) < value(b.deviation); });
     sample.status = TaxelStatus::vibrating;
-    sample.location = strongest;
-    sample.waves = waves_(window, state.scratch_);
-    sample.frequency_hz = S(static_cast<double>(sample.waves) / window.span_s());
-    sample.deviation = rms;
+    sample.location = most.location;
+    sample.waves = most.waves;
+    sample.frequency_hz =
+        S(static_cast<double>(most.waves) / detail::span_s(state.time_s_.data(), options_.window));
+    sample.deviation = most.deviation;
+    sample.add_vibration({most.waves, most.location});
+    for (const auto& one : state.vibrating_) {
+      sample.add_vibration({one.waves, one.location});
+    }
     return true;
   }
 
-  /// The first of those whose variance is largest, of those beyond their floor.
-  Index strongest_taxel(const State& state) const {
-    Index strongest = FingerSample<S>::no_location;
-    Real largest = Real(0);
-    for (std::size_t k = 0; k < floor_.size(); ++k) {
-      const Real variance = value(state.window_.variance(static_cast<Index>(k)));
-      if (variance > largest && variance > floor_[k] && can_vibrate(k, state)) {
-        largest = variance;
-        strongest = static_cast<Index>(k);
-      }
+  /// Adds a taxel to the list, unless nothing is left of its spread when it is summed anew.
+  void list(Index location, State& state) const {
+    using std::sqrt;
+    const S mean_square = state.window_.residuals(location, state.residual_.data());
+    if (value(mean_square) > 0) {
+      const S rms = S(sqrt(mean_square));
+      const detail::WaveWindow<S> window{state.residual_.data(), state.time_s_.data(),
+                                         options_.window, rms};
+      state.vibrating_.push_back({location, waves_(window, state.scratch_), rms});
     }
-    return strongest;
   }
 
   Index rows_;

@@ -17,6 +17,12 @@ namespace fingerpad {
 inline namespace v0 {
 namespace detail {
 
+/// From the oldest sample to one period beyond the newest.
+inline double span_s(const double* time_s, Index length) {
+  const double length_s = time_s[length - 1] - time_s[0];
+  return length_s / static_cast<double>(length - 1) * static_cast<double>(length);
+}
+
 /// One taxel in its window, oldest sample first.
 template <scalar S>
 struct WaveWindow {
@@ -24,12 +30,6 @@ struct WaveWindow {
   const double* time_s;  // by the clock, gaps shortened
   Index length;
   S rms;  // of the residual, > 0
-
-  /// From the oldest sample to one period beyond the newest.
-  double span_s() const {
-    const double length_s = time_s[length - 1] - time_s[0];
-    return length_s / static_cast<double>(length - 1) * static_cast<double>(length);
-  }
 };
 
 }  // namespace detail
@@ -103,7 +103,7 @@ struct SpectralPeak {
     using std::cos;
     using std::sin;
     const S pi = S(std::numbers::pi_v<long double>);
-    const double span = window.span_s();
+    const double span = detail::span_s(window.time_s, window.length);
     const double middle = (window.time_s[0] + window.time_s[window.length - 1]) / 2;
     for (std::size_t u = 0; u < static_cast<std::size_t>(window.length); ++u) {
       const S phase = S(S(2) * pi) * S((window.time_s[u] - middle) / span);

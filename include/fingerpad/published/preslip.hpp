@@ -1,8 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// The rules of pre-slip as printed: both indices go through the whole stack at each sample, and a
-// sample without waves is not silent. docs/foam/preslip.md.
+// The rules of pre-slip as printed: of each finger one vibrating location, that of the strongest;
+// both indices go through the whole stack at each sample; and a sample without waves is not silent.
+// docs/foam/preslip.md.
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -20,6 +21,43 @@ PreslipOptions<S> preslip_options() {
   options.min_waves = 0;
   return options;
 }
+
+/// First experiment: another location vibrates, with the same number of waves, on all fingers.
+struct GraspOptimise {
+  static constexpr const char* name = "grasp_optimise";
+
+  template <std::size_t Fingers>
+  static bool holds(const detail::HandSides<Fingers>& older,
+                    const detail::HandSides<Fingers>& later,
+                    double) {
+    bool on_all = true;
+    for (std::size_t f = 0; f < Fingers; ++f) {
+      const detail::PairSide &a = older[f], &b = later[f];
+      on_all = on_all && a.is_vibrating && b.is_vibrating && a.location != b.location &&
+               a.waves == b.waves;
+    }
+    return on_all;
+  }
+};
+
+/// Second experiment: force has moved, another location vibrates, and with more waves, on any
+/// finger. Where nothing vibrates there is no location, which differs from any.
+struct GraspLift {
+  static constexpr const char* name = "grasp_lift";
+
+  template <std::size_t Fingers>
+  static bool holds(const detail::HandSides<Fingers>& older,
+                    const detail::HandSides<Fingers>& later,
+                    double tolerance_mm) {
+    bool on_any = false;
+    for (std::size_t f = 0; f < Fingers; ++f) {
+      const detail::PairSide &a = older[f], &b = later[f];
+      on_any = on_any || (b.is_vibrating && a.location != b.location && b.waves > a.waves &&
+                          detail::has_moved(a, b, tolerance_mm));
+    }
+    return on_any;
+  }
+};
 
 /// The scan of the stack: index 1 goes from the oldest sample on, and for each of its places index
 /// 2 from the newest sample down to it (E042). O(history^2); the answers are those of
@@ -54,7 +92,7 @@ class StackScan {
     const std::int64_t last = stack.newest();
     for (std::int64_t index_1 = stack.oldest(); index_1 < last; ++index_1) {
       for (std::int64_t index_2 = last; index_2 > index_1; --index_2) {
-        if (detail::holds<Rule>(stack[index_1], stack[index_2], tolerance)) {
+        if (Rule::holds(stack[index_1], stack[index_2], tolerance)) {
           result.alarm = true;
           result.is_fresh = result.is_fresh || index_2 == last;
           result.samples_ago = last - index_1;  // in the end of the latest
