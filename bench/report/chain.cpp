@@ -221,9 +221,7 @@ ordered_json growth() {
   const chain::PressedFrames frames;
   for (const Index history : {16, 64, 256, 1024}) {
     auto options = frames.options();
-    options.stick_reference.capacity = history;
-    options.stick_test.reference_px = 1e6;  // no frame is far enough: all are looked at
-    options.stick_test.store_px = 0;
+    options.stick.capacity = history;
     add("stored frames", history, options, frames, static_cast<int>(2 * history) + 200);
   }
   return out;

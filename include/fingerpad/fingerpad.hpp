@@ -34,6 +34,7 @@
 #include "fingerpad/motion/object_motion.hpp"
 #include "fingerpad/optics/camera.hpp"
 #include "fingerpad/pipeline/fingertip.hpp"
+#include "fingerpad/pipeline/fingertip_options.hpp"
 #include "fingerpad/pipeline/foam_hand.hpp"
 #include "fingerpad/published/camera.hpp"
 #include "fingerpad/published/contact_region.hpp"

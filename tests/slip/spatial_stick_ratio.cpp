@@ -126,6 +126,29 @@ TEST_CASE("stick ratio in space: reference, contact and time as in the image", "
   }
 }
 
+TEST_CASE("stick ratio in space: a mask that flickers, a clock that is late", "[spatial_stick]") {
+  SlippingPatch patch;
+  Follower f;
+  const Flags none(21, 21, 0);
+  const auto motion = test::moved_by({0, 0, 0}, {0, 0, 0}, {0.3, 0, 0});
+  const auto at = [&](double time_s, const Flags& contact) {
+    return f.ratio(patch.dots, contact, f.states, f.state, time_s);
+  };
+  (void)at(5, patch.contact);
+  CHECK(at(5.15, none).status == StickStatus::no_contact);
+  patch.step(motion);
+  const auto r = at(5.1, patch.contact);  // late by 0.05 s
+  CHECK(r.updated());
+  CHECK(r.reference_age == 2);
+  CHECK(at(5.4, none).status == StickStatus::no_contact);
+  CHECK(f.state.stored_frames() == 0);
+  (void)at(6, patch.contact);
+  patch.step(motion);
+  CHECK(at(5, patch.contact).status == StickStatus::restarted);
+  patch.step(motion);
+  CHECK(at(5.01, patch.contact).updated());
+}
+
 TEST_CASE("stick ratio in space, bad input", "[spatial_stick]") {
   const auto motion = test::moved_by({0, 1 * degree, 0}, {0, 0, 28}, {0.1, 0, 0});
   const double infinity = std::numeric_limits<double>::infinity();
@@ -207,6 +230,7 @@ TEST_CASE("stick ratio in space: bad parameters are refused by name, value and r
   CHECK(with({.depth_mm = -1}) == "SpatialStickTest: depth_mm = -1, must be finite and > 0");
   CHECK(with({.slip_share = 0.6}) == "SpatialStickTest: slip_share = 0.6, must be in (0, 0.5]");
   CHECK(with({.false_slip = 0}) == "SpatialStickTest: false_slip = 0, must be in (0, 0.5]");
+  CHECK(with({.hold_s = -1}) == "SpatialStickTest: hold_s = -1, must be finite and >= 0");
   CHECK(with({.min_dots = 5}) == "SpatialStickTest: min_dots = 5, must be >= 6");
   CHECK(with({.capacity = 0}) == "SpatialStickTest: capacity = 0, must be in [1, 4096]");
   CHECK(test::refusal([] { SpatialStickRatio<double>(0, 9); }) ==

@@ -608,22 +608,48 @@ TEST_CASE("stick ratio, bad input: time going backwards") {
   Follower<> f;
   CHECK(f.at(shifted(0), 10).status == StickStatus::no_reference);
   CHECK(f.at(shifted(3), 10.1).updated());
-  CHECK(f.at(shifted(6), 10.1).updated());  // twice the same time is no going back
-  const auto r = f.at(shifted(9), 10.05);
+  CHECK(f.at(shifted(6), 10.1).updated());   // twice the same time is no going back
+  CHECK(f.at(shifted(9), 10.05).updated());  // a clock that is a little late
+  CHECK(f.at(shifted(12), 9.91).updated());
+  const auto r = f.at(shifted(9), 9.85);  // 0.25 s before the latest
   CHECK(r.status == StickStatus::restarted);
   CHECK(std::isnan(r.stick_ratio));
   CHECK(r.reference_age == 0);
   CHECK(r.unknown == 81);
   CHECK(f.state.stored_frames() == 1);
-  CHECK(f.at(shifted(12), 10.06).reference_age == 1);
+  CHECK(f.at(shifted(12), 9.86).reference_age == 1);
   // times that are no numbers say nothing
   CHECK(f.at(shifted(15), test::nan).updated());
   CHECK(f.at(shifted(18), std::numeric_limits<double>::infinity()).updated());
-  CHECK(f.at(shifted(21), 10.07).updated());
+  CHECK(f.at(shifted(21), 9.87).updated());
   CHECK(f(shifted(24)).updated());
   CHECK(f.at(shifted(27), -std::numeric_limits<double>::infinity()).status ==
         StickStatus::restarted);
   CHECK(f.at(shifted(30), -5).updated());
+}
+
+TEST_CASE("stick ratio, bad input: a contact mask that drops out for a moment") {
+  Follower<> f;
+  const ContactFlags none(9, 9, 0);
+  const auto at = [&](double x, double time_s, bool touches) {
+    return f.ratio(shifted(x), touches ? f.all : none, f.states, f.state, time_s);
+  };
+  (void)at(0, 1.0, true);
+  CHECK(at(3, 1.1, true).updated());
+  const auto lost = at(4, 1.2, false);
+  CHECK(lost.status == StickStatus::no_contact);
+  CHECK(lost.stick_ratio == 1);  // stands
+  CHECK(lost.dots_in_contact() == 0);
+  CHECK(at(4.5, 1.29, false).stick_ratio == 1);
+  const auto back = at(6, 1.3, true);
+  CHECK(back.updated());  // against a frame before
+  CHECK(back.reference_age == 3);
+  CHECK(std::isnan(at(7, 1.51, false).stick_ratio));  // longer than 0.2 s: another contact
+  CHECK(f.state.stored_frames() == 0);
+  CHECK(at(9, 1.52, true).status == StickStatus::no_reference);
+  // without time a lost contact is over
+  CHECK(at(12, test::nan, true).updated());
+  CHECK(std::isnan(at(12, test::nan, false).stick_ratio));
 }
 
 TEST_CASE("stick ratio, bad input: an empty contact mask") {

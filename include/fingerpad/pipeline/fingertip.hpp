@@ -9,121 +9,16 @@
 //   auto touch = fingertip(ColorFrame(red, green), dots_px, side_dots_mm, pressure_mpa, time_s);
 //   if (touch.ok()) { ... touch.wrench.force_n ... }
 #include <array>
+#include <cmath>
 #include <cstdint>
+#include <numbers>
 #include <type_traits>
 #include <vector>
 
-#include "fingerpad/contact/contact_region.hpp"
-#include "fingerpad/core/dots.hpp"
-#include "fingerpad/core/grid.hpp"
-#include "fingerpad/depth/depth.hpp"
-#include "fingerpad/force/normal_force.hpp"
-#include "fingerpad/force/pad_heights.hpp"
-#include "fingerpad/force/shear.hpp"
-#include "fingerpad/force/wrench.hpp"
-#include "fingerpad/motion/contact_shift.hpp"
-#include "fingerpad/motion/object_motion.hpp"
-#include "fingerpad/pipeline/detail/one_thread.hpp"
-#include "fingerpad/slip/stick_ratio.hpp"
+#include "fingerpad/pipeline/fingertip_options.hpp"
 
 namespace fingerpad {
 inline namespace v0 {
-
-/// Which stages a fingertip has, and by which methods. Derive from it and change what differs: a
-/// stage that is false is not instantiated and costs nothing. Contact is needed by all that follow.
-///   struct DepthAndContact : FingertipMethods {
-///     static constexpr bool has_dots = false, has_wrench = false;
-///   };
-struct FingertipMethods {
-  static constexpr bool has_contact = true;  ///< contact region
-  static constexpr bool has_dots = true;     ///< object motion, stick ratio, forces by look-up
-  static constexpr bool has_wrench = true;   ///< six-axis force from pressure and side dots
-
-  using Smoothing = BiasFreeMean;
-  using Inverse = ExponentialFree<>;
-  using Statistic = ClampedMean<>;
-  using Edge = HalfLevelEdge;
-  using Solver = LeastSquares;
-  using Pixel = std::uint8_t;          ///< cell of the frame's channels
-  using Executor = detail::OneThread;  ///< who works on a frame
-};
-
-/// All that is known of a fingertip before its first frame. What a stage needs that is switched off
-/// is not read.
-template <class Reference>
-struct FingertipOptions {
-  Camera<double> camera;
-  Absorption<double> fluid;
-  Reference reference;  ///< of the free pad, from fit_reference()
-  Index rows = 0;       ///< of a frame, px
-  Index cols = 0;
-  int smoothing_px = 29;
-  ContactTest contact = {};
-  StridedView<const Point3<double>> free_dots_mm = {};  ///< printed dots of the free pad; NaN: none
-  StickTest stick_test = {};
-  UpdatedReference stick_reference = {};
-  PolynomialForce<> force_of_area = {};                         ///< N, of mm^2
-  PolynomialForce<> force_of_depth = {};                        ///< N, of mm
-  double force_sd_n = 0.1;                                      ///< standard deviation of both, > 0
-  ShearNormalisation<> shear_normalisation = {100, 0.65, 1.7};  ///< by area in mm^2, as printed
-  RadialShear<> shear = {};
-  StridedView<const Point3<double>> rim_mm = {};  ///< where side dots are fixed; one row
-  WrenchOptions<double> wrench = {};
-};
-template <class Reference>
-FingertipOptions(const Camera<double>&, const Absorption<double>&, const Reference&, Index, Index)
-    -> FingertipOptions<Reference>;
-
-/// Red and green channel of a frame, as views.
-template <class Red, class Green>
-struct ColorFrame {
-  Red red;
-  Green green;
-
-  template <grid R, grid G>
-  ColorFrame(const R& of_red, const G& of_green) : red(as_view(of_red)), green(as_view(of_green)) {}
-};
-template <class R, class G>
-ColorFrame(const R&, const G&) -> ColorFrame<decltype(as_view(std::declval<const R&>())),
-                                             decltype(as_view(std::declval<const G&>()))>;
-
-enum class FingertipStatus : std::uint8_t {
-  ok,          ///< every stage has an answer
-  partial,     ///< a stage has none; its own result says why
-  no_contact,  ///< nothing touches the pad
-  refused,     ///< a frame or dots of another size: nothing was computed
-};
-
-/// "ok", "partial", ...
-constexpr const char* name_of(FingertipStatus status) {
-  constexpr std::array<const char*, 4> names = {"ok", "partial", "no contact", "refused"};
-  return names[static_cast<std::size_t>(status)];
-}
-
-/// What a frame says. The result of a stage that is switched off is its own default: no answer.
-struct [[nodiscard]] FingertipResult {
-  FingertipStatus status = FingertipStatus::refused;
-  DepthResult depth;
-  ContactResult contact;
-  ObjectMotionResult<double> motion;
-  StickRatioResult<float> stick;
-  FusedForce<double> normal;    ///< by look-up
-  ShearResult<double> shear;    ///< by look-up
-  WrenchResult<double> wrench;  ///< six axes
-
-  bool ok() const { return status == FingertipStatus::ok; }
-};
-
-/// Stages of a frame, as they are told to a watch.
-enum class FingertipStage : std::uint8_t {
-  depth,
-  contact,
-  motion,
-  stick,
-  look_up,
-  heights,
-  wrench
-};
 
 /// Not const: a frame changes depth map, mask, dots, and what is remembered of the object. One
 /// object per pad; it is not shared by threads. A frame allocates nothing, throws nothing, and
@@ -170,6 +65,7 @@ class Fingertip {
       executor_.both(
           [&] { dots_.follow(image_, region_, dots_px, time_s, touch, watch); },
           [&] { balance_.solve(image_, region_, side_dots_mm, pressure_mpa, touch, watch); });
+      dots_.conclude(touch, watch);
       touch.status = status_of(touch);
       return touch;
     }
@@ -288,9 +184,12 @@ class Fingertip {
     Grid<std::uint8_t> touching;
     ObjectMotion<> motion;
     ObjectMotion<>::State motion_state;
-    StickRatio<> stick;
-    StickRatio<>::State stick_state;
+    SpatialStickRatio<> stick;
+    SpatialStickRatio<>::State stick_state;
     Grid<DotState> states;
+    Grid<std::uint8_t> slips;
+    FrictionLimit<> friction;
+    FrictionLimit<>::State friction_state;
     ContactShift<> shift;
     ContactShift<>::Workspace shift_work;
     ByLookUp by_area, by_depth;
@@ -301,9 +200,12 @@ class Fingertip {
           touching(at_mm.rows, at_mm.cols),
           motion(o.free_dots_mm),
           motion_state(motion.start()),
-          stick(at_mm.rows, at_mm.cols, o.stick_test, {}, o.stick_reference),
+          stick(at_mm.rows, at_mm.cols, o.stick),
           stick_state(stick.start()),
           states(at_mm.rows, at_mm.cols),
+          slips(at_mm.rows, at_mm.cols),
+          friction(o.friction),
+          friction_state(friction.start()),
           shift(o.free_dots_mm),
           shift_work(shift.workspace()),
           by_area(o.force_of_area, {}, {.residual_sd_n = o.force_sd_n}),
@@ -317,6 +219,7 @@ class Fingertip {
     void reset() {
       motion_state = motion.start();
       stick_state.reset();
+      friction_state.reset();
     }
 
     template <class Dots, class Watch>
@@ -328,14 +231,36 @@ class Fingertip {
                 Watch& watch) {
       (void)spatial_dots(image.camera, dots_px, image.depth.view(), at_mm.view());
       contact_at_dots(dots_px, region.mask.view(), touching.view());
-      touch.motion = motion(at_mm.view(), touching.view(), motion_state);
-      watch(FingertipStage::motion);
-      touch.stick = stick(dots_px, touching.view(), states.view(), stick_state, time_s);
+      touch.stick = stick(at_mm.view(), touching.view(), states.view(), stick_state, time_s);
       watch(FingertipStage::stick);
       const auto moved = shift(at_mm.view(), touching.view(), shift_work);
       touch.normal = fused(by_area(touch.contact.area_mm2), by_depth(touch.contact.depth_mm));
       touch.shear = shear(touch.contact.area_mm2, moved.displacement, moved.rotation_rad);
       watch(FingertipStage::look_up);
+    }
+
+    /// Whether the object slides, once the forces are known; and its motion, by the dots that hold.
+    template <class Watch>
+    void conclude(FingertipResult& touch, Watch& watch) {
+      touch.slip = friction(load_of(touch), touch.stick.stick_ratio, update_of(touch.stick.status),
+                            friction_state);
+      const bool slides = touch.slip.status == FrictionLimitStatus::sliding;
+      for (std::size_t k = 0; k < slips.cells.size(); ++k) {
+        slips.cells[k] = slides || states.cells[k] == DotState::slip ? 1 : 0;
+      }
+      touch.motion = motion(at_mm.view(), touching.view(), slips.view(), motion_state);
+      watch(FingertipStage::motion);
+    }
+
+    /// By the six-axis force; without it by look-up.
+    ContactLoad<double> load_of(const FingertipResult& touch) const {
+      if (touch.wrench.ok()) {
+        return contact_load(touch.wrench.force_n, touch.wrench.moment_n_mm, at_mm.view(),
+                            touching.view());
+      }
+      const double radius_mm = std::sqrt(touch.contact.area_mm2 / std::numbers::pi);
+      return {touch.normal.force_n, norm(touch.shear.tangential_force_n), touch.shear.moment_n_mm,
+              2.0 / 3 * radius_mm};
     }
   };
 
@@ -376,6 +301,8 @@ class Fingertip {
     }
     template <class... Given>
     void follow(Given&&...) {}
+    template <class... Given>
+    void conclude(Given&&...) {}
     template <class... Given>
     void solve(Given&&...) {}
   };

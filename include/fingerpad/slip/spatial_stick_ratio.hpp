@@ -38,6 +38,8 @@ struct SpatialStickTest {
                                  ///< the longest move
   double false_slip = 0.01;      ///< in (0, 0.5]: of the dots that stick, the share told to slip
   Index min_dots = 6;            ///< >= 6: to compare; fewer give no ratio
+  double hold_s = 0.2;           ///< >= 0: a contact lost and found again within this time is the
+                                 ///< same one, and a clock may go back by as much
   Index capacity = 64;           ///< stored frames, in [1, 4096]; then the oldest is forgotten
 };
 inline void expects_valid(const SpatialStickTest& test) {
@@ -50,6 +52,7 @@ inline void expects_valid(const SpatialStickTest& test) {
         "in (0, 0.5]");
   check(test.false_slip > 0 && test.false_slip <= 0.5, "false_slip", test.false_slip,
         "in (0, 0.5]");
+  check(test.hold_s >= 0, "hold_s", test.hold_s, "finite and >= 0");
   expects(test.min_dots >= 6, "SpatialStickTest", "min_dots", static_cast<long long>(test.min_dots),
           ">= 6");
   expects(test.capacity >= 1 && test.capacity <= 4096, "SpatialStickTest", "capacity",
@@ -87,11 +90,15 @@ class SpatialStickRatio {
   State start() const { return State(layout_, test_.capacity); }
 
   /// The ratio in a frame with dots `dots_mm` (NaN: not found) of which those with a true `contact`
-  /// touch the object. Writes to `states` what each dot does.
+  /// touch the object, at a time in s (NaN: not known). Writes to `states` what each dot does.
   template <spatial_dot_grid Dots, contact_mask Contact, class States>
     requires(writable_grid<States>)
   SpatialStickResult<S>
-  operator()(const Dots& dots_mm, const Contact& contact, States&& states, State& state) const {
+  operator()(const Dots& dots_mm,
+             const Contact& contact,
+             States&& states,
+             State& state,
+             double time_s = not_a_number<double>()) const {
     const auto dots = as_view(dots_mm);
     const auto touch = as_view(contact);
     const auto to = as_view(states);
@@ -100,9 +107,15 @@ class SpatialStickRatio {
         state.repository.capacity() != test_.capacity) {
       return {};
     }
+    const bool back = state.clock.goes_back(time_s, test_.hold_s);
+    if (back) {
+      state.forget();
+      state.frame = 0;
+    }
     ++state.frame;
     state.given.read(dots, touch);
-    state.result.status = look(state);
+    const StickStatus status = look(state);
+    state.result.status = back ? StickStatus::restarted : status;
     detail::stick::settle_marks(state.layout, state.given.touching, state.marks, state.result, to);
     return state.result;
   }
@@ -118,9 +131,12 @@ class SpatialStickRatio {
       if (state.given.count == 0) {
         return StickStatus::no_dots;
       }
-      state.forget();
+      if (!state.clock.touched_within(test_.hold_s)) {
+        state.forget();
+      }
       return StickStatus::no_contact;
     }
+    state.clock.touch();
     const PlacedDots placed = place_dots(state.given, layout_, state.now);
     state.result.out_of_place = placed.out_of_place;
     if (placed.dots < test_.min_dots) {

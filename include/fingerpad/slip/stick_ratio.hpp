@@ -35,6 +35,8 @@ struct StickTest {
                               ///< by more than this times d_max / U; for dots with other noise
                               ///< than the published 0.06 px see calibrate/slip.hpp
   Index min_dots = 5;         ///< >= 1: to compare; fewer give no ratio
+  double hold_s = 0.2;        ///< >= 0: a contact lost and found again within this time is the same
+                              ///< one, and a clock may go back by as much
 };
 inline void expects_valid(const StickTest& test) {
   expects(is_finite(test.reference_px) && test.reference_px > 0, "StickTest", "reference_px",
@@ -43,6 +45,8 @@ inline void expects_valid(const StickTest& test) {
           "StickTest", "store_px", test.store_px, "in [0, reference_px]");
   expects(is_finite(test.slip_px) && test.slip_px > 0, "StickTest", "slip_px", test.slip_px,
           "finite and > 0");
+  expects(is_finite(test.hold_s) && test.hold_s >= 0, "StickTest", "hold_s", test.hold_s,
+          "finite and >= 0");
   expects(test.min_dots >= 1, "StickTest", "min_dots", static_cast<long long>(test.min_dots),
           ">= 1");
 }
@@ -101,8 +105,8 @@ class StickRatio {
     return (*this)(dots_px, contact, states, state, not_a_number<double>());
   }
 
-  /// The same at a time in s: a frame before the last one begins another recording, and all that
-  /// was before is forgotten.
+  /// The same at a time in s, which is what tells a contact that flickers from another one, and
+  /// another recording from a clock that is a little late.
   template <dot_grid Dots, contact_mask Contact, class States>
     requires(writable_grid<States>)
   StickRatioResult<S>
@@ -121,11 +125,11 @@ class StickRatio {
     if (!accepted) {
       return {};
     }
-    const bool back = time_s < state.time_s;
+    const bool back = state.clock.goes_back(time_s, test_.hold_s);
     if (back) {
-      state.reset();
+      state.forget();
+      state.frame = 0;
     }
-    state.time_s = is_finite(time_s) ? time_s : state.time_s;
     ++state.frame;
     state.given.read(dots, touch);
     const StickStatus status = look(state);
@@ -150,6 +154,7 @@ class StickRatio {
     if (touching.empty()) {
       return without_contact(state);
     }
+    state.clock.touch();
     const PlacedDots placed = place_dots(state.given, layout_, state.now);
     denoise_positions(denoising_, state.given, layout_, state.now);
     result.out_of_place = placed.out_of_place;
@@ -178,7 +183,9 @@ class StickRatio {
     if (state.given.count == 0) {
       return StickStatus::no_dots;
     }
-    state.forget();
+    if (!state.clock.touched_within(test_.hold_s)) {
+      state.forget();
+    }
     return StickStatus::no_contact;
   }
 

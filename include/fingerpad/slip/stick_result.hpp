@@ -26,10 +26,10 @@ enum class StickStatus : std::uint8_t {
   standing,      ///< the dots have hardly moved since the newest stored frame
   no_reference,  ///< no stored frame is far enough away in the direction of motion
   too_few_dots,  ///< fewer dots to compare than StickTest::min_dots
-  no_contact,    ///< nothing touches: there is no ratio, and what was stored is forgotten
+  no_contact,    ///< nothing touches: after hold_s what was stored is forgotten
   no_dots,       ///< no dot at all was found: nothing is known, nothing is forgotten
   jumped,        ///< all dots carry the name of a neighbour: the frame is left out
-  restarted,     ///< time went back: all that was before is forgotten
+  restarted,     ///< time went back by more than hold_s: all that was before is forgotten
   refused,       ///< a grid, state or workspace has another size: nothing was done
 };
 

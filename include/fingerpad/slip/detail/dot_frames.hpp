@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 #include "fingerpad/core/detail/reserved_vector.hpp"
@@ -144,6 +145,31 @@ class Repository {
   std::vector<std::int64_t> frames_;
   Index newest_ = -1;
   Index size_ = 0;
+};
+
+/// What time says of a recording. Times that are not finite say nothing.
+class Clock {
+ public:
+  /// Notes the time of a frame; true when it lies more than `hold_s` before the latest one: another
+  /// recording.
+  bool goes_back(double time_s, double hold_s) {
+    const bool back = time_s < latest_s_ - hold_s;
+    if (back) {
+      *this = Clock();
+    }
+    now_s_ = time_s;
+    latest_s_ = is_finite(time_s) && latest_s_ < time_s ? time_s : latest_s_;
+    return back;
+  }
+  void touch() { contact_s_ = is_finite(now_s_) ? now_s_ : contact_s_; }
+  /// Whether the last frame with contact is no longer ago than that.
+  bool touched_within(double hold_s) const { return now_s_ - contact_s_ <= hold_s; }
+
+ private:
+  static constexpr double never = -std::numeric_limits<double>::infinity();
+  double now_s_ = never;
+  double latest_s_ = never;
+  double contact_s_ = never;
 };
 
 /// d_max^2: the largest displacement of a dot of `touching` that both frames have; -1 if there is

@@ -20,6 +20,7 @@ class SpatialState {
   /// As before the first frame.
   void reset() {
     forget();
+    clock = Clock();
     frame = 0;
   }
   Index stored_frames() const { return repository.size(); }
@@ -62,6 +63,7 @@ class SpatialState {
   Repository<Point3<S>> repository;
   SpatialStickResult<S> result;
   std::int64_t frame = 0;
+  Clock clock;
 };
 
 }  // namespace detail::stick

@@ -4,7 +4,6 @@
 // What a stick ratio remembers from frame to frame, and the memory in which it works.
 #include <algorithm>
 #include <cstdint>
-#include <limits>
 #include <vector>
 
 #include "fingerpad/slip/detail/dot_frames.hpp"
@@ -27,7 +26,7 @@ class StickState {
   /// As before the first frame.
   void reset() {
     forget();
-    time_s = -std::numeric_limits<double>::infinity();
+    clock = Clock();
     frame = 0;
   }
   Index stored_frames() const { return repository.size(); }
@@ -48,7 +47,7 @@ class StickState {
   Repository<Point2<S>> repository;
   StickRatioResult<S> result;
   std::int64_t frame = 0;
-  double time_s = -std::numeric_limits<double>::infinity();
+  Clock clock;
 };
 
 /// The centroid of the dots in contact that are marked at least as `least`; NaN if there is none.

@@ -1,0 +1,125 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+#pragma once
+// What a fingertip is told once, and what it says of a frame: pipeline/fingertip.hpp.
+#include <array>
+#include <cstdint>
+#include <type_traits>
+#include <utility>
+
+#include "fingerpad/contact/contact_region.hpp"
+#include "fingerpad/core/dots.hpp"
+#include "fingerpad/core/grid.hpp"
+#include "fingerpad/depth/depth.hpp"
+#include "fingerpad/force/normal_force.hpp"
+#include "fingerpad/force/pad_heights.hpp"
+#include "fingerpad/force/shear.hpp"
+#include "fingerpad/force/wrench.hpp"
+#include "fingerpad/motion/contact_shift.hpp"
+#include "fingerpad/motion/object_motion.hpp"
+#include "fingerpad/pipeline/detail/one_thread.hpp"
+#include "fingerpad/slip/friction_limit.hpp"
+#include "fingerpad/slip/spatial_stick_ratio.hpp"
+
+namespace fingerpad {
+inline namespace v0 {
+
+/// Which stages a fingertip has, and by which methods. Derive from it and change what differs: a
+/// stage that is false is not instantiated and costs nothing. Contact is needed by all that follow.
+///   struct DepthAndContact : FingertipMethods {
+///     static constexpr bool has_dots = false, has_wrench = false;
+///   };
+struct FingertipMethods {
+  static constexpr bool has_contact = true;  ///< contact region
+  static constexpr bool has_dots = true;     ///< object motion, stick ratio, forces by look-up
+  static constexpr bool has_wrench = true;   ///< six-axis force from pressure and side dots
+
+  using Smoothing = BiasFreeMean;
+  using Inverse = ExponentialFree<>;
+  using Statistic = ClampedMean<>;
+  using Edge = HalfLevelEdge;
+  using Solver = LeastSquares;
+  using Pixel = std::uint8_t;          ///< cell of the frame's channels
+  using Executor = detail::OneThread;  ///< who works on a frame
+};
+
+/// All that is known of a fingertip before its first frame. What a stage needs that is switched off
+/// is not read.
+template <class Reference>
+struct FingertipOptions {
+  Camera<double> camera;
+  Absorption<double> fluid;
+  Reference reference;  ///< of the free pad, from fit_reference()
+  Index rows = 0;       ///< of a frame, px
+  Index cols = 0;
+  int smoothing_px = 29;
+  ContactTest contact = {};
+  StridedView<const Point3<double>> free_dots_mm = {};  ///< printed dots of the free pad; NaN: none
+  SpatialStickTest stick = {};  ///< noise of the dots in space, and what counts as slip
+  FrictionLimitOptions friction = {};
+  PolynomialForce<> force_of_area = {};                         ///< N, of mm^2
+  PolynomialForce<> force_of_depth = {};                        ///< N, of mm
+  double force_sd_n = 0.1;                                      ///< standard deviation of both, > 0
+  ShearNormalisation<> shear_normalisation = {100, 0.65, 1.7};  ///< by area in mm^2, as printed
+  RadialShear<> shear = {};
+  StridedView<const Point3<double>> rim_mm = {};  ///< where side dots are fixed; one row
+  WrenchOptions<double> wrench = {};
+};
+template <class Reference>
+FingertipOptions(const Camera<double>&, const Absorption<double>&, const Reference&, Index, Index)
+    -> FingertipOptions<Reference>;
+
+/// Red and green channel of a frame, as views.
+template <class Red, class Green>
+struct ColorFrame {
+  Red red;
+  Green green;
+
+  template <grid R, grid G>
+  ColorFrame(const R& of_red, const G& of_green) : red(as_view(of_red)), green(as_view(of_green)) {}
+};
+template <class R, class G>
+ColorFrame(const R&, const G&) -> ColorFrame<decltype(as_view(std::declval<const R&>())),
+                                             decltype(as_view(std::declval<const G&>()))>;
+
+enum class FingertipStatus : std::uint8_t {
+  ok,          ///< every stage has an answer
+  partial,     ///< a stage has none; its own result says why
+  no_contact,  ///< nothing touches the pad
+  refused,     ///< a frame or dots of another size: nothing was computed
+};
+
+/// "ok", "partial", ...
+constexpr const char* name_of(FingertipStatus status) {
+  constexpr std::array<const char*, 4> names = {"ok", "partial", "no contact", "refused"};
+  return names[static_cast<std::size_t>(status)];
+}
+
+/// What a frame says. The result of a stage that is switched off is its own default: no answer.
+struct [[nodiscard]] FingertipResult {
+  FingertipStatus status = FingertipStatus::refused;
+  DepthResult depth;
+  ContactResult contact;
+  ObjectMotionResult<double> motion;
+  SpatialStickResult<double> stick;  ///< by the dots
+  SlipResult<double> slip;           ///< by the dots and friction; feed it to GripControl
+  FusedForce<double> normal;         ///< by look-up
+  ShearResult<double> shear;         ///< by look-up
+  WrenchResult<double> wrench;       ///< six axes
+
+  bool ok() const { return status == FingertipStatus::ok; }
+};
+
+/// Stages of a frame, as they are told to a watch.
+enum class FingertipStage : std::uint8_t {
+  depth,
+  contact,
+  motion,
+  stick,
+  look_up,
+  heights,
+  wrench
+};
+
+}  // namespace v0
+}  // namespace fingerpad
