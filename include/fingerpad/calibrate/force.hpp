@@ -4,9 +4,8 @@
 // Calibration of the forces by look-up, from contacts that a force gauge measured beside the
 // camera: the curves and compensations of normal_force.hpp and the maps of shear.hpp. Least squares
 // by QR, on demand with Huber's weights; with each parameter its covariance, with each fit what it
-// leaves. Samples that do not determine a parameter are refused with its name (parameter_error), as
-// are samples that contradict each other. docs/calibrate/calibration.md tells how to take samples.
-//
+// leaves. Samples that do not determine a parameter, or contradict each other, are refused by name
+// (parameter_error). docs/calibrate/calibration.md tells how to take samples.
 // The standard errors hold for samples with independent errors in the force. Errors in the measure
 // or the displacement bias the fit toward smaller slopes, and samples of one load have common
 // errors: leave_one_load_out tells what to expect of forces that were not calibrated.
@@ -17,7 +16,6 @@
 #include <span>
 #include <string>
 #include <type_traits>
-#include <utility>
 #include <vector>
 
 #include "fingerpad/calibrate/detail/force_checks.hpp"
@@ -100,21 +98,19 @@ CrossValidation<S> leave_one_load_out(std::span<const ForceSample<S>> samples,
       }
     }
   }
-  S sum = S(0), sum_sq = S(0), worst = S(0);
+  S sum = S(0), sum_sq = S(0);
   for (const S& error : result.errors) {
     if (is_finite(error)) {
       const S size = value(error) < 0 ? S(-error) : error;
       sum = sum + size;
       sum_sq = sum_sq + square(error);
-      worst = value(size) > value(worst) ? size : worst;
+      result.worst = value(size) <= value(result.worst) ? result.worst : size;
       ++result.samples;
     }
   }
   if (result.samples > 0) {
-    const S count = S(static_cast<double>(result.samples));
-    result.mean_abs = sum / count;
-    result.rms = sqrt(S(sum_sq / count));
-    result.worst = worst;
+    result.mean_abs = sum / S(static_cast<double>(result.samples));
+    result.rms = sqrt(S(sum_sq / S(static_cast<double>(result.samples))));
   }
   return result;
 }

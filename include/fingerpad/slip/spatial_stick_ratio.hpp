@@ -71,8 +71,7 @@ class SpatialStickRatio {
 
   /// For a grid of rows x cols dots. Refuses bad parameters (parameter_error).
   SpatialStickRatio(Index rows, Index cols, const SpatialStickTest& test = {}) : test_(test) {
-    expects(rows >= 1, "SpatialStickRatio", "rows", static_cast<long long>(rows), ">= 1");
-    expects(cols >= 1, "SpatialStickRatio", "cols", static_cast<long long>(cols), ">= 1");
+    expects_grid_size("SpatialStickRatio", rows, cols);
     expects_valid(test);
     layout_ = {rows, cols};
     noise_ = {S(1 / (test.lateral_mm * test.lateral_mm)), S(1 / (test.depth_mm * test.depth_mm))};

@@ -81,8 +81,7 @@ class StickRatio {
              const Reference& reference = {},
              const Denoising& denoising = {})
       : test_(test), motion_(motion), reference_(reference), denoising_(denoising) {
-    expects(rows >= 1, "StickRatio", "rows", static_cast<long long>(rows), ">= 1");
-    expects(cols >= 1, "StickRatio", "cols", static_cast<long long>(cols), ">= 1");
+    expects_grid_size("StickRatio", rows, cols);
     expects_valid(test);
     expects_valid(motion);
     expects_valid(reference);
