@@ -10,6 +10,7 @@ links.py ROOT --planted  plants one dead end of each kind in a copy, and expects
 2. A path named in a page or in a header's comment exists; but for those of a recording, and those
    with a part in capitals, which stand for any.
 3. A block of code below <!-- PATH --> stands in that file, line by line.
+4. A link to a file of tests with a "name" behind it: that file has a test of this name.
 """
 import re
 import shutil
@@ -23,6 +24,7 @@ BLOCK = re.compile(r"^```.*?^```", re.MULTILINE | re.DOTALL)
 QUOTED = re.compile(r"^<!-- (\S+) -->\n```\w*\n(.*?)^```", re.MULTILINE | re.DOTALL)
 PATH = re.compile(r"(?<![\w/.<>{}*-])((?:[\w.-]+/)+[\w.-]+\.(?:hpp|cpp|py|md|png|csv|cmake))\b")
 OF_A_RECORDING = ("frames", "pictures", "membrane")
+TEST = re.compile(r"\]\(([^)\s]*tests/[^)\s]*\.cpp)\)\s+\"([^\"]+)\"")
 COMMENT = re.compile(r"//[^\n]*")
 
 
@@ -64,12 +66,20 @@ def false_quotes(root, page):
             yield f"not in {path}, or not in this order: {missing}"
 
 
+def missing_tests(file, page):
+    for path, name in TEST.findall(page):
+        test = file.parent / path
+        tests = re.sub(r'"\s*\n\s*"', "", test.read_text()) if test.exists() else ""
+        if not re.search(rf'TEST_CASE\(\s*"{re.escape(name)}"', tests):
+            yield f"no such test in {path}: {name}"
+
+
 def dead_ends(root):
     for file in sorted([root / "README.md", *root.glob("docs/**/*.md"), *root.glob("examples/**/*.md"),
                         *root.glob("tests/**/*.md")]):
         page = file.read_text()
         for found in [*dead_links(root, file, page), *dead_paths(root, file, LINK.sub("", page)),
-                      *false_quotes(root, page)]:
+                      *false_quotes(root, page), *missing_tests(file, page)]:
             yield f"{file.relative_to(root)}: {found}"
     for file in sorted(root.glob("include/**/*.hpp")):
         comments = "\n".join(COMMENT.findall(file.read_text()))
@@ -80,6 +90,7 @@ def dead_ends(root):
 PLANTED = {
     "docs/design.md": ["[a page](no_such_page.md)", "[a heading](design.md#no-such-heading)",
                        "`slip/no_such_header.hpp`",
+                       '[tests](../tests/core/grid.cpp) "no such test"',
                        "<!-- README.md -->\n```cpp\nno_such_line();\n```"],
     "include/fingerpad/core/grid.hpp": ["// See core/no_such_header.hpp."],
 }

@@ -41,13 +41,13 @@ TEST_CASE("published quotient: it is g at every depth", "[published]") {
   for (const double depth_mm : {0.5, 3.0, 8.0, 13.0}) {
     for (const Index col : {28, 40}) {
       const Known k = known(pad, 24, col, depth_mm);
-      CHECK(published::scattering_quotient(pad.fluid, k.pencil, k.depth_mm, k.colour) ==
+      CHECK(published::quotient(pad.fluid, k.pencil, k.colour, k.depth_mm) ==
             Approx(pad.g(24, col)).epsilon(1e-9));
     }
   }
   // 0 / 0 at the plate: E006
   const Known none = known(pad, 24, 28, 0);
-  CHECK_FALSE(is_finite(published::scattering_quotient(pad.fluid, none.pencil, 0.0, none.colour)));
+  CHECK_FALSE(is_finite(published::quotient(pad.fluid, none.pencil, none.colour, 0.0)));
 }
 
 TEST_CASE("published identification: three equations give back the fluid", "[published]") {

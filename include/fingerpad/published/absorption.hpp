@@ -14,28 +14,11 @@
 #include <utility>
 
 #include "fingerpad/core/scalar.hpp"
-#include "fingerpad/depth/absorption.hpp"
+#include "fingerpad/published/depth.hpp"
 
 namespace fingerpad {
 inline namespace v0 {
 namespace published {
-
-/// f(l, b_R, b_G) = g(phi_1) as printed, with E003 to E005 repaired: the quotient, by Q1 and Q2 and
-/// one height h2. 0/0 at l = 0, and few digits left at small c l.
-template <scalar S>
-S scattering_quotient(const Absorption<S>& fluid,
-                      const Pencil<S>& pencil,
-                      const S& depth_mm,
-                      const Colour<S>& colour) {
-  using std::exp;
-  const S &k = pencil.path_factor, &h2 = pencil.height.meridional_mm, &c = fluid.c_red_per_mm;
-  const S q1 = h2 * h2 / k + S(2) * h2 / (c * k * k) + S(2) / (c * c * k * k * k);
-  const S q2 = (depth_mm * depth_mm + S(2) * h2 * depth_mm) / k + S(2) * depth_mm / (c * k * k);
-  const S grown = exp(S(c * k * depth_mm));
-  return S((colour.green * S(exp(S(fluid.c_green_per_mm * k * depth_mm))) -
-            fluid.kappa * colour.red * grown) /
-           (q1 * (S(1) - grown) + q2));
-}
 
 /// A pixel at a known depth. The pencil of published::SingleHeight.
 template <scalar S = double>
@@ -74,12 +57,10 @@ Triple<S> residuals(const published::KnownDepth<S>& reference,
                     const std::array<published::KnownDepth<S>, 3>& at,
                     const Triple<S>& p) {
   const Absorption<S> fluid{p[0], p[1], p[2]};
-  const S g =
-      published::scattering_quotient(fluid, reference.pencil, reference.depth_mm, reference.colour);
+  const S g = published::quotient(fluid, reference.pencil, reference.colour, reference.depth_mm);
   Triple<S> r = p;
   for (std::size_t i = 0; i < 3; ++i) {
-    r[i] = S(published::scattering_quotient(fluid, at[i].pencil, at[i].depth_mm, at[i].colour) / g -
-             S(1));
+    r[i] = S(published::quotient(fluid, at[i].pencil, at[i].colour, at[i].depth_mm) / g - S(1));
   }
   return r;
 }
