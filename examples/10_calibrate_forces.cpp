@@ -22,7 +22,7 @@
 using Sample = fingerpad::ForceSample<double>;
 using Samples = std::span<const Sample>;
 using LeftOut = fingerpad::CrossValidation<double>;
-constexpr int degree = 3;  // of the normal force
+constexpr int curve_degree = 3;  // of the normal force
 
 /// What forces are looked up by.
 struct Measure {
@@ -79,7 +79,7 @@ void print(const char* unit, double residual, const LeftOut& left_out) {
 }
 
 struct Normal {
-  fingerpad::NormalForceFit<fingerpad::PolynomialForce<degree>> fit;
+  fingerpad::NormalForceFit<fingerpad::PolynomialForce<curve_degree>> fit;
   LeftOut left_out;
 };
 
@@ -89,7 +89,7 @@ Normal fit_normal(Samples samples, const Measure& by) {
     fingerpad::FitOptions options;
     options.displaced = options.rotated = compensated;
     const auto fit = [&](Samples some) {
-      return fingerpad::fit_normal_force<degree>(some, options);
+      return fingerpad::fit_normal_force<curve_degree>(some, options);
     };
     const auto error = [](const auto& model, const Sample& s) {
       const fingerpad::NormalForce force(model.curve, model.compensation);
@@ -102,7 +102,7 @@ Normal fit_normal(Samples samples, const Measure& by) {
   const auto& curve = best.fit.curve;
   std::printf("normal force by %s: c1 m + c2 m^2 + c3 m^3 N, m from %.4g to %.4g %s\n", by.name,
               curve.from, curve.to, by.unit);
-  for (std::size_t k = 1; k <= degree; ++k) {
+  for (std::size_t k = 1; k <= curve_degree; ++k) {
     const char name[] = {'c', static_cast<char>('0' + k), '\0'};
     print(name, curve.coefficients[k], std::sqrt(best.fit.errors.covariance[k][k]));
   }
@@ -153,7 +153,7 @@ Shear fit_shear(Samples samples, const Measure& by) {
 void print_section(const Normal& normal, const Measure& by) {
   const auto& fit = normal.fit;
   std::printf("  \"by_%s\": { \"coefficients\": [", by.name);
-  for (std::size_t k = 0; k <= degree; ++k) {
+  for (std::size_t k = 0; k <= curve_degree; ++k) {
     std::printf("%s%.6g", k == 0 ? "" : ", ", fit.curve.coefficients[k]);
   }
   std::printf("], \"from_%s\": %.4g, \"to_%s\": %.4g,\n", by.unit, fit.curve.from, by.unit,
