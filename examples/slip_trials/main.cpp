@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
-// slip_trials: how well the stick ratio tells recordings with slip from recordings without, beside
-// the simplest measure there is. See --help.
+// slip_trials: how well the imprint and the stick ratio tell recordings with slip from recordings
+// without, beside the simplest measure there is. See --help.
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "events.hpp"
 #include "measures.hpp"
 #include "replay/io/failure.hpp"
 #include "trials.hpp"
@@ -64,6 +65,44 @@ void print_trial(const Scored& scored, const std::vector<View>& views) {
   std::printf("\n");
 }
 
+/// Slip as events, where the contact is known: of the first view of each trial.
+void print_events_of(const std::vector<Trial>& trials,
+                     const std::vector<std::vector<View>>& views) {
+  const auto events = [&](const auto& measure_of) {
+    std::vector<slip_trials::Event> found;
+    for (std::size_t k = 0; k < trials.size(); ++k) {
+      if (!views[k].empty() && !views[k].front().slide.evidence.empty()) {
+        const View& view = views[k].front();
+        found.push_back({trials[k].object, trials[k].slips, measure_of(view), view.slide.end});
+      }
+    }
+    return found;
+  };
+  const auto print = [&](const char* name, const auto& measure_of, double own) {
+    const auto found = events(measure_of);
+    if (!found.empty()) {
+      slip_trials::print_events(name, found, own);
+    }
+  };
+  constexpr double none = std::numeric_limits<double>::quiet_NaN();
+  print(
+      "imprint past dots, or area lost", [](const View& v) { return v.slide.evidence; }, 1);
+  print(
+      "imprint past dots", [](const View& v) { return v.slide.slide; }, none);
+  print(
+      "area lost", [](const View& v) { return v.slide.lost; }, none);
+  print(
+      "recoil of the dots", [](const View& v) { return v.slide.recoil; }, none);
+  const auto slipping = [](const View& view) {
+    std::vector<double> share;
+    for (const double ratio : view.ratio) {
+      share.push_back(1 - ratio);
+    }
+    return share;
+  };
+  print("stick ratio, lowest", slipping, none);
+}
+
 int run(const std::string& folder) {
   constexpr int all_frames = std::numeric_limits<int>::max();
   const std::vector<Trial> trials = slip_trials::trials_of(folder);
@@ -72,7 +111,7 @@ int run(const std::string& folder) {
   for (const Trial& trial : trials) {
     views.emplace_back();
     for (const auto& file : trial.views) {
-      View view = slip_trials::look_at(file);
+      View view = slip_trials::look_at(file, slip_trials::free_frames_for(trial, trials));
       if (view.size() == 0) {
         std::printf("left out: %s: %s\n", file.c_str(), view.fault.c_str());
         continue;
@@ -106,6 +145,7 @@ int run(const std::string& folder) {
   print_roc_area(
       "share of dots > 2 px off, high", scored, [](const Scored& s) { return s.whole.moved_share; },
       [](const Scored& s) { return s.early.moved_share; });
+  print_events_of(trials, views);
   return 0;
 }
 
@@ -113,10 +153,14 @@ int run(const std::string& folder) {
 
 int main(int argc, char** argv) {
   CLI::App app(
-      "The stick ratio of labelled recordings of pads with dots. FOLDER holds either labels.dat\n"
-      "(lines of: height ok|fail 0|1 start end event trial) and a folder of frames for each trial\n"
-      "whose name begins with the trial's, or the folder slip/ and others, in which every folder\n"
-      "with videos or frames is a trial; its videos are views of it.\n"
+      "Slip in labelled recordings of pads with dots. FOLDER holds labels.dat (lines of: height\n"
+      "ok|success|fail|slip 0|1 start end event trial) and a folder of frames for each trial "
+      "whose\n"
+      "name begins with the trial's; or this for several objects, as OBJECT_result.dat and the\n"
+      "folder OBJECT; or the folder slip/ and others, in which every folder with videos or frames\n"
+      "is a trial; its videos are views of it. Another label is refused.\n"
+      "The free pad is shown by the frames in FOLDER/free; without it, by the last frames of\n"
+      "slipping trials, of other objects where there are any, as far as they agree.\n"
       "Dots are found as replay finds them, and each that is found counts as in contact.\n"
       "Columns: frames of the first view; new: answers of the stick ratio; ratio: mean of the new\n"
       "answers (1 where there is none: nothing was seen to slip), lowest; noise: the same as "
@@ -124,7 +168,11 @@ int main(int argc, char** argv) {
       "with slip_px set by the noise of the first five frames, where that is above the default;\n"
       "moved: mean share of dots that are more than 2 px off the median motion since the first\n"
       "frame; early: the same in as many first frames as the shortest recording has. No measure\n"
-      "depends on how long a recording is.");
+      "depends on how long a recording is.\n"
+      "Then slip as events: warned is beyond the threshold before the contact is gone (less than "
+      "a\n"
+      "tenth of its largest area is left), lead the median frames from there to the loss, false a\n"
+      "hold beyond it. Thresholds are what 95 % of the other objects' holds stay below.");
   std::string folder;
   app.add_option("FOLDER", folder, "the labelled recordings")->required();
   try {

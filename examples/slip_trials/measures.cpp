@@ -91,7 +91,12 @@ std::vector<double> ratios(const std::vector<DotGrid>& frames, const fingerpad::
   return ratio;
 }
 
-std::vector<DotGrid> follow(const std::filesystem::path& file) {
+struct Followed {
+  std::vector<cv::Mat> images;
+  std::vector<DotGrid> dots;
+};
+
+Followed follow(const std::filesystem::path& file) {
   replay::Recording recording;
   recording.sensor.dots_only = true;
   recording.frames = std::filesystem::is_directory(file) ? replay::FrameSource::of_folder(file)
@@ -99,12 +104,13 @@ std::vector<DotGrid> follow(const std::filesystem::path& file) {
   recording.frames.seek(0);
   recording.reference = recording.frames.next();
   replay::DotSource dots = replay::DotSource::of_dots_only(file, recording);
-  std::vector<DotGrid> frames;
+  Followed followed;
   recording.frames.seek(0);
   for (int frame = 0; frame < recording.frames.size(); ++frame) {
-    frames.push_back(dots.of(frame, next_frame(recording.frames, recording.reference.size())));
+    followed.images.push_back(next_frame(recording.frames, recording.reference.size()));
+    followed.dots.push_back(dots.of(frame, followed.images.back()));
   }
-  return frames;
+  return followed;
 }
 
 /// Mean and number of the values among the first ones; the lowest of them.
@@ -135,16 +141,20 @@ double or_else(double value, double otherwise) {
 
 }  // namespace
 
-View look_at(const std::filesystem::path& file) {
+View look_at(const std::filesystem::path& file, const std::vector<cv::Mat>& free_frames) {
   View view;
   try {
-    const std::vector<DotGrid> frames = follow(file);
+    const Followed followed = follow(file);
+    const std::vector<DotGrid>& frames = followed.dots;
     fingerpad::StickTest test;
     view.ratio = ratios(frames, test);
     test.slip_px = (std::max)(test.slip_px, slip_px_of(noise_px(frames)));
     view.ratio_by_noise = ratios(frames, test);
     for (const DotGrid& dots : frames) {
       view.moved_share.push_back(share_far_off(frames.front(), dots));
+    }
+    if (!free_frames.empty()) {
+      view.slide = slide_in(followed.images, frames, free_frames);
     }
   } catch (const replay::Failure& failure) {
     view = {};

@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "slide.hpp"
+
 namespace slip_trials {
 
 /// One camera's recording. NaN: no new answer, or no dots.
@@ -13,13 +15,15 @@ struct View {
   std::vector<double> ratio;           ///< the stick ratio with the default thresholds
   std::vector<double> ratio_by_noise;  ///< with slip_px from the noise of the first frames
   std::vector<double> moved_share;     ///< of dots more than 2 px off the median motion
+  SlideSeries slide;                   ///< empty where no frame of the free pad is known
   std::string fault;                   ///< why there is nothing
 
   int size() const { return static_cast<int>(ratio.size()); }
 };
 
-/// Finds the dots in a video or a folder of frames and follows them to its end.
-View look_at(const std::filesystem::path& file);
+/// Finds the dots in a video or a folder of frames and follows them to its end; the contact too,
+/// where there are frames of the free pad.
+View look_at(const std::filesystem::path& file, const std::vector<cv::Mat>& free_frames);
 
 /// Means over the frames that have a value, then over the views.
 struct Measures {

@@ -7,6 +7,7 @@
 #include <fstream>
 #include <set>
 #include <sstream>
+#include <tuple>
 
 #include "replay/io/failure.hpp"
 
@@ -46,8 +47,20 @@ std::vector<fs::path> views_in(const fs::path& folder) {
   return videos.empty() && pictures ? std::vector<fs::path>{folder} : videos;
 }
 
-std::vector<Trial> by_labels(const fs::path& folder) {
-  std::ifstream labels(folder / "labels.dat");
+bool says_slip(const fs::path& file, const std::string& label) {
+  const bool slip = label == "fail" || label == "slip";
+  const bool hold = label == "ok" || label == "success";
+  if (!slip && !hold) {
+    replay::fail(file, "unknown label \"" + label + "\" (known: ok, success, fail, slip)");
+  }
+  return slip;
+}
+
+/// The trials that `file` names, in folders beside them or in `folder`.
+std::vector<Trial> by_labels(const fs::path& file,
+                             const fs::path& folder,
+                             const std::string& object) {
+  std::ifstream labels(file);
   std::vector<Trial> trials;
   for (std::string line; std::getline(labels, line);) {
     std::istringstream words(line);
@@ -61,10 +74,30 @@ std::vector<Trial> by_labels(const fs::path& folder) {
     if (!(words >> height >> outcome >> number >> start >> end >> event >> name)) {
       continue;
     }
+    const bool slips = says_slip(file, outcome);
     for (const fs::path& entry : sorted_entries(folder)) {
       if (fs::is_directory(entry) && entry.filename().string().rfind(name, 0) == 0) {
-        trials.push_back({entry.filename().string(), outcome != "ok", views_in(entry)});
+        trials.push_back({object, entry.filename().string(), slips, views_in(entry), {}});
       }
+    }
+  }
+  return trials;
+}
+
+/// OBJECT_result.dat beside the folder OBJECT, for each object.
+std::vector<Trial> by_objects(const fs::path& folder) {
+  const std::string ending = "_result.dat";
+  std::vector<Trial> trials;
+  for (const fs::path& file : sorted_entries(folder)) {
+    const std::string name = file.filename().string();
+    if (name.size() <= ending.size() ||
+        name.compare(name.size() - ending.size(), ending.size(), ending) != 0) {
+      continue;
+    }
+    const std::string object = name.substr(0, name.size() - ending.size());
+    if (fs::is_directory(folder / object)) {
+      const auto of_object = by_labels(file, folder / object, object);
+      trials.insert(trials.end(), of_object.begin(), of_object.end());
     }
   }
   return trials;
@@ -73,7 +106,7 @@ std::vector<Trial> by_labels(const fs::path& folder) {
 std::vector<Trial> by_folders(const fs::path& folder) {
   std::vector<Trial> trials;
   for (const fs::path& label : sorted_entries(folder)) {
-    if (!fs::is_directory(label)) {
+    if (!fs::is_directory(label) || label.filename() == "free") {
       continue;
     }
     std::vector<fs::path> places = {label};
@@ -84,7 +117,7 @@ std::vector<Trial> by_folders(const fs::path& folder) {
     }
     for (const fs::path& place : places) {
       const std::string name = place.lexically_relative(label).generic_string();
-      trials.push_back({name, label.filename() == "slip", views_in(place)});
+      trials.push_back({"", name, label.filename() == "slip", views_in(place), {}});
     }
   }
   return trials;
@@ -96,16 +129,24 @@ std::vector<Trial> trials_of(const fs::path& folder) {
   if (!fs::is_directory(folder)) {
     replay::fail(folder, "there is no such folder");
   }
+  const fs::path labels = folder / "labels.dat";
   std::vector<Trial> trials =
-      fs::exists(folder / "labels.dat") ? by_labels(folder) : by_folders(folder);
+      fs::exists(labels) ? by_labels(labels, folder, "") : by_objects(folder);
+  if (trials.empty()) {
+    trials = by_folders(folder);
+  }
+  for (Trial& trial : trials) {
+    trial.free = fs::is_directory(folder / "free") ? folder / "free" : fs::path();
+  }
   trials.erase(std::remove_if(trials.begin(), trials.end(),
                               [](const Trial& trial) { return trial.views.empty(); }),
                trials.end());
   std::sort(trials.begin(), trials.end(), [](const Trial& a, const Trial& b) {
-    return a.slips != b.slips ? a.slips : a.name < b.name;
+    return a.slips != b.slips ? a.slips : std::tie(a.object, a.name) < std::tie(b.object, b.name);
   });
   if (trials.empty()) {
-    replay::fail(folder, "holds neither a labels.dat with trials nor folders of them");
+    replay::fail(folder,
+                 "holds no labels.dat or OBJECT_result.dat with trials, nor folders of them");
   }
   return trials;
 }

@@ -1,0 +1,164 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+#include "slide.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "fingerpad/adapt/opencv.hpp"
+#include "fingerpad/contact/contact_by_difference.hpp"
+#include "fingerpad/slip/contact_slide.hpp"
+#include "fingerpad/slip/recoil.hpp"
+#include "replay/io/recording.hpp"
+
+namespace slip_trials {
+namespace {
+
+using replay::DotGrid;
+using Colours = cv::Mat_<cv::Vec3b>;
+using Contact = fingerpad::ContactByDifference<3>;
+
+constexpr std::size_t free_count = 3;  // of the candidates, those that agree best
+constexpr double gone = 0.1;           // of the largest area so far: less is no contact
+
+double median(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+double pitch_px(const DotGrid& dots) {
+  std::vector<double> distances;
+  for (int i = 0; i < dots.rows; ++i) {
+    for (int j = 0; j < dots.cols; ++j) {
+      for (const cv::Point beside : {cv::Point(j + 1, i), cv::Point(j, i + 1)}) {
+        if (beside.x < dots.cols && beside.y < dots.rows) {
+          const double distance = cv::norm(dots(i, j) - dots(beside));
+          if (std::isfinite(distance)) {
+            distances.push_back(distance);
+          }
+        }
+      }
+    }
+  }
+  return distances.empty() ? std::numeric_limits<double>::quiet_NaN() : median(distances);
+}
+
+cv::Mat last_frame(const std::filesystem::path& folder) {
+  auto frames = std::filesystem::is_directory(folder) ? replay::FrameSource::of_folder(folder)
+                                                      : replay::FrameSource::of_video(folder);
+  frames.seek(frames.size() - 1);
+  return frames.next();
+}
+
+/// Root mean square over the frame of what `other` differs from `free`.
+double difference(const cv::Mat& free, const cv::Mat& other) {
+  const Contact contact(std::vector<Colours>{free});
+  auto workspace = contact.workspace();
+  cv::Mat_<std::uint8_t> mask(free.size());
+  const Colours frame = other;
+  if (!contact(frame, mask, workspace).ok()) {
+    return std::numeric_limits<double>::infinity();
+  }
+  double sum = 0;
+  double count = 0;
+  const auto cells = workspace.difference();
+  for (fingerpad::Index i = 0; i < cells.rows(); ++i) {
+    for (fingerpad::Index j = 0; j < cells.cols(); ++j) {
+      if (std::isfinite(cells(i, j))) {
+        sum += static_cast<double>(cells(i, j)) * static_cast<double>(cells(i, j));
+        ++count;
+      }
+    }
+  }
+  return std::sqrt(sum / count);
+}
+
+std::vector<cv::Mat> last_frames(const Trial& trial, const std::vector<Trial>& trials) {
+  const auto is_other = [&](const Trial& other) { return other.object != trial.object; };
+  const bool other_objects = std::any_of(trials.begin(), trials.end(), [&](const Trial& other) {
+    return other.slips && is_other(other);
+  });
+  std::vector<cv::Mat> frames;
+  for (const Trial& other : trials) {
+    if (other.slips && (other_objects ? is_other(other) : other.name != trial.name)) {
+      frames.push_back(last_frame(other.views.front()));
+    }
+  }
+  return frames;
+}
+
+/// Those nearest to the one that the others are nearest to: a trial may end before the pad is free.
+std::vector<cv::Mat> agreeing(const std::vector<cv::Mat>& frames) {
+  double best = std::numeric_limits<double>::infinity();
+  std::vector<std::pair<double, std::size_t>> order;
+  for (std::size_t a = 0; a < frames.size(); ++a) {
+    std::vector<double> all;
+    std::vector<std::pair<double, std::size_t>> from;
+    for (std::size_t b = 0; b < frames.size(); ++b) {
+      all.push_back(a == b ? 0.0 : difference(frames[a], frames[b]));
+      from.emplace_back(all.back(), b);
+    }
+    const double typical = median(all);
+    if (typical < best) {
+      best = typical;
+      order = from;
+    }
+  }
+  std::sort(order.begin(), order.end());
+  std::vector<cv::Mat> chosen;
+  for (std::size_t k = 0; k < (std::min)(free_count, order.size()); ++k) {
+    chosen.push_back(frames[order[k].second]);
+  }
+  return chosen;
+}
+
+}  // namespace
+
+std::vector<cv::Mat> free_frames_for(const Trial& trial, const std::vector<Trial>& trials) {
+  if (trial.free.empty()) {
+    return agreeing(last_frames(trial, trials));
+  }
+  auto source = replay::FrameSource::of_folder(trial.free);
+  source.seek(0);
+  std::vector<cv::Mat> frames;
+  while (static_cast<int>(frames.size()) < source.size()) {
+    frames.push_back(source.next());
+  }
+  return frames;
+}
+
+SlideSeries slide_in(const std::vector<cv::Mat>& frames,
+                     const std::vector<DotGrid>& dots,
+                     const std::vector<cv::Mat>& free_frames) {
+  const Contact contact(std::vector<Colours>(free_frames.begin(), free_frames.end()));
+  auto workspace = contact.workspace();
+  const auto cells = workspace.difference();
+  const double pitch = pitch_px(dots.front());
+  const fingerpad::ContactSlide<> slide(cells.rows(), cells.cols(), dots.front().rows,
+                                        dots.front().cols, {.pitch_px = pitch});
+  auto state = slide.start();
+  const fingerpad::Recoil<> recoil(dots.front(), {.pitch_px = pitch});
+  auto recoil_state = recoil.start();
+  cv::Mat_<std::uint8_t> mask(frames.front().size());
+  SlideSeries series;
+  series.end = frames.size();
+  fingerpad::Index largest = 0;
+  for (std::size_t k = 0; k < frames.size(); ++k) {
+    const Colours frame = frames[k];
+    const auto found = contact(frame, mask, workspace);
+    const auto slid = slide(workspace.difference(), workspace.contact(), dots[k], state);
+    series.slide.push_back(static_cast<double>(slid.slide));
+    series.lost.push_back(static_cast<double>(slid.lost));
+    series.evidence.push_back(static_cast<double>(slid.evidence));
+    series.recoil.push_back(static_cast<double>(recoil(dots[k], recoil_state).recoil));
+    largest = (std::max)(largest, found.contact_px);
+    if (static_cast<double>(found.contact_px) < gone * static_cast<double>(largest)) {
+      series.end = (std::min)(series.end, k);
+    }
+  }
+  return series;
+}
+
+}  // namespace slip_trials
