@@ -106,7 +106,7 @@ bool look(const Recording& recording, double quiet_until_s) {
     noise.push_back(calibration.fit());
   }
   for (std::size_t f = 0; f < Fingers; ++f) {
-    options.fingers[f] = {rows, cols, noise[f].view()};
+    options.arrays[f] = {rows, cols, noise[f].view()};
   }
   FoamHand<Fingers, BothRules> hand(options);
 

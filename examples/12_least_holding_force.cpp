@@ -20,7 +20,7 @@ int main() {
   grip::FoamFingers hand(object, 1);
 
   fingerpad::FoamHandOptions<2> options;
-  options.fingers.fill({object.rows, object.cols});
+  options.arrays.fill({object.rows, object.cols});
   options.taxels.pitch_mm = object.pitch_mm;
   options.taxels.sample_period_s = 1 / object.rate_hz;
   options.taxels.noise = object.noise_counts;

@@ -24,6 +24,7 @@
 #include "fingerpad/depth/neighbour_light.hpp"
 #include "fingerpad/foam/holding_force.hpp"
 #include "fingerpad/foam/preslip.hpp"
+#include "fingerpad/foam/several_arrays.hpp"
 #include "fingerpad/foam/taxel_features.hpp"
 #include "fingerpad/force/normal_force.hpp"
 #include "fingerpad/force/pad_heights.hpp"

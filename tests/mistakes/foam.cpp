@@ -184,7 +184,7 @@ TEST_CASE("mistakes with foam fingers", "[mistakes]") {
   for (const Mistake& mistake : mistakes()) {
     CAPTURE(mistake.name);
     Options options;
-    options.fingers.fill({array_rows, array_cols});
+    options.arrays.fill({array_rows, array_cols});
     if (mistake.options) {
       mistake.options(options);
     }

@@ -18,7 +18,7 @@ struct BothRules : FoamHandMethods {
 
 TEST_CASE("foam hand: a sample allocates nothing", "[foam_hand]") {
   FoamHandOptions<3> options;
-  options.fingers = {FoamArray{4, 3}, FoamArray{4, 3}, FoamArray{4, 3}};
+  options.arrays = {FoamArray{4, 3}, FoamArray{4, 3}, FoamArray{4, 3}};
   FoamHand<3, BothRules> hand(options);
   test::Image<double> taxels(4, 3, 100);
   int preslips = 0;

@@ -4,7 +4,9 @@
 // samples that are refused.
 #include "fingerpad/pipeline/foam_hand.hpp"
 
+#include <algorithm>
 #include <array>
+#include <iterator>
 #include <string>
 #include <type_traits>
 #include <vector>
@@ -27,6 +29,12 @@ struct BothRules : FoamHandMethods {
 struct NoRules : FoamHandMethods {
   static constexpr bool has_grasp_lift = false;
 };
+struct TwoHalves : BothRules {
+  static constexpr std::size_t arrays = 2;
+};
+struct FiveSides : FoamHandMethods {
+  static constexpr std::size_t arrays = 5;
+};
 struct InFloat : BothRules {
   using Scalar = float;
 };
@@ -45,7 +53,7 @@ test::FoamScene slipping() {
 template <class S = double>
 FoamHandOptions<2, S> options() {
   FoamHandOptions<2, S> o;
-  o.fingers = {FoamArray{16, 4}, FoamArray{16, 4}};
+  o.arrays = {FoamArray{16, 4}, FoamArray{16, 4}};
   o.taxels.sample_period_s = S(period_s);
   o.taxels.noise = S(4);
   return o;
@@ -157,7 +165,7 @@ TEST_CASE("foam hand: in float, and with a noise for each taxel", "[foam_hand]")
   FoamHand<2, BothRules> in_double(options());
   const Image<double> noise(16, 4, 4.0);
   auto each = options();
-  each.fingers[0].noise = as_view(noise);
+  each.arrays[0].noise = as_view(noise);
   FoamHand<2, BothRules> with_noise(each);
   const auto a = run(in_float);
   const auto b = run(in_double);
@@ -168,6 +176,73 @@ TEST_CASE("foam hand: in float, and with a noise for each taxel", "[foam_hand]")
   }
 }
 
+TEST_CASE("foam hand: a finger of two halves is the whole finger", "[foam_hand]") {
+  FoamHand<2, BothRules> whole(options());
+  FoamHandOptions<4> of_halves;
+  of_halves.taxels = options().taxels;
+  const double below_mm = 8 * of_halves.taxels.pitch_mm;
+  of_halves.arrays = {FoamArray{8, 4}, FoamArray{8, 4, {}, {0, below_mm}}, FoamArray{8, 4},
+                      FoamArray{8, 4, {}, {0, below_mm}}};
+  FoamHand<2, TwoHalves> halves(of_halves);
+  test::FoamSignal signal(slipping(), 1);
+  int preslips = 0;
+  for (int k = 0; k < 200; ++k) {
+    const double time_s = k * period_s;
+    const std::array readings{signal.finger(0, time_s), signal.finger(1, time_s)};
+    const auto half = [&](std::size_t f, Index first) {
+      return StridedView<const double>(&readings[f](first, 0), 8, 4, 4);
+    };
+    const auto a = whole(readings, time_s);
+    const auto b = halves(std::array{half(0, 0), half(0, 8), half(1, 0), half(1, 8)}, time_s);
+    CHECK(a.status == b.status);
+    CHECK(same(a.grasp_lift, b.grasp_lift));
+    CHECK(same(a.grasp_optimise, b.grasp_optimise));
+    for (std::size_t f = 0; f < 2; ++f) {
+      CHECK(a.fingers[f].status == b.fingers[f].status);
+      CHECK(a.fingers[f].location == b.fingers[f].location);
+      CHECK(a.fingers[f].vibration_count == b.fingers[f].vibration_count);
+      CHECK(a.fingers[f].center_x_mm == Approx(b.fingers[f].center_x_mm).epsilon(1e-12));
+      CHECK(a.fingers[f].center_y_mm == Approx(b.fingers[f].center_y_mm).epsilon(1e-12));
+      CHECK(a.fingers[f].sum == Approx(b.fingers[f].sum).epsilon(1e-12));
+      CHECK(whole.vibrating(f).size() ==
+            halves.vibrating(2 * f).size() + halves.vibrating(2 * f + 1).size());
+    }
+    preslips += b.status == PreslipStatus::preslip ? 1 : 0;
+  }
+  CHECK(preslips > 0);
+}
+
+TEST_CASE("foam hand: the paper's finger of 204 elements, of which one side is touched",
+          "[foam_hand]") {
+  FoamHandOptions<10> o;
+  o.taxels = options().taxels;
+  for (std::size_t f = 0; f < 2; ++f) {
+    const FoamArray sides[] = {{16, 4}, {16, 4}, {16, 2}, {16, 2}, {6, 2}};
+    std::copy(std::begin(sides), std::end(sides), o.arrays.begin() + std::ptrdiff_t(5 * f));
+  }
+  FoamHand<2, FiveSides> hand(o);
+  test::FoamSignal signal(slipping(), 1);
+  const Image<double> plan(16, 4, 0.0), edge(16, 2, 0.0), tip(6, 2, 0.0), other(2, 6, 0.0);
+  int preslips = 0;
+  for (int k = 0; k < 200; ++k) {
+    const double time_s = k * period_s;
+    const Image<double> left = signal.finger(0, time_s), right = signal.finger(1, time_s);
+    const auto felt = hand(std::array{as_view(left), as_view(plan), as_view(edge), as_view(edge),
+                                      as_view(tip), as_view(plan), as_view(right), as_view(edge),
+                                      as_view(edge), as_view(k == 150 ? other : tip)},
+                           time_s);
+    CHECK((felt.status == PreslipStatus::cannot_tell) == (k < 15 || k == 150));
+    preslips += felt.status == PreslipStatus::preslip ? 1 : 0;
+    if (k == 199) {
+      CHECK(felt.fingers[0].location < 64);
+      CHECK(felt.fingers[1].location >= 64);
+      CHECK(felt.fingers[1].location < 128);
+      CHECK(felt.fingers[0].frozen == 64 + 32 + 32 + 12);
+    }
+  }
+  CHECK(preslips > 0);
+}
+
 TEST_CASE("foam hand: bad parameters are refused by name", "[foam_hand]") {
   const auto said = [](auto change) {
     auto o = options();
@@ -176,9 +251,9 @@ TEST_CASE("foam hand: bad parameters are refused by name", "[foam_hand]") {
   };
   const Image<double> noise(4, 16, 4.0);
   CHECK(said([](auto&) {}) == "accepted");
-  CHECK(said([](auto& o) { o.fingers[1].rows = 0; }) ==
+  CHECK(said([](auto& o) { o.arrays[1].rows = 0; }) ==
         "TaxelFeatures: rows = 0, must be in [1, 4096]");
-  CHECK(said([&](auto& o) { o.fingers[1].noise = as_view(noise); }) ==
+  CHECK(said([&](auto& o) { o.arrays[1].noise = as_view(noise); }) ==
         "FoamArray: noise.rows() = 4, must be 0, or noise as large as the array");
   CHECK(said([](auto& o) { o.taxels.window = 3; }) ==
         "TaxelOptions: window = 3, must be in [4, 4096]");

@@ -93,9 +93,9 @@ FoamStep::Hand FoamStep::hand_of(const FoamRecording& recording,
   options.rules = recording.sensor.rules;
   for (std::size_t f = 0; f < Fingers; ++f) {
     const auto size = recording.finger(0, static_cast<int>(f));
-    options.fingers[f] = {size.rows(),
-                          size.cols(),
-                          {noise[f].deviations.data(), size.rows(), size.cols(), size.cols()}};
+    options.arrays[f] = {size.rows(),
+                         size.cols(),
+                         {noise[f].deviations.data(), size.rows(), size.cols(), size.cols()}};
   }
   return [&recording, hand = fingerpad::FoamHand<Fingers, Methods>(options)](int sample,
                                                                              FoamRow& row) mutable {

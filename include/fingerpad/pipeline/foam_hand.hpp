@@ -4,9 +4,9 @@
 // Readings of foam fingers in, pre-slip out: the features of each finger and the rules over all of
 // them, by one object. It puts the methods of foam/ together and adds none.
 //
-//   FoamHand<2> hand(options);                       // takes all memory, refuses bad parameters
-//   auto felt = hand({left, right}, time_s);         // every sample
-//   if (felt.status == PreslipStatus::preslip) { ... }
+//   FoamHand<2> hand(options);                           // takes all memory, refuses bad
+//   parameters auto felt = hand(std::array{left, right}, time_s);   // every sample if (felt.status
+//   == PreslipStatus::preslip) { ... }
 #include <algorithm>
 #include <array>
 #include <cstddef>
@@ -15,8 +15,10 @@
 
 #include "fingerpad/core/expects.hpp"
 #include "fingerpad/core/grid.hpp"
+#include "fingerpad/core/point.hpp"
 #include "fingerpad/core/scalar.hpp"
 #include "fingerpad/foam/preslip.hpp"
+#include "fingerpad/foam/several_arrays.hpp"
 #include "fingerpad/foam/taxel_features.hpp"
 
 namespace fingerpad {
@@ -31,21 +33,25 @@ struct FoamHandMethods {
   static constexpr bool has_grasp_lift = true;       ///< on any finger: take this by default
   static constexpr bool has_grasp_optimise = false;  ///< on all fingers alike, as in the paper's
                                                      ///< first experiment
+  static constexpr std::size_t arrays = 1;           ///< of each finger
   using Waves = ZeroCrossings;
   using Scalar = double;
 };
 
-/// The array of one finger.
+/// One array of a finger.
 struct FoamArray {
   Index rows = 0;
   Index cols = 0;
   StridedView<const double> noise = {};  ///< standard deviation of each taxel at rest; NaN: dead.
                                          ///< Empty: that of the options for all
+  Point2<double> place_mm = {0, 0};  ///< of its first taxel, in a plan of the finger with its sides
+                                     ///< unrolled
 };
 
-template <std::size_t Fingers = 2, scalar S = double>
+/// All that is known of a hand before its first sample.
+template <std::size_t Arrays = 2, scalar S = double>
 struct FoamHandOptions {
-  std::array<FoamArray, Fingers> fingers = {};
+  std::array<FoamArray, Arrays> arrays = {};  ///< those of the first finger, then of the next
   TaxelOptions<S> taxels = {};
   PreslipOptions<S> rules = {};
 };
@@ -68,26 +74,32 @@ template <std::size_t Fingers = 2, class Methods = FoamHandMethods>
 class FoamHand {
   using S = typename Methods::Scalar;
   using Features = TaxelFeatures<typename Methods::Waves, S>;
+  static constexpr std::size_t arrays_each = Methods::arrays;
+  static constexpr std::size_t all_arrays = Fingers * arrays_each;
 
  public:
+  using Options = FoamHandOptions<all_arrays, S>;
   using Result = FoamHandResult<Fingers, S>;
 
   /// Refuses bad parameters (parameter_error).
-  explicit FoamHand(const FoamHandOptions<Fingers, S>& options)
-      : lift_(options.rules), optimise_(options.rules) {
-    for (const FoamArray& array : options.fingers) {
+  explicit FoamHand(const Options& options) : lift_(options.rules), optimise_(options.rules) {
+    for (std::size_t k = 0; k < all_arrays; ++k) {
+      const FoamArray& array = options.arrays[k];
       features_.push_back(features_of(array, options.taxels));
       windows_.push_back(features_.back().start());
+      auto& finger = fingers_[k / arrays_each];
+      finger.taxels[k % arrays_each] = array.rows * array.cols;
+      finger.places_mm[k % arrays_each] = {S(array.place_mm.x), S(array.place_mm.y)};
     }
   }
 
-  /// One sample: what each finger reads, in the order of the options, and when it was received. A
+  /// One sample: what each array reads, in the order of the options, and when it was received. A
   /// sample that a finger refuses (its size, its time) is none for the rules.
   template <grid Readings>
-  Result operator()(const std::array<Readings, Fingers>& readings, double time_s) {
+  Result operator()(const std::array<Readings, all_arrays>& readings, double time_s) {
     Result felt;
     for (std::size_t f = 0; f < Fingers; ++f) {
-      felt.fingers[f] = features_[f](readings[f], time_s, windows_[f]);
+      felt.fingers[f] = finger(f, readings, time_s);
     }
     if constexpr (Methods::has_grasp_lift || Methods::has_grasp_optimise) {
       if (std::none_of(felt.fingers.begin(), felt.fingers.end(), is_refused)) {
@@ -98,6 +110,9 @@ class FoamHand {
     }
     return felt;
   }
+
+  /// All taxels of an array that vibrate in the newest sample.
+  auto vibrating(std::size_t array) const { return windows_[array].vibrating(); }
 
   /// Forgets all samples: the next one is the first.
   void reset() {
@@ -132,6 +147,28 @@ class FoamHand {
   template <bool IsOn, class Rule>
   using Stage = std::conditional_t<IsOn, RuleStage<Rule>, NoStage>;
 
+  /// Where the arrays of a finger are.
+  struct FingerPlan {
+    std::array<Index, arrays_each> taxels = {};
+    std::array<Point2<S>, arrays_each> places_mm = {};
+  };
+
+  template <grid Readings>
+  FingerSample<S> finger(std::size_t f,
+                         const std::array<Readings, all_arrays>& readings,
+                         double time_s) {
+    if constexpr (arrays_each == 1) {
+      return features_[f](readings[f], time_s, windows_[f]);
+    } else {
+      std::array<FingerSample<S>, arrays_each> arrays;
+      for (std::size_t k = 0; k < arrays_each; ++k) {
+        const std::size_t at = f * arrays_each + k;
+        arrays[k] = features_[at](readings[at], time_s, windows_[at]);
+      }
+      return finger_of(arrays, fingers_[f].places_mm, fingers_[f].taxels);
+    }
+  }
+
   static Features features_of(const FoamArray& array, const TaxelOptions<S>& options) {
     const bool has_noise = array.noise.rows() > 0;
     expects(!has_noise || (array.noise.rows() == array.rows && array.noise.cols() == array.cols),
@@ -154,6 +191,7 @@ class FoamHand {
 
   std::vector<Features> features_;
   std::vector<typename Features::State> windows_;
+  std::array<FingerPlan, Fingers> fingers_ = {};
   [[no_unique_address]] Stage<Methods::has_grasp_lift, GraspLift> lift_;
   [[no_unique_address]] Stage<Methods::has_grasp_optimise, GraspOptimise> optimise_;
 };

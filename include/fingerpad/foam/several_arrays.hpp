@@ -1,0 +1,86 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+#pragma once
+// A finger that consists of several arrays, as those of "Pre-Slip Sensing Using Tactile Sensor"
+// (2007): 16 x 4 twice, 16 x 2 twice and 6 x 2, 204 elements on five sides. What each array says
+// becomes one sample of the finger, which the rules take like any other.
+#include <algorithm>
+#include <array>
+#include <cstddef>
+
+#include "fingerpad/core/grid.hpp"
+#include "fingerpad/core/point.hpp"
+#include "fingerpad/core/scalar.hpp"
+#include "fingerpad/foam/finger_sample.hpp"
+
+namespace fingerpad {
+inline namespace v0 {
+namespace detail {
+
+/// What a finger says of whose arrays one is added.
+template <scalar S>
+void add_array(const FingerSample<S>& array,
+               const Point2<S>& place_mm,
+               Index first_location,
+               FingerSample<S>& finger) {
+  if (array.is_pressed()) {
+    const S sum = finger.is_pressed() ? finger.sum : S(0);
+    const S share = array.sum / S(sum + array.sum);
+    const S x = array.center_x_mm + place_mm.x, y = array.center_y_mm + place_mm.y;
+    const bool is_first = !finger.is_pressed();
+    finger.center_x_mm =
+        is_first ? x : S(finger.center_x_mm + S(share * S(x - finger.center_x_mm)));
+    finger.center_y_mm =
+        is_first ? y : S(finger.center_y_mm + S(share * S(y - finger.center_y_mm)));
+    finger.sum = sum + array.sum;
+  }
+  if (array.location >= 0 && value(array.deviation) > value(finger.deviation)) {
+    finger.location = first_location + array.location;
+    finger.waves = array.waves;
+    finger.frequency_hz = array.frequency_hz;
+    finger.deviation = array.deviation;
+  }
+  for (Index k = 0; k < array.vibration_count; ++k) {
+    auto one = array.vibrations[static_cast<std::size_t>(k)];
+    one.location += first_location;
+    finger.add_vibration(one);
+  }
+  finger.left_out += array.left_out;
+  finger.frozen += array.frozen;
+  finger.gaps = (std::max)(finger.gaps, array.gaps);
+}
+
+}  // namespace detail
+
+/// One sample of a finger from those of its arrays at one time. `places_mm` says where the first
+/// taxel of each array is in a plan of the finger, its sides unrolled; `taxels` how many it has:
+/// locations are numbered on from array to array. A side that touches nothing is left to the
+/// others: the finger can be judged where one of its arrays can. Refused where one is, and not
+/// judged where one vibrates that never rested.
+template <std::size_t Arrays, scalar S>
+FingerSample<S> finger_of(const std::array<FingerSample<S>, Arrays>& arrays,
+                          const std::array<Point2<S>, Arrays>& places_mm,
+                          const std::array<Index, Arrays>& taxels) {
+  FingerSample<S> finger;
+  const auto is_refused = [](const FingerSample<S>& a) {
+    return a.status == TaxelStatus::other_size || a.status == TaxelStatus::time_not_later;
+  };
+  const auto refused = std::find_if(arrays.begin(), arrays.end(), is_refused);
+  if (refused != arrays.end()) {
+    finger.status = refused->status;
+    return finger;
+  }
+  Index first_location = 0;
+  finger.status = arrays[0].status;
+  for (std::size_t k = 0; k < Arrays; ++k) {
+    detail::add_array(arrays[k], places_mm[k], first_location, finger);
+    first_location += taxels[k];
+    finger.status = (std::min)(finger.status, arrays[k].status);  // those that tell come first
+    finger.has_rested =
+        finger.has_rested && (arrays[k].has_rested || arrays[k].status != TaxelStatus::vibrating);
+  }
+  return finger;
+}
+
+}  // namespace v0
+}  // namespace fingerpad
