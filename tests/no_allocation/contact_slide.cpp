@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "fingerpad/contact/contact_by_difference.hpp"
+#include "fingerpad/depth/intensity_depth.hpp"
 #include "fingerpad/slip/recoil.hpp"
 #include "no_allocation/count.hpp"
 #include "support/catch.hpp"
@@ -42,4 +43,17 @@ TEST_CASE("contact by difference, slide and recoil: a frame allocates nothing",
     CHECK(sprung.ok());
     CHECK(after == before);
   }
+}
+
+TEST_CASE("intensity depth: a frame allocates nothing", "[intensity_depth]") {
+  const test::Image<std::uint8_t> free(40, 50, 140);
+  const test::Image<std::uint8_t> now(40, 50, 120);
+  test::Image<float> depth(40, 50);
+  const IntensityDepth<> pressed(free, {});
+  auto workspace = pressed.workspace();
+  const long before = test::allocations();
+  const auto result = pressed(now, depth, workspace);
+  const long after = test::allocations();
+  CHECK(result.valid_px == 2000);
+  CHECK(after == before);
 }

@@ -215,7 +215,7 @@ class ContactByDifference {
     const S share = S(1.0 / static_cast<double>(seen.size() - (without < seen.size() ? 1 : 0)));
     for_cells([&](Index i, Index j) {
       S weight = S(1);
-      S mean[Channels] = {};
+      S mean[std::size_t(Channels)] = {};
       for (std::size_t k = 0; k < seen.size(); ++k) {
         if (k != without) {
           weight = S(weight * seen[k].weight(i, j));

@@ -122,7 +122,7 @@ class CellMeans {
     const std::uint16_t* at = sums_.data();
     for (Index j = 0; j < cell_cols(); ++j) {
       const Index width = (std::min)(size_px_, cols_ - j * size_px_);
-      int total[Channels] = {};
+      int total[std::size_t(Channels)] = {};
       for (Index k = 0; k < width; ++k) {
         for (int c = 0; c < Channels; ++c) {
           total[c] += *at++;

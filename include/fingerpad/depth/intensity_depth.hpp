@@ -1,0 +1,197 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+#pragma once
+// Depth of one-channel pads (DTact, 9DTact): a translucent gel over a dark back, which darkens
+// where something presses it thin. How deep it is pressed follows from the logarithm of the free
+// pad's brightness over that of now,
+//   depth = a l + b l^2 + c l^3,   l = ln(free / now),
+// the first term alone by Beer and Lambert (Lin et al., "9DTact", 2023, use a table instead). The
+// ratio takes the lamp out, pixel by pixel; a difference does not. calibrate/intensity.hpp finds
+// a, b and c from presses of a ball.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <type_traits>
+#include <vector>
+
+#include "fingerpad/core/expects.hpp"
+#include "fingerpad/core/grid.hpp"
+#include "fingerpad/core/scalar.hpp"
+#include "fingerpad/core/status.hpp"
+#include "fingerpad/image/detail/cell_filter.hpp"
+#include "fingerpad/image/detail/row_lanes.hpp"
+
+namespace fingerpad {
+inline namespace v0 {
+
+/// How depth follows from the logarithm of the ratio. In mm; all finite, the first > 0.
+struct IntensityLaw {
+  double linear_mm = 3;
+  double square_mm = 0;
+  double cube_mm = 0;
+};
+inline void expects_valid(const IntensityLaw& law) {
+  expects(is_finite(law.linear_mm) && law.linear_mm > 0, "IntensityLaw", "linear_mm", law.linear_mm,
+          "finite and > 0");
+  expects(is_finite(law.square_mm), "IntensityLaw", "square_mm", law.square_mm, "finite");
+  expects(is_finite(law.cube_mm), "IntensityLaw", "cube_mm", law.cube_mm, "finite");
+}
+
+/// The depth at ln(free / now); < 0 where the gel bulges.
+template <scalar S>
+constexpr S pressed_depth_mm(const IntensityLaw& law, const S& log_ratio) {
+  const S upper = S(S(law.square_mm) + S(law.cube_mm) * log_ratio);
+  return S(log_ratio * (S(law.linear_mm) + log_ratio * upper));
+}
+
+struct IntensityOptions {
+  double smoothing_px = 2;  ///< sd of a Gaussian mean of the logarithms, in [0, 20]; 0: none
+  double dark = 5;          ///< pixels as dark as this say nothing, >= 0
+  double saturated = 255;   ///< pixels as bright as this say nothing, > dark
+};
+inline void expects_valid(const IntensityOptions& options) {
+  constexpr const char* owner = "IntensityOptions";
+  expects(options.smoothing_px >= 0 && options.smoothing_px <= 20, owner, "smoothing_px",
+          options.smoothing_px, "in [0, 20]");
+  expects(options.dark >= 0, owner, "dark", options.dark, ">= 0");
+  expects(options.saturated > options.dark, owner, "saturated", options.saturated, "> dark");
+}
+
+/// What became of a frame.
+struct [[nodiscard]] IntensityDepthResult {
+  FrameStatus status = FrameStatus::refused;
+  Index valid_px = 0;  ///< with a depth
+
+  bool ok() const { return status == FrameStatus::ok; }
+};
+
+/// Depths from frames of one size, whose pixels are numbers: a grey image, or one channel of a
+/// colour image. Const: threads may share one, each with a workspace of its own. No allocation and
+/// bounded time per frame, O(rows cols).
+template <scalar S = float>
+class IntensityDepth {
+ public:
+  /// From a frame of the free pad. Refuses bad parameters (parameter_error).
+  template <grid Free>
+  IntensityDepth(const Free& free, const IntensityLaw& law, const IntensityOptions& options = {})
+      : law_(checked(law, options)),
+        options_(options),
+        rows_(as_view(free).rows()),
+        cols_(as_view(free).cols()) {
+    expects(rows_ >= 1 && cols_ >= 1, "IntensityDepth", "pixels of the free frame",
+            static_cast<long long>(rows_ * cols_), ">= 1");
+    const auto from = as_view(free);
+    for (Index i = 0; i < rows_; ++i) {
+      for (Index j = 0; j < cols_; ++j) {
+        free_.push_back(log_of(from(i, j)));
+      }
+    }
+    for (std::size_t level = 0; level < log_of_byte_.size(); ++level) {
+      log_of_byte_[level] = log_of(static_cast<double>(level));
+    }
+  }
+
+  /// Memory that one frame at a time needs, taken up front; one per thread.
+  class Workspace {
+   public:
+    explicit Workspace(const IntensityDepth& depth)
+        : kernel_(detail::EvenKernel<S>::gaussian((std::max)(depth.options_.smoothing_px, 1e-3))),
+          log_(depth.rows_, depth.cols_, kernel_.reach()),
+          weight_(log_),
+          between_(log_),
+          mean_(log_),
+          share_(log_) {}
+
+   private:
+    friend class IntensityDepth;
+    detail::EvenKernel<S> kernel_;
+    detail::PaddedCells<S> log_, weight_, between_, mean_, share_;
+  };
+  Workspace workspace() const { return Workspace(*this); }
+
+  /// Writes how deep the gel is pressed, mm; NaN where there is no answer. The height of the
+  /// surface is the gel's thickness less that.
+  template <grid Frame, class Depth>
+    requires(writable_grid<Depth, S>)
+  IntensityDepthResult operator()(const Frame& frame, Depth&& depth_mm, Workspace& w) const {
+    IntensityDepthResult result;
+    const auto from = as_view(frame);
+    const auto to = as_view(depth_mm);
+    if (from.rows() != rows_ || from.cols() != cols_ || !same_size(from, to) ||
+        w.log_.rows() != rows_ || w.log_.cols() != cols_) {
+      return result;
+    }
+    result.status = FrameStatus::ok;
+    read(from, w);
+    const bool smooth = options_.smoothing_px > 0;
+    if (smooth) {
+      w.kernel_(w.log_, w.between_, w.mean_);
+      w.kernel_(w.weight_, w.between_, w.share_);
+    }
+    for (Index i = 0; i < rows_; ++i) {
+      for (Index j = 0; j < cols_; ++j) {
+        // a pixel that says nothing itself has no depth, whatever is around it
+        S depth = not_a_number<S>();
+        if (S(0) < w.weight_(i, j)) {
+          const S l = smooth ? S(w.mean_(i, j) / w.share_(i, j)) : w.log_(i, j);
+          depth = pressed_depth_mm(law_, l);
+          ++result.valid_px;
+        }
+        to(i, j) = static_cast<cell_t<Depth>>(depth);
+      }
+    }
+    return result;
+  }
+
+  Index rows() const { return rows_; }
+  Index cols() const { return cols_; }
+
+ private:
+  static const IntensityLaw& checked(const IntensityLaw& law, const IntensityOptions& options) {
+    expects_valid(law);
+    expects_valid(options);
+    return law;
+  }
+
+  /// NaN where a level says nothing.
+  template <class Level>
+  S log_of(const Level& level) const {
+    using std::log;
+    const double plain = static_cast<double>(level);
+    const bool tells = plain > options_.dark && plain < options_.saturated;
+    return tells ? S(log(S(level))) : not_a_number<S>();
+  }
+
+  template <class View>
+  void read(const View& from, Workspace& w) const {
+    const S* free = free_.data();
+    for (Index i = 0; i < rows_; ++i) {
+      S* log_ratio = w.log_.row(i);
+      S* weight = w.weight_.row(i);
+      for (Index j = 0; j < cols_; ++j, ++free) {
+        S now;
+        if constexpr (std::is_same_v<cell_t<View>, std::uint8_t>) {
+          now = log_of_byte_[from(i, j)];
+        } else {
+          now = log_of(from(i, j));
+        }
+        const S ratio = S(*free - now);
+        const bool known = is_finite(ratio);
+        log_ratio[j] = known ? ratio : S(0);
+        weight[j] = S(known ? 1 : 0);
+      }
+    }
+  }
+
+  IntensityLaw law_;
+  IntensityOptions options_;
+  Index rows_;
+  Index cols_;
+  std::vector<S> free_;  ///< logarithms of the free pad
+  std::array<S, 256> log_of_byte_;
+};
+
+}  // namespace v0
+}  // namespace fingerpad

@@ -1,0 +1,171 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+#include "fingerpad/calibrate/intensity.hpp"
+
+#include <cmath>
+#include <cstdint>
+#include <limits>
+
+#include "support/catch.hpp"
+#include "support/generators.hpp"
+#include "support/pad.hpp"
+#include "support/refusal.hpp"
+
+using namespace fingerpad;
+using test::begins_with;
+using test::Image;
+using test::Random;
+using test::refusal;
+
+namespace {
+
+constexpr Index height = 110;
+constexpr Index width = 130;
+
+/// A ball pressed into a gel whose law is known: a frame of the free pad and one with the ball.
+struct Gel {
+  IntensityLaw law{4, 0, 0};
+  double ball_mm = 4;
+  double depth_mm = 1.5;
+  Point2<double> axis_mm = {6.4, 5.3};
+  double mm_per_px = 0.1;
+  double noise = 0;
+
+  BallPress press() const { return {.ball_mm = ball_mm, .mm_per_px = mm_per_px}; }
+  Image<double> free() const { return {height, width, 150.0}; }
+  Image<double> pressed(Random& random) const {
+    Image<double> frame = free();
+    for (Index i = 0; i < height; ++i) {
+      for (Index j = 0; j < width; ++j) {
+        const double x = mm_per_px * static_cast<double>(j) - axis_mm.x;
+        const double y = mm_per_px * static_cast<double>(i) - axis_mm.y;
+        const double root_sq = ball_mm * ball_mm - x * x - y * y;
+        const double depth =
+            root_sq > 0 ? std::max(0.0, depth_mm - ball_mm + std::sqrt(root_sq)) : 0.0;
+        frame(i, j) = 150 * std::exp(-log_of(depth)) + noise * random.normal();
+      }
+    }
+    return frame;
+  }
+
+ private:
+  double log_of(double depth) const {
+    double low = 0;
+    double high = 2;
+    for (int k = 0; k < 60; ++k) {
+      const double middle = (low + high) / 2;
+      (pressed_depth_mm(law, middle) < depth ? low : high) = middle;
+    }
+    return low;
+  }
+};
+
+const IntensityOptions as_it_is{.smoothing_px = 0};
+
+}  // namespace
+
+TEST_CASE("intensity calibration: the law comes back from presses without noise",
+          "[intensity_depth]") {
+  rc::prop("for every ball and place", [] {
+    Gel gel;
+    gel.law = {test::uniform(2, 6), 0, 0};
+    gel.ball_mm = test::uniform(2.5, 6);
+    gel.depth_mm = test::uniform(0.6, 1.6);
+    gel.axis_mm = {test::uniform(5.5, 7.5), test::uniform(4.5, 6.5)};
+    Random random(1);
+    IntensityCalibration calibration(as_it_is);
+    RC_ASSERT(calibration.add(gel.free(), gel.pressed(random), gel.press()));
+    const IntensityFit one = calibration.fit();
+    RC_ASSERT(one.ok());
+    RC_ASSERT(std::abs(one.law.linear_mm - gel.law.linear_mm) < 1e-6);
+    RC_ASSERT(std::abs(one.max_depth_mm - gel.depth_mm) < 1e-6);
+    RC_ASSERT(one.max_error_mm < 1e-6);
+    RC_ASSERT(one.law.square_mm == 0.0);
+  });
+}
+
+TEST_CASE("intensity calibration: three constants from two presses", "[intensity_depth]") {
+  Gel gel;
+  gel.law = {3, 2, -1.5};
+  Random random(1);
+  IntensityCalibration calibration(as_it_is);
+  for (const double depth : {0.7, 1.7}) {
+    gel.depth_mm = depth;
+    gel.axis_mm.x += 0.7;
+    REQUIRE(calibration.add(gel.free(), gel.pressed(random), gel.press()));
+  }
+  const IntensityFit three = calibration.fit(3);
+  REQUIRE(three.ok());
+  CHECK(three.law.linear_mm == Approx(3).epsilon(1e-4));
+  CHECK(three.law.square_mm == Approx(2).epsilon(1e-3));
+  CHECK(three.law.cube_mm == Approx(-1.5).epsilon(1e-3));
+  CHECK(three.mean_error_mm < 1e-5);
+  const IntensityFit one = calibration.fit(1);
+  CHECK(one.ok());
+  CHECK(one.mean_error_mm > 10 * three.mean_error_mm);
+}
+
+TEST_CASE("intensity calibration: the covariance is that of the constants", "[intensity_depth]") {
+  Gel gel;
+  gel.noise = 1;
+  Random random(5);
+  double square_sum = 0;
+  double variance = 0;
+  constexpr int trials = 60;
+  for (int k = 0; k < trials; ++k) {
+    IntensityCalibration calibration;  // noise that is not averaged flattens the law
+    REQUIRE(calibration.add(gel.free(), gel.pressed(random), gel.press()));
+    const IntensityFit fit = calibration.fit();
+    REQUIRE(fit.ok());
+    square_sum += square(fit.law.linear_mm - 4);
+    variance += fit.covariance[0][0] / trials;
+    CHECK(fit.covariance[1][1] == 0);
+  }
+  const double ratio = std::sqrt(square_sum / trials / variance);
+  CHECK(ratio > 0.6);
+  CHECK(ratio < 1.6);
+}
+
+TEST_CASE("intensity calibration: bytes and grain, as a camera has them", "[intensity_depth]") {
+  Gel gel;
+  gel.noise = 1;
+  Random random(7);
+  Image<std::uint8_t> frame(height, width);
+  const auto pressed = gel.pressed(random);
+  for (std::size_t k = 0; k < frame.cells.size(); ++k) {
+    frame.cells[k] = test::stored<std::uint8_t>(pressed.cells[k]);
+  }
+  frame(50, 60) = 255;
+  IntensityCalibration calibration;
+  REQUIRE(calibration.add(gel.free(), frame, gel.press()));
+  const IntensityFit fit = calibration.fit();
+  REQUIRE(fit.ok());
+  CHECK(fit.law.linear_mm == Approx(4).epsilon(0.02));
+  CHECK(fit.mean_error_mm < 0.01);
+}
+
+TEST_CASE("intensity calibration: what tells nothing is refused", "[intensity_depth]") {
+  const Gel gel;
+  Random random(1);
+  IntensityCalibration calibration(as_it_is);
+  CHECK(calibration.fit().status == FitStatus::nothing_to_check);
+  CHECK(!calibration.add(gel.free(), gel.free(), gel.press()));
+  CHECK(!calibration.add(gel.free(), Image<double>(height, width + 1, 100.0), gel.press()));
+  const Image<double> nothing(height, width, std::numeric_limits<double>::quiet_NaN());
+  CHECK(!calibration.add(gel.free(), nothing, gel.press()));
+  // brighter in the middle: not a ball in a darkening gel
+  auto bright = gel.pressed(random);
+  for (double& level : bright.cells) {
+    level = 150 * 60 / level;
+  }
+  CHECK(!calibration.add(gel.free(), bright, gel.press()));
+  CHECK(calibration.fit().status == FitStatus::nothing_to_check);
+
+  CHECK(begins_with(refusal([&] { (void)calibration.fit(2); }), "IntensityCalibration: terms = 2"));
+  const auto refused = [&](const BallPress& press) {
+    return refusal([&] { (void)calibration.add(gel.free(), gel.free(), press); });
+  };
+  CHECK(begins_with(refused({.ball_mm = 0}), "BallPress: ball_mm = 0"));
+  CHECK(begins_with(refused({.mm_per_px = -1}), "BallPress: mm_per_px = -1"));
+  CHECK(begins_with(refused({.contact_share = 1}), "BallPress: contact_share = 1"));
+}
