@@ -219,9 +219,9 @@ namespace {
 
 /// What a half that is not tested is filled with.
 template <int Degree>
-detail::OddPolynomial<Degree> any_polynomial() {
+detail::OddPolynomial<Degree> any_polynomial(double coefficient) {
   detail::OddPolynomial<Degree> polynomial;
-  polynomial.coefficients.fill(1);
+  polynomial.coefficients.fill(coefficient);
   polynomial.to = 1;
   return polynomial;
 }
@@ -239,7 +239,7 @@ double rotation_exponent_of(ContactMeasure measure) {
 template <int Degree>
 Errors tangential_errors(const ShearFit<Degree>& fit, double reference, const Samples& samples) {
   const Shear<RadialShear<Degree>> shear({reference, fit.exponent, 0},
-                                         {fit.polynomial, any_polynomial<Degree>()});
+                                         {fit.polynomial, any_polynomial<Degree>(100)});
   Errors e;
   for (const auto& s : samples) {
     const auto found = shear(s.measure, s.displacement_mm, 0).tangential_force_n;
@@ -252,7 +252,7 @@ Errors tangential_errors(const ShearFit<Degree>& fit, double reference, const Sa
 template <int Degree>
 Errors moment_errors(const ShearFit<Degree>& fit, double reference, const Samples& samples) {
   const Shear<RadialShear<Degree>> shear({reference, 0, fit.exponent},
-                                         {any_polynomial<Degree>(), fit.polynomial});
+                                         {any_polynomial<Degree>(1), fit.polynomial});
   Errors e;
   for (const auto& s : samples) {
     e.add(shear(s.measure, {0, 0}, s.rotation_rad).moment_n_mm - s.moment_n_mm, s.moment_n_mm);

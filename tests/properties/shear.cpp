@@ -33,7 +33,11 @@ detail::OddPolynomial<Degree, S> any_rising() {
 }
 template <int Degree, class S = double>
 RadialShear<Degree, S> any_radial() {
-  return {any_rising<Degree, S>(), any_rising<Degree, S>()};
+  RadialShear<Degree, S> map{any_rising<Degree, S>(), any_rising<Degree, S>()};
+  // of a contact between 0.6 and 60 mm
+  map.moment.coefficients[0] =
+      map.force.coefficients[0] * static_cast<S>(square(test::log_uniform(0.6, 60)));
+  return map;
 }
 LinearShear<> any_linear() {
   LinearShear<> map;

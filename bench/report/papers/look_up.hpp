@@ -97,7 +97,7 @@ inline ShearErrors tangential(const std::vector<std::string>& from,
   const auto fit = fit_tangential_force<1>(span_of(seen), reference_of(measure), exponent);
   RadialShear<1> map;
   map.force = fit.polynomial;
-  map.moment.coefficients = {1};
+  map.moment.coefficients = {100};
   const Shear<RadialShear<1>> shear({reference_of(measure), fit.exponent, 0}, map);
   ShearErrors out;
   for (const auto& s : samples_of({on}, measure, dots)) {

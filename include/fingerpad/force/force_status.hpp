@@ -18,10 +18,10 @@ enum class ForceStatus : std::uint8_t {
                  ///< is the measure in another unit?
   beyond_range,  ///< a larger one, or a larger shift: the curve goes on along its tangent
   held_at_zero,  ///< the curve or a compensation is negative there
-  implausible,   ///< a displacement above 100 mm or a rotation by more than half a turn: in px, um,
-                 ///< degrees?
   disagreeing,   ///< area and depth tell forces further apart than their errors allow: the contact
                  ///< is not like those of the calibration, or a measure is in another unit
+  implausible,   ///< a displacement above 100 mm or a rotation by more than half a turn: in px, um,
+                 ///< degrees?
   not_finite,    ///< what it is computed from is no number, or it is too large for one
 };
 

@@ -284,7 +284,8 @@ FusedForce<S> fused(const NormalForceResult<S>& a,
                          : exact                ? not_a_number<S>()
                                                 : S(difference / S(sqrt(sum)));
   const bool agree = square(value(disagreement)) <= max_disagreement * max_disagreement;
-  return {agree ? detail::worse(a.status, b.status) : ForceStatus::disagreeing,
+  const ForceStatus worst = detail::worse(a.status, b.status);
+  return {agree ? worst : detail::worse(worst, ForceStatus::disagreeing),
           S(b.force_n + share_of_a * difference), S(share_of_a * a.variance_n2), disagreement, 2};
 }
 

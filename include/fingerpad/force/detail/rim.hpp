@@ -203,13 +203,18 @@ class Rim {
       if (!is_finite(squared_norm(first)) || !is_finite(squared_norm(last))) {
         continue;  // missing
       }
-      const S most = S(10) * place.point.length_mm;  // no membrane stretches tenfold
-      if (!(squared_norm(first) < most * most) || squared_norm(last) < squared_norm(first)) {
+      const S& length = place.point.length_mm;
+      const S carried = dot(first, place.point.tangent);
+      // no membrane stretches tenfold or is sheared by more than a half
+      const S most = S(10) * length;
+      const S aside = place.share_mm > length ? place.share_mm / S(2) : length / S(2);
+      if (!(squared_norm(first) < most * most) || squared_norm(last) < squared_norm(first) ||
+          carried > aside || -carried > aside) {
         ++out.misplaced;
         continue;
       }
       ++near;
-      out.carried_mm += dot(first, place.point.tangent);
+      out.carried_mm += carried;
       out.below += value(first.z) < 0 ? 1 : 0;
     }
     out.carried_mm = near > 0 ? S(out.carried_mm / S(static_cast<double>(near))) : S(0);

@@ -1,0 +1,381 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+// What is said of mistakes with the forces: each line is a mistake, and what is said of it. No
+// mistake gets a status of ok; what cannot be seen in a frame stands last, with the reason.
+#include <cmath>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "fingerpad/calibrate/rim.hpp"
+#include "fingerpad/force/normal_force.hpp"
+#include "fingerpad/force/shear.hpp"
+#include "fingerpad/force/traction.hpp"
+#include "fingerpad/force/wrench.hpp"
+#include "fingerpad/published/friction_ratio.hpp"
+#include "fingerpad/published/normal_force.hpp"
+#include "fingerpad/published/shear.hpp"
+#include "support/catch.hpp"
+#include "support/pressed_pad.hpp"
+#include "support/refusal.hpp"
+#include "support/traction_scenes.hpp"
+
+using namespace fingerpad;
+using test::Image;
+using Vector = Point3<double>;
+
+namespace {
+
+using Pad = test::RoundPad<test::FilmSide>;
+
+/// The shape as a caller might have it: heights and slopes times factors, the contact as it is.
+struct Shape {
+  Pad pad;
+  double height = 1, slope = 1;
+
+  detail::membrane::HeightAndSlope<double> operator()(double x, double y) const {
+    const auto true_one = pad(x, y);
+    return {height * true_one.height_mm, slope * true_one.along_x, slope * true_one.along_y};
+  }
+  bool in_contact(double x, double y) const { return pad.in_contact(x, y); }
+};
+
+/// A frame of a drag and a twist at 10 kPa, and the estimator, to be spoilt.
+struct Frame {
+  Pad pad;
+  test::RimOfDots rim = test::rim_of(pad);
+  Image<Vector> border = rim.borders();
+  Image<Vector> dots;
+  Shape shape{pad};
+  double pressure_mpa = test::pressed_mpa;
+  WrenchOptions<double> options;
+
+  Frame() {
+    const double tension = pad.tension(pad.radius_mm, pressure_mpa);
+    dots = rim.dots([&](double at) {
+      return test::RimLoad{tension * (1 + 0.05 * std::cos(at)),
+                           tension * (0.1 - 0.1 * std::sin(at))};
+    });
+    options.blur_mm = 0;
+    options.reach_mm = 1.6;
+  }
+
+  /// Column k takes the dot of column from(k).
+  template <class From>
+  void reorder(const From& from) {
+    const Image<Vector> as_it_was = dots;
+    for (Index k = 0; k < dots.cols(); ++k) {
+      dots(0, k) = as_it_was(0, (from(k) + dots.cols()) % dots.cols());
+    }
+  }
+  void each_dot(const std::function<Vector(const Vector&)>& change) {
+    for (Vector& dot : dots.cells) {
+      dot = change(dot);
+    }
+  }
+};
+
+template <class Solver>
+WrenchResult<double> seen(const Frame& frame) {
+  const Wrench<Solver> wrench(frame.border, frame.options);
+  auto workspace = wrench.workspace();
+  return wrench(frame.shape, frame.dots, frame.pressure_mpa, workspace);
+}
+
+struct WrenchMistake {
+  std::string mistake;
+  std::function<void(Frame&)> make;
+  std::string said;
+};
+
+const std::vector<WrenchMistake> wrench_mistakes = {
+    {"none", [](Frame&) {}, "ok"},
+    {"pressure in kPa", [](Frame& f) { f.pressure_mpa *= 1e3; }, "pressure not in MPa"},
+    {"pressure in Pa", [](Frame& f) { f.pressure_mpa *= 1e6; }, "pressure not in MPa"},
+    {"pressure in bar", [](Frame& f) { f.pressure_mpa *= 10; },
+     "modulus not as calibrated: absolute pressure?"},
+    {"absolute pressure", [](Frame& f) { f.pressure_mpa += 0.101325; },
+     "modulus not as calibrated: absolute pressure?"},
+    {"pressure below that of the air", [](Frame& f) { f.pressure_mpa = -0.01; }, "bad pressure"},
+    {"no pressure", [](Frame& f) { f.pressure_mpa = test::nan; }, "bad pressure"},
+    {"side dots shifted by one", [](Frame& f) { f.reorder([](Index k) { return k + 1; }); },
+     "side dots in another order"},
+    {"side dots the other way round", [](Frame& f) { f.reorder([](Index k) { return -k; }); },
+     "side dots in another order"},
+    {"two halves of the side dots exchanged",
+     [](Frame& f) { f.reorder([](Index k) { return k + 36; }); }, "side dots in another order"},
+    {"neighbouring side dots exchanged",
+     [](Frame& f) { f.reorder([](Index k) { return k % 2 == 0 ? k + 1 : k - 1; }); },
+     "side dots in another order"},
+    {"side dots below the base",
+     [](Frame& f) { f.each_dot([](const Vector& p) {
+                      return Vector{p.x, p.y, -p.z};
+                    }); },
+     "side dots below the base"},
+    {"x and y of the side dots exchanged",
+     [](Frame& f) { f.each_dot([](const Vector& p) {
+                      return Vector{p.y, p.x, p.z};
+                    }); },
+     "side dots in another order"},
+    {"side dots in metres", [](Frame& f) { f.each_dot([](const Vector& p) { return 1e-3 * p; }); },
+     "side dots in another order"},
+    {"side dots in px",
+     [](Frame& f) {
+       f.each_dot([](const Vector& p) { return Vector{320 + 12 * p.x, 240 + 12 * p.y, p.z}; });
+     },
+     "side dots in another order"},
+    {"side dots as (0, 0, 0) where they are lost",
+     [](Frame& f) {
+       for (Index k = 0; k < 30; ++k) {
+         f.dots(0, k) = {0, 0, 0};
+       }
+     },
+     "side dots in another order"},
+    {"side dots of the free pad without pressure",
+     [](Frame& f) { f.dots = f.rim.dots([](double) {
+                      return test::RimLoad{0, 0};
+                    }); },
+     "unstretched"},
+    {"length of the side dots in metres", [](Frame& f) { f.options.side_dot_length_mm *= 1e-3; },
+     "side dots in another order"},
+    {"length of the side dots twice as long", [](Frame& f) { f.options.side_dot_length_mm *= 2; },
+     "unstretched"},
+    {"length of the side dots half as long", [](Frame& f) { f.options.side_dot_length_mm /= 2; },
+     "modulus not as calibrated: absolute pressure?"},
+    {"depth in metres", [](Frame& f) { f.shape.height = f.shape.slope = 1e-3; }, "shape not in mm"},
+    {"depth in um", [](Frame& f) { f.shape.height = f.shape.slope = 1e3; }, "no shape"},
+    {"depth upside down", [](Frame& f) { f.shape.height = f.shape.slope = -1; }, "shape not in mm"},
+    {"another frame's size",
+     [](Frame& f) {
+       f.dots = Image<Vector>(1, 71, {0, 0, 0});
+     },
+     "refused"},
+    {"rows and columns of the side dots exchanged",
+     [](Frame& f) {
+       f.dots = Image<Vector>(72, 1, {0, 0, 0});
+     },
+     "refused"},
+};
+
+}  // namespace
+
+TEST_CASE("mistakes with the six-axis force", "[mistakes]") {
+  for (const WrenchMistake& m : wrench_mistakes) {
+    INFO(m.mistake);
+    Frame frame;
+    // the modulus is that of calibrate/rim.hpp
+    frame.options.calibrated_modulus_n_per_mm = frame.rim.modulus_n_per_mm;
+    m.make(frame);
+    const auto squares = seen<LeastSquares>(frame), balanced = seen<BalancedRim>(frame);
+    CHECK(name_of(squares.status) == m.said);
+    CHECK(name_of(balanced.status) == m.said);
+    CHECK(squares.ok() == (m.mistake == "none"));
+    CHECK(is_finite(squares.force_n) == squares.ok());
+    CHECK(is_finite(balanced.force_n) == balanced.ok());
+  }
+}
+
+TEST_CASE("mistakes with the six-axis force: a calibrated rim brings its modulus", "[mistakes]") {
+  Frame frame;
+  RimFit<double> fit{};
+  fit.length_mm = frame.rim.length_mm;
+  fit.modulus_n_per_mm = frame.rim.modulus_n_per_mm;
+  fit.side_dot_share.assign(72, 1.0);
+  const Wrench<> wrench(frame.border, fit, frame.options);
+  auto workspace = wrench.workspace();
+  const auto at = [&](double pressure_mpa) {
+    return wrench(frame.shape, frame.dots, pressure_mpa, workspace).status;
+  };
+  CHECK(at(0.01) == WrenchStatus::ok);
+  CHECK(at(0.01 + 0.101325) == WrenchStatus::modulus_not_as_calibrated);
+  // not noticeable without a calibration: a stiffer membrane at a higher pressure looks the same
+  const Wrench<> knows_no_modulus(frame.border, frame.options);
+  CHECK(knows_no_modulus(frame.shape, frame.dots, 0.01 + 0.101325, workspace).ok());
+}
+
+TEST_CASE("mistakes with the six-axis force: two rows of side dots exchanged", "[mistakes]") {
+  Frame frame;
+  const auto load = [](double) { return test::RimLoad{0.2, 0}; };
+  const Wrench<BalancedRim, TwoRows> wrench(frame.border, frame.options);
+  auto workspace = wrench.workspace();
+  const auto right = frame.rim.dots(load, 2);
+  auto exchanged = right;
+  for (Index k = 0; k < right.cols(); ++k) {
+    exchanged(0, k) = right(1, k);
+    exchanged(1, k) = right(0, k);
+  }
+  CHECK(wrench(frame.shape, right, 0.01, workspace).ok());
+  CHECK(wrench(frame.shape, exchanged, 0.01, workspace).status ==
+        WrenchStatus::side_dots_in_another_order);
+}
+
+namespace {
+
+/// A contact that is pressed, carried along and rotated.
+struct Contact {
+  double area_mm2 = 225, depth_mm = 3;
+  Point2<double> displacement_mm = {0.4, -0.2};
+  double rotation_rad = 0.08;
+};
+
+struct LookUpMistake {
+  std::string mistake;
+  std::function<void(Contact&)> make;
+  std::string said_by_area, said_by_depth, fused, shear;
+};
+
+const std::vector<LookUpMistake> look_up_mistakes = {
+    {"none", [](Contact&) {}, "measured", "measured", "measured", "measured"},
+    {"area in m^2", [](Contact& c) { c.area_mm2 *= 1e-6; }, "below range", "measured",
+     "disagreeing", "measured"},
+    {"area in px", [](Contact& c) { c.area_mm2 *= 150; }, "beyond range", "measured",
+     "beyond range", "beyond range"},
+    {"depth in m", [](Contact& c) { c.depth_mm *= 1e-3; }, "measured", "below range", "disagreeing",
+     "measured"},
+    {"area and depth exchanged", [](Contact& c) { std::swap(c.area_mm2, c.depth_mm); },
+     "below range", "beyond range", "beyond range", "measured"},
+    {"a contact of another shape", [](Contact& c) { c.area_mm2 /= 2; }, "measured", "measured",
+     "disagreeing", "measured"},
+    {"displacement in um", [](Contact& c) { c.displacement_mm = 1e3 * c.displacement_mm; },
+     "implausible: not in mm, rad?", "implausible: not in mm, rad?", "implausible: not in mm, rad?",
+     "implausible: not in mm, rad?"},
+    {"displacement as the place of the dot",
+     [](Contact& c) {
+       c.displacement_mm = {320, 240};
+     },
+     "implausible: not in mm, rad?", "implausible: not in mm, rad?", "implausible: not in mm, rad?",
+     "implausible: not in mm, rad?"},
+    {"rotation in degrees", [](Contact& c) { c.rotation_rad *= 57.3; },
+     "implausible: not in mm, rad?", "implausible: not in mm, rad?", "implausible: not in mm, rad?",
+     "implausible: not in mm, rad?"},
+    {"lost dots as 1e30", [](Contact& c) { c.displacement_mm.x = 1e30; },
+     "implausible: not in mm, rad?", "implausible: not in mm, rad?", "implausible: not in mm, rad?",
+     "implausible: not in mm, rad?"},
+    {"beyond what was calibrated", [](Contact& c) { c.area_mm2 = 600, c.depth_mm = 6.88; },
+     "beyond range", "beyond range", "beyond range", "beyond range"},
+    {"no number", [](Contact& c) { c.area_mm2 = c.depth_mm = test::nan; }, "not finite",
+     "not finite", "not finite", "not finite"},
+};
+
+}  // namespace
+
+TEST_CASE("mistakes with the look-ups", "[mistakes]") {
+  const CurveErrors<3> errors{.residual_sd_n = 0.3};
+  const ScaledCompensation<> moved{0.02, 0.5};
+  const NormalForce area(published::force_of_area(), moved, errors);
+  const NormalForce depth(published::force_of_depth(), moved, errors);
+  const Shear shear(published::shear_normalisation_by_area(), RadialShear<>{{{2}, 8}, {{60}, 1}});
+  for (const LookUpMistake& m : look_up_mistakes) {
+    INFO(m.mistake);
+    Contact c;
+    m.make(c);
+    const auto by_area = area(c.area_mm2, c.displacement_mm, c.rotation_rad);
+    const auto by_depth = depth(c.depth_mm, c.displacement_mm, c.rotation_rad);
+    const auto both = fused(by_area, by_depth);
+    const auto aside = shear(c.area_mm2, c.displacement_mm, c.rotation_rad);
+    CHECK(name_of(by_area.status) == m.said_by_area);
+    CHECK(name_of(by_depth.status) == m.said_by_depth);
+    CHECK(name_of(both.status) == m.fused);
+    CHECK(name_of(aside.status()) == m.shear);
+    CHECK(both.ok() == (m.mistake == "none"));
+  }
+}
+
+TEST_CASE("mistakes with the look-ups: the variance belongs to the curve that answers",
+          "[mistakes]") {
+  // 28.2 N where a quadratic up to 20 N goes on, 25.4 N along its tangent
+  const PolynomialForce<> curve{{0, 0.02, 0.0001}, 20, 350};
+  const NormalForce<> force(curve, {}, {.residual_sd_n = 0.08});
+  const auto r = force(450);
+  const double tangent = curve.force_n(350) + 100 * curve.slope(350);
+  CHECK(r.force_n == Approx(tangent));
+  CHECK(std::sqrt(r.variance_n2) > 0.99 * (curve.force_n(450) - tangent));
+  CHECK_FALSE(r.ok());
+}
+
+TEST_CASE("mistakes with the look-ups: moments in N m", "[mistakes]") {
+  const auto with = [](double force, double moment) {
+    return test::refusal([&] {
+      Shear<>(published::shear_normalisation_by_area(), {{{force}}, {{moment}}});
+    });
+  };
+  const std::string said = "RadialShear: size of the contact that moment over force makes, mm = ";
+  CHECK(with(2, 60) == "accepted");
+  CHECK(test::begins_with(with(2, 60e-3), said));  // N m
+  CHECK(test::begins_with(with(2e-3, 60), said));  // N/um, or kN
+  CHECK(test::begins_with(with(2, 60e6), said));   // uN m
+}
+
+TEST_CASE("mistakes with the friction ratio", "[mistakes]") {
+  const published::FrictionRatio<> friction;
+  auto state = friction.start();
+  const Vector on_pad = {0.8, 0, -1};  // as WrenchResult has it: a press
+  CHECK(friction(on_pad, true, state).status == published::FrictionStatus::sliding);
+  CHECK(friction(on_pad, false, state).status == published::FrictionStatus::near_slip);
+  CHECK(friction(Point2<double>{0.8, 0}, 1.0, false, state).status ==
+        published::FrictionStatus::near_slip);
+  const auto wrong = friction(Point2<double>{0.8, 0}, on_pad.z, false, state);
+  CHECK(std::string(name_of(wrong.status)) == "negative normal force: F_z of a wrench?");
+  CHECK_FALSE(wrong.ok());
+  WrenchResult<double> wrench;
+  wrench.force_n = on_pad;
+  CHECK(wrench.normal_force_n() == 1);
+  CHECK(wrench.tangential_force_n().x == 0.8);
+}
+
+namespace {
+
+struct TractionMistake {
+  std::string mistake;
+  std::function<void(test::TractionScene&)> make;
+  std::string said;
+};
+
+template <class Change>
+void each_dot(test::TractionScene& s, const Change& change) {
+  for (Vector& dot : s.dots.cells) {
+    dot = change(dot);
+  }
+}
+
+const std::vector<TractionMistake> traction_mistakes = {
+    {"none", [](auto&) {}, "ok"},
+    {"pressure in kPa", [](auto& s) { s.pressure_mpa *= 1e3; }, "pressure not in MPa"},
+    {"pressure in Pa", [](auto& s) { s.pressure_mpa *= 1e6; }, "pressure not in MPa"},
+    {"no pressure", [](auto& s) { s.pressure_mpa = test::nan; }, "bad pressure"},
+    {"dots in m", [](auto& s) { each_dot(s, [](const Vector& p) { return 1e-3 * p; }); },
+     "not of this membrane"},
+    {"dots in px",
+     [](auto& s) { each_dot(s, [](const Vector& p) {
+                     return Vector{12 * p.x, 12 * p.y, p.z};
+                   }); },
+     "not of this membrane"},
+    {"dots column by column instead of row by row",
+     [](auto& s) {
+       const auto as_it_was = s.dots;
+       for (Index i = 0; i < 21; ++i) {
+         for (Index j = 0; j < 21; ++j) {
+           s.dots(i, j) = as_it_was.cells[static_cast<std::size_t>((i * 5 + j * 17) % 441)];
+         }
+       }
+     },
+     "not of this membrane"},
+    {"no dots", [](auto& s) { s.dots = test::no_dots(21, 21); }, "too few dots"},
+    {"another frame's size", [](auto& s) { s.dots = test::Dots(20, 21); }, "refused"},
+};
+
+}  // namespace
+
+TEST_CASE("mistakes with the traction field", "[mistakes]") {
+  const TractionField field(test::stress_free_dots());
+  auto maps = field.maps();
+  for (const TractionMistake& m : traction_mistakes) {
+    INFO(m.mistake);
+    auto scene = test::traction_scene("tilt");
+    m.make(scene);
+    const auto r = field(scene.dots, scene.contact, scene.pressure_mpa, maps);
+    CHECK(name_of(r.status) == m.said);
+    CHECK(r.has_force() == (m.mistake == "none"));
+  }
+}
