@@ -49,6 +49,7 @@ class TaxelNoiseCalibration {
         window_(rows * cols, options.window),
         centroid_(2, options.window),
         held_(static_cast<std::size_t>(rows * cols), 0.0),
+        spread_(held_.size(), 0.0),
         taxels_(held_.size()) {}
 
   /// The next sample; false, and nothing changed, if the array has another size or the time is not
@@ -154,14 +155,17 @@ class TaxelNoiseCalibration {
 
   void judge() {
     ++windows_;
+    window_.variances(spread_.data());
     for (std::size_t k = 0; k < taxels_.size(); ++k) {
       Taxel& taxel = taxels_[k];
       if (!taxel.is_bad) {
-        taxel.variances.push_back(window_.variance(static_cast<Index>(k)));
+        taxel.variances.push_back((std::max)(spread_[k], 0.0));
       }
     }
     if (is_pressed_) {
-      centroid_variances_.push_back((centroid_.variance(0) + centroid_.variance(1)) / 2);
+      double spread[2];
+      centroid_.variances(spread);
+      centroid_variances_.push_back((std::max)((spread[0] + spread[1]) / 2, 0.0));
     }
   }
 
@@ -170,6 +174,7 @@ class TaxelNoiseCalibration {
   detail::TaxelWindow<double> window_;
   detail::TaxelWindow<double> centroid_;
   std::vector<double> held_;
+  std::vector<double> spread_;
   std::vector<Taxel> taxels_;
   std::vector<double> centroid_variances_;  // along either axis
   Index in_window_ = 0;                     // samples of the present window

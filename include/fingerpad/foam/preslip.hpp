@@ -305,7 +305,10 @@ class Preslip {
     history.add(detail::hand_sides(newest, options_));
     const double tolerance = static_cast<double>(value(options_.centroid_tolerance_mm));
     const std::int64_t last = history.newest();
-    for (std::int64_t older = last - 1; older >= history.oldest() && !result.is_fresh; --older) {
+    const bool vibrates = std::any_of(history[last].begin(), history[last].end(),
+                                      [](const detail::PairSide& side) { return side.count > 0; });
+    const std::int64_t oldest = vibrates ? history.oldest() : last;  // else nothing makes a pair
+    for (std::int64_t older = last - 1; older >= oldest && !result.is_fresh; --older) {
       result.is_fresh = Rule::holds(history[older], history[last], tolerance);
       state.older_ = result.is_fresh ? (std::max)(state.older_, older) : state.older_;
     }

@@ -78,6 +78,7 @@ class TaxelFeatures {
           returned_for_(held_.size(), 0),
           time_s_(static_cast<std::size_t>(length), 0.0),
           is_gap_(time_s_.size(), 0),
+          spread_(held_.size(), S(0)),
           residual_(time_s_.size(), S(0)),
           scratch_(length) {
       vibrating_.reserve(held_.size());
@@ -90,6 +91,7 @@ class TaxelFeatures {
     std::vector<Index> returned_for_;   // samples for which its return from 0 is remembered
     std::vector<double> time_s_;        // of the window, oldest first; gaps shortened
     std::vector<std::uint8_t> is_gap_;  // before each of them
+    std::vector<S> spread_;             // variance of each taxel
     std::vector<S> residual_;
     std::vector<Vibrating> vibrating_;
     typename Waves::template Scratch<S> scratch_;
@@ -349,10 +351,10 @@ class TaxelFeatures {
 
   /// Lists what vibrates; the strongest is the sample's own. False: nothing does.
   bool find_vibration(FingerSample<S>& sample, State& state) const {
+    state.window_.variances(state.spread_.data());
     for (std::size_t k = 0; k < floor_.size(); ++k) {
-      const Index location = static_cast<Index>(k);
-      if (value(state.window_.variance(location)) > floor_[k] && can_vibrate(k, state)) {
-        list(location, state);
+      if (value(state.spread_[k]) > floor_[k] && can_vibrate(k, state)) {
+        list(static_cast<Index>(k), state);
       }
     }
     if (state.vibrating_.empty()) {

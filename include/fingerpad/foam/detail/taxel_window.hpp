@@ -2,10 +2,10 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 // The last readings of every taxel with their running sums, so that the spread of each about a
-// straight line is known in O(1) a sample. With d = reading - reference and u = 0 (oldest) ... n - 1
-// (newest) the sums are sum d, sum u d and sum d^2. A running sum collects rounding, and one about a
-// far reference loses digits: so at each sample a few taxels are summed anew about their newest
-// reading, all of them once within a window.
+// straight line is known in O(1) a sample. With d = reading - reference and u = 0 (oldest) ... n -
+// 1 (newest) the sums are sum d, sum u d and sum d^2. A running sum collects rounding, and one
+// about a far reference loses digits: so at each sample a few taxels are summed anew about their
+// newest reading, all of them once within a window.
 #include <algorithm>
 #include <cstddef>
 #include <vector>
@@ -24,8 +24,8 @@ class TaxelWindow {
       : taxels_(taxels),
         length_(length),
         middle_(S(static_cast<int>(length - 1)) / S(2)),
-        spread_(S(12) / S(S(static_cast<int>(length)) *
-                          S(square(S(static_cast<int>(length))) - S(1)))),
+        spread_(S(12) /
+                S(S(static_cast<int>(length)) * S(square(S(static_cast<int>(length))) - S(1)))),
         readings_(static_cast<std::size_t>(taxels * length), S(0)),
         reference_(static_cast<std::size_t>(taxels), S(0)),
         sum_(reference_),
@@ -68,14 +68,14 @@ class TaxelWindow {
     }
   }
 
-  /// Mean square of what is left of a taxel without its line, >= 0.
-  S variance(Index taxel) const {
-    const auto i = static_cast<std::size_t>(taxel);
-    const S length = S(static_cast<int>(length_));
-    const S tilt = moment_[i] - S(middle_ * sum_[i]);
-    const S flat = squares_[i] - S(square(sum_[i]) / length);
-    const S left = S(flat - S(square(tilt) * spread_)) / length;
-    return value(left) > 0 ? left : S(0);
+  /// Mean square of what is left of each taxel without its line; rounding may make it negative.
+  void variances(S* out) const {
+    const S share = S(1) / S(static_cast<int>(length_));
+    for (std::size_t i = 0; i < sum_.size(); ++i) {
+      const S tilt = moment_[i] - S(middle_ * sum_[i]);
+      const S flat = squares_[i] - S(square(sum_[i]) * share);
+      out[i] = S(flat - S(square(tilt) * spread_)) * share;
+    }
   }
 
   /// What is left of a taxel at each time of the window, oldest first; returns its mean square.
@@ -116,10 +116,10 @@ class TaxelWindow {
 
   Index taxels_;
   Index length_;
-  S middle_;          // mean of u
-  S spread_;          // 1 / sum (u - middle)^2
+  S middle_;  // mean of u
+  S spread_;  // 1 / sum (u - middle)^2
   Index oldest_ = 0;
-  Index next_ = 0;  // to be summed anew
+  Index next_ = 0;           // to be summed anew
   std::vector<S> readings_;  // length x taxels, from `oldest_` round
   std::vector<S> reference_;
   std::vector<S> sum_;
