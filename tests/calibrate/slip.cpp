@@ -843,7 +843,7 @@ TEST_CASE("choice of U: what it refuses", "[stick]") {
   Recording shaken = record({.noise_px = 0.1, .step_px = 0, .frames = 60});
   CHECK(begins_with(choose(shaken, {.smallest_px = 1}), owner + "largest displacement in px = 0."));
   // twenty frames of motion of which fewer than ten went further than the smallest U that is tried
-  CHECK(begins_with(choose(record({.frames = 24}), {.smallest_px = 10, .largest_px = 12}),
+  CHECK(begins_with(choose(record({.frames = 24}), {.smallest_px = 8, .largest_px = 9.5}),
                     owner + "updated answers = "));
   CHECK(begins_with(choose(record({.last_radius = 9})), owner + "answers that slip = "));
   Recording slips = record({.frames = 240});

@@ -183,6 +183,35 @@ TEST_CASE("stick ratio in space, bad input", "[spatial_stick]") {
     CHECK(r.out_of_place >= 2);
     CHECK(r.slip == 0);
   }
+  SECTION("dots marked as lost by a place, in no order, in another unit") {
+    SlippingPatch patch;
+    Follower f, shuffled, metres;
+    const auto in_metres = [](Dots dots) {
+      for (auto& p : dots.cells) {
+        p = p / 1000.0;
+      }
+      return dots;
+    };
+    (void)f(patch.dots, patch.contact);
+    (void)shuffled(patch.dots, patch.contact);
+    CHECK(metres(in_metres(patch.dots), patch.contact).status == StickStatus::wrong_scale);
+    patch.step(motion);
+    Dots dots = patch.dots;
+    for (std::size_t k = 0; k < 441; k += 3) {
+      dots.cells[k] = {0, 0, 0};
+    }
+    const auto r = f(dots, patch.contact);
+    REQUIRE(r.updated());
+    CHECK(r.slip == 0);
+    CHECK(r.unknown > 0);
+    dots = patch.dots;
+    test::Random random(2);
+    for (Index k = 440; k > 0; --k) {
+      std::swap(dots.cells[static_cast<std::size_t>(k)],
+                dots.cells[static_cast<std::size_t>(random.whole(0, k))]);
+    }
+    CHECK(shuffled(dots, patch.contact).status == StickStatus::not_in_order);
+  }
   SECTION("few dots, dots on a line, dots in one place") {
     SlippingPatch patch;
     for (const int kind : {0, 1, 2}) {

@@ -90,6 +90,8 @@ TEST_CASE("stick ratio: names of statuses") {
   CHECK(std::string(name_of(StickStatus::too_few_dots)) == "too few dots");
   CHECK(std::string(name_of(StickStatus::no_contact)) == "no contact");
   CHECK(std::string(name_of(StickStatus::no_dots)) == "no dots");
+  CHECK(std::string(name_of(StickStatus::wrong_scale)) == "wrong scale");
+  CHECK(std::string(name_of(StickStatus::not_in_order)) == "not in order");
   CHECK(std::string(name_of(StickStatus::jumped)) == "jumped");
   CHECK(std::string(name_of(StickStatus::restarted)) == "restarted");
 }
@@ -501,6 +503,75 @@ TEST_CASE("stick ratio, bad input: swapped dots") {
   run({2, 3}, {6, 6}, 10);  // and of each the four beside
   run({4, 4}, {4, 5}, 2);   // the others are in line still
   run({4, 4}, {5, 5}, 4);
+}
+
+TEST_CASE("stick ratio, bad input: dots marked as lost by a place") {
+  // (0, 0) and (-1, -1) are what finders without NaN give; a third of the dots is lost.
+  for (const Point2<double> mark : {Point2<double>{0, 0}, Point2<double>{-1, -1}}) {
+    Follower<> f;
+    (void)f(shifted(0));
+    auto dots = shifted(3);
+    Index lost = 0;
+    for (Index k = 0; k < 81; k += 3) {
+      dots(k / 9, (k + k / 9) % 9) = mark;
+      ++lost;
+    }
+    const auto r = f(dots);
+    REQUIRE(r.updated());
+    CHECK(r.slip == 0);
+    CHECK(r.unknown == lost);
+    CHECK(r.stick_ratio == 1);
+    CHECK(r.furthest_px == Approx(3));
+    CHECK(f(PointsPx(9, 9, mark)).status == StickStatus::no_dots);
+  }
+  // one dot that lies there is a dot
+  Follower<> f;
+  const auto at_origin = [](double x) { return shifted(x - 180, -180); };
+  (void)f(at_origin(0));
+  CHECK(f(at_origin(3)).stick == 81);
+}
+
+TEST_CASE("stick ratio, bad input: dots in no order, and in another unit") {
+  SECTION("names by chance give no ratio") {
+    Follower<> f;
+    (void)f(shifted(0));
+    CHECK(f(shifted(3)).stick_ratio == 1);
+    auto dots = shifted(6);
+    test::Random random(2);
+    for (Index k = 80; k > 0; --k) {
+      std::swap(dots.cells[static_cast<std::size_t>(k)],
+                dots.cells[static_cast<std::size_t>(random.whole(0, k))]);
+    }
+    const auto r = f(dots);
+    CHECK(r.status == StickStatus::not_in_order);
+    CHECK_FALSE(r.updated());
+    CHECK(f(shifted(6)).updated());
+  }
+  SECTION("thresholds in px for dots in mm or m, or far too large") {
+    for (const double unit : {0.08, 8e-5}) {
+      Follower<> f;
+      const auto in_unit = [&](double x) {
+        auto dots = shifted(x);
+        for (auto& p : dots.cells) {
+          p = {unit * p.x, unit * p.y};
+        }
+        return dots;
+      };
+      (void)f(in_unit(0));
+      const auto r = f(in_unit(3));
+      CHECK(r.status == StickStatus::wrong_scale);
+      CHECK(std::isnan(r.stick_ratio));
+    }
+    // a U of half a pitch of 20 px, and delta_0 of a fourth, are the ends
+    const auto status = [](double reference_px, double slip_px) {
+      Follower<> f({.reference_px = reference_px, .slip_px = slip_px});
+      return f(shifted(0)).status;
+    };
+    CHECK(status(9.9, 0.2) == StickStatus::no_reference);
+    CHECK(status(10.1, 0.2) == StickStatus::wrong_scale);
+    CHECK(status(2, 4.9) == StickStatus::no_reference);
+    CHECK(status(2, 5.1) == StickStatus::wrong_scale);
+  }
 }
 
 TEST_CASE("stick ratio, bad input: a misplaced corner of the pattern") {

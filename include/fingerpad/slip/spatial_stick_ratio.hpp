@@ -138,8 +138,15 @@ class SpatialStickRatio {
     state.clock.touch();
     const PlacedDots placed = place_dots(state.given, layout_, state.now);
     state.result.out_of_place = placed.out_of_place;
+    if (is_not_in_order(placed)) {
+      return StickStatus::not_in_order;
+    }
     if (placed.dots < test_.min_dots) {
       return state.given.count > 0 ? StickStatus::too_few_dots : StickStatus::no_dots;
+    }
+    state.pitch_sq = mean_pitch_sq(state.given.touching, state.now.data(), layout_);
+    if (is_wrong_scale(state.pitch_sq, reference_mm_, reference_mm_ * test_.slip_share)) {
+      return StickStatus::wrong_scale;
     }
     const Choice<S> choice = choose(state);
     const StickStatus status = choice.age >= 0   ? answer(choice, state)
@@ -224,7 +231,7 @@ class SpatialStickRatio {
   bool consensus(const Point3<S>& from, const S& limit, State& state, Pose<S>& motion) const {
     using namespace detail::stick;
     Pairs& pairs = state.pairs;
-    weigh_around(from, mean_pitch_sq(state.given.touching, state.now.data(), layout_), pairs);
+    weigh_around(from, state.pitch_sq, pairs);
     if (!refine_motion(pairs, noise_, motion)) {
       return false;
     }

@@ -157,8 +157,15 @@ class StickRatio {
     const PlacedDots placed = place_dots(state.given, layout_, state.now);
     denoise_positions(denoising_, state.given, layout_, state.now);
     result.out_of_place = placed.out_of_place;
+    if (is_not_in_order(placed)) {
+      return StickStatus::not_in_order;
+    }
     if (placed.dots < test_.min_dots) {
       return state.given.count > 0 ? StickStatus::too_few_dots : StickStatus::no_dots;
+    }
+    if (is_wrong_scale(mean_pitch_sq(touching, state.now.data(), layout_), test_.reference_px,
+                       test_.slip_px)) {
+      return StickStatus::wrong_scale;
     }
     const S reference_sq = S(square(test_.reference_px));
     const Choice choice = choose_reference(reference_, touching, state.now.data(), state.repository,

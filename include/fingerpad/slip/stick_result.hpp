@@ -28,6 +28,8 @@ enum class StickStatus : std::uint8_t {
   too_few_dots,  ///< fewer dots to compare than StickTest::min_dots
   no_contact,    ///< nothing touches: after hold_s what was stored is forgotten
   no_dots,       ///< no dot at all was found: nothing is known, nothing is forgotten
+  wrong_scale,   ///< U is more than half a pitch, or a pitch less than four delta_0: another unit?
+  not_in_order,  ///< more than a fifth of the dots in contact are not between their neighbours
   jumped,        ///< all dots carry the name of a neighbour: the frame is left out
   restarted,     ///< time went back by more than hold_s: all that was before is forgotten
   refused,       ///< a grid, state or workspace has another size: nothing was done
@@ -48,6 +50,10 @@ constexpr const char* name_of(StickStatus status) {
       return "no contact";
     case StickStatus::no_dots:
       return "no dots";
+    case StickStatus::wrong_scale:
+      return "wrong scale";
+    case StickStatus::not_in_order:
+      return "not in order";
     case StickStatus::jumped:
       return "jumped";
     case StickStatus::restarted:

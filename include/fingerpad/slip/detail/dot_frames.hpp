@@ -107,6 +107,28 @@ struct GivenDots {
         }
       }
     }
+    leave_out(P{});
+    leave_out(filled(coordinate<P>(-1)));
+  }
+
+ private:
+  static P filled(const coordinate<P>& c) {
+    P p{};
+    p.x = p.y = c;
+    if constexpr (requires { p.z; }) {
+      p.z = c;
+    }
+    return p;
+  }
+
+  /// Dots that share a place by which others mark what they did not find are not found.
+  void leave_out(const P& mark) {
+    const auto is_mark = [&](const P& p) { return squared_norm(p - mark) == coordinate<P>(0); };
+    const auto marked = std::count_if(found.begin(), found.end(), is_mark);
+    if (marked > 1) {
+      std::replace_if(found.begin(), found.end(), is_mark, no_dot<P>());
+      count -= static_cast<Index>(marked);
+    }
   }
 };
 

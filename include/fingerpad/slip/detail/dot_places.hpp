@@ -48,6 +48,8 @@ bool is_out_of_place(const P* dots, const DotLayout& layout, Index k) {
 struct PlacedDots {
   Index dots = 0;          ///< in contact and in place
   Index out_of_place = 0;  ///< in contact and found, but not where their neighbours say
+  Index crossed = 0;       ///< of these, both in their row and in their column: not the fault of
+                           ///< one neighbour
 };
 
 /// Writes to `now` the dots in contact that are where their neighbours say; all others are missing.
@@ -61,12 +63,51 @@ PlacedDots place_dots(const GivenDots<P>& given, const DotLayout& layout, Dots<P
     }
     if (is_out_of_place(given.found.data(), layout, k)) {
       ++placed.out_of_place;
+      const bool both = is_out_of_line(given.found.data(), layout, k, 0, 1) &&
+                        is_out_of_line(given.found.data(), layout, k, 1, 0);
+      placed.crossed += both ? 1 : 0;
     } else {
       ++placed.dots;
       at(now, k) = at(given.found, k);
     }
   }
   return placed;
+}
+
+/// Whether so many dots are out of place that the others cannot be trusted either: more than a
+/// fifth.
+inline bool is_not_in_order(const PlacedDots& placed) {
+  return 5 * placed.crossed > placed.out_of_place + placed.dots;
+}
+
+/// Mean square distance of neighbours in contact; 0 if there are none.
+template <class P>
+coordinate<P> mean_pitch_sq(const std::vector<Index>& touching,
+                            const P* now,
+                            const DotLayout& layout) {
+  using S = coordinate<P>;
+  S sum = S(0);
+  int count = 0;
+  for (const Index k : touching) {
+    for (const Index down : {Index(0), Index(1)}) {
+      const S sq = squared_norm(beside(now, layout, k, down, 1 - down) - now[k]);
+      if (is_distance_sq(sq)) {
+        sum = sum + sq;
+        ++count;
+      }
+    }
+  }
+  return count > 0 ? S(sum / S(count)) : S(0);
+}
+
+/// Whether dots this far apart cannot be compared after a move U for slips of delta_0: a U of more
+/// than half a pitch reaches the next dot, a pitch of less than four delta_0 is one of noise. The
+/// likely cause is another unit. Of no neighbours, which have no pitch, nothing is said.
+template <class S>
+bool is_wrong_scale(const S& pitch_sq, double reference, double slip) {
+  const S least =
+      S(4 * (reference * reference > 4 * slip * slip ? reference * reference : 4 * slip * slip));
+  return S(0) < pitch_sq && pitch_sq < least;
 }
 
 /// Mean of vectors, and of their squares.

@@ -137,29 +137,12 @@ Point3<S> middle_of(const std::vector<SpatialPair<S>>& pairs) {
   return sum / S(static_cast<double>(pairs.size()));
 }
 
-/// Mean square distance of neighbours in contact; 1 if there are none.
-template <class S>
-S mean_pitch_sq(const std::vector<Index>& touching, const Point3<S>* now, const DotLayout& layout) {
-  S sum = S(0);
-  int count = 0;
-  for (const Index k : touching) {
-    for (const Index step : {Index(0), Index(1)}) {
-      const S sq = squared_norm(beside(now, layout, k, step, 1 - step) - now[k]);
-      if (is_distance_sq(sq)) {
-        sum = sum + sq;
-        ++count;
-      }
-    }
-  }
-  return count > 0 ? S(sum / S(count)) : S(1);
-}
-
-/// Weights of a bell 4/3 pitches wide around a place.
+/// Weights of a bell 4/3 pitches wide around a place; all alike where there is no pitch.
 template <class S>
 void weigh_around(const Point3<S>& from, const S& pitch_sq, std::vector<SpatialPair<S>>& pairs) {
   using std::exp;
   for (SpatialPair<S>& p : pairs) {
-    const S d = squared_norm(p.now - from) / pitch_sq;
+    const S d = S(0) < pitch_sq ? S(squared_norm(p.now - from) / pitch_sq) : S(0);
     p.weight = d < S(100) ? S(exp(S(S(-9.0 / 32) * d))) : S(0);
   }
 }

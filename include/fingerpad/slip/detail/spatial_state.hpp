@@ -60,6 +60,7 @@ class SpatialState {
   std::vector<DotState> marks;
   Point3<S> stick_center = {S(0), S(0), S(0)};
   bool has_center = false;
+  S pitch_sq = S(0);
   Repository<Point3<S>> repository;
   SpatialStickResult<S> result;
   std::int64_t frame = 0;
