@@ -7,36 +7,41 @@
 #include <map>
 #include <string>
 
+#include "replay/check/check.hpp"
 #include "replay/replay.hpp"
 
-int main(int argc, char** argv) {
-  CLI::App app(
-      "Depth, contact, the motion of the object, the stick ratio and the force from a recording\n"
-      "of a fluid-filled pad, or pre-slip from one of a foam array.\n"
-      "RECORDING is a folder with sensor.json, reference.png, reference_depth.tiff and frames/,\n"
-      "and perhaps free/ (frames of the free pad) and dots.csv;\n"
-      "force and moment need signals.csv with pressures, side_dots.csv and \"rim\" in "
-      "sensor.json,\n"
-      "the load on each dot also stress_free_dots.csv; forces by look-up need \"force\" in\n"
-      "sensor.json, and are compared with forces.csv where there is one;\n"
-      "DIR receives frames.csv, dots.csv and pictures/, and depth/ and contact/ with --raw.\n"
-      "A recording of any other pad with a grid of dots needs a sensor.json of {} and frames/ or "
-      "a\n"
-      "video: dots are found in the frames, each that is found counts as in contact, and only the\n"
-      "dots and the stick ratio are written.\n"
-      "A recording of a foam array is taxels.csv, and perhaps a sensor.json with a section "
-      "\"foam\":\n"
-      "it gives frames.csv, with the vibration of each finger and pre-slip, and pictures/.\n"
-      "An earlier run's DIR is replaced when the new one is complete; nothing is left behind when\n"
-      "something fails.");
-  replay::Options options;
-  std::string frames;
-  const std::map<std::string, replay::Smoothing> policies = {
+namespace {
+
+const char* const about =
+    "Depth, contact, the motion of the object, the stick ratio and the force from a recording\n"
+    "of a fluid-filled pad, or pre-slip from one of a foam array.\n"
+    "RECORDING is a folder with sensor.json, reference.png, reference_depth.tiff and frames/,\n"
+    "and perhaps free/ (frames of the free pad) and dots.csv;\n"
+    "force and moment need signals.csv with pressures, side_dots.csv and \"rim\" in sensor.json,\n"
+    "the load on each dot also stress_free_dots.csv; forces by look-up need \"force\" in\n"
+    "sensor.json, and are compared with forces.csv where there is one;\n"
+    "DIR receives frames.csv, dots.csv and pictures/, and depth/ and contact/ with --raw.\n"
+    "A recording of any other pad with a grid of dots needs a sensor.json of {} and frames/ or a\n"
+    "video: dots are found in the frames, each that is found counts as in contact, and only the\n"
+    "dots and the stick ratio are written.\n"
+    "A recording of a foam array is taxels.csv, and perhaps a sensor.json with a section "
+    "\"foam\":\n"
+    "it gives frames.csv, with the vibration of each finger and pre-slip, and pictures/.\n"
+    "An earlier run's DIR is replaced when the new one is complete; nothing is left behind when\n"
+    "something fails.\n"
+    "--check computes and writes nothing: it says what is wrong with the recording.";
+
+void add_options(CLI::App& app, replay::Options& options, std::string& frames, bool& checks) {
+  static const std::map<std::string, replay::Smoothing> policies = {
       {"none", replay::Smoothing::none},
       {"box", replay::Smoothing::box},
       {"anchored", replay::Smoothing::anchored}};
   app.add_option("RECORDING", options.recording, "the recording's folder")->required();
-  app.add_option("--out", options.out, "the folder to write")->required()->option_text("DIR");
+  const auto check = app.add_flag("--check", checks,
+                                  "say what is wrong with the recording: a line each, with the "
+                                  "remedy; exit status 1 if there is anything");
+  const auto out = app.add_option("--out", options.out, "the folder to write")->option_text("DIR");
+  check->excludes(out);
   app.add_flag(
       "--raw", options.raw,
       "also write depth/NNNNNN.tiff (32-bit float, mm, NaN: invalid) and contact/NNNNNN.png "
@@ -51,8 +56,21 @@ int main(int argc, char** argv) {
   app.add_flag_callback(
       "--no-pictures", [&] { options.pictures = false; }, "write no pictures");
   app.footer("Exit status: 0 done, 1 something in the files, 2 wrong arguments.");
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app(about);
+  replay::Options options;
+  std::string frames;
+  bool checks = false;
+  add_options(app, options, frames, checks);
   try {
     app.parse(argc, argv);
+    if (!checks && options.out.empty()) {
+      throw CLI::RequiredError("--out or --check");
+    }
     if (!frames.empty()) {
       options.range = replay::parse_range(frames);
     }
@@ -63,7 +81,7 @@ int main(int argc, char** argv) {
     return 2;
   }
   try {
-    return replay::run(options);
+    return checks ? replay::print_check(options.recording) : replay::run(options);
   } catch (const std::exception& error) {
     std::fprintf(stderr, "replay: %s\n", error.what());
     return 1;

@@ -90,17 +90,26 @@ done
 [[ ! -e $work/out/depth ]] || fail "the depth maps of the earlier run are still there"
 
 # Interrupted while it writes: nothing half-written.
-rm -r "$work/out"
-"$replay" "$recording" --out "$work/out" >/dev/null 2>&1 &
-while [[ -z $(find "$work" -name '.out.*') ]] && kill -0 $! 2>/dev/null; do
-  sleep 0.01
+for signal in TERM HUP; do
+  rm -rf "$work/out"
+  "$replay" "$recording" --out "$work/out" >/dev/null 2>&1 &
+  while [[ -z $(find "$work" -name '.out.*') ]] && kill -0 $! 2>/dev/null; do
+    sleep 0.01
+  done
+  kill -$signal $! 2>/dev/null
+  wait $!
+  status=$?
+  if [[ $status != 0 ]]; then # 0: it was done before the signal came
+    [[ $status == 130 ]] || fail "status $status, not 130, after SIG$signal"
+    [[ -z $(find "$work" -name '*out*') ]] || fail "a run left something behind after SIG$signal"
+  fi
 done
-kill -TERM $! 2>/dev/null
-wait $!
-status=$?
-if [[ $status != 0 ]]; then # 0: it was done before the signal came
-  [[ $status == 130 ]] || fail "status $status, not 130, after an interrupt"
-  [[ -z $(find "$work" -name '*out*') ]] || fail "an interrupted run left something behind"
-fi
+
+# What is wrong with a recording, before anything is computed.
+"$replay" "$recording" --check >"$work/said" || fail "the bundled recording: $(cat "$work/said")"
+sed 's/"max_depth_mm": 18.0/"max_depth_mm": 9/' "$recording/sensor.json" >"$broken/sensor.json"
+cp -r "$recording/frames" "$broken/"
+"$replay" "$broken" --check >"$work/said" && fail "a wrong recording has exit status 0"
+grep -q "max_depth_mm: 9, but the free pad is 13" "$work/said" || fail "--check: $(cat "$work/said")"
 
 ((failures == 0)) && echo "all as it should be"

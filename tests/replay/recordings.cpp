@@ -188,7 +188,12 @@ TEST_CASE("sensor.json is refused with the key's name") {
       Fault{"\"smoothing_px\": 29", "\"smoothing_px\": 2.5", "must be a whole number"},
       Fault{"\"refractive_index\": 1.33", "\"refractive_index\": 0.9", "refractive_index = 0.9"},
       Fault{"\"base_radius_mm\": 18.735", "\"base_radius_mm\": -1", "pad.base_radius_mm = -1"},
-      Fault{"\"rows\": 21", "\"rows\": 0", "dots.rows = 0"}, Fault{"{", "[", "parse error"},
+      Fault{"\"rows\": 21", "\"rows\": 0", "dots.rows = 0"},
+      Fault{"\"rows\": 21", "\"rows\": 2000", "dots.rows = 2000, must be 2 to 100"},
+      Fault{"\"pitch_mm\": 1.5", "\"pitch_mm\": 1e300",
+            "section dots: DotFinder: pattern.pitch_px"},
+      Fault{"\"pitch_mm\": 1.5", "\"pitch_mm\": 0.1", "dots: diameter_mm must be less than"},
+      Fault{"{", "[", "parse error"},
       Fault{"\"reference.png\"", "7", "reference.frame is 7 (a number), must be the path"},
       Fault{"\"reference.png\"", "\"none.png\"", "none.png: there is no such file"},
       Fault{"\"smoothing_px\"", "\"video\": \"none.mp4\", \"smoothing_px\"", "no such video"});
@@ -357,6 +362,35 @@ TEST_CASE("an earlier run is replaced, anything else is left alone") {
     replay::run(options);
     CHECK(fs::exists(options.out / "frames.csv"));
   }
+}
+
+TEST_CASE("frames are sorted as people sort them") {
+  const Workplace work;
+  const fs::path folder = work.recording() / "frames";
+  const std::vector<std::string> names = {"frame2.png", "frame10.png", "frame010b.png",
+                                          "frame100.png", "left1.png"};
+  fs::rename(folder / "000000.png", folder / names[0]);
+  fs::rename(folder / "000001.png", folder / names[1]);
+  fs::rename(folder / "000002.png", folder / names[2]);
+  fs::copy_file(folder / names[0], folder / names[3]);
+  fs::copy_file(folder / names[0], folder / names[4]);
+  auto frames = replay::FrameSource::of_folder(folder);
+  REQUIRE(frames.size() == 5);
+  frames.seek(0);
+  for (const std::string& name : names) {
+    (void)frames.next();
+    CHECK(frames.last_file().filename() == name);
+  }
+}
+
+TEST_CASE("a picture that does not fit on the disk is told") {
+  const cv::Mat picture(64, 64, CV_8UC3, cv::Scalar(1, 2, 3));
+  const cv::Mat_<float> depth(64, 64, 1.0F);
+  if (fs::exists("/dev/full")) {
+    CHECK_THROWS_AS(replay::write_png("/dev/full", picture), replay::Failure);
+    CHECK_THROWS_AS(replay::write_depth_image("/dev/full", depth), replay::Failure);
+  }
+  CHECK_THROWS_AS(replay::write_png("/no such folder/a.png", picture), replay::Failure);
 }
 
 TEST_CASE("16-bit frames give the depth of 8-bit frames") {

@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include <cstdio>
+#include <fstream>
 #include <opencv2/core/utils/logger.hpp>
 #include <opencv2/imgcodecs.hpp>
 #include <string>
@@ -37,15 +38,26 @@ cv::Mat read_image(const fs::path& file) {
   return image;
 }
 
-void write_image(const fs::path& file, const cv::Mat& image, const std::vector<int>& settings) {
-  bool written = false;
+/// Encoded first and written by ourselves: codecs do not say when a disk is full.
+void write_image(const fs::path& file,
+                 const char* format,
+                 const cv::Mat& image,
+                 const std::vector<int>& settings) {
+  std::vector<uchar> bytes;
   try {
     const QuietCodecs quiet;
-    written = cv::imwrite(file.string(), image, settings);
+    if (!cv::imencode(format, image, bytes, settings)) {
+      bytes.clear();
+    }
   } catch (const cv::Exception&) {
-    written = false;
+    bytes.clear();
   }
-  if (!written) {
+  std::ofstream stream(file, std::ios::binary);
+  for (const uchar byte : bytes) {
+    stream.put(static_cast<char>(byte));
+  }
+  stream.close();
+  if (bytes.empty() || !stream) {
     fail(file, "cannot be written");
   }
 }
@@ -97,13 +109,13 @@ cv::Mat_<float> read_depth_image(const fs::path& file) {
 }
 
 void write_png(const fs::path& file, const cv::Mat& image) {
-  write_image(file, image,
+  write_image(file, ".png", image,
               {cv::IMWRITE_PNG_COMPRESSION, 9, cv::IMWRITE_PNG_STRATEGY,
                cv::IMWRITE_PNG_STRATEGY_FILTERED});
 }
 
 void write_depth_image(const fs::path& file, const cv::Mat_<float>& depth_mm) {
-  write_image(file, depth_mm, {});
+  write_image(file, ".tiff", depth_mm, {});
 }
 
 }  // namespace replay

@@ -12,6 +12,11 @@ inline void watch_for_interrupts() {
   const auto note = [](int /*signal*/) { interrupts = 1; };
   std::signal(SIGINT, note);
   std::signal(SIGTERM, note);
+#ifdef SIGHUP
+  if (std::signal(SIGHUP, note) == SIG_IGN) {
+    std::signal(SIGHUP, SIG_IGN);  // nohup
+  }
+#endif
 }
 
 inline bool is_interrupted() {

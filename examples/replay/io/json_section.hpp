@@ -74,15 +74,17 @@ class JsonSection {
 
   int positive_integer(const std::string& key) const { return integer(key, 1); }
 
-  int integer(const std::string& key, int least) const {
+  int integer(const std::string& key, int least, int most = std::numeric_limits<int>::max()) const {
     const nlohmann::json& found = at(key);
     if (!found.is_number_integer()) {
       refuse_type(key, found, "a whole number");
     }
     const double found_value = found.get<double>();
-    if (!(found_value >= least && found_value <= std::numeric_limits<int>::max())) {
-      fail(file_, full_name(key) + " = " + found.dump() + ", must be >= " + std::to_string(least) +
-                      " and fit into 32 bits");
+    if (!(found_value >= least && found_value <= most)) {
+      const bool bounded = most < std::numeric_limits<int>::max();
+      fail(file_, full_name(key) + " = " + found.dump() + ", must be " +
+                      (bounded ? std::to_string(least) + " to " + std::to_string(most)
+                               : ">= " + std::to_string(least) + " and fit into 32 bits"));
     }
     return found.get<int>();
   }

@@ -3,6 +3,7 @@
 #include "replay/io/recording.hpp"
 
 #include <algorithm>
+#include <string>
 #include <system_error>
 
 #include "replay/io/failure.hpp"
@@ -15,6 +16,35 @@ namespace fs = std::filesystem;
 
 std::string size_of(const cv::Mat& image) {
   return std::to_string(image.cols) + " x " + std::to_string(image.rows) + " px";
+}
+
+/// As people sort: by numbers where names have numbers, so that frame10 follows frame2.
+bool comes_before(const std::string& a, const std::string& b) {
+  const auto is_digit = [](char c) { return c >= '0' && c <= '9'; };
+  std::size_t i = 0;
+  std::size_t j = 0;
+  while (i < a.size() && j < b.size()) {
+    if (!is_digit(a[i]) || !is_digit(b[j])) {
+      if (a[i] != b[j]) {
+        return a[i] < b[j];
+      }
+      ++i;
+      ++j;
+      continue;
+    }
+    const auto number = [&](const std::string& text, std::size_t& at) {
+      const std::size_t first = std::min(text.find_first_not_of('0', at), text.size());
+      for (at = first; at < text.size() && is_digit(text[at]); ++at) {
+      }
+      return text.substr(first, at - first);
+    };
+    const std::string one = number(a, i);
+    const std::string other = number(b, j);
+    if (one != other) {
+      return one.size() != other.size() ? one.size() < other.size() : one < other;
+    }
+  }
+  return a.size() - i != b.size() - j ? a.size() - i < b.size() - j : a < b;
 }
 
 cv::VideoCapture opened(const fs::path& file) {
@@ -53,7 +83,9 @@ FrameSource FrameSource::of_folder(const fs::path& folder) {
   if (source.files_.empty()) {
     fail(folder, "holds no frames");
   }
-  std::sort(source.files_.begin(), source.files_.end());
+  std::sort(source.files_.begin(), source.files_.end(), [](const fs::path& a, const fs::path& b) {
+    return comes_before(a.filename().string(), b.filename().string());
+  });
   source.count_ = static_cast<int>(source.files_.size());
   return source;
 }

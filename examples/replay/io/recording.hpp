@@ -22,7 +22,7 @@ namespace replay {
 /// The frames, one after the other.
 class FrameSource {
  public:
-  /// Files of a folder, sorted by name (hidden ones left out), or a video file; throws Failure.
+  /// Files of a folder, sorted by name, frame10 after frame2 (hidden ones left out), or a video file; throws Failure.
   static FrameSource of_folder(const std::filesystem::path& folder);
   static FrameSource of_video(const std::filesystem::path& file);
 

@@ -14,6 +14,9 @@ namespace {
 
 using Section = JsonSection;
 
+constexpr int min_dots = 2;  // rows and columns of a print
+constexpr int max_dots = 100;
+
 fingerpad::Camera<double> read_camera(const Section& root) {
   const Section section = root.section(
       "camera", {{"plate_distance_mm", "from the camera's center to the plate's inner face, mm"},
@@ -56,8 +59,13 @@ Dots read_dots(const Section& root) {
                                                 {"cols", "columns of printed dots"},
                                                 {"pitch_mm", "between neighbouring dots, mm"},
                                                 {"diameter_mm", "of a printed dot, mm"}});
-  return {section.positive_integer("rows"), section.positive_integer("cols"),
-          section.positive("pitch_mm"), section.positive("diameter_mm")};
+  const Dots dots{section.integer("rows", min_dots, max_dots),
+                  section.integer("cols", min_dots, max_dots), section.positive("pitch_mm"),
+                  section.positive("diameter_mm")};
+  if (!(dots.diameter_mm < dots.pitch_mm)) {
+    section.refuse("diameter_mm must be less than pitch_mm");
+  }
+  return dots;
 }
 
 DotPattern read_pattern(const Section& root) {
@@ -68,8 +76,8 @@ DotPattern read_pattern(const Section& root) {
                             {"bright", "whether dots are brighter than the ground around them"}});
   DotPattern pattern;
   if (section.has("rows") || section.has("cols")) {
-    pattern.rows = section.positive_integer("rows");
-    pattern.cols = section.positive_integer("cols");
+    pattern.rows = section.integer("rows", min_dots, max_dots);
+    pattern.cols = section.integer("cols", min_dots, max_dots);
   }
   if (section.has("diameter_px")) {
     pattern.diameter_px = section.positive("diameter_px");
@@ -219,6 +227,40 @@ void read_dots_only(const Section& root, Sensor& sensor) {
   }
 }
 
+/// What only a recording with depth names.
+void read_depth(const std::filesystem::path& file, const Section& root, Sensor& sensor) {
+  try {
+    sensor.camera = read_camera(root);
+    sensor.absorption = read_absorption(root);
+  } catch (const fingerpad::parameter_error& error) {
+    fail(file, error.what());
+  }
+  sensor.pad = read_pad(root);
+  const Section reference =
+      root.section("reference", {{"frame", "picture of the free pad, a PNG file"},
+                                 {"depth", "its depth in mm per pixel, a 32-bit float TIFF file"}});
+  sensor.reference_frame = reference.path("frame");
+  sensor.reference_depth = reference.path("depth");
+  if (root.has("smoothing_px")) {
+    sensor.smoothing_px = root.positive_integer("smoothing_px");
+    if (*sensor.smoothing_px % 2 == 0) {
+      fail(file, "smoothing_px = " + std::to_string(*sensor.smoothing_px) + ", must be odd");
+    }
+  }
+  if (root.has("dots")) {
+    sensor.dots = read_dots(root);
+  }
+  if (root.has("force")) {
+    sensor.force = read_force(root);
+  }
+  if (root.has("rim")) {
+    sensor.rim = read_rim(root);
+  }
+  if (root.has("neighbour_light")) {
+    sensor.neighbour_light = read_neighbour_light(root);
+  }
+}
+
 }  // namespace
 
 Sensor read_sensor(const std::filesystem::path& file) {
@@ -253,37 +295,8 @@ Sensor read_sensor(const std::filesystem::path& file) {
   sensor.dots_only = !names_depth(root);
   if (sensor.dots_only) {
     read_dots_only(root, sensor);
-    return sensor;
-  }
-  try {
-    sensor.camera = read_camera(root);
-    sensor.absorption = read_absorption(root);
-  } catch (const fingerpad::parameter_error& error) {
-    fail(file, error.what());
-  }
-  sensor.pad = read_pad(root);
-  const Section reference =
-      root.section("reference", {{"frame", "picture of the free pad, a PNG file"},
-                                 {"depth", "its depth in mm per pixel, a 32-bit float TIFF file"}});
-  sensor.reference_frame = reference.path("frame");
-  sensor.reference_depth = reference.path("depth");
-  if (root.has("smoothing_px")) {
-    sensor.smoothing_px = root.positive_integer("smoothing_px");
-    if (*sensor.smoothing_px % 2 == 0) {
-      fail(file, "smoothing_px = " + std::to_string(*sensor.smoothing_px) + ", must be odd");
-    }
-  }
-  if (root.has("dots")) {
-    sensor.dots = read_dots(root);
-  }
-  if (root.has("force")) {
-    sensor.force = read_force(root);
-  }
-  if (root.has("rim")) {
-    sensor.rim = read_rim(root);
-  }
-  if (root.has("neighbour_light")) {
-    sensor.neighbour_light = read_neighbour_light(root);
+  } else {
+    read_depth(file, root, sensor);
   }
   return sensor;
 }

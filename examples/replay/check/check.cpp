@@ -1,0 +1,82 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+#include "replay/check/check.hpp"
+
+#include <cstdio>
+#include <cstdlib>
+
+#include "replay/check/parts.hpp"
+#include "replay/io/failure.hpp"
+#include "replay/steps/wrench_step.hpp"
+
+namespace replay {
+namespace {
+
+/// What a recording with depth has no data for.
+void note_missing(const Recording& recording, Findings& findings) {
+  const auto note = [&](const std::string& place, const std::string& what, const char* remedy) {
+    findings.push_back({place, what, remedy, false});
+  };
+  if (const std::string lacking = lacking_for_wrench(recording); !lacking.empty()) {
+    note("six-axis force", lacking, "add it where the force is wanted");
+  }
+  if (!recording.sensor.force) {
+    note("forces by look-up", "sensor.json has no section force",
+         "calibrate with known loads where these forces are wanted");
+  }
+  if (recording.free_frames.size() == 0) {
+    note("free", "there are no frames of the free pad",
+         "record twenty or more: the threshold of contact comes from their noise");
+  }
+}
+
+void check_camera_recording(const std::filesystem::path& folder, Findings& findings) {
+  Recording recording = open_recording(folder);
+  if (!recording.signals.times_s.empty()) {
+    std::vector<double> times_s;
+    for (int frame = 0; frame < recording.frames.size(); ++frame) {
+      const std::string text = recording.signals.time_s(frame);
+      times_s.push_back(text.empty() ? std::numeric_limits<double>::quiet_NaN()
+                                     : std::strtod(text.c_str(), nullptr));
+    }
+    check_clock("signals.csv, time_s", "frame", times_s, findings);
+  }
+  if (!recording.sensor.dots_only) {
+    check_numbers(recording, findings);
+    check_reference(recording, findings);
+  }
+  check_light(recording, findings);
+  check_dots(folder, recording, findings);
+  if (!recording.sensor.dots_only) {
+    note_missing(recording, findings);
+  }
+}
+
+}  // namespace
+
+Findings check_recording(const std::filesystem::path& folder) {
+  Findings findings;
+  try {
+    if (is_foam_recording(folder)) {
+      check_foam(open_foam_recording(folder), findings);
+    } else {
+      check_camera_recording(folder, findings);
+    }
+  } catch (const Failure& failure) {
+    findings.push_back({failure.what(), "cannot be used", "correct it and check again"});
+  }
+  return findings;
+}
+
+int print_check(const std::filesystem::path& folder) {
+  int wrong = 0;
+  for (const Finding& finding : check_recording(folder)) {
+    std::printf("%s%s: %s; %s\n", finding.is_wrong ? "" : "(missing) ", finding.place.c_str(),
+                finding.what.c_str(), finding.remedy.c_str());
+    wrong += finding.is_wrong ? 1 : 0;
+  }
+  std::printf(wrong == 0 ? "nothing is wrong as far as can be seen\n" : "%d to look at\n", wrong);
+  return wrong == 0 ? 0 : 1;
+}
+
+}  // namespace replay

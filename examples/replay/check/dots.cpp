@@ -1,0 +1,181 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+#include "replay/dots/dots.hpp"
+
+#include <cmath>
+
+#include "replay/check/parts.hpp"
+#include "replay/dots/file.hpp"
+
+namespace replay {
+namespace {
+
+/// Steps between neighbours in rows and columns, px, and how far a dot lies from between two.
+struct Steps {
+  std::vector<double> right_x, right_y, down_x, down_y, bend, length;
+
+  explicit Steps(const DotGrid& dots) {
+    for (int i = 0; i < dots.rows; ++i) {
+      for (int j = 0; j + 1 < dots.cols; ++j) {
+        add(dots(i, j + 1) - dots(i, j), right_x, right_y);
+        if (j > 0) {
+          add_bend(dots(i, j - 1) / 2 + dots(i, j + 1) / 2 - dots(i, j));
+        }
+      }
+    }
+    for (int i = 0; i + 1 < dots.rows; ++i) {
+      for (int j = 0; j < dots.cols; ++j) {
+        add(dots(i + 1, j) - dots(i, j), down_x, down_y);
+      }
+    }
+  }
+
+ private:
+  void add(const cv::Vec2d& step, std::vector<double>& x, std::vector<double>& y) {
+    if (is_present(step)) {
+      x.push_back(step[0]);
+      y.push_back(step[1]);
+      length.push_back(cv::norm(step));
+    }
+  }
+  void add_bend(const cv::Vec2d& off) {
+    if (is_present(off)) {
+      bend.push_back(cv::norm(off));
+    }
+  }
+};
+
+/// Order of rows and columns.
+void check_order(const std::string& place, const DotGrid& dots, Findings& findings) {
+  const Steps steps(dots);
+  if (steps.bend.empty() || steps.down_x.empty()) {
+    return;
+  }
+  const cv::Vec2d right(median_of(steps.right_x), median_of(steps.right_y));
+  const cv::Vec2d down(median_of(steps.down_x), median_of(steps.down_y));
+  if (median_of(steps.bend) > 0.25 * median_of(steps.length)) {
+    findings.push_back(
+        {place, "dots of one row do not follow each other",
+         "give dots in the order of the print: are rows and columns numbered right?"});
+  } else if (std::abs(right[1]) > std::abs(right[0]) && std::abs(down[0]) > std::abs(down[1])) {
+    findings.push_back({place, "rows run down the frame, columns across it",
+                        "are row and col, or x_px and y_px, exchanged?"});
+  } else if (right[0] * down[1] - right[1] * down[0] < 0) {
+    findings.push_back(
+        {place, "the print is mirrored", "col grows to the right where row grows down"});
+  }
+}
+
+/// Coordinates that are no pixels of the frame.
+bool check_pixels(const std::string& place,
+                  const DotGrid& dots,
+                  cv::Size frame,
+                  Findings& findings) {
+  int count = 0, outside = 0, at_zero = 0;
+  cv::Vec2d least(1e300, 1e300), most(-1e300, -1e300);
+  for (const cv::Vec2d& dot : dots) {
+    if (is_present(dot)) {
+      ++count;
+      outside +=
+          dot[0] < -0.5 || dot[1] < -0.5 || dot[0] > frame.width || dot[1] > frame.height ? 1 : 0;
+      const bool zero = !(dot[0] < 0 || dot[0] > 0 || dot[1] < 0 || dot[1] > 0);
+      at_zero += zero ? 1 : 0;
+      least = {std::fmin(least[0], dot[0]), std::fmin(least[1], dot[1])};
+      most = {std::fmax(most[0], dot[0]), std::fmax(most[1], dot[1])};
+    }
+  }
+  const double span = std::fmax(most[0] - least[0], most[1] - least[1]);
+  const bool tiny = count > 1 && span < 0.1 * (std::min)(frame.width, frame.height);
+  if (at_zero > 1) {
+    findings.push_back({place, std::to_string(at_zero) + " dots lie at (0, 0)",
+                        "leave out the lines of lost dots"});
+    return false;
+  }
+  if (tiny || 4 * outside > count) {
+    findings.push_back({place,
+                        "x_px from " + short_number(least[0]) + " to " + short_number(most[0]) +
+                            " in frames " + std::to_string(frame.width) + " px wide",
+                        most[0] <= 1.5 ? "in shares of the frame, or in m? they are pixels"
+                                       : "in mm? they are pixels"});
+    return false;
+  }
+  return true;
+}
+
+/// Whether a dot keeps its name from frame to frame.
+void check_names(const std::string& place, const std::map<int, DotGrid>& dots, Findings& findings) {
+  int moves = 0, leaps = 0;
+  const DotGrid* before = nullptr;
+  for (const auto& [frame, now] : dots) {
+    const double pitch_px = median_of(Steps(now).length);
+    for (int k = 0; before != nullptr && k < static_cast<int>(now.total()); ++k) {
+      const double move =
+          cv::norm(now(k / now.cols, k % now.cols) - (*before)(k / now.cols, k % now.cols));
+      moves += std::isfinite(move) ? 1 : 0;
+      leaps += move > 0.7 * pitch_px ? 1 : 0;
+    }
+    before = &now;
+  }
+  if (10 * leaps > moves) {
+    findings.push_back({place,
+                        std::to_string(leaps) + " of " + std::to_string(moves) +
+                            " moves from frame to frame are leaps",
+                        "a dot keeps its row and column in all frames"});
+  }
+}
+
+void check_print(const Recording& recording, Findings& findings) {
+  const Dots& print = *recording.sensor.dots;
+  fingerpad::DotFinderOptions options = print_of(recording.sensor, recording.reference_depth);
+  const double expected_px = options.pattern.pitch_px;
+  const int wanted = print.rows * print.cols;
+  options.pattern = {};
+  const fingerpad::DotFinder finder(recording.reference, options);
+  if (!finder.ok()) {
+    findings.push_back({recording.sensor.reference_frame, "shows no grid of 9 or more dots",
+                        "is it sharp and the free pad? else leave \"dots\" out of sensor.json"});
+    return;
+  }
+  const double ratio = finder.pattern().pitch_px / expected_px;
+  const auto found = static_cast<int>(count_present(finder.free_px()));
+  if (!(ratio > 0.85 && ratio < 1.15)) {
+    findings.push_back({"sensor.json, dots.pitch_mm",
+                        "dots lie " + short_number(finder.pattern().pitch_px) +
+                            " px apart in the reference, but should " + short_number(expected_px),
+                        "in mm on the pad; is camera.pitch_mm right?"});
+  } else if (finder.rows() > print.rows || finder.cols() > print.cols || 10 * found < 6 * wanted) {
+    findings.push_back({"sensor.json, dots.rows and cols",
+                        std::to_string(print.rows) + " x " + std::to_string(print.cols) +
+                            ", but the reference shows " + std::to_string(found) + " dots in " +
+                            std::to_string(finder.rows()) + " rows and " +
+                            std::to_string(finder.cols()) + " columns",
+                        "count the printed ones"});
+  }
+}
+
+}  // namespace
+
+void check_dots(const std::filesystem::path& folder,
+                const Recording& recording,
+                Findings& findings) {
+  const Sensor& sensor = recording.sensor;
+  if (std::filesystem::exists(folder / "dots.csv")) {
+    const std::string place = "dots.csv";
+    const auto dots = read_dots(folder / "dots.csv", recording.frames.size(), std::nullopt);
+    if (check_pixels(place, dots.begin()->second, recording.reference.size(), findings)) {
+      check_order(place, dots.begin()->second, findings);
+      check_names(place, dots, findings);
+    }
+  } else if (sensor.dots) {
+    check_print(recording, findings);
+  } else if (sensor.dots_only) {
+    fingerpad::DotFinderOptions options;
+    options.pattern.bright = sensor.pattern.bright;
+    if (!fingerpad::DotFinder(recording.reference, options).ok()) {
+      findings.push_back({"frames", "the first shows no grid of 9 or more dots",
+                          "name a sharp picture of the free pad as \"reference\" in sensor.json"});
+    }
+  }
+}
+
+}  // namespace replay

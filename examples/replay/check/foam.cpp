@@ -1,0 +1,102 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+#include <cmath>
+
+#include "replay/check/parts.hpp"
+
+namespace replay {
+namespace {
+
+/// How much a taxel changes from sample to sample, in all.
+struct TaxelChange {
+  double sum = 0;
+  double swapped_sum = 0;  ///< if its two bytes were exchanged
+  double usual = 0;        ///< median of the changes
+  bool whole = true;       ///< whole numbers of 16 bits
+};
+
+double swapped(double reading) {
+  const auto word = static_cast<unsigned>(reading);
+  return static_cast<double>(((word & 0xFFU) << 8U) | (word >> 8U));
+}
+
+TaxelChange change_of(const TaxelTable& table, std::size_t taxel) {
+  TaxelChange change;
+  std::vector<double> steps;
+  double before = std::numeric_limits<double>::quiet_NaN();
+  for (std::size_t k = taxel; k < table.readings.size(); k += table.taxels()) {
+    const double now = table.readings[k];
+    if (!std::isfinite(now)) {
+      continue;
+    }
+    change.whole = change.whole && now == std::floor(now) && now >= 0 && now < 65536;
+    if (std::isfinite(before)) {
+      steps.push_back(std::abs(now - before));
+      change.sum += steps.back();
+      change.swapped_sum += change.whole ? std::abs(swapped(now) - swapped(before)) : 0;
+    }
+    before = now;
+  }
+  change.usual = steps.empty() ? 0 : median_of(steps);
+  return change;
+}
+
+std::string taxel_name(const TaxelTable& table, std::size_t taxel) {
+  const auto cols = static_cast<std::size_t>(table.cols);
+  std::string name = "r";
+  name += std::to_string(taxel / cols) + "_c";
+  return name += std::to_string(taxel % cols);
+}
+
+}  // namespace
+
+void check_foam(const FoamRecording& recording, Findings& findings) {
+  const TaxelTable& table = recording.table;
+  check_clock("taxels.csv, time_s", "sample", table.times_s, findings);
+  std::size_t still = 0, first_still = 0;
+  bool whole = true;
+  double sum = 0, swapped_sum = 0;
+  std::vector<double> usual;
+  for (std::size_t taxel = 0; taxel < table.taxels(); ++taxel) {
+    const TaxelChange change = change_of(table, taxel);
+    if (!(change.sum > 0)) {
+      first_still = still == 0 ? taxel : first_still;
+      ++still;
+    }
+    whole = whole && change.whole;
+    sum += change.sum;
+    swapped_sum += change.swapped_sum;
+    usual.push_back(change.usual);
+  }
+  if (still > 0) {
+    findings.push_back(
+        {"taxels.csv, " + taxel_name(table, first_still),
+         std::to_string(still) + " of " + std::to_string(table.taxels()) + " taxels never change",
+         "dead, saturated or not connected? leave their fingers out"});
+  }
+  if (whole && swapped_sum < 0.1 * sum) {
+    findings.push_back({"taxels.csv", "readings leap, but not with their two bytes exchanged",
+                        "exchange the bytes of each reading"});
+  } else {
+    const double typical = median_of(usual);
+    const auto worst = std::max_element(usual.begin(), usual.end());
+    if (*worst > 30 * (std::max)(typical, 1.0)) {
+      findings.push_back(
+          {"taxels.csv, " + taxel_name(table, static_cast<std::size_t>(worst - usual.begin())),
+           "flickers by " + short_number(*worst) + " from sample to sample, others by " +
+               short_number(typical),
+           "a loose contact? leave this taxel's finger out"});
+    }
+  }
+  const double most =
+      *std::max_element(table.readings.begin(), table.readings.end(),
+                        [](double a, double b) { return a < b || (a != a && b == b); });
+  if (recording.sensor.noise && most < *recording.sensor.noise) {
+    findings.push_back(
+        {"sensor.json, foam.noise",
+         short_number(*recording.sensor.noise) + ", but no reading exceeds " + short_number(most),
+         "give the noise in the unit of the readings"});
+  }
+}
+
+}  // namespace replay

@@ -1,0 +1,170 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+#include <cmath>
+#include <opencv2/imgproc.hpp>
+#include <optional>
+
+#include "replay/check/parts.hpp"
+
+namespace replay {
+namespace {
+
+constexpr int most_frames = 300;  // that are looked at
+
+/// Red plus green, half of it, in grey levels.
+cv::Mat_<float> light_of(const cv::Mat& frame) {
+  cv::Mat green, red;
+  cv::extractChannel(frame, green, 1);
+  cv::extractChannel(frame, red, 2);
+  const double unit = frame.depth() == CV_16U ? 1.0 / 512 : 0.5;
+  cv::Mat_<float> light;
+  cv::addWeighted(green, unit, red, unit, 0, light, CV_32F);
+  return light;
+}
+
+/// Share of the pixels of `pad` in which a colour is at its end.
+double saturated_share(const cv::Mat& frame, const cv::Mat& pad) {
+  cv::Mat high;
+  cv::inRange(frame.reshape(1), frame.depth() == CV_16U ? 254 * 256 : 254, 65535, high);
+  cv::Mat any;
+  cv::reduce(high.reshape(1, static_cast<int>(frame.total())), any, 1, cv::REDUCE_MAX);
+  return cv::countNonZero(any.reshape(1, frame.rows) & pad) /
+         static_cast<double>(cv::countNonZero(pad));
+}
+
+double median_within(const cv::Mat_<float>& values, const cv::Mat_<uchar>& pad) {
+  std::vector<double> inside;
+  for (int i = 0; i < values.rows; i += 2) {
+    for (int j = 0; j < values.cols; j += 2) {
+      if (pad(i, j) != 0 && std::isfinite(values(i, j))) {
+        inside.push_back(static_cast<double>(values(i, j)));
+      }
+    }
+  }
+  return median_of(inside);
+}
+
+/// What some frames show, each against the reference and the one before.
+struct Light {
+  double saturated = 0;              ///< largest share
+  double level = 0;                  ///< median of the frames' medians, grey levels
+  std::vector<double> of_reference;  ///< median of frame / reference
+  double noise = std::numeric_limits<double>::infinity();  ///< least, grey levels
+  int same = 0;                                            ///< frames that equal the one before
+  double touched = 0;  ///< largest share of the pad that is lighter or darker
+};
+
+/// Share of squares of 16 px in the pad whose light differs by more than 2 % from the reference's.
+double touched_share(const cv::Mat_<float>& ratio, const cv::Mat_<uchar>& pad, double usual) {
+  const cv::Size size = ratio.size() / 16;
+  cv::Mat inside, mean;
+  cv::Mat known = ratio.clone();
+  known.setTo(0, ~pad);
+  cv::resize(pad, inside, size, 0, 0, cv::INTER_AREA);
+  cv::resize(known, mean, size, 0, 0, cv::INTER_AREA);
+  const cv::Mat whole = inside == 255;
+  cv::Mat off = cv::abs(mean - usual) > 0.02 * usual;
+  return cv::countNonZero(off & whole) /
+         (std::max)(1.0, static_cast<double>(cv::countNonZero(whole)));
+}
+
+Light light_in(FrameSource& frames, const cv::Mat& reference, const cv::Mat_<uchar>& pad) {
+  Light seen;
+  std::vector<double> levels;
+  cv::Mat_<float> before;
+  cv::Mat_<float> free_light = light_of(reference);
+  cv::max(free_light, 1, free_light);
+  frames.seek(0);
+  for (int k = 0; k < (std::min)(frames.size(), most_frames); ++k) {
+    const cv::Mat frame = next_frame(frames, reference.size());
+    const cv::Mat_<float> light = light_of(frame);
+    cv::Mat_<float> ratio;
+    cv::divide(light, free_light, ratio);
+    levels.push_back(median_within(light, pad));
+    seen.of_reference.push_back(median_within(ratio, pad));
+    seen.saturated = std::fmax(seen.saturated, saturated_share(frame, pad));
+    seen.touched = std::fmax(seen.touched, touched_share(ratio, pad, seen.of_reference.back()));
+    if (!before.empty()) {
+      const double off = cv::norm(light, before, cv::NORM_L1, pad) / cv::countNonZero(pad);
+      seen.same += off > 0 ? 0 : 1;
+      // The mean of |difference| of two noisy values is 2 / sqrt(pi) of their noise.
+      seen.noise = off > 0 ? std::fmin(seen.noise, off * std::sqrt(CV_PI) / 2) : seen.noise;
+    }
+    before = light;
+  }
+  seen.level = median_of(levels);
+  return seen;
+}
+
+std::string percent(double share) {
+  return short_number(100 * share) + " %";
+}
+
+void tell_exposure(const std::string& place, const Light& light, Findings& findings) {
+  if (light.saturated > 0.01) {
+    findings.push_back({place, percent(light.saturated) + " of the pad are saturated",
+                        "expose for a shorter time, or take light away"});
+  }
+  if (light.level < 16) {
+    findings.push_back({place, "too dark: " + short_number(light.level) + " of 255 grey levels",
+                        "expose for longer, or add light"});
+  }
+  if (light.noise < 1e9 && light.noise > 0.1 * light.level && light.level >= 16) {
+    findings.push_back(
+        {place,
+         "noise of " + short_number(light.noise) + " grey levels in " + short_number(light.level),
+         "lower the gain and add light, or average frames"});
+  }
+  if (light.same > 0) {
+    findings.push_back({place,
+                        std::to_string(light.same) + " frames are the same as the one before",
+                        "does the camera or the copying stand still?"});
+  }
+}
+
+void tell_lamp(const std::string& place,
+               double ratio,
+               const std::string& remedy,
+               Findings& findings) {
+  constexpr double most = 0.05;
+  if (!(std::abs(ratio - 1) <= most)) {
+    findings.push_back({place,
+                        percent(std::abs(ratio - 1)) + (ratio < 1 ? " darker" : " lighter") +
+                            " than the reference",
+                        remedy});
+  }
+}
+
+}  // namespace
+
+void check_light(Recording& recording, Findings& findings) {
+  cv::Mat_<uchar> pad(recording.reference.size(), uchar{255});
+  const bool has_reference = !recording.sensor.dots_only;
+  if (has_reference) {
+    pad = recording.reference_depth > 0;
+    if (cv::countNonZero(pad) == 0) {
+      return;
+    }
+  }
+  const Light frames = light_in(recording.frames, recording.reference, pad);
+  tell_exposure("frames", frames, findings);
+  if (!has_reference) {
+    return;
+  }
+  const std::string again = "record reference and free frames again with this lamp";
+  if (recording.free_frames.size() > 0) {
+    const Light free = light_in(recording.free_frames, recording.reference, pad);
+    tell_exposure("free", free, findings);
+    tell_lamp("free", median_of(free.of_reference), again, findings);
+    if (free.touched > 0.02) {
+      findings.push_back({"free", percent(free.touched) + " of the pad look unlike the reference",
+                          "something touches the pad: leave these frames out"});
+    }
+  }
+  tell_lamp("frames, the first", frames.of_reference.front(), again, findings);
+  tell_lamp("frames, the last against the first",
+            frames.of_reference.back() / frames.of_reference.front(),
+            "does the lamp or the exposure change by itself? fix both", findings);
+}
+
+}  // namespace replay

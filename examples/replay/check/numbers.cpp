@@ -1,0 +1,200 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+#include <cmath>
+#include <set>
+
+#include "replay/check/parts.hpp"
+
+namespace replay {
+namespace {
+
+void check_pressure(const Recording& recording, Findings& findings) {
+  const std::string place = "signals.csv, pressure_mpa";
+  std::vector<double> values;
+  for (const auto& [frame, value] : recording.signals.pressures_mpa) {
+    values.push_back(value);
+  }
+  if (values.empty()) {
+    return;
+  }
+  constexpr double max_plausible_mpa = 0.2;
+  constexpr double air_mpa = 0.085;  // on a mountain
+  const double usual = median_of(values);
+  const double least = *std::min_element(values.begin(), values.end());
+  const std::string around = "around " + short_number(usual) + " MPa";
+  if (usual > max_plausible_mpa) {
+    findings.push_back({place, around + ": more than a soft pad holds",
+                        usual > 1000 ? "in Pa? divide by 1,000,000" : "in kPa? divide by 1000"});
+  } else if (least > air_mpa) {
+    findings.push_back(
+        {place, around + ", never below the air's",
+         "absolute? subtract the air's pressure (about 0.1013); in bar? divide by 10"});
+  } else if (least < 0) {
+    findings.push_back({place, "down to " + short_number(least) + " MPa, below the surrounding air",
+                        "tare the gauge with the pad open"});
+  } else if (usual < 1e-4) {
+    findings.push_back({place, around + ": none", "is the gauge connected? in GPa or in bar?"});
+  }
+  if (values.size() >= 10 && std::set<double>(values.begin(), values.end()).size() == 1) {
+    findings.push_back({place, "never changes", "is the gauge read at every frame?"});
+  }
+}
+
+void check_side_dots(const Recording& recording, Findings& findings) {
+  if (!recording.side_dots) {
+    return;
+  }
+  const SpaceGrid& border = recording.side_dots->border_mm;
+  std::vector<double> radii, heights, angles, lengths;
+  for (const cv::Vec3d& at : border) {
+    radii.push_back(std::hypot(at[0], at[1]));
+  }
+  for (const auto& [frame, dots] : recording.side_dots->dots_mm) {
+    for (int k = 0; k < dots.cols; ++k) {
+      const cv::Vec3d& rim = border(0, k);
+      const cv::Vec3d& dot = dots(0, k);
+      if (std::isfinite(dot[0] + dot[1] + dot[2])) {
+        heights.push_back(dot[2] - rim[2]);
+        angles.push_back(
+            std::atan2(rim[0] * dot[1] - rim[1] * dot[0], rim[0] * dot[0] + rim[1] * dot[1]));
+        lengths.push_back(cv::norm(dot - rim));
+      }
+    }
+  }
+  const double radius = median_of(radii);
+  const double base = recording.sensor.pad.base_radius_mm;
+  if (!(radius > 0.8 * base && radius < 1.25 * base)) {
+    findings.push_back({"side_dots.csv, border",
+                        short_number(radius) + " mm from the axis, but pad.base_radius_mm is " +
+                            short_number(base),
+                        "in mm, from the center of the plate's inner face"});
+  } else if (median_of(heights) < 0) {
+    findings.push_back({"side_dots.csv, dot_z", "the side dots lie below the base",
+                        "z points from the plate into the pad, toward the object"});
+  } else if (std::abs(median_of(angles)) > CV_PI / border.cols) {
+    findings.push_back({"side_dots.csv, index",
+                        "each side dot lies beside another point of the rim than its own",
+                        "shifted by one? a dot and its border point have the same index"});
+  } else if (recording.sensor.rim) {
+    const double ratio = median_of(lengths) / recording.sensor.rim->side_dot_length_mm;
+    if (!(ratio > 1.0 / 3 && ratio < 3)) {
+      findings.push_back({"side_dots.csv, dot",
+                          short_number(median_of(lengths)) +
+                              " mm from the rim, but "
+                              "rim.side_dot_length_mm is " +
+                              short_number(recording.sensor.rim->side_dot_length_mm),
+                          "both in mm"});
+    }
+  }
+}
+
+void check_look_up(const Recording& recording, Findings& findings) {
+  if (!recording.sensor.force) {
+    return;
+  }
+  const ForceLookUp& force = *recording.sensor.force;
+  const Pad& pad = recording.sensor.pad;
+  const double base_mm2 = CV_PI * pad.base_radius_mm * pad.base_radius_mm;
+  const auto outside = [&](const char* key, double to, double least, double most,
+                           const char* unit) {
+    if (!(to >= least && to <= most)) {
+      findings.push_back({std::string("sensor.json, force.") + key,
+                          short_number(to) + " is no contact of a pad of this size",
+                          std::string("calibrated in another unit? it is in ") + unit});
+    }
+  };
+  if (force.by_area) {
+    outside("by_area.to_mm2", force.by_area->curve.to, 1e-3 * base_mm2, base_mm2, "mm^2");
+  }
+  if (force.by_depth) {
+    outside("by_depth.to_mm", force.by_depth->curve.to, 0.01 * pad.apex_height_mm,
+            pad.apex_height_mm, "mm");
+  }
+  if (force.shear) {
+    outside("shear.to_mm", force.shear->map.force.to, 0.001 * pad.base_radius_mm,
+            pad.base_radius_mm, "mm");
+    outside("shear.to_rad", force.shear->map.moment.to, 0.001, CV_PI, "rad");
+  }
+}
+
+void check_true_forces(const Recording& recording, Findings& findings) {
+  double largest_n = 0, largest_n_mm = 0, pull_n = 0, press_n = 0;
+  for (const auto& [frame, truth] : recording.true_forces) {
+    const auto& f = truth.force_n;
+    largest_n = std::fmax(largest_n, norm(f));
+    largest_n_mm = std::fmax(largest_n_mm, std::abs(truth.moment_n_mm));
+    pull_n = std::fmax(pull_n, f.z);
+    press_n = std::fmax(press_n, -f.z);
+  }
+  if (pull_n > press_n && pull_n > 0.1) {
+    findings.push_back(
+        {"forces.csv, force_z_n", "the object pulls at the pad",
+         "a press gives force_z_n < 0: forces are what the object exerts on the pad"});
+  }
+  if (largest_n_mm > 10 * recording.sensor.pad.base_radius_mm * largest_n) {
+    findings.push_back({"forces.csv, moment_z_nm",
+                        "up to " + short_number(largest_n_mm / 1000) + " N m by forces up to " +
+                            short_number(largest_n) + " N",
+                        "in N mm? divide by 1000; are the columns exchanged?"});
+  }
+}
+
+}  // namespace
+
+void check_clock(const std::string& place,
+                 const std::string& what,
+                 const std::vector<double>& times_s,
+                 Findings& findings) {
+  std::vector<double> steps;
+  double before = std::numeric_limits<double>::quiet_NaN();
+  std::size_t missing = 0, back = 0, longest = 0;
+  double longest_s = 0;
+  for (std::size_t k = 0; k < times_s.size(); ++k) {
+    if (!std::isfinite(times_s[k])) {
+      ++missing;
+      continue;
+    }
+    const double step = times_s[k] - before;
+    before = times_s[k];
+    if (!std::isfinite(step)) {
+      continue;
+    }
+    steps.push_back(step);
+    back += step <= 0 ? 1 : 0;
+    if (step > longest_s) {
+      longest_s = step;
+      longest = k;
+    }
+  }
+  const double usual = median_of(steps);
+  if (missing > 0) {
+    findings.push_back({place, std::to_string(missing) + " of them are missing",
+                        "give each " + what + " its time"});
+  }
+  if (back > 0) {
+    findings.push_back({place, "goes back or stands still " + std::to_string(back) + " times",
+                        "sort by time; does the clock wrap around?"});
+  }
+  if (usual > 5) {
+    findings.push_back({place, short_number(usual) + " s from one " + what + " to the next",
+                        "in ms? divide by 1000"});
+  } else if (usual > 0 && usual < 1e-4) {
+    findings.push_back({place, short_number(usual) + " s from one " + what + " to the next",
+                        "in another unit than s?"});
+  }
+  if (longest_s > 5 * usual && steps.size() > 5) {
+    findings.push_back({place,
+                        "a gap of " + short_number(longest_s) + " s before " + what + " " +
+                            std::to_string(longest) + ", others take " + short_number(usual) + " s",
+                        "record without gaps, or cut the recording there"});
+  }
+}
+
+void check_numbers(const Recording& recording, Findings& findings) {
+  check_pressure(recording, findings);
+  check_side_dots(recording, findings);
+  check_look_up(recording, findings);
+  check_true_forces(recording, findings);
+}
+
+}  // namespace replay

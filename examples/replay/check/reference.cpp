@@ -1,0 +1,198 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+#include <cmath>
+#include <opencv2/imgproc.hpp>
+
+#include "replay/check/parts.hpp"
+
+namespace replay {
+namespace {
+
+/// What the known depth of the free pad says of itself.
+struct Shape {
+  double deepest_mm = 0;
+  double area_px = 0;
+  double not_positive = 0;  ///< share of the known pixels
+  cv::Vec2d center_px{0, 0};
+  double middle_mm = 0;  ///< mean of the inner tenth of the area
+  double outer_mm = 0;   ///< mean of the outer half
+  bool cut = false;      ///< reaches the frame's border
+};
+
+Shape shape_of(const cv::Mat_<float>& depth_mm) {
+  Shape shape;
+  const cv::Mat known = depth_mm == depth_mm;  // NaN equals nothing
+  shape.area_px = cv::countNonZero(known);
+  if (shape.area_px < 1) {
+    return shape;
+  }
+  cv::minMaxLoc(depth_mm, nullptr, &shape.deepest_mm, nullptr, nullptr, known);
+  shape.not_positive = cv::countNonZero(depth_mm <= 0) / shape.area_px;
+  const cv::Moments m = cv::moments(known, true);
+  shape.center_px = {m.m10 / m.m00, m.m01 / m.m00};
+  const double radius_px = std::sqrt(shape.area_px / CV_PI);
+  double middle = 0, outer = 0;
+  for (int i = 0; i < depth_mm.rows; ++i) {
+    for (int j = 0; j < depth_mm.cols; ++j) {
+      const double depth = static_cast<double>(depth_mm(i, j));
+      if (std::isfinite(depth)) {
+        const double from_center = cv::norm(cv::Vec2d(j, i) - shape.center_px) / radius_px;
+        const bool in_middle = from_center * from_center < 0.1;
+        const bool is_outer = from_center * from_center > 0.5;
+        shape.middle_mm += in_middle ? depth : 0;
+        middle += in_middle ? 1 : 0;
+        shape.outer_mm += is_outer ? depth : 0;
+        outer += is_outer ? 1 : 0;
+        shape.cut =
+            shape.cut || i == 0 || j == 0 || i == depth_mm.rows - 1 || j == depth_mm.cols - 1;
+      }
+    }
+  }
+  shape.middle_mm /= middle;
+  shape.outer_mm /= outer;
+  return shape;
+}
+
+void check_shape(const Recording& recording, const Shape& shape, Findings& findings) {
+  const Sensor& sensor = recording.sensor;
+  const std::string place = sensor.reference_depth;
+  if (shape.area_px < 1) {
+    findings.push_back({place, "knows no depth", "give the depth of the free pad in mm"});
+    return;
+  }
+  const double ratio = shape.deepest_mm / sensor.pad.apex_height_mm;
+  if (!(ratio > 0.5 && ratio < 2)) {
+    findings.push_back({place,
+                        "deepest point " + short_number(shape.deepest_mm) +
+                            ", but pad.apex_height_mm is " +
+                            short_number(sensor.pad.apex_height_mm),
+                        ratio < 0.01 ? "in m? multiply by 1000" : "both in mm above the plate"});
+  } else if (shape.deepest_mm > sensor.absorption.max_depth_mm) {
+    findings.push_back({"sensor.json, absorption.max_depth_mm",
+                        short_number(sensor.absorption.max_depth_mm) + ", but the free pad is " +
+                            short_number(shape.deepest_mm) + " mm deep",
+                        "take the pad's height and some more"});
+  }
+  if (shape.not_positive > 0.02) {
+    findings.push_back({place, short_number(100 * shape.not_positive) + " % of it are not above 0",
+                        "write NaN outside the pad; depths are heights above the plate"});
+  } else if (shape.middle_mm < shape.outer_mm) {
+    findings.push_back({place, "less deep in the middle than at the rim",
+                        "give the height of the free pad above the plate, no indentation"});
+  }
+}
+
+void check_camera(const Recording& recording, const Shape& shape, Findings& findings) {
+  const Sensor& sensor = recording.sensor;
+  const auto& camera = sensor.camera;
+  const double radius_mm = std::sqrt(shape.area_px / CV_PI) * camera.pitch_mm;
+  const double base_mm = sensor.pad.base_radius_mm;
+  if (!shape.cut && shape.not_positive < 0.02 &&
+      !(radius_mm > 0.8 * base_mm && radius_mm < 1.25 * base_mm)) {
+    findings.push_back({"sensor.json, camera.pitch_mm",
+                        "the pad's depth covers a radius of " + short_number(radius_mm) +
+                            " mm on the plate, but pad.base_radius_mm is " + short_number(base_mm),
+                        "pitch_mm is the size of a pixel on the plate's inner face, in mm"});
+  }
+  const double off_mm =
+      cv::norm(shape.center_px - cv::Vec2d(camera.center_x_px, camera.center_y_px)) *
+      camera.pitch_mm;
+  if (!shape.cut && off_mm > 0.1 * base_mm) {
+    findings.push_back({"sensor.json, camera.center_px",
+                        "the pad lies " + short_number(off_mm) + " mm beside it, around [" +
+                            short_number(shape.center_px[0]) + ", " +
+                            short_number(shape.center_px[1]) + "]",
+                        "it is [x, y], x along columns"});
+  }
+}
+
+/// Slope of ln(green / red) against depth, 1/mm, and how well a line explains it.
+struct ColourSlope {
+  double slope = 0;
+  double correlation = 0;
+};
+
+ColourSlope colour_slope(const cv::Mat& picture, const cv::Mat_<float>& depth_mm) {
+  cv::Mat plane;
+  cv::extractChannel(picture, plane, 1);
+  const cv::Mat_<float> green(plane);
+  cv::extractChannel(picture, plane, 2);
+  const cv::Mat_<float> red(plane);
+  double n = 0, x = 0, y = 0, xx = 0, xy = 0, yy = 0;
+  for (int i = 0; i < depth_mm.rows; ++i) {
+    for (int j = 0; j < depth_mm.cols; ++j) {
+      const auto depth = static_cast<double>(depth_mm(i, j));
+      if (std::isfinite(depth) && green(i, j) > 0 && red(i, j) > 0) {
+        const double ratio = std::log(static_cast<double>(green(i, j) / red(i, j)));
+        n += 1;
+        x += depth;
+        y += ratio;
+        xx += depth * depth;
+        xy += depth * ratio;
+        yy += ratio * ratio;
+      }
+    }
+  }
+  const double sxx = xx - x * x / n;
+  const double sxy = xy - x * y / n;
+  const double syy = yy - y * y / n;
+  return {sxy / sxx, sxy / std::sqrt(sxx * syy)};
+}
+
+/// Share of the deeper half of the pad where less red is left than absorption alone leaves: the
+/// fluid's own light, which red holds besides, would be negative.
+double share_without_scattering(const Recording& recording, double deepest_mm) {
+  const auto& absorption = recording.sensor.absorption;
+  const double delta = absorption.c_green_per_mm - absorption.c_red_per_mm;
+  cv::Mat plane;
+  cv::extractChannel(recording.reference, plane, 1);
+  const cv::Mat_<float> green(plane);
+  cv::extractChannel(recording.reference, plane, 2);
+  const cv::Mat_<float> red(plane);
+  double deep = 0, without = 0;
+  for (int i = 0; i < green.rows; ++i) {
+    for (int j = 0; j < green.cols; ++j) {
+      const auto depth = static_cast<double>(recording.reference_depth(i, j));
+      if (depth > deepest_mm / 2) {
+        constexpr double path = 2;  // there and back
+        const double left = static_cast<double>(green(i, j)) * std::exp(delta * path * depth);
+        deep += 1;
+        without += absorption.kappa * static_cast<double>(red(i, j)) < left ? 1 : 0;
+      }
+    }
+  }
+  return without / deep;
+}
+
+void check_colours(const Recording& recording, const Shape& shape, Findings& findings) {
+  const auto& absorption = recording.sensor.absorption;
+  const ColourSlope found = colour_slope(recording.reference, recording.reference_depth);
+  const std::string place = recording.sensor.reference_frame;
+  const double depths = 2 * absorption.c_red_per_mm * recording.sensor.pad.apex_height_mm;
+  if (!(std::abs(found.correlation) > 0.3)) {
+    findings.push_back(
+        {place,
+         "its colours do not tell the depth (correlation " + short_number(found.correlation) + ")",
+         "is it the free pad, in colour, and its depth along the same rays?"});
+  } else if (found.slope > 0) {
+    findings.push_back({place, "red fades faster with depth than green",
+                        "are red and green exchanged? the fluid is red"});
+  } else if (!(depths > 0.01 && depths < 10) ||
+             share_without_scattering(recording, shape.deepest_mm) > 0.5) {
+    findings.push_back({"sensor.json, absorption", "the reference's colours do not follow it",
+                        "coefficients in 1/mm? calibrate the fluid again"});
+  }
+}
+
+}  // namespace
+
+void check_reference(const Recording& recording, Findings& findings) {
+  const Shape shape = shape_of(recording.reference_depth);
+  check_shape(recording, shape, findings);
+  if (shape.area_px >= 1) {
+    check_camera(recording, shape, findings);
+    check_colours(recording, shape, findings);
+  }
+}
+
+}  // namespace replay

@@ -1,0 +1,469 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+// Mistakes that recordings come with, and what replay --check says of each.
+#include "replay/check/check.hpp"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <functional>
+#include <iterator>
+#include <opencv2/core.hpp>
+#include <opencv2/imgcodecs.hpp>
+#include <opencv2/imgproc.hpp>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "support/catch.hpp"
+
+namespace fs = std::filesystem;
+
+namespace {
+
+const fs::path data =
+    fs::path(__FILE__).parent_path().parent_path().parent_path() / "examples" / "data";
+
+using Row = std::vector<std::string>;
+
+/// A copy of the first frames of the bundled recording, or of the foam recording, to spoil.
+class Copy {
+ public:
+  static constexpr int frames = 3;
+
+  explicit Copy(const std::string& bundled) {
+    std::string pattern = (fs::temp_directory_path() / "fingerpad.XXXXXX").string();
+    folder_ = ::mkdtemp(pattern.data());
+    for (const fs::directory_entry& entry : fs::directory_iterator(data / bundled)) {
+      if (entry.is_regular_file()) {
+        fs::copy_file(entry.path(), folder_ / entry.path().filename());
+      }
+    }
+    if (bundled == "press") {
+      fs::create_directory(folder_ / "frames");
+      for (int k = 0; k < frames; ++k) {
+        fs::copy_file(data / bundled / frame(k), folder_ / frame(k));
+      }
+      for (const char* file : {"signals.csv", "side_dots.csv", "forces.csv"}) {
+        edit_table(file, [](Row& row) { return std::stoi(row[0]) < frames; });
+      }
+    }
+  }
+  ~Copy() { fs::remove_all(folder_); }
+  Copy(const Copy&) = delete;
+  Copy& operator=(const Copy&) = delete;
+
+  const fs::path& folder() const { return folder_; }
+  static std::string frame(int k) { return "frames/00000" + std::to_string(k) + ".png"; }
+
+  /// What is found to be wrong, one line each.
+  std::string said() const {
+    std::string lines;
+    for (const replay::Finding& finding : replay::check_recording(folder_)) {
+      CHECK_FALSE(finding.remedy.empty());
+      CHECK((finding.place + finding.what + finding.remedy).find('\n') == std::string::npos);
+      if (finding.is_wrong) {
+        lines += finding.place + ": " + finding.what + "; " + finding.remedy + "\n";
+      }
+    }
+    return lines;
+  }
+
+  void replace(const std::string& file, const std::string& old, const std::string& with) const {
+    std::ifstream in(folder_ / file);
+    std::string text(std::istreambuf_iterator<char>(in), {});
+    REQUIRE(text.find(old) != std::string::npos);
+    std::ofstream(folder_ / file) << text.replace(text.find(old), old.size(), with);
+  }
+  void write(const std::string& file, const std::string& text) const {
+    std::ofstream(folder_ / file) << text;
+  }
+  /// Rows for which `change` is false are left out.
+  void edit_table(const std::string& file, const std::function<bool(Row&)>& change) const {
+    std::ifstream in(folder_ / file);
+    std::string line;
+    std::getline(in, line);
+    std::string text = line + "\n";
+    while (std::getline(in, line)) {
+      Row row;
+      std::stringstream cells(line);
+      for (std::string cell; std::getline(cells, cell, ',');) {
+        row.push_back(cell);
+      }
+      if (change(row)) {
+        for (std::size_t k = 0; k < row.size(); ++k) {
+          text += (k == 0 ? "" : ",") + row[k];
+        }
+        text += "\n";
+      }
+    }
+    in.close();
+    write(file, text);
+  }
+  /// Column `k` times `factor` plus `offset`.
+  void scale(const std::string& file, std::size_t k, double factor, double offset = 0) const {
+    edit_table(file, [&](Row& row) {
+      std::ostringstream number;
+      number.precision(12);
+      number << factor * std::stod(row[k]) + offset;
+      row[k] = number.str();
+      return true;
+    });
+  }
+  void edit_picture(const std::string& file, const std::function<void(cv::Mat&)>& change) const {
+    cv::Mat picture = cv::imread((folder_ / file).string(), cv::IMREAD_UNCHANGED);
+    change(picture);
+    cv::imwrite((folder_ / file).string(), picture);
+  }
+  void edit_frames(const std::function<void(cv::Mat&)>& change) const {
+    for (int k = 0; k < frames; ++k) {
+      edit_picture(frame(k), change);
+    }
+  }
+
+ private:
+  fs::path folder_;
+};
+
+/// dots.csv of a grid of 6 x 7 dots in the frames, as `place` puts row i, column j of a frame.
+std::string dots_csv(const std::function<cv::Vec2d(int frame, int i, int j)>& place) {
+  std::string text = "frame,row,col,x_px,y_px\n";
+  for (int frame = 0; frame < Copy::frames; ++frame) {
+    for (int i = 0; i < 6; ++i) {
+      for (int j = 0; j < 7; ++j) {
+        const cv::Vec2d at = place(frame, i, j);
+        text += std::to_string(frame) + "," + std::to_string(i) + "," + std::to_string(j) + "," +
+                std::to_string(at[0]) + "," + std::to_string(at[1]) + "\n";
+      }
+    }
+  }
+  return text;
+}
+
+cv::Vec2d good_place(int frame, int i, int j) {
+  return {150.0 + 25 * j + frame, 160.0 + 25 * i};
+}
+
+void no_print(const Copy& copy) {
+  copy.replace("sensor.json",
+               R"("dots": { "rows": 21, "cols": 21, "pitch_mm": 1.5, "diameter_mm": 0.7 },)", "");
+  fs::remove(copy.folder() / "stress_free_dots.csv");
+}
+
+struct Mistake {
+  const char* name;
+  std::function<void(const Copy&)> make;
+  const char* said;
+};
+
+/// A dots.csv with a mistake.
+Mistake dots_mistake(const char* name, const char* said, cv::Vec2d (*place)(int, int, int)) {
+  return {name,
+          [place](const Copy& copy) {
+            no_print(copy);
+            copy.write("dots.csv", dots_csv(place));
+          },
+          said};
+}
+
+const std::vector<Mistake> mistakes = {
+    {"pressure in kPa", [](const Copy& c) { c.scale("signals.csv", 2, 1e3); },
+     "in kPa? divide by 1000"},
+    {"pressure in Pa", [](const Copy& c) { c.scale("signals.csv", 2, 1e6); }, "in Pa? divide"},
+    {"absolute pressure", [](const Copy& c) { c.scale("signals.csv", 2, 1, 0.1013); }, "absolute?"},
+    {"pressure of a gauge that is turned", [](const Copy& c) { c.scale("signals.csv", 2, -1); },
+     "tare the gauge"},
+    {"no pressure", [](const Copy& c) { c.scale("signals.csv", 2, 0); }, "is the gauge connected?"},
+    {"time in ms",
+     [](const Copy& c) {
+       c.edit_table("signals.csv", [](Row& r) {
+         r[1] = std::to_string(33 * std::stoi(r[0]));
+         return true;
+       });
+     },
+     "in ms? divide by 1000"},
+    {"time that goes back",
+     [](const Copy& c) {
+       c.edit_table("signals.csv", [](Row& r) {
+         r[1] = r[0] == "2" ? "0.001" : r[1];
+         return true;
+       });
+     },
+     "goes back or stands still 1 times"},
+    {"time missing",
+     [](const Copy& c) { c.edit_table("signals.csv", [](Row& r) { return r[0] != "1"; }); },
+     "time_s: 1 of them are missing"},
+    {"side dots in m",
+     [](const Copy& c) {
+       for (std::size_t k = 2; k < 8; ++k) {
+         c.scale("side_dots.csv", k, 1e-3);
+       }
+     },
+     "side_dots.csv, border: 0.01"},
+    {"side dots below the base", [](const Copy& c) { c.scale("side_dots.csv", 7, -1); },
+     "lie below the base"},
+    {"side dots shifted by one",
+     [](const Copy& c) {
+       std::vector<Row> all;
+       c.edit_table("side_dots.csv", [&](Row& r) {
+         all.push_back(r);
+         return true;
+       });
+       std::size_t at = 0;
+       c.edit_table("side_dots.csv", [&](Row& r) {
+         const std::size_t other = at + 1 < all.size() && all[at + 1][0] == r[0] ? at + 1 : at;
+         std::copy(all[other].begin() + 5, all[other].end(), r.begin() + 5);
+         ++at;
+         return true;
+       });
+     },
+     "shifted by one?"},
+    {"side dots at another length",
+     [](const Copy& c) {
+       c.replace("sensor.json", "\"side_dot_length_mm\": 0.79995",
+                 "\"side_dot_length_mm\": 0.00079995");
+     },
+     "rim.side_dot_length_mm is 0.0008"},
+    {"reference depth in m",
+     [](const Copy& c) { c.edit_picture("reference_depth.tiff", [](cv::Mat& d) { d /= 1000; }); },
+     "in m? multiply by 1000"},
+    {"reference depth 0 outside the pad",
+     [](const Copy& c) {
+       c.edit_picture("reference_depth.tiff", [](cv::Mat& d) { cv::patchNaNs(d, 0); });
+     },
+     "write NaN outside the pad"},
+    {"reference depth as indentation",
+     [](const Copy& c) {
+       c.edit_picture("reference_depth.tiff", [](cv::Mat& d) { d = 13.1 - d; });
+     },
+     "no indentation"},
+    {"wrong center",
+     [](const Copy& c) { c.replace("sensor.json", "[239.5, 239.5]", "[239.5, 320]"); },
+     "camera.center_px: the pad lies 6.4"},
+    {"pitch of the camera in another unit",
+     [](const Copy& c) { c.replace("sensor.json", "\"pitch_mm\": 0.08", "\"pitch_mm\": 0.04"); },
+     "sensor.json, camera.pitch_mm"},
+    {"max_depth_mm smaller than the pad",
+     [](const Copy& c) {
+       c.replace("sensor.json", "\"max_depth_mm\": 18.0", "\"max_depth_mm\": 9");
+     },
+     "take the pad's height"},
+    {"red and green exchanged",
+     [](const Copy& c) {
+       const auto exchange = [](cv::Mat& p) {
+         cv::Mat other = p.clone();
+         cv::mixChannels(std::vector<cv::Mat>{other}, std::vector<cv::Mat>{p}, {1, 2, 2, 1});
+       };
+       c.edit_picture("reference.png", exchange);
+       c.edit_frames(exchange);
+     },
+     "are red and green exchanged"},
+    {"absorption in another unit",
+     [](const Copy& c) {
+       c.replace("sensor.json", "\"c_red_per_mm\": 0.0290", "\"c_red_per_mm\": 0.290");
+       c.replace("sensor.json", "\"c_green_per_mm\": 0.0336", "\"c_green_per_mm\": 0.336");
+     },
+     "coefficients in 1/mm?"},
+    {"a grey reference",
+     [](const Copy& c) {
+       c.edit_picture("reference.png", [](cv::Mat& p) { p.setTo(cv::Scalar::all(20000)); });
+     },
+     "do not tell the depth"},
+    {"saturated frames",
+     [](const Copy& c) {
+       c.edit_frames(
+           [](cv::Mat& f) { f(cv::Rect(150, 150, 100, 100)).setTo(cv::Scalar::all(255)); });
+     },
+     "of the pad are saturated"},
+    {"frames too dark", [](const Copy& c) { c.edit_frames([](cv::Mat& f) { f /= 16; }); },
+     "too dark"},
+    {"a lamp that has changed", [](const Copy& c) { c.edit_frames([](cv::Mat& f) { f *= 0.9; }); },
+     "darker than the reference"},
+    {"a lamp that fades",
+     [](const Copy& c) { c.edit_picture(Copy::frame(2), [](cv::Mat& f) { f *= 0.9; }); },
+     "the last against the first"},
+    {"noise",
+     [](const Copy& c) {
+       cv::theRNG().state = 7;
+       c.edit_frames([](cv::Mat& f) {
+         cv::Mat n(f.size(), CV_16SC3);
+         cv::randn(n, 0, 25);
+         cv::Mat w;
+         f.convertTo(w, CV_16S);
+         w += n;
+         w.convertTo(f, CV_8U);
+       });
+     },
+     "lower the gain"},
+    {"a camera that stands still",
+     [](const Copy& c) {
+       fs::copy_file(c.folder() / Copy::frame(1), c.folder() / Copy::frame(2),
+                     fs::copy_options::overwrite_existing);
+     },
+     "1 frames are the same as the one before"},
+    {"free frames that are not free",
+     [](const Copy& c) {
+       fs::create_directory(c.folder() / "free");
+       fs::copy_file(data / "press/frames/000006.png", c.folder() / "free/000000.png");
+     },
+     "free: "},
+    {"dots of another pitch",
+     [](const Copy& c) { c.replace("sensor.json", "\"pitch_mm\": 1.5", "\"pitch_mm\": 2.5"); },
+     "dots.pitch_mm: dots lie"},
+    {"fewer dots than there are",
+     [](const Copy& c) {
+       c.replace("sensor.json", "\"rows\": 21, \"cols\": 21", "\"rows\": 11, \"cols\": 21");
+       fs::remove(c.folder() / "stress_free_dots.csv");
+     },
+     "dots.rows and cols"},
+    {"an absurd pitch",
+     [](const Copy& c) { c.replace("sensor.json", "\"pitch_mm\": 1.5", "\"pitch_mm\": 1e30"); },
+     "dots.pitch_mm"},
+    {"an absurd number of dots",
+     [](const Copy& c) { c.replace("sensor.json", "\"rows\": 21", "\"rows\": 2000"); },
+     "dots.rows = 2000, must be 2 to 100"},
+    dots_mistake("dots in mm",
+                 "in mm? they are pixels",
+                 [](int, int i, int j) { return cv::Vec2d(1.5 * j - 5, 1.5 * i - 5); }),
+    dots_mistake("dots in shares of the frame",
+                 "in shares of the frame",
+                 [](int f, int i, int j) { return cv::Vec2d(good_place(f, i, j) / 480.0); }),
+    dots_mistake(
+        "lost dots as (0, 0)",
+        "leave out the lines of lost dots",
+        [](int f, int i, int j) { return i == 2 ? cv::Vec2d(0, 0) : good_place(f, i, j); }),
+    dots_mistake("dots column by column",
+                 "are row and col, or x_px and y_px, exchanged?",
+                 [](int f, int i, int j) {
+                   return cv::Vec2d(good_place(f, i, j)[1], good_place(f, i, j)[0]);
+                 }),
+    dots_mistake("dots mirrored",
+                 "the print is mirrored",
+                 [](int f, int i, int j) { return good_place(f, i, 6 - j); }),
+    dots_mistake(
+        "dots shuffled",
+        "do not follow each other",
+        [](int f, int i, int j) { return good_place(f, (i + 3 * j) % 6, (5 * j + i) % 7); }),
+    dots_mistake(
+        "dots named anew in each frame",
+        "leaps",
+        [](int f, int i, int j) { return good_place(f, i, (j + 2 * f) % 7) + cv::Vec2d(0, 0); }),
+    {"area in m^2",
+     [](const Copy& c) {
+       c.replace("sensor.json", "\"from_mm2\": 3.52, \"to_mm2\": 339.1",
+                 "\"from_mm2\": 3.52e-6, \"to_mm2\": 339.1e-6");
+     },
+     "by_area.to_mm2"},
+    {"rotation in degrees",
+     [](const Copy& c) { c.replace("sensor.json", "\"to_rad\": 0.1188", "\"to_rad\": 6.8"); },
+     "it is in rad"},
+    {"moments in N mm",
+     [](const Copy& c) {
+       c.scale("forces.csv", 4, 1e3);
+       c.scale("forces.csv", 4, 1, 50);
+     },
+     "in N mm? divide by 1000"},
+    {"forces of the other sign",
+     [](const Copy& c) {
+       c.edit_table("forces.csv", [](Row& r) {
+         r[3] = "2.5";
+         return true;
+       });
+     },
+     "a press gives force_z_n < 0"},
+    {"no sensor.json", [](const Copy& c) { fs::remove(c.folder() / "sensor.json"); },
+     "sensor.json: cannot be read"},
+};
+
+const std::vector<Mistake> foam_mistakes = {
+    {"time in ms", [](const Copy& c) { c.scale("taxels.csv", 1, 1000); }, "in ms? divide by 1000"},
+    {"a gap",
+     [](const Copy& c) {
+       c.edit_table("taxels.csv", [](Row& r) {
+         const int k = std::stoi(r[0]);
+         return k < 100 || k > 130;
+       });
+     },
+     "a gap of"},
+    {"a dead taxel", [](const Copy& c) { c.scale("taxels.csv", 5, 0); },
+     "1 of 64 taxels never change"},
+    {"a dead array",
+     [](const Copy& c) {
+       for (std::size_t k = 2; k < 66; ++k) {
+         c.scale("taxels.csv", k, 0, 4095);
+       }
+     },
+     "64 of 64 taxels never change"},
+    {"a taxel that flickers",
+     [](const Copy& c) {
+       c.edit_table("taxels.csv", [](Row& r) {
+         r[7] = std::stoi(r[0]) % 2 == 0 ? "0" : "30000";
+         return true;
+       });
+     },
+     "flickers"},
+    {"bytes exchanged",
+     [](const Copy& c) {
+       c.edit_table("taxels.csv", [](Row& r) {
+         for (std::size_t k = 2; k < r.size(); ++k) {
+           const auto word = static_cast<unsigned>(std::stod(r[k]));
+           r[k] = std::to_string(((word & 255U) << 8U) | (word >> 8U));
+         }
+         return true;
+       });
+     },
+     "exchange the bytes"},
+};
+
+void check_all(const std::string& bundled, const std::vector<Mistake>& all) {
+  for (const Mistake& mistake : all) {
+    const Copy copy(bundled);
+    mistake.make(copy);
+    const std::string said = copy.said();
+    INFO(mistake.name << ": " << said);
+    CHECK(said.find(mistake.said) != std::string::npos);
+  }
+}
+
+}  // namespace
+
+TEST_CASE("check: good recordings are not complained about") {
+  CHECK(Copy("press").said() == "");
+  CHECK(Copy("foam").said() == "");
+  const Copy dots("press");
+  no_print(dots);
+  dots.write("dots.csv", dots_csv(good_place));
+  CHECK(dots.said() == "");
+  const Copy free_frames("press");
+  fs::create_directory(free_frames.folder() / "free");
+  for (const char* name : {"free/000000.png", "free/000001.png"}) {
+    fs::copy_file(data / "press/frames/000000.png", free_frames.folder() / name);
+    free_frames.edit_picture(name, [&](cv::Mat& frame) {
+      cv::randu(frame(cv::Rect(0, 0, 9, 9)), 0, 9);  // no two are the same
+    });
+  }
+  INFO(free_frames.said());
+  CHECK(free_frames.said().find("touches") == std::string::npos);
+}
+
+TEST_CASE("check: mistakes in recordings of a camera") {
+  check_all("press", mistakes);
+}
+
+TEST_CASE("check: mistakes in recordings of a foam array") {
+  check_all("foam", foam_mistakes);
+}
+
+TEST_CASE("check: what is missing is told, and is no mistake") {
+  const Copy copy("press");
+  fs::remove(copy.folder() / "signals.csv");
+  CHECK(copy.said() == "");
+  const auto findings = replay::check_recording(copy.folder());
+  CHECK(std::any_of(findings.begin(), findings.end(), [](const replay::Finding& finding) {
+    return !finding.is_wrong &&
+           finding.what.find("signals.csv has no pressure") != std::string::npos;
+  }));
+  CHECK(replay::print_check(copy.folder()) == 0);
+}
