@@ -12,6 +12,7 @@
 #include "fingerpad/core/dots.hpp"
 #include "fingerpad/core/grid.hpp"
 #include "fingerpad/core/scalar.hpp"
+#include "fingerpad/image/detail/image_size.hpp"
 #include "fingerpad/optics/camera.hpp"
 
 namespace fingerpad {
@@ -72,14 +73,6 @@ Index skip_unset(const View& mask, Index row, Index col, Index last) {
   }
   return col;
 }
-
-/// Rows and columns [first, last) that hold all pixels of interest.
-struct PixelBox {
-  Index first_row = 0;
-  Index last_row = 0;
-  Index first_col = 0;
-  Index last_col = 0;
-};
 
 template <scalar S, class DepthView, class MaskView>
 class ContactPixels {

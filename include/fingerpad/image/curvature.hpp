@@ -58,7 +58,7 @@ template <class V>
   const V ends = (radius_sq + a * a) * (radius_sq + b * b);
   const V twice = radius_sq + radius_sq;
   const V q = ends * (twice + twice + rise * rise);
-  return {V(a - b), rough_inverse_sqrt<V>(q)};
+  return {V(a - b), inverse_sqrt<V>(q)};
 }
 
 }  // namespace detail

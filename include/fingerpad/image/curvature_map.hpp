@@ -97,29 +97,41 @@ class CurvatureMap {
     requires(!std::integral<cell_t<Out>>)
   CurvatureResult band(
       Index first, Index last, const Depth& depth_mm, Out&& out, Workspace& workspace)
+  const { return box({first, last, 0, cols_}, depth_mm, out, workspace); }
+
+  /// The same of a part of the image.
+  template <grid Depth, writable_grid<S> Out>
+    requires(!std::integral<cell_t<Out>>)
+  CurvatureResult box(const detail::PixelBox& part,
+                      const Depth& depth_mm,
+                      Out&& out,
+                      Workspace& workspace)
   const {
     const auto from = as_view(depth_mm);
     const auto to = as_view(out);
     if (from.rows() != rows_ || from.cols() != cols_ || to.rows() != rows_ || to.cols() != cols_ ||
-        first < 0 || last < first || last > rows_ || !fits(workspace)) {
+        part.first_row < 0 || part.last_row < part.first_row || part.last_row > rows_ ||
+        part.first_col < 0 || part.last_col < part.first_col || part.last_col > cols_ ||
+        !fits(workspace)) {
       return {};
     }
-    const Index end = (std::min)(rows_, last + margin_);
-    for (Index i = (std::max)(Index(0), first - margin_); i < end; ++i) {
-      load_row(from, i, cell(workspace, i, 0));
+    const detail::PixelBox read = part.grown(margin_, rows_, cols_);
+    for (Index i = read.first_row; i < read.last_row; ++i) {
+      load_row(from, i, read, cell(workspace, i, 0));
     }
     Index known = 0;
     S* segment = workspace.segment.data();
-    for (Index j = 0; j < cols_; j += Strip::columns) {
-      const Index count = (std::min)(Strip::columns, cols_ - j);
+    for (Index j = part.first_col; j < part.last_col; j += Strip::columns) {
+      const Index count = (std::min)(Strip::columns, part.last_col - j);
       Strip strip(kernel_, units_, least_);
-      for (Index i = first; i < last; ++i) {
+      for (Index i = part.first_row; i < part.last_row; ++i) {
         const bool whole = strip.row(cell(workspace, i, j), count, segment);
         known += whole ? count : count_known(segment, count);
         store_segment(segment, count, to, i, j);
       }
     }
-    return {FrameStatus::ok, known, (last - first) * cols_ - known};
+    const Index all = (part.last_row - part.first_row) * (part.last_col - part.first_col);
+    return {FrameStatus::ok, known, all - known};
   }
 
  private:
@@ -155,15 +167,16 @@ class CurvatureMap {
   }
 
   template <class View>
-  void load_row(const View& from, Index i, S* row) const {
+  void load_row(const View& from, Index i, const detail::PixelBox& part, S* row) const {
     const S* cells = row;
     if constexpr (detail::plain_rows<View, S>) {
       cells = from.col_stride() == 1 ? from.row(i) : row;
     }
-    for (Index j = 0; cells == row && j < cols_; ++j) {
+    for (Index j = part.first_col; cells == row && j < part.last_col; ++j) {
       row[j] = static_cast<S>(from(i, j));
     }
-    detail::for_each_cell<S>(cols_, [&]<class V>(Index j) {
+    detail::for_each_cell<S>(part.last_col - part.first_col, [&]<class V>(Index k) {
+      const Index j = part.first_col + k;
       const V depth_mm = detail::load_cells<V, S>(cells + j);
       detail::store_cells<S>(row + j, units_.template flattened<V>(depth_mm));
     });

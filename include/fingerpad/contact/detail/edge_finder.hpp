@@ -15,6 +15,7 @@
 #include "fingerpad/core/scalar.hpp"
 #include "fingerpad/image/curvature_map.hpp"
 #include "fingerpad/image/detail/depth_units.hpp"
+#include "fingerpad/image/detail/image_size.hpp"
 #include "fingerpad/image/detail/regions.hpp"
 #include "fingerpad/image/detail/sparse_mean.hpp"
 
@@ -91,37 +92,42 @@ class EdgeFinder<HalfLevelEdge, Statistic, CameraType, S> {
                    Regions& regions,
                    Workspace& w) const {
     const auto marks = regions.marks();
-    const Band rows = rows_with_seeds(marks);
-    if (rows.first >= rows.last) {
+    const PixelBox seeds = box_of_seeds(marks);
+    if (seeds.first_row >= seeds.last_row) {
       return 0;
     }
     w.outside.measure(image_.view(statistic), marks, threshold_);
-    // the region grows by a ring's radius at most
-    const Index first = (std::max)(rows.first - ring_px_, Index(0));
-    const Index last = (std::min)(rows.last + ring_px_, image_.rows);
-    (void)mean_.band(first, last, depth_mm, image_.view(w.raw.data()), w.curvature);
-    w.smoothing(first, last, image_.view(w.raw.data()), image_.view(w.mean.data()));
+    // the region grows by a ring's radius at most, and is smoothed from a little farther
+    const PixelBox reach = seeds.grown(ring_px_, image_.rows, image_.cols);
+    PixelBox part = seeds.grown(ring_px_ + spread_px(), image_.rows, image_.cols);
+    part.first_row = reach.first_row;
+    part.last_row = reach.last_row;
+    (void)mean_.box(part, depth_mm, image_.view(w.raw.data()), w.curvature);
+    w.smoothing(part, image_.view(w.raw.data()), image_.view(w.mean.data()));
     return regions.for_each(keep,
                             [&](Regions::Region& region) { place(depth_mm, regions, region, w); });
   }
 
  private:
-  struct Band {
-    Index first;
-    Index last;
-  };
-
   template <class Marks>
-  static Band rows_with_seeds(const Marks& marks) {
-    Band rows{marks.rows(), 0};
+  static PixelBox box_of_seeds(const Marks& marks) {
+    PixelBox box{marks.rows(), 0, marks.cols(), 0};
     for (Index i = 0; i < marks.rows(); ++i) {
-      const Mark* end = marks.row(i) + marks.cols();
-      if (find_mark(marks.row(i), end, Mark::seed) != end) {
-        rows.first = (std::min)(rows.first, i);
-        rows.last = i + 1;
+      const Mark* row = marks.row(i);
+      const Mark* end = row + marks.cols();
+      const Mark* first = find_mark(row, end, Mark::seed);
+      if (first == end) {
+        continue;
       }
+      while (end[-1] != Mark::seed) {
+        --end;
+      }
+      box.first_row = (std::min)(box.first_row, i);
+      box.last_row = i + 1;
+      box.first_col = (std::min)(box.first_col, static_cast<Index>(first - row));
+      box.last_col = (std::max)(box.last_col, static_cast<Index>(end - row));
     }
-    return rows;
+    return box;
   }
 
   /// The region grows to where the mean curvature passes the level of the edge, and ends there.

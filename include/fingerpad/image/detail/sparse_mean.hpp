@@ -3,11 +3,13 @@
 #pragma once
 // The mean of nine pixels, `distance` apart: of a map whose noise is as smooth as that, nearly as
 // good as the mean over the whole window and several times cheaper.
+#include <algorithm>
 #include <cstddef>
 #include <vector>
 
 #include "fingerpad/core/grid.hpp"
 #include "fingerpad/core/scalar.hpp"
+#include "fingerpad/image/detail/image_size.hpp"
 #include "fingerpad/image/detail/row_lanes.hpp"
 
 namespace fingerpad {
@@ -28,18 +30,23 @@ class SparseMean {
       : distance_(distance),
         line_(static_cast<std::size_t>(cols + 2 * distance), not_a_number<S>()) {}
 
-  /// Rows [first, last) of `map` into those of `out`; the rows beyond count as missing. `map`
-  /// is left averaged along its rows.
-  void operator()(Index first, Index last, const StridedView<S>& map, const StridedView<S>& out) {
-    for (Index i = first; i < last; ++i) {
-      along(map.row(i), map.cols());
+  /// A part of `map` into that of `out`; what lies beyond counts as missing. `map` is left averaged
+  /// along its rows.
+  void operator()(const PixelBox& part, const StridedView<S>& map, const StridedView<S>& out) {
+    const Index cols = part.last_col - part.first_col;
+    for (Index i = part.first_row; i < part.last_row; ++i) {
+      along(map.row(i) + part.first_col, cols);
     }
-    for (Index i = first; i < last; ++i) {
-      const S* middle = map.row(i);
-      const S* above = i - distance_ >= first ? map.row(i - distance_) : middle;
-      const S* below = i + distance_ < last ? map.row(i + distance_) : middle;
-      S* to = out.row(i);
-      for_each_cell<S>(map.cols(), [&]<class V>(Index j) {
+    for (Index i = part.first_row; i < part.last_row; ++i) {
+      const auto row = [&](Index at) {
+        const bool is_there = at >= part.first_row && at < part.last_row;
+        return map.row(is_there ? at : i) + part.first_col;
+      };
+      const S* middle = row(i);
+      const S* above = row(i - distance_);
+      const S* below = row(i + distance_);
+      S* to = out.row(i) + part.first_col;
+      for_each_cell<S>(cols, [&]<class V>(Index j) {
         store_cells<S>(
             to + j, mean_of_three<V, S>(load_cells<V, S>(above + j), load_cells<V, S>(middle + j),
                                         load_cells<V, S>(below + j)));
@@ -53,6 +60,7 @@ class SparseMean {
     for (Index j = 0; j < cols; ++j) {
       line[j + distance_] = row[j];
     }
+    std::fill_n(line + cols + distance_, distance_, not_a_number<S>());
     for_each_cell<S>(cols, [&]<class V>(Index j) {
       const S* at = line + j;
       store_cells<S>(row + j,
