@@ -166,6 +166,18 @@ auto explained_by_depth(const Problem& problem, const typename Problem::Point& p
                   : not_a_number<S>();
 }
 
+/// Of F, grey levels.
+template <scalar S, int Degree>
+S residual_rms(const AbsorptionFit<S, Degree>& fit, std::span<const DepthSample<S>> samples) {
+  using std::sqrt;
+  S sum = S(0);
+  for (const DepthSample<S>& s : samples) {
+    const S g = fit.scattering.at(s.rho_sq_mm2);
+    sum += square(depth_equation(fit.fluid, s.pencil, g, s.colour, s.depth_mm).value);
+  }
+  return S(sqrt(S(sum / S(static_cast<double>(samples.size())))));
+}
+
 /// What a fit that settled may still get wrong.
 template <scalar S, int Degree>
 FitStatus mistake_in(const AbsorptionFit<S, Degree>& fit, std::span<const DepthSample<S>> samples) {
@@ -239,13 +251,8 @@ AbsorptionFit<S, Degree> fit_absorption(std::span<const DepthSample<S>> samples,
   fit.scattering.rho_max_mm = sqrt(rho_sq_max);
   fit.delta_at_limit = !(p.delta > S(0));
 
-  S residual_sq = S(0);
-  for (const DepthSample<S>& s : samples) {
-    const S g = fit.scattering.at(s.rho_sq_mm2);
-    residual_sq += square(depth_equation(fit.fluid, s.pencil, g, s.colour, s.depth_mm).value);
-  }
-  const int count = static_cast<int>(samples.size()), left = count - (4 + Degree);
-  fit.residual_rms = sqrt(S(residual_sq / S(count)));
+  fit.residual_rms = detail::residual_rms(fit, samples);
+  const int left = static_cast<int>(samples.size()) - (4 + Degree);
   const S by_residual = left > 0 ? S(sqrt(S(p.cost / S(left)))) : not_a_number<S>();
   fit.grey_noise = grey_noise > S(0) ? grey_noise : by_residual;
   // (J^T J)^-1 = R^-1 R^-T, for parameters relative to their size.

@@ -159,11 +159,9 @@ struct [[nodiscard]] ShearFit {
 template <scalar S = double>
 struct [[nodiscard]] LinearShearFit {
   FitStatus status = FitStatus::not_converged;
-  LinearShear<S> map = {};                            ///< its moment is 0
-  std::array<S, 3> x_standard_errors = {};            ///< of x_by_x, x_by_y, offset_n.x
-  std::array<S, 3> y_standard_errors = {};            ///< of y_by_x, y_by_y, offset_n.y
-  std::array<std::array<S, 3>, 3> x_covariance = {};  ///< of these
-  std::array<std::array<S, 3>, 3> y_covariance = {};
+  LinearShear<S> map = {};                  ///< its moment is 0
+  std::array<S, 3> x_standard_errors = {};  ///< of x_by_x, x_by_y, offset_n.x
+  std::array<S, 3> y_standard_errors = {};  ///< of y_by_x, y_by_y, offset_n.y
   Point2<S> residual_sd_n = {S(0), S(0)};
   std::vector<ForceResidual<S>> residuals = {};  ///< all of x, then all of y
   S largest_residual_sds = S(0);
@@ -383,8 +381,6 @@ LinearShearFit<S> fit_linear_shear(std::span<const ForceSample<S>> samples,
   result.map.moment_n_mm_per_rad = S(0);
   result.x_standard_errors = detail::standard_errors_of<S, 3>(of_x);
   result.y_standard_errors = detail::standard_errors_of<S, 3>(of_y);
-  result.x_covariance = detail::covariance_of<S, 3>(of_x);
-  result.y_covariance = detail::covariance_of<S, 3>(of_y);
   result.residual_sd_n = {of_x.residual_sd, of_y.residual_sd};
   detail::add_residuals(of_x, x, usable.places, result.residuals);
   detail::add_residuals(of_y, y, usable.places, result.residuals);
