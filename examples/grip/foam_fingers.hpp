@@ -41,10 +41,12 @@ struct FoamFingersSetup {
 /// Both fingers and the object between them.
 class FoamFingers {
  public:
-  FoamFingers(const FoamFingersSetup& setup, unsigned seed)
+  /// At first the fingers carry this share of the weight.
+  FoamFingers(const FoamFingersSetup& setup, unsigned seed, double carried_share = 1)
       : setup_(setup),
         hold_(setup.oscillator, 1 / setup.rate_hz),
         force_n_(setup.first_force_n),
+        carried_share_(carried_share),
         random_(seed) {
     for (Finger& finger : fingers_) {
       // no object is held just in the middle
@@ -77,10 +79,29 @@ class FoamFingers {
   }
   double time_s() const { return time_s_; }
   double force_n() const { return force_n_; }
+  /// How much of the object's weight the fingers carry, 0 to 1: the rest stands on a surface.
+  void carry(double share) { carried_share_ = share; }
   /// The farthest that the object slipped over a taxel of this finger in this sample.
   double slipped_mm(std::size_t finger) const { return fingers_[finger].slipped_mm; }
   /// Friction cannot hold the object on one of the fingers any more.
   bool has_slipped() const { return fingers_[0].has_slipped || fingers_[1].has_slipped; }
+  /// With which friction just bears the weight that is carried, if every taxel did its best.
+  double least_force_n() const {
+    double low = 0, high = 1000;
+    for (int k = 0; k < 40; ++k) {
+      const double middle = (low + high) / 2;
+      double bears = 1e300;
+      for (const Finger& finger : fingers_) {
+        double of_finger = 0;
+        for (const double normal : pressures(finger, middle)) {
+          of_finger += friction_force(setup_.friction, normal);
+        }
+        bears = std::min(bears, of_finger);
+      }
+      (bears < carried_share_ * setup_.weight_n / 2 ? low : high) = middle;
+    }
+    return high;
+  }
   const FoamFingersSetup& setup() const { return setup_; }
 
  private:
@@ -98,8 +119,8 @@ class FoamFingers {
   std::size_t taxels() const { return static_cast<std::size_t>(setup_.rows * setup_.cols); }
 
   /// The normal force on each taxel.
-  std::vector<double> pressures(const Finger& finger) const {
-    const double radius = setup_.contact_radius_mm * std::cbrt(force_n_ / setup_.first_force_n);
+  std::vector<double> pressures(const Finger& finger, double force_n) const {
+    const double radius = setup_.contact_radius_mm * std::cbrt(force_n / setup_.first_force_n);
     std::vector<double> normal(taxels());
     double sum = 0;
     for (std::size_t k = 0; k < normal.size(); ++k) {
@@ -112,13 +133,13 @@ class FoamFingers {
       sum += normal[k];
     }
     for (double& n : normal) {
-      n *= force_n_ / sum;
+      n *= force_n / sum;
     }
     return normal;
   }
 
   void advance(Finger& finger) {
-    const std::vector<double> normal = pressures(finger);
+    const std::vector<double> normal = pressures(finger, force_n_);
     sink(finger, normal);
     finger.slipped_mm = 0;
     for (std::size_t k = 0; k < normal.size(); ++k) {
@@ -147,7 +168,7 @@ class FoamFingers {
       }
       return sum;
     };
-    const double weight = setup_.weight_n / 2;
+    const double weight = carried_share_ * setup_.weight_n / 2;
     double low = finger.sunk_mm, high = finger.sunk_mm + 100;
     finger.has_slipped = finger.has_slipped || carried(high) < weight;
     if (finger.has_slipped || carried(low) >= weight) {
@@ -164,6 +185,7 @@ class FoamFingers {
   fingerpad::FirstOrderHold<> hold_;
   double force_n_;
   double time_s_ = 0;
+  double carried_share_;
   std::array<Finger, 2> fingers_;
   std::mt19937 random_;
   std::normal_distribution<double> normal_{0, 1};

@@ -322,3 +322,71 @@ TEST_CASE("pre-slip of a simulated object: a warning before it slips, and only w
   CHECK(optimise.precision() >= 0.99);
   CHECK(optimise.recall() >= 0.3);
 }
+
+namespace {
+
+struct Lift {
+  HoldingCommand<double> end;
+  double least_force_n = 0;  // at which friction bears the weight with nothing to spare
+  bool has_slipped = false;
+};
+
+/// The paper's second experiment: an object stands on a surface, is gripped with little force, and
+/// lifted; its weight goes over to the fingers within 5 mm.
+template <class Rule>
+Lift lifted(grip::FoamFingersSetup object, unsigned seed) {
+  const LiftOptions<double> plan{.first_force_n = 1,
+                                 .max_force_n = 20,
+                                 .force_step_n = 0.25,
+                                 .height_mm = 6,
+                                 .height_step_mm = 0.05,
+                                 .settle_samples = 30};
+  object.contact_radius_mm *= std::cbrt(plan.first_force_n / object.first_force_n);
+  object.first_force_n = plan.first_force_n;
+  grip::FoamFingers hand(object, seed, 0);
+  const TaxelFeatures<> features(object.rows, object.cols,
+                                 TaxelOptions<>{.pitch_mm = object.pitch_mm,
+                                                .sample_period_s = 1 / object.rate_hz,
+                                                .noise = object.noise_counts});
+  const Preslip<Rule> rule;
+  const LiftWithRegrip<> lift(plan);
+  std::array<TaxelFeatures<>::State, 2> fingers{features.start(), features.start()};
+  auto history = rule.start();
+  auto search = lift.start();
+  HoldingCommand<double> command = search.command();
+  for (int k = 0; k < 100000 && !is_end(command.phase); ++k) {
+    hand.carry(std::clamp(command.height_mm / 5, 0.0, 1.0));
+    hand.advance(command.force_n);
+    std::array<FingerSample<double>, 2> samples;
+    for (std::size_t f = 0; f < 2; ++f) {
+      samples[f] = features(hand.readings(f), hand.time_s(), fingers[f]);
+    }
+    const PreslipStatus status = rule(samples, history).status;
+    command = lift(hand.has_slipped() ? PreslipStatus::slipped : status, search);
+  }
+  const double held_n = hand.least_force_n();
+  return {command, held_n, hand.has_slipped()};
+}
+
+}  // namespace
+
+TEST_CASE("grasp-lift-replace: a simulated object is lifted with little more than it needs",
+          "[preslip]") {
+  std::string text;
+  for (unsigned seed = 0; seed < 12; ++seed) {
+    grip::FoamFingersSetup object;
+    object.friction.factor = 0.25 + 0.05 * (seed % 4);
+    object.weight_n = 2.5 + 0.7 * (seed % 3);
+    const Lift lift = lifted<GraspLift>(object, seed);
+    CAPTURE(seed);
+    CHECK(lift.end.phase == SearchPhase::lifted);
+    CHECK_FALSE(lift.has_slipped);
+    CHECK(lift.end.force_n >= lift.least_force_n);
+    CHECK(lift.end.force_n < 2 * lift.least_force_n);
+    std::ostringstream one;
+    one << std::setprecision(2) << ' ' << lift.end.force_n << " for " << lift.least_force_n << ',';
+    text += one.str();
+  }
+  INFO("lifted with N where at least these N are needed:" << text);
+  SUCCEED();
+}

@@ -384,6 +384,21 @@ TEST_CASE("taxel features: a taxel that is stuck does not count", "[taxel_featur
   CHECK(later.center_x_mm == 4);
 }
 
+TEST_CASE("taxel features: the edge of a contact may let go and come back", "[taxel_features]") {
+  // all read about 100; taxel 2 goes between 0 and another reading every second sample
+  const TaxelFeatures features(1, 4, options());
+  const auto vibrates = [&](double comes_back_to) {
+    return after(features, 60,
+                 [&](int k, Index, Index j) {
+                   const double load = 100 + 0.01 * (k % 3);
+                   return k < 30 || j != 2 ? load : k % 2 == 0 ? 0 : comes_back_to;
+                 })
+        .is_vibrating();
+  };
+  CHECK(vibrates(40));
+  CHECK_FALSE(vibrates(130));  // to more than the others: a loose contact
+}
+
 TEST_CASE("taxel features: noise taxel by taxel, and dead ones", "[taxel_features]") {
   const auto all_vibrate = [](int k, Index, Index) { return 10 + (k % 4 < 2 ? 1.0 : -1.0); };
   Image<float> noise(2, 2, 1.0F);
