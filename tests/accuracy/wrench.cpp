@@ -162,6 +162,15 @@ WrenchOptions<double> exact_options() {
 using Published =
     Wrench<published::Iteration, OneRow, published::Direction, published::SteepestLines>;
 
+/// What a method is known to lose, it must be seen to lose: mean errors to a tenth.
+void about(const Errors& e, double fxy, double fz, double mxy, double mz) {
+  CHECK(e.failed == 0);
+  CHECK(e.mean[0] == Approx(fxy).epsilon(0.1));
+  CHECK(e.mean[1] == Approx(fz).epsilon(0.1));
+  CHECK(e.mean[2] == Approx(mxy).epsilon(0.1));
+  CHECK(e.mean[3] == Approx(mz).epsilon(0.1));
+}
+
 /// Mean errors; the bounds are about a quarter above what was measured.
 void at_most(const Errors& e, double fxy, double fz, double mxy, double mz) {
   CHECK(e.failed == 0);
@@ -233,11 +242,11 @@ TEST_CASE("wrench of finite-element membranes, exact shape and side dots", "[wre
   at_most(squares_carried_errors, 0.02, 0.01, 0.016, 0.007);
   at_most(given_carried_errors, 0.013, 0.03, 0.015, 0.004);
   at_most(squares_two_errors, 0.01, 0.011, 0.035, 0.018);
-  at_most(corrected_errors, 0.037, 0.025, 0.16, 0.06);
-  at_most(closed_errors, 0.027, 0.025, 0.33, 0.062);
+  about(corrected_errors, 0.029, 0.019, 0.125, 0.048);
+  about(closed_errors, 0.021, 0.019, 0.263, 0.049);
   at_most(given_errors, 0.005, 0.18, 0.03, 0.006);
   at_most(given_two_errors, 0.007, 0.1, 0.04, 0.003);
-  at_most(published_errors, 0.23, 0.042, 0.26, 0.46);
+  about(published_errors, 0.179, 0.033, 0.207, 0.368);
 }
 
 TEST_CASE("the published rim finds too little of drag and twist", "[wrench]") {

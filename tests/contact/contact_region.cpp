@@ -123,17 +123,24 @@ TEST_CASE("what is nearer than the gap counts as touched", "[contact_region]") {
 }
 
 TEST_CASE("a threshold near zero erodes by a ring's radius", "[contact_region]") {
-  const Index size = pixels_for(6, 12, 0.16);
-  const auto camera = height_map(size, size, 0.16);
-  const auto depth = depths_of<float>(camera, RoundFilm({}), size, size);
-  ContactTest test = with_ring(12);
-  const double ring_mm = 12 * 0.16;
-  test.threshold_per_mm = 1e-4;
-  const double eroded = radius_of(find<ClampedMean<>, AtThreshold>(camera, depth, test).result);
-  CHECK(eroded == Approx(6 - 0.9 * ring_mm).margin(0.1));
-  test.threshold_per_mm = 0.025;  // half the level of the free pad lies near the edge by itself
-  CHECK(radius_of(find<ClampedMean<>, AtThreshold>(camera, depth, test).result) ==
-        Approx(6).margin(0.1));
+  for (const double radius_mm : {4.0, 6.0, 8.0}) {
+    for (const Index ring_px : {6, 9, 12}) {
+      const Index size = pixels_for(radius_mm, ring_px, 0.16);
+      const auto camera = height_map(size, size, 0.16);
+      test::RoundContact contact;
+      contact.radius_mm = radius_mm;
+      const auto depth = depths_of<float>(camera, RoundFilm(contact), size, size);
+      const double ring_mm = static_cast<double>(ring_px) * 0.16;
+      CAPTURE(radius_mm, ring_px);
+      ContactTest test = with_ring(ring_px);
+      test.threshold_per_mm = 1e-4;
+      const double eroded = radius_of(find<ClampedMean<>, AtThreshold>(camera, depth, test).result);
+      CHECK(eroded == Approx(radius_mm - 0.9 * ring_mm).margin(0.12));
+      test.threshold_per_mm = 0.025;  // half the level of the free pad: near the edge by itself
+      CHECK(radius_of(find<ClampedMean<>, AtThreshold>(camera, depth, test).result) ==
+            Approx(radius_mm).margin(0.15));
+    }
+  }
 }
 
 TEST_CASE("a hole stays a hole, and a slit parts the contact", "[contact_region]") {
@@ -219,26 +226,61 @@ TEST_CASE("a free pad has no contact", "[contact_region]") {
   }
 }
 
-TEST_CASE("presets hold the published values", "[contact_region]") {
-  constexpr ContactTest paper = published::contact_test();
-  CHECK(paper.threshold_per_mm == 0.00015);
-  CHECK(paper.ring.radius_px == 10);
-  CHECK(paper.min_region_px == 1);
-  CHECK(published::TwiceMean<>::directions == 36);
-  const ContactTest slides;
-  CHECK(slides.ring.radius_px == 25);
-  CHECK(ClampedMean<>::directions == 18);
+TEST_CASE("the published test is eq. 12 with its printed numbers, told by what it does",
+          "[contact_region]") {
+  const auto camera = height_map(61, 61, 0.08);
+  const auto region = [&](const Image<double>& depth) {
+    const ContactRegion<published::TwiceMean<>, AtThreshold, OrthographicCamera<double>, double>
+        published(camera, 61, 61, published::contact_test());
+    auto workspace = published.workspace();
+    Image<Touch> mask(61, 61);
+    (void)published(depth, mask, workspace);
+    return std::pair{mask(30, 30), workspace.statistic()(30, 30)};
+  };
+  const auto bowl = [](double per_mm) {
+    Image<double> depth(61, 61);
+    for (Index i = 0; i < 61; ++i) {
+      for (Index j = 0; j < 61; ++j) {
+        const double x = 0.08 * static_cast<double>(j - 30), y = 0.08 * static_cast<double>(i - 30);
+        depth(i, j) = 9 - per_mm * (x * x + y * y) / 2;
+      }
+    }
+    return depth;
+  };
+  // twice the mean: bulging by 0.000075 per mm is the threshold of 0.00015
+  CHECK(region(bowl(0.000074)).first == Touch::contact);
+  CHECK(region(bowl(0.000076)).first == Touch::none);
+  CHECK(region(bowl(0.01)).second == Approx(0.02).epsilon(1e-3));
+  // 36 directions of two pixels each, 10 px away: one pixel raised by e there is one section of
+  // curvature e / r^2 among 36, counted twice
+  auto level = bowl(0);
+  const double raised = 1e-4;
+  level(30, 40) -= raised;
+  const double r = 10 * 0.08;
+  CHECK(region(level).second == Approx(2 * raised / (r * r) / 36).epsilon(1e-3));
+  auto farther = bowl(0);
+  farther(30, 41) -= raised;
+  farther(30, 39) -= raised;
+  CHECK(region(farther).second == 0);  // no pixel 9 or 11 px away takes part
+  // a single pixel is a region
+  CHECK(published::contact_test().min_region_px == 1);
 }
 
 TEST_CASE("the published test finds a flat contact less the ring", "[contact_region]") {
-  const Index size = pixels_for(4, 10);
-  const auto camera = height_map(size, size);
-  test::RoundContact contact;
-  contact.radius_mm = 4;
-  const auto found = find<published::TwiceMean<>, AtThreshold>(
-      camera, depths_of<double>(camera, RoundFilm(contact), size, size), published::contact_test());
-  CHECK(found.result.regions == 1);
-  CHECK(radius_of(found.result) == Approx(4 - 0.8).margin(0.1));
+  for (const double radius_mm : {2.0, 3.0, 4.0, 6.0}) {
+    const Index size = pixels_for(radius_mm, 10);
+    const auto camera = height_map(size, size);
+    test::RoundContact contact;
+    contact.radius_mm = radius_mm;
+    contact.x_mm = 0.21;
+    contact.y_mm = -0.13;
+    const auto found = find<published::TwiceMean<>, AtThreshold>(
+        camera, depths_of<double>(camera, RoundFilm(contact), size, size),
+        published::contact_test());
+    CAPTURE(radius_mm);
+    CHECK(found.result.regions == 1);
+    CHECK(radius_of(found.result) == Approx(radius_mm - 0.8).margin(0.1));
+  }
 }
 
 namespace {
@@ -269,14 +311,21 @@ void check_edge() {
   }
   const auto r = find<typename Way::statistic, Edge>(camera, depth, test).result;
   CHECK(r.regions == 1);
-  const double expected = std::is_same_v<Edge, AtThreshold> ? 113 : 131;  // and what the gap adds
-  CHECK(r.area_mm2 == Approx(expected).epsilon(0.15));
+  // the edge is where a contact of 6 mm ends; HalfLevelEdge adds what is nearer than its gap
+  const RoundFilm film({});
+  const double nearer_mm = std::is_same_v<Edge, AtThreshold>
+                               ? 0
+                               : std::sqrt(HalfLevelEdge().touching_gap_mm / film.free_per_mm);
+  INFO("radius " << radius_of(r) << " for " << 6 + nearer_mm);
+  CHECK(radius_of(r) == Approx(6 + nearer_mm).margin(0.27));  // a pixel has 0.32 mm
+  CHECK(r.center_mm.x == Approx(0).margin(0.1));
+  CHECK(r.center_mm.y == Approx(0).margin(0.1));
   CHECK(r.depth_mm == Approx(3).margin(0.05));
 }
 
 }  // namespace
 
-TEMPLATE_TEST_CASE("every combination of policies runs",
+TEMPLATE_TEST_CASE("every combination of policies finds the contact",
                    "[contact_region]",
                    (Way<ClampedMean<>, Through, float>),
                    (Way<published::SectionMean<>, Plan, float>),

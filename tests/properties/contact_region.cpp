@@ -262,7 +262,12 @@ Image<double> anything(Index rows, Index cols) {
 }
 
 template <class R>
-void check_anything(const R& region, typename R::Workspace& used, const Image<double>& depth) {
+void check_anything(const R& region,
+                    typename R::Workspace& used,
+                    const Image<double>& depth,
+                    bool at_threshold,
+                    double threshold_per_mm,
+                    Index min_px) {
   const Found found = find(region, depth, used);
   const ContactResult& r = found.result;
   const Index pixels = depth.rows() * depth.cols();
@@ -278,6 +283,21 @@ void check_anything(const R& region, typename R::Workspace& used, const Image<do
   for (std::size_t k = 0; k < depth.cells.size(); ++k) {
     RC_ASSERT(found.mask.cells[k] == 0 || is_finite(depth.cells[k]));
   }
+  // it is read as it was written: of each pixel alone, by its statistic
+  const auto statistic = used.statistic();
+  Index unknown = 0;
+  for (Index i = 0; i < depth.rows(); ++i) {
+    for (Index j = 0; j < depth.cols(); ++j) {
+      const auto k = statistic(i, j);
+      unknown += is_finite(k) ? 0 : 1;
+      if (at_threshold && is_finite(k)) {
+        const bool below = static_cast<double>(k) < threshold_per_mm;
+        RC_ASSERT(found.mask(i, j) == 0 || below);                 // contact is below
+        RC_ASSERT(!below || found.mask(i, j) != 0 || min_px > 1);  // and what is below, contact
+      }
+    }
+  }
+  RC_ASSERT(unknown == r.unknown_px);
   // nothing of the frames before is left in the workspace
   const Found fresh = find(region, depth);
   RC_ASSERT(fresh.mask.cells == found.mask.cells);
@@ -295,7 +315,8 @@ void fuzz(const CameraType& camera, Index rows, Index cols, Index min_region_px 
   const Region<Edge, CameraType, Statistic, S> region(camera, rows, cols, test);
   auto workspace = region.workspace();
   for (int frame = 0; frame < 3; ++frame) {
-    check_anything(region, workspace, anything(rows, cols));
+    check_anything(region, workspace, anything(rows, cols), std::is_same_v<Edge, AtThreshold>,
+                   test.threshold_per_mm, min_region_px);
   }
 }
 

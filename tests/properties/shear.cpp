@@ -267,18 +267,34 @@ TEST_CASE("shear: the normalisation", "[shear][law]") {
     RC_ASSERT(a.tangential_force_n.x == b.tangential_force_n.x);
     RC_ASSERT(a.moment_n_mm == b.moment_n_mm);
   });
-  rc::prop("counts the shift by a power of the measure, and the map sees nothing else", [] {
-    const auto normalisation = any_normalisation();
+  rc::prop("is a power: a size so many times as large counts so many times more, anywhere", [] {
     const auto map = any_radial<3>();
-    const double measure = any_measure(), theta = any_rotation();
+    const double theta = any_rotation(), reference = any_measure();
     const auto d = any_displacement();
-    const auto r = Shear(normalisation, map)(measure, d, theta);
-    const double ratio = measure / normalisation.reference;
-    const double by_d = std::pow(ratio, normalisation.displacement_exponent);
-    const double by_t = std::pow(ratio, normalisation.rotation_exponent);
-    RC_ASSERT(near(r.normalised_displacement_mm.x, by_d * d.x, by_d * d.x, 100));
-    RC_ASSERT(near(r.normalised_displacement_mm.y, by_d * d.y, by_d * d.y, 100));
-    RC_ASSERT(near(r.normalised_rotation_rad, by_t * theta, by_t * theta, 100));
+    // half and whole exponents, whose powers of 4 are exact
+    const double half_d = static_cast<double>(test::whole(0, 6)) / 2;
+    const double half_t = static_cast<double>(test::whole(0, 6)) / 2;
+    const Shear shear(ShearNormalisation<double>{reference, half_d, half_t}, map);
+    const auto at = [&](double measure) { return shear(measure, d, theta); };
+    // the reference itself changes nothing
+    RC_ASSERT(at(reference).normalised_displacement_mm.x == d.x);
+    RC_ASSERT(at(reference).normalised_displacement_mm.y == d.y);
+    RC_ASSERT(at(reference).normalised_rotation_rad == theta);
+    // 4 times the size: 2 to twice the exponent
+    const double measure = any_measure();
+    const auto small = at(measure), large = at(4 * measure);
+    const double by_d = std::ldexp(1.0, static_cast<int>(2 * half_d));
+    const double by_t = std::ldexp(1.0, static_cast<int>(2 * half_t));
+    const auto &a = small.normalised_displacement_mm, &b = large.normalised_displacement_mm;
+    RC_ASSERT(near(b.x, by_d * a.x, by_d * a.x, 100));
+    RC_ASSERT(near(b.y, by_d * a.y, by_d * a.y, 100));
+    RC_ASSERT(near(large.normalised_rotation_rad, by_t * small.normalised_rotation_rad,
+                   by_t * small.normalised_rotation_rad, 100));
+  });
+  rc::prop("is all that a map sees of the size", [] {
+    const auto map = any_radial<3>();
+    const auto r =
+        Shear(any_normalisation(), map)(any_measure(), any_displacement(), any_rotation());
     const auto alone = Shear(shear_without_measure(), map)(1.0, r.normalised_displacement_mm,
                                                            r.normalised_rotation_rad);
     RC_ASSERT(alone.tangential_force_n.x == r.tangential_force_n.x);
