@@ -67,7 +67,7 @@ class Estimator {
       }
       return estimate_(r, g, to, statuses, *work);
     });
-    if (!result.ok()) {
+    if (result.status == fingerpad::DepthStatus::refused) {
       throw py::value_error("red and green must have the reference's size, " +
                             std::to_string(rows()) + " x " + std::to_string(cols()));
     }
@@ -108,6 +108,7 @@ void bind_depth(py::module_& module) {
       .value("outside_pad", PixelStatus::outside_pad);
   py::class_<DepthResult>(module, "DepthResult", "How many pixels of the pad have which status.")
       .def_property_readonly("ok", &DepthResult::ok)
+      .def_property_readonly("status", [](const DepthResult& r) { return name_of(r.status); })
       .def_readonly("pad_pixels", &DepthResult::pad_pixels)
       .def("count", [](const DepthResult& result, PixelStatus status) {
         return result.count[static_cast<std::size_t>(status)];

@@ -14,14 +14,14 @@ namespace {
 
 using fingerpad::FingerSample;
 using fingerpad::PreslipStatus;
-using Options = fingerpad::FoamHandOptions<>;
+using Options = fingerpad::FoamHand<>::Options;
 using Taxels = fingerpad::TaxelOptions<double>;
 using Rules = fingerpad::PreslipOptions<double>;
 using Hand = fingerpad::FoamHand<>;
 
 Hand make_hand(Index rows, Index cols, const Taxels& taxels, const Rules& rules) {
   Options options;
-  options.fingers.fill({rows, cols});
+  options.arrays.fill({rows, cols});
   options.taxels = taxels;
   options.rules = rules;
   return Hand(options);

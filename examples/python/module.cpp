@@ -16,4 +16,5 @@ PYBIND11_MODULE(fingerpad, module) {
   python::bind_depth(module);
   python::bind_contact(module);
   python::bind_foam(module);
+  python::bind_fingertip(module);
 }

@@ -9,6 +9,7 @@ namespace python {
 void bind_depth(pybind11::module_& module);
 void bind_contact(pybind11::module_& module);
 void bind_foam(pybind11::module_& module);
+void bind_fingertip(pybind11::module_& module);
 
 /// A struct of settings as a class with keyword arguments: Camera(pitch_mm=0.1). Unknown names are
 /// refused.

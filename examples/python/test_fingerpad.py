@@ -50,10 +50,12 @@ def test_depth_and_contact_of_the_recording(pad, estimate):
 def test_wider_pixels_of_the_same_values_give_the_same_depth(pad, estimate, kind):
     frame = picture("frames/000005.png")
     depth, _, _ = estimate(*channels(frame))
-    wide, status, _ = estimate(*channels(frame.astype(kind)))
-    ok = status == int(fp.PixelStatus.ok)
-    if kind != np.uint16:  # 16 bit have another full scale
-        assert np.nanmax(np.abs(wide - depth)[ok]) < 1e-3
+    wide, status, result = estimate(*channels(frame.astype(kind)))
+    if kind == np.uint16:  # 16 bit have another full scale: these are dark
+        assert not result.ok
+    else:
+        ok = status == int(fp.PixelStatus.ok)
+        assert ok.sum() > 100_000 and np.abs(wide - depth)[ok].max() < 1e-3
 
 
 def test_views_are_not_copied_and_strides_do_not_matter(pad, estimate):
@@ -105,3 +107,22 @@ def test_a_foam_hand_warns_of_vibration_that_moves_and_quickens():
     assert fp.PreslipStatus.preslip in statuses[60:]
     hand.reset()
     assert hand(readings, 0.0).status == fp.PreslipStatus.cannot_tell
+
+
+def test_a_fingertip_gives_what_its_parts_give(pad, estimate):
+    columns, rows = np.meshgrid(np.arange(7), np.arange(7))
+    free_dots = np.stack([columns - 3.0, rows - 3.0, np.full((7, 7), 12.5)], axis=-1)
+    angle = np.linspace(0, 2 * np.pi, 40, endpoint=False)
+    rim = 18.735 * np.stack([np.cos(angle), np.sin(angle), 0 * angle], axis=-1)[None]
+    side_dots = rim + [0, 0, 0.8]
+    fingertip = fp.Fingertip(*pad, free_dots, rim, contact=fp.ContactTest(free_apex_mm=13.03))
+    red, green = channels(picture("frames/000005.png"))
+    dots_px = np.stack([columns * 12.0 + 200, rows * 12.0 + 200], axis=-1)
+    touch = fingertip(red, green, dots_px, side_dots, 0.016, 0.0)
+    depth, _, _ = estimate(red, green)
+    np.testing.assert_array_equal(fingertip.depth_mm, depth)
+    assert touch.contact.in_contact and len(touch.force_n) == 3
+    assert touch.contact.contact_px == (fingertip.contact_mask == 255).sum()
+    with pytest.raises(TypeError, match=r"\(rows, cols, 2\)"):
+        fingertip(red, green, side_dots, side_dots, 0.016)
+    assert fingertip(red, green, dots_px[1:], side_dots, 0.016).status == "refused"

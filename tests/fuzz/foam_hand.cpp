@@ -28,7 +28,7 @@ void require_finite(const FingerSample<double>& finger) {
 void try_hand(Input& in) {
   const Index rows = in.whole(0, 6), cols = in.whole(0, 6);
   FoamHandOptions<2> options;
-  options.fingers.fill({rows, cols});
+  options.arrays.fill({rows, cols});
   options.taxels.window = in.whole(0, 40);
   options.taxels.pitch_mm = in.number(0.5, 10);
   options.taxels.noise = in.number(0, 10);

@@ -85,7 +85,7 @@ TEMPLATE_TEST_CASE("the whole chain tells what the plate does",
     CHECK(r.wrench.force_n.x == Approx(f.wrench.force_n.x).margin(0.08));
     CHECK(r.wrench.moment_n_mm.z == Approx(f.wrench.moment_n_mm.z).margin(0.7));
     if (k > 0) {
-      CHECK(r.stick.stick_ratio > 0.95F);
+      CHECK(r.stick.stick_ratio > 0.95);
     }
   }
 }
@@ -104,6 +104,9 @@ namespace {
 
 struct DepthAndContact : fingerpad::FingertipMethods {
   static constexpr bool has_dots = false, has_wrench = false;
+};
+struct WithoutLookUp : fingerpad::FingertipMethods {
+  static constexpr bool has_look_up = false;
 };
 struct DepthAlone : fingerpad::FingertipMethods {
   static constexpr bool has_contact = false;
@@ -126,6 +129,23 @@ TEST_CASE("a fingertip without stages gives the same depth and contact", "[chain
   CHECK(d.depth.count == whole.results.back().depth.count);
   CHECK_FALSE(c.wrench.ok());
   CHECK(sizeof(contact) < sizeof(whole.chain()) / 2);
+}
+
+TEST_CASE("without look-up no curve is needed, and the rest is the same", "[chain]") {
+  const Run<fingerpad::FingertipMethods> whole;
+  auto options = frames().options();
+  options.force_of_area = {};
+  options.force_of_depth = {};
+  TipOf<WithoutLookUp> tip(options);
+  for (std::size_t k = 0; k < frames().size(); ++k) {
+    const FingertipResult touch = touch_of(tip, frames()[k].view());
+    const FingertipResult& expected = whole.results[k];
+    CHECK(test::same_bits(touch.stick.stick_ratio, expected.stick.stick_ratio));
+    CHECK(test::same_bits(touch.slip.stick_ratio, expected.slip.stick_ratio));
+    CHECK(test::same_bits(touch.wrench.force_n.x, expected.wrench.force_n.x));
+    CHECK_FALSE(touch.normal.has_force());
+    CHECK(touch.status == expected.status);
+  }
 }
 
 TEST_CASE("a fingertip refuses frames and dots of another size", "[chain]") {

@@ -29,12 +29,13 @@ class Fingertip {
   using Executor = typename Methods::Executor;
   static constexpr bool has_contact = Methods::has_contact;
   static constexpr bool has_dots = has_contact && Methods::has_dots;
+  static constexpr bool has_look_up = has_dots && Methods::has_look_up;
   static constexpr bool has_wrench = has_contact && Methods::has_wrench;
 
  public:
   /// Refuses bad parameters (parameter_error).
   explicit Fingertip(const FingertipOptions<Reference>& options)
-      : image_(options), region_(options), dots_(options), balance_(options) {}
+      : image_(options), region_(options), dots_(options), look_up_(options), balance_(options) {}
 
   /// One frame. Without a stage for them, `dots_px` or `side_dots_mm` may be any dot grid;
   /// `time_s` as the stick ratio has it (NaN: not known). `watch` is told each stage that has
@@ -63,7 +64,10 @@ class Fingertip {
       touch.contact = region_.find(image_);
       watch(FingertipStage::contact);
       executor_.both(
-          [&] { dots_.follow(image_, region_, dots_px, time_s, touch, watch); },
+          [&] {
+            dots_.follow(image_, region_, dots_px, time_s, touch, watch);
+            look_up_.measure(dots_, touch, watch);
+          },
           [&] { balance_.solve(image_, region_, side_dots_mm, pressure_mpa, touch, watch); });
       dots_.conclude(touch, watch);
       touch.status = status_of(touch);
@@ -179,7 +183,6 @@ class Fingertip {
 
   /// What the printed dots say.
   struct DotStage {
-    using ByLookUp = NormalForce<>;
     Grid<Point3<double>> at_mm;
     Grid<std::uint8_t> touching;
     ObjectMotion<> motion;
@@ -190,10 +193,6 @@ class Fingertip {
     Grid<std::uint8_t> slips;
     FrictionLimit<> friction;
     FrictionLimit<>::State friction_state;
-    ContactShift<> shift;
-    ContactShift<>::Workspace shift_work;
-    ByLookUp by_area, by_depth;
-    Shear<> shear;
 
     explicit DotStage(const Options& o)
         : at_mm(o.free_dots_mm.rows(), o.free_dots_mm.cols()),
@@ -205,12 +204,7 @@ class Fingertip {
           states(at_mm.rows, at_mm.cols),
           slips(at_mm.rows, at_mm.cols),
           friction(o.friction),
-          friction_state(friction.start()),
-          shift(o.free_dots_mm),
-          shift_work(shift.workspace()),
-          by_area(o.force_of_area, {}, {.residual_sd_n = o.force_sd_n}),
-          by_depth(o.force_of_depth, {}, {.residual_sd_n = o.force_sd_n}),
-          shear(o.shear_normalisation, o.shear) {}
+          friction_state(friction.start()) {}
 
     template <class Dots>
     bool fits(const Dots& dots_px) const {
@@ -233,10 +227,6 @@ class Fingertip {
       contact_at_dots(dots_px, region.mask.view(), touching.view());
       touch.stick = stick(at_mm.view(), touching.view(), states.view(), stick_state, time_s);
       watch(FingertipStage::stick);
-      const auto moved = shift(at_mm.view(), touching.view(), shift_work);
-      touch.normal = fused(by_area(touch.contact.area_mm2), by_depth(touch.contact.depth_mm));
-      touch.shear = shear(touch.contact.area_mm2, moved.displacement, moved.rotation_rad);
-      watch(FingertipStage::look_up);
     }
 
     /// Whether the object slides, once the forces are known; and its motion, by the dots that hold.
@@ -252,7 +242,7 @@ class Fingertip {
       watch(FingertipStage::motion);
     }
 
-    /// By the six-axis force; without it by look-up.
+    /// By the six-axis force; without it by look-up; without either not known.
     ContactLoad<double> load_of(const FingertipResult& touch) const {
       if (touch.wrench.ok()) {
         return contact_load(touch.wrench.force_n, touch.wrench.moment_n_mm, at_mm.view(),
@@ -261,6 +251,29 @@ class Fingertip {
       const double radius_mm = std::sqrt(touch.contact.area_mm2 / std::numbers::pi);
       return {touch.normal.force_n, norm(touch.shear.tangential_force_n), touch.shear.moment_n_mm,
               2.0 / 3 * radius_mm};
+    }
+  };
+
+  /// Forces by look-up.
+  struct LookUpStage {
+    ContactShift<> shift;
+    ContactShift<>::Workspace work;
+    NormalForce<> by_area, by_depth;
+    Shear<> shear;
+
+    explicit LookUpStage(const Options& o)
+        : shift(o.free_dots_mm),
+          work(shift.workspace()),
+          by_area(o.force_of_area, {}, {.residual_sd_n = o.force_sd_n}),
+          by_depth(o.force_of_depth, {}, {.residual_sd_n = o.force_sd_n}),
+          shear(o.shear_normalisation, o.shear) {}
+
+    template <class Watch>
+    void measure(const DotStage& dots, FingertipResult& touch, Watch& watch) {
+      const auto moved = shift(dots.at_mm.view(), dots.touching.view(), work);
+      touch.normal = fused(by_area(touch.contact.area_mm2), by_depth(touch.contact.depth_mm));
+      touch.shear = shear(touch.contact.area_mm2, moved.displacement, moved.rotation_rad);
+      watch(FingertipStage::look_up);
     }
   };
 
@@ -302,6 +315,8 @@ class Fingertip {
     template <class... Given>
     void follow(Given&&...) {}
     template <class... Given>
+    void measure(Given&&...) {}
+    template <class... Given>
     void conclude(Given&&...) {}
     template <class... Given>
     void solve(Given&&...) {}
@@ -311,16 +326,18 @@ class Fingertip {
     if (!touch.contact.in_contact()) {
       return FingertipStatus::no_contact;
     }
-    const bool dots = !has_dots || (touch.motion.ok() && is_finite(touch.stick.stick_ratio) &&
-                                    touch.normal.sources > 0);
+    const bool dots = !has_dots || (touch.motion.ok() && is_finite(touch.stick.stick_ratio));
+    const bool look_up = !has_look_up || touch.normal.sources > 0;
     const bool wrench = !has_wrench || touch.wrench.ok();
-    return touch.depth.ok() && dots && wrench ? FingertipStatus::ok : FingertipStatus::partial;
+    return touch.depth.ok() && dots && look_up && wrench ? FingertipStatus::ok
+                                                         : FingertipStatus::partial;
   }
 
   [[no_unique_address]] Executor executor_;
   ImageStage image_;
   [[no_unique_address]] std::conditional_t<has_contact, ContactStage, NoStage> region_;
   [[no_unique_address]] std::conditional_t<has_dots, DotStage, NoStage> dots_;
+  [[no_unique_address]] std::conditional_t<has_look_up, LookUpStage, NoStage> look_up_;
   [[no_unique_address]] std::conditional_t<has_wrench, BalanceStage, NoStage> balance_;
 };
 

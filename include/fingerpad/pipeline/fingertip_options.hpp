@@ -31,7 +31,8 @@ inline namespace v0 {
 ///   };
 struct FingertipMethods {
   static constexpr bool has_contact = true;  ///< contact region
-  static constexpr bool has_dots = true;     ///< object motion, stick ratio, forces by look-up
+  static constexpr bool has_dots = true;     ///< object motion, stick ratio, friction limit
+  static constexpr bool has_look_up = true;  ///< forces by calibrated curves; needs the dots
   static constexpr bool has_wrench = true;   ///< six-axis force from pressure and side dots
 
   using Smoothing = BiasFreeMean;
