@@ -168,3 +168,24 @@ TEST_CASE("friction limit: names, and parameters that are refused", "[friction_l
   CHECK(with({.min_normal_n = 0}) ==
         "FrictionLimitOptions: min_normal_n = 0, must be finite and > 0");
 }
+
+TEST_CASE("friction limit: what it says feeds a grip", "[friction_limit]") {
+  const FrictionLimit<double> limit;
+  const GripControl control;
+  auto state = limit.start();
+  auto grip = control.start(3);
+  (void)limit(pull(2), 0.1, RatioUpdate::fresh, state);  // learnt
+  CHECK(control(limit(pull(1), 0.9, RatioUpdate::fresh, state), 0.01, grip).why ==
+        GripReason::enough_sticks);
+  // the membrane stands still, and the dots agree: without friction the force would be held
+  const auto slip = limit(pull(2), 0.9, RatioUpdate::unmoved, state);
+  const auto raised = control(slip, 0.01, grip);
+  CHECK(raised.ok());
+  CHECK(raised.why == GripReason::slipping);
+  CHECK(raised.force_n > 3);
+  // a ratio in percent is none: the force waits, and says so
+  auto other = control.start(3);
+  const auto percent = control(90.0, 0.01, other);
+  CHECK_FALSE(percent.ok());
+  CHECK(percent.force_n == 3);
+}

@@ -178,8 +178,11 @@ struct [[nodiscard]] GripResult {
   GripStatus status = GripStatus::holding;
   GripReason why = GripReason::no_time;
 
-  /// False: the time step was no time, and nothing was done.
-  bool ok() const { return why != GripReason::no_time; }
+  /// Whether the force rests on a stick ratio: false while none is seen, or what is given is none,
+  /// as a ratio in percent.
+  bool ok() const {
+    return why != GripReason::no_time && why != GripReason::waiting && why != GripReason::blind;
+  }
 };
 
 /// Grip force, call by call. Const: one serves any number of fingers, each with a state of its own.
@@ -230,6 +233,17 @@ class GripControl {
     const RateCommand command = command_for(ratio, update, step_s, state);
     const bool long_step = value(law_.longest_step_s) < value(step_s);
     return apply(command, long_step ? law_.longest_step_s : step_s, state);
+  }
+
+  /// The same for the answer of the dots and friction together, SlipResult: ratio and step cannot
+  /// be exchanged.
+  template <class Slip>
+    requires requires(const Slip& slip) {
+      slip.stick_ratio;
+      slip.update;
+    }
+  GripResult<S> operator()(const Slip& slip, const S& step_s, State& state) const {
+    return (*this)(S(slip.stick_ratio), slip.update, step_s, state);
   }
 
   /// The same where nothing but the ratio is known; NaN: missing.
