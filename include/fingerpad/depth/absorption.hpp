@@ -57,7 +57,7 @@ struct Pencil {
   detail::VirtualHeights<S> height;  ///< where it seems to come from
 };
 
-/// The pencil of a ray, with one of the height policies of optics.hpp.
+/// The pencil of a ray, with one of the height policies of optics/camera.hpp.
 template <class Heights = AstigmaticHeights, scalar S>
 Pencil<S> pencil_of(const Camera<S>& camera, const Ray<S>& ray) {
   return {ray.path_factor, Heights::heights(camera, ray)};

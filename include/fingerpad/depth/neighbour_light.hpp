@@ -84,9 +84,9 @@ class NeighbourLightCompensation {
 
   /// `pitch_mm` is the distance on the membrane between the points that neighbouring pixels see:
   /// that is where the gradient is taken. It is the pitch on the plate times about 1 + l / h, h the
-  /// virtual height of optics.hpp; one number, for the mean depth of the pad, is enough, as m0 is
-  /// fitted with the same number and takes up a common factor. `reference_depth_mm` is smoothed as
-  /// the frames will be; NaN outside the pad.
+  /// virtual height of optics/camera.hpp; one number, for the mean depth of the pad, is enough, as
+  /// m0 is fitted with the same number and takes up a common factor. `reference_depth_mm` is
+  /// smoothed as the frames will be; NaN outside the pad.
   template <grid Reference>
   NeighbourLightCompensation(const NeighbourLight<S>& light,
                              const S& pitch_mm,

@@ -20,21 +20,6 @@ namespace fingerpad {
 inline namespace v0 {
 namespace detail {
 
-inline bool any(bool mask) noexcept {
-  return mask;
-}
-
-template <class Mask>
-bool any(const Mask& mask) noexcept {
-  std::uint64_t words[sizeof(Mask) / 8];
-  std::memcpy(words, &mask, sizeof mask);
-  std::uint64_t found = 0;
-  for (const std::uint64_t word : words) {
-    found |= word;
-  }
-  return found != 0;
-}
-
 /// Improves a root s of sum f[j] s^{j+1} = target until its error is of the given order in the
 /// error of the start: a Halley step for every factor 3 of Order, a Newton step for every 2.
 template <int Order, std::size_t Degree, class V>
@@ -176,7 +161,7 @@ template <int Order, class V, class Table, class Scalar, class Gain>
     bad = bad | (l != l);
     store_cells<Scalar>(depth_mm + i, l);
   }
-  return !any(bad);
+  return !any_lane(bad);
 }
 
 /// Depths of one image row. `gain` is a row of g, or nullptr when g is folded into the table; a

@@ -17,16 +17,6 @@ namespace fingerpad {
 inline namespace v0 {
 namespace detail {
 
-template <class Mask>
-[[gnu::always_inline]] inline bool any_lane(const Mask& mask) {
-  if constexpr (std::same_as<Mask, bool>) {
-    return mask;
-  } else {
-    using Word = std::remove_cvref_t<decltype(Mask{}[0])>;
-    return !all_zero<Word, static_cast<int>(sizeof(Mask) / sizeof(Word))>(mask);
-  }
-}
-
 /// True when some lane of `wanted` is not in `found`.
 template <class Mask>
 [[gnu::always_inline]] inline bool lacks(const Mask& wanted, const Mask& found) {

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 // What a camera's pixels see at a depth, with all that does not depend on the depth computed
-// beforehand: point_at() of optics.hpp without its square roots and divisions.
+// beforehand: point_at() of optics/camera.hpp without its square roots and divisions.
 #include <cmath>
 #include <cstddef>
 

@@ -83,6 +83,17 @@ template <class S, class V, class T>
 
 #endif
 
+/// True when some lane of a comparison is.
+template <class Mask>
+[[gnu::always_inline]] inline bool any_lane(const Mask& mask) {
+  if constexpr (std::same_as<Mask, bool>) {
+    return mask;
+  } else {
+    using Word = std::remove_cvref_t<decltype(Mask{}[0])>;
+    return !all_zero<Word, static_cast<int>(sizeof(Mask) / sizeof(Word))>(mask);
+  }
+}
+
 /// Whether rows hold S in memory, which vectors can be loaded from where cells lie side by side.
 template <class View, class S>
 inline constexpr bool plain_rows = false;
