@@ -78,6 +78,13 @@ void print(const char* unit, double residual, const LeftOut& left_out) {
               left_out.mean_abs, unit, left_out.worst, left_out.loads);
 }
 
+/// Samples that look as if something had gone wrong still give a fit, and this.
+void warn(const char* what, const char* by, fingerpad::FitStatus status) {
+  if (status != fingerpad::FitStatus::ok) {
+    std::fprintf(stderr, "%s by %s: %s\n", what, by, name_of(status));
+  }
+}
+
 struct Normal {
   fingerpad::NormalForceFit<fingerpad::PolynomialForce<curve_degree>> fit;
   LeftOut left_out;
@@ -99,6 +106,7 @@ Normal fit_normal(Samples samples, const Measure& by) {
   };
   const Normal plain = fitted(false), compensated = fitted(true);
   const Normal& best = compensated.left_out.rms < plain.left_out.rms ? compensated : plain;
+  warn("normal force", by.name, best.fit.status);
   const auto& curve = best.fit.curve;
   std::printf("normal force by %s: c1 m + c2 m^2 + c3 m^3 N, m from %.4g to %.4g %s\n", by.name,
               curve.from, curve.to, by.unit);
@@ -125,6 +133,8 @@ Shear fit_shear(Samples samples, const Measure& by) {
   Shear all;
   all.force = fit_tangential_force(samples, by.reference);
   all.moment = fit_moment(samples, by.reference);
+  warn("tangential force", by.name, all.force.status);
+  warn("moment", by.name, all.moment.status);
   const auto fit = [&](Samples some) {
     const auto force = fit_tangential_force(some, by.reference, all.force.exponent);
     const auto moment = fit_moment(some, by.reference, all.moment.exponent);
