@@ -97,7 +97,7 @@ inline Row strong_damping() {
 
 inline Row long_swing() {
   return row("foam oscillator", "no damping, k/m = 7.8, times to 1e4; of the amplitude",
-             "the phase sqrt(-D) t; float in double", []<class S>(S) {
+             "the phase sqrt(-D) t in the next wider number", []<class S>(S) {
                Forms f;
                const MassSpringDamper<S> oscillator{S(0.37), S(0), S(2.9)};
                const Digits50 size = sqrt(Digits50(oscillator.mass_n_s2_per_mm) /
@@ -147,7 +147,8 @@ inline Row long_times() {
 
 inline Row many_steps() {
   return row("foam oscillator", "80000 steps of 1/8 without damping; of the amplitude",
-             "`FirstOrderHold`: only what a step adds is rounded; float in double", []<class S>(S) {
+             "`FirstOrderHold`: only what a step adds is rounded, in the next wider number",
+             []<class S>(S) {
                Forms f;
                const MassSpringDamper<S> oscillator{S(0.37), S(0), S(2.9)};
                const Digits50 rate = sqrt(Digits50(oscillator.stiffness_n_per_mm) /
