@@ -3,8 +3,10 @@
 // Numbers: against 50 digits, derivatives, angles at the cut, and motions that determine little.
 #include "fingerpad/published/stick_ratio.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <complex>
 #include <numbers>
 #include <vector>
 
@@ -149,6 +151,72 @@ TEMPLATE_TEST_CASE("stick ratios follow 50 digits", "[stick_ratio]", Default, On
     }
   }
   CHECK(updated > 40);
+}
+
+TEST_CASE("stick ratios by another formula: what sticks is what one similarity fits",
+          "[stick_ratio]") {
+  // The same code in more digits is no reference for what it computes. This is: dots as complex
+  // numbers, then = a now + b, by least squares over the dots that stick; and of those that it fits
+  // to within delta there are as many.
+  using Complex = std::complex<double>;
+  const DotPattern pattern{.rows = 11, .cols = 11, .contact_pitches = 5.2};
+  const ContactFlags contact = SlippingDots(pattern).contact;
+  int updated = 0, other_dots = 0;
+  double worst_angle = 0, worst_scale = 0;
+  for (std::uint64_t seed = 1; seed <= 12; ++seed) {
+    const auto recording = frames(seed, pattern);
+    const auto found = follow<Of<StickConsensus<>, NoDenoising>, double>(recording, contact);
+    for (std::size_t k = 0; k < recording.size(); ++k) {
+      const auto& r = found.results[k];
+      if (!r.updated()) {
+        continue;
+      }
+      ++updated;
+      const PointsPx& then = recording[k - static_cast<std::size_t>(r.reference_age)];
+      const auto at = [](const PointsPx& dots, std::size_t c) {
+        return Complex(dots.cells[c].x, dots.cells[c].y);
+      };
+      Complex now_sum, then_sum;
+      double count = 0, furthest = 0;
+      for (std::size_t c = 0; c < contact.cells.size(); ++c) {
+        if (contact.cells[c] != 0) {
+          furthest = (std::max)(furthest, std::abs(at(recording[k], c) - at(then, c)));
+        }
+        if (found.states[k].cells[c] == DotState::stick) {
+          now_sum += at(recording[k], c);
+          then_sum += at(then, c);
+          count += 1;
+        }
+      }
+      Complex both;
+      double spread = 0;
+      for (std::size_t c = 0; c < contact.cells.size(); ++c) {
+        if (found.states[k].cells[c] == DotState::stick) {
+          const Complex n = at(recording[k], c) - now_sum / count;
+          both += std::conj(n) * (at(then, c) - then_sum / count);
+          spread += std::norm(n);
+        }
+      }
+      const Complex a = both / spread;
+      worst_angle = (std::max)(worst_angle, std::abs(-std::arg(a) - r.angle_rad));
+      worst_scale = (std::max)(worst_scale, std::abs(std::abs(a) - r.scale));
+      const double delta = 0.24 * furthest / 2;
+      int fits = 0;
+      for (std::size_t c = 0; c < contact.cells.size(); ++c) {
+        const Complex left =
+            a * (at(recording[k], c) - now_sum / count) - (at(then, c) - then_sum / count);
+        fits += contact.cells[c] != 0 && std::abs(left) < delta ? 1 : 0;
+      }
+      other_dots += std::abs(fits - static_cast<int>(count));
+      CHECK(r.furthest_px == Approx(furthest));
+    }
+  }
+  INFO(updated << " answers; angle " << worst_angle << ", scale " << worst_scale << ", dots "
+               << other_dots);
+  CHECK(updated > 40);
+  CHECK(worst_angle < 2e-3);
+  CHECK(worst_scale < 2e-3);
+  CHECK(other_dots <= updated / 10);
 }
 
 TEST_CASE("expression templates give the same stick ratio", "[stick_ratio]") {

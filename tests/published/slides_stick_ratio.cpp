@@ -124,11 +124,11 @@ TEST_CASE("slides: the scale, plain and across the motion", "[published]") {
   const auto rest = at_rest();
   for (Index i = 0; i < 9; ++i) {
     for (Index j = 0; j < 9; ++j) {
-      for (const auto& [down, right] : {std::pair<Index, Index>{1, -1}, {1, 0}, {1, 1}, {0, 1}}) {
-        if (i + down < 9 && j + right >= 0 && j + right < 9) {
+      for (const auto& step : {std::pair<Index, Index>{1, -1}, {1, 0}, {1, 1}, {0, 1}}) {
+        const Index k = i + step.first, l = j + step.second;
+        if (k < 9 && l >= 0 && l < 9) {
           const auto length = [&](const PointsPx& p) {
-            return std::hypot(p(i, j).x - p(i + down, j + right).x,
-                              p(i, j).y - p(i + down, j + right).y);
+            return std::hypot(p(i, j).x - p(k, l).x, p(i, j).y - p(k, l).y);
           };
           then_sum += length(rest);
           now_sum += length(now);

@@ -1,0 +1,208 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+// Dots in space, flags and readings held by Eigen and xtensor, in rows and in columns, as a view of
+// something larger: motion, shift of the contact, traction, six-axis force and taxel features give
+// one answer, to the bit. Depth, contact, curvature, surfaces and stick ratio have tests of their
+// own.
+#include <Eigen/Core>
+#include <array>
+#include <cmath>
+#include <vector>
+#if __has_include(<xtensor/containers/xtensor.hpp>)
+#include <xtensor/containers/xarray.hpp>
+#include <xtensor/containers/xtensor.hpp>
+#include <xtensor/views/xview.hpp>
+#else
+#include <xtensor/xarray.hpp>
+#include <xtensor/xtensor.hpp>
+#include <xtensor/xview.hpp>
+#endif
+
+#include "fingerpad/adapt/eigen.hpp"
+#include "fingerpad/adapt/xtensor.hpp"
+#include "fingerpad/foam/taxel_features.hpp"
+#include "fingerpad/force/traction.hpp"
+#include "fingerpad/force/wrench.hpp"
+#include "fingerpad/motion/contact_shift.hpp"
+#include "fingerpad/motion/object_motion.hpp"
+#include "support/catch.hpp"
+#include "support/pressed_pad.hpp"
+#include "support/traction_scenes.hpp"
+
+using namespace fingerpad;
+using test::same_bits;
+
+namespace {
+
+template <class Grid, class From>
+void fill(Grid&& grid, const From& from) {
+  const auto to = as_view(grid);
+  for (Index i = 0; i < from.rows(); ++i) {
+    for (Index j = 0; j < from.cols(); ++j) {
+      to(i, j) = from(i, j);
+    }
+  }
+}
+
+/// Calls use(grid) with the cells of `from` in each kind of grid.
+template <class T, class From, class Use>
+void on_every_grid(const From& from, const Use& use) {
+  const Index rows = from.rows(), cols = from.cols();
+  Eigen::Matrix<T, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> in_rows(rows, cols);
+  fill(in_rows, from);
+  use(in_rows);
+  Eigen::Array<T, Eigen::Dynamic, Eigen::Dynamic> in_columns(rows, cols);
+  fill(in_columns, from);
+  use(in_columns);
+  use(Eigen::Map<const Eigen::Array<T, Eigen::Dynamic, Eigen::Dynamic>>(in_columns.data(), rows,
+                                                                        cols));
+  Eigen::Array<T, Eigen::Dynamic, Eigen::Dynamic> larger(rows + 3, cols + 2);
+  auto block = larger.block(2, 1, rows, cols);
+  fill(block, from);
+  use(block);
+  const auto size = [](Index n) { return static_cast<std::size_t>(n); };
+  const std::array<std::size_t, 2> shape = {size(rows), size(cols)};
+  xt::xtensor<T, 2> tensor(shape);
+  fill(tensor, from);
+  use(tensor);
+  xt::xtensor<T, 2, xt::layout_type::column_major> columns(shape);
+  fill(columns, from);
+  use(columns);
+  const std::array<std::size_t, 2> wide = {size(rows + 2), size(cols + 5)};
+  xt::xtensor<T, 2> around(wide);
+  auto part = xt::view(around, xt::range(1, rows + 1), xt::range(3, cols + 3));
+  fill(part, from);
+  use(part);
+}
+
+using Vector = Point3<double>;
+
+bool same(const Vector& a, const Vector& b) {
+  return same_bits(a.x, b.x) && same_bits(a.y, b.y) && same_bits(a.z, b.z);
+}
+
+}  // namespace
+
+TEST_CASE("motion of the object from every grid", "[adapt]") {
+  const test::TractionScene& before = test::traction_scenes()[1];
+  const test::TractionScene& after = test::traction_scenes()[2];
+  const ObjectMotion<> motion(test::stress_free_dots());
+  auto begun = motion.start();
+  (void)motion(before.dots, before.contact, begun);
+  auto state = begun;
+  const auto truth = motion(after.dots, after.contact, state);
+  REQUIRE(truth.ok());
+  int grids = 0;
+  const auto check = [&](const auto& dots, const auto& contact) {
+    auto copy = begun;
+    const auto r = motion(dots, contact, copy);
+    ++grids;
+    CHECK(r.status == truth.status);
+    CHECK(same(r.pose.translation_mm, truth.pose.translation_mm));
+    CHECK(same(r.position_mm, truth.position_mm));
+    CHECK(same_bits(r.angles.z_rad, truth.angles.z_rad));
+  };
+  on_every_grid<Vector>(after.dots, [&](const auto& dots) { check(dots, after.contact); });
+  on_every_grid<unsigned char>(after.contact, [&](const auto& flags) { check(after.dots, flags); });
+  CHECK(grids == 14);
+}
+
+TEST_CASE("shift of the contact from every grid", "[adapt]") {
+  const test::TractionScene& scene = test::traction_scenes()[2];
+  const auto flat = [](const test::Dots& dots) {
+    test::Cells<Point2<double>> out(dots.rows(), dots.cols());
+    for (std::size_t k = 0; k < dots.cells.size(); ++k) {
+      out.cells[k] = {dots.cells[k].x, dots.cells[k].y};
+    }
+    return out;
+  };
+  const auto free = flat(test::traction_scenes()[0].dots), now = flat(scene.dots);
+  const ContactShift<> shift(free);
+  auto workspace = shift.workspace();
+  const auto truth = shift(now, scene.contact, workspace);
+  const auto check = [&](const auto& from, const auto& dots, const auto& contact) {
+    const ContactShift<> other(from);
+    auto own = other.workspace();
+    const auto r = other(dots, contact, own);
+    CHECK(same_bits(r.displacement.x, truth.displacement.x));
+    CHECK(same_bits(r.displacement.y, truth.displacement.y));
+    CHECK(same_bits(r.rotation_rad, truth.rotation_rad));
+  };
+  CHECK(is_finite(truth.displacement.x));
+  on_every_grid<Point2<double>>(free, [&](const auto& from) { check(from, now, scene.contact); });
+  on_every_grid<Point2<double>>(now, [&](const auto& dots) { check(free, dots, scene.contact); });
+  on_every_grid<unsigned char>(scene.contact, [&](const auto& f) { check(free, now, f); });
+}
+
+TEST_CASE("traction from every grid", "[adapt]") {
+  const test::TractionScene& scene = test::traction_scenes()[3];
+  const test::Dots stress_free = test::stress_free_dots();
+  const TractionField<> field(stress_free);
+  auto maps = field.maps();
+  const auto truth = field(scene.dots, scene.contact, scene.pressure_mpa, maps);
+  const auto check = [&](const auto& free, const auto& dots, const auto& contact) {
+    const TractionField<> other(free);
+    auto own = other.maps();
+    const auto r = other(dots, contact, scene.pressure_mpa, own);
+    CHECK(r.status == truth.status);
+    CHECK(same(r.force_n, truth.force_n));
+    CHECK(same(r.moment_n_mm, truth.moment_n_mm));
+    CHECK(same_bits(own.pressure_mpa()(10, 10), maps.pressure_mpa()(10, 10)));
+  };
+  CHECK(is_finite(truth.force_n.z));
+  on_every_grid<Vector>(stress_free,
+                        [&](const auto& free) { check(free, scene.dots, scene.contact); });
+  on_every_grid<Vector>(scene.dots,
+                        [&](const auto& dots) { check(stress_free, dots, scene.contact); });
+  on_every_grid<unsigned char>(scene.contact,
+                               [&](const auto& flags) { check(stress_free, scene.dots, flags); });
+}
+
+TEST_CASE("six-axis force from every grid", "[adapt]") {
+  const test::RoundPad<test::FilmSide> pad;
+  auto rim = rim_of(pad);
+  rim.count = 24;
+  const auto border = rim.borders();
+  const auto dots = rim.dots([&](double at) {
+    return test::RimLoad{pad.tension(pad.radius_mm, test::pressed_mpa), 0.01 * std::cos(at)};
+  });
+  const auto options = test::exact_options(24, 12);
+  const auto found = [&](const auto& fixed, const auto& beside) {
+    const Wrench<> wrench(fixed, options);
+    auto workspace = wrench.workspace();
+    return wrench(pad, beside, test::pressed_mpa, workspace);
+  };
+  const auto truth = found(border, dots);
+  REQUIRE(truth.ok());
+  const auto check = [&](const auto& r) {
+    CHECK(same(r.force_n, truth.force_n));
+    CHECK(same(r.moment_n_mm, truth.moment_n_mm));
+  };
+  on_every_grid<Vector>(border, [&](const auto& fixed) { check(found(fixed, dots)); });
+  on_every_grid<Vector>(dots, [&](const auto& beside) { check(found(border, beside)); });
+}
+
+TEST_CASE("taxel features from every grid", "[adapt]") {
+  const TaxelFeatures<> features(16, 4, TaxelOptions<>{});
+  const auto readings = [](int k) {
+    test::Cells<double> taxels(16, 4, 500.0);
+    taxels(3, 1) += 60 * std::sin(0.9 * k);
+    taxels(9, 2) += 0.4 * k;
+    return taxels;
+  };
+  auto begun = features.start();
+  for (int k = 0; k < 40; ++k) {
+    (void)features(readings(k), 0.01 * k, begun);
+  }
+  auto state = begun;
+  const auto truth = features(readings(40), 0.4, state);
+  on_every_grid<double>(readings(40), [&](const auto& taxels) {
+    auto copy = begun;
+    const auto r = features(taxels, 0.4, copy);
+    CHECK(r.status == truth.status);
+    CHECK(same_bits(r.center_x_mm, truth.center_x_mm));
+    CHECK(same_bits(r.center_y_mm, truth.center_y_mm));
+    CHECK(r.location == truth.location);
+    CHECK(r.waves == truth.waves);
+  });
+}
