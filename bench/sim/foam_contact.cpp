@@ -196,7 +196,7 @@ void add_creep() {
 
 template <class S>
 void add_all_steps() {
-  add_hold<S>("FirstOrderHold", false);
+  add_hold<S>("FirstOrderHold, the default", false);
   add_hold<S>("FirstOrderHold, another length each time", true);
   add_creep<S>();
 }
@@ -257,7 +257,7 @@ void add_causal(const std::string& name, int steps) {
 
 void add_lifts(int steps) {
   add_lift("published: printed, trapezoidal rule", steps, &printed_lift);
-  add_causal("causal_response", steps);
+  add_causal("causal_response, the default", steps);
 }
 
 /// of(load) and truth(load) for loads of all sizes.

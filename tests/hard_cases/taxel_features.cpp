@@ -155,3 +155,28 @@ TEST_CASE("taxel features: bursts of late samples keep the clock of the vibratio
   CHECK(near == all);
   CHECK(right > all * 9 / 10);
 }
+
+TEST_CASE("taxel features: times of a long run, in float", "[taxel_features]") {
+  // a float holds 1e6 s to 0.06 s, two periods: the time is a double whatever the number
+  TaxelOptions<float> o;
+  o.noise = 1;
+  const TaxelFeatures<ZeroCrossings, float> features(1, 1, o);
+  for (const double begin_s : {0.0, 1e6, 1.8e9}) {
+    CAPTURE(begin_s);
+    auto state = features.start();
+    for (int k = 0; k < 64; ++k) {
+      const float reading = 500 + (k < 32      ? 0.1F * static_cast<float>(k % 3)
+                                   : k % 4 < 2 ? 40
+                                               : -40);
+      const auto sample = features(Image<float>(1, 1, reading), begin_s + k / 30.0, state);
+      CHECK(sample.gaps == 0);
+      CHECK(sample.status == (k < 15   ? TaxelStatus::filling
+                              : k < 32 ? TaxelStatus::quiet
+                                       : TaxelStatus::vibrating));
+      if (k == 63) {
+        CHECK(sample.waves == 4);
+        CHECK(sample.frequency_hz == Approx(7.5).epsilon(1e-5));
+      }
+    }
+  }
+}
