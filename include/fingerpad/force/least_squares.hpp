@@ -32,7 +32,7 @@
 #include "fingerpad/core/scalar.hpp"
 #include "fingerpad/force/detail/compartments.hpp"
 #include "fingerpad/force/detail/segments.hpp"
-#include "fingerpad/force/detail/sparse_fronts.hpp"
+#include "fingerpad/force/detail/sparse_cholesky.hpp"
 #include "fingerpad/force/detail/tensions.hpp"
 #include "fingerpad/force/rim_balance.hpp"
 
