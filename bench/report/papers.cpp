@@ -4,6 +4,7 @@
 // nearest experiment that can be made here. No google-benchmark program: it prints the Markdown
 // tables of docs/papers.md. What each experiment is stands where it is made:
 //   papers/shape.hpp, location.hpp    noisy frames of finite-element membranes
+//   papers/fluid.hpp                  colours by the model of light
 //   papers/six_axis.hpp, rim.hpp      their shapes, frames and side dots
 //   papers/look_up.hpp                their contacts
 //   papers/slippage.hpp               their dots
@@ -13,6 +14,7 @@
 #include <iostream>
 #include <string>
 
+#include "papers/fluid.hpp"
 #include "papers/location.hpp"
 #include "papers/look_up.hpp"
 #include "papers/preslip.hpp"
@@ -32,6 +34,7 @@ int main(int argc, char** argv) {
     }
   };
   section("Shape", shape_section);
+  section("Fluid", fluid_section);
   section("Contact", contact_section);
   section("Position", location_section);
   section("Six-axis", six_axis_section);
