@@ -126,8 +126,8 @@ TEST_CASE("contact slide: lost area counts once the imprint has travelled", "[co
   const auto in_place = look({.radius = 10}, state);
   CHECK(in_place.lost == Approx(1 - 100.0 / 196).margin(0.03));
   CHECK(!in_place.alarm);
-  const auto moved = look({.shift = {0.7, 0}, .radius = 10}, state);
-  CHECK(moved.slide > 0.05);
+  const auto moved = look({.shift = {1.6, 0}, .radius = 10}, state);
+  CHECK(moved.slide > 0.1);
   CHECK(moved.slide < 0.25);
   CHECK(moved.alarm);
   CHECK(moved.evidence > 1);

@@ -34,7 +34,7 @@ struct SlideTest {
   double pitch_px = 40;          ///< between neighbouring dots, > 0
   double cell_px = 4;            ///< pixels of the dots' image per cell of the imprint, > 0
   double max_slide = 0.25;       ///< alarm beyond so many pitches, > 0
-  double min_slide = 0.05;       ///< pitches that lost area takes to count: an object that is let
+  double min_slide = 0.1;        ///< pitches that lost area takes to count: an object that is let
                                  ///< go shrinks in place; in (0, max_slide]
   double max_lost = 0.25;        ///< alarm beyond this share of the area, in (0, 1)
   double min_correlation = 0.6;  ///< of imprints that are compared; in [0, 1)

@@ -1,0 +1,125 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+// Slide of a contact on a gel, from imprints of 120 x 160 cells (frames of 640 x 480 pixels) and
+// their dots. Error: of the imprint's travel, in px, over 10 recordings in which a ball is dragged
+// until it slides.
+#include "fingerpad/slip/contact_slide.hpp"
+
+#include <memory>
+#include <opencv2/imgproc.hpp>
+#include <string>
+#include <vector>
+
+#include "bench/support/run.hpp"
+#include "fingerpad/contact/contact_by_difference.hpp"
+#include "support/gel_frames.hpp"
+
+using namespace fingerpad;
+using test::Image;
+
+namespace {
+
+struct Frame {
+  Image<float> imprint{120, 160};
+  Image<std::uint8_t> contact{120, 160};
+  test::GelDots dots;
+  Point2<double> ball_px;
+};
+
+/// A ball pressed, then dragged in a direction by 0.2 mm a frame.
+std::vector<Frame> recording(std::uint64_t seed) {
+  const test::GelCamera camera{.rows = 480, .cols = 640, .mm_per_px = 0.04};
+  test::Random random(seed);
+  GelContact<> contact(GelPad{});
+  const std::vector free = {camera.frame(contact, random)};
+  const ContactByDifference<> region(free);
+  auto workspace = region.workspace();
+  Image<std::uint8_t> mask(480, 640);
+  const double angle = random.uniform(0, 6.28);
+  std::vector<Frame> frames;
+  for (int k = 0; k < 12; ++k) {
+    contact.drag(1.2, {0.2 * k * std::cos(angle), 0.2 * k * std::sin(angle)});
+    Frame& frame = frames.emplace_back();
+    (void)region(camera.frame(contact, random), mask, workspace);
+    for (Index i = 0; i < 120; ++i) {
+      for (Index j = 0; j < 160; ++j) {
+        frame.imprint(i, j) = workspace.difference()(i, j);
+        frame.contact(i, j) = workspace.contact()(i, j) > 0;
+      }
+    }
+    frame.dots = camera.dots(contact, random);
+    frame.ball_px = camera.px_of(contact.ball_mm());
+  }
+  return frames;
+}
+
+template <class S>
+ContactSlide<S> slide_for(const std::vector<Frame>& frames) {
+  return {120, 160, frames[0].dots.rows(), frames[0].dots.cols(), {.pitch_px = 60}};
+}
+
+template <class S>
+std::vector<double> errors() {
+  std::vector<double> errors;
+  for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+    const auto frames = recording(seed);
+    const auto slide = slide_for<S>(frames);
+    auto state = slide.start();
+    for (const Frame& frame : frames) {
+      const auto result = slide(frame.imprint, frame.contact, frame.dots, state);
+      const auto way = frame.ball_px - frames[0].ball_px;
+      errors.push_back(
+          std::hypot(double(result.imprint_px.x) - way.x, double(result.imprint_px.y) - way.y));
+    }
+  }
+  return errors;
+}
+
+template <class S>
+void add(const std::string& name) {
+  const auto frames = std::make_shared<const std::vector<Frame>>(recording(99));
+  const bench::Memory memory;
+  const auto slide = std::make_shared<ContactSlide<S>>(slide_for<S>(*frames));
+  const auto state = std::make_shared<typename ContactSlide<S>::State>(slide->start());
+  bench::add(
+      "imprint 120x160/" + name, 120 * 160, memory.bytes(),
+      [=, at = std::size_t{0}]() mutable {
+        const Frame& frame = (*frames)[at];
+        benchmark::DoNotOptimize((*slide)(frame.imprint, frame.contact, frame.dots, *state));
+        at = (at + 1) % frames->size();
+        if (at == 0) {
+          state->reset();
+        }
+      },
+      [](auto& counters) { bench::note_errors(counters, "imprint's way", "px", errors<S>()); });
+}
+
+/// Translation alone, of the whole picture.
+void add_opencv() {
+  const auto frames = std::make_shared<const std::vector<Frame>>(recording(99));
+  const auto as_mat = [](const Image<float>& image) {
+    cv::Mat mat(120, 160, CV_32F, const_cast<float*>(image.cells.data()));
+    cv::patchNaNs(mat);
+    return mat;
+  };
+  bench::add(
+      "imprint 120x160/cv::phaseCorrelate", 120 * 160, 0,
+      [=, at = std::size_t{0}]() mutable {
+        const Frame& from = (*frames)[at];
+        const Frame& to = (*frames)[at + 1];
+        benchmark::DoNotOptimize(cv::phaseCorrelate(as_mat(from.imprint), as_mat(to.imprint)));
+        at = (at + 1) % (frames->size() - 1);
+      },
+      [](auto&) {});
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  cv::setNumThreads(1);
+  add<float>("default");
+  add<double>("double");
+  add_opencv();
+  bench::add_streaming("imprint 120x160", 120 * 160);
+  return bench::run(argc, argv);
+}
