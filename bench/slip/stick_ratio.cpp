@@ -16,9 +16,9 @@
 #include <string>
 #include <vector>
 
-#include "bench/support/naive_stick_ratio.hpp"
 #include "bench/support/run.hpp"
 #include "bench/support/scene_stick.hpp"
+#include "fingerpad/published/slides_stick_ratio.hpp"
 #include "support/slipping_dots.hpp"
 
 using namespace fingerpad;
@@ -134,48 +134,34 @@ void add_frame(const std::string& name) {
   add<StickRatio<Motion, Reference, Denoising, S>>("frame of 21x21 dots/" + name, recording());
 }
 
-std::vector<bench::NaivePoint> naive_points(const test::PointsPx& dots) {
-  std::vector<bench::NaivePoint> points;
-  for (const auto& p : dots.cells) {
-    points.push_back({p.x, p.y});
-  }
-  return points;
-}
-
-bench::NaiveStickRatio naive_ratio(const test::ContactFlags& contact) {
-  return {21, 21, 64, std::vector<bool>(contact.cells.begin(), contact.cells.end())};
-}
-
 std::vector<double> naive_errors() {
+  const published::SlidesStickRatio ratio(21, 21);
+  auto state = ratio.start();
   std::vector<double> errors;
-  bench::NaiveStickRatio ratio = naive_ratio(recording().contact);
   for (const KnownFrame& frame : known_frames(21)) {
     if (frame.begins) {
-      ratio = naive_ratio(frame.truth.contact);
+      state = ratio.start();
     }
-    const double found = ratio(naive_points(frame.seen));
-    const int age = ratio.reference_age();
-    errors.push_back(age > 0 ? found - frame.truth.stick_ratio(age) : test::nan);
+    const auto r = ratio(frame.seen, frame.truth.contact, state);
+    errors.push_back(r.updated ? r.stick_ratio - frame.truth.stick_ratio(r.reference_age)
+                               : test::nan);
   }
   return errors;
 }
 
 void add_naive() {
   struct Running {
-    bench::NaiveStickRatio ratio = naive_ratio(recording().contact);
-    std::vector<std::vector<bench::NaivePoint>> frames = {};
+    published::SlidesStickRatio ratio{21, 21};
+    published::SlidesStickRatio::State state = ratio.start();
     std::size_t k = 0;
   };
+  const bench::Memory memory;
   const auto d = std::make_shared<Running>();
-  for (const auto& frame : recording().frames) {
-    d->frames.push_back(naive_points(frame));
-  }
-  const long stored = 64 * static_cast<long>(21 * 21 * sizeof(bench::NaivePoint));
   bench::add(
-      "frame of 21x21 dots/naive: the slides in double, every stored frame", 1, stored,
+      "frame of 21x21 dots/naive: the slides in double, every stored frame", 1, memory.bytes(),
       [d] {
-        d->k = d->k + 1 < d->frames.size() ? d->k + 1 : 0;
-        benchmark::DoNotOptimize(d->ratio(d->frames[d->k]));
+        d->k = d->k + 1 < recording().frames.size() ? d->k + 1 : 0;
+        benchmark::DoNotOptimize(d->ratio(recording().frames[d->k], recording().contact, d->state));
       },
       [errors = std::vector<double>()](auto& counters) mutable {
         errors = errors.empty() ? naive_errors() : errors;
