@@ -7,8 +7,10 @@
 #include <cmath>
 #include <cstdlib>
 #include <limits>
+#include <numbers>
 #include <string>
 
+#include "fingerpad/adapt/opencv.hpp"
 #include "replay/io/failure.hpp"
 
 namespace replay {
@@ -109,6 +111,29 @@ double median(std::vector<double> values) {
   return *middle;
 }
 
+/// Thresholds that sensor.json gives in px, as the noise that has them; without them the default.
+fingerpad::SpatialStickTest spatial_test_of(const Sensor& sensor) {
+  const fingerpad::StickTest by_default, &given = sensor.stick;
+  fingerpad::SpatialStickTest test;
+  if (given.slip_px != by_default.slip_px || given.reference_px != by_default.reference_px) {
+    // slip_px = 2 gain sigma sqrt(ln(1 / false_slip)), gain 0.416 by averaging over neighbours
+    const double sigmas = 2 * 0.416 * std::sqrt(std::log(1 / test.false_slip));
+    test.lateral_mm = given.slip_px * sensor.camera.pitch_mm / sigmas;
+    test.slip_share = (std::min)(given.slip_px / given.reference_px, 0.5);
+  }
+  return test;
+}
+
+/// What the contact carries: by the six-axis force, without it by look-up.
+fingerpad::ContactLoad<double> load_of(const Scene& scene) {
+  if (scene.wrench.present && scene.wrench.result.ok()) {
+    return contact_load(scene.wrench.result.force_n, scene.wrench.result.moment_n_mm,
+                        scene.dots.dots_mm, scene.dots.in_contact);
+  }
+  const double arm_mm = 2.0 / 3 * std::sqrt(scene.contact.area_mm2 / std::numbers::pi);
+  return {scene.force.normal_n, norm(scene.force.tangential_n), scene.force.moment_n_mm, arm_mm};
+}
+
 }  // namespace
 
 Chain::Chain(Recording& recording, const Options& options)
@@ -118,6 +143,8 @@ Chain::Chain(Recording& recording, const Options& options)
                                           : contact_step_of(recording, depth_, options)),
       dots_(dots_of(recording, options)),
       stick_(dots_.initial().size(), recording.sensor.stick),
+      spatial_stick_(recording.sensor.dots_only ? cv::Size() : dots_.initial().size(),
+                     spatial_test_of(recording.sensor)),
       force_(force_step_of(recording, dots_.initial(), options)),
       wrench_(wrench_step_of(recording, options)),
       traction_(traction_step_of(recording, options)) {
@@ -154,9 +181,14 @@ Scene Chain::operator()(int frame, const cv::Mat& image) {
   }
   if (dots_.present()) {
     const DotGrid dots_px = dots_.of(frame, image);
-    scene.dots =
-        motion_ ? (*motion_)(dots_px, scene.depth_mm, scene.contact_mask) : dots_alone(dots_px);
-    scene.dots.stick = stick_(dots_px, scene.dots.in_contact, seconds(scene.time_s));
+    const double time_s = seconds(scene.time_s);
+    if (motion_) {
+      scene.dots = motion_->place(dots_px, scene.depth_mm, scene.contact_mask);
+      scene.dots.stick = spatial_stick_(scene.dots.dots_mm, scene.dots.in_contact, time_s);
+    } else {
+      scene.dots = dots_alone(dots_px);
+      scene.dots.stick = stick_(dots_px, scene.dots.in_contact, time_s);
+    }
   }
   if (force_) {
     scene.force = force_(scene.contact, scene.dots);
@@ -165,6 +197,10 @@ Scene Chain::operator()(int frame, const cv::Mat& image) {
     const auto start = std::chrono::steady_clock::now();
     scene.wrench = wrench_(frame, scene.depth_mm, scene.contact_mask);
     wrench_ms_.push_back(Milliseconds(std::chrono::steady_clock::now() - start).count());
+  }
+  if (motion_ && dots_.present()) {
+    spatial_stick_.fuse(load_of(scene), scene.dots.stick);
+    motion_->follow(scene.dots);
   }
   if (traction_ && dots_.present()) {
     scene.traction = traction_(scene.dots, scene.pressure_mpa);

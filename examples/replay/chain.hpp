@@ -41,7 +41,8 @@ class Chain {
   ContactStep contact_;  ///< the same
   DotSource dots_;
   std::optional<MotionStep> motion_;  ///< none where the recording is of dots only
-  StickStep stick_;
+  StickStep stick_;                   ///< of dots alone
+  SpatialStickStep spatial_stick_;
   ForceStep force_;        ///< empty where the recording is of dots only
   WrenchStep wrench_;      ///< empty where the recording lacks something
   TractionStep traction_;  ///< the same

@@ -137,7 +137,7 @@ TEST_CASE("a recording gives a table and one depth map per frame") {
         "contact_area_mm2,contact_depth_mm,contact_center_x_mm,contact_center_y_mm,"
         "reference_dot_row,reference_dot_col,object_x_mm,object_y_mm,object_z_mm,"
         "rotation_x_rad,rotation_y_rad,rotation_z_rad,"
-        "dots_in_contact,stick_ratio,stick_ratio_updated,"
+        "dots_in_contact,stick_ratio,stick_ratio_updated,stick_ratio_sd,slip_evidence,"
         "shift_x_mm,shift_y_mm,shift_rad,"
         "normal_force_n,tangential_force_x_n,tangential_force_y_n,moment_z_nm,"
         "wrench_fx_n,wrench_fy_n,wrench_fz_n,wrench_mx_nm,wrench_my_nm,wrench_mz_nm");

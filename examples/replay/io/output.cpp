@@ -23,7 +23,7 @@ constexpr const char* columns =
     "contact_area_mm2,contact_depth_mm,contact_center_x_mm,contact_center_y_mm,"
     "reference_dot_row,reference_dot_col,object_x_mm,object_y_mm,object_z_mm,"
     "rotation_x_rad,rotation_y_rad,rotation_z_rad,"
-    "dots_in_contact,stick_ratio,stick_ratio_updated,"
+    "dots_in_contact,stick_ratio,stick_ratio_updated,stick_ratio_sd,slip_evidence,"
     "shift_x_mm,shift_y_mm,shift_rad,"
     "normal_force_n,tangential_force_x_n,tangential_force_y_n,moment_z_nm,"
     "wrench_fx_n,wrench_fy_n,wrench_fz_n,wrench_mx_nm,wrench_my_nm,wrench_mz_nm";
@@ -39,6 +39,20 @@ std::string cell(double value) {
 }
 
 /// 1 or 0; empty where it is not known whether a dot sticks, or it touches nothing.
+const char* words_of(fingerpad::SlipEvidence evidence) {
+  switch (evidence) {
+    case fingerpad::SlipEvidence::none:
+      return "";
+    case fingerpad::SlipEvidence::dots:
+      return "dots";
+    case fingerpad::SlipEvidence::friction:
+      return "friction";
+    case fingerpad::SlipEvidence::both:
+      return "dots+friction";
+  }
+  return "";
+}
+
 const char* stick_cell(DotState state) {
   return state == DotState::stick ? "1" : state == DotState::slip ? "0" : "";
 }
@@ -216,9 +230,10 @@ void FramesCsv::write(const FrameRow& row) {
   const auto& stick = row.stick;
   if (row.has_dots) {
     stream_ << ',' << stick.dots_in_contact() << ',' << cell(static_cast<double>(stick.stick_ratio))
-            << ',' << (stick.updated() ? 1 : 0);
+            << ',' << (stick.updated() ? 1 : 0) << ',' << cell(row.stick_ratio_sd) << ','
+            << words_of(row.slip_evidence);
   } else {
-    stream_ << ",,,";
+    stream_ << ",,,,,";
   }
   const auto& shift = row.force.shift;
   constexpr double metre = 1000;  // in mm

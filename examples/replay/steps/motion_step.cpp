@@ -41,9 +41,9 @@ cv::Mat_<cv::Vec3d> MotionStep::in_space(const DotGrid& dots_px,
   return dots_mm;
 }
 
-FrameDots MotionStep::operator()(const DotGrid& dots_px,
-                                 const cv::Mat_<float>& depth_mm,
-                                 const cv::Mat_<uchar>& contact) {
+FrameDots MotionStep::place(const DotGrid& dots_px,
+                            const cv::Mat_<float>& depth_mm,
+                            const cv::Mat_<uchar>& contact) const {
   FrameDots frame;
   if (motion_) {
     frame.dots_px = dots_px;
@@ -54,9 +54,19 @@ FrameDots MotionStep::operator()(const DotGrid& dots_px,
     cv::Mat_<uchar> inner(contact.size());
     cv::compare(from_edge_px, dot_radius_px_, inner, cv::CMP_GT);
     fingerpad::contact_at_dots(dots_px, inner, frame.in_contact);
-    frame.motion = (*motion_)(frame.dots_mm, frame.in_contact, *state_);
   }
   return frame;
+}
+
+void MotionStep::follow(FrameDots& frame) {
+  if (motion_) {
+    cv::Mat_<uchar> slips;
+    cv::compare(frame.stick.states, static_cast<int>(DotState::slip), slips, cv::CMP_EQ);
+    if (frame.stick.slides) {
+      slips = frame.in_contact;
+    }
+    frame.motion = (*motion_)(frame.dots_mm, frame.in_contact, slips, *state_);
+  }
 }
 
 }  // namespace replay

@@ -33,10 +33,12 @@ class MotionStep {
   /// nothing.
   MotionStep(const Sensor& sensor, const DotGrid& initial_px, const cv::Mat_<float>& free_depth_mm);
 
-  /// Frames in the order of time.
-  FrameDots operator()(const DotGrid& dots_px,
-                       const cv::Mat_<float>& depth_mm,
-                       const cv::Mat_<uchar>& contact);
+  /// Where the dots of a frame are, and which touch.
+  FrameDots place(const DotGrid& dots_px,
+                  const cv::Mat_<float>& depth_mm,
+                  const cv::Mat_<uchar>& contact) const;
+  /// Motion of the object, by the dots that do not slip. Frames in the order of time.
+  void follow(FrameDots& frame);
 
  private:
   using Motion = fingerpad::ObjectMotion<>;
