@@ -8,6 +8,7 @@
 
 #include "fingerpad/slip/recoil.hpp"
 #include "support/catch.hpp"
+#include "support/numbers.hpp"
 #include "support/pad.hpp"
 #include "support/refusal.hpp"
 
@@ -131,6 +132,21 @@ TEST_CASE("contact slide: lost area counts once the imprint has travelled", "[co
   CHECK(moved.slide < 0.25);
   CHECK(moved.alarm);
   CHECK(moved.evidence > 1);
+  CHECK(moved.held() == 0);
+  CHECK(in_place.held() == Approx(1 - in_place.evidence));
+}
+
+TEST_CASE("contact slide: fifty digits say the same", "[contact_slide]") {
+  const ContactSlide<test::Digits50> fine(height, width, 5, 7);
+  auto state = slide.start();
+  auto fine_state = fine.start();
+  for (const double at : {0.0, 0.7, 1.9}) {
+    const Pad pad{.shift = {at, 0.3 * at}};
+    const auto plain = look(pad, state);
+    const auto exact = fine(pad.imprint(), pad.contact(), pad.dots(), fine_state);
+    CHECK(plain.slide_px.x == Approx(static_cast<double>(exact.slide_px.x)).margin(1e-9));
+    CHECK(plain.evidence == Approx(static_cast<double>(exact.evidence)).margin(1e-9));
+  }
 }
 
 TEST_CASE("contact slide: what it says when it cannot tell", "[contact_slide]") {

@@ -102,6 +102,9 @@ struct [[nodiscard]] SlideResult {
                           ///< allows, whichever is larger
   bool alarm = false;     ///< evidence is above 1
 
+  /// 1 while nothing speaks for slip, 0 from the alarm on: what GripControl and FrictionLimit take
+  /// in place of a stick ratio, fresh where ok().
+  S held() const { return evidence < S(1) ? S(S(1) - evidence) : S(0); }
   bool accepted() const { return status != SlideStatus::refused; }
   /// Whether slide and area are those of this frame.
   bool ok() const { return status == SlideStatus::updated || status == SlideStatus::began; }
@@ -133,8 +136,8 @@ class ContactSlide {
           growth_(slide.rows_, slide.cols_, margin),
           key_(slide.rows_, slide.cols_) {
       const auto dots = static_cast<std::size_t>(slide.dot_rows_ * slide.dot_cols_);
-      dots_.resize(dots, missing);
-      key_dots_.resize(dots, missing);
+      dots_.resize(dots, missing());
+      key_dots_.resize(dots, missing());
       x_.reserve(dots);
       y_.reserve(dots);
     }
@@ -148,7 +151,6 @@ class ContactSlide {
    private:
     friend class ContactSlide;
     static constexpr Index margin = 3;
-    static constexpr Point2<S> missing = {not_a_number<S>(), not_a_number<S>()};
     detail::PaddedCells<S> imprint_, mask_, region_;
     detail::CellMorphology<S> growth_;
     detail::ImprintShift<S> key_;
@@ -204,6 +206,7 @@ class ContactSlide {
   }
 
  private:
+  static Point2<S> missing() { return {not_a_number<S>(), not_a_number<S>()}; }
   /// The frame into the state; returns the area in cells.
   template <class From, class Touch, class Dots>
   Index read(const From& from, const Touch& touch, const Dots& dots, State& state) const {
@@ -233,7 +236,7 @@ class ContactSlide {
     state.growth_.grow(state.region_);
     state.key_.take(state.imprint_, state.region_);
     for (std::size_t k = 0; k < state.dots_.size(); ++k) {
-      state.key_dots_[k] = touches(state.dots_[k], state) ? state.dots_[k] : State::missing;
+      state.key_dots_[k] = touches(state.dots_[k], state) ? state.dots_[k] : missing();
     }
     state.last_shift_ = {S(0), S(0)};
     state.key_result_ = state.result_;
