@@ -159,7 +159,11 @@ class SpotFinder {
   }
 
   Frame look_at(const cv::Mat& frame) const {
-    Frame seen{frame, shrunk(light_of(frame), fine_), {}, 0};
+    cv::Mat small = frame;
+    if (fine_ > 1 && frame.depth() == CV_16U) {
+      frame.convertTo(small, CV_8U, 1.0 / 256);  // spots show in 8 bit; centers take all 16
+    }
+    Frame seen{frame, light_of(shrunk(small, fine_)), {}, 0};
     const cv::Mat_<float> light = shrunk(seen.light, coarse_);
     seen.brightest = glare * median_light(light);
     seen.ground = ground_of(seen, light);
