@@ -36,24 +36,6 @@
 namespace fingerpad {
 inline namespace v0 {
 
-/// Lines straight toward the middle of the contact (in plan), cut at equal steps along them.
-struct StraightLines {
-  static constexpr bool straight = true;
-  static constexpr bool by_height = false;
-};
-
-/// A shape of the membrane. Places are in mm about Q, the center of the base:
-///   shape(x, y)             a struct with height_mm and its rise along_x and along_y, all finite,
-///                           or the height NaN
-///   shape.in_contact(x, y)  whether the membrane touches the object
-template <class T, class S>
-concept membrane_shape = requires(const T& shape, const S& x, const S& y) {
-  S(shape(x, y).height_mm);
-  S(shape(x, y).along_x);
-  S(shape(x, y).along_y);
-  { shape.in_contact(x, y) } -> std::convertible_to<bool>;
-};
-
 /// Six-axis force.
 ///   Solver  LeastSquares  take this for the tensions inside the membrane, too
 ///           BalancedRim   take this for force and moment alone: as good, 15 times as fast

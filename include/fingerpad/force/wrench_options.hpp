@@ -1,8 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// Pad and mesh of the six-axis force.
+// Pad and mesh of the six-axis force, what a frame says, and what a shape is.
 #include <array>
+#include <concepts>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -14,6 +15,24 @@
 
 namespace fingerpad {
 inline namespace v0 {
+
+/// Lines straight toward the middle of the contact (in plan), cut at equal steps along them.
+struct StraightLines {
+  static constexpr bool straight = true;
+  static constexpr bool by_height = false;
+};
+
+/// A shape of the membrane. Places are in mm about Q, the center of the base:
+///   shape(x, y)             a struct with height_mm and its rise along_x and along_y, all finite,
+///                           or the height NaN
+///   shape.in_contact(x, y)  whether the membrane touches the object
+template <class T, class S>
+concept membrane_shape = requires(const T& shape, const S& x, const S& y) {
+  S(shape(x, y).height_mm);
+  S(shape(x, y).along_x);
+  S(shape(x, y).along_y);
+  { shape.in_contact(x, y) } -> std::convertible_to<bool>;
+};
 
 template <scalar S = double>
 struct WrenchOptions {
