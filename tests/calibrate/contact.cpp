@@ -259,7 +259,7 @@ TEST_CASE("calibration: what it refuses", "[contact_region]") {
       begins_with(refusal([&] { (void)level.fit(); }), "FreePadCalibration: threshold_per_mm = 0"));
 
   CHECK(begins_with(refusal([&] { const Calibration none(camera, 0, 44); }),
-                    "CurvatureMap: rows = 0"));
+                    "FreePadCalibration: rows = 0"));
   CHECK(begins_with(refusal([&] { const Calibration none(camera, 40, 44, {0}); }),
                     "CurvatureRing: radius_px = 0"));
   auto bad = camera;

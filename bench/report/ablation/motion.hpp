@@ -115,44 +115,49 @@ inline MotionRecording rolling_along_a_circle(double noise, std::uint64_t seed) 
   return recording;
 }
 
-inline std::vector<MotionRecordings> motion_recordings(double noise) {
+/// How the object is held and moved in each scene that has no motion of its own.
+struct HeldScenes {
+  Held press, drag, reversal, twist, force, strip, tilted;
+};
+
+inline HeldScenes held_scenes() {
   using fingerpad::Pose;
   constexpr double degree = std::numbers::pi / 180;
   const auto turn = [](double x, double y, double z) {
     return test::turned_by({x * degree, y * degree, z * degree});
   };
   const auto shift = [=](double x, double z) { return Pose<double>{turn(0, 0, 0), {x, 0, z}}; };
-  const auto first_half = [](double share) { return (std::min)(1.0, 2 * share); };
-  const auto second_half = [](double share) { return (std::max)(0.0, 2 * share - 1); };
+  const auto about = [](const auto& rotation) { return Pose<double>{rotation, {0, 0, 0}}; };
   const auto there_and_back = [](double share) { return 1 - std::abs(2 * share - 1); };
   const auto to_edge = [](double share) { return 5.2 - 1.4 * share; };
-  Held press{.pose = [=](double s) { return shift(0, -2 * s); }};
-  Held drag{.pose = [=](double s) { return shift(3 * s, 0); }, .stick_mm = to_edge};
-  Held reversal{.pose = [=](double s) { return shift(3 * there_and_back(s), 0); },
-                .stick_mm = [=](double s) { return to_edge(s < 0.5 ? 2 * s : 2 * s - 1); }};
-  Held twist{.pose =
-                 [=](double s) {
-                   return Pose<double>{turn(0, 0, 20 * s), {0, 0, 0}};
-                 },
-             .stick_mm = to_edge};
-  Held force{.pose = [=](double s) { return shift(0, -2 * there_and_back(s)); },
-             .patch_mm = [=](double s) { return 3.5 + 2.5 * there_and_back(s); }};
-  Held strip{.pose =
-                 [=](double s) {
-                   return Pose<double>{
-                       turn(0, 0, 20 * second_half(s)) * turn(10 * first_half(s), 0, 0), {0, 0, 0}};
-                 },
-             .half_width_mm = 2};
-  strip.patch_mm = [](double) { return 7.0; };
-  Held tilted{.pose = [=](double s) {
-    const double angle = 15 * (std::min)(1.0, 5 * s);
-    const double direction = 2 * std::numbers::pi * (std::max)(0.0, s - 0.2) / 0.8;
-    return Pose<double>{turn(angle * std::cos(direction), angle * std::sin(direction), 0),
-                        {0, 0, 0}};
-  }};
-  Held rough = tilted, sparse = tilted;
-  rough.noise = 3;
-  sparse.lost_share = 0.2;
+  HeldScenes s;
+  s.press.pose = [=](double share) { return shift(0, -2 * share); };
+  s.drag.pose = [=](double share) { return shift(3 * share, 0); };
+  s.drag.stick_mm = to_edge;
+  s.reversal.pose = [=](double share) { return shift(3 * there_and_back(share), 0); };
+  s.reversal.stick_mm = [=](double share) {
+    return to_edge(share < 0.5 ? 2 * share : 2 * share - 1);
+  };
+  s.twist.pose = [=](double share) { return about(turn(0, 0, 20 * share)); };
+  s.twist.stick_mm = to_edge;
+  s.force.pose = [=](double share) { return shift(0, -2 * there_and_back(share)); };
+  s.force.patch_mm = [=](double share) { return 3.5 + 2.5 * there_and_back(share); };
+  s.strip.pose = [=](double share) {
+    const double first_half = (std::min)(1.0, 2 * share);
+    const double second_half = (std::max)(0.0, 2 * share - 1);
+    return about(turn(0, 0, 20 * second_half) * turn(10 * first_half, 0, 0));
+  };
+  s.strip.half_width_mm = 2;
+  s.strip.patch_mm = [](double) { return 7.0; };
+  s.tilted.pose = [=](double share) {
+    const double angle = 15 * (std::min)(1.0, 5 * share);
+    const double direction = 2 * std::numbers::pi * (std::max)(0.0, share - 0.2) / 0.8;
+    return about(turn(angle * std::cos(direction), angle * std::sin(direction), 0));
+  };
+  return s;
+}
+
+inline std::vector<MotionRecordings> motion_recordings(double noise) {
   std::vector<MotionRecordings> all;
   const auto add = [&](Scene scene, const auto& make) {
     all.push_back({scene, {0, 0, 10}, {}});
@@ -163,15 +168,19 @@ inline std::vector<MotionRecordings> motion_recordings(double noise) {
   const auto held = [](const Held& h) {
     return [h](double by, std::uint64_t seed) { return recording_of(h, by, seed); };
   };
-  add(Scene::press, held(press));
-  add(Scene::drag, held(drag));
-  add(Scene::reversal, held(reversal));
-  add(Scene::twist, held(twist));
-  add(Scene::normal_force_change, held(force));
+  const HeldScenes scenes = held_scenes();
+  Held rough = scenes.tilted, sparse = scenes.tilted;
+  rough.noise = 3;
+  sparse.lost_share = 0.2;
+  add(Scene::press, held(scenes.press));
+  add(Scene::drag, held(scenes.drag));
+  add(Scene::reversal, held(scenes.reversal));
+  add(Scene::twist, held(scenes.twist));
+  add(Scene::normal_force_change, held(scenes.force));
   add(Scene::rolling, rolling_along_a_circle);
   all.back().middle_mm = {5, -0.1, 10};
-  add(Scene::wedge, held(strip));
-  add(Scene::tilted, held(tilted));
+  add(Scene::wedge, held(scenes.strip));
+  add(Scene::tilted, held(scenes.tilted));
   if (noise > 0) {
     add(Scene::noisy, held(rough));
   }
