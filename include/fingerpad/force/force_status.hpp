@@ -53,11 +53,11 @@ namespace detail {
 /// What no contact of a fingertip has; false for what is not finite.
 template <class S>
 constexpr bool beyond_displacement(const Point2<S>& displacement_mm) {
-  return is_finite(displacement_mm) && value(squared_norm(displacement_mm)) > 1e4;
+  return is_finite(displacement_mm) && value(squared_norm(displacement_mm)) > 10000;
 }
 template <class S>
 constexpr bool beyond_rotation(const S& rotation_rad) {
-  return is_finite(rotation_rad) && (value(rotation_rad) > 3.2 || value(rotation_rad) < -3.2);
+  return is_finite(rotation_rad) && value(S(rotation_rad * rotation_rad)) > 10;
 }
 
 constexpr ForceStatus worse(ForceStatus a, ForceStatus b) {

@@ -283,7 +283,8 @@ FusedForce<S> fused(const NormalForceResult<S>& a,
   const S disagreement = value(difference) == 0 ? S(0)
                          : exact                ? not_a_number<S>()
                                                 : S(difference / S(sqrt(sum)));
-  const bool agree = square(value(disagreement)) <= max_disagreement * max_disagreement;
+  const S most = S(max_disagreement);
+  const bool agree = disagreement * disagreement <= most * most;
   const ForceStatus worst = detail::worse(a.status, b.status);
   return {agree ? worst : detail::worse(worst, ForceStatus::disagreeing),
           S(b.force_n + share_of_a * difference), S(share_of_a * a.variance_n2), disagreement, 2};

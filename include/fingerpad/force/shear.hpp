@@ -173,7 +173,7 @@ void expects_valid(const RadialShear<Degree, S>& map) {
   check(map.moment, "RadialShear: moment");
   using std::sqrt;
   const S size_mm = sqrt(S(map.moment.coefficients[0] / map.force.coefficients[0]));
-  expects(value(size_mm) >= 0.5 && value(size_mm) <= 1000, "RadialShear",
+  expects(2 * value(size_mm) >= 1 && value(size_mm) <= 1000, "RadialShear",
           "size of the contact that moment over force makes, mm", size_mm,
           "in [0.5, 1000]: N/mm and N mm/rad?");
 }

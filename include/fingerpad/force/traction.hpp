@@ -255,7 +255,7 @@ class TractionField {
       result.status = TractionStatus::bad_pressure;
       return not_a_number<S>();
     }
-    if (value(pressure_mpa) > options_.max_pressure_mpa) {
+    if (pressure_mpa > S(options_.max_pressure_mpa)) {
       result.status = TractionStatus::pressure_not_in_mpa;
       return not_a_number<S>();
     }
