@@ -276,12 +276,36 @@ TEST_CASE("grip control: the state is a value", "[grip_control]") {
   static_assert(std::is_trivially_copyable_v<GripControl<float>::State>);
 }
 
+TEST_CASE("grip control: a lost object is not closed upon", "[grip_control]") {
+  const GripControl control;
+  auto state = control.start(2);
+  (void)control(0.3, RatioUpdate::fresh, 0.01, state);  // it slips, and is gone
+  GripResult<double> result;
+  for (int k = 0; k < 49; ++k) {
+    result = control(not_a_number<double>(), RatioUpdate::no_contact, 0.01, state);
+    CHECK(result.why == GripReason::blind);
+  }
+  const double force_n = result.force_n;
+  for (int k = 0; k < 300; ++k) {
+    result = control(not_a_number<double>(), RatioUpdate::no_contact, 0.01, state);
+  }
+  CHECK(result.why == GripReason::lost);
+  CHECK(result.status == GripStatus::holding);
+  CHECK(result.force_n <= force_n + 0.1);
+  CHECK_FALSE(result.ok());
+  // what touches again is held on to
+  CHECK(control(0.3, RatioUpdate::fresh, 0.01, state).why == GripReason::slipping);
+  result = control(not_a_number<double>(), RatioUpdate::no_contact, 0.01, state);
+  CHECK(result.why == GripReason::blind);
+}
+
 TEST_CASE("grip control: update of a stick ratio", "[grip_control]") {
   CHECK(update_of(StickStatus::updated) == RatioUpdate::fresh);
   CHECK(update_of(StickStatus::standing) == RatioUpdate::unmoved);
   CHECK(update_of(StickStatus::no_reference) == RatioUpdate::unmoved);
-  for (const auto status : {StickStatus::too_few_dots, StickStatus::no_contact,
-                            StickStatus::no_dots, StickStatus::jumped, StickStatus::restarted}) {
+  CHECK(update_of(StickStatus::no_contact) == RatioUpdate::no_contact);
+  for (const auto status : {StickStatus::too_few_dots, StickStatus::no_dots, StickStatus::jumped,
+                            StickStatus::restarted}) {
     CHECK(update_of(status) == RatioUpdate::missing);
   }
 }

@@ -25,9 +25,10 @@ inline namespace v0 {
 
 /// What the camera had to say on the stick ratio since the last call.
 enum class RatioUpdate : std::uint8_t {
-  fresh,    ///< the ratio is that of now
-  unmoved,  ///< the dots were seen and have not moved enough to tell more: the last ratio stands
-  missing,  ///< nothing usable was seen
+  fresh,       ///< the ratio is that of now
+  unmoved,     ///< the dots were seen and have not moved enough to tell more: the last ratio stands
+  missing,     ///< nothing usable was seen
+  no_contact,  ///< nothing touches: there is no object, or it has just been lost
 };
 
 /// The update that a status of the stick ratio brings.
@@ -36,12 +37,14 @@ template <class StickStatus>
     StickStatus::updated;
     StickStatus::standing;
     StickStatus::no_reference;
+    StickStatus::no_contact;
   }
 constexpr RatioUpdate update_of(StickStatus status) {
   const bool unmoved = status == StickStatus::standing || status == StickStatus::no_reference;
-  return status == StickStatus::updated ? RatioUpdate::fresh
-         : unmoved                      ? RatioUpdate::unmoved
-                                        : RatioUpdate::missing;
+  return status == StickStatus::updated      ? RatioUpdate::fresh
+         : unmoved                           ? RatioUpdate::unmoved
+         : status == StickStatus::no_contact ? RatioUpdate::no_contact
+                                             : RatioUpdate::missing;
 }
 
 enum class GripStatus : std::uint8_t {
@@ -60,6 +63,7 @@ enum class GripReason : std::uint8_t {
   may_slide,      ///< the dots stand still, but the last ratio was at most `sliding_ratio`
   waiting,        ///< no ratio, for no longer than `blind_after_s`
   blind,          ///< no ratio for longer than that, or slipping when last seen
+  lost,           ///< nothing has touched for longer than `lost_after_s`: there is no object
   no_time,        ///< the time step was not a positive number: nothing was done
 };
 
@@ -95,6 +99,8 @@ constexpr const char* name_of(GripReason reason) {
       return "waiting";
     case GripReason::blind:
       return "blind";
+    case GripReason::lost:
+      return "lost";
     case GripReason::no_time:
       return "no time";
   }
@@ -122,6 +128,8 @@ struct GripLaw {
                                     ///< was slipping when last seen, >= 0
   S blind_rise_n_per_s = S(5);      ///< from then on the force is raised so, to the safe force,
                                     ///< >= 0; 0: held
+  S lost_after_s = S(5) / S(10);    ///< without contact for longer than this the object is lost:
+                                    ///< the force is no longer raised, >= 0
   S longest_step_s = S(1) / S(10);  ///< a longer time between calls counts as this, > 0
 };
 
@@ -155,6 +163,7 @@ void expects_valid(const GripLaw<S>& law) {
   check(value(law.blind_after_s) >= 0, "blind_after_s", law.blind_after_s, "finite and >= 0");
   check(value(law.blind_rise_n_per_s) >= 0, "blind_rise_n_per_s", law.blind_rise_n_per_s,
         "finite and >= 0");
+  check(value(law.lost_after_s) >= 0, "lost_after_s", law.lost_after_s, "finite and >= 0");
   check(value(law.longest_step_s) > 0, "longest_step_s", law.longest_step_s, "finite and > 0");
 }
 
@@ -181,7 +190,8 @@ struct [[nodiscard]] GripResult {
   /// Whether the force rests on a stick ratio: false while none is seen, or what is given is none,
   /// as a ratio in percent.
   bool ok() const {
-    return why != GripReason::no_time && why != GripReason::waiting && why != GripReason::blind;
+    return why != GripReason::no_time && why != GripReason::waiting && why != GripReason::blind &&
+           why != GripReason::lost;
   }
 };
 
@@ -209,6 +219,7 @@ class GripControl {
     S force_n_;
     S ratio_age_s_ = S(0);   ///< since the last fresh ratio
     S unseen_s_ = S(0);      ///< since the dots were seen
+    S untouched_s_ = S(0);   ///< since anything touched
     bool slipping_ = false;  ///< the last fresh ratio was below the set point
   };
 
@@ -260,6 +271,10 @@ class GripControl {
 
   RateCommand command_for(const S& ratio, RatioUpdate update, const S& step_s, State& state) const {
     const bool known = value(ratio) >= 0 && value(ratio) <= 1;
+    if (update == RatioUpdate::no_contact) {
+      return without_contact(step_s, state);
+    }
+    state.untouched_s_ = S(0);
     const bool none_yet = update == RatioUpdate::unmoved && !(value(ratio) == value(ratio));
     if (update == RatioUpdate::missing || !(known || none_yet)) {
       return without_ratio(step_s, state);
@@ -290,6 +305,14 @@ class GripControl {
       }
     }
     return {S(0), law_.safe_force_n, GripReason::unmoved};
+  }
+
+  /// A contact that drops out is waited for as a ratio is; one that stays away is no object.
+  RateCommand without_contact(const S& step_s, State& state) const {
+    state.untouched_s_ = S(state.untouched_s_ + step_s);
+    const RateCommand command = without_ratio(step_s, state);
+    const bool lost = value(law_.lost_after_s) < value(state.untouched_s_);
+    return lost ? RateCommand{S(0), law_.safe_force_n, GripReason::lost} : command;
   }
 
   RateCommand without_ratio(const S& step_s, State& state) const {
