@@ -15,7 +15,7 @@ macro(fingerpad_find_component name)
     set(fingerpad_dot_finder_FOUND ${OpenCV_FOUND})
     set(fingerpad_dot_finder_LIBRARY opencv_core opencv_imgproc)
     set(fingerpad_dot_finder_NEEDS "OpenCV")
-  elseif("${name}" STREQUAL "eigen") # grids and dual numbers of Eigen; calibrations of light and forces
+  elseif("${name}" STREQUAL "eigen") # six-axis force, fingertip, fits; grids and dual numbers of Eigen
     find_package(Eigen3 3.4 QUIET NO_MODULE)
     set(fingerpad_eigen_FOUND ${Eigen3_FOUND})
     set(fingerpad_eigen_LIBRARY Eigen3::Eigen)

@@ -1,11 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// Everything but the adapters, which bring their libraries with them (see adapt/). The fits of
-// light and forces need Eigen and are here where Eigen is found.
+// Everything but the adapters, which bring their libraries with them (see adapt/). What needs Eigen is
+// here where Eigen is found: the six-axis force, the whole fingertip, fits of light and forces.
 #include "fingerpad/calibrate/contact.hpp"
-#include "fingerpad/calibrate/depth.hpp"
-#include "fingerpad/calibrate/force.hpp"
 #include "fingerpad/calibrate/intensity.hpp"
 #include "fingerpad/calibrate/neighbour_light.hpp"
 #include "fingerpad/calibrate/rim.hpp"
@@ -32,12 +30,9 @@
 #include "fingerpad/force/pad_heights.hpp"
 #include "fingerpad/force/shear.hpp"
 #include "fingerpad/force/traction.hpp"
-#include "fingerpad/force/wrench.hpp"
 #include "fingerpad/motion/contact_shift.hpp"
 #include "fingerpad/motion/object_motion.hpp"
 #include "fingerpad/optics/camera.hpp"
-#include "fingerpad/pipeline/fingertip.hpp"
-#include "fingerpad/pipeline/fingertip_options.hpp"
 #include "fingerpad/pipeline/foam_hand.hpp"
 #include "fingerpad/published/camera.hpp"
 #include "fingerpad/published/contact_region.hpp"
@@ -45,12 +40,10 @@
 #include "fingerpad/published/depth.hpp"
 #include "fingerpad/published/friction_ratio.hpp"
 #include "fingerpad/published/neighbour_light.hpp"
-#include "fingerpad/published/normal_force.hpp"
 #include "fingerpad/published/object_motion.hpp"
 #include "fingerpad/published/preslip.hpp"
 #include "fingerpad/published/shear.hpp"
 #include "fingerpad/published/stick_ratio.hpp"
-#include "fingerpad/published/wrench.hpp"
 #include "fingerpad/sim/elastic_gel.hpp"
 #include "fingerpad/sim/foam_contact.hpp"
 #include "fingerpad/slip/contact_slide.hpp"
@@ -59,3 +52,12 @@
 #include "fingerpad/slip/recoil.hpp"
 #include "fingerpad/slip/spatial_stick_ratio.hpp"
 #include "fingerpad/slip/stick_ratio.hpp"
+
+#if __has_include(<Eigen/Core>)
+#include "fingerpad/calibrate/depth.hpp"
+#include "fingerpad/calibrate/force.hpp"
+#include "fingerpad/force/wrench.hpp"
+#include "fingerpad/pipeline/fingertip.hpp"
+#include "fingerpad/published/normal_force.hpp"
+#include "fingerpad/published/wrench.hpp"
+#endif
