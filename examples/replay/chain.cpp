@@ -98,6 +98,7 @@ void describe_depth(const FrameDepth& result, Scene& scene) {
   constexpr double none = std::numeric_limits<double>::quiet_NaN();
   scene.valid_share =
       valid / static_cast<double>((std::max)(result.pad_pixels, fingerpad::Index{1}));
+  scene.pad_has_changed = result.pad_has_changed;
   scene.depth_mean_mm = valid > 0 ? sum / valid : none;
   scene.depth_max_mm = valid > 0 ? top : none;
 }

@@ -110,14 +110,21 @@ void print_depth(const Chain& chain, const Writer& writer) {
   double deepest_mm = 0;
   double largest_mm2 = 0;
   int in_contact = 0;
+  int changed = 0;
   for (const FrameRow& row : writer.rows()) {
     valid_share += row.valid_share;
     deepest_mm = std::fmax(deepest_mm, row.depth_max_mm);
     largest_mm2 = std::fmax(largest_mm2, row.contact.area_mm2);
     in_contact += row.contact.in_contact() ? 1 : 0;
+    changed += row.pad_has_changed ? 1 : 0;
   }
   const auto frames = static_cast<double>(writer.rows().size());
   std::printf("valid        %.2f %% of the pad's pixels\n", 100 * valid_share / frames);
+  if (changed > 0) {
+    std::printf(
+        "pad changed  in %d frames: its light is not that of reference.png; take a new one\n",
+        changed);
+  }
   std::printf("deepest      %.2f mm\n", deepest_mm);
   std::printf("contact      in %d frames, at most %.1f mm^2\n", in_contact, largest_mm2);
   std::printf("depth step   %.2f ms a frame (median)\n", chain.depth_ms());

@@ -393,6 +393,16 @@ TEST_CASE("a picture that does not fit on the disk is told") {
   CHECK_THROWS_AS(replay::write_png("/no such folder/a.png", picture), replay::Failure);
 }
 
+TEST_CASE("a lamp that has changed is told of the frame") {
+  const Workplace work;
+  const replay::Recording recording = replay::open_recording(work.recording());
+  const auto depth = replay::make_depth_step(recording, replay::Smoothing::anchored, 29);
+  const cv::Mat frame = cv::imread((work.recording() / "frames/000002.png").string());
+  cv::Mat_<float> depth_mm(frame.size());
+  CHECK_FALSE(depth(frame, depth_mm).pad_has_changed);
+  CHECK(depth(frame * 0.85, depth_mm).pad_has_changed);
+}
+
 TEST_CASE("16-bit frames give the depth of 8-bit frames") {
   const Workplace narrow;
   const Workplace wide;

@@ -62,8 +62,9 @@ struct FrameRow {
   std::optional<TrueForce> truth;
   fingerpad::WrenchResult<double> wrench;  ///< not ok(), and empty in the file: no answer
   double pressure_mpa = 0;                 ///< NaN: not known
+  bool pad_has_changed = false;            ///< its light is not that of the reference
 
-  bool has_wrench() const { return wrench.ok() && wrench.ok(); }
+  bool has_wrench() const { return wrench.ok(); }
 };
 
 class FramesCsv {

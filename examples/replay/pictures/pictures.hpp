@@ -37,6 +37,7 @@ struct Scene {
   cv::Mat_<float> depth_mm;  ///< empty where the recording is of dots only
   Section section;
   double valid_share = not_known;
+  bool pad_has_changed = false;  ///< its light is not that of the reference
   double depth_mean_mm = not_known;  ///< where no pixel is valid
   double depth_max_mm = not_known;
   double pressure_mpa = not_known;

@@ -96,7 +96,8 @@ struct Chain {
     if (neighbour_light) {
       (*neighbour_light)(depth_mm);
     }
-    return {result.valid_pixels(), result.pad_pixels};
+    return {result.valid_pixels(), result.pad_pixels,
+            result.status == fingerpad::DepthStatus::pad_has_changed};
   }
 };
 

@@ -17,6 +17,7 @@ enum class Smoothing { none, box, anchored };
 struct FrameDepth {
   fingerpad::Index valid_pixels = 0;
   fingerpad::Index pad_pixels = 0;
+  bool pad_has_changed = false;  ///< its light is not that of the reference
 };
 
 /// Depth in mm, NaN where there is none, of an 8- or 16-bit colour frame of the reference's size.
