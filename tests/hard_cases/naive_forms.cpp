@@ -34,7 +34,6 @@ const std::vector<Bounds> depth = {
 const std::vector<Bounds> surface = {
     {hard::flat_section, 2e-7, 3e-16, 1e-10, 2e-19},
     {hard::flat_contact, none, none, 1e-9, 2e-18},
-    {hard::umbilic, none, none, 5e-8, 1e-16},
     {hard::nearly_flat_sphere, none, 1e-8, 1e-16, 1e-16},
     {hard::patch_far_away, 1e-2, 1e-9, 1e-15, 1e-15},
     {hard::center_pixel, none, none, 1e-5, 2e-14},
@@ -58,9 +57,9 @@ const std::vector<Bounds> stick = {
 const std::vector<Bounds> foam = {
     {hard::critical_damping, none, none, 2e-7, 1.5e-15},
     {hard::strong_damping, 1, 1e-5, 2e-7, 1e-15},
-    {hard::long_swing, 1e-4, 1e-13, 2e-7, 6e-16},
+    {hard::long_swing, 1e-4, 1e-13, 2e-7, 1e-15},
     {hard::long_times, none, none, 3e-7, 6e-16},
-    {hard::many_steps, 1e-4, 2e-13, 2e-7, 5e-16},
+    {hard::many_steps, 1e-4, 2e-13, 2e-7, 1e-15},
     {hard::short_step, 0.5, 1e-5, 2e-7, 5e-16},
     {hard::short_creep, 1, 1, 3e-7, 8e-16},
     {hard::no_load, none, none, 2e-6, 2e-15},
