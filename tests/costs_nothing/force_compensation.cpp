@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
-// Compensation and error of a normal force by look-up.
+// Compensation of a normal force by look-up.
 #include "fingerpad/force/normal_force.hpp"
 
 using namespace fingerpad;
@@ -11,9 +11,9 @@ extern "C" double switched_off(const NormalForce<>& look_up, double area_mm2) {
 
 extern "C" double without_effect(const detail::WholeCurve<PolynomialForce<>>& curve,
                                  double area_mm2) {
-  if (!is_finite(area_mm2)) {
+  const double force = curve.force_n(area_mm2);
+  if (!is_finite(area_mm2) || !is_finite(force)) {
     return not_a_number<double>();
   }
-  const double force = curve.force_n(area_mm2);
-  return !is_finite(force) ? not_a_number<double>() : force > 0 ? force : 0;
+  return force > 0 ? force : 0;
 }

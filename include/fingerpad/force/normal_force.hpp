@@ -229,7 +229,7 @@ class NormalForce {
     }
   }
 
-  S variance_n2(const S& measure, const detail::ForceChange<S>& change) const {
+  [[gnu::pure]] S variance_n2(const S& measure, const detail::ForceChange<S>& change) const {
     auto gradient = curve_.gradient(measure);
     for (S& by_parameter : gradient) {
       by_parameter = by_parameter * change.gain;
