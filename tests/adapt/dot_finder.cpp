@@ -139,25 +139,35 @@ TEST_CASE("dots: what is lost is NaN, the others stay, and it comes back under i
 }
 
 TEST_CASE("dots: specks that are no dots take no name and move no dot") {
+  // A speck whose edge is within a radius of a dot's edge is part of its spot, and moves it a
+  // little.
+  struct Case {
+    double nearest_radii;  // from a dot's center; dots have 1, specks 1/3
+    double worst_px;
+  };
+  const Case far = GENERATE(Case{7.0 / 3, 0.1}, Case{1.9, 1});
   Print print;
   const DotPlaces truth = test::places_of(print);
   const DotFinder finder(test::picture_of(print, truth));
   REQUIRE(finder.ok());
   std::mt19937 random(20110801);
   std::uniform_real_distribution<double> unit(0, 1);
-  std::vector<cv::Vec2d> specks;
-  while (specks.size() < 30) {  // beside dots, not on them
-    const cv::Vec2d speck(320 * unit(random), 240 * unit(random));
-    const bool beside = std::all_of(truth.begin(), truth.end(), [&](const cv::Vec2d& dot) {
-      return cv::norm(dot - speck) > 1.9 * print.radius_px;
-    });
-    if (beside) {
-      specks.push_back(speck);
+  for (int picture = 0; picture < 5; ++picture) {
+    std::vector<cv::Vec2d> specks;
+    while (specks.size() < 30) {
+      const double x = 320 * unit(random), y = 240 * unit(random);
+      const cv::Vec2d speck(x, y);
+      const bool beside = std::all_of(truth.begin(), truth.end(), [&](const cv::Vec2d& dot) {
+        return cv::norm(dot - speck) > far.nearest_radii * print.radius_px;
+      });
+      if (beside) {
+        specks.push_back(speck);
+      }
     }
+    const DotPlaces found = dots_in(finder, test::picture_of(print, truth, specks));
+    CHECK(test::errors_of(found, truth).count == truth.rows * truth.cols);
+    CHECK(test::errors_of(found, truth).worst_px < far.worst_px);
   }
-  const DotPlaces found = dots_in(finder, test::picture_of(print, truth, specks));
-  CHECK(test::errors_of(found, truth).count == truth.rows * truth.cols);
-  CHECK(test::errors_of(found, truth).worst_px < 0.1);
 }
 
 TEST_CASE("dots: what hides a part of the frame hides only dots there") {
