@@ -11,6 +11,7 @@
 #include "fingerpad/adapt/opencv.hpp"
 #include "fingerpad/image/curvature_map.hpp"
 #include "fingerpad/published/contact_region.hpp"
+#include "support/cameras.hpp"
 #include "support/catch.hpp"
 #include "support/foreign_image.hpp"
 #include "support/pad.hpp"
@@ -25,20 +26,8 @@ namespace {
 constexpr double pi = 3.14159265358979323846;
 using Plan = OrthographicCamera<double>;
 using Through = Camera<double>;
-
-/// A height map's camera.
-Plan plan(double pitch_mm) {
-  Plan camera;
-  camera.pitch_mm = pitch_mm;
-  return camera;
-}
-/// A camera whose pitch grows with depth by that share per mm.
-Through through(double pitch_mm, double growth_per_mm) {
-  Through camera;
-  camera.pitch_mm = pitch_mm;
-  camera.plate_distance_mm = 1 / (growth_per_mm * camera.refractive_index);
-  return camera;
-}
+using test::plan;
+using test::through;
 
 const Plan plate = plan(0.0768);
 

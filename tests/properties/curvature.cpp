@@ -8,6 +8,7 @@
 
 #include "fingerpad/image/curvature_map.hpp"
 #include "fingerpad/published/contact_region.hpp"
+#include "support/cameras.hpp"
 #include "support/catch.hpp"
 #include "support/generators.hpp"
 #include "support/pad.hpp"
@@ -45,20 +46,8 @@ CurvatureRing any_ring() {
 
 using Plan = OrthographicCamera<double>;
 using Through = Camera<double>;
-
-/// A height map's camera.
-Plan plan(double pitch_mm) {
-  Plan camera;
-  camera.pitch_mm = pitch_mm;
-  return camera;
-}
-/// A camera whose pitch grows with depth by that share per mm.
-Through through(double pitch_mm, double growth_per_mm) {
-  Through camera;
-  camera.pitch_mm = pitch_mm;
-  camera.plate_distance_mm = 1 / (growth_per_mm * camera.refractive_index);
-  return camera;
-}
+using test::plan;
+using test::through;
 
 const Plan plate = plan(0.125);
 

@@ -12,7 +12,22 @@
 namespace test {
 
 using fingerpad::Camera;
+using fingerpad::OrthographicCamera;
 using fingerpad::Point2;
+
+/// A height map's camera.
+inline OrthographicCamera<double> plan(double pitch_mm) {
+  OrthographicCamera<double> camera;
+  camera.pitch_mm = pitch_mm;
+  return camera;
+}
+/// A camera whose pitch grows with depth by that share per mm.
+inline Camera<double> through(double pitch_mm, double growth_per_mm) {
+  Camera<double> camera;
+  camera.pitch_mm = pitch_mm;
+  camera.plate_distance_mm = 1 / (growth_per_mm * camera.refractive_index);
+  return camera;
+}
 
 /// A camera at random, with a plate or without; exact in every type.
 inline Camera<double> any_camera() {
