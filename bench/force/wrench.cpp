@@ -22,6 +22,7 @@
 #include "bench/support/scene_wrench.hpp"
 #include "fingerpad/force/pad_heights.hpp"
 #include "fingerpad/published/wrench.hpp"
+#include "support/by_modulus.hpp"
 #include "support/pressed_pad.hpp"
 
 using namespace fingerpad;
@@ -127,16 +128,6 @@ struct WrenchErrors {
   }
 };
 
-/// The membrane of the scenes has another modulus.
-template <class Solver>
-Solver solver_of_scenes() {
-  Solver solver;
-  if constexpr (requires { solver.modulus_n_per_mm; }) {
-    solver.modulus_n_per_mm = 0.5;
-  }
-  return solver;
-}
-
 template <class Solver,
           class Row = OneRow,
           class Law = ClampedRim,
@@ -147,7 +138,7 @@ void add_frame(const std::string& group,
                Index columns,
                Index rows,
                const Row& row = {}) {
-  using W = Wrench<Solver, Row, Law, Lines, S>;
+  using W = test::WrenchBy<Solver, Row, Law, Lines, S>;
   struct Frame {
     W wrench;
     typename W::Workspace work = wrench.workspace();
@@ -174,7 +165,7 @@ void add_frame(const std::string& group,
         benchmark::DoNotOptimize(d->result);
       },
       [=, &shape, errors = WrenchErrors()](auto& counters) mutable {
-        const W seen(as<S>(test::rim_border()), on_scenes, solver_of_scenes<Solver>(), row, Law{});
+        const W seen(as<S>(test::rim_border()), on_scenes, Solver{}, row, Law{});
         bench::note_wrench_on_scenes<S>(counters, seen, Row::rows);
         for (std::size_t k = 0; errors.residual.size() < loads().size(); ++k) {
           const Load& load = loads()[k];
@@ -256,7 +247,7 @@ void add_all(Index columns, Index rows) {
   add_frame<BalancedRim>(group, "BalancedRim", columns, rows);
   add_frame<BalancedRim, OneRow>(group, "BalancedRim, with the inclination", columns, rows, {1.06});
   add_frame<BalancedRim, TwoRows>(group, "BalancedRim, TwoRows", columns, rows);
-  add_frame<KnownModulus>(group, "KnownModulus", columns, rows);
+  add_frame<test::KnownModulus>(group, "by_modulus()", columns, rows);
   add_frame<LeastSquares>(group, "LeastSquares, double, the default", columns, rows);
   add_frame<LeastSquares, OneRow, published::Direction>(group, "LeastSquares, published::Direction",
                                                         columns, rows);

@@ -44,7 +44,7 @@ struct Bench {
   /// 1 / radius where the ring sees the free sphere alone, else NaN.
   Image<double> true_curvatures() const {
     const double plate_mm = scene.pressed_mm(scene.pad.rows / 2, scene.pad.cols / 2);
-    const auto ring = detail::ring_offsets(radius_px, directions);
+    const auto ring = detail::ring_offsets(double(radius_px), directions);
     Image<double> curvature(depth.rows(), depth.cols(), test::nan);
     for (Index i = radius_px; i < depth.rows() - radius_px; ++i) {
       for (Index j = radius_px; j < depth.cols() - radius_px; ++j) {
@@ -63,7 +63,7 @@ struct Bench {
   template <class Statistic, class CameraType>
   Image<long double> exact(const CameraType& camera) const {
     const CurvatureMap<Statistic, CameraType, long double> map(camera, depth.rows(), depth.cols(),
-                                                               {radius_px});
+                                                               {double(radius_px)});
     auto workspace = map.workspace();
     Image<long double> out(depth.rows(), depth.cols());
     (void)map(depth, out, workspace);
@@ -90,7 +90,7 @@ struct Bench {
     const auto from = std::make_shared<Image<S>>(as<S>(depth));
     const bench::Memory memory;
     const auto map =
-        std::make_shared<Map>(camera, depth.rows(), depth.cols(), CurvatureRing{radius_px});
+        std::make_shared<Map>(camera, depth.rows(), depth.cols(), CurvatureRing{double(radius_px)});
     const auto workspace = std::make_shared<typename Map::Workspace>(map->workspace());
     const auto out = std::make_shared<Image<S>>(depth.rows(), depth.cols());
     add_map<Statistic>(name, camera, out, memory.bytes(),
@@ -104,7 +104,7 @@ struct Bench {
     const bench::Memory memory;
     const auto out =
         std::make_shared<Image<S>>(depth.rows(), depth.cols(), std::numeric_limits<S>::quiet_NaN());
-    const auto ring = detail::ring_offsets(radius_px, directions);
+    const auto ring = detail::ring_offsets(double(radius_px), directions);
     std::vector<S> radius_mm;
     for (const detail::RingOffset& o : ring) {
       radius_mm.push_back(S(std::sqrt(double(o.radius_sq())) * pitch_mm()));
@@ -129,7 +129,7 @@ struct Bench {
   void add_opencv() const {
     const int size = int(2 * radius_px + 1);
     cv::Mat kernel = cv::Mat::zeros(size, size, CV_32F);
-    for (const detail::RingOffset& o : detail::ring_offsets(radius_px, directions)) {
+    for (const detail::RingOffset& o : detail::ring_offsets(double(radius_px), directions)) {
       const double weight = 1 / (double(o.radius_sq()) * pitch_mm() * pitch_mm() * directions);
       const int center = int(radius_px);
       kernel.at<float>(center + int(o.row), center + int(o.col)) -= float(weight);

@@ -180,7 +180,7 @@ the object, stick ratio, look-up forces and six-axis force, put together in
 Three chains. **default**: the policies by default, with the published iteration as solver of the
 six-axis force. **least squares**: the same with the default solver. **lean**: what a flat contact on
 a pad with dark dots cannot do without: `AnchoredMean`, `ExponentialFree<2, 5>`, `RingStencil<9>`,
-`AtThreshold`.
+`AtThreshold`, in samples of 4 x 4 pixels where the others have 2 x 2.
 
 ![Time of each stage](whole_chain/stages.png)
 
@@ -192,7 +192,7 @@ one grey level of noise; every result has its truth (bench/report/chain/pressed_
 
 {chain_errors(chains)}
 The contact's area is that of a region whose gap of 20 um counts as touched, and of depths that were
-averaged over 29 px; [contact region](contact_region.md) says what each does to it. Look-up forces
+averaged over 29 px; [contact region](contact/contact_region.md) says what each does to it. Look-up forces
 follow the area.
 
 ## Latency

@@ -16,6 +16,7 @@
 #include "bench/support/run.hpp"
 #include "examples/grip/camera.hpp"
 #include "fingerpad/published/friction_ratio.hpp"
+#include "fingerpad/slip/friction_limit.hpp"
 #include "fingerpad/slip/stick_ratio.hpp"
 
 using namespace fingerpad;
@@ -91,14 +92,18 @@ struct Outcome {
   double beyond;  ///< the least force, as a share of it
 };
 
+enum class Fed { by_dots, by_dots_and_friction };
+
 /// With `law`, or with a constant force.
 template <class S>
-Outcome run(const GripLaw<S>* law, double friction, double rise_n_per_s) {
+Outcome run(const GripLaw<S>* law, double friction, double rise_n_per_s, Fed fed) {
   constexpr double first_n = 0.4, last_n = 3, frame_s = 1.0 / 30;
   const grip::Fingertip tip{.friction = friction};
   double force_n = 2 * first_n / friction;
   const StickRatio stick_ratio(tip.dots, tip.dots);
   const GripControl<S> control(law != nullptr ? *law : GripLaw<S>());
+  const FrictionLimit<S> limit;
+  auto limit_state = limit.start();
   auto stick_state = stick_ratio.start();
   auto grip_state = control.start(S(force_n));
   std::vector<DotState> states(static_cast<std::size_t>(tip.dots * tip.dots));
@@ -110,8 +115,10 @@ Outcome run(const GripLaw<S>* law, double friction, double rise_n_per_s) {
     load.advance((std::min)(first_n + rise_n_per_s * time_s, last_n), force_n, frame_s);
     camera.look_at(load);
     const auto stick = stick_ratio(camera.dots(), camera.touch(), states_out, stick_state);
-    const auto grip =
-        control(S(stick.stick_ratio), update_of(stick.status), S(frame_s), grip_state);
+    const auto load_now =
+        fed == Fed::by_dots ? ContactLoad<S>{} : ContactLoad<S>{S(force_n), S(load.held_n())};
+    const auto slip = limit(load_now, S(stick.stick_ratio), update_of(stick.status), limit_state);
+    const auto grip = control(slip, S(frame_s), grip_state);
     force_n = law != nullptr ? double(grip.force_n) : force_n;
   }
   return {load.slip_mm(), force_n * friction / last_n - 1};
@@ -122,11 +129,11 @@ struct Runs {
 };
 
 template <class S>
-Runs all_runs(const GripLaw<S>* law) {
+Runs all_runs(const GripLaw<S>* law, Fed fed) {
   Runs runs;
   for (const double friction : {0.4, 0.7, 1.0}) {
     for (const double rise : {0.2, 0.5, 1.0, 2.0}) {
-      const Outcome o = run(law, friction, rise);
+      const Outcome o = run(law, friction, rise, fed);
       runs.slip_mm.push_back(o.slip_mm);
       runs.beyond.push_back(o.slip_mm < 0.5 ? o.beyond : not_a_number<double>());
     }
@@ -135,13 +142,16 @@ Runs all_runs(const GripLaw<S>* law) {
 }
 
 template <class S = double>
-void add_loop(const std::string& name, const GripLaw<S>& law, bool constant = false) {
+void add_loop(const std::string& name,
+              const GripLaw<S>& law,
+              bool constant = false,
+              Fed fed = Fed::by_dots) {
   const bench::Memory memory;
   const auto d = std::make_shared<Gripping<S>>(Gripping<S>{GripControl<S>(law)});
   bench::add(
       "closed loop/" + name, 1, memory.bytes(), [d] { benchmark::DoNotOptimize(d->next()); },
       [=, runs = Runs()](auto& counters) mutable {
-        runs = runs.beyond.empty() ? all_runs(constant ? nullptr : &law) : runs;
+        runs = runs.beyond.empty() ? all_runs(constant ? nullptr : &law, fed) : runs;
         bench::note_errors(counters, "slip", "mm", runs.slip_mm);
         bench::note_errors(counters, "force beyond need", "share", runs.beyond);
       });
@@ -152,6 +162,7 @@ void add_loop(const std::string& name, const GripLaw<S>& law, bool constant = fa
 int main(int argc, char** argv) {
   add_loop("constant force", {}, true);
   add_loop("default: set point 0.8, gain 60 N/s", {});
+  add_loop("default, dots and friction", {}, false, Fed::by_dots_and_friction);
   add_loop<float>("default, float", {});
   add_loop("gain 10 N/s", {.raise_gain_n_per_s = 10});
   add_loop("gain 20 N/s", {.raise_gain_n_per_s = 20});

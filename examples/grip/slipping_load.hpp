@@ -54,7 +54,8 @@ class SlippingLoad {
     constexpr double gravity_mm_s2 = 9810;
     press(force_n);
     for (int k = 0; k < steps; ++k) {
-      const double pull_n = load_n - relax() - tip_.drag_ns_per_mm * speed_mm_s_;
+      held_n_ = relax();
+      const double pull_n = load_n - held_n_ - tip_.drag_ns_per_mm * speed_mm_s_;
       speed_mm_s_ += time_s / steps * pull_n / load_n * gravity_mm_s2;
       object_mm_ += time_s / steps * speed_mm_s_;
     }
@@ -63,6 +64,8 @@ class SlippingLoad {
   double x_mm(int row, int col) const { return place_mm(col) + shift_mm_[at(row, col)]; }
   double y_mm(int row, int) const { return place_mm(row); }
   bool touches(int row, int col) const { return touches_[at(row, col)] != 0; }
+  /// The force along the contact, as gauges of the fingertip have it.
+  double held_n() const { return held_n_; }
   double friction_limit_n() const { return tip_.friction * force_n_; }
   /// How far the object has slid over the middle of the contact, where it slips last.
   double slip_mm() const { return 0 - slid_mm_[at(tip_.dots / 2, tip_.dots / 2)]; }
@@ -99,10 +102,9 @@ class SlippingLoad {
       for (std::size_t k = 0; k < free_.size(); ++k) {
         if (free_[k] != 0) {
           const double rest_mm = neighbours_mm(k) / 4;
-          shift_mm_[k] = touches_[k] == 0
-                             ? shift_mm_[k] + 1.5 * (rest_mm - shift_mm_[k])
-                             : std::clamp(object_mm_ + slid_mm_[k], rest_mm - max_mm / 4,
-                                          rest_mm + max_mm / 4);
+          shift_mm_[k] = touches_[k] == 0 ? shift_mm_[k] + 1.5 * (rest_mm - shift_mm_[k])
+                                          : std::clamp(object_mm_ + slid_mm_[k],
+                                                       rest_mm - max_mm / 4, rest_mm + max_mm / 4);
         }
       }
     }
@@ -128,6 +130,7 @@ class SlippingLoad {
   std::vector<char> free_;  ///< not held by the rim
   int touching_ = 0;
   double force_n_ = 0;
+  double held_n_ = 0;
   double object_mm_ = 0;
   double speed_mm_s_ = 0;
 };

@@ -15,11 +15,12 @@ using fingerpad::FingertipResult;
 using fingerpad::Point3;
 using fingerpad::SpatialStickTest;
 using Reference = fingerpad::DepthReference<float>;
-/// Forces by look-up need curves that are fitted in C++.
-struct WithoutLookUp : fingerpad::FingertipMethods {
+/// Every pixel, as arrays are read; forces by look-up need curves that are fitted in C++.
+struct Methods : fingerpad::FingertipMethods {
+  static constexpr int sampling = 1;
   static constexpr bool has_look_up = false;
 };
-using Fingertip = fingerpad::Fingertip<Reference, WithoutLookUp>;
+using Fingertip = fingerpad::Fingertip<Reference, Methods>;
 using Options = fingerpad::FingertipOptions<Reference>;
 using WrenchOptions = fingerpad::WrenchOptions<double>;
 
@@ -100,6 +101,7 @@ void bind_fingertip(py::module_& module) {
       "Noise of the dots, and what is slip; slip/spatial_stick_ratio.hpp.")
       .def_readwrite("lateral_mm", &SpatialStickTest::lateral_mm)
       .def_readwrite("depth_mm", &SpatialStickTest::depth_mm)
+      .def_readwrite("free_frames", &SpatialStickTest::free_frames)
       .def_readwrite("slip_share", &SpatialStickTest::slip_share)
       .def_readwrite("false_slip", &SpatialStickTest::false_slip)
       .def_readwrite("min_dots", &SpatialStickTest::min_dots);
@@ -142,9 +144,9 @@ void bind_fingertip(py::module_& module) {
           "red, green: uint8 (rows, cols). dots_px: float64 (rows, cols, 2), NaN where not found.\n"
           "side_dots_mm: float64 (1, n, 3). pressure_mpa: over the surrounding air.")
       .def_property_readonly("depth_mm",
-                             [](const Fingertip& f) { return copied<float>(f.depth_mm()); })
+                             [](Fingertip& f) { return copied<float>(f.depth_mm()); })
       .def_property_readonly(
-          "contact_mask", [](const Fingertip& f) { return copied<std::uint8_t>(f.contact_mask()); })
+          "contact_mask", [](Fingertip& f) { return copied<std::uint8_t>(f.contact_mask()); })
       .def("reset", &Fingertip::reset);
 }
 

@@ -3,14 +3,12 @@
 #include "replay/chain.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <cstdlib>
 #include <limits>
-#include <numbers>
 #include <string>
+#include <utility>
 
-#include "fingerpad/adapt/opencv.hpp"
 #include "replay/io/failure.hpp"
 
 namespace replay {
@@ -18,45 +16,19 @@ namespace {
 
 constexpr int published_window_px = 29;
 
-using Milliseconds = std::chrono::duration<double, std::milli>;
-
-DepthStep depth_step_of(const Recording& recording, const Options& options) {
+std::unique_ptr<FingertipStep> fingertip_step_of(Recording& recording,
+                                                 const Options& options,
+                                                 const DotGrid& initial_px) {
+  if (recording.sensor.dots_only) {
+    return nullptr;
+  }
   const auto window = recording.sensor.smoothing_px;
   const Smoothing by_default = window ? Smoothing::anchored : Smoothing::none;
+  recording.frames.seek(options.range.first);
+  const cv::Mat first_image = next_frame(recording.frames, recording.reference.size());
   try {
-    return make_depth_step(recording, options.smoothing.value_or(by_default),
-                           window.value_or(published_window_px));
-  } catch (const fingerpad::parameter_error& error) {
-    fail(options.recording, error.what());
-  }
-}
-
-ContactStep contact_step_of(Recording& recording,
-                            const DepthStep& depth_step,
-                            const Options& options) {
-  try {
-    return make_contact_step(recording, depth_step);
-  } catch (const fingerpad::parameter_error& error) {
-    fail(options.recording, error.what());
-  }
-}
-
-ForceStep force_step_of(const Recording& recording,
-                        const DotGrid& initial_px,
-                        const Options& options) {
-  if (recording.sensor.dots_only) {
-    return {};
-  }
-  try {
-    return make_force_step(recording, initial_px);
-  } catch (const fingerpad::parameter_error& error) {
-    fail(options.recording, error.what());
-  }
-}
-
-WrenchStep wrench_step_of(const Recording& recording, const Options& options) {
-  try {
-    return make_wrench_step(recording);
+    return make_fingertip_step(recording, first_image, options.smoothing.value_or(by_default),
+                               window.value_or(published_window_px), initial_px);
   } catch (const fingerpad::parameter_error& error) {
     fail(options.recording, error.what());
   }
@@ -85,7 +57,7 @@ double seconds(const std::string& text) {
 }
 
 /// What the pixels of a depth map say together.
-void describe_depth(const FrameDepth& result, Scene& scene) {
+void describe_depth(const FingertipFrame& result, Scene& scene) {
   double sum = 0;
   double top = -std::numeric_limits<double>::infinity();
   for (const float depth : scene.depth_mm) {
@@ -112,59 +84,29 @@ double median(std::vector<double> values) {
   return *middle;
 }
 
-/// Thresholds that sensor.json gives in px, as the noise that has them; without them the default.
-fingerpad::SpatialStickTest spatial_test_of(const Sensor& sensor) {
-  const fingerpad::StickTest by_default, &given = sensor.stick;
-  fingerpad::SpatialStickTest test;
-  if (given.slip_px != by_default.slip_px || given.reference_px != by_default.reference_px) {
-    // slip_px = 2 gain sigma sqrt(ln(1 / false_slip)), gain 0.416 by averaging over neighbours
-    const double sigmas = 2 * 0.416 * std::sqrt(std::log(1 / test.false_slip));
-    test.lateral_mm = given.slip_px * sensor.camera.pitch_mm / sigmas;
-    test.slip_share = (std::min)(given.slip_px / given.reference_px, 0.5);
-  }
-  return test;
-}
-
-/// What the contact carries: by the six-axis force, without it by look-up.
-fingerpad::ContactLoad<double> load_of(const Scene& scene) {
-  if (scene.wrench.present && scene.wrench.result.ok()) {
-    return contact_load(scene.wrench.result.force_n, scene.wrench.result.moment_n_mm,
-                        scene.dots.dots_mm, scene.dots.in_contact);
-  }
-  const double arm_mm = 2.0 / 3 * std::sqrt(scene.contact.area_mm2 / std::numbers::pi);
-  return {scene.force.normal_n, norm(scene.force.tangential_n), scene.force.moment_n_mm, arm_mm};
-}
-
 }  // namespace
 
 Chain::Chain(Recording& recording, const Options& options)
     : recording_(recording),
-      depth_(recording.sensor.dots_only ? DepthStep() : depth_step_of(recording, options)),
-      contact_(recording.sensor.dots_only ? ContactStep()
-                                          : contact_step_of(recording, depth_, options)),
       dots_(dots_of(recording, options)),
+      fingertip_(fingertip_step_of(recording, options, dots_.initial())),
       stick_(dots_.initial().size(), recording.sensor.stick),
-      spatial_stick_(recording.sensor.dots_only ? cv::Size() : dots_.initial().size(),
-                     spatial_test_of(recording.sensor)),
-      force_(force_step_of(recording, dots_.initial(), options)),
-      wrench_(wrench_step_of(recording, options)),
-      traction_(traction_step_of(recording, options)) {
-  if (!recording.sensor.dots_only) {
-    motion_.emplace(recording.sensor, dots_.initial(), recording.reference_depth);
-  }
-}
+      traction_(traction_step_of(recording, options)) {}
 
-void Chain::measure_depth(Scene& scene) {
-  scene.depth_mm.create(scene.image.size());
-  scene.contact_mask.create(scene.image.size());
-  const auto start = std::chrono::steady_clock::now();
-  const FrameDepth depth = depth_(scene.image, scene.depth_mm);
-  const auto between = std::chrono::steady_clock::now();
-  scene.contact = contact_(scene.depth_mm, scene.contact_mask);
-  const auto end = std::chrono::steady_clock::now();
-  depth_ms_.push_back(Milliseconds(between - start).count());
-  contact_ms_.push_back(Milliseconds(end - between).count());
-  describe_depth(depth, scene);
+void Chain::look(const DotGrid& dots_px, Scene& scene) {
+  FingertipFrame seen = (*fingertip_)(scene.frame, scene.image, dots_px, seconds(scene.time_s));
+  scene.depth_mm = seen.depth_mm;
+  scene.contact_mask = seen.contact_mask;
+  scene.contact = seen.contact;
+  scene.dots = std::move(seen.dots);
+  scene.force = seen.force;
+  scene.wrench = std::move(seen.wrench);
+  describe_depth(seen, scene);
+  depth_ms_.push_back(seen.depth_ms);
+  contact_ms_.push_back(seen.contact_ms);
+  if (scene.wrench.present) {
+    wrench_ms_.push_back(seen.wrench_ms);
+  }
 }
 
 Scene Chain::operator()(int frame, const cv::Mat& image) {
@@ -177,31 +119,11 @@ Scene Chain::operator()(int frame, const cv::Mat& image) {
     scene.truth = truth->second;
   }
   scene.image = image;
-  if (depth_) {
-    measure_depth(scene);
-  }
-  if (dots_.present()) {
-    const DotGrid dots_px = dots_.of(frame, image);
-    const double time_s = seconds(scene.time_s);
-    if (motion_) {
-      scene.dots = motion_->place(dots_px, scene.depth_mm, scene.contact_mask);
-      scene.dots.stick = spatial_stick_(scene.dots.dots_mm, scene.dots.in_contact, time_s);
-    } else {
-      scene.dots = dots_alone(dots_px);
-      scene.dots.stick = stick_(dots_px, scene.dots.in_contact, time_s);
-    }
-  }
-  if (force_) {
-    scene.force = force_(scene.contact, scene.dots);
-  }
-  if (wrench_) {
-    const auto start = std::chrono::steady_clock::now();
-    scene.wrench = wrench_(frame, scene.depth_mm, scene.contact_mask);
-    wrench_ms_.push_back(Milliseconds(std::chrono::steady_clock::now() - start).count());
-  }
-  if (motion_ && dots_.present()) {
-    spatial_stick_.fuse(load_of(scene), scene.dots.stick);
-    motion_->follow(scene.dots);
+  const DotGrid dots_px = dots_.present() ? dots_.of(frame, image) : DotGrid();
+  if (fingertip_) {
+    look(dots_px, scene);
+  } else if (dots_.present()) {
+    scene.dots = stick_(dots_px, seconds(scene.time_s));
   }
   if (traction_ && dots_.present()) {
     scene.traction = traction_(scene.dots, scene.pressure_mpa);

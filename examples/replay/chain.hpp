@@ -2,21 +2,17 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 // All that is computed of a recording, frame by frame in the order of time.
+#include <memory>
 #include <opencv2/core.hpp>
-#include <optional>
 #include <vector>
 
 #include "replay/dots/dots.hpp"
 #include "replay/io/recording.hpp"
 #include "replay/pictures/pictures.hpp"
 #include "replay/replay.hpp"
-#include "replay/steps/contact_step.hpp"
-#include "replay/steps/depth_step.hpp"
-#include "replay/steps/force_step.hpp"
-#include "replay/steps/motion_step.hpp"
+#include "replay/steps/fingertip_step.hpp"
 #include "replay/steps/stick_step.hpp"
 #include "replay/steps/traction_step.hpp"
-#include "replay/steps/wrench_step.hpp"
 
 namespace replay {
 
@@ -35,17 +31,13 @@ class Chain {
   double wrench_ms() const;
 
  private:
-  void measure_depth(Scene& scene);
+  void look(const DotGrid& dots_px, Scene& scene);
+
   const Recording& recording_;
-  DepthStep depth_;      ///< empty where the recording is of dots only
-  ContactStep contact_;  ///< the same
   DotSource dots_;
-  std::optional<MotionStep> motion_;  ///< none where the recording is of dots only
-  StickStep stick_;                   ///< of dots alone
-  SpatialStickStep spatial_stick_;
-  ForceStep force_;        ///< empty where the recording is of dots only
-  WrenchStep wrench_;      ///< empty where the recording lacks something
-  TractionStep traction_;  ///< the same
+  std::unique_ptr<FingertipStep> fingertip_;  ///< none where the recording is of dots only
+  StickStep stick_;                           ///< of dots alone
+  TractionStep traction_;                     ///< empty where the recording lacks something
   std::vector<double> depth_ms_;
   std::vector<double> contact_ms_;
   std::vector<double> wrench_ms_;

@@ -12,6 +12,7 @@
 #include "replay/chain.hpp"
 #include "replay/foam/recording.hpp"
 #include "replay/foam/replay.hpp"
+#include "replay/gel/gel.hpp"
 #include "replay/io/failure.hpp"
 #include "replay/io/interrupt.hpp"
 #include "replay/io/progress.hpp"
@@ -178,7 +179,7 @@ void print_summary(const Chain& chain,
   }
   if (options.pictures) {
     std::printf("pictures     %s; %s first\n", (writer.place() / "pictures").c_str(),
-                dots_only ? "stick_ratio.png" : "montage.png");
+                dots_only ? "slide.png" : "montage.png");
   }
 }
 
@@ -227,6 +228,10 @@ int run(const Options& options) {
   Chain chain(recording, options);
   watch_for_interrupts();
   Writer writer(recording, options, chain.dots().initial(), total);
+  std::optional<GelReplay> gel;  // where nothing is known but frames with dots
+  if (recording.sensor.dots_only) {
+    gel.emplace(recording, options, chain.dots(), writer.output(), total);
+  }
   recording.frames.seek(range.first);
   {
     const Progress progress(total);
@@ -236,11 +241,21 @@ int run(const Options& options) {
         return 130;
       }
       const cv::Mat image = next_frame(recording.frames, recording.reference.size());
-      writer(chain(range.first + done, image));
+      Scene scene = chain(range.first + done, image);
+      if (gel) {
+        (*gel)(scene.frame, scene.time_s, image, scene.dots.dots_px);
+      }
+      writer(std::move(scene));
     }
+  }
+  if (gel) {
+    gel->finish();
   }
   writer.finish();
   print_summary(chain, writer, recording, options);
+  if (gel) {
+    gel->print_summary();
+  }
   return 0;
 }
 

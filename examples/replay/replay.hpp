@@ -6,7 +6,7 @@
 #include <optional>
 #include <string>
 
-#include "replay/steps/depth_step.hpp"
+#include "replay/steps/fingertip_step.hpp"
 
 namespace replay {
 

@@ -10,7 +10,6 @@
 
 #include "replay/dots/dots.hpp"
 #include "replay/io/failure.hpp"
-#include "replay/steps/motion_step.hpp"
 #include "replay/steps/stick_step.hpp"
 
 namespace slip_trials {
@@ -85,7 +84,7 @@ std::vector<double> ratios(const std::vector<DotGrid>& frames, const fingerpad::
   replay::StickStep step(frames.front().size(), test);
   std::vector<double> ratio;
   for (const DotGrid& dots : frames) {
-    const auto result = step(dots, replay::dots_alone(dots).in_contact, none).result;
+    const auto result = step(dots, none).stick.result;
     ratio.push_back(result.updated() ? static_cast<double>(result.stick_ratio) : none);
   }
   return ratio;
@@ -94,6 +93,7 @@ std::vector<double> ratios(const std::vector<DotGrid>& frames, const fingerpad::
 struct Followed {
   std::vector<cv::Mat> images;
   std::vector<DotGrid> dots;
+  double dot_px = 0;
 };
 
 Followed follow(const std::filesystem::path& file) {
@@ -105,6 +105,7 @@ Followed follow(const std::filesystem::path& file) {
   recording.reference = recording.frames.next();
   replay::DotSource dots = replay::DotSource::of_dots_only(file, recording);
   Followed followed;
+  followed.dot_px = dots.diameter_px();
   recording.frames.seek(0);
   for (int frame = 0; frame < recording.frames.size(); ++frame) {
     followed.images.push_back(next_frame(recording.frames, recording.reference.size()));
@@ -154,7 +155,7 @@ View look_at(const std::filesystem::path& file, const std::vector<cv::Mat>& free
       view.moved_share.push_back(share_far_off(frames.front(), dots));
     }
     if (!free_frames.empty()) {
-      view.slide = slide_in(followed.images, frames, free_frames);
+      view.slide = slide_in(followed.images, frames, followed.dot_px, free_frames);
     }
   } catch (const replay::Failure& failure) {
     view = {};

@@ -8,8 +8,7 @@
 
 #include "fingerpad/adapt/opencv.hpp"
 #include "fingerpad/contact/contact_by_difference.hpp"
-#include "fingerpad/slip/contact_slide.hpp"
-#include "fingerpad/slip/recoil.hpp"
+#include "replay/gel/slide_step.hpp"
 #include "replay/io/recording.hpp"
 
 namespace slip_trials {
@@ -26,23 +25,6 @@ double median(std::vector<double> values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
   std::nth_element(values.begin(), middle, values.end());
   return *middle;
-}
-
-double pitch_px(const DotGrid& dots) {
-  std::vector<double> distances;
-  for (int i = 0; i < dots.rows; ++i) {
-    for (int j = 0; j < dots.cols; ++j) {
-      for (const cv::Point beside : {cv::Point(j + 1, i), cv::Point(j, i + 1)}) {
-        if (beside.x < dots.cols && beside.y < dots.rows) {
-          const double distance = cv::norm(dots(i, j) - dots(beside));
-          if (std::isfinite(distance)) {
-            distances.push_back(distance);
-          }
-        }
-      }
-    }
-  }
-  return distances.empty() ? std::numeric_limits<double>::quiet_NaN() : median(distances);
 }
 
 cv::Mat last_frame(const std::filesystem::path& folder) {
@@ -131,30 +113,21 @@ std::vector<cv::Mat> free_frames_for(const Trial& trial, const std::vector<Trial
 
 SlideSeries slide_in(const std::vector<cv::Mat>& frames,
                      const std::vector<DotGrid>& dots,
+                     double dot_px,
                      const std::vector<cv::Mat>& free_frames) {
-  const Contact contact(std::vector<Colours>(free_frames.begin(), free_frames.end()));
-  auto workspace = contact.workspace();
-  const auto cells = workspace.difference();
-  const double pitch = pitch_px(dots.front());
-  const fingerpad::ContactSlide<> slide(cells.rows(), cells.cols(), dots.front().rows,
-                                        dots.front().cols, {.pitch_px = pitch});
-  auto state = slide.start();
-  const fingerpad::Recoil<> recoil(dots.front(), {.pitch_px = pitch});
-  auto recoil_state = recoil.start();
+  replay::SlideStep step(free_frames, dots.front(), dot_px);
   cv::Mat_<std::uint8_t> mask(frames.front().size());
   SlideSeries series;
   series.end = frames.size();
   fingerpad::Index largest = 0;
   for (std::size_t k = 0; k < frames.size(); ++k) {
-    const Colours frame = frames[k];
-    const auto found = contact(frame, mask, workspace);
-    const auto slid = slide(workspace.difference(), workspace.contact(), dots[k], state);
-    series.slide.push_back(static_cast<double>(slid.slide));
-    series.lost.push_back(static_cast<double>(slid.lost));
-    series.evidence.push_back(static_cast<double>(slid.evidence));
-    series.recoil.push_back(static_cast<double>(recoil(dots[k], recoil_state).recoil));
-    largest = (std::max)(largest, found.contact_px);
-    if (static_cast<double>(found.contact_px) < gone * static_cast<double>(largest)) {
+    const auto seen = step(frames[k], dots[k], mask);
+    series.slide.push_back(static_cast<double>(seen.slide.slide));
+    series.lost.push_back(static_cast<double>(seen.slide.lost));
+    series.evidence.push_back(static_cast<double>(seen.slide.evidence));
+    series.recoil.push_back(static_cast<double>(seen.recoil.recoil));
+    largest = (std::max)(largest, seen.contact.contact_px);
+    if (static_cast<double>(seen.contact.contact_px) < gone * static_cast<double>(largest)) {
       series.end = (std::min)(series.end, k);
     }
   }

@@ -26,8 +26,10 @@ struct SlideSeries {
 /// objects), as far as they agree. Empty: there are none.
 std::vector<cv::Mat> free_frames_for(const Trial& trial, const std::vector<Trial>& trials);
 
+/// `dot_px`: diameter of the dots.
 SlideSeries slide_in(const std::vector<cv::Mat>& frames,
                      const std::vector<replay::DotGrid>& dots,
+                     double dot_px,
                      const std::vector<cv::Mat>& free_frames);
 
 }  // namespace slip_trials

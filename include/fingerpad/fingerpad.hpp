@@ -1,15 +1,17 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// Everything but the adapters, which bring their libraries with them (see adapt/). What needs Eigen is
-// here where Eigen is found: the six-axis force, the whole fingertip, fits of light and forces.
+// Everything but the adapters, which bring their libraries with them (see adapt/). What needs Eigen
+// is here where Eigen is found: the six-axis force, the whole fingertip, fits of light and forces.
 #include "fingerpad/calibrate/contact.hpp"
 #include "fingerpad/calibrate/intensity.hpp"
 #include "fingerpad/calibrate/neighbour_light.hpp"
+#include "fingerpad/calibrate/preslip.hpp"
 #include "fingerpad/calibrate/rim.hpp"
 #include "fingerpad/calibrate/slip.hpp"
 #include "fingerpad/calibrate/taxels.hpp"
 #include "fingerpad/contact/contact_by_difference.hpp"
+#include "fingerpad/contact/contact_measures.hpp"
 #include "fingerpad/contact/contact_region.hpp"
 #include "fingerpad/contact/object_surface.hpp"
 #include "fingerpad/core/dots.hpp"
@@ -22,6 +24,7 @@
 #include "fingerpad/depth/depth.hpp"
 #include "fingerpad/depth/intensity_depth.hpp"
 #include "fingerpad/depth/neighbour_light.hpp"
+#include "fingerpad/depth/sampling.hpp"
 #include "fingerpad/foam/holding_force.hpp"
 #include "fingerpad/foam/preslip.hpp"
 #include "fingerpad/foam/several_arrays.hpp"
@@ -56,8 +59,10 @@
 #if __has_include(<Eigen/Core>)
 #include "fingerpad/calibrate/depth.hpp"
 #include "fingerpad/calibrate/force.hpp"
+#include "fingerpad/force/pressure_from_rim.hpp"
 #include "fingerpad/force/wrench.hpp"
 #include "fingerpad/pipeline/fingertip.hpp"
 #include "fingerpad/published/normal_force.hpp"
+#include "fingerpad/published/printed_iteration.hpp"
 #include "fingerpad/published/wrench.hpp"
 #endif

@@ -85,6 +85,44 @@ TEST_CASE("contact by difference: a ball on a gel", "[contact_by_difference]") {
   }
 }
 
+TEST_CASE("contact by difference: as much of a ball's dent as the gel's slope says",
+          "[contact_by_difference]") {
+  // eq. 3.42 of Johnson, its slope at rho radii of the contact as a share of that at its edge
+  const auto slope = [](double rho) {
+    return 2 / 3.14159265358979 * (rho * std::asin(1 / rho) - std::sqrt(1 - 1 / (rho * rho)));
+  };
+  Scene scene;
+  scene.camera.dot_mm = 0;
+  scene.camera.noise = 0.3;
+  DifferenceTest test;
+  test.dot_px = 0;
+  test.cell_px = 2;
+  test.smoothing_px = 2;
+  test.mm_per_px = scene.camera.mm_per_px;
+  for (const double ball_mm : {6.0, 10.0}) {
+    for (const double force_n : {0.3, 0.6, 1.0}) {
+      for (const double threshold : {0.02, 0.04}) {
+        test.min_difference = threshold;
+        const ContactByDifference<> contact(scene.free(2), test);
+        REQUIRE(contact.threshold() == threshold);
+        GelContact<> ball(GelPad{.ball_mm = ball_mm});
+        ball.drag(force_n, {0, 0});
+        const double a = ball.radius_mm();
+        const double at_edge =
+            scene.camera.contrast * a / ball_mm / std::sqrt(2.0);  // rms of lamps
+        double rho = 1;
+        while (slope(rho) > threshold / at_edge) {
+          rho += 1e-3;
+        }
+        const auto found = find(contact, scene.camera.frame(ball, scene.random)).result;
+        const double seen = std::sqrt(found.area_mm2 / 3.14159265358979) / a;
+        CAPTURE(ball_mm, force_n, threshold, rho, seen);
+        CHECK(std::abs(seen / rho - 1) < 0.05);
+      }
+    }
+  }
+}
+
 TEST_CASE("contact by difference: a free pad is free in any exposure", "[contact_by_difference]") {
   Scene scene;
   const ContactByDifference<> contact(scene.free(3));
@@ -167,6 +205,48 @@ TEST_CASE("contact by difference: bad pixels say nothing, nor do they spread",
     // only the exposure is taken from fewer pixels
     CHECK(std::abs(double(found.result.contact_px - whole.result.contact_px)) <
           0.02 * double(whole.result.contact_px));
+  }
+}
+
+TEST_CASE("contact by difference: numbers are those of the mask, whatever the cells",
+          "[contact_by_difference]") {
+  // narrower cells at the right and the lower edge, unknown pixels and contact on both
+  for (const Index cell_px : {1, 3, 4, 5, 16}) {
+    const Index rows = 83;
+    const Index cols = 101;
+    DifferenceTest test;
+    test.cell_px = cell_px;
+    test.dot_px = 0;
+    test.max_gap_px = 0;
+    test.smoothing_px = double(cell_px) / 2;
+    test.min_region_px = 0;
+    test.mm_per_px = 0.5;
+    const std::vector free = {Image<double>(rows, cols, 100.0)};
+    const ContactByDifference<1, double> contact(free, test);
+    Image<double> frame(rows, cols, 100.0);
+    for (Index i = 35; i < rows; ++i) {
+      for (Index j = 50; j < cols; ++j) {
+        frame(i, j) = i < 60 ? 130 : j < 80 ? 100 : 0;  // black says nothing
+      }
+    }
+    const Found found = find(contact, frame);
+    double x = 0;
+    double y = 0;
+    for (Index i = 0; i < rows; ++i) {
+      for (Index j = 0; j < cols; ++j) {
+        const double touches = found.mask(i, j) == Touch::contact ? 1 : 0;
+        x += touches * double(j);
+        y += touches * double(i);
+      }
+    }
+    const Index pixels = count(found.mask, Touch::contact);
+    REQUIRE(pixels > 900);
+    CHECK(found.result.contact_px == pixels);
+    CHECK(found.result.unknown_px == count(found.mask, Touch::unknown));
+    CHECK(found.result.unknown_px > 0);
+    CHECK(found.result.area_mm2 == Approx(0.25 * double(pixels)));
+    CHECK(found.result.center_mm.x == Approx(0.5 * (x / double(pixels) - 50)));
+    CHECK(found.result.center_mm.y == Approx(0.5 * (y / double(pixels) - 41)));
   }
 }
 

@@ -50,7 +50,7 @@ Found find(const CameraType& camera,
 ContactTest with_ring(Index radius_px, Index min_region_px = 200) {
   ContactTest test;
   test.min_region_px = min_region_px;
-  test.ring.radius_px = radius_px;
+  test.ring.radius_px = static_cast<double>(radius_px);
   return test;
 }
 

@@ -298,6 +298,28 @@ TEST_CASE("the bias-free mean has the noise of a box of its name", "[smoothing]"
   CHECK(variance * 29 * 29 == Approx(1).epsilon(0.05));
 }
 
+TEST_CASE("windows in samples are as wide on the pad, and never below three samples",
+          "[smoothing]") {
+  for (const int window_px : {7, 29, 61}) {
+    for (const int step : {2, 3, 4}) {
+      CAPTURE(window_px, step);
+      const auto whole = BiasFreeMean{window_px}.windows_px();
+      const auto sampled = BiasFreeMean{window_px, step}.windows_px();
+      for (std::size_t k = 0; k < 2; ++k) {
+        const int least = 3 + 2 * static_cast<int>(k);
+        CHECK(sampled[k] % 2 == 1);
+        CHECK(sampled[k] >= least);
+        CHECK((sampled[k] == least || std::abs(sampled[k] * step - whole[k]) <= step + 1));
+      }
+      const int mean = AnchoredMean{window_px, step}.windows_px()[0];
+      CHECK(mean % 2 == 1);
+      CHECK((mean == 3 || std::abs(mean * step - window_px) <= step));
+    }
+  }
+  CHECK_THROWS_AS((BiasFreeMean{29, 0}.windows_px()), parameter_error);
+  CHECK_THROWS_AS((AnchoredMean{29, 0}.windows_px()), parameter_error);
+}
+
 namespace {
 
 /// Error of an anchored estimator on the free pad, rim included, in mm.

@@ -11,6 +11,7 @@
 
 #include "fingerpad/force/pad_heights.hpp"
 #include "fingerpad/published/wrench.hpp"
+#include "support/by_modulus.hpp"
 #include "support/catch.hpp"
 #include "support/generators.hpp"
 #include "support/numbers.hpp"
@@ -64,12 +65,16 @@ Vector any_step(test::Random& random) {
   return {random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)};
 }
 
-/// Stored energy over mu t / 2 and per stress-free area: |F|^2 + J^-2 - 3, F = [d, e].
+/// Stored energy over mu t / 2 and per stress-free area, F = [d, e]: (1 - m) (I_1 - 3) +
+/// m (I_2 - 3), I_1 = |F|^2 + J^-2, I_2 = |F|^2 J^-2 + J^2.
 template <class S>
-S energy(const Point3<S>& along, const Point3<S>& tangent) {
+S energy(const Point3<S>& along, const Point3<S>& tangent, const S& mooney_share) {
   const S shear = dot(along, tangent);
-  const S length = squared_norm(along);
-  return S(length + S(1) + S(1) / S(length - shear * shear) - S(3));
+  const S trace = squared_norm(along) + S(1);
+  const S area_sq = trace - S(1) - shear * shear;
+  const S first = trace + S(1) / area_sq - S(3);
+  const S second = trace / area_sq + area_sq - S(3);
+  return S((S(1) - mooney_share) * first + mooney_share * second);
 }
 
 }  // namespace
@@ -79,10 +84,13 @@ TEST_CASE("clamped rim: the pull is the derivative of the membrane's energy", "[
   for (int k = 0; k < 100; ++k) {
     const AnyRim rim(random);
     const auto along = as<Digits50>(rim.along), tangent = normalized(as<Digits50>(rim.tangent));
-    const auto pull = clamped_rim_pull(along, tangent);
+    const Digits50 share = Digits50(k % 2) * Digits50(random.uniform(0, 1));
+    const auto pull = clamped_rim_pull(along, tangent, share);
     const auto way = as<Digits50>(any_step(random));
     const Digits50 slope = test::slope_by_difference(
-        [&](const Digits50& t) { return Digits50(energy(along + t * way, tangent) / Digits50(2)); },
+        [&](const Digits50& t) {
+          return Digits50(energy(along + t * way, tangent, share) / Digits50(2));
+        },
         Digits50(0), Digits50(1e-16));
     CHECK(abs(Digits50(slope - dot(pull, way))) < Digits50(1e-27));
   }
@@ -98,9 +106,10 @@ TEST_CASE("clamped rim: its change is the derivative of the pull", "[wrench]") {
     const auto unit_tangent = normalized(as<Digits50>(rim.tangent));
     const auto tangent = as<D>(unit_tangent);
     for (const bool by_kernel : {true, false}) {
-      const auto pull =
-          by_kernel ? clamped_rim_pull(along, tangent) : ClampedRim().pull(along, tangent).pull;
-      const auto change = ClampedRim().change_of_pull(as<Digits50>(rim.along), unit_tangent, way);
+      const ClampedRim law{.mooney_share = k % 2 * random.uniform(0, 1)};
+      const auto pull = by_kernel ? clamped_rim_pull(along, tangent, D(law.mooney_share))
+                                  : law.pull(along, tangent).pull;
+      const auto change = law.change_of_pull(as<Digits50>(rim.along), unit_tangent, way);
       CHECK(distance(change, Point3<Digits50>{pull.x.d, pull.y.d, pull.z.d}) < Digits50(1e-45));
     }
     const auto published = published::Direction().pull(along, tangent).pull;
@@ -226,7 +235,7 @@ Found find(
 template <class Solver, class Pad, class Load>
 Found find(const Pad& pad, const Load& load, Index columns = 72, Index rows = 65) {
   const RimOfDots rim = rim_of(pad);
-  const Wrench<Solver> wrench(rim.borders(), test::exact_options(columns, rows));
+  const test::WrenchBy<Solver> wrench(rim.borders(), test::exact_options(columns, rows));
   return find(wrench, pad, rim, load);
 }
 
@@ -273,7 +282,10 @@ TEMPLATE_TEST_CASE("wrench of a flat press in closed form",
   check(RoundPad<FilmSide>{{.contact_mm = 12, .rim_sine = 0.7}});
 }
 
-TEMPLATE_TEST_CASE("wrench of lateral loads and torques", "[wrench]", BalancedRim, KnownModulus) {
+TEMPLATE_TEST_CASE("wrench of lateral loads and torques",
+                   "[wrench]",
+                   BalancedRim,
+                   test::KnownModulus) {
   // exact in the tensions at the rim, and so in force and moment
   const RoundPad<FilmSide> pad;
   for (const double heading : {0.0, 0.7}) {
@@ -405,7 +417,7 @@ TEST_CASE("an inflated cap that touches nothing", "[wrench]") {
       rim.borders()));
 
   // the material alone needs no contact: its tension, p R / 2, carries the pressure on the base
-  const Wrench<KnownModulus> given(rim.borders(), {}, {.modulus_n_per_mm = 0.5});
+  const test::ByModulus<> given(rim.borders());
   const Found f = find(given, cap, rim, load);
   CHECK(f.result.status == WrenchStatus::ok);
   CHECK(size(f.truth.force_n) < 1e-9);
@@ -428,7 +440,51 @@ TEST_CASE("an inflated cap marked as touching, but not pressed", "[wrench]") {
   // one that is level nowhere does not tell how much it pulls
   const RoundPad<CapSide> steep{{.contact_mm = 9}};
   CHECK(find<BalancedRim>(steep, load).result.status == WrenchStatus::no_level_line);
-  CHECK(find<KnownModulus>(steep, load).result.status == WrenchStatus::ok);
+  CHECK(find<test::KnownModulus>(steep, load).result.status == WrenchStatus::ok);
+}
+
+TEMPLATE_TEST_CASE("wrench: where the shape does not tell, the modulus does, if so chosen",
+                   "[wrench]",
+                   BalancedRim,
+                   LeastSquares) {
+  const RoundPad<CapSide> steep{{.contact_mm = 9}}, level{{.contact_mm = 1.5}};
+  const RimOfDots rim = rim_of(steep);
+  const auto load = [&](double) { return RimLoad{pressed_mpa * steep.sphere_mm / 2, 0}; };
+  const auto dots = rim.dots(load);
+  auto options = test::exact_options();
+  options.calibrated_modulus_n_per_mm = 0.5;
+  const Wrench<TestType> asks_shape(rim.borders(), options);
+  options.falls_back_on_modulus = true;
+  const Wrench<TestType> falls_back(rim.borders(), options);
+  auto work = falls_back.workspace(), other = asks_shape.workspace();
+  const WrenchNoise<double> noise{0.005, 0.1, 1e-5};
+
+  CHECK(asks_shape(steep, dots, pressed_mpa, other, noise).status == WrenchStatus::no_level_line);
+  const auto r = falls_back(steep, dots, pressed_mpa, work, noise);
+  const auto given = asks_shape.by_modulus(dots, pressed_mpa, other, noise);
+  CHECK(r.status == WrenchStatus::ok);
+  CHECK(r.by_modulus);
+  CHECK(given.by_modulus);
+  CHECK(r.force_n.z == given.force_n.z);
+  CHECK(r.covariance[2][2] == given.covariance[2][2]);
+  CHECK(work.rim_tension(3).z == other.rim_tension(3).z);
+  // what the shape has said stays
+  CHECK(r.summit_area_mm2 != r.summit_area_mm2);
+  CHECK(r.level_lines == 0);
+  // what the shape tells is taken from it, and what is wrong with the dots is still refused
+  const auto told = falls_back(level, dots, pressed_mpa, work, noise);
+  CHECK(told.status == WrenchStatus::ok);
+  CHECK(!told.by_modulus);
+  CHECK(told.force_n.z == asks_shape(level, dots, pressed_mpa, other, noise).force_n.z);
+  auto lost = dots;
+  for (Index k = 0; k < 30; ++k) {
+    lost(0, k).x = test::nan;
+  }
+  CHECK(falls_back(steep, lost, pressed_mpa, work).status == WrenchStatus::too_few_side_dots);
+  CHECK(falls_back(steep, dots, -1, work).status == WrenchStatus::bad_pressure);
+  // without a modulus nothing is answered
+  const Wrench<TestType> without(rim.borders(), test::exact_options());
+  CHECK(without.by_modulus(dots, pressed_mpa, other).status == WrenchStatus::refused);
 }
 
 TEST_CASE("wrench by two rows of side dots", "[wrench]") {
@@ -437,8 +493,8 @@ TEST_CASE("wrench by two rows of side dots", "[wrench]") {
   const RoundPad<FilmSide> pad;
   const TrueLoad load(pad, 0.1, 0.1);
   const auto options = test::exact_options();
-  const Found one = find(Wrench<KnownModulus>(rim.borders(), options), pad, rim, load);
-  const Found two = find(Wrench<KnownModulus, TwoRows>(rim.borders(), options), pad, rim, load, 2);
+  const Found one = find(test::ByModulus<>(rim.borders(), options), pad, rim, load);
+  const Found two = find(test::ByModulus<TwoRows>(rim.borders(), options), pad, rim, load, 2);
   CHECK(size(one.force_error) > 0.05 * one.lateral());
   CHECK(size(two.force_error) < 1e-9);
   CHECK(size(two.moment_error) < 1.5e-3 * size(two.truth.moment_n_mm));
@@ -533,16 +589,16 @@ TEMPLATE_TEST_CASE("covariance of force and moment, by draws of noisy side dots"
                    (Way<published::ClosedForm, ClampedRim, OneRow>),
                    (Way<published::ClosedForm, ClampedRim, TwoRows>),
                    (Way<published::ClosedForm, published::Direction, OneRow>),
-                   (Way<KnownModulus, ClampedRim, OneRow>),
-                   (Way<KnownModulus, ClampedRim, TwoRows>)) {
+                   (Way<test::KnownModulus, ClampedRim, OneRow>),
+                   (Way<test::KnownModulus, ClampedRim, TwoRows>)) {
   using Row = typename TestType::Row;
   const RoundPad<FilmSide> pad;
   const RimOfDots rim = rim_of(pad);
   const TrueLoad load(pad, 0.15, 0.15, 0.4);
   auto options = test::exact_options(36, 4);
   options.line_step_mm = 0.2;
-  const Wrench<typename TestType::Solver, Row, typename TestType::Law> wrench(rim.borders(),
-                                                                              options);
+  const test::WrenchBy<typename TestType::Solver, Row, typename TestType::Law> wrench(rim.borders(),
+                                                                                      options);
   auto workspace = wrench.workspace();
   const WrenchNoise<double> noise{.side_dot_mm = 0.003, .pressure_mpa = 5e-5};
   const auto exact = rim.dots(load, Row::rows);
@@ -684,9 +740,11 @@ TEST_CASE("side dots of different stress-free lengths", "[wrench]") {
   for (Index k = 0; k < rim.count; ++k) {
     dots(0, k) = rim.border(k) + length(k) * rim.along(k, load(rim.angle(k)));
   }
-  const Wrench<KnownModulus> wrench(rim.borders(), length, test::exact_options());
+  auto options = test::exact_options();
+  options.calibrated_modulus_n_per_mm = 0.5;
+  const Wrench<BalancedRim> wrench(rim.borders(), length, options);
   auto workspace = wrench.workspace();
-  const auto r = wrench(pad, dots, pressed_mpa, workspace);
+  const auto r = wrench.by_modulus(dots, pressed_mpa, workspace);
   const auto truth = wrench_of(rim, load, pressed_mpa);
   CHECK(distance(r.force_n, truth.force_n) < 1e-9);
   CHECK(distance(r.moment_n_mm, truth.moment_n_mm) < 1.5e-3 * size(truth.moment_n_mm));
@@ -810,11 +868,11 @@ TEMPLATE_TEST_CASE("wrench in other number types", "[wrench]", float, long doubl
   };
   const auto run = [&](auto solver) {
     using Solver = decltype(solver);
-    const Wrench<Solver> exact(rim.borders(), test::exact_options(24, 20));
+    const test::WrenchBy<Solver> exact(rim.borders(), test::exact_options(24, 20));
     auto exact_work = exact.workspace();
     const WrenchNoise<double> noise{0.005, 0.1, 1e-5};
     const auto truth = exact(pad, rim.dots(load), pressed_mpa, exact_work, noise);
-    const Wrench<Solver, OneRow, ClampedRim, StraightLines, S> wrench(
+    const test::WrenchBy<Solver, OneRow, ClampedRim, StraightLines, S> wrench(
         convert(rim.borders()), test::exact_options<S>(24, 20));
     auto work = wrench.workspace();
     const auto found = wrench(pad, convert(rim.dots(load)), S(pressed_mpa), work,
@@ -831,7 +889,7 @@ TEMPLATE_TEST_CASE("wrench in other number types", "[wrench]", float, long doubl
     }
   };
   run(BalancedRim());
-  run(KnownModulus());
+  run(test::KnownModulus());
   run(published::ClosedForm());
   run(published::Iteration());
   run(LeastSquares());
@@ -887,14 +945,19 @@ TEST_CASE("wrench: bad parameters are refused by name, value and range", "[wrenc
   says(lengths(0), "Wrench: side_dot_length_mm = 0");
   says(lengths(test::nan), "Wrench: side_dot_length_mm = ");
 
-  says(test::refusal([&] { Wrench<KnownModulus>(rim.borders(), {}, {.modulus_n_per_mm = -0.5}); }),
-       "KnownModulus: modulus_n_per_mm = -0.5");
+  says(with([](auto& o) { o.calibrated_modulus_n_per_mm = -0.5; }),
+       "WrenchOptions: calibrated_modulus_n_per_mm = -0.5");
+  says(with([](auto& o) { o.falls_back_on_modulus = true; }),
+       "WrenchOptions: falls_back_on_modulus = 1");
   says(test::refusal([&] { Wrench<published::Iteration>(rim.borders(), {}, {.passes = 0}); }),
        "published::Iteration: passes = 0");
   says(test::refusal([&] { Wrench<BalancedRim>(rim.borders(), {}, {}, {}, {.min_stretch = 1}); }),
        "ClampedRim: min_stretch = 1");
   says(test::refusal(
-           [&] { Wrench<KnownModulus>(rim.borders(), {}, {}, OneRow{not_a_number<double>()}); }),
+           [&] { Wrench<BalancedRim>(rim.borders(), {}, {}, {}, {.mooney_share = -0.1}); }),
+       "ClampedRim: mooney_share = -0.1");
+  says(test::refusal(
+           [&] { Wrench<BalancedRim>(rim.borders(), {}, {}, OneRow{not_a_number<double>()}); }),
        "OneRow: stress_free_inclination_rad = ");
   says(test::refusal([&] { Wrench<LeastSquares>(rim.borders(), {}, {.smoothness = 0}); }),
        "LeastSquares: smoothness = 0");

@@ -52,11 +52,5 @@ void try_contact(Input& in) {
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  Input in(data, size);
-  try {
-    try_contact(in);
-  } catch (const parameter_error&) {
-    // refused, as it should be
-  }
-  return 0;
+  return fuzz::run(data, size, try_contact);
 }

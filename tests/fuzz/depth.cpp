@@ -87,20 +87,14 @@ void try_depth(Input& in) {
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  Input in(data, size);
-  try {
+  return fuzz::run(data, size, [](Input& in) {
     switch (in.whole(0, 2)) {
       case 0:
-        try_depth<std::uint8_t>(in);
-        break;
+        return try_depth<std::uint8_t>(in);
       case 1:
-        try_depth<std::uint16_t>(in);
-        break;
+        return try_depth<std::uint16_t>(in);
       default:
-        try_depth<float>(in);
+        return try_depth<float>(in);
     }
-  } catch (const parameter_error&) {
-    // refused, as it should be
-  }
-  return 0;
+  });
 }

@@ -56,11 +56,5 @@ void try_hand(Input& in) {
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  Input in(data, size);
-  try {
-    try_hand(in);
-  } catch (const parameter_error&) {
-    // refused, as it should be
-  }
-  return 0;
+  return fuzz::run(data, size, try_hand);
 }

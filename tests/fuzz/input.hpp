@@ -15,6 +15,7 @@
 
 #include "fingerpad/core/expects.hpp"
 #include "fingerpad/core/grid.hpp"
+#include "fingerpad/core/point.hpp"
 #include "no_allocation/count.hpp"
 
 namespace fuzz {
@@ -140,10 +141,30 @@ auto frame(const Frame& call) noexcept {
   return result;
 }
 
-/// Whether two numbers have the same bits.
+/// Whether two numbers have the same bits; any two NaN are alike.
 template <class T>
 bool same_bits(const T& a, const T& b) {
-  return std::memcmp(&a, &b, sizeof(T)) == 0;
+  return std::memcmp(&a, &b, sizeof(T)) == 0 || (a != a && b != b);
+}
+template <class T>
+bool same_bits(const fingerpad::Point2<T>& a, const fingerpad::Point2<T>& b) {
+  return same_bits(a.x, b.x) && same_bits(a.y, b.y);
+}
+template <class T>
+bool same_bits(const fingerpad::Point3<T>& a, const fingerpad::Point3<T>& b) {
+  return same_bits(a.x, b.x) && same_bits(a.y, b.y) && same_bits(a.z, b.z);
+}
+
+/// What a target does with an input; parameters that are refused end it.
+template <class Target>
+int run(const std::uint8_t* data, std::size_t size, const Target& target) {
+  Input in(data, size);
+  try {
+    target(in);
+  } catch (const fingerpad::parameter_error&) {
+    // refused, as it should be
+  }
+  return 0;
 }
 
 }  // namespace fuzz

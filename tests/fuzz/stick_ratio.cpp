@@ -9,9 +9,11 @@
 
 #include "fingerpad/motion/object_motion.hpp"
 #include "fingerpad/slip/spatial_stick_ratio.hpp"
-#include "fuzz/input.hpp"
+#include "fuzz/dots.hpp"
 
 using namespace fingerpad;
+using fuzz::any_contact;
+using fuzz::any_dots;
 using fuzz::Grid;
 using fuzz::Input;
 using fuzz::require;
@@ -21,37 +23,6 @@ namespace {
 template <class Ratio>
 void require_ratio(const Ratio& ratio) {
   require(!is_finite(ratio) || (ratio >= 0 && ratio <= 1), "a ratio is in [0, 1]");
-}
-
-/// Dots near a lattice, so that they can be those of a pad, and strange ones among them.
-template <class Point>
-Grid<Point> any_dots(Input& in, Index rows, Index cols) {
-  Grid<Point> dots(rows, cols, in.whole(0, 2));
-  dots.fill(in, [&] {
-    Point dot;
-    dot.x = static_cast<decltype(dot.x)>(in.number(-1, 1));
-    dot.y = static_cast<decltype(dot.x)>(in.number(-1, 1));
-    if constexpr (requires { dot.z; }) {
-      dot.z = static_cast<decltype(dot.x)>(in.number(5, 12));
-    }
-    return dot;
-  });
-  const double pitch = in.number(0.5, 25);
-  for (Index i = 0; i < rows; ++i) {
-    for (Index j = 0; j < cols; ++j) {
-      Point& dot = dots.view()(i, j);
-      dot.x += static_cast<decltype(dot.x)>(pitch * static_cast<double>(j));
-      dot.y += static_cast<decltype(dot.x)>(pitch * static_cast<double>(i));
-    }
-  }
-  return dots;
-}
-
-Grid<std::uint8_t> any_contact(Input& in, Index rows, Index cols) {
-  Grid<std::uint8_t> contact(rows, cols);
-  const bool all = in.flag();
-  contact.fill(in, [&] { return static_cast<std::uint8_t>(all ? 1 : in.byte() & 1); });
-  return contact;
 }
 
 /// Some frames through an estimator with a state; the last one again from a copy of the state.
@@ -116,11 +87,5 @@ void try_all(Input& in) {
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  Input in(data, size);
-  try {
-    try_all(in);
-  } catch (const parameter_error&) {
-    // refused, as it should be
-  }
-  return 0;
+  return fuzz::run(data, size, try_all);
 }

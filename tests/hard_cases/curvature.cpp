@@ -46,8 +46,9 @@ double map_error(const CameraType& camera) {
       exact(i, j) = Digits50(depth(i, j));
     }
   }
-  const CurvatureMap<Statistic, CameraType, S> map(camera, size, size, {radius});
-  const CurvatureMap<Statistic, CameraType, Digits50> reference(camera, size, size, {radius});
+  const CurvatureRing ring{static_cast<double>(radius)};
+  const CurvatureMap<Statistic, CameraType, S> map(camera, size, size, ring);
+  const CurvatureMap<Statistic, CameraType, Digits50> reference(camera, size, size, ring);
   auto workspace = map.workspace();
   auto exact_workspace = reference.workspace();
   Image<S> k(size, size);

@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "fingerpad/published/wrench.hpp"
+#include "support/by_modulus.hpp"
 #include "support/catch.hpp"
 #include "support/generators.hpp"
 #include "support/pressed_pad.hpp"
@@ -106,7 +107,7 @@ struct CarriedRow : OneRow {
 template <class Solver, class Row = OneRow, class Law = ClampedRim, class Lines = StraightLines>
 struct Way {
   template <class S>
-  using Of = Wrench<Solver, Row, Law, Lines, S>;
+  using Of = test::WrenchBy<Solver, Row, Law, Lines, S>;
   static constexpr Index rows = Row::rows;
   static Row row() { return {}; }
 };
@@ -143,7 +144,7 @@ TEST_CASE("wrench: pressures that are none", "[wrench]") {
   for (const double p : {0.0, -0.0, -0.01, test::nan, infinity, -infinity}) {
     CAPTURE(p);
     CHECK(measure<Balanced>(pressed(), good_dots(), p).status == WrenchStatus::bad_pressure);
-    CHECK(measure<Wrench<KnownModulus>>(pressed(), good_dots(), p).status ==
+    CHECK(measure<test::ByModulus<>>(pressed(), good_dots(), p).status ==
           WrenchStatus::bad_pressure);
   }
   for (const double p : {1e-300, 1e-12, 1e12, 1e300}) {
@@ -402,7 +403,7 @@ TEMPLATE_TEST_CASE(
     (Way<BalancedRim, TwoRows, ClampedRim, published::SteepestLines>),
     (Way<BalancedRim, CarriedRow>),
     Way<published::ClosedForm>,
-    Way<KnownModulus>,
+    Way<test::KnownModulus>,
     Way<published::Iteration>,
     (Way<published::Iteration, OneRow, published::Direction, published::SteepestLines>),
     Way<LeastSquares>,

@@ -113,9 +113,9 @@ Mask taking_part(const Points& dots, const Flags& contact) {
   for (Index i = 0; i < dots.rows(); ++i) {
     for (Index j = 0; j < dots.cols(); ++j) {
       Points pushed = dots;
-      pushed(i, j).x += 64;
+      pushed(i, j).x += 1;
       const auto r = estimator(pushed, contact, workspace);
-      part(i, j) = r.has_displacement() && r.displacement.x > 0.1 ? 1 : 0;
+      part(i, j) = r.has_displacement() && r.displacement.x > 0.005 ? 1 : 0;
     }
   }
   return part;

@@ -636,6 +636,37 @@ TEST_CASE("spatial dots: depth is read between pixels, at the dot's own pixel (E
   CHECK(!contact_at_dots(dots, mask, turned_size));
 }
 
+TEST_CASE("contact at dots: with a radius, all of a dot must touch") {
+  // a half plane from column 10 on, and a hole in it
+  test::Flags mask(20, 40, 0);
+  for (Index i = 0; i < 20; ++i) {
+    for (Index j = 10; j < 40; ++j) {
+      mask(i, j) = 255;
+    }
+  }
+  mask(10, 30) = 0;
+  test::Cells<Point2<double>> dots(1, 7);
+  dots(0, 0) = {13.0, 10.0};
+  dots(0, 1) = {12.4, 10.0};  // its pixel is 12
+  dots(0, 2) = {39.4, 0.0};   // what is outside of the mask does not count
+  dots(0, 3) = {32.0, 12.0};  // sqrt(8) from the hole
+  dots(0, 4) = {33.0, 10.0};
+  dots(0, 5) = {32.0, 11.0};
+  dots(0, 6) = {-2.0, 10.0};
+  test::Flags touching(1, 7, 9);
+  CHECK(contact_at_dots(dots, mask, touching, 2.5));
+  CHECK(touching.cells == std::vector<unsigned char>{1, 1, 1, 1, 1, 0, 0});
+  CHECK(contact_at_dots(dots, mask, touching, 3.0));
+  CHECK(touching.cells == std::vector<unsigned char>{1, 0, 1, 0, 0, 0, 0});
+  CHECK(contact_at_dots(dots, mask, touching, 4.0));
+  CHECK(touching.cells == std::vector<unsigned char>{0, 0, 1, 0, 0, 0, 0});
+  for (const double bad : {-1.0, 1e9, not_a_number<double>()}) {
+    touching(0, 0) = 9;
+    CHECK(!contact_at_dots(dots, mask, touching, bad));
+    CHECK(touching(0, 0) == 9);
+  }
+}
+
 TEST_CASE("object motion: dots that slip do not count, and are entered anew") {
   // Half of the dots stay behind, which is more than a robust fit bears.
   const Dots free = small_grid();

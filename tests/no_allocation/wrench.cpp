@@ -5,6 +5,7 @@
 #include "fingerpad/force/pad_heights.hpp"
 #include "fingerpad/published/wrench.hpp"
 #include "no_allocation/count.hpp"
+#include "support/by_modulus.hpp"
 #include "support/catch.hpp"
 #include "support/pressed_pad.hpp"
 
@@ -19,7 +20,7 @@ struct CarriedRow : OneRow {
 
 template <class Solver, class Row, class Law, class Lines, class S>
 struct Of {
-  using W = Wrench<Solver, Row, Law, Lines, S>;
+  using W = test::WrenchBy<Solver, Row, Law, Lines, S>;
   static constexpr Index rows = Row::rows;
   using Number = S;
   static Row row() { return {}; }
@@ -35,7 +36,7 @@ TEMPLATE_TEST_CASE(
     (Of<BalancedRim, OneRow, ClampedRim, StraightLines, double>),
     (Of<BalancedRim, CarriedRow, ClampedRim, published::SteepestLines, float>),
     (Of<published::ClosedForm, TwoRows, ClampedRim, StraightLines, double>),
-    (Of<KnownModulus, OneRow, ClampedRim, StraightLines, float>),
+    (Of<test::KnownModulus, OneRow, ClampedRim, StraightLines, float>),
     (Of<published::Iteration, OneRow, published::Direction, published::SteepestLines, double>)) {
   using S = typename TestType::Number;
   const test::RoundPad<test::FilmSide> pad;

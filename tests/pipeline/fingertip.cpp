@@ -2,12 +2,15 @@
 // SPDX-License-Identifier: MIT
 // All methods one after another: results that are true, the same from run to run and from one
 // thread and two; stages that are off; inputs that are refused.
+#include <algorithm>
 #include <cmath>
 #include <string>
 #include <vector>
 
 #include "bench/report/chain/pressed_frames.hpp"
 #include "support/catch.hpp"
+#include "support/numbers.hpp"
+#include "support/refusal.hpp"
 
 using namespace chain;
 
@@ -29,7 +32,7 @@ class Run {
       results.push_back(touch_of(chain_, frames()[k].view()));
     }
   }
-  const Chain& chain() const { return chain_; }
+  Chain& chain() { return chain_; }
   std::vector<FingertipResult> results;
 
  private:
@@ -37,7 +40,7 @@ class Run {
 };
 
 template <class A, class B>
-void check_same(const A& a, const B& b) {
+void check_same(A& a, B& b) {
   const auto same = [](double x, double y) { return test::same_bits(x, y); };
   for (std::size_t k = 0; k < a.results.size(); ++k) {
     const FingertipResult &x = a.results[k], &y = b.results[k];
@@ -94,8 +97,8 @@ TEMPLATE_TEST_CASE("the whole chain gives the same bits from run to run and from
                    "[chain]",
                    Lean,
                    ByDefault) {
-  const Run<TestType> once, again;
-  const Run<Shared<TestType>> shared;
+  Run<TestType> once, again;
+  Run<Shared<TestType>> shared;
   check_same(once, again);
   check_same(once, shared);
 }
@@ -111,13 +114,23 @@ struct WithoutLookUp : fingerpad::FingertipMethods {
 struct DepthAlone : fingerpad::FingertipMethods {
   static constexpr bool has_contact = false;
 };
+template <int Step>
+struct Sampled : DepthAndContact {
+  static constexpr int sampling = Step;
+};
+struct EveryPixel : DepthAlone {
+  static constexpr int sampling = 1;
+};
+struct WithLight : EveryPixel {
+  static constexpr bool has_neighbour_light = true;
+};
 template <class Methods>
 using TipOf = fingerpad::Fingertip<decltype(frames().options().reference), Methods>;
 
 }  // namespace
 
 TEST_CASE("a fingertip without stages gives the same depth and contact", "[chain]") {
-  const Run<fingerpad::FingertipMethods> whole;
+  Run<fingerpad::FingertipMethods> whole;
   TipOf<DepthAndContact> contact(frames().options());
   TipOf<DepthAlone> depth(frames().options());
   const Inputs in = frames()[frames().size() - 1].view();
@@ -132,7 +145,7 @@ TEST_CASE("a fingertip without stages gives the same depth and contact", "[chain
 }
 
 TEST_CASE("without look-up no curve is needed, and the rest is the same", "[chain]") {
-  const Run<fingerpad::FingertipMethods> whole;
+  Run<fingerpad::FingertipMethods> whole;
   auto options = frames().options();
   options.force_of_area = {};
   options.force_of_depth = {};
@@ -146,6 +159,146 @@ TEST_CASE("without look-up no curve is needed, and the rest is the same", "[chai
     CHECK_FALSE(touch.normal.has_force());
     CHECK(touch.status == expected.status);
   }
+}
+
+TEST_CASE("sampled frames say what whole ones do", "[chain]") {
+  // as wide on the pad as a sample of 2 px is at 640 x 480
+  static const PressedFrames wide(481, 642, 1);
+  TipOf<Sampled<1>> every(wide.options());
+  TipOf<Sampled<2>> second(wide.options());
+  const PressedFrame& f = wide[0];
+  const Inputs in = f.view();
+  const auto a = every(in.image, in.dots_px, 0.0), b = second(in.image, in.dots_px, 0.0);
+  CHECK(b.contact.area_mm2 == Approx(a.contact.area_mm2).epsilon(0.02));
+  CHECK(b.contact.depth_mm == Approx(a.contact.depth_mm).margin(0.003));
+  const auto p = every.depth_mm(), q = second.depth_mm();
+  const auto in_contact = every.contact_mask(), in_contact_too = second.contact_mask();
+  double worst[2] = {0, 0}, differ = 0, touching = 0;
+  Index unknown = 0;
+  for (Index i = 0; i < p.rows(); ++i) {
+    for (Index j = 0; j < p.cols(); ++j) {
+      const double truth = f.depth_mm(i, j);
+      if (truth == truth) {
+        worst[0] = (std::max)(worst[0], std::abs(static_cast<double>(p(i, j)) - truth));
+        worst[1] = (std::max)(worst[1], std::abs(static_cast<double>(q(i, j)) - truth));
+        unknown += q(i, j) == q(i, j) ? 0 : 1;
+      }
+      touching += in_contact(i, j) != 0 ? 1 : 0;
+      differ += in_contact(i, j) != in_contact_too(i, j) ? 1 : 0;
+    }
+  }
+  CHECK(unknown == 0);
+  CHECK(worst[1] < 1.1 * worst[0]);
+  CHECK(differ < 0.04 * touching);
+}
+
+TEMPLATE_TEST_CASE("bad pixels leave a sampled frame as it was farther away than windows reach",
+                   "[chain]",
+                   Sampled<1>,
+                   Sampled<2>,
+                   Sampled<3>) {
+  TipOf<TestType> tip(frames().options());
+  const PressedFrame& f = frames()[0];
+  const Inputs in = f.view();
+  (void)tip(in.image, in.dots_px, 0.0);
+  const auto shown = tip.depth_mm();
+  const test::Image<float> before = [&] {
+    test::Image<float> copy(shown.rows(), shown.cols());
+    for (std::size_t k = 0; k < copy.cells.size(); ++k) {
+      copy.cells[k] = shown.data()[k];
+    }
+    return copy;
+  }();
+  test::Frame<std::uint8_t> bad = f.image;
+  const Index row = 101, col = 133;
+  for (Index k = 0; k < 9; ++k) {
+    bad.red(row + k / 3, col + k % 3) = k % 2 == 0 ? std::uint8_t(255) : std::uint8_t(0);
+  }
+  (void)tip(fingerpad::ColorFrame(bad.red, bad.green), in.dots_px, 0.0);
+  const auto after = tip.depth_mm();
+  bool same = true;
+  double change = 0;
+  for (Index i = 0; i < after.rows(); ++i) {
+    for (Index j = 0; j < after.cols(); ++j) {
+      const double far = (std::max)(std::abs(static_cast<double>(i - row)),
+                                    std::abs(static_cast<double>(j - col)));
+      same = same && (far < 24 || test::same_bits(after(i, j), before(i, j)));
+      const double moved = std::abs(static_cast<double>(after(i, j) - before(i, j)));
+      change = moved > change ? moved : change;
+    }
+  }
+  CHECK(same);
+  CHECK(change > 0);
+  CHECK(change < 0.05);
+}
+
+TEST_CASE("what the options lack has no answer, and the rest is the same", "[chain]") {
+  const Run<fingerpad::FingertipMethods> whole;
+  auto options = frames().options();
+  options.free_dots_mm = {};
+  options.rim_mm = {};
+  options.force_of_depth = {};
+  options.shear = {};
+  TipOf<fingerpad::FingertipMethods> tip(options);
+  const FingertipResult touch = touch_of(tip, frames()[0].view());
+  const FingertipResult& expected = whole.results[0];
+  CHECK(touch.ok());
+  CHECK(touch.contact.contact_px == expected.contact.contact_px);
+  CHECK(touch.normal.sources == 1);
+  CHECK(test::same_bits(touch.normal.force_n, expected.by_area.force_n));
+  CHECK_FALSE(touch.shear.has_force());
+  CHECK_FALSE(touch.wrench.ok());
+  CHECK_FALSE(touch.motion.ok());
+  CHECK(touch.stick.status == fingerpad::StickStatus::refused);
+  CHECK(touch.slip.status == fingerpad::SlipResult<double>().status);
+  CHECK(tip.dots_mm().rows() == 0);
+  tip.reset();
+}
+
+TEST_CASE("a fingertip takes the neighbour light off as that method does", "[chain]") {
+  auto options = frames().options();
+  TipOf<EveryPixel> free(options), plain(options);
+  const Inputs in = frames()[1].view();
+  (void)touch_of(free, frames()[0].view());
+  (void)touch_of(plain, in);
+  options.neighbour_light = fingerpad::NeighbourLight<float>{.radius_px = 12};
+  CHECK(test::refusal([&] { TipOf<WithLight> without(options); }) ==
+        "FingertipOptions: rows of free_depth_mm = 0, must be the frame's size");
+  options.free_depth_mm = free.depth_mm();
+  TipOf<WithLight> tip(options);
+  (void)touch_of(tip, in);
+
+  // a pixel's pitch on the membrane, at the pad's mean depth
+  double sum = 0, count = 0;
+  for (Index i = 0; i < options.rows; ++i) {
+    for (Index j = 0; j < options.cols; ++j) {
+      const double depth = static_cast<double>(free.depth_mm()(i, j));
+      sum += depth == depth ? depth : 0;
+      count += depth == depth ? 1 : 0;
+    }
+  }
+  const double center = options.camera.center_x_px;
+  const double pitch =
+      point_at(options.camera, options.camera.center_y_px, center + 1, sum / count).x;
+  const fingerpad::NeighbourLightCompensation<> compensate(
+      *options.neighbour_light, static_cast<float>(pitch), free.depth_mm());
+  auto work = compensate.workspace();
+  test::Image<float> expected(options.rows, options.cols, 0.0F);
+  CHECK(compensate(plain.depth_mm(), expected, work).ok());
+  double largest = 0, moved = 0;
+  bool as_many = true;
+  for (Index i = 0; i < options.rows; ++i) {
+    for (Index j = 0; j < options.cols; ++j) {
+      const auto got = static_cast<double>(tip.depth_mm()(i, j));
+      const auto wanted = static_cast<double>(expected(i, j));
+      as_many = as_many && (got == got) == (wanted == wanted);
+      largest = std::fmax(largest, std::abs(got - wanted));
+      moved = std::fmax(moved, std::abs(got - static_cast<double>(plain.depth_mm()(i, j))));
+    }
+  }
+  CHECK(as_many);
+  CHECK(largest < 1e-5);
+  CHECK(moved > 0.01);
 }
 
 TEST_CASE("a fingertip refuses frames and dots of another size", "[chain]") {

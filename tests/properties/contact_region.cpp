@@ -53,7 +53,7 @@ Found find(const R& region, const Image<S>& depth) {
 ContactTest any_test() {
   ContactTest test;
   test.min_region_px = 1;
-  test.ring.radius_px = test::whole(4, 6);
+  test.ring.radius_px = test::uniform(4, 6);
   test.threshold_per_mm = test::uniform(0.01, 0.04);
   return test;
 }
@@ -160,7 +160,7 @@ TEST_CASE("so does its edge, but for the lattice that its level is taken on", "[
     const auto depth =
         test::depths_of<double>(test::height_map(45, 41, pitch_mm), RoundFilm(contact), 45, 41);
     ContactTest test;
-    test.ring.radius_px = test::whole(4, 6);
+    test.ring.radius_px = test::uniform(4, 6);
     test.min_region_px = 20;
     const Found found = find_in<HalfLevelEdge>(depth, test);
     RC_ASSERT(found.result.regions == 1);
@@ -308,7 +308,7 @@ void check_anything(const R& region,
 template <class Edge, class CameraType, class Statistic, class S>
 void fuzz(const CameraType& camera, Index rows, Index cols, Index min_region_px = 1) {
   ContactTest test;
-  test.ring.radius_px = test::whole(1, 7);
+  test.ring.radius_px = test::uniform(1, 7);
   test.ring.min_direction_share = test::uniform(0.01, 1);
   test.threshold_per_mm = test::log_uniform(1e-3, 0.03);
   test.min_region_px = min_region_px;

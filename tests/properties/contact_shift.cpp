@@ -279,7 +279,7 @@ TEST_CASE("contact shift: which dots take part", "[contact_shift][law]") {
         const bool counts = beside && in_reference(i, j) != 0;
         edge += counts ? 1 : 0;
         if (test::whole(0, 1) == 1) {  // whose place tells that it counts
-          const double x = std::ldexp(1.0, static_cast<int>(test::whole(0, 9)));
+          const double x = std::ldexp(1.0, static_cast<int>(test::whole(-12, -3)));
           s.dots(i, j).x += x;
           push.x += counts ? x : 0;
         }

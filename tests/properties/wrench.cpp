@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "fingerpad/published/wrench.hpp"
+#include "support/by_modulus.hpp"
 #include "support/catch.hpp"
 #include "support/generators.hpp"
 #include "support/pressed_pad.hpp"
@@ -142,8 +143,8 @@ double moment_scale(const WrenchResult<double>& r) {
 
 template <class S, class L = ClampedRim, class Lines = StraightLines>
 struct Way {
-  using W = Wrench<S, OneRow, L, Lines>;
-  static constexpr bool needs_balance = !std::is_same_v<S, KnownModulus>;
+  using W = test::WrenchBy<S, OneRow, L, Lines>;
+  static constexpr bool needs_balance = !std::is_same_v<S, test::KnownModulus>;
 };
 
 }  // namespace
@@ -152,7 +153,7 @@ TEMPLATE_TEST_CASE("wrench: what is rotated, mirrored or scaled",
                    "[wrench][law]",
                    Way<BalancedRim>,
                    Way<published::ClosedForm>,
-                   Way<KnownModulus>,
+                   Way<test::KnownModulus>,
                    Way<published::Iteration>,
                    (Way<published::Iteration, published::Direction>),
                    (Way<LeastSquares>)) {
@@ -246,7 +247,7 @@ TEMPLATE_TEST_CASE("wrench: side dots as they come",
                    "[wrench][law]",
                    Way<BalancedRim>,
                    Way<published::ClosedForm>,
-                   Way<KnownModulus>,
+                   Way<test::KnownModulus>,
                    Way<published::Iteration>,
                    (Way<LeastSquares>)) {
   using W = typename TestType::W;

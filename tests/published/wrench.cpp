@@ -8,6 +8,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "fingerpad/published/printed_iteration.hpp"
 #include "support/catch.hpp"
 #include "support/pressed_pad.hpp"
 
@@ -22,6 +23,7 @@ namespace {
 /// Largest error of f_h on a pad pressed flat, as a share of the largest, but for `skipped` rows at
 /// either end: at the rim the membrane's edge counts twice, at the summit f_v is 0 / 0. Truth: f_v
 /// K_1 + f_h K_2 = p, with the arc's curvature along the meridian and sin(phi) / r around.
+template <class Solver>
 double around_error(Index columns, Index rows, Index skipped) {
   using namespace detail::membrane;
   const RoundPad<ArcSide> pad;
@@ -40,10 +42,10 @@ double around_error(Index columns, Index rows, Index skipped) {
   Segments<double> segments(columns, rows);
   segments.measure(nodes);
   Tensions<double> tensions(columns, rows);
-  const published::Iteration iteration;
-  published::Iteration::Work<double> work(iteration, columns, rows);
+  const Solver iteration;
+  typename Solver::template Work<double> work(iteration, columns, rows);
   const double p = pressed_mpa;
-  REQUIRE(iteration.solve<true>(segments, nodes, pulls.segments, p, work, tensions));
+  REQUIRE(iteration.template solve<true>(segments, nodes, pulls.segments, p, work, tensions));
   double worst = 0, largest = 0;
   for (Index j = skipped; j + skipped < rows; ++j) {
     const auto &low = nodes.node(3, j), &up = nodes.node(3, j + 1);
@@ -73,7 +75,29 @@ struct Mound {
 }  // namespace
 
 TEST_CASE("published iteration: f_h of a flat press, in closed form", "[published]") {
-  CHECK(around_error(36, 32, 5) < 0.05);
+  CHECK(around_error<published::Iteration>(36, 32, 5) < 0.05);
+  CHECK(around_error<published::PrintedIteration>(36, 32, 5) < 0.05);
+}
+
+TEST_CASE("published six-axis force: contour lines every 0.2 mm, of each line its own number",
+          "[published]") {
+  const Mound mound;
+  const RoundPad<ArcSide> pad;
+  detail::membrane::Compartments<double> nodes(24, 70, pad.radius_mm, {0.1, 0, 1});
+  nodes.lay<published::ContourLines>(mound, {2.8, 0, 8.5});
+  int cut = 0;
+  for (Index i = 0; i < 24; ++i) {
+    const double end = nodes.node(i, 70).z;
+    Index own = 0;
+    for (Index j = 0; j <= 70; ++j) {
+      const double contour = 0.2 * static_cast<double>(j);
+      CHECK(nodes.node(i, j).z == Approx((std::min)(contour, end)).margin(2e-3));
+      own += contour < end ? 1 : 0;
+    }
+    CHECK(own == static_cast<Index>(std::ceil(end / 0.2)));
+    cut += own < 70 ? 1 : 0;
+  }
+  CHECK(cut == 24);
 }
 
 TEST_CASE("published six-axis force: its lines are the steepest, cut at equal steps of height",

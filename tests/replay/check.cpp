@@ -6,10 +6,12 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <functional>
 #include <iterator>
+#include <limits>
 #include <opencv2/core.hpp>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
@@ -17,6 +19,7 @@
 #include <string>
 #include <vector>
 
+#include "fingerpad/optics/camera.hpp"
 #include "support/catch.hpp"
 
 namespace fs = std::filesystem;
@@ -168,6 +171,28 @@ Mistake dots_mistake(const char* name, const char* said, cv::Vec2d (*place)(int,
           said};
 }
 
+/// Heights along rays made heights above the place on the plate that each pixel shows.
+void in_plan(cv::Mat& depth) {
+  const fingerpad::Camera<double> camera{.center_x_px = 239.5, .center_y_px = 239.5};
+  const cv::Mat_<float> along = depth.clone();
+  const cv::Rect image(0, 0, along.cols, along.rows);
+  for (int i = 0; i < along.rows; ++i) {
+    for (int j = 0; j < along.cols; ++j) {
+      float z = 0;
+      for (int step = 0; step < 20 && std::isfinite(z); ++step) {
+        const auto p =
+            fingerpad::pixel_of(camera, fingerpad::Point3<double>{(j - 239.5) * camera.pitch_mm,
+                                                                  (i - 239.5) * camera.pitch_mm,
+                                                                  static_cast<double>(z)});
+        const cv::Point seen(static_cast<int>(std::lround(p.x)),
+                             static_cast<int>(std::lround(p.y)));
+        z = image.contains(seen) ? along(seen) : std::numeric_limits<float>::quiet_NaN();
+      }
+      depth.at<float>(i, j) = z;
+    }
+  }
+}
+
 const std::vector<Mistake> mistakes = {
     {"pressure in kPa", [](const Copy& c) { c.scale("signals.csv", 2, 1e3); },
      "in kPa? divide by 1000"},
@@ -239,6 +264,8 @@ const std::vector<Mistake> mistakes = {
        c.edit_picture("reference_depth.tiff", [](cv::Mat& d) { d = 13.1 - d; });
      },
      "no indentation"},
+    {"reference depth in plan",
+     [](const Copy& c) { c.edit_picture("reference_depth.tiff", in_plan); }, "not in plan"},
     {"wrong center",
      [](const Copy& c) { c.replace("sensor.json", "[239.5, 239.5]", "[239.5, 320]"); },
      "camera.center_px: the pad lies 6.4"},

@@ -663,7 +663,7 @@ TEST_CASE("the section foam of sensor.json is refused with the key's name") {
   };
   const auto [sensor, complaint] = GENERATE(
       Fault{R"({"foam": {"pich_mm": 1}})", "unknown key foam.pich_mm (known here: fingers, "},
-      Fault{R"({"foams": {}})", "unknown key foams (known here: foam)"},
+      Fault{R"({"foams": {}})", "unknown key foams (known here: version, calibration, foam)"},
       Fault{R"({"foam": [1]})", "foam is an array, must be an object"},
       Fault{R"({"foam": {"window": 3}})", "foam: TaxelOptions: window = 3, must be in [4, 4096]"},
       Fault{R"({"foam": {"window": 16.5}})", "foam.window is 16.5 (a number), must be a whole"},

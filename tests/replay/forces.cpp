@@ -209,7 +209,7 @@ TEST_CASE("replay: the rim is pulled inward and up, and as hard as the force say
   recording.frames.seek(5);
   const replay::WrenchFrame frame = chain(5, recording.frames.next()).wrench;
   REQUIRE(frame.present);
-  CHECK_FALSE(frame.given_modulus);
+  CHECK_FALSE(frame.result.by_modulus);
   REQUIRE(frame.tension.size() == 72);
   const double radius_mm = 18.735, rim_mm = 2 * CV_PI * radius_mm;
   fingerpad::Point3<double> sum{0, 0, 0};

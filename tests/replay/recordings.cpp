@@ -19,7 +19,7 @@
 #include "replay/io/images.hpp"
 #include "replay/io/recording.hpp"
 #include "replay/replay.hpp"
-#include "replay/steps/depth_step.hpp"
+#include "replay/chain.hpp"
 #include "support/catch.hpp"
 
 namespace fs = std::filesystem;
@@ -395,12 +395,11 @@ TEST_CASE("a picture that does not fit on the disk is told") {
 
 TEST_CASE("a lamp that has changed is told of the frame") {
   const Workplace work;
-  const replay::Recording recording = replay::open_recording(work.recording());
-  const auto depth = replay::make_depth_step(recording, replay::Smoothing::anchored, 29);
+  replay::Recording recording = replay::open_recording(work.recording());
+  replay::Chain chain(recording, work.options());
   const cv::Mat frame = cv::imread((work.recording() / "frames/000002.png").string());
-  cv::Mat_<float> depth_mm(frame.size());
-  CHECK_FALSE(depth(frame, depth_mm).pad_has_changed);
-  CHECK(depth(frame * 0.85, depth_mm).pad_has_changed);
+  CHECK_FALSE(chain(2, frame).pad_has_changed);
+  CHECK(chain(2, frame * 0.85).pad_has_changed);
 }
 
 TEST_CASE("16-bit frames give the depth of 8-bit frames") {

@@ -220,6 +220,8 @@ TEST_CASE("recoil: by how much dots have fallen back", "[recoil]") {
     CHECK(result.displaced == Approx(at / 40));
     CHECK(result.recoil == Approx(largest - at / 40).margin(1e-12));
     CHECK(result.alarm == (result.recoil > 0.1));
+    CHECK(result.evidence == Approx(result.recoil / 0.1).margin(1e-12));
+    CHECK(result.held() == Approx((std::max)(0.0, 1 - result.recoil / 0.1)).margin(1e-12));
   }
   const auto few = recoil(Dots(5, 7, Point2<double>{missing, 1}), state);
   CHECK(!few.ok());
@@ -227,6 +229,19 @@ TEST_CASE("recoil: by how much dots have fallen back", "[recoil]") {
   state.reset();
   CHECK(recoil(free.dots(), state).recoil == 0);
   CHECK(recoil(Dots(4, 7), state).status == FrameStatus::refused);
+}
+
+TEST_CASE("recoil: dots whose distance is no number do not count", "[recoil]") {
+  test::Image<Point2<float>> dots(4, 5, {1, 2});
+  const Recoil<> recoil(dots, {.min_dots = 10});
+  auto state = recoil.start();
+  dots.cells.assign(20, {1e30F, 2});
+  CHECK_FALSE(recoil(dots, state).ok());
+  dots.cells.assign(20, {41, 2});
+  const auto r = recoil(dots, state);
+  CHECK(r.ok());
+  CHECK(r.displaced == Approx(1));
+  CHECK(r.recoil == 0);
 }
 
 TEST_CASE("contact slide, recoil: names and bad parameters", "[contact_slide][recoil]") {

@@ -6,6 +6,8 @@
 #include <limits>
 #include <string>
 
+#include "fingerpad/slip/contact_slide.hpp"
+#include "fingerpad/slip/recoil.hpp"
 #include "support/catch.hpp"
 #include "support/refusal.hpp"
 #include "support/slipping_patch.hpp"
@@ -103,6 +105,46 @@ TEST_CASE("friction limit: learnt when the dots slide, answers when they do not"
   CHECK(!limit(pull(1, 0.01), none, RatioUpdate::missing, state).ok());
   state.reset();
   CHECK(!is_finite(state.limit()));
+}
+
+TEST_CASE("friction limit: a gel's imprint in place of the dots", "[friction_limit]") {
+  const FrictionLimit<double> limit;
+  auto state = limit.start();
+  SlideResult<float> slide;
+  slide.status = SlideStatus::updated;
+  slide.evidence = 0.25F;
+  auto r = limit(pull(1), slide, state);
+  CHECK(r.evidence == SlipEvidence::imprint);
+  CHECK(r.update == RatioUpdate::fresh);
+  CHECK(r.stick_ratio == 0.75);
+  CHECK(r.status == FrictionLimitStatus::no_limit);
+  CHECK(limit(ContactLoad<double>{}, slide, state).stick_ratio == 0.75);
+
+  slide.evidence = 1.5F;  // a limit is learnt from the alarm
+  r = limit(pull(2.2), slide, state);
+  CHECK(r.evidence == SlipEvidence::both);
+  CHECK(r.stick_ratio == 0);
+  CHECK(r.limit == 0.55);
+
+  slide.status = SlideStatus::not_found;  // an old alarm is no answer; friction is
+  r = limit(pull(2.2), slide, state);
+  CHECK(r.evidence == SlipEvidence::friction);
+  CHECK(r.stick_ratio == 0);
+  r = limit(pull(1), slide, state);
+  CHECK(r.evidence == SlipEvidence::none);
+  CHECK(r.update == RatioUpdate::missing);
+  CHECK(!r.ok());
+  slide.status = SlideStatus::no_contact;
+  CHECK(limit(ContactLoad<double>{}, slide, state).update == RatioUpdate::no_contact);
+
+  RecoilResult<float> recoil;
+  CHECK(!limit(ContactLoad<double>{}, recoil, state).ok());
+  recoil.status = FrameStatus::ok;
+  recoil.enough = true;
+  recoil.evidence = 0.5F;
+  r = limit(ContactLoad<double>{}, recoil, state);
+  CHECK(r.evidence == SlipEvidence::imprint);
+  CHECK(r.stick_ratio == 0.5);
 }
 
 TEST_CASE("friction limit: what it learns", "[friction_limit]") {

@@ -292,3 +292,83 @@ TEST_CASE("stick ratio in space: noise makes as many dots slip as was asked", "[
   CHECK(std::sqrt(sd / frames) > 0.5 * std::sqrt(spread / frames));
   CHECK(std::sqrt(sd / frames) < 4 * std::sqrt(spread / frames));
 }
+
+namespace {
+
+/// A pad before anything touches it, with this noise, shaken and turned; then `wrong` of its dots
+/// are found at a wrong place.
+template <class Ratio>
+void show_free(const Ratio& ratio,
+               typename Ratio::State& state,
+               double noise_mm,
+               int frames,
+               double wrong = 0,
+               double depth_noise_mm = 0.025) {
+  test::Random random(3);
+  SlippingPatch patch;
+  States states(21, 21);
+  for (int k = 0; k < frames; ++k) {
+    patch.step(test::moved_by({0, 0, random.uniform(-0.02, 0.02)}, {1, 0, 0},
+                              {random.uniform(-0.1, 0.1), random.uniform(-0.1, 0.1), 0}));
+    Dots dots = noisy(patch.dots, noise_mm, depth_noise_mm, random);
+    for (auto& p : dots.cells) {
+      p.x += random.uniform() < wrong ? random.uniform(-1, 1) : 0;
+    }
+    (void)ratio(dots, Flags(21, 21, 0), states, state);
+  }
+}
+
+}  // namespace
+
+TEST_CASE("stick ratio in space: noise is measured in the free frames", "[spatial_stick]") {
+  const SpatialStickRatio<double> ratio(21, 21);
+  for (const double noise_mm : {0.002, 0.005, 0.02}) {
+    auto state = ratio.start();
+    show_free(ratio, state, noise_mm, 8);
+    CHECK(state.lateral_mm() == 0.005);  // too few to tell
+    state.reset();
+    show_free(ratio, state, noise_mm, 20);
+    CHECK(state.lateral_mm() == Approx(noise_mm).epsilon(0.05));
+    show_free(ratio, state, noise_mm, 100, 0.02);  // one dot in fifty is wrong
+    CHECK(state.lateral_mm() == Approx(noise_mm).epsilon(0.15));
+    state.reset();
+    CHECK(state.lateral_mm() == 0.005);
+  }
+  auto state = ratio.start();
+  show_free(ratio, state, 0, 20);  // a shaken pad has no noise
+  CHECK(state.lateral_mm() < 1e-9);
+  const SpatialStickRatio<double> given(21, 21, {.free_frames = 0});
+  auto unmeasured = given.start();
+  show_free(given, unmeasured, 0.02, 20);
+  CHECK(unmeasured.lateral_mm() == 0.005);
+  CHECK(test::refusal([] { SpatialStickRatio<double>(9, 9, {.free_frames = -1}); }) ==
+        "SpatialStickTest: free_frames = -1, must be >= 0");
+}
+
+TEST_CASE("stick ratio in space: with the noise of the free frames it says what it says when told",
+          "[spatial_stick]") {
+  // Four times the noise that the defaults are for: all stick, and few dots are told to slip.
+  constexpr double noise_mm = 0.02;
+  const SpatialStickRatio<double> measured(21, 21), unmeasured(21, 21, {.free_frames = 0});
+  const auto slipping = [&](const SpatialStickRatio<double>& ratio) {
+    double slip = 0, all = 0;
+    test::Random random(6);
+    States states(21, 21);
+    for (int n = 0; n < 20; ++n) {
+      auto state = ratio.start();
+      show_free(ratio, state, noise_mm, 12);
+      SlippingPatch patch;
+      for (int k = 0; k < 2; ++k) {
+        const auto r =
+            ratio(noisy(patch.dots, noise_mm, 0.025, random), patch.contact, states, state);
+        slip += r.updated() ? static_cast<double>(r.slip) : 0;
+        all += r.updated() ? static_cast<double>(r.slip + r.stick) : 0;
+        patch.step(test::moved_by({0, 0, 0}, {0, 0, 0}, {0.72, 0, 0}));
+      }
+    }
+    REQUIRE(all > 500);
+    return slip / all;
+  };
+  CHECK(slipping(measured) < 0.03);
+  CHECK(slipping(unmeasured) > 0.1);
+}

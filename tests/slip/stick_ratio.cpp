@@ -873,3 +873,72 @@ TEST_CASE("stick ratio: bad parameters are refused by name, value and range") {
   CHECK(denoising(published::DotMean{.weights = {1, 0, 0}}) == "accepted");
   CHECK(denoising(NoDenoising()) == "accepted");
 }
+
+namespace {
+
+/// Frames of a free pad, then one dragged slowly until little sticks; the mean error of the ratio
+/// from U on, kept answers included.
+double slow_error(double noise_px, double scale, bool free_frames_first, const StickTest& test) {
+  double error = 0;
+  for (std::uint64_t seed = 1; seed <= 6; ++seed) {
+    test::Random random(seed);
+    test::SlippingDots truth;
+    const StickRatio<> ratio(21, 21, test);
+    auto state = ratio.start();
+    test::DotStates states(21, 21);
+    const auto look = [&](const test::ContactFlags& contact) {
+      auto dots = noisy(truth.dots, noise_px, random);
+      for (auto& p : dots.cells) {
+        p = scale * p;
+      }
+      return ratio(dots, contact, states, state);
+    };
+    for (int k = 0; k < (free_frames_first ? 20 : 0); ++k) {
+      (void)look(test::ContactFlags(21, 21, 0));
+    }
+    for (int k = 0; k < 160; ++k) {
+      truth.step({.shift_px = 0.1, .stick_share = 1.05 - 0.7 * k / 160});
+      const auto r = look(truth.contact);
+      const double found = r.ok() ? static_cast<double>(r.stick_ratio) : 1;
+      error += k < 60 ? 0 : std::abs(found - truth.stick_ratio(1)) / 600;
+    }
+  }
+  return error;
+}
+
+}  // namespace
+
+TEST_CASE("stick ratio: thresholds follow the noise of the free frames") {
+  // 0.14 px are more than U_min is made for: without the free frames all is stored, and nothing
+  // far enough away is left to compare with.
+  CAPTURE(slow_error(0.14, 1, true, {}), slow_error(0.14, 1, false, {}));
+  CAPTURE(slow_error(0.03, 1, true, {}), slow_error(0.03, 1, false, {}));
+  CHECK(slow_error(0.14, 1, true, {}) < 0.1);
+  CHECK(slow_error(0.14, 1, false, {}) > 0.08);
+  CHECK(slow_error(0.14, 1, true, {.free_frames = 0}) > 0.08);
+  // dots in mm, with thresholds in mm
+  const StickTest in_mm = {.reference_px = 0.16, .store_px = 0.04, .slip_px = 0.0192};
+  CHECK(slow_error(0.14, 0.08, true, in_mm) == Approx(slow_error(0.14, 1, true, {})).margin(0.01));
+  // better dots: slip is seen sooner
+  CHECK(slow_error(0.03, 1, true, {}) < slow_error(0.03, 1, false, {}));
+  // repeated frames have no noise to tell
+  CHECK(slow_error(0, 1, true, {}) == Approx(slow_error(0, 1, false, {})).margin(1e-6));
+}
+
+TEST_CASE("stick ratio: at rest the last reference is asked again, if that is asked for") {
+  const StickRatio asked(9, 9, {}, StickConsensus<>(), UpdatedReference{.at_rest = true});
+  auto state = asked.start();
+  test::DotStates states(9, 9);
+  const auto look = [&](double x) {
+    return asked(shifted(x), test::ContactFlags(9, 9, 1), states, state);
+  };
+  (void)look(0);
+  CHECK(look(0.2).status == StickStatus::standing);  // nothing is far enough away
+  CHECK(look(2.5).updated());
+  const Index stored = state.stored_frames();
+  const auto rests = look(2.6);
+  CHECK(rests.updated());
+  CHECK(rests.reference_age == 3);
+  CHECK(rests.stick_ratio == 1);
+  CHECK(state.stored_frames() == stored);  // what stands still is not stored
+}

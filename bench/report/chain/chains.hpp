@@ -28,6 +28,7 @@ struct ByDefault : fingerpad::FingertipMethods {
 };
 /// The least that a flat contact on a pad with dark dots needs.
 struct Lean : ByDefault {
+  static constexpr int sampling = 4;
   using Smoothing = fingerpad::AnchoredMean;
   using Inverse = fingerpad::ExponentialFree<2, 5>;
   using Statistic = fingerpad::RingStencil<9>;

@@ -104,9 +104,11 @@ class PressedFrames {
     // windows and rings as wide on the pad as those by default are at 640 x 480
     const double scale = static_cast<double>(pad_.cols) / 640;
     f.smoothing_px = 2 * static_cast<int>(14 * scale) + 1;
-    f.contact.ring.radius_px = static_cast<Index>(25 * scale);
+    f.contact.ring.radius_px = 25 * scale;
     // what the plate's pressure on the area says; by depth, a line between two of the frames
-    f.force_of_area = {{0, pressure_mpa, 0}, 50, 400};
+    using NormalLookUp = typename decltype(f)::NormalLookUp;
+    const typename NormalLookUp::Errors errors{.residual_sd_n = 0.1};
+    f.force_of_area = NormalLookUp({{0, pressure_mpa}, 50, 400}, {}, errors);
     const auto of_depth = [&](double contact_mm) {
       test::RoundPad<test::FilmSide> pad;
       pad.contact_mm = contact_mm;
@@ -116,9 +118,12 @@ class PressedFrames {
     const auto [less_mm, less_n] = of_depth(7.6);
     const auto [more_mm, more_n] = of_depth(8.4);
     const double slope = (more_n - less_n) / (more_mm - less_mm);
-    f.force_of_depth = {{less_n - slope * less_mm, slope, 0}, less_mm - 0.5, more_mm + 0.5};
-    f.shear.force.coefficients[0] = 1;
-    f.shear.moment.coefficients[0] = 1;
+    f.force_of_depth =
+        NormalLookUp({{less_n - slope * less_mm, slope}, less_mm - 0.5, more_mm + 0.5}, {}, errors);
+    fingerpad::RadialShear<4> map;
+    map.force = {{1}, 10};
+    map.moment = {{1}, 1};
+    f.shear.emplace(fingerpad::ShearNormalisation<>{100, 0.65, 1.7}, map);
     return f;
   }
 

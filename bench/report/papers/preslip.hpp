@@ -120,7 +120,7 @@ inline Section preslip_section() {
            {"", "false alarms", "not said", old_optimise.alarms(), optimise.alarms(), held},
            {"grasp, lift, replace, ten trials", "steps from the warning to the slip",
             "3 to 6, in 10 of 10", old_lift.steps(), lift.steps(),
-            nearest + "; the lift is not simulated"},
+            nearest + "; whole lifts: docs/foam/preslip.md"},
            {"", "false alarms", "not said", old_lift.alarms(), lift.alarms(), held}}};
 }
 

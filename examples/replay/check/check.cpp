@@ -7,7 +7,7 @@
 
 #include "replay/check/parts.hpp"
 #include "replay/io/failure.hpp"
-#include "replay/steps/wrench_step.hpp"
+#include "replay/steps/fingertip_step.hpp"
 
 namespace replay {
 namespace {

@@ -1,8 +1,11 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #include <cmath>
+#include <cstdint>
 #include <opencv2/imgproc.hpp>
 
+#include "fingerpad/adapt/opencv.hpp"
+#include "fingerpad/depth/depth_reference.hpp"
 #include "replay/check/parts.hpp"
 
 namespace replay {
@@ -184,14 +187,34 @@ void check_colours(const Recording& recording, const Shape& shape, Findings& fin
   }
 }
 
+/// Whether picture and depth go together, pixel by pixel; heights in plan do not.
+void check_fit(const Recording& recording, Findings& findings) {
+  const auto fit = [&]<class Pixel>(Pixel) {
+    (void)fingerpad::fit_reference(recording.sensor.camera, recording.sensor.absorption,
+                                   fingerpad::channel<Pixel>(recording.reference, 2),
+                                   fingerpad::channel<Pixel>(recording.reference, 1),
+                                   recording.reference_depth);
+  };
+  try {
+    recording.reference.depth() == CV_16U ? fit(std::uint16_t()) : fit(std::uint8_t());
+  } catch (const fingerpad::parameter_error& refusal) {
+    findings.push_back({recording.sensor.reference_depth, refusal.what(),
+                        "give the height along each pixel's ray, not in plan"});
+  }
+}
+
 }  // namespace
 
 void check_reference(const Recording& recording, Findings& findings) {
+  const std::size_t before = findings.size();
   const Shape shape = shape_of(recording.reference_depth);
   check_shape(recording, shape, findings);
   if (shape.area_px >= 1) {
     check_camera(recording, shape, findings);
     check_colours(recording, shape, findings);
+  }
+  if (findings.size() == before) {  // else its cause has been told
+    check_fit(recording, findings);
   }
 }
 

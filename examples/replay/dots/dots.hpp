@@ -43,6 +43,9 @@ class DotSource {
   /// within half a pitch).
   DotGrid initial() const { return initial_.clone(); }
 
+  /// Of the dots, as the free pad shows them; 0 where they are read from dots.csv.
+  double diameter_px() const { return finder_ ? 2 * finder_->pattern().radius_px : 0; }
+
   /// The dots of a frame; all NaN for a frame that dots.csv does not name. Found dots are followed
   /// from frame to frame, so frames are asked for in ascending order.
   DotGrid of(int frame, const cv::Mat& image);

@@ -53,11 +53,11 @@ void write_pictures(const OutputFolder& output,
       name + ": " + (alarm ? "first alarm in " + alarm_words(rows[*alarm]) : "no alarm");
   const auto shown = shown_rows(rows, static_cast<int>(recording.sensor.taxels.window));
   const FoamActivity activity = activity_of(recording, noise, rows, shown, max_frequency_bins);
-  write_png(output.file("pictures", "preslip.png"), foam_chart(title, recording, rows));
-  write_png(output.file("pictures", "array.png"),
-            foam_array_picture(title, recording, rows, shown, activity));
-  write_png(output.file("pictures", "frequency.png"),
-            foam_frequency_picture(title, recording, rows, activity));
+  write_picture(output.file("pictures", "preslip.png"), foam_chart(title, recording, rows));
+  write_picture(output.file("pictures", "array.png"),
+                foam_array_picture(title, recording, rows, shown, activity));
+  write_picture(output.file("pictures", "frequency.png"),
+                foam_frequency_picture(title, recording, rows, activity));
 }
 
 void print_fingers(const FoamRecording& recording, const std::vector<FoamNoise>& noise) {

@@ -6,6 +6,7 @@
 
 #include "replay/io/failure.hpp"
 #include "replay/io/json_section.hpp"
+#include "replay/io/sensor.hpp"
 
 namespace replay {
 namespace {
@@ -90,7 +91,7 @@ void read_options(const JsonSection& foam, FoamSensor& sensor) {
 /// Sections that other recordings have say that files were mixed up.
 void refuse_other_sections(const std::filesystem::path& file, const nlohmann::json& content) {
   for (const char* other : {"camera", "absorption", "pad", "reference", "video", "smoothing_px",
-                            "dots", "rim", "neighbour_light", "force", "stick"}) {
+                            "dots", "rim", "neighbour_light", "force", "stick", "contact"}) {
     if (content.is_object() && content.contains(other)) {
       fail(file, std::string("has ") + other +
                      ", which a recording with taxels.csv does not need: keep the frames of a "
@@ -108,7 +109,11 @@ FoamSensor read_foam_sensor(const std::filesystem::path& file) {
   }
   const nlohmann::json content = parse_json(file);
   refuse_other_sections(file, content);
-  const JsonSection root(file, "", content, {{"foam", "a foam array"}});
+  expects_known_version(file, content);
+  const JsonSection root(file, "", content,
+                         {{"version", "of this file's form"},
+                          {"calibration", "what calibrations said of themselves"},
+                          {"foam", "a foam array"}});
   if (root.has("foam")) {
     const JsonSection foam = foam_section(root);
     if (foam.has("fingers")) {

@@ -108,6 +108,10 @@ cv::Mat_<float> read_depth_image(const fs::path& file) {
   return image;
 }
 
+void write_picture(const fs::path& file, const cv::Mat& image) {
+  write_image(file, ".png", image, {cv::IMWRITE_PNG_COMPRESSION, 6});
+}
+
 void write_png(const fs::path& file, const cv::Mat& image) {
   write_image(file, ".png", image,
               {cv::IMWRITE_PNG_COMPRESSION, 9, cv::IMWRITE_PNG_STRATEGY,

@@ -45,6 +45,8 @@ const char* words_of(fingerpad::SlipEvidence evidence) {
       return "";
     case fingerpad::SlipEvidence::dots:
       return "dots";
+    case fingerpad::SlipEvidence::imprint:
+      return "imprint";
     case fingerpad::SlipEvidence::friction:
       return "friction";
     case fingerpad::SlipEvidence::both:
@@ -67,9 +69,9 @@ void close_file(std::ofstream& stream, const fs::path& file) {
 /// Whether a file of this path, relative to the output folder, is one that the program writes.
 bool is_ours(const std::string& relative) {
   static const std::regex ours(
-      R"(frames\.csv|dots\.csv|depth|depth/\d{6}\.tiff|contact|contact/\d{6}\.png|pictures|)"
-      R"(pictures/(depth|side|contact|stick|rim|traction)_\d{6}\.png|)"
-      R"(pictures/(montage|motion|stick_ratio|forces|wrench|array|frequency|preslip)\.png)");
+      R"(frames\.csv|dots\.csv|slide\.csv|depth|depth/\d{6}\.tiff|contact|contact/\d{6}\.png|pictures|)"
+      R"(pictures/(depth|side|contact|stick|rim|traction|slide)_\d{6}\.png|)"
+      R"(pictures/(montage|motion|stick_ratio|forces|wrench|array|frequency|preslip|slide)\.png)");
   return std::regex_match(relative, ours);
 }
 

@@ -10,10 +10,7 @@
 #include <vector>
 
 #include "replay/io/true_forces.hpp"
-#include "replay/steps/contact_step.hpp"
-#include "replay/steps/force_step.hpp"
-#include "replay/steps/motion_step.hpp"
-#include "replay/steps/wrench_step.hpp"
+#include "replay/steps/frame.hpp"
 
 namespace replay {
 

@@ -192,7 +192,8 @@ Recording open_recording(const fs::path& folder) {
       video ? FrameSource::of_video(folder / *video) : FrameSource::of_folder(folder / "frames");
   if (recording.sensor.dots_only) {
     read_first_picture(folder, recording);
-  } else if (fs::is_directory(folder / "free", error)) {
+  }
+  if (fs::is_directory(folder / "free", error)) {
     recording.free_frames = FrameSource::of_folder(folder / "free");
   }
   recording.signals = read_signals(folder / "signals.csv", recording.frames.size());

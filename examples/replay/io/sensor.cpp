@@ -96,6 +96,7 @@ fingerpad::StickTest read_stick(const Section& root) {
   fingerpad::StickTest test;
   const auto read = [&](const char* key, double& value) {
     value = section.has(key) ? section.number(key) : value;
+    test.free_frames = section.has(key) ? 0 : test.free_frames;  // what is given stands
   };
   read("reference_px", test.reference_px);
   read("store_px", test.store_px);
@@ -106,8 +107,8 @@ fingerpad::StickTest read_stick(const Section& root) {
 
 /// Whether the file names anything that depth needs.
 bool names_depth(const Section& root) {
-  for (const char* key :
-       {"camera", "absorption", "pad", "smoothing_px", "rim", "neighbour_light", "force"}) {
+  for (const char* key : {"camera", "absorption", "pad", "smoothing_px", "rim", "neighbour_light",
+                          "force", "contact"}) {
     if (root.has(key)) {
       return true;
     }
@@ -253,6 +254,11 @@ void read_depth(const std::filesystem::path& file, const Section& root, Sensor& 
   if (root.has("force")) {
     sensor.force = read_force(root);
   }
+  if (root.has("contact")) {
+    sensor.contact_threshold_per_mm =
+        root.section("contact", {{"threshold_per_mm", "curvature of the contact's edge, 1/mm"}})
+            .positive("threshold_per_mm");
+  }
   if (root.has("rim")) {
     sensor.rim = read_rim(root);
   }
@@ -263,10 +269,24 @@ void read_depth(const std::filesystem::path& file, const Section& root, Sensor& 
 
 }  // namespace
 
+void expects_known_version(const std::filesystem::path& file, const nlohmann::json& content) {
+  if (content.is_object() && content.contains("version") &&
+      content.at("version") != nlohmann::json(sensor_version)) {
+    fail(file, "version = " + content.at("version").dump() + ", but this program reads version " +
+                   std::to_string(sensor_version));
+  }
+}
+
 Sensor read_sensor(const std::filesystem::path& file) {
-  const nlohmann::json content = parse_json(file);
+  return read_sensor(file, parse_json(file));
+}
+
+Sensor read_sensor(const std::filesystem::path& file, const nlohmann::json& content) {
+  expects_known_version(file, content);
   const Section root(file, "", content,
-                     {{"camera", "position and resolution of the camera"},
+                     {{"version", "of this file's form"},
+                      {"calibration", "what calibrations said of themselves"},
+                      {"camera", "position and resolution of the camera"},
                       {"absorption", "how the fluid absorbs light"},
                       {"pad", "size of the free pad"},
                       {"reference", "a frame of the free pad and its known depth"},
@@ -277,6 +297,7 @@ Sensor read_sensor(const std::filesystem::path& file) {
                       {"neighbour_light", "compensation of light from neighbouring membrane"},
                       {"force", "curves that tell forces from contact and shift"},
                       {"stick", "when dots are compared, and what counts as slip"},
+                      {"contact", "from which curvature on the pad counts as free"},
                       {"foam", "a foam array"}});
   if (root.has("foam")) {
     fail(file, "has a section foam, but there is no taxels.csv with the array's readings");

@@ -5,13 +5,14 @@
 // are refused with their name, missing ones with what they are for, wrong values with their range.
 // A recording of which only the dots are looked at names no camera, no fluid, no pad and no depth.
 #include <filesystem>
+#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
 
 #include "fingerpad/depth/absorption.hpp"
 #include "fingerpad/force/normal_force.hpp"
-#include "fingerpad/optics/camera.hpp"
 #include "fingerpad/force/shear.hpp"
+#include "fingerpad/optics/camera.hpp"
 #include "fingerpad/slip/stick_ratio.hpp"
 
 namespace replay {
@@ -87,12 +88,20 @@ struct Sensor {
   bool dots_only = false;  ///< then camera, absorption, pad and dots are empty
   DotPattern pattern;      ///< of a dots-only recording
   fingerpad::StickTest stick;
+  std::optional<double> contact_threshold_per_mm;  ///< none: from free/
   std::optional<ForceLookUp> force;
   std::optional<Rim> rim;
   std::optional<NeighbourLight> neighbour_light;
 };
 
+/// Of sensor.json: files without "version" are of this one, others are refused.
+constexpr int sensor_version = 1;
+
 /// Reads and checks `file`; throws Failure.
 Sensor read_sensor(const std::filesystem::path& file);
+/// The same of what was read from `file`, or stands in for it.
+Sensor read_sensor(const std::filesystem::path& file, const nlohmann::json& content);
+/// Throws Failure where "version" is not that of this program.
+void expects_known_version(const std::filesystem::path& file, const nlohmann::json& content);
 
 }  // namespace replay

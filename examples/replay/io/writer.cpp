@@ -96,20 +96,21 @@ void Writer::operator()(Scene scene) {
 void Writer::write_pictures(Scene& scene) {
   if (painter_) {
     scene.section = painter_->find_section(scene.depth_mm);
-    write_png(file("pictures", "depth_", scene, ".png"), painter_->depth(scene));
-    write_png(file("pictures", "side_", scene, ".png"), painter_->side(scene));
-    write_png(file("pictures", "contact_", scene, ".png"), painter_->contact(scene, initial_dots_));
+    write_picture(file("pictures", "depth_", scene, ".png"), painter_->depth(scene));
+    write_picture(file("pictures", "side_", scene, ".png"), painter_->side(scene));
+    write_picture(file("pictures", "contact_", scene, ".png"),
+                  painter_->contact(scene, initial_dots_));
     if (scene.wrench.present) {
-      write_png(file("pictures", "rim_", scene, ".png"), painter_->rim(scene));
+      write_picture(file("pictures", "rim_", scene, ".png"), painter_->rim(scene));
     }
     if (scene.traction.present()) {
-      write_png(file("pictures", "traction_", scene, ".png"), painter_->traction(scene));
+      write_picture(file("pictures", "traction_", scene, ".png"), painter_->traction(scene));
     }
   }
   if (dots_) {
     // The first frames of a camera may be dark, and nothing better is known without a free pad.
     const double brightest = painter_ ? brightest_ : brightest_level(scene.image);
-    write_png(file("pictures", "stick_", scene, ".png"), stick_picture(scene, brightest));
+    write_picture(file("pictures", "stick_", scene, ".png"), stick_picture(scene, brightest));
   }
 }
 
@@ -118,17 +119,17 @@ void Writer::finish() {
     const std::string name = std::filesystem::canonical(options_.recording).filename().string();
     const std::string title = name + ": " + std::to_string(rows_.size()) + " frames";
     if (painter_) {
-      write_png(output_.file("pictures", "montage.png"), painter_->montage(title, columns_));
-      write_png(output_.file("pictures", "motion.png"), motion_chart(title, rows_));
+      write_picture(output_.file("pictures", "montage.png"), painter_->montage(title, columns_));
+      write_picture(output_.file("pictures", "motion.png"), motion_chart(title, rows_));
       if (with_force_) {
-        write_png(output_.file("pictures", "forces.png"), force_chart(title, rows_));
+        write_picture(output_.file("pictures", "forces.png"), force_chart(title, rows_));
       }
       if (with_wrench_) {
-        write_png(output_.file("pictures", "wrench.png"), wrench_chart(title, rows_));
+        write_picture(output_.file("pictures", "wrench.png"), wrench_chart(title, rows_));
       }
     }
     if (dots_) {
-      write_png(output_.file("pictures", "stick_ratio.png"), stick_chart(title, rows_));
+      write_picture(output_.file("pictures", "stick_ratio.png"), stick_chart(title, rows_));
     }
   }
   table_.close();

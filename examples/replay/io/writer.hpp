@@ -28,6 +28,7 @@ class Writer {
   void finish();
 
   const std::vector<FrameRow>& rows() const { return rows_; }
+  const OutputFolder& output() const { return output_; }
   const std::filesystem::path& place() const { return output_.place(); }
 
  private:

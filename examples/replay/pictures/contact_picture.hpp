@@ -5,7 +5,7 @@
 #include <opencv2/core.hpp>
 
 #include "replay/pictures/canvas.hpp"
-#include "replay/steps/motion_step.hpp"
+#include "replay/steps/frame.hpp"
 
 namespace replay {
 

@@ -21,7 +21,7 @@ cv::Mat force_chart(const std::string& title, const std::vector<FrameRow>& rows)
       {line_series("look-up", rows, [](const FrameRow& row) { return row.force.moment_n_mm; })}};
   const auto add_truth = [&](LinePanel& panel, int beside, const char* name, const auto& of) {
     panel.series.push_back(line_series(name, rows, [&](const FrameRow& row) {
-      return row.truth ? of(*row.truth) : ForceFrame::none;
+      return row.truth ? of(*row.truth) : not_known;
     }));
     panel.series.back().beside = beside;
   };

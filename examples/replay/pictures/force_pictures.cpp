@@ -100,7 +100,7 @@ std::string words_of_wrench(const WrenchFrame& wrench) {
   }
   const auto& f = result.force_n;
   return format("force (%.2f, %.2f, %.2f) N", rounded(f.x), rounded(f.y), rounded(f.z)) +
-         (wrench.given_modulus ? ", by the given modulus" : "");
+         (result.by_modulus ? ", by the given modulus" : "");
 }
 
 }  // namespace

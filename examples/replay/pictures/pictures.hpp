@@ -3,7 +3,6 @@
 #pragma once
 // What a person would look at: false-colour depth, a side view, the contact over the camera's
 // image, and a recording at a glance.
-#include <limits>
 #include <opencv2/core.hpp>
 #include <optional>
 #include <string>
@@ -12,11 +11,8 @@
 #include "replay/io/sensor.hpp"
 #include "replay/io/true_forces.hpp"
 #include "replay/pictures/depth_colours.hpp"
-#include "replay/steps/contact_step.hpp"
-#include "replay/steps/force_step.hpp"
-#include "replay/steps/motion_step.hpp"
+#include "replay/steps/frame.hpp"
 #include "replay/steps/traction_step.hpp"
-#include "replay/steps/wrench_step.hpp"
 
 namespace replay {
 
@@ -26,8 +22,6 @@ struct Section {
   int col = 0;         ///< of the point that chose the row
   double dent_mm = 0;  ///< how far it lies below the free pad; 0: nothing presses the pad
 };
-
-constexpr double not_known = std::numeric_limits<double>::quiet_NaN();
 
 /// One frame, as far as pictures need it.
 struct Scene {

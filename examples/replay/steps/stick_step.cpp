@@ -13,57 +13,24 @@ StickStep::StickStep(cv::Size size, const fingerpad::StickTest& test) {
   }
 }
 
-StickFrame StickStep::operator()(const DotGrid& dots_px,
-                                 const cv::Mat_<uchar>& in_contact,
-                                 double time_s) {
-  StickFrame frame;
-  if (ratio_) {
-    frame.states.create(dots_px.size());
-    frame.result = (*ratio_)(dots_px, in_contact, frame.states, *state_, time_s);
-    frame.evidence =
-        frame.result.ok() ? fingerpad::SlipEvidence::dots : fingerpad::SlipEvidence::none;
-  }
-  return frame;
-}
-
-SpatialStickStep::SpatialStickStep(cv::Size size, const fingerpad::SpatialStickTest& test) {
-  if (!size.empty()) {
-    ratio_.emplace(size.height, size.width, test);
-    state_.emplace(ratio_->start());
-  }
-}
-
-StickFrame SpatialStickStep::operator()(const cv::Mat_<cv::Vec3d>& dots_mm,
-                                        const cv::Mat_<uchar>& in_contact,
-                                        double time_s) {
-  StickFrame frame;
-  if (ratio_) {
-    frame.states.create(dots_mm.size());
-    const auto seen = (*ratio_)(dots_mm, in_contact, frame.states, *state_, time_s);
-    frame.result.status = seen.status;
-    frame.result.stick = seen.stick;
-    frame.result.slip = seen.slip;
-    frame.result.unknown = seen.unknown;
-    frame.result.out_of_place = seen.out_of_place;
-    frame.result.stick_ratio = static_cast<float>(seen.stick_ratio);
-    frame.result.reference_age = seen.reference_age;
-    frame.ratio_sd = seen.ratio_sd;
-  }
-  return frame;
-}
-
-void SpatialStickStep::fuse(const fingerpad::ContactLoad<double>& load, StickFrame& frame) {
-  if (ratio_) {
-    const auto slip = limit_(load, static_cast<double>(frame.result.stick_ratio),
-                             update_of(frame.result.status), limit_state_);
-    frame.evidence = slip.evidence;
-    frame.slides = slip.status == fingerpad::FrictionLimitStatus::sliding;
-    if (frame.slides) {
-      frame.result.stick_ratio = 0;
-      frame.result.status = fingerpad::StickStatus::updated;
-      frame.ratio_sd = 0;
+FrameDots StickStep::operator()(const DotGrid& dots_px, double time_s) {
+  FrameDots frame;
+  frame.dots_px = dots_px;
+  frame.dots_mm = cv::Mat_<cv::Vec3d>(dots_px.size(), cv::Vec3d::all(not_known));
+  frame.in_contact.create(dots_px.size());
+  for (int i = 0; i < dots_px.rows; ++i) {
+    for (int j = 0; j < dots_px.cols; ++j) {
+      frame.in_contact(i, j) = is_present(dots_px(i, j)) ? 1 : 0;
     }
   }
+  if (ratio_) {
+    StickFrame& stick = frame.stick;
+    stick.states.create(dots_px.size());
+    stick.result = (*ratio_)(dots_px, frame.in_contact, stick.states, *state_, time_s);
+    stick.evidence =
+        stick.result.ok() ? fingerpad::SlipEvidence::dots : fingerpad::SlipEvidence::none;
+  }
+  return frame;
 }
 
 }  // namespace replay

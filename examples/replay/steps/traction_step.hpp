@@ -8,7 +8,7 @@
 
 #include "fingerpad/force/traction.hpp"
 #include "replay/io/recording.hpp"
-#include "replay/steps/motion_step.hpp"
+#include "replay/steps/frame.hpp"
 
 namespace replay {
 

@@ -2,8 +2,11 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 // Eigen::AutoDiffScalar as a scalar: every kernel then also yields exact derivatives with respect
-// to whatever the caller seeds (colours, calibration, camera).
+// to whatever the caller seeds (colours, calibration, camera). With the covariance of a calibration
+// they tell the variance that its errors leave in a result.
 #include <Eigen/Core>  // AutoDiff does not include it
+#include <array>
+#include <cstddef>
 #include <unsupported/Eigen/AutoDiff>
 
 #include "fingerpad/core/scalar.hpp"
@@ -17,6 +20,25 @@ struct scalar_traits<Eigen::AutoDiffScalar<Derivatives>> {
   static constexpr real epsilon() { return (std::numeric_limits<real>::epsilon)(); }
   static const real& value(const Eigen::AutoDiffScalar<Derivatives>& x) { return x.value(); }
 };
+
+/// N parameters as dual numbers, each with a seed of its own.
+template <scalar S, std::size_t N>
+auto seeded(const std::array<S, N>& parameters) {
+  using Dual = Eigen::AutoDiffScalar<Eigen::Matrix<S, static_cast<int>(N), 1>>;
+  std::array<Dual, N> duals;
+  for (std::size_t k = 0; k < N; ++k) {
+    duals[k] = Dual(parameters[k], static_cast<int>(N), static_cast<int>(k));
+  }
+  return duals;
+}
+
+/// Variance of a result whose derivatives are by seeded parameters of this covariance, N x N, to
+/// first order: J C J^T. O(N^2).
+template <class Derivatives, class Covariance>
+auto carried_variance(const Eigen::AutoDiffScalar<Derivatives>& result,
+                      const Eigen::MatrixBase<Covariance>& covariance) {
+  return result.derivatives().dot(covariance * result.derivatives());
+}
 
 }  // namespace v0
 }  // namespace fingerpad

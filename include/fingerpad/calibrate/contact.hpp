@@ -60,7 +60,7 @@ class FreePadCalibration {
                      Index cols,
                      const CurvatureRing& ring = {})
       : pixel_mm_(detail::pixel_pitch(checked(camera, rows, cols)).at_plate_mm),
-        ring_px_(static_cast<double>(ring.radius_px)),
+        ring_px_(ring.radius_px),
         map_(camera, rows, cols, ring),
         workspace_(map_.workspace()),
         curvature_(static_cast<std::size_t>(rows * cols)),

@@ -64,6 +64,7 @@ enum class FitStatus : std::uint8_t {
   scatters_no_light,
   pad_moved,
   taxels_missing,
+  onsets_not_found,
 };
 
 /// The cause in words.
@@ -111,6 +112,8 @@ constexpr const char* name_of(FitStatus status) {
       return "dots move slowly, not as noise does: did the pad stand still?";
     case FitStatus::taxels_missing:
       return "fewer than half of the taxels gave readings in range: bytes, range, order?";
+    case FitStatus::onsets_not_found:
+      return "no threshold tells the onsets from the rest: marks late or early, or another rule?";
   }
   return "unknown";
 }

@@ -27,10 +27,10 @@
 #include "fingerpad/core/grid.hpp"
 #include "fingerpad/core/point.hpp"
 #include "fingerpad/core/scalar.hpp"
-#include "fingerpad/force/detail/zeros.hpp"
 #include "fingerpad/force/force_curve.hpp"
 #include "fingerpad/force/normal_force.hpp"
 #include "fingerpad/force/shear.hpp"
+#include "fingerpad/math/detail/zeros.hpp"
 
 namespace fingerpad {
 inline namespace v0 {
@@ -159,9 +159,9 @@ struct [[nodiscard]] ShearFit {
 template <scalar S = double>
 struct [[nodiscard]] LinearShearFit {
   FitStatus status = FitStatus::not_converged;
-  LinearShear<S> map = {};                  ///< its moment is 0
-  std::array<S, 3> x_standard_errors = {};  ///< of x_by_x, x_by_y, offset_n.x
-  std::array<S, 3> y_standard_errors = {};  ///< of y_by_x, y_by_y, offset_n.y
+  LinearShear<S> map = {};                                     ///< its moment is 0
+  std::array<S, 3> x_standard_errors = detail::zeros<S, 3>();  ///< of x_by_x, x_by_y, offset_n.x
+  std::array<S, 3> y_standard_errors = detail::zeros<S, 3>();  ///< of y_by_x, y_by_y, offset_n.y
   Point2<S> residual_sd_n = {S(0), S(0)};
   std::vector<ForceResidual<S>> residuals = {};  ///< all of x, then all of y
   S largest_residual_sds = S(0);

@@ -13,6 +13,12 @@
 // linear in u = mu t / L and v = mu t L^3: two pressures give both, L = (v / u)^(1/4). The free pad
 // is the same all around, so r_j, the share of dot j in L, is its length over the mean length.
 //
+// How shear softens the rim of another rubber (m, rim_traction.hpp) is not seen there, since the
+// free rim is not sheared, but at the apex, where the membrane is stretched both ways: the heights
+// of the apex are those of an inflated cap of this rubber (calibrate/detail/inflated_cap.hpp). At
+// 16 kPa, mu t = 0.5 N/mm and 11 mm of stress-free height it lies 0.19 mm lower for m = 1 than for
+// m = 0, so 0.01 mm of error of the apex, as well as 0.5 % of mu t, is 0.05 in m and 1.5 % in M_z.
+//
 // One pressure gives mu t for a known L. OneRow takes the chord for the
 // derivative at the rim, so mu t comes out 1.4 % too large for side dots of 0.8 mm on a rim of
 // 18.7 mm, and L 0.1 % too small; with the inclination 0.1 % and 0.03 % are left (finite elements,
@@ -22,6 +28,7 @@
 #include <cstddef>
 #include <vector>
 
+#include "fingerpad/calibrate/detail/inflated_cap.hpp"
 #include "fingerpad/calibrate/detail/rim_balance.hpp"
 #include "fingerpad/calibrate/detail/rim_frames.hpp"
 #include "fingerpad/calibrate/fit.hpp"
@@ -35,10 +42,14 @@
 namespace fingerpad {
 inline namespace v0 {
 
-/// What the standard errors come from; both 0: the residual, of 3 pressures or more.
+/// What the standard errors come from; dot and pressure noise 0: the residual, of 3 pressures or
+/// more.
 struct RimFitOptions {
   double side_dot_noise_mm = 0;   ///< sd of each coordinate of a side dot in one frame, >= 0
   double pressure_noise_mpa = 0;  ///< that of a frame's pressure, >= 0
+  double apex_noise_mm = 0;       ///< that of a frame's apex height, >= 0
+  /// Of the pad's apex, a spherical cap; > 0: the rubber's m is found, too, from apex heights.
+  double stress_free_height_mm = 0;
 };
 
 /// The rim of a pad. Usable as the lengths of `Wrench(border, fit, options)`: fit(k) is the length
@@ -49,11 +60,15 @@ struct [[nodiscard]] RimFit {
   S length_mm = S(0);                  ///< L, the mean stress-free length, mm
   S modulus_n_per_mm = S(0);           ///< mu t
   std::vector<S> side_dot_share = {};  ///< r_j of each column of the border; mean about 1
-  S length_sd_mm = S(0);               ///< standard errors; 0 for what was given, NaN where neither
-  S modulus_sd_n_per_mm = S(0);        ///< noise nor residual tells them
-  S correlation = S(0);                ///< of the two; near 1: their errors make up for each other
-  S condition = S(0);                  ///< of the equations by the relative changes of L and mu t
-  S residual = S(0);            ///< of the vertical balance, rms, as a share of the mean p a / 2
+  S mooney_share = S(0);  ///< m = C2 / (C1 + C2), for ClampedRim; what noise carries out of [0, 1]
+                          ///< is put on its border; 0 where it was not asked for
+  S mooney_share_sd = S(0);  ///< from apex_noise_mm and the standard error of mu t, if there is one
+  S apex_residual_mm = S(0);     ///< of the apex heights, rms
+  S length_sd_mm = S(0);         ///< standard errors; 0 for what was given, NaN where neither
+  S modulus_sd_n_per_mm = S(0);  ///< noise nor residual tells them
+  S correlation = S(0);          ///< of the two; near 1: their errors make up for each other
+  S condition = S(0);            ///< of the equations by the relative changes of L and mu t
+  S residual = S(0);             ///< of the vertical balance, rms, as a share of the mean p a / 2
   S share_scatter = S(0);       ///< sd of one level's lengths / mean length about r_j: noise of the
                                 ///< dots; NaN from a single level
   std::vector<S> stretch = {};  ///< mean lambda at each level
@@ -77,9 +92,13 @@ class RimCalibration {
 
   /// Adds a frame of the free pad to level 0, 1, ... of pressure; the frames of a level, of about
   /// the same pressure, are averaged. NaN: a dot was not found. False, and nothing added, where
-  /// pressure or grid are not usable, or the level is neither there nor the next.
+  /// pressure or grid are not usable, or the level is neither there nor the next. `apex_mm`: height
+  /// of the pad's apex above the base; NaN: not measured.
   template <spatial_dot_grid Dots>
-  bool add(std::size_t level, const Dots& side_dots_mm, const S& pressure_mpa) {
+  bool add(std::size_t level,
+           const Dots& side_dots_mm,
+           const S& pressure_mpa,
+           const S& apex_mm = not_a_number<S>()) {
     const auto dots = as_view(side_dots_mm);
     if (dots.rows() != Row::rows || dots.cols() != rim_.size() || level > levels_.size() ||
         !is_finite(pressure_mpa) || !(value(pressure_mpa) > 0)) {
@@ -88,7 +107,7 @@ class RimCalibration {
     if (level == levels_.size()) {
       levels_.emplace_back(Row::rows, rim_.size());
     }
-    levels_[level].template add<Row>(dots, pressure_mpa);
+    levels_[level].template add<Row>(dots, pressure_mpa, apex_mm);
     return true;
   }
 
@@ -138,6 +157,13 @@ class RimCalibration {
     };
     noise(options.side_dot_noise_mm, "side_dot_noise_mm");
     noise(options.pressure_noise_mpa, "pressure_noise_mpa");
+    noise(options.apex_noise_mm, "apex_noise_mm");
+    const double height = options.stress_free_height_mm;
+    expects(is_finite(height) && height >= 0 && height <= 2 * as_double(rim_.radius_mm()),
+            of_options, "stress_free_height_mm", height,
+            "in [0, 2 base_radius_mm]; 0: m is not asked for");
+    expects(!(height > 0) || apexes() > 0, owner, "levels with an apex height",
+            static_cast<long long>(apexes()), ">= 1, where m is asked for");
     expects(static_cast<long long>(levels_.size()) >= min_levels, owner, "levels of pressure",
             static_cast<long long>(levels_.size()),
             min_levels > 1 ? ">= 2; with one, fit_modulus" : ">= 1");
@@ -162,10 +188,60 @@ class RimCalibration {
     return distinct;
   }
 
+  Index apexes() const {
+    Index count = 0;
+    for (const auto& level : levels_) {
+      count += level.apex_frames > 0 ? 1 : 0;
+    }
+    return count;
+  }
+
   struct Membrane {
     S length;
     S modulus;
+    S mooney_share = S(0);
   };
+
+  /// How far the apexes lie above those of a rubber, sums over the levels.
+  struct ApexSums {
+    S miss_sq = S(0);
+    S slope_miss = S(0);  ///< slope: of a height by m
+    S slope_sq = S(0);
+    S slope_modulus = S(0);  ///< times the slope by ln(mu t)
+    S slope_frames = S(0);   ///< squares of slopes over frames
+  };
+  ApexSums apex_sums(const RimFitOptions& options, const S& modulus, const S& m) const {
+    const S step = S(1) / S(100);
+    const auto cap = [&](const S& share) {
+      return detail::membrane::InflatedCap<S>(rim_.radius_mm(), S(options.stress_free_height_mm),
+                                              share);
+    };
+    ApexSums sums;
+    for (const auto& level : levels_) {
+      if (level.apex_frames > 0) {
+        const S load = level.pressure_mpa / modulus;
+        const S height = cap(m).apex_mm(load);
+        const S slope = (cap(S(m + step)).apex_mm(load) - height) / step;
+        const S by_modulus = (cap(m).apex_mm(S(load * (S(1) - step))) - height) / step;
+        const S miss = level.apex_mm - height;
+        sums.miss_sq = sums.miss_sq + square(miss);
+        sums.slope_miss = sums.slope_miss + slope * miss;
+        sums.slope_sq = sums.slope_sq + square(slope);
+        sums.slope_modulus = sums.slope_modulus + slope * by_modulus;
+        sums.slope_frames = sums.slope_frames + square(slope) / S(level.apex_frames);
+      }
+    }
+    expects(is_finite(sums.slope_sq) && value(sums.slope_sq) > 0, owner, "load on the pad", modulus,
+            "that of an inflated cap: are pressure and height right?");
+    return sums;
+  }
+
+  /// One step of Gauss and Newton toward m, not out of [0, 1].
+  S next_share(const RimFitOptions& options, const Membrane& found) const {
+    const ApexSums sums = apex_sums(options, found.modulus, found.mooney_share);
+    const S m = found.mooney_share + sums.slope_miss / sums.slope_sq;
+    return m < S(0) ? S(0) : (S(1) < m ? S(1) : m);
+  }
 
   /// Solves; again and again where what the dots tell depends on the solution.
   template <class Solve>
@@ -177,14 +253,19 @@ class RimCalibration {
     S change = S(0);
     // in float the equations leave more than that
     const double least = (std::max)(1e-10, 1e4 * static_cast<double>(epsilon<S>()));
-    if (row_.needs_modulus()) {
+    const bool asks_rubber = options.stress_free_height_mm > 0;
+    if (row_.needs_modulus() || asks_rubber) {
       change = S(1);
       for (int round = 0; round < 200 && as_double(change) > least; ++round) {
-        balance.correct(found.length, found.modulus);
-        const Membrane next = solve();
+        balance.correct(found.length, found.modulus, found.mooney_share);
+        Membrane next = solve();
+        next.mooney_share = found.mooney_share;
+        if (asks_rubber) {
+          next.mooney_share = next_share(options, next);
+        }
         const S longer = next.length / found.length - S(1);
         const S stiffer = next.modulus / found.modulus - S(1);
-        change = norm(Point2<S>{longer, stiffer});
+        change = norm(Point3<S>{longer, stiffer, S(next.mooney_share - found.mooney_share)});
         found = next;
       }
       expects(as_double(change) <= least, owner, "change of the last round", change,
@@ -224,8 +305,23 @@ class RimCalibration {
     fit.length_sd_mm = errors.length_sd_mm;
     fit.modulus_sd_n_per_mm = errors.modulus_sd_n_per_mm;
     fit.correlation = errors.correlation;
+    if (options.stress_free_height_mm > 0) {
+      tell_rubber(options, found.mooney_share, fit);
+    }
     fit.condition = errors.condition;
     return fit;
+  }
+
+  void tell_rubber(const RimFitOptions& options, const S& mooney_share, RimFit<S>& fit) const {
+    using std::sqrt;
+    const ApexSums sums = apex_sums(options, fit.modulus_n_per_mm, mooney_share);
+    fit.mooney_share = mooney_share;
+    fit.apex_residual_mm = sqrt(S(sums.miss_sq / S(static_cast<double>(apexes()))));
+    const S stiffer = fit.modulus_sd_n_per_mm / fit.modulus_n_per_mm;
+    const S by_modulus =
+        is_finite(stiffer) ? S(sums.slope_modulus / sums.slope_sq * stiffer) : S(0);
+    const S by_apex = S(options.apex_noise_mm) * sqrt(sums.slope_frames) / sums.slope_sq;
+    fit.mooney_share_sd = sqrt(S(square(by_modulus) + square(by_apex)));
   }
 
   detail::membrane::CalibratedRim<S> rim_;

@@ -277,6 +277,7 @@ StickTest stick_test_for(Index dots,
   expects(is_finite(compared_px) && compared_px > 0, owner, "noise of an averaged dot", compared_px,
           "finite and > 0");
   StickTest test;
+  test.free_frames = 0;  // these are measured already
   test.reference_px = reference_px;
   test.slip_px = slip_threshold_for(compared_px * motion_noise_factor(motion), options.false_slip);
   test.store_px = slip_threshold_for(placed_px, false_slip_of_each(options.false_motion, dots));

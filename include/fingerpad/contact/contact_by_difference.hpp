@@ -93,7 +93,8 @@ class ContactByDifference {
           opening_(contact.layout_.cell_rows(), contact.layout_.cell_cols(), 1),
           closing_(contact.layout_.cell_rows(), contact.layout_.cell_cols(), contact.half_gap()),
           mask_(contact.layout_.cell_rows(), contact.layout_.cell_cols(), contact.pad()),
-          regions_({contact.layout_.cell_rows(), contact.layout_.cell_cols()}) {}
+          regions_({contact.layout_.cell_rows(), contact.layout_.cell_cols()}),
+          line_(static_cast<std::size_t>(contact.layout_.cell_cols() * contact.layout_.cell_px)) {}
 
     /// The difference from the free pad in the last frame, cell by cell: root mean square over the
     /// channels, as a share of the free brightness; NaN where it is unknown. The threshold is for
@@ -109,6 +110,7 @@ class ContactByDifference {
     detail::CellMorphology<S> closing_;
     detail::PaddedCells<S> mask_;
     detail::Regions regions_;
+    std::vector<Touch> line_;  // of the mask
   };
   Workspace workspace() const { return Workspace(*this); }
 
@@ -300,55 +302,77 @@ class ContactByDifference {
     });
   }
 
-  template <class Cell>
-  Cell cell_of(const Workspace& w, Index i, Index j) const {
-    const bool touched = S(0) < w.mask_(i, j);
-    if constexpr (std::is_same_v<Cell, Touch>) {
-      const Touch other = is_finite(w.difference_.length()(i, j)) ? Touch::none : Touch::unknown;
-      return touched ? Touch::contact : other;
-    } else {
-      return static_cast<Cell>(touched ? 255 : 0);
-    }
-  }
-
+  /// A row of cells as a row of pixels in the workspace, then that to each of its rows of pixels.
   template <class To>
-  void write(const Workspace& w, const To& to) const {
+  void write(Workspace& w, const To& to) const {
+    using Cell = cell_t<To>;
     const Index size = layout_.cell_px;
-    for_cells([&](Index i, Index j) {
-      const auto cell = cell_of<cell_t<To>>(w, i, j);
-      const Index last_row = (std::min)((i + 1) * size, rows());
-      const Index last_col = (std::min)((j + 1) * size, cols());
-      for (Index row = i * size; row < last_row; ++row) {
-        for (Index col = j * size; col < last_col; ++col) {
-          to(row, col) = cell;
+    for (Index i = 0; i < layout_.cell_rows(); ++i) {
+      for (Index j = 0; j < layout_.cell_cols(); ++j) {
+        const Touch other = is_finite(w.difference_.length()(i, j)) ? Touch::none : Touch::unknown;
+        const Touch cell = S(0) < w.mask_(i, j) ? Touch::contact : other;
+        for (Index col = j * size; col < (j + 1) * size; ++col) {
+          w.line_[static_cast<std::size_t>(col)] = cell;
         }
       }
-    });
+      for (Index row = i * size; row < (std::min)((i + 1) * size, rows()); ++row) {
+        for (Index col = 0; col < cols(); ++col) {
+          const Touch touch = w.line_[static_cast<std::size_t>(col)];
+          if constexpr (std::is_same_v<Cell, Touch>) {
+            to(row, col) = touch;
+          } else {
+            to(row, col) = static_cast<Cell>(touch == Touch::contact ? 255 : 0);
+          }
+        }
+      }
+    }
   }
 
   void measure(const Workspace& w, ContactResult& result) const {
     double x = 0;
     double y = 0;
-    for_cells([&](Index i, Index j) {
-      const Index first_row = i * layout_.cell_px;
-      const Index first_col = j * layout_.cell_px;
+    const auto add = [&](Index first_row, Index width, Index cells, Index places) {
       const Index height = (std::min)(layout_.cell_px, rows() - first_row);
-      const Index width = (std::min)(layout_.cell_px, cols() - first_col);
-      const double pixels = static_cast<double>(height * width);
-      if (S(0) < w.mask_(i, j)) {
-        result.contact_px += height * width;
-        x += pixels * (static_cast<double>(first_col) + static_cast<double>(width - 1) / 2);
-        y += pixels * (static_cast<double>(first_row) + static_cast<double>(height - 1) / 2);
-      } else if (!is_finite(w.difference_.length()(i, j))) {
-        result.unknown_px += height * width;
+      const double pixels = static_cast<double>(cells * height * width);
+      result.contact_px += cells * height * width;
+      // `places`: sum of the cells' first columns
+      x += static_cast<double>(places * height * width) +
+           pixels * static_cast<double>(width - 1) / 2;
+      y += pixels * (static_cast<double>(first_row) + static_cast<double>(height - 1) / 2);
+    };
+    const Index size = layout_.cell_px;
+    const Index last = layout_.cell_cols() - 1;  // may be narrower
+    for (Index i = 0; i < layout_.cell_rows(); ++i) {
+      const S* mask = w.mask_.row(i);
+      Index cells = 0;
+      Index places = 0;
+      for (Index j = 0; j < last; ++j) {
+        const Index touches = S(0) < mask[j] ? 1 : 0;
+        cells += touches;
+        places += touches * j;
       }
-    });
+      add(i * size, size, cells, places * size);
+      const Index touches = S(0) < mask[last] ? 1 : 0;
+      add(i * size, cols() - last * size, touches, touches * last * size);
+    }
+    result.unknown_px = unknown_px(w);
     if (result.in_contact()) {
       const double count = static_cast<double>(result.contact_px);
       result.area_mm2 = count * test_.mm_per_px * test_.mm_per_px;
       result.center_mm.x = (x / count - static_cast<double>(cols() - 1) / 2) * test_.mm_per_px;
       result.center_mm.y = (y / count - static_cast<double>(rows() - 1) / 2) * test_.mm_per_px;
     }
+  }
+
+  Index unknown_px(const Workspace& w) const {
+    const Index size = layout_.cell_px;
+    Index pixels = 0;
+    for_cells([&](Index i, Index j) {
+      if (!is_finite(w.difference_.length()(i, j)) && !(S(0) < w.mask_(i, j))) {
+        pixels += (std::min)(size, rows() - i * size) * (std::min)(size, cols() - j * size);
+      }
+    });
+    return pixels;
   }
 
   DifferenceTest test_;

@@ -20,6 +20,7 @@
 #include "fingerpad/core/dots.hpp"
 #include "fingerpad/core/scalar.hpp"
 #include "fingerpad/math/detail/small_matrices.hpp"
+#include "fingerpad/math/detail/zeros.hpp"
 
 namespace fingerpad {
 inline namespace v0 {
@@ -43,7 +44,7 @@ struct Quadric {
   Point3<S> u = detail::missing_point<S>();          ///< axes of the frame; w = u x v, toward the
   Point3<S> v = detail::missing_point<S>();          ///< object
   Point3<S> w = detail::missing_point<S>();
-  std::array<S, 6> coefficients{};  ///< a, b, c, d, e, f; mm, -, -, 1/mm
+  std::array<S, 6> coefficients = detail::zeros<S, 6>();  ///< a, b, c, d, e, f; mm, -, -, 1/mm
   S g_per_mm = not_a_number<S>();
 
   S mean_curvature_per_mm() const { return S(S(0.5) * (curvature_1_per_mm + curvature_2_per_mm)); }

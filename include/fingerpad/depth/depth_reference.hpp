@@ -19,6 +19,7 @@
 #include "fingerpad/core/grid.hpp"
 #include "fingerpad/core/scalar.hpp"
 #include "fingerpad/depth/absorption.hpp"
+#include "fingerpad/math/detail/small_matrices.hpp"
 
 namespace fingerpad {
 inline namespace v0 {
@@ -51,7 +52,8 @@ constexpr GreyScale grey_scale_of() {
 template <scalar S, int Degree = 3>
 struct RadialScattering {
   static constexpr bool is_radial = true;
-  std::array<S, static_cast<std::size_t>(Degree) + 1> coefficient = {};  ///< of 1, v, v^2, ...
+  std::array<S, static_cast<std::size_t>(Degree) + 1> coefficient =
+      detail::zeros<S, static_cast<std::size_t>(Degree) + 1>();  ///< of 1, v, v^2, ...
   S rho_max_mm = S(1);  ///< farthest pixel of the fit, on the plate
 
   S at(const S& rho_sq_mm2) const {
@@ -65,6 +67,8 @@ struct RadialScattering {
   S operator()(Index /*row*/, Index /*col*/, const S& rho_sq_mm2) const { return at(rho_sq_mm2); }
   /// The same in another part of the image.
   RadialScattering cropped(Index, Index, Index, Index) const { return *this; }
+  /// The same in an image of larger pixels.
+  RadialScattering sampled(Index, Index, int) const { return *this; }
 };
 
 /// The free pad, as the depth estimator needs it. The type remembers the policy of heights that g
@@ -88,65 +92,54 @@ struct DepthReference {
 
 namespace detail {
 
-/// Solves the symmetric positive definite system a x = b in place of b by Cholesky's method; false
-/// where a pivot is lost to roundoff, that is, where the data do not determine x.
-template <std::size_t N>
-bool solve_positive_definite(std::array<std::array<double, N>, N>& a, std::array<double, N>& b) {
-  for (std::size_t j = 0; j < N; ++j) {
-    const double before = a[j][j];
-    for (std::size_t k = 0; k < j; ++k) {
-      a[j][j] -= a[j][k] * a[j][k];
-    }
-    if (!(a[j][j] > 1e3 * epsilon<double>() * before)) {
-      return false;
-    }
-    a[j][j] = std::sqrt(a[j][j]);
-    for (std::size_t i = j + 1; i < N; ++i) {
-      for (std::size_t k = 0; k < j; ++k) {
-        a[i][j] -= a[i][k] * a[j][k];
-      }
-      a[i][j] /= a[j][j];
-    }
+/// A cell of a grid in the scalar C; integers and floats by way of double, which holds them all.
+template <scalar C, class Cell>
+C in_scalar(const Cell& cell) {
+  if constexpr (std::is_floating_point_v<C>) {
+    return static_cast<C>(cell);
+  } else if constexpr (std::is_arithmetic_v<Cell>) {
+    return C(static_cast<double>(cell));
+  } else {
+    return C(cell);
   }
-  for (std::size_t i = 0; i < N; ++i) {
-    for (std::size_t k = 0; k < i; ++k) {
-      b[i] -= a[i][k] * b[k];
-    }
-    b[i] /= a[i][i];
+}
+
+/// A cell without its derivatives.
+template <class Cell>
+double plain(const Cell& cell) {
+  if constexpr (std::is_arithmetic_v<Cell>) {
+    return static_cast<double>(cell);
+  } else {
+    return static_cast<double>(value(cell));
   }
-  for (std::size_t i = N; i-- > 0;) {
-    for (std::size_t k = i + 1; k < N; ++k) {
-      b[i] -= a[k][i] * b[k];
-    }
-    b[i] /= a[i][i];
-  }
-  return true;
 }
 
 /// Calls visit(row, col, rho_sq, known, scattered) for every usable pixel of the reference, where
 /// the depth equation reads known = g * scattered.
-template <class Heights, class Red, class Green, class Depth, class Visit>
-void visit_reference(const Camera<double>& camera,
-                     const Absorption<double>& fluid,
+template <class Heights, scalar C, class Red, class Green, class Depth, class Visit>
+void visit_reference(const Camera<C>& camera,
+                     const Absorption<C>& fluid,
                      const GreyScale& scale,
                      const Red& red,
                      const Green& green,
                      const Depth& depth_mm,
                      Visit&& visit) {
-  const double delta = fluid.c_green_per_mm - fluid.c_red_per_mm;
+  using std::exp;
+  const C delta = fluid.c_green_per_mm - fluid.c_red_per_mm;
   const auto good = [&](double x) { return x > scale.dark && x < scale.saturated; };
   for (Index i = 0; i < depth_mm.rows(); ++i) {
     for (Index j = 0; j < depth_mm.cols(); ++j) {
-      const double l = static_cast<double>(depth_mm(i, j));
-      const double r = static_cast<double>(red(i, j));
-      const double b = static_cast<double>(green(i, j));
-      if (!(l > 0 && l <= fluid.max_depth_mm) || !good(r) || !good(b)) {
+      const C l = in_scalar<C>(depth_mm(i, j));
+      const C r = in_scalar<C>(red(i, j));
+      const C b = in_scalar<C>(green(i, j));
+      if (!(value(l) > 0 && value(l) <= value(fluid.max_depth_mm)) || !good(plain(red(i, j))) ||
+          !good(plain(green(i, j)))) {
         continue;
       }
-      const auto ray = ray_at_pixel(camera, static_cast<double>(i), static_cast<double>(j));
+      const auto ray = ray_at_pixel(camera, C(static_cast<double>(i)), C(static_cast<double>(j)));
       const auto pencil = pencil_of<Heights>(camera, ray);
-      const double membrane = b * std::exp(delta * pencil.path_factor * l);
-      const double known = (fluid.kappa * r - membrane) / scale.units_per_level;
+      const C membrane = b * exp(C(delta * pencil.path_factor * l));
+      const C known = (fluid.kappa * r - membrane) / C(scale.units_per_level);
       visit(i, j, square(ray.plate_rho_mm), known, scattered_light(l, fluid.c_red_per_mm, pencil));
     }
   }
@@ -154,43 +147,50 @@ void visit_reference(const Camera<double>& camera,
 
 /// Least squares of known = g(rho) scattered over the powers of v; in double, the cubic that is
 /// needed is far from losing digits. Refuses data that do not determine g.
-template <scalar S, int Degree, class Heights, class VisitAll>
+template <scalar C, scalar S, int Degree, class Heights, class VisitAll>
 void fit_scattering(const VisitAll& visit_all,
                     DepthReference<S, RadialScattering<S, Degree>, Heights>& reference) {
+  using std::sqrt;
   constexpr auto n = static_cast<std::size_t>(Degree + 1);
-  double rho_sq_max = 0;
-  visit_all([&](Index, Index, double rho_sq, double, double) {
-    rho_sq_max = (std::max)(rho_sq_max, rho_sq);
+  C rho_sq_max = C(0);
+  visit_all([&](Index, Index, const C& rho_sq, const C&, const C&) {
+    rho_sq_max = value(rho_sq_max) < value(rho_sq) ? rho_sq : rho_sq_max;
   });
-  std::array<std::array<double, n>, n> normal = {};
-  std::array<double, n> g = {};
-  double known_sq = 0;
-  visit_all([&](Index, Index, double rho_sq, double known, double scattered) {
-    std::array<double, n> term = {scattered};
+  std::array<C, n> projected;
+  projected.fill(C(0));
+  SmallMatrix<C, n> normal;
+  normal.fill(projected);
+  C known_sq = C(0);
+  visit_all([&](Index, Index, const C& rho_sq, const C& known, const C& scattered) {
+    std::array<C, n> term;
+    term[0] = scattered;
     for (std::size_t a = 1; a < n; ++a) {
       term[a] = term[a - 1] * rho_sq / rho_sq_max;
     }
     for (std::size_t a = 0; a < n; ++a) {
       for (std::size_t b = 0; b < n; ++b) {
-        normal[a][b] += term[a] * term[b];
+        normal[a][b] = normal[a][b] + term[a] * term[b];
       }
-      g[a] += term[a] * known;
+      projected[a] = projected[a] + term[a] * known;
     }
-    known_sq += square(known);
+    known_sq = known_sq + square(known);
     ++reference.pixels_used;
   });
-  const std::array<double, n> projected = g;
-  expects(reference.pixels_used > Degree && solve_positive_definite(normal, g), "fit_reference",
+  const NormalEquations<C, n> equations(normal, static_cast<double>(1000 * epsilon<C>()));
+  expects(reference.pixels_used > Degree && equations.good, "fit_reference",
           "pixels with a known depth", static_cast<long long>(reference.pixels_used),
           "enough, and far enough apart, to determine the scattering over the radius");
-  double explained_sq = 0;
+  const std::array<C, n> g = equations.solve(projected);
+  C explained_sq = C(0);
   for (std::size_t a = 0; a < n; ++a) {
-    explained_sq += projected[a] * g[a];
+    explained_sq = explained_sq + projected[a] * g[a];
     reference.scattering.coefficient[a] = S(g[a]);
   }
-  reference.scattering.rho_max_mm = S(std::sqrt(rho_sq_max));
-  const double left_sq = (std::max)(known_sq - explained_sq, 0.0);
-  reference.residual_rms = S(std::sqrt(left_sq / static_cast<double>(reference.pixels_used)));
+  const C left_sq = known_sq - explained_sq;
+  reference.scattering.rho_max_mm = S(C(sqrt(rho_sq_max)));
+  const C count = C(static_cast<double>(reference.pixels_used));
+  // The square root has no derivative at 0, and roundoff may lie below it.
+  reference.residual_rms = value(left_sq) > 0 ? S(C(sqrt(C(left_sq / count)))) : S(0);
 }
 
 /// The free pad's shape: its deepest point within range, its pixels, how many of them lie at depth
@@ -204,15 +204,17 @@ struct FreePadShape {
   double too_deep = 0;
 };
 
-template <class Depth>
-FreePadShape shape_of_free_pad(const Camera<double>& camera,
+template <scalar C, class Depth>
+FreePadShape shape_of_free_pad(const Camera<C>& camera,
                                double max_depth_mm,
                                const Depth& depth_mm) {
   FreePadShape shape;
+  const double center_x_px = plain(camera.center_x_px);
+  const double center_y_px = plain(camera.center_y_px);
   const auto each_pixel = [&](auto&& visit) {
     for (Index i = 0; i < depth_mm.rows(); ++i) {
       for (Index j = 0; j < depth_mm.cols(); ++j) {
-        const double l = static_cast<double>(depth_mm(i, j));
+        const double l = plain(depth_mm(i, j));
         if (is_finite(l) && l >= 0) {
           visit(i, j, l);
         }
@@ -226,8 +228,8 @@ FreePadShape shape_of_free_pad(const Camera<double>& camera,
     shape.deepest_mm = l > max_depth_mm ? shape.deepest_mm : (std::max)(shape.deepest_mm, l);
     shape.pixels += 1;
     shape.at_zero += l == 0 ? 1 : 0;
-    sum_x += static_cast<double>(j) - camera.center_x_px;
-    sum_y += static_cast<double>(i) - camera.center_y_px;
+    sum_x += static_cast<double>(j) - center_x_px;
+    sum_y += static_cast<double>(i) - center_y_px;
     reaches_border =
         reaches_border || i == 0 || j == 0 || i + 1 == depth_mm.rows() || j + 1 == depth_mm.cols();
   });
@@ -240,8 +242,8 @@ FreePadShape shape_of_free_pad(const Camera<double>& camera,
   double middle = 0;
   double deep = 0;
   each_pixel([&](Index i, Index j, double l) {
-    const double x = static_cast<double>(j) - sum_x / shape.pixels - camera.center_x_px;
-    const double y = static_cast<double>(i) - sum_y / shape.pixels - camera.center_y_px;
+    const double x = static_cast<double>(j) - sum_x / shape.pixels - center_x_px;
+    const double y = static_cast<double>(i) - sum_y / shape.pixels - center_y_px;
     const bool in_middle = square(x) + square(y) <= radius_sq / 16;
     middle += in_middle ? 1 : 0;
     deep += in_middle && l > max_depth_mm ? 1 : 0;
@@ -268,19 +270,18 @@ inline void expects_free_pad(const FreePadShape& shape, double max_depth_mm) {
 
 /// Refuses scatterings that no fluid has: g is that of one fluid, and a lens darkens toward the rim
 /// by less than half. Noise of the three grey levels that a poor camera has leaves a residual of 5.
-template <scalar S, int Degree, class Heights>
-void expects_scattering(const Camera<double>& camera,
+template <scalar C, scalar S, int Degree, class Heights>
+void expects_scattering(const Camera<C>& camera,
                         const DepthReference<S, RadialScattering<S, Degree>, Heights>& reference) {
   constexpr const char* owner = "fit_reference";
-  const auto residual = static_cast<double>(value(reference.residual_rms));
+  const double residual = plain(reference.residual_rms);
   double least = (std::numeric_limits<double>::infinity)();
   double most = -least;
   for (Index i = 0; i < reference.rows; ++i) {
     for (Index j = 0; j < reference.cols; ++j) {
       if (reference.in_pad(i, j)) {
-        const auto ray = ray_at_pixel(camera, static_cast<double>(i), static_cast<double>(j));
-        const auto g =
-            static_cast<double>(value(reference.scattering.at(S(square(ray.plate_rho_mm)))));
+        const auto ray = ray_at_pixel(camera, C(static_cast<double>(i)), C(static_cast<double>(j)));
+        const double g = plain(reference.scattering.at(S(square(ray.plate_rho_mm))));
         least = (std::min)(least, g);
         most = (std::max)(most, g);
       }
@@ -302,9 +303,9 @@ inline double rim_depth_mm(double deepest_mm) {
 }
 
 /// A reference without its scattering: the free pad's depth. Refuses what has no meaning.
-template <class Reference, class S, class Red, class Green, class Depth>
-Reference free_pad(const Camera<double>& camera,
-                   const Absorption<double>& fluid,
+template <class Reference, scalar S, scalar C, class Red, class Green, class Depth>
+Reference free_pad(const Camera<C>& camera,
+                   const Absorption<C>& fluid,
                    const Red& red,
                    const Green& green,
                    const Depth& depth_mm,
@@ -319,19 +320,20 @@ Reference free_pad(const Camera<double>& camera,
   reference.cols = depth_mm.cols();
   for (Index i = 0; i < reference.rows; ++i) {
     for (Index j = 0; j < reference.cols; ++j) {
-      const double l = static_cast<double>(depth_mm(i, j));
-      const bool inside = l >= 0 && l <= fluid.max_depth_mm;
+      const C l = in_scalar<C>(depth_mm(i, j));
+      const bool inside = value(l) >= 0 && value(l) <= value(fluid.max_depth_mm);
       reference.depth_mm.push_back(inside ? S(l) : not_a_number<S>());
     }
   }
-  const FreePadShape shape = shape_of_free_pad(camera, fluid.max_depth_mm, depth_mm);
-  expects_free_pad(shape, fluid.max_depth_mm);
+  const double max_depth_mm = plain(fluid.max_depth_mm);
+  const FreePadShape shape = shape_of_free_pad(camera, max_depth_mm, depth_mm);
+  expects_free_pad(shape, max_depth_mm);
   double light = 0;
   double count = 0;
   for (Index i = 0; i < reference.rows; ++i) {
     for (Index j = 0; j < reference.cols; ++j) {
-      const double l = static_cast<double>(depth_mm(i, j));
-      const double green_here = static_cast<double>(green(i, j));
+      const double l = plain(depth_mm(i, j));
+      const double green_here = plain(green(i, j));
       if (l >= 0 && l <= rim_depth_mm(shape.deepest_mm) && green_here > scale.dark &&
           green_here < scale.saturated) {
         light += green_here / scale.units_per_level;
@@ -348,11 +350,17 @@ Reference free_pad(const Camera<double>& camera,
 /// The reference from one frame of the free pad (an average of many frames is better: store it as
 /// 16 bit or float) and its depth along each pixel's ray in mm, NaN outside the pad. Refuses grids
 /// of different sizes, data that do not determine g, and what cannot be a free pad, with the likely
-/// mistake (parameter_error). O(rows cols); allocates.
-template <class Heights = AstigmaticHeights, scalar S = float, grid Red, grid Green, grid Depth>
+/// mistake (parameter_error). With a camera and a fluid of dual numbers, and S one of them, g
+/// carries its derivatives by them. O(rows cols); allocates.
+template <class Heights = AstigmaticHeights,
+          scalar S = float,
+          scalar C,
+          grid Red,
+          grid Green,
+          grid Depth>
 DepthReference<S, RadialScattering<S>, Heights> fit_reference(
-    const Camera<double>& camera,
-    const Absorption<double>& fluid,
+    const Camera<C>& camera,
+    const Absorption<C>& fluid,
     const Red& red,
     const Green& green,
     const Depth& depth_mm,
@@ -365,7 +373,7 @@ DepthReference<S, RadialScattering<S>, Heights> fit_reference(
     detail::visit_reference<Heights>(camera, fluid, scale, as_view(red), as_view(green), depth,
                                      visitor);
   };
-  detail::fit_scattering(visit, reference);
+  detail::fit_scattering<C>(visit, reference);
   detail::expects_scattering(camera, reference);
   return reference;
 }

@@ -10,6 +10,7 @@
 // near the rim, where the window is cut, also by slope. So what is averaged is not the colours but
 // their deviation from what the free pad's shape predicts: exact where the pad has that shape, and
 // nearly so elsewhere. See docs/depth/depth.md for the errors.
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
@@ -36,11 +37,15 @@ inline int nearest_odd(double x) {
 struct BiasFreeMean {
   static constexpr bool anchored = true;
   int window_px = 29;  ///< odd, 3..109
+  int step = 1;        ///< pixels from one sample to the next, for sampled frames
 
+  /// In samples, at least 3.
   std::array<int, 2> windows_px() const {
     expects(window_px >= 3 && window_px <= 109 && window_px % 2 == 1, "BiasFreeMean", "window_px",
             static_cast<long long>(window_px), "odd, 3..109");
-    return {detail::nearest_odd(1.4 * window_px), detail::nearest_odd(2.3 * window_px)};
+    expects(step >= 1, "BiasFreeMean", "step", step, ">= 1");
+    const int inner = (std::max)(3, detail::nearest_odd(1.4 * window_px / step));
+    return {inner, (std::max)(inner + 2, detail::nearest_odd(2.3 * window_px / step))};
   }
 };
 
@@ -49,8 +54,14 @@ struct BiasFreeMean {
 struct AnchoredMean {
   static constexpr bool anchored = true;
   int window_px = 29;  ///< odd, 3..255
+  int step = 1;        ///< pixels from one sample to the next, for sampled frames
 
-  std::array<int, 1> windows_px() const { return {window_px}; }
+  /// In samples, at least 3.
+  std::array<int, 1> windows_px() const {
+    expects(step >= 1, "AnchoredMean", "step", step, ">= 1");
+    const int nearest = detail::nearest_odd(static_cast<double>(window_px) / step);
+    return {step == 1 ? window_px : (std::max)(3, nearest)};
+  }
 };
 
 /// Each pixel for itself. Take this for frames without noise, as of a renderer.

@@ -10,7 +10,7 @@
 
 #include "fingerpad/core/expects.hpp"
 #include "fingerpad/core/scalar.hpp"
-#include "fingerpad/force/detail/zeros.hpp"
+#include "fingerpad/math/detail/zeros.hpp"
 
 namespace fingerpad {
 inline namespace v0 {

@@ -1,8 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// Ways to the membrane's forces on the rim that need no unknown inside: all columns together, or
-// the material alone.
+// The membrane's forces on the rim without an unknown inside: all columns together.
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -158,38 +157,8 @@ struct BalancedRim {
   }
 };
 
-/// The material's modulus is known (calibrate/rim.hpp): the pulls are forces. Needs no shape.
-struct KnownModulus {
-  static constexpr auto magnitude = detail::membrane::Magnitude::given;
-  static constexpr bool finds_tensions = false;
-  template <scalar S>
-  struct Work {
-    Work(const KnownModulus&, Index, Index) {}
-  };
-
-  double modulus_n_per_mm = 0.5;  ///< mu t: shear modulus times thickness, > 0
-
-  template <bool Magnitudes, scalar S>
-  bool solve(const detail::membrane::Segments<S>&,
-             const detail::membrane::Compartments<S>&,
-             const std::vector<Point3<S>>& pulls,
-             const S&,
-             Work<S>&,
-             detail::membrane::Tensions<S>& tensions) const {
-    static_assert(Magnitudes, "a direction alone has no magnitude: use ClampedRim");
-    for (std::size_t k = 0; k < pulls.size(); ++k) {
-      tensions.rim[k] = S(modulus_n_per_mm) * pulls[k];
-    }
-    return true;
-  }
-};
-
 /// Refuses what has no meaning (parameter_error).
 inline void expects_valid(const BalancedRim&) {}
-inline void expects_valid(const KnownModulus& given) {
-  expects(is_finite(given.modulus_n_per_mm) && given.modulus_n_per_mm > 0, "KnownModulus",
-          "modulus_n_per_mm", given.modulus_n_per_mm, "finite and > 0");
-}
 
 }  // namespace v0
 }  // namespace fingerpad

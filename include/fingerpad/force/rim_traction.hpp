@@ -12,6 +12,12 @@
 //   T / (mu t) = dW / dd = s e + (lambda - lambda^-3) d_n / lambda.
 // A little stretch gives little normal tension, but shear is resisted in full: T leans further
 // sideways than d, by lambda^4 / (lambda^4 - 1).
+//
+// Other rubbers resist shear less where they are stretched. With the Mooney-Rivlin energy, C1 of it
+// as above and C2 of the second invariant, mu = 2 (C1 + C2) and m = C2 / (C1 + C2),
+//   T / (mu t) = (1 - m + m lambda^-2) s e + (lambda - (1 + m s^2) lambda^-3) d_n / lambda.
+// Without shear m makes no difference: a free pad's rim does not tell it, its apex does
+// (calibrate/rim.hpp).
 #include <cmath>
 #include <cstdint>
 #include <optional>
@@ -53,22 +59,27 @@ struct RimPoint {
 
 }  // namespace detail::membrane
 
-/// T / (mu t) of a clamped neo-Hookean rim; `along` is d, `tangent` the unit vector e. lambda > 0.
+/// T / (mu t) of a clamped rim; `along` is d, `tangent` the unit vector e, lambda > 0;
+/// `mooney_share` is m.
 template <scalar S>
-Point3<S> clamped_rim_pull(const Point3<S>& along, const Point3<S>& tangent) {
+Point3<S> clamped_rim_pull(const Point3<S>& along,
+                           const Point3<S>& tangent,
+                           const S& mooney_share = S(0)) {
   const S shear = dot(along, tangent);
   const Point3<S> across = along + S(-shear) * tangent;
   const S lambda_sq = squared_norm(across);
-  // (lambda - lambda^-3) / lambda
-  const S share = S(1) - S(1) / (lambda_sq * lambda_sq);
-  return shear * tangent + share * across;
+  const S inverse = S(1) / lambda_sq;
+  const S stiffness = S(1) - mooney_share * (S(1) - inverse);
+  const S share = S(1) - (S(1) + mooney_share * shear * shear) * inverse * inverse;
+  return stiffness * shear * tangent + share * across;
 }
 
-/// The traction of a clamped neo-Hookean rim.
+/// The traction of a clamped rim of rubber.
 struct ClampedRim {
   static constexpr bool tells_magnitude = true;
 
   double min_stretch = 1.005;  ///< lambda; less does not tell a direction, in (1, 2]
+  double mooney_share = 0;     ///< m = C2 / (C1 + C2), in [0, 1]; 0: neo-Hookean
 
   template <scalar S>
   detail::membrane::RimPull<S> pull(const Point3<S>& along, const Point3<S>& tangent) const {
@@ -79,21 +90,26 @@ struct ClampedRim {
       using enum detail::membrane::RimPullStatus;
       return {value(lambda_sq) < 1 ? slack : unstretched, {S(0), S(0), S(0)}};
     }
-    return {detail::membrane::RimPullStatus::ok, clamped_rim_pull(along, tangent)};
+    return {detail::membrane::RimPullStatus::ok, clamped_rim_pull(along, tangent, S(mooney_share))};
   }
 
   template <scalar S>
   Point3<S> change_of_pull(const Point3<S>& along,
                            const Point3<S>& tangent,
                            const Point3<S>& change) const {
-    const Point3<S> across = along + S(-dot(along, tangent)) * tangent;
-    const S shear = dot(change, tangent);
-    const Point3<S> across_change = change + S(-shear) * tangent;
-    const S lambda_sq = squared_norm(across);
-    const S per = S(1) / (lambda_sq * lambda_sq);
-    // of (1 - lambda^-4) d_n
-    const S stretching = S(4) * per / lambda_sq * dot(across, change);
-    return shear * tangent + S(S(1) - per) * across_change + stretching * across;
+    const S m = S(mooney_share);
+    const S shear = dot(along, tangent);
+    const Point3<S> across = along + S(-shear) * tangent;
+    const S shear_change = dot(change, tangent);
+    const Point3<S> across_change = change + S(-shear_change) * tangent;
+    const S inverse = S(1) / squared_norm(across);
+    const S stretching = inverse * dot(across, change);  // of lambda, relative
+    const S along_rim =
+        (S(1) - m * (S(1) - inverse)) * shear_change - S(2) * m * inverse * stretching * shear;
+    const S per = (S(1) + m * shear * shear) * inverse * inverse;
+    const S per_change =
+        S(2) * m * shear * shear_change * inverse * inverse - S(4) * per * stretching;
+    return along_rim * tangent + S(S(1) - per) * across_change + S(-per_change) * across;
   }
 };
 
@@ -101,17 +117,33 @@ struct ClampedRim {
 inline void expects_valid(const ClampedRim& rim) {
   expects(rim.min_stretch > 1 && rim.min_stretch <= 2, "ClampedRim", "min_stretch", rim.min_stretch,
           "in (1, 2]");
+  expects(rim.mooney_share >= 0 && rim.mooney_share <= 1, "ClampedRim", "mooney_share",
+          rim.mooney_share, "in [0, 1]");
 }
+
+namespace detail::membrane {
+/// m of a law; one that has none is taken for neo-Hookean.
+template <scalar S, class Law>
+S mooney_share_of(const Law& law) {
+  if constexpr (requires { law.mooney_share; }) {
+    return S(law.mooney_share);
+  } else {
+    return S(0);
+  }
+}
+}  // namespace detail::membrane
 
 /// One row of side dots: d is the chord from the rim to the dot, over its stress-free length. With
 /// the inclination of the stress-free membrane it is carried from the middle of the chord to the
 /// rim by the balance of the membrane there: how fast the chord's stretch, inclination and shear
 /// change along it. With s the arc from the rim, a its radius, phi the inclination (phi_0 without
-/// stress), and the tensions per mu t T1 = lambda - lambda^-3 and T2 = (1 - lambda^-2) / lambda:
+/// stress), and the tensions per mu t T1 = lambda - lambda^-3 and
+/// T2 = (1 - m + m lambda^2) (1 - lambda^-2) / lambda:
 ///   inclination  kappa_1 = (p / (mu t) - T2 sin(phi) / a) / T1          (normal balance)
 ///   tension      dT1/ds = (T1 - T2) cos(phi) / a                        (balance along the line)
 ///   hoop stretch dlambda_2/dS = (cos(phi_0) - lambda cos(phi)) / a      (geometry)
-///   shear        d(r rho P_e)/dS = 0, chord = s (1 + cos(phi_0) L / (2 a))  (torque)
+///   shear        d(r rho P_e)/dS = 0, so with P_e = g s, g = 1 - m + m (lambda lambda_2)^-2,
+///                chord = s (1 + (cos(phi_0) / a - g' / g) L / 2)            (torque)
 /// What changes along the rim is left out.
 struct OneRow {
   static constexpr Index rows = 1;
@@ -128,16 +160,20 @@ struct OneRow {
   template <scalar S>
   Point3<S> along(const detail::membrane::RimPoint<S>& rim,
                   const Point3<S>* side_dots,
-                  const S& load_per_mm) const {
+                  const S& load_per_mm,
+                  const S& mooney_share = S(0)) const {
     const Point3<S> chord = (side_dots[0] - rim.border) / rim.length_mm;
-    return needs_modulus() && !(value(load_per_mm) == 0) ? at_rim(rim, chord, load_per_mm) : chord;
+    return needs_modulus() && !(value(load_per_mm) == 0)
+               ? at_rim(rim, chord, load_per_mm, mooney_share)
+               : chord;
   }
 
  private:
   template <scalar S>
   Point3<S> at_rim(const detail::membrane::RimPoint<S>& rim,
                    const Point3<S>& chord,
-                   const S& load_per_mm) const {
+                   const S& load_per_mm,
+                   const S& m) const {
     using std::cos;
     using std::sin;
     using std::sqrt;
@@ -156,16 +192,20 @@ struct OneRow {
     const S inverse = S(1) / lambda;
     const S inverse_cubed = inverse * inverse * inverse;
     const S t1 = lambda - inverse_cubed;
-    const S t2 = inverse - inverse_cubed;
+    const S t2 = (inverse - inverse_cubed) * (S(1) - m + m * lambda * lambda);
 
     const S turn = (load_per_mm - t2 * sine / rim.radius_mm) / t1 * lambda * half;
     const S tension_rise = lambda * (t1 - t2) * cosine / rim.radius_mm;
     const S hoop_rise = (cosine_free - lambda * cosine) / rim.radius_mm;
-    // T1 = lambda / lambda_2 - (lambda lambda_2)^-3
-    const S stretch_rise = (tension_rise - (S(3) * inverse_cubed - lambda) * hoop_rise) /
-                           (S(1) + S(3) * inverse_cubed * inverse);
+    // T1 = (lambda / lambda_2 - (lambda lambda_2)^-3) (1 - m + m lambda_2^2)
+    const S per_hoop = S(3) * inverse_cubed - lambda + S(2) * m * t1;
+    const S stretch_rise =
+        (tension_rise - per_hoop * hoop_rise) / (S(1) + S(3) * inverse_cubed * inverse);
     const S at_rim = lambda - stretch_rise * half;
-    const S shear_at_rim = shear * (S(1) - cosine_free * half / rim.radius_mm);
+    const S area_rise = stretch_rise + lambda * hoop_rise;
+    const S softening =
+        S(2) * m * inverse_cubed * area_rise / (S(1) - m + m * inverse * inverse);  // -g' / g
+    const S shear_at_rim = shear * (S(1) - (cosine_free / rim.radius_mm + softening) * half);
     const bool plausible = turn < S(1) / S(2) && turn > S(-1) / S(2);
     const S c = plausible ? S(cos(turn)) : S(1);
     const S s = plausible ? S(sin(turn)) : S(0);
@@ -186,7 +226,8 @@ struct TwoRows {
   template <scalar S>
   Point3<S> along(const detail::membrane::RimPoint<S>& rim,
                   const Point3<S>* side_dots,
-                  const S&) const {
+                  const S&,
+                  const S& = S(0)) const {
     const Point3<S> first = side_dots[0] - rim.border;
     const Point3<S> second = side_dots[1] - rim.border;
     return (S(4) * first - second) / S(S(2) * rim.length_mm);

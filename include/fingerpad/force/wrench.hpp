@@ -39,12 +39,11 @@ inline namespace v0 {
 /// Six-axis force.
 ///   Solver  LeastSquares  take this for the tensions inside the membrane, too
 ///           BalancedRim   take this for force and moment alone: as good, 15 times as fast
-///           KnownModulus  take this where mu t is calibrated and the shape is not known
 ///   Row     OneRow        take this for one row of side dots
 ///           TwoRows       take this for two, which tell d at the rim itself
 /// ClampedRim is what a clamped rim of rubber pulls, StraightLines are lines that stay apart on a
 /// summit that is not level; published/wrench.hpp has other laws and lines, and the whole method as
-/// printed.
+/// printed. Where the shape is not known, by_modulus() needs none.
 ///
 /// Const: threads may share one estimator, each with a workspace of its own. A frame takes no
 /// memory, throws nothing, and takes O(columns rows) time, with LeastSquares O((columns rows)^1.5).
@@ -125,6 +124,9 @@ class Wrench {
         options_.calibrated_modulus_n_per_mm = S(side_dot_length_mm.modulus_n_per_mm);
       }
     }
+    expects(!options_.falls_back_on_modulus || options_.calibrated_modulus_n_per_mm,
+            "WrenchOptions", "falls_back_on_modulus", 1LL,
+            "false without calibrated_modulus_n_per_mm");
   }
 
   Index side_dots() const { return rim_.size(); }
@@ -146,26 +148,48 @@ class Wrench {
              const WrenchNoise<S>& noise = {}) const {
     const auto dots = as_view(side_dots_mm);
     WrenchResult<S> result;
-    if (dots.rows() != Row::rows || dots.cols() != rim_.size() ||
-        work.rim_points() != rim_.size() || work.segments_.columns() != options_.columns ||
-        work.segments_.rows() != options_.rows) {
+    if (!fits(dots, work)) {
       return result;
     }
     forget(work);
     result.status = solve(shape, dots, pressure_mpa, work, result);
     if (result.status == WrenchStatus::ok) {
-      add_up(pressure_mpa, work, noise, result);
+      add_up<Solver::magnitude>(pressure_mpa, work, noise, result);
     } else if (result.status == WrenchStatus::no_contact) {
       result.force_n = result.moment_n_mm = {S(0), S(0), S(0)};
       result.summit_area_mm2 = S(0);
+    } else if (result.status == WrenchStatus::no_level_line ||
+               result.status == WrenchStatus::no_shape) {
+      if constexpr (Law::tells_magnitude) {
+        if (options_.falls_back_on_modulus) {
+          return by_modulus(dots, pressure_mpa, work, noise, result);
+        }
+      }
     }
     return result;
   }
 
+  /// The same without a shape, by calibrated_modulus_n_per_mm, and refused without it: the pulls of
+  /// the rim are forces. F_z is the small difference of pull and pressure, so one row of side dots
+  /// must have its stress-free inclination. O(columns).
+  template <spatial_dot_grid Dots>
+    requires(Law::tells_magnitude)
+  WrenchResult<S> by_modulus(const Dots& side_dots_mm,
+                             const S& pressure_mpa,
+                             Workspace& work,
+                             const WrenchNoise<S>& noise = {})
+  const { return by_modulus(as_view(side_dots_mm), pressure_mpa, work, noise, WrenchResult<S>()); }
+
  private:
   static constexpr bool balances_all =
       Solver::magnitude == detail::membrane::Magnitude::of_all && Solver::finds_tensions;
-  static constexpr bool needs_shape = Solver::magnitude != detail::membrane::Magnitude::given;
+
+  template <class Dots>
+  bool fits(const Dots& dots, const Workspace& work) const {
+    return dots.rows() == Row::rows && dots.cols() == rim_.size() &&
+           work.rim_points() == rim_.size() && work.segments_.columns() == options_.columns &&
+           work.segments_.rows() == options_.rows;
+  }
 
   static const WrenchOptions<S>& checked(const WrenchOptions<S>& options,
                                          const Solver& solver,
@@ -190,11 +214,9 @@ class Wrench {
                      const S& pressure_mpa,
                      Workspace& work,
                      WrenchResult<S>& result) const {
-    if (!(value(pressure_mpa) > 0) || !is_finite(pressure_mpa)) {
-      return WrenchStatus::bad_pressure;
-    }
-    if (pressure_mpa > options_.max_pressure_mpa) {
-      return WrenchStatus::pressure_not_in_mpa;
+    const WrenchStatus pressed = check(pressure_mpa);
+    if (pressed != WrenchStatus::ok) {
+      return pressed;
     }
     const WrenchStatus shaped = lay_mesh(shape, work, result);
     if (shaped != WrenchStatus::ok) {
@@ -203,7 +225,8 @@ class Wrench {
     const S pressure = pressure_mpa * chord_factor();
     WrenchStatus pulled = measure_rim(dots, S(0), work, result);
     if (row_.needs_modulus() && pulled == WrenchStatus::ok) {
-      const S modulus = first_modulus(work, pressure);
+      const S modulus = detail::membrane::balanced_modulus(
+          work.segments_, work.pulls_.segments, pressure);  // before dots are carried to the rim
       if (value(modulus) > 0) {
         pulled = measure_rim(dots, S(pressure_mpa / modulus), work, result);
       }
@@ -231,6 +254,42 @@ class Wrench {
     return is_as_calibrated(work) ? WrenchStatus::ok : WrenchStatus::modulus_not_as_calibrated;
   }
 
+  /// `result` holds what the shape has said.
+  template <class Dots>
+  WrenchResult<S> by_modulus(const Dots& dots,
+                             const S& pressure_mpa,
+                             Workspace& work,
+                             const WrenchNoise<S>& noise,
+                             WrenchResult<S> result) const {
+    result.status = WrenchStatus::refused;
+    if (!fits(dots, work) || !options_.calibrated_modulus_n_per_mm) {
+      return result;
+    }
+    forget(work);
+    result.by_modulus = true;
+    result.status = check(pressure_mpa);
+    if (result.status != WrenchStatus::ok) {
+      return result;
+    }
+    const S& modulus = *options_.calibrated_modulus_n_per_mm;
+    result.status = measure_rim(dots, S(pressure_mpa / modulus), work, result);
+    if (result.status == WrenchStatus::ok) {
+      for (std::size_t k = 0; k < work.tensions_.rim.size(); ++k) {
+        work.tensions_.rim[k] = modulus * work.pulls_.segments[k];
+      }
+      add_up<detail::membrane::Magnitude::given>(pressure_mpa, work, noise, result);
+    }
+    return result;
+  }
+
+  WrenchStatus check(const S& pressure_mpa) const {
+    if (!(value(pressure_mpa) > 0) || !is_finite(pressure_mpa)) {
+      return WrenchStatus::bad_pressure;
+    }
+    return pressure_mpa > options_.max_pressure_mpa ? WrenchStatus::pressure_not_in_mpa
+                                                    : WrenchStatus::ok;
+  }
+
   bool is_as_calibrated(const Workspace& work) const {
     if (!Law::tells_magnitude || !options_.calibrated_modulus_n_per_mm) {
       return true;
@@ -242,26 +301,24 @@ class Wrench {
 
   template <class Shape>
   WrenchStatus lay_mesh(const Shape& shape, Workspace& work, WrenchResult<S>& result) const {
-    if constexpr (needs_shape) {
-      Point3<S> center;
-      if (!detail::membrane::find_contact(shape, options_.base_radius_mm, center)) {
-        return WrenchStatus::no_contact;
-      }
-      work.nodes_.template lay<Lines>(shape, center);
-      result.broken_lines = work.nodes_.broken();
-      result.level_lines = work.nodes_.level();
-      if (3 * result.broken_lines > options_.columns) {
-        return WrenchStatus::no_shape;
-      }
-      if (result.level_lines == 0) {
-        return WrenchStatus::no_level_line;
-      }
-      const S top = work.nodes_.top_mm();
-      if (!(top > options_.side_dot_length_mm / S(2)) || top > S(2) * options_.base_radius_mm) {
-        return WrenchStatus::shape_not_in_mm;
-      }
-      work.segments_.measure(work.nodes_);
+    Point3<S> center;
+    if (!detail::membrane::find_contact(shape, options_.base_radius_mm, center)) {
+      return WrenchStatus::no_contact;
     }
+    work.nodes_.template lay<Lines>(shape, center);
+    result.broken_lines = work.nodes_.broken();
+    result.level_lines = work.nodes_.level();
+    if (3 * result.broken_lines > options_.columns) {
+      return WrenchStatus::no_shape;
+    }
+    if (result.level_lines == 0) {
+      return WrenchStatus::no_level_line;
+    }
+    const S top = work.nodes_.top_mm();
+    if (!(top > options_.side_dot_length_mm / S(2)) || top > S(2) * options_.base_radius_mm) {
+      return WrenchStatus::shape_not_in_mm;
+    }
+    work.segments_.measure(work.nodes_);
     return WrenchStatus::ok;
   }
 
@@ -291,22 +348,10 @@ class Wrench {
     return WrenchStatus::ok;
   }
 
-  /// mu t before the side dots have been carried to the rim.
-  S first_modulus(const Workspace& work, const S& pressure_mpa) const {
-    if constexpr (needs_shape) {
-      return detail::membrane::balanced_modulus(work.segments_, work.pulls_.segments, pressure_mpa);
-    } else {
-      return S(solver_.modulus_n_per_mm);
-    }
-  }
-
   /// Area of a circle over that of the polygon of as many corners as there are lines: the mesh has
   /// chords where rim and A_g are round, so the pressure on it is a little too small.
   S chord_factor() const {
     using std::sin;
-    if constexpr (!needs_shape) {
-      return S(1);
-    }
     const S turn = S(2 * std::numbers::pi) / S(static_cast<double>(options_.columns));
     return S(turn / S(sin(turn)));
   }
@@ -316,6 +361,7 @@ class Wrench {
   }
 
   /// Eqs. 4 and 5.
+  template <detail::membrane::Magnitude Fixed>
   void add_up(const S& pressure_mpa,
               Workspace& work,
               const WrenchNoise<S>& noise,
@@ -325,20 +371,20 @@ class Wrench {
     const S modulus = detail::membrane::mean_factor(work.tensions_.rim, work.pulls_.segments);
     result.force_n = {force.x, force.y, S(force.z - pressure_mpa * base_area_mm2())};
     result.moment_n_mm = moment;
+    result.pressure_mpa = pressure_mpa;
     if (Law::tells_magnitude) {
       result.modulus_n_per_mm = modulus;
     }
     S edge_mm2 = S(0);
-    if constexpr (needs_shape) {
+    if constexpr (Fixed != detail::membrane::Magnitude::given) {
       result.summit_area_mm2 = chord_factor() * work.nodes_.summit_area(edge_mm2);
     }
     keep_tensions(work);
     if (value(noise.side_dot_mm) > 0 || value(noise.edge_mm) > 0 || value(noise.pressure_mpa) > 0) {
-      const S summit = needs_shape ? result.summit_area_mm2 : S(0);
-      result.covariance = detail::membrane::covariance_of<Solver::magnitude, Row>(
+      result.covariance = detail::membrane::covariance_of<Fixed, Row>(
           rim_, work.pulls_, law_,
-          detail::membrane::RimSolution<S>{force, moment, modulus, base_area_mm2(), summit,
-                                           edge_mm2, pressure_mpa},
+          detail::membrane::RimSolution<S>{force, moment, modulus, base_area_mm2(),
+                                           result.summit_area_mm2, edge_mm2, pressure_mpa},
           noise);
     }
     bool finite = is_finite(result.force_n) && is_finite(moment);

@@ -12,6 +12,7 @@
 #include "fingerpad/core/expects.hpp"
 #include "fingerpad/core/grid.hpp"
 #include "fingerpad/core/scalar.hpp"
+#include "fingerpad/math/detail/zeros.hpp"
 
 namespace fingerpad {
 inline namespace v0 {
@@ -54,6 +55,9 @@ struct WrenchOptions {
                                                       ///< more than three times off is refused.
                                                       ///< Empty: that of the fit that the lengths
                                                       ///< come from, if there is one
+  bool falls_back_on_modulus = false;  ///< whether a frame of which the shape does not tell how
+                                       ///< much the membrane pulls (no_level_line, no_shape) is
+                                       ///< answered by that modulus, as Wrench::by_modulus() does
 };
 
 template <scalar S>
@@ -90,7 +94,7 @@ enum class WrenchStatus : std::uint8_t {
   unstretched,        ///< more than a third do not tell a direction: too little stretch, or slack
   no_shape,           ///< more than a third of the lines run into holes
   no_level_line,      ///< nowhere between rim and contact is the membrane level, so its shape does
-                      ///< not tell how much it pulls (KnownModulus needs no such line)
+                      ///< not tell how much it pulls (by_modulus() needs no such line)
   not_solved,         ///< the equations have no solution, or one that pulls downward
   // the likely mistakes
   pressure_not_in_mpa,  ///< above max_pressure_mpa: kPa, Pa?
@@ -104,7 +108,8 @@ enum class WrenchStatus : std::uint8_t {
                                ///< instead of that above the air's, or dots of another pad?
   unbalanced,  ///< eqs. 6 and 7 are left with more than max_residual: shape and side dots are not
                ///< of the same frame, pad or unit
-  refused,     ///< a grid, state or workspace has another size: nothing was done
+  refused,     ///< a grid or workspace has another size, or by_modulus() has no modulus: nothing
+               ///< was done
 };
 
 /// "ok", "no contact", ...
@@ -162,12 +167,14 @@ struct [[nodiscard]] WrenchResult {
   /// if all pulls were scaled together (with the published solvers: each column by itself).
   /// LeastSquares evens out noise of the side dots, so its true deviations are smaller, those of
   /// M_x and M_y much smaller; noise of A_g it spreads further than told.
-  std::array<std::array<S, 6>, 6> covariance{};
-  S summit_area_mm2 = not_a_number<S>();   ///< within A_g, in plan; NaN for KnownModulus
+  std::array<std::array<S, 6>, 6> covariance = detail::zero_matrix<S, 6>();
+  S summit_area_mm2 = not_a_number<S>();   ///< within A_g, in plan; NaN by the modulus
+  S pressure_mpa = not_a_number<S>();      ///< of the frame: given, or found by pressure_from_rim
   S modulus_n_per_mm = not_a_number<S>();  ///< mu t that this frame would have: mean of tension
                                            ///< over pull; NaN for published::Direction
   S residual = not_a_number<S>();  ///< of eqs. 6 and 7, rms over the segments, as a share of the
                                    ///< pressure's; NaN where the solver finds no inner tensions
+  bool by_modulus = false;         ///< the calibrated modulus has been taken, not the shape
   Index missing = 0;               ///< side dots that were not found
   Index unstretched = 0;           ///< side dots that do not tell a direction, slack ones included
   Index slack = 0;                 ///< side dots shorter than without stress

@@ -77,14 +77,14 @@ S section_curvature(const S& radius_mm, const S& before_mm, const S& center_mm, 
 /// difference by up to curvature px^2 / 4 per sample. Default: the slides' radius, 1.92 mm on the
 /// published pad.
 struct CurvatureRing {
-  Index radius_px = 25;              ///< in [1, 1000]
+  double radius_px = 25;             ///< in [1, 1000]
   double min_direction_share = 0.5;  ///< sections that must be complete, in (0, 1]
 };
 
 /// Refuses what has no meaning (parameter_error).
 inline void expects_valid(const CurvatureRing& ring) {
   expects(ring.radius_px >= 1 && ring.radius_px <= 1000, "CurvatureRing", "radius_px",
-          static_cast<long long>(ring.radius_px), "in [1, 1000]");
+          ring.radius_px, "in [1, 1000]");
   expects(ring.min_direction_share > 0 && ring.min_direction_share <= 1, "CurvatureRing",
           "min_direction_share", ring.min_direction_share, "in (0, 1]");
 }
@@ -132,10 +132,10 @@ struct RingOffset {
 
 /// The pixel nearest to radius (cos, sin) of pi step / (2 directions), an angle of the first
 /// octant; ties go to the center, whatever the rounding of the cosine.
-inline RingOffset ring_offset_in_octant(Index radius_px, int step, int directions) {
+inline RingOffset ring_offset_in_octant(double radius_px, int step, int directions) {
   const double angle = 1.5707963267948966 * step / directions;
   const auto nearest = [&](double unit) {
-    return static_cast<Index>(std::ceil(static_cast<double>(radius_px) * unit - 0.5 - 1e-9));
+    return static_cast<Index>(std::ceil(radius_px * unit - 0.5 - 1e-9));
   };
   return {nearest(std::sin(angle)), nearest(std::cos(angle))};
 }
@@ -143,7 +143,7 @@ inline RingOffset ring_offset_in_octant(Index radius_px, int step, int direction
 /// One end of each section in the directions pi k / directions, from the shortest to the longest.
 /// The set is its own mirror image in both axes and, for an even number of directions, under
 /// exchange of rows and columns.
-inline std::vector<RingOffset> ring_offsets(Index radius_px, int directions) {
+inline std::vector<RingOffset> ring_offsets(double radius_px, int directions) {
   std::vector<RingOffset> offsets;
   for (int k = 0; k < directions; ++k) {
     const bool beyond_vertical = 2 * k > directions;

@@ -65,12 +65,13 @@ class CurvatureMap {
       : units_(detail::pixel_pitch(camera)),
         rows_(checked(ring, rows, cols)),
         cols_(cols),
-        margin_((std::min)(ring.radius_px, (std::max)(rows, cols))),
+        margin_((std::min)(static_cast<Index>(std::ceil(ring.radius_px)), (std::max)(rows, cols))),
         stride_(stride_of(margin_, cols)),
         least_((std::max)(
             1,
             static_cast<int>(std::ceil(ring.min_direction_share * Statistic::directions - 1e-9)))),
-        kernel_(detail::ring_offsets(margin_, Statistic::directions),
+        kernel_(detail::ring_offsets((std::min)(ring.radius_px, static_cast<double>(margin_)),
+                                     Statistic::directions),
                 stride_,
                 units_.pitch,
                 units_.per_mm) {}

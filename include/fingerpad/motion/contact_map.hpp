@@ -13,6 +13,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 #include <vector>
 
 #include "fingerpad/core/expects.hpp"
@@ -54,6 +55,7 @@ struct ContactMap {
     std::vector<Observation<S>> observations;  // those on the map first
     std::vector<std::size_t> leaving;          // cells of the map that are seen out of contact
     std::vector<scalar_real_t<S>> sorted;
+    S pitch_sq = S(0);  // mean square distance of neighbours in contact at first, mm^2
   };
 
   template <scalar S>
@@ -85,6 +87,7 @@ struct ContactMap {
       return MotionStatus::collinear;
     }
     enter(seen, t);
+    t.pitch_sq = pitch_sq<S>(frame);
     Point3<S> center = {S(0), S(0), S(0)};
     for (Index k = 0; k < seen.fresh; ++k) {
       center = center + dot(k);
@@ -106,10 +109,16 @@ struct ContactMap {
       return MotionStatus::collinear;
     }
     const scalar_real_t<S> median_sq = distrust(fit, seen, t);
+    const S residual_rms_mm = root_mean_square(seen, t);
+    const bool apart = value(t.pitch_sq) < 16 * value(S(residual_rms_mm * residual_rms_mm));
+    if (apart ||
+        value(angle_between(t.pose.rotation, fit.pose.rotation)) > scalar_real_t<S>(max_step_rad)) {
+      return MotionStatus::not_rigid;
+    }
     t.pose = fit.pose;
     t.angles = zyx_angles(fit.pose.rotation);
     t.dots_used = seen.known;
-    t.residual_rms_mm = root_mean_square(seen, t);
+    t.residual_rms_mm = residual_rms_mm;
     forget(seen, t);
     refine(median_sq, seen, t);
     enter(seen, t);
@@ -117,12 +126,37 @@ struct ContactMap {
   }
 
  private:
+  /// No membrane turns so far from one pose to the next; rows and columns exchanged turn a flat
+  /// patch over.
+  static constexpr double max_step_rad = 2.5;
+
   /// How many dots in contact are on the map, how many are new, and how many have left.
   struct Seen {
     Index known = 0;
     Index fresh = 0;
     Index left = 0;
   };
+
+  /// Infinite where no neighbours are in contact.
+  template <scalar S, class Frame>
+  static S pitch_sq(const Frame& frame) {
+    S sum = S(0);
+    int count = 0;
+    const auto add = [&](Index i, Index j, DotIndex next) {
+      if (next.row < frame.rows() && next.col < frame.cols() && frame.in_contact({i, j}) &&
+          frame.in_contact(next)) {
+        sum = sum + squared_norm(frame.dot(next.row, next.col) - frame.dot(i, j));
+        ++count;
+      }
+    };
+    for (Index i = 0; i < frame.rows(); ++i) {
+      for (Index j = 0; j < frame.cols(); ++j) {
+        add(i, j, {i, j + 1});
+        add(i, j, {i + 1, j});
+      }
+    }
+    return count > 0 ? S(sum / S(count)) : S(std::numeric_limits<scalar_real_t<S>>::infinity());
+  }
 
   /// A new entry has the error of the pose in it besides that of its dot: half a observation.
   template <scalar S>

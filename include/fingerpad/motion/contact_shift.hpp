@@ -18,6 +18,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <type_traits>
 #include <vector>
 
@@ -54,7 +55,9 @@ enum class ShiftStatus : std::uint8_t {
   measured,        ///< displacement and angle
   one_place_only,  ///< the dots do not tell an angle: fewer than two, or all in one place
   no_dots,         ///< none of the chosen dots is there in both frames
-  refused,         ///< a grid is not of the reference's size, or the workspace is another's
+  not_rigid,  ///< the dots are further than 3/4 of a pitch from any rigid shift: another order or
+              ///< unit than the reference, or a place for those that are lost? No displacement
+  refused,    ///< a grid is not of the reference's size, or the workspace is another's
 };
 
 /// "measured", "one place only", ...
@@ -66,6 +69,8 @@ constexpr const char* name_of(ShiftStatus status) {
       return "one place only";
     case ShiftStatus::no_dots:
       return "no dots";
+    case ShiftStatus::not_rigid:
+      return "not rigid";
     case ShiftStatus::refused:
       return "refused";
   }
@@ -126,6 +131,9 @@ class ContactShift {
         reference_.push_back(planar(from(i, j)));
       }
     }
+    leave_out(S(0));
+    leave_out(S(-1));
+    pitch_sq_ = mean_pitch_sq();
     check_choice();
     if constexpr (Mean::is_robust) {
       expects(mean.threshold > 0, "HuberMean", "threshold", mean.threshold, "> 0");
@@ -174,6 +182,39 @@ class ContactShift {
   static bool is_placed(const Point2<S>& p) {
     const auto within = [](const S& c) { return value(c) < 1000000 && -1000000 < value(c); };
     return within(p.x) && within(p.y);
+  }
+  /// Dots of the reference that share a place by which others mark what they did not find are not
+  /// found.
+  void leave_out(const S& mark) {
+    const auto is_mark = [&](const Point2<S>& p) {
+      return value(p.x) == value(mark) && value(p.y) == value(mark);
+    };
+    if (std::count_if(reference_.begin(), reference_.end(), is_mark) > 1) {
+      std::replace_if(reference_.begin(), reference_.end(), is_mark,
+                      Point2<S>{not_a_number<S>(), not_a_number<S>()});
+    }
+  }
+  /// Mean square distance of neighbours in the reference; infinite where there are none.
+  S mean_pitch_sq() const {
+    S sum = S(0);
+    int count = 0;
+    const auto add = [&](const Point2<S>& a, const Point2<S>& b) {
+      if (is_placed(a) && is_placed(b)) {
+        sum = sum + squared_norm(b - a);
+        ++count;
+      }
+    };
+    for (Index i = 0; i < rows_; ++i) {
+      for (Index j = 0; j < cols_; ++j) {
+        if (j + 1 < cols_) {
+          add(from_at(i, j), from_at(i, j + 1));
+        }
+        if (i + 1 < rows_) {
+          add(from_at(i, j), from_at(i + 1, j));
+        }
+      }
+    }
+    return count > 0 ? S(sum / S(count)) : S(std::numeric_limits<scalar_real_t<S>>::infinity());
   }
   const Point2<S>& from_at(Index i, Index j) const {
     return reference_[static_cast<std::size_t>(i * cols_ + j)];
@@ -243,6 +284,9 @@ class ContactShift {
     ShiftResult<S> result = shift_of_pairs(w);
     const Point2<S>& from = from_at(dots_.dot.row, dots_.dot.col);
     const Point2<S> dot = planar(to(dots_.dot.row, dots_.dot.col));
+    if (result.status == ShiftStatus::not_rigid) {
+      return result;
+    }
     if (!is_placed(from) || !is_placed(dot)) {
       result.status = ShiftStatus::no_dots;
       result.displacement = {not_a_number<S>(), not_a_number<S>()};
@@ -274,6 +318,12 @@ class ContactShift {
     result.status = shift.turns() ? ShiftStatus::measured : ShiftStatus::one_place_only;
     result.rotation_rad = shift.angle_rad();
     result.residual_rms = rms_of(shift, w);
+    const S residual_sq = S(result.residual_rms * result.residual_rms);
+    if (result.ok() && 9 * value(pitch_sq_) < 16 * value(residual_sq)) {
+      result.status = ShiftStatus::not_rigid;
+      result.displacement = {not_a_number<S>(), not_a_number<S>()};
+      result.rotation_rad = not_a_number<S>();
+    }
     return result;
   }
 
@@ -310,6 +360,7 @@ class ContactShift {
   Index rows_ = 0;
   Index cols_ = 0;
   std::vector<Point2<S>> reference_;
+  S pitch_sq_ = S(0);
 };
 
 }  // namespace v0

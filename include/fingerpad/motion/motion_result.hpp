@@ -19,8 +19,10 @@ enum class MotionStatus : std::uint8_t {
   too_few_dots,      ///< fewer than three dots to go by, or too few to begin with
   collinear,         ///< the dots to go by lie on a line: they determine no rotation
   lost,              ///< what was followed has left the contact, and nothing known is in it
-  slipping,          ///< fewer than a fifth of the dots in contact stick: the pose is not known
-  refused,           ///< a grid, state or workspace has another size: nothing was done
+  not_rigid,  ///< the dots are further than a quarter of a pitch from any rigid motion, or have
+              ///< turned over: other names than before, or a place for those that are lost?
+  slipping,   ///< fewer than a fifth of the dots in contact stick: the pose is not known
+  refused,    ///< a grid, state or workspace has another size: nothing was done
 };
 
 /// "ok", "no contact", ...
@@ -40,6 +42,8 @@ constexpr const char* name_of(MotionStatus status) {
       return "collinear";
     case MotionStatus::lost:
       return "lost";
+    case MotionStatus::not_rigid:
+      return "not rigid";
     case MotionStatus::slipping:
       return "slipping";
     case MotionStatus::refused:

@@ -63,7 +63,8 @@ class ObjectMotion {
     Index cols_;
   };
 
-  /// `initial_mm` are the dots of the free pad; missing ones are never the reference dot.
+  /// `initial_mm` are the dots of the free pad; missing ones are never the reference dot. Refuses
+  /// bad parameters, and dots that are likely in another unit than mm (parameter_error).
   template <spatial_dot_grid Dots>
   explicit ObjectMotion(const Dots& initial_mm,
                         const ObjectMotionOptions<S>& options = {},
@@ -79,6 +80,7 @@ class ObjectMotion {
         initial_.dots.push_back(detail::motion::spatial<S>(cell_t<Dots>(from(i, j))));
       }
     }
+    detail::motion::expects_in_mm(initial_);
     way_.template track<S>(0, 0);  // refuses bad parameters
   }
 

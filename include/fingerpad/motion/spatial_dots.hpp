@@ -4,6 +4,7 @@
 // From what a frame shows to what the motion of the object is computed from: dots in space, and
 // whether each is in contact. Source: Ito, Kim, Nagai, Obinata 2011, eq. 13, with E019 and E020
 // repaired: the depth is that of the dot's pixel.
+#include <algorithm>
 #include <concepts>
 #include <type_traits>
 #include <utility>
@@ -99,15 +100,40 @@ SpatialDotsResult spatial_dots(const Camera<S>& camera,
   return result;
 }
 
-/// Which dots lie in contact: the flag of the mask's pixel nearest to each; false where a dot was
-/// not found or lies outside of the mask. False, and nothing written, when `out` has another size
-/// than the dot grid. Allocates nothing.
+namespace detail {
+
+/// Whether every pixel of the mask touches that is at most radius_px away from (row, col).
+template <class Mask>
+bool disc_in_contact(const Mask& mask, Index row, Index col, double radius_px) {
+  const auto reach = static_cast<Index>(radius_px);
+  const Index top = (std::max)(row - reach, Index{0}), left = (std::max)(col - reach, Index{0});
+  const Index bottom = (std::min)(row + reach, mask.rows() - 1);
+  const Index right = (std::min)(col + reach, mask.cols() - 1);
+  for (Index i = top; i <= bottom; ++i) {
+    for (Index j = left; j <= right; ++j) {
+      const auto away_sq = static_cast<double>((i - row) * (i - row) + (j - col) * (j - col));
+      if (away_sq <= radius_px * radius_px && !is_contact(mask(i, j))) {
+        return false;
+      }
+    }
+  }
+  return true;
+}
+
+}  // namespace detail
+
+/// Which dots lie in contact: those of which every pixel of the mask within `dot_radius_px` of the
+/// pixel nearest to the dot touches, [0, 1000]; pixels outside of the mask do not count. A dot on
+/// the edge of the contact is about to let go, or has not been touched yet: take the radius of the
+/// dots for their motion, 0 for the nearest pixel alone. False where a dot was not found or lies
+/// outside of the mask. False, and nothing written, when `out` has another size than the dot grid,
+/// or the radius is none. Allocates nothing; O(dots radius^2).
 template <dot_grid Dots, contact_mask Mask, writable_grid<bool> Out>
-bool contact_at_dots(const Dots& dots_px, const Mask& mask, Out&& out) {
+bool contact_at_dots(const Dots& dots_px, const Mask& mask, Out&& out, double dot_radius_px = 0) {
   const auto from = as_view(dots_px);
   const auto flags = as_view(mask);
   const auto to = as_view(std::forward<Out>(out));
-  if (!same_size(from, to)) {
+  if (!same_size(from, to) || !(dot_radius_px >= 0 && dot_radius_px <= 1000)) {
     return false;
   }
   const double last_row = static_cast<double>(flags.rows()) - 0.5;
@@ -119,8 +145,9 @@ bool contact_at_dots(const Dots& dots_px, const Mask& mask, Out&& out) {
       const auto row = static_cast<double>(value(Traits::y(p)));
       const auto col = static_cast<double>(value(Traits::x(p)));
       const bool inside = row > -0.5 && col > -0.5 && row < last_row && col < last_col;
-      const bool set = inside && is_contact(cell_t<Mask>(flags(static_cast<Index>(row + 0.5),
-                                                               static_cast<Index>(col + 0.5))));
+      const bool set =
+          inside && detail::disc_in_contact(flags, static_cast<Index>(row + 0.5),
+                                            static_cast<Index>(col + 0.5), dot_radius_px);
       to(i, j) = static_cast<cell_t<Out>>(set);
     }
   }

@@ -4,6 +4,7 @@
 // What a fingertip is told once, and what it says of a frame: pipeline/fingertip.hpp.
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <type_traits>
 #include <utility>
 
@@ -11,6 +12,8 @@
 #include "fingerpad/core/dots.hpp"
 #include "fingerpad/core/grid.hpp"
 #include "fingerpad/depth/depth.hpp"
+#include "fingerpad/depth/neighbour_light.hpp"
+#include "fingerpad/depth/sampling.hpp"
 #include "fingerpad/force/normal_force.hpp"
 #include "fingerpad/force/pad_heights.hpp"
 #include "fingerpad/force/shear.hpp"
@@ -26,14 +29,18 @@ inline namespace v0 {
 
 /// Which stages a fingertip has, and by which methods. Derive from it and change what differs: a
 /// stage that is false is not instantiated and costs nothing. Contact is needed by all that follow.
+/// A stage that is true has no answer where the options lack what it needs.
 ///   struct DepthAndContact : FingertipMethods {
 ///     static constexpr bool has_dots = false, has_wrench = false;
 ///   };
 struct FingertipMethods {
-  static constexpr bool has_contact = true;  ///< contact region
+  static constexpr bool has_neighbour_light = false;  ///< taken off the depth; sampling 1
+  static constexpr bool has_contact = true;           ///< contact region
   static constexpr bool has_dots = true;     ///< object motion, stick ratio, friction limit
   static constexpr bool has_look_up = true;  ///< forces by calibrated curves; needs the dots
   static constexpr bool has_wrench = true;   ///< six-axis force from pressure and side dots
+
+  static constexpr int sampling = 2;  ///< pixels of a sample, along rows and along columns
 
   using Smoothing = BiasFreeMean;
   using Inverse = ExponentialFree<>;
@@ -54,16 +61,27 @@ struct FingertipOptions {
   Index rows = 0;       ///< of a frame, px
   Index cols = 0;
   int smoothing_px = 29;
+  std::optional<NeighbourLight<float>> neighbour_light = {};  ///< empty: not taken off
+  StridedView<const float> free_depth_mm = {};  ///< of the free pad, for the neighbour light: found
+                                                ///< as a frame's, by a fingertip without it
   ContactTest contact = {};
-  StridedView<const Point3<double>> free_dots_mm = {};  ///< printed dots of the free pad; NaN: none
+
+  StridedView<const Point3<double>> free_dots_mm = {};  ///< printed dots of the free pad, NaN:
+                                                        ///< none; empty: no answer by dots
+  double dot_radius_px = 0;     ///< a dot touches if all of it does, as contact_at_dots() has it
   SpatialStickTest stick = {};  ///< noise of the dots in space, and what counts as slip
   FrictionLimitOptions friction = {};
-  PolynomialForce<> force_of_area = {};                         ///< N, of mm^2
-  PolynomialForce<> force_of_depth = {};                        ///< N, of mm
-  double force_sd_n = 0.1;                                      ///< standard deviation of both, > 0
-  ShearNormalisation<> shear_normalisation = {100, 0.65, 1.7};  ///< by area in mm^2, as printed
-  RadialShear<> shear = {};
-  StridedView<const Point3<double>> rim_mm = {};  ///< where side dots are fixed; one row
+
+  using NormalLookUp = NormalForce<PolynomialForce<5>, ScaledCompensation<>>;
+  using ShearLookUp = Shear<RadialShear<4>>;
+  std::optional<NormalLookUp> force_of_area = {};   ///< by mm^2, with errors; empty: not looked up
+  std::optional<NormalLookUp> force_of_depth = {};  ///< by mm, with errors; empty: not looked up
+  std::optional<ShearLookUp> shear = {};            ///< empty: not looked up
+  bool shear_by_depth = false;  ///< its measure is mm of depth, not mm^2 of area
+
+  StridedView<const Point3<double>> rim_mm = {};  ///< where side dots are fixed; one row; empty: no
+                                                  ///< six-axis force
+  OneRow side_dot_row = {};
   WrenchOptions<double> wrench = {};
 };
 template <class Reference>
@@ -84,7 +102,7 @@ ColorFrame(const R&, const G&) -> ColorFrame<decltype(as_view(std::declval<const
                                              decltype(as_view(std::declval<const G&>()))>;
 
 enum class FingertipStatus : std::uint8_t {
-  ok,          ///< every stage has an answer
+  ok,          ///< every stage that has what it needs has an answer
   partial,     ///< a stage has none; its own result says why
   no_contact,  ///< nothing touches the pad
   refused,     ///< a frame or dots of another size: nothing was computed
@@ -104,9 +122,11 @@ struct [[nodiscard]] FingertipResult {
   ObjectMotionResult<double> motion;
   SpatialStickResult<double> stick;  ///< by the dots
   SlipResult<double> slip;           ///< by the dots and friction; feed it to GripControl
-  FusedForce<double> normal;         ///< by look-up
-  ShearResult<double> shear;         ///< by look-up
-  WrenchResult<double> wrench;       ///< six axes
+  ShiftResult<double> shift;         ///< of the dots beside the contact's edge, for the look-up
+  NormalForceResult<double> by_area, by_depth;  ///< by look-up,
+  FusedForce<double> normal;                    ///< and both together
+  ShearResult<double> shear;                    ///< by look-up
+  WrenchResult<double> wrench;                  ///< six axes
 
   bool ok() const { return status == FingertipStatus::ok; }
 };

@@ -109,6 +109,20 @@ struct PixelScattering {
     }
     return out;
   }
+  /// Means of step x step pixels.
+  PixelScattering sampled(Index rows, Index sampled_cols, int step) const {
+    PixelScattering out{sampled_cols, {}};
+    for (Index i = 0; i < rows; ++i) {
+      for (Index j = 0; j < sampled_cols; ++j) {
+        S sum = S(0);
+        for (Index k = 0; k < step * step; ++k) {
+          sum = sum + row(i * step + k / step)[j * step + k % step];
+        }
+        out.plane.push_back(S(sum / S(step * step)));
+      }
+    }
+    return out;
+  }
   S largest() const {
     S found = S(0);
     for (const S& g : plane) {

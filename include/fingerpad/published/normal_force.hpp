@@ -14,6 +14,7 @@
 #include "fingerpad/core/expects.hpp"
 #include "fingerpad/core/scalar.hpp"
 #include "fingerpad/force/normal_force.hpp"
+#include "fingerpad/math/detail/zeros.hpp"
 
 namespace fingerpad {
 inline namespace v0 {
@@ -121,8 +122,8 @@ template <scalar S = double>
 struct [[nodiscard]] AffineForceFit {
   FitStatus status = FitStatus::not_converged;
   AffineForce<S> force = {};
-  std::array<S, 3> standard_errors = {};            ///< of gain, per_unit and offset_n
-  std::array<std::array<S, 3>, 3> covariance = {};  ///< of these
+  std::array<S, 3> standard_errors = detail::zeros<S, 3>();  ///< of gain, per_unit and offset_n
+  std::array<std::array<S, 3>, 3> covariance = detail::zero_matrix<S, 3>();  ///< of these
   S residual_sd_n = S(0);
   std::vector<ForceResidual<S>> residuals = {};
 

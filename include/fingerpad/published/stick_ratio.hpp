@@ -230,7 +230,7 @@ void denoise_positions(const published::DotMean& mean,
                        Dots<Point2<S>>& now) {
   const auto placed = [&](const DotIndex& d, Index down, Index right) {
     const Index k = (d.row + down) * layout.cols + d.col + right;
-    return is_out_of_place(given.found.data(), layout, k) ? no_dot<Point2<S>>()
+    return is_out_of_place(given.found.data(), layout, layout.dot_at(k)) ? no_dot<Point2<S>>()
                                                           : at(given.found, k);
   };
   constexpr std::array<std::pair<int, int>, 4> steps = {{{0, 1}, {1, 0}, {1, -1}, {1, 1}}};

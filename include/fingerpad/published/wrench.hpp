@@ -20,6 +20,45 @@
 namespace fingerpad {
 inline namespace v0 {
 
+namespace detail::membrane {
+
+template <class Segments>
+std::size_t segment_at(const Segments& g, Index i, Index j) {
+  return static_cast<std::size_t>(j * g.columns() + i);
+}
+
+/// tau_v at the rim by the direction of the pull, eq. 3; false where a pull does not point upward.
+template <scalar S>
+bool shear_at_rim(const Segments<S>& g, const std::vector<Point3<S>>& pulls, Tensions<S>& t) {
+  bool good = true;
+  for (Index i = 0; i < g.columns(); ++i) {
+    const std::size_t k = segment_at(g, i, 0);
+    const S across = dot(pulls[k], g.around(i, 0).normal);
+    good = good && value(across) > 0;
+    t.around_shear[k] =
+        t.around_normal[k] * dot(pulls[k], g.around(i, 0).along) / (good ? across : S(1));
+  }
+  return good;
+}
+
+/// Eqs. 8 and 7, row by row upward.
+template <scalar S>
+void advance_shear(const Segments<S>& g, Tensions<S>& t) {
+  for (Index j = 0; j < g.rows(); ++j) {
+    for (Index i = 0; i < g.columns(); ++i) {
+      t.upward_shear[segment_at(g, i, j)] =
+          (t.around_shear[segment_at(g, g.previous(i), j)] + t.around_shear[segment_at(g, i, j)]) /
+          S(2);
+    }
+    for (Index i = 0; i < g.columns(); ++i) {
+      t.around_shear[segment_at(g, i, j + 1)] = t.upward_shear[segment_at(g, i, j)] +
+                                                t.upward_shear[segment_at(g, g.next(i), j)] -
+                                                t.around_shear[segment_at(g, i, j)];
+    }
+  }
+}
+}  // namespace detail::membrane
+
 namespace published {
 
 /// The direction of the side dots, as published: 72 % of the true tangential force of a drag, 36 %
@@ -103,10 +142,10 @@ struct Iteration {
     for (int pass = 0; pass < passes; ++pass) {
       balance_columns(g, pressure_mpa, t);
       balance_segments(g, pressure_mpa, work, t);
-      if (!shear_at_rim(g, pulls, t)) {
+      if (!detail::membrane::shear_at_rim(g, pulls, t)) {
         return false;
       }
-      advance_shear(g, t);
+      detail::membrane::advance_shear(g, t);
     }
     bool good = true;
     for (Index i = 0; i < g.columns(); ++i) {
@@ -185,37 +224,6 @@ struct Iteration {
     }
     for (std::size_t k = 0; k < work.right.size(); ++k) {
       t.upward_normal[k] = (t.upward_normal[k] + work.right[k]) / S(2);
-    }
-  }
-
-  template <scalar S>
-  static bool shear_at_rim(const detail::membrane::Segments<S>& g,
-                           const std::vector<Point3<S>>& pulls,
-                           detail::membrane::Tensions<S>& t) {
-    bool good = true;
-    for (Index i = 0; i < g.columns(); ++i) {
-      const std::size_t k = at(g, i, 0);
-      const S across = dot(pulls[k], g.around(i, 0).normal);
-      good = good && value(across) > 0;
-      t.around_shear[k] =
-          t.around_normal[k] * dot(pulls[k], g.around(i, 0).along) / (good ? across : S(1));
-    }
-    return good;
-  }
-
-  template <scalar S>
-  static void advance_shear(const detail::membrane::Segments<S>& g,
-                            detail::membrane::Tensions<S>& t) {
-    for (Index j = 0; j < g.rows(); ++j) {
-      for (Index i = 0; i < g.columns(); ++i) {
-        t.upward_shear[at(g, i, j)] =
-            (t.around_shear[at(g, g.previous(i), j)] + t.around_shear[at(g, i, j)]) / S(2);
-      }
-      for (Index i = 0; i < g.columns(); ++i) {
-        t.around_shear[at(g, i, j + 1)] = t.upward_shear[at(g, i, j)] +
-                                          t.upward_shear[at(g, g.next(i), j)] -
-                                          t.around_shear[at(g, i, j)];
-      }
     }
   }
 };

@@ -60,7 +60,8 @@ inline void expects_valid(const SlideTest& test) {
 enum class SlideStatus : std::uint8_t {
   updated,     ///< slide and area are those of this frame
   began,       ///< the first frame of a contact: what follows counts from here
-  no_dots,     ///< no dot in the contact was seen before and now: the slide is the last one
+  no_dots,     ///< no dot in the contact was seen before and now, or they carry other names than
+               ///< before: the slide is the last one
   not_found,   ///< the imprint was not found again: the slide is the last one
   no_contact,  ///< too little touches; after a contact all of its area is lost
   no_edge,     ///< contact fills the image, which has no imprint then: all is as it was
@@ -102,12 +103,13 @@ struct [[nodiscard]] SlideResult {
                           ///< allows, whichever is larger
   bool alarm = false;     ///< evidence is above 1
 
-  /// 1 while nothing speaks for slip, 0 from the alarm on: what GripControl and FrictionLimit take
+  /// 1 while nothing speaks for slip, 0 from the alarm on: what FrictionLimit and GripControl take
   /// in place of a stick ratio, fresh where ok().
   S held() const { return evidence < S(1) ? S(S(1) - evidence) : S(0); }
   bool accepted() const { return status != SlideStatus::refused; }
   /// Whether slide and area are those of this frame.
   bool ok() const { return status == SlideStatus::updated || status == SlideStatus::began; }
+  bool touches() const { return status != SlideStatus::no_contact; }
 };
 
 /// Slide of a contact, frame by frame. Const: threads may share one, each with a state of its own.
@@ -274,7 +276,7 @@ class ContactSlide {
     state.last_shift_ = motion.shift;
     const Point2<S> imprint = S(test_.cell_px) * motion.shift;
     result.imprint_px = state.key_result_.imprint_px + imprint;
-    const DotMotion dots = motion_of_dots(state);
+    const DotMotion dots = motion_of_dots(imprint, state);
     result.dots = dots.count;
     result.status = dots.count > 0 ? SlideStatus::updated : SlideStatus::no_dots;
     if (dots.count > 0) {
@@ -298,7 +300,7 @@ class ContactSlide {
   };
   /// Median shift and least-squares rotation of the dots that touched in the key frame and touch
   /// now.
-  DotMotion motion_of_dots(State& state) const {
+  DotMotion motion_of_dots(const Point2<S>& imprint_px, State& state) const {
     using std::atan2;
     state.x_.clear();
     state.y_.clear();
@@ -325,7 +327,17 @@ class ContactSlide {
     });
     motion.shift = {median(state.x_), median(state.y_)};
     motion.angle_rad = S(0) < along ? S(atan2(across, along)) : S(0);
-    return motion;
+    return are_renamed(motion, imprint_px, state) ? DotMotion{} : motion;
+  }
+  /// Whether the dots moved further past the imprint than gel springs back, or most of them further
+  /// apart than gel stretches: what was seen are other dots.
+  bool are_renamed(const DotMotion& motion, const Point2<S>& imprint_px, State& state) const {
+    const S limit = S(0.75 * test_.pitch_px);
+    state.x_.clear();
+    for_pairs(state, [&](const Point2<S>& key, const Point2<S>& now) {
+      state.x_.push_back(norm(now - key - motion.shift));
+    });
+    return limit < norm(motion.shift - imprint_px) || limit < median(state.x_);
   }
   template <class Visit>
   void for_pairs(const State& state, const Visit& visit) const {

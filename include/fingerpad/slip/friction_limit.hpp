@@ -131,14 +131,28 @@ constexpr const char* name_of(FrictionLimitStatus status) {
 }
 
 /// What an answer rests on.
-enum class SlipEvidence : std::uint8_t { none, dots, friction, both };
+enum class SlipEvidence : std::uint8_t {
+  none,
+  dots,      ///< the stick ratio
+  imprint,   ///< a gel's imprint past its dots, lost area, or recoil
+  friction,  ///< the limit alone
+  both,      ///< friction, and the dots or the imprint
+};
+
+/// What tells slip on a gel: a SlideResult, or a RecoilResult where only dots are known.
+template <class T> concept imprint_result = requires(const T& seen) {
+  seen.ok();
+  seen.held();
+  seen.touches();
+};
 
 /// The fused answer.
 template <scalar S = double>
 struct [[nodiscard]] SlipResult {
   FrictionLimitStatus status = FrictionLimitStatus::no_load;
   SlipEvidence evidence = SlipEvidence::none;
-  S stick_ratio = not_a_number<S>();          ///< in [0, 1]; NaN: neither says anything
+  S stick_ratio = not_a_number<S>();          ///< in [0, 1]; NaN: nothing is known; of an imprint
+                                              ///< 1 - its evidence for slip
   RatioUpdate update = RatioUpdate::missing;  ///< how fresh it is, for GripControl
   S friction = not_a_number<S>();             ///< L
   S limit = not_a_number<S>();                ///< at the last slide; NaN: none yet
@@ -147,7 +161,8 @@ struct [[nodiscard]] SlipResult {
   bool ok() const { return is_finite(stick_ratio); }
 };
 
-/// The dots and friction together. Const, O(1), takes no memory, throws nothing.
+/// The dots, or a gel's imprint, and friction together. Const, O(1), takes no memory, throws
+/// nothing.
 template <scalar S = double>
 class FrictionLimit {
  public:
@@ -176,36 +191,56 @@ class FrictionLimit {
                            const S& stick_ratio,
                            RatioUpdate update,
                            State& state) const {
+    return fuse(load, stick_ratio, update, SlipEvidence::dots, state);
+  }
+
+  /// The same for a gel, where the imprint answers in place of the dots (`imprint` as
+  /// ContactSlide or Recoil give it): a limit is learnt from its alarms, and one that was learnt
+  /// answers where no imprint is found again.
+  template <imprint_result Imprint>
+  SlipResult<S> operator()(const ContactLoad<S>& load, const Imprint& imprint, State& state) const {
+    const RatioUpdate update = imprint.ok()        ? RatioUpdate::fresh
+                               : imprint.touches() ? RatioUpdate::missing
+                                                   : RatioUpdate::no_contact;
+    const S held = imprint.ok() ? S(imprint.held()) : not_a_number<S>();
+    return fuse(load, held, update, SlipEvidence::imprint, state);
+  }
+
+ private:
+  /// `ratio` is what `source` says.
+  SlipResult<S> fuse(const ContactLoad<S>& load,
+                     const S& ratio,
+                     RatioUpdate update,
+                     SlipEvidence source,
+                     State& state) const {
     SlipResult<S> result;
-    const bool known = value(stick_ratio) >= 0 && value(stick_ratio) <= 1;
-    result.stick_ratio = known ? stick_ratio : not_a_number<S>();
+    const bool known = value(ratio) >= 0 && value(ratio) <= 1;
+    result.stick_ratio = known ? ratio : not_a_number<S>();
     result.update = update;
-    result.evidence = known ? SlipEvidence::dots : SlipEvidence::none;
+    result.evidence = known ? source : SlipEvidence::none;
     result.friction =
-        value(load.normal_n) >= options_.min_normal_n ? friction_of(load) : not_a_number<S>();
+        !(load.normal_n < S(options_.min_normal_n)) ? friction_of(load) : not_a_number<S>();
     result.limit = state.limit_;
     if (!is_finite(result.friction)) {
       return result;
     }
-    const bool dots_slide =
-        known && update == RatioUpdate::fresh && value(stick_ratio) < options_.learn_below;
-    if (dots_slide) {
+    const bool slides = known && update == RatioUpdate::fresh && ratio < S(options_.learn_below);
+    if (slides) {
       learn(result.friction, state);
-    } else if (known && update == RatioUpdate::fresh && 2 * value(stick_ratio) > 1 &&
-               value(result.friction) > options_.max_rise * value(state.limit_)) {
+    } else if (known && update == RatioUpdate::fresh && 2 * value(ratio) > 1 &&
+               result.friction > S(options_.max_rise) * state.limit_) {
       state.limit_ = not_a_number<S>();  // it holds beyond what was taken for the limit
     }
-    judge(dots_slide, state, result);
+    judge(slides, state, result);
     return result;
   }
 
- private:
   void learn(const S& friction, State& state) const {
     if (!is_finite(state.limit_)) {
       state.limit_ = value(friction) > 0 ? friction : state.limit_;
       return;
     }
-    if (value(friction) < options_.slide_fraction * value(state.limit_)) {
+    if (friction < S(options_.slide_fraction) * state.limit_) {
       return;  // the dots slip at another place than the limit: it stands
     }
     const S top = S(options_.max_rise) * state.limit_;
@@ -215,19 +250,19 @@ class FrictionLimit {
     state.limit_ = state.limit_ + share * S(toward - state.limit_);
   }
 
-  void judge(bool dots_slide, const State& state, SlipResult<S>& result) const {
+  void judge(bool slides, const State& state, SlipResult<S>& result) const {
     result.limit = state.limit_;
     if (!is_finite(state.limit_)) {
       result.status = FrictionLimitStatus::no_limit;
       return;
     }
     result.margin = S(1) - result.friction / state.limit_;
-    if (!(value(result.friction) > options_.slide_fraction * value(state.limit_))) {
+    if (!(result.friction > S(options_.slide_fraction) * state.limit_)) {
       result.status = FrictionLimitStatus::held;
       return;
     }
     result.status = FrictionLimitStatus::sliding;
-    result.evidence = dots_slide ? SlipEvidence::both : SlipEvidence::friction;
+    result.evidence = slides ? SlipEvidence::both : SlipEvidence::friction;
     result.stick_ratio = S(0);
     result.update = RatioUpdate::fresh;
   }

@@ -16,6 +16,7 @@
 #include "fingerpad/core/point.hpp"
 #include "fingerpad/core/scalar.hpp"
 #include "fingerpad/core/status.hpp"
+#include "fingerpad/slip/detail/dot_places.hpp"
 
 namespace fingerpad {
 inline namespace v0 {
@@ -44,11 +45,15 @@ struct [[nodiscard]] RecoilResult {
   Index dots = 0;      ///< found now and in the free pad
   S displaced = S(0);  ///< the quantile of their displacements, in pitches
   S recoil = S(0);     ///< by how much it has fallen since it was largest, in pitches
-  bool alarm = false;  ///< recoil is beyond its threshold
+  S evidence = S(0);   ///< for slip: recoil / max_recoil
+  bool alarm = false;  ///< evidence is above 1
 
+  /// 1 while nothing speaks for slip, 0 from the alarm on, as of SlideResult.
+  S held() const { return evidence < S(1) ? S(S(1) - evidence) : S(0); }
   /// Whether there were enough dots; if not, all is as it was in the last frame that had them.
   bool ok() const { return status == FrameStatus::ok && enough; }
-  bool enough = false;
+  bool touches() const { return true; }  ///< as far as dots can tell
+  bool enough = false;  ///< min_dots or more were found, under the names that they had before
 };
 
 /// Recoil of a pad, frame by frame. Const: threads may share one, each with a state of its own.
@@ -56,32 +61,40 @@ struct [[nodiscard]] RecoilResult {
 template <scalar S = float>
 class Recoil {
  public:
-  /// From the free pad's dots (NaN: not found). Refuses bad parameters (parameter_error).
+  /// From the free pad's dots (NaN: not found). Refuses bad parameters, and a pitch_px that is not
+  /// within a factor of three that of these dots (parameter_error).
   template <dot_grid Dots>
   explicit Recoil(const Dots& free_px, const RecoilTest& test = {}) : test_(test) {
     expects_valid(test);
     const auto from = as_view(free_px);
-    rows_ = from.rows();
-    cols_ = from.cols();
-    for (Index i = 0; i < rows_; ++i) {
-      for (Index j = 0; j < cols_; ++j) {
-        free_.push_back(point(from(i, j)));
-      }
-    }
+    layout_ = {from.rows(), from.cols()};
+    detail::stick::GivenDots<Point2<S>> free(layout_);
+    free.read(from, all_touch());
+    free_ = free.found;
+    using std::sqrt;
+    const S found = sqrt(detail::stick::mean_pitch_sq(free.touching, free_.data(), layout_));
+    const double ratio = static_cast<double>(value(found)) / test.pitch_px;
+    expects(!(ratio > 0) || (ratio > 1.0 / 3 && ratio < 3), "RecoilTest", "pitch_px", test.pitch_px,
+            "within a factor of three the distance of the free pad's dots: dots in mm?");
   }
 
   /// A value: copy it to go back to this frame later. All memory that frames need is in it.
   class State {
    public:
-    explicit State(const Recoil& recoil) { lengths_.reserve(recoil.free_.size()); }
+    explicit State(const Recoil& recoil) : given_(recoil.layout_), before_(given_.found) {
+      lengths_.reserve(recoil.free_.size());
+    }
     /// What was before is forgotten.
     void reset() {
       result_ = {};
       largest_ = S(0);
+      std::fill(before_.begin(), before_.end(), detail::stick::no_dot<Point2<S>>());
     }
 
    private:
     friend class Recoil;
+    detail::stick::GivenDots<Point2<S>> given_;
+    std::vector<Point2<S>> before_;  // in the last frame that counted
     std::vector<S> lengths_;
     S largest_ = S(0);
     RecoilResult<S> result_;
@@ -92,16 +105,20 @@ class Recoil {
   template <dot_grid Dots>
   RecoilResult<S> operator()(const Dots& dots_px, State& state) const {
     const auto dots = as_view(dots_px);
-    if (dots.rows() != rows_ || dots.cols() != cols_ || state.lengths_.capacity() < free_.size()) {
+    if (dots.rows() != layout_.rows || dots.cols() != layout_.cols ||
+        state.before_.size() != free_.size()) {
       return {};
     }
+    state.given_.read(dots, all_touch());
+    const std::vector<Point2<S>>& now = state.given_.found;
+    const bool renamed =
+        detail::stick::has_jumped(state.given_.touching, now.data(), state.before_.data(), layout_);
     state.lengths_.clear();
-    for (Index i = 0; i < rows_; ++i) {
-      for (Index j = 0; j < cols_; ++j) {
-        const Point2<S> moved = point(dots(i, j)) - free_[static_cast<std::size_t>(i * cols_ + j)];
-        if (is_finite(moved)) {
-          state.lengths_.push_back(norm(moved));
-        }
+    for (std::size_t k = 0; k < free_.size(); ++k) {
+      const S sq = squared_norm(now[k] - free_[k]);
+      if (!renamed && detail::stick::is_distance_sq(sq)) {
+        using std::sqrt;
+        state.lengths_.push_back(S(sqrt(sq) / S(test_.pitch_px)));
       }
     }
     RecoilResult<S>& result = state.result_;
@@ -109,25 +126,25 @@ class Recoil {
     result.dots = static_cast<Index>(state.lengths_.size());
     result.enough = result.dots >= test_.min_dots;
     if (result.enough) {
+      std::copy(now.begin(), now.end(), state.before_.begin());
       const double at = test_.quantile * static_cast<double>(result.dots - 1);
       const auto nth = state.lengths_.begin() + static_cast<std::ptrdiff_t>(at);
       std::nth_element(state.lengths_.begin(), nth, state.lengths_.end());
-      result.displaced = S(*nth / S(test_.pitch_px));
+      result.displaced = *nth;
       state.largest_ = state.largest_ < result.displaced ? result.displaced : state.largest_;
       result.recoil = S(state.largest_ - result.displaced);
-      result.alarm = S(test_.max_recoil) < result.recoil;
+      result.evidence = S(result.recoil / S(test_.max_recoil));
+      result.alarm = S(1) < result.evidence;
     }
     return result;
   }
 
  private:
-  template <class P>
-  static Point2<S> point(const P& p) {
-    return {S(point_traits<P>::x(p)), S(point_traits<P>::y(p))};
+  auto all_touch() const {
+    return LazyView(layout_.rows, layout_.cols, [](Index, Index) { return true; });
   }
 
-  Index rows_ = 0;
-  Index cols_ = 0;
+  detail::stick::DotLayout layout_;
   std::vector<Point2<S>> free_;
   RecoilTest test_;
 };

@@ -31,9 +31,12 @@ inline namespace v0 {
 ///   delta_0 = 2 gain lateral_mm sqrt(ln(1 / false_slip)), gain 0.416 by averaging over neighbours,
 ///   U = delta_0 / slip_share: the reference is the newest stored frame from which a dot in contact
 ///   has moved further; a frame is stored when a dot has moved U / 4 from the newest stored one.
+/// The noise is measured in the frames in which nothing touches. What is given here stands until
+/// then; along z, where errors of depth go with a dot, the larger of both.
 struct SpatialStickTest {
   double lateral_mm = 0.005;     ///< sd along x and along y, > 0: 0.06 px of a pixel of 0.08 mm
   double depth_mm = 0.025;       ///< sd along z, > 0; it counts where the surface is inclined
+  Index free_frames = 8;         ///< >= 0: so many free frames tell the noise; 0: none ever do
   double slip_share = 1.0 / 18;  ///< in (0, 0.5]: a dot slips that slips by more than this share of
                                  ///< the longest move
   double false_slip = 0.01;      ///< in (0, 0.5]: of the dots that stick, the share told to slip
@@ -55,6 +58,8 @@ inline void expects_valid(const SpatialStickTest& test) {
   check(test.hold_s >= 0, "hold_s", test.hold_s, "finite and >= 0");
   expects(test.min_dots >= 6, "SpatialStickTest", "min_dots", static_cast<long long>(test.min_dots),
           ">= 6");
+  expects(test.free_frames >= 0, "SpatialStickTest", "free_frames",
+          static_cast<long long>(test.free_frames), ">= 0");
   expects(test.capacity >= 1 && test.capacity <= 4096, "SpatialStickTest", "capacity",
           static_cast<long long>(test.capacity), "in [1, 4096]");
 }
@@ -74,19 +79,20 @@ class SpatialStickRatio {
     expects_grid_size("SpatialStickRatio", rows, cols);
     expects_valid(test);
     layout_ = {rows, cols};
-    noise_ = {S(1 / (test.lateral_mm * test.lateral_mm)), S(1 / (test.depth_mm * test.depth_mm))};
     const double gain = detail::stick::neighbour_gain();
     slip_quantile_ = 4 * gain * gain * std::log(1 / test.false_slip);
-    reference_mm_ = test.lateral_mm * std::sqrt(slip_quantile_) / test.slip_share;
   }
 
   Index rows() const { return layout_.rows; }
   Index cols() const { return layout_.cols; }
-  /// U, mm.
-  double reference_mm() const { return reference_mm_; }
+  /// U, mm, of dots with this noise.
+  double reference_mm(double lateral_mm) const {
+    return lateral_mm * std::sqrt(slip_quantile_) / test_.slip_share;
+  }
+  double reference_mm() const { return reference_mm(test_.lateral_mm); }
 
   /// The state before any frame, with all the memory that frames will need.
-  State start() const { return State(layout_, test_.capacity); }
+  State start() const { return State(layout_, test_.capacity, {test_.lateral_mm, test_.depth_mm}); }
 
   /// The ratio in a frame with dots `dots_mm` (NaN: not found) of which those with a true `contact`
   /// touch the object, at a time in s (NaN: not known). Writes to `states` what each dot does.
@@ -113,6 +119,7 @@ class SpatialStickRatio {
     }
     ++state.frame;
     state.given.read(dots, touch);
+    measure_noise(state);
     const StickStatus status = look(state);
     state.result.status = back ? StickStatus::restarted : status;
     detail::stick::settle_marks(state.layout, state.given.touching, state.marks, state.result, to);
@@ -121,6 +128,26 @@ class SpatialStickRatio {
 
  private:
   using Pairs = std::vector<detail::stick::SpatialPair<S>>;
+
+  /// By the frames in which nothing touches.
+  void measure_noise(State& state) const {
+    if (!state.given.touching.empty() || test_.free_frames == 0) {
+      state.free_dots.interrupt();
+    } else if (state.given.count > 0 && !state.clock.touched_within(test_.hold_s)) {
+      state.free_dots.add(state.given.found);
+      if (state.free_dots.frames() >= test_.free_frames) {
+        state.noise = {state.free_dots.lateral(),
+                       (std::max)(state.free_dots.depth(), test_.depth_mm)};
+      }
+    }
+  }
+
+  /// That of the axes, no less than a 2000th of a pitch along the pad: no camera finds dots better,
+  /// some files repeat them.
+  detail::stick::DotNoiseMm noise_of(const State& state) const {
+    const double pitch_mm = std::sqrt(static_cast<double>(value(state.pitch_sq)));
+    return {(std::max)(state.noise.lateral_mm, pitch_mm / 2000), state.noise.depth_mm};
+  }
 
   /// What this frame says; fills all of the result but the counts.
   StickStatus look(State& state) const {
@@ -145,11 +172,19 @@ class SpatialStickRatio {
       return state.given.count > 0 ? StickStatus::too_few_dots : StickStatus::no_dots;
     }
     state.pitch_sq = mean_pitch_sq(state.given.touching, state.now.data(), layout_);
-    if (is_wrong_scale(state.pitch_sq, reference_mm_, reference_mm_ * test_.slip_share)) {
+    const DotNoiseMm noise = noise_of(state);
+    const double reference = reference_mm(noise.lateral_mm);
+    if (is_wrong_scale(state.pitch_sq, reference, reference * test_.slip_share)) {
       return StickStatus::wrong_scale;
     }
-    const Choice<S> choice = choose(state);
-    const StickStatus status = choice.age >= 0   ? answer(choice, state)
+    const S reference_sq = S(reference * reference);
+    const Choice<S> choice = choose(reference_sq, state);
+    const bool leap = S(4) * reference_sq < choice.newest_sq;
+    if (leap &&
+        has_jumped(state.given.touching, state.now.data(), state.repository.dots(0), layout_)) {
+      return StickStatus::jumped;
+    }
+    const StickStatus status = choice.age >= 0   ? answer(choice, noise, state)
                                : choice.standing ? StickStatus::standing
                                                  : StickStatus::no_reference;
     if (!choice.standing) {
@@ -159,15 +194,15 @@ class SpatialStickRatio {
   }
 
   /// As UpdatedReference, but a frame that stands still is compared too.
-  detail::stick::Choice<S> choose(const State& state) const {
+  detail::stick::Choice<S> choose(const S& reference_sq, const State& state) const {
     using namespace detail::stick;
-    const S reference_sq = S(reference_mm_ * reference_mm_);
     Choice<S> choice;
     S before = S(-1);
     for (Index age = 0; age < state.repository.size(); ++age) {
       const S sq =
           furthest_rigid_sq(state.given.touching, state.now.data(), state.repository.dots(age));
       if (age == 0) {
+        choice.newest_sq = sq;
         choice.standing = !(sq < S(0)) && !(reference_sq / S(16) < sq);
       }
       if (sq < before) {
@@ -183,19 +218,23 @@ class SpatialStickRatio {
     return choice;
   }
 
-  StickStatus answer(const detail::stick::Choice<S>& choice, State& state) const {
+  StickStatus answer(const detail::stick::Choice<S>& choice,
+                     const detail::stick::DotNoiseMm& noise_mm,
+                     State& state) const {
     using namespace detail::stick;
     using std::sqrt;
-    collect(state.repository.dots(choice.age), state);
+    const AxisNoise<S> noise = {S(1 / square(noise_mm.lateral_mm)),
+                                S(1 / square(noise_mm.depth_mm))};
+    collect(state.repository.dots(choice.age), noise, state);
     if (static_cast<Index>(state.pairs.size()) < test_.min_dots) {
       return StickStatus::too_few_dots;
     }
     SpatialStickResult<S>& result = state.result;
-    const S relative = S(choice.furthest_sq / S(reference_mm_ * reference_mm_));
+    const S relative = S(choice.furthest_sq / S(square(reference_mm(noise_mm.lateral_mm))));
     const S limit = S(slip_quantile_) * relative;
     const Point3<S> from = state.has_center ? state.stick_center : middle_of(state.pairs);
     Pose<S> motion;
-    if (!consensus(from, limit, state, motion)) {
+    if (!consensus(from, noise, limit, state, motion)) {
       return StickStatus::too_few_dots;
     }
     mark(limit, state);
@@ -206,42 +245,46 @@ class SpatialStickRatio {
   }
 
   /// The dots that both frames have, with the surface at each.
-  void collect(const Point3<S>* then, State& state) const {
+  void collect(const Point3<S>* then,
+               const detail::stick::AxisNoise<S>& noise,
+               State& state) const {
     using namespace detail::stick;
     state.pairs.clear();
-    std::fill(state.pair_at.begin(), state.pair_at.end(), Index(-1));
     for (const Index k : state.given.touching) {
       if (is_finite(then[k]) && is_finite(at(state.now, k))) {
-        at(state.pair_at, k) = static_cast<Index>(state.pairs.size());
         SpatialPair<S> pair;
         pair.cell = k;
+        pair.padded = state.padded(k);
         pair.then = then[k];
         pair.now = at(state.now, k);
-        pair.carried = pair.then;
         state.pairs.push_back(pair);
       }
     }
-    set_neighbours(layout_, state.pair_at, state.pairs);
-    set_surface(noise_, state.pairs);
+    set_surface(noise, state.pairs);
   }
 
   /// The rigid motion on which the dots around `from` agree with those that follow it: dots within
   /// the limit are taken, and the motion fitted to them, until they become no more; then weights by
   /// the averaged slip take out the pull of dots that slip a little.
-  bool consensus(const Point3<S>& from, const S& limit, State& state, Pose<S>& motion) const {
+  bool consensus(const Point3<S>& from,
+                 const detail::stick::AxisNoise<S>& noise,
+                 const S& limit,
+                 State& state,
+                 Pose<S>& motion) const {
     using namespace detail::stick;
     Pairs& pairs = state.pairs;
+    weigh_followers(motion, limit, pairs);
     weigh_around(from, state.pitch_sq, pairs);
-    if (!refine_motion(pairs, noise_, motion)) {
+    if (!refine_motion(pairs, noise, from, motion)) {
       return false;
     }
     Index before = -1;
     for (int pass = 0; pass < max_passes; ++pass) {
-      const Index followers = weigh_followers(motion, noise_, limit, pairs);
+      const Index followers = weigh_followers(motion, limit, pairs);
       if (followers < min_followers) {
         weigh_nearest(min_followers, state.sorted, pairs);
       }
-      if (!refine_motion(pairs, noise_, motion)) {
+      if (!refine_motion(pairs, noise, from, motion)) {
         return false;
       }
       if (followers == before) {
@@ -253,7 +296,7 @@ class SpatialStickRatio {
     const double gain = neighbour_gain();
     const S width = S(8 * gain * gain);
     for (int pass = 0; pass < 4; ++pass) {
-      weigh_followers(motion, noise_, limit, pairs);
+      weigh_followers(motion, limit, pairs);
       average_slips(limit, state);
       if (pass == 3) {
         break;
@@ -262,7 +305,7 @@ class SpatialStickRatio {
         const S ratio = width / (width + p.mean_sq);
         p.weight = ratio * ratio;
       }
-      if (!refine_motion(pairs, noise_, motion)) {
+      if (!refine_motion(pairs, noise, from, motion)) {
         return false;
       }
     }
@@ -273,22 +316,16 @@ class SpatialStickRatio {
   void average_slips(const S& limit, State& state) const {
     using namespace detail::stick;
     const S gate = S(36) * limit;
+    std::fill(state.small_slips.begin(), state.small_slips.end(), SmallSlip<S>{});
+    for (const SpatialPair<S>& p : state.pairs) {
+      if (p.slip_sq < gate) {
+        state.small_slips[p.padded] = {p.slip(), S(1)};
+      }
+    }
     for (SpatialPair<S>& p : state.pairs) {
-      p.mean_slip = p.slip;
-      p.mean_sq = p.slip_sq;
-      if (!(p.slip_sq < gate)) {
-        continue;
-      }
-      Point3<S> sum = S(neighbour_weight(0, 0)) * p.slip;
-      int weight = neighbour_weight(0, 0);
-      for (const NeighbourPair& n : p.neighbours) {
-        if (n.pair >= 0 && at(state.pairs, n.pair).slip_sq < gate) {
-          sum += S(n.weight) * at(state.pairs, n.pair).slip;
-          weight += n.weight;
-        }
-      }
-      p.mean_slip = sum / S(weight);
-      p.mean_sq = in_variances(p.mean_slip, p);
+      p.mean_slip =
+          p.slip_sq < gate ? mean_around(&state.small_slips[p.padded], layout_.cols + 2) : p.slip();
+      p.mean_sq = p.slip_sq < gate ? in_variances(p.mean_slip, p) : p.slip_sq;
     }
   }
 
@@ -323,9 +360,7 @@ class SpatialStickRatio {
 
   SpatialStickTest test_;
   detail::stick::DotLayout layout_;
-  detail::stick::AxisNoise<S> noise_;
   double slip_quantile_ = 0;  ///< of the squared slip of a sticking dot, in variances of a position
-  double reference_mm_ = 0;
 };
 
 }  // namespace v0

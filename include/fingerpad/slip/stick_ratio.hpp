@@ -12,6 +12,7 @@
 // stored frame from which the dots have come far enough, in one direction, to tell. The steps are
 // in stick_steps.hpp. What no dots can show: an object that slides as a whole while the membrane
 // stands still.
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 
@@ -26,6 +27,10 @@ namespace fingerpad {
 inline namespace v0 {
 
 /// When dots are compared, and what counts as slip. In px, or in whatever unit the dots are in.
+/// What is given stands until the noise of the dots has been measured in frames in which nothing
+/// touches. Then delta_0 is what a sticking dot exceeds with a probability of 1 %, U no smaller
+/// than given and large enough that delta_0 / U is no larger, and U_min no smaller than given and
+/// what noise alone moves the furthest of all dots by, but for 1 %.
 struct StickTest {
   double reference_px = 2.0;  ///< U, > 0: the reference is the newest stored frame from which a dot
                               ///< in contact has moved further
@@ -35,6 +40,7 @@ struct StickTest {
                               ///< by more than this times d_max / U; for dots with other noise
                               ///< than the published 0.06 px see calibrate/slip.hpp
   Index min_dots = 5;         ///< >= 1: to compare; fewer give no ratio
+  Index free_frames = 8;      ///< >= 0: see above; 0: the thresholds stand as they are given
   double hold_s = 0.2;        ///< >= 0: a contact lost and found again within this time is the same
                               ///< one, and a clock may go back by as much
 };
@@ -47,6 +53,8 @@ inline void expects_valid(const StickTest& test) {
           "finite and > 0");
   expects(is_finite(test.hold_s) && test.hold_s >= 0, "StickTest", "hold_s", test.hold_s,
           "finite and >= 0");
+  expects(test.free_frames >= 0, "StickTest", "free_frames",
+          static_cast<long long>(test.free_frames), ">= 0");
   expects(test.min_dots >= 1, "StickTest", "min_dots", static_cast<long long>(test.min_dots),
           ">= 1");
 }
@@ -131,6 +139,7 @@ class StickRatio {
     }
     ++state.frame;
     state.given.read(dots, touch);
+    measure_noise(state);
     const StickStatus status = look(state);
     StickRatioResult<S>& result = state.result;
     result.status = back ? StickStatus::restarted : status;
@@ -143,6 +152,38 @@ class StickRatio {
 
  private:
   using Choice = detail::stick::Choice<S>;
+
+  /// By the frames in which nothing touches.
+  void measure_noise(State& state) const {
+    if (!state.given.touching.empty() || test_.free_frames == 0) {
+      state.free_dots.interrupt();
+    } else if (state.given.count > 0 && !state.clock.touched_within(test_.hold_s)) {
+      state.free_dots.add(state.given.found);
+      if (state.free_dots.frames() >= test_.free_frames) {
+        state.noise_px = state.free_dots.lateral();
+      }
+    }
+  }
+
+  /// The thresholds for the noise that was measured.
+  detail::stick::StickLengths lengths_of(const S& pitch_sq, const State& state) const {
+    using detail::stick::noise_left_by;
+    const detail::stick::StickLengths given = {test_.reference_px, test_.store_px, test_.slip_px};
+    const double left = noise_left_by(denoising_);
+    const double pitch_px = std::sqrt(static_cast<double>(value(pitch_sq)));
+    if (!(state.noise_px > 0) || !(left > 0)) {
+      return given;
+    }
+    // no camera finds dots better than a 2000th of a pitch, some files repeat them
+    const double noise_px = (std::max)(state.noise_px, pitch_px / 2000);
+    const double dots = static_cast<double>(state.given.touching.size());
+    detail::stick::StickLengths px;
+    px.slip = 2 * left * noise_px * std::sqrt(std::log(100.0));
+    px.reference = given.reference * (std::max)(1.0, px.slip / given.slip);
+    px.store = (std::min)((std::max)(given.store, 2 * noise_px * std::sqrt(std::log(100 * dots))),
+                          px.reference);
+    return px;
+  }
 
   /// What this frame says; fills all of the result but the counts.
   StickStatus look(State& state) const {
@@ -163,23 +204,25 @@ class StickRatio {
     if (placed.dots < test_.min_dots) {
       return state.given.count > 0 ? StickStatus::too_few_dots : StickStatus::no_dots;
     }
-    if (is_wrong_scale(mean_pitch_sq(touching, state.now.data(), layout_), test_.reference_px,
-                       test_.slip_px)) {
+    const S pitch_sq = mean_pitch_sq(touching, state.now.data(), layout_);
+    const StickLengths px = lengths_of(pitch_sq, state);
+    if (is_wrong_scale(pitch_sq, px.reference, px.slip)) {
       return StickStatus::wrong_scale;
     }
-    const S reference_sq = S(square(test_.reference_px));
+    const S reference_sq = S(square(px.reference));
     const Choice choice = choose_reference(reference_, touching, state.now.data(), state.repository,
-                                           reference_sq, S(square(test_.store_px)));
+                                           reference_sq, S(square(px.store)));
     result.furthest_px = length(choice.furthest_sq);
-    if (choice.standing) {
+    if (choice.standing && choice.age < 0) {
       return StickStatus::standing;
     }
     const bool leap = S(4) * reference_sq < choice.newest_sq;
     if (leap && has_jumped(touching, state.now.data(), state.repository.dots(0), layout_)) {
       return StickStatus::jumped;
     }
-    const StickStatus status = choice.age < 0 ? StickStatus::no_reference : answer(choice, state);
-    if (is_stored(reference_, state.repository)) {
+    const StickStatus status =
+        choice.age < 0 ? StickStatus::no_reference : answer(choice, px, state);
+    if (!choice.standing && is_stored(reference_, state.repository)) {
       state.repository.store(state.now, state.frame);
     }
     return status;
@@ -196,7 +239,9 @@ class StickRatio {
   }
 
   /// The ratio against the chosen reference.
-  StickStatus answer(const Choice& choice, State& state) const {
+  StickStatus answer(const Choice& choice,
+                     const detail::stick::StickLengths& px,
+                     State& state) const {
     using namespace detail::stick;
     const FramePair<S> pair{state.now.data(), state.repository.dots(choice.age),
                             state.given.touching, layout_, choice.furthest_sq};
@@ -204,7 +249,7 @@ class StickRatio {
       return StickStatus::too_few_dots;
     }
     const Index reference = first_dot(pair, state);
-    const S slip = S(test_.slip_px / test_.reference_px);
+    const S slip = S(px.slip / px.reference);
     const S slip_sq = slip * slip * choice.furthest_sq;
     const bool mostly_slipped = S(2) * state.result.stick_ratio < S(1);
     const Similarity<S> map = motion_between(motion_, pair, reference, slip_sq, mostly_slipped);

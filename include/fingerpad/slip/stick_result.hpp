@@ -28,9 +28,11 @@ enum class StickStatus : std::uint8_t {
   too_few_dots,  ///< fewer dots to compare than StickTest::min_dots
   no_contact,    ///< nothing touches: after hold_s what was stored is forgotten
   no_dots,       ///< no dot at all was found: nothing is known, nothing is forgotten
-  wrong_scale,   ///< U is more than half a pitch, or a pitch less than four delta_0: another unit?
+  wrong_scale,   ///< U is more than half a pitch or less than a 200th of it, or a pitch less than
+                 ///< four delta_0: another unit?
   not_in_order,  ///< more than a fifth of the dots in contact are not between their neighbours
-  jumped,        ///< all dots carry the name of a neighbour: the frame is left out
+  jumped,        ///< the dots carry other names than before, all those of a neighbour, or rows and
+                 ///< columns or two halves exchanged: the frame is left out
   restarted,     ///< time went back by more than hold_s: all that was before is forgotten
   refused,       ///< a grid, state or workspace has another size: nothing was done
 };

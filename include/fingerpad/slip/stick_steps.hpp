@@ -20,7 +20,8 @@ inline namespace v0 {
 /// long as the distance grows from frame to frame further back. Where it begins to shrink the
 /// object has turned round, and no frame from there on is looked at; equal distances go on.
 struct UpdatedReference {
-  Index capacity = 64;  ///< 1 to 4096 frames; when it is full the oldest one is forgotten
+  Index capacity = 64;   ///< 1 to 4096 frames; when it is full the oldest one is forgotten
+  bool at_rest = false;  ///< also compares frames that stand still within U_min
 };
 
 /// What may differ between two frames of one object, besides where it is.
@@ -92,10 +93,24 @@ inline void expects_valid(const NoDenoising&) {}
 
 namespace detail::stick {
 
+/// Of the noise of one dot, what a denoising leaves; 0: not known, and nothing follows from it.
+template <class Denoising>
+double noise_left_by(const Denoising&) {
+  return 0;
+}
+inline double noise_left_by(const NoDenoising&) {
+  return 1;
+}
+inline double noise_left_by(const ResidualMean& mean) {
+  const auto& [self, side, diagonal] = mean.weights;
+  return std::sqrt(self * self + 4 * side * side + 4 * diagonal * diagonal) /
+         (self + 4 * side + 4 * diagonal);
+}
+
 // ---- with which frame the present one is compared
 
 template <class P, class S>
-Choice<S> choose_reference(const UpdatedReference&,
+Choice<S> choose_reference(const UpdatedReference& reference,
                            const std::vector<Index>& touching,
                            const P* now,
                            const Repository<P>& stored,
@@ -109,7 +124,7 @@ Choice<S> choose_reference(const UpdatedReference&,
       choice.newest_sq = choice.furthest_sq = sq;
       choice.standing = !(sq < S(0)) && !(store_sq < sq);
     }
-    if (choice.standing || sq < before) {
+    if ((choice.standing && !reference.at_rest) || sq < before) {
       break;
     }
     if (reference_sq < sq) {

@@ -86,8 +86,9 @@ class FreeRimBalance {
     set_equations();
   }
 
-  /// Takes D anew as the row of dots tells it for this L and mu t.
-  void correct(const S& length, const S& modulus) {
+  /// Takes D anew as the row of dots tells it for this L, mu t and rubber.
+  void correct(const S& length, const S& modulus, const S& mooney_share) {
+    mooney_share_ = mooney_share;
     take_levers(length, modulus);
     set_equations();
   }
@@ -215,7 +216,7 @@ class FreeRimBalance {
           const S dot_length = length * shares_[j];
           const RimPoint<S> point{rim_[j].border, rim_[j].tangent, dot_length, rim_.radius_mm()};
           const Point3<S>* dots = &level.dot_mm[j * static_cast<std::size_t>(Row::rows)];
-          lever_mm_[k][j] = dot_length * row_.along(point, dots, load);
+          lever_mm_[k][j] = dot_length * row_.along(point, dots, load, mooney_share_);
         }
       }
     }
@@ -301,6 +302,7 @@ class FreeRimBalance {
   const CalibratedRim<S>& rim_;
   const Levels& levels_;
   const Row& row_;
+  S mooney_share_ = S(0);
   std::vector<std::vector<Point3<S>>> lever_mm_;  ///< D: d times the stress-free length
   std::vector<S> mean_length_;
   std::vector<S> shares_;

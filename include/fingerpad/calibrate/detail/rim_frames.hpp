@@ -66,8 +66,12 @@ struct RimLevel {
 
   /// Only dots of which the frame has all `Row::rows` count.
   template <class Row, class Dots>
-  void add(const Dots& dots, const S& pressure) {
+  void add(const Dots& dots, const S& pressure, const S& apex) {
     ++frames;
+    if (is_finite(apex)) {
+      ++apex_frames;
+      apex_mm = apex_mm + (apex - apex_mm) / S(apex_frames);
+    }
     pressure_mpa = pressure_mpa + (pressure - pressure_mpa) / S(frames);
     for (std::size_t j = 0; j < count.size(); ++j) {
       Point3<S> dot[Row::rows];
@@ -87,7 +91,9 @@ struct RimLevel {
   bool sees(std::size_t column) const { return count[column] > 0; }
 
   S pressure_mpa = S(0);
+  S apex_mm = S(0);
   int frames = 0;
+  int apex_frames = 0;            ///< of these, that told the apex
   std::vector<Point3<S>> dot_mm;  ///< the dots of a column lie together
   std::vector<int> count;         ///< frames that saw the column's dots
 };

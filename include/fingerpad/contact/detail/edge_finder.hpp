@@ -53,7 +53,8 @@ class EdgeFinder<HalfLevelEdge, Statistic, CameraType, S> {
       : image_(image),
         threshold_(S(test.threshold_per_mm)),
         gap_mm_(edge.touching_gap_mm),
-        ring_px_(test.ring.radius_px),
+        radius_px_(test.ring.radius_px),
+        ring_px_(static_cast<Index>(std::ceil(radius_px_))),
         pitch_(pixel_pitch(camera)),
         mean_(camera, image.rows, image.cols, test.ring),
         cell_(static_cast<std::size_t>(image.size())) {
@@ -137,7 +138,7 @@ class EdgeFinder<HalfLevelEdge, Statistic, CameraType, S> {
     const double pixel_mm = pixel_size_at(depth_mm, regions, region);
     const double area_mm2 = static_cast<double>(region.pixels()) * pixel_mm * pixel_mm;
     const S patch_mm = S(std::sqrt(area_mm2 / 3.14159265358979323846));
-    const S ring_mm = S(static_cast<double>(ring_px_) * pixel_mm);
+    const S ring_mm = S(radius_px_ * pixel_mm);
     const S spread_mm = S(static_cast<double>(spread_px()) * pixel_mm);
     const auto edge = [&](const S& outside) {
       return edge_level(inside, outside, S(gap_mm_), ring_mm, patch_mm, spread_mm);
@@ -197,7 +198,8 @@ class EdgeFinder<HalfLevelEdge, Statistic, CameraType, S> {
   BorderedImage image_;
   S threshold_;
   double gap_mm_;
-  Index ring_px_;
+  double radius_px_;
+  Index ring_px_;  ///< the same, in whole pixels
   PixelPitch pitch_;
   MeanMap mean_;
   std::vector<std::uint32_t> cell_;  ///< of `outside`, by the image's border

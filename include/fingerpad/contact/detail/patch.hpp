@@ -12,6 +12,7 @@
 #include "fingerpad/core/scalar.hpp"
 #include "fingerpad/image/detail/row_lanes.hpp"
 #include "fingerpad/math/detail/small_matrices.hpp"
+#include "fingerpad/math/detail/zeros.hpp"
 
 namespace fingerpad {
 inline namespace v0 {
@@ -112,7 +113,7 @@ struct PatchMoments {
   Index pixels = 0;
   S count = S(0);
   Point3<S> centroid = {S(0), S(0), S(0)};
-  SmallMatrix<S, 3> second{};
+  SmallMatrix<S, 3> second = zero_matrix<S, 3>();
   Point3<S> third = {S(0), S(0), S(0)};  ///< mean of q (x, y, z)
   S fourth = S(0);                       ///< mean of q^2
 };

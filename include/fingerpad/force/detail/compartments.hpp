@@ -118,7 +118,7 @@ class Compartments {
       if (line.end() == LineEnd::hole) {
         ++broken_;
       } else {
-        cut<Lines::by_height>(i);
+        cut<Lines>(i);
       }
     }
     if (broken_ > 0 && broken_ < columns_) {
@@ -131,21 +131,30 @@ class Compartments {
     return nodes_[static_cast<std::size_t>(row * columns_ + line)];
   }
 
+  static S length_of(const S& sq) {
+    using std::sqrt;
+    return value(sq) > 0 ? S(sqrt(sq)) : S(0);
+  }
   static S measure(const Point3<S>& a, const Point3<S>& b, bool by_height) {
     using std::sqrt;
     const S climb = b.z - a.z;
-    return by_height ? (climb < S(0) ? S(0) : climb) : S(sqrt(squared_norm(b - a)));
+    return by_height ? (climb < S(0) ? S(0) : climb) : length_of(S(squared_norm(b - a)));
   }
 
-  /// Nodes of a line at equal parts of its height or length.
-  template <bool ByHeight>
+  /// Nodes of a line at equal parts of its height or length, or at steps of height of their own;
+  /// then those beyond its end lie there, and what steps do not reach belongs to the last segment.
+  template <class Lines>
   void cut(Index line) {
+    constexpr bool ByHeight = Lines::by_height;
     const std::vector<Point3<S>>& points = lines_[static_cast<std::size_t>(line)].points();
     S total = S(0);
     for (std::size_t k = 1; k < points.size(); ++k) {
       total = total + measure(points[k - 1], points[k], ByHeight);
     }
-    const S step = total / S(static_cast<double>(rows_));
+    S step = total / S(static_cast<double>(rows_));
+    if constexpr (requires { Lines::step_mm; }) {
+      step = S(Lines::step_mm);
+    }
     at(line, 0) = points.front();
     at(line, rows_) = points.back();
     std::size_t k = 1;
@@ -158,7 +167,8 @@ class Compartments {
         ++k;
         length = measure(points[k - 1], points[k], ByHeight);
       }
-      const S share = value(length) > 0 ? S((wanted - before) / length) : S(0);
+      S share = value(length) > 0 ? S((wanted - before) / length) : S(0);
+      share = before + length < wanted ? S(1) : share;  // beyond the end
       at(line, j) = points[k - 1] + share * (points[k] - points[k - 1]);
     }
   }

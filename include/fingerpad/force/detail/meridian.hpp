@@ -24,6 +24,7 @@
 #include "fingerpad/core/scalar.hpp"
 #include "fingerpad/force/detail/height_map.hpp"
 #include "fingerpad/math/detail/small_matrices.hpp"
+#include "fingerpad/math/detail/zeros.hpp"
 
 namespace fingerpad {
 inline namespace v0 {
@@ -47,8 +48,8 @@ struct LineSteps {
 /// r_edge), x = r sin(inclination), r_edge where the contact is seen to begin.
 template <scalar S>
 struct LevelSums {
-  SmallMatrix<S, 3> normal{};
-  std::array<S, 3> right{};
+  SmallMatrix<S, 3> normal = zero_matrix<S, 3>();
+  std::array<S, 3> right = detail::zeros<S, 3>();
   S edge_sq = S(0);
   Index count = 0;
 

@@ -13,6 +13,7 @@
 #include "fingerpad/force/detail/rim.hpp"
 #include "fingerpad/force/rim_balance.hpp"
 #include "fingerpad/force/wrench_options.hpp"
+#include "fingerpad/math/detail/zeros.hpp"
 
 namespace fingerpad {
 inline namespace v0 {
@@ -33,7 +34,7 @@ class CovarianceSum {
   const std::array<std::array<S, 6>, 6>& get() const { return sum_; }
 
  private:
-  std::array<std::array<S, 6>, 6> sum_{};
+  std::array<std::array<S, 6>, 6> sum_ = detail::zero_matrix<S, 6>();
 };
 
 /// What a frame's forces were found from.

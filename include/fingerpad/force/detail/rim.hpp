@@ -234,7 +234,7 @@ class Rim {
         return {};
       }
     }
-    along = row.along(place.point, dot, load_per_mm);
+    along = row.along(place.point, dot, load_per_mm, mooney_share_of<S>(law));
     // no membrane stretches tenfold: such a dot is another one
     if (!(value(squared_norm(along)) < 100)) {
       return {};

@@ -119,18 +119,33 @@ class CellMeans {
       add_bytes(reinterpret_cast<const std::uint8_t*>(frame.row(i)), cols_ * Channels,
                 sums_.data());
     }
+    if (size_px_ == 4) {
+      sum_columns(std::integral_constant<Index, 4>{});
+    } else {
+      sum_columns(size_px_);
+    }
+  }
+
+  /// Of sums_ to line_. `size`: size_px_, known to the compiler where it is the usual one.
+  template <class Size>
+  void sum_columns(const Size& size) {
     const std::uint16_t* at = sums_.data();
-    for (Index j = 0; j < cell_cols(); ++j) {
-      const Index width = (std::min)(size_px_, cols_ - j * size_px_);
-      int total[std::size_t(Channels)] = {};
+    const Index whole = cols_ / size_px_;
+    for (Index j = 0; j < whole; ++j, at += size * Channels) {
+      add_columns(at, size, j);
+    }
+    if (whole < cell_cols()) {
+      add_columns(at, cols_ - whole * size_px_, whole);
+    }
+  }
+  template <class Width>
+  void add_columns(const std::uint16_t* at, const Width& width, Index j) {
+    for (int c = 0; c < Channels; ++c) {
+      int total = 0;
       for (Index k = 0; k < width; ++k) {
-        for (int c = 0; c < Channels; ++c) {
-          total[c] += *at++;
-        }
+        total += at[k * Channels + c];
       }
-      for (int c = 0; c < Channels; ++c) {
-        line_[static_cast<std::size_t>(j * Channels + c)] = S(total[c]);
-      }
+      line_[static_cast<std::size_t>(j * Channels + c)] = S(total);
     }
   }
 

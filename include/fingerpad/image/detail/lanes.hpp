@@ -6,8 +6,8 @@
 // not vectorise loops of run-time length at -O2; the width is that of the instruction set compiled
 // for, since wider vectors are split badly, and is a template argument everywhere, so that
 // translation units compiled for different sets never share a function by name.
-// Unsupported compiler or byte order, or FINGERPAD_NO_VECTORS defined by the user (for the whole
-// program): `native_vector_bytes` is 0 and nothing else is declared.
+// Unsupported compiler, byte order or machine, or FINGERPAD_NO_VECTORS defined by the user (for the
+// whole program): `native_vector_bytes` is 0 and nothing else is declared.
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
@@ -20,7 +20,7 @@ namespace detail {
 
 #if defined(FINGERPAD_NO_VECTORS) || !defined(__GNUC__) ||                \
     (!defined(__clang__) && __GNUC__ < 12) || !defined(__BYTE_ORDER__) || \
-    __BYTE_ORDER__ != __ORDER_LITTLE_ENDIAN__
+    __BYTE_ORDER__ != __ORDER_LITTLE_ENDIAN__ || (defined(__i386__) && !defined(__SSE2__))
 constexpr int native_vector_bytes = 0;
 #else
 #define FINGERPAD_HAS_VECTORS

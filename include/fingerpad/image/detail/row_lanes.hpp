@@ -44,15 +44,15 @@ void store_cells(T* to, const V& v) {
   *to = static_cast<T>(v);
 }
 
+template <class V, class S>
+inline constexpr int lanes_in = static_cast<int>(sizeof(V) / sizeof(S));
+
 #if defined(FINGERPAD_HAS_VECTORS)
 template <class S, int N>
   requires(N > 1)
 struct RowVector<S, N> {
   using type = lanes<S, N>;
 };
-
-template <class V, class S>
-inline constexpr int lanes_in = static_cast<int>(sizeof(V) / sizeof(S));
 
 /// Integers that widen or narrow by a factor of two at a time, for which machines have
 /// instructions and GCC 12 uses them.

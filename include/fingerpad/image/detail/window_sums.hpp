@@ -292,12 +292,14 @@ struct WindowSumsOf {
   using type = RunningWindowSums<Pixel, Windows>;
 };
 #if defined(FINGERPAD_HAS_VECTORS)
+#if defined(FINGERPAD_HAS_VECTORS)
 template <class Pixel, int Windows, int VectorBytes>
   requires(VectorBytes > 0 &&
            (std::same_as<Pixel, std::uint8_t> || std::same_as<Pixel, std::uint16_t>))
 struct WindowSumsOf<Pixel, Windows, VectorBytes> {
   using type = VectorWindowSums<Pixel, Windows, VectorBytes>;
 };
+#endif
 #endif
 
 /// The fastest way there is to sum pixels of this type; VectorBytes = 0 asks for the plain one.

@@ -74,7 +74,6 @@ template <int N>
   store(weight + half, reciprocal<half>(counts.second));
   return Cover::cut;
 }
-#endif
 
 template <class Pixel, int Windows, int Bytes>
 class VectorWindowSums {
@@ -331,6 +330,7 @@ class VectorWindowSums {
   std::vector<Cover> cover_;
   aligned_vector<float> weight_;
 };
+#endif
 
 }  // namespace detail
 

@@ -10,6 +10,7 @@
 #include "fingerpad/core/dots.hpp"
 #include "fingerpad/core/point.hpp"
 #include "fingerpad/core/scalar.hpp"
+#include "fingerpad/math/detail/zeros.hpp"
 
 namespace fingerpad {
 inline namespace v0 {
@@ -96,7 +97,7 @@ void jacobi_rotate(SmallMatrix<S, 3>& a, SmallMatrix<S, 3>& vectors, std::size_t
 /// are enough for fifty digits.
 template <scalar S>
 Eigen3<S> eigenvectors(SmallMatrix<S, 3> a) {
-  SmallMatrix<S, 3> vectors{};
+  SmallMatrix<S, 3> vectors = zero_matrix<S, 3>();
   for (std::size_t i = 0; i < 3; ++i) {
     for (std::size_t j = 0; j < 3; ++j) {
       vectors[i][j] = S(i == j ? 1 : 0);
@@ -190,8 +191,8 @@ class NormalEquations {
   bool good = true;
 
  private:
-  SmallMatrix<S, N> factor_{};
-  std::array<S, N> scale_{};
+  SmallMatrix<S, N> factor_ = zero_matrix<S, N>();
+  std::array<S, N> scale_ = detail::zeros<S, N>();
 };
 
 }  // namespace detail

@@ -4,12 +4,14 @@
 // One frame of dots and contact flags as the methods read it, and the contact reference dot.
 // Source: Ito, Kim, Nagai, Obinata 2011, III.C: "the dot which displacement from the initial
 // position is biggest", among the dots in contact whose eight neighbours are there.
+#include <algorithm>
 #include <cmath>
 #include <concepts>
 #include <cstddef>
 #include <vector>
 
 #include "fingerpad/core/dots.hpp"
+#include "fingerpad/core/expects.hpp"
 #include "fingerpad/core/grid.hpp"
 #include "fingerpad/core/point.hpp"
 #include "fingerpad/core/scalar.hpp"
@@ -49,7 +51,11 @@ class DotFrame {
   bool flagged(Index row, Index col) const {
     return is_contact(cell_t<Contact>(contact_(row, col)));
   }
-  bool found(Index row, Index col) const { return is_placed(dot(row, col)); }
+  /// In the middle of the plate lies no membrane: (0, 0, 0) is what some give for a lost dot.
+  bool found(Index row, Index col) const {
+    const Point3<S> p = dot(row, col);
+    return is_placed(p) && !(value(p.x) == 0 && value(p.y) == 0 && value(p.z) == 0);
+  }
   bool in_contact(DotIndex d) const { return flagged(d.row, d.col) && found(d.row, d.col); }
 
   bool any_flagged() const {
@@ -113,6 +119,29 @@ struct InitialDots {
     return dots[static_cast<std::size_t>(row * cols + col)];
   }
 };
+
+/// Refuses dots of which no pad has neighbours so near or far: in m, um?
+template <scalar S>
+void expects_in_mm(const InitialDots<S>& initial) {
+  std::vector<double> steps_mm;
+  for (Index i = 0; i < initial.rows; ++i) {
+    for (Index j = 0; j + 1 < initial.cols; ++j) {
+      if (is_placed(initial(i, j)) && is_placed(initial(i, j + 1))) {
+        const S sq = squared_norm(initial(i, j + 1) - initial(i, j));
+        steps_mm.push_back(std::sqrt(static_cast<double>(value(sq))));
+      }
+    }
+  }
+  if (steps_mm.empty()) {
+    return;
+  }
+  const auto middle = steps_mm.begin() + static_cast<std::ptrdiff_t>(steps_mm.size() / 2);
+  std::nth_element(steps_mm.begin(), middle, steps_mm.end());
+  const bool one_place = !(*middle > 0);  // no dots at all, which every frame says
+  expects(one_place || (*middle > 0.05 && *middle < 50), "ObjectMotion",
+          "distance of neighbouring dots, mm", *middle,
+          "in (0.05, 50): are the dots of the free pad in mm, and none a mark of lost ones?");
+}
 
 /// True when the dot and its eight neighbours are found, now and initially.
 template <scalar S, class Frame>

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 
 #include "fingerpad/published/detail/neighbourhood.hpp"
 
@@ -111,6 +112,19 @@ MotionStatus begin_following(const Frame& frame, DotIndex reference, FollowingTr
   return MotionStatus::ok;
 }
 
+/// Whether the dots moved as one: to a quarter of a pitch.
+template <scalar S>
+bool is_rigid(const Neighbourhood<S>& anchor, const S& residual_mm) {
+  S least_sq = S(std::numeric_limits<scalar_real_t<S>>::infinity());
+  for (std::size_t k = 1; k < 9; k += 2) {  // the four beside it
+    if (anchor.found[k] && anchor.found[4]) {
+      const S sq = squared_norm(anchor.dot[k] - anchor.dot[4]);
+      least_sq = value(sq) < value(least_sq) ? sq : least_sq;
+    }
+  }
+  return !(value(least_sq) < 16 * value(S(residual_mm * residual_mm)));
+}
+
 /// The step of a followed dot in the next frame, or why there is none.
 template <class Local, scalar S, class Frame>
 DotStep<S> next_step(const Frame& frame, DotIndex reference, FollowedDot<S>& followed) {
@@ -122,6 +136,8 @@ DotStep<S> next_step(const Frame& frame, DotIndex reference, FollowedDot<S>& fol
   step = step_of<Local>(frame, followed);
   if (step.status == MotionStatus::ok && followed.has_left && !reference.exists()) {
     step.status = MotionStatus::no_reference_dot;
+  } else if (step.status == MotionStatus::ok && !is_rigid(followed.anchor, step.residual_rms_mm)) {
+    step.status = MotionStatus::not_rigid;
   }
   return step;
 }

@@ -64,13 +64,17 @@ P& at(Dots<P>& dots, Index k) {
   return dots[static_cast<std::size_t>(k)];
 }
 
-/// The dot `down` rows and `right` columns from dot k; NaN outside of the grid.
+/// The dot `down` rows and `right` columns from dot d; NaN outside of the grid.
 template <class P>
-P beside(const P* dots, const DotLayout& layout, Index k, Index down, Index right) {
-  const DotIndex d = layout.dot_at(k);
+P beside(const P* dots, const DotLayout& layout, const DotIndex& d, Index down, Index right) {
   const bool inside = d.row + down >= 0 && d.row + down < layout.rows && d.col + right >= 0 &&
                       d.col + right < layout.cols;
-  return inside ? dots[k + down * layout.cols + right] : no_dot<P>();
+  return inside ? dots[(d.row + down) * layout.cols + d.col + right] : no_dot<P>();
+}
+/// The same from dot k. A division each: ask for dot_at(k) once where there are many.
+template <class P>
+P beside(const P* dots, const DotLayout& layout, Index k, Index down, Index right) {
+  return beside(dots, layout, layout.dot_at(k), down, right);
 }
 
 /// A frame as it was given, of points in the image or in space.
@@ -238,16 +242,18 @@ void settle_marks(const DotLayout& layout,
                   const States& to) {
   auto touching = all_touching.begin();
   result.stick = result.slip = result.unknown = 0;
-  for (Index k = 0; k < layout.size(); ++k) {
-    DotState& mark = marks[static_cast<std::size_t>(k)];
-    const bool touches = touching != all_touching.end() && *touching == k;
-    touching += touches ? 1 : 0;
-    mark = !touches ? DotState::none : mark == DotState::none ? DotState::unknown : mark;
-    result.stick += mark == DotState::stick ? 1 : 0;
-    result.slip += mark == DotState::slip ? 1 : 0;
-    result.unknown += mark == DotState::unknown ? 1 : 0;
-    const DotIndex d = layout.dot_at(k);
-    to(d.row, d.col) = static_cast<cell_t<States>>(mark);
+  Index k = 0;
+  for (Index i = 0; i < layout.rows; ++i) {
+    for (Index j = 0; j < layout.cols; ++j, ++k) {
+      DotState& mark = marks[static_cast<std::size_t>(k)];
+      const bool touches = touching != all_touching.end() && *touching == k;
+      touching += touches ? 1 : 0;
+      mark = !touches ? DotState::none : mark == DotState::none ? DotState::unknown : mark;
+      result.stick += mark == DotState::stick ? 1 : 0;
+      result.slip += mark == DotState::slip ? 1 : 0;
+      result.unknown += mark == DotState::unknown ? 1 : 0;
+      to(i, j) = static_cast<cell_t<States>>(mark);
+    }
   }
 }
 

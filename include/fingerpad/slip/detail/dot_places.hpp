@@ -6,43 +6,45 @@
 #include <algorithm>
 
 #include "fingerpad/slip/detail/dot_frames.hpp"
+#include "fingerpad/slip/detail/similarity.hpp"
 
 namespace fingerpad {
 inline namespace v0 {
 namespace detail::stick {
 
-/// Whether dot k lies further than half a pitch from the middle of the two dots beside it; false
+/// Whether dot d lies further than half a pitch from the middle of the two dots beside it; false
 /// where one of the three is missing.
 template <class P>
-bool is_out_of_line(const P* dots, const DotLayout& layout, Index k, Index down, Index right) {
-  const P a = beside(dots, layout, k, -down, -right);
-  const P b = beside(dots, layout, k, down, right);
-  const P off = a + b - coordinate<P>(2) * dots[k];                   // twice the distance
-  return squared_norm(b - a) < coordinate<P>(4) * squared_norm(off);  // b - a: two pitches
+bool is_out_of_line(
+    const P* dots, const DotLayout& layout, const DotIndex& d, Index down, Index right) {
+  const P a = beside(dots, layout, d, -down, -right);
+  const P b = beside(dots, layout, d, down, right);
+  const P off = a + b - coordinate<P>(2) * beside(dots, layout, d, 0, 0);  // twice the distance
+  return squared_norm(b - a) < coordinate<P>(4) * squared_norm(off);       // b - a: two pitches
 }
 
 /// The corners of the pattern lie between no two neighbours: they are held against the line through
 /// the next two, along their row and their column.
 template <class P>
-bool is_corner_out_of_line(const P* dots, const DotLayout& layout, Index k) {
-  const DotIndex d = layout.dot_at(k);
+bool is_corner_out_of_line(const P* dots, const DotLayout& layout, const DotIndex& d) {
   const bool corner =
       (d.row == 0 || d.row == layout.rows - 1) && (d.col == 0 || d.col == layout.cols - 1);
   if (!corner) {
     return false;
   }
   const auto is_off = [&](Index down, Index right) {
-    const P next = beside(dots, layout, k, down, right);
-    const P along = next - beside(dots, layout, k, 2 * down, 2 * right);
-    return squared_norm(along) < coordinate<P>(4) * squared_norm(dots[k] - next - along);
+    const P next = beside(dots, layout, d, down, right);
+    const P along = next - beside(dots, layout, d, 2 * down, 2 * right);
+    const P off = beside(dots, layout, d, 0, 0) - next - along;
+    return squared_norm(along) < coordinate<P>(4) * squared_norm(off);
   };
   return is_off(0, d.col == 0 ? 1 : -1) || is_off(d.row == 0 ? 1 : -1, 0);
 }
 
 template <class P>
-bool is_out_of_place(const P* dots, const DotLayout& layout, Index k) {
-  return is_out_of_line(dots, layout, k, 0, 1) || is_out_of_line(dots, layout, k, 1, 0) ||
-         is_corner_out_of_line(dots, layout, k);
+bool is_out_of_place(const P* dots, const DotLayout& layout, const DotIndex& d) {
+  return is_out_of_line(dots, layout, d, 0, 1) || is_out_of_line(dots, layout, d, 1, 0) ||
+         is_corner_out_of_line(dots, layout, d);
 }
 
 struct PlacedDots {
@@ -61,10 +63,11 @@ PlacedDots place_dots(const GivenDots<P>& given, const DotLayout& layout, Dots<P
     if (!is_finite(at(given.found, k))) {
       continue;
     }
-    if (is_out_of_place(given.found.data(), layout, k)) {
+    const DotIndex d = layout.dot_at(k);
+    if (is_out_of_place(given.found.data(), layout, d)) {
       ++placed.out_of_place;
-      const bool both = is_out_of_line(given.found.data(), layout, k, 0, 1) &&
-                        is_out_of_line(given.found.data(), layout, k, 1, 0);
+      const bool both = is_out_of_line(given.found.data(), layout, d, 0, 1) &&
+                        is_out_of_line(given.found.data(), layout, d, 1, 0);
       placed.crossed += both ? 1 : 0;
     } else {
       ++placed.dots;
@@ -89,8 +92,9 @@ coordinate<P> mean_pitch_sq(const std::vector<Index>& touching,
   S sum = S(0);
   int count = 0;
   for (const Index k : touching) {
+    const DotIndex d = layout.dot_at(k);
     for (const Index down : {Index(0), Index(1)}) {
-      const S sq = squared_norm(beside(now, layout, k, down, 1 - down) - now[k]);
+      const S sq = squared_norm(beside(now, layout, d, down, 1 - down) - now[k]);
       if (is_distance_sq(sq)) {
         sum = sum + sq;
         ++count;
@@ -101,13 +105,15 @@ coordinate<P> mean_pitch_sq(const std::vector<Index>& touching,
 }
 
 /// Whether dots this far apart cannot be compared after a move U for slips of delta_0: a U of more
-/// than half a pitch reaches the next dot, a pitch of less than four delta_0 is one of noise. The
-/// likely cause is another unit. Of no neighbours, which have no pitch, nothing is said.
+/// than half a pitch reaches the next dot, a pitch of less than four delta_0 is one of noise, and
+/// to one of more than 200 U any noise is slip. The likely cause is another unit. Of no neighbours,
+/// which have no pitch, nothing is said.
 template <class S>
 bool is_wrong_scale(const S& pitch_sq, double reference, double slip) {
   const S least =
       S(4 * (reference * reference > 4 * slip * slip ? reference * reference : 4 * slip * slip));
-  return S(0) < pitch_sq && pitch_sq < least;
+  const S most = S(40000 * reference * reference);
+  return S(0) < pitch_sq && (pitch_sq < least || most < pitch_sq);
 }
 
 /// Mean of vectors, and of their squares.
@@ -128,24 +134,60 @@ struct MeanOfVectors {
   S spread_sq() const { return sum_sq / S((std::max)(count, 1)) - squared_norm(mean()); }
 };
 
-/// True when the dots have all moved by one pitch of the pattern, along rows, columns or diagonals,
-/// to a quarter of a pitch: the names have jumped, not the dots.
-template <class S>
+/// Mean square of what one similarity leaves of the moves of dots that both frames have; 0 of none.
+template <class P>
+coordinate<P> mean_residual_sq(const std::vector<Index>& touching, const P* now, const P* before) {
+  using S = coordinate<P>;
+  Similarity<S> about;
+  PairSums<S> sums;
+  for (const Index k : touching) {
+    const Point2<S> n{now[k].x, now[k].y}, t{before[k].x, before[k].y};
+    if (is_distance_sq(squared_norm(n - t))) {
+      about.now_at = S(0) < sums.weight ? about.now_at : n;
+      about.then_at = S(0) < sums.weight ? about.then_at : t;
+      sums.add(S(1), n - about.now_at, t - about.then_at);
+    }
+  }
+  if (!(S(0) < sums.weight)) {
+    return S(0);
+  }
+  const Similarity<S> map = fit<true, true>(sums, about);
+  S sum = S(0);
+  for (const Index k : touching) {
+    const Point2<S> n{now[k].x, now[k].y}, t{before[k].x, before[k].y};
+    const S sq = squared_norm(map.residual(n, t));
+    sum = is_distance_sq(sq) ? S(sum + sq) : sum;
+  }
+  return sum / sums.weight;
+}
+
+/// True when the names have jumped, not the dots: all have moved by one pitch of the pattern, along
+/// rows, columns or diagonals, to a quarter of a pitch; or they lie half a pitch from any shift,
+/// rotation and scale of themselves, which no stretch of a membrane between two frames does: rows
+/// and columns exchanged, a mirrored pattern, two halves exchanged.
+template <class P>
 bool has_jumped(const std::vector<Index>& touching,
-                const Point2<S>* now,
-                const Point2<S>* before,
+                const P* now,
+                const P* before,
                 const DotLayout& layout) {
+  using S = coordinate<P>;
+  const auto step = [](const P& to, const P& from) {
+    return Point2<S>{S(to.x - from.x), S(to.y - from.y)};
+  };
   MeanOfVectors<S> moved, across, down;
   for (const Index k : touching) {
-    moved.add(now[k] - before[k]);
-    across.add(beside(before, layout, k, 0, 1) - before[k]);
-    down.add(beside(before, layout, k, 1, 0) - before[k]);
+    moved.add(step(now[k], before[k]));
+    across.add(step(beside(before, layout, k, 0, 1), before[k]));
+    down.add(step(beside(before, layout, k, 1, 0), before[k]));
   }
   const Point2<S> next_col = across.mean(), next_row = down.mean();
   const S col_sq = squared_norm(next_col), row_sq = squared_norm(next_row);
   const S near_sq = (col_sq < row_sq ? col_sq : row_sq) / S(16);
-  if (!(S(0) < near_sq) || !(moved.spread_sq() < near_sq)) {
+  if (!(S(0) < near_sq)) {
     return false;
+  }
+  if (!(moved.spread_sq() < near_sq)) {
+    return S(4) * near_sq < mean_residual_sq(touching, now, before);
   }
   for (int i = -1; i <= 1; ++i) {
     for (int j = -1; j <= 1; ++j) {

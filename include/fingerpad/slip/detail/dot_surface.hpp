@@ -8,6 +8,7 @@
 #include <cstddef>
 
 #include "fingerpad/math/detail/small_matrices.hpp"
+#include "fingerpad/math/detail/zeros.hpp"
 
 namespace fingerpad {
 inline namespace v0 {
@@ -53,8 +54,8 @@ Quadric<S> quadric_through(const ForEach& for_each) {
     ++q.dots;
   });
   q.middle = q.middle / S(static_cast<double>((std::max)(q.dots, Index(1))));
-  SmallMatrix<S, 6> a{};
-  std::array<S, 6> b{};
+  SmallMatrix<S, 6> a = zero_matrix<S, 6>();
+  std::array<S, 6> b = detail::zeros<S, 6>();
   for_each([&](const Point3<S>& p) {
     const auto t = Quadric<S>::terms(S(p.x - q.middle.x), S(p.y - q.middle.y));
     const S z = p.z - q.middle.z;
@@ -70,7 +71,7 @@ Quadric<S> quadric_through(const ForEach& for_each) {
     q.c = bent.solve(b);
     return q;
   }
-  SmallMatrix<S, 3> flat{};
+  SmallMatrix<S, 3> flat = zero_matrix<S, 3>();
   for (std::size_t i = 0; i < 3; ++i) {
     for (std::size_t j = 0; j <= i; ++j) {
       flat[i][j] = a[i][j];

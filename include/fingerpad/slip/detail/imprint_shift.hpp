@@ -17,6 +17,7 @@
 #include "fingerpad/core/scalar.hpp"
 #include "fingerpad/image/detail/cell_filter.hpp"
 #include "fingerpad/math/detail/small_matrices.hpp"
+#include "fingerpad/math/detail/zeros.hpp"
 
 namespace fingerpad {
 inline namespace v0 {
@@ -100,7 +101,7 @@ class ImprintShift {
   };
 
   struct Sums {
-    SmallMatrix<S, 5> matrix{};
+    SmallMatrix<S, 5> matrix = zero_matrix<S, 5>();
     Row right{};
     S now_sq = S(0);
 
@@ -206,7 +207,7 @@ class ImprintShift {
 
   std::vector<Cell> cells_;
   Point2<S> center_ = {S(0), S(0)};
-  SmallMatrix<S, 5> matrix_{};
+  SmallMatrix<S, 5> matrix_ = zero_matrix<S, 5>();
 };
 
 }  // namespace detail

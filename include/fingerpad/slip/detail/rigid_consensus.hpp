@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "fingerpad/math/detail/small_matrices.hpp"
+#include "fingerpad/math/detail/zeros.hpp"
 #include "fingerpad/math/rotation.hpp"
 #include "fingerpad/slip/detail/dot_frames.hpp"
 #include "fingerpad/slip/detail/dot_surface.hpp"
@@ -17,27 +18,25 @@ namespace fingerpad {
 inline namespace v0 {
 namespace detail::stick {
 
-/// A neighbour of a dot in the list of pairs, -1: none; and its weight in the mean.
-struct NeighbourPair {
-  int pair = -1;
-  int weight = 0;
-};
-
 /// One dot of two frames, and the surface where it is now.
 template <class S>
 struct SpatialPair {
   Index cell = 0;
+  std::size_t padded = 0;  ///< the cell in a grid with a border of one
   Point3<S> then = {S(0), S(0), S(0)};
   Point3<S> now = {S(0), S(0), S(0)};
-  Point3<S> carried = {S(0), S(0), S(0)};  ///< from `then` by the motion
-  SurfaceFrame<S> surface;
-  S info_u = S(0), info_v = S(0);  ///< 1 / variance of a slip along u and v, of one position
-  S weight = S(0);
-  Point3<S> slip = {S(0), S(0), S(0)};
-  S slip_sq = S(0);                          ///< in variances of one position
+  Point3<S> by_u, by_v;  ///< what a residual is multiplied by for its slip up the slope and level
+  Point3<S> u, v;        ///< the axes, of the length of one standard deviation of a position
+  S info_u = S(0), info_v = S(0);           ///< 1 / variance of a slip along u and v
+  S weight = S(0);                          ///< in the fit of the motion
+  Point3<S> carried = {S(0), S(0), S(0)};   ///< from `then` by the motion
+  Point3<S> residual = {S(0), S(0), S(0)};  ///< now less carried
+  S slip_u = S(0), slip_v = S(0);           ///< in standard deviations of one position
+  S slip_sq = S(0);
   Point3<S> mean_slip = {S(0), S(0), S(0)};  ///< averaged over neighbours
-  S mean_sq = S(0);
-  std::array<NeighbourPair, 8> neighbours = {};
+  S mean_sq = S(0);                          ///< in variances of one position
+
+  Point3<S> slip() const { return slip_u * u + slip_v * v; }
 };
 
 /// Weights of a dot and its neighbours in the mean of their slips: 6, 2 beside it, 1 across.
@@ -49,31 +48,45 @@ inline double neighbour_gain() {
   return std::sqrt(36.0 + 4 * 4 + 4 * 1) / 18;
 }
 
+/// A slip that counts in the mean of its neighbours', weight 1; or none, 0.
+template <class S>
+struct SmallSlip {
+  Point3<S> slip = {S(0), S(0), S(0)};
+  S weight = S(0);
+};
+
+/// The mean of a slip, which counts, and its eight neighbours, in a grid of `across` columns.
+template <class S>
+Point3<S> mean_around(const SmallSlip<S>* slips, Index across) {
+  Point3<S> sum = {S(0), S(0), S(0)};
+  S weight = S(0);
+  for (Index i = -1; i <= 1; ++i) {
+    for (Index j = -1; j <= 1; ++j) {
+      const SmallSlip<S>& n = slips[i * across + j];
+      sum += S(neighbour_weight(i, j)) * n.slip;
+      weight = weight + S(neighbour_weight(i, j)) * n.weight;
+    }
+  }
+  return sum / weight;
+}
+
 template <class S>
 struct AxisNoise {
   S lateral_info;  ///< 1 / variance
   S depth_info;
 };
 
-/// Gives each pair the dots beside it; `pair_at` is the place in the list of each cell, -1: none.
+/// Along one axis of the surface.
 template <class S>
-void set_neighbours(const DotLayout& layout,
-                    const std::vector<Index>& pair_at,
-                    std::vector<SpatialPair<S>>& pairs) {
-  for (SpatialPair<S>& p : pairs) {
-    const DotIndex d = layout.dot_at(p.cell);
-    auto next = p.neighbours.begin();
-    for (Index i = (std::max)(d.row - 1, Index(0)); i <= (std::min)(d.row + 1, layout.rows - 1);
-         ++i) {
-      for (Index j = (std::max)(d.col - 1, Index(0)); j <= (std::min)(d.col + 1, layout.cols - 1);
-           ++j) {
-        if (i != d.row || j != d.col) {
-          *next++ = {static_cast<int>(at(pair_at, i * layout.cols + j)),
-                     neighbour_weight(i - d.row, j - d.col)};
-        }
-      }
-    }
-  }
+void set_axis(
+    const AxisNoise<S>& noise, const Point3<S>& axis, S& info, Point3<S>& by, Point3<S>& scaled) {
+  using std::sqrt;
+  const Point3<S> w = {S(noise.lateral_info * axis.x), S(noise.lateral_info * axis.y),
+                       S(noise.depth_info * axis.z)};
+  info = dot(axis, w);
+  const S sd = S(1) / S(sqrt(info));
+  by = sd * w;
+  scaled = sd * axis;
 }
 
 /// Gives each pair the surface at its dot.
@@ -85,12 +98,9 @@ void set_surface(const AxisNoise<S>& noise, std::vector<SpatialPair<S>>& pairs) 
     }
   });
   for (SpatialPair<S>& p : pairs) {
-    p.surface = slope_frame(surface.normal(p.now));
-    const auto info = [&](const Point3<S>& a) {
-      return S(noise.lateral_info * (a.x * a.x + a.y * a.y) + noise.depth_info * a.z * a.z);
-    };
-    p.info_u = info(p.surface.u);
-    p.info_v = info(p.surface.v);
+    const SurfaceFrame<S> at_dot = slope_frame(surface.normal(p.now));
+    set_axis(noise, at_dot.u, p.info_u, p.by_u, p.u);
+    set_axis(noise, at_dot.v, p.info_v, p.by_v, p.v);
   }
 }
 
@@ -98,22 +108,19 @@ void set_surface(const AxisNoise<S>& noise, std::vector<SpatialPair<S>>& pairs) 
 /// along the normal is noise, and depth, which is known worse, counts only where the surface is
 /// inclined.
 template <class S>
-void set_slip(const Pose<S>& motion, const AxisNoise<S>& noise, SpatialPair<S>& p) {
+void set_slip(const Pose<S>& motion, SpatialPair<S>& p) {
   p.carried = motion(p.then);
-  const Point3<S> r = p.now - p.carried;
-  const Point3<S> w = {S(noise.lateral_info * r.x), S(noise.lateral_info * r.y),
-                       S(noise.depth_info * r.z)};
-  const S along_u = dot(p.surface.u, w), along_v = dot(p.surface.v, w);
-  const S u = along_u / p.info_u, v = along_v / p.info_v;
-  p.slip = u * p.surface.u + v * p.surface.v;
-  p.slip_sq = u * along_u + v * along_v;
+  p.residual = p.now - p.carried;
+  p.slip_u = dot(p.by_u, p.residual);
+  p.slip_v = dot(p.by_v, p.residual);
+  p.slip_sq = p.slip_u * p.slip_u + p.slip_v * p.slip_v;
 }
 
 /// The square of a slip at a dot, in variances of one position.
 template <class S>
 S in_variances(const Point3<S>& slip, const SpatialPair<S>& p) {
-  const S u = dot(slip, p.surface.u), v = dot(slip, p.surface.v);
-  return u * u * p.info_u + v * v * p.info_v;
+  const S u = dot(slip, p.u) * p.info_u, v = dot(slip, p.v) * p.info_v;
+  return u * u + v * v;
 }
 
 /// Of the variance of "sticks" or "slips", what noise makes of a dot whose averaged slip is near
@@ -123,6 +130,9 @@ S doubt_of(const S& mean_sq, const S& limit) {
   using std::exp;
   using std::sqrt;
   const S sd = S(neighbour_gain() * 1.4142135623730951);  // of two frames
+  if (S(9) * limit < mean_sq) {
+    return S(0);  // two limits beyond it there is none
+  }
   const S off = (S(sqrt(mean_sq)) - S(sqrt(limit))) / sd;
   const S grown = exp(S(S(-1.702) * (off < S(0) ? S(-off) : off)));
   return grown / ((S(1) + grown) * (S(1) + grown));
@@ -149,13 +159,10 @@ void weigh_around(const Point3<S>& from, const S& pitch_sq, std::vector<SpatialP
 
 /// Weight 1 for the dots within the limit of a motion; how many they are.
 template <class S>
-Index weigh_followers(const Pose<S>& motion,
-                      const AxisNoise<S>& noise,
-                      const S& limit,
-                      std::vector<SpatialPair<S>>& pairs) {
+Index weigh_followers(const Pose<S>& motion, const S& limit, std::vector<SpatialPair<S>>& pairs) {
   Index followers = 0;
   for (SpatialPair<S>& p : pairs) {
-    set_slip(motion, noise, p);
+    set_slip(motion, p);
     const bool follows = p.slip_sq < limit;
     p.weight = S(follows ? 1 : 0);
     followers += follows ? 1 : 0;
@@ -200,8 +207,8 @@ S furthest_rigid_sq(const std::vector<Index>& touching,
     return S(-1);
   }
   middle = middle / count;
-  SmallMatrix<S, 3> a{};
-  std::array<S, 3> b{};
+  SmallMatrix<S, 3> a = zero_matrix<S, 3>();
+  std::array<S, 3> b = detail::zeros<S, 3>();
   for (const Index k : touching) {
     const S x = now[k].x - middle.x, y = now[k].y - middle.y, z = now[k].z - then[k].z;
     if (is_finite(z)) {
@@ -226,28 +233,20 @@ S furthest_rigid_sq(const std::vector<Index>& touching,
 }
 
 /// One step of Gauss and Newton, from where the pairs are `carried`, toward the rigid motion that
-/// fits the weighted pairs best; false where they do not determine it.
+/// fits the weighted pairs best; false where they do not determine it. `center`: any place among
+/// them.
 template <class S>
 bool refine_motion(const std::vector<SpatialPair<S>>& pairs,
                    const AxisNoise<S>& noise,
+                   const Point3<S>& center,
                    Pose<S>& motion) {
-  Point3<S> center = {S(0), S(0), S(0)};
-  S mass = S(0);
-  for (const SpatialPair<S>& p : pairs) {
-    center += p.weight * p.carried;
-    mass = mass + p.weight;
-  }
-  if (!(mass > S(0))) {
-    return false;
-  }
-  center = center / mass;
-  SmallMatrix<S, 6> a{};
-  std::array<S, 6> b{};
+  SmallMatrix<S, 6> a = zero_matrix<S, 6>();
+  std::array<S, 6> b = detail::zeros<S, 6>();
   for (const SpatialPair<S>& p : pairs) {
     if (!(p.weight > S(0))) {
       continue;
     }
-    const Point3<S> q = p.carried - center, r = p.now - p.carried;
+    const Point3<S> q = p.carried - center, r = p.residual;
     const S l = p.weight * noise.lateral_info, d = p.weight * noise.depth_info;
     // rows: x: (0, qz, -qy | 1 0 0), y: (-qz, 0, qx | 0 1 0), z: (qy, -qx, 0 | 0 0 1)
     a[0][0] = a[0][0] + l * q.z * q.z + d * q.y * q.y;

@@ -8,11 +8,16 @@
 
 #include "fingerpad/core/detail/reserved_vector.hpp"
 #include "fingerpad/core/grid.hpp"
+#include "fingerpad/slip/detail/free_dots.hpp"
 #include "fingerpad/slip/detail/rigid_consensus.hpp"
 
 namespace fingerpad {
 inline namespace v0 {
 namespace detail::stick {
+
+struct DotNoiseMm {
+  double lateral_mm, depth_mm;
+};
 
 template <class S>
 class SpatialState {
@@ -20,6 +25,8 @@ class SpatialState {
   /// As before the first frame.
   void reset() {
     forget();
+    free_dots.reset();
+    noise = given_noise;
     clock = Clock();
     frame = 0;
   }
@@ -29,12 +36,18 @@ class SpatialState {
     return {dot_slips.data(), layout.rows, layout.cols, layout.cols};
   }
 
-  SpatialState(const DotLayout& layout_of_dots, Index capacity)
+  /// Noise of the dots along x and y, of the free frames or as it was given.
+  double lateral_mm() const { return noise.lateral_mm; }
+
+  SpatialState(const DotLayout& layout_of_dots, Index capacity, const DotNoiseMm& noise_mm)
       : layout(layout_of_dots),
+        given_noise(noise_mm),
+        noise(noise_mm),
+        free_dots(layout),
         given(layout),
         now(given.found),
         pairs(given.found.size()),
-        pair_at(given.found.size(), -1),
+        small_slips(static_cast<std::size_t>((layout.rows + 2) * (layout.cols + 2))),
         sorted(given.found.size()),
         dot_slips(given.found.size()),
         marks(given.found.size(), DotState::none),
@@ -50,11 +63,19 @@ class SpatialState {
   }
   void clear_answer() { std::fill(dot_slips.begin(), dot_slips.end(), DotSlip<S>{}); }
 
+  /// Where a dot is in a grid with a border of one cell.
+  std::size_t padded(Index k) const {
+    const DotIndex d = layout.dot_at(k);
+    return static_cast<std::size_t>((d.row + 1) * (layout.cols + 2) + d.col + 1);
+  }
+
   DotLayout layout;
+  DotNoiseMm given_noise, noise;
+  FreeDots<Point3<S>> free_dots;
   GivenDots<Point3<S>> given;  // this frame
   Dots<Point3<S>> now;         // of it, the dots in contact, in their places
   ReservedVector<SpatialPair<S>> pairs;
-  std::vector<Index> pair_at;
+  std::vector<SmallSlip<S>> small_slips;  // of a grid with a border of one cell
   std::vector<S> sorted;
   std::vector<DotSlip<S>> dot_slips;
   std::vector<DotState> marks;

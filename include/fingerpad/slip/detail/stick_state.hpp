@@ -7,16 +7,23 @@
 #include <vector>
 
 #include "fingerpad/slip/detail/dot_frames.hpp"
+#include "fingerpad/slip/detail/free_dots.hpp"
 
 namespace fingerpad {
 inline namespace v0 {
 namespace detail::stick {
+
+/// U, U_min and delta_0, in the unit of the dots.
+struct StickLengths {
+  double reference, store, slip;
+};
 
 template <class S>
 class StickState {
  public:
   StickState(const DotLayout& layout_of_dots, Index capacity)
       : layout(layout_of_dots),
+        free_dots(layout),
         given(layout),
         now(given.found),
         residuals(given.found),
@@ -26,6 +33,8 @@ class StickState {
   /// As before the first frame.
   void reset() {
     forget();
+    free_dots.reset();
+    noise_px = not_a_number<double>();
     clock = Clock();
     frame = 0;
   }
@@ -39,8 +48,10 @@ class StickState {
   }
 
   DotLayout layout;
-  GivenDots<Point2<S>> given;  // this frame
-  Dots<Point2<S>> now;         // of it, the dots in contact, in their places
+  FreeDots<Point2<S>> free_dots;
+  double noise_px = not_a_number<double>();  // of the free frames
+  GivenDots<Point2<S>> given;                // this frame
+  Dots<Point2<S>> now;                       // of it, the dots in contact, in their places
   Dots<Point2<S>> residuals;
   std::vector<DotState> marks;            // what each dot did in the last answer
   Point2<S> stick_center = {S(0), S(0)};  // of the last answer

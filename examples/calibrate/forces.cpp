@@ -1,0 +1,308 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+// The rim's membrane, and the curves that tell forces from contacts.
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <fstream>
+#include <limits>
+#include <map>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "calibrate/calibrations.hpp"
+#include "fingerpad/adapt/opencv.hpp"
+#include "fingerpad/calibrate/force.hpp"
+#include "fingerpad/calibrate/rim.hpp"
+#include "replay/io/csv_cells.hpp"
+#include "replay/io/failure.hpp"
+#include "replay/io/side_dots.hpp"
+#include "replay/io/signals.hpp"
+
+namespace calibrate {
+namespace {
+
+constexpr int any_frame = 1 << 24;
+constexpr double none = std::numeric_limits<double>::quiet_NaN();
+
+using Sample = fingerpad::ForceSample<double>;
+using Samples = std::span<const Sample>;
+using NormalFit = fingerpad::NormalForceFit<fingerpad::PolynomialForce<3>>;
+
+/// A table by the names of its columns; NaN: an empty cell or no such column.
+class Columns {
+ public:
+  explicit Columns(const Path& file) {
+    std::ifstream stream(file);
+    std::string line;
+    if (!std::getline(stream, line)) {
+      replay::fail(file, "is empty or cannot be read");
+    }
+    names_ = replay::cells_of(line);
+    while (std::getline(stream, line)) {
+      rows_.push_back(replay::cells_of(line));
+    }
+  }
+
+  std::size_t rows() const { return rows_.size(); }
+  bool has(const std::string& name) const { return column(name) < names_.size(); }
+  std::string text(std::size_t row, const std::string& name) const {
+    const std::size_t k = column(name);
+    return k < rows_[row].size() ? rows_[row][k] : "";
+  }
+  double number(std::size_t row, const std::string& name) const {
+    const std::string cell = text(row, name);
+    return cell.empty() ? none : std::strtod(cell.c_str(), nullptr);
+  }
+
+ private:
+  std::size_t column(const std::string& name) const {
+    return static_cast<std::size_t>(std::find(names_.begin(), names_.end(), name) - names_.begin());
+  }
+  std::vector<std::string> names_;
+  std::vector<std::vector<std::string>> rows_;
+};
+
+/// What forces are looked up by.
+struct Measure {
+  const char *name, *column, *unit;
+  double reference;  ///< a usual contact
+};
+constexpr Measure area{"area", "contact_area_mm2", "mm2", 100};
+constexpr Measure depth{"depth", "contact_depth_mm", "mm", 2};
+
+/// Contacts beside the gauge's rows of the same frames.
+std::vector<Sample> samples_of(const Columns& contacts,
+                               const std::optional<Columns>& gauge,
+                               const Measure& measure) {
+  std::map<std::string, std::size_t> row_of_frame;
+  for (std::size_t k = 0; gauge && k < gauge->rows(); ++k) {
+    row_of_frame[gauge->text(k, "frame")] = k;
+  }
+  std::map<std::string, int> loads;
+  std::vector<Sample> samples;
+  for (std::size_t k = 0; k < contacts.rows(); ++k) {
+    const auto row = row_of_frame.find(contacts.text(k, "frame"));
+    if (gauge && row == row_of_frame.end()) {
+      continue;  // the gauge says nothing of this frame
+    }
+    const Columns& forces = gauge ? *gauge : contacts;
+    const std::size_t at = gauge ? row->second : k;
+    const auto shift = [&](const char* name) {
+      const double moved = contacts.number(k, name);
+      return std::isfinite(moved) || contacts.has(name) ? moved : 0;
+    };
+    Sample sample;
+    sample.measure = contacts.number(k, measure.column);
+    sample.displacement_mm = {shift("shift_x_mm"), shift("shift_y_mm")};
+    sample.rotation_rad = shift("shift_rad");
+    sample.normal_force_n = -forces.number(at, "force_z_n");
+    sample.tangential_force_n = {forces.number(at, "force_x_n"), forces.number(at, "force_y_n")};
+    sample.moment_n_mm = 1000 * forces.number(at, "moment_z_nm");
+    const std::string load = contacts.has("load") ? contacts.text(k, "load") : std::to_string(k);
+    sample.load = loads.emplace(load, static_cast<int>(loads.size())).first->second;
+    samples.push_back(sample);
+  }
+  return samples;
+}
+
+/// Error of a load that took no part, N; NaN where the rest would be too few.
+template <class Fit, class ErrorOf>
+double unseen(Samples samples, const Fit& fit, const ErrorOf& error_of) {
+  try {
+    return leave_one_load_out(samples, fit, error_of).mean_abs;
+  } catch (const fingerpad::parameter_error&) {
+    return none;
+  }
+}
+
+void add_normal(Samples samples, const Measure& by, Outcome& outcome) {
+  const auto fit_of = [](Samples some) { return fingerpad::fit_normal_force<3>(some); };
+  const NormalFit fit = fit_of(samples);
+  const double unseen_n = unseen(samples, fit_of, [](const NormalFit& model, const Sample& s) {
+    return model.curve.force_n(s.measure) - s.normal_force_n;
+  });
+  Report report{.what = std::string("force_by_") + by.name,
+                .residual = fit.errors.residual_sd_n,
+                .residual_unit = "N"};
+  nlohmann::json coefficients = nlohmann::json::array();
+  for (std::size_t k = 0; k <= 3; ++k) {
+    coefficients.push_back(fit.curve.coefficients[k]);
+    report.parameters.push_back({"coefficient_" + std::to_string(k), fit.curve.coefficients[k],
+                                 std::sqrt(fit.errors.covariance[k][k])});
+    const auto& row = fit.errors.covariance[k];
+    report.covariance.push_back({row.begin(), row.end()});
+  }
+  const double largest_n = fit.curve.force_n(fit.curve.to);
+  report.parameters.push_back({std::string("from_") + by.unit, fit.curve.from});
+  report.parameters.push_back({std::string("to_") + by.unit, fit.curve.to});
+  report.parameters.push_back({"error_of_an_unseen_load_n", unseen_n});
+  report.doubt(!fit.ok(), name_of(fit.status));
+  report.doubt(
+      std::isfinite(unseen_n) && unseen_n > 0.05 * largest_n,
+      "loads that took no part are told with an error of more than 5 % of the largest force");
+  report.doubt(!std::isfinite(unseen_n), "there are too few loads to leave one out");
+  outcome.sections["force"][std::string("by_") + by.name] = {
+      {"coefficients", coefficients},
+      {std::string("from_") + by.unit, fit.curve.from},
+      {std::string("to_") + by.unit, fit.curve.to},
+      {"residual_n", fit.errors.residual_sd_n}};
+  Plot plot{std::string("contact ") + by.name + " [" + by.unit + "]", "normal force [N]", {}};
+  for (const auto& r : fit.residuals) {
+    plot.points.push_back({samples[r.sample].measure, r.measured, r.fitted});
+  }
+  outcome.reports.push_back(report);
+  outcome.plots.push_back(plot);
+}
+
+void add_shear(Samples samples, const Measure& by, Outcome& outcome) {
+  const auto force = fingerpad::fit_tangential_force(samples, by.reference);
+  const auto moment = fingerpad::fit_moment(samples, by.reference);
+  Report report{.what = "shear", .residual = force.residual_sd, .residual_unit = "N"};
+  report.parameters = {
+      {"force_n_per_mm", force.polynomial.coefficients[0], force.standard_errors[0]},
+      {"displacement_exponent", force.exponent, force.exponent_sd},
+      {"moment_n_mm_per_rad", moment.polynomial.coefficients[0], moment.standard_errors[0]},
+      {"rotation_exponent", moment.exponent, moment.exponent_sd},
+      {"residual_of_the_moment_n_mm", moment.residual_sd}};
+  report.doubt(!force.ok(), std::string("of the force, ") + name_of(force.status));
+  report.doubt(!moment.ok(), std::string("of the moment, ") + name_of(moment.status));
+  outcome.sections["force"]["shear"] = {
+      {"by", by.name},
+      {"reference", by.reference},
+      {"displacement_exponent", force.exponent},
+      {"force_n_per_mm", {force.polynomial.coefficients[0]}},
+      {"to_mm", force.polynomial.to},
+      {"rotation_exponent", moment.exponent},
+      {"moment_n_mm_per_rad", {moment.polynomial.coefficients[0]}},
+      {"to_rad", moment.polynomial.to}};
+  Plot plot{"displacement of the contact [mm]", "tangential force (x and y) [N]", {}};
+  bool is_x = true;
+  for (const auto& r : force.residuals) {
+    const auto& d = samples[r.sample].displacement_mm;
+    plot.points.push_back({is_x ? d.x : d.y, r.measured, r.fitted});
+    is_x = !is_x;
+  }
+  outcome.reports.push_back(report);
+  outcome.plots.push_back(plot);
+}
+
+/// Frames of the free pad, of which those of about one pressure make a level.
+template <class Add>
+void add_levels(const Path& recording, const replay::SideDots& side, const Add& add) {
+  const auto signals = replay::read_signals(recording / "signals.csv", any_frame);
+  std::vector<double> levels;
+  for (const auto& [frame, dots] : side.dots_mm) {
+    const double pressure = signals.pressure_mpa(frame);
+    const auto same = std::find_if(levels.begin(), levels.end(), [&](double level) {
+      return std::abs(pressure / level - 1) < 0.02;
+    });
+    const auto level = static_cast<std::size_t>(same - levels.begin());
+    if (same == levels.end()) {
+      levels.push_back(pressure);
+    }
+    if (!add(level, dots, pressure)) {
+      replay::fail(recording / "signals.csv",
+                   "frame " + std::to_string(frame) + " has no pressure > 0");
+    }
+  }
+}
+
+/// What the law says of the chords to the side dots, N/mm, for a plot.
+double mean_pull(const replay::SpaceGrid& border,
+                 const replay::SpaceGrid& dots,
+                 const fingerpad::RimFit<double>& fit) {
+  double sum = 0;
+  int count = 0;
+  for (int k = 0; k < dots.cols; ++k) {
+    const cv::Vec3d chord = dots(0, k) - border(0, k);
+    const double stretch = cv::norm(chord) / fit(k);
+    if (std::isfinite(stretch)) {
+      sum += fit.modulus_n_per_mm * chord[2] / fit(k) * (1 - std::pow(stretch, -4));
+      ++count;
+    }
+  }
+  return sum / count;
+}
+
+}  // namespace
+
+Outcome rim(const Path& recording, const RimNoise& noise) {
+  const auto side = replay::read_side_dots(recording / "side_dots.csv", any_frame);
+  if (!side) {
+    replay::fail(recording / "side_dots.csv", "there is no such file: the dots beside the rim");
+  }
+  fingerpad::RimCalibration<> calibration(side->border_mm, noise.base_radius_mm,
+                                          {noise.inclination_rad});
+  add_levels(recording, *side, [&](std::size_t level, const auto& dots, double pressure) {
+    return calibration.add(level, dots, pressure);
+  });
+  const fingerpad::RimFitOptions options{noise.dot_noise_mm, noise.pressure_noise_mpa};
+  const auto fit = noise.length_mm ? calibration.fit_modulus(*noise.length_mm, options)
+                                   : calibration.fit(options);
+  Report report{.what = "rim", .residual = fit.residual, .residual_unit = "of the mean pull"};
+  report.parameters = {{"side_dot_length_mm", fit.length_mm, fit.length_sd_mm},
+                       {"membrane_modulus_n_per_mm", fit.modulus_n_per_mm, fit.modulus_sd_n_per_mm},
+                       {"scatter_of_lengths", fit.share_scatter}};
+  report.covariance = {{fit.length_sd_mm * fit.length_sd_mm,
+                        fit.correlation * fit.length_sd_mm * fit.modulus_sd_n_per_mm},
+                       {fit.correlation * fit.length_sd_mm * fit.modulus_sd_n_per_mm,
+                        fit.modulus_sd_n_per_mm * fit.modulus_sd_n_per_mm}};
+  report.doubt(!fit.ok(), name_of(fit.status));
+  report.doubt(!std::isfinite(fit.modulus_sd_n_per_mm),
+               "nothing tells how certain it is: give the noise, or three pressures or more");
+  report.doubt(fit.modulus_sd_n_per_mm > 0.05 * fit.modulus_n_per_mm,
+               "the modulus is uncertain by more than 5 %: pressures further apart, more frames");
+  Outcome outcome;
+  outcome.sections["rim"] = {{"side_dot_length_mm", fit.length_mm},
+                             {"membrane_modulus_n_per_mm", fit.modulus_n_per_mm}};
+  if (noise.inclination_rad) {
+    outcome.sections["rim"]["stress_free_inclination_rad"] = *noise.inclination_rad;
+  }
+  Plot plot{"pressure [MPa]", "mean vertical pull of the rim [N/mm]", {}};
+  const auto signals = replay::read_signals(recording / "signals.csv", any_frame);
+  for (const auto& [frame, dots] : side->dots_mm) {
+    const double pressure = signals.pressure_mpa(frame);
+    plot.points.push_back(
+        {pressure, pressure * noise.base_radius_mm / 2, mean_pull(side->border_mm, dots, fit)});
+  }
+  outcome.reports = {report};
+  outcome.plots = {plot};
+  return outcome;
+}
+
+Outcome force(const Path& contacts_file, const Path& gauge_file) {
+  const Columns contacts(contacts_file);
+  std::optional<Columns> gauge;
+  if (!gauge_file.empty()) {
+    gauge.emplace(gauge_file);
+  }
+  const Columns& forces = gauge ? *gauge : contacts;
+  if (!forces.has("force_z_n") || !contacts.has("contact_area_mm2") ||
+      (gauge && !(gauge->has("frame") && contacts.has("frame")))) {
+    replay::fail(contacts_file,
+                 "contacts need the columns contact_area_mm2 and contact_depth_mm (frames.csv of "
+                 "replay has them), the gauge's table frame,force_x_n,force_y_n,force_z_n,"
+                 "moment_z_nm");
+  }
+  const std::vector<Sample> by_area = samples_of(contacts, gauge, area);
+  const std::vector<Sample> by_depth = samples_of(contacts, gauge, depth);
+  Outcome outcome;
+  add_normal(by_area, area, outcome);
+  add_normal(by_depth, depth, outcome);
+  const bool dragged = std::any_of(by_depth.begin(), by_depth.end(), [](const Sample& s) {
+    return std::isfinite(s.tangential_force_n.x) && norm(s.displacement_mm) > 0.01;
+  });
+  if (dragged) {
+    try {
+      add_shear(by_depth, depth, outcome);
+    } catch (const fingerpad::parameter_error& error) {
+      outcome.reports.back().doubt(true, std::string("shear was refused, because ") + error.what());
+    }
+  }
+  return outcome;
+}
+
+}  // namespace calibrate

@@ -1,0 +1,276 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+// What light does: the fluid, the neighbouring membrane, and the noise that contact must rise
+// above.
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+
+#include "calibrate/calibrations.hpp"
+#include "calibrate/recordings.hpp"
+#include "fingerpad/adapt/opencv.hpp"
+#include "fingerpad/calibrate/contact.hpp"
+#include "fingerpad/calibrate/depth.hpp"
+#include "fingerpad/calibrate/neighbour_light.hpp"
+#include "fingerpad/depth/depth.hpp"
+#include "replay/io/failure.hpp"
+#include "replay/io/images.hpp"
+
+namespace calibrate {
+namespace {
+
+using fingerpad::Index;
+using Sample = fingerpad::DepthSample<double>;
+
+/// As wide on the plate as the published 29 px of 0.08 mm.
+int window_px(const replay::Sensor& sensor) {
+  return sensor.smoothing_px.value_or(
+      2 * static_cast<int>(std::lround(29 * 0.08 / sensor.camera.pitch_mm / 2 - 0.5)) + 1);
+}
+
+/// The free pad and the frames, whose depths are found out.
+struct KnownFrames {
+  replay::Sensor sensor;
+  cv::Mat reference;
+  DepthMap free_mm;
+  std::vector<cv::Mat> frames;
+  std::vector<DepthMap> depths_mm;
+};
+
+cv::Mat in_grey_levels(const cv::Mat& picture) {
+  cv::Mat grey;
+  picture.convertTo(grey, CV_32F, picture.depth() == CV_16U ? 1.0 / 256 : 1.0);
+  return grey;
+}
+
+KnownFrames read_known(const Path& recording,
+                       const Path& sensor_file,
+                       const std::vector<std::string>& sections) {
+  KnownFrames known{known_sensor(sensor_file, sections), {}, {}, {}, {}};
+  known.reference = replay::read_colour_image(recording / known.sensor.reference_frame);
+  known.free_mm = replay::read_depth_image(recording / known.sensor.reference_depth);
+  known.frames = read_pictures(recording / "frames");
+  if (known.frames.front().size() != known.reference.size() ||
+      known.free_mm.size() != known.reference.size()) {
+    replay::fail(recording, "frames, reference and its depth are not of one size");
+  }
+  known.depths_mm = true_depths(recording, known.sensor, known.free_mm, known.frames.size());
+  return known;
+}
+
+/// In a block: colours are curved over the depth by less than 0.01 grey levels then.
+constexpr double max_depth_sd_mm = 0.3;
+
+/// Mean colours of blocks of a picture of which each pixel has a depth. Light that comes in from
+/// beside the pad is kept out by the margin.
+void add_blocks(const replay::Sensor& sensor,
+                const cv::Mat& picture,
+                const DepthMap& depth_mm,
+                int block_px,
+                std::vector<Sample>& samples) {
+  const cv::Mat_<cv::Vec3f> grey = in_grey_levels(picture).reshape(3);
+  for (int i = 0; i + block_px <= grey.rows; i += block_px) {
+    for (int j = 0; j + block_px <= grey.cols; j += block_px) {
+      const cv::Rect block(j, i, block_px, block_px);
+      const cv::Scalar colour = cv::mean(grey(block));
+      cv::Scalar depth, depth_sd;
+      cv::meanStdDev(depth_mm(block), depth, depth_sd);
+      const double row = i + (block_px - 1) / 2.0, col = j + (block_px - 1) / 2.0;
+      const auto at_plate = point_at(sensor.camera, row, col, 0.0);
+      const bool inside = std::hypot(at_plate.x, at_plate.y) < 0.9 * sensor.pad.base_radius_mm;
+      if (inside && depth_sd[0] < max_depth_sd_mm && colour[1] > 0 && colour[2] > 0) {
+        samples.push_back(
+            fingerpad::depth_sample(sensor.camera, row, col, depth[0], {colour[2], colour[1]}));
+      }
+    }
+  }
+}
+
+std::vector<Sample> samples_of(const KnownFrames& known) {
+  const int block_px = (std::max)(8, known.reference.cols / 40);
+  std::vector<Sample> samples;
+  add_blocks(known.sensor, known.reference, known.free_mm, block_px, samples);
+  const std::size_t of_reference = samples.size();
+  for (std::size_t k = 0; k < known.frames.size(); ++k) {
+    add_blocks(known.sensor, known.frames[k], known.depths_mm[k], block_px, samples);
+  }
+  if (samples.size() < of_reference + 10) {
+    throw replay::Failure("frames/: fewer than 10 blocks of " + std::to_string(block_px) +
+                          " px lie on what pressed: larger balls, deeper presses, or other places "
+                          "in presses.csv");
+  }
+  return samples;
+}
+
+cv::Mat in_16_bit(const cv::Mat& picture) {
+  cv::Mat wide;
+  picture.convertTo(wide, CV_16U, picture.depth() == CV_16U ? 1 : 256);
+  return wide;
+}
+
+auto reference_of(const replay::Sensor& sensor, const cv::Mat& picture, const DepthMap& free_mm) {
+  const cv::Mat wide = in_16_bit(picture);
+  return fingerpad::fit_reference(sensor.camera, sensor.absorption,
+                                  fingerpad::channel<std::uint16_t>(wide, 2),
+                                  fingerpad::channel<std::uint16_t>(wide, 1), free_mm);
+}
+
+/// Depth of frames by the sensor as it is known.
+class DepthMeter {
+ public:
+  DepthMeter(const replay::Sensor& sensor, const cv::Mat& reference, const DepthMap& free_mm)
+      : estimate_(sensor.camera,
+                  sensor.absorption,
+                  reference_of(sensor, reference, free_mm),
+                  {window_px(sensor)}),
+        work_(estimate_.workspace<std::uint16_t>()) {}
+
+  DepthMap operator()(const cv::Mat& frame) {
+    const cv::Mat wide = in_16_bit(frame);
+    DepthMap depth(frame.size());
+    (void)estimate_(fingerpad::channel<std::uint16_t>(wide, 2),
+                    fingerpad::channel<std::uint16_t>(wide, 1), depth, work_);
+    return depth;
+  }
+
+ private:
+  using Estimator =
+      decltype(fingerpad::DepthEstimator(std::declval<fingerpad::Camera<double>>(),
+                                         std::declval<fingerpad::Absorption<double>>(),
+                                         reference_of({}, {}, {}),
+                                         fingerpad::BiasFreeMean{}));
+  Estimator estimate_;
+  typename Estimator::template Workspace<std::uint16_t> work_;
+};
+
+}  // namespace
+
+Outcome absorption(const Path& recording, const Path& sensor_file) {
+  const KnownFrames known = read_known(recording, sensor_file, {"camera", "pad", "reference"});
+  const std::vector<Sample> samples = samples_of(known);
+  const auto fit = fingerpad::fit_absorption<1>(std::span<const Sample>(samples));
+  const auto deepest =
+      *std::max_element(samples.begin(), samples.end(),
+                        [](const Sample& a, const Sample& b) { return a.depth_mm < b.depth_mm; });
+  const double depth_sd = predicted_depth_sd(fit, deepest);
+  const auto sd = [&](int k) { return std::sqrt(fit.covariance(k, k)); };
+  const auto& fluid = fit.fluid;
+  Report report{.what = "absorption", .residual = fit.residual_rms, .residual_unit = "grey levels"};
+  report.parameters = {
+      {"c_red_per_mm", fluid.c_red_per_mm, sd(0)},
+      {"c_green_less_c_red_per_mm", fluid.c_green_per_mm - fluid.c_red_per_mm, sd(1)},
+      {"kappa", fluid.kappa, sd(2)},
+      {"depth_sd_at_deepest_mm", depth_sd},
+      {"explained_by_depth", fit.explained}};
+  for (int i = 0; i < 3; ++i) {
+    report.covariance.push_back({fit.covariance(i, 0), fit.covariance(i, 1), fit.covariance(i, 2)});
+  }
+  report.doubt(!fit.ok(), name_of(fit.status));
+  report.doubt(depth_sd > 0.05,
+               "the fit alone leaves depths uncertain by more than 0.05 mm: press "
+               "more places and depths");
+  report.doubt(fit.residual_rms > 0.1,
+               "noise of the colours biases the parameters: average more "
+               "frames of each press, or take more light");
+  report.doubt(fit.delta_at_limit, "green is absorbed no more than red: are red and green right?");
+  Outcome outcome;
+  outcome.sections["absorption"] = {{"c_red_per_mm", fluid.c_red_per_mm},
+                                    {"c_green_per_mm", fluid.c_green_per_mm},
+                                    {"kappa", fluid.kappa},
+                                    {"max_depth_mm", 1.2 * known.sensor.pad.apex_height_mm}};
+  outcome.sections["smoothing_px"] = window_px(known.sensor);
+  Plot plot{"depth [mm]", "scattered light [grey levels]", {}};
+  for (const Sample& s : samples) {
+    const double w = scattered_light(s.depth_mm, fluid.c_red_per_mm, s.pencil);
+    const double fitted = fit.scattering.at(s.rho_sq_mm2) * w;
+    const double left =
+        depth_equation(fluid, s.pencil, fit.scattering.at(s.rho_sq_mm2), s.colour, s.depth_mm)
+            .value;
+    plot.points.push_back({s.depth_mm, fitted - left, fitted});
+  }
+  outcome.reports = {report};
+  outcome.plots = {plot};
+  return outcome;
+}
+
+Outcome neighbour_light(const Path& recording, const Path& sensor_file, int max_radius_px) {
+  const KnownFrames known =
+      read_known(recording, sensor_file, {"camera", "pad", "reference", "absorption"});
+  DepthMeter meter(known.sensor, known.reference, known.free_mm);
+  const DepthMap free_mm = meter(known.reference);
+  std::vector<DepthMap> measured;
+  for (const cv::Mat& frame : known.frames) {
+    measured.push_back(meter(frame));
+  }
+  // between the points that neighbouring pixels see at the pad's mean depth
+  const auto& camera = known.sensor.camera;
+  const double mean_mm = cv::mean(free_mm, free_mm == free_mm)[0];
+  const double pitch = point_at(camera, camera.center_y_px, camera.center_x_px + 1, mean_mm).x -
+                       point_at(camera, camera.center_y_px, camera.center_x_px, mean_mm).x;
+  const auto fit = fingerpad::fit_neighbour_light(
+      pitch, free_mm, std::span<const DepthMap>(measured),
+      std::span<const DepthMap>(known.depths_mm), {.max_radius_px = max_radius_px});
+  Report report{.what = "neighbour_light", .residual = fit.rms_after_mm, .residual_unit = "mm"};
+  report.parameters = {{"radius_px", static_cast<double>(fit.light.radius_px)},
+                       {"m0_mm_per_rad", fit.light.m0_mm_per_rad, fit.m0_sd},
+                       {"n_per_mm", fit.light.n_per_mm, fit.n_sd},
+                       {"residual_without_it_mm", fit.rms_before_mm}};
+  report.doubt(!fit.ok(), name_of(fit.status));
+  report.doubt(fit.rms_after_mm > 0.9 * fit.rms_before_mm,
+               "it takes off less than a tenth of the error: leave it out");
+  Outcome outcome;
+  outcome.sections["neighbour_light"] = {{"radius_px", fit.light.radius_px},
+                                         {"m0_mm_per_rad", fit.light.m0_mm_per_rad},
+                                         {"n_per_mm", fit.light.n_per_mm}};
+  Plot plot{"radius [px]", "error that is left [mm]", {}};
+  for (std::size_t k = 0; k < fit.rms_of_radius_mm.size(); ++k) {
+    plot.points.push_back({static_cast<double>(k + 1), fit.rms_before_mm, fit.rms_of_radius_mm[k]});
+  }
+  outcome.reports = {report};
+  outcome.plots = {plot};
+  return outcome;
+}
+
+Outcome contact(const Path& recording, const Path& sensor_file) {
+  const replay::Sensor sensor =
+      known_sensor(sensor_file, {"camera", "pad", "reference", "absorption"});
+  const cv::Mat reference = replay::read_colour_image(recording / sensor.reference_frame);
+  const DepthMap free_mm = replay::read_depth_image(recording / sensor.reference_depth);
+  const std::vector<cv::Mat> frames = read_pictures(recording / "free");
+  DepthMeter meter(sensor, reference, free_mm);
+  fingerpad::FreePadCalibration<> calibration(sensor.camera, reference.rows, reference.cols);
+  DepthMap last;
+  for (const cv::Mat& frame : frames) {
+    last = meter(frame);
+    if (!calibration.add(last)) {
+      replay::fail(recording / "free", "frames are not of the reference's size");
+    }
+  }
+  const auto pad = calibration.fit();
+  Report report{.what = "contact", .residual = pad.noise_per_mm, .residual_unit = "1/mm (noise)"};
+  const double frames_count = static_cast<double>(pad.frames);
+  report.parameters = {
+      {"threshold_per_mm", pad.threshold_per_mm, pad.noise_per_mm / 2 / std::sqrt(frames_count)},
+      {"curvature_of_free_pad_per_mm", pad.median_per_mm,
+       pad.noise_per_mm / std::sqrt(frames_count)},
+      {"edge_noise_mm", pad.edge_noise_mm}};
+  report.doubt(!pad.ok(), name_of(pad.status));
+  report.doubt(pad.frames < 3, "two frames hardly tell the noise: take ten");
+  report.doubt(pad.threshold_per_mm < 0.4 * pad.median_per_mm,
+               "noise, not the edge, sets the threshold: more light, or a wider window");
+  Outcome outcome;
+  outcome.sections["contact"] = {{"threshold_per_mm", pad.threshold_per_mm}};
+  Plot plot{"column on the middle row [px]", "depth of the free pad [mm]", {}};
+  const int row = reference.rows / 2;
+  for (int j = 0; j < reference.cols; j += 4) {
+    if (std::isfinite(last(row, j)) && std::isfinite(free_mm(row, j))) {
+      plot.points.push_back({double(j), double(last(row, j)), double(free_mm(row, j))});
+    }
+  }
+  outcome.reports = {report};
+  outcome.plots = {plot};
+  return outcome;
+}
+
+}  // namespace calibrate

@@ -1,0 +1,162 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+// calibrate: from recordings to the sensor.json that replay reads. See --help.
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <exception>
+#include <functional>
+#include <string>
+
+#include "calibrate/calibrations.hpp"
+#include "fingerpad/core/expects.hpp"
+#include "replay/io/failure.hpp"
+
+namespace {
+
+using calibrate::Outcome;
+using calibrate::Path;
+
+struct Common {
+  Path recording, into, plots;
+  /// The file that is read and written.
+  Path sensor() const { return into.empty() ? recording / "sensor.json" : into; }
+};
+
+/// A sub-command on a recording; `work` is called when all arguments are read.
+CLI::App* add(CLI::App& app,
+              Common& common,
+              const char* name,
+              const char* about,
+              std::function<Outcome()> work,
+              std::function<Outcome()>& chosen) {
+  CLI::App* const sub = app.add_subcommand(name, about);
+  sub->add_option("RECORDING", common.recording, "the recording's folder")->required();
+  sub->add_option("--into", common.into,
+                  "the file that is read and written; without it, "
+                  "sensor.json in the recording")
+      ->option_text("FILE");
+  sub->add_option("--plots", common.plots, "write what plot.py draws to this folder")
+      ->option_text("DIR");
+  sub->callback([&chosen, work = std::move(work)] { chosen = work; });
+  return sub;
+}
+
+int run(const Common& common, const std::function<Outcome()>& work) {
+  const Outcome outcome = work();
+  for (const auto& report : outcome.reports) {
+    print(report);
+  }
+  save(outcome, common.sensor());
+  for (std::size_t k = 0; !common.plots.empty() && k < outcome.plots.size(); ++k) {
+    std::filesystem::create_directories(common.plots);
+    if (!outcome.plots[k].points.empty()) {
+      write_plot(outcome.plots[k], common.plots / (outcome.reports[k].what + ".csv"));
+    }
+  }
+  return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app(
+      "Turns recordings into the sensor.json that replay reads, one sub-command a calibration.\n"
+      "Each prints its parameters with standard errors, what the fit leaves, and whether it is\n"
+      "good, doubtful or refused, because of what. docs/first_hour tells what to record.");
+  app.require_subcommand(1);
+  app.footer("Exit status: 0 good or doubtful, 1 refused, 2 wrong arguments.");
+  Common common;
+  std::function<Outcome()> work;
+
+  calibrate::DotPlate plate;
+  auto* sub = add(
+      app, common, "camera", "pitch, center and distance, from plate/ and plate_raised/",
+      [&] { return calibrate::camera(common.recording, plate); }, work);
+  sub->add_option("--rows", plate.rows, "rows of the plate's dots, odd")->required();
+  sub->add_option("--cols", plate.cols, "columns, odd")->required();
+  sub->add_option("--pitch-mm", plate.pitch_mm, "between its dots")
+      ->required()
+      ->check(CLI::PositiveNumber);
+  sub->add_option("--raised-mm", plate.raised_mm, "how far it was raised for plate_raised/");
+  sub->add_option("--plate-distance-mm", plate.plate_distance_mm,
+                  "from the camera to the plate's inner face, where it was not raised")
+      ->check(CLI::PositiveNumber);
+  sub->add_option("--index", plate.refractive_index, "of the fluid, 1.33 for water");
+
+  calibrate::CapSize size;
+  sub = add(
+      app, common, "shape", "depth of the free pad: a cap, as given or as touched by a ball",
+      [&] { return calibrate::shape(common.recording, common.sensor(), size); }, work);
+  sub->add_option("--base-radius-mm", size.base_radius_mm, "of the pad on the plate");
+  sub->add_option("--apex-mm", size.apex_height_mm, "height of the free pad");
+  sub->add_option("--ball-radius-mm", size.ball_radius_mm, "of the ball of touches.csv");
+
+  add(
+      app, common, "absorption", "the fluid, from the free pad and frames of known depth",
+      [&] { return calibrate::absorption(common.recording, common.sensor()); }, work);
+  int max_radius_px = 50;
+  sub = add(
+      app, common, "neighbour-light", "light from neighbouring membrane, from the same",
+      [&] { return calibrate::neighbour_light(common.recording, common.sensor(), max_radius_px); },
+      work);
+  sub->add_option("--max-radius-px", max_radius_px, "radii are searched up to here");
+  add(
+      app, common, "contact", "threshold of contact, from free/",
+      [&] { return calibrate::contact(common.recording, common.sensor()); }, work);
+
+  bool slips = false;
+  sub = add(
+      app, common, "dots", "noise of the dots and thresholds of slip, from free/",
+      [&] { return calibrate::dots(common.recording, slips); }, work);
+  sub->add_flag("--slips", slips, "also choose reference_px by frames/, which stick and then slip");
+
+  calibrate::RimNoise rim;
+  sub = add(
+      app, common, "rim", "length of the side dots and the membrane's modulus",
+      [&] { return calibrate::rim(common.recording, rim); }, work);
+  sub->add_option("--base-radius-mm", rim.base_radius_mm, "of the pad")
+      ->required()
+      ->check(CLI::PositiveNumber);
+  sub->add_option("--length-mm", rim.length_mm, "of the side dots, where it is known");
+  sub->add_option("--inclination-rad", rim.inclination_rad, "of the membrane without stress");
+  sub->add_option("--dot-noise-mm", rim.dot_noise_mm, "of a side dot's coordinate");
+  sub->add_option("--pressure-noise-mpa", rim.pressure_noise_mpa, "of a frame's pressure");
+
+  Path contacts, gauge;
+  sub = add(
+      app, common, "force", "force curves, from contacts and a gauge's table",
+      [&] {
+        return calibrate::force(common.recording / contacts,
+                                gauge.empty() ? gauge : common.recording / gauge);
+      },
+      work);
+  sub->add_option("--contacts", contacts, "frames.csv of replay, or a table with its columns")
+      ->required();
+  sub->add_option("--gauge", gauge,
+                  "table with the columns of forces.csv, where contacts has none");
+
+  add(
+      app, common, "taxels", "noise of a foam array at rest, from taxels.csv",
+      [&] { return calibrate::taxels(common.recording); }, work);
+
+  Path practice;
+  app.add_subcommand("practice", "write recordings of a virtual sensor, to try all this on")
+      ->add_option("DIR", practice, "the folder to write")
+      ->required();
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? 0 : 2;
+  }
+  const std::string name = app.get_subcommands().front()->get_name();
+  try {
+    if (!practice.empty()) {
+      calibrate::write_practice(practice);
+      return 0;
+    }
+    return run(common, work);
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "%s\n  refused, because %s\n", name.c_str(), error.what());
+    return 1;
+  }
+}

@@ -1,0 +1,140 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+// Noise of dots and of taxels, and the thresholds that follow.
+#include <cmath>
+
+#include "calibrate/calibrations.hpp"
+#include "calibrate/recordings.hpp"
+#include "fingerpad/adapt/dot_finder.hpp"
+#include "fingerpad/calibrate/slip.hpp"
+#include "fingerpad/calibrate/slip_noise.hpp"
+#include "fingerpad/calibrate/taxels.hpp"
+#include "replay/foam/recording.hpp"
+#include "replay/io/failure.hpp"
+
+namespace calibrate {
+namespace {
+
+/// Dots of a folder's pictures, followed from the first picture of free/.
+template <class Take>
+void follow(const fingerpad::DotFinder& finder, const Path& folder, const Take& take) {
+  auto state = finder.start();
+  cv::Mat_<cv::Vec2d> dots(static_cast<int>(finder.rows()), static_cast<int>(finder.cols()));
+  for (const cv::Mat& picture : read_pictures(folder)) {
+    if (!finder(picture, dots, state).ok()) {
+      dots = cv::Vec2d::all(std::numeric_limits<double>::quiet_NaN());
+    }
+    take(dots);
+  }
+}
+
+/// The largest displacement between answers that the recording supports.
+fingerpad::StickTestFit choose(const fingerpad::DotFinder& finder,
+                               const Path& folder,
+                               const fingerpad::DotNoise& noise) {
+  fingerpad::StickTestCalibration<> calibration(finder.rows(), finder.cols(), noise);
+  follow(finder, folder, [&](const cv::Mat_<cv::Vec2d>& dots) {
+    cv::Mat_<unsigned char> found(dots.size());
+    for (int i = 0; i < dots.rows; ++i) {
+      for (int j = 0; j < dots.cols; ++j) {
+        found(i, j) = std::isfinite(dots(i, j)[0]) ? 255 : 0;
+      }
+    }
+    (void)calibration.add(dots, found);
+  });
+  return calibration.fit();
+}
+
+}  // namespace
+
+Outcome dots(const Path& recording, bool slips) {
+  const fingerpad::DotFinder finder(read_pictures(recording / "free").front());
+  if (!finder.ok()) {
+    replay::fail(recording / "free", "the first picture shows no grid of 9 dots or more");
+  }
+  fingerpad::DotNoiseCalibration calibration(finder.rows(), finder.cols());
+  Plot plot{"frame", "mean distance from frame 0 [px]", {}};
+  follow(finder, recording / "free", [&](const cv::Mat_<cv::Vec2d>& dots) {
+    (void)calibration.add(dots);
+    double sum = 0;
+    int count = 0;
+    for (int i = 0; i < dots.rows; ++i) {
+      for (int j = 0; j < dots.cols; ++j) {
+        const auto free = finder.free_px()(i, j);
+        const double d = std::hypot(dots(i, j)[0] - free.x, dots(i, j)[1] - free.y);
+        sum += std::isfinite(d) ? d : 0;
+        count += std::isfinite(d) ? 1 : 0;
+      }
+    }
+    plot.points.push_back({static_cast<double>(plot.points.size()), sum / count, 0});
+  });
+  const auto noise = calibration.fit();
+  // of independent noise of two pictures the distance is sqrt(pi) sigma on average
+  for (PlotPoint& point : plot.points) {
+    point.fitted = point.x > 0 ? std::sqrt(3.141592653589793) * noise.noise_px : 0;
+  }
+  fingerpad::StickTest test = stick_test_for(finder.rows() * finder.cols(), noise);
+  Report report{.what = "dots", .residual = noise.noise_px, .residual_unit = "px (noise)"};
+  report.doubt(!noise.ok(), name_of(noise.status));
+  report.doubt(noise.frames < 5, "four frames hardly tell the noise: take twenty");
+  if (slips) {
+    const auto fit = choose(finder, recording / "frames", noise);
+    test = fit.test;
+    report.doubt(!fit.ok(), name_of(fit.status));
+  }
+  const double relative = noise.noise_error_px / noise.noise_px;
+  report.parameters = {{"noise_px", noise.noise_px, noise.noise_error_px},
+                       {"slip_px", test.slip_px, test.slip_px * relative},
+                       {"store_px", test.store_px, test.store_px * relative},
+                       {"reference_px", test.reference_px},
+                       {"dots", static_cast<double>(noise.dots)}};
+  Outcome outcome;
+  outcome.sections["stick"] = {
+      {"reference_px", test.reference_px}, {"store_px", test.store_px}, {"slip_px", test.slip_px}};
+  outcome.reports = {report};
+  outcome.plots = {plot};
+  return outcome;
+}
+
+Outcome taxels(const Path& recording) {
+  const replay::TaxelTable table = replay::read_taxels(recording / "taxels.csv");
+  const auto sensor = replay::read_foam_sensor(recording / "sensor.json");
+  fingerpad::TaxelOptions<double> options = sensor.taxels;
+  options.noise = 1;
+  const std::size_t taxels = table.taxels();
+  if (table.samples() > 1) {
+    const double period = (table.times_s.back() - table.times_s.front()) / (table.samples() - 1);
+    options.sample_period_s = sensor.sample_period_s.value_or(period);
+    options.longest_gap_s =
+        sensor.longest_gap_s.value_or(std::fmax(options.longest_gap_s, 4 * period));
+  }
+  fingerpad::TaxelNoiseCalibration calibration(table.rows, table.cols, options);
+  for (int k = 0; k < table.samples(); ++k) {
+    const fingerpad::StridedView<const double> readings(
+        table.readings.data() + static_cast<std::size_t>(k) * taxels, table.rows, table.cols,
+        table.cols);
+    (void)calibration.add(readings, table.times_s[static_cast<std::size_t>(k)]);
+  }
+  const auto noise = calibration.fit();
+  Report report{.what = "taxels", .residual = noise.typical, .residual_unit = "of the readings"};
+  // of each taxel and window about as many independent numbers as samples
+  const double numbers = static_cast<double>(noise.windows * options.window) * double(taxels);
+  report.parameters = {{"noise", noise.typical, noise.typical / std::sqrt(2 * numbers)},
+                       {"largest_factor", noise.largest_factor},
+                       {"centroid_noise_mm", noise.centroid_deviation_mm},
+                       {"windows", static_cast<double>(noise.windows)}};
+  report.doubt(!noise.ok(), name_of(noise.status));
+  report.doubt(noise.largest_factor > options.noise_factor,
+               "a window spreads more than noise_factor times the noise: was the array touched?");
+  Outcome outcome;
+  outcome.sections["foam"] = {{"noise", noise.typical}};
+  Plot plot{"taxel (row by row)", "standard deviation [of the readings]", {}};
+  for (std::size_t k = 0; k < noise.deviations.size(); ++k) {
+    plot.points.push_back({static_cast<double>(k), noise.deviations[k], noise.typical});
+  }
+  outcome.reports = {report};
+  outcome.plots = {plot};
+  return outcome;
+}
+
+}  // namespace calibrate

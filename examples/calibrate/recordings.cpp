@@ -1,0 +1,153 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+#include "calibrate/recordings.hpp"
+
+#include <cmath>
+#include <limits>
+#include <nlohmann/json.hpp>
+
+#include "replay/io/failure.hpp"
+#include "replay/io/images.hpp"
+#include "replay/io/json_section.hpp"
+#include "replay/io/number_table.hpp"
+#include "replay/io/recording.hpp"
+
+namespace calibrate {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+constexpr double none = std::numeric_limits<double>::quiet_NaN();
+
+const char* made_by(const std::string& section) {
+  return section == "camera"                          ? "calibrate camera"
+         : section == "pad" || section == "reference" ? "calibrate shape"
+                                                      : "calibrate absorption";
+}
+
+/// Depths on a ball of which the lowest point is at (x, y, z). The membrane lies on it as far as it
+/// reaches below the free pad by half of what it does in the middle; beyond, it may bridge.
+DepthMap depth_on_ball(const replay::Sensor& sensor, const Sphere& ball, const DepthMap& free_mm) {
+  DepthMap depth(free_mm.size(), static_cast<float>(none));
+  double deepest = 0;
+  for (int i = 0; i < depth.rows; ++i) {
+    for (int j = 0; j < depth.cols; ++j) {
+      const double on_ball = depth_on(sensor.camera, i, j, ball, false);
+      depth(i, j) = static_cast<float>(on_ball);
+      deepest = std::fmax(deepest, static_cast<double>(free_mm(i, j)) - on_ball);
+    }
+  }
+  for (int i = 0; i < depth.rows; ++i) {
+    for (int j = 0; j < depth.cols; ++j) {
+      const double pressed = static_cast<double>(free_mm(i, j) - depth(i, j));
+      depth(i, j) = pressed > deepest / 2 ? depth(i, j) : static_cast<float>(none);
+    }
+  }
+  return depth;
+}
+
+}  // namespace
+
+replay::Sensor known_sensor(const fs::path& file, const std::vector<std::string>& sections) {
+  json content = fs::exists(file) ? replay::parse_json(file) : json::object();
+  for (const std::string& section : sections) {
+    if (!content.contains(section)) {
+      replay::fail(file, "has no section " + section + " yet: run " + made_by(section));
+    }
+  }
+  // what is not known yet is read, but not used
+  const json any = {
+      {"camera",
+       {{"plate_distance_mm", 50},
+        {"refractive_index", 1.33},
+        {"center_px", {0, 0}},
+        {"pitch_mm", 1}}},
+      {"absorption",
+       {{"c_red_per_mm", 0.03}, {"c_green_per_mm", 0.03}, {"kappa", 1}, {"max_depth_mm", 1}}},
+      {"pad", {{"base_radius_mm", 1}, {"apex_height_mm", 1}}},
+      {"reference", {{"frame", "reference.png"}, {"depth", "reference_depth.tiff"}}}};
+  if (!sections.empty()) {
+    for (const auto& item : any.items()) {
+      if (!content.contains(item.key())) {
+        content[item.key()] = item.value();
+      }
+    }
+  }
+  return replay::read_sensor(file, content);
+}
+
+std::vector<cv::Mat> read_pictures(const fs::path& folder) {
+  replay::FrameSource source = replay::FrameSource::of_folder(folder);
+  std::vector<cv::Mat> pictures = {source.next()};
+  while (static_cast<int>(pictures.size()) < source.size()) {
+    pictures.push_back(replay::next_frame(source, pictures.front().size()));
+  }
+  return pictures;
+}
+
+Sphere cap(double base_radius_mm, double apex_height_mm) {
+  const double a = base_radius_mm, h = apex_height_mm;
+  const double radius = (a * a + h * h) / (2 * h);
+  return {{0, 0, h - radius}, radius};
+}
+
+double depth_on(
+    const fingerpad::Camera<double>& camera, int row, int col, const Sphere& sphere, bool far) {
+  const auto start = point_at(camera, double(row), double(col), 0.0) - sphere.center_mm;
+  const auto end = point_at(camera, double(row), double(col), 1.0) - sphere.center_mm;
+  const auto along = end - start;  // a ray in the fluid is straight
+  const double a = squared_norm(along), b = dot(start, along);
+  const double c = squared_norm(start) - sphere.radius_mm * sphere.radius_mm;
+  const double root = std::sqrt(b * b - a * c);
+  const double depth = far ? (-b + root) / a : c / (-b + root);
+  return depth >= 0 ? depth : none;
+}
+
+DepthMap spherical_cap_depth(const fingerpad::Camera<double>& camera,
+                             cv::Size size,
+                             double base_radius_mm,
+                             double apex_height_mm) {
+  const Sphere sphere = cap(base_radius_mm, apex_height_mm);
+  DepthMap depth(size);
+  for (int i = 0; i < size.height; ++i) {
+    for (int j = 0; j < size.width; ++j) {
+      const auto at_plate = point_at(camera, double(i), double(j), 0.0);
+      const bool inside = std::hypot(at_plate.x, at_plate.y) < base_radius_mm;
+      depth(i, j) = static_cast<float>(inside ? depth_on(camera, i, j, sphere, true) : none);
+    }
+  }
+  return depth;
+}
+
+std::vector<DepthMap> true_depths(const fs::path& recording,
+                                  const replay::Sensor& sensor,
+                                  const DepthMap& free_mm,
+                                  std::size_t frames) {
+  std::vector<DepthMap> depths(frames, DepthMap(free_mm.size(), static_cast<float>(none)));
+  if (fs::is_directory(recording / "true_depth")) {
+    for (std::size_t k = 0; k < frames; ++k) {
+      char name[32];
+      std::snprintf(name, sizeof name, "%06zu.tiff", k);
+      const fs::path file = recording / "true_depth" / name;
+      depths[k] = fs::exists(file) ? replay::read_depth_image(file) : depths[k];
+      if (depths[k].size() != free_mm.size()) {
+        replay::fail(file, "is not of the reference's size");
+      }
+    }
+    return depths;
+  }
+  const replay::NumberTable table(recording / "presses.csv",
+                                  {"frame", "x_mm", "y_mm", "z_mm", "radius_mm"});
+  for (const auto& line : table.lines()) {
+    const int frame = table.index(line, 0, static_cast<int>(frames), "frames");
+    const double x = line.values[1], y = line.values[2], z = line.values[3], r = line.values[4];
+    if (!(r > 0) || !(z > 0)) {
+      table.refuse(line, "the ball's radius and the height of its lowest point must be > 0");
+    }
+    depths[static_cast<std::size_t>(frame)] = depth_on_ball(sensor, {{x, y, z + r}, r}, free_mm);
+  }
+  return depths;
+}
+
+}  // namespace calibrate

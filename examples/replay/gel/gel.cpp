@@ -1,0 +1,132 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+#include "replay/gel/gel.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "fingerpad/core/expects.hpp"
+#include "replay/io/failure.hpp"
+#include "replay/io/images.hpp"
+
+namespace replay {
+namespace {
+
+constexpr int most_shown = 5;
+constexpr const char* columns =
+    "frame,time_s,contact_area_px,contact_center_x_px,contact_center_y_px,slide_status,"
+    "dots_in_contact,slide_x_px,slide_y_px,slide_pitches,rotation_rad,area_lost,recoil_pitches,"
+    "slip_evidence,slip";
+
+SlideStep step_of(const Options& options, const FreePad& free, const DotSource& dots) {
+  try {
+    return {free.frames, dots.initial(), dots.diameter_px()};
+  } catch (const fingerpad::parameter_error& error) {
+    fail(options.recording, error.what());
+  }
+}
+
+/// Empty where there is no number.
+std::string cell(double value) {
+  char text[32] = "";
+  if (std::isfinite(value)) {
+    std::snprintf(text, sizeof text, "%.6f", value);
+  }
+  return text;
+}
+
+/// Whether frame `done` of `total` stands above the chart; they lie evenly.
+bool is_shown(int done, int total) {
+  const int count = (std::min)(total, most_shown);
+  for (int k = 0; k < count; ++k) {
+    if (done == (count == 1 ? 0 : (k * (total - 1) + (count - 1) / 2) / (count - 1))) {
+      return true;
+    }
+  }
+  return false;
+}
+
+}  // namespace
+
+GelReplay::GelReplay(Recording& recording,
+                     const Options& options,
+                     const DotSource& dots,
+                     const OutputFolder& output,
+                     int total)
+    : options_(options),
+      output_(output),
+      free_(free_pad_of(recording)),
+      step_(step_of(options, free_, dots)),
+      file_(output.file("slide.csv")),
+      table_(file_),
+      total_(total) {
+  table_ << columns << '\n';
+}
+
+void GelReplay::operator()(int frame,
+                           const std::string& time_s,
+                           const cv::Mat& image,
+                           const DotGrid& dots) {
+  GelScene scene{frame, time_s, image, cv::Mat_<uchar>(image.size()), dots, {}};
+  scene.seen = step_(image, dots, scene.contact_mask);
+  rows_.push_back({frame, time_s, scene.seen});
+  write_row(rows_.back());
+  if (!options_.pictures) {
+    return;
+  }
+  write_picture(output_.file("pictures", numbered("slide_", frame, ".png")), slide_picture(scene));
+  if (is_shown(static_cast<int>(rows_.size()) - 1, total_)) {
+    shown_.push_back(scene);
+  }
+}
+
+void GelReplay::write_row(const GelRow& row) {
+  const GelFrame& seen = row.seen;
+  const auto number = [](float value) { return cell(static_cast<double>(value)); };
+  const cv::Size size = free_.frames.front().size();
+  table_ << row.frame << ',' << row.time_s << ',' << seen.contact.contact_px << ','
+         << cell(seen.contact.center_mm.x + (size.width - 1) / 2.0) << ','
+         << cell(seen.contact.center_mm.y + (size.height - 1) / 2.0) << ','
+         << name_of(seen.slide.status) << ',' << seen.slide.dots << ','
+         << number(seen.slide.slide_px.x) << ',' << number(seen.slide.slide_px.y) << ','
+         << number(seen.slide.slide) << ',' << number(seen.slide.rotation_rad) << ','
+         << number(seen.slide.lost) << ',' << (seen.recoil.ok() ? number(seen.recoil.recoil) : "")
+         << ',' << number(seen.slide.evidence) << ',' << (seen.slide.alarm ? 1 : 0) << '\n';
+}
+
+void GelReplay::finish() {
+  table_.close();
+  if (!table_) {
+    fail(file_, "cannot be written");
+  }
+  if (!options_.pictures || shown_.empty()) {
+    return;
+  }
+  const std::string name = std::filesystem::canonical(options_.recording).filename().string();
+  const std::size_t slip = first_slip(rows_);
+  const bool touched = std::any_of(rows_.begin(), rows_.end(),
+                                   [](const GelRow& row) { return row.seen.contact.in_contact(); });
+  const std::string what = slip < rows_.size()
+                               ? "slips from frame " + std::to_string(rows_[slip].frame) + " on"
+                           : touched ? "is held"
+                                     : "nothing touches";
+  write_picture(output_.file("pictures", "slide.png"),
+                slide_chart(name + ": " + what, rows_, shown_));
+}
+
+void GelReplay::print_summary() const {
+  const auto touching = std::count_if(
+      rows_.begin(), rows_.end(), [](const GelRow& row) { return row.seen.contact.in_contact(); });
+  std::printf("free pad     %zu of %s\n", free_.frames.size(), free_.source);
+  std::printf("contact      in %td frames\n", touching);
+  const std::size_t slip = first_slip(rows_);
+  if (slip < rows_.size()) {
+    std::printf("slip         from frame %d on\n", rows_[slip].frame);
+  } else {
+    std::printf("slip         none\n");
+  }
+  std::printf("slide step   %.2f ms a frame (median, with the contact)\n", step_.median_ms());
+}
+
+}  // namespace replay

@@ -1,0 +1,357 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+#include "replay/steps/fingertip_step.hpp"
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cmath>
+#include <cstdint>
+#include <optional>
+#include <utility>
+
+#include "fingerpad/adapt/opencv.hpp"
+#include "fingerpad/calibrate/contact.hpp"
+#include "fingerpad/pipeline/fingertip.hpp"
+#include "fingerpad/published/depth.hpp"
+#include "replay/io/failure.hpp"
+
+namespace replay {
+namespace {
+
+using fingerpad::channel;
+using fingerpad::FingertipResult;
+using fingerpad::FingertipStage;
+using fingerpad::ForceStatus;
+using fingerpad::Point3;
+
+constexpr int green = 1;  // OpenCV stores blue, green, red
+constexpr int red = 2;
+
+template <class Pixel>
+auto color_of(const cv::Mat& image) {
+  return fingerpad::ColorFrame(channel<Pixel>(image, red), channel<Pixel>(image, green));
+}
+template <class Pixel>
+bool has_cells(const cv::Mat& image) {
+  return (image.depth() == CV_16U) == std::is_same_v<Pixel, std::uint16_t>;
+}
+
+auto reference_of(const Recording& recording) {
+  const auto fit = [&](const auto& frame) {
+    return fingerpad::fit_reference(recording.sensor.camera, recording.sensor.absorption, frame.red,
+                                    frame.green, recording.reference_depth);
+  };
+  return recording.reference.depth() == CV_16U ? fit(color_of<std::uint16_t>(recording.reference))
+                                               : fit(color_of<std::uint8_t>(recording.reference));
+}
+using Reference = decltype(reference_of(std::declval<const Recording&>()));
+using FingertipOptions = fingerpad::FingertipOptions<Reference>;
+
+template <class SmoothingPolicy, class PixelType>
+struct Methods : fingerpad::FingertipMethods {
+  static constexpr bool has_neighbour_light = true;
+  static constexpr int sampling = 1;  // every pixel is written
+  using Smoothing = SmoothingPolicy;
+  using Pixel = PixelType;
+};
+template <class SmoothingPolicy, class PixelType>
+struct DepthAlone : Methods<SmoothingPolicy, PixelType> {
+  static constexpr bool has_contact = false;
+};
+
+template <class T>
+cv::Mat_<T> copy_of(const fingerpad::StridedView<const T>& from) {
+  cv::Mat_<T> to(static_cast<int>(from.rows()), static_cast<int>(from.cols()));
+  for (int i = 0; i < to.rows; ++i) {
+    for (int j = 0; j < to.cols; ++j) {
+      to(i, j) = from(i, j);
+    }
+  }
+  return to;
+}
+
+/// Depth of the free pad, whose frames may have other cells than those of the recording.
+template <class SmoothingPolicy>
+cv::Mat_<float> free_depth_of(const FingertipOptions& options, const cv::Mat& image) {
+  const auto depth = [&]<class Pixel>(Pixel) {
+    fingerpad::Fingertip<Reference, DepthAlone<SmoothingPolicy, Pixel>> fingertip(options);
+    (void)fingertip(color_of<Pixel>(image), DotGrid(), SpaceGrid(), 0);
+    return copy_of(fingertip.depth_mm());
+  };
+  return has_cells<std::uint16_t>(image) ? depth(std::uint16_t()) : depth(std::uint8_t());
+}
+
+template <class SmoothingPolicy>
+double contact_threshold_of(Recording& recording, const FingertipOptions& options) {
+  const cv::Size size = recording.reference.size();
+  fingerpad::FreePadCalibration<> calibration(recording.sensor.camera, size.height, size.width);
+  if (recording.free_frames.size() == 0) {
+    calibration.add(recording.reference_depth);
+  }
+  recording.free_frames.seek(0);
+  for (int frame = 0; frame < recording.free_frames.size(); ++frame) {
+    calibration.add(
+        free_depth_of<SmoothingPolicy>(options, next_frame(recording.free_frames, size)));
+  }
+  return calibration.fit().threshold_per_mm;
+}
+
+/// Thresholds that sensor.json gives in px, as the noise that has them; without them those of the
+/// noise in the free frames.
+fingerpad::SpatialStickTest stick_test_of(const Sensor& sensor) {
+  const fingerpad::StickTest by_default, &given = sensor.stick;
+  fingerpad::SpatialStickTest test;
+  if (given.slip_px != by_default.slip_px || given.reference_px != by_default.reference_px) {
+    // slip_px = 2 gain sigma sqrt(ln(1 / false_slip)), gain 0.416 by averaging over neighbours
+    const double sigmas = 2 * 0.416 * std::sqrt(std::log(1 / test.false_slip));
+    test.lateral_mm = given.slip_px * sensor.camera.pitch_mm / sigmas;
+    test.slip_share = (std::min)(given.slip_px / given.reference_px, 0.5);
+    test.free_frames = 0;
+  }
+  return test;
+}
+
+void set_look_up(const ForceLookUp& given, FingertipOptions& options) {
+  const auto normal = [](const NormalForceLookUp& by) {
+    return FingertipOptions::NormalLookUp(by.curve, by.compensation,
+                                          {.residual_sd_n = by.residual_n});
+  };
+  if (given.by_area) {
+    options.force_of_area = normal(*given.by_area);
+  }
+  if (given.by_depth) {
+    options.force_of_depth = normal(*given.by_depth);
+  }
+  if (given.shear) {
+    options.shear.emplace(given.shear->normalisation, given.shear->map);
+    options.shear_by_depth = given.shear->by == ContactMeasure::depth;
+  }
+}
+
+/// Points as the options want them.
+struct Points {
+  SpaceGrid grid;
+  std::vector<Point3<double>> cells;
+  explicit Points(SpaceGrid points) : grid(std::move(points)) {
+    for (const cv::Vec3d& p : grid) {
+      cells.push_back({p[0], p[1], p[2]});
+    }
+  }
+  fingerpad::StridedView<const Point3<double>> view() const {
+    return {cells.data(), grid.rows, grid.cols, grid.cols};
+  }
+};
+
+/// Columns of the border in the order of their angle, in which Fingertip tells the tensions.
+std::vector<int> by_angle(const SpaceGrid& border_mm) {
+  std::vector<std::pair<double, int>> columns;
+  for (int k = 0; k < border_mm.cols; ++k) {
+    const double angle = std::atan2(border_mm(0, k)[1], border_mm(0, k)[0]);
+    columns.emplace_back(angle < 0 ? angle + 2 * CV_PI : angle, k);
+  }
+  std::sort(columns.begin(), columns.end());
+  std::vector<int> order;
+  for (const auto& [angle, column] : columns) {
+    order.push_back(column);
+  }
+  return order;
+}
+
+/// How long each stage took.
+struct Watch {
+  using Clock = std::chrono::steady_clock;
+  Clock::time_point last = Clock::now();
+  std::array<double, 7> ms = {};
+  void operator()(FingertipStage ended) {
+    const auto now = Clock::now();
+    ms[static_cast<std::size_t>(ended)] =
+        std::chrono::duration<double, std::milli>(now - std::exchange(last, now)).count();
+  }
+  double operator[](FingertipStage stage) const { return ms[static_cast<std::size_t>(stage)]; }
+};
+
+template <class SmoothingPolicy, class Pixel>
+class Step : public FingertipStep {
+ public:
+  Step(const Recording& recording, const FingertipOptions& options)
+      : recording_(recording), with_dots_(options.free_dots_mm.rows() > 0), fingertip_(options) {
+    if (options.rim_mm.rows() > 0) {
+      border_order_ = by_angle(recording.side_dots->border_mm);
+      no_side_dots_.create(recording.side_dots->border_mm.size());
+      no_side_dots_ = cv::Vec3d::all(not_known);
+    }
+  }
+
+  FingertipFrame operator()(int frame,
+                            const cv::Mat& image,
+                            const DotGrid& dots_px,
+                            double time_s) override {
+    if (!has_cells<Pixel>(image)) {
+      fail(recording_.frames.last_file(), "has not as many bits as the frames before");
+    }
+    Watch watch;
+    const FingertipResult touch = fingertip_(color_of<Pixel>(image), dots_px, side_dots_of(frame),
+                                             recording_.signals.pressure_mpa(frame), time_s, watch);
+    FingertipFrame out;
+    out.depth_mm = copy_of(fingertip_.depth_mm());
+    out.contact_mask = copy_of(fingertip_.contact_mask());
+    out.valid_pixels = touch.depth.valid_pixels();
+    out.pad_pixels = touch.depth.pad_pixels;
+    out.pad_has_changed = touch.depth.status == fingerpad::DepthStatus::pad_has_changed;
+    out.contact = touch.contact;
+    out.force = force_of(touch);
+    if (with_dots_) {
+      out.dots = dots_of(dots_px, touch);
+    }
+    out.wrench = wrench_of(touch);
+    out.depth_ms = watch[FingertipStage::depth];
+    out.contact_ms = watch[FingertipStage::contact];
+    out.wrench_ms = watch[FingertipStage::heights] + watch[FingertipStage::wrench];
+    return out;
+  }
+
+ private:
+  const SpaceGrid& side_dots_of(int frame) const {
+    if (border_order_.empty()) {
+      return no_side_dots_;
+    }
+    const auto found = recording_.side_dots->dots_mm.find(frame);
+    return found == recording_.side_dots->dots_mm.end() ? no_side_dots_ : found->second;
+  }
+
+  FrameDots dots_of(const DotGrid& dots_px, const FingertipResult& touch) const {
+    FrameDots dots;
+    dots.dots_px = dots_px;
+    dots.dots_mm.create(dots_px.size());
+    dots.in_contact = copy_of(fingertip_.dots_in_contact());
+    dots.motion = touch.motion;
+    StickFrame& stick = dots.stick;
+    stick.states.create(dots_px.size());
+    for (int i = 0; i < dots_px.rows; ++i) {
+      for (int j = 0; j < dots_px.cols; ++j) {
+        const auto& p = fingertip_.dots_mm()(i, j);
+        dots.dots_mm(i, j) = {p.x, p.y, p.z};
+        stick.states(i, j) = static_cast<uchar>(fingertip_.dot_states()(i, j));
+      }
+    }
+    const bool slides = touch.slip.status == fingerpad::FrictionLimitStatus::sliding;
+    stick.result.status = slides ? fingerpad::StickStatus::updated : touch.stick.status;
+    stick.result.stick = touch.stick.stick;
+    stick.result.slip = touch.stick.slip;
+    stick.result.unknown = touch.stick.unknown;
+    stick.result.out_of_place = touch.stick.out_of_place;
+    stick.result.stick_ratio = slides ? 0 : static_cast<float>(touch.stick.stick_ratio);
+    stick.result.reference_age = touch.stick.reference_age;
+    stick.ratio_sd = slides ? 0 : touch.stick.ratio_sd;
+    stick.evidence = touch.slip.evidence;
+    return dots;
+  }
+
+  ForceFrame force_of(const FingertipResult& touch) const {
+    ForceFrame force;
+    force.shift = touch.shift;
+    force.looked_up = recording_.sensor.force.has_value() && touch.contact.ok();
+    force.normal_n = touch.normal.force_n;
+    force.disagreement = touch.normal.disagreement;
+    for (const ForceStatus status : {touch.by_area.status, touch.by_depth.status,
+                                     touch.shear.force_status, touch.shear.moment_status}) {
+      force.beyond_range = force.beyond_range || status == ForceStatus::beyond_range;
+    }
+    force.tangential_n = touch.shear.tangential_force_n;
+    force.moment_n_mm = touch.shear.moment_n_mm;
+    return force;
+  }
+
+  WrenchFrame wrench_of(const FingertipResult& touch) const {
+    WrenchFrame wrench;
+    wrench.present = !border_order_.empty();
+    wrench.result = touch.wrench;
+    fingerpad::Index k = 0;
+    for (const int column : border_order_) {
+      const cv::Vec3d& at = recording_.side_dots->border_mm(0, column);
+      wrench.tension.push_back({{at[0], at[1], at[2]}, fingertip_.rim_tension(k++)});
+    }
+    return wrench;
+  }
+
+  const Recording& recording_;
+  bool with_dots_;
+  fingerpad::Fingertip<Reference, Methods<SmoothingPolicy, Pixel>> fingertip_;
+  std::vector<int> border_order_;  ///< empty without the six-axis force
+  SpaceGrid no_side_dots_;
+};
+
+template <class SmoothingPolicy>
+std::unique_ptr<FingertipStep> make(Recording& recording,
+                                    const cv::Mat& first_image,
+                                    int window_px,
+                                    const DotGrid& initial_px) {
+  const Sensor& sensor = recording.sensor;
+  const cv::Mat_<float>& shape_mm = recording.reference_depth;
+  FingertipOptions options{sensor.camera, sensor.absorption, reference_of(recording), shape_mm.rows,
+                           shape_mm.cols};
+  options.smoothing_px = window_px;
+  cv::Mat_<float> free_depth_mm;
+  if (const auto& light = sensor.neighbour_light) {
+    free_depth_mm = free_depth_of<SmoothingPolicy>(options, recording.reference);
+    options.neighbour_light = {light->radius_px, static_cast<float>(light->m0_mm_per_rad),
+                               static_cast<float>(light->n_per_mm)};
+    options.free_depth_mm = fingerpad::as_view(std::as_const(free_depth_mm));
+  }
+  const auto& calibrated = sensor.contact_threshold_per_mm;
+  options.contact.threshold_per_mm =
+      calibrated ? *calibrated : contact_threshold_of<SmoothingPolicy>(recording, options);
+  options.contact.free_apex_mm = sensor.pad.apex_height_mm;
+  SpaceGrid dots_mm(initial_px.size());
+  (void)fingerpad::spatial_dots(sensor.camera, initial_px, shape_mm, dots_mm);
+  const Points free_dots(dots_mm);
+  options.free_dots_mm = free_dots.view();
+  options.dot_radius_px = sensor.dots ? sensor.dots->diameter_mm / 2 / sensor.camera.pitch_mm : 0.0;
+  options.stick = stick_test_of(sensor);
+  if (sensor.force) {
+    set_look_up(*sensor.force, options);
+  }
+  const bool balances = lacking_for_wrench(recording).empty();
+  const Points rim(balances ? recording.side_dots->border_mm : SpaceGrid());
+  if (balances) {
+    options.rim_mm = rim.view();
+    options.side_dot_row.stress_free_inclination_rad = sensor.rim->stress_free_inclination_rad;
+    options.wrench.base_radius_mm = sensor.pad.base_radius_mm;
+    options.wrench.side_dot_length_mm = sensor.rim->side_dot_length_mm;
+    options.wrench.calibrated_modulus_n_per_mm = sensor.rim->membrane_modulus_n_per_mm;
+    options.wrench.falls_back_on_modulus = sensor.rim->membrane_modulus_n_per_mm.has_value();
+  }
+  if (has_cells<std::uint16_t>(first_image)) {
+    return std::make_unique<Step<SmoothingPolicy, std::uint16_t>>(recording, options);
+  }
+  return std::make_unique<Step<SmoothingPolicy, std::uint8_t>>(recording, options);
+}
+
+}  // namespace
+
+std::unique_ptr<FingertipStep> make_fingertip_step(Recording& recording,
+                                                   const cv::Mat& first_image,
+                                                   Smoothing smoothing,
+                                                   int window_px,
+                                                   const DotGrid& initial_px) {
+  switch (smoothing) {
+    case Smoothing::none:
+      return make<fingerpad::NoSmoothing>(recording, first_image, window_px, initial_px);
+    case Smoothing::box:
+      return make<fingerpad::published::BoxMean>(recording, first_image, window_px, initial_px);
+    case Smoothing::anchored:
+      break;
+  }
+  return make<fingerpad::BiasFreeMean>(recording, first_image, window_px, initial_px);
+}
+
+std::string lacking_for_wrench(const Recording& recording) {
+  return recording.sensor.dots_only                ? "nothing is known but dots"
+         : !recording.side_dots                    ? "there is no side_dots.csv"
+         : recording.signals.pressures_mpa.empty() ? "signals.csv has no pressure"
+         : !recording.sensor.rim                   ? "sensor.json has no rim"
+                                                   : "";
+}
+
+}  // namespace replay

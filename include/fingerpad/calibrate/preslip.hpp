@@ -1,0 +1,164 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+#pragma once
+// Thresholds of the pre-slip rules from recordings in which a person, or a camera, has marked when
+// slip begins. The paper prints none ("Pre-Slip Sensing Using Tactile Sensor", 2007). A rule is as
+// good as the onsets that it finds and the alarms that are right; the one without the other says
+// nothing, since a rule that always alarms finds every onset.
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "fingerpad/calibrate/fit.hpp"
+#include "fingerpad/core/expects.hpp"
+#include "fingerpad/core/grid.hpp"
+#include "fingerpad/core/scalar.hpp"
+#include "fingerpad/foam/finger_sample.hpp"
+#include "fingerpad/foam/preslip.hpp"
+
+namespace fingerpad {
+inline namespace v0 {
+
+/// Alarms beside marked onsets.
+template <scalar S = double>
+struct [[nodiscard]] PreslipFit {
+  FitStatus status = FitStatus::onsets_not_found;
+  PreslipOptions<S> options = {};  ///< for Preslip
+  Index onsets = 0;                ///< marked samples in a row count as one
+  Index found = 0;                 ///< onsets with an alarm
+  Index alarms = 0;                ///< samples with an alarm
+  Index right = 0;                 ///< of these, marked
+  Index samples = 0;
+  Index marked = 0;
+  Index ties = 0;  ///< thresholds as good as these, these included: the more, the less they matter
+
+  bool ok() const { return status == FitStatus::ok; }
+  double recall() const { return onsets > 0 ? share(found, onsets) : 0; }
+  double precision() const { return alarms > 0 ? share(right, alarms) : 0; }
+  /// The precision of a rule that always alarms: `precision` must be above it to say anything.
+  double chance() const { return samples > 0 ? share(marked, samples) : 0; }
+
+ private:
+  static double share(Index part, Index whole) {
+    return static_cast<double>(part) / static_cast<double>(whole);
+  }
+};
+
+/// Collects marked samples, then finds the thresholds. Rule and Fingers as in Preslip.
+template <class Rule = GraspLift, std::size_t Fingers = 2, scalar S = double>
+class PreslipCalibration {
+ public:
+  /// `history` as in PreslipOptions. Refuses bad parameters (parameter_error).
+  explicit PreslipCalibration(Index history = 100) {
+    options_.history = history;
+    expects_valid(options_);
+  }
+
+  /// The next sample belongs to another recording: nothing is compared across.
+  void begin_recording() { begins_ = true; }
+
+  /// A sample of all fingers, and whether slip begins within it. Mark as long as an alarm would be
+  /// right: about a window of samples from the first that slips.
+  void add(const std::array<FingerSample<S>, Fingers>& samples, bool is_onset) {
+    samples_.push_back({samples, is_onset, begins_ || samples_.empty()});
+    begins_ = false;
+  }
+
+  /// The thresholds that find most onsets with at least `min_precision` of the alarms right; the
+  /// middle of those that are as good. `onsets_not_found` where there are none, or where the alarms
+  /// are no better than chance. Refuses (parameter_error) samples of which none, or all, are marked
+  /// and a `min_precision` that is not in [0, 1]. Takes O(samples history) time, 96 times.
+  PreslipFit<S> fit(double min_precision = 0.9) const {
+    const char* const owner = "PreslipCalibration";
+    expects(min_precision >= 0 && min_precision <= 1, owner, "min_precision", min_precision,
+            "in [0, 1]");
+    const auto marked = static_cast<long long>(
+        std::count_if(samples_.begin(), samples_.end(), [](const Marked& s) { return s.onset; }));
+    expects(marked > 0, owner, "marked samples", marked, "> 0");
+    expects(marked < static_cast<long long>(samples_.size()), owner, "samples without a mark",
+            static_cast<long long>(samples_.size()) - marked, "> 0");
+    std::vector<PreslipFit<S>> all;
+    for (Index min_waves = 0; min_waves < 8; ++min_waves) {
+      for (const double tolerance : tolerances_mm) {
+        PreslipOptions<S> options = options_;
+        options.min_waves = min_waves;
+        options.centroid_tolerance_mm = S(tolerance);
+        all.push_back(judge(options));
+      }
+    }
+    return best_of(all, min_precision);
+  }
+
+  /// How thresholds of one's own, or of other recordings, do on these. Its status is not set.
+  /// Refuses bad parameters (parameter_error).
+  PreslipFit<S> judge(const PreslipOptions<S>& options) const {
+    const Preslip<Rule, Fingers, S> rule(options);
+    auto state = rule.start();
+    PreslipFit<S> score;
+    score.options = options;
+    bool in_onset = false, is_found = false;
+    for (const Marked& s : samples_) {
+      if (s.begins) {
+        state.reset();
+        in_onset = false;
+      }
+      const bool alarm = rule(s.fingers, state).is_fresh;
+      const bool is_new = s.onset && !in_onset;
+      in_onset = s.onset;
+      is_found = is_found && !is_new;
+      ++score.samples;
+      score.marked += s.onset ? 1 : 0;
+      score.onsets += is_new ? 1 : 0;
+      score.alarms += alarm ? 1 : 0;
+      score.right += alarm && s.onset ? 1 : 0;
+      score.found += alarm && s.onset && !is_found ? 1 : 0;
+      is_found = is_found || (alarm && s.onset);
+    }
+    return score;
+  }
+
+ private:
+  struct Marked {
+    std::array<FingerSample<S>, Fingers> fingers;
+    bool onset;
+    bool begins;
+  };
+  static constexpr std::array<double, 12> tolerances_mm = {0,   0.01, 0.02, 0.05, 0.1, 0.2,
+                                                           0.5, 1,    2,    3,    5,   10};
+
+  static PreslipFit<S> best_of(const std::vector<PreslipFit<S>>& all, double min_precision) {
+    const auto is_better = [&](const PreslipFit<S>& a, const PreslipFit<S>& b) {
+      const bool a_holds = a.precision() >= min_precision, b_holds = b.precision() >= min_precision;
+      if (a_holds != b_holds) {
+        return a_holds;
+      }
+      return a.found != b.found ? a.found > b.found : a.precision() > b.precision();
+    };
+    PreslipFit<S> best = all.front();
+    for (const PreslipFit<S>& score : all) {
+      best = is_better(score, best) ? score : best;
+    }
+    std::vector<PreslipFit<S>> ties;
+    for (const PreslipFit<S>& score : all) {
+      // of equal numbers of waves, so that the middle is one of them
+      if (!is_better(best, score) && score.options.min_waves == best.options.min_waves) {
+        ties.push_back(score);
+      }
+    }
+    PreslipFit<S> fit = ties[ties.size() / 2];
+    fit.ties = static_cast<Index>(ties.size());
+    fit.status = fit.precision() >= min_precision && fit.found > 0 && fit.precision() > fit.chance()
+                     ? FitStatus::ok
+                     : FitStatus::onsets_not_found;
+    return fit;
+  }
+
+  PreslipOptions<S> options_ = {};
+  std::vector<Marked> samples_;
+  bool begins_ = true;
+};
+
+}  // namespace v0
+}  // namespace fingerpad

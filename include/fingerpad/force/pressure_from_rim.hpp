@@ -1,0 +1,71 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+#pragma once
+// Six axes without a pressure gauge. The balance of a frame gives the ratio of pressure and mu t;
+// where mu t is calibrated (calibrate/rim.hpp) that is the pressure, and the forces with it. Source
+// of the balance: Ito, Kim, Obinata 2011, eq. 12, who measure the pressure.
+#include <cmath>
+
+#include "fingerpad/core/dots.hpp"
+#include "fingerpad/core/expects.hpp"
+#include "fingerpad/core/scalar.hpp"
+#include "fingerpad/force/wrench.hpp"
+
+namespace fingerpad {
+inline namespace v0 {
+
+/// Force, moment and pressure (`pressure_mpa`) of a frame, as `wrench` would find them with the
+/// pressure at which mu t comes out as `modulus_n_per_mm`, > 0 (otherwise `refused`). Errors of
+/// mu t are those of the pressure, F_z and all else: 1 % is 1 %. No covariance. `not_solved` where
+/// no pressure up to `max_pressure_mpa` fits. Takes 2 calls of `wrench` with OneRow or TwoRows,
+/// about 8 with OneRow{inclination}; no memory.
+template <class Solver,
+          class Row,
+          class Law,
+          class Lines,
+          scalar S,
+          class Shape,
+          spatial_dot_grid Dots>
+WrenchResult<S> pressure_from_rim(const Wrench<Solver, Row, Law, Lines, S>& wrench,
+                                  const Shape& shape,
+                                  const Dots& side_dots_mm,
+                                  const S& modulus_n_per_mm,
+                                  typename Wrench<Solver, Row, Law, Lines, S>::Workspace& work) {
+  static_assert(Solver::magnitude != detail::membrane::Magnitude::given && Law::tells_magnitude,
+                "a direction alone does not tell the pressure: use BalancedRim or "
+                "LeastSquares with ClampedRim");
+  if (!is_finite(modulus_n_per_mm) || !(value(modulus_n_per_mm) > 0)) {
+    return {};
+  }
+  // a first guess within three times of the truth, or the frame looks like another pad's
+  WrenchResult<S> found;
+  S pressure = S(0);
+  for (const double share : {0.1, 0.0125, 0.8}) {
+    pressure = wrench.options().max_pressure_mpa * S(share);
+    found = wrench(shape, side_dots_mm, pressure, work);
+    if (found.status != WrenchStatus::modulus_not_as_calibrated) {
+      break;
+    }
+  }
+  if (found.by_modulus) {  // without a shape any pressure goes with the modulus
+    found.status = WrenchStatus::no_level_line;
+  }
+  for (int round = 0; round < 40 && found.status == WrenchStatus::ok; ++round) {
+    const S ratio = modulus_n_per_mm / found.modulus_n_per_mm;
+    const S change = ratio - S(1);
+    if (value(S(change * change)) < 1e-10) {
+      return found;
+    }
+    pressure = pressure * ratio;
+    found = wrench(shape, side_dots_mm, pressure, work);
+    if (found.by_modulus) {
+      found.status = WrenchStatus::no_level_line;
+    }
+  }
+  WrenchResult<S> none;
+  none.status = found.status == WrenchStatus::ok ? WrenchStatus::not_solved : found.status;
+  return none;
+}
+
+}  // namespace v0
+}  // namespace fingerpad

@@ -1,0 +1,392 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+#pragma once
+// The stages of pipeline/fingertip.hpp, each with its estimators and their memory. A stage is set
+// up from the options and fills its part of the result.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <numbers>
+#include <optional>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include "fingerpad/pipeline/detail/frame_samples.hpp"
+#include "fingerpad/pipeline/fingertip_options.hpp"
+
+namespace fingerpad {
+inline namespace v0 {
+namespace detail {
+
+/// The frame's depth.
+template <class Options, class Methods>
+struct FingertipImage {
+  using Executor = typename Methods::Executor;
+  using Estimator = decltype(DepthEstimator(std::declval<Camera<double>>(),
+                                            std::declval<Absorption<double>>(),
+                                            std::declval<const Options&>().reference,
+                                            std::declval<typename Methods::Smoothing>(),
+                                            std::declval<typename Methods::Inverse>()));
+  static constexpr int step = Methods::sampling;
+  using Samples =
+      FrameSamples<decltype(Options::reference), typename Methods::Pixel, step, Executor::threads>;
+  using Workspace = typename Estimator::template Workspace<typename Samples::Cell>;
+  Index rows, cols;       // of frames
+  Camera<double> camera;  // of samples, as all that follows
+  Estimator estimate;
+  std::vector<Workspace> work;  // one a thread
+  Samples samples;
+  OwnedGrid<float> depth;
+  OwnedGrid<PixelStatus> status;
+
+  explicit FingertipImage(const Options& o)
+      : rows(o.rows),
+        cols(o.cols),
+        camera(sampled(o.camera, step)),
+        estimate(camera, o.fluid, sampled(o.reference, step), smoothing(o)),
+        work(Executor::threads, estimate.template workspace<typename Samples::Cell>()),
+        samples(o.reference),
+        depth(estimate.rows(), estimate.cols()),
+        status(estimate.rows(), estimate.cols()) {
+    expects(rows == o.reference.rows, "FingertipOptions", "rows", static_cast<long long>(rows),
+            "those of the reference");
+    expects(cols == o.reference.cols, "FingertipOptions", "cols", static_cast<long long>(cols),
+            "those of the reference");
+  }
+
+  static typename Methods::Smoothing smoothing(const Options& o) {
+    if constexpr (std::is_empty_v<typename Methods::Smoothing>) {
+      return {};
+    } else if constexpr (step == 1) {
+      return {o.smoothing_px};
+    } else {
+      return {o.smoothing_px, step};
+    }
+  }
+
+  template <class Frame>
+  bool fits(const Frame& frame) const {
+    return frame.red.rows() == rows && frame.red.cols() == cols &&
+           same_size(frame.red, frame.green);
+  }
+
+  template <class Frame>
+  void measure(const Frame& frame, Executor& executor, DepthResult& result) {
+    std::array<DepthResult, Executor::threads> parts;
+    const auto& sampled_frame = samples(frame, executor);
+    executor.bands(depth.rows, [&](int thread, Index first, Index last) {
+      const auto k = static_cast<std::size_t>(thread);
+      parts[k] = estimate.band(first, last, sampled_frame.red, sampled_frame.green, depth.view(),
+                               status.view(), work[k]);
+    });
+    result = parts[0];
+    for (std::size_t k = 1; k < parts.size(); ++k) {
+      result.add(parts[k]);
+    }
+  }
+};
+
+/// What neighbouring membrane adds to the depth.
+template <class Options, class Methods>
+struct FingertipLight {
+  static_assert(Methods::sampling == 1,
+                "the neighbour light is that of whole frames: sampling = 1");
+  using Compensation = NeighbourLightCompensation<>;
+  std::optional<Compensation> compensate;
+  std::optional<Compensation::Workspace> work;
+
+  explicit FingertipLight(const Options& o) {
+    if (o.neighbour_light) {
+      expects(o.free_depth_mm.rows() == o.rows && o.free_depth_mm.cols() == o.cols,
+              "FingertipOptions", "rows of free_depth_mm",
+              static_cast<long long>(o.free_depth_mm.rows()), "the frame's size");
+      compensate.emplace(*o.neighbour_light, pitch_on_membrane_mm(o), o.free_depth_mm);
+      work.emplace(compensate->workspace());
+    }
+  }
+
+  template <class Image>
+  void take_off(Image& image) {
+    if (compensate) {
+      (void)(*compensate)(image.depth.view(), image.depth.view(), *work);
+    }
+  }
+
+  /// Distance between the points that neighbouring pixels see at the pad's mean depth.
+  static float pitch_on_membrane_mm(const Options& o) {
+    double sum_mm = 0, count = 0;
+    for (Index i = 0; i < o.rows; ++i) {
+      for (Index j = 0; j < o.cols; ++j) {
+        const auto depth_mm = static_cast<double>(o.free_depth_mm(i, j));
+        sum_mm += is_finite(depth_mm) ? depth_mm : 0;
+        count += is_finite(depth_mm) ? 1 : 0;
+      }
+    }
+    const auto x_mm = [&](double col) {
+      return point_at(o.camera, o.camera.center_y_px, col, sum_mm / count).x;
+    };
+    return static_cast<float>(x_mm(o.camera.center_x_px + 1) - x_mm(o.camera.center_x_px));
+  }
+};
+
+/// Where the object touches.
+template <class Options, class Methods>
+struct FingertipContact {
+  using Region = ContactRegion<typename Methods::Statistic, typename Methods::Edge>;
+  static constexpr int step = Methods::sampling;
+  Region region;
+  typename Region::Workspace work;
+  OwnedGrid<std::uint8_t> mask;
+
+  explicit FingertipContact(const Options& o)
+      : region(sampled(o.camera, step), o.rows / step, o.cols / step, test_of_samples(o)),
+        work(region.workspace()),
+        mask(region.rows(), region.cols()) {}
+
+  static ContactTest test_of_samples(const Options& o) {
+    ContactTest test = o.contact;
+    test.ring.radius_px = (std::max)(test.ring.radius_px / step, 1.0);
+    test.min_region_px = (test.min_region_px + step * step - 1) / (step * step);
+    return test;
+  }
+
+  template <class Image>
+  ContactResult find(const Image& image) {
+    return region(image.depth.view(), mask.view(), work);
+  }
+};
+
+/// What the printed dots say.
+template <class Options>
+struct FingertipDots {
+  struct Followed {
+    ObjectMotion<> motion;
+    ObjectMotion<>::State motion_state;
+    SpatialStickRatio<> stick;
+    SpatialStickRatio<>::State stick_state;
+    FrictionLimit<> friction;
+    FrictionLimit<>::State friction_state;
+
+    explicit Followed(const Options& o)
+        : motion(o.free_dots_mm),
+          motion_state(motion.start()),
+          stick(o.free_dots_mm.rows(), o.free_dots_mm.cols(), o.stick),
+          stick_state(stick.start()),
+          friction(o.friction),
+          friction_state(friction.start()) {}
+  };
+  OwnedGrid<Point3<double>> at_mm;
+  OwnedGrid<std::uint8_t> touching;
+  OwnedGrid<DotState> states;
+  OwnedGrid<std::uint8_t> slips;
+  double radius_px;
+  std::optional<Followed> followed;  // none without dots
+
+  explicit FingertipDots(const Options& o)
+      : at_mm(o.free_dots_mm.rows(), o.free_dots_mm.cols()),
+        touching(at_mm.rows, at_mm.cols),
+        states(at_mm.rows, at_mm.cols),
+        slips(at_mm.rows, at_mm.cols),
+        radius_px(o.dot_radius_px) {
+    expects(radius_px >= 0 && radius_px <= 1000, "FingertipOptions", "dot_radius_px", radius_px,
+            "in [0, 1000]");
+    if (!at_mm.cells.empty()) {
+      followed.emplace(o);
+    }
+  }
+
+  template <class Dots>
+  bool fits(const Dots& dots_px) const {
+    return !followed || same_size(dots_px, states.view());
+  }
+  bool answers(const FingertipResult& touch) const {
+    return !followed || (touch.motion.ok() && is_finite(touch.stick.stick_ratio));
+  }
+  void reset() {
+    if (followed) {
+      followed->motion_state = followed->motion.start();
+      followed->stick_state.reset();
+      followed->friction_state.reset();
+    }
+  }
+
+  template <class Image, class Contact, class Dots, class Watch>
+  void follow(const Image& image,
+              const Contact& region,
+              const Dots& dots_px,
+              double time_s,
+              FingertipResult& touch,
+              Watch& watch) {
+    if (followed) {
+      const auto from = as_view(dots_px);
+      const LazyView dots(from.rows(), from.cols(), [&from](Index i, Index j) {
+        using Traits = point_traits<cell_t<Dots>>;
+        const cell_t<Dots> p = from(i, j);
+        return Point2<double>{sampled_px(static_cast<double>(Traits::x(p)), Image::step),
+                              sampled_px(static_cast<double>(Traits::y(p)), Image::step)};
+      });
+      (void)spatial_dots(image.camera, dots, image.depth.view(), at_mm.view());
+      contact_at_dots(dots, region.mask.view(), touching.view(), radius_px / Image::step);
+      touch.stick = followed->stick(at_mm.view(), touching.view(), states.view(),
+                                    followed->stick_state, time_s);
+    }
+    watch(FingertipStage::stick);
+  }
+
+  /// Whether the object slides, once the forces are known; and its motion, by the dots that hold.
+  template <class Watch>
+  void conclude(FingertipResult& touch, Watch& watch) {
+    if (followed) {
+      touch.slip = followed->friction(load_of(touch), touch.stick.stick_ratio,
+                                      update_of(touch.stick.status), followed->friction_state);
+      const bool slides = touch.slip.status == FrictionLimitStatus::sliding;
+      for (std::size_t k = 0; k < slips.cells.size(); ++k) {
+        slips.cells[k] = slides || states.cells[k] == DotState::slip ? 1 : 0;
+      }
+      touch.motion =
+          followed->motion(at_mm.view(), touching.view(), slips.view(), followed->motion_state);
+    }
+    watch(FingertipStage::motion);
+  }
+
+  /// By the six-axis force; without it by look-up; without either not known.
+  ContactLoad<double> load_of(const FingertipResult& touch) const {
+    if (touch.wrench.ok()) {
+      return contact_load(touch.wrench.force_n, touch.wrench.moment_n_mm, at_mm.view(),
+                          touching.view());
+    }
+    const double radius_mm = std::sqrt(touch.contact.area_mm2 / std::numbers::pi);
+    return {touch.normal.force_n, norm(touch.shear.tangential_force_n), touch.shear.moment_n_mm,
+            2.0 / 3 * radius_mm};
+  }
+};
+
+/// Forces by look-up.
+template <class Options>
+struct FingertipLookUp {
+  std::optional<ContactShift<>> shift;  // none without dots
+  std::optional<ContactShift<>::Workspace> work;
+  std::optional<typename Options::NormalLookUp> of_area, of_depth;
+  std::optional<typename Options::ShearLookUp> of_shift;
+  bool shear_by_depth;
+
+  explicit FingertipLookUp(const Options& o)
+      : of_area(o.force_of_area),
+        of_depth(o.force_of_depth),
+        of_shift(o.shear),
+        shear_by_depth(o.shear_by_depth) {
+    if (o.free_dots_mm.rows() * o.free_dots_mm.cols() > 0) {
+      shift.emplace(o.free_dots_mm);
+      work.emplace(shift->workspace());
+    }
+  }
+  bool answers(const FingertipResult& touch) const {
+    return !(of_area || of_depth) || touch.normal.sources > 0;
+  }
+
+  template <class Dots, class Watch>
+  void measure(const Dots& dots, FingertipResult& touch, Watch& watch) {
+    const bool pressed = touch.contact.in_contact();
+    if (touch.contact.ok()) {
+      look_up(dots, pressed ? touch.contact.area_mm2 : 0, pressed ? touch.contact.depth_mm : 0,
+              pressed, touch);
+    }
+    watch(FingertipStage::look_up);
+  }
+
+  template <class Dots>
+  void look_up(
+      const Dots& dots, double area_mm2, double depth_mm, bool pressed, FingertipResult& touch) {
+    if (shift) {
+      touch.shift = (*shift)(dots.at_mm.view(), dots.touching.view(), *work);
+    }
+    // a contact whose dots do not tell its shift counts as one that is only pressed: the
+    // compensation is small beside the force
+    const auto known = [](double x) { return is_finite(x) ? x : 0; };
+    const Point2<double> moved = touch.shift.displacement;
+    const Point2<double> along = {known(moved.x), known(moved.y)};
+    const double rotation = known(touch.shift.rotation_rad);
+    if (of_area) {
+      touch.by_area = (*of_area)(area_mm2, along, rotation);
+    }
+    if (of_depth) {
+      touch.by_depth = (*of_depth)(depth_mm, along, rotation);
+    }
+    touch.normal = fused(touch.by_area, touch.by_depth);
+    if (of_shift) {  // without contact there is no shift to know
+      touch.shear =
+          (*of_shift)(shear_by_depth ? depth_mm : area_mm2, pressed ? moved : Point2<double>{0, 0},
+                      pressed ? touch.shift.rotation_rad : 0);
+    }
+  }
+};
+
+/// The six-axis force.
+template <class Options, class Methods>
+struct FingertipBalance {
+  using Solver = Wrench<typename Methods::Solver>;
+  static constexpr int step = Methods::sampling;
+  struct Balance {
+    PadHeights<> heights;
+    PadHeights<>::Map map;
+    Solver wrench;
+    typename Solver::Workspace work;
+
+    explicit Balance(const Options& o)
+        : heights(
+              o.rows / step, o.cols / step, sampled(o.camera, step), o.wrench.base_radius_mm + 1),
+          map(heights.map()),
+          wrench(o.rim_mm, o.wrench, {}, o.side_dot_row),
+          work(wrench.workspace()) {}
+  };
+  std::optional<Balance> balance;  // none without a rim
+
+  explicit FingertipBalance(const Options& o) {
+    if (o.rim_mm.rows() * o.rim_mm.cols() > 0) {
+      balance.emplace(o);
+    }
+  }
+  bool answers(const FingertipResult& touch) const { return !balance || touch.wrench.ok(); }
+
+  template <class Image, class Contact, class SideDots, class Watch>
+  void solve(const Image& image,
+             const Contact& region,
+             const SideDots& side_dots_mm,
+             double pressure_mpa,
+             FingertipResult& touch,
+             Watch& watch) {
+    if (balance) {
+      balance->heights(image.depth.view(), region.mask.view(), balance->map);
+      watch(FingertipStage::heights);
+      touch.wrench = balance->wrench(balance->map, side_dots_mm, pressure_mpa, balance->work);
+    }
+    watch(FingertipStage::wrench);
+  }
+};
+
+/// In place of a stage that is switched off.
+struct NoFingertipStage {
+  template <class Options>
+  explicit NoFingertipStage(const Options&) {}
+  template <class Dots>
+  bool fits(const Dots&) const {
+    return true;
+  }
+  bool answers(const FingertipResult&) const { return true; }
+  template <class Image>
+  void take_off(const Image&) {}
+  template <class... Given>
+  void follow(Given&&...) {}
+  template <class... Given>
+  void measure(Given&&...) {}
+  template <class... Given>
+  void conclude(Given&&...) {}
+  template <class... Given>
+  void solve(Given&&...) {}
+};
+
+}  // namespace detail
+}  // namespace v0
+}  // namespace fingerpad

@@ -1,0 +1,192 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+// How far results move with their calibration: derivatives by dual numbers against differences, and
+// the variance that they carry against calibrations repeated with fresh noise.
+#include <Eigen/Dense>
+#include <array>
+#include <cmath>
+#include <span>
+#include <vector>
+
+#include "fingerpad/adapt/autodiff.hpp"
+#include "fingerpad/calibrate/force.hpp"
+#include "fingerpad/depth/depth.hpp"
+#include "support/catch.hpp"
+#include "support/pad.hpp"
+#include "support/wrench_frames.hpp"
+
+using namespace fingerpad;
+
+namespace {
+
+/// c_R, c_G, kappa, and the camera's distance, index, center (x, y) and pitch.
+template <class S>
+using Optics = std::array<S, 8>;
+
+template <class S>
+S depth_after_fit(const test::Pad& pad,
+                  const test::Image<double>& shape,
+                  const test::Frame<double>& frame,
+                  const Colour<double>& seen,
+                  Index row,
+                  Index col,
+                  const Optics<S>& p) {
+  Absorption<S> fluid = cast<S>(pad.fluid);
+  fluid.c_red_per_mm = p[0];
+  fluid.c_green_per_mm = p[1];
+  fluid.kappa = p[2];
+  Camera<S> camera = cast<S>(pad.camera);
+  camera.plate_distance_mm = p[3];
+  camera.refractive_index = p[4];
+  camera.center_x_px = p[5];
+  camera.center_y_px = p[6];
+  camera.pitch_mm = p[7];
+  const auto reference =
+      fit_reference<AstigmaticHeights, S>(camera, fluid, frame.red, frame.green, shape);
+  const auto ray = ray_at_pixel(camera, S(static_cast<double>(row)), S(static_cast<double>(col)));
+  const S g = reference.scattering.at(S(square(ray.plate_rho_mm)));
+  return newton_depth(fluid, pencil_of(camera, ray), g, Colour<S>{S(seen.red), S(seen.green)})
+      .depth_mm;
+}
+
+constexpr double reference_mm2 = 100;
+
+/// Tangential forces of a pad with 2 N/mm at the reference and the exponent 0.6.
+std::vector<ForceSample<double>> dragged(double noise_n, test::Random& random) {
+  std::vector<ForceSample<double>> samples;
+  for (int k = 0; k < 60; ++k) {
+    ForceSample<double> s;
+    s.measure = 40 + 4 * k;
+    const double angle = 2.4 * k;
+    const double length = 0.3 + 0.02 * (k % 20);
+    s.displacement_mm = {length * std::cos(angle), length * std::sin(angle)};
+    s.rotation_rad = 0;
+    const double gain = 2 * std::pow(s.measure / reference_mm2, 0.6);
+    s.tangential_force_n = {gain * s.displacement_mm.x + noise_n * random.normal(),
+                            gain * s.displacement_mm.y + noise_n * random.normal()};
+    samples.push_back(s);
+  }
+  return samples;
+}
+
+template <class S>
+Point2<S> force_at(const S& gain, const S& exponent, double measure, const Point2<double>& d) {
+  RadialShear<1, S> map;
+  map.force.coefficients[0] = gain;
+  map.moment.coefficients[0] = S(30);
+  const Shear shear(ShearNormalisation<S>{S(reference_mm2), exponent, S(1.5)}, map);
+  return shear(S(measure), {S(d.x), S(d.y)}, S(0)).tangential_force_n;
+}
+
+/// Force and moment of a frame by the stress-free length of the side dots and the pressure.
+template <class S>
+WrenchResult<S> wrench_of(const test::WrenchFrame& frame, const std::array<S, 2>& p) {
+  const auto& exact = test::exact_heights(frame.heights);
+  typename PadHeights<OrthographicCamera<S>>::Map heights(S(19.5), S(0.5));
+  heights.fill([&](Index i, Index j) { return S(exact.node(i, j).height_mm); },
+               [&](Index i, Index j, const auto&) {
+                 return S(exact.in_contact(exact.position_mm(j), exact.position_mm(i)) ? 1 : 0);
+               });
+  const auto as_dual = [](const test::Image<Point3<double>>& from) {
+    test::Image<Point3<S>> to(1, test::side_dots, {S(0), S(0), S(0)});
+    for (Index k = 0; k < test::side_dots; ++k) {
+      to(0, k) = {S(from(0, k).x), S(from(0, k).y), S(from(0, k).z)};
+    }
+    return to;
+  };
+  WrenchOptions<S> options;
+  options.side_dot_length_mm = p[0];
+  const Wrench<BalancedRim, OneRow, ClampedRim, StraightLines, S> wrench(
+      as_dual(test::rim_border()), options);
+  auto work = wrench.workspace();
+  return wrench(heights, as_dual(frame.dots), p[1], work);
+}
+
+}  // namespace
+
+TEST_CASE("depth follows fluid and camera, through the reference as well") {
+  const test::Pad pad;
+  const auto shape = pad.free_depths();
+  const auto frame = pad.frame<double>(shape);
+  const Optics<double> at = {
+      pad.fluid.c_red_per_mm,       pad.fluid.c_green_per_mm,    pad.fluid.kappa,
+      pad.camera.plate_distance_mm, pad.camera.refractive_index, pad.camera.center_x_px,
+      pad.camera.center_y_px,       pad.camera.pitch_mm};
+  for (const auto& pixel : {std::array<Index, 2>{24, 28}, {30, 20}, {12, 40}}) {
+    const Index row = pixel[0];
+    const Index col = pixel[1];
+    CAPTURE(row, col);
+    const auto seen = pad.colour(row, col, 0.8 * pad.free_depth(row, col), 50);
+    const auto depth = depth_after_fit(pad, shape, frame, seen, row, col, seeded(at));
+    CHECK(depth.value() == Approx(0.8 * pad.free_depth(row, col)).epsilon(2e-3));
+    for (std::size_t k = 0; k < at.size(); ++k) {
+      CAPTURE(k);
+      const double step = 1e-5 * at[k];
+      const auto moved = [&](double by) {
+        auto p = at;
+        p[k] += by;
+        return depth_after_fit(pad, shape, frame, seen, row, col, p);
+      };
+      const double slope = (moved(step) - moved(-step)) / (2 * step);
+      CHECK(depth.derivatives()(static_cast<Index>(k)) ==
+            Approx(slope).epsilon(1e-5).margin(1e-6 / at[k]));
+      CHECK(std::abs(slope) > 1e-6);
+    }
+  }
+}
+
+TEST_CASE("variance of a force by look-up is what repeated calibrations scatter by") {
+  test::Random random(7);
+  constexpr double noise_n = 0.1;
+  constexpr int trials = 400;
+  const Point2<double> d = {0.5, -0.2};
+  const double measure = GENERATE(60.0, 250.0);
+  const auto fit_of = [](const std::vector<ForceSample<double>>& samples) {
+    return fit_tangential_force<1>(std::span<const ForceSample<double>>(samples), reference_mm2);
+  };
+  double variance = 0;
+  double scatter = 0;
+  const auto truth = force_at(2.0, 0.6, measure, d);
+  for (int t = 0; t < trials; ++t) {
+    const auto fit = fit_of(dragged(noise_n, random));
+    const auto p = seeded(std::array{fit.polynomial.coefficients[0], fit.exponent});
+    const auto force = force_at(p[0], p[1], measure, d);
+    const Eigen::Matrix2d covariance{{fit.covariance[0][0], fit.covariance[0][1]},
+                                     {fit.covariance[1][0], fit.covariance[1][1]}};
+    variance += carried_variance(force.x, covariance) / trials;
+    scatter += square(force.x.value() - truth.x) / trials;
+  }
+  // 400 trials know a variance to 7 %
+  CHECK(scatter / variance == Approx(1).margin(0.25));
+}
+
+TEST_CASE("force and moment follow side dots and pressure") {
+  for (const test::WrenchFrame& frame : test::wrench_frames()) {
+    CAPTURE(frame.name);
+    const std::array<double, 2> at = {WrenchOptions<double>{}.side_dot_length_mm,
+                                      frame.pressure_mpa};
+    const auto plain = wrench_of(frame, at);
+    const auto dual = wrench_of(frame, seeded(at));
+    const auto six = [](const auto& r) {
+      return std::array{r.force_n.x,     r.force_n.y,     r.force_n.z,
+                        r.moment_n_mm.x, r.moment_n_mm.y, r.moment_n_mm.z};
+    };
+    for (std::size_t k = 0; k < at.size(); ++k) {
+      const double step = 1e-5 * at[k];
+      const auto moved = [&](double by) {
+        auto p = at;
+        p[k] += by;
+        return six(wrench_of(frame, p));
+      };
+      const auto more = moved(step);
+      const auto less = moved(-step);
+      for (std::size_t axis = 0; axis < 6; ++axis) {
+        CAPTURE(k, axis);
+        CHECK(six(dual)[axis].value() == Approx(six(plain)[axis]).epsilon(1e-12).margin(1e-12));
+        const double slope = (more[axis] - less[axis]) / (2 * step);
+        CHECK(six(dual)[axis].derivatives()(static_cast<Index>(k)) ==
+              Approx(slope).epsilon(1e-6).margin(1e-8 / at[k]));
+      }
+    }
+  }
+}

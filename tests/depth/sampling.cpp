@@ -1,0 +1,187 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+// Sampled frames: means against a naive mean, bad pixels stay in their sample, a sample is where
+// its pixels are, and from samples back to pixels.
+#include "fingerpad/depth/sampling.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <type_traits>
+#include <vector>
+
+#include "support/catch.hpp"
+#include "support/generators.hpp"
+#include "support/pad.hpp"
+#include "support/refusal.hpp"
+
+using namespace fingerpad;
+using test::Image;
+
+namespace {
+
+template <class Pixel, int Step>
+using Case = std::pair<Pixel, std::integral_constant<int, Step>>;
+
+/// What a mean of these pixels is: of those that count, else why none does.
+template <class Pixel>
+double naive(const Image<Pixel>& of, const Image<Pixel>& beside, Index i, Index j, int step) {
+  const double top = grey_scale_of<Pixel>().saturated;
+  double sum = 0, count = 0;
+  bool saturated = false, no_number = false;
+  for (Index r = i * step; r < (i + 1) * step; ++r) {
+    for (Index c = j * step; c < (j + 1) * step; ++c) {
+      const auto x = static_cast<double>(of(r, c)), y = static_cast<double>(beside(r, c));
+      saturated = saturated || x >= top || y >= top;
+      no_number = no_number || x != x || y != y;
+      if (x > 0 && y > 0 && x < top && y < top) {
+        sum += x;
+        count += 1;
+      }
+    }
+  }
+  const double units = std::is_same_v<Pixel, std::uint8_t> ? 256 : 1;
+  const double none = no_number && !std::is_integral_v<Pixel> ? test::nan : 0;
+  return count > 0 ? sum / count * units : saturated ? top * units : none;
+}
+
+/// Mostly grey, with pixels of each kind that says nothing, in patches and alone.
+template <class Pixel>
+Image<Pixel> any_channel(Index rows, Index cols) {
+  Image<Pixel> image(rows, cols);
+  const double top = grey_scale_of<Pixel>().saturated;
+  const int bad_percent = static_cast<int>(test::whole(0, 3)) * 20;
+  for (Pixel& x : image.cells) {
+    const auto kind = test::whole(0, 99);
+    const double grey = test::uniform(0.004, 0.996) * top;
+    const double bad = kind % 3 == 0                                ? 0.0
+                       : kind % 3 == 1 || std::is_integral_v<Pixel> ? top
+                                                                    : test::nan;
+    x = static_cast<Pixel>(kind < bad_percent ? bad : grey);
+  }
+  return image;
+}
+
+template <class Pixel, int Step>
+auto samples_of(const Image<Pixel>& red, const Image<Pixel>& green) {
+  using Sampler = FrameSampler<Pixel, Step>;
+  using Sample = typename Sampler::Sample;
+  std::pair<Image<Sample>, Image<Sample>> out{{red.rows() / Step, red.cols() / Step},
+                                              {red.rows() / Step, red.cols() / Step}};
+  auto work = Sampler::workspace(red.cols());
+  const Index half = out.first.rows() / 2;
+  for (const auto& [first, last] : {std::pair(Index(0), half), std::pair(half, out.first.rows())}) {
+    REQUIRE(Sampler::band(first, last, red, green, as_view(out.first), as_view(out.second), work));
+  }
+  return out;
+}
+
+}  // namespace
+
+TEMPLATE_TEST_CASE("samples are the means of what their pixels say",
+                   "[sampling]",
+                   (Case<std::uint8_t, 2>),
+                   (Case<std::uint8_t, 3>),
+                   (Case<std::uint8_t, 4>),
+                   (Case<std::uint16_t, 2>),
+                   (Case<float, 4>)) {
+  using Pixel = typename TestType::first_type;
+  constexpr int step = TestType::second_type::value;
+  rc::prop("one by one", [] {
+    const Index rows = test::whole(step, 9), cols = test::whole(step, 150);
+    const auto red = any_channel<Pixel>(rows, cols), green = any_channel<Pixel>(rows, cols);
+    const auto [r, g] = samples_of<Pixel, step>(red, green);
+    for (Index i = 0; i < r.rows(); ++i) {
+      for (Index j = 0; j < r.cols(); ++j) {
+        const double expected[2] = {naive(red, green, i, j, step), naive(green, red, i, j, step)};
+        const double found[2] = {static_cast<double>(r(i, j)), static_cast<double>(g(i, j))};
+        for (int k = 0; k < 2; ++k) {
+          RC_ASSERT(std::isnan(found[k]) == std::isnan(expected[k]));
+          RC_ASSERT(std::isnan(found[k]) || std::abs(found[k] - expected[k]) <= 0.5);
+        }
+      }
+    }
+  });
+}
+
+TEST_CASE("a sampled frame of another size is refused", "[sampling]") {
+  const Image<std::uint8_t> frame(6, 8, std::uint8_t(9));
+  Image<std::uint16_t> out(3, 4, std::uint16_t(7)), small(3, 3, std::uint16_t(7));
+  using Sampler = FrameSampler<std::uint8_t, 2>;
+  auto work = Sampler::workspace(8), narrow = Sampler::workspace(7);
+  CHECK_FALSE(Sampler::band(0, 3, frame, frame, as_view(small), as_view(small), work));
+  CHECK_FALSE(Sampler::band(0, 4, frame, frame, as_view(out), as_view(out), work));
+  CHECK_FALSE(Sampler::band(0, 3, frame, frame, as_view(out), as_view(out), narrow));
+  CHECK(out(0, 0) == 7);
+  CHECK(Sampler::band(0, 3, frame, frame, as_view(out), as_view(out), work));
+  CHECK(out(2, 3) == 9 * 256);
+}
+
+TEST_CASE("a sample's ray is that of the place between its pixels", "[sampling]") {
+  rc::prop("at every step", [] {
+    const test::Pad pad;
+    const int step = static_cast<int>(test::whole(1, 6));
+    const double row = test::uniform(0, 47), col = test::uniform(0, 55);
+    const auto direct = point_at(pad.camera, row, col, 5.0);
+    const auto by_samples =
+        point_at(sampled(pad.camera, step), sampled_px(row, step), sampled_px(col, step), 5.0);
+    RC_ASSERT(std::abs(direct.x - by_samples.x) < 1e-12);
+    RC_ASSERT(std::abs(direct.y - by_samples.y) < 1e-12);
+  });
+}
+
+TEST_CASE("what changes linearly over the free pad is right between samples", "[sampling]") {
+  const test::Pad pad;
+  const auto free = pad.reference<double>();
+  const int step = GENERATE(2, 3, 4);
+  const auto free_samples = sampled(free, step);
+  Image<double> samples(free_samples.rows, free_samples.cols);
+  Image<PixelStatus> sample_status(samples.rows(), samples.cols(), PixelStatus::ok);
+  const auto moved = [](double row, double col) { return -1 + 0.03 * row - 0.02 * col; };
+  const auto center = [&](Index k) { return static_cast<double>(step * k) + (step - 1) / 2.0; };
+  for (Index i = 0; i < samples.rows(); ++i) {
+    for (Index j = 0; j < samples.cols(); ++j) {
+      samples(i, j) = free_samples.depth(i, j) + moved(center(i), center(j));
+      sample_status(i, j) = std::isnan(samples(i, j)) ? PixelStatus::outside_pad : PixelStatus::ok;
+    }
+  }
+  const Index hole = samples.rows() / 2;
+  const bool has_hole = GENERATE(false, true);
+  if (has_hole) {
+    samples(hole, hole) = test::nan;
+    sample_status(hole, hole) = PixelStatus::saturated;
+  }
+  Image<double> depth(free.rows, free.cols);
+  Image<PixelStatus> status(free.rows, free.cols);
+  const Image<double>& from = samples;
+  const Image<PixelStatus>& from_status = sample_status;
+  depth_between_samples(free, free_samples, step, as_view(from), as_view(from_status),
+                        as_view(depth), as_view(status));
+  Index found = 0;
+  double worst = 0;
+  for (Index i = 0; i < depth.rows(); ++i) {
+    for (Index j = 0; j < depth.cols(); ++j) {
+      const bool in_hole = has_hole && i / step == hole && j / step == hole;
+      const bool inside = free.in_pad(i, j);
+      CHECK(std::isnan(depth(i, j)) == (in_hole || status(i, j) != PixelStatus::ok));
+      CHECK((status(i, j) == PixelStatus::outside_pad) == !inside);
+      CHECK((status(i, j) == PixelStatus::saturated) == (inside && in_hole));
+      if (status(i, j) == PixelStatus::ok) {
+        ++found;
+        const double truth =
+            free.depth(i, j) + moved(static_cast<double>(i), static_cast<double>(j));
+        worst = (std::max)(worst, std::abs(depth(i, j) - truth));
+      }
+    }
+  }
+  const Index in_pad = static_cast<Index>(
+      std::count_if(free.depth_mm.begin(), free.depth_mm.end(), [](double l) { return l == l; }));
+  CHECK(found >= in_pad - (has_hole ? step * step : 0) - in_pad / 50);
+  CHECK(worst < 1e-9);
+}
+
+TEST_CASE("sampling refuses steps that no image has", "[sampling]") {
+  const auto free = test::Pad().reference<float>();
+  CHECK(test::refusal([&] { (void)sampled(free, 0); }) == "sampled: step = 0, must be in 1..16");
+  CHECK(test::refusal([&] { (void)sampled(free, 17); }) == "sampled: step = 17, must be in 1..16");
+}

@@ -1,0 +1,234 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+// Every calibration from any recording: it is refused by name, or, where it says ok, all that it
+// found is finite and fit for the method that it is for.
+#include <cstdint>
+#include <numbers>
+#include <vector>
+
+#include "fingerpad/calibrate/contact.hpp"
+#include "fingerpad/calibrate/depth.hpp"
+#include "fingerpad/calibrate/force.hpp"
+#include "fingerpad/calibrate/intensity.hpp"
+#include "fingerpad/calibrate/neighbour_light.hpp"
+#include "fingerpad/calibrate/rim.hpp"
+#include "fingerpad/calibrate/slip.hpp"
+#include "fingerpad/calibrate/slip_noise.hpp"
+#include "fingerpad/calibrate/taxels.hpp"
+#include "fuzz/dots.hpp"
+
+using namespace fingerpad;
+using fuzz::Grid;
+using fuzz::Input;
+using fuzz::require;
+
+namespace {
+
+std::vector<ForceSample<double>> any_samples(Input& in) {
+  std::vector<ForceSample<double>> samples(static_cast<std::size_t>(in.whole(0, 40)));
+  const double slope = in.number(0.01, 0.1), noise = in.number(0, 0.2);
+  for (ForceSample<double>& s : samples) {
+    s.measure = in.number(10, 400);
+    s.displacement_mm = {in.number(-2, 2), in.number(-2, 2)};
+    s.rotation_rad = in.number(-0.3, 0.3);
+    s.normal_force_n = slope * s.measure + noise * in.number(-1, 1);
+    s.tangential_force_n = {2 * s.displacement_mm.x + noise * in.number(-1, 1),
+                            2 * s.displacement_mm.y};
+    s.moment_n_mm = 30 * s.rotation_rad;
+  }
+  return samples;
+}
+
+void try_forces(Input& in) {
+  const auto given = any_samples(in);
+  const std::span<const ForceSample<double>> samples(given);
+  FitOptions options;
+  options.robust = in.flag();
+  options.displaced = in.flag();
+  options.rotated = in.flag();
+  options.through_zero = in.flag();
+  options.rising = in.flag();
+  switch (in.whole(0, 4)) {
+    case 0: {
+      const auto fit = fit_normal_force<2>(samples, options);
+      require(!fit.ok() || is_finite(fit.curve.force_n(fit.curve.to)), "a curve is finite");
+      return;
+    }
+    case 1: {
+      const auto fit = fit_power_law(samples, options);
+      require(!fit.ok() || is_finite(fit.curve.force_n(fit.curve.to)), "a power law is finite");
+      return;
+    }
+    case 2: {
+      const auto fit = fit_tangential_force<1>(samples, 100.0, {}, options);
+      require(!fit.ok() || fit.residuals.size() <= 2 * given.size(), "a residual a component");
+      return;
+    }
+    case 3: {
+      const auto fit = fit_moment<1>(samples, 100.0, 1.7, options);
+      require(!fit.ok() || fit.residuals.size() <= given.size(), "a residual a sample");
+      return;
+    }
+    default: {
+      const auto fit = fit_linear_shear(samples, ShearNormalisation<>{100, 0.65, 1.7}, options);
+      require(!fit.ok() || (is_finite(fit.map.x_by_x) && is_finite(fit.map.offset_n)),
+              "a map is finite");
+    }
+  }
+}
+
+void try_absorption(Input& in) {
+  Camera<double> camera;
+  const Absorption<double> fluid{.c_red_per_mm = 0.02, .c_green_per_mm = 0.03, .kappa = 1.1};
+  std::vector<DepthSample<double>> samples;
+  for (Index k = in.whole(0, 24); k > 0; --k) {
+    const double depth_mm = in.number(0, 12), level = in.number(50, 200);
+    auto sample = depth_sample(camera, in.number(0, 480), in.number(0, 640), depth_mm,
+                               Colour<double>{level * std::exp(-2 * fluid.c_red_per_mm * depth_mm),
+                                              level * in.number(0.2, 1)});
+    samples.push_back(sample);
+  }
+  const auto fit = fit_absorption(std::span<const DepthSample<double>>(samples), in.number(0, 2));
+  require(!fit.ok() || is_finite(fit.fluid.kappa), "a fluid is finite");
+  if (fit.ok()) {
+    expects_valid(fit.fluid);
+  }
+}
+
+void try_taxels(Input& in) {
+  const Index rows = in.whole(0, 4), cols = in.whole(0, 4);
+  TaxelOptions<double> options;
+  options.window = in.whole(2, 20);
+  TaxelNoiseCalibration calibration(rows, cols, options);
+  double time_s = 0;
+  for (Index k = in.whole(1, 150); k > 0; --k) {
+    const Grid<double> taxels(in, rows, cols, 0, 1000);
+    (void)calibration.add(taxels.view(), time_s);
+    time_s += in.number(0.02, 0.04);
+  }
+  const TaxelNoise noise = calibration.fit();
+  require(is_finite(noise.typical) && noise.typical > 0, "noise is above 0");
+}
+
+void try_intensity(Input& in) {
+  const Index rows = in.whole(1, 40), cols = in.whole(1, 40);
+  Grid<std::uint8_t> free(rows, cols), pressed(rows, cols);
+  const double x = in.number(0, 40), y = in.number(0, 40), r = in.number(2, 20);
+  IntensityCalibration calibration;
+  for (int press = 0; press < 2; ++press) {
+    for (Index i = 0; i < rows; ++i) {
+      for (Index j = 0; j < cols; ++j) {
+        const double off = std::hypot(static_cast<double>(i) - y, static_cast<double>(j) - x);
+        free.view()(i, j) = 200;
+        pressed.view()(i, j) =
+            static_cast<std::uint8_t>(200 - (off < r ? 80 * (1 - off * off / (r * r)) : 0.0));
+      }
+    }
+    for (Index k = in.whole(0, 10); k > 0; --k) {
+      pressed.view()(in.whole(0, rows - 1), in.whole(0, cols - 1)) = in.byte();
+    }
+    (void)calibration.add(free.view(), pressed.view(), {in.number(1, 8), in.number(0.02, 0.2)});
+  }
+  const IntensityFit fit = calibration.fit(in.flag() ? 3 : 1);
+  if (fit.ok()) {
+    expects_valid(fit.law);
+    require(is_finite(fit.mean_error_mm) && fit.max_error_mm >= fit.mean_error_mm,
+            "the largest error is not below the mean");
+  }
+}
+
+void try_slip(Input& in) {
+  const Index rows = in.whole(0, 8), cols = in.whole(0, 8);
+  DotNoiseCalibration noise(rows, cols);
+  const auto rest = fuzz::any_dots<Point2<float>>(in, rows, cols);
+  for (Index k = in.whole(0, 8); k > 0; --k) {
+    (void)noise.add(fuzz::moved_dots(in, rest).view(), fuzz::any_contact(in, rows, cols).view());
+  }
+  const DotNoise found = noise.fit();
+  require(is_finite(found.noise_px) && found.noise_px > 0, "noise is above 0");
+  StickTestCalibration<> calibration(rows, cols, found);
+  auto dots = rest;
+  for (Index k = in.whole(0, 60); k > 0; --k) {
+    dots = fuzz::moved_dots(in, dots);
+    (void)calibration.add(dots.view(), fuzz::any_contact(in, rows, cols).view());
+  }
+  const StickTestFit fit = calibration.fit();
+  if (fit.ok()) {
+    expects_valid(fit.test);
+  }
+}
+
+void try_rim(Input& in) {
+  const Index count = in.whole(4, 30);
+  const auto around = [&](double out_mm, double up_mm) {
+    Grid<Point3<double>> dots(1, count);
+    for (Index k = 0; k < count; ++k) {
+      const double at = 2 * std::numbers::pi * static_cast<double>(k) / static_cast<double>(count);
+      dots.view()(0, k) = {(18.735 - out_mm) * std::cos(at), (18.735 - out_mm) * std::sin(at),
+                           up_mm};
+    }
+    return dots;
+  };
+  const auto border = around(0, 0);
+  RimCalibration<> calibration(border.view(), 18.735);
+  for (std::size_t level = 0; level < 3; ++level) {
+    auto dots = around(in.number(0.1, 0.5), in.number(0.6, 1.5));
+    for (Index k = in.whole(0, 4); k > 0; --k) {
+      dots.view()(0, in.whole(0, count - 1)).z = in.number(0, 2);
+    }
+    (void)calibration.add(level, dots.view(), in.number(0.005, 0.03));
+  }
+  const auto fit = in.flag() ? calibration.fit() : calibration.fit_modulus(in.number(0.5, 1.5));
+  require(!fit.ok() || (is_finite(fit.length_mm) && fit.length_mm > 0 &&
+                        is_finite(fit.modulus_n_per_mm) && fit.modulus_n_per_mm > 0),
+          "length and modulus are above 0");
+}
+
+void try_free_pad(Input& in) {
+  const Index rows = in.whole(0, 40), cols = in.whole(0, 40);
+  Camera<double> camera;
+  camera.center_x_px = camera.center_y_px = 20;
+  camera.pitch_mm = in.number(0.1, 1);
+  FreePadCalibration<> calibration(camera, rows, cols, {.radius_px = in.whole(1, 8)});
+  Grid<float> depth(rows, cols);
+  const double bend = in.number(0, 0.02);
+  for (Index frames = in.whole(0, 4); frames > 0; --frames) {
+    for (Index i = 0; i < rows; ++i) {
+      for (Index j = 0; j < cols; ++j) {
+        const double x = static_cast<double>(j - 20), y = static_cast<double>(i - 20);
+        depth.view()(i, j) = static_cast<float>(12 - bend * (x * x + y * y));
+      }
+    }
+    for (Index k = in.whole(0, 8); k > 0 && rows > 0 && cols > 0; --k) {
+      depth.view()(in.whole(0, rows - 1), in.whole(0, cols - 1)) = in.cell<float>(0, 15);
+    }
+    (void)calibration.add(depth.view());
+  }
+  const FreePadCurvature pad = calibration.fit();
+  require(!pad.ok() || (is_finite(pad.threshold_per_mm) && pad.threshold_per_mm > 0),
+          "a threshold is above 0");
+}
+
+void try_neighbour_light(Input& in) {
+  const Index rows = in.whole(0, 20), cols = in.whole(0, 20);
+  const Grid<float> reference(in, rows, cols, 5, 6), measured(in, rows, cols, 5, 9),
+      truth(in, rows, cols, 5, 9);
+  const std::vector of = {measured.view()}, with = {truth.view()};
+  using View = StridedView<const float>;
+  const auto fit = fit_neighbour_light(
+      in.number(0.05, 0.5), reference.view(), std::span<const View>(of),
+      std::span<const View>(with), {.max_radius_px = in.whole(1, 5), .every_px = in.whole(1, 4)});
+  require(!fit.ok() || (is_finite(fit.rms_after_mm) && fit.rms_after_mm >= 0),
+          "what is left is finite");
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  return fuzz::run(data, size, [](Input& in) {
+    constexpr void (*targets[])(Input&) = {try_forces,    try_absorption,     try_taxels,
+                                           try_intensity, try_slip,           try_rim,
+                                           try_free_pad,  try_neighbour_light};
+    targets[in.whole(0, 7)](in);
+  });
+}

@@ -1,0 +1,125 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+// Grip control, friction limit and the searches for the holding force, told anything at any time: a
+// command is finite and within its limits, less sticking never gives less force, and what has ended
+// stays as it is.
+#include <cstdint>
+
+#include "fingerpad/foam/holding_force.hpp"
+#include "fingerpad/slip/friction_limit.hpp"
+#include "fingerpad/slip/grip_control.hpp"
+#include "fuzz/input.hpp"
+
+using namespace fingerpad;
+using fuzz::Input;
+using fuzz::require;
+
+namespace {
+
+GripLaw<double> any_law(Input& in) {
+  GripLaw<double> law;
+  law.set_point = in.number(0.1, 0.9);
+  law.raise_gain_n_per_s = in.number(1, 100);
+  law.lower_above = in.number(0.5, 1);
+  law.lower_gain_n_per_s = in.number(0, 10);
+  law.rise_limit_n_per_s = in.number(1, 50);
+  law.fall_limit_n_per_s = in.number(0, 5);
+  law.min_force_n = in.number(0, 2);
+  law.max_force_n = in.number(5, 30);
+  law.safe_force_n = in.number(2, 10);
+  law.sliding_ratio = in.number(0, 0.5);
+  law.lost_after_s = in.number(0, 1);
+  law.longest_step_s = in.number(0.01, 1);
+  return law;
+}
+
+void try_grip(Input& in) {
+  const GripLaw<double> law = any_law(in);
+  const GripControl<double> control(law);
+  const FrictionLimit<double> limit({.slide_fraction = in.number(0.5, 1),
+                                     .learn_below = in.number(0.1, 0.5),
+                                     .max_rise = in.number(1, 2)});
+  auto state = control.start(in.number(0, 20));
+  auto friction = limit.start();
+  for (Index calls = in.whole(1, 60); calls > 0; --calls) {
+    const ContactLoad<double> load{in.number(0, 10), in.number(0, 10), in.number(-20, 20),
+                                   in.number(0, 5)};
+    const auto update = static_cast<RatioUpdate>(in.whole(0, 3));
+    const double ratio = in.number(0, 1), step_s = in.number(0, 0.2);
+    const auto slip = fuzz::frame([&] { return limit(load, ratio, update, friction); });
+    require(std::isnan(slip.stick_ratio) || (slip.stick_ratio >= 0 && slip.stick_ratio <= 1),
+            "a ratio is in [0, 1], or NaN");
+    auto less = state;
+    if (in.flag()) {
+      state.follow(in.number(0, 30));
+    }
+    less = state;
+    const auto held = fuzz::frame([&] { return control(ratio, update, step_s, state); });
+    require(is_finite(held.force_n) && held.force_n >= law.min_force_n &&
+                held.force_n <= law.max_force_n,
+            "a force is within its limits");
+    if (ratio >= 0 && ratio <= 1) {
+      const double smaller = ratio * static_cast<double>(in.byte()) / 255;
+      require(control(smaller, update, step_s, less).force_n >= held.force_n,
+              "less sticking never gives less force");
+    }
+    auto by_slip = control.start();
+    const auto fed = fuzz::frame([&] { return control(slip, step_s, by_slip); });
+    require(fed.force_n >= law.min_force_n && fed.force_n <= law.max_force_n,
+            "a force by friction is within its limits");
+  }
+  state.reset();
+  require(state.force_n() >= law.min_force_n, "a reset is a start");
+}
+
+template <class Search>
+void follow(Input& in, const Search& search, double least_n, double most_n) {
+  auto state = search.start();
+  for (Index samples = in.whole(1, 400); samples > 0; --samples) {
+    const HoldingCommand<double> before = state.command();
+    const auto signal = static_cast<PreslipStatus>(in.whole(0, 3));
+    const auto command = fuzz::frame([&] { return search(signal, state); });
+    require(command.force_n >= least_n && command.force_n <= most_n,
+            "a force is within its limits");
+    require(!is_end(before.phase) ||
+                (command.phase == before.phase && command.force_n == before.force_n),
+            "what has ended stays");
+    if (in.is_empty()) {
+      break;
+    }
+  }
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  return fuzz::run(data, size, [](Input& in) {
+    switch (in.whole(0, 2)) {
+      case 0:
+        return try_grip(in);
+      case 1: {
+        LoosenOptions<double> options;
+        options.first_force_n = in.number(1, 20);
+        options.min_force_n = in.number(0, 2);
+        options.step_n = in.number(0.01, 2);
+        options.settle_samples = in.whole(0, 4);
+        options.watch_samples = in.whole(1, 4);
+        options.margin_steps = in.whole(0, 60000);
+        options.until_slipped = in.flag();
+        return follow(in, LoosenUntilPreslip<double>(options), options.min_force_n,
+                      options.first_force_n);
+      }
+      default: {
+        LiftOptions<double> options;
+        options.first_force_n = in.number(0.1, 2);
+        options.max_force_n = in.number(2, 20);
+        options.force_step_n = in.number(0.01, 2);
+        options.height_mm = in.number(1, 60);
+        options.height_step_mm = in.number(0.1, 5);
+        options.settle_samples = in.whole(0, 4);
+        return follow(in, LiftWithRegrip<double>(options), options.first_force_n,
+                      options.max_force_n);
+      }
+    }
+  });
+}

@@ -1,0 +1,103 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+// Shift of a contact and recoil of a pad by any dots, the object's surface in any depth map:
+// answers are finite, the same frame gives the same bits, and a reset is a start.
+#include <cstdint>
+
+#include "fingerpad/contact/object_surface.hpp"
+#include "fingerpad/motion/contact_shift.hpp"
+#include "fingerpad/slip/recoil.hpp"
+#include "fuzz/dots.hpp"
+
+using namespace fingerpad;
+using fuzz::any_contact;
+using fuzz::any_dots;
+using fuzz::Grid;
+using fuzz::Input;
+using fuzz::require;
+
+namespace {
+
+template <class Choice, class Mean>
+void try_shift(Input& in) {
+  const Index rows = in.whole(0, 12), cols = in.whole(0, 12);
+  const auto reference = any_dots<Point2<double>>(in, rows, cols);
+  const ContactShift shift(reference.view(), Choice(), Mean());
+  auto work = shift.workspace(), fresh = shift.workspace();
+  for (int frame = 0; frame < 2; ++frame) {
+    const auto dots = fuzz::moved_dots(in, reference);
+    const auto contact = any_contact(in, rows, cols);
+    const auto r = fuzz::frame([&] { return shift(dots.view(), contact.view(), work); });
+    const auto again = shift(dots.view(), contact.view(), fresh);
+    require(r.status == again.status && fuzz::same_bits(r.displacement, again.displacement) &&
+                fuzz::same_bits(r.rotation_rad, again.rotation_rad),
+            "the same frame gives the same bits, whatever came before");
+    require(!r.has_displacement() || is_finite(r.displacement), "a displacement is finite");
+    require(!r.ok() || (std::abs(r.rotation_rad) <= 3.1416 && r.residual_rms >= 0),
+            "a rotation is within half a turn");
+  }
+}
+
+void try_recoil(Input& in) {
+  const Index rows = in.whole(0, 12), cols = in.whole(0, 12);
+  const auto free = any_dots<Point2<float>>(in, rows, cols);
+  RecoilTest test;
+  test.pitch_px = in.number(1, 50);
+  test.quantile = in.number(0, 1);
+  test.min_dots = in.whole(1, 50);
+  const Recoil<> recoil(free.view(), test);
+  auto state = recoil.start();
+  for (int frame = 0; frame < 5; ++frame) {
+    const auto dots = fuzz::moved_dots(in, free);
+    const auto r = fuzz::frame([&] { return recoil(dots.view(), state); });
+    require(!r.ok() || (is_finite(r.displaced) && r.recoil >= 0), "a recoil is not negative");
+  }
+  state.reset();
+  auto fresh = recoil.start();
+  const auto dots = fuzz::moved_dots(in, free);
+  const auto a = recoil(dots.view(), state), b = recoil(dots.view(), fresh);
+  require(fuzz::same_bits(a.displaced, b.displaced) && fuzz::same_bits(a.recoil, b.recoil) &&
+              a.alarm == b.alarm,
+          "a reset is a start");
+}
+
+template <class Surface>
+void try_surface(Input& in) {
+  const Index rows = in.whole(0, 30), cols = in.whole(0, 30);
+  Camera<double> camera;
+  camera.plate_distance_mm = in.number(10, 200);
+  camera.center_x_px = in.number(0, static_cast<double>(cols));
+  camera.center_y_px = in.number(0, static_cast<double>(rows));
+  camera.pitch_mm = in.number(0.01, 1);
+  const SurfaceFit<Surface> fit(rows, cols, camera);
+  const Grid<float> depth(in, rows, cols, 5, 12);
+  const auto contact = any_contact(in, rows, cols);
+  Grid<float> residual(rows, cols), second(rows, cols);
+  const auto r = fuzz::frame([&] { return fit(depth.view(), contact.view(), residual.view()); });
+  const auto again = fit(depth.view(), contact.view(), second.view());
+  require(r.status == again.status && residual == second, "the same frame gives the same bits");
+  require(!r.ok() || (is_finite(r.rms_mm) && r.rms_mm >= 0), "what is left is finite");
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  return fuzz::run(data, size, [](Input& in) {
+    switch (in.whole(0, 6)) {
+      case 0:
+        return try_shift<EdgeDots, PlainMean>(in);
+      case 1:
+        return try_shift<EdgeDots, HuberMean>(in);
+      case 2:
+        return try_shift<ContactDots, HuberMean>(in);
+      case 3:
+        return try_surface<Plane<>>(in);
+      case 4:
+        return try_surface<Sphere<>>(in);
+      case 5:
+        return try_surface<Quadric<>>(in);
+      default:
+        return try_recoil(in);
+    }
+  });
+}

@@ -1,0 +1,73 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+// What replay reads, with any bytes in it: each file is read, or refused by one line.
+// with: examples/replay/io/sensor.cpp examples/replay/io/number_table.cpp
+// with: examples/replay/io/signals.cpp examples/replay/io/images.cpp
+// with: examples/replay/foam/sensor.cpp
+// with: -lopencv_core -lopencv_imgproc -lopencv_imgcodecs
+#include <cstdint>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <string>
+
+#include "fuzz/input.hpp"
+#include "replay/foam/sensor.hpp"
+#include "replay/io/failure.hpp"
+#include "replay/io/images.hpp"
+#include "replay/io/sensor.hpp"
+#include "replay/io/signals.hpp"
+
+using fuzz::require;
+
+namespace {
+
+/// A file of its own for each process, in memory where the system has such a folder.
+class File {
+ public:
+  File() {
+    const std::filesystem::path memory = "/dev/shm";
+    path_ = (exists(memory) ? memory : std::filesystem::temp_directory_path()) / "fingerpad_XXXXXX";
+    std::string name = path_.string();
+    const int made = mkstemp(name.data());
+    require(made >= 0, "a file can be made");
+    path_ = name;
+  }
+  ~File() { remove(path_); }
+  const std::filesystem::path& with(const std::string& content) const {
+    std::ofstream(path_, std::ios::binary) << content;
+    return path_;
+  }
+
+ private:
+  std::filesystem::path path_;
+};
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  static const File file;
+  if (size == 0) {
+    return 0;
+  }
+  const std::string content(reinterpret_cast<const char*>(data + 1), size - 1);
+  const auto& path = file.with(content);
+  try {
+    switch (data[0] % 4) {
+      case 0:
+        (void)replay::read_sensor(path);
+        break;
+      case 1:
+        (void)replay::read_signals(path, 10);
+        break;
+      case 2:
+        (void)replay::read_foam_sensor(path);
+        break;
+      default:
+        (void)replay::read_colour_image(path);
+    }
+  } catch (const replay::Failure& failure) {
+    require(std::string(failure.what()).find('\n') == std::string::npos, "a refusal is one line");
+  }
+  return 0;
+}

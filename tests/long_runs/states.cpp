@@ -1,0 +1,158 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+// What is remembered from frame to frame, after many frames with drop-outs, jumps of the clock and
+// restarts: it has not drifted and is not stuck. LONG_RUN_FRAMES=10000000 runs as many frames of
+// each instead of a few thousand.
+#include <array>
+#include <cstdlib>
+#include <random>
+
+#include "fingerpad/pipeline/foam_hand.hpp"
+#include "fingerpad/slip/friction_limit.hpp"
+#include "fingerpad/slip/grip_control.hpp"
+#include "fingerpad/slip/recoil.hpp"
+#include "fingerpad/slip/stick_ratio.hpp"
+#include "support/catch.hpp"
+#include "support/pad.hpp"
+
+using namespace fingerpad;
+
+namespace {
+
+long frames() {
+  const char* given = std::getenv("LONG_RUN_FRAMES");
+  return given != nullptr ? std::atol(given) : 4000;
+}
+
+class Any {
+ public:
+  double number(double min, double max) {
+    return std::uniform_real_distribution<>(min, max)(engine_);
+  }
+  /// True once in so many.
+  bool once_in(int count) { return std::uniform_int_distribution<>(1, count)(engine_) == 1; }
+
+ private:
+  std::mt19937 engine_{20110801};
+};
+
+test::Image<Point2<float>> lattice(Any& any, float shift) {
+  test::Image<Point2<float>> dots(6, 6);
+  for (Index i = 0; i < 6; ++i) {
+    for (Index j = 0; j < 6; ++j) {
+      dots(i, j) = {20 * static_cast<float>(j) + shift, 20 * static_cast<float>(i)};
+      if (any.once_in(30)) {
+        dots(i, j).x = std::nanf("");
+      }
+    }
+  }
+  return dots;
+}
+
+}  // namespace
+
+TEST_CASE("long runs: grip control comes back from anything", "[long_run]") {
+  Any any;
+  const GripControl<double> control;
+  const FrictionLimit<double> limit;
+  auto state = control.start(3);
+  auto friction = limit.start();
+  bool within = true;
+  for (long k = 0; k < frames(); ++k) {
+    const double ratio = any.once_in(20) ? test::nan : any.number(-0.1, 1.1);
+    const double step_s = any.once_in(50) ? any.number(-1, 1000) : 0.01;
+    const auto update = static_cast<RatioUpdate>(static_cast<int>(any.number(0, 4)));
+    const ContactLoad<double> load{any.number(-1, 9), any.number(0, 9), any.number(-9, 9), 2};
+    const double force = control(limit(load, ratio, update, friction), step_s, state).force_n;
+    within = within && force >= 0.5 && force <= 20;
+    if (any.once_in(5000)) {
+      state.reset();
+    }
+  }
+  CHECK(within);
+  // a force that is asked for now goes by now alone
+  auto fresh = control.start();
+  state.follow(5);
+  fresh.follow(5);
+  (void)control(1.0, 0.01, state);
+  (void)control(1.0, 0.01, fresh);
+  for (int k = 0; k < 200; ++k) {
+    const double ratio = k % 3 == 0 ? 0.5 : 0.9;
+    CHECK(control(ratio, 0.01, state).force_n == control(ratio, 0.01, fresh).force_n);
+  }
+}
+
+TEST_CASE("long runs: after a lost contact a stick ratio is that of a start", "[long_run]") {
+  Any any;
+  const StickRatio<> stick(6, 6);
+  auto state = stick.start(), fresh = stick.start();
+  test::Image<DotState> states(6, 6);
+  test::Image<std::uint8_t> contact(6, 6, 1), none(6, 6, 0);
+  float shift = 0;
+  bool sound = true;
+  for (long k = 0; k < frames(); ++k) {
+    shift = any.once_in(100) ? 0 : shift + static_cast<float>(any.number(-1, 1.2));
+    const double time_s = 0.03 * static_cast<double>(k) * (any.once_in(100) ? -1 : 1);
+    const auto r =
+        stick(lattice(any, shift), any.once_in(40) ? none : contact, states, state, time_s);
+    sound = sound && (std::isnan(r.stick_ratio) || (r.stick_ratio >= 0 && r.stick_ratio <= 1));
+  }
+  CHECK(sound);
+  (void)stick(lattice(any, 0), none, states, state);
+  (void)stick(lattice(any, 0), none, states, fresh);
+  for (int k = 0; k < 20; ++k) {
+    const auto dots = lattice(any, 0.7F * static_cast<float>(k));
+    const auto a = stick(dots, contact, states, state), b = stick(dots, contact, states, fresh);
+    CHECK(a.status == b.status);
+    CHECK((a.stick_ratio == b.stick_ratio || std::isnan(b.stick_ratio)));
+  }
+}
+
+TEST_CASE("long runs: recoil after a reset is that of a start", "[long_run]") {
+  Any any;
+  const Recoil<float> recoil(lattice(any, 0), {.min_dots = 10});
+  auto state = recoil.start(), fresh = recoil.start();
+  for (long k = 0; k < frames(); ++k) {
+    (void)recoil(lattice(any, static_cast<float>(any.number(-30, 30))), state);
+  }
+  state.reset();
+  const auto dots = lattice(any, 10);
+  CHECK(recoil(dots, state).displaced == recoil(dots, fresh).displaced);
+  CHECK(recoil(dots, state).recoil == 0);
+}
+
+TEST_CASE("long runs: a window of taxels forgets all that was before it", "[long_run]") {
+  Any any;
+  FoamHandOptions<2> options;
+  options.arrays.fill({3, 3});
+  FoamHand<2> hand(options);
+  double time_s = 0;
+  const auto sample = [&](double size) {
+    test::Image<double> taxels(3, 3);
+    for (double& reading : taxels.cells) {
+      reading = any.once_in(50) ? test::nan : 1000 + any.number(-size, size);
+    }
+    return taxels;
+  };
+  for (long k = 0; k < frames(); ++k) {
+    time_s += any.once_in(500) ? any.number(-1, 100) : 0.03;
+    const auto left = sample(any.once_in(100) ? 1e12 : 30), right = sample(30);
+    (void)hand(std::array{as_view(left), as_view(right)}, time_s);
+    if (any.once_in(3000)) {
+      hand.reset();
+    }
+  }
+  FoamHand<2> fresh(options);
+  for (int k = 0; k < 300; ++k) {
+    time_s += k == 0 ? 1000 : 0.03;  // the clock jumps: both begin anew
+    const auto left = sample(30), right = sample(30);
+    const auto a = hand(std::array{as_view(left), as_view(right)}, time_s);
+    const auto b = fresh(std::array{as_view(left), as_view(right)}, time_s);
+    if (k > 200) {
+      for (std::size_t f = 0; f < 2; ++f) {
+        CHECK(a.fingers[f].waves == b.fingers[f].waves);
+        CHECK(a.fingers[f].deviation == Approx(b.fingers[f].deviation).epsilon(1e-9));
+      }
+    }
+  }
+}

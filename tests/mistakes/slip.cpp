@@ -1,0 +1,336 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+// Mistakes with printed dots, and what is said of each. An object is dragged, and nothing slips;
+// each line is a mistake in the dots and what six methods say of it in the last frame. "updated",
+// "ok", "measured": the mistake does no harm; a wrong number is told as "another motion", "another
+// shift", "false slip" or "alarm", and then nothing can tell, with the reason in docs/mistakes.md.
+#include <cmath>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "fingerpad/motion/contact_shift.hpp"
+#include "fingerpad/motion/object_motion.hpp"
+#include "fingerpad/published/object_motion.hpp"
+#include "fingerpad/published/stick_ratio.hpp"
+#include "fingerpad/slip/contact_slide.hpp"
+#include "fingerpad/slip/recoil.hpp"
+#include "fingerpad/slip/spatial_stick_ratio.hpp"
+#include "support/catch.hpp"
+#include "support/refusal.hpp"
+#include "support/slipping_dots.hpp"
+
+using namespace fingerpad;
+using test::ContactFlags;
+using test::DotStates;
+using test::Image;
+using test::PointsPx;
+using test::SlippingDots;
+
+namespace {
+
+constexpr Index across = 15;
+constexpr double mm_per_px = 0.08;
+constexpr int frames = 12;
+using Spatial = Image<Point3<double>>;
+
+/// Of frame k; 0 is the free pad.
+using Spoil = std::function<void(PointsPx&, int k)>;
+
+/// What is said.
+struct Answers {
+  std::string stick, spatial, motion, shift, recoil, slide;
+
+  friend bool operator==(const Answers&, const Answers&) = default;
+  friend std::ostream& operator<<(std::ostream& out, const Answers& a) {
+    return out << a.stick << " | " << a.spatial << " | " << a.motion << " | " << a.shift << " | "
+               << a.recoil << " | " << a.slide;
+  }
+};
+
+struct Mistake {
+  std::string name;
+  Answers said;
+  Spoil spoil;
+};
+
+Spoil each(const std::function<Point2<double>(const Point2<double>&)>& change) {
+  return [=](PointsPx& dots, int) {
+    for (auto& p : dots.cells) {
+      p = change(p);
+    }
+  };
+}
+Spoil renamed(const std::function<DotIndex(Index i, Index j, int k)>& from) {
+  return [=](PointsPx& dots, int k) {
+    const PointsPx as_they_were = dots;
+    for (Index i = 0; i < across; ++i) {
+      for (Index j = 0; j < across; ++j) {
+        const DotIndex d = from(i, j, k);
+        dots(i, j) = as_they_were((d.row + across) % across, (d.col + across) % across);
+      }
+    }
+  };
+}
+Spoil lost_as(const Point2<double>& mark, bool from_frame) {
+  return [=](PointsPx& dots, int k) {
+    for (Index n = from_frame ? k : 0; n < across * across; n += 4) {
+      dots.cells[static_cast<std::size_t>(n)] = mark;
+    }
+  };
+}
+void shuffle(PointsPx& dots, std::uint64_t seed) {
+  test::Random random(seed);
+  for (Index k = across * across - 1; k > 0; --k) {
+    std::swap(dots.cells[static_cast<std::size_t>(k)],
+              dots.cells[static_cast<std::size_t>(random.whole(0, k))]);
+  }
+}
+
+const std::vector<Mistake>& mistakes() {
+  static const std::vector<Mistake> all = {
+      {"none", {"updated", "updated", "ok", "measured", "ok", "updated"}, [](PointsPx&, int) {}},
+      {"dots in mm",
+       {"wrong scale", "wrong scale", "another motion", "another shift", "refused", "no dots"},
+       each([](auto& p) { return mm_per_px * p; })},
+      {"dots in m",
+       {"wrong scale", "wrong scale", "refused", "another shift", "refused", "no dots"},
+       each([](auto& p) { return mm_per_px / 1000 * p; })},
+      {"dots in shares of the frame",
+       {"wrong scale", "wrong scale", "refused", "another shift", "refused", "no dots"},
+       each([](auto& p) {
+         return Point2<double>{p.x / 640, p.y / 480};
+       })},
+      {"dots times 1000",
+       {"wrong scale", "updated", "refused", "another shift", "refused", "no dots"},
+       each([](auto& p) { return 1000.0 * p; })},
+      {"x and y exchanged",
+       {"updated", "updated", "another motion", "another shift", "ok", "alarm"},
+       each([](auto& p) {
+         return Point2<double>{p.y, p.x};
+       })},
+      {"y upward",
+       {"updated", "updated", "another motion", "another shift", "ok", "alarm"},
+       each([](auto& p) {
+         return Point2<double>{p.x, 480 - p.y};
+       })},
+      {"column by column",
+       {"updated", "updated", "ok", "measured", "ok", "updated"},
+       renamed([](Index i, Index j, int) {
+         return DotIndex{j, i};
+       })},
+      {"rows from the other end",
+       {"updated", "updated", "ok", "measured", "ok", "updated"},
+       renamed([](Index i, Index j, int) {
+         return DotIndex{across - 1 - i, j};
+       })},
+      {"names by chance",
+       {"not in order", "not in order", "ok", "another shift", "refused", "updated"},
+       [](PointsPx& dots, int) { shuffle(dots, 3); }},
+      {"names by chance, others in each frame",
+       {"not in order", "not in order", "not rigid", "not rigid", "refused", "no dots"},
+       [](PointsPx& dots, int k) { shuffle(dots, static_cast<std::uint64_t>(k)); }},
+      {"column by column from frame 6 on",
+       {"jumped", "jumped", "not rigid", "not rigid", "no answer", "updated"},
+       renamed([](Index i, Index j, int k) {
+         return k < 6 ? DotIndex{i, j} : DotIndex{j, i};
+       })},
+      {"shifted by one from frame 6 on",
+       {"jumped", "jumped", "another motion", "another shift", "no answer", "updated"},
+       renamed([](Index i, Index j, int k) {
+         return DotIndex{i, k < 6 ? j : j + 1};
+       })},
+      {"two halves exchanged from frame 6 on",
+       {"jumped", "jumped", "not rigid", "not rigid", "no answer", "updated"},
+       renamed([](Index i, Index j, int k) {
+         return DotIndex{i, k < 6 ? j : j + across / 2};
+       })},
+      {"neighbours exchanged from frame 6 on",
+       {"too few dots", "too few dots", "not rigid", "not rigid", "no answer", "updated"},
+       renamed([](Index i, Index j, int k) {
+         return DotIndex{i, k < 6 || j == across - 1 ? j : j % 2 == 0 ? j + 1 : j - 1};
+       })},
+      {"lost as (0, 0)",
+       {"updated", "updated", "ok", "measured", "ok", "updated"},
+       lost_as({0, 0}, false)},
+      {"lost as (0, 0), others in each frame",
+       {"updated", "updated", "ok", "measured", "ok", "updated"},
+       lost_as({0, 0}, true)},
+      {"lost as (-1, -1), others in each frame",
+       {"updated", "updated", "ok", "measured", "ok", "updated"},
+       lost_as({-1, -1}, true)},
+      {"lost as 1e30, others in each frame",
+       {"updated", "updated", "ok", "measured", "ok", "updated"},
+       lost_as({1e30, 1e30}, true)},
+      {"half of the dots missing",
+       {"updated", "updated", "ok", "another shift", "ok", "updated"},
+       [](PointsPx& dots, int) {
+         for (Index n = 0; n < across * across / 2; ++n) {
+           dots.cells[static_cast<std::size_t>(n)] = {test::nan, test::nan};
+         }
+       }},
+      {"frozen from frame 6 on",
+       {"standing", "updated", "another motion", "another shift", "ok", "updated"},
+       [last = PointsPx()](PointsPx& dots, int k) mutable {
+         last = k < 6 ? dots : last;
+         dots = last;
+       }},
+  };
+  return all;
+}
+
+/// A free frame, then a drag in which all sticks.
+template <class See>
+void drag(const Mistake& mistake, const See& see) {
+  SlippingDots truth({.rows = across, .cols = across, .pitch_px = 19.5, .contact_pitches = 5});
+  Spoil spoil = mistake.spoil;
+  for (int k = 0; k <= frames; ++k) {
+    PointsPx dots = truth.dots;
+    spoil(dots, k);
+    see(dots, truth.contact);
+    truth.step({.shift_px = 0.6, .direction_rad = 0.4, .turn_rad = 0.003});
+  }
+}
+
+/// On a slope; marks of lost dots are marks there, too.
+Spatial in_space(const PointsPx& dots) {
+  Spatial out(across, across);
+  for (std::size_t k = 0; k < out.cells.size(); ++k) {
+    const auto& p = dots.cells[k];
+    const bool mark = p.x <= 0 && p.x == p.y;
+    const double x = mm_per_px * p.x, y = mm_per_px * p.y;
+    out.cells[k] = mark ? Point3<double>{p.x, p.y, p.x} : Point3<double>{x, y, 14 + 0.02 * x};
+  }
+  return out;
+}
+
+/// The last status of a stick ratio, or that something was said to slip.
+template <class Ratio, class Convert>
+std::string said_by_stick(const Ratio& ratio, const Mistake& mistake, const Convert& convert) {
+  auto state = ratio.start();
+  DotStates states(across, across);
+  std::string said;
+  bool slip = false;
+  drag(mistake, [&](const PointsPx& dots, const ContactFlags& contact) {
+    const auto r = ratio(convert(dots), contact, states, state);
+    said = name_of(r.status);
+    slip = slip || (r.updated() && static_cast<double>(r.stick_ratio) < 0.9);
+  });
+  return slip ? "false slip" : said;
+}
+
+constexpr double way_px = 0.6 * frames, way_rad = 0.4;  // of the object's middle, in all
+
+template <class S>
+bool is_true_way(const S& x, const S& y, double unit) {
+  const double off =
+      std::hypot(x - unit * way_px * std::cos(way_rad), y - unit * way_px * std::sin(way_rad));
+  return off < 0.05 * unit * way_px;
+}
+
+/// Refused by the constructor; else the last status, or that the object went elsewhere.
+template <class Motion>
+std::string said_by_motion(const Mistake& mistake) {
+  std::optional<Motion> motion;
+  std::optional<typename Motion::State> state;
+  std::string said;
+  bool is_true = true;
+  const std::string refused = test::refusal([&] {
+    drag(mistake, [&](const PointsPx& dots, const ContactFlags& contact) {
+      const Spatial places = in_space(dots);
+      if (!motion) {
+        motion.emplace(places);
+        state = motion->start();
+      }
+      const auto r = (*motion)(places, contact, *state);
+      const Point3<double> middle = in_space(PointsPx(across, across, {320, 240}))(0, 0);
+      const Point3<double> moved = r.pose(middle) - middle;
+      said = name_of(r.status);
+      is_true = !r.ok() || is_true_way(moved.x, moved.y, mm_per_px);
+    });
+  });
+  return refused != "accepted" ? "refused" : is_true ? said : "another motion";
+}
+
+std::string said_by_shift(const Mistake& mistake) {
+  std::optional<ContactShift<ContactDots>> shift;
+  std::string said;
+  drag(mistake, [&](const PointsPx& dots, const ContactFlags& contact) {
+    if (!shift) {
+      shift.emplace(dots);
+    }
+    auto workspace = shift->workspace();
+    const auto r = (*shift)(dots, contact, workspace);
+    const bool is_true = !r.ok() || is_true_way(r.displacement.x, r.displacement.y, 1);
+    said = is_true ? name_of(r.status) : "another shift";
+  });
+  return said;
+}
+
+std::string said_by_recoil(const Mistake& mistake) {
+  std::optional<Recoil<>> recoil;
+  std::optional<Recoil<>::State> state;
+  std::string said;
+  bool alarm = false;
+  const std::string refused = test::refusal([&] {
+    drag(mistake, [&](const PointsPx& dots, const ContactFlags&) {
+      if (!recoil) {
+        recoil.emplace(dots, RecoilTest{.pitch_px = 19.5});
+        state = recoil->start();
+      }
+      const auto r = (*recoil)(dots, *state);
+      alarm = alarm || r.alarm;
+      said = r.ok() ? "ok" : "no answer";
+    });
+  });
+  return refused != "accepted" ? "refused" : alarm ? "alarm" : said;
+}
+
+/// The imprint goes with the dots.
+std::string said_by_slide(const Mistake& mistake) {
+  const ContactSlide<> slide(60, 80, across, across, {.pitch_px = 19.5, .cell_px = 8});
+  auto state = slide.start();
+  Image<float> imprint(60, 80);
+  ContactFlags touch(60, 80);
+  std::string said;
+  bool alarm = false;
+  int k = 0;
+  drag(mistake, [&](const PointsPx& dots, const ContactFlags&) {
+    for (Index i = 0; i < 60; ++i) {
+      for (Index j = 0; j < 80; ++j) {
+        const double x = static_cast<double>(j) - 40 - 0.6 * k / 8 * std::cos(way_rad);
+        const double y = static_cast<double>(i) - 30 - 0.6 * k / 8 * std::sin(way_rad);
+        const double bumps = 1 + 0.3 * std::cos(x / 3) + 0.2 * std::sin(y / 2.5);
+        imprint(i, j) =
+            static_cast<float>(0.1 * bumps * std::exp(-std::pow(std::hypot(x, y) / 14, 6)));
+        touch(i, j) = std::hypot(x, y) < 14 ? 1 : 0;
+      }
+    }
+    ++k;
+    const auto r = slide(imprint, touch, dots, state);
+    alarm = alarm || r.alarm;
+    said = name_of(r.status);
+  });
+  return alarm ? "alarm" : said;
+}
+
+}  // namespace
+
+TEST_CASE("mistakes with printed dots", "[mistakes]") {
+  const auto as_they_are = [](const PointsPx& dots) -> const PointsPx& { return dots; };
+  for (const Mistake& mistake : mistakes()) {
+    INFO(mistake.name);
+    const Answers said = {
+        said_by_stick(StickRatio<>(across, across), mistake, as_they_are),
+        said_by_stick(SpatialStickRatio<>(across, across), mistake, in_space),
+        said_by_motion<ObjectMotion<>>(mistake),
+        said_by_shift(mistake),
+        said_by_recoil(mistake),
+        said_by_slide(mistake),
+    };
+    CHECK(said == mistake.said);
+    CHECK(said_by_stick(published::stick_ratio<double>(across, across), mistake, as_they_are) ==
+          mistake.said.stick);
+  }
+}

@@ -1,0 +1,125 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+// Prints results of methods on one made-up scene, in all digits: tests/modes compares what
+// different compilers, options and machines print.
+#include <cmath>
+#include <cstdint>
+#include <cstdio>
+#include <fingerpad/fingerpad.hpp>
+#include <vector>
+
+#include "support/pad.hpp"
+
+namespace {
+
+using namespace fingerpad;
+
+void tell(const char* name, double x) {
+  std::printf("%-24s %.17g\n", name, x);
+}
+
+void tell_depth_and_contact() {
+  const test::Pad pad;
+  const auto frame = pad.frame<std::uint8_t>(pad.pressed_depths(3));
+  const DepthEstimator estimate(pad.camera, pad.fluid, pad.reference<float>(), BiasFreeMean{5});
+  auto work = estimate.workspace<std::uint8_t>();
+  test::Image<float> depth(pad.rows, pad.cols);
+  test::Image<PixelStatus> status(pad.rows, pad.cols);
+  const auto result = estimate(frame.red, frame.green, depth, status, work);
+  tell("depth accepted", result.ok() ? 1 : 0);
+  double sum = 0, valid = 0;
+  for (const float d : depth.cells) {
+    sum += is_finite(d) ? static_cast<double>(d) : 0;
+    valid += is_finite(d) ? 1 : 0;
+  }
+  tell("depth pixels", valid);
+  tell("depth mean mm", sum / valid);
+  tell("depth in the middle mm", static_cast<double>(depth(24, 28)));
+  ContactTest test;
+  test.ring.radius_px = 4;
+  test.min_region_px = 10;
+  const ContactRegion<> region(pad.camera, pad.rows, pad.cols, test);
+  auto memory = region.workspace();
+  test::Image<std::uint8_t> mask(pad.rows, pad.cols);
+  const auto contact = region(depth, mask, memory);
+  tell("contact pixels", static_cast<double>(contact.contact_px));
+  tell("contact area mm2", contact.area_mm2);
+}
+
+template <class Point>
+std::vector<Point> dots_moved(double shift, double turn) {
+  std::vector<Point> dots(81);
+  for (std::size_t k = 0; k < dots.size(); ++k) {
+    const double x = 1.5 * (static_cast<double>(k % 9) - 4),
+                 y = 1.5 * (static_cast<double>(k / 9) - 4);
+    const double share = 1 / (1 + 0.05 * (x * x + y * y));
+    dots[k].x = static_cast<decltype(dots[k].x)>(x + share * (shift - turn * y));
+    dots[k].y = static_cast<decltype(dots[k].x)>(y + share * (turn * x));
+    if constexpr (requires { dots[k].z; }) {
+      dots[k].z = 12 - 0.02 * (x * x + y * y);
+    }
+  }
+  return dots;
+}
+
+void tell_dots() {
+  using Point = Point3<double>;
+  const auto view = [](std::vector<Point>& dots) {
+    return StridedView<const Point>(dots.data(), 9, 9, 9);
+  };
+  auto free = dots_moved<Point>(0, 0);
+  std::vector<std::uint8_t> touch(81, 0);
+  for (std::size_t k = 0; k < 81; ++k) {
+    touch[k] = std::hypot(free[k].x, free[k].y) < 4 ? 1 : 0;
+  }
+  const StridedView<const std::uint8_t> contact(touch.data(), 9, 9, 9);
+  const ObjectMotion<> motion(view(free));
+  auto motion_state = motion.start();
+  const ContactShift<> shift(view(free));
+  auto shift_work = shift.workspace();
+  const TractionField field(view(free), TractionOptions<double>{.mu_t_n_per_mm = 0.5});
+  auto maps = field.maps();
+  const SpatialStickRatio<> stick(9, 9);
+  auto stick_state = stick.start();
+  std::vector<DotState> states(81);
+  for (int frame = 0; frame < 8; ++frame) {
+    auto now = dots_moved<Point>(0.1 * frame, 0.02 * frame);
+    const auto moved = motion(view(now), contact, motion_state);
+    const auto shifted = shift(view(now), contact, shift_work);
+    const auto ratio =
+        stick(view(now), contact, StridedView<DotState>(states.data(), 9, 9, 9), stick_state);
+    const auto load = field(view(now), contact, 0.01, maps);
+    if (frame == 7) {
+      tell("motion ok", moved.ok() ? 1 : 0);
+      tell("shift x mm", shifted.displacement.x);
+      tell("shift rotation rad", shifted.rotation_rad);
+      tell("stick ratio in space", is_finite(ratio.stick_ratio) ? ratio.stick_ratio : -1);
+      tell("traction x N", load.force_n.x);
+      tell("traction z N", load.force_n.z);
+    }
+  }
+}
+
+void tell_forces() {
+  const NormalForce<> force(PolynomialForce<>{{0, 0.02, 0.0001}, 10, 400});
+  tell("normal force N", force(123.4).force_n);
+  const Shear<> shear({100, 0.65, 1.7}, RadialShear<>{{{2}}, {{30}}});
+  const auto sheared = shear(80, {0.4, -0.3}, 0.1);
+  tell("shear x N", sheared.tangential_force_n.x);
+  tell("shear moment N mm", sheared.moment_n_mm);
+  const GripControl<> control;
+  auto state = control.start(3);
+  GripResult<> held;
+  for (int k = 0; k < 1000; ++k) {
+    held = control(0.5 + 0.0005 * k, 0.01, state);
+  }
+  tell("grip N", held.force_n);
+}
+
+}  // namespace
+
+int main() {
+  tell_depth_and_contact();
+  tell_dots();
+  tell_forces();
+}

@@ -1,0 +1,132 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+// What calibrations save is what is loaded again, bit for bit; what is strange is refused.
+#include <filesystem>
+#include <fstream>
+#include <string>
+
+#include "calibrate/calibrations.hpp"
+#include "calibrate/recordings.hpp"
+#include "replay/io/failure.hpp"
+#include "support/catch.hpp"
+
+namespace {
+
+namespace fs = std::filesystem;
+using calibrate::Outcome;
+using calibrate::Report;
+using nlohmann::json;
+
+fs::path scratch(const std::string& name) {
+  const fs::path file = fs::temp_directory_path() / ("fingerpad_" + name + ".json");
+  fs::remove(file);
+  return file;
+}
+
+std::string said(const fs::path& file, const json& content) {
+  std::ofstream(file) << content.dump();
+  try {
+    (void)calibrate::load_reports(file);
+    (void)replay::read_sensor(file);
+  } catch (const replay::Failure& failure) {
+    return failure.what();
+  }
+  return "";
+}
+
+Outcome camera_and_more() {
+  Report report;
+  report.what = "absorption";
+  report.verdict = calibrate::Verdict::doubtful;
+  report.because = "too few presses";
+  report.residual = 1.0 / 3;
+  report.residual_unit = "grey levels";
+  report.parameters = {{"c_red_per_mm", 0.1 / 3, 1e-300}, {"kappa", 2.0 / 3}};
+  report.covariance = {{1.0 / 7, -1.0 / 9}, {-1.0 / 9, 1.0 / 11}};
+  Outcome outcome;
+  outcome.reports = {report};
+  outcome.sections = {
+      {"camera",
+       {{"plate_distance_mm", 50.0 / 3},
+        {"refractive_index", 4.0 / 3},
+        {"center_px", {100.0 / 3, 100.0 / 7}},
+        {"pitch_mm", 0.1 / 3}}},
+      {"absorption",
+       {{"c_red_per_mm", 0.1 / 3}, {"c_green_per_mm", 0.1}, {"kappa", 2.0 / 3}, {"max_depth_mm", 12}}},
+      {"pad", {{"base_radius_mm", 18}, {"apex_height_mm", 40.0 / 3}}},
+      {"reference", {{"frame", "a.png"}, {"depth", "b.tiff"}}},
+      {"contact", {{"threshold_per_mm", 0.1 / 7}}},
+      {"stick", {{"reference_px", 5.0 / 3}, {"store_px", 1.0 / 3}, {"slip_px", 1.0 / 7}}},
+      {"rim", {{"side_dot_length_mm", 0.8 / 3}, {"membrane_modulus_n_per_mm", 1.0 / 3}}},
+      {"neighbour_light", {{"radius_px", 3}, {"m0_mm_per_rad", 1e-3 / 3}, {"n_per_mm", 0.1 / 3}}}};
+  return outcome;
+}
+
+}  // namespace
+
+TEST_CASE("A calibration that was saved is loaded bit for bit", "[calibrate]") {
+  const fs::path file = scratch("round_trip");
+  const Outcome outcome = camera_and_more();
+  save(outcome, file);
+  save(outcome, file);  // again: nothing is doubled
+  const auto reports = calibrate::load_reports(file);
+  REQUIRE(reports.size() == 1);
+  const Report &there = reports.front(), &here = outcome.reports.front();
+  CHECK(there.what == here.what);
+  CHECK(there.verdict == here.verdict);
+  CHECK(there.because == here.because);
+  CHECK(there.residual == here.residual);
+  CHECK(there.residual_unit == here.residual_unit);
+  REQUIRE(there.parameters.size() == 2);
+  CHECK(there.parameters[0].value == here.parameters[0].value);
+  CHECK(there.parameters[0].standard_error == here.parameters[0].standard_error);
+  CHECK(std::isnan(there.parameters[1].standard_error));
+  CHECK(there.covariance == here.covariance);
+
+  const replay::Sensor sensor = replay::read_sensor(file);
+  CHECK(sensor.camera.plate_distance_mm == 50.0 / 3);
+  CHECK(sensor.camera.center_y_px == 100.0 / 7);
+  CHECK(sensor.camera.pitch_mm == 0.1 / 3);
+  CHECK(sensor.absorption.c_red_per_mm == 0.1 / 3);
+  CHECK(sensor.pad.apex_height_mm == 40.0 / 3);
+  CHECK(sensor.contact_threshold_per_mm == 0.1 / 7);
+  CHECK(sensor.stick.slip_px == 1.0 / 7);
+  CHECK(sensor.rim->membrane_modulus_n_per_mm == 1.0 / 3);
+  CHECK(sensor.neighbour_light->m0_mm_per_rad == 1e-3 / 3);
+}
+
+TEST_CASE("A sensor file with unknown keys or of another version is refused", "[calibrate]") {
+  const fs::path file = scratch("refused");
+  save(camera_and_more(), file);
+  std::ifstream stream(file);
+  const json good = json::parse(stream);
+  CHECK(said(file, good).empty());
+  const auto with = [&](const std::string& place, const json& value) {
+    json bad = good;
+    bad[json::json_pointer(place)] = value;
+    return said(file, bad);
+  };
+  CHECK(with("/version", 2).find("version = 2") != std::string::npos);
+  CHECK(with("/camera/pich_mm", 1).find("unknown key camera.pich_mm") != std::string::npos);
+  CHECK(with("/calibration/absorption/residuals", 1).find("residuals") != std::string::npos);
+  CHECK(with("/calibration/absorption/parameters/kappa", 1).find("[value") != std::string::npos);
+  CHECK(with("/calibration/absorption/covariance", "x").find("rows of") != std::string::npos);
+  CHECK(with("/contact/threshold_per_mm", -1).find("must be > 0") != std::string::npos);
+}
+
+TEST_CASE("Rays meet a cap and a ball where these are", "[calibrate]") {
+  const fingerpad::Camera<double> camera{50, 1.33, 40, 30, 0.3};
+  const calibrate::Sphere pad = calibrate::cap(18, 12);
+  CHECK(calibrate::depth_on(camera, 30, 40, pad, true) == Approx(12));
+  const calibrate::Sphere ball{{2, -1, 7 + 10}, 10};
+  for (const int row : {20, 30, 44}) {
+    for (const bool far : {false, true}) {
+      const calibrate::Sphere& sphere = far ? pad : ball;
+      const double depth = calibrate::depth_on(camera, row, 43, sphere, far);
+      const auto at = point_at(camera, double(row), 43.0, depth);
+      CHECK(norm(at - sphere.center_mm) == Approx(sphere.radius_mm).epsilon(1e-12));
+    }
+  }
+  CHECK(calibrate::depth_on(camera, 30, 40, ball, false) < 12);
+  CHECK(std::isnan(calibrate::depth_on(camera, 300, 400, ball, false)));  // passes by
+}

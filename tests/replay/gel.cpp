@@ -1,0 +1,164 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+// Recordings of a gel pad: a ball of sim/elastic_gel.hpp is pressed, dragged until it slides, and
+// lifted; what replay says is held against where it slid.
+#include <unistd.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <opencv2/core.hpp>
+#include <opencv2/imgcodecs.hpp>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "replay/gel/slide_step.hpp"
+#include "replay/replay.hpp"
+#include "support/catch.hpp"
+#include "support/gel_frames.hpp"
+
+namespace fs = std::filesystem;
+using fingerpad::GelContact;
+using test::GelCamera;
+
+namespace {
+
+struct Step {
+  double force_n;
+  double ball_x_mm;
+};
+
+/// A folder of frames with a sensor.json of {}, and a place for the results.
+class GelRecording {
+ public:
+  GelRecording() {
+    std::string pattern = (fs::temp_directory_path() / "fingerpad.XXXXXX").string();
+    root_ = ::mkdtemp(pattern.data());
+    fs::create_directories(folder() / "frames");
+    std::ofstream(folder() / "sensor.json") << "{}";
+  }
+  ~GelRecording() { fs::remove_all(root_); }
+  GelRecording(const GelRecording&) = delete;
+  GelRecording& operator=(const GelRecording&) = delete;
+
+  fs::path folder() const { return root_ / "recording"; }
+  fs::path out() const { return root_ / "out"; }
+
+  /// What the camera sees now.
+  void add(const char* part) {
+    const auto frame = camera.frame(contact, random_);
+    cv::Mat picture(static_cast<int>(frame.rows()), static_cast<int>(frame.cols()), CV_8UC3);
+    std::memcpy(picture.data, frame.cells.data(), picture.total() * picture.elemSize());
+    fs::create_directories(folder() / part);
+    cv::imwrite((folder() / part / (std::to_string(100 + count_++) + ".png")).string(), picture);
+  }
+  void drag(const std::vector<Step>& steps) {
+    for (const Step& step : steps) {
+      contact.drag(step.force_n, {step.ball_x_mm, 0});
+      add("frames");
+    }
+  }
+  void run(bool pictures = false) const {
+    replay::Options options;
+    options.recording = folder();
+    options.out = out();
+    options.pictures = pictures;
+    replay::run(options);
+  }
+
+  /// A column of slide.csv.
+  std::vector<std::string> column(const std::string& name) const {
+    std::ifstream stream(out() / "slide.csv");
+    std::vector<std::vector<std::string>> lines;
+    for (std::string line; std::getline(stream, line);) {
+      std::istringstream cells(line);
+      lines.emplace_back();
+      for (std::string cell; std::getline(cells, cell, ',');) {
+        lines.back().push_back(cell);
+      }
+    }
+    std::vector<std::string> column;
+    for (std::size_t c = 0; c < lines[0].size(); ++c) {
+      for (std::size_t k = 1; k < lines.size() && lines[0][c] == name; ++k) {
+        column.push_back(lines[k][c]);
+      }
+    }
+    return column;
+  }
+  std::size_t first_slip() const {
+    const auto slips = column("slip");
+    return static_cast<std::size_t>(std::find(slips.begin(), slips.end(), "1") - slips.begin());
+  }
+
+  GelCamera camera{.contrast = 0.8};
+  GelContact<> contact{fingerpad::GelPad{}};
+
+ private:
+  fs::path root_;
+  test::Random random_{3};
+  int count_ = 0;
+};
+
+}  // namespace
+
+TEST_CASE("a gel on which a ball slides: contact, slide and slip") {
+  GelRecording recording;
+  const std::vector<Step> steps = {{0, 0},     {0, 0},     {0.8, 0},   {1.2, 0},   {1.2, 0.1},
+                                   {1.2, 0.2}, {1.2, 1.2}, {1.2, 2.2}, {1.2, 3.2}, {0, 3.2}};
+  bool pictures = false;
+  SECTION("the first frames show the free pad") {}
+  SECTION("free frames beside it") {
+    recording.add("free");
+    recording.add("free");
+    pictures = true;
+  }
+  recording.drag(steps);
+  recording.run(pictures);
+  const auto area = recording.column("contact_area_px");
+  REQUIRE(area.size() == steps.size());
+  CHECK(area[1] == "0");
+  CHECK(area.back() == "0");
+  CHECK(std::stod(area[4]) > 0);
+  CHECK(recording.column("contact_center_x_px")[1].empty());
+  CHECK(recording.column("slide_status")[2] == "began");
+  // it slides by 1 mm a frame, 12.5 px, from the sixth frame on at the latest
+  const auto slide = recording.column("slide_x_px");
+  CHECK(std::stod(slide[8]) - std::stod(slide[7]) == Approx(12.5).epsilon(0.2));
+  CHECK(std::abs(std::stod(recording.column("slide_y_px")[8])) < 1);
+  CHECK(recording.first_slip() >= 6);
+  CHECK(recording.first_slip() <= 7);
+  CHECK(recording.column("slide_status").back() == "no contact");
+  CHECK(fs::exists(recording.out() / "pictures" / "slide.png") == pictures);
+  CHECK(fs::exists(recording.out() / "pictures" / "slide_000009.png") == pictures);
+  if (pictures) {  // its own files are known again
+    recording.run();
+    CHECK_FALSE(fs::exists(recording.out() / "pictures"));
+  }
+}
+
+TEST_CASE("a gel that holds a ball, and one that nothing touches") {
+  GelRecording recording;
+  recording.drag({{0, 0}, {0, 0}, {0.8, 0}, {1.2, 0}, {1.2, 0.1}, {0.8, 0.1}, {0, 0.1}});
+  recording.run();
+  CHECK(recording.first_slip() == 7);
+  CHECK(std::stod(recording.column("area_lost")[5]) > 0.02);
+  GelRecording untouched;
+  untouched.drag({{0, 0}, {0, 0}, {0, 0}});
+  untouched.run(true);
+  CHECK(untouched.column("contact_area_px") == std::vector<std::string>(3, "0"));
+  CHECK(fs::exists(untouched.out() / "pictures" / "slide.png"));
+}
+
+TEST_CASE("contact by difference for dots of any size") {
+  const fingerpad::DifferenceTest usual;
+  for (const double larger : {0.1, 0.5, 1.0, 2.0, 10.0}) {
+    const auto test = replay::difference_test_for(larger * usual.dot_px);
+    CHECK_NOTHROW(expects_valid(test));
+    CHECK(test.smoothing_px == Approx(larger * usual.smoothing_px));
+    CHECK(std::abs(double(test.min_region_px) - larger * larger * 800) <= 1);
+  }
+}
