@@ -92,7 +92,9 @@ class ContactByDifference {
         : difference_(contact.layout_),
           opening_(contact.layout_.cell_rows(), contact.layout_.cell_cols(), 1),
           closing_(contact.layout_.cell_rows(), contact.layout_.cell_cols(), contact.half_gap()),
-          mask_(contact.layout_.cell_rows(), contact.layout_.cell_cols(), contact.pad()),
+          mask_(contact.layout_.cell_rows(),
+                contact.layout_.cell_cols(),
+                (std::max)(Index(1), contact.half_gap())),
           regions_({contact.layout_.cell_rows(), contact.layout_.cell_cols()}),
           line_(static_cast<std::size_t>(contact.layout_.cell_cols() * contact.layout_.cell_px)) {}
 

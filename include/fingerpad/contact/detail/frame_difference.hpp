@@ -53,7 +53,7 @@ class FrameDifference {
         mean_(EvenKernel<S>::gaussian(layout.in_cells(layout.smoothing_px))),
         around_(
             EvenKernel<S>::box(static_cast<Index>(std::ceil(2 * layout.in_cells(layout.dot_px))))),
-        pad_((std::max)(mean_.reach(), around_.reach())),
+        pad_((std::max)({mean_.reach(), around_.reach(), layout.dot_edge()})),
         step_(lattice_step(layout)),
         cells_(layout.rows, layout.cols, layout.cell_px),
         now_(layout.cell_rows(), layout.cell_cols(), pad_),
