@@ -299,7 +299,7 @@ Outcome force(const Path& contacts_file, const Path& gauge_file) {
     try {
       add_shear(by_depth, depth, outcome);
     } catch (const fingerpad::parameter_error& error) {
-      outcome.reports.back().doubt(true, std::string("shear was refused, because ") + error.what());
+      outcome.refusals.push_back({"shear", error.what()});
     }
   }
   return outcome;

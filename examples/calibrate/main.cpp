@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: MIT
 // calibrate: from recordings to the sensor.json that replay reads. See --help.
 #include <CLI/CLI.hpp>
-#include <cstdio>
 #include <exception>
 #include <functional>
 #include <string>
@@ -46,6 +45,9 @@ int run(const Common& common, const std::function<Outcome()>& work) {
   for (const auto& report : outcome.reports) {
     print(report);
   }
+  for (const auto& refusal : outcome.refusals) {
+    print(refusal);
+  }
   save(outcome, common.sensor());
   for (std::size_t k = 0; !common.plots.empty() && k < outcome.plots.size(); ++k) {
     std::filesystem::create_directories(common.plots);
@@ -53,7 +55,7 @@ int run(const Common& common, const std::function<Outcome()>& work) {
       write_plot(outcome.plots[k], common.plots / (outcome.reports[k].what + ".csv"));
     }
   }
-  return 0;
+  return outcome.refusals.empty() ? 0 : 1;
 }
 
 }  // namespace
@@ -64,7 +66,7 @@ int main(int argc, char** argv) {
       "Each prints its parameters with standard errors, what the fit leaves, and whether it is\n"
       "good, doubtful or refused, because of what. docs/first_hour tells what to record.");
   app.require_subcommand(1);
-  app.footer("Exit status: 0 good or doubtful, 1 refused, 2 wrong arguments.");
+  app.footer("Exit status: 0 good or doubtful, 1 refused in whole or in part, 2 wrong arguments.");
   Common common;
   std::function<Outcome()> work;
 
@@ -156,7 +158,7 @@ int main(int argc, char** argv) {
     }
     return run(common, work);
   } catch (const std::exception& error) {
-    std::fprintf(stderr, "%s\n  refused, because %s\n", name.c_str(), error.what());
+    print(calibrate::Refusal{name, error.what()});
     return 1;
   }
 }

@@ -67,6 +67,11 @@ void print(const Report& report) {
   }
 }
 
+void print(const Refusal& refusal) {
+  std::fprintf(stderr, "%s\n  refused, because %s\n", refusal.what.c_str(),
+               refusal.because.c_str());
+}
+
 json to_json(const Report& report) {
   json parameters = json::object();
   for (const Parameter& p : report.parameters) {

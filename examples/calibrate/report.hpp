@@ -11,7 +11,7 @@
 
 namespace calibrate {
 
-enum class Verdict { good, doubtful };  // what is refused has no report: it throws
+enum class Verdict { good, doubtful };  // what is refused has no report
 
 /// A parameter; no standard error: NaN.
 struct Parameter {
@@ -48,15 +48,22 @@ struct Plot {
   std::vector<PlotPoint> points;
 };
 
+/// A part of a calibration that its samples do not tell.
+struct Refusal {
+  std::string what, because;
+};
+
 /// What a sub-command hands back.
 struct Outcome {
   std::vector<Report> reports;
+  std::vector<Refusal> refusals;  ///< parts that are missing here; the others stand
   nlohmann::json sections = nlohmann::json::object();  ///< for sensor.json; replaces what is there
   std::vector<Plot> plots;                             ///< one a report
 };
 
-/// Prints a report as people read it.
+/// Prints a report, or why there is none, as people read it.
 void print(const Report& report);
+void print(const Refusal& refusal);
 
 /// Both ways without loss. Reading refuses unknown keys; `file` names the culprit. Throws
 /// replay::Failure.

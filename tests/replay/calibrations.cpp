@@ -1,12 +1,14 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 // What calibrations save is what is loaded again, bit for bit; what is strange is refused.
+#include "calibrate/calibrations.hpp"
+
 #include <filesystem>
 #include <fstream>
 #include <string>
 
-#include "calibrate/calibrations.hpp"
 #include "calibrate/recordings.hpp"
+#include "replay/foam/sensor.hpp"
 #include "replay/io/failure.hpp"
 #include "support/catch.hpp"
 
@@ -52,13 +54,37 @@ Outcome camera_and_more() {
         {"center_px", {100.0 / 3, 100.0 / 7}},
         {"pitch_mm", 0.1 / 3}}},
       {"absorption",
-       {{"c_red_per_mm", 0.1 / 3}, {"c_green_per_mm", 0.1}, {"kappa", 2.0 / 3}, {"max_depth_mm", 12}}},
+       {{"c_red_per_mm", 0.1 / 3},
+        {"c_green_per_mm", 0.1},
+        {"kappa", 2.0 / 3},
+        {"max_depth_mm", 12}}},
       {"pad", {{"base_radius_mm", 18}, {"apex_height_mm", 40.0 / 3}}},
       {"reference", {{"frame", "a.png"}, {"depth", "b.tiff"}}},
       {"contact", {{"threshold_per_mm", 0.1 / 7}}},
       {"stick", {{"reference_px", 5.0 / 3}, {"store_px", 1.0 / 3}, {"slip_px", 1.0 / 7}}},
       {"rim", {{"side_dot_length_mm", 0.8 / 3}, {"membrane_modulus_n_per_mm", 1.0 / 3}}},
-      {"neighbour_light", {{"radius_px", 3}, {"m0_mm_per_rad", 1e-3 / 3}, {"n_per_mm", 0.1 / 3}}}};
+      {"neighbour_light", {{"radius_px", 3}, {"m0_mm_per_rad", 1e-3 / 3}, {"n_per_mm", 0.1 / 3}}},
+      {"smoothing_px", 15},
+      {"force",
+       {{"by_area",
+         {{"coefficients", {0, 0.1 / 3}},
+          {"from_mm2", 1.0 / 3},
+          {"to_mm2", 500.0 / 3},
+          {"residual_n", 0.1 / 3}}},
+        {"by_depth",
+         {{"coefficients", {0, 2.0 / 3}},
+          {"from_mm", 0.1 / 3},
+          {"to_mm", 10.0 / 3},
+          {"residual_n", 0.1 / 7}}},
+        {"shear",
+         {{"by", "depth"},
+          {"reference", 2},
+          {"displacement_exponent", 1.0 / 3},
+          {"force_n_per_mm", {7.0 / 3}},
+          {"to_mm", 4.0 / 3},
+          {"rotation_exponent", 5.0 / 3},
+          {"moment_n_mm_per_rad", {1000.0 / 3}},
+          {"to_rad", 0.1 / 3}}}}}};
   return outcome;
 }
 
@@ -93,6 +119,22 @@ TEST_CASE("A calibration that was saved is loaded bit for bit", "[calibrate]") {
   CHECK(sensor.stick.slip_px == 1.0 / 7);
   CHECK(sensor.rim->membrane_modulus_n_per_mm == 1.0 / 3);
   CHECK(sensor.neighbour_light->m0_mm_per_rad == 1e-3 / 3);
+  CHECK(sensor.smoothing_px == 15);
+  REQUIRE(sensor.force);
+  CHECK(sensor.force->by_area->curve.coefficients[1] == 0.1 / 3);
+  CHECK(sensor.force->by_area->curve.to == 500.0 / 3);
+  CHECK(sensor.force->by_area->residual_n == 0.1 / 3);
+  CHECK(sensor.force->by_depth->curve.from == 0.1 / 3);
+  CHECK(sensor.force->shear->by == replay::ContactMeasure::depth);
+  CHECK(sensor.force->shear->normalisation.displacement_exponent == 1.0 / 3);
+  CHECK(sensor.force->shear->map.moment.coefficients[0] == 1000.0 / 3);
+  CHECK(sensor.force->shear->map.moment.to == 0.1 / 3);
+
+  const fs::path foam = scratch("foam_round_trip");
+  Outcome taxels;
+  taxels.sections = {{"foam", {{"noise", 10.0 / 3}}}};
+  save(taxels, foam);
+  CHECK(replay::read_foam_sensor(foam).noise == 10.0 / 3);
 }
 
 TEST_CASE("A sensor file with unknown keys or of another version is refused", "[calibrate]") {
@@ -111,6 +153,10 @@ TEST_CASE("A sensor file with unknown keys or of another version is refused", "[
   CHECK(with("/calibration/absorption/residuals", 1).find("residuals") != std::string::npos);
   CHECK(with("/calibration/absorption/parameters/kappa", 1).find("[value") != std::string::npos);
   CHECK(with("/calibration/absorption/covariance", "x").find("rows of") != std::string::npos);
+  CHECK(with("/force/by_area/slope", 1).find("unknown key force.by_area.slope") !=
+        std::string::npos);
+  CHECK(with("/stick/slip_mm", 1).find("unknown key stick.slip_mm") != std::string::npos);
+  CHECK(with("/rim/lenght_mm", 1).find("unknown key rim.lenght_mm") != std::string::npos);
   CHECK(with("/contact/threshold_per_mm", -1).find("must be > 0") != std::string::npos);
 }
 
