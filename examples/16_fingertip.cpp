@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: MIT
 // A fingertip as one object: frames in, touch out. Dots and side dots are not used here, so these
 // stages are switched off.
-// Usage: 13_fingertip [RECORDING]
+// Usage: 16_fingertip [RECORDING]
 #include <cmath>
 #include <cstdio>
 #include <opencv2/imgcodecs.hpp>

@@ -18,6 +18,7 @@
 #include "replay/io/progress.hpp"
 #include "replay/io/recording.hpp"
 #include "replay/io/writer.hpp"
+#include "replay/steps/fingertip_options.hpp"
 
 namespace replay {
 namespace {

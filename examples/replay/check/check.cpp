@@ -7,7 +7,7 @@
 
 #include "replay/check/parts.hpp"
 #include "replay/io/failure.hpp"
-#include "replay/steps/fingertip_step.hpp"
+#include "replay/steps/fingertip_options.hpp"
 
 namespace replay {
 namespace {

@@ -10,42 +10,24 @@
 #include <optional>
 #include <utility>
 
-#include "fingerpad/adapt/opencv.hpp"
 #include "fingerpad/calibrate/contact.hpp"
 #include "fingerpad/pipeline/fingertip.hpp"
 #include "fingerpad/published/depth.hpp"
 #include "replay/io/failure.hpp"
+#include "replay/steps/fingertip_options.hpp"
 
 namespace replay {
 namespace {
 
-using fingerpad::channel;
 using fingerpad::FingertipResult;
 using fingerpad::FingertipStage;
 using fingerpad::ForceStatus;
-using fingerpad::Point3;
 
-constexpr int green = 1;  // OpenCV stores blue, green, red
-constexpr int red = 2;
-
-template <class Pixel>
-auto color_of(const cv::Mat& image) {
-  return fingerpad::ColorFrame(channel<Pixel>(image, red), channel<Pixel>(image, green));
-}
 template <class Pixel>
 bool has_cells(const cv::Mat& image) {
   return (image.depth() == CV_16U) == std::is_same_v<Pixel, std::uint16_t>;
 }
 
-auto reference_of(const Recording& recording) {
-  const auto fit = [&](const auto& frame) {
-    return fingerpad::fit_reference(recording.sensor.camera, recording.sensor.absorption, frame.red,
-                                    frame.green, recording.reference_depth);
-  };
-  return recording.reference.depth() == CV_16U ? fit(color_of<std::uint16_t>(recording.reference))
-                                               : fit(color_of<std::uint8_t>(recording.reference));
-}
-using Reference = decltype(reference_of(std::declval<const Recording&>()));
 using FingertipOptions = fingerpad::FingertipOptions<Reference>;
 
 template <class SmoothingPolicy, class PixelType>
@@ -86,9 +68,6 @@ template <class SmoothingPolicy>
 double contact_threshold_of(Recording& recording, const FingertipOptions& options) {
   const cv::Size size = recording.reference.size();
   fingerpad::FreePadCalibration<> calibration(recording.sensor.camera, size.height, size.width);
-  if (recording.free_frames.size() == 0) {
-    calibration.add(recording.reference_depth);
-  }
   recording.free_frames.seek(0);
   for (int frame = 0; frame < recording.free_frames.size(); ++frame) {
     calibration.add(
@@ -96,52 +75,6 @@ double contact_threshold_of(Recording& recording, const FingertipOptions& option
   }
   return calibration.fit().threshold_per_mm;
 }
-
-/// Thresholds that sensor.json gives in px, as the noise that has them; without them those of the
-/// noise in the free frames.
-fingerpad::SpatialStickTest stick_test_of(const Sensor& sensor) {
-  const fingerpad::StickTest by_default, &given = sensor.stick;
-  fingerpad::SpatialStickTest test;
-  if (given.slip_px != by_default.slip_px || given.reference_px != by_default.reference_px) {
-    // slip_px = 2 gain sigma sqrt(ln(1 / false_slip)), gain 0.416 by averaging over neighbours
-    const double sigmas = 2 * 0.416 * std::sqrt(std::log(1 / test.false_slip));
-    test.lateral_mm = given.slip_px * sensor.camera.pitch_mm / sigmas;
-    test.slip_share = (std::min)(given.slip_px / given.reference_px, 0.5);
-    test.free_frames = 0;
-  }
-  return test;
-}
-
-void set_look_up(const ForceLookUp& given, FingertipOptions& options) {
-  const auto normal = [](const NormalForceLookUp& by) {
-    return FingertipOptions::NormalLookUp(by.curve, by.compensation,
-                                          {.residual_sd_n = by.residual_n});
-  };
-  if (given.by_area) {
-    options.force_of_area = normal(*given.by_area);
-  }
-  if (given.by_depth) {
-    options.force_of_depth = normal(*given.by_depth);
-  }
-  if (given.shear) {
-    options.shear.emplace(given.shear->normalisation, given.shear->map);
-    options.shear_by_depth = given.shear->by == ContactMeasure::depth;
-  }
-}
-
-/// Points as the options want them.
-struct Points {
-  SpaceGrid grid;
-  std::vector<Point3<double>> cells;
-  explicit Points(SpaceGrid points) : grid(std::move(points)) {
-    for (const cv::Vec3d& p : grid) {
-      cells.push_back({p[0], p[1], p[2]});
-    }
-  }
-  fingerpad::StridedView<const Point3<double>> view() const {
-    return {cells.data(), grid.rows, grid.cols, grid.cols};
-  }
-};
 
 /// Columns of the border in the order of their angle, in which Fingertip tells the tensions.
 std::vector<int> by_angle(const SpaceGrid& border_mm) {
@@ -288,39 +221,17 @@ std::unique_ptr<FingertipStep> make(Recording& recording,
                                     int window_px,
                                     const DotGrid& initial_px) {
   const Sensor& sensor = recording.sensor;
-  const cv::Mat_<float>& shape_mm = recording.reference_depth;
-  FingertipOptions options{sensor.camera, sensor.absorption, reference_of(recording), shape_mm.rows,
-                           shape_mm.cols};
+  FingertipSettings settings = fingertip_settings(recording, initial_px);
+  FingertipOptions& options = settings.options;
   options.smoothing_px = window_px;
   cv::Mat_<float> free_depth_mm;
-  if (const auto& light = sensor.neighbour_light) {
+  if (const auto light = std::exchange(options.neighbour_light, std::nullopt)) {
     free_depth_mm = free_depth_of<SmoothingPolicy>(options, recording.reference);
-    options.neighbour_light = {light->radius_px, static_cast<float>(light->m0_mm_per_rad),
-                               static_cast<float>(light->n_per_mm)};
+    options.neighbour_light = light;
     options.free_depth_mm = fingerpad::as_view(std::as_const(free_depth_mm));
   }
-  const auto& calibrated = sensor.contact_threshold_per_mm;
-  options.contact.threshold_per_mm =
-      calibrated ? *calibrated : contact_threshold_of<SmoothingPolicy>(recording, options);
-  options.contact.free_apex_mm = sensor.pad.apex_height_mm;
-  SpaceGrid dots_mm(initial_px.size());
-  (void)fingerpad::spatial_dots(sensor.camera, initial_px, shape_mm, dots_mm);
-  const Points free_dots(dots_mm);
-  options.free_dots_mm = free_dots.view();
-  options.dot_radius_px = sensor.dots ? sensor.dots->diameter_mm / 2 / sensor.camera.pitch_mm : 0.0;
-  options.stick = stick_test_of(sensor);
-  if (sensor.force) {
-    set_look_up(*sensor.force, options);
-  }
-  const bool balances = lacking_for_wrench(recording).empty();
-  const Points rim(balances ? recording.side_dots->border_mm : SpaceGrid());
-  if (balances) {
-    options.rim_mm = rim.view();
-    options.side_dot_row.stress_free_inclination_rad = sensor.rim->stress_free_inclination_rad;
-    options.wrench.base_radius_mm = sensor.pad.base_radius_mm;
-    options.wrench.side_dot_length_mm = sensor.rim->side_dot_length_mm;
-    options.wrench.calibrated_modulus_n_per_mm = sensor.rim->membrane_modulus_n_per_mm;
-    options.wrench.falls_back_on_modulus = sensor.rim->membrane_modulus_n_per_mm.has_value();
+  if (!sensor.contact_threshold_per_mm && recording.free_frames.size() > 0) {
+    options.contact.threshold_per_mm = contact_threshold_of<SmoothingPolicy>(recording, options);
   }
   if (has_cells<std::uint16_t>(first_image)) {
     return std::make_unique<Step<SmoothingPolicy, std::uint16_t>>(recording, options);
@@ -344,14 +255,6 @@ std::unique_ptr<FingertipStep> make_fingertip_step(Recording& recording,
       break;
   }
   return make<fingerpad::BiasFreeMean>(recording, first_image, window_px, initial_px);
-}
-
-std::string lacking_for_wrench(const Recording& recording) {
-  return recording.sensor.dots_only                ? "nothing is known but dots"
-         : !recording.side_dots                    ? "there is no side_dots.csv"
-         : recording.signals.pressures_mpa.empty() ? "signals.csv has no pressure"
-         : !recording.sensor.rim                   ? "sensor.json has no rim"
-                                                   : "";
 }
 
 }  // namespace replay

@@ -6,7 +6,6 @@
 // of the frames and the smoothing are known only at run time here; the library has them as types.
 #include <memory>
 #include <opencv2/core.hpp>
-#include <string>
 
 #include "replay/io/recording.hpp"
 #include "replay/steps/frame.hpp"
@@ -48,8 +47,5 @@ std::unique_ptr<FingertipStep> make_fingertip_step(Recording& recording,
                                                    Smoothing smoothing,
                                                    int window_px,
                                                    const DotGrid& initial_px);
-
-/// Why a recording has no six-axis forces; empty where it has.
-std::string lacking_for_wrench(const Recording& recording);
 
 }  // namespace replay

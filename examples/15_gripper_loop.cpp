@@ -1,0 +1,54 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+// The loop of a gripper, at the pace of a recording: a frame comes when its time has come, and the
+// grip force is out before the next. A rod is pressed in, then dragged until it slides.
+// Usage: 15_gripper_loop [RECORDING]
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <thread>
+
+#include "fingerpad/slip/grip_control.hpp"
+#include "replay/dots/dots.hpp"
+#include "replay/steps/fingertip_options.hpp"
+
+int main(int argc, char** argv) {
+  using Clock = std::chrono::steady_clock;
+  const std::filesystem::path folder = argc > 1 ? argv[1] : FINGERPAD_EXAMPLE_RECORDING;
+  replay::Recording recording = replay::open_recording(folder);
+  if (const auto lacking = replay::lacking_for_wrench(recording); !lacking.empty()) {
+    std::fprintf(stderr, "no six-axis force: %s\n", lacking.c_str());
+    return 1;
+  }
+  replay::DotSource dots(folder, recording.sensor, recording.reference, recording.reference_depth,
+                         recording.frames.size());
+  const auto settings = replay::fingertip_settings(recording, dots.initial());
+  replay::RecordedFingertip fingertip(settings);
+  const fingerpad::GripControl<> control;
+  auto grip = control.start(3);  // N
+
+  double last_s = 0, worst_ms = 0, raised_n = 0;
+  const auto begin = Clock::now();
+  for (int k = 0; k < recording.frames.size(); ++k) {
+    const double time_s = std::atof(recording.signals.time_s(k).c_str());
+    const cv::Mat frame = recording.frames.next();
+    std::this_thread::sleep_until(begin + std::chrono::duration<double>(time_s));
+
+    const auto came = Clock::now();
+    const auto touch = fingertip(frame, dots.of(k, frame), recording.side_dots->dots_mm.at(k),
+                                 recording.signals.pressure_mpa(k), time_s);
+    const auto answer = control(touch.slip, time_s - last_s, grip);
+    const double ms = std::chrono::duration<double, std::milli>(Clock::now() - came).count();
+
+    std::printf("%.1f s  sticks %4.2f  grip %5.2f N  after %5.1f ms\n", time_s,
+                touch.slip.stick_ratio, answer.force_n, ms);
+    raised_n = touch.slip.stick_ratio < 0.5 ? answer.force_n : raised_n;
+    worst_ms = (std::max)(worst_ms, ms);
+    last_s = time_s;
+  }
+  std::printf("the slowest answer took %.1f ms; sliding raised the grip to %.1f N\n", worst_ms,
+              raised_n);
+  return raised_n > 4 ? 0 : 1;
+}

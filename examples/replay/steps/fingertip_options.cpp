@@ -1,0 +1,118 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+#include "replay/steps/fingertip_options.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "fingerpad/calibrate/contact.hpp"
+#include "fingerpad/motion/spatial_dots.hpp"
+
+namespace replay {
+namespace {
+
+using fingerpad::Point3;
+using FingertipOptions = fingerpad::FingertipOptions<Reference>;
+
+Reference reference_of(const Recording& recording) {
+  const auto fit = [&](const auto& frame) {
+    return fingerpad::fit_reference(recording.sensor.camera, recording.sensor.absorption, frame.red,
+                                    frame.green, recording.reference_depth);
+  };
+  return recording.reference.depth() == CV_16U ? fit(color_of<std::uint16_t>(recording.reference))
+                                               : fit(color_of(recording.reference));
+}
+
+double threshold_of_shape(const Recording& recording) {
+  const cv::Mat_<float>& shape_mm = recording.reference_depth;
+  fingerpad::FreePadCalibration<> calibration(recording.sensor.camera, shape_mm.rows,
+                                              shape_mm.cols);
+  calibration.add(shape_mm);
+  return calibration.fit().threshold_per_mm;
+}
+
+/// Thresholds that sensor.json gives in px, as the noise that has them; without them those of the
+/// noise in the free frames.
+fingerpad::SpatialStickTest stick_test_of(const Sensor& sensor) {
+  const fingerpad::StickTest by_default, &given = sensor.stick;
+  fingerpad::SpatialStickTest test;
+  if (given.slip_px != by_default.slip_px || given.reference_px != by_default.reference_px) {
+    // slip_px = 2 gain sigma sqrt(ln(1 / false_slip)), gain 0.416 by averaging over neighbours
+    const double sigmas = 2 * 0.416 * std::sqrt(std::log(1 / test.false_slip));
+    test.lateral_mm = given.slip_px * sensor.camera.pitch_mm / sigmas;
+    test.slip_share = (std::min)(given.slip_px / given.reference_px, 0.5);
+    test.free_frames = 0;
+  }
+  return test;
+}
+
+void set_look_up(const ForceLookUp& given, FingertipOptions& options) {
+  const auto normal = [](const NormalForceLookUp& by) {
+    return FingertipOptions::NormalLookUp(by.curve, by.compensation,
+                                          {.residual_sd_n = by.residual_n});
+  };
+  if (given.by_area) {
+    options.force_of_area = normal(*given.by_area);
+  }
+  if (given.by_depth) {
+    options.force_of_depth = normal(*given.by_depth);
+  }
+  if (given.shear) {
+    options.shear.emplace(given.shear->normalisation, given.shear->map);
+    options.shear_by_depth = given.shear->by == ContactMeasure::depth;
+  }
+}
+
+/// Copies a grid into `cells`, and views it.
+fingerpad::StridedView<const Point3<double>> kept(const SpaceGrid& points,
+                                                  std::vector<Point3<double>>& cells) {
+  for (const cv::Vec3d& p : points) {
+    cells.push_back({p[0], p[1], p[2]});
+  }
+  return {cells.data(), points.rows, points.cols, points.cols};
+}
+
+}  // namespace
+
+FingertipSettings fingertip_settings(const Recording& recording, const DotGrid& free_dots_px) {
+  const Sensor& sensor = recording.sensor;
+  const cv::Mat_<float>& shape_mm = recording.reference_depth;
+  FingertipSettings settings(FingertipOptions{
+      sensor.camera, sensor.absorption, reference_of(recording), shape_mm.rows, shape_mm.cols});
+  FingertipOptions& options = settings.options;
+  options.smoothing_px = sensor.smoothing_px.value_or(options.smoothing_px);
+  const auto& calibrated = sensor.contact_threshold_per_mm;
+  options.contact.threshold_per_mm = calibrated ? *calibrated : threshold_of_shape(recording);
+  options.contact.free_apex_mm = sensor.pad.apex_height_mm;
+  SpaceGrid dots_mm(free_dots_px.size());
+  (void)fingerpad::spatial_dots(sensor.camera, free_dots_px, shape_mm, dots_mm);
+  options.free_dots_mm = kept(dots_mm, settings.free_dots_mm);
+  options.dot_radius_px = sensor.dots ? sensor.dots->diameter_mm / 2 / sensor.camera.pitch_mm : 0.0;
+  options.stick = stick_test_of(sensor);
+  if (const auto& light = sensor.neighbour_light) {
+    options.neighbour_light = {light->radius_px, static_cast<float>(light->m0_mm_per_rad),
+                               static_cast<float>(light->n_per_mm)};
+  }
+  if (sensor.force) {
+    set_look_up(*sensor.force, options);
+  }
+  if (lacking_for_wrench(recording).empty()) {
+    options.rim_mm = kept(recording.side_dots->border_mm, settings.rim_mm);
+    options.side_dot_row.stress_free_inclination_rad = sensor.rim->stress_free_inclination_rad;
+    options.wrench.base_radius_mm = sensor.pad.base_radius_mm;
+    options.wrench.side_dot_length_mm = sensor.rim->side_dot_length_mm;
+    options.wrench.calibrated_modulus_n_per_mm = sensor.rim->membrane_modulus_n_per_mm;
+    options.wrench.falls_back_on_modulus = sensor.rim->membrane_modulus_n_per_mm.has_value();
+  }
+  return settings;
+}
+
+std::string lacking_for_wrench(const Recording& recording) {
+  return recording.sensor.dots_only                ? "nothing is known but dots"
+         : !recording.side_dots                    ? "there is no side_dots.csv"
+         : recording.signals.pressures_mpa.empty() ? "signals.csv has no pressure"
+         : !recording.sensor.rim                   ? "sensor.json has no rim"
+                                                   : "";
+}
+
+}  // namespace replay

@@ -1,0 +1,72 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+#pragma once
+// From files to a fingertip: what sensor.json and the free pad say, as options of
+// pipeline/fingertip.hpp. The library itself reads no files.
+#include <cstdint>
+#include <memory>
+#include <opencv2/core.hpp>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "fingerpad/adapt/opencv.hpp"
+#include "fingerpad/pipeline/fingertip_options.hpp"
+#include "replay/dots/grid.hpp"
+#include "replay/io/recording.hpp"
+
+namespace replay {
+
+/// Red and green of a picture as OpenCV stores it: blue, green, red.
+template <class Pixel = std::uint8_t>
+auto color_of(const cv::Mat& image) {
+  return fingerpad::ColorFrame(fingerpad::channel<Pixel>(image, 2),
+                               fingerpad::channel<Pixel>(image, 1));
+}
+
+/// Of the free pad; the same type for pictures of 8 and of 16 bits.
+using Reference =
+    decltype(fingerpad::fit_reference(std::declval<const fingerpad::Camera<double>&>(),
+                                      std::declval<const fingerpad::Absorption<double>&>(),
+                                      color_of(cv::Mat()).red,
+                                      color_of(cv::Mat()).green,
+                                      std::declval<const cv::Mat_<float>&>()));
+
+/// Options and the points that they view, which move with them.
+struct FingertipSettings {
+  fingerpad::FingertipOptions<Reference> options;
+  std::vector<fingerpad::Point3<double>> free_dots_mm = {};
+  std::vector<fingerpad::Point3<double>> rim_mm = {};
+
+  explicit FingertipSettings(fingerpad::FingertipOptions<Reference> of) : options(std::move(of)) {}
+  FingertipSettings(FingertipSettings&&) = default;
+};
+
+/// `free_dots_px` are the free pad's dots, perhaps none. The contact's threshold is that of
+/// sensor.json, else that of the free pad's known shape; the neighbour light lacks the free pad's
+/// measured depth. The recording must outlive the settings. Throws fingerpad::parameter_error.
+FingertipSettings fingertip_settings(const Recording& recording, const DotGrid& free_dots_px);
+
+/// Why a recording has no six-axis forces; empty where it has.
+std::string lacking_for_wrench(const Recording& recording);
+
+/// A whole fingertip with these settings and the default methods, for frames of 8 bits; compiled
+/// once for all programs.
+class RecordedFingertip {
+ public:
+  explicit RecordedFingertip(const FingertipSettings& settings);
+  ~RecordedFingertip();
+
+  /// As Fingertip has it.
+  fingerpad::FingertipResult operator()(const cv::Mat& frame,
+                                        const DotGrid& dots_px,
+                                        const SpaceGrid& side_dots_mm,
+                                        double pressure_mpa,
+                                        double time_s);
+
+ private:
+  struct Whole;
+  std::unique_ptr<Whole> whole_;
+};
+
+}  // namespace replay

@@ -1,0 +1,24 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+#include "fingerpad/pipeline/fingertip.hpp"
+#include "replay/steps/fingertip_options.hpp"
+
+namespace replay {
+
+struct RecordedFingertip::Whole {
+  fingerpad::Fingertip<Reference> fingertip;
+};
+
+RecordedFingertip::RecordedFingertip(const FingertipSettings& settings)
+    : whole_(new Whole{fingerpad::Fingertip<Reference>(settings.options)}) {}
+RecordedFingertip::~RecordedFingertip() = default;
+
+fingerpad::FingertipResult RecordedFingertip::operator()(const cv::Mat& frame,
+                                                         const DotGrid& dots_px,
+                                                         const SpaceGrid& side_dots_mm,
+                                                         double pressure_mpa,
+                                                         double time_s) {
+  return whole_->fingertip(color_of(frame), dots_px, side_dots_mm, pressure_mpa, time_s);
+}
+
+}  // namespace replay
