@@ -189,7 +189,7 @@ void try_free_pad(Input& in) {
   Camera<double> camera;
   camera.center_x_px = camera.center_y_px = 20;
   camera.pitch_mm = in.number(0.1, 1);
-  FreePadCalibration<> calibration(camera, rows, cols, {.radius_px = in.whole(1, 8)});
+  FreePadCalibration<> calibration(camera, rows, cols, {.radius_px = in.number(1, 8)});
   Grid<float> depth(rows, cols);
   const double bend = in.number(0, 0.02);
   for (Index frames = in.whole(0, 4); frames > 0; --frames) {
