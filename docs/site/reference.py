@@ -1,7 +1,9 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: 2026 The fingerpad authors
 # SPDX-License-Identifier: MIT
-"""Writes the site's first page and a page for each public header: reference.py ROOT SOURCE XML"""
+"""Writes the site's first page, a page for each public class (a row of docs/classes.md) and one for
+each public header: reference.py ROOT SOURCE XML"""
+import functools
 import re
 import sys
 import xml.etree.ElementTree as ElementTree
@@ -14,12 +16,65 @@ ROOMS = {  # in the order in which a frame goes through them
     "image": "Pixel kernels", "math": "Mathematics", "core": "Vocabulary",
 }
 
+HEADINGS = ["What", "When to take it", "Equation and source", "Parameters", "Result and statuses",
+            "Cost", "Error", "Example"]  # of each class; all but the first are columns of the table
+
+
+def comment_of(header):
+    """The comment that a header begins with."""
+    comment = re.search(r"#pragma once\n((?://[^\n]*\n)*)", header.read_text())[1]
+    return "\n".join(line.removeprefix("//").removeprefix(" ") for line in comment.splitlines())
+
 
 def first_sentence(header):
-    """Of the comment that a header begins with."""
-    comment = re.search(r"#pragma once\n((?://[^\n]*\n)*)", header.read_text())[1]
-    text = " ".join(line.removeprefix("//").strip() for line in comment.splitlines())
-    return re.split(r"(?<=[.:]) ", text)[0]
+    return re.split(r"(?<=[.:]) ", " ".join(comment_of(header).split()))[0]
+
+
+def classes(root):
+    """Of each row of docs/classes.md: the class, and what stands under its headings."""
+    for line in (root / "docs/classes.md").read_text().splitlines():
+        cells = [cell.strip() for cell in line.strip("|").split("|")]
+        if len(cells) == len(HEADINGS) and cells[0].startswith("`"):
+            yield cells[0].strip("`"), dict(zip(HEADINGS[1:], cells[1:]))
+
+
+@functools.cache
+def headers_by_name(root):
+    """Where each class, struct and enumeration is defined."""
+    defined = re.compile(r"^(?:class|struct|enum class)(?: \[\[nodiscard\]\])? (\w+)\b[^;]*?{", re.MULTILINE)
+    headers = [h for h in sorted((root / "include/fingerpad").rglob("*.hpp")) if "detail" not in h.parts]
+    return {name: header for header in headers for name in defined.findall(header.read_text())}
+
+
+def header_of(name, root):
+    """None: there is no such type."""
+    return headers_by_name(root).get(name)
+
+
+def kind_of(name, header):
+    return re.search(rf"^(class|struct|enum)\b.* {name}\b[^;]*{{", header.read_text(), re.MULTILINE)[1]
+
+
+def members_of(names, root):
+    """Sphinx's directives for the types that a cell names; links lead to the pages of the headers."""
+    for name in re.findall(r"`(\w+)`", names):
+        kind = kind_of(name, header_of(name, root))
+        members = "" if kind == "enum" else "   :members:\n"
+        yield f"```{{eval-rst}}\n.. doxygen{kind}:: fingerpad::{name}\n   :no-link:\n{members}```\n"
+
+
+def class_page(name, row, root):
+    header = header_of(name, root)
+    under = {heading: re.sub(r"\]\((?:\.\./)?(?=\w)", lambda link: "](../../" + ("" if "../" in link[0] else "docs/"), text)
+             for heading, text in row.items()}
+    under["What"] = f"```text\n{comment_of(header)}\n```\n\n`#include \"{header.relative_to(root / 'include')}\"`"
+    for heading in ("Parameters", "Result and statuses"):
+        under[heading] += "\n\n" + "\n".join(members_of(row[heading], root))
+    under["When to take it"] = f"When {row['When to take it']}."
+    example = re.search(r"\]\(\.\./(examples/\d\d_\w+\.cpp)\)", row["Example"])
+    if example:
+        under["Example"] += f"\n\n```{{literalinclude}} ../../{example[1]}\n:language: cpp\n```"
+    return f"# {name}\n" + "".join(f"\n## {heading}\n\n{under[heading]}\n" for heading in HEADINGS)
 
 
 def declared(xml, path):
@@ -65,6 +120,11 @@ def main(root, source, xml):
             page.write_text(page_of(header, root, xml))
             headers.append(f"reference/{room}/{header.stem}")
         trees.append(toctree(title, pages + headers))
+    pages = source / "reference/classes"
+    pages.mkdir(parents=True)
+    for name, row in classes(root):
+        (pages / f"{name}.md").write_text(class_page(name, row, root))
+    trees.insert(0, toctree("Classes", sorted(f"reference/classes/{name}" for name, _ in classes(root))))
     general = sorted(f"docs/{p.stem}" for p in (root / "docs").glob("*.md"))
     trees.insert(0, toctree("Start", ["docs/install", *(g for g in general if g != "docs/install"),
                                       "examples/data/README", "tests/data/README"]))

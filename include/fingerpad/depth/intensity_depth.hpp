@@ -26,11 +26,11 @@
 namespace fingerpad {
 inline namespace v0 {
 
-/// How depth follows from the logarithm of the ratio. In mm; all finite, the first > 0.
+/// How depth follows from the logarithm of the ratio, in mm.
 struct IntensityLaw {
-  double linear_mm = 3;
-  double square_mm = 0;
-  double cube_mm = 0;
+  double linear_mm = 3;  ///< of the logarithm, > 0
+  double square_mm = 0;  ///< of its square, finite
+  double cube_mm = 0;    ///< of its cube, finite
 };
 inline void expects_valid(const IntensityLaw& law) {
   expects(is_finite(law.linear_mm) && law.linear_mm > 0, "IntensityLaw", "linear_mm", law.linear_mm,

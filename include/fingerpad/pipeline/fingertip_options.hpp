@@ -60,7 +60,7 @@ struct FingertipOptions {
   Reference reference;  ///< of the free pad, from fit_reference()
   Index rows = 0;       ///< of a frame, px
   Index cols = 0;
-  int smoothing_px = 29;
+  int smoothing_px = 29;  ///< width of the smoothing window, odd, 3 to 109
   std::optional<NeighbourLight<float>> neighbour_light = {};  ///< empty: not taken off
   StridedView<const float> free_depth_mm = {};  ///< of the free pad, for the neighbour light: found
                                                 ///< as a frame's, by a fingertip without it

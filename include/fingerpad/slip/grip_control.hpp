@@ -48,9 +48,9 @@ constexpr RatioUpdate update_of(StickStatus status) {
 }
 
 enum class GripStatus : std::uint8_t {
-  holding,
-  raising,
-  lowering,
+  holding,   ///< the force stays
+  raising,   ///< less than the set point sticks, or nothing is known for long
+  lowering,  ///< more than enough sticks
   at_limit,  ///< it would be raised or lowered further, but for a limit of the force
 };
 
