@@ -3,9 +3,10 @@
 #pragma once
 // Vocabulary: how bad parameters are refused. Constructors check every parameter and refuse a bad
 // one with a message that names the parameter, its value and its range: by an exception
-// (parameter_error), or, in a program compiled without exceptions, by the installed handler and
-// then std::abort. Only constructors and calibration refuse; per-frame calls report a status.
-// Compile a whole program either with exceptions or without.
+// (parameter_error), or, in a program compiled without exceptions, by the installed handler or,
+// where there is none, a line on standard error, and then std::abort. Only constructors and
+// calibration refuse; per-frame calls report a status. Compile a whole program either with
+// exceptions or without.
 #include <cstdio>
 #include <cstdlib>
 #include <stdexcept>
@@ -39,12 +40,16 @@ inline refusal_handler set_refusal_handler(refusal_handler handler) noexcept {
 
 /// Refuses with `message`; never returns.
 [[noreturn]] inline void refuse(const std::string& message) {
-  if (detail::installed_refusal_handler != nullptr) {
-    detail::installed_refusal_handler(message.c_str());
+  const refusal_handler handler = detail::installed_refusal_handler;
+  if (handler != nullptr) {
+    handler(message.c_str());
   }
 #if defined(__cpp_exceptions)
   throw parameter_error(message);
 #else
+  if (handler == nullptr) {
+    std::fprintf(stderr, "fingerpad: %s\n", message.c_str());
+  }
   std::abort();
 #endif
 }
