@@ -335,7 +335,7 @@ TEST_CASE("dot noise: exchanged dots are left out, slow motion is said", "[stick
   };
   const DotNoise good = measured(false, 0, false), bad = measured(true, 0, false);
   CHECK(good.out_of_place == 0);
-  CHECK(bad.out_of_place == 9);
+  CHECK(bad.out_of_place == 6);  // two in three frames; what is no place is not found
   CHECK(bad.noise_px == Approx(good.noise_px).epsilon(0.01));
   CHECK(bad.largest_px < 1.3 * 0.1);
   CHECK(std::abs(good.slow_share) < 0.05);

@@ -113,7 +113,9 @@ TEST_CASE("a dot with a coordinate that is not finite is missing", "[dots]") {
     CHECK_FALSE(is_present(cv::Vec2d(0, bad)));
     CHECK_FALSE(is_present(OwnPoint{0, bad}));
   }
-  CHECK(is_present(Point2<double>{1e300, -1e300}));
+  CHECK(is_present(Point2<double>{999999, -999999}));
+  CHECK_FALSE(is_present(Point2<double>{1e6, 0}));  // no place of a pad or of an image
+  CHECK_FALSE(is_present(Point3<double>{0, 0, -1e300}));
 }
 
 TEST_CASE("neighbours", "[dots]") {

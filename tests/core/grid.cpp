@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <limits>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -249,9 +251,20 @@ TEST_CASE("vectors, arrays and spans as grids", "[grid]") {
   CHECK(grid_of(cells, 0, 5).rows() == 0);
   CHECK(test::refusal([&] { (void)grid_of(cells, 3, 3); }) ==
         "grid_of: number of cells = 7, must be >= rows * cols");
-  CHECK(test::refusal([&] { (void)grid_of(cells, -1, 3); }) == "grid_of: rows = -1, must be >= 0");
-  const Index huge = Index(1) << 62;
-  CHECK(test::refusal([&] { (void)grid_of(cells, huge, 4); }) ==
-        "grid_of: cols = 4, must be such that rows * cols <= 1e8");
-  CHECK(test::refusal([&] { (void)grid_of(cells, 4, huge); }) != "accepted");
+  CHECK(test::refusal([&] { (void)grid_of(cells, -1, 3); }) ==
+        "grid_of: rows = -1, must be in [0, 1000000]");
+}
+
+TEST_CASE("sizes of which memory would run out are refused", "[grid]") {
+  const auto said = [](Index rows, Index cols, Index copies = 1) {
+    return test::refusal([=] { expects_grid_size("A", rows, cols, 2, copies); });
+  };
+  constexpr Index huge = std::numeric_limits<Index>::max();
+  CHECK(said(2, 1000000) == "accepted");
+  CHECK(said(huge, 4) == "A: rows = " + std::to_string(huge) + ", must be in [2, 1000000]");
+  CHECK(said(4, huge) == "A: cols = " + std::to_string(huge) + ", must be in [2, 1000000]");
+  CHECK(said(4, 1) == "A: cols = 1, must be in [2, 1000000]");
+  CHECK(said(10000, 10001) == "A: rows times cols = 100010000, must be <= 100000000");
+  CHECK(said(1000, 1000, 100) == "accepted");
+  CHECK(said(1000, 1000, 101) == "A: cells in memory = 101000000, must be <= 100000000");
 }

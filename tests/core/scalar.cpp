@@ -60,6 +60,11 @@ TEMPLATE_TEST_CASE("every scalar has a value, an epsilon, NaN and infinities",
   REQUIRE(is_finite(S(0)));
   REQUIRE(is_finite(S(largest)));
   REQUIRE(is_finite(S(-largest)));
+  REQUIRE(is_plausible(S(999999)));
+  REQUIRE(is_plausible(S(-999999)));
+  for (const S& none : {S(1000000), S(-1000000), S(infinity), S(-infinity), not_a_number<S>()}) {
+    REQUIRE_FALSE(is_plausible(none));
+  }
 }
 
 TEST_CASE("the value of a dual number leaves its derivative out", "[scalar]") {

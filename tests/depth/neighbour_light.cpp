@@ -386,8 +386,7 @@ TEST_CASE("neighbour light: bad parameters are refused by name, value and range"
         "NeighbourLight: m0_mm_per_rad = nan, must be finite");
   CHECK(refusal({5, 0.1F, INFINITY}, 0.1F, 4) == "NeighbourLight: n_per_mm = inf, must be finite");
   CHECK(refusal({}, 0, 4) == "NeighbourLightCompensation: pitch_mm = 0, must be finite and > 0");
-  CHECK(refusal({}, 0.1F, 0) ==
-        "NeighbourLightCompensation: rows of reference_depth_mm = 0, must be >= 1");
+  CHECK(refusal({}, 0.1F, 0) == "NeighbourLightCompensation: rows = 0, must be in [1, 1000000]");
 }
 
 TEST_CASE("neighbour light: other numbers") {

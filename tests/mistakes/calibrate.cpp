@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <span>
 #include <string>
 #include <vector>
@@ -212,6 +213,17 @@ TEST_CASE("mistakes: forces by look-up", "[mistakes]") {
       {"moment in N m", moment([](auto& s) { s.moment_n_mm /= 1000; }), "in N mm?"},
       {"a bumped gauge",
        normal([k = 0](auto& s) mutable { s.normal_force_n += k++ == 30 ? 3 : 0; }), "gauge bumped"},
+      {"a gauge that reads 1e300 once",  // it says nothing beside that sample
+       normal(
+           [k = 0](auto& s) mutable { s.normal_force_n = k++ == 30 ? 1e300 : s.normal_force_n; }),
+       "too few, too alike or tied"},
+      {"a contact of 1e300 once",
+       normal([k = 0](auto& s) mutable { s.measure = k++ == 30 ? 1e300 : s.measure; }),
+       "too few, too alike or tied"},
+      {"dots lost as 1e30 once", tangential([k = 0](auto& s) mutable {
+         s.displacement_mm.x = k++ == 30 ? 1e30 : s.displacement_mm.x;
+       }),
+       "too few, too alike or tied"},
       {"one load alone", normal([](auto& s) { s.measure = 2; }), "must be > the smallest"},
       {"shifted by one", tangential([before = Point2<double>{0, 0}](auto& s) mutable {
          std::swap(before, s.tangential_force_n);
@@ -404,6 +416,10 @@ TEST_CASE("mistakes: noise of the dots", "[mistakes]") {
          }
        }),
        "dots = 0"},
+      {"a dot as far away as numbers go, now and then", standing([](Dots& dots, int t) {
+         dots.cells[40].x = t % 3 == 0 ? 1.7e308 : dots.cells[40].x;
+       }),
+       "ok"},
       {"dots in mm",  // noise is in the dots' unit, whatever it is
        standing([](Dots& dots, int) {
          for (auto& p : dots.cells) {
@@ -418,7 +434,7 @@ TEST_CASE("mistakes: noise of the dots", "[mistakes]") {
        }),
        "ok"},
       {"no dots", standing([](Dots&, int) {}, 0), "rows = 0"},
-      {"a grid that no camera sees", standing([](Dots&, int) {}, Index(1) << 60), "rows * cols"},
+      {"a grid that no camera sees", standing([](Dots&, int) {}, Index(1) << 60), "rows = "},
   });
 }
 
@@ -433,6 +449,8 @@ TEST_CASE("mistakes: noise of the taxels", "[mistakes]") {
        resting([](double r, Index i, Index) { return i < 20 ? test::nan : r; }), "in range"},
       {"one dead taxel", resting([](double r, Index i, Index) { return i == 3 ? test::nan : r; }),
        "ok"},
+      {"a taxel that reads 1e300",
+       resting([](double r, Index i, Index) { return i == 3 ? 1e300 : r; }), "ok"},
       {"time in ms", resting([](double r, Index, Index) { return r; }, 1000.0 / 30), "windows = "},
       {"time stands still", resting([](double r, Index, Index) { return r; }, 0), "windows = 0"},
   });
@@ -463,5 +481,15 @@ TEST_CASE("mistakes: the rim", "[mistakes]") {
       {"z into the plate", rim({.upside_down = true}), "must be"},
       {"dots in m", rim({.length = 1e-3}), "must be"},
       {"one pressure alone", rim({}, 1), "with one, fit_modulus"},
+      {"more border points than memory",
+       [] {
+         return test::refusal([] {
+           const LazyView border(1, std::numeric_limits<Index>::max(), [](Index, Index) {
+             return Point3<double>{18, 0, 0};
+           });
+           const RimCalibration<> calibration(border, 18.0);
+         });
+       },
+       "border columns = "},
   });
 }

@@ -7,12 +7,21 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <string>
+#include <tuple>
+#include <type_traits>
 #include <vector>
 
+#include "fingerpad/calibrate/contact.hpp"
+#include "fingerpad/contact/contact_by_difference.hpp"
+#include "fingerpad/contact/contact_measures.hpp"
 #include "fingerpad/contact/contact_region.hpp"
 #include "fingerpad/contact/object_surface.hpp"
+#include "fingerpad/depth/intensity_depth.hpp"
 #include "fingerpad/depth/neighbour_light.hpp"
+#include "fingerpad/force/pad_heights.hpp"
+#include "fingerpad/motion/spatial_dots.hpp"
 #include "fingerpad/published/depth.hpp"
 #include "support/catch.hpp"
 #include "support/pad.hpp"
@@ -337,33 +346,75 @@ TEST_CASE("wild finite depths move no contact and make no negative area", "[mist
     using CameraType = std::decay_t<decltype(camera)>;
     const ContactRegion<ClampedMean<>, HalfLevelEdge, CameraType> region(camera, 60, 64,
                                                                          contact_test);
+    const SurfaceFit<Plane<>, CameraType> plane(60, 64, camera);
     auto workspace = region.workspace();
-    Image<std::uint8_t> mask(60, 64);
-    const ContactResult before = region(depth, mask, workspace);
-    for (const float wild : {5000.0F, -5000.0F, 60.0F, -60.0F, 1e30F, -1e30F}) {
-      auto spoilt = depth;
-      spoilt(30, 32) = wild;
-      const ContactResult after = region(spoilt, mask, workspace);
-      CAPTURE(wild, after.depth_mm, before.depth_mm, after.area_mm2, before.area_mm2);
-      // 60 mm may be a depth: it counts as one pixel of a thousand
-      CHECK(std::abs(after.depth_mm - before.depth_mm) < (std::abs(wild) < 100 ? 0.1 : 0.005));
-      CHECK(after.area_mm2 == Approx(before.area_mm2).epsilon(0.1));
+    Image<std::uint8_t> mask(60, 64), clean(60, 64);
+    const ContactResult before = region(depth, clean, workspace);
+    const auto measures_before = contact_measures(camera, clean, depth);
+    for (const double wild : {30.0, 60.0, 99.0, 101.0, 300.0, 2000.0, 5000.0, 1e6, 1e30}) {
+      for (const double sign : {1.0, -1.0}) {
+        auto spoilt = depth;
+        spoilt(30, 32) = static_cast<float>(sign * wild);
+        const ContactResult after = region(spoilt, mask, workspace);
+        const auto measures = contact_measures(camera, clean, spoilt);
+        const auto flat = plane(spoilt, clean);
+        CAPTURE(sign * wild, after.depth_mm, before.depth_mm, after.area_mm2, before.area_mm2);
+        // below 100 mm it may be a depth: it counts as one pixel of some thousand
+        const double most = wild < 100 ? 0.12 : 1e-4;
+        CHECK(std::abs(after.depth_mm - before.depth_mm) < most);
+        CHECK(std::abs(measures.center_mm.z - measures_before.center_mm.z) < most);
+        CHECK(after.area_mm2 == Approx(before.area_mm2).epsilon(0.01));
+        CHECK(measures.area_mm2 == Approx(measures_before.area_mm2).epsilon(0.01));
+        CHECK(flat.ok());
+        CHECK((wild < 100 || flat.shape.normal.z > 0.999));
+      }
     }
   };
   check(test::height_map(60, 64, 0.32));
   check(test::pad_camera(60, 64, 0.32));
 }
 
+TEST_CASE("wild finite depths make no dot in space and no height", "[mistakes]") {
+  const Camera<double> camera = test::pad_camera(60, 64, 0.32);
+  Image<double> depth(60, 64, 9.0);
+  const Image<Point2<double>> dots(1, 1, {32, 30});
+  Image<Point3<double>> places(1, 1);
+  const Image<std::uint8_t> mask(60, 64);
+  const PadHeights<> heights(60, 64, camera, 9, 0.5);
+  auto map = heights.map();
+  for (const double wild : {101.0, -101.0, 5000.0, -5000.0, 1e30}) {
+    for (Index j = 31; j < 34; ++j) {
+      depth(30, j) = wild;
+    }
+    CAPTURE(wild);
+    CHECK(spatial_dots(camera, dots, depth, places).found == 0);
+    REQUIRE(heights(depth, mask, map));
+    for (double at = -8; at < 8; at += 0.25) {
+      CHECK(!(std::abs(map(at, 0.0).height_mm) > 100));  // NaN, or a depth between pixels
+    }
+  }
+}
+
 TEST_CASE("images larger than any are refused by name", "[mistakes]") {
   const auto said = [](Index rows, Index cols) {
-    return std::array{refusal([&] { const ContactRegion<> r({}, rows, cols); }),
-                      refusal([&] { const CurvatureMap<> r({}, rows, cols); }),
-                      refusal([&] { const SurfaceFit<> r(rows, cols, {}); })};
+    const LazyView image(rows, cols, [](Index, Index) { return 100.0; });
+    return std::array{
+        refusal([&] { const ContactRegion<> r({}, rows, cols); }),
+        refusal([&] { const CurvatureMap<> r({}, rows, cols); }),
+        refusal([&] { const SurfaceFit<> r(rows, cols, {}); }),
+        refusal([&] { const PadHeights<> r(rows, cols, {}); }),
+        refusal([&] { (void)fit_reference(Camera<>{}, Absorption<>{}, image, image, image); }),
+        refusal([&] { const NeighbourLightCompensation<> r({5}, 0.1F, image); }),
+        refusal([&] { const IntensityDepth<> r(image, {}); }),
+        refusal([&] { const ContactByDifference<> r(std::array{image}); }),
+        refusal([&] { const FreePadCalibration<> r({}, rows, cols); }),
+    };
   };
   const auto enormous = std::numeric_limits<Index>::max();
   for (const auto& [rows, cols, what] : {std::tuple<Index, Index, const char*>{-1, 60, "rows = -1"},
                                          {enormous, 60, "rows = "},
                                          {60, enormous, "cols = "},
+                                         {enormous, enormous, "rows = "},
                                          {1000000, 1000000, "rows times cols = 1000000000000"}}) {
     for (const std::string& message : said(rows, cols)) {
       CAPTURE(message);

@@ -10,6 +10,7 @@
 #include <cstdint>
 #include <functional>
 #include <iomanip>
+#include <limits>
 #include <random>
 #include <sstream>
 #include <string>
@@ -19,6 +20,7 @@
 #include "fingerpad/pipeline/foam_hand.hpp"
 #include "support/catch.hpp"
 #include "support/pad.hpp"
+#include "support/refusal.hpp"
 
 using namespace fingerpad;
 using test::Image;
@@ -142,6 +144,12 @@ const std::vector<Mistake>& mistakes() {
        [](Sample& s) { s.fingers[1](7, 3) = s.k % 3 == 0 ? s.fingers[1](7, 3) : test::nan; }},
       {"a taxel that flickers to infinity", steady, quiet,
        [](Sample& s) { s.fingers[1](7, 3) /= s.k % 3 == 0 ? 1 : 0; }},
+      {"a taxel that reads 1e300 now and then", steady, quiet,
+       [](Sample& s) { s.fingers[1](7, 3) = s.k % 3 == 0 ? 1e300 : s.fingers[1](7, 3); }},
+      {"a taxel that reads -1e300 now and then", steady, quiet,
+       [](Sample& s) { s.fingers[1](7, 3) = s.k % 3 == 0 ? -1e300 : s.fingers[1](7, 3); }},
+      {"readings times 1e300", cannot_tell, TaxelStatus::no_taxels,
+       [](Sample& s) { each(s.fingers[1], [](double r) { return 1e300 * r; }); }},
       {"a taxel stuck at its load", steady, quiet, [](Sample& s) { s.fingers[1](7, 3) = 2000; }},
       {"half of the taxels missing", steady, quiet,
        [](Sample& s) {
@@ -247,4 +255,18 @@ TEST_CASE("mistakes with foam fingers: the state of another estimator", "[mistak
   const TaxelFeatures<> small(2, 2), large(20, 20);
   auto window = small.start();
   CHECK(large(Image<double>(20, 20, 5), 0, window).status == TaxelStatus::other_size);
+}
+
+TEST_CASE("mistakes with foam fingers: arrays larger than any", "[mistakes]") {
+  const auto said = [](Index rows, Index cols, Index window) {
+    return test::refusal([=] { const TaxelFeatures<> r(rows, cols, {.window = window}); });
+  };
+  constexpr Index enormous = std::numeric_limits<Index>::max();
+  CHECK(said(enormous, 4, 16).find("TaxelFeatures: rows = ") == 0);
+  CHECK(said(4, enormous, 16).find("TaxelFeatures: cols = ") == 0);
+  CHECK(said(4096, 4096, 4096) ==
+        "TaxelFeatures: cells in memory = 68719476736, must be <= 100000000");
+  CHECK(test::refusal([] {
+          const Preslip<> r({.history = enormous});
+        }).find("PreslipOptions: history = ") == 0);
 }

@@ -4,6 +4,7 @@
 // mistake gets a status of ok; what cannot be seen in a frame stands last, with the reason.
 #include <cmath>
 #include <functional>
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -16,6 +17,7 @@
 #include "fingerpad/published/friction_ratio.hpp"
 #include "fingerpad/published/normal_force.hpp"
 #include "fingerpad/published/shear.hpp"
+#include "fingerpad/slip/friction_limit.hpp"
 #include "support/catch.hpp"
 #include "support/pressed_pad.hpp"
 #include "support/refusal.hpp"
@@ -137,6 +139,10 @@ const std::vector<WrenchMistake> wrench_mistakes = {
                       return test::RimLoad{0, 0};
                     }); },
      "unstretched"},
+    {"a side dot as far away as numbers go", [](Frame& f) { f.dots(0, 7).x = 1.7e308; }, "ok"},
+    {"side dots times 1e300",
+     [](Frame& f) { f.each_dot([](const Vector& p) { return 1e300 * p; }); }, "too few side dots"},
+    {"pressure of 1e300", [](Frame& f) { f.pressure_mpa = 1e300; }, "pressure not in MPa"},
     {"length of the side dots in metres", [](Frame& f) { f.options.side_dot_length_mm *= 1e-3; },
      "side dots in another order"},
     {"length of the side dots twice as long", [](Frame& f) { f.options.side_dot_length_mm *= 2; },
@@ -170,7 +176,7 @@ TEST_CASE("mistakes with the six-axis force", "[mistakes]") {
     const auto squares = seen<LeastSquares>(frame), balanced = seen<BalancedRim>(frame);
     CHECK(name_of(squares.status) == m.said);
     CHECK(name_of(balanced.status) == m.said);
-    CHECK(squares.ok() == (m.mistake == "none"));
+    CHECK(squares.ok() == (m.said == "ok"));
     CHECK(is_finite(squares.force_n) == squares.ok());
     CHECK(is_finite(balanced.force_n) == balanced.ok());
   }
@@ -229,6 +235,8 @@ const std::vector<LookUpMistake> look_up_mistakes = {
     {"none", [](Contact&) {}, "measured", "measured", "measured", "measured"},
     {"area in m^2", [](Contact& c) { c.area_mm2 *= 1e-6; }, "below range", "measured",
      "disagreeing", "measured"},
+    {"area of 1e300", [](Contact& c) { c.area_mm2 = 1e300; }, "beyond range", "measured",
+     "measured", "not finite"},  // the depth alone
     {"area in px", [](Contact& c) { c.area_mm2 *= 150; }, "beyond range", "measured",
      "beyond range", "beyond range"},
     {"depth in m", [](Contact& c) { c.depth_mm *= 1e-3; }, "measured", "below range", "disagreeing",
@@ -278,7 +286,7 @@ TEST_CASE("mistakes with the look-ups", "[mistakes]") {
     CHECK(name_of(by_depth.status) == m.said_by_depth);
     CHECK(name_of(both.status) == m.fused);
     CHECK(name_of(aside.status()) == m.shear);
-    CHECK(both.ok() == (m.mistake == "none"));
+    CHECK(both.ok() == (m.fused == "measured"));
   }
 }
 
@@ -317,6 +325,20 @@ TEST_CASE("mistakes with the friction ratio", "[mistakes]") {
   const auto wrong = friction(Point2<double>{0.8, 0}, on_pad.z, false, state);
   CHECK(std::string(name_of(wrong.status)) == "negative normal force: F_z of a wrench?");
   CHECK_FALSE(wrong.ok());
+  // forces that no gauge gives, after a slide without friction
+  for (const double absurd : {1e6, 1e30, 1.7e308}) {
+    auto slid = friction.start();
+    CHECK_FALSE(friction(1e-300, 1.0, true, slid).margin < -1);
+    CHECK_FALSE(friction(absurd, 1.0, false, slid).ok());
+    CHECK_FALSE(friction(1.0, absurd, false, slid).ok());
+    CHECK_FALSE(std::isinf(friction(0.5, 1.0, false, slid).margin));
+    const FrictionLimit<> limit;
+    auto learnt = limit.start();
+    CHECK(limit({1, 1e-300}, 0.1, RatioUpdate::fresh, learnt).margin != 0);
+    CHECK(limit({1, absurd}, 0.9, RatioUpdate::fresh, learnt).status ==
+          FrictionLimitStatus::no_load);
+    CHECK_FALSE(std::isinf(limit({1, 0.5}, 0.9, RatioUpdate::fresh, learnt).margin));
+  }
   WrenchResult<double> wrench;
   wrench.force_n = on_pad;
   CHECK(wrench.normal_force_n() == 1);
@@ -361,6 +383,9 @@ const std::vector<TractionMistake> traction_mistakes = {
      },
      "not of this membrane"},
     {"no dots", [](auto& s) { s.dots = test::no_dots(21, 21); }, "too few dots"},
+    {"a dot as far away as numbers go", [](auto& s) { s.dots(10, 10).z = 1.7e308; }, "ok"},
+    {"dots times 1e300", [](auto& s) { each_dot(s, [](const Vector& p) { return 1e300 * p; }); },
+     "too few dots"},
     {"another frame's size", [](auto& s) { s.dots = test::Dots(20, 21); }, "refused"},
 };
 
@@ -375,6 +400,23 @@ TEST_CASE("mistakes with the traction field", "[mistakes]") {
     m.make(scene);
     const auto r = field(scene.dots, scene.contact, scene.pressure_mpa, maps);
     CHECK(name_of(r.status) == m.said);
-    CHECK(r.has_force() == (m.mistake == "none"));
+    CHECK(r.has_force() == (m.said == "ok"));
+    CHECK((!r.has_force() || is_finite(r.force_n)));
   }
+}
+
+TEST_CASE("mistakes with forces: rims and membranes larger than any", "[mistakes]") {
+  const auto said = [](Index rows, Index cols) {
+    const LazyView dots(rows, cols, [](Index i, Index j) {
+      return Vector{1.5 * static_cast<double>(j), 1.5 * static_cast<double>(i), 9};
+    });
+    return test::refusal([&] { const TractionField<> r(dots); });
+  };
+  constexpr Index enormous = std::numeric_limits<Index>::max();
+  CHECK(test::begins_with(said(enormous, 9), "TractionField: rows = "));
+  CHECK(test::begins_with(said(9, enormous), "TractionField: cols = "));
+  CHECK(test::begins_with(said(1000000, 1000000), "TractionField: rows times cols = "));
+  const LazyView border(1, enormous, [](Index, Index) { return Vector{18, 0, 0}; });
+  CHECK(test::begins_with(test::refusal([&] { const Wrench<> r(border); }),
+                          "Wrench: border columns = "));
 }

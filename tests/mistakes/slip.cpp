@@ -4,15 +4,20 @@
 // each line is a mistake in the dots and what six methods say of it in the last frame. "updated",
 // "ok", "measured": the mistake does no harm; a wrong number is told as "another motion", "another
 // shift", "false slip" or "alarm", and then nothing can tell, with the reason in docs/mistakes.md.
+#include <array>
 #include <cmath>
 #include <functional>
+#include <limits>
 #include <optional>
 #include <string>
+#include <tuple>
 #include <vector>
 
+#include "fingerpad/calibrate/slip_noise.hpp"
 #include "fingerpad/motion/contact_shift.hpp"
 #include "fingerpad/motion/object_motion.hpp"
 #include "fingerpad/published/object_motion.hpp"
+#include "fingerpad/published/slides_stick_ratio.hpp"
 #include "fingerpad/published/stick_ratio.hpp"
 #include "fingerpad/slip/contact_slide.hpp"
 #include "fingerpad/slip/recoil.hpp"
@@ -79,6 +84,9 @@ Spoil lost_as(const Point2<double>& mark, bool from_frame) {
       dots.cells[static_cast<std::size_t>(n)] = mark;
     }
   };
+}
+Spoil one_at(double far_px) {
+  return [=](PointsPx& dots, int) { dots(across / 2, across / 2) = {far_px, -far_px}; };
 }
 void shuffle(PointsPx& dots, std::uint64_t seed) {
   test::Random random(seed);
@@ -163,6 +171,20 @@ const std::vector<Mistake>& mistakes() {
       {"lost as 1e30, others in each frame",
        {"updated", "updated", "ok", "measured", "ok", "updated"},
        lost_as({1e30, 1e30}, true)},
+      {"a dot a billion px away",
+       {"updated", "updated", "ok", "measured", "ok", "updated"},
+       one_at(1e9)},
+      {"a dot as far away as numbers go",
+       {"updated", "updated", "ok", "measured", "ok", "updated"},
+       one_at(1.7e308)},
+      {"all dots a billion px away",
+       {"no dots", "no dots", "too few dots", "no dots", "no answer", "no dots"},
+       each([](auto& p) {
+         return Point2<double>{p.x + 1e9, p.y};
+       })},
+      {"dots times 1e300",
+       {"no dots", "no dots", "too few dots", "no dots", "no answer", "no dots"},
+       each([](auto& p) { return 1e300 * p; })},
       {"half of the dots missing",
        {"updated", "updated", "ok", "another shift", "ok", "updated"},
        [](PointsPx& dots, int) {
@@ -333,4 +355,59 @@ TEST_CASE("mistakes with printed dots", "[mistakes]") {
     CHECK(said_by_stick(published::stick_ratio<double>(across, across), mistake, as_they_are) ==
           mistake.said.stick);
   }
+}
+
+TEST_CASE("a dot from a million px on is none that is out of place", "[mistakes]") {
+  const auto out_of_place = [](double far_px) {
+    const StickRatio<> ratio(across, across);
+    auto state = ratio.start();
+    DotStates states(across, across);
+    Index out = 0;
+    drag({"", {}, one_at(far_px)}, [&](const PointsPx& dots, const ContactFlags& contact) {
+      out = ratio(dots, contact, states, state).out_of_place;
+    });
+    return out;
+  };
+  CHECK(out_of_place(0.99e6) > 0);
+  CHECK(out_of_place(1.01e6) == 0);
+}
+
+TEST_CASE("patterns larger than any are refused by name", "[mistakes]") {
+  using test::refusal;
+  const auto said = [](Index rows, Index cols) {
+    const LazyView px(rows, cols, [](Index i, Index j) {
+      return Point2<double>{20 * static_cast<double>(j), 20 * static_cast<double>(i)};
+    });
+    const LazyView mm(rows, cols, [px](Index i, Index j) {
+      return Point3<double>{px(i, j).x / 12, px(i, j).y / 12, 9};
+    });
+    return std::array{
+        refusal([&] { const StickRatio<> r(rows, cols); }),
+        refusal([&] { const SpatialStickRatio<> r(rows, cols); }),
+        refusal([&] { const ObjectMotion<> r(mm); }),
+        refusal([&] { const ContactShift<ContactDots> r(px); }),
+        refusal([&] { const Recoil<> r(px); }),
+        refusal([&] { const ContactSlide<> r(rows, cols, 9, 9); }),
+        refusal([&] { const ContactSlide<> r(60, 80, rows, cols); }),
+        refusal([&] { const DotNoiseCalibration r(rows, cols); }),
+        refusal([&] { const published::SlidesStickRatio r(rows, cols); }),
+    };
+  };
+  constexpr Index enormous = std::numeric_limits<Index>::max();
+  for (const auto& [rows, cols, what] :
+       {std::tuple<Index, Index, const char*>{enormous, 9, "rows = "},
+        {9, enormous, "cols = "},
+        {enormous, enormous, "rows = "},
+        {1000000, 1000000, "rows times cols = 1000000000000"}}) {
+    for (const std::string& message : said(rows, cols)) {
+      CAPTURE(message);
+      CHECK(message.find(what) != std::string::npos);
+    }
+  }
+  const std::string frames = "cells in memory = 4096000000, must be <= 100000000";
+  CHECK(refusal([] {
+          const StickRatio r(1000, 1000, {}, {}, UpdatedReference{.capacity = 4096});
+        }) == "StickRatio: " + frames);
+  CHECK(refusal([] { const SpatialStickRatio<> r(1000, 1000, {.capacity = 4096}); }) ==
+        "SpatialStickRatio: " + frames);
 }

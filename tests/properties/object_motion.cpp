@@ -132,7 +132,7 @@ Scene mapped(const Scene& s, const Map& map) {
 bool finite(const ObjectMotionResult<double>& r) {
   bool all = is_finite(r.residual_rms_mm) && is_finite(r.angles.x_rad) &&
              is_finite(r.angles.y_rad) && is_finite(r.angles.z_rad) &&
-             detail::motion::is_placed(r.pose.translation_mm);
+             is_plausible(r.pose.translation_mm);
   for (int i = 0; i < 9; ++i) {
     all = all && is_finite(r.pose.rotation.m[i / 3][i % 3]);
   }

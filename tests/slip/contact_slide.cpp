@@ -261,8 +261,11 @@ TEST_CASE("contact slide, recoil: names and bad parameters", "[contact_slide][re
     CHECK(begins_with(refused(&SlideTest::min_correlation, bad), "SlideTest: min_correlation"));
   }
   CHECK(begins_with(refused(&SlideTest::min_cells, Index(29)), "SlideTest: min_cells = 29"));
-  CHECK(begins_with(refusal([] { ContactSlide<>{2, 9, 1, 1}; }), "ContactSlide: rows = 2"));
-  CHECK(begins_with(refusal([] { ContactSlide<>{9, 9, 1, 0}; }), "ContactSlide: dot_cols = 0"));
+  CHECK(begins_with(refusal([] {
+                      ContactSlide<>{2, 9, 1, 1};
+                    }),
+                    "ContactSlide: imprint: rows = 2"));
+  CHECK(begins_with(refusal([] { ContactSlide<>{9, 9, 1, 0}; }), "ContactSlide: dots: cols = 0"));
   const Dots dots(2, 2);
   CHECK(begins_with(refusal([&] { Recoil<>{dots, {.pitch_px = 0}}; }), "RecoilTest: pitch_px = 0"));
   CHECK(begins_with(refusal([&] { Recoil<>{dots, {.quantile = 1}}; }), "RecoilTest: quantile = 1"));

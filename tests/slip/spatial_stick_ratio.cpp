@@ -263,7 +263,7 @@ TEST_CASE("stick ratio in space: bad parameters are refused by name, value and r
   CHECK(with({.min_dots = 5}) == "SpatialStickTest: min_dots = 5, must be >= 6");
   CHECK(with({.capacity = 0}) == "SpatialStickTest: capacity = 0, must be in [1, 4096]");
   CHECK(test::refusal([] { SpatialStickRatio<double>(0, 9); }) ==
-        "SpatialStickRatio: rows = 0, must be >= 1");
+        "SpatialStickRatio: rows = 0, must be in [1, 1000000]");
 }
 
 TEST_CASE("stick ratio in space: noise makes as many dots slip as was asked", "[spatial_stick]") {

@@ -156,11 +156,10 @@ class DotTracker {
   }
 
   static std::vector<Place> usable(const std::vector<Place>& spots) {
-    constexpr double far_px = 1e6;
     std::vector<Place> good;
     good.reserve(spots.size());
     for (const Place& spot : spots) {
-      if (std::fabs(spot.x) < far_px && std::fabs(spot.y) < far_px) {
+      if (is_plausible(spot)) {
         good.push_back(spot);
       }
     }

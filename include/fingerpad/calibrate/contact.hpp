@@ -61,7 +61,7 @@ class FreePadCalibration {
                      const CurvatureRing& ring = {})
       : pixel_mm_(detail::pixel_pitch(checked(camera, rows, cols)).at_plate_mm),
         ring_px_(ring.radius_px),
-        map_(camera, rows, cols, ring),
+        map_(camera, rows, cols, ring, detail::no_pad_mm),
         workspace_(map_.workspace()),
         curvature_(static_cast<std::size_t>(rows * cols)),
         mean_(curvature_.size(), 0),

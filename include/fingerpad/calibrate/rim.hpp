@@ -101,7 +101,7 @@ class RimCalibration {
            const S& apex_mm = not_a_number<S>()) {
     const auto dots = as_view(side_dots_mm);
     if (dots.rows() != Row::rows || dots.cols() != rim_.size() || level > levels_.size() ||
-        !is_finite(pressure_mpa) || !(value(pressure_mpa) > 0)) {
+        !is_plausible(pressure_mpa) || !(value(pressure_mpa) > 0)) {
       return false;
     }
     if (level == levels_.size()) {

@@ -96,7 +96,8 @@ class DotNoiseCalibration {
         const Point p = dots(i, j);
         const double x = static_cast<double>(value(point_traits<Point>::x(p)));
         const double y = static_cast<double>(value(point_traits<Point>::y(p)));
-        const bool there = is_contact(cell_t<Contact>(touch(i, j))) && is_finite(x + y);
+        const bool there =
+            is_contact(cell_t<Contact>(touch(i, j))) && is_plausible(x) && is_plausible(y);
         x_.push_back(there ? x : not_a_number<double>());
         y_.push_back(there ? y : not_a_number<double>());
       }

@@ -146,7 +146,7 @@ class TaxelNoiseCalibration {
       for (Index j = 0; j < features_.cols(); ++j) {
         const std::size_t k = static_cast<std::size_t>(i * features_.cols() + j);
         const double reading = static_cast<double>(readings(i, j));
-        const bool good = is_finite(reading) && reading < features_.options().saturated_at;
+        const bool good = detail::is_reading(reading) && reading < features_.options().saturated_at;
         held_[k] = good ? reading : held_[k];
         taxels_[k].is_bad = (in_window_ > 0 && taxels_[k].is_bad) || !good;
       }

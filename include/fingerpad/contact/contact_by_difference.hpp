@@ -161,8 +161,7 @@ class ContactByDifference {
       ++count;
     }
     expects(count > 0, "ContactByDifference", "free_frames", count, "one or more");
-    expects(height >= 1 && width >= 1, "ContactByDifference", "pixels of a free frame",
-            static_cast<long long>(height * width), ">= 1");
+    expects_grid_size("ContactByDifference", height, width);
     return {height,        width, test.cell_px, test.smoothing_px, test.dot_px, test.dot_contrast,
             test.saturated};
   }

@@ -38,13 +38,13 @@ ContactMeasures<S> contact_measures(const CameraType<S>& camera,
   const auto point = [&](Index i, Index j, const S& otherwise) {
     const S l = S(depth(i, j));
     return point_at(camera, S(static_cast<double>(i)), S(static_cast<double>(j)),
-                    is_finite(l) ? l : otherwise);
+                    is_depth(l) ? l : otherwise);
   };
   Point3<S> moment = {S(0), S(0), S(0)};
   for (Index i = 0; i < rows; ++i) {
     for (Index j = 0; j < cols; ++j) {
       const S l = S(depth(i, j));
-      if (!is_contact(cell_t<Mask>(mask(i, j))) || !is_finite(l)) {
+      if (!is_contact(cell_t<Mask>(mask(i, j))) || !is_depth(l)) {
         continue;
       }
       const Index left = j > 0 ? j - 1 : j, right = j + 1 < cols ? j + 1 : j;

@@ -79,7 +79,7 @@ class ContactRegion {
                 const Edge& edge = {})
       : test_(checked(camera, rows, cols, test, edge)),
         image_{rows, cols},
-        curvature_(camera, rows, cols, test.ring),
+        curvature_(camera, rows, cols, test.ring, detail::no_pad_mm),
         finder_(edge, test, camera, image_),
         rays_(camera, rows, cols) {}
 
@@ -138,7 +138,7 @@ class ContactRegion {
  private:
   static const ContactTest& checked(
       const CameraType& camera, Index rows, Index cols, const ContactTest& test, const Edge& edge) {
-    detail::expects_image_size("ContactRegion", rows, cols, 2);  // areas need a neighbour
+    expects_grid_size("ContactRegion", rows, cols, 2);  // areas need a neighbour
     expects_valid(camera);
     expects_valid(test);
     expects_valid(edge);

@@ -45,7 +45,7 @@ enum class SurfaceStatus : unsigned char {
   ok,
   too_few,     ///< pixels in contact that have a depth
   degenerate,  ///< the pixels do not determine the shape (all in one line, for the quadric also two
-               ///< level lines), or no camera could see it: depths beyond all reason
+               ///< level lines), or no camera could see it
   refused,     ///< a grid, state or workspace has another size: nothing was done
 };
 
@@ -157,7 +157,7 @@ class SurfaceFit {
                                        Index cols,
                                        const CameraType& camera,
                                        const SurfaceOptions& options) {
-    detail::expects_image_size("SurfaceFit", rows, cols);
+    expects_grid_size("SurfaceFit", rows, cols);
     expects_valid(camera);
     expects_valid(options);
     return options;

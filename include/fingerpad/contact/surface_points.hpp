@@ -27,7 +27,7 @@ auto surface_points(const CameraType<S>& camera, const Depth& depth_mm, const Ma
   const auto mask = as_view(contact);
   const auto point = [camera, depth, mask](Index i, Index j) {
     const S l = static_cast<bool>(mask(i, j)) ? S(depth(i, j)) : not_a_number<S>();
-    if (!is_finite(l)) {
+    if (!is_depth(l)) {
       return Point3<S>{not_a_number<S>(), not_a_number<S>(), not_a_number<S>()};
     }
     return point_at(camera, S(static_cast<double>(i)), S(static_cast<double>(j)), l);
@@ -93,7 +93,7 @@ class ContactPixels {
         }
       }
       const S depth = S(depth_(row, col));
-      if (is_finite(depth) && (border_ == 0 || is_inner(row, col))) {
+      if (is_depth(depth) && (border_ == 0 || is_inner(row, col))) {
         visit(col, depth);
       }
     }

@@ -3,7 +3,8 @@
 #pragma once
 // Vocabulary: dots printed inside the membrane. A dot grid is a grid whose cells are points, in the
 // order in which the dots are printed, so that a dot's neighbours in the grid are its neighbours on
-// the membrane. A dot that was not found is a point with a coordinate that is not finite.
+// the membrane. A dot that was not found is a point with a coordinate that is not finite; one that
+// lies a million px or mm away counts as such.
 #include <concepts>
 #include <type_traits>
 #include <utility>
@@ -64,13 +65,14 @@ template <class G> concept dot_grid = grid<G> && planar_point<cell_t<G>>;
 /// The same with depths, in mm.
 template <class G> concept spatial_dot_grid = dot_grid<G> && spatial_point<cell_t<G>>;
 
-/// True when the dot was found: x and y (and z where the point has it as a member) are finite.
+/// True when the dot was found: x and y (and z where the point has it as a member) are finite, and
+/// less than a million in size.
 template <planar_point P>
 constexpr bool is_present(const P& p) {
   using Traits = point_traits<P>;
-  bool present = is_finite(Traits::x(p)) && is_finite(Traits::y(p));
+  bool present = is_plausible(Traits::x(p)) && is_plausible(Traits::y(p));
   if constexpr (requires { +p.z; }) {
-    present = present && is_finite(Traits::z(p));
+    present = present && is_plausible(Traits::z(p));
   }
   return present;
 }
@@ -163,6 +165,16 @@ constexpr int for_each_neighbour(const G& dots, Index row, Index col, Visit&& vi
   }
   return found;
 }
+
+namespace detail {
+/// The dot in the scalar S; NaN where it was not found.
+template <scalar S, spatial_point P>
+constexpr Point3<S> spatial_dot(const P& p) {
+  using Traits = point_traits<P>;
+  const Point3<S> dot = {S(Traits::x(p)), S(Traits::y(p)), S(Traits::z(p))};
+  return is_plausible(dot) ? dot : missing_point<S>();
+}
+}  // namespace detail
 
 /// How many dots of the grid were found.
 template <dot_grid G>

@@ -248,14 +248,21 @@ constexpr auto as_view(G&& view) {
   return view;
 }
 
-/// Refuses sizes that no image, dot grid or array has: rows and cols >= `min`, 100 million cells.
-inline void expects_grid_size(const char* owner, Index rows, Index cols, Index min = 1) {
+/// Refuses sizes that no image, dot grid or array has, for which memory would run out or its size
+/// overflow (parameter_error): rows and cols in [`min`, 1e6], 1e8 cells, each stored `copies`
+/// times.
+inline void expects_grid_size(
+    const char* owner, Index rows, Index cols, Index min = 1, Index copies = 1) {
+  constexpr Index max_side = 1000000;
   constexpr Index max_cells = 100000000;
-  const std::string at_least = ">= " + std::to_string(min);
-  expects(rows >= min, owner, "rows", static_cast<long long>(rows), at_least.c_str());
-  expects(cols >= min, owner, "cols", static_cast<long long>(cols), at_least.c_str());
-  expects(rows == 0 || cols <= max_cells / rows, owner, "cols", static_cast<long long>(cols),
-          "such that rows * cols <= 1e8");
+  const std::string range = "in [" + std::to_string(min) + ", " + std::to_string(max_side) + "]";
+  const auto in_range = [&](Index n) { return n >= min && n <= max_side; };
+  expects(in_range(rows), owner, "rows", static_cast<long long>(rows), range.c_str());
+  expects(in_range(cols), owner, "cols", static_cast<long long>(cols), range.c_str());
+  const long long cells = static_cast<long long>(rows) * cols;
+  expects(cells <= max_cells, owner, "rows times cols", cells, "<= 100000000");
+  expects(copies <= 1 || cells <= max_cells / copies, owner, "cells in memory", cells * copies,
+          "<= 100000000");
 }
 
 /// The first rows x cols cells of a vector, array or span as a grid, row by row, without a copy.

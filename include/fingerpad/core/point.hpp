@@ -115,6 +115,16 @@ constexpr bool is_finite(const Point3<S>& p) {
   return is_finite(p.x) && is_finite(p.y) && is_finite(p.z);
 }
 
+/// Whether all coordinates can be measurements: less than a million in size.
+template <scalar S>
+constexpr bool is_plausible(const Point2<S>& p) {
+  return is_plausible(p.x) && is_plausible(p.y);
+}
+template <scalar S>
+constexpr bool is_plausible(const Point3<S>& p) {
+  return is_plausible(p.x) && is_plausible(p.y) && is_plausible(p.z);
+}
+
 namespace detail {
 template <scalar S>
 constexpr Point3<S> missing_point() {

@@ -15,8 +15,7 @@
 #include "fingerpad/core/version.hpp"  // first: it refuses older dialects
 
 #if defined(__FINITE_MATH_ONLY__) && __FINITE_MATH_ONLY__
-#error \
-    "fingerpad marks missing data by NaN: compile without -ffast-math or -ffinite-math-only"
+#error "fingerpad marks missing data by NaN: compile without -ffast-math or -ffinite-math-only"
 #endif
 #if defined(__ASSOCIATIVE_MATH__)  // GCC 12 tells; clang does not
 #error "fingerpad rounds and sums in a set order: compile without -ffast-math or -fassociative-math"
@@ -81,6 +80,16 @@ constexpr bool is_finite(const S& x) {
   const scalar_real_t<S> v = value(x);
   const scalar_real_t<S> difference = v - v;
   return difference == scalar_real_t<S>(0);
+}
+
+/// Whether x can be a measurement: less than a million in size, in every unit that is used here
+/// (mm, px, N, N mm, MPa, rad). Squares and products of such numbers are finite in every scalar.
+/// False for NaN and for both infinities.
+template <scalar S>
+constexpr bool is_plausible(const S& x) {
+  const scalar_real_t<S> v = value(x);
+  const scalar_real_t<S> bound = scalar_real_t<S>(1000000);
+  return -bound < v && v < bound;
 }
 
 template <scalar S>

@@ -253,6 +253,7 @@ class DepthEstimator {
                                        const Reference& reference) {
     expects_valid(camera);
     expects_valid(fluid);
+    expects_grid_size("DepthEstimator", reference.rows, reference.cols);
     expects(reference.pixels_used > 0, "DepthEstimator", "reference.pixels_used",
             static_cast<long long>(reference.pixels_used), "> 0, as fit_reference() gives it");
     return camera;

@@ -318,6 +318,7 @@ Reference free_pad(const Camera<C>& camera,
   Reference reference;
   reference.rows = depth_mm.rows();
   reference.cols = depth_mm.cols();
+  expects_grid_size("fit_reference", reference.rows, reference.cols);
   for (Index i = 0; i < reference.rows; ++i) {
     for (Index j = 0; j < reference.cols; ++j) {
       const C l = in_scalar<C>(depth_mm(i, j));

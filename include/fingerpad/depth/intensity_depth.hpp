@@ -80,8 +80,7 @@ class IntensityDepth {
         options_(options),
         rows_(as_view(free).rows()),
         cols_(as_view(free).cols()) {
-    expects(rows_ >= 1 && cols_ >= 1, "IntensityDepth", "pixels of the free frame",
-            static_cast<long long>(rows_ * cols_), ">= 1");
+    expects_grid_size("IntensityDepth", rows_, cols_);
     const auto from = as_view(free);
     for (Index i = 0; i < rows_; ++i) {
       for (Index j = 0; j < cols_; ++j) {

@@ -143,10 +143,7 @@ class NeighbourLightCompensation {
     expects_valid(light);
     expects(is_finite(pitch_mm) && value(pitch_mm) > 0, "NeighbourLightCompensation", "pitch_mm",
             pitch_mm, "finite and > 0");
-    expects(reference.rows() >= 1, "NeighbourLightCompensation", "rows of reference_depth_mm",
-            static_cast<long long>(reference.rows()), ">= 1");
-    expects(reference.cols() >= 1, "NeighbourLightCompensation", "cols of reference_depth_mm",
-            static_cast<long long>(reference.cols()), ">= 1");
+    expects_grid_size("NeighbourLightCompensation", reference.rows(), reference.cols());
     return light;
   }
 

@@ -140,10 +140,10 @@ class TaxelFeatures {
   /// Takes all memory.
   State start() const { return State(rows_ * cols_, options_.window); }
 
-  /// The features at `time_s`, when the sample was received. NaN, infinite and saturated readings
-  /// are left out; so is a taxel that twice in a window comes back from 0 to more than others read
-  /// (a loose contact). A time that is NaN or not later than the last is refused; one that is
-  /// earlier by more than a window is a new clock.
+  /// The features at `time_s`, when the sample was received. NaN, saturated readings and those of a
+  /// billion are left out; so is a taxel that twice in a window comes back from 0 to more than
+  /// others read (a loose contact). A time that is NaN or not later than the last is refused; one
+  /// that is earlier by more than a window is a new clock.
   template <grid Taxels>
     requires std::constructible_from<S, cell_t<Taxels>> FingerSample<S>
   operator()(const Taxels& taxels, double time_s, State& state) const {
@@ -179,6 +179,7 @@ class TaxelFeatures {
     expects(cols_ >= 1 && cols_ <= 4096, "TaxelFeatures", "cols", static_cast<long long>(cols_),
             "in [1, 4096]");
     expects_valid(options_);
+    expects_grid_size("TaxelFeatures", rows_, cols_, 1, options_.window);
     waves_.check();
   }
 
@@ -246,7 +247,8 @@ class TaxelFeatures {
 
   /// Whether the taxel can be believed now, which is remembered.
   bool counts(const S& reading, std::size_t k, State& state) const {
-    const bool is_good = is_finite(reading) && value(reading) < value(options_.saturated_at);
+    const bool is_good =
+        detail::is_reading(reading) && value(reading) < value(options_.saturated_at);
     Index& bad_for = state.bad_for_[k];
     if (!is_good) {
       bad_for = options_.window;

@@ -29,6 +29,14 @@ struct TaxelOptions {
                            ///< does not count if it is not 0, >= 0; 0: not looked for
 };
 
+namespace detail {
+/// No converter counts to a billion; false for NaN.
+template <scalar S>
+constexpr bool is_reading(const S& reading) {
+  return -1000000000 < value(reading) && value(reading) < 1000000000;
+}
+}  // namespace detail
+
 /// Refuses what has no meaning (parameter_error).
 template <scalar S>
 void expects_valid(const TaxelOptions<S>& o) {

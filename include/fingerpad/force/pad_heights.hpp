@@ -43,8 +43,7 @@ class PadHeights {
         center_px_{camera.center_x_px, camera.center_y_px},
         half_width_mm_(half_width_mm),
         spacing_mm_(spacing_mm) {
-    expects(rows >= 2, "PadHeights", "rows", static_cast<long long>(rows), ">= 2");
-    expects(cols >= 2, "PadHeights", "cols", static_cast<long long>(cols), ">= 2");
+    expects_grid_size("PadHeights", rows, cols, 2);
     expects_valid(camera);
     const Map nodes = map();
     side_ = nodes.side();
@@ -173,7 +172,7 @@ class PadHeights {
     }
     const S on_plate = seen(depth, s, S(0)).depth_mm;
     // steep membrane is seen from further inside
-    return root(depth, s, is_finite(on_plate) ? on_plate : S(4));
+    return root(depth, s, is_depth(on_plate) ? on_plate : S(4));
   }
 
   template <class View>
@@ -183,7 +182,7 @@ class PadHeights {
     for (int step = 0; step < max_steps; ++step) {
       const Seen here = seen(depth, s, z);
       const S excess = here.depth_mm - z;
-      if (!is_finite(excess)) {
+      if (!is_depth(here.depth_mm)) {
         return not_a_number<S>();
       }
       const S slope = here.per_mm - S(1);

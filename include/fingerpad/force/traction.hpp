@@ -185,10 +185,9 @@ class TractionField {
     const auto from = as_view(stress_free_mm);
     rows_ = from.rows();
     cols_ = from.cols();
-    expects(rows_ >= 3, "TractionField", "rows", static_cast<long long>(rows_), ">= 3");
-    expects(cols_ >= 3, "TractionField", "cols", static_cast<long long>(cols_), ">= 3");
+    expects_grid_size("TractionField", rows_, cols_, 3);
     const auto at = [&](Index i, Index j) {
-      return detail::traction::dot_of<S, cell_t<Dots>>(from(i, j));
+      return detail::spatial_dot<S>(cell_t<Dots>(from(i, j)));
     };
     S upward = S(0);
     for (Index i = 0; i + 1 < rows_; ++i) {

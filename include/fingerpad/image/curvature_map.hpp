@@ -8,6 +8,7 @@
 #include <cmath>
 #include <concepts>
 #include <cstddef>
+#include <limits>
 #include <utility>
 #include <vector>
 
@@ -60,9 +61,14 @@ class CurvatureMap {
     Index stride = 0;
   };
 
-  /// rows, cols in [1, 1e6], 1e8 pixels at most. Refuses bad parameters (parameter_error).
-  CurvatureMap(const CameraType& camera, Index rows, Index cols, const CurvatureRing& ring = {})
-      : units_(detail::pixel_pitch(camera)),
+  /// rows, cols in [1, 1e6], 1e8 pixels at most; depths of `too_deep_mm` or more in size are
+  /// missing, > 0. Refuses bad parameters (parameter_error).
+  CurvatureMap(const CameraType& camera,
+               Index rows,
+               Index cols,
+               const CurvatureRing& ring = {},
+               double too_deep_mm = std::numeric_limits<double>::infinity())
+      : units_(detail::pixel_pitch(camera), checked(too_deep_mm)),
         rows_(checked(ring, rows, cols)),
         cols_(cols),
         margin_((std::min)(static_cast<Index>(std::ceil(ring.radius_px)), (std::max)(rows, cols))),
@@ -141,9 +147,13 @@ class CurvatureMap {
   using Strip = detail::CurvatureStrip<Kernel, Units, S>;
   static constexpr Index line = 64 / static_cast<Index>(sizeof(float));
 
+  static double checked(double too_deep_mm) {
+    expects(too_deep_mm > 0, "CurvatureMap", "too_deep_mm", too_deep_mm, "> 0");
+    return too_deep_mm;
+  }
   static Index checked(const CurvatureRing& ring, Index rows, Index cols) {
     expects_valid(ring);
-    detail::expects_image_size("CurvatureMap", rows, cols);
+    expects_grid_size("CurvatureMap", rows, cols);
     return rows;
   }
 

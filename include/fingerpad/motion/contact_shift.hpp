@@ -125,6 +125,7 @@ class ContactShift {
     const auto from = as_view(reference);
     rows_ = from.rows();
     cols_ = from.cols();
+    expects_grid_size("ContactShift", rows_, cols_, 0);
     reference_.reserve(static_cast<std::size_t>(rows_ * cols_));
     for (Index i = 0; i < rows_; ++i) {
       for (Index j = 0; j < cols_; ++j) {
@@ -178,11 +179,6 @@ class ContactShift {
   static Point2<S> planar(const P& p) {
     return {S(point_traits<P>::x(p)), S(point_traits<P>::y(p))};
   }
-  /// Found, and near enough that squares are finite in every scalar.
-  static bool is_placed(const Point2<S>& p) {
-    const auto within = [](const S& c) { return value(c) < 1000000 && -1000000 < value(c); };
-    return within(p.x) && within(p.y);
-  }
   /// Dots of the reference that share a place by which others mark what they did not find are not
   /// found.
   void leave_out(const S& mark) {
@@ -199,7 +195,7 @@ class ContactShift {
     S sum = S(0);
     int count = 0;
     const auto add = [&](const Point2<S>& a, const Point2<S>& b) {
-      if (is_placed(a) && is_placed(b)) {
+      if (is_plausible(a) && is_plausible(b)) {
         sum = sum + squared_norm(b - a);
         ++count;
       }
@@ -235,7 +231,7 @@ class ContactShift {
     for (Index i = 0; i < rows_; ++i) {
       for (Index j = 0; j < cols_; ++j) {
         const Point2<S> dot = planar(to(i, j));
-        if (is_placed(dot) && is_placed(from_at(i, j)) && is_chosen(to, flags, i, j)) {
+        if (is_plausible(dot) && is_plausible(from_at(i, j)) && is_chosen(to, flags, i, j)) {
           w.pairs_.push_back({from_at(i, j), dot, S(1)});
         }
       }
@@ -270,7 +266,7 @@ class ContactShift {
     for (Index k = (std::max)(i - 1, Index(0)); k < (std::min)(i + 2, rows_); ++k) {
       for (Index l = (std::max)(j - 1, Index(0)); l < (std::min)(j + 2, cols_); ++l) {
         if (touches(flags, k, l) != inside && !is_unknown(flags, k, l) &&
-            is_placed(planar(to(k, l)))) {
+            is_plausible(planar(to(k, l)))) {
           return true;
         }
       }
@@ -287,7 +283,7 @@ class ContactShift {
     if (result.status == ShiftStatus::not_rigid) {
       return result;
     }
-    if (!is_placed(from) || !is_placed(dot)) {
+    if (!is_plausible(from) || !is_plausible(dot)) {
       result.status = ShiftStatus::no_dots;
       result.displacement = {not_a_number<S>(), not_a_number<S>()};
       return result;

@@ -75,6 +75,7 @@ class ObjectMotion {
     const auto from = as_view(initial_mm);
     initial_.rows = from.rows();
     initial_.cols = from.cols();
+    expects_grid_size("ObjectMotion", rows(), cols(), 0);
     for (Index i = 0; i < initial_.rows; ++i) {
       for (Index j = 0; j < initial_.cols; ++j) {
         initial_.dots.push_back(detail::motion::spatial<S>(cell_t<Dots>(from(i, j))));

@@ -91,7 +91,7 @@ SpatialDotsResult spatial_dots(const Camera<S>& camera,
       const S row = S(Traits::y(p));
       const S col = S(Traits::x(p));
       const S l = depth_between_pixels(depth, row, col);
-      const bool known = is_finite(l);
+      const bool known = is_depth(l);
       to(i, j) = detail::motion::point_from<cell_t<Out>>(known ? point_at(camera, row, col, l)
                                                                : detail::missing_point<S>());
       result.found += known ? 1 : 0;

@@ -54,6 +54,16 @@ void expects_valid(const Camera<S>& camera) {
           camera.plate_index, "finite and >= 1");
 }
 
+namespace detail {
+inline constexpr int no_pad_mm = 100;  // no pad is so thick
+}
+
+/// Whether a pixel can have this depth, mm: in (-100, 100). False for NaN.
+template <scalar S>
+constexpr bool is_depth(const S& depth_mm) {
+  return -detail::no_pad_mm < value(depth_mm) && value(depth_mm) < detail::no_pad_mm;
+}
+
 /// The same camera in another scalar.
 template <scalar To, scalar From>
 Camera<To> cast(const Camera<From>& c) {

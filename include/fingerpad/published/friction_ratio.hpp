@@ -43,7 +43,7 @@ enum class FrictionStatus : std::uint8_t {
   no_contact,       ///< the normal force is too small
   negative_normal,  ///< as large as that of a press, but negative: F_z of a wrench? Give the force
                     ///< as a point, or WrenchResult::normal_force_n()
-  no_force_known,  ///< a force is not finite
+  no_force_known,   ///< a force is not finite
 };
 
 /// "held", "near slip", ...
@@ -109,7 +109,7 @@ class FrictionRatio {
                                State& state) const {
     FrictionResult<S> result{FrictionStatus::no_force_known, sliding, not_a_number<S>(),
                              state.ratio_, not_a_number<S>()};
-    if (!is_finite(tangential_n) || !is_finite(normal_n)) {
+    if (!is_plausible(tangential_n) || !is_plausible(normal_n)) {
       return result;
     }
     if (!(value(normal_n) >= value(test_.min_normal_n))) {
@@ -123,7 +123,7 @@ class FrictionRatio {
       return result;
     }
     result.ratio = ratio;
-    if (sliding && value(ratio) > 0) {  // without a tangential force it says nothing
+    if (sliding && ratio > S(1e-6)) {  // without a tangential force it says nothing
       state.ratio_ = result.remembered_ratio = ratio;
       state.has_slipped_ = true;
     }

@@ -60,7 +60,7 @@ struct SlidesOptions {
   SlidesScale scale = SlidesScale::across;
   SlidesDelta delta = SlidesDelta::proportional;
   AnswerWhen answers = AnswerWhen::contact_moved;
-  Index capacity = 64;  ///< stored frames, >= 1; the slides keep all
+  Index capacity = 64;  ///< stored frames, in [1, 1e6]; the slides keep all
 };
 
 /// theta_0 = (theta_1 + theta_2 + theta_3 + theta_4) / 4, the angles by which four neighbours have
@@ -124,10 +124,9 @@ class SlidesStickRatio {
   SlidesStickRatio(Index rows, Index cols, const SlidesOptions& options = {})
       : rows_(rows), cols_(cols), options_(options) {
     const char* const owner = "SlidesStickRatio";
-    expects(rows >= 3, owner, "rows", static_cast<long long>(rows), ">= 3");
-    expects(cols >= 3, owner, "cols", static_cast<long long>(cols), ">= 3");
-    expects(options.capacity >= 1, owner, "capacity", static_cast<long long>(options.capacity),
-            ">= 1");
+    expects(options.capacity >= 1 && options.capacity <= 1000000, owner, "capacity",
+            static_cast<long long>(options.capacity), "in [1, 1000000]");
+    expects_grid_size(owner, rows, cols, 3, options.capacity);
     expects_valid(options.test);
   }
 

@@ -121,10 +121,8 @@ class ContactSlide {
   /// parameters (parameter_error).
   ContactSlide(Index rows, Index cols, Index dot_rows, Index dot_cols, const SlideTest& test = {})
       : rows_(rows), cols_(cols), dot_rows_(dot_rows), dot_cols_(dot_cols), test_(test) {
-    expects(rows >= 3, "ContactSlide", "rows", static_cast<long long>(rows), ">= 3");
-    expects(cols >= 3, "ContactSlide", "cols", static_cast<long long>(cols), ">= 3");
-    expects(dot_rows >= 1, "ContactSlide", "dot_rows", static_cast<long long>(dot_rows), ">= 1");
-    expects(dot_cols >= 1, "ContactSlide", "dot_cols", static_cast<long long>(dot_cols), ">= 1");
+    expects_grid_size("ContactSlide: imprint", rows, cols, 3);
+    expects_grid_size("ContactSlide: dots", dot_rows, dot_cols);
     expects_valid(test);
   }
 

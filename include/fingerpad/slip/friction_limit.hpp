@@ -25,7 +25,8 @@
 namespace fingerpad {
 inline namespace v0 {
 
-/// What a contact carries. NaN where it is not known; a moment that is not known counts as none.
+/// What a contact carries. NaN where it is not known, and so is what is a million in size; a moment
+/// that is not known counts as none.
 template <scalar S = double>
 struct ContactLoad {
   S normal_n = not_a_number<S>();      ///< F_n, positive in a press
@@ -45,15 +46,13 @@ ContactLoad<S> contact_load(const Point3<S>& force_n,
   const auto dots = as_view(dots_mm);
   const auto touch = as_view(contact);
   ContactLoad<S> load;
-  if (!same_size(dots, touch)) {
+  if (!same_size(dots, touch) || !is_plausible(force_n)) {
     return load;
   }
   const auto for_each = [&](const auto& visit) {
-    using Traits = point_traits<cell_t<Dots>>;
     for (Index i = 0; i < dots.rows(); ++i) {
       for (Index j = 0; j < dots.cols(); ++j) {
-        const cell_t<Dots> given = dots(i, j);
-        const Point3<S> p = {S(Traits::x(given)), S(Traits::y(given)), S(Traits::z(given))};
+        const Point3<S> p = detail::spatial_dot<S>(cell_t<Dots>(dots(i, j)));
         if (is_contact(cell_t<Contact>(touch(i, j))) && is_finite(p)) {
           visit(p);
         }
@@ -83,8 +82,12 @@ ContactLoad<S> contact_load(const Point3<S>& force_n,
 template <scalar S>
 S friction_of(const ContactLoad<S>& load) {
   using std::sqrt;
+  if (!is_plausible(load.normal_n) || !is_plausible(load.tangential_n)) {
+    return not_a_number<S>();
+  }
   const S along = load.tangential_n / load.normal_n;
-  const bool turns = is_finite(load.moment_n_mm) && value(load.arm_mm) > 0;
+  const bool turns =
+      is_plausible(load.moment_n_mm) && is_plausible(load.arm_mm) && value(load.arm_mm) > 0;
   const S about = turns ? S(load.moment_n_mm / (load.arm_mm * load.normal_n)) : S(0);
   const S sq = along * along + about * about;
   return value(load.normal_n) > 0 ? (value(sq) > 0 ? S(sqrt(sq)) : sq) : not_a_number<S>();
@@ -237,7 +240,7 @@ class FrictionLimit {
 
   void learn(const S& friction, State& state) const {
     if (!is_finite(state.limit_)) {
-      state.limit_ = value(friction) > 0 ? friction : state.limit_;
+      state.limit_ = friction > S(1e-6) ? friction : state.limit_;  // less is no friction
       return;
     }
     if (friction < S(options_.slide_fraction) * state.limit_) {

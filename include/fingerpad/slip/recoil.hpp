@@ -68,6 +68,7 @@ class Recoil {
     expects_valid(test);
     const auto from = as_view(free_px);
     layout_ = {from.rows(), from.cols()};
+    expects_grid_size("Recoil", layout_.rows, layout_.cols, 0);
     detail::stick::GivenDots<Point2<S>> free(layout_);
     free.read(from, all_touch());
     free_ = free.found;

@@ -76,7 +76,7 @@ class SpatialStickRatio {
 
   /// For a grid of rows x cols dots. Refuses bad parameters (parameter_error).
   SpatialStickRatio(Index rows, Index cols, const SpatialStickTest& test = {}) : test_(test) {
-    expects_grid_size("SpatialStickRatio", rows, cols);
+    expects_grid_size("SpatialStickRatio", rows, cols, 1, test.capacity);
     expects_valid(test);
     layout_ = {rows, cols};
     const double gain = detail::stick::neighbour_gain();

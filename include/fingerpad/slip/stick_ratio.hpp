@@ -89,7 +89,7 @@ class StickRatio {
              const Reference& reference = {},
              const Denoising& denoising = {})
       : test_(test), motion_(motion), reference_(reference), denoising_(denoising) {
-    expects_grid_size("StickRatio", rows, cols);
+    expects_grid_size("StickRatio", rows, cols, 1, reference.capacity);
     expects_valid(test);
     expects_valid(motion);
     expects_valid(reference);

@@ -21,10 +21,12 @@ template <scalar S>
 class CalibratedRim {
  public:
   template <spatial_dot_grid Border>
-  CalibratedRim(const Border& border_mm, const S& radius_mm)
-      : radius_mm_(radius_mm), columns_(static_cast<std::size_t>(checked(radius_mm, border_mm))) {
+  CalibratedRim(const Border& border_mm, const S& radius_mm) : radius_mm_(radius_mm) {
+    expects(is_finite(radius_mm) && value(radius_mm) > 0, "RimCalibration", "base_radius_mm",
+            radius_mm, "finite and > 0");
     const Rim<S> rim(
         border_mm, [](Index) { return S(1); }, radius_mm, 8);
+    columns_.resize(static_cast<std::size_t>(rim.size()));
     S total = S(0);
     for (Index k = 0; k < rim.size(); ++k) {
       columns_[static_cast<std::size_t>(rim.column(k))] = {rim.border(k), rim.tangent(k),
@@ -46,13 +48,6 @@ class CalibratedRim {
   const Column& operator[](std::size_t column) const { return columns_[column]; }
 
  private:
-  template <class Border>
-  static Index checked(const S& radius_mm, const Border& border_mm) {
-    expects(is_finite(radius_mm) && value(radius_mm) > 0, "RimCalibration", "base_radius_mm",
-            radius_mm, "finite and > 0");
-    return cols(border_mm);
-  }
-
   S radius_mm_;
   std::vector<Column> columns_;
 };
@@ -68,7 +63,7 @@ struct RimLevel {
   template <class Row, class Dots>
   void add(const Dots& dots, const S& pressure, const S& apex) {
     ++frames;
-    if (is_finite(apex)) {
+    if (is_plausible(apex)) {
       ++apex_frames;
       apex_mm = apex_mm + (apex - apex_mm) / S(apex_frames);
     }
@@ -77,7 +72,7 @@ struct RimLevel {
       Point3<S> dot[Row::rows];
       bool found = true;
       for (Index r = 0; r < Row::rows; ++r) {
-        dot[r] = spatial_point_of<S>(dots(r, static_cast<Index>(j)));
+        dot[r] = spatial_dot<S>(dots(r, static_cast<Index>(j)));
         found = found && is_finite(dot[r]);
       }
       count[j] += found ? 1 : 0;

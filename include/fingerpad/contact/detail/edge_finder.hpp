@@ -56,7 +56,7 @@ class EdgeFinder<HalfLevelEdge, Statistic, CameraType, S> {
         radius_px_(test.ring.radius_px),
         ring_px_(static_cast<Index>(std::ceil(radius_px_))),
         pitch_(pixel_pitch(camera)),
-        mean_(camera, image.rows, image.cols, test.ring),
+        mean_(camera, image.rows, image.cols, test.ring, no_pad_mm),
         cell_(static_cast<std::size_t>(image.size())) {
     const OutsideLevel<S> outside(image, ring_px_);
     for (Index i = 0; i < image.rows; ++i) {

@@ -51,22 +51,12 @@ Point3<S> bridged_dot(Index row, Index col, const Found& found, const At& at) {
 // The geometry of a frame: where the dots are, which belong to the contact, and what the cells pull
 // them with for mu t = 1 N/mm. Pressure and modulus come later, in frame_loads.hpp.
 
-/// NaN where a coordinate is not finite, or the dot further than 10^6 mm away: powers of such would
-/// overflow.
-template <scalar S, class P>
-Point3<S> dot_of(const P& p) {
-  using Traits = point_traits<P>;
-  const Point3<S> dot = {S(Traits::x(p)), S(Traits::y(p)), S(Traits::z(p))};
-  const bool placed = is_finite(dot) && squared_norm(dot) < S(1e12);
-  return placed ? dot : missing_point<S>();
-}
-
 template <scalar S, class Dots>
 void read_dots(const Dots& dots, FrameMemory<S>& frame) {
   for (Index i = 0; i < frame.rows; ++i) {
     for (Index j = 0; j < frame.cols; ++j) {
       const std::size_t k = frame.dot_at(i, j);
-      frame.place[k] = dot_of<S, std::remove_cvref_t<decltype(dots(i, j))>>(dots(i, j));
+      frame.place[k] = spatial_dot<S>(cell_t<Dots>(dots(i, j)));
       frame.flags[k] = 0;
       if (is_finite(frame.place[k])) {
         frame.set(k, found);

@@ -19,19 +19,13 @@ namespace fingerpad {
 inline namespace v0 {
 namespace detail::membrane {
 
-template <class S, class P>
-Point3<S> spatial_point_of(const P& p) {
-  using Traits = point_traits<P>;
-  return {S(Traits::x(p)), S(Traits::y(p)), S(Traits::z(p))};
-}
-
 /// What the frame's side dots said, dot by dot in the order of the angle.
 template <scalar S>
 struct RimPulls {
   std::vector<RimPull<S>> dots;
   std::vector<Point3<S>> along;     ///< d of each dot
   std::vector<Point3<S>> segments;  ///< integral over each rim segment, mm times what a pull is in
-  Index missing = 0;                ///< not found, or with a coordinate that is no number
+  Index missing = 0;                ///< not found
   Index unstretched = 0;            ///< too little to tell a direction
   Index slack = 0;                  ///< shorter than without stress
   Index misplaced = 0;              ///< nearer to another border point, or nowhere near their own
@@ -48,10 +42,10 @@ class Rim {
   Rim(const Border& border_mm, const Length& length_mm, const S& radius_mm, Index segments)
       : radius_mm_(radius_mm), segments_(segments) {
     const auto border = as_view(border_mm);
-    expects(border.rows() == 1 && border.cols() >= 6, "Wrench", "border columns",
-            static_cast<long long>(border.cols()), ">= 6, in one row");
+    expects(border.rows() == 1 && border.cols() >= 6 && border.cols() <= 1000000, "Wrench",
+            "border columns", static_cast<long long>(border.cols()), "in [6, 1000000], in one row");
     for (Index k = 0; k < border.cols(); ++k) {
-      add(k, spatial_point_of<S>(cell_t<Border>(border(0, k))), S(length_mm(k)));
+      add(k, spatial_dot<S>(cell_t<Border>(border(0, k))), S(length_mm(k)));
     }
     std::sort(points_.begin(), points_.end(),
               [](const Place& a, const Place& b) { return value(a.angle) < value(b.angle); });
@@ -197,7 +191,7 @@ class Rim {
     Index near = 0;
     for (const Place& place : points_) {
       const auto away = [&](Index row) {
-        return spatial_point_of<S>(side_dots_mm(row, place.column)) - place.point.border;
+        return spatial_dot<S>(side_dots_mm(row, place.column)) - place.point.border;
       };
       const Point3<S> first = away(0), last = away(Row::rows - 1);
       if (!is_finite(squared_norm(first)) || !is_finite(squared_norm(last))) {
@@ -229,7 +223,7 @@ class Rim {
                      Point3<S>& along) const {
     Point3<S> dot[Row::rows];
     for (Index r = 0; r < Row::rows; ++r) {
-      dot[r] = spatial_point_of<S>(side_dots_mm(r, place.column));
+      dot[r] = spatial_dot<S>(side_dots_mm(r, place.column));
       if (!is_finite(dot[r])) {
         return {};
       }

@@ -14,6 +14,7 @@
 // (tests/image/curvature.cpp).
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "fingerpad/core/expects.hpp"
 #include "fingerpad/core/scalar.hpp"
@@ -58,13 +59,14 @@ template <scalar S>
 inline constexpr bool sees_perspective<OrthographicCamera<S>> = false;
 
 /// Depths in units of about one pitch, a power of two so that nothing is rounded: the products of
-/// six lengths in (K1) then stay far from the limits of float. Depths beyond 4096 units,
-/// more than any pad is deep, or next to the camera, are missing.
+/// six lengths in (K1) then stay far from the limits of float. Depths from 4096 units on, or too
+/// deep, or next to the camera, are missing.
 template <class CameraType, class S>
 struct DepthUnits {
   static constexpr bool at_depth = sees_perspective<CameraType>;
 
-  explicit DepthUnits(const PixelPitch& pitch_mm) {
+  explicit DepthUnits(const PixelPitch& pitch_mm,
+                      double too_deep_mm = std::numeric_limits<double>::infinity()) {
     int exponent = 0;
     std::frexp(pitch_mm.at_plate_mm, &exponent);
     const double unit_mm = std::ldexp(1.0, exponent);
@@ -72,8 +74,10 @@ struct DepthUnits {
     per_mm = S(1 / unit_mm);
     const double growth = pitch_mm.growth_per_mm;
     growth_per_unit = S(growth) * S(unit_mm);
-    const double nearest = growth > 0 ? -0.99 / (growth * unit_mm) : -4096.0;
-    lowest = scalar_real_t<S>((std::max)(nearest, -4096.0));
+    const double farthest = (std::min)(too_deep_mm / unit_mm, 4096.0);
+    const double nearest = growth > 0 ? -0.99 / (growth * unit_mm) : -farthest;
+    lowest = scalar_real_t<S>((std::max)(nearest, -farthest));
+    highest = scalar_real_t<S>(farthest);
   }
 
   /// zeta, in units; NaN for what is missing.
@@ -106,7 +110,7 @@ struct DepthUnits {
   S per_mm;           ///< units per mm
   S growth_per_unit;  ///< c
   scalar_real_t<S> lowest;
-  scalar_real_t<S> highest = scalar_real_t<S>(4096);
+  scalar_real_t<S> highest;
 };
 
 }  // namespace detail

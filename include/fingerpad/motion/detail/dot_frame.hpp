@@ -22,17 +22,6 @@ inline namespace v0 {
 
 namespace detail::motion {
 
-/// Found, and within a kilometre: squares of what passes are finite in every scalar.
-template <scalar S>
-constexpr bool is_placed(const Point3<S>& p) {
-  const auto within = [](const S& c) {
-    const scalar_real_t<S> v = value(c);
-    const scalar_real_t<S> reach = scalar_real_t<S>(1000000);
-    return v < reach && -reach < v;  // false for NaN
-  };
-  return within(p.x) && within(p.y) && within(p.z);
-}
-
 /// Any spatial point in the scalar S.
 template <scalar S, spatial_point P>
 constexpr Point3<S> spatial(const P& p) {
@@ -54,7 +43,7 @@ class DotFrame {
   /// In the middle of the plate lies no membrane: (0, 0, 0) is what some give for a lost dot.
   bool found(Index row, Index col) const {
     const Point3<S> p = dot(row, col);
-    return is_placed(p) && !(value(p.x) == 0 && value(p.y) == 0 && value(p.z) == 0);
+    return is_plausible(p) && !(value(p.x) == 0 && value(p.y) == 0 && value(p.z) == 0);
   }
   bool in_contact(DotIndex d) const { return flagged(d.row, d.col) && found(d.row, d.col); }
 
@@ -126,7 +115,7 @@ void expects_in_mm(const InitialDots<S>& initial) {
   std::vector<double> steps_mm;
   for (Index i = 0; i < initial.rows; ++i) {
     for (Index j = 0; j + 1 < initial.cols; ++j) {
-      if (is_placed(initial(i, j)) && is_placed(initial(i, j + 1))) {
+      if (is_plausible(initial(i, j)) && is_plausible(initial(i, j + 1))) {
         const S sq = squared_norm(initial(i, j + 1) - initial(i, j));
         steps_mm.push_back(std::sqrt(static_cast<double>(value(sq))));
       }
@@ -151,7 +140,7 @@ bool is_complete(const Frame& frame, const InitialDots<S>& initial, DotIndex d) 
   }
   for (Index i = d.row - 1; i <= d.row + 1; ++i) {
     for (Index j = d.col - 1; j <= d.col + 1; ++j) {
-      if (!frame.found(i, j) || !is_placed(initial(i, j))) {
+      if (!frame.found(i, j) || !is_plausible(initial(i, j))) {
         return false;
       }
     }

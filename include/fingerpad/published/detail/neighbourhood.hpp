@@ -112,7 +112,7 @@ Neighbourhood<S> neighbourhood(const Frame& frame, DotIndex d) {
     const Index j = d.col - 1 + static_cast<Index>(k % 3);
     const bool inside = i >= 0 && j >= 0 && i < frame.rows() && j < frame.cols();
     n.dot[k] = inside ? frame.dot(i, j) : missing_point<S>();
-    n.found[k] = is_placed(n.dot[k]);
+    n.found[k] = is_plausible(n.dot[k]);
   }
   return n;
 }

@@ -103,7 +103,7 @@ struct GivenDots {
         if constexpr (requires { p.z; }) {
           p.z = coordinate<P>(Traits::z(given));
         }
-        const bool there = is_distance_sq(squared_norm(p));
+        const bool there = is_plausible(p);
         at(found, k) = there ? p : no_dot<P>();
         count += there ? 1 : 0;
         if (is_contact(cell_t<Contact>(contact(i, j)))) {
