@@ -2,8 +2,14 @@
 // SPDX-License-Identifier: MIT
 // A copied state or workspace has all the memory of the first one.
 #include <array>
+#include <cmath>
+#include <cstdint>
 
+#include "fingerpad/contact/contact_by_difference.hpp"
+#include "fingerpad/foam/taxel_features.hpp"
 #include "fingerpad/motion/contact_shift.hpp"
+#include "fingerpad/slip/contact_slide.hpp"
+#include "fingerpad/slip/recoil.hpp"
 #include "fingerpad/slip/spatial_stick_ratio.hpp"
 #include "fingerpad/slip/stick_ratio.hpp"
 #include "no_allocation/count.hpp"
@@ -64,5 +70,50 @@ TEST_CASE("a copy takes no memory in a frame either", "[no_allocation]") {
     const auto work = shift.workspace();
     auto copy = work;
     CHECK(taken([&] { (void)shift(dots_mm, all_touch, copy); }) == 0);
+  }
+  SECTION("recoil") {
+    const Recoil<> recoil(dots_px, {.pitch_px = 20});
+    const auto state = recoil.start();
+    auto copy = state;
+    CHECK(taken([&] { CHECK(recoil(dots_px, copy).enough); }) == 0);
+  }
+  const auto seen = [](Index i, Index j) {
+    const double x = static_cast<double>(j - 32), y = static_cast<double>(i - 32);
+    return 100 * (1 + 0.3 * std::sin(x / 3) * std::cos(y / 2)) * (x * x + y * y < 400 ? 0.5 : 1);
+  };
+  const LazyView frame(64, 64, seen);
+  SECTION("slide of the contact") {
+    const ContactSlide<> slide(64, 64, side, side, {.pitch_px = 20, .cell_px = 1});
+    const LazyView touch(64, 64, [](Index i, Index j) { return std::hypot(i - 32, j - 32) < 20; });
+    const auto state = slide.start();
+    auto copy = state;
+    bool found = true;
+    CHECK(taken([&] { found = slide(frame, touch, dots_px, copy).ok() && found; }) == 0);
+    CHECK(found);
+  }
+  SECTION("contact by difference") {
+    const LazyView free(64, 64, [](Index, Index) { return 100.0; });
+    const ContactByDifference<> difference(std::array{free});
+    const auto work = difference.workspace();
+    auto copy = work;
+    std::array<std::uint8_t, 64 * 64> mask{};
+    const StridedView<std::uint8_t> contact(mask.data(), 64, 64, 64);
+    CHECK(taken([&] { (void)difference(frame, contact, copy); }) == 0);
+  }
+  SECTION("features of the taxels") {
+    const TaxelFeatures<> features(side, side);
+    const auto state = features.start();
+    auto copy = state;
+    CHECK(taken([&] {
+            copy.reset();
+            FingerSample<> felt;
+            for (int k = 0; k < 20; ++k) {
+              const LazyView taxels(side, side, [k](Index i, Index) {
+                return 500.0 + (k % 4 < 2 ? 100 : 0) + static_cast<double>(i);
+              });
+              felt = features(taxels, 0.03 * k, copy);
+            }
+            CHECK(felt.status == TaxelStatus::vibrating);
+          }) == 0);
   }
 }

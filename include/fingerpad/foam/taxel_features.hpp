@@ -24,6 +24,7 @@
 #include <span>
 #include <vector>
 
+#include "fingerpad/core/detail/reserved_vector.hpp"
 #include "fingerpad/core/expects.hpp"
 #include "fingerpad/core/grid.hpp"
 #include "fingerpad/core/scalar.hpp"
@@ -93,7 +94,7 @@ class TaxelFeatures {
     std::vector<std::uint8_t> is_gap_;  // before each of them
     std::vector<S> spread_;             // variance of each taxel
     std::vector<S> residual_;
-    std::vector<Vibrating> vibrating_;
+    detail::ReservedVector<Vibrating> vibrating_;
     typename Waves::template Scratch<S> scratch_;
     Index samples_ = 0;
     Index unfilled_for_ = 0;    // samples since the window was last full

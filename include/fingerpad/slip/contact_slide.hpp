@@ -17,6 +17,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "fingerpad/core/detail/reserved_vector.hpp"
 #include "fingerpad/core/dots.hpp"
 #include "fingerpad/core/expects.hpp"
 #include "fingerpad/core/grid.hpp"
@@ -155,7 +156,7 @@ class ContactSlide {
     detail::CellMorphology<S> growth_;
     detail::ImprintShift<S> key_;
     std::vector<Point2<S>> dots_, key_dots_;
-    std::vector<S> x_, y_;
+    detail::ReservedVector<S> x_, y_;
     Point2<S> last_shift_ = {S(0), S(0)};
     SlideResult<S> key_result_;
     SlideResult<S> result_;

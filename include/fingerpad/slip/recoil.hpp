@@ -10,6 +10,7 @@
 #include <cstddef>
 #include <vector>
 
+#include "fingerpad/core/detail/reserved_vector.hpp"
 #include "fingerpad/core/dots.hpp"
 #include "fingerpad/core/expects.hpp"
 #include "fingerpad/core/grid.hpp"
@@ -96,7 +97,7 @@ class Recoil {
     friend class Recoil;
     detail::stick::GivenDots<Point2<S>> given_;
     std::vector<Point2<S>> before_;  // in the last frame that counted
-    std::vector<S> lengths_;
+    detail::ReservedVector<S> lengths_;
     S largest_ = S(0);
     RecoilResult<S> result_;
   };

@@ -9,6 +9,7 @@
 #include <type_traits>
 #include <vector>
 
+#include "fingerpad/core/detail/reserved_vector.hpp"
 #include "fingerpad/core/grid.hpp"
 #include "fingerpad/core/scalar.hpp"
 #include "fingerpad/image/detail/cell_filter.hpp"
@@ -209,7 +210,7 @@ class FrameDifference {
   Colours now_;
   CellMorphology<S> edge_;
   PaddedCells<S> weight_, part_, between_, share_, smooth_, length_;
-  std::vector<S> samples_;
+  ReservedVector<S> samples_;
 };
 
 }  // namespace detail

@@ -12,6 +12,7 @@
 #include <cstddef>
 #include <vector>
 
+#include "fingerpad/core/detail/reserved_vector.hpp"
 #include "fingerpad/core/grid.hpp"
 #include "fingerpad/core/point.hpp"
 #include "fingerpad/core/scalar.hpp"
@@ -205,7 +206,7 @@ class ImprintShift {
     return S(upper + v * (lower - upper));
   }
 
-  std::vector<Cell> cells_;
+  ReservedVector<Cell> cells_;
   Point2<S> center_ = {S(0), S(0)};
   SmallMatrix<S, 5> matrix_ = zero_matrix<S, 5>();
 };
