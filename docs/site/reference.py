@@ -125,6 +125,8 @@ def main(root, source, xml):
     for name, row in classes(root):
         (pages / f"{name}.md").write_text(class_page(name, row, root))
     trees.insert(0, toctree("Classes", sorted(f"reference/classes/{name}" for name, _ in classes(root))))
+    trees.insert(0, toctree("First hour", sorted(f"docs/first_hour/{p.stem}"
+                                                 for p in (root / "docs/first_hour").glob("*.md"))))
     general = sorted(f"docs/{p.stem}" for p in (root / "docs").glob("*.md"))
     trees.insert(0, toctree("Start", ["docs/install", *(g for g in general if g != "docs/install"),
                                       "examples/data/README", "tests/data/README"]))

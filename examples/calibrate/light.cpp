@@ -223,7 +223,7 @@ Outcome neighbour_light(const Path& recording, const Path& sensor_file, int max_
   outcome.sections["neighbour_light"] = {{"radius_px", fit.light.radius_px},
                                          {"m0_mm_per_rad", fit.light.m0_mm_per_rad},
                                          {"n_per_mm", fit.light.n_per_mm}};
-  Plot plot{"radius [px]", "error that is left [mm]", {}};
+  Plot plot{"radius [px]", "error of depth [mm]", {}, "before", "after"};
   for (std::size_t k = 0; k < fit.rms_of_radius_mm.size(); ++k) {
     plot.points.push_back({static_cast<double>(k + 1), fit.rms_before_mm, fit.rms_of_radius_mm[k]});
   }

@@ -155,7 +155,8 @@ std::vector<Report> load_reports(const fs::path& file) {
 }
 
 void write_plot(const Plot& plot, const fs::path& file) {
-  std::string text = plot.x + "," + plot.y + " measured," + plot.y + " fitted\n";
+  std::string text =
+      plot.x + "," + plot.y + " " + plot.measured + "," + plot.y + " " + plot.fitted + "\n";
   char line[96];
   for (const PlotPoint& p : plot.points) {
     std::snprintf(line, sizeof line, "%.7g,%.7g,%.7g\n", p.x, p.measured, p.fitted);

@@ -46,6 +46,7 @@ struct PlotPoint {
 struct Plot {
   std::string x, y;  ///< what the axes are, with units
   std::vector<PlotPoint> points;
+  std::string measured = "measured", fitted = "fitted";  ///< what the numbers of a point are
 };
 
 /// A part of a calibration that its samples do not tell.
