@@ -51,16 +51,12 @@ def header_of(name, root):
     return headers_by_name(root).get(name)
 
 
-def kind_of(name, header):
-    return re.search(rf"^(class|struct|enum)\b.* {name}\b[^;]*{{", header.read_text(), re.MULTILINE)[1]
-
-
-def members_of(names, root):
-    """Sphinx's directives for the types that a cell names; links lead to the pages of the headers."""
+def definitions_of(names, root):
+    """The types that a cell names, as the headers have them: their comments say units and ranges."""
     for name in re.findall(r"`(\w+)`", names):
-        kind = kind_of(name, header_of(name, root))
-        members = "" if kind == "enum" else "   :members:\n"
-        yield f"```{{eval-rst}}\n.. doxygen{kind}:: fingerpad::{name}\n   :no-link:\n{members}```\n"
+        text = re.search(rf"^(?:template <[^\n]*>\n)?(?:class|struct|enum class)[^;{{]*? {name}\b[^;{{]*{{.*?^}};",
+                         header_of(name, root).read_text(), re.MULTILINE | re.DOTALL)[0]
+        yield f"```cpp\n{text}\n```\n"
 
 
 def class_page(name, row, root):
@@ -69,7 +65,7 @@ def class_page(name, row, root):
              for heading, text in row.items()}
     under["What"] = f"```text\n{comment_of(header)}\n```\n\n`#include \"{header.relative_to(root / 'include')}\"`"
     for heading in ("Parameters", "Result and statuses"):
-        under[heading] += "\n\n" + "\n".join(members_of(row[heading], root))
+        under[heading] += "\n\n" + "\n".join(definitions_of(row[heading], root))
     under["When to take it"] = f"When {row['When to take it']}."
     example = re.search(r"\]\(\.\./(examples/\d\d_\w+\.cpp)\)", row["Example"])
     if example:
