@@ -23,7 +23,7 @@ using test::Pad;
 
 namespace {
 
-using Known = published::KnownDepth<double>;
+using Known = DepthSample<double>;
 
 /// What a pixel of the published pad sees at a depth, with noise of so many grey levels.
 Known known(
@@ -31,7 +31,7 @@ Known known(
   auto colour = pad.colour<published::SingleHeight>(row, col, depth_mm, 57);
   colour.red += red;
   colour.green += green;
-  return {pad.pencil<published::SingleHeight>(row, col), depth_mm, colour};
+  return {pad.pencil<published::SingleHeight>(row, col), 0, depth_mm, colour};
 }
 
 }  // namespace

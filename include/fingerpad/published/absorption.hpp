@@ -10,9 +10,9 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
-#include <cstdint>
-#include <utility>
 
+#include "fingerpad/calibrate/depth.hpp"
+#include "fingerpad/core/point.hpp"
 #include "fingerpad/core/scalar.hpp"
 #include "fingerpad/published/depth.hpp"
 
@@ -20,28 +20,14 @@ namespace fingerpad {
 inline namespace v0 {
 namespace published {
 
-/// A pixel at a known depth. The pencil of published::SingleHeight.
-template <scalar S = double>
-struct KnownDepth {
-  Pencil<S> pencil;
-  S depth_mm;  ///< > 0
-  Colour<S> colour;
-};
-
-enum class IdentificationStatus : std::uint8_t {
-  ok,
-  singular,       ///< the three depths do not tell the parameters apart
-  not_converged,  ///< after max_iterations
-};
-
 template <scalar S = double>
 struct [[nodiscard]] Identification {
-  IdentificationStatus status = IdentificationStatus::not_converged;
+  FitStatus status = FitStatus::not_converged;
   Absorption<S> fluid = {};  ///< where it came to
   S residual = S(0);         ///< largest of |f(l_i) - f(l_0)| over |f(l_0)|
   int iterations = 0;
 
-  bool ok() const { return status == IdentificationStatus::ok; }
+  bool ok() const { return status == FitStatus::ok; }
 };
 
 }  // namespace published
@@ -53,8 +39,8 @@ using Triple = std::array<S, 3>;
 
 /// f(l_i) - f(l_0), as shares of f(l_0).
 template <scalar S>
-Triple<S> residuals(const published::KnownDepth<S>& reference,
-                    const std::array<published::KnownDepth<S>, 3>& at,
+Triple<S> residuals(const DepthSample<S>& reference,
+                    const std::array<DepthSample<S>, 3>& at,
                     const Triple<S>& p) {
   const Absorption<S> fluid{p[0], p[1], p[2]};
   const S g = published::quotient(fluid, reference.pencil, reference.colour, reference.depth_mm);
@@ -65,46 +51,24 @@ Triple<S> residuals(const published::KnownDepth<S>& reference,
   return r;
 }
 
-/// x with a x = b by Gauss with pivots; false where a is singular to roundoff.
+/// x with x_0 a_0 + x_1 a_1 + x_2 a_2 = b, by Cramer's rule; not finite where a_i lie in one plane.
 template <scalar S>
-bool solve(std::array<Triple<S>, 3> a, Triple<S> b, Triple<S>& x) {
-  for (std::size_t j = 0; j < 3; ++j) {
-    std::size_t best = j;
-    for (std::size_t i = j + 1; i < 3; ++i) {
-      best = value(square(a[i][j])) > value(square(a[best][j])) ? i : best;
-    }
-    std::swap(a[j], a[best]);
-    std::swap(b[j], b[best]);
-    if (!is_finite(a[j][j]) || value(a[j][j]) == 0) {
-      return false;
-    }
-    for (std::size_t i = j + 1; i < 3; ++i) {
-      const S factor = a[i][j] / a[j][j];
-      for (std::size_t c = j; c < 3; ++c) {
-        a[i][c] -= factor * a[j][c];
-      }
-      b[i] -= factor * b[j];
-    }
-  }
-  for (std::size_t i = 3; i-- > 0;) {
-    x[i] = b[i];
-    for (std::size_t c = i + 1; c < 3; ++c) {
-      x[i] -= a[i][c] * x[c];
-    }
-    x[i] = S(x[i] / a[i][i]);
-  }
-  return is_finite(x[0]) && is_finite(x[1]) && is_finite(x[2]);
+Triple<S> solve(const std::array<Point3<S>, 3>& a, const Point3<S>& b) {
+  const S volume = dot(a[0], cross(a[1], a[2]));
+  return {S(dot(b, cross(a[1], a[2])) / volume), S(dot(b, cross(a[2], a[0])) / volume),
+          S(dot(b, cross(a[0], a[1])) / volume)};
 }
 
 }  // namespace detail::identification
 
 namespace published {
 
-/// Newton's method from `guess`, with derivatives by differences and steps halved until the
+/// Depths > 0, pencils of published::SingleHeight; weights are not looked at, nor where a pixel
+/// lies. Newton's method from `guess`, with derivatives by differences and steps halved until the
 /// residual falls. Never throws, bounded time.
 template <scalar S>
-Identification<S> identify_absorption(const KnownDepth<S>& reference,
-                                      const std::array<KnownDepth<S>, 3>& measured,
+Identification<S> identify_absorption(const DepthSample<S>& reference,
+                                      const std::array<DepthSample<S>, 3>& measured,
                                       const Absorption<S>& guess = {},
                                       int max_iterations = 100) {
   using detail::identification::Triple;
@@ -122,21 +86,20 @@ Identification<S> identify_absorption(const KnownDepth<S>& reference,
   Triple<S> r = detail::identification::residuals(reference, measured, p);
   const S step = S(sqrt(S(epsilon<S>())));
   for (; out.iterations < max_iterations; ++out.iterations) {
-    std::array<Triple<S>, 3> slope = {};
+    std::array<Point3<S>, 3> slope = {};
     for (std::size_t j = 0; j < 3; ++j) {
       Triple<S> up = p, down = p;
       up[j] += step * p[j];
       down[j] -= step * p[j];
       const auto above = detail::identification::residuals(reference, measured, up);
       const auto below = detail::identification::residuals(reference, measured, down);
-      for (std::size_t i = 0; i < 3; ++i) {
-        slope[i][j] = S((above[i] - below[i]) / (up[j] - down[j]));
-      }
+      const S width = up[j] - down[j];
+      slope[j] = {S((above[0] - below[0]) / width), S((above[1] - below[1]) / width),
+                  S((above[2] - below[2]) / width)};
     }
-    Triple<S> change = p;
-    if (!detail::identification::solve(slope, r, change)) {
-      out.status = IdentificationStatus::singular;
-      break;
+    const Triple<S> change = detail::identification::solve(slope, {r[0], r[1], r[2]});
+    if (!is_finite(size(change))) {
+      break;  // the depths do not tell the parameters apart
     }
     const S before = size(r);
     S share = S(1);
@@ -154,9 +117,9 @@ Identification<S> identify_absorption(const KnownDepth<S>& reference,
       }
     }
     if (!falls) {  // as near as roundoff lets it come, or stuck
-      out.status = value(before) < value(S(1000) * step * step)
-                       ? IdentificationStatus::ok
-                       : IdentificationStatus::not_converged;
+      if (value(before) < value(S(1000) * step * step)) {
+        out.status = FitStatus::ok;
+      }
       break;
     }
     p = next;

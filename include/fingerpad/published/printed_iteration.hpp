@@ -9,6 +9,7 @@
 //   4. f_h into eq. 9: f_v(i, 1) of these
 //   5. direction of the side dots: tau_v(i, 1), eq. 3; then eqs. 8 and 7 upward: tau_h, tau_v
 // published::Iteration takes eq. 12 for every line, level or not, and uses f_h for nothing else.
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <vector>
@@ -52,9 +53,7 @@ struct PrintedIteration {
       return false;
     }
     for (std::vector<S>* shear : {&t.around_shear, &t.upward_shear, &t.upward_normal}) {
-      for (S& x : *shear) {
-        x = S(0);
-      }
+      std::fill(shear->begin(), shear->end(), S(0));
     }
     bool good = true;
     for (int pass = 0; pass < passes && good; ++pass) {
@@ -77,17 +76,11 @@ struct PrintedIteration {
       const std::size_t k = at(g, i, 0);
       const S load = t.around_normal[k] * g.around(i, 0).normal.z;
       good = good && load < all && -load < all;  // no line carries what all carry together
-      good = detail::membrane::force_along(pulls[k], load, t.rim[k]) && good;
     }
-    return good;
+    return detail::membrane::load_rim(g, pulls, t) && good;
   }
 
  private:
-  template <class Segments>
-  static std::size_t at(const Segments& g, Index i, Index j) {
-    return static_cast<std::size_t>(j * g.columns() + i);
-  }
-
   template <scalar S>
   static bool ends_level(const detail::membrane::Segments<S>& g, Index i) {
     const Point3<S>& top = g.around(i, g.rows()).normal;

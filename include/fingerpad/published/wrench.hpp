@@ -10,6 +10,7 @@
 //      next row = tau_h left + tau_h right - tau_v
 // and again, with the new tau_h in 1. Shear is advanced by its symmetry, not by the balance of
 // forces: it settles, but not on a solution of eqs. 6-8.
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <vector>
@@ -22,8 +23,9 @@ inline namespace v0 {
 
 namespace detail::membrane {
 
-template <class Segments>
-std::size_t segment_at(const Segments& g, Index i, Index j) {
+/// Where tensions of M(i, j) are stored.
+template <scalar S>
+std::size_t at(const Segments<S>& g, Index i, Index j) {
   return static_cast<std::size_t>(j * g.columns() + i);
 }
 
@@ -32,7 +34,7 @@ template <scalar S>
 bool shear_at_rim(const Segments<S>& g, const std::vector<Point3<S>>& pulls, Tensions<S>& t) {
   bool good = true;
   for (Index i = 0; i < g.columns(); ++i) {
-    const std::size_t k = segment_at(g, i, 0);
+    const std::size_t k = at(g, i, 0);
     const S across = dot(pulls[k], g.around(i, 0).normal);
     good = good && value(across) > 0;
     t.around_shear[k] =
@@ -46,16 +48,28 @@ template <scalar S>
 void advance_shear(const Segments<S>& g, Tensions<S>& t) {
   for (Index j = 0; j < g.rows(); ++j) {
     for (Index i = 0; i < g.columns(); ++i) {
-      t.upward_shear[segment_at(g, i, j)] =
-          (t.around_shear[segment_at(g, g.previous(i), j)] + t.around_shear[segment_at(g, i, j)]) /
-          S(2);
+      t.upward_shear[at(g, i, j)] =
+          (t.around_shear[at(g, g.previous(i), j)] + t.around_shear[at(g, i, j)]) / S(2);
     }
     for (Index i = 0; i < g.columns(); ++i) {
-      t.around_shear[segment_at(g, i, j + 1)] = t.upward_shear[segment_at(g, i, j)] +
-                                                t.upward_shear[segment_at(g, g.next(i), j)] -
-                                                t.around_shear[segment_at(g, i, j)];
+      t.around_shear[at(g, i, j + 1)] = t.upward_shear[at(g, i, j)] +
+                                        t.upward_shear[at(g, g.next(i), j)] -
+                                        t.around_shear[at(g, i, j)];
     }
   }
+}
+
+/// What the rim carries: f_v by its vertical part, in the direction of the pull; false where a pull
+/// does not point upward.
+template <scalar S>
+bool load_rim(const Segments<S>& g, const std::vector<Point3<S>>& pulls, Tensions<S>& t) {
+  bool good = true;
+  for (Index i = 0; i < g.columns(); ++i) {
+    const std::size_t k = at(g, i, 0);
+    const S load = t.around_normal[k] * g.around(i, 0).normal.z;
+    good = force_along(pulls[k], load, t.rim[k]) && good;
+  }
+  return good;
 }
 }  // namespace detail::membrane
 
@@ -137,8 +151,8 @@ struct Iteration {
              const S& pressure_mpa,
              Work<S>& work,
              detail::membrane::Tensions<S>& t) const {
-    zero(t.around_shear);
-    zero(t.upward_shear);
+    std::fill(t.around_shear.begin(), t.around_shear.end(), S(0));
+    std::fill(t.upward_shear.begin(), t.upward_shear.end(), S(0));
     for (int pass = 0; pass < passes; ++pass) {
       balance_columns(g, pressure_mpa, t);
       balance_segments(g, pressure_mpa, work, t);
@@ -147,27 +161,10 @@ struct Iteration {
       }
       detail::membrane::advance_shear(g, t);
     }
-    bool good = true;
-    for (Index i = 0; i < g.columns(); ++i) {
-      const std::size_t k = at(g, i, 0);
-      const S load = t.around_normal[k] * g.around(i, 0).normal.z;
-      good = detail::membrane::force_along(pulls[k], load, t.rim[k]) && good;
-    }
-    return good;
+    return detail::membrane::load_rim(g, pulls, t);
   }
 
  private:
-  template <class Segments>
-  static std::size_t at(const Segments& g, Index i, Index j) {
-    return static_cast<std::size_t>(j * g.columns() + i);
-  }
-  template <scalar S>
-  static void zero(std::vector<S>& v) {
-    for (S& x : v) {
-      x = S(0);
-    }
-  }
-
   /// Eq. 12 from the summit down, where f_v has no vertical component (eq. 11).
   template <scalar S>
   static void balance_columns(const detail::membrane::Segments<S>& g,
