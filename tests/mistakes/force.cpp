@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "fingerpad/calibrate/rim.hpp"
+#include "fingerpad/force/dot_divergence.hpp"
 #include "fingerpad/force/normal_force.hpp"
 #include "fingerpad/force/shear.hpp"
 #include "fingerpad/force/traction.hpp"
@@ -216,6 +217,19 @@ TEST_CASE("mistakes with the six-axis force: two rows of side dots exchanged", "
         WrenchStatus::side_dots_in_another_order);
 }
 
+TEST_CASE("mistakes with the six-axis force: shape and side dots of two pads", "[mistakes]") {
+  // a pad three times as high, and pulls in four lobes, which balance no such shape
+  Frame frame;
+  frame.shape.height = frame.shape.slope = 3;
+  const double tension = frame.pad.tension(frame.pad.radius_mm, frame.pressure_mpa);
+  frame.dots = frame.rim.dots([&](double at) {
+    return test::RimLoad{tension * (1 + 0.9 * std::cos(2 * at)), 0.8 * tension * std::sin(2 * at)};
+  });
+  CHECK(seen<LeastSquares>(frame).status == WrenchStatus::unbalanced);
+  frame.options.max_residual = 10;
+  CHECK(seen<LeastSquares>(frame).residual > 0.1);
+}
+
 namespace {
 
 /// A contact that is pressed, carried along and rotated.
@@ -410,6 +424,8 @@ TEST_CASE("mistakes with forces: rims and membranes larger than any", "[mistakes
     const LazyView dots(rows, cols, [](Index i, Index j) {
       return Vector{1.5 * static_cast<double>(j), 1.5 * static_cast<double>(i), 9};
     });
+    const std::string divergence = test::refusal([&] { const DotDivergence<> r(dots); });
+    CHECK(test::begins_with(divergence, "DotDivergence: "));
     return test::refusal([&] { const TractionField<> r(dots); });
   };
   constexpr Index enormous = std::numeric_limits<Index>::max();

@@ -67,12 +67,10 @@ class DotDivergence {
   /// From the free pad's dots in mm (NaN: not found). Refuses bad parameters (parameter_error).
   template <dot_grid Dots>
   explicit DotDivergence(const Dots& free_mm, const DivergenceOptions& options = {})
-      : rows_(as_view(free_mm).rows()),
-        cols_(as_view(free_mm).cols()),
-        options_(options),
-        free_(static_cast<std::size_t>(rows_ * cols_)) {
+      : rows_(as_view(free_mm).rows()), cols_(as_view(free_mm).cols()), options_(options) {
     expects_valid(options);
     expects_grid_size("DotDivergence", rows_, cols_, 2);
+    free_.resize(static_cast<std::size_t>(rows_ * cols_));
     read(as_view(free_mm), free_);
     shape_ = free_;
     for (std::size_t k = 0; k < free_.size(); ++k) {
@@ -149,7 +147,8 @@ class DotDivergence {
     for (Index i = 0; i < dots.rows(); ++i) {
       for (Index j = 0; j < dots.cols(); ++j, ++k) {
         const cell_t<View> p = dots(i, j);
-        to[k] = {S(Traits::x(p)), S(Traits::y(p))};
+        const Point2<S> place = {S(Traits::x(p)), S(Traits::y(p))};
+        to[k] = is_plausible(place) ? place : Point2<S>{not_a_number<S>(), not_a_number<S>()};
       }
     }
   }
