@@ -16,16 +16,24 @@ namespace {
 
 constexpr int published_window_px = 29;
 
+/// Of dots alone nothing is made of it.
+cv::Mat first_image_of(Recording& recording, const Options& options) {
+  if (recording.sensor.dots_only) {
+    return {};
+  }
+  recording.frames.seek(options.range.first);
+  return next_frame(recording.frames, recording.reference.size());
+}
+
 std::unique_ptr<FingertipStep> fingertip_step_of(Recording& recording,
                                                  const Options& options,
+                                                 const cv::Mat& first_image,
                                                  const DotGrid& initial_px) {
   if (recording.sensor.dots_only) {
     return nullptr;
   }
   const auto window = recording.sensor.smoothing_px;
   const Smoothing by_default = window ? Smoothing::anchored : Smoothing::none;
-  recording.frames.seek(options.range.first);
-  const cv::Mat first_image = next_frame(recording.frames, recording.reference.size());
   try {
     return make_fingertip_step(recording, first_image, options.smoothing.value_or(by_default),
                                window.value_or(published_window_px), initial_px);
@@ -87,9 +95,12 @@ double median(std::vector<double> values) {
 }  // namespace
 
 Chain::Chain(Recording& recording, const Options& options)
+    : Chain(recording, options, first_image_of(recording, options)) {}
+
+Chain::Chain(Recording& recording, const Options& options, const cv::Mat& first_image)
     : recording_(recording),
       dots_(dots_of(recording, options)),
-      fingertip_(fingertip_step_of(recording, options, dots_.initial())),
+      fingertip_(fingertip_step_of(recording, options, first_image, dots_.initial())),
       stick_(dots_.initial().size(), recording.sensor.stick),
       traction_(traction_step_of(recording, options)) {}
 

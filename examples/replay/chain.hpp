@@ -20,6 +20,8 @@ class Chain {
  public:
   /// Sets every step up; throws Failure.
   Chain(Recording& recording, const Options& options);
+  /// The same for frames that come from elsewhere and are all like `first_image`.
+  Chain(Recording& recording, const Options& options, const cv::Mat& first_image);
 
   /// The frame's maps are new ones each time.
   Scene operator()(int frame, const cv::Mat& image);

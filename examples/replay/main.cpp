@@ -8,6 +8,7 @@
 #include <string>
 
 #include "replay/check/check.hpp"
+#include "replay/live/live.hpp"
 #include "replay/replay.hpp"
 
 namespace {
@@ -30,7 +31,25 @@ const char* const about =
     "it gives frames.csv, with the vibration of each finger and pre-slip, and pictures/.\n"
     "An earlier run's DIR is replaced when the new one is complete; nothing is left behind when\n"
     "something fails.\n"
-    "--check computes and writes nothing: it says what is wrong with the recording.";
+    "--check computes and writes nothing: it says what is wrong with the recording.\n"
+    "--camera and --video show a pad as it is touched: of RECORDING they need sensor.json,\n"
+    "reference.png and reference_depth.tiff. q or Esc ends it.";
+
+void add_live_options(CLI::App& app, replay::LiveOptions& live) {
+  const auto camera = app.add_option("--camera", live.camera, "show live what camera N sees")
+                          ->check(CLI::NonNegativeNumber)
+                          ->option_text("N");
+  const auto video = app.add_option("--video", live.video, "a recorded video in place of a camera")
+                         ->option_text("FILE");
+  camera->excludes(video);
+  const auto headless =
+      app.add_flag("--headless", live.headless, "write the live pictures to DIR, without a window");
+  for (const char* other : {"--check", "--raw", "--no-pictures"}) {
+    camera->excludes(app.get_option(other));
+    video->excludes(app.get_option(other));
+    headless->excludes(app.get_option(other));
+  }
+}
 
 void add_options(CLI::App& app, replay::Options& options, std::string& frames, bool& checks) {
   static const std::map<std::string, replay::Smoothing> policies = {
@@ -66,10 +85,19 @@ int main(int argc, char** argv) {
   replay::Options options;
   std::string frames;
   bool checks = false;
+  replay::LiveOptions live;
   add_options(app, options, frames, checks);
+  add_live_options(app, live);
   try {
     app.parse(argc, argv);
-    if (!checks && options.out.empty()) {
+    const bool in_window = live.asked_for() && !live.headless;
+    if (live.headless && !live.asked_for()) {
+      throw CLI::RequiresError("--headless", "--camera or --video");
+    }
+    if (in_window && !options.out.empty()) {
+      throw CLI::RequiresError("--out", "--headless, with --camera or --video");
+    }
+    if (!in_window && !checks && options.out.empty()) {
       throw CLI::RequiredError("--out or --check");
     }
     if (!frames.empty()) {
@@ -82,7 +110,9 @@ int main(int argc, char** argv) {
     return 2;
   }
   try {
-    return checks ? replay::print_check(options.recording) : replay::run(options);
+    return checks             ? replay::print_check(options.recording)
+           : live.asked_for() ? replay::run_live(options, live)
+                              : replay::run(options);
   } catch (const std::exception& error) {
     std::fprintf(stderr, "replay: %s\n", error.what());
     return 1;

@@ -48,6 +48,11 @@ refuses 1 "frames 0 to 10" "$recording" --out "$work/out" --frames 4:90
 refuses 1 "which no earlier run wrote" "$recording" --out "$broken"
 refuses 1 "is not a folder" "$recording" --out "$broken/sensor.json"
 refuses 1 "sensor.json: cannot be written" "$recording" --out "$broken/sensor.json/out"
+refuses 2 "--headless" "$recording" --video "$work/none.avi" --out "$work/out"
+refuses 2 "--camera or --video" "$recording" --headless --out "$work/out"
+refuses 1 "none.avi: there is no such video" "$recording" --video "$work/none.avi" --headless \
+  --out "$work/out"
+refuses 1 "camera 99: cannot be opened" "$recording" --camera 99 --headless --out "$work/out"
 [[ $(id -u) == 0 ]] || { mkdir "$work/locked" && chmod 500 "$work/locked" &&
   refuses 1 "locked" "$recording" --out "$work/locked/out"; }
 

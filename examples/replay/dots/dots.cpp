@@ -107,7 +107,7 @@ DotSource::DotSource(const std::filesystem::path& folder,
     finder = finder_of(folder, reference_image, print_of(sensor, reference_depth));
   }
   const bool found = finder && finder->ok();
-  if (std::filesystem::exists(folder / "dots.csv")) {
+  if (frame_count > 0 && std::filesystem::exists(folder / "dots.csv")) {
     const cv::Size size = sensor.dots ? cv::Size(sensor.dots->cols, sensor.dots->rows) : cv::Size();
     read(folder / "dots.csv", frame_count, size);
     if (found && count_present(finder->free_px()) > fingerpad::count_present(initial_) &&

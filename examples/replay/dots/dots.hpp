@@ -20,7 +20,7 @@ namespace replay {
 class DotSource {
  public:
   /// Reads dots.csv of the recording's folder, or finds the free pad's dots in `reference_image`.
-  /// Throws Failure.
+  /// Without frames (0) that it could name, dots.csv is not read. Throws Failure.
   DotSource(const std::filesystem::path& folder,
             const Sensor& sensor,
             const cv::Mat& reference_image,

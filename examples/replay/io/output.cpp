@@ -70,7 +70,7 @@ void close_file(std::ofstream& stream, const fs::path& file) {
 bool is_ours(const std::string& relative) {
   static const std::regex ours(
       R"(frames\.csv|dots\.csv|slide\.csv|depth|depth/\d{6}\.tiff|contact|contact/\d{6}\.png|pictures|)"
-      R"(pictures/(depth|side|contact|stick|rim|traction|slide)_\d{6}\.png|)"
+      R"(pictures/(depth|side|contact|stick|rim|traction|slide|live)_\d{6}\.png|)"
       R"(pictures/(montage|motion|stick_ratio|forces|wrench|array|frequency|preslip|slide)\.png)");
   return std::regex_match(relative, ours);
 }

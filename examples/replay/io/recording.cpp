@@ -177,7 +177,7 @@ void read_first_picture(const fs::path& folder, Recording& recording) {
 
 }  // namespace
 
-Recording open_recording(const fs::path& folder) {
+Recording open_pad(const fs::path& folder) {
   std::error_code error;
   if (!fs::is_directory(folder, error)) {
     fail(folder, "there is no such folder");
@@ -187,14 +187,19 @@ Recording open_recording(const fs::path& folder) {
   if (!recording.sensor.dots_only) {
     read_reference(folder, recording);
   }
+  if (fs::is_directory(folder / "free", error)) {
+    recording.free_frames = FrameSource::of_folder(folder / "free");
+  }
+  return recording;
+}
+
+Recording open_recording(const fs::path& folder) {
+  Recording recording = open_pad(folder);
   const auto& video = recording.sensor.video;
   recording.frames =
       video ? FrameSource::of_video(folder / *video) : FrameSource::of_folder(folder / "frames");
   if (recording.sensor.dots_only) {
     read_first_picture(folder, recording);
-  }
-  if (fs::is_directory(folder / "free", error)) {
-    recording.free_frames = FrameSource::of_folder(folder / "free");
   }
   recording.signals = read_signals(folder / "signals.csv", recording.frames.size());
   if (!recording.sensor.dots_only) {

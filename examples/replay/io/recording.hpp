@@ -60,4 +60,7 @@ struct Recording {
 /// Opens and checks a recording; throws Failure.
 Recording open_recording(const std::filesystem::path& folder);
 
+/// The same without what belongs to single frames: the sensor and the free pad alone.
+Recording open_pad(const std::filesystem::path& folder);
+
 }  // namespace replay

@@ -9,6 +9,7 @@
 #include "replay/io/images.hpp"
 #include "replay/pictures/force_chart.hpp"
 #include "replay/pictures/motion_chart.hpp"
+#include "replay/pictures/picture_parts.hpp"
 #include "replay/pictures/stick_chart.hpp"
 #include "replay/pictures/wrench_chart.hpp"
 
@@ -16,27 +17,6 @@ namespace replay {
 namespace {
 
 constexpr int montage_columns = 6;
-
-/// The grey level that only the brightest hundredth of the free pad's pixels exceed.
-double brightest_level(const cv::Mat& image) {
-  const double units = image.depth() == CV_16U ? 256 : 1;
-  cv::Mat levels;
-  image.convertTo(levels, CV_8U, 1 / units);
-  std::vector<int> count(256, 0);
-  for (int i = 0; i < levels.rows; ++i) {
-    for (int j = 0; j < levels.cols * levels.channels(); ++j) {
-      ++count[levels.ptr<uchar>(i)[j]];
-    }
-  }
-  const double total = static_cast<double>(levels.total()) * levels.channels();
-  double above = 0;
-  int level = 255;
-  while (level > 0 && above + count[static_cast<std::size_t>(level)] < 0.01 * total) {
-    above += count[static_cast<std::size_t>(level)];
-    --level;
-  }
-  return level;
-}
 
 /// Whether frame number `done` of `total` has a column in the montage; they lie evenly.
 bool in_montage(int done, int total) {

@@ -13,31 +13,32 @@ constexpr int fraction_bits = 4;
 constexpr int font = cv::FONT_HERSHEY_SIMPLEX;
 constexpr double capital_height = 21;  // of the font at scale 1
 
-int strokes(double width) {
-  return (std::max)(1, static_cast<int>(std::lround(width * Canvas::scale)));
-}
-double font_scale(double height) {
-  return height * Canvas::scale / capital_height;
-}
-int stroke_of_text(double height, bool bold) {
-  return strokes(height * (bold ? 0.19 : 0.125));
-}
-
-cv::Rect large_rectangle(const cv::Rect2d& r) {
-  const auto big = [](double x) { return static_cast<int>(std::lround(x * Canvas::scale)); };
-  return {cv::Point(big(r.x), big(r.y)), cv::Point(big(r.x + r.width), big(r.y + r.height))};
-}
-
 }  // namespace
 
-Canvas::Canvas(double width, double height)
-    : size_(static_cast<int>(std::ceil(width)), static_cast<int>(std::ceil(height))),
+Canvas::Canvas(double width, double height, int scale)
+    : scale_(scale),
+      size_(static_cast<int>(std::ceil(width)), static_cast<int>(std::ceil(height))),
       sheet_(size_ * scale, CV_8UC3, ink::white) {}
+
+int Canvas::strokes(double width) const {
+  return (std::max)(1, static_cast<int>(std::lround(width * scale_)));
+}
+int Canvas::strokes_of_text(double height, bool bold) const {
+  return strokes(height * (bold ? 0.19 : 0.125));
+}
+double Canvas::font_scale(double height) const {
+  return height * scale_ / capital_height;
+}
+
+cv::Rect Canvas::large(const cv::Rect2d& r) const {
+  const auto big = [&](double x) { return static_cast<int>(std::lround(x * scale_)); };
+  return {cv::Point(big(r.x), big(r.y)), cv::Point(big(r.x + r.width), big(r.y + r.height))};
+}
 
 std::vector<cv::Point> Canvas::large(const std::vector<Spot>& spots, Spot origin) const {
   std::vector<cv::Point> points;
   for (const Spot& spot : spots) {
-    const Spot at = (spot - origin) * (scale << fraction_bits);
+    const Spot at = (spot - origin) * (scale_ << fraction_bits);
     points.emplace_back(static_cast<int>(std::lround(at.x)), static_cast<int>(std::lround(at.y)));
   }
   return points;
@@ -82,35 +83,35 @@ void Canvas::polygon(const std::vector<Spot>& corners, const Ink& colour) {
 
 void Canvas::circle(Spot center, double radius, double width, const Ink& colour) {
   cv::circle(sheet_, large({center}).front(),
-             static_cast<int>(std::lround(radius * (scale << fraction_bits))), colour,
+             static_cast<int>(std::lround(radius * (scale_ << fraction_bits))), colour,
              strokes(width), cv::LINE_AA, fraction_bits);
 }
 
 void Canvas::disc(Spot center, double radius, const Ink& colour) {
   cv::circle(sheet_, large({center}).front(),
-             static_cast<int>(std::lround(radius * (scale << fraction_bits))), colour, cv::FILLED,
+             static_cast<int>(std::lround(radius * (scale_ << fraction_bits))), colour, cv::FILLED,
              cv::LINE_AA, fraction_bits);
 }
 
 double Canvas::text_width(const std::string& words, double height, bool bold) const {
   int baseline = 0;
   const cv::Size size =
-      cv::getTextSize(words, font, font_scale(height), stroke_of_text(height, bold), &baseline);
-  return static_cast<double>(size.width) / scale;
+      cv::getTextSize(words, font, font_scale(height), strokes_of_text(height, bold), &baseline);
+  return static_cast<double>(size.width) / scale_;
 }
 
 void Canvas::text(
     Spot at, const std::string& words, double height, const Ink& colour, Align align, bool bold) {
   const double width = text_width(words, height, bold);
   at.x -= align == Align::left ? 0 : align == Align::right ? width : width / 2;
-  const cv::Point origin(static_cast<int>(std::lround(at.x * scale)),
-                         static_cast<int>(std::lround(at.y * scale)));
-  cv::putText(sheet_, words, origin, font, font_scale(height), colour, stroke_of_text(height, bold),
-              cv::LINE_AA);
+  const cv::Point origin(static_cast<int>(std::lround(at.x * scale_)),
+                         static_cast<int>(std::lround(at.y * scale_)));
+  cv::putText(sheet_, words, origin, font, font_scale(height), colour,
+              strokes_of_text(height, bold), cv::LINE_AA);
 }
 
 cv::Mat Canvas::area(const cv::Rect2d& rectangle) {
-  return sheet_(large_rectangle(rectangle) & cv::Rect(cv::Point(0, 0), sheet_.size()));
+  return sheet_(large(rectangle) & cv::Rect(cv::Point(0, 0), sheet_.size()));
 }
 
 void Canvas::blend(const cv::Rect2d& rectangle, const cv::Mat& picture, const cv::Mat& mask) {
@@ -129,7 +130,7 @@ void Canvas::blend(const cv::Rect2d& rectangle, const cv::Mat& picture, const cv
 }
 
 cv::Mat Canvas::mask_of(const cv::Rect2d& rectangle, const std::vector<Spot>& corners) const {
-  cv::Mat mask(large_rectangle(rectangle).size(), CV_8UC1, cv::Scalar(0));
+  cv::Mat mask(large(rectangle).size(), CV_8UC1, cv::Scalar(0));
   cv::fillPoly(mask, std::vector<std::vector<cv::Point>>{large(corners, rectangle.tl())},
                cv::Scalar(255), cv::LINE_AA, fraction_bits);
   return mask;

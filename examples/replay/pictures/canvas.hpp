@@ -3,7 +3,7 @@
 #pragma once
 // A white sheet to draw figures on. Coordinates are pixels of the finished picture and may be
 // fractions; everything is drawn several times larger and shrunk at the end, so that lines and
-// letters are smooth. ASCII text only.
+// letters are smooth, or as large as it is shown where that takes too long. ASCII text only.
 #include <opencv2/core.hpp>
 #include <string>
 #include <vector>
@@ -25,7 +25,8 @@ enum class Align { left, center, right };
 
 class Canvas {
  public:
-  Canvas(double width, double height);
+  /// Everything is drawn `scale` times as large as it is shown, >= 1; time grows with its square.
+  Canvas(double width, double height, int scale = smooth);
 
   void line(Spot from, Spot to, double width, const Ink& colour);
   void curve(const std::vector<Spot>& spots, double width, const Ink& colour);
@@ -51,10 +52,18 @@ class Canvas {
 
   cv::Mat finished() const;
 
-  static constexpr int scale = 4;
+  int scale() const { return scale_; }
+
+  static constexpr int smooth = 4;
 
  private:
   std::vector<cv::Point> large(const std::vector<Spot>& spots, Spot origin = {0, 0}) const;
+  cv::Rect large(const cv::Rect2d& rectangle) const;
+  int strokes(double width) const;
+  int strokes_of_text(double height, bool bold) const;
+  double font_scale(double height) const;
+
+  int scale_;
   cv::Size size_;
   cv::Mat sheet_;
 };

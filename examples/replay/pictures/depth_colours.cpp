@@ -65,26 +65,29 @@ Enlarged enlarged(const cv::Mat_<float>& values, const cv::Mat_<uchar>& in_pad, 
   return large;
 }
 
-/// Differences over a distance of one pixel of the finished picture, per pixel of the canvas.
+/// Differences over a distance of one pixel of the finished picture, per pixel of the canvas, which
+/// is `scale` times as large.
 struct Slope {
   float x;
   float y;
 };
-Slope slope_at(const cv::Mat_<float>& field, int i, int j) {
-  const int up = (std::max)(i - Canvas::scale, 0);
-  const int down = (std::min)(i + Canvas::scale, field.rows - 1);
-  const int left = (std::max)(j - Canvas::scale, 0);
-  const int right = (std::min)(j + Canvas::scale, field.cols - 1);
+Slope slope_at(const cv::Mat_<float>& field, int i, int j, int scale) {
+  const int up = (std::max)(i - scale, 0);
+  const int down = (std::min)(i + scale, field.rows - 1);
+  const int left = (std::max)(j - scale, 0);
+  const int right = (std::min)(j + scale, field.cols - 1);
   return {(field(i, right) - field(i, left)) / static_cast<float>(right - left),
           (field(down, j) - field(up, j)) / static_cast<float>(down - up)};
 }
 
 /// How much of a line of equal value covers a pixel, in [0, 1]. None at value 0, which is the rim.
-float line_cover(float value, const Slope& slope, float every) {
+float line_cover(const cv::Mat_<float>& field, int i, int j, float every, int scale) {
+  const float value = field(i, j);
+  const Slope slope = slope_at(field, i, j, scale);
   const float number = std::round(value / every);
   const float steepness = (std::max)(std::hypot(slope.x, slope.y), 1e-6F);
   const float distance = std::abs(value - number * every) / steepness;
-  constexpr float half_width = 0.45F * Canvas::scale;
+  const float half_width = 0.45F * static_cast<float>(scale);
   return number > 0 ? clamped(half_width - distance + 0.5F) : 0.0F;
 }
 
@@ -146,11 +149,11 @@ void paint_map(Canvas& canvas,
       }
       const float share = clamped((map.value(i, j) - bottom) / range);
       const cv::Vec3b colour = scale.colours(0, static_cast<int>(std::lround(share * 255)));
-      const Slope tilt = slope_at(map.relief, i, j);
+      const Slope tilt = slope_at(map.relief, i, j, canvas.scale());
       const float shade =
           1 + 0.15F * std::tanh(12 * (tilt.x + tilt.y) * per_px);  // light: top left
       const float line =
-          every > 0 ? 0.45F * line_cover(map.value(i, j), slope_at(map.value, i, j), every) : 0.0F;
+          every > 0 ? 0.45F * line_cover(map.value, i, j, every, canvas.scale()) : 0.0F;
       for (int c = 0; c < 3; ++c) {
         const float lit = (std::min)(static_cast<float>(colour[c]) * shade, 255.0F);
         picture(i, j)[c] = static_cast<uchar>(lit + (255 - lit) * line);

@@ -30,6 +30,26 @@ void paint_scale_bar(Canvas& canvas, Spot left, double length, double mm, double
               ink::black);
 }
 
+double brightest_level(const cv::Mat& image) {
+  const double units = image.depth() == CV_16U ? 256 : 1;
+  cv::Mat levels;
+  image.convertTo(levels, CV_8U, 1 / units);
+  std::vector<int> count(256, 0);
+  for (int i = 0; i < levels.rows; ++i) {
+    for (int j = 0; j < levels.cols * levels.channels(); ++j) {
+      ++count[levels.ptr<uchar>(i)[j]];
+    }
+  }
+  const double total = static_cast<double>(levels.total()) * levels.channels();
+  double above = 0;
+  int level = 255;
+  while (level > 0 && above + count[static_cast<std::size_t>(level)] < 0.01 * total) {
+    above += count[static_cast<std::size_t>(level)];
+    --level;
+  }
+  return level;
+}
+
 cv::Mat displayed(const cv::Mat& image, double brightest, cv::Size size) {
   const double units = image.depth() == CV_16U ? 256 : 1;
   cv::Mat levels;

@@ -27,6 +27,9 @@ double scale_bar_mm(double image_width_mm);
 
 void paint_scale_bar(Canvas& canvas, Spot left, double length, double mm, double text_height);
 
+/// The grey level that only the brightest hundredth of the image's pixels exceed.
+double brightest_level(const cv::Mat& image);
+
 /// The camera's image, 8 bit, with `brightest` shown as nearly white.
 cv::Mat displayed(const cv::Mat& image, double brightest, cv::Size size);
 

@@ -153,7 +153,9 @@ cv::Mat Painter::side(const Scene& scene) const {
   return canvas.finished();
 }
 
-cv::Mat Painter::montage(const std::string& title, const std::vector<Scene>& scenes) const {
+cv::Mat Painter::montage(const std::string& title,
+                         const std::vector<Scene>& scenes,
+                         int scale) const {
   constexpr double cell = 216;
   constexpr double gap = 28;
   constexpr double left = 44;
@@ -171,7 +173,7 @@ cv::Mat Painter::montage(const std::string& title, const std::vector<Scene>& sce
     dent_mm = (std::max)(dent_mm, scene.section.dent_mm);
   }
   const ColourScale change = change_scale(std::ceil(dent_mm));
-  Canvas canvas((std::max)(right, 480.0) + 72, side_y + side_height + 36);
+  Canvas canvas((std::max)(right, 480.0) + 72, side_y + side_height + 36, scale);
   canvas.text({left, 34}, title, 1.3 * letter, ink::black, Align::left, true);
   for (std::size_t k = 0; k < scenes.size(); ++k) {
     const Scene& scene = scenes[k];

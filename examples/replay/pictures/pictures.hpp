@@ -10,6 +10,7 @@
 
 #include "replay/io/sensor.hpp"
 #include "replay/io/true_forces.hpp"
+#include "replay/pictures/canvas.hpp"
 #include "replay/pictures/depth_colours.hpp"
 #include "replay/steps/frame.hpp"
 #include "replay/steps/traction_step.hpp"
@@ -31,7 +32,7 @@ struct Scene {
   cv::Mat_<float> depth_mm;  ///< empty where the recording is of dots only
   Section section;
   double valid_share = not_known;
-  bool pad_has_changed = false;  ///< its light is not that of the reference
+  bool pad_has_changed = false;      ///< its light is not that of the reference
   double depth_mean_mm = not_known;  ///< where no pixel is valid
   double depth_max_mm = not_known;
   double pressure_mpa = not_known;
@@ -60,8 +61,10 @@ class Painter {
   cv::Mat rim(const Scene& scene) const;
   /// Contact pressure and shear at the dots, over the camera's image.
   cv::Mat traction(const Scene& scene) const;
-  /// One column a scene: camera image, depth, its change and side view.
-  cv::Mat montage(const std::string& title, const std::vector<Scene>& scenes) const;
+  /// One column a scene: camera image, depth, its change and side view. `scale` as Canvas has it.
+  cv::Mat montage(const std::string& title,
+                  const std::vector<Scene>& scenes,
+                  int scale = Canvas::smooth) const;
 
  private:
   fingerpad::Camera<double> camera_;

@@ -1,0 +1,106 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+#include "replay/live/frames.hpp"
+
+#include <string>
+#include <system_error>
+#include <thread>
+
+#include "replay/io/failure.hpp"
+#include "replay/io/images.hpp"
+
+namespace replay {
+
+LiveFrames LiveFrames::of_camera(int number, cv::Size size) {
+  LiveFrames frames;
+  frames.name_ = "camera " + std::to_string(number);
+  frames.size_ = size;
+  {
+    const QuietCodecs quiet;
+    frames.source_.open(number);
+  }
+  if (!frames.source_.isOpened()) {
+    fail(frames.name_, "cannot be opened");
+  }
+  frames.source_.set(cv::CAP_PROP_FRAME_WIDTH, size.width);
+  frames.source_.set(cv::CAP_PROP_FRAME_HEIGHT, size.height);
+  frames.source_.set(cv::CAP_PROP_BUFFERSIZE, 1);  // a queue of frames would be latency
+  return frames;
+}
+
+LiveFrames LiveFrames::of_video(const std::filesystem::path& file,
+                                cv::Size size,
+                                bool in_real_time) {
+  LiveFrames frames;
+  frames.name_ = file;
+  frames.size_ = size;
+  std::error_code error;
+  if (!std::filesystem::is_regular_file(file, error)) {
+    fail(file, "there is no such video");
+  }
+  {
+    const QuietCodecs quiet;
+    frames.source_.open(file.string());
+  }
+  if (!frames.source_.isOpened()) {
+    fail(file, "cannot be read as a video (damaged, or no decoder for it)");
+  }
+  const double rate = frames.source_.get(cv::CAP_PROP_FPS);
+  const std::chrono::duration<double> period(1 / (rate > 0 ? rate : 30));
+  frames.period_ = std::chrono::duration_cast<Clock::duration>(period);
+  frames.in_real_time_ = in_real_time;
+  return frames;
+}
+
+bool LiveFrames::grab() {
+  const QuietCodecs quiet;
+  if (!source_.grab()) {
+    return false;
+  }
+  arrival_ = Clock::now();
+  if (++number_ == 0) {
+    start_ = arrival_;
+  }
+  return true;
+}
+
+void LiveFrames::skip() {
+  if (grab()) {
+    start_ = arrival_ - number_ * period_;
+  }
+}
+
+bool LiveFrames::next(cv::Mat& frame) {
+  if (in_real_time_ && number_ >= 0 && period_.count() > 0) {
+    const auto next_is_due = start_ + (number_ + 1) * period_;
+    // Those that are late now, and no more: decoding may be slower than the video.
+    for (auto late = (Clock::now() - next_is_due) / period_; late > 0 && grab(); --late) {
+    }
+    std::this_thread::sleep_until(next_is_due);
+  }
+  if (!grab()) {
+    if (period_.count() == 0) {
+      fail(name_, "gives no more frames");
+    }
+    return false;
+  }
+  source_.retrieve(frame);
+  if (frame.empty()) {
+    fail(name_, "frame " + std::to_string(number_) + " cannot be decoded");
+  }
+  expects_colour_image(frame, name_);
+  if (frame.size() != size_ || frame.depth() != CV_8U) {
+    fail(name_, "gives " + std::to_string(frame.cols) + " x " + std::to_string(frame.rows) +
+                    " px of " + (frame.depth() == CV_8U ? "8" : "16") +
+                    " bit, but live frames have 8 bit and the size of the reference, " +
+                    std::to_string(size_.width) + " x " + std::to_string(size_.height) + " px");
+  }
+  return true;
+}
+
+double LiveFrames::time_s() const {
+  const auto time = period_.count() > 0 ? number_ * period_ : arrival_ - start_;
+  return std::chrono::duration<double>(time).count();
+}
+
+}  // namespace replay

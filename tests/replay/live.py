@@ -1,0 +1,86 @@
+#!/usr/bin/env python3
+# SPDX-FileCopyrightText: 2026 The fingerpad authors
+# SPDX-License-Identifier: MIT
+"""live.py REPLAY RECORDING: a recorded video in place of a camera, in a window on a screen of its
+own (Xvfb). What the window shows is, below the title, what --headless writes."""
+import os
+import shutil
+import subprocess
+import sys
+import tempfile
+import time
+from pathlib import Path
+
+try:
+    import numpy as np
+    from PIL import Image
+except ImportError as error:
+    print(f"skipped: {error}")
+    sys.exit(77)
+if not shutil.which("Xvfb"):
+    print("skipped: there is no Xvfb to show a window on")
+    sys.exit(77)
+
+TITLE = 80  # rows of a picture: latency, number of the frame
+CURSOR = 400  # pixels
+
+
+def screen_of(file):
+    """RGB of a screen that Xvfb keeps in a file, in the format of xwd; None: not complete."""
+    data = file.read_bytes()
+    head = np.frombuffer(data[:100], ">u4")
+    if len(head) < 25 or len(data) < head[0] + 12 * head[19] + head[5] * head[12]:
+        return None
+    rows, cols, row_bytes = int(head[5]), int(head[4]), int(head[12])
+    pixels = np.frombuffer(data, np.uint8, rows * row_bytes, int(head[0] + 12 * head[19]))
+    return pixels.reshape(rows, row_bytes // 4, 4)[:, :cols, 2::-1]
+
+
+def differing(picture, screen):
+    rows, cols = picture.shape[:2]
+    return (picture[TITLE:] != screen[TITLE:rows, :cols]).any(axis=2).sum()
+
+
+def run(replay, recording, work):
+    video = work / "video.pngs"  # pictures one after the other: nothing is lost
+    frames = [f.read_bytes() for f in sorted((recording / "frames").iterdir())]
+    video.write_bytes(b"".join(frames * 4))
+    command = [replay, recording, "--video", video]
+
+    no_screen = {k: v for k, v in os.environ.items() if k not in ("DISPLAY", "WAYLAND_DISPLAY")}
+    refused = subprocess.run(command, env=no_screen, capture_output=True, text=True)
+    assert refused.returncode == 1 and "there is no screen" in refused.stderr, refused
+
+    out = work / "out"
+    once = ["--frames", f":{len(frames)}", "--headless", "--out", out]
+    subprocess.run(command + once, check=True)
+    written = [np.array(Image.open(f)) for f in sorted((out / "pictures").iterdir())]
+    assert len(written) == len(frames)
+    assert len((out / "frames.csv").read_text().splitlines()) == len(frames) + 1
+
+    ready, told = os.pipe()
+    xvfb = subprocess.Popen(
+        ["Xvfb", "-displayfd", str(told), "-screen", "0", "1024x1280x24", "-nolisten", "tcp",
+         "-fbdir", work], pass_fds=[told], stderr=subprocess.DEVNULL)
+    try:
+        os.close(told)
+        display = ":" + os.read(ready, 16).decode().strip()
+        shown = subprocess.Popen(command, env={**no_screen, "DISPLAY": display},
+                                 stdout=subprocess.PIPE, text=True)
+        seen, best = 0, written[0].size
+        while shown.poll() is None:
+            screen = screen_of(work / "Xvfb_screen0")
+            if screen is not None and np.count_nonzero(screen) > written[0].size // 2:
+                seen += 1
+                best = min(best, *(differing(picture, screen) for picture in written))
+            time.sleep(0.02)
+        print(shown.stdout.read(), f"{seen} looks, {best} pixels differ", sep="")
+        assert shown.returncode == 0
+        assert seen > 0 and best < CURSOR
+    finally:
+        xvfb.terminate()
+        xvfb.wait()
+
+
+with tempfile.TemporaryDirectory() as folder:
+    run(Path(sys.argv[1]).resolve(), Path(sys.argv[2]), Path(folder))
