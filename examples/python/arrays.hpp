@@ -5,8 +5,10 @@
 #include <pybind11/numpy.h>
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "fingerpad/core/dots.hpp"
 #include "fingerpad/core/grid.hpp"
@@ -16,19 +18,37 @@ namespace python {
 namespace py = pybind11;
 using fingerpad::Index;
 
+/// Raises TypeError: what the array must be, and what it is.
+[[noreturn]] inline void refuse_array(const py::array& array,
+                                      const char* name,
+                                      const std::string& shape,
+                                      const std::string& type) {
+  throw py::type_error(std::string(name) + " must have the shape " + shape + " and the type " +
+                       type + ", not " + std::string(py::str(array.attr("shape"))) + " and " +
+                       std::string(py::str(array.dtype())));
+}
+
 /// The view of a two-dimensional array of cells T. Raises TypeError for another shape or type.
 template <class T>
 fingerpad::StridedView<const T> view_of(const py::array& array, const char* name) {
+  if (array.ndim() != 2 || !py::isinstance<py::array_t<T>>(array)) {
+    refuse_array(array, name, "(rows, cols)", py::str(py::dtype::of<T>()));
+  }
   constexpr auto size = static_cast<py::ssize_t>(sizeof(T));
-  if (array.ndim() != 2 || !py::isinstance<py::array_t<T>>(array) || array.strides(0) % size != 0 ||
-      array.strides(1) % size != 0) {
-    throw py::type_error(std::string(name) + " must have the shape (rows, cols) and the type " +
-                         std::string(py::str(py::dtype::of<T>())) + ", not " +
-                         std::string(py::str(array.attr("shape"))) + " and " +
-                         std::string(py::str(array.dtype())));
+  if (array.strides(0) % size != 0 || array.strides(1) % size != 0 ||
+      reinterpret_cast<std::uintptr_t>(array.data()) % alignof(T) != 0) {
+    throw py::type_error(std::string(name) + " lies askew in memory: np.ascontiguousarray(" + name +
+                         ") copies it");
   }
   return {static_cast<const T*>(array.data()), array.shape(0), array.shape(1),
           array.strides(0) / size, array.strides(1) / size};
+}
+
+/// The view of a mask: uint8 or bool, contact where it is not 0.
+inline fingerpad::StridedView<const std::uint8_t> mask_of(const py::array& array,
+                                                          const char* name) {
+  const bool flags = py::isinstance<py::array_t<bool>>(array);
+  return view_of<std::uint8_t>(flags ? py::array(array.attr("view")("uint8")) : array, name);
 }
 
 /// An array of rows x cols cells T of its own, and the view to write to it.
@@ -36,6 +56,25 @@ template <class T>
 std::pair<py::array_t<T>, fingerpad::StridedView<T>> new_array(Index rows, Index cols) {
   py::array_t<T> array({rows, cols});
   return {array, {array.mutable_data(), rows, cols, cols}};
+}
+
+/// `given`, or a new array where there is none, and the view to write rows x cols cells T to it.
+/// Raises TypeError or ValueError for another type or shape, or where it may not be written.
+template <class T>
+std::pair<py::array, fingerpad::StridedView<T>> array_to_write(
+    const std::optional<py::array>& given, Index rows, Index cols, const char* name) {
+  if (!given) {
+    return new_array<T>(rows, cols);
+  }
+  const auto view = view_of<T>(*given, name);
+  if (view.rows() != rows || view.cols() != cols) {
+    throw py::value_error(std::string(name) + " must have the shape (" + std::to_string(rows) +
+                          ", " + std::to_string(cols) + ")");
+  }
+  py::array array = *given;
+  return {
+      array,
+      {static_cast<T*>(array.mutable_data()), rows, cols, view.row_stride(), view.col_stride()}};
 }
 
 /// Calls `call(T())` with the cell type of a camera's channel: uint8, uint16, float32 or float64.
@@ -62,10 +101,7 @@ template <class Point, std::size_t Coordinates>
 auto dots_of(const py::array& array, const char* name) {
   if (array.ndim() != 3 || array.shape(2) != static_cast<py::ssize_t>(Coordinates) ||
       !py::isinstance<py::array_t<double>>(array)) {
-    throw py::type_error(std::string(name) + " must have the shape (rows, cols, " +
-                         std::to_string(Coordinates) + ") and the type float64, not " +
-                         std::string(py::str(array.attr("shape"))) + " and " +
-                         std::string(py::str(array.dtype())));
+    refuse_array(array, name, "(rows, cols, " + std::to_string(Coordinates) + ")", "float64");
   }
   const auto* bytes = static_cast<const char*>(array.data());
   const py::ssize_t row = array.strides(0), col = array.strides(1), coordinate = array.strides(2);
@@ -80,11 +116,41 @@ auto dots_of(const py::array& array, const char* name) {
     }
   });
 }
+
 inline auto dots_px_of(const py::array& array, const char* name) {
   return dots_of<fingerpad::Point2<double>, 2>(array, name);
 }
 inline auto dots_mm_of(const py::array& array, const char* name) {
   return dots_of<fingerpad::Point3<double>, 3>(array, name);
+}
+
+/// Dots of an array in memory of their own, where options want them so.
+struct Dots {
+  Index rows, cols;
+  std::vector<fingerpad::Point3<double>> cells;
+
+  Dots(const py::array& array, const char* name) {
+    const auto dots = dots_mm_of(array, name);
+    rows = dots.rows();
+    cols = dots.cols();
+    for (Index i = 0; i < rows; ++i) {
+      for (Index j = 0; j < cols; ++j) {
+        cells.push_back(dots(i, j));
+      }
+    }
+  }
+  fingerpad::StridedView<const fingerpad::Point3<double>> view() const {
+    return {cells.data(), rows, cols, cols};
+  }
+};
+
+template <class S>
+py::tuple as_tuple(const fingerpad::Point2<S>& p) {
+  return py::make_tuple(p.x, p.y);
+}
+template <class S>
+py::tuple as_tuple(const fingerpad::Point3<S>& p) {
+  return py::make_tuple(p.x, p.y, p.z);
 }
 
 }  // namespace python

@@ -1,7 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
+#include <pybind11/stl.h>
+
 #include <cstdint>
 #include <mutex>
+#include <optional>
 
 #include "fingerpad/contact/contact_region.hpp"
 #include "python/arrays.hpp"
@@ -21,8 +24,9 @@ class Region {
   Region(const fingerpad::Camera<double>& camera, Index rows, Index cols, const ContactTest& test)
       : region_(camera, rows, cols, test), work_(region_.workspace()) {}
 
-  py::tuple operator()(const py::array& depth_mm) {
-    auto [mask, mask_view] = new_array<std::uint8_t>(region_.rows(), region_.cols());
+  py::tuple operator()(const py::array& depth_mm, const std::optional<py::array>& out) {
+    auto [mask, mask_view] =
+        array_to_write<std::uint8_t>(out, region_.rows(), region_.cols(), "out");
     const auto depth = view_of<float>(depth_mm, "depth_mm");
     const ContactResult result = [&, to = mask_view] {
       const py::gil_scoped_release release;
@@ -57,16 +61,16 @@ void bind_contact(py::module_& module) {
       .def_readonly("regions", &ContactResult::regions)
       .def_readonly("area_mm2", &ContactResult::area_mm2)
       .def_readonly("depth_mm", &ContactResult::depth_mm)
-      .def_property_readonly("center_mm", [](const ContactResult& contact) {
-        return py::make_tuple(contact.center_mm.x, contact.center_mm.y, contact.center_mm.z);
-      });
+      .def_property_readonly(
+          "center_mm", [](const ContactResult& contact) { return as_tuple(contact.center_mm); });
   py::class_<Region>(module, "ContactRegion",
                      "Where the object touches; contact/contact_region.hpp.")
       .def(py::init<const fingerpad::Camera<double>&, Index, Index, const ContactTest&>(),
            py::arg("camera"), py::arg("rows"), py::arg("cols"), py::arg("test") = ContactTest())
-      .def("__call__", &Region::operator(), py::arg("depth_mm"),
-           "mask, contact = region(depth_mm)\n\n"
-           "depth_mm: float32 (rows, cols), NaN where unknown; mask: uint8, 255 in contact.");
+      .def("__call__", &Region::operator(), py::arg("depth_mm"), py::arg("out") = py::none(),
+           "mask, contact = region(depth_mm, out=mask)\n\n"
+           "depth_mm: float32 (rows, cols), NaN where unknown.\n"
+           "mask: uint8 (rows, cols), 255 in contact, else 0. Without out it is a new array.");
 }
 
 }  // namespace python

@@ -2,11 +2,14 @@
 // SPDX-License-Identifier: MIT
 #include "fingerpad/depth/depth.hpp"
 
+#include <pybind11/stl.h>
+
 #include <cstdint>
 #include <memory>
 #include <mutex>
 #include <optional>
 #include <tuple>
+#include <utility>
 
 #include "python/arrays.hpp"
 #include "python/parts.hpp"
@@ -38,6 +41,7 @@ Reference fit(const Camera<double>& camera,
 /// A depth estimator with the workspaces that it needs; calls from several threads take turns.
 class Estimator {
   using Method = fingerpad::DepthEstimator<>;
+  using Out = std::optional<std::pair<py::array, py::array>>;
   template <class Pixel>
   using Workspace = std::optional<Method::Workspace<Pixel>>;
 
@@ -51,11 +55,15 @@ class Estimator {
   Index rows() const { return estimate_.rows(); }
   Index cols() const { return estimate_.cols(); }
 
-  py::tuple operator()(const py::array& red, const py::array& green) {
-    auto [depth, depth_view] = new_array<float>(rows(), cols());
-    auto [status, status_view] = new_array<std::uint8_t>(rows(), cols());
+  py::tuple operator()(const py::array& red, const py::array& green, const Out& out) {
+    const auto [depth_out, status_out] = out.value_or(std::pair<py::array, py::array>());
+    auto [depth, depth_view] = array_to_write<float>(out ? std::optional(depth_out) : std::nullopt,
+                                                     rows(), cols(), "out[0]");
+    auto [status, status_view] = array_to_write<std::uint8_t>(
+        out ? std::optional(status_out) : std::nullopt, rows(), cols(), "out[1]");
     fingerpad::StridedView<PixelStatus> statuses(reinterpret_cast<PixelStatus*>(status_view.row(0)),
-                                                 rows(), cols(), cols());
+                                                 rows(), cols(), status_view.row_stride(),
+                                                 status_view.col_stride());
     const DepthResult result = with_pixel_of(red, [&, to = depth_view](auto pixel) {
       using Pixel = decltype(pixel);
       const auto r = view_of<Pixel>(red, "red"), g = view_of<Pixel>(green, "green");
@@ -127,9 +135,11 @@ void bind_depth(py::module_& module) {
       .def_property_readonly("rows", &Estimator::rows)
       .def_property_readonly("cols", &Estimator::cols)
       .def("__call__", &Estimator::operator(), py::arg("red"), py::arg("green"),
-           "depth_mm, status, result = estimate(red, green)\n\n"
-           "depth_mm: float32 (rows, cols), NaN where there is none.\n"
-           "status: uint8 (rows, cols), a PixelStatus each.");
+           py::arg("out") = py::none(),
+           "depth_mm, status, result = estimate(red, green, out=(depth_mm, status))\n\n"
+           "red, green: (rows, cols), both uint8, uint16, float32 or float64.\n"
+           "depth_mm: float32 (rows, cols), mm along each pixel's ray, NaN where there is none.\n"
+           "status: uint8 (rows, cols), a PixelStatus each. Without out these are new arrays.");
 }
 
 }  // namespace python

@@ -51,6 +51,7 @@ void bind_foam(py::module_& module) {
   py::enum_<PreslipStatus>(module, "PreslipStatus", "Whether the held object is about to slip.")
       .value("steady", PreslipStatus::steady)
       .value("preslip", PreslipStatus::preslip)
+      .value("slipped", PreslipStatus::slipped)
       .value("cannot_tell", PreslipStatus::cannot_tell);
   py::class_<FingerSample<double>>(module, "FingerSample", "What one finger feels.")
       .def_property_readonly("status",

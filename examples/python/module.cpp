@@ -15,6 +15,9 @@ PYBIND11_MODULE(fingerpad, module) {
   py::register_exception<fingerpad::parameter_error>(module, "ParameterError", PyExc_ValueError);
   python::bind_depth(module);
   python::bind_contact(module);
+  python::bind_slip(module);
+  python::bind_look_up(module);
+  python::bind_wrench(module);
   python::bind_foam(module);
   python::bind_fingertip(module);
 }

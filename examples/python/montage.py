@@ -12,7 +12,7 @@ from PIL import Image
 import fingerpad as fp
 
 recording, out = map(Path, sys.argv[1:])
-pad = np.array(Image.open(recording / "reference.png"))
+pad = np.array(Image.open(recording / "reference.png")) + np.float32(0.5)  # Pillow cuts 16 bit off
 shape = np.array(Image.open(recording / "reference_depth.tiff"))
 rows, cols = shape.shape
 camera = fp.Camera(center_x_px=(cols - 1) / 2, center_y_px=(rows - 1) / 2)

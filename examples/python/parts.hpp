@@ -8,6 +8,9 @@ namespace python {
 
 void bind_depth(pybind11::module_& module);
 void bind_contact(pybind11::module_& module);
+void bind_slip(pybind11::module_& module);
+void bind_look_up(pybind11::module_& module);
+void bind_wrench(pybind11::module_& module);
 void bind_foam(pybind11::module_& module);
 void bind_fingertip(pybind11::module_& module);
 

@@ -1,7 +1,14 @@
 # SPDX-FileCopyrightText: 2026 The fingerpad authors
 # SPDX-License-Identifier: MIT
 """The Python module on the bundled recording: pytest test_fingerpad.py, with the module's folder in
-PYTHONPATH."""
+PYTHONPATH. FINGERPAD_PROGRAMS is the folder of replay and calibrate, whose bits it must have."""
+import csv
+import json
+import os
+import shutil
+import subprocess
+import sys
+import threading
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
@@ -11,11 +18,38 @@ from PIL import Image
 
 import fingerpad as fp
 
-PRESS = Path(__file__).parents[1] / "data/press"
+DATA = Path(__file__).parents[1] / "data"
+PRESS = DATA / "press"
+NO_DOTS_MM, NO_DOTS_PX = np.zeros((0, 0, 3)), np.zeros((0, 0, 2))
 
 
 def picture(name):
     return np.array(Image.open(PRESS / name))
+
+
+def table(file):
+    """Columns of a file by their names; NaN: an empty cell."""
+    with open(file, newline="") as lines:
+        rows = list(csv.DictReader(lines))
+    number = lambda cell: float(cell) if cell else np.nan
+    return {name: np.array([number(row[name]) for row in rows])
+            for name in rows[0] if name not in ("load", "slip_evidence")}
+
+
+def run(program, *arguments):
+    folder = os.environ.get("FINGERPAD_PROGRAMS")
+    if not folder:
+        pytest.skip("FINGERPAD_PROGRAMS does not name the folder of the C++ programs")
+    subprocess.run([Path(folder) / program, *arguments], check=True, stdout=subprocess.DEVNULL)
+
+
+def side_dots():
+    """Points of the rim (1, n, 3), and the dots beside it in each frame."""
+    points = table(PRESS / "side_dots.csv")
+    columns = [f"{what}_{axis}" for what in ("border", "dot") for axis in "xyz"]
+    n = int(points["index"].max()) + 1
+    frames = np.stack([points[c] for c in columns], axis=-1).reshape(-1, 1, n, 6)
+    return frames[0, ..., :3], frames[..., 3:]
 
 
 def channels(rgb):
@@ -58,14 +92,77 @@ def test_wider_pixels_of_the_same_values_give_the_same_depth(pad, estimate, kind
         assert ok.sum() > 100_000 and np.abs(wide - depth)[ok].max() < 1e-3
 
 
-def test_views_are_not_copied_and_strides_do_not_matter(pad, estimate):
-    red, green = channels(picture("frames/000005.png"))
-    assert not red.flags["C_CONTIGUOUS"]
+@pytest.mark.parametrize("kind", [np.uint8, np.uint16, np.float32, np.float64])
+def test_strides_do_not_matter(pad, estimate, kind):
+    red, green = (c.astype(kind) for c in channels(picture("frames/000005.png")))
     expected, _, _ = estimate(red, green)
-    packed, _, _ = estimate(np.ascontiguousarray(red), np.asfortranarray(green))
-    np.testing.assert_array_equal(expected, packed)
-    turned, _, _ = estimate(red[::-1, ::-1][::-1, ::-1], green)
-    np.testing.assert_array_equal(expected, turned)
+    among_others = np.zeros((480, 2 * 480, 3), kind)
+    among_others[:, ::2, 1] = red
+    upside_down = np.ascontiguousarray(green[::-1, ::-1])
+    for r, g in [(among_others[:, ::2, 1], upside_down[::-1, ::-1]),
+                 (np.asfortranarray(red), np.ascontiguousarray(green.T).T)]:
+        assert not r.flags["C_CONTIGUOUS"] and not g.flags["C_CONTIGUOUS"]
+        depth, _, _ = estimate(r, g)
+        np.testing.assert_array_equal(expected, depth)
+
+
+def test_arrays_are_read_where_they_lie(estimate):
+    # A single frame's memory serves as a thousand rows of the same row: a copy would need 1 GB.
+    with pytest.raises(ValueError, match="480 x 480"):
+        row = np.zeros(1 << 20, np.uint8)
+        rows = np.lib.stride_tricks.as_strided(row, (1 << 24, 1 << 20), (0, 1))
+        estimate(rows, rows)
+    red, green = channels(picture("frames/000005.png"))
+    red.flags.writeable = False
+    estimate(red, green)
+
+
+def test_results_are_written_to_arrays_that_are_given(pad, estimate):
+    red, green = channels(picture("frames/000005.png"))
+    expected, status, _ = estimate(red, green)
+    among_others, flags = np.zeros((480, 480, 2), np.float32), np.zeros((480, 480), np.uint8)
+    depth, _, _ = estimate(red, green, out=(among_others[..., 1], flags))
+    assert np.shares_memory(depth, among_others)
+    np.testing.assert_array_equal(among_others[..., 1], expected)
+    np.testing.assert_array_equal(flags, status)
+    region = fp.ContactRegion(pad[0], 480, 480)
+    assert region(expected, out=flags)[0] is flags
+    np.testing.assert_array_equal(flags, region(expected)[0])
+    with pytest.raises(ValueError, match=r"out must have the shape \(480, 480\)"):
+        region(expected, out=flags[1:])
+    flags.flags.writeable = False
+    with pytest.raises(ValueError, match="not writeable"):
+        region(expected, out=flags)
+
+
+def test_what_is_slow_runs_without_the_lock(pad, estimate):
+    red, green = channels(picture("frames/000005.png"))
+    depth, _, _ = estimate(red, green)
+    rim, dots = side_dots()
+    region = fp.ContactRegion(pad[0], 480, 480)
+    mask, _ = region(depth)
+    wrench = fp.Wrench(pad[0], 480, 480, rim)
+    fingertip = fp.Fingertip(*pad, NO_DOTS_MM, rim)
+    calls = [lambda: estimate(red, green), lambda: region(depth),
+             lambda: wrench(depth, mask, dots[5], 0.0165),
+             lambda: fingertip(red, green, NO_DOTS_PX, dots[5], 0.0165)]
+    usual = sys.getswitchinterval()
+    for call in calls:
+        go, others = threading.Lock(), []
+        go.acquire()
+        other = threading.Thread(target=lambda: go.acquire() and others.append(1))
+        other.start()
+        sys.setswitchinterval(1000)  # from here on the lock is only given up willingly
+        try:
+            go.release()
+            for _ in range(1000):
+                if others:
+                    break
+                call()
+            assert others
+        finally:
+            sys.setswitchinterval(usual)
+            other.join()
 
 
 def test_threads_give_the_same_bits(estimate):
@@ -88,6 +185,18 @@ def test_a_mistake_is_an_exception_with_its_reason(pad, estimate):
         estimate(red, green.astype(np.float32))
     with pytest.raises(TypeError, match=r"\(rows, cols\)"):
         estimate(picture("frames/000005.png"), green)
+    with pytest.raises(TypeError, match="askew"):
+        estimate(np.zeros((480, 480, 3), "u1, u2")["f1"][..., 0], green.astype(np.uint16))
+    with pytest.raises(ValueError, match=r"^Camera: pitch_mm = -1, must be finite and > 0$"):
+        fp.Wrench(fp.Camera(pitch_mm=-1), 480, 480, side_dots()[0])
+    with pytest.raises(fp.ParameterError, match="slip_px"):
+        fp.StickRatio(9, 9, fp.StickTest(slip_px=0))
+    with pytest.raises(ValueError, match="9 x 9"):
+        fp.StickRatio(9, 9)(np.zeros((8, 9, 2)), np.ones((8, 9), bool))
+    with pytest.raises(fp.ParameterError, match="usable samples"):
+        fp.fit_normal_force([], [])
+    with pytest.raises(ValueError, match=r"normal_force_n must have the shape \(2,\), not \(3,\)"):
+        fp.fit_normal_force([1, 2], [1, 2, 3])
     with pytest.raises(TypeError, match="int32"):
         estimate(red.astype(np.int32), green.astype(np.int32))
 
@@ -109,6 +218,147 @@ def test_a_foam_hand_warns_of_vibration_that_moves_and_quickens():
     assert hand(readings, 0.0).status == fp.PreslipStatus.cannot_tell
 
 
+def test_all_that_can_be_called_says_what_it_takes():
+    shapes = {fp.DepthEstimator: "(rows, cols)", fp.ContactRegion: "(rows, cols)",
+              fp.StickRatio: "(rows, cols, 2)", fp.Wrench: "(1, n, 3)",
+              fp.Fingertip: "(rows, cols, 2)", fp.FoamHand: "(rows, cols)",
+              fp.NormalForce: "mm^2 or mm", fp.Shear: "measure"}
+    for kind, shape in shapes.items():
+        assert kind.__doc__ and shape in kind.__call__.__doc__, kind
+    for function in (fp.fit_reference, fp.fit_normal_force, fp.fit_tangential_force, fp.fit_moment):
+        assert "measure: (n,)" in function.__doc__ or "(rows, cols)" in function.__doc__ or \
+            "All (n,)" in function.__doc__, function
+
+
+def test_statuses_are_those_of_cpp():
+    names = {fp.PixelStatus: 7, fp.PreslipStatus: 4, fp.DotState: 4}
+    for kind, count in names.items():
+        assert sorted(int(value) for value in kind.__members__.values()) == list(range(count))
+
+
+def test_dots_that_move_as_one_stick_and_those_that_stay_behind_slip():
+    y, x = np.mgrid[:9, :9] * 20.0
+    free = np.stack([x, y], axis=-1)
+    ratio = fp.StickRatio(9, 9, fp.StickTest(free_frames=0))
+    inside = np.hypot(x - 80, y - 80) < 70
+    for k in range(12):
+        dots = free + [0.6 * k, 0]
+        dots[inside & (x > 110)] -= [0.3 * k, 0]
+        states, result = ratio(dots, inside, 0.02 * k)
+    assert result.ok and result.status == "updated"
+    slipping = inside & (x > 110)
+    assert (states[slipping] == int(fp.DotState.slip)).all()
+    assert (states[inside & ~slipping] == int(fp.DotState.stick)).all()
+    assert result.stick_ratio == pytest.approx((inside & ~slipping).sum() / inside.sum())
+    assert ratio(dots.transpose(1, 0, 2).copy().transpose(1, 0, 2), inside.view(np.uint8))[1].ok
+    ratio.reset()
+    assert np.isnan(ratio(free, inside)[1].stick_ratio)
+
+
+def test_frames_have_the_bits_of_cpp(tmp_path):
+    recording = tmp_path / "press"
+    shutil.copytree(PRESS, recording)
+    # The reference has 16 bit, of which Pillow reads 8: both read what it has read.
+    Image.fromarray(picture("reference.png")).save(recording / "reference.png")
+    sensor = json.loads((recording / "sensor.json").read_text())
+    sensor["contact"] = {"threshold_per_mm": 0.025}
+    (recording / "sensor.json").write_text(json.dumps(sensor))
+    run("replay", recording, "--out", tmp_path / "out", "--raw", "--no-pictures")
+    frames, signals = table(tmp_path / "out/frames.csv"), table(recording / "signals.csv")
+    given = {k: v for k, v in sensor["camera"].items() if k != "center_px"}
+    camera = fp.Camera(center_x_px=239.5, center_y_px=239.5, **given)
+    fluid = fp.Absorption(**sensor["absorption"])
+    reference = fp.fit_reference(camera, fluid, *channels(picture("reference.png")),
+                                 picture("reference_depth.tiff"))
+    pad, estimate = (camera, fluid, reference), fp.DepthEstimator(camera, fluid, reference)
+    rim, dots = side_dots()
+    test = fp.ContactTest(threshold_per_mm=0.025, free_apex_mm=13.03)
+    options = fp.WrenchOptions(base_radius_mm=18.735, side_dot_length_mm=0.79995)
+    row = fp.OneRow(stress_free_inclination_rad=1.0618)
+    region = fp.ContactRegion(pad[0], 480, 480, test)
+    wrench = fp.Wrench(pad[0], 480, 480, rim, options, row)
+    fingertip = fp.Fingertip(*pad, NO_DOTS_MM, rim, test, wrench=options, side_dots=row)
+    for k, pressure_mpa in enumerate(signals["pressure_mpa"]):
+        red, green = channels(picture(f"frames/{k:06}.png"))
+        depth, _, _ = estimate(red, green)
+        mask, contact = region(depth)
+        felt = wrench(depth, mask, dots[k], pressure_mpa)
+        np.testing.assert_array_equal(depth, Image.open(tmp_path / f"out/depth/{k:06}.tiff"))
+        np.testing.assert_array_equal(mask, Image.open(tmp_path / f"out/contact/{k:06}.png"))
+        assert f"{contact.area_mm2:.6f}" == f"{frames['contact_area_mm2'][k]:.6f}"
+        for axis, n, n_mm in zip("xyz", felt.force_n, felt.moment_n_mm):
+            assert abs(n - frames[f"wrench_f{axis}_n"][k]) < 1e-6
+            assert abs(n_mm / 1000 - frames[f"wrench_m{axis}_nm"][k]) < 1e-6
+        touch = fingertip(red, green, NO_DOTS_PX, dots[k], pressure_mpa)
+        np.testing.assert_array_equal(fingertip.depth_mm, depth)
+        assert touch.wrench.force_n == felt.force_n and touch.wrench.status == felt.status
+
+
+def test_the_stick_ratio_has_the_bits_of_cpp(tmp_path):
+    recording = tmp_path / "dots"
+    shutil.copytree(PRESS / "frames", recording / "frames")
+    (recording / "sensor.json").write_text("{}")
+    y, x = np.mgrid[:12, :12] * 20.0 + 120
+    rng = np.random.default_rng(1)
+    frames = []
+    for k in range(11):
+        dots = np.stack([x + 0.7 * k, y], axis=-1) + rng.normal(0, 0.06, (12, 12, 2))
+        dots[:, 9:] -= [0.4 * k, 0]
+        frames.append(dots.round(6))
+    with open(recording / "dots.csv", "w") as file:
+        file.write("frame,row,col,x_px,y_px\n")
+        for k, dots in enumerate(frames):
+            for i, j in np.ndindex(12, 12):
+                file.write(f"{k},{i},{j},{dots[i, j, 0]:.6f},{dots[i, j, 1]:.6f}\n")
+    run("replay", recording, "--out", tmp_path / "out", "--no-pictures")
+    told, of_dots = table(tmp_path / "out/frames.csv"), table(tmp_path / "out/dots.csv")
+    ratio = fp.StickRatio(12, 12)
+    for k, dots in enumerate(frames):
+        states, result = ratio(dots, np.ones((12, 12), bool))
+        assert f"{result.stick_ratio:.6f}" == f"{told['stick_ratio'][k]:.6f}"
+        sticks = of_dots["stick"][of_dots["frame"] == k].reshape(12, 12)
+        np.testing.assert_array_equal(states == int(fp.DotState.stick), sticks == 1)
+        np.testing.assert_array_equal(states == int(fp.DotState.slip), sticks == 0)
+    assert 0 < result.stick_ratio < 1
+
+
+def test_fits_have_the_bits_of_cpp_and_are_looked_up(pad, tmp_path):
+    contacts = table(DATA / "contacts.csv")
+    shift = np.stack([contacts["shift_x_mm"], contacts["shift_y_mm"]], axis=-1)
+    along = np.stack([contacts["force_x_n"], contacts["force_y_n"]], axis=-1)
+    (tmp_path / "sensor.json").write_text("{}")
+    shutil.copy(DATA / "contacts.csv", tmp_path)
+    run("calibrate", "force", tmp_path, "--contacts", "contacts.csv")
+    force = json.loads((tmp_path / "sensor.json").read_text())["force"]
+    for name, unit, reference in [("area", "mm2", 100), ("depth", "mm", 2)]:
+        measure = contacts[f"contact_{name}_{unit}"]
+        normal = fp.fit_normal_force(measure, -contacts["force_z_n"])
+        expected = force[f"by_{name}"]
+        assert normal.ok, normal.status
+        assert normal.coefficients == expected["coefficients"]
+        assert normal.range == [expected[f"from_{unit}"], expected[f"to_{unit}"]]
+        assert normal.residual_sd_n == expected["residual_n"]
+        tangential = fp.fit_tangential_force(measure, shift, along, reference)
+        moment = fp.fit_moment(measure, contacts["shift_rad"], 1000 * contacts["moment_z_nm"],
+                               reference)
+        if force["shear"]["by"] == name:
+            assert [tangential.stiffness] == force["shear"]["force_n_per_mm"]
+            assert tangential.exponent == force["shear"]["displacement_exponent"]
+            assert [moment.stiffness] == force["shear"]["moment_n_mm_per_rad"]
+            assert (tangential.to, moment.to) == (force["shear"]["to_mm"], force["shear"]["to_rad"])
+
+    by_depth, shear = fp.NormalForce(normal), fp.Shear(tangential, moment)
+    felt = by_depth(2.0)
+    assert felt.ok and felt.force_n == pytest.approx(np.polyval(normal.coefficients[::-1], 2.0))
+    assert by_depth(100.0).status == "beyond range"
+    along_x, _ = shear(2.0, (0.5, 0), 0.01).tangential_force_n
+    assert along_x == pytest.approx(0.5 * tangential.stiffness)
+    fingertip = fp.Fingertip(*pad, NO_DOTS_MM, NO_DOTS_MM, fp.ContactTest(free_apex_mm=13.03),
+                             force_of_depth=by_depth)
+    touch = fingertip(*channels(picture("frames/000005.png")), NO_DOTS_PX, NO_DOTS_MM, np.nan)
+    assert touch.by_depth.force_n == by_depth(touch.contact.depth_mm).force_n
+
+
 def test_a_fingertip_gives_what_its_parts_give(pad, estimate):
     columns, rows = np.meshgrid(np.arange(7), np.arange(7))
     free_dots = np.stack([columns - 3.0, rows - 3.0, np.full((7, 7), 12.5)], axis=-1)
@@ -121,7 +371,7 @@ def test_a_fingertip_gives_what_its_parts_give(pad, estimate):
     touch = fingertip(red, green, dots_px, side_dots, 0.016, 0.0)
     depth, _, _ = estimate(red, green)
     np.testing.assert_array_equal(fingertip.depth_mm, depth)
-    assert touch.contact.in_contact and len(touch.force_n) == 3
+    assert touch.contact.in_contact and len(touch.wrench.force_n) == 3
     assert touch.contact.contact_px == (fingertip.contact_mask == 255).sum()
     with pytest.raises(TypeError, match=r"\(rows, cols, 2\)"):
         fingertip(red, green, side_dots, side_dots, 0.016)
