@@ -36,7 +36,7 @@ void note_stick_on_scenes(Counters& counters, const Ratio& ratio, double noise_p
         }
         const double found = static_cast<double>(r.stick_ratio);
         const double length_mm =
-            mm_per_px * test.slip_px * static_cast<double>(r.furthest_px) / test.reference_px;
+            mm_per_px * test.slip * static_cast<double>(r.furthest_px) / test.reference;
         const double truth = slipped(k, r.reference_age, length_mm);
         since_reference.push_back(found - truth);  // NaN where the truth is not known
         in_step.push_back(found - scene.stick_ratio(k));

@@ -84,13 +84,13 @@ Outcome dots(const Path& recording, bool slips) {
   }
   const double relative = noise.noise_error_px / noise.noise_px;
   report.parameters = {{"noise_px", noise.noise_px, noise.noise_error_px},
-                       {"slip_px", test.slip_px, test.slip_px * relative},
-                       {"store_px", test.store_px, test.store_px * relative},
-                       {"reference_px", test.reference_px},
+                       {"slip_px", test.slip, test.slip * relative},
+                       {"store_px", test.store, test.store * relative},
+                       {"reference_px", test.reference},
                        {"dots", static_cast<double>(noise.dots)}};
   Outcome outcome;
   outcome.sections["stick"] = {
-      {"reference_px", test.reference_px}, {"store_px", test.store_px}, {"slip_px", test.slip_px}};
+      {"reference_px", test.reference}, {"store_px", test.store}, {"slip_px", test.slip}};
   outcome.reports = {report};
   outcome.plots = {plot};
   return outcome;

@@ -8,6 +8,7 @@
 #include <limits>
 #include <opencv2/core.hpp>
 
+#include "fingerpad/published/stick_ratio.hpp"
 #include "replay/dots/dots.hpp"
 #include "replay/io/failure.hpp"
 #include "replay/steps/stick_step.hpp"
@@ -147,9 +148,9 @@ View look_at(const std::filesystem::path& file, const std::vector<cv::Mat>& free
   try {
     const Followed followed = follow(file);
     const std::vector<DotGrid>& frames = followed.dots;
-    fingerpad::StickTest test;
-    view.ratio = ratios(frames, test);
-    test.slip_px = (std::max)(test.slip_px, slip_px_of(noise_px(frames)));
+    fingerpad::StickTest test = fingerpad::published::stick_test_px;
+    view.ratio = ratios(frames, {});
+    test.slip = (std::max)(test.slip, slip_px_of(noise_px(frames)));
     view.ratio_by_noise = ratios(frames, test);
     for (const DotGrid& dots : frames) {
       view.moved_share.push_back(share_far_off(frames.front(), dots));

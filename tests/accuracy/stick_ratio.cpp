@@ -75,7 +75,7 @@ void show(const std::vector<const Errors*>& table) {
 }  // namespace
 
 TEST_CASE("stick ratio of synthetic dots, with all effects", "[stick_ratio]") {
-  // Of the dots in the shear zone those that follow the object to less than slip_px count as
+  // Of the dots in the shear zone those that follow the object to less than delta_0 count as
   // sticking, which makes the ratio too large; their noise makes it too small.
   const Errors all("all effects", StickRatio(21, 21));
   for (const SlipScene scene : test::all_slip_scenes) {
@@ -90,7 +90,7 @@ TEST_CASE("stick ratio of synthetic dots, with all effects", "[stick_ratio]") {
 
 TEST_CASE("stick ratio of synthetic dots, by the width of the shear zone", "[stick_ratio]") {
   // The goal of 0.03 is met at one pitch. In wider zones the dots next to the stick region slip
-  // less than slip_px, and the ratio is too large: by 0.040 and 0.076 at two and three pitches.
+  // less than delta_0, and the ratio is too large: by 0.040 and 0.076 at two and three pitches.
   // A jump smears, by the mean over neighbours, into the dots before it: 0.02 to 0.07.
   const StickRatio ratio(21, 21);
   const Errors jump("jump", ratio, 0), one("1 pitch", ratio, 1), two("2 pitches", ratio, 2),
@@ -153,7 +153,10 @@ constexpr double jitter_px = 0.06;
 constexpr Index recordings = 20;
 /// The defaults, but with the threshold that this noise has: 2 sigma sqrt(ln(1 / p)), of which
 /// p = 1 % of sticking dots are told to slip, sigma = 0.416 x 0.06 px after denoising.
-const StickTest scene_test{.slip_px = 2 * 0.416 * jitter_px * std::sqrt(std::log(100.0))};
+const StickTest scene_test{.reference = 2,
+                           .store = 0.5,
+                           .slip = 2 * 0.416 * jitter_px * std::sqrt(std::log(100.0)),
+                           .pitch = 1};
 
 struct SceneResult {
   double mean_abs = 0;  ///< over frames with an answer
@@ -200,7 +203,7 @@ SceneResult follow(const StickScene& scene,
         const double found = static_cast<double>(r.stick_ratio);
         // 0.092 mm of membrane, 10 mm from the plate, per pixel
         const double length_mm =
-            0.092 * test.slip_px * static_cast<double>(r.furthest_px) / test.reference_px;
+            0.092 * test.slip * static_cast<double>(r.furthest_px) / test.reference;
         result.mean_abs += std::abs(found - scene.stick_ratio(k));
         result.mean += found - scene.stick_ratio(k);
         ++result.answers;
@@ -262,8 +265,8 @@ TEST_CASE("no slip is announced on finite-element membranes that stick", "[stick
   CHECK(follow(roll, unknown, every_step).announced_from == never);
   // Compared all the same, after 1 px:
   StickTest closer = scene_test;
-  closer.reference_px = 1;
-  closer.store_px = 0.25;
+  closer.reference = 1;
+  closer.store = 0.25;
   const SceneResult r = follow(press, unknown, every_step, closer);
   INFO(r.line("press"));
   CHECK(r.answers > 3);
@@ -289,7 +292,10 @@ GrossSlip drag_to_gross_slip(double step_px, double dot_noise_px, double spring_
   const DotPattern pattern{.rows = 15, .cols = 15, .contact_pitches = 6};
   // as calibrate/slip.hpp: 1 % of sticking dots told to slip
   const StickRatio ratio(15, 15,
-                         {.slip_px = 2 * 0.416 * dot_noise_px * std::sqrt(std::log(100.0))});
+                         {.reference = 2,
+                          .store = 0.5,
+                          .slip = 2 * 0.416 * dot_noise_px * std::sqrt(std::log(100.0)),
+                          .pitch = 1});
   GrossSlip result;
   for (int run = 0; run < 40; ++run) {
     test::Random random(static_cast<std::uint64_t>(1 + run));

@@ -485,8 +485,8 @@ TEST_CASE("false slip: as often as the stick ratio says", "[stick]") {
   // Everything sticks, so all that slips is false. d_max is the largest of many displacements and
   // so is larger than the motion by noise, which widens the threshold in proportion.
   const double noise_px = 0.05;
-  StickTest test;
-  test.slip_px = slip_threshold_for(noise_px, 0.05);
+  StickTest test = published::stick_test_px;
+  test.slip = slip_threshold_for(noise_px, 0.05);
   const StickRatio<StickConsensus<Freedom::translation>, UpdatedReference, NoDenoising, double>
       estimator(41, 41, test);
   auto state = estimator.start();
@@ -498,7 +498,7 @@ TEST_CASE("false slip: as often as the stick ratio says", "[stick]") {
     const auto now = noisy(moved(pattern(41, 41), 2.5 * t, 0), noise_px, random);
     const auto result = estimator(now, contact, states, state);
     if (result.updated()) {
-      const double widened_px = test.slip_px * result.furthest_px / test.reference_px;
+      const double widened_px = test.slip * result.furthest_px / test.reference;
       slip += static_cast<double>(result.slip);
       expected += static_cast<double>(result.dots_in_contact()) *
                   false_slip_probability(widened_px, noise_px);
@@ -551,26 +551,26 @@ TEST_CASE("thresholds from noise: which noise counts", "[stick]") {
   const double nats = std::sqrt(-std::log(0.02));
   const double placed = std::sqrt(-std::log(-std::expm1(std::log1p(-0.01) / 300)));
   const StickTest plain = stick_test_for(300, noise, 3.0, {}, StickConsensus<>(), NoDenoising());
-  CHECK(plain.slip_px == Approx(2 * 0.1 * nats));
-  CHECK(plain.store_px == Approx(2 * 0.1 * placed));
-  CHECK(plain.reference_px == 3.0);
+  CHECK(plain.slip == Approx(2 * 0.1 * nats));
+  CHECK(plain.store == Approx(2 * 0.1 * placed));
+  CHECK(plain.reference == 3.0);
   const StickTest mean =
       stick_test_for(300, noise, 3.0, {}, StickConsensus<>(), published::DotMean());
-  CHECK(mean.slip_px == Approx(plain.slip_px * denoising_gain({})));
-  CHECK(mean.store_px == Approx(plain.store_px * denoising_gain({})));
+  CHECK(mean.slip == Approx(plain.slip * denoising_gain({})));
+  CHECK(mean.store == Approx(plain.store * denoising_gain({})));
   const StickTest usual = stick_test_for(300, noise);
-  CHECK(usual.slip_px == Approx(plain.slip_px * denoising_gain({}, 3, 2)));
-  CHECK(usual.store_px == Approx(plain.store_px));
-  CHECK(usual.reference_px == 2.0);
-  CHECK(stick_test_for(300, noise, 3.0, {}, published::ReferenceDotMotion<>()).slip_px ==
-        Approx(std::sqrt(2.0) * usual.slip_px));
+  CHECK(usual.slip == Approx(plain.slip * denoising_gain({}, 3, 2)));
+  CHECK(usual.store == Approx(plain.store));
+  CHECK(usual.reference == 2.0);
+  CHECK(stick_test_for(300, noise, 3.0, {}, published::ReferenceDotMotion<>()).slip ==
+        Approx(std::sqrt(2.0) * usual.slip));
 
   // a narrow pattern has no inner dots, an endless one no edge
   noise.inner_px = test::nan;
-  CHECK(stick_test_for(300, noise).slip_px == Approx(usual.slip_px));
+  CHECK(stick_test_for(300, noise).slip == Approx(usual.slip));
   noise = independent_dot_noise(0.1);
   noise.edge_px = test::nan;
-  CHECK(stick_test_for(300, noise).slip_px == Approx(mean.slip_px));
+  CHECK(stick_test_for(300, noise).slip == Approx(mean.slip));
 
   const auto said = [](const DotNoise& n, double reference_px,
                        const StickTestOptions& search = {}) {
@@ -583,7 +583,7 @@ TEST_CASE("thresholds from noise: which noise counts", "[stick]") {
   CHECK(begins_with(said(noise, 2), "stick_test_for: noise of an averaged dot = nan"));
   noise = independent_dot_noise(0.1);
   CHECK(said(noise, 1) == "accepted");
-  for (const double bad : {usual.store_px, 0.0, test::nan, infinity}) {
+  for (const double bad : {usual.store, 0.0, test::nan, infinity}) {
     CHECK(begins_with(said(noise, bad), "stick_test_for: reference_px = "));
   }
   CHECK(begins_with(refusal([&] { stick_test_for(0, noise); }), "stick_test_for: dots = 0"));
@@ -596,12 +596,12 @@ TEST_CASE("choice of U: a recording that slips", "[stick]") {
     add(recording, calibration);
     const StickTestFit choice = calibration.fit();
     const StickTestFit::Row& row = chosen_row(choice);
-    CAPTURE(noise_px, row.test.reference_px);
+    CAPTURE(noise_px, row.test.reference);
     REQUIRE(choice.table.size() == 13);
-    CHECK(choice.test.reference_px == row.test.reference_px);
-    CHECK(choice.test.slip_px ==
+    CHECK(choice.test.reference == row.test.reference);
+    CHECK(choice.test.slip ==
           Approx(slip_threshold_for(noise_px * denoising_gain({}, 3, 2), 0.02)));
-    CHECK(choice.furthest_px > choice.test.store_px);
+    CHECK(choice.furthest_px > choice.test.store);
 
     // the rule, from the table: the smallest of those that are not worse than the best
     double best = infinity;
@@ -611,8 +611,8 @@ TEST_CASE("choice of U: a recording that slips", "[stick]") {
     bool passed = false;
     for (std::size_t k = 0; k < choice.table.size(); ++k) {
       const auto& c = choice.table[k];
-      CHECK(c.test.reference_px == Approx(0.5 * std::pow(2.0, static_cast<double>(k) / 3)));
-      if (c.test.reference_px <= std::max(c.test.slip_px, c.test.store_px)) {
+      CHECK(c.test.reference == Approx(0.5 * std::pow(2.0, static_cast<double>(k) / 3)));
+      if (c.test.reference <= std::max(c.test.slip, c.test.store)) {
         CHECK_FALSE(c.chosen);
         CHECK(c.updates == 0);
         continue;
@@ -626,7 +626,7 @@ TEST_CASE("choice of U: a recording that slips", "[stick]") {
     // with it, the ratio is right
     CHECK(mean_error(recording, choice.test) < 0.1);
     for (const auto& c : choice.table) {  // and one that was refused is worse
-      if (c.behind > 2 * c.behind_error && c.test.reference_px < choice.test.reference_px / 1.5) {
+      if (c.behind > 2 * c.behind_error && c.test.reference < choice.test.reference / 1.5) {
         CHECK(mean_error(recording, c.test) > mean_error(recording, choice.test));
       }
     }
@@ -702,7 +702,7 @@ TEST_CASE("choice of U: the table of a recording", "[stick]") {
         chosen_error = c.chosen ? error : chosen_error;
       }
       std::snprintf(line, sizeof line, "%5.2f  %.3f  %.3f  %6.2f +- %5.2f  %4d   %.3f  %s\n",
-                    c.test.reference_px, c.test.slip_px, c.test.store_px, c.cost, c.behind_error,
+                    c.test.reference, c.test.slip, c.test.store, c.cost, c.behind_error,
                     static_cast<int>(c.updates), error, c.chosen ? "chosen" : "");
       table += line;
     }
@@ -741,7 +741,7 @@ TEST_CASE("choice of U: how long the pad stands, and lost contact, change nothin
   CHECK(standing.add(recording.dots[0], no_contact));
   const StickTestFit a = plain.fit(), b = standing.fit();
   CHECK(a.steps == b.steps);
-  CHECK(a.test.reference_px == b.test.reference_px);
+  CHECK(a.test.reference == b.test.reference);
   for (std::size_t k = 0; k < a.table.size(); ++k) {
     const bool tried = a.table[k].updates > 0;
     CHECK((!tried || a.table[k].cost == b.table[k].cost));
@@ -809,7 +809,7 @@ TEST_CASE("choice of U: what it refuses", "[stick]") {
   CHECK(begins_with(refusal([&] { const StickTestCalibration<> none(21, 0, noise); }),
                     "StickTestCalibration: cols = 0"));
   // the largest U, just above the threshold, is tried even where powers round
-  const double min_px = stick_test_for(441, noise, 8).store_px;
+  const double min_px = stick_test_for(441, noise, 8).store;
   for (double smallest_px = 0.1; smallest_px < min_px; smallest_px += 0.0137) {
     StickTestCalibration<> barely(
         21, 21, noise,
@@ -867,6 +867,6 @@ TEST_CASE("choice of U: frames without dots are no harm", "[stick]") {
   StickTestCalibration<> calibration(21, 21, independent_dot_noise(0.06));
   add(recording, calibration);
   const StickTestFit choice = calibration.fit();
-  CHECK(choice.test.reference_px > 0.5);
-  CHECK(choice.test.reference_px < 8);
+  CHECK(choice.test.reference > 0.5);
+  CHECK(choice.test.reference < 8);
 }

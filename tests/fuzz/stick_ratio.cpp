@@ -53,9 +53,10 @@ void try_all(Input& in) {
   switch (in.whole(0, 2)) {
     case 0: {
       StickTest test;
-      test.reference_px = in.number(0.1, 5);
-      test.store_px = in.number(0, 2);
-      test.slip_px = in.number(0.01, 1);
+      test.reference = in.number(0.1, 5);
+      test.store = in.number(0, 2);
+      test.slip = in.number(0.01, 1);
+      test.pitch = in.whole(0, 1) == 0 ? 0 : 1;
       follow<Point2<float>>(in, StickRatio<>(rows, cols, test), rows, cols,
                             [](const auto& seen, const auto& same) {
                               require_ratio(seen.stick_ratio);

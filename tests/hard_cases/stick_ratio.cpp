@@ -123,8 +123,8 @@ TEMPLATE_TEST_CASE("stick ratios follow 50 digits", "[stick_ratio]", Default, On
     const auto recording = frames(seed, pattern);
     const auto exact = follow<TestType, Digits50>(recording, contact);
     StickTest lower, upper;
-    lower.slip_px *= 1 - 1e-3;
-    upper.slip_px *= 1 + 1e-3;
+    lower.slip *= 1 - 1e-3;
+    upper.slip *= 1 + 1e-3;
     const auto low = follow<TestType, double>(recording, contact, lower);
     const auto high = follow<TestType, double>(recording, contact, upper);
     const auto in_float = follow<TestType, float>(recording, contact);

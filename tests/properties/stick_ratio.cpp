@@ -160,11 +160,7 @@ TEMPLATE_TEST_CASE("stick and slip do not depend on how the image is held",
           return dots;
         },
         [](const ContactFlags& flags) { return flags; });
-    StickTest test;
-    test.reference_px *= scale;
-    test.store_px *= scale;
-    test.slip_px *= scale;
-    must_agree(said, follow(TestType::ratio(seen, test), seen), mirror ? -1 : 1, scale, same_place);
+    must_agree(said, follow(TestType::ratio(seen, {}), seen), mirror ? -1 : 1, scale, same_place);
   });
 }
 
@@ -249,7 +245,7 @@ TEMPLATE_TEST_CASE("identical frames say nothing new",
                    PublishedPolicies) {
   rc::prop("the ratio stands", [] {
     const Recording recording = any_recording(test::uniform(0, 0.6));
-    const auto ratio = TestType::ratio(recording, {.store_px = test::whole(0, 1) == 0 ? 0 : 0.5});
+    const auto ratio = TestType::ratio(recording, {.store = test::whole(0, 1) == 0 ? 0 : 0.025});
     auto state = ratio.start();
     DotStates states(recording.rows(), recording.cols());
     for (std::size_t k = 0; k < recording.size(); ++k) {
@@ -353,8 +349,9 @@ TEMPLATE_TEST_CASE(
     };
     Recording some;
     some.dots.emplace_back(rows, cols);
-    const StickTest test{.reference_px = test::uniform(0.5, 3),
-                         .store_px = test::uniform(0, 0.5),
+    const StickTest test{.reference = test::uniform(0.5, 3),
+                         .store = test::uniform(0, 0.5),
+                         .pitch = 1,
                          .min_dots = test::whole(1, 6)};
     const auto ratio = TestType::ratio(some, test);
     auto state = ratio.start();
@@ -409,7 +406,7 @@ TEMPLATE_TEST_CASE(
           RC_ASSERT(q ==
                     Approx(static_cast<double>(r.stick) / static_cast<double>(r.stick + r.slip)));
           RC_ASSERT((r.reference_age >= 1 && r.reference_dot.exists()));
-          RC_ASSERT(static_cast<double>(r.furthest_px) > test.reference_px * 0.999);
+          RC_ASSERT(static_cast<double>(r.furthest_px) > test.reference * 0.999);
           RC_ASSERT(is_finite(r.furthest_px));
         }
       };

@@ -158,7 +158,7 @@ TEST_CASE("slides: delta fixed or in proportion; N_s / N_c over all dots in cont
   // delta = 0.24: rows 2 to 6
   CHECK(answer_of(options, at_rest(), now).stick_ratio == Approx(5.0 / 9));
   // a dot that touches without an answer of its own counts in N_c: nothing is left out
-  options.test.slip_px = 1e-9;
+  options.test.slip = 1e-9;
   CHECK(answer_of(options, at_rest(), now).stick_ratio == Approx(9.0 / 81));  // row 4
 }
 

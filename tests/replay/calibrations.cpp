@@ -116,7 +116,7 @@ TEST_CASE("A calibration that was saved is loaded bit for bit", "[calibrate]") {
   CHECK(sensor.absorption.c_red_per_mm == 0.1 / 3);
   CHECK(sensor.pad.apex_height_mm == 40.0 / 3);
   CHECK(sensor.contact_threshold_per_mm == 0.1 / 7);
-  CHECK(sensor.stick.slip_px == 1.0 / 7);
+  CHECK(sensor.stick.slip == 1.0 / 7);
   CHECK(sensor.rim->membrane_modulus_n_per_mm == 1.0 / 3);
   CHECK(sensor.neighbour_light->m0_mm_per_rad == 1e-3 / 3);
   CHECK(sensor.smoothing_px == 15);

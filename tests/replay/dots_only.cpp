@@ -374,7 +374,7 @@ TEST_CASE("the sensor.json of a dots-only recording is refused with the key's na
       Fault{R"({"dots": {"bright": 1}})", "dots.bright is 1 (a number), must be true or false"},
       Fault{R"({"dots": {"diameter_px": -2}})", "dots.diameter_px = -2, must be > 0"},
       Fault{R"({"stick": {"slip": 1}})", "unknown key stick.slip "},
-      Fault{R"({"stick": {"reference_px": 0}})", "reference_px = 0"},
+      Fault{R"({"stick": {"reference_px": 0}})", "reference = 0"},
       Fault{R"({"reference": {"fram": "a.png"}})", "unknown key reference.fram "},
       Fault{R"({"reference": {"frame": "none.png"}})", "none.png: there is no such file"},
       Fault{R"({"absorption": {}})", "camera is missing"},

@@ -15,11 +15,11 @@
 #include <opencv2/videoio.hpp>
 #include <string>
 
+#include "replay/chain.hpp"
 #include "replay/io/failure.hpp"
 #include "replay/io/images.hpp"
 #include "replay/io/recording.hpp"
 #include "replay/replay.hpp"
-#include "replay/chain.hpp"
 #include "support/catch.hpp"
 
 namespace fs = std::filesystem;
@@ -176,7 +176,7 @@ TEST_CASE("sensor.json is refused with the key's name") {
       Fault{"\"smoothing_px\": 29", "\"smooth\": 29", "unknown key smooth "},
       Fault{"\"smoothing_px\"", "\"stick\": {\"slipp_px\": 1}, \"smoothing_px\"",
             "unknown key stick.slipp_px (known here: reference_px, store_px, slip_px)"},
-      Fault{"\"smoothing_px\"", "\"stick\": {\"slip_px\": -1}, \"smoothing_px\"", "slip_px = -1"},
+      Fault{"\"smoothing_px\"", "\"stick\": {\"slip_px\": -1}, \"smoothing_px\"", "slip = -1"},
       Fault{"\"smoothing_px\"", "\"stick\": {\"store_px\": \"1\"}, \"smoothing_px\"",
             "stick.store_px is \"1\" (a string), must be a number"},
       Fault{"\"kappa\": 0.9924,", "", "absorption.kappa is missing (ratio of light"},

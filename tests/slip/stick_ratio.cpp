@@ -87,6 +87,7 @@ TEST_CASE("stick ratio: names of statuses") {
   CHECK(std::string(name_of(StickStatus::updated)) == "updated");
   CHECK(std::string(name_of(StickStatus::standing)) == "standing");
   CHECK(std::string(name_of(StickStatus::no_reference)) == "no reference");
+  CHECK(std::string(name_of(StickStatus::falls_back)) == "falls back");
   CHECK(std::string(name_of(StickStatus::too_few_dots)) == "too few dots");
   CHECK(std::string(name_of(StickStatus::no_contact)) == "no contact");
   CHECK(std::string(name_of(StickStatus::no_dots)) == "no dots");
@@ -337,8 +338,8 @@ TEMPLATE_TEST_CASE("stick ratio: noise is averaged over neighbours",
   const bool none = std::is_same_v<TestType, NoDenoising>;
   const double left = none ? 1 : std::sqrt(56.0) / 18;
   const double noise_px = 0.05, p = 0.05;
-  StickTest test;
-  test.slip_px = 2 * noise_px * left * std::sqrt(std::log(1 / p)) * 2 / 3;
+  StickTest test = published::stick_test_px;
+  test.slip = 2 * noise_px * left * std::sqrt(std::log(1 / p)) * 2 / 3;
   double wrong = 0, all = 0;
   test::Random random(7);
   Follower<StickConsensus<>, UpdatedReference, TestType> f(test, {.max_passes = 10}, {}, {}, 21,
@@ -549,7 +550,7 @@ TEST_CASE("stick ratio, bad input: dots in no order, and in another unit") {
   }
   SECTION("thresholds in px for dots in mm or m, or far too large") {
     for (const double unit : {0.08, 8e-5}) {
-      Follower<> f;
+      Follower<> f(published::stick_test_px);
       const auto in_unit = [&](double x) {
         auto dots = shifted(x);
         for (auto& p : dots.cells) {
@@ -564,13 +565,95 @@ TEST_CASE("stick ratio, bad input: dots in no order, and in another unit") {
     }
     // a U of half a pitch of 20 px, and delta_0 of a fourth, are the ends
     const auto status = [](double reference_px, double slip_px) {
-      Follower<> f({.reference_px = reference_px, .slip_px = slip_px});
+      Follower<> f({.reference = reference_px, .store = 0.5, .slip = slip_px, .pitch = 1});
       return f(shifted(0)).status;
     };
     CHECK(status(9.9, 0.2) == StickStatus::no_reference);
     CHECK(status(10.1, 0.2) == StickStatus::wrong_scale);
     CHECK(status(2, 4.9) == StickStatus::no_reference);
     CHECK(status(2, 5.1) == StickStatus::wrong_scale);
+  }
+}
+
+TEST_CASE("stick ratio: no answer while dots fall back toward their free places") {
+  const ContactFlags none(9, 9, 0);
+  for (const bool free_known : {true, false}) {
+    Follower<> f;
+    if (free_known) {
+      CHECK(f(shifted(0), none).status == StickStatus::no_contact);
+    }
+    (void)f(shifted(0));
+    for (double x = 3; x < 16; x += 3) {
+      CHECK(f(shifted(x)).updated());
+    }
+    auto held = shifted(18);  // two columns stay behind
+    for (Index i = 0; i < 9; ++i) {
+      held(i, 0) = shifted(15)(i, 0);
+      held(i, 1) = shifted(15)(i, 1);
+    }
+    const double ratio = f(held).stick_ratio;
+    CHECK(ratio == Approx(7.0 / 9));
+    int answers = 0;
+    for (double x = 15; x > 0; x -= 3) {
+      const auto r = f(shifted(x));
+      answers += r.updated() ? 1 : 0;
+      CHECK((!free_known || r.status == StickStatus::falls_back ||
+             r.status == StickStatus::no_reference));
+      CHECK((!free_known || r.stick_ratio == ratio));
+    }
+    CHECK((free_known ? answers == 0 : answers > 3));
+    CHECK(f(shifted(-3)).updated());  // beyond the free place it goes away again
+  }
+  // aside is not back
+  Follower<> f;
+  (void)f(shifted(0), none);
+  (void)f(shifted(0));
+  for (int k = 0; k < 40; ++k) {
+    const auto r = f(shifted(12 * std::cos(0.25 * k), 12 * std::sin(0.25 * k)));
+    CHECK(r.status == StickStatus::updated);
+  }
+}
+
+TEST_CASE("stick ratio: thresholds in pitches hold in every unit") {
+  for (const double unit : {1.0, 0.08, 8e-5, 40.0}) {
+    Follower<> f;
+    const auto at = [&](double x) {
+      auto dots = shifted(x);
+      for (auto& p : dots.cells) {
+        p = {unit * p.x, unit * p.y};
+      }
+      return f(dots);
+    };
+    CAPTURE(unit);
+    CHECK(at(0).status == StickStatus::no_reference);
+    CHECK(at(0.49).status == StickStatus::standing);
+    CHECK(at(1.99).status == StickStatus::no_reference);
+    const auto r = at(2.52);  // from 0, as 0.53 from the frame before are too little
+    CHECK(r.updated());
+    CHECK(r.furthest_px == Approx(2.52 * unit));
+    CHECK(r.stick_ratio == 1);
+  }
+}
+
+TEST_CASE("stick ratio, bad input: the unit changes within a contact") {
+  for (const double unit : {0.08, 12.5, 0.4, 2.5}) {
+    Follower<> f;
+    (void)f(shifted(0));
+    CHECK(f(shifted(3)).updated());
+    auto dots = shifted(6);
+    for (auto& p : dots.cells) {
+      p = {unit * p.x, unit * p.y};
+    }
+    const auto r = f(dots);
+    CAPTURE(unit);
+    CHECK(r.status == StickStatus::wrong_scale);
+    CHECK(r.stick_ratio == 1);  // the last answer
+    // from now on in this unit
+    CHECK(f(dots).status == StickStatus::no_reference);
+    for (auto& p : dots.cells) {
+      p.x += 3 * unit;
+    }
+    CHECK(f(dots).updated());
   }
 }
 
@@ -814,24 +897,22 @@ TEST_CASE("stick ratio: bad parameters are refused by name, value and range") {
     test.*member = bad;
     return refusal([&] { StickRatio(9, 9, test); });
   };
-  CHECK(test_with(&StickTest::reference_px, 0.0) ==
-        "StickTest: reference_px = 0, must be finite and > 0");
-  CHECK(test_with(&StickTest::reference_px, -2.0) ==
-        "StickTest: reference_px = -2, must be finite and > 0");
-  CHECK(test_with(&StickTest::store_px, 2.5) ==
-        "StickTest: store_px = 2.5, must be in [0, reference_px]");
-  CHECK(test_with(&StickTest::store_px, -0.5) ==
-        "StickTest: store_px = -0.5, must be in [0, reference_px]");
-  CHECK(test_with(&StickTest::slip_px, 0.0) == "StickTest: slip_px = 0, must be finite and > 0");
+  CHECK(test_with(&StickTest::reference, 0.0) ==
+        "StickTest: reference = 0, must be finite and > 0");
+  CHECK(test_with(&StickTest::reference, -2.0) ==
+        "StickTest: reference = -2, must be finite and > 0");
+  CHECK(test_with(&StickTest::store, 2.5) == "StickTest: store = 2.5, must be in [0, reference]");
+  CHECK(test_with(&StickTest::store, -0.5) == "StickTest: store = -0.5, must be in [0, reference]");
+  CHECK(test_with(&StickTest::slip, 0.0) == "StickTest: slip = 0, must be finite and > 0");
   CHECK(test_with(&StickTest::min_dots, Index(0)) == "StickTest: min_dots = 0, must be >= 1");
   for (const double bad : {test::nan, std::numeric_limits<double>::infinity()}) {
     using test::begins_with;
-    CHECK(begins_with(test_with(&StickTest::reference_px, bad), "StickTest: reference_px = "));
-    CHECK(begins_with(test_with(&StickTest::store_px, bad), "StickTest: store_px = "));
-    CHECK(begins_with(test_with(&StickTest::slip_px, bad), "StickTest: slip_px = "));
+    CHECK(begins_with(test_with(&StickTest::reference, bad), "StickTest: reference = "));
+    CHECK(begins_with(test_with(&StickTest::store, bad), "StickTest: store = "));
+    CHECK(begins_with(test_with(&StickTest::slip, bad), "StickTest: slip = "));
   }
-  CHECK(test_with(&StickTest::store_px, 0.0) == "accepted");
-  CHECK(test_with(&StickTest::store_px, 2.0) == "accepted");
+  CHECK(test_with(&StickTest::store, 0.0) == "accepted");
+  CHECK(test_with(&StickTest::store, 0.1) == "accepted");
 
   CHECK(refusal([] { StickRatio(0, 9); }) == "StickRatio: rows = 0, must be in [1, 1000000]");
   CHECK(refusal([] { StickRatio(9, -1); }) == "StickRatio: cols = -1, must be in [1, 1000000]");
@@ -916,9 +997,8 @@ TEST_CASE("stick ratio: thresholds follow the noise of the free frames") {
   CHECK(slow_error(0.14, 1, true, {}) < 0.1);
   CHECK(slow_error(0.14, 1, false, {}) > 0.08);
   CHECK(slow_error(0.14, 1, true, {.free_frames = 0}) > 0.08);
-  // dots in mm, with thresholds in mm
-  const StickTest in_mm = {.reference_px = 0.16, .store_px = 0.04, .slip_px = 0.0192};
-  CHECK(slow_error(0.14, 0.08, true, in_mm) == Approx(slow_error(0.14, 1, true, {})).margin(0.01));
+  // dots in mm
+  CHECK(slow_error(0.14, 0.08, true, {}) == Approx(slow_error(0.14, 1, true, {})).margin(0.01));
   // better dots: slip is seen sooner
   CHECK(slow_error(0.03, 1, true, {}) < slow_error(0.03, 1, false, {}));
   // repeated frames have no noise to tell

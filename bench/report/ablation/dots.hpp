@@ -93,11 +93,12 @@ inline std::vector<StickRecording> finite_elements(const std::string& name) {
 
 inline std::vector<StickRecordings> stick_recordings() {
   using enum test::SlipScene;
-  fingerpad::StickTest steady;  // 1 % of sticking dots are told to slip
-  steady.slip_px = 2 * 0.416 * 0.06 * std::sqrt(std::log(100.0));
+  // 1 % of sticking dots are told to slip
+  fingerpad::StickTest steady = fingerpad::published::stick_test_px;
+  steady.slip = 2 * 0.416 * 0.06 * std::sqrt(std::log(100.0));
   fingerpad::StickTest closer = steady;
-  closer.reference_px = 1;
-  closer.store_px = 0.25;
+  closer.reference = 1;
+  closer.store = 0.25;
   std::vector<StickRecordings> all = {{Scene::press, {}, slipping(press)},
                                       {Scene::drag, {}, slipping(shear)},
                                       {Scene::reversal, {}, slipping(reversal)},

@@ -51,10 +51,10 @@ Course course_of(const Ratio& ratio,
 
 /// The threshold that 0.06 px before the denoising ask for, as the accuracy tests have it.
 inline fingerpad::StickTest test_of(double reference_px) {
-  fingerpad::StickTest test;
-  test.reference_px = reference_px;
-  test.store_px = reference_px / 4;
-  test.slip_px = 2 * 0.416 * jitter_px * std::sqrt(std::log(100.0));
+  fingerpad::StickTest test = fingerpad::published::stick_test_px;
+  test.reference = reference_px;
+  test.store = reference_px / 4;
+  test.slip = 2 * 0.416 * jitter_px * std::sqrt(std::log(100.0));
   return test;
 }
 

@@ -6,6 +6,7 @@
 #include <tuple>
 #include <vector>
 
+#include "fingerpad/published/stick_ratio.hpp"
 #include "replay/io/failure.hpp"
 #include "replay/io/json_section.hpp"
 
@@ -93,14 +94,17 @@ fingerpad::StickTest read_stick(const Section& root) {
       root.section("stick", {{"reference_px", "dots are compared over moves longer than this, px"},
                              {"store_px", "a frame is stored after a move longer than this, px"},
                              {"slip_px", "a dot that is off by this at reference_px slips, px"}});
-  fingerpad::StickTest test;
+  if (!section.has("reference_px") && !section.has("store_px") && !section.has("slip_px")) {
+    return {};
+  }
+  fingerpad::StickTest test = fingerpad::published::stick_test_px;
+  test.free_frames = 0;  // what is given stands
   const auto read = [&](const char* key, double& value) {
     value = section.has(key) ? section.number(key) : value;
-    test.free_frames = section.has(key) ? 0 : test.free_frames;  // what is given stands
   };
-  read("reference_px", test.reference_px);
-  read("store_px", test.store_px);
-  read("slip_px", test.slip_px);
+  read("reference_px", test.reference);
+  read("store_px", test.store);
+  read("slip_px", test.slip);
   expects_valid(test);
   return test;
 }

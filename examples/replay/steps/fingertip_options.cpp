@@ -34,13 +34,13 @@ double threshold_of_shape(const Recording& recording) {
 /// Thresholds that sensor.json gives in px, as the noise that has them; without them those of the
 /// noise in the free frames.
 fingerpad::SpatialStickTest stick_test_of(const Sensor& sensor) {
-  const fingerpad::StickTest by_default, &given = sensor.stick;
+  const fingerpad::StickTest& given = sensor.stick;
   fingerpad::SpatialStickTest test;
-  if (given.slip_px != by_default.slip_px || given.reference_px != by_default.reference_px) {
-    // slip_px = 2 gain sigma sqrt(ln(1 / false_slip)), gain 0.416 by averaging over neighbours
+  if (given.pitch > 0) {
+    // slip = 2 gain sigma sqrt(ln(1 / false_slip)), gain 0.416 by averaging over neighbours
     const double sigmas = 2 * 0.416 * std::sqrt(std::log(1 / test.false_slip));
-    test.lateral_mm = given.slip_px * sensor.camera.pitch_mm / sigmas;
-    test.slip_share = (std::min)(given.slip_px / given.reference_px, 0.5);
+    test.lateral_mm = given.slip * sensor.camera.pitch_mm / sigmas;
+    test.slip_share = (std::min)(given.slip / given.reference, 0.5);
     test.free_frames = 0;
   }
   return test;

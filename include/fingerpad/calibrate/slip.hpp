@@ -79,9 +79,9 @@ class StickTestCalibration {
       Row row{largest};
       if (k + 1 < options.candidates) {
         const double share = static_cast<double>(k) / (options.candidates - 1);
-        row.test.reference_px = options.smallest_px * std::pow(ratio, share);
+        row.test.reference = options.smallest_px * std::pow(ratio, share);
       }
-      if (row.test.reference_px > (std::max)(largest.slip_px, largest.store_px)) {
+      if (row.test.reference > (std::max)(largest.slip, largest.store)) {
         const Estimator estimator(rows, cols, row.test, motion, reference, denoising);
         runs_.push_back({estimator, estimator.start(), table_.size()});
       }
@@ -178,7 +178,7 @@ class StickTestCalibration {
         best = best == nullptr || row.cost < fit.table[best->row].cost ? &run : best;
       }
     }
-    const double smallest_px = fit.table[runs_.front().row].test.reference_px;
+    const double smallest_px = fit.table[runs_.front().row].test.reference;
     expects(fit.furthest_px > smallest_px, owner, "largest displacement in px", fit.furthest_px,
             "> the smallest U that noise allows: the dots did not move");
     expects(best != nullptr, owner, "updated answers", static_cast<long long>(max_updates),

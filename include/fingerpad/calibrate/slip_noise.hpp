@@ -256,12 +256,13 @@ double motion_noise_factor(const StickConsensus<Free>&) {
 
 }  // namespace detail::stick
 
-/// delta_0 and U_min for a sensor with this noise, U being given (by default the published one).
+/// delta_0 and U_min for a sensor with this noise, U being given (by default the published one):
+/// all three in the unit of the noise.
 /// Refuses noise that makes U too small (parameter_error).
 template <class Motion = StickConsensus<>, class Denoising = ResidualMean>
 StickTest stick_test_for(Index dots,
                          const DotNoise& noise,
-                         double reference_px = StickTest{}.reference_px,
+                         double reference_px = 2,
                          const StickTestOptions& options = {},
                          const Motion& motion = {},
                          const Denoising& denoising = {}) {
@@ -278,12 +279,13 @@ StickTest stick_test_for(Index dots,
   expects(is_finite(compared_px) && compared_px > 0, owner, "noise of an averaged dot", compared_px,
           "finite and > 0");
   StickTest test;
+  test.pitch = 1;
   test.free_frames = 0;  // these are measured already
-  test.reference_px = reference_px;
-  test.slip_px = slip_threshold_for(compared_px * motion_noise_factor(motion), options.false_slip);
-  test.store_px = slip_threshold_for(placed_px, false_slip_of_each(options.false_motion, dots));
-  expects(is_finite(reference_px) && reference_px > (std::max)(test.slip_px, test.store_px), owner,
-          "reference_px", reference_px, "finite and > slip_px and store_px, which noise sets");
+  test.reference = reference_px;
+  test.slip = slip_threshold_for(compared_px * motion_noise_factor(motion), options.false_slip);
+  test.store = slip_threshold_for(placed_px, false_slip_of_each(options.false_motion, dots));
+  expects(is_finite(reference_px) && reference_px > (std::max)(test.slip, test.store), owner,
+          "reference_px", reference_px, "finite and > slip and store, which noise sets");
   expects_valid(test);
   return test;
 }

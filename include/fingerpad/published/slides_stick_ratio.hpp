@@ -19,7 +19,7 @@
 #include "fingerpad/core/expects.hpp"
 #include "fingerpad/core/grid.hpp"
 #include "fingerpad/core/point.hpp"
-#include "fingerpad/slip/stick_ratio.hpp"
+#include "fingerpad/published/stick_ratio.hpp"
 
 namespace fingerpad {
 inline namespace v0 {
@@ -53,8 +53,8 @@ enum class SlidesReference : std::uint8_t {
 };
 
 struct SlidesOptions {
-  StickTest test = {};      ///< U, U_min and delta_0; min_dots is not looked at
-  DotWeights weights = {};  ///< S1, S2, S3
+  StickTest test = stick_test_px;  ///< U, U_min and delta_0, in px; nothing else is looked at
+  DotWeights weights = {};         ///< S1, S2, S3
   bool cancels_rotation = true;
   SlidesReference reference = SlidesReference::of_stick_region;
   SlidesScale scale = SlidesScale::across;
@@ -151,7 +151,7 @@ class SlidesStickRatio {
       state.result.reference_age = static_cast<Index>(state.frame - state.frames[reference]);
       answer(state.stored[reference], state);
     }
-    if (none == 0 || state.furthest[none - 1] > options_.test.store_px) {
+    if (none == 0 || state.furthest[none - 1] > options_.test.store) {
       store(state);
     }
     return state.result;
@@ -228,7 +228,7 @@ class SlidesStickRatio {
       --changed;
     }
     for (std::size_t i = state.size; i-- > changed;) {
-      if (state.furthest[i] > options_.test.reference_px) {
+      if (state.furthest[i] > options_.test.reference) {
         return i;
       }
     }
@@ -314,7 +314,7 @@ class SlidesStickRatio {
     SlidesResult& result = state.result;
     const bool grows = options_.delta == SlidesDelta::proportional;
     const double delta =
-        options_.test.slip_px * (grows ? result.furthest_px / options_.test.reference_px : 1.0);
+        options_.test.slip * (grows ? result.furthest_px / options_.test.reference : 1.0);
     double sticking = 0, touching = 0;
     for (std::size_t k = 0; k < cells(); ++k) {
       const bool touches = state.touches[k] != 0;

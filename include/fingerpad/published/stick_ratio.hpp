@@ -102,12 +102,15 @@ RatioMeasures measures_of(std::span<const S> ratios) {
   return m;
 }
 
+/// As printed, for dots in px. U_min is not printed.
+inline constexpr StickTest stick_test_px = {.reference = 2, .store = 0.5, .slip = 0.24, .pitch = 1};
+
 template <scalar S = float>
 using StickRatio = fingerpad::StickRatio<ReferenceDotMotion<>, UpdatedReference, DotMean, S>;
 
 /// For a grid of rows x cols dots. Refuses bad parameters (parameter_error).
 template <scalar S = float>
-StickRatio<S> stick_ratio(Index rows, Index cols, const StickTest& test = {}) {
+StickRatio<S> stick_ratio(Index rows, Index cols, const StickTest& test = stick_test_px) {
   return StickRatio<S>(rows, cols, test);
 }
 
@@ -231,7 +234,7 @@ void denoise_positions(const published::DotMean& mean,
   const auto placed = [&](const DotIndex& d, Index down, Index right) {
     const Index k = (d.row + down) * layout.cols + d.col + right;
     return is_out_of_place(given.found.data(), layout, layout.dot_at(k)) ? no_dot<Point2<S>>()
-                                                          : at(given.found, k);
+                                                                         : at(given.found, k);
   };
   constexpr std::array<std::pair<int, int>, 4> steps = {{{0, 1}, {1, 0}, {1, -1}, {1, 1}}};
   for (const Index k : given.touching) {

@@ -26,31 +26,34 @@
 namespace fingerpad {
 inline namespace v0 {
 
-/// When dots are compared, and what counts as slip. In px, or in whatever unit the dots are in.
-/// What is given stands until the noise of the dots has been measured in frames in which nothing
-/// touches. Then delta_0 is what a sticking dot exceeds with a probability of 1 %, U no smaller
-/// than given and large enough that delta_0 / U is no larger, and U_min no smaller than given and
-/// what noise alone moves the furthest of all dots by, but for 1 %.
+/// When dots are compared, and what counts as slip: lengths in pitches, which hold for dots in mm,
+/// in m or in px of any camera. What is given stands until the noise of the dots has been measured
+/// in frames in which nothing touches. Then delta_0 is what a sticking dot exceeds with a
+/// probability of 1 %, U no smaller than given and large enough that delta_0 / U is no larger, and
+/// U_min no smaller than given and what noise alone moves the furthest of all dots by, but for 1 %.
 struct StickTest {
-  double reference_px = 2.0;  ///< U, > 0: the reference is the newest stored frame from which a dot
-                              ///< in contact has moved further
-  double store_px = 0.5;      ///< U_min (not printed), in [0, reference_px]: a frame is stored when
-                              ///< a dot has moved further from the newest stored one
-  double slip_px = 0.24;      ///< delta_0, > 0: a dot slips that differs from the object's motion
-                              ///< by more than this times d_max / U; for dots with other noise
-                              ///< than the published 0.06 px see calibrate/slip.hpp
-  Index min_dots = 5;         ///< >= 1: to compare; fewer give no ratio
-  Index free_frames = 8;      ///< >= 0: see above; 0: the thresholds stand as they are given
-  double hold_s = 0.2;        ///< >= 0: a contact lost and found again within this time is the same
-                              ///< one, and a clock may go back by as much
+  double reference = 0.1;  ///< U, > 0: the reference is the newest stored frame from which a dot in
+                           ///< contact has moved further; published: 2 px of about 20
+  double store = 0.025;    ///< U_min (not printed), in [0, reference]: a frame is stored when a dot
+                           ///< has moved further from the newest stored one
+  double slip = 0.012;     ///< delta_0, > 0: a dot slips that differs from the object's motion by
+                           ///< more than this times d_max / U; for dots with other noise than the
+                           ///< published 0.06 px of 20 see calibrate/slip.hpp
+  double pitch = 0;        ///< >= 0, of the dots, in their unit; 0: measured in the first frame of
+                           ///< each contact; 1: the lengths above are in the unit of the dots
+  Index min_dots = 5;      ///< >= 1: to compare; fewer give no ratio
+  Index free_frames = 8;   ///< >= 0: see above; 0: the thresholds stand as they are given
+  double hold_s = 0.2;     ///< >= 0: a contact lost and found again within this time is the same
+                           ///< one, and a clock may go back by as much
 };
 inline void expects_valid(const StickTest& test) {
-  expects(is_finite(test.reference_px) && test.reference_px > 0, "StickTest", "reference_px",
-          test.reference_px, "finite and > 0");
-  expects(is_finite(test.store_px) && test.store_px >= 0 && test.store_px <= test.reference_px,
-          "StickTest", "store_px", test.store_px, "in [0, reference_px]");
-  expects(is_finite(test.slip_px) && test.slip_px > 0, "StickTest", "slip_px", test.slip_px,
+  expects(is_finite(test.reference) && test.reference > 0, "StickTest", "reference", test.reference,
           "finite and > 0");
+  expects(is_finite(test.store) && test.store >= 0 && test.store <= test.reference, "StickTest",
+          "store", test.store, "in [0, reference]");
+  expects(is_finite(test.slip) && test.slip > 0, "StickTest", "slip", test.slip, "finite and > 0");
+  expects(is_finite(test.pitch) && test.pitch >= 0, "StickTest", "pitch", test.pitch,
+          "finite and >= 0");
   expects(is_finite(test.hold_s) && test.hold_s >= 0, "StickTest", "hold_s", test.hold_s,
           "finite and >= 0");
   expects(test.free_frames >= 0, "StickTest", "free_frames",
@@ -63,7 +66,7 @@ inline void expects_valid(const StickTest& test) {
 ///   Motion     StickConsensus<>  the motion of all dots that stick together
 ///   Reference  UpdatedReference  a stored frame far enough back
 ///   Denoising  ResidualMean      take this for dots as a camera finds them
-///              NoDenoising       take this when their noise is far below slip_px
+///              NoDenoising       take this when their noise is far below `slip`
 /// The printed forms are policies too: published/stick_ratio.hpp has them, and the whole of
 /// them. Const: threads may share one estimator, each with a state of its own. A frame takes no
 /// memory, throws nothing, and needs O(rows cols) time for each stored frame that it looks at,
@@ -166,11 +169,13 @@ class StickRatio {
   }
 
   /// The thresholds for the noise that was measured.
-  detail::stick::StickLengths lengths_of(const S& pitch_sq, const State& state) const {
+  detail::stick::StickLengths lengths_of(const State& state) const {
     using detail::stick::noise_left_by;
-    const detail::stick::StickLengths given = {test_.reference_px, test_.store_px, test_.slip_px};
+    const double pitch_px = std::sqrt(static_cast<double>(value(state.pitch_sq)));
+    const double unit = test_.pitch > 0 ? test_.pitch : pitch_px > 0 ? pitch_px : 1;
+    const detail::stick::StickLengths given = {unit * test_.reference, unit * test_.store,
+                                               unit * test_.slip};
     const double left = noise_left_by(denoising_);
-    const double pitch_px = std::sqrt(static_cast<double>(value(pitch_sq)));
     if (!(state.noise_px > 0) || !(left > 0)) {
       return given;
     }
@@ -205,8 +210,12 @@ class StickRatio {
       return state.given.count > 0 ? StickStatus::too_few_dots : StickStatus::no_dots;
     }
     const S pitch_sq = mean_pitch_sq(touching, state.now.data(), layout_);
-    const StickLengths px = lengths_of(pitch_sq, state);
-    if (is_wrong_scale(pitch_sq, px.reference, px.slip)) {
+    if (state.repository.size() == 0) {
+      state.pitch_sq = pitch_sq;
+    }
+    const StickLengths px = lengths_of(state);
+    if (is_wrong_scale(pitch_sq, px.reference, px.slip) || is_rescaled(pitch_sq, state.pitch_sq)) {
+      state.repository.clear();  // nothing in another unit is comparable
       return StickStatus::wrong_scale;
     }
     const S reference_sq = S(square(px.reference));
@@ -234,6 +243,7 @@ class StickRatio {
     }
     if (!state.clock.touched_within(test_.hold_s)) {
       state.forget();
+      state.free = state.given.found;
     }
     return StickStatus::no_contact;
   }
@@ -247,6 +257,9 @@ class StickRatio {
                             state.given.touching, layout_, choice.furthest_sq};
     if (count_pairs(pair) < test_.min_dots) {
       return StickStatus::too_few_dots;
+    }
+    if (falls_back(pair, state.free)) {
+      return StickStatus::falls_back;
     }
     const Index reference = first_dot(pair, state);
     const S slip = S(px.slip / px.reference);

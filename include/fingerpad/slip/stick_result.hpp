@@ -25,11 +25,13 @@ enum class StickStatus : std::uint8_t {
   updated,       ///< the ratio is that of this frame
   standing,      ///< the dots have hardly moved since the newest stored frame
   no_reference,  ///< no stored frame is far enough away in the direction of motion
+  falls_back,    ///< the dots go back toward where they are on the free pad, by more than they go
+                 ///< aside: a pad that springs back moves as one, stuck or not
   too_few_dots,  ///< fewer dots to compare than StickTest::min_dots
   no_contact,    ///< nothing touches: after hold_s what was stored is forgotten
   no_dots,       ///< no dot at all was found: nothing is known, nothing is forgotten
   wrong_scale,   ///< U is more than half a pitch or less than a 200th of it, or a pitch less than
-                 ///< four delta_0: another unit?
+                 ///< four delta_0, or twice or half what it was: another unit?
   not_in_order,  ///< more than a fifth of the dots in contact are not between their neighbours
   jumped,        ///< the dots carry other names than before, all those of a neighbour, or rows and
                  ///< columns or two halves exchanged: the frame is left out
@@ -46,6 +48,8 @@ constexpr const char* name_of(StickStatus status) {
       return "standing";
     case StickStatus::no_reference:
       return "no reference";
+    case StickStatus::falls_back:
+      return "falls back";
     case StickStatus::too_few_dots:
       return "too few dots";
     case StickStatus::no_contact:

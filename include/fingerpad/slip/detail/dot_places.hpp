@@ -116,6 +116,14 @@ bool is_wrong_scale(const S& pitch_sq, double reference, double slip) {
   return S(0) < pitch_sq && (pitch_sq < least || most < pitch_sq);
 }
 
+/// Whether dots are twice as far apart as they were, or half as far, which no load does: they have
+/// come in another unit, or are other dots.
+template <class S>
+bool is_rescaled(const S& pitch_sq, const S& first_sq) {
+  return S(0) < pitch_sq && S(0) < first_sq &&
+         (S(4) * first_sq < pitch_sq || S(4) * pitch_sq < first_sq);
+}
+
 /// Mean of vectors, and of their squares.
 template <class S>
 struct MeanOfVectors {
