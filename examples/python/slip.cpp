@@ -57,9 +57,11 @@ class Ratio {
 void bind_slip(py::module_& module) {
   bind_options<StickTest>(module, "StickTest",
                           "When dots are compared, and what is slip; slip/stick_ratio.hpp.")
-      .def_readwrite("reference_px", &StickTest::reference_px, "U, px, > 0")
-      .def_readwrite("store_px", &StickTest::store_px, "U_min, px, in [0, reference_px]")
-      .def_readwrite("slip_px", &StickTest::slip_px, "delta_0, px, > 0")
+      .def_readwrite("reference", &StickTest::reference, "U, pitches, > 0")
+      .def_readwrite("store", &StickTest::store, "U_min, pitches, in [0, reference]")
+      .def_readwrite("slip", &StickTest::slip, "delta_0, pitches, > 0")
+      .def_readwrite("pitch", &StickTest::pitch,
+                     "of the dots; 0: measured; 1: the three above are in their unit")
       .def_readwrite("min_dots", &StickTest::min_dots, ">= 1")
       .def_readwrite("free_frames", &StickTest::free_frames,
                      "frames of the free pad that tell the noise; 0: none")

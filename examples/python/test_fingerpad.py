@@ -189,8 +189,8 @@ def test_a_mistake_is_an_exception_with_its_reason(pad, estimate):
         estimate(np.zeros((480, 480, 3), "u1, u2")["f1"][..., 0], green.astype(np.uint16))
     with pytest.raises(ValueError, match=r"^Camera: pitch_mm = -1, must be finite and > 0$"):
         fp.Wrench(fp.Camera(pitch_mm=-1), 480, 480, side_dots()[0])
-    with pytest.raises(fp.ParameterError, match="slip_px"):
-        fp.StickRatio(9, 9, fp.StickTest(slip_px=0))
+    with pytest.raises(fp.ParameterError, match="slip = 0"):
+        fp.StickRatio(9, 9, fp.StickTest(slip=0))
     with pytest.raises(ValueError, match="9 x 9"):
         fp.StickRatio(9, 9)(np.zeros((8, 9, 2)), np.ones((8, 9), bool))
     with pytest.raises(fp.ParameterError, match="usable samples"):
