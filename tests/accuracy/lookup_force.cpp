@@ -6,20 +6,24 @@
 #include <array>
 #include <cmath>
 #include <iomanip>
+#include <map>
 #include <span>
 #include <sstream>
 #include <string>
 #include <vector>
 
 #include "fingerpad/calibrate/force.hpp"
+#include "fingerpad/contact/equivalent_flat_area.hpp"
 #include "fingerpad/force/normal_force.hpp"
 #include "fingerpad/force/shear.hpp"
 #include "support/catch.hpp"
 #include "support/contact_records.hpp"
+#include "support/wrench_frames.hpp"
 
 using namespace fingerpad;
 using test::ContactDotsOf;
 using test::ContactMeasure;
+using test::Image;
 
 namespace {
 
@@ -191,8 +195,8 @@ TEST_CASE("normal force of plates, calibrated on other scenes", "[force]") {
 }
 
 TEST_CASE("normal force of other shapes from curves of plates", "[force]") {
-  // No goal is set, and none could be met: a sphere or a cylinder of the same area presses harder.
-  // That area and depth disagree is what tells.
+  // A sphere or a cylinder of the same area presses harder. That area and depth disagree is what
+  // tells; the equivalent flat area, below, is what helps.
   Table table("Other shapes, calibrated on all four scenes of plates, degree 3", "N", "bias/N");
   Table disagree("Contacts of which area and depth disagree beyond 3", "N", "flagged");
   for (const std::string& scene : others) {
@@ -213,6 +217,65 @@ TEST_CASE("normal force of other shapes from curves of plates", "[force]") {
   }
   table.show();
   disagree.show();
+}
+
+namespace {
+
+/// A height map of the finite elements, what touches it, and its true load.
+struct PressedMembrane {
+  OrthographicCamera<double> camera{79.5, 79.5, 0.24};
+  std::string scene;
+  double force_n = 0;  ///< along z, negative
+  double area_mm2 = 0;
+  Image<double> height = Image<double>(160, 160, test::nan);
+  Image<std::uint8_t> mask = Image<std::uint8_t>(160, 160);
+
+  explicit PressedMembrane(const test::WrenchFrame& frame) : scene(frame.scene) {
+    const test::Membrane membrane(frame.heights);
+    const test::TrueContact contact(frame.heights);
+    for (Index i = 0; i < 160; ++i) {
+      for (Index j = 0; j < 160; ++j) {
+        const auto p = point_at(camera, double(i), double(j), 0.0);
+        mask(i, j) = contact(p.x, p.y) ? 255 : 0;
+        if (std::hypot(p.x, p.y) < test::base_radius_mm) {
+          height(i, j) = membrane(p.x, p.y);
+        }
+      }
+    }
+    for (const auto& r : test::contact_records({scene})) {
+      if (std::abs(r.force_n.z - frame.force_n.z) < std::abs(force_n - frame.force_n.z)) {
+        area_mm2 = r.area_mm2;
+        force_n = r.force_n.z;
+      }
+    }
+  }
+};
+
+}  // namespace
+
+TEST_CASE("normal force of any shape from a curve of plates, by the equivalent flat area",
+          "[force]") {
+  // The curve has seen plates alone, and no tilted one. Its error is a share of 9.93 N.
+  const auto force = calibrated<3>(plates, ContactMeasure::area);
+  Table table("All shapes, calibrated on all four scenes of plates, degree 3", "N", "by area");
+  std::map<std::string, std::array<Errors, 2>> found;
+  for (const auto& frame : test::wrench_frames()) {
+    const PressedMembrane pressed(frame);
+    const auto equivalent = equivalent_flat_area(pressed.camera, pressed.mask, pressed.height,
+                                                 pressed.area_mm2, {.span_px = 4, .step_px = 1});
+    REQUIRE(equivalent.ok());
+    auto& [by_equivalent, by_area] = found[pressed.scene];
+    by_equivalent.add(force(equivalent.area_mm2).force_n + pressed.force_n, pressed.force_n);
+    by_area.add(force(pressed.area_mm2).force_n + pressed.force_n, pressed.force_n);
+  }
+  for (const auto& [scene, errors] : found) {
+    table.add(scene, errors[0], full_scale_n(), rounded(errors[1].worst, 3));
+    CAPTURE(scene, errors[0].worst, errors[1].worst);
+    CHECK(errors[0].worst < 0.02 * full_scale_n());  // goal 0.04; 0.013 measured, the cylinder
+    const bool round_object = scene == "roll" || scene == "cylinder";
+    CHECK((errors[1].worst > 0.09 * full_scale_n()) == round_object);
+  }
+  table.show();
 }
 
 namespace {
