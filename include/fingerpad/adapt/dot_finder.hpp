@@ -51,7 +51,12 @@ struct DotFinderOptions {
 /// Const: what is remembered of a pad is a State.
 class DotFinder {
  public:
-  using State = DotTracker::State;
+  /// What is remembered of one pad. A value: copy it to try something, assign start() to forget.
+  class State {
+    friend DotFinder;
+    DotTracker::State dots;
+    detail::SpotWorkspace workspace;
+  };
 
   /// Looks for the grid in `free_frame`: a picture of the free pad, 8 or 16 bit (grey levels times
   /// 256), of one, three or four channels. Where it shows no grid of 9 or more dots, ok() is false
@@ -99,17 +104,21 @@ class DotFinder {
   }
 
   /// The pad as the free frame shows it; ok() must be true.
-  State start() const { return tracker_->start(); }
+  State start() const {
+    State state;
+    state.dots = tracker_->start();
+    return state;
+  }
 
   /// The dots of the next frame, in the order in which they are printed; NaN where one is lost.
-  /// Takes O(pixels + dots) time, and more after a leap of more than a third of a pitch. OpenCV
-  /// takes its buffers from the heap; nothing is kept but `state`.
+  /// Takes O(pixels + dots) time, and more after a leap of more than a third of a pitch. Small
+  /// buffers come from the heap, those of the frame's size stay in `state`: one for each thread.
   template <dot_grid Dots>
   DotResult operator()(const cv::Mat& frame, Dots& dots_px, State& state) const {
     if (!ok() || frame.size() != size_ || !detail::is_picture(frame)) {
       return {};
     }
-    return (*tracker_)(spots_->find(frame), dots_px, state);
+    return (*tracker_)(spots_->find(frame, state.workspace), dots_px, state.dots);
   }
 
  private:
@@ -158,7 +167,8 @@ class DotFinder {
                          const DotFinderOptions& options,
                          const detail::SpotLook& look) {
     const detail::SpotFinder finder(frame.size(), look, options.where);
-    const std::vector<Point2<double>> spots = finder.find(frame);
+    detail::SpotWorkspace workspace;
+    const std::vector<Point2<double>> spots = finder.find(frame, workspace);
     Attempt one{look, detail::lattice_of(spots), {}, 0};
     std::vector<Point2<double>> dots;
     for (const Point2<double>& dot : one.dots.cells()) {

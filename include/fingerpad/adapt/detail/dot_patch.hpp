@@ -29,12 +29,12 @@ class DotPatch {
     const cv::Rect box = square(place, radius_px) & box_;
     for (int i = box.y; i < box.y + box.height; ++i) {
       const float* row = dark_.data() + (i - box_.y) * box_.width - box_.x;
-      for (int j = box.x; j < box.x + box.width; ++j) {
-        const double x = j - place.x;
-        const double y = i - place.y;
-        if (x * x + y * y <= radius_px * radius_px) {
-          visit(x, y, static_cast<double>(row[j]));
-        }
+      const double y = i - place.y;
+      const double half_px = std::sqrt((std::max)(radius_px * radius_px - y * y, 0.0));
+      const int first = (std::max)(cvCeil(place.x - half_px), box.x);
+      const int last = (std::min)(cvFloor(place.x + half_px), box.x + box.width - 1);
+      for (int j = first; j <= last; ++j) {
+        visit(j - place.x, y, static_cast<double>(row[j]));
       }
     }
   }

@@ -42,6 +42,26 @@ inline bool is_picture(const cv::Mat& frame) {
          (channels == 1 || channels == 3 || channels == 4);
 }
 
+/// Pictures that a frame is turned into on the way. They are kept for the next frame: fresh memory
+/// costs as much time as all that is done in it. A copy is empty, as OpenCV's would be shared.
+class SpotWorkspace {
+ public:
+  SpotWorkspace() = default;
+  SpotWorkspace(const SpotWorkspace&) {}
+  SpotWorkspace& operator=(const SpotWorkspace&) { return *this; }
+
+ private:
+  friend class SpotFinder;
+  // Of the size of the frame made smaller:
+  cv::Mat eight_bit, small;
+  std::array<cv::Mat, 4> planes;
+  cv::Mat_<float> light, part, around;
+  cv::Mat_<std::uint8_t> dull, shown;  // 255 where there is no reflection, where light counts
+  cv::Mat_<float> half;                // of half that size
+  cv::Mat_<float> ground;              // light around, made smaller once more
+  double brightest = 0;                // light above is a reflection
+};
+
 class SpotFinder {
  public:
   /// `where`: nonzero where spots may be; empty: anywhere.
@@ -50,7 +70,8 @@ class SpotFinder {
         where_(where),
         fine_((std::max)(1, static_cast<int>(look.radius_px / 1.5))),
         coarse_((std::max)(1, static_cast<int>(look.pitch_px / fine_ / 4))),
-        pad_(size / fine_ / coarse_, 1.0F) {
+        pad_(size / fine_ / coarse_, 1.0F),
+        around_(two_boxes(0.75 * look.pitch_px / (fine_ * coarse_))) {
     if (!where.empty()) {
       // Cells of the border hold a part of the ring around the pad.
       cv::Mat inside = where > 0;
@@ -58,14 +79,16 @@ class SpotFinder {
       where_ = inside;
       shrunk(inside, coarse_ * fine_).convertTo(pad_, CV_32F, 1.0 / 255);
       pad_.setTo(0, pad_ < 0.99);
-      outside_ = shrunk(inside, fine_) < 255;
+      inside_ = shrunk(inside, fine_) == 255;
     }
   }
 
   /// Centers of the spots of a frame of the size given, in any order; none where there are more
   /// than `max_spots`, which is the grain of the picture.
-  std::vector<Place> find(const cv::Mat& frame, std::size_t max_spots = 4000) const {
-    Frame seen = look_at(frame);
+  std::vector<Place> find(const cv::Mat& frame,
+                          SpotWorkspace& seen,
+                          std::size_t max_spots = 4000) const {
+    look_at(frame, seen);
     const std::vector<Place> rough = peaks(seen);
     std::vector<Place> found;
     if (rough.size() > max_spots) {
@@ -79,9 +102,9 @@ class SpotFinder {
       const auto next = map.nearest(map[k], 2 * reach_px, k);
       const double reach =
           next.spot >= 0 ? (std::min)(reach_px, 0.55 * next.distance_px) : reach_px;
-      read(seen, map[k], ring_px + fine_ + 1, patch);
+      read(frame, seen, map[k], ring_px + fine_ + 1, patch);
       const Place center = patch.center_of_gravity(map[k], reach);
-      if (is_whole(center, seen.frame.size()) && looks_like_a_dot(patch, center)) {
+      if (is_whole(center, frame.size()) && looks_like_a_dot(patch, center)) {
         found.push_back(center);
       }
     }
@@ -93,11 +116,12 @@ class SpotFinder {
     if (spots.empty()) {
       return {};
     }
-    const Frame seen = look_at(frame);
+    SpotWorkspace seen;
+    look_at(frame, seen);
     std::vector<double> radii, contrasts;
     DotPatch patch;
     for (const Place& spot : spots) {
-      read(seen, spot, look_.pitch_px / 2, patch);
+      read(frame, seen, spot, look_.pitch_px / 2, patch);
       const double middle = patch.mean_within(spot, 0, (std::max)(look_.radius_px / 2, 1.0));
       int count = 0;
       patch.for_each(spot, look_.pitch_px / 2,
@@ -112,21 +136,32 @@ class SpotFinder {
   static constexpr double min_light = 2;  // grey levels; darker places show nothing
   static constexpr double glare = 2;      // light above this many times the median is a reflection
 
-  /// A frame and what is known of its light.
-  struct Frame {
-    const cv::Mat& frame;
-    cv::Mat_<float> light;   ///< made smaller by fine_
-    cv::Mat_<float> ground;  ///< light around, made smaller by fine_ and coarse_
-    double brightest;        ///< light above is a reflection
-  };
+  /// What two means over `width` cells, one after the other, weigh the cells along a line by.
+  static cv::Mat_<float> two_boxes(double width) {
+    const int half = (std::max)(static_cast<int>(std::lround(0.5 * (width - 1))), 1);
+    const int side = 2 * half + 1;
+    cv::Mat_<float> weights(1, 2 * side - 1);
+    for (int k = 0; k < weights.cols; ++k) {
+      weights(k) =
+          static_cast<float>(side - std::abs(k - 2 * half)) / static_cast<float>(side * side);
+    }
+    return weights;
+  }
 
   /// Mean over squares of `factor` pixels; what is left over at the right and below is dropped.
-  static cv::Mat shrunk(const cv::Mat& image, int factor) {
+  static void shrink(const cv::Mat& image, int factor, cv::Mat& small) {
     const cv::Size size = image.size() / factor;
-    cv::Mat small = image;
-    if (factor > 1) {
-      cv::resize(image({0, 0, size.width * factor, size.height * factor}), small, size, 0, 0,
-                 cv::INTER_AREA);
+    cv::resize(image({0, 0, size.width * factor, size.height * factor}), small, size, 0, 0,
+               cv::INTER_AREA);
+  }
+  /// The same in twos where that can be, which OpenCV does in a third of the time.
+  static cv::Mat shrunk(const cv::Mat& image, int factor) {
+    cv::Mat small = image({0, 0, image.cols / factor * factor, image.rows / factor * factor});
+    for (int step = 2; factor > 1; factor /= step) {
+      step = factor % 2 == 0 ? 2 : factor;
+      cv::Mat smaller;
+      shrink(small, step, smaller);
+      small = smaller;
     }
     return small;
   }
@@ -138,43 +173,44 @@ class SpotFinder {
   }
 
   /// Light in grey levels, bright spots made dark.
-  cv::Mat_<float> light_of(const cv::Mat& frame) const {
+  void light_of(const cv::Mat& frame, SpotWorkspace& seen) const {
     const double unit = unit_of(frame) * (look_.bright ? -1 : 1);
     const double offset = look_.bright ? 256 : 0;
-    cv::Mat_<float> light;
     if (frame.channels() == 1) {
-      frame.convertTo(light, CV_32F, unit, offset);
-      return light;
+      frame.convertTo(seen.light, CV_32F, unit, offset);
+      return;
     }
-    cv::Mat plane;
-    for (int c = 0; c < 3; ++c) {
-      const double weight = unit * look_.color_weights[static_cast<std::size_t>(c)];
-      if (light.empty() || weight < 0 || weight > 0) {
-        cv::extractChannel(frame, plane, c);
-        light.empty() ? plane.convertTo(light, CV_32F, weight, offset)
-                      : cv::addWeighted(plane, weight, light, 1, 0, light, CV_32F);
-      }
+    cv::split(frame, seen.planes.data());
+    seen.planes[0].convertTo(seen.light, CV_32F, unit * look_.color_weights[0], offset);
+    for (const std::size_t c : {1U, 2U}) {
+      seen.planes[c].convertTo(seen.part, CV_32F, unit * look_.color_weights[c]);
+      cv::add(seen.light, seen.part, seen.light);
     }
-    return light;
   }
 
-  Frame look_at(const cv::Mat& frame) const {
-    cv::Mat small = frame;
+  void look_at(const cv::Mat& frame, SpotWorkspace& seen) const {
+    const cv::Mat* all = &frame;
     if (fine_ > 1 && frame.depth() == CV_16U) {
-      frame.convertTo(small, CV_8U, 1.0 / 256);  // spots show in 8 bit; centers take all 16
+      frame.convertTo(seen.eight_bit, CV_8U,
+                      1.0 / 256);  // spots show in 8 bit; centers take all 16
+      all = &seen.eight_bit;
     }
-    Frame seen{frame, light_of(shrunk(small, fine_)), {}, 0};
+    if (fine_ > 1) {
+      shrink(*all, fine_, seen.small);
+      all = &seen.small;
+    }
+    light_of(*all, seen);
     const cv::Mat_<float> light = shrunk(seen.light, coarse_);
     seen.brightest = glare * median_light(light);
-    seen.ground = ground_of(seen, light);
-    return seen;
+    cv::compare(seen.light, seen.brightest, seen.dull, cv::CMP_LE);
+    find_ground(seen, light);
   }
 
   double median_light(const cv::Mat_<float>& light) const {
+    const int step = 1 + light.rows / 50;  // some thousand cells tell it as well as all
     std::vector<float> inside;
-    inside.reserve(light.total());
-    for (int i = 0; i < light.rows; ++i) {
-      for (int j = 0; j < light.cols; ++j) {
+    for (int i = 0; i < light.rows; i += step) {
+      for (int j = 0; j < light.cols; j += step) {
         if (pad_(i, j) > 0) {
           inside.push_back(light(i, j));
         }
@@ -185,7 +221,7 @@ class SpotFinder {
 
   /// The ground's light: the mean of what is left around when what is darker than its surroundings
   /// is taken away, first cell by cell of `light`, then pixel by pixel.
-  cv::Mat_<float> ground_of(const Frame& seen, const cv::Mat_<float>& light) const {
+  void find_ground(SpotWorkspace& seen, const cv::Mat_<float>& light) const {
     const double lit = 1 - look_.min_contrast;
     cv::Mat weight = pad_.clone();
     cv::Mat_<float> ground;
@@ -194,56 +230,58 @@ class SpotFinder {
       ground = mean_around(light.mul(weight), weight);
       weight.setTo(0, light < ground * lit);
     }
-    cv::Mat around, kept, dark;
-    cv::resize(ground, around, seen.light.size(), 0, 0, cv::INTER_LINEAR);
-    cv::compare(seen.light, around * lit, dark, cv::CMP_LE);
-    cv::bitwise_or(dark, seen.light > seen.brightest, dark);
-    seen.light.copyTo(kept);
-    kept.setTo(0, dark);
-    around.setTo(1);
-    around.setTo(0, dark);
-    return mean_around(shrunk(kept, coarse_).mul(pad_), shrunk(around, coarse_).mul(pad_));
+    cv::resize(ground * lit, seen.around, seen.light.size(), 0, 0, cv::INTER_LINEAR);
+    cv::compare(seen.light, seen.around, seen.shown, cv::CMP_GT);
+    cv::bitwise_and(seen.shown, seen.dull, seen.shown);
+    seen.shown.convertTo(seen.part, CV_32F, 1.0 / 255);
+    weight = shrunk(seen.part, coarse_).mul(pad_);
+    cv::multiply(seen.light, seen.part, seen.part);
+    constexpr double no_light = 1e-3;  // to divide by where nothing is known
+    cv::max(mean_around(shrunk(seen.part, coarse_).mul(pad_), weight), no_light, seen.ground);
   }
 
   /// Weighted mean around each cell, of sums and weights; 0 where there is no weight.
   cv::Mat_<float> mean_around(const cv::Mat& sum, const cv::Mat& weight) const {
-    const double pitch = look_.pitch_px / (fine_ * coarse_);
-    const int half = (std::max)(static_cast<int>(std::lround(0.375 * pitch - 0.5)), 1);
-    const int side = 2 * half + 1;  // three quarters of a pitch
-    const auto blur = [&](const cv::Mat& from, cv::Mat& to) {
-      cv::blur(from, to, {side, side}, {-1, -1}, cv::BORDER_CONSTANT);
-      cv::blur(to, to, {side, side}, {-1, -1}, cv::BORDER_CONSTANT);
+    const auto blur_over = [&](const cv::Mat& from, cv::Mat& to) {
+      cv::sepFilter2D(from, to, CV_32F, around_, around_, {-1, -1}, 0, cv::BORDER_CONSTANT);
     };
     cv::Mat sums, weights;
-    blur(sum, sums);
-    blur(weight, weights);
+    blur_over(sum, sums);
+    blur_over(weight, weights);
     cv::Mat_<float> mean;
     cv::divide(sums, cv::max(weights, 1e-6), mean);
     return mean;
   }
 
+  /// Out to two and a half standard deviations or more.
+  static void blur(cv::Mat& image, double sigma) {
+    const int side = 2 * static_cast<int>(std::ceil(2.5 * sigma)) + 1;
+    cv::GaussianBlur(image, image, {side, side}, sigma);
+  }
+
   /// Where the difference of two blurs, which answers to spots of about the dots' size and to no
   /// slope, is the largest around.
-  std::vector<Place> peaks(Frame& seen) const {
+  std::vector<Place> peaks(SpotWorkspace& seen) const {
     cv::Mat_<float>& dark = seen.light;  // which is not looked at again
-    cv::Mat_<float> ground, wide, largest;
-    const cv::Mat reflection = dark > seen.brightest;
-    cv::resize(seen.ground, ground, dark.size(), 0, 0, cv::INTER_LINEAR);
-    cv::divide(dark, ground, dark, -1);
-    cv::add(dark, 1, dark);
-    dark.setTo(0, reflection);
-    dark.setTo(0, ground <= min_light);
-    if (!outside_.empty()) {
-      dark.setTo(0, outside_);
+    cv::resize(seen.ground, seen.around, dark.size(), 0, 0, cv::INTER_LINEAR);
+    cv::compare(seen.around, min_light, seen.shown, cv::CMP_GT);
+    cv::bitwise_and(seen.shown, seen.dull, seen.shown);
+    if (!inside_.empty()) {
+      cv::bitwise_and(seen.shown, inside_, seen.shown);
     }
+    cv::divide(dark, seen.around, dark, -1);
+    cv::add(dark, 1, dark);
+    seen.shown.convertTo(seen.part, CV_32F, 1.0 / 255);
+    cv::multiply(dark, seen.part, dark);
     const double radius = look_.radius_px / fine_;
-    cv::GaussianBlur(dark, wide, {}, 1.2 * radius);
-    cv::GaussianBlur(dark, dark, {}, 0.5 * radius);
-    cv::Mat_<float>& response = wide;
-    cv::subtract(dark, wide, response);
+    blur(dark, 0.5 * radius);
+    // What is blurred more shows as much in half the pixels.
+    cv::resize(dark, seen.half, dark.size() / 2, 0, 0, cv::INTER_LINEAR);
+    blur(seen.half, 0.5 * std::sqrt(1.2 * 1.2 - 0.5 * 0.5) * radius);
+    cv::resize(seen.half, seen.around, dark.size(), 0, 0, cv::INTER_LINEAR);
+    cv::Mat_<float>& response = dark;
+    cv::subtract(dark, seen.around, response);
     const int reach = (std::max)(static_cast<int>(std::lround(0.8 * radius)), 1);
-    cv::dilate(response, largest,
-               cv::getStructuringElement(cv::MORPH_ELLIPSE, {2 * reach + 1, 2 * reach + 1}));
     const auto least = static_cast<float>(0.25 * look_.min_contrast);
     std::vector<Place> found;
     const double near_px = fine_ * (reach + 0.5);
@@ -252,9 +290,8 @@ class SpotFinder {
     };
     for (int i = 0; i < response.rows; ++i) {
       const float* here = response[i];
-      const float* most = largest[i];
       for (int j = 0; j < response.cols; ++j) {
-        if (here[j] > least && here[j] >= most[j]) {
+        if (here[j] > least && is_peak(response, i, j, reach)) {
           // Pixels of the same height on both sides of a middle are one spot.
           const Place peak{fine_ * (j + 0.5) - 0.5, fine_ * (i + 0.5) - 0.5};
           const auto above = std::find_if(found.rbegin(), found.rend(), [&](const Place& other) {
@@ -269,16 +306,41 @@ class SpotFinder {
     return found;
   }
 
-  void read(const Frame& seen, const Place& place, double half_px, DotPatch& patch) const {
-    patch.move_to(place, half_px, seen.frame.size());
-    seen.frame.depth() == CV_16U ? read_as<std::uint16_t>(seen, place, patch)
-                                 : read_as<std::uint8_t>(seen, place, patch);
+  /// Whether nothing within `reach` of a pixel is higher.
+  static bool is_peak(const cv::Mat_<float>& response, int row, int col, int reach) {
+    const float here = response(row, col);
+    const int left = (std::max)(col - reach, 0);
+    const int right = (std::min)(col + reach, response.cols - 1);
+    // The nearest rows first: most pixels have a higher one beside them.
+    for (int away = 0; away <= reach; ++away) {
+      for (const int i : {row - away, row + away}) {
+        if (i >= 0 && i < response.rows &&
+            std::any_of(response[i] + left, response[i] + right + 1,
+                        [&](float other) { return other > here; })) {
+          return false;
+        }
+      }
+    }
+    return true;
+  }
+
+  void read(const cv::Mat& frame,
+            const SpotWorkspace& seen,
+            const Place& place,
+            double half_px,
+            DotPatch& patch) const {
+    patch.move_to(place, half_px, frame.size());
+    frame.depth() == CV_16U ? read_as<std::uint16_t>(frame, seen, place, patch)
+                            : read_as<std::uint8_t>(frame, seen, place, patch);
   }
 
   template <class Pixel>
-  void read_as(const Frame& seen, const Place& place, DotPatch& patch) const {
-    const int channels = seen.frame.channels();
-    const auto unit = static_cast<float>(unit_of(seen.frame) * (look_.bright ? -1 : 1));
+  void read_as(const cv::Mat& frame,
+               const SpotWorkspace& seen,
+               const Place& place,
+               DotPatch& patch) const {
+    const int channels = frame.channels();
+    const auto unit = static_cast<float>(unit_of(frame) * (look_.bright ? -1 : 1));
     const float offset = look_.bright ? 256.0F : 0.0F;
     std::array<float, 3> weight = {unit, 0, 0};
     for (std::size_t c = 0; c < 3 && channels > 1; ++c) {
@@ -292,7 +354,7 @@ class SpotFinder {
     const auto brightest = static_cast<float>(seen.brightest);
     constexpr auto darkest = static_cast<float>(min_light);
     for (int i = box.y; i < box.y + box.height; ++i) {
-      const Pixel* pixel = seen.frame.ptr<Pixel>(i) + box.x * channels;
+      const Pixel* pixel = frame.ptr<Pixel>(i) + box.x * channels;
       float* dark = patch.row(i);
       const float first = ground.at(static_cast<float>(box.x), static_cast<float>(i));
       for (int j = 0; j < box.width; ++j, pixel += channels) {
@@ -320,7 +382,7 @@ class SpotFinder {
     }
   };
 
-  Plane ground_at(const Frame& seen, const Place& place) const {
+  Plane ground_at(const SpotWorkspace& seen, const Place& place) const {
     const int cell = fine_ * coarse_;
     const auto within = [](double index, int count) {
       return (std::min)((std::max)(index, 0.0), count - 1.0);
@@ -360,11 +422,12 @@ class SpotFinder {
   }
 
   SpotLook look_;
-  cv::Mat_<std::uint8_t> where_;    ///< 255 where spots may be; empty: anywhere
-  int fine_;                        ///< pixels a side of what spots are looked for in
-  int coarse_;                      ///< of those a side of what the ground is told by
-  cv::Mat_<float> pad_;             ///< coarse: 1 where spots may be
-  cv::Mat_<std::uint8_t> outside_;  ///< fine: 255 where they may not; empty: anywhere
+  cv::Mat_<std::uint8_t> where_;   ///< 255 where spots may be; empty: anywhere
+  int fine_;                       ///< pixels a side of what spots are looked for in
+  int coarse_;                     ///< of those a side of what the ground is told by
+  cv::Mat_<float> pad_;            ///< coarse: 1 where spots may be
+  cv::Mat_<float> around_;         ///< coarse: weights of the cells around, along rows and columns
+  cv::Mat_<std::uint8_t> inside_;  ///< fine: 255 where they may be; empty: anywhere
 };
 
 }  // namespace detail
