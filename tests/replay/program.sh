@@ -1,15 +1,16 @@
 #!/usr/bin/env bash
 # SPDX-FileCopyrightText: 2026 The fingerpad authors
 # SPDX-License-Identifier: MIT
-# program.sh RECORDING REPLAY [RENDER]: the programs as a user meets them. Exit statuses, one line on
-# standard error, nothing left behind; the recording is rendered again byte for byte; the depth is
-# as near the truth as docs/depth/depth.md says. Without RENDER only what sanitizers can tell more of:
-# a few frames, and no figures.
+# program.sh RECORDING REPLAY [RENDER SLIP_TRIALS]: the programs as a user meets them. Exit statuses,
+# one line on standard error, nothing left behind; the recording is rendered again byte for byte;
+# the depth is as near the truth as docs/depth/depth.md says; labels that nobody knows are refused.
+# Without RENDER only what sanitizers can tell more of: a few frames, and no figures.
 set -uo pipefail
 export LC_ALL=C
 recording=$1
 replay=$2
 render=${3:-}
+slip_trials=${4:-}
 frames=4:7
 [[ -n $render ]] && frames=0:7
 work=$(mktemp -d)
@@ -120,6 +121,22 @@ for signal in TERM HUP; do
     [[ -z $(find "$work" -name '*out*') ]] || fail "a run left something behind after SIG$signal"
   fi
 done
+
+# Labelled trials: success is a hold, fail a slip; another label is no slip, but refused.
+if [[ -n $slip_trials ]]; then
+  for trial in 1 2; do
+    mkdir -p "$work/trials/rod/$trial"
+    cp "$recording"/frames/00000[0-3].png "$work/trials/rod/$trial"
+  done
+  printf '5 success 1 0 3 2 1\n5 fail 0 0 3 2 2\n' >"$work/trials/rod_result.dat"
+  "$slip_trials" "$work/trials" >"$work/table" || fail "slip_trials"
+  grep -q "^hold  1 " "$work/table" && grep -q "^slip  2 " "$work/table" ||
+    fail "slip_trials does not read success and fail: $(cat "$work/table")"
+  printf '5 slipped 0 0 3 2 2\n' >>"$work/trials/rod_result.dat"
+  "$slip_trials" "$work/trials" >/dev/null 2>"$work/stderr"
+  [[ $? == 1 ]] && grep -q 'rod_result.dat: unknown label "slipped"' "$work/stderr" ||
+    fail "slip_trials on an unknown label: $(cat "$work/stderr")"
+fi
 
 # What is wrong with a recording, before anything is computed.
 "$replay" "$recording" --check >"$work/said" || fail "the bundled recording: $(cat "$work/said")"
