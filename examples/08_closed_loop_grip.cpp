@@ -46,7 +46,7 @@ grip::Run run(bool controlled) {
     camera.look_at(load);
     const auto stick = stick_ratio(camera.dots(), camera.touch(), states_out, stick_state);
     const double ratio = double(stick.stick_ratio);
-    const auto grip = control(ratio, update_of(stick.status), frame_s, grip_state);
+    const auto grip = control(stick, frame_s, grip_state);
     record.push_back(
         {time_s, load_at(time_s), load.friction_limit_n(), force_n, ratio, load.slip_mm()});
     if (controlled) {

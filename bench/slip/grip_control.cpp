@@ -1,23 +1,19 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
-// Grip control: time of a call ("ns/pixel" is per call), and what laws do in a closed loop with
-// simulated fingertips (examples/grip): friction 0.4, 0.7 and 1, a load that rises from 0.4 N to
-// 3 N by 0.2, 0.5, 1 and 2 N/s, 30 frames/s, gripped at first with twice what the load needs.
-// Errors of a call: rounding, against long double. Errors of a loop, over the twelve runs: how far
-// the object slid, and the force at the end beyond the least that would do, as a share of that, of
-// the runs in which it slid less than 0.5 mm. "friction ratio": F/N of the slides on slip.
+// Grip control: time of a call ("ns/pixel" is per call), and what laws do in 40 closed loops with
+// simulated fingertips (tests/support/grip_runs.hpp). Errors of a call: rounding, against long
+// double. Errors of a loop, over the runs: how far the object slid, and the mean force beyond the
+// least that would hold, as a share of that, of the runs in which it slid less than 0.5 mm.
+// "friction ratio": F/N of the slides on slip.
 #include "fingerpad/slip/grip_control.hpp"
 
-#include <algorithm>
 #include <memory>
 #include <string>
 #include <vector>
 
 #include "bench/support/run.hpp"
-#include "examples/grip/camera.hpp"
 #include "fingerpad/published/friction_ratio.hpp"
-#include "fingerpad/slip/friction_limit.hpp"
-#include "fingerpad/slip/stick_ratio.hpp"
+#include "support/grip_runs.hpp"
 
 using namespace fingerpad;
 
@@ -45,7 +41,7 @@ struct Gripping {
 
   S next() {
     const auto update = calls.k % 4 == 0 ? RatioUpdate::fresh : RatioUpdate::unmoved;
-    const S force = control(S(calls.next()), update, S(0.01), state).force_n;
+    const S force = control({S(calls.next()), update}, S(0.01), state).force_n;
     if (calls.k % 64 == 0) {
       state.reset();
     }
@@ -87,55 +83,18 @@ void add_call(const std::string& name, const std::string& quantity, const std::s
       });
 }
 
-struct Outcome {
-  double slip_mm;
-  double beyond;  ///< the least force, as a share of it
-};
-
-enum class Fed { by_dots, by_dots_and_friction };
-
-/// With `law`, or with a constant force.
-template <class S>
-Outcome run(const GripLaw<S>* law, double friction, double rise_n_per_s, Fed fed) {
-  constexpr double first_n = 0.4, last_n = 3, frame_s = 1.0 / 30;
-  const grip::Fingertip tip{.friction = friction};
-  double force_n = 2 * first_n / friction;
-  const StickRatio stick_ratio(tip.dots, tip.dots);
-  const GripControl<S> control(law != nullptr ? *law : GripLaw<S>());
-  const FrictionLimit<S> limit;
-  auto limit_state = limit.start();
-  auto stick_state = stick_ratio.start();
-  auto grip_state = control.start(S(force_n));
-  std::vector<DotState> states(static_cast<std::size_t>(tip.dots * tip.dots));
-  const StridedView<DotState> states_out(states.data(), tip.dots, tip.dots, tip.dots);
-  grip::Camera camera(tip.dots);
-  grip::SlippingLoad load(tip, first_n, force_n);
-  const double end_s = (last_n - first_n) / rise_n_per_s + 3;
-  for (double time_s = 0; time_s < end_s && load.slip_mm() < 20; time_s += frame_s) {
-    load.advance((std::min)(first_n + rise_n_per_s * time_s, last_n), force_n, frame_s);
-    camera.look_at(load);
-    const auto stick = stick_ratio(camera.dots(), camera.touch(), states_out, stick_state);
-    const auto load_now =
-        fed == Fed::by_dots ? ContactLoad<S>{} : ContactLoad<S>{S(force_n), S(load.held_n())};
-    const auto slip = limit(load_now, S(stick.stick_ratio), update_of(stick.status), limit_state);
-    const auto grip = control(slip, S(frame_s), grip_state);
-    force_n = law != nullptr ? double(grip.force_n) : force_n;
-  }
-  return {load.slip_mm(), force_n * friction / last_n - 1};
-}
-
 struct Runs {
   std::vector<double> slip_mm, beyond;
 };
 
 template <class S>
-Runs all_runs(const GripLaw<S>* law, Fed fed) {
+Runs all_runs(const GripLaw<S>& law, const test::GripVariation& vary) {
   Runs runs;
-  for (const double friction : {0.4, 0.7, 1.0}) {
-    for (const double rise : {0.2, 0.5, 1.0, 2.0}) {
-      const Outcome o = run(law, friction, rise, fed);
-      runs.slip_mm.push_back(o.slip_mm);
-      runs.beyond.push_back(o.slip_mm < 0.5 ? o.beyond : not_a_number<double>());
+  for (const test::GripScene scene : test::grip_scenes) {
+    for (int k = 0; k < test::runs_of_a_grip_scene; ++k) {
+      const test::GripRun run = test::run_grip(law, scene, k, vary);
+      runs.slip_mm.push_back(run.slip_mm);
+      runs.beyond.push_back(run.slip_mm < 0.5 ? run.beyond : not_a_number<double>());
     }
   }
   return runs;
@@ -144,14 +103,13 @@ Runs all_runs(const GripLaw<S>* law, Fed fed) {
 template <class S = double>
 void add_loop(const std::string& name,
               const GripLaw<S>& law,
-              bool constant = false,
-              Fed fed = Fed::by_dots) {
+              const test::GripVariation& vary = {}) {
   const bench::Memory memory;
   const auto d = std::make_shared<Gripping<S>>(Gripping<S>{GripControl<S>(law)});
   bench::add(
       "closed loop/" + name, 1, memory.bytes(), [d] { benchmark::DoNotOptimize(d->next()); },
       [=, runs = Runs()](auto& counters) mutable {
-        runs = runs.beyond.empty() ? all_runs(constant ? nullptr : &law, fed) : runs;
+        runs = runs.beyond.empty() ? all_runs(law, vary) : runs;
         bench::note_errors(counters, "slip", "mm", runs.slip_mm);
         bench::note_errors(counters, "force beyond need", "share", runs.beyond);
       });
@@ -160,19 +118,18 @@ void add_loop(const std::string& name,
 }  // namespace
 
 int main(int argc, char** argv) {
-  add_loop("constant force", {}, true);
-  add_loop("default: set point 0.8, gain 60 N/s", {});
-  add_loop("default, dots and friction", {}, false, Fed::by_dots_and_friction);
-  add_loop<float>("default, float", {});
-  add_loop("gain 10 N/s", {.raise_gain_n_per_s = 10});
-  add_loop("gain 20 N/s", {.raise_gain_n_per_s = 20});
-  add_loop("gain 30 N/s", {.raise_gain_n_per_s = 30});
-  add_loop("set point 0.6", {.set_point = 0.6});
-  add_loop("set point 0.7", {.set_point = 0.7});
-  add_loop("set point 0.9", {.set_point = 0.9});
-  add_loop("a ratio lasts one frame", {.ratio_lasts_s = 0});
-  add_loop("one frame, and standing dots are trusted", {.ratio_lasts_s = 0, .sliding_ratio = 0});
-  add_loop("lowered by up to 1 N/s above 0.9", {.lower_above = 0.9, .lower_gain_n_per_s = 10});
+  const GripLaw<double> law;
+  add_loop("constant force", law, {.is_controlled = false});
+  add_loop("stick ratio alone", law, {.knows_force = false});
+  add_loop("dots and friction", law);
+  add_loop<float>("dots and friction, float", {});
+  add_loop("margin 0.1", {.slip_margin = 0.1});
+  add_loop("margin 0.25", {.slip_margin = 0.25});
+  add_loop("nothing searched", {.first_search_per_s = 0, .search_per_s = 0});
+  add_loop("taken with 1.5 times the least force", law, {.first = 1.5});
+  add_loop("twice the noise of dots", law, {.lateral_mm = 0.01, .depth_mm = 0.05});
+  add_loop("twice the noise of forces", law, {.force_share = 0.03});
+  add_loop("a gripper that lags by 50 ms", law, {.lag_s = 0.05});
   bench::add_streaming("closed loop");
   add_call<Gripping, double>("call/GripControl, double", "force", "N");
   add_call<Gripping, float>("call/GripControl, float", "force", "N");

@@ -14,6 +14,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 #include <numbers>
 #include <vector>
 
@@ -46,6 +47,7 @@ class SlippingLoad {
     for (int k = 0; k < 60; ++k) {
       advance(load_n, force_n, 1.0 / 30);
     }
+    slip_mm_ = 0;
   }
 
   /// For a time the object is pulled along x by `load_n`, and the tip presses with `force_n`.
@@ -61,14 +63,19 @@ class SlippingLoad {
     }
   }
 
+  /// From now on; a contact that gets wet, or comes to another face.
+  void set_friction(double friction) { tip_.friction = friction; }
+  /// Brings the middle of the contact to a place along x, as an object does that rolls.
+  void roll_to(double middle_mm) { middle_mm_ = middle_mm; }
+
   double x_mm(int row, int col) const { return place_mm(col) + shift_mm_[at(row, col)]; }
   double y_mm(int row, int) const { return place_mm(row); }
   bool touches(int row, int col) const { return touches_[at(row, col)] != 0; }
   /// The force along the contact, as gauges of the fingertip have it.
   double held_n() const { return held_n_; }
   double friction_limit_n() const { return tip_.friction * force_n_; }
-  /// How far the object has slid over the middle of the contact, where it slips last.
-  double slip_mm() const { return 0 - slid_mm_[at(tip_.dots / 2, tip_.dots / 2)]; }
+  /// How far the object has slid as a whole: the way of the dot that slips least, step by step.
+  double slip_mm() const { return slip_mm_; }
 
  private:
   int width() const { return tip_.dots + 2; }
@@ -87,7 +94,7 @@ class SlippingLoad {
     for (int i = 0; i < tip_.dots; ++i) {
       for (int j = 0; j < tip_.dots; ++j) {
         const std::size_t k = at(i, j);
-        const bool touches = std::hypot(place_mm(i), place_mm(j)) < radius_mm;
+        const bool touches = std::hypot(place_mm(i), place_mm(j) - middle_mm_) < radius_mm;
         slid_mm_[k] = touches && touches_[k] == 0 ? shift_mm_[k] - object_mm_ : slid_mm_[k];
         touches_[k] = touches ? 1 : 0;
         touching_ += touches ? 1 : 0;
@@ -109,12 +116,16 @@ class SlippingLoad {
       }
     }
     double held_mm = 0;
+    double least_mm = std::numeric_limits<double>::infinity();
     for (std::size_t k = 0; k < free_.size(); ++k) {
       if (touches_[k] != 0) {
         held_mm += std::clamp(4 * shift_mm_[k] - neighbours_mm(k), -max_mm, max_mm);
-        slid_mm_[k] = shift_mm_[k] - object_mm_;
+        const double at_mm = shift_mm_[k] - object_mm_;
+        least_mm = (std::min)(least_mm, (std::max)(slid_mm_[k] - at_mm, 0.0));
+        slid_mm_[k] = at_mm;
       }
     }
+    slip_mm_ += touching_ > 0 ? least_mm : 0;
     return tip_.spring_n_per_mm * held_mm;
   }
 
@@ -129,10 +140,12 @@ class SlippingLoad {
   std::vector<char> touches_;
   std::vector<char> free_;  ///< not held by the rim
   int touching_ = 0;
+  double middle_mm_ = 0;  ///< of the contact, along x
   double force_n_ = 0;
   double held_n_ = 0;
   double object_mm_ = 0;
   double speed_mm_s_ = 0;
+  double slip_mm_ = 0;
 };
 
 }  // namespace grip

@@ -54,13 +54,13 @@ void try_grip(Input& in) {
       state.follow(in.number(0, 30));
     }
     less = state;
-    const auto held = fuzz::frame([&] { return control(ratio, update, step_s, state); });
+    const auto held = fuzz::frame([&] { return control({ratio, update}, step_s, state); });
     require(is_finite(held.force_n) && held.force_n >= law.min_force_n &&
                 held.force_n <= law.max_force_n,
             "a force is within its limits");
     if (ratio >= 0 && ratio <= 1) {
       const double smaller = ratio * static_cast<double>(in.byte()) / 255;
-      require(control(smaller, update, step_s, less).force_n >= held.force_n,
+      require(control({smaller, update}, step_s, less).force_n >= held.force_n,
               "less sticking never gives less force");
     }
     auto by_slip = control.start();

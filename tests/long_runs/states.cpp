@@ -74,11 +74,11 @@ TEST_CASE("long runs: grip control comes back from anything", "[long_run]") {
   auto fresh = control.start();
   state.follow(5);
   fresh.follow(5);
-  (void)control(1.0, 0.01, state);
-  (void)control(1.0, 0.01, fresh);
+  (void)control({1.0}, 0.01, state);
+  (void)control({1.0}, 0.01, fresh);
   for (int k = 0; k < 200; ++k) {
     const double ratio = k % 3 == 0 ? 0.5 : 0.9;
-    CHECK(control(ratio, 0.01, state).force_n == control(ratio, 0.01, fresh).force_n);
+    CHECK(control({ratio}, 0.01, state).force_n == control({ratio}, 0.01, fresh).force_n);
   }
 }
 

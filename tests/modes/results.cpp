@@ -111,7 +111,7 @@ void tell_forces() {
   auto state = control.start(3);
   GripResult<> held;
   for (int k = 0; k < 1000; ++k) {
-    held = control(0.5 + 0.0005 * k, 0.01, state);
+    held = control({0.5 + 0.0005 * k}, 0.01, state);
   }
   tell("grip N", held.force_n);
 }

@@ -15,7 +15,7 @@ TEST_CASE("grip control: nothing allocates", "[grip_control]") {
   double force_n = 0;
   for (int k = 0; k < 300; ++k) {
     const double ratio = k % 7 == 0 ? not_a_number<double>() : 0.004 * (k % 250);
-    force_n += control(ratio, static_cast<RatioUpdate>(k % 3), 0.01, state).force_n;
+    force_n += control({ratio, static_cast<RatioUpdate>(k % 3)}, 0.01, state).force_n;
     auto bookmark = state;
     bookmark.reset();
   }

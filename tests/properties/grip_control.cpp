@@ -64,7 +64,7 @@ State any_state(const GripControl<>& control) {
   State state = control.start(test::uniform(-1, 40));
   const auto calls = test::whole(0, 8);
   for (int k = 0; k < calls; ++k) {
-    (void)control(any_ratio(), any_news(), any_step(), state);
+    (void)control({any_ratio(), any_news()}, any_step(), state);
   }
   if (test::whole(0, 3) == 0) {
     state.follow(test::uniform(-10, 100));
@@ -79,12 +79,12 @@ TEST_CASE("grip force whatever is given", "[grip_control][law]") {
     const GripLaw<double> law = any_law();
     const GripControl control(law);
     State state = any_state(control);
-    (void)control(none, 0.001,
+    (void)control({none}, 0.001,
                   state);  // a force that was followed is within the limits from here on
     for (int k = 0; k < 30; ++k) {
       const double before = state.force_n();
       const double step_s = any_step();
-      const auto result = control(any_ratio(), any_news(), step_s, state);
+      const auto result = control({any_ratio(), any_news()}, step_s, state);
       const double change = result.force_n - before;
       RC_ASSERT(result.force_n >= law.min_force_n);
       RC_ASSERT(result.force_n <= law.max_force_n);
@@ -107,14 +107,14 @@ TEST_CASE("grip force whatever is given", "[grip_control][law]") {
       const double before = state.force_n();
       const bool by_nan = test::whole(0, 1) == 0;
       const auto result =
-          by_nan
-              ? control(none, any_step(), state)
-              : control(any_ratio(), static_cast<RatioUpdate>(test::whole(1, 3)),  // any but fresh
-                        any_step(), state);
+          by_nan ? control({none}, any_step(), state)
+                 : control(
+                       {any_ratio(), static_cast<RatioUpdate>(test::whole(1, 3))},  // any but fresh
+                       any_step(), state);
       RC_ASSERT(result.force_n >= before);
       RC_ASSERT(result.force_n <= (std::max)(before, law.safe_force_n));
       if (test::whole(0, 4) == 0) {
-        (void)control(test::uniform(0, 1), 0.01, state);
+        (void)control({test::uniform(0, 1)}, 0.01, state);
       }
     }
   });
@@ -128,8 +128,8 @@ TEST_CASE("grip force and stick ratio", "[grip_control][law]") {
     const double a = test::uniform(0, 1), b = test::uniform(0, 1);
     const RatioUpdate update = test::whole(0, 1) == 0 ? RatioUpdate::fresh : RatioUpdate::unmoved;
     const double step_s = test::uniform(0.001, 0.1);
-    RC_ASSERT(control((std::min)(a, b), update, step_s, low).force_n >=
-              control((std::max)(a, b), update, step_s, high).force_n);
+    RC_ASSERT(control({(std::min)(a, b), update}, step_s, low).force_n >=
+              control({(std::max)(a, b), update}, step_s, high).force_n);
   });
   rc::prop("nor along a whole history of fresh ratios", [] {
     const GripControl control(any_law());
@@ -138,16 +138,17 @@ TEST_CASE("grip force and stick ratio", "[grip_control][law]") {
     for (int k = 0; k < 20; ++k) {
       const double ratio = test::uniform(0, 1), step_s = test::uniform(0.001, 0.1);
       const double less = test::uniform(0, ratio);
-      RC_ASSERT(control(less, step_s, low).force_n >= control(ratio, step_s, high).force_n - 1e-12);
+      RC_ASSERT(control({less}, step_s, low).force_n >=
+                control({ratio}, step_s, high).force_n - 1e-12);
     }
   });
   rc::prop("slip is answered at once, unless at the limit", [] {
     const GripLaw<double> law = any_law();
     const GripControl control(law);
     State state = any_state(control);
-    (void)control(law.set_point, 0.001, state);
+    (void)control({law.set_point}, 0.001, state);
     const double before = state.force_n();
-    const auto result = control(test::uniform(0, 0.99) * law.set_point, 0.02, state);
+    const auto result = control({test::uniform(0, 0.99) * law.set_point}, 0.02, state);
     RC_ASSERT(result.why == GripReason::slipping);
     RC_ASSERT(result.force_n > before || before == law.max_force_n);
     RC_ASSERT((result.status == GripStatus::at_limit) == (before == law.max_force_n));
@@ -156,10 +157,10 @@ TEST_CASE("grip force and stick ratio", "[grip_control][law]") {
     const GripLaw<double> law = any_law();
     const GripControl control(law);
     State state = any_state(control);
-    (void)control(law.set_point, 0.001, state);
+    (void)control({law.set_point}, 0.001, state);
     const double before = state.force_n();
     const double ratio = law.set_point + test::uniform(0, 1) * (law.lower_above - law.set_point);
-    RC_ASSERT(control(ratio, 0.02, state).force_n == before);
+    RC_ASSERT(control({ratio}, 0.02, state).force_n == before);
   });
   rc::prop("a plant in which more grip sticks more comes to rest at the set point or above", [] {
     // ratio = 1 - load / (mu force), see docs/slip/grip_control.md
@@ -173,7 +174,7 @@ TEST_CASE("grip force and stick ratio", "[grip_control][law]") {
     double ratio = 0;
     for (int k = 0; k < 30 * 600; ++k) {
       ratio = (std::max)(0.0, 1 - load_n / (mu * state.force_n()));
-      (void)control(ratio, 1.0 / 30, state);
+      (void)control({ratio}, 1.0 / 30, state);
     }
     const double needed_n = load_n / mu / (1 - law.set_point);
     RC_ASSERT(ratio > law.set_point - 1e-2 || needed_n > law.max_force_n);
@@ -190,8 +191,8 @@ TEST_CASE("grip force in float follows that in double", "[grip_control][law]") {
     auto s = single.start(3);
     for (int k = 0; k < 50; ++k) {
       const double ratio = static_cast<double>(test::whole(0, 32)) / 32;  // exact in both
-      const auto a = control(ratio, 1.0 / 64, state);
-      const auto b = single(static_cast<float>(ratio), 1.0F / 64, s);
+      const auto a = control({ratio}, 1.0 / 64, state);
+      const auto b = single({static_cast<float>(ratio)}, 1.0F / 64, s);
       RC_ASSERT(std::abs(a.force_n - static_cast<double>(b.force_n)) < 1e-4);
     }
   });

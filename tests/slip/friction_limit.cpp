@@ -218,16 +218,23 @@ TEST_CASE("friction limit: what it says feeds a grip", "[friction_limit]") {
   auto grip = control.start(3);
   (void)limit(pull(2), 0.1, RatioUpdate::fresh, state);  // learnt
   CHECK(control(limit(pull(1), 0.9, RatioUpdate::fresh, state), 0.01, grip).why ==
-        GripReason::enough_sticks);
-  // the membrane stands still, and the dots agree: without friction the force would be held
+        GripReason::follows_load);
+  // the membrane stands still, and the dots agree: without friction the force would be held, with
+  // it the force follows the load
   const auto slip = limit(pull(2), 0.9, RatioUpdate::unmoved, state);
   const auto raised = control(slip, 0.01, grip);
   CHECK(raised.ok());
-  CHECK(raised.why == GripReason::slipping);
+  CHECK(raised.why == GripReason::follows_load);
   CHECK(raised.force_n > 3);
   // a ratio in percent is none: the force waits, and says so
   auto other = control.start(3);
-  const auto percent = control(90.0, 0.01, other);
+  const auto percent = control({90.0}, 0.01, other);
   CHECK_FALSE(percent.ok());
   CHECK(percent.force_n == 3);
+  // nor does it grip fully where it goes on: through the friction limit too
+  for (int k = 0; k < 1000; ++k) {
+    const auto wrong = control(limit(pull(1), 90.0, RatioUpdate::fresh, state), 0.01, other);
+    CHECK_FALSE(wrong.ok());
+    CHECK(wrong.force_n <= control.law().safe_force_n);
+  }
 }

@@ -7,6 +7,7 @@
 #include <string>
 #include <type_traits>
 
+#include "fingerpad/slip/friction_limit.hpp"
 #include "fingerpad/slip/stick_ratio.hpp"
 #include "support/catch.hpp"
 #include "support/numbers.hpp"
@@ -36,7 +37,7 @@ GripResult<double> after(const GripControl<>& control,
                          RatioUpdate update = RatioUpdate::fresh) {
   GripResult<double> result;
   for (int k = 0; k < std::lround(time_s / 0.01); ++k) {
-    result = control(ratio, update, 0.01, state);
+    result = control({ratio, update}, 0.01, state);
   }
   return result;
 }
@@ -82,14 +83,14 @@ TEST_CASE("grip control: the law", "[grip_control]") {
 TEST_CASE("grip control: slip is answered in the call that shows it", "[grip_control]") {
   const GripControl control(plain);
   auto state = control.start(3);
-  CHECK(control(0.9, frame_s, state).why == GripReason::enough_sticks);
-  const auto result = control(0.3, frame_s, state);
+  CHECK(control({0.9}, frame_s, state).why == GripReason::enough_sticks);
+  const auto result = control({0.3}, frame_s, state);
   CHECK(result.status == GripStatus::raising);
   CHECK(result.why == GripReason::slipping);
   CHECK(result.force_n == Approx(3 + 10 * 0.4 * frame_s));
   CHECK(state.force_n() == result.force_n);
   // and not a frame longer than slip lasts: the force that was reached is held
-  const auto later = control(0.8, frame_s, state);
+  const auto later = control({0.8}, frame_s, state);
   CHECK(later.status == GripStatus::holding);
   CHECK(later.force_n == result.force_n);
 }
@@ -98,10 +99,10 @@ TEST_CASE("grip control: the same time in finer steps gives the same force", "[g
   const GripControl control(plain);
   auto coarse = control.start(3), fine = control.start(3);
   for (int k = 0; k < 10; ++k) {
-    (void)control(0.4, 0.08, coarse);
+    (void)control({0.4}, 0.08, coarse);
   }
   for (int k = 0; k < 800; ++k) {
-    (void)control(0.4, 0.001, fine);
+    (void)control({0.4}, 0.001, fine);
   }
   CHECK(coarse.force_n() == Approx(5.4));
   CHECK(fine.force_n() == Approx(5.4));
@@ -115,14 +116,14 @@ TEST_CASE("grip control: nothing winds up at a limit", "[grip_control]") {
   CHECK(top.status == GripStatus::at_limit);
   CHECK(top.why == GripReason::slipping);
   // the first call that asks for less gets less
-  const auto down = control(1.0, 0.01, state);
+  const auto down = control({1.0}, 0.01, state);
   CHECK(down.status == GripStatus::lowering);
   CHECK(down.force_n == Approx(20 - 0.01 * 2));
   const auto bottom = after(control, state, 100, 1.0);
   CHECK(bottom.force_n == 0.5);
   CHECK(bottom.status == GripStatus::at_limit);
   CHECK(bottom.why == GripReason::all_sticks);
-  CHECK(control(0.5, 0.01, state).force_n == Approx(0.5 + 0.02));
+  CHECK(control({0.5}, 0.01, state).force_n == Approx(0.5 + 0.02));
 }
 
 TEST_CASE("grip control: a gripper that lags does not wind it up either", "[grip_control]") {
@@ -130,14 +131,14 @@ TEST_CASE("grip control: a gripper that lags does not wind it up either", "[grip
   auto state = control.start(3);
   for (int k = 0; k < 100; ++k) {
     state.follow(3.5);  // it is stuck
-    (void)control(0.2, 0.01, state);
+    (void)control({0.2}, 0.01, state);
   }
   CHECK(state.force_n() == Approx(3.55));
   state.follow(none);
   state.follow(infinity);
   CHECK(state.force_n() == Approx(3.55));
   state.follow(1e6);
-  CHECK(control(0.9, 0.01, state).force_n == 20);
+  CHECK(control({0.9}, 0.01, state).force_n == 20);
 }
 
 TEST_CASE("grip control: dots that stand still", "[grip_control]") {
@@ -153,19 +154,19 @@ TEST_CASE("grip control: dots that stand still", "[grip_control]") {
   }
   SECTION("a ratio below the set point is acted on for a while") {
     auto state = control.start(3);
-    (void)control(0.6, 0.01, state);
+    (void)control({0.6}, 0.01, state);
     const auto result = after(control, state, 0.05, 0.6, RatioUpdate::unmoved);
     CHECK(result.why == GripReason::slipping);
     CHECK(result.force_n == Approx(3 + 1.0 * 0.06));
     const auto later = after(control, state, 100, 0.6, RatioUpdate::unmoved);
     CHECK(later.why == GripReason::unmoved);
     CHECK(later.force_n == Approx(3 + 1.0 * 0.11).margin(0.011));
-    (void)control(0.6, 0.01, state);  // another one lasts as long again
-    CHECK(control(0.6, RatioUpdate::unmoved, 0.01, state).why == GripReason::slipping);
+    (void)control({0.6}, 0.01, state);  // another one lasts as long again
+    CHECK(control({0.6, RatioUpdate::unmoved}, 0.01, state).why == GripReason::slipping);
   }
   SECTION("an object that may slide over them is gripped harder, up to the safe force") {
     auto state = control.start(3);
-    (void)control(0.4, 0.01, state);
+    (void)control({0.4}, 0.01, state);
     const auto result = after(control, state, 1, 0.4, RatioUpdate::unmoved);
     CHECK(result.status == GripStatus::raising);
     CHECK(result.why == GripReason::may_slide);
@@ -174,15 +175,15 @@ TEST_CASE("grip control: dots that stand still", "[grip_control]") {
     CHECK(later.status == GripStatus::at_limit);
     CHECK(later.force_n == 10);
     // a fresh ratio goes beyond
-    CHECK(control(0.4, 0.01, state).force_n > 10);
+    CHECK(control({0.4}, 0.01, state).force_n > 10);
     // and a standing one does not take back what a fresh one has asked for
-    CHECK(control(0.4, RatioUpdate::unmoved, 0.01, state).force_n > 10);
+    CHECK(control({0.4, RatioUpdate::unmoved}, 0.01, state).force_n > 10);
   }
   SECTION("nothing is ever let go") {
     const GripControl lowering(lowering_law());
     auto state = lowering.start(3);
     CHECK(after(lowering, state, 10, 1.0, RatioUpdate::unmoved).force_n == 3);
-    CHECK(lowering(1.0, 0.01, state).force_n < 3);
+    CHECK(lowering({1.0}, 0.01, state).force_n < 3);
   }
 }
 
@@ -193,7 +194,7 @@ TEST_CASE("grip control: no ratio", "[grip_control]") {
   };
   SECTION("is waited for, then the force goes up to the safe one and stays") {
     auto state = control.start(3);
-    (void)control(0.9, 0.01, state);
+    (void)control({0.9}, 0.01, state);
     auto result = blind(state, 0.19);
     CHECK(result.status == GripStatus::holding);
     CHECK(result.why == GripReason::waiting);
@@ -206,12 +207,12 @@ TEST_CASE("grip control: no ratio", "[grip_control]") {
     CHECK(result.status == GripStatus::at_limit);
     CHECK(result.force_n == 10);
     // seen again: the waiting begins anew
-    CHECK(control(0.9, 0.01, state).status == GripStatus::holding);
+    CHECK(control({0.9}, 0.01, state).status == GripStatus::holding);
     CHECK(blind(state, 0.1).why == GripReason::waiting);
   }
   SECTION("is not waited for when the object was slipping") {
     auto state = control.start(3);
-    (void)control(0.6, 0.01, state);
+    (void)control({0.6}, 0.01, state);
     CHECK(blind(state, 0.01).why == GripReason::blind);
     CHECK(state.force_n() > 3.01);
   }
@@ -230,11 +231,11 @@ TEST_CASE("grip control: no ratio", "[grip_control]") {
   SECTION("is what a ratio is that cannot be one") {
     for (const double ratio : {none, infinity, -infinity, -0.001, 1.001, 1e300}) {
       auto state = control.start(3);
-      CHECK(control(ratio, 0.01, state).why == GripReason::waiting);
-      CHECK(control(ratio, RatioUpdate::missing, 0.01, state).why == GripReason::waiting);
+      CHECK(control({ratio}, 0.01, state).why == GripReason::waiting);
+      CHECK(control({ratio, RatioUpdate::missing}, 0.01, state).why == GripReason::waiting);
     }
     auto state = control.start(3);
-    CHECK(control(7.0, RatioUpdate::unmoved, 0.01, state).why == GripReason::waiting);
+    CHECK(control({7.0, RatioUpdate::unmoved}, 0.01, state).why == GripReason::waiting);
   }
 }
 
@@ -243,18 +244,18 @@ TEST_CASE("grip control: time", "[grip_control]") {
   auto state = control.start(3);
   SECTION("a step that is none changes nothing") {
     for (const double step_s : {0.0, -0.01, none, infinity, -infinity}) {
-      const auto result = control(0.0, step_s, state);
+      const auto result = control({0.0}, step_s, state);
       CHECK(result.force_n == 3);
       CHECK(result.status == GripStatus::holding);
       CHECK(result.why == GripReason::no_time);
     }
-    CHECK(control(0.0, 0.01, state).force_n == Approx(3 + 0.07));
+    CHECK(control({0.0}, 0.01, state).force_n == Approx(3 + 0.07));
   }
   SECTION("a gap is no jump") {
-    CHECK(control(0.5, 3600, state).force_n == Approx(3 + 2 * 0.1));
+    CHECK(control({0.5}, 3600, state).force_n == Approx(3 + 2 * 0.1));
   }
   SECTION("but a gap without a ratio is long enough to be blind") {
-    CHECK(control(none, 3600, state).why == GripReason::blind);
+    CHECK(control({none}, 3600, state).why == GripReason::blind);
     CHECK(state.force_n() == Approx(3 + 5 * 0.1));
   }
 }
@@ -268,7 +269,7 @@ TEST_CASE("grip control: the state is a value", "[grip_control]") {
   CHECK(after(control, again, 0.3, 0.2).force_n == once);
   state.reset();
   CHECK(state.force_n() == 3);
-  CHECK(control(none, 0.01, state).why == GripReason::waiting);  // that it slipped is forgotten
+  CHECK(control({none}, 0.01, state).why == GripReason::waiting);  // that it slipped is forgotten
   CHECK(control.start().force_n() == 0.5);
   CHECK(control.start(none).force_n() == 0.5);
   CHECK(control.start(infinity).force_n() == 20);
@@ -279,24 +280,96 @@ TEST_CASE("grip control: the state is a value", "[grip_control]") {
 TEST_CASE("grip control: a lost object is not closed upon", "[grip_control]") {
   const GripControl control;
   auto state = control.start(2);
-  (void)control(0.3, RatioUpdate::fresh, 0.01, state);  // it slips, and is gone
+  (void)control({0.3, RatioUpdate::fresh}, 0.01, state);  // it slips, and is gone
   GripResult<double> result;
   for (int k = 0; k < 49; ++k) {
-    result = control(not_a_number<double>(), RatioUpdate::no_contact, 0.01, state);
+    result = control({not_a_number<double>(), RatioUpdate::no_contact}, 0.01, state);
     CHECK(result.why == GripReason::blind);
   }
   const double force_n = result.force_n;
   for (int k = 0; k < 300; ++k) {
-    result = control(not_a_number<double>(), RatioUpdate::no_contact, 0.01, state);
+    result = control({not_a_number<double>(), RatioUpdate::no_contact}, 0.01, state);
   }
   CHECK(result.why == GripReason::lost);
   CHECK(result.status == GripStatus::holding);
   CHECK(result.force_n <= force_n + 0.1);
   CHECK_FALSE(result.ok());
   // what touches again is held on to
-  CHECK(control(0.3, RatioUpdate::fresh, 0.01, state).why == GripReason::slipping);
-  result = control(not_a_number<double>(), RatioUpdate::no_contact, 0.01, state);
+  CHECK(control({0.3, RatioUpdate::fresh}, 0.01, state).why == GripReason::slipping);
+  result = control({not_a_number<double>(), RatioUpdate::no_contact}, 0.01, state);
   CHECK(result.why == GripReason::blind);
+}
+
+// a bare number could as well be the time step
+static_assert(!std::is_invocable_v<const GripControl<>&, double, double, GripControl<>::State&>);
+
+namespace {
+
+/// Dots and friction: a contact pressed with `normal_n` that carries `tangential_n`.
+SlipResult<double> carried(double normal_n, double tangential_n, double ratio, Index age = 1) {
+  SlipResult<double> slip;
+  slip.stick_ratio = slip.dots_ratio = ratio;
+  slip.update = RatioUpdate::fresh;
+  slip.reference_age = age;
+  slip.normal_n = normal_n;
+  slip.friction = tangential_n / normal_n;
+  return slip;
+}
+
+}  // namespace
+
+TEST_CASE("grip control: with friction the force follows the load", "[grip_control]") {
+  const GripControl control;
+  auto state = control.start(4);
+  // a slip at L = 0.5: less friction by the margin is asked for from now on
+  (void)control(carried(4, 2, 0.9), frame_s, state);
+  const auto slipped = control(carried(4, 2, 0.1), frame_s, state);
+  CHECK(slipped.why == GripReason::slipping);
+  CHECK(slipped.status == GripStatus::raising);
+  CHECK(state.friction() == Approx(0.5 / 1.15).epsilon(0.01));
+  SECTION("what the dots say since a reference before the slip is that slip") {
+    for (int k = 1; k < 60; ++k) {
+      CHECK(control(carried(4.6, 2, 0.1, 60), frame_s, state).why == GripReason::follows_load);
+    }
+    CHECK(state.force_n() == Approx(2 / state.friction()).epsilon(0.01));
+    CHECK(control(carried(4.6, 2, 0.1, 30), frame_s, state).why == GripReason::slipping);
+  }
+  SECTION("a load that grows is gripped harder in the same share, though the ratio stays") {
+    double force_n = 4.6;
+    for (int k = 0; k < 90; ++k) {
+      force_n = control(carried(force_n, 2 + k / 45.0, 0.2), frame_s, state).force_n;
+      CHECK(force_n * state.friction() > 0.98 * (2 + k / 45.0));
+    }
+    CHECK(force_n == Approx(1.15 * 4 / 0.5).epsilon(0.05));
+  }
+  SECTION("with stick to spare more friction is asked for, at the rate of the law") {
+    const double before = state.friction();
+    double force_n = 4.6;
+    for (int k = 0; k < 60; ++k) {
+      force_n = control(carried(force_n, 2, 0.9), frame_s, state).force_n;
+    }
+    CHECK(state.friction() > before * 1.05);
+    CHECK(state.friction() <= before * std::exp(0.04 * 2) + 1e-9);
+    CHECK(force_n < 4.6);
+  }
+  SECTION("but not by what is old, and not beyond a limit") {
+    const double before = state.friction();
+    for (int k = 0; k < 30; ++k) {
+      auto slip = carried(4.6, 2, 0.9, 100);
+      slip.limit = 0.4;
+      (void)control(slip, frame_s, state);
+    }
+    CHECK(state.friction() < before);
+    CHECK(state.friction() == Approx(0.4 / 1.15));
+  }
+  SECTION("dots that are lost leave it to the ratio's law: nothing is let go") {
+    const double before = state.force_n();
+    for (int k = 0; k < 30; ++k) {
+      auto slip = carried(4.6, 0.1, none);
+      slip.update = RatioUpdate::missing;
+      CHECK(control(slip, frame_s, state).force_n >= before);
+    }
+  }
 }
 
 TEST_CASE("grip control: update of a stick ratio", "[grip_control]") {
@@ -332,6 +405,11 @@ TEST_CASE("grip control: bad parameters are refused by name", "[grip_control]") 
   check_refused(&Law::sliding_ratio, "sliding_ratio", {-0.1, 0.81, none});
   check_refused(&Law::blind_after_s, "blind_after_s", {-1, none, infinity});
   check_refused(&Law::blind_rise_n_per_s, "blind_rise_n_per_s", {-1, none, infinity});
+  check_refused(&Law::slip_ratio, "slip_ratio", {-0.1, 0.6, none});
+  check_refused(&Law::slip_margin, "slip_margin", {0, -1, none, infinity});
+  check_refused(&Law::first_search_per_s, "first_search_per_s", {-1, none, infinity});
+  check_refused(&Law::search_per_s, "search_per_s", {-1, none, infinity});
+  check_refused(&Law::response_s, "response_s", {-1, none, infinity});
   check_refused(&Law::longest_step_s, "longest_step_s", {0, -1, none, infinity});
   CHECK(test::refusal([] { GripControl({.set_point = 1.5}); }) ==
         "GripLaw: set_point = 1.5, must be in (0, 1)");

@@ -157,9 +157,12 @@ struct [[nodiscard]] SlipResult {
   S stick_ratio = not_a_number<S>();          ///< in [0, 1]; NaN: nothing is known; of an imprint
                                               ///< 1 - its evidence for slip
   RatioUpdate update = RatioUpdate::missing;  ///< how fresh it is, for GripControl
-  S friction = not_a_number<S>();             ///< L
-  S limit = not_a_number<S>();                ///< at the last slide; NaN: none yet
-  S margin = not_a_number<S>();               ///< 1 - L / limit; NaN where unknown
+  S dots_ratio = not_a_number<S>();  ///< what dots or imprint say alone in this frame; NaN: nothing
+  Index reference_age = 0;           ///< frames since the dots' reference; 0: not known
+  S normal_n = not_a_number<S>();    ///< F_n, where L is known
+  S friction = not_a_number<S>();    ///< L
+  S limit = not_a_number<S>();       ///< at the last slide; NaN: none yet
+  S margin = not_a_number<S>();      ///< 1 - L / limit; NaN where unknown
 
   bool ok() const { return is_finite(stick_ratio); }
 };
@@ -197,6 +200,19 @@ class FrictionLimit {
     return fuse(load, stick_ratio, update, SlipEvidence::dots, state);
   }
 
+  /// The same for the result of a stick ratio, whose reference tells GripControl what is news.
+  template <class Stick>
+    requires requires(const Stick& seen) {
+      seen.stick_ratio;
+      seen.reference_age;
+      update_of(seen.status);
+    }
+  SlipResult<S> operator()(const ContactLoad<S>& load, const Stick& seen, State& state) const {
+    SlipResult<S> result = (*this)(load, S(seen.stick_ratio), update_of(seen.status), state);
+    result.reference_age = seen.reference_age;
+    return result;
+  }
+
   /// The same for a gel, where the imprint answers in place of the dots (`imprint` as
   /// ContactSlide or Recoil give it): a limit is learnt from its alarms, and one that was learnt
   /// answers where no imprint is found again.
@@ -219,6 +235,7 @@ class FrictionLimit {
     SlipResult<S> result;
     const bool known = value(ratio) >= 0 && value(ratio) <= 1;
     result.stick_ratio = known ? ratio : not_a_number<S>();
+    result.dots_ratio = update == RatioUpdate::fresh ? result.stick_ratio : not_a_number<S>();
     result.update = update;
     result.evidence = known ? source : SlipEvidence::none;
     result.friction =
@@ -227,6 +244,7 @@ class FrictionLimit {
     if (!is_finite(result.friction)) {
       return result;
     }
+    result.normal_n = load.normal_n;
     const bool slides = known && update == RatioUpdate::fresh && ratio < S(options_.learn_below);
     if (slides) {
       learn(result.friction, state);

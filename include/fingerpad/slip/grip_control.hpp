@@ -13,9 +13,18 @@
 //
 // The force itself is the only integrator, and it is kept within its limits: nothing winds up. The
 // form of the law, its limits and all defaults are this library's; the summary gives no formula.
+//
+// Where the tangential force F_t is known too, the force follows it at once,
+//
+//   F = F_t / L*,
+//
+// and the ratio only corrects the friction L* that is asked of the contact: up slowly while the
+// dots have stick to spare, down to L / (1 + slip_margin) when they slip at L = F_t / F_n.
+#include <cmath>
 #include <cstdint>
 
 #include "fingerpad/core/expects.hpp"
+#include "fingerpad/core/grid.hpp"
 #include "fingerpad/core/scalar.hpp"
 
 namespace fingerpad {
@@ -59,6 +68,7 @@ enum class GripReason : std::uint8_t {
   slipping,       ///< less than the set point sticks
   enough_sticks,  ///< the set point is reached
   all_sticks,     ///< more sticks than `lower_above`
+  follows_load,   ///< enough sticks: the force follows the load, and comes closer to what it needs
   unmoved,        ///< the dots stand still, and nothing speaks for slip
   may_slide,      ///< the dots stand still, but the last ratio was at most `sliding_ratio`
   waiting,        ///< no ratio, for no longer than `blind_after_s`
@@ -91,6 +101,8 @@ constexpr const char* name_of(GripReason reason) {
       return "enough sticks";
     case GripReason::all_sticks:
       return "all sticks";
+    case GripReason::follows_load:
+      return "follows the load";
     case GripReason::unmoved:
       return "unmoved";
     case GripReason::may_slide:
@@ -131,6 +143,17 @@ struct GripLaw {
   S lost_after_s = S(5) / S(10);    ///< without contact for longer than this the object is lost:
                                     ///< the force is no longer raised, >= 0
   S longest_step_s = S(1) / S(10);  ///< a longer time between calls counts as this, > 0
+
+  // where the tangential force is known
+  S slip_ratio = S(2) / S(10);     ///< dots' ratio below which the contact slips, in [0, 0.5]
+  S slip_margin = S(15) / S(100);  ///< after a slip the friction asked for is less by this share,
+                                   ///< > 0: 0.09 is three times the noise of two L by forces known
+                                   ///< to 1.5 %, the rest what the load gains before the next frame
+  S first_search_per_s = S(2) / S(10);  ///< share by which it grows while all sticks, before the
+                                        ///< first slip, >= 0
+  S search_per_s = S(4) / S(100);       ///< and later, >= 0; before the first slip also where no
+                                        ///< ratio is known yet
+  S response_s = S(1) / S(10);  ///< by how much the load is foreseen: camera and gripper, >= 0
 };
 
 /// Refuses what has no meaning (parameter_error).
@@ -165,7 +188,21 @@ void expects_valid(const GripLaw<S>& law) {
         "finite and >= 0");
   check(value(law.lost_after_s) >= 0, "lost_after_s", law.lost_after_s, "finite and >= 0");
   check(value(law.longest_step_s) > 0, "longest_step_s", law.longest_step_s, "finite and > 0");
+  check(value(law.slip_ratio) >= 0 && 2 * value(law.slip_ratio) <= 1, "slip_ratio", law.slip_ratio,
+        "in [0, 0.5]");
+  check(value(law.slip_margin) > 0, "slip_margin", law.slip_margin, "finite and > 0");
+  check(value(law.first_search_per_s) >= 0, "first_search_per_s", law.first_search_per_s,
+        "finite and >= 0");
+  check(value(law.search_per_s) >= 0, "search_per_s", law.search_per_s, "finite and >= 0");
+  check(value(law.response_s) >= 0, "response_s", law.response_s, "finite and >= 0");
 }
+
+/// What the dots say, by name: a number alone could as well be the time step.
+template <scalar S = double>
+struct StickReading {
+  S ratio = not_a_number<S>();  ///< in [0, 1]; anything else, as a ratio in percent: missing
+  RatioUpdate update = RatioUpdate::fresh;
+};
 
 /// The equation: N/s for a stick ratio in [0, 1], within what the gripper can do.
 template <scalar S>
@@ -196,8 +233,8 @@ struct [[nodiscard]] GripResult {
 };
 
 /// Grip force, call by call. Const: one serves any number of fingers, each with a state of its own.
-/// O(1), takes no memory, throws nothing, answers slip in the very call that shows it. With the
-/// same state, update and time step, a smaller ratio never gives a smaller force.
+/// O(1), takes no memory, throws nothing, answers slip in the very call that shows it. By the ratio
+/// alone, with the same state, update and time step, a smaller ratio never gives a smaller force.
 template <scalar S = double>
 class GripControl {
  public:
@@ -205,6 +242,8 @@ class GripControl {
   class State {
    public:
     const S& force_n() const { return force_n_; }
+    /// The friction asked of the contact, L*; NaN where the tangential force was never known.
+    const S& friction() const { return friction_; }
     /// The force that the gripper really applies, where it is measured and the gripper does not
     /// follow; the next call goes on from there. Ignored if not finite.
     void follow(const S& measured_n) { force_n_ = is_finite(measured_n) ? measured_n : force_n_; }
@@ -221,6 +260,12 @@ class GripControl {
     S unseen_s_ = S(0);      ///< since the dots were seen
     S untouched_s_ = S(0);   ///< since anything touched
     bool slipping_ = false;  ///< the last fresh ratio was below the set point
+    S friction_ = not_a_number<S>();
+    S load_n_ = S(0);  ///< F_t, smoothed
+    S load_rate_n_per_s_ = S(0);
+    S smooth_friction_ = S(0);  ///< L, smoothed
+    S held_s_ = S(0);           ///< since the last slip
+    bool has_slipped_ = false;
   };
 
   /// Refuses bad parameters (parameter_error).
@@ -232,34 +277,63 @@ class GripControl {
   /// From the force with which the object was taken; brought within the limits, NaN: the least.
   State start(const S& force_n) const { return State(within_limits(force_n)); }
 
-  /// The force for a stick ratio (not in [0, 1]: missing), `step_s` after the call before.
-  GripResult<S> operator()(const S& ratio,
-                           RatioUpdate update,
-                           const S& step_s,
-                           State& state) const {
+  /// The force for a stick ratio, `step_s` after the call before.
+  GripResult<S> operator()(const StickReading<S>& seen, const S& step_s, State& state) const {
     state.force_n_ = within_limits(state.force_n_);
-    if (!is_finite(step_s) || !(value(step_s) > 0)) {
+    if (!is_time(step_s)) {
       return {state.force_n_, GripStatus::holding, GripReason::no_time};
     }
-    const RateCommand command = command_for(ratio, update, step_s, state);
-    const bool long_step = value(law_.longest_step_s) < value(step_s);
-    return apply(command, long_step ? law_.longest_step_s : step_s, state);
+    const RateCommand command = command_for(seen.ratio, seen.update, step_s, state);
+    return apply(command, counted(step_s), state);
   }
 
-  /// The same for the answer of the dots and friction together, SlipResult: ratio and step cannot
-  /// be exchanged.
+  /// The same for what SpatialStickRatio or StickRatio says.
+  template <class Stick>
+    requires requires(const Stick& seen) {
+      seen.stick_ratio;
+      update_of(seen.status);
+    }
+  GripResult<S> operator()(const Stick& seen, const S& step_s, State& state) const {
+    return (*this)(StickReading<S>{S(seen.stick_ratio), update_of(seen.status)}, step_s, state);
+  }
+
+  /// The same for the answer of the dots and friction together, SlipResult. Where it knows the
+  /// tangential force, and the dots are seen, the force follows the load.
   template <class Slip>
     requires requires(const Slip& slip) {
       slip.stick_ratio;
       slip.update;
+      slip.normal_n;
+      slip.limit;
     }
   GripResult<S> operator()(const Slip& slip, const S& step_s, State& state) const {
-    return (*this)(S(slip.stick_ratio), slip.update, step_s, state);
-  }
-
-  /// The same where nothing but the ratio is known; NaN: missing.
-  GripResult<S> operator()(const S& ratio, const S& step_s, State& state) const {
-    return (*this)(ratio, RatioUpdate::fresh, step_s, state);
+    const bool seen = slip.update == RatioUpdate::fresh || slip.update == RatioUpdate::unmoved;
+    const bool is_ratio = is_finite(slip.stick_ratio) || slip.update == RatioUpdate::unmoved;
+    if (!is_time(step_s) || !seen || !is_ratio || !is_finite(slip.friction)) {
+      return (*this)(StickReading<S>{S(slip.stick_ratio), slip.update}, step_s, state);
+    }
+    state.force_n_ = within_limits(state.force_n_);
+    state.untouched_s_ = state.unseen_s_ = state.ratio_age_s_ = S(0);
+    const S counted_s = counted(step_s);
+    follow_load(S(slip.normal_n * slip.friction), S(slip.friction), counted_s, state);
+    // what the dots say since a reference before the last slip is that slip
+    const S age_s = S(static_cast<double>(slip.reference_age)) * step_s;
+    state.held_s_ = S(state.held_s_ + step_s);
+    const bool news =
+        is_finite(slip.dots_ratio) && (!state.has_slipped_ || value(age_s) < value(state.held_s_));
+    state.slipping_ = news && value(slip.dots_ratio) < value(law_.slip_ratio);
+    if (state.slipping_) {
+      state.friction_ = state.smooth_friction_ / S(S(1) + law_.slip_margin);
+      state.held_s_ = S(0);
+      state.has_slipped_ = true;
+    } else {
+      search(news ? S(slip.dots_ratio) : not_a_number<S>(), counted_s, state);
+      // where the dots do not speak for more, no more than what the limit bears
+      const S borne = S(slip.limit) / S(S(1) + law_.slip_margin);
+      state.slipping_ = !news && borne < state.friction_;
+      state.friction_ = state.slipping_ ? borne : state.friction_;
+    }
+    return apply(rate_to_load(counted_s, state), counted_s, state);
   }
 
  private:
@@ -268,6 +342,54 @@ class GripControl {
     S ceiling_n;
     GripReason why;
   };
+
+  static bool is_time(const S& step_s) { return is_finite(step_s) && value(step_s) > 0; }
+  S counted(const S& step_s) const {
+    return value(law_.longest_step_s) < value(step_s) ? law_.longest_step_s : step_s;
+  }
+
+  /// Smooths over about four frames: forces are noisier than a load is fast.
+  static void follow_load(const S& load_n, const S& friction, const S& step_s, State& state) {
+    if (!is_finite(state.friction_)) {
+      state.friction_ = state.smooth_friction_ = friction;
+      state.load_n_ = load_n;
+      return;
+    }
+    const S step_n = S(4) / S(10) * S(load_n - state.load_n_);
+    state.load_n_ = state.load_n_ + step_n;
+    state.load_rate_n_per_s_ =
+        state.load_rate_n_per_s_ + S(3) / S(10) * S(step_n / step_s - state.load_rate_n_per_s_);
+    state.smooth_friction_ =
+        state.smooth_friction_ + S(4) / S(10) * S(friction - state.smooth_friction_);
+  }
+
+  /// Asks for more friction while the contact has stick to spare, once it carries what was asked.
+  void search(const S& ratio, const S& step_s, State& state) const {
+    if (20 * value(state.smooth_friction_) < 19 * value(state.friction_)) {
+      return;
+    }
+    const S spare = S(10) / S(3) * S(ratio - law_.slip_ratio);
+    const S share = value(spare) < 1 ? spare : S(1);
+    const S per_s = state.has_slipped_ ? law_.search_per_s : law_.first_search_per_s;
+    const S growth = is_finite(ratio)     ? S(share * per_s)
+                     : state.has_slipped_ ? S(0)
+                                          : law_.search_per_s;
+    state.friction_ = state.friction_ * S(S(1) + growth * step_s);
+  }
+
+  /// The rate that brings the force to F_t / L* in this step, as far as the gripper can.
+  RateCommand rate_to_load(const S& step_s, const State& state) const {
+    const S gained_n =
+        value(state.load_rate_n_per_s_) > 0 ? S(state.load_rate_n_per_s_ * law_.response_s) : S(0);
+    const bool some = value(state.friction_) > 0;
+    const S wanted = some ? S(S(state.load_n_ + gained_n) / state.friction_) : state.force_n_;
+    const S rate = S(within_limits(wanted) - state.force_n_) / step_s;
+    const S top = law_.rise_limit_n_per_s, bottom = S(-law_.fall_limit_n_per_s);
+    return {value(top) < value(rate)      ? top
+            : value(rate) < value(bottom) ? bottom
+                                          : rate,
+            law_.max_force_n, state.slipping_ ? GripReason::slipping : GripReason::follows_load};
+  }
 
   RateCommand command_for(const S& ratio, RatioUpdate update, const S& step_s, State& state) const {
     const bool known = value(ratio) >= 0 && value(ratio) <= 1;

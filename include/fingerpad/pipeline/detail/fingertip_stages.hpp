@@ -239,8 +239,7 @@ struct FingertipDots {
   template <class Watch>
   void conclude(FingertipResult& touch, Watch& watch) {
     if (followed) {
-      touch.slip = followed->friction(load_of(touch), touch.stick.stick_ratio,
-                                      update_of(touch.stick.status), followed->friction_state);
+      touch.slip = followed->friction(load_of(touch), touch.stick, followed->friction_state);
       const bool slides = touch.slip.status == FrictionLimitStatus::sliding;
       for (std::size_t k = 0; k < slips.cells.size(); ++k) {
         slips.cells[k] = slides || states.cells[k] == DotState::slip ? 1 : 0;
