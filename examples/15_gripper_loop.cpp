@@ -14,6 +14,10 @@
 #include "replay/dots/dots.hpp"
 #include "replay/steps/fingertip_options.hpp"
 
+#ifndef FINGERPAD_EXAMPLE_RECORDING  // compiled by hand, from the root
+#define FINGERPAD_EXAMPLE_RECORDING "examples/data/press"
+#endif
+
 int main(int argc, char** argv) {
   using Clock = std::chrono::steady_clock;
   const std::filesystem::path folder = argc > 1 ? argv[1] : FINGERPAD_EXAMPLE_RECORDING;
@@ -39,7 +43,9 @@ int main(int argc, char** argv) {
     const auto came = Clock::now();
     const auto touch = fingertip(frame, dots.of(k, frame), recording.side_dots->dots_mm.at(k),
                                  recording.signals.pressure_mpa(k), time_s);
-    const auto answer = control(touch.slip, time_s - last_s, grip);
+    // a recording's forces do not answer the grip, so the ratio alone sets it; on a hand, give
+    // touch.slip as it is, and the force follows the load
+    const auto answer = control({touch.slip.stick_ratio, touch.slip.update}, time_s - last_s, grip);
     const double ms = std::chrono::duration<double, std::milli>(Clock::now() - came).count();
 
     std::printf("%.1f s  sticks %4.2f  grip %5.2f N  after %5.1f ms\n", time_s,
