@@ -32,7 +32,9 @@ void follow(const fingerpad::DotFinder& finder, const Path& folder, const Take& 
 fingerpad::StickTestFit choose(const fingerpad::DotFinder& finder,
                                const Path& folder,
                                const fingerpad::DotNoise& noise) {
-  fingerpad::StickTestCalibration<> calibration(finder.rows(), finder.cols(), noise);
+  // --slips asks for an object that is larger than the print
+  fingerpad::StickTestCalibration<> calibration(finder.rows(), finder.cols(), noise,
+                                                {.covers_pattern = true});
   follow(finder, folder, [&](const cv::Mat_<cv::Vec2d>& dots) {
     cv::Mat_<unsigned char> found(dots.size());
     for (int i = 0; i < dots.rows; ++i) {

@@ -233,7 +233,7 @@ void write_dots(const Path& folder, Noise& noise) {
     replay::write_png(picture_file(folder / "frames", k),
                       picture((k < 30 ? 0.6 : -0.6) * step, stuck));
   }
-  write_text(folder / "sensor.json", "{}\n");
+  write_text(folder / "sensor.json", "{ \"stick\": { \"covers_pattern\": true } }\n");
 }
 
 /// 4 x 4 taxels at rest under a steady grip, with a noise of 3 counts.

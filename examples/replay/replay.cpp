@@ -133,6 +133,16 @@ void print_depth(const Chain& chain, const Writer& writer) {
   std::printf("contact step %.2f ms a frame (median)\n", chain.contact_ms());
 }
 
+/// Of frames without a ratio: that of most use to the reader.
+const char* why_none(const std::vector<FrameRow>& rows) {
+  const bool outline = std::any_of(rows.begin(), rows.end(), [](const FrameRow& row) {
+    return row.stick.status == fingerpad::StickStatus::no_outline;
+  });
+  return outline ? "all dots count as in contact, and some do not follow; if the object is larger "
+                   "than the print, say \"stick\": {\"covers_pattern\": true} in sensor.json"
+                 : "the dots never moved far enough";
+}
+
 void print_dots(const Chain& chain, const Writer& writer) {
   std::printf("dots         %td, %s\n", fingerpad::count_present(chain.dots().initial()),
               chain.dots().how().c_str());
@@ -150,7 +160,7 @@ void print_dots(const Chain& chain, const Writer& writer) {
   if (updated > 0) {
     std::printf("stick ratio  in %d frames, at least %.2f\n", updated, lowest);
   } else {
-    std::printf("stick ratio  none\n");
+    std::printf("stick ratio  none: %s\n", why_none(writer.rows()));
   }
 }
 

@@ -149,7 +149,8 @@ View look_at(const std::filesystem::path& file, const std::vector<cv::Mat>& free
     const Followed followed = follow(file);
     const std::vector<DotGrid>& frames = followed.dots;
     fingerpad::StickTest test = fingerpad::published::stick_test_px;
-    view.ratio = ratios(frames, {});
+    test.covers_pattern = true;  // nobody knows: every dot counts as in contact
+    view.ratio = ratios(frames, {.covers_pattern = true});
     test.slip = (std::max)(test.slip, slip_px_of(noise_px(frames)));
     view.ratio_by_noise = ratios(frames, test);
     for (const DotGrid& dots : frames) {

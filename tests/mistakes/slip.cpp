@@ -23,6 +23,7 @@
 #include "fingerpad/slip/recoil.hpp"
 #include "fingerpad/slip/spatial_stick_ratio.hpp"
 #include "support/catch.hpp"
+#include "support/gel_frames.hpp"
 #include "support/refusal.hpp"
 #include "support/slipping_dots.hpp"
 
@@ -217,7 +218,7 @@ void drag(const Mistake& mistake, const See& see) {
 
 /// On a slope; marks of lost dots are marks there, too.
 Spatial in_space(const PointsPx& dots) {
-  Spatial out(across, across);
+  Spatial out(dots.rows(), dots.cols());
   for (std::size_t k = 0; k < out.cells.size(); ++k) {
     const auto& p = dots.cells[k];
     const bool mark = p.x <= 0 && p.x == p.y;
@@ -413,4 +414,54 @@ TEST_CASE("patterns larger than any are refused by name", "[mistakes]") {
         }) == "StickRatio: " + frames);
   CHECK(refusal([] { const SpatialStickRatio<> r(1000, 1000, {.capacity = 4096}); }) ==
         "SpatialStickRatio: " + frames);
+}
+
+namespace {
+
+/// What is said of a ball that drags a gel along without slipping, where either the dots under the
+/// ball are said to touch, or all. The gel follows around the ball, the less the further away.
+template <class Ratio, class Convert>
+std::string said_of_gel(const Ratio& ratio, bool all_touch, const Convert& convert) {
+  const test::GelCamera camera{.pitch_mm = 1.2, .jitter_px = 0.06};
+  GelContact<> ball({.friction = 5});
+  test::Random random(3);
+  auto state = ratio.start();
+  DotStates states(camera.dot_rows(), camera.dot_cols());
+  ContactFlags contact(states.rows(), states.cols(), all_touch ? 1 : 0);
+  std::string said;
+  for (int k = 0; k <= frames; ++k) {
+    ball.drag(10, {0.1 * k, 0});
+    const auto dots = camera.dots(ball, random);
+    for (std::size_t n = 0; n < dots.cells.size() && !all_touch; ++n) {
+      const auto from_ball = camera.mm_of(dots.cells[n].y, dots.cells[n].x) - ball.ball_mm();
+      contact.cells[n] = norm(from_ball) < 0.9 * ball.radius_mm() ? 1 : 0;
+    }
+    const auto r = ratio(convert(dots), contact, states, state);
+    said =
+        r.updated() && static_cast<double>(r.stick_ratio) < 0.9 ? "false slip" : name_of(r.status);
+    CHECK((r.ok() || std::isnan(r.stick_ratio)));
+    CHECK((said != "no outline of the contact" || std::isnan(r.stick_ratio)));
+  }
+  return said;
+}
+
+}  // namespace
+
+TEST_CASE("mistakes with printed dots: all are said to touch", "[mistakes]") {
+  const auto as_they_are = [](const PointsPx& dots) -> const PointsPx& { return dots; };
+  const auto both = [](const auto& ratio, const auto& convert) {
+    CHECK(said_of_gel(ratio, false, convert) == "updated");
+    CHECK(said_of_gel(ratio, true, convert) == "no outline of the contact");
+  };
+  constexpr Index rows = 16, cols = 21;  // of the gel's camera
+  both(StickRatio<>(rows, cols), as_they_are);
+  both(SpatialStickRatio<>(rows, cols), in_space);
+  // one who says that the object is larger than the pattern is believed
+  CHECK(said_of_gel(StickRatio<>(rows, cols, {.covers_pattern = true}), true, as_they_are) ==
+        "false slip");
+  CHECK(said_of_gel(SpatialStickRatio<>(rows, cols, {.covers_pattern = true}), true, in_space) ==
+        "false slip");
+  // of one dot's motion and its neighbours': the noise alone makes dots slip, whatever touches
+  CHECK(said_of_gel(published::stick_ratio<double>(rows, cols), true, as_they_are) ==
+        "no outline of the contact");
 }

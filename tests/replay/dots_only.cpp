@@ -291,7 +291,11 @@ TEST_CASE("the stick ratio of a dots-only recording") {
     }
     frames.push_back(drawn({}, now));
   }
-  const DotRecording recording(frames);
+  const DotRecording unknown(frames);  // they may as well lie beside a small object
+  REQUIRE(unknown.complaint().empty());
+  CHECK(table(unknown.out() / "frames.csv")[7].at("stick_ratio").empty());
+
+  const DotRecording recording(frames, R"({"stick": {"covers_pattern": true}})");
   REQUIRE(recording.complaint(true).empty());
   const auto rows = table(recording.out() / "frames.csv");
   REQUIRE(rows.size() == 8);

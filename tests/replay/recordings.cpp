@@ -175,7 +175,8 @@ TEST_CASE("sensor.json is refused with the key's name") {
       Fault{"\"pitch_mm\": 0.08", "\"pich_mm\": 0.08", "unknown key camera.pich_mm"},
       Fault{"\"smoothing_px\": 29", "\"smooth\": 29", "unknown key smooth "},
       Fault{"\"smoothing_px\"", "\"stick\": {\"slipp_px\": 1}, \"smoothing_px\"",
-            "unknown key stick.slipp_px (known here: reference_px, store_px, slip_px)"},
+            "unknown key stick.slipp_px (known here: reference_px, store_px, slip_px, "
+            "covers_pattern)"},
       Fault{"\"smoothing_px\"", "\"stick\": {\"slip_px\": -1}, \"smoothing_px\"", "slip = -1"},
       Fault{"\"smoothing_px\"", "\"stick\": {\"store_px\": \"1\"}, \"smoothing_px\"",
             "stick.store_px is \"1\" (a string), must be a number"},

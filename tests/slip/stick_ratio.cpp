@@ -47,6 +47,7 @@ struct Follower {
   typename Ratio::State state;
   DotStates states;
   ContactFlags all;
+  ContactFlags most;  ///< all but one: a contact with an outline
 
   explicit Follower(const StickTest& test = {},
                     const Motion& motion = {},
@@ -57,7 +58,10 @@ struct Follower {
       : ratio(rows, cols, test, motion, reference, denoising),
         state(ratio.start()),
         states(rows, cols),
-        all(rows, cols, 1) {}
+        all(rows, cols, 1),
+        most(all) {
+    most(rows - 1, cols - 1) = 0;
+  }
 
   StickRatioResult<double> operator()(const PointsPx& dots) { return (*this)(dots, all); }
   StickRatioResult<double> operator()(const PointsPx& dots, const ContactFlags& contact) {
@@ -95,6 +99,7 @@ TEST_CASE("stick ratio: names of statuses") {
   CHECK(std::string(name_of(StickStatus::not_in_order)) == "not in order");
   CHECK(std::string(name_of(StickStatus::jumped)) == "jumped");
   CHECK(std::string(name_of(StickStatus::restarted)) == "restarted");
+  CHECK(std::string(name_of(StickStatus::no_outline)) == "no outline of the contact");
 }
 
 TEMPLATE_TEST_CASE("stick ratio: what moves as one sticks, and its motion is found",
@@ -313,13 +318,13 @@ TEST_CASE("stick ratio: the search begins in the last stick region") {
       }
     };
     hold(6, 0, 0);
-    const auto first = f(dots);
+    const auto first = f(dots, f.most);
     CHECK(first.updated());
     CHECK(first.stick == 54);
     dots = shifted(8, 0);
     hold(4, 4, 0);
     hold(6, 0, 0);
-    return f(dots);
+    return f(dots, f.most);
   };
   const auto tracked = run(StickConsensus<Freedom::translation>());
   CHECK(tracked.reference_dot.col < 4);
@@ -345,7 +350,7 @@ TEMPLATE_TEST_CASE("stick ratio: noise is averaged over neighbours",
   Follower<StickConsensus<>, UpdatedReference, TestType> f(test, {.max_passes = 10}, {}, {}, 21,
                                                            21);
   for (int k = 0; k < 200; ++k) {
-    const auto r = f(noisy(shifted(3.0 * (k % 2), 0, 21, 21), noise_px, random));
+    const auto r = f(noisy(shifted(3.0 * (k % 2), 0, 21, 21), noise_px, random), f.most);
     if (!r.updated()) {
       continue;
     }
@@ -684,7 +689,7 @@ TEST_CASE("stick ratio: dots that stand still together are not the object") {
       dots(i, j).x += 3;
     }
   }
-  const auto r = f(dots);
+  const auto r = f(dots, f.most);
   REQUIRE(r.updated());
   CHECK(f.states(1, 1) == DotState::stick);
   CHECK(f.states(6, 6) == DotState::slip);
@@ -740,7 +745,7 @@ TEST_CASE("stick ratio, bad input: all dots lost for some frames, then back") {
   for (Index i = 0; i < 9; ++i) {
     held(i, 0) = shifted(0)(i, 0);
   }
-  const auto before = f(held);
+  const auto before = f(held, f.most);
   REQUIRE(before.updated());
   REQUIRE(before.slip == 9);
   for (int k = 0; k < 5; ++k) {
@@ -753,7 +758,7 @@ TEST_CASE("stick ratio, bad input: all dots lost for some frames, then back") {
   }
   // without contact flags, as nothing is found where anything could touch
   CHECK(f(blank, ContactFlags(9, 9, 0)).status == StickStatus::no_dots);
-  const auto after = f(shifted(6));  // nothing was forgotten
+  const auto after = f(shifted(6), f.most);  // nothing was forgotten
   CHECK(after.updated());
   CHECK(after.reference_age == 7);
 }

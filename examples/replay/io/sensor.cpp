@@ -93,11 +93,14 @@ fingerpad::StickTest read_stick(const Section& root) {
   const Section section =
       root.section("stick", {{"reference_px", "dots are compared over moves longer than this, px"},
                              {"store_px", "a frame is stored after a move longer than this, px"},
-                             {"slip_px", "a dot that is off by this at reference_px slips, px"}});
+                             {"slip_px", "a dot that is off by this at reference_px slips, px"},
+                             {"covers_pattern", "the object is larger than the print"}});
+  const bool covers = section.has("covers_pattern") && section.truth("covers_pattern");
   if (!section.has("reference_px") && !section.has("store_px") && !section.has("slip_px")) {
-    return {};
+    return {.covers_pattern = covers};
   }
   fingerpad::StickTest test = fingerpad::published::stick_test_px;
+  test.covers_pattern = covers;
   test.free_frames = 0;  // what is given stands
   const auto read = [&](const char* key, double& value) {
     value = section.has(key) ? section.number(key) : value;

@@ -36,6 +36,7 @@ double threshold_of_shape(const Recording& recording) {
 fingerpad::SpatialStickTest stick_test_of(const Sensor& sensor) {
   const fingerpad::StickTest& given = sensor.stick;
   fingerpad::SpatialStickTest test;
+  test.covers_pattern = given.covers_pattern;
   if (given.pitch > 0) {
     // slip = 2 gain sigma sqrt(ln(1 / false_slip)), gain 0.416 by averaging over neighbours
     const double sigmas = 2 * 0.416 * std::sqrt(std::log(1 / test.false_slip));

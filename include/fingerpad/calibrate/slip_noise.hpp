@@ -213,6 +213,7 @@ struct StickTestOptions {
   double smallest_px = 0.5;    ///< U, > 0
   double largest_px = 8;       ///< > smallest_px
   int candidates = 13;         ///< 2 to 1000, in equal ratios; by default three to the octave
+  bool covers_pattern = false;  ///< of StickTest
 };
 inline void expects_valid(const StickTestOptions& options) {
   const char* const owner = "StickTestOptions";
@@ -281,6 +282,7 @@ StickTest stick_test_for(Index dots,
   StickTest test;
   test.pitch = 1;
   test.free_frames = 0;  // these are measured already
+  test.covers_pattern = options.covers_pattern;
   test.reference = reference_px;
   test.slip = slip_threshold_for(compared_px * motion_noise_factor(motion), options.false_slip);
   test.store = slip_threshold_for(placed_px, false_slip_of_each(options.false_motion, dots));

@@ -44,6 +44,8 @@ struct SpatialStickTest {
   double hold_s = 0.2;           ///< >= 0: a contact lost and found again within this time is the
                                  ///< same one, and a clock may go back by as much
   Index capacity = 64;           ///< stored frames, in [1, 4096]; then the oldest is forgotten
+  bool covers_pattern = false;  ///< whether the object is known to be larger than the pattern; else
+                                ///< a contact with all dots in it has no ratio once some slip
 };
 inline void expects_valid(const SpatialStickTest& test) {
   const auto check = [](bool good, const char* name, double given, const char* range) {
@@ -123,6 +125,11 @@ class SpatialStickRatio {
     const StickStatus status = look(state);
     state.result.status = back ? StickStatus::restarted : status;
     detail::stick::settle_marks(state.layout, state.given.touching, state.marks, state.result, to);
+    if (status == StickStatus::updated && !test_.covers_pattern &&
+        detail::stick::lacks_outline(state.result, layout_, state.given)) {
+      state.result.status = StickStatus::no_outline;
+      state.result.stick_ratio = state.result.ratio_sd = not_a_number<S>();
+    }
     return state.result;
   }
 

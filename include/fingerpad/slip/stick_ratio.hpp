@@ -45,6 +45,8 @@ struct StickTest {
   Index free_frames = 8;   ///< >= 0: see above; 0: the thresholds stand as they are given
   double hold_s = 0.2;     ///< >= 0: a contact lost and found again within this time is the same
                            ///< one, and a clock may go back by as much
+  bool covers_pattern = false;  ///< whether the object is known to be larger than the pattern; else
+                                ///< a contact with all dots in it has no ratio once some slip
 };
 inline void expects_valid(const StickTest& test) {
   expects(is_finite(test.reference) && test.reference > 0, "StickTest", "reference", test.reference,
@@ -148,7 +150,11 @@ class StickRatio {
     result.status = back ? StickStatus::restarted : status;
     detail::stick::settle_marks(layout_, state.given.touching, state.marks, result, to);
     if (status == StickStatus::updated) {
-      result.stick_ratio = S(result.stick) / S(result.stick + result.slip);
+      const bool outlined =
+          test_.covers_pattern || !detail::stick::lacks_outline(result, layout_, state.given);
+      result.status = outlined ? status : StickStatus::no_outline;
+      result.stick_ratio =
+          outlined ? S(result.stick) / S(result.stick + result.slip) : not_a_number<S>();
     }
     return result;
   }
@@ -264,7 +270,7 @@ class StickRatio {
     const Index reference = first_dot(pair, state);
     const S slip = S(px.slip / px.reference);
     const S slip_sq = slip * slip * choice.furthest_sq;
-    const bool mostly_slipped = S(2) * state.result.stick_ratio < S(1);
+    const bool mostly_slipped = state.result.stick < state.result.slip;
     const Similarity<S> map = motion_between(motion_, pair, reference, slip_sq, mostly_slipped);
     mark_dots(denoising_, pair, map, slip_sq, state.residuals, state.marks);
     state.stick_center = centroid(pair, state.marks, DotState::stick);

@@ -36,7 +36,11 @@ enum class StickStatus : std::uint8_t {
   jumped,        ///< the dots carry other names than before, all those of a neighbour, or rows and
                  ///< columns or two halves exchanged: the frame is left out
   restarted,     ///< time went back by more than hold_s: all that was before is forgotten
-  refused,       ///< a grid, state or workspace has another size: nothing was done
+  no_outline,  ///< every dot that was found touches, up to all sides of the pattern, and more than
+               ///< a tenth have not followed: they slip, or lie outside of the contact on a gel
+               ///< that is dragged along around it; the ratio is NaN. Give the true contact, or
+               ///< say covers_pattern
+  refused,     ///< a grid, state or workspace has another size: nothing was done
 };
 
 /// "updated", "standing", ...
@@ -64,14 +68,16 @@ constexpr const char* name_of(StickStatus status) {
       return "jumped";
     case StickStatus::restarted:
       return "restarted";
+    case StickStatus::no_outline:
+      return "no outline of the contact";
     case StickStatus::refused:
       return "refused";
   }
   return "unknown";
 }
 
-/// Where the status is not `updated`, stick_ratio and what follows `furthest_px` are those of the
-/// last frame with an answer.
+/// Where the status is neither `updated` nor `no_outline`, stick_ratio and what follows
+/// `furthest_px` are those of the last frame with an answer.
 template <scalar S = float>
 struct [[nodiscard]] StickRatioResult {
   StickStatus status = StickStatus::refused;
@@ -101,7 +107,8 @@ struct DotSlip {
   S sd_mm = not_a_number<S>();  ///< of one component along the surface, level; by the noise alone
 };
 
-/// Where the status is not `updated`, what follows `out_of_place` is that of the last answer.
+/// Where the status is neither `updated` nor `no_outline`, what follows `out_of_place` is that of
+/// the last answer.
 template <scalar S = double>
 struct [[nodiscard]] SpatialStickResult {
   StickStatus status = StickStatus::refused;

@@ -115,6 +115,22 @@ struct GivenDots {
     leave_out(filled(coordinate<P>(-1)));
   }
 
+  /// Whether the contact reaches all four sides of the pattern, and no dot was found outside of it.
+  bool all_touch(const DotLayout& layout) const {
+    DotIndex first = {layout.rows, layout.cols}, last;
+    Index dots = 0;
+    for (const Index k : touching) {
+      if (is_finite(at(found, k))) {
+        const DotIndex d = layout.dot_at(k);
+        first = {(std::min)(first.row, d.row), (std::min)(first.col, d.col)};
+        last = {(std::max)(last.row, d.row), (std::max)(last.col, d.col)};
+        ++dots;
+      }
+    }
+    return dots == count && first.row == 0 && first.col == 0 && last.row == layout.rows - 1 &&
+           last.col == layout.cols - 1;
+  }
+
  private:
   static P filled(const coordinate<P>& c) {
     P p{};
@@ -255,6 +271,13 @@ void settle_marks(const DotLayout& layout,
       to(i, j) = static_cast<cell_t<States>>(mark);
     }
   }
+}
+
+/// Whether nothing tells dots that slip from dots that lie outside of the contact: all are said to
+/// touch, and more than a tenth have not followed, where noise makes a hundredth.
+template <class Result, class P>
+bool lacks_outline(const Result& result, const DotLayout& layout, const GivenDots<P>& given) {
+  return 10 * result.slip > result.stick + result.slip && given.all_touch(layout);
 }
 
 }  // namespace detail::stick
