@@ -33,7 +33,7 @@ class Region {
       const std::scoped_lock lock(mutex_);
       return region_(depth, to, work_);
     }();
-    if (!result.ok()) {
+    if (!result.accepted()) {
       throw py::value_error("depth_mm must have the shape (" + std::to_string(region_.rows()) +
                             ", " + std::to_string(region_.cols()) + ")");
     }
@@ -55,6 +55,8 @@ void bind_contact(py::module_& module) {
       .def_readwrite("min_region_px", &ContactTest::min_region_px);
   py::class_<ContactResult>(module, "ContactResult", "The contact of a frame.")
       .def_property_readonly("ok", &ContactResult::ok)
+      .def_property_readonly("status",
+                             [](const ContactResult& contact) { return name_of(contact.status); })
       .def_property_readonly("in_contact", &ContactResult::in_contact)
       .def_readonly("contact_px", &ContactResult::contact_px)
       .def_readonly("unknown_px", &ContactResult::unknown_px)

@@ -40,7 +40,7 @@ double difference(const cv::Mat& free, const cv::Mat& other) {
   auto workspace = contact.workspace();
   cv::Mat_<std::uint8_t> mask(free.size());
   const Colours frame = other;
-  if (!contact(frame, mask, workspace).ok()) {
+  if (!contact(frame, mask, workspace).accepted()) {
     return std::numeric_limits<double>::infinity();
   }
   double sum = 0;

@@ -67,8 +67,8 @@ TEST_CASE("intensity depth: bytes and numbers, one answer", "[intensity_depth]")
   auto workspace = depth.workspace();
   Image<float> a(20, 30);
   Image<float> b(20, 30);
-  CHECK(depth(now, a, workspace).ok());
-  CHECK(depth(now_float, b, workspace).ok());
+  CHECK(depth(now, a, workspace).accepted());
+  CHECK(depth(now_float, b, workspace).accepted());
   for (std::size_t k = 0; k < a.cells.size(); ++k) {
     CHECK(std::abs(a.cells[k] - b.cells[k]) < 1e-5F);
   }
@@ -105,7 +105,7 @@ TEST_CASE("intensity depth: smoothing averages the noise", "[intensity_depth]") 
     const IntensityDepth<double> depth(free, {}, {.smoothing_px = smoothing_px});
     auto workspace = depth.workspace();
     Image<double> out(60, 60);
-    CHECK(depth(now, out, workspace).ok());
+    CHECK(depth(now, out, workspace).accepted());
     double sum = 0;
     for (const double found : out.cells) {
       sum += square(found - 3 * std::log(140.0 / 120));
@@ -132,9 +132,9 @@ TEST_CASE("intensity depth: what does not fit is refused", "[intensity_depth]") 
   const IntensityDepth<double> depth(free, {});
   auto workspace = depth.workspace();
   Image<double> out(20, 30, 7.0);
-  CHECK(!depth(Image<double>(20, 29), out, workspace).ok());
+  CHECK(!depth(Image<double>(20, 29), out, workspace).accepted());
   auto others = IntensityDepth<double>(Image<double>(20, 31, 100.0), {}).workspace();
-  CHECK(!depth(free, out, others).ok());
+  CHECK(!depth(free, out, others).accepted());
   CHECK(out(3, 3) == 7);
 
   const auto law = [&](const IntensityLaw& given) {

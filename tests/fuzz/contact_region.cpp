@@ -33,7 +33,7 @@ void try_contact(Input& in) {
   Grid<std::uint8_t> mask(rows, cols), again(rows, cols);
   const ContactResult contact = fuzz::frame([&] { return find(depth.view(), mask.view(), work); });
   const ContactResult same = fuzz::frame([&] { return find(depth.view(), again.view(), work); });
-  require(contact.ok(), "a frame of the right size is accepted");
+  require(contact.accepted(), "a frame of the right size is accepted");
   require(mask == again && fuzz::same_bits(contact.area_mm2, same.area_mm2),
           "the same frame gives the same bits");
   Index count = 0;

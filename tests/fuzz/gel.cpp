@@ -57,7 +57,7 @@ void try_slide(Input& in) {
     now.view()(in.whole(0, rows - 1), in.whole(0, cols - 1)) = odd;
     const auto r = fuzz::frame([&] { return contact(now.view(), mask.view(), work); });
     const auto same = contact(now.view(), again.view(), fresh);
-    require(r.ok(), "a frame of the right size is accepted");
+    require(r.accepted(), "a frame of the right size is accepted");
     require(
         mask == again && fuzz::same_bits(r.area_mm2, same.area_mm2) && r.regions == same.regions,
         "the same frame gives the same bits, whatever came before");
@@ -89,7 +89,7 @@ void try_intensity(Input& in) {
   Grid<Pixel> now(in, rows, cols, 0, 260);
   Grid<float> depth(rows, cols), again(rows, cols);
   const auto r = fuzz::frame([&] { return estimate(now.view(), depth.view(), work); });
-  require(r.ok(), "a frame of the right size is accepted");
+  require(r.accepted(), "a frame of the right size is accepted");
   Index valid = 0;
   for (Index i = 0; i < rows; ++i) {
     for (Index j = 0; j < cols; ++j) {

@@ -41,7 +41,7 @@ template <class R, class S>
 Found find(const R& region, const Image<S>& depth, typename R::Workspace& workspace) {
   Found found{{}, Image<std::uint8_t>(depth.rows(), depth.cols(), 3)};
   found.result = region(depth, found.mask, workspace);
-  RC_ASSERT(found.result.ok());
+  RC_ASSERT(found.result.accepted());
   return found;
 }
 template <class R, class S>

@@ -283,6 +283,31 @@ const std::vector<Mistake> mistakes = {
        c.edit_frames(exchange);
      },
      "are red and green exchanged"},
+    {"a pressed frame for the reference",
+     [](const Copy& c) {
+       const cv::Mat pressed = cv::imread((data / "press/frames/000006.png").string());
+       c.edit_picture("reference.png", [&](cv::Mat& p) { pressed.convertTo(p, p.depth(), 257); });
+       fs::create_directory(c.folder() / "free");
+       fs::copy_file(data / "press/frames/000000.png", c.folder() / "free/000000.png");
+     },
+     "or in the reference: leave them out"},
+    {"a frame of another size",
+     [](const Copy& c) {
+       c.edit_picture(Copy::frame(1), [](cv::Mat& f) { f = f.colRange(0, f.cols - 1).clone(); });
+     },
+     "000001.png"},
+    {"rows read without their padding",
+     [](const Copy& c) {
+       c.edit_frames([](cv::Mat& f) {
+         const cv::Mat good = f.clone();
+         for (int k = 0; k < static_cast<int>(good.total()); ++k) {
+           const int from = (std::max)(0, k - 5 * (k / f.cols));
+           f.at<cv::Vec3b>(k / f.cols, k % f.cols) =
+               good.at<cv::Vec3b>(from / f.cols, from % f.cols);
+         }
+       });
+     },
+     "are rows read with their padding?"},
     {"absorption in another unit",
      [](const Copy& c) {
        c.replace("sensor.json", "\"c_red_per_mm\": 0.0290", "\"c_red_per_mm\": 0.290");
@@ -335,6 +360,9 @@ const std::vector<Mistake> mistakes = {
     dots_mistake("dots in mm",
                  "in mm? they are pixels",
                  [](int, int i, int j) { return cv::Vec2d(1.5 * j - 5, 1.5 * i - 5); }),
+    dots_mistake("dots in m",
+                 "or in m? they are pixels",
+                 [](int, int i, int j) { return cv::Vec2d(1.5e-3 * j, 1.5e-3 * i); }),
     dots_mistake("dots in shares of the frame",
                  "in shares of the frame",
                  [](int f, int i, int j) { return cv::Vec2d(good_place(f, i, j) / 480.0); }),
@@ -403,6 +431,13 @@ const std::vector<Mistake> print_mistakes = {
      "dots.rows = 2000, must be 2 to 100"},
 };
 
+void make_all(const Copy& copy, double reading) {
+  copy.edit_table("taxels.csv", [&](Row& row) {
+    std::fill(row.begin() + 2, row.end(), std::to_string(reading));
+    return true;
+  });
+}
+
 const std::vector<Mistake> foam_mistakes = {
     {"time in ms", [](const Copy& c) { c.scale("taxels.csv", 1, 1000); }, "in ms? divide by 1000"},
     {"a gap",
@@ -415,13 +450,16 @@ const std::vector<Mistake> foam_mistakes = {
      "a gap of"},
     {"a dead taxel", [](const Copy& c) { c.scale("taxels.csv", 5, 0); },
      "1 of 64 taxels never change"},
-    {"a dead array",
-     [](const Copy& c) {
-       for (std::size_t k = 2; k < 66; ++k) {
-         c.scale("taxels.csv", k, 0, 4095);
-       }
-     },
+    {"a dead array", [](const Copy& c) { make_all(c, 0); }, "64 of 64 taxels never change"},
+    {"an array dead at some reading", [](const Copy& c) { make_all(c, 517); },
      "64 of 64 taxels never change"},
+    {"an array at full scale", [](const Copy& c) { make_all(c, 4095); },
+     "64 of 64 taxels never change"},
+    {"readings below the noise",
+     [](const Copy& c) {
+       c.replace("sensor.json", "\"pitch_mm\"", "\"noise\": 6000, \"pitch_mm\"");
+     },
+     "give the noise in the unit of the readings"},
     {"a taxel that flickers",
      [](const Copy& c) {
        c.edit_table("taxels.csv", [](Row& r) {
@@ -497,4 +535,19 @@ TEST_CASE("check: what is missing is told, and is no mistake") {
            finding.what.find("signals.csv has no pressure") != std::string::npos;
   }));
   CHECK(replay::print_check(copy.folder()) == 0);
+}
+
+TEST_CASE("check: where all dots count as in contact, that is told") {
+  const Copy copy("press");
+  copy.write("dots.csv", dots_csv(good_place));
+  const auto told = [&](const std::string& sensor) {
+    copy.write("sensor.json", sensor);
+    CHECK(copy.said() == "");
+    const auto findings = replay::check_recording(copy.folder());
+    return std::any_of(findings.begin(), findings.end(), [](const replay::Finding& finding) {
+      return finding.place == "sensor.json, stick.covers_pattern";
+    });
+  };
+  CHECK(told("{}"));
+  CHECK_FALSE(told(R"({"stick": {"covers_pattern": true}})"));
 }

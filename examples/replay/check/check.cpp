@@ -12,11 +12,19 @@
 namespace replay {
 namespace {
 
-/// What a recording with depth has no data for.
+/// What a recording has no data for.
 void note_missing(const Recording& recording, Findings& findings) {
   const auto note = [&](const std::string& place, const std::string& what, const char* remedy) {
     findings.push_back({place, what, remedy, false});
   };
+  if (recording.sensor.dots_only) {
+    if (!recording.sensor.stick.covers_pattern) {
+      note("sensor.json, stick.covers_pattern",
+           "every dot counts as in contact: no stick ratio once some stay behind",
+           "true where the object is larger than the print");
+    }
+    return;
+  }
   if (const std::string lacking = lacking_for_wrench(recording); !lacking.empty()) {
     note("six-axis force", lacking, "add it where the force is wanted");
   }
@@ -47,9 +55,7 @@ void check_camera_recording(const std::filesystem::path& folder, Findings& findi
   }
   check_light(recording, findings);
   check_dots(folder, recording, findings);
-  if (!recording.sensor.dots_only) {
-    note_missing(recording, findings);
-  }
+  note_missing(recording, findings);
 }
 
 }  // namespace

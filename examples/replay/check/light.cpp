@@ -52,6 +52,7 @@ struct Light {
   double noise = std::numeric_limits<double>::infinity();  ///< least, grey levels
   int same = 0;                                            ///< frames that equal the one before
   double touched = 0;  ///< largest share of the pad that is lighter or darker
+  double dark = 1;     ///< least share of the pad with less than half of the reference's light
 };
 
 /// Share of squares of 16 px in the pad whose light differs by more than 2 % from the reference's.
@@ -80,6 +81,8 @@ Light light_in(FrameSource& frames, const cv::Mat& reference, const cv::Mat_<uch
     const cv::Mat_<float> light = light_of(frame);
     cv::Mat_<float> ratio;
     cv::divide(light, free_light, ratio);
+    seen.dark = std::fmin(seen.dark, cv::countNonZero((ratio < 0.5) & pad) /
+                                         static_cast<double>(cv::countNonZero(pad)));
     levels.push_back(median_within(light, pad));
     seen.of_reference.push_back(median_within(ratio, pad));
     seen.saturated = std::fmax(seen.saturated, saturated_share(frame, pad));
@@ -151,14 +154,20 @@ void check_light(Recording& recording, Findings& findings) {
   if (!has_reference) {
     return;
   }
+  if (frames.dark > 0.1 && frames.level >= 16) {  // no press takes light away
+    findings.push_back({"frames",
+                        percent(frames.dark) + " of the pad are dark that are not in the reference",
+                        "are rows read with their padding? has the camera moved?"});
+  }
   const std::string again = "record reference and free frames again with this lamp";
   if (recording.free_frames.size() > 0) {
     const Light free = light_in(recording.free_frames, recording.reference, pad);
     tell_exposure("free", free, findings);
     tell_lamp("free", median_of(free.of_reference), again, findings);
     if (free.touched > 0.02) {
-      findings.push_back({"free", percent(free.touched) + " of the pad look unlike the reference",
-                          "something touches the pad: leave these frames out"});
+      findings.push_back(
+          {"free", percent(free.touched) + " of the pad look unlike the reference",
+           "something touches the pad in these frames, or in the reference: leave them out"});
     }
   }
   tell_lamp("frames, the first", frames.of_reference.front(), again, findings);

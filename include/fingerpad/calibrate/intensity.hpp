@@ -75,7 +75,7 @@ class IntensityCalibration {
     Press press{ball, {}, {}, 0, 0, from.cols()};
     press.log.resize(static_cast<std::size_t>(from.rows() * from.cols()));
     const StridedView<double> to(press.log.data(), from.rows(), from.cols(), from.cols());
-    if (!log_ratio(pressed, to, workspace).ok() || !begin(press)) {
+    if (!log_ratio(pressed, to, workspace).accepted() || !begin(press)) {
       return false;
     }
     presses_.push_back(std::move(press));

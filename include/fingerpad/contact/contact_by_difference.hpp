@@ -127,13 +127,15 @@ class ContactByDifference {
     if (!has_size(from) || !has_size(to) || w.difference_.layout() != layout_) {
       return result;
     }
-    result.status = FrameStatus::ok;
     w.difference_.read(from);
     w.difference_.compare(free_);
     mark(w);
     result.regions = fill_and_drop(w);
     write(w, to);
     measure(w, result);
+    const bool mostly_free = 2 * result.contact_px < rows() * cols() - result.unknown_px;
+    result.status =
+        mostly_free || !result.in_contact() ? FrameStatus::ok : FrameStatus::not_of_this_pad;
     return result;
   }
 

@@ -31,6 +31,10 @@ namespace fingerpad {
 inline namespace v0 {
 
 /// What a frame's contact is like. Without contact, areas are 0 and what has no value is NaN.
+///
+/// Not of this pad: a contact at a mean height below a twentieth of the free apex or above twenty
+/// of it, as of depths in m (contact_region.hpp); half of the frame or more in contact
+/// (contact_by_difference.hpp).
 struct [[nodiscard]] ContactResult {
   FrameStatus status = FrameStatus::refused;
   Index contact_px = 0;  ///< pixels in contact
@@ -41,6 +45,7 @@ struct [[nodiscard]] ContactResult {
                               not_a_number<double>()};  ///< centroid of that area
   double depth_mm = not_a_number<double>();  ///< D: free apex height less mean height of contact
 
+  bool accepted() const { return status != FrameStatus::refused; }
   bool ok() const { return status == FrameStatus::ok; }
   bool in_contact() const { return contact_px > 0; }
 };
@@ -120,7 +125,6 @@ class ContactRegion {
     if (!curvature.ok()) {  // a workspace with another ring
       return result;
     }
-    result.status = FrameStatus::ok;
     result.unknown_px = curvature.unknown_px;
     mark_seeds(statistic, w.regions_.marks());
     const auto keep = [this](const detail::Regions::Region& region) {
@@ -129,6 +133,7 @@ class ContactRegion {
     result.regions = finder_(depth, w.statistic_.data(), keep, w.regions_, w.finder_);
     write(w.regions_.marks(), to);
     measure(w.regions_.marks(), depth, result);
+    result.status = is_of_this_pad(result) ? FrameStatus::ok : FrameStatus::not_of_this_pad;
     return result;
   }
 
@@ -197,6 +202,12 @@ class ContactRegion {
       result.center_mm = sums.center_mm();
       result.depth_mm = test_.free_apex_mm - result.center_mm.z;
     }
+  }
+
+  /// Of no contact, and of an apex that is not one, nothing is said.
+  bool is_of_this_pad(const ContactResult& result) const {
+    const double apex = test_.free_apex_mm, height = result.center_mm.z;
+    return !result.in_contact() || !(apex > 0) || (apex < 20 * height && height < 20 * apex);
   }
 
   ContactTest test_;

@@ -9,12 +9,16 @@ inline namespace v0 {
 
 enum class FrameStatus : std::uint8_t {
   ok,
-  refused,  ///< a grid or the memory given with it has another size: nothing was written
+  not_of_this_pad,  ///< written, but not to be trusted: another unit, lamp or layout than those of
+                    ///< the free pad, or an object larger than what the camera sees
+  refused,          ///< a grid or the memory given with it has another size: nothing was written
 };
 
-/// "ok" or "refused".
+/// "ok", "not of this pad" or "refused".
 constexpr const char* name_of(FrameStatus status) {
-  return status == FrameStatus::ok ? "ok" : "refused";
+  return status == FrameStatus::ok                ? "ok"
+         : status == FrameStatus::not_of_this_pad ? "not of this pad"
+                                                  : "refused";
 }
 
 }  // namespace v0

@@ -16,6 +16,7 @@
 #include <type_traits>
 #include <vector>
 
+#include "fingerpad/core/detail/reserved_vector.hpp"
 #include "fingerpad/core/expects.hpp"
 #include "fingerpad/core/grid.hpp"
 #include "fingerpad/core/scalar.hpp"
@@ -59,11 +60,14 @@ inline void expects_valid(const IntensityOptions& options) {
   expects(options.saturated > options.dark, owner, "saturated", options.saturated, "> dark");
 }
 
-/// What became of a frame.
+/// What became of a frame. Not of this pad: along half of the frame's edge the light is not that of
+/// the free pad, to 5 %: another lamp, exposure, channel or unit of grey, or an object as large as
+/// the frame.
 struct [[nodiscard]] IntensityDepthResult {
   FrameStatus status = FrameStatus::refused;
   Index valid_px = 0;  ///< with a depth
 
+  bool accepted() const { return status != FrameStatus::refused; }
   bool ok() const { return status == FrameStatus::ok; }
 };
 
@@ -101,12 +105,14 @@ class IntensityDepth {
           weight_(log_),
           between_(log_),
           mean_(log_),
-          share_(log_) {}
+          share_(log_),
+          edge_(static_cast<std::size_t>(2 * (depth.rows_ + depth.cols_))) {}
 
    private:
     friend class IntensityDepth;
     detail::EvenKernel<S> kernel_;
     detail::PaddedCells<S> log_, weight_, between_, mean_, share_;
+    detail::ReservedVector<S> edge_;
   };
   Workspace workspace() const { return Workspace(*this); }
 
@@ -122,8 +128,8 @@ class IntensityDepth {
         w.log_.rows() != rows_ || w.log_.cols() != cols_) {
       return result;
     }
-    result.status = FrameStatus::ok;
     read(from, w);
+    result.status = is_free_at_edge(w) ? FrameStatus::ok : FrameStatus::not_of_this_pad;
     const bool smooth = options_.smoothing_px > 0;
     if (smooth) {
       w.kernel_(w.log_, w.between_, w.mean_);
@@ -182,6 +188,33 @@ class IntensityDepth {
         weight[j] = S(known ? 1 : 0);
       }
     }
+  }
+
+  /// Whether the frame's edge is as light as on the free pad: in the median, since the object may
+  /// reach it somewhere.
+  bool is_free_at_edge(Workspace& w) const {
+    w.edge_.clear();
+    const auto add = [&](Index i, Index j) {
+      if (S(0) < w.weight_(i, j)) {
+        w.edge_.push_back(w.log_(i, j));
+      }
+    };
+    for (Index j = 0; j < cols_; ++j) {
+      add(0, j);
+      add(rows_ - 1, j);
+    }
+    for (Index i = 0; i < rows_; ++i) {
+      add(i, 0);
+      add(i, cols_ - 1);
+    }
+    const auto count = static_cast<std::ptrdiff_t>(w.edge_.size());
+    if (count < rows_ + cols_) {
+      return false;
+    }
+    const auto middle = w.edge_.begin() + count / 2;
+    std::nth_element(w.edge_.begin(), middle, w.edge_.end());
+    constexpr double change = 0.05;
+    return S(-change) < *middle && *middle < S(change);
   }
 
   IntensityLaw law_;

@@ -58,6 +58,8 @@ inline S without_neighbour_light(const S& depth_mm,
   return value(compensated) < 0 ? S(0) : compensated;
 }
 
+/// Not of this pad: the depths are on the whole a twentieth of the reference's or less, or twenty
+/// of it or more, as depths in m are.
 struct [[nodiscard]] NeighbourLightResult {
   FrameStatus status = FrameStatus::refused;
   Index lost_px = 0;  ///< pixels of the reference whose inclination this frame does not show
@@ -118,6 +120,7 @@ class NeighbourLightCompensation {
         to.cols() != cols() || !sums_.fits(workspace)) {
       return {};
     }
+    const bool is_unit = is_in_unit_of_reference(from);  // before `out`, which may be the same grid
     sums_.scan(from, workspace);
     for (Index i = 0; i < rows(); ++i) {
       sums_.sum_row(i, workspace);
@@ -132,10 +135,27 @@ class NeighbourLightCompensation {
         to(i, j) = static_cast<cell_t<Out>>(row_mm[j]);
       }
     }
-    return {FrameStatus::ok, workspace.lost_px};
+    return {is_unit ? FrameStatus::ok : FrameStatus::not_of_this_pad, workspace.lost_px};
   }
 
  private:
+  /// By every eighth pixel of every eighth row.
+  template <class View>
+  bool is_in_unit_of_reference(const View& from) const {
+    S here = S(0), there = S(0);
+    for (Index i = 0; i < rows(); i += 8) {
+      for (Index j = 0; j < cols(); j += 8) {
+        const S l = S(from(i, j));
+        const S reference = reference_[static_cast<std::size_t>(i * cols() + j)];
+        if (is_finite(l) && S(0) < reference) {
+          here = here + l;
+          there = there + reference;
+        }
+      }
+    }
+    return !(S(0) < there) || (there < S(20) * here && here < S(20) * there);
+  }
+
   template <class View>
   static const NeighbourLight<S>& checked(const NeighbourLight<S>& light,
                                           const S& pitch_mm,

@@ -1,0 +1,264 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+// Mistakes with pixels: frames of gels and depth maps, and what five methods say of each. "found":
+// the mistake does no harm, or is none for this method; a wrong number is told as "another ...",
+// and then nothing can tell, with the reason in docs/mistakes.md.
+#include <array>
+#include <cmath>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "fingerpad/contact/contact_by_difference.hpp"
+#include "fingerpad/contact/contact_region.hpp"
+#include "fingerpad/contact/object_surface.hpp"
+#include "fingerpad/depth/intensity_depth.hpp"
+#include "fingerpad/depth/neighbour_light.hpp"
+#include "support/catch.hpp"
+#include "support/gel_frames.hpp"
+#include "support/soap_film.hpp"
+
+using namespace fingerpad;
+using test::Image;
+
+namespace {
+
+constexpr Index size = 64;
+using Pixels = Image<double>;
+using Colours = Image<std::array<double, 3>>;
+
+double times(double level, double factor) {
+  return factor * level;
+}
+std::array<double, 3> times(const std::array<double, 3>& p, double factor) {
+  return {factor * p[0], factor * p[1], factor * p[2]};
+}
+
+/// Cell (i, j) is that at from(i, j), times a factor.
+template <class Cell, class From>
+Image<Cell> rearranged(const Image<Cell>& image, const From& from, double factor = 1) {
+  Image<Cell> out = image;
+  for (Index i = 0; i < size; ++i) {
+    for (Index j = 0; j < size; ++j) {
+      const DotIndex at = from(i, j);
+      out(i, j) = times(image((at.row + size) % size, (at.col + size) % size), factor);
+    }
+  }
+  return out;
+}
+
+/// Of a frame; `free`: of the free pad, which is right.
+template <class Cell>
+Image<Cell> spoilt(const std::string& mistake, const Image<Cell>& now, const Image<Cell>& free) {
+  const auto scaled = [&](double factor) {
+    return rearranged(
+        now,
+        [](Index i, Index j) {
+          return DotIndex{i, j};
+        },
+        factor);
+  };
+  if (mistake == "x 1000") {
+    return scaled(1000);
+  }
+  if (mistake == "/ 1000") {
+    return scaled(1e-3);
+  }
+  if (mistake == "10 % less") {
+    return scaled(0.9);
+  }
+  if (mistake == "transposed") {
+    return rearranged(now, [](Index i, Index j) { return DotIndex{j, i}; });
+  }
+  if (mistake == "mirrored") {
+    return rearranged(now, [](Index i, Index j) { return DotIndex{i, size - 1 - j}; });
+  }
+  if (mistake == "two halves exchanged") {
+    return rearranged(now, [](Index i, Index j) { return DotIndex{i, j + size / 2}; });
+  }
+  if (mistake == "a row stride of one too many") {
+    return rearranged(now, [](Index i, Index j) { return DotIndex{i, j + i}; });
+  }
+  if (mistake == "constant") {
+    return rearranged(now, [](Index, Index) { return DotIndex{size / 2, size / 2}; });
+  }
+  Image<Cell> out = mistake == "the free pad for now" ? free : now;
+  if (mistake == "half missing") {
+    std::fill(out.cells.begin(), out.cells.begin() + size * size / 2, times(out(0, 0), test::nan));
+  }
+  return mistake == "no number" ? scaled(test::nan) : out;
+}
+
+bool is_near(const Point3<double>& a, const Point3<double>& b, double mm) {
+  return std::hypot(a.x - b.x, a.y - b.y) < mm;
+}
+
+/// A contact as it is told, against that without the mistake.
+std::string told(const ContactResult& r, const ContactResult& right) {
+  return !r.ok()                          ? name_of(r.status)
+         : 2 * r.unknown_px > size * size ? "mostly unknown"
+         : !r.in_contact()                ? "no contact"
+         : std::abs(r.area_mm2 / right.area_mm2 - 1) < 0.1 &&
+                 is_near(r.center_mm, right.center_mm, 0.3)
+             ? "found"
+             : "another contact";
+}
+
+/// A gel that darkens under a ball, off the middle, under an uneven lamp.
+std::string of_intensity(const std::string& mistake) {
+  Pixels free(size, size), now(size, size), right(size, size);
+  for (Index i = 0; i < size; ++i) {
+    for (Index j = 0; j < size; ++j) {
+      const double x = static_cast<double>(j - 24), y = static_cast<double>(i - 40);
+      right(i, j) = std::fmax(0.0, 1.2 - (x * x + y * y) / 150);
+      free(i, j) = 120 + 0.5 * static_cast<double>(i) - 0.3 * static_cast<double>(j);
+      now(i, j) = free(i, j) * std::exp(-right(i, j) / 3);
+    }
+  }
+  const bool exchanged = mistake == "free pad and now exchanged";
+  const IntensityDepth<double> depth(exchanged ? now : free, {});
+  auto workspace = depth.workspace();
+  Pixels out(size, size);
+  const auto r = depth(exchanged ? free : spoilt(mistake, now, free), out, workspace);
+  return !r.ok()                                 ? name_of(r.status)
+         : test::largest_error(right, out) < 0.2 ? "found"
+                                                 : "another depth";
+}
+
+/// A ball on a gel, in colours.
+std::string of_difference(const std::string& mistake) {
+  test::GelCamera camera{.rows = size, .cols = size, .mm_per_px = 0.25, .dot_mm = 0};
+  test::Random random(7);
+  GelContact<> ball{GelPad{}};
+  const auto frame = [&] {
+    const auto bytes = camera.frame(ball, random);
+    Colours out(size, size);
+    for (std::size_t k = 0; k < out.cells.size(); ++k) {
+      out.cells[k] = {double(bytes.cells[k][0]), double(bytes.cells[k][1]),
+                      double(bytes.cells[k][2])};
+    }
+    return out;
+  };
+  std::vector<Colours> free = {frame(), frame(), frame()};
+  ball.drag(0.5, {-1.7, 2.2});
+  Colours now = frame();
+  const auto look = [](const std::vector<Colours>& free_frames, const Colours& seen) {
+    DifferenceTest options{.cell_px = 2,
+                           .smoothing_px = 2,
+                           .dot_px = 0,
+                           .max_gap_px = 4,
+                           .min_region_px = 40,
+                           .mm_per_px = 0.25};
+    const ContactByDifference<3, double> contact(free_frames, options);
+    auto workspace = contact.workspace();
+    Image<Touch> mask(size, size);
+    return contact(seen, mask, workspace);
+  };
+  const ContactResult right = look(free, now);
+  if (mistake == "channels exchanged") {
+    for (auto& p : now.cells) {
+      std::swap(p[0], p[2]);
+    }
+  }
+  if (mistake == "free pad and now exchanged") {
+    std::swap(free.front(), now);
+    free.resize(1);
+  }
+  return told(look(free, spoilt(mistake, now, free.front())), right);
+}
+
+/// A pad around a ball, as a depth map.
+struct PressedPad {
+  OrthographicCamera<double> camera = test::height_map(size, size, 0.32);
+  Pixels free =
+      test::depths_of<double>(camera, test::RoundFilm({.radius_mm = 0, .top_mm = 12}), size, size);
+  Pixels now = test::depths_of<double>(
+      camera,
+      test::RoundFilm({.radius_mm = 4, .object_per_mm = -0.1, .x_mm = 1.5, .y_mm = -1}),
+      size,
+      size);
+};
+
+std::string of_region(const std::string& mistake) {
+  const PressedPad pad;
+  ContactTest options;
+  options.ring.radius_px = 5;
+  const ContactRegion<ClampedMean<>, HalfLevelEdge, OrthographicCamera<double>> region(
+      pad.camera, size, size, options);
+  auto workspace = region.workspace();
+  Image<std::uint8_t> mask(size, size);
+  const ContactResult right = region(pad.now, mask, workspace);
+  return told(region(spoilt(mistake, pad.now, pad.free), mask, workspace), right);
+}
+
+std::string of_surface(const std::string& mistake) {
+  const PressedPad pad;
+  Image<std::uint8_t> mask(size, size);
+  for (Index i = 0; i < size; ++i) {
+    for (Index j = 0; j < size; ++j) {
+      const auto p = point_at(pad.camera, double(i), double(j), 10.0);
+      mask(i, j) = std::hypot(p.x - 1.5, p.y + 1) < 3.5 ? 1 : 0;
+    }
+  }
+  const SurfaceFit<Sphere<>, OrthographicCamera<double>> surface(size, size, pad.camera);
+  const auto r = surface(spoilt(mistake, pad.now, pad.free), mask);
+  const auto right = surface(pad.now, mask);
+  const bool same = norm(r.shape.center_mm() - right.shape.center_mm()) < 0.1;
+  return !r.ok() ? (r.accepted() ? "degenerate" : "refused") : same ? "found" : "another object";
+}
+
+std::string of_light(const std::string& mistake) {
+  const PressedPad pad;
+  const bool exchanged = mistake == "free pad and now exchanged";
+  const NeighbourLightCompensation<> light({10}, 0.32F, exchanged ? pad.now : pad.free);
+  auto workspace = light.workspace();
+  Pixels right(size, size), out(size, size);
+  const auto first =
+      light(exchanged ? pad.free : spoilt(mistake, pad.now, pad.free), out, workspace);
+  const NeighbourLightCompensation<> good({10}, 0.32F, pad.free);
+  CHECK(good(pad.now, right, workspace).ok());
+  return !first.ok()                              ? name_of(first.status)
+         : test::largest_error(right, out) < 0.02 ? "found"
+                                                  : "another depth";
+}
+
+struct Said {
+  std::string mistake, intensity, difference, region, surface, light;
+};
+
+const std::vector<Said> table = {
+    {"none", "found", "found", "found", "found", "found"},
+    {"x 1000", "not of this pad", "mostly unknown", "mostly unknown", "degenerate",
+     "not of this pad"},
+    {"/ 1000", "not of this pad", "found", "not of this pad", "another object", "not of this pad"},
+    {"10 % less", "not of this pad", "found", "found", "found", "another depth"},
+    {"transposed", "another depth", "not of this pad", "another contact", "another object",
+     "another depth"},
+    {"mirrored", "another depth", "not of this pad", "another contact", "another object",
+     "another depth"},
+    {"two halves exchanged", "not of this pad", "not of this pad", "another contact",
+     "another object", "another depth"},
+    {"a row stride of one too many", "another depth", "not of this pad", "another contact",
+     "another object", "another depth"},
+    {"constant", "not of this pad", "not of this pad", "another contact", "another object",
+     "another depth"},
+    {"half missing", "found", "found", "mostly unknown", "found", "found"},
+    {"no number", "not of this pad", "mostly unknown", "mostly unknown", "degenerate", "found"},
+    {"the free pad for now", "another depth", "no contact", "no contact", "another object",
+     "another depth"},
+    {"free pad and now exchanged", "another depth", "found", "found", "found", "another depth"},
+    {"channels exchanged", "found", "not of this pad", "found", "found", "found"},
+};
+
+}  // namespace
+
+TEST_CASE("mistakes with pixels", "[mistakes]") {
+  for (const Said& said : table) {
+    INFO(said.mistake);
+    CHECK(of_intensity(said.mistake) == said.intensity);
+    CHECK(of_difference(said.mistake) == said.difference);
+    CHECK(of_region(said.mistake) == said.region);
+    CHECK(of_surface(said.mistake) == said.surface);
+    CHECK(of_light(said.mistake) == said.light);
+  }
+}
