@@ -2,13 +2,16 @@
 # SPDX-License-Identifier: MIT
 """The Python module on the bundled recording: pytest test_fingerpad.py, with the module's folder in
 PYTHONPATH. FINGERPAD_PROGRAMS is the folder of replay and calibrate, whose bits it must have."""
+import base64
 import csv
+import hashlib
 import json
 import os
 import shutil
 import subprocess
 import sys
 import threading
+import zipfile
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
@@ -376,3 +379,27 @@ def test_a_fingertip_gives_what_its_parts_give(pad, estimate):
     with pytest.raises(TypeError, match=r"\(rows, cols, 2\)"):
         fingertip(red, green, side_dots, side_dots, 0.016)
     assert fingertip(red, green, dots_px[1:], side_dots, 0.016).status == "refused"
+
+
+def test_the_wheel_holds_the_module_and_its_record(tmp_path):
+    script = Path(__file__).with_name("wheel.py")
+    packed = subprocess.run([sys.executable, script, fp.__file__, "9.8.7", tmp_path],
+                            capture_output=True, text=True, check=True)
+    wheel = Path(packed.stdout.strip())
+    assert wheel.name.startswith("fingerpad-9.8.7-cp")
+    unpacked = tmp_path / "unpacked"
+    with zipfile.ZipFile(wheel) as archive:
+        archive.extractall(unpacked)
+        names = archive.namelist()
+    with open(unpacked / "fingerpad-9.8.7.dist-info" / "RECORD", newline="") as record:
+        rows = list(csv.reader(record))
+    assert [row[0] for row in rows] == names
+    for name, digest, size in rows[:-1]:  # the record does not list itself
+        content = (unpacked / name).read_bytes()
+        assert len(content) == int(size)
+        expected = base64.urlsafe_b64encode(hashlib.sha256(content).digest()).rstrip(b"=")
+        assert digest == f"sha256={expected.decode()}"
+    said = subprocess.run([sys.executable, "-c", "import fingerpad; print(fingerpad.__file__)"],
+                          env={**os.environ, "PYTHONPATH": str(unpacked)},
+                          capture_output=True, text=True, check=True).stdout
+    assert said.startswith(str(unpacked))
