@@ -14,10 +14,6 @@
 #include "replay/dots/dots.hpp"
 #include "replay/steps/fingertip_options.hpp"
 
-#ifndef FINGERPAD_EXAMPLE_RECORDING  // compiled by hand, from the root
-#define FINGERPAD_EXAMPLE_RECORDING "examples/data/press"
-#endif
-
 int main(int argc, char** argv) {
   using Clock = std::chrono::steady_clock;
   const std::filesystem::path folder = argc > 1 ? argv[1] : FINGERPAD_EXAMPLE_RECORDING;
