@@ -65,7 +65,10 @@ void bind_slip(py::module_& module) {
       .def_readwrite("min_dots", &StickTest::min_dots, ">= 1")
       .def_readwrite("free_frames", &StickTest::free_frames,
                      "frames of the free pad that tell the noise; 0: none")
-      .def_readwrite("hold_s", &StickTest::hold_s, "s, >= 0");
+      .def_readwrite("hold_s", &StickTest::hold_s, "s, >= 0")
+      .def_readwrite("covers_pattern", &StickTest::covers_pattern,
+                     "whether the object is larger than the print; else no ratio once some dots of "
+                     "a contact of all stay behind");
   py::enum_<DotState>(module, "DotState", "What a dot does.")
       .value("none", DotState::none)
       .value("unknown", DotState::unknown)

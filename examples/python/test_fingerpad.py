@@ -300,7 +300,7 @@ def test_frames_have_the_bits_of_cpp(tmp_path):
 def test_the_stick_ratio_has_the_bits_of_cpp(tmp_path):
     recording = tmp_path / "dots"
     shutil.copytree(PRESS / "frames", recording / "frames")
-    (recording / "sensor.json").write_text("{}")
+    (recording / "sensor.json").write_text('{"stick": {"covers_pattern": true}}')
     y, x = np.mgrid[:12, :12] * 20.0 + 120
     rng = np.random.default_rng(1)
     frames = []
@@ -315,7 +315,7 @@ def test_the_stick_ratio_has_the_bits_of_cpp(tmp_path):
                 file.write(f"{k},{i},{j},{dots[i, j, 0]:.6f},{dots[i, j, 1]:.6f}\n")
     run("replay", recording, "--out", tmp_path / "out", "--no-pictures")
     told, of_dots = table(tmp_path / "out/frames.csv"), table(tmp_path / "out/dots.csv")
-    ratio = fp.StickRatio(12, 12)
+    ratio = fp.StickRatio(12, 12, fp.StickTest(covers_pattern=True))
     for k, dots in enumerate(frames):
         states, result = ratio(dots, np.ones((12, 12), bool))
         assert f"{result.stick_ratio:.6f}" == f"{told['stick_ratio'][k]:.6f}"
@@ -400,6 +400,6 @@ def test_the_wheel_holds_the_module_and_its_record(tmp_path):
         expected = base64.urlsafe_b64encode(hashlib.sha256(content).digest()).rstrip(b"=")
         assert digest == f"sha256={expected.decode()}"
     said = subprocess.run([sys.executable, "-c", "import fingerpad; print(fingerpad.__file__)"],
-                          env={**os.environ, "PYTHONPATH": str(unpacked)},
+                          env={**os.environ, "PYTHONPATH": str(unpacked)}, cwd=unpacked,
                           capture_output=True, text=True, check=True).stdout
     assert said.startswith(str(unpacked))

@@ -385,7 +385,7 @@ TEST_CASE("an estimator refuses what cannot be, and says why", "[depth]") {
   CHECK_THAT(with_fluid([](auto& f) { f.max_depth_mm = test::nan; }),
              StartsWith("Absorption: max_depth_mm = nan"));
   CHECK_THAT(message([&] { DepthEstimator<>(pad.camera, pad.fluid, DepthReference<float>()); }),
-             StartsWith("DepthEstimator: reference.pixels_used = 0, must be > 0"));
+             StartsWith("DepthEstimator: rows = 0, must be in [1, 1000000]"));
   for (const int halvings : {-1, 1, 101}) {
     CHECK_THAT(
         message([&] { pad.estimator<NoSmoothing, published::Bisection, float>({}, {halvings}); }),

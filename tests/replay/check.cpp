@@ -291,6 +291,12 @@ const std::vector<Mistake> mistakes = {
        fs::copy_file(data / "press/frames/000000.png", c.folder() / "free/000000.png");
      },
      "or in the reference: leave them out"},
+    {"a pressed frame for the reference, without free frames",
+     [](const Copy& c) {
+       const cv::Mat pressed = cv::imread((data / "press/frames/000006.png").string());
+       c.edit_picture("reference.png", [&](cv::Mat& p) { pressed.convertTo(p, p.depth(), 257); });
+     },
+     "no frame looks like it"},
     {"a frame of another size",
      [](const Copy& c) {
        c.edit_picture(Copy::frame(1), [](cv::Mat& f) { f = f.colRange(0, f.cols - 1).clone(); });
@@ -409,6 +415,17 @@ const std::vector<Mistake> mistakes = {
        });
      },
      "a press gives force_z_n < 0"},
+    {"force columns exchanged",
+     [](const Copy& c) {
+       c.edit_table("forces.csv", [](Row& r) {
+         r[3] = std::to_string(-std::stod(r[0]));
+         std::swap(r[1], r[3]);
+         return true;
+       });
+     },
+     "are the columns exchanged?"},
+    {"a force gauge that was not tared", [](const Copy& c) { c.scale("forces.csv", 3, 1, -0.4); },
+     "tare the gauge with nothing in contact"},
     {"no sensor.json", [](const Copy& c) { fs::remove(c.folder() / "sensor.json"); },
      "sensor.json: cannot be read"},
 };

@@ -1,5 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
+#include <algorithm>
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 #include <optional>
@@ -9,7 +10,8 @@
 namespace replay {
 namespace {
 
-constexpr int most_frames = 300;  // that are looked at
+constexpr int most_frames = 300;     // that are looked at
+constexpr double free_share = 0.02;  // of a free pad that may look unlike the reference
 
 /// Red plus green, half of it, in grey levels.
 cv::Mat_<float> light_of(const cv::Mat& frame) {
@@ -51,8 +53,8 @@ struct Light {
   std::vector<double> of_reference;  ///< median of frame / reference
   double noise = std::numeric_limits<double>::infinity();  ///< least, grey levels
   int same = 0;                                            ///< frames that equal the one before
-  double touched = 0;  ///< largest share of the pad that is lighter or darker
-  double dark = 1;     ///< least share of the pad with less than half of the reference's light
+  std::vector<double> touched;  ///< share of the pad that is lighter or darker, each frame
+  double dark = 1;  ///< least share of the pad with less than half of the reference's light
 };
 
 /// Share of squares of 16 px in the pad whose light differs by more than 2 % from the reference's.
@@ -86,7 +88,7 @@ Light light_in(FrameSource& frames, const cv::Mat& reference, const cv::Mat_<uch
     levels.push_back(median_within(light, pad));
     seen.of_reference.push_back(median_within(ratio, pad));
     seen.saturated = std::fmax(seen.saturated, saturated_share(frame, pad));
-    seen.touched = std::fmax(seen.touched, touched_share(ratio, pad, seen.of_reference.back()));
+    seen.touched.push_back(touched_share(ratio, pad, seen.of_reference.back()));
     if (!before.empty()) {
       const double off = cv::norm(light, before, cv::NORM_L1, pad) / cv::countNonZero(pad);
       seen.same += off > 0 ? 0 : 1;
@@ -138,6 +140,35 @@ void tell_lamp(const std::string& place,
   }
 }
 
+/// Whether something shows the free pad as the reference has it.
+void check_free_pad(const Recording& recording, const Light& frames, Findings& findings) {
+  const double least = *std::min_element(frames.touched.begin(), frames.touched.end());
+  if (recording.free_frames.size() == 0 && least > free_share) {
+    findings.push_back({recording.sensor.reference_frame,
+                        "no frame looks like it: " + percent(least) + " of the pad differ, or more",
+                        "is it of the free pad? begin recordings with nothing in contact"});
+  }
+}
+
+/// What the gauge reads where nothing touches the pad: the least of frames that look free, since
+/// the first touch can hardly be seen.
+void check_tare(const Recording& recording, const Light& frames, Findings& findings) {
+  double free_n = std::numeric_limits<double>::infinity(), largest_n = 0;
+  for (const auto& [frame, truth] : recording.true_forces) {
+    const auto k = static_cast<std::size_t>(frame);
+    const double n = norm(truth.force_n);
+    largest_n = std::fmax(largest_n, n);
+    if (k < frames.touched.size() && frames.touched[k] <= free_share / 4) {
+      free_n = std::fmin(free_n, n);
+    }
+  }
+  if (std::isfinite(free_n) && free_n > 0.1 * largest_n && free_n > 0.05) {
+    findings.push_back({"forces.csv",
+                        short_number(free_n) + " N or more in all frames that show the free pad",
+                        "tare the gauge with nothing in contact"});
+  }
+}
+
 }  // namespace
 
 void check_light(Recording& recording, Findings& findings) {
@@ -164,12 +195,15 @@ void check_light(Recording& recording, Findings& findings) {
     const Light free = light_in(recording.free_frames, recording.reference, pad);
     tell_exposure("free", free, findings);
     tell_lamp("free", median_of(free.of_reference), again, findings);
-    if (free.touched > 0.02) {
+    const double touched = *std::max_element(free.touched.begin(), free.touched.end());
+    if (touched > free_share) {
       findings.push_back(
-          {"free", percent(free.touched) + " of the pad look unlike the reference",
+          {"free", percent(touched) + " of the pad look unlike the reference",
            "something touches the pad in these frames, or in the reference: leave them out"});
     }
   }
+  check_free_pad(recording, frames, findings);
+  check_tare(recording, frames, findings);
   tell_lamp("frames, the first", frames.of_reference.front(), again, findings);
   tell_lamp("frames, the last against the first",
             frames.of_reference.back() / frames.of_reference.front(),

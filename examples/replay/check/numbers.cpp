@@ -118,11 +118,12 @@ void check_look_up(const Recording& recording, Findings& findings) {
 }
 
 void check_true_forces(const Recording& recording, Findings& findings) {
-  double largest_n = 0, largest_n_mm = 0, pull_n = 0, press_n = 0;
+  double largest_n = 0, largest_n_mm = 0, pull_n = 0, press_n = 0, along_n = 0;
   for (const auto& [frame, truth] : recording.true_forces) {
     const auto& f = truth.force_n;
     largest_n = std::fmax(largest_n, norm(f));
     largest_n_mm = std::fmax(largest_n_mm, std::abs(truth.moment_n_mm));
+    along_n = std::fmax(along_n, std::hypot(f.x, f.y));
     pull_n = std::fmax(pull_n, f.z);
     press_n = std::fmax(press_n, -f.z);
   }
@@ -130,6 +131,13 @@ void check_true_forces(const Recording& recording, Findings& findings) {
     findings.push_back(
         {"forces.csv, force_z_n", "the object pulls at the pad",
          "a press gives force_z_n < 0: forces are what the object exerts on the pad"});
+  }
+  constexpr double most_friction = 2;  // of a soft pad
+  if (along_n > most_friction * std::fmax(press_n, pull_n) && along_n > 0.1) {
+    findings.push_back({"forces.csv",
+                        "up to " + short_number(along_n) + " N along the plate by a press of " +
+                            short_number(std::fmax(press_n, pull_n)) + " N: no friction holds that",
+                        "are the columns exchanged? z points from the plate into the pad"});
   }
   if (largest_n_mm > 10 * recording.sensor.pad.base_radius_mm * largest_n) {
     findings.push_back({"forces.csv, moment_z_nm",

@@ -19,7 +19,8 @@ namespace replay {
 void check_numbers(const Recording& recording, Findings& findings);
 /// The reference: its depth against camera, pad and light.
 void check_reference(const Recording& recording, Findings& findings);
-/// Exposure, noise and lamp of the frames, and whether the free frames are free.
+/// Exposure, noise and lamp of the frames, whether the free frames are free, and what the force
+/// gauge reads in them.
 void check_light(Recording& recording, Findings& findings);
 /// The dots of dots.csv, or the print against what the reference shows.
 void check_dots(const std::filesystem::path& folder,
