@@ -408,12 +408,12 @@ TEST_CASE("patterns larger than any are refused by name", "[mistakes]") {
       CHECK(message.find(what) != std::string::npos);
     }
   }
-  const std::string frames = "cells in memory = 4096000000, must be <= 100000000";
+  const std::string too_many = "cells in memory = 4096000000, must be <= 100000000";
   CHECK(refusal([] {
           const StickRatio r(1000, 1000, {}, {}, UpdatedReference{.capacity = 4096});
-        }) == "StickRatio: " + frames);
+        }) == "StickRatio: " + too_many);
   CHECK(refusal([] { const SpatialStickRatio<> r(1000, 1000, {.capacity = 4096}); }) ==
-        "SpatialStickRatio: " + frames);
+        "SpatialStickRatio: " + too_many);
 }
 
 namespace {
