@@ -576,6 +576,10 @@ TEST_CASE("bad parameters are refused by name", "[contact_region]") {
   camera.refractive_index = 0.5;
   CHECK(begins_with(refusal([&] { const ContactRegion<> region(camera, 60, 60); }),
                     "Camera: refractive_index = 0.5"));
+  camera = {};
+  camera.center_y_px = -1e300;
+  CHECK(begins_with(refusal([&] { const ContactRegion<> region(camera, 60, 60); }),
+                    "ContactRegion: camera: corner of the image, mm = "));
   // a pixel without neighbours on either side has no area
   for (const Index one : {0, 1}) {
     CHECK(begins_with(refusal([&] { const ContactRegion<> region({}, one, 60); }),

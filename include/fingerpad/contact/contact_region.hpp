@@ -147,6 +147,13 @@ class ContactRegion {
     expects_valid(camera);
     expects_valid(test);
     expects_valid(edge);
+    using C = decltype(camera.pitch_mm);
+    for (const double end : {0.0, 1.0}) {  // first and last pixel
+      const auto corner = point_at(camera, C(end * static_cast<double>(rows - 1)),
+                                   C(end * static_cast<double>(cols - 1)), C(0));
+      expects(is_plausible(corner), "ContactRegion", "camera: corner of the image, mm",
+              value(corner.x) + value(corner.y), "less than a million from the axis");
+    }
     return test;
   }
 
