@@ -24,7 +24,7 @@ inline namespace v0 {
 
 /// What counts as recoil.
 struct RecoilTest {
-  double pitch_px = 40;     ///< between neighbouring dots, > 0
+  double pitch_px = 40;     ///< between neighbouring dots, in [1e-6, 1e6)
   double max_recoil = 0.1;  ///< alarm beyond so many pitches, > 0
   double quantile = 0.95;   ///< of the dots' displacements is followed, in (0, 1): most dots are
                             ///< beside the contact and hardly move
@@ -32,8 +32,8 @@ struct RecoilTest {
 };
 inline void expects_valid(const RecoilTest& test) {
   constexpr const char* owner = "RecoilTest";
-  expects(is_finite(test.pitch_px) && test.pitch_px > 0, owner, "pitch_px", test.pitch_px,
-          "finite and > 0");
+  expects(is_plausible(test.pitch_px) && test.pitch_px >= 1e-6, owner, "pitch_px", test.pitch_px,
+          ">= 1e-6 and less than a million");
   expects(is_finite(test.max_recoil) && test.max_recoil > 0, owner, "max_recoil", test.max_recoil,
           "finite and > 0");
   expects(test.quantile > 0 && test.quantile < 1, owner, "quantile", test.quantile, "in (0, 1)");
