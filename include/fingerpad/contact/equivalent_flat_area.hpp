@@ -14,7 +14,7 @@
 // A plate, level or tilted, has k_contact = 0 and S_eq = S_c (eq. 2 of Ito, Kim and Obinata); a
 // ball as round as the pad presses twice as hard as a plate of the same area. Both curvatures are
 // in the depth map. (EA1) takes the tension to be the same on both sides; under a round object it
-// is less, so that S_eq is up to 7 % too large on finite-element membranes.
+// is less, so that S_eq is somewhat too large: docs/force/normal_force.md has the error.
 #include <cmath>
 #include <type_traits>
 
