@@ -167,6 +167,11 @@ void add_shear(Samples samples, const Measure& by, Outcome& outcome) {
       {"moment_n_mm_per_rad", moment.polynomial.coefficients[0], moment.standard_errors[0]},
       {"rotation_exponent", moment.exponent, moment.exponent_sd},
       {"residual_of_the_moment_n_mm", moment.residual_sd}};
+  if (std::isfinite(force.gauge_angle_sd_rad)) {
+    constexpr double degrees = 57.29577951308232;
+    report.parameters.push_back({"angle_of_the_gauge_degrees", degrees * force.gauge_angle_rad,
+                                 degrees * force.gauge_angle_sd_rad});
+  }
   report.doubt(!force.ok(), std::string("of the force, ") + name_of(force.status));
   report.doubt(!moment.ok(), std::string("of the moment, ") + name_of(moment.status));
   outcome.sections["force"]["shear"] = {

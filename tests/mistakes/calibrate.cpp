@@ -56,8 +56,8 @@ using Forces = std::vector<ForceSample<double>>;
 
 /// A press of twelve loads and a drag and a twist at three depths, as a gauge and a camera see
 /// them.
-Forces forces() {
-  Random random(1);
+Forces forces(std::uint64_t seed = 1) {
+  Random random(seed);
   Forces samples;
   for (int k = 0; k < 60; ++k) {
     ForceSample<double> s;
@@ -201,9 +201,23 @@ TEST_CASE("mistakes: forces by look-up", "[mistakes]") {
       {"gauge rotated by 30 degrees",
        tangential([](auto& s) { rotate(s.tangential_force_n, 0.52); }), "is the gauge rotated"},
       {"gauge rotated by 90 degrees",
-       tangential([](auto& s) { rotate(s.tangential_force_n, 1.57); }), "is the gauge rotated"},
+       tangential([](auto& s) { rotate(s.tangential_force_n, 1.57); }),
+       "is the gauge rotated against the image? Turned by 90 +- 2 degrees"},
       {"area in m^2", normal([](auto& s) { s.measure *= 1e-6; }), "areas in mm^2"},
       {"depth in m", normal([](auto& s) { s.measure *= 1e-3; }), "depths and radii in mm"},
+      {"area in um^2", normal([](auto& s) { s.measure *= 1e6; }), "areas in mm^2"},
+      {"depth in um",  // as an area would be; a force that is looked up is then "below range"
+       normal([](auto& s) { s.measure *= 1e3; }), "ok"},
+      {"forces in mN", normal([](auto& s) { s.normal_force_n *= 1e3; }), "in N?"},
+      {"forces in kN", normal([](auto& s) { s.normal_force_n *= 1e-3; }), "in N?"},
+      {"forces in mN",
+       tangential([](auto& s) { s.tangential_force_n = 1e3 * s.tangential_force_n; }), "in N?"},
+      {"forces in kN",
+       tangential([](auto& s) { s.tangential_force_n = 1e-3 * s.tangential_force_n; }), "in N?"},
+      {"forces times 1e300", normal([](auto& s) { s.normal_force_n *= 1e300; }), "too few"},
+      {"moment in N um", moment([](auto& s) { s.moment_n_mm *= 1e3; }), "in N mm?"},
+      {"displacement in um",
+       tangential([](auto& s) { s.displacement_mm = 1e3 * s.displacement_mm; }), "in mm?"},
       {"displacement in m", tangential([](auto& s) {
          s.displacement_mm = {s.displacement_mm.x / 1000, s.displacement_mm.y / 1000};
        }),
@@ -233,6 +247,49 @@ TEST_CASE("mistakes: forces by look-up", "[mistakes]") {
       {"nothing measured", normal([](auto& s) { s.normal_force_n = test::nan; }),
        "usable samples = 0"},
   });
+}
+
+TEST_CASE("mistakes: by how much a gauge is turned", "[mistakes]") {
+  const auto fitted = [](std::uint64_t seed, double turned_rad, const Change& change) {
+    Forces samples = forces(seed);
+    Random random(seed + 1000);
+    for (auto& s : samples) {
+      change(s);
+      s.tangential_force_n.x += 0.1 * random.normal();
+      s.tangential_force_n.y += 0.1 * random.normal();
+      rotate(s.tangential_force_n, turned_rad);
+    }
+    return fit_tangential_force<1>(std::span<const ForceSample<double>>(samples), 2, 0.7,
+                                   {.min_explained = 0.1});
+  };
+  const auto as_it_is = [](auto&) {};
+  // the standard error is that of the angle, whatever the angle
+  for (const double turned_rad : {0.0, 0.3, -0.52}) {
+    double ratio_sq = 0;
+    constexpr int fits = 200;
+    for (std::uint64_t seed = 1; seed <= fits; ++seed) {
+      const auto fit = fitted(seed, turned_rad, as_it_is);
+      ratio_sq += std::pow((fit.gauge_angle_rad - turned_rad) / fit.gauge_angle_sd_rad, 2);
+      CHECK(std::abs(fit.gauge_angle_rad - turned_rad) < 0.1);
+    }
+    CHECK(std::sqrt(ratio_sq / fits) == Approx(1).margin(4 / std::sqrt(2.0 * fits)));
+  }
+  // a pad twice as stiff along one of its axes is not turned
+  const auto stiffer = fitted(1, 0, [](auto& s) {
+    const double askew = s.tangential_force_n.x + s.tangential_force_n.y;
+    s.tangential_force_n = s.tangential_force_n + 0.2 * Point2<double>{askew, askew};
+  });
+  CHECK(std::abs(stiffer.gauge_angle_rad) < 4 * stiffer.gauge_angle_sd_rad);
+  // along one line it would look the same
+  const auto line = [](auto& s) {
+    s.tangential_force_n = {s.tangential_force_n.x, 0};
+    s.displacement_mm = {s.displacement_mm.x, 0};
+  };
+  CHECK(std::isnan(fitted(1, 0.3, line).gauge_angle_rad));
+  CHECK(fitted(1, 0.3, line).status == FitStatus::gauge_rotated);
+  CHECK(test::refusal([&] {
+          (void)fitted(1, 1.5, line);
+        }).find("only displacements in several directions tell") != std::string::npos);
 }
 
 TEST_CASE("mistakes: the fluid", "[mistakes]") {

@@ -245,12 +245,22 @@ struct LookUpMistake {
   std::string said_by_area, said_by_depth, fused, shear;
 };
 
+const char* const implausible = "implausible: not in mm, rad?";
+
 const std::vector<LookUpMistake> look_up_mistakes = {
     {"none", [](Contact&) {}, "measured", "measured", "measured", "measured"},
     {"area in m^2", [](Contact& c) { c.area_mm2 *= 1e-6; }, "below range", "measured",
-     "disagreeing", "measured"},
-    {"area of 1e300", [](Contact& c) { c.area_mm2 = 1e300; }, "beyond range", "measured",
-     "measured", "not finite"},  // the depth alone
+     "disagreeing", "below range"},
+    {"area in um^2", [](Contact& c) { c.area_mm2 *= 1e6; }, implausible, "measured", implausible,
+     implausible},
+    {"area of 1e300", [](Contact& c) { c.area_mm2 = 1e300; }, implausible, "measured", implausible,
+     "not finite"},
+    {"depth of 1e300", [](Contact& c) { c.depth_mm = 1e300; }, "measured", implausible, implausible,
+     "measured"},
+    {"depth in um", [](Contact& c) { c.depth_mm *= 1e3; }, "measured", "beyond range",
+     "beyond range", "measured"},
+    {"no area", [](Contact& c) { c.area_mm2 = test::nan; }, "not finite", "measured", "measured",
+     "not finite"},  // that by depth alone
     {"area in px", [](Contact& c) { c.area_mm2 *= 150; }, "beyond range", "measured",
      "beyond range", "beyond range"},
     {"depth in m", [](Contact& c) { c.depth_mm *= 1e-3; }, "measured", "below range", "disagreeing",
@@ -260,20 +270,16 @@ const std::vector<LookUpMistake> look_up_mistakes = {
     {"a contact of another shape", [](Contact& c) { c.area_mm2 /= 2; }, "measured", "measured",
      "disagreeing", "measured"},
     {"displacement in um", [](Contact& c) { c.displacement_mm = 1e3 * c.displacement_mm; },
-     "implausible: not in mm, rad?", "implausible: not in mm, rad?", "implausible: not in mm, rad?",
-     "implausible: not in mm, rad?"},
+     implausible, implausible, implausible, implausible},
     {"displacement as the place of the dot",
      [](Contact& c) {
        c.displacement_mm = {320, 240};
      },
-     "implausible: not in mm, rad?", "implausible: not in mm, rad?", "implausible: not in mm, rad?",
-     "implausible: not in mm, rad?"},
-    {"rotation in degrees", [](Contact& c) { c.rotation_rad *= 57.3; },
-     "implausible: not in mm, rad?", "implausible: not in mm, rad?", "implausible: not in mm, rad?",
-     "implausible: not in mm, rad?"},
-    {"lost dots as 1e30", [](Contact& c) { c.displacement_mm.x = 1e30; },
-     "implausible: not in mm, rad?", "implausible: not in mm, rad?", "implausible: not in mm, rad?",
-     "implausible: not in mm, rad?"},
+     implausible, implausible, implausible, implausible},
+    {"rotation in degrees", [](Contact& c) { c.rotation_rad *= 57.3; }, implausible, implausible,
+     implausible, implausible},
+    {"lost dots as 1e30", [](Contact& c) { c.displacement_mm.x = 1e30; }, implausible, implausible,
+     implausible, implausible},
     {"beyond what was calibrated", [](Contact& c) { c.area_mm2 = 600, c.depth_mm = 6.88; },
      "beyond range", "beyond range", "beyond range", "beyond range"},
     {"no number", [](Contact& c) { c.area_mm2 = c.depth_mm = test::nan; }, "not finite",

@@ -301,7 +301,8 @@ TEST_CASE("shear: the normalisation", "[shear][law]") {
     RC_ASSERT(alone.tangential_force_n.y == r.tangential_force_n.y);
     RC_ASSERT(alone.moment_n_mm == r.moment_n_mm);
     const bool wild = alone.force_status == ForceStatus::implausible;
-    RC_ASSERT(wild || alone.force_status == r.force_status);
+    const bool tiny = r.force_status == ForceStatus::below_range;
+    RC_ASSERT(wild || tiny || alone.force_status == r.force_status);
   });
 }
 

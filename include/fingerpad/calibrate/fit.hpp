@@ -51,6 +51,7 @@ enum class FitStatus : std::uint8_t {
   displacement_not_in_mm,
   rotation_not_in_rad,
   moment_not_in_n_mm,
+  force_not_in_n,
   gauge_not_tared,
   gauge_rotated,
   axes_exchanged,
@@ -79,13 +80,16 @@ constexpr const char* name_of(FitStatus status) {
     case FitStatus::at_end_of_search:
       return "the best lies at an end of the search: other frames, or a wider search";
     case FitStatus::measure_not_in_mm:
-      return "no measure reaches 0.05: areas in mm^2, depths and radii in mm?";
+      return "no measure reaches 0.05, or one exceeds 10000: areas in mm^2, depths and radii in "
+             "mm?";
     case FitStatus::displacement_not_in_mm:
-      return "no displacement reaches 0.01: in mm?";
+      return "no displacement reaches 0.01, or one exceeds 100: in mm?";
     case FitStatus::rotation_not_in_rad:
       return "a rotation beyond a right angle: in rad?";
     case FitStatus::moment_not_in_n_mm:
-      return "moments of less than 0.05 mm times the normal force: in N mm?";
+      return "moments of less than 0.05 mm or more than 100 mm times the normal force: in N mm?";
+    case FitStatus::force_not_in_n:
+      return "no force reaches 0.05 (along the pad 0.01), or one exceeds 300: in N?";
     case FitStatus::gauge_not_tared:
       return "a constant would explain most of what is left: was the gauge tared?";
     case FitStatus::gauge_rotated:

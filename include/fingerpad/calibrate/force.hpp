@@ -151,6 +151,10 @@ struct [[nodiscard]] ShearFit {
   std::vector<ForceResidual<S>> residuals = {};  ///< of a force x and y in turn
   S explained = S(0);
   S largest_residual_sds = S(0);
+  S gauge_angle_rad = not_a_number<S>();     ///< of the gauge against the image, about the normal,
+                                             ///< +x toward +y; NaN for a moment, and where the
+                                             ///< displacements lie along one line
+  S gauge_angle_sd_rad = not_a_number<S>();  ///< its standard error
 
   bool ok() const { return status == FitStatus::ok; }
 };
@@ -217,8 +221,9 @@ NormalForceFit<PolynomialForce<Degree, S>> fit_normal_force(std::span<const Forc
   detail::add_residuals(fit, forces, usable.places, result.residuals);
   result.explained = fit.explained;
   result.largest_residual_sds = fit.worst_sds;
-  const FitStatus units =
-      detail::unit_mistake(usable.samples, {options.displaced, options.rotated, false});
+  const FitStatus units = detail::unit_mistake(
+      usable.samples,
+      {.normal = true, .displacement = options.displaced, .rotation = options.rotated});
   result.status = detail::status_of(fit, units, mistake, options);
   return result;
 }
@@ -279,7 +284,7 @@ NormalForceFit<PowerLawForce<S>> fit_power_law(std::span<const ForceSample<S>> s
           result.errors.residual_sd_n, "finite: the samples contradict each other");
   result.explained = fit.explained;
   result.largest_residual_sds = fit.worst_sds;
-  const FitStatus units = detail::unit_mistake(usable.samples, {});
+  const FitStatus units = detail::unit_mistake(usable.samples, {.normal = true});
   result.status = detail::status_of(fit, units, FitStatus::ok, options);
   return result;
 }
@@ -379,6 +384,13 @@ LinearShearFit<S> fit_linear_shear(std::span<const ForceSample<S>> samples,
   result.map.y_by_y = of_y.parameters(1);
   result.map.offset_n = {of_x.parameters(2), of_y.parameters(2)};
   result.map.moment_n_mm_per_rad = S(0);
+  using std::sqrt;
+  S longest_sq = S(0);
+  for (Index i = 0; i < n; ++i) {
+    const S length_sq = S(square(model.columns(i, 0)) + square(model.columns(i, 1)));
+    longest_sq = value(length_sq) > value(longest_sq) ? length_sq : longest_sq;
+  }
+  result.map.to = value(longest_sq) > 0 ? S(sqrt(longest_sq)) : not_a_number<S>();
   result.x_standard_errors = detail::standard_errors_of<S, 3>(of_x);
   result.y_standard_errors = detail::standard_errors_of<S, 3>(of_y);
   result.residual_sd_n = {of_x.residual_sd, of_y.residual_sd};
@@ -386,10 +398,13 @@ LinearShearFit<S> fit_linear_shear(std::span<const ForceSample<S>> samples,
   detail::add_residuals(of_y, y, usable.places, result.residuals);
   const Fit& worse = value(of_x.worst_sds) > value(of_y.worst_sds) ? of_x : of_y;
   result.largest_residual_sds = worse.worst_sds;
-  result.status = !of_x.converged || !of_y.converged
-                      ? FitStatus::not_converged
-                      : detail::status_of(worse, detail::unit_mistake(usable.samples, {}),
-                                          FitStatus::ok, options);
+  result.status =
+      !of_x.converged || !of_y.converged
+          ? FitStatus::not_converged
+          : detail::status_of(
+                worse,
+                detail::unit_mistake(usable.samples, {.tangential = true, .displacement = true}),
+                FitStatus::ok, options);
   return result;
 }
 

@@ -15,13 +15,13 @@ enum class ForceStatus : std::uint8_t {
   no_contact,    ///< the measure is 0 or negative: no force, whatever is displaced
   measured,      ///< within the range that was identified
   below_range,   ///< a smaller contact than any identified: the force fades to 0 with it. Always:
-                 ///< is the measure in another unit?
+                 ///< is the measure in another unit? Shear: below a hundredth of the reference
   beyond_range,  ///< a larger one, or a larger shift: the curve goes on along its tangent
   held_at_zero,  ///< the curve or a compensation is negative there
   disagreeing,   ///< area and depth tell forces further apart than their errors allow: the contact
                  ///< is not like those of the calibration, or a measure is in another unit
-  implausible,   ///< a displacement above 100 mm or a rotation by more than half a turn: in px, um,
-                 ///< degrees?
+  implausible,   ///< a displacement above 100 mm, a rotation by more than half a turn, a measure
+                 ///< or a force of a million or more: in px, um, degrees?
   not_finite,    ///< what it is computed from is no number, or it is too large for one
 };
 
@@ -54,6 +54,11 @@ namespace detail {
 template <class S>
 constexpr bool beyond_displacement(const Point2<S>& displacement_mm) {
   return is_finite(displacement_mm) && value(squared_norm(displacement_mm)) > 10000;
+}
+/// A number, but of no contact.
+template <class S>
+constexpr bool beyond_all(const S& measure_or_force) {
+  return is_finite(measure_or_force) && !is_plausible(measure_or_force);
 }
 template <class S>
 constexpr bool beyond_rotation(const S& rotation_rad) {

@@ -187,12 +187,14 @@ class NormalForce {
       return result;
     }
     result.force_n = value(force) > 0 ? force : S(0);
-    result.status = value(measure) <= 0                      ? ForceStatus::no_contact
-                    : is_wild(displacement_mm, rotation_rad) ? ForceStatus::implausible
-                    : value(force) < 0                       ? ForceStatus::held_at_zero
-                    : value(measure) < value(curve().from)   ? ForceStatus::below_range
-                    : value(measure) > value(curve().to)     ? ForceStatus::beyond_range
-                                                             : ForceStatus::measured;
+    result.status = value(measure) <= 0 ? ForceStatus::no_contact
+                    : detail::beyond_all(measure) || detail::beyond_all(force) ||
+                            is_wild(displacement_mm, rotation_rad)
+                        ? ForceStatus::implausible
+                    : value(force) < 0                     ? ForceStatus::held_at_zero
+                    : value(measure) < value(curve().from) ? ForceStatus::below_range
+                    : value(measure) > value(curve().to)   ? ForceStatus::beyond_range
+                                                           : ForceStatus::measured;
     if (errors_) {
       result.variance_n2 = variance_n2(measure, change);
     }
@@ -257,12 +259,12 @@ struct [[nodiscard]] FusedForce {
 
   /// Whether the calibration vouches for the force.
   bool ok() const { return status == ForceStatus::measured || status == ForceStatus::no_contact; }
-  bool has_force() const { return status != ForceStatus::not_finite; }
+  bool has_force() const { return is_finite(force_n); }
 };
 
 /// Forces by area and by depth combined by their variances, whose errors are taken for independent.
-/// One without a force or without a variance does not take part; two further apart than
-/// `max_disagreement` standard deviations disagree.
+/// One without a force or without a variance does not take part, but an implausible one makes the
+/// other implausible, too; two further apart than `max_disagreement` standard deviations disagree.
 template <scalar S>
 FusedForce<S> fused(const NormalForceResult<S>& a,
                     const NormalForceResult<S>& b,
@@ -272,9 +274,13 @@ FusedForce<S> fused(const NormalForceResult<S>& a,
   const bool with_b = b.has_force() && is_finite(b.variance_n2);
   if (!with_a || !with_b) {
     const NormalForceResult<S>& one = with_a ? a : b;
-    return with_a || with_b
-               ? FusedForce<S>{one.status, one.force_n, one.variance_n2, not_a_number<S>(), 1}
-               : FusedForce<S>{};
+    const bool wild = a.status == ForceStatus::implausible || b.status == ForceStatus::implausible;
+    const int sources = with_a || with_b ? 1 : 0;
+    return {wild           ? ForceStatus::implausible
+            : sources == 1 ? one.status
+                           : ForceStatus::not_finite,
+            sources == 1 ? one.force_n : not_a_number<S>(),
+            sources == 1 ? one.variance_n2 : not_a_number<S>(), not_a_number<S>(), sources};
   }
   const S sum = a.variance_n2 + b.variance_n2;
   const S difference = a.force_n - b.force_n;

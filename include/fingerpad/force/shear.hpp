@@ -134,6 +134,7 @@ struct LinearShear {
   Point2<S> offset_n = {S(0), S(0)};          ///< finite
   S moment_n_mm_per_rad = not_a_number<S>();  ///< finite
   S moment_offset_n_mm = S(0);                ///< finite
+  S to = not_a_number<S>();                   ///< the largest |d| identified, > 0; NaN: not known
 
   Point2<S> force_n(const Point2<S>& d) const {
     return {S(x_by_x * d.x + x_by_y * d.y + offset_n.x),
@@ -142,7 +143,7 @@ struct LinearShear {
   S moment_n_mm(const S& normalised_rad) const {
     return S(moment_n_mm_per_rad * normalised_rad + moment_offset_n_mm);
   }
-  bool within(const Point2<S>&) const { return true; }
+  bool within(const Point2<S>& d) const { return !(value(squared_norm(d)) > value(square(to))); }
   bool within(const S&) const { return true; }
 };
 
@@ -190,6 +191,9 @@ void expects_valid(const LinearShear<S>& map) {
   check(map.offset_n.y, "offset_n.y");
   check(map.moment_n_mm_per_rad, "moment_n_mm_per_rad");
   check(map.moment_offset_n_mm, "moment_offset_n_mm");
+  const bool unknown = !(value(map.to) == value(map.to));
+  expects(unknown || (is_finite(map.to) && value(map.to) > 0), "LinearShear", "to", map.to,
+          "finite and > 0, or NaN");
 }
 
 /// (measure / reference)^exponent; 0 without contact, so that nothing is amplified there.
@@ -267,26 +271,30 @@ class Shear {
     if (is_finite(displacement_mm) && is_finite(force)) {
       result.normalised_displacement_mm = d;
       result.tangential_force_n = force;
-      result.force_status =
-          status_of(contact, detail::beyond_displacement(displacement_mm), map_.within(d));
+      result.force_status = status_of(measure, normalisation_.displacement_exponent,
+                                      detail::beyond_displacement(displacement_mm), map_.within(d));
     }
     const S theta = factor(normalisation_.rotation_exponent) * rotation_rad;
     const S moment = contact ? map_.moment_n_mm(theta) : S(0);
     if (is_finite(rotation_rad) && is_finite(moment)) {
       result.normalised_rotation_rad = theta;
       result.moment_n_mm = moment;
-      result.moment_status =
-          status_of(contact, detail::beyond_rotation(rotation_rad), map_.within(theta));
+      result.moment_status = status_of(measure, normalisation_.rotation_exponent,
+                                       detail::beyond_rotation(rotation_rad), map_.within(theta));
     }
     return result;
   }
 
  private:
-  static ForceStatus status_of(bool contact, bool wild, bool within) {
-    return !contact ? ForceStatus::no_contact
-           : wild   ? ForceStatus::implausible
-           : within ? ForceStatus::measured
-                    : ForceStatus::beyond_range;
+  /// A contact of less than a hundredth of the reference is one that no calibration has.
+  ForceStatus status_of(const S& measure, const S& exponent, bool wild, bool within) const {
+    const bool tiny =
+        value(exponent) != 0 && value(S(S(100) * measure)) < value(normalisation_.reference);
+    return !(value(measure) > 0)                 ? ForceStatus::no_contact
+           : wild || detail::beyond_all(measure) ? ForceStatus::implausible
+           : !within                             ? ForceStatus::beyond_range
+           : tiny                                ? ForceStatus::below_range
+                                                 : ForceStatus::measured;
   }
 
   ShearNormalisation<S> normalisation_;

@@ -44,16 +44,20 @@ bool has_finite_motion(const Sample& s) {
 
 /// What a fit needs of the samples' units: which of them it looks at.
 struct UnitsLookedAt {
+  bool normal = false;
+  bool tangential = false;
   bool displacement = false;
   bool rotation = false;
   bool moment = false;
 };
 
 /// A unit that cannot be the one that is asked for. The bounds hold for every fingertip: a contact
-/// of 0.05 mm or 0.05 mm^2 is not seen, a moment has a lever of more than 0.05 mm.
+/// of 0.05 mm or 0.05 mm^2 is not seen, none is larger than 10000 mm^2 or displaced by 100 mm; a
+/// calibration goes beyond 0.05 N pressed and 0.01 N along the pad, and 300 N are more than 0.2 MPa
+/// press through a pad of 40 mm; a moment has a lever between 0.05 and 100 mm.
 template <class Sample>
 FitStatus unit_mistake(const std::vector<Sample>& samples, const UnitsLookedAt& looked_at) {
-  double measure = 0, displacement = 0, rotation = 0, force = 0, moment = 0;
+  double measure = 0, displacement = 0, rotation = 0, force = 0, aside = 0, moment = 0;
   const auto raise = [](double& largest, const auto& x) {
     const double size = std::abs(static_cast<double>(value(x)));
     largest = size > largest && is_finite(size) ? size : largest;
@@ -64,18 +68,25 @@ FitStatus unit_mistake(const std::vector<Sample>& samples, const UnitsLookedAt& 
     raise(displacement, s.displacement_mm.y);
     raise(rotation, s.rotation_rad);
     raise(force, s.normal_force_n);
+    raise(aside, s.tangential_force_n.x);
+    raise(aside, s.tangential_force_n.y);
     raise(moment, s.moment_n_mm);
   }
-  if (measure < 0.05) {
+  if (measure < 0.05 || measure > 1e4) {
     return FitStatus::measure_not_in_mm;
   }
-  if (looked_at.displacement && displacement < 0.01) {
+  if ((looked_at.normal && (force < 0.05 || force > 300)) ||
+      (looked_at.tangential && (aside < 0.01 || aside > 300))) {
+    return FitStatus::force_not_in_n;
+  }
+  if (looked_at.displacement && (displacement < 0.01 || displacement > 100)) {
     return FitStatus::displacement_not_in_mm;
   }
   if (looked_at.rotation && rotation > 1.6) {
     return FitStatus::rotation_not_in_rad;
   }
-  return looked_at.moment && moment < 0.05 * force ? FitStatus::moment_not_in_n_mm : FitStatus::ok;
+  const bool lever = moment >= 0.05 * force && (moment <= 100 * force || force <= 0);
+  return looked_at.moment && !lever ? FitStatus::moment_not_in_n_mm : FitStatus::ok;
 }
 
 /// An outlier is a sample more than ten standard deviations off that makes most of what is left. In

@@ -188,6 +188,66 @@ struct ForceDirections {
   static bool exceeds(const S& a, const S& b) { return value(a) > value(b); }
 };
 
+/// By how much a force gauge is turned about the normal, against the image; NaN: not told.
+template <scalar S>
+struct GaugeAngle {
+  S rad = not_a_number<S>();
+  S sd_rad = not_a_number<S>();  ///< standard error, for samples with independent errors
+};
+
+/// From the linear map A of normalised displacements to forces, by least squares: the stiffness of
+/// an elastic pad is symmetric (Betti), so what is antisymmetric in A is a rotation. Along one line
+/// a pad that is stiffer askew looks the same: no angle.
+template <scalar S>
+GaugeAngle<S> gauge_angle(const std::vector<PlaneForce<S>>& samples) {
+  using std::atan2;
+  using std::sqrt;
+  S xx = S(0), xy = S(0), yy = S(0);                 // of d d^T
+  Point2<S> f_x = {S(0), S(0)}, f_y = {S(0), S(0)};  // sums of x f and y f
+  for (const PlaneForce<S>& s : samples) {
+    const Point2<S>& d = s.normalised;
+    xx += S(d.x * d.x);
+    xy += S(d.x * d.y);
+    yy += S(d.y * d.y);
+    f_x += d.x * s.force;
+    f_y += d.y * s.force;
+  }
+  const S determinant = S(xx * yy) - S(xy * xy), trace = xx + yy;
+  constexpr int min_samples = 3;
+  if (samples.size() < min_samples || !(value(determinant) > value(S(S(1e-6) * square(trace))))) {
+    return {};
+  }
+  const S over = S(1) / determinant;
+  const Point2<S> by_x =
+      over * Point2<S>{S(yy * f_x.x) - S(xy * f_y.x), S(yy * f_x.y) - S(xy * f_y.y)};
+  const Point2<S> by_y =
+      over * Point2<S>{S(xx * f_y.x) - S(xy * f_x.x), S(xx * f_y.y) - S(xy * f_x.y)};
+  const S along = by_x.x + by_y.y, across = by_x.y - by_y.x;
+  S left_sq = S(0);
+  for (const PlaneForce<S>& s : samples) {
+    left_sq += squared_norm(Point2<S>(s.force - s.normalised.x * by_x - s.normalised.y * by_y));
+  }
+  const S variance = left_sq / S(2.0 * static_cast<double>(samples.size()) - 4);
+  const S size_sq = square(along) + square(across);
+  return {S(atan2(across, along)), S(sqrt(S(variance * trace * over / size_sq)))};
+}
+
+/// "; " and the likely cause, for refusals: that of a gauge that is turned with its angle.
+template <scalar S>
+std::string cause_of(FitStatus mistake, const GaugeAngle<S>& angle) {
+  if (mistake != FitStatus::gauge_rotated) {
+    return cause_of(mistake);
+  }
+  constexpr double degrees = 57.29577951308232;
+  const auto whole = [](const S& rad) {
+    return std::to_string(std::lround(degrees * static_cast<double>(value(rad))));
+  };
+  return cause_of(mistake) +
+         (is_finite(angle.sd_rad)
+              ? " Turned by " + whole(angle.rad) + " +- " + whole(angle.sd_rad) + " degrees"
+              : " By how much, only displacements in several directions tell");
+}
+
 /// Axes with which no fit can succeed: mirrored, or rotated by more than 45 degrees.
 template <scalar S>
 FitStatus wrong_axes(const std::vector<PlaneForce<S>>& samples) {
@@ -287,20 +347,30 @@ Result fit_shear(const char* owner,
   if (!exponent) {
     names.emplace_back(exponent_name);
   }
-  const FitStatus axes =
-      wrong_axes(plane_forces(equations, exponent.value_or(S(0)), components,
-                              [&](std::size_t i) -> const S& { return equations[i].measured; }));
+  const auto forces =
+      plane_forces(equations, exponent.value_or(S(0)), components,
+                   [&](std::size_t i) -> const S& { return equations[i].measured; });
+  const FitStatus axes = wrong_axes(forces);
+  const std::string need =
+      "such that forces follow displacements" + cause_of(axes, gauge_angle(forces));
   expects(axes == FitStatus::ok, owner, "usable samples", static_cast<long long>(samples.size()),
-          (std::string("such that forces follow displacements; ") + name_of(axes)).c_str());
+          need.c_str());
   const ShearModel<S> model(equations, degree, exponent);
   const ModelFit<S> fit = fit_shear_model(owner, names, measured, model, degree, options);
   Result result = shear_fit_of<Result>(fit, measured, equations, exponent);
-  const FitStatus mistake = mistake_in(plane_forces(
-      equations, result.exponent, components,
-      [&](std::size_t i) -> const S& { return fit.residuals(static_cast<Index>(i)); }));
-  expects_explained(fit, options, owner, cause_of(mistake).c_str());
+  const auto left =
+      plane_forces(equations, result.exponent, components,
+                   [&](std::size_t i) -> const S& { return fit.residuals(static_cast<Index>(i)); });
+  const GaugeAngle<S> angle = components > 1 ? gauge_angle(left) : GaugeAngle<S>{};
+  result.gauge_angle_rad = angle.rad;
+  result.gauge_angle_sd_rad = angle.sd_rad;
+  const FitStatus mistake = mistake_in(left);
+  expects_explained(fit, options, owner, cause_of(mistake, angle).c_str());
   const bool is_moment = components == 1;
-  const FitStatus units = unit_mistake(samples, {!is_moment, is_moment, is_moment});
+  const FitStatus units = unit_mistake(samples, {.tangential = !is_moment,
+                                                 .displacement = !is_moment,
+                                                 .rotation = is_moment,
+                                                 .moment = is_moment});
   result.status = status_of(fit, units, mistake, options);
   return result;
 }
