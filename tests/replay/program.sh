@@ -124,6 +124,19 @@ for signal in TERM HUP; do
   fi
 done
 
+# A disk that is full, in the first picture or in a later one; a limit on the size of a file, to fail
+# in the same call.
+if [[ -n $render ]]; then
+  rm -rf "$work/out"
+  for kib in 60 400; do
+    printf '#!/usr/bin/env bash\ntrap "" XFSZ\nulimit -f %d\nexec "%s" "$@"\n' "$kib" "$replay" \
+      >"$work/full_disk"
+    chmod +x "$work/full_disk"
+    replay=$work/full_disk refuses 1 "pictures/.*: cannot be written" \
+      "$recording" --out "$work/out" --frames 4:6
+  done
+fi
+
 # Labelled trials: success is a hold, fail a slip; another label is no slip, but refused.
 if [[ -n $slip_trials ]]; then
   for trial in 1 2; do
