@@ -66,7 +66,7 @@ PoseErrors errors_of(const std::string& name, bool knows_slip) {
       const auto seen = ratio(dots, scene[k].contact, states, stick_state);
       const auto load =
           contact_load(scene[k].force_n, scene[k].moment_n_mm, dots, scene[k].contact);
-      const auto slip = limit(load, seen.stick_ratio, update_of(seen.status), limit_state);
+      const auto slip = limit(load, seen, limit_state);
       const bool slides = slip.status == FrictionLimitStatus::sliding;
       for (std::size_t at = 0; at < states.cells.size(); ++at) {
         slips.cells[at] = knows_slip && (slides || states.cells[at] == DotState::slip) ? 1 : 0;

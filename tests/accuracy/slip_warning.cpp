@@ -99,13 +99,16 @@ Warners warned_on(const std::string& name) {
       const auto load =
           contact_load(noisy(scene[k].force_n, 0.015, random),
                        noisy(scene[k].moment_n_mm, 0.02, random), dots, scene[k].contact);
-      const auto slip = limit(load, r.stick_ratio, update_of(r.status), limit_state);
+      const auto slip = limit(load, r, limit_state);
       // as its page says: the stick ratio tells it when the object slides
       const bool slides = r.updated() && r.stick_ratio < 0.1;
       const auto by_ratio = friction(load.tangential_n, load.normal_n, slides, friction_state);
       const double sticks = scene[k].stick_ratio;
-      w.dots.add(k, sticks, r.ok() && r.stick_ratio < 0.5);
-      w.fused.add(k, sticks, slip.ok() && slip.stick_ratio < 0.5);
+      const auto warns = [](RatioUpdate update, double of) {
+        return (update == RatioUpdate::fresh || update == RatioUpdate::unmoved) && of < 0.5;
+      };
+      w.dots.add(k, sticks, warns(update_of(r.status), r.stick_ratio));
+      w.fused.add(k, sticks, warns(slip.update, slip.stick_ratio));
       w.friction_ratio.add(k, sticks, by_ratio.alarm);
     }
   }

@@ -79,7 +79,8 @@ Point3<double> noisy(const Point3<double>& p, double share, test::Random& random
 
 struct SceneErrors {
   double dots = 0;   ///< mean absolute error over all frames in contact, kept answers included
-  double fused = 0;  ///< the same with the friction limit
+  double told = 0;   ///< of these, over the frames that the dots answer
+  double fused = 0;  ///< over all, with the friction limit
 };
 
 SceneErrors errors_of(const std::string& name, int recordings = 6) {
@@ -87,7 +88,7 @@ SceneErrors errors_of(const std::string& name, int recordings = 6) {
   const SpatialStickRatio<double> ratio(scene.dots_across(), scene.dots_across());
   const FrictionLimit<double> limit;
   SceneErrors e;
-  double frames = 0;
+  double frames = 0, answered = 0;
   for (int seed = 1; seed <= recordings; ++seed) {
     test::Random random(static_cast<std::uint64_t>(seed));
     auto state = ratio.start();
@@ -103,45 +104,52 @@ SceneErrors errors_of(const std::string& name, int recordings = 6) {
       const auto load =
           contact_load(noisy(scene[k].force_n, 0.015, random),
                        noisy(scene[k].moment_n_mm, 0.02, random), dots, scene[k].contact);
-      const auto fused = limit(load, r.stick_ratio, update_of(r.status), limit_state);
+      const auto fused = limit(load, r, limit_state);
       if (k < 2 || dots_of_both(scene[k], scene[k]) < 6) {
         continue;
       }
       const double truth = truth_of(scene, k, r);
-      e.dots += std::abs((r.ok() ? r.stick_ratio : 1) - truth);
+      const double error = std::abs((r.ok() ? r.stick_ratio : 1) - truth);
+      e.dots += error;
+      e.told += r.updated() ? error : 0;
+      answered += r.updated() ? 1 : 0;
       e.fused += std::abs((fused.ok() ? fused.stick_ratio : 1) - truth);
       frames += 1;
     }
   }
   e.dots /= frames;
+  e.told /= answered;
   e.fused /= frames;
   return e;
 }
 
-void check(const std::string& name, double max_dots, double max_fused) {
+void check(const std::string& name, double max_dots, double max_told, double max_fused) {
   const SceneErrors e = errors_of(name);
-  INFO(name << ": dots in space " << e.dots << ", with the friction limit " << e.fused);
+  INFO(name << ": dots in space " << e.dots << ", where they answer " << e.told
+            << ", with the friction limit " << e.fused);
   CHECK(e.dots < max_dots);
+  CHECK(e.told < max_told);
   CHECK(e.fused < max_fused);
 }
 
 }  // namespace
 
 TEST_CASE("stick ratio in space on finite-element membranes", "[spatial_stick]") {
-  // measured: 0.089 0.047, 0.034 0.023, 0.075 0.041, 0.048 0.082, 0.030 0.042
-  check("drag", 0.10, 0.05);
-  check("twist", 0.05, 0.05);
-  check("tilt", 0.09, 0.05);
-  check("mix", 0.06, 0.10);
-  check("rubber", 0.04, 0.05);
+  // goal of the fused answer: 0.05, mix 0.10. Where dots fall back their last answer stands, and is
+  // not told to be one of this frame
+  check("drag", 0.16, 0.09, 0.05);
+  check("twist", 0.05, 0.05, 0.05);
+  check("tilt", 0.09, 0.09, 0.05);
+  check("mix", 0.06, 0.06, 0.10);
+  check("rubber", 0.15, 0.04, 0.05);
 }
 
 TEST_CASE("stick ratio in space of what rolls, and what slides as a whole", "[spatial_stick]") {
-  // measured: 0.106, 0.248 0.053, 0.079 0.053, 0.170 0.093, 0.152 0.041, 0.055
-  check("roll", 0.12, 0.12);  // goal 0.10: dots at the edge of a ball are averaged with others
-  check("cylinder", 0.26, 0.06);
-  check("slide", 0.09, 0.065);
-  check("ball_slip", 0.20, 0.12);
-  check("rod_turn", 0.17, 0.07);
-  check("press", 0.08, 0.08);
+  check("roll", 0.12, 0.125,
+        0.12);  // goal 0.10: dots at the edge of a ball are averaged with others
+  check("cylinder", 0.14, 0.13, 0.06);
+  check("slide", 0.14, 0.1, 0.065);
+  check("ball_slip", 0.15, 0.11, 0.10);
+  check("rod_turn", 0.15, 0.115, 0.06);
+  check("press", 0.08, 0.08, 0.08);
 }

@@ -176,6 +176,50 @@ TEST_CASE("friction limit: what it learns", "[friction_limit]") {
     CHECK(state.limit() == Approx(0.55).epsilon(0.025));
     CHECK(missed < 60);
   }
+  SECTION("it follows friction that has fallen, frame by frame") {
+    // what slid since the reference did so under no larger load than the largest since then
+    (void)slide(2.2);
+    const auto seen = [&](double tangential_n, double ratio, Index age) {
+      return limit(pull(tangential_n), ratio, RatioUpdate::fresh, state, age);
+    };
+    for (int k = 0; k < 3; ++k) {
+      (void)seen(1.2, 0.9, 1);  // regripped: it sticks
+    }
+    CHECK(state.limit() == 0.55);
+    (void)seen(1.32, 0, 5);  // compared with a frame in which 2.2 was borne: it may have slid then
+    CHECK(state.limit() == 0.55);
+    (void)seen(1.32, 0, 0);  // since when is not known
+    CHECK(state.limit() == 0.55);
+    (void)seen(1.32, 0, 3);
+    CHECK(state.limit() == Approx(0.55 / 1.15));
+    for (int k = 0; k < 5; ++k) {
+      (void)seen(1.32, 0, 3);
+    }
+    CHECK(state.limit() == Approx(0.33 / 0.95).epsilon(0.02));
+    CHECK(seen(1.32, 0.9, 3).status == FrictionLimitStatus::sliding);  // whatever the dots say
+  }
+  SECTION("where a share still sticks the limit may lie further off") {
+    (void)slide(2);
+    for (int k = 0; k < 9; ++k) {
+      (void)limit(pull(1.6), 0.19, RatioUpdate::fresh, state, 1);
+    }
+    CHECK(state.limit() == Approx(0.4 / 0.95 / (1 - std::pow(0.19, 1.5))));
+  }
+  SECTION("frames without a load, and loads that are long ago, make it fall less, never more") {
+    (void)slide(2.2);
+    (void)limit(ContactLoad<double>{}, none, RatioUpdate::missing, state);
+    (void)limit(pull(1), 0, RatioUpdate::fresh, state, 1);
+    CHECK(state.limit() == 0.55);
+    for (int k = 0; k < 100; ++k) {
+      (void)limit(pull(2 - 0.01 * k), 0.9, RatioUpdate::fresh, state);
+    }
+    (void)limit(pull(1), 0, RatioUpdate::fresh, state, 90);
+    const double after = state.limit();
+    CHECK(after >= 1.9 / 4 / 0.95);
+    CHECK(after <= 2.0 / 4 / 0.95);
+    (void)limit(pull(1), 0, RatioUpdate::fresh, state, 1);
+    CHECK(state.limit() == Approx(after / 1.15));
+  }
   SECTION("answers that are kept teach nothing") {
     (void)limit(pull(2), 0.1, RatioUpdate::unmoved, state);
     CHECK(!is_finite(state.limit()));
@@ -191,6 +235,35 @@ TEST_CASE("friction limit: what it learns", "[friction_limit]") {
     // but not where dots may be taken along alike
     CHECK(limit(pull(2.1), 0.9, RatioUpdate::fresh, state).stick_ratio == 0);
     CHECK(limit(pull(3), 0.3, RatioUpdate::fresh, state).stick_ratio == 0);
+  }
+}
+
+TEST_CASE("friction limit: dots that fall back are asked where the load falls with them",
+          "[friction_limit]") {
+  const FrictionLimit<double> limit;
+  auto state = limit.start();
+  SpatialStickResult<double> seen{.status = StickStatus::updated, .stick_ratio = 0.1};
+  (void)limit(pull(2.2), seen, state);
+  (void)limit(pull(2.2), seen, state);
+  seen.status = StickStatus::falls_back;
+  seen.back = {.stick_ratio = 0.8, .reference_age = 1};
+  SECTION("an object that turns round carries them, and its load falls") {
+    const auto r = limit(pull(1.8), seen, state);
+    CHECK(r.stick_ratio == 0.8);
+    CHECK(r.update == RatioUpdate::fresh);
+    CHECK(r.reference_age == 1);
+    CHECK(limit(pull(1.4), seen, state).stick_ratio == 0.8);
+  }
+  SECTION("one that slides lets them go, and its load stays") {
+    CHECK(limit(pull(2.1), seen, state).stick_ratio == 0);
+    state.reset();  // of another object nothing is known
+    (void)limit(pull(2.2), ContactLoad<double>{}.normal_n, RatioUpdate::missing, state);
+    const auto r = limit(pull(2.1), seen, state);
+    CHECK(r.stick_ratio == 0.1);
+    CHECK(r.update == RatioUpdate::missing);
+  }
+  SECTION("without a force nothing tells them apart") {
+    CHECK(limit(ContactLoad<double>{}, seen, state).update == RatioUpdate::missing);
   }
 }
 

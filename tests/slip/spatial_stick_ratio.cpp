@@ -149,6 +149,39 @@ TEST_CASE("stick ratio in space: a mask that flickers, a clock that is late", "[
   CHECK(at(5.01, patch.contact).updated());
 }
 
+TEST_CASE("stick ratio in space: dots that fall back to where they are on the free pad",
+          "[spatial_stick]") {
+  SlippingPatch patch;
+  Follower f, knows_no_free;
+  (void)f(patch.dots, Flags(21, 21, 0));
+  const auto to = test::moved_by({0, 0, 0}, {0, 0, 0}, {0.6, 0, 0.4});
+  const auto fro = test::moved_by({0, 0, 0}, {0, 0, 0}, {-0.2, 0, 0});
+  const auto aside = test::moved_by({0, 0, 0}, {0, 0, 0}, {0, 0.2, 0});
+  for (Follower* of : {&f, &knows_no_free}) {
+    (void)(*of)(patch.dots, patch.contact);
+  }
+  patch.step(to, 0.7);
+  const auto before = f(patch.dots, patch.contact);
+  REQUIRE(before.updated());
+  CHECK(!is_finite(before.back.stick_ratio));
+  CHECK(knows_no_free(patch.dots, patch.contact).updated());
+  SECTION("back: as one, whether the object carries them or lets them go") {
+    const auto states = f.states.cells;
+    patch.step(fro);
+    const auto r = f(patch.dots, patch.contact);
+    CHECK(r.status == StickStatus::falls_back);
+    CHECK(r.stick_ratio == before.stick_ratio);  // the last answer stands
+    CHECK(f.states.cells == states);
+    CHECK(r.back.stick_ratio == 1);
+    CHECK(r.back.reference_age == 1);
+    CHECK(knows_no_free(patch.dots, patch.contact).updated());
+  }
+  SECTION("aside they tell what they always do") {
+    patch.step(aside);
+    CHECK(f(patch.dots, patch.contact).updated());
+  }
+}
+
 TEST_CASE("stick ratio in space, bad input", "[spatial_stick]") {
   const auto motion = test::moved_by({0, 1 * degree, 0}, {0, 0, 28}, {0.1, 0, 0});
   const double infinity = std::numeric_limits<double>::infinity();

@@ -76,6 +76,13 @@ GripRun run_grip(const fingerpad::GripLaw<S>& law,
   Image<Point3<double>> dots(tip.dots, tip.dots);
   Image<unsigned char> touch(tip.dots, tip.dots);
   Image<DotState> states(tip.dots, tip.dots);
+  for (Index i = 0; i < tip.dots; ++i) {
+    for (Index j = 0; j < tip.dots; ++j) {
+      dots(i, j) = {tip.pitch_mm * static_cast<double>(j - tip.dots / 2),
+                    tip.pitch_mm * static_cast<double>(i - tip.dots / 2), 10};
+    }
+  }
+  (void)stick_ratio(dots, touch, states, stick_state, -1);  // the pad before the object is taken
   double sum = 0, frames = 0;
   for (double time_s = 0; time_s < end_s && load.slip_mm() < 20; time_s += frame_s) {
     const double load_n = (std::min)(first_n + rise * time_s, last_n);

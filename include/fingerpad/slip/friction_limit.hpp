@@ -20,6 +20,7 @@
 #include "fingerpad/core/grid.hpp"
 #include "fingerpad/core/scalar.hpp"
 #include "fingerpad/slip/detail/dot_surface.hpp"
+#include "fingerpad/slip/detail/peak_loads.hpp"
 #include "fingerpad/slip/grip_control.hpp"
 
 namespace fingerpad {
@@ -97,7 +98,7 @@ struct FrictionLimitOptions {
   double slide_fraction = 0.95;  ///< in (0, 1]: at this share of the limit the object slides; 1
                                  ///< less three times the noise of L, 1.5 % of forces
   double learn_below = 0.2;  ///< stick ratio by the dots below which the limit is learnt, in (0, 1)
-  double max_rise = 1.15;    ///< > 1: a limit rises by no more than this factor a frame
+  double max_rise = 1.15;    ///< > 1: a limit rises or falls by no more than this factor a frame
   double min_normal_n = 0.05;  ///< a smaller normal force has no ratio, N, > 0
 };
 inline void expects_valid(const FrictionLimitOptions& o) {
@@ -182,6 +183,7 @@ class FrictionLimit {
     friend class FrictionLimit;
     State() = default;
     S limit_ = not_a_number<S>();
+    detail::stick::PeakLoads<S> loads_;
   };
 
   /// Refuses bad parameters (parameter_error).
@@ -191,16 +193,20 @@ class FrictionLimit {
 
   State start() const { return State(); }
 
-  /// `stick_ratio` and `update` are those of the dots (NaN: none). The limit outlives a contact: it
-  /// belongs to the object, so reset the state when another one is taken.
+  /// `stick_ratio` and `update` are those of the dots (NaN: none); since how many frames they are
+  /// compared, `reference_age`, tells a limit that has fallen (0: not known, no limit falls far).
+  /// The limit outlives a contact: it belongs to the object, so reset the state when another one is
+  /// taken.
   SlipResult<S> operator()(const ContactLoad<S>& load,
                            const S& stick_ratio,
                            RatioUpdate update,
-                           State& state) const {
-    return fuse(load, stick_ratio, update, SlipEvidence::dots, state);
+                           State& state,
+                           Index reference_age = 0) const {
+    return fuse(load, stick_ratio, update, SlipEvidence::dots, reference_age, state);
   }
 
-  /// The same for the result of a stick ratio, whose reference tells GripControl what is news.
+  /// The same for the result of a stick ratio, whose reference tells GripControl what is news. Dots
+  /// that fall back in space are asked where the load shows that the object carries them.
   template <class Stick>
     requires requires(const Stick& seen) {
       seen.stick_ratio;
@@ -208,9 +214,13 @@ class FrictionLimit {
       update_of(seen.status);
     }
   SlipResult<S> operator()(const ContactLoad<S>& load, const Stick& seen, State& state) const {
-    SlipResult<S> result = (*this)(load, S(seen.stick_ratio), update_of(seen.status), state);
-    result.reference_age = seen.reference_age;
-    return result;
+    if constexpr (requires { seen.back.reference_age; }) {
+      if (is_carried_back(load, seen.back.reference_age, state)) {
+        return (*this)(load, S(seen.back.stick_ratio), RatioUpdate::fresh, state,
+                       seen.back.reference_age);
+      }
+    }
+    return (*this)(load, S(seen.stick_ratio), update_of(seen.status), state, seen.reference_age);
   }
 
   /// The same for a gel, where the imprint answers in place of the dots (`imprint` as
@@ -222,7 +232,7 @@ class FrictionLimit {
                                : imprint.touches() ? RatioUpdate::missing
                                                    : RatioUpdate::no_contact;
     const S held = imprint.ok() ? S(imprint.held()) : not_a_number<S>();
-    return fuse(load, held, update, SlipEvidence::imprint, state);
+    return fuse(load, held, update, SlipEvidence::imprint, 0, state);
   }
 
  private:
@@ -231,6 +241,7 @@ class FrictionLimit {
                      const S& ratio,
                      RatioUpdate update,
                      SlipEvidence source,
+                     Index reference_age,
                      State& state) const {
     SlipResult<S> result;
     const bool known = value(ratio) >= 0 && value(ratio) <= 1;
@@ -241,13 +252,15 @@ class FrictionLimit {
     result.friction =
         !(load.normal_n < S(options_.min_normal_n)) ? friction_of(load) : not_a_number<S>();
     result.limit = state.limit_;
+    result.reference_age = reference_age;
+    state.loads_.add(result.friction);
     if (!is_finite(result.friction)) {
       return result;
     }
     result.normal_n = load.normal_n;
     const bool slides = known && update == RatioUpdate::fresh && ratio < S(options_.learn_below);
     if (slides) {
-      learn(result.friction, state);
+      learn(result, state);
     } else if (known && update == RatioUpdate::fresh && 2 * value(ratio) > 1 &&
                result.friction > S(options_.max_rise) * state.limit_) {
       state.limit_ = not_a_number<S>();  // it holds beyond what was taken for the limit
@@ -256,19 +269,46 @@ class FrictionLimit {
     return result;
   }
 
-  void learn(const S& friction, State& state) const {
+  /// A membrane springs back under an object that slides with the load at its limit, and is carried
+  /// back by one that sticks with a load that falls: by more than three times the noise of two L.
+  bool is_carried_back(const ContactLoad<S>& load, Index age, const State& state) const {
+    const S falls_to = S(1 - 1.5 * (1 - options_.slide_fraction));
+    return friction_of(load) < falls_to * state.loads_.since(age - 1);
+  }
+
+  void learn(const SlipResult<S>& seen, State& state) const {
     if (!is_finite(state.limit_)) {
-      state.limit_ = friction > S(1e-6) ? friction : state.limit_;  // less is no friction
+      // less is no friction
+      state.limit_ = seen.friction > S(1e-6) ? seen.friction : state.limit_;
       return;
     }
-    if (friction < S(options_.slide_fraction) * state.limit_) {
-      return;  // the dots slip at another place than the limit: it stands
+    if (seen.friction < S(options_.slide_fraction) * state.limit_) {
+      follow_fall(seen, state);
+      return;
     }
     const S top = S(options_.max_rise) * state.limit_;
-    const S toward = value(friction) < value(top) ? friction : top;
+    const S toward = value(seen.friction) < value(top) ? seen.friction : top;
     // up soon, down slowly: noise makes the mean a little too high, never too low
     const S share = value(toward) > value(state.limit_) ? S(1) / S(2) : S(1) / S(10);
     state.limit_ = state.limit_ + share * S(toward - state.limit_);
+  }
+
+  /// What slid since the reference did so under no larger load than the largest since then. Where
+  /// a share s sticks that is (1 - s^(3/2)) of the limit (Cattaneo, Mindlin): one that lies beyond
+  /// that, and the noise of L, has fallen.
+  void follow_fall(const SlipResult<S>& seen, State& state) const {
+    using std::sqrt;
+    if (seen.reference_age <= 0) {
+      return;
+    }
+    const S stick = seen.stick_ratio;
+    const S slips = S(1) - (value(stick) > 0 ? S(stick * S(sqrt(stick))) : S(0));
+    const S highest =
+        state.loads_.since(seen.reference_age) / S(S(options_.slide_fraction) * slips);
+    if (highest < state.limit_) {
+      const S least = state.limit_ / S(options_.max_rise);
+      state.limit_ = highest < least ? least : highest;
+    }
   }
 
   void judge(bool slides, const State& state, SlipResult<S>& result) const {

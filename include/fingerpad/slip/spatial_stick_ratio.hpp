@@ -160,12 +160,14 @@ class SpatialStickRatio {
   StickStatus look(State& state) const {
     using namespace detail::stick;
     state.result.out_of_place = 0;
+    state.result.back = {};
     if (state.given.touching.empty()) {
       if (state.given.count == 0) {
         return StickStatus::no_dots;
       }
       if (!state.clock.touched_within(test_.hold_s)) {
         state.forget();
+        state.free = state.given.found;
       }
       return StickStatus::no_contact;
     }
@@ -244,9 +246,18 @@ class SpatialStickRatio {
     if (!consensus(from, noise, limit, state, motion)) {
       return StickStatus::too_few_dots;
     }
+    const Index age = static_cast<Index>(state.frame - state.repository.frame(choice.age));
+    if (falls_back(state.given.touching, state.now.data(), state.repository.dots(choice.age),
+                   state.free)) {
+      const auto stick = std::count_if(state.pairs.begin(), state.pairs.end(),
+                                       [&](const auto& p) { return p.mean_sq < limit; });
+      result.back = {S(static_cast<double>(stick)) / S(static_cast<double>(state.pairs.size())),
+                     age};
+      return StickStatus::falls_back;
+    }
     mark(limit, state);
     result.furthest_mm = S(sqrt(choice.furthest_sq));
-    result.reference_age = static_cast<Index>(state.frame - state.repository.frame(choice.age));
+    result.reference_age = age;
     result.motion = motion;
     return StickStatus::updated;
   }

@@ -264,7 +264,7 @@ class StickRatio {
     if (count_pairs(pair) < test_.min_dots) {
       return StickStatus::too_few_dots;
     }
-    if (falls_back(pair, state.free)) {
+    if (falls_back(pair.touching, pair.now, pair.then, state.free)) {
       return StickStatus::falls_back;
     }
     const Index reference = first_dot(pair, state);

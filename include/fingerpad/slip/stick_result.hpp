@@ -107,13 +107,22 @@ struct DotSlip {
   S sd_mm = not_a_number<S>();  ///< of one component along the surface, level; by the noise alone
 };
 
-/// Where the status is neither `updated` nor `no_outline`, what follows `out_of_place` is that of
-/// the last answer.
+/// Dots that go back toward their free places: an object that turns round carries them, or one that
+/// slides lets them go. The force tells which (friction_limit.hpp), the dots do not.
+template <scalar S = double>
+struct FallingBack {
+  S stick_ratio = not_a_number<S>();  ///< if the object carries them; NaN: they do not fall back
+  Index reference_age = 0;            ///< frames since the reference
+};
+
+/// Where the status is neither `updated` nor `no_outline`, what follows `back` is that of the
+/// last answer.
 template <scalar S = double>
 struct [[nodiscard]] SpatialStickResult {
   StickStatus status = StickStatus::refused;
   Index stick = 0, slip = 0, unknown = 0;  ///< dots in contact, as written to `states`
-  Index out_of_place = 0;  ///< dots in contact that are not between their neighbours: left out
+  Index out_of_place = 0;    ///< dots in contact that are not between their neighbours: left out
+  FallingBack<S> back = {};  ///< where the status is falls_back
   S stick_ratio = not_a_number<S>();  ///< sticking dots / known dots, in [0, 1]; NaN: none yet
   S ratio_sd = not_a_number<S>();     ///< of it, by the noise of the dots near the threshold
   S furthest_mm = S(0);               ///< d_max from the reference

@@ -4,6 +4,7 @@
 // Frames of dots as the stick ratio reads and stores them: points in the order of the dot grid, NaN
 // where there is none. NaN makes every comparison false, so that a missing dot needs no flag.
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -226,6 +227,33 @@ auto furthest_sq(const std::vector<Index>& touching, const P* now, const P* befo
     furthest = furthest < sq ? sq : furthest;
   }
   return furthest;
+}
+
+/// Whether the dots have gone back toward their free places, at more than half a right angle to any
+/// other way; false where these are not known. Along the pad: the depth of a contact is its load's.
+template <class P>
+bool falls_back(const std::vector<Index>& touching,
+                const P* now,
+                const P* then,
+                const Dots<P>& free) {
+  using S = coordinate<P>;
+  using std::sqrt;
+  const auto apart_sq = [](const P& a, const P& b) {
+    return S((a.x - b.x) * (a.x - b.x) + (a.y - b.y) * (a.y - b.y));
+  };
+  S then_sq = S(0), now_sq = S(0), moved_sq = S(0);
+  for (const Index k : touching) {
+    const S before = apart_sq(then[k], at(free, k));
+    const S after = apart_sq(now[k], at(free, k));
+    const S moved = apart_sq(now[k], then[k]);
+    if (is_distance_sq(before) && is_distance_sq(after) && is_distance_sq(moved)) {
+      then_sq = then_sq + before;
+      now_sq = now_sq + after;
+      moved_sq = moved_sq + moved;
+    }
+  }
+  const S nearer_sq = then_sq + now_sq - S(2) * S(sqrt(S(then_sq * now_sq)));
+  return now_sq < then_sq && moved_sq < S(2) * nearer_sq;
 }
 
 /// Two frames to compare.

@@ -26,6 +26,7 @@ class SpatialState {
   void reset() {
     forget();
     free_dots.reset();
+    std::fill(free.begin(), free.end(), no_dot<Point3<S>>());
     noise = given_noise;
     clock = Clock();
     frame = 0;
@@ -46,6 +47,7 @@ class SpatialState {
         free_dots(layout),
         given(layout),
         now(given.found),
+        free(given.found),
         pairs(given.found.size()),
         small_slips(static_cast<std::size_t>((layout.rows + 2) * (layout.cols + 2))),
         sorted(given.found.size()),
@@ -74,6 +76,7 @@ class SpatialState {
   FreeDots<Point3<S>> free_dots;
   GivenDots<Point3<S>> given;  // this frame
   Dots<Point3<S>> now;         // of it, the dots in contact, in their places
+  Dots<Point3<S>> free;        // where they were when nothing touched
   ReservedVector<SpatialPair<S>> pairs;
   std::vector<SmallSlip<S>> small_slips;  // of a grid with a border of one cell
   std::vector<S> sorted;

@@ -3,7 +3,6 @@
 #pragma once
 // What a stick ratio remembers from frame to frame, and the memory in which it works.
 #include <algorithm>
-#include <cmath>
 #include <cstdint>
 #include <vector>
 
@@ -108,26 +107,6 @@ Index first_dot(const FramePair<S>& pair, const StickState<S>& state) {
   const DotState any = DotState::none;
   return tracked >= 0 ? tracked
                       : nearest_dot(pair, centroid(pair, state.marks, any), state.marks, any);
-}
-
-/// Whether the dots have gone back toward their free places, at more than half a right angle to any
-/// other way; false where these are not known.
-template <class S>
-bool falls_back(const FramePair<S>& pair, const Dots<Point2<S>>& free) {
-  using std::sqrt;
-  S then_sq = S(0), now_sq = S(0), moved_sq = S(0);
-  for (const Index k : pair.touching) {
-    const S before = squared_norm(pair.then[k] - at(free, k));
-    const S after = squared_norm(pair.now[k] - at(free, k));
-    const S moved = squared_norm(pair.now[k] - pair.then[k]);
-    if (is_distance_sq(before) && is_distance_sq(after) && is_distance_sq(moved)) {
-      then_sq = then_sq + before;
-      now_sq = now_sq + after;
-      moved_sq = moved_sq + moved;
-    }
-  }
-  const S nearer_sq = then_sq + now_sq - S(2) * S(sqrt(S(then_sq * now_sq)));
-  return now_sq < then_sq && moved_sq < S(2) * nearer_sq;
 }
 
 /// How many dots both frames have.
