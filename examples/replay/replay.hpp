@@ -27,6 +27,7 @@ struct Options {
   std::filesystem::path out;
   std::optional<Smoothing> smoothing;
   Range range;
+  std::optional<Range> files;  ///< frames with files of their own; none: all
   bool raw = false;
   bool pictures = true;
 };

@@ -61,21 +61,27 @@ void Writer::operator()(Scene scene) {
   if (dots_) {
     dots_->write(scene.frame, scene.dots);
   }
-  if (options_.raw && painter_) {
+  const bool has_files = !options_.files || (scene.frame >= options_.files->first &&
+                                             scene.frame < options_.files->last.value_or(total_));
+  if (options_.raw && painter_ && has_files) {
     write_depth_image(file("depth", "", scene, ".tiff"), scene.depth_mm);
     write_png(file("contact", "", scene, ".png"), scene.contact_mask);
   }
   if (options_.pictures) {
-    write_pictures(scene);
+    if (painter_) {
+      scene.section = painter_->find_section(scene.depth_mm);
+    }
+    if (has_files) {
+      write_pictures(scene);
+    }
     if (painter_ && in_montage(static_cast<int>(rows_.size()) - 1, total_)) {
       columns_.push_back(std::move(scene));
     }
   }
 }
 
-void Writer::write_pictures(Scene& scene) {
+void Writer::write_pictures(const Scene& scene) {
   if (painter_) {
-    scene.section = painter_->find_section(scene.depth_mm);
     write_picture(file("pictures", "depth_", scene, ".png"), painter_->depth(scene));
     write_picture(file("pictures", "side_", scene, ".png"), painter_->side(scene));
     write_picture(file("pictures", "contact_", scene, ".png"),

@@ -36,7 +36,7 @@ class Writer {
                              const char* stem,
                              const Scene& scene,
                              const char* extension) const;
-  void write_pictures(Scene& scene);
+  void write_pictures(const Scene& scene);
 
   const Options& options_;
   std::optional<Painter> painter_;  ///< none where the recording is of dots only

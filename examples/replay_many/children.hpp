@@ -1,0 +1,41 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+#pragma once
+// Units at work on this machine, each in a process that dies with this one.
+#include <sys/types.h>
+
+#include <cstdio>
+#include <memory>
+#include <vector>
+
+#include "unit.hpp"
+
+namespace replay_many {
+
+class Children {
+ public:
+  /// `jobs` at a time, > 0.
+  explicit Children(int jobs) : jobs_(jobs) {}
+
+  bool is_full() const { return static_cast<int>(running_.size()) >= jobs_; }
+  /// Where not full. Throws replay::Failure where no process can be made.
+  void start(std::size_t unit, const std::vector<std::string>& arguments);
+  /// Those that have ended since the last call.
+  std::vector<Report> ended();
+
+ private:
+  struct Close {
+    void operator()(std::FILE* file) const { std::fclose(file); }
+  };
+  struct Child {
+    std::size_t unit;
+    pid_t process;
+    std::unique_ptr<std::FILE, Close> words;  ///< what it says on standard error
+  };
+  static Report report_of(const Child& child, int status);
+
+  int jobs_;
+  std::vector<Child> running_;
+};
+
+}  // namespace replay_many

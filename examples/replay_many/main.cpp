@@ -1,0 +1,142 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+// replay_many: a folder of recordings, by all cores of a machine or, under MPI, of many. See
+// --help.
+#include <fcntl.h>
+#include <sys/file.h>
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cerrno>
+#include <cstdio>
+#include <exception>
+#include <fstream>
+#include <string>
+#include <thread>
+
+#include "overview.hpp"
+#include "recordings.hpp"
+#include "replay/io/failure.hpp"
+
+namespace {
+
+using replay_many::Crew;
+using replay_many::Path;
+
+struct Arguments {
+  Path recordings, out;
+  replay_many::Settings settings;
+  int jobs = 0;  ///< 0: one a core, or one a rank
+  bool retry = false;
+};
+
+/// Held until this process ends, however that is.
+void lock(const Path& out) {
+  const int file = ::open((out / "lock").c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
+  if (file >= 0 && ::flock(file, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) {
+    replay::fail(out, "another run is at work there");
+  }
+}
+
+/// What a run has begun, others go on with: all of it must be made in one way.
+void expects_same(const Path& file, const std::string& options) {
+  std::ifstream stream(file);
+  std::string before;
+  if (!std::getline(stream, before)) {
+    replay_many::write_file(file, options + "\n");
+  } else if (before != options) {
+    replay::fail(file, "was begun with other options (" + before + "): name another folder");
+  }
+}
+
+int lead(Crew& crew, const Arguments& arguments) {
+  replay_many::Recordings recordings(arguments.recordings, arguments.out, arguments.settings);
+  replay_many::make_folders(arguments.out);
+  lock(arguments.out);
+  std::filesystem::remove_all(arguments.out / "aside");
+  replay_many::make_folders(arguments.out / "aside");
+  const auto& replay = arguments.settings.replay;
+  expects_same(
+      arguments.out / "options.txt",
+      std::string(replay.pictures ? "pictures" : "no pictures") + (replay.raw ? ", raw" : ""));
+  auto units = recordings.left(arguments.retry);
+  std::string stopped;
+  try {
+    replay_many::work_off(crew, std::move(units), recordings.job());
+  } catch (const replay::Failure& failure) {
+    stopped = failure.what();
+  }
+  if (!stopped.empty()) {
+    std::fprintf(stderr, "replay_many: stopped: %s; the same command goes on from here\n",
+                 stopped.c_str());
+    return 3;
+  }
+  std::filesystem::remove_all(arguments.out / "aside");
+  const auto counts = replay_many::write_overview(recordings, arguments.out);
+  std::printf("recordings   %d done, %d failed\nframes       %lld\n", counts.done, counts.failed,
+              counts.frames);
+  for (const char* file : {"summary.csv", "all_frames.csv", "overview.html"}) {
+    std::printf("%s %s\n", file == std::string("summary.csv") ? "tables      " : "            ",
+                (arguments.out / file).c_str());
+  }
+  return counts.failed > 0 ? 1 : 0;
+}
+
+int run(Arguments arguments) {
+  if (arguments.jobs == 0) {
+    const auto cores = static_cast<int>(std::thread::hardware_concurrency());
+    arguments.jobs = replay_many::has_ranks() ? 1 : (std::max)(cores, 1);
+  }
+  Crew crew(arguments.jobs);
+  if (!crew.leads()) {
+    crew.serve();
+    return 0;
+  }
+  int status = 3;
+  try {
+    status = lead(crew, arguments);
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "replay_many: %s\n", error.what());
+  }
+  crew.dismiss();
+  return status;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  if (argc > 2 && std::string(argv[1]) == "--unit") {
+    return replay_many::run_unit({argv + 2, argv + argc});
+  }
+  CLI::App app(
+      "What replay does, for each recording in a folder (and the folders in it), by all cores;\n"
+      "under mpirun or srun by all ranks. Kill it at any moment: the same command goes on.\n"
+      "DIR receives recordings/NAME/ for each, whole or not at all, failed/NAME.txt with the\n"
+      "reason where there is none, and, of all together, summary.csv, all_frames.csv and\n"
+      "overview.html.");
+  Arguments arguments;
+  app.add_option("RECORDINGS", arguments.recordings, "the folder")->required();
+  app.add_option("--out", arguments.out, "the folder to write")->option_text("DIR")->required();
+  app.add_option("--jobs", arguments.jobs,
+                 "processes at a time; default: one a core, or one a rank")
+      ->check(CLI::PositiveNumber);
+  app.add_option("--split", arguments.settings.split_frames,
+                 "files of single frames of recordings longer than this are made in such parts")
+      ->option_text("FRAMES")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  app.add_flag("--raw", arguments.settings.replay.raw, "as of replay");
+  app.add_flag_callback(
+      "--no-pictures", [&] { arguments.settings.replay.pictures = false; }, "as of replay");
+  app.add_flag("--retry", arguments.retry, "try again what has failed before");
+  app.footer(
+      "Exit status: 0 all done, 1 some failed, 2 wrong arguments, 3 stopped: the output cannot be\n"
+      "written, or there are no recordings (any more).");
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? 0 : 2;
+  }
+  return run(arguments);
+}
