@@ -217,8 +217,6 @@ Outcome neighbour_light(const Path& recording, const Path& sensor_file, int max_
                        {"n_per_mm", fit.light.n_per_mm, fit.n_sd},
                        {"residual_without_it_mm", fit.rms_before_mm}};
   report.doubt(!fit.ok(), name_of(fit.status));
-  report.doubt(fit.rms_after_mm > 0.9 * fit.rms_before_mm,
-               "it takes off less than a tenth of the error: leave it out");
   Outcome outcome;
   outcome.sections["neighbour_light"] = {{"radius_px", fit.light.radius_px},
                                          {"m0_mm_per_rad", fit.light.m0_mm_per_rad},

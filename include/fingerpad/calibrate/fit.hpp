@@ -63,6 +63,8 @@ enum class FitStatus : std::uint8_t {
   depths_missing,
   colours_unexplained,
   scatters_no_light,
+  light_unexplained,
+  light_taken_away,
   pad_moved,
   taxels_missing,
   onsets_not_found,
@@ -112,6 +114,11 @@ constexpr const char* name_of(FitStatus status) {
       return "the colours do not follow from the depths: other order, other place, other frame?";
     case FitStatus::scatters_no_light:
       return "g is not positive everywhere: are red and green exchanged?";
+    case FitStatus::light_unexplained:
+      return "neighbouring light takes off less than a tenth of the error: other frame, order, "
+             "unit?";
+    case FitStatus::light_taken_away:
+      return "neighbouring light would darken: are measured and true depths exchanged?";
     case FitStatus::pad_moved:
       return "dots move slowly, not as noise does: did the pad stand still?";
     case FitStatus::taxels_missing:

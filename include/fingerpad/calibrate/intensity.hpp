@@ -65,7 +65,8 @@ class IntensityCalibration {
   }
 
   /// Adds a press: a frame of the free pad and one with the ball in it. False, and nothing added,
-  /// where their sizes differ or no ball shows: a darkest spot that is round and tells 30 pixels.
+  /// where their sizes differ, where the light beside the ball is not that of the free pad, or
+  /// where no ball shows: a darkest spot that is round and tells 30 pixels.
   template <grid Free, grid Pressed>
   bool add(const Free& free, const Pressed& pressed, const BallPress& ball) {
     expects_valid(ball);
@@ -75,14 +76,18 @@ class IntensityCalibration {
     Press press{ball, {}, {}, 0, 0, from.cols()};
     press.log.resize(static_cast<std::size_t>(from.rows() * from.cols()));
     const StridedView<double> to(press.log.data(), from.rows(), from.cols(), from.cols());
-    if (!log_ratio(pressed, to, workspace).accepted() || !begin(press)) {
+    if (!log_ratio(pressed, to, workspace).ok() || !begin(press)) {
       return false;
     }
     presses_.push_back(std::move(press));
     return true;
   }
 
-  /// The law a l (terms = 1), or with b l^2 and c l^3 (terms = 3).
+  /// The law a l (terms = 1), or with b l^2 and c l^3 (terms = 3). `depths_not_in_mm` where no ball
+  /// is as deep as 0.05 mm; `colours_unexplained` where a ball would be deeper than its radius, or
+  /// the mean error is more than a thirtieth of the depth: a real gel leaves half of that. A ball
+  /// of twice the radius, pressed half as deep, looks the same: nothing tells a diameter for a
+  /// radius.
   IntensityFit fit(int terms = 1) const {
     expects(terms == 1 || terms == 3, "IntensityCalibration", "terms",
             static_cast<long long>(terms), "1 or 3");
@@ -306,7 +311,9 @@ class IntensityCalibration {
                     int terms,
                     IntensityFit& result) {
     double blocks_sq = 0;
+    bool too_deep = false;
     for (const Press& press : presses) {
+      too_deep = too_deep || press.depth_mm >= press.ball.ball_mm;
       const Index block_cols = press.cols / block_px + 1;
       std::vector<double> blocks(press.log.size() / std::size_t(block_px) + std::size_t(block_cols),
                                  0);
@@ -324,6 +331,11 @@ class IntensityCalibration {
       }
     }
     result.mean_error_mm /= static_cast<double>(result.pixels);
+    if (result.max_depth_mm < 0.05) {
+      result.status = FitStatus::depths_not_in_mm;
+    } else if (too_deep || 30 * result.mean_error_mm > result.max_depth_mm) {
+      result.status = FitStatus::colours_unexplained;
+    }
     const Equations sums(presses, law, terms);
     if (!sums.good || result.pixels <= 3 * static_cast<Index>(presses.size()) + terms) {
       result.status = FitStatus::nothing_to_check;

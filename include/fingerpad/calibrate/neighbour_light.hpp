@@ -119,7 +119,8 @@ void expects_valid(const NeighbourLightSearch& search,
                    std::span<const Measured> measured_mm,
                    std::span<const True> true_mm) {
   const char* const owner = "fit_neighbour_light";
-  expects(std::isfinite(pitch_mm) && pitch_mm > 0, owner, "pitch_mm", pitch_mm, "finite and > 0");
+  expects(pitch_mm >= 1e-4 && pitch_mm <= 10, owner, "pitch_mm", pitch_mm,
+          "in [0.0001, 10]: mm between pixels");
   expects(search.min_radius_px >= 1, owner, "min_radius_px",
           static_cast<long long>(search.min_radius_px), ">= 1");
   expects(search.max_radius_px >= search.min_radius_px && search.max_radius_px <= 1000, owner,
@@ -158,7 +159,8 @@ std::vector<LightSample> light_samples(Index radius_px,
         const double l = static_cast<double>(measured(i, j));
         const double error = l - static_cast<double>(truth(i, j));
         const double risen = l - static_cast<double>(reference(i, j));
-        if (is_finite(error) && is_finite(risen)) {
+        constexpr double most_mm = 100;  // what is more is no depth of a fingertip
+        if (std::abs(error) < most_mm && std::abs(risen) < most_mm) {
           samples.push_back({error, risen, workspace.sum[static_cast<std::size_t>(j)]});
           psi_sq += square(samples.back().psi_sum_rad);
         }
@@ -178,9 +180,11 @@ std::vector<LightSample> light_samples(Index radius_px,
 
 /// Fits r, m0 and n to frames `measured_mm` (smoothed, not compensated) of known depth `true_mm`,
 /// with the reference and the pitch that the compensation will use. Pixels count where reference,
-/// measured and true depth are finite. Refuses frames without a change of inclination, or whose
-/// change of depth is too uniform to tell n from m0 (parameter_error). Allocates; O(radii (frames
-/// rows cols + 70 pixels)).
+/// measured and true depth are finite and less than 100 mm apart. Refuses frames without a change
+/// of inclination, or whose change of depth is too uniform to tell n from m0 (parameter_error). Not
+/// ok: a fit that takes off less than a tenth of the error, light that is taken away instead of
+/// added (m0 < 0, as of measured and true depths exchanged), and a best n or radius at an end of
+/// the search. Allocates; O(radii (frames rows cols + 70 pixels)).
 template <grid Reference, grid Measured, grid True>
 NeighbourLightFit fit_neighbour_light(double pitch_mm,
                                       const Reference& reference_mm,
@@ -219,7 +223,10 @@ NeighbourLightFit fit_neighbour_light(double pitch_mm,
   fit.n_sd = std::sqrt(variance * best.uu / determinant);
   const bool at_end = std::abs(best.n) > 0.998 || (fit.light.radius_px == search.max_radius_px &&
                                                    search.max_radius_px > search.min_radius_px);
-  fit.status = at_end ? FitStatus::at_end_of_search : FitStatus::ok;
+  fit.status = fit.rms_after_mm > 0.9 * fit.rms_before_mm ? FitStatus::light_unexplained
+               : best.m0 < 0                              ? FitStatus::light_taken_away
+               : at_end                                   ? FitStatus::at_end_of_search
+                                                          : FitStatus::ok;
   return fit;
 }
 

@@ -141,7 +141,8 @@ class StickTestCalibration {
       fit.test = row.chosen ? row.test : fit.test;
       chosen = chosen || row.chosen;
     }
-    const bool at_end = &best == &runs_.back() && runs_.size() > 1;
+    const bool at_start = &best == &runs_.front() && best.row == 0;  // no noise forbids less
+    const bool at_end = runs_.size() > 1 && (&best == &runs_.back() || at_start);
     fit.status = at_end ? FitStatus::at_end_of_search : FitStatus::ok;
     return fit;
   }

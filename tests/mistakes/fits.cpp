@@ -1,0 +1,752 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+// Mistakes in the recordings of which light, thresholds of the stick ratio and of pre-slip, and the
+// grid of printed dots are found, and what is said of each: a status, the message of a refusal,
+// "right", or "wrong". A "wrong" has its reason in docs/mistakes.md.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <functional>
+#include <limits>
+#include <opencv2/core.hpp>
+#include <opencv2/imgproc.hpp>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "fingerpad/adapt/dot_finder.hpp"
+#include "fingerpad/calibrate/intensity.hpp"
+#include "fingerpad/calibrate/neighbour_light.hpp"
+#include "fingerpad/calibrate/preslip.hpp"
+#include "fingerpad/calibrate/slip.hpp"
+#include "support/catch.hpp"
+#include "support/pad.hpp"
+#include "support/printed_dots.hpp"
+#include "support/refusal.hpp"
+#include "support/slipping_dots.hpp"
+
+using namespace fingerpad;
+using test::Image;
+using test::Random;
+
+namespace {
+
+template <class Input>
+struct Mistake {
+  const char* name;
+  std::function<void(Input&)> make;
+  const char* said;  ///< part of it
+};
+
+template <class Input, std::size_t N>
+void check(const Mistake<Input> (&mistakes)[N], std::string (*said_of)(const Input&)) {
+  for (const auto& mistake : mistakes) {
+    Input input;
+    mistake.make(input);
+    std::string said;
+    const std::string refused = test::refusal([&] { said = said_of(input); });
+    said = refused == "accepted" ? said : refused;
+    INFO(mistake.name << ": " << said);
+    CHECK(said.find(mistake.said) != std::string::npos);
+  }
+}
+
+using Pixels = Image<double>;
+
+/// Cell (i, j) is that at from(i, j), around the edges.
+template <class From>
+Pixels rearranged(const Pixels& image, const From& from) {
+  Pixels out = image;
+  const Index rows = image.rows(), cols = image.cols();
+  for (Index i = 0; i < rows; ++i) {
+    for (Index j = 0; j < cols; ++j) {
+      const DotIndex at = from(i, j);
+      out(i, j) = image((at.row + rows) % rows, (at.col + cols) % cols);
+    }
+  }
+  return out;
+}
+Pixels transposed(const Pixels& image) {
+  return rearranged(image, [](Index i, Index j) { return DotIndex{j, i}; });
+}
+Pixels mirrored(const Pixels& image) {
+  return rearranged(image, [&](Index i, Index j) { return DotIndex{i, image.cols() - 1 - j}; });
+}
+Pixels sheared(const Pixels& image) {
+  return rearranged(image, [](Index i, Index j) { return DotIndex{i, i + j}; });
+}
+Pixels times(Pixels image, double factor) {
+  for (double& level : image.cells) {
+    level *= factor;
+  }
+  return image;
+}
+Pixels half_of(Pixels image) {
+  const auto half = static_cast<std::ptrdiff_t>(image.cells.size() / 2);
+  std::fill(image.cells.begin(), image.cells.begin() + half, test::nan);
+  return image;
+}
+
+// ---- light of one channel
+
+/// Two presses of balls into a gel under an uneven lamp, whose depth is 4 mm times the logarithm.
+struct Presses {
+  static constexpr Index size = 96;
+  struct Press {
+    BallPress ball;
+    Pixels free{size, size}, pressed{size, size};
+  };
+  std::array<Press, 2> all;
+
+  Presses() {
+    Random random(1);
+    add(0, 4, 1.5, random);
+    add(1, 3, 0.9, random);
+  }
+
+ private:
+  void add(std::size_t k, double ball_mm, double depth_mm, Random& random) {
+    Press& press = all[k];
+    press.ball = {.ball_mm = ball_mm, .mm_per_px = 0.1};
+    for (Index i = 0; i < size; ++i) {
+      for (Index j = 0; j < size; ++j) {
+        const double x = 0.1 * static_cast<double>(j) - 4.2, y = 0.1 * static_cast<double>(i) - 5;
+        const double root_sq = ball_mm * ball_mm - x * x - y * y;
+        const double depth = root_sq > 0 ? depth_mm - ball_mm + std::sqrt(root_sq) : 0;
+        const double light = 120 + 0.4 * static_cast<double>(i) - 0.3 * static_cast<double>(j);
+        press.free(i, j) = light + 0.3 * random.normal();
+        press.pressed(i, j) = light * std::exp(-std::fmax(depth, 0) / 4) + 0.3 * random.normal();
+      }
+    }
+  }
+};
+
+std::string said_of_intensity(const Presses& presses) {
+  IntensityCalibration calibration;
+  for (const auto& press : presses.all) {
+    if (!calibration.add(press.free, press.pressed, press.ball)) {
+      return "no ball";
+    }
+  }
+  const IntensityFit fit = calibration.fit();
+  return !fit.ok()                               ? name_of(fit.status)
+         : std::abs(fit.law.linear_mm - 4) < 0.2 ? "right"
+                                                 : "wrong";
+}
+
+std::function<void(Presses&)> in_each(const std::function<void(Presses::Press&)>& change) {
+  return [=](Presses& presses) {
+    for (auto& press : presses.all) {
+      change(press);
+    }
+  };
+}
+
+// ---- neighbouring light
+
+/// A plate pressed into a cap twice: the depths as measured, in mm, and the true ones.
+struct Depths {
+  static constexpr Index size = 64;
+  double pitch_mm = 0.2;
+  Pixels reference = cap(0, 0);
+  std::vector<Pixels> measured = {cap(1, 1), cap(2.5, -2)}, truth;
+
+  Depths() {
+    const detail::InclinationSums<detail::SteppedDisc, double> sums(5, pitch_mm,
+                                                                    as_view(reference));
+    auto workspace = sums.workspace();
+    Random random(3);
+    for (const Pixels& l : measured) {
+      Pixels t = l;
+      sums.scan(as_view(l), workspace);
+      for (Index i = 0; i < size; ++i) {
+        sums.sum_row(i, workspace);
+        for (Index j = 0; j < size; ++j) {
+          const double m = 0.002 * std::exp(0.2 * (l(i, j) - reference(i, j)));
+          t(i, j) -= m * workspace.sum[static_cast<std::size_t>(j)] + 0.01 * random.normal();
+        }
+      }
+      truth.push_back(t);
+    }
+  }
+
+ private:
+  static Pixels cap(double pressed_mm, double shift_mm) {
+    Pixels l(size, size);
+    for (Index i = 0; i < size; ++i) {
+      for (Index j = 0; j < size; ++j) {
+        const double x = 0.2 * static_cast<double>(j - 30), y = 0.2 * static_cast<double>(i - 34);
+        l(i, j) = std::fmin(8 - 0.08 * (x * x + y * y), 8 - pressed_mm + 0.1 * (x - shift_mm));
+      }
+    }
+    return l;
+  }
+};
+
+std::string said_of_neighbours(const Depths& depths) {
+  const auto fit = fit_neighbour_light(
+      depths.pitch_mm, depths.reference, std::span<const Pixels>(depths.measured),
+      std::span<const Pixels>(depths.truth), {.min_radius_px = 3, .max_radius_px = 7});
+  const bool right = fit.light.radius_px == 5 && std::abs(fit.light.m0_mm_per_rad - 0.002) < 2e-4;
+  return !fit.ok() ? name_of(fit.status) : right ? "right" : "wrong";
+}
+
+void all_of(std::vector<Pixels>& images, const std::function<Pixels(const Pixels&)>& change) {
+  for (Pixels& image : images) {
+    image = change(image);
+  }
+}
+
+// ---- pre-slip
+
+/// A hand that trembles, and slips now and then: samples of two fingers, and whether slip begins.
+struct Hand {
+  static constexpr int samples = 400;
+  std::vector<std::array<FingerSample<>, 2>> fingers;
+  std::vector<bool> marks;
+
+  Hand() {
+    Random random(2);
+    for (int k = 0; k < samples; ++k) {
+      const bool slips = k % 50 >= 44;
+      const double x = 20 + random.uniform(-0.15, 0.15) + (slips ? 1.5 : 0);
+      fingers.push_back({finger(x, k % 11, slips ? 3 : k % 7 == 0 ? 2 : 0), finger(20, 0, 0)});
+      marks.push_back(slips);
+    }
+  }
+
+ private:
+  static FingerSample<> finger(double x_mm, Index location, Index waves) {
+    FingerSample<> s;
+    s.status = waves > 0 ? TaxelStatus::vibrating : TaxelStatus::quiet;
+    s.center_x_mm = x_mm;
+    s.center_y_mm = 10;
+    s.location = waves > 0 ? location : FingerSample<>::no_location;
+    s.waves = waves;
+    if (waves > 0) {
+      s.add_vibration({waves, location, false});
+    }
+    return s;
+  }
+};
+
+std::string said_of_preslip(const Hand& hand) {
+  PreslipCalibration<> calibration(20);
+  for (std::size_t k = 0; k < hand.fingers.size(); ++k) {
+    calibration.add(hand.fingers[k], hand.marks[k]);
+  }
+  const auto fit = calibration.fit();
+  return !fit.ok() ? name_of(fit.status)
+         : fit.recall() == 1 && fit.precision() == 1
+             ? "right"
+             : "recall " + std::to_string(fit.recall()).substr(0, 3);
+}
+
+using Fingers = std::array<FingerSample<>, 2>;
+
+std::function<void(Hand&)> each_sample(const std::function<void(Fingers&, std::size_t)>& change) {
+  return [=](Hand& hand) {
+    for (std::size_t k = 0; k < hand.fingers.size(); ++k) {
+      change(hand.fingers[k], k);
+    }
+  };
+}
+
+// ---- thresholds of the stick ratio
+
+/// An object that drags a membrane along while the disc that sticks shrinks, with 0.06 px of noise.
+struct Drag {
+  static constexpr Index across = 15;
+  std::vector<test::PointsPx> dots;
+  test::ContactFlags contact{across, across};
+  DotNoise noise = independent_dot_noise(0.06);
+
+  Drag() {
+    Random random(3);
+    test::SlippingDots truth({.rows = across, .cols = across, .contact_pitches = 5});
+    contact = truth.contact;
+    for (int k = 0; k < 100; ++k) {
+      truth.step({.shift_px = 0.5, .direction_rad = 0.3, .stick_share = 1.3 - 0.012 * k});
+      test::PointsPx seen = truth.dots;
+      for (auto& p : seen.cells) {
+        p = {p.x + 0.06 * random.normal(), p.y + 0.06 * random.normal()};
+      }
+      dots.push_back(seen);
+    }
+  }
+};
+
+std::string said_of_thresholds(const Drag& drag) {
+  StickTestCalibration<> calibration(Drag::across, Drag::across, drag.noise);
+  for (const auto& dots : drag.dots) {
+    if (!calibration.add(dots, drag.contact)) {
+      return "refused";
+    }
+  }
+  const StickTestFit fit = calibration.fit();
+  const double u = fit.test.reference;
+  return !fit.ok() ? name_of(fit.status) : u > 0.7 && u < 3 ? "right" : "wrong";
+}
+
+std::function<void(Drag&)> renamed(const std::function<DotIndex(Index i, Index j, int k)>& from) {
+  return [=](Drag& drag) {
+    for (std::size_t k = 0; k < drag.dots.size(); ++k) {
+      const test::PointsPx as_they_were = drag.dots[k];
+      for (Index i = 0; i < Drag::across; ++i) {
+        for (Index j = 0; j < Drag::across; ++j) {
+          const DotIndex at = from(i, j, static_cast<int>(k));
+          drag.dots[k](i, j) = as_they_were(at.row % Drag::across, at.col % Drag::across);
+        }
+      }
+    }
+  };
+}
+void scale(Drag& drag, double factor) {
+  for (auto& dots : drag.dots) {
+    for (auto& p : dots.cells) {
+      p = factor * p;
+    }
+  }
+}
+
+// ---- the grid of dots
+
+/// A picture of the free pad, and one of the pad carried along.
+struct Pictures {
+  test::Print print;
+  DotFinderOptions options;
+  cv::Vec2d by{4, -3};
+  cv::Mat free, now;
+
+  Pictures() {
+    print.noise = 1;
+    const auto places = test::places_of(print);
+    free = test::picture_of(print, places);
+    now = test::picture_of(print, test::moved(places, by));
+  }
+};
+
+/// Row i begins i pixels late.
+cv::Mat with_padding(const cv::Mat& picture) {
+  cv::Mat out = picture.clone();
+  for (int i = 0; i < out.rows; ++i) {
+    for (int j = 0; j < out.cols; ++j) {
+      out.at<cv::Vec3b>(i, j) = picture.at<cv::Vec3b>(i, (j + i) % out.cols);
+    }
+  }
+  return out;
+}
+
+std::string said_of_finder(const Pictures& pictures) {
+  const DotFinder finder(pictures.free, pictures.options);
+  if (!finder.ok()) {
+    return "no grid";
+  }
+  auto state = finder.start();
+  test::DotPlaces dots(static_cast<int>(finder.rows()), static_cast<int>(finder.cols()));
+  const DotResult result = finder(pictures.now, dots, state);
+  if (!result.ok()) {
+    return "refused";
+  }
+  int count = 0, right = 0;
+  for (int i = 0; i < dots.rows; ++i) {
+    for (int j = 0; j < dots.cols; ++j) {
+      const auto from = finder.free_px()(i, j);
+      const cv::Vec2d by = dots(i, j) - cv::Vec2d(from.x, from.y);
+      if (is_present(by)) {
+        ++count;
+        right += cv::norm(by - pictures.by) < 0.5 ? 1 : 0;
+      }
+    }
+  }
+  return right > 0 && right == count ? "right" : "another motion";
+}
+
+}  // namespace
+
+TEST_CASE("mistakes: the light of one channel", "[mistakes]") {
+  const Mistake<Presses> mistakes[] = {
+      {"none", [](Presses&) {}, "right"},
+      {"ball in m", in_each([](auto& one) { one.ball.ball_mm /= 1000; }), "no ball"},
+      {"ball in um", in_each([](auto& one) { one.ball.ball_mm *= 1000; }), "in mm?"},
+      {"diameter for radius",  // twice as large and half as deep: as dark
+       in_each([](auto& one) { one.ball.ball_mm *= 2; }), "wrong"},
+      {"pixels in m", in_each([](auto& one) { one.ball.mm_per_px /= 1000; }), "in mm?"},
+      {"pixels in um", in_each([](auto& one) { one.ball.mm_per_px *= 1000; }), "no ball"},
+      {"pixels of another zoom", in_each([](auto& one) { one.ball.mm_per_px *= 2; }), "no ball"},
+      {"light times 1000", in_each([](auto& one) {
+         one.free = times(one.free, 1e3), one.pressed = times(one.pressed, 1e3);
+       }),
+       "no ball"},
+      {"frames of a longer exposure",
+       in_each([](auto& one) { one.pressed = times(one.pressed, 1e3); }), "no ball"},
+      {"frames of a shorter exposure",
+       in_each([](auto& one) { one.pressed = times(one.pressed, 1e-3); }), "no ball"},
+      {"a lamp 10 % darker", in_each([](auto& one) { one.pressed = times(one.pressed, 0.9); }),
+       "no ball"},
+      {"a lamp 10 % lighter", in_each([](auto& one) { one.pressed = times(one.pressed, 1.1); }),
+       "no ball"},
+      {"free and pressed exchanged", in_each([](auto& one) { std::swap(one.free, one.pressed); }),
+       "no ball"},
+      {"the balls of the two presses exchanged",
+       [](Presses& p) { std::swap(p.all[0].ball, p.all[1].ball); },
+       "do not follow from the depths"},
+      {"pressed transposed", in_each([](auto& one) { one.pressed = transposed(one.pressed); }),
+       "no ball"},
+      {"pressed mirrored", in_each([](auto& one) { one.pressed = mirrored(one.pressed); }),
+       "no ball"},
+      {"both transposed", in_each([](auto& one) {
+         one.pressed = transposed(one.pressed), one.free = transposed(one.free);
+       }),
+       "right"},
+      {"rows sheared",
+       in_each([](auto& one) { one.pressed = sheared(one.pressed), one.free = sheared(one.free); }),
+       "no ball"},
+      {"half missing", in_each([](auto& one) { one.pressed = half_of(one.pressed); }), "right"},
+      {"constant",
+       in_each([](auto& one) { one.pressed = Pixels(Presses::size, Presses::size, 77.0); }),
+       "no ball"},
+      {"the free frame again", in_each([](auto& one) { one.pressed = one.free; }), "no ball"},
+      {"no number", in_each([](auto& one) { one.pressed = times(one.free, test::nan); }),
+       "no ball"},
+      {"the same press twice", [](Presses& p) { p.all[1] = p.all[0]; }, "right"},
+  };
+  check(mistakes, said_of_intensity);
+}
+
+TEST_CASE("mistakes: neighbouring light", "[mistakes]") {
+  const auto scaled = [](double f) { return [f](const Pixels& l) { return times(l, f); }; };
+  const Mistake<Depths> mistakes[] = {
+      {"none", [](Depths&) {}, "right"},
+      {"truth in m", [=](Depths& d) { all_of(d.truth, scaled(1e-3)); },
+       "measured and true depths exchanged"},
+      {"truth in um", [=](Depths& d) { all_of(d.truth, scaled(1e3)); }, "true depth = 0"},
+      {"all depths in m",
+       [=](Depths& d) {
+         all_of(d.truth, scaled(1e-3));
+         all_of(d.measured, scaled(1e-3));
+         d.reference = times(d.reference, 1e-3);
+       },
+       "an end of the search"},
+      {"all depths in um",
+       [=](Depths& d) {
+         all_of(d.truth, scaled(1e3));
+         all_of(d.measured, scaled(1e3));
+         d.reference = times(d.reference, 1e3);
+       },
+       "an end of the search"},
+      {"pitch in m", [](Depths& d) { d.pitch_mm *= 1e-3; }, "an end of the search"},
+      {"pitch in um", [](Depths& d) { d.pitch_mm *= 1e3; }, "mm between pixels"},
+      {"measured and true exchanged", [](Depths& d) { std::swap(d.measured, d.truth); },
+       "measured and true depths exchanged"},
+      {"frames exchanged", [](Depths& d) { std::swap(d.truth[0], d.truth[1]); },
+       "an end of the search"},
+      {"truth transposed", [](Depths& d) { all_of(d.truth, transposed); }, "less than a tenth"},
+      {"truth mirrored", [](Depths& d) { all_of(d.truth, mirrored); }, "less than a tenth"},
+      {"truth shifted by a pixel",
+       [](Depths& d) {
+         all_of(d.truth, [](const Pixels& l) {
+           return rearranged(l, [](Index i, Index j) { return DotIndex{i, j + 1}; });
+         });
+       },
+       "less than a tenth"},
+      {"reference mirrored",  // of a pad that is nearly round
+       [](Depths& d) { d.reference = mirrored(d.reference); }, "wrong"},
+      {"all mirrored",
+       [](Depths& d) {
+         all_of(d.truth, mirrored);
+         all_of(d.measured, mirrored);
+         d.reference = mirrored(d.reference);
+       },
+       "right"},
+      {"rows sheared", [](Depths& d) { all_of(d.measured, sheared); }, "would darken"},
+      {"truth constant",
+       [](Depths& d) {
+         all_of(d.truth, [](const Pixels&) { return Pixels(Depths::size, Depths::size, 7.0); });
+       },
+       "less than a tenth"},
+      {"truth as measured", [](Depths& d) { d.truth = d.measured; },
+       "some error must be explained"},
+      {"the free pad's depths for truth",
+       [](Depths& d) {
+         d.truth = {d.reference, d.reference};
+       },
+       "an end of the search"},
+      {"half missing", [](Depths& d) { all_of(d.measured, half_of); }, "right"},
+      {"random truth",
+       [](Depths& d) {
+         Random random(9);
+         all_of(d.truth, [&](const Pixels& l) {
+           Pixels o = l;
+           for (double& x : o.cells) {
+             x += 0.3 * random.normal();
+           }
+           return o;
+         });
+       },
+       "less than a tenth"},
+      {"no truth", [=](Depths& d) { all_of(d.truth, scaled(test::nan)); }, "true depth = 0"},
+  };
+  check(mistakes, said_of_neighbours);
+}
+
+TEST_CASE("mistakes: thresholds of pre-slip", "[mistakes]") {
+  const Mistake<Hand> mistakes[] = {
+      {"none", [](Hand&) {}, "right"},
+      {"centers in m", each_sample([](auto& f, std::size_t) {
+         f[0].center_x_mm /= 1000, f[1].center_x_mm /= 1000;
+       }),
+       "right"},
+      {"centers in um", each_sample([](auto& f, std::size_t) {
+         f[0].center_x_mm *= 1000, f[1].center_x_mm *= 1000;
+       }),
+       "right"},
+      {"x and y exchanged",
+       each_sample([](auto& f, std::size_t) { std::swap(f[0].center_x_mm, f[0].center_y_mm); }),
+       "right"},
+      {"fingers exchanged", each_sample([](auto& f, std::size_t) { std::swap(f[0], f[1]); }),
+       "right"},
+      {"fingers exchanged every second", each_sample([](auto& f, std::size_t k) {
+         if (k % 2) {
+           std::swap(f[0], f[1]);
+         }
+       }),
+       "right"},
+      {"a dead finger", each_sample([](auto& f, std::size_t) { f[0] = f[1]; }),
+       "no threshold tells the onsets"},
+      {"two dead fingers", each_sample([](auto& f, std::size_t) {
+         f[0].status = TaxelStatus::frozen;
+         f[1].status = TaxelStatus::frozen;
+       }),
+       "no threshold tells the onsets"},
+      {"marks late by half a period",
+       [](Hand& h) { std::rotate(h.marks.begin(), h.marks.end() - 25, h.marks.end()); },
+       "no threshold tells the onsets"},
+      {"marks one late",
+       [](Hand& h) { std::rotate(h.marks.begin(), h.marks.end() - 1, h.marks.end()); },
+       "no threshold tells the onsets"},
+      {"marks reversed", [](Hand& h) { h.marks.flip(); }, "no threshold tells the onsets"},
+      {"marks in other order", [](Hand& h) { std::reverse(h.marks.begin(), h.marks.end()); },
+       "no threshold tells the onsets"},
+      {"all marked", [](Hand& h) { h.marks.assign(h.marks.size(), true); },
+       "samples without a mark = 0"},
+      {"none marked", [](Hand& h) { h.marks.assign(h.marks.size(), false); }, "marked samples = 0"},
+      {"half of the marks forgotten",
+       [](Hand& h) { std::fill(h.marks.begin(), h.marks.begin() + 200, false); },
+       "no threshold tells the onsets"},
+      {"half of the samples missing", each_sample([](auto& f, std::size_t k) {
+         if (k < 200) {
+           f = {};
+         }
+       }),
+       "recall 0.5"},
+      {"marks by chance",
+       [](Hand& h) {
+         Random r(5);
+         for (std::size_t k = 0; k < h.marks.size(); ++k) {
+           h.marks[k] = r.uniform() < 0.12;
+         }
+       },
+       "no threshold tells the onsets"},
+  };
+  check(mistakes, said_of_preslip);
+}
+
+TEST_CASE("mistakes: thresholds of the stick ratio", "[mistakes]") {
+  const Mistake<Drag> mistakes[] = {
+      {"none", [](Drag&) {}, "right"},
+      {"dots in mm, noise in px", [](Drag& d) { scale(d, 0.06); },
+       "frames with contact and motion"},
+      {"dots in m, noise in px", [](Drag& d) { scale(d, 6e-5); }, "the dots did not move"},
+      {"dots times 1000", [](Drag& d) { scale(d, 1e3); }, "the dots did not move"},
+      {"all in mm",
+       [](Drag& d) {
+         scale(d, 0.06);
+         d.noise = independent_dot_noise(0.0036);
+       },
+       "an end of the search"},
+      {"all times 1000",
+       [](Drag& d) {
+         scale(d, 1e3);
+         d.noise = independent_dot_noise(60);
+       },
+       "which noise sets"},
+      {"noise in thousandths", [](Drag& d) { d.noise = independent_dot_noise(6e-5); },
+       "has to begin sticking"},
+      {"noise times 1000", [](Drag& d) { d.noise = independent_dot_noise(60); },
+       "which noise sets"},
+      {"no noise", [](Drag& d) { d.noise = independent_dot_noise(0); }, "noise of a dot = 0"},
+      {"column by column", renamed([](Index i, Index j, int) {
+         return DotIndex{j, i};
+       }),
+       "right"},
+      {"column by column from frame 50 on", renamed([](Index i, Index j, int k) {
+         return k < 50 ? DotIndex{i, j} : DotIndex{j, i};
+       }),
+       "has to slip at last"},
+      {"shifted by one from frame 50 on", renamed([](Index i, Index j, int k) {
+         return DotIndex{i, k < 50 ? j : j + 1};
+       }),
+       "right"},
+      {"other names in each frame", renamed([](Index i, Index j, int k) {
+         return DotIndex{(i * 7 + k) % 15, (j * 4 + 3 * k) % 15};
+       }),
+       "the dots did not move"},
+      {"frozen", [](Drag& d) { std::fill(d.dots.begin(), d.dots.end(), d.dots[0]); },
+       "frames with contact and motion = 1"},
+      {"frozen from frame 50 on",
+       [](Drag& d) { std::fill(d.dots.begin() + 50, d.dots.end(), d.dots[50]); },
+       "has to slip at last"},
+      {"half lost",
+       [](Drag& d) {
+         for (auto& dots : d.dots) {
+           std::fill(dots.cells.begin(), dots.cells.begin() + 112,
+                     Point2<double>{test::nan, test::nan});
+         }
+       },
+       "right"},
+      {"backwards", [](Drag& d) { std::reverse(d.dots.begin(), d.dots.end()); }, "right"},
+      {"contact reversed",
+       [](Drag& d) {
+         for (auto& c : d.contact.cells) {
+           c = c ? 0 : 1;
+         }
+       },
+       "has to begin sticking"},
+      {"all in contact",
+       [](Drag& d) {
+         for (auto& c : d.contact.cells) {
+           c = 1;
+         }
+       },
+       "updated answers = 0"},
+      {"none in contact",
+       [](Drag& d) {
+         for (auto& c : d.contact.cells) {
+           c = 0;
+         }
+       },
+       "frames with contact and motion = 0"},
+      {"every second frame exchanged",
+       [](Drag& d) {
+         for (std::size_t k = 0; k + 1 < d.dots.size(); k += 2) {
+           std::swap(d.dots[k], d.dots[k + 1]);
+         }
+       },
+       "right"},
+      {"all sticks", [](Drag& d) { d.dots.resize(40); }, "has to slip at last"},
+  };
+  check(mistakes, said_of_thresholds);
+}
+
+TEST_CASE("mistakes: printed dots in pictures", "[mistakes]") {
+  const Mistake<Pictures> mistakes[] = {
+      {"none", [](Pictures&) {}, "right"},
+      {"now transposed", [](Pictures& p) { cv::transpose(p.now, p.now); }, "refused"},
+      {"both transposed",
+       [](Pictures& p) {
+         cv::transpose(p.now, p.now);
+         cv::transpose(p.free, p.free);
+       },
+       "another motion"},
+      {"now mirrored", [](Pictures& p) { cv::flip(p.now, p.now, 1); }, "another motion"},
+      {"now upside down", [](Pictures& p) { cv::flip(p.now, p.now, 0); }, "another motion"},
+      {"both mirrored",
+       [](Pictures& p) {
+         cv::flip(p.now, p.now, 1);
+         cv::flip(p.free, p.free, 1);
+       },
+       "another motion"},
+      {"the pad a pitch on, which is followed",
+       [](Pictures& p) {
+         p.by = {24, 0};
+         p.now = test::picture_of(p.print, test::moved(test::places_of(p.print), p.by));
+       },
+       "right"},
+      {"padded rows now", [](Pictures& p) { p.now = with_padding(p.now); }, "refused"},
+      {"padded rows in both",
+       [](Pictures& p) { p.now = with_padding(p.now), p.free = with_padding(p.free); },
+       "another motion"},
+      {"negative now", [](Pictures& p) { p.now = 255 - p.now; }, "refused"},
+      {"constant now", [](Pictures& p) { p.now.setTo(100); }, "refused"},
+      {"black now", [](Pictures& p) { p.now.setTo(0); }, "refused"},
+      {"half black now", [](Pictures& p) { p.now.rowRange(0, 120).setTo(0); }, "right"},
+      {"halves exchanged now",
+       [](Pictures& p) {
+         cv::Mat w;
+         cv::hconcat(p.now.colRange(160, 320), p.now.colRange(0, 160), w);
+         p.now = w;
+       },
+       "refused"},
+      {"a tenth of the light", [](Pictures& p) { p.now = p.now / 10; }, "right"},
+      {"saturated", [](Pictures& p) { p.now = p.now * 9; }, "refused"},
+      {"channels exchanged", [](Pictures& p) { cv::cvtColor(p.now, p.now, cv::COLOR_BGR2RGB); },
+       "right"},
+      {"12 bits in 16", [](Pictures& p) { p.now.convertTo(p.now, CV_16U, 16); }, "right"},
+      {"8 bits in 16", [](Pictures& p) { p.now.convertTo(p.now, CV_16U, 1); }, "refused"},
+      {"floating point", [](Pictures& p) { p.now.convertTo(p.now, CV_32F); }, "refused"},
+      {"another size", [](Pictures& p) { p.now = p.now.colRange(0, 319).clone(); }, "refused"},
+      {"half size now", [](Pictures& p) { p.now = p.now.rowRange(0, 120).clone(); }, "refused"},
+      {"zoomed",
+       [](Pictures& p) {
+         cv::Mat z;
+         cv::resize(p.now, z, {}, 2, 2);
+         p.now = z(cv::Rect(160, 120, 320, 240)).clone();
+       },
+       "refused"},
+      {"another pad's free frame",
+       [](Pictures& p) {
+         auto o = p.print;
+         o.pitch_px = 17;
+         o.radius_px = 4;
+         p.free = test::picture_of(o, test::places_of(o));
+       },
+       "refused"},
+      {"free and now exchanged", [](Pictures& p) { std::swap(p.free, p.now); }, "another motion"},
+      {"rows and cols exchanged",
+       [](Pictures& p) {
+         p.options.pattern.rows = 11;
+         p.options.pattern.cols = 8;
+       },
+       "right"},
+      {"fewer rows than there are",
+       [](Pictures& p) {
+         p.options.pattern.rows = 5;
+         p.options.pattern.cols = 5;
+       },
+       "right"},
+      {"more rows than there are",
+       [](Pictures& p) {
+         p.options.pattern.rows = 12;
+         p.options.pattern.cols = 14;
+       },
+       "right"},
+      {"radius in mm",
+       [](Pictures& p) {
+         p.options.pattern.radius_px = 0.4;
+         p.options.pattern.pitch_px = 2;
+       },
+       "radius_px = 0.4"},
+      {"radius times 1000",
+       [](Pictures& p) {
+         p.options.pattern.radius_px = 5000;
+         p.options.pattern.pitch_px = 24000;
+       },
+       "radius_px = 5000"},
+      {"radius twice",
+       [](Pictures& p) {
+         p.options.pattern.radius_px = 10;
+         p.options.pattern.pitch_px = 24;
+       },
+       "right"},
+      {"pitch twice",
+       [](Pictures& p) {
+         p.options.pattern.radius_px = 5;
+         p.options.pattern.pitch_px = 48;
+       },
+       "right"},
+      {"bright for dark", [](Pictures& p) { p.options.pattern.bright = true; }, "refused"},
+  };
+  check(mistakes, said_of_finder);
+}
