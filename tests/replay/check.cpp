@@ -149,6 +149,36 @@ cv::Vec2d good_place(int frame, int i, int j) {
   return {150.0 + 25 * j + frame, 160.0 + 25 * i};
 }
 
+/// More frames, in which dots are dragged in three directions, and forces of a gauge that is
+/// turned.
+void drag(const Copy& copy, double turned_rad, int directions = 5) {
+  std::string dots = "frame,row,col,x_px,y_px\n",
+              forces = "frame,force_x_n,force_y_n,force_z_n,moment_z_nm\n";
+  constexpr int all = 12;
+  for (int k = 0; k < all; ++k) {
+    const double way = k == 0 ? 0 : 4 + k % 3, at = 2 * CV_PI * k / directions;
+    if (k >= Copy::frames) {
+      fs::copy_file(copy.folder() / Copy::frame(k % 2),
+                    copy.folder() / ("frames/" + std::to_string(100000 + k) + ".png"));
+    }
+    for (int n = 0; n < 42; ++n) {
+      const cv::Vec2d home = good_place(0, n / 7, n % 7);
+      const double share = n % 7 == 0 ? 0 : 1;  // some are not touched
+      dots += std::to_string(k) + "," + std::to_string(n / 7) + "," + std::to_string(n % 7) + "," +
+              std::to_string(home[0] + share * way * std::cos(at) + 0.06 * std::sin(7.0 * n + k)) +
+              "," +
+              std::to_string(home[1] + share * way * std::sin(at) + 0.06 * std::cos(5.0 * n + k)) +
+              "\n";
+    }
+    const double f = 0.2 * way;
+    forces += std::to_string(k) + "," +
+              std::to_string(f * std::cos(at + turned_rad) + 0.02 * std::sin(3.0 * k)) + "," +
+              std::to_string(f * std::sin(at + turned_rad) + 0.02 * std::cos(4.0 * k)) + ",-3,0\n";
+  }
+  copy.write("dots.csv", dots);
+  copy.write("forces.csv", forces);
+}
+
 void no_print(const Copy& copy) {
   copy.replace("sensor.json",
                R"("dots": { "rows": 21, "cols": 21, "pitch_mm": 1.5, "diameter_mm": 0.7 },)", "");
@@ -424,6 +454,19 @@ const std::vector<Mistake> mistakes = {
        });
      },
      "are the columns exchanged?"},
+    {"a force gauge turned by 30 degrees", [](const Copy& c) { drag(c, CV_PI / 6); },
+     "forces stand 30 +- "},
+    {"a force gauge turned by 90 degrees", [](const Copy& c) { drag(c, CV_PI / 2); },
+     "Turned by 90 +- "},
+    {"x and y of the forces exchanged",
+     [](const Copy& c) {
+       drag(c, 0);
+       c.edit_table("forces.csv", [](Row& r) {
+         std::swap(r[1], r[2]);
+         return true;
+       });
+     },
+     "are x and y exchanged"},
     {"a force gauge that was not tared", [](const Copy& c) { c.scale("forces.csv", 3, 1, -0.4); },
      "tare the gauge with nothing in contact"},
     {"no sensor.json", [](const Copy& c) { fs::remove(c.folder() / "sensor.json"); },
@@ -552,6 +595,22 @@ TEST_CASE("check: what is missing is told, and is no mistake") {
            finding.what.find("signals.csv has no pressure") != std::string::npos;
   }));
   CHECK(replay::print_check(copy.folder()) == 0);
+}
+
+TEST_CASE("check: a gauge that is not turned, and one of which nothing can tell it") {
+  for (const auto& [turned_rad, directions] : {std::pair{0.0, 5}, {CV_PI / 6, 1}}) {
+    const Copy copy("press");
+    no_print(copy);
+    drag(copy, turned_rad, directions);
+    CHECK(copy.said().find("turn the gauge, or its columns") == std::string::npos);
+    const auto findings = replay::check_recording(copy.folder());
+    const bool told =
+        std::any_of(findings.begin(), findings.end(), [](const replay::Finding& finding) {
+          return finding.what.find("nothing tells whether the gauge is turned") !=
+                 std::string::npos;
+        });
+    CHECK(told == (directions == 1));
+  }
 }
 
 TEST_CASE("check: where all dots count as in contact, that is told") {

@@ -55,6 +55,7 @@ void check_camera_recording(const std::filesystem::path& folder, Findings& findi
   }
   check_light(recording, findings);
   check_dots(folder, recording, findings);
+  check_gauge(folder, recording, findings);
   note_missing(recording, findings);
 }
 

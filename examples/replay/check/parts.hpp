@@ -26,6 +26,8 @@ void check_light(Recording& recording, Findings& findings);
 void check_dots(const std::filesystem::path& folder,
                 const Recording& recording,
                 Findings& findings);
+/// The directions of forces.csv against those in which the dots move.
+void check_gauge(const std::filesystem::path& folder, Recording& recording, Findings& findings);
 /// Clock and taxels of a foam array.
 void check_foam(const FoamRecording& recording, Findings& findings);
 /// Times in s, NaN where one is missing, `what` after `what` ("frame", "sample").

@@ -153,7 +153,7 @@ struct [[nodiscard]] ShearFit {
   S largest_residual_sds = S(0);
   S gauge_angle_rad = not_a_number<S>();     ///< of the gauge against the image, about the normal,
                                              ///< +x toward +y; NaN for a moment, and where the
-                                             ///< displacements lie along one line
+                                             ///< displacements lie near one line
   S gauge_angle_sd_rad = not_a_number<S>();  ///< its standard error
 
   bool ok() const { return status == FitStatus::ok; }

@@ -197,7 +197,8 @@ struct GaugeAngle {
 
 /// From the linear map A of normalised displacements to forces, by least squares: the stiffness of
 /// an elastic pad is symmetric (Betti), so what is antisymmetric in A is a rotation. Along one line
-/// a pad that is stiffer askew looks the same: no angle.
+/// a pad that is stiffer askew looks the same, and near one what is not linear in the pad outweighs
+/// it: no angle where the displacements spread less than a fifth of what is even in all directions.
 template <scalar S>
 GaugeAngle<S> gauge_angle(const std::vector<PlaneForce<S>>& samples) {
   using std::atan2;
@@ -214,7 +215,7 @@ GaugeAngle<S> gauge_angle(const std::vector<PlaneForce<S>>& samples) {
   }
   const S determinant = S(xx * yy) - S(xy * xy), trace = xx + yy;
   constexpr int min_samples = 3;
-  if (samples.size() < min_samples || !(value(determinant) > value(S(S(1e-6) * square(trace))))) {
+  if (samples.size() < min_samples || !(value(S(S(20) * determinant)) > value(square(trace)))) {
     return {};
   }
   const S over = S(1) / determinant;
