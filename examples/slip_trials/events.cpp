@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <iterator>
 #include <limits>
 #include <set>
 
@@ -53,15 +54,29 @@ int median(std::vector<int> values) {
   return values.empty() ? 0 : values[values.size() / 2];
 }
 
-void print_line(const std::string& name, const Warnings& w, const std::string& threshold) {
-  std::printf("  %-28s %3d / %-3d  %4d  %6d / %-3d  %s\n", name.c_str(), w.warned, w.slips,
-              w.lead_frames, w.false_alarms, w.holds, threshold.c_str());
+/// "-" where there is none.
+std::string number(double value) {
+  char text[32] = "-";
+  if (std::isfinite(value)) {
+    std::snprintf(text, sizeof text, "%.3f", value);
+  }
+  return text;
 }
 
-std::string number(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.3f", value);
-  return text;
+void print_line(const std::string& name,
+                const Warnings& w,
+                double roc_area,
+                const std::string& threshold) {
+  std::printf("  %-28s %6s  %3d / %-3d  %4d  %6d / %-3d  %s\n", name.c_str(),
+              number(roc_area).c_str(), w.warned, w.slips, w.lead_frames, w.false_alarms, w.holds,
+              threshold.c_str());
+}
+
+std::vector<Event> of_object(const std::vector<Event>& events, const std::string& object) {
+  std::vector<Event> found;
+  std::copy_if(events.begin(), events.end(), std::back_inserter(found),
+               [&](const Event& event) { return event.object == object; });
+  return found;
 }
 
 /// What 95 % of the holds of all other objects stay below; NaN where there are none.
@@ -98,7 +113,7 @@ Found look_at_all(const std::vector<Event>& events, bool each, const ThresholdOf
     if (each) {
       Warnings one = found.warnings;
       one.lead_frames = median(found.leads);
-      print_line(object, one, number(threshold));
+      print_line(object, one, roc_area(of_object(events, object)), number(threshold));
     }
   }
   all.warnings.lead_frames = median(all.leads);
@@ -131,18 +146,20 @@ double roc_area(const std::vector<Event>& events) {
 }
 
 void print_events(const std::string& name, const std::vector<Event>& events, double own) {
-  std::printf("\n%s: area under the ROC curve %s\n", name.c_str(),
-              number(roc_area(events)).c_str());
-  std::printf("  %-28s %9s  %4s  %12s  %s\n", "object", "warned", "lead", "false", "threshold");
+  const double area = roc_area(events);
+  std::printf("\n%s\n", name.c_str());
+  std::printf("  %-28s %6s  %9s  %4s  %12s  %s\n", "object", "AUC", "warned", "lead", "false",
+              "threshold");
   const auto by_others = [&](const std::string& object) {
     return threshold_without(events, object);
   };
   if (std::isfinite(by_others(events.front().object))) {
-    print_line("all", look_at_all(events, true, by_others).warnings, "from the others' holds");
+    print_line("all", look_at_all(events, true, by_others).warnings, area,
+               "from the others' holds");
   }
   if (std::isfinite(own)) {
     const auto same = [&](const std::string&) { return own; };
-    print_line("all", look_at_all(events, false, same).warnings,
+    print_line("all", look_at_all(events, false, same).warnings, area,
                number(own) + ", the method's own");
   }
 }

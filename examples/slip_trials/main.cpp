@@ -169,7 +169,9 @@ int main(int argc, char** argv) {
       "moved: mean share of dots that are more than 2 px off the median motion since the first\n"
       "frame; early: the same in as many first frames as the shortest recording has. No measure\n"
       "depends on how long a recording is.\n"
-      "Then slip as events: warned is beyond the threshold before the contact is gone (less than "
+      "Then slip as events, for each object and for all: AUC is the area under the ROC curve of\n"
+      "the trial's largest value, - where an object only slips or only holds; warned is beyond the "
+      "threshold before the contact is gone (less than "
       "a\n"
       "tenth of its largest area is left), lead the median frames from there to the loss, false a\n"
       "hold beyond it. Thresholds are what 95 % of the other objects' holds stay below.");

@@ -147,6 +147,9 @@ if [[ -n $slip_trials ]]; then
   "$slip_trials" "$work/trials" >"$work/table" || fail "slip_trials"
   grep -q "^hold  1 " "$work/table" && grep -q "^slip  2 " "$work/table" ||
     fail "slip_trials does not read success and fail: $(cat "$work/table")"
+  # equal recordings: half of the pairs are in order, of each object and of all
+  [[ $(grep -cE "^  rod +0\.500 " "$work/table") == $(grep -cE "^  object +AUC" "$work/table") ]] ||
+    fail "slip_trials does not tell the AUC per object: $(cat "$work/table")"
   printf '5 slipped 0 0 3 2 2\n' >>"$work/trials/rod_result.dat"
   "$slip_trials" "$work/trials" >/dev/null 2>"$work/stderr"
   [[ $? == 1 ]] && grep -q 'rod_result.dat: unknown label "slipped"' "$work/stderr" ||
