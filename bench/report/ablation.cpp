@@ -4,7 +4,8 @@
 // it costs. No google-benchmark program: it prints Markdown tables, and with --csv FILE writes the
 // same as numbers. What a scene stands for is told where its frames are made:
 //   images  ablation/membranes.hpp, looked at by ablation/depth.hpp and ablation/contact.hpp
-//   dots    ablation/dots.hpp for stick and slip, ablation/motion.hpp for the motion of the object
+//   dots    ablation/dots.hpp for stick and slip, ablation/slip.hpp for the same in space and by
+//           friction, ablation/motion.hpp for the motion of the object
 //   forces  ablation/wrench.hpp
 #include <cstdio>
 #include <fstream>
@@ -17,6 +18,7 @@
 #include "ablation/dots.hpp"
 #include "ablation/membranes.hpp"
 #include "ablation/motion.hpp"
+#include "ablation/slip.hpp"
 #include "ablation/table.hpp"
 #include "ablation/wrench.hpp"
 
@@ -53,6 +55,7 @@ int main(int argc, char** argv) {
   }
   std::vector<Effect> effects = image_effects();
   append(effects, stick_effects());
+  append(effects, slip_effects());
   append(effects, motion_effects());
   append(effects, wrench_effects());
   std::cout << "Median of the errors, with the effect / without it:\n\n";

@@ -85,6 +85,7 @@ void bind_slip(py::module_& module) {
       .def_readonly("out_of_place", &Result::out_of_place)
       .def_readonly("furthest_px", &Result::furthest_px)
       .def_readonly("stick_ratio", &Result::stick_ratio, "in [0, 1]; NaN: none known yet")
+      .def_readonly("ratio_sd", &Result::ratio_sd, "of it, by the noise of the dots")
       .def_readonly("reference_age", &Result::reference_age, "frames")
       .def_readonly("angle_rad", &Result::angle_rad, "of the object since the reference")
       .def_readonly("scale", &Result::scale);

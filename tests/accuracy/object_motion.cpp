@@ -22,9 +22,10 @@ namespace {
 constexpr double degree = 0.017453292519943295;
 
 struct PoseErrors {
-  double place_mm = 0;      ///< rms, of the middle of the contact, since the object began
-  double rotation_deg = 0;  ///< rms
-  double told = 0;          ///< share of the frames in contact with a pose
+  double place_mm = 0;               ///< rms, of the middle of the contact, since the object began
+  double rotation_deg = 0;           ///< rms
+  double told = 0;                   ///< share of the frames in contact with a pose
+  double held_mm = 0, held_deg = 0;  ///< the same of poses since whose beginning a fifth has stuck
 };
 
 Point3<double> middle_of(const SpatialStep& step) {
@@ -47,7 +48,7 @@ PoseErrors errors_of(const std::string& name, bool knows_slip) {
   const FrictionLimit<double> limit;
   const ObjectMotion<> motion(test::DotsMm(n, n, {0, 0, 0}));
   PoseErrors e;
-  double told = 0, frames = 0;
+  double told = 0, frames = 0, held = 0;
   for (std::uint64_t seed = 1; seed <= 6; ++seed) {
     test::Random random(seed);
     auto stick_state = ratio.start();
@@ -57,6 +58,7 @@ PoseErrors errors_of(const std::string& name, bool knows_slip) {
     test::Image<std::uint8_t> slips(n, n);
     Pose<double> began;
     Point3<double> middle{0, 0, 0};
+    bool holds = true;
     for (Index k = 0; k < scene.size(); ++k) {
       auto dots = scene[k].dots;
       for (auto& p : dots.cells) {
@@ -73,38 +75,49 @@ PoseErrors errors_of(const std::string& name, bool knows_slip) {
       }
       const auto r = motion(dots, scene[k].contact, slips, state);
       frames += scene[k].contact_area_mm2 > 0 ? 1 : 0;
+      holds = (r.begun || holds) && scene[k].stick_ratio >= 0.2;
       if (!r.ok()) {
         continue;
       }
       began = r.begun ? scene[k].object : began;
       middle = r.begun ? middle_of(scene[k]) : middle;
       const Pose<double> truth = scene[k].object * inverse(began);
-      e.place_mm += squared_norm(truth(middle) - r.pose(middle));
-      e.rotation_deg += square(angle_between(truth.rotation, r.pose.rotation) / degree);
+      const double off_mm_sq = squared_norm(truth(middle) - r.pose(middle));
+      const double off_deg_sq = square(angle_between(truth.rotation, r.pose.rotation) / degree);
+      e.place_mm += off_mm_sq;
+      e.rotation_deg += off_deg_sq;
       told += 1;
+      e.held_mm += holds ? off_mm_sq : 0;
+      e.held_deg += holds ? off_deg_sq : 0;
+      held += holds ? 1 : 0;
     }
   }
   e.place_mm = std::sqrt(e.place_mm / told);
   e.rotation_deg = std::sqrt(e.rotation_deg / told);
   e.told = told / frames;
+  e.held_mm = std::sqrt(e.held_mm / held);
+  e.held_deg = std::sqrt(e.held_deg / held);
   return e;
 }
 
 void check(const std::string& name, double place_mm, double rotation_deg) {
   const PoseErrors e = errors_of(name, true), blind = errors_of(name, false);
   INFO(name << ": place " << e.place_mm << " mm, rotation " << e.rotation_deg << " degrees, in "
-            << e.told << " of the frames; without the slips " << blind.place_mm << " mm, "
+            << e.told << " of the frames; while a fifth sticks " << e.held_mm << " mm, "
+            << e.held_deg << " degrees; without the slips " << blind.place_mm << " mm, "
             << blind.rotation_deg << " degrees");
   CHECK(e.place_mm < place_mm);
   CHECK(e.rotation_deg < rotation_deg);
   CHECK(e.told > 0.25);
+  CHECK(e.held_mm < 0.03);  // goal: 0.15 mm and 2 degrees; measured: 0.006 to 0.017, 0.2 to 1.1
+  CHECK(e.held_deg < 1.5);
 }
 
 }  // namespace
 
 TEST_CASE("object motion on finite-element membranes, by the dots that stick", "[object_motion]") {
-  // goal: 0.15 mm and 2 degrees while a fifth of the dots stick; measured: 0.007 mm 0.2 degrees,
-  // 0.006 0.2, 0.014 0.9, 0.015 0.6, 0.016 0.6, 0.016 1.0, 0.038 1.1, 0.009 0.9, 0.012 0.8
+  // over all poses that are told, slides too; measured: 0.016 mm 0.3 degrees, 0.006 0.2, 0.014 0.9,
+  // 0.015 0.6, 0.016 0.6, 0.016 1.0, 0.038 1.1, 0.009 0.9, 0.012 0.8
   check("drag", 0.02, 0.5);
   check("twist", 0.02, 0.5);
   check("tilt", 0.03, 1.5);

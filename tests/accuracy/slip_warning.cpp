@@ -68,11 +68,6 @@ struct Warners {
   Warner dots, fused, friction_ratio;
 };
 
-Point3<double> noisy(const Point3<double>& p, double share, test::Random& random) {
-  const double x = random.normal(), y = random.normal(), z = random.normal();
-  return {p.x * (1 + share * x), p.y * (1 + share * y), p.z * (1 + share * z)};
-}
-
 constexpr int recordings = 10;
 
 Warners warned_on(const std::string& name) {
@@ -97,8 +92,8 @@ Warners warned_on(const std::string& name) {
       }
       const auto r = ratio(dots, scene[k].contact, states, state);
       const auto load =
-          contact_load(noisy(scene[k].force_n, 0.015, random),
-                       noisy(scene[k].moment_n_mm, 0.02, random), dots, scene[k].contact);
+          contact_load(test::noisy(scene[k].force_n, 0.015, random),
+                       test::noisy(scene[k].moment_n_mm, 0.02, random), dots, scene[k].contact);
       const auto slip = limit(load, r, limit_state);
       // as its page says: the stick ratio tells it when the object slides
       const bool slides = r.updated() && r.stick_ratio < 0.1;

@@ -14,68 +14,10 @@
 
 using namespace fingerpad;
 using test::SpatialScene;
-using test::SpatialStep;
 
 namespace {
 
 constexpr double lateral_mm = 0.005, depth_mm = 0.025;  // 0.06 px, and depth from rendered frames
-constexpr double reference_mm = 0.16, slip_share = 0.0086 / 0.16;
-
-double longest_move(const SpatialStep& then, const SpatialStep& now) {
-  double longest = 0;
-  for (std::size_t k = 0; k < now.dots.cells.size(); ++k) {
-    if (then.contact.cells[k] != 0 && now.contact.cells[k] != 0) {
-      longest = std::max(longest, norm(now.dots.cells[k] - then.dots.cells[k]));
-    }
-  }
-  return longest;
-}
-
-/// Share of the dots that slipped against the object's known pose by less than slip_share of the
-/// longest move.
-double truth_between(const SpatialStep& then, const SpatialStep& now) {
-  const Pose<double> motion = now.object * inverse(then.object);
-  const double limit = slip_share * longest_move(then, now);
-  double stick = 0, all = 0;
-  for (std::size_t k = 0; k < now.dots.cells.size(); ++k) {
-    if (then.contact.cells[k] != 0 && now.contact.cells[k] != 0) {
-      const auto slip = now.dots.cells[k] - motion(then.dots.cells[k]);
-      all += 1;
-      stick += norm(slip) < limit ? 1 : 0;
-    }
-  }
-  return stick / all;
-}
-
-Index dots_of_both(const SpatialStep& then, const SpatialStep& now) {
-  Index both = 0;
-  for (std::size_t k = 0; k < now.dots.cells.size(); ++k) {
-    both += then.contact.cells[k] != 0 && now.contact.cells[k] != 0 ? 1 : 0;
-  }
-  return both;
-}
-
-/// Since the reference of the answer; of a frame without one since the newest step from which a
-/// dot has moved far enough, else within the step.
-double truth_of(const SpatialScene& scene, Index k, const SpatialStickResult<double>& r) {
-  if (r.updated()) {
-    return truth_between(scene[k - r.reference_age], scene[k]);
-  }
-  for (Index then = k - 1; then > std::max<Index>(k - 8, 0); --then) {
-    if (dots_of_both(scene[then], scene[k]) < 6) {
-      break;
-    }
-    if (longest_move(scene[then], scene[k]) > reference_mm) {
-      return truth_between(scene[then], scene[k]);
-    }
-  }
-  return scene[k].stick_ratio;
-}
-
-Point3<double> noisy(const Point3<double>& p, double share, test::Random& random) {
-  const double x = random.normal(), y = random.normal(), z = random.normal();
-  return {p.x * (1 + share * x), p.y * (1 + share * y), p.z * (1 + share * z)};
-}
 
 struct SceneErrors {
   double dots = 0;   ///< mean absolute error over all frames in contact, kept answers included
@@ -102,13 +44,13 @@ SceneErrors errors_of(const std::string& name, int recordings = 6) {
       }
       const auto r = ratio(dots, scene[k].contact, states, state);
       const auto load =
-          contact_load(noisy(scene[k].force_n, 0.015, random),
-                       noisy(scene[k].moment_n_mm, 0.02, random), dots, scene[k].contact);
+          contact_load(test::noisy(scene[k].force_n, 0.015, random),
+                       test::noisy(scene[k].moment_n_mm, 0.02, random), dots, scene[k].contact);
       const auto fused = limit(load, r, limit_state);
-      if (k < 2 || dots_of_both(scene[k], scene[k]) < 6) {
+      if (k < 2 || test::dots_of_both(scene[k], scene[k]) < 6) {
         continue;
       }
-      const double truth = truth_of(scene, k, r);
+      const double truth = test::spatial_truth(scene, k, r);
       const double error = std::abs((r.ok() ? r.stick_ratio : 1) - truth);
       e.dots += error;
       e.told += r.updated() ? error : 0;

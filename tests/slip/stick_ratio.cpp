@@ -1027,3 +1027,53 @@ TEST_CASE("stick ratio: at rest the last reference is asked again, if that is as
   CHECK(rests.stick_ratio == 1);
   CHECK(state.stored_frames() == stored);  // what stands still is not stored
 }
+
+TEST_CASE("stick ratio: its standard deviation is no less than the scatter of its answers") {
+  // told is 1.3 to 2.4 times the scatter: neighbours share less noise than is assumed
+  constexpr int answers = 150;
+  for (const double noise_px : {0.06, 0.14}) {
+    for (const double share : {0.5, 0.7, 0.9}) {
+      test::SlippingDots truth(test::DotPattern{.contact_pitches = 6});
+      const auto before = truth.dots;
+      truth.step({.shift_px = 3, .stick_share = share});
+      test::Random random(7);
+      const StickRatio<> ratio(21, 21);
+      test::DotStates states(21, 21);
+      const auto see = [&](const test::PointsPx& exact, const ContactFlags& contact, auto& state) {
+        auto dots = exact;
+        for (auto& p : dots.cells) {
+          const double x = random.normal(), y = random.normal();
+          p = {p.x + noise_px * x, p.y + noise_px * y};
+        }
+        return ratio(dots, contact, states, state);
+      };
+      double sum = 0, squares = 0, told = 0;
+      for (int k = 0; k < answers; ++k) {
+        auto state = ratio.start();
+        for (int frame = 0; frame < 9; ++frame) {
+          (void)see(before, ContactFlags(21, 21, 0), state);
+        }
+        (void)see(before, truth.contact, state);
+        const auto r = see(truth.dots, truth.contact, state);
+        REQUIRE(r.updated());
+        const double of = static_cast<double>(r.stick_ratio);
+        sum += of;
+        squares += of * of;
+        told += square(static_cast<double>(r.ratio_sd));
+      }
+      const double scatter = std::sqrt(squares / answers - square(sum / answers));
+      const double sd = std::sqrt(told / answers);
+      INFO(noise_px << " px, " << share << ": scatter " << scatter << ", told " << sd);
+      CHECK(sd > scatter);
+      CHECK(sd < 3 * scatter);
+    }
+  }
+  // of a printed form it is not known
+  const auto printed = published::stick_ratio(9, 9);
+  auto state = printed.start();
+  test::DotStates states(9, 9);
+  (void)printed(shifted(0), ContactFlags(9, 9, 1), states, state);
+  const auto r = printed(shifted(3), ContactFlags(9, 9, 1), states, state);
+  CHECK(r.updated());
+  CHECK(std::isnan(r.ratio_sd));
+}

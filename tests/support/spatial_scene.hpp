@@ -3,6 +3,7 @@
 #pragma once
 // Printed dots of a finite-element membrane in space, step by step while an object moves on it, the
 // object's pose, and what it exerts (tests/data/README.md).
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <string>
@@ -98,5 +99,71 @@ class SpatialScene {
   std::vector<SpatialStep> steps_;
   Index across_ = 0;
 };
+
+// What truly sticks, for errors of a ratio: the share of the dots that slipped against the object's
+// known pose by less than slip_share of the longest move.
+
+inline constexpr double slip_share = 0.0086 / 0.16;
+inline constexpr double truth_reference_mm = 0.16;
+
+inline double longest_move(const SpatialStep& then, const SpatialStep& now) {
+  double longest = 0;
+  for (std::size_t k = 0; k < now.dots.cells.size(); ++k) {
+    if (then.contact.cells[k] != 0 && now.contact.cells[k] != 0) {
+      longest = std::max(longest, norm(now.dots.cells[k] - then.dots.cells[k]));
+    }
+  }
+  return longest;
+}
+
+/// Share of the dots that slipped against the object's known pose by less than slip_share of the
+/// longest move.
+inline double truth_between(const SpatialStep& then, const SpatialStep& now) {
+  const fingerpad::Pose<double> motion = now.object * inverse(then.object);
+  const double limit = slip_share * longest_move(then, now);
+  double stick = 0, all = 0;
+  for (std::size_t k = 0; k < now.dots.cells.size(); ++k) {
+    if (then.contact.cells[k] != 0 && now.contact.cells[k] != 0) {
+      const auto slip = now.dots.cells[k] - motion(then.dots.cells[k]);
+      all += 1;
+      stick += norm(slip) < limit ? 1 : 0;
+    }
+  }
+  return stick / all;
+}
+
+inline Index dots_of_both(const SpatialStep& then, const SpatialStep& now) {
+  Index both = 0;
+  for (std::size_t k = 0; k < now.dots.cells.size(); ++k) {
+    both += then.contact.cells[k] != 0 && now.contact.cells[k] != 0 ? 1 : 0;
+  }
+  return both;
+}
+
+/// Since the reference of the answer; of a frame without one since the newest step from which a
+/// dot has moved far enough, else within the step.
+template <class Result>
+double spatial_truth(const SpatialScene& scene, Index k, const Result& r) {
+  if (r.updated()) {
+    return truth_between(scene[k - r.reference_age], scene[k]);
+  }
+  for (Index then = k - 1; then > std::max<Index>(k - 8, 0); --then) {
+    if (dots_of_both(scene[then], scene[k]) < 6) {
+      break;
+    }
+    if (longest_move(scene[then], scene[k]) > truth_reference_mm) {
+      return truth_between(scene[then], scene[k]);
+    }
+  }
+  return scene[k].stick_ratio;
+}
+
+/// A vector that is known to a share of itself.
+inline fingerpad::Point3<double> noisy(const fingerpad::Point3<double>& p,
+                                       double share,
+                                       Random& random) {
+  const double x = random.normal(), y = random.normal(), z = random.normal();
+  return {p.x * (1 + share * x), p.y * (1 + share * y), p.z * (1 + share * z)};
+}
 
 }  // namespace test

@@ -105,6 +105,10 @@ class Fingertip {
   StridedView<const Point3<double>> dots_mm() const requires(has_dots) {
     return dots_.at_mm.view();
   }
+  /// How far each dot has slipped since the reference of the last answer; NaN where not known.
+  StridedView<const DotSlip<double>> dot_slips() const requires(has_dots) {
+    return dots_.slipped();
+  }
   /// Membrane's pull on the k-th point of the rim in the last frame, N/mm, in the order of the
   /// angle from 0 to 2 pi; NaN where it is not known. `k` is in [0, columns of rim_mm).
   Point3<double> rim_tension(Index k) const requires(has_wrench) {

@@ -355,13 +355,14 @@ class SpatialStickRatio {
     Point3<S> center = {S(0), S(0), S(0)};
     int stick = 0;
     S doubt = S(0);
+    const S sd = S(std::sqrt(2.0) * neighbour_gain());  // of a mean slip, in those of a position
     for (const SpatialPair<S>& p : state.pairs) {
       const bool sticks = p.mean_sq < limit;
       at(state.marks, p.cell) = sticks ? DotState::stick : DotState::slip;
       at(state.dot_slips, p.cell) = {p.mean_slip, S(sqrt(S(2) / p.info_v))};
       stick += sticks ? 1 : 0;
       center = sticks ? center + p.now : center;
-      doubt = doubt + doubt_of(p.mean_sq, limit);
+      doubt = doubt + doubt_of(p.mean_sq, limit, sd);
     }
     if (stick > 0) {
       state.stick_center = center / S(stick);
@@ -369,8 +370,7 @@ class SpatialStickRatio {
     }
     const S all = S(static_cast<double>(state.pairs.size()));
     state.result.stick_ratio = S(stick) / all;
-    // neighbours share their noise: as if there were gain^2 as many dots
-    state.result.ratio_sd = S(sqrt(S(doubt / all))) / S(sqrt(all)) / S(neighbour_gain());
+    state.result.ratio_sd = ratio_sd_of(doubt, all, neighbour_gain());
   }
 
   static constexpr int max_passes = 6;

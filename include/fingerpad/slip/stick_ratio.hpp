@@ -155,6 +155,7 @@ class StickRatio {
       result.status = outlined ? status : StickStatus::no_outline;
       result.stick_ratio =
           outlined ? S(result.stick) / S(result.stick + result.slip) : not_a_number<S>();
+      result.ratio_sd = outlined ? result.ratio_sd : not_a_number<S>();
     }
     return result;
   }
@@ -174,6 +175,12 @@ class StickRatio {
     }
   }
 
+  /// That of the free frames. No camera finds dots better than a 2000th of a pitch, some files
+  /// repeat them.
+  static double noise_of(const State& state) {
+    return (std::max)(state.noise_px, std::sqrt(static_cast<double>(value(state.pitch_sq))) / 2000);
+  }
+
   /// The thresholds for the noise that was measured.
   detail::stick::StickLengths lengths_of(const State& state) const {
     using detail::stick::noise_left_by;
@@ -185,8 +192,7 @@ class StickRatio {
     if (!(state.noise_px > 0) || !(left > 0)) {
       return given;
     }
-    // no camera finds dots better than a 2000th of a pitch, some files repeat them
-    const double noise_px = (std::max)(state.noise_px, pitch_px / 2000);
+    const double noise_px = noise_of(state);
     const double dots = static_cast<double>(state.given.touching.size());
     detail::stick::StickLengths px;
     px.slip = 2 * left * noise_px * std::sqrt(std::log(100.0));
@@ -272,13 +278,20 @@ class StickRatio {
     const S slip_sq = slip * slip * choice.furthest_sq;
     const bool mostly_slipped = state.result.stick < state.result.slip;
     const Similarity<S> map = motion_between(motion_, pair, reference, slip_sq, mostly_slipped);
-    mark_dots(denoising_, pair, map, slip_sq, state.residuals, state.marks);
+    const double left = noise_left_by(denoising_);
+    // of a mean residual of two frames; where no free frames told it, that which delta_0 is for
+    const double sd_px = state.noise_px > 0 && left > 0 ? std::sqrt(2.0) * left * noise_of(state)
+                                                        : px.slip / std::sqrt(2 * std::log(100.0));
+    const S doubt =
+        mark_dots(denoising_, pair, map, slip_sq, S(sd_px), state.residuals, state.marks);
     state.stick_center = centroid(pair, state.marks, DotState::stick);
     StickRatioResult<S>& result = state.result;
     result.reference_age = static_cast<Index>(state.frame - state.repository.frame(choice.age));
     result.angle_rad = map.angle_rad();
     result.scale = map.scale();
     result.reference_dot = layout_.dot_at(reference);
+    const S known = S(static_cast<double>(count_pairs(pair)));
+    result.ratio_sd = left > 0 ? ratio_sd_of(doubt, known, left) : not_a_number<S>();
     return StickStatus::updated;
   }
 

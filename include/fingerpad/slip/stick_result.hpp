@@ -86,10 +86,12 @@ struct [[nodiscard]] StickRatioResult {
       0;  ///< dots in contact that are not between their neighbours: taken as missing
   S furthest_px = S(0);  ///< d_max from the reference; without one from the newest stored frame
   S stick_ratio =
-      not_a_number<S>();    ///< sticking dots / known dots, in [0, 1]; NaN: none known yet
-  Index reference_age = 0;  ///< frames from the reference to the answer
-  S angle_rad = S(0);       ///< by which the object has rotated since the reference, from x to y
-  S scale = S(1);           ///< alpha: the object is seen 1 / scale as large as in the reference
+      not_a_number<S>();           ///< sticking dots / known dots, in [0, 1]; NaN: none known yet
+  S ratio_sd = not_a_number<S>();  ///< of it, by the noise of the dots near the threshold; NaN with
+                                   ///< a printed form, of which it is not known
+  Index reference_age = 0;         ///< frames from the reference to the answer
+  S angle_rad = S(0);  ///< by which the object has rotated since the reference, from x to y
+  S scale = S(1);      ///< alpha: the object is seen 1 / scale as large as in the reference
   DotIndex reference_dot =
       {};  ///< where the search for sticking dots began; row -1: there was none
 

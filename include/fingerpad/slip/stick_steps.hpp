@@ -291,18 +291,23 @@ DotState state_of(const S& residual_sq, const S& slip_sq) {
 }
 
 /// Marks the dots in contact: those that follow the object to within the square root of slip_sq
-/// stick. `residuals` is room to work in.
+/// stick. Returns the sum of their doubts; `sd`: of one component of a residual. `residuals` is
+/// room to work in.
 template <class Denoising, class S>
-void mark_dots(const Denoising&,
-               const FramePair<S>& pair,
-               const Similarity<S>& map,
-               const S& slip_sq,
-               Dots<Point2<S>>&,
-               std::vector<DotState>& marks) {
+S mark_dots(const Denoising&,
+            const FramePair<S>& pair,
+            const Similarity<S>& map,
+            const S& slip_sq,
+            const S& sd,
+            Dots<Point2<S>>&,
+            std::vector<DotState>& marks) {
+  S doubt = S(0);
   for (const Index k : pair.touching) {
     const S sq = squared_norm(map.residual(pair.now[k], pair.then[k]));
     marks[static_cast<std::size_t>(k)] = state_of(sq, slip_sq);
+    doubt = doubt + doubt_of(sq, slip_sq, sd);
   }
+  return doubt;
 }
 
 /// The mean of a dot's residual and its neighbours'; NaN ones do not count.
@@ -329,12 +334,13 @@ Point2<S> mean_around(const DotWeights& weights,
 }
 
 template <class S>
-void mark_dots(const ResidualMean& mean,
-               const FramePair<S>& pair,
-               const Similarity<S>& map,
-               const S& slip_sq,
-               Dots<Point2<S>>& residuals,
-               std::vector<DotState>& marks) {
+S mark_dots(const ResidualMean& mean,
+            const FramePair<S>& pair,
+            const Similarity<S>& map,
+            const S& slip_sq,
+            const S& sd,
+            Dots<Point2<S>>& residuals,
+            std::vector<DotState>& marks) {
   const S gate_sq = slip_sq * S(mean.gate * mean.gate);
   std::fill(residuals.begin(), residuals.end(), no_dot<Point2<S>>());
   for (const Index k : pair.touching) {
@@ -343,12 +349,15 @@ void mark_dots(const ResidualMean& mean,
     marks[static_cast<std::size_t>(k)] = is_distance_sq(sq) ? DotState::slip : DotState::unknown;
     at(residuals, k) = sq < gate_sq ? residual : no_dot<Point2<S>>();
   }
+  S doubt = S(0);
   for (const Index k : pair.touching) {
     if (at(residuals, k).x == at(residuals, k).x) {
       const S sq = squared_norm(mean_around(mean.weights, residuals.data(), pair.layout, k));
       marks[static_cast<std::size_t>(k)] = state_of(sq, slip_sq);
+      doubt = doubt + doubt_of(sq, slip_sq, sd);
     }
   }
+  return doubt;
 }
 
 }  // namespace detail::stick

@@ -204,6 +204,9 @@ struct FingertipDots {
   bool answers(const FingertipResult& touch) const {
     return !followed || (touch.motion.ok() && is_finite(touch.stick.stick_ratio));
   }
+  StridedView<const DotSlip<double>> slipped() const {
+    return followed ? followed->stick_state.slips() : StridedView<const DotSlip<double>>();
+  }
   void reset() {
     if (followed) {
       followed->motion_state = followed->motion.start();

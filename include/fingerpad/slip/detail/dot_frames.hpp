@@ -229,6 +229,29 @@ auto furthest_sq(const std::vector<Index>& touching, const P* now, const P* befo
   return furthest;
 }
 
+/// Of the variance of "sticks" or "slips", what noise makes of a dot whose averaged slip is near
+/// the limit: p (1 - p), p by the logistic curve nearest to the normal one. `sd`: of that slip
+/// along one axis, in the unit of both.
+template <class S>
+S doubt_of(const S& slip_sq, const S& limit_sq, const S& sd) {
+  using std::exp;
+  using std::sqrt;
+  if (!(slip_sq < S(9) * limit_sq)) {
+    return S(0);  // two limits beyond it there is none
+  }
+  const S off = (S(sqrt(slip_sq)) - S(sqrt(limit_sq))) / sd;
+  const S grown = exp(S(S(-1.702) * (off < S(0) ? S(-off) : off)));
+  return grown / ((S(1) + grown) * (S(1) + grown));
+}
+
+/// Standard deviation of the ratio of so many dots by the sum of their doubts. Neighbours share the
+/// noise that an average leaves: as if there were gain^2 as many dots.
+template <class S>
+S ratio_sd_of(const S& doubt, const S& dots, double gain) {
+  using std::sqrt;
+  return S(sqrt(S(doubt / dots))) / S(sqrt(dots)) / S(gain);
+}
+
 /// Whether the dots have gone back toward their free places, at more than half a right angle to any
 /// other way; false where these are not known. Along the pad: the depth of a contact is its load's.
 template <class P>

@@ -123,21 +123,6 @@ S in_variances(const Point3<S>& slip, const SpatialPair<S>& p) {
   return u * u + v * v;
 }
 
-/// Of the variance of "sticks" or "slips", what noise makes of a dot whose averaged slip is near
-/// the limit: p (1 - p), p by the logistic curve nearest to the normal one.
-template <class S>
-S doubt_of(const S& mean_sq, const S& limit) {
-  using std::exp;
-  using std::sqrt;
-  const S sd = S(neighbour_gain() * 1.4142135623730951);  // of two frames
-  if (S(9) * limit < mean_sq) {
-    return S(0);  // two limits beyond it there is none
-  }
-  const S off = (S(sqrt(mean_sq)) - S(sqrt(limit))) / sd;
-  const S grown = exp(S(S(-1.702) * (off < S(0) ? S(-off) : off)));
-  return grown / ((S(1) + grown) * (S(1) + grown));
-}
-
 template <class S>
 Point3<S> middle_of(const std::vector<SpatialPair<S>>& pairs) {
   Point3<S> sum = {S(0), S(0), S(0)};

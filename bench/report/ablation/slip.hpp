@@ -1,0 +1,211 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+#pragma once
+// What space and friction are worth to the stick ratio: dots of finite-element membranes in space
+// (tests/data) with 0.005 mm of noise in the plane (0.06 px) and 0.025 mm in depth, forces known to
+// 1.5 %, moments to 2 %.
+//   press                flat plate
+//   drag                 flat plate, dragged to slip and back
+//   reversal             flat plate that slides, deeper and turned meanwhile, and back
+//   twist                flat plate, rotated to slip
+//   normal force change  drag, rotation and depth at once
+//   rolling              a ball that rolls
+//   wedge                cylinder, dragged until it slides
+//   tilted               tilted plate, dragged
+//   noisy                the drag with twice the noise
+//   dots lost            the drag with a fifth of the dots not found, others in each frame
+// Error: of the ratio, in all frames in contact, against the dots that slipped against the known
+// pose of the object since the reference; an answer that is kept counts as one, none as all sticks.
+#include <cmath>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "fingerpad/slip/friction_limit.hpp"
+#include "fingerpad/slip/spatial_stick_ratio.hpp"
+#include "fingerpad/slip/stick_ratio.hpp"
+#include "support/spatial_scene.hpp"
+#include "table.hpp"
+
+namespace bench::ablation {
+
+using fingerpad::Index;
+
+struct SpatialRecording {
+  std::vector<test::DotsMm> dots;
+  std::vector<fingerpad::ContactLoad<double>> loads;
+};
+
+struct SpatialRecordings {
+  Scene scene;
+  test::SpatialScene truth;
+  double noise = 1;  ///< times as much
+  std::vector<SpatialRecording> recordings;
+
+  SpatialRecordings(Scene of, const std::string& name, double times = 1, double lost_share = 0)
+      : scene(of), truth(name), noise(times) {
+    for (std::uint64_t seed = 1; seed <= 6; ++seed) {
+      test::Random random(seed);
+      SpatialRecording recording;
+      for (Index k = 0; k < truth.size(); ++k) {
+        const test::SpatialStep& step = truth[k];
+        test::DotsMm dots = step.dots;
+        for (auto& p : dots.cells) {
+          const double x = random.normal(), y = random.normal(), z = random.normal();
+          p = {p.x + times * 0.005 * x, p.y + times * 0.005 * y, p.z + times * 0.025 * z};
+          if (lost_share > 0 && random.uniform() < lost_share) {
+            p = {test::nan, test::nan, test::nan};
+          }
+        }
+        recording.loads.push_back(fingerpad::contact_load(
+            test::noisy(step.force_n, 0.015, random), test::noisy(step.moment_n_mm, 0.02, random),
+            dots, step.contact));
+        recording.dots.push_back(dots);
+      }
+      recordings.push_back(recording);
+    }
+  }
+};
+
+inline std::vector<SpatialRecordings> spatial_recordings() {
+  return {{Scene::press, "press"},
+          {Scene::drag, "drag"},
+          {Scene::reversal, "slide"},
+          {Scene::twist, "twist"},
+          {Scene::normal_force_change, "mix"},
+          {Scene::rolling, "roll"},
+          {Scene::wedge, "cylinder"},
+          {Scene::tilted, "tilt"},
+          {Scene::noisy, "drag", 2},
+          {Scene::dots_lost, "drag", 1, 0.2}};
+}
+
+/// The three ways.
+class InSpace {
+ public:
+  explicit InSpace(const SpatialRecordings& of)
+      : ratio_(of.truth.dots_across(),
+               of.truth.dots_across(),
+               {.lateral_mm = of.noise * 0.005, .depth_mm = of.noise * 0.025}),
+        state_(ratio_.start()),
+        states_(ratio_.rows(), ratio_.cols()) {}
+  fingerpad::SpatialStickResult<double> operator()(const test::DotsMm& dots,
+                                                   const test::SpatialFlags& contact,
+                                                   const fingerpad::ContactLoad<double>&) {
+    return ratio_(dots, contact, states_, state_);
+  }
+
+ private:
+  fingerpad::SpatialStickRatio<double> ratio_;
+  fingerpad::SpatialStickRatio<double>::State state_;
+  test::Image<fingerpad::DotState> states_;
+};
+
+/// As a camera straight above sees them, with as many free frames as tell it the noise.
+class InImage {
+ public:
+  explicit InImage(const SpatialRecordings& of)
+      : ratio_(of.truth.dots_across(), of.truth.dots_across()),
+        state_(ratio_.start()),
+        seen_(ratio_.rows(), ratio_.cols()),
+        states_(ratio_.rows(), ratio_.cols()) {
+    test::Random random(99);
+    const test::SpatialStep& free = of.truth[0];
+    for (int frame = 0; frame < 9; ++frame) {
+      auto dots = free.dots;
+      for (auto& p : dots.cells) {
+        const double x = random.normal(), y = random.normal();
+        p = {p.x + of.noise * 0.005 * x, p.y + of.noise * 0.005 * y, p.z};
+      }
+      (void)(*this)(dots, test::SpatialFlags(ratio_.rows(), ratio_.cols(), 0), {});
+    }
+  }
+  fingerpad::StickRatioResult<float> operator()(const test::DotsMm& dots,
+                                                const test::SpatialFlags& contact,
+                                                const fingerpad::ContactLoad<double>&) {
+    for (std::size_t k = 0; k < dots.cells.size(); ++k) {
+      seen_.cells[k] = {dots.cells[k].x, dots.cells[k].y};
+    }
+    return ratio_(seen_, contact, states_, state_);
+  }
+
+ private:
+  fingerpad::StickRatio<> ratio_;
+  fingerpad::StickRatio<>::State state_;
+  test::Image<fingerpad::Point2<double>> seen_;
+  test::Image<fingerpad::DotState> states_;
+};
+
+/// One of these, and friction.
+template <class Dots>
+class WithFriction {
+ public:
+  explicit WithFriction(const SpatialRecordings& of) : dots_(of) {}
+  auto operator()(const test::DotsMm& dots,
+                  const test::SpatialFlags& contact,
+                  const fingerpad::ContactLoad<double>& load) {
+    auto seen = dots_(dots, contact, load);
+    const auto fused = limit_(load, seen, state_);
+    seen.stick_ratio = static_cast<decltype(seen.stick_ratio)>(fused.stick_ratio);
+    return seen;
+  }
+
+ private:
+  Dots dots_;
+  fingerpad::FrictionLimit<double> limit_;
+  fingerpad::FrictionLimit<double>::State state_ = limit_.start();
+};
+
+template <class Way>
+Errors slip_errors(const SpatialRecordings& of) {
+  Errors errors;
+  for (const SpatialRecording& recording : of.recordings) {
+    Way way(of);
+    for (Index k = 0; k < of.truth.size(); ++k) {
+      const auto at = static_cast<std::size_t>(k);
+      const auto r = way(recording.dots[at], of.truth[k].contact, recording.loads[at]);
+      if (k >= 2 && test::dots_of_both(of.truth[k], of.truth[k]) >= 6) {
+        const double ratio = r.ok() ? static_cast<double>(r.stick_ratio) : 1;
+        errors.add(ratio - test::spatial_truth(of.truth, k, r));
+      }
+    }
+  }
+  return errors;
+}
+
+template <class With, class Without>
+Effect slip_effect(const std::vector<SpatialRecordings>& all,
+                   const std::string& name,
+                   const std::string& on,
+                   const std::string& off) {
+  Effect effect{.name = name, .quantity = "stick ratio", .unit = "1", .on = on, .off = off};
+  for (const SpatialRecordings& recordings : all) {
+    effect.with_in(recordings.scene).add(slip_errors<With>(recordings));
+    effect.without_in(recordings.scene).add(slip_errors<Without>(recordings));
+  }
+  const SpatialRecordings& drag = all[1];
+  const auto run = [&](auto way) {
+    return [&drag, way]() mutable {
+      for (Index k = 0; k < drag.truth.size(); ++k) {
+        const auto at = static_cast<std::size_t>(k);
+        (void)way(drag.recordings[0].dots[at], drag.truth[k].contact, drag.recordings[0].loads[at]);
+      }
+    };
+  };
+  auto with = run(With(drag));
+  auto without = run(Without(drag));
+  effect.cost_us =
+      cost_us([&] { with(); }, [&] { without(); }, static_cast<double>(drag.truth.size()));
+  return effect;
+}
+
+inline std::vector<Effect> slip_effects() {
+  const auto all = spatial_recordings();
+  return {slip_effect<InSpace, InImage>(all, "space", "`SpatialStickRatio`", "`StickRatio<>`"),
+          slip_effect<WithFriction<InSpace>, InSpace>(all, "friction, in space", "`FrictionLimit`",
+                                                      "`SpatialStickRatio` alone"),
+          slip_effect<WithFriction<InImage>, InImage>(all, "friction, in the image",
+                                                      "`FrictionLimit`", "`StickRatio<>` alone")};
+}
+
+}  // namespace bench::ablation
