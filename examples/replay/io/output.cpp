@@ -232,8 +232,8 @@ void FramesCsv::write(const FrameRow& row) {
   const auto& stick = row.stick;
   if (row.has_dots) {
     stream_ << ',' << stick.dots_in_contact() << ',' << cell(static_cast<double>(stick.stick_ratio))
-            << ',' << (stick.updated() ? 1 : 0) << ',' << cell(row.stick_ratio_sd) << ','
-            << words_of(row.slip_evidence);
+            << ',' << (stick.updated() ? 1 : 0) << ',' << cell(static_cast<double>(stick.ratio_sd))
+            << ',' << words_of(row.slip_evidence);
   } else {
     stream_ << ",,,,,";
   }

@@ -53,7 +53,6 @@ struct FrameRow {
   fingerpad::ObjectMotionResult<double> motion;
   bool has_dots = false;
   fingerpad::StickRatioResult<float> stick;
-  double stick_ratio_sd = 0;  ///< NaN: not known
   fingerpad::SlipEvidence slip_evidence = fingerpad::SlipEvidence::none;
   ForceFrame force;  ///< by look-up
   std::optional<TrueForce> truth;

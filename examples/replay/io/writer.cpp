@@ -54,9 +54,8 @@ void Writer::operator()(Scene scene) {
   with_wrench_ = with_wrench_ || scene.wrench.present;
   rows_.push_back({scene.frame, scene.time_s, scene.valid_share, scene.depth_mean_mm,
                    scene.depth_max_mm, scene.contact, scene.dots.motion, scene.dots.stick.present(),
-                   scene.dots.stick.result, scene.dots.stick.ratio_sd, scene.dots.stick.evidence,
-                   scene.force, scene.truth, scene.wrench.result, scene.pressure_mpa,
-                   scene.pad_has_changed});
+                   scene.dots.stick.result, scene.dots.stick.evidence, scene.force, scene.truth,
+                   scene.wrench.result, scene.pressure_mpa, scene.pad_has_changed});
   table_.write(rows_.back());
   if (dots_) {
     dots_->write(scene.frame, scene.dots);

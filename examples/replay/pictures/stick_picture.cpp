@@ -15,6 +15,7 @@ namespace {
 const Ink stick_ink(178, 114, 0);
 const Ink slip_ink(0, 94, 235);
 constexpr double radius = 6;
+constexpr double enlarged = 10;  // slips are small: so many times as long as on the pad
 
 void cross(Canvas& canvas, Spot at, double half, double width, const Ink& colour) {
   canvas.line(at - Spot(half, half), at + Spot(half, half), width, colour);
@@ -40,6 +41,35 @@ void paint_dot(Canvas& canvas, Spot at, DotState state) {
       canvas.disc(at, 2, ink::white);
       break;
   }
+}
+
+/// Pixels of the camera for a millimetre, by dots and their neighbours; 0 where there are none.
+double px_per_mm(const FrameDots& dots) {
+  double px = 0, mm = 0;
+  for (int i = 0; i < dots.dots_mm.rows; ++i) {
+    for (int j = 1; j < dots.dots_mm.cols; ++j) {
+      const cv::Vec3d apart = dots.dots_mm(i, j) - dots.dots_mm(i, j - 1);
+      if (is_present(dots.dots_px(i, j)) && is_present(dots.dots_px(i, j - 1)) &&
+          std::isfinite(apart[0] + apart[1])) {
+        px += cv::norm(dots.dots_px(i, j) - dots.dots_px(i, j - 1));
+        mm += std::hypot(apart[0], apart[1]);
+      }
+    }
+  }
+  return mm > 0 ? px / mm : 0;
+}
+
+/// From the dot the way that it has slipped on the object.
+void paint_slip(Canvas& canvas, Spot from, Spot slip) {
+  const double length = std::hypot(slip.x, slip.y);
+  if (!(length > 2)) {
+    return;
+  }
+  const Spot along = slip / length, across(-along.y, along.x), tip = from + slip;
+  const Spot head = tip - 5 * along;
+  canvas.line(from, tip, 3.5, ink::white);
+  canvas.line(from, head, 1.7, ink::black);
+  canvas.polygon({tip, head + 2.5 * across, head - 2.5 * across}, ink::black);
 }
 
 std::string words_of(const fingerpad::StickRatioResult<float>& result) {
@@ -75,6 +105,17 @@ cv::Mat stick_picture(const Scene& scene, double brightest) {
       }
     }
   }
+  const cv::Mat_<cv::Vec3d>& slips = scene.dots.stick.slips_mm;
+  const double length = enlarged * shrink * px_per_mm(scene.dots);
+  for (int i = 0; i < slips.rows; ++i) {
+    for (int j = 0; j < slips.cols; ++j) {
+      if (is_present(dots(i, j)) && scene.dots.stick.state(i, j) == DotState::slip) {
+        const Spot at(picture.x + shrink * (dots(i, j)[0] + 0.5),
+                      picture.y + shrink * (dots(i, j)[1] + 0.5));
+        paint_slip(canvas, at, length * Spot(slips(i, j)[0], slips(i, j)[1]));
+      }
+    }
+  }
   double x = picture.x + radius;
   for (const auto& [state, word] :
        {std::pair(DotState::stick, "sticks"), std::pair(DotState::slip, "slips"),
@@ -82,6 +123,11 @@ cv::Mat stick_picture(const Scene& scene, double brightest) {
     paint_dot(canvas, {x, below + 22}, state);
     canvas.text({x + 14, below + 22 + letter / 2}, word, letter, ink::black);
     x += 42 + canvas.text_width(word, letter);
+  }
+  if (!slips.empty()) {
+    paint_slip(canvas, {x - 4, below + 22}, {18, 0});
+    canvas.text({x + 22, below + 22 + letter / 2}, format("its slip, %.0f times as long", enlarged),
+                letter, ink::black);
   }
   canvas.text({picture.x, below + 54}, words_of(scene.dots.stick.result), letter, ink::black);
   return canvas.finished();

@@ -161,11 +161,18 @@ class Step : public FingertipStep {
     dots.motion = touch.motion;
     StickFrame& stick = dots.stick;
     stick.states.create(dots_px.size());
+    if (touch.stick.updated()) {
+      stick.slips_mm.create(dots_px.size());
+    }
     for (int i = 0; i < dots_px.rows; ++i) {
       for (int j = 0; j < dots_px.cols; ++j) {
         const auto& p = fingertip_.dots_mm()(i, j);
         dots.dots_mm(i, j) = {p.x, p.y, p.z};
         stick.states(i, j) = static_cast<uchar>(fingertip_.dot_states()(i, j));
+        if (!stick.slips_mm.empty()) {
+          const auto& slip = fingertip_.dot_slips()(i, j).slip_mm;
+          stick.slips_mm(i, j) = {slip.x, slip.y, slip.z};
+        }
       }
     }
     const bool slides = touch.slip.status == fingerpad::FrictionLimitStatus::sliding;
@@ -176,7 +183,7 @@ class Step : public FingertipStep {
     stick.result.out_of_place = touch.stick.out_of_place;
     stick.result.stick_ratio = slides ? 0 : static_cast<float>(touch.stick.stick_ratio);
     stick.result.reference_age = touch.stick.reference_age;
-    stick.ratio_sd = slides ? 0 : touch.stick.ratio_sd;
+    stick.result.ratio_sd = slides ? 0 : static_cast<float>(touch.stick.ratio_sd);
     stick.evidence = touch.slip.evidence;
     return dots;
   }

@@ -24,9 +24,10 @@ constexpr double not_known = std::numeric_limits<double>::quiet_NaN();
 
 /// What the dots of a frame say of stick and slip.
 struct StickFrame {
-  cv::Mat_<uchar> states;  ///< DotState of each dot; empty where the recording has no dots
+  cv::Mat_<uchar> states;        ///< DotState of each dot; empty where the recording has no dots
+  cv::Mat_<cv::Vec3d> slips_mm;  ///< of each dot since the reference, NaN where it is not known;
+                                 ///< empty where no answer is of this frame
   fingerpad::StickRatioResult<float> result;  ///< with friction where forces are known
-  double ratio_sd = not_known;
   fingerpad::SlipEvidence evidence = fingerpad::SlipEvidence::none;
 
   DotState state(int row, int col) const { return static_cast<DotState>(states(row, col)); }
