@@ -29,7 +29,7 @@ struct Measure {
   const char *name, *column, *unit;
   double reference;  // a usual contact, as which displacement and rotation are counted
 };
-constexpr Measure area{"area", "contact_area_mm2", "mm2", 100};
+constexpr Measure area{"area", "flat_area_mm2", "mm2", 100};
 constexpr Measure depth{"depth", "contact_depth_mm", "mm", 2};
 
 std::vector<Sample> read(const char* file, const Measure& measure) {

@@ -55,6 +55,9 @@ struct RimNoise {
   std::optional<double> inclination_rad;  ///< of the membrane without stress
   double dot_noise_mm = 0;                ///< 0 both: errors from what the fit leaves
   double pressure_noise_mpa = 0;
+  double stress_free_height_mm = 0;  ///< of the pad's apex; > 0: the rubber is found, too, from
+                                     ///< apex.csv (frame,apex_mm)
+  double apex_noise_mm = 0;
 };
 Outcome rim(const Path& recording, const RimNoise& noise);
 

@@ -70,7 +70,7 @@ struct Measure {
   const char *name, *column, *unit;
   double reference;  ///< a usual contact
 };
-constexpr Measure area{"area", "contact_area_mm2", "mm2", 100};
+constexpr Measure area{"area", "flat_area_mm2", "mm2", 100};
 constexpr Measure depth{"depth", "contact_depth_mm", "mm", 2};
 
 /// Contacts beside the gauge's rows of the same frames.
@@ -194,6 +194,19 @@ void add_shear(Samples samples, const Measure& by, Outcome& outcome) {
   outcome.plots.push_back(plot);
 }
 
+/// Heights of the free pad's apex by frame.
+std::map<int, double> apexes_of(const Path& file) {
+  const Columns table(file);
+  if (!table.has("frame") || !table.has("apex_mm")) {
+    replay::fail(file, "needs the columns frame and apex_mm");
+  }
+  std::map<int, double> apexes;
+  for (std::size_t k = 0; k < table.rows(); ++k) {
+    apexes[static_cast<int>(table.number(k, "frame"))] = table.number(k, "apex_mm");
+  }
+  return apexes;
+}
+
 /// Frames of the free pad, of which those of about one pressure make a level.
 template <class Add>
 void add_levels(const Path& recording, const replay::SideDots& side, const Add& add) {
@@ -208,7 +221,7 @@ void add_levels(const Path& recording, const replay::SideDots& side, const Add& 
     if (same == levels.end()) {
       levels.push_back(pressure);
     }
-    if (!add(level, dots, pressure)) {
+    if (!add(level, dots, pressure, frame)) {
       replay::fail(recording / "signals.csv",
                    "frame " + std::to_string(frame) + " has no pressure > 0");
     }
@@ -241,16 +254,25 @@ Outcome rim(const Path& recording, const RimNoise& noise) {
   }
   fingerpad::RimCalibration<> calibration(side->border_mm, noise.base_radius_mm,
                                           {noise.inclination_rad});
-  add_levels(recording, *side, [&](std::size_t level, const auto& dots, double pressure) {
-    return calibration.add(level, dots, pressure);
-  });
-  const fingerpad::RimFitOptions options{noise.dot_noise_mm, noise.pressure_noise_mpa};
+  const bool finds_rubber = noise.stress_free_height_mm > 0;
+  const auto apexes = finds_rubber ? apexes_of(recording / "apex.csv") : std::map<int, double>();
+  add_levels(
+      recording, *side, [&](std::size_t level, const auto& dots, double pressure, int frame) {
+        const auto apex = apexes.find(frame);
+        return calibration.add(level, dots, pressure, apex == apexes.end() ? none : apex->second);
+      });
+  const fingerpad::RimFitOptions options{noise.dot_noise_mm, noise.pressure_noise_mpa,
+                                         noise.apex_noise_mm, noise.stress_free_height_mm};
   const auto fit = noise.length_mm ? calibration.fit_modulus(*noise.length_mm, options)
                                    : calibration.fit(options);
   Report report{.what = "rim", .residual = fit.residual, .residual_unit = "of the mean pull"};
   report.parameters = {{"side_dot_length_mm", fit.length_mm, fit.length_sd_mm},
                        {"membrane_modulus_n_per_mm", fit.modulus_n_per_mm, fit.modulus_sd_n_per_mm},
                        {"scatter_of_lengths", fit.share_scatter}};
+  if (finds_rubber) {
+    report.parameters.push_back({"mooney_share", fit.mooney_share, fit.mooney_share_sd});
+    report.parameters.push_back({"residual_of_the_apex_mm", fit.apex_residual_mm});
+  }
   report.covariance = {{fit.length_sd_mm * fit.length_sd_mm,
                         fit.correlation * fit.length_sd_mm * fit.modulus_sd_n_per_mm},
                        {fit.correlation * fit.length_sd_mm * fit.modulus_sd_n_per_mm,
@@ -263,6 +285,9 @@ Outcome rim(const Path& recording, const RimNoise& noise) {
   Outcome outcome;
   outcome.sections["rim"] = {{"side_dot_length_mm", fit.length_mm},
                              {"membrane_modulus_n_per_mm", fit.modulus_n_per_mm}};
+  if (finds_rubber) {
+    outcome.sections["rim"]["mooney_share"] = fit.mooney_share;
+  }
   if (noise.inclination_rad) {
     outcome.sections["rim"]["stress_free_inclination_rad"] = *noise.inclination_rad;
   }
@@ -285,10 +310,10 @@ Outcome force(const Path& contacts_file, const Path& gauge_file) {
     gauge.emplace(gauge_file);
   }
   const Columns& forces = gauge ? *gauge : contacts;
-  if (!forces.has("force_z_n") || !contacts.has("contact_area_mm2") ||
+  if (!forces.has("force_z_n") || !contacts.has("flat_area_mm2") ||
       (gauge && !(gauge->has("frame") && contacts.has("frame")))) {
     replay::fail(contacts_file,
-                 "contacts need the columns contact_area_mm2 and contact_depth_mm (frames.csv of "
+                 "contacts need the columns flat_area_mm2 and contact_depth_mm (frames.csv of "
                  "replay has them), the gauge's table frame,force_x_n,force_y_n,force_z_n,"
                  "moment_z_nm");
   }

@@ -123,6 +123,9 @@ int main(int argc, char** argv) {
   sub->add_option("--inclination-rad", rim.inclination_rad, "of the membrane without stress");
   sub->add_option("--dot-noise-mm", rim.dot_noise_mm, "of a side dot's coordinate");
   sub->add_option("--pressure-noise-mpa", rim.pressure_noise_mpa, "of a frame's pressure");
+  sub->add_option("--stress-free-height-mm", rim.stress_free_height_mm,
+                  "of the pad's apex without stress: finds the rubber, too, from apex.csv");
+  sub->add_option("--apex-noise-mm", rim.apex_noise_mm, "of an apex in apex.csv");
 
   Path contacts, gauge;
   sub = add(

@@ -333,8 +333,9 @@ def test_fits_have_the_bits_of_cpp_and_are_looked_up(pad, tmp_path):
     shutil.copy(DATA / "contacts.csv", tmp_path)
     run("calibrate", "force", tmp_path, "--contacts", "contacts.csv")
     force = json.loads((tmp_path / "sensor.json").read_text())["force"]
-    for name, unit, reference in [("area", "mm2", 100), ("depth", "mm", 2)]:
-        measure = contacts[f"contact_{name}_{unit}"]
+    for name, unit, column, reference in [("area", "mm2", "flat_area_mm2", 100),
+                                          ("depth", "mm", "contact_depth_mm", 2)]:
+        measure = contacts[column]
         normal = fp.fit_normal_force(measure, -contacts["force_z_n"])
         expected = force[f"by_{name}"]
         assert normal.ok, normal.status

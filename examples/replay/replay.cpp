@@ -74,7 +74,8 @@ void print_look_up(const Writer& writer, const Recording& recording) {
               normal_n, tangential_n);
   if (disagreeing > 0) {
     std::printf(
-        "             in %d of them area and depth disagree: contacts unlike the calibration's\n",
+        "             in %d of them depth says otherwise: not the calibration's shape; area "
+        "counts\n",
         disagreeing);
   }
   if (beyond > 0) {

@@ -2,8 +2,11 @@
 // SPDX-License-Identifier: MIT
 #include "fingerpad/contact/equivalent_flat_area.hpp"
 
-
+#include <algorithm>
 #include <cmath>
+#include <limits>
+#include <numbers>
+#include <vector>
 
 #include "support/catch.hpp"
 #include "support/numbers.hpp"
@@ -14,123 +17,163 @@ using test::Image;
 
 namespace {
 
-constexpr double area_mm2 = 78.5;
-constexpr CurvatureSamples samples{.span_px = 5, .step_px = 1};
+/// An object with an axis, and the membrane around it.
+struct Press {
+  double flat_mm = 5;     ///< radius of the plate that would press as hard
+  double touched_mm = 5;  ///< of the contact
+  double tension = 8;     ///< T / p at the contact, mm
+  double steeper = 0;     ///< its growth by 1/mm of the flux
+  double bump_mm = 0;     ///< in the middle of the object
 
-/// A dome of radius free_mm, touched within 5 mm of the axis by z = 10 + height(x, y).
-template <class S = double>
-struct Touched {
-  OrthographicCamera<S> camera{S(59.5), S(59.5), S(0.2)};
-  Image<S> height{120, 120, S(0)};
-  Image<Touch> mask{120, 120, Touch::none};
-
-  template <class Object>
-  Touched(double free_mm, const Object& object) {
-    for (Index i = 0; i < 120; ++i) {
-      for (Index j = 0; j < 120; ++j) {
-        const auto p = point_at(camera, S(double(i)), S(double(j)), S(0));
-        const double x = double(p.x), y = double(p.y), rho_sq = x * x + y * y;
-        mask(i, j) = rho_sq < 25 ? Touch::contact : Touch::none;
-        height(i, j) = S(10 + (rho_sq < 25 ? object(x, y) : std::sqrt(free_mm * free_mm - rho_sq)));
-      }
-    }
+  /// tan(alpha) by the balance of each disc, r^2 - s^2 = 2 r sin(alpha) T / p with the tension
+  /// T = T_0 (1 + steeper 2 pi r sin(alpha)).
+  double slope(double r) const {
+    const double balance = (r * r - flat_mm * flat_mm) / (2 * r * tension);
+    const double g = 2 * std::numbers::pi * r * steeper;
+    const double sine = 2 * balance / (1 + std::sqrt(1 + 4 * g * balance));
+    return sine / std::sqrt(1 - sine * sine);
   }
-  EquivalentFlatArea<S> operator()() const {
-    return equivalent_flat_area(camera, mask, height, S(area_mm2), samples);
+  /// The object is tangent to the membrane at the contact's edge.
+  double height_mm(double rho) const {
+    if (rho <= touched_mm) {
+      const double share = 1 - rho * rho / (touched_mm * touched_mm);
+      return 12 + slope(touched_mm) * touched_mm / 2 * share + bump_mm * share * share;
+    }
+    constexpr int steps = 200;
+    const double step = (rho - touched_mm) / steps;
+    double height = 12;
+    for (int k = 0; k < steps; ++k) {
+      height -= slope(touched_mm + (k + 0.5) * step) * step;
+    }
+    return height;
   }
 };
 
-auto ball(double radius_mm) {
-  return [=](double x, double y) { return -std::sqrt(radius_mm * radius_mm - x * x - y * y); };
-}
-auto rod(double radius_mm) {
-  return [=](double x, double) { return -std::sqrt(radius_mm * radius_mm - x * x); };
-}
-auto plate(double slope) {
-  return [=](double x, double y) { return slope * (0.6 * x + 0.8 * y); };
-}
+template <class S = double>
+struct Seen {
+  OrthographicCamera<S> camera{S(59.5), S(59.5), S(0.25)};
+  Image<S> height{120, 120, not_a_number<S>()};
+  Image<std::uint8_t> mask{120, 120, 0};
+  double true_mm2;
 
-double share(const EquivalentFlatArea<double>& found) {
-  REQUIRE(found.ok());
-  return found.area_mm2 / area_mm2;
-}
+  explicit Seen(const Press& press, double mask_beyond_mm = 0)
+      : true_mm2(std::numbers::pi * press.flat_mm * press.flat_mm) {
+    std::vector<double> profile;
+    for (int k = 0; k <= 260; ++k) {
+      profile.push_back(press.height_mm(0.05 * k));
+    }
+    for (Index i = 0; i < 120; ++i) {
+      for (Index j = 0; j < 120; ++j) {
+        const auto p = point_at(camera, S(double(i)), S(double(j)), S(0));
+        const double rho = std::hypot(double(p.x), double(p.y));
+        mask(i, j) = rho < press.touched_mm + mask_beyond_mm ? 255 : 0;
+        const auto k = static_cast<std::size_t>(rho / 0.05);
+        if (k + 1 < profile.size()) {
+          const double part = rho / 0.05 - double(k);
+          height(i, j) = S(profile[k] + part * (profile[k + 1] - profile[k]));
+        }
+      }
+    }
+  }
+  FlatAreaResult<S> operator()(const FlatAreaOptions& options = {}) const {
+    const EquivalentFlatArea<OrthographicCamera<S>, S> area(camera, 120, 120, options);
+    auto work = area.workspace();
+    return area(mask, height, work);
+  }
+  double error() const {
+    const auto found = (*this)();
+    REQUIRE(found.ok());
+    return double(found.area_mm2) / true_mm2 - 1;
+  }
+};
 
 }  // namespace
 
-TEST_CASE("equivalent flat area: balls, rods and plates on a dome", "[contact]") {
-  rc::prop("1 - k_contact / k_free", [] {
-    const double free_mm = 0.01 * *rc::gen::inRange(1900, 5000);
-    const double object_mm = 0.01 * *rc::gen::inRange(1000, 5000);
-    const double slope = 0.01 * *rc::gen::inRange(0, 40);
-    // a ball's principal curvatures are both 1/r, a rod's is one; differences over 1 mm see them to
-    // 1.3 % at the edge of the smallest ball, where it is steepest
-    RC_ASSERT(share(Touched<>(free_mm, ball(object_mm))()) ==
-              Approx(1 + free_mm / object_mm).epsilon(0.03));
-    RC_ASSERT(share(Touched<>(free_mm, rod(object_mm))()) ==
-              Approx(1 + free_mm / (2 * object_mm)).epsilon(0.03));
-    RC_ASSERT(share(Touched<>(free_mm, plate(slope))()) == Approx(1).epsilon(1e-9));
-    // a hollow object presses less; one that fits the dome, not at all
-    const auto hollow = [&](double x, double y) { return -ball(2 * free_mm)(x, y); };
-    RC_ASSERT(share(Touched<>(free_mm, hollow)()) == Approx(0.5).epsilon(0.03));
+TEST_CASE("equivalent flat area: the balance of the membrane around any contact", "[contact]") {
+  rc::prop("what is inside, and where its edge is, does not count", [] {
+    Press press;
+    press.tension = 0.01 * *rc::gen::inRange(700, 1200);
+    press.touched_mm = 0.01 * *rc::gen::inRange(300, 600);
+    press.flat_mm = press.touched_mm + 0.01 * *rc::gen::inRange(-50, 150);
+    press.bump_mm = 0.01 * *rc::gen::inRange(-50, 50);
+    const double beyond_mm = 0.01 * *rc::gen::inRange(-50, 50);
+    const Seen<> seen(press, beyond_mm);
+    // points 0.5 mm apart see a circle's area, and the slope at its rim, to 2 %
+    RC_ASSERT(std::abs(seen.error()) < 0.03);
+    RC_ASSERT(seen().curves >= 5);
   });
 }
 
-TEST_CASE("equivalent flat area: the same in float and through any mask", "[contact]") {
-  const Touched<> touched(20, ball(18));
-  const auto in_float = Touched<float>(20, ball(18))();
-  CHECK(double(in_float.area_mm2) == Approx(touched().area_mm2).epsilon(1e-3));
-  Image<std::uint8_t> mask(120, 120);
-  Image<double> turned(120, 120);
-  for (Index i = 0; i < 120; ++i) {
-    for (Index j = 0; j < 120; ++j) {
-      mask(i, j) = touched.mask(j, i) == Touch::contact;
-      turned(i, j) = touched.height(j, 119 - i);
-    }
-  }
-  const auto again = equivalent_flat_area(touched.camera, mask, turned, area_mm2, samples);
-  CHECK(again.area_mm2 == Approx(touched().area_mm2).epsilon(1e-12));
+TEST_CASE("equivalent flat area: a tension that grows with the distance", "[contact]") {
+  const Press press{5, 5, 8, 0.001, 0};  // by 20 % from the contact's edge to the pad's
+  CHECK(std::abs(Seen<>(press).error()) < 0.015);
+  CHECK(std::abs(Seen<>({6, 4, 8, 0.001, 0.4}).error()) < 0.015);
 }
 
-TEST_CASE("equivalent flat area: noise averages, what is missing does not count", "[contact]") {
-  const double exact = share(Touched<>(20, ball(18))());
-  Touched<> noisy(20, ball(18));
+TEST_CASE("equivalent flat area: the same in float, and what lacks counts for nothing",
+          "[contact]") {
+  const Press press{5.5, 5, 9, 0, 0.3};
+  const Seen<> exact(press);
+  CHECK(double(Seen<float>(press)().area_mm2) == Approx(exact().area_mm2).epsilon(1e-3));
+
+  Seen<> noisy(press);
   test::Random random(5);
   for (double& h : noisy.height.cells) {
-    h += 0.01 * random.normal();
+    h += 0.003 * random.normal();
   }
-  CHECK(share(noisy()) == Approx(exact).epsilon(0.02));
-  Touched<> with_holes(20, ball(18));
-  for (Index k = 0; k < 40; ++k) {
-    with_holes.height.cells[static_cast<std::size_t>(120 * 120 * random.uniform())] = test::nan;
-    const auto unknown = static_cast<std::size_t>(120 * 120 * random.uniform());
-    with_holes.mask.cells[unknown] = Touch::unknown;
-    with_holes.height.cells[unknown] = 1000;  // behind an unknown, anything
+  CHECK(noisy.error() == Approx(exact.error()).margin(0.05));
+
+  Seen<> with_holes(press);
+  for (const auto& [row, col] : {std::pair<Index, Index>{60, 60}, {40, 66}, {70, 30}}) {
+    with_holes.height(row, col) = test::nan;
   }
-  CHECK(share(with_holes()) == Approx(exact).epsilon(0.01));
+  CHECK(with_holes.error() == Approx(exact.error()).margin(0.05));
+}
+
+TEST_CASE("equivalent flat area: variance is that of the tension within the first curve",
+          "[contact]") {
+  const Seen<> seen({5, 5, 8, 0, 0});
+  const auto found = seen();
+  const auto twice = seen({.tension_share = 0.4});
+  CHECK(found.variance_mm4 > 0);
+  CHECK(twice.variance_mm4 == Approx(4 * found.variance_mm4).epsilon(1e-9));
+  CHECK(twice.area_mm2 == found.area_mm2);
+  // within 0.8 mm, 1 point and what the steps add
+  const double first_mm2 = seen.true_mm2 + std::sqrt(found.variance_mm4) / 0.2;
+  CHECK(std::sqrt(first_mm2 / std::numbers::pi) == Approx(5 + 0.8).margin(0.4));
 }
 
 TEST_CASE("equivalent flat area: no answer where there is none", "[contact]") {
-  Touched<> touched(20, ball(18));
-  const auto find = [&](const CurvatureSamples& s) {
-    return equivalent_flat_area(touched.camera, touched.mask, touched.height, area_mm2, s);
-  };
-  CHECK(find(samples).ok());
-  CHECK_FALSE(find({.span_px = 30}).ok());   // wider than the contact
-  CHECK_FALSE(find({.span_px = 200}).ok());  // than the image
-  const Image<double> other(120, 119, 0.0);
-  CHECK_FALSE(equivalent_flat_area(touched.camera, touched.mask, other, area_mm2).ok());
-  const auto hollow_pad = [](double x, double y) { return 0.01 * (x * x + y * y); };
-  for (double& h : touched.height.cells) {
+  const Press press{5, 5, 8, 0, 0};
+  CHECK(Seen<>(press)().ok());
+  CHECK_FALSE(Seen<>(press, 20)().ok());                 // nowhere free
+  CHECK_FALSE(Seen<>(press, -6)().ok());                 // nowhere touched
+  CHECK_FALSE(Seen<>(press)({.margin_mm = 30}).ok());    // no curve
+  CHECK_FALSE(Seen<>(press)({.min_curves = 100}).ok());  // too few
+  CHECK_FALSE(Seen<>(press)({.max_slope = 1e-6}).ok());  // all too steep
+  Seen<> hollow(press);
+  for (double& h : hollow.height.cells) {
     h = 20 - h;  // bulges inward where it is free: no membrane under pressure
   }
-  CHECK_FALSE(find(samples).ok());
-  touched = Touched<>(20, hollow_pad);
-  std::fill(touched.mask.cells.begin(), touched.mask.cells.end(), Touch::contact);
-  CHECK_FALSE(find(samples).ok());  // nowhere free
-  std::fill(touched.mask.cells.begin(), touched.mask.cells.end(), Touch::none);
-  CHECK_FALSE(find(samples).ok());  // nowhere touched
-  CHECK_THROWS_AS(find({.span_px = 0}), parameter_error);
-  CHECK_THROWS_AS(find({.step_px = 0}), parameter_error);
-  CHECK_THROWS_AS(find({.max_slope = test::nan}), parameter_error);
-  CHECK_THROWS_AS(find({.min_samples = 0}), parameter_error);
+  CHECK_FALSE(hollow().ok());
+  Seen<> far(press);
+  std::fill(far.height.cells.begin(), far.height.cells.end(),
+            (std::numeric_limits<double>::infinity)());
+  CHECK_FALSE(far().ok());
+
+  const EquivalentFlatArea<OrthographicCamera<double>> area(far.camera, 120, 120);
+  auto work = area.workspace();
+  CHECK_FALSE(area(Image<std::uint8_t>(120, 119), far.height, work).ok());
+  auto other = EquivalentFlatArea<OrthographicCamera<double>>(far.camera, 60, 60).workspace();
+  CHECK_FALSE(area(far.mask, far.height, other).ok());
+}
+
+TEST_CASE("equivalent flat area: what has no meaning is refused", "[contact]") {
+  const Seen<> seen({});
+  CHECK_THROWS_AS(seen({.spacing_mm = 0}), parameter_error);
+  CHECK_THROWS_AS(seen({.margin_mm = -1}), parameter_error);
+  CHECK_THROWS_AS(seen({.max_slope = test::nan}), parameter_error);
+  CHECK_THROWS_AS(seen({.min_curves = 3}), parameter_error);
+  CHECK_THROWS_AS(seen({.tension_share = -1}), parameter_error);
+  CHECK_THROWS_AS(EquivalentFlatArea<>(test::Pad().camera, 0, 10), parameter_error);
 }

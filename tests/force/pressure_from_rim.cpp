@@ -59,6 +59,22 @@ TEST_CASE("pressure from the rim: a calibrated modulus far from the first guess"
   }
 }
 
+TEST_CASE("pressure from the rim: a free pad has no force, and its pressure is not known",
+          "[wrench]") {
+  struct FreePad {
+    decltype(exact_heights(frame().heights)) heights = exact_heights(frame().heights);
+    auto operator()(double x, double y) const { return heights(x, y); }
+    bool in_contact(double, double) const { return false; }
+  };
+  const Wrench<BalancedRim> wrench(test::rim_border());
+  auto work = wrench.workspace();
+  const auto found = pressure_from_rim(wrench, FreePad{}, rows_of(frame().dots, 1), 0.5, work);
+  CHECK(found.status == WrenchStatus::no_contact);
+  CHECK(found.force_n.z == 0);
+  CHECK(found.moment_n_mm.x == 0);
+  CHECK(std::isnan(found.pressure_mpa));
+}
+
 TEST_CASE("pressure from the rim: what cannot be is said", "[wrench]") {
   const auto rim = test::rim_border();
   const Wrench<BalancedRim> wrench(rim);

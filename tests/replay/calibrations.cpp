@@ -3,6 +3,7 @@
 // What calibrations save is what is loaded again, bit for bit; what is strange is refused.
 #include "calibrate/calibrations.hpp"
 
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <string>
@@ -11,6 +12,7 @@
 #include "replay/foam/sensor.hpp"
 #include "replay/io/failure.hpp"
 #include "support/catch.hpp"
+#include "support/inflated_rubber.hpp"
 
 namespace {
 
@@ -62,7 +64,10 @@ Outcome camera_and_more() {
       {"reference", {{"frame", "a.png"}, {"depth", "b.tiff"}}},
       {"contact", {{"threshold_per_mm", 0.1 / 7}}},
       {"stick", {{"reference_px", 5.0 / 3}, {"store_px", 1.0 / 3}, {"slip_px", 1.0 / 7}}},
-      {"rim", {{"side_dot_length_mm", 0.8 / 3}, {"membrane_modulus_n_per_mm", 1.0 / 3}}},
+      {"rim",
+       {{"side_dot_length_mm", 0.8 / 3},
+        {"membrane_modulus_n_per_mm", 1.0 / 3},
+        {"mooney_share", 0.1 / 3}}},
       {"neighbour_light", {{"radius_px", 3}, {"m0_mm_per_rad", 1e-3 / 3}, {"n_per_mm", 0.1 / 3}}},
       {"smoothing_px", 15},
       {"force",
@@ -118,6 +123,7 @@ TEST_CASE("A calibration that was saved is loaded bit for bit", "[calibrate]") {
   CHECK(sensor.contact_threshold_per_mm == 0.1 / 7);
   CHECK(sensor.stick.slip == 1.0 / 7);
   CHECK(sensor.rim->membrane_modulus_n_per_mm == 1.0 / 3);
+  CHECK(sensor.rim->law.mooney_share == 0.1 / 3);
   CHECK(sensor.neighbour_light->m0_mm_per_rad == 1e-3 / 3);
   CHECK(sensor.smoothing_px == 15);
   REQUIRE(sensor.force);
@@ -135,6 +141,50 @@ TEST_CASE("A calibration that was saved is loaded bit for bit", "[calibrate]") {
   taxels.sections = {{"foam", {{"noise", 10.0 / 3}}}};
   save(taxels, foam);
   CHECK(replay::read_foam_sensor(foam).noise == 10.0 / 3);
+}
+
+TEST_CASE("The rubber that calibrate finds is the one that a recording is read with",
+          "[calibrate]") {
+  test::InflatedRubber pad{.mooney_share = 0.3};
+  const fs::path folder = fs::temp_directory_path() / "fingerpad_rubber";
+  fs::create_directories(folder);
+  std::ofstream signals(folder / "signals.csv"), dots(folder / "side_dots.csv"),
+      apexes(folder / "apex.csv");
+  signals << "frame,time_s,pressure_mpa\n";
+  dots << "frame,index,border_x,border_y,border_z,dot_x,dot_y,dot_z\n" << std::fixed;
+  apexes << "frame,apex_mm\n" << std::fixed;
+  for (int frame = 0; frame < 3; ++frame) {
+    pad.pressure_mpa = 0.008 * (frame + 1);
+    const auto profile = pad.profile();
+    const auto dot = test::InflatedRubber::near_rim(profile, 0.8);
+    signals << frame << ',' << frame << ',' << pad.pressure_mpa << '\n';
+    apexes << frame << ',' << profile.front().z << '\n';
+    for (int k = 0; k < 12; ++k) {
+      const double c = std::cos(k * CV_PI / 6), s = std::sin(k * CV_PI / 6);
+      dots << frame << ',' << k << ',' << pad.radius_mm * c << ',' << pad.radius_mm * s << ",0,"
+           << dot.r * c << ',' << dot.r * s << ',' << dot.z << '\n';
+    }
+  }
+  signals.close(), dots.close(), apexes.close();
+
+  calibrate::RimNoise noise;
+  noise.base_radius_mm = pad.radius_mm;
+  noise.inclination_rad = 2 * std::atan(pad.height_mm / pad.radius_mm);
+  CHECK_FALSE(calibrate::rim(folder, noise).sections["rim"].contains("mooney_share"));
+  noise.stress_free_height_mm = pad.height_mm;
+  Outcome found = calibrate::rim(folder, noise);
+  const double share = found.sections["rim"]["mooney_share"];
+  CHECK(share == Approx(0.3).margin(0.034));
+  CHECK(found.sections["rim"]["membrane_modulus_n_per_mm"] == Approx(0.5).epsilon(0.005));
+
+  const fs::path file = scratch("rubber");
+  Outcome whole = camera_and_more();
+  whole.sections["rim"] = found.sections["rim"];
+  save(whole, file);
+  CHECK(replay::read_sensor(file).rim->law.mooney_share == share);
+  fs::remove(folder / "apex.csv");
+  CHECK_THROWS_AS(calibrate::rim(folder, noise), replay::Failure);
+  fs::remove_all(folder);
 }
 
 TEST_CASE("A sensor file with unknown keys or of another version is refused", "[calibrate]") {
@@ -157,6 +207,7 @@ TEST_CASE("A sensor file with unknown keys or of another version is refused", "[
         std::string::npos);
   CHECK(with("/stick/slip_mm", 1).find("unknown key stick.slip_mm") != std::string::npos);
   CHECK(with("/rim/lenght_mm", 1).find("unknown key rim.lenght_mm") != std::string::npos);
+  CHECK(with("/rim/mooney_share", 2).find("mooney_share = 2") != std::string::npos);
   CHECK(with("/contact/threshold_per_mm", -1).find("must be > 0") != std::string::npos);
 }
 

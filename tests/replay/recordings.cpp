@@ -139,7 +139,8 @@ TEST_CASE("a recording gives a table and one depth map per frame") {
         "rotation_x_rad,rotation_y_rad,rotation_z_rad,"
         "dots_in_contact,stick_ratio,stick_ratio_updated,stick_ratio_sd,slip_evidence,"
         "shift_x_mm,shift_y_mm,shift_rad,"
-        "normal_force_n,tangential_force_x_n,tangential_force_y_n,moment_z_nm,"
+        "flat_area_mm2,normal_force_n,normal_force_sd_n,tangential_force_x_n,tangential_force_y_n,"
+        "moment_z_nm,"
         "wrench_fx_n,wrench_fy_n,wrench_fz_n,wrench_mx_nm,wrench_my_nm,wrench_mz_nm");
   const auto columns = std::count(line.begin(), line.end(), ',');
   std::getline(table, line);

@@ -25,7 +25,8 @@ constexpr const char* columns =
     "rotation_x_rad,rotation_y_rad,rotation_z_rad,"
     "dots_in_contact,stick_ratio,stick_ratio_updated,stick_ratio_sd,slip_evidence,"
     "shift_x_mm,shift_y_mm,shift_rad,"
-    "normal_force_n,tangential_force_x_n,tangential_force_y_n,moment_z_nm,"
+    "flat_area_mm2,normal_force_n,normal_force_sd_n,tangential_force_x_n,tangential_force_y_n,"
+    "moment_z_nm,"
     "wrench_fx_n,wrench_fy_n,wrench_fz_n,wrench_mx_nm,wrench_my_nm,wrench_mz_nm";
 constexpr const char* dot_columns = "frame,row,col,x_px,y_px,x_mm,y_mm,z_mm,contact,stick";
 
@@ -240,8 +241,9 @@ void FramesCsv::write(const FrameRow& row) {
   const auto& shift = row.force.shift;
   constexpr double metre = 1000;  // in mm
   for (const double value :
-       {shift.displacement.x, shift.displacement.y, shift.rotation_rad, row.force.normal_n,
-        row.force.tangential_n.x, row.force.tangential_n.y, row.force.moment_n_mm / metre}) {
+       {shift.displacement.x, shift.displacement.y, shift.rotation_rad, row.force.flat_area_mm2,
+        row.force.normal_n, row.force.normal_sd_n, row.force.tangential_n.x,
+        row.force.tangential_n.y, row.force.moment_n_mm / metre}) {
     stream_ << ',' << cell(value);
   }
   const fingerpad::Point3<double>& force = row.wrench.force_n;

@@ -127,7 +127,8 @@ Rim read_rim(const Section& root) {
   const Section section = root.section(
       "rim", {{"side_dot_length_mm", "stress-free length from the rim to its side dot, mm"},
               {"membrane_modulus_n_per_mm", "shear modulus times thickness, N/mm"},
-              {"stress_free_inclination_rad", "of the stress-free membrane at the rim, rad"}});
+              {"stress_free_inclination_rad", "of the stress-free membrane at the rim, rad"},
+              {"mooney_share", "C2 / (C1 + C2) of the rubber; neo-Hookean, 0, without it"}});
   Rim rim;
   rim.side_dot_length_mm = section.positive("side_dot_length_mm");
   if (section.has("membrane_modulus_n_per_mm")) {
@@ -135,6 +136,10 @@ Rim read_rim(const Section& root) {
   }
   if (section.has("stress_free_inclination_rad")) {
     rim.stress_free_inclination_rad = section.positive("stress_free_inclination_rad");
+  }
+  if (section.has("mooney_share")) {
+    rim.law.mooney_share = section.number("mooney_share");
+    section.check([&] { expects_valid(rim.law); });
   }
   return rim;
 }

@@ -11,6 +11,7 @@
 
 #include "fingerpad/depth/absorption.hpp"
 #include "fingerpad/force/normal_force.hpp"
+#include "fingerpad/force/rim_traction.hpp"
 #include "fingerpad/force/shear.hpp"
 #include "fingerpad/optics/camera.hpp"
 #include "fingerpad/slip/stick_ratio.hpp"
@@ -41,6 +42,7 @@ struct Rim {
   double side_dot_length_mm = 0;
   std::optional<double> membrane_modulus_n_per_mm;
   std::optional<double> stress_free_inclination_rad;  ///< of the membrane at the rim
+  fingerpad::ClampedRim law;                          ///< of its rubber
 };
 
 /// What of a contact a force is looked up by.

@@ -100,6 +100,7 @@ FingertipSettings fingertip_settings(const Recording& recording, const DotGrid& 
   if (lacking_for_wrench(recording).empty()) {
     options.rim_mm = kept(recording.side_dots->border_mm, settings.rim_mm);
     options.side_dot_row.stress_free_inclination_rad = sensor.rim->stress_free_inclination_rad;
+    options.rim_law = sensor.rim->law;
     options.wrench.base_radius_mm = sensor.pad.base_radius_mm;
     options.wrench.side_dot_length_mm = sensor.rim->side_dot_length_mm;
     options.wrench.calibrated_modulus_n_per_mm = sensor.rim->membrane_modulus_n_per_mm;
@@ -109,11 +110,14 @@ FingertipSettings fingertip_settings(const Recording& recording, const DotGrid& 
 }
 
 std::string lacking_for_wrench(const Recording& recording) {
-  return recording.sensor.dots_only                ? "nothing is known but dots"
-         : !recording.side_dots                    ? "there is no side_dots.csv"
-         : recording.signals.pressures_mpa.empty() ? "signals.csv has no pressure"
-         : !recording.sensor.rim                   ? "sensor.json has no rim"
-                                                   : "";
+  const auto& rim = recording.sensor.rim;
+  const bool has_pressure =
+      !recording.signals.pressures_mpa.empty() || (rim && rim->membrane_modulus_n_per_mm);
+  return recording.sensor.dots_only ? "nothing is known but dots"
+         : !recording.side_dots     ? "there is no side_dots.csv"
+         : !rim                     ? "sensor.json has no rim"
+         : !has_pressure ? "signals.csv has no pressure, sensor.json no membrane_modulus_n_per_mm"
+                         : "";
 }
 
 }  // namespace replay

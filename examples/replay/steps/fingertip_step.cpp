@@ -192,7 +192,9 @@ class Step : public FingertipStep {
     ForceFrame force;
     force.shift = touch.shift;
     force.looked_up = recording_.sensor.force.has_value() && touch.contact.ok();
+    force.flat_area_mm2 = touch.flat_area.area_mm2;
     force.normal_n = touch.normal.force_n;
+    force.normal_sd_n = std::sqrt(touch.normal.variance_n2);
     force.disagreement = touch.normal.disagreement;
     for (const ForceStatus status : {touch.by_area.status, touch.by_depth.status,
                                      touch.shear.force_status, touch.shear.moment_status}) {

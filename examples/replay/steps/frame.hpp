@@ -46,10 +46,12 @@ struct FrameDots {
 /// Forces by look-up.
 struct ForceFrame {
   fingerpad::ShiftResult<double> shift;  ///< mm, of the dots beside the contact's edge
-  bool looked_up = false;                ///< false: sensor.json has no curves; all below is empty
-  double normal_n = not_known;           ///< that presses, >= 0
-  double disagreement = not_known;       ///< of area and depth, in standard deviations
-  bool beyond_range = false;             ///< something is larger than in the calibration
+  bool looked_up = false;                ///< false: sensor.json has no curves; forces are empty
+  double flat_area_mm2 = not_known;  ///< of the plate that would press as hard; without curves, too
+  double normal_n = not_known;       ///< that presses, >= 0
+  double normal_sd_n = not_known;
+  double disagreement = not_known;  ///< of area and depth, in standard deviations
+  bool beyond_range = false;        ///< something is larger than in the calibration
   fingerpad::Point2<double> tangential_n = {not_known, not_known};
   double moment_n_mm = not_known;  ///< about the normal through the middle of the contact
 };

@@ -4,61 +4,72 @@
 // How large a flat contact would be that presses as hard: the area for a look-up of force that
 // holds for objects of any shape (force/normal_force.hpp).
 //
-// The law of Young and Laplace holds on both sides of the contact's edge. Outside, the fluid's
-// pressure p bends the membrane outward, p = T k_free with the tension T and the sum k of the two
-// principal curvatures. Inside, the object holds the membrane at its own curvature and so presses
-// with q = p - T k_contact. Hence
+// Cut the membrane along a closed curve around the contact. On the piece within act the fluid's
+// pressure p over the plan area A, the object's force, and along the curve the tension T, whose
+// vertical part is T sin(alpha) with the slope alpha across the curve:
 //
-//   F_z = q S_c = p S_eq,   S_eq = S_c (1 - k_contact / k_free)                           (EA1)
+//   F_z = p A - T_mean f,   f = integral of sin(alpha) ds = integral of k dA            (EA1)
 //
-// A plate, level or tilted, has k_contact = 0 and S_eq = S_c (eq. 2 of Ito, Kim and Obinata); a
-// ball as round as the pad presses twice as hard as a plate of the same area. Both curvatures are
-// in the depth map. (EA1) takes the tension to be the same on both sides; under a round object it
-// is less, so that S_eq is somewhat too large: docs/force/normal_force.md has the error.
+// where k is the sum of the two principal curvatures (divergence theorem). It holds for every
+// curve, so with S_eq = F_z / p, the area of the plate that would press as hard (eq. 2 of Ito, Kim
+// and Obinata),
+//
+//   A = S_eq + (T_mean / p) f,   T_mean / p = a + b f                                   (EA2)
+//
+// A and f are in the depth map, for one curve after the other. The mean tension changes slowly from
+// curve to curve and is taken for linear in f: S_eq is where a parabola through (f, A) meets f = 0.
+// No curve runs through the contact, so neither its edge nor what smoothing does there counts; for
+// smoothing moves curvature about, but keeps its integral.
+#include <algorithm>
 #include <cmath>
-#include <type_traits>
+#include <cstddef>
+#include <vector>
 
 #include "fingerpad/core/dots.hpp"
 #include "fingerpad/core/expects.hpp"
 #include "fingerpad/core/grid.hpp"
 #include "fingerpad/core/point.hpp"
 #include "fingerpad/core/scalar.hpp"
+#include "fingerpad/image/detail/image_size.hpp"
+#include "fingerpad/optics/camera.hpp"
 
 namespace fingerpad {
 inline namespace v0 {
 
-/// Where curvature is measured: at every step-th pixel of every step-th row, from the eight
-/// neighbours span_px away, all of them in contact or all of them free.
-struct CurvatureSamples {
-  Index span_px = 12;      ///< in [1, 1000]; noise of the depths counts as 1 / span^2
-  Index step_px = 3;       ///< in [1, 1000]
-  double max_slope = 1.0;  ///< of the membrane; steeper ones are left out; > 0
-  Index min_samples = 10;  ///< of either kind, >= 1; with fewer there is no answer
+/// Where the curves run around the contact.
+struct FlatAreaOptions {
+  double spacing_mm = 0.6;  ///< of the points that are looked at, and from curve to curve, on the
+                            ///< plate, in [0.05, 10]; noise of a curvature counts as 1 / spacing^2
+  double margin_mm = 0.8;  ///< of the first curve from the contact, in [0, 100]: what the contact's
+                           ///< edge may be off, and half the window that depths were smoothed by
+  double max_slope = 1.0;  ///< steeper points have no curvature; > 0
+  Index min_curves = 5;    ///< in [4, 1000]; with fewer there is no answer
+  double tension_share = 0.2;  ///< standard deviation of what the tension may be off that (EA2)
+                               ///< tells within the first curve, a share of it, >= 0
 };
 
 /// Refuses what has no meaning (parameter_error).
-inline void expects_valid(const CurvatureSamples& samples) {
+inline void expects_valid(const FlatAreaOptions& options) {
   const auto refuse_if_not = [](bool held, const char* name, double value, const char* range) {
-    expects(held, "CurvatureSamples", name, value, range);
+    expects(held, "FlatAreaOptions", name, value, range);
   };
-  refuse_if_not(samples.span_px >= 1 && samples.span_px <= 1000, "span_px",
-                static_cast<double>(samples.span_px), "in [1, 1000]");
-  refuse_if_not(samples.step_px >= 1 && samples.step_px <= 1000, "step_px",
-                static_cast<double>(samples.step_px), "in [1, 1000]");
-  refuse_if_not(samples.max_slope > 0, "max_slope", samples.max_slope, "> 0");
-  refuse_if_not(samples.min_samples >= 1, "min_samples", static_cast<double>(samples.min_samples),
-                ">= 1");
+  refuse_if_not(options.spacing_mm >= 0.05 && options.spacing_mm <= 10, "spacing_mm",
+                options.spacing_mm, "in [0.05, 10]");
+  refuse_if_not(options.margin_mm >= 0 && options.margin_mm <= 100, "margin_mm", options.margin_mm,
+                "in [0, 100]");
+  refuse_if_not(options.max_slope > 0, "max_slope", options.max_slope, "> 0");
+  refuse_if_not(options.min_curves >= 4 && options.min_curves <= 1000, "min_curves",
+                static_cast<double>(options.min_curves), "in [4, 1000]");
+  refuse_if_not(options.tension_share >= 0 && options.tension_share <= 1e3, "tension_share",
+                options.tension_share, "in [0, 1000]");
 }
 
-/// Curvatures are sums of the two principal ones, positive where the membrane bulges outward; NaN
-/// where too little of it was seen.
-template <scalar S>
-struct [[nodiscard]] EquivalentFlatArea {
-  S area_mm2 = not_a_number<S>();
-  S contact_curvature_per_mm = not_a_number<S>();
-  S free_curvature_per_mm = not_a_number<S>();
-  Index contact_samples = 0;
-  Index free_samples = 0;
+/// NaN where too little of the free membrane was seen.
+template <scalar S = double>
+struct [[nodiscard]] FlatAreaResult {
+  S area_mm2 = not_a_number<S>();      ///< of the plate that would press as hard; F_z = p area
+  S variance_mm4 = not_a_number<S>();  ///< of the area: by the tension that is not seen
+  Index curves = 0;                    ///< around the contact that took part
 
   bool ok() const { return is_finite(area_mm2); }
 };
@@ -86,74 +97,262 @@ S curvature_sum(const Point3<S> (&r)[3][3], const S& max_slope) {
   return S(outward * sum / (metric * sqrt(metric)));
 }
 
+/// Plan area within a curve, and the integral of the curvature over it.
+template <scalar S>
+struct FlatAreaCurve {
+  S area_mm2 = S(0);
+  S flux_mm = S(0);
+  Index points = 0;
+  Index unseen = 0;
+
+  /// Takes the unseen points for ones like the others.
+  void fill() {
+    if (unseen > 0 && unseen < points) {
+      const S share = S(static_cast<double>(points)) / S(static_cast<double>(points - unseen));
+      area_mm2 = area_mm2 * share;
+      flux_mm = flux_mm * share;
+    }
+  }
+  void add(const FlatAreaCurve& within) {
+    area_mm2 = area_mm2 + within.area_mm2;
+    flux_mm = flux_mm + within.flux_mm;
+    points += within.points;
+    unseen += within.unseen;
+  }
+};
+
+/// Where the least-squares parabola of the areas over the fluxes meets flux = 0, by polynomials
+/// that are orthogonal on the given fluxes. NaN where they do not tell three parameters.
+template <scalar S>
+S area_without_flux(const FlatAreaCurve<S>* curves, Index count) {
+  const S n = S(static_cast<double>(count));
+  S mean = S(0), area = S(0);
+  for (Index k = 0; k < count; ++k) {
+    mean = mean + curves[k].flux_mm / n;
+    area = area + curves[k].area_mm2 / n;
+  }
+  S square_sum = S(0), cube_sum = S(0);
+  for (Index k = 0; k < count; ++k) {
+    const S x = curves[k].flux_mm - mean;
+    square_sum = square_sum + x * x;
+    cube_sum = cube_sum + x * x * x;
+  }
+  const S skew = cube_sum / square_sum, spread = square_sum / n;
+  const auto second = [&](const S& x) { return S(x * (x - skew) - spread); };
+  S first_part = S(0), second_part = S(0), second_sq = S(0);
+  for (Index k = 0; k < count; ++k) {
+    const S x = curves[k].flux_mm - mean, y = curves[k].area_mm2, q = second(x);
+    first_part = first_part + y * x / square_sum;
+    second_part = second_part + y * q;
+    second_sq = second_sq + q * q;
+  }
+  return S(area - first_part * mean + second_part / second_sq * second(S(-mean)));
+}
+
 }  // namespace detail
 
-/// (EA1) from a depth map, the mask of its contact and the contact's area (`area_mm2` of
-/// ContactRegion or of contact_measures). Grids of different sizes, a contact too small for the
-/// span, or a pad that is seen nowhere free give no answer: ok() is false. A membrane that is not
-/// curved outward where it is free is none under pressure: no answer either. Pixels without depth
-/// count for nothing. O(rows cols / step^2), takes no memory.
-template <template <class> class CameraType, scalar S, contact_mask Mask, grid Depth>
-EquivalentFlatArea<S> equivalent_flat_area(const CameraType<S>& camera,
-                                           const Mask& contact,
-                                           const Depth& depth_mm,
-                                           const S& contact_area_mm2,
-                                           const CurvatureSamples& samples = {}) {
-  expects_valid(samples);
-  EquivalentFlatArea<S> out;
-  const auto mask = as_view(contact);
-  const auto depth = as_view(depth_mm);
-  if (!same_size(mask, depth)) {
-    return out;
-  }
-  const auto touch_of = [](const auto& cell) {
-    if constexpr (std::is_same_v<cell_t<Mask>, Touch>) {
-      return cell;
-    } else {
-      return is_contact(cell) ? Touch::contact : Touch::none;
+/// (EA2) on a depth map and the mask of its contact. The map is looked at in a lattice of points
+/// spacing_mm apart. A curve encloses all points within some distance of the contact; it takes part
+/// as long as at most one in twenty of them lacks a curvature (no depth, too steep, at the border
+/// of the image), which is then taken for the mean of those beside the same curve. A pad that is
+/// not curved outward around the contact has no answer.
+///
+/// Const: threads may share one, each with a workspace of its own. Bounded time and no allocation
+/// per frame; O(pixels / step^2) with step = spacing_mm / pitch.
+template <class CameraType = Camera<double>, scalar S = double>
+class EquivalentFlatArea {
+  using Curve = detail::FlatAreaCurve<S>;
+  static constexpr Index step_length = 5, diagonal_length = 7;  // of the distance, Borgefors 1986
+
+ public:
+  /// Refuses bad parameters (parameter_error).
+  EquivalentFlatArea(const CameraType& camera,
+                     Index rows,
+                     Index cols,
+                     const FlatAreaOptions& options = {})
+      : options_(checked(camera, rows, cols, options)),
+        image_rows_(rows),
+        image_cols_(cols),
+        step_((std::max)(
+            Index(1), static_cast<Index>(std::lround(options.spacing_mm / pitch_mm_of(camera))))),
+        rows_((rows - 1) / step_ + 1),
+        cols_((cols - 1) / step_ + 1) {
+    const double step_mm = static_cast<double>(step_) * pitch_mm_of(camera);
+    margin_ = static_cast<Index>(std::lround(step_length * options.margin_mm / step_mm));
+    for (Index i = 0; i < rows_; ++i) {
+      for (Index j = 0; j < cols_; ++j) {
+        const S row = S(static_cast<double>(i * step_)), col = S(static_cast<double>(j * step_));
+        const Point3<S> on_plate = point_at(camera, row, col, S(0));
+        rays_.push_back({on_plate, point_at(camera, row, col, S(1)) - on_plate});
+      }
     }
+  }
+
+  /// Memory that one frame at a time needs, taken up front; one per thread.
+  class Workspace {
+   public:
+    explicit Workspace(const EquivalentFlatArea& area)
+        : points_(area.rays_.size()),
+          distances_(area.rays_.size()),
+          curves_(static_cast<std::size_t>(area.rows_ + area.cols_)) {}
+
+   private:
+    friend class EquivalentFlatArea;
+    std::vector<Point3<S>> points_;
+    std::vector<Index> distances_;
+    std::vector<Curve> curves_;
   };
-  S contact_sum = S(0), free_sum = S(0);
-  const Index span = samples.span_px;
-  for (Index i = span; i + span < depth.rows(); i += samples.step_px) {
-    for (Index j = span; j + span < depth.cols(); j += samples.step_px) {
-      const auto kind = touch_of(mask(i, j));
-      Point3<S> r[3][3];
-      bool alike = kind != Touch::unknown;
-      for (Index a = 0; a < 3 && alike; ++a) {
-        for (Index b = 0; b < 3 && alike; ++b) {
-          const Index row = i + (a - 1) * span, col = j + (b - 1) * span;
-          r[a][b] = point_at(camera, S(static_cast<double>(row)), S(static_cast<double>(col)),
-                             S(depth(row, col)));
-          alike = touch_of(mask(row, col)) == kind && is_finite(r[a][b].z);
+  Workspace workspace() const { return Workspace(*this); }
+
+  /// One frame. Grids of another size, no contact and a workspace of another estimator have no
+  /// answer: ok() is false.
+  template <contact_mask Mask, grid Depth>
+  FlatAreaResult<S> operator()(const Mask& contact, const Depth& depth_mm, Workspace& w) const {
+    const auto mask = as_view(contact);
+    const auto depth = as_view(depth_mm);
+    FlatAreaResult<S> result;
+    if (!same_size(mask, depth) || depth.rows() != image_rows_ || depth.cols() != image_cols_ ||
+        w.points_.size() != rays_.size()) {
+      return result;
+    }
+    const Index far = step_length * (rows_ + cols_);
+    for (Index i = 0; i < rows_; ++i) {
+      for (Index j = 0; j < cols_; ++j) {
+        const std::size_t k = place(i, j);
+        const S l = S(depth(i * step_, j * step_));
+        w.points_[k] = rays_[k].on_plate + l * rays_[k].per_depth;
+        w.distances_[k] = is_contact(cell_t<Mask>(mask(i * step_, j * step_))) ? 0 : far;
+      }
+    }
+    spread(w.distances_);
+    collect(w);
+    result.curves = usable(w.curves_);
+    if (result.curves >= options_.min_curves) {
+      const S area = detail::area_without_flux(w.curves_.data(), result.curves);
+      const S carried = S(options_.tension_share) * (w.curves_[0].area_mm2 - area);
+      if (is_finite(area) && value(area) > 0) {
+        result.area_mm2 = area;
+        result.variance_mm4 = square(carried);
+      }
+    }
+    return result;
+  }
+
+  Index rows() const { return image_rows_; }
+  Index cols() const { return image_cols_; }
+
+ private:
+  struct Ray {
+    Point3<S> on_plate, per_depth;
+  };
+
+  static const FlatAreaOptions& checked(const CameraType& camera,
+                                        Index rows,
+                                        Index cols,
+                                        const FlatAreaOptions& options) {
+    expects_grid_size("EquivalentFlatArea", rows, cols, 1);
+    expects_valid(camera);
+    expects_valid(options);
+    return options;
+  }
+
+  static double pitch_mm_of(const CameraType& camera) {
+    return static_cast<double>(value(camera.pitch_mm));
+  }
+
+  std::size_t place(Index i, Index j) const { return static_cast<std::size_t>(i * cols_ + j); }
+
+  /// From 0 in contact and far elsewhere to the distance from the contact, within 6 %.
+  void spread(std::vector<Index>& distances) const {
+    const auto shorten = [&](Index i, Index j, Index to_row, Index to_col) {
+      Index& here = distances[place(i, j)];
+      const auto by = [&](Index row, Index col, Index length) {
+        if (row >= 0 && row < rows_ && col >= 0 && col < cols_) {
+          here = (std::min)(here, distances[place(row, col)] + length);
         }
+      };
+      by(i, j + to_col, step_length);
+      by(i + to_row, j, step_length);
+      by(i + to_row, j - 1, diagonal_length);
+      by(i + to_row, j + 1, diagonal_length);
+    };
+    for (Index i = 0; i < rows_; ++i) {
+      for (Index j = 0; j < cols_; ++j) {
+        shorten(i, j, -1, -1);
       }
-      const S curvature =
-          alike ? detail::curvature_sum(r, S(samples.max_slope)) : not_a_number<S>();
-      if (!is_finite(curvature)) {
-        continue;
-      }
-      if (kind == Touch::contact) {
-        contact_sum = contact_sum + curvature;
-        ++out.contact_samples;
-      } else {
-        free_sum = free_sum + curvature;
-        ++out.free_samples;
+    }
+    for (Index i = rows_; i-- > 0;) {
+      for (Index j = cols_; j-- > 0;) {
+        shorten(i, j, 1, 1);
       }
     }
   }
-  if (out.contact_samples >= samples.min_samples) {
-    out.contact_curvature_per_mm = contact_sum / S(static_cast<double>(out.contact_samples));
+
+  /// What each point adds to the first curve around it; then all curves within.
+  void collect(Workspace& w) const {
+    std::fill(w.curves_.begin(), w.curves_.end(), Curve{});
+    const Index last = static_cast<Index>(w.curves_.size()) - 1;
+    for (Index i = 0; i < rows_; ++i) {
+      for (Index j = 0; j < cols_; ++j) {
+        const Index beyond = (std::max)(Index(0), w.distances_[place(i, j)] - margin_);
+        const Index k = (std::min)(last, (beyond + step_length - 1) / step_length);
+        w.curves_[static_cast<std::size_t>(k)].add(at(i, j, w.points_));
+      }
+    }
+    for (std::size_t k = 0; k < w.curves_.size(); ++k) {
+      w.curves_[k].fill();
+      if (k > 0) {
+        w.curves_[k].add(w.curves_[k - 1]);
+      }
+    }
   }
-  if (out.free_samples >= samples.min_samples) {
-    out.free_curvature_per_mm = free_sum / S(static_cast<double>(out.free_samples));
+
+  Curve at(Index i, Index j, const std::vector<Point3<S>>& points) const {
+    constexpr Curve nothing_seen = {S(0), S(0), 1, 1};
+    if (i == 0 || j == 0 || i + 1 >= rows_ || j + 1 >= cols_) {
+      return nothing_seen;
+    }
+    Point3<S> r[3][3];
+    for (Index a = 0; a < 3; ++a) {
+      for (Index b = 0; b < 3; ++b) {
+        r[a][b] = points[place(i + a - 1, j + b - 1)];
+      }
+    }
+    const S curvature = detail::curvature_sum(r, S(options_.max_slope));
+    if (!is_finite(curvature)) {
+      return nothing_seen;
+    }
+    const Point3<S> across = (r[1][2] - r[1][0]) / S(2), along = (r[2][1] - r[0][1]) / S(2);
+    const S area = across.x * along.y - across.y * along.x;
+    return {area, S(curvature * area), 1, 0};
   }
-  if (value(out.free_curvature_per_mm) > 0) {
-    out.area_mm2 =
-        contact_area_mm2 * (S(1) - out.contact_curvature_per_mm / out.free_curvature_per_mm);
+
+  Index usable(const std::vector<Curve>& curves) const {
+    Index count = 0;
+    for (const Curve& curve : curves) {
+      const bool grows =
+          count == 0 ||
+          value(curve.flux_mm) > value(curves[static_cast<std::size_t>(count - 1)].flux_mm);
+      if (curve.points == 0 || 20 * curve.unseen > curve.points || !grows) {
+        break;
+      }
+      ++count;
+    }
+    return count;
   }
-  return out;
-}
+
+  FlatAreaOptions options_;
+  Index image_rows_, image_cols_;
+  Index step_;
+  Index rows_, cols_;  // of the lattice
+  Index margin_ = 0;   // in lengths of the distance
+  std::vector<Ray> rays_;
+};
+template <class CameraType>
+EquivalentFlatArea(const CameraType&, Index, Index) -> EquivalentFlatArea<CameraType>;
+template <class CameraType>
+EquivalentFlatArea(const CameraType&, Index, Index, const FlatAreaOptions&)
+    -> EquivalentFlatArea<CameraType>;
 
 }  // namespace v0
 }  // namespace fingerpad

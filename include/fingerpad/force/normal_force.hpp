@@ -176,10 +176,12 @@ class NormalForce {
   }
 
   /// One frame. `displacement_mm` and `rotation_rad` are how far the contact was carried along and
-  /// rotated; without a compensation they are not looked at.
+  /// rotated; without a compensation they are not looked at. `measure_variance` is that of this
+  /// measure, beyond that of the calibration's.
   NormalForceResult<S> operator()(const S& measure,
                                   const Point2<S>& displacement_mm = {S(0), S(0)},
-                                  const S& rotation_rad = S(0)) const {
+                                  const S& rotation_rad = S(0),
+                                  const S& measure_variance = S(0)) const {
     NormalForceResult<S> result;
     const detail::ForceChange<S> change = change_by(displacement_mm, rotation_rad);
     const S force = force_of(measure, change);
@@ -196,7 +198,7 @@ class NormalForce {
                     : value(measure) > value(curve().to)   ? ForceStatus::beyond_range
                                                            : ForceStatus::measured;
     if (errors_) {
-      result.variance_n2 = variance_n2(measure, change);
+      result.variance_n2 = variance_n2(measure, change, measure_variance);
     }
     return result;
   }
@@ -231,7 +233,9 @@ class NormalForce {
     }
   }
 
-  [[gnu::pure]] S variance_n2(const S& measure, const detail::ForceChange<S>& change) const {
+  [[gnu::pure]] S variance_n2(const S& measure,
+                              const detail::ForceChange<S>& change,
+                              const S& measure_variance) const {
     auto gradient = curve_.gradient(measure);
     for (S& by_parameter : gradient) {
       by_parameter = by_parameter * change.gain;
@@ -239,7 +243,8 @@ class NormalForce {
     const S slope =
         change.gain * curve_.slope(measure) + change.shift_n * curve_.fade_slope(measure);
     const S bend = change.gain * curve_.bend_n(measure);
-    return S(errors_->variance_n2(gradient, slope) + bend * bend);
+    return S(errors_->variance_n2(gradient, slope) + slope * slope * measure_variance +
+             bend * bend);
   }
 
   detail::WholeCurve<Curve> curve_;

@@ -16,9 +16,10 @@ inline namespace v0 {
 
 /// Force, moment and pressure (`pressure_mpa`) of a frame, as `wrench` would find them with the
 /// pressure at which mu t comes out as `modulus_n_per_mm`, > 0 (otherwise `refused`). Errors of
-/// mu t are those of the pressure, F_z and all else: 1 % is 1 %. No covariance. `not_solved` where
-/// no pressure up to `max_pressure_mpa` fits. Takes 2 calls of `wrench` with OneRow or TwoRows,
-/// about 8 with OneRow{inclination}; no memory.
+/// mu t are those of the pressure, F_z and all else: 1 % is 1 %. No covariance. Without contact the
+/// forces are 0 and the pressure is not known. `not_solved` where no pressure up to
+/// `max_pressure_mpa` fits. Takes 2 calls of `wrench` with OneRow or TwoRows, about 8 with
+/// OneRow{inclination}; no memory.
 template <class Solver,
           class Row,
           class Law,
@@ -61,6 +62,10 @@ WrenchResult<S> pressure_from_rim(const Wrench<Solver, Row, Law, Lines, S>& wren
     if (found.by_modulus) {
       found.status = WrenchStatus::no_level_line;
     }
+  }
+  if (found.status == WrenchStatus::no_contact) {  // no force, at whatever pressure
+    found.pressure_mpa = not_a_number<S>();
+    return found;
   }
   WrenchResult<S> none;
   none.status = found.status == WrenchStatus::ok ? WrenchStatus::not_solved : found.status;

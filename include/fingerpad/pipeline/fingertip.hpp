@@ -26,6 +26,7 @@ class Fingertip {
   static constexpr bool has_contact = Methods::has_contact;
   static constexpr bool has_dots = has_contact && Methods::has_dots;
   static constexpr bool has_look_up = has_dots && Methods::has_look_up;
+  static constexpr bool has_flat_area = has_look_up && Methods::has_flat_area;
   static constexpr bool has_wrench = has_contact && Methods::has_wrench;
 
  public:
@@ -35,6 +36,7 @@ class Fingertip {
         light_(options),
         region_(options),
         dots_(options),
+        flat_area_(options),
         look_up_(options),
         balance_(options) {}
 
@@ -68,6 +70,7 @@ class Fingertip {
       executor_.both(
           [&] {
             dots_.follow(image_, region_, dots_px, time_s, touch, watch);
+            flat_area_.measure(image_, region_, touch);
             look_up_.measure(dots_, touch, watch);
           },
           [&] { balance_.solve(image_, region_, side_dots_mm, pressure_mpa, touch, watch); });
@@ -134,8 +137,12 @@ class Fingertip {
                                      detail::NoFingertipStage>;
   using Dots =
       std::conditional_t<has_dots, detail::FingertipDots<Options>, detail::NoFingertipStage>;
-  using LookUp =
-      std::conditional_t<has_look_up, detail::FingertipLookUp<Options>, detail::NoFingertipStage>;
+  using FlatArea = std::conditional_t<has_flat_area,
+                                      detail::FingertipFlatArea<Options, Methods>,
+                                      detail::NoFingertipStage>;
+  using LookUp = std::conditional_t<has_look_up,
+                                    detail::FingertipLookUp<Options, has_flat_area>,
+                                    detail::NoFingertipStage>;
   using Balance = std::conditional_t<has_wrench,
                                      detail::FingertipBalance<Options, Methods>,
                                      detail::NoFingertipStage>;
@@ -153,6 +160,7 @@ class Fingertip {
   [[no_unique_address]] Light light_;
   [[no_unique_address]] Contact region_;
   [[no_unique_address]] Dots dots_;
+  [[no_unique_address]] FlatArea flat_area_;
   [[no_unique_address]] LookUp look_up_;
   [[no_unique_address]] Balance balance_;
 };

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "fingerpad/contact/contact_region.hpp"
+#include "fingerpad/contact/equivalent_flat_area.hpp"
 #include "fingerpad/core/dots.hpp"
 #include "fingerpad/core/grid.hpp"
 #include "fingerpad/depth/depth.hpp"
@@ -16,6 +17,7 @@
 #include "fingerpad/depth/sampling.hpp"
 #include "fingerpad/force/normal_force.hpp"
 #include "fingerpad/force/pad_heights.hpp"
+#include "fingerpad/force/pressure_from_rim.hpp"
 #include "fingerpad/force/shear.hpp"
 #include "fingerpad/force/wrench.hpp"
 #include "fingerpad/motion/contact_shift.hpp"
@@ -36,9 +38,12 @@ inline namespace v0 {
 struct FingertipMethods {
   static constexpr bool has_neighbour_light = false;  ///< taken off the depth; sampling 1
   static constexpr bool has_contact = true;           ///< contact region
-  static constexpr bool has_dots = true;     ///< object motion, stick ratio, friction limit
-  static constexpr bool has_look_up = true;  ///< forces by calibrated curves; needs the dots
-  static constexpr bool has_wrench = true;   ///< six-axis force from pressure and side dots
+  static constexpr bool has_dots = true;       ///< object motion, stick ratio, friction limit
+  static constexpr bool has_look_up = true;    ///< forces by calibrated curves; needs the dots
+  static constexpr bool has_flat_area = true;  ///< forces by area are looked up by that of the
+                                               ///< plate that would press as hard, for objects of
+                                               ///< any shape; false: by that of the contact
+  static constexpr bool has_wrench = true;     ///< six-axis force from pressure and side dots
 
   static constexpr int sampling = 2;  ///< pixels of a sample, along rows and along columns
 
@@ -74,6 +79,7 @@ struct FingertipOptions {
 
   using NormalLookUp = NormalForce<PolynomialForce<5>, ScaledCompensation<>>;
   using ShearLookUp = Shear<RadialShear<4>>;
+  FlatAreaOptions flat_area = {};
   std::optional<NormalLookUp> force_of_area = {};   ///< by mm^2, with errors; empty: not looked up
   std::optional<NormalLookUp> force_of_depth = {};  ///< by mm, with errors; empty: not looked up
   std::optional<ShearLookUp> shear = {};            ///< empty: not looked up
@@ -82,7 +88,9 @@ struct FingertipOptions {
   StridedView<const Point3<double>> rim_mm = {};  ///< where side dots are fixed; one row; empty: no
                                                   ///< six-axis force
   OneRow side_dot_row = {};
-  WrenchOptions<double> wrench = {};
+  ClampedRim rim_law = {};            ///< of the membrane's rubber
+  WrenchOptions<double> wrench = {};  ///< with calibrated_modulus_n_per_mm a frame whose pressure
+                                      ///< is NaN is answered by pressure_from_rim()
 };
 template <class Reference>
 FingertipOptions(const Camera<double>&, const Absorption<double>&, const Reference&, Index, Index)
@@ -123,10 +131,12 @@ struct [[nodiscard]] FingertipResult {
   SpatialStickResult<double> stick;  ///< by the dots
   SlipResult<double> slip;           ///< by the dots and friction; feed it to GripControl
   ShiftResult<double> shift;         ///< of the dots beside the contact's edge, for the look-up
+  FlatAreaResult<double> flat_area;  ///< of the plate that would press as hard
   NormalForceResult<double> by_area, by_depth;  ///< by look-up,
-  FusedForce<double> normal;                    ///< and both together
-  ShearResult<double> shear;                    ///< by look-up
-  WrenchResult<double> wrench;                  ///< six axes
+  FusedForce<double> normal;    ///< and both together; by the flat area alone where that is known,
+                                ///< since the depth's curve holds for one shape only
+  ShearResult<double> shear;    ///< by look-up
+  WrenchResult<double> wrench;  ///< six axes
 
   bool ok() const { return status == FingertipStatus::ok; }
 };

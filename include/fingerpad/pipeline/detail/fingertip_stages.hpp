@@ -265,8 +265,27 @@ struct FingertipDots {
   }
 };
 
+/// The area of the plate that would press as hard.
+template <class Options, class Methods>
+struct FingertipFlatArea {
+  static constexpr int step = Methods::sampling;
+  EquivalentFlatArea<> of;
+  EquivalentFlatArea<>::Workspace work;
+
+  explicit FingertipFlatArea(const Options& o)
+      : of(sampled(o.camera, step), o.rows / step, o.cols / step, o.flat_area),
+        work(of.workspace()) {}
+
+  template <class Image, class Contact>
+  void measure(const Image& image, const Contact& region, FingertipResult& touch) {
+    if (touch.contact.in_contact()) {
+      touch.flat_area = of(region.mask.view(), image.depth.view(), work);
+    }
+  }
+};
+
 /// Forces by look-up.
-template <class Options>
+template <class Options, bool by_flat_area>
 struct FingertipLookUp {
   std::optional<ContactShift<>> shift;  // none without dots
   std::optional<ContactShift<>::Workspace> work;
@@ -290,17 +309,14 @@ struct FingertipLookUp {
 
   template <class Dots, class Watch>
   void measure(const Dots& dots, FingertipResult& touch, Watch& watch) {
-    const bool pressed = touch.contact.in_contact();
     if (touch.contact.ok()) {
-      look_up(dots, pressed ? touch.contact.area_mm2 : 0, pressed ? touch.contact.depth_mm : 0,
-              pressed, touch);
+      look_up(dots, touch.contact.in_contact(), touch);
     }
     watch(FingertipStage::look_up);
   }
 
   template <class Dots>
-  void look_up(
-      const Dots& dots, double area_mm2, double depth_mm, bool pressed, FingertipResult& touch) {
+  void look_up(const Dots& dots, bool pressed, FingertipResult& touch) {
     if (shift) {
       touch.shift = (*shift)(dots.at_mm.view(), dots.touching.view(), *work);
     }
@@ -310,18 +326,29 @@ struct FingertipLookUp {
     const Point2<double> moved = touch.shift.displacement;
     const Point2<double> along = {known(moved.x), known(moved.y)};
     const double rotation = known(touch.shift.rotation_rad);
+    const FlatAreaResult<double> area = pressed ? area_of(touch) : nothing_touches;
+    const double depth_mm = pressed ? touch.contact.depth_mm : 0;
     if (of_area) {
-      touch.by_area = (*of_area)(area_mm2, along, rotation);
+      touch.by_area = (*of_area)(area.area_mm2, along, rotation, area.variance_mm4);
     }
     if (of_depth) {
       touch.by_depth = (*of_depth)(depth_mm, along, rotation);
     }
     touch.normal = fused(touch.by_area, touch.by_depth);
-    if (of_shift) {  // without contact there is no shift to know
-      touch.shear =
-          (*of_shift)(shear_by_depth ? depth_mm : area_mm2, pressed ? moved : Point2<double>{0, 0},
-                      pressed ? touch.shift.rotation_rad : 0);
+    if (by_flat_area && is_finite(touch.by_area.variance_n2)) {
+      const NormalForceResult<double>& a = touch.by_area;
+      touch.normal = {a.status, a.force_n, a.variance_n2, touch.normal.disagreement, 1};
     }
+    if (of_shift) {  // without contact there is no shift to know
+      touch.shear = (*of_shift)(shear_by_depth ? depth_mm : area.area_mm2,
+                                pressed ? moved : Point2<double>{0, 0},
+                                pressed ? touch.shift.rotation_rad : 0);
+    }
+  }
+
+  static constexpr FlatAreaResult<double> nothing_touches = {0, 0};
+  static FlatAreaResult<double> area_of(const FingertipResult& touch) {
+    return by_flat_area ? touch.flat_area : FlatAreaResult<double>{touch.contact.area_mm2, 0};
   }
 };
 
@@ -335,13 +362,15 @@ struct FingertipBalance {
     PadHeights<>::Map map;
     Solver wrench;
     typename Solver::Workspace work;
+    std::optional<double> modulus_n_per_mm;
 
     explicit Balance(const Options& o)
         : heights(
               o.rows / step, o.cols / step, sampled(o.camera, step), o.wrench.base_radius_mm + 1),
           map(heights.map()),
-          wrench(o.rim_mm, o.wrench, {}, o.side_dot_row),
-          work(wrench.workspace()) {}
+          wrench(o.rim_mm, o.wrench, {}, o.side_dot_row, o.rim_law),
+          work(wrench.workspace()),
+          modulus_n_per_mm(o.wrench.calibrated_modulus_n_per_mm) {}
   };
   std::optional<Balance> balance;  // none without a rim
 
@@ -351,6 +380,12 @@ struct FingertipBalance {
     }
   }
   bool answers(const FingertipResult& touch) const { return !balance || touch.wrench.ok(); }
+
+  template <class SideDots>
+  WrenchResult<double> without_gauge(const SideDots& side_dots_mm) {
+    return pressure_from_rim(balance->wrench, balance->map, side_dots_mm,
+                             *balance->modulus_n_per_mm, balance->work);
+  }
 
   template <class Image, class Contact, class SideDots, class Watch>
   void solve(const Image& image,
@@ -362,7 +397,9 @@ struct FingertipBalance {
     if (balance) {
       balance->heights(image.depth.view(), region.mask.view(), balance->map);
       watch(FingertipStage::heights);
-      touch.wrench = balance->wrench(balance->map, side_dots_mm, pressure_mpa, balance->work);
+      touch.wrench = is_finite(pressure_mpa) || !balance->modulus_n_per_mm
+                         ? balance->wrench(balance->map, side_dots_mm, pressure_mpa, balance->work)
+                         : without_gauge(side_dots_mm);
     }
     watch(FingertipStage::wrench);
   }
