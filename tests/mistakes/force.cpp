@@ -230,6 +230,62 @@ TEST_CASE("mistakes with the six-axis force: shape and side dots of two pads", "
   CHECK(seen<LeastSquares>(frame).residual > 0.1);
 }
 
+TEST_CASE("mistakes with the six-axis force: what the residual does not see, the modulus tells",
+          "[mistakes]") {
+  const auto solved = [](const std::function<void(Frame&)>& change) {
+    Frame frame;
+    frame.options.calibrated_modulus_n_per_mm = frame.rim.modulus_n_per_mm;
+    change(frame);
+    return seen<LeastSquares>(frame);
+  };
+  const auto right = solved([](Frame&) {});
+  REQUIRE(right.ok());
+  const auto aged = [](double stiffer, double longer) {
+    return [=](Frame& frame) {
+      frame.rim.modulus_n_per_mm *= stiffer;
+      frame.rim.length_mm *= longer;
+      const double tension = frame.pad.tension(frame.pad.radius_mm, frame.pressure_mpa);
+      frame.dots = frame.rim.dots([&](double at) {
+        return test::RimLoad{tension * (1 + 0.05 * std::cos(at)),
+                             tension * (0.1 - 0.1 * std::sin(at))};
+      });
+    };
+  };
+  const auto modulus = [&](const WrenchResult<double>& r) {
+    return r.modulus_n_per_mm / right.modulus_n_per_mm;
+  };
+  const auto shifted = [&](const WrenchResult<double>& r) {
+    return norm(r.force_n - right.force_n) / norm(right.force_n);
+  };
+  // stiffer and softer: forces come from pressure and shape, and the modulus says it
+  for (const double stiffer : {1.5, 1 / 1.5}) {
+    const auto r = solved(aged(stiffer, 1));
+    CHECK(r.ok());
+    CHECK(shifted(r) < 1e-6);
+    CHECK(modulus(r) == Approx(stiffer).epsilon(1e-6));
+  }
+  // a rim that has become longer without stress: by 5 % F_xy halves and so does the modulus
+  const auto longer = solved(aged(1, 1.05));
+  CHECK(longer.ok());
+  CHECK(longer.residual < 0.001);
+  CHECK(longer.force_n.z == Approx(right.force_n.z).epsilon(1e-6));
+  CHECK(longer.force_n.x / right.force_n.x == Approx(0.53).margin(0.01));
+  CHECK(modulus(longer) == Approx(0.5).margin(0.01));
+  CHECK(solved(aged(1, 1.2)).status == WrenchStatus::modulus_not_as_calibrated);
+  // a gauge that reads a fifth too much
+  const auto pressed = solved([](Frame& f) { f.pressure_mpa *= 1.2; });
+  CHECK(pressed.residual < 0.001);
+  CHECK(modulus(pressed) == Approx(1.2).epsilon(1e-3));
+  // slopes that are off by a fifth do next to nothing; heights do a little, and nothing tells
+  for (const double off : {0.8, 1.2}) {
+    CHECK(shifted(solved([=](Frame& f) { f.shape.slope = off; })) < 0.001);
+    const auto r = solved([=](Frame& f) { f.shape.height = f.shape.slope = off; });
+    CHECK(r.residual < 0.001);
+    CHECK(shifted(r) < 0.03);
+    CHECK(modulus(r) == Approx(1).epsilon(0.002));
+  }
+}
+
 namespace {
 
 /// A contact that is pressed, carried along and rotated.
@@ -423,6 +479,45 @@ TEST_CASE("mistakes with the traction field", "[mistakes]") {
     CHECK(r.has_force() == (m.said == "ok"));
     CHECK((!r.has_force() || is_finite(r.force_n)));
   }
+}
+
+TEST_CASE("mistakes with the traction field: an aged membrane", "[mistakes]") {
+  // what the field takes the pad to be over what it is: its modulus and its stress-free length
+  struct Aged {
+    std::optional<double> modulus;
+    double length;
+    const char* said;
+  };
+  const Aged all[] = {
+      {1.0, 1.0, "ok"},
+      {1.5, 1.0, "modulus not of this pad: has the membrane aged?"},
+      {1 / 1.5, 1.0, "modulus not of this pad: has the membrane aged?"},
+      {1.0, 1.1, "modulus not of this pad: has the membrane aged?"},
+      {1.0, 0.9, "modulus not of this pad: has the membrane aged?"},
+      {1000.0, 1.0, "modulus not of this pad: has the membrane aged?"},  // as in N/m
+      {std::nullopt, 1.0, "ok"},
+  };
+  for (const char* name : {"press", "drag", "tilt"}) {
+    const auto scene = test::traction_scene(name);
+    for (const Aged& aged : all) {
+      auto free = test::stress_free_dots();
+      for (Vector& dot : free.cells) {
+        dot = aged.length * dot;
+      }
+      TractionOptions<double> options;
+      if (aged.modulus) {
+        options.mu_t_n_per_mm = 0.5 * *aged.modulus;
+      }
+      const TractionField field(free, options);
+      auto maps = field.maps();
+      const auto r = field(scene.dots, scene.contact, scene.pressure_mpa, maps);
+      CAPTURE(name, aged.modulus.value_or(0), aged.length);
+      CHECK(name_of(r.status) == std::string(aged.said));
+      CHECK((!r.ok() || norm(r.force_n - scene.force_n) < 0.05 * norm(scene.force_n)));
+    }
+  }
+  // a stress-free length off by 3 % is not told: F_z by half with a given modulus, F_xy by half
+  // with that of the free part
 }
 
 TEST_CASE("mistakes with forces: rims and membranes larger than any", "[mistakes]") {

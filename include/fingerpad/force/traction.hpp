@@ -41,10 +41,13 @@ enum class TractionStatus : std::uint8_t {
   incomplete,    ///< force and moment miss the share of some dots in contact or beside them, which
                  ///< have no load: they lie on the edge of the grid, or dots were not found
   bad_pressure,  ///< <= 0 or not finite: nothing is known
-  pressure_not_in_mpa,   ///< above max_pressure_mpa: kPa, Pa? Nothing is known
-  not_of_this_membrane,  ///< most cells are folded or stretched beyond measure: dots in another
-                         ///< order or unit, or of another pad
-  too_few_dots,          ///< no dot was found with all its neighbours: nothing is known
+  pressure_not_in_mpa,      ///< above max_pressure_mpa: kPa, Pa? Nothing is known
+  not_of_this_membrane,     ///< most cells are folded or stretched beyond measure: dots in another
+                            ///< order or unit, or of another pad
+  too_few_dots,             ///< no dot was found with all its neighbours: nothing is known
+  modulus_not_of_this_pad,  ///< the free part says that the given mu t is more than a quarter off:
+                            ///< the membrane has aged, or is another, or the gauge is off. Force
+                            ///< and maps are those of the given mu t
   no_balance,  ///< without a given mu t: the free part is too small, or does not hold the pressure
   refused,     ///< a grid, state or workspace has another size: nothing was done
 };
@@ -66,6 +69,8 @@ constexpr const char* name_of(TractionStatus status) {
       return "not of this membrane";
     case TractionStatus::too_few_dots:
       return "too few dots";
+    case TractionStatus::modulus_not_of_this_pad:
+      return "modulus not of this pad: has the membrane aged?";
     case TractionStatus::no_balance:
       return "no balance";
     case TractionStatus::refused:
@@ -98,7 +103,8 @@ struct [[nodiscard]] TractionResult {
 
   bool ok() const { return status == TractionStatus::ok; }
   bool has_force() const {
-    return ok() || status == TractionStatus::no_contact || status == TractionStatus::incomplete;
+    return ok() || status == TractionStatus::no_contact || status == TractionStatus::incomplete ||
+           status == TractionStatus::modulus_not_of_this_pad;
   }
 };
 
@@ -234,8 +240,9 @@ class TractionField {
       detail::traction::sum_loads(pressure_mpa, result.mu_t_n_per_mm, options_.ring_dots,
                                   options_.fade_dots, frame, result);
       result.status = result.dots_in_contact == 0 ? TractionStatus::no_contact
-                      : result.dots_left_out == 0 ? TractionStatus::ok
-                                                  : TractionStatus::incomplete;
+                      : result.dots_left_out > 0  ? TractionStatus::incomplete
+                      : holds(result)             ? TractionStatus::ok
+                                                  : TractionStatus::modulus_not_of_this_pad;
     }
     return result;
   }
@@ -246,6 +253,16 @@ class TractionField {
   template <class G>
   bool has_size(const G& g) const {
     return g.rows() == rows_ && g.cols() == cols_;
+  }
+
+  /// Whether the free part holds the pressure with this mu t, to a quarter; true where it is too
+  /// small to tell.
+  bool holds(const TractionResult<S>& result) const {
+    const auto& balance = result.balance;
+    const S held = result.mu_t_n_per_mm * balance.holding_per_mm;
+    const bool is_off =
+        S(5) * held < S(4) * balance.pressing_mpa || S(5) * balance.pressing_mpa < S(4) * held;
+    return balance.dots < options_.min_free_dots || !is_off;
   }
 
   /// NaN, and a status that says why, where there is none.
