@@ -13,6 +13,7 @@
 #include "fingerpad/published/friction_ratio.hpp"
 #include "fingerpad/slip/friction_limit.hpp"
 #include "fingerpad/slip/spatial_stick_ratio.hpp"
+#include "fingerpad/slip/stick_ratio.hpp"
 #include "support/catch.hpp"
 #include "support/spatial_scene.hpp"
 
@@ -65,7 +66,7 @@ struct Warner {
 };
 
 struct Warners {
-  Warner dots, fused, friction_ratio;
+  Warner image, dots, fused, friction_ratio;
 };
 
 constexpr int recordings = 10;
@@ -74,22 +75,29 @@ Warners warned_on(const std::string& name) {
   const SpatialScene scene(name);
   const Index across = scene.dots_across();
   const SpatialStickRatio<double> ratio(across, across);
+  const StickRatio<> in_image(across, across);
   const FrictionLimit<double> limit;
   const published::FrictionRatio<double> friction;
   Warners w;
   for (int seed = 1; seed <= recordings; ++seed) {
     test::Random random(static_cast<std::uint64_t>(seed));
     auto state = ratio.start();
+    auto image_state = in_image.start();
+    test::Image<Point2<double>> flat(across, across);
     auto limit_state = limit.start();
     auto friction_state = friction.start();
     test::Image<DotState> states(across, across);
-    w.dots.reset(), w.fused.reset(), w.friction_ratio.reset();
+    w.image.reset(), w.dots.reset(), w.fused.reset(), w.friction_ratio.reset();
     for (Index k = 0; k < scene.size(); ++k) {
       auto dots = scene[k].dots;
       for (auto& p : dots.cells) {
         const double x = random.normal(), y = random.normal(), z = random.normal();
         p = {p.x + 0.005 * x, p.y + 0.005 * y, p.z + 0.025 * z};
       }
+      for (std::size_t at = 0; at < dots.cells.size(); ++at) {
+        flat.cells[at] = {dots.cells[at].x, dots.cells[at].y};  // as seen from straight above
+      }
+      const auto seen = in_image(flat, scene[k].contact, states, image_state);
       const auto r = ratio(dots, scene[k].contact, states, state);
       const auto load =
           contact_load(test::noisy(scene[k].force_n, 0.015, random),
@@ -102,6 +110,7 @@ Warners warned_on(const std::string& name) {
       const auto warns = [](RatioUpdate update, double of) {
         return (update == RatioUpdate::fresh || update == RatioUpdate::unmoved) && of < 0.5;
       };
+      w.image.add(k, sticks, warns(update_of(seen.status), static_cast<double>(seen.stick_ratio)));
       w.dots.add(k, sticks, warns(update_of(r.status), r.stick_ratio));
       w.fused.add(k, sticks, warns(slip.update, slip.stick_ratio));
       w.friction_ratio.add(k, sticks, by_ratio.alarm);
@@ -127,7 +136,8 @@ TEST_CASE("warning before an object slides, on finite-element membranes", "[slip
   for (const char* name :
        {"drag", "twist", "tilt", "mix", "slide", "cylinder", "ball_slip", "rod_turn"}) {
     const Warners w = warned_on(name);
-    INFO(name << "\n  dots: " << figures(w.dots) << "\n  fused: " << figures(w.fused)
+    INFO(name << "\n  image: " << figures(w.image) << "\n  dots: " << figures(w.dots)
+              << "\n  fused: " << figures(w.fused)
               << "\n  friction ratio: " << figures(w.friction_ratio));
     CHECK(w.dots.false_share() == 0);
     CHECK(w.fused.false_share() == 0);
@@ -142,7 +152,7 @@ TEST_CASE("warning before an object slides, on finite-element membranes", "[slip
 TEST_CASE("no warning of what rolls or is pressed and sticks", "[slip_warning]") {
   for (const char* name : {"roll", "press"}) {
     const Warners w = warned_on(name);
-    INFO(name << "\n  fused: " << figures(w.fused)
+    INFO(name << "\n  image: " << figures(w.image) << "\n  fused: " << figures(w.fused)
               << "\n  friction ratio: " << figures(w.friction_ratio));
     CHECK(w.fused.false_share() == 0);
     CHECK(w.friction_ratio.false_share() == 0);

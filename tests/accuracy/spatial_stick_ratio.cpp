@@ -14,6 +14,7 @@
 
 using namespace fingerpad;
 using test::SpatialScene;
+using test::SpatialStep;
 
 namespace {
 
@@ -23,7 +24,26 @@ struct SceneErrors {
   double dots = 0;   ///< mean absolute error over all frames in contact, kept answers included
   double told = 0;   ///< of these, over the frames that the dots answer
   double fused = 0;  ///< over all, with the friction limit
+  double on_ball =
+      0;  ///< as `told`, the truth being the slip along a ball about the object's origin
 };
+
+/// As truth_between, of the slip along the ball: a dot at the edge that comes to it or leaves it
+/// has not slipped by that.
+double truth_on_ball(const SpatialStep& then, const SpatialStep& now) {
+  const Pose<double> motion = now.object * inverse(then.object);
+  const double limit = test::slip_share * test::longest_move(then, now);
+  double stick = 0, all = 0;
+  for (std::size_t k = 0; k < now.dots.cells.size(); ++k) {
+    if (then.contact.cells[k] != 0 && now.contact.cells[k] != 0) {
+      const auto slip = now.dots.cells[k] - motion(then.dots.cells[k]);
+      const auto normal = normalized(now.dots.cells[k] - now.object.translation_mm);
+      all += 1;
+      stick += norm(slip - dot(slip, normal) * normal) < limit ? 1 : 0;
+    }
+  }
+  return stick / all;
+}
 
 SceneErrors errors_of(const std::string& name, int recordings = 6) {
   const SpatialScene scene(name);
@@ -54,6 +74,9 @@ SceneErrors errors_of(const std::string& name, int recordings = 6) {
       const double error = std::abs((r.ok() ? r.stick_ratio : 1) - truth);
       e.dots += error;
       e.told += r.updated() ? error : 0;
+      if (r.updated()) {
+        e.on_ball += std::abs(r.stick_ratio - truth_on_ball(scene[k - r.reference_age], scene[k]));
+      }
       answered += r.updated() ? 1 : 0;
       e.fused += std::abs((fused.ok() ? fused.stick_ratio : 1) - truth);
       frames += 1;
@@ -61,6 +84,7 @@ SceneErrors errors_of(const std::string& name, int recordings = 6) {
   }
   e.dots /= frames;
   e.told /= answered;
+  e.on_ball /= answered;
   e.fused /= frames;
   return e;
 }
@@ -87,11 +111,20 @@ TEST_CASE("stick ratio in space on finite-element membranes", "[spatial_stick]")
 }
 
 TEST_CASE("stick ratio in space of what rolls, and what slides as a whole", "[spatial_stick]") {
-  check("roll", 0.12, 0.125,
-        0.12);  // goal 0.10: dots at the edge of a ball are averaged with others
+  check("roll", 0.12, 0.125, 0.12);  // 0.035 along the ball, see below
   check("cylinder", 0.14, 0.13, 0.06);
   check("slide", 0.14, 0.1, 0.065);
   check("ball_slip", 0.15, 0.11, 0.10);
   check("rod_turn", 0.15, 0.115, 0.06);
   check("press", 0.08, 0.08, 0.08);
+}
+
+TEST_CASE("stick ratio in space of a rolling ball: what is off are dots that lift",
+          "[spatial_stick]") {
+  // The truth takes all of a dot's way from the object as slip, also at the edge of the contact,
+  // where an eighth of the dots come to the ball or leave it by 0.02 mm. Measured: 0.110 and 0.035.
+  const SceneErrors e = errors_of("roll");
+  INFO("roll: where the dots answer " << e.told << ", along the ball " << e.on_ball);
+  CHECK(e.on_ball < 0.045);
+  CHECK(e.told > 2 * e.on_ball);
 }
