@@ -64,7 +64,6 @@ struct NoShape {
 
 struct Found {
   RimFit<double> fit;
-  double force_error = 0;        ///< of the pull along x, relative
   double moment_error = 0;       ///< of M_z
   double neo_hookean_error = 0;  ///< of M_z, were the rubber taken for one
 };
@@ -73,7 +72,8 @@ OneRow carried(const InflatedRubber& pad) {
   return OneRow{2 * std::atan(pad.height_mm / pad.radius_mm)};
 }
 
-/// Calibrates by four pressures, then shears the rim as a drag and as a twist do.
+/// Calibrates by four pressures, then twists the rim. A drag has no closed form: what changes along
+/// the rim carries a part of it (tests/accuracy/wrench_of_another_rubber.cpp).
 Found found_of(InflatedRubber pad, double pressure_scale = 1) {
   const auto border = border_of(pad);
   RimCalibration<> calibration(grid_of(border), pad.radius_mm, carried(pad));
@@ -88,25 +88,21 @@ Found found_of(InflatedRubber pad, double pressure_scale = 1) {
   Found found;
   found.fit = calibration.fit({.stress_free_height_mm = pad.height_mm});
 
-  const Wrench<BalancedRim> wrench(grid_of(border), found.fit, {.base_radius_mm = pad.radius_mm}, {},
-                                   carried(pad),
-                                    ClampedRim{.mooney_share = found.fit.mooney_share});
+  const Wrench<BalancedRim> wrench(grid_of(border), found.fit, {.base_radius_mm = pad.radius_mm},
+                                   {}, carried(pad),
+                                   ClampedRim{.mooney_share = found.fit.mooney_share});
   auto work = wrench.workspace();
   const auto& rim = profile.back();
   const double shear = 0.03;
   const double pull = pad.modulus_n_per_mm * pad.shear_pull(rim.stretch, 1, shear);
   const auto turned = dots_of(pad, profile, [&](double) { return shear; });
-  const auto dragged = dots_of(pad, profile, [&](double t) { return -shear * std::sin(t); });
   const auto twist = wrench.by_modulus(grid_of(turned), pad.pressure_mpa, work);
   const Wrench<BalancedRim> neo_hookean(grid_of(border), found.fit,
                                         {.base_radius_mm = pad.radius_mm}, {}, carried(pad));
   const auto other = neo_hookean.by_modulus(grid_of(turned), pad.pressure_mpa, work);
   REQUIRE(other.ok());
-  const auto drag = wrench.by_modulus(grid_of(dragged), pad.pressure_mpa, work);
   REQUIRE(twist.ok());
-  REQUIRE(drag.ok());
   const double radius = pad.radius_mm;
-  found.force_error = drag.force_n.x / (pull * std::numbers::pi * radius) - 1;
   const double moment = pull * 2 * std::numbers::pi * radius * radius;
   found.moment_error = twist.moment_n_mm.z / moment - 1;
   found.neo_hookean_error = other.moment_n_mm.z / moment - 1;
@@ -124,11 +120,10 @@ TEST_CASE("rim calibration: the rubber is found from the apex at several pressur
     pad.mooney_share = per_first / (1 + per_first);
     const Found found = found_of(pad, pressure_scale);
     CAPTURE(pad.radius_mm, pad.mooney_share, found.fit.mooney_share, found.fit.modulus_n_per_mm,
-            found.fit.length_mm, found.fit.apex_residual_mm, found.force_error, found.moment_error,
+            found.fit.length_mm, found.fit.apex_residual_mm, found.moment_error,
             found.neo_hookean_error);
     CHECK(found.fit.modulus_n_per_mm == Approx(pad.modulus_n_per_mm).epsilon(0.003));
     CHECK(found.fit.mooney_share == Approx(pad.mooney_share).margin(0.05));
-    CHECK(std::abs(found.force_error) < 0.012);
     CHECK(std::abs(found.moment_error) < 0.01);
     CHECK(found.neo_hookean_error > 0.12 * pad.mooney_share - 0.003);
   };

@@ -144,7 +144,8 @@ S mooney_share_of(const Law& law) {
 ///   hoop stretch dlambda_2/dS = (cos(phi_0) - lambda cos(phi)) / a      (geometry)
 ///   shear        d(r rho P_e)/dS = 0, so with P_e = g s, g = 1 - m + m (lambda lambda_2)^-2,
 ///                chord = s (1 + (cos(phi_0) / a - g' / g) L / 2)            (torque)
-/// What changes along the rim is left out.
+/// What changes along the rim is left out here; the pull that Wrench takes from the balance of the
+/// strip between the rim and the middles of the chords has it.
 struct OneRow {
   static constexpr Index rows = 1;
   /// Noise of d, over that of a dot and the length.

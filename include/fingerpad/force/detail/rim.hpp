@@ -19,11 +19,34 @@ namespace fingerpad {
 inline namespace v0 {
 namespace detail::membrane {
 
+/// Pull per mu t and stress-free length across the direction of `other`: dW/d(along) of
+/// Mooney-Rivlin rubber, from the derivatives of the place along two directions that were
+/// perpendicular unit vectors. With both exchanged it is the pull across the other one.
+template <scalar S>
+Point3<S> rubber_pull(const Point3<S>& along, const Point3<S>& other, const S& mooney_share) {
+  const S a = squared_norm(along), b = squared_norm(other), c = dot(along, other);
+  const S inverse = S(1) / (a * b - c * c);
+  const Point3<S> of_area = b * along + S(-c) * other;  // half of d(J^2)/d(along)
+  const S neo_hookean = S(1) - mooney_share;
+  const S by_area = mooney_share - (neo_hookean + mooney_share * (a + b)) * inverse * inverse;
+  return S(neo_hookean + mooney_share * inverse) * along + by_area * of_area;
+}
+
+/// Of the strip between the rim and the middle of the chord to a side dot.
+template <scalar S>
+struct Strip {
+  Point3<S> chord;   ///< over its stress-free length
+  Point3<S> middle;  ///< of the chord, mm
+  Point3<S> around;  ///< change of the middle with the angle, mm
+  Point3<S> hoop;    ///< pull across the chord, per mu t
+};
+
 /// What the frame's side dots said, dot by dot in the order of the angle.
 template <scalar S>
 struct RimPulls {
   std::vector<RimPull<S>> dots;
   std::vector<Point3<S>> along;     ///< d of each dot
+  std::vector<Strip<S>> strips;     ///< between the rim and the middles of the chords
   std::vector<Point3<S>> segments;  ///< integral over each rim segment, mm times what a pull is in
   Index missing = 0;                ///< not found
   Index unstretched = 0;            ///< too little to tell a direction
@@ -60,6 +83,7 @@ class Rim {
     RimPulls<S> out;
     out.dots.resize(points_.size());
     out.along.resize(points_.size());
+    out.strips.resize(points_.size());
     out.segments.resize(static_cast<std::size_t>(segments_));
     return out;
   }
@@ -96,6 +120,15 @@ class Rim {
       const Point3<S>& border = points_[k].point.border;
       out.outward += value(S(pull.x * border.x + pull.y * border.y)) > 0 ? 1 : 0;
     }
+    if constexpr (requires {
+                    row.stress_free_inclination_rad;
+                    law.mooney_share;
+                  }) {
+      if (row.needs_modulus() && !(value(load_per_mm) == 0)) {
+        balance_strips(side_dots_mm, *row.stress_free_inclination_rad, S(law.mooney_share),
+                       load_per_mm, out);
+      }
+    }
   }
 
   /// Whether the side dots are those of these border points. All may be carried along by what
@@ -122,6 +155,65 @@ class Rim {
   }
 
  private:
+  /// The rim's pull by the balance of the strip between it and the ring through the middles of the
+  /// chords, per angle, with the ring's stress-free radius R = a - L cos(phi_0) / 2:
+  ///   a P_rim = R dW/dd + L / 2 d(dW/dh)/dpsi + p / (mu t) area,   h = (dx/dpsi) / R
+  /// OneRow leaves out what changes along the rim, which is 1.5 % of a drag; neighbours tell it. A
+  /// point without two neighbours keeps the pull that it has.
+  template <class Dots>
+  void balance_strips(const Dots& side_dots_mm,
+                      double stress_free_inclination_rad,
+                      const S& mooney_share,
+                      const S& load_per_mm,
+                      RimPulls<S>& out) const {
+    using std::cos;
+    const std::size_t n = points_.size();
+    const auto known = [&](std::size_t k) { return out.dots[k].status == RimPullStatus::ok; };
+    const auto has_both = [&](std::size_t k) {
+      return known(k) && known(after(k)) && known(before(k));
+    };
+    const auto ring_mm = [&](std::size_t k) {
+      return S(radius_mm_ -
+               points_[k].point.length_mm / S(2) * S(cos(S(stress_free_inclination_rad))));
+    };
+    for (std::size_t k = 0; k < n; ++k) {
+      const RimPoint<S>& rim = points_[k].point;
+      const Point3<S> chord = spatial_dot<S>(side_dots_mm(0, points_[k].column)) - rim.border;
+      out.strips[k].chord = chord / rim.length_mm;
+      out.strips[k].middle = rim.border + chord / S(2);
+    }
+    for (std::size_t k = 0; k < n; ++k) {
+      Strip<S>& strip = out.strips[k];
+      strip.around = change_around(k, [&](std::size_t j) { return out.strips[j].middle; });
+      strip.hoop = rubber_pull(strip.around / ring_mm(k), strip.chord, mooney_share);
+    }
+    for (std::size_t k = 0; k < n; ++k) {
+      if (!has_both(k) || !has_both(after(k)) || !has_both(before(k))) {
+        continue;
+      }
+      const RimPoint<S>& rim = points_[k].point;
+      const Strip<S>& strip = out.strips[k];
+      const S half_mm = rim.length_mm / S(2);
+      const Point3<S> across = rubber_pull(strip.chord, strip.around / ring_mm(k), mooney_share);
+      const Point3<S> hoop = change_around(k, [&](std::size_t j) { return out.strips[j].hoop; });
+      const Point3<S> mean_around = (radius_mm_ * rim.tangent + strip.around) / S(2);
+      const Point3<S> area = half_mm * cross(strip.chord, mean_around);  // into the pad, mm^2
+      out.dots[k].pull =
+          (ring_mm(k) * across + half_mm * hoop + S(-load_per_mm) * area) / radius_mm_;
+    }
+  }
+
+  /// Derivative by the angle of a vector that is known at each point, from its two neighbours in
+  /// the frame that turns with the angle.
+  template <class VectorAt>
+  Point3<S> change_around(std::size_t k, const VectorAt& at) const {
+    const std::size_t left = before(k), right = after(k);
+    const Point3<S> turning = (rotated(right, k, at(right)) - rotated(left, k, at(left))) /
+                              S(gap_after(left) + gap_after(k));
+    const Point3<S> here = at(k);
+    return {S(turning.x - here.y), S(turning.y + here.x), turning.z};
+  }
+
   struct Place {
     Index column;
     RimPoint<S> point;
@@ -155,6 +247,7 @@ class Rim {
   }
 
   std::size_t after(std::size_t k) const { return k + 1 == points_.size() ? 0 : k + 1; }
+  std::size_t before(std::size_t k) const { return k == 0 ? points_.size() - 1 : k - 1; }
   S gap_after(std::size_t k) const {
     const S turn = S(k + 1 == points_.size() ? 2 * std::numbers::pi : 0.0);
     return S(points_[after(k)].angle + turn - points_[k].angle);
@@ -249,18 +342,18 @@ class Rim {
       while (dots[(k + right) % n].status != RimPullStatus::ok && right < n) {
         ++right;
       }
-      const Point3<S> a = rotated((k + n - left) % n, k, dots);
-      const Point3<S> b = rotated((k + right) % n, k, dots);
+      const std::size_t from = (k + n - left) % n, to = (k + right) % n;
+      const Point3<S> a = rotated(from, k, dots[from].pull);
+      const Point3<S> b = rotated(to, k, dots[to].pull);
       const S share = S(static_cast<double>(left)) / S(static_cast<double>(left + right));
       dots[k].pull = a + share * (b - a);
     }
   }
 
-  /// The pull at point `from`, rotated about the axis to point `to`.
-  Point3<S> rotated(std::size_t from, std::size_t to, const std::vector<RimPull<S>>& dots) const {
+  /// A vector at point `from`, rotated about the axis to point `to`.
+  Point3<S> rotated(std::size_t from, std::size_t to, const Point3<S>& p) const {
     const Point3<S>& e = points_[from].point.tangent;
     const Point3<S>& f = points_[to].point.tangent;
-    const Point3<S>& p = dots[from].pull;
     const S along = dot(p, e);
     const S out = p.x * e.y - p.y * e.x;  // the radius is the tangent rotated by -90 degrees
     return {S(along * f.x + out * f.y), S(along * f.y - out * f.x), p.z};
