@@ -313,6 +313,7 @@ class SpatialStickRatio {
     // of averaged slips, noise explains a mean of 4 gain^2: weights fall to a fourth at twice that
     const double gain = neighbour_gain();
     const S width = S(8 * gain * gain);
+    std::fill(state.small_slips.begin(), state.small_slips.end(), SmallSlip<S>{});
     for (int pass = 0; pass < 4; ++pass) {
       weigh_followers(motion, limit, pairs);
       average_slips(limit, state);
@@ -331,14 +332,13 @@ class SpatialStickRatio {
   }
 
   /// Slips averaged over neighbours; those that slip by more than six thresholds do not count.
+  /// Cells without a pair are empty.
   void average_slips(const S& limit, State& state) const {
     using namespace detail::stick;
     const S gate = S(36) * limit;
-    std::fill(state.small_slips.begin(), state.small_slips.end(), SmallSlip<S>{});
     for (const SpatialPair<S>& p : state.pairs) {
-      if (p.slip_sq < gate) {
-        state.small_slips[p.padded] = {p.slip(), S(1)};
-      }
+      state.small_slips[p.padded] =
+          p.slip_sq < gate ? SmallSlip<S>{p.slip(), S(1)} : SmallSlip<S>{};
     }
     for (SpatialPair<S>& p : state.pairs) {
       p.mean_slip =

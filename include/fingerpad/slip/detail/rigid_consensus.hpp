@@ -39,11 +39,7 @@ struct SpatialPair {
   Point3<S> slip() const { return slip_u * u + slip_v * v; }
 };
 
-/// Weights of a dot and its neighbours in the mean of their slips: 6, 2 beside it, 1 across.
-constexpr int neighbour_weight(Index down, Index right) {
-  return down == 0 && right == 0 ? 6 : down == 0 || right == 0 ? 2 : 1;
-}
-/// Of the noise, what that mean leaves.
+/// Of the noise of one dot, what the mean of it and its eight neighbours leaves (mean_around).
 inline double neighbour_gain() {
   return std::sqrt(36.0 + 4 * 4 + 4 * 1) / 18;
 }
@@ -55,19 +51,18 @@ struct SmallSlip {
   S weight = S(0);
 };
 
-/// The mean of a slip, which counts, and its eight neighbours, in a grid of `across` columns.
+/// The mean of a slip, which counts, and its eight neighbours, in a grid of `across` columns. It
+/// has weight 6, those beside it 2, those across 1.
 template <class S>
 Point3<S> mean_around(const SmallSlip<S>* slips, Index across) {
-  Point3<S> sum = {S(0), S(0), S(0)};
-  S weight = S(0);
-  for (Index i = -1; i <= 1; ++i) {
-    for (Index j = -1; j <= 1; ++j) {
-      const SmallSlip<S>& n = slips[i * across + j];
-      sum += S(neighbour_weight(i, j)) * n.slip;
-      weight = weight + S(neighbour_weight(i, j)) * n.weight;
-    }
-  }
-  return sum / weight;
+  const SmallSlip<S>&a = slips[-across], &b = slips[-1], &c = slips[1], &d = slips[across];
+  const SmallSlip<S>&e = slips[-across - 1], &f = slips[1 - across], &g = slips[across - 1],
+        &h = slips[across + 1];
+  const Point3<S> beside = a.slip + b.slip + c.slip + d.slip;
+  const Point3<S> diagonal = e.slip + f.slip + g.slip + h.slip;
+  const S weight = S(6) + S(2) * S(a.weight + b.weight + c.weight + d.weight) +
+                   S(e.weight + f.weight + g.weight + h.weight);
+  return (S(6) * slips->slip + S(2) * beside + diagonal) / weight;
 }
 
 template <class S>
