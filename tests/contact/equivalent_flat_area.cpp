@@ -127,7 +127,7 @@ TEST_CASE("equivalent flat area: the same in float, and what lacks counts for no
   for (const auto& [row, col] : {std::pair<Index, Index>{60, 60}, {40, 66}, {70, 30}}) {
     with_holes.height(row, col) = test::nan;
   }
-  CHECK(with_holes.error() == Approx(exact.error()).margin(0.05));
+  CHECK(with_holes.error() == Approx(exact.error()).margin(0.02));  // 0.026 were holes nothing
 }
 
 TEST_CASE("equivalent flat area: variance is that of the tension within the first curve",
