@@ -18,6 +18,7 @@
 
 #include "fingerpad/foam/holding_force.hpp"
 #include "fingerpad/pipeline/foam_hand.hpp"
+#include "fingerpad/published/preslip.hpp"
 #include "support/catch.hpp"
 #include "support/pad.hpp"
 #include "support/refusal.hpp"
@@ -242,6 +243,37 @@ TEST_CASE("mistakes with foam fingers: what is told of single taxels", "[mistake
   CHECK(felt.left_out == 3);
   CHECK(felt.gaps == 1);
   CHECK(felt.status == TaxelStatus::quiet);
+}
+
+namespace {
+
+/// What a rule says at the end of a grip in which a finger is dead, or both are well.
+template <class Rule>
+PreslipStatus said_with(bool dead) {
+  const TaxelFeatures<> features(array_rows, array_cols);
+  const Preslip<Rule> preslip;
+  std::array states{features.start(), features.start()};
+  auto state = preslip.start();
+  Grip grip;
+  PreslipResult felt;
+  for (int k = 0; k < 121; ++k) {
+    const Sample sample = grip.next();
+    const Image<double> silent(array_rows, array_cols, 517);
+    const std::array samples{features(sample.fingers[0], sample.time_s, states[0]),
+                             features(dead ? silent : sample.fingers[1], sample.time_s, states[1])};
+    felt = preslip(samples, state);
+    CHECK_FALSE(felt.alarm);
+  }
+  return felt.status;
+}
+
+}  // namespace
+
+TEST_CASE("mistakes with foam fingers: one is dead, by either rule", "[mistakes]") {
+  CHECK(said_with<GraspLift>(false) == steady);
+  CHECK(said_with<GraspLift>(true) == cannot_tell);
+  CHECK(said_with<published::GraspOptimise>(false) == steady);
+  CHECK(said_with<published::GraspOptimise>(true) == cannot_tell);
 }
 
 TEST_CASE("mistakes with foam fingers: the state of another estimator", "[mistakes]") {

@@ -520,6 +520,32 @@ TEST_CASE("mistakes with the traction field: an aged membrane", "[mistakes]") {
   // with that of the free part
 }
 
+TEST_CASE("one convention of signs: a press", "[mistakes]") {
+  // a vector is what the object exerts on the pad, z toward the object; a normal force presses, > 0
+  const auto wrench = seen<LeastSquares>(Frame());
+  CHECK(wrench.force_n.z < 0);
+  CHECK(wrench.normal_force_n() == -wrench.force_n.z);
+  const auto scene = test::traction_scene("press");
+  const TractionField field(test::stress_free_dots());
+  auto maps = field.maps();
+  const Vector on_pad = field(scene.dots, scene.contact, scene.pressure_mpa, maps).force_n;
+  CHECK(on_pad.z < 0);
+  const auto load = contact_load(on_pad, {0, 0, 0}, scene.dots, scene.contact);
+  CHECK(load.normal_n == Approx(-on_pad.z).epsilon(0.01));
+  CHECK(NormalForce(published::force_of_area())(225.0).force_n > 0);
+  // the other sign is told where a normal force is given
+  const FrictionLimit<> limit;
+  auto state = limit.start();
+  ContactLoad<> pulls = load;
+  pulls.normal_n = on_pad.z;
+  CHECK(limit(load, 1, RatioUpdate::fresh, state).status != FrictionLimitStatus::no_load);
+  CHECK(limit(pulls, 1, RatioUpdate::fresh, state).status == FrictionLimitStatus::no_load);
+  const published::FrictionRatio<> ratio;
+  auto friction = ratio.start();
+  CHECK(ratio(on_pad, false, friction).ok());
+  CHECK_FALSE(ratio(Point2<double>{0, 0}, on_pad.z, false, friction).ok());
+}
+
 TEST_CASE("mistakes with forces: rims and membranes larger than any", "[mistakes]") {
   const auto said = [](Index rows, Index cols) {
     const LazyView dots(rows, cols, [](Index i, Index j) {
