@@ -14,18 +14,25 @@
 #include <fstream>
 #include <string>
 #include <thread>
+#include <utility>
+#include <vector>
 
 #include "overview.hpp"
 #include "recordings.hpp"
 #include "replay/io/failure.hpp"
+#include "resampling.hpp"
 
 namespace {
 
 using replay_many::Crew;
 using replay_many::Path;
 
+using Names = std::vector<std::string>;
+
 struct Arguments {
   Path recordings, out;
+  Names calibrations;  ///< to resample, in place of recordings
+  int resamples = 10000;
   replay_many::Settings settings;
   int jobs = 0;  ///< 0: one a core, or one a rank
   bool retry = false;
@@ -50,7 +57,37 @@ void expects_same(const Path& file, const std::string& options) {
   }
 }
 
+/// Whether all was worked off; otherwise it is told why not.
+bool worked_off(Crew& crew, std::vector<replay_many::Unit> units, const replay_many::Job& job) {
+  try {
+    replay_many::work_off(crew, std::move(units), job);
+    return true;
+  } catch (const replay::Failure& failure) {
+    std::fprintf(stderr, "replay_many: stopped: %s; the same command goes on from here\n",
+                 failure.what());
+    return false;
+  }
+}
+
+int lead_resampling(Crew& crew, const Arguments& arguments) {
+  const auto names = arguments.calibrations == Names{"all"} ? Names() : arguments.calibrations;
+  const replay_many::Resampling resampling(arguments.out, names, arguments.resamples);
+  replay_many::make_folders(arguments.out);
+  lock(arguments.out);
+  expects_same(arguments.out / "options.txt",
+               std::to_string(arguments.resamples) + " resamples of each calibration");
+  if (!worked_off(crew, resampling.left(), resampling.job())) {
+    return 3;
+  }
+  resampling.write_covariance();
+  std::printf("covariance   %s\n", (arguments.out / "covariance.csv").c_str());
+  return 0;
+}
+
 int lead(Crew& crew, const Arguments& arguments) {
+  if (!arguments.calibrations.empty()) {
+    return lead_resampling(crew, arguments);
+  }
   replay_many::Recordings recordings(arguments.recordings, arguments.out, arguments.settings);
   replay_many::make_folders(arguments.out);
   lock(arguments.out);
@@ -60,16 +97,7 @@ int lead(Crew& crew, const Arguments& arguments) {
   expects_same(
       arguments.out / "options.txt",
       std::string(replay.pictures ? "pictures" : "no pictures") + (replay.raw ? ", raw" : ""));
-  auto units = recordings.left(arguments.retry);
-  std::string stopped;
-  try {
-    replay_many::work_off(crew, std::move(units), recordings.job());
-  } catch (const replay::Failure& failure) {
-    stopped = failure.what();
-  }
-  if (!stopped.empty()) {
-    std::fprintf(stderr, "replay_many: stopped: %s; the same command goes on from here\n",
-                 stopped.c_str());
+  if (!worked_off(crew, recordings.left(arguments.retry), recordings.job())) {
     return 3;
   }
   std::filesystem::remove_all(arguments.out / "aside");
@@ -116,7 +144,7 @@ int main(int argc, char** argv) {
       "reason where there is none, and, of all together, summary.csv, all_frames.csv and\n"
       "overview.html.");
   Arguments arguments;
-  app.add_option("RECORDINGS", arguments.recordings, "the folder")->required();
+  const auto recordings = app.add_option("RECORDINGS", arguments.recordings, "the folder");
   app.add_option("--out", arguments.out, "the folder to write")->option_text("DIR")->required();
   app.add_option("--jobs", arguments.jobs,
                  "processes at a time; default: one a core, or one a rank")
@@ -129,12 +157,24 @@ int main(int argc, char** argv) {
   app.add_flag("--raw", arguments.settings.replay.raw, "as of replay");
   app.add_flag_callback(
       "--no-pictures", [&] { arguments.settings.replay.pictures = false; }, "as of replay");
+  app.add_option("--calibrations", arguments.calibrations,
+                 "in place of RECORDINGS: bootstrap and Monte Carlo of these calibrations of a "
+                 "virtual sensor, or of all; DIR receives covariance.csv")
+      ->option_text("NAME,...")
+      ->delimiter(',')
+      ->excludes(recordings);
+  app.add_option("--resamples", arguments.resamples, "of each of them")
+      ->check(CLI::Range(10, 1000000))
+      ->capture_default_str();
   app.add_flag("--retry", arguments.retry, "try again what has failed before");
   app.footer(
       "Exit status: 0 all done, 1 some failed, 2 wrong arguments, 3 stopped: the output cannot be\n"
       "written, or there are no recordings (any more).");
   try {
     app.parse(argc, argv);
+    if (arguments.recordings.empty() && arguments.calibrations.empty()) {
+      throw CLI::RequiredError("RECORDINGS or --calibrations");
+    }
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? 0 : 2;
   }

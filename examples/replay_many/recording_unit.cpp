@@ -17,6 +17,7 @@
 #include "replay/io/failure.hpp"
 #include "replay/io/images.hpp"
 #include "replay/io/recording.hpp"
+#include "resampling.hpp"
 
 namespace replay_many {
 namespace {
@@ -144,6 +145,7 @@ bool is_of_output(const std::string& message, const Path& out) {
 
 int run_unit(const std::vector<std::string>& arguments) {
   const bool joins = arguments.at(0) == "join";
+  const bool resamples = arguments.at(0) == "resamples";
   const Path out = arguments.at(joins ? 1 : 2);
   const auto ended = [&](End end, const std::string& why) {
     std::fprintf(stderr, "%s%s\n", why.c_str(), end == End::no_room ? room_in(out).c_str() : "");
@@ -154,6 +156,10 @@ int run_unit(const std::vector<std::string>& arguments) {
   };
   try {
     cv::setNumThreads(1);  // the other cores have units of their own
+    if (resamples) {
+      do_resamples(arguments);
+      return static_cast<int>(End::done);
+    }
     if (std::error_code error; !joins && !fs::is_directory(arguments.at(1), error)) {
       return ended(End::missing, arguments[1] + ": there is no such folder");
     }

@@ -1,0 +1,447 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+#include "trials.hpp"
+
+#include <cmath>
+#include <limits>
+#include <map>
+#include <opencv2/core.hpp>
+#include <span>
+#include <utility>
+
+#include "fingerpad/adapt/opencv.hpp"
+#include "fingerpad/calibrate/contact.hpp"
+#include "fingerpad/calibrate/depth.hpp"
+#include "fingerpad/calibrate/force.hpp"
+#include "fingerpad/calibrate/neighbour_light.hpp"
+#include "fingerpad/calibrate/rim.hpp"
+#include "fingerpad/calibrate/slip_noise.hpp"
+#include "fingerpad/calibrate/taxels.hpp"
+#include "fingerpad/depth/neighbour_light.hpp"
+#include "replay/io/failure.hpp"
+
+namespace replay_many {
+namespace {
+
+using Map = cv::Mat_<double>;
+using Matrix = std::vector<std::vector<double>>;
+constexpr double none = std::numeric_limits<double>::quiet_NaN();
+constexpr std::uint64_t measured_once = 20110801;
+
+/// Of standard errors alone.
+Matrix diagonal(const std::vector<double>& sds) {
+  Matrix matrix(sds.size(), std::vector<double>(sds.size(), none));
+  for (std::size_t k = 0; k < sds.size(); ++k) {
+    matrix[k][k] = sds[k] * sds[k];
+  }
+  return matrix;
+}
+
+template <class Covariance>
+Matrix block(const Covariance& covariance, const std::vector<std::size_t>& places) {
+  Matrix matrix;
+  for (const std::size_t i : places) {
+    matrix.emplace_back();
+    for (const std::size_t j : places) {
+      matrix.back().push_back(covariance(i, j));
+    }
+  }
+  return matrix;
+}
+
+/// A calibration in three functions: Data measure(Chance&), Data draw(const Data&, Chance&) and
+/// Estimate fit(const Data&).
+template <class Measure, class Draw, class Fit>
+Trial trial(std::vector<std::string> parameters,
+            std::vector<double> truth,
+            double weight,
+            const Measure& measure,
+            const Draw& draw,
+            const Fit& fit) {
+  Chance chance(measured_once);
+  const auto data = measure(chance);
+  return {.name = {},
+          .parameters = std::move(parameters),
+          .truth = std::move(truth),
+          .once = fit(data),
+          .bootstrap = [=](Chance& next) { return fit(draw(data, next)).values; },
+          .monte_carlo = [=](Chance& next) { return fit(measure(next)).values; },
+          .weight = weight};
+}
+
+/// What is measured one by one is drawn one by one.
+const auto draw_samples = [](const auto& data, Chance& chance) { return chance.drawn_from(data); };
+
+// --- light
+// ----------------------------------------------------------------------------------------
+
+/// Sixty colours at known depths, each the mean of 16 frames of a block of 16 x 16 pixels with shot
+/// noise of a grey level.
+Trial absorption() {
+  using Samples = std::vector<fingerpad::DepthSample<double>>;
+  const fingerpad::Camera<double> camera{};
+  const fingerpad::Absorption<double> fluid{};
+  constexpr double noise = 1.0 / 64;
+  const auto measure = [=](Chance& chance) {
+    Samples samples;
+    for (int k = 0; k < 60; ++k) {
+      const double depth_mm = 0.3 + 0.2 * k;
+      auto s = depth_sample(camera, 239.5 + 20 * (k % 5 - 2), 319.5, depth_mm,
+                            fingerpad::Colour<double>{});
+      s.colour = colour_at_depth(fluid, s.pencil, 57.0, 0.0163, depth_mm);
+      s.colour.red += noise * chance.normal();
+      s.colour.green += noise * chance.normal();
+      samples.push_back(s);
+    }
+    return samples;
+  };
+  const auto fit = [](const Samples& samples) {
+    const auto found = fingerpad::fit_absorption(std::span(samples));
+    return Estimate{
+        {found.fluid.c_red_per_mm, found.fluid.c_green_per_mm - found.fluid.c_red_per_mm,
+         found.fluid.kappa},
+        block([&](auto i, auto j) { return found.covariance(int(i), int(j)); }, {0, 1, 2})};
+  };
+  return trial({"c_red_per_mm", "c_green_less_c_red_per_mm", "kappa"},
+               {fluid.c_red_per_mm, fluid.c_green_per_mm - fluid.c_red_per_mm, fluid.kappa}, 0.5,
+               measure, draw_samples, fit);
+}
+
+constexpr int light_rows = 20, light_cols = 24;
+constexpr double light_pitch_mm = 0.64;
+
+/// A plate pressed into a pad, at a place.
+Map pressed_pad(double pressed_mm, double shift_mm) {
+  Map depth(light_rows, light_cols);
+  for (int i = 0; i < light_rows; ++i) {
+    for (int j = 0; j < light_cols; ++j) {
+      const double x = light_pitch_mm * (j - light_cols / 2);
+      const double y = light_pitch_mm * (i - light_rows / 2);
+      const double cap = 8 - 0.08 * (x * x + y * y);
+      depth(i, j) = cap > 0 ? (std::min)(cap, 8 - pressed_mm + 0.1 * (x - shift_mm)) : none;
+    }
+  }
+  return depth;
+}
+
+/// Twelve presses of known depth, 0.02 mm of noise of the known depths.
+Trial neighbour_light() {
+  using Press = std::pair<Map, Map>;  ///< measured and true depth
+  const fingerpad::NeighbourLight<float> light{3, 0.004F, 0.2F};
+  const Map free_mm = pressed_pad(0, 0);
+  std::vector<Press> exact;
+  const fingerpad::NeighbourLightCompensation<> compensation(
+      light, static_cast<float>(light_pitch_mm), free_mm);
+  auto workspace = compensation.workspace();
+  for (int k = 0; k < 12; ++k) {
+    const Map measured = pressed_pad(0.8 + 0.2 * k, k % 3 - 1);
+    cv::Mat_<float> truth(measured.size());
+    (void)compensation(measured, truth, workspace);
+    exact.emplace_back(measured, Map());
+    truth.convertTo(exact.back().second, CV_64F);
+  }
+  const auto measure = [=](Chance& chance) {
+    std::vector<Press> presses;
+    for (const auto& [measured, truth] : exact) {
+      presses.emplace_back(measured, truth.clone());
+      for (double& depth : presses.back().second) {
+        depth += 0.02 * chance.normal();
+      }
+    }
+    return presses;
+  };
+  const auto fit = [=](const std::vector<Press>& presses) {
+    std::vector<Map> measured, truth;
+    for (const auto& [one, other] : presses) {
+      measured.push_back(one);
+      truth.push_back(other);
+    }
+    const auto found = fingerpad::fit_neighbour_light(
+        light_pitch_mm, free_mm, std::span<const Map>(measured), std::span<const Map>(truth),
+        {light.radius_px, light.radius_px, 1});
+    return Estimate{{found.light.m0_mm_per_rad, found.light.n_per_mm},
+                    diagonal({found.m0_sd, found.n_sd})};
+  };
+  return trial({"m0_mm_per_rad", "n_per_mm"}, {0.004, 0.2}, 2, measure, draw_samples, fit);
+}
+
+/// Ten frames of a free pad, 0.005 mm of noise; what the rule says without noise is not known here.
+Trial contact() {
+  constexpr int rows = 28, cols = 28;
+  constexpr double pitch_mm = 0.4, radius_mm = 20;
+  const fingerpad::Camera<double> camera{50, 1.33, 13.5, 13.5, pitch_mm};
+  const auto measure = [=](Chance& chance) {
+    std::vector<Map> frames;
+    for (int k = 0; k < 10; ++k) {
+      frames.emplace_back(rows, cols);
+      for (int i = 0; i < rows; ++i) {
+        for (int j = 0; j < cols; ++j) {
+          const double rho = pitch_mm * std::hypot(i - 13.5, j - 13.5);
+          frames.back()(i, j) =
+              std::sqrt(radius_mm * radius_mm - rho * rho) - 8 + 0.005 * chance.normal();
+        }
+      }
+    }
+    return frames;
+  };
+  const auto fit = [=](const std::vector<Map>& frames) {
+    fingerpad::FreePadCalibration<fingerpad::ClampedMean<>, fingerpad::Camera<double>, double>
+        calibration(camera, rows, cols, {6});
+    for (const Map& frame : frames) {
+      (void)calibration.add(frame);
+    }
+    const auto pad = calibration.fit();
+    const double sd = pad.noise_per_mm / std::sqrt(static_cast<double>(pad.frames));
+    return Estimate{{pad.threshold_per_mm, pad.median_per_mm}, diagonal({sd / 2, sd})};
+  };
+  return trial({"threshold_per_mm", "curvature_of_free_pad_per_mm"}, {none, none}, 6, measure,
+               draw_samples, fit);
+}
+
+// --- dots and rim
+// ---------------------------------------------------------------------------------
+
+/// Twenty frames of 9 x 9 dots at rest, 0.06 px of noise.
+Trial dots() {
+  constexpr int rows = 9, cols = 9;
+  constexpr double noise_px = 0.06;
+  using Frame = cv::Mat_<cv::Vec2d>;
+  const auto measure = [=](Chance& chance) {
+    std::vector<Frame> frames;
+    for (int k = 0; k < 20; ++k) {
+      frames.emplace_back(rows, cols);
+      for (int i = 0; i < rows; ++i) {
+        for (int j = 0; j < cols; ++j) {
+          frames.back()(i, j) = {20.0 * j + noise_px * chance.normal(),
+                                 20.0 * i + noise_px * chance.normal()};
+        }
+      }
+    }
+    return frames;
+  };
+  const auto fit = [=](const std::vector<Frame>& frames) {
+    fingerpad::DotNoiseCalibration calibration(rows, cols);
+    for (const Frame& frame : frames) {
+      (void)calibration.add(frame);
+    }
+    const auto noise = calibration.fit();
+    return Estimate{{noise.noise_px}, diagonal({noise.noise_error_px})};
+  };
+  return trial({"noise_px"}, {noise_px}, 1, measure, draw_samples, fit);
+}
+
+/// Twenty frames of side dots at four pressures, 0.003 mm of noise.
+Trial rim() {
+  constexpr double base_mm = 18, length_mm = 0.8, modulus = 0.5, noise_mm = 0.003;
+  constexpr int columns = 36;
+  struct Frame {
+    std::size_t level;
+    double pressure_mpa;
+    cv::Mat_<cv::Vec3d> dots_mm;
+  };
+  cv::Mat_<cv::Vec3d> border(1, columns);
+  for (int j = 0; j < columns; ++j) {
+    const double angle = 2 * std::numbers::pi * j / columns;
+    border(0, j) = {base_mm * std::cos(angle), base_mm * std::sin(angle), 0};
+  }
+  const auto measure = [=](Chance& chance) {
+    const double stretches[] = {1.15, 1.3, 1.5, 1.8};
+    std::vector<Frame> frames;
+    for (std::size_t k = 0; k < 20; ++k) {
+      const std::size_t level = k / 5;
+      const double stretch = stretches[level], incline = 1.0 + 0.1 * static_cast<double>(level);
+      const double pull = modulus * std::sin(incline) * (stretch - std::pow(stretch, -3));
+      frames.push_back({level, 2 * pull / base_mm, cv::Mat_<cv::Vec3d>(1, columns)});
+      for (int j = 0; j < columns; ++j) {
+        const double angle = 2 * std::numbers::pi * j / columns;
+        const double rho = base_mm - length_mm * stretch * std::cos(incline);
+        frames.back().dots_mm(0, j) = {
+            rho * std::cos(angle) + noise_mm * chance.normal(),
+            rho * std::sin(angle) + noise_mm * chance.normal(),
+            length_mm * stretch * std::sin(incline) + noise_mm * chance.normal()};
+      }
+    }
+    return frames;
+  };
+  // A level without a frame would be another calibration: frames are drawn within their level.
+  const auto draw = [](const std::vector<Frame>& frames, Chance& chance) {
+    std::vector<Frame> drawn;
+    for (std::size_t k = 0; k < frames.size(); ++k) {
+      drawn.push_back(frames[5 * (k / 5) + chance.below(5)]);
+    }
+    return drawn;
+  };
+  const auto fit = [=](const std::vector<Frame>& frames) {
+    fingerpad::RimCalibration<> calibration(border, base_mm);
+    for (const Frame& frame : frames) {
+      (void)calibration.add(frame.level, frame.dots_mm, frame.pressure_mpa);
+    }
+    const auto found = calibration.fit({.side_dot_noise_mm = noise_mm});
+    const double shared = found.correlation * found.length_sd_mm * found.modulus_sd_n_per_mm;
+    return Estimate{{found.length_mm, found.modulus_n_per_mm},
+                    {{found.length_sd_mm * found.length_sd_mm, shared},
+                     {shared, found.modulus_sd_n_per_mm * found.modulus_sd_n_per_mm}}};
+  };
+  return trial({"side_dot_length_mm", "membrane_modulus_n_per_mm"}, {length_mm, modulus}, 0.5,
+               measure, draw, fit);
+}
+
+// --- forces
+// ---------------------------------------------------------------------------------------
+
+using Sample = fingerpad::ForceSample<double>;
+using Samples = std::vector<Sample>;
+
+constexpr double force_noise_n = 0.05;
+constexpr double reference_mm = 2;
+
+/// Forty contacts of all sizes, displaced and rotated, with noise of 0.05 N and 0.05 N mm.
+Samples contacts(Chance& chance) {
+  Samples samples;
+  for (int k = 0; k < 40; ++k) {
+    Sample s;
+    s.measure = chance.uniform(0.4, 5);
+    s.displacement_mm = {chance.uniform(-1, 1), chance.uniform(-1, 1)};
+    s.rotation_rad = chance.uniform(-0.15, 0.15);
+    s.normal_force_n =
+        0.5 * s.measure + 0.3 * s.measure * s.measure + force_noise_n * chance.normal();
+    const double gain = 2 * std::pow(s.measure / reference_mm, 0.7);
+    s.tangential_force_n = {gain * s.displacement_mm.x + force_noise_n * chance.normal(),
+                            gain * s.displacement_mm.y + force_noise_n * chance.normal()};
+    s.moment_n_mm = 40 * std::pow(s.measure / reference_mm, 1.6) * s.rotation_rad +
+                    force_noise_n * chance.normal();
+    s.load = k;
+    samples.push_back(s);
+  }
+  return samples;
+}
+
+Trial normal_force() {
+  const auto fit = [](const Samples& samples) {
+    const auto found = fingerpad::fit_normal_force<2>(std::span(samples));
+    return Estimate{{found.curve.coefficients[1], found.curve.coefficients[2]},
+                    block([&](auto i, auto j) { return found.errors.covariance[i][j]; }, {1, 2})};
+  };
+  return trial({"coefficient_1", "coefficient_2"}, {0.5, 0.3}, 0.1, contacts, draw_samples, fit);
+}
+
+template <class Fit>
+Estimate of_shear(const Fit& found) {
+  return {{found.polynomial.coefficients[0], found.exponent},
+          block([&](auto i, auto j) { return found.covariance[i][j]; }, {0, 1})};
+}
+
+Trial tangential_force() {
+  const auto fit = [](const Samples& samples) {
+    return of_shear(fingerpad::fit_tangential_force(std::span(samples), reference_mm));
+  };
+  return trial({"force_n_per_mm", "displacement_exponent"}, {2, 0.7}, 0.3, contacts, draw_samples,
+               fit);
+}
+
+Trial moment() {
+  const auto fit = [](const Samples& samples) {
+    return of_shear(fingerpad::fit_moment(std::span(samples), reference_mm));
+  };
+  return trial({"moment_n_mm_per_rad", "rotation_exponent"}, {40, 1.6}, 0.3, contacts, draw_samples,
+               fit);
+}
+
+/// Forces along by a matrix, of contacts whose size does not matter.
+Trial linear_shear() {
+  const auto measure = [](Chance& chance) {
+    Samples samples = contacts(chance);
+    for (Sample& s : samples) {
+      const auto d = s.displacement_mm;
+      s.tangential_force_n = {1.9 * d.x - 0.3 * d.y + 0.4 + force_noise_n * chance.normal(),
+                              0.2 * d.x + 2.4 * d.y - 0.25 + force_noise_n * chance.normal()};
+    }
+    return samples;
+  };
+  const auto fit = [](const Samples& samples) {
+    const auto found =
+        fingerpad::fit_linear_shear(std::span(samples), fingerpad::shear_without_measure<double>());
+    const auto& x = found.x_standard_errors;
+    const auto& y = found.y_standard_errors;
+    return Estimate{{found.map.x_by_x, found.map.x_by_y, found.map.y_by_x, found.map.y_by_y},
+                    diagonal({x[0], x[1], y[0], y[1]})};
+  };
+  return trial({"x_by_x", "x_by_y", "y_by_x", "y_by_y"}, {1.9, -0.3, 0.2, 2.4}, 0.1, measure,
+               draw_samples, fit);
+}
+
+// --- foam
+// -----------------------------------------------------------------------------------------
+
+/// Sixty windows of 3 x 3 taxels at rest, 3 counts of noise.
+Trial taxels() {
+  constexpr int rows = 3, cols = 3, windows = 60;
+  constexpr double noise = 3, period_s = 1.0 / 30;
+  using Window = std::vector<Map>;
+  const fingerpad::TaxelOptions<double> options{};
+  const auto length = static_cast<int>(options.window);
+  const auto measure = [=](Chance& chance) {
+    std::vector<Window> all(windows);
+    for (Window& window : all) {
+      for (int k = 0; k < length; ++k) {
+        window.emplace_back(rows, cols);
+        for (double& reading : window.back()) {
+          reading = 800 + noise * chance.normal();
+        }
+      }
+    }
+    return all;
+  };
+  const auto fit = [=](const std::vector<Window>& all) {
+    fingerpad::TaxelNoiseCalibration calibration(rows, cols, options);
+    int sample = 0;
+    for (const Window& window : all) {
+      for (const Map& readings : window) {
+        (void)calibration.add(readings, period_s * sample++);
+      }
+    }
+    const auto found = calibration.fit();
+    const double numbers = static_cast<double>(found.windows) * length * rows * cols;
+    return Estimate{{found.typical}, diagonal({found.typical / std::sqrt(2 * numbers)})};
+  };
+  return trial({"noise"}, {noise}, 1, measure, draw_samples, fit);
+}
+
+const std::map<std::string, Trial (*)()>& makers() {
+  static const std::map<std::string, Trial (*)()> all = {{"absorption", absorption},
+                                                         {"neighbour_light", neighbour_light},
+                                                         {"contact", contact},
+                                                         {"dots", dots},
+                                                         {"rim", rim},
+                                                         {"normal_force", normal_force},
+                                                         {"tangential_force", tangential_force},
+                                                         {"moment", moment},
+                                                         {"linear_shear", linear_shear},
+                                                         {"taxels", taxels}};
+  return all;
+}
+
+}  // namespace
+
+const std::vector<std::string>& trial_names() {
+  static const std::vector<std::string> names = [] {
+    std::vector<std::string> all;
+    for (const auto& [name, make] : makers()) {
+      all.push_back(name);
+    }
+    return all;
+  }();
+  return names;
+}
+
+Trial trial_of(const std::string& name) {
+  const auto found = makers().find(name);
+  if (found == makers().end()) {
+    replay::fail(name, "there is no such calibration here");
+  }
+  Trial trial = found->second();
+  trial.name = name;
+  return trial;
+}
+
+}  // namespace replay_many
