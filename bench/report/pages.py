@@ -227,6 +227,7 @@ def main():
     write_methods(build, docs, about)
     write_chain(build, docs, about)
     replace_table(docs / "hard_cases.md", "hard_cases", (build / "hard_cases.md").read_text("utf-8"))
+    replace_table(docs / "hard_cases.md", "worst_case", (build / "worst_case.md").read_text("utf-8"))
     replace_table(docs / "papers.md", "papers", (build / "papers.md").read_text("utf-8"))
     replace_table(docs / "what_a_scene_needs.md", "ablation",
                   (build / "ablation.md").read_text("utf-8"))

@@ -1,0 +1,323 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+// For a real-time engineer, a row a method: how much longer than usual a call takes on the input
+// that is hardest for it, the slowest of many calls, page faults and allocations. No
+// google-benchmark program: it prints the Markdown table of docs/hard_cases.md. "worst_case CALLS"
+// makes so many calls of each row, but no more than half a minute's.
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <cstdlib>
+#include <iostream>
+#include <vector>
+
+#include "chain/pressed_frames.hpp"
+#include "fingerpad/contact/contact_by_difference.hpp"
+#include "fingerpad/contact/contact_region.hpp"
+#include "fingerpad/depth/depth.hpp"
+#include "fingerpad/foam/taxel_features.hpp"
+#include "fingerpad/force/traction.hpp"
+#include "fingerpad/slip/contact_slide.hpp"
+#include "fingerpad/slip/spatial_stick_ratio.hpp"
+#include "fingerpad/slip/stick_ratio.hpp"
+#include "support/gel_frames.hpp"
+#include "support/slipping_patch.hpp"
+#include "support/traction_scenes.hpp"
+#include "worst_case/rows.hpp"
+
+using namespace fingerpad;
+using bench::worst_case::Kind;
+using test::Image;
+
+namespace {
+
+constexpr int variants = 16;  ///< of each kind of input
+std::size_t variant(int k) {
+  return static_cast<std::size_t>(k % variants);
+}
+
+template <class T, class Make>
+std::vector<T> made(Make make) {
+  std::vector<T> all;
+  for (int k = 0; k < variants; ++k) {
+    test::Random random(static_cast<std::uint64_t>(k + 1));
+    all.push_back(make(k, random));
+  }
+  return all;
+}
+
+Image<std::uint8_t> noise(Index rows, Index cols, test::Random& random) {
+  Image<std::uint8_t> image(rows, cols);
+  for (std::uint8_t& pixel : image.cells) {
+    pixel = static_cast<std::uint8_t>(random.whole(0, 255));
+  }
+  return image;
+}
+test::Frame<std::uint8_t> noise_frame(test::Random& random) {
+  test::Frame<std::uint8_t> frame(480, 640);
+  frame.red = noise(480, 640, random);
+  frame.green = noise(480, 640, random);
+  return frame;
+}
+
+/// Dots anywhere, a tenth of them missing.
+template <class Point>
+Image<Point> scattered(Index rows, Index cols, double from, double to, test::Random& random) {
+  Image<Point> dots(rows, cols);
+  for (Point& dot : dots.cells) {
+    dot.x = random.uniform() < 0.1 ? test::nan : random.uniform(from, to);
+    dot.y = random.uniform(from, to);
+    if constexpr (requires { dot.z; }) {
+      dot.z = random.uniform(4, 14);
+    }
+  }
+  return dots;
+}
+
+const chain::PressedFrames& pressed() {
+  static const chain::PressedFrames frames;
+  return frames;
+}
+
+/// The chain on pressed frames, on noise, and on pressed frames with dots and side dots anywhere.
+template <class Methods>
+std::vector<Kind> of_chain() {
+  const auto options = pressed().options();
+  static Fingertip<std::remove_cvref_t<decltype(options.reference)>, Methods> fingertip(options);
+  static const auto frames =
+      made<test::Frame<std::uint8_t>>([](int, test::Random& r) { return noise_frame(r); });
+  const Index side_dots = pressed()[0].side_dots_mm.cols();
+  static const auto dots = made<Image<Point2<double>>>(
+      [](int, test::Random& r) { return scattered<Point2<double>>(21, 21, 0, 600, r); });
+  static const auto side = made<Image<Point3<double>>>([side_dots](int, test::Random& r) {
+    return scattered<Point3<double>>(1, side_dots, -20, 20, r);
+  });
+  return {{"a pressed pad", [](int k) { (void)touch_of(fingertip, pressed()[variant(k)].view()); }},
+          {"an image of noise",
+           [](int k) {
+             auto in = pressed()[variant(k)].view();
+             in.image = {as_view(frames[variant(k)].red), as_view(frames[variant(k)].green)};
+             (void)touch_of(fingertip, in);
+           }},
+          {"dots and side dots anywhere", [](int k) {
+             auto in = pressed()[variant(k)].view();
+             in.dots_px = as_view(dots[variant(k)]);
+             in.side_dots_mm = as_view(side[variant(k)]);
+             (void)touch_of(fingertip, in);
+           }}};
+}
+
+std::vector<Kind> of_depth() {
+  const auto options = pressed().options();
+  static const DepthEstimator depth(options.camera, options.fluid, options.reference);
+  static auto work = depth.workspace<std::uint8_t>();
+  static Image<float> to(480, 640);
+  static const auto frames =
+      made<test::Frame<std::uint8_t>>([](int, test::Random& r) { return noise_frame(r); });
+  return {{"a pressed pad",
+           [](int k) {
+             const auto& image = pressed()[variant(k)].image;
+             (void)depth(image.red, image.green, to, work);
+           }},
+          {"an image of noise",
+           [](int k) { (void)depth(frames[variant(k)].red, frames[variant(k)].green, to, work); }}};
+}
+
+std::vector<Kind> of_contact_region() {
+  const auto options = pressed().options();
+  static const ContactRegion<> region(options.camera, 480, 640, options.contact);
+  static auto work = region.workspace();
+  static Image<std::uint8_t> mask(480, 640);
+  const auto depths_of = [](auto depth) {
+    return made<Image<float>>([&](int k, test::Random& random) {
+      Image<float> image(480, 640);
+      for (Index i = 0; i < 480; ++i) {
+        for (Index j = 0; j < 640; ++j) {
+          image(i, j) = static_cast<float>(depth(k, i, j, random));
+        }
+      }
+      return image;
+    });
+  };
+  static const auto plain = depths_of([](int k, Index i, Index j, test::Random&) {
+    return pressed()[static_cast<std::size_t>(k)].depth_mm(i, j);
+  });
+  static const auto noisy =
+      depths_of([](int, Index, Index, test::Random& random) { return random.uniform(0, 14); });
+  static const auto holes = depths_of([](int k, Index i, Index j, test::Random&) {
+    return (i / 8 + j / 8) % 2 == 0 ? test::nan
+                                    : pressed()[static_cast<std::size_t>(k)].depth_mm(i, j);
+  });
+  const auto call = [](const std::vector<Image<float>>& depths) {
+    return [&](int k) { (void)region(depths[variant(k)], mask, work); };
+  };
+  return {{"a pressed pad", call(plain)},
+          {"depths of noise", call(noisy)},
+          {"holes like a chessboard", call(holes)}};
+}
+
+std::vector<Kind> of_gel(bool with_slide) {
+  static const test::GelCamera camera{.rows = 480, .cols = 640, .mm_per_px = 0.04};
+  static const auto usual = made<test::ColourFrame>([](int k, test::Random& random) {
+    GelContact<> contact(GelPad{});
+    contact.drag(0.5, {0.05 * k, 0.02 * k});
+    return camera.frame(contact, random);
+  });
+  static const auto noisy = made<test::ColourFrame>([](int, test::Random& random) {
+    test::ColourFrame frame(480, 640);
+    for (auto& pixel : frame.cells) {
+      pixel = {static_cast<std::uint8_t>(random.whole(0, 255)),
+               static_cast<std::uint8_t>(random.whole(0, 255)),
+               static_cast<std::uint8_t>(random.whole(0, 255))};
+    }
+    return frame;
+  });
+  static const auto region = [] {
+    test::Random random(99);
+    return ContactByDifference<>(std::vector{camera.frame(GelContact<>(GelPad{}), random)});
+  }();
+  static auto work = region.workspace();
+  static Image<std::uint8_t> mask(480, 640);
+  static const auto dots = made<test::GelDots>([](int k, test::Random& random) {
+    GelContact<> contact(GelPad{});
+    contact.drag(0.5, {0.05 * k, 0.02 * k});
+    return camera.dots(contact, random);
+  });
+  static const ContactSlide<> slide(work.difference().rows(), work.difference().cols(),
+                                    dots[0].rows(), dots[0].cols());
+  static auto state = slide.start();
+  const auto call = [with_slide](const std::vector<test::ColourFrame>& frames) {
+    return [&frames, with_slide](int k) {
+      (void)region(frames[variant(k)], mask, work);
+      if (with_slide) {
+        (void)slide(work.difference(), work.contact(), dots[variant(k)], state);
+      }
+    };
+  };
+  return {{"a ball on a gel", call(usual)}, {"an image of noise", call(noisy)}};
+}
+
+/// Dots of a patch that slips, the same in contact anywhere, and one motion for each dot of a
+/// frame.
+std::vector<Kind> of_stick_in_space() {
+  static const SpatialStickRatio<double> ratio(21, 21);
+  static auto state = ratio.start();
+  static Image<DotState> states(21, 21);
+  static const test::SlippingPatch patch;
+  const auto moved = [](double lateral_mm, double step_mm) {
+    return made<Image<Point3<double>>>([=](int k, test::Random& random) {
+      auto dots = noisy(patch.dots, lateral_mm, 0.025, random);
+      for (auto& dot : dots.cells) {
+        dot.x += step_mm * k;
+      }
+      return dots;
+    });
+  };
+  static const auto usual = moved(0.005, 0.05);
+  static const auto shaken = moved(0.3, 0.05);
+  static const auto anywhere = made<Image<Point3<double>>>(
+      [](int, test::Random& random) { return scattered<Point3<double>>(21, 21, -15, 15, random); });
+  static const Image<std::uint8_t> all(21, 21, 1);
+  return {{"a patch that is dragged",
+           [](int k) { (void)ratio(usual[variant(k)], patch.contact, states, state); }},
+          {"all dots touch, each shaken by a fifth of a pitch",
+           [](int k) { (void)ratio(shaken[variant(k)], all, states, state); }},
+          {"dots anywhere", [](int k) { (void)ratio(anywhere[variant(k)], all, states, state); }}};
+}
+
+std::vector<Kind> of_stick_in_the_image() {
+  static const StickRatio<> ratio(21, 21);
+  static auto state = ratio.start();
+  static Image<DotState> states(21, 21);
+  const auto moved = [](double shake_px) {
+    return made<Image<Point2<double>>>([=](int k, test::Random& random) {
+      Image<Point2<double>> dots(21, 21);
+      for (Index i = 0; i < 21; ++i) {
+        for (Index j = 0; j < 21; ++j) {
+          dots(i, j) = {100 + 19.5 * static_cast<double>(j) + k + shake_px * random.normal(),
+                        40 + 19.5 * static_cast<double>(i) + shake_px * random.normal()};
+        }
+      }
+      return dots;
+    });
+  };
+  static const auto usual = moved(0.06);
+  static const auto shaken = moved(3);
+  static const auto anywhere = made<Image<Point2<double>>>(
+      [](int, test::Random& random) { return scattered<Point2<double>>(21, 21, 0, 600, random); });
+  static const Image<std::uint8_t> all(21, 21, 1);
+  const auto call = [](const std::vector<Image<Point2<double>>>& dots) {
+    return [&](int k) { (void)ratio(dots[variant(k)], all, states, state); };
+  };
+  return {{"dots that are dragged", call(usual)},
+          {"each shaken by a seventh of a pitch", call(shaken)},
+          {"dots anywhere", call(anywhere)}};
+}
+
+std::vector<Kind> of_traction() {
+  static const TractionField field(test::stress_free_dots());
+  static auto maps = field.maps();
+  static const auto drag = test::traction_scene("drag");
+  static const auto usual = made<test::Dots>([](int, test::Random&) { return drag.dots; });
+  static const auto shaken = made<test::Dots>([](int, test::Random& random) {
+    auto dots = drag.dots;
+    for (auto& dot : dots.cells) {
+      dot.x = random.uniform() < 0.1 ? test::nan : dot.x + 0.3 * random.normal();
+      dot.y += 0.3 * random.normal();
+    }
+    return dots;
+  });
+  const auto call = [](const std::vector<test::Dots>& dots) {
+    return [&](int k) { (void)field(dots[variant(k)], drag.contact, drag.pressure_mpa, maps); };
+  };
+  return {{"a dragged plate", call(usual)}, {"dots shaken, a tenth missing", call(shaken)}};
+}
+
+std::vector<Kind> of_taxels() {
+  static const TaxelFeatures<> features(16, 4);
+  static auto state = features.start();
+  static double time_s = 0;
+  static const auto usual = made<Image<double>>([](int k, test::Random&) {
+    Image<double> taxels(16, 4, 100);
+    taxels(3, 2) = k % 4 < 2 ? 200 : 100;
+    return taxels;
+  });
+  static const auto noisy = made<Image<double>>([](int, test::Random& random) {
+    Image<double> taxels(16, 4);
+    for (double& reading : taxels.cells) {
+      reading = random.uniform(0, 4095);
+    }
+    return taxels;
+  });
+  const auto call = [](const std::vector<Image<double>>& taxels) {
+    return [&](int k) { (void)features(taxels[variant(k)], time_s += 1 / 30.0, state); };
+  };
+  return {{"one of 64 taxels vibrates", call(usual)}, {"readings of noise", call(noisy)}};
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  using bench::worst_case::Row;
+  const long calls = argc > 1 ? std::atol(argv[1]) : 100000;
+  std::vector<Row> rows;
+  const auto add = [&](const char* method, const std::vector<Kind>& kinds) {
+    const double hardest_us = bench::worst_case::row_of(method, kinds, 0).hardest_us;
+    const long affordable = static_cast<long>(3e7 / (std::max)(hardest_us, 1.0));
+    rows.push_back(bench::worst_case::row_of(method, kinds, (std::min)(calls, affordable)));
+    std::cerr << method << '\n';
+  };
+  add("whole chain, lean", of_chain<chain::Lean>());
+  add("whole chain, default", of_chain<chain::ByDefault>());
+  add("whole chain, least squares", of_chain<chain::WithLeastSquares>());
+  add("depth, every pixel", of_depth());
+  add("contact region, every pixel", of_contact_region());
+  add("contact by difference", of_gel(false));
+  add("contact by difference and slide", of_gel(true));
+  add("stick ratio in the image, 441 dots", of_stick_in_the_image());
+  add("stick ratio in space, 441 dots", of_stick_in_space());
+  add("traction, 21 x 21 dots", of_traction());
+  add("taxel features, 16 x 4", of_taxels());
+  bench::worst_case::print(std::cout, rows);
+  return 0;
+}

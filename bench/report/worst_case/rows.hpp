@@ -1,0 +1,98 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+#pragma once
+// How long a call takes on its usual input, on the input that takes it longest, and at the tail of
+// many calls of both; what memory it takes; and how often the system had to find it a page.
+#include <sys/resource.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cstddef>
+#include <cstdio>
+#include <functional>
+#include <ostream>
+#include <string>
+#include <vector>
+
+#include "no_allocation/count.hpp"
+
+namespace bench::worst_case {
+
+/// A kind of input, and one call on the k-th of that kind; the first kind is the usual one.
+struct Kind {
+  std::string name;
+  std::function<void(int k)> call;
+};
+
+struct Row {
+  std::string method;
+  std::string hardest;  ///< kind of input
+  double usual_us = 0, hardest_us = 0, slowest_us = 0;
+  long calls = 0, page_faults = 0, allocations = 0;
+};
+
+inline double microseconds_of(const Kind& kind, int k) {
+  using Clock = std::chrono::steady_clock;
+  const auto begin = Clock::now();
+  kind.call(k);
+  return std::chrono::duration<double, std::micro>(Clock::now() - begin).count();
+}
+
+inline double median_us(const Kind& kind, int calls) {
+  std::vector<double> us;
+  for (int k = 0; k < calls; ++k) {
+    us.push_back(microseconds_of(kind, k));
+  }
+  const auto middle = us.begin() + static_cast<std::ptrdiff_t>(us.size() / 2);
+  std::nth_element(us.begin(), middle, us.end());
+  return *middle;
+}
+
+inline long page_faults() {
+  rusage used{};
+  getrusage(RUSAGE_THREAD, &used);
+  return used.ru_minflt + used.ru_majflt;
+}
+
+/// The tail is that of `calls` calls, the usual input and the hardest by turns.
+inline Row row_of(const std::string& method, const std::vector<Kind>& kinds, long calls) {
+  Row row;
+  row.method = method;
+  row.calls = calls;
+  const Kind* hardest = &kinds.front();
+  for (const Kind& kind : kinds) {
+    const double us = median_us(kind, 101);
+    row.usual_us = &kind == &kinds.front() ? us : row.usual_us;
+    if (us > row.hardest_us) {
+      row.hardest_us = us;
+      hardest = &kind;
+    }
+  }
+  row.hardest = hardest->name;
+  const long pages = page_faults();
+  const long taken = test::allocations();
+  for (long k = 0; k < calls; ++k) {
+    const Kind& kind = k % 2 == 0 ? kinds.front() : *hardest;
+    row.slowest_us = (std::max)(row.slowest_us, microseconds_of(kind, static_cast<int>(k / 2)));
+  }
+  row.page_faults = page_faults() - pages;
+  row.allocations = test::allocations() - taken;
+  return row;
+}
+
+inline void print(std::ostream& out, const std::vector<Row>& rows) {
+  const auto digits = [](double us) {
+    char text[32];
+    std::snprintf(text, sizeof text, us < 9.95 ? "%.2f" : us < 99.5 ? "%.1f" : "%.0f", us);
+    return std::string(text);
+  };
+  out << "| method | usual, us | hardest, us | times | hardest input | slowest of both, us | calls "
+         "| page faults | allocations |\n|---|--:|--:|--:|---|--:|--:|--:|--:|\n";
+  for (const Row& r : rows) {
+    out << "| " << r.method << " | " << digits(r.usual_us) << " | " << digits(r.hardest_us) << " | "
+        << digits(r.hardest_us / r.usual_us) << " | " << r.hardest << " | " << digits(r.slowest_us)
+        << " | " << r.calls << " | " << r.page_faults << " | " << r.allocations << " |\n";
+  }
+}
+
+}  // namespace bench::worst_case
