@@ -1,9 +1,11 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 // The whole chain, a frame in, all results out (pipeline/fingertip.hpp), as JSON: error of
-// each result, time of each stage, the distribution of latencies over 10,000 frames, growth with
-// the size of the image, the number of dots and the length of the history, and two threads. Frames
-// and truth: bench/report/chain/pressed_frames.hpp. "chain FRAMES" times so many frames instead.
+// each result, time of each stage, time against error by the step of the samples, instructions and
+// cycles where the machine tells them, the distribution of latencies over 10,000 frames, growth
+// with the size of the image, the number of dots and the length of the history, and two threads.
+// Frames and truth: bench/report/chain/pressed_frames.hpp. "chain FRAMES" times so many frames
+// instead.
 #include <algorithm>
 #include <array>
 #include <chrono>
@@ -15,6 +17,7 @@
 #include <string>
 #include <vector>
 
+#include "chain/event_counter.hpp"
 #include "chain/pressed_frames.hpp"
 #include "no_allocation/count.hpp"
 
@@ -210,7 +213,7 @@ ordered_json growth() {
     stages["size"] = size;
     out.push_back(stages);
   };
-  for (const Index rows : {120, 240, 480, 960, 1440}) {
+  for (const Index rows : {120, 240, 480, 960, 1440, 1944}) {
     const chain::PressedFrames frames(rows, rows * 4 / 3, 2);
     add("pixels", frames.pixels(), frames.options(), frames, rows > 480 ? 30 : 200);
   }
@@ -227,6 +230,35 @@ ordered_json growth() {
   return out;
 }
 
+/// Time and errors of a chain in samples of Step x Step pixels.
+template <class Methods, int Step, class Options>
+ordered_json in_samples(const char* policies,
+                        const Options& options,
+                        const chain::PressedFrames& frames) {
+  using Sampled = chain::InSamples<Methods, Step>;
+  ordered_json out = {{"policies", policies}, {"step", Step}};
+  out["whole_ms"] = stages_of(chain_of<Sampled>(options), frames, 400)["whole_ms"];
+  out["errors"] = errors_of(chain_of<Sampled>(options), frames);
+  return out;
+}
+
+/// Instructions and cycles of a frame; null where the machine does not tell them.
+template <class Chain>
+ordered_json events_of(Chain chain, const chain::PressedFrames& frames) {
+  const auto a_frame = [&](chain::EventCounter& counter) -> ordered_json {
+    constexpr int count = 64;
+    const auto before = counter.value();
+    for (int k = 0; k < count; ++k) {
+      (void)touch_of(chain, frames[static_cast<std::size_t>(k) % frames.size()].view());
+    }
+    const auto after = counter.value();
+    return before && after ? ordered_json((*after - *before) / count) : ordered_json();
+  };
+  chain::EventCounter instructions(chain::EventCounter::Event::instructions);
+  chain::EventCounter cycles(chain::EventCounter::Event::cycles);
+  return {{"instructions", a_frame(instructions)}, {"cycles", a_frame(cycles)}};
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -241,10 +273,18 @@ int main(int argc, char** argv) {
     of["bytes"] = test::bytes_taken() - before;
     of.update(stages_of(chain_of<Methods>(options), frames, 400));
     of["errors"] = errors_of(chain_of<Methods>(options), frames);
+    of["events"] = events_of(chain_of<Methods>(options), frames);
   };
   add("lean", chain::Lean());
   add("default", chain::ByDefault());
   add("least squares", chain::WithLeastSquares());
+  out["samples"] = {in_samples<chain::Lean, 1>("lean", options, frames),
+                    in_samples<chain::Lean, 2>("lean", options, frames),
+                    in_samples<chain::Lean, 4>("lean", options, frames),
+                    in_samples<chain::ByDefault, 1>("default", options, frames),
+                    in_samples<chain::ByDefault, 2>("default", options, frames),
+                    in_samples<chain::ByDefault, 3>("default", options, frames),
+                    in_samples<chain::ByDefault, 4>("default", options, frames)};
   out["growth"] = growth();
   const auto one = latencies_of(chain_of<chain::Lean>(options), frames, count);
   const auto two = latencies_of(chain_of<chain::Shared<chain::Lean>>(options), frames, count);

@@ -159,6 +159,28 @@ def chain_latencies(runs):
                   for name, of in run["latencies"].items()])
 
 
+def chain_samples(runs):
+    def row(of):
+        error = lambda quantity: " / ".join(number(of[-1]["errors"][quantity][s])
+                                            for s in ("median", "99 %"))
+        return [f"{of[0]['policies']}, {of[0]['step']} px", *(number(o["whole_ms"], 3) for o in of),
+                *(error(q) for q in ("depth of a pixel", "contact area", "F_z", "M_z"))]
+    return table(["policies, step", *(f"{flags}, ms" for flags in runs), "depth of a pixel, mm",
+                  "contact area, share", "F_z, share", "M_z, N mm"],
+                 map(row, zip(*(run["samples"] for run in runs.values()))))
+
+
+def chain_events(runs):
+    def told(of):
+        return of and all(of.values())
+    rows = [[f"{name}, {flags}", *(f"{of['events'][e] / 1e6:.3g}" for e in ("instructions", "cycles"))]
+            for flags, run in runs.items() for name, of in run["chains"].items()
+            if told(of["events"])]
+    if not rows:
+        return "This machine does not tell how many instructions and cycles a frame takes.\n"
+    return table(["a frame", "million instructions", "million cycles"], rows)
+
+
 def write_chain(build, docs, about):
     pictures = docs / "whole_chain"
     pictures.mkdir(exist_ok=True)
@@ -166,6 +188,9 @@ def write_chain(build, docs, about):
             for f, name in FLAGS.items()}
     runs = {"-O2": runs[FLAGS["o2"]], "native": runs[FLAGS["native"]]}
     plots.chain_stages(runs, pictures / "stages.png")
+    plots.chain_samples([(o["policies"], o["step"], o["whole_ms"],
+                          o["errors"]["depth of a pixel"]["99 %"])
+                         for o in runs["native"]["samples"]], pictures / "samples.png")
     plots.chain_latencies(runs, pictures / "latency.png")
     plots.chain_growth(runs["native"], pictures / "growth.png")
     chains = runs["native"]["chains"]
@@ -187,6 +212,15 @@ a pad with dark dots cannot do without: `AnchoredMean`, `ExponentialFree<2, 5>`,
 ![Time of each stage](whole_chain/stages.png)
 
 {chain_stages(runs, chains)}
+{chain_events(runs)}
+## Samples
+
+What is averaged over 29 px need not be worked on at every pixel
+([samples](depth/depth.md#samples)). Time against error by step, 16 frames, median / 99 %:
+
+![Time over the error of depth, by step and policies](whole_chain/samples.png)
+
+{chain_samples(runs)}
 ## Error
 
 16 frames of a membrane in equilibrium under a plate that drags its dots to and fro and turns them,

@@ -150,6 +150,22 @@ def chain_stages(runs, path):
     save(figure, path)
 
 
+def chain_samples(points, path):
+    """Time over the depth's error; `points` (policies, step, ms, mm), a line for each policies."""
+    figure, axes = plt.subplots(figsize=(7, 3.6))
+    for policies, colour in (("default", OURS), ("lean", PUBLISHED)):
+        of = [p for p in points if p[0] == policies]
+        axes.plot([p[3] for p in of], [p[2] for p in of], marker="o", color=colour, label=policies)
+        for _, step, ms, mm in of:
+            axes.annotate(f"{step} px", (mm, ms), xytext=(6, 4), textcoords="offset points",
+                          fontsize=8, color=colour)
+    axes.set_yscale("log")
+    axes.set_xlabel("error of the depth of a pixel, 99th percentile, mm")
+    axes.set_ylabel("ms a frame, native")
+    axes.legend(frameon=False)
+    save(figure, path)
+
+
 def chain_latencies(runs, path):
     """How many frames take longer than so many ms."""
     figure, axes = plt.subplots(figsize=(9, 3.4))

@@ -3,7 +3,9 @@
 // What replay reads, with any bytes in it: each file is read, or refused by one line.
 // with: examples/replay/io/sensor.cpp examples/replay/io/number_table.cpp
 // with: examples/replay/io/signals.cpp examples/replay/io/images.cpp
-// with: examples/replay/foam/sensor.cpp
+// with: examples/replay/io/side_dots.cpp examples/replay/io/true_forces.cpp
+// with: examples/replay/dots/file.cpp
+// with: examples/replay/foam/sensor.cpp examples/replay/foam/recording.cpp
 // with: -lopencv_core -lopencv_imgproc -lopencv_imgcodecs
 #include <cstdint>
 #include <cstdlib>
@@ -12,11 +14,15 @@
 #include <string>
 
 #include "fuzz/input.hpp"
+#include "replay/dots/file.hpp"
+#include "replay/foam/recording.hpp"
 #include "replay/foam/sensor.hpp"
 #include "replay/io/failure.hpp"
 #include "replay/io/images.hpp"
 #include "replay/io/sensor.hpp"
+#include "replay/io/side_dots.hpp"
 #include "replay/io/signals.hpp"
+#include "replay/io/true_forces.hpp"
 
 using fuzz::require;
 
@@ -43,6 +49,47 @@ class File {
   std::filesystem::path path_;
 };
 
+/// As the file that the first byte names.
+void read(std::uint8_t kind, const std::filesystem::path& path) {
+  switch (kind % 11) {
+    case 0:
+      (void)replay::read_sensor(path);
+      break;
+    case 1:
+      (void)replay::read_signals(path, 10);
+      break;
+    case 2:
+      (void)replay::read_foam_sensor(path);
+      break;
+    case 3:
+      (void)replay::read_colour_image(path);
+      break;
+    case 4:
+      (void)replay::read_depth_image(path);
+      break;
+    case 5:
+      (void)replay::read_side_dots(path, 10);
+      break;
+    case 6:
+      (void)replay::read_stress_free_dots(path, {8, 8});
+      break;
+    case 7:
+      (void)replay::read_true_forces(path, 10);
+      break;
+    case 8: {
+      const auto table = replay::read_taxels(path);
+      const auto readings = static_cast<std::size_t>(table.samples()) * table.taxels();
+      require(table.readings.size() == readings, "a table has a reading of each taxel");
+      break;
+    }
+    case 9:
+      (void)replay::read_dots(path, 10, {});
+      break;
+    default:
+      (void)replay::read_dots(path, 10, cv::Size(8, 8));
+  }
+}
+
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
@@ -53,19 +100,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const std::string content(reinterpret_cast<const char*>(data + 1), size - 1);
   const auto& path = file.with(content);
   try {
-    switch (data[0] % 4) {
-      case 0:
-        (void)replay::read_sensor(path);
-        break;
-      case 1:
-        (void)replay::read_signals(path, 10);
-        break;
-      case 2:
-        (void)replay::read_foam_sensor(path);
-        break;
-      default:
-        (void)replay::read_colour_image(path);
-    }
+    read(data[0], path);
   } catch (const replay::Failure& failure) {
     require(std::string(failure.what()).find('\n') == std::string::npos, "a refusal is one line");
   }

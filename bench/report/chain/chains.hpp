@@ -34,6 +34,11 @@ struct Lean : ByDefault {
   using Statistic = fingerpad::RingStencil<9>;
   using Edge = fingerpad::AtThreshold;
 };
+/// The same in samples of Step x Step pixels.
+template <class Methods, int Step>
+struct InSamples : Methods {
+  static constexpr int sampling = Step;
+};
 /// The same, shared by two threads.
 template <class Methods>
 struct Shared : Methods {
