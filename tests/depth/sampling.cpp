@@ -59,6 +59,12 @@ Image<Pixel> any_channel(Index rows, Index cols) {
                                                                     : test::nan;
     x = static_cast<Pixel>(kind < bad_percent ? bad : grey);
   }
+  const Index dark_from = test::whole(0, cols), dark_to = test::whole(0, cols);
+  for (Index i = 0; i < rows; ++i) {
+    for (Index j = dark_from; j < dark_to; ++j) {
+      image(i, j) = Pixel(0);
+    }
+  }
   return image;
 }
 

@@ -70,8 +70,8 @@ void check_same(A& a, B& b) {
 
 TEMPLATE_TEST_CASE("the whole chain tells what the plate does",
                    "[chain]",
-                   ByDefault,
-                   WithLeastSquares) {
+                   (InSamples<ByDefault, 2>),
+                   (InSamples<WithLeastSquares, 2>)) {  // windows are half as wide as by default
   const Run<TestType> run;
   const auto& first = frames()[0];
   for (std::size_t k = 0; k < run.results.size(); ++k) {
@@ -162,17 +162,17 @@ TEST_CASE("without look-up no curve is needed, and the rest is the same", "[chai
 }
 
 TEST_CASE("sampled frames say what whole ones do", "[chain]") {
-  // as wide on the pad as a sample of 2 px is at 640 x 480
+  // rows that no whole sample fills
   static const PressedFrames wide(481, 642, 1);
   TipOf<Sampled<1>> every(wide.options());
-  TipOf<Sampled<2>> second(wide.options());
+  TipOf<Sampled<3>> third(wide.options());
   const PressedFrame& f = wide[0];
   const Inputs in = f.view();
-  const auto a = every(in.image, in.dots_px, 0.0), b = second(in.image, in.dots_px, 0.0);
+  const auto a = every(in.image, in.dots_px, 0.0), b = third(in.image, in.dots_px, 0.0);
   CHECK(b.contact.area_mm2 == Approx(a.contact.area_mm2).epsilon(0.02));
   CHECK(b.contact.depth_mm == Approx(a.contact.depth_mm).margin(0.003));
-  const auto p = every.depth_mm(), q = second.depth_mm();
-  const auto in_contact = every.contact_mask(), in_contact_too = second.contact_mask();
+  const auto p = every.depth_mm(), q = third.depth_mm();
+  const auto in_contact = every.contact_mask(), in_contact_too = third.contact_mask();
   double worst[2] = {0, 0}, differ = 0, touching = 0;
   Index unknown = 0;
   for (Index i = 0; i < p.rows(); ++i) {

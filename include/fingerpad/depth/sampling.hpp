@@ -134,7 +134,12 @@ class FrameSampler {
  private:
   static constexpr GreyScale scale = grey_scale_of<Pixel>();
   static constexpr bool by_vectors = std::same_as<Pixel, std::uint8_t> &&
-                                     (Step == 2 || Step == 4) && detail::native_vector_bytes > 0;
+                                     (Step == 2 || Step == 3 || Step == 4) &&
+                                     detail::native_vector_bytes > 0;
+  /// Bytes of a vector. Short ones, the more so where three are worked on at once: fewer of them
+  /// hold a pixel without information, for which all their samples are done one by one.
+  static constexpr int width = (std::min)(Step == 3 ? 16 : 32, detail::native_vector_bytes);
+  static constexpr Index samples_at_once = Step == 3 ? width : width / Step;
 
   /// Step rows of each channel, `stride` pixels apart.
   FrameSampler(const Pixel* red, const Pixel* green, Index stride)
@@ -150,7 +155,7 @@ class FrameSampler {
       }
     };
     if constexpr (by_vectors) {
-      constexpr Index n = detail::native_vector_bytes / Step;
+      constexpr Index n = samples_at_once;
       while (to_red.col_stride() == 1 && to_green.col_stride() == 1 && j + n <= to_red.cols()) {
         if (several(j, to_red.row(row) + j, to_green.row(row) + j)) {
           j += n;
@@ -213,8 +218,7 @@ class FrameSampler {
 #if defined(FINGERPAD_HAS_VECTORS)
   /// The samples that a vector of pixels holds, from column `col` on; false, and nothing written,
   /// where pixels of a sample differ in whether they carry information.
-  bool several(Index col, Sample* to_red, Sample* to_green) const {
-    constexpr int width = detail::native_vector_bytes;
+  bool several(Index col, Sample* to_red, Sample* to_green) const requires(Step != 3) {
     using Bytes = detail::lanes<std::uint8_t, width>;
     using Word = std::conditional_t<Step == 2, std::uint16_t, std::uint32_t>;  // one a sample
     using Words = detail::lanes<Word, width / Step>;
@@ -246,12 +250,68 @@ class FrameSampler {
     return true;
   }
 
+  /// The samples that three vectors hold; false where a pixel carries no information but for
+  /// samples that are all dark.
+  bool several(Index col, Sample* to_red, Sample* to_green) const requires(Step == 3) {
+    using Bytes = detail::lanes<std::uint8_t, width>;
+    using Words = detail::lanes<std::uint16_t, width / 2>;
+    using ColumnSums = std::array<std::uint16_t, std::size_t(3 * width)>;
+    alignas(Bytes) ColumnSums red, green;
+    Bytes bad{}, all_bad = ~bad, bright{};
+    const Bytes top = Bytes{} + std::uint8_t(255);
+    for (int part = 0; part < 3; ++part) {
+      detail::Two<Words> reds{}, greens{};
+      for (Index k = 0; k < 3; ++k) {
+        const Index at = k * stride_ + col * 3 + part * width;
+        const Bytes r = detail::load<std::uint8_t, width>(red_ + at);
+        const Bytes g = detail::load<std::uint8_t, width>(green_ + at);
+        const Bytes bright_here = Bytes((r == top) | (g == top));
+        const Bytes bad_here = Bytes((r == Bytes{}) | (g == Bytes{})) | bright_here;
+        bright |= bright_here;
+        bad |= bad_here;
+        all_bad &= bad_here;
+        add(r, reds);
+        add(g, greens);
+      }
+      store(reds, red.data() + part * width);
+      store(greens, green.data() + part * width);
+    }
+    if (!detail::any_lane(bad)) {
+      for (int k = 0; k < width; ++k) {
+        to_red[k] = mean_of_columns(&red[static_cast<std::size_t>(3 * k)]);
+        to_green[k] = mean_of_columns(&green[static_cast<std::size_t>(3 * k)]);
+      }
+      return true;
+    }
+    if (detail::any_lane(Bytes(~all_bad | bright))) {
+      return false;
+    }
+    std::fill(to_red, to_red + width, Sample(0));
+    std::fill(to_green, to_green + width, Sample(0));
+    return true;
+  }
+
+  template <class Bytes, class Words>
+  [[gnu::always_inline]] static void add(const Bytes& pixels, detail::Two<Words>& sums) {
+    const auto wide = detail::widen<std::uint16_t, width / 2>(pixels);
+    sums.first += wide.first;
+    sums.second += wide.second;
+  }
+  template <class Words>
+  [[gnu::always_inline]] static void store(const detail::Two<Words>& sums, std::uint16_t* to) {
+    detail::store(to, sums.first);
+    detail::store(to + width / 2, sums.second);
+  }
+  static Sample mean_of_columns(const std::uint16_t* sums) {
+    return mean(static_cast<std::uint32_t>(sums[0] + sums[1] + sums[2]), Step * Step);
+  }
+
   template <class Pairs, class Words>
   [[gnu::always_inline]] static void store_means(const Pairs& sums,
                                                  const Words& none,
                                                  const Words& told,
                                                  Sample* to) {
-    constexpr int n = detail::native_vector_bytes / Step;
+    constexpr int n = width / Step;
     if constexpr (Step == 2) {
       detail::store(to, Words(((sums << 6) & ~none) | told));
     } else {

@@ -45,7 +45,8 @@ struct FingertipMethods {
                                                ///< any shape; false: by that of the contact
   static constexpr bool has_wrench = true;     ///< six-axis force from pressure and side dots
 
-  static constexpr int sampling = 2;  ///< pixels of a sample, along rows and along columns
+  static constexpr int sampling = 3;  ///< pixels of a sample, along rows and along columns: less
+                                      ///< than a seventh of the window; 1: every pixel
 
   using Smoothing = BiasFreeMean;
   using Inverse = ExponentialFree<>;
