@@ -352,6 +352,36 @@ TEST_CASE("grip control: with friction the force follows the load", "[grip_contr
     CHECK(state.friction() <= before * std::exp(0.04 * 2) + 1e-9);
     CHECK(force_n < 4.6);
   }
+  SECTION("a load that falls while little sticks may be friction that fell") {
+    const auto after = [&](double ratio, double load_n) {
+      auto copy = state;
+      double force_n = state.force_n();
+      for (int k = 0; k < 15; ++k) {
+        auto slip = carried(force_n, 2 - (2 - load_n) * k / 14, ratio, 60);
+        slip.update = RatioUpdate::unmoved;
+        slip.dots_ratio = not_a_number<double>();
+        force_n = control(slip, frame_s, copy).force_n;
+      }
+      return force_n;
+    };
+    CHECK(after(0.7, 1.6) < 0.95 * state.force_n());
+    CHECK(after(0.3, 1.9) >= state.force_n());       // not taken for a smaller load
+    CHECK(after(0.3, 1.6) > 1.1 * state.force_n());  // and answered once it is no noise
+  }
+  SECTION("dots that fall back with little of them carried are a slide") {
+    const auto after = [&](double ratio) {
+      auto copy = state;
+      double force_n = state.force_n();
+      for (int k = 0; k < 10; ++k) {
+        auto slip = carried(force_n, 2 - 0.01 * k, ratio);
+        slip.falls_back = true;
+        force_n = control(slip, frame_s, copy).force_n;
+      }
+      return force_n;
+    };
+    CHECK(after(0.63) <= 1.05 * state.force_n());  // an unloaded contact keeps as much
+    CHECK(after(0.3) > 1.1 * state.force_n());
+  }
   SECTION("but not by what is old, and not beyond a limit") {
     const double before = state.friction();
     for (int k = 0; k < 30; ++k) {

@@ -160,6 +160,8 @@ struct [[nodiscard]] SlipResult {
   RatioUpdate update = RatioUpdate::missing;  ///< how fresh it is, for GripControl
   S dots_ratio = not_a_number<S>();  ///< what dots or imprint say alone in this frame; NaN: nothing
   Index reference_age = 0;           ///< frames since the dots' reference; 0: not known
+  bool falls_back = false;           ///< dots go back to their free places: the load falls, or the
+                                     ///< object slides under friction that has fallen
   S normal_n = not_a_number<S>();    ///< F_n, where L is known
   S friction = not_a_number<S>();    ///< L
   S limit = not_a_number<S>();       ///< at the last slide; NaN: none yet
@@ -215,9 +217,8 @@ class FrictionLimit {
     }
   SlipResult<S> operator()(const ContactLoad<S>& load, const Stick& seen, State& state) const {
     if constexpr (requires { seen.back.reference_age; }) {
-      if (is_carried_back(load, seen.back.reference_age, state)) {
-        return (*this)(load, S(seen.back.stick_ratio), RatioUpdate::fresh, state,
-                       seen.back.reference_age);
+      if (is_finite(seen.back.stick_ratio)) {
+        return of_falling_back(load, seen, state);
       }
     }
     return (*this)(load, S(seen.stick_ratio), update_of(seen.status), state, seen.reference_age);
@@ -266,6 +267,18 @@ class FrictionLimit {
       state.limit_ = not_a_number<S>();  // it holds beyond what was taken for the limit
     }
     judge(slides, state, result);
+    return result;
+  }
+
+  template <class Stick>
+  SlipResult<S> of_falling_back(const ContactLoad<S>& load, const Stick& seen, State& state) const {
+    SlipResult<S> result =
+        is_carried_back(load, seen.back.reference_age, state)
+            ? (*this)(load, S(seen.back.stick_ratio), RatioUpdate::fresh, state,
+                      seen.back.reference_age)
+            : (*this)(load, S(seen.stick_ratio), update_of(seen.status), state, seen.reference_age);
+    result.falls_back = true;
+    result.reference_age = seen.back.reference_age;
     return result;
   }
 

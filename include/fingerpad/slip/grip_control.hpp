@@ -261,7 +261,8 @@ class GripControl {
     S untouched_s_ = S(0);   ///< since anything touched
     bool slipping_ = false;  ///< the last fresh ratio was below the set point
     S friction_ = not_a_number<S>();
-    S load_n_ = S(0);  ///< F_t, smoothed
+    S load_n_ = S(0);       ///< of the object: F_t, smoothed
+    S seen_load_n_ = S(0);  ///< what is borne of it
     S load_rate_n_per_s_ = S(0);
     S smooth_friction_ = S(0);  ///< L, smoothed
     S held_s_ = S(0);           ///< since the last slip
@@ -307,7 +308,14 @@ class GripControl {
       slip.limit;
     }
   GripResult<S> operator()(const Slip& slip, const S& step_s, State& state) const {
-    const bool seen = slip.update == RatioUpdate::fresh || slip.update == RatioUpdate::unmoved;
+    const S share = is_finite(slip.dots_ratio) ? S(slip.dots_ratio) : S(slip.stick_ratio);
+    const bool sticks = !(value(share) < value(law_.sliding_ratio));
+    // dots that fall back are carried by an object whose load falls, or let go by one that slides
+    // under friction that has fallen; a contact that is unloaded keeps (1/2)^(2/3) of its area
+    // stuck (Mindlin and Deresiewicz 1953), so with less than half it slides
+    const bool back = falls_back(slip) && !sticks;
+    const bool seen =
+        slip.update == RatioUpdate::fresh || slip.update == RatioUpdate::unmoved || back;
     const bool is_ratio = is_finite(slip.stick_ratio) || slip.update == RatioUpdate::unmoved;
     if (!is_time(step_s) || !seen || !is_ratio || !is_finite(slip.friction)) {
       return (*this)(StickReading<S>{S(slip.stick_ratio), slip.update}, step_s, state);
@@ -315,13 +323,16 @@ class GripControl {
     state.force_n_ = within_limits(state.force_n_);
     state.untouched_s_ = state.unseen_s_ = state.ratio_age_s_ = S(0);
     const S counted_s = counted(step_s);
-    follow_load(S(slip.normal_n * slip.friction), S(slip.friction), counted_s, state);
+    follow_load(S(slip.normal_n * slip.friction), S(slip.friction), sticks, counted_s, state);
+    // a tenth: beyond the noise of a smoothed load, with forces known to 3 %
+    const bool loses_load = state.seen_load_n_ < S(9) / S(10) * state.load_n_;
     // what the dots say since a reference before the last slip is that slip
     const S age_s = S(static_cast<double>(slip.reference_age)) * step_s;
     state.held_s_ = S(state.held_s_ + step_s);
-    const bool news =
-        is_finite(slip.dots_ratio) && (!state.has_slipped_ || value(age_s) < value(state.held_s_));
-    state.slipping_ = news && value(slip.dots_ratio) < value(law_.slip_ratio);
+    const bool recent = !state.has_slipped_ || value(age_s) < value(state.held_s_);
+    const bool news = recent && is_finite(slip.dots_ratio);
+    state.slipping_ =
+        loses_load || (recent && back) || (news && value(slip.dots_ratio) < value(law_.slip_ratio));
     if (state.slipping_) {
       state.friction_ = state.smooth_friction_ / S(S(1) + law_.slip_margin);
       state.held_s_ = S(0);
@@ -343,19 +354,32 @@ class GripControl {
     GripReason why;
   };
 
+  template <class Slip>
+  static bool falls_back(const Slip& slip) {
+    if constexpr (requires { slip.falls_back; }) {
+      return slip.falls_back;
+    } else {
+      return false;
+    }
+  }
+
   static bool is_time(const S& step_s) { return is_finite(step_s) && value(step_s) > 0; }
   S counted(const S& step_s) const {
     return value(law_.longest_step_s) < value(step_s) ? law_.longest_step_s : step_s;
   }
 
   /// Smooths over about four frames: forces are noisier than a load is fast.
-  static void follow_load(const S& load_n, const S& friction, const S& step_s, State& state) {
+  /// Where little sticks, a load that falls may be friction that does: it is taken for what it was.
+  static void follow_load(
+      const S& load_n, const S& friction, bool may_fall, const S& step_s, State& state) {
     if (!is_finite(state.friction_)) {
       state.friction_ = state.smooth_friction_ = friction;
-      state.load_n_ = load_n;
+      state.load_n_ = state.seen_load_n_ = load_n;
       return;
     }
-    const S step_n = S(4) / S(10) * S(load_n - state.load_n_);
+    state.seen_load_n_ = state.seen_load_n_ + S(4) / S(10) * S(load_n - state.seen_load_n_);
+    const bool falls = load_n < state.load_n_;
+    const S step_n = falls && !may_fall ? S(0) : S(S(4) / S(10) * S(load_n - state.load_n_));
     state.load_n_ = state.load_n_ + step_n;
     state.load_rate_n_per_s_ =
         state.load_rate_n_per_s_ + S(3) / S(10) * S(step_n / step_s - state.load_rate_n_per_s_);
