@@ -139,11 +139,13 @@ fi
 
 # Labelled trials: success is a hold, fail a slip; another label is no slip, but refused.
 if [[ -n $slip_trials ]]; then
-  for trial in 1 2; do
-    mkdir -p "$work/trials/rod/$trial"
-    cp "$recording"/frames/00000[0-3].png "$work/trials/rod/$trial"
+  for object in disc rod; do
+    for trial in 1 2; do
+      mkdir -p "$work/trials/$object/$trial"
+      cp "$recording"/frames/00000[0-3].png "$work/trials/$object/$trial"
+    done
+    printf '5 success 1 0 3 2 1\n5 fail 0 0 3 2 2\n' >"$work/trials/${object}_result.dat"
   done
-  printf '5 success 1 0 3 2 1\n5 fail 0 0 3 2 2\n' >"$work/trials/rod_result.dat"
   "$slip_trials" "$work/trials" >"$work/table" || fail "slip_trials"
   grep -q "^hold  1 " "$work/table" && grep -q "^slip  2 " "$work/table" ||
     fail "slip_trials does not read success and fail: $(cat "$work/table")"
