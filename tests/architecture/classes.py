@@ -114,7 +114,7 @@ def planted_are_found(root):
                 shutil.copytree(root / name, copy / name)
             shutil.copy(root / "docs/classes.md", copy / "docs")
             if text is None:
-                header = copy / "include/fingerpad/slip/grip_control.hpp"
+                header = copy / "include/fingerpad/slip/grip_law.hpp"
                 header.write_text(header.read_text().replace("struct GripLaw {\n", "struct GripLaw {\n  S planted = S(1);\n\n"))
             else:
                 (copy / file).write_text((copy / file).read_text() + text)

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "fingerpad/slip/contact_slide.hpp"
+#include "fingerpad/slip/grip_control.hpp"
 #include "fingerpad/slip/recoil.hpp"
 #include "support/catch.hpp"
 #include "support/refusal.hpp"

@@ -21,7 +21,7 @@
 #include "fingerpad/core/scalar.hpp"
 #include "fingerpad/slip/detail/dot_surface.hpp"
 #include "fingerpad/slip/detail/peak_loads.hpp"
-#include "fingerpad/slip/grip_control.hpp"
+#include "fingerpad/slip/grip_law.hpp"
 
 namespace fingerpad {
 inline namespace v0 {
