@@ -157,9 +157,9 @@ def chain_samples(points, path):
         of = [p for p in points if p[0] == policies]
         axes.plot([p[3] for p in of], [p[2] for p in of], marker="o", color=colour, label=policies)
         for _, step, ms, mm in of:
-            axes.annotate(f"{step} px", (mm, ms), xytext=(6, 4), textcoords="offset points",
-                          fontsize=8, color=colour)
-    axes.set_yscale("log")
+            axes.annotate(f"{step} px", (mm, ms), xytext=(6, -12 if step % 2 else 6),
+                          textcoords="offset points", fontsize=8, color=colour)
+    axes.set_ylim(bottom=0)
     axes.set_xlabel("error of the depth of a pixel, 99th percentile, mm")
     axes.set_ylabel("ms a frame, native")
     axes.legend(frameon=False)
