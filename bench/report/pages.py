@@ -30,7 +30,7 @@ METHODS = {
     "object_surface": ("Object surface", ["rays"]),
     "object_motion": ("Motion of the object", ["frame of 21x21 dots"]),
     "stick_ratio": ("Stick ratio", ["frame of 21x21 dots"]),
-    "spatial_stick_ratio": ("Stick ratio in space", ["frame of 21x21 dots in space"]),
+    "spatial_stick_ratio": ("Stick ratio in space", []),
     "contact_slide": ("Contact slide", ["imprint 120x160"]),
     "grip_control": ("Grip control", ["closed loop"]),
     "wrench": ("Six-axis force", ["36x30 segments", "72x65 segments"]),
