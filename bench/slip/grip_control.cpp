@@ -4,7 +4,8 @@
 // simulated fingertips (tests/support/grip_runs.hpp). Errors of a call: rounding, against long
 // double. Errors of a loop, over the runs: how far the object slid, and the mean force beyond the
 // least that would hold, as a share of that, of the runs in which it slid less than 0.5 mm.
-// "friction ratio": F/N of the slides on slip.
+// "friction ratio": F/N of the slides on slip. Friction that falls twice: ten loops, in which
+// nothing else changes.
 #include "fingerpad/slip/grip_control.hpp"
 
 #include <memory>
@@ -91,6 +92,9 @@ template <class S>
 Runs all_runs(const GripLaw<S>& law, const test::GripVariation& vary) {
   Runs runs;
   for (const test::GripScene scene : test::grip_scenes) {
+    if (vary.falls_twice && scene != test::GripScene::changes) {
+      continue;
+    }
     for (int k = 0; k < test::runs_of_a_grip_scene; ++k) {
       const test::GripRun run = test::run_grip(law, scene, k, vary);
       runs.slip_mm.push_back(run.slip_mm);
@@ -130,6 +134,9 @@ int main(int argc, char** argv) {
   add_loop("twice the noise of dots", law, {.lateral_mm = 0.01, .depth_mm = 0.05});
   add_loop("twice the noise of forces", law, {.force_share = 0.03});
   add_loop("a gripper that lags by 50 ms", law, {.lag_s = 0.05});
+  add_loop("friction that falls twice, taken with 1.5 times", law,
+           {.first = 1.5, .falls_twice = true});
+  add_loop("friction that falls twice", law, {.falls_twice = true});
   bench::add_streaming("closed loop");
   add_call<Gripping, double>("call/GripControl, double", "force", "N");
   add_call<Gripping, float>("call/GripControl, float", "force", "N");

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 // Stick ratio in space, and with the friction limit, on finite-element membranes.
-// test_accuracy "[spatial_stick]" -s prints all figures.
+// test_accuracy "[spatial_stick]" -s prints all figures, "[spatial_noise]" those of the page.
 #include "fingerpad/slip/spatial_stick_ratio.hpp"
 
 #include <cmath>
@@ -45,9 +45,12 @@ double truth_on_ball(const SpatialStep& then, const SpatialStep& now) {
   return stick / all;
 }
 
-SceneErrors errors_of(const std::string& name, int recordings = 6) {
+/// `noise`: of dots, depth and forces, times the usual.
+SceneErrors errors_of(const std::string& name, int recordings = 6, double noise = 1) {
   const SpatialScene scene(name);
-  const SpatialStickRatio<double> ratio(scene.dots_across(), scene.dots_across());
+  const double along = noise * lateral_mm, deep = noise * depth_mm;
+  const SpatialStickRatio<double> ratio(scene.dots_across(), scene.dots_across(),
+                                        {.lateral_mm = along, .depth_mm = deep});
   const FrictionLimit<double> limit;
   SceneErrors e;
   double frames = 0, answered = 0;
@@ -60,12 +63,12 @@ SceneErrors errors_of(const std::string& name, int recordings = 6) {
       auto dots = scene[k].dots;
       for (auto& p : dots.cells) {
         const double x = random.normal(), y = random.normal(), z = random.normal();
-        p = {p.x + lateral_mm * x, p.y + lateral_mm * y, p.z + depth_mm * z};
+        p = {p.x + along * x, p.y + along * y, p.z + deep * z};
       }
       const auto r = ratio(dots, scene[k].contact, states, state);
-      const auto load =
-          contact_load(test::noisy(scene[k].force_n, 0.015, random),
-                       test::noisy(scene[k].moment_n_mm, 0.02, random), dots, scene[k].contact);
+      const auto load = contact_load(test::noisy(scene[k].force_n, noise * 0.015, random),
+                                     test::noisy(scene[k].moment_n_mm, noise * 0.02, random), dots,
+                                     scene[k].contact);
       const auto fused = limit(load, r, limit_state);
       if (k < 2 || test::dots_of_both(scene[k], scene[k]) < 6) {
         continue;
@@ -127,4 +130,14 @@ TEST_CASE("stick ratio in space of a rolling ball: what is off are dots that lif
   INFO("roll: where the dots answer " << e.told << ", along the ball " << e.on_ball);
   CHECK(e.on_ball < 0.045);
   CHECK(e.told > 2 * e.on_ball);
+}
+
+TEST_CASE("stick ratio in space by the noise of dots and forces", "[.][spatial_noise]") {
+  for (const char* name : {"drag", "twist", "tilt", "roll", "cylinder", "mix", "slide", "ball_slip",
+                           "rod_turn", "rubber"}) {
+    const SceneErrors e = errors_of(name, 12), half = errors_of(name, 12, 0.5),
+                      twice = errors_of(name, 12, 2);
+    WARN(name << " | " << e.dots << " | " << e.told << " | " << e.fused << " | " << half.fused
+              << " | " << twice.fused);
+  }
 }

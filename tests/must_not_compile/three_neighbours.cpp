@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 // Dots have 4 or 8 neighbours.
-// message: Neighbours == [48]
+// first error: a dot has 4 or 8 neighbours: for_each_neighbour<4> or for_each_neighbour<8>
 #include "fingerpad/core/dots.hpp"
 #include "support/foreign_image.hpp"
 

@@ -321,9 +321,34 @@ TEST_CASE("stick ratio in space: noise makes as many dots slip as was asked", "[
   REQUIRE(frames > 30);
   CAPTURE(slip / all, std::sqrt(sd / frames), std::sqrt(spread / frames));
   CHECK(slip / all < 0.03);
-  // the standard deviation that is told is that of the answers, within a factor of two
-  CHECK(std::sqrt(sd / frames) > 0.5 * std::sqrt(spread / frames));
+  // the standard deviation that is told is no less than that of the answers, and up to four times
+  // it where all sticks: what noise has brought near the limit seems to be in doubt
+  CHECK(std::sqrt(sd / frames) > std::sqrt(spread / frames));
   CHECK(std::sqrt(sd / frames) < 4 * std::sqrt(spread / frames));
+}
+
+TEST_CASE("stick ratio in space: its standard deviation is the scatter of its answers",
+          "[spatial_stick]") {
+  constexpr int answers = 100;
+  test::Random random(5);
+  for (const double share : {0.7, 0.9}) {
+    double sum = 0, squares = 0, told = 0;
+    for (int n = 0; n < answers; ++n) {
+      SlippingPatch patch(1.5, 9.05);
+      Follower f;
+      (void)f(noisy(patch.dots, 0.005, 0.025, random), patch.contact);
+      patch.step(test::moved_by({0, 0, 0}, {0, 0, 28}, {0.25, 0.05, 0}), share);
+      const auto r = f(noisy(patch.dots, 0.005, 0.025, random), patch.contact);
+      REQUIRE(r.updated());
+      sum += r.stick_ratio;
+      squares += square(r.stick_ratio);
+      told += square(r.ratio_sd);
+    }
+    const double scatter = std::sqrt(squares / answers - square(sum / answers));
+    CAPTURE(share, scatter, std::sqrt(told / answers));
+    CHECK(std::sqrt(told / answers) > 0.75 * scatter);  // measured: 0.95 to 1.5
+    CHECK(std::sqrt(told / answers) < 1.75 * scatter);
+  }
 }
 
 namespace {

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: MIT
 #include "fingerpad/published/stick_ratio.hpp"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -1028,8 +1030,7 @@ TEST_CASE("stick ratio: at rest the last reference is asked again, if that is as
   CHECK(state.stored_frames() == stored);  // what stands still is not stored
 }
 
-TEST_CASE("stick ratio: its standard deviation is no less than the scatter of its answers") {
-  // told is 1.3 to 2.4 times the scatter: neighbours share less noise than is assumed
+TEST_CASE("stick ratio: its standard deviation is the scatter of its answers") {
   constexpr int answers = 150;
   for (const double noise_px : {0.06, 0.14}) {
     for (const double share : {0.5, 0.7, 0.9}) {
@@ -1048,6 +1049,7 @@ TEST_CASE("stick ratio: its standard deviation is no less than the scatter of it
         return ratio(dots, contact, states, state);
       };
       double sum = 0, squares = 0, told = 0;
+      std::vector<std::array<double, 2>> all;
       for (int k = 0; k < answers; ++k) {
         auto state = ratio.start();
         for (int frame = 0; frame < 9; ++frame) {
@@ -1060,12 +1062,20 @@ TEST_CASE("stick ratio: its standard deviation is no less than the scatter of it
         sum += of;
         squares += of * of;
         told += square(static_cast<double>(r.ratio_sd));
+        all.push_back({of, static_cast<double>(r.ratio_sd)});
       }
-      const double scatter = std::sqrt(squares / answers - square(sum / answers));
+      const double mean = sum / answers;
+      const double scatter = std::sqrt(squares / answers - square(mean));
       const double sd = std::sqrt(told / answers);
-      INFO(noise_px << " px, " << share << ": scatter " << scatter << ", told " << sd);
-      CHECK(sd > scatter);
-      CHECK(sd < 3 * scatter);
+      const auto near =
+          static_cast<double>(std::count_if(all.begin(), all.end(), [&](const auto& answer) {
+            return std::abs(answer[0] - mean) < 2 * answer[1];
+          }));
+      INFO(noise_px << " px, " << share << ": scatter " << scatter << ", told " << sd
+                    << ", within two of these " << near);
+      CHECK(sd > 0.8 * scatter);  // measured: 0.87 to 1.34
+      CHECK(sd < 1.5 * scatter);
+      CHECK(near > 0.85 * answers);  // measured: 0.90 to 1; of a normal distribution 0.95
     }
   }
   // of a printed form it is not known

@@ -34,7 +34,9 @@ struct GripVariation {
   double lateral_mm = 0.005, depth_mm = 0.025;  ///< noise of the dots
   double force_share = 0.015;                   ///< noise of the forces
   double lag_s = 0;                             ///< of the gripper
-  double first = 2;           ///< with so many times the least force the object is taken
+  double first = 2;  ///< with so many times the least force the object is taken
+  bool falls_twice =
+      false;  ///< friction, where it changes: by 30 % in 1 s, 3 s later by 40 % in 2 s
   bool knows_force = true;    ///< false: the stick ratio alone
   bool is_controlled = true;  ///< false: the force stays as it is
 };
@@ -88,8 +90,11 @@ GripRun run_grip(const fingerpad::GripLaw<S>& law,
     const double load_n = (std::min)(first_n + rise * time_s, last_n);
     double now = friction;
     if (changes) {
-      now *= 1 - 0.4 * (std::clamp((time_s - 2) / 3, 0.0, 1.0) -
-                        std::clamp((time_s - 7) / 3, 0.0, 1.0));
+      const auto part = [&](double from_s, double for_s) {
+        return std::clamp((time_s - from_s) / for_s, 0.0, 1.0);
+      };
+      now *= vary.falls_twice ? (1 - 0.3 * part(2, 1)) * (1 - 0.4 * part(6, 2))
+                              : 1 - 0.4 * (part(2, 3) - part(7, 3));
       load.set_friction(now);
     }
     if (rolls) {

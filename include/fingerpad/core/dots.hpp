@@ -145,8 +145,9 @@ struct DotIndex {
 /// Calls visit(row, col, point) for each dot beside (row, col) that is present: 4 neighbours share
 /// a side, 8 also a corner. Returns how many there were. O(1), no allocation.
 template <int Neighbours = 8, dot_grid G, class Visit>
-  requires(Neighbours == 4 || Neighbours == 8)
 constexpr int for_each_neighbour(const G& dots, Index row, Index col, Visit&& visit) {
+  static_assert(Neighbours == 4 || Neighbours == 8,
+                "a dot has 4 or 8 neighbours: for_each_neighbour<4> or for_each_neighbour<8>");
   int found = 0;
   for (Index i = row - 1; i <= row + 1; ++i) {
     for (Index j = col - 1; j <= col + 1; ++j) {

@@ -19,6 +19,7 @@
 #include "fingerpad/core/dots.hpp"
 #include "fingerpad/core/expects.hpp"
 #include "fingerpad/core/grid.hpp"
+#include "fingerpad/slip/detail/dot_doubts.hpp"
 #include "fingerpad/slip/detail/dot_places.hpp"
 #include "fingerpad/slip/detail/rigid_consensus.hpp"
 #include "fingerpad/slip/detail/spatial_state.hpp"
@@ -99,13 +100,13 @@ class SpatialStickRatio {
   /// The ratio in a frame with dots `dots_mm` (NaN: not found) of which those with a true `contact`
   /// touch the object, at a time in s (NaN: not known). Writes to `states` what each dot does.
   template <spatial_dot_grid Dots, contact_mask Contact, class States>
-    requires(writable_grid<States>)
-  SpatialStickResult<S>
-  operator()(const Dots& dots_mm,
-             const Contact& contact,
-             States&& states,
-             State& state,
-             double time_s = not_a_number<double>()) const {
+  SpatialStickResult<S> operator()(const Dots& dots_mm,
+                                   const Contact& contact,
+                                   States&& states,
+                                   State& state,
+                                   double time_s = not_a_number<double>()) const {
+    static_assert(writable_grid<States>,
+                  "states are written: pass a grid whose cells can be assigned");
     const auto dots = as_view(dots_mm);
     const auto touch = as_view(contact);
     const auto to = as_view(states);
@@ -232,7 +233,7 @@ class SpatialStickRatio {
                      State& state) const {
     using namespace detail::stick;
     using std::sqrt;
-    const AxisNoise<S> noise = {S(1 / square(noise_mm.lateral_mm)),
+    const AxisNoise<S> noise = {S(noise_mm.lateral_mm), S(1 / square(noise_mm.lateral_mm)),
                                 S(1 / square(noise_mm.depth_mm))};
     collect(state.repository.dots(choice.age), noise, state);
     if (static_cast<Index>(state.pairs.size()) < test_.min_dots) {
@@ -255,7 +256,7 @@ class SpatialStickRatio {
                      age};
       return StickStatus::falls_back;
     }
-    mark(limit, state);
+    mark(limit, S(std::sqrt(2.0) * noise_mm.lateral_mm), state);
     result.furthest_mm = S(sqrt(choice.furthest_sq));
     result.reference_age = age;
     result.motion = motion;
@@ -268,11 +269,12 @@ class SpatialStickRatio {
                State& state) const {
     using namespace detail::stick;
     state.pairs.clear();
+    DotWalk walk(layout_);
     for (const Index k : state.given.touching) {
       if (is_finite(then[k]) && is_finite(at(state.now, k))) {
         SpatialPair<S> pair;
         pair.cell = k;
-        pair.padded = state.padded(k);
+        pair.padded = state.padded(walk.to(k));
         pair.then = then[k];
         pair.now = at(state.now, k);
         state.pairs.push_back(pair);
@@ -291,20 +293,22 @@ class SpatialStickRatio {
                  Pose<S>& motion) const {
     using namespace detail::stick;
     Pairs& pairs = state.pairs;
-    weigh_followers(motion, limit, pairs);
     weigh_around(from, state.pitch_sq, pairs);
+    set_slips(motion, pairs);
     if (!refine_motion(pairs, noise, from, motion)) {
       return false;
     }
+    set_slips(motion, pairs);
     Index before = -1;
     for (int pass = 0; pass < max_passes; ++pass) {
-      const Index followers = weigh_followers(motion, limit, pairs);
+      const Index followers = weigh_followers(limit, pairs);
       if (followers < min_followers) {
         weigh_nearest(min_followers, state.sorted, pairs);
       }
       if (!refine_motion(pairs, noise, from, motion)) {
         return false;
       }
+      set_slips(motion, pairs);
       if (followers == before) {
         break;
       }
@@ -314,12 +318,8 @@ class SpatialStickRatio {
     const double gain = neighbour_gain();
     const S width = S(8 * gain * gain);
     std::fill(state.small_slips.begin(), state.small_slips.end(), SmallSlip<S>{});
-    for (int pass = 0; pass < 4; ++pass) {
-      weigh_followers(motion, limit, pairs);
+    for (int pass = 0; pass < 3; ++pass) {
       average_slips(limit, state);
-      if (pass == 3) {
-        break;
-      }
       for (SpatialPair<S>& p : pairs) {
         const S ratio = width / (width + p.mean_sq);
         p.weight = ratio * ratio;
@@ -327,7 +327,9 @@ class SpatialStickRatio {
       if (!refine_motion(pairs, noise, from, motion)) {
         return false;
       }
+      set_slips(motion, pairs);
     }
+    average_slips(limit, state);
     return true;
   }
 
@@ -347,22 +349,22 @@ class SpatialStickRatio {
     }
   }
 
-  /// Marks each dot of both frames, and writes its slip.
-  void mark(const S& limit, State& state) const {
+  /// Marks each dot of both frames, and writes its slip. `sd_mm`: of the difference of two places.
+  void mark(const S& limit, const S& sd_mm, State& state) const {
     using namespace detail::stick;
-    using std::sqrt;
     state.clear_answer();
     Point3<S> center = {S(0), S(0), S(0)};
     int stick = 0;
-    S doubt = S(0);
+    state.doubts.clear();
+    DotWalk walk(layout_);
     const S sd = S(std::sqrt(2.0) * neighbour_gain());  // of a mean slip, in those of a position
     for (const SpatialPair<S>& p : state.pairs) {
       const bool sticks = p.mean_sq < limit;
       at(state.marks, p.cell) = sticks ? DotState::stick : DotState::slip;
-      at(state.dot_slips, p.cell) = {p.mean_slip, S(sqrt(S(2) / p.info_v))};
+      at(state.dot_slips, p.cell) = {p.mean_slip, sd_mm};
       stick += sticks ? 1 : 0;
       center = sticks ? center + p.now : center;
-      doubt = doubt + doubt_of(p.mean_sq, limit, sd);
+      state.doubts.set(walk.to(p.cell), doubt_of(p.mean_sq, limit, sd));
     }
     if (stick > 0) {
       state.stick_center = center / S(stick);
@@ -370,7 +372,7 @@ class SpatialStickRatio {
     }
     const S all = S(static_cast<double>(state.pairs.size()));
     state.result.stick_ratio = S(stick) / all;
-    state.result.ratio_sd = ratio_sd_of(doubt, all, neighbour_gain());
+    state.result.ratio_sd = ratio_sd_of(state.doubts.variance({6, 2, 1}), all);
   }
 
   static constexpr int max_passes = 6;

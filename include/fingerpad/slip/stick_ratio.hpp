@@ -111,22 +111,23 @@ class StickRatio {
   /// The ratio in a frame with dots `dots_px` (NaN: not found) of which those with a true `contact`
   /// touch the object. Writes to `states` what each dot does.
   template <dot_grid Dots, contact_mask Contact, class States>
-    requires(writable_grid<States>)
-  StickRatioResult<S>
-  operator()(const Dots& dots_px, const Contact& contact, States&& states, State& state) const {
+  StickRatioResult<S> operator()(const Dots& dots_px,
+                                 const Contact& contact,
+                                 States&& states,
+                                 State& state) const {
     return (*this)(dots_px, contact, states, state, not_a_number<double>());
   }
 
   /// The same at a time in s, which is what tells a contact that flickers from another one, and
   /// another recording from a clock that is a little late.
   template <dot_grid Dots, contact_mask Contact, class States>
-    requires(writable_grid<States>)
-  StickRatioResult<S>
-  operator()(const Dots& dots_px,
-             const Contact& contact,
-             States&& states,
-             State& state,
-             double time_s) const {
+  StickRatioResult<S> operator()(const Dots& dots_px,
+                                 const Contact& contact,
+                                 States&& states,
+                                 State& state,
+                                 double time_s) const {
+    static_assert(writable_grid<States>,
+                  "states are written: pass a grid whose cells can be assigned");
     const auto dots = as_view(dots_px);
     const auto touch = as_view(contact);
     const auto to = as_view(states);
@@ -282,8 +283,7 @@ class StickRatio {
     // of a mean residual of two frames; where no free frames told it, that which delta_0 is for
     const double sd_px = state.noise_px > 0 && left > 0 ? std::sqrt(2.0) * left * noise_of(state)
                                                         : px.slip / std::sqrt(2 * std::log(100.0));
-    const S doubt =
-        mark_dots(denoising_, pair, map, slip_sq, S(sd_px), state.residuals, state.marks);
+    const S variance = mark_dots(denoising_, pair, map, slip_sq, S(sd_px), state.room, state.marks);
     state.stick_center = centroid(pair, state.marks, DotState::stick);
     StickRatioResult<S>& result = state.result;
     result.reference_age = static_cast<Index>(state.frame - state.repository.frame(choice.age));
@@ -291,7 +291,7 @@ class StickRatio {
     result.scale = map.scale();
     result.reference_dot = layout_.dot_at(reference);
     const S known = S(static_cast<double>(count_pairs(pair)));
-    result.ratio_sd = left > 0 ? ratio_sd_of(doubt, known, left) : not_a_number<S>();
+    result.ratio_sd = left > 0 ? ratio_sd_of(variance, known) : not_a_number<S>();
     return StickStatus::updated;
   }
 

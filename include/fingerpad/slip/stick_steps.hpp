@@ -10,6 +10,7 @@
 #include <cstddef>
 
 #include "fingerpad/core/expects.hpp"
+#include "fingerpad/slip/detail/dot_doubts.hpp"
 #include "fingerpad/slip/detail/dot_places.hpp"
 #include "fingerpad/slip/detail/similarity.hpp"
 
@@ -291,23 +292,24 @@ DotState state_of(const S& residual_sq, const S& slip_sq) {
 }
 
 /// Marks the dots in contact: those that follow the object to within the square root of slip_sq
-/// stick. Returns the sum of their doubts; `sd`: of one component of a residual. `residuals` is
-/// room to work in.
+/// stick. Returns the variance that noise gives to their number; `sd`: of one component of a
+/// residual.
 template <class Denoising, class S>
 S mark_dots(const Denoising&,
             const FramePair<S>& pair,
             const Similarity<S>& map,
             const S& slip_sq,
             const S& sd,
-            Dots<Point2<S>>&,
+            MarkingRoom<S>&,
             std::vector<DotState>& marks) {
-  S doubt = S(0);
+  S variance = S(0);
   for (const Index k : pair.touching) {
     const S sq = squared_norm(map.residual(pair.now[k], pair.then[k]));
     marks[static_cast<std::size_t>(k)] = state_of(sq, slip_sq);
-    doubt = doubt + doubt_of(sq, slip_sq, sd);
+    const S doubt = doubt_of(sq, slip_sq, sd);
+    variance = variance + doubt * doubt;
   }
-  return doubt;
+  return variance;
 }
 
 /// The mean of a dot's residual and its neighbours'; NaN ones do not count.
@@ -339,8 +341,9 @@ S mark_dots(const ResidualMean& mean,
             const Similarity<S>& map,
             const S& slip_sq,
             const S& sd,
-            Dots<Point2<S>>& residuals,
+            MarkingRoom<S>& room,
             std::vector<DotState>& marks) {
+  Dots<Point2<S>>& residuals = room.residuals;
   const S gate_sq = slip_sq * S(mean.gate * mean.gate);
   std::fill(residuals.begin(), residuals.end(), no_dot<Point2<S>>());
   for (const Index k : pair.touching) {
@@ -349,15 +352,15 @@ S mark_dots(const ResidualMean& mean,
     marks[static_cast<std::size_t>(k)] = is_distance_sq(sq) ? DotState::slip : DotState::unknown;
     at(residuals, k) = sq < gate_sq ? residual : no_dot<Point2<S>>();
   }
-  S doubt = S(0);
+  room.doubts.clear();
   for (const Index k : pair.touching) {
     if (at(residuals, k).x == at(residuals, k).x) {
       const S sq = squared_norm(mean_around(mean.weights, residuals.data(), pair.layout, k));
       marks[static_cast<std::size_t>(k)] = state_of(sq, slip_sq);
-      doubt = doubt + doubt_of(sq, slip_sq, sd);
+      room.doubts.set(pair.layout.dot_at(k), doubt_of(sq, slip_sq, sd));
     }
   }
-  return doubt;
+  return room.doubts.variance({mean.weights.self, mean.weights.side, mean.weights.diagonal});
 }
 
 }  // namespace detail::stick

@@ -53,6 +53,22 @@ struct DotLayout {
   friend constexpr bool operator==(const DotLayout&, const DotLayout&) = default;
 };
 
+/// The same of indices that ascend, without a division each.
+class DotWalk {
+ public:
+  explicit DotWalk(const DotLayout& layout) : cols_(layout.cols) {}
+
+  DotIndex to(Index k) {
+    for (; k - first_ >= cols_; first_ += cols_) {
+      ++row_;
+    }
+    return {row_, k - first_};
+  }
+
+ private:
+  Index cols_, row_ = 0, first_ = 0;
+};
+
 template <class P>
 using Dots = std::vector<P>;
 
@@ -112,7 +128,7 @@ struct GivenDots {
         }
       }
     }
-    leave_out(P{});
+    leave_out(filled(coordinate<P>(0)));
     leave_out(filled(coordinate<P>(-1)));
   }
 
@@ -144,7 +160,9 @@ struct GivenDots {
 
   /// Dots that share a place by which others mark what they did not find are not found.
   void leave_out(const P& mark) {
-    const auto is_mark = [&](const P& p) { return squared_norm(p - mark) == coordinate<P>(0); };
+    const auto is_mark = [&](const P& p) {
+      return p.x == mark.x && squared_norm(p - mark) == coordinate<P>(0);
+    };
     const auto marked = std::count_if(found.begin(), found.end(), is_mark);
     if (marked > 1) {
       std::replace_if(found.begin(), found.end(), is_mark, no_dot<P>());
@@ -227,29 +245,6 @@ auto furthest_sq(const std::vector<Index>& touching, const P* now, const P* befo
     furthest = furthest < sq ? sq : furthest;
   }
   return furthest;
-}
-
-/// Of the variance of "sticks" or "slips", what noise makes of a dot whose averaged slip is near
-/// the limit: p (1 - p), p by the logistic curve nearest to the normal one. `sd`: of that slip
-/// along one axis, in the unit of both.
-template <class S>
-S doubt_of(const S& slip_sq, const S& limit_sq, const S& sd) {
-  using std::exp;
-  using std::sqrt;
-  if (!(slip_sq < S(9) * limit_sq)) {
-    return S(0);  // two limits beyond it there is none
-  }
-  const S off = (S(sqrt(slip_sq)) - S(sqrt(limit_sq))) / sd;
-  const S grown = exp(S(S(-1.702) * (off < S(0) ? S(-off) : off)));
-  return grown / ((S(1) + grown) * (S(1) + grown));
-}
-
-/// Standard deviation of the ratio of so many dots by the sum of their doubts. Neighbours share the
-/// noise that an average leaves: as if there were gain^2 as many dots.
-template <class S>
-S ratio_sd_of(const S& doubt, const S& dots, double gain) {
-  using std::sqrt;
-  return S(sqrt(S(doubt / dots))) / S(sqrt(dots)) / S(gain);
 }
 
 /// Whether the dots have gone back toward their free places, at more than half a right angle to any

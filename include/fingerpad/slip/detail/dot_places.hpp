@@ -59,11 +59,12 @@ template <class P>
 PlacedDots place_dots(const GivenDots<P>& given, const DotLayout& layout, Dots<P>& now) {
   std::fill(now.begin(), now.end(), no_dot<P>());
   PlacedDots placed;
+  DotWalk walk(layout);
   for (const Index k : given.touching) {
     if (!is_finite(at(given.found, k))) {
       continue;
     }
-    const DotIndex d = layout.dot_at(k);
+    const DotIndex d = walk.to(k);
     if (is_out_of_place(given.found.data(), layout, d)) {
       ++placed.out_of_place;
       const bool both = is_out_of_line(given.found.data(), layout, d, 0, 1) &&
@@ -91,8 +92,9 @@ coordinate<P> mean_pitch_sq(const std::vector<Index>& touching,
   using S = coordinate<P>;
   S sum = S(0);
   int count = 0;
+  DotWalk walk(layout);
   for (const Index k : touching) {
-    const DotIndex d = layout.dot_at(k);
+    const DotIndex d = walk.to(k);
     for (const Index down : {Index(0), Index(1)}) {
       const S sq = squared_norm(beside(now, layout, d, down, 1 - down) - now[k]);
       if (is_distance_sq(sq)) {

@@ -14,17 +14,6 @@ namespace fingerpad {
 inline namespace v0 {
 namespace detail::stick {
 
-/// u up the slope, v level, n the normal: along these the noise of the axes is independent.
-template <class S>
-SurfaceFrame<S> slope_frame(const Point3<S>& n) {
-  const S level_sq = n.x * n.x + n.y * n.y;
-  using std::sqrt;
-  const S level = level_sq > S(0) ? S(sqrt(level_sq)) : S(0);
-  const Point3<S> v =
-      level > S(0) ? Point3<S>{S(n.y / level), S(-n.x / level), S(0)} : Point3<S>{S(0), S(1), S(0)};
-  return {cross(v, n), v, n};
-}
-
 /// The slope and the bend of a surface z = c0 + c1 x + c2 y + c3 x^2 + c4 x y + c5 y^2 about a
 /// middle.
 template <class S>
@@ -36,11 +25,15 @@ struct Quadric {
   static std::array<S, 6> terms(const S& x, const S& y) {
     return {S(1), x, y, S(x * x), S(x * y), S(y * y)};
   }
+  /// dz/dx and dz/dy.
+  Point2<S> slope(const Point3<S>& p) const {
+    const S x = p.x - middle.x, y = p.y - middle.y;
+    return {S(c[1] + S(2) * c[3] * x + c[4] * y), S(c[2] + c[4] * x + S(2) * c[5] * y)};
+  }
   /// Toward the object.
   Point3<S> normal(const Point3<S>& p) const {
-    const S x = p.x - middle.x, y = p.y - middle.y;
-    const S zx = c[1] + S(2) * c[3] * x + c[4] * y, zy = c[2] + c[4] * x + S(2) * c[5] * y;
-    return normalized(Point3<S>{S(-zx), S(-zy), S(1)});
+    const Point2<S> z = slope(p);
+    return normalized(Point3<S>{S(-z.x), S(-z.y), S(1)});
   }
 };
 

@@ -27,8 +27,7 @@ struct SpatialPair {
   Point3<S> now = {S(0), S(0), S(0)};
   Point3<S> by_u, by_v;  ///< what a residual is multiplied by for its slip up the slope and level
   Point3<S> u, v;        ///< the axes, of the length of one standard deviation of a position
-  S info_u = S(0), info_v = S(0);           ///< 1 / variance of a slip along u and v
-  S weight = S(0);                          ///< in the fit of the motion
+  S weight = S(0);       ///< in the fit of the motion
   Point3<S> carried = {S(0), S(0), S(0)};   ///< from `then` by the motion
   Point3<S> residual = {S(0), S(0), S(0)};  ///< now less carried
   S slip_u = S(0), slip_v = S(0);           ///< in standard deviations of one position
@@ -44,44 +43,55 @@ inline double neighbour_gain() {
   return std::sqrt(36.0 + 4 * 4 + 4 * 1) / 18;
 }
 
-/// A slip that counts in the mean of its neighbours', weight 1; or none, 0.
+/// A slip that counts in the mean of its neighbours', weight 1; or none, 0. And sums of these.
 template <class S>
 struct SmallSlip {
   Point3<S> slip = {S(0), S(0), S(0)};
   S weight = S(0);
+
+  friend SmallSlip operator+(const SmallSlip& a, const SmallSlip& b) {
+    return {a.slip + b.slip, S(a.weight + b.weight)};
+  }
+  friend SmallSlip operator*(const S& factor, const SmallSlip& a) {
+    return {factor * a.slip, S(factor * a.weight)};
+  }
 };
 
 /// The mean of a slip, which counts, and its eight neighbours, in a grid of `across` columns. It
 /// has weight 6, those beside it 2, those across 1.
 template <class S>
 Point3<S> mean_around(const SmallSlip<S>* slips, Index across) {
-  const SmallSlip<S>&a = slips[-across], &b = slips[-1], &c = slips[1], &d = slips[across];
-  const SmallSlip<S>&e = slips[-across - 1], &f = slips[1 - across], &g = slips[across - 1],
-        &h = slips[across + 1];
-  const Point3<S> beside = a.slip + b.slip + c.slip + d.slip;
-  const Point3<S> diagonal = e.slip + f.slip + g.slip + h.slip;
-  const S weight = S(6) + S(2) * S(a.weight + b.weight + c.weight + d.weight) +
-                   S(e.weight + f.weight + g.weight + h.weight);
-  return (S(6) * slips->slip + S(2) * beside + diagonal) / weight;
+  const SmallSlip<S> beside = slips[-across] + slips[-1] + slips[1] + slips[across];
+  const SmallSlip<S> diagonal =
+      slips[-across - 1] + slips[1 - across] + slips[across - 1] + slips[across + 1];
+  const SmallSlip<S> sum = S(6) * *slips + S(2) * beside + diagonal;
+  return S(S(1) / sum.weight) * sum.slip;
 }
 
 template <class S>
 struct AxisNoise {
+  S lateral_sd;
   S lateral_info;  ///< 1 / variance
   S depth_info;
 };
 
-/// Along one axis of the surface.
+/// The axes of a surface with this slope, u up it and v level: along these the noise of the axes is
+/// independent. For a vector w = axis / variances, by = w / sqrt(axis w), whatever the axis'
+/// length.
 template <class S>
-void set_axis(
-    const AxisNoise<S>& noise, const Point3<S>& axis, S& info, Point3<S>& by, Point3<S>& scaled) {
+void set_axes(const AxisNoise<S>& noise, const Point2<S>& slope, SpatialPair<S>& p) {
   using std::sqrt;
-  const Point3<S> w = {S(noise.lateral_info * axis.x), S(noise.lateral_info * axis.y),
-                       S(noise.depth_info * axis.z)};
-  info = dot(axis, w);
-  const S sd = S(1) / S(sqrt(info));
-  by = sd * w;
-  scaled = sd * axis;
+  const S sq = squared_norm(slope);
+  const S steepness = sq > S(0) ? S(sqrt(sq)) : S(0);
+  const S inverse = steepness > S(0) ? S(S(1) / steepness) : S(0);
+  const Point2<S> up = steepness > S(0) ? Point2<S>{S(inverse * slope.x), S(inverse * slope.y)}
+                                        : Point2<S>{S(1), S(0)};
+  const S sd_u = S(1) / S(sqrt(S(noise.lateral_info + noise.depth_info * sq)));
+  p.u = {S(sd_u * up.x), S(sd_u * up.y), S(sd_u * steepness)};
+  p.by_u = {S(noise.lateral_info * p.u.x), S(noise.lateral_info * p.u.y),
+            S(noise.depth_info * p.u.z)};
+  p.v = {S(-noise.lateral_sd * up.y), S(noise.lateral_sd * up.x), S(0)};
+  p.by_v = noise.lateral_info * p.v;
 }
 
 /// Gives each pair the surface at its dot.
@@ -93,9 +103,7 @@ void set_surface(const AxisNoise<S>& noise, std::vector<SpatialPair<S>>& pairs) 
     }
   });
   for (SpatialPair<S>& p : pairs) {
-    const SurfaceFrame<S> at_dot = slope_frame(surface.normal(p.now));
-    set_axis(noise, at_dot.u, p.info_u, p.by_u, p.u);
-    set_axis(noise, at_dot.v, p.info_v, p.by_v, p.v);
+    set_axes(noise, surface.slope(p.now), p);
   }
 }
 
@@ -114,7 +122,7 @@ void set_slip(const Pose<S>& motion, SpatialPair<S>& p) {
 /// The square of a slip at a dot, in variances of one position.
 template <class S>
 S in_variances(const Point3<S>& slip, const SpatialPair<S>& p) {
-  const S u = dot(slip, p.u) * p.info_u, v = dot(slip, p.v) * p.info_v;
+  const S u = dot(p.by_u, slip), v = dot(p.by_v, slip);
   return u * u + v * v;
 }
 
@@ -137,12 +145,18 @@ void weigh_around(const Point3<S>& from, const S& pitch_sq, std::vector<SpatialP
   }
 }
 
-/// Weight 1 for the dots within the limit of a motion; how many they are.
 template <class S>
-Index weigh_followers(const Pose<S>& motion, const S& limit, std::vector<SpatialPair<S>>& pairs) {
-  Index followers = 0;
+void set_slips(const Pose<S>& motion, std::vector<SpatialPair<S>>& pairs) {
   for (SpatialPair<S>& p : pairs) {
     set_slip(motion, p);
+  }
+}
+
+/// Weight 1 for the dots whose slip is within the limit; how many they are.
+template <class S>
+Index weigh_followers(const S& limit, std::vector<SpatialPair<S>>& pairs) {
+  Index followers = 0;
+  for (SpatialPair<S>& p : pairs) {
     const bool follows = p.slip_sq < limit;
     p.weight = S(follows ? 1 : 0);
     followers += follows ? 1 : 0;
@@ -212,6 +226,33 @@ S furthest_rigid_sq(const std::vector<Index>& touching,
   return furthest;
 }
 
+/// Weighted sums over pairs, of their places q and residuals r.
+template <class S>
+struct PairMoments {
+  S weight = S(0), xx = S(0), yy = S(0), zz = S(0), xy = S(0), xz = S(0), yz = S(0);
+  Point3<S> q = {S(0), S(0), S(0)}, r = {S(0), S(0), S(0)};
+  S turn_z = S(0);  ///< of q x r
+  S yrz = S(0), xrz = S(0), zry = S(0), zrx = S(0);
+
+  void add(const S& w, const Point3<S>& place, const Point3<S>& residual) {
+    const Point3<S> m = w * place;
+    weight = weight + w;
+    q += m;
+    r += w * residual;
+    xx = xx + m.x * place.x;
+    yy = yy + m.y * place.y;
+    zz = zz + m.z * place.z;
+    xy = xy + m.x * place.y;
+    xz = xz + m.x * place.z;
+    yz = yz + m.y * place.z;
+    turn_z = turn_z + (m.x * residual.y - m.y * residual.x);
+    yrz = yrz + m.y * residual.z;
+    xrz = xrz + m.x * residual.z;
+    zry = zry + m.z * residual.y;
+    zrx = zrx + m.z * residual.x;
+  }
+};
+
 /// One step of Gauss and Newton, from where the pairs are `carried`, toward the rigid motion that
 /// fits the weighted pairs best; false where they do not determine it. `center`: any place among
 /// them.
@@ -220,43 +261,31 @@ bool refine_motion(const std::vector<SpatialPair<S>>& pairs,
                    const AxisNoise<S>& noise,
                    const Point3<S>& center,
                    Pose<S>& motion) {
-  SmallMatrix<S, 6> a = zero_matrix<S, 6>();
-  std::array<S, 6> b = detail::zeros<S, 6>();
+  PairMoments<S> m;
   for (const SpatialPair<S>& p : pairs) {
-    if (!(p.weight > S(0))) {
-      continue;
+    if (p.weight > S(0)) {
+      m.add(p.weight, p.carried - center, p.residual);
     }
-    const Point3<S> q = p.carried - center, r = p.residual;
-    const S l = p.weight * noise.lateral_info, d = p.weight * noise.depth_info;
-    // rows: x: (0, qz, -qy | 1 0 0), y: (-qz, 0, qx | 0 1 0), z: (qy, -qx, 0 | 0 0 1)
-    a[0][0] = a[0][0] + l * q.z * q.z + d * q.y * q.y;
-    a[1][1] = a[1][1] + l * q.z * q.z + d * q.x * q.x;
-    a[2][2] = a[2][2] + l * (q.x * q.x + q.y * q.y);
-    a[1][0] = a[1][0] - d * q.x * q.y;
-    a[2][0] = a[2][0] - l * q.x * q.z;
-    a[2][1] = a[2][1] - l * q.y * q.z;
-    a[3][1] = a[3][1] + l * q.z;
-    a[3][2] = a[3][2] - l * q.y;
-    a[4][0] = a[4][0] - l * q.z;
-    a[4][2] = a[4][2] + l * q.x;
-    a[5][0] = a[5][0] + d * q.y;
-    a[5][1] = a[5][1] - d * q.x;
-    a[3][3] = a[3][3] + l;
-    a[5][5] = a[5][5] + d;
-    b[0] = b[0] - l * q.z * r.y + d * q.y * r.z;
-    b[1] = b[1] + l * q.z * r.x - d * q.x * r.z;
-    b[2] = b[2] + l * (q.x * r.y - q.y * r.x);
-    b[3] = b[3] + l * r.x;
-    b[4] = b[4] + l * r.y;
-    b[5] = b[5] + d * r.z;
   }
-  a[4][4] = a[3][3];
+  // rows: x: (0, qz, -qy | 1 0 0), y: (-qz, 0, qx | 0 1 0), z: (qy, -qx, 0 | 0 0 1)
+  const S l = noise.lateral_info, d = noise.depth_info, o = S(0);
+  const SmallMatrix<S, 6> a = {{{S(l * m.zz + d * m.yy), o, o, o, o, o},
+                                {S(-d * m.xy), S(l * m.zz + d * m.xx), o, o, o, o},
+                                {S(-l * m.xz), S(-l * m.yz), S(l * (m.xx + m.yy)), o, o, o},
+                                {o, S(l * m.q.z), S(-l * m.q.y), S(l * m.weight), o, o},
+                                {S(-l * m.q.z), o, S(l * m.q.x), o, S(l * m.weight), o},
+                                {S(d * m.q.y), S(-d * m.q.x), o, o, o, S(d * m.weight)}}};
+  const std::array<S, 6> b = {S(d * m.yrz - l * m.zry),
+                              S(l * m.zrx - d * m.xrz),
+                              S(l * m.turn_z),
+                              S(l * m.r.x),
+                              S(l * m.r.y),
+                              S(d * m.r.z)};
   const NormalEquations<S, 6> normal(a, 1e-6);
   if (!normal.good) {
     return false;
   }
   const auto x = normal.solve(b);
-  using std::sqrt;
   // the rotation of a quaternion (1, w / 2): right to the third order of w
   const S hx = x[0] / S(2), hy = x[1] / S(2), hz = x[2] / S(2);
   const S n = S(1) + hx * hx + hy * hy + hz * hz, two = S(2) / n;

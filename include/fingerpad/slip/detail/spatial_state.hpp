@@ -8,6 +8,7 @@
 
 #include "fingerpad/core/detail/reserved_vector.hpp"
 #include "fingerpad/core/grid.hpp"
+#include "fingerpad/slip/detail/dot_doubts.hpp"
 #include "fingerpad/slip/detail/free_dots.hpp"
 #include "fingerpad/slip/detail/rigid_consensus.hpp"
 
@@ -50,6 +51,7 @@ class SpatialState {
         free(given.found),
         pairs(given.found.size()),
         small_slips(static_cast<std::size_t>((layout.rows + 2) * (layout.cols + 2))),
+        doubts(layout),
         sorted(given.found.size()),
         dot_slips(given.found.size()),
         marks(given.found.size(), DotState::none),
@@ -66,8 +68,7 @@ class SpatialState {
   void clear_answer() { std::fill(dot_slips.begin(), dot_slips.end(), DotSlip<S>{}); }
 
   /// Where a dot is in a grid with a border of one cell.
-  std::size_t padded(Index k) const {
-    const DotIndex d = layout.dot_at(k);
+  std::size_t padded(const DotIndex& d) const {
     return static_cast<std::size_t>((d.row + 1) * (layout.cols + 2) + d.col + 1);
   }
 
@@ -79,6 +80,7 @@ class SpatialState {
   Dots<Point3<S>> free;        // where they were when nothing touched
   ReservedVector<SpatialPair<S>> pairs;
   std::vector<SmallSlip<S>> small_slips;  // of a grid with a border of one cell
+  DotDoubts<S> doubts;
   std::vector<S> sorted;
   std::vector<DotSlip<S>> dot_slips;
   std::vector<DotState> marks;

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "fingerpad/slip/detail/dot_doubts.hpp"
 #include "fingerpad/slip/detail/dot_frames.hpp"
 #include "fingerpad/slip/detail/free_dots.hpp"
 
@@ -27,7 +28,7 @@ class StickState {
         given(layout),
         now(given.found),
         free(given.found),
-        residuals(given.found),
+        room{given.found, DotDoubts<S>(layout)},
         marks(given.found.size(), DotState::none),
         repository(layout, capacity) {}
 
@@ -55,7 +56,7 @@ class StickState {
   GivenDots<Point2<S>> given;                // this frame
   Dots<Point2<S>> now;                       // of it, the dots in contact, in their places
   Dots<Point2<S>> free;                      // where they were when nothing touched
-  Dots<Point2<S>> residuals;
+  MarkingRoom<S> room;
   std::vector<DotState> marks;            // what each dot did in the last answer
   Point2<S> stick_center = {S(0), S(0)};  // of the last answer
   S pitch_sq = S(0);                      // of the first frame of this contact
