@@ -43,7 +43,7 @@ std::vector<Frame> recording(std::uint64_t seed) {
     (void)region(camera.frame(contact, random), mask, workspace);
     for (Index i = 0; i < 120; ++i) {
       for (Index j = 0; j < 160; ++j) {
-        frame.imprint(i, j) = workspace.difference()(i, j);
+        frame.imprint(i, j) = workspace.imprint()(i, j);
         frame.contact(i, j) = workspace.contact()(i, j) > 0;
       }
     }

@@ -154,11 +154,11 @@ int run(const std::string& folder) {
 int main(int argc, char** argv) {
   CLI::App app(
       "Slip in labelled recordings of pads with dots. FOLDER holds labels.dat (lines of: height\n"
-      "ok|success|fail|slip 0|1 start end event trial) and a folder of frames for each trial "
-      "whose\n"
+      "LABEL 0|1 start end event trial) and a folder of frames for each trial whose\n"
       "name begins with the trial's; or this for several objects, as OBJECT_result.dat and the\n"
-      "folder OBJECT; or the folder slip/ and others, in which every folder with videos or frames\n"
-      "is a trial; its videos are views of it. Another label is refused.\n"
+      "folder OBJECT; or folders LABEL/, in which every folder with videos or frames is a trial;\n"
+      "its videos are views of it. LABEL is fail or slip; ok, success, hold or wiggle; another is\n"
+      "refused.\n"
       "The free pad is shown by the frames in FOLDER/free; without it, by the last frames of\n"
       "slipping trials, of other objects where there are any, as far as they agree.\n"
       "Dots are found as replay finds them, and each that is found counts as in contact.\n"

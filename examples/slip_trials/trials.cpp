@@ -47,13 +47,15 @@ std::vector<fs::path> views_in(const fs::path& folder) {
   return videos.empty() && pictures ? std::vector<fs::path>{folder} : videos;
 }
 
+/// `wiggle` is what a public set calls clips that shake and hold.
 bool says_slip(const fs::path& file, const std::string& label) {
-  const bool slip = label == "fail" || label == "slip";
-  const bool hold = label == "ok" || label == "success";
-  if (!slip && !hold) {
-    replay::fail(file, "unknown label \"" + label + "\" (known: ok, success, fail, slip)");
+  static const std::set<std::string> slip = {"fail", "slip"};
+  static const std::set<std::string> hold = {"ok", "success", "hold", "wiggle"};
+  if (slip.count(label) == 0 && hold.count(label) == 0) {
+    replay::fail(file,
+                 "unknown label \"" + label + "\" (known: fail, slip; ok, success, hold, wiggle)");
   }
-  return slip;
+  return slip.count(label) > 0;
 }
 
 /// The trials that `file` names, in folders beside them or in `folder`.
@@ -71,10 +73,14 @@ std::vector<Trial> by_labels(const fs::path& file,
     std::string end;
     std::string event;
     std::string name;
-    if (!(words >> height >> outcome >> number >> start >> end >> event >> name)) {
+    if (!(words >> height)) {
       continue;
     }
+    words >> outcome >> number >> start >> end >> event >> name;
     const bool slips = says_slip(file, outcome);
+    if (name.empty()) {
+      replay::fail(file, "names no trial in \"" + line + "\"");
+    }
     for (const fs::path& entry : sorted_entries(folder)) {
       if (fs::is_directory(entry) && entry.filename().string().rfind(name, 0) == 0) {
         trials.push_back({object, entry.filename().string(), slips, views_in(entry), {}});
@@ -117,7 +123,10 @@ std::vector<Trial> by_folders(const fs::path& folder) {
     }
     for (const fs::path& place : places) {
       const std::string name = place.lexically_relative(label).generic_string();
-      trials.push_back({"", name, label.filename() == "slip", views_in(place), {}});
+      const auto views = views_in(place);
+      if (!views.empty()) {
+        trials.push_back({"", name, says_slip(folder, label.filename().string()), views, {}});
+      }
     }
   }
   return trials;

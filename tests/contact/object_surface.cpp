@@ -501,6 +501,41 @@ TEST_CASE("object surface: float depth maps keep their digits", "[surface]") {
   CHECK(r.rms_mm < 5e-7);  // 9 mm in float: 4.8e-7 from one to the next
 }
 
+TEST_CASE("object surface: a camera of float has its sums in double", "[surface]") {
+  const auto camera = small_camera<Camera<double>>();
+  const Object saddle = Object::saddle({0.1, 0, 1}, 0.05, -0.03, 0.4);
+  const Mask mask = disc(28, 41, 20);
+  const auto off = [](const auto& a, const Point& b) { return norm(cast<double>(a) - b); };
+  const auto compare = [&]<class Shape>(const Object& object, Shape) {
+    const Image<double> depth = object.depths(camera);
+    const auto wide = fit<Shape>(camera, depth, mask);
+    Image<float> residual(height, width);
+    const auto narrow =
+        SurfaceFit<Shape, Camera<float>>(height, width, cast<float>(camera))(depth, mask, residual);
+    static_assert(std::same_as<decltype(narrow.rms_mm), float>);
+    REQUIRE(wide.ok());
+    REQUIRE(narrow.ok());
+    CHECK(narrow.pixels == wide.pixels);
+    CHECK(off(narrow.shape.normal, wide.shape.normal) < 1e-6);
+    CHECK(std::abs(narrow.largest_mm) < 1e-5F + 2 * static_cast<float>(wide.rms_mm) * 10);
+    CHECK(is_finite(residual(28, 41)));
+    return std::pair(wide.shape, narrow.shape);
+  };
+  const auto [plane, float_plane] = compare(Object::plane({0.1, 0.2, 1}), Plane<>());
+  CHECK(float_plane.distance_mm == Approx(plane.distance_mm).epsilon(1e-6));
+  CHECK(off(float_plane.center_mm, plane.center_mm) < 1e-5);
+  const auto [ball, float_ball] = compare(Object::sphere({0.1, 0, 1}, 18), Sphere<>());
+  CHECK(float_ball.radius_mm() == Approx(ball.radius_mm()).epsilon(1e-5));
+  CHECK(off(float_ball.point_mm, ball.point_mm) < 1e-5);
+  const auto [bent, float_bent] = compare(saddle, Quadric<>());
+  CHECK(float_bent.curvature_1_per_mm == Approx(bent.curvature_1_per_mm).epsilon(1e-4));
+  CHECK(float_bent.curvature_2_per_mm == Approx(bent.curvature_2_per_mm).epsilon(1e-4));
+  CHECK(off(float_bent.direction_1, bent.direction_1) < 1e-3);
+  CHECK(off(float_bent.origin_mm, bent.origin_mm) < 1e-5);
+  CHECK(static_cast<double>(float_bent.coefficients[3]) ==
+        Approx(bent.coefficients[3]).margin(1e-5));
+}
+
 TEST_CASE("object surface: derivatives pass through the fit", "[surface]") {
   using Dual = test::Dual<double>;
   const auto camera = small_camera<OrthographicCamera<double>>();

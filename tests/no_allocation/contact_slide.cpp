@@ -34,7 +34,7 @@ TEST_CASE("contact by difference, slide and recoil: a frame allocates nothing",
     const auto dots = camera.dots(contact, random);
     const long before = test::allocations();
     const ContactResult found = region(image, mask, workspace);
-    const auto slid = slide(workspace.difference(), workspace.contact(), dots, state);
+    const auto slid = slide(workspace.imprint(), workspace.contact(), dots, state);
     const auto sprung = recoil(dots, recoil_state);
     const long after = test::allocations();
     CHECK(before > 0);

@@ -5,6 +5,7 @@
 #include "fingerpad/slip/contact_slide.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <optional>
 #include <vector>
@@ -78,6 +79,16 @@ struct Seen {
   }
 };
 
+DifferenceTest test_of(const GelCamera& camera) {
+  DifferenceTest test;
+  test.cell_px = 2;
+  test.dot_px = 1.2 * camera.dot_mm / camera.mm_per_px;
+  test.max_gap_px = 2 * test.dot_px;
+  test.smoothing_px = 3;
+  test.min_region_px = 100;
+  return test;
+}
+
 Seen watch(const AnyGel& gel,
            const std::vector<Step>& steps,
            SlideTest test,
@@ -86,13 +97,7 @@ Seen watch(const AnyGel& gel,
   GelContact<> contact(gel.pad);
   const GelCamera& camera = gel.camera;
   const std::vector free = {camera.frame(contact, random), camera.frame(contact, random)};
-  DifferenceTest difference;
-  difference.cell_px = 2;
-  difference.dot_px = 1.2 * camera.dot_mm / camera.mm_per_px;
-  difference.max_gap_px = 2 * difference.dot_px;
-  difference.smoothing_px = 3;
-  difference.min_region_px = 100;
-  const ContactByDifference<> region(free, difference);
+  const ContactByDifference<> region(free, test_of(camera));
   auto workspace = region.workspace();
   const auto cells = workspace.difference();
   const auto home = camera.true_dots(contact);
@@ -111,9 +116,8 @@ Seen watch(const AnyGel& gel,
     // ok or, of these small frames, more than half touched
     RC_ASSERT(region(camera.frame(contact, random), mask, workspace).status !=
               FrameStatus::refused);
-    seen.slide.push_back(all_touch
-                             ? slide(workspace.difference(), all, dots, state)
-                             : slide(workspace.difference(), workspace.contact(), dots, state));
+    seen.slide.push_back(all_touch ? slide(workspace.imprint(), all, dots, state)
+                                   : slide(workspace.imprint(), workspace.contact(), dots, state));
     seen.recoil.push_back(recoil(dots, recoil_state));
     seen.sticks.push_back(contact.stick_share());
     seen.slides.push_back(contact.slides());
@@ -138,6 +142,106 @@ std::vector<Step> dragged(const AnyGel& gel, double far_mm) {
 
 }  // namespace
 
+namespace {
+
+/// The radius, in mm, that a ball's dent differs by more than `threshold` within: the slope beyond
+/// the contact is that of eq. 3.42 of Johnson, and the lamps see its root mean square.
+double dent_mm(const AnyGel& gel, double threshold) {
+  GelContact<> contact(gel.pad);
+  contact.drag(gel.force_n, {0, 0});
+  const double a = contact.radius_mm();
+  const double at_edge = gel.camera.contrast * a / gel.pad.ball_mm / std::sqrt(2.0);
+  double rho = 1;
+  while (2 / 3.14159265358979 * (rho * std::asin(1 / rho) - std::sqrt(1 - 1 / (rho * rho))) >
+         threshold / at_edge) {
+    rho += 1e-3;
+  }
+  return rho * a;
+}
+
+/// A gel and a ball whose dent covers half of the frame or more, and at most a quarter of its
+/// border.
+struct LargeContact {
+  AnyGel gel;
+  Random random{static_cast<std::uint64_t>(test::whole(1, 1000))};
+  double dent_px = test::uniform(0.46, 0.56) * static_cast<double>(gel.camera.rows);
+
+  LargeContact() {
+    gel.camera.noise = test::uniform(0, 1);
+    gel.camera.mm_per_px = dent_mm(gel, DifferenceTest().min_difference) / dent_px;
+  }
+  ContactByDifference<> region() {
+    const GelContact<> none(gel.pad);
+    return ContactByDifference<>(
+        std::vector{gel.camera.frame(none, random), gel.camera.frame(none, random)},
+        test_of(gel.camera));
+  }
+  ContactResult seen(const ContactByDifference<>& region,
+                     const test::ColourFrame& frame,
+                     Image<std::uint8_t>& mask) const {
+    auto workspace = region.workspace();
+    return region(frame, mask, workspace);
+  }
+};
+
+}  // namespace
+
+TEST_CASE("contact by difference: a contact of half the frame is found in any exposure",
+          "[contact_by_difference]") {
+  rc::prop("for every gel", [] {
+    LargeContact large;
+    GelCamera& camera = large.gel.camera;
+    const auto region = large.region();
+    camera.exposure = test::uniform(0.8, 1.1);
+    GelContact<> ball(large.gel.pad);
+    const auto off = 0.05 * static_cast<double>(camera.rows) * camera.mm_per_px * any_direction();
+    ball.drag(large.gel.force_n, off);
+    Image<std::uint8_t> mask(camera.rows, camera.cols);
+    const ContactResult seen = large.seen(region, camera.frame(ball, large.random), mask);
+    RC_ASSERT(seen.ok());
+    Index expected = 0;
+    for (Index i = 0; i < camera.rows; ++i) {
+      for (Index j = 0; j < camera.cols; ++j) {
+        const auto at = camera.mm_of(static_cast<double>(i), static_cast<double>(j));
+        expected += norm(at - off) < large.dent_px * camera.mm_per_px ? 1 : 0;
+      }
+    }
+    RC_LOG() << seen.contact_px << " for " << expected << " px\n";
+    // the dent's tail reaches the border, whose gain it shifts
+    RC_ASSERT(std::abs(double(seen.contact_px) / double(expected) - 1) < 0.25);
+  });
+}
+
+TEST_CASE("contact by difference: other lamps are told from a large contact",
+          "[contact_by_difference]") {
+  rc::prop("for every gel", [] {
+    LargeContact large;
+    const GelCamera& camera = large.gel.camera;
+    const auto region = large.region();
+    GelContact<> ball(large.gel.pad);
+    if (test::whole(0, 1) == 1) {
+      ball.drag(large.gel.force_n, {0, 0});
+    }
+    auto frame = camera.frame(ball, large.random);
+    // brighter toward one side, each channel in a direction of its own
+    const double change = test::uniform(0.15, 0.4);
+    const std::array directions = {any_direction(), any_direction(), any_direction()};
+    for (Index i = 0; i < camera.rows; ++i) {
+      for (Index j = 0; j < camera.cols; ++j) {
+        const Point2<double> at = {static_cast<double>(j) / static_cast<double>(camera.cols) - 0.5,
+                                   static_cast<double>(i) / static_cast<double>(camera.rows) - 0.5};
+        for (std::size_t c = 0; c < 3; ++c) {
+          auto& level = frame(i, j)[c];
+          level = static_cast<std::uint8_t>(
+              (std::min)(253.0, level * (1 + change * dot(directions[c], at))));
+        }
+      }
+    }
+    Image<std::uint8_t> mask(camera.rows, camera.cols);
+    RC_ASSERT(large.seen(region, frame, mask).status == FrameStatus::not_of_this_pad);
+  });
+}
+
 TEST_CASE("contact slide: partial slip is told before gross slip", "[contact_slide]") {
   rc::prop("for every gel", [] {
     const AnyGel gel;
@@ -149,6 +253,17 @@ TEST_CASE("contact slide: partial slip is told before gross slip", "[contact_sli
     RC_ASSERT(seen.alarm() <= seen.slip());
     // not before any of it slips
     RC_ASSERT(seen.sticks[seen.alarm()] < 0.95);
+  });
+}
+
+TEST_CASE("contact slide: the imprint goes as far as the ball, whatever the dots do",
+          "[contact_slide]") {
+  rc::prop("for every gel", [] {
+    const AnyGel gel;
+    const Seen seen = watch(gel, dragged(gel, 1.05 * gel.pull_mm()), {});
+    const double way = double(norm(seen.slide.back().imprint_px)) * gel.camera.mm_per_px;
+    RC_LOG() << way << " mm for " << gel.pull_mm() << "\n";
+    RC_ASSERT(std::abs(way / gel.pull_mm() - 1) < 0.1);
   });
 }
 

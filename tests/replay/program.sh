@@ -156,6 +156,14 @@ if [[ -n $slip_trials ]]; then
   "$slip_trials" "$work/trials" >/dev/null 2>"$work/stderr"
   [[ $? == 1 ]] && grep -q 'rod_result.dat: unknown label "slipped"' "$work/stderr" ||
     fail "slip_trials on an unknown label: $(cat "$work/stderr")"
+  printf '5 success\n' >"$work/trials/rod_result.dat"
+  "$slip_trials" "$work/trials" >/dev/null 2>"$work/stderr"
+  [[ $? == 1 ]] && grep -q 'rod_result.dat: names no trial' "$work/stderr" ||
+    fail "slip_trials on a line without a trial"
+  rm "$work"/trials/*_result.dat
+  "$slip_trials" "$work/trials" >/dev/null 2>"$work/stderr"
+  [[ $? == 1 ]] && grep -q 'trials: unknown label "disc"' "$work/stderr" ||
+    fail "slip_trials on a folder that is no label"
 fi
 
 # What is wrong with a recording, before anything is computed.

@@ -108,7 +108,7 @@ void GelReplay::finish() {
   const bool touched = std::any_of(rows_.begin(), rows_.end(),
                                    [](const GelRow& row) { return row.seen.contact.in_contact(); });
   const std::string what = slip < rows_.size()
-                               ? "slips from frame " + std::to_string(rows_[slip].frame) + " on"
+                               ? "slip, first told in frame " + std::to_string(rows_[slip].frame)
                            : touched ? "is held"
                                      : "nothing touches";
   write_picture(output_.file("pictures", "slide.png"),
@@ -122,7 +122,7 @@ void GelReplay::print_summary() const {
   std::printf("contact      in %td frames\n", touching);
   const std::size_t slip = first_slip(rows_);
   if (slip < rows_.size()) {
-    std::printf("slip         from frame %d on\n", rows_[slip].frame);
+    std::printf("slip         first told in frame %d\n", rows_[slip].frame);
   } else {
     std::printf("slip         none\n");
   }

@@ -219,8 +219,11 @@ void paint_area(Canvas& canvas, const Axis& axis, const std::vector<GelRow>& row
                    slip_ink(rows[k].seen));
   }
   canvas.line({chart_left, axis.y_of(0)}, {chart_left + chart_width, axis.y_of(0)}, 1, ink::grey);
-  canvas.text({chart_left - 10, axis.y + axis.height / 2 + letter / 2}, "contact", letter,
-              ink::black, Align::right, true);
+  const double middle = axis.y + axis.height / 2;
+  canvas.text({chart_left - 10, middle - letter / 2}, "area in", letter, ink::black, Align::right,
+              true);
+  canvas.text({chart_left - 10, middle + 1.5 * letter}, "contact", letter, ink::black, Align::right,
+              true);
 }
 
 void paint_frame_numbers(Canvas& canvas, const Axis& axis, const std::vector<GelRow>& rows) {
@@ -256,6 +259,8 @@ double paint_frames(Canvas& canvas,
     paint_scene(canvas, {{x, y, width, height}, shrink}, shown[k], 1.6);
     const double at = static_cast<double>(shown[k].frame - rows.front().frame);
     canvas.line({x + width / 2, y + height + 3}, {axis.x_of(at), axis.y}, 1, colour);
+    canvas.text({x + width / 2, y - 10}, std::to_string(shown[k].frame), letter, ink::grey,
+                Align::center);
   }
   return height;
 }
@@ -269,7 +274,8 @@ cv::Mat slide_chart(const std::string& title,
   const double count = static_cast<double>((std::max)(shown.size(), std::size_t{1}));
   const cv::Mat& image = shown.front().image;
   const double thumb = (chart_width - 8 * (count - 1)) / count * image.rows / image.cols;
-  const double top = 64 + thumb + 34;
+  const double thumbs_y = 78;  // below the title and the frames' numbers
+  const double top = thumbs_y + thumb + 34;
   double most = 1.5;
   double largest = 1;
   for (const GelRow& row : rows) {
@@ -282,7 +288,7 @@ cv::Mat slide_chart(const std::string& title,
   canvas.text({28, 34}, title, 1.3 * letter, ink::black, Align::left, true);
   paint_evidence(canvas, evidence, rows);
   paint_area(canvas, area, rows);
-  paint_frames(canvas, evidence, rows, shown, 64);
+  paint_frames(canvas, evidence, rows, shown, thumbs_y);
   const std::size_t slip = first_slip(rows);
   if (slip < rows.size()) {
     const double x = evidence.x_of(static_cast<double>(slip));

@@ -147,7 +147,7 @@ GelFrame SlideStep::operator()(const cv::Mat& image, const DotGrid& dots, cv::Ma
   GelFrame seen;
   const auto start = std::chrono::steady_clock::now();
   seen.contact = contact_(frame, mask, workspace_);
-  seen.slide = slide_(workspace_.difference(), workspace_.contact(), dots, slide_state_);
+  seen.slide = slide_(workspace_.imprint(), workspace_.contact(), dots, slide_state_);
   const auto end = std::chrono::steady_clock::now();
   ms_.push_back(std::chrono::duration<double, std::milli>(end - start).count());
   seen.recoil = recoil_(dots, recoil_state_);

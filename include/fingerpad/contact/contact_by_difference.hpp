@@ -5,8 +5,9 @@
 // free pad. For gel pads lit from the side (GelSight, DIGIT and their kin), with printed dots or
 // without, and for gels that darken where they are pressed.
 // The difference is relative, (now / gain) / free - 1, so that lamps may be uneven; the gain of
-// each channel is the median of now / free, so that exposure and white balance may change. Dots
-// are left out, since they move with the gel under a contact as well as beside it.
+// each channel is the median of now / free, so that exposure and white balance may change: over the
+// frame, or where more than half of that differs, over its border. Dots are left out, since they
+// move with the gel under a contact as well as beside it.
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -69,7 +70,8 @@ inline void expects_valid(const DifferenceTest& test) {
 /// The contact in frames of one size. Pixels are numbers (Channels = 1) or have them as pixel[c]
 /// (cv::Vec3b, std::array). Const: threads may share one, each with a workspace of its own. Bounded
 /// time and no allocation per frame; O(rows cols), fastest for a strided view of packed bytes.
-/// Right while less than half of the frame is touched: what most of it shows is taken for free.
+/// Right while less than half of the frame is touched, or less than half of its border: what most
+/// of it shows is taken for free.
 template <int Channels = 3, scalar S = float>
 class ContactByDifference {
   static_assert(Channels >= 1);
@@ -100,8 +102,11 @@ class ContactByDifference {
 
     /// The difference from the free pad in the last frame, cell by cell: root mean square over the
     /// channels, as a share of the free brightness; NaN where it is unknown. The threshold is for
-    /// it, and a slide of the contact is seen in it.
+    /// it.
     StridedView<const S> difference() const { return difference_.length().view(); }
+    /// The same with what dots hide filled in from the gel beside them: what a slide of the contact
+    /// is seen in.
+    StridedView<const S> imprint() const { return difference_.imprint().view(); }
     /// The last frame's contact, cell by cell: 1, else 0.
     StridedView<const S> contact() const { return mask_.view(); }
 
@@ -128,14 +133,14 @@ class ContactByDifference {
       return result;
     }
     w.difference_.read(from);
-    w.difference_.compare(free_);
-    mark(w);
-    result.regions = fill_and_drop(w);
+    result = found(detail::GainFrom::frame, w);
+    const bool is_mostly_free = 2 * result.contact_px < rows() * cols() - result.unknown_px;
+    if (result.in_contact() && !is_mostly_free) {
+      // a contact has an outline; other lamps differ most along the border
+      result = found(detail::GainFrom::border, w);
+      result.status = is_border_free(w) ? FrameStatus::ok : FrameStatus::not_of_this_pad;
+    }
     write(w, to);
-    measure(w, result);
-    const bool mostly_free = 2 * result.contact_px < rows() * cols() - result.unknown_px;
-    result.status =
-        mostly_free || !result.in_contact() ? FrameStatus::ok : FrameStatus::not_of_this_pad;
     return result;
   }
 
@@ -201,7 +206,7 @@ class ContactByDifference {
       if (seen.size() > 1) {
         set_free(seen, k);
         difference.read(as_view(frame));
-        difference.compare(free_);
+        difference.compare(free_, detail::GainFrom::frame);
         noise.push_back(exceeded_in_a_hundredth(difference.length()));
       }
       ++k;
@@ -220,16 +225,19 @@ class ContactByDifference {
     const S share = S(1.0 / static_cast<double>(seen.size() - (without < seen.size() ? 1 : 0)));
     for_cells([&](Index i, Index j) {
       S weight = S(1);
+      S known = S(1);
       S mean[std::size_t(Channels)] = {};
       for (std::size_t k = 0; k < seen.size(); ++k) {
         if (k != without) {
           weight = S(weight * seen[k].weight(i, j));
+          known = S(known * seen[k].known(i, j));
           for (std::size_t c = 0; c < std::size_t(Channels); ++c) {
             mean[c] = S(mean[c] + seen[k].mean[c](i, j) * share);
           }
         }
       }
       free_.weight(i, j) = weight;
+      free_.known(i, j) = known;
       for (std::size_t c = 0; c < std::size_t(Channels); ++c) {
         free_.mean[c](i, j) = mean[c];
       }
@@ -249,6 +257,29 @@ class ContactByDifference {
     const auto at = known.begin() + static_cast<std::ptrdiff_t>(known.size() * 99 / 100);
     std::nth_element(known.begin(), at, known.end());
     return *at;
+  }
+
+  /// The contact in the frame that was read last.
+  ContactResult found(detail::GainFrom from, Workspace& w) const {
+    w.difference_.compare(free_, from);
+    mark(w);
+    ContactResult result;
+    result.status = FrameStatus::ok;
+    result.regions = fill_and_drop(w);
+    measure(w, result);
+    return result;
+  }
+
+  /// Whether less than half of what is known of the border differs.
+  bool is_border_free(const Workspace& w) const {
+    const detail::PaddedCells<S>& length = w.difference_.length();
+    Index differs = 0;
+    Index known = 0;
+    detail::for_border(length.rows(), length.cols(), [&](Index i, Index j) {
+      differs += S(threshold_) < length(i, j) ? 1 : 0;
+      known += is_finite(length(i, j)) ? 1 : 0;
+    });
+    return 2 * differs < known;
   }
 
   /// Cells above the threshold, opened and closed.

@@ -33,8 +33,8 @@ inline namespace v0 {
 /// What a frame's contact is like. Without contact, areas are 0 and what has no value is NaN.
 ///
 /// Not of this pad: a contact at a mean height below a twentieth of the free apex or above twenty
-/// of it, as of depths in m (contact_region.hpp); half of the frame or more in contact
-/// (contact_by_difference.hpp).
+/// of it, as of depths in m (contact_region.hpp); half of the frame and half of its border or more
+/// in contact (contact_by_difference.hpp).
 struct [[nodiscard]] ContactResult {
   FrameStatus status = FrameStatus::refused;
   Index contact_px = 0;  ///< pixels in contact

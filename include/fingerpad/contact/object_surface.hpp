@@ -81,8 +81,8 @@ using model_of = decltype(model_for(Shape{}));
 
 /// Fits a shape to the contact.
 ///   ShapeType   Plane<>, Sphere<> or Quadric<>, in the camera's number
-///   CameraType  Camera<S> or OrthographicCamera<S>; S is the number computed in. Depth maps may be
-///               of float, but sums of fourth powers want a double.
+///   CameraType  Camera<S> or OrthographicCamera<S>; S is the number computed in. Sums hold fourth
+///               powers: for float they are in double. Depth maps may be of any number.
 ///
 /// Pixels without contact or without a depth (not finite) change nothing. Standard errors are those
 /// of pixels with independent errors of the size of the rms. Depth maps are averaged over a window
@@ -99,9 +99,20 @@ class SurfaceFit {
   using Scalar = detail::camera_scalar_t<CameraType>;
   using Shape = typename Model::template Shape<Scalar>;
   using Result = SurfaceResult<Shape, Scalar>;
-  static_assert(!std::same_as<Scalar, float>,
-                "the camera's numbers are what the sums are computed in: Camera<double>");
 
+ private:
+  using Wide = std::conditional_t<std::same_as<Scalar, float>, double, Scalar>;
+  using WideResult = SurfaceResult<typename Model::template Shape<Wide>, Wide>;
+
+  static decltype(auto) widened(const CameraType& camera) {
+    if constexpr (std::same_as<Wide, Scalar>) {
+      return (camera);
+    } else {
+      return cast<Wide>(camera);
+    }
+  }
+
+ public:
   SurfaceFit(Index rows,
              Index cols,
              const CameraType& camera,
@@ -109,7 +120,7 @@ class SurfaceFit {
       : rows_(rows),
         cols_(cols),
         options_(checked(rows, cols, camera, options)),
-        rays_(camera, rows, cols) {}
+        rays_(widened(camera), rows, cols) {}
 
   Index rows() const { return rows_; }
   Index cols() const { return cols_; }
@@ -123,9 +134,9 @@ class SurfaceFit {
     if (!has_size(depth) || !has_size(mask)) {
       return {};
     }
-    const detail::ContactPixels<Scalar, decltype(depth), decltype(mask)> pixels(depth, mask,
-                                                                                options_.border_px);
-    return fitted(pixels).result;
+    const detail::ContactPixels<Wide, decltype(depth), decltype(mask)> pixels(depth, mask,
+                                                                              options_.border_px);
+    return told(fitted(pixels).result);
   }
 
   /// The same, and the distance of each pixel used from the shape, in mm: positive where the object
@@ -140,18 +151,32 @@ class SurfaceFit {
     if (!has_size(depth) || !has_size(mask) || !has_size(out)) {
       return {};
     }
-    const detail::ContactPixels<Scalar, decltype(depth), decltype(mask)> pixels(depth, mask,
-                                                                                options_.border_px);
+    const detail::ContactPixels<Wide, decltype(depth), decltype(mask)> pixels(depth, mask,
+                                                                              options_.border_px);
     Fitted fit = fitted(pixels);
     write_residuals(pixels, fit, out);
-    return fit.result;
+    return told(fit.result);
   }
 
  private:
   struct Fitted {
-    Result result;
+    WideResult result;
     detail::PixelBox box;
   };
+
+  static Result told(const WideResult& r) {
+    if constexpr (std::same_as<Wide, Scalar>) {
+      return r;
+    } else {
+      return {.status = r.status,
+              .pixels = r.pixels,
+              .shape = cast<Scalar>(r.shape),
+              .rms_mm = Scalar(r.rms_mm),
+              .largest_mm = Scalar(r.largest_mm),
+              .largest_row = r.largest_row,
+              .largest_col = r.largest_col};
+    }
+  }
 
   static const SurfaceOptions& checked(Index rows,
                                        Index cols,
@@ -172,17 +197,17 @@ class SurfaceFit {
   Fitted fitted(const Pixels& pixels) const {
     using std::sqrt;
     Fitted fit;
-    Result& result = fit.result;
+    WideResult& result = fit.result;
     result.status = SurfaceStatus::too_few;
     detail::PixelSpread spread;
-    const detail::PatchMoments<Scalar> patch = moments(pixels, spread, fit.box);
+    const detail::PatchMoments<Wide> patch = moments(pixels, spread, fit.box);
     result.pixels = patch.pixels;
     if (patch.pixels < options_.min_px || patch.pixels <= Model::unknowns) {
       return fit;
     }
     result.status = SurfaceStatus::degenerate;
-    Shape shape;
-    Scalar mean_sq = Scalar(0);
+    typename Model::template Shape<Wide> shape;
+    Wide mean_sq = Wide(0);
     const auto add_up = [&](const auto& kernel) {
       return sums_about(patch.centroid, pixels, fit.box, kernel);
     };
@@ -190,27 +215,27 @@ class SurfaceFit {
         Model::is_finite_shape(shape) && value(shape.normal.z) > 0 && is_finite(mean_sq)) {
       result.status = SurfaceStatus::ok;
       result.shape = shape;
-      result.rms_mm = value(mean_sq) > 0 ? Scalar(sqrt(mean_sq)) : Scalar(0);
+      result.rms_mm = value(mean_sq) > 0 ? Wide(sqrt(mean_sq)) : Wide(0);
     }
     return fit;
   }
 
   /// The first look at the pixels: moments about the first of them, moved to the centroid.
   template <class Pixels>
-  detail::PatchMoments<Scalar> moments(const Pixels& pixels,
-                                       detail::PixelSpread& spread,
-                                       detail::PixelBox& box) const {
-    using Kernel = typename Model::template Moments<Scalar>;
-    std::array<Scalar, Kernel::sums> sums;
-    sums.fill(Scalar(0));
-    detail::PointBlock<Scalar> block;
-    Point3<Scalar> origin = {Scalar(0), Scalar(0), Scalar(0)};
+  detail::PatchMoments<Wide> moments(const Pixels& pixels,
+                                     detail::PixelSpread& spread,
+                                     detail::PixelBox& box) const {
+    using Kernel = typename Model::template Moments<Wide>;
+    std::array<Wide, Kernel::sums> sums;
+    sums.fill(Wide(0));
+    detail::PointBlock<Wide> block;
+    Point3<Wide> origin = {Wide(0), Wide(0), Wide(0)};
     Index total = 0;
     box = {rows_, 0, cols_, 0};
     for (Index i = 0; i < rows_; ++i) {
       Index count = 0, sum_j = 0, sum_jj = 0, last = 0;
-      pixels.for_each_in_row(i, 0, cols_, [&](Index j, const Scalar& depth) {
-        const Point3<Scalar> p = rays_(i, j, depth);
+      pixels.for_each_in_row(i, 0, cols_, [&](Index j, const Wide& depth) {
+        const Point3<Wide> p = rays_(i, j, depth);
         if (total + count == 0) {
           origin = p;
         }
@@ -237,15 +262,15 @@ class SurfaceFit {
   }
 
   template <class Pixels, class Kernel>
-  std::array<Scalar, Kernel::sums> sums_about(const Point3<Scalar>& origin,
-                                              const Pixels& pixels,
-                                              const detail::PixelBox& box,
-                                              const Kernel& kernel) const {
-    std::array<Scalar, Kernel::sums> sums;
-    sums.fill(Scalar(0));
-    detail::PointBlock<Scalar> block;
+  std::array<Wide, Kernel::sums> sums_about(const Point3<Wide>& origin,
+                                            const Pixels& pixels,
+                                            const detail::PixelBox& box,
+                                            const Kernel& kernel) const {
+    std::array<Wide, Kernel::sums> sums;
+    sums.fill(Wide(0));
+    detail::PointBlock<Wide> block;
     for (Index i = box.first_row; i < box.last_row; ++i) {
-      pixels.for_each_in_row(i, box.first_col, box.last_col, [&](Index j, const Scalar& depth) {
+      pixels.for_each_in_row(i, box.first_col, box.last_col, [&](Index j, const Wide& depth) {
         block.add(rays_(i, j, depth) - origin);
         if (block.full()) {
           flush(block, kernel, sums);
@@ -257,7 +282,7 @@ class SurfaceFit {
   }
 
   template <class Kernel, class Sums>
-  static void flush(detail::PointBlock<Scalar>& block, const Kernel& kernel, Sums& sums) {
+  static void flush(detail::PointBlock<Wide>& block, const Kernel& kernel, Sums& sums) {
     detail::add_block(block, kernel, sums);
     block.count = 0;
   }
@@ -266,10 +291,10 @@ class SurfaceFit {
   void write_residuals(const Pixels& pixels, Fitted& fit, const Out& out) const {
     using std::sqrt;
     using Cell = std::remove_cvref_t<decltype(out(0, 0))>;
-    const Cell missing = static_cast<Cell>(not_a_number<Scalar>());
-    Result& result = fit.result;
-    Scalar sum_sq = Scalar(0);
-    Scalar largest = Scalar(0);
+    const Cell missing = static_cast<Cell>(not_a_number<Wide>());
+    WideResult& result = fit.result;
+    Wide sum_sq = Wide(0);
+    Wide largest = Wide(0);
     for (Index i = 0; i < rows_; ++i) {
       Index next = 0;  // first column not written yet
       const auto skip_to = [&](Index j) {
@@ -279,12 +304,12 @@ class SurfaceFit {
       };
       const bool within = result.ok() && i >= fit.box.first_row && i < fit.box.last_row;
       pixels.for_each_in_row(i, fit.box.first_col, within ? fit.box.last_col : 0,
-                             [&](Index j, const Scalar& depth) {
-                               const Scalar r = result.shape.stands_out(rays_(i, j, depth));
+                             [&](Index j, const Wide& depth) {
+                               const Wide r = result.shape.stands_out(rays_(i, j, depth));
                                skip_to(j);
                                out(i, j) = static_cast<Cell>(r);
                                next = j + 1;
-                               const Scalar r_sq = r * r;
+                               const Wide r_sq = r * r;
                                sum_sq = sum_sq + r_sq;
                                if (result.largest_row < 0 || largest < r_sq) {
                                  largest = r_sq;
@@ -296,14 +321,15 @@ class SurfaceFit {
       skip_to(cols_);
     }
     if (result.ok()) {
-      result.rms_mm = sqrt(Scalar(sum_sq / Scalar(static_cast<double>(result.pixels))));
+      result.rms_mm = sqrt(Wide(sum_sq / Wide(static_cast<double>(result.pixels))));
     }
   }
 
   Index rows_;
   Index cols_;
   SurfaceOptions options_;
-  detail::PixelRays<CameraType> rays_;
+  detail::PixelRays<std::remove_cvref_t<decltype(widened(std::declval<const CameraType&>()))>>
+      rays_;
 };
 
 }  // namespace v0

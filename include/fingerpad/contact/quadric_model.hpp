@@ -66,6 +66,26 @@ struct Quadric {
     return S(below / S(sqrt(S(along_u * along_u + along_v * along_v + along_w * along_w))));
   }
 };
+template <scalar To, scalar From>
+Quadric<To> cast(const Quadric<From>& q) {
+  Quadric<To> out{To(q.curvature_1_per_mm),
+                  To(q.curvature_2_per_mm),
+                  cast<To>(q.direction_1),
+                  cast<To>(q.direction_2),
+                  cast<To>(q.point_mm),
+                  cast<To>(q.normal),
+                  To(q.curvature_1_sd_per_mm),
+                  To(q.curvature_2_sd_per_mm),
+                  cast<To>(q.origin_mm),
+                  cast<To>(q.u),
+                  cast<To>(q.v),
+                  cast<To>(q.w)};
+  for (std::size_t k = 0; k < q.coefficients.size(); ++k) {
+    out.coefficients[k] = To(q.coefficients[k]);
+  }
+  out.g_per_mm = To(q.g_per_mm);
+  return out;
+}
 
 namespace detail {
 

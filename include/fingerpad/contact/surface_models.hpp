@@ -36,6 +36,11 @@ struct Plane {
   /// Signed distance of p from the plane, mm; positive away from the object.
   S stands_out(const Point3<S>& p) const { return S(-dot(normal, p - center_mm)); }
 };
+template <scalar To, scalar From>
+Plane<To> cast(const Plane<From>& p) {
+  return {cast<To>(p.normal), To(p.distance_mm), cast<To>(p.center_mm), To(p.distance_sd_mm),
+          To(p.tilt_sd_rad)};
+}
 
 namespace detail {
 
@@ -104,6 +109,11 @@ struct Sphere {
     return S(-twice / (S(1) + s));
   }
 };
+template <scalar To, scalar From>
+Sphere<To> cast(const Sphere<From>& s) {
+  return {To(s.curvature_per_mm), cast<To>(s.point_mm), cast<To>(s.normal),
+          To(s.curvature_sd_per_mm)};
+}
 
 namespace detail {
 

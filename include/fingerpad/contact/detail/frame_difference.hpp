@@ -20,13 +20,14 @@ namespace fingerpad {
 inline namespace v0 {
 namespace detail {
 
-/// Channel means of a frame's cells, and 1 for those that show the gel, 0 for dots and bad cells.
+/// Channel means of a frame's cells; 1 for those that show the gel, 0 for dots and bad cells; and 1
+/// for those whose mean is known, dots included.
 template <int Channels, scalar S>
 struct CellColours {
   CellColours(Index rows, Index cols, Index pad)
-      : mean(Channels, PaddedCells<S>(rows, cols, pad)), weight(rows, cols, pad) {}
+      : mean(Channels, PaddedCells<S>(rows, cols, pad)), weight(rows, cols, pad), known(weight) {}
   std::vector<PaddedCells<S>> mean;
-  PaddedCells<S> weight;
+  PaddedCells<S> weight, known;
 };
 
 /// What the reductions of a frame need to know.
@@ -42,6 +43,20 @@ struct CellLayout {
   /// Cells beside a dot's that it may reach into.
   Index dot_edge() const { return dot_px > 0 ? 1 : 0; }
 };
+
+/// Where most cells are taken for free.
+enum class GainFrom { frame, border };
+
+/// visit(i, j) for the cells along the four sides.
+template <class Visit>
+void for_border(Index rows, Index cols, const Visit& visit) {
+  for (Index i = 0; i < rows; ++i) {
+    const bool whole_row = i == 0 || i + 1 == rows;
+    for (Index j = 0; j < cols; j += whole_row ? 1 : (std::max)(cols - 1, Index(1))) {
+      visit(i, j);
+    }
+  }
+}
 
 /// Reads frames and compares them; the workspace of one thread.
 template <int Channels, scalar S>
@@ -60,11 +75,15 @@ class FrameDifference {
         now_(layout.cell_rows(), layout.cell_cols(), pad_),
         edge_(layout.cell_rows(), layout.cell_cols(), layout.dot_edge()),
         weight_(now_.weight),
+        known_(weight_),
         part_(weight_),
+        filled_(weight_),
         between_(weight_),
         share_(weight_),
+        known_share_(weight_),
         smooth_(weight_),
-        length_(weight_) {
+        length_(weight_),
+        imprint_(weight_) {
     samples_.reserve(static_cast<std::size_t>(weight_.rows() * weight_.cols()));
   }
 
@@ -74,6 +93,7 @@ class FrameDifference {
   const Colours& now() const { return now_; }
   PaddedCells<S>& length() { return length_; }
   const PaddedCells<S>& length() const { return length_; }
+  const PaddedCells<S>& imprint() const { return imprint_; }
 
   /// Takes a frame in.
   template <class View>
@@ -88,35 +108,41 @@ class FrameDifference {
       leave_out_dots();
     }
     edge_.shrink(now_.weight);
+    now_.known = now_.weight;
+    if (layout_.dot_px > 0) {
+      fill_dots();
+    }
   }
 
   /// length() becomes the root mean square over the channels of now / gain / free - 1, smoothed
-  /// over the gel that both frames show; NaN where that is too little.
-  void compare(const Colours& free) {
+  /// over the gel that both frames show; NaN where that is too little. imprint() likewise, of gel
+  /// that dots hide too.
+  void compare(const Colours& free, GainFrom from) {
     for_cells([&]<class V>(Index i, Index j) {
       put<V>(weight_, i, j, V(get<V>(now_.weight, i, j) * get<V>(free.weight, i, j)));
+      put<V>(known_, i, j, V(get<V>(now_.known, i, j) * get<V>(free.known, i, j)));
       put<V>(length_, i, j, V{});
+      put<V>(imprint_, i, j, V{});
     });
     mean_(weight_, between_, share_);
+    mean_(known_, between_, known_share_);
     for (std::size_t c = 0; c < std::size_t(Channels); ++c) {
       const PaddedCells<S>& seen = now_.mean[c];
       const PaddedCells<S>& was = free.mean[c];
-      const S per_gain = S(1) / gain(seen, was);
+      const S per_gain = S(1) / gain(seen, was, from);
       for_cells([&]<class V>(Index i, Index j) {
         const V relative = get<V>(seen, i, j) * per_gain / get<V>(was, i, j) - S(1);
         // a cell without weight may hold anything
         put<V>(part_, i, j, V{} < get<V>(weight_, i, j) ? relative : V{});
+        put<V>(filled_, i, j, V{} < get<V>(known_, i, j) ? relative : V{});
       });
-      mean_(part_, between_, smooth_);
-      for_cells([&]<class V>(Index i, Index j) {
-        const V share = get<V>(share_, i, j);
-        const V known = share > V{} + S(min_share) ? V(get<V>(smooth_, i, j) / share)
-                                                   : V(V{} + not_a_number<S>());
-        put<V>(smooth_, i, j, known);
-        put<V>(length_, i, j, V(get<V>(length_, i, j) + known * known));
-      });
+      add_square(part_, share_, length_);
+      add_square(filled_, known_share_, imprint_);
     }
-    for_cells([&]<class V>(Index i, Index j) { finish<V>(i, j); });
+    for_cells([&]<class V>(Index i, Index j) {
+      finish<V>(length_, i, j);
+      finish<V>(imprint_, i, j);
+    });
   }
 
  private:
@@ -167,13 +193,101 @@ class FrameDifference {
     });
   }
 
-  /// The median of seen / was over a lattice of the cells that count; 1 where there are none.
-  S gain(const PaddedCells<S>& seen, const PaddedCells<S>& was) {
+  /// To `sum` the square of the mean of `part` around each cell.
+  void add_square(const PaddedCells<S>& part, const PaddedCells<S>& shares, PaddedCells<S>& sum) {
+    mean_(part, between_, smooth_);
+    for_cells([&]<class V>(Index i, Index j) {
+      const V share = get<V>(shares, i, j);
+      const V mean = share > V{} + S(min_share) ? V(get<V>(smooth_, i, j) / share)
+                                                : V(V{} + not_a_number<S>());
+      put<V>(sum, i, j, V(get<V>(sum, i, j) + mean * mean));
+    });
+  }
+
+  /// Fills in what is no wider than a dot from the gel beside it. An imprint with holes where dots
+  /// are would seem to move with them.
+  void fill_dots() {
+    const auto is_hole = [&](Index i, Index j) { return !(S(0) < now_.weight(i, j)); };
+    for (Index i = 0; i < weight_.rows(); ++i) {
+      for (Index j = 0; j < weight_.cols(); ++j) {
+        if (is_hole(i, j)) {
+          const Index first = j;
+          while (j < weight_.cols() && is_hole(i, j)) {
+            ++j;
+          }
+          for (Index k = first; k < j; ++k) {
+            fill(i, k, {first - 1, j}, gap_in_column(i, k));
+          }
+        }
+      }
+    }
+  }
+  /// The last cell before a hole along a line and the first one behind it.
+  struct Gap {
+    Index before, behind;
+
+    Index size() const { return behind - before; }
+    bool is_of_dot(Index max_size, Index end) const {
+      return before >= 0 && behind < end && size() <= max_size;
+    }
+    S share(Index at) const {
+      return S(static_cast<double>(at - before) / static_cast<double>(size()));
+    }
+  };
+  Index max_gap() const {
+    return static_cast<Index>(std::ceil(layout_.in_cells(layout_.dot_px))) +
+           2 * layout_.dot_edge() + 2;
+  }
+  Gap gap_in_column(Index i, Index j) const {
+    Gap gap{i - 1, i + 1};
+    while (gap.before >= 0 && gap.size() <= max_gap() && !(S(0) < now_.weight(gap.before, j))) {
+      --gap.before;
+    }
+    while (gap.behind < weight_.rows() && gap.size() <= max_gap() &&
+           !(S(0) < now_.weight(gap.behind, j))) {
+      ++gap.behind;
+    }
+    return gap;
+  }
+  /// Between the ends of both gaps, of a short one more.
+  void fill(Index i, Index j, const Gap& row, const Gap& column) {
+    const bool in_row = row.is_of_dot(max_gap(), weight_.cols());
+    const bool in_column = column.is_of_dot(max_gap(), weight_.rows());
+    if (!in_row && !in_column) {
+      return;
+    }
+    const auto weight = [](bool counts, const Gap& gap) {
+      return counts ? 1 / static_cast<double>(gap.size() * gap.size()) : 0.0;
+    };
+    const double across = weight(in_row, row);
+    const S share = S(across / (across + weight(in_column, column)));
+    for (PaddedCells<S>& mean : now_.mean) {
+      const auto between = [](const S& a, const S& b, const S& at) { return S(a + at * (b - a)); };
+      const S beside =
+          in_row ? between(mean(i, row.before), mean(i, row.behind), row.share(j)) : S(0);
+      const S above = in_column
+                          ? between(mean(column.before, j), mean(column.behind, j), column.share(i))
+                          : S(0);
+      mean(i, j) = between(above, beside, share);
+    }
+    now_.known(i, j) = S(1);
+  }
+
+  /// The median of seen / was over the cells of the border that count, or over a lattice of all; 1
+  /// where there are none.
+  S gain(const PaddedCells<S>& seen, const PaddedCells<S>& was, GainFrom from) {
     samples_.clear();
-    for (Index i = step_ / 2; i < weight_.rows(); i += step_) {
-      for (Index j = step_ / 2; j < weight_.cols(); j += step_) {
-        if (S(0) < weight_(i, j)) {
-          samples_.push_back(S(seen(i, j) / was(i, j)));
+    const auto add = [&](Index i, Index j) {
+      if (S(0) < weight_(i, j)) {
+        samples_.push_back(S(seen(i, j) / was(i, j)));
+      }
+    };
+    if (from == GainFrom::border) {
+      for_border(weight_.rows(), weight_.cols(), add);
+    } else {
+      for (Index i = step_ / 2; i < weight_.rows(); i += step_) {
+        for (Index j = step_ / 2; j < weight_.cols(); j += step_) {
+          add(i, j);
         }
       }
     }
@@ -186,9 +300,9 @@ class FrameDifference {
   }
 
   template <class V>
-  void finish(Index i, Index j) {
+  static void finish(PaddedCells<S>& sum, Index i, Index j) {
     using std::sqrt;
-    const V square = get<V>(length_, i, j) * S(1.0 / Channels);
+    const V square = get<V>(sum, i, j) * S(1.0 / Channels);
     V root = square;
     if constexpr (std::is_same_v<V, S>) {
       root = S(0) < square ? S(sqrt(square)) : square;
@@ -197,7 +311,7 @@ class FrameDifference {
         root[k] = sqrt(square[k]);
       }
     }
-    put<V>(length_, i, j, root);
+    put<V>(sum, i, j, root);
   }
 
   static constexpr double min_share = 0.05;  // of the kernel's weight that is on gel
@@ -209,7 +323,8 @@ class FrameDifference {
   CellMeans<Channels, S> cells_;
   Colours now_;
   CellMorphology<S> edge_;
-  PaddedCells<S> weight_, part_, between_, share_, smooth_, length_;
+  PaddedCells<S> weight_, known_, part_, filled_, between_, share_, known_share_, smooth_, length_,
+      imprint_;
   ReservedVector<S> samples_;
 };
 
