@@ -1,9 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
-// Dots in space, flags and readings held by Eigen and xtensor, in rows and in columns, as a view of
-// something larger: motion, shift of the contact, traction, six-axis force and taxel features give
-// one answer, to the bit. Depth, contact, curvature, surfaces and stick ratio have tests of their
-// own.
+// Dots, flags, depths and readings held by Eigen and xtensor, in rows and in columns, as a view of
+// something larger: every method that reads them gives one answer, to the bit. Depth, neighbour
+// light, contact region and stick ratio have tests of their own.
 #include <Eigen/Core>
 #include <array>
 #include <cmath>
@@ -20,11 +19,20 @@
 
 #include "fingerpad/adapt/eigen.hpp"
 #include "fingerpad/adapt/xtensor.hpp"
+#include "fingerpad/contact/contact_by_difference.hpp"
+#include "fingerpad/contact/contact_measures.hpp"
+#include "fingerpad/contact/equivalent_flat_area.hpp"
+#include "fingerpad/contact/object_surface.hpp"
+#include "fingerpad/depth/intensity_depth.hpp"
 #include "fingerpad/foam/taxel_features.hpp"
+#include "fingerpad/force/dot_divergence.hpp"
 #include "fingerpad/force/traction.hpp"
 #include "fingerpad/force/wrench.hpp"
+#include "fingerpad/image/curvature_map.hpp"
 #include "fingerpad/motion/contact_shift.hpp"
 #include "fingerpad/motion/object_motion.hpp"
+#include "fingerpad/slip/contact_slide.hpp"
+#include "fingerpad/slip/spatial_stick_ratio.hpp"
 #include "support/catch.hpp"
 #include "support/pressed_pad.hpp"
 #include "support/traction_scenes.hpp"
@@ -205,4 +213,155 @@ TEST_CASE("taxel features from every grid", "[adapt]") {
     CHECK(r.location == truth.location);
     CHECK(r.waves == truth.waves);
   });
+}
+
+TEST_CASE("stick ratio in space and divergence from every grid", "[adapt]") {
+  const test::TractionScene& before = test::traction_scenes()[1];
+  const test::TractionScene& after = test::traction_scenes()[2];
+  const SpatialStickRatio<> ratio(21, 21);
+  auto begun = ratio.start();
+  test::Cells<DotState> states(21, 21);
+  (void)ratio(before.dots, before.contact, states, begun);
+  auto state = begun;
+  const auto truth = ratio(after.dots, after.contact, states, state);
+  REQUIRE(truth.updated());
+  const DotDivergence<> divergence(test::stress_free_dots());
+  auto workspace = divergence.workspace();
+  const auto parted = divergence(after.dots, after.contact, workspace);
+  REQUIRE(is_finite(parted.area_mm2));
+  const auto check = [&](const auto& dots, const auto& contact) {
+    auto copy = begun;
+    const auto r = ratio(dots, contact, states, copy);
+    CHECK(r.status == truth.status);
+    CHECK(same_bits(r.stick_ratio, truth.stick_ratio));
+    CHECK(same(copy.slips()(10, 10).slip_mm, state.slips()(10, 10).slip_mm));
+    CHECK(same_bits(divergence(dots, contact, workspace).area_mm2, parted.area_mm2));
+  };
+  on_every_grid<Vector>(after.dots, [&](const auto& dots) { check(dots, after.contact); });
+  on_every_grid<unsigned char>(after.contact, [&](const auto& flags) { check(after.dots, flags); });
+}
+
+namespace {
+
+/// A pad that a plate has pressed, 0.5 mm a pixel: a level contact of 5 mm in a dome.
+struct Pressed {
+  test::Cells<double> depth{60, 64};
+  test::Cells<unsigned char> mask{60, 64};
+  Pressed() {
+    for (Index i = 0; i < 60; ++i) {
+      for (Index j = 0; j < 64; ++j) {
+        const double rho = 0.5 * std::hypot(double(i) - 29, double(j) - 31);
+        mask(i, j) = rho < 5 ? 1 : 0;
+        depth(i, j) = rho < 5 ? 10 : 10 - 0.03 * square(rho - 5) - 0.002 * double(i % 3);
+      }
+    }
+  }
+};
+const OrthographicCamera<double> plan{31, 29, 0.5};
+
+}  // namespace
+
+TEST_CASE("curvature, measures, flat area and surface of a contact from every grid", "[adapt]") {
+  const Pressed pressed;
+  const CurvatureMap<ClampedMean<>, OrthographicCamera<double>, double> curvature(plan, 60, 64,
+                                                                                  {5});
+  auto curving = curvature.workspace();
+  const EquivalentFlatArea<OrthographicCamera<double>> flat_area(plan, 60, 64);
+  auto flat_work = flat_area.workspace();
+  const SurfaceFit<Plane<>, OrthographicCamera<double>> plane(60, 64, plan);
+  struct Answer {
+    test::Cells<double> curvature{60, 64};
+    double flat_area_mm2, area_mm2, distance_mm;
+  };
+  const auto answer = [&](const auto& depth, const auto& mask) {
+    Answer a;
+    REQUIRE(curvature(depth, a.curvature, curving).ok());
+    a.flat_area_mm2 = flat_area(mask, depth, flat_work).area_mm2;
+    a.area_mm2 = contact_measures(plan, mask, depth).area_mm2;
+    a.distance_mm = plane(depth, mask).shape.distance_mm;
+    return a;
+  };
+  const Answer truth = answer(pressed.depth, pressed.mask);
+  REQUIRE(is_finite(truth.curvature(29, 31)));
+  REQUIRE(is_finite(truth.flat_area_mm2));
+  REQUIRE(truth.area_mm2 > 0);
+  REQUIRE(is_finite(truth.distance_mm));
+  const auto check = [&](const auto& depth, const auto& mask) {
+    const Answer a = answer(depth, mask);
+    bool same_cells = true;
+    for (std::size_t k = 0; k < a.curvature.cells.size(); ++k) {
+      same_cells = same_cells && same_bits(a.curvature.cells[k], truth.curvature.cells[k]);
+    }
+    CHECK(same_cells);
+    CHECK(same_bits(a.flat_area_mm2, truth.flat_area_mm2));
+    CHECK(same_bits(a.area_mm2, truth.area_mm2));
+    CHECK(same_bits(a.distance_mm, truth.distance_mm));
+  };
+  on_every_grid<double>(pressed.depth, [&](const auto& depth) { check(depth, pressed.mask); });
+  on_every_grid<unsigned char>(pressed.mask, [&](const auto& mask) { check(pressed.depth, mask); });
+}
+
+TEST_CASE("depth, contact and slide of a gel from every grid", "[adapt]") {
+  // a dark spot that comes nearer the middle
+  const auto image = [](double x, double dark) {
+    test::Cells<double> level(64, 80);
+    for (Index i = 0; i < 64; ++i) {
+      for (Index j = 0; j < 80; ++j) {
+        const double off = std::hypot(double(i) - 30, double(j) - x) / 9;
+        level(i, j) = 140 - dark * std::exp(-off * off) + double((7 * i + 3 * j) % 5);
+      }
+    }
+    return level;
+  };
+  const auto free = image(30, 0), before = image(30, 60), after = image(34, 60);
+  const IntensityDepth<double> depth(free, {});
+  auto depth_work = depth.workspace();
+  const std::vector frames = {free};
+  const ContactByDifference<1, double> contact(frames);
+  auto contact_work = contact.workspace();
+  const ContactSlide<double> slide(64, 80, 5, 7);
+  test::Cells<Point2<double>> dots(5, 7);
+  for (Index i = 0; i < 5; ++i) {
+    for (Index j = 0; j < 7; ++j) {
+      dots(i, j) = {40.0 * double(j) + 40, 40.0 * double(i) + 40};
+    }
+  }
+  test::Cells<unsigned char> touches(64, 80);
+  for (Index i = 0; i < 64; ++i) {
+    for (Index j = 0; j < 80; ++j) {
+      touches(i, j) = before(i, j) < 125 ? 1 : 0;
+    }
+  }
+  auto begun = slide.start();
+  (void)slide(before, touches, dots, begun);
+  struct Answer {
+    test::Cells<double> depth{64, 80};
+    test::Cells<unsigned char> mask{64, 80};
+    SlideResult<double> slide;
+  };
+  const auto answer = [&](const auto& frame, const auto& flags, const auto& points) {
+    Answer a;
+    REQUIRE(depth(frame, a.depth, depth_work).accepted());
+    REQUIRE(contact(frame, a.mask, contact_work).accepted());
+    auto state = begun;
+    a.slide = slide(frame, flags, points, state);
+    return a;
+  };
+  const Answer truth = answer(after, touches, dots);
+  REQUIRE(truth.slide.status == SlideStatus::updated);
+  const auto check = [&](const auto& frame, const auto& flags, const auto& points) {
+    const Answer a = answer(frame, flags, points);
+    bool same_cells = true;
+    for (std::size_t k = 0; k < a.depth.cells.size(); ++k) {
+      same_cells = same_cells && same_bits(a.depth.cells[k], truth.depth.cells[k]) &&
+                   a.mask.cells[k] == truth.mask.cells[k];
+    }
+    CHECK(same_cells);
+    CHECK(a.slide.status == truth.slide.status);
+    CHECK(same_bits(a.slide.slide_px.x, truth.slide.slide_px.x));
+    CHECK(same_bits(a.slide.imprint_px.y, truth.slide.imprint_px.y));
+  };
+  on_every_grid<double>(after, [&](const auto& frame) { check(frame, touches, dots); });
+  on_every_grid<unsigned char>(touches, [&](const auto& flags) { check(after, flags, dots); });
+  on_every_grid<Point2<double>>(dots, [&](const auto& points) { check(after, touches, points); });
 }

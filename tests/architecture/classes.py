@@ -10,6 +10,7 @@ classes.py ROOT --planted  plants one gap of each kind in a copy, and expects it
 2. A row has no empty cell, and its class and the types that it names exist.
 3. Each field of a parameter and each value of a status has a comment.
 4. The class's page, as the site writes it, has text under each heading.
+5. So has that of each printed form in docs/errata.md, among which is each class of published/.
 """
 import importlib.util
 import re
@@ -81,11 +82,24 @@ def gaps(root):
         for result in re.findall(r"`(\w+Status|\w+Reason|\w+Phase|\w+Evidence|DotState)`", row["Result and statuses"]):
             for line in bare(result, VALUE, site, root):
                 yield f"{result}: no meaning of: {line}"
-        written = site.class_page(name, row, root)
-        for heading in site.HEADINGS:
-            under = re.search(rf"^## {heading}\n\n(.*?)(?=^## |\Z)", written, re.MULTILINE | re.DOTALL)
-            if not under or not under[1].strip():
-                yield f"the page of {name} has nothing under: {heading}"
+        yield from empty_headings(site.class_page(name, row, root), name, site)
+    forms = site.printed_forms(root)
+    for header in sorted((root / "include/fingerpad/published").glob("*.hpp")):
+        for name in CLASS.findall(header.read_text()):
+            if name not in forms:
+                yield f"no printed form in docs/errata.md: {name} of {header.relative_to(root)}"
+    for name, rows in forms.items():
+        if site.declaration_of(name, root):
+            yield from empty_headings(site.printed_page(name, rows, root), f"published::{name}", site)
+        else:
+            yield f"docs/errata.md: no such printed form: {name}"
+
+
+def empty_headings(page, name, site):
+    for heading in site.HEADINGS:
+        under = re.search(rf"^## {heading}\n\n(.*?)(?=^## |\Z)", page, re.MULTILINE | re.DOTALL)
+        if not under or not under[1].strip():
+            yield f"the page of {name} has nothing under: {heading}"
 
 
 def in_detail(text, name):
@@ -100,6 +114,9 @@ PLANTED = {
         "\n| `Planted` | it | [a](depth/depth.md) | `Camera` | `DepthResult` | [a](a.md) | [a](a.md) | [a](a.md) |\n"),
     "a row with an empty cell": ("docs/classes.md",
         "\n| `Wrench` |  | [a](depth/depth.md) | `Camera` | `DepthResult` | [a](a.md) | [a](a.md) | [a](a.md) |\n"),
+    "a printed form that is not there": ("docs/errata.md",
+        '\n| 99 | it | `published::Planted` | that | [a](../tests/published/wrench.cpp) "a" |\n'),
+    "a printed class without a row": ("include/fingerpad/published/wrench.hpp", "\nclass Planted {\n};\n"),
     "a field without a comment": ("docs/classes.md", None),
 }
 
@@ -110,9 +127,11 @@ def planted_are_found(root):
     for what, (file, text) in PLANTED.items():
         with tempfile.TemporaryDirectory() as folder:
             copy = Path(folder)
+            (copy / "tests").symlink_to(root / "tests")
             for name in ("include", "docs/site"):
                 shutil.copytree(root / name, copy / name)
-            shutil.copy(root / "docs/classes.md", copy / "docs")
+            for name in ("classes.md", "errata.md"):
+                shutil.copy(root / "docs" / name, copy / "docs")
             if text is None:
                 header = copy / "include/fingerpad/slip/grip_law.hpp"
                 header.write_text(header.read_text().replace("struct GripLaw {\n", "struct GripLaw {\n  S planted = S(1);\n\n"))

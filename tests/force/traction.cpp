@@ -432,10 +432,10 @@ TEST_CASE("traction: statuses", "[traction]") {
   }
   CHECK(given(dots, none, 0.02, maps).status == TractionStatus::no_contact);
   CHECK(given(dots, middle, 0.02, maps).status == TractionStatus::ok);
-  for (const auto& [share, said] : {std::pair{0.79, TractionStatus::modulus_not_of_this_pad},
-                                    {0.81, TractionStatus::ok},
-                                    {1.24, TractionStatus::ok},
-                                    {1.26, TractionStatus::modulus_not_of_this_pad}}) {
+  for (const auto& [share, said] : {std::pair{0.88, TractionStatus::modulus_not_of_this_pad},
+                                    {0.95, TractionStatus::ok},
+                                    {1.05, TractionStatus::ok},
+                                    {1.13, TractionStatus::modulus_not_of_this_pad}}) {
     const TractionField off(free, {.mu_t_n_per_mm = share * mu_t});
     CHECK(off(dots, middle, 0.02, maps).status == said);
     CHECK(off(dots, middle, 0.02, maps).has_force());

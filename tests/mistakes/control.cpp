@@ -102,6 +102,69 @@ TEST_CASE("mistakes with the grip's control", "[mistakes]") {
   }
 }
 
+TEST_CASE("mistakes with the grip's control by friction", "[mistakes]") {
+  // An object pulls with 1 N, then 2 N, at a friction of 0.8; the dots slip from 0.6 on. What is
+  // said at the end, and whether the object ever slid.
+  struct Input {
+    ContactLoad<> load;
+    double stick_ratio;
+    int k;
+  };
+  const Mistake<Input> mistakes[] = {
+      {"none", [](Input&) {}, "follows the load, held"},
+      {"forces in mN", [](Input& in) { in.load.normal_n *= 1e3, in.load.tangential_n *= 1e3; },
+       "follows the load, held"},
+      {"forces in kN", [](Input& in) { in.load.normal_n *= 1e-3, in.load.tangential_n *= 1e-3; },
+       "slipping, held"},
+      {"tangential force in mN", [](Input& in) { in.load.tangential_n *= 1e3; },
+       "follows the load, held"},
+      {"tangential force in kN", [](Input& in) { in.load.tangential_n *= 1e-3; },
+       "follows the load, held"},
+      {"normal and tangential force exchanged",
+       [](Input& in) { std::swap(in.load.normal_n, in.load.tangential_n); }, "slipping, slid"},
+      {"normal force as a wrench has it", [](Input& in) { in.load.normal_n *= -1; },
+       "slipping, held"},
+      {"no forces",
+       [](Input& in) {
+         in.load = {test::nan, test::nan};
+       },
+       "slipping, held"},
+      {"forces stuck from frame 50 on",
+       [](Input& in) {
+         in.load = in.k < 50 ? in.load : ContactLoad<>{2, 1};
+       },
+       "slipping, slid"},
+      {"a stuck ratio", [](Input& in) { in.stick_ratio = 1; }, "follows the load, slid"},
+      {"forces and ratio stuck from frame 50 on",
+       [](Input& in) {
+         in.load = in.k < 50 ? in.load : ContactLoad<>{2, 1};
+         in.stick_ratio = 1;
+       },
+       "follows the load, slid"},
+  };
+  for (const auto& mistake : mistakes) {
+    const FrictionLimit<> limit;
+    const GripControl<> control;
+    auto learnt = limit.start();
+    auto state = control.start(4);
+    GripResult<> r{.force_n = 4};
+    bool slid = false;
+    for (int k = 0; k < 400; ++k) {
+      const double pull_n = k < 100 ? 1 : std::fmin(2, 1 + 0.02 * (k - 100));
+      const double friction = pull_n / r.force_n;
+      slid = slid || friction > 0.8;
+      const double share = std::cbrt(std::fmax(0, 1 - friction / 0.8));
+      Input in{{.normal_n = r.force_n, .tangential_n = pull_n}, share * share, k};
+      mistake.make(in);
+      const auto slip = limit(in.load, in.stick_ratio, RatioUpdate::fresh, learnt);
+      r = control(slip, 0.02, state);
+      CHECK((r.force_n >= control.law().min_force_n && r.force_n <= control.law().max_force_n));
+    }
+    INFO(mistake.name << ": " << r.force_n << " N");
+    CHECK(std::string(name_of(r.why)) + (slid ? ", slid" : ", held") == mistake.said);
+  }
+}
+
 TEST_CASE("mistakes with the search for the holding force", "[mistakes]") {
   // Pre-slip at 4 N, then slip; a signal is what a hand says.
   const auto ends = [](const std::function<PreslipStatus(double force_n, int k)>& signal) {

@@ -216,6 +216,32 @@ TEST_CASE("a frame that is not of this pad and lamp is told", "[mistakes]") {
   }
 }
 
+TEST_CASE("a membrane that has aged: depths are those of the fluid", "[mistakes]") {
+  // by half a millimetre higher on the same base, and lower
+  const Pad pad = fine_pad();
+  const auto estimator = pad.estimator<BiasFreeMean, ExponentialFree<>, float>();
+  const auto mean_error_mm = [&](double higher_mm) {
+    Pad aged = pad;
+    aged.height_mm += higher_mm;
+    aged.sphere_radius_mm =
+        (std::pow(pad.base_radius_mm(), 2) + std::pow(aged.height_mm, 2)) / (2 * aged.height_mm);
+    const auto truth = aged.pressed_depths(3);
+    const auto seen = test::estimate<float>(estimator, aged.frame<std::uint8_t>(truth, 1, 5));
+    CHECK(seen.result.ok());
+    double sum = 0, count = 0;
+    for (std::size_t k = 0; k < truth.cells.size(); ++k) {
+      const double off = std::abs(static_cast<double>(seen.depth_mm.cells[k]) - truth.cells[k]);
+      sum += off == off ? off : 0;
+      count += off == off ? 1 : 0;
+    }
+    return sum / count;
+  };
+  // the light at each depth is another: the error is a tenth larger, and no more
+  const double as_new = mean_error_mm(0);
+  CHECK(mean_error_mm(0.5) / as_new == Approx(1.1).margin(0.05));
+  CHECK(mean_error_mm(-0.5) / as_new == Approx(1.1).margin(0.05));
+}
+
 TEST_CASE("the light at the rim is that of all bands together", "[mistakes]") {
   const Pad pad = fine_pad();
   const auto estimator = pad.estimator<BiasFreeMean, ExponentialFree<>, float>();

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: MIT
 // What is said of mistakes with the forces: each line is a mistake, and what is said of it. No
 // mistake gets a status of ok; what cannot be seen in a frame stands last, with the reason.
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
 #include <limits>
@@ -12,6 +14,7 @@
 #include "fingerpad/calibrate/rim.hpp"
 #include "fingerpad/force/dot_divergence.hpp"
 #include "fingerpad/force/normal_force.hpp"
+#include "fingerpad/force/pressure_from_rim.hpp"
 #include "fingerpad/force/shear.hpp"
 #include "fingerpad/force/traction.hpp"
 #include "fingerpad/force/wrench.hpp"
@@ -258,20 +261,32 @@ TEST_CASE("mistakes with the six-axis force: what the residual does not see, the
     return norm(r.force_n - right.force_n) / norm(right.force_n);
   };
   // stiffer and softer: forces come from pressure and shape, and the modulus says it
-  for (const double stiffer : {1.5, 1 / 1.5}) {
+  for (const double stiffer : {1.4, 1 / 1.4, 2.0, 0.5}) {
     const auto r = solved(aged(stiffer, 1));
-    CHECK(r.ok());
+    const bool little = stiffer < 1.5 && 1 < 1.5 * stiffer;
+    CHECK(r.status == (little ? WrenchStatus::ok : WrenchStatus::pad_has_changed));
+    CHECK(r.has_force());
     CHECK(shifted(r) < 1e-6);
     CHECK(modulus(r) == Approx(stiffer).epsilon(1e-6));
   }
   // a rim that has become longer without stress: by 5 % F_xy halves and so does the modulus
   const auto longer = solved(aged(1, 1.05));
-  CHECK(longer.ok());
+  CHECK(longer.status == WrenchStatus::pad_has_changed);
+  CHECK(longer.has_force());
   CHECK(longer.residual < 0.001);
   CHECK(longer.force_n.z == Approx(right.force_n.z).epsilon(1e-6));
   CHECK(longer.force_n.x / right.force_n.x == Approx(0.53).margin(0.01));
   CHECK(modulus(longer) == Approx(0.5).margin(0.01));
   CHECK(solved(aged(1, 1.2)).status == WrenchStatus::modulus_not_as_calibrated);
+  // what is not told: F_xy off by no more than the bound
+  for (const double length : {0.96, 0.97, 0.98, 0.99, 1.01, 1.02, 1.03, 1.04}) {
+    const auto r = solved(aged(1, length));
+    INFO(length << ": mu t " << modulus(r) << ", F_x " << r.force_n.x / right.force_n.x << ", "
+                << name_of(r.status));
+    CHECK(r.ok() == (modulus(r) < 1.5 && 1 < 1.5 * modulus(r)));
+    CHECK((r.ok() || std::abs(length - 1) > 0.015));
+    CHECK((!r.ok() || std::abs(std::log(r.force_n.x / right.force_n.x)) < std::log(1.5)));
+  }
   // a gauge that reads a fifth too much
   const auto pressed = solved([](Frame& f) { f.pressure_mpa *= 1.2; });
   CHECK(pressed.residual < 0.001);
@@ -283,6 +298,60 @@ TEST_CASE("mistakes with the six-axis force: what the residual does not see, the
     CHECK(r.residual < 0.001);
     CHECK(shifted(r) < 0.03);
     CHECK(modulus(r) == Approx(1).epsilon(0.002));
+  }
+}
+
+TEST_CASE("mistakes with the six-axis force: by the modulus alone an aged membrane is not told",
+          "[mistakes]") {
+  // the same frame with its pressure and shape tells it: pad_has_changed
+  Frame frame;
+  frame.options.calibrated_modulus_n_per_mm = frame.rim.modulus_n_per_mm;
+  const auto loaded = [&](double stiffer, double longer) {
+    auto rim = frame.rim;
+    rim.modulus_n_per_mm *= stiffer;
+    rim.length_mm *= longer;
+    const double tension = frame.pad.tension(frame.pad.radius_mm, frame.pressure_mpa);
+    return rim.dots([&](double at) {
+      return test::RimLoad{tension * (1 + 0.05 * std::cos(at)),
+                           tension * (0.1 - 0.1 * std::sin(at))};
+    });
+  };
+  const Wrench<BalancedRim> wrench(frame.border, frame.options);
+  // without a modulus there is nothing to compare with
+  WrenchOptions<double> without = frame.options;
+  without.calibrated_modulus_n_per_mm.reset();
+  const Wrench<BalancedRim> any_pad(frame.border, without);
+  auto workspace = wrench.workspace();
+  const auto told = [&](double stiffer, double longer) {
+    const auto dots = loaded(stiffer, longer);
+    const auto by_modulus = wrench.by_modulus(dots, frame.pressure_mpa, workspace);
+    const auto by_rim =
+        pressure_from_rim(any_pad, frame.shape, dots, frame.rim.modulus_n_per_mm, workspace);
+    CHECK(by_modulus.ok());
+    CHECK(by_rim.ok());
+    CHECK(wrench(frame.shape, dots, frame.pressure_mpa, workspace).ok() == (stiffer * longer == 1));
+    return std::array{by_modulus.force_n.x, by_rim.force_n.x, by_rim.pressure_mpa};
+  };
+  const auto right = told(1, 1), stiffer = told(2, 1), longer = told(1, 1.05);
+  CHECK(stiffer[0] / right[0] == Approx(0.5).margin(0.05));  // shear of half the stretch
+  CHECK(stiffer[2] / right[2] == Approx(0.5).margin(0.01));
+  CHECK(stiffer[1] / right[1] == Approx(0.5).margin(0.01));
+  CHECK(longer[0] / right[0] == Approx(1).margin(0.1));
+  CHECK(longer[2] / right[2] == Approx(2).margin(0.1));
+}
+
+TEST_CASE("mistakes with the six-axis force: a modulus of another unit", "[mistakes]") {
+  const Frame frame;
+  const Wrench<BalancedRim> wrench(frame.border, frame.options);
+  auto workspace = wrench.workspace();
+  for (const double modulus : {500.0, 0.0005, 0.5e6}) {  // N/m, kN/mm, N/km
+    WrenchOptions<double> options = frame.options;
+    options.calibrated_modulus_n_per_mm = modulus;
+    CHECK(test::begins_with(
+        test::refusal([&] { const Wrench<BalancedRim> r(frame.border, options); }),
+        "WrenchOptions: calibrated_modulus_n_per_mm = "));
+    CHECK(pressure_from_rim(wrench, frame.shape, frame.dots, modulus, workspace).status ==
+          WrenchStatus::refused);
   }
 }
 
@@ -325,6 +394,11 @@ const std::vector<LookUpMistake> look_up_mistakes = {
      "below range", "beyond range", "beyond range", "measured"},
     {"a contact of another shape", [](Contact& c) { c.area_mm2 /= 2; }, "measured", "measured",
      "disagreeing", "measured"},
+    {"a membrane that has become longer: a fifth deeper over the same area",
+     [](Contact& c) { c.depth_mm *= 1.2; }, "measured", "measured", "disagreeing", "measured"},
+    {"a softer gel: as a contact of more force",
+     [](Contact& c) { c.area_mm2 *= 1.2, c.depth_mm *= 1.2; }, "measured", "measured", "measured",
+     "measured"},
     {"displacement in um", [](Contact& c) { c.displacement_mm = 1e3 * c.displacement_mm; },
      implausible, implausible, implausible, implausible},
     {"displacement as the place of the dot",
@@ -436,6 +510,28 @@ void each_dot(test::TractionScene& s, const Change& change) {
   }
 }
 
+/// Dot (i, j) is that at from(i, j).
+template <class From>
+std::function<void(test::TractionScene&)> renamed(const From& from) {
+  return [=](test::TractionScene& s) {
+    const auto as_it_was = s.dots;
+    for (Index i = 0; i < 21; ++i) {
+      for (Index j = 0; j < 21; ++j) {
+        const DotIndex d = from(i, j);
+        s.dots(i, j) = as_it_was(d.row % 21, d.col % 21);
+      }
+    }
+  };
+}
+
+void shift_by_one(test::TractionScene& s) {
+  for (Index i = 0; i < 21; ++i) {
+    for (Index j = 0; j < 21; ++j) {
+      s.dots(i, j) = j < 20 ? s.dots(i, j + 1) : detail::missing_point<double>();
+    }
+  }
+}
+
 const std::vector<TractionMistake> traction_mistakes = {
     {"none", [](auto&) {}, "ok"},
     {"pressure in kPa", [](auto& s) { s.pressure_mpa *= 1e3; }, "pressure not in MPa"},
@@ -459,6 +555,27 @@ const std::vector<TractionMistake> traction_mistakes = {
      },
      "not of this membrane"},
     {"no dots", [](auto& s) { s.dots = test::no_dots(21, 21); }, "too few dots"},
+    {"rows from the other end", renamed([](Index i, Index j) {
+       return DotIndex{20 - i, j};
+     }),
+     "no balance"},
+    {"shifted by one", shift_by_one, "free part pulled: dots shifted by one?"},
+    {"two halves exchanged", renamed([](Index i, Index j) {
+       return DotIndex{i, j + 10};
+     }),
+     "incomplete"},
+    {"neighbours exchanged", renamed([](Index i, Index j) {
+       return DotIndex{i, j == 20 ? j : j % 2 == 0 ? j + 1 : j - 1};
+     }),
+     "too few dots"},
+    {"dots of the free pad", [](auto& s) { s.dots = test::traction_scene("free").dots; }, "ok"},
+    {"half of the dots missing",
+     [](auto& s) {
+       for (Index k = 0; k < 21 * 10; ++k) {
+         s.dots.cells[static_cast<std::size_t>(k)].x = test::nan;
+       }
+     },
+     "incomplete"},
     {"a dot as far away as numbers go", [](auto& s) { s.dots(10, 10).z = 1.7e308; }, "ok"},
     {"dots times 1e300", [](auto& s) { each_dot(s, [](const Vector& p) { return 1e300 * p; }); },
      "too few dots"},
@@ -475,10 +592,23 @@ TEST_CASE("mistakes with the traction field", "[mistakes]") {
     auto scene = test::traction_scene("tilt");
     m.make(scene);
     const auto r = field(scene.dots, scene.contact, scene.pressure_mpa, maps);
+    INFO(norm(r.force_n - scene.force_n) / norm(scene.force_n));
     CHECK(name_of(r.status) == m.said);
-    CHECK(r.has_force() == (m.said == "ok"));
+    CHECK(r.ok() == (m.said == "ok"));
     CHECK((!r.has_force() || is_finite(r.force_n)));
   }
+  // dots a pitch aside would make a force that is off by its own size
+  for (test::TractionScene aside : test::traction_scenes()) {
+    shift_by_one(aside);
+    INFO(aside.name);
+    CHECK(std::string(name_of(field(aside.dots, aside.contact, aside.pressure_mpa, maps).status)) ==
+          "free part pulled: dots shifted by one?");
+  }
+  // the free pad's dots where an object is said to touch: no force
+  auto free = test::traction_scene("tilt");
+  free.dots = test::traction_scene("free").dots;
+  CHECK(norm(field(free.dots, free.contact, free.pressure_mpa, maps).force_n) <
+        0.05 * norm(free.force_n));
 }
 
 TEST_CASE("mistakes with the traction field: an aged membrane", "[mistakes]") {
@@ -494,6 +624,9 @@ TEST_CASE("mistakes with the traction field: an aged membrane", "[mistakes]") {
       {1 / 1.5, 1.0, "modulus not of this pad: has the membrane aged?"},
       {1.0, 1.1, "modulus not of this pad: has the membrane aged?"},
       {1.0, 0.9, "modulus not of this pad: has the membrane aged?"},
+      {1.0, 1.02, "modulus not of this pad: has the membrane aged?"},
+      {1.0, 0.98, "modulus not of this pad: has the membrane aged?"},
+      {1.15, 1.0, "modulus not of this pad: has the membrane aged?"},
       {1000.0, 1.0, "modulus not of this pad: has the membrane aged?"},  // as in N/m
       {std::nullopt, 1.0, "ok"},
   };
@@ -516,8 +649,180 @@ TEST_CASE("mistakes with the traction field: an aged membrane", "[mistakes]") {
       CHECK((!r.ok() || norm(r.force_n - scene.force_n) < 0.05 * norm(scene.force_n)));
     }
   }
-  // a stress-free length off by 3 % is not told: F_z by half with a given modulus, F_xy by half
-  // with that of the free part
+  // noise of the dots is neither taken for age nor hides it
+  for (const test::TractionScene& scene : test::traction_scenes()) {
+    test::Gauss gauss(7);
+    for (const double length : {0.97, 1.0, 1.03}) {
+      auto free = test::stress_free_dots();
+      for (Vector& dot : free.cells) {
+        dot = length * dot;
+      }
+      const TractionField field(free, {.mu_t_n_per_mm = 0.5});
+      auto maps = field.maps();
+      for (const double noise_mm : {0.02, length == 1 ? 0.05 : 0.02}) {
+        const auto r = field(test::noisy(scene.dots, noise_mm, gauss), scene.contact,
+                             scene.pressure_mpa, maps);
+        CAPTURE(scene.name, length, noise_mm, r.balance.mu_t_n_per_mm());
+        CHECK(name_of(r.status) == std::string(length == 1 ? "ok" : all[1].said));
+      }
+    }
+  }
+  // what is not told is small: by 1 % F_z is off by a tenth in the worst frame
+  for (const test::TractionScene& scene : test::traction_scenes()) {
+    for (const double length : {0.99, 1.01}) {
+      auto free = test::stress_free_dots();
+      for (Vector& dot : free.cells) {
+        dot = length * dot;
+      }
+      const TractionField field(free, {.mu_t_n_per_mm = 0.5});
+      auto maps = field.maps();
+      const auto r = field(scene.dots, scene.contact, scene.pressure_mpa, maps);
+      CAPTURE(scene.name, length);
+      CHECK((!r.ok() || norm(r.force_n - scene.force_n) < 0.11 * norm(scene.force_n)));
+      CHECK((r.ok() ||
+             std::string(name_of(r.status)) == "modulus not of this pad: has the membrane aged?"));
+    }
+  }
+}
+
+TEST_CASE(
+    "mistakes with the traction field: without a given modulus a longer membrane is a softer one",
+    "[mistakes]") {
+  // by 3 % F_xy is off by half with status ok: a stiffer membrane at less stretch holds as much;
+  // but the modulus of the frame is 1.5 times that of the pad when it was new
+  auto free = test::stress_free_dots();
+  for (Vector& dot : free.cells) {
+    dot = 1.03 * dot;
+  }
+  const TractionField field(free);
+  auto maps = field.maps();
+  const auto scene = test::traction_scene("drag");
+  const auto r = field(scene.dots, scene.contact, scene.pressure_mpa, maps);
+  CHECK(r.ok());
+  CHECK(r.force_n.x / scene.force_n.x == Approx(1.51).margin(0.02));
+  CHECK(r.mu_t_n_per_mm / 0.5 == Approx(1.53).margin(0.01));
+}
+
+namespace {
+
+/// Dots 2 mm apart on a gel that is pressed in the middle: they part under the load.
+struct PartedDots {
+  static constexpr Index across = 15;
+  using Dots = Image<Point2<double>>;
+  Dots free{across, across}, now{across, across};
+  Image<std::uint8_t> contact{across, across, 0};
+
+  PartedDots() {
+    for (Index i = 0; i < across; ++i) {
+      for (Index j = 0; j < across; ++j) {
+        const double x = 2 * static_cast<double>(j - 7), y = 2 * static_cast<double>(i - 7);
+        const double parted = 0.02 * std::exp(-(x * x + y * y) / 40);
+        free(i, j) = {x, y};
+        now(i, j) = {x + parted * x, y + parted * y};
+        contact(i, j) = x * x + y * y < 40 ? 1 : 0;
+      }
+    }
+  }
+
+  /// Dot (i, j) of this frame is that at from(i, j).
+  template <class From>
+  void rename(const From& from) {
+    const Dots as_it_was = now;
+    for (Index i = 0; i < across; ++i) {
+      for (Index j = 0; j < across; ++j) {
+        const DotIndex d = from(i, j);
+        now(i, j) = as_it_was((d.row + across) % across, (d.col + across) % across);
+      }
+    }
+  }
+  static void scale(Dots& dots, double factor) {
+    for (Point2<double>& p : dots.cells) {
+      p = factor * p;
+    }
+  }
+};
+
+struct DivergenceMistake {
+  const char* mistake;
+  void (*make)(PartedDots&);
+  const char* said;
+};
+
+const DivergenceMistake divergence_mistakes[] = {
+    {"none", [](PartedDots&) {}, "right"},
+    {"dots in m", [](PartedDots& d) { PartedDots::scale(d.now, 1e-3); }, "not of this pad"},
+    {"dots in um", [](PartedDots& d) { PartedDots::scale(d.now, 1e3); }, "not of this pad"},
+    {"dots in px", [](PartedDots& d) { PartedDots::scale(d.now, 12); }, "not of this pad"},
+    {"free pad and now in px",
+     [](PartedDots& d) { PartedDots::scale(d.now, 12), PartedDots::scale(d.free, 12); },
+     "another area"},
+    {"rows and columns exchanged",
+     [](PartedDots& d) { d.rename([](Index i, Index j) {
+                           return DotIndex{j, i};
+                         }); },
+     "not of this pad"},
+    {"columns from the other end",
+     [](PartedDots& d) {
+       d.rename([](Index i, Index j) { return DotIndex{i, PartedDots::across - 1 - j}; });
+     },
+     "not of this pad"},
+    {"shifted by one",
+     [](PartedDots& d) { d.rename([](Index i, Index j) {
+                           return DotIndex{i, j + 1};
+                         }); }, "right"},
+    {"two halves exchanged",
+     [](PartedDots& d) {
+       d.rename([](Index i, Index j) { return DotIndex{i, j + PartedDots::across / 2}; });
+     },
+     "not of this pad"},
+    {"neighbours exchanged",
+     [](PartedDots& d) {
+       d.rename([](Index i, Index j) {
+         return DotIndex{i, j == 14 ? j : j % 2 == 0 ? j + 1 : j - 1};
+       });
+     },
+     "no measure"},
+    {"frozen at the free pad", [](PartedDots& d) { d.now = d.free; }, "another area"},
+    {"free pad and now exchanged", [](PartedDots& d) { std::swap(d.now, d.free); }, "another area"},
+    {"half of the dots missing",
+     [](PartedDots& d) {
+       for (Index k = 0; k < PartedDots::across * PartedDots::across / 2; ++k) {
+         d.now.cells[static_cast<std::size_t>(k)].x = test::nan;
+       }
+     },
+     "no measure"},
+    {"lost as (0, 0)",
+     [](PartedDots& d) {
+       for (Index k = 0; k < PartedDots::across * PartedDots::across; k += 9) {
+         d.now.cells[static_cast<std::size_t>(k)] = {0, 0};
+       }
+     },
+     "right"},
+    {"another frame's size", [](PartedDots& d) { d.now = PartedDots::Dots(15, 14); }, "refused"},
+};
+
+std::string said_by_divergence(const PartedDots& d) {
+  const DotDivergence<> divergence(d.free);
+  auto workspace = divergence.workspace();
+  const auto r = divergence(d.now, d.contact, workspace);
+  const PartedDots right;
+  const DotDivergence<> well(right.free);
+  const double area_mm2 = well(right.now, right.contact, workspace).area_mm2;
+  return r.status != FrameStatus::ok                  ? name_of(r.status)
+         : !r.ok()                                    ? "no measure"
+         : std::abs(r.area_mm2 / area_mm2 - 1) < 0.15 ? "right"
+                                                      : "another area";
+}
+
+}  // namespace
+
+TEST_CASE("mistakes with the divergence of the dots", "[mistakes]") {
+  for (const DivergenceMistake& m : divergence_mistakes) {
+    INFO(m.mistake);
+    PartedDots dots;
+    m.make(dots);
+    CHECK(said_by_divergence(dots) == m.said);
+  }
 }
 
 TEST_CASE("one convention of signs: a press", "[mistakes]") {

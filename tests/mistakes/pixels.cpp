@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
-// Mistakes with pixels: frames of gels and depth maps, and what five methods say of each. "found":
+// Mistakes with pixels: frames of gels and depth maps, and what six methods say of each. "found":
 // the mistake does no harm, or is none for this method; a wrong number is told as "another ...",
 // and then nothing can tell, with the reason in docs/mistakes.md.
 #include <array>
@@ -11,6 +11,7 @@
 
 #include "fingerpad/contact/contact_by_difference.hpp"
 #include "fingerpad/contact/contact_region.hpp"
+#include "fingerpad/contact/equivalent_flat_area.hpp"
 #include "fingerpad/contact/object_surface.hpp"
 #include "fingerpad/depth/intensity_depth.hpp"
 #include "fingerpad/depth/neighbour_light.hpp"
@@ -222,32 +223,60 @@ std::string of_light(const std::string& mistake) {
                                                   : "another depth";
 }
 
+/// The area of the plate that would press as hard, by the true contact.
+std::string of_flat_area(const std::string& mistake) {
+  const PressedPad pad;
+  Image<std::uint8_t> mask(size, size);
+  for (Index i = 0; i < size; ++i) {
+    for (Index j = 0; j < size; ++j) {
+      const auto p = point_at(pad.camera, double(i), double(j), 10.0);
+      mask(i, j) = std::hypot(p.x - 1.5, p.y + 1) < 4 ? 1 : 0;
+    }
+  }
+  const EquivalentFlatArea area(pad.camera, size, size);
+  auto workspace = area.workspace();
+  const auto right = area(mask, pad.now, workspace);
+  REQUIRE(right.ok());
+  if (mistake == "free pad and now exchanged") {  // of what touches, too
+    for (std::uint8_t& cell : mask.cells) {
+      cell = cell != 0 ? 0 : 1;
+    }
+  }
+  const auto r = area(mask, spoilt(mistake, pad.now, pad.free), workspace);
+  return !r.ok()                                            ? "no answer"
+         : std::abs(r.area_mm2 / right.area_mm2 - 1) < 0.05 ? "found"
+                                                            : "another area";
+}
+
 struct Said {
-  std::string mistake, intensity, difference, region, surface, light;
+  std::string mistake, intensity, difference, region, surface, light, flat_area;
 };
 
 const std::vector<Said> table = {
-    {"none", "found", "found", "found", "found", "found"},
+    {"none", "found", "found", "found", "found", "found", "found"},
     {"x 1000", "not of this pad", "mostly unknown", "mostly unknown", "degenerate",
-     "not of this pad"},
-    {"/ 1000", "not of this pad", "found", "not of this pad", "another object", "not of this pad"},
-    {"10 % less", "not of this pad", "found", "found", "found", "another depth"},
+     "not of this pad", "no answer"},
+    {"/ 1000", "not of this pad", "found", "not of this pad", "another object", "not of this pad",
+     "found"},
+    {"10 % less", "not of this pad", "found", "found", "found", "another depth", "found"},
     {"transposed", "another depth", "not of this pad", "another contact", "another object",
-     "another depth"},
+     "another depth", "another area"},
     {"mirrored", "another depth", "not of this pad", "another contact", "another object",
-     "another depth"},
+     "another depth", "another area"},
     {"two halves exchanged", "not of this pad", "not of this pad", "another contact",
-     "another object", "another depth"},
+     "another object", "another depth", "no answer"},
     {"a row stride of one too many", "another depth", "not of this pad", "another contact",
-     "another object", "another depth"},
+     "another object", "another depth", "no answer"},
     {"constant", "not of this pad", "not of this pad", "another contact", "another object",
-     "another depth"},
-    {"half missing", "found", "found", "mostly unknown", "found", "found"},
-    {"no number", "not of this pad", "mostly unknown", "mostly unknown", "degenerate", "found"},
+     "another depth", "no answer"},
+    {"half missing", "found", "found", "mostly unknown", "found", "found", "no answer"},
+    {"no number", "not of this pad", "mostly unknown", "mostly unknown", "degenerate", "found",
+     "no answer"},
     {"the free pad for now", "another depth", "no contact", "no contact", "another object",
-     "another depth"},
-    {"free pad and now exchanged", "another depth", "found", "found", "found", "another depth"},
-    {"channels exchanged", "found", "not of this pad", "found", "found", "found"},
+     "another depth", "another area"},
+    {"free pad and now exchanged", "another depth", "found", "found", "found", "another depth",
+     "no answer"},
+    {"channels exchanged", "found", "not of this pad", "found", "found", "found", "found"},
 };
 
 }  // namespace
@@ -260,5 +289,6 @@ TEST_CASE("mistakes with pixels", "[mistakes]") {
     CHECK(of_region(said.mistake) == said.region);
     CHECK(of_surface(said.mistake) == said.surface);
     CHECK(of_light(said.mistake) == said.light);
+    CHECK(of_flat_area(said.mistake) == said.flat_area);
   }
 }

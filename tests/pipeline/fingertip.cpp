@@ -317,15 +317,104 @@ TEST_CASE("a fingertip refuses frames and dots of another size", "[chain]") {
   CHECK(touch_of(tip, in).status != fingerpad::FingertipStatus::refused);
 }
 
+namespace {
+
+/// The pad of frames(), which nothing touches.
+test::Frame<std::uint8_t> free_frame() {
+  test::Pad pad;
+  pad.rows = frames().options().rows;
+  pad.cols = frames().options().cols;
+  pad.camera = frames().options().camera;
+  return pad.frame<std::uint8_t>(pad.free_depths(), 1, 9);
+}
+
+using Levels = test::Frame<std::uint8_t>;
+
+Levels copy_of(const Inputs& in) {
+  Levels out(in.image.red.rows(), in.image.red.cols());
+  for (Index i = 0; i < out.red.rows(); ++i) {
+    for (Index j = 0; j < out.red.cols(); ++j) {
+      out.red(i, j) = in.image.red(i, j);
+      out.green(i, j) = in.image.green(i, j);
+    }
+  }
+  return out;
+}
+Levels times(Levels levels, double factor) {
+  for (auto* channel : {&levels.red, &levels.green}) {
+    for (std::uint8_t& level : channel->cells) {
+      level = static_cast<std::uint8_t>(std::fmin(factor * level, 255));
+    }
+  }
+  return levels;
+}
+
+}  // namespace
+
 TEST_CASE("a fingertip says that nothing touches", "[chain]") {
   TipOf<fingerpad::FingertipMethods> tip(frames().options());
   const Inputs in = frames()[0].view();
-  const auto dark = fingerpad::LazyView(in.image.red.rows(), in.image.red.cols(),
-                                        [](Index, Index) { return std::uint8_t(0); });
-  const auto touch =
-      tip(fingerpad::ColorFrame(dark, dark), in.dots_px, in.side_dots_mm, in.pressure_mpa);
+  const auto free = free_frame();
+  const auto touch = tip(fingerpad::ColorFrame(free.red, free.green), in.dots_px, in.side_dots_mm,
+                         in.pressure_mpa);
   CHECK(touch.status == fingerpad::FingertipStatus::no_contact);
   CHECK(std::string(name_of(touch.status)) == "no contact");
+}
+
+TEST_CASE("mistakes with a fingertip's frames: neither an answer nor that nothing touches",
+          "[chain][mistakes]") {
+  struct Mistake {
+    const char* name;
+    Levels (*make)(Levels);
+    const char* said;
+  };
+  const Mistake mistakes[] = {
+      {"none", [](Levels f) { return f; }, "ok"},
+      {"lamp off", [](Levels f) { return times(f, 0); }, "partial"},
+      {"lamp 10 % darker", [](Levels f) { return times(f, 0.9); }, "partial"},
+      {"lens saturated", [](Levels f) { return times(f, 9); }, "partial"},
+      {"red and green exchanged",
+       [](Levels f) {
+         std::swap(f.red, f.green);
+         return f;
+       },
+       "partial"},
+      {"row stride without padding",
+       [](Levels f) {
+         const Levels from = f;
+         const Index cols = f.red.cols();
+         for (Index k = 0; k < f.red.rows() * cols; ++k) {
+           const auto at = static_cast<std::size_t>(std::max(k - k / cols * 5, Index(0)));
+           f.red.cells[static_cast<std::size_t>(k)] = from.red.cells[at];
+           f.green.cells[static_cast<std::size_t>(k)] = from.green.cells[at];
+         }
+         return f;
+       },
+       "partial"},
+  };
+  auto options = frames().options();  // by pixels alone
+  options.free_dots_mm = {};
+  options.rim_mm = {};
+  options.force_of_depth = {};
+  options.shear = {};
+  TipOf<fingerpad::FingertipMethods> tip(options);
+  TipOf<EveryPixel> every_pixel(options);
+  const Inputs in = frames()[0].view();
+  const auto said = [&](auto& one, const Levels& seen) {
+    one.reset();
+    return std::string(name_of(one(fingerpad::ColorFrame(seen.red, seen.green), in.dots_px,
+                                   in.side_dots_mm, in.pressure_mpa)
+                                   .status));
+  };
+  for (const Mistake& mistake : mistakes) {
+    const Levels seen = mistake.make(copy_of(in));
+    INFO(mistake.name);
+    CHECK(said(tip, seen) == mistake.said);
+    CHECK(said(every_pixel, seen) == mistake.said);
+    if (mistake.said == std::string("partial")) {
+      CHECK(said(tip, mistake.make(free_frame())) == "partial");
+    }
+  }
 }
 
 TEST_CASE("a fingertip that has forgotten begins anew", "[chain]") {

@@ -196,6 +196,35 @@ TEST_CASE("slides: when there is an answer", "[published]") {
   CHECK(first_answers(AnswerWhen::stick_region_moved) == std::array<Index, 2>{2, 5});
 }
 
+TEST_CASE("slides: the reference dot is one of the stick region", "[published]") {
+  // the columns at both sides and the dot in the middle stick; the others stay behind
+  const auto sticks = [](Index i, Index j) { return j < 3 || j > 5 || (i == 4 && j == 4); };
+  const auto frame = [&](int k) {
+    return grid_of([&, k](Index i, Index j) {
+      return Point2<double>{(sticks(i, j) ? 3.0 : 1.5) * k, 0};
+    });
+  };
+  SlidesOptions options;
+  options.cancels_rotation = false;
+  options.scale = SlidesScale::none;
+  options.weights = {1, 0, 0};
+  const SlidesStickRatio ratio(9, 9, options);
+  auto state = ratio.start();
+  ContactFlags contact(9, 9, 1);
+  CHECK_FALSE(ratio(frame(0), contact, state).updated);
+  const SlidesResult first = ratio(frame(1), contact, state);
+  REQUIRE(first.ok());
+  CHECK(first.reference_dot == DotIndex{4, 4});  // of the contact: there was no answer before
+  CHECK(first.stick_ratio == Approx(55.0 / 81));
+  // the middle dot is gone: of those that touch its neighbours are nearest, of those that stick
+  // the column to the left, which comes nearer
+  contact(4, 4) = 0;
+  const SlidesResult second = ratio(frame(2), contact, state);
+  REQUIRE(second.ok());
+  CHECK(second.reference_dot == DotIndex{4, 2});
+  CHECK(second.stick_ratio == Approx(54.0 / 80));
+}
+
 TEST_CASE("slides: the mean over neighbours leaves the border", "[published]") {
   const auto bumped = [](Index row, Index col) {
     return grid_of([=](Index i, Index j) {

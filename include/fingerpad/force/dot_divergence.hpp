@@ -51,7 +51,9 @@ template <scalar S = double>
 struct [[nodiscard]] DivergenceResult {
   FrameStatus status = FrameStatus::refused;
   S area_mm2 = not_a_number<S>();      ///< by which load moves the dots apart; 0 without contact;
-                                       ///< NaN: too many dots are missing
+                                       ///< NaN: too many dots are missing, or not_of_this_pad: the
+                                       ///< contact's cells are half as large again, or less: dots
+                                       ///< in another unit or order than those of the free pad
   S variance_mm4 = not_a_number<S>();  ///< of it, by the noise of the dots and by shear
   Index dots = 0;                      ///< in the contact and around it
   Index filled = 0;  ///< of these, missing or out of place: taken to move as those beside them
@@ -229,9 +231,11 @@ class DotDivergence {
   template <class Touches>
   DivergenceResult<S> area_of(const Touches& touches, Workspace& workspace) const {
     DivergenceResult<S> result{FrameStatus::ok, S(0), S(0)};
+    S twice_free = S(0);
     for_cells([&](const Cell& at) {
       if (std::any_of(at.begin(), at.end(), touches)) {
         result.area_mm2 = S(result.area_mm2 + parted(at, workspace.dots_));
+        twice_free += cross(shape_[at[2]] - shape_[at[0]], shape_[at[3]] - shape_[at[1]]);
       }
     });
     const S free_variance =
@@ -254,7 +258,10 @@ class DotDivergence {
     const S sheared_sq = squared_norm(inside.mean() - outside.mean());
     result.variance_mm4 = S(result.variance_mm4 + sheared_sq * max_off_sq_ / S(3));
     const double allowed = options_.max_filled * static_cast<double>(result.dots);
-    if (static_cast<double>(result.filled) > allowed) {
+    if (S(square(twice_free)) < S(16) * S(square(result.area_mm2))) {
+      result.status = FrameStatus::not_of_this_pad;
+    }
+    if (static_cast<double>(result.filled) > allowed || result.status != FrameStatus::ok) {
       result.area_mm2 = result.variance_mm4 = not_a_number<S>();
     }
     result.area_mm2 = options_.parts == is_mirrored_ ? S(-result.area_mm2) : result.area_mm2;

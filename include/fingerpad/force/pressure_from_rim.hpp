@@ -15,9 +15,9 @@ namespace fingerpad {
 inline namespace v0 {
 
 /// Force, moment and pressure (`pressure_mpa`) of a frame, as `wrench` would find them with the
-/// pressure at which mu t comes out as `modulus_n_per_mm`, > 0 (otherwise `refused`). Errors of
-/// mu t are those of the pressure, F_z and all else: 1 % is 1 %. No covariance. Without contact the
-/// forces are 0 and the pressure is not known. `not_solved` where no pressure up to
+/// pressure at which mu t comes out as `modulus_n_per_mm`, in [0.005, 50] (otherwise `refused`).
+/// Errors of mu t are those of the pressure, F_z and all else: 1 % is 1 %. No covariance. Without
+/// contact the forces are 0 and the pressure is not known. `not_solved` where no pressure up to
 /// `max_pressure_mpa` fits. Takes 2 calls of `wrench` with OneRow or TwoRows, about 8 with
 /// OneRow{inclination}; no memory.
 template <class Solver,
@@ -35,7 +35,7 @@ WrenchResult<S> pressure_from_rim(const Wrench<Solver, Row, Law, Lines, S>& wren
   static_assert(Solver::magnitude != detail::membrane::Magnitude::given && Law::tells_magnitude,
                 "a direction alone does not tell the pressure: use BalancedRim or "
                 "LeastSquares with ClampedRim");
-  if (!is_finite(modulus_n_per_mm) || !(value(modulus_n_per_mm) > 0)) {
+  if (!detail::membrane::is_modulus(modulus_n_per_mm)) {
     return {};
   }
   // a first guess within three times of the truth, or the frame looks like another pad's
@@ -51,7 +51,10 @@ WrenchResult<S> pressure_from_rim(const Wrench<Solver, Row, Law, Lines, S>& wren
   if (found.by_modulus) {  // without a shape any pressure goes with the modulus
     found.status = WrenchStatus::no_level_line;
   }
-  for (int round = 0; round < 40 && found.status == WrenchStatus::ok; ++round) {
+  const auto is_answer = [&] {
+    return found.status == WrenchStatus::ok || found.status == WrenchStatus::pad_has_changed;
+  };
+  for (int round = 0; round < 40 && is_answer(); ++round) {
     const S ratio = modulus_n_per_mm / found.modulus_n_per_mm;
     const S change = ratio - S(1);
     if (value(S(change * change)) < 1e-10) {
@@ -68,7 +71,7 @@ WrenchResult<S> pressure_from_rim(const Wrench<Solver, Row, Law, Lines, S>& wren
     return found;
   }
   WrenchResult<S> none;
-  none.status = found.status == WrenchStatus::ok ? WrenchStatus::not_solved : found.status;
+  none.status = is_answer() ? WrenchStatus::not_solved : found.status;
   return none;
 }
 

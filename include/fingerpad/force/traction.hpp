@@ -45,9 +45,13 @@ enum class TractionStatus : std::uint8_t {
   not_of_this_membrane,     ///< most cells are folded or stretched beyond measure: dots in another
                             ///< order or unit, or of another pad
   too_few_dots,             ///< no dot was found with all its neighbours: nothing is known
-  modulus_not_of_this_pad,  ///< the free part says that the given mu t is more than a quarter off:
-                            ///< the membrane has aged, or is another, or the gauge is off. Force
-                            ///< and maps are those of the given mu t
+  modulus_not_of_this_pad,  ///< with the given mu t the free part does not hold the pressure, to
+                            ///< 5 % and the noise of the dots, at most a fifth: the membrane
+                            ///< has aged or is another, or the gauge is off. Force and maps are
+                            ///< those of the given mu t: F_z is off by about twice as much
+  free_part_pulled,  ///< the mean load on the free part, where nothing pulls, has more than a
+                     ///< quarter of the pressure along the base: dots shifted by one, or of another
+                     ///< pad. Force and maps are those of the dots as given: not to be trusted
   no_balance,  ///< without a given mu t: the free part is too small, or does not hold the pressure
   refused,     ///< a grid, state or workspace has another size: nothing was done
 };
@@ -71,6 +75,8 @@ constexpr const char* name_of(TractionStatus status) {
       return "too few dots";
     case TractionStatus::modulus_not_of_this_pad:
       return "modulus not of this pad: has the membrane aged?";
+    case TractionStatus::free_part_pulled:
+      return "free part pulled: dots shifted by one?";
     case TractionStatus::no_balance:
       return "no balance";
     case TractionStatus::refused:
@@ -88,7 +94,8 @@ struct [[nodiscard]] TractionResult {
   Point3<S> moment_n_mm = detail::missing_point<S>();  ///< about the origin
   S mu_t_n_per_mm = not_a_number<S>();                 ///< that was used
   detail::traction::ModulusBalance<S> balance =
-      {};                                   ///< what the free part says of mu t, whichever was used
+      {};  ///< what the free part says of mu t, whichever was used
+  Point3<S> free_load_mpa = detail::missing_point<S>();  ///< mean of the loads on the free part
   S free_load_rms_mpa = not_a_number<S>();  ///< of the loads on the free part, where there are
                                             ///< none: the error of a single dot's load
   Index dots_in_contact = 0;
@@ -104,7 +111,8 @@ struct [[nodiscard]] TractionResult {
   bool ok() const { return status == TractionStatus::ok; }
   bool has_force() const {
     return ok() || status == TractionStatus::no_contact || status == TractionStatus::incomplete ||
-           status == TractionStatus::modulus_not_of_this_pad;
+           status == TractionStatus::modulus_not_of_this_pad ||
+           status == TractionStatus::free_part_pulled;
   }
 };
 
@@ -241,8 +249,9 @@ class TractionField {
                                   options_.fade_dots, frame, result);
       result.status = result.dots_in_contact == 0 ? TractionStatus::no_contact
                       : result.dots_left_out > 0  ? TractionStatus::incomplete
-                      : holds(result)             ? TractionStatus::ok
-                                                  : TractionStatus::modulus_not_of_this_pad;
+                      : !holds(result)            ? TractionStatus::modulus_not_of_this_pad
+                      : is_free(result)           ? TractionStatus::ok
+                                                  : TractionStatus::free_part_pulled;
     }
     return result;
   }
@@ -255,14 +264,31 @@ class TractionField {
     return g.rows() == rows_ && g.cols() == cols_;
   }
 
-  /// Whether the free part holds the pressure with this mu t, to a quarter; true where it is too
-  /// small to tell.
+  /// Whether nothing pulls the free part along the base; true where it is too small to tell.
+  bool is_free(const TractionResult<S>& result) const {
+    const auto& balance = result.balance;
+    if (balance.dots < options_.min_free_dots) {
+      return true;
+    }
+    const S quarter = balance.pressing_mpa / S(4 * static_cast<double>(balance.dots));
+    const S pull_sq = square(result.free_load_mpa.x) + square(result.free_load_mpa.y);
+    return !(S(square(quarter)) < pull_sq);
+  }
+
+  /// Whether the free part holds the pressure with this mu t: the mean of its loads is 0, but for a
+  /// twentieth of the pressure, twice what the mesh misses, and for noise. The sum of the loads is
+  /// the pull across the border, so its noise is about that of one dot, of which three times are
+  /// allowed. A fifth is too much in any case. True where the free part is too small to tell.
   bool holds(const TractionResult<S>& result) const {
     const auto& balance = result.balance;
-    const S held = result.mu_t_n_per_mm * balance.holding_per_mm;
-    const bool is_off =
-        S(5) * held < S(4) * balance.pressing_mpa || S(5) * balance.pressing_mpa < S(4) * held;
-    return balance.dots < options_.min_free_dots || !is_off;
+    if (balance.dots < options_.min_free_dots) {
+      return true;
+    }
+    const S off = result.mu_t_n_per_mm * balance.holding_per_mm - balance.pressing_mpa;
+    const S fifth = balance.pressing_mpa / S(5);
+    const S by_noise = balance.pressing_mpa / S(20) + S(3) * result.free_load_rms_mpa;
+    const S bound = by_noise < fifth ? by_noise : fifth;
+    return !(bound < off) && !(bound < -off);
   }
 
   /// NaN, and a status that says why, where there is none.

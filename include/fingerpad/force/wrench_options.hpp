@@ -51,14 +51,26 @@ struct WrenchOptions {
   S max_pressure_mpa = S(2) / S(10);  ///< more is taken for kPa or Pa, > 0
   S max_residual = S(1) / S(10);  ///< of eqs. 6 and 7, where the solver balances all of them, > 0:
                                   ///< more, and shape and side dots contradict each other
-  std::optional<S> calibrated_modulus_n_per_mm = {};  ///< mu t from calibrate/rim.hpp, > 0: a frame
-                                                      ///< more than three times off is refused.
+  std::optional<S> calibrated_modulus_n_per_mm = {};  ///< mu t from calibrate/rim.hpp, in
+                                                      ///< [0.005, 50]: a frame that is half as much
+                                                      ///< again off is pad_has_changed, one three
+                                                      ///< times off modulus_not_as_calibrated.
                                                       ///< Empty: that of the fit that the lengths
                                                       ///< come from, if there is one
   bool falls_back_on_modulus = false;  ///< whether a frame of which the shape does not tell how
                                        ///< much the membrane pulls (no_level_line, no_shape) is
                                        ///< answered by that modulus, as Wrench::by_modulus() does
 };
+
+namespace detail::membrane {
+
+/// Of rubber: 0.02 to 5 MPa, 0.25 to 10 mm thick.
+template <scalar S>
+bool is_modulus(const S& n_per_mm) {
+  return !(n_per_mm < S(5e-3)) && !(S(50) < n_per_mm) && is_finite(n_per_mm);
+}
+
+}  // namespace detail::membrane
 
 template <scalar S>
 void expects_valid(const WrenchOptions<S>& o) {
@@ -79,7 +91,9 @@ void expects_valid(const WrenchOptions<S>& o) {
           o.reach_mm, "finite and >= 4 line_step_mm");
   positive(o.max_pressure_mpa, "max_pressure_mpa");
   positive(o.max_residual, "max_residual");
-  positive(o.calibrated_modulus_n_per_mm.value_or(S(1)), "calibrated_modulus_n_per_mm");
+  const S modulus = o.calibrated_modulus_n_per_mm.value_or(S(1));
+  expects(detail::membrane::is_modulus(modulus), owner, "calibrated_modulus_n_per_mm", modulus,
+          "in [0.005, 50]: N/mm?");
   expects(is_finite(o.blur_mm) && value(o.blur_mm) >= 0, owner, "blur_mm", o.blur_mm,
           "finite and >= 0");
 }
@@ -106,6 +120,10 @@ enum class WrenchStatus : std::uint8_t {
   side_dots_below_base,        ///< more than a third: does z point into the pad?
   modulus_not_as_calibrated,   ///< mu t comes out more than three times off: absolute pressure
                                ///< instead of that above the air's, or dots of another pad?
+  pad_has_changed,  ///< mu t comes out more than half as much again as calibrated, or less than two
+                    ///< thirds: the membrane or its rim has aged, or the gauge is off. F_z is that
+                    ///< of pressure and shape; F_xy and M are off by as much as mu t if the rim has
+                    ///< become longer, and right if the membrane has become stiffer
   unbalanced,  ///< eqs. 6 and 7 are left with more than max_residual: shape and side dots are not
                ///< of the same frame, pad or unit
   refused,     ///< a grid or workspace has another size, or by_modulus() has no modulus: nothing
@@ -141,6 +159,8 @@ constexpr const char* name_of(WrenchStatus status) {
       return "side dots below the base";
     case WrenchStatus::modulus_not_as_calibrated:
       return "modulus not as calibrated: absolute pressure?";
+    case WrenchStatus::pad_has_changed:
+      return "pad has changed";
     case WrenchStatus::unbalanced:
       return "unbalanced";
     case WrenchStatus::refused:
@@ -157,7 +177,7 @@ struct WrenchNoise {
   S pressure_mpa = S(0);  ///< of the pressure
 };
 
-/// All numbers are finite where the status is ok or no_contact, and NaN elsewhere.
+/// All numbers are finite where there is a force (see has_force), and NaN elsewhere.
 template <scalar S = double>
 struct [[nodiscard]] WrenchResult {
   WrenchStatus status = WrenchStatus::refused;
@@ -184,6 +204,7 @@ struct [[nodiscard]] WrenchResult {
   Index level_lines = 0;   ///< along which the membrane is level at A_g
 
   bool ok() const { return status == WrenchStatus::ok || status == WrenchStatus::no_contact; }
+  bool has_force() const { return ok() || status == WrenchStatus::pad_has_changed; }
   /// How hard the object presses, positive, as in the look-ups; and what drags along the pad.
   S normal_force_n() const { return -force_n.z; }
   Point2<S> tangential_force_n() const { return {force_n.x, force_n.y}; }

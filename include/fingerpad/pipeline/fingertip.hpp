@@ -62,7 +62,7 @@ class Fingertip {
     light_.take_off(image_);
     watch(FingertipStage::depth);
     if constexpr (!has_contact) {
-      touch.status = FingertipStatus::ok;
+      touch.status = touch.depth.ok() ? FingertipStatus::ok : FingertipStatus::partial;
       return touch;
     } else {
       touch.contact = region_.find(image_);
@@ -148,8 +148,10 @@ class Fingertip {
                                      detail::NoFingertipStage>;
 
   FingertipStatus status_of(const FingertipResult& touch) const {
-    const bool all = touch.depth.ok() && dots_.answers(touch) && look_up_.answers(touch) &&
-                     balance_.answers(touch);
+    if (!touch.depth.ok() || !touch.contact.ok()) {
+      return FingertipStatus::partial;  // nothing is seen to touch, or to touch nothing
+    }
+    const bool all = dots_.answers(touch) && look_up_.answers(touch) && balance_.answers(touch);
     return !touch.contact.in_contact() ? FingertipStatus::no_contact
            : all                       ? FingertipStatus::ok
                                        : FingertipStatus::partial;

@@ -112,8 +112,9 @@ ColorFrame(const R&, const G&) -> ColorFrame<decltype(as_view(std::declval<const
 
 enum class FingertipStatus : std::uint8_t {
   ok,          ///< every stage that has what it needs has an answer
-  partial,     ///< a stage has none; its own result says why
-  no_contact,  ///< nothing touches the pad
+  partial,     ///< a stage has none, or depth or contact are not of this pad; its own result says
+               ///< why
+  no_contact,  ///< nothing touches the pad, and its depth is to be trusted
   refused,     ///< a frame or dots of another size: nothing was computed
 };
 

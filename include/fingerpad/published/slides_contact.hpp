@@ -31,10 +31,10 @@ enum class ContactCondition : std::uint8_t {
 struct SlidesContactOptions {
   ContactCondition condition = ContactCondition::twice_mean;
   double threshold_per_mm = 0.00015;  ///< delta, delta_f or delta_R, finite
-  int directions = 18;                ///< n, >= 1
-  double radius_px = 10;              ///< r, >= 1; 25 px in the slides
-  double pitch_mm = 0.08;             ///< of a pixel on the membrane, > 0
-  int step_px = 5;                    ///< "changing the center point P by 5 pixel", >= 1
+  int directions = 18;                ///< n, in [1, 360]
+  double radius_px = 10;              ///< r, in [1, 1000]; 25 px in the slides
+  double pitch_mm = 0.08;             ///< of a pixel on the membrane, in (0, 10]
+  int step_px = 5;                    ///< "changing the center point P by 5 pixel", in [1, 1000]
 };
 
 /// 1/R' of the section at the angle theta through (row, col), by the circle through the nearest
@@ -85,10 +85,12 @@ template <scalar S = double, grid Depth, writable_grid<bool> Mask>
 double contact_by_slides(const Depth& depth_mm, Mask&& mask, const SlidesContactOptions& o = {}) {
   const char* const owner = "SlidesContactOptions";
   expects(is_finite(o.threshold_per_mm), owner, "threshold_per_mm", o.threshold_per_mm, "finite");
-  expects(o.directions >= 1, owner, "directions", static_cast<long long>(o.directions), ">= 1");
-  expects(o.radius_px >= 1, owner, "radius_px", o.radius_px, ">= 1");
-  expects(is_finite(o.pitch_mm) && o.pitch_mm > 0, owner, "pitch_mm", o.pitch_mm, "> 0");
-  expects(o.step_px >= 1, owner, "step_px", static_cast<long long>(o.step_px), ">= 1");
+  expects(o.directions >= 1 && o.directions <= 360, owner, "directions",
+          static_cast<long long>(o.directions), "in [1, 360]");
+  expects(o.radius_px >= 1 && o.radius_px <= 1000, owner, "radius_px", o.radius_px, "in [1, 1000]");
+  expects(o.pitch_mm > 0 && o.pitch_mm <= 10, owner, "pitch_mm", o.pitch_mm, "in (0, 10]");
+  expects(o.step_px >= 1 && o.step_px <= 1000, owner, "step_px", static_cast<long long>(o.step_px),
+          "in [1, 1000]");
   const auto to = as_view(std::forward<Mask>(mask));
   if (!same_size(depth_mm, to)) {
     return not_a_number<double>();

@@ -77,7 +77,7 @@ S mean_of_four_angles(const std::array<Point2<S>, 4>& then, const std::array<Poi
 }
 
 struct [[nodiscard]] SlidesResult {
-  bool accepted = false;        ///< false: a grid of another size, or a dot is missing
+  bool accepted = false;        ///< false: a grid of another size, or a dot is missing or wild
   bool updated = false;         ///< this frame has an answer
   double stick_ratio = 1;       ///< N_s / N_c; the last one where there is no new one
   Index reference_age = 0;      ///< frames from the reference to this one; 0: none
@@ -89,8 +89,8 @@ struct [[nodiscard]] SlidesResult {
   bool ok() const { return accepted && updated; }
 };
 
-/// As above. Const; each recording has a state of its own. A frame takes O(capacity dots) and
-/// allocates nothing.
+/// The stick ratio of a grid of dots, by the talk. Const; each recording has a state of its own. A
+/// frame takes O(capacity dots) and allocates nothing.
 class SlidesStickRatio {
   using Point = Point2<double>;
   using Points = std::vector<Point>;
@@ -176,7 +176,7 @@ class SlidesStickRatio {
         using Traits = point_traits<cell_t<Dots>>;
         const Point q{static_cast<double>(value(Traits::x(p))),
                       static_cast<double>(value(Traits::y(p)))};
-        found = found && is_finite(q);
+        found = found && is_plausible(q);
         state.given[at(i, j)] = q;
         state.touches[at(i, j)] = is_contact(cell_t<Contact>(flags(i, j))) ? 1 : 0;
       }

@@ -265,15 +265,20 @@ void write_loads(
     const S& pressure_mpa, const S& mu_t, Index ring, FrameMemory<S>& frame, Result& result) {
   using std::sqrt;
   S sum_sq = S(0);
+  Point3<S> sum = {S(0), S(0), S(0)};
   for (std::size_t k = 0; k < frame.flags.size(); ++k) {
     frame.load[k] = frame.shear[k] = missing_point<S>();
     frame.pressure[k] = not_a_number<S>();
     if (is_finite(mu_t) && frame.has(k, loaded)) {
       write_load(pressure_mpa, mu_t, k, frame);
-      sum_sq = is_free(frame, k, ring) ? S(sum_sq + squared_norm(frame.load[k])) : sum_sq;
+      if (is_free(frame, k, ring)) {
+        sum_sq = sum_sq + squared_norm(frame.load[k]);
+        sum += frame.load[k];
+      }
     }
   }
   if (is_finite(mu_t) && result.balance.dots > 0) {
+    result.free_load_mpa = sum / S(static_cast<double>(result.balance.dots));
     const S mean_sq = sum_sq / S(static_cast<double>(result.balance.dots));
     result.free_load_rms_mpa = value(mean_sq) > 0 ? S(sqrt(mean_sq)) : S(0);
   }
