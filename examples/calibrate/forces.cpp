@@ -148,7 +148,8 @@ void add_normal(Samples samples, const Measure& by, Outcome& outcome) {
       {"coefficients", coefficients},
       {std::string("from_") + by.unit, fit.curve.from},
       {std::string("to_") + by.unit, fit.curve.to},
-      {"residual_n", fit.errors.residual_sd_n}};
+      {"residual_n", fit.errors.residual_sd_n},
+      {"covariance", report.covariance}};
   Plot plot{std::string("contact ") + by.name + " [" + by.unit + "]", "normal force [N]", {}};
   for (const auto& r : fit.residuals) {
     plot.points.push_back({samples[r.sample].measure, r.measured, r.fitted});

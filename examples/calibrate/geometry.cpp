@@ -1,13 +1,14 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 // Where the camera is, and the shape of the free pad.
+#include "calibrate/geometry.hpp"
+
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <string>
 
-#include "calibrate/calibrations.hpp"
 #include "calibrate/recordings.hpp"
 #include "fingerpad/adapt/dot_finder.hpp"
 #include "replay/io/failure.hpp"
@@ -19,17 +20,7 @@ namespace {
 
 using fingerpad::Point2;
 
-/// A plate's dots as an affine picture of a square grid, by least squares.
-struct PlatePicture {
-  Point2<double> middle_px;
-  double px_per_mm = 0;
-  double anisotropy = 0;  ///< longest over shortest px of a mm, less 1
-  double residual_px = 0;
-  double middle_sd_px = 0, px_per_mm_sd = 0;
-  Plot plot{"distance from the middle of the plate [mm]", "distance in the picture [px]", {}};
-};
-
-Eigen::MatrixXd dots_of(const Path& folder, const DotPlate& plate) {
+std::vector<PlateDot> dots_of(const Path& folder, const DotPlate& plate) {
   fingerpad::DotFinderOptions options;
   options.pattern.rows = plate.rows;
   options.pattern.cols = plate.cols;
@@ -40,21 +31,61 @@ Eigen::MatrixXd dots_of(const Path& folder, const DotPlate& plate) {
                              std::to_string(plate.cols) +
                              " dots were found: all must be in the picture, sharp and evenly lit");
   }
-  Eigen::MatrixXd dots(found, 2);
-  for (Eigen::Index k = 0; k < found; ++k) {
-    const Point2<double> p = finder.free_px()(k / plate.cols, k % plate.cols);
-    dots.row(k) << p.x, p.y;
+  std::vector<PlateDot> dots;
+  for (int i = 0; i < plate.rows; ++i) {
+    for (int j = 0; j < plate.cols; ++j) {
+      dots.push_back({{(j - (plate.cols - 1) / 2.0) * plate.pitch_mm,
+                       (i - (plate.rows - 1) / 2.0) * plate.pitch_mm},
+                      finder.free_px()(i, j)});
+    }
   }
   return dots;
 }
 
 PlatePicture picture_of(const Path& folder, const DotPlate& plate) {
-  const Eigen::MatrixXd dots = dots_of(folder, plate);
-  Eigen::MatrixXd grid(dots.rows(), 3);  // 1, x, y in mm from the middle dot
-  for (Eigen::Index k = 0; k < grid.rows(); ++k) {
-    grid.row(k) << 1,
-        (static_cast<double>(k % plate.cols) - (plate.cols - 1) / 2.0) * plate.pitch_mm,
-        (static_cast<double>(k / plate.cols) - (plate.rows - 1) / 2.0) * plate.pitch_mm;
+  return fit_plate(dots_of(folder, plate));
+}
+
+TouchedCap touched_cap(const Path& file, double ball_radius_mm) {
+  const replay::NumberTable table(file, {"x_mm", "y_mm", "z_mm"});
+  std::vector<fingerpad::Point3<double>> touches;
+  for (const auto& line : table.lines()) {
+    touches.push_back({line.values[0], line.values[1], line.values[2]});
+  }
+  if (touches.size() < 5) {
+    replay::fail(file,
+                 "has " + std::to_string(touches.size()) + " touches; four numbers need 5 or more");
+  }
+  const TouchedCap fit = fit_cap(touches, ball_radius_mm);
+  if (std::isnan(fit.size.base_radius_mm)) {
+    replay::fail(file,
+                 "the touches lie on no cap over the plate: are they in mm, from the plate's "
+                 "inner face up, with the ball's radius right?");
+  }
+  return fit;
+}
+
+/// The mean of all pictures, 16 bit, 256 units a grey level.
+cv::Mat mean_picture(const std::vector<cv::Mat>& pictures) {
+  cv::Mat sum(pictures.front().size(), CV_64FC3, cv::Scalar::all(0)), mean;
+  for (const cv::Mat& picture : pictures) {
+    cv::Mat scaled;
+    picture.convertTo(scaled, CV_64F, picture.depth() == CV_16U ? 1 : 256);
+    sum += scaled;
+  }
+  sum.convertTo(mean, CV_16U, 1.0 / static_cast<double>(pictures.size()));
+  return mean;
+}
+
+}  // namespace
+
+PlatePicture fit_plate(const std::vector<PlateDot>& pairs) {
+  const auto count = static_cast<Eigen::Index>(pairs.size());
+  Eigen::MatrixXd dots(count, 2), grid(count, 3);  // grid: 1, x, y
+  for (Eigen::Index k = 0; k < count; ++k) {
+    const PlateDot& dot = pairs[static_cast<std::size_t>(k)];
+    dots.row(k) << dot.picture_px.x, dot.picture_px.y;
+    grid.row(k) << 1, dot.plate_mm.x, dot.plate_mm.y;
   }
   const Eigen::MatrixXd affine = grid.colPivHouseholderQr().solve(dots);
   const Eigen::MatrixXd fitted = grid * affine;
@@ -76,23 +107,20 @@ PlatePicture picture_of(const Path& folder, const DotPlate& plate) {
   return picture;
 }
 
-/// The cap that balls have touched.
-struct TouchedCap {
-  CapSize size;
-  double base_sd_mm = 0, apex_sd_mm = 0, off_axis_mm = 0, off_axis_sd_mm = 0, residual_mm = 0;
-  Plot plot{"distance from the axis [mm]", "distance from the center of the cap [mm]", {}};
-};
+PlateDistance plate_distance(const PlatePicture& low, const PlatePicture& high, double raised_mm) {
+  const double s = low.px_per_mm, t = high.px_per_mm;
+  const double distance = raised_mm * t / (s - t);
+  const double relative = std::hypot(low.px_per_mm_sd / s, high.px_per_mm_sd / t);
+  return {distance, distance * (distance + raised_mm) / raised_mm * relative};
+}
 
-TouchedCap touched_cap(const Path& file, double ball_radius_mm) {
-  const replay::NumberTable table(file, {"x_mm", "y_mm", "z_mm"});
-  const auto n = static_cast<Eigen::Index>(table.lines().size());
-  if (n < 5) {
-    replay::fail(file, "has " + std::to_string(n) + " touches; four numbers need 5 or more");
-  }
+TouchedCap fit_cap(const std::vector<fingerpad::Point3<double>>& touches_mm,
+                   double ball_radius_mm) {
+  const auto n = static_cast<Eigen::Index>(touches_mm.size());
   Eigen::MatrixXd at(n, 3);  // center of the ball
   for (Eigen::Index k = 0; k < n; ++k) {
-    const auto& v = table.lines()[static_cast<std::size_t>(k)].values;
-    at.row(k) << v[0], v[1], v[2] + ball_radius_mm;
+    const auto& touch = touches_mm[static_cast<std::size_t>(k)];
+    at.row(k) << touch.x, touch.y, touch.z + ball_radius_mm;
   }
   // |p - c|^2 = (R + r)^2 is linear in c and in (R + r)^2 - |c|^2; then least squares of distances
   Eigen::MatrixXd a(n, 4);
@@ -112,13 +140,10 @@ TouchedCap touched_cap(const Path& file, double ball_radius_mm) {
   }
   const double radius = p(3) - ball_radius_mm;
   const double base_sq = radius * radius - p(2) * p(2);
-  if (!(base_sq > 0) || !(radius + p(2) > 0)) {
-    replay::fail(file,
-                 "the touches lie on no cap over the plate: are they in mm, from the plate's "
-                 "inner face up, with the ball's radius right?");
-  }
   TouchedCap fit;
-  fit.size = {std::sqrt(base_sq), radius + p(2), ball_radius_mm};
+  fit.size = {base_sq > 0 && radius + p(2) > 0 ? std::sqrt(base_sq)
+                                               : std::numeric_limits<double>::quiet_NaN(),
+              radius + p(2), ball_radius_mm};
   fit.off_axis_mm = p.head<2>().norm();
   fit.residual_mm = std::sqrt(left.squaredNorm() / (std::max)(1.0, static_cast<double>(n - 4)));
   const Eigen::Matrix4d covariance =
@@ -135,20 +160,6 @@ TouchedCap touched_cap(const Path& file, double ball_radius_mm) {
   return fit;
 }
 
-/// The mean of all pictures, 16 bit, 256 units a grey level.
-cv::Mat mean_picture(const std::vector<cv::Mat>& pictures) {
-  cv::Mat sum(pictures.front().size(), CV_64FC3, cv::Scalar::all(0)), mean;
-  for (const cv::Mat& picture : pictures) {
-    cv::Mat scaled;
-    picture.convertTo(scaled, CV_64F, picture.depth() == CV_16U ? 1 : 256);
-    sum += scaled;
-  }
-  sum.convertTo(mean, CV_16U, 1.0 / static_cast<double>(pictures.size()));
-  return mean;
-}
-
-}  // namespace
-
 Outcome camera(const Path& recording, const DotPlate& plate) {
   if (plate.rows < 3 || plate.cols < 3 || plate.rows % 2 == 0 || plate.cols % 2 == 0) {
     replay::fail(recording, "rows and columns of the plate's dots must be odd and 3 or more");
@@ -162,15 +173,14 @@ Outcome camera(const Path& recording, const DotPlate& plate) {
                        {"center_y_px", low.middle_px.y, low.middle_sd_px}};
   if (plate.raised_mm > 0) {
     const PlatePicture high = picture_of(recording / "plate_raised", plate);
-    const double s = low.px_per_mm, t = high.px_per_mm;
-    if (!(t < s)) {
+    if (!(high.px_per_mm < low.px_per_mm)) {
       replay::fail(recording / "plate_raised",
                    "dots do not lie closer than in plate/: were the two "
                    "exchanged?");
     }
-    distance = plate.raised_mm * t / (s - t);
-    const double relative = std::hypot(low.px_per_mm_sd / s, high.px_per_mm_sd / t);
-    const double sd = distance * (distance + plate.raised_mm) / plate.raised_mm * relative;
+    const PlateDistance found = plate_distance(low, high, plate.raised_mm);
+    const double sd = found.sd_mm;
+    distance = found.mm;
     report.parameters.push_back({"plate_distance_mm", distance, sd});
     report.doubt(sd > 0.02 * distance, "the distance is known to less than 2 %: raise it further");
     // a middle on the axis stays where it is

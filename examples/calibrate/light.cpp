@@ -247,12 +247,9 @@ Outcome contact(const Path& recording, const Path& sensor_file) {
   }
   const auto pad = calibration.fit();
   Report report{.what = "contact", .residual = pad.noise_per_mm, .residual_unit = "1/mm (noise)"};
-  const double frames_count = static_cast<double>(pad.frames);
-  report.parameters = {
-      {"threshold_per_mm", pad.threshold_per_mm, pad.noise_per_mm / 2 / std::sqrt(frames_count)},
-      {"curvature_of_free_pad_per_mm", pad.median_per_mm,
-       pad.noise_per_mm / std::sqrt(frames_count)},
-      {"edge_noise_mm", pad.edge_noise_mm}};
+  report.parameters = {{"threshold_per_mm", pad.threshold_per_mm, pad.median_error_per_mm / 2},
+                       {"curvature_of_free_pad_per_mm", pad.median_per_mm, pad.median_error_per_mm},
+                       {"edge_noise_mm", pad.edge_noise_mm}};
   report.doubt(!pad.ok(), name_of(pad.status));
   report.doubt(pad.frames < 3, "two frames hardly tell the noise: take ten");
   report.doubt(pad.threshold_per_mm < 0.4 * pad.median_per_mm,

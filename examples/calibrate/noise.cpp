@@ -86,7 +86,7 @@ Outcome dots(const Path& recording, bool slips) {
   }
   const double relative = noise.noise_error_px / noise.noise_px;
   report.parameters = {{"noise_px", noise.noise_px, noise.noise_error_px},
-                       {"slip_px", test.slip, test.slip * relative},
+                       {"slip_px", test.slip, test.slip * noise.edge_error_px / noise.edge_px},
                        {"store_px", test.store, test.store * relative},
                        {"reference_px", test.reference},
                        {"dots", static_cast<double>(noise.dots)}};
@@ -119,9 +119,7 @@ Outcome taxels(const Path& recording) {
   }
   const auto noise = calibration.fit();
   Report report{.what = "taxels", .residual = noise.typical, .residual_unit = "of the readings"};
-  // of each taxel and window about as many independent numbers as samples
-  const double numbers = static_cast<double>(noise.windows * options.window) * double(taxels);
-  report.parameters = {{"noise", noise.typical, noise.typical / std::sqrt(2 * numbers)},
+  report.parameters = {{"noise", noise.typical, noise.typical_error},
                        {"largest_factor", noise.largest_factor},
                        {"centroid_noise_mm", noise.centroid_deviation_mm},
                        {"windows", static_cast<double>(noise.windows)}};

@@ -42,11 +42,13 @@ std::uint64_t seed_of(const std::string& name, const std::string& kind, int resa
 /// Mean and covariance of all that gave an answer.
 struct Moments {
   int answers = 0, refused = 0;
-  std::vector<double> mean;
+  std::vector<double> mean, told;  ///< told: mean of the variances that the fits tell themselves
   std::vector<std::vector<double>> covariance;
 
   Moments(const std::vector<Path>& files, std::size_t parameters)
-      : mean(parameters, 0), covariance(parameters, std::vector<double>(parameters, 0)) {
+      : mean(parameters, 0),
+        told(parameters, 0),
+        covariance(parameters, std::vector<double>(parameters, 0)) {
     for (const Path& file : files) {
       std::ifstream table(file);
       std::string line;
@@ -66,7 +68,7 @@ struct Moments {
 
  private:
   void add(const std::vector<std::string>& cells) {
-    std::vector<double> off;  // cells: the resample, then its parameters
+    std::vector<double> off;  // cells: the resample, its parameters, their variances
     for (std::size_t k = 0; k < mean.size(); ++k) {
       off.push_back(std::strtod(cells.at(k + 1).c_str(), nullptr) - mean[k]);
       if (cells[k + 1].empty()) {
@@ -77,6 +79,9 @@ struct Moments {
     ++answers;
     for (std::size_t i = 0; i < mean.size(); ++i) {
       mean[i] += off[i] / answers;
+      const std::string& cell = cells.at(1 + mean.size() + i);
+      const double variance = cell.empty() ? none : std::strtod(cell.c_str(), nullptr);
+      told[i] += (variance - told[i]) / answers;
       for (std::size_t j = 0; j < mean.size(); ++j) {
         covariance[i][j] += off[i] * off[j] * (answers - 1) / answers;  // Welford
       }
@@ -139,8 +144,8 @@ Job Resampling::job() const {
 
 void Resampling::write_covariance() const {
   std::string text =
-      "calibration,row,column,truth,estimate,analytic,bootstrap,monte_carlo,bootstrap_mean,"
-      "monte_carlo_mean,bootstrap_refused,monte_carlo_refused\n";
+      "calibration,row,column,truth,estimate,analytic,bootstrap,monte_carlo,monte_carlo_analytic,"
+      "bootstrap_mean,monte_carlo_mean,bootstrap_refused,monte_carlo_refused\n";
   for (const std::string& name : names_) {
     const Trial trial = trial_of(name);
     const std::size_t size = trial.parameters.size();
@@ -152,7 +157,8 @@ void Resampling::write_covariance() const {
         for (const double value :
              {i == j ? trial.truth[i] : none, i == j ? trial.once.values[i] : none,
               trial.once.covariance[i][j], bootstrap.covariance[i][j], monte_carlo.covariance[i][j],
-              i == j ? bootstrap.mean[i] : none, i == j ? monte_carlo.mean[i] : none}) {
+              i == j ? monte_carlo.told[i] : none, i == j ? bootstrap.mean[i] : none,
+              i == j ? monte_carlo.mean[i] : none}) {
           text += ',';
           text += in_digits(value);
         }
@@ -178,13 +184,21 @@ void do_resamples(const std::vector<std::string>& arguments) {
     text += ',';
     text += parameter;
   }
+  for (const std::string& parameter : trial.parameters) {
+    text += ",variance of " + parameter;
+  }
   text += "\n";
   const int last = std::stoi(arguments.at(5));
   for (int k = std::stoi(arguments.at(4)); k < last; ++k) {
     Chance chance(seed_of(name, kind, k));
-    std::vector<double> values(trial.parameters.size(), none);
+    const std::size_t size = trial.parameters.size();
+    std::vector<double> values(2 * size, none);
     try {
-      values = once_more(chance);
+      const Estimate estimate = once_more(chance);
+      for (std::size_t i = 0; i < size; ++i) {
+        values[i] = estimate.values[i];
+        values[size + i] = estimate.covariance[i][i];
+      }
     } catch (const fingerpad::parameter_error&) {  // refused: an empty line
     }
     text += std::to_string(k);

@@ -12,6 +12,7 @@
 #include "fingerpad/adapt/opencv.hpp"
 #include "fingerpad/calibrate/contact.hpp"
 #include "fingerpad/calibrate/depth.hpp"
+#include "fingerpad/calibrate/dot_divergence.hpp"
 #include "fingerpad/calibrate/force.hpp"
 #include "fingerpad/calibrate/neighbour_light.hpp"
 #include "fingerpad/calibrate/rim.hpp"
@@ -19,58 +20,12 @@
 #include "fingerpad/calibrate/taxels.hpp"
 #include "fingerpad/depth/neighbour_light.hpp"
 #include "replay/io/failure.hpp"
+#include "trial_parts.hpp"
 
 namespace replay_many {
 namespace {
 
 using Map = cv::Mat_<double>;
-using Matrix = std::vector<std::vector<double>>;
-constexpr double none = std::numeric_limits<double>::quiet_NaN();
-constexpr std::uint64_t measured_once = 20110801;
-
-/// Of standard errors alone.
-Matrix diagonal(const std::vector<double>& sds) {
-  Matrix matrix(sds.size(), std::vector<double>(sds.size(), none));
-  for (std::size_t k = 0; k < sds.size(); ++k) {
-    matrix[k][k] = sds[k] * sds[k];
-  }
-  return matrix;
-}
-
-template <class Covariance>
-Matrix block(const Covariance& covariance, const std::vector<std::size_t>& places) {
-  Matrix matrix;
-  for (const std::size_t i : places) {
-    matrix.emplace_back();
-    for (const std::size_t j : places) {
-      matrix.back().push_back(covariance(i, j));
-    }
-  }
-  return matrix;
-}
-
-/// A calibration in three functions: Data measure(Chance&), Data draw(const Data&, Chance&) and
-/// Estimate fit(const Data&).
-template <class Measure, class Draw, class Fit>
-Trial trial(std::vector<std::string> parameters,
-            std::vector<double> truth,
-            double weight,
-            const Measure& measure,
-            const Draw& draw,
-            const Fit& fit) {
-  Chance chance(measured_once);
-  const auto data = measure(chance);
-  return {.name = {},
-          .parameters = std::move(parameters),
-          .truth = std::move(truth),
-          .once = fit(data),
-          .bootstrap = [=](Chance& next) { return fit(draw(data, next)).values; },
-          .monte_carlo = [=](Chance& next) { return fit(measure(next)).values; },
-          .weight = weight};
-}
-
-/// What is measured one by one is drawn one by one.
-const auto draw_samples = [](const auto& data, Chance& chance) { return chance.drawn_from(data); };
 
 // --- light
 // ----------------------------------------------------------------------------------------
@@ -103,7 +58,7 @@ Trial absorption() {
         block([&](auto i, auto j) { return found.covariance(int(i), int(j)); }, {0, 1, 2})};
   };
   return trial({"c_red_per_mm", "c_green_less_c_red_per_mm", "kappa"},
-               {fluid.c_red_per_mm, fluid.c_green_per_mm - fluid.c_red_per_mm, fluid.kappa}, 0.5,
+               {fluid.c_red_per_mm, fluid.c_green_per_mm - fluid.c_red_per_mm, fluid.kappa}, 7,
                measure, draw_samples, fit);
 }
 
@@ -162,7 +117,7 @@ Trial neighbour_light() {
     return Estimate{{found.light.m0_mm_per_rad, found.light.n_per_mm},
                     diagonal({found.m0_sd, found.n_sd})};
   };
-  return trial({"m0_mm_per_rad", "n_per_mm"}, {0.004, 0.2}, 2, measure, draw_samples, fit);
+  return trial({"m0_mm_per_rad", "n_per_mm"}, {0.004, 0.2}, 7, measure, draw_samples, fit);
 }
 
 /// Ten frames of a free pad, 0.005 mm of noise; what the rule says without noise is not known here.
@@ -191,10 +146,10 @@ Trial contact() {
       (void)calibration.add(frame);
     }
     const auto pad = calibration.fit();
-    const double sd = pad.noise_per_mm / std::sqrt(static_cast<double>(pad.frames));
-    return Estimate{{pad.threshold_per_mm, pad.median_per_mm}, diagonal({sd / 2, sd})};
+    return Estimate{{pad.threshold_per_mm, pad.median_per_mm},
+                    diagonal({pad.median_error_per_mm / 2, pad.median_error_per_mm})};
   };
-  return trial({"threshold_per_mm", "curvature_of_free_pad_per_mm"}, {none, none}, 6, measure,
+  return trial({"threshold_per_mm", "curvature_of_free_pad_per_mm"}, {none, none}, 3, measure,
                draw_samples, fit);
 }
 
@@ -331,6 +286,54 @@ Estimate of_shear(const Fit& found) {
           block([&](auto i, auto j) { return found.covariance[i][j]; }, {0, 1})};
 }
 
+/// Forty radii of an elastic pad, 0.05 mm of noise.
+Trial power_law() {
+  const auto measure = [](Chance& chance) {
+    Samples samples = contacts(chance);
+    for (Sample& s : samples) {
+      s.normal_force_n = chance.uniform(0.3, 10);
+      s.measure = 2.2 * std::pow(s.normal_force_n, 0.33) + 0.05 * chance.normal();
+    }
+    return samples;
+  };
+  const auto fit = [](const Samples& samples) {
+    const auto found = fingerpad::fit_power_law(std::span(samples));
+    return Estimate{{found.curve.coefficient_mm, found.curve.exponent},
+                    block([&](auto i, auto j) { return found.errors.covariance[i][j]; }, {0, 1})};
+  };
+  return trial({"coefficient_mm", "exponent"}, {2.2, 0.33}, 0.1, measure, draw_samples, fit);
+}
+
+/// Forty presses of a dotted gel, 0.05 N of noise and 0.02 mm^2 of the divergence.
+Trial divergence() {
+  using Press = std::pair<fingerpad::DivergenceResult<double>, double>;
+  const auto measure = [](Chance& chance) {
+    std::vector<Press> presses;
+    for (int k = 0; k < 40; ++k) {
+      Press press;
+      press.second = 0.25 * (k + 1);
+      press.first.status = fingerpad::FrameStatus::ok;
+      press.first.area_mm2 = 0.5 * press.second + 0.02 * chance.normal();
+      press.first.variance_mm4 = 0.02 * 0.02;
+      press.second += force_noise_n * chance.normal();
+      presses.push_back(press);
+    }
+    return presses;
+  };
+  const auto fit = [](const std::vector<Press>& presses) {
+    std::vector<fingerpad::DivergenceResult<double>> divergences;
+    std::vector<double> forces;
+    for (const auto& [divergence, force] : presses) {
+      divergences.push_back(divergence);
+      forces.push_back(force);
+    }
+    const auto found = fingerpad::fit_divergence(divergences, forces);
+    return Estimate{{found.curve.coefficients[1]},
+                    block([&](auto i, auto j) { return found.errors.covariance[i][j]; }, {1})};
+  };
+  return trial({"n_per_mm2"}, {2}, 0.1, measure, draw_samples, fit);
+}
+
 Trial tangential_force() {
   const auto fit = [](const Samples& samples) {
     return of_shear(fingerpad::fit_tangential_force(std::span(samples), reference_mm));
@@ -401,8 +404,7 @@ Trial taxels() {
       }
     }
     const auto found = calibration.fit();
-    const double numbers = static_cast<double>(found.windows) * length * rows * cols;
-    return Estimate{{found.typical}, diagonal({found.typical / std::sqrt(2 * numbers)})};
+    return Estimate{{found.typical}, diagonal({found.typical_error})};
   };
   return trial({"noise"}, {noise}, 1, measure, draw_samples, fit);
 }
@@ -412,6 +414,13 @@ const std::map<std::string, Trial (*)()>& makers() {
                                                          {"neighbour_light", neighbour_light},
                                                          {"contact", contact},
                                                          {"dots", dots},
+                                                         {"camera_plate", camera_plate},
+                                                         {"cap", cap},
+                                                         {"intensity", intensity},
+                                                         {"stick_test", stick_test},
+                                                         {"preslip", preslip},
+                                                         {"power_law", power_law},
+                                                         {"divergence", divergence},
                                                          {"rim", rim},
                                                          {"normal_force", normal_force},
                                                          {"tangential_force", tangential_force},

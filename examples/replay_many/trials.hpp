@@ -22,8 +22,8 @@ struct Trial {
   std::vector<std::string> parameters;
   std::vector<double> truth;
   Estimate once;  ///< of what the bootstrap draws from
-  /// Parameters by one more calibration; throws fingerpad::parameter_error where it is refused.
-  std::function<std::vector<double>(Chance&)> bootstrap, monte_carlo;
+  /// One more calibration; throws fingerpad::parameter_error where it is refused.
+  std::function<Estimate(Chance&)> bootstrap, monte_carlo;
   double weight = 1;  ///< time of one, in ms about
 };
 

@@ -259,12 +259,19 @@ TEST_CASE("normal force of any shape from a curve of plates, by the equivalent f
   const auto force = calibrated<3>(plates, ContactMeasure::area);
   Table table("All shapes, calibrated on all four scenes of plates, degree 3", "N", "by area");
   std::map<std::string, std::array<Errors, 2>> found;
+  int within_two_sd = 0;
+  double sd_squares = 0;
   for (const auto& frame : test::wrench_frames()) {
     const PressedMembrane pressed(frame);
     const EquivalentFlatArea<OrthographicCamera<double>> flat(pressed.camera, 160, 160);
     auto work = flat.workspace();
     const auto equivalent = flat(pressed.mask, pressed.height, work);
     REQUIRE(equivalent.ok());
+    // p S against the truth, no curve fitted
+    const double sds = (frame.pressure_mpa * equivalent.area_mm2 + frame.force_n.z) /
+                       (frame.pressure_mpa * std::sqrt(equivalent.variance_mm4));
+    within_two_sd += std::abs(sds) <= 2 ? 1 : 0;
+    sd_squares += sds * sds / 15;
     auto& [by_equivalent, by_area] = found[pressed.scene];
     by_equivalent.add(force(equivalent.area_mm2).force_n + pressed.force_n, pressed.force_n);
     by_area.add(force(pressed.area_mm2).force_n + pressed.force_n, pressed.force_n);
@@ -277,6 +284,10 @@ TEST_CASE("normal force of any shape from a curve of plates, by the equivalent f
     CHECK((errors[1].worst > 0.09 * full_scale_n()) == round_object);
   }
   table.show();
+  INFO("within two standard deviations: " << within_two_sd << " of 15; rms "
+                                          << std::sqrt(sd_squares) << " of one");
+  CHECK(within_two_sd >= 14);           // 95 %
+  CHECK(std::sqrt(sd_squares) > 0.25);  // and not by sheer width
 }
 
 namespace {

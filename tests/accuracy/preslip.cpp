@@ -331,10 +331,11 @@ struct Lift {
   HoldingCommand<double> end;
   double least_force_n = 0;  // at which friction bears the weight with nothing to spare
   bool has_slipped = false;
+  int alarms_on_the_way_down = 0;
 };
 
-/// The paper's second experiment: an object stands on a surface, is gripped with little force, and
-/// lifted; its weight goes over to the fingers within 5 mm.
+/// The paper's second experiment: an object stands on a surface, is gripped with little force,
+/// lifted, its weight going over to the fingers within 5 mm, and put back.
 template <class Rule>
 Lift lifted(grip::FoamFingersSetup object, unsigned seed) {
   const LiftOptions<double> plan{.first_force_n = 1,
@@ -356,18 +357,25 @@ Lift lifted(grip::FoamFingersSetup object, unsigned seed) {
   auto history = rule.start();
   auto search = lift.start();
   HoldingCommand<double> command = search.command();
-  for (int k = 0; k < 100000 && !is_end(command.phase); ++k) {
-    hand.carry(std::clamp(command.height_mm / 5, 0.0, 1.0));
+  const auto look = [&](double height_mm) {
+    hand.carry(std::clamp(height_mm / 5, 0.0, 1.0));
     hand.advance(command.force_n);
     std::array<FingerSample<double>, 2> samples;
     for (std::size_t f = 0; f < 2; ++f) {
       samples[f] = features(hand.readings(f), hand.time_s(), fingers[f]);
     }
-    const PreslipStatus status = rule(samples, history).status;
+    return rule(samples, history).status;
+  };
+  for (int k = 0; k < 100000 && !is_end(command.phase); ++k) {
+    const PreslipStatus status = look(command.height_mm);
     command = lift(hand.has_slipped() ? PreslipStatus::slipped : status, search);
   }
-  const double held_n = hand.least_force_n();
-  return {command, held_n, hand.has_slipped()};
+  Lift end{command, hand.least_force_n()};
+  for (double height_mm = command.height_mm; height_mm > 0; height_mm -= 0.02) {
+    end.alarms_on_the_way_down += look(height_mm) == PreslipStatus::preslip ? 1 : 0;
+  }
+  end.has_slipped = hand.has_slipped();
+  return end;
 }
 
 }  // namespace
@@ -385,6 +393,7 @@ TEST_CASE("grasp-lift-replace: a simulated object is lifted with little more tha
     CHECK_FALSE(lift.has_slipped);
     CHECK(lift.end.force_n >= lift.least_force_n);
     CHECK(lift.end.force_n < 2 * lift.least_force_n);
+    CHECK(lift.alarms_on_the_way_down == 0);
     std::ostringstream one;
     one << std::setprecision(2) << ' ' << lift.end.force_n << " for " << lift.least_force_n << ',';
     text += one.str();

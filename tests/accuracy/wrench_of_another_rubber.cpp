@@ -3,68 +3,16 @@
 // Force and moment of a membrane of Mooney-Rivlin rubber (finite elements, C2 / (C1 + C2) = 0.3),
 // the rubber and mu t from its free pad alone.
 #include <cmath>
-#include <numbers>
-#include <sstream>
-#include <string>
-#include <vector>
+#include <cstdint>
 
 #include "fingerpad/calibrate/rim.hpp"
 #include "fingerpad/force/wrench.hpp"
 #include "support/catch.hpp"
-#include "support/finite_elements.hpp"
-#include "support/wrench_frames.hpp"
+#include "support/rubber_frames.hpp"
 
 using namespace fingerpad;
 
 namespace {
-
-struct Step {
-  double pressure_mpa = 0;
-  Point3<double> force_n{}, moment_n_mm{};
-  std::vector<Point3<double>> dots;
-};
-
-std::vector<Step> steps() {
-  auto file = test::open_data("wrench_rubber.csv", "step,pressure_mpa,");
-  std::string line, cell;
-  std::getline(file, line);
-  std::vector<Step> all;
-  while (std::getline(file, line)) {
-    std::istringstream cells(line);
-    const auto next = [&] {
-      std::getline(cells, cell, ',');
-      return std::stod(cell);
-    };
-    const auto next_point = [&] {
-      const double x = next(), y = next();
-      return Point3<double>{x, y, next()};
-    };
-    Step step;
-    (void)next();
-    step.pressure_mpa = next();
-    step.force_n = next_point();
-    step.moment_n_mm = next_point();
-    for (Index k = 0; k < test::side_dots; ++k) {
-      step.dots.push_back(next_point());
-    }
-    all.push_back(step);
-  }
-  test::require_data(all.size() == 10, "wrench_rubber.csv has not 10 steps");
-  return all;
-}
-
-auto grid_of(const std::vector<Point3<double>>& dots) {
-  return StridedView<const Point3<double>>(dots.data(), 1, test::side_dots, test::side_dots);
-}
-
-/// The modulus needs no shape.
-struct NoShape {
-  struct Height {
-    double height_mm, along_x, along_y;
-  };
-  Height operator()(double, double) const { return {0, 0, 0}; }
-  bool in_contact(double, double) const { return true; }
-};
 
 /// Slope of what was found over the truth.
 struct Gain {
@@ -76,8 +24,8 @@ Gain gain_of(const W& wrench) {
   auto work = wrench.workspace();
   double force = 0, force_sq = 0, moment = 0, moment_sq = 0;
   Gain gain;
-  for (const Step& s : steps()) {
-    const auto r = wrench.by_modulus(grid_of(s.dots), s.pressure_mpa, work);
+  for (const test::RubberStep& s : test::rubber_steps()) {
+    const auto r = wrench.by_modulus(s.dots, s.pressure_mpa, work);
     REQUIRE(r.ok());
     force += r.force_n.x * s.force_n.x + r.force_n.y * s.force_n.y;
     force_sq += square(s.force_n.x) + square(s.force_n.y);
@@ -93,12 +41,13 @@ Gain gain_of(const W& wrench) {
 }  // namespace
 
 TEST_CASE("wrench of another rubber: its second constant from the free pad", "[wrench]") {
-  constexpr double cap_height_mm = 11, apex_mm = 12.96482, length_mm = 0.79995;
+  constexpr double cap_height_mm = test::rubber_cap_height_mm;
+  constexpr double length_mm = test::rubber_dot_length_mm;
   const OneRow row{2 * std::atan(cap_height_mm / test::base_radius_mm)};
   const auto border = test::rim_border();
-  const Step free_pad = steps().front();
+  const test::RubberStep free_pad = test::rubber_steps().front();
   RimCalibration<> calibration(border, test::base_radius_mm, row);
-  REQUIRE(calibration.add(0, grid_of(free_pad.dots), free_pad.pressure_mpa, apex_mm));
+  REQUIRE(calibration.add(0, free_pad.dots, free_pad.pressure_mpa, test::rubber_apex_mm));
   const auto fit = calibration.fit_modulus(length_mm, {.stress_free_height_mm = cap_height_mm});
   WrenchOptions<double> options{.base_radius_mm = test::base_radius_mm,
                                 .side_dot_length_mm = length_mm};
@@ -124,4 +73,34 @@ TEST_CASE("wrench of another rubber: its second constant from the free pad", "[w
   CHECK(told.tangential == Approx(1).margin(0.002));
   CHECK(told.turning == Approx(1).margin(0.002));
   CHECK(neo_hookean.turning > 1.05);
+}
+
+TEST_CASE("wrench of another rubber, from rendered frames", "[wrench]") {
+  const OneRow row{2 * std::atan(test::rubber_cap_height_mm / test::base_radius_mm)};
+  const auto border = test::rim_border();
+  const test::RubberStep free_pad = test::rubber_steps().front();
+  RimCalibration<> calibration(border, test::base_radius_mm, row);
+  for (std::uint64_t seed = 1; seed <= 64; ++seed) {
+    REQUIRE(calibration.add(0, test::jittered(free_pad.dots, seed), free_pad.pressure_mpa,
+                            test::rubber_apex_mm));
+  }
+  const auto fit = calibration.fit_modulus(test::rubber_dot_length_mm,
+                                           {.stress_free_height_mm = test::rubber_cap_height_mm});
+  WrenchOptions<double> options{.base_radius_mm = test::base_radius_mm,
+                                .side_dot_length_mm = test::rubber_dot_length_mm};
+  const test::RubberFrames frames;
+  const ClampedRim law{.mooney_share = fit.mooney_share};
+  const auto found = gain_from_frames(Wrench<BalancedRim>(border, options, {}, row, law), frames);
+  const auto squares =
+      gain_from_frames(Wrench<LeastSquares>(border, options, {}, row, law), frames);
+  const auto told = gain_from_frames(
+      Wrench<BalancedRim>(border, options, {}, row, ClampedRim{.mooney_share = 0.3}), frames);
+  const auto neo_hookean = gain_from_frames(Wrench<BalancedRim>(border, options, {}, row), frames);
+  INFO("m " << fit.mooney_share << "; gain in F_xy " << found.tangential << ", in M_z "
+            << found.turning << "; least squares " << squares.tangential << ", " << squares.turning
+            << "; with true m " << told.tangential << ", " << told.turning
+            << "; taken for neo-Hookean " << neo_hookean.tangential << ", " << neo_hookean.turning);
+  SUCCEED();
+  CHECK(found.tangential == Approx(1).margin(0.01));
+  CHECK(found.turning == Approx(1).margin(0.02));
 }

@@ -11,8 +11,10 @@
 #include "fingerpad/adapt/autodiff.hpp"
 #include "fingerpad/calibrate/force.hpp"
 #include "fingerpad/depth/depth.hpp"
+#include "fingerpad/slip/spatial_stick_ratio.hpp"
 #include "support/catch.hpp"
 #include "support/pad.hpp"
+#include "support/slipping_patch.hpp"
 #include "support/wrench_frames.hpp"
 
 using namespace fingerpad;
@@ -102,6 +104,51 @@ WrenchResult<S> wrench_of(const test::WrenchFrame& frame, const std::array<S, 2>
   return wrench(heights, as_dual(frame.dots), p[1], work);
 }
 
+/// A camera's distance, index, center (x, y) and pitch.
+template <class S>
+using Places = std::array<S, 5>;
+
+template <class S>
+Camera<S> camera_of(const Places<S>& p) {
+  Camera<S> camera = cast<S>(Camera<double>());
+  camera.plate_distance_mm = p[0];
+  camera.refractive_index = p[1];
+  camera.center_x_px = p[2];
+  camera.center_y_px = p[3];
+  camera.pitch_mm = p[4];
+  return camera;
+}
+
+/// Slips of four dots of a patch that is dragged while its edge lets go; pixels and depths are as
+/// the default camera has them, `p` is what one takes it for.
+template <class S>
+std::array<Point3<S>, 4> slips_of(const Places<S>& p) {
+  constexpr Index n = 21;
+  const Camera<double> seen_by;
+  const Camera<S> camera = camera_of(p);
+  const SpatialStickRatio<S> ratio(n, n);
+  auto state = ratio.start();
+  test::Image<DotState> states(n, n);
+  test::SlippingPatch patch;
+  const auto show = [&] {
+    const LazyView dots(n, n, [&](Index i, Index j) {
+      const auto& at = patch.dots(i, j);
+      const auto px = pixel_of(seen_by, at);
+      return point_at(camera, S(px.y), S(px.x), S(at.z));
+    });
+    return ratio(dots, patch.contact, states, state);
+  };
+  (void)show();
+  patch.step(test::moved_by({0.002, 0.003, 0.01}, {0, 0, 28}, {0.5, 0.2, 0}), 0.7);
+  REQUIRE(show().updated());
+  std::array<Point3<S>, 4> slips;
+  std::size_t k = 0;
+  for (const Index col : {7, 10, 12, 13}) {
+    slips[k++] = state.slips()(10, col).slip_mm;
+  }
+  return slips;
+}
+
 }  // namespace
 
 TEST_CASE("depth follows fluid and camera, through the reference as well") {
@@ -188,5 +235,37 @@ TEST_CASE("force and moment follow side dots and pressure") {
               Approx(slope).epsilon(1e-6).margin(1e-8 / at[k]));
       }
     }
+  }
+}
+
+TEST_CASE("slips of dots follow the camera") {
+  const Camera<double> camera;
+  const Places<double> at = {camera.plate_distance_mm, camera.refractive_index, camera.center_x_px,
+                             camera.center_y_px, camera.pitch_mm};
+  const auto plain = slips_of(at);
+  const auto dual = slips_of(seeded(at));
+  for (std::size_t k = 0; k < at.size(); ++k) {
+    const double step = 1e-6 * at[k];
+    const auto moved = [&](double by) {
+      auto p = at;
+      p[k] += by;
+      return slips_of(p);
+    };
+    const auto more = moved(step);
+    const auto less = moved(-step);
+    double largest = 0;
+    for (std::size_t dot = 0; dot < plain.size(); ++dot) {
+      CAPTURE(k, dot);
+      CHECK(dual[dot].x.value() == Approx(plain[dot].x).margin(1e-12));
+      const Point3<double> slope = 1 / (2 * step) * (more[dot] - less[dot]);
+      const auto along = static_cast<Index>(k);
+      for (const auto& [found, wanted] : {std::pair{dual[dot].x.derivatives()(along), slope.x},
+                                          {dual[dot].y.derivatives()(along), slope.y},
+                                          {dual[dot].z.derivatives()(along), slope.z}}) {
+        CHECK(found == Approx(wanted).epsilon(1e-5).margin(1e-7 / at[k]));
+        largest = std::fmax(largest, std::abs(wanted));
+      }
+    }
+    CHECK(largest > 1e-6 / at[k]);
   }
 }

@@ -136,6 +136,34 @@ TEST_CASE("calibration: two frames are enough for half of the level", "[contact_
   CHECK(calibration.fit({0.5, 2, 0.001, false}).threshold_per_mm < pad.threshold_per_mm);
 }
 
+TEST_CASE("calibration: the standard error of the median is how far medians scatter",
+          "[contact_region]") {
+  const Index rows = 50, cols = 50;
+  const int pads = 60;
+  const auto camera = test::height_map(rows, cols, 0.2);
+  const auto still = test::depths_of<float>(camera, free_pad(0.05), rows, cols);
+  test::Random random(26);
+  double sum = 0, squares = 0, said = 0;
+  for (int k = 0; k < pads; ++k) {
+    Calibration calibration(camera, rows, cols, {6});
+    for (int frame = 0; frame < 6; ++frame) {
+      CHECK((frame != 1 || std::isnan(calibration.fit().median_error_per_mm)));
+      auto depth = still;
+      add_noise(depth, 0.002, random);
+      calibration.add(depth);
+    }
+    const FreePadCurvature pad = calibration.fit();
+    sum += pad.median_per_mm;
+    squares += pad.median_per_mm * pad.median_per_mm;
+    said += pad.median_error_per_mm * pad.median_error_per_mm / pads;
+    // the error of a single pixel is another thing
+    CHECK(pad.median_error_per_mm < pad.noise_per_mm / std::sqrt(6.0) / 3);
+  }
+  const double scatter = std::sqrt((squares - sum * sum / pads) / (pads - 1));
+  // 60 pads tell the scatter to 9 %, their errors the mean of these to 4 %
+  CHECK(std::sqrt(said) == Approx(scatter).epsilon(0.3));
+}
+
 TEST_CASE("calibration: one bad pixel sets the published threshold, but no quantile",
           "[contact_region]") {
   const Index rows = 180, cols = 200;

@@ -2,7 +2,9 @@
 // SPDX-License-Identifier: MIT
 #include "fingerpad/calibrate/rim.hpp"
 
+#include <Eigen/Dense>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
@@ -12,6 +14,8 @@
 #include <string>
 #include <vector>
 
+#include "fingerpad/adapt/autodiff.hpp"
+#include "fingerpad/force/wrench.hpp"
 #include "support/catch.hpp"
 #include "support/numbers.hpp"
 #include "support/pad.hpp"
@@ -341,6 +345,65 @@ TEST_CASE("rim calibration: standard errors are those of repeated measurements",
   CHECK(std::isnan(two.length_sd_mm));
   CHECK(std::isnan(two.modulus_sd_n_per_mm));
   CHECK(is_finite(two.condition));
+}
+
+TEST_CASE("rim calibration: its errors carry into the six axes as told", "[wrench]") {
+  // length and mu t by four pressures with fresh noise, and what they make of one dragged rim
+  const Pad pad{.uneven = 0};
+  const auto border = pad.border();
+  auto dragged = pad.dots(0.016);
+  for (Point& d : dragged) {
+    d = {d.x + 0.05, d.y + 0.02 - 0.001 * d.x, d.z};
+  }
+  using Dual = Eigen::AutoDiffScalar<Eigen::Vector2d>;
+  const auto six_axes = [&](const std::array<Dual, 2>& p) {
+    const auto as_dual = [](const Row& from) {
+      std::vector<Point3<Dual>> to;
+      for (const Point& q : from) {
+        to.push_back({Dual(q.x), Dual(q.y), Dual(q.z)});
+      }
+      return to;
+    };
+    WrenchOptions<Dual> options{.base_radius_mm = Dual(radius_mm), .side_dot_length_mm = p[0]};
+    options.calibrated_modulus_n_per_mm = p[1];
+    const auto rim = as_dual(border), dots = as_dual(dragged);
+    const Wrench<BalancedRim, OneRow, ClampedRim, StraightLines, Dual> wrench(grid_of(rim),
+                                                                              options);
+    auto work = wrench.workspace();
+    const auto r = wrench.by_modulus(grid_of(dots), Dual(0.016), work);
+    REQUIRE(r.ok());
+    return std::array{r.force_n.x,     r.force_n.y,     r.force_n.z,
+                      r.moment_n_mm.x, r.moment_n_mm.y, r.moment_n_mm.z};
+  };
+  const auto truth = six_axes({Dual(0.8), Dual(0.5)});
+  constexpr int runs = 200;
+  const double dot_noise_mm = 0.004, pressure_noise_mpa = 1e-4;
+  test::Random random(5);
+  std::array<double, 6> told{}, scatter{};
+  for (int run = 0; run < runs; ++run) {
+    RimCalibration<> calibration(grid_of(border), radius_mm);
+    for (std::size_t k = 0; k < 4; ++k) {
+      Row dots = pad.dots(four_pressures[k]);
+      for (Point& d : dots) {
+        const double x = random.normal(), y = random.normal(), z = random.normal();
+        d = d + dot_noise_mm * Point{x, y, z};
+      }
+      calibration.add(k, grid_of(dots), four_pressures[k] + pressure_noise_mpa * random.normal());
+    }
+    const auto fit = calibration.fit({dot_noise_mm, pressure_noise_mpa});
+    const double both = fit.correlation * fit.length_sd_mm * fit.modulus_sd_n_per_mm;
+    const Eigen::Matrix2d covariance{{square(fit.length_sd_mm), both},
+                                     {both, square(fit.modulus_sd_n_per_mm)}};
+    const auto found = six_axes(seeded(std::array{fit.length_mm, fit.modulus_n_per_mm}));
+    for (std::size_t axis = 0; axis < 6; ++axis) {
+      told[axis] += carried_variance(found[axis], covariance) / runs;
+      scatter[axis] += square(found[axis].value() - truth[axis].value()) / runs;
+    }
+  }
+  for (std::size_t axis = 0; axis < 6; ++axis) {
+    CAPTURE(axis, scatter[axis], told[axis]);
+    CHECK(scatter[axis] / told[axis] == Approx(1).margin(0.3));  // 200 runs know it to 10 %
+  }
 }
 
 TEST_CASE("rim calibration: finite elements of a free pad", "[wrench]") {

@@ -178,7 +178,7 @@ TEST_CASE("dot noise: found again, whatever is lost and however the camera shake
   for (const double noise_px : {0.03, 0.14}) {
     for (const double lost : {0.0, 0.3}) {
       for (const Index size : {Index(5), Index(21)}) {
-        MeanOfSeeds noise, inner, edge, claimed;
+        MeanOfSeeds noise, inner, edge, claimed, claimed_edge;
         for (std::uint64_t seed = 1; seed <= 12; ++seed) {
           Random random(seed);
           DotNoiseCalibration calibration(size, size + 1);
@@ -195,6 +195,7 @@ TEST_CASE("dot noise: found again, whatever is lost and however the camera shake
           CHECK(std::abs(found.slow_share) < 0.25);
           noise.add(found.noise_px);
           claimed.add(found.noise_error_px);
+          claimed_edge.add(found.edge_error_px);
           if (lost == 0) {
             inner.add(found.inner_px);
             edge.add(found.edge_px);
@@ -206,6 +207,8 @@ TEST_CASE("dot noise: found again, whatever is lost and however the camera shake
         CHECK(noise.sd() / claimed.mean() < 1.6);
         CHECK(noise.sd() / claimed.mean() > 0.5);
         if (lost == 0) {
+          CHECK(edge.sd() / claimed_edge.mean() < 1.6);
+          CHECK(edge.sd() / claimed_edge.mean() > 0.5);
           CHECK(std::abs(inner.mean() - noise_px * denoising_gain({})) < 2.5 * inner.error());
           const double sides =
               static_cast<double>(4 * size - 6);  // of the pattern, without corners

@@ -3,6 +3,7 @@
 // What calibrations save is what is loaded again, bit for bit; what is strange is refused.
 #include "calibrate/calibrations.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
@@ -75,7 +76,8 @@ Outcome camera_and_more() {
          {{"coefficients", {0, 0.1 / 3}},
           {"from_mm2", 1.0 / 3},
           {"to_mm2", 500.0 / 3},
-          {"residual_n", 0.1 / 3}}},
+          {"residual_n", 0.1 / 3},
+          {"covariance", {{1.0 / 3, -1.0 / 7}, {-1.0 / 7, 1.0 / 9}}}}},
         {"by_depth",
          {{"coefficients", {0, 2.0 / 3}},
           {"from_mm", 0.1 / 3},
@@ -129,7 +131,12 @@ TEST_CASE("A calibration that was saved is loaded bit for bit", "[calibrate]") {
   REQUIRE(sensor.force);
   CHECK(sensor.force->by_area->curve.coefficients[1] == 0.1 / 3);
   CHECK(sensor.force->by_area->curve.to == 500.0 / 3);
-  CHECK(sensor.force->by_area->residual_n == 0.1 / 3);
+  const auto& errors = sensor.force->by_area->errors;
+  CHECK(errors.residual_sd_n == 0.1 / 3);
+  CHECK(errors.covariance[0][0] == 1.0 / 3);
+  CHECK(errors.covariance[0][1] == -1.0 / 7);
+  CHECK(errors.covariance[1][1] == 1.0 / 9);
+  CHECK(errors.covariance[2][2] == 0);
   CHECK(sensor.force->by_depth->curve.from == 0.1 / 3);
   CHECK(sensor.force->shear->by == replay::ContactMeasure::depth);
   CHECK(sensor.force->shear->normalisation.displacement_exponent == 1.0 / 3);
@@ -187,6 +194,32 @@ TEST_CASE("The rubber that calibrate finds is the one that a recording is read w
   fs::remove_all(folder);
 }
 
+TEST_CASE("Forces are looked up with the errors that calibrate found", "[calibrate]") {
+  const fs::path table = fs::temp_directory_path() / "fingerpad_contacts.csv";
+  std::ofstream contacts(table);
+  contacts << "flat_area_mm2,contact_depth_mm,force_x_n,force_y_n,force_z_n,moment_z_nm\n";
+  for (int k = 1; k <= 12; ++k) {
+    const double noise_n = 0.01 * std::cos(5 * k);
+    contacts << 10 * k << ',' << 0.2 * k << ",0,0," << -0.2 * k - noise_n << ",0\n";
+  }
+  contacts.close();
+  const Outcome found = calibrate::force(table, {});
+  Outcome whole = camera_and_more();
+  whole.sections["force"] = found.sections["force"];
+  const fs::path file = scratch("force_errors");
+  save(whole, file);
+  const auto loaded = replay::read_sensor(file).force->by_area->errors;
+  const auto& expected = found.reports.front().covariance;
+  REQUIRE(expected.size() == 4);
+  CHECK(expected[3][3] > 0);
+  CHECK(loaded.residual_sd_n == found.reports.front().residual);
+  for (std::size_t k = 0; k < 4; ++k) {
+    const auto& row = loaded.covariance[k];
+    CHECK(std::equal(expected[k].begin(), expected[k].end(), row.begin()));
+  }
+  fs::remove(table);
+}
+
 TEST_CASE("A sensor file with unknown keys or of another version is refused", "[calibrate]") {
   const fs::path file = scratch("refused");
   save(camera_and_more(), file);
@@ -204,6 +237,10 @@ TEST_CASE("A sensor file with unknown keys or of another version is refused", "[
   CHECK(with("/calibration/absorption/parameters/kappa", 1).find("[value") != std::string::npos);
   CHECK(with("/calibration/absorption/covariance", "x").find("rows of") != std::string::npos);
   CHECK(with("/force/by_area/slope", 1).find("unknown key force.by_area.slope") !=
+        std::string::npos);
+  CHECK(with("/force/by_area/covariance/1", json::array({1})).find("2 rows of 2 numbers") !=
+        std::string::npos);
+  CHECK(with("/force/by_area/covariance/1/1", -1).find("variance of a parameter = -1") !=
         std::string::npos);
   CHECK(with("/stick/slip_mm", 1).find("unknown key stick.slip_mm") != std::string::npos);
   CHECK(with("/rim/lenght_mm", 1).find("unknown key rim.lenght_mm") != std::string::npos);

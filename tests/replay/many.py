@@ -169,30 +169,28 @@ class Test:
                 self.expect(False, f"{name}: {difference}")
             shutil.rmtree(out)
 
-    def processes(self, leader):
-        """Of a run: its leader, its ranks and the processes of units, by what they are."""
-        parents, names = {}, {}
+    def processes(self, started):
+        """Of a run: its leader, its other ranks and the processes of units; `all` with mpirun's."""
+        parents, words, leads = {}, {}, {}
         for entry in Path("/proc").iterdir():
             try:
                 stat = (entry / "stat").read_text()
-                words = (entry / "cmdline").read_bytes().split(b"\0")
+                words[int(entry.name)] = (entry / "cmdline").read_bytes().split(b"\0")
+                variables = (entry / "environ").read_bytes().split(b"\0")
             except (OSError, ValueError):
                 continue
-            if entry.name.isdigit():
-                parents[int(entry.name)] = int(stat.rpartition(")")[2].split()[1])
-                names[int(entry.name)] = words
-        ours = {leader}
-        for _ in range(5):
-            ours |= {p for p, parent in parents.items() if parent in ours}
-        kinds = {"leader": [], "rank": [], "unit": []}
-        for p in sorted(ours & set(names)):
-            if b"--unit" in names[p][:2]:
+            parents[int(entry.name)] = int(stat.rpartition(")")[2].split()[1])
+            rank = [v for v in variables if v.startswith(b"OMPI_COMM_WORLD_RANK=")]
+            leads[int(entry.name)] = rank in ([], [b"OMPI_COMM_WORLD_RANK=0"])
+        ours = {started}
+        while more := {p for p, parent in parents.items() if parent in ours} - ours:
+            ours |= more
+        kinds = {"leader": [], "rank": [], "unit": [], "all": sorted(ours)}
+        for p in sorted(ours & set(leads)):
+            if b"--unit" in words[p][:2]:
                 kinds["unit"].append(p)
-            elif names[p][0].endswith(b"mpirun"):
-                continue
-            elif names[p][0].endswith(b"replay_many"):
-                kinds["rank" if kinds["leader"] else "leader"].append(p)
-        kinds["all"] = sorted(ours)
+            elif words[p][0] == bytes(self.program):
+                kinds["leader" if leads[p] else "rank"].append(p)
         return kinds
 
     def killed_at_random(self, ranks, kind, seconds):

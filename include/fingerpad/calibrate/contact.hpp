@@ -38,6 +38,9 @@ struct [[nodiscard]] FreePadCurvature {
   FitStatus status = FitStatus::ok;
   double threshold_per_mm = 0;  ///< delta, for ContactTest
   double median_per_mm = 0;     ///< of E over the pad
+  double median_error_per_mm =  ///< its standard error, by how the frames' own medians differ; of
+      not_a_number<double>();   ///< the threshold level_share of it, where the level sets that;
+                                ///< NaN from a single frame
   double noise_per_mm = 0;      ///< root mean square of sigma over the pad; 0 from a single frame
   double edge_noise_mm = 0;     ///< standard deviation that it alone would leave a point of a flat
                                 ///< object's edge; HalfLevelEdge, which smooths, comes to less
@@ -48,7 +51,7 @@ struct [[nodiscard]] FreePadCurvature {
 };
 
 /// Collects curvature statistics of the free pad. It must be the statistic, the ring and the camera
-/// of the contact test. Takes 24 bytes per pixel.
+/// of the contact test. Takes 32 bytes per pixel.
 template <class Statistic = ClampedMean<>, class CameraType = Camera<double>, scalar S = float>
 class FreePadCalibration {
   using Map = CurvatureMap<Statistic, CameraType, S>;
@@ -75,12 +78,19 @@ class FreePadCalibration {
       return false;
     }
     ++frames_;
+    of_frame_.clear();
     for (std::size_t k = 0; k < mean_.size(); ++k) {
       // a pixel that is once without curvature is NaN from then on
       const double here = static_cast<double>(value(curvature_[k]));
       const double change = here - mean_[k];
       mean_[k] += change / frames_;
       squares_[k] += change * (here - mean_[k]);
+      if (is_finite(mean_[k])) {
+        of_frame_.push_back(here);
+      }
+    }
+    if (!of_frame_.empty()) {
+      medians_.push_back(quantile(of_frame_, 0.5));
     }
     return true;
   }
@@ -112,6 +122,7 @@ class FreePadCalibration {
       lows[k] -= rule.sigmas * (rule.pooled_sigma ? pad.noise_per_mm : sigmas[k]);
     }
     pad.median_per_mm = quantile(means, 0.5);
+    pad.median_error_per_mm = standard_error(medians_);
     pad.threshold_per_mm =
         (std::min)(rule.level_share * pad.median_per_mm, quantile(lows, rule.quantile));
     // the mean curvature across an edge rises by 4 / (pi r) of its jump per mm, see edge_level.hpp
@@ -151,6 +162,19 @@ class FreePadCalibration {
     return values[static_cast<std::size_t>(at)];
   }
 
+  /// Of the mean of values that are independent; NaN of a single one.
+  static double standard_error(const std::vector<double>& values) {
+    const double n = static_cast<double>(values.size());
+    double mean = 0, squares = 0;
+    for (const double x : values) {
+      mean += x / n;
+    }
+    for (const double x : values) {
+      squares += (x - mean) * (x - mean);
+    }
+    return std::sqrt(squares / (n * (n - 1)));
+  }
+
   double pixel_mm_;
   double ring_px_;
   Map map_;
@@ -158,6 +182,8 @@ class FreePadCalibration {
   std::vector<S> curvature_;
   std::vector<double> mean_;     ///< E of each pixel
   std::vector<double> squares_;  ///< sum of squared deviations from it
+  std::vector<double> of_frame_;
+  std::vector<double> medians_;  ///< of the frames
   int frames_ = 0;
 };
 

@@ -40,6 +40,8 @@ struct [[nodiscard]] DotNoise {
   Index out_of_place =
       0;  ///< positions left out as further than a quarter of a pitch from the mean
   int frames = 0;
+  /// Standard error of edge_px: of fewer dots than noise_px, and their averages share noise.
+  double edge_error_px = 0;
 
   bool ok() const { return status == FitStatus::ok; }
   /// Of the noise, what averaging leaves, as measured; denoising_gain() if neighbours are
@@ -55,6 +57,20 @@ inline double denoising_gain(const DotWeights& weights, int sides = 4, int diago
   return std::sqrt(self * self + sides * side * side + diagonals * diagonal * diagonal) /
          (self + sides * side + diagonals * diagonal);
 }
+
+namespace detail::stick {
+
+/// By how much more than independent numbers the averages along an edge scatter in their mean
+/// square: the sum of the squared correlations with those beside them.
+inline double shared_along_edge(const DotWeights& w) {
+  const double self = w.self, side = w.side, diagonal = w.diagonal;
+  const double own = self * self + 3 * side * side + 2 * diagonal * diagonal;
+  const double next = 2 * side * (self + diagonal) / own;
+  const double after = (side * side + diagonal * diagonal) / own;
+  return 1 + 2 * (next * next + after * after);
+}
+
+}  // namespace detail::stick
 
 /// The noise of which only sigma of one position is known, if that of neighbours is independent.
 inline DotNoise independent_dot_noise(double noise_px, const DotWeights& weights = {}) {
@@ -141,7 +157,10 @@ class DotNoiseCalibration {
       return std::sqrt(left + variance / dots_of_frame);
     };
     noise.inner_px = averaged(rest.means(weights_, true));
-    noise.edge_px = averaged(rest.means(weights_, false));
+    const detail::stick::SumOfSquares edge = rest.means(weights_, false);
+    noise.edge_px = averaged(edge);
+    noise.edge_error_px =
+        noise.edge_px / 2 * std::sqrt(detail::stick::shared_along_edge(weights_) / edge.count);
     return noise;
   }
 

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <numbers>
 #include <vector>
 
 #include "fingerpad/calibrate/fit.hpp"
@@ -27,6 +28,7 @@ struct [[nodiscard]] TaxelNoise {
                                    ///< `typical`, as a taxel that rested will not once it is
                                    ///< pressed; NaN: never read, a dead taxel
   double typical = 0;              ///< of the taxels whose readings changed, root mean square
+  double typical_error = 0;        ///< its standard error, of independent Gaussian readings
   double largest_factor = 0;       ///< the most that any window spread, in `deviations` of its
                                    ///< taxel: where nothing was touched, TaxelOptions::noise_factor
                                    ///< must be above it
@@ -102,6 +104,11 @@ class TaxelNoiseCalibration {
     expects(changed > 0, owner, "taxels whose readings change", static_cast<long long>(changed),
             ">= 1");
     noise.typical = std::sqrt(sum / static_cast<double>(changed));
+    // a median has pi / 2 times the variance of the mean; a mean square of f freedoms has 2 / f of
+    // its square, and its root half of the relative error
+    const double freedom = static_cast<double>((features_.options().window - 2) * windows_);
+    noise.typical_error =
+        noise.typical * std::sqrt(std::numbers::pi / 4 / (freedom * static_cast<double>(changed)));
     for (std::size_t k = 0; k < taxels_.size(); ++k) {
       const bool is_dead = taxels_[k].variances.empty();
       const double deviation = (std::max)(noise.typical, std::sqrt(squares[k]));

@@ -1,0 +1,215 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+// Calibrations: time of a fit ("ns/pixel" is per fit). "a sensor of numbers": those that
+// replay_many repeats (examples/replay_many/trials.cpp), from measurements that are drawn anew.
+// Errors: of each parameter, as a share of the true one, over 100 fits with fresh noise. "...
+// on scenes": curves and maps from contacts of finite-element membranes (tests/data/contacts.csv).
+// Errors: those of the method, on a scene that was left out of the fit. Published: a quadratic with
+// a constant by the press alone; the central dot, straight lines and the printed exponents, from
+// "mix".
+#include <cmath>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "bench/support/run.hpp"
+#include "examples/replay_many/trials.hpp"
+#include "fingerpad/calibrate/force.hpp"
+#include "fingerpad/force/normal_force.hpp"
+#include "fingerpad/force/shear.hpp"
+#include "support/contact_records.hpp"
+#include "support/pad.hpp"
+
+using namespace fingerpad;
+using test::ContactDotsOf;
+using test::ContactMeasure;
+
+namespace {
+
+using Samples = std::vector<ForceSample<double>>;
+
+std::span<const ForceSample<double>> span_of(const Samples& samples) {
+  return samples;
+}
+
+void add_trial(const std::string& name) {
+  const bench::Memory memory;
+  const auto trial = std::make_shared<replay_many::Trial>(replay_many::trial_of(name));
+  const auto chance = std::make_shared<replay_many::Chance>(1);
+  bench::add(
+      "a sensor of numbers/" + name, 1, memory.bytes(),
+      [=] { benchmark::DoNotOptimize(trial->bootstrap(*chance)); },
+      [=](auto& counters) {
+        replay_many::Chance fresh(2);
+        std::vector<double> errors;
+        for (int k = 0; k < 100; ++k) {
+          const auto found = trial->monte_carlo(fresh).values;
+          for (std::size_t p = 0; p < found.size(); ++p) {
+            if (is_finite(trial->truth[p]) && trial->truth[p] != 0) {
+              errors.push_back(found[p] / trial->truth[p] - 1);
+            }
+          }
+        }
+        if (!errors.empty()) {
+          bench::note_errors(counters, "parameters", "share", errors);
+        }
+      });
+}
+
+/// Radii of an elastic pad under 0.2 to 8 N, r = 6 F^(1/3) mm, with 1 % of noise.
+Samples pressed(std::uint64_t seed) {
+  test::Random random(seed);
+  Samples samples;
+  for (int k = 0; k < 40; ++k) {
+    ForceSample<double> s;
+    s.normal_force_n = 0.2 * (k + 1);
+    s.measure = 6 * std::cbrt(s.normal_force_n) * (1 + 0.01 * random.normal());
+    s.load = k;
+    samples.push_back(s);
+  }
+  return samples;
+}
+void add_power_law() {
+  const bench::Memory memory;
+  const auto samples = std::make_shared<Samples>(pressed(1));
+  bench::add(
+      "a sensor of numbers/power law", 1, memory.bytes(),
+      [=] { benchmark::DoNotOptimize(fit_power_law(span_of(*samples))); },
+      [=](auto& counters) {
+        std::vector<double> errors;
+        for (std::uint64_t seed = 2; seed < 102; ++seed) {
+          const auto found = fit_power_law(span_of(pressed(seed)));
+          errors.push_back(found.curve.coefficient_mm / 6 - 1);
+          errors.push_back(3 * found.curve.exponent - 1);
+        }
+        bench::note_errors(counters, "parameters", "share", errors);
+      });
+}
+
+Samples samples_of(const std::vector<std::string>& scenes,
+                   ContactMeasure measure,
+                   ContactDotsOf dots = ContactDotsOf::edge) {
+  return test::force_samples(test::contact_records(scenes), measure, dots);
+}
+/// `fit(samples)` from the calibration's scenes; `error(fit, sample)` on others.
+template <class Fit, class Error>
+struct OnScenes {
+  ContactMeasure measure;
+  ContactDotsOf dots;
+  Fit fit;
+  Error error;
+};
+
+/// Pairs of what is fitted and what is tested.
+using Pairs = std::vector<std::pair<std::vector<std::string>, std::string>>;
+
+template <class Fit, class Error>
+void add_look_up(const std::string& name,
+                 const std::string& quantity,
+                 const std::string& unit,
+                 const Pairs& pairs,
+                 const OnScenes<Fit, Error>& of) {
+  const bench::Memory memory;
+  const auto samples =
+      std::make_shared<Samples>(samples_of(pairs.front().first, of.measure, of.dots));
+  bench::add(
+      quantity + " on scenes/" + name, 1, memory.bytes(),
+      [=] { benchmark::DoNotOptimize(of.fit(*samples)); },
+      [=](auto& counters) {
+        std::vector<double> errors;
+        for (const auto& [from, on] : pairs) {
+          const auto fit = of.fit(samples_of(from, of.measure, of.dots));
+          for (const auto& s : samples_of({on}, of.measure, of.dots)) {
+            errors.push_back(of.error(fit, s));
+          }
+        }
+        bench::note_errors(counters, quantity, unit, errors);
+      });
+}
+
+template <int Degree>
+void add_normal(const std::string& name,
+                ContactMeasure measure,
+                const Pairs& pairs,
+                const FitOptions& options = {}) {
+  const auto fit = [=](const Samples& samples) {
+    return fit_normal_force<Degree>(span_of(samples), options);
+  };
+  const auto error = [](const auto& found, const ForceSample<double>& s) {
+    const NormalForce force(found.curve, found.compensation);
+    return force(s.measure, s.displacement_mm, s.rotation_rad).force_n - s.normal_force_n;
+  };
+  add_look_up(name, "normal force", "N", pairs,
+              OnScenes<decltype(fit), decltype(error)>{measure, ContactDotsOf::edge, fit, error});
+}
+
+template <int Degree>
+void add_tangential(const std::string& name,
+                    ContactMeasure measure,
+                    ContactDotsOf dots,
+                    const std::optional<double>& exponent = {}) {
+  const double reference = measure == ContactMeasure::depth ? 10 : 100;
+  const auto fit = [=](const Samples& samples) {
+    return fit_tangential_force<Degree>(span_of(samples), reference, exponent);
+  };
+  const auto error = [=](const auto& found, const ForceSample<double>& s) {
+    RadialShear<Degree> map;
+    map.force = map.moment = found.polynomial;
+    const Shear<RadialShear<Degree>> shear({reference, found.exponent, 0}, map);
+    const auto f = shear(s.measure, s.displacement_mm, 0).tangential_force_n;
+    return std::hypot(f.x - s.tangential_force_n.x, f.y - s.tangential_force_n.y);
+  };
+  add_look_up(name, "tangential force", "N",
+              {{{"mix"}, "drag"}, {{"mix"}, "tilt"}, {{"mix"}, "cylinder"}},
+              OnScenes<decltype(fit), decltype(error)>{measure, dots, fit, error});
+}
+
+void add_moment(const std::string& name,
+                ContactDotsOf dots,
+                const std::optional<double>& exponent = {}) {
+  const auto fit = [=](const Samples& samples) {
+    return fit_moment<1>(span_of(samples), 100.0, exponent);
+  };
+  const auto error = [](const auto& found, const ForceSample<double>& s) {
+    RadialShear<1> map;
+    map.force = map.moment = found.polynomial;
+    const Shear<RadialShear<1>> shear({100.0, 0, found.exponent}, map);
+    return shear(s.measure, {0, 0}, s.rotation_rad).moment_n_mm - s.moment_n_mm;
+  };
+  add_look_up(name, "moment", "N mm", {{{"mix"}, "twist"}},
+              OnScenes<decltype(fit), decltype(error)>{ContactMeasure::area, dots, fit, error});
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  (void)test::contact_records({});  // reads the file, which is no fit's memory
+  for (const std::string& name : replay_many::trial_names()) {
+    add_trial(name);
+  }
+  add_power_law();
+  const Pairs plates = {{{"drag", "twist", "mix"}, "press"},
+                        {{"press", "twist", "mix"}, "drag"},
+                        {{"press", "drag", "mix"}, "twist"},
+                        {{"press", "drag", "twist"}, "mix"}};
+  const Pairs press = {{{"press"}, "drag"}, {{"press"}, "twist"}, {{"press"}, "mix"}};
+  constexpr auto area = ContactMeasure::area, depth = ContactMeasure::depth;
+  constexpr auto edge = ContactDotsOf::edge, center = ContactDotsOf::center;
+  add_normal<2>("area, degree 2, published", area, press, {.through_zero = false});
+  add_normal<2>("depth, degree 2, published", depth, press, {.through_zero = false});
+  add_normal<2>("area, degree 2", area, plates);
+  add_normal<3>("area, degree 3", area, plates);
+  add_normal<5>("area, degree 5", area, plates);
+  add_normal<3>("depth, degree 3", depth, plates);
+  add_normal<3>("area, ScaledCompensation", area, plates, {.displaced = true, .rotated = true});
+  add_tangential<1>("central dot, published", area, center, 0.65);
+  add_tangential<1>("edge dots, area", area, edge);
+  add_tangential<1>("edge dots, depth", depth, edge);
+  add_tangential<2>("edge dots, degree 2", area, edge);
+  add_moment("central dot, published", center, 1.7);
+  add_moment("edge dots", edge);
+  return bench::run(argc, argv);
+}

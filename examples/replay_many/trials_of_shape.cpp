@@ -1,0 +1,109 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+// Trials of the calibrations that say where things are: camera, free pad, and the gel's law.
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <opencv2/core.hpp>
+
+#include "calibrate/geometry.hpp"
+#include "fingerpad/adapt/opencv.hpp"
+#include "fingerpad/calibrate/intensity.hpp"
+#include "trial_parts.hpp"
+
+namespace replay_many {
+
+/// A plate of 9 x 9 dots, 0.05 px of noise, and the same raised by 10 mm.
+Trial camera_plate() {
+  using Dots = std::vector<calibrate::PlateDot>;
+  using Pair = std::pair<Dots, Dots>;
+  constexpr double distance_mm = 50, raised_mm = 10, pitch_mm = 0.08;
+  const auto picture = [](double pitch, Chance& chance) {
+    Dots dots;
+    for (int k = 0; k < 81; ++k) {
+      const double x = 3.0 * (k % 9 - 4), y = 3.0 * (k / 9 - 4);
+      dots.push_back({{x, y},
+                      {319.5 + x / pitch + 0.05 * chance.normal(),
+                       239.5 + y / pitch + 0.05 * chance.normal()}});
+    }
+    return dots;
+  };
+  const auto measure = [=](Chance& chance) {
+    const Dots low = picture(pitch_mm, chance);
+    return Pair(low, picture(pitch_mm * (distance_mm + raised_mm) / distance_mm, chance));
+  };
+  const auto draw = [](const Pair& pair, Chance& chance) {
+    const Dots low = chance.drawn_from(pair.first);
+    return Pair(low, chance.drawn_from(pair.second));
+  };
+  const auto fit = [](const Pair& pair) {
+    const auto low = calibrate::fit_plate(pair.first);
+    const auto found = calibrate::plate_distance(low, calibrate::fit_plate(pair.second), raised_mm);
+    const double pitch = 1 / low.px_per_mm;
+    return Estimate{{pitch, low.middle_px.x, found.mm},
+                    diagonal({pitch * pitch * low.px_per_mm_sd, low.middle_sd_px, found.sd_mm})};
+  };
+  return trial({"pitch_mm", "center_x_px", "plate_distance_mm"}, {pitch_mm, 319.5, distance_mm},
+               0.1, measure, draw, fit);
+}
+
+/// Thirty touches of a cap by a ball, 0.02 mm of noise along each axis.
+Trial cap() {
+  using Touches = std::vector<fingerpad::Point3<double>>;
+  constexpr double base_mm = 18.735, apex_mm = 13.03, ball_mm = 3;
+  const auto measure = [](Chance& chance) {
+    constexpr double radius = (base_mm * base_mm / apex_mm + apex_mm) / 2;
+    Touches touches;
+    for (int k = 0; k < 30; ++k) {
+      const double around = 2.4 * k, off_axis = 0.03 * k;  // rad
+      const double rho = (radius + ball_mm) * std::sin(off_axis);
+      const double z = (radius + ball_mm) * std::cos(off_axis) - radius + apex_mm - ball_mm;
+      touches.push_back({rho * std::cos(around) + 0.02 * chance.normal(),
+                         rho * std::sin(around) + 0.02 * chance.normal(),
+                         z + 0.02 * chance.normal()});
+    }
+    return touches;
+  };
+  const auto fit = [](const Touches& touches) {
+    const auto found = calibrate::fit_cap(touches, ball_mm);
+    return Estimate{{found.size.base_radius_mm, found.size.apex_height_mm},
+                    diagonal({found.base_sd_mm, found.apex_sd_mm})};
+  };
+  return trial({"base_radius_mm", "apex_height_mm"}, {base_mm, apex_mm}, 0.1, measure, draw_samples,
+               fit);
+}
+
+/// Eight presses of a ball into a gel of one channel, a grey level of noise.
+Trial intensity() {
+  using Picture = cv::Mat_<double>;
+  constexpr double law_mm = 4, bright = 150;
+  constexpr fingerpad::BallPress ball{.ball_mm = 4, .mm_per_px = 0.1};
+  const Picture free(64, 64, bright);
+  const auto measure = [=](Chance& chance) {
+    std::vector<Picture> presses;
+    for (int k = 0; k < 8; ++k) {
+      presses.emplace_back(free.size());
+      const double depth = 0.4 + 0.07 * k, x = 3.1 + 0.1 * (k % 3), y = 3.0 + 0.1 * (k % 4);
+      for (int i = 0; i < free.rows; ++i) {
+        for (int j = 0; j < free.cols; ++j) {
+          const double rho = std::hypot(ball.mm_per_px * j - x, ball.mm_per_px * i - y);
+          const double root = std::sqrt(std::fmax(ball.ball_mm * ball.ball_mm - rho * rho, 0));
+          const double dent = std::fmax(depth - ball.ball_mm + root, 0);
+          presses.back()(i, j) = bright * std::exp(-dent / law_mm) + chance.normal();
+        }
+      }
+    }
+    return presses;
+  };
+  const auto fit = [=](const std::vector<Picture>& presses) {
+    fingerpad::IntensityCalibration calibration;
+    for (const Picture& pressed : presses) {
+      (void)calibration.add(free, pressed, ball);
+    }
+    const auto found = calibration.fit();
+    return Estimate{{found.law.linear_mm}, {{found.covariance[0][0]}}};
+  };
+  return trial({"linear_mm"}, {law_mm}, 5, measure, draw_samples, fit);
+}
+
+}  // namespace replay_many
