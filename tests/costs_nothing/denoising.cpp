@@ -10,25 +10,26 @@ extern "C" float switched_off(const FramePair<float>& pair,
                               const Similarity<float>& map,
                               float slip_sq,
                               float sd,
-                              Dots<Point2<float>>& residuals,
+                              MarkingRoom<float>& room,
                               std::vector<DotState>& marks) {
-  return mark_dots(NoDenoising(), pair, map, slip_sq, sd, residuals, marks);
+  return mark_dots(NoDenoising(), pair, map, slip_sq, sd, room, marks);
 }
 
 extern "C" float without_effect(const FramePair<float>& pair,
                                 const Similarity<float>& map,
                                 float slip_sq,
                                 float sd,
-                                Dots<Point2<float>>&,
+                                MarkingRoom<float>&,
                                 std::vector<DotState>& marks) {
-  float doubt = 0;
+  float variance = 0;
   for (const Index k : pair.touching) {
     const Point2<float> r = map.residual(pair.now[k], pair.then[k]);
     const float length_sq = r.x * r.x + r.y * r.y;
     marks[static_cast<std::size_t>(k)] = !(length_sq < 1e18F)  ? DotState::unknown
                                          : length_sq < slip_sq ? DotState::stick
                                                                : DotState::slip;
-    doubt = doubt + doubt_of(length_sq, slip_sq, sd);
+    const float doubt = doubt_of(length_sq, slip_sq, sd);
+    variance = variance + doubt * doubt;
   }
-  return doubt;
+  return variance;
 }

@@ -66,8 +66,8 @@ void try_slide(Input& in) {
     const auto dots = fuzz::moved_dots(in, home);
     auto copy = state;
     const auto slid =
-        fuzz::frame([&] { return slide(work.difference(), work.contact(), dots.view(), state); });
-    const auto copied = slide(work.difference(), work.contact(), dots.view(), copy);
+        fuzz::frame([&] { return slide(work.imprint(), work.contact(), dots.view(), state); });
+    const auto copied = slide(work.imprint(), work.contact(), dots.view(), copy);
     require(slid.accepted() && slid.status == copied.status &&
                 fuzz::same_bits(slid.evidence, copied.evidence),
             "a copied state gives the same bits");

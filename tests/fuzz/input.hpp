@@ -3,12 +3,15 @@
 #pragma once
 // What the fuzzer's bytes mean: sizes, parameters, and grids with gaps between rows and cells.
 // Zeros follow where the bytes end.
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <ctime>
 #include <limits>
 #include <type_traits>
 #include <vector>
@@ -132,12 +135,53 @@ inline void require(bool holds, const char* what) {
   }
 }
 
-/// The result of a frame, which throws nothing and takes no memory.
+/// Whether a call takes longer than bounded time allows: ten times the median of its kind, once a
+/// thousand have been seen. Below 10 ms it may be the machine.
+class BoundedTime {
+ public:
+  bool holds(double seconds) {
+    ++count_;
+    ++of_[bin(seconds)];
+    return count_ < 1000 || seconds < 0.01 || seconds < 10 * median();
+  }
+
+ private:
+  static constexpr double shortest = 1e-7;
+
+  /// Eighths of octaves.
+  static std::size_t bin(double seconds) {
+    const double octaves = std::log2((std::max)(seconds / shortest, 1.0));
+    return (std::min)(static_cast<std::size_t>(8 * octaves), std::size_t{255});
+  }
+  double median() const {
+    std::size_t k = 0;
+    for (long below = of_[0]; 2 * below < count_; below += of_[k]) {
+      ++k;
+    }
+    return shortest * std::exp2(static_cast<double>(k + 1) / 8);
+  }
+
+  std::array<long, 256> of_ = {};
+  long count_ = 0;
+};
+
+/// Of this thread alone, so that other work of the machine does not count.
+inline double processor_seconds() {
+  std::timespec now{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
+
+/// The result of a frame, which throws nothing, takes no memory, and bounded time.
 template <class Frame>
 auto frame(const Frame& call) noexcept {
+  static BoundedTime time;  // one for each place in a target
   const long before = test::allocations();
+  const double begin = processor_seconds();
   auto result = call();
+  const double seconds = processor_seconds() - begin;
   require(test::allocations() == before, "a frame takes no memory");
+  require(time.holds(seconds), "a frame takes bounded time");
   return result;
 }
 

@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "fingerpad/force/pad_heights.hpp"
+#include "fingerpad/published/wrench.hpp"
 #include "fuzz/input.hpp"
 
 using namespace fingerpad;
@@ -119,6 +120,9 @@ void try_wrench(Input& in) {
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   return fuzz::run(data, size, [](Input& in) {
-    return in.flag() ? try_wrench<Wrench<>>(in) : try_wrench<Wrench<BalancedRim>>(in);
+    const std::uint8_t kind = in.byte();
+    return (kind & 1) != 0 ? try_wrench<Wrench<>>(in)
+           : kind < 128    ? try_wrench<Wrench<BalancedRim>>(in)
+                           : try_wrench<published::Wrench<>>(in);
   });
 }

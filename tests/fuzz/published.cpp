@@ -1,0 +1,208 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+// The printed forms on any input: what they tell is finite, and the same frame gives the same bits.
+#include <array>
+#include <cstdint>
+
+#include "fingerpad/published/contact_region.hpp"
+#include "fingerpad/published/depth.hpp"
+#include "fingerpad/published/friction_ratio.hpp"
+#include "fingerpad/published/object_motion.hpp"
+#include "fingerpad/published/preslip.hpp"
+#include "fingerpad/published/slides_contact.hpp"
+#include "fingerpad/published/slides_stick_ratio.hpp"
+#include "fingerpad/published/stick_ratio.hpp"
+#include "fuzz/dots.hpp"
+
+using namespace fingerpad;
+using fuzz::any_contact;
+using fuzz::any_dots;
+using fuzz::Grid;
+using fuzz::Input;
+using fuzz::require;
+
+namespace {
+
+Camera<double> any_camera(Input& in, Index rows, Index cols) {
+  Camera<double> camera;
+  camera.plate_distance_mm = in.number(10, 200);
+  camera.center_x_px = in.number(0, static_cast<double>(cols));
+  camera.center_y_px = in.number(0, static_cast<double>(rows));
+  camera.pitch_mm = in.number(0.01, 1);
+  return camera;
+}
+
+void try_depth(Input& in) {
+  using Pixel = std::uint8_t;
+  const Index rows = in.whole(1, 40), cols = in.whole(1, 40);
+  const Camera<double> camera = any_camera(in, rows, cols);
+  const Absorption<double> fluid;
+  const Grid<Pixel> pad_red(in, rows, cols, 0, 260), pad_green(in, rows, cols, 0, 260);
+  const Grid<float> shape(in, rows, cols, 0, 15);
+  const auto reference =
+      published::depth_reference(camera, fluid, pad_red.view(), pad_green.view(), shape.view());
+  const int window_px = 1 + 2 * static_cast<int>(in.whole(0, 8));
+  const auto estimate = published::depth_estimator(camera, fluid, reference, window_px);
+  auto work = estimate.workspace<Pixel>();
+  const Grid<Pixel> red(in, rows, cols, 0, 260), green(in, rows, cols, 0, 260);
+  Grid<float> depth(rows, cols), again(rows, cols);
+  Grid<PixelStatus> status(rows, cols);
+  for (Grid<float>* to : {&depth, &again}) {
+    const auto result = fuzz::frame(
+        [&] { return estimate(red.view(), green.view(), to->view(), status.view(), work); });
+    require(result.status != DepthStatus::refused, "a frame of the right size is accepted");
+  }
+  require(depth == again, "the same frame gives the same bits");
+  for (Index i = 0; i < rows; ++i) {
+    for (Index j = 0; j < cols; ++j) {
+      const double l = static_cast<double>(depth.view()(i, j));
+      const bool ok = status.view()(i, j) == PixelStatus::ok;
+      require(ok ? l >= 0 && l <= fluid.max_depth_mm * 1.000001 : std::isnan(l),
+              "ok is a depth in range, anything else is NaN");
+    }
+  }
+}
+
+void try_contact(Input& in) {
+  const Index rows = in.whole(0, 50), cols = in.whole(0, 50);
+  const Grid<float> depth(in, rows, cols, 0, 15);
+  Grid<std::uint8_t> mask(rows, cols);
+  if (in.flag()) {
+    const auto find = published::contact_region(any_camera(in, rows, cols), rows, cols);
+    auto work = find.workspace();
+    const auto found = fuzz::frame([&] { return find(depth.view(), mask.view(), work); });
+    require(found.accepted() && is_finite(found.area_mm2) && found.area_mm2 >= 0,
+            "an area is finite and not negative");
+    return;
+  }
+  published::SlidesContactOptions options;
+  options.condition = static_cast<published::ContactCondition>(in.whole(0, 2));
+  options.threshold_per_mm = in.number(-0.1, 0.1);
+  options.directions = static_cast<int>(in.whole(0, 40));
+  options.radius_px = in.number(1, 30);
+  options.pitch_mm = in.number(0.01, 1);
+  options.step_px = static_cast<int>(in.whole(0, 60));
+  const double area_mm2 = published::contact_by_slides(depth.view(), mask.view(), options);
+  require(is_finite(area_mm2) && area_mm2 >= 0, "an area is finite and not negative");
+}
+
+template <class Estimator, class Look>
+void try_ratio(Input& in, const Estimator& estimate, Index rows, Index cols, const Look& look) {
+  auto state = estimate.start();
+  for (Index frames = in.whole(1, 6); frames > 0; --frames) {
+    const auto dots = any_dots<Point2<double>>(in, rows, cols);
+    const auto contact = any_contact(in, rows, cols);
+    auto copy = state;
+    const double ratio = fuzz::frame([&] { return look(dots.view(), contact.view(), state); });
+    require(!is_finite(ratio) || (ratio >= 0 && ratio <= 1), "a ratio is in [0, 1]");
+    require(fuzz::same_bits(ratio, look(dots.view(), contact.view(), copy)),
+            "a copied state gives the same bits");
+  }
+}
+
+void try_slides(Input& in) {
+  const Index rows = in.whole(0, 12), cols = in.whole(0, 12);
+  published::SlidesOptions options;
+  options.test.reference = in.number(0.1, 5);
+  options.test.store = in.number(0, 2);
+  options.test.slip = in.number(0.01, 1);
+  options.cancels_rotation = in.flag();
+  options.reference = static_cast<published::SlidesReference>(in.whole(0, 1));
+  options.scale = static_cast<published::SlidesScale>(in.whole(0, 1));
+  options.delta = static_cast<published::SlidesDelta>(in.whole(0, 1));
+  options.answers = static_cast<published::AnswerWhen>(in.whole(0, 1));
+  options.capacity = in.whole(0, 8);
+  const published::SlidesStickRatio estimate(rows, cols, options);
+  try_ratio(in, estimate, rows, cols, [&](const auto& dots, const auto& contact, auto& state) {
+    const auto seen = estimate(dots, contact, state);
+    require(!seen.ok() || (is_finite(seen.angle_rad) && is_finite(seen.furthest_px)),
+            "what belongs to an answer is finite");
+    return seen.stick_ratio;
+  });
+}
+
+void try_stick_ratio(Input& in) {
+  const Index rows = in.whole(0, 12), cols = in.whole(0, 12);
+  const auto estimate = published::stick_ratio(rows, cols);
+  Grid<DotState> states(rows, cols);
+  try_ratio(in, estimate, rows, cols, [&](const auto& dots, const auto& contact, auto& state) {
+    return static_cast<double>(estimate(dots, contact, states.view(), state).stick_ratio);
+  });
+}
+
+void try_motion(Input& in) {
+  const Index rows = in.whole(0, 12), cols = in.whole(0, 12);
+  const auto free = any_dots<Point3<double>>(in, rows, cols);
+  const auto motion = published::object_motion(free.view());
+  auto state = motion.start();
+  for (Index frames = in.whole(1, 4); frames > 0; --frames) {
+    const auto dots = fuzz::moved_dots(in, free);
+    const auto contact = any_contact(in, rows, cols);
+    auto copy = state;
+    const auto seen = fuzz::frame([&] { return motion(dots.view(), contact.view(), state); });
+    const auto same = motion(dots.view(), contact.view(), copy);
+    require(seen.status == same.status &&
+                fuzz::same_bits(seen.pose.translation_mm, same.pose.translation_mm),
+            "a copied state gives the same bits");
+    require(!seen.ok() || is_finite(seen.pose.translation_mm), "a translation is finite");
+  }
+}
+
+void try_friction(Input& in) {
+  published::FrictionTest<double> test;
+  test.alarm_fraction = in.number(0, 1);
+  test.min_normal_n = in.number(0, 1);
+  const published::FrictionRatio<double> estimate(test);
+  auto state = estimate.start();
+  for (Index frames = in.whole(1, 20); frames > 0; --frames) {
+    const Point3<double> force_n = {in.number(-10, 10), in.number(-10, 10), in.number(-20, 1)};
+    const bool sliding = in.flag();
+    const auto seen = fuzz::frame([&] { return estimate(force_n, sliding, state); });
+    require(!seen.ok() || seen.ratio >= 0, "a ratio of friction is not negative");
+  }
+}
+
+void try_preslip(Input& in) {
+  auto options = published::preslip_options<double>();
+  options.history = in.whole(0, 30);
+  options.centroid_tolerance_mm = in.number(0, 1);
+  const auto rule = published::grasp_lift(options);
+  auto state = rule.start();
+  for (Index samples = in.whole(1, 60); samples > 0; --samples) {
+    std::array<FingerSample<double>, 2> fingers;
+    for (auto& finger : fingers) {
+      finger.status = static_cast<TaxelStatus>(in.whole(0, 2));
+      finger.center_x_mm = in.number(-10, 10);
+      finger.center_y_mm = in.number(-10, 10);
+      for (Index k = in.whole(0, 20); k > 0; --k) {
+        finger.add_vibration({in.whole(0, 20), in.whole(-1, 60), in.flag()});
+      }
+    }
+    const auto seen = fuzz::frame([&] { return rule(fingers, state); });
+    require(!seen.alarm || (seen.samples_ago >= 0 && seen.samples_ago <= options.history),
+            "an alarm is of what is remembered");
+  }
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  return fuzz::run(data, size, [](Input& in) {
+    switch (in.whole(0, 6)) {
+      case 0:
+        return try_depth(in);
+      case 1:
+        return try_contact(in);
+      case 2:
+        return try_slides(in);
+      case 3:
+        return try_stick_ratio(in);
+      case 4:
+        return try_motion(in);
+      case 5:
+        return try_friction(in);
+      default:
+        return try_preslip(in);
+    }
+  });
+}
