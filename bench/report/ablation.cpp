@@ -6,7 +6,8 @@
 //   images  ablation/membranes.hpp, looked at by ablation/depth.hpp and ablation/contact.hpp
 //   dots    ablation/dots.hpp for stick and slip, ablation/slip.hpp for the same in space and by
 //           friction, ablation/motion.hpp for the motion of the object
-//   forces  ablation/wrench.hpp
+//   forces  ablation/wrench.hpp by the membrane's balance; ablation/loads.hpp by look-up, with the
+//           shift of the contact, traction and the shape of the object
 #include <cstdio>
 #include <fstream>
 #include <iostream>
@@ -16,6 +17,7 @@
 #include "ablation/contact.hpp"
 #include "ablation/depth.hpp"
 #include "ablation/dots.hpp"
+#include "ablation/loads.hpp"
 #include "ablation/membranes.hpp"
 #include "ablation/motion.hpp"
 #include "ablation/slip.hpp"
@@ -58,6 +60,7 @@ int main(int argc, char** argv) {
   append(effects, slip_effects());
   append(effects, motion_effects());
   append(effects, wrench_effects());
+  append(effects, load_effects());
   std::cout << "Median of the errors, with the effect / without it:\n\n";
   print_table(std::cout, effects, 0.5);
   std::cout << "\n99th percentile, with the effect / without it:\n\n";

@@ -1,12 +1,14 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
-// The table of docs/hard_cases.md: what the published or textbook form of a formula loses where it
-// is hard, and what fingerpad's loses there, in float and in double against 50 digits. Inputs are
-// rounded to the type first, so that all of the error is the form's. tests/hard_cases/naive_forms.cpp
-// asserts every row.
+// The tables of docs/hard_cases.md. First: what the published or textbook form of a formula loses
+// where it is hard, and what fingerpad's loses there, in float and in double against 50 digits.
+// Inputs are rounded to the type first, so that all of the error is the form's.
+// tests/hard_cases/naive_forms.cpp asserts every row. Second: cases that are hard whatever the
+// numbers.
 #include <iostream>
 
 #include "hard_cases/all.hpp"
+#include "hard_cases/by_nature.hpp"
 
 int main() {
   std::cout << "| method | hard case; error | naive, float | naive, double | fingerpad, float | "
@@ -14,5 +16,10 @@ int main() {
             << "|---|---|--:|--:|--:|--:|---|\n";
   for (const hard::MakeRow make : hard::all_rows()) {
     std::cout << hard::line_of(make()) << '\n';
+  }
+  std::cout << "\nHard whatever the numbers, the published method beside the default:\n\n"
+            << "| method | hard case | figure | published | default |\n|---|---|---|--:|--:|\n";
+  for (const hard::CaseByNature& c : hard::cases_by_nature()) {
+    std::cout << hard::line_of(c) << '\n';
   }
 }

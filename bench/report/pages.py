@@ -42,6 +42,7 @@ METHODS = {
     "preslip": ("Pre-slip", ["detection"]),
     "dot_finder": ("Printed dots", ["21x21 dots, radius 4.4 px"]),
     "foam_contact": ("Foam contact", ["steps", "lift, 2000 steps"]),
+    "calibrations": ("Calibrations", []),
 }
 # The published way against the default: (label, program, group, published row, our row).
 COMPARED = [

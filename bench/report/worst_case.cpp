@@ -190,7 +190,7 @@ std::vector<Kind> of_gel(bool with_slide) {
     return [&frames, with_slide](int k) {
       (void)region(frames[variant(k)], mask, work);
       if (with_slide) {
-        (void)slide(work.difference(), work.contact(), dots[variant(k)], state);
+        (void)slide(work.imprint(), work.contact(), dots[variant(k)], state);
       }
     };
   };

@@ -202,9 +202,9 @@ Effect slip_effect(const std::vector<SpatialRecordings>& all,
 inline std::vector<Effect> slip_effects() {
   const auto all = spatial_recordings();
   return {slip_effect<InSpace, InImage>(all, "space", "`SpatialStickRatio`", "`StickRatio<>`"),
-          slip_effect<WithFriction<InSpace>, InSpace>(all, "friction, in space", "`FrictionLimit`",
+          slip_effect<WithFriction<InSpace>, InSpace>(all, "friction in space", "`FrictionLimit`",
                                                       "`SpatialStickRatio` alone"),
-          slip_effect<WithFriction<InImage>, InImage>(all, "friction, in the image",
+          slip_effect<WithFriction<InImage>, InImage>(all, "friction in the image",
                                                       "`FrictionLimit`", "`StickRatio<>` alone")};
 }
 

@@ -1,0 +1,433 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+#pragma once
+// Effects on forces by look-up, on the shift of the contact that shear is looked up by, on traction
+// and on the shape of the object: contacts, dots and measured depths of finite-element membranes
+// (tests/data).
+//   press, twist, rolling, tilted   the scenes of these names, all steps
+//   drag, reversal                  the drag until it turns round, and from there on
+//   normal force change             drag, rotation and depth at once
+//   wedge                           cylinder, pressed and dragged
+//   noisy                           the drag; noise of dots 0.12 px, not 0.06, of areas and depths
+//                                   4 %, not 2
+//   dots lost                       the drag, one dot in twenty: taken for its neighbour (shift of
+//                                   the contact), not found (traction)
+// Curves and maps are calibrated on plates other than the one they are tested on (normal force) or
+// on "mix" (shear; "mix" itself on "drag" and "cylinder"). Areas and displacements are exact but
+// for that noise.
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <numbers>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "bench/support/scene_frames.hpp"
+#include "fingerpad/calibrate/force.hpp"
+#include "fingerpad/contact/contact_measures.hpp"
+#include "fingerpad/contact/equivalent_flat_area.hpp"
+#include "fingerpad/contact/object_surface.hpp"
+#include "fingerpad/force/normal_force.hpp"
+#include "fingerpad/force/shear.hpp"
+#include "fingerpad/force/traction.hpp"
+#include "fingerpad/motion/contact_shift.hpp"
+#include "membranes.hpp"
+#include "support/contact_records.hpp"
+#include "support/traction_scenes.hpp"
+#include "support/wrench_frames.hpp"
+#include "table.hpp"
+
+namespace bench::ablation {
+
+using LoadSample = fingerpad::ForceSample<double>;
+using test::ContactDotsOf;
+using test::ContactMeasure;
+
+inline Scene scene_of_load(const std::string& name) {
+  return name == "press"   ? Scene::press
+         : name == "drag"  ? Scene::drag
+         : name == "twist" ? Scene::twist
+         : name == "mix"   ? Scene::normal_force_change
+         : name == "roll"  ? Scene::rolling
+         : name == "tilt"  ? Scene::tilted
+                           : Scene::wedge;
+}
+
+inline constexpr std::array<const char*, 7> load_scenes = {"press", "drag", "twist",   "mix",
+                                                           "roll",  "tilt", "cylinder"};
+
+/// Samples of a recorded scene; noise of the measure as a share of it.
+inline std::vector<LoadSample> load_samples(const std::vector<std::string>& scenes,
+                                            ContactMeasure measure,
+                                            ContactDotsOf dots = ContactDotsOf::edge,
+                                            double noise = 0) {
+  auto samples = test::force_samples(test::contact_records(scenes), measure, dots);
+  test::Random random(3);
+  for (LoadSample& s : samples) {
+    s.measure *= 1 + noise * random.normal();
+  }
+  return samples;
+}
+
+/// Whether a step of the drag is on its way back.
+inline bool has_turned(const std::vector<LoadSample>& samples, std::size_t k) {
+  double furthest = 0;
+  for (std::size_t i = 0; i <= k; ++i) {
+    const auto& d = samples[i].displacement_mm;
+    furthest = (std::max)(furthest, std::hypot(d.x, d.y));
+  }
+  const auto& d = samples[k].displacement_mm;
+  return std::hypot(d.x, d.y) < 0.98 * furthest;
+}
+
+/// Errors of `found(calibrated on, sample)` in all scenes; `errors(scene)` is where they go.
+template <class Calibrate, class Where>
+void note_loads(const Calibrate& calibrate,
+                ContactMeasure measure,
+                ContactDotsOf dots,
+                const Where& where) {
+  for (const std::string scene : load_scenes) {
+    const auto force_error = calibrate(scene);
+    const auto samples = load_samples({scene}, measure, dots, 0.02);
+    for (std::size_t k = 0; k < samples.size(); ++k) {
+      const bool back = scene == "drag" && has_turned(samples, k);
+      where(back ? Scene::reversal : scene_of_load(scene)).add(force_error(samples[k]));
+    }
+    if (scene == "drag") {
+      for (const LoadSample& s : load_samples({scene}, measure, dots, 0.04)) {
+        where(Scene::noisy).add(force_error(s));
+      }
+    }
+  }
+}
+
+// ---- normal force
+
+inline std::vector<std::string> other_plates(const std::string& scene) {
+  std::vector<std::string> plates = {"press", "drag", "twist", "mix"};
+  std::erase(plates, scene);
+  return plates;
+}
+
+/// The error of the normal force in N, with the compensation for displacement and rotation or not.
+inline auto normal_force_of(ContactMeasure measure, bool compensates) {
+  using namespace fingerpad;
+  return [=](const std::string& scene) {
+    const auto samples = load_samples(other_plates(scene), measure);
+    const auto fit = fit_normal_force<3>(std::span<const LoadSample>(samples),
+                                         {.displaced = compensates, .rotated = compensates});
+    return [force = NormalForce(fit.curve, fit.compensation)](const LoadSample& s) {
+      return force(s.measure, s.displacement_mm, s.rotation_rad).force_n - s.normal_force_n;
+    };
+  };
+}
+
+// ---- shear
+
+inline std::vector<std::string> shear_calibration(const std::string& scene) {
+  return scene == "mix" ? std::vector<std::string>{"drag", "cylinder"}
+                        : std::vector<std::string>{"mix"};
+}
+
+/// The error of the tangential force in N; without `divides` the contact's size does not count.
+inline auto tangential_force_of(ContactMeasure measure, ContactDotsOf dots, bool divides) {
+  using namespace fingerpad;
+  return [=](const std::string& scene) {
+    const double reference = measure == ContactMeasure::depth ? 10 : 100;
+    const auto samples = load_samples(shear_calibration(scene), measure, dots);
+    const auto fit = fit_tangential_force<1>(std::span<const LoadSample>(samples), reference,
+                                             divides ? std::optional<double>() : 0.0);
+    RadialShear<1> map;
+    map.force = fit.polynomial;
+    map.moment.coefficients = {100};
+    return [shear = Shear<RadialShear<1>>({reference, fit.exponent, 0}, map)](const LoadSample& s) {
+      const auto f = shear(s.measure, s.displacement_mm, 0).tangential_force_n;
+      return std::hypot(f.x - s.tangential_force_n.x, f.y - s.tangential_force_n.y);
+    };
+  };
+}
+
+inline std::vector<Effect> look_up_effects() {
+  std::vector<Effect> effects;
+  const auto add = [&](Effect e, ContactMeasure measure, ContactDotsOf dots_with,
+                       ContactDotsOf dots_without, const auto& with, const auto& without) {
+    note_loads(with, measure, dots_with, [&](Scene s) -> Errors& { return e.with_in(s); });
+    note_loads(without, measure, dots_without, [&](Scene s) -> Errors& { return e.without_in(s); });
+    effects.push_back(e);
+  };
+  constexpr auto edge = ContactDotsOf::edge, center = ContactDotsOf::center;
+  for (const auto measure : {ContactMeasure::area, ContactMeasure::depth}) {
+    const std::string by = measure == ContactMeasure::area ? "by area" : "by depth";
+    add({.name = "compensation",
+         .quantity = "normal force " + by,
+         .unit = "N",
+         .on = "`NormalForce` with `ScaledCompensation`",
+         .off = "with `NoCompensation`"},
+        measure, edge, edge, normal_force_of(measure, true), normal_force_of(measure, false));
+  }
+  for (const auto measure : {ContactMeasure::area, ContactMeasure::depth}) {
+    const std::string by = measure == ContactMeasure::area ? "by area" : "by depth";
+    add({.name = "size of the contact",
+         .quantity = "tangential force " + by,
+         .unit = "N",
+         .on = "`Shear` with a fitted exponent",
+         .off = "with an exponent of 0"},
+        measure, edge, edge, tangential_force_of(measure, edge, true),
+        tangential_force_of(measure, edge, false));
+  }
+  add({.name = "dots of the edge",
+       .quantity = "tangential force by area",
+       .unit = "N",
+       .on = "`EdgeDots`",
+       .off = "`published::OneDot`"},
+      ContactMeasure::area, edge, center, tangential_force_of(ContactMeasure::area, edge, true),
+      tangential_force_of(ContactMeasure::area, center, true));
+  return effects;
+}
+
+// ---- shift of the contact, traction
+
+using PlaneDots = Image<fingerpad::Point2<double>>;
+
+inline PlaneDots in_plan(const test::Dots& dots) {
+  PlaneDots plane(dots.rows(), dots.cols());
+  for (std::size_t k = 0; k < plane.cells.size(); ++k) {
+    plane.cells[k] = {dots.cells[k].x, dots.cells[k].y};
+  }
+  return plane;
+}
+
+/// One dot in twenty has the place of its neighbour to the right.
+inline void confuse(PlaneDots& dots, test::Random& random) {
+  for (Index i = 0; i < dots.rows(); ++i) {
+    for (Index j = 0; j + 1 < dots.cols(); ++j) {
+      if (random.uniform() < 0.05) {
+        dots(i, j) = dots(i, j + 1);
+      }
+    }
+  }
+}
+
+/// Against the shift of the exact dots.
+inline Effect huber_effect() {
+  using namespace fingerpad;
+  Effect e{.name = "robust mean",
+           .quantity = "displacement of the contact",
+           .unit = "mm",
+           .on = "`ContactShift<EdgeDots, HuberMean>`",
+           .off = "`PlainMean`"};
+  const auto free = in_plan(test::traction_scene("free").dots);
+  const ContactShift<EdgeDots, HuberMean> robust(free);
+  const ContactShift<EdgeDots, PlainMean> plain(free);
+  auto robust_work = robust.workspace();
+  auto plain_work = plain.workspace();
+  PlaneDots timed = free;
+  const auto note = [&](const test::TractionScene& s, Scene where, double noise_mm, bool mistakes) {
+    const auto exact = in_plan(s.dots);
+    const auto truth = plain(exact, s.contact, plain_work).displacement;
+    for (std::uint64_t seed = 1; seed <= 40; ++seed) {
+      test::Random random(seed);
+      PlaneDots seen = exact;
+      for (auto& p : seen.cells) {
+        const double x = random.normal(), y = random.normal();
+        p = {p.x + noise_mm * x, p.y + noise_mm * y};
+      }
+      if (mistakes) {
+        confuse(seen, random);
+      }
+      const auto off = [&](const auto& r) {
+        return std::hypot(r.displacement.x - truth.x, r.displacement.y - truth.y);
+      };
+      e.with_in(where).add(off(robust(seen, s.contact, robust_work)));
+      e.without_in(where).add(off(plain(seen, s.contact, plain_work)));
+      timed = seen;
+    }
+  };
+  for (const test::TractionScene& s : test::traction_scenes()) {
+    note(s, scene_of_load(s.name), 0.005, false);
+    if (s.name == "drag") {
+      note(s, Scene::noisy, 0.01, false);
+      note(s, Scene::dots_lost, 0.005, true);
+    }
+  }
+  const auto contact = test::traction_scene("drag").contact;
+  e.cost_us = cost_us([&] { (void)robust(timed, contact, robust_work); },
+                      [&] { (void)plain(timed, contact, plain_work); });
+  return e;
+}
+
+inline std::vector<Effect> traction_effects() {
+  using namespace fingerpad;
+  const auto effect = [](const std::string& quantity, const std::string& unit) {
+    return Effect{.name = "calibrated membrane",
+                  .quantity = quantity,
+                  .unit = unit,
+                  .on = "`TractionOptions::mu_t_n_per_mm`",
+                  .off = "empty: from the free part of each frame"};
+  };
+  Effect force = effect("force by traction", "N");
+  Effect faded{.name = "faded sums",
+               .quantity = "force by traction",
+               .unit = "N",
+               .on = "`TractionOptions::fade_dots` 3",
+               .off = "0"};
+  const auto free = test::stress_free_dots();
+  const TractionField calibrated(free, {.mu_t_n_per_mm = 0.5});
+  const TractionField balanced(free);
+  const TractionField abrupt(free, {.mu_t_n_per_mm = 0.5, .fade_dots = 0});
+  auto maps = calibrated.maps();
+  auto other = balanced.maps();
+  const auto note = [&](const test::TractionScene& s, Scene where, double noise_mm, double lost) {
+    for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+      test::Gauss gauss(seed);
+      test::Random random(seed);
+      auto seen = test::noisy(s.dots, noise_mm, gauss);
+      for (auto& p : seen.cells) {
+        if (random.uniform() < lost) {
+          p = fingerpad::detail::missing_point<double>();
+        }
+      }
+      const auto off = [&](const auto& field, auto& work) {
+        return norm(field(seen, s.contact, s.pressure_mpa, work).force_n - s.force_n);
+      };
+      force.with_in(where).add(off(calibrated, maps));
+      force.without_in(where).add(off(balanced, other));
+      faded.with_in(where).add(off(calibrated, maps));
+      faded.without_in(where).add(off(abrupt, other));
+    }
+  };
+  for (const test::TractionScene& s : test::traction_scenes()) {
+    note(s, scene_of_load(s.name), 0.005, 0);
+    if (s.name == "drag") {
+      note(s, Scene::noisy, 0.01, 0);
+      note(s, Scene::dots_lost, 0.005, 0.05);
+    }
+  }
+  const test::TractionScene drag = test::traction_scene("drag");
+  const auto run = [&](const auto& field, auto& work) {
+    return [&] { (void)field(drag.dots, drag.contact, drag.pressure_mpa, work); };
+  };
+  force.cost_us = cost_us(run(calibrated, maps), run(balanced, other));
+  faded.cost_us = cost_us(run(calibrated, maps), run(abrupt, other));
+  return {force, faded};
+}
+
+// ---- shape of the object
+
+/// Plates: the angle to the true normal. Ball and cylinder: the largest curvature.
+inline std::vector<Effect> surface_effects() {
+  using namespace fingerpad;
+  SceneFrames& frames = SceneFrames::instance();
+  const test::Pad& pad = frames.pad();
+  const OrthographicCamera<double> from_afar{pad.camera.center_x_px, pad.camera.center_y_px,
+                                             pad.camera.pitch_mm};
+  constexpr double degrees = 180 / std::numbers::pi;
+  const auto effect = [](const std::string& name, bool plate, const std::string& on,
+                         const std::string& off) {
+    return Effect{.name = name,
+                  .quantity = plate ? "normal of the object" : "curvature of the object",
+                  .unit = plate ? "degrees" : "1/mm",
+                  .on = on,
+                  .off = off};
+  };
+  const std::string strip_on = "`SurfaceOptions::border_px` 10", strip_off = "0";
+  Effect strip_plate = effect("strip at the border", true, strip_on, strip_off);
+  Effect strip_round = effect("strip at the border", false, strip_on, strip_off);
+  const std::string rays_on = "`SurfaceFit` of a `Camera`", rays_off = "of an `OrthographicCamera`";
+  Effect rays_plate = effect("rays", true, rays_on, rays_off);
+  Effect rays_round = effect("rays", false, rays_on, rays_off);
+
+  const SurfaceOptions inner{.border_px = 10};
+  const auto plane_error = [&](const auto& fit, const SceneFrame& f, double tilt_rad) {
+    const auto r = fit(f.measured_mm, f.measured);
+    const auto& n = r.shape.normal;  // the plate is tilted about x, to either side
+    const double along = n.z * std::cos(tilt_rad) + std::abs(n.y) * std::sin(tilt_rad);
+    return r.ok() ? degrees * std::acos((std::min)(1.0, along)) : test::nan;
+  };
+  const auto bend_error = [&](const auto& fit, const SceneFrame& f, double per_mm) {
+    const auto r = fit(f.measured_mm, f.measured);
+    return r.ok() ? std::abs(r.shape.curvature_1_per_mm) - per_mm : test::nan;
+  };
+  const SurfaceFit<Plane<>> plane(pad.rows, pad.cols, pad.camera);
+  const SurfaceFit<Plane<>> inner_plane(pad.rows, pad.cols, pad.camera, inner);
+  const SurfaceFit<Plane<>, OrthographicCamera<double>> flat_plane(pad.rows, pad.cols, from_afar);
+  const SurfaceFit<Quadric<>> quadric(pad.rows, pad.cols, pad.camera);
+  const SurfaceFit<Quadric<>> inner_quadric(pad.rows, pad.cols, pad.camera, inner);
+  const SurfaceFit<Quadric<>, OrthographicCamera<double>> flat_quadric(pad.rows, pad.cols,
+                                                                       from_afar);
+  for (const ShapeOfScene& shape : shapes()) {
+    if (shape.scene == Scene::free || shape.scene == Scene::noisy) {
+      continue;
+    }
+    for (std::uint64_t seed = 1; seed <= 2; ++seed) {
+      const SceneFrame& f = frames(shape.heights, seed);
+      const bool is_round = shape.scene == Scene::rolling || shape.scene == Scene::wedge;
+      if (is_round) {
+        const double per_mm = shape.scene == Scene::rolling ? 1.0 / 18 : 1.0 / 12;
+        strip_round.with_in(shape.scene).add(bend_error(inner_quadric, f, per_mm));
+        strip_round.without_in(shape.scene).add(bend_error(quadric, f, per_mm));
+        rays_round.with_in(shape.scene).add(bend_error(quadric, f, per_mm));
+        rays_round.without_in(shape.scene).add(bend_error(flat_quadric, f, per_mm));
+      } else {
+        const double tilt = shape.scene == Scene::tilted ? 8 / degrees : 0;
+        strip_plate.with_in(shape.scene).add(plane_error(inner_plane, f, tilt));
+        strip_plate.without_in(shape.scene).add(plane_error(plane, f, tilt));
+        rays_plate.with_in(shape.scene).add(plane_error(plane, f, tilt));
+        rays_plate.without_in(shape.scene).add(plane_error(flat_plane, f, tilt));
+      }
+    }
+  }
+  const SceneFrame& press = frames("press");
+  const auto run = [&](const auto& fit) {
+    return [&] { (void)fit(press.measured_mm, press.measured); };
+  };
+  strip_plate.cost_us = cost_us(run(inner_plane), run(plane));
+  rays_plate.cost_us = cost_us(run(plane), run(flat_plane));
+  strip_round.cost_us = cost_us(run(inner_quadric), run(quadric));
+  rays_round.cost_us = cost_us(run(quadric), run(flat_quadric));
+  return {strip_plate, strip_round, rays_plate, rays_round};
+}
+
+/// p S against the true force, no curve fitted: the area is that of the contact, or that of the
+/// plate that would press as hard. Measured depths and contacts, three frames a shape.
+inline Effect flat_area_effect() {
+  using namespace fingerpad;
+  SceneFrames& frames = SceneFrames::instance();
+  const test::Pad& pad = frames.pad();
+  Effect e{.name = "equivalent flat area",
+           .quantity = "normal force as p S",
+           .unit = "N",
+           .on = "`EquivalentFlatArea`",
+           .off = "the contact's own area"};
+  const EquivalentFlatArea<Camera<double>> flat_area(pad.camera, pad.rows, pad.cols);
+  auto work = flat_area.workspace();
+  for (const test::WrenchFrame& f : test::wrench_frames()) {
+    const Scene scene = f.name == "drag_c" ? Scene::reversal : scene_of_load(f.scene);
+    for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+      const SceneFrame& seen = frames(f.heights, seed);
+      const double pressure = f.pressure_mpa;
+      e.with_in(scene).add(pressure * flat_area(seen.measured, seen.measured_mm, work).area_mm2 +
+                           f.force_n.z);
+      e.without_in(scene).add(
+          pressure * contact_measures(pad.camera, seen.measured, seen.measured_mm).area_mm2 +
+          f.force_n.z);
+    }
+  }
+  const SceneFrame& press = frames("press");
+  e.cost_us = cost_us([&] { (void)flat_area(press.measured, press.measured_mm, work); }, [] {});
+  return e;
+}
+
+inline std::vector<Effect> load_effects() {
+  std::vector<Effect> effects = look_up_effects();
+  effects.push_back(flat_area_effect());
+  effects.push_back(huber_effect());
+  for (const auto& more : {traction_effects(), surface_effects()}) {
+    effects.insert(effects.end(), more.begin(), more.end());
+  }
+  return effects;
+}
+
+}  // namespace bench::ablation

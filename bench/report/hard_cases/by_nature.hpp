@@ -1,0 +1,331 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+#pragma once
+// Cases that are hard whatever the numbers: the second table of docs/hard_cases.md. The published
+// method beside the default, on the same input.
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <cstdio>
+#include <functional>
+#include <random>
+#include <string>
+#include <tuple>
+#include <vector>
+
+#include "bench/support/scene_frames.hpp"
+#include "fingerpad/contact/contact_region.hpp"
+#include "fingerpad/foam/preslip.hpp"
+#include "fingerpad/foam/taxel_features.hpp"
+#include "fingerpad/force/wrench.hpp"
+#include "fingerpad/published/contact_region.hpp"
+#include "fingerpad/published/depth.hpp"
+#include "fingerpad/published/preslip.hpp"
+#include "fingerpad/published/wrench.hpp"
+#include "support/foam_signals.hpp"
+#include "support/rolling.hpp"
+#include "support/wrench_frames.hpp"
+
+namespace hard {
+
+using fingerpad::Index;
+
+struct CaseByNature {
+  std::string method, hard_case, figure, published, ours;
+};
+
+inline std::string figure_of(const char* format, double a) {
+  char text[64];
+  std::snprintf(text, sizeof text, format, a);
+  return text;
+}
+inline std::string figures_of(const char* format, double a, double b) {
+  char text[64];
+  std::snprintf(text, sizeof text, format, a, b);
+  return text;
+}
+
+// ---- contact region, on heights 0.16 mm apart
+
+using Heights = std::function<double(double x_mm, double y_mm)>;
+
+struct RegionFound {
+  double share_of_true = 0;  ///< of the pixels that touch, found
+  double false_share = 0;    ///< of those that do not, taken for contact
+};
+
+template <class Statistic, class Edge>
+RegionFound region_of(const Heights& height,
+                      const Heights& touches,
+                      double within_mm,
+                      double threshold_per_mm) {
+  using namespace fingerpad;
+  constexpr Index n = 120;
+  constexpr double pitch_mm = 0.16, middle = 59.5;
+  const OrthographicCamera<double> camera{middle, middle, pitch_mm};
+  ContactTest test;
+  test.ring.radius_px = 12;
+  test.threshold_per_mm = threshold_per_mm;
+  const ContactRegion<Statistic, Edge, OrthographicCamera<double>> region(camera, n, n, test);
+  auto workspace = region.workspace();
+  test::Image<float> depth(n, n);
+  test::Image<std::uint8_t> mask(n, n);
+  const auto place = [&](Index k) { return pitch_mm * (static_cast<double>(k) - middle); };
+  for (Index i = 0; i < n; ++i) {
+    for (Index j = 0; j < n; ++j) {
+      depth(i, j) = static_cast<float>(height(place(j), place(i)));
+    }
+  }
+  RegionFound found;
+  (void)region(depth, mask, workspace);
+  double touching = 0, free = 0;
+  for (Index i = 0; i < n; ++i) {
+    for (Index j = 0; j < n; ++j) {
+      if (std::hypot(place(j), place(i)) > within_mm) {
+        continue;  // too steep to be a pad
+      }
+      const bool is = touches(place(j), place(i)) > 0, in = mask(i, j) != 0;
+      touching += is ? 1 : 0;
+      free += is ? 0 : 1;
+      found.share_of_true += is && in ? 1 : 0;
+      found.false_share += !is && in ? 1 : 0;
+    }
+  }
+  found.share_of_true /= touching > 0 ? touching : 1;
+  found.false_share /= free;
+  return found;
+}
+
+/// Half of the curvature of a free pad of 20 mm, as FreePadCalibration has it.
+inline constexpr double half_of_free_per_mm = 0.025;
+
+inline RegionFound published_region(const Heights& height,
+                                    const Heights& touches,
+                                    double within_mm = 7.5) {
+  return region_of<fingerpad::published::TwiceMean<>, fingerpad::AtThreshold>(
+      height, touches, within_mm, fingerpad::published::contact_test().threshold_per_mm);
+}
+inline RegionFound default_region(const Heights& height,
+                                  const Heights& touches,
+                                  double within_mm = 7.5) {
+  return region_of<fingerpad::ClampedMean<>, fingerpad::HalfLevelEdge>(height, touches, within_mm,
+                                                                       half_of_free_per_mm);
+}
+
+inline void add_regions(std::vector<CaseByNature>& rows) {
+  // dome of 20 mm that bends twice as much where it leaves a contact of 5 mm
+  const auto around = [](double rho, double inside) {
+    const double off = rho - 5;
+    return rho < 5 ? inside : inside - 0.03 * off * off;
+  };
+  const Heights within_5 = [](double x, double y) { return std::hypot(x, y) < 5 ? 1.0 : 0.0; };
+  for (const double hollow_mm : {100.0, 30.0}) {
+    const Heights hollow = [=](double x, double y) {
+      const double rho = std::hypot(x, y), held = (std::min)(rho, 5.0);
+      return around(rho, 10 - held * held / (2 * hollow_mm)) -
+             (rho > 5 ? 5 / hollow_mm * (rho - 5) : 0);
+    };
+    const auto old = published_region(hollow, within_5), ours = default_region(hollow, within_5);
+    rows.push_back(
+        {"contact region", "concave object, hollow of " + figure_of("%.0f", hollow_mm) + " mm",
+         "share of the contact that is found, %", figure_of("%.0f", 100 * old.share_of_true),
+         figure_of("%.0f", 100 * ours.share_of_true)});
+  }
+  const Heights saddle = [](double x, double y) { return 10 - 0.08 * x * x + 0.085 * y * y; };
+  const Heights nowhere = [](double, double) { return 0.0; };
+  rows.push_back({"contact region", "free saddle, curvatures 0.16 and -0.17 per mm",
+                  "free membrane taken for contact, %",
+                  figure_of("%.0f", 100 * published_region(saddle, nowhere, 4).false_share),
+                  figure_of("%.0f", 100 * default_region(saddle, nowhere, 4).false_share)});
+}
+
+// ---- depth
+
+inline void add_lamp(std::vector<CaseByNature>& rows) {
+  using namespace fingerpad;
+  auto& scenes = bench::SceneFrames::instance();
+  const auto& pad = scenes.pad();
+  const auto& press = scenes("press");
+  test::Scene scene;
+  const auto reference = scene.reference(scenes.free_mm());
+  const DepthEstimator<> ours(pad.camera, pad.fluid, reference);
+  const auto published_reference = [&] {
+    test::Frame<std::uint16_t> mean(pad.rows, pad.cols);
+    for (Index i = 0; i < pad.rows; ++i) {
+      for (Index j = 0; j < pad.cols; ++j) {
+        if (!std::isnan(scenes.free_mm()(i, j))) {
+          const auto c = pad.colour(i, j, scenes.free_mm()(i, j), 57);
+          mean.red(i, j) = test::stored<std::uint16_t>(c.red);
+          mean.green(i, j) = test::stored<std::uint16_t>(c.green);
+        }
+      }
+    }
+    return published::depth_reference<float>(pad.camera, pad.fluid, mean.red, mean.green,
+                                             scenes.free_mm());
+  }();
+  const auto old = published::depth_estimator(pad.camera, pad.fluid, published_reference);
+  const auto error_mm = [&](const auto& estimator, double red, double green) {
+    test::Frame<std::uint8_t> frame = press.frame;
+    for (Index i = 0; i < pad.rows; ++i) {
+      for (Index j = 0; j < pad.cols; ++j) {
+        const auto brighter = [](std::uint8_t level, double times) {
+          return test::stored<std::uint8_t>(times * static_cast<double>(level));
+        };
+        frame.red(i, j) = brighter(press.frame.red(i, j), red);
+        frame.green(i, j) = brighter(press.frame.green(i, j), green);
+      }
+    }
+    const auto depth = test::estimate<float>(estimator, frame).depth_mm;
+    double sum = 0, count = 0;
+    for (std::size_t k = 0; k < depth.cells.size(); ++k) {
+      const double off = static_cast<double>(depth.cells[k]) - press.truth_mm.cells[k];
+      sum += std::isnan(off) ? 0 : std::abs(off);
+      count += std::isnan(off) ? 0 : 1;
+    }
+    return sum / count;
+  };
+  for (const auto& [said, red, green] :
+       {std::tuple{"both colours 5 % brighter", 1.05, 1.05}, {"red 2 % brighter", 1.02, 1.0}}) {
+    rows.push_back({"depth", std::string("the lamp has changed since the reference: ") + said,
+                    "mean error of a pressed pad, mm; unchanged lamp: " +
+                        figures_of("%.3f, %.3f", error_mm(old, 1, 1), error_mm(ours, 1, 1)),
+                    figure_of("%.2f", error_mm(old, red, green)),
+                    figure_of("%.2f", error_mm(ours, red, green))});
+  }
+}
+
+// ---- six-axis force
+
+/// Mean error of the moment in N mm over the 15 frames, exact shapes, side dots with 0.06 px of
+/// noise.
+template <class W>
+double moment_error_n_mm(const W& wrench) {
+  auto work = wrench.workspace();
+  double sum = 0, count = 0;
+  for (const test::WrenchFrame& f : test::wrench_frames()) {
+    auto dots = test::rows_of(f.dots, 1);
+    test::Gauss gauss(f.number);
+    for (auto& p : dots.cells) {
+      p = {p.x + 0.0048 * gauss(), p.y + 0.0048 * gauss(), p.z + 0.0048 * gauss()};
+    }
+    const auto r = wrench(test::exact_heights(f.heights), dots, f.pressure_mpa, work);
+    if (r.ok()) {
+      sum += norm(r.moment_n_mm - f.moment_n_mm);
+      count += 1;
+    }
+  }
+  return sum / count;
+}
+
+inline void add_wrench(std::vector<CaseByNature>& rows) {
+  using namespace fingerpad;
+  const auto rim = test::rim_border();
+  const auto with = [&](Index columns, Index mesh_rows) {
+    WrenchOptions<double> options;
+    options.side_dot_length_mm = 0.79995;
+    options.columns = columns;
+    options.rows = mesh_rows;
+    return options;
+  };
+  const auto old = [&](Index columns, Index mesh_rows) {
+    return moment_error_n_mm(
+        Wrench<published::Iteration, OneRow, published::Direction, published::SteepestLines>(
+            rim, with(columns, mesh_rows)));
+  };
+  const auto ours = [&](Index columns, Index mesh_rows) {
+    return moment_error_n_mm(Wrench<>(rim, with(columns, mesh_rows)));
+  };
+  for (const test::WrenchFrame& f : test::wrench_frames()) {
+    if (f.name != "drag_b") {
+      continue;
+    }
+    Index outward = 0;
+    const auto error_n = [&](const auto& wrench) {
+      auto work = wrench.workspace();
+      const auto r =
+          wrench(test::exact_heights(f.heights), test::rows_of(f.dots, 1), f.pressure_mpa, work);
+      outward = r.outward;
+      return figure_of("%.2f", norm(r.force_n - f.force_n));
+    };
+    const auto printed = error_n(
+        Wrench<published::Iteration, OneRow, published::Direction, published::SteepestLines>(
+            rim, with(72, 65)));
+    const auto found = error_n(Wrench<>(rim, with(36, 30)));
+    rows.push_back({"six-axis force",
+                    "the membrane bulges past the rim, at " + std::to_string(outward) +
+                        " of 72 points: a plate dragged until it slips",
+                    "error of the force, of 6.3 N, N", printed, found});
+  }
+  rows.push_back(
+      {"six-axis force", "a mesh finer than the shape is known: 36 x 30, then 72 x 65 segments",
+       "mean error of the moment, N mm", figures_of("%.1f, %.1f", old(36, 30), old(72, 65)),
+       figures_of("%.1f, %.1f", ours(36, 30), ours(72, 65))});
+}
+
+// ---- foam
+
+/// Of 40 slips of single taxels, those that are found; two taxels of each finger slip, with waves
+/// of their own.
+template <class Rule>
+int slips_found() {
+  using namespace fingerpad;
+  int found = 0;
+  std::mt19937 random(17);
+  const auto any = [&](double low, double high) {
+    return std::uniform_real_distribution<double>(low, high)(random);
+  };
+  constexpr double rate_hz = 100;
+  for (unsigned k = 0; k < 40; ++k) {
+    test::FoamScene scene;
+    for (auto& finger : scene.patches) {
+      for (const double share : {0.1, 0.22}) {
+        test::SlippingPatch patch;
+        patch.rows = patch.cols = 1;
+        patch.row = static_cast<Index>(any(0, 15));
+        patch.col = static_cast<Index>(any(0, 3));
+        patch.begin_s = (60 + any(0, 1)) / rate_hz;
+        patch.frequency_hz = rate_hz * share;
+        patch.phase = any(0, 6.28);
+        finger.push_back(patch);
+      }
+    }
+    test::FoamSignal signal(scene, k);
+    const TaxelFeatures<> features(
+        scene.rows, scene.cols,
+        TaxelOptions<>{.sample_period_s = 1 / rate_hz, .noise = scene.noise});
+    const Preslip<Rule> rule;
+    std::array<TaxelFeatures<>::State, 2> fingers{features.start(), features.start()};
+    auto history = rule.start();
+    bool alarms = false;
+    for (int n = 0; n < 140 && !alarms; ++n) {
+      const double time_s = n / rate_hz;
+      std::array<FingerSample<double>, 2> samples;
+      for (std::size_t f = 0; f < 2; ++f) {
+        samples[f] = features(signal.finger(f, time_s), time_s, fingers[f]);
+      }
+      alarms = rule(samples, history).is_fresh;
+    }
+    found += alarms ? 1 : 0;
+  }
+  return found;
+}
+
+inline std::vector<CaseByNature> cases_by_nature() {
+  std::vector<CaseByNature> rows;
+  add_regions(rows);
+  add_lamp(rows);
+  add_wrench(rows);
+  rows.push_back({"pre-slip, grasp-optimise",
+                  "several taxels vibrate: two of each finger, each with waves of its own",
+                  "slips that are found, of 40",
+                  std::to_string(slips_found<fingerpad::published::GraspOptimise>()),
+                  std::to_string(slips_found<fingerpad::GraspOptimise>())});
+  return rows;
+}
+
+inline std::string line_of(const CaseByNature& c) {
+  return "| " + c.method + " | " + c.hard_case + " | " + c.figure + " | " + c.published + " | " +
+         c.ours + " |";
+}
+
+}  // namespace hard
