@@ -99,12 +99,21 @@ const DEPTH_COLOURS = Uint32Array.from({ length: 256 }, (_, k) => {
 const WHITE = opaque(255, 255, 255);
 const BLACK = opaque(0, 0, 0);
 
+const images = new Map();
+/** Of a canvas, to be filled and shown again and again: a canvas that is sized anew costs more. */
+function imageOf(canvas, cols, rows) {
+  let image = images.get(canvas);
+  if (image?.width !== cols || image.height !== rows) {
+    canvas.width = cols;
+    canvas.height = rows;
+    images.set(canvas, (image = new ImageData(cols, rows)));
+  }
+  return image;
+}
+
 /** The depth in colours, and the edge of the contact in white. */
 function drawDepth(canvas, depth, touching, cols, rows, deepest) {
-  canvas.width = cols;
-  canvas.height = rows;
-  const g = canvas.getContext("2d");
-  const image = g.createImageData(cols, rows);
+  const image = imageOf(canvas, cols, rows);
   const pixels = new Uint32Array(image.data.buffer);
   for (let k = 0; k < depth.length; ++k) {
     const inside = touching[k] !== 0;
@@ -112,7 +121,7 @@ function drawDepth(canvas, depth, touching, cols, rows, deepest) {
     const z = depth[k];
     pixels[k] = edge ? WHITE : z === z ? DEPTH_COLOURS[clamp((255 * z) / deepest, 0, 255) | 0] : BLACK;
   }
-  g.putImageData(image, 0, 0);
+  canvas.getContext("2d").putImageData(image, 0, 0);
 }
 
 function arrow(g, x, y, dx, dy, width) {
@@ -220,8 +229,9 @@ function drawEdge(g, { edge }, mm) {
 }
 
 function drawCamera(canvas, bytes, size) {
-  canvas.width = canvas.height = size;
-  canvas.getContext("2d").putImageData(new ImageData(new Uint8ClampedArray(bytes), size, size), 0, 0);
+  const image = imageOf(canvas, size, size);
+  image.data.set(bytes);
+  canvas.getContext("2d").putImageData(image, 0, 0);
 }
 
 function drawSection({ object, section, numbers }) {

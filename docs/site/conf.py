@@ -15,5 +15,7 @@ primary_domain = "cpp"
 highlight_language = "cpp"
 html_theme = "furo"
 html_title = "fingerpad"
+html_static_path = ["narrow.css"]
+html_css_files = ["narrow.css"]
 html_show_sphinx = False
 html_copy_source = False

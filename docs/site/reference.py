@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: 2026 The fingerpad authors
 # SPDX-License-Identifier: MIT
-"""Writes the site's first page, a page for each public class (a row of docs/classes.md) and one for
-each public header: reference.py ROOT SOURCE XML"""
+"""Writes the site's first page, a page for each public class (a row of docs/classes.md), for each printed
+form (a name in docs/errata.md) and for each public header: reference.py ROOT SOURCE XML"""
 import functools
 import re
 import sys
@@ -73,6 +73,78 @@ def class_page(name, row, root):
     return f"# {name}\n" + "".join(f"\n## {heading}\n\n{under[heading]}\n" for heading in HEADINGS)
 
 
+def printed_forms(root):
+    """Of each name of the column "As printed" in docs/errata.md: its rows' cells."""
+    forms = {}
+    for line in (root / "docs/errata.md").read_text().splitlines():
+        cells = [cell.strip() for cell in re.split(r"(?<!\\)\|", line)[1:-1]]
+        if len(cells) == 5 and cells[0].isdigit():
+            for name in re.findall(r"`(?:published::)?(\w+)[\w:]*`", cells[2]):
+                forms.setdefault(name, []).append(cells)
+    return forms
+
+
+@functools.cache
+def declaration_of(name, root):
+    """Header, comment and declaration of a type, an alias or a function, those as printed first."""
+    comment = r"(?P<comment>(?:^///[^\n]*\n)*)"
+    start = r"(?P<code>(?:^template <[^\n]*>\n)?(?:^  requires[^\n]*\n)?"
+    kinds = [rf"^(?:class|struct|enum class)[^;{{()]*? {name}\b[^;{{]*{{.*?^}};)", rf"^using {name} =[^;]*;)",
+             rf"^(?![ /])[^\n;={{}}]*?\b{name}\([^;{{]*(?=[;{{]))", rf"^(?![ /])[^\n;(){{}}]*\b{name} ?[={{][^;]*;)"]
+    folders = [root / "include/fingerpad/published", root / "include/fingerpad/sim"]
+    for header in (h for folder in folders for h in sorted(folder.glob("*.hpp"))):
+        for kind in kinds:
+            found = re.search(comment + start + kind, header.read_text(), re.MULTILINE | re.DOTALL)
+            if found:
+                words = re.sub("^/// ?", "", found["comment"], flags=re.MULTILINE)
+                return header, words, found["code"].strip()
+    return None
+
+
+def test_named(cell, root):
+    """A test that guards a printed form, as it is written: how it is called."""
+    file, title = re.search(r'\]\(\.\./(tests/[^)]*)\) "([^"]*)"', cell).groups()
+    return re.search(rf'^TEST_CASE\(\s*"{re.escape(title)}".*?^}}\n', (root / file).read_text(),
+                     re.MULTILINE | re.DOTALL)[0]
+
+
+def printed_page(name, rows, root):
+    header, comment, code = declaration_of(name, root)
+    errors = ", ".join(dict.fromkeys(re.findall(r"E\d{3}(?:-E\d{3})?", " ".join(c[3] for c in rows) + comment_of(header))))
+    under = {
+        "What": f"{comment or rows[0][1]}\n\n`#include \"{header.relative_to(root / 'include')}\"`",
+        "When to take it": "To compare with the method as printed. For use take: "
+                           + "; ".join(dict.fromkeys(c[3] for c in rows)) + ".",
+        "Equation and source": "\n\n".join(dict.fromkeys(c[1] for c in rows))
+                               + f"\n\n```text\n{comment_of(header)}\n```",
+        "Parameters": "\n".join(f"```cpp\n{text}\n```\n" for text in (interface_of(code), *settings_of(header, name))),
+        "Result and statuses": "What the declaration above says; a policy gives the result of the method that takes it.\n\n"
+                               + "\n".join(f"```cpp\n{text}\n```\n" for text in results_of(header)),
+        "Cost": "Its rows in [speed against error](../../docs/speed_and_error.md), where it is timed; it is no "
+                "part of a default frame.",
+        "Error": f"What is wrong with it: [errata](../../docs/errata.md){', ' + errors if errors else ''}. What it does to the "
+                 "papers' figures: [papers](../../docs/papers.md).",
+        "Example": f"A test holds it to what is printed:\n\n```cpp\n{test_named(rows[0][4], root)}```",
+    }
+    return f"# {name}, as printed\n" + "".join(f"\n## {h}\n\n{under[h]}\n" for h in HEADINGS)
+
+
+def interface_of(code):
+    """A declaration; of a long class the head alone."""
+    return code if len(code) < 1000 else code[:code.index("{")].strip() + ";"
+
+
+def settings_of(header, name):
+    """The settings that a header defines beside the type `name`."""
+    return re.findall(rf"^struct (?!{name}\b)\w+(?:Options|Test) {{.*?^}};", header.read_text(), re.MULTILINE | re.DOTALL)
+
+
+def results_of(header):
+    """The results that a header defines."""
+    return re.findall(r"^(?:enum class \w+Status|struct \[\[nodiscard\]\] )[^;{]*{.*?^};", header.read_text(),
+                      re.MULTILINE | re.DOTALL)
+
+
 def declared(xml, path):
     """Sphinx's directive and the name of each type, enumeration and function of a header."""
     for index in ElementTree.parse(xml / "index.xml").iterfind("compound[@kind='file']"):
@@ -120,6 +192,9 @@ def main(root, source, xml):
     pages.mkdir(parents=True)
     for name, row in classes(root):
         (pages / f"{name}.md").write_text(class_page(name, row, root))
+    for name, rows in printed_forms(root).items():
+        (pages / f"published_{name}.md").write_text(printed_page(name, rows, root))
+    trees.insert(0, toctree("As printed, by name", sorted(f"reference/classes/published_{n}" for n in printed_forms(root))))
     trees.insert(0, toctree("Classes", sorted(f"reference/classes/{name}" for name, _ in classes(root))))
     trees.insert(0, toctree("First hour", sorted(f"docs/first_hour/{p.stem}"
                                                  for p in (root / "docs/first_hour").glob("*.md"))))

@@ -103,9 +103,113 @@ std::unique_ptr<Fingertip> make(const fingerpad::Camera<double>& camera,
   return std::make_unique<Fingertip>(options);
 }
 
+/// A rotation, in rows, and a translation in mm.
+py::tuple pose_tuple(const fingerpad::Pose<double>& pose) {
+  const auto& r = pose.rotation;
+  py::tuple rows(3);
+  for (int i = 0; i < 3; ++i) {
+    rows[static_cast<std::size_t>(i)] = py::make_tuple(r(i, 0), r(i, 1), r(i, 2));
+  }
+  return py::make_tuple(rows, as_tuple(pose.translation_mm));
+}
+
+void bind_stages(py::module_& module) {
+  using Motion = fingerpad::ObjectMotionResult<double>;
+  py::class_<Motion>(module, "ObjectMotionResult",
+                     "How the object has moved; motion/motion_result.hpp.")
+      .def_property_readonly("ok", &Motion::ok)
+      .def_property_readonly("status", [](const Motion& r) { return name_of(r.status); })
+      .def_property_readonly(
+          "reference",
+          [](const Motion& r) { return py::make_tuple(r.reference.row, r.reference.col); },
+          "row and column of the contact reference dot; -1: there is none")
+      .def_readonly("reference_changed", &Motion::reference_changed)
+      .def_readonly("begun", &Motion::begun)
+      .def_readonly("dots_used", &Motion::dots_used)
+      .def_property_readonly(
+          "pose", [](const Motion& r) { return pose_tuple(r.pose); },
+          "(R, t): x_now = R x_first + t, R in rows, t in mm")
+      .def_property_readonly(
+          "angles",
+          [](const Motion& r) {
+            return py::make_tuple(r.angles.z_rad, r.angles.y_rad, r.angles.x_rad);
+          },
+          "about z, y, x, rad")
+      .def_property_readonly("position_mm", [](const Motion& r) { return as_tuple(r.position_mm); })
+      .def_property_readonly("displacement_mm",
+                             [](const Motion& r) { return as_tuple(r.displacement_mm); })
+      .def_readonly("residual_rms_mm", &Motion::residual_rms_mm);
+  using Stick = fingerpad::SpatialStickResult<double>;
+  py::class_<Stick>(module, "SpatialStickResult",
+                    "Stick and slip of a frame in space; slip/stick_result.hpp.")
+      .def_property_readonly("ok", &Stick::ok, "whether the ratio may be used")
+      .def_property_readonly("updated", &Stick::updated, "whether it is that of this frame")
+      .def_property_readonly("status", [](const Stick& r) { return name_of(r.status); })
+      .def_readonly("stick", &Stick::stick, "dots in contact that stick")
+      .def_readonly("slip", &Stick::slip, "that slip")
+      .def_readonly("unknown", &Stick::unknown, "of which neither is known")
+      .def_readonly("out_of_place", &Stick::out_of_place)
+      .def_property_readonly(
+          "back",
+          [](const Stick& r) { return py::make_tuple(r.back.stick_ratio, r.back.reference_age); },
+          "stick ratio and age of its reference, where the dots fall back")
+      .def_readonly("stick_ratio", &Stick::stick_ratio, "in [0, 1]; NaN: none yet")
+      .def_readonly("ratio_sd", &Stick::ratio_sd, "of it, by the noise of the dots")
+      .def_readonly("furthest_mm", &Stick::furthest_mm)
+      .def_readonly("reference_age", &Stick::reference_age, "frames")
+      .def_property_readonly(
+          "motion", [](const Stick& r) { return pose_tuple(r.motion); },
+          "(R, t) of the object since the reference, if anything sticks");
+  using fingerpad::RatioUpdate, fingerpad::SlipEvidence;
+  py::enum_<RatioUpdate>(module, "RatioUpdate", "How fresh a stick ratio is.")
+      .value("fresh", RatioUpdate::fresh)
+      .value("unmoved", RatioUpdate::unmoved)
+      .value("missing", RatioUpdate::missing)
+      .value("no_contact", RatioUpdate::no_contact);
+  py::enum_<SlipEvidence>(module, "SlipEvidence", "What told the stick ratio.")
+      .value("none", SlipEvidence::none)
+      .value("dots", SlipEvidence::dots)
+      .value("imprint", SlipEvidence::imprint)
+      .value("friction", SlipEvidence::friction)
+      .value("both", SlipEvidence::both);
+  using Slip = fingerpad::SlipResult<double>;
+  py::class_<Slip>(module, "SlipResult", "Slip by dots and forces; slip/friction_limit.hpp.")
+      .def_property_readonly("ok", &Slip::ok)
+      .def_property_readonly("status", [](const Slip& r) { return name_of(r.status); })
+      .def_readonly("evidence", &Slip::evidence)
+      .def_readonly("stick_ratio", &Slip::stick_ratio, "in [0, 1]; NaN: nothing is known")
+      .def_readonly("update", &Slip::update, "how fresh the ratio is")
+      .def_readonly("dots_ratio", &Slip::dots_ratio, "what the dots say alone")
+      .def_readonly("reference_age", &Slip::reference_age, "frames; 0: not known")
+      .def_readonly("falls_back", &Slip::falls_back)
+      .def_readonly("normal_n", &Slip::normal_n)
+      .def_readonly("friction", &Slip::friction)
+      .def_readonly("limit", &Slip::limit, "at the last slide")
+      .def_readonly("margin", &Slip::margin);
+  using Shift = fingerpad::ShiftResult<double>;
+  py::class_<Shift>(module, "ShiftResult",
+                    "How far a contact was carried; motion/contact_shift.hpp.")
+      .def_property_readonly("ok", &Shift::ok)
+      .def_property_readonly("status", [](const Shift& r) { return name_of(r.status); })
+      .def_readonly("dots", &Shift::dots, "that took part")
+      .def_property_readonly(
+          "displacement", [](const Shift& r) { return as_tuple(r.displacement); },
+          "(x, y) in the unit of the dots, mm of a Fingertip")
+      .def_readonly("rotation_rad", &Shift::rotation_rad)
+      .def_readonly("residual_rms", &Shift::residual_rms);
+  using FlatArea = fingerpad::FlatAreaResult<double>;
+  py::class_<FlatArea>(module, "FlatAreaResult",
+                       "The plate that would press as hard; contact/equivalent_flat_area.hpp.")
+      .def_property_readonly("ok", &FlatArea::ok)
+      .def_readonly("area_mm2", &FlatArea::area_mm2)
+      .def_readonly("variance_mm4", &FlatArea::variance_mm4)
+      .def_readonly("curves", &FlatArea::curves);
+}
+
 }  // namespace
 
 void bind_fingertip(py::module_& module) {
+  bind_stages(module);
   bind_options<SpatialStickTest>(
       module, "SpatialStickTest",
       "Noise of the dots, and what is slip; slip/spatial_stick_ratio.hpp.")
@@ -122,13 +226,11 @@ void bind_fingertip(py::module_& module) {
       .def_property_readonly("status", [](const Result& r) { return name_of(r.status); })
       .def_readonly("depth", &Result::depth)
       .def_readonly("contact", &Result::contact)
-      .def_property_readonly("motion_status",
-                             [](const Result& r) { return name_of(r.motion.status); })
-      .def_property_readonly("position_mm",
-                             [](const Result& r) { return as_tuple(r.motion.position_mm); })
-      .def_property_readonly("stick_status",
-                             [](const Result& r) { return name_of(r.stick.status); })
-      .def_property_readonly("stick_ratio", [](const Result& r) { return r.slip.stick_ratio; })
+      .def_readonly("motion", &Result::motion)
+      .def_readonly("stick", &Result::stick, "by the dots")
+      .def_readonly("slip", &Result::slip, "by dots and friction")
+      .def_readonly("shift", &Result::shift, "of the dots beside the contact's edge")
+      .def_readonly("flat_area", &Result::flat_area, "of the plate that would press as hard")
       .def_readonly("by_area", &Result::by_area)
       .def_readonly("by_depth", &Result::by_depth)
       .def_readonly("normal", &Result::normal, "by area and depth together")

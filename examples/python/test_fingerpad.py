@@ -7,6 +7,7 @@ import csv
 import hashlib
 import json
 import os
+import re
 import shutil
 import subprocess
 import sys
@@ -377,6 +378,14 @@ def test_a_fingertip_gives_what_its_parts_give(pad, estimate):
     np.testing.assert_array_equal(fingertip.depth_mm, depth)
     assert touch.contact.in_contact and len(touch.wrench.force_n) == 3
     assert touch.contact.contact_px == (fingertip.contact_mask == 255).sum()
+    header = (DATA.parents[1] / "include/fingerpad/pipeline/fingertip_options.hpp").read_text()
+    body = header.split("struct [[nodiscard]] FingertipResult {")[1].split("};")[0]
+    fields = re.findall(r"(?:^  \w[\w<>]* |, )(\w+)(?=;| = |, \w+;)", body, re.MULTILINE)
+    assert {"status", "flat_area", "by_area", "by_depth", "wrench"} <= set(fields)
+    for field in fields:
+        part = getattr(touch, field)
+        assert field == "status" or all(getattr(part, name) is not None for name in dir(part) if name[0] != "_")
+    assert touch.flat_area.area_mm2 > 0 and touch.flat_area.curves > 0
     with pytest.raises(TypeError, match=r"\(rows, cols, 2\)"):
         fingertip(red, green, side_dots, side_dots, 0.016)
     assert fingertip(red, green, dots_px[1:], side_dots, 0.016).status == "refused"

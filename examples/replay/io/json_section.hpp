@@ -146,6 +146,23 @@ class JsonSection {
     return numbers;
   }
 
+  /// `size` rows of `size` numbers.
+  std::vector<std::vector<double>> square(const std::string& key, std::size_t size) const {
+    const nlohmann::json& found = at(key);
+    std::vector<std::vector<double>> rows;
+    try {
+      rows = found.get<std::vector<std::vector<double>>>();
+    } catch (const nlohmann::json::exception&) {
+      rows.clear();
+    }
+    if (rows.size() != size || std::any_of(rows.begin(), rows.end(),
+                                           [&](const auto& row) { return row.size() != size; })) {
+      const std::string count = std::to_string(size);
+      refuse_type(key, found, (count + " rows of " + count + " numbers [[...], ...]").c_str());
+    }
+    return rows;
+  }
+
   std::pair<double, double> pair(const std::string& key) const {
     const nlohmann::json& found = at(key);
     if (!found.is_array() || found.size() != 2 || !found[0].is_number() || !found[1].is_number()) {

@@ -155,6 +155,7 @@ NormalForceLookUp read_normal_force(const Section& force,
        {"from_" + unit, "the smallest contact of the calibration"},
        {"to_" + unit, "the largest contact of the calibration"},
        {"residual_n", "what the calibration left, N; by_area and by_depth are weighted by it"},
+       {"covariance", "of the coefficients, a row for each"},
        {"per_mm_sq", "share of the force by which it changes for each squared mm of shift"},
        {"per_rad_sq", "the same for each squared rad"}});
   NormalForceLookUp look_up;
@@ -162,13 +163,20 @@ NormalForceLookUp read_normal_force(const Section& force,
       section.numbers<NormalForceLookUp::Curve::parameters>("coefficients");
   look_up.curve.from = section.number("from_" + unit);
   look_up.curve.to = section.number("to_" + unit);
-  if (needs_residual || section.has("residual_n")) {
-    look_up.residual_n = section.positive("residual_n");
+  if (needs_residual || section.has("residual_n") || section.has("covariance")) {
+    look_up.errors.residual_sd_n = section.positive("residual_n");
+  }
+  if (section.has("covariance")) {
+    const auto rows = section.square("covariance", section.at("coefficients").size());
+    for (std::size_t k = 0; k < rows.size(); ++k) {
+      std::copy(rows[k].begin(), rows[k].end(), look_up.errors.covariance[k].begin());
+    }
   }
   look_up.compensation.per_mm_sq = section.has("per_mm_sq") ? section.number("per_mm_sq") : 0;
   look_up.compensation.per_rad_sq = section.has("per_rad_sq") ? section.number("per_rad_sq") : 0;
   section.check([&] { expects_valid(look_up.curve); });
   section.check([&] { expects_valid(look_up.compensation); });
+  section.check([&] { expects_valid(look_up.errors); });
   return look_up;
 }
 

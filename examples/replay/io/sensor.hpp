@@ -53,7 +53,7 @@ struct NormalForceLookUp {
   using Curve = fingerpad::PolynomialForce<5>;  ///< higher powers than given count nothing
   Curve curve;
   fingerpad::ScaledCompensation<> compensation;
-  double residual_n = 0;
+  fingerpad::CurveErrors<Curve::parameters> errors;
 };
 
 /// Tangential force and moment.

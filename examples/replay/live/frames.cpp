@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "replay/live/frames.hpp"
 
+#include <algorithm>
 #include <string>
 #include <system_error>
 #include <thread>
@@ -25,6 +26,7 @@ LiveFrames LiveFrames::of_camera(int number, cv::Size size) {
   frames.source_.set(cv::CAP_PROP_FRAME_WIDTH, size.width);
   frames.source_.set(cv::CAP_PROP_FRAME_HEIGHT, size.height);
   frames.source_.set(cv::CAP_PROP_BUFFERSIZE, 1);  // a queue of frames would be latency
+  frames.rate_hz_ = (std::max)(frames.source_.get(cv::CAP_PROP_FPS), 0.0);
   return frames;
 }
 
@@ -46,7 +48,8 @@ LiveFrames LiveFrames::of_video(const std::filesystem::path& file,
     fail(file, "cannot be read as a video (damaged, or no decoder for it)");
   }
   const double rate = frames.source_.get(cv::CAP_PROP_FPS);
-  const std::chrono::duration<double> period(1 / (rate > 0 ? rate : 30));
+  frames.rate_hz_ = rate > 0 ? rate : 30;
+  const std::chrono::duration<double> period(1 / frames.rate_hz_);
   frames.period_ = std::chrono::duration_cast<Clock::duration>(period);
   frames.in_real_time_ = in_real_time;
   return frames;

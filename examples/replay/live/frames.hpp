@@ -25,6 +25,8 @@ class LiveFrames {
   /// Leaves out the next frame, without waiting for it.
   void skip();
 
+  double rate_hz() const { return rate_hz_; }  ///< as camera or video say it; 0: they do not
+
   // Of the last frame.
   int number() const { return number_; }
   double time_s() const;  ///< since the first one
@@ -36,6 +38,7 @@ class LiveFrames {
   cv::VideoCapture source_;
   std::filesystem::path name_;
   cv::Size size_;
+  double rate_hz_ = 0;
   Clock::duration period_ = {};  ///< of a video; 0 for a camera
   bool in_real_time_ = true;
   int number_ = -1;

@@ -115,8 +115,11 @@ Log play(const Options& options,
     goes_on = show(frames.number(), painter.montage(title, {std::move(scene)}, 1));
     log.add(frames, time_s);
     const std::vector<double> recent = log.latencies_ms(30);
+    const int left_out =
+        frames.number() + 1 - options.range.first - static_cast<int>(log.shown().size());
     title = format("latency %.0f ms", recent[recent.size() / 2]) +
-            (log.rate_hz() > 0 ? format(",  %.0f pictures a second", log.rate_hz()) : "");
+            (log.rate_hz() > 0 ? format(",  %.0f pictures a second", log.rate_hz()) : "") +
+            (left_out > 0 ? format(",  %d left out", left_out) : "");
   }
   if (log.shown().empty()) {
     fail(options.recording, "there was no frame to show");
@@ -127,7 +130,11 @@ Log play(const Options& options,
 void print(const Log& log, const LiveFrames& frames, int first) {
   const std::vector<double> ms = log.latencies_ms(log.shown().size());
   std::printf("shown        %zu of %d frames\n", ms.size(), frames.number() + 1 - first);
-  std::printf("rate         %.1f pictures a second\n", log.rate_hz());
+  std::printf("rate         %.1f pictures a second", log.rate_hz());
+  if (frames.rate_hz() > 0) {
+    std::printf(", of %.1f frames", frames.rate_hz());
+  }
+  std::printf("\n");
   std::printf("latency      %.1f ms from frame to picture (median), at most %.1f ms\n",
               ms[ms.size() / 2], ms.back());
 }

@@ -10,7 +10,7 @@
 namespace replay {
 namespace {
 
-/// A map enlarged to the pixels of the canvas.
+/// A map in the pixels of the canvas.
 struct Enlarged {
   cv::Mat_<float> value;
   cv::Mat_<float> relief;  ///< the value blurred: its slopes show shapes, not noise
@@ -21,7 +21,22 @@ float clamped(float x) {
   return (std::min)((std::max)(x, 0.0F), 1.0F);
 }
 
-Enlarged enlarged(const cv::Mat_<float>& values, const cv::Mat_<uchar>& in_pad, cv::Size size) {
+/// What is shown smaller than it is needs no more pixels than that.
+template <class T>
+cv::Mat_<T> shrunk(const cv::Mat_<T>& map, cv::Size size) {
+  if (size.width >= map.cols || size.height >= map.rows) {
+    return map;
+  }
+  cv::Mat_<T> small;
+  cv::resize(map, small, size, 0, 0, cv::INTER_NEAREST_EXACT);
+  return small;
+}
+
+/// `per_px`: pixels of the canvas for one of the camera's, which `values` has at most.
+Enlarged enlarged(const cv::Mat_<float>& values,
+                  const cv::Mat_<uchar>& in_pad,
+                  cv::Size size,
+                  double per_px) {
   cv::Mat_<float> filled(values.size());
   cv::Mat_<float> known(values.size());
   cv::Mat_<float> missing(values.size());
@@ -36,10 +51,12 @@ Enlarged enlarged(const cv::Mat_<float>& values, const cv::Mat_<uchar>& in_pad, 
     }
   }
   // Pixels without a value take the mean of those near them, so that edges enlarge smoothly.
+  const double cells_per_px = (std::min)(per_px, 1.0);
+  const int near = 1 + 2 * static_cast<int>(std::lround(4 * cells_per_px));
   cv::Mat_<float> sum;
   cv::Mat_<float> count;
-  cv::blur(filled, sum, {9, 9});
-  cv::blur(known, count, {9, 9});
+  cv::blur(filled, sum, {near, near});
+  cv::blur(known, count, {near, near});
   for (int i = 0; i < values.rows; ++i) {
     for (int j = 0; j < values.cols; ++j) {
       if (known(i, j) == 0.0F && count(i, j) > 1e-3F) {
@@ -49,10 +66,9 @@ Enlarged enlarged(const cv::Mat_<float>& values, const cv::Mat_<uchar>& in_pad, 
   }
   Enlarged large;
   cv::resize(filled, large.value, size, 0, 0, cv::INTER_LINEAR);
-  const double per_px = static_cast<double>(size.width) / values.cols;
   cv::GaussianBlur(large.value, large.relief, {0, 0}, 5 * per_px);
   // The pad's edge is smooth in truth and drawn so; a single missing pixel stays visible.
-  cv::GaussianBlur(pad, pad, {0, 0}, 2);
+  cv::GaussianBlur(pad, pad, {0, 0}, 2 * cells_per_px);
   cv::resize(pad, large.opacity, size, 0, 0, cv::INTER_CUBIC);
   cv::Mat_<float> holes;
   cv::resize(missing, holes, size, 0, 0, cv::INTER_LINEAR);
@@ -135,11 +151,12 @@ void paint_map(Canvas& canvas,
                const ColourScale& scale,
                double line_every_mm) {
   const cv::Size size = canvas.area(rectangle).size();
-  const Enlarged map = enlarged(values_mm, in_pad, size);
+  const double per_px = static_cast<double>(size.width) / values_mm.cols;
+  const Enlarged map = enlarged(shrunk(values_mm, size), shrunk(in_pad, size), size, per_px);
   const auto bottom = static_cast<float>(scale.bottom_mm);
   const auto range = static_cast<float>(scale.top_mm - scale.bottom_mm);
   const auto every = static_cast<float>(line_every_mm);
-  const float per_px = static_cast<float>(size.width) / static_cast<float>(values_mm.cols);
+  const auto slopes = static_cast<float>(12 * per_px);
   cv::Mat_<cv::Vec3b> picture(size, cv::Vec3b(255, 255, 255));
   cv::Mat_<uchar> mask(size, uchar{0});
   for (int i = 0; i < size.height; ++i) {
@@ -150,8 +167,7 @@ void paint_map(Canvas& canvas,
       const float share = clamped((map.value(i, j) - bottom) / range);
       const cv::Vec3b colour = scale.colours(0, static_cast<int>(std::lround(share * 255)));
       const Slope tilt = slope_at(map.relief, i, j, canvas.scale());
-      const float shade =
-          1 + 0.15F * std::tanh(12 * (tilt.x + tilt.y) * per_px);  // light: top left
+      const float shade = 1 + 0.15F * std::tanh(slopes * (tilt.x + tilt.y));  // light: top left
       const float line =
           every > 0 ? 0.45F * line_cover(map.value, i, j, every, canvas.scale()) : 0.0F;
       for (int c = 0; c < 3; ++c) {

@@ -49,8 +49,7 @@ fingerpad::SpatialStickTest stick_test_of(const Sensor& sensor) {
 
 void set_look_up(const ForceLookUp& given, FingertipOptions& options) {
   const auto normal = [](const NormalForceLookUp& by) {
-    return FingertipOptions::NormalLookUp(by.curve, by.compensation,
-                                          {.residual_sd_n = by.residual_n});
+    return FingertipOptions::NormalLookUp(by.curve, by.compensation, by.errors);
   };
   if (given.by_area) {
     options.force_of_area = normal(*given.by_area);
