@@ -25,6 +25,11 @@ struct Point3 {
   S y;
   S z;
 };
+/// The same point in another scalar.
+template <scalar To, scalar From>
+constexpr Point3<To> cast(const Point3<From>& p) {
+  return {To(p.x), To(p.y), To(p.z)};
+}
 
 template <scalar S>
 constexpr Point2<S> operator+(const Point2<S>& a, const Point2<S>& b) {
