@@ -105,6 +105,7 @@ TEST_CASE("contact slide: rotation past the dots", "[contact_slide]") {
     const auto result = look({.angle_rad = angle}, state);
     CHECK(result.status == SlideStatus::updated);
     CHECK(std::abs(result.rotation_rad - angle) < 0.003);
+    CHECK(result.rotation_sd_rad < 0.02);
     CHECK(result.slide < 0.01);
   }
 }

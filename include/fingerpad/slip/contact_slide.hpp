@@ -95,8 +95,10 @@ struct [[nodiscard]] SlideResult {
   SlideStatus status = SlideStatus::refused;
   Index dots = 0;                       ///< in contact, that the slide was taken from
   Point2<S> imprint_px = {S(0), S(0)};  ///< travel of the imprint since the contact began
+  S imprint_sd_px = S(0);               ///< of it, along each axis
   Point2<S> slide_px = {S(0), S(0)};    ///< the same past the dots in it
   S rotation_rad = S(0);  ///< of the imprint past the dots, from x to y; at least 3 dots
+  S rotation_sd_rad = S(0);  ///< of it. A ball turns without its imprint: nothing shows that
   S slide = S(0);         ///< |slide_px| in pitches
   S lost = S(0);          ///< share of the largest area so far that is gone, in [0, 1]
   S correlation = S(0);   ///< of the imprint with what it was
@@ -263,6 +265,7 @@ class ContactSlide {
   }
 
   void follow(State& state) const {
+    using std::sqrt;
     SlideResult<S>& result = state.result_;
     const S max_shift = S(0.5 * test_.pitch_px / test_.cell_px);
     const auto motion = state.key_.find(state.imprint_, state.last_shift_, max_shift);
@@ -275,13 +278,18 @@ class ContactSlide {
     state.last_shift_ = motion.shift;
     const Point2<S> imprint = S(test_.cell_px) * motion.shift;
     result.imprint_px = state.key_result_.imprint_px + imprint;
+    result.imprint_sd_px = S(sqrt(S(square(state.key_result_.imprint_sd_px) +
+                                    S(square(test_.cell_px)) * motion.shift_variance)));
     const DotMotion dots = motion_of_dots(imprint, state);
     result.dots = dots.count;
     result.status = dots.count > 0 ? SlideStatus::updated : SlideStatus::no_dots;
     if (dots.count > 0) {
       result.slide_px = state.key_result_.slide_px + imprint - dots.shift;
       if (dots.count >= 3) {
-        result.rotation_rad = S(state.key_result_.rotation_rad + motion.angle_rad - dots.angle_rad);
+        const SlideResult<S>& key = state.key_result_;
+        result.rotation_rad = S(key.rotation_rad + motion.angle_rad - dots.angle_rad);
+        result.rotation_sd_rad = S(sqrt(S(square(key.rotation_sd_rad) + motion.angle_variance +
+                                          dots.angle_variance)));
       }
       result.slide = S(norm(result.slide_px) / S(test_.pitch_px));
     }
@@ -296,6 +304,7 @@ class ContactSlide {
     Index count = 0;
     Point2<S> shift = {S(0), S(0)};
     S angle_rad = S(0);
+    S angle_variance = S(0);
   };
   /// Median shift and least-squares rotation of the dots that touched in the key frame and touch
   /// now.
@@ -311,21 +320,31 @@ class ContactSlide {
       was += key;
       is += now;
     });
-    DotMotion motion{static_cast<Index>(state.x_.size()), {}, S(0)};
+    DotMotion motion;
+    motion.count = static_cast<Index>(state.x_.size());
     if (motion.count == 0) {
       return motion;
     }
     const S count = S(static_cast<double>(motion.count));
     S along = S(0);
     S across = S(0);
+    S arms = S(0);
+    S moved = S(0);
     for_pairs(state, [&](const Point2<S>& key, const Point2<S>& now) {
       const Point2<S> p = key - was / count;
       const Point2<S> q = now - is / count;
       along = S(along + dot(p, q));
       across = S(across + p.x * q.y - p.y * q.x);
+      arms = S(arms + squared_norm(p));
+      moved = S(moved + squared_norm(Point2<S>(q - p)));
     });
     motion.shift = {median(state.x_), median(state.y_)};
-    motion.angle_rad = S(0) < along ? S(atan2(across, along)) : S(0);
+    if (S(0) < along) {
+      motion.angle_rad = S(atan2(across, along));
+      // what is left of the squares, to their degrees of freedom
+      const S left = S(moved - across * motion.angle_rad);
+      motion.angle_variance = S(0) < left ? S(left / (S(2) * count - S(3)) / arms) : S(0);
+    }
     return are_renamed(motion, imprint_px, state) ? DotMotion{} : motion;
   }
   /// Whether the dots moved further past the imprint than gel springs back, or most of them further

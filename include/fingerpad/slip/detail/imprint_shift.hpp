@@ -5,7 +5,8 @@
 // seen in the contact onto what is seen now, up to a gain and an offset. Gauss-Newton steps on the
 // squared differences (Baker and Matthews, "Lucas-Kanade 20 years on", 2004, inverse
 // compositional); with gain and offset it is the largest correlation (Evangelidis and Psarakis,
-// 2008).
+// 2008). A round imprint looks the same after any turn, and would be turned until its noise fits
+// best: no rotation is expected, and as much is believed as the imprint shows beyond its residuals.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -29,6 +30,8 @@ template <scalar S>
 struct PlanarMotion {
   Point2<S> shift = {S(0), S(0)};
   S angle_rad = S(0);  ///< from x to y
+  S shift_variance = S(0);  ///< mean of both axes
+  S angle_variance = S(0);
   S correlation = S(0);
 };
 
@@ -46,6 +49,7 @@ class ImprintShift {
   void take(const PaddedCells<S>& imprint, const PaddedCells<S>& region) {
     cells_.clear();
     const Index step = lattice_step(region);
+    cells_per_sample_ = (std::max)(smoothed_cells / static_cast<double>(step), 1.0);
     for (Index i = 1; i + 1 < region.rows(); ++i) {
       for (Index j = 1 + i % step; j + 1 < region.cols(); j += step) {
         if (S(0) < region(i, j)) {
@@ -61,10 +65,12 @@ class ImprintShift {
   PlanarMotion<S> find(const PaddedCells<S>& now,
                        const Point2<S>& guess,
                        const S& max_shift) const {
-    const PlanarMotion<S> nowhere{guess, S(0), S(0)};
+    const PlanarMotion<S> nowhere{guess};
     PlanarMotion<S> motion = nowhere;
     for (int step = 0; step < max_steps; ++step) {
-      const Sums sums = compare(now, motion);
+      Sums sums = compare(now, motion);
+      const S noise = S(sums.noise() * S(cells_per_sample_));
+      sums.expect_angle(motion.angle_rad, S(noise / S(square(expected_turn))));
       const NormalEquations<S, 5> equations(sums.matrix, 1e-7);
       if (sums.count() < min_cells || !equations.good) {
         return nowhere;
@@ -78,6 +84,7 @@ class ImprintShift {
       motion.shift = motion.shift - back;
       motion.angle_rad = S(motion.angle_rad - turn);
       motion.correlation = sums.correlation();
+      set_variances(noise, equations, motion);
       if (!(squared_norm(Point2<S>(motion.shift - guess)) < max_shift * max_shift)) {
         return nowhere;
       }
@@ -94,6 +101,10 @@ class ImprintShift {
   static constexpr int max_steps = 12;
   static constexpr double enough = 0.02;  // cells; a step is a hundred times nearer than the last
   static constexpr double rim = 20;       // cells that a rotation is felt at
+  static constexpr double expected_turn = 0.1;  // sd, rad, since the imprint was taken
+  static constexpr double smoothed_cells = 28;  // that differ together: 4 pi sd^2 of a mean whose sd
+                                                // is 1.5 cells
+  static constexpr double least_noise = 0.01;   // of the imprint's spread
 
   using Row = std::array<S, 5>;  // x slope, y slope, slope along a rotation, level, 1
   struct Cell {
@@ -107,16 +118,44 @@ class ImprintShift {
     S now_sq = S(0);
 
     double count() const { return static_cast<double>(value(matrix[4][4])); }
+    S mean() const { return S(matrix[4][3] / matrix[4][4]); }
+    /// Of what is looked for.
+    S spread() const { return S(matrix[3][3] / matrix[4][4] - mean() * mean()); }
     S correlation() const {
       using std::sqrt;
       const S n = matrix[4][4];
-      const S mean = S(matrix[4][3] / n);
       const S mean_now = S(right[4] / n);
-      const S both = S(right[3] / n - mean * mean_now);
-      const S spread = S((matrix[3][3] / n - mean * mean) * (now_sq / n - mean_now * mean_now));
-      return S(0) < spread ? S(both / S(sqrt(spread))) : S(0);
+      const S both = S(right[3] / n - mean() * mean_now);
+      const S spreads = S(spread() * (now_sq / n - mean_now * mean_now));
+      return S(0) < spreads ? S(both / S(sqrt(spreads))) : S(0);
+    }
+    /// Mean square of what is left, at the gain of what is looked for.
+    S noise() const {
+      constexpr double least_correlation = 0.1;
+      const S r = correlation();
+      const S known = S(least_correlation) < r ? r : S(least_correlation);
+      const S left = S(S(1) / (known * known) - S(1));
+      return S(spread() * (left + S(square(least_noise))));
+    }
+    /// Adds weight (angle - q[2] / q[3])^2 q[3]^2 to the squares: that a turn takes `angle` back.
+    void expect_angle(const S& angle, const S& weight) {
+      matrix[2][2] = matrix[2][2] + weight;
+      matrix[3][2] = matrix[2][3] = S(matrix[3][2] - weight * angle);
+      matrix[3][3] = matrix[3][3] + weight * angle * angle;
     }
   };
+
+  static void set_variances(const S& noise,
+                            const NormalEquations<S, 5>& equations,
+                            PlanarMotion<S>& motion) {
+    const auto of = [&](std::size_t k) {
+      Row unit = zeros<S, 5>();
+      unit[k] = S(1);
+      return S(noise * equations.variance(unit));
+    };
+    motion.shift_variance = S((of(0) + of(1)) * S(0.5));
+    motion.angle_variance = of(2);
+  }
 
   static Index lattice_step(const PaddedCells<S>& region) {
     Index count = 0;
@@ -208,6 +247,7 @@ class ImprintShift {
 
   ReservedVector<Cell> cells_;
   Point2<S> center_ = {S(0), S(0)};
+  double cells_per_sample_ = smoothed_cells;
   SmallMatrix<S, 5> matrix_ = zero_matrix<S, 5>();
 };
 
