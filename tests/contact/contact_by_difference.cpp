@@ -123,6 +123,32 @@ TEST_CASE("contact by difference: as much of a ball's dent as the gel's slope sa
   }
 }
 
+TEST_CASE("contact by difference: a contact near the frame's edge is as large as one in the middle",
+          "[contact_by_difference]") {
+  Scene scene;
+  scene.camera.dot_mm = 0;  // dots on the outline would change the area, too
+  DifferenceTest test;
+  test.dot_px = 0;
+  test.max_gap_px = 56;
+  test.mm_per_px = scene.camera.mm_per_px;
+  const ContactByDifference<> contact(scene.free(3), test);
+  const auto area_mm2 = [&](const Point2<double>& ball) {
+    scene.contact.drag(0.3, ball);
+    return find(contact, scene.camera.frame(scene.contact, scene.random)).result.area_mm2;
+  };
+  const double middle = area_mm2({0, 0});
+  // from its dent's edge to the frame's
+  const double radius = std::sqrt(middle / 3.14159265358979);
+  const double half_mm = 160 * scene.camera.mm_per_px;
+  for (const double left_px : {4, 8, 12, 16}) {
+    const double x = half_mm - radius - left_px * scene.camera.mm_per_px;
+    // the mean over 7 px is one-sided at the edge
+    const double allowed = left_px < 7 ? 0.05 : 0.02;
+    CHECK(area_mm2({x, 0}) == Approx(middle).epsilon(allowed));
+    CHECK(area_mm2({-x, 0}) == Approx(middle).epsilon(allowed));
+  }
+}
+
 TEST_CASE("contact by difference: a free pad is free in any exposure", "[contact_by_difference]") {
   Scene scene;
   const ContactByDifference<> contact(scene.free(3));

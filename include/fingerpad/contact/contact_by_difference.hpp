@@ -94,9 +94,7 @@ class ContactByDifference {
         : difference_(contact.layout_),
           opening_(contact.layout_.cell_rows(), contact.layout_.cell_cols(), 1),
           closing_(contact.layout_.cell_rows(), contact.layout_.cell_cols(), contact.half_gap()),
-          mask_(contact.layout_.cell_rows(),
-                contact.layout_.cell_cols(),
-                (std::max)(Index(1), contact.half_gap())),
+          mask_(contact.layout_.cell_rows(), contact.layout_.cell_cols(), 1),
           regions_({contact.layout_.cell_rows(), contact.layout_.cell_cols()}),
           line_(static_cast<std::size_t>(contact.layout_.cell_cols() * contact.layout_.cell_px)) {}
 
@@ -114,7 +112,7 @@ class ContactByDifference {
     friend class ContactByDifference;
     Difference difference_;
     detail::CellMorphology<S> opening_;
-    detail::CellMorphology<S> closing_;
+    detail::CellClosing<S> closing_;
     detail::PaddedCells<S> mask_;
     detail::Regions regions_;
     std::vector<Touch> line_;  // of the mask
@@ -294,8 +292,7 @@ class ContactByDifference {
     }
     w.opening_.shrink(w.mask_);
     w.opening_.grow(w.mask_);
-    w.closing_.grow(w.mask_);
-    w.closing_.shrink(w.mask_);
+    w.closing_(w.mask_);
   }
 
   /// Fills holes, which is what is not contact and does not reach the image's edge, and drops

@@ -35,8 +35,9 @@ struct SlideTest {
   double pitch_px = 40;          ///< between neighbouring dots, > 0
   double cell_px = 4;            ///< pixels of the dots' image per cell of the imprint, > 0
   double max_slide = 0.25;       ///< alarm beyond so many pitches, > 0
-  double min_slide = 0.1;        ///< pitches that lost area takes to count: an object that is let
-                                 ///< go shrinks in place; in (0, max_slide]
+  double min_slide = 0.1;        ///< pitches, beyond a standard error, that lost area takes to
+                                 ///< count: an object that is let go shrinks in place; in (0,
+                                 ///< max_slide]
   double max_lost = 0.25;        ///< alarm beyond this share of the area, in (0, 1)
   double min_correlation = 0.6;  ///< of imprints that are compared; in [0, 1)
   Index min_cells = 100;         ///< contacts of fewer cells have no slide; >= 30
@@ -200,7 +201,8 @@ class ContactSlide {
       follow(state);
     }
     const S by_slide = S(result.slide / S(test_.max_slide));
-    const S allowed = S(result.slide / S(test_.min_slide));
+    const S sure = S(result.slide - result.imprint_sd_px / S(test_.pitch_px));
+    const S allowed = S(sure / S(test_.min_slide));
     const S by_area = S(result.lost / S(test_.max_lost));
     const S lost = allowed < by_area ? allowed : by_area;
     result.evidence = by_slide < lost ? lost : by_slide;
