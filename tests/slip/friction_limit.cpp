@@ -257,11 +257,38 @@ TEST_CASE("friction limit: dots that fall back are asked where the load falls wi
   }
   SECTION("one that slides lets them go, and its load stays") {
     CHECK(limit(pull(2.1), seen, state).stick_ratio == 0);
-    state.reset();  // of another object nothing is known
-    (void)limit(pull(2.2), ContactLoad<double>{}.normal_n, RatioUpdate::missing, state);
-    const auto r = limit(pull(2.1), seen, state);
-    CHECK(r.stick_ratio == 0.1);
-    CHECK(r.update == RatioUpdate::missing);
+  }
+  SECTION("before a limit is known, that is the first slide of an object") {
+    struct Case {
+      double told, pull_n, stick_ratio;
+    };
+    for (const Case& c : {Case{0.4, 2.15, 0},     // less than half stuck, and the load stays
+                          Case{0.6, 2.15, 0.6},   // more did: an object that turns aside, maybe
+                          Case{0.4, 2.06, 0.4},   // falls a little: not known
+                          Case{0.4, 2.0, 0.8}}) {  // falls: carried
+      CAPTURE(c.told, c.pull_n);
+      state.reset();
+      seen.status = StickStatus::updated;
+      seen.stick_ratio = c.told;
+      seen.back = {};
+      (void)limit(pull(2.2), seen, state);
+      seen.status = StickStatus::falls_back;
+      seen.back = {.stick_ratio = 0.8, .reference_age = 1};
+      const auto r = limit(pull(c.pull_n), seen, state);
+      CHECK(r.stick_ratio == c.stick_ratio);
+      CHECK(r.falls_back);
+      CHECK(is_finite(state.limit()) == (c.stick_ratio == 0));
+      CHECK((r.evidence == SlipEvidence::both) == (c.stick_ratio == 0));
+      CHECK((r.update == RatioUpdate::fresh) == (c.stick_ratio != c.told));
+    }
+  }
+  SECTION("a contact that hardly presses has no limit") {
+    state.reset();
+    seen.stick_ratio = 0.4;
+    const auto light = [](double n) { return ContactLoad<double>{.normal_n = n, .tangential_n = n}; };
+    (void)limit(light(0.01), 0.4, RatioUpdate::fresh, state);
+    CHECK(limit(light(0.01), seen, state).stick_ratio == 0.4);
+    CHECK(!is_finite(state.limit()));
   }
   SECTION("without a force nothing tells them apart") {
     CHECK(limit(ContactLoad<double>{}, seen, state).update == RatioUpdate::missing);

@@ -250,8 +250,7 @@ class FrictionLimit {
     result.dots_ratio = update == RatioUpdate::fresh ? result.stick_ratio : not_a_number<S>();
     result.update = update;
     result.evidence = known ? source : SlipEvidence::none;
-    result.friction =
-        !(load.normal_n < S(options_.min_normal_n)) ? friction_of(load) : not_a_number<S>();
+    result.friction = known_friction(load);
     result.limit = state.limit_;
     result.reference_age = reference_age;
     state.loads_.add(result.friction);
@@ -270,23 +269,27 @@ class FrictionLimit {
     return result;
   }
 
+  /// A membrane is carried back by an object that sticks with a load that falls: by more than three
+  /// times the noise of two L. Under one that slides it springs back with a load that stays. Before
+  /// a limit is known that is learnt, if the dots have told before that less than half sticks.
   template <class Stick>
   SlipResult<S> of_falling_back(const ContactLoad<S>& load, const Stick& seen, State& state) const {
+    const Index age = seen.back.reference_age;
+    const S friction = known_friction(load), highest = state.loads_.since(age - 1);
+    const bool carried = friction < S(1 - 1.5 * (1 - options_.slide_fraction)) * highest;
+    const bool stays = friction > S(options_.slide_fraction) * highest;
+    const bool slides = stays && !is_finite(state.limit_) && 2 * value(seen.stick_ratio) < 1;
     SlipResult<S> result =
-        is_carried_back(load, seen.back.reference_age, state)
-            ? (*this)(load, S(seen.back.stick_ratio), RatioUpdate::fresh, state,
-                      seen.back.reference_age)
-            : (*this)(load, S(seen.stick_ratio), update_of(seen.status), state, seen.reference_age);
+        carried  ? (*this)(load, S(seen.back.stick_ratio), RatioUpdate::fresh, state, age)
+        : slides ? (*this)(load, S(0), RatioUpdate::fresh, state, age)
+                 : (*this)(load, S(seen.stick_ratio), update_of(seen.status), state, age);
     result.falls_back = true;
-    result.reference_age = seen.back.reference_age;
     return result;
   }
 
-  /// A membrane springs back under an object that slides with the load at its limit, and is carried
-  /// back by one that sticks with a load that falls: by more than three times the noise of two L.
-  bool is_carried_back(const ContactLoad<S>& load, Index age, const State& state) const {
-    const S falls_to = S(1 - 1.5 * (1 - options_.slide_fraction));
-    return friction_of(load) < falls_to * state.loads_.since(age - 1);
+  /// L; NaN where the normal force is too small to have one.
+  S known_friction(const ContactLoad<S>& load) const {
+    return !(load.normal_n < S(options_.min_normal_n)) ? friction_of(load) : not_a_number<S>();
   }
 
   void learn(const SlipResult<S>& seen, State& state) const {
