@@ -272,12 +272,11 @@ class SpatialStickRatio {
     DotWalk walk(layout_);
     for (const Index k : state.given.touching) {
       if (is_finite(then[k]) && is_finite(at(state.now, k))) {
-        SpatialPair<S> pair;
+        SpatialPair<S>& pair = state.pairs.emplace_back();
         pair.cell = k;
         pair.padded = state.padded(walk.to(k));
         pair.then = then[k];
         pair.now = at(state.now, k);
-        state.pairs.push_back(pair);
       }
     }
     set_surface(noise, state.pairs);

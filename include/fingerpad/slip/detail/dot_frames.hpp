@@ -110,6 +110,7 @@ struct GivenDots {
     using Traits = point_traits<cell_t<DotsView>>;
     touching.clear();
     count = 0;
+    Index zeros = 0, minus_ones = 0;
     Index k = 0;
     for (Index i = 0; i < dots.rows(); ++i) {
       for (Index j = 0; j < dots.cols(); ++j, ++k) {
@@ -123,13 +124,17 @@ struct GivenDots {
         const bool there = is_plausible(p);
         at(found, k) = there ? p : no_dot<P>();
         count += there ? 1 : 0;
+        if (p.x == p.y) {
+          zeros += is_filled(p, coordinate<P>(0)) ? 1 : 0;
+          minus_ones += is_filled(p, coordinate<P>(-1)) ? 1 : 0;
+        }
         if (is_contact(cell_t<Contact>(contact(i, j)))) {
           touching.push_back(k);
         }
       }
     }
-    leave_out(filled(coordinate<P>(0)));
-    leave_out(filled(coordinate<P>(-1)));
+    leave_out(coordinate<P>(0), zeros);
+    leave_out(coordinate<P>(-1), minus_ones);
   }
 
   /// Whether the contact reaches all four sides of the pattern, and no dot was found outside of it.
@@ -149,24 +154,20 @@ struct GivenDots {
   }
 
  private:
-  static P filled(const coordinate<P>& c) {
-    P p{};
-    p.x = p.y = c;
+  static bool is_filled(const P& p, const coordinate<P>& c) {
     if constexpr (requires { p.z; }) {
-      p.z = c;
+      return p.x == c && p.y == c && p.z == c;
+    } else {
+      return p.x == c && p.y == c;
     }
-    return p;
   }
 
   /// Dots that share a place by which others mark what they did not find are not found.
-  void leave_out(const P& mark) {
-    const auto is_mark = [&](const P& p) {
-      return p.x == mark.x && squared_norm(p - mark) == coordinate<P>(0);
-    };
-    const auto marked = std::count_if(found.begin(), found.end(), is_mark);
+  void leave_out(const coordinate<P>& mark, Index marked) {
     if (marked > 1) {
-      std::replace_if(found.begin(), found.end(), is_mark, no_dot<P>());
-      count -= static_cast<Index>(marked);
+      std::replace_if(
+          found.begin(), found.end(), [&](const P& p) { return is_filled(p, mark); }, no_dot<P>());
+      count -= marked;
     }
   }
 };

@@ -17,19 +17,21 @@ namespace detail::stick {
 template <class P>
 bool is_out_of_line(
     const P* dots, const DotLayout& layout, const DotIndex& d, Index down, Index right) {
-  const P a = beside(dots, layout, d, -down, -right);
-  const P b = beside(dots, layout, d, down, right);
-  const P off = a + b - coordinate<P>(2) * beside(dots, layout, d, 0, 0);  // twice the distance
-  return squared_norm(b - a) < coordinate<P>(4) * squared_norm(off);       // b - a: two pitches
+  if (d.row < down || d.row + down >= layout.rows || d.col < right || d.col + right >= layout.cols) {
+    return false;
+  }
+  const Index next = down * layout.cols + right;
+  const P* const dot = dots + d.row * layout.cols + d.col;
+  const P across = dot[next] - dot[-next];                          // two pitches
+  const P off = dot[next] + dot[-next] - coordinate<P>(2) * *dot;  // twice the distance
+  return squared_norm(across) < coordinate<P>(4) * squared_norm(off);
 }
 
 /// The corners of the pattern lie between no two neighbours: they are held against the line through
 /// the next two, along their row and their column.
 template <class P>
 bool is_corner_out_of_line(const P* dots, const DotLayout& layout, const DotIndex& d) {
-  const bool corner =
-      (d.row == 0 || d.row == layout.rows - 1) && (d.col == 0 || d.col == layout.cols - 1);
-  if (!corner) {
+  if ((d.row != 0 && d.row != layout.rows - 1) || (d.col != 0 && d.col != layout.cols - 1)) {
     return false;
   }
   const auto is_off = [&](Index down, Index right) {
