@@ -353,8 +353,9 @@ TEST_CASE("grip control: with friction the force follows the load", "[grip_contr
     CHECK(force_n < 4.6);
   }
   SECTION("a load that falls while little sticks may be friction that fell") {
+    auto copy = state;
     const auto after = [&](double ratio, double load_n) {
-      auto copy = state;
+      copy = state;
       double force_n = state.force_n();
       for (int k = 0; k < 15; ++k) {
         auto slip = carried(force_n, 2 - (2 - load_n) * k / 14, ratio, 60);
@@ -367,6 +368,8 @@ TEST_CASE("grip control: with friction the force follows the load", "[grip_contr
     CHECK(after(0.7, 1.6) < 0.95 * state.force_n());
     CHECK(after(0.3, 1.9) >= state.force_n());       // not taken for a smaller load
     CHECK(after(0.3, 1.6) > 1.1 * state.force_n());  // and answered once it is no noise
+    // once dots stick again, a load that falls is one: the first such frame is no slip
+    CHECK(control(carried(copy.force_n(), 1, 0.9), frame_s, copy).why == GripReason::follows_load);
   }
   SECTION("dots that fall back with little of them carried are a slide") {
     const auto after = [&](double ratio) {

@@ -119,7 +119,7 @@ class GripControl {
     const S counted_s = counted(step_s);
     follow_load(S(slip.normal_n * slip.friction), S(slip.friction), sticks, counted_s, state);
     // a tenth: beyond the noise of a smoothed load, with forces known to 3 %
-    const bool loses_load = state.seen_load_n_ < S(9) / S(10) * state.load_n_;
+    const bool loses_load = !sticks && state.seen_load_n_ < S(9) / S(10) * state.load_n_;
     // what the dots say since a reference before the last slip is that slip
     const S age_s = S(static_cast<double>(slip.reference_age)) * step_s;
     state.held_s_ = S(state.held_s_ + step_s);
