@@ -262,9 +262,9 @@ TEST_CASE("friction limit: dots that fall back are asked where the load falls wi
     struct Case {
       double told, pull_n, stick_ratio;
     };
-    for (const Case& c : {Case{0.4, 2.15, 0},     // less than half stuck, and the load stays
-                          Case{0.6, 2.15, 0.6},   // more did: an object that turns aside, maybe
-                          Case{0.4, 2.06, 0.4},   // falls a little: not known
+    for (const Case& c : {Case{0.4, 2.15, 0},      // less than half stuck, and the load stays
+                          Case{0.6, 2.15, 0.6},    // more did: an object that turns aside, maybe
+                          Case{0.4, 2.06, 0.4},    // falls a little: not known
                           Case{0.4, 2.0, 0.8}}) {  // falls: carried
       CAPTURE(c.told, c.pull_n);
       state.reset();
@@ -285,7 +285,9 @@ TEST_CASE("friction limit: dots that fall back are asked where the load falls wi
   SECTION("a contact that hardly presses has no limit") {
     state.reset();
     seen.stick_ratio = 0.4;
-    const auto light = [](double n) { return ContactLoad<double>{.normal_n = n, .tangential_n = n}; };
+    const auto light = [](double n) {
+      return ContactLoad<double>{.normal_n = n, .tangential_n = n};
+    };
     (void)limit(light(0.01), 0.4, RatioUpdate::fresh, state);
     CHECK(limit(light(0.01), seen, state).stick_ratio == 0.4);
     CHECK(!is_finite(state.limit()));

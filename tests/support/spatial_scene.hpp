@@ -31,7 +31,8 @@ struct SpatialStep {
 
 class SpatialScene {
  public:
-  explicit SpatialScene(const std::string& name) : name_(name) {
+  /// `every`: of the rows and columns of dots, which are kept; 2 for those twice as far apart.
+  explicit SpatialScene(const std::string& name, Index every = 1) : name_(name), every_(every) {
     read_truth();
     read_dots();
   }
@@ -83,19 +84,25 @@ class SpatialScene {
       places.push_back({row, col});
       across_ = next();
     }
+    const Index first = across_ / 2 % every_;
+    across_ = (across_ - 1 - first) / every_ + 1;
     for (SpatialStep& step : steps_) {
       step.dots = DotsMm(across_, across_, {nan, nan, nan});
       step.contact = SpatialFlags(across_, across_);
       for (const fingerpad::DotIndex& p : places) {
         const int x = next(), y = next(), z = next();
-        step.dots(p.row, p.col) = {(x - 32768) / 1000.0, (y - 32768) / 1000.0, z % 32768 / 1000.0};
-        step.contact(p.row, p.col) = z >= 32768 ? 1 : 0;
+        if ((p.row - first) % every_ == 0 && (p.col - first) % every_ == 0) {
+          const Index row = (p.row - first) / every_, col = (p.col - first) / every_;
+          step.dots(row, col) = {(x - 32768) / 1000.0, (y - 32768) / 1000.0, z % 32768 / 1000.0};
+          step.contact(row, col) = z >= 32768 ? 1 : 0;
+        }
       }
     }
     require_data(file.good(), name_ + "_space.pgm is too short");
   }
 
   std::string name_;
+  Index every_;
   std::vector<SpatialStep> steps_;
   Index across_ = 0;
 };

@@ -17,12 +17,13 @@ namespace detail::stick {
 template <class P>
 bool is_out_of_line(
     const P* dots, const DotLayout& layout, const DotIndex& d, Index down, Index right) {
-  if (d.row < down || d.row + down >= layout.rows || d.col < right || d.col + right >= layout.cols) {
+  if (d.row < down || d.row + down >= layout.rows || d.col < right ||
+      d.col + right >= layout.cols) {
     return false;
   }
   const Index next = down * layout.cols + right;
   const P* const dot = dots + d.row * layout.cols + d.col;
-  const P across = dot[next] - dot[-next];                          // two pitches
+  const P across = dot[next] - dot[-next];                         // two pitches
   const P off = dot[next] + dot[-next] - coordinate<P>(2) * *dot;  // twice the distance
   return squared_norm(across) < coordinate<P>(4) * squared_norm(off);
 }
