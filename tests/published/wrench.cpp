@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <vector>
 
 #include "fingerpad/published/printed_iteration.hpp"
 #include "support/catch.hpp"
@@ -72,6 +73,47 @@ struct Mound {
   }
 };
 
+/// A mound that leans askew, or its mirror image, in which y is reversed.
+struct Leaning {
+  double side = 1;
+  template <class S>
+  detail::membrane::HeightAndSlope<S> operator()(const S& x, const S& y) const {
+    constexpr double c = 0.8, s = 0.6;
+    const auto along = Mound()(S(c * x + s * side * y), S(c * side * y - s * x));
+    return {along.height_mm, S(c * along.along_x - s * along.along_y),
+            S(side * (s * along.along_x + c * along.along_y))};
+  }
+  template <class S>
+  bool in_contact(const S& x, const S& y) const {
+    return (*this)(x, y).height_mm > 8.5;
+  }
+};
+
+/// f_h over a leaning mound whose rim is twisted unevenly, row by row.
+std::vector<double> around_leaning(double side, Index columns, Index rows) {
+  using namespace detail::membrane;
+  const RoundPad<ArcSide> pad;
+  const auto dots_at_rim = rim_of(pad);
+  const double t0 = pad.tension(pad.radius_mm, pressed_mpa);
+  const Rim<double> rim(
+      dots_at_rim.borders(), [](Index) { return 0.8; }, pad.radius_mm, columns);
+  auto pulls = rim.pulls();
+  rim.measure(dots_at_rim.dots([&](double angle) {
+    return RimLoad{t0, side * 0.2 * t0 * std::sin(side * angle + 0.7)};
+  }),
+              OneRow(), ClampedRim(), 0.0, pulls);
+  rim.integrate(pulls);
+  Compartments<double> nodes(columns, rows, pad.radius_mm, {0.1, 0, 1});
+  nodes.lay<published::SteepestLines>(Leaning{side}, {2.24, side * 1.68, 8.5});
+  Segments<double> segments(columns, rows);
+  segments.measure(nodes);
+  Tensions<double> tensions(columns, rows);
+  const published::Iteration iteration;
+  published::Iteration::Work<double> work(iteration, columns, rows);
+  REQUIRE(iteration.solve<true>(segments, nodes, pulls.segments, pressed_mpa, work, tensions));
+  return tensions.upward_normal;
+}
+
 /// How far a step from a to b departs from the gradient of the heights between them: a sine.
 double off_gradient(const Mound& mound, const Point3<double>& a, const Point3<double>& b) {
   const auto at = mound((a.x + b.x) / 2, (a.y + b.y) / 2);
@@ -85,6 +127,24 @@ double off_gradient(const Mound& mound, const Point3<double>& a, const Point3<do
 TEST_CASE("published iteration: f_h of a flat press, in closed form", "[published]") {
   CHECK(around_error<published::Iteration>(36, 32, 5) < 0.05);
   CHECK(around_error<published::PrintedIteration>(36, 32, 5) < 0.05);
+}
+
+TEST_CASE("published iteration: f_h of a pad seen in a mirror", "[published]") {
+  // each f_h is found from the segments on both sides: with one of them left and right would differ
+  constexpr Index columns = 36, rows = 24;
+  const auto plain = around_leaning(1, columns, rows), mirrored = around_leaning(-1, columns, rows);
+  double largest = 0, off = 0, uneven = 0;
+  for (Index j = 0; j < rows; ++j) {
+    for (Index i = 0; i < columns; ++i) {
+      const auto here = static_cast<std::size_t>(j * columns + i);
+      const auto there = static_cast<std::size_t>(j * columns + (columns - i) % columns);
+      largest = (std::max)(largest, std::abs(plain[here]));
+      off = (std::max)(off, std::abs(plain[here] - mirrored[there]));
+      uneven = (std::max)(uneven, std::abs(plain[here] - plain[there]));
+    }
+  }
+  CHECK(off < 1e-6 * largest);
+  CHECK(uneven > 0.1 * largest);
 }
 
 TEST_CASE("published six-axis force: contour lines every 0.2 mm, of each line its own number",
