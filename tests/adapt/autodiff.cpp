@@ -70,3 +70,18 @@ TEST_CASE("camera and fluid are differentiated in one pass", "[autodiff]") {
     RC_ASSERT(close(both.derivatives()(1), by_absorption.d));
   });
 }
+
+TEST_CASE("AutoDiffScalar has the functions that kernels need", "[autodiff]") {
+  for (const double at : {-0.7, -1e-9, 0.0, 0.3, 2.5}) {
+    const Gradient x(at, Eigen::Vector2d(1, 3));
+    const auto check = [&](const Gradient& y, double value, double slope) {
+      CHECK(y.value() == value);
+      CHECK(y.derivatives()(0) == Approx(slope));
+      CHECK(y.derivatives()(1) == Approx(3 * slope));
+    };
+    check(atan(x), std::atan(at), 1 / (1 + at * at));
+    check(expm1(x), std::expm1(at), std::exp(at));
+    check(log1p(x), std::log1p(at), 1 / (1 + at));
+    check(atan(x + x), std::atan(2 * at), 2 / (1 + 4 * at * at));  // of an expression, too
+  }
+}

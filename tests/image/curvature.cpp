@@ -372,7 +372,7 @@ TEST_CASE("curvature: bad parameters are refused by name, value and range") {
 
 TEST_CASE("curvature: a camera's pitch grows with depth as its rays spread") {
   const Camera<double> camera;
-  const detail::PixelPitch pitch = detail::pixel_pitch(camera);
+  const auto pitch = detail::pixel_pitch(camera);
   const double row = camera.center_y_px, col = camera.center_x_px + 1;
   const auto spread = [&](double l) { return point_at(camera, row, col, l).x; };
   CHECK(pitch.at_plate_mm == camera.pitch_mm);

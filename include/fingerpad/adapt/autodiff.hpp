@@ -6,10 +6,39 @@
 // they tell the variance that its errors leave in a result.
 #include <Eigen/Core>  // AutoDiff does not include it
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <unsupported/Eigen/AutoDiff>
 
 #include "fingerpad/core/scalar.hpp"
+
+// Functions of kernels that AutoDiffScalar lacks; found where its others are.
+namespace Eigen {
+
+template <class Derivatives>
+auto with_slope(const AutoDiffScalar<Derivatives>& x,
+                const typename Derivatives::Scalar& result,
+                const typename Derivatives::Scalar& slope) {
+  using Plain = typename Derivatives::PlainObject;
+  return AutoDiffScalar<Plain>(result, Plain(x.derivatives() * slope));
+}
+template <class Derivatives>
+auto atan(const AutoDiffScalar<Derivatives>& x) {
+  using std::atan;
+  return with_slope(x, atan(x.value()), 1 / (1 + x.value() * x.value()));
+}
+template <class Derivatives>
+auto expm1(const AutoDiffScalar<Derivatives>& x) {
+  using std::expm1;
+  return with_slope(x, expm1(x.value()), expm1(x.value()) + 1);
+}
+template <class Derivatives>
+auto log1p(const AutoDiffScalar<Derivatives>& x) {
+  using std::log1p;
+  return with_slope(x, log1p(x.value()), 1 / (1 + x.value()));
+}
+
+}  // namespace Eigen
 
 namespace fingerpad {
 inline namespace v0 {

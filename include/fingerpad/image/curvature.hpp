@@ -174,7 +174,7 @@ template <class V>
     return V(bits > 0 ? bits : Bits{});
 #endif
   } else {
-    return V{} > x ? V{} : x;
+    return whole<V>(0) > x ? whole<V>(0) : x;
   }
 }
 

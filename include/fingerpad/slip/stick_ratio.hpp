@@ -154,8 +154,9 @@ class StickRatio {
       const bool outlined =
           test_.covers_pattern || !detail::stick::lacks_outline(result, layout_, state.given);
       result.status = outlined ? status : StickStatus::no_outline;
-      result.stick_ratio =
-          outlined ? S(result.stick) / S(result.stick + result.slip) : not_a_number<S>();
+      result.stick_ratio = outlined ? S(S(static_cast<double>(result.stick)) /
+                                        S(static_cast<double>(result.stick + result.slip)))
+                                    : not_a_number<S>();
       result.ratio_sd = outlined ? result.ratio_sd : not_a_number<S>();
     }
     return result;

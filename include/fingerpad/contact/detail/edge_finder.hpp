@@ -55,7 +55,7 @@ class EdgeFinder<HalfLevelEdge, Statistic, CameraType, S> {
         gap_mm_(edge.touching_gap_mm),
         radius_px_(test.ring.radius_px),
         ring_px_(static_cast<Index>(std::ceil(radius_px_))),
-        pitch_(pixel_pitch(camera)),
+        pitch_(pixel_pitch(camera).plain()),
         mean_(camera, image.rows, image.cols, test.ring, no_pad_mm),
         cell_(static_cast<std::size_t>(image.size())) {
     const OutsideLevel<S> outside(image, ring_px_);
@@ -200,7 +200,7 @@ class EdgeFinder<HalfLevelEdge, Statistic, CameraType, S> {
   double gap_mm_;
   double radius_px_;
   Index ring_px_;  ///< the same, in whole pixels
-  PixelPitch pitch_;
+  PixelPitch<> pitch_;
   MeanMap mean_;
   std::vector<std::uint32_t> cell_;  ///< of `outside`, by the image's border
 };

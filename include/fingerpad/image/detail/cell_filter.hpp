@@ -128,8 +128,8 @@ class CellMorphology {
       S* to = mask.row(i);
       for_each_cell<S>(mask.cols(), [&]<class V>(Index j) {
         const V n = load_cells<V, S>(share + j);
-        const V limit = Grow ? V(V{} + half_) : V(load_cells<V, S>(all + j) - half_);
-        store_cells<S>(to + j, n < limit ? V{} : V(V{} + S(1)));
+        const V limit = Grow ? every_lane<V>(half_) : V(load_cells<V, S>(all + j) - half_);
+        store_cells<S>(to + j, n < limit ? every_lane<V>(S(0)) : every_lane<V>(S(1)));
       });
     }
   }

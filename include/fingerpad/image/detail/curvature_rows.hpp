@@ -83,9 +83,9 @@ class SectionKernel {
 
   template <class V>
   [[gnu::always_inline]] V complete(const S* cells, const V& shrink) const {
-    V total{};
+    V total = whole<V>(0);
     for_each_group<V>(shrink, [&](const Group& group, const Index* step, const V& radius_sq) {
-      V sum{};
+      V sum = whole<V>(0);
       for (int k = 0; k < group.sections; ++k) {
         sum = sum + weighed(section_at<V>(cells, step[k], radius_sq));
       }
@@ -98,20 +98,20 @@ class SectionKernel {
   [[gnu::always_inline]] PartialCurvature<V> partial(const S* cells,
                                                      const V& shrink,
                                                      int least) const {
-    V total{};
-    V count{};
+    V total = whole<V>(0);
+    V count = whole<V>(0);
     for_each_group<V>(shrink, [&](const Group& group, const Index* step, const V& radius_sq) {
-      V sum{};
+      V sum = whole<V>(0);
       for (int k = 0; k < group.sections; ++k) {
         const V term = weighed(section_at<V>(cells, step[k], radius_sq));
         const auto complete = known<V>(term);
-        sum = sum + (complete ? term : V{});
-        count = count + (complete ? whole<V>(1) : V{});
+        sum = sum + (complete ? term : whole<V>(0));
+        count = count + (complete ? whole<V>(1) : whole<V>(0));
       }
       total = total + sum * group.radius;
     });
     const V mean = total * (shrink * shrink * shrink * scale_) / count;
-    const V nan = V{} + not_a_number<S>();
+    const V nan = every_lane<V>(not_a_number<S>());
     return {at_least<V>(count, least) ? mean : nan, count};
   }
 
@@ -175,7 +175,7 @@ class StencilKernel {
   template <class V>
   [[gnu::always_inline]] V complete(const S* cells, const V&) const {
     const V center = load_cells<V, S>(cells);
-    V total{};
+    V total = whole<V>(0);
     for (const Weighted& at : section_) {
       total = total + at.weight * bend_at<V>(cells, center, at.step);
     }
@@ -185,16 +185,16 @@ class StencilKernel {
   template <class V>
   [[gnu::always_inline]] PartialCurvature<V> partial(const S* cells, const V&, int least) const {
     const V center = load_cells<V, S>(cells);
-    V total{};
-    V count{};
+    V total = whole<V>(0);
+    V count = whole<V>(0);
     for (const Weighted& at : section_) {
       const V bend = bend_at<V>(cells, center, at.step);
       const auto complete = known<V>(bend);
-      total = total + at.weight * (complete ? bend : V{});
-      count = count + (complete ? whole<V>(1) : V{});
+      total = total + at.weight * (complete ? bend : whole<V>(0));
+      count = count + (complete ? whole<V>(1) : whole<V>(0));
     }
     const V mean = total / count;
-    const V nan = V{} + not_a_number<S>();
+    const V nan = every_lane<V>(not_a_number<S>());
     return {at_least<V>(count, least) ? mean : nan, count};
   }
 
@@ -253,7 +253,7 @@ class CurvatureStrip {
  private:
   bool all_whole(const S* cells, Index count, S* out) const {
     bool tried = true;
-    V sum{};  // NaN when any of them is
+    V sum = whole<V>(0);  // NaN when any of them is
     for (Index j = 0; j < count; j += n) {
       if (ragged_[j / n]) {
         tried = false;
@@ -263,11 +263,11 @@ class CurvatureStrip {
         store_cells<S>(out + j, k);
       }
     }
-    return tried && !lacks(known<V>(V{}), known<V>(sum));
+    return tried && !lacks(known<V>(whole<V>(0)), known<V>(sum));
   }
 
   void mend(const S* cells, Index count, S* out) {
-    const V nan = V{} + not_a_number<S>();
+    const V nan = every_lane<V>(not_a_number<S>());
     for (Index j = 0; j < count; j += n) {
       bool& ragged = ragged_[j / n];
       const V zeta = load_cells<V, S>(cells + j);

@@ -15,6 +15,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <type_traits>
 
 #include "fingerpad/core/expects.hpp"
 #include "fingerpad/core/scalar.hpp"
@@ -26,31 +27,54 @@ inline namespace v0 {
 namespace detail {
 
 /// Distance in mm of the points that neighbouring pixels see, pitch (1 + c l).
+template <scalar T = double>
 struct PixelPitch {
-  double at_plate_mm;    ///< in [1e-9, 1e9]
-  double growth_per_mm;  ///< c, in [0, 1e9]: 1 / virtual height of the camera on the axis
+  T at_plate_mm;    ///< in [1e-9, 1e9]
+  T growth_per_mm;  ///< c, in [0, 1e9]: 1 / virtual height of the camera on the axis
 
-  double at_depth(double depth_mm) const { return at_plate_mm * (1 + growth_per_mm * depth_mm); }
+  PixelPitch<double> plain() const {
+    return {static_cast<double>(value(at_plate_mm)), static_cast<double>(value(growth_per_mm))};
+  }
+  T at_depth(const T& depth_mm) const {
+    return T(at_plate_mm * T(T(1) + growth_per_mm * depth_mm));
+  }
 };
 
-inline PixelPitch checked(const PixelPitch& pitch) {
-  expects(pitch.at_plate_mm >= 1e-9 && pitch.at_plate_mm <= 1e9, "CurvatureMap", "camera.pitch_mm",
-          pitch.at_plate_mm, "in [1e-9, 1e9]");
-  expects(pitch.growth_per_mm >= 0 && pitch.growth_per_mm <= 1e9, "CurvatureMap",
-          "growth of the pitch per mm", pitch.growth_per_mm, "in [0, 1e9]");
+template <scalar T>
+PixelPitch<T> checked(const PixelPitch<T>& pitch) {
+  const PixelPitch<double> plain = pitch.plain();
+  expects(plain.at_plate_mm >= 1e-9 && plain.at_plate_mm <= 1e9, "CurvatureMap", "camera.pitch_mm",
+          plain.at_plate_mm, "in [1e-9, 1e9]");
+  expects(plain.growth_per_mm >= 0 && plain.growth_per_mm <= 1e9, "CurvatureMap",
+          "growth of the pitch per mm", plain.growth_per_mm, "in [0, 1e9]");
   return pitch;
 }
 
+/// In which a pitch is computed: at least in double.
 template <scalar S>
-PixelPitch pixel_pitch(const Camera<S>& camera) {
-  const auto pitch_mm = static_cast<double>(value(camera.pitch_mm));
-  const auto index = static_cast<double>(value(camera.refractive_index));
-  const auto per_px = static_cast<double>(value(tangent_per_px(camera)));
-  return checked({pitch_mm, per_px / pitch_mm * tangent_ratio(0.0, index)});
+using pitch_scalar_t = std::conditional_t<std::is_same_v<S, float>, double, S>;
+
+template <scalar S>
+auto pixel_pitch(const Camera<S>& camera) {
+  using T = pitch_scalar_t<S>;
+  const T pitch_mm = T(camera.pitch_mm), per_px = T(tangent_per_px(camera));
+  const T growth = per_px / pitch_mm * tangent_ratio(T(0), T(camera.refractive_index));
+  return checked(PixelPitch<T>{pitch_mm, growth});
 }
 template <scalar S>
-PixelPitch pixel_pitch(const OrthographicCamera<S>& camera) {
-  return checked({static_cast<double>(value(camera.pitch_mm)), 0});
+auto pixel_pitch(const OrthographicCamera<S>& camera) {
+  using T = pitch_scalar_t<S>;
+  return checked(PixelPitch<T>{T(camera.pitch_mm), T(0)});
+}
+
+/// x as an S; without its derivatives where S has none.
+template <scalar S, scalar T>
+S narrowed(const T& x) {
+  if constexpr (std::is_constructible_v<S, T>) {
+    return S(x);
+  } else {
+    return S(static_cast<double>(value(x)));
+  }
 }
 
 template <class CameraType>
@@ -65,15 +89,16 @@ template <class CameraType, class S>
 struct DepthUnits {
   static constexpr bool at_depth = sees_perspective<CameraType>;
 
-  explicit DepthUnits(const PixelPitch& pitch_mm,
+  template <scalar T>
+  explicit DepthUnits(const PixelPitch<T>& pitch_mm,
                       double too_deep_mm = std::numeric_limits<double>::infinity()) {
     int exponent = 0;
-    std::frexp(pitch_mm.at_plate_mm, &exponent);
+    std::frexp(pitch_mm.plain().at_plate_mm, &exponent);
     const double unit_mm = std::ldexp(1.0, exponent);
-    pitch = S(pitch_mm.at_plate_mm / unit_mm);
+    pitch = narrowed<S>(T(pitch_mm.at_plate_mm / T(unit_mm)));
     per_mm = S(1 / unit_mm);
-    const double growth = pitch_mm.growth_per_mm;
-    growth_per_unit = S(growth) * S(unit_mm);
+    const double growth = pitch_mm.plain().growth_per_mm;
+    growth_per_unit = narrowed<S>(pitch_mm.growth_per_mm) * S(unit_mm);
     const double farthest = (std::min)(too_deep_mm / unit_mm, 4096.0);
     const double nearest = growth > 0 ? -0.99 / (growth * unit_mm) : -farthest;
     lowest = scalar_real_t<S>((std::max)(nearest, -farthest));
@@ -88,7 +113,7 @@ struct DepthUnits {
     if constexpr (at_depth) {
       zeta = l / (1 + growth_per_unit * l);
     }
-    const V nan = V{} + not_a_number<S>();
+    const V nan = every_lane<V>(not_a_number<S>());
     if constexpr (scalar<V>) {
       return value(l) > lowest && value(l) < highest ? zeta : nan;
     } else {
@@ -102,7 +127,7 @@ struct DepthUnits {
     if constexpr (at_depth) {
       return 1 - growth_per_unit * zeta;
     } else {
-      return V{} + 1;
+      return every_lane<V>(S(1));
     }
   }
 

@@ -102,7 +102,7 @@ class PixelRays<OrthographicCamera<S>> {
 
   template <class V>
   [[gnu::always_inline]] V mm_per_px(Index, Index, const V&) const {
-    return V{} + camera_.pitch_mm;
+    return every_lane<V>(camera_.pitch_mm);
   }
 
   Point3<S> operator()(Index row, Index col, const S& depth_mm) const {

@@ -37,8 +37,10 @@ template <class S>
 void mark_below(const S& threshold, const S* curvature, Index count, Mark* marks) {
   for_each_cell<S>(count, [&]<class V>(Index j) {
     const V k = load_cells<V, S>(curvature + j);
-    const V known = k == k ? V{} : V(V{} + S(static_cast<int>(Mark::unknown)));
-    const V mark = k < V{} + threshold ? V(V{} + S(static_cast<int>(Mark::seed))) : known;
+    const V known =
+        k == k ? every_lane<V>(S(0)) : every_lane<V>(S(static_cast<int>(Mark::unknown)));
+    const V mark =
+        k < every_lane<V>(threshold) ? every_lane<V>(S(static_cast<int>(Mark::seed))) : known;
     store_cells<S>(bytes_of(marks + j), mark);
   });
 }

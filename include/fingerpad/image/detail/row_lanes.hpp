@@ -30,6 +30,16 @@ struct RowVector<S, 1> {
   using type = S;
 };
 
+/// x in every lane; x itself without lanes (empty braces leave some dual numbers undefined).
+template <class V, class S>
+[[gnu::always_inline]] inline V every_lane(const S& x) {
+  if constexpr (scalar<V>) {
+    return V(x);
+  } else {
+    return V{} + x;
+  }
+}
+
 /// Cells from[0], from[1], ... as one V of S.
 template <class V, class S, class T>
   requires(std::same_as<V, S>)
@@ -41,7 +51,11 @@ V load_cells(const T* from) {
 template <class S, class V, class T>
   requires(std::same_as<V, S>)
 void store_cells(T* to, const V& v) {
-  *to = static_cast<T>(v);
+  if constexpr (std::integral<T>) {
+    *to = static_cast<T>(value(v));
+  } else {
+    *to = static_cast<T>(v);
+  }
 }
 
 template <class V, class S>
