@@ -95,7 +95,7 @@ bool look(const Recording& recording, double quiet_until_s) {
 
   // Once: each finger has a noise of its own.
   FoamHandOptions<Fingers> options;
-  std::vector<TaxelNoise> noise;
+  std::vector<TaxelNoise<>> noise;
   for (std::size_t f = 0; f < Fingers; ++f) {
     TaxelNoiseCalibration calibration(rows, cols, options.taxels);
     for (const Sample& sample : recording.samples) {

@@ -31,7 +31,7 @@ void follow(const fingerpad::DotFinder& finder, const Path& folder, const Take& 
 /// The largest displacement between answers that the recording supports.
 fingerpad::StickTestFit choose(const fingerpad::DotFinder& finder,
                                const Path& folder,
-                               const fingerpad::DotNoise& noise) {
+                               const fingerpad::DotNoise<>& noise) {
   // --slips asks for an object that is larger than the print
   fingerpad::StickTestCalibration<> calibration(finder.rows(), finder.cols(), noise,
                                                 {.covers_pattern = true});

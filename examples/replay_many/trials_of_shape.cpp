@@ -77,7 +77,7 @@ Trial cap() {
 Trial intensity() {
   using Picture = cv::Mat_<double>;
   constexpr double law_mm = 4, bright = 150;
-  constexpr fingerpad::BallPress ball{.ball_mm = 4, .mm_per_px = 0.1};
+  constexpr fingerpad::BallPress<> ball{.ball_mm = 4, .mm_per_px = 0.1};
   const Picture free(64, 64, bright);
   const auto measure = [=](Chance& chance) {
     std::vector<Picture> presses;

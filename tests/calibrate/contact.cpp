@@ -52,7 +52,7 @@ TEST_CASE("calibration: half of the free pad's curvature", "[contact_region]") {
       CHECK(by_camera.add(test::depths_of<double>(camera, free_pad(curvature), 70, 80)));
     }
     // sections are vertical, which makes a few percent on the slopes; through a camera as many
-    for (const FreePadCurvature& pad : {by_plan.fit(), by_camera.fit()}) {
+    for (const FreePadCurvature<>& pad : {by_plan.fit(), by_camera.fit()}) {
       CHECK(pad.median_per_mm == Approx(curvature).epsilon(0.08));
       CHECK(pad.threshold_per_mm == Approx(pad.median_per_mm / 2));
       CHECK(pad.noise_per_mm < 1e-6);

@@ -24,14 +24,14 @@ constexpr Index width = 130;
 
 /// A ball pressed into a gel whose law is known: a frame of the free pad and one with the ball.
 struct Gel {
-  IntensityLaw law{4, 0, 0};
+  IntensityLaw<> law{4, 0, 0};
   double ball_mm = 4;
   double depth_mm = 1.5;
   Point2<double> axis_mm = {6.4, 5.3};
   double mm_per_px = 0.1;
   double noise = 0;
 
-  BallPress press() const { return {.ball_mm = ball_mm, .mm_per_px = mm_per_px}; }
+  BallPress<> press() const { return {.ball_mm = ball_mm, .mm_per_px = mm_per_px}; }
   Image<double> free() const { return {height, width, 150.0}; }
   Image<double> pressed(Random& random) const {
     Image<double> frame = free();
@@ -162,7 +162,7 @@ TEST_CASE("intensity calibration: what tells nothing is refused", "[intensity_de
   CHECK(calibration.fit().status == FitStatus::nothing_to_check);
 
   CHECK(begins_with(refusal([&] { (void)calibration.fit(2); }), "IntensityCalibration: terms = 2"));
-  const auto refused = [&](const BallPress& press) {
+  const auto refused = [&](const BallPress<>& press) {
     return refusal([&] { (void)calibration.add(gel.free(), gel.free(), press); });
   };
   CHECK(begins_with(refused({.ball_mm = 0}), "BallPress: ball_mm = 0"));

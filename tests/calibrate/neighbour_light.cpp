@@ -56,7 +56,7 @@ Frames truths(const NeighbourLight<double>& light, const Map& reference, const F
   return truth;
 }
 
-NeighbourLightFit fit_of(const Map& reference,
+NeighbourLightFit<> fit_of(const Map& reference,
                          const Frames& measured,
                          const Frames& truth,
                          const NeighbourLightSearch& search = {}) {
@@ -99,7 +99,7 @@ TEST_CASE("calibration of neighbour light: the stated deviations are those of ma
   std::mt19937 random(9);
   std::normal_distribution<double> noise(0, 0.02);
   double m0_sq = 0, n_sq = 0;
-  NeighbourLightFit fit{};
+  NeighbourLightFit<> fit{};
   constexpr int trials = 100;
   for (int t = 0; t < trials; ++t) {
     Frames truth = exact;

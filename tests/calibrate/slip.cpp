@@ -351,10 +351,10 @@ TEST_CASE("dot noise: exchanged dots are left out, slow motion is said", "[stick
 }
 
 TEST_CASE("dot noise: what it refuses", "[stick]") {
-  CHECK(begins_with(refusal([] { DotNoiseCalibration(0, 3); }), "DotNoiseCalibration: rows = 0"));
-  CHECK(begins_with(refusal([] { DotNoiseCalibration(3, -1); }), "DotNoiseCalibration: cols = -1"));
+  CHECK(begins_with(refusal([] { DotNoiseCalibration<>(0, 3); }), "DotNoiseCalibration: rows = 0"));
+  CHECK(begins_with(refusal([] { DotNoiseCalibration<>(3, -1); }), "DotNoiseCalibration: cols = -1"));
   CHECK(begins_with(refusal([] {
-                      DotNoiseCalibration(3, 3, {0, 1, 1});
+                      DotNoiseCalibration<>(3, 3, {0, 1, 1});
                     }),
                     "DotNoiseCalibration: weights.self = 0"));
   DotNoiseCalibration calibration(3, 3);
@@ -575,7 +575,7 @@ TEST_CASE("thresholds from noise: which noise counts", "[stick]") {
   noise.edge_px = test::nan;
   CHECK(stick_test_for(300, noise).slip == Approx(mean.slip));
 
-  const auto said = [](const DotNoise& n, double reference_px,
+  const auto said = [](const DotNoise<>& n, double reference_px,
                        const StickTestOptions& search = {}) {
     return refusal([&] { stick_test_for(300, n, reference_px, search); });
   };

@@ -33,7 +33,7 @@ double gaussian(Random& random) {
 
 /// Sample k of a recording, reading(k, row, col, noise of deviation 1).
 template <class Reading>
-TaxelNoiseCalibration recorded(Index rows,
+TaxelNoiseCalibration<> recorded(Index rows,
                                Index cols,
                                Index samples,
                                std::uint64_t seed,
@@ -94,7 +94,7 @@ double mean_square(const std::vector<double>& y) {
   return sum / n;
 }
 
-bool same_noise(const TaxelNoise& a, const TaxelNoise& b) {
+bool same_noise(const TaxelNoise<>& a, const TaxelNoise<>& b) {
   return a.deviations == b.deviations && a.typical == b.typical &&
          a.largest_factor == b.largest_factor && a.windows == b.windows &&
          a.centroid_deviation_mm == b.centroid_deviation_mm;
@@ -441,13 +441,13 @@ TEST_CASE("taxel noise: recordings that do not tell are refused", "[taxel_noise]
   CHECK(said(recorded(2, 2, 640, 1, [](Index, Index, Index, double) { return 4095.0; },
                       {.saturated_at = 4095})) == unchanged);
   // and options that mean nothing
-  CHECK(refusal([] { TaxelNoiseCalibration(0, 3); }) ==
+  CHECK(refusal([] { TaxelNoiseCalibration<>(0, 3); }) ==
         "TaxelFeatures: rows = 0, must be in [1, 4096]");
-  CHECK(refusal([] { TaxelNoiseCalibration(3, -1); }) ==
+  CHECK(refusal([] { TaxelNoiseCalibration<>(3, -1); }) ==
         "TaxelFeatures: cols = -1, must be in [1, 4096]");
-  CHECK(refusal([] { TaxelNoiseCalibration(3, 3, {.window = 3}); }) ==
+  CHECK(refusal([] { TaxelNoiseCalibration<>(3, 3, {.window = 3}); }) ==
         "TaxelOptions: window = 3, must be in [4, 4096]");
-  CHECK(test::begins_with(refusal([] { TaxelNoiseCalibration(3, 3, {.pitch_mm = none}); }),
+  CHECK(test::begins_with(refusal([] { TaxelNoiseCalibration<>(3, 3, {.pitch_mm = none}); }),
                           "TaxelOptions: pitch_mm = "));
 }
 

@@ -29,7 +29,7 @@ double free_level(Index i, Index j) {
 
 TEST_CASE("intensity depth: the law holds pixel by pixel, whatever the lamp", "[intensity_depth]") {
   rc::prop("for every lamp and law", [] {
-    const IntensityLaw law{test::uniform(1, 6), test::uniform(-1, 1), test::uniform(-0.5, 0.5)};
+    const IntensityLaw<> law{test::uniform(1, 6), test::uniform(-1, 1), test::uniform(-0.5, 0.5)};
     const double lamp = test::log_uniform(0.2, 1.5);
     const double l = test::uniform(-0.2, 0.6);
     Image<double> free(20, 30);
@@ -118,7 +118,7 @@ TEST_CASE("intensity depth: smoothing averages the noise", "[intensity_depth]") 
 }
 
 TEST_CASE("intensity depth: fifty digits and duals", "[intensity_depth]") {
-  const IntensityLaw law{3, -0.5, 0.25};
+  const IntensityLaw<> law{3, -0.5, 0.25};
   using test::Digits50;
   const Digits50 fine = pressed_depth_mm(law, Digits50(0.3));
   CHECK(pressed_depth_mm(law, 0.3) == Approx(static_cast<double>(fine)).epsilon(1e-15));
@@ -137,7 +137,7 @@ TEST_CASE("intensity depth: what does not fit is refused", "[intensity_depth]") 
   CHECK(!depth(free, out, others).accepted());
   CHECK(out(3, 3) == 7);
 
-  const auto law = [&](const IntensityLaw& given) {
+  const auto law = [&](const IntensityLaw<>& given) {
     return refusal([&] { IntensityDepth<>{free, given}; });
   };
   CHECK(begins_with(law({0, 0, 0}), "IntensityLaw: linear_mm = 0"));

@@ -94,7 +94,7 @@ Pixels half_of(Pixels image) {
 struct Presses {
   static constexpr Index size = 96;
   struct Press {
-    BallPress ball;
+    BallPress<> ball;
     Pixels free{size, size}, pressed{size, size};
   };
   std::array<Press, 2> all;
@@ -260,7 +260,7 @@ struct Drag {
   static constexpr Index across = 15;
   std::vector<test::PointsPx> dots;
   test::ContactFlags contact{across, across};
-  DotNoise noise = independent_dot_noise(0.06);
+  DotNoise<> noise = independent_dot_noise(0.06);
 
   Drag() {
     Random random(3);

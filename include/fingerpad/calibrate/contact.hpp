@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <type_traits>
 #include <vector>
 
 #include "fingerpad/calibrate/fit.hpp"
@@ -34,27 +35,29 @@ struct ThresholdRule {
 };
 
 /// What the free pad is like. All curvatures in 1/mm.
+template <scalar S = double>
 struct [[nodiscard]] FreePadCurvature {
   FitStatus status = FitStatus::ok;
-  double threshold_per_mm = 0;  ///< delta, for ContactTest
-  double median_per_mm = 0;     ///< of E over the pad
-  double median_error_per_mm =  ///< its standard error, by how the frames' own medians differ; of
-      not_a_number<double>();   ///< the threshold level_share of it, where the level sets that;
-                                ///< NaN from a single frame
-  double noise_per_mm = 0;      ///< root mean square of sigma over the pad; 0 from a single frame
-  double edge_noise_mm = 0;     ///< standard deviation that it alone would leave a point of a flat
-                                ///< object's edge; HalfLevelEdge, which smooths, comes to less
-  Index pixels = 0;             ///< with a curvature in every frame
+  S threshold_per_mm = S(0);  ///< delta, for ContactTest
+  S median_per_mm = S(0);     ///< of E over the pad
+  S median_error_per_mm =     ///< its standard error, by how the frames' own medians differ; of
+      not_a_number<S>();      ///< the threshold level_share of it, where the level sets that;
+                              ///< NaN from a single frame
+  S noise_per_mm = S(0);      ///< root mean square of sigma over the pad; 0 from a single frame
+  S edge_noise_mm = S(0);     ///< standard deviation that it alone would leave a point of a flat
+                              ///< object's edge; HalfLevelEdge, which smooths, comes to less
+  Index pixels = 0;           ///< with a curvature in every frame
   int frames = 0;
 
   bool ok() const { return status == FitStatus::ok; }
 };
 
 /// Collects curvature statistics of the free pad. It must be the statistic, the ring and the camera
-/// of the contact test. Takes 32 bytes per pixel.
+/// of the contact test. Sums of float are double. Takes 32 bytes per pixel.
 template <class Statistic = ClampedMean<>, class CameraType = Camera<double>, scalar S = float>
 class FreePadCalibration {
   using Map = CurvatureMap<Statistic, CameraType, S>;
+  using T = std::conditional_t<std::is_same_v<S, float>, double, S>;
 
  public:
   /// Refuses bad parameters (parameter_error).
@@ -62,13 +65,14 @@ class FreePadCalibration {
                      Index rows,
                      Index cols,
                      const CurvatureRing& ring = {})
-      : pixel_mm_(detail::pixel_pitch(checked(camera, rows, cols)).at_plate_mm),
-        ring_px_(ring.radius_px),
+      : pixel_mm_(
+            detail::narrowed<T>(detail::pixel_pitch(checked(camera, rows, cols)).at_plate_mm)),
+        ring_px_(T(ring.radius_px)),
         map_(camera, rows, cols, ring, detail::no_pad_mm),
         workspace_(map_.workspace()),
         curvature_(static_cast<std::size_t>(rows * cols)),
-        mean_(curvature_.size(), 0),
-        squares_(curvature_.size(), 0) {}
+        mean_(curvature_.size(), T(0)),
+        squares_(curvature_.size(), T(0)) {}
 
   /// Adds the depth map of a frame, mm; false, and nothing changed, if it has another size.
   template <grid Depth>
@@ -81,10 +85,10 @@ class FreePadCalibration {
     of_frame_.clear();
     for (std::size_t k = 0; k < mean_.size(); ++k) {
       // a pixel that is once without curvature is NaN from then on
-      const double here = static_cast<double>(value(curvature_[k]));
-      const double change = here - mean_[k];
-      mean_[k] += change / frames_;
-      squares_[k] += change * (here - mean_[k]);
+      const T here = T(curvature_[k]);
+      const T change = here - mean_[k];
+      mean_[k] += T(change / T(frames_));
+      squares_[k] += T(change * T(here - mean_[k]));
       if (is_finite(mean_[k])) {
         of_frame_.push_back(here);
       }
@@ -97,18 +101,18 @@ class FreePadCalibration {
 
   /// Refuses a rule out of range, no frames, no pixel with a curvature in all of them, and a pad
   /// that the rule leaves no positive threshold (parameter_error).
-  FreePadCurvature fit(const ThresholdRule& rule = {}) const {
+  FreePadCurvature<T> fit(const ThresholdRule& rule = {}) const {
     check(rule);
-    FreePadCurvature pad;
+    FreePadCurvature<T> pad;
     pad.frames = frames_;
-    std::vector<double> means;
-    std::vector<double> sigmas;
-    double variance = 0;
+    std::vector<T> means;
+    std::vector<T> sigmas;
+    T variance = T(0);
     for (std::size_t k = 0; k < mean_.size(); ++k) {
       if (is_finite(squares_[k])) {
-        const double of_pixel = frames_ > 1 ? squares_[k] / (frames_ - 1) : 0;
+        const T of_pixel = frames_ > 1 ? T(squares_[k] / T(frames_ - 1)) : T(0);
         means.push_back(mean_[k]);
-        sigmas.push_back(std::sqrt(of_pixel));
+        sigmas.push_back(root_of(of_pixel));
         variance += of_pixel;
       }
     }
@@ -116,23 +120,24 @@ class FreePadCalibration {
     expects(frames_ > 0, "FreePadCalibration", "frames", static_cast<long long>(frames_), ">= 1");
     expects(pad.pixels > 0, "FreePadCalibration", "pixels", static_cast<long long>(pad.pixels),
             ">= 1 with a curvature in every frame");
-    pad.noise_per_mm = std::sqrt(variance / static_cast<double>(pad.pixels));
-    std::vector<double> lows = means;
+    pad.noise_per_mm = root_of(T(variance / T(static_cast<double>(pad.pixels))));
+    std::vector<T> lows = means;
     for (std::size_t k = 0; k < lows.size(); ++k) {
-      lows[k] -= rule.sigmas * (rule.pooled_sigma ? pad.noise_per_mm : sigmas[k]);
+      lows[k] -= T(T(rule.sigmas) * (rule.pooled_sigma ? pad.noise_per_mm : sigmas[k]));
     }
     pad.median_per_mm = quantile(means, 0.5);
     pad.median_error_per_mm = standard_error(medians_);
-    pad.threshold_per_mm =
-        (std::min)(rule.level_share * pad.median_per_mm, quantile(lows, rule.quantile));
+    const T level = T(rule.level_share) * pad.median_per_mm;
+    const T low = quantile(lows, rule.quantile);
+    pad.threshold_per_mm = low < level ? low : level;
     // the mean curvature across an edge rises by 4 / (pi r) of its jump per mm, see edge_level.hpp
     pad.edge_noise_mm =
-        pad.noise_per_mm / pad.median_per_mm * 0.785398163397448 * ring_px_ * pixel_mm_;
-    expects(pad.threshold_per_mm > 0, "FreePadCalibration", "threshold_per_mm",
+        pad.noise_per_mm / pad.median_per_mm * T(0.785398163397448) * ring_px_ * pixel_mm_;
+    expects(T(0) < pad.threshold_per_mm, "FreePadCalibration", "threshold_per_mm",
             pad.threshold_per_mm,
             "> 0: the pad bulges too little for its noise; a larger ring, or "
             "more smoothing of the depth, helps");
-    if (pad.median_per_mm < 1e-3) {  // as of a sphere of a metre: no pad is as flat
+    if (pad.median_per_mm < T(1e-3)) {  // as of a sphere of a metre: no pad is as flat
       pad.status = FitStatus::depths_not_in_mm;
     } else if (2 * means.size() < mean_.size()) {
       pad.status = FitStatus::depths_missing;
@@ -156,34 +161,40 @@ class FreePadCalibration {
             "in [0, 0.5]");
   }
 
-  static double quantile(std::vector<double>& values, double share) {
+  static T quantile(std::vector<T>& values, double share) {
     const auto at = static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
     std::nth_element(values.begin(), values.begin() + at, values.end());
     return values[static_cast<std::size_t>(at)];
   }
 
   /// Of the mean of values that are independent; NaN of a single one.
-  static double standard_error(const std::vector<double>& values) {
-    const double n = static_cast<double>(values.size());
-    double mean = 0, squares = 0;
-    for (const double x : values) {
-      mean += x / n;
+  static T standard_error(const std::vector<T>& values) {
+    const T n = T(static_cast<double>(values.size()));
+    T mean = T(0), squares = T(0);
+    for (const T& x : values) {
+      mean += T(x / n);
     }
-    for (const double x : values) {
-      squares += (x - mean) * (x - mean);
+    for (const T& x : values) {
+      squares += square(T(x - mean));
     }
-    return std::sqrt(squares / (n * (n - 1)));
+    return root_of(T(squares / T(n * T(n - T(1)))));
   }
 
-  double pixel_mm_;
-  double ring_px_;
+  /// 0 of 0 without the derivative, which would be infinite.
+  static T root_of(const T& x) {
+    using std::sqrt;
+    return value(x) == 0 ? T(0) : T(sqrt(x));
+  }
+
+  T pixel_mm_;
+  T ring_px_;
   Map map_;
   typename Map::Workspace workspace_;
   std::vector<S> curvature_;
-  std::vector<double> mean_;     ///< E of each pixel
-  std::vector<double> squares_;  ///< sum of squared deviations from it
-  std::vector<double> of_frame_;
-  std::vector<double> medians_;  ///< of the frames
+  std::vector<T> mean_;     ///< E of each pixel
+  std::vector<T> squares_;  ///< sum of squared deviations from it
+  std::vector<T> of_frame_;
+  std::vector<T> medians_;  ///< of the frames
   int frames_ = 0;
 };
 

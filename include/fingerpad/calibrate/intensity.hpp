@@ -19,44 +19,50 @@
 #include "fingerpad/core/scalar.hpp"
 #include "fingerpad/depth/intensity_depth.hpp"
 #include "fingerpad/math/detail/small_matrices.hpp"
+#include "fingerpad/math/detail/zeros.hpp"
 
 namespace fingerpad {
 inline namespace v0 {
 
 /// A ball and the camera that sees it pressed.
+template <scalar S = double>
 struct BallPress {
-  double ball_mm = 4;          ///< its radius; finite, > 0
-  double mm_per_px = 0.05;     ///< finite, > 0
-  double contact_share = 0.1;  ///< pixels count where the ball is deeper than this share of its
-                               ///< depth: nearer to the rim the gel bridges; in [0, 1)
+  S ball_mm = S(4);             ///< its radius; finite, > 0
+  S mm_per_px = S(5) / S(100);  ///< finite, > 0
+  double contact_share = 0.1;   ///< pixels count where the ball is deeper than this share of its
+                                ///< depth: nearer to the rim the gel bridges; in [0, 1)
 };
-inline void expects_valid(const BallPress& press) {
+template <scalar S>
+void expects_valid(const BallPress<S>& press) {
   constexpr const char* owner = "BallPress";
-  expects(is_finite(press.ball_mm) && press.ball_mm > 0, owner, "ball_mm", press.ball_mm,
+  expects(is_finite(press.ball_mm) && S(0) < press.ball_mm, owner, "ball_mm", press.ball_mm,
           "finite and > 0");
-  expects(is_finite(press.mm_per_px) && press.mm_per_px > 0, owner, "mm_per_px", press.mm_per_px,
+  expects(is_finite(press.mm_per_px) && S(0) < press.mm_per_px, owner, "mm_per_px", press.mm_per_px,
           "finite and > 0");
   expects(press.contact_share >= 0 && press.contact_share < 1, owner, "contact_share",
           press.contact_share, "in [0, 1)");
 }
 
 /// The law, and how well it is known.
+template <scalar S = double>
 struct [[nodiscard]] IntensityFit {
   FitStatus status = FitStatus::nothing_to_check;
-  IntensityLaw law = {};
+  IntensityLaw<S> law = {};
   /// Of linear_mm, square_mm and cube_mm, mm^2; 0 for what was not fitted. Neighbouring pixels err
   /// alike: they count as one in blocks of 16 x 16.
-  std::array<std::array<double, 3>, 3> covariance = {};
-  double mean_error_mm = 0;  ///< |depth by the law - depth of the ball|, over all presses
-  double max_error_mm = 0;
-  double max_depth_mm = 0;  ///< of the balls: beyond it the law is a guess
-  Index pixels = 0;         ///< in contact with a ball
+  detail::SmallMatrix<S, 3> covariance = detail::zero_matrix<S, 3>();
+  S mean_error_mm = S(0);  ///< |depth by the law - depth of the ball|, over all presses
+  S max_error_mm = S(0);
+  S max_depth_mm = S(0);  ///< of the balls: beyond it the law is a guess
+  Index pixels = 0;       ///< in contact with a ball
 
   bool ok() const { return status == FitStatus::ok; }
 };
 
 /// Collects presses and fits the law to all of them. One press tells one constant; three take
-/// presses that differ in depth, or one that is deep.
+/// presses that differ in depth, or one that is deep. In long double or double; sums over thousands
+/// of pixels leave a float three digits.
+template <scalar S = double>
 class IntensityCalibration {
  public:
   /// Refuses bad parameters (parameter_error).
@@ -68,14 +74,14 @@ class IntensityCalibration {
   /// where their sizes differ, where the light beside the ball is not that of the free pad, or
   /// where no ball shows: a darkest spot that is round and tells 30 pixels.
   template <grid Free, grid Pressed>
-  bool add(const Free& free, const Pressed& pressed, const BallPress& ball) {
+  bool add(const Free& free, const Pressed& pressed, const BallPress<S>& ball) {
     expects_valid(ball);
     const auto from = as_view(free);
-    const IntensityDepth<double> log_ratio(from, {1, 0, 0}, options_);
+    const IntensityDepth<S> log_ratio(from, {1, 0, 0}, options_);
     auto workspace = log_ratio.workspace();
-    Press press{ball, {}, {}, 0, 0, from.cols()};
+    Press press(ball, from.cols());
     press.log.resize(static_cast<std::size_t>(from.rows() * from.cols()));
-    const StridedView<double> to(press.log.data(), from.rows(), from.cols(), from.cols());
+    const StridedView<S> to(press.log.data(), from.rows(), from.cols(), from.cols());
     if (!log_ratio(pressed, to, workspace).ok() || !begin(press)) {
       return false;
     }
@@ -88,15 +94,15 @@ class IntensityCalibration {
   /// the mean error is more than a thirtieth of the depth: a real gel leaves half of that. A ball
   /// of twice the radius, pressed half as deep, looks the same: nothing tells a diameter for a
   /// radius.
-  IntensityFit fit(int terms = 1) const {
+  IntensityFit<S> fit(int terms = 1) const {
     expects(terms == 1 || terms == 3, "IntensityCalibration", "terms",
             static_cast<long long>(terms), "1 or 3");
-    IntensityFit result;
+    IntensityFit<S> result;
     if (presses_.empty()) {
       return result;
     }
     std::vector<Press> presses = presses_;
-    Law law = {start_mm(), 0, 0};
+    Law law = {start_mm(), S(0), S(0)};
     // with one constant the contact is found as well; with three it stands
     result.status = solve(presses, law, 1);
     if (terms == 3 && result.ok()) {
@@ -111,229 +117,244 @@ class IntensityCalibration {
   }
 
  private:
-  using Law = std::array<double, 3>;
-  using Pose = std::array<double, 3>;  // x and y of the axis, depth
+  using Law = std::array<S, 3>;
+  using Pose = std::array<S, 3>;  // x and y of the axis, depth
   static constexpr int max_steps = 50;
   static constexpr int settling_steps = 10;  // in which the contact may change
-  static constexpr double converged_mm = 1e-7;
   static constexpr Index min_pixels = 30;
   static constexpr Index block_px = 16;
 
   struct Press {
-    BallPress ball;
-    std::vector<double> log;  // ln(free / now), NaN: unknown
-    Point2<double> axis_mm;   // from the first pixel
-    double depth_mm;
-    double start_mm;  // the constant that this press alone suggests
-    Index cols = 0;
-    Point2<double> contact_mm = {0, 0};  // the contact that counts: its middle and
-    double contact_radius_mm = 0;
+    Press(const BallPress<S>& of, Index columns) : ball(of), cols(columns) {}
+    BallPress<S> ball;
+    std::vector<S> log = {};           // ln(free / now), NaN: unknown
+    Point2<S> axis_mm = {S(0), S(0)};  // from the first pixel
+    S depth_mm = S(0);
+    S start_mm = S(0);  // the constant that this press alone suggests
+    Index cols;
+    Point2<S> contact_mm = {S(0), S(0)};  // the contact that counts: its middle and
+    S contact_radius_sq = S(0);
 
     void settle() {
-      const double root = ball.ball_mm - depth_mm * (1 - ball.contact_share);
+      const S root = ball.ball_mm - depth_mm * S(1 - ball.contact_share);
+      const S radius_sq = square(ball.ball_mm) - square(root);
       contact_mm = axis_mm;
-      contact_radius_mm = std::sqrt((std::max)(0.0, ball.ball_mm * ball.ball_mm - root * root));
+      contact_radius_sq = S(0) < radius_sq ? radius_sq : S(0);
     }
-    Point2<double> at(Index k) const {
-      return {ball.mm_per_px * static_cast<double>(k % cols),
-              ball.mm_per_px * static_cast<double>(k / cols)};
+    Point2<S> at(Index k) const {
+      return {S(ball.mm_per_px * S(static_cast<double>(k % cols))),
+              S(ball.mm_per_px * S(static_cast<double>(k / cols)))};
     }
     /// Calls visit(k, l, p, root) for the pixels in contact: l the logarithm, p from the axis,
     /// root = sqrt(R^2 - r^2).
     template <class Visit>
     void for_contact(const Visit& visit) const {
-      const double radius_sq = contact_radius_mm * contact_radius_mm;
+      using std::sqrt;
       for (std::size_t k = 0; k < log.size(); ++k) {
-        const Point2<double> here = at(static_cast<Index>(k));
-        const Point2<double> p = here - axis_mm;
-        const double root_sq = ball.ball_mm * ball.ball_mm - squared_norm(p);
-        if (squared_norm(Point2<double>(here - contact_mm)) < radius_sq && root_sq > 0 &&
+        const Point2<S> here = at(static_cast<Index>(k));
+        const Point2<S> p = here - axis_mm;
+        const S root_sq = square(ball.ball_mm) - squared_norm(p);
+        if (squared_norm(Point2<S>(here - contact_mm)) < contact_radius_sq && S(0) < root_sq &&
             is_finite(log[k])) {
-          visit(static_cast<Index>(k), log[k], p, std::sqrt(root_sq));
+          visit(static_cast<Index>(k), log[k], p, S(sqrt(root_sq)));
         }
       }
     }
   };
 
+  static S size_of(const S& x) { return x < S(0) ? S(-x) : x; }
+
   /// Gauss-Newton steps on the law and the poses.
   static FitStatus solve(std::vector<Press>& presses, Law& law, int terms) {
+    const S settled_mm =
+        S((std::max)(scalar_real_t<S>(1e-7), scalar_real_t<S>(1000) * epsilon<S>()));
     for (int step = 0; step < max_steps; ++step) {
       const Equations sums(presses, law, terms);
       if (!sums.good) {
         return FitStatus::not_converged;
       }
       const Law change = sums.solve_law();
-      double moved = 0;
+      S moved = S(0);
+      const auto moves = [&](const S& by) { moved = moved < size_of(by) ? size_of(by) : moved; };
       for (std::size_t k = 0; k < 3; ++k) {
         law[k] -= change[k];
-        moved = (std::max)(moved, std::abs(change[k]));
+        moves(change[k]);
       }
       for (std::size_t p = 0; p < presses.size(); ++p) {
         const Pose pose = sums.solve_pose(p, change);
-        presses[p].axis_mm = presses[p].axis_mm - Point2<double>{pose[0], pose[1]};
+        presses[p].axis_mm = presses[p].axis_mm - Point2<S>{pose[0], pose[1]};
         presses[p].depth_mm -= pose[2];
-        moved = (std::max)({moved, std::abs(pose[0]), std::abs(pose[1]), std::abs(pose[2])});
+        for (const S& by : pose) {
+          moves(by);
+        }
         if (terms == 1 && step < settling_steps) {
           presses[p].settle();
         }
       }
-      if (moved < converged_mm) {
+      if (moved < settled_mm) {
         return FitStatus::ok;
       }
     }
     return FitStatus::not_converged;
   }
 
-  static Law powers(double l, int terms) {
-    return {l, terms == 3 ? l * l : 0, terms == 3 ? l * l * l : 0};
+  static Law powers(const S& l, int terms) {
+    const S two = l * l;
+    return terms == 3 ? Law{l, two, S(two * l)} : Law{l, S(0), S(0)};
   }
-  static double depth_of(const Law& law, double l) {
-    return l * (law[0] + l * (law[1] + l * law[2]));
+  static S depth_of(const Law& law, const S& l) {
+    return pressed_depth_mm(IntensityLaw<S>{law[0], law[1], law[2]}, l);
   }
 
   /// Where the ball is and what it suggests, from the paraboloid l = q0 + q1 x + q2 y + q3 (x^2 +
   /// y^2) fitted to where the logarithm is above half its largest.
   static bool begin(Press& press) {
-    double largest = 0;
-    for (const double l : press.log) {
-      largest = l > largest ? l : largest;
+    S largest = S(0);
+    for (const S& l : press.log) {
+      largest = largest < l ? l : largest;
     }
-    detail::SmallMatrix<double, 4> matrix{};
-    std::array<double, 4> right{};
+    auto matrix = detail::zero_matrix<S, 4>();
+    auto right = detail::zeros<S, 4>();
     Index count = 0;
     for (std::size_t k = 0; k < press.log.size(); ++k) {
-      if (press.log[k] > largest / 2) {
-        const Point2<double> p = press.at(static_cast<Index>(k));
-        const std::array<double, 4> row = {1, p.x, p.y, squared_norm(p)};
+      if (largest < S(2) * press.log[k]) {
+        const Point2<S> p = press.at(static_cast<Index>(k));
+        const std::array<S, 4> row = {S(1), p.x, p.y, S(squared_norm(p))};
         for (std::size_t i = 0; i < 4; ++i) {
           for (std::size_t j = 0; j < 4; ++j) {
-            matrix[i][j] += row[i] * row[j];
+            matrix[i][j] += S(row[i] * row[j]);
           }
-          right[i] += row[i] * press.log[k];
+          right[i] += S(row[i] * press.log[k]);
         }
         ++count;
       }
     }
-    const detail::NormalEquations<double, 4> equations(matrix, 1e-12);
+    const detail::NormalEquations<S, 4> equations(matrix, pivot_least());
     if (count < min_pixels || !equations.good) {
       return false;
     }
-    const std::array<double, 4> q = equations.solve(right);
-    if (!(q[3] < 0)) {
+    const std::array<S, 4> q = equations.solve(right);
+    if (!(q[3] < S(0))) {
       return false;  // not darkest in the middle
     }
-    press.axis_mm = {-q[1] / (2 * q[3]), -q[2] / (2 * q[3])};
-    press.start_mm = -1 / (2 * press.ball.ball_mm * q[3]);
-    press.depth_mm = press.start_mm * (q[0] - q[3] * squared_norm(press.axis_mm));
+    const S twice = S(-2) * q[3];
+    press.axis_mm = {S(q[1] / twice), S(q[2] / twice)};
+    press.start_mm = S(1) / S(press.ball.ball_mm * twice);
+    press.depth_mm = press.start_mm * S(q[0] - S(q[3] * squared_norm(press.axis_mm)));
     press.settle();
-    return press.depth_mm > 0 && press.depth_mm < press.ball.ball_mm;
+    return S(0) < press.depth_mm && press.depth_mm < press.ball.ball_mm;
   }
 
-  double start_mm() const {
-    double sum = 0;
+  /// Below it a column is no longer independent: 1e-12, or what rounding leaves.
+  static double pivot_least() { return (std::max)(1e-12, static_cast<double>(epsilon<S>())); }
+
+  S start_mm() const {
+    S sum = S(0);
     for (const Press& press : presses_) {
       sum += press.start_mm;
     }
-    return sum / static_cast<double>(presses_.size());
+    return S(sum / S(static_cast<double>(presses_.size())));
   }
 
   /// Normal equations of law and poses; the poses, which do not meet each other, are eliminated.
   struct Equations {
     struct OfPose {
-      detail::SmallMatrix<double, 3> pose{};
-      detail::SmallMatrix<double, 3> with_law{};  // pose x law
-      Pose right{};
+      detail::SmallMatrix<S, 3> pose = detail::zero_matrix<S, 3>();
+      detail::SmallMatrix<S, 3> with_law = detail::zero_matrix<S, 3>();  // pose x law
+      Pose right = detail::zeros<S, 3>();
     };
     std::vector<OfPose> poses;
-    detail::SmallMatrix<double, 3> law{};
-    Law right{};
+    detail::SmallMatrix<S, 3> law = detail::zero_matrix<S, 3>();
+    Law right = detail::zeros<S, 3>();
     bool good = true;
 
     Equations(const std::vector<Press>& presses, const Law& at, int terms) {
       for (const Press& press : presses) {
         OfPose& of = poses.emplace_back();
         Index count = 0;
-        press.for_contact([&](Index, double l, const Point2<double>& p, double root) {
-          const double ball = press.depth_mm - press.ball.ball_mm + root;
-          const double error = depth_of(at, l) - ball;
+        press.for_contact([&](Index, const S& l, const Point2<S>& p, const S& root) {
+          const S ball = press.depth_mm - press.ball.ball_mm + root;
+          const S error = depth_of(at, l) - ball;
           const Law dl = powers(l, terms);
-          const Pose dp = {-p.x / root, -p.y / root, -1};
+          const Pose dp = {S(-p.x / root), S(-p.y / root), S(-1)};
           for (std::size_t i = 0; i < 3; ++i) {
             for (std::size_t j = 0; j < 3; ++j) {
-              law[i][j] += dl[i] * dl[j];
-              of.pose[i][j] += dp[i] * dp[j];
-              of.with_law[i][j] += dp[i] * dl[j];
+              law[i][j] += S(dl[i] * dl[j]);
+              of.pose[i][j] += S(dp[i] * dp[j]);
+              of.with_law[i][j] += S(dp[i] * dl[j]);
             }
-            right[i] += dl[i] * error;
-            of.right[i] += dp[i] * error;
+            right[i] += S(dl[i] * error);
+            of.right[i] += S(dp[i] * error);
           }
           ++count;
         });
         good = good && count >= min_pixels;
       }
       for (std::size_t k = static_cast<std::size_t>(terms); k < 3; ++k) {
-        law[k][k] = 1;  // not fitted: no change
+        law[k][k] = S(1);  // not fitted: no change
       }
       eliminate();
     }
 
     void eliminate() {
       for (const OfPose& of : poses) {
-        const detail::NormalEquations<double, 3> own(of.pose);
+        const detail::NormalEquations<S, 3> own(of.pose);
         good = good && own.good;
         for (std::size_t j = 0; good && j < 3; ++j) {
           const auto x = own.solve({of.with_law[0][j], of.with_law[1][j], of.with_law[2][j]});
           for (std::size_t k = 0; k < 3; ++k) {
-            right[j] -= x[k] * of.right[k];
+            right[j] -= S(x[k] * of.right[k]);
             for (std::size_t i = 0; i < 3; ++i) {
-              law[i][j] -= of.with_law[k][i] * x[k];
+              law[i][j] -= S(of.with_law[k][i] * x[k]);
             }
           }
         }
       }
-      good = good && detail::NormalEquations<double, 3>(law).good;
+      good = good && detail::NormalEquations<S, 3>(law).good;
     }
 
-    Law solve_law() const { return detail::NormalEquations<double, 3>(law).solve(right); }
+    Law solve_law() const { return detail::NormalEquations<S, 3>(law).solve(right); }
     Pose solve_pose(std::size_t p, const Law& change) const {
       Pose rest = poses[p].right;
       for (std::size_t i = 0; i < 3; ++i) {
         for (std::size_t j = 0; j < 3; ++j) {
-          rest[i] -= poses[p].with_law[i][j] * change[j];
+          rest[i] -= S(poses[p].with_law[i][j] * change[j]);
         }
       }
-      return detail::NormalEquations<double, 3>(poses[p].pose).solve(rest);
+      return detail::NormalEquations<S, 3>(poses[p].pose).solve(rest);
     }
   };
+
+  static void raise(S& largest, const S& x) { largest = largest < x ? x : largest; }
 
   static void judge(const std::vector<Press>& presses,
                     const Law& law,
                     int terms,
-                    IntensityFit& result) {
-    double blocks_sq = 0;
+                    IntensityFit<S>& result) {
+    S blocks_sq = S(0);
     bool too_deep = false;
     for (const Press& press : presses) {
-      too_deep = too_deep || press.depth_mm >= press.ball.ball_mm;
+      too_deep = too_deep || !(press.depth_mm < press.ball.ball_mm);
       const Index block_cols = press.cols / block_px + 1;
-      std::vector<double> blocks(press.log.size() / std::size_t(block_px) + std::size_t(block_cols),
-                                 0);
-      result.max_depth_mm = (std::max)(result.max_depth_mm, press.depth_mm);
-      press.for_contact([&](Index k, double l, const Point2<double>&, double root) {
-        const double error = depth_of(law, l) - (press.depth_mm - press.ball.ball_mm + root);
-        result.mean_error_mm += std::abs(error);
-        result.max_error_mm = (std::max)(result.max_error_mm, std::abs(error));
+      std::vector<S> blocks(press.log.size() / std::size_t(block_px) + std::size_t(block_cols),
+                            S(0));
+      raise(result.max_depth_mm, press.depth_mm);
+      press.for_contact([&](Index k, const S& l, const Point2<S>&, const S& root) {
+        const S error = depth_of(law, l) - S(press.depth_mm - press.ball.ball_mm + root);
+        result.mean_error_mm += size_of(error);
+        raise(result.max_error_mm, size_of(error));
         ++result.pixels;
         const Index block = k / press.cols / block_px * block_cols + k % press.cols / block_px;
         blocks[static_cast<std::size_t>(block)] += error;
       });
-      for (const double sum : blocks) {
-        blocks_sq += sum * sum;
+      for (const S& sum : blocks) {
+        blocks_sq += square(sum);
       }
     }
-    result.mean_error_mm /= static_cast<double>(result.pixels);
-    if (result.max_depth_mm < 0.05) {
+    result.mean_error_mm /= S(static_cast<double>(result.pixels));
+    if (result.max_depth_mm < S(0.05)) {
       result.status = FitStatus::depths_not_in_mm;
-    } else if (too_deep || 30 * result.mean_error_mm > result.max_depth_mm) {
+    } else if (too_deep || result.max_depth_mm < S(30) * result.mean_error_mm) {
       result.status = FitStatus::colours_unexplained;
     }
     const Equations sums(presses, law, terms);
@@ -341,11 +362,11 @@ class IntensityCalibration {
       result.status = FitStatus::nothing_to_check;
       return;
     }
-    const detail::NormalEquations<double, 3> equations(sums.law);
-    const double variance = blocks_sq / static_cast<double>(result.pixels);
+    const detail::NormalEquations<S, 3> equations(sums.law);
+    const S variance = blocks_sq / S(static_cast<double>(result.pixels));
     for (std::size_t j = 0; j < static_cast<std::size_t>(terms); ++j) {
-      Law unit{};
-      unit[j] = 1;
+      Law unit = detail::zeros<S, 3>();
+      unit[j] = S(1);
       const Law column = equations.solve(unit);
       for (std::size_t i = 0; i < static_cast<std::size_t>(terms); ++i) {
         result.covariance[i][j] = variance * column[i];

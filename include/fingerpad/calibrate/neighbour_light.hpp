@@ -10,11 +10,13 @@
 #include <cmath>
 #include <cstddef>
 #include <span>
+#include <type_traits>
 #include <vector>
 
 #include "fingerpad/calibrate/fit.hpp"
 #include "fingerpad/core/expects.hpp"
 #include "fingerpad/core/grid.hpp"
+#include "fingerpad/core/scalar.hpp"
 #include "fingerpad/depth/detail/inclination_sums.hpp"
 #include "fingerpad/depth/neighbour_light.hpp"
 
@@ -28,15 +30,16 @@ struct NeighbourLightSearch {
   Index every_px = 4;        ///< use each n-th row and column: neighbours say the same anyway
 };
 
+template <scalar S = double>
 struct [[nodiscard]] NeighbourLightFit {
   FitStatus status = FitStatus::not_converged;
-  NeighbourLight<double> light = {};
-  double rms_before_mm = 0;  ///< of l - l_true
-  double rms_after_mm = 0;   ///< of what the best fit leaves
-  double m0_sd = 0;  ///< standard deviations as of independent pixels: too small where the errors
-  double n_sd = 0;   ///< of neighbouring pixels are alike
+  NeighbourLight<S> light = {};
+  S rms_before_mm = S(0);  ///< of l - l_true
+  S rms_after_mm = S(0);   ///< of what the best fit leaves
+  S m0_sd = S(0);    ///< standard deviations as of independent pixels: too small where the errors
+  S n_sd = S(0);     ///< of neighbouring pixels are alike
   Index pixels = 0;  ///< that took part
-  std::vector<double> rms_of_radius_mm = {};  ///< after the best m0 and n, smallest radius first
+  std::vector<S> rms_of_radius_mm = {};  ///< after the best m0 and n, smallest radius first
 
   bool ok() const { return status == FitStatus::ok; }
 };
@@ -44,82 +47,105 @@ struct [[nodiscard]] NeighbourLightFit {
 namespace detail {
 
 /// One pixel of the fit.
+template <scalar S>
 struct LightSample {
-  double error_mm;  ///< l - l_true
-  double risen_mm;  ///< l - l0
-  double psi_sum_rad;
+  S error_mm;  ///< l - l_true
+  S risen_mm;  ///< l - l0
+  S psi_sum_rad;
+
+  /// What m0 is multiplied by at n.
+  S per_m0(const S& n) const {
+    using std::exp;
+    return S(S(exp(S(n * risen_mm))) * psi_sum_rad);
+  }
 };
 
 /// The best m0 for one n, and what it leaves.
+template <scalar S>
 struct LightAtN {
-  double n;
-  double m0 = 0;
-  double left_sq = 0;  ///< sum of squared residuals
+  S n = S(0);
+  S m0 = S(0);
+  S left_sq = S(0);  ///< sum of squared residuals
   // of the Jacobian's columns u = e^{n dl} psi_sum and v = m0 dl u:
-  double uu = 0, uv = 0, vv = 0;
+  S uu = S(0), uv = S(0), vv = S(0);
 };
 
-inline LightAtN light_at(double n, const std::vector<LightSample>& samples) {
-  LightAtN at{n};
-  double eu = 0, ee = 0;
-  for (const LightSample& s : samples) {
-    const double u = std::exp(n * s.risen_mm) * s.psi_sum_rad;
-    eu += s.error_mm * u;
-    ee += s.error_mm * s.error_mm;
-    at.uu += u * u;
-    at.uv += s.risen_mm * u * u;
-    at.vv += s.risen_mm * u * s.risen_mm * u;
+template <scalar S>
+LightAtN<S> light_at(const S& n, const std::vector<LightSample<S>>& samples) {
+  LightAtN<S> at;
+  at.n = n;
+  S eu = S(0), ee = S(0);
+  for (const LightSample<S>& s : samples) {
+    const S u = s.per_m0(n);
+    const S v = s.risen_mm * u;
+    eu += S(s.error_mm * u);
+    ee += square(s.error_mm);
+    at.uu += square(u);
+    at.uv += S(v * u);
+    at.vv += square(v);
   }
-  at.m0 = at.uu > 0 ? eu / at.uu : 0;
-  at.uv *= at.m0;
-  at.vv *= at.m0 * at.m0;
-  at.left_sq = ee - at.m0 * eu;
+  at.m0 = S(0) < at.uu ? S(eu / at.uu) : S(0);
+  at.uv = S(at.uv * at.m0);
+  at.vv = S(at.vv * square(at.m0));
+  at.left_sq = S(ee - at.m0 * eu);
   return at;
 }
 
 /// Where the residual is orthogonal to v: half the slope of left_sq along n, less its sign.
-inline double slope_along_n(const LightAtN& at, const std::vector<LightSample>& samples) {
-  double slope = 0;
-  for (const LightSample& s : samples) {
-    const double u = std::exp(at.n * s.risen_mm) * s.psi_sum_rad;
-    slope += (s.error_mm - at.m0 * u) * s.risen_mm * u;
+template <scalar S>
+S slope_along_n(const S& n, const std::vector<LightSample<S>>& samples) {
+  const S m0 = light_at(n, samples).m0;
+  S slope = S(0);
+  for (const LightSample<S>& s : samples) {
+    const S u = s.per_m0(n);
+    slope += S(S(s.error_mm - S(m0 * u)) * S(s.risen_mm * u));
   }
-  return at.m0 * slope;
+  return S(m0 * slope);
 }
 
 /// The best n: the lowest of a scan, then the zero of the slope beside it by bisection, which keeps
-/// all digits where a search for the lowest value would keep half.
-inline LightAtN best_along_n(const std::vector<LightSample>& samples) {
+/// all digits where a search for the lowest value would keep half. A dual number has its
+/// derivatives from a last step by Newton, which bisection, on values, does not give.
+template <scalar S>
+LightAtN<S> best_along_n(const std::vector<LightSample<S>>& samples) {
   constexpr int steps = 16;
-  constexpr double low = -1, high = 1;
-  const auto at = [&](int k) { return low + (high - low) * k / steps; };
+  using R = scalar_real_t<S>;
+  const auto at = [&](int k) { return R(-1) + R(2 * k) / R(steps); };
   int best = 0;
-  double best_sq = light_at(low, samples).left_sq;
+  S best_sq = light_at(S(at(0)), samples).left_sq;
   for (int k = 1; k <= steps; ++k) {
-    const double left_sq = light_at(at(k), samples).left_sq;
+    const S left_sq = light_at(S(at(k)), samples).left_sq;
     if (left_sq < best_sq) {
       best = k;
       best_sq = left_sq;
     }
   }
-  double from = at(best > 0 ? best - 1 : 0);
-  double to = at(best < steps ? best + 1 : steps);
+  R from = at(best > 0 ? best - 1 : 0);
+  R to = at(best < steps ? best + 1 : steps);
   for (int k = 0; k < 52 && from < to; ++k) {
-    const double middle = (from + to) / 2;
-    (slope_along_n(light_at(middle, samples), samples) > 0 ? from : to) = middle;
+    const R middle = (from + to) / R(2);
+    (S(0) < slope_along_n(S(middle), samples) ? from : to) = middle;
   }
-  return light_at((from + to) / 2, samples);
+  const S n = S(R((from + to) / R(2)));
+  if constexpr (std::is_same_v<S, R>) {
+    return light_at(n, samples);
+  }
+  const S beside = S(1e-4);
+  const S fall = slope_along_n(S(n - beside), samples) - slope_along_n(S(n + beside), samples);
+  const S step = slope_along_n(n, samples) * S(beside + beside) / fall;
+  // at an end of the search there is no zero
+  return light_at(square(step) < square(beside) ? S(n + step) : n, samples);
 }
 
 /// Refuses frames that do not belong together.
-template <class Reference, class Measured, class True>
+template <scalar S, class Reference, class Measured, class True>
 void expects_valid(const NeighbourLightSearch& search,
-                   double pitch_mm,
+                   const S& pitch_mm,
                    const Reference& reference_mm,
                    std::span<const Measured> measured_mm,
                    std::span<const True> true_mm) {
   const char* const owner = "fit_neighbour_light";
-  expects(pitch_mm >= 1e-4 && pitch_mm <= 10, owner, "pitch_mm", pitch_mm,
+  expects(value(pitch_mm) >= 1e-4 && value(pitch_mm) <= 10, owner, "pitch_mm", pitch_mm,
           "in [0.0001, 10]: mm between pixels");
   expects(search.min_radius_px >= 1, owner, "min_radius_px",
           static_cast<long long>(search.min_radius_px), ">= 1");
@@ -138,17 +164,18 @@ void expects_valid(const NeighbourLightSearch& search,
 
 /// The pixels of all frames with the sums over a disc of this radius. Refuses frames that do not
 /// tell.
-template <class Reference, class Measured, class True>
-std::vector<LightSample> light_samples(Index radius_px,
-                                       Index every_px,
-                                       double pitch_mm,
-                                       const Reference& reference,
-                                       std::span<const Measured> measured_mm,
-                                       std::span<const True> true_mm) {
-  const InclinationSums<SteppedDisc, double> sums(radius_px, pitch_mm, reference);
+template <scalar S, class Reference, class Measured, class True>
+std::vector<LightSample<S>> light_samples(Index radius_px,
+                                          Index every_px,
+                                          const S& pitch_mm,
+                                          const Reference& reference,
+                                          std::span<const Measured> measured_mm,
+                                          std::span<const True> true_mm) {
+  using std::sqrt;
+  const InclinationSums<SteppedDisc, S> sums(radius_px, pitch_mm, reference);
   auto workspace = sums.workspace();
-  std::vector<LightSample> samples;
-  double psi_sq = 0;
+  std::vector<LightSample<S>> samples;
+  S psi_sq = S(0);
   for (std::size_t k = 0; k < measured_mm.size(); ++k) {
     const auto measured = as_view(measured_mm[k]);
     const auto truth = as_view(true_mm[k]);
@@ -156,11 +183,11 @@ std::vector<LightSample> light_samples(Index radius_px,
     for (Index i = 0; i < sums.rows(); i += every_px) {
       sums.sum_row(i, workspace);
       for (Index j = 0; j < sums.cols(); j += every_px) {
-        const double l = static_cast<double>(measured(i, j));
-        const double error = l - static_cast<double>(truth(i, j));
-        const double risen = l - static_cast<double>(reference(i, j));
-        constexpr double most_mm = 100;  // what is more is no depth of a fingertip
-        if (std::abs(error) < most_mm && std::abs(risen) < most_mm) {
+        const S l = S(measured(i, j));
+        const S error = l - S(truth(i, j));
+        const S risen = l - S(reference(i, j));
+        const S most_sq = S(1e4);  // beyond 100 mm: no depth of a fingertip
+        if (square(error) < most_sq && square(risen) < most_sq) {
           samples.push_back({error, risen, workspace.sum[static_cast<std::size_t>(j)]});
           psi_sq += square(samples.back().psi_sum_rad);
         }
@@ -170,9 +197,9 @@ std::vector<LightSample> light_samples(Index radius_px,
   const char* const owner = "fit_neighbour_light";
   expects(samples.size() >= 3, owner, "pixels with a reference, measured and true depth",
           static_cast<long long>(samples.size()), ">= 3");
-  const double psi_rms = std::sqrt(psi_sq / static_cast<double>(samples.size()));
-  expects(psi_rms > 1e-9, owner, "rms of the inclination change summed over the disc", psi_rms,
-          "> 1e-9 rad: the frames must differ in shape from the reference");
+  const S psi_rms = sqrt(S(psi_sq / S(static_cast<double>(samples.size()))));
+  expects(value(psi_rms) > 1e-9, owner, "rms of the inclination change summed over the disc",
+          psi_rms, "> 1e-9 rad: the frames must differ in shape from the reference");
   return samples;
 }
 
@@ -184,49 +211,55 @@ std::vector<LightSample> light_samples(Index radius_px,
 /// of inclination, or whose change of depth is too uniform to tell n from m0 (parameter_error). Not
 /// ok: a fit that takes off less than a tenth of the error, light that is taken away instead of
 /// added (m0 < 0, as of measured and true depths exchanged), and a best n or radius at an end of
-/// the search. Allocates; O(radii (frames rows cols + 70 pixels)).
-template <grid Reference, grid Measured, grid True>
-NeighbourLightFit fit_neighbour_light(double pitch_mm,
-                                      const Reference& reference_mm,
-                                      std::span<const Measured> measured_mm,
-                                      std::span<const True> true_mm,
-                                      const NeighbourLightSearch& search = {}) {
+/// the search. Computed in S, whatever the frames are in. Allocates;
+/// O(radii (frames rows cols + 70 pixels)).
+template <scalar S = double, grid Reference, grid Measured, grid True>
+NeighbourLightFit<S> fit_neighbour_light(const std::type_identity_t<S>& pitch_mm,
+                                         const Reference& reference_mm,
+                                         std::span<const Measured> measured_mm,
+                                         std::span<const True> true_mm,
+                                         const NeighbourLightSearch& search = {}) {
+  using std::sqrt;
   detail::expects_valid(search, pitch_mm, reference_mm, measured_mm, true_mm);
-  NeighbourLightFit fit;
-  detail::LightAtN best{};
-  double count = 0;
-  const auto rms = [&](double sum_sq) { return std::sqrt((std::max)(sum_sq, 0.0) / count); };
+  NeighbourLightFit<S> fit;
+  detail::LightAtN<S> best;
+  S count = S(0);
+  const auto rms = [&](const S& sum_sq) {
+    return S(0) < sum_sq ? S(sqrt(S(sum_sq / count))) : S(0);
+  };
   for (Index r = search.min_radius_px; r <= search.max_radius_px; ++r) {
-    const auto samples = detail::light_samples(r, search.every_px, pitch_mm, as_view(reference_mm),
-                                               measured_mm, true_mm);
-    count = static_cast<double>(samples.size());
-    const detail::LightAtN at = detail::best_along_n(samples);
+    const auto samples = detail::light_samples<S>(r, search.every_px, pitch_mm,
+                                                  as_view(reference_mm), measured_mm, true_mm);
+    count = S(static_cast<double>(samples.size()));
+    fit.pixels = static_cast<Index>(samples.size());
+    const detail::LightAtN<S> at = detail::best_along_n(samples);
     fit.rms_of_radius_mm.push_back(rms(at.left_sq));
     if (r == search.min_radius_px || at.left_sq < best.left_sq) {
       best = at;
       fit.light = {r, at.m0, at.n};
-      double before_sq = 0;
-      for (const detail::LightSample& s : samples) {
+      S before_sq = S(0);
+      for (const detail::LightSample<S>& s : samples) {
         before_sq += square(s.error_mm);
       }
       fit.rms_before_mm = rms(before_sq);
     }
   }
-  const double determinant = best.uu * best.vv - best.uv * best.uv;
-  expects(determinant > 1e-9 * best.uu * best.vv, "fit_neighbour_light",
-          "independent share of n in the fit", determinant / (best.uu * best.vv),
+  const S determinant = best.uu * best.vv - square(best.uv);
+  const S share = determinant / (best.uu * best.vv);
+  const S least = S((std::max)(scalar_real_t<S>(1e-9), scalar_real_t<S>(16) * epsilon<S>()));
+  expects(least < share, "fit_neighbour_light", "independent share of n in the fit", share,
           "> 1e-9: depths must change by different amounts, and some error must be explained");
-  fit.pixels = static_cast<Index>(count);
   fit.rms_after_mm = rms(best.left_sq);
-  const double variance = square(fit.rms_after_mm) * count / (count - 2);
-  fit.m0_sd = std::sqrt(variance * best.vv / determinant);
-  fit.n_sd = std::sqrt(variance * best.uu / determinant);
-  const bool at_end = std::abs(best.n) > 0.998 || (fit.light.radius_px == search.max_radius_px &&
-                                                   search.max_radius_px > search.min_radius_px);
-  fit.status = fit.rms_after_mm > 0.9 * fit.rms_before_mm ? FitStatus::light_unexplained
-               : best.m0 < 0                              ? FitStatus::light_taken_away
-               : at_end                                   ? FitStatus::at_end_of_search
-                                                          : FitStatus::ok;
+  const S variance = square(fit.rms_after_mm) * count / (count - S(2));
+  fit.m0_sd = sqrt(S(variance * best.vv / determinant));
+  fit.n_sd = sqrt(S(variance * best.uu / determinant));
+  const bool at_end =
+      S(0.996004) < square(best.n) ||
+      (fit.light.radius_px == search.max_radius_px && search.max_radius_px > search.min_radius_px);
+  fit.status = S(0.9) * fit.rms_before_mm < fit.rms_after_mm ? FitStatus::light_unexplained
+               : best.m0 < S(0)                              ? FitStatus::light_taken_away
+               : at_end                                      ? FitStatus::at_end_of_search
+                                                             : FitStatus::ok;
   return fit;
 }
 

@@ -62,9 +62,10 @@ class StickTestCalibration {
 
  public:
   /// Refuses bad parameters, and noise that leaves no U of the search (parameter_error).
+  template <scalar N = double>
   StickTestCalibration(Index rows,
                        Index cols,
-                       const DotNoise& noise,
+                       const DotNoise<N>& noise,
                        const StickTestOptions& options = {},
                        const Motion& motion = {},
                        const Reference& reference = {},

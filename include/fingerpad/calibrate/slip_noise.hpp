@@ -10,6 +10,7 @@
 // Here each frame's mean motion is taken out instead, which holds the noise of none.
 #include <algorithm>
 #include <cmath>
+#include <type_traits>
 #include <vector>
 
 #include "fingerpad/calibrate/detail/slip_positions.hpp"
@@ -24,29 +25,30 @@ namespace fingerpad {
 inline namespace v0 {
 
 /// Standard deviations of one position, per axis, in px or whatever unit the dots are in.
+template <scalar S = double>
 struct [[nodiscard]] DotNoise {
   FitStatus status = FitStatus::ok;
-  double noise_px = 0;        ///< root mean square over dots and axes
-  double noise_error_px = 0;  ///< its standard error, of noise that differs from frame to frame
-  double largest_px = 0;      ///< of a single dot, both axes together
-  double inner_px = 0;  ///< after averaging with DotWeights: dots with eight neighbours; NaN: none
-  double edge_px = 0;   ///< dots that lack neighbours, averaged with those there are; NaN: none
-  double published_px = 0;  ///< the largest sd, over dots and axes, of a position relative to the
-                            ///< dot nearest to the center
-  double slow_share = 0;    ///< of the variance, what frames next to each other do not differ by:
-                            ///< near 0 for noise, near 1 if the pad did not stand still; 0 from two
-                            ///< frames, which cannot tell
-  Index dots = 0;           ///< that took part
+  S noise_px = S(0);        ///< root mean square over dots and axes
+  S noise_error_px = S(0);  ///< its standard error, of noise that differs from frame to frame
+  S largest_px = S(0);      ///< of a single dot, both axes together
+  S inner_px = S(0);  ///< after averaging with DotWeights: dots with eight neighbours; NaN: none
+  S edge_px = S(0);   ///< dots that lack neighbours, averaged with those there are; NaN: none
+  S published_px = S(0);  ///< the largest sd, over dots and axes, of a position relative to the
+                          ///< dot nearest to the center
+  S slow_share = S(0);    ///< of the variance, what frames next to each other do not differ by:
+                          ///< near 0 for noise, near 1 if the pad did not stand still; 0 from two
+                          ///< frames, which cannot tell
+  Index dots = 0;         ///< that took part
   Index out_of_place =
       0;  ///< positions left out as further than a quarter of a pitch from the mean
   int frames = 0;
   /// Standard error of edge_px: of fewer dots than noise_px, and their averages share noise.
-  double edge_error_px = 0;
+  S edge_error_px = S(0);
 
   bool ok() const { return status == FitStatus::ok; }
   /// Of the noise, what averaging leaves, as measured; denoising_gain() if neighbours are
   /// independent.
-  double gain() const { return inner_px / noise_px; }
+  S gain() const { return S(inner_px / noise_px); }
 };
 
 /// Of independent noise, what a mean over a dot, `sides` of its four and `diagonals` of its other
@@ -73,17 +75,20 @@ inline double shared_along_edge(const DotWeights& w) {
 }  // namespace detail::stick
 
 /// The noise of which only sigma of one position is known, if that of neighbours is independent.
-inline DotNoise independent_dot_noise(double noise_px, const DotWeights& weights = {}) {
-  DotNoise noise;
+template <scalar S = double>
+DotNoise<S> independent_dot_noise(const std::type_identity_t<S>& noise_px,
+                                  const DotWeights& weights = {}) {
+  DotNoise<S> noise;
   noise.noise_px = noise.largest_px = noise_px;
-  noise.inner_px = noise_px * denoising_gain(weights);
-  noise.edge_px = noise_px * denoising_gain(weights, 3, 2);
-  noise.published_px = noise_px * std::sqrt(2.0);
+  noise.inner_px = noise_px * S(denoising_gain(weights));
+  noise.edge_px = noise_px * S(denoising_gain(weights, 3, 2));
+  noise.published_px = noise_px * S(std::sqrt(2.0));
   return noise;
 }
 
 /// Collects frames of a standing pad, 16 bytes per dot and frame. Lost dots do no harm, neither
 /// does a camera that shakes: the motion of the pattern as a whole is no noise.
+template <scalar S = double>
 class DotNoiseCalibration {
  public:
   /// Refuses bad parameters (parameter_error). `weights`: those of the denoising.
@@ -110,12 +115,12 @@ class DotNoiseCalibration {
     for (Index i = 0; i < rows_; ++i) {
       for (Index j = 0; j < cols_; ++j) {
         const Point p = dots(i, j);
-        const double x = static_cast<double>(value(point_traits<Point>::x(p)));
-        const double y = static_cast<double>(value(point_traits<Point>::y(p)));
+        const S x = S(point_traits<Point>::x(p));
+        const S y = S(point_traits<Point>::y(p));
         const bool there =
             is_contact(cell_t<Contact>(touch(i, j))) && is_plausible(x) && is_plausible(y);
-        x_.push_back(there ? x : not_a_number<double>());
-        y_.push_back(there ? y : not_a_number<double>());
+        x_.push_back(there ? x : not_a_number<S>());
+        y_.push_back(there ? y : not_a_number<S>());
       }
     }
     ++frames_;
@@ -125,11 +130,12 @@ class DotNoiseCalibration {
   /// Refuses fewer than two frames, dots in too few of them, and frames that are all the same, as a
   /// recording has that repeats its frames (parameter_error). O(frames rows cols) for each of a few
   /// passes, more the more dots are lost.
-  DotNoise fit() const {
+  DotNoise<S> fit() const {
+    using std::sqrt;
     const char* const owner = "DotNoiseCalibration";
     expects(frames_ >= 2, owner, "frames", static_cast<long long>(frames_), ">= 2");
-    const detail::stick::DotPositions rest(rows_, cols_, x_, y_);
-    DotNoise noise;
+    const detail::stick::DotPositions<S> rest(rows_, cols_, x_, y_);
+    DotNoise<S> noise;
     noise.frames = frames_;
     noise.dots = static_cast<Index>(rest.dots_found);
     noise.out_of_place = rest.out_of_place;
@@ -138,36 +144,38 @@ class DotNoiseCalibration {
     const double freedom = rest.freedom();
     expects(freedom >= 1, owner, "positions beyond those for places and motion", freedom,
             ">= 1: more dots have to be in the same frames");
-    const double variance = rest.rests().sum / (2 * freedom);
-    noise.noise_px = std::sqrt(variance);
-    noise.noise_error_px = noise.noise_px / (2 * std::sqrt(freedom));
-    expects(noise.noise_px > 0, owner, "noise_px", noise.noise_px, "> 0: the frames are the same");
+    const S variance = rest.rests().sum / S(2 * freedom);
+    noise.noise_px = sqrt(variance);
+    noise.noise_error_px = noise.noise_px / S(2 * std::sqrt(freedom));
+    expects(S(0) < noise.noise_px, owner, "noise_px", noise.noise_px,
+            "> 0: the frames are the same");
     noise.largest_px = rest.largest_px();
     noise.published_px = rest.relative_to_center_px();
 
     // without motion, differences keep 1 - 1 / dots of their variance
-    const detail::stick::SumOfSquares steps = rest.steps();
-    noise.slow_share = 1 - steps.sum / (4 * steps.count * variance * (1 - 1 / rest.dots_found));
-    noise.status = noise.slow_share > 0.5 ? FitStatus::pad_moved : FitStatus::ok;
+    const detail::stick::SumOfSquares<S> steps = rest.steps();
+    const S kept = variance * S(4 * steps.count * (1 - 1 / rest.dots_found));
+    noise.slow_share = S(1) - S(steps.sum / kept);
+    noise.status = S(0.5) < noise.slow_share ? FitStatus::pad_moved : FitStatus::ok;
     // places and motion take (1 - 1 / frames) (gain^2 - 1 / dots) of the variance of means
     const double frames_of_dot = rest.positions / rest.dots_found;
     const double dots_of_frame = rest.positions / rest.frames_found;
-    const auto averaged = [&](const detail::stick::SumOfSquares& means) {
-      const double left = means.sum / (2 * means.count) / (1 - 1 / frames_of_dot);
-      return std::sqrt(left + variance / dots_of_frame);
+    const auto averaged = [&](const detail::stick::SumOfSquares<S>& means) {
+      const S left = means.sum / S(2 * means.count * (1 - 1 / frames_of_dot));
+      return S(sqrt(S(left + variance / S(dots_of_frame))));
     };
     noise.inner_px = averaged(rest.means(weights_, true));
-    const detail::stick::SumOfSquares edge = rest.means(weights_, false);
+    const detail::stick::SumOfSquares<S> edge = rest.means(weights_, false);
     noise.edge_px = averaged(edge);
     noise.edge_error_px =
-        noise.edge_px / 2 * std::sqrt(detail::stick::shared_along_edge(weights_) / edge.count);
+        noise.edge_px * S(std::sqrt(detail::stick::shared_along_edge(weights_) / edge.count) / 2);
     return noise;
   }
 
  private:
   Index rows_, cols_;
   DotWeights weights_;
-  std::vector<double> x_, y_;
+  std::vector<S> x_, y_;
   int frames_ = 0;
 };
 
@@ -253,18 +261,22 @@ namespace detail::stick {
 
 /// sigma of a position in the difference that is compared with delta_0: that of the dots with the
 /// most noise of those that are averaged.
-inline double compared_noise_px(const NoDenoising&, const DotNoise& noise) {
+template <scalar S>
+S compared_noise_px(const NoDenoising&, const DotNoise<S>& noise) {
   return noise.noise_px;
 }
-inline double compared_noise_px(const ResidualMean&, const DotNoise& noise) {
-  return noise.edge_px > noise.inner_px || !is_finite(noise.inner_px) ? noise.edge_px
+template <scalar S>
+S compared_noise_px(const ResidualMean&, const DotNoise<S>& noise) {
+  return noise.inner_px < noise.edge_px || !is_finite(noise.inner_px) ? noise.edge_px
                                                                       : noise.inner_px;
 }
 /// sigma of a position in d_max.
-inline double placed_noise_px(const NoDenoising&, const DotNoise& noise) {
+template <scalar S>
+S placed_noise_px(const NoDenoising&, const DotNoise<S>& noise) {
   return noise.noise_px;
 }
-inline double placed_noise_px(const ResidualMean&, const DotNoise& noise) {
+template <scalar S>
+S placed_noise_px(const ResidualMean&, const DotNoise<S>& noise) {
   return noise.noise_px;
 }
 
@@ -277,11 +289,11 @@ double motion_noise_factor(const StickConsensus<Free>&) {
 }  // namespace detail::stick
 
 /// delta_0 and U_min for a sensor with this noise, U being given (by default the published one):
-/// all three in the unit of the noise.
+/// all three in the unit of the noise, as plain numbers: they decide.
 /// Refuses noise that makes U too small (parameter_error).
-template <class Motion = StickConsensus<>, class Denoising = ResidualMean>
+template <class Motion = StickConsensus<>, class Denoising = ResidualMean, scalar S = double>
 StickTest stick_test_for(Index dots,
-                         const DotNoise& noise,
+                         const DotNoise<S>& noise,
                          double reference_px = 2,
                          const StickTestOptions& options = {},
                          const Motion& motion = {},
@@ -292,8 +304,8 @@ StickTest stick_test_for(Index dots,
   using detail::stick::compared_noise_px;  // published policies bring their own
   using detail::stick::motion_noise_factor;
   using detail::stick::placed_noise_px;
-  const double compared_px = compared_noise_px(denoising, noise);
-  const double placed_px = placed_noise_px(denoising, noise);
+  const auto compared_px = static_cast<double>(value(compared_noise_px(denoising, noise)));
+  const auto placed_px = static_cast<double>(value(placed_noise_px(denoising, noise)));
   expects(is_finite(placed_px) && placed_px > 0, owner, "noise of a dot", placed_px,
           "finite and > 0");
   expects(is_finite(compared_px) && compared_px > 0, owner, "noise of an averaged dot", compared_px,

@@ -14,61 +14,64 @@
 #include "fingerpad/calibrate/fit.hpp"
 #include "fingerpad/core/expects.hpp"
 #include "fingerpad/core/grid.hpp"
+#include "fingerpad/core/scalar.hpp"
 #include "fingerpad/foam/taxel_features.hpp"
 
 namespace fingerpad {
 inline namespace v0 {
 
 /// Readings in the unit of the sensor.
+template <scalar S = double>
 struct [[nodiscard]] TaxelNoise {
   FitStatus status = FitStatus::ok;
   Index rows = 0;
   Index cols = 0;
-  std::vector<double> deviations;  ///< rows x cols, row by row: for TaxelFeatures. At least
+  std::vector<S> deviations;       ///< rows x cols, row by row: for TaxelFeatures. At least
                                    ///< `typical`, as a taxel that rested will not once it is
                                    ///< pressed; NaN: never read, a dead taxel
-  double typical = 0;              ///< of the taxels whose readings changed, root mean square
-  double typical_error = 0;        ///< its standard error, of independent Gaussian readings
-  double largest_factor = 0;       ///< the most that any window spread, in `deviations` of its
+  S typical = S(0);                ///< of the taxels whose readings changed, root mean square
+  S typical_error = S(0);          ///< its standard error, of independent Gaussian readings
+  S largest_factor = S(0);         ///< the most that any window spread, in `deviations` of its
                                    ///< taxel: where nothing was touched, TaxelOptions::noise_factor
                                    ///< must be above it
-  double centroid_deviation_mm = 0;  ///< of the centroid, in a window; NaN: never pressed
-  Index windows = 0;                 ///< that were looked at
+  S centroid_deviation_mm = S(0);  ///< of the centroid, in a window; NaN: never pressed
+  Index windows = 0;               ///< that were looked at
 
   bool ok() const { return status == FitStatus::ok; }
-  StridedView<const double> view() const { return {deviations.data(), rows, cols, cols}; }
+  StridedView<const S> view() const { return {deviations.data(), rows, cols, cols}; }
 };
 
 /// Gathers samples at rest.
+template <scalar S = double>
 class TaxelNoiseCalibration {
-  using Features = TaxelFeatures<ZeroCrossings, double>;
+  using Features = TaxelFeatures<ZeroCrossings, S>;
 
  public:
   /// Refuses bad parameters (parameter_error). Of the options, those that noise does not decide.
-  TaxelNoiseCalibration(Index rows, Index cols, const TaxelOptions<double>& options = {})
+  TaxelNoiseCalibration(Index rows, Index cols, const TaxelOptions<S>& options = {})
       : features_(rows, cols, options),
         state_(features_.start()),
         window_(rows * cols, options.window),
         centroid_(2, options.window),
-        held_(static_cast<std::size_t>(rows * cols), 0.0),
-        spread_(held_.size(), 0.0),
+        held_(static_cast<std::size_t>(rows * cols), S(0)),
+        spread_(held_.size(), S(0)),
         taxels_(held_.size()) {}
 
   /// The next sample; false, and nothing changed, if the array has another size or the time is not
   /// later. A clock that jumps begins a new window; a taxel that is bad is not judged in the window
   /// in which it was.
   template <grid Taxels>
-    requires std::constructible_from<double, cell_t<Taxels>>
+    requires std::constructible_from<S, cell_t<Taxels>>
   bool add(const Taxels& taxels, double time_s) {
-    const FingerSample<double> sample = features_(taxels, time_s, state_);
+    const FingerSample<S> sample = features_(taxels, time_s, state_);
     if (sample.status == TaxelStatus::other_size || sample.status == TaxelStatus::time_not_later) {
       return false;
     }
     const bool is_new = state_.samples() == 1;
     in_window_ = is_new ? 0 : in_window_;
     read(as_view(taxels));
-    const double centroid[2] = {sample.is_pressed() ? sample.center_x_mm : 0,
-                                sample.is_pressed() ? sample.center_y_mm : 0};
+    const S centroid[2] = {sample.is_pressed() ? sample.center_x_mm : S(0),
+                           sample.is_pressed() ? sample.center_y_mm : S(0)};
     if (is_new) {
       window_.restart(held_.data());
       centroid_.restart(centroid);
@@ -86,65 +89,69 @@ class TaxelNoiseCalibration {
 
   /// Refuses a recording that does not tell (parameter_error): of less than four windows, or in
   /// which no reading changed.
-  TaxelNoise fit() const {
+  TaxelNoise<S> fit() const {
+    using std::sqrt;
     const char* const owner = "TaxelNoiseCalibration";
     expects(windows_ >= 4, owner, "windows", static_cast<long long>(windows_), ">= 4");
-    TaxelNoise noise;
+    TaxelNoise<S> noise;
     noise.rows = features_.rows();
     noise.cols = features_.cols();
     noise.windows = windows_;
-    std::vector<double> squares;
-    double sum = 0;
+    std::vector<S> squares;
+    S sum = S(0);
     Index changed = 0;
     for (const Taxel& taxel : taxels_) {
       squares.push_back(mean_square_of(taxel.variances));
-      sum += squares.back() > 0 ? squares.back() : 0;
-      changed += squares.back() > 0 ? 1 : 0;
+      sum += S(0) < squares.back() ? squares.back() : S(0);
+      changed += S(0) < squares.back() ? 1 : 0;
     }
     expects(changed > 0, owner, "taxels whose readings change", static_cast<long long>(changed),
             ">= 1");
-    noise.typical = std::sqrt(sum / static_cast<double>(changed));
+    const S typical_sq = S(sum / S(static_cast<double>(changed)));
+    noise.typical = sqrt(typical_sq);
     // a median has pi / 2 times the variance of the mean; a mean square of f freedoms has 2 / f of
     // its square, and its root half of the relative error
     const double freedom = static_cast<double>((features_.options().window - 2) * windows_);
     noise.typical_error =
-        noise.typical * std::sqrt(std::numbers::pi / 4 / (freedom * static_cast<double>(changed)));
+        noise.typical *
+        S(std::sqrt(std::numbers::pi / 4 / (freedom * static_cast<double>(changed))));
+    Index read = 0;
     for (std::size_t k = 0; k < taxels_.size(); ++k) {
       const bool is_dead = taxels_[k].variances.empty();
-      const double deviation = (std::max)(noise.typical, std::sqrt(squares[k]));
-      noise.deviations.push_back(is_dead ? not_a_number<double>() : deviation);
-      for (const double variance : taxels_[k].variances) {
-        noise.largest_factor = (std::max)(noise.largest_factor, std::sqrt(variance) / deviation);
+      const S deviation = typical_sq < squares[k] ? S(sqrt(squares[k])) : noise.typical;
+      noise.deviations.push_back(is_dead ? not_a_number<S>() : deviation);
+      read += is_dead ? 0 : 1;
+      for (const S& variance : taxels_[k].variances) {
+        const S factor = S(0) < variance ? S(sqrt(variance) / deviation) : S(0);
+        noise.largest_factor = noise.largest_factor < factor ? factor : noise.largest_factor;
       }
     }
-    const auto read = std::count_if(noise.deviations.begin(), noise.deviations.end(),
-                                    [](double deviation) { return is_finite(deviation); });
-    noise.status = 2 * read < static_cast<std::ptrdiff_t>(taxels_.size())
-                       ? FitStatus::taxels_missing
-                       : FitStatus::ok;
-    noise.centroid_deviation_mm = std::sqrt(mean_square_of(centroid_variances_));
+    noise.status =
+        2 * read < static_cast<Index>(taxels_.size()) ? FitStatus::taxels_missing : FitStatus::ok;
+    const S centroid_sq = mean_square_of(centroid_variances_);
+    noise.centroid_deviation_mm = value(centroid_sq) == 0 ? S(0) : S(sqrt(centroid_sq));
     return noise;
   }
 
  private:
   struct Taxel {
-    std::vector<double> variances;  // of its windows
-    bool is_bad = false;            // in the present window
+    std::vector<S> variances;  // of its windows
+    bool is_bad = false;       // in the present window
   };
 
   /// From the median of the windows' mean squares; NaN: there are none. What the line
   /// takes of each is given back, and what the median of a chi-square is below its mean.
-  double mean_square_of(std::vector<double> variances) const {
+  S mean_square_of(std::vector<S> variances) const {
     if (variances.empty()) {
-      return not_a_number<double>();
+      return not_a_number<S>();
     }
     std::sort(variances.begin(), variances.end());
     const std::size_t half = variances.size() / 2;
-    const double median = (variances[half] + variances[(variances.size() - 1) / 2]) / 2;
+    const S median = (variances[half] + variances[(variances.size() - 1) / 2]) / S(2);
     const double n = static_cast<double>(features_.options().window);
     const double freedom = n - 2;
     const double median_share = std::pow(1 - 2 / (9 * freedom), 3);
-    return median * n / (freedom * median_share);
+    return S(median * S(n / (freedom * median_share)));
   }
 
   template <class View>
@@ -152,7 +159,7 @@ class TaxelNoiseCalibration {
     for (Index i = 0; i < features_.rows(); ++i) {
       for (Index j = 0; j < features_.cols(); ++j) {
         const std::size_t k = static_cast<std::size_t>(i * features_.cols() + j);
-        const double reading = static_cast<double>(readings(i, j));
+        const S reading = S(readings(i, j));
         const bool good = detail::is_reading(reading) && reading < features_.options().saturated_at;
         held_[k] = good ? reading : held_[k];
         taxels_[k].is_bad = (in_window_ > 0 && taxels_[k].is_bad) || !good;
@@ -166,26 +173,27 @@ class TaxelNoiseCalibration {
     for (std::size_t k = 0; k < taxels_.size(); ++k) {
       Taxel& taxel = taxels_[k];
       if (!taxel.is_bad) {
-        taxel.variances.push_back((std::max)(spread_[k], 0.0));
+        taxel.variances.push_back(S(0) < spread_[k] ? spread_[k] : S(0));
       }
     }
     if (is_pressed_) {
-      double spread[2];
+      S spread[2];
       centroid_.variances(spread);
-      centroid_variances_.push_back((std::max)((spread[0] + spread[1]) / 2, 0.0));
+      const S both = (spread[0] + spread[1]) / S(2);
+      centroid_variances_.push_back(S(0) < both ? both : S(0));
     }
   }
 
   Features features_;
-  Features::State state_;
-  detail::TaxelWindow<double> window_;
-  detail::TaxelWindow<double> centroid_;
-  std::vector<double> held_;
-  std::vector<double> spread_;
+  typename Features::State state_;
+  detail::TaxelWindow<S> window_;
+  detail::TaxelWindow<S> centroid_;
+  std::vector<S> held_;
+  std::vector<S> spread_;
   std::vector<Taxel> taxels_;
-  std::vector<double> centroid_variances_;  // along either axis
-  Index in_window_ = 0;                     // samples of the present window
-  bool is_pressed_ = false;                 // in all of them
+  std::vector<S> centroid_variances_;  // along either axis
+  Index in_window_ = 0;                // samples of the present window
+  bool is_pressed_ = false;            // in all of them
   Index windows_ = 0;
 };
 

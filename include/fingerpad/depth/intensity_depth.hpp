@@ -28,21 +28,23 @@ namespace fingerpad {
 inline namespace v0 {
 
 /// How depth follows from the logarithm of the ratio, in mm.
+template <scalar S = double>
 struct IntensityLaw {
-  double linear_mm = 3;  ///< of the logarithm, > 0
-  double square_mm = 0;  ///< of its square, finite
-  double cube_mm = 0;    ///< of its cube, finite
+  S linear_mm = S(3);  ///< of the logarithm, > 0
+  S square_mm = S(0);  ///< of its square, finite
+  S cube_mm = S(0);    ///< of its cube, finite
 };
-inline void expects_valid(const IntensityLaw& law) {
-  expects(is_finite(law.linear_mm) && law.linear_mm > 0, "IntensityLaw", "linear_mm", law.linear_mm,
-          "finite and > 0");
+template <scalar S>
+void expects_valid(const IntensityLaw<S>& law) {
+  expects(is_finite(law.linear_mm) && S(0) < law.linear_mm, "IntensityLaw", "linear_mm",
+          law.linear_mm, "finite and > 0");
   expects(is_finite(law.square_mm), "IntensityLaw", "square_mm", law.square_mm, "finite");
   expects(is_finite(law.cube_mm), "IntensityLaw", "cube_mm", law.cube_mm, "finite");
 }
 
 /// The depth at ln(free / now); < 0 where the gel bulges.
-template <scalar S>
-constexpr S pressed_depth_mm(const IntensityLaw& law, const S& log_ratio) {
+template <scalar L, scalar S>
+constexpr S pressed_depth_mm(const IntensityLaw<L>& law, const S& log_ratio) {
   const S upper = S(S(law.square_mm) + S(law.cube_mm) * log_ratio);
   return S(log_ratio * (S(law.linear_mm) + log_ratio * upper));
 }
@@ -78,8 +80,8 @@ template <scalar S = float>
 class IntensityDepth {
  public:
   /// From a frame of the free pad. Refuses bad parameters (parameter_error).
-  template <grid Free>
-  IntensityDepth(const Free& free, const IntensityLaw& law, const IntensityOptions& options = {})
+  template <grid Free, scalar L = double>
+  IntensityDepth(const Free& free, const IntensityLaw<L>& law, const IntensityOptions& options = {})
       : law_(checked(law, options)),
         options_(options),
         rows_(as_view(free).rows()),
@@ -92,7 +94,7 @@ class IntensityDepth {
       }
     }
     for (std::size_t level = 0; level < log_of_byte_.size(); ++level) {
-      log_of_byte_[level] = log_of(static_cast<double>(level));
+      log_of_byte_[level] = log_of(static_cast<int>(level));
     }
   }
 
@@ -154,19 +156,20 @@ class IntensityDepth {
   Index cols() const { return cols_; }
 
  private:
-  static const IntensityLaw& checked(const IntensityLaw& law, const IntensityOptions& options) {
+  template <scalar L>
+  static IntensityLaw<S> checked(const IntensityLaw<L>& law, const IntensityOptions& options) {
     expects_valid(law);
     expects_valid(options);
-    return law;
+    return {S(law.linear_mm), S(law.square_mm), S(law.cube_mm)};
   }
 
   /// NaN where a level says nothing.
   template <class Level>
   S log_of(const Level& level) const {
     using std::log;
-    const double plain = static_cast<double>(level);
-    const bool tells = plain > options_.dark && plain < options_.saturated;
-    return tells ? S(log(S(level))) : not_a_number<S>();
+    const S plain = S(level);
+    const bool tells = S(options_.dark) < plain && plain < S(options_.saturated);
+    return tells ? S(log(plain)) : not_a_number<S>();
   }
 
   template <class View>
@@ -217,7 +220,7 @@ class IntensityDepth {
     return S(-change) < *middle && *middle < S(change);
   }
 
-  IntensityLaw law_;
+  IntensityLaw<S> law_;
   IntensityOptions options_;
   Index rows_;
   Index cols_;

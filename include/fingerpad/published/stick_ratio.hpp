@@ -47,11 +47,11 @@ inline void expects_valid(const DotMean& mean) {
 /// What calibrate/slip.hpp has to know of them: dots at the edge of the pattern are not averaged,
 /// and one reference dot has as much noise as the dot that is judged.
 template <class Noise>
-double compared_noise_px(const DotMean&, const Noise& noise) {
+auto compared_noise_px(const DotMean&, const Noise& noise) {
   return noise.inner_px;
 }
 template <class Noise>
-double placed_noise_px(const DotMean&, const Noise& noise) {
+auto placed_noise_px(const DotMean&, const Noise& noise) {
   return noise.inner_px;
 }
 template <Freedom Free>

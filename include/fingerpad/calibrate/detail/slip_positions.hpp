@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <numeric>
 #include <utility>
 #include <vector>
 
@@ -19,31 +18,36 @@ inline namespace v0 {
 namespace detail::stick {
 
 /// What of the values first, first + step, ... are numbers, less what `taken` says.
-template <class Taken>
-std::vector<double> numbers_of(const std::vector<double>& values,
-                               std::size_t first,
-                               std::size_t step,
-                               std::size_t end,
-                               const Taken& taken) {
-  std::vector<double> numbers;
+template <scalar S, class Taken>
+std::vector<S> numbers_of(const std::vector<S>& values,
+                          std::size_t first,
+                          std::size_t step,
+                          std::size_t end,
+                          const Taken& taken) {
+  std::vector<S> numbers;
   for (std::size_t i = first; i < end; i += step) {
     if (is_finite(values[i])) {
-      numbers.push_back(values[i] - taken(i));
+      numbers.push_back(S(values[i] - taken(i)));
     }
   }
   return numbers;
 }
 
 struct MeanOf {
-  double operator()(const std::vector<double>& numbers) const {
-    const double count = static_cast<double>(numbers.size());
-    return count > 0 ? std::accumulate(numbers.begin(), numbers.end(), 0.0) / count : 0;
+  template <scalar S>
+  S operator()(const std::vector<S>& numbers) const {
+    S sum = S(0);
+    for (const S& x : numbers) {
+      sum += x;
+    }
+    return numbers.empty() ? sum : S(sum / S(static_cast<double>(numbers.size())));
   }
 };
 struct MedianOf {
-  double operator()(std::vector<double> numbers) const {
+  template <scalar S>
+  S operator()(std::vector<S> numbers) const {
     if (numbers.empty()) {
-      return 0;
+      return S(0);
     }
     const auto middle = numbers.begin() + static_cast<std::ptrdiff_t>(numbers.size() / 2);
     std::nth_element(numbers.begin(), middle, numbers.end());
@@ -53,54 +57,63 @@ struct MedianOf {
 
 /// One axis, frame after frame, NaN where a dot is missing, becomes the rest of the split. With
 /// means it has the least squares; with medians wild positions do not show in others.
-template <class Middle>
-void remove_places_and_motion(std::vector<double>& values,
-                              std::vector<double>& places,
+template <scalar S, class Middle>
+void remove_places_and_motion(std::vector<S>& values,
+                              std::vector<S>& places,
                               int passes,
                               const Middle& middle) {
   const std::size_t dots = places.size(), frames = values.size() / dots;
-  std::vector<double> motion(frames, 0);
-  double largest = 0;
-  for (const double v : values) {
-    largest = is_finite(v) ? (std::max)(largest, std::abs(v)) : largest;
+  std::vector<S> motion(frames, S(0));
+  S largest_sq = S(0);
+  for (const S& v : values) {
+    largest_sq = largest_sq < square(v) ? S(square(v)) : largest_sq;
   }
   // where dots are lost the middles are of different frames, and have to be found together
-  double change = largest;
-  for (int pass = 0; pass < passes && change > 1e-13 * largest; ++pass) {
+  S change_sq = largest_sq;
+  // 1e-13 of the largest, for double
+  const S settled_sq = S(square(scalar_real_t<S>(450) * epsilon<S>())) * largest_sq;
+  for (int pass = 0; pass < passes && settled_sq < change_sq; ++pass) {
     for (std::size_t k = 0; k < dots; ++k) {
       places[k] = middle(numbers_of(values, k, dots, values.size(),
                                     [&](std::size_t i) { return motion[i / dots]; }));
     }
-    change = 0;
+    change_sq = S(0);
     for (std::size_t t = 0; t < frames; ++t) {
-      const double moved = middle(numbers_of(values, t * dots, 1, (t + 1) * dots,
-                                             [&](std::size_t i) { return places[i % dots]; }));
-      change = (std::max)(change, std::abs(moved - motion[t]));
+      const S moved = middle(numbers_of(values, t * dots, 1, (t + 1) * dots,
+                                        [&](std::size_t i) { return places[i % dots]; }));
+      const S step_sq = square(S(moved - motion[t]));
+      change_sq = change_sq < step_sq ? step_sq : change_sq;
       motion[t] = moved;
     }
   }
   for (std::size_t i = 0; i < values.size(); ++i) {
-    values[i] -= places[i % dots] + motion[i / dots];
+    values[i] -= S(places[i % dots] + motion[i / dots]);
   }
 }
 
 /// A sum of squares over both axes, and over how many positions.
+template <scalar S>
 struct SumOfSquares {
-  double sum = 0, count = 0;
-  void add(double x, double y) { sum += x * x + y * y, count += 1; }
+  S sum = S(0);
+  double count = 0;
+  void add(const S& x, const S& y) {
+    sum += S(S(x * x) + S(y * y));
+    count += 1;
+  }
 };
 
+template <scalar S>
 class DotPositions {
  public:
   /// Positions of rows x cols dots, frame after frame, NaN where missing.
-  DotPositions(Index rows_of_dots, Index cols_of_dots, std::vector<double> x, std::vector<double> y)
+  DotPositions(Index rows_of_dots, Index cols_of_dots, std::vector<S> x, std::vector<S> y)
       : rows_(rows_of_dots),
         cols_(cols_of_dots),
         dots_(static_cast<std::size_t>(rows_ * cols_)),
         x_(std::move(x)),
         y_(std::move(y)),
-        place_x_(dots_, 0),
-        place_y_(dots_, 0) {
+        place_x_(dots_, S(0)),
+        place_y_(dots_, S(0)) {
     drop_out_of_place();
     count();
     remove_places_and_motion(x_, place_x_, 200, MeanOf());
@@ -113,8 +126,8 @@ class DotPositions {
   /// Positions beyond those that places and motion account for.
   double freedom() const { return positions - dots_found - frames_found + 1; }
 
-  SumOfSquares rests() const {
-    SumOfSquares squares;
+  SumOfSquares<S> rests() const {
+    SumOfSquares<S> squares;
     for (std::size_t i = 0; i < x_.size(); ++i) {
       if (is_there(i)) {
         squares.add(x_[i], y_[i]);
@@ -124,11 +137,11 @@ class DotPositions {
   }
 
   /// Of differences between one frame and the next.
-  SumOfSquares steps() const {
-    SumOfSquares squares;
+  SumOfSquares<S> steps() const {
+    SumOfSquares<S> squares;
     for (std::size_t i = dots_; i < x_.size(); ++i) {
       if (is_there(i) && is_there(i - dots_)) {
-        squares.add(x_[i] - x_[i - dots_], y_[i] - y_[i - dots_]);
+        squares.add(S(x_[i] - x_[i - dots_]), S(y_[i] - y_[i - dots_]));
       }
     }
     return squares;
@@ -136,12 +149,12 @@ class DotPositions {
 
   /// Of the weighted means of the dots and their neighbours that are there: of dots with all eight,
   /// or of all others.
-  SumOfSquares means(const DotWeights& weights, bool of_inner_dots) const {
-    SumOfSquares squares;
+  SumOfSquares<S> means(const DotWeights& weights, bool of_inner_dots) const {
+    SumOfSquares<S> squares;
     for (std::size_t i = 0; i < x_.size(); ++i) {
       const Index row = static_cast<Index>(i % dots_) / cols_;
       const Index col = static_cast<Index>(i % dots_) % cols_;
-      double x = 0, y = 0, weight = 0;
+      S x = S(0), y = S(0), weight = S(0);
       int neighbours = -1;
       for (Index di = -1; di <= 1; ++di) {
         for (Index dj = -1; dj <= 1; ++dj) {
@@ -149,16 +162,16 @@ class DotPositions {
               row + di >= 0 && row + di < rows_ && col + dj >= 0 && col + dj < cols_;
           const Index at = static_cast<Index>(i) + di * cols_ + dj;
           if (inside && is_there(static_cast<std::size_t>(at))) {
-            const double w = weight_of(weights, di, dj);
-            x += w * x_[static_cast<std::size_t>(at)];
-            y += w * y_[static_cast<std::size_t>(at)];
+            const S w = S(weight_of(weights, di, dj));
+            x += S(w * x_[static_cast<std::size_t>(at)]);
+            y += S(w * y_[static_cast<std::size_t>(at)]);
             weight += w;
             ++neighbours;
           }
         }
       }
       if (is_there(i) && (neighbours == 8) == of_inner_dots) {
-        squares.add(x / weight, y / weight);
+        squares.add(S(x / weight), S(y / weight));
       }
     }
     return squares;
@@ -166,43 +179,48 @@ class DotPositions {
 
   /// The largest standard deviation of a dot, both axes together. Without places and motion a dot
   /// has (frames - 1) (1 - 1 / dots) of its variance.
-  double largest_px() const {
-    std::vector<double> squares(dots_, 0);
+  S largest_px() const {
+    using std::sqrt;
+    std::vector<S> squares(dots_, S(0));
     for (std::size_t i = 0; i < x_.size(); ++i) {
-      squares[i % dots_] += is_there(i) ? x_[i] * x_[i] + y_[i] * y_[i] : 0;
+      squares[i % dots_] += is_there(i) ? S(S(x_[i] * x_[i]) + S(y_[i] * y_[i])) : S(0);
     }
-    double largest = 0;
+    S largest = S(0);
     for (std::size_t k = 0; k < dots_; ++k) {
-      largest = found_[k] > 0 ? (std::max)(largest, squares[k] / (2 * (found_[k] - 1))) : largest;
+      const S of_dot = found_[k] > 0 ? S(squares[k] / S(2 * (found_[k] - 1))) : S(0);
+      largest = largest < of_dot ? of_dot : largest;
     }
-    return std::sqrt(largest * dots_found / (dots_found - 1));
+    return S(sqrt(S(largest * S(dots_found / (dots_found - 1)))));
   }
 
   /// The largest standard deviation, over dots and axes, of a position relative to the central dot.
-  double relative_to_center_px() const {
+  S relative_to_center_px() const {
+    using std::sqrt;
     const std::size_t center = central_dot();
-    double largest = 0;
+    S largest = S(0);
     for (std::size_t k = 0; k < dots_; ++k) {
-      for (const std::vector<double>* axis : {&x_, &y_}) {
-        double count = 0, mean = 0, squares = 0;
+      for (const std::vector<S>* axis : {&x_, &y_}) {
+        double count = 0;
+        S mean = S(0), squares = S(0);
         for (std::size_t t = 0; t < axis->size(); t += dots_) {
-          const double off = (*axis)[t + k] - (*axis)[t + center];
+          const S off = (*axis)[t + k] - (*axis)[t + center];
           if (is_finite(off)) {
             count += 1;
-            const double change = off - mean;
-            mean += change / count;
-            squares += change * (off - mean);
+            const S change = off - mean;
+            mean += S(change / S(count));
+            squares += S(change * S(off - mean));
           }
         }
-        largest = count > 1 ? (std::max)(largest, squares / (count - 1)) : largest;
+        const S variance = count > 1 ? S(squares / S(count - 1)) : S(0);
+        largest = largest < variance ? variance : largest;
       }
     }
-    return std::sqrt(largest);
+    return value(largest) == 0 ? S(0) : S(sqrt(largest));
   }
 
  private:
   bool is_there(std::size_t i) const { return is_finite(x_[i]); }
-  void drop(std::size_t i) { x_[i] = y_[i] = not_a_number<double>(); }
+  void drop(std::size_t i) { x_[i] = y_[i] = not_a_number<S>(); }
   static double weight_of(const DotWeights& weights, Index di, Index dj) {
     const Index steps = di * di + dj * dj;
     return steps == 0 ? weights.self : steps == 1 ? weights.side : weights.diagonal;
@@ -235,25 +253,26 @@ class DotPositions {
   /// Drops what is further than a quarter of a pitch from its place.
   void drop_out_of_place() {
     count();
-    std::vector<double> off_x = x_, off_y = y_;
+    std::vector<S> off_x = x_, off_y = y_;
     remove_places_and_motion(off_x, place_x_, 3, MedianOf());
     remove_places_and_motion(off_y, place_y_, 3, MedianOf());
-    const double near = pitch_px() / 4;
-    for (std::size_t i = 0; i < x_.size() && near > 0; ++i) {
-      if (std::hypot(off_x[i], off_y[i]) > near) {
+    const S near_sq = pitch_sq_px() / S(16);
+    for (std::size_t i = 0; i < x_.size() && S(0) < near_sq; ++i) {
+      if (near_sq < S(off_x[i] * off_x[i]) + S(off_y[i] * off_y[i])) {
         drop(i);
         ++out_of_place;
       }
     }
   }
 
-  /// The median distance between neighbours; 0 if there are none.
-  double pitch_px() const {
+  /// Of the median distance between neighbours, the square; 0 if there are none.
+  S pitch_sq_px() const {
     const auto cols = static_cast<std::size_t>(cols_);
-    std::vector<double> distances;
+    std::vector<S> squares;
     const auto add = [&](std::size_t a, std::size_t b) {
       if (found_[a] > 0 && found_[b] > 0) {
-        distances.push_back(std::hypot(place_x_[a] - place_x_[b], place_y_[a] - place_y_[b]));
+        squares.push_back(
+            S(square(S(place_x_[a] - place_x_[b])) + square(S(place_y_[a] - place_y_[b]))));
       }
     };
     for (std::size_t k = 0; k < dots_; ++k) {
@@ -264,23 +283,23 @@ class DotPositions {
         add(k, k + cols);
       }
     }
-    return MedianOf()(std::move(distances));
+    return MedianOf()(std::move(squares));
   }
 
   /// The dot nearest to the mean place that is found in more than half of the frames in which the
   /// best is.
   std::size_t central_dot() const {
-    double mean_x = 0, mean_y = 0;
+    S mean_x = S(0), mean_y = S(0);
     for (std::size_t k = 0; k < dots_; ++k) {
-      mean_x += found_[k] > 0 ? place_x_[k] / dots_found : 0;
-      mean_y += found_[k] > 0 ? place_y_[k] / dots_found : 0;
+      mean_x += found_[k] > 0 ? S(place_x_[k] / S(dots_found)) : S(0);
+      mean_y += found_[k] > 0 ? S(place_y_[k] / S(dots_found)) : S(0);
     }
     const double most = *std::max_element(found_.begin(), found_.end());
     std::size_t center = 0;
-    double nearest = -1;
+    S nearest = S(-1);
     for (std::size_t k = 0; k < dots_; ++k) {
-      const double away = std::hypot(place_x_[k] - mean_x, place_y_[k] - mean_y);
-      if (2 * found_[k] > most && (nearest < 0 || away < nearest)) {
+      const S away = square(S(place_x_[k] - mean_x)) + square(S(place_y_[k] - mean_y));
+      if (2 * found_[k] > most && (nearest < S(0) || away < nearest)) {
         nearest = away;
         center = k;
       }
@@ -290,7 +309,7 @@ class DotPositions {
 
   Index rows_, cols_;
   std::size_t dots_;
-  std::vector<double> x_, y_, place_x_, place_y_;
+  std::vector<S> x_, y_, place_x_, place_y_;
   std::vector<double> found_;  ///< in how many frames each dot is; 0 for what was dropped
 };
 

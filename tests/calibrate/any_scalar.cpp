@@ -1,0 +1,277 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+// Every calibration that does not solve for forces or fluid (their tests do the same), in float and
+// in dual numbers: the same result, and the derivatives of finite differences.
+#include <Eigen/Core>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "fingerpad/adapt/autodiff.hpp"
+#include "fingerpad/calibrate/contact.hpp"
+#include "fingerpad/calibrate/dot_divergence.hpp"
+#include "fingerpad/calibrate/intensity.hpp"
+#include "fingerpad/calibrate/neighbour_light.hpp"
+#include "fingerpad/calibrate/preslip.hpp"
+#include "fingerpad/calibrate/slip.hpp"
+#include "fingerpad/calibrate/taxels.hpp"
+#include "support/catch.hpp"
+#include "support/pad.hpp"
+
+using namespace fingerpad;
+using test::Image;
+using test::Random;
+
+namespace {
+
+template <class S>
+using Results = std::vector<S>;
+
+/// A bulging membrane, pressed or free.
+double membrane_mm(Index i, Index j, double pressed_mm) {
+  const double x = 0.2 * (static_cast<double>(j) - 24), y = 0.2 * (static_cast<double>(i) - 20);
+  const double cap = 8 - 0.08 * (x * x + y * y);
+  return std::fmin(cap, 8 - pressed_mm + 0.1 * x);
+}
+
+template <class S, class Cell>
+Image<S> map_of(Index rows, Index cols, const Cell& cell) {
+  Image<S> map(rows, cols, S(0));
+  for (Index i = 0; i < rows; ++i) {
+    for (Index j = 0; j < cols; ++j) {
+      map(i, j) = cell(i, j);
+    }
+  }
+  return map;
+}
+
+/// m0 and n by the pitch between pixels: what is too deep grows with the square of what is pressed.
+struct LightByPitch {
+  template <class S>
+  Results<S> operator()(const S& p) const {
+    using Maps = std::vector<Image<double>>;
+    const auto free = map_of<double>(40, 48, [](Index i, Index j) { return membrane_mm(i, j, 0); });
+    Maps measured, truth;
+    for (const double pressed_mm : {0.8, 1.6}) {
+      measured.push_back(
+          map_of<double>(40, 48, [&](Index i, Index j) { return membrane_mm(i, j, pressed_mm); }));
+      truth.push_back(measured.back());
+      for (Index k = 0; k < 40 * 48; ++k) {
+        double& l = truth.back().cells[static_cast<std::size_t>(k)];
+        const double off = free.cells[static_cast<std::size_t>(k)] - l;
+        l += 0.02 * off * off;
+      }
+    }
+    const auto fit =
+        fit_neighbour_light<S>(S(0.2) * p, free, std::span<const Image<double>>(measured),
+                               std::span<const Image<double>>(truth), {3, 3, 2});
+    return {fit.light.m0_mm_per_rad, fit.light.n_per_mm, fit.rms_after_mm, fit.m0_sd};
+  }
+};
+
+/// The law of a dark gel by the radius of the ball.
+struct IntensityByBall {
+  template <class S>
+  Results<S> operator()(const S& p) const {
+    const auto free = map_of<double>(70, 80, [](Index, Index) { return 150.0; });
+    const auto pressed = map_of<double>(70, 80, [](Index i, Index j) {
+      const double x = 0.1 * static_cast<double>(j) - 4.1, y = 0.1 * static_cast<double>(i) - 3.4;
+      const double root_sq = 16 - x * x - y * y;
+      const double depth = root_sq > 0 ? std::fmax(0.0, 1.2 - 4 + std::sqrt(root_sq)) : 0.0;
+      return 150 * std::exp(-depth / 3);
+    });
+    IntensityCalibration<S> calibration({.smoothing_px = 0});
+    REQUIRE(calibration.add(free, pressed, {S(4) * p, S(0.1)}));
+    const IntensityFit<S> fit = calibration.fit();
+    REQUIRE(fit.ok());
+    return {fit.law.linear_mm, fit.max_depth_mm};
+  }
+};
+
+/// Noise of dots, one frame of which is drawn larger.
+struct DotNoiseByScale {
+  template <class S>
+  Results<S> operator()(const S& p) const {
+    Random random(3);
+    DotNoiseCalibration<S> calibration(7, 7);
+    for (int k = 0; k < 12; ++k) {
+      Image<Point2<S>> dots(7, 7, {S(0), S(0)});
+      for (Index i = 0; i < 7; ++i) {
+        for (Index j = 0; j < 7; ++j) {
+          const S x = S(20 * static_cast<double>(j) + 0.1 * random.normal());
+          const S y = S(20 * static_cast<double>(i) + 0.1 * random.normal());
+          dots(i, j) = k == 4 ? Point2<S>{S(p * x), S(p * y)} : Point2<S>{x, y};
+        }
+      }
+      REQUIRE(calibration.add(dots));
+    }
+    const DotNoise<S> noise = calibration.fit();
+    // thresholds are plain numbers, which decide
+    CHECK(stick_test_for(49, noise).slip == Approx(stick_test_for(49, calibration.fit()).slip));
+    return {noise.noise_px, noise.largest_px, noise.inner_px, noise.edge_px, noise.published_px};
+  }
+};
+
+/// Noise of an array, one taxel of which is read with another gain.
+struct TaxelsByGain {
+  template <class S>
+  Results<S> operator()(const S& p) const {
+    Random random(5);
+    TaxelNoiseCalibration<S> calibration(3, 3);
+    for (int t = 0; t < 160; ++t) {
+      const auto readings = map_of<S>(3, 3, [&](Index i, Index j) {
+        const S plain = S(50 + 2 * random.normal());
+        return i == 1 && j == 1 ? S(p * plain) : plain;
+      });
+      REQUIRE(calibration.add(readings, t / 30.0));
+    }
+    const TaxelNoise<S> noise = calibration.fit();
+    return {noise.typical, noise.deviations[4], noise.largest_factor, noise.centroid_deviation_mm};
+  }
+};
+
+/// Curvature of a free pad by the pitch of its height map.
+struct FreePadByPitch {
+  template <class S>
+  Results<S> operator()(const S& p) const {
+    OrthographicCamera<S> plan;
+    plan.pitch_mm = S(0.16) * p;
+    FreePadCalibration<ClampedMean<>, OrthographicCamera<S>, S> calibration(plan, 40, 44, {6});
+    Random random(7);
+    for (int k = 0; k < 3; ++k) {
+      REQUIRE(calibration.add(map_of<S>(40, 44, [&](Index i, Index j) {
+        const double x = 0.16 * (static_cast<double>(j) - 22),
+                     y = 0.16 * (static_cast<double>(i) - 20);
+        return S(9 - 0.025 * (x * x + y * y) + 2e-4 * random.normal());
+      })));
+    }
+    const auto pad = calibration.fit();
+    using T = decltype(pad.threshold_per_mm);
+    Results<T> all = {pad.threshold_per_mm, pad.median_per_mm, pad.noise_per_mm, pad.edge_noise_mm};
+    Results<S> out;
+    for (const T& x : all) {
+      out.push_back(S(x));
+    }
+    return out;
+  }
+};
+
+/// Normal force over the divergence of dots, by the unit of the force.
+struct DivergenceByForce {
+  template <class S>
+  Results<S> operator()(const S& p) const {
+    std::vector<DivergenceResult<S>> divergences;
+    std::vector<S> forces;
+    for (int k = 1; k < 20; ++k) {
+      DivergenceResult<S> d;
+      d.area_mm2 = S(0.3 * k);
+      d.variance_mm4 = S(1e-4);
+      divergences.push_back(d);
+      forces.push_back(S(p * S(0.8 * k + 0.05 * (k % 3))));
+    }
+    const auto fit = fit_divergence<1, S>(divergences, forces);
+    return {fit.curve.coefficients[0], fit.errors.residual_sd_n};
+  }
+};
+
+/// Thresholds that tell marked onsets, which are of a list; none has a derivative.
+struct PreslipThresholds {
+  template <class S>
+  Results<S> operator()(const S& p) const {
+    PreslipCalibration<GraspLift, 1, S> calibration(10);
+    for (int t = 0; t < 200; ++t) {
+      const bool onset = t % 40 >= 30;
+      FingerSample<S> sample;
+      sample.status = TaxelStatus::vibrating;
+      sample.center_x_mm = sample.center_y_mm = S(0);
+      sample.sum = S(100) * p;
+      sample.waves = onset ? 3 : 0;
+      sample.location = 0;
+      sample.add_vibration({sample.waves, 0});
+      sample.frequency_hz = S(onset ? 40 : 0);
+      calibration.add({sample}, onset);
+    }
+    const auto fit = calibration.fit();
+    return {S(static_cast<int>(fit.found)), S(static_cast<int>(fit.alarms)),
+            fit.options.centroid_tolerance_mm};
+  }
+};
+
+/// U of the stick ratio, which is one of a list: a patch dragged while dots let go from outside.
+struct ReferenceOfSlip {
+  template <class S>
+  Results<S> operator()(const S& p) const {
+    Random random(9);
+    StickTestCalibration<StickConsensus<>, UpdatedReference, ResidualMean, S> calibration(
+        15, 15, independent_dot_noise<S>(S(0.05) * p), {.candidates = 5});
+    const auto from = [](Index i, Index j) {
+      return std::hypot(static_cast<double>(i) - 7.3, static_cast<double>(j) - 6.8);
+    };
+    const auto contact = map_of<char>(
+        15, 15, [&](Index i, Index j) { return static_cast<char>(from(i, j) < 5.8 ? 1 : 0); });
+    Image<double> moved(15, 15, 0.0);
+    for (int t = 0; t < 90; ++t) {
+      const double radius = 6.5 - 0.055 * t;
+      Image<Point2<S>> dots(15, 15, {S(0), S(0)});
+      for (Index i = 0; i < 15; ++i) {
+        for (Index j = 0; j < 15; ++j) {
+          moved(i, j) += 0.5 - 0.5 * std::clamp((from(i, j) - radius) / 1.5, 0.0, 0.9);
+          dots(i, j) = {S(20 * static_cast<double>(j) + moved(i, j) + 0.05 * random.normal()),
+                        S(20 * static_cast<double>(i) + 0.05 * random.normal())};
+        }
+      }
+      REQUIRE(calibration.add(dots, contact));
+    }
+    const StickTestFit fit = calibration.fit();
+    return {S(fit.test.reference), S(static_cast<double>(fit.steps))};
+  }
+};
+
+/// The largest difference of two lists, relative.
+template <class A, class B>
+double furthest(const Results<A>& a, const Results<B>& b) {
+  REQUIRE(a.size() == b.size());
+  double most = 0;
+  for (std::size_t k = 0; k < a.size(); ++k) {
+    const auto x = static_cast<double>(value(a[k])), y = static_cast<double>(value(b[k]));
+    most = std::fmax(most, std::abs(x - y) / std::fmax(1e-9, std::abs(y)));
+    most = std::isfinite(x) ? most : 1e9;
+  }
+  return most;
+}
+
+template <class Calibration>
+void check(const char* name, const Calibration& run, double float_error, bool moves = true) {
+  CAPTURE(std::string(name));
+  const Results<double> plain = run(1.0);
+  CHECK(furthest(run(1.0F), plain) < float_error);
+  const auto dual = run(seeded(std::array{1.0})[0]);
+  CHECK(furthest(dual, plain) < 1e-9);
+  constexpr double step = 1e-5;
+  const Results<double> more = run(1 + step), less = run(1 - step);
+  double largest = 0;
+  for (std::size_t k = 0; k < plain.size(); ++k) {
+    CAPTURE(k);
+    const double slope = (more[k] - less[k]) / (2 * step);
+    CHECK(dual[k].derivatives()(0) ==
+          Approx(slope).epsilon(1e-4).margin(1e-6 * std::abs(plain[k])));
+    largest = std::fmax(largest, std::abs(slope) / std::abs(plain[k]));
+  }
+  CHECK((largest > 1e-3) == moves);
+}
+
+}  // namespace
+
+TEST_CASE("calibrations: in float, and with derivatives") {
+  check("neighbouring light", LightByPitch(), 2e-3);
+  check("intensity", IntensityByBall(), 2e-2);
+  check("noise of dots", DotNoiseByScale(), 1e-3);
+  check("noise of taxels", TaxelsByGain(), 1e-3);
+  check("free pad", FreePadByPitch(), 2e-2);
+  check("divergence of dots", DivergenceByForce(), 1e-3);
+  check("pre-slip", PreslipThresholds(), 1e-6, false);
+  check("stick test", ReferenceOfSlip(), 1e-6, false);
+}
