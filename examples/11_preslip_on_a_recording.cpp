@@ -20,6 +20,10 @@
 #include "fingerpad/calibrate/taxels.hpp"
 #include "fingerpad/pipeline/foam_hand.hpp"
 
+#ifndef FINGERPAD_EXAMPLE_RECORDING
+#define FINGERPAD_EXAMPLE_RECORDING "examples/data/press"
+#endif
+
 using namespace fingerpad;
 
 struct Sample {
