@@ -6,7 +6,8 @@
 // on scenes": curves and maps from contacts of finite-element membranes (tests/data/contacts.csv).
 // Errors: those of the method, on a scene that was left out of the fit. Published: a quadratic with
 // a constant by the press alone; the central dot, straight lines and the printed exponents, from
-// "mix".
+// "mix". "reference of a free pad": 480 x 640 pixels; error: of the depth under a flat plate from
+// exact colours, so of the reference alone, by a free frame with one grey level of noise.
 #include <cmath>
 #include <cstdint>
 #include <memory>
@@ -16,10 +17,13 @@
 #include <vector>
 
 #include "bench/support/run.hpp"
+#include "bench/support/scene.hpp"
 #include "examples/replay_many/trials.hpp"
 #include "fingerpad/calibrate/force.hpp"
+#include "fingerpad/depth/depth.hpp"
 #include "fingerpad/force/normal_force.hpp"
 #include "fingerpad/force/shear.hpp"
+#include "fingerpad/published/depth.hpp"
 #include "support/contact_records.hpp"
 #include "support/pad.hpp"
 
@@ -87,6 +91,52 @@ void add_power_law() {
         }
         bench::note_errors(counters, "parameters", "share", errors);
       });
+}
+
+template <class S, class Scattering, class Heights>
+std::vector<double> depth_errors(const bench::Scene& scene,
+                                 const DepthReference<S, Scattering, Heights>& reference) {
+  const DepthEstimator<NoSmoothing, Newton, Heights, S, Scattering> estimator(
+      scene.pad.camera, scene.pad.fluid, reference);
+  const auto found = test::estimate<S>(estimator, scene.pad.frame<double>(scene.pressed_mm));
+  std::vector<double> errors;
+  for (std::size_t k = 0; k < found.depth_mm.cells.size(); ++k) {
+    if (is_finite(scene.pressed_mm.cells[k])) {
+      errors.push_back(found.depth_mm.cells[k] - scene.pressed_mm.cells[k]);
+    }
+  }
+  return errors;
+}
+
+/// `fit(scene, free frame)`.
+template <class Fit>
+void add_reference(const std::string& name, const Fit& fit) {
+  const auto scene = std::make_shared<bench::Scene>(bench::round_pad());
+  const auto free =
+      std::make_shared<test::Frame<double>>(scene->pad.frame<double>(scene->free_mm, scene->noise));
+  const bench::Memory memory;
+  const auto reference = fit(*scene, *free);
+  bench::add(
+      "reference of a free pad/" + name, 1, memory.bytes(),
+      [=] { benchmark::DoNotOptimize(fit(*scene, *free)); },
+      [=](auto& counters) {
+        bench::note_errors(counters, "depth", "mm", depth_errors(*scene, reference));
+      });
+}
+
+void add_references() {
+  const auto published = [](const auto& smoothing) {
+    return [=](const bench::Scene& s, const test::Frame<double>& free) {
+      return published::depth_reference<double, AstigmaticHeights>(
+          s.pad.camera, s.pad.fluid, free.red, free.green, s.free_mm, smoothing);
+    };
+  };
+  add_reference("published: quotients of a smoothed frame", published(published::BoxMean()));
+  add_reference("quotients of a frame as it is", published(NoSmoothing()));
+  add_reference("fit_reference", [](const bench::Scene& s, const test::Frame<double>& free) {
+    return fit_reference<AstigmaticHeights, double>(s.pad.camera, s.pad.fluid, free.red, free.green,
+                                                    s.free_mm);
+  });
 }
 
 Samples samples_of(const std::vector<std::string>& scenes,
@@ -191,6 +241,7 @@ int main(int argc, char** argv) {
     add_trial(name);
   }
   add_power_law();
+  add_references();
   const Pairs plates = {{{"drag", "twist", "mix"}, "press"},
                         {{"press", "twist", "mix"}, "drag"},
                         {{"press", "drag", "mix"}, "twist"},
