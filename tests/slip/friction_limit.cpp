@@ -288,7 +288,7 @@ TEST_CASE("friction limit: dots that fall back are asked where the load falls wi
     const auto light = [](double n) {
       return ContactLoad<double>{.normal_n = n, .tangential_n = n};
     };
-    (void)limit(light(0.01), 0.4, RatioUpdate::fresh, state);
+    (void)limit(light(4), 0.4, RatioUpdate::fresh, state);
     CHECK(limit(light(0.01), seen, state).stick_ratio == 0.4);
     CHECK(!is_finite(state.limit()));
   }
