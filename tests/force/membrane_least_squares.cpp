@@ -201,7 +201,7 @@ TEMPLATE_TEST_CASE("least squares: an inflated cap is a soap film", "[membrane]"
   }
 }
 
-TEST_CASE("least squares: errors fall with the square of the mesh", "[membrane]") {
+TEST_CASE("least squares: errors fall with the square of the mesh", "[membrane][figures]") {
   double coarse = 0;
   for (const Index columns : {18, 36, 72}) {
     Membrane<double> cap(Cap<double>{}, columns, columns * 5 / 6);

@@ -242,7 +242,7 @@ Found find(const Pad& pad, const Load& load, Index columns = 72, Index rows = 65
 }  // namespace
 
 TEMPLATE_TEST_CASE("wrench of a flat press in closed form",
-                   "[wrench]",
+                   "[wrench][figures]",
                    BalancedRim,
                    published::ClosedForm,
                    published::Iteration,
@@ -305,7 +305,7 @@ TEMPLATE_TEST_CASE("wrench of lateral loads and torques",
   }
 }
 
-TEST_CASE("wrench of lateral loads and torques, each column by itself", "[wrench]") {
+TEST_CASE("wrench of lateral loads and torques, each column by itself", "[wrench][figures]") {
   const RoundPad<FilmSide> pad;
   const TrueLoad drag(pad, 0.1, 0), twist(pad, 0, 0.2);
   const auto error = [](const Found& f) { return std::abs(f.force_error.x) / f.lateral(); };
@@ -376,7 +376,7 @@ struct InnerError {
 
 }  // namespace
 
-TEST_CASE("tensions within a flat press: the mesh converges", "[wrench]") {
+TEST_CASE("tensions within a flat press: the mesh converges", "[wrench][figures]") {
   const auto check = [](const auto& solver, const char* name, double max_residual) {
     const InnerError coarse(solver, 18, 16), middle(solver, 36, 32), fine(solver, 72, 64);
     INFO(name << ", f_v off by at most " << coarse.tension << " at 18 x 16, " << middle.tension
@@ -583,7 +583,7 @@ struct Way {
 }  // namespace
 
 TEMPLATE_TEST_CASE("covariance of force and moment, by draws of noisy side dots",
-                   "[wrench]",
+                   "[wrench][figures]",
                    (Way<BalancedRim, ClampedRim, OneRow>),
                    (Way<BalancedRim, ClampedRim, TwoRows>),
                    (Way<published::ClosedForm, ClampedRim, OneRow>),
@@ -671,7 +671,8 @@ void check_edge_covariance() {
 
 }  // namespace
 
-TEST_CASE("covariance of force and moment, by draws of the edge of the contact", "[wrench]") {
+TEST_CASE("covariance of force and moment, by draws of the edge of the contact",
+          "[wrench][figures]") {
   check_edge_covariance<BalancedRim>();
 }
 

@@ -328,7 +328,7 @@ TEST_CASE("stick ratio in space: noise makes as many dots slip as was asked", "[
 }
 
 TEST_CASE("stick ratio in space: its standard deviation is the scatter of its answers",
-          "[spatial_stick]") {
+          "[spatial_stick][figures]") {
   constexpr int answers = 100;
   test::Random random(5);
   for (const double share : {0.7, 0.9}) {

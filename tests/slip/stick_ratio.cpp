@@ -1030,7 +1030,7 @@ TEST_CASE("stick ratio: at rest the last reference is asked again, if that is as
   CHECK(state.stored_frames() == stored);  // what stands still is not stored
 }
 
-TEST_CASE("stick ratio: its standard deviation is the scatter of its answers") {
+TEST_CASE("stick ratio: its standard deviation is the scatter of its answers", "[figures]") {
   constexpr int answers = 150;
   for (const double noise_px : {0.06, 0.14}) {
     for (const double share : {0.5, 0.7, 0.9}) {
