@@ -196,6 +196,24 @@ void add_normal(const std::string& name,
               OnScenes<decltype(fit), decltype(error)>{measure, ContactDotsOf::edge, fit, error});
 }
 
+/// By the radius of a disc of the contact's area.
+void add_power_law(const std::string& name, const Pairs& pairs) {
+  const auto radius = [](double area_mm2) { return std::sqrt(area_mm2 / 3.141592653589793); };
+  const auto fit = [=](Samples samples) {
+    for (auto& s : samples) {
+      s.measure = radius(s.measure);
+    }
+    return fit_power_law(span_of(samples));
+  };
+  const auto error = [=](const auto& found, const ForceSample<double>& s) {
+    const NormalForce force(found.curve);
+    return force(radius(s.measure)).force_n - s.normal_force_n;
+  };
+  add_look_up(name, "normal force", "N", pairs,
+              OnScenes<decltype(fit), decltype(error)>{ContactMeasure::area, ContactDotsOf::edge,
+                                                       fit, error});
+}
+
 template <int Degree>
 void add_tangential(const std::string& name,
                     ContactMeasure measure,
@@ -256,6 +274,8 @@ int main(int argc, char** argv) {
   add_normal<5>("area, degree 5", area, plates);
   add_normal<3>("depth, degree 3", depth, plates);
   add_normal<3>("area, ScaledCompensation", area, plates, {.displaced = true, .rotated = true});
+  add_power_law("area, power law", plates);
+  add_power_law("area, power law, by the press alone", press);
   add_tangential<1>("central dot, published", area, center, 0.65);
   add_tangential<1>("edge dots, area", area, edge);
   add_tangential<1>("edge dots, depth", depth, edge);
