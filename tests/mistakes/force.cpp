@@ -663,7 +663,8 @@ TEST_CASE("mistakes with the traction field: an aged membrane", "[mistakes]") {
         const auto r = field(test::noisy(scene.dots, noise_mm, gauss), scene.contact,
                              scene.pressure_mpa, maps);
         CAPTURE(scene.name, length, noise_mm, r.balance.mu_t_n_per_mm());
-        CHECK(name_of(r.status) == std::string(length == 1 ? "ok" : all[1].said));
+        const char* of_another_length = "modulus not of this pad: has the membrane aged?";
+        CHECK(name_of(r.status) == std::string(length == 1 ? "ok" : of_another_length));
       }
     }
   }

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
-// A type without cells is refused by the concept's name.
-// message: (satisfaction of|does not satisfy) 'grid
+// A type without cells is told what it lacks.
+// first error: no grid: give the type rows\(\), cols\(\) and a const operator
 #include "fingerpad/core/grid.hpp"
 #include "support/foreign_image.hpp"
 

@@ -1,23 +1,27 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 // A computed cell is a copy; what is assigned to it would be lost in silence.
-// message: (satisfaction of|does not satisfy) 'writable_grid
-#include "fingerpad/core/dots.hpp"
+// first error: cells are written: pass a grid whose cells can be assigned, neither const nor computed
+#include "fingerpad/contact/contact_by_difference.hpp"
+#include "support/foreign_image.hpp"
 
-using Point = fingerpad::Point2<double>;
-template <fingerpad::writable_grid G>
-void clear(const G& g) {
-  g(0, 0) = Point{0, 0};
+using namespace fingerpad;
+using Frame = test::ForeignImage<float>;
+
+static void find_in(auto&& mask) {
+  const Frame frames[] = {Frame(8, 8)};
+  const ContactByDifference<1> contact(frames);
+  auto workspace = contact.workspace();
+  (void)contact(frames[0], mask, workspace);
 }
 
 #ifdef FINGERPAD_MUST_NOT_COMPILE
 static void good_or_bad() {
-  clear(fingerpad::LazyView(2, 2, [](fingerpad::Index, fingerpad::Index) { return Point{1, 1}; }));
+  find_in(LazyView(8, 8, [](Index, Index) { return Touch::none; }));
 }
 #else
 static void good_or_bad() {
-  Point memory[4] = {};
-  clear(fingerpad::StridedView<Point>(memory, 2, 2, 2));
+  find_in(test::ForeignImage<Touch>(8, 8));
 }
 #endif
 int main() {

@@ -1,24 +1,28 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 // What is read-only is refused where cells are written.
-// message: (satisfaction of|does not satisfy) 'writable_grid
-#include "fingerpad/core/grid.hpp"
+// first error: cells are written: pass a grid whose cells can be assigned, neither const nor computed
+#include "fingerpad/contact/contact_region.hpp"
 #include "support/foreign_image.hpp"
 
-template <fingerpad::writable_grid G>
-void clear(G& g) {
-  fingerpad::as_view(g)(0, 0) = 0;
+using namespace fingerpad;
+static test::ForeignImage<float> depths(64, 64);
+static test::ForeignImage<Touch> mask(64, 64);
+
+static void find_in(auto& to) {
+  const ContactRegion<> contact({}, 64, 64);
+  auto workspace = contact.workspace();
+  (void)contact(depths, to, workspace);
 }
-static test::ForeignImage<double> image(2, 2);
 
 #ifdef FINGERPAD_MUST_NOT_COMPILE
 static void good_or_bad() {
-  const auto& read_only = image;
-  clear(read_only);
+  const auto& read_only = mask;
+  find_in(read_only);
 }
 #else
 static void good_or_bad() {
-  clear(image);
+  find_in(mask);
 }
 #endif
 int main() {

@@ -122,8 +122,8 @@ class ContactByDifference {
   /// Writes to `mask` as ContactRegion does: a Touch, or 255 in contact and 0 elsewhere. The area
   /// is flat, at mm_per_px; the center counts from the image's own. Depths are NaN.
   template <grid Frame, class Mask>
-    requires(writable_grid<Mask>)
   ContactResult operator()(const Frame& frame, Mask&& mask, Workspace& w) const {
+    detail::writes_to<Mask>();
     ContactResult result;
     const auto from = as_view(frame);
     const auto to = as_view(mask);

@@ -112,8 +112,8 @@ class ContactRegion {
   /// Finds the contact in a depth map in mm. Cells of `mask` become a Touch if they are of that
   /// type, else 255 (or true) in contact and 0 elsewhere.
   template <grid Depth, class Mask>
-    requires(writable_grid<Mask>)
   ContactResult operator()(const Depth& depth_mm, Mask&& mask, Workspace& w) const {
+    detail::writes_to<Mask>();
     ContactResult result;
     const auto depth = as_view(depth_mm);
     const auto to = as_view(mask);

@@ -114,6 +114,18 @@ concept writable_grid = grid<G> && requires(std::remove_reference_t<G>& g, const
   detail::traits_of<G>::at(g, i, i) = static_cast<cell_t<G>>(cell);
 };
 
+namespace detail {
+/// Called by what writes cells: a grid that cannot take them is told in the first error.
+template <class G, class T = cell_t<G>>
+constexpr void writes_to() {
+  static_assert(writable_grid<G, T>,
+                "cells are written: pass a grid whose cells can be assigned, neither const nor "
+                "computed");
+}
+template <class G>
+inline constexpr bool is_told = false;
+}  // namespace detail
+
 /// A grid in plain memory: cell (i, j) is data[i * row_stride + j * col_stride].
 template <class G> concept strided_grid = grid<G> && requires(const std::remove_cvref_t<G>& g) {
   { *detail::traits_of<G>::data(g) } -> std::convertible_to<cell_t<G>>;
@@ -128,6 +140,21 @@ constexpr Index rows(const G& g) {
 template <grid G>
 constexpr Index cols(const G& g) {
   return detail::traits_of<G>::cols(g);
+}
+
+/// What is no grid is told in words.
+template <class G>
+  requires(!grid<G>)
+constexpr Index rows(const G&) {
+  static_assert(detail::is_told<G>,
+                "no grid: give the type rows(), cols() and a const operator()(row, col), or "
+                "specialise fingerpad::grid_traits for it");
+  return 0;
+}
+template <class G>
+  requires(!grid<G>)
+constexpr Index cols(const G& g) {
+  return rows(g);
 }
 
 /// True when the two grids have the same number of rows and of columns.
@@ -145,6 +172,14 @@ class StridedView {
   constexpr StridedView() = default;
   constexpr StridedView(T* data, Index rows, Index cols, Index row_stride, Index col_stride = 1)
       : data_(data), rows_(rows), cols_(cols), row_stride_(row_stride), col_stride_(col_stride) {}
+  /// The other way round is told in words.
+  template <class Other>
+    requires(!std::is_const_v<T> && std::same_as<Other, const T>)
+  constexpr explicit StridedView(const StridedView<Other>&) {
+    static_assert(detail::is_told<Other>,
+                  "a view that only reads does not become one that writes: take "
+                  "StridedView<const T>, or make the view from cells that are not const");
+  }
   /// A view that only reads, from one that may write.
   constexpr operator StridedView<const T>() const requires(!std::is_const_v<T>) {
     return {data_, rows_, cols_, row_stride_, col_stride_};

@@ -156,7 +156,6 @@ class DepthEstimator {
 
   /// Depth in mm of a frame, NaN where there is none, from its red and green channel.
   template <grid Red, grid Green, class Depth, class Pixel>
-    requires(writable_grid<Depth, S>)
   DepthResult operator()(const Red& red,
                          const Green& green,
                          Depth&& depth_mm,
@@ -167,19 +166,18 @@ class DepthEstimator {
 
   /// The same, with a PixelStatus per pixel.
   template <grid Red, grid Green, class Depth, class Status, class Pixel>
-    requires(writable_grid<Depth, S>&& writable_grid<Status, PixelStatus>)
   DepthResult operator()(const Red& red,
                          const Green& green,
                          Depth&& depth_mm,
                          Status&& status,
                          Workspace<Pixel>& workspace) const {
+    detail::writes_to<Status, PixelStatus>();
     return band(0, rows_, red, green, depth_mm, status, workspace);
   }
 
   /// Rows [first, last) of the frame only, for threads that share a frame; bit for bit what the
   /// whole frame gives.
   template <grid Red, grid Green, class Depth, class Status, class Pixel>
-    requires(writable_grid<Depth, S>)
   DepthResult band(Index first,
                    Index last,
                    const Red& red,
@@ -188,6 +186,7 @@ class DepthEstimator {
                    Status&& status,
                    Workspace<Pixel>& workspace)
   const {
+    detail::writes_to<Depth, S>();
     static_assert(!detail::has_channels<cell_t<Red>> && !detail::has_channels<cell_t<Green>>,
                   "a colour image is no channel: pass fingerpad::channel<T>(image, c) of it");
     static_assert(std::is_same_v<cell_t<Red>, Pixel> && std::is_same_v<cell_t<Green>, Pixel>,

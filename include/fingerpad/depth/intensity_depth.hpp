@@ -121,8 +121,8 @@ class IntensityDepth {
   /// Writes how deep the gel is pressed, mm; NaN where there is no answer. The height of the
   /// surface is the gel's thickness less that.
   template <grid Frame, class Depth>
-    requires(writable_grid<Depth, S>)
   IntensityDepthResult operator()(const Frame& frame, Depth&& depth_mm, Workspace& w) const {
+    detail::writes_to<Depth, S>();
     IntensityDepthResult result;
     const auto from = as_view(frame);
     const auto to = as_view(depth_mm);
