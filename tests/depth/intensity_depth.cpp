@@ -5,6 +5,9 @@
 #include <cmath>
 #include <limits>
 
+#include "fingerpad/contact/contact_by_difference.hpp"
+#include "fingerpad/contact/object_surface.hpp"
+#include "fingerpad/slip/contact_slide.hpp"
 #include "support/catch.hpp"
 #include "support/generators.hpp"
 #include "support/numbers.hpp"
@@ -24,6 +27,45 @@ constexpr double none = std::numeric_limits<double>::quiet_NaN();
 double free_level(Index i, Index j) {
   return 150 + 0.3 * static_cast<double>(i) - 0.2 * static_cast<double>(j);
 }
+
+/// A ball in a gel of 4 mm, from free frames of which a one-channel camera knows how dark they get.
+struct PressedBall {
+  static constexpr Index rows = 96;
+  static constexpr Index cols = 120;
+  static constexpr double mm_per_px = 0.05;
+  static constexpr double gel_mm = 4;
+  double ball_mm = test::uniform(2, 4);
+  double contact_px = test::uniform(24, 30);
+  IntensityLaw<> law{test::uniform(2, 4), 0, 0};
+  test::Random random{static_cast<std::uint64_t>(test::whole(1, 1000))};
+
+  double depth_mm(double r_px) const {
+    const double r = r_px * mm_per_px;
+    const double a = contact_px * mm_per_px;
+    return r < a ? std::sqrt(ball_mm * ball_mm - r * r) - std::sqrt(ball_mm * ball_mm - a * a) : 0;
+  }
+  Image<std::uint8_t> frame(bool is_pressed, const Point2<double>& way_px) {
+    Image<std::uint8_t> image(rows, cols);
+    for (Index i = 0; i < rows; ++i) {
+      for (Index j = 0; j < cols; ++j) {
+        const Point2<double> from_ball = {static_cast<double>(j) - 59.5 - way_px.x,
+                                          static_cast<double>(i) - 47.5 - way_px.y};
+        const double depth = is_pressed ? depth_mm(norm(from_ball)) : 0;
+        const double level = free_level(i, j) * std::exp(-depth / law.linear_mm);
+        image(i, j) = static_cast<std::uint8_t>(level + 0.3 * random.normal() + 0.5);
+      }
+    }
+    return image;
+  }
+};
+
+/// What is seen of a frame: heights of the gel's surface, and the contact.
+struct BallSeen {
+  Image<double> depth_mm{PressedBall::rows, PressedBall::cols};
+  Image<double> height_mm = depth_mm;
+  Image<Touch> contact{PressedBall::rows, PressedBall::cols};
+  ContactResult found;
+};
 
 }  // namespace
 
@@ -115,6 +157,65 @@ TEST_CASE("intensity depth: smoothing averages the noise", "[intensity_depth]") 
   CHECK(spread(0) == Approx(3.0 / 120).epsilon(0.1));
   // the mean of a Gaussian of sd s has the noise of 4 pi s^2 pixels
   CHECK(spread(2) == Approx(spread(0) / std::sqrt(4 * 3.14159 * 4)).epsilon(0.2));
+}
+
+TEST_CASE("intensity depth: contact, surface and slide of a ball", "[intensity_depth]") {
+  rc::prop("for every ball and law", [] {
+    PressedBall ball;
+    const auto free = ball.frame(false, {0, 0});
+    const IntensityDepth<double> depth(free, ball.law);
+    const ContactByDifference<1, double> region(
+        std::vector{free, ball.frame(false, {0, 0})},
+        {.cell_px = 2, .smoothing_px = 2, .dot_px = 0, .max_gap_px = 8, .min_region_px = 100});
+    auto depth_workspace = depth.workspace();
+    auto region_workspace = region.workspace();
+    const auto see = [&](const Point2<double>& way_px) {
+      const auto frame = ball.frame(true, way_px);
+      BallSeen seen;
+      RC_ASSERT(depth(frame, seen.depth_mm, depth_workspace).ok());
+      seen.found = region(frame, seen.contact, region_workspace);
+      RC_ASSERT(seen.found.ok());
+      for (std::size_t k = 0; k < seen.depth_mm.cells.size(); ++k) {
+        seen.height_mm.cells[k] = PressedBall::gel_mm - seen.depth_mm.cells[k];
+      }
+      return seen;
+    };
+    const BallSeen before = see({0, 0});
+    const double radius_px = std::sqrt(double(before.found.contact_px) / 3.14159265358979);
+    // where the frame differs enough; the mean over 2 px reaches beyond the contact
+    RC_LOG() << radius_px << " px for " << ball.contact_px << "\n";
+    const double dark = -ball.law.linear_mm * std::log(1 - region.threshold());
+    RC_ASSERT(ball.depth_mm(radius_px + 2) < dark);
+    RC_ASSERT(radius_px < ball.contact_px + 2);
+
+    const SurfaceFit<Sphere<>, OrthographicCamera<double>> fit(
+        PressedBall::rows, PressedBall::cols, {59.5, 47.5, PressedBall::mm_per_px},
+        {.border_px = 4});
+    const auto surface = fit(before.height_mm, before.contact);
+    RC_ASSERT(surface.status == SurfaceStatus::ok);
+    RC_LOG() << surface.shape.radius_mm() << " mm for " << ball.ball_mm << "\n";
+    // the standard error takes pixels for independent, which a mean over 2 px leaves no more
+    const double as_one = std::sqrt(4 * 3.14159265358979) * 2;
+    const double sd = as_one * surface.shape.curvature_sd_per_mm * ball.ball_mm;
+    RC_ASSERT(sd < 0.04);
+    RC_ASSERT(std::abs(surface.shape.curvature_per_mm * ball.ball_mm - 1) < 0.01 + 4 * sd);
+
+    const Point2<double> way = {test::uniform(-6, 6), test::uniform(-6, 6)};
+    Image<Point2<double>> dots(3, 3);  // that stay behind
+    for (Index k = 0; k < 9; ++k) {
+      dots(k / 3, k % 3) = {double(39 + 20 * (k % 3)), double(27 + 20 * (k / 3))};
+    }
+    const ContactSlide<double> slide(PressedBall::rows, PressedBall::cols, 3, 3,
+                                     {.pitch_px = 20, .cell_px = 1});
+    auto state = slide.start();
+    (void)slide(before.depth_mm, before.contact, dots, state);
+    const BallSeen after = see(way);
+    const auto slid = slide(after.depth_mm, after.contact, dots, state);
+    RC_LOG() << slid.imprint_px.x << ", " << slid.imprint_px.y << " +- " << slid.imprint_sd_px
+             << " px for " << way.x << ", " << way.y << "\n";
+    RC_ASSERT(slid.status == SlideStatus::updated);
+    RC_ASSERT(norm(slid.slide_px - way) < 0.2);
+  });
 }
 
 TEST_CASE("intensity depth: fifty digits and duals", "[intensity_depth]") {
