@@ -145,7 +145,8 @@ void expects_valid(const NeighbourLightSearch& search,
                    std::span<const Measured> measured_mm,
                    std::span<const True> true_mm) {
   const char* const owner = "fit_neighbour_light";
-  expects(value(pitch_mm) >= 1e-4 && value(pitch_mm) <= 10, owner, "pitch_mm", pitch_mm,
+  const double pitch = static_cast<double>(value(pitch_mm));
+  expects(pitch >= 1e-4 && pitch <= 10, owner, "pitch_mm", pitch_mm,
           "in [0.0001, 10]: mm between pixels");
   expects(search.min_radius_px >= 1, owner, "min_radius_px",
           static_cast<long long>(search.min_radius_px), ">= 1");
@@ -198,8 +199,9 @@ std::vector<LightSample<S>> light_samples(Index radius_px,
   expects(samples.size() >= 3, owner, "pixels with a reference, measured and true depth",
           static_cast<long long>(samples.size()), ">= 3");
   const S psi_rms = sqrt(S(psi_sq / S(static_cast<double>(samples.size()))));
-  expects(value(psi_rms) > 1e-9, owner, "rms of the inclination change summed over the disc",
-          psi_rms, "> 1e-9 rad: the frames must differ in shape from the reference");
+  expects(static_cast<double>(value(psi_rms)) > 1e-9, owner,
+          "rms of the inclination change summed over the disc", psi_rms,
+          "> 1e-9 rad: the frames must differ in shape from the reference");
   return samples;
 }
 
