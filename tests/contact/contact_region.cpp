@@ -43,7 +43,7 @@ Found find(const CameraType& camera,
   auto workspace = region.workspace();
   Found found{{}, Image<Touch>(depth.rows(), depth.cols(), Touch::unknown)};
   found.result = region(depth, found.mask, workspace);
-  REQUIRE(found.result.ok());
+  REQUIRE(found.result.accepted());
   return found;
 }
 
@@ -520,6 +520,7 @@ TEST_CASE("an image smaller than the ring is unknown", "[contact_region]") {
     CHECK(found.result.unknown_px == size * (size + 1));
     CHECK(count(found.mask, Touch::unknown) == size * (size + 1));
     CHECK_FALSE(found.result.in_contact());
+    CHECK(found.result.status == FrameStatus::not_of_this_pad);
   }
   const Image<float> missing(30, 40, static_cast<float>(test::nan));
   CHECK(find(height_map(30, 40), missing, with_ring(4)).result.unknown_px == 30 * 40);

@@ -39,12 +39,13 @@ using Pad = test::RoundPad<test::FilmSide>;
 struct Shape {
   Pad pad;
   double height = 1, slope = 1;
+  bool touches = true;
 
   detail::membrane::HeightAndSlope<double> operator()(double x, double y) const {
     const auto true_one = pad(x, y);
     return {height * true_one.height_mm, slope * true_one.along_x, slope * true_one.along_y};
   }
-  bool in_contact(double x, double y) const { return pad.in_contact(x, y); }
+  bool in_contact(double x, double y) const { return touches && pad.in_contact(x, y); }
 };
 
 /// A frame of a drag and a twist at 10 kPa, and the estimator, to be spoilt.
@@ -155,6 +156,12 @@ const std::vector<WrenchMistake> wrench_mistakes = {
      "modulus not as calibrated: absolute pressure?"},
     {"depth in metres", [](Frame& f) { f.shape.height = f.shape.slope = 1e-3; }, "shape not in mm"},
     {"depth in um", [](Frame& f) { f.shape.height = f.shape.slope = 1e3; }, "no shape"},
+    {"no depth anywhere",
+     [](Frame& f) {
+       f.shape.height = f.shape.slope = test::nan;
+       f.shape.touches = false;
+     },
+     "no shape"},
     {"depth upside down", [](Frame& f) { f.shape.height = f.shape.slope = -1; }, "shape not in mm"},
     {"another frame's size",
      [](Frame& f) {

@@ -254,7 +254,7 @@ struct Said {
 
 const std::vector<Said> table = {
     {"none", "found", "found", "found", "found", "found", "found"},
-    {"x 1000", "not of this pad", "mostly unknown", "mostly unknown", "degenerate",
+    {"x 1000", "not of this pad", "not of this pad", "not of this pad", "degenerate",
      "not of this pad", "no answer"},
     {"/ 1000", "not of this pad", "found", "not of this pad", "another object", "not of this pad",
      "found"},
@@ -270,7 +270,7 @@ const std::vector<Said> table = {
     {"constant", "not of this pad", "not of this pad", "another contact", "another object",
      "another depth", "no answer"},
     {"half missing", "found", "found", "mostly unknown", "found", "found", "no answer"},
-    {"no number", "not of this pad", "mostly unknown", "mostly unknown", "degenerate", "found",
+    {"no number", "not of this pad", "not of this pad", "not of this pad", "degenerate", "found",
      "no answer"},
     {"the free pad for now", "another depth", "no contact", "no contact", "another object",
      "another depth", "another area"},

@@ -137,6 +137,8 @@ class ContactByDifference {
       // a contact has an outline; other lamps differ most along the border
       result = found(detail::GainFrom::border, w);
       result.status = is_border_free(w) ? FrameStatus::ok : FrameStatus::not_of_this_pad;
+    } else if (result.unknown_px == rows() * cols()) {
+      result.status = FrameStatus::not_of_this_pad;
     }
     write(w, to);
     return result;

@@ -32,9 +32,9 @@ inline namespace v0 {
 
 /// What a frame's contact is like. Without contact, areas are 0 and what has no value is NaN.
 ///
-/// Not of this pad: a contact at a mean height below a twentieth of the free apex or above twenty
-/// of it, as of depths in m (contact_region.hpp); half of the frame and half of its border or more
-/// in contact (contact_by_difference.hpp).
+/// Not of this pad: nothing of the frame is known; a contact at a mean height below a twentieth of
+/// the free apex or above twenty of it, as of depths in m (contact_region.hpp); half of the frame
+/// and half of its border or more in contact (contact_by_difference.hpp).
 struct [[nodiscard]] ContactResult {
   FrameStatus status = FrameStatus::refused;
   Index contact_px = 0;  ///< pixels in contact
@@ -211,8 +211,11 @@ class ContactRegion {
     }
   }
 
-  /// Of no contact, and of an apex that is not one, nothing is said.
+  /// Where nothing is known, nothing is free either. Of an apex that is not one nothing is said.
   bool is_of_this_pad(const ContactResult& result) const {
+    if (result.unknown_px == rows() * cols()) {
+      return false;
+    }
     const double apex = test_.free_apex_mm, height = result.center_mm.z;
     return !result.in_contact() || !(apex > 0) || (apex < 20 * height && height < 20 * apex);
   }

@@ -142,9 +142,11 @@ class SurfaceFit {
   /// The same, and the distance of each pixel used from the shape, in mm: positive where the object
   /// stands out into the pad; NaN elsewhere, and everywhere unless ok(). `residual_mm` may be the
   /// depth map.
-  template <grid Depth, contact_mask Mask, writable_grid<Scalar> Residual>
-    requires(std::constructible_from<Scalar, cell_t<Depth>> && !std::integral<cell_t<Residual>>)
+  template <grid Depth, contact_mask Mask, class Residual>
+    requires(std::constructible_from<Scalar, cell_t<Depth>>)
   Result operator()(const Depth& depth_mm, const Mask& contact, Residual&& residual_mm) const {
+    static_assert(detail::takes_numbers<Residual, Scalar>,
+                  "numbers are written: pass a grid whose cells can be assigned and hold NaN");
     const auto depth = as_view(depth_mm);
     const auto mask = as_view(contact);
     const auto out = as_view(std::forward<Residual>(residual_mm));

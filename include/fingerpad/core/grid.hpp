@@ -115,15 +115,22 @@ concept writable_grid = grid<G> && requires(std::remove_reference_t<G>& g, const
 };
 
 namespace detail {
-/// Called by what writes cells: a grid that cannot take them is told in the first error.
-template <class G, class T = cell_t<G>>
-constexpr void writes_to() {
-  static_assert(writable_grid<G, T>,
-                "cells are written: pass a grid whose cells can be assigned, neither const nor "
-                "computed");
-}
 template <class G>
 inline constexpr bool is_told = false;
+/// Called by what writes cells T: a grid that cannot take them is told in the first error.
+template <class G, class T = void>
+constexpr void writes_to() {
+  if constexpr (grid<G>) {
+    static_assert(writable_grid<G, std::conditional_t<std::is_void_v<T>, cell_t<G>, T>>,
+                  "cells are written: pass a grid whose cells can be assigned, neither const nor "
+                  "computed");
+  } else {
+    static_assert(is_told<G>, "cells are written: pass a grid");
+  }
+}
+/// A grid that takes cells T, NaN among them.
+template <class G, class T>
+concept takes_numbers = writable_grid<G, T> && !std::is_integral_v<cell_t<G>>;
 }  // namespace detail
 
 /// A grid in plain memory: cell (i, j) is data[i * row_stride + j * col_stride].

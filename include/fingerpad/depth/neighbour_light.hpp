@@ -111,9 +111,10 @@ class NeighbourLightCompensation {
 
   /// Compensates `depth_mm` into `out`, which may be the same grid. NaN where the input is NaN and
   /// nowhere else. A grid of another size than the reference is refused before anything is written.
-  template <grid Depth, writable_grid<S> Out>
-    requires(!std::integral<cell_t<Out>>)
+  template <grid Depth, class Out>
   NeighbourLightResult operator()(const Depth& depth_mm, Out&& out, Workspace& workspace) const {
+    static_assert(detail::takes_numbers<Out, S>,
+                  "numbers are written: pass a grid whose cells can be assigned and hold NaN");
     const auto from = as_view(depth_mm);
     const auto to = as_view(std::forward<Out>(out));
     if (from.rows() != rows() || from.cols() != cols() || to.rows() != rows() ||

@@ -307,7 +307,8 @@ class Wrench {
   WrenchStatus lay_mesh(const Shape& shape, Workspace& work, WrenchResult<S>& result) const {
     Point3<S> center;
     if (!detail::membrane::find_contact(shape, options_.base_radius_mm, center)) {
-      return WrenchStatus::no_contact;
+      return detail::membrane::has_height(shape, options_.base_radius_mm) ? WrenchStatus::no_contact
+                                                                          : WrenchStatus::no_shape;
     }
     work.nodes_.template lay<Lines>(shape, center);
     result.broken_lines = work.nodes_.broken();

@@ -106,7 +106,7 @@ enum class WrenchStatus : std::uint8_t {
   bad_pressure,       ///< not finite or not above 0
   too_few_side_dots,  ///< more than a third were not found
   unstretched,        ///< more than a third do not tell a direction: too little stretch, or slack
-  no_shape,           ///< more than a third of the lines run into holes
+  no_shape,           ///< more than a third of the lines run into holes, or all is one
   no_level_line,      ///< nowhere between rim and contact is the membrane level, so its shape does
                       ///< not tell how much it pulls (by_modulus() needs no such line)
   not_solved,         ///< the equations have no solution, or one that pulls downward

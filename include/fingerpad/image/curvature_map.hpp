@@ -92,28 +92,27 @@ class CurvatureMap {
   }
 
   /// Curvatures in 1/mm into `out`, which may be the depth map itself.
-  template <grid Depth, writable_grid<S> Out>
-    requires(!std::integral<cell_t<Out>>)
+  template <grid Depth, class Out>
   CurvatureResult operator()(const Depth& depth_mm, Out&& out, Workspace& workspace) const {
     return band(0, rows_, depth_mm, out, workspace);
   }
 
   /// Only the rows [first, last) of the output, the same bits as in the whole; both grids have the
   /// size of the image. Rows of the depth map up to the ring's radius beyond are read.
-  template <grid Depth, writable_grid<S> Out>
-    requires(!std::integral<cell_t<Out>>)
+  template <grid Depth, class Out>
   CurvatureResult band(
-      Index first, Index last, const Depth& depth_mm, Out&& out, Workspace& workspace)
-  const { return box({first, last, 0, cols_}, depth_mm, out, workspace); }
+      Index first, Index last, const Depth& depth_mm, Out&& out, Workspace& workspace) const {
+    return box({first, last, 0, cols_}, depth_mm, out, workspace);
+  }
 
   /// The same of a part of the image.
-  template <grid Depth, writable_grid<S> Out>
-    requires(!std::integral<cell_t<Out>>)
+  template <grid Depth, class Out>
   CurvatureResult box(const detail::PixelBox& part,
                       const Depth& depth_mm,
                       Out&& out,
-                      Workspace& workspace)
-  const {
+                      Workspace& workspace) const {
+    static_assert(detail::takes_numbers<Out, S>,
+                  "numbers are written: pass a grid whose cells can be assigned and hold NaN");
     const auto from = as_view(depth_mm);
     const auto to = as_view(out);
     if (from.rows() != rows_ || from.cols() != cols_ || to.rows() != rows_ || to.cols() != cols_ ||

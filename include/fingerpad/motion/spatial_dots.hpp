@@ -128,8 +128,10 @@ bool disc_in_contact(const Mask& mask, Index row, Index col, double radius_px) {
 /// dots for their motion, 0 for the nearest pixel alone. False where a dot was not found or lies
 /// outside of the mask. False, and nothing written, when `out` has another size than the dot grid,
 /// or the radius is none. Allocates nothing; O(dots radius^2).
-template <dot_grid Dots, contact_mask Mask, writable_grid<bool> Out>
+template <dot_grid Dots, contact_mask Mask, class Out>
 bool contact_at_dots(const Dots& dots_px, const Mask& mask, Out&& out, double dot_radius_px = 0) {
+  static_assert(writable_grid<Out, bool>,
+                "cells are written: pass a grid whose cells can be assigned");
   const auto from = as_view(dots_px);
   const auto flags = as_view(mask);
   const auto to = as_view(std::forward<Out>(out));

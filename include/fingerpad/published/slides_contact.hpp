@@ -81,8 +81,10 @@ bool touches(const Depth& depth_mm, Index row, Index col, const SlidesContactOpt
 /// The contact of a height map: every pixel has the answer of the center of its block of step_px x
 /// step_px. Returns the area that touches in mm^2; NaN, and nothing written, where the mask has
 /// another size. Refuses bad parameters (parameter_error). O(pixels directions / step_px^2).
-template <scalar S = double, grid Depth, writable_grid<bool> Mask>
+template <scalar S = double, grid Depth, class Mask>
 double contact_by_slides(const Depth& depth_mm, Mask&& mask, const SlidesContactOptions& o = {}) {
+  static_assert(writable_grid<Mask, bool>,
+                "cells are written: pass a grid whose cells can be assigned");
   const char* const owner = "SlidesContactOptions";
   expects(is_finite(o.threshold_per_mm), owner, "threshold_per_mm", o.threshold_per_mm, "finite");
   expects(o.directions >= 1 && o.directions <= 360, owner, "directions",

@@ -50,6 +50,21 @@ bool find_contact(const Shape& shape, const S& base_radius_mm, Point3<S>& center
   center = {S(x_sum / S(count)), S(y_sum / S(count)), S(0)};
   return true;
 }
+
+/// Whether the membrane is seen anywhere along x or y: where it is not, that nothing touches is not
+/// known.
+template <class Shape, scalar S>
+bool has_height(const Shape& shape, const S& base_radius_mm) {
+  constexpr int places = 64;
+  for (int i = 1 - places; i < places; ++i) {
+    const S at = S(i) / S(places) * base_radius_mm;
+    if (is_finite(shape(at, S(0)).height_mm) || is_finite(shape(S(0), at).height_mm)) {
+      return true;
+    }
+  }
+  return false;
+}
+
 /// Heights on a square mesh in plan about Q; between the nodes heights and slopes are interpolated
 /// bilinearly, slopes being central differences. 24 bytes a node in double.
 template <scalar S>
