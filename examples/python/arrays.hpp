@@ -18,6 +18,79 @@ namespace python {
 namespace py = pybind11;
 using fingerpad::Index;
 
+/// What a caller gives for an array or a number: whatever it is, so that a refusal can name it.
+class Array : public py::object {
+  PYBIND11_OBJECT_DEFAULT(Array, py::object, is_any)
+  static bool is_any(PyObject*) { return true; }
+};
+class Number : public py::object {
+  PYBIND11_OBJECT_DEFAULT(Number, py::object, is_any)
+  static bool is_any(PyObject*) { return true; }
+};
+class Count : public py::object {
+  PYBIND11_OBJECT_DEFAULT(Count, py::object, is_any)
+  static bool is_any(PyObject*) { return true; }
+};
+
+inline std::string type_name(const py::handle& given) {
+  return py::str(py::type::of(given).attr("__name__"));
+}
+
+/// Whether it is of a class of the module numbers, as NumPy's scalars are; not bool.
+inline bool is_of_numbers(const py::handle& given, const char* kind) {
+  return !PyBool_Check(given.ptr()) &&
+         py::isinstance(given, py::module_::import("numbers").attr(kind));
+}
+
+/// The number. Raises TypeError for bool, complex numbers, arrays, text and None.
+inline double number_of(const py::object& given, const char* name) {
+  if (!PyFloat_Check(given.ptr()) && !is_of_numbers(given, "Real")) {
+    throw py::type_error(std::string(name) + " must be a real number, not " + type_name(given));
+  }
+  return given.cast<double>();
+}
+
+/// The integer. Raises TypeError for what is none, and for bool.
+template <class T = Index>
+T count_of(const py::object& given, const char* name) {
+  if (!is_of_numbers(given, "Integral")) {
+    throw py::type_error(std::string(name) + " must be an int, not " + type_name(given));
+  }
+  return given.cast<T>();
+}
+
+/// Raises TypeError for an array with a mask, which would be lost.
+inline void refuse_masked(const py::handle& given, const char* name) {
+  if (py::module_::import("numpy.ma").attr("isMaskedArray")(given).cast<bool>()) {
+    throw py::type_error(std::string(name) +
+                         " is a masked array, of which the mask would be lost: "
+                         "pass a plain one, with NaN where there is no value");
+  }
+}
+
+/// The array itself. Raises TypeError for a list, None or text, and for a masked array.
+inline py::array array_of(const py::object& given, const char* name) {
+  if (!py::isinstance<py::array>(given)) {
+    throw py::type_error(std::string(name) + " must be a NumPy array, not " + type_name(given) +
+                         ": np.asarray(" + name + ", dtype) makes one of a list");
+  }
+  refuse_masked(given, name);
+  return py::reinterpret_borrow<py::array>(given);
+}
+
+/// Numbers of any shape, from an array or a list: copied where they are no doubles. Raises
+/// TypeError for complex numbers, bool, text, dates and objects.
+inline py::array_t<double> numbers_of(const py::object& given, const char* name) {
+  refuse_masked(given, name);
+  const py::array array = py::module_::import("numpy").attr("asarray")(given);
+  if (std::string("fiu").find(array.dtype().kind()) == std::string::npos) {
+    throw py::type_error(std::string(name) +
+                         " must hold real numbers, NaN where there is none, not " +
+                         std::string(py::str(array.dtype())));
+  }
+  return array;
+}
+
 /// Raises TypeError: what the array must be, and what it is.
 [[noreturn]] inline void refuse_array(const py::array& array,
                                       const char* name,
@@ -30,7 +103,8 @@ using fingerpad::Index;
 
 /// The view of a two-dimensional array of cells T. Raises TypeError for another shape or type.
 template <class T>
-fingerpad::StridedView<const T> view_of(const py::array& array, const char* name) {
+fingerpad::StridedView<const T> view_of(const py::object& given, const char* name) {
+  const py::array array = array_of(given, name);
   if (array.ndim() != 2 || !py::isinstance<py::array_t<T>>(array)) {
     refuse_array(array, name, "(rows, cols)", py::str(py::dtype::of<T>()));
   }
@@ -45,8 +119,9 @@ fingerpad::StridedView<const T> view_of(const py::array& array, const char* name
 }
 
 /// The view of a mask: uint8 or bool, contact where it is not 0.
-inline fingerpad::StridedView<const std::uint8_t> mask_of(const py::array& array,
+inline fingerpad::StridedView<const std::uint8_t> mask_of(const py::object& given,
                                                           const char* name) {
+  const py::array array = array_of(given, name);
   const bool flags = py::isinstance<py::array_t<bool>>(array);
   return view_of<std::uint8_t>(flags ? py::array(array.attr("view")("uint8")) : array, name);
 }
@@ -61,17 +136,19 @@ std::pair<py::array_t<T>, fingerpad::StridedView<T>> new_array(Index rows, Index
 /// `given`, or a new array where there is none, and the view to write rows x cols cells T to it.
 /// Raises TypeError or ValueError for another type or shape, or where it may not be written.
 template <class T>
-std::pair<py::array, fingerpad::StridedView<T>> array_to_write(
-    const std::optional<py::array>& given, Index rows, Index cols, const char* name) {
-  if (!given) {
+std::pair<py::array, fingerpad::StridedView<T>> array_to_write(const py::object& given,
+                                                               Index rows,
+                                                               Index cols,
+                                                               const char* name) {
+  if (given.is_none()) {
     return new_array<T>(rows, cols);
   }
-  const auto view = view_of<T>(*given, name);
+  const auto view = view_of<T>(given, name);
   if (view.rows() != rows || view.cols() != cols) {
     throw py::value_error(std::string(name) + " must have the shape (" + std::to_string(rows) +
                           ", " + std::to_string(cols) + ")");
   }
-  py::array array = *given;
+  py::array array = array_of(given, name);
   return {
       array,
       {static_cast<T*>(array.mutable_data()), rows, cols, view.row_stride(), view.col_stride()}};
@@ -79,7 +156,8 @@ std::pair<py::array, fingerpad::StridedView<T>> array_to_write(
 
 /// Calls `call(T())` with the cell type of a camera's channel: uint8, uint16, float32 or float64.
 template <class Call>
-auto with_pixel_of(const py::array& channel, const Call& call) {
+auto with_pixel_of(const py::object& given, const char* name, const Call& call) {
+  const py::array channel = array_of(given, name);
   if (py::isinstance<py::array_t<std::uint8_t>>(channel)) {
     return call(std::uint8_t());
   }
@@ -92,13 +170,14 @@ auto with_pixel_of(const py::array& channel, const Call& call) {
   if (py::isinstance<py::array_t<double>>(channel)) {
     return call(double());
   }
-  throw py::type_error("a channel must be of uint8, uint16, float32 or float64, not " +
+  throw py::type_error(std::string(name) + " must be of uint8, uint16, float32 or float64, not " +
                        std::string(py::str(channel.dtype())));
 }
 
 /// Dots from an array (rows, cols, 2) or (rows, cols, 3) of float64, in px or mm; NaN: not there.
 template <class Point, std::size_t Coordinates>
-auto dots_of(const py::array& array, const char* name) {
+auto dots_of(const py::object& given, const char* name) {
+  const py::array array = array_of(given, name);
   if (array.ndim() != 3 || array.shape(2) != static_cast<py::ssize_t>(Coordinates) ||
       !py::isinstance<py::array_t<double>>(array)) {
     refuse_array(array, name, "(rows, cols, " + std::to_string(Coordinates) + ")", "float64");
@@ -117,10 +196,10 @@ auto dots_of(const py::array& array, const char* name) {
   });
 }
 
-inline auto dots_px_of(const py::array& array, const char* name) {
+inline auto dots_px_of(const py::object& array, const char* name) {
   return dots_of<fingerpad::Point2<double>, 2>(array, name);
 }
-inline auto dots_mm_of(const py::array& array, const char* name) {
+inline auto dots_mm_of(const py::object& array, const char* name) {
   return dots_of<fingerpad::Point3<double>, 3>(array, name);
 }
 
@@ -129,7 +208,7 @@ struct Dots {
   Index rows, cols;
   std::vector<fingerpad::Point3<double>> cells;
 
-  Dots(const py::array& array, const char* name) {
+  Dots(const py::object& array, const char* name) {
     const auto dots = dots_mm_of(array, name);
     rows = dots.rows();
     cols = dots.cols();
@@ -154,3 +233,18 @@ py::tuple as_tuple(const fingerpad::Point3<S>& p) {
 }
 
 }  // namespace python
+
+namespace pybind11::detail {
+template <>
+struct handle_type_name<python::Array> {
+  static constexpr auto name = const_name("numpy.ndarray");
+};
+template <>
+struct handle_type_name<python::Number> {
+  static constexpr auto name = const_name("float");
+};
+template <>
+struct handle_type_name<python::Count> {
+  static constexpr auto name = const_name("int");
+};
+}  // namespace pybind11::detail

@@ -21,10 +21,14 @@ class Region {
   using Method = fingerpad::ContactRegion<>;
 
  public:
-  Region(const fingerpad::Camera<double>& camera, Index rows, Index cols, const ContactTest& test)
-      : region_(camera, rows, cols, test), work_(region_.workspace()) {}
+  Region(const fingerpad::Camera<double>& camera,
+         const Count& rows,
+         const Count& cols,
+         const ContactTest& test)
+      : region_(camera, count_of(rows, "rows"), count_of(cols, "cols"), test),
+        work_(region_.workspace()) {}
 
-  py::tuple operator()(const py::array& depth_mm, const std::optional<py::array>& out) {
+  py::tuple operator()(const Array& depth_mm, const Array& out) {
     auto [mask, mask_view] =
         array_to_write<std::uint8_t>(out, region_.rows(), region_.cols(), "out");
     const auto depth = view_of<float>(depth_mm, "depth_mm");
@@ -67,7 +71,8 @@ void bind_contact(py::module_& module) {
           "center_mm", [](const ContactResult& contact) { return as_tuple(contact.center_mm); });
   py::class_<Region>(module, "ContactRegion",
                      "Where the object touches; contact/contact_region.hpp.")
-      .def(py::init<const fingerpad::Camera<double>&, Index, Index, const ContactTest&>(),
+      .def(py::init<const fingerpad::Camera<double>&, const Count&, const Count&,
+                    const ContactTest&>(),
            py::arg("camera"), py::arg("rows"), py::arg("cols"), py::arg("test") = ContactTest())
       .def("__call__", &Region::operator(), py::arg("depth_mm"), py::arg("out") = py::none(),
            "mask, contact = region(depth_mm, out=mask)\n\n"

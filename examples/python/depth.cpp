@@ -25,10 +25,10 @@ using Reference = fingerpad::DepthReference<float>;
 
 Reference fit(const Camera<double>& camera,
               const Absorption<double>& fluid,
-              const py::array& red,
-              const py::array& green,
-              const py::array& depth_mm) {
-  return with_pixel_of(red, [&](auto pixel) {
+              const Array& red,
+              const Array& green,
+              const Array& depth_mm) {
+  return with_pixel_of(red, "red", [&](auto pixel) {
     using Pixel = decltype(pixel);
     const auto r = view_of<Pixel>(red, "red"), g = view_of<Pixel>(green, "green");
     if (py::isinstance<py::array_t<float>>(depth_mm)) {
@@ -41,7 +41,6 @@ Reference fit(const Camera<double>& camera,
 /// A depth estimator with the workspaces that it needs; calls from several threads take turns.
 class Estimator {
   using Method = fingerpad::DepthEstimator<>;
-  using Out = std::optional<std::pair<py::array, py::array>>;
   template <class Pixel>
   using Workspace = std::optional<Method::Workspace<Pixel>>;
 
@@ -49,22 +48,27 @@ class Estimator {
   Estimator(const Camera<double>& camera,
             const Absorption<double>& fluid,
             const Reference& reference,
-            int smoothing_px)
-      : estimate_(camera, fluid, reference, {smoothing_px}) {}
+            const Count& smoothing_px)
+      : estimate_(camera, fluid, reference, {count_of<int>(smoothing_px, "smoothing_px")}) {}
 
   Index rows() const { return estimate_.rows(); }
   Index cols() const { return estimate_.cols(); }
 
-  py::tuple operator()(const py::array& red, const py::array& green, const Out& out) {
-    const auto [depth_out, status_out] = out.value_or(std::pair<py::array, py::array>());
-    auto [depth, depth_view] = array_to_write<float>(out ? std::optional(depth_out) : std::nullopt,
-                                                     rows(), cols(), "out[0]");
-    auto [status, status_view] = array_to_write<std::uint8_t>(
-        out ? std::optional(status_out) : std::nullopt, rows(), cols(), "out[1]");
+  py::tuple operator()(const Array& red, const Array& green, const Array& out) {
+    py::object to[] = {py::none(), py::none()};
+    if (!out.is_none()) {
+      if (!PyTuple_Check(out.ptr()) || py::len(out) != 2) {
+        throw py::type_error("out must be the tuple (depth_mm, status) of two arrays");
+      }
+      to[0] = out[py::int_(0)];
+      to[1] = out[py::int_(1)];
+    }
+    auto [depth, depth_view] = array_to_write<float>(to[0], rows(), cols(), "out[0]");
+    auto [status, status_view] = array_to_write<std::uint8_t>(to[1], rows(), cols(), "out[1]");
     fingerpad::StridedView<PixelStatus> statuses(reinterpret_cast<PixelStatus*>(status_view.row(0)),
                                                  rows(), cols(), status_view.row_stride(),
                                                  status_view.col_stride());
-    const DepthResult result = with_pixel_of(red, [&, to = depth_view](auto pixel) {
+    const DepthResult result = with_pixel_of(red, "red", [&, depths = depth_view](auto pixel) {
       using Pixel = decltype(pixel);
       const auto r = view_of<Pixel>(red, "red"), g = view_of<Pixel>(green, "green");
       const py::gil_scoped_release release;
@@ -73,7 +77,7 @@ class Estimator {
       if (!work) {
         work.emplace(estimate_.workspace<Pixel>());
       }
-      return estimate_(r, g, to, statuses, *work);
+      return estimate_(r, g, depths, statuses, *work);
     });
     if (result.status == fingerpad::DepthStatus::refused) {
       throw py::value_error("red and green must have the reference's size, " +
@@ -130,8 +134,10 @@ void bind_depth(py::module_& module) {
              "red, green: (rows, cols), uint8, uint16, float32 or float64.\n"
              "depth_mm: (rows, cols), float32 or float64, along each pixel's ray; NaN outside.");
   py::class_<Estimator>(module, "DepthEstimator", "Depth from red and green; see depth/depth.hpp.")
-      .def(py::init<const Camera<double>&, const Absorption<double>&, const Reference&, int>(),
-           py::arg("camera"), py::arg("fluid"), py::arg("reference"), py::arg("smoothing_px") = 29)
+      .def(py::init<const Camera<double>&, const Absorption<double>&, const Reference&,
+                    const Count&>(),
+           py::arg("camera"), py::arg("fluid"), py::arg("reference"),
+           py::arg("smoothing_px") = py::int_(29))
       .def_property_readonly("rows", &Estimator::rows)
       .def_property_readonly("cols", &Estimator::cols)
       .def("__call__", &Estimator::operator(), py::arg("red"), py::arg("green"),

@@ -32,12 +32,14 @@ class Fingertip {
  public:
   explicit Fingertip(const Options& options) : fingertip_(options) {}
 
-  FingertipResult operator()(const py::array& red,
-                             const py::array& green,
-                             const py::array& dots_px,
-                             const py::array& side_dots_mm,
-                             double pressure_mpa,
-                             double time_s) {
+  FingertipResult operator()(const Array& red,
+                             const Array& green,
+                             const Array& dots_px,
+                             const Array& side_dots_mm,
+                             const Number& pressure,
+                             const Number& time) {
+    const double pressure_mpa = number_of(pressure, "pressure_mpa");
+    const double time_s = number_of(time, "time_s");
     const fingerpad::ColorFrame frame(view_of<std::uint8_t>(red, "red"),
                                       view_of<std::uint8_t>(green, "green"));
     const auto dots = dots_px_of(dots_px, "dots_px");
@@ -74,8 +76,8 @@ class Fingertip {
 std::unique_ptr<Fingertip> make(const fingerpad::Camera<double>& camera,
                                 const fingerpad::Absorption<double>& fluid,
                                 const Reference& reference,
-                                const py::array& free_dots_mm,
-                                const py::array& rim_mm,
+                                const Array& free_dots_mm,
+                                const Array& rim_mm,
                                 const fingerpad::ContactTest& contact,
                                 const SpatialStickTest& stick,
                                 const WrenchOptions& wrench,
@@ -84,8 +86,8 @@ std::unique_ptr<Fingertip> make(const fingerpad::Camera<double>& camera,
                                 const std::optional<NormalForce>& force_of_depth,
                                 const std::optional<Shear>& shear,
                                 bool shear_by_depth,
-                                int smoothing_px,
-                                double dot_radius_px) {
+                                const Count& smoothing_px,
+                                const Number& dot_radius_px) {
   Options options{camera, fluid, reference, reference.rows, reference.cols};
   const Dots dots(free_dots_mm, "free_dots_mm"), rim(rim_mm, "rim_mm");
   options.free_dots_mm = dots.view();
@@ -98,8 +100,8 @@ std::unique_ptr<Fingertip> make(const fingerpad::Camera<double>& camera,
   options.force_of_depth = force_of_depth;
   options.shear = shear;
   options.shear_by_depth = shear_by_depth;
-  options.smoothing_px = smoothing_px;
-  options.dot_radius_px = dot_radius_px;
+  options.smoothing_px = count_of<int>(smoothing_px, "smoothing_px");
+  options.dot_radius_px = number_of(dot_radius_px, "dot_radius_px");
   return std::make_unique<Fingertip>(options);
 }
 
@@ -245,7 +247,7 @@ void bind_fingertip(py::module_& module) {
            py::arg("wrench") = WrenchOptions(), py::arg("side_dots") = OneRow(),
            py::arg("force_of_area") = py::none(), py::arg("force_of_depth") = py::none(),
            py::arg("shear") = py::none(), py::arg("shear_by_depth") = false,
-           py::arg("smoothing_px") = 29, py::arg("dot_radius_px") = 0.0,
+           py::arg("smoothing_px") = py::int_(29), py::arg("dot_radius_px") = py::float_(0.0),
            "free_dots_mm: float64 (rows, cols, 3), the printed dots of the free pad, NaN: none;\n"
            "(0, 0, 3): no answer by dots. rim_mm: float64 (1, n, 3), where the side dots are\n"
            "fixed; (0, 0, 3): no six-axis force. force_of_area, force_of_depth: NormalForce;\n"
@@ -253,7 +255,7 @@ void bind_fingertip(py::module_& module) {
       .def(
           "__call__", &Fingertip::operator(), py::arg("red"), py::arg("green"), py::arg("dots_px"),
           py::arg("side_dots_mm"), py::arg("pressure_mpa"),
-          py::arg("time_s") = fingerpad::not_a_number<double>(),
+          py::arg("time_s") = py::float_(fingerpad::not_a_number<double>()),
           "touch = fingertip(red, green, dots_px, side_dots_mm, pressure_mpa, time_s)\n\n"
           "red, green: uint8 (rows, cols). dots_px: float64 (rows, cols, 2), NaN where not found.\n"
           "side_dots_mm: float64 (1, n, 3). pressure_mpa: MPa above the air's. time_s: s.\n"

@@ -19,18 +19,22 @@ using Taxels = fingerpad::TaxelOptions<double>;
 using Rules = fingerpad::PreslipOptions<double>;
 using Hand = fingerpad::FoamHand<>;
 
-Hand make_hand(Index rows, Index cols, const Taxels& taxels, const Rules& rules) {
+Hand make_hand(const Count& rows, const Count& cols, const Taxels& taxels, const Rules& rules) {
   Options options;
-  options.arrays.fill({rows, cols});
+  options.arrays.fill({count_of(rows, "rows"), count_of(cols, "cols")});
   options.taxels = taxels;
   options.rules = rules;
   return Hand(options);
 }
 
-Hand::Result feel(Hand& hand, const std::array<py::array, 2>& readings, double time_s) {
-  return hand(std::array{view_of<double>(readings[0], "readings[0]"),
-                         view_of<double>(readings[1], "readings[1]")},
-              time_s);
+Hand::Result feel(Hand& hand, const Array& readings, const Number& time_s) {
+  if (!PySequence_Check(readings.ptr()) || py::len(readings) != 2) {
+    throw py::type_error("readings must be the arrays of two fingers, (left, right)");
+  }
+  const py::object left = readings[py::int_(0)], right = readings[py::int_(1)];
+  return hand(
+      std::array{view_of<double>(left, "readings[0]"), view_of<double>(right, "readings[1]")},
+      number_of(time_s, "time_s"));
 }
 
 }  // namespace

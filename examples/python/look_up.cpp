@@ -23,7 +23,6 @@ using NormalResult = fingerpad::NormalForceResult<double>;
 using Sample = fingerpad::ForceSample<double>;
 using Samples = std::vector<Sample>;
 using ShearResult = fingerpad::ShearResult<double>;
-using Column = py::array_t<double>;  ///< a few hundred numbers: copied where they are no doubles
 
 /// A fit with the measure that its displacements or rotations are counted by.
 struct ShearFit {
@@ -34,7 +33,8 @@ struct ShearFit {
 /// Writes cell (i, k) of a column of shape (n,) or (n, 2) into sample i. Raises ValueError for
 /// another shape.
 template <class Write>
-void fill(Samples& samples, const Column& column, const char* name, int width, const Write& write) {
+void fill(Samples& samples, const Array& given, const char* name, int width, const Write& write) {
+  const auto column = numbers_of(given, name);
   const auto count = static_cast<py::ssize_t>(samples.size());
   const bool fits =
       width == 1 ? column.ndim() == 1 : column.ndim() == 2 && column.shape(1) == width;
@@ -55,8 +55,8 @@ void fill(Samples& samples, const Column& column, const char* name, int width, c
 
 using Cell = const double*;
 
-Samples samples_of(const Column& measure) {
-  Samples samples(static_cast<std::size_t>(measure.size()));
+Samples samples_of(const Array& measure) {
+  Samples samples(static_cast<std::size_t>(numbers_of(measure, "measure").size()));
   fill(samples, measure, "measure", 1, [](Sample& s, Cell x, Cell) { s.measure = *x; });
   return samples;
 }
@@ -67,30 +67,30 @@ auto without_lock(const Fit& fit) {
   return fit();
 }
 
-NormalFit fit_normal_force(const Column& measure,
-                           const Column& normal_force_n,
-                           const std::optional<Column>& displacement_mm,
-                           const std::optional<Column>& rotation_rad,
+NormalFit fit_normal_force(const Array& measure,
+                           const Array& normal_force_n,
+                           const Array& displacement_mm,
+                           const Array& rotation_rad,
                            const FitOptions& options) {
   Samples samples = samples_of(measure);
   fill(samples, normal_force_n, "normal_force_n", 1,
        [](Sample& s, Cell x, Cell) { s.normal_force_n = *x; });
-  if (displacement_mm) {
-    fill(samples, *displacement_mm, "displacement_mm", 2, [](Sample& s, Cell x, Cell y) {
+  if (!displacement_mm.is_none()) {
+    fill(samples, displacement_mm, "displacement_mm", 2, [](Sample& s, Cell x, Cell y) {
       s.displacement_mm = {*x, *y};
     });
   }
-  if (rotation_rad) {
-    fill(samples, *rotation_rad, "rotation_rad", 1,
+  if (!rotation_rad.is_none()) {
+    fill(samples, rotation_rad, "rotation_rad", 1,
          [](Sample& s, Cell x, Cell) { s.rotation_rad = *x; });
   }
   return without_lock([&] { return fingerpad::fit_normal_force<3, double>(samples, options); });
 }
 
-ShearFit fit_tangential_force(const Column& measure,
-                              const Column& displacement_mm,
-                              const Column& tangential_force_n,
-                              double reference,
+ShearFit fit_tangential_force(const Array& measure,
+                              const Array& displacement_mm,
+                              const Array& tangential_force_n,
+                              const Number& reference,
                               const std::optional<double>& exponent,
                               const FitOptions& options) {
   Samples samples = samples_of(measure);
@@ -100,24 +100,25 @@ ShearFit fit_tangential_force(const Column& measure,
   fill(samples, tangential_force_n, "tangential_force_n", 2, [](Sample& s, Cell x, Cell y) {
     s.tangential_force_n = {*x, *y};
   });
+  const double at = number_of(reference, "reference");
   return without_lock([&]() -> ShearFit {
-    return {fingerpad::fit_tangential_force<1, double>(samples, reference, exponent, options),
-            reference};
+    return {fingerpad::fit_tangential_force<1, double>(samples, at, exponent, options), at};
   });
 }
 
-ShearFit fit_moment(const Column& measure,
-                    const Column& rotation_rad,
-                    const Column& moment_n_mm,
-                    double reference,
+ShearFit fit_moment(const Array& measure,
+                    const Array& rotation_rad,
+                    const Array& moment_n_mm,
+                    const Number& reference,
                     const std::optional<double>& exponent,
                     const FitOptions& options) {
   Samples samples = samples_of(measure);
   fill(samples, rotation_rad, "rotation_rad", 1,
        [](Sample& s, Cell x, Cell) { s.rotation_rad = *x; });
   fill(samples, moment_n_mm, "moment_n_mm", 1, [](Sample& s, Cell x, Cell) { s.moment_n_mm = *x; });
+  const double at = number_of(reference, "reference");
   return without_lock([&]() -> ShearFit {
-    return {fingerpad::fit_moment<1, double>(samples, reference, exponent, options), reference};
+    return {fingerpad::fit_moment<1, double>(samples, at, exponent, options), at};
   });
 }
 
@@ -154,8 +155,12 @@ Shear shear_of(const ShearFit& force, const ShearFit& moment) {
           {widened(force.fit.polynomial), widened(moment.fit.polynomial)}};
 }
 
-Point2<double> point(const std::array<double, 2>& xy) {
-  return {xy[0], xy[1]};
+Point2<double> displacement_of(const Array& given) {
+  const auto xy = numbers_of(given, "displacement_mm");
+  if (xy.ndim() != 1 || xy.shape(0) != 2) {
+    throw py::value_error("displacement_mm must be (x, y)");
+  }
+  return {xy.at(0), xy.at(1)};
 }
 
 void bind_results(py::module_& module) {
@@ -258,10 +263,13 @@ void bind_look_up(py::module_& module) {
       .def(py::init(&normal_force_of), py::arg("fit"))
       .def(
           "__call__",
-          [](const NormalForce& force, double measure, const std::array<double, 2>& displacement_mm,
-             double rotation_rad) { return force(measure, point(displacement_mm), rotation_rad); },
-          py::arg("measure"), py::arg("displacement_mm") = std::array<double, 2>{},
-          py::arg("rotation_rad") = 0.0,
+          [](const NormalForce& force, const Number& measure, const Array& displacement_mm,
+             const Number& rotation_rad) {
+            return force(number_of(measure, "measure"), displacement_of(displacement_mm),
+                         number_of(rotation_rad, "rotation_rad"));
+          },
+          py::arg("measure"), py::arg("displacement_mm") = py::make_tuple(0.0, 0.0),
+          py::arg("rotation_rad") = py::float_(0.0),
           "result = force(measure, displacement_mm, rotation_rad)\n\n"
           "measure: mm^2 or mm, as the fit had it. displacement_mm: (x, y).");
   py::class_<Shear>(module, "Shear", "Tangential force and moment by look-up; force/shear.hpp.")
@@ -269,8 +277,11 @@ void bind_look_up(py::module_& module) {
            "force, moment: what fit_tangential_force and fit_moment gave, of one reference.")
       .def(
           "__call__",
-          [](const Shear& shear, double measure, const std::array<double, 2>& displacement_mm,
-             double rotation_rad) { return shear(measure, point(displacement_mm), rotation_rad); },
+          [](const Shear& shear, const Number& measure, const Array& displacement_mm,
+             const Number& rotation_rad) {
+            return shear(number_of(measure, "measure"), displacement_of(displacement_mm),
+                         number_of(rotation_rad, "rotation_rad"));
+          },
           py::arg("measure"), py::arg("displacement_mm"), py::arg("rotation_rad"),
           "result = shear(measure, displacement_mm, rotation_rad)");
 }

@@ -4,6 +4,10 @@
 // The module's parts, a file each, and how structs of options become Python classes.
 #include <pybind11/pybind11.h>
 
+#include <string>
+
+#include "python/arrays.hpp"
+
 namespace python {
 
 void bind_depth(pybind11::module_& module);
@@ -13,6 +17,21 @@ void bind_look_up(pybind11::module_& module);
 void bind_wrench(pybind11::module_& module);
 void bind_foam(pybind11::module_& module);
 void bind_fingertip(pybind11::module_& module);
+
+/// Raises TypeError where a setting gets a value of another kind: a flag for a number and the like.
+inline void check_kind(const char* owner,
+                       const pybind11::str& field,
+                       const pybind11::object& before,
+                       const pybind11::object& value) {
+  const std::string name = std::string(owner) + ": " + std::string(field);
+  if (PyFloat_Check(before.ptr()) || (before.is_none() && !value.is_none())) {
+    number_of(value, name.c_str());
+  } else if (PyLong_Check(before.ptr()) && !PyBool_Check(before.ptr())) {
+    count_of(value, name.c_str());
+  } else if (PyBool_Check(before.ptr()) && type_name(value).rfind("bool", 0) != 0) {
+    throw pybind11::type_error(name + " must be True or False, not " + type_name(value));
+  }
+}
 
 /// A struct of settings as a class with keyword arguments: Camera(pitch_mm=0.1). Unknown names are
 /// refused.
@@ -29,6 +48,13 @@ pybind11::class_<Options> bind_options(pybind11::module_& module,
         }
         return options.cast<Options>();
       }))
+      .def("__setattr__",
+           [name](const py::object& self, const py::str& field, const py::object& value) {
+             check_kind(name, field, self.attr(field), value);
+             if (PyObject_GenericSetAttr(self.ptr(), field.ptr(), value.ptr()) != 0) {
+               throw py::error_already_set();
+             }
+           })
       .def("__repr__", [name](const py::object& self) {
         py::list fields;
         for (const auto& field : self.attr("__dir__")()) {

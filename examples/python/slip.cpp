@@ -19,10 +19,11 @@ class Ratio {
   using Method = fingerpad::StickRatio<>;
 
  public:
-  Ratio(Index rows, Index cols, const StickTest& test)
-      : ratio_(rows, cols, test), state_(ratio_.start()) {}
+  Ratio(const Count& rows, const Count& cols, const StickTest& test)
+      : ratio_(count_of(rows, "rows"), count_of(cols, "cols"), test), state_(ratio_.start()) {}
 
-  py::tuple operator()(const py::array& dots_px, const py::array& in_contact, double time_s) {
+  py::tuple operator()(const Array& dots_px, const Array& in_contact, const Number& time) {
+    const double time_s = number_of(time, "time_s");
     auto [states, view] = new_array<std::uint8_t>(ratio_.rows(), ratio_.cols());
     fingerpad::StridedView<DotState> to(reinterpret_cast<DotState*>(view.row(0)), ratio_.rows(),
                                         ratio_.cols(), ratio_.cols());
@@ -92,10 +93,10 @@ void bind_slip(py::module_& module) {
   py::class_<Ratio>(module, "StickRatio",
                     "The share of the contact that sticks, by printed dots;\n"
                     "slip/stick_ratio.hpp. It remembers frames: one object serves one pad.")
-      .def(py::init<Index, Index, const StickTest&>(), py::arg("rows"), py::arg("cols"),
-           py::arg("test") = StickTest())
+      .def(py::init<const Count&, const Count&, const StickTest&>(), py::arg("rows"),
+           py::arg("cols"), py::arg("test") = StickTest())
       .def("__call__", &Ratio::operator(), py::arg("dots_px"), py::arg("in_contact"),
-           py::arg("time_s") = fingerpad::not_a_number<double>(),
+           py::arg("time_s") = py::float_(fingerpad::not_a_number<double>()),
            "states, result = ratio(dots_px, in_contact, time_s)\n\n"
            "dots_px: float64 (rows, cols, 2), x and y in px, NaN where not found.\n"
            "in_contact: uint8 or bool (rows, cols). time_s: s; NaN: not known.\n"

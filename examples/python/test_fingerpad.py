@@ -205,6 +205,44 @@ def test_a_mistake_is_an_exception_with_its_reason(pad, estimate):
         estimate(red.astype(np.int32), green.astype(np.int32))
 
 
+@pytest.mark.parametrize("said, call", [
+    ("dots_px is a masked array", lambda ratio, d: ratio(np.ma.masked_less(d, 1), d[..., 0] > 0)),
+    ("in_contact is a masked", lambda ratio, d: ratio(d, np.ma.masked_less(d[..., 0], 1) > 0)),
+    ("dots_px must be a NumPy array, not list: np.asarray", lambda ratio, d: ratio(d.tolist(), d)),
+    ("dots_px must be a NumPy array, not NoneType", lambda ratio, d: ratio(None, d)),
+    ("time_s must be a real number, not str", lambda ratio, d: ratio(d, d[..., 0] > 0, "1")),
+    ("time_s must be a real number, not bool", lambda ratio, d: ratio(d, d[..., 0] > 0, True)),
+    ("measure must hold real numbers, .* not complex128",
+     lambda ratio, d: fp.fit_normal_force(np.arange(1, 9) + 1j, np.arange(8))),
+    ("measure is a masked array",
+     lambda ratio, d: fp.fit_normal_force(np.ma.masked_less(np.arange(9.0), 3), np.arange(9))),
+    ("normal_force_n must hold real", lambda ratio, d: fp.fit_normal_force([1, 2], ["1", "2"])),
+    ("rows must be an int, not bool", lambda ratio, d: fp.StickRatio(True, 9)),
+    ("cols must be an int, not float", lambda ratio, d: fp.FoamHand(4, 4.0)),
+    ("StickTest: min_dots must be an int, not bool", lambda ratio, d: fp.StickTest(min_dots=True)),
+    ("Camera: pitch_mm must be a real number, not complex128",
+     lambda ratio, d: fp.Camera(pitch_mm=np.complex128(0.1 + 1j))),
+    ("StickTest: covers_pattern must be True or False, not str",
+     lambda ratio, d: fp.StickTest(covers_pattern="no")),
+    ("readings must be the arrays of two fingers", lambda ratio, d: fp.FoamHand(4, 4)(None, 0.0)),
+    ("depth_mm must be a NumPy array",
+     lambda ratio, d: fp.ContactRegion(fp.Camera(), 9, 9)([[1.0]])),
+])
+def test_what_is_no_array_or_number_is_refused_by_name(said, call):
+    y, x = np.mgrid[:9, :9] * 20.0
+    with pytest.raises(TypeError, match=f"^{said}"):
+        call(fp.StickRatio(9, 9), np.stack([x, y], axis=-1))
+
+
+def test_where_nothing_is_known_nothing_is_free(pad):
+    nothing = np.full((480, 480), np.nan, np.float32)
+    mask, contact = fp.ContactRegion(pad[0], 480, 480)(nothing)
+    assert not contact.ok and contact.status == "not of this pad"
+    rim, dots = side_dots()
+    felt = fp.Wrench(pad[0], 480, 480, rim)(nothing, mask, dots[5], 0.0165)
+    assert not felt.ok and felt.status == "no shape" and np.isnan(felt.force_n).all()
+
+
 def test_a_foam_hand_warns_of_vibration_that_moves_and_quickens():
     hand = fp.FoamHand(4, 4, fp.TaxelOptions(noise=1, sample_period_s=0.01))
     rng = np.random.default_rng(1)

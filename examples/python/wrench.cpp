@@ -26,21 +26,23 @@ class WrenchOfDepth {
 
  public:
   WrenchOfDepth(const fingerpad::Camera<double>& camera,
-                Index rows,
-                Index cols,
-                const py::array& rim_mm,
+                const Count& rows,
+                const Count& cols,
+                const Array& rim_mm,
                 const Options& options,
                 const OneRow& side_dots)
-      : heights_(rows, cols, camera, options.base_radius_mm + 1),
+      : heights_(
+            count_of(rows, "rows"), count_of(cols, "cols"), camera, options.base_radius_mm + 1),
         map_(heights_.map()),
         wrench_(Dots(rim_mm, "rim_mm").view(), options, {}, side_dots),
         work_(wrench_.workspace()) {}
 
-  Result operator()(const py::array& depth_mm,
-                    const py::array& mask,
-                    const py::array& side_dots_mm,
-                    double pressure_mpa,
+  Result operator()(const Array& depth_mm,
+                    const Array& mask,
+                    const Array& side_dots_mm,
+                    const Number& pressure,
                     const Noise& noise) {
+    const double pressure_mpa = number_of(pressure, "pressure_mpa");
     const auto depth = view_of<float>(depth_mm, "depth_mm");
     const auto contact = mask_of(mask, "mask");
     const auto side_dots = dots_mm_of(side_dots_mm, "side_dots_mm");
@@ -50,7 +52,8 @@ class WrenchOfDepth {
                                           : Result();
   }
 
-  Result by_modulus(const py::array& side_dots_mm, double pressure_mpa, const Noise& noise) {
+  Result by_modulus(const Array& side_dots_mm, const Number& pressure, const Noise& noise) {
+    const double pressure_mpa = number_of(pressure, "pressure_mpa");
     const auto side_dots = dots_mm_of(side_dots_mm, "side_dots_mm");
     const py::gil_scoped_release release;
     const std::scoped_lock lock(mutex_);
@@ -106,7 +109,7 @@ void bind_wrench(py::module_& module) {
   py::class_<WrenchOfDepth>(module, "Wrench",
                             "Six-axis force from depth map, side dots and pressure;\n"
                             "force/wrench.hpp.")
-      .def(py::init<const fingerpad::Camera<double>&, Index, Index, const py::array&,
+      .def(py::init<const fingerpad::Camera<double>&, const Count&, const Count&, const Array&,
                     const Options&, const OneRow&>(),
            py::arg("camera"), py::arg("rows"), py::arg("cols"), py::arg("rim_mm"),
            py::arg("options") = Options(), py::arg("side_dots") = OneRow(),
