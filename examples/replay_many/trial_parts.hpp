@@ -65,6 +65,7 @@ inline const auto draw_samples = [](const auto& data, Chance& chance) {
 /// Makers in files of their own: of where things are, and of when they slip.
 Trial camera_plate();
 Trial cap();
+Trial rubber();
 Trial intensity();
 Trial stick_test();
 Trial preslip();

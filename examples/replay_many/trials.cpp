@@ -19,6 +19,7 @@
 #include "fingerpad/calibrate/slip_noise.hpp"
 #include "fingerpad/calibrate/taxels.hpp"
 #include "fingerpad/depth/neighbour_light.hpp"
+#include "fingerpad/published/normal_force.hpp"
 #include "replay/io/failure.hpp"
 #include "trial_parts.hpp"
 
@@ -280,6 +281,44 @@ Trial normal_force() {
   return trial({"coefficient_1", "coefficient_2"}, {0.5, 0.3}, 0.1, contacts, draw_samples, fit);
 }
 
+/// The same by Huber's loss, every twentieth force being wrong by a newton.
+Trial robust_normal_force() {
+  const auto measure = [](Chance& chance) {
+    Samples samples = contacts(chance);
+    for (std::size_t k = 0; k < samples.size(); k += 20) {
+      samples[k].normal_force_n += 1;
+    }
+    return samples;
+  };
+  const auto fit = [](const Samples& samples) {
+    const auto found = fingerpad::fit_normal_force<2>(std::span(samples), {.robust = true});
+    return Estimate{{found.curve.coefficients[1], found.curve.coefficients[2]},
+                    block([&](auto i, auto j) { return found.errors.covariance[i][j]; }, {1, 2})};
+  };
+  return trial({"coefficient_1", "coefficient_2"}, {0.5, 0.3}, 0.3, measure, draw_samples, fit);
+}
+
+/// The published compensation of a known curve, by how far the contact was displaced.
+Trial affine_force() {
+  const fingerpad::PolynomialForce<2> curve{{0, 0.5, 0.3}, 0.1, 6};
+  const auto measure = [curve](Chance& chance) {
+    Samples samples = contacts(chance);
+    for (Sample& s : samples) {
+      s.normal_force_n = 0.9 * curve.force_n(s.measure) +
+                         0.4 * std::hypot(s.displacement_mm.x, s.displacement_mm.y) + 0.1 +
+                         force_noise_n * chance.normal();
+    }
+    return samples;
+  };
+  const auto fit = [curve](const Samples& samples) {
+    const auto found = fingerpad::published::fit_affine_force(
+        std::span(samples), curve, fingerpad::published::AffineBy::displacement);
+    return Estimate{{found.force.gain, found.force.per_unit, found.force.offset_n},
+                    block([&](auto i, auto j) { return found.covariance[i][j]; }, {0, 1, 2})};
+  };
+  return trial({"gain", "n_per_mm", "offset_n"}, {0.9, 0.4, 0.1}, 0.1, measure, draw_samples, fit);
+}
+
 template <class Fit>
 Estimate of_shear(const Fit& found) {
   return {{found.polynomial.coefficients[0], found.exponent},
@@ -410,23 +449,27 @@ Trial taxels() {
 }
 
 const std::map<std::string, Trial (*)()>& makers() {
-  static const std::map<std::string, Trial (*)()> all = {{"absorption", absorption},
-                                                         {"neighbour_light", neighbour_light},
-                                                         {"contact", contact},
-                                                         {"dots", dots},
-                                                         {"camera_plate", camera_plate},
-                                                         {"cap", cap},
-                                                         {"intensity", intensity},
-                                                         {"stick_test", stick_test},
-                                                         {"preslip", preslip},
-                                                         {"power_law", power_law},
-                                                         {"divergence", divergence},
-                                                         {"rim", rim},
-                                                         {"normal_force", normal_force},
-                                                         {"tangential_force", tangential_force},
-                                                         {"moment", moment},
-                                                         {"linear_shear", linear_shear},
-                                                         {"taxels", taxels}};
+  static const std::map<std::string, Trial (*)()> all = {
+      {"absorption", absorption},
+      {"neighbour_light", neighbour_light},
+      {"contact", contact},
+      {"dots", dots},
+      {"camera_plate", camera_plate},
+      {"cap", cap},
+      {"intensity", intensity},
+      {"stick_test", stick_test},
+      {"preslip", preslip},
+      {"power_law", power_law},
+      {"divergence", divergence},
+      {"rim", rim},
+      {"rubber", rubber},
+      {"normal_force", normal_force},
+      {"robust_normal_force", robust_normal_force},
+      {"affine_force", affine_force},
+      {"tangential_force", tangential_force},
+      {"moment", moment},
+      {"linear_shear", linear_shear},
+      {"taxels", taxels}};
   return all;
 }
 
