@@ -159,41 +159,48 @@ const OnScenes& on_scenes() {
   return errors;
 }
 
-/// A row of what one call takes, with the errors that the scenes show.
-template <class Call, class Note>
-void add_on_scenes(const std::string& name, const Call& call, const Note& note) {
+/// A row of what the ratio and `after`, which takes the ratio, need for a frame, with the errors
+/// that the scenes show.
+template <class After, class Note>
+void add_on_scenes(const std::string& name, const After& after, const Note& note) {
+  struct Running {
+    After after;
+    SpatialStickRatio<double> ratio{21, 21};
+    SpatialStickRatio<double>::State state = ratio.start();
+    test::Image<DotState> states{21, 21};
+    std::size_t k = 0;
+  };
   const bench::Memory memory;
-  const auto d = std::make_shared<Call>(call);
+  const auto d = std::make_shared<Running>(Running{after});
   bench::add(
-      "on scenes/" + name, 1, memory.bytes(), [d] { (*d)(); }, note);
+      "on scenes/" + name, 1, memory.bytes(),
+      [d] {
+        d->k = (d->k + 1) % recording().frames.size();
+        benchmark::DoNotOptimize(
+            d->after(d->ratio(recording().frames[d->k], recording().contact, d->states, d->state)));
+      },
+      note);
 }
 
 void add_scenes() {
   add_on_scenes(
-      "SpatialStickRatio alone",
-      [ratio = SpatialStickRatio<double>(21, 21), state = SpatialStickRatio<double>(21, 21).start(),
-       states = test::Image<DotState>(21, 21), k = std::size_t{}]() mutable {
-        k = (k + 1) % recording().frames.size();
-        benchmark::DoNotOptimize(ratio(recording().frames[k], recording().contact, states, state));
-      },
+      "SpatialStickRatio alone", [](const auto& r) { return r.stick_ratio; },
       [](auto& counters) {
         bench::note_errors(counters, "stick ratio", "of 1", on_scenes().dots);
       });
   add_on_scenes(
-      "SpatialStickRatio and FrictionLimit, the default",
-      [friction = FrictionLimit<double>(), state = FrictionLimit<double>().start()]() mutable {
-        benchmark::DoNotOptimize(
-            friction({.normal_n = 5, .tangential_n = 1}, 0.5, RatioUpdate::fresh, state));
-      },
+      "and FrictionLimit, the default",
+      [friction = FrictionLimit<double>(), state = FrictionLimit<double>().start()](
+          const auto& r) mutable { return friction({.normal_n = 5, .tangential_n = 1}, r, state); },
       [](auto& counters) {
         bench::note_errors(counters, "stick ratio", "of 1", on_scenes().fused);
         bench::note_errors(counters, "limit", "share", on_scenes().limit);
       });
   add_on_scenes(
-      "published: FrictionRatio",
+      "and published: FrictionRatio",
       [friction = published::FrictionRatio<double>(),
-       state = published::FrictionRatio<double>().start()]() mutable {
-        benchmark::DoNotOptimize(friction(1.0, 5.0, false, state));
+       state = published::FrictionRatio<double>().start()](const auto& r) mutable {
+        return friction(1.0, 5.0, r.updated() && r.stick_ratio < 0.1, state);
       },
       [](auto& counters) {
         bench::note_errors(counters, "limit", "share", on_scenes().remembered_ratio);

@@ -256,7 +256,7 @@ NeighbourLightFit<S> fit_neighbour_light(const std::type_identity_t<S>& pitch_mm
   fit.m0_sd = sqrt(S(variance * best.vv / determinant));
   fit.n_sd = sqrt(S(variance * best.uu / determinant));
   const bool at_end =
-      S(0.996004) < square(best.n) ||
+      square(S(0.998)) < square(best.n) ||
       (fit.light.radius_px == search.max_radius_px && search.max_radius_px > search.min_radius_px);
   fit.status = S(0.9) * fit.rms_before_mm < fit.rms_after_mm ? FitStatus::light_unexplained
                : best.m0 < S(0)                              ? FitStatus::light_taken_away
