@@ -393,6 +393,19 @@ TEST_CASE("normal force: compensations and errors that are refused", "[normal_fo
   errors = {};
   errors.covariance[2][2] = -0.5;
   CHECK(refused_with(errors) == "CurveErrors: variance of a parameter = -0.5, must be >= 0");
+  const std::string no_covariance =
+      "CurveErrors: covariance must be symmetric, without a negative eigenvalue";
+  errors.covariance = {{{1, 0.5, 0}, {0.4, 1, 0}, {0, 0, 1}}};
+  CHECK(refused_with(errors) == no_covariance);
+  errors.covariance = {{{0, 0.5, 0}, {0.5, 1, 0}, {0, 0, 1}}};
+  CHECK(refused_with(errors) == no_covariance);
+  // each pair of parameters could be so, not all three: the eigenvalue of (1, 1, 1) is -0.2
+  errors.covariance = {{{1, -0.6, -0.6}, {-0.6, 1, -0.6}, {-0.6, -0.6, 1}}};
+  CHECK(refused_with(errors) == no_covariance);
+  errors.covariance = {{{1, -0.5, -0.5}, {-0.5, 1, -0.5}, {-0.5, -0.5, 1}}};  // singular
+  CHECK(refused_with(errors) == "accepted");
+  errors.covariance = {{{0, 0, 0}, {0, 1e-9, 1e-6}, {0, 1e-6, 1e-2}}};
+  CHECK(refused_with(errors) == "accepted");
   CHECK(refused_with(CurveErrors<3>{.residual_sd_n = -1}) ==
         "CurveErrors: residual_sd_n = -1, must be finite and >= 0");
   CHECK(refused_with(CurveErrors<3>{.residual_sd_n = missing}) ==

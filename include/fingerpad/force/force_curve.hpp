@@ -10,6 +10,7 @@
 
 #include "fingerpad/core/expects.hpp"
 #include "fingerpad/core/scalar.hpp"
+#include "fingerpad/math/detail/small_matrices.hpp"
 #include "fingerpad/math/detail/zeros.hpp"
 
 namespace fingerpad {
@@ -128,7 +129,7 @@ struct CurveErrors {
   static constexpr std::size_t size = Parameters;
 
   std::array<std::array<S, size>, size> covariance =
-      detail::zero_matrix<S, size>();  ///< of the parameters: symmetric and not indefinite
+      detail::zero_matrix<S, size>();  ///< of the parameters: symmetric, no eigenvalue < 0
   S residual_sd_n = S(0);              ///< standard deviation of a sample about the curve, N, >= 0
   S measure_sd = S(0);                 ///< noise of the measure that the samples did not have, >= 0
 
@@ -198,6 +199,9 @@ void expects_valid(const CurveErrors<Parameters, S>& errors) {
     }
     expects(value(errors.covariance[i][i]) >= 0, owner, "variance of a parameter",
             errors.covariance[i][i], ">= 0");
+  }
+  if (!detail::is_covariance(errors.covariance)) {
+    refuse("CurveErrors: covariance must be symmetric, without a negative eigenvalue");
   }
   expects(is_finite(errors.residual_sd_n) && value(errors.residual_sd_n) >= 0, owner,
           "residual_sd_n", errors.residual_sd_n, "finite and >= 0");

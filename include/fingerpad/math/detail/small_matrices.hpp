@@ -195,6 +195,28 @@ class NormalEquations {
   std::array<S, N> scale_ = detail::zeros<S, N>();
 };
 
+/// Whether a matrix can be a covariance: symmetric, and no combination of parameters has a variance
+/// below 0. Rounding of a singular one passes.
+template <scalar S, std::size_t N>
+bool is_covariance(SmallMatrix<S, N> a) {
+  using std::sqrt;
+  const S rounding = S(sqrt(S(epsilon<S>())));
+  for (std::size_t i = 0; i < N; ++i) {
+    for (std::size_t j = 0; j < i; ++j) {
+      const S largest = S(sqrt(a[i][i])) * S(sqrt(a[j][j]));
+      const S difference = S(a[i][j] - a[j][i]);
+      const bool is_symmetric = value(square(difference)) <= value(square(S(rounding * largest)));
+      if (!is_symmetric || (value(largest) == 0 && value(a[i][j]) != 0)) {
+        return false;
+      }
+    }
+  }
+  for (std::size_t i = 0; i < N; ++i) {
+    a[i][i] = value(a[i][i]) == 0 ? S(1) : S(a[i][i] * (S(1) + rounding));
+  }
+  return NormalEquations<S, N>(a, 0).good;
+}
+
 }  // namespace detail
 }  // namespace v0
 }  // namespace fingerpad
