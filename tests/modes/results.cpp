@@ -1,11 +1,14 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 // Prints results of methods on one made-up scene, in all digits: tests/modes compares what
-// different compilers, options and machines print.
+// different compilers, options and machines print. Two threads get them at once, from the same
+// estimators; they must agree to the bit.
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
 #include <fingerpad/fingerpad.hpp>
+#include <string>
+#include <thread>
 #include <vector>
 
 #include "support/pad.hpp"
@@ -14,14 +17,24 @@ namespace {
 
 using namespace fingerpad;
 
-void tell(const char* name, double x) {
-  std::printf("%-24s %.17g\n", name, x);
-}
+class Results {
+ public:
+  void operator()(const char* name, double x) {
+    char line[80];
+    std::snprintf(line, sizeof line, "%-24s %.17g\n", name, x);
+    lines_ += line;
+  }
+  const std::string& lines() const { return lines_; }
 
-void tell_depth_and_contact() {
+ private:
+  std::string lines_;
+};
+
+void tell_depth_and_contact(Results& tell) {
   const test::Pad pad;
   const auto frame = pad.frame<std::uint8_t>(pad.pressed_depths(3));
-  const DepthEstimator estimate(pad.camera, pad.fluid, pad.reference<float>(), BiasFreeMean{5});
+  static const DepthEstimator estimate(pad.camera, pad.fluid, pad.reference<float>(),
+                                       BiasFreeMean{5});
   auto work = estimate.workspace<std::uint8_t>();
   test::Image<float> depth(pad.rows, pad.cols);
   test::Image<PixelStatus> status(pad.rows, pad.cols);
@@ -38,7 +51,7 @@ void tell_depth_and_contact() {
   ContactTest test;
   test.ring.radius_px = 4;
   test.min_region_px = 10;
-  const ContactRegion<> region(pad.camera, pad.rows, pad.cols, test);
+  static const ContactRegion<> region(pad.camera, pad.rows, pad.cols, test);
   auto memory = region.workspace();
   test::Image<std::uint8_t> mask(pad.rows, pad.cols);
   const auto contact = region(depth, mask, memory);
@@ -62,7 +75,7 @@ std::vector<Point> dots_moved(double shift, double turn) {
   return dots;
 }
 
-void tell_dots() {
+void tell_dots(Results& tell) {
   using Point = Point3<double>;
   const auto view = [](std::vector<Point>& dots) {
     return StridedView<const Point>(dots.data(), 9, 9, 9);
@@ -73,13 +86,13 @@ void tell_dots() {
     touch[k] = std::hypot(free[k].x, free[k].y) < 4 ? 1 : 0;
   }
   const StridedView<const std::uint8_t> contact(touch.data(), 9, 9, 9);
-  const ObjectMotion<> motion(view(free));
+  static const ObjectMotion<> motion(view(free));
   auto motion_state = motion.start();
-  const ContactShift<> shift(view(free));
+  static const ContactShift<> shift(view(free));
   auto shift_work = shift.workspace();
-  const TractionField field(view(free), TractionOptions<double>{.mu_t_n_per_mm = 0.5});
+  static const TractionField field(view(free), TractionOptions<double>{.mu_t_n_per_mm = 0.5});
   auto maps = field.maps();
-  const SpatialStickRatio<> stick(9, 9);
+  static const SpatialStickRatio<> stick(9, 9);
   auto stick_state = stick.start();
   std::vector<DotState> states(81);
   for (int frame = 0; frame < 8; ++frame) {
@@ -100,14 +113,14 @@ void tell_dots() {
   }
 }
 
-void tell_forces() {
-  const NormalForce<> force(PolynomialForce<>{{0, 0.02, 0.0001}, 10, 400});
+void tell_forces(Results& tell) {
+  static const NormalForce<> force(PolynomialForce<>{{0, 0.02, 0.0001}, 10, 400});
   tell("normal force N", force(123.4).force_n);
-  const Shear<> shear({100, 0.65, 1.7}, RadialShear<>{{{2}}, {{30}}});
+  static const Shear<> shear({100, 0.65, 1.7}, RadialShear<>{{{2}}, {{30}}});
   const auto sheared = shear(80, {0.4, -0.3}, 0.1);
   tell("shear x N", sheared.tangential_force_n.x);
   tell("shear moment N mm", sheared.moment_n_mm);
-  const GripControl<> control;
+  static const GripControl<> control;
   auto state = control.start(3);
   GripResult<> held;
   for (int k = 0; k < 1000; ++k) {
@@ -119,7 +132,15 @@ void tell_forces() {
 }  // namespace
 
 int main() {
-  tell_depth_and_contact();
-  tell_dots();
-  tell_forces();
+  Results results, others;
+  const auto tell_all = [](Results& tell) {
+    tell_depth_and_contact(tell);
+    tell_dots(tell);
+    tell_forces(tell);
+  };
+  std::thread thread([&] { tell_all(others); });
+  tell_all(results);
+  thread.join();
+  std::fputs(results.lines().c_str(), stdout);
+  return results.lines() == others.lines() ? 0 : 1;
 }
