@@ -111,7 +111,7 @@ void try_taxels(Input& in) {
 }
 
 void try_intensity(Input& in) {
-  const Index rows = in.whole(1, 40), cols = in.whole(1, 40);
+  const Index rows = in.side(1, 40), cols = in.side(1, 40);
   Grid<std::uint8_t> free(rows, cols), pressed(rows, cols);
   const double x = in.number(0, 40), y = in.number(0, 40), r = in.number(2, 20);
   IntensityCalibration calibration;
@@ -185,7 +185,7 @@ void try_rim(Input& in) {
 }
 
 void try_free_pad(Input& in) {
-  const Index rows = in.whole(0, 40), cols = in.whole(0, 40);
+  const Index rows = in.side(0, 40), cols = in.side(0, 40);
   Camera<double> camera;
   camera.center_x_px = camera.center_y_px = 20;
   camera.pitch_mm = in.number(0.1, 1);

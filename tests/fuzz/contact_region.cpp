@@ -15,7 +15,7 @@ using fuzz::require;
 namespace {
 
 void try_contact(Input& in) {
-  const Index rows = in.whole(0, 60), cols = in.whole(0, 60);
+  const Index rows = in.side(0, 60), cols = in.side(0, 60);
   Camera<double> camera;
   camera.plate_distance_mm = in.number(10, 200);
   camera.center_x_px = in.number(0, static_cast<double>(cols));

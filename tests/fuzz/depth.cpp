@@ -36,7 +36,7 @@ Absorption<double> any_fluid(Input& in) {
 
 template <class Pixel>
 void try_depth(Input& in) {
-  const Index rows = in.whole(0, 40), cols = in.whole(0, 40);
+  const Index rows = in.side(0, 40), cols = in.side(0, 40);
   const Camera<double> camera = any_camera(in, rows, cols);
   const Absorption<double> fluid = any_fluid(in);
   const Grid<Pixel> pad_red(in, rows, cols, 0, 260), pad_green(in, rows, cols, 0, 260);

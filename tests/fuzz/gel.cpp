@@ -30,7 +30,7 @@ DifferenceTest any_test(Input& in) {
 
 template <class Pixel>
 void try_slide(Input& in) {
-  const Index rows = in.whole(0, 32), cols = in.whole(0, 32);
+  const Index rows = in.side(0, 32), cols = in.side(0, 32);
   const Grid<Pixel> first(in, rows, cols, 50, 250), second(in, rows, cols, 50, 250);
   const std::vector free = {first.view(), second.view()};
   const ContactByDifference<1> contact(free, any_test(in));
@@ -79,7 +79,7 @@ void try_slide(Input& in) {
 
 template <class Pixel>
 void try_intensity(Input& in) {
-  const Index rows = in.whole(0, 40), cols = in.whole(0, 40);
+  const Index rows = in.side(0, 40), cols = in.side(0, 40);
   IntensityOptions options;
   options.smoothing_px = in.flag() ? in.number(0, 6) : 0;
   const Grid<Pixel> free(in, rows, cols, 0, 260);

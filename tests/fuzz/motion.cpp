@@ -63,7 +63,7 @@ void try_recoil(Input& in) {
 
 template <class Surface>
 void try_surface(Input& in) {
-  const Index rows = in.whole(0, 30), cols = in.whole(0, 30);
+  const Index rows = in.side(0, 30), cols = in.side(0, 30);
   Camera<double> camera;
   camera.plate_distance_mm = in.number(10, 200);
   camera.center_x_px = in.number(0, static_cast<double>(cols));

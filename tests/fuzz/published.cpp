@@ -34,7 +34,7 @@ Camera<double> any_camera(Input& in, Index rows, Index cols) {
 
 void try_depth(Input& in) {
   using Pixel = std::uint8_t;
-  const Index rows = in.whole(1, 40), cols = in.whole(1, 40);
+  const Index rows = in.side(1, 40), cols = in.side(1, 40);
   const Camera<double> camera = any_camera(in, rows, cols);
   const Absorption<double> fluid;
   const Grid<Pixel> pad_red(in, rows, cols, 0, 260), pad_green(in, rows, cols, 0, 260);
@@ -64,7 +64,7 @@ void try_depth(Input& in) {
 }
 
 void try_contact(Input& in) {
-  const Index rows = in.whole(0, 50), cols = in.whole(0, 50);
+  const Index rows = in.side(0, 50), cols = in.side(0, 50);
   const Grid<float> depth(in, rows, cols, 0, 15);
   Grid<std::uint8_t> mask(rows, cols);
   if (in.flag()) {

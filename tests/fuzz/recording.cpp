@@ -7,6 +7,8 @@
 // with: examples/replay/dots/file.cpp
 // with: examples/replay/foam/sensor.cpp examples/replay/foam/recording.cpp
 // with: -lopencv_core -lopencv_imgproc -lopencv_imgcodecs
+#include "replay/foam/recording.hpp"
+
 #include <cstdint>
 #include <cstdlib>
 #include <filesystem>
@@ -15,7 +17,6 @@
 
 #include "fuzz/input.hpp"
 #include "replay/dots/file.hpp"
-#include "replay/foam/recording.hpp"
 #include "replay/foam/sensor.hpp"
 #include "replay/io/failure.hpp"
 #include "replay/io/images.hpp"

@@ -63,8 +63,8 @@ Grid<float> any_depth(Input& in, Index rows, Index cols) {
 template <class W>
 void try_wrench(Input& in) {
   WrenchOptions<double> options;
-  options.columns = in.whole(8, 24);
-  options.rows = in.whole(2, 12);
+  options.columns = in.whole(8, 16);
+  options.rows = in.whole(2, 8);
   options.line_step_mm = in.number(0.5, 1.5);
   options.blur_mm = in.number(0, 2);
   options.reach_mm = in.number(4, 8);
@@ -73,12 +73,12 @@ void try_wrench(Input& in) {
   const SideDots rim = around(in, 1, count, 0, 0);
   const W wrench(rim.view(), options);
 
-  const Index rows = in.whole(2, 40), cols = in.whole(2, 40);
+  const Index rows = in.side(2, 40), cols = in.side(2, 40);
   Camera<double> camera;
   camera.center_x_px = in.number(0, static_cast<double>(cols));
   camera.center_y_px = in.number(0, static_cast<double>(rows));
   camera.pitch_mm = in.number(0.5, 2);
-  const PadHeights<> heights(rows, cols, camera, radius_mm + 1, in.number(0.5, 2));
+  const PadHeights<> heights(rows, cols, camera, radius_mm + 1, in.number(1, 4));
   auto map = heights.map();
   auto work = wrench.workspace(), fresh = wrench.workspace();
   const auto look = [&](auto& with) {

@@ -7,10 +7,14 @@
 #include <cstdlib>
 #include <random>
 
+#include "fingerpad/foam/holding_force.hpp"
+#include "fingerpad/motion/object_motion.hpp"
 #include "fingerpad/pipeline/foam_hand.hpp"
+#include "fingerpad/slip/contact_slide.hpp"
 #include "fingerpad/slip/friction_limit.hpp"
 #include "fingerpad/slip/grip_control.hpp"
 #include "fingerpad/slip/recoil.hpp"
+#include "fingerpad/slip/spatial_stick_ratio.hpp"
 #include "fingerpad/slip/stick_ratio.hpp"
 #include "support/catch.hpp"
 #include "support/pad.hpp"
@@ -47,6 +51,64 @@ test::Image<Point2<float>> lattice(Any& any, float shift) {
     }
   }
   return dots;
+}
+
+/// A pad's dots in mm, moved along x, some of them missing.
+test::Image<Point3<double>> dots_in_space(Any& any, double shift_mm) {
+  test::Image<Point3<double>> dots(6, 6);
+  for (Index i = 0; i < 6; ++i) {
+    for (Index j = 0; j < 6; ++j) {
+      const double x = static_cast<double>(j) - 2.5, y = static_cast<double>(i) - 2.5;
+      dots(i, j) = {1.5 * x + shift_mm, 1.5 * y,
+                    any.once_in(30) ? test::nan : 12 - 0.05 * (x * x + y * y)};
+    }
+  }
+  return dots;
+}
+
+/// A round contact with a pattern of its own, somewhere on a gel; holes where nothing is known.
+test::Image<float> imprint(Any& any, double x, double y) {
+  test::Image<float> cells(20, 20, 0);
+  for (Index i = 0; i < 20; ++i) {
+    for (Index j = 0; j < 20; ++j) {
+      const double u = static_cast<double>(j) - x, v = static_cast<double>(i) - y;
+      if (u * u + v * v < 36) {
+        cells(i, j) = any.once_in(300)
+                          ? std::nanf("")
+                          : static_cast<float>(1 + 0.3 * std::sin(u) * std::cos(2 * v));
+      }
+    }
+  }
+  return cells;
+}
+test::Image<std::uint8_t> pressed(const test::Image<float>& cells) {
+  test::Image<std::uint8_t> contact(20, 20, 0);
+  for (std::size_t k = 0; k < cells.cells.size(); ++k) {
+    contact.cells[k] = cells.cells[k] > 0 ? 1 : 0;
+  }
+  return contact;
+}
+
+template <class Search>
+void search_again_and_again(const Search& search) {
+  Any any;
+  auto state = search.start();
+  long ended = 0;
+  bool stays = true;
+  for (long k = 0; k < frames(); ++k) {
+    const auto before = state.command();
+    const auto after =
+        search(static_cast<PreslipStatus>(static_cast<int>(any.number(0, 4))), state);
+    if (is_end(before.phase)) {
+      stays = stays && after.phase == before.phase && after.force_n == before.force_n;
+      ++ended;
+      if (any.once_in(10)) {
+        state = search.start();
+      }
+    }
+  }
+  CHECK(stays);
+  CHECK(ended > 0);  // none goes on for ever
 }
 
 }  // namespace
@@ -155,4 +217,90 @@ TEST_CASE("long runs: a window of taxels forgets all that was before it", "[long
       }
     }
   }
+}
+
+TEST_CASE("long runs: after a reset a stick ratio in space is that of a start", "[long_run]") {
+  Any any;
+  const SpatialStickRatio<> stick(6, 6);
+  auto state = stick.start(), fresh = stick.start();
+  test::Image<DotState> states(6, 6);
+  const test::Image<std::uint8_t> contact(6, 6, 1), none(6, 6, 0);
+  double shift_mm = 0;
+  bool sound = true;
+  for (long k = 0; k < frames(); ++k) {
+    shift_mm = any.once_in(100) ? 0 : shift_mm + any.number(-0.05, 0.06);
+    const auto r =
+        stick(dots_in_space(any, shift_mm), any.once_in(40) ? none : contact, states, state);
+    sound = sound && (std::isnan(r.stick_ratio) || (r.stick_ratio >= 0 && r.stick_ratio <= 1));
+    if (any.once_in(3000)) {
+      state.reset();
+    }
+  }
+  CHECK(sound);
+  state.reset();
+  for (int k = 0; k < 20; ++k) {
+    const auto dots = dots_in_space(any, 0.03 * k);
+    const auto a = stick(dots, contact, states, state), b = stick(dots, contact, states, fresh);
+    CHECK(a.status == b.status);
+    CHECK((a.stick_ratio == b.stick_ratio || std::isnan(b.stick_ratio)));
+  }
+}
+
+TEST_CASE("long runs: after lost contact an object's motion begins anew", "[long_run]") {
+  Any any;
+  const ObjectMotion<> motion(dots_in_space(any, 0));
+  auto state = motion.start(), fresh = motion.start();
+  const test::Image<std::uint8_t> contact(6, 6, 1), none(6, 6, 0);
+  double shift_mm = 0;
+  bool sound = true;
+  for (long k = 0; k < frames(); ++k) {
+    shift_mm = any.once_in(100) ? 0 : shift_mm + any.number(-0.05, 0.06);
+    const auto r = motion(dots_in_space(any, shift_mm), any.once_in(60) ? none : contact, state);
+    sound = sound && (!r.ok() || is_finite(r.pose.translation_mm));
+  }
+  CHECK(sound);
+  (void)motion(dots_in_space(any, 0), none, state);
+  CHECK_FALSE(state.has_object());
+  for (int k = 0; k < 20; ++k) {
+    const auto dots = dots_in_space(any, 0.1 * k);
+    const auto a = motion(dots, contact, state), b = motion(dots, contact, fresh);
+    CHECK(a.status == b.status);
+    CHECK(a.pose.translation_mm.x == b.pose.translation_mm.x);
+    CHECK(a.pose.translation_mm.z == b.pose.translation_mm.z);
+  }
+}
+
+TEST_CASE("long runs: after a reset a slide of the contact is that of a start", "[long_run]") {
+  Any any;
+  const ContactSlide<> slide(20, 20, 6, 6, {.pitch_px = 20, .cell_px = 6, .min_cells = 30});
+  auto state = slide.start(), fresh = slide.start();
+  double x = 10, y = 10;
+  bool sound = true;
+  for (long k = 0; k < frames(); ++k) {
+    x = any.once_in(100) ? any.number(-9, 29) : x + any.number(-0.3, 0.3);
+    y = any.once_in(100) ? any.number(-9, 29) : y + any.number(-0.3, 0.3);
+    const auto cells = imprint(any, x, y);
+    const auto r = slide(cells, pressed(cells), lattice(any, 0), state);
+    sound = sound && is_finite(r.slide_px) && r.lost >= 0 && r.lost <= 1 && r.held() >= 0;
+    if (any.once_in(3000)) {
+      state.reset();
+    }
+  }
+  CHECK(sound);
+  state.reset();
+  for (int k = 0; k < 20; ++k) {
+    const auto cells = imprint(any, 8 + 0.2 * k, 10);
+    const auto contact = pressed(cells);
+    const auto dots = lattice(any, 0);
+    const auto a = slide(cells, contact, dots, state), b = slide(cells, contact, dots, fresh);
+    CHECK(a.status == b.status);
+    CHECK(a.evidence == b.evidence);
+    CHECK(a.slide_px.x == b.slide_px.x);
+  }
+}
+
+TEST_CASE("long runs: a search for the holding force ends, and stays where it has ended",
+          "[long_run]") {
+  search_again_and_again(LoosenUntilPreslip<>());
+  search_again_and_again(LiftWithRegrip<>());
 }
