@@ -11,7 +11,6 @@
 #include <concepts>
 #include <cstddef>
 #include <cstdint>
-#include <memory>
 #include <string>
 #include <type_traits>
 #include <utility>
@@ -232,7 +231,7 @@ LazyView(Index, Index, F) -> LazyView<F>;
 template <class G>
 class RefView {
  public:
-  constexpr explicit RefView(G& g) : grid_(std::addressof(g)) {}
+  constexpr explicit RefView(G& g) : grid_(&g) {}
   constexpr Index rows() const { return detail::traits_of<G>::rows(*grid_); }
   constexpr Index cols() const { return detail::traits_of<G>::cols(*grid_); }
   constexpr decltype(auto) operator()(Index i, Index j) const {
