@@ -21,17 +21,17 @@
 namespace fingerpad {
 inline namespace v0 {
 
-/// What the fluid does to light; defaults are the published values.
+/// Optical properties of the fluid; the defaults are the published values.
 template <scalar S = double>
 struct Absorption {
   S c_red_per_mm = S(290) / S(10000);    ///< c_R, absorption of red, > 0
   S c_green_per_mm = S(336) / S(10000);  ///< c_G, absorption of green, >= c_R
   S kappa =
       S(9924) / S(10000);  ///< alpha_G beta_G / (alpha_R beta_R), light source and camera, > 0
-  S max_depth_mm = S(14);  ///< depths are looked for in [0, max_depth_mm], > 0
+  S max_depth_mm = S(14);  ///< the largest depth that is searched, > 0
 };
 
-/// Refuses what no fluid can have (parameter_error).
+/// Refuses impossible values (parameter_error).
 template <scalar S>
 void expects_valid(const Absorption<S>& fluid) {
   expects(is_finite(fluid.c_red_per_mm) && fluid.c_red_per_mm > S(0), "Absorption", "c_red_per_mm",
@@ -50,11 +50,11 @@ Absorption<To> cast(const Absorption<From>& f) {
   return {To(f.c_red_per_mm), To(f.c_green_per_mm), To(f.kappa), To(f.max_depth_mm)};
 }
 
-/// The pencil of light that comes back to one pixel.
+/// The pencil of light that reaches one pixel.
 template <scalar S = double>
 struct Pencil {
   S path_factor;                     ///< k = 1 + 1/cos(phi_fluid), >= 2
-  detail::VirtualHeights<S> height;  ///< where it seems to come from
+  detail::VirtualHeights<S> height;  ///< of the points from which it appears to come
 };
 
 /// The pencil of a ray, with one of the height policies of optics/camera.hpp.

@@ -8,9 +8,10 @@
 //
 // Once per sensor: fit_reference() on a frame of the free pad. Per frame: the colours are averaged
 // over a window (depth/smoothing.hpp) and the depth equation is solved per pixel
-// (depth/depth_inverse.hpp, depth/detail/scatter_polynomial.hpp). The depth is that of the
-// membrane along the pixel's refracted ray, z in mm above the plate; point_at() in optics.hpp makes
-// it a point. Light from neighbouring membrane is compensated by neighbour_light.hpp, if at all.
+// (depth/depth_inverse.hpp, depth/detail/scatter_polynomial.hpp). The depth is the height z of the
+// membrane above the plate in mm, where the pixel's refracted ray meets it; point_at() of
+// optics/camera.hpp turns it into a point. depth/neighbour_light.hpp optionally compensates light
+// from neighbouring membrane.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -36,9 +37,9 @@ inline namespace v0 {
 
 enum class DepthStatus : std::uint8_t {
   ok,
-  pad_has_changed,  ///< depths were written, but the rim of the pad is lighter or darker than in
-                    ///< the reference by more than 5 %, or mostly without light: another lamp or
-                    ///< gain, an aged membrane, a frame of another layout. Take a new reference.
+  pad_has_changed,  ///< depths were written, but the rim of the pad is more than 5 % lighter or
+                    ///< darker than in the reference, or mostly without light: another lamp or
+                    ///< gain, an aged membrane, another pixel layout. Take a new reference.
   refused,          ///< a grid or the memory given with it has another size: nothing was written
 };
 
@@ -48,7 +49,7 @@ constexpr const char* name_of(DepthStatus status) {
   return names[static_cast<std::size_t>(status)];
 }
 
-/// What became of a frame, or of a band of its rows.
+/// The outcome of a frame, or of a band of its rows.
 struct [[nodiscard]] DepthResult {
   DepthStatus status = DepthStatus::refused;
   Index pad_pixels = 0;  ///< pixels at which the reference knows the pad
@@ -60,7 +61,7 @@ struct [[nodiscard]] DepthResult {
   bool ok() const { return status == DepthStatus::ok; }
   Index valid_pixels() const { return count[static_cast<std::size_t>(PixelStatus::ok)]; }
 
-  /// Makes this the result of these rows and those of another band of the same frame.
+  /// Merges the result of another band of the same frame into this one.
   void add(const DepthResult& band) {
     status = (std::max)(status, band.status);
     pad_pixels = band.pad_pixels;
@@ -91,14 +92,14 @@ struct [[nodiscard]] DepthResult {
 };
 
 /// Depth of every pixel of a frame, in the scalar S.
-///   Smoothing  BiasFreeMean       take this for curved contacts and by default
-///              AnchoredMean       take this when time counts and contacts are flat
-///              NoSmoothing        take this for frames without noise
-///   Inverse    ExponentialFree<>  take this for float and double
-///              Newton             take this for other numbers, and for derivatives
+///   Smoothing  BiasFreeMean       the default; use it for curved contacts
+///              AnchoredMean       use it when time matters and contacts are flat
+///              NoSmoothing        use it for frames without noise
+///   Inverse    ExponentialFree<>  use it for float and double
+///              Newton             use it for other scalars, and for derivatives
 /// Heights and Scattering are those of the reference. published/depth.hpp is the method as printed.
-/// Const: threads may share one estimator, each with a workspace of its own, and may take a band of
-/// rows each. A call takes no memory and throws nothing; O(rows cols), whatever the window.
+/// Threads may share one estimator, each with its own workspace, and may each process a band of
+/// rows. A call allocates nothing and throws nothing; O(rows cols), whatever the window.
 template <class Smoothing = BiasFreeMean,
           class Inverse = ExponentialFree<>,
           class Heights = AstigmaticHeights,
@@ -123,8 +124,8 @@ class DepthEstimator {
                        smoothing,
                        inverse) {}
 
-  /// All memory that frames with cells of type Pixel need; one per thread. Refuses a grey scale
-  /// that makes no sense (parameter_error).
+  /// Scratch memory for frames with cells of type Pixel; one per thread. Refuses an impossible grey
+  /// scale (parameter_error).
   template <class Pixel>
   class Workspace {
    public:
@@ -154,7 +155,7 @@ class DepthEstimator {
     return Workspace<Pixel>(*this, scale);
   }
 
-  /// Depth in mm of a frame, NaN where there is none, from its red and green channel.
+  /// Depth of a frame in mm from its red and green channel; NaN where there is none.
   template <grid Red, grid Green, class Depth, class Pixel>
   DepthResult operator()(const Red& red,
                          const Green& green,
@@ -175,8 +176,8 @@ class DepthEstimator {
     return band(0, rows_, red, green, depth_mm, status, workspace);
   }
 
-  /// Rows [first, last) of the frame only, for threads that share a frame; bit for bit what the
-  /// whole frame gives.
+  /// Only rows [first, last) of the frame, for threads that share a frame. The depths are bit for
+  /// bit those of a whole frame.
   template <grid Red, grid Green, class Depth, class Status, class Pixel>
   DepthResult band(Index first,
                    Index last,
@@ -184,8 +185,7 @@ class DepthEstimator {
                    const Green& green,
                    Depth&& depth_mm,
                    Status&& status,
-                   Workspace<Pixel>& workspace)
-  const {
+                   Workspace<Pixel>& workspace) const {
     detail::writes_to<Depth, S>();
     static_assert(!detail::has_channels<cell_t<Red>> && !detail::has_channels<cell_t<Green>>,
                   "a colour image is no channel: pass fingerpad::channel<T>(image, c) of it");

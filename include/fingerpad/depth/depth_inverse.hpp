@@ -13,9 +13,9 @@
 namespace fingerpad {
 inline namespace v0 {
 
-/// What became of a pixel. Where the status is not `ok` the depth is NaN; it is never clamped.
+/// The outcome at a pixel. If the status is not `ok`, the depth is NaN; it is never clamped.
 enum class PixelStatus : std::uint8_t {
-  ok = 0,            ///< the depth is right
+  ok = 0,            ///< the depth is valid
   below_range = 1,   ///< the colours ask for a depth below zero
   above_range = 2,   ///< the colours ask for a depth above max_depth_mm
   not_a_number = 3,  ///< a colour is NaN or infinite
@@ -53,8 +53,8 @@ PixelStatus range_of_root(const Absorption<S>& fluid,
 
 }  // namespace detail
 
-/// Newton's method on F from `start_mm` (last frame's depth, or 0), kept inside the bracket that
-/// the signs of F close around the root. Converges to the roundoff of F: <= 1e-12 mm in double for
+/// Newton's method on F from `start_mm` (last frame's depth, or 0), kept inside the bracket around
+/// the root that the signs of F give. Converges to the roundoff of F: <= 1e-12 mm in double for
 /// depths up to 14 mm. Five steps are typical from 0, four from last frame; 60 at most. A dual
 /// number gets the exact derivative of the root with respect to whatever is seeded.
 template <scalar S>
@@ -90,8 +90,8 @@ DepthRoot<S> newton_depth(const Absorption<S>& fluid,
   return {depth, PixelStatus::ok};
 }
 
-/// Newton's method on the exact equation, to the roundoff of any scalar. Take this for numbers
-/// other than float and double, for derivatives, and as the truth that others are held against.
+/// Newton's method on the exact equation, to the roundoff of any scalar. Use it for scalars other
+/// than float and double, for derivatives, and as the reference for other methods.
 struct Newton {
   template <scalar S>
   DepthRoot<S> operator()(const Absorption<S>& fluid,
@@ -103,7 +103,7 @@ struct Newton {
 };
 inline void expects_valid(const Newton&) {}
 
-/// Polynomials in the place of the exponentials, whole vectors at a time. Take this for float and
+/// Polynomials in place of the exponentials, computed in vectors of pixels. Use it for float and
 /// double.
 ///   Order   the error of the start, 0.03 to 0.06 mm, is raised to this power by a Newton step for
 ///           each factor 2 and a Halley step for each factor 3

@@ -1,11 +1,11 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// What the depth model takes from one frame of the free pad, whose shape is known: which pixels see
-// the pad, and how much the fluid scatters, g. Per pixel g = (kappa red - green exp(delta k l)) /
-// W, the published quotient; but at the rim W vanishes and so does all trust in it, while g depends
-// on the ray's angle only. So g is fitted as a polynomial in rho^2 by least squares on the depth
-// equation itself, which is linear in its coefficients and 0/0 nowhere.
+// The reference of the depth model, from one frame of the free pad whose shape is known: which
+// pixels see the pad, and how strongly the fluid scatters, g. The published quotient per pixel,
+// g = (kappa red - green exp(delta k l)) / W, is useless at the rim, where W vanishes. But g
+// depends only on the ray's angle, so it is fitted as a polynomial in rho^2 by least squares on the
+// depth equation itself, which is linear in the coefficients and nowhere 0/0.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -71,8 +71,8 @@ struct RadialScattering {
   RadialScattering sampled(Index, Index, int) const { return *this; }
 };
 
-/// The free pad, as the depth estimator needs it. The type remembers the policy of heights that g
-/// was fitted with, so that the estimator uses the same.
+/// The free pad as the depth estimator needs it. The type includes the height policy with which g
+/// was fitted, so that the estimator uses the same one.
 template <scalar S, class Scattering = RadialScattering<S>, class Heights = AstigmaticHeights>
 struct DepthReference {
   Index rows = 0;
@@ -81,8 +81,8 @@ struct DepthReference {
   Scattering scattering;
   Index pixels_used = 0;
   S residual_rms = S(0);  ///< of the depth equation at the known depths, grey levels
-  S rim_green = S(0);  ///< mean of green near the rim, grey levels: by it frames show whether the
-                       ///< light is still the same; 0: not known
+  S rim_green = S(0);     ///< mean green near the rim, grey levels, with which frames are compared
+                          ///< to detect a changed light; 0: not known
 
   const S& depth(Index row, Index col) const {
     return depth_mm[static_cast<std::size_t>(row * cols + col)];
@@ -348,11 +348,11 @@ Reference free_pad(const Camera<C>& camera,
 
 }  // namespace detail
 
-/// The reference from one frame of the free pad (an average of many frames is better: store it as
-/// 16 bit or float) and its depth along each pixel's ray in mm, NaN outside the pad. Refuses grids
-/// of different sizes, data that do not determine g, and what cannot be a free pad, with the likely
-/// mistake (parameter_error). With a camera and a fluid of dual numbers, and S one of them, g
-/// carries its derivatives by them. O(rows cols); allocates.
+/// The reference from one frame of the free pad and its depth along each pixel's ray in mm, NaN
+/// outside the pad. An average of many frames is better: store it as 16 bit or float. Refuses grids
+/// of different sizes, data that do not determine g, and shapes that no free pad has, and names the
+/// likely mistake (parameter_error). If camera and fluid are of dual numbers and S is that dual
+/// number, g carries the derivatives. O(rows cols); allocates.
 template <class Heights = AstigmaticHeights,
           scalar S = float,
           scalar C,

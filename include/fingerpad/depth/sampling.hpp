@@ -1,11 +1,11 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// Frames of fewer, larger samples: means of step x step pixels. Depth averages colours over 29
-// pixels and contact is told by a ring of 25, so that samples of 2 or 3 pixels lose nothing that
-// was not lost already, and everything after them costs 1 / step^2 as much. A sampled frame is the
-// frame of a camera with larger pixels: sampled() gives that camera, and the free pad as it sees
-// it; the methods do the rest. What is left over at the right and at the bottom is not seen.
+// Reduces a frame to fewer, larger samples: means of step x step pixels. Depth averages colours
+// over 29 pixels and contact uses a ring of 25, so samples of 2 or 3 pixels lose nothing that would
+// not be averaged anyway, and all later stages cost 1 / step^2 as much. A sampled frame is the
+// frame of a camera with larger pixels; sampled() gives that camera, and the free pad as it sees
+// it. The methods need no change. Leftover pixels at the right and at the bottom are ignored.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -29,7 +29,7 @@
 namespace fingerpad {
 inline namespace v0 {
 
-/// What samples of pixels are stored as: 16 bit for 8 bit, else the pixel's own type.
+/// The type in which samples are stored: 16 bit for 8-bit pixels, else the pixel's own type.
 template <class Pixel>
 using sample_t = std::conditional_t<std::same_as<Pixel, std::uint8_t>, std::uint16_t, Pixel>;
 
@@ -74,10 +74,10 @@ DepthReference<S, Scattering, Heights> sampled(
   return out;
 }
 
-/// Means of those of Step x Step pixels that carry information, in
-/// grey_scale_of<sample_t<Pixel>>(). Where none does, the brightest of all values if one is
-/// saturated, else NaN if one is NaN, else 0: such samples carry none. No allocation per frame;
-/// O(rows cols).
+/// Means over Step x Step pixels, leaving out pixels that carry no information, in
+/// grey_scale_of<sample_t<Pixel>>(). If all are left out, the sample is the brightest value if one
+/// is saturated, else NaN if one is NaN, else 0, and carries no information either. No allocation
+/// per frame; O(rows cols).
 template <class Pixel, int Step>
 class FrameSampler {
   static_assert(Step >= 1 && Step <= 16, "the sampling step is in 1..16");
@@ -327,10 +327,10 @@ class FrameSampler {
   Index stride_;
 };
 
-/// Depth of every pixel from depth of samples: what they differ by from the free pad, bilinearly,
-/// and the free pad itself. A pixel beside missing samples is extrapolated from those on its other
-/// side. It has no depth where its own sample has none, but at the pad's rim, of which a sample may
-/// hold some pixels only. `free` and `free_samples` are the reference and sampled() of it; the
+/// Depth of every pixel from the depth of samples: the difference from the free pad is interpolated
+/// bilinearly and added to the free pad. Beside missing samples it is extrapolated from the other
+/// side. A pixel has no depth if its own sample has none, except at the pad's rim, where a sample
+/// may hold only some pixels. `free` and `free_samples` are the reference and sampled() of it; the
 /// other grids have their sizes. O(rows cols).
 template <class Reference, class S>
 void depth_between_samples(const Reference& free,

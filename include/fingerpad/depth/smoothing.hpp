@@ -1,15 +1,15 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// How colours are averaged before a depth is looked for: one grey level of noise in both channels
-// is 0.7 mm of depth in a single pixel, so some hundred pixels have to be averaged. The means leave
-// out pixels that carry no information (outside the pad, dark, saturated, NaN) and cost the same
-// per pixel whatever the window.
+// Averages colours before the depth is computed. One grey level of noise in both channels is 0.7 mm
+// of depth in a single pixel, so several hundred pixels must be averaged. The means leave out
+// pixels that carry no information (outside the pad, dark, saturated, NaN), and the cost per pixel
+// does not depend on the window.
 //
 // A mean of colours over a curved membrane is biased by curvature times window^2 / 24 per axis, and
-// near the rim, where the window is cut, also by slope. So what is averaged is not the colours but
-// their deviation from what the free pad's shape predicts: exact where the pad has that shape, and
-// nearly so elsewhere. See docs/depth/depth.md for the errors.
+// near the rim, where the window is cut, also by slope. Therefore the deviation of the colours from
+// the prediction for the free pad is averaged instead: this is exact where the pad has its free
+// shape, and nearly exact elsewhere. The errors are in docs/depth/depth.md.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -32,8 +32,8 @@ inline int nearest_odd(double x) {
 
 /// a box(inner) - b box(outer) of the deviations, centered alike, with a - b = 1 and the second
 /// moments cancelling: exact for deviations that are quadratic, where nothing is cut. Inner and
-/// outer are 1.4 and 2.3 times window_px, which gives the noise of a mean over window_px. Take this
-/// for curved contacts and by default.
+/// outer are 1.4 and 2.3 times window_px, which gives the noise of a mean over window_px. The
+/// default; use it for curved contacts.
 struct BiasFreeMean {
   static constexpr bool anchored = true;
   int window_px = 29;  ///< odd, 3..109
@@ -49,8 +49,7 @@ struct BiasFreeMean {
   }
 };
 
-/// The mean of the deviations over a square window. Take this when time counts and contacts are
-/// flat.
+/// The mean of the deviations over a square window. Use it when time matters and contacts are flat.
 struct AnchoredMean {
   static constexpr bool anchored = true;
   int window_px = 29;  ///< odd, 3..255
@@ -64,7 +63,7 @@ struct AnchoredMean {
   }
 };
 
-/// Each pixel for itself. Take this for frames without noise, as of a renderer.
+/// No averaging. Use it for frames without noise, for instance rendered ones.
 struct NoSmoothing {
   static constexpr bool anchored = false;
 };

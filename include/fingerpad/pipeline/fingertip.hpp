@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// Frame, dots and pressure in, touch out: depth, contact region, motion of the object, stick ratio,
-// forces by look-up and the six-axis force of one fluid-filled fingertip, by one object. It puts
-// the methods together and adds none; who needs one method alone includes that method's header.
+// Frame, dots and pressure in, touch out. One object computes depth, contact region, motion of the
+// object, stick ratio, forces by look-up and the six-axis force of one fluid-filled fingertip. It
+// only combines the methods; to use a single method, include that method's header.
 //
 //   Fingertip fingertip(options);                    // takes all memory, refuses bad parameters
 //   auto touch = fingertip(ColorFrame(red, green), dots_px, side_dots_mm, pressure_mpa, time_s);
@@ -17,9 +17,9 @@
 namespace fingerpad {
 inline namespace v0 {
 
-/// Not const: a frame changes depth map, mask, dots, and what is remembered of the object. One
-/// object per pad; it is not shared by threads. A frame allocates nothing, throws nothing, and
-/// takes bounded time, O(rows cols) for the image and O(dots) for the rest.
+/// Use one object per pad, and do not share it between threads: a frame changes its depth map,
+/// mask, dots and the memory of the object. A frame allocates nothing, throws nothing, and takes
+/// bounded time, O(rows cols) for the image and O(dots) for the rest.
 template <class Reference, class Methods = FingertipMethods>
 class Fingertip {
   using Executor = typename Methods::Executor;
@@ -40,9 +40,9 @@ class Fingertip {
         look_up_(options),
         balance_(options) {}
 
-  /// One frame. Without a stage for them, `dots_px` or `side_dots_mm` may be any dot grid;
-  /// `time_s` as the stick ratio has it (NaN: not known). `watch` is told each stage that has
-  /// ended.
+  /// Processes one frame. `dots_px` and `side_dots_mm` may be any dot grid if no stage uses them.
+  /// `time_s` is that of the stick ratio (NaN: not known). `watch` is called at the end of each
+  /// stage.
   template <class Red,
             class Green,
             dot_grid DotsPx,
@@ -80,7 +80,7 @@ class Fingertip {
     }
   }
 
-  /// The same for a fingertip that needs no side dots.
+  /// The same without side dots.
   template <class Red, class Green, dot_grid DotsPx>
     requires(!has_wrench)
   FingertipResult operator()(const ColorFrame<Red, Green>& frame,
@@ -90,17 +90,17 @@ class Fingertip {
     return (*this)(frame, dots_px, StridedView<const Point3<double>>(), pressure_mpa, time_s);
   }
 
-  /// Of every pixel of the last frame; NaN where there is no depth. Made from the samples when
-  /// asked for first.
+  /// Depth of every pixel of the last frame; NaN where there is none. Interpolated from the samples
+  /// at the first call after a frame.
   StridedView<const float> depth_mm() { return image_.samples.depth(image_.depth, image_.status); }
   StridedView<const PixelStatus> pixel_status() {
     return image_.samples.status(image_.depth, image_.status);
   }
-  /// The same of contact: 255, else 0.
+  /// Contact of every pixel of the last frame: 255 in contact, else 0.
   StridedView<const std::uint8_t> contact_mask() requires(has_contact) {
     return image_.samples.mask(region_.mask);
   }
-  /// What each printed dot does, whether it touches, and where it is in mm, in the last frame.
+  /// State, contact and place in mm of each printed dot in the last frame.
   StridedView<const DotState> dot_states() const requires(has_dots) { return dots_.states.view(); }
   StridedView<const std::uint8_t> dots_in_contact() const requires(has_dots) {
     return dots_.touching.view();
@@ -112,13 +112,13 @@ class Fingertip {
   StridedView<const DotSlip<double>> dot_slips() const requires(has_dots) {
     return dots_.slipped();
   }
-  /// Membrane's pull on the k-th point of the rim in the last frame, N/mm, in the order of the
-  /// angle from 0 to 2 pi; NaN where it is not known. `k` is in [0, columns of rim_mm).
+  /// Pull of the membrane on the k-th point of the rim in the last frame, N/mm, ordered by angle
+  /// from 0 to 2 pi; NaN where it is not known. `k` is in [0, columns of rim_mm).
   Point3<double> rim_tension(Index k) const requires(has_wrench) {
     return balance_.balance->work.rim_tension(k);
   }
 
-  /// Forgets the object: the next frame begins anew.
+  /// Forgets the object: the next frame is treated as the first.
   void reset() {
     if constexpr (has_dots) {
       dots_.reset();
@@ -149,7 +149,7 @@ class Fingertip {
 
   FingertipStatus status_of(const FingertipResult& touch) const {
     if (!touch.depth.ok() || !touch.contact.ok()) {
-      return FingertipStatus::partial;  // nothing is seen to touch, or to touch nothing
+      return FingertipStatus::partial;  // neither contact nor its absence is certain
     }
     const bool all = dots_.answers(touch) && look_up_.answers(touch) && balance_.answers(touch);
     return !touch.contact.in_contact() ? FingertipStatus::no_contact

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// What a fingertip is told once, and what it says of a frame: pipeline/fingertip.hpp.
+// Options and results of a fingertip (pipeline/fingertip.hpp).
 #include <array>
 #include <cstdint>
 #include <optional>
@@ -29,9 +29,9 @@
 namespace fingerpad {
 inline namespace v0 {
 
-/// Which stages a fingertip has, and by which methods. Derive from it and change what differs: a
-/// stage that is false is not instantiated and costs nothing. Contact is needed by all that follow.
-/// A stage that is true has no answer where the options lack what it needs.
+/// The stages of a fingertip and their methods. Derive from it and override what differs. A stage
+/// that is false is not instantiated and costs nothing; all stages after contact need contact. A
+/// stage that is true gives no answer if the options lack what it needs.
 ///   struct DepthAndContact : FingertipMethods {
 ///     static constexpr bool has_dots = false, has_wrench = false;
 ///   };
@@ -40,13 +40,13 @@ struct FingertipMethods {
   static constexpr bool has_contact = true;           ///< contact region
   static constexpr bool has_dots = true;       ///< object motion, stick ratio, friction limit
   static constexpr bool has_look_up = true;    ///< forces by calibrated curves; needs the dots
-  static constexpr bool has_flat_area = true;  ///< forces by area are looked up by that of the
+  static constexpr bool has_flat_area = true;  ///< look up forces by the area of the flat
                                                ///< plate that would press as hard, for objects of
-                                               ///< any shape; false: by that of the contact
+                                               ///< any shape; false: by the area of the contact
   static constexpr bool has_wrench = true;     ///< six-axis force from pressure and side dots
 
-  static constexpr int sampling = 3;  ///< pixels of a sample, along rows and along columns: less
-                                      ///< than a seventh of the window; 1: every pixel
+  static constexpr int sampling = 3;  ///< width and height of a sample in pixels, less than a
+                                      ///< seventh of the window; 1: every pixel
 
   using Smoothing = BiasFreeMean;
   using Inverse = ExponentialFree<>;
@@ -54,11 +54,11 @@ struct FingertipMethods {
   using Edge = HalfLevelEdge;
   using Solver = LeastSquares;
   using Pixel = std::uint8_t;          ///< cell of the frame's channels
-  using Executor = detail::OneThread;  ///< who works on a frame
+  using Executor = detail::OneThread;  ///< runs the work of a frame
 };
 
-/// All that is known of a fingertip before its first frame. What a stage needs that is switched off
-/// is not read.
+/// Everything that is known of a fingertip before its first frame. Settings of a stage that is
+/// switched off are ignored.
 template <class Reference>
 struct FingertipOptions {
   Camera<double> camera;
@@ -68,13 +68,13 @@ struct FingertipOptions {
   Index cols = 0;
   int smoothing_px = 29;  ///< width of the smoothing window, odd, 3 to 109
   std::optional<NeighbourLight<float>> neighbour_light = {};  ///< empty: not taken off
-  StridedView<const float> free_depth_mm = {};  ///< of the free pad, for the neighbour light: found
-                                                ///< as a frame's, by a fingertip without it
+  StridedView<const float> free_depth_mm = {};  ///< of the free pad, for the neighbour light:
+                                                ///< the depth from a fingertip without it
   ContactTest contact = {};
 
   StridedView<const Point3<double>> free_dots_mm = {};  ///< printed dots of the free pad, NaN:
                                                         ///< none; empty: no answer by dots
-  double dot_radius_px = 0;     ///< a dot touches if all of it does, as contact_at_dots() has it
+  double dot_radius_px = 0;     ///< a dot touches if its whole disc does; see contact_at_dots()
   SpatialStickTest stick = {};  ///< noise of the dots in space, and what counts as slip
   FrictionLimitOptions friction = {};
 
@@ -84,14 +84,14 @@ struct FingertipOptions {
   std::optional<NormalLookUp> force_of_area = {};   ///< by mm^2, with errors; empty: not looked up
   std::optional<NormalLookUp> force_of_depth = {};  ///< by mm, with errors; empty: not looked up
   std::optional<ShearLookUp> shear = {};            ///< empty: not looked up
-  bool shear_by_depth = false;  ///< its measure is mm of depth, not mm^2 of area
+  bool shear_by_depth = false;  ///< look up by mm of depth instead of mm^2 of area
 
   StridedView<const Point3<double>> rim_mm = {};  ///< where side dots are fixed; one row; empty: no
                                                   ///< six-axis force
   OneRow side_dot_row = {};
   ClampedRim rim_law = {};            ///< of the membrane's rubber
-  WrenchOptions<double> wrench = {};  ///< with calibrated_modulus_n_per_mm a frame whose pressure
-                                      ///< is NaN is answered by pressure_from_rim()
+  WrenchOptions<double> wrench = {};  ///< with calibrated_modulus_n_per_mm, pressure_from_rim()
+                                      ///< answers frames whose pressure is NaN
 };
 template <class Reference>
 FingertipOptions(const Camera<double>&, const Absorption<double>&, const Reference&, Index, Index)
@@ -111,11 +111,11 @@ ColorFrame(const R&, const G&) -> ColorFrame<decltype(as_view(std::declval<const
                                              decltype(as_view(std::declval<const G&>()))>;
 
 enum class FingertipStatus : std::uint8_t {
-  ok,          ///< every stage that has what it needs has an answer
-  partial,     ///< a stage has none, or depth or contact are not of this pad; its own result says
-               ///< why
-  no_contact,  ///< nothing touches the pad, and its depth is to be trusted
-  refused,     ///< a frame or dots of another size: nothing was computed
+  ok,          ///< every stage that has its inputs has an answer
+  partial,     ///< a stage has no answer, or depth or contact do not fit this pad; the stage's
+               ///< result says why
+  no_contact,  ///< nothing touches the pad, and its depth can be trusted
+  refused,     ///< frame or dots have another size: nothing was computed
 };
 
 /// "ok", "partial", ...
@@ -124,26 +124,27 @@ constexpr const char* name_of(FingertipStatus status) {
   return names[static_cast<std::size_t>(status)];
 }
 
-/// What a frame says. The result of a stage that is switched off is its own default: no answer.
+/// The results of a frame. A stage that is switched off leaves the default of its result: no
+/// answer.
 struct [[nodiscard]] FingertipResult {
   FingertipStatus status = FingertipStatus::refused;
   DepthResult depth;
   ContactResult contact;
   ObjectMotionResult<double> motion;
   SpatialStickResult<double> stick;  ///< by the dots
-  SlipResult<double> slip;           ///< by the dots and friction; feed it to GripControl
+  SlipResult<double> slip;           ///< by dots and friction; the input of GripControl
   ShiftResult<double> shift;         ///< of the dots beside the contact's edge, for the look-up
   FlatAreaResult<double> flat_area;  ///< of the plate that would press as hard
   NormalForceResult<double> by_area, by_depth;  ///< by look-up,
-  FusedForce<double> normal;    ///< and both together; by the flat area alone where that is known,
-                                ///< since the depth's curve holds for one shape only
+  FusedForce<double> normal;    ///< both combined; by the flat area alone where that is known,
+                                ///< because the curve by depth holds for one shape only
   ShearResult<double> shear;    ///< by look-up
   WrenchResult<double> wrench;  ///< six axes
 
   bool ok() const { return status == FingertipStatus::ok; }
 };
 
-/// Stages of a frame, as they are told to a watch.
+/// The stages of a frame, as they are reported to a watch.
 enum class FingertipStage : std::uint8_t {
   depth,
   contact,

@@ -1,12 +1,14 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// Readings of foam fingers in, pre-slip out: the features of each finger and the rules over all of
-// them, by one object. It puts the methods of foam/ together and adds none.
+// Readings of foam fingers in, pre-slip out. One object computes the features of each finger and
+// applies the rules over all fingers. It only combines the methods of foam/.
 //
-//   FoamHand<2> hand(options);                           // takes all memory, refuses bad
-//   parameters auto felt = hand(std::array{left, right}, time_s);   // every sample if (felt.status
-//   == PreslipStatus::preslip) { ... }
+//   FoamHand<2> hand(options);  // takes all memory, refuses bad parameters
+//
+//   auto felt = hand(std::array{left, right}, time_s);  // every sample
+//
+//   if (felt.status == PreslipStatus::preslip) { ... }
 #include <algorithm>
 #include <array>
 #include <cstddef>
@@ -24,15 +26,15 @@
 namespace fingerpad {
 inline namespace v0 {
 
-/// Which rules a hand has, and by which methods. Derive from it and change what differs: a rule
-/// that is false is not instantiated and costs nothing.
+/// The rules of a hand and their methods. Derive from it and override what differs. A rule that is
+/// false is not instantiated and costs nothing.
 ///   struct WhileLoosening : FoamHandMethods {
 ///     static constexpr bool has_grasp_optimise = true;
 ///   };
 struct FoamHandMethods {
-  static constexpr bool has_grasp_lift = true;       ///< on any finger: take this by default
-  static constexpr bool has_grasp_optimise = false;  ///< on all fingers alike, as in the paper's
-                                                     ///< first experiment
+  static constexpr bool has_grasp_lift = true;       ///< slip of any finger; the default
+  static constexpr bool has_grasp_optimise = false;  ///< slip of all fingers at once, as in
+                                                     ///< the paper's first experiment
   static constexpr std::size_t arrays = 1;           ///< of each finger
   using Waves = ZeroCrossings;
   using Scalar = double;
@@ -43,23 +45,23 @@ struct FoamArray {
   Index rows = 0;
   Index cols = 0;
   StridedView<const double> noise = {};  ///< standard deviation of each taxel at rest; NaN: dead.
-                                         ///< Empty: that of the options for all
-  Point2<double> place_mm = {0, 0};  ///< of its first taxel, in a plan of the finger with its sides
-                                     ///< unrolled
+                                         ///< Empty: the options' noise for all taxels
+  Point2<double> place_mm = {0, 0};  ///< of its first taxel, in the unrolled plan of the finger's
+                                     ///< sides
 };
 
-/// All that is known of a hand before its first sample.
+/// Everything that is known of a hand before its first sample.
 template <std::size_t Arrays = 2, scalar S = double>
 struct FoamHandOptions {
-  std::array<FoamArray, Arrays> arrays = {};  ///< those of the first finger, then of the next
+  std::array<FoamArray, Arrays> arrays = {};  ///< finger by finger
   TaxelOptions<S> taxels = {};
   PreslipOptions<S> rules = {};
 };
 
-/// What a sample says. The result of a rule that is switched off is its default: cannot tell.
+/// The results of a sample. A rule that is switched off leaves the default: cannot tell.
 template <std::size_t Fingers = 2, scalar S = double>
 struct [[nodiscard]] FoamHandResult {
-  PreslipStatus status = PreslipStatus::cannot_tell;  ///< of all rules: what to act on
+  PreslipStatus status = PreslipStatus::cannot_tell;  ///< of all rules combined: act on this one
   std::array<FingerSample<S>, Fingers> fingers = {};
   PreslipResult grasp_lift = {};
   PreslipResult grasp_optimise = {};
@@ -68,8 +70,8 @@ struct [[nodiscard]] FoamHandResult {
   bool ok() const { return status != PreslipStatus::cannot_tell; }
 };
 
-/// Not const: a sample changes the windows and the history. One object per hand; it is not shared
-/// by threads. A sample allocates nothing, throws nothing, and takes O(taxels + history).
+/// Use one object per hand, and do not share it between threads: a sample changes the windows and
+/// the history. A sample allocates nothing, throws nothing, and takes O(taxels + history).
 template <std::size_t Fingers = 2, class Methods = FoamHandMethods>
 class FoamHand {
   using S = typename Methods::Scalar;
@@ -93,8 +95,8 @@ class FoamHand {
     }
   }
 
-  /// One sample: what each array reads, in the order of the options, and when it was received. A
-  /// sample that a finger refuses (its size, its time) is none for the rules.
+  /// Processes one sample: the readings of each array, in the order of the options, and the time
+  /// they were received. The rules ignore a sample that a finger refuses for its size or time.
   template <grid Readings>
   Result operator()(const std::array<Readings, all_arrays>& readings, double time_s) {
     Result felt;
