@@ -1,13 +1,13 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// Where the object touches a pad whose depth nobody knows: by how much the frame differs from the
-// free pad. For gel pads lit from the side (GelSight, DIGIT and their kin), with printed dots or
-// without, and for gels that darken where they are pressed.
-// The difference is relative, (now / gain) / free - 1, so that lamps may be uneven; the gain of
-// each channel is the median of now / free, so that exposure and white balance may change: over the
-// frame, or where more than half of that differs, over its border. Dots are left out, since they
-// move with the gel under a contact as well as beside it.
+// Where the object touches a pad without depth, from the difference between the frame and the free
+// pad. For gel pads lit from the side (GelSight, DIGIT and similar), with or without printed dots,
+// and for gels that darken where they are pressed.
+// The difference is relative, (now / gain) / free - 1, so lamps may be uneven. The gain of each
+// channel is the median of now / free, so exposure and white balance may change; the median is
+// taken over the frame or, if more than half of the frame differs, over its border. Dots are left
+// out, because they move with the gel under a contact as well as beside it.
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -27,20 +27,20 @@
 namespace fingerpad {
 inline namespace v0 {
 
-/// What counts as contact. Lengths in px of the frame.
+/// Options of the contact test. Lengths are in px of the frame.
 struct DifferenceTest {
-  Index cell_px = 4;          ///< contact is told for cells of so many pixels squared; 1..16
+  Index cell_px = 4;          ///< side of a cell; contact is decided per cell; 1..16
   double smoothing_px = 7;    ///< sd of the Gaussian mean of the difference; half a dot; in
                               ///< [cell_px / 2, 16 cell_px]
   double dot_px = 14;         ///< diameter of the printed dots; 0: there are none; <= 16 cell_px
-  double dot_contrast = 0.1;  ///< a cell is of a dot that is darker than the mean around it by this
-                              ///< share; in (0, 1)
-  double min_difference = 0.02;  ///< no threshold below this share of the free pad's brightness,
+  double dot_contrast = 0.1;  ///< a cell darker than its surroundings by this fraction belongs to a
+                              ///< dot; in (0, 1)
+  double min_difference = 0.02;  ///< smallest threshold, as a fraction of the free brightness,
                                  ///< however quiet the free frames are; in (0, 1)
-  double noise_factor = 1;       ///< threshold / what a hundredth of a free frame exceeds; >= 1
+  double noise_factor = 1;       ///< threshold / 99th percentile of a free frame; >= 1
   double max_gap_px = 28;  ///< gaps in a contact up to this are closed, two dots' diameters; >= 0
   Index min_region_px = 800;  ///< smaller regions are dropped; >= 0
-  double saturated = 254;     ///< cells that are as bright in a channel say nothing; > 0
+  double saturated = 254;     ///< cells as bright as this in a channel are unknown; > 0
   double mm_per_px = 0.05;    ///< for the area; finite, > 0
 };
 inline void expects_valid(const DifferenceTest& test) {
@@ -68,10 +68,10 @@ inline void expects_valid(const DifferenceTest& test) {
 }
 
 /// The contact in frames of one size. Pixels are numbers (Channels = 1) or have them as pixel[c]
-/// (cv::Vec3b, std::array). Const: threads may share one, each with a workspace of its own. Bounded
-/// time and no allocation per frame; O(rows cols), fastest for a strided view of packed bytes.
-/// Right while less than half of the frame is touched, or less than half of its border: what most
-/// of it shows is taken for free.
+/// (cv::Vec3b, std::array). Threads may share one object, each with its own workspace. Bounded time
+/// and no allocation per frame; O(rows cols), fastest for a strided view of packed bytes.
+/// Valid while less than half of the frame, or less than half of its border, is touched: the
+/// majority is taken for free.
 template <int Channels = 3, scalar S = float>
 class ContactByDifference {
   static_assert(Channels >= 1);
@@ -79,15 +79,15 @@ class ContactByDifference {
   using Colours = detail::CellColours<Channels, S>;
 
  public:
-  /// From frames of the free pad, a range of grids; two or more tell the noise, one does not.
-  /// Refuses no frame, frames of different sizes and bad parameters (parameter_error).
+  /// From frames of the free pad, a range of grids. The noise is measured if there are two or more.
+  /// Refuses an empty range, frames of different sizes and bad parameters (parameter_error).
   template <class FreeFrames>
   explicit ContactByDifference(const FreeFrames& free_frames, const DifferenceTest& test = {})
       : test_(checked(test)), layout_(layout_of(free_frames, test)), free_(colours()) {
     learn(free_frames);
   }
 
-  /// Memory that one frame at a time needs, taken up front; one per thread.
+  /// Scratch memory for a frame; one per thread.
   class Workspace {
    public:
     explicit Workspace(const ContactByDifference& contact)
@@ -99,11 +99,11 @@ class ContactByDifference {
           line_(static_cast<std::size_t>(contact.layout_.cell_cols() * contact.layout_.cell_px)) {}
 
     /// The difference from the free pad in the last frame, cell by cell: root mean square over the
-    /// channels, as a share of the free brightness; NaN where it is unknown. The threshold is for
-    /// it.
+    /// channels, as a fraction of the free brightness; NaN where it is unknown. The threshold
+    /// applies to it.
     StridedView<const S> difference() const { return difference_.length().view(); }
-    /// The same with what dots hide filled in from the gel beside them: what a slide of the contact
-    /// is seen in.
+    /// The same, with the areas hidden by dots filled in from the gel beside them. ContactSlide
+    /// reads it.
     StridedView<const S> imprint() const { return difference_.imprint().view(); }
     /// The last frame's contact, cell by cell: 1, else 0.
     StridedView<const S> contact() const { return mask_.view(); }

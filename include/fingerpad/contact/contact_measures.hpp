@@ -1,8 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// Area and center of a contact from its mask and the depths, in any scalar: ContactRegion measures
-// every frame in double; this is for masks of your own, and for derivatives by camera and depth.
+// Area and center of a contact from its mask and the depths, in any scalar. ContactRegion already
+// measures every frame in double; use this for your own masks, and for derivatives by camera and
+// depth.
 #include "fingerpad/core/dots.hpp"
 #include "fingerpad/core/grid.hpp"
 #include "fingerpad/core/scalar.hpp"
@@ -11,7 +12,7 @@
 namespace fingerpad {
 inline namespace v0 {
 
-/// A contact without a pixel has an area of 0 and no center (NaN).
+/// Area and center of a contact. Without a pixel the area is 0 and the center NaN.
 template <scalar S>
 struct [[nodiscard]] ContactMeasures {
   S area_mm2 = S(0);  ///< projected on the plate
@@ -20,10 +21,10 @@ struct [[nodiscard]] ContactMeasures {
   Index pixels = 0;                           ///< in contact and with a depth
 };
 
-/// Each pixel in contact counts with the area that it sees at its depth, from the differences of
-/// its neighbours' points; a neighbour without a depth is taken to be as deep. Linear in the
+/// Sums the area that each pixel in contact covers at its depth, from the differences of its
+/// neighbours' points; a neighbour without depth is assumed to be as deep. Linear in the
 /// differences along each axis, so that noise does not add up. Grids of different sizes have no
-/// contact. O(rows cols), takes no memory; an image of a single row or column has no area.
+/// contact, and an image of a single row or column has no area. O(rows cols); allocates nothing.
 template <template <class> class CameraType, scalar S, contact_mask Mask, grid Depth>
 ContactMeasures<S> contact_measures(const CameraType<S>& camera,
                                     const Mask& contact,

@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// Where the object touches the pad, from the depth map. A membrane under pressure that nothing
-// touches bulges outward (Young and Laplace: sigma1 K1 + sigma2 K2 = p > 0); where it is flat or
-// dented in all directions, something holds it.
+// Where the object touches the pad, from the depth map. A free membrane under pressure bulges
+// outward (Young and Laplace: sigma1 K1 + sigma2 K2 = p > 0). Where it is flat or dented in all
+// directions, an object presses on it.
 // Source: Ito et al. 2011, III.B, eqs. 1-12, and the slides, contact region. Published and
 // corrected forms in docs/errata.md, E012-E018.
 //
@@ -30,16 +30,17 @@
 namespace fingerpad {
 inline namespace v0 {
 
-/// What a frame's contact is like. Without contact, areas are 0 and what has no value is NaN.
+/// The contact of a frame. Without contact, areas are 0 and all other values NaN.
 ///
-/// Not of this pad: nothing of the frame is known; a contact at a mean height below a twentieth of
-/// the free apex or above twenty of it, as of depths in m (contact_region.hpp); half of the frame
-/// and half of its border or more in contact (contact_by_difference.hpp).
+/// `not_of_this_pad` means one of these: no pixel of the frame is known; the mean height of the
+/// contact is below a twentieth of the free apex or above twenty times it, as with depths in m
+/// (contact_region.hpp); at least half of the frame and half of its border are in contact
+/// (contact_by_difference.hpp).
 struct [[nodiscard]] ContactResult {
   FrameStatus status = FrameStatus::refused;
   Index contact_px = 0;  ///< pixels in contact
-  Index unknown_px = 0;  ///< pixels without depth, or with too little around them to tell
-  Index regions = 0;     ///< parts that the contact has
+  Index unknown_px = 0;  ///< pixels without depth, or with too few neighbours to decide
+  Index regions = 0;     ///< connected parts of the contact
   double area_mm2 = 0;   ///< of the contact, at its depth, projected on the plate
   Point3<double> center_mm = {not_a_number<double>(), not_a_number<double>(),
                               not_a_number<double>()};  ///< centroid of that area
@@ -51,18 +52,18 @@ struct [[nodiscard]] ContactResult {
 };
 
 /// The contact region of depth maps of one size.
-///   Statistic   ClampedMean<>       take this for any object, saddles of the free pad included
-///               RingStencil<9>      take this when time counts and contacts are flat
-///   Edge        HalfLevelEdge       take this when the area matters
-///               AtThreshold         take this when only the place of the contact matters
-///   CameraType  Camera<double>      take this for depth maps along a camera's rays
-///               OrthographicCamera  take this for height maps
+///   Statistic   ClampedMean<>       use it for any object, also where the free pad is a saddle
+///               RingStencil<9>      use it when time matters and contacts are flat
+///   Edge        HalfLevelEdge       use it when the area matters
+///               AtThreshold         use it when only the place of the contact matters
+///   CameraType  Camera<double>      use it for depth maps along a camera's rays
+///               OrthographicCamera  use it for height maps
 /// published/contact_region.hpp is the test as printed.
-/// A pixel whose depth is missing is never contact; one whose ring is partly missing is judged by
-/// the directions that remain, or is unknown if these are too few (ContactTest::ring).
+/// A pixel without depth is never contact. A pixel whose ring is partly missing is judged by the
+/// remaining directions; if these are too few (ContactTest::ring) it is unknown.
 ///
-/// Const: threads may share one, each with a workspace of its own. Bounded time and no allocation
-/// per frame; O(rows cols directions).
+/// Threads may share one object, each with its own workspace. Bounded time and no allocation per
+/// frame; O(rows cols directions).
 template <class Statistic = ClampedMean<>,
           class Edge = HalfLevelEdge,
           class CameraType = Camera<double>,
@@ -88,7 +89,7 @@ class ContactRegion {
         finder_(edge, test, camera, image_),
         rays_(camera, rows, cols) {}
 
-  /// Memory that one frame at a time needs, taken up front; one per thread.
+  /// Scratch memory for a frame; one per thread.
   class Workspace {
    public:
     explicit Workspace(const ContactRegion& region)

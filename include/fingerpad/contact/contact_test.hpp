@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// What the contact test is made of, beside the curvature statistic: the threshold, the smallest
-// region, and where the edge is put.
+// The parts of the contact test besides the curvature statistic: the threshold, the smallest
+// region, and the place of the edge.
 #include "fingerpad/core/expects.hpp"
 #include "fingerpad/core/grid.hpp"
 #include "fingerpad/core/scalar.hpp"
@@ -13,10 +13,10 @@ inline namespace v0 {
 
 /// The test for contact: a curvature statistic below the threshold.
 struct ContactTest {
-  /// delta. Half the curvature of the free pad is a good one: 1/40 per mm for the published pad of
-  /// 20 mm radius; calibrate/contact.hpp takes it from frames. Finite, > 0.
+  /// delta. Half the curvature of the free pad is a good choice: 1/40 per mm for the published pad
+  /// of 20 mm radius. calibrate/contact.hpp measures it. Finite, > 0.
   double threshold_per_mm = 0.025;
-  double free_apex_mm = 13;  ///< height of the free pad, from which contact depth counts; finite
+  double free_apex_mm = 13;  ///< height of the free pad; contact depth counts from it; finite
   CurvatureRing ring = {};
   Index min_region_px = 200;  ///< smaller regions are dropped: noise makes specks of about half a
                               ///< ring's radius. >= 1; 1 drops none
@@ -33,17 +33,17 @@ inline void expects_valid(const ContactTest& test) {
 }
 
 /// Contact is where the statistic is below the threshold, as published. A ring that reaches beyond
-/// the edge sees the free membrane: with a threshold near 0 the region is about a ring's radius too
-/// small all around.
+/// the edge includes free membrane: with a threshold near 0 the region is too small by about a
+/// ring's radius on all sides.
 struct AtThreshold {};
 
-/// The threshold finds the contact; its edge is put where the mean curvature passes from that of
-/// the object to that of the free membrane, see edge_level.hpp. Costs a second curvature map of the
-/// rows around the contact.
+/// The threshold finds the contact; the edge is then placed where the mean curvature changes from
+/// that of the object to that of the free membrane (edge_level.hpp). Costs a second curvature map
+/// of the rows around the contact.
 struct HalfLevelEdge {
-  /// What is nearer than this to the object counts as touched; it moves the edge outward by
-  /// sqrt(gap / jump of the mean curvature), about 0.5 mm at the default, which is what a depth map
-  /// from 8-bit frames cannot tell from contact. In [0, 1].
+  /// Membrane nearer than this to the object counts as touched. This moves the edge outward by
+  /// sqrt(gap / jump of the mean curvature), about 0.5 mm at the default; a depth map from 8-bit
+  /// frames cannot distinguish such a gap from contact. In [0, 1].
   double touching_gap_mm = 0.02;
 };
 

@@ -1,12 +1,12 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// How large a flat contact would be that presses as hard: the area for a look-up of force that
-// holds for objects of any shape (force/normal_force.hpp).
+// The area of the flat contact that would press as hard as the object. With it a look-up of force
+// (force/normal_force.hpp) holds for objects of any shape.
 //
-// Cut the membrane along a closed curve around the contact. On the piece within act the fluid's
-// pressure p over the plan area A, the object's force, and along the curve the tension T, whose
-// vertical part is T sin(alpha) with the slope alpha across the curve:
+// Cut the membrane along a closed curve around the contact. Three things act on the piece inside:
+// the fluid's pressure p over the plan area A, the object's force, and along the curve the tension
+// T, whose vertical part is T sin(alpha) with the slope alpha across the curve:
 //
 //   F_z = p A - T_mean f,   f = integral of sin(alpha) ds = integral of k dA            (EA1)
 //
@@ -16,10 +16,10 @@
 //
 //   A = S_eq + (T_mean / p) f,   T_mean / p = a + b f                                   (EA2)
 //
-// A and f are in the depth map, for one curve after the other. The mean tension changes slowly from
-// curve to curve and is taken for linear in f: S_eq is where a parabola through (f, A) meets f = 0.
-// No curve runs through the contact, so neither its edge nor what smoothing does there counts; for
-// smoothing moves curvature about, but keeps its integral.
+// The depth map gives A and f for a series of curves. The mean tension changes slowly from curve to
+// curve and is assumed to be linear in f: S_eq is where a parabola through (f, A) meets f = 0. No
+// curve runs through the contact, so errors of its edge and smoothing there do not matter:
+// smoothing moves curvature but keeps its integral.
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -38,14 +38,14 @@ inline namespace v0 {
 
 /// Where the curves run around the contact.
 struct FlatAreaOptions {
-  double spacing_mm = 0.6;  ///< of the points that are looked at, and from curve to curve, on the
-                            ///< plate, in [0.05, 10]; noise of a curvature counts as 1 / spacing^2
-  double margin_mm = 0.8;  ///< of the first curve from the contact, in [0, 100]: what the contact's
-                           ///< edge may be off, and half the window that depths were smoothed by
-  double max_slope = 1.0;  ///< steeper points have no curvature; > 0
-  Index min_curves = 5;    ///< in [4, 1000]; with fewer there is no answer
-  double tension_share = 0.2;  ///< standard deviation of what the tension may be off that (EA2)
-                               ///< tells within the first curve, a share of it, >= 0
+  double spacing_mm = 0.6;  ///< between sampled points, and between curves, on the plate, in
+                            ///< [0.05, 10]; noise of a curvature grows as 1 / spacing^2
+  double margin_mm = 0.8;   ///< from the contact to the first curve, in [0, 100]: the error of the
+                            ///< contact's edge plus half the smoothing window of the depths
+  double max_slope = 1.0;   ///< steeper points have no curvature; > 0
+  Index min_curves = 5;     ///< in [4, 1000]; with fewer there is no answer
+  double tension_share = 0.2;  ///< standard deviation of the tension inside the first curve from
+                               ///< that of (EA2), as a fraction of it, >= 0
 };
 
 /// Refuses what has no meaning (parameter_error).
@@ -64,11 +64,11 @@ inline void expects_valid(const FlatAreaOptions& options) {
                 options.tension_share, "in [0, 1000]");
 }
 
-/// NaN where too little of the free membrane was seen.
+/// The equivalent flat area; NaN if too little of the free membrane was seen.
 template <scalar S = double>
 struct [[nodiscard]] FlatAreaResult {
-  S area_mm2 = not_a_number<S>();      ///< of the plate that would press as hard; F_z = p area
-  S variance_mm4 = not_a_number<S>();  ///< of the area: by the tension that is not seen
+  S area_mm2 = not_a_number<S>();      ///< of the flat plate that would press as hard; F_z = p area
+  S variance_mm4 = not_a_number<S>();  ///< of the area, from the unknown tension
   Index curves = 0;                    ///< around the contact that took part
 
   bool ok() const { return is_finite(area_mm2); }
@@ -151,14 +151,14 @@ S area_without_flux(const FlatAreaCurve<S>* curves, Index count) {
 
 }  // namespace detail
 
-/// (EA2) on a depth map and the mask of its contact. The map is looked at in a lattice of points
-/// spacing_mm apart. A curve encloses all points within some distance of the contact; it takes part
-/// as long as at most one in twenty of them lacks a curvature (no depth, too steep, at the border
-/// of the image), which is then taken for the mean of those beside the same curve. A pad that is
-/// not curved outward around the contact has no answer.
+/// Evaluates (EA2) on a depth map and its contact mask. The map is sampled on a lattice of points
+/// spacing_mm apart. A curve encloses all points within some distance of the contact. It takes part
+/// if at most one in twenty of its points lacks a curvature (no depth, too steep, at the border of
+/// the image); these get the mean of the points beside the same curve. There is no answer if the
+/// pad does not curve outward around the contact.
 ///
-/// Const: threads may share one, each with a workspace of its own. Bounded time and no allocation
-/// per frame; O(pixels / step^2) with step = spacing_mm / pitch.
+/// Threads may share one object, each with its own workspace. Bounded time and no allocation per
+/// frame; O(pixels / step^2) with step = spacing_mm / pitch.
 template <class CameraType = Camera<double>, scalar S = double>
 class EquivalentFlatArea {
   using Curve = detail::FlatAreaCurve<S>;
@@ -188,7 +188,7 @@ class EquivalentFlatArea {
     }
   }
 
-  /// Memory that one frame at a time needs, taken up front; one per thread.
+  /// Scratch memory for a frame; one per thread.
   class Workspace {
    public:
     explicit Workspace(const EquivalentFlatArea& area)
@@ -204,8 +204,8 @@ class EquivalentFlatArea {
   };
   Workspace workspace() const { return Workspace(*this); }
 
-  /// One frame. Grids of another size, no contact and a workspace of another estimator have no
-  /// answer: ok() is false.
+  /// Processes one frame. With grids of another size, without contact, or with the workspace of
+  /// another estimator there is no answer: ok() is false.
   template <contact_mask Mask, grid Depth>
   FlatAreaResult<S> operator()(const Mask& contact, const Depth& depth_mm, Workspace& w) const {
     const auto mask = as_view(contact);

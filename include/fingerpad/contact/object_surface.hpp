@@ -1,11 +1,12 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// Shape and irregularity of the object: within the contact the membrane lies on it, so the depth
-// map there is the object's own surface. Its points in mm, the plane, sphere or quadric nearest to
-// them, and what stands out from that. Source: Ito, Kim, Obinata, "Shape sensing by vision-based
-// tactile sensor for dexterous handling of robot hands" (slides), which name shape and irregularity
-// but give no equations; those of the fits stand in surface_models.hpp and quadric_model.hpp.
+// Shape and irregularity of the object. Within the contact the membrane lies on the object, so the
+// depth map there is the object's own surface. This gives its points in mm, the best-fitting plane,
+// sphere or quadric, and the deviation from that. Source: Ito, Kim, Obinata, "Shape sensing by
+// vision-based tactile sensor for dexterous handling of robot hands" (slides), which name shape and
+// irregularity but give no equations; those of the fits stand in surface_models.hpp and
+// quadric_model.hpp.
 //
 // Normals point toward the object. Curvatures are positive where the object is convex.
 #include <array>

@@ -3,8 +3,8 @@
 #pragma once
 // Vocabulary: dots printed inside the membrane. A dot grid is a grid whose cells are points, in the
 // order in which the dots are printed, so that a dot's neighbours in the grid are its neighbours on
-// the membrane. A dot that was not found is a point with a coordinate that is not finite; one that
-// lies a million px or mm away counts as such.
+// the membrane. A dot that was not found is a point with a coordinate that is not finite, or of a
+// million px or mm or more.
 #include <concepts>
 #include <type_traits>
 #include <utility>
@@ -77,8 +77,8 @@ constexpr bool is_present(const P& p) {
   return present;
 }
 
-// Dots that lie in memory in other ways than as a grid of points, read without a copy. What does
-// not fit together is a dot grid without dots, which every method refuses as one of another size.
+// Dots that are stored in another layout than a grid of points, viewed without a copy. If the sizes
+// do not fit together the result is an empty dot grid, which every method refuses for its size.
 
 namespace detail {
 template <int Coordinates, scalar S>
@@ -91,7 +91,7 @@ constexpr auto point_of_coordinates(const S& x, const S& y, const S& z) {
 }
 }  // namespace detail
 
-/// Dots whose coordinates are planes of their own: two, or a third with depths. The planes must
+/// Dots whose coordinates are stored in separate planes: x, y and optionally depth. The planes must
 /// outlive the view.
 template <class X, class Y>
   requires(grid<X>&& grid<Y>)

@@ -5,9 +5,9 @@
 // A grid has rows(), cols() and a cell at (row, column); x runs along columns, y along rows. What
 // the cell is (a byte, a float, a dual number, a 2-vector) is up to the algorithm that reads it.
 //
-// A type joins in one of two ways: it has members rows(), cols() and operator()(row, col), or
-// grid_traits is specialised for it (see adapt/, and examples/02_your_own_image_type.cpp). Inside,
-// algorithms see only views: cheap values that never own and never copy pixels.
+// A type is a grid in one of two ways: it has members rows(), cols() and operator()(row, col), or
+// grid_traits is specialised for it (see adapt/, and examples/02_your_own_image_type.cpp).
+// Algorithms work on views only: cheap values that neither own nor copy pixels.
 #include <concepts>
 #include <cstddef>
 #include <cstdint>
@@ -33,7 +33,7 @@ template <class G> concept has_call_operator = requires(G& g, Index i) {
   g(i, i);
 };
 
-// What is likely to be taken for a grid and is none.
+// Types that look like grids and are not.
 template <class G> concept has_cells_in_a_row = !has_size_members<G> && requires(const G& g) {
   g.data() + g.size();
   g[0];
@@ -48,8 +48,8 @@ template <class G> concept has_size_fields = requires(const G& g) {
 
 /// The one customisation point. Required: static rows(g), cols(g), at(g, row, col), where `at` of
 /// a mutable grid returns something that can be assigned to. Optional, for grids in plain memory:
-/// static data(g), row_stride(g), col_stride(g), strides counted in cells. The two mistakes that
-/// are made most are told in one line, wherever a grid is asked for.
+/// static data(g), row_stride(g), col_stride(g), strides counted in cells. The two most
+/// common mistakes get a one-line error message wherever a grid is expected.
 template <class G>
 struct grid_traits {
   static_assert(!detail::has_cells_in_a_row<G>,
@@ -116,7 +116,7 @@ concept writable_grid = grid<G> && requires(std::remove_reference_t<G>& g, const
 namespace detail {
 template <class G>
 inline constexpr bool is_told = false;
-/// Called by what writes cells T: a grid that cannot take them is told in the first error.
+/// For functions that write cells T: the first error says why a grid cannot take them.
 template <class G, class T = void>
 constexpr void writes_to() {
   if constexpr (grid<G>) {
@@ -148,7 +148,7 @@ constexpr Index cols(const G& g) {
   return detail::traits_of<G>::cols(g);
 }
 
-/// What is no grid is told in words.
+/// A readable error for types that are not grids.
 template <class G>
   requires(!grid<G>)
 constexpr Index rows(const G&) {
@@ -178,7 +178,7 @@ class StridedView {
   constexpr StridedView() = default;
   constexpr StridedView(T* data, Index rows, Index cols, Index row_stride, Index col_stride = 1)
       : data_(data), rows_(rows), cols_(cols), row_stride_(row_stride), col_stride_(col_stride) {}
-  /// The other way round is told in words.
+  /// A readable error for the reverse direction.
   template <class Other>
     requires(!std::is_const_v<T> && std::same_as<Other, const T>)
   constexpr explicit StridedView(const StridedView<Other>&) {
@@ -186,7 +186,7 @@ class StridedView {
                   "a view that only reads does not become one that writes: take "
                   "StridedView<const T>, or make the view from cells that are not const");
   }
-  /// A view that only reads, from one that may write.
+  /// A read-only view from a writable one.
   constexpr operator StridedView<const T>() const requires(!std::is_const_v<T>) {
     return {data_, rows_, cols_, row_stride_, col_stride_};
   }
@@ -289,9 +289,8 @@ constexpr auto as_view(G&& view) {
   return view;
 }
 
-/// Refuses sizes that no image, dot grid or array has, for which memory would run out or its size
-/// overflow (parameter_error): rows and cols in [`min`, 1e6], 1e8 cells, each stored `copies`
-/// times.
+/// Refuses impossible sizes, for which memory would run out or overflow (parameter_error): rows and
+/// cols must be in [`min`, 1e6], with at most 1e8 cells, each stored `copies` times.
 inline void expects_grid_size(
     const char* owner, Index rows, Index cols, Index min = 1, Index copies = 1) {
   constexpr Index max_side = 1000000;
@@ -363,11 +362,11 @@ constexpr StridedView<T> interleaved_channel(
   return {data + c, rows, cols, row_stride, channels};
 }
 
-/// What a mask of contact says of a pixel. As a number: black, grey and white of an 8-bit image.
+/// A pixel of a contact mask. As a number: black, grey and white of an 8-bit image.
 enum class Touch : std::uint8_t { none = 0, unknown = 127, contact = 255 };
 
-/// Whether a cell of a mask says contact: bytes, bools and numbers that are not 0 (nor NaN), and of
-/// a Touch only contact.
+/// Whether a cell of a mask means contact: bytes, bools and numbers other than 0 and NaN, or
+/// Touch::contact.
 template <class Cell>
 constexpr bool is_contact(const Cell& cell) {
   if constexpr (std::is_same_v<Cell, Touch>) {

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// Vocabulary: what became of a frame, for methods that answer whatever they are shown.
+// Vocabulary: the outcome of a frame, for methods that always write a result.
 #include <cstdint>
 
 namespace fingerpad {
@@ -9,8 +9,8 @@ inline namespace v0 {
 
 enum class FrameStatus : std::uint8_t {
   ok,
-  not_of_this_pad,  ///< written, but not to be trusted: another unit, lamp or layout than those of
-                    ///< the free pad, or an object larger than what the camera sees
+  not_of_this_pad,  ///< written, but do not trust it: unit, lamp or layout differ from those of the
+                    ///< free pad, or the object is larger than the camera's view
   refused,          ///< a grid or the memory given with it has another size: nothing was written
 };
 

@@ -3,13 +3,13 @@
 #pragma once
 // Accumulation over all dots in contact, beyond the papers. A map holds where each dot that touches
 // the object sits on it, in the object's own coordinates (the sensor's in the frame of first
-// contact). The pose of a frame is the rigid motion that carries the map nearest to the dots; then
-// dots that are new in contact are entered by that pose, those that stay refine their entry as a
-// running mean, and those that have left are forgotten.
+// contact). The pose of a frame is the rigid motion that best fits the map to the dots. Then
+// dots new in contact are entered with that pose, those that stay refine their entry as a running
+// mean, and those that have left are removed.
 //
-// A chain of 3x3 neighbourhoods has the tilt noise of nine dots at each change of dot; a patch of
-// some fifty dots has a tenth of it, and loses its memory only when the contact has rolled over its
-// whole width.
+// A chain of 3x3 neighbourhoods adds the tilt noise of nine dots at each change of dot. A patch of
+// about fifty dots has a tenth of it, and loses its memory only when the contact has rolled over
+// its whole width.
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -26,12 +26,12 @@ inline namespace v0 {
 
 /// Policy: pose from a map of the dots in contact.
 ///
-/// Dots that slip must not drag the pose: the fit is repeated with weights 1 / (1 + (r/c)^2)^2, r a
-/// dot's residual and c twice the median residual, which the slipping dots have raised; three times
-/// in the last pass, for the sake of noise. A dot beyond twice that c is entered anew where it is
-/// now: after a slip it holds on elsewhere.
+/// Slipping dots must not pull the pose along, so the fit is repeated with weights
+/// 1 / (1 + (r/c)^2)^2, where r is a dot's residual and c twice the median residual (three times in
+/// the last pass, to lower the noise). A dot beyond twice that c is entered again at its present
+/// place: after a slip it sticks elsewhere.
 struct ContactMap {
-  Index dots_to_begin = 9;  ///< an object begins with so many dots in contact, >= 3
+  Index dots_to_begin = 9;  ///< dots in contact with which an object begins, >= 3
   int robust_passes = 3;    ///< repetitions of the fit, in [0, 10]; 0: plain least squares
 
   template <scalar S>

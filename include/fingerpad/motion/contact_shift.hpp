@@ -1,19 +1,19 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// How far a contact was carried along and how far it was rotated about its normal, from the dots.
+// Displacement of a contact, and its rotation about the normal, from the dots.
 // Source: Ito, Kim and Obinata, "Acquisition of Contact Force and Slippage ...", figure 5: the
-// displacement of the central dot and the rotation angle of the contact surface. They are what
-// shear.hpp and the compensations of normal_force.hpp start from.
+// displacement of the central dot and the rotation angle of the contact surface. They are
+// the input of force/shear.hpp and of the compensations of force/normal_force.hpp.
 //
-// The angle is that of the rigid turn that carries the reference dots nearest to the dots,
-// theta = atan2(sum of cross products, sum of dot products) about the middles of both: it neither
+// The angle is that of the rigid rotation that best fits the reference dots to the dots,
+// theta = atan2(sum of cross products, sum of dot products) about the centers of both. It neither
 // wraps nor averages angles.
 //
-// Which dots matters: the central one stays with the object while the contact slips from its edge
-// inward, so its displacement tells how far the object went rather than how hard it pulls, most of
-// all after a reversal. All of the force goes through the membrane along the contact's edge, and
-// so EdgeDots is the default. docs/force/shear.md has the figures.
+// The choice of dots matters. The central dot stays with the object while the contact slips from
+// its edge inward, so its displacement shows how far the object went rather than how hard it pulls,
+// most of all after a reversal. The whole force passes through the membrane along the contact's
+// edge; therefore EdgeDots is the default. The figures are in docs/force/shear.md.
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -34,16 +34,16 @@ inline namespace v0 {
 
 /// All dots in contact.
 struct ContactDots {};
-/// The dots on both sides of the contact's edge: those in contact beside one that is not, and those
-/// beside one that is, among the eight neighbours.
+/// The dots on both sides of the contact's edge: dots in contact with a neighbour that is not, and
+/// dots out of contact with a neighbour that is, among the eight neighbours.
 struct EdgeDots {};
 
-/// All dots count alike: least squares.
+/// Least squares: all dots have the same weight.
 struct PlainMean {
   static constexpr bool is_robust = false;
 };
-/// Huber's M-estimate: a dot whose residual is more than `threshold` times what noise explains
-/// counts less, so that stuck and mistaken dots, up to a third or so, bias it little. The scale is
+/// Huber's M-estimate: a dot whose residual is more than `threshold` times the noise gets less
+/// weight, so that up to about a third of stuck or mistaken dots bias it little. The scale is
 /// that of the median residual, whose own derivative a dual number does not carry.
 struct HuberMean {
   static constexpr bool is_robust = true;
@@ -53,11 +53,11 @@ struct HuberMean {
 
 enum class ShiftStatus : std::uint8_t {
   measured,        ///< displacement and angle
-  one_place_only,  ///< the dots do not tell an angle: fewer than two, or all in one place
-  no_dots,         ///< none of the chosen dots is there in both frames
-  not_rigid,  ///< the dots are further than 3/4 of a pitch from any rigid shift: another order or
-              ///< unit than the reference, or a place for those that are lost? No displacement
-  refused,    ///< a grid is not of the reference's size, or the workspace is another's
+  one_place_only,  ///< no angle: there are fewer than two dots, or all are in one place
+  no_dots,         ///< none of the chosen dots was found in both frames
+  not_rigid,       ///< no rigid shift brings the dots within 3/4 of a pitch, and no displacement is
+                   ///< given: another order or unit than the reference, or lost dots with a place?
+  refused,         ///< a grid or the workspace does not have the reference's size
 };
 
 /// "measured", "one place only", ...
@@ -98,19 +98,19 @@ template <class Dots> concept names_one_dot = requires(const Dots& dots) {
 };
 }  // namespace detail
 
-/// Shift of some dots against the reference frame. Dots in mm on the plate or in px; of dots in
-/// space, x and y.
-///   Dots  EdgeDots     take this for shear.hpp: all of the force goes through them
-///         ContactDots  take this for where the object went
-///   Mean  PlainMean    take this while no dot is stuck or mistaken
-///         HuberMean    take this when some are
-/// Const; a frame takes no memory and O(rows cols) time, times the passes of HuberMean.
+/// Shift of chosen dots against the reference frame. Dots are in mm on the plate or in px; of dots
+/// in space only x and y are used.
+///   Dots  EdgeDots     use it for force/shear.hpp: the whole force passes through them
+///         ContactDots  use it for the displacement of the object
+///   Mean  PlainMean    use it if no dot is stuck or mistaken for another
+///         HuberMean    use it if some are
+/// A frame allocates nothing and takes O(rows cols) time, times the passes of HuberMean.
 template <class Dots = EdgeDots, class Mean = PlainMean, scalar S = double>
 class ContactShift {
   static_assert(!scalar<Dots>, "the scalar comes last: ContactShift<EdgeDots, PlainMean, double>");
 
  public:
-  /// What a frame writes on the way.
+  /// Scratch memory for a frame; one per thread.
   class Workspace {
     friend class ContactShift;
     detail::ReservedVector<detail::DotPair<S>> pairs_;

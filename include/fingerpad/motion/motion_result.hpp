@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// What a frame says of the motion of the object.
+// Result and statuses of the motion of the object.
 #include <cstdint>
 
 #include "fingerpad/core/dots.hpp"
@@ -52,7 +52,7 @@ constexpr const char* name_of(MotionStatus status) {
   return "unknown";
 }
 
-/// What a frame says of the object. Everything but `status` is the last known state
+/// The motion of the object in a frame. Everything but `status` is the last known state
 /// where the status is not ok; before an object begins it is that of an object at rest.
 template <scalar S = double>
 struct [[nodiscard]] ObjectMotionResult {

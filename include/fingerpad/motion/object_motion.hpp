@@ -34,19 +34,18 @@ struct ObjectMotionOptions {
 /// Pose of the object in contact, frame by frame.
 ///   Way   ContactMap  all dots that stick, with the least noise
 /// The printed forms are ways too: published/object_motion.hpp.
-/// Const: threads may share one estimator, each with a state of its own. A frame takes no memory,
-/// throws nothing, and needs O(rows cols) time.
+/// Threads may share one estimator, each with its own state. A frame allocates nothing, throws
+/// nothing, and takes O(rows cols) time.
 ///
-/// The state begins an object with the first frame in which there is enough contact, and forgets it
-/// when no dot is in contact any more; the next contact is another object. Frames that give no pose
-/// although there is contact leave the last one standing and say why; the object is found again as
-/// soon as enough of the dots that were known come back into contact.
+/// An object begins with the first frame with enough contact, and ends when no dot is in contact;
+/// the next contact is a new object. A frame with contact but without a pose keeps the last pose
+/// and says why. The object is found again as soon as enough of the known dots are back in contact.
 template <class Way = ContactMap, scalar S = double>
 class ObjectMotion {
   static_assert(!scalar<Way>, "the scalar comes last: ObjectMotion<ContactMap, double>");
 
  public:
-  /// A value: copy it to go back to this frame later.
+  /// A value: copy it to return to this frame later.
   class State {
    public:
     bool has_object() const { return has_object_; }
@@ -63,8 +62,8 @@ class ObjectMotion {
     Index cols_;
   };
 
-  /// `initial_mm` are the dots of the free pad; missing ones are never the reference dot. Refuses
-  /// bad parameters, and dots that are likely in another unit than mm (parameter_error).
+  /// `initial_mm` are the dots of the free pad; a missing one is never the reference dot. Refuses
+  /// bad parameters, and dots that are probably not in mm (parameter_error).
   template <spatial_dot_grid Dots>
   explicit ObjectMotion(const Dots& initial_mm,
                         const ObjectMotionOptions<S>& options = {},
@@ -106,10 +105,10 @@ class ObjectMotion {
     return follow(detail::motion::DotFrame<S, decltype(dots), decltype(flags)>(dots, flags), state);
   }
 
-  /// The same where it is known which dots slip: they do not count, and are entered anew where they
-  /// hold on again. Take this with the stick ratio: dots that slip bend the pose. Where fewer than
-  /// a fifth stick the status is `slipping`, the pose that of before; after it another object
-  /// begins, as nobody knows how far the first has slid.
+  /// The same if it is known which dots slip, for instance from the stick ratio. Slipping dots
+  /// would bend the pose, so they are left out and entered again where they stick again. If fewer
+  /// than a fifth stick, the status is `slipping` and the pose stays; a new object begins
+  /// afterwards, because it is not known how far the first one slid.
   template <spatial_dot_grid Dots, contact_mask Contact, contact_mask Slips>
   ObjectMotionResult<S> operator()(const Dots& dots_mm,
                                    const Contact& contact,

@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// From what a frame shows to what the motion of the object is computed from: dots in space, and
-// whether each is in contact. Source: Ito, Kim, Nagai, Obinata 2011, eq. 13, with E019 and E020
-// repaired: the depth is that of the dot's pixel.
+// Input of the object motion, from a frame: the dots in space, and whether each is in contact.
+// Source: Ito, Kim, Nagai, Obinata 2011, eq. 13, with E019 and E020 repaired: the depth is that of
+// the dot's pixel.
 #include <algorithm>
 #include <concepts>
 #include <type_traits>
@@ -122,10 +122,10 @@ bool disc_in_contact(const Mask& mask, Index row, Index col, double radius_px) {
 
 }  // namespace detail
 
-/// Which dots lie in contact: those of which every pixel of the mask within `dot_radius_px` of the
-/// pixel nearest to the dot touches, [0, 1000]; pixels outside of the mask do not count. A dot on
-/// the edge of the contact is about to let go, or has not been touched yet: take the radius of the
-/// dots for their motion, 0 for the nearest pixel alone. False where a dot was not found or lies
+/// Which dots are in contact: those for which all pixels of the mask within `dot_radius_px` of the
+/// dot's nearest pixel touch, in [0, 1000]; pixels outside the mask do not count. A dot on the edge
+/// of the contact is about to let go, or has not been touched yet, so use the radius of the dots
+/// for their motion. With 0 only the nearest pixel counts. False where a dot was not found or lies
 /// outside of the mask. False, and nothing written, when `out` has another size than the dot grid,
 /// or the radius is none. Allocates nothing; O(dots radius^2).
 template <dot_grid Dots, contact_mask Mask, class Out>
