@@ -1,11 +1,11 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// Whether the object slides on the pad, from its imprint: on an elastic gel an object that slips
-// travels past dots that hardly move, and its contact shrinks before it is lost. Two measures, an
-// alarm on either:
+// Whether the object slides on the pad, from its imprint. On an elastic gel a slipping object moves
+// past dots that hardly move, and its contact shrinks before it is lost. There are two measures,
+// with an alarm on either:
 //   slide  how far the imprint has travelled past the dots in it, since the contact began
-//   lost   the share of the contact's largest area so far that is gone
+//   lost   the fraction of the contact's largest area so far that is gone
 // The dots alone (slip/stick_ratio.hpp) cannot tell this: an object that slides as a whole leaves
 // them where they are. The stick ratio warns on membranes, this does on gels.
 //
@@ -29,8 +29,7 @@
 namespace fingerpad {
 inline namespace v0 {
 
-/// What counts as slide. Thresholds are in dot pitches and shares, so that they hold for pads of
-/// any size.
+/// Thresholds of slide. They are in dot pitches and fractions, so they hold for pads of any size.
 struct SlideTest {
   double pitch_px = 40;          ///< between neighbouring dots, > 0
   double cell_px = 4;            ///< pixels of the dots' image per cell of the imprint, > 0
@@ -98,14 +97,14 @@ struct [[nodiscard]] SlideResult {
   Point2<S> imprint_px = {S(0), S(0)};  ///< travel of the imprint since the contact began
   S imprint_sd_px = S(0);               ///< of it, along each axis
   Point2<S> slide_px = {S(0), S(0)};    ///< the same past the dots in it
-  S rotation_rad = S(0);  ///< of the imprint past the dots, from x to y; at least 3 dots
+  S rotation_rad = S(0);     ///< of the imprint past the dots, from x to y; at least 3 dots
   S rotation_sd_rad = S(0);  ///< of it. A ball turns without its imprint: nothing shows that
-  S slide = S(0);         ///< |slide_px| in pitches
-  S lost = S(0);          ///< share of the largest area so far that is gone, in [0, 1]
-  S correlation = S(0);   ///< of the imprint with what it was
-  S evidence = S(0);      ///< for slip: slide / max_slide, or lost / max_lost as far as the slide
-                          ///< allows, whichever is larger
-  bool alarm = false;     ///< evidence is above 1
+  S slide = S(0);            ///< |slide_px| in pitches
+  S lost = S(0);             ///< share of the largest area so far that is gone, in [0, 1]
+  S correlation = S(0);      ///< of the imprint with what it was
+  S evidence = S(0);   ///< for slip: slide / max_slide, or lost / max_lost as far as the slide
+                       ///< allows, whichever is larger
+  bool alarm = false;  ///< evidence is above 1
 
   /// 1 while nothing speaks for slip, 0 from the alarm on: what FrictionLimit and GripControl take
   /// in place of a stick ratio, fresh where ok().
@@ -290,8 +289,8 @@ class ContactSlide {
       if (dots.count >= 3) {
         const SlideResult<S>& key = state.key_result_;
         result.rotation_rad = S(key.rotation_rad + motion.angle_rad - dots.angle_rad);
-        result.rotation_sd_rad = S(sqrt(S(square(key.rotation_sd_rad) + motion.angle_variance +
-                                          dots.angle_variance)));
+        result.rotation_sd_rad =
+            S(sqrt(S(square(key.rotation_sd_rad) + motion.angle_variance + dots.angle_variance)));
       }
       result.slide = S(norm(result.slide_px) / S(test_.pitch_px));
     }

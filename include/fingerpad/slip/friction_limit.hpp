@@ -1,17 +1,17 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// Whether an object slides as a whole, from the force and the moment that the contact carries
-// against the limit at the last slide. It sees what no dots can show: an object that slides over a
-// membrane that stands still, or that carries all dots along alike. The load of a contact,
+// Whether the whole object slides, by comparing force and moment of the contact with their limit at
+// the last slide. It detects what dots cannot show: an object that slides over a membrane that
+// stands still, or that carries all dots along equally. The load of a contact is
 //
 //   L = hypot(F_t / F_n, M_n / (arm F_n)),
 //
-// F_n across and F_t along its mean normal, M_n about that normal through its middle, and `arm` the
-// mean distance of the contact from its middle, is the friction coefficient while it slides under
-// an even pressure: an ellipse through both axes of the true limit curve of force and moment (Howe,
-// Cutkosky, "Practical force-motion models for sliding manipulation", 1996). Published for forces
-// alone, "F / N ~ F0 / N0": published/friction_ratio.hpp.
+// with F_n normal and F_t tangential to the contact, M_n about the normal through its center, and
+// `arm` the mean distance of the contact from its center. While the object slides under even
+// pressure, L is the friction coefficient: an ellipse through both axes of the true limit curve of
+// force and moment (Howe, Cutkosky, "Practical force-motion models for sliding manipulation",
+// 1996). Published for forces alone, "F / N ~ F0 / N0": published/friction_ratio.hpp.
 #include <cmath>
 #include <cstdint>
 
@@ -26,8 +26,8 @@
 namespace fingerpad {
 inline namespace v0 {
 
-/// What a contact carries. NaN where it is not known, and so is what is a million in size; a moment
-/// that is not known counts as none.
+/// Load of a contact. NaN means not known, and so does a value of a million or more; an unknown
+/// moment counts as zero.
 template <scalar S = double>
 struct ContactLoad {
   S normal_n = not_a_number<S>();      ///< F_n, positive in a press
@@ -134,7 +134,7 @@ constexpr const char* name_of(FrictionLimitStatus status) {
   return "unknown";
 }
 
-/// What an answer rests on.
+/// The evidence behind an answer.
 enum class SlipEvidence : std::uint8_t {
   none,
   dots,      ///< the stick ratio
@@ -143,7 +143,7 @@ enum class SlipEvidence : std::uint8_t {
   both,      ///< friction, and the dots or the imprint
 };
 
-/// What tells slip on a gel: a SlideResult, or a RecoilResult where only dots are known.
+/// Evidence for slip on a gel: a SlideResult, or a RecoilResult if only dots are known.
 template <class T> concept imprint_result = requires(const T& seen) {
   seen.ok();
   seen.held();

@@ -26,9 +26,9 @@
 namespace fingerpad {
 inline namespace v0 {
 
-/// Grip force, call by call. Const: one serves any number of fingers, each with a state of its own.
-/// O(1), takes no memory, throws nothing, answers slip in the very call that shows it. By the ratio
-/// alone, with the same state, update and time step, a smaller ratio never gives a smaller force.
+/// Grip force, call by call. One object serves any number of fingers, each with its own state. A
+/// call is O(1), allocates nothing and throws nothing, and reacts to slip at once. With the ratio
+/// alone, and the same state, update and time step, a smaller ratio never gives a smaller force.
 template <scalar S = double>
 class GripControl {
  public:
@@ -69,7 +69,7 @@ class GripControl {
   const GripLaw<S>& law() const { return law_; }
 
   State start() const { return State(law_.min_force_n); }
-  /// From the force with which the object was taken; brought within the limits, NaN: the least.
+  /// From the force with which the object was grasped, clamped to the limits; NaN: the smallest.
   State start(const S& force_n) const { return State(within_limits(force_n)); }
 
   /// The force for a stick ratio, `step_s` after the call before.
@@ -82,7 +82,7 @@ class GripControl {
     return apply(command, counted(step_s), state);
   }
 
-  /// The same for what SpatialStickRatio or StickRatio says.
+  /// The same for a result of SpatialStickRatio or StickRatio.
   template <class Stick>
     requires requires(const Stick& seen) {
       seen.stick_ratio;

@@ -1,8 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// What grip control (grip_control.hpp) is told of the stick ratio, the law by which it answers, and
-// what it says of its answer.
+// Inputs of grip control (grip_control.hpp), its law, and its results.
 #include <cstdint>
 
 #include "fingerpad/core/expects.hpp"
@@ -11,7 +10,7 @@
 namespace fingerpad {
 inline namespace v0 {
 
-/// What the camera had to say on the stick ratio since the last call.
+/// How current the stick ratio is since the last call.
 enum class RatioUpdate : std::uint8_t {
   fresh,       ///< the ratio is that of now
   unmoved,     ///< the dots were seen and have not moved enough to tell more: the last ratio stands

@@ -1,11 +1,11 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// Whether an elastic pad springs back, from its dots alone: a gel that an object has dragged along
-// falls back toward its free shape when the object slips or is lost. For pads of which nothing but
-// dots is known; where the contact shows in the image, slip/contact_slide.hpp tells more and
-// earlier. It cannot tell a slip from an object that is set down or let go: the load falls in all
-// three.
+// Whether an elastic pad springs back, from its dots alone. A gel that was dragged along by an
+// object returns toward its free shape when the object slips or is lost. Use it for pads with dots
+// only; if the contact shows in the image, slip/contact_slide.hpp gives more information and
+// earlier. It cannot distinguish a slip from an object that is set down or let go: the load falls
+// in all three cases.
 #include <algorithm>
 #include <cstddef>
 #include <vector>
@@ -22,7 +22,7 @@
 namespace fingerpad {
 inline namespace v0 {
 
-/// What counts as recoil.
+/// Thresholds of recoil.
 struct RecoilTest {
   double pitch_px = 40;     ///< between neighbouring dots, in [1e-6, 1e6)
   double max_recoil = 0.1;  ///< alarm beyond so many pitches, > 0

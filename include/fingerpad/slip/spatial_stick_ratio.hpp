@@ -1,14 +1,14 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// The share of the contact that sticks to the object, from the dots in space. Dots of a rolling,
-// tilting or deepening object move by different amounts in the image although all stick; in space
-// one rigid motion follows them. What a dot's displacement differs from that motion, along the
-// surface, is its slip. The reference and the share of the threshold are those of the way in the
-// image (stick_ratio.hpp); docs/slip/spatial_stick_ratio.md has the figures.
+// The fraction of the contact that sticks to the object, from the dots in space. When an object
+// rolls, tilts or presses deeper, its dots move by different amounts in the image although all
+// stick; in space one rigid motion describes them all. The slip of a dot is its deviation from that
+// motion along the surface. Reference and relative threshold are those of stick_ratio.hpp. The
+// figures are in docs/slip/spatial_stick_ratio.md.
 //
-// Take this where there is depth, and stick_ratio.hpp where there is none. Neither sees an object
-// that slides as a whole while the membrane stands still: friction_limit.hpp does.
+// Use it if there is depth, and stick_ratio.hpp if there is none. Neither sees an object that
+// slides as a whole while the membrane stands still; friction_limit.hpp does.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -28,19 +28,19 @@
 namespace fingerpad {
 inline namespace v0 {
 
-/// Noise of one dot's place, and what counts as slip. All thresholds follow from the noise:
+/// Noise of a dot's position, and what counts as slip. All thresholds follow from the noise:
 ///   delta_0 = 2 gain lateral_mm sqrt(ln(1 / false_slip)), gain 0.416 by averaging over neighbours,
 ///   U = delta_0 / slip_share: the reference is the newest stored frame from which a dot in contact
 ///   has moved further; a frame is stored when a dot has moved U / 4 from the newest stored one.
-/// The noise is measured in the frames in which nothing touches. What is given here stands until
-/// then; along z, where errors of depth go with a dot, the larger of both.
+/// The noise is measured in frames without contact; the given values apply until then. Along z,
+/// where a dot carries its depth error along, the larger of both applies.
 struct SpatialStickTest {
   double lateral_mm = 0.005;     ///< sd along x and along y, > 0: 0.06 px of a pixel of 0.08 mm
   double depth_mm = 0.025;       ///< sd along z, > 0; it counts where the surface is inclined
-  Index free_frames = 8;         ///< >= 0: so many free frames tell the noise; 0: none ever do
-  double slip_share = 1.0 / 18;  ///< in (0, 0.5]: a dot slips that slips by more than this share of
+  Index free_frames = 8;         ///< >= 0: free frames to measure the noise; 0: never measured
+  double slip_share = 1.0 / 18;  ///< in (0, 0.5]: a dot slips if its slip exceeds this fraction of
                                  ///< the longest move
-  double false_slip = 0.01;      ///< in (0, 0.5]: of the dots that stick, the share told to slip
+  double false_slip = 0.01;      ///< in (0, 0.5]: fraction of sticking dots reported to slip
   Index min_dots = 6;            ///< >= 6: to compare; fewer give no ratio
   double hold_s = 0.2;           ///< >= 0: a contact lost and found again within this time is the
                                  ///< same one, and a clock may go back by as much
@@ -67,14 +67,14 @@ inline void expects_valid(const SpatialStickTest& test) {
           static_cast<long long>(test.capacity), "in [1, 4096]");
 }
 
-/// Stick ratio of a pad whose dots are known in space, frame by frame. Const: threads may share one
-/// estimator, each with a state of its own. A frame takes no memory, throws nothing, and needs
-/// O(rows cols) time and O(dots in contact) for each stored frame that it looks at, no more than
+/// Stick ratio of a pad whose dots are known in space, frame by frame. Threads may share one
+/// estimator, each with its own state. A frame allocates nothing, throws nothing, and takes
+/// O(rows cols) time plus O(dots in contact) for each stored frame that it examines, at most
 /// `capacity`.
 template <scalar S = double>
 class SpatialStickRatio {
  public:
-  /// A value: copy it to go back to this frame later. All memory that frames need is in it.
+  /// A value: copy it to return to this frame later. It holds all memory that frames need.
   using State = detail::stick::SpatialState<S>;
 
   /// For a grid of rows x cols dots. Refuses bad parameters (parameter_error).

@@ -1,17 +1,17 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// The share of the contact that sticks to the object, from the dots printed in the membrane: 1 when
-// nothing slips, 0 when the object slips as a whole; long before, slip creeps in from the edge of
-// the contact. Source: Ito, Kim, Obinata, "Robust slippage degree estimation based on reference
-// update of vision-based tactile sensor", the talk with its backup slides; and "Acquisition of
-// contact force and slippage using a vision-based tactile sensor with a fluid-type touchpad",
-// eqs. 6-8. Published and corrected forms in docs/errata.md, E032-E038.
+// The fraction of the contact that sticks to the object, from the dots printed in the membrane: 1
+// when nothing slips, 0 when the whole object slips. Slip starts at the edge of the contact and
+// spreads inward long before that. Source: Ito, Kim, Obinata, "Robust slippage degree estimation
+// based on reference update of vision-based tactile sensor", the talk with its backup slides; and
+// "Acquisition of contact force and slippage using a vision-based tactile sensor with a fluid-type
+// touchpad", eqs. 6-8. Published and corrected forms in docs/errata.md, E032-E038.
 //
-// A dot sticks that has moved, since a reference frame, as the object has; the reference is a
-// stored frame from which the dots have come far enough, in one direction, to tell. The steps are
-// in stick_steps.hpp. What no dots can show: an object that slides as a whole while the membrane
-// stands still.
+// A dot sticks if it has moved with the object since a reference frame. The reference is a stored
+// frame from which the dots have moved far enough in one direction to decide. The steps are in
+// stick_steps.hpp. Dots cannot show an object that slides as a whole while the membrane stands
+// still.
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -26,11 +26,12 @@
 namespace fingerpad {
 inline namespace v0 {
 
-/// When dots are compared, and what counts as slip: lengths in pitches, which hold for dots in mm,
-/// in m or in px of any camera. What is given stands until the noise of the dots has been measured
-/// in frames in which nothing touches. Then delta_0 is what a sticking dot exceeds with a
-/// probability of 1 %, U no smaller than given and large enough that delta_0 / U is no larger, and
-/// U_min no smaller than given and what noise alone moves the furthest of all dots by, but for 1 %.
+/// When dots are compared, and what counts as slip. Lengths are in pitches, so they hold for dots
+/// in mm, in m or in px of any camera. The given values apply until the noise of the dots has been
+/// measured in frames without contact. Then delta_0 becomes the distance that a sticking dot
+/// exceeds with a probability of 1 %; U becomes large enough that delta_0 / U does not grow; U_min
+/// becomes the distance that noise alone moves the furthest dot, exceeded with 1 %. U and U_min
+/// never fall below the given values.
 struct StickTest {
   double reference = 0.1;  ///< U, > 0: the reference is the newest stored frame from which a dot in
                            ///< contact has moved further; published: 2 px of about 20
@@ -67,12 +68,12 @@ inline void expects_valid(const StickTest& test) {
 /// Stick ratio of a pad, frame by frame.
 ///   Motion     StickConsensus<>  the motion of all dots that stick together
 ///   Reference  UpdatedReference  a stored frame far enough back
-///   Denoising  ResidualMean      take this for dots as a camera finds them
-///              NoDenoising       take this when their noise is far below `slip`
-/// The printed forms are policies too: published/stick_ratio.hpp has them, and the whole of
-/// them. Const: threads may share one estimator, each with a state of its own. A frame takes no
-/// memory, throws nothing, and needs O(rows cols) time for each stored frame that it looks at,
-/// which are no more than `capacity` however long the recording is.
+///   Denoising  ResidualMean      use it for dots found by a camera
+///              NoDenoising       use it when their noise is far below `slip`
+/// published/stick_ratio.hpp has the printed forms of these policies, and the whole printed method.
+/// Threads may share one estimator, each with its own state. A frame allocates nothing, throws
+/// nothing, and takes O(rows cols) time for each stored frame that it examines; at most `capacity`
+/// frames are stored.
 template <class Motion = StickConsensus<>,
           class Reference = UpdatedReference,
           class Denoising = ResidualMean,
@@ -83,7 +84,7 @@ class StickRatio {
                 "ResidualMean, double>");
 
  public:
-  /// A value: copy it to go back to this frame later. All memory that frames need is in it.
+  /// A value: copy it to return to this frame later. It holds all memory that frames need.
   using State = detail::stick::StickState<S>;
 
   /// For a grid of rows x cols dots. Refuses bad parameters (parameter_error).

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// What a frame says of stick and slip.
+// Results and statuses of stick and slip.
 #include <cstdint>
 
 #include "fingerpad/core/dots.hpp"
@@ -12,29 +12,29 @@
 namespace fingerpad {
 inline namespace v0 {
 
-/// What a dot does.
+/// State of a dot.
 enum class DotState : std::uint8_t {
   none = 0,  ///< it does not touch the object
   unknown =
-      1,      ///< it touches, but was missing or did not touch in the reference, or is missing now
+      1,      ///< it touches, but is missing now, or was missing or did not touch in the reference
   slip = 2,   ///< it has not moved with the object since the reference
-  stick = 3,  ///< it has
+  stick = 3,  ///< it has moved with the object
 };
 
 enum class StickStatus : std::uint8_t {
   updated,       ///< the ratio is that of this frame
   standing,      ///< the dots have hardly moved since the newest stored frame
   no_reference,  ///< no stored frame is far enough away in the direction of motion
-  falls_back,    ///< the dots go back toward where they are on the free pad, by more than they go
-                 ///< aside: a pad that springs back moves as one, stuck or not
+  falls_back,    ///< the dots move back toward their free places by more than they move sideways:
+                 ///< a pad that springs back moves as one, whether it sticks or not
   too_few_dots,  ///< fewer dots to compare than StickTest::min_dots
   no_contact,    ///< nothing touches: after hold_s what was stored is forgotten
-  no_dots,       ///< no dot at all was found: nothing is known, nothing is forgotten
+  no_dots,       ///< no dot was found: nothing is known, and nothing is forgotten
   wrong_scale,   ///< U is more than half a pitch or less than a 200th of it, or a pitch less than
                  ///< four delta_0, or twice or half what it was: another unit?
   not_in_order,  ///< more than a fifth of the dots in contact are not between their neighbours
-  jumped,        ///< the dots carry other names than before, all those of a neighbour, or rows and
-                 ///< columns or two halves exchanged: the frame is left out
+  jumped,        ///< the dots are numbered differently than before, all by one place, or with rows
+                 ///< and columns or two halves exchanged: the frame is skipped
   restarted,     ///< time went back by more than hold_s: all that was before is forgotten
   no_outline,  ///< every dot that was found touches, up to all sides of the pattern, and more than
                ///< a tenth have not followed: they slip, or lie outside of the contact on a gel
@@ -102,7 +102,7 @@ struct [[nodiscard]] StickRatioResult {
   Index dots_in_contact() const { return stick + slip + unknown; }
 };
 
-/// How far a dot has slipped since the reference, along the surface.
+/// Slip of a dot along the surface since the reference.
 template <scalar S = double>
 struct DotSlip {
   Point3<S> slip_mm = {not_a_number<S>(), not_a_number<S>(), not_a_number<S>()};
