@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// What a force by look-up is worth.
+// Status of a force by look-up.
 #include <cstdint>
 
 #include "fingerpad/core/point.hpp"
@@ -13,16 +13,17 @@ inline namespace v0 {
 /// From the best to the worst.
 enum class ForceStatus : std::uint8_t {
   no_contact,    ///< the measure is 0 or negative: no force, whatever is displaced
-  measured,      ///< within the range that was identified
-  below_range,   ///< a smaller contact than any identified: the force fades to 0 with it. Always:
-                 ///< is the measure in another unit? Shear: below a hundredth of the reference
-  beyond_range,  ///< a larger one, or a larger shift: the curve goes on along its tangent
+  measured,      ///< within the calibrated range
+  below_range,   ///< the contact is smaller than any in the calibration, and the force fades to 0
+                 ///< with it. If always: is the measure in another unit? Shear: below a hundredth
+                 ///< of the reference
+  beyond_range,  ///< a larger contact or shift: the curve continues along its tangent
   held_at_zero,  ///< the curve or a compensation is negative there
-  disagreeing,   ///< area and depth tell forces further apart than their errors allow: the contact
-                 ///< is not like those of the calibration, or a measure is in another unit
+  disagreeing,   ///< area and depth give forces further apart than their errors allow: the contact
+                 ///< is unlike those of the calibration, or a measure is in another unit
   implausible,   ///< a displacement above 100 mm, a rotation by more than half a turn, a measure
                  ///< or a force of a million or more: in px, um, degrees?
-  not_finite,    ///< what it is computed from is no number, or it is too large for one
+  not_finite,    ///< an input is not a number, or the force overflows
 };
 
 /// "measured", "below range", ...
@@ -50,7 +51,7 @@ constexpr const char* name_of(ForceStatus status) {
 
 namespace detail {
 
-/// What no contact of a fingertip has; false for what is not finite.
+/// Whether a value is finite but impossible for a contact of a fingertip.
 template <class S>
 constexpr bool beyond_displacement(const Point2<S>& displacement_mm) {
   return is_finite(displacement_mm) && value(squared_norm(displacement_mm)) > 10000;

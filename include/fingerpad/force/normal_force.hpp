@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// Normal force by look-up: from how large the contact is, or how deep. Source: Ito, Kim and
+// Normal force by look-up from the area or depth of the contact. Source: Ito, Kim and
 // Obinata, "Acquisition of Contact Force and Slippage Using a Vision-Based Tactile Sensor with a
 // Fluid-Type Touchpad for the Dexterous Handling of Robots", "Method for measuring normal force":
 //
@@ -9,12 +9,12 @@
 //   F_z = F_S(S_c) or F_D(D), quadratic                              (3), (18)
 //   r_c = c f^gamma, for elastic pads                                (1)
 //
-// Pressure, contact area and depth rise together, so one of them tells the force once a calibration
-// has tied them (calibrate/force.hpp). A curve holds for objects of the shape that it was
-// calibrated with: docs/force/normal_force.md has what another shape does.
+// Pressure, contact area and depth rise together, so any one of them gives the force after a
+// calibration (calibrate/force.hpp). A curve holds for objects of the shape with which it was
+// calibrated; docs/force/normal_force.md shows the effect of other shapes.
 //
-// The force is that which presses, >= 0 (its z component on the pad is the negative of it). It is 0
-// without contact, whatever moved, and rises from there without a step.
+// The force is how hard the object presses, >= 0; its z component on the pad is the negative. It is
+// 0 without contact, whatever has moved, and rises from there without a step.
 #include <cmath>
 #include <cstddef>
 #include <optional>
@@ -42,15 +42,15 @@ S smooth_step_slope(const S& share) {
   return S(S(6) * x * (S(1) - x));
 }
 
-/// What a displacement and a rotation make of the plain force: gain F + shift.
+/// Effect of a displacement and a rotation on the plain force: gain F + shift.
 template <scalar S>
 struct ForceChange {
   S gain;
   S shift_n;
 };
 
-/// A curve over all measures: none where there is no contact, faded in smoothly below the range,
-/// and beyond it carried on along the tangent, since a polynomial may do anything there.
+/// A curve extended to all measures: 0 without contact, faded in smoothly below the calibrated
+/// range, and continued along the tangent beyond it, where a polynomial could do anything.
 template <class Curve>
 class WholeCurve {
  public:
@@ -108,14 +108,14 @@ class WholeCurve {
 
 }  // namespace detail
 
-/// Measures of a contact that is pressed alone. Displacement and angle are not looked at.
+/// No compensation: displacement and angle are ignored. For contacts that are only pressed.
 struct NoCompensation {
   static constexpr bool reads_motion = false;
 };
 
-/// F = F_plain (1 + a |d|^2 + b theta^2): the plain force where nothing is displaced or rotated,
-/// both at once, even and smooth in both, as the symmetry of a round pad asks. The published one
-/// (eqs. 21 and 22, published/normal_force.hpp) is none of that.
+/// F = F_plain (1 + a |d|^2 + b theta^2). It is the plain force without displacement and rotation,
+/// handles both at once, and is even and smooth in both, as the symmetry of a round pad requires.
+/// The published form (eqs. 21 and 22, published/normal_force.hpp) has none of these properties.
 template <scalar S = double>
 struct ScaledCompensation {
   static constexpr bool reads_motion = true;
@@ -152,12 +152,12 @@ struct [[nodiscard]] NormalForceResult {
 };
 
 /// The normal force from one measure of the contact.
-///   Curve         PolynomialForce     take this for fluid pads: of area in mm^2 or depth in mm
-///                 PowerLawForce       take this for elastic pads: of the radius in mm
-///   Compensation  NoCompensation      take this where the contact is pressed alone
-///                 ScaledCompensation  take this where it is also displaced or rotated, and
-///                                     calibrated so
-/// Const, O(1), no memory from the heap.
+///   Curve         PolynomialForce     use it for fluid pads: of area in mm^2 or depth in mm
+///                 PowerLawForce       use it for elastic pads: of the radius in mm
+///   Compensation  NoCompensation      use it if the contact is only pressed
+///                 ScaledCompensation  use it if the contact is also displaced or rotated, and the
+///                                     calibration includes that
+/// A call is const, O(1), and allocates nothing.
 template <class Curve = PolynomialForce<>, class Compensation = NoCompensation>
 class NormalForce {
  public:
@@ -175,9 +175,9 @@ class NormalForce {
     errors_ = errors;
   }
 
-  /// One frame. `displacement_mm` and `rotation_rad` are how far the contact was carried along and
-  /// rotated; without a compensation they are not looked at. `measure_variance` is that of this
-  /// measure, beyond that of the calibration's.
+  /// The force of one frame. `displacement_mm` and `rotation_rad` are those of the contact; without
+  /// a compensation they are ignored. `measure_variance` is the variance of this measure in
+  /// addition to that of the calibration.
   NormalForceResult<S> operator()(const S& measure,
                                   const Point2<S>& displacement_mm = {S(0), S(0)},
                                   const S& rotation_rad = S(0),

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// Tangential force and moment about the contact's normal by look-up: from how far the dots were
-// carried along and rotated, counted by how large the contact is. Source: Ito, Kim and Obinata,
+// Tangential force and moment about the contact's normal by look-up, from displacement and rotation
+// of the dots, normalised by the size of the contact. Source: Ito, Kim and Obinata,
 // "Acquisition of Contact Force and Slippage ...", "Method for measuring tangential force" and
 // "... moment around normal direction":
 //
@@ -13,9 +13,9 @@
 // relationship between the normalized displacement and tangential force is almost linear"; its
 // slopes are not printed, so calibrate/force.hpp identifies them. Forces are what the object exerts
 // on the pad: a pad that is dragged along x is pushed along x. The moment is about the normal
-// through the middle of the contact.
+// through the center of the contact.
 //
-// Which dots: contact_shift.hpp. The paper takes the central one.
+// motion/contact_shift.hpp chooses the dots. The paper takes the central one.
 #include <array>
 #include <cmath>
 #include <cstddef>
@@ -28,8 +28,8 @@
 namespace fingerpad {
 inline namespace v0 {
 
-/// How a contact's size stiffens it: displacement and rotation count by (measure / reference) to
-/// these exponents.
+/// How the stiffness of a contact grows with its size: displacement and rotation are multiplied by
+/// (measure / reference) to these exponents.
 template <scalar S = double>
 struct ShearNormalisation {
   S reference = not_a_number<S>();  ///< in the measure's unit, finite, > 0
@@ -44,7 +44,7 @@ template <scalar S = double>
 ShearNormalisation<S> shear_by_radius(const S& reference_mm) {
   return {reference_mm, S(1), S(3)};
 }
-/// Where no size of the contact is known: give any positive measure.
+/// Use it if the size of the contact is not known, with any positive measure.
 template <scalar S = double>
 ShearNormalisation<S> shear_without_measure() {
   return {S(1), S(0), S(0)};
@@ -52,7 +52,7 @@ ShearNormalisation<S> shear_without_measure() {
 
 namespace detail {
 
-/// c_1 x + c_2 x |x| + c_3 x |x|^2 + ...: odd, as a force must be that turns with its displacement.
+/// c_1 x + c_2 x |x| + c_3 x |x|^2 + ...: odd, because the force reverses with the displacement.
 template <int Degree = 1, scalar S = double>
 struct OddPolynomial {
   static_assert(Degree >= 1 && Degree <= 4);
@@ -208,8 +208,8 @@ S shear_factor(const S& measure, const S& reference, const S& exponent) {
   return S(exp(S(exponent * S(log(ratio)))));
 }
 
-/// About the sensor's origin: that about the contact's middle at `center_mm`, and what the force
-/// there adds.
+/// Moment about the sensor's origin: the moment about the contact's center at `center_mm`, plus
+/// that of the force acting there.
 template <scalar S>
 S moment_about_origin(const S& moment_n_mm, const Point2<S>& force_n, const Point2<S>& center_mm) {
   return S(moment_n_mm + center_mm.x * force_n.y - center_mm.y * force_n.x);

@@ -1,23 +1,23 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// The load that the object exerts on each dot of the membrane: contact pressure and shear as maps,
-// force and moment as their sums. Not in the papers. A membrane carries load by its tension alone:
+// The load of the object on each dot of the membrane: maps of contact pressure and shear, and force
+// and moment as their sums. Not in the papers. A membrane carries load by tension alone:
 //   q = -(div T + p n),   T = (mu t / J) (B - J^-2 P),   B = F F^T,
-// per area as it is now, with p the pressure of the fluid, n out of the pad, F the surface
+// per current area, with p the pressure of the fluid, n pointing out of the pad, F the surface
 // deformation gradient against the stress-free membrane, J = det F, P the identity on the surface.
 //
-// Discrete, the divergence is what the cells around a dot pull it with, the derivative of their
-// stored energy. So rigid motions change nothing, and the sum of the loads over a patch is the pull
-// across its border and the pressure on it, to rounding: the mesh blurs a load by about one pitch,
-// but loses none of it. The steps lie in detail/, in this order: dot_cell, traction_memory,
-// frame_loads.
+// In discrete form, the divergence at a dot is the pull of the cells around it, the derivative of
+// their stored energy. Rigid motions therefore change nothing, and the sum of the loads over a
+// patch equals the pull across its border plus the pressure on it, to rounding: the mesh blurs a
+// load by about one pitch but loses none of it. The steps are in detail/, in this order: dot_cell,
+// traction_memory, frame_loads.
 //
-// Where mu t (shear modulus times thickness of the stress-free membrane) is not given, it comes
+// If mu t (shear modulus times thickness of the stress-free membrane) is not given, it is computed
 // from the free part of each frame, where the membrane alone holds the pressure: the mean of the
 // normal loads is 0, so with f the pull on a dot for mu t = 1 N/mm, A its area and n its normal,
 // sum p = -mu t sum f . n / A. Least squares of mu t f + p A n would be biased: noise of the dots
-// adds to f . f, and mu t comes out too small; f . n it leaves alone.
+// adds to f . f, which makes mu t too small, but does not affect f . n.
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -37,7 +37,7 @@ inline namespace v0 {
 
 enum class TractionStatus : std::uint8_t {
   ok,
-  no_contact,    ///< no dot is in contact: force and moment are 0; the maps are there
+  no_contact,    ///< no dot is in contact: force and moment are 0; the maps are written
   incomplete,    ///< force and moment miss the share of some dots in contact or beside them, which
                  ///< have no load: they lie on the edge of the grid, or dots were not found
   bad_pressure,  ///< <= 0 or not finite: nothing is known

@@ -9,9 +9,9 @@
 // The base feels the pull of the membrane along the rim and the pressure on its area (eqs. 1, 2):
 //   F = integral of T ds - p S_base z,    M = integral of b x T ds.
 // F and M are what the object exerts on the pad, M about Q, the center of the base: a press gives
-// F_z < 0. The side dots tell how the membrane pulls (force/rim_traction.hpp); how much,
-// is found from the balance of the membrane between the rim and the line A_g where it touches the
-// object or is level: everywhere below it nothing but tension and pressure acts.
+// F_z < 0. The side dots give the direction of the membrane's pull (force/rim_traction.hpp). Its
+// magnitude follows from the balance of the membrane between the rim and the line A_g where it
+// touches the object or is level: below that line only tension and pressure act.
 #include <cmath>
 #include <concepts>
 #include <cstddef>
@@ -37,16 +37,16 @@ namespace fingerpad {
 inline namespace v0 {
 
 /// Six-axis force.
-///   Solver  LeastSquares  take this for the tensions inside the membrane, too
-///           BalancedRim   take this for force and moment alone: as good, 15 times as fast
-///   Row     OneRow        take this for one row of side dots
-///           TwoRows       take this for two, which tell d at the rim itself
-/// ClampedRim is what a clamped rim of rubber pulls, StraightLines are lines that stay apart on a
-/// summit that is not level; published/wrench.hpp has other laws and lines, and the whole method as
-/// printed. Where the shape is not known, by_modulus() needs none.
+///   Solver  LeastSquares  use it if you also need the tensions inside the membrane
+///           BalancedRim   use it for force and moment only: as good, 15 times as fast
+///   Row     OneRow        use it for one row of side dots
+///           TwoRows       use it for two rows, which give d at the rim itself
+/// ClampedRim is the pull of a clamped rubber rim; StraightLines do not meet on a summit that is
+/// not level. published/wrench.hpp has other laws and lines, and the whole method as printed. If
+/// the shape is not known, use by_modulus().
 ///
-/// Const: threads may share one estimator, each with a workspace of its own. A frame takes no
-/// memory, throws nothing, and takes O(columns rows) time, with LeastSquares O((columns rows)^1.5).
+/// Threads may share one estimator, each with its own workspace. A frame allocates nothing, throws
+/// nothing, and takes O(columns rows) time, with LeastSquares O((columns rows)^1.5).
 template <class Solver = LeastSquares,
           class Row = OneRow,
           class Law = ClampedRim,

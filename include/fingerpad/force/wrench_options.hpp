@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// Pad and mesh of the six-axis force, what a frame says, and what a shape is.
+// Options and result of the six-axis force, and the concept of a membrane shape.
 #include <array>
 #include <concepts>
 #include <cstddef>
@@ -17,7 +17,7 @@
 namespace fingerpad {
 inline namespace v0 {
 
-/// Lines straight toward the middle of the contact (in plan), cut at equal steps along them.
+/// Straight lines (in plan) toward the center of the contact, divided into equal steps.
 struct StraightLines {
   static constexpr bool straight = true;
   static constexpr bool by_height = false;
@@ -43,10 +43,10 @@ struct WrenchOptions {
   Index columns = 36;  ///< n, lines from the rim to A_g, in [8, 720]; published 72
   Index rows = 30;     ///< m, segments of a column, in [2, 1000]; published steps of 0.2 mm: 65
   S line_step_mm = S(2) / S(5);  ///< step along a line, in [radius / 1000, radius / 10]
-  S blur_mm = S(3) / S(5);  ///< what lies nearer to the edge of the contact is not looked at, >= 0:
-                            ///< a node of the height map, and half of the half width over which a
-                            ///< depth map was averaged; more makes the edge less certain
-  S reach_mm = S(4);        ///< how far beyond that the membrane's inclination is read, >= 4 steps
+  S blur_mm = S(3) / S(5);  ///< membrane nearer than this to the edge of the contact is ignored, >=
+                            ///< 0: a node of the height map plus a quarter of the width over which
+                            ///< the depth map was averaged; more makes the edge less certain
+  S reach_mm = S(4);  ///< how far beyond that the membrane's inclination is read, >= 4 steps
   // what is refused as implausible
   S max_pressure_mpa = S(2) / S(10);  ///< more is taken for kPa or Pa, > 0
   S max_residual = S(1) / S(10);  ///< of eqs. 6 and 7, where the solver balances all of them, > 0:
@@ -98,7 +98,7 @@ void expects_valid(const WrenchOptions<S>& o) {
           "finite and >= 0");
 }
 
-// What a frame says of force and moment, and how sure that is.
+// Force and moment of a frame, and their uncertainty.
 
 enum class WrenchStatus : std::uint8_t {
   ok,
