@@ -5,9 +5,9 @@
 // Source: the slides, consideration of calculation error: delta = min over the pad of E - 2 sigma,
 // where E is the statistic's mean over the frames and sigma its standard deviation.
 //
-// As published, the single worst pixel of the pad sets the threshold; a quantile instead of the
-// minimum does not fear it. And E - 2 sigma is as far from contact as noise allows, not where the
-// edge of contact is: a straight edge has half the level of the free pad, and so has the default.
+// As published, the single worst pixel of the pad sets the threshold; here a quantile replaces the
+// minimum. E - 2 sigma is the highest threshold that noise allows, not the level at the edge of the
+// contact: at a straight edge that is half the level of the free pad, which is the default.
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -34,7 +34,7 @@ struct ThresholdRule {
   bool pooled_sigma = true;  ///< one sigma, the root mean square over the pad, for all pixels
 };
 
-/// What the free pad is like. All curvatures in 1/mm.
+/// Curvature of the free pad. All curvatures in 1/mm.
 template <scalar S = double>
 struct [[nodiscard]] FreePadCurvature {
   FitStatus status = FitStatus::ok;

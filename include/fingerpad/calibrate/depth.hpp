@@ -1,15 +1,16 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// What the fluid does to light, from colours at known depths: c_red, c_green (through their
-// difference), kappa and g, by least squares on the depth equation F(l) = 0 of absorption_law.hpp,
-// with as many samples as there are.
-// Source: Ito, Kim, Obinata, "Shape sensing by vision-based tactile sensor" (slides), parameter
-// identification, which solves three equations for three unknowns; printed error E005.
+// Fits the optical properties of the fluid to colours at known depths: c_red, c_green (through
+// their difference), kappa and g, by least squares on the depth equation F(l) = 0 of
+// absorption_law.hpp, with as many samples as there are. Source: Ito, Kim, Obinata, "Shape sensing
+// by vision-based tactile sensor" (slides), parameter identification, which solves three equations
+// for three unknowns; printed error E005.
 //
-// The parameters are known far worse than the depth: with a noise of 0.034 grey levels in 4 samples
-// c_red is good to 73 % and delta not even to its sign, while their errors compensate to microns of
-// depth. So the result carries their covariance and predicts the error of a depth from it.
+// The parameters are far less certain than the depth: with a noise of 0.034 grey levels in 4
+// samples c_red is known to 73 % and not even the sign of delta, while their errors compensate to
+// microns of depth. Therefore the result includes the covariance and predicts the error of a depth
+// from it.
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>

@@ -1,10 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// What all calibrations share: how forces are fitted, and what a fit says of its samples. Samples
-// that do not determine the parameters are refused (parameter_error). Samples that determine them,
-// but look as if something had gone wrong, give parameters and a status that names the likely
-// cause.
+// Options and statuses of all calibrations. Samples that do not determine the parameters are
+// refused (parameter_error). Samples that determine them but look wrong give parameters and a
+// status that names the likely cause.
 #include <cstdint>
 
 #include "fingerpad/core/expects.hpp"
@@ -13,13 +12,13 @@
 namespace fingerpad {
 inline namespace v0 {
 
-/// How forces are fitted and what is refused.
+/// Options of the fits, and limits below which samples are refused.
 struct FitOptions {
   bool robust = false;             ///< Huber's loss: outliers weigh less
   double threshold = 1.345;        ///< of Huber's loss, in standard deviations of a sample, > 0
   int passes = 100;                ///< steps at most, >= 2
-  double min_independence = 1e-5;  ///< a parameter of which the samples say less by itself, as a
-                                   ///< share of all they say of it, is refused; in (0, 1)
+  double min_independence = 1e-5;  ///< smallest independent fraction of a parameter's information,
+                                   ///< else it is refused; in (0, 1)
   double min_explained = 0.9;      ///< share of the variance about the mean that the model must
                                    ///< explain, or the samples contradict each other; in [0, 1)
   // fit_normal_force alone
@@ -41,7 +40,7 @@ inline void expects_valid(const FitOptions& options) {
           options.min_explained, "in [0, 1)");
 }
 
-/// Whether a fit can be trusted; if not, what is the likely cause.
+/// Whether a fit can be trusted and, if not, the likely cause.
 enum class FitStatus : std::uint8_t {
   ok,
   not_converged,

@@ -1,14 +1,14 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// Calibration of the forces by look-up, from contacts that a force gauge measured beside the
-// camera: the curves and compensations of normal_force.hpp and the maps of shear.hpp. Least squares
-// by QR, on demand with Huber's weights; with each parameter its covariance, with each fit what it
-// leaves. Samples that do not determine a parameter, or contradict each other, are refused by name
-// (parameter_error). docs/calibrate/calibration.md tells how to take samples.
-// The standard errors hold for samples with independent errors in the force. Errors in the measure
-// or the displacement bias the fit toward smaller slopes, and samples of one load have common
-// errors: leave_one_load_out tells what to expect of forces that were not calibrated.
+// Calibration of the forces by look-up, from contacts measured with a force gauge: the curves and
+// compensations of normal_force.hpp and the maps of shear.hpp. Least squares by QR, optionally with
+// Huber's weights, with the covariance of the parameters and the residuals of each fit. Samples
+// that do not determine a parameter, or that contradict each other, are refused by name
+// (parameter_error). docs/calibrate/calibration.md describes how to take samples. The standard
+// errors hold for samples with independent errors in the force. Errors in the measure or the
+// displacement bias the fit toward smaller slopes, and samples of one load have common errors:
+// leave_one_load_out estimates the error of forces outside the calibration.
 #include <array>
 #include <cmath>
 #include <cstddef>
@@ -47,7 +47,7 @@ struct ForceSample {
   int load = 0;  ///< samples of one load have one number, and are left out together
 };
 
-/// For a plot of what the fit says over what was measured.
+/// For a plot of fitted against measured values.
 template <scalar S = double>
 struct ForceResidual {
   std::size_t sample;  ///< its place among those given
@@ -56,7 +56,7 @@ struct ForceResidual {
   S weight;  ///< 1; less for what counts as an outlier
 };
 
-/// How well forces are predicted that took no part in the calibration.
+/// Errors of predicted forces that took no part in the calibration.
 template <scalar S = double>
 struct CrossValidation {
   std::vector<S> errors;  ///< predicted less measured, of each sample; NaN: no prediction

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// What one foam finger says at one time: what the paper stores at each location T_i of its stack.
+// Sample of one foam finger at one time: what the paper stores at each location T_i of its stack.
 #include <algorithm>
 #include <array>
 #include <cstddef>

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// The least force that holds an object, found with its weight and friction unknown. Source: "Pre-
-// Slip Sensing Using Tactile Sensor" (2007), its two experiments:
+// Finds the smallest force that holds an object whose weight and friction are unknown. Source:
+// "Pre- Slip Sensing Using Tactile Sensor" (2007), its two experiments:
 //
 //   grasp-optimise-replace  the object hangs between the fingers; the grip is loosened step by step
 //                           until pre-slip is found, which is the least force. As a check the paper
@@ -10,8 +10,8 @@
 //   grasp-lift-replace      the object stands on a surface and is lifted with little force; where
 //                           pre-slip is found the lift waits and the grip is tightened
 //
-// Samples in, commands out: the caller moves the gripper, and tells at each sample what the fingers
-// say of slip, by preslip.hpp or by anything else. While that cannot be told the command stays.
+// Samples in, commands out: the caller moves the gripper, and passes the slip state of the fingers
+// with each sample, from preslip.hpp or elsewhere. While the state is not known the command stays.
 #include <cstdint>
 
 #include "fingerpad/core/expects.hpp"
@@ -23,9 +23,9 @@ namespace fingerpad {
 inline namespace v0 {
 
 enum class SearchPhase : std::uint8_t {
-  settling,  ///< what the last command stirred up dies away: only `slipped` is listened to
-  watching,  ///< pre-slip is waited for
-  found,     ///< loosening: the least force is known. The end
+  settling,  ///< vibration of the last command decays: only `slipped` is acted on
+  watching,  ///< waits for pre-slip
+  found,     ///< loosening: the smallest force is known. The end
   lifted,    ///< lifting: at the full height. The end
   at_limit,  ///< the force cannot be lowered or raised further. The end
   slipped,   ///< the object slipped as a whole. The end

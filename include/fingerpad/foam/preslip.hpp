@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// Whether a held object is about to slip, from what foam fingers feel and without a friction
+// Whether a held object is about to slip, from the readings of foam fingers and without a friction
 // coefficient. Source: "Pre-Slip Sensing Using Tactile Sensor" (2007), the rule sets of its two
 // experiments. The samples T_1, T_2, ... of all fingers lie in a stack; of any two of them, the
 // older a (index 1) and the later b (index 2), there is pre-slip where
@@ -32,14 +32,14 @@
 namespace fingerpad {
 inline namespace v0 {
 
-/// What a rule compares with. The paper prints no values.
+/// Thresholds of the rules. The paper prints no values.
 template <scalar S = double>
 struct PreslipOptions {
   Index history = 100;  ///< samples that are compared, in [2, 100000]
   Index min_waves = 1;  ///< a later sample with fewer waves is silent, >= 0; 0 as published, where
                         ///< none and none are an equal frequency
-  S centroid_tolerance_mm = S(1) / S(10);  ///< what the noise of a centroid explains, >= 0: a
-                                           ///< centroid differs that is farther off along an axis
+  S centroid_tolerance_mm = S(1) / S(10);  ///< noise of a centroid, >= 0: centroids differ if they
+                                           ///< are farther apart along an axis
 };
 
 /// Refuses what has no meaning (parameter_error).

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// What the fingers say of slip at one sample: the answer of the rules of pre-slip, and what the
-// searches for the holding force are told.
+// Slip state of the fingers at one sample: the answer of the pre-slip rules, and the input of the
+// searches for the holding force.
 #include <cstdint>
 
 namespace fingerpad {
@@ -11,7 +11,7 @@ inline namespace v0 {
 enum class PreslipStatus : std::uint8_t {
   steady,      ///< all fingers can be judged, and nothing slips
   preslip,     ///< some of the contact begins to slip
-  slipped,     ///< the object slips as a whole, or is gone; no rule says this, a caller may
+  slipped,     ///< the whole object slips or is gone; set by callers, never by a rule
   cannot_tell  ///< a finger cannot be judged: neither steady nor slipping
 };
 

@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 // A finger that consists of several arrays, as those of "Pre-Slip Sensing Using Tactile Sensor"
-// (2007): 16 x 4 twice, 16 x 2 twice and 6 x 2, 204 elements on five sides. What each array says
-// becomes one sample of the finger, which the rules take like any other.
+// (2007): 16 x 4 twice, 16 x 2 twice and 6 x 2, 204 elements on five sides. The samples of the
+// arrays are joined to one sample of the finger, which the rules use like any other.
 #include <algorithm>
 #include <array>
 #include <cstddef>
@@ -52,11 +52,11 @@ void add_array(const FingerSample<S>& array,
 
 }  // namespace detail
 
-/// One sample of a finger from those of its arrays at one time. `places_mm` says where the first
-/// taxel of each array is in a plan of the finger, its sides unrolled; `taxels` how many it has:
-/// locations are numbered on from array to array. A side that touches nothing is left to the
-/// others: the finger can be judged where one of its arrays can. Refused where one is, and not
-/// judged where one vibrates that never rested.
+/// One sample of a finger from those of its arrays at one time. `places_mm` is the place of the
+/// first taxel of each array in the unrolled plan of the finger's sides, `taxels` their number:
+/// locations are numbered consecutively over the arrays. A side that touches nothing does not
+/// matter: the finger can be judged if one of its arrays can. Refused where one is, and not judged
+/// where one vibrates that never rested.
 template <std::size_t Arrays, scalar S>
 FingerSample<S> finger_of(const std::array<FingerSample<S>, Arrays>& arrays,
                           const std::array<Point2<S>, Arrays>& places_mm,

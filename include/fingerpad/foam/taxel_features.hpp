@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// What a foam finger feels at each sample: where it is pressed, which taxel vibrates and how fast.
+// Features of a foam finger at each sample: where it is pressed, which taxel vibrates and how fast.
 // Source: "Pre-Slip Sensing Using Tactile Sensor" (2007), the data of its stack: x-bar and y-bar,
 // vibrating location, and vibration frequency as the number of sensed waves. The paper gives no
 // formulas for them; here they are
@@ -36,10 +36,10 @@
 namespace fingerpad {
 inline namespace v0 {
 
-/// Features of one finger, sample by sample. Waves: ZeroCrossings or SpectralPeak. Const: one
-/// serves any number of fingers of its size, each with a state of its own. A sample takes
-/// O(rows cols) time, and what Waves says for each taxel that vibrates; with a new clock
-/// O(rows cols window). Nothing is allocated or thrown.
+/// Features of one finger, sample by sample. Waves: ZeroCrossings or SpectralPeak. One object
+/// serves any number of fingers of its size, each with its own state. A sample takes O(rows cols)
+/// time plus that of Waves for each vibrating taxel; with a new clock O(rows cols window). Nothing
+/// is allocated or thrown.
 template <class Waves = ZeroCrossings, scalar S = double>
 class TaxelFeatures {
   static_assert(!scalar<Waves>, "the scalar comes last: TaxelFeatures<ZeroCrossings, double>");

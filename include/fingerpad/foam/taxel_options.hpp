@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// What must be known of a foam array and of the window in which its vibrations are looked for.
+// Options of a foam array, and of the window in which its vibrations are detected.
 #include <limits>
 
 #include "fingerpad/core/expects.hpp"
@@ -18,7 +18,7 @@ struct TaxelOptions {
   S pitch_mm = S(34) / S(10);        ///< between taxels, > 0
   Index window = 16;                 ///< samples in which vibration is looked for, in [4, 4096]
   S sample_period_s = S(1) / S(30);  ///< nominal, > 0
-  S longest_gap_s = S(2);  ///< a gap counts as at most two periods; a longer one than this, or a
+  S longest_gap_s = S(2);  ///< a gap counts as at most two periods; a gap longer than this, or a
                            ///< clock that is set back, begins a new window, > 0
   S noise = S(6);          ///< standard deviation of a taxel at rest, >= 0
   S noise_factor = S(5) / S(2);  ///< vibration is more than this many of them, >= 0
@@ -30,7 +30,7 @@ struct TaxelOptions {
 };
 
 namespace detail {
-/// No converter counts to a billion; false for NaN.
+/// Whether a reading is below a billion in size, as every converter's is; false for NaN.
 template <scalar S>
 constexpr bool is_reading(const S& reading) {
   return -1000000000 < value(reading) && value(reading) < 1000000000;

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// How hard an object presses, from the dots alone: under a load they part, or draw together. The
+// How hard an object presses, from the dots alone: under a load they move apart, or together. The
 // measure is the divergence of their displacements, integrated over the contact. On an elastic
 // half-space it is -(1 - 2 nu) F / (2 G), whatever the shape of the contact, since the divergence
 // of Boussinesq's surface displacements is -(1 - 2 nu) / (2 G) times the pressure, point by point
@@ -61,8 +61,8 @@ struct [[nodiscard]] DivergenceResult {
   bool ok() const { return status == FrameStatus::ok && is_finite(area_mm2); }
 };
 
-/// Divergence of a contact. Const: threads may share one, each with a workspace of its own. A frame
-/// takes no memory, throws nothing, and needs O(rows cols) time.
+/// Divergence of a contact. Threads may share one object, each with its own workspace. A frame
+/// allocates nothing, throws nothing, and takes O(rows cols) time.
 template <scalar S = double>
 class DotDivergence {
  public:

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// From a depth map along camera rays, and the mask of the contact, to heights in plan.
+// Converts a depth map along camera rays, and the mask of the contact, to heights in plan view.
 #include <cmath>
 #include <concepts>
 #include <cstddef>
@@ -22,8 +22,8 @@ inline namespace v0 {
 /// in plan the pixel that sees the membrane there depends on the height that is looked for: it is
 /// found by Newton's method, from what depends on the place alone.
 ///
-/// const, so that threads may share one; a frame takes no memory, throws nothing, and takes
-/// bounded time for each node.
+/// Threads may share one object. A frame allocates nothing, throws nothing, and takes bounded time
+/// for each node.
 template <class CameraType = Camera<double>>
 class PadHeights {
  public:

@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// Six axes without a pressure gauge. The balance of a frame gives the ratio of pressure and mu t;
-// where mu t is calibrated (calibrate/rim.hpp) that is the pressure, and the forces with it. Source
-// of the balance: Ito, Kim, Obinata 2011, eq. 12, who measure the pressure.
+// Six-axis force without a pressure gauge. The balance of a frame gives the ratio of pressure and
+// mu t. If mu t is calibrated (calibrate/rim.hpp), this gives the pressure, and with it the forces.
+// Source of the balance: Ito, Kim, Obinata 2011, eq. 12, who measure the pressure.
 #include <cmath>
 
 #include "fingerpad/core/dots.hpp"

@@ -1,10 +1,11 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// How the membrane pulls at its rim, from the side dots printed a little above it. The rim is
-// clamped: along it nothing stretches. With e the unit tangent of the rim and d the derivative of
-// the position along the stress-free membrane, away from the rim, the surface deformation gradient
-// is [d, e]. Split d = s e + d_n, d_n perpendicular to e and lambda = |d_n| (the area ratio J).
+// The pull of the membrane at its rim, from the side dots printed slightly above it. The rim is
+// clamped, so the membrane does not stretch along it. With e the unit tangent of the rim and d the
+// derivative of the position along the stress-free membrane, away from the rim, the surface
+// deformation gradient is [d, e]. Split d = s e + d_n, d_n perpendicular to e and lambda = |d_n|
+// (the area ratio J).
 //
 // Published (Ito, Kim, Obinata 2011, III.E): the pull has the direction of d. That of a
 // hyperelastic membrane has not: with W = mu t / 2 (|F|^2 + J^-2 - 3) per stress-free area
@@ -33,11 +34,11 @@ inline namespace v0 {
 
 namespace detail::membrane {
 
-/// What a side dot tells.
+/// Status of a side dot.
 enum class RimPullStatus : std::uint8_t {
   ok,
   missing,      ///< the dot was not found
-  unstretched,  ///< stretched too little to tell where the membrane pulls
+  unstretched,  ///< stretched too little to give the direction of the pull
   slack,        ///< shorter than without stress: the membrane pushes, or has folded
 };
 

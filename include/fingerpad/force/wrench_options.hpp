@@ -46,7 +46,7 @@ struct WrenchOptions {
   S blur_mm = S(3) / S(5);  ///< membrane nearer than this to the edge of the contact is ignored, >=
                             ///< 0: a node of the height map plus a quarter of the width over which
                             ///< the depth map was averaged; more makes the edge less certain
-  S reach_mm = S(4);  ///< how far beyond that the membrane's inclination is read, >= 4 steps
+  S reach_mm = S(4);        ///< how far beyond that the membrane's inclination is read, >= 4 steps
   // what is refused as implausible
   S max_pressure_mpa = S(2) / S(10);  ///< more is taken for kPa or Pa, > 0
   S max_residual = S(1) / S(10);  ///< of eqs. 6 and 7, where the solver balances all of them, > 0:

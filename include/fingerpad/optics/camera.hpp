@@ -1,10 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// The camera behind a plate: from a pixel to the ray it sees in the fluid, and from a pixel and a
-// depth to a point in mm, and back. Light enters the pad along z and comes back along this ray.
-// Source: Ito, Kim, Obinata, "Shape sensing by vision-based tactile sensor" (slides), theory of the
-// intensity of light; Ito, Kim, Nagai, Obinata 2011, eq. 13.
+// The camera behind a plate: converts a pixel to its ray in the fluid, and a pixel with a depth to
+// a point in mm and back. Light enters the pad along z and comes back along this ray. Source: Ito,
+// Kim, Obinata, "Shape sensing by vision-based tactile sensor" (slides), theory of the intensity of
+// light; Ito, Kim, Nagai, Obinata 2011, eq. 13.
 //
 // No trigonometric function is needed: with t = tan(phi_air) = rho / h from the pixel, every cosine
 // is a square root, and nothing is 0/0 at the center or overflows at grazing angles.
