@@ -250,6 +250,7 @@ using Samples = std::vector<Sample>;
 
 constexpr double force_noise_n = 0.05;
 constexpr double reference_mm = 2;
+constexpr fingerpad::FitOptions robust{.robust = true};
 
 /// Forty contacts of all sizes, displaced and rotated, with noise of 0.05 N and 0.05 N mm.
 Samples contacts(Chance& chance) {
@@ -272,6 +273,17 @@ Samples contacts(Chance& chance) {
   return samples;
 }
 
+/// The same, of which every twentieth has all forces wrong by a newton: for Huber's loss.
+Samples contacts_with_outliers(Chance& chance) {
+  Samples samples = contacts(chance);
+  for (std::size_t k = 0; k < samples.size(); k += 20) {
+    samples[k].normal_force_n += 1;
+    samples[k].tangential_force_n.x += 1;
+    samples[k].moment_n_mm += 1;
+  }
+  return samples;
+}
+
 Trial normal_force() {
   const auto fit = [](const Samples& samples) {
     const auto found = fingerpad::fit_normal_force<2>(std::span(samples));
@@ -281,21 +293,14 @@ Trial normal_force() {
   return trial({"coefficient_1", "coefficient_2"}, {0.5, 0.3}, 0.1, contacts, draw_samples, fit);
 }
 
-/// The same by Huber's loss, every twentieth force being wrong by a newton.
 Trial robust_normal_force() {
-  const auto measure = [](Chance& chance) {
-    Samples samples = contacts(chance);
-    for (std::size_t k = 0; k < samples.size(); k += 20) {
-      samples[k].normal_force_n += 1;
-    }
-    return samples;
-  };
   const auto fit = [](const Samples& samples) {
-    const auto found = fingerpad::fit_normal_force<2>(std::span(samples), {.robust = true});
+    const auto found = fingerpad::fit_normal_force<2>(std::span(samples), robust);
     return Estimate{{found.curve.coefficients[1], found.curve.coefficients[2]},
                     block([&](auto i, auto j) { return found.errors.covariance[i][j]; }, {1, 2})};
   };
-  return trial({"coefficient_1", "coefficient_2"}, {0.5, 0.3}, 0.3, measure, draw_samples, fit);
+  return trial({"coefficient_1", "coefficient_2"}, {0.5, 0.3}, 0.3, contacts_with_outliers,
+               draw_samples, fit);
 }
 
 /// The published compensation of a known curve, by how far the contact was displaced.
@@ -381,12 +386,28 @@ Trial tangential_force() {
                fit);
 }
 
+Trial robust_tangential_force() {
+  const auto fit = [](const Samples& samples) {
+    return of_shear(fingerpad::fit_tangential_force(std::span(samples), reference_mm, {}, robust));
+  };
+  return trial({"force_n_per_mm", "displacement_exponent"}, {2, 0.7}, 1, contacts_with_outliers,
+               draw_samples, fit);
+}
+
 Trial moment() {
   const auto fit = [](const Samples& samples) {
     return of_shear(fingerpad::fit_moment(std::span(samples), reference_mm));
   };
   return trial({"moment_n_mm_per_rad", "rotation_exponent"}, {40, 1.6}, 0.3, contacts, draw_samples,
                fit);
+}
+
+Trial robust_moment() {
+  const auto fit = [](const Samples& samples) {
+    return of_shear(fingerpad::fit_moment(std::span(samples), reference_mm, {}, robust));
+  };
+  return trial({"moment_n_mm_per_rad", "rotation_exponent"}, {40, 1.6}, 1, contacts_with_outliers,
+               draw_samples, fit);
 }
 
 /// Forces along by a matrix, of contacts whose size does not matter.
@@ -467,7 +488,9 @@ const std::map<std::string, Trial (*)()>& makers() {
       {"robust_normal_force", robust_normal_force},
       {"affine_force", affine_force},
       {"tangential_force", tangential_force},
+      {"robust_tangential_force", robust_tangential_force},
       {"moment", moment},
+      {"robust_moment", robust_moment},
       {"linear_shear", linear_shear},
       {"taxels", taxels}};
   return all;
