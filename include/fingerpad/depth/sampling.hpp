@@ -87,7 +87,7 @@ class FrameSampler {
   /// Step rows of both channels; one per thread.
   using Workspace = std::vector<Pixel>;
 
-  /// For frames of so many columns.
+  /// For frames of so many columns, or fewer.
   static Workspace workspace(Index cols) {
     return Workspace(static_cast<std::size_t>(2 * Step * cols));
   }
@@ -108,12 +108,12 @@ class FrameSampler {
     if (!same_size(from_red, from_green) || !same_size(to_red, to_green) ||
         to_red.rows() != from_red.rows() / Step || to_red.cols() != cols / Step || first < 0 ||
         last < first || last > to_red.rows() ||
-        workspace.size() != static_cast<std::size_t>(2 * Step * cols)) {
+        workspace.size() < static_cast<std::size_t>(2 * Step * cols)) {
       return false;
     }
     for (Index i = first; i < last; ++i) {
-      if constexpr (detail::plain_rows<decltype(from_red), Pixel> &&
-                    detail::plain_rows<decltype(from_green), Pixel>) {
+      if constexpr (detail::plain_rows<std::remove_const_t<decltype(from_red)>, Pixel> &&
+                    detail::plain_rows<std::remove_const_t<decltype(from_green)>, Pixel>) {
         if (from_red.col_stride() == 1 && from_green.col_stride() == 1 &&
             from_red.row_stride() == from_green.row_stride()) {
           FrameSampler(from_red.row(i * Step), from_green.row(i * Step), from_red.row_stride())
@@ -136,9 +136,8 @@ class FrameSampler {
   static constexpr bool by_vectors = std::same_as<Pixel, std::uint8_t> &&
                                      (Step == 2 || Step == 3 || Step == 4) &&
                                      detail::native_vector_bytes > 0;
-  /// Bytes of a vector. Short ones, the more so where three are worked on at once: fewer of them
-  /// hold a pixel without information, for which all their samples are done one by one.
-  static constexpr int width = (std::min)(Step == 3 ? 16 : 32, detail::native_vector_bytes);
+  /// Bytes of a vector: short ones where three are worked on at once.
+  static constexpr int width = (std::min)(Step == 3 ? 16 : 64, detail::native_vector_bytes);
   static constexpr Index samples_at_once = Step == 3 ? width : width / Step;
 
   /// Step rows of each channel, `stride` pixels apart.
@@ -148,23 +147,20 @@ class FrameSampler {
   void average(const StridedView<Sample>& to_red,
                const StridedView<Sample>& to_green,
                Index row) const {
+    const Index cols = to_red.cols();
     Index j = 0;
-    const auto upto = [&](Index last) {
-      for (; j < last; ++j) {
-        one(j, to_red(row, j), to_green(row, j));
-      }
-    };
     if constexpr (by_vectors) {
       constexpr Index n = samples_at_once;
-      while (to_red.col_stride() == 1 && to_green.col_stride() == 1 && j + n <= to_red.cols()) {
-        if (several(j, to_red.row(row) + j, to_green.row(row) + j)) {
-          j += n;
-        } else {
-          upto(j + n);
+      if (to_red.col_stride() == 1 && to_green.col_stride() == 1 && cols >= n) {
+        for (; j < cols; j += n) {
+          const Index from = (std::min)(j, cols - n);  // the last ones twice
+          several(from, to_red.row(row) + from, to_green.row(row) + from);
         }
       }
     }
-    upto(to_red.cols());
+    for (; j < cols; ++j) {
+      one(j, to_red(row, j), to_green(row, j));
+    }
   }
 
   void one(Index col, Sample& to_red, Sample& to_green) const {
@@ -216,108 +212,133 @@ class FrameSampler {
   }
 
 #if defined(FINGERPAD_HAS_VECTORS)
-  /// The samples that a vector of pixels holds, from column `col` on; false, and nothing written,
-  /// where pixels of a sample differ in whether they carry information.
-  bool several(Index col, Sample* to_red, Sample* to_green) const requires(Step != 3) {
-    using Bytes = detail::lanes<std::uint8_t, width>;
-    using Word = std::conditional_t<Step == 2, std::uint16_t, std::uint32_t>;  // one a sample
-    using Words = detail::lanes<Word, width / Step>;
-    using Pairs = detail::lanes<std::uint16_t, width / 2>;
-    Bytes bad{}, all_bad = ~bad, bright{};
-    Pairs red{}, green{};
+  using Bytes = detail::lanes<std::uint8_t, width>;
+
+  /// What a vector of pixels says: those that carry information, else 0, and which do not.
+  struct Block {
+    Bytes red, green, bright, bad;
+  };
+  [[gnu::always_inline]] Block block(Index row, Index col) const {
+    const Index at = row * stride_ + col;
+    const Bytes r = detail::load<std::uint8_t, width>(red_ + at);
+    const Bytes g = detail::load<std::uint8_t, width>(green_ + at);
     const Bytes top = Bytes{} + std::uint8_t(255);
-    for (Index k = 0; k < Step; ++k) {
-      const Index at = k * stride_ + col * Step;
-      const Bytes r = detail::load<std::uint8_t, width>(red_ + at);
-      const Bytes g = detail::load<std::uint8_t, width>(green_ + at);
-      const Bytes bright_here = Bytes((r == top) | (g == top));
-      const Bytes bad_here = Bytes((r == Bytes{}) | (g == Bytes{})) | bright_here;
-      bright |= bright_here;
-      bad |= bad_here;
-      all_bad &= bad_here;
-      const auto of_red = detail::unzip_wide<std::uint16_t, width / 2>(r);
-      const auto of_green = detail::unzip_wide<std::uint16_t, width / 2>(g);
-      red += of_red.first + of_red.second;
-      green += of_green.first + of_green.second;
-    }
-    const Words none = Words(Words(all_bad) == ~Words{});
-    if (detail::any_lane(Words(none ^ Words(Words(bad) != Words{})))) {
-      return false;
-    }
-    const Words told = Words(Words(bright) != Words{}) & (Words{} + Word(255 * 256));
-    store_means(red, none, told, to_red);
-    store_means(green, none, told, to_green);
-    return true;
+    const Bytes bright = Bytes((r == top) | (g == top));
+    const Bytes bad = Bytes((r == Bytes{}) | (g == Bytes{})) | bright;
+    return {Bytes(r & ~bad), Bytes(g & ~bad), bright, bad};
   }
 
-  /// The samples that three vectors hold; false where a pixel carries no information but for
-  /// samples that are all dark.
-  bool several(Index col, Sample* to_red, Sample* to_green) const requires(Step == 3) {
-    using Bytes = detail::lanes<std::uint8_t, width>;
-    using Words = detail::lanes<std::uint16_t, width / 2>;
-    using ColumnSums = std::array<std::uint16_t, std::size_t(3 * width)>;
-    alignas(Bytes) ColumnSums red, green;
-    Bytes bad{}, all_bad = ~bad, bright{};
-    const Bytes top = Bytes{} + std::uint8_t(255);
-    for (int part = 0; part < 3; ++part) {
-      detail::Two<Words> reds{}, greens{};
-      for (Index k = 0; k < 3; ++k) {
-        const Index at = k * stride_ + col * 3 + part * width;
-        const Bytes r = detail::load<std::uint8_t, width>(red_ + at);
-        const Bytes g = detail::load<std::uint8_t, width>(green_ + at);
-        const Bytes bright_here = Bytes((r == top) | (g == top));
-        const Bytes bad_here = Bytes((r == Bytes{}) | (g == Bytes{})) | bright_here;
-        bright |= bright_here;
-        bad |= bad_here;
-        all_bad &= bad_here;
-        add(r, reds);
-        add(g, greens);
-      }
-      store(reds, red.data() + part * width);
-      store(greens, green.data() + part * width);
+  /// The samples that a vector of pixels holds, from column `col` on.
+  void several(Index col, Sample* to_red, Sample* to_green) const requires(Step != 3) {
+    constexpr int n = width / 2;
+    using Pairs = detail::lanes<std::uint16_t, n>;
+    const auto pairs = [](const Bytes& pixels) __attribute__((always_inline)) {
+      const auto both = detail::unzip_wide<std::uint16_t, n>(pixels);
+      return Pairs(both.first + both.second);
+    };
+    Bytes bad{}, bright{}, bad_rows{};
+    Pairs red{}, green{};
+    for (Index k = 0; k < Step; ++k) {
+      const Block b = block(k, col * Step);
+      bright |= b.bright;
+      bad |= b.bad;
+      bad_rows -= b.bad;  // 255 is -1
+      red += pairs(b.red);
+      green += pairs(b.green);
     }
     if (!detail::any_lane(bad)) {
-      for (int k = 0; k < width; ++k) {
-        to_red[k] = mean_of_columns(&red[static_cast<std::size_t>(3 * k)]);
-        to_green[k] = mean_of_columns(&green[static_cast<std::size_t>(3 * k)]);
+      store_means(red, to_red);
+      store_means(green, to_green);
+      return;
+    }
+    const Pairs count = Pairs{} + std::uint16_t(2 * Step) - pairs(bad_rows);
+    const Pairs told = pairs(bright & (Bytes{} + std::uint8_t(1)));
+    std::array<std::uint16_t, std::size_t(n)> reds, greens, counts, brights;
+    detail::store(reds.data(), red);
+    detail::store(greens.data(), green);
+    detail::store(counts.data(), count);
+    detail::store(brights.data(), told);
+    for (std::size_t k = 0; k < std::size_t(samples_at_once); ++k) {
+      set_sample<Step / 2>(k, reds, greens, counts, brights, to_red, to_green);
+    }
+  }
+
+  /// The samples that three vectors hold.
+  void several(Index col, Sample* to_red, Sample* to_green) const requires(Step == 3) {
+    using Words = detail::lanes<std::uint16_t, width / 2>;
+    using ColumnSums = std::array<std::uint16_t, std::size_t(3 * width)>;
+    alignas(Bytes) ColumnSums reds, greens, counts, brights;
+    Bytes bad{};
+    const auto keep =
+        [](const detail::Two<Words>& sums, std::uint16_t* to) __attribute__((always_inline)) {
+      detail::store(to, sums.first);
+      detail::store(to + width / 2, sums.second);
+    };
+    for (int part = 0; part < 3; ++part) {
+      detail::Two<Words> red{}, green{};
+      Bytes bright{}, count{};
+      for (Index k = 0; k < 3; ++k) {
+        const Block b = block(k, col * 3 + part * width);
+        bright |= b.bright;
+        bad |= b.bad;
+        count -= Bytes(~b.bad);
+        const auto r = detail::widen<std::uint16_t, width / 2>(b.red);
+        const auto g = detail::widen<std::uint16_t, width / 2>(b.green);
+        red.first += r.first;
+        red.second += r.second;
+        green.first += g.first;
+        green.second += g.second;
       }
-      return true;
+      keep(red, reds.data() + part * width);
+      keep(green, greens.data() + part * width);
+      keep(detail::widen<std::uint16_t, width / 2>(count), counts.data() + part * width);
+      keep(detail::widen<std::uint16_t, width / 2>(bright), brights.data() + part * width);
     }
-    if (detail::any_lane(Bytes(~all_bad | bright))) {
-      return false;
+    if (!detail::any_lane(bad)) {
+      for (std::size_t k = 0; k < std::size_t(width); ++k) {
+        to_red[k] = mean(sum_of<3>(reds, k), 9);
+        to_green[k] = mean(sum_of<3>(greens, k), 9);
+      }
+      return;
     }
-    std::fill(to_red, to_red + width, Sample(0));
-    std::fill(to_green, to_green + width, Sample(0));
-    return true;
+    for (std::size_t k = 0; k < std::size_t(width); ++k) {
+      set_sample<3>(k, reds, greens, counts, brights, to_red, to_green);
+    }
   }
 
-  template <class Bytes, class Words>
-  [[gnu::always_inline]] static void add(const Bytes& pixels, detail::Two<Words>& sums) {
-    const auto wide = detail::widen<std::uint16_t, width / 2>(pixels);
-    sums.first += wide.first;
-    sums.second += wide.second;
+  template <std::size_t Parts, class Sums>
+  static std::uint32_t sum_of(const Sums& sums, std::size_t sample) {
+    std::uint32_t sum = 0;
+    for (std::size_t k = 0; k < Parts; ++k) {
+      sum += sums[Parts * sample + k];
+    }
+    return sum;
   }
-  template <class Words>
-  [[gnu::always_inline]] static void store(const detail::Two<Words>& sums, std::uint16_t* to) {
-    detail::store(to, sums.first);
-    detail::store(to + width / 2, sums.second);
-  }
-  static Sample mean_of_columns(const std::uint16_t* sums) {
-    return mean(static_cast<std::uint32_t>(sums[0] + sums[1] + sums[2]), Step * Step);
+  /// A sample some of whose pixels may carry no information, from the sums over its parts.
+  template <std::size_t Parts, class Sums>
+  static void set_sample(std::size_t k,
+                         const Sums& reds,
+                         const Sums& greens,
+                         const Sums& counts,
+                         const Sums& brights,
+                         Sample* to_red,
+                         Sample* to_green) {
+    const auto count = static_cast<int>(sum_of<Parts>(counts, k));
+    const Sample none = sum_of<Parts>(brights, k) > 0 ? Sample(255 * 256) : Sample(0);
+    to_red[k] = count > 0 ? mean(sum_of<Parts>(reds, k), count) : none;
+    to_green[k] = count > 0 ? mean(sum_of<Parts>(greens, k), count) : none;
   }
 
-  template <class Pairs, class Words>
-  [[gnu::always_inline]] static void store_means(const Pairs& sums,
-                                                 const Words& none,
-                                                 const Words& told,
-                                                 Sample* to) {
-    constexpr int n = width / Step;
+  /// Of samples all of whose pixels carry information.
+  template <class Pairs>
+  [[gnu::always_inline]] static void store_means(const Pairs& sums, Sample* to) {
     if constexpr (Step == 2) {
-      detail::store(to, Words(((sums << 6) & ~none) | told));
+      detail::store(to, Pairs(sums << 6));
     } else {
+      constexpr int n = width / Step;
       const auto both = detail::unzip_wide<std::uint32_t, n>(sums);
-      const Words mean = (((both.first + both.second) << 4) & ~none) | told;
-      detail::store(to, detail::convert<std::uint16_t, n>(mean));
+      detail::store(to, detail::convert<std::uint16_t, n>(
+                            detail::lanes<std::uint32_t, n>((both.first + both.second) << 4)));
     }
   }
 #endif

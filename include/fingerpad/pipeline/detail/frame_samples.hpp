@@ -10,6 +10,7 @@
 
 #include "fingerpad/core/grid.hpp"
 #include "fingerpad/core/scalar.hpp"
+#include "fingerpad/depth/detail/pad_area.hpp"
 #include "fingerpad/depth/sampling.hpp"
 
 namespace fingerpad {
@@ -51,15 +52,30 @@ class FrameSamples {
         status_(reference.rows, reference.cols),
         touch_(reference.rows, reference.cols) {
     work_.fill(Sampler::workspace(reference.cols));
+    for (Index i = 0; i < red_.rows; ++i) {
+      PadArea row{i, 0, 1, 0};
+      for (Index j = 0; j < red_.cols; ++j) {
+        if (free_samples_.in_pad(i, j)) {
+          row.col = row.cols == 0 ? j : row.col;
+          row.cols = j + 1 - row.col;
+        }
+      }
+      rows_.push_back(row);
+    }
   }
 
-  /// Of a new frame, of the right size.
+  /// Of a new frame, of the right size; beside the pad they stay 0.
   template <class Frame, class Executor>
   auto operator()(const Frame& frame, Executor& executor) {
     has_depth_ = has_touch_ = false;
     executor.bands(red_.rows, [&](int thread, Index first, Index last) {
-      (void)Sampler::band(first, last, frame.red, frame.green, red_.view(), green_.view(),
-                          work_[static_cast<std::size_t>(thread)]);
+      for (Index i = first; i < last; ++i) {
+        const PadArea& to = rows_[static_cast<std::size_t>(i)];
+        const PadArea from = {i * Step, to.col * Step, Step, to.cols * Step};
+        (void)Sampler::band(0, 1, crop(frame.red, from), crop(frame.green, from),
+                            crop(red_.view(), to), crop(green_.view(), to),
+                            work_[static_cast<std::size_t>(thread)]);
+      }
     });
     return Channels<StridedView<Cell>, StridedView<Cell>>{red_.view(), green_.view()};
   }
@@ -95,6 +111,7 @@ class FrameSamples {
   }
 
   Reference free_, free_samples_;
+  std::vector<PadArea> rows_;  // of the samples in each row, those from the pad's first to its last
   OwnedGrid<Cell> red_, green_;
   OwnedGrid<float> depth_;
   OwnedGrid<PixelStatus> status_;
