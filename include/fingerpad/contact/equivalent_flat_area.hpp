@@ -22,6 +22,7 @@
 // smoothing moves curvature but keeps its integral.
 #include <algorithm>
 #include <cmath>
+#include <concepts>
 #include <cstddef>
 #include <vector>
 
@@ -31,6 +32,8 @@
 #include "fingerpad/core/point.hpp"
 #include "fingerpad/core/scalar.hpp"
 #include "fingerpad/image/detail/image_size.hpp"
+#include "fingerpad/image/detail/quick_math.hpp"
+#include "fingerpad/image/detail/row_lanes.hpp"
 #include "fingerpad/optics/camera.hpp"
 
 namespace fingerpad {
@@ -76,26 +79,63 @@ struct [[nodiscard]] FlatAreaResult {
 
 namespace detail {
 
-/// The sum of the principal curvatures of a surface r(u, v) from its points on a 3 x 3 lattice;
-/// positive where it is a dome seen from +z. NaN where it is steeper than max_slope.
-template <scalar S>
-S curvature_sum(const Point3<S> (&r)[3][3], const S& max_slope) {
-  using std::sqrt;
-  const Point3<S> ru = (r[1][2] - r[1][0]) / S(2), rv = (r[2][1] - r[0][1]) / S(2);
-  const Point3<S> ruu = r[1][2] - S(2) * r[1][1] + r[1][0];
-  const Point3<S> rvv = r[2][1] - S(2) * r[1][1] + r[0][1];
-  const Point3<S> ruv = (r[2][2] - r[2][0] - r[0][2] + r[0][0]) / S(4);
-  const Point3<S> n = cross(ru, rv);
-  const S level_sq = n.x * n.x + n.y * n.y;
-  if (!(value(level_sq) <= value(S(max_slope * max_slope * n.z * n.z)))) {
-    return not_a_number<S>();
+/// Of one coordinate of a surface r(u, v), from its points on a 3 x 3 lattice.
+template <class V>
+struct LatticeDerivatives {
+  V u, v, uu, vv, uv;
+
+  /// `at` is the middle one, in rows of `cols` points.
+  template <class S>
+  LatticeDerivatives(const S* at, Index cols) {
+    const auto from = [&](Index down, Index right) {
+      return load_cells<V, S>(at + down * cols + right);
+    };
+    const S half = S(1) / S(2), quarter = half * half;
+    const V north = from(-1, 0), south = from(1, 0), west = from(0, -1), east = from(0, 1);
+    const V here = from(0, 0), twice = here + here;
+    u = half * (east - west);
+    v = half * (south - north);
+    uu = east - twice + west;
+    vv = south - twice + north;
+    uv = quarter * (from(1, 1) - from(1, -1) - from(-1, 1) + from(-1, -1));
   }
-  const S metric = dot(n, n);  // E G - F^2
-  const S sum =
-      dot(ruu, n) * dot(rv, rv) - S(2) * dot(ruv, n) * dot(ru, rv) + dot(rvv, n) * dot(ru, ru);
-  const S outward = value(n.z) > 0 ? S(-1) : S(1);
-  return S(outward * sum / (metric * sqrt(metric)));
-}
+};
+
+/// A point's part of the lattice in plan, and the integral of the sum of the principal curvatures
+/// over it: positive where the surface is a dome seen from +z, NaN where it is steeper than
+/// max_slope or has no direction.
+template <class V>
+struct FlatAreaPoint {
+  V area_mm2, flux_mm;
+
+  template <class S>
+  FlatAreaPoint(const S* x_mm, const S* y_mm, const S* z_mm, Index cols, const S& max_slope) {
+    using Derivatives = LatticeDerivatives<V>;
+    const Derivatives x(x_mm, cols), y(y_mm, cols), z(z_mm, cols);
+    const V nx = y.u * z.v - z.u * y.v;
+    const V ny = z.u * x.v - x.u * z.v;
+    const V nz = x.u * y.v - y.u * x.v;
+    const V zero = every_lane<V>(S(0));
+    const V level_sq = nx * nx + ny * ny;
+    const V steepest_sq = max_slope * max_slope * (nz * nz);
+    const V metric = level_sq + nz * nz;  // E G - F^2
+    const V e = x.u * x.u + y.u * y.u + z.u * z.u;
+    const V f = x.u * x.v + y.u * y.v + z.u * z.v;
+    const V g = x.v * x.v + y.v * y.v + z.v * z.v;
+    const V of_uu = x.uu * nx + y.uu * ny + z.uu * nz;
+    const V of_uv = x.uv * nx + y.uv * ny + z.uv * nz;
+    const V of_vv = x.vv * nx + y.vv * ny + z.vv * nz;
+    const V sum = of_uu * g - (of_uv * f + of_uv * f) + of_vv * e;
+    const V per_length = inverse_sqrt<V>(metric);
+    const V minus = -nz;
+    const V inward = nz < zero ? nz : minus;
+    const V flux = inward * sum * (per_length * per_length * per_length);
+    const V none = every_lane<V>(not_a_number<S>());
+    const V seen = metric > zero ? flux : none;
+    area_mm2 = nz;
+    flux_mm = level_sq <= steepest_sq ? seen : none;
+  }
+};
 
 /// Plan area within a curve, and the integral of the curvature over it.
 template <scalar S>
@@ -192,14 +232,19 @@ class EquivalentFlatArea {
   class Workspace {
    public:
     explicit Workspace(const EquivalentFlatArea& area)
-        : points_(area.rays_.size()),
-          distances_(area.rays_.size()),
+        : x_(area.rays_.size()),
+          y_(x_.size()),
+          z_(x_.size()),
+          areas_(x_.size()),
+          fluxes_(x_.size(), not_a_number<S>()),
+          distances_(static_cast<std::size_t>((area.rows_ + 2) * (area.cols_ + 2)), area.far()),
           curves_(static_cast<std::size_t>(area.rows_ + area.cols_)) {}
 
    private:
     friend class EquivalentFlatArea;
-    std::vector<Point3<S>> points_;
-    std::vector<Index> distances_;
+    std::vector<S> x_, y_, z_;       // of the points
+    std::vector<S> areas_, fluxes_;  // of their parts of the lattice; none along its border
+    std::vector<Index> distances_;   // with a border of far ones
     std::vector<Curve> curves_;
   };
   Workspace workspace() const { return Workspace(*this); }
@@ -212,19 +257,23 @@ class EquivalentFlatArea {
     const auto depth = as_view(depth_mm);
     FlatAreaResult<S> result;
     if (!same_size(mask, depth) || depth.rows() != image_rows_ || depth.cols() != image_cols_ ||
-        w.points_.size() != rays_.size()) {
+        w.x_.size() != rays_.size()) {
       return result;
     }
-    const Index far = step_length * (rows_ + cols_);
     for (Index i = 0; i < rows_; ++i) {
+      Index* distance = w.distances_.data() + beside(i, 0);
       for (Index j = 0; j < cols_; ++j) {
         const std::size_t k = place(i, j);
+        const Ray& ray = rays_[k];
         const S l = S(depth(i * step_, j * step_));
-        w.points_[k] = rays_[k].on_plate + l * rays_[k].per_depth;
-        w.distances_[k] = is_contact(cell_t<Mask>(mask(i * step_, j * step_))) ? 0 : far;
+        w.x_[k] = ray.on_plate.x + l * ray.per_depth.x;
+        w.y_[k] = ray.on_plate.y + l * ray.per_depth.y;
+        w.z_[k] = ray.on_plate.z + l * ray.per_depth.z;
+        distance[j] = is_contact(cell_t<Mask>(mask(i * step_, j * step_))) ? 0 : far();
       }
     }
     spread(w.distances_);
+    measure(w);
     collect(w);
     result.curves = usable(w.curves_);
     if (result.curves >= options_.min_curves) {
@@ -262,29 +311,44 @@ class EquivalentFlatArea {
 
   std::size_t place(Index i, Index j) const { return static_cast<std::size_t>(i * cols_ + j); }
 
+  /// The same in a lattice with a border.
+  Index beside(Index i, Index j) const { return (i + 1) * (cols_ + 2) + j + 1; }
+  Index far() const { return step_length * (rows_ + cols_); }
+
   /// From 0 in contact and far elsewhere to the distance from the contact, within 6 %.
   void spread(std::vector<Index>& distances) const {
-    const auto shorten = [&](Index i, Index j, Index to_row, Index to_col) {
-      Index& here = distances[place(i, j)];
-      const auto by = [&](Index row, Index col, Index length) {
-        if (row >= 0 && row < rows_ && col >= 0 && col < cols_) {
-          here = (std::min)(here, distances[place(row, col)] + length);
-        }
-      };
-      by(i, j + to_col, step_length);
-      by(i + to_row, j, step_length);
-      by(i + to_row, j - 1, diagonal_length);
-      by(i + to_row, j + 1, diagonal_length);
+    const auto from = [&](Index* here, const Index* next_row, Index before) {
+      *here = (std::min)({*here, next_row[0] + step_length, next_row[-1] + diagonal_length,
+                          next_row[1] + diagonal_length, here[before] + step_length});
     };
+    const Index width = cols_ + 2;
     for (Index i = 0; i < rows_; ++i) {
+      Index* row = distances.data() + beside(i, 0);
       for (Index j = 0; j < cols_; ++j) {
-        shorten(i, j, -1, -1);
+        from(row + j, row + j - width, -1);
       }
     }
     for (Index i = rows_; i-- > 0;) {
+      Index* row = distances.data() + beside(i, 0);
       for (Index j = cols_; j-- > 0;) {
-        shorten(i, j, 1, 1);
+        from(row + j, row + j + width, 1);
       }
+    }
+  }
+
+  /// Areas and fluxes; vectors of float would be too coarse.
+  void measure(Workspace& w) const {
+    constexpr int bytes = std::same_as<S, double> ? detail::native_vector_bytes : 0;
+    const S max_slope = S(options_.max_slope);
+    for (Index i = 1; i + 1 < rows_; ++i) {
+      const Index first = i * cols_ + 1;
+      detail::for_each_cell<S, bytes>(cols_ - 2, [&]<class V>(Index j) {
+        const Index k = first + j;
+        const detail::FlatAreaPoint<V> point(w.x_.data() + k, w.y_.data() + k, w.z_.data() + k,
+                                             cols_, max_slope);
+        detail::store_cells<S>(w.areas_.data() + k, point.area_mm2);
+        detail::store_cells<S>(w.fluxes_.data() + k, point.flux_mm);
+      });
     }
   }
 
@@ -293,10 +357,19 @@ class EquivalentFlatArea {
     std::fill(w.curves_.begin(), w.curves_.end(), Curve{});
     const Index last = static_cast<Index>(w.curves_.size()) - 1;
     for (Index i = 0; i < rows_; ++i) {
+      const Index* distance = w.distances_.data() + beside(i, 0);
       for (Index j = 0; j < cols_; ++j) {
-        const Index beyond = (std::max)(Index(0), w.distances_[place(i, j)] - margin_);
+        const Index beyond = (std::max)(Index(0), distance[j] - margin_);
         const Index k = (std::min)(last, (beyond + step_length - 1) / step_length);
-        w.curves_[static_cast<std::size_t>(k)].add(at(i, j, w.points_));
+        Curve& curve = w.curves_[static_cast<std::size_t>(k)];
+        const S& flux = w.fluxes_[place(i, j)];
+        ++curve.points;
+        if (is_finite(flux)) {
+          curve.area_mm2 = curve.area_mm2 + w.areas_[place(i, j)];
+          curve.flux_mm = curve.flux_mm + flux;
+        } else {
+          ++curve.unseen;
+        }
       }
     }
     for (std::size_t k = 0; k < w.curves_.size(); ++k) {
@@ -305,26 +378,6 @@ class EquivalentFlatArea {
         w.curves_[k].add(w.curves_[k - 1]);
       }
     }
-  }
-
-  Curve at(Index i, Index j, const std::vector<Point3<S>>& points) const {
-    constexpr Curve nothing_seen = {S(0), S(0), 1, 1};
-    if (i == 0 || j == 0 || i + 1 >= rows_ || j + 1 >= cols_) {
-      return nothing_seen;
-    }
-    Point3<S> r[3][3];
-    for (Index a = 0; a < 3; ++a) {
-      for (Index b = 0; b < 3; ++b) {
-        r[a][b] = points[place(i + a - 1, j + b - 1)];
-      }
-    }
-    const S curvature = detail::curvature_sum(r, S(options_.max_slope));
-    if (!is_finite(curvature)) {
-      return nothing_seen;
-    }
-    const Point3<S> across = (r[1][2] - r[1][0]) / S(2), along = (r[2][1] - r[0][1]) / S(2);
-    const S area = across.x * along.y - across.y * along.x;
-    return {area, S(curvature * area), 1, 0};
   }
 
   Index usable(const std::vector<Curve>& curves) const {
