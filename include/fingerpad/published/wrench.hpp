@@ -155,7 +155,9 @@ struct Iteration {
     std::fill(t.upward_shear.begin(), t.upward_shear.end(), S(0));
     for (int pass = 0; pass < passes; ++pass) {
       balance_columns(g, pressure_mpa, t);
-      balance_segments(g, pressure_mpa, work, t);
+      if (pass + 1 == passes) {  // f_h is used for nothing else
+        balance_segments(g, pressure_mpa, work, t);
+      }
       if (!detail::membrane::shear_at_rim(g, pulls, t)) {
         return false;
       }

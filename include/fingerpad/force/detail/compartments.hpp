@@ -35,6 +35,7 @@ class Compartments {
     const S most = S(8) * base_radius_mm / steps.arc_mm;
     const std::size_t points = static_cast<std::size_t>(value(most)) + 8;
     lines_.assign(static_cast<std::size_t>(columns), Meridian<S>(points));
+    level_sums_.resize(lines_.size());
     for (Meridian<S>& line : lines_) {
       line = Meridian<S>(points);  // a copy would not keep the room
     }
@@ -106,7 +107,9 @@ class Compartments {
       line.template trace<Lines::straight>(
           shape, {S(base_radius_mm_ * S(cos(at))), S(base_radius_mm_ * S(sin(at))), S(0)}, center,
           steps_);
-      line.level_sums(center, steps_).add_growth(growth, level);
+      LevelSums<S>& sums = level_sums_[static_cast<std::size_t>(i)];
+      sums = line.level_sums(center, steps_);
+      sums.add_growth(growth, level);
     }
     const S most = S(1) / S(20);  // per mm: more is noise
     growth = value(level) == 0 ? S(0) : S(growth / level);
@@ -114,7 +117,7 @@ class Compartments {
     broken_ = 0;
     for (Index i = 0; i < columns_; ++i) {
       Meridian<S>& line = lines_[static_cast<std::size_t>(i)];
-      line.finish(line.level_sums(center, steps_).level_radius_sq(growth), center, steps_);
+      line.finish(level_sums_[static_cast<std::size_t>(i)].level_radius_sq(growth), center, steps_);
       if (line.end() == LineEnd::hole) {
         ++broken_;
       } else {
@@ -210,6 +213,7 @@ class Compartments {
   Index broken_ = 0;
   std::vector<Point3<S>> nodes_;
   std::vector<Meridian<S>> lines_;
+  std::vector<LevelSums<S>> level_sums_;  // of each line
 };
 
 }  // namespace detail::membrane

@@ -39,7 +39,8 @@ class Segments {
         rows_(rows),
         around_(static_cast<std::size_t>(columns * (rows + 1))),
         upward_(static_cast<std::size_t>(columns * rows)),
-        area_(static_cast<std::size_t>(columns * rows)) {}
+        area_(static_cast<std::size_t>(columns * rows)),
+        normal_(area_.size()) {}
 
   Index columns() const { return columns_; }
   Index rows() const { return rows_; }
@@ -60,7 +61,10 @@ class Segments {
         const Point3<S>& b = nodes.node(next(i), j);
         const Point3<S>& c = nodes.node(next(i), j + 1);
         const Point3<S>& d = nodes.node(i, j + 1);
-        area_[at(i, j)] = S(S(1) / S(2)) * cross(c - a, d - b);
+        const Point3<S> area = S(S(1) / S(2)) * cross(c - a, d - b);
+        area_[at(i, j)] = area;
+        normal_[at(i, j)] =
+            value(squared_norm(area)) > 0 ? normalized(area) : Point3<S>{S(0), S(0), S(0)};
       }
     }
     for (Index j = 0; j <= rows_; ++j) {
@@ -85,10 +89,7 @@ class Segments {
  private:
   std::size_t at(Index i, Index j) const { return static_cast<std::size_t>(j * columns_ + i); }
 
-  Point3<S> normal(Index i, Index j) const {
-    const Point3<S>& a = area_[at(i, j)];
-    return value(squared_norm(a)) > 0 ? normalized(a) : Point3<S>{S(0), S(0), S(0)};
-  }
+  const Point3<S>& normal(Index i, Index j) const { return normal_[at(i, j)]; }
 
   /// `direction` made as long as `like`; 0 where it has no direction.
   static Point3<S> stretched(const Point3<S>& direction, const Point3<S>& like) {
@@ -103,6 +104,7 @@ class Segments {
   std::vector<Border<S>> around_;
   std::vector<Border<S>> upward_;
   std::vector<Point3<S>> area_;
+  std::vector<Point3<S>> normal_;  // unit vectors of the areas; 0 of none
 };
 
 }  // namespace detail::membrane
