@@ -115,7 +115,7 @@ py::tuple pose_tuple(const fingerpad::Pose<double>& pose) {
   return py::make_tuple(rows, as_tuple(pose.translation_mm));
 }
 
-void bind_stages(py::module_& module) {
+void bind_motion_result(py::module_& module) {
   using Motion = fingerpad::ObjectMotionResult<double>;
   py::class_<Motion>(module, "ObjectMotionResult",
                      "How the object has moved; motion/motion_result.hpp.")
@@ -141,6 +141,9 @@ void bind_stages(py::module_& module) {
       .def_property_readonly("displacement_mm",
                              [](const Motion& r) { return as_tuple(r.displacement_mm); })
       .def_readonly("residual_rms_mm", &Motion::residual_rms_mm);
+}
+
+void bind_stick_result(py::module_& module) {
   using Stick = fingerpad::SpatialStickResult<double>;
   py::class_<Stick>(module, "SpatialStickResult",
                     "Stick and slip of a frame in space; slip/stick_result.hpp.")
@@ -162,6 +165,9 @@ void bind_stages(py::module_& module) {
       .def_property_readonly(
           "motion", [](const Stick& r) { return pose_tuple(r.motion); },
           "(R, t) of the object since the reference, if anything sticks");
+}
+
+void bind_slip_result(py::module_& module) {
   using fingerpad::RatioUpdate, fingerpad::SlipEvidence;
   py::enum_<RatioUpdate>(module, "RatioUpdate", "How fresh a stick ratio is.")
       .value("fresh", RatioUpdate::fresh)
@@ -188,6 +194,9 @@ void bind_stages(py::module_& module) {
       .def_readonly("friction", &Slip::friction)
       .def_readonly("limit", &Slip::limit, "at the last slide")
       .def_readonly("margin", &Slip::margin);
+}
+
+void bind_shift_and_area(py::module_& module) {
   using Shift = fingerpad::ShiftResult<double>;
   py::class_<Shift>(module, "ShiftResult",
                     "How far a contact was carried; motion/contact_shift.hpp.")
@@ -208,19 +217,7 @@ void bind_stages(py::module_& module) {
       .def_readonly("curves", &FlatArea::curves);
 }
 
-}  // namespace
-
-void bind_fingertip(py::module_& module) {
-  bind_stages(module);
-  bind_options<SpatialStickTest>(
-      module, "SpatialStickTest",
-      "Noise of the dots, and what is slip; slip/spatial_stick_ratio.hpp.")
-      .def_readwrite("lateral_mm", &SpatialStickTest::lateral_mm)
-      .def_readwrite("depth_mm", &SpatialStickTest::depth_mm)
-      .def_readwrite("free_frames", &SpatialStickTest::free_frames)
-      .def_readwrite("slip_share", &SpatialStickTest::slip_share)
-      .def_readwrite("false_slip", &SpatialStickTest::false_slip)
-      .def_readwrite("min_dots", &SpatialStickTest::min_dots);
+void bind_result(py::module_& module) {
   using Result = FingertipResult;
   py::class_<Result>(module, "FingertipResult",
                      "What a frame says; pipeline/fingertip_options.hpp.")
@@ -238,6 +235,25 @@ void bind_fingertip(py::module_& module) {
       .def_readonly("normal", &Result::normal, "by area and depth together")
       .def_readonly("shear", &Result::shear)
       .def_readonly("wrench", &Result::wrench);
+}
+
+}  // namespace
+
+void bind_fingertip(py::module_& module) {
+  bind_motion_result(module);
+  bind_stick_result(module);
+  bind_slip_result(module);
+  bind_shift_and_area(module);
+  bind_options<SpatialStickTest>(
+      module, "SpatialStickTest",
+      "Noise of the dots, and what is slip; slip/spatial_stick_ratio.hpp.")
+      .def_readwrite("lateral_mm", &SpatialStickTest::lateral_mm)
+      .def_readwrite("depth_mm", &SpatialStickTest::depth_mm)
+      .def_readwrite("free_frames", &SpatialStickTest::free_frames)
+      .def_readwrite("slip_share", &SpatialStickTest::slip_share)
+      .def_readwrite("false_slip", &SpatialStickTest::false_slip)
+      .def_readwrite("min_dots", &SpatialStickTest::min_dots);
+  bind_result(module);
   py::class_<Fingertip>(module, "Fingertip",
                         "Frames, dots and pressure in, touch out; pipeline/fingertip.hpp.\n"
                         "It remembers frames: one object serves one pad.")

@@ -188,7 +188,7 @@ void bind_results(py::module_& module) {
       .def_readonly("moment_n_mm", &ShearResult::moment_n_mm);
 }
 
-void bind_fits(py::module_& module) {
+void bind_normal_force_fit(py::module_& module) {
   bind_options<FitOptions>(module, "FitOptions", "How forces are fitted; see calibrate/fit.hpp.")
       .def_readwrite("robust", &FitOptions::robust)
       .def_readwrite("threshold", &FitOptions::threshold)
@@ -220,6 +220,9 @@ void bind_fits(py::module_& module) {
       .def_property_readonly("per_rad_sq",
                              [](const NormalFit& f) { return f.compensation.per_rad_sq; })
       .def_readonly("explained", &NormalFit::explained, "share of the variance");
+}
+
+void bind_shear_fit(py::module_& module) {
   py::class_<ShearFit>(module, "ShearFit", "A fitted stiffness; Shear(force, moment) looks it up.")
       .def_property_readonly("ok", [](const ShearFit& f) { return f.fit.ok(); })
       .def_property_readonly("status", [](const ShearFit& f) { return name_of(f.fit.status); })
@@ -234,6 +237,9 @@ void bind_fits(py::module_& module) {
       .def_property_readonly("exponent_sd", [](const ShearFit& f) { return f.fit.exponent_sd; })
       .def_property_readonly("residual_sd", [](const ShearFit& f) { return f.fit.residual_sd; })
       .def_property_readonly("explained", [](const ShearFit& f) { return f.fit.explained; });
+}
+
+void bind_fits(py::module_& module) {
   module.def("fit_normal_force", &fit_normal_force, py::arg("measure"), py::arg("normal_force_n"),
              py::arg("displacement_mm") = py::none(), py::arg("rotation_rad") = py::none(),
              py::arg("options") = FitOptions(),
@@ -257,6 +263,8 @@ void bind_fits(py::module_& module) {
 
 void bind_look_up(py::module_& module) {
   bind_results(module);
+  bind_normal_force_fit(module);
+  bind_shear_fit(module);
   bind_fits(module);
   py::class_<NormalForce>(module, "NormalForce",
                           "Normal force by one measure of the contact; force/normal_force.hpp.")

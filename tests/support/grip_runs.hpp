@@ -46,6 +46,27 @@ struct GripRun {
   double beyond;   ///< mean over time of the force by the least that holds, less 1
 };
 
+/// The dots of the free pad.
+inline Image<fingerpad::Point3<double>> free_dots(const grip::Fingertip& tip) {
+  Image<fingerpad::Point3<double>> dots(tip.dots, tip.dots);
+  for (fingerpad::Index i = 0; i < tip.dots; ++i) {
+    for (fingerpad::Index j = 0; j < tip.dots; ++j) {
+      dots(i, j) = {tip.pitch_mm * static_cast<double>(j - tip.dots / 2),
+                    tip.pitch_mm * static_cast<double>(i - tip.dots / 2), 10};
+    }
+  }
+  return dots;
+}
+
+/// What is left of the friction at a time of GripScene::changes.
+inline double friction_left(const GripVariation& vary, double time_s) {
+  const auto part = [&](double from_s, double for_s) {
+    return std::clamp((time_s - from_s) / for_s, 0.0, 1.0);
+  };
+  return vary.falls_twice ? (1 - 0.3 * part(2, 1)) * (1 - 0.4 * part(6, 2))
+                          : 1 - 0.4 * (part(2, 3) - part(7, 3));
+}
+
 /// Run 0 to 9: friction 0.4, 0.55, 0.7, 0.85, 1, by the slower and by the faster load.
 template <class S>
 GripRun run_grip(const fingerpad::GripLaw<S>& law,
@@ -75,26 +96,16 @@ GripRun run_grip(const fingerpad::GripLaw<S>& law,
   auto limit_state = limit.start();
   auto grip_state = control.start(S(force_n));
   Random random(static_cast<std::uint64_t>(1 + number + 100 * static_cast<int>(scene)));
-  Image<Point3<double>> dots(tip.dots, tip.dots);
+  Image<Point3<double>> dots = free_dots(tip);
   Image<unsigned char> touch(tip.dots, tip.dots);
   Image<DotState> states(tip.dots, tip.dots);
-  for (Index i = 0; i < tip.dots; ++i) {
-    for (Index j = 0; j < tip.dots; ++j) {
-      dots(i, j) = {tip.pitch_mm * static_cast<double>(j - tip.dots / 2),
-                    tip.pitch_mm * static_cast<double>(i - tip.dots / 2), 10};
-    }
-  }
   (void)stick_ratio(dots, touch, states, stick_state, -1);  // the pad before the object is taken
   double sum = 0, frames = 0;
   for (double time_s = 0; time_s < end_s && load.slip_mm() < 20; time_s += frame_s) {
     const double load_n = (std::min)(first_n + rise * time_s, last_n);
     double now = friction;
     if (changes) {
-      const auto part = [&](double from_s, double for_s) {
-        return std::clamp((time_s - from_s) / for_s, 0.0, 1.0);
-      };
-      now *= vary.falls_twice ? (1 - 0.3 * part(2, 1)) * (1 - 0.4 * part(6, 2))
-                              : 1 - 0.4 * (part(2, 3) - part(7, 3));
+      now *= friction_left(vary, time_s);
       load.set_friction(now);
     }
     if (rolls) {
