@@ -135,8 +135,6 @@ class SpatialStickRatio {
   }
 
  private:
-  using Pairs = std::vector<detail::stick::SpatialPair<S>>;
-
   /// By the frames in which nothing touches.
   void measure_noise(State& state) const {
     if (!state.given.touching.empty() || test_.free_frames == 0) {
@@ -203,14 +201,15 @@ class SpatialStickRatio {
     return status;
   }
 
-  /// As UpdatedReference, but a frame that stands still is compared too.
-  detail::stick::Choice<S> choose(const S& reference_sq, const State& state) const {
+  /// As UpdatedReference, but a frame that stands still is compared too. The pairs are those of the
+  /// chosen frame then.
+  detail::stick::Choice<S> choose(const S& reference_sq, State& state) const {
     using namespace detail::stick;
     Choice<S> choice;
     S before = S(-1);
     for (Index age = 0; age < state.repository.size(); ++age) {
-      const S sq =
-          furthest_rigid_sq(state.given.touching, state.now.data(), state.repository.dots(age));
+      collect(state.repository.dots(age), state);
+      const S sq = furthest_rigid_sq(state.pairs);
       if (age == 0) {
         choice.newest_sq = sq;
         choice.standing = !(sq < S(0)) && !(reference_sq / S(16) < sq);
@@ -233,10 +232,9 @@ class SpatialStickRatio {
                      State& state) const {
     using namespace detail::stick;
     using std::sqrt;
-    const AxisNoise<S> noise = {S(noise_mm.lateral_mm), S(1 / square(noise_mm.lateral_mm)),
+    const AxisNoise<S> noise = {S(1 / square(noise_mm.lateral_mm)),
                                 S(1 / square(noise_mm.depth_mm))};
-    collect(state.repository.dots(choice.age), noise, state);
-    if (static_cast<Index>(state.pairs.size()) < test_.min_dots) {
+    if (state.pairs.size() < test_.min_dots) {
       return StickStatus::too_few_dots;
     }
     SpatialStickResult<S>& result = state.result;
@@ -250,8 +248,9 @@ class SpatialStickRatio {
     const Index age = static_cast<Index>(state.frame - state.repository.frame(choice.age));
     if (falls_back(state.given.touching, state.now.data(), state.repository.dots(choice.age),
                    state.free)) {
-      const auto stick = std::count_if(state.pairs.begin(), state.pairs.end(),
-                                       [&](const auto& p) { return p.mean_sq < limit; });
+      Index stick = 0;
+      state.pairs.for_each(
+          [&](const PairBlock<S>& b, std::size_t k) { stick += b.mean_sq[k] < limit ? 1 : 0; });
       result.back = {S(static_cast<double>(stick)) / S(static_cast<double>(state.pairs.size())),
                      age};
       return StickStatus::falls_back;
@@ -263,23 +262,18 @@ class SpatialStickRatio {
     return StickStatus::updated;
   }
 
-  /// The dots that both frames have, with the surface at each.
-  void collect(const Point3<S>* then,
-               const detail::stick::AxisNoise<S>& noise,
-               State& state) const {
+  /// The dots that both frames have.
+  void collect(const Point3<S>* then, State& state) const {
     using namespace detail::stick;
     state.pairs.clear();
+    const Point3<S>* const now = state.now.data();
     DotWalk walk(layout_);
     for (const Index k : state.given.touching) {
-      if (is_finite(then[k]) && is_finite(at(state.now, k))) {
-        SpatialPair<S>& pair = state.pairs.emplace_back();
-        pair.cell = k;
-        pair.padded = state.padded(walk.to(k));
-        pair.then = then[k];
-        pair.now = at(state.now, k);
+      const Point3<S> moved = now[k] - then[k];
+      if (is_finite(S(moved.x + moved.y + moved.z))) {
+        state.pairs.add(k, state.padded(walk.to(k)), state.spare(), then[k], now[k]);
       }
     }
-    set_surface(noise, state.pairs);
   }
 
   /// The rigid motion on which the dots around `from` agree with those that follow it: dots within
@@ -291,61 +285,47 @@ class SpatialStickRatio {
                  State& state,
                  Pose<S>& motion) const {
     using namespace detail::stick;
-    Pairs& pairs = state.pairs;
+    SpatialPairs<S>& pairs = state.pairs;
+    set_surface(noise, pairs);
     weigh_around(from, state.pitch_sq, pairs);
     set_slips(motion, pairs);
     if (!refine_motion(pairs, noise, from, motion)) {
       return false;
     }
     set_slips(motion, pairs);
-    Index before = -1;
+    S before = S(-1);
     for (int pass = 0; pass < max_passes; ++pass) {
-      const Index followers = weigh_followers(limit, pairs);
-      if (followers < min_followers) {
+      const S followers = weigh_followers(limit, pairs);
+      if (followers < S(min_followers)) {
         weigh_nearest(min_followers, state.sorted, pairs);
       }
       if (!refine_motion(pairs, noise, from, motion)) {
         return false;
       }
       set_slips(motion, pairs);
-      if (followers == before) {
+      if (!(followers < before) && !(before < followers)) {
         break;
       }
       before = followers;
     }
     // of averaged slips, noise explains a mean of 4 gain^2: weights fall to a fourth at twice that
     const double gain = neighbour_gain();
-    const S width = S(8 * gain * gain);
-    std::fill(state.small_slips.begin(), state.small_slips.end(), SmallSlip<S>{});
+    const S quarter = S(8 * gain * gain), gate = S(36) * limit;
+    const auto average = [&] {
+      average_slips(gate, noise, layout_.cols + 2, state.small_slips, pairs);
+    };
+    std::fill(state.small_slips.begin(), state.small_slips.end(),
+              SmallSlip<S>{S(0), S(0), S(0), S(0)});
     for (int pass = 0; pass < 3; ++pass) {
-      average_slips(limit, state);
-      for (SpatialPair<S>& p : pairs) {
-        const S ratio = width / (width + p.mean_sq);
-        p.weight = ratio * ratio;
-      }
+      average();
+      weigh_by_mean(quarter, pairs);
       if (!refine_motion(pairs, noise, from, motion)) {
         return false;
       }
       set_slips(motion, pairs);
     }
-    average_slips(limit, state);
+    average();
     return true;
-  }
-
-  /// Slips averaged over neighbours; those that slip by more than six thresholds do not count.
-  /// Cells without a pair are empty.
-  void average_slips(const S& limit, State& state) const {
-    using namespace detail::stick;
-    const S gate = S(36) * limit;
-    for (const SpatialPair<S>& p : state.pairs) {
-      state.small_slips[p.padded] =
-          p.slip_sq < gate ? SmallSlip<S>{p.slip(), S(1)} : SmallSlip<S>{};
-    }
-    for (SpatialPair<S>& p : state.pairs) {
-      p.mean_slip =
-          p.slip_sq < gate ? mean_around(&state.small_slips[p.padded], layout_.cols + 2) : p.slip();
-      p.mean_sq = p.slip_sq < gate ? in_variances(p.mean_slip, p) : p.slip_sq;
-    }
   }
 
   /// Marks each dot of both frames, and writes its slip. `sd_mm`: of the difference of two places.
@@ -357,14 +337,15 @@ class SpatialStickRatio {
     state.doubts.clear();
     DotWalk walk(layout_);
     const S sd = S(std::sqrt(2.0) * neighbour_gain());  // of a mean slip, in those of a position
-    for (const SpatialPair<S>& p : state.pairs) {
-      const bool sticks = p.mean_sq < limit;
-      at(state.marks, p.cell) = sticks ? DotState::stick : DotState::slip;
-      at(state.dot_slips, p.cell) = {p.mean_slip, sd_mm};
+    state.pairs.for_each([&](const PairBlock<S>& b, std::size_t k) {
+      const Index cell = b.cell[k];
+      const bool sticks = b.mean_sq[k] < limit;
+      at(state.marks, cell) = sticks ? DotState::stick : DotState::slip;
+      at(state.dot_slips, cell) = {b.mean_slip[k], sd_mm};
       stick += sticks ? 1 : 0;
-      center = sticks ? center + p.now : center;
-      state.doubts.set(walk.to(p.cell), doubt_of(p.mean_sq, limit, sd));
-    }
+      center = sticks ? center + b.now[k] : center;
+      state.doubts.set(walk.to(cell), doubt_of(b.mean_sq[k], limit, sd));
+    });
     if (stick > 0) {
       state.stick_center = center / S(stick);
       state.has_center = true;

@@ -121,7 +121,8 @@ struct GivenDots {
         if constexpr (requires { p.z; }) {
           p.z = coordinate<P>(Traits::z(given));
         }
-        const bool there = is_plausible(p);
+        // squares that sum to less tell at once
+        const bool there = squared_norm(p) < square(coordinate<P>(1000000)) || is_plausible(p);
         at(found, k) = there ? p : no_dot<P>();
         count += there ? 1 : 0;
         if (p.x == p.y) {
@@ -303,19 +304,22 @@ void settle_marks(const DotLayout& layout,
                   std::vector<DotState>& marks,
                   Result& result,
                   const States& to) {
-  auto touching = all_touching.begin();
   result.stick = result.slip = result.unknown = 0;
-  Index k = 0;
+  auto mark = marks.begin();
+  for (const Index k : all_touching) {
+    const auto touching = marks.begin() + k;
+    mark = std::fill_n(mark, touching - mark, DotState::none);
+    *mark = *mark == DotState::none ? DotState::unknown : *mark;
+    result.stick += *mark == DotState::stick ? 1 : 0;
+    result.slip += *mark == DotState::slip ? 1 : 0;
+    result.unknown += *mark == DotState::unknown ? 1 : 0;
+    ++mark;
+  }
+  std::fill(mark, marks.end(), DotState::none);
+  mark = marks.begin();
   for (Index i = 0; i < layout.rows; ++i) {
-    for (Index j = 0; j < layout.cols; ++j, ++k) {
-      DotState& mark = marks[static_cast<std::size_t>(k)];
-      const bool touches = touching != all_touching.end() && *touching == k;
-      touching += touches ? 1 : 0;
-      mark = !touches ? DotState::none : mark == DotState::none ? DotState::unknown : mark;
-      result.stick += mark == DotState::stick ? 1 : 0;
-      result.slip += mark == DotState::slip ? 1 : 0;
-      result.unknown += mark == DotState::unknown ? 1 : 0;
-      to(i, j) = static_cast<cell_t<States>>(mark);
+    for (Index j = 0; j < layout.cols; ++j, ++mark) {
+      to(i, j) = static_cast<cell_t<States>>(*mark);
     }
   }
 }

@@ -63,19 +63,20 @@ PlacedDots place_dots(const GivenDots<P>& given, const DotLayout& layout, Dots<P
   std::fill(now.begin(), now.end(), no_dot<P>());
   PlacedDots placed;
   DotWalk walk(layout);
+  const P* const dots = given.found.data();
   for (const Index k : given.touching) {
-    if (!is_finite(at(given.found, k))) {
+    if (!is_finite(dots[k])) {
       continue;
     }
     const DotIndex d = walk.to(k);
-    if (is_out_of_place(given.found.data(), layout, d)) {
+    const bool row = is_out_of_line(dots, layout, d, 0, 1);
+    const bool col = is_out_of_line(dots, layout, d, 1, 0);
+    if (row || col || is_corner_out_of_line(dots, layout, d)) {
       ++placed.out_of_place;
-      const bool both = is_out_of_line(given.found.data(), layout, d, 0, 1) &&
-                        is_out_of_line(given.found.data(), layout, d, 1, 0);
-      placed.crossed += both ? 1 : 0;
+      placed.crossed += row && col ? 1 : 0;
     } else {
       ++placed.dots;
-      at(now, k) = at(given.found, k);
+      at(now, k) = dots[k];
     }
   }
   return placed;
@@ -96,14 +97,19 @@ coordinate<P> mean_pitch_sq(const std::vector<Index>& touching,
   S sum = S(0);
   int count = 0;
   DotWalk walk(layout);
+  const auto add = [&](const P& a, const P& b) {
+    const S sq = squared_norm(a - b);
+    const bool known = is_distance_sq(sq);
+    sum = known ? S(sum + sq) : sum;
+    count += known ? 1 : 0;
+  };
   for (const Index k : touching) {
     const DotIndex d = walk.to(k);
-    for (const Index down : {Index(0), Index(1)}) {
-      const S sq = squared_norm(beside(now, layout, d, down, 1 - down) - now[k]);
-      if (is_distance_sq(sq)) {
-        sum = sum + sq;
-        ++count;
-      }
+    if (d.col + 1 < layout.cols) {
+      add(now[k + 1], now[k]);
+    }
+    if (d.row + 1 < layout.rows) {
+      add(now[k + layout.cols], now[k]);
     }
   }
   return count > 0 ? S(sum / S(count)) : S(0);

@@ -37,28 +37,11 @@ struct Quadric {
   }
 };
 
-/// Through all points that for_each(visit) visits, twice; a plane where they do not determine a
-/// bend, level where they determine no plane.
-template <class S, class ForEach>
-Quadric<S> quadric_through(const ForEach& for_each) {
+/// From the normal equations of its terms; a plane where they do not determine a bend, level where
+/// they determine no plane.
+template <class S>
+Quadric<S> quadric_of(const SmallMatrix<S, 6>& a, const std::array<S, 6>& b) {
   Quadric<S> q;
-  for_each([&](const Point3<S>& p) {
-    q.middle += p;
-    ++q.dots;
-  });
-  q.middle = q.middle / S(static_cast<double>((std::max)(q.dots, Index(1))));
-  SmallMatrix<S, 6> a = zero_matrix<S, 6>();
-  std::array<S, 6> b = detail::zeros<S, 6>();
-  for_each([&](const Point3<S>& p) {
-    const auto t = Quadric<S>::terms(S(p.x - q.middle.x), S(p.y - q.middle.y));
-    const S z = p.z - q.middle.z;
-    for (std::size_t i = 0; i < 6; ++i) {
-      b[i] = b[i] + t[i] * z;
-      for (std::size_t j = 0; j <= i; ++j) {
-        a[i][j] = a[i][j] + t[i] * t[j];
-      }
-    }
-  });
   const NormalEquations<S, 6> bent(a, 1e-3);
   if (bent.good) {
     q.c = bent.solve(b);
@@ -75,6 +58,34 @@ Quadric<S> quadric_through(const ForEach& for_each) {
     const auto c = plane.solve({b[0], b[1], b[2]});
     q.c = {c[0], c[1], c[2], S(0), S(0), S(0)};
   }
+  return q;
+}
+
+/// Through all points that for_each(visit) visits, twice.
+template <class S, class ForEach>
+Quadric<S> quadric_through(const ForEach& for_each) {
+  Point3<S> middle = {S(0), S(0), S(0)};
+  Index dots = 0;
+  for_each([&](const Point3<S>& p) {
+    middle += p;
+    ++dots;
+  });
+  middle = middle / S(static_cast<double>((std::max)(dots, Index(1))));
+  SmallMatrix<S, 6> a = zero_matrix<S, 6>();
+  std::array<S, 6> b = detail::zeros<S, 6>();
+  for_each([&](const Point3<S>& p) {
+    const auto t = Quadric<S>::terms(S(p.x - middle.x), S(p.y - middle.y));
+    const S z = p.z - middle.z;
+    for (std::size_t i = 0; i < 6; ++i) {
+      b[i] = b[i] + t[i] * z;
+      for (std::size_t j = 0; j <= i; ++j) {
+        a[i][j] = a[i][j] + t[i] * t[j];
+      }
+    }
+  });
+  Quadric<S> q = quadric_of(a, b);
+  q.middle = middle;
+  q.dots = dots;
   return q;
 }
 

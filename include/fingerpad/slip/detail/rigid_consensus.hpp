@@ -11,276 +11,264 @@
 #include "fingerpad/math/detail/small_matrices.hpp"
 #include "fingerpad/math/detail/zeros.hpp"
 #include "fingerpad/math/rotation.hpp"
-#include "fingerpad/slip/detail/dot_frames.hpp"
-#include "fingerpad/slip/detail/dot_surface.hpp"
+#include "fingerpad/slip/detail/dot_pairs.hpp"
 
 namespace fingerpad {
 inline namespace v0 {
 namespace detail::stick {
 
-/// One dot of two frames, and the surface where it is now.
-template <class S>
-struct SpatialPair {
-  Index cell = 0;
-  std::size_t padded = 0;  ///< the cell in a grid with a border of one
-  Point3<S> then = {S(0), S(0), S(0)};
-  Point3<S> now = {S(0), S(0), S(0)};
-  Point3<S> by_u, by_v;  ///< what a residual is multiplied by for its slip up the slope and level
-  Point3<S> u, v;        ///< the axes, of the length of one standard deviation of a position
-  S weight = S(0);       ///< in the fit of the motion
-  Point3<S> carried = {S(0), S(0), S(0)};   ///< from `then` by the motion
-  Point3<S> residual = {S(0), S(0), S(0)};  ///< now less carried
-  S slip_u = S(0), slip_v = S(0);           ///< in standard deviations of one position
-  S slip_sq = S(0);
-  Point3<S> mean_slip = {S(0), S(0), S(0)};  ///< averaged over neighbours
-  S mean_sq = S(0);                          ///< in variances of one position
-
-  Point3<S> slip() const { return slip_u * u + slip_v * v; }
-};
-
-/// Of the noise of one dot, what the mean of it and its eight neighbours leaves (mean_around).
+/// Of the noise of one dot, what the mean of it and its eight neighbours leaves (sum_around).
 inline double neighbour_gain() {
   return std::sqrt(36.0 + 4 * 4 + 4 * 1) / 18;
 }
 
-/// A slip that counts in the mean of its neighbours', weight 1; or none, 0. And sums of these.
+/// A slip that counts in the mean of its neighbours', x, y, z and weight 1; or none, all 0. And
+/// sums of these.
 template <class S>
-struct SmallSlip {
-  Point3<S> slip = {S(0), S(0), S(0)};
-  S weight = S(0);
+using SmallSlip = std::array<S, 4>;
 
-  friend SmallSlip operator+(const SmallSlip& a, const SmallSlip& b) {
-    return {a.slip + b.slip, S(a.weight + b.weight)};
-  }
-  friend SmallSlip operator*(const S& factor, const SmallSlip& a) {
-    return {factor * a.slip, S(factor * a.weight)};
-  }
-};
-
-/// The mean of a slip, which counts, and its eight neighbours, in a grid of `across` columns. It
-/// has weight 6, those beside it 2, those across 1.
+/// The sum of a slip, which has weight 6, and its eight neighbours, those beside it with weight 2,
+/// those across with 1, in a grid of `across` columns.
 template <class S>
-Point3<S> mean_around(const SmallSlip<S>* slips, Index across) {
-  const SmallSlip<S> beside = slips[-across] + slips[-1] + slips[1] + slips[across];
-  const SmallSlip<S> diagonal =
-      slips[-across - 1] + slips[1 - across] + slips[across - 1] + slips[across + 1];
-  const SmallSlip<S> sum = S(6) * *slips + S(2) * beside + diagonal;
-  return S(S(1) / sum.weight) * sum.slip;
+SmallSlip<S> sum_around(const SmallSlip<S>* slips, Index across) {
+  const SmallSlip<S>* const above = slips - across;
+  const SmallSlip<S>* const below = slips + across;
+  SmallSlip<S> sum;
+  for (std::size_t i = 0; i < sum.size(); ++i) {
+    const S beside = above[0][i] + slips[-1][i] + slips[1][i] + below[0][i];
+    const S diagonal = above[-1][i] + above[1][i] + below[-1][i] + below[1][i];
+    sum[i] = S(6) * slips[0][i] + S(2) * beside + diagonal;
+  }
+  return sum;
 }
 
 template <class S>
 struct AxisNoise {
-  S lateral_sd;
   S lateral_info;  ///< 1 / variance
   S depth_info;
 };
 
-/// The axes of a surface with this slope, u up it and v level: along these the noise of the axes is
-/// independent. For a vector w = axis / variances, by = w / sqrt(axis w), whatever the axis'
-/// length.
+/// Gives each pair the axes of the surface at its dot, u up its slope and v level: along these the
+/// noise of the axes is independent. For a vector w = axis / variances, by = w / sqrt(axis w),
+/// whatever the axis' length.
 template <class S>
-void set_axes(const AxisNoise<S>& noise, const Point2<S>& slope, SpatialPair<S>& p) {
+void set_surface(const AxisNoise<S>& given_noise, SpatialPairs<S>& pairs) {
   using std::sqrt;
-  const S sq = squared_norm(slope);
-  const S steepness = sq > S(0) ? S(sqrt(sq)) : S(0);
-  const S inverse = steepness > S(0) ? S(S(1) / steepness) : S(0);
-  const Point2<S> up = steepness > S(0) ? Point2<S>{S(inverse * slope.x), S(inverse * slope.y)}
-                                        : Point2<S>{S(1), S(0)};
-  const S sd_u = S(1) / S(sqrt(S(noise.lateral_info + noise.depth_info * sq)));
-  p.u = {S(sd_u * up.x), S(sd_u * up.y), S(sd_u * steepness)};
-  p.by_u = {S(noise.lateral_info * p.u.x), S(noise.lateral_info * p.u.y),
-            S(noise.depth_info * p.u.z)};
-  p.v = {S(-noise.lateral_sd * up.y), S(noise.lateral_sd * up.x), S(0)};
-  p.by_v = noise.lateral_info * p.v;
-}
-
-/// Gives each pair the surface at its dot.
-template <class S>
-void set_surface(const AxisNoise<S>& noise, std::vector<SpatialPair<S>>& pairs) {
-  const auto surface = quadric_through<S>([&](const auto& visit) {
-    for (const SpatialPair<S>& p : pairs) {
-      visit(p.now);
+  const Quadric<S> surface = quadric_through(pairs);
+  const AxisNoise<S> noise = given_noise;
+  const S lateral_by = S(sqrt(noise.lateral_info));
+  for (PairBlock<S>& b : pairs) {
+    for (std::size_t k = 0; k < block_dots; ++k) {
+      const Point2<S> slope = surface.slope(b.now[k]);
+      const S sq = squared_norm(slope);
+      const bool inclined = sq > S(0);
+      const S steepness = S(sqrt(inclined ? sq : S(1)));
+      const S up_x = inclined ? S(slope.x / steepness) : S(1);
+      const S up_y = inclined ? S(slope.y / steepness) : S(0);
+      const S by = S(1) / S(sqrt(S(noise.lateral_info + noise.depth_info * sq)));
+      b.by_u.x[k] = noise.lateral_info * by * up_x;
+      b.by_u.y[k] = noise.lateral_info * by * up_y;
+      b.by_u.z[k] = inclined ? S(noise.depth_info * by * steepness) : S(0);
+      b.by_v_x[k] = S(-lateral_by * up_y);
+      b.by_v_y[k] = lateral_by * up_x;
     }
-  });
-  for (SpatialPair<S>& p : pairs) {
-    set_axes(noise, surface.slope(p.now), p);
   }
 }
 
-/// The slip of a dot against a motion, by generalised least squares: what of its residual lies
+/// Weights of a bell 4/3 pitches wide around a place, (1 + x / 4096)^-4096 for exp(-x), without
+/// calls; all alike where there is no pitch.
+template <class S>
+void weigh_around(const Point3<S>& from, const S& pitch_sq, SpatialPairs<S>& pairs) {
+  const S scale = S(0) < pitch_sq ? S(S(9.0 / (32 * 4096)) / pitch_sq) : S(0);
+  const Point3<S> middle = from;
+  for (PairBlock<S>& b : pairs) {
+    for (std::size_t k = 0; k < block_dots; ++k) {
+      S bell = S(1) / (S(1) + scale * squared_norm(b.now[k] - middle));
+      for (int doubling = 0; doubling < 12; ++doubling) {
+        bell = bell * bell;
+      }
+      b.weight[k] = b.is_dot[k] * bell;
+    }
+  }
+}
+
+/// The slip of each dot against a motion, by generalised least squares: what of its residual lies
 /// along the normal is noise, and depth, which is known worse, counts only where the surface is
 /// inclined.
 template <class S>
-void set_slip(const Pose<S>& motion, SpatialPair<S>& p) {
-  p.carried = motion(p.then);
-  p.residual = p.now - p.carried;
-  p.slip_u = dot(p.by_u, p.residual);
-  p.slip_v = dot(p.by_v, p.residual);
-  p.slip_sq = p.slip_u * p.slip_u + p.slip_v * p.slip_v;
-}
-
-/// The square of a slip at a dot, in variances of one position.
-template <class S>
-S in_variances(const Point3<S>& slip, const SpatialPair<S>& p) {
-  const S u = dot(p.by_u, slip), v = dot(p.by_v, slip);
-  return u * u + v * v;
-}
-
-template <class S>
-Point3<S> middle_of(const std::vector<SpatialPair<S>>& pairs) {
-  Point3<S> sum = {S(0), S(0), S(0)};
-  for (const SpatialPair<S>& p : pairs) {
-    sum += p.now;
-  }
-  return sum / S(static_cast<double>(pairs.size()));
-}
-
-/// Weights of a bell 4/3 pitches wide around a place; all alike where there is no pitch.
-template <class S>
-void weigh_around(const Point3<S>& from, const S& pitch_sq, std::vector<SpatialPair<S>>& pairs) {
-  using std::exp;
-  for (SpatialPair<S>& p : pairs) {
-    const S d = S(0) < pitch_sq ? S(squared_norm(p.now - from) / pitch_sq) : S(0);
-    p.weight = d < S(100) ? S(exp(S(S(-9.0 / 32) * d))) : S(0);
-  }
-}
-
-template <class S>
-void set_slips(const Pose<S>& motion, std::vector<SpatialPair<S>>& pairs) {
-  for (SpatialPair<S>& p : pairs) {
-    set_slip(motion, p);
+void set_slips(const Pose<S>& motion_now, SpatialPairs<S>& pairs) {
+  const Pose<S> motion = motion_now;
+  for (PairBlock<S>& b : pairs) {
+    for (std::size_t k = 0; k < block_dots; ++k) {
+      const Point3<S> residual = b.now[k] - motion(b.then[k]);
+      b.residual.set(k, residual);
+      const S u = dot(b.by_u[k], residual);
+      const S v = b.by_v_x[k] * residual.x + b.by_v_y[k] * residual.y;
+      b.slip_u[k] = u;
+      b.slip_v[k] = v;
+      b.slip_sq[k] = u * u + v * v;
+    }
   }
 }
 
 /// Weight 1 for the dots whose slip is within the limit; how many they are.
 template <class S>
-Index weigh_followers(const S& limit, std::vector<SpatialPair<S>>& pairs) {
-  Index followers = 0;
-  for (SpatialPair<S>& p : pairs) {
-    const bool follows = p.slip_sq < limit;
-    p.weight = S(follows ? 1 : 0);
-    followers += follows ? 1 : 0;
+S weigh_followers(const S& limit_sq, SpatialPairs<S>& pairs) {
+  const S limit = limit_sq;
+  Block<S> followers = zeros<S, block_dots>();
+  for (PairBlock<S>& b : pairs) {
+    for (std::size_t k = 0; k < block_dots; ++k) {
+      const S weight = (b.slip_sq[k] < limit ? S(1) : S(0)) * b.is_dot[k];
+      b.weight[k] = weight;
+      followers[k] = followers[k] + weight;
+    }
   }
-  return followers;
+  return total(followers);
 }
 
 /// Weights of a bell as wide as the slip of the dot that is `rank` from the least; `sorted` is room
 /// to work in.
 template <class S>
-void weigh_nearest(Index rank, std::vector<S>& sorted, std::vector<SpatialPair<S>>& pairs) {
+void weigh_nearest(Index rank, std::vector<S>& sorted, SpatialPairs<S>& pairs) {
   using std::exp;
   std::size_t count = 0;
-  for (const SpatialPair<S>& p : pairs) {
-    sorted[count++] = p.slip_sq;
-  }
+  pairs.for_each([&](const PairBlock<S>& b, std::size_t k) { sorted[count++] = b.slip_sq[k]; });
   const auto middle = sorted.begin() + rank;
   std::nth_element(sorted.begin(), middle, sorted.begin() + static_cast<Index>(count));
   const S width = *middle > S(0) ? *middle : S(1);
-  for (SpatialPair<S>& p : pairs) {
-    const S ratio = p.slip_sq / width;
-    p.weight = ratio < S(100) ? S(exp(S(ratio / S(-2)))) : S(0);
+  pairs.for_each([&](PairBlock<S>& b, std::size_t k) {
+    const S ratio = b.slip_sq[k] / width;
+    b.weight[k] = ratio < S(100) ? S(exp(S(ratio / S(-2)))) : S(0);
+  });
+}
+
+/// Weights that fall with the averaged slip, to a fourth at this one.
+template <class S>
+void weigh_by_mean(const S& quarter_sq, SpatialPairs<S>& pairs) {
+  const S width = quarter_sq;
+  for (PairBlock<S>& b : pairs) {
+    for (std::size_t k = 0; k < block_dots; ++k) {
+      const S ratio = width / (width + b.mean_sq[k]);
+      b.weight[k] = b.is_dot[k] * ratio * ratio;
+    }
   }
 }
 
-/// d_max^2: the largest displacement of a dot that both frames have, -1 if there is none. Its depth
-/// is that of the plane through the depth displacements of all, which a rigid motion follows: one
-/// dot's depth is known too badly.
+/// Slips averaged over neighbours; those beyond the gate do not count, and stay as they are.
+/// `room`: a grid with a border of one cell and this many columns, in which cells without a pair
+/// are empty.
 template <class S>
-S furthest_rigid_sq(const std::vector<Index>& touching,
-                    const Point3<S>* now,
-                    const Point3<S>* then) {
-  S count = S(0);
-  Point3<S> middle = {S(0), S(0), S(0)};
-  for (const Index k : touching) {
-    if (is_finite(then[k]) && is_finite(now[k])) {
-      middle += now[k];
-      count = count + S(1);
+void average_slips(const S& gate_sq,
+                   const AxisNoise<S>& given_noise,
+                   Index across,
+                   std::vector<SmallSlip<S>>& room,
+                   SpatialPairs<S>& pairs) {
+  const S gate = gate_sq;
+  const AxisNoise<S> noise = given_noise;
+  const S lateral = S(1) / noise.lateral_info, deep = S(1) / noise.depth_info;
+  for (PairBlock<S>& b : pairs) {
+    for (std::size_t k = 0; k < block_dots; ++k) {
+      const S u = b.slip_u[k], v = b.slip_v[k];
+      b.mean_slip.x[k] = lateral * (u * b.by_u.x[k] + v * b.by_v_x[k]);
+      b.mean_slip.y[k] = lateral * (u * b.by_u.y[k] + v * b.by_v_y[k]);
+      b.mean_slip.z[k] = deep * u * b.by_u.z[k];
+      b.counts[k] = (b.slip_sq[k] < gate ? S(1) : S(0)) * b.is_dot[k];
     }
   }
-  if (!(count > S(0))) {
-    return S(-1);
-  }
-  middle = middle / count;
-  SmallMatrix<S, 3> a = zero_matrix<S, 3>();
-  std::array<S, 3> b = detail::zeros<S, 3>();
-  for (const Index k : touching) {
-    const S x = now[k].x - middle.x, y = now[k].y - middle.y, z = now[k].z - then[k].z;
-    if (is_finite(z)) {
-      a[1][1] = a[1][1] + x * x;
-      a[2][1] = a[2][1] + x * y;
-      a[2][2] = a[2][2] + y * y;
-      b = {S(b[0] + z), S(b[1] + x * z), S(b[2] + y * z)};
+  for (PairBlock<S>& b : pairs) {
+    for (std::size_t k = 0; k < block_dots; ++k) {
+      const S c = b.counts[k];
+      room[b.padded[k]] = {S(c * b.mean_slip.x[k]), S(c * b.mean_slip.y[k]),
+                           S(c * b.mean_slip.z[k]), c};
     }
   }
-  a[0][0] = count;  // x and y are counted from their middles
-  const NormalEquations<S, 3> plane(a, 1e-6);
-  const std::array<S, 3> c =
-      plane.good ? plane.solve(b) : std::array<S, 3>{S(b[0] / count), S(0), S(0)};
-  S furthest = S(-1);
-  for (const Index k : touching) {
-    const Point3<S> d = now[k] - then[k];
-    const S z = c[0] + c[1] * (now[k].x - middle.x) + c[2] * (now[k].y - middle.y);
-    const S sq = d.x * d.x + d.y * d.y + z * z;
-    furthest = furthest < sq ? sq : furthest;
+  for (PairBlock<S>& b : pairs) {
+    for (std::size_t k = 0; k < block_dots; ++k) {
+      const SmallSlip<S> sum = sum_around(&room[b.padded[k]], across);
+      if (b.counts[k] > S(0)) {
+        const S share = S(1) / sum[3];
+        b.mean_slip.set(k, {S(share * sum[0]), S(share * sum[1]), S(share * sum[2])});
+      }
+    }
+    for (std::size_t k = 0; k < block_dots; ++k) {
+      const S x = b.mean_slip.x[k], y = b.mean_slip.y[k], z = b.mean_slip.z[k];
+      const S u = b.by_u.x[k] * x + b.by_u.y[k] * y + b.by_u.z[k] * z;
+      const S v = b.by_v_x[k] * x + b.by_v_y[k] * y;
+      b.mean_sq[k] = u * u + v * v;
+    }
   }
-  return furthest;
 }
 
 /// Weighted sums over pairs, of their places q and residuals r.
-template <class S>
+template <class T>
 struct PairMoments {
-  S weight = S(0), xx = S(0), yy = S(0), zz = S(0), xy = S(0), xz = S(0), yz = S(0);
-  Point3<S> q = {S(0), S(0), S(0)}, r = {S(0), S(0), S(0)};
-  S turn_z = S(0);  ///< of q x r
-  S yrz = S(0), xrz = S(0), zry = S(0), zrx = S(0);
-
-  void add(const S& w, const Point3<S>& place, const Point3<S>& residual) {
-    const Point3<S> m = w * place;
-    weight = weight + w;
-    q += m;
-    r += w * residual;
-    xx = xx + m.x * place.x;
-    yy = yy + m.y * place.y;
-    zz = zz + m.z * place.z;
-    xy = xy + m.x * place.y;
-    xz = xz + m.x * place.z;
-    yz = yz + m.y * place.z;
-    turn_z = turn_z + (m.x * residual.y - m.y * residual.x);
-    yrz = yrz + m.y * residual.z;
-    xrz = xrz + m.x * residual.z;
-    zry = zry + m.z * residual.y;
-    zrx = zrx + m.z * residual.x;
-  }
+  T weight, x, y, z, xx, yy, zz, xy, xz, yz;
+  T rx, ry, rz, turn_z;  ///< the last of q x r
+  T yrz, xrz, zry, zrx;
 };
 
-/// One step of Gauss and Newton, from where the pairs are `carried`, toward the rigid motion that
+template <class S>
+PairMoments<S> moments_of(const SpatialPairs<S>& pairs, const Point3<S>& about) {
+  const Point3<S> center = about;
+  const Block<S> none = zeros<S, block_dots>();
+  PairMoments<Block<S>> sum = {none, none, none, none, none, none, none, none, none,
+                               none, none, none, none, none, none, none, none, none};
+  for (const PairBlock<S>& b : pairs) {
+    for (std::size_t k = 0; k < block_dots; ++k) {
+      const S w = b.weight[k];
+      const S rx = b.residual.x[k], ry = b.residual.y[k], rz = b.residual.z[k];
+      const S x = b.now.x[k] - rx - center.x, y = b.now.y[k] - ry - center.y;
+      const S z = b.now.z[k] - rz - center.z;
+      const S wx = w * x, wy = w * y, wz = w * z;
+      sum.weight[k] = sum.weight[k] + w;
+      sum.x[k] = sum.x[k] + wx;
+      sum.y[k] = sum.y[k] + wy;
+      sum.z[k] = sum.z[k] + wz;
+      sum.xx[k] = sum.xx[k] + wx * x;
+      sum.yy[k] = sum.yy[k] + wy * y;
+      sum.zz[k] = sum.zz[k] + wz * z;
+      sum.xy[k] = sum.xy[k] + wx * y;
+      sum.xz[k] = sum.xz[k] + wx * z;
+      sum.yz[k] = sum.yz[k] + wy * z;
+      sum.rx[k] = sum.rx[k] + w * rx;
+      sum.ry[k] = sum.ry[k] + w * ry;
+      sum.rz[k] = sum.rz[k] + w * rz;
+      sum.turn_z[k] = sum.turn_z[k] + (wx * ry - wy * rx);
+      sum.yrz[k] = sum.yrz[k] + wy * rz;
+      sum.xrz[k] = sum.xrz[k] + wx * rz;
+      sum.zry[k] = sum.zry[k] + wz * ry;
+      sum.zrx[k] = sum.zrx[k] + wz * rx;
+    }
+  }
+  return {total(sum.weight), total(sum.x),   total(sum.y),  total(sum.z),      total(sum.xx),
+          total(sum.yy),     total(sum.zz),  total(sum.xy), total(sum.xz),     total(sum.yz),
+          total(sum.rx),     total(sum.ry),  total(sum.rz), total(sum.turn_z), total(sum.yrz),
+          total(sum.xrz),    total(sum.zry), total(sum.zrx)};
+}
+
+/// One step of Gauss and Newton, from where the pairs' residuals are, toward the rigid motion that
 /// fits the weighted pairs best; false where they do not determine it. `center`: any place among
 /// them.
 template <class S>
-bool refine_motion(const std::vector<SpatialPair<S>>& pairs,
+bool refine_motion(const SpatialPairs<S>& pairs,
                    const AxisNoise<S>& noise,
                    const Point3<S>& center,
                    Pose<S>& motion) {
-  PairMoments<S> m;
-  for (const SpatialPair<S>& p : pairs) {
-    if (p.weight > S(0)) {
-      m.add(p.weight, p.carried - center, p.residual);
-    }
-  }
+  const PairMoments<S> m = moments_of(pairs, center);
   // rows: x: (0, qz, -qy | 1 0 0), y: (-qz, 0, qx | 0 1 0), z: (qy, -qx, 0 | 0 0 1)
   const S l = noise.lateral_info, d = noise.depth_info, o = S(0);
   const SmallMatrix<S, 6> a = {{{S(l * m.zz + d * m.yy), o, o, o, o, o},
                                 {S(-d * m.xy), S(l * m.zz + d * m.xx), o, o, o, o},
                                 {S(-l * m.xz), S(-l * m.yz), S(l * (m.xx + m.yy)), o, o, o},
-                                {o, S(l * m.q.z), S(-l * m.q.y), S(l * m.weight), o, o},
-                                {S(-l * m.q.z), o, S(l * m.q.x), o, S(l * m.weight), o},
-                                {S(d * m.q.y), S(-d * m.q.x), o, o, o, S(d * m.weight)}}};
+                                {o, S(l * m.z), S(-l * m.y), S(l * m.weight), o, o},
+                                {S(-l * m.z), o, S(l * m.x), o, S(l * m.weight), o},
+                                {S(d * m.y), S(-d * m.x), o, o, o, S(d * m.weight)}}};
   const std::array<S, 6> b = {S(d * m.yrz - l * m.zry),
                               S(l * m.zrx - d * m.xrz),
                               S(l * m.turn_z),
-                              S(l * m.r.x),
-                              S(l * m.r.y),
-                              S(d * m.r.z)};
+                              S(l * m.rx),
+                              S(l * m.ry),
+                              S(d * m.rz)};
   const NormalEquations<S, 6> normal(a, 1e-6);
   if (!normal.good) {
     return false;

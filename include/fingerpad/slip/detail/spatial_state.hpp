@@ -50,7 +50,7 @@ class SpatialState {
         now(given.found),
         free(given.found),
         pairs(given.found.size()),
-        small_slips(static_cast<std::size_t>((layout.rows + 2) * (layout.cols + 2))),
+        small_slips(static_cast<std::size_t>((layout.rows + 5) * (layout.cols + 2))),
         doubts(layout),
         sorted(given.found.size()),
         dot_slips(given.found.size()),
@@ -72,14 +72,18 @@ class SpatialState {
     return static_cast<std::size_t>((d.row + 1) * (layout.cols + 2) + d.col + 1);
   }
 
+  /// A place behind that grid, with a border of its own.
+  std::size_t spare() const { return padded({layout.rows + 2, 0}); }
+
   DotLayout layout;
   DotNoiseMm given_noise, noise;
   FreeDots<Point3<S>> free_dots;
   GivenDots<Point3<S>> given;  // this frame
   Dots<Point3<S>> now;         // of it, the dots in contact, in their places
   Dots<Point3<S>> free;        // where they were when nothing touched
-  ReservedVector<SpatialPair<S>> pairs;
-  std::vector<SmallSlip<S>> small_slips;  // of a grid with a border of one cell
+  SpatialPairs<S> pairs;
+  std::vector<SmallSlip<S>>
+      small_slips;  // of a grid with a border of one cell, and three rows more
   DotDoubts<S> doubts;
   std::vector<S> sorted;
   std::vector<DotSlip<S>> dot_slips;
