@@ -74,69 +74,76 @@ Trial cap() {
                fit);
 }
 
-/// Side dots and apex of a cap of rubber, five frames at each of four pressures, 0.003 mm of noise
-/// of the dots and 0.005 mm of the apex.
-Trial rubber() {
-  constexpr double base_mm = 18.735, height_mm = 11, share = 0.3;
-  constexpr double noise_mm = 0.003, apex_noise_mm = 0.005;
-  constexpr int columns = 36;
-  struct Frame {
-    double pressure_mpa, rho_mm, z_mm, apex_mm;
-  };
-  // of tests/support/inflated_rubber.hpp, 0.5 N/mm, side dots 0.8 mm from the rim
-  constexpr Frame inflated[] = {{0.008, 18.423308, 0.772475, 11.896197},
-                                {0.012, 18.455999, 0.803286, 12.417880},
-                                {0.016, 18.489161, 0.832891, 12.963446},
-                                {0.020, 18.523649, 0.861763, 13.532581}};
-  struct Seen {
-    std::size_t level;
-    double pressure_mpa, apex_mm;
-    cv::Mat_<cv::Vec3d> dots_mm;
-  };
-  const auto around = [](double rho_mm, int j) {
+namespace {
+
+/// Side dots and apex of a cap of rubber (tests/support/inflated_rubber.hpp: 0.5 N/mm, side dots
+/// 0.8 mm from the rim), five frames at each of four pressures.
+struct RubberFrame {
+  static constexpr int columns = 36;
+  static constexpr double base_mm = 18.735, noise_mm = 0.003, apex_noise_mm = 0.005;
+
+  std::size_t level;
+  double pressure_mpa, apex_mm;
+  cv::Mat_<cv::Vec3d> dots_mm;
+
+  static cv::Vec3d on_circle(double rho_mm, int j) {
     const double angle = 2 * std::numbers::pi * j / columns;
-    return cv::Vec3d(rho_mm * std::cos(angle), rho_mm * std::sin(angle), 0);
-  };
-  cv::Mat_<cv::Vec3d> border(1, columns);
-  for (int j = 0; j < columns; ++j) {
-    border(0, j) = around(base_mm, j);
+    return {rho_mm * std::cos(angle), rho_mm * std::sin(angle), 0};
   }
-  const auto measure = [=](Chance& chance) {
-    std::vector<Seen> seen;
+  static std::vector<RubberFrame> of(Chance& chance) {
+    struct Inflated {
+      double pressure_mpa, rho_mm, z_mm, apex_mm;
+    };
+    constexpr Inflated levels[] = {{0.008, 18.423308, 0.772475, 11.896197},
+                                   {0.012, 18.455999, 0.803286, 12.417880},
+                                   {0.016, 18.489161, 0.832891, 12.963446},
+                                   {0.020, 18.523649, 0.861763, 13.532581}};
+    std::vector<RubberFrame> frames;
     for (std::size_t k = 0; k < 20; ++k) {
-      const Frame& true_frame = inflated[k / 5];
-      seen.push_back({k / 5, true_frame.pressure_mpa,
-                      true_frame.apex_mm + apex_noise_mm * chance.normal(),
-                      cv::Mat_<cv::Vec3d>(1, columns)});
+      const Inflated& cap = levels[k / 5];
+      frames.push_back({k / 5, cap.pressure_mpa, cap.apex_mm + apex_noise_mm * chance.normal(),
+                        cv::Mat_<cv::Vec3d>(1, columns)});
       for (int j = 0; j < columns; ++j) {
-        seen.back().dots_mm(0, j) =
-            around(true_frame.rho_mm, j) + cv::Vec3d(noise_mm * chance.normal(),
-                                                     noise_mm * chance.normal(),
-                                                     true_frame.z_mm + noise_mm * chance.normal());
+        frames.back().dots_mm(0, j) =
+            on_circle(cap.rho_mm, j) + cv::Vec3d(noise_mm * chance.normal(),
+                                                 noise_mm * chance.normal(),
+                                                 cap.z_mm + noise_mm * chance.normal());
       }
     }
-    return seen;
-  };
+    return frames;
+  }
+};
+
+}  // namespace
+
+/// Where the apex is known too, the share of Mooney's second constant.
+Trial rubber() {
+  constexpr double height_mm = 11, share = 0.3;
+  using Frames = std::vector<RubberFrame>;
+  cv::Mat_<cv::Vec3d> border(1, RubberFrame::columns);
+  for (int j = 0; j < RubberFrame::columns; ++j) {
+    border(0, j) = RubberFrame::on_circle(RubberFrame::base_mm, j);
+  }
   // frames are drawn within their level, as of the rim
-  const auto draw = [](const std::vector<Seen>& seen, Chance& chance) {
-    std::vector<Seen> drawn;
+  const auto draw = [](const Frames& seen, Chance& chance) {
+    Frames drawn;
     for (std::size_t k = 0; k < seen.size(); ++k) {
       drawn.push_back(seen[5 * (k / 5) + chance.below(5)]);
     }
     return drawn;
   };
-  const auto fit = [=](const std::vector<Seen>& seen) {
-    const fingerpad::OneRow row{2 * std::atan(height_mm / base_mm)};
-    fingerpad::RimCalibration<> calibration(border, base_mm, row);
-    for (const Seen& frame : seen) {
+  const auto fit = [=](const Frames& seen) {
+    const fingerpad::OneRow row{2 * std::atan(height_mm / RubberFrame::base_mm)};
+    fingerpad::RimCalibration<> calibration(border, RubberFrame::base_mm, row);
+    for (const RubberFrame& frame : seen) {
       (void)calibration.add(frame.level, frame.dots_mm, frame.pressure_mpa, frame.apex_mm);
     }
-    const auto found = calibration.fit({.side_dot_noise_mm = noise_mm,
-                                        .apex_noise_mm = apex_noise_mm,
+    const auto found = calibration.fit({.side_dot_noise_mm = RubberFrame::noise_mm,
+                                        .apex_noise_mm = RubberFrame::apex_noise_mm,
                                         .stress_free_height_mm = height_mm});
     return Estimate{{found.mooney_share}, diagonal({found.mooney_share_sd})};
   };
-  return trial({"mooney_share"}, {share}, 20, measure, draw, fit);
+  return trial({"mooney_share"}, {share}, 20, RubberFrame::of, draw, fit);
 }
 
 /// Eight presses of a ball into a gel of one channel, a grey level of noise.

@@ -15,59 +15,70 @@
 
 namespace replay_many {
 
-/// Twenty frames of 7 x 7 dots at rest and six drags in which slip begins at the rim, 0.06 px of
-/// noise; five U in place of thirteen.
-Trial stick_test() {
+namespace {
+
+/// Frames of 7 x 7 dots, 0.06 px of noise: twenty at rest, and six drags in which slip begins at
+/// the rim.
+struct DotRecordings {
   using Frame = cv::Mat_<cv::Vec2d>;
-  using Frames = std::vector<Frame>;
-  struct Data {
-    Frames rest;
-    std::vector<Frames> drags;
-  };
-  constexpr int size = 7;
-  constexpr double noise_px = 0.06;
-  const auto measure = [](Chance& chance) {
-    // what lies outside of `holds` px goes half as far as the object
-    const auto frame = [&](double moved_px, double holds_px, Frame before) {
-      for (int i = 0; i < size; ++i) {
-        for (int j = 0; j < size; ++j) {
-          const bool sticks = 20 * std::hypot(i - 3, j - 3) < holds_px;
-          before(i, j)[0] += sticks ? moved_px : moved_px / 2;
-        }
-      }
-      Frame seen = before.clone();
-      for (cv::Vec2d& dot : seen) {
-        dot += noise_px * cv::Vec2d(chance.normal(), chance.normal());
-      }
-      return std::pair(before, seen);
-    };
+  static constexpr int size = 7;
+
+  std::vector<Frame> rest;
+  std::vector<std::vector<Frame>> drags;
+
+  static DotRecordings of(Chance& chance) {
     Frame still(size, size);
     for (int i = 0; i < size; ++i) {
       for (int j = 0; j < size; ++j) {
         still(i, j) = {20.0 * j, 20.0 * i};
       }
     }
-    Data data;
+    DotRecordings all;
     for (int k = 0; k < 20; ++k) {
-      data.rest.push_back(frame(0, 0, still.clone()).second);
+      all.rest.push_back(seen(still, chance));
     }
     for (int k = 0; k < 6; ++k) {
-      data.drags.emplace_back();
+      all.drags.emplace_back();
       Frame at = still.clone();
       for (int t = 0; t < 15; ++t) {
-        auto [now, seen] = frame(1.2 + 0.1 * k, 95.0 - 5 * t, at);
-        at = now;
-        data.drags.back().push_back(seen);
+        drag(at, 1.2 + 0.1 * k, 95.0 - 5 * t);
+        all.drags.back().push_back(seen(at, chance));
       }
     }
-    return data;
-  };
+    return all;
+  }
+
+ private:
+  /// What lies outside of `holds_px` goes half as far as the object.
+  static void drag(Frame& dots, double moved_px, double holds_px) {
+    for (int i = 0; i < size; ++i) {
+      for (int j = 0; j < size; ++j) {
+        const bool sticks = 20 * std::hypot(i - 3, j - 3) < holds_px;
+        dots(i, j)[0] += sticks ? moved_px : moved_px / 2;
+      }
+    }
+  }
+  static Frame seen(const Frame& dots, Chance& chance) {
+    Frame noisy = dots.clone();
+    for (cv::Vec2d& dot : noisy) {
+      dot += 0.06 * cv::Vec2d(chance.normal(), chance.normal());
+    }
+    return noisy;
+  }
+};
+
+}  // namespace
+
+/// The dots' noise, then five U in place of thirteen.
+Trial stick_test() {
+  using Data = DotRecordings;
+  constexpr int size = Data::size;
   const auto draw = [](const Data& data, Chance& chance) {
     return Data{chance.drawn_from(data.rest), chance.drawn_from(data.drags)};
   };
   const auto fit = [](const Data& data) {
     fingerpad::DotNoiseCalibration at_rest(size, size);
-    for (const Frame& frame : data.rest) {
+    for (const auto& frame : data.rest) {
       (void)at_rest.add(frame);
     }
     const auto noise = at_rest.fit();
@@ -75,8 +86,8 @@ Trial stick_test() {
                                                   {.candidates = 5, .covers_pattern = true});
     const cv::Mat_<unsigned char> touches(size, size, 255), lifted(size, size, uchar(0));
     double time_s = 0;
-    for (const Frames& drag : data.drags) {
-      for (const Frame& frame : drag) {
+    for (const auto& drag : data.drags) {
+      for (const auto& frame : drag) {
         (void)calibration.add(frame, touches, time_s += 1.0 / 30);
       }
       (void)calibration.add(drag.back(), lifted, time_s += 1);
@@ -88,7 +99,7 @@ Trial stick_test() {
         {found.reference, found.slip, found.store},
         diagonal({none, found.slip * noise.edge_error_px / noise.edge_px, found.store * relative})};
   };
-  return trial({"reference_px", "slip_px", "store_px"}, {none, none, none}, 3, measure, draw, fit);
+  return trial({"reference_px", "slip_px", "store_px"}, {none, none, none}, 3, Data::of, draw, fit);
 }
 
 /// Eight lifts by a hand that trembles, with three marked slips each.
