@@ -98,8 +98,11 @@ class HeightMap {
   template <class Height, class Share>
   void fill(const Height& height, const Share& contact_share) {
     for (Index i = 0; i < side(); ++i) {
+      // one after the other: a node's share waits for its height, those of a row do not
       for (Index j = 0; j < side(); ++j) {
         nodes_[at(i, j)].height_mm = S(height(i, j));
+      }
+      for (Index j = 0; j < side(); ++j) {
         share_[at(i, j)] = S(contact_share(i, j, nodes_[at(i, j)].height_mm));
       }
     }
