@@ -198,8 +198,9 @@ def write_chain(build, docs, about):
     count = next(iter(runs["native"]["latencies"].values()))["frames"]
     (docs / "whole_chain.md").write_text(f"""# The whole chain
 
-A frame in, all results out: 640 x 480 8-bit BGR frame to smoothing, depth, contact region, motion of
-the object, stick ratio, look-up forces and six-axis force, put together in
+A frame in, all results out: 640 x 480 pixels of red and green, two planes of 8 bit, to smoothing,
+depth, contact region, motion of the object, stick ratio, look-up forces and six-axis force, put
+together in
 [pipeline/fingertip.hpp](../include/fingerpad/pipeline/fingertip.hpp); the dots are given. Written by
 `bench/report/run`.
 
