@@ -426,3 +426,23 @@ TEST_CASE("quick functions of float keep their bounds") {
     CHECK(std::isfinite(detail::quick_exp(x)));
   }
 }
+
+TEST_CASE("quick functions of a vector are those of each number") {
+  std::vector<float> x;
+  for (int k = -2000; k <= 2000; ++k) {
+    x.push_back(static_cast<float>(k) / 17);
+  }
+  x.insert(x.end(), {1e30F, -1e30F, INFINITY, -INFINITY, std::nanf(""), 0.0F, -0.0F, 1e-40F});
+  x.resize((x.size() + 63) / 64 * 64);
+  std::vector<float> power(x.size()), angle(x.size());
+  detail::for_each_cell<float>(static_cast<Index>(x.size()), [&]<class V>(Index j) {
+    const V numbers = detail::load_cells<V, float>(x.data() + j);
+    detail::store_cells<float>(power.data() + j, detail::quick_exp(numbers));
+    detail::store_cells<float>(angle.data() + j, detail::inclination(V(numbers * numbers)));
+  });
+  for (std::size_t j = 0; j < x.size(); ++j) {
+    CAPTURE(x[j]);
+    CHECK(power[j] == detail::quick_exp(x[j]));
+    CHECK(angle[j] == detail::inclination(x[j] * x[j]));
+  }
+}

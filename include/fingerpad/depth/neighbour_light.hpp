@@ -21,6 +21,7 @@
 #include "fingerpad/core/status.hpp"
 #include "fingerpad/depth/detail/inclination_sums.hpp"
 #include "fingerpad/image/detail/quick_math.hpp"
+#include "fingerpad/image/detail/row_lanes.hpp"
 
 namespace fingerpad {
 inline namespace v0 {
@@ -44,6 +45,24 @@ void expects_valid(const NeighbourLight<S>& light) {
   expects(is_finite(light.n_per_mm), "NeighbourLight", "n_per_mm", light.n_per_mm, "finite");
 }
 
+namespace detail {
+
+/// The equation for a number, or for each in a vector of them.
+template <class V, scalar S>
+[[gnu::always_inline]] inline V without_light_of(const V& depth_mm,
+                                                 const V& reference_depth_mm,
+                                                 const V& psi_sum_rad,
+                                                 const V& m0_mm_per_rad,
+                                                 const S& n_per_mm) {
+  const V risen = depth_mm - reference_depth_mm;
+  const V m = m0_mm_per_rad * quick_exp(V(n_per_mm * risen));
+  const V compensated = depth_mm - m * psi_sum_rad;
+  const V none = every_lane<V>(S(0));
+  return compensated < none ? none : compensated;
+}
+
+}  // namespace detail
+
 /// The equation for one pixel: depth less the light of its neighbours, never below 0. A depth that
 /// is not finite stays as it is; the reference depth must be finite.
 template <scalar S>
@@ -52,10 +71,8 @@ inline S without_neighbour_light(const S& depth_mm,
                                  const S& psi_sum_rad,
                                  const S& m0_mm_per_rad,
                                  const S& n_per_mm) {
-  const S risen = depth_mm - reference_depth_mm;
-  const S m = m0_mm_per_rad * detail::quick_exp(S(n_per_mm * risen));
-  const S compensated = depth_mm - m * psi_sum_rad;
-  return value(compensated) < 0 ? S(0) : compensated;
+  return detail::without_light_of<S>(depth_mm, reference_depth_mm, psi_sum_rad, m0_mm_per_rad,
+                                     n_per_mm);
 }
 
 /// Not of this pad: the depths are on the whole a twentieth of the reference's or less, or twenty
@@ -126,15 +143,8 @@ class NeighbourLightCompensation {
     for (Index i = 0; i < rows(); ++i) {
       sums_.sum_row(i, workspace);
       S* row_mm = workspace.row_mm.data();
-      for (Index j = 0; j < cols(); ++j) {
-        row_mm[j] = S(from(i, j));
-      }
-      const Index first = i * cols();
-      compensate_row(cols(), reference_.data() + first, m0_.data() + first, workspace.sum.data(),
-                     light_.n_per_mm, row_mm);
-      for (Index j = 0; j < cols(); ++j) {
-        to(i, j) = static_cast<cell_t<Out>>(row_mm[j]);
-      }
+      compensate_row(i, detail::row_of<S>(from, i, row_mm), workspace.sum.data(), row_mm);
+      detail::store_row(row_mm, to, i);
     }
     return {is_unit ? FrameStatus::ok : FrameStatus::not_of_this_pad, workspace.lost_px};
   }
@@ -168,16 +178,30 @@ class NeighbourLightCompensation {
     return light;
   }
 
-  static void compensate_row(Index cols,
-                             const S* reference_mm,
-                             const S* m0_mm_per_rad,
-                             const S* psi_sum_rad,
-                             const S n_per_mm,
-                             S* __restrict depth_mm) {
-    for (Index j = 0; j < cols; ++j) {
-      depth_mm[j] = without_neighbour_light(depth_mm[j], reference_mm[j], psi_sum_rad[j],
-                                            m0_mm_per_rad[j], n_per_mm);
-    }
+  /// `to` may be the depths.
+  void compensate_row(Index row, const S* depth_mm, const S* psi_sum_rad, S* to) const {
+    const auto span = sums_.span(row);
+    const S* reference_mm = reference_.data() + row * cols();
+    const S* m0_mm_per_rad = m0_.data() + row * cols();
+    const auto copy = [=](Index first, Index last) {
+      detail::for_each_cell<S>(last - first, [=]<class V>(Index j) {
+        const V l = detail::load_cells<V, S>(depth_mm + first + j);
+        const V none = detail::every_lane<V>(S(0));
+        detail::store_cells<S>(to + first + j, V(l < none ? none : l));
+      });
+    };
+    copy(0, span.first);
+    constexpr int bytes = decltype(sums_)::bytes;
+    const S n_per_mm = light_.n_per_mm;
+    detail::for_each_cell<S, bytes>(
+        span.last - span.first, [=]<class V>(Index k) __attribute__((always_inline)) {
+          const Index j = span.first + k;
+          const auto at = [j](const S* cells) { return detail::load_cells<V, S>(cells + j); };
+          const V l = detail::without_light_of<V>(at(depth_mm), at(reference_mm), at(psi_sum_rad),
+                                                  at(m0_mm_per_rad), n_per_mm);
+          detail::store_cells<S>(to + j, l);
+        });
+    copy(span.last, cols());
   }
 
   NeighbourLight<S> light_;

@@ -18,6 +18,7 @@
 #include "fingerpad/depth/depth_reference.hpp"
 #include "fingerpad/depth/smoothing.hpp"
 #include "fingerpad/image/detail/lanes.hpp"
+#include "fingerpad/image/detail/row_lanes.hpp"
 #include "fingerpad/image/detail/window_rows.hpp"
 #include "fingerpad/image/detail/window_sums.hpp"
 #include "fingerpad/optics/camera.hpp"
@@ -121,22 +122,7 @@ struct IgnoredCell {
   constexpr Sink operator()(Index, Index) const { return {}; }
 };
 
-template <class S, class View>
-void store_row(const S* from, const View& view, Index row) {
-  for (Index j = 0; j < view.cols(); ++j) {
-    view(row, j) = static_cast<cell_t<View>>(from[j]);
-  }
-}
-template <class S>
-void store_row(const S* from, const StridedView<S>& view, Index row) {
-  if (view.col_stride() == 1) {
-    std::copy_n(from, view.cols(), view.row(row));
-    return;
-  }
-  for (Index j = 0; j < view.cols(); ++j) {
-    view(row, j) = from[j];
-  }
-}
+/// The other forms are in row_lanes.hpp.
 template <class View>
 void store_row(const PixelStatus*, const View& view, Index row) requires
     std::is_same_v<decltype(view(row, Index(0))), IgnoredCell::Sink> {}

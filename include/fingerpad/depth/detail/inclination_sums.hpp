@@ -9,14 +9,18 @@
 // both are, along either axis. Missing pixels of the frame that the reference has stand for
 // membrane that was not seen: they are taken to have changed as the mean of the disc's others.
 // Pixels that the reference does not have are no membrane and add nothing.
+#include <algorithm>
+#include <concepts>
 #include <cstddef>
 #include <cstdint>
+#include <type_traits>
 #include <vector>
 
 #include "fingerpad/core/grid.hpp"
 #include "fingerpad/core/scalar.hpp"
 #include "fingerpad/image/detail/disc_sums.hpp"
 #include "fingerpad/image/detail/quick_math.hpp"
+#include "fingerpad/image/detail/row_lanes.hpp"
 
 namespace fingerpad {
 inline namespace v0 {
@@ -29,26 +33,30 @@ class InclinationSums {
   using T = typename Total::type;
 
  public:
+  /// By vectors where inclination() is.
+  static constexpr int bytes = std::same_as<S, float> ? native_vector_bytes : 0;
+  /// Columns [first, last).
+  struct Span {
+    Index first, last;
+  };
+
   /// Memory of one frame at a time.
   struct Workspace {
-    Workspace(Index rows, Index cols, Index radius_px)
+    Workspace(Index rows, Index cols, Index radius_px, const DiscShape& shape)
         : change(rows, cols),
           missing(rows, cols),
-          change_row(cols, radius_px),
-          missing_row(cols, radius_px),
+          change_row(cols, radius_px, shape),
+          missing_row(cols, radius_px, shape),
           lost(static_cast<std::size_t>(rows * cols), 0),
           psi(static_cast<std::size_t>(cols), T(0)),
           present(static_cast<std::size_t>(cols), 0),
           sum(static_cast<std::size_t>(cols), S(0)),
           row_mm(static_cast<std::size_t>(cols), S(0)) {
       for (Line& line : lines) {
-        line = {std::vector<S>(static_cast<std::size_t>(cols + 2), S(0)),
-                std::vector<S>(static_cast<std::size_t>(cols + 2), S(0))};
+        line.assign(static_cast<std::size_t>(cols + 2), not_a_number<S>());
       }
     }
-    struct Line {
-      std::vector<S> depth, weight;  ///< 0, 0 where missing, and one column beyond each side
-    };
+    using Line = std::vector<S>;  ///< depths, NaN where missing, and one column beyond each side
     SummedArea<T> change;
     SummedArea<std::uint32_t> missing;
     DiscRow<T> change_row;
@@ -70,20 +78,28 @@ class InclinationSums {
         shape_(Disc::shape(radius_px)),
         unit_(Total::unit(static_cast<double>((2 * radius_px + 1) * (2 * radius_px + 1)))),
         per_mm_(S(1) / pitch_mm),
+        span_(static_cast<std::size_t>(rows_), Span{0, cols_}),
         psi_(size(), T(0)),
         present_(size(), 0),
         count_(size(), S(0)) {
     Workspace s = workspace();
     each_row(reference, s, [&](Index i) {
-      for (Index j = 0; j < cols_; ++j) {
-        psi_[at(i, j)] = s.psi[static_cast<std::size_t>(j)];
-        present_[at(i, j)] = s.present[static_cast<std::size_t>(j)];
-      }
+      std::copy_n(s.psi.data(), cols_, psi_.data() + i * cols_);
+      std::copy_n(s.present.data(), cols_, present_.data() + i * cols_);
       s.missing.set_row(i, s.present.data());
+      Span& span = span_[static_cast<std::size_t>(i)];
+      const auto is_in_pad = [&](Index j) { return is_finite(S(reference(i, j))); };
+      while (span.first < span.last && !is_in_pad(span.first)) {
+        ++span.first;
+      }
+      while (span.first < span.last && !is_in_pad(span.last - 1)) {
+        --span.last;
+      }
     });
     for (Index i = 0; i < rows_; ++i) {
-      s.missing_row.sum(s.missing, shape_, radius_, i);
-      for (Index j = 0; j < cols_; ++j) {
+      const Span span = this->span(i);
+      s.missing_row.sum(s.missing, shape_, i, span.first, span.last);
+      for (Index j = span.first; j < span.last; ++j) {
         count_[at(i, j)] = count(s.missing_row, j);
       }
     }
@@ -91,12 +107,13 @@ class InclinationSums {
 
   Index rows() const { return rows_; }
   Index cols() const { return cols_; }
-  Workspace workspace() const { return Workspace(rows_, cols_, radius_); }
+  /// What the reference has of the pad in a row; beyond it there is nothing to sum.
+  Span span(Index row) const { return span_[static_cast<std::size_t>(row)]; }
+  Workspace workspace() const { return Workspace(rows_, cols_, radius_, shape_); }
 
   /// Whether this workspace was made for this reference and radius.
   bool fits(const Workspace& s) const {
-    return s.lost.size() == size() && s.sum.size() == static_cast<std::size_t>(cols_) &&
-           s.change_row.band.size() == static_cast<std::size_t>(cols_ + 1 + 2 * radius_);
+    return s.lost.size() == size() && s.change_row.fits(cols_, radius_);
   }
 
   /// Reads the frame into the workspace tables; s.lost_px says how many pixels were not seen.
@@ -104,9 +121,7 @@ class InclinationSums {
   void scan(const View& depth, Workspace& s) const {
     s.lost_px = 0;
     each_row(depth, s, [&](Index i) {
-      const Index first = i * cols_;
-      s.lost_px += compare(cols_, psi_.data() + first, present_.data() + first, s.present.data(),
-                           s.psi.data(), s.lost.data() + first);
+      s.lost_px += compare(i, s);
       s.change.set_row(i, s.psi.data());
     });
     for (Index i = 0; s.lost_px > 0 && i < rows_; ++i) {
@@ -114,20 +129,27 @@ class InclinationSums {
     }
   }
 
-  /// s.sum = psi_sum of one row, rad, of the frame scanned last.
+  /// s.sum = psi_sum of one row, rad, of the frame scanned last; 0 beyond the pad.
   void sum_row(Index row, Workspace& s) const {
-    s.change_row.sum(s.change, shape_, radius_, row);
+    const Span span = this->span(row);
     const S stairs = S(shape_.staircase_weight) / unit_;
     const S square = S(shape_.square_weight) / unit_;
-    for (std::size_t j = 0; j < s.sum.size(); ++j) {
-      const S all = stairs * Total::to(s.change_row.stairs[j]);
-      s.sum[j] = S(all + square * Total::to(s.change_row.square[j]));
-    }
+    s.change_row.sum(s.change, shape_, row, span.first, span.last);
+    const T* in_stairs = s.change_row.stairs() + span.first;
+    const T* in_square = s.change_row.square() + span.first;
+    S* sum = s.sum.data() + span.first;
+    for_each_cell<T, bytes>(span.last - span.first, [=]<class V>(Index j) {
+      const auto all = Total::to(load_cells<V, T>(in_stairs + j));
+      const auto of_square = Total::to(load_cells<V, T>(in_square + j));
+      const std::remove_const_t<decltype(all)> both = stairs * all + square * of_square;
+      store_cells<S>(sum + j, both);
+    });
+    clear_beyond(span, s.sum.data());
     if (s.lost_px == 0) {
       return;
     }
-    s.missing_row.sum(s.missing, shape_, radius_, row);
-    for (Index j = 0; j < cols_; ++j) {
+    s.missing_row.sum(s.missing, shape_, row, span.first, span.last);
+    for (Index j = span.first; j < span.last; ++j) {
       const S& all = count_[at(row, j)];
       const S seen = all - count(s.missing_row, j);
       if (value(seen) > 0) {
@@ -143,45 +165,29 @@ class InclinationSums {
   std::size_t at(Index i, Index j) const { return static_cast<std::size_t>(i * cols_ + j); }
 
   S count(const DiscRow<std::uint32_t>& row, Index j) const {
-    const auto k = static_cast<std::size_t>(j);
-    const S stairs = S(shape_.staircase_weight) * S(static_cast<int>(row.stairs[k]));
-    return S(stairs + S(shape_.square_weight) * S(static_cast<int>(row.square[k])));
+    const S stairs = S(shape_.staircase_weight) * S(static_cast<int>(row.stairs()[j]));
+    return S(stairs + S(shape_.square_weight) * S(static_cast<int>(row.square()[j])));
   }
 
-  /// Calls visit(i) for each row, with s.psi and s.present of that row.
+  template <class Cell>
+  void clear_beyond(const Span& span, Cell* row) const {
+    std::fill(row, row + span.first, Cell(0));
+    std::fill(row + span.last, row + cols_, Cell(0));
+  }
+
+  /// Calls visit(i) for each row, with s.psi and s.present of its span.
   template <class View, class Visit>
   void each_row(const View& depth, Workspace& s, const Visit& visit) const {
     clear(s.lines[2]);
     load(depth, 0, s.lines[0]);
     for (Index i = 0; i < rows_; ++i) {
       load(depth, i + 1, s.lines[(i + 1) % 3]);
-      find_psi(s.lines[(i + 2) % 3], s.lines[i % 3], s.lines[(i + 1) % 3], s);
+      find_psi(span(i), s.lines[(i + 2) % 3], s.lines[i % 3], s.lines[(i + 1) % 3], s);
       visit(i);
     }
   }
 
-  /// psi becomes the change of psi, 0 where either is missing. Returns how many pixels are lost.
-  static Index compare(Index cols,
-                       const T* psi0,
-                       const std::uint8_t* present0,
-                       const std::uint8_t* present,
-                       T* __restrict psi,
-                       std::uint8_t* __restrict lost) {
-    std::uint32_t count = 0;
-    for (Index j = 0; j < cols; ++j) {
-      const T change = T(psi[j] - psi0[j]);
-      psi[j] = (present[j] & present0[j]) != 0 ? change : T(0);
-      lost[j] = static_cast<std::uint8_t>(present0[j] & (present[j] ^ 1));
-      count += lost[j];
-    }
-    return static_cast<Index>(count);
-  }
-
-  static void clear(Line& line) {
-    for (std::size_t j = 0; j < line.depth.size(); ++j) {
-      line.depth[j] = line.weight[j] = S(0);
-    }
-  }
+  static void clear(Line& line) { std::fill(line.begin(), line.end(), not_a_number<S>()); }
 
   template <class View>
   void load(const View& depth, Index row, Line& to) const {
@@ -189,52 +195,82 @@ class InclinationSums {
       clear(to);
       return;
     }
-    S* l = to.depth.data() + 1;
-    for (Index j = 0; j < cols_; ++j) {
-      l[j] = S(depth(row, j));
-    }
-    weigh(cols_, l, to.weight.data() + 1);
-  }
-  static void weigh(Index cols, S* __restrict l, S* __restrict weight) {
-    for (Index j = 0; j < cols; ++j) {
-      const bool good = is_finite(l[j]);
-      l[j] = good ? l[j] : S(0);
-      weight[j] = good ? S(1) : S(0);
-    }
+    S* l = to.data() + 1;
+    const S* from = row_of<S>(depth, row, l);
+    for_each_cell<S>(cols_, [=]<class V>(Index j) {
+      const V depth_mm = load_cells<V, S>(from + j);
+      const V nothing = depth_mm - depth_mm;  // or NaN, of an infinity, too
+      store_cells<S>(l + j, V(depth_mm - nothing));
+    });
   }
 
-  void find_psi(const Line& up, const Line& here, const Line& down, Workspace& s) const {
-    find_psi(cols_, per_mm_, unit_, here.depth.data() + 1, here.weight.data() + 1,
-             up.depth.data() + 1, up.weight.data() + 1, down.depth.data() + 1,
-             down.weight.data() + 1, s.psi.data(), s.present.data());
+  /// s.psi and s.present of a row from it and its neighbours.
+  void find_psi(
+      const Span& span, const Line& up, const Line& here, const Line& down, Workspace& s) const {
+    const Index first = span.first;
+    const S* l = here.data() + 1 + first;
+    const S* l_up = up.data() + 1 + first;
+    const S* l_down = down.data() + 1 + first;
+    T* psi = s.psi.data() + first;
+    std::uint8_t* present = s.present.data() + first;
+    const S per_mm = per_mm_, half_per_mm = per_mm_ / S(2), unit = unit_;
+    for_each_cell<S, bytes>(
+        span.last - first, [=]<class V>(Index j) __attribute__((always_inline)) {
+          const auto at = [j](const S* row) { return load_cells<V, S>(row + j); };
+          const V none = every_lane<V>(S(0));
+          const V center = at(l);
+          const V right = at(l + 1) - center, left = center - at(l - 1);
+          const V below = at(l_down) - center, above = center - at(l_up);
+          const auto has_right = known<V>(right), has_left = known<V>(left);
+          const auto has_below = known<V>(below), has_above = known<V>(above);
+          const auto slope = [&](const auto& has_a, const V& a, const auto& has_b, const V& b) {
+            const V rise = V(has_a ? a : none) + V(has_b ? b : none);
+            const auto both = has_a & has_b;
+            const V per_step = both ? every_lane<V>(half_per_mm) : every_lane<V>(per_mm);
+            return V(rise * per_step);
+          };
+          const V sx = slope(has_right, right, has_left, left);
+          const V sy = slope(has_below, below, has_above, above);
+          store_cells<T>(psi + j, Total::from(V(inclination(V(sx * sx + sy * sy)) * unit)));
+          const auto is_here = (has_right | has_left) & (has_below | has_above);
+          store_cells<S>(present + j, is_here ? every_lane<V>(S(1)) : none);
+        });
   }
-  static void find_psi(Index cols,
-                       const S per_mm,
-                       const S unit,
-                       const S* l,
-                       const S* w,
-                       const S* l_up,
-                       const S* w_up,
-                       const S* l_down,
-                       const S* w_down,
-                       T* __restrict psi,
-                       std::uint8_t* __restrict present) {
-    const S half_per_mm = per_mm / S(2);
-    for (Index j = 0; j < cols; ++j) {
-      const S gx = S(w[j + 1] * S(l[j + 1] - l[j])) + S(w[j - 1] * S(l[j] - l[j - 1]));
-      const S gy = S(w_down[j] * S(l_down[j] - l[j])) + S(w_up[j] * S(l[j] - l_up[j]));
-      const S nx = w[j + 1] + w[j - 1];
-      const S ny = w_down[j] + w_up[j];
-      const S sx = gx * (nx > S(1) ? half_per_mm : per_mm);
-      const S sy = gy * (ny > S(1) ? half_per_mm : per_mm);
-      psi[j] = Total::from(S(inclination(S(sx * sx + sy * sy)) * unit));
-      present[j] = static_cast<std::uint8_t>(S(w[j] * S(nx * ny)) > S(0));
-    }
+
+  /// s.psi becomes the change of psi, 0 where either is missing, and s.lost of the row is marked.
+  /// Returns how many pixels are lost.
+  Index compare(Index row, Workspace& s) const {
+    const Span span = this->span(row);
+    const Index count = span.last - span.first, begin = row * cols_ + span.first;
+    const T* psi0 = psi_.data() + begin;
+    const std::uint8_t* present0 = present_.data() + begin;
+    T* psi = s.psi.data() + span.first;
+    std::uint8_t* present = s.present.data() + span.first;
+    std::uint8_t* lost = s.lost.data() + begin;
+    Index lost_px = 0;
+    for_each_cell<std::uint8_t>(count, [=, &lost_px]<class V>(Index j) {
+      const V here = load_cells<V, std::uint8_t>(present + j);
+      const V there = load_cells<V, std::uint8_t>(present0 + j);
+      const V gone = there & ~here;
+      store_cells<std::uint8_t>(present + j, V(here & there));  // from here on: in both
+      store_cells<std::uint8_t>(lost + j, gone);
+      if (any_lane(gone != every_lane<V>(std::uint8_t(0)))) {
+        lost_px += std::count(lost + j, lost + j + lanes_in<V, std::uint8_t>, 1);
+      }
+    });
+    for_each_cell<T, bytes>(count, [=]<class V>(Index j) {
+      const V change = load_cells<V, T>(psi + j) - load_cells<V, T>(psi0 + j);
+      const V none = every_lane<V>(T(0));
+      store_cells<T>(psi + j, none < load_cells<V, T>(present + j) ? change : none);
+    });
+    clear_beyond(span, s.psi.data());
+    return lost_px;
   }
 
   Index rows_, cols_, radius_;
   DiscShape shape_;
   S unit_, per_mm_;
+  std::vector<Span> span_;             // of each row, what the reference has of the pad
   std::vector<T> psi_;                 // of the reference
   std::vector<std::uint8_t> present_;  // where it is known
   std::vector<S> count_;               // how many such pixels each disc holds

@@ -27,16 +27,6 @@ template <class Mask>
   }
 }
 
-/// True where x is a number.
-template <class V>
-[[gnu::always_inline]] inline auto known(const V& x) {
-  if constexpr (scalar<V>) {
-    return value(x) == value(x);
-  } else {
-    return x == x;
-  }
-}
-
 /// Where at least `least` sections were counted.
 template <class V>
 [[gnu::always_inline]] inline auto at_least(const V& sections, int least) {

@@ -6,15 +6,21 @@
 // rad for a radius of 30 px) that may wrap: their differences are exact, so nothing drifts, and a
 // sum depends on nothing but the pixels of its own disc. Other numbers are summed as they are,
 // which costs about epsilon (rows + cols) of the largest table entry.
+#include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
+#include <concepts>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <utility>
 #include <vector>
 
 #include "fingerpad/core/grid.hpp"
 #include "fingerpad/core/scalar.hpp"
+#include "fingerpad/image/detail/lanes.hpp"
+#include "fingerpad/image/detail/row_lanes.hpp"
 
 namespace fingerpad {
 inline namespace v0 {
@@ -25,13 +31,12 @@ namespace detail {
 //
 //        ____            Rectangle k reaches half_cols[k] to each side and half_rows[k] up and
 //      _|____|_          down; wider ones are lower. Their union is the sum of all rectangles
-//     |_|____|_|         minus the overlaps of each with the next, half_cols[k + 1] by
-//       |____|           half_rows[k].
+//     |_|____|_|         minus the overlaps of each with the next.
+//       |____|
 
 struct DiscLevel {
   Index half_rows;
   Index half_cols;
-  Index overlap_half_cols;  ///< of the next, narrower rectangle; -1 for the last
 };
 
 /// sum = staircase_weight * (sum over the union) + square_weight * (sum over levels[square]).
@@ -57,7 +62,7 @@ inline DiscShape staircase(const std::vector<Index>& half_cols) {
   DiscShape shape;
   const std::size_t n = half_cols.size();
   for (std::size_t k = 0; k < n; ++k) {
-    shape.levels.push_back({half_cols[n - 1 - k], half_cols[k], k + 1 < n ? half_cols[k + 1] : -1});
+    shape.levels.push_back({half_cols[n - 1 - k], half_cols[k]});
   }
   return shape;
 }
@@ -185,15 +190,32 @@ struct IntegerTotal {
     }
     return steps;
   }
-  static Unsigned from(S steps) {
-    return static_cast<Unsigned>(static_cast<Signed>(steps + S(1) / S(2)));
+  /// Of a number, or of each in a vector.
+  template <class V>
+  [[gnu::always_inline]] static auto from(const V& steps) {
+    using Ints = typename RowVector<Signed, lanes_in<V, S>>::type;
+    using Totals = typename RowVector<Unsigned, lanes_in<V, S>>::type;
+    return std::bit_cast<Totals>(each_as<Ints>(V(steps + S(1) / S(2))));
   }
-  static S to(Unsigned total) { return static_cast<S>(static_cast<Signed>(total)); }
+  template <class Totals>
+  [[gnu::always_inline]] static auto to(const Totals& total) {
+    constexpr int n = lanes_in<Totals, Unsigned>;
+    using Ints = typename RowVector<Signed, n>::type;
+    return each_as<typename RowVector<S, n>::type>(std::bit_cast<Ints>(total));
+  }
 };
 template <>
 struct InclinationTotal<float> : IntegerTotal<float, std::uint32_t, std::int32_t> {};
 template <>
 struct InclinationTotal<double> : IntegerTotal<double, std::uint64_t, std::int64_t> {};
+
+/// Two lines of a table; the sum over a band of rows and the columns before j is below[j] less
+/// above[j].
+template <class T>
+struct Band {
+  const T* below;
+  const T* above;
+};
 
 /// Table of sums over all cells above and to the left; (rows + 1) x (cols + 1).
 template <class T>
@@ -208,29 +230,42 @@ class SummedArea {
     const T* above = line(row);
     T* here = table_.data() + (row + 1) * (cols_ + 1);
     T run = T(0);
-    for (Index j = 0; j < cols_; ++j) {
+    Index j = 0;
+#if defined(FINGERPAD_HAS_VECTORS)
+    if constexpr (row_lanes < T >> 1 && std::same_as<Cell, T>) {
+      constexpr int n = row_lanes<T>;
+      constexpr auto order = std::make_index_sequence<std::size_t(n)>{};
+      lanes<T, n> carry{};
+      for (; j + n <= cols_; j += n) {
+        const lanes<T, n> local = running_sum<n>(load<T, n>(cells + j));
+        store(here + j + 1, load<T, n>(above + j + 1) + local + carry);
+        carry += last_everywhere(local, order);
+      }
+      run = carry[0];
+    }
+#endif
+    for (; j < cols_; ++j) {
       run = T(run + T(cells[j]));
       here[j + 1] = T(above[j + 1] + run);
     }
   }
 
-  /// to[j + margin] = sum over rows [row - half, row + half] of the columns before j, for j from
-  /// -margin to cols + margin; rows and columns beyond the image are empty.
-  void band(Index row, Index half, Index margin, T* to) const {
-    const T* low = line(row + half + 1 < rows_ ? row + half + 1 : rows_);
-    const T* high = line(row - half > 0 ? row - half : 0);
-    T* inside = to + margin;
-    for (Index j = 0; j <= cols_; ++j) {
-      inside[j] = T(low[j] - high[j]);
-    }
-    for (Index j = 0; j < margin; ++j) {
-      to[j] = T(0);
-      inside[cols_ + 1 + j] = inside[cols_];
-    }
+  /// The rows [row - half, row + half]; those beyond the image are empty.
+  Band<T> band(Index row, Index half) const {
+    return {line(row + half + 1 < rows_ ? row + half + 1 : rows_),
+            line(row - half > 0 ? row - half : 0)};
+  }
+  Band<T> no_band() const {
+    return {line(0), line(0)};
+  }
+  Index cols() const {
+    return cols_;
   }
 
  private:
-  const T* line(Index row) const { return table_.data() + row * (cols_ + 1); }
+  const T* line(Index row) const {
+    return table_.data() + row * (cols_ + 1);
+  }
 
   Index rows_ = 0;
   Index cols_ = 0;
@@ -238,52 +273,97 @@ class SummedArea {
 };
 
 /// One row of disc sums in the table's own number: over the staircase, and over its square.
+/// Level k adds to those before it the rows that they do not reach, as wide as it is:
+///   sum over k of [D_k(j + half_cols[k] + 1) - D_k(j - half_cols[k])],  D_k = B_k - B_{k - 1},
+/// B_k(j) the sum over the columns before j of the band of level k.
 template <class T>
-struct DiscRow {
-  std::vector<T> stairs, square, band;
-
-  DiscRow() = default;
-  DiscRow(Index cols, Index radius_px)
-      : stairs(static_cast<std::size_t>(cols), T(0)),
-        square(static_cast<std::size_t>(cols), T(0)),
-        band(static_cast<std::size_t>(cols + 1 + 2 * radius_px), T(0)) {}
-
-  void sum(const SummedArea<T>& table, const DiscShape& shape, Index radius_px, Index row) {
-    const Index cols = static_cast<Index>(stairs.size());
+class DiscRow {
+ public:
+  DiscRow(Index cols, Index radius_px, const DiscShape& shape)
+      : margin_(radius_px),
+        pitch_(cols + 1 + 2 * radius_px),
+        stairs_(static_cast<std::size_t>(cols), T(0)),
+        square_(static_cast<std::size_t>(cols), T(0)),
+        bands_(static_cast<std::size_t>(pitch_) * (shape.levels.size() + 1), T(0)) {
     for (std::size_t k = 0; k < shape.levels.size(); ++k) {
-      const DiscLevel& level = shape.levels[k];
-      table.band(row, level.half_rows, radius_px, band.data());
-      const T* center = band.data() + radius_px;
-      const T* right = center + level.half_cols + 1;
-      const T* left = center - level.half_cols;
-      const bool last = level.overlap_half_cols < 0;
-      const T* inner_right = last ? center : center + level.overlap_half_cols + 1;
-      const T* inner_left = last ? center : center - level.overlap_half_cols;
-      add(k == 0, cols, right, left, inner_right, inner_left, stairs.data());
-      if (static_cast<std::ptrdiff_t>(k) == shape.square) {
-        add(true, cols, right, left, center, center, square.data());
-      }
+      ends_.push_back(ends_of(k, shape.levels[k]));
+    }
+    if (shape.square >= 0) {
+      square_ends_ = ends_of(ends_.size(), shape.levels[static_cast<std::size_t>(shape.square)]);
+    }
+  }
+
+  const T* stairs() const { return stairs_.data(); }
+  const T* square() const { return square_.data(); }
+
+  /// Whether it was made for this image and radius.
+  bool fits(Index cols, Index radius_px) const {
+    return stairs_.size() == static_cast<std::size_t>(cols) && margin_ == radius_px;
+  }
+
+  /// Sums around the columns [first, last) of a row.
+  void sum(const SummedArea<T>& table, const DiscShape& shape, Index row, Index first, Index last) {
+    Band<T> inner = table.no_band();
+    for (std::size_t k = 0; k < ends_.size(); ++k) {
+      const Band<T> band = table.band(row, shape.levels[k].half_rows);
+      subtract(band, inner, k, first, last);
+      inner = band;
+    }
+    add_up(ends_.data(), ends_.size(), stairs_.data(), first, last);
+    if (shape.square >= 0) {
+      const DiscLevel& level = shape.levels[static_cast<std::size_t>(shape.square)];
+      subtract(table.band(row, level.half_rows), table.no_band(), ends_.size(), first, last);
+      add_up(&square_ends_, 1, square_.data(), first, last);
     }
   }
 
  private:
-  static void add(bool first,
-                  Index cols,
-                  const T* right,
-                  const T* left,
-                  const T* inner_right,
-                  const T* inner_left,
-                  T* to) {
-    if (first) {
-      for (Index j = 0; j < cols; ++j) {
-        to[j] = T(T(right[j] - left[j]) - T(inner_right[j] - inner_left[j]));
-      }
-    } else {
-      for (Index j = 0; j < cols; ++j) {
-        to[j] = T(to[j] + T(T(right[j] - left[j]) - T(inner_right[j] - inner_left[j])));
-      }
-    }
+  /// Where in bands_ the sums before the first and after the last column of a disc around column 0
+  /// lie.
+  struct Ends {
+    Index right = 0;
+    Index left = 0;
+  };
+  Ends ends_of(std::size_t band, const DiscLevel& level) const {
+    const Index center = static_cast<Index>(band) * pitch_ + margin_;
+    return {center + level.half_cols + 1, center - level.half_cols};
   }
+
+  /// Band k becomes outer less inner, for all columns within reach; sums beyond the image are those
+  /// at its edge.
+  void subtract(
+      const Band<T>& outer, const Band<T>& inner, std::size_t k, Index first, Index last) {
+    const Index cols = static_cast<Index>(stairs_.size());
+    const Index begin = (std::max)(first - margin_, Index(0));
+    const Index end = (std::min)(last + margin_, cols) + 1;
+    T* to = bands_.data() + static_cast<Index>(k) * pitch_ + margin_;
+    for_each_cell<T>(end - begin, [=]<class V>(Index i) {
+      const auto at = [i, begin](const T* sums) { return load_cells<V, T>(sums + begin + i); };
+      const V wider = at(outer.below) - at(outer.above);
+      const V narrower = at(inner.below) - at(inner.above);
+      store_cells<T>(to + begin + i, V(wider - narrower));
+    });
+    std::fill(to + end, to + (std::max)(end, last + margin_ + 1), to[end - 1]);
+  }
+
+  void add_up(const Ends* ends, std::size_t count, T* to, Index first, Index last) const {
+    const T* bands = bands_.data() + first;
+    for_each_cell<T>(last - first, [=]<class V>(Index j) {
+      V sum = every_lane<V>(T(0));
+      for (std::size_t k = 0; k < count; ++k) {
+        sum = sum + load_cells<V, T>(bands + ends[k].right + j);
+        sum = sum - load_cells<V, T>(bands + ends[k].left + j);
+      }
+      store_cells<T>(to + first + j, sum);
+    });
+  }
+
+  Index margin_;
+  Index pitch_;
+  std::vector<T> stairs_, square_;
+  std::vector<T> bands_;  ///< D_k of each level and B of the square, with the radius on either side
+  std::vector<Ends> ends_;
+  Ends square_ends_;
 };
 
 }  // namespace detail

@@ -1,63 +1,78 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// exp and the angle of a slope for per-pixel loops. For float they are free of branches and calls,
-// so that compilers turn a loop over pixels into vector code without any flag: sqrt would keep it
-// scalar by its error number, exp and atan by being calls. Every other number uses its own
-// functions. Coefficients: near-minimax fits on the stated intervals.
+// exp and the angle of a slope for per-pixel loops. For floats and vectors of them they are free of
+// branches and calls. Every other number uses its own functions. Coefficients: near-minimax fits on
+// the stated intervals.
 #include <bit>
 #include <cmath>
+#include <concepts>
 #include <cstdint>
 
 #include "fingerpad/core/scalar.hpp"
 #include "fingerpad/image/detail/lanes.hpp"
+#include "fingerpad/image/detail/row_lanes.hpp"
 
 namespace fingerpad {
 inline namespace v0 {
 namespace detail {
 
+/// A float, or a vector of them.
+template <class V>
+concept float_lanes = std::same_as<V, float> ||
+    (!scalar<V> && std::same_as<V, typename RowVector<float, lanes_in<V, float>>::type>);
+/// As many integers.
+template <float_lanes V>
+using bits_of = typename RowVector<std::int32_t, lanes_in<V, float>>::type;
+
 /// exp(x), with x held within [-80, 80]: finite for whatever x. Float: relative error 1e-6 for
 /// |x| <= 10.
 template <scalar S>
+  requires(!float_lanes<S>)
 S quick_exp(const S& x) {
   using std::exp;
   const S above = value(x) > -80 ? x : S(-80);
   const S held = value(above) < 80 ? above : S(80);
   return S(exp(held));
 }
-inline float quick_exp(float x) {
+/// Of a float, or of each in a vector.
+template <float_lanes V>
+[[gnu::always_inline]] inline V quick_exp(const V& x) {
   // One comparison of integers: of two of floats, GCC 12 makes branches.
-  const std::int32_t bits = std::bit_cast<std::int32_t>(x);
-  const std::int32_t size = bits & 0x7FFFFFFF;
-  const std::int32_t limit = std::bit_cast<std::int32_t>(80.0F);
-  const float held = std::bit_cast<float>((size < limit ? size : limit) | (bits ^ size));
-  const float doublings = held * 1.44269504F;
-  const std::int32_t whole = static_cast<std::int32_t>(doublings + 128.5F) - 128;
-  const float f = doublings - static_cast<float>(whole);  // in [-1/2, 1/2]
-  float power = 1.54780177e-4F;
+  using Bits = bits_of<V>;
+  const Bits bits = std::bit_cast<Bits>(x);
+  const Bits size = bits & 0x7FFFFFFF;
+  const Bits limit = Bits{} + std::bit_cast<std::int32_t>(80.0F);
+  const V held = std::bit_cast<V>((size < limit ? size : limit) | (bits ^ size));
+  const V doublings = held * 1.44269504F;
+  const Bits whole = each_as<Bits>(doublings + 128.5F) - 128;
+  const V f = doublings - each_as<V>(whole);  // in [-1/2, 1/2]
+  V power = V{} + 1.54780177e-4F;
   power = power * f + 1.34004317e-3F;
   power = power * f + 9.61799453e-3F;
   power = power * f + 5.55032722e-2F;
   power = power * f + 2.40226515e-1F;
   power = power * f + 6.93147207e-1F;
   power = power * f + 1.0F;
-  return power * std::bit_cast<float>((whole + 127) << 23);
+  return power * std::bit_cast<V>(Bits((whole + 127) << 23));
 }
 
-/// sqrt(x) for 0 <= x <= 1e30; float: relative error 3e-7, 0 at 0.
-inline float quick_sqrt(float x) {
-  float inverse = std::bit_cast<float>(0x5F3759DF - (std::bit_cast<std::int32_t>(x) >> 1));
-  const float half = 0.5F * x;
-  inverse = inverse * (1.5F - half * inverse * inverse);
-  inverse = inverse * (1.5F - half * inverse * inverse);
-  inverse = inverse * (1.5F - half * inverse * inverse);
-  return x * inverse;
+/// 1 / sqrt(x) for normal x > 0 up to a quarter of the largest, with a relative error of 2.1e-5;
+/// finite at 0 and NaN for NaN. Half the exponent gives y to some percent; a polynomial in x y^2
+/// does the rest. y aims where the highest coefficient is 1 and costs nothing.
+template <float_lanes V>
+[[gnu::always_inline]] inline V rough_inverse_sqrt(const V& x) {
+  using Bits = typename RowVector<std::uint32_t, lanes_in<V, float>>::type;
+  const V y = std::bit_cast<V>(Bits(0x5F111000U - (std::bit_cast<Bits>(x) >> 1)));
+  const V t = x * y * y;  // y * y would be subnormal, and slow, where x is NaN
+  return y * ((t - 2.25330492F) * t + 2.28251864F);
 }
 
 /// atan(sqrt(slope_sq)), the inclination in rad of a surface whose slope has this square; in
 /// [0, pi/2]. Its derivative at 0 is taken as 0. Float: absolute error 4e-7 rad; a slope that is no
 /// number, or above 1e12, counts as 1e12.
 template <scalar S>
+  requires(!float_lanes<S>)
 S inclination(const S& slope_sq) {
   using std::atan;
   using std::sqrt;
@@ -67,13 +82,18 @@ S inclination(const S& slope_sq) {
   const S slope = sqrt(slope_sq);
   return S(atan(slope));
 }
-inline float inclination(float slope_sq) {
-  const float held = slope_sq < 1e24F ? slope_sq : 1e24F;
-  const float slope = quick_sqrt(held);
-  const bool steep = slope > 1.0F;
-  const float ratio = (steep ? 1.0F : slope) / (steep ? slope : 1.0F);
-  const float u = ratio * ratio;
-  float p = -4.78039436e-3F;
+/// Of a float, or of each in a vector.
+template <float_lanes V>
+[[gnu::always_inline]] inline V inclination(const V& slope_sq) {
+  const V largest = V{} + 1e24F;
+  const V held = slope_sq < largest ? slope_sq : largest;
+  const V near = rough_inverse_sqrt<V>(held);
+  const V inverse = near * (1.5F - 0.5F * held * near * near);
+  const V slope = held * inverse;
+  const auto steep = slope > V{} + 1.0F;
+  const V ratio = steep ? inverse : slope;
+  const V u = ratio * ratio;
+  V p = V{} - 4.78039436e-3F;
   p = p * u + 2.45569541e-2F;
   p = p * u - 5.99044278e-2F;
   p = p * u + 9.94273973e-2F;
@@ -81,14 +101,13 @@ inline float inclination(float slope_sq) {
   p = p * u + 1.99713741e-1F;
   p = p * u - 3.33320934e-1F;
   p = p * u + 9.99999911e-1F;
-  const float angle = ratio * p;
+  const V angle = ratio * p;
   return steep ? 1.57079633F - angle : angle;
 }
 
 /// 1 / sqrt(x) for x > 0; of a whole vector of normal numbers up to a quarter of the largest with a
-/// relative error of 2.1e-5 in float, 2e-15 in double, finite at 0 and NaN for NaN. Half the
-/// exponent gives y to some percent; a polynomial in x y^2 does the rest. In float y aims where the
-/// highest coefficient is 1 and costs nothing.
+/// relative error of 2.1e-5 in float, 2e-15 in double, finite at 0 and NaN for NaN. In double the
+/// polynomial in x y^2 is followed by a Newton step.
 template <class V>
 [[gnu::always_inline]] inline V inverse_sqrt(const V& x) {
   if constexpr (scalar<V>) {
@@ -97,10 +116,7 @@ template <class V>
     return V(V(1) / root);
 #if defined(FINGERPAD_HAS_VECTORS)
   } else if constexpr (sizeof(V{}[0]) == 4) {
-    using Bits = lanes<std::uint32_t, static_cast<int>(sizeof(V) / 4)>;
-    const V y = V(0x5F111000U - (Bits(x) >> 1));
-    const V t = x * y * y;  // y * y would be subnormal, and slow, where x is NaN
-    return y * ((t - 2.25330492F) * t + 2.28251864F);
+    return rough_inverse_sqrt<V>(x);
   } else {
     using Bits = lanes<std::uint64_t, static_cast<int>(sizeof(V) / 8)>;
     const V y = V(0x5FE6EB50C7B537A9U - (Bits(x) >> 1));

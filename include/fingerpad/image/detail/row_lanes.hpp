@@ -1,8 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// One formula, applied along a row: by vectors where the scalar is float or double and the compiler
-// has them, else one by one. Every cell is computed alike, whichever way it is reached.
+// One formula, applied along a row: by vectors where the number is float, double or a whole
+// one and the compiler has them, else one by one. Every cell is computed alike, whichever way it is
+// reached.
+#include <algorithm>
 #include <concepts>
 #include <cstdint>
 #include <cstring>
@@ -19,7 +21,8 @@ namespace detail {
 template <class S, int VectorBytes = native_vector_bytes>
 inline constexpr int row_lanes = 1;
 template <class S, int VectorBytes>
-  requires(VectorBytes > 0 && (std::same_as<S, float> || std::same_as<S, double>))
+  requires(VectorBytes > 0 &&
+           (std::same_as<S, float> || std::same_as<S, double> || std::unsigned_integral<S>))
 inline constexpr int row_lanes<S, VectorBytes> = VectorBytes / static_cast<int>(sizeof(S));
 
 /// A vector of N numbers S, or S itself.
@@ -51,7 +54,7 @@ V load_cells(const T* from) {
 template <class S, class V, class T>
   requires(std::same_as<V, S>)
 void store_cells(T* to, const V& v) {
-  if constexpr (std::integral<T>) {
+  if constexpr (std::integral<T> && scalar<S>) {
     *to = static_cast<T>(value(v));
   } else {
     *to = static_cast<T>(v);
@@ -72,15 +75,31 @@ struct RowVector<S, N> {
 /// instructions and GCC 12 uses them.
 template <class T> concept narrow_integer = std::unsigned_integral<T> && sizeof(T) <= 2;
 
+/// The first four of 16 bytes or of eight 16-bit numbers, as 32-bit ones.
+[[gnu::always_inline]] inline lanes<std::uint32_t, 4> first_widened(lanes<std::uint16_t, 8> cells) {
+  return widen<std::uint32_t, 4>(cells).first;
+}
+[[gnu::always_inline]] inline lanes<std::uint32_t, 4> first_widened(lanes<std::uint8_t, 16> cells) {
+  return first_widened(widen<std::uint16_t, 8>(cells).first);
+}
+
 template <class V, class S, class T>
   requires(!std::same_as<V, S>)
 [[gnu::always_inline]] inline V load_cells(const T* from) {
   constexpr int n = lanes_in<V, S>;
-  const lanes<T, n> cells = load<T, n>(from);
-  if constexpr (narrow_integer<T>) {
+  if constexpr (std::same_as<S, T>) {
+    return load<T, n>(from);
+  } else if constexpr (narrow_integer<T> && n == 4) {  // GCC 12 would go by a general register
+    std::uint64_t word = 0;
+    std::memcpy(&word, from, n * sizeof(T));
+    const lanes<std::uint64_t, 2> words{word, 0};
+    const auto cells = lanes<T, 16 / static_cast<int>(sizeof(T))>(words);
+    return convert<S, n>(lanes<std::int32_t, n>(first_widened(cells)));
+  } else if constexpr (narrow_integer<T>) {
+    const lanes<T, n> cells = load<T, n>(from);
     return convert<S, n>(convert<std::int32_t, n>(convert<std::uint16_t, n>(cells)));
   } else {
-    return convert<S, n>(cells);
+    return convert<S, n>(load<T, n>(from));
   }
 }
 
@@ -88,7 +107,9 @@ template <class S, class V, class T>
   requires(!std::same_as<V, S>)
 [[gnu::always_inline]] inline void store_cells(T* to, const V& v) {
   constexpr int n = lanes_in<V, S>;
-  if constexpr (narrow_integer<T>) {
+  if constexpr (std::same_as<S, T>) {
+    store(to, v);
+  } else if constexpr (narrow_integer<T>) {
     store(to, convert<T, n>(convert<std::uint16_t, n>(convert<std::int32_t, n>(v))));
   } else {
     store(to, convert<T, n>(v));
@@ -108,6 +129,16 @@ template <class Mask>
   }
 }
 
+/// True where x is a number.
+template <class V>
+[[gnu::always_inline]] inline auto known(const V& x) {
+  if constexpr (scalar<V>) {
+    return value(x) == value(x);
+  } else {
+    return x == x;
+  }
+}
+
 /// Whether rows hold S in memory, which vectors can be loaded from where cells lie side by side.
 template <class View, class S>
 inline constexpr bool plain_rows = false;
@@ -115,9 +146,53 @@ template <class T, class S>
   requires(std::same_as<std::remove_const_t<T>, S>)
 inline constexpr bool plain_rows<StridedView<T>, S> = true;
 
+/// The numbers of v as those of another type, of which a vector `To` holds as many.
+template <class To, class V>
+[[gnu::always_inline]] inline To each_as(const V& v) {
+  if constexpr (std::is_arithmetic_v<V>) {
+    return static_cast<To>(v);
+  } else {
+    return __builtin_convertvector(v, To);
+  }
+}
+
+/// Row i of a grid as numbers S side by side: where it lies, or copied to `spare`.
+template <class S, class View>
+const S* row_of(const View& from, Index i, S* spare) {
+  if constexpr (plain_rows<View, S>) {
+    if (from.col_stride() == 1) {
+      return from.row(i);
+    }
+  }
+  for (Index j = 0; j < from.cols(); ++j) {
+    spare[j] = S(from(i, j));
+  }
+  return spare;
+}
+
+/// Numbers to row i of a grid.
+template <class S, class View>
+void store_row(const S* from, const View& view, Index row) {
+  for (Index j = 0; j < view.cols(); ++j) {
+    view(row, j) = static_cast<cell_t<View>>(from[j]);
+  }
+}
+template <class S>
+void store_row(const S* from, const StridedView<S>& view, Index row) {
+  if (view.col_stride() == 1) {
+    std::copy_n(from, view.cols(), view.row(row));
+    return;
+  }
+  for (Index j = 0; j < view.cols(); ++j) {
+    view(row, j) = from[j];
+  }
+}
+
 /// Calls kernel.operator()<V>(j) for j in [0, count) in steps of V's lanes, V = S at the end.
+/// Inline, since a call would load all that the kernel holds again for each vector; for that a
+/// large kernel is to be marked always_inline, too.
 template <class S, int VectorBytes = native_vector_bytes, class Kernel>
-void for_each_cell(Index count, const Kernel& kernel) {
+[[gnu::always_inline]] inline void for_each_cell(Index count, const Kernel& kernel) {
   constexpr int n = row_lanes<S, VectorBytes>;
   Index j = 0;
   if constexpr (n > 1) {
