@@ -60,7 +60,8 @@ class PlainRows {
   PlainRows(const ColourSetup<S>& setup, const NoSmoothing&, const GreyScale& scale)
       : scale_(scale),
         red_(static_cast<std::size_t>(setup.cols)),
-        green_(static_cast<std::size_t>(setup.cols)) {}
+        green_(static_cast<std::size_t>(setup.cols)),
+        valid_(static_cast<std::size_t>(setup.cols)) {}
 
   template <class Red, class Green>
   void start(const ColourSetup<S>&, const Red&, const Green&, Index first_row) {
@@ -72,20 +73,44 @@ class PlainRows {
       const ColourSetup<S>& setup, const Red& red, const Green& green, S* to_red, S* to_green) {
     load_pixels(red, green, row_, red_.data(), green_.data());
     const std::uint8_t* inside = setup.in_pad.data() + row_ * setup.cols;
-    const Counts<Pixel> counts{scale_};
     const S level = S(1) / S(scale_.units_per_level);
-    for (std::size_t j = 0; j < red_.size(); ++j) {
-      const bool valid = inside[j] != 0 && counts(red_[j]) && counts(green_[j]);
-      to_red[j] = valid ? S(S(red_[j]) * level) : not_a_number<S>();
-      to_green[j] = valid ? S(S(green_[j]) * level) : not_a_number<S>();
+    if constexpr (averages_integers<Pixel, S>) {
+      const ClosedRange<Pixel> range({scale_.dark, scale_.saturated});
+      mark_valid(range, red_.data(), green_.data(), inside, valid_.data(), setup.cols);
+      for_each_cell<S>(setup.cols, [&]<class V>(Index j) {
+        store_cells<S>(to_red + j, load_cells<V, S>(red_.data() + j) * level);
+        store_cells<S>(to_green + j, load_cells<V, S>(green_.data() + j) * level);
+      });
+      for (Index j = first_zero(0); j < setup.cols; j = first_zero(j)) {
+        for (; j < setup.cols && valid_[static_cast<std::size_t>(j)] == 0; ++j) {
+          to_red[j] = to_green[j] = not_a_number<S>();
+        }
+      }
+    } else {
+      const Counts<Pixel> counts{scale_};
+      for (std::size_t j = 0; j < red_.size(); ++j) {
+        const bool valid = inside[j] != 0 && counts(red_[j]) && counts(green_[j]);
+        to_red[j] = valid ? S(S(red_[j]) * level) : not_a_number<S>();
+        to_green[j] = valid ? S(S(green_[j]) * level) : not_a_number<S>();
+      }
     }
     ++row_;
   }
 
  private:
+  /// The first pixel from j on that does not count.
+  Index first_zero(Index j) const {
+    const std::uint8_t* begin = valid_.data();
+    const std::size_t left = valid_.size() - static_cast<std::size_t>(j);
+    const void* zero = std::memchr(begin + j, 0, left);
+    return zero == nullptr ? static_cast<Index>(valid_.size())
+                           : static_cast<const std::uint8_t*>(zero) - begin;
+  }
+
   GreyScale scale_;
   std::vector<Pixel> red_;
   std::vector<Pixel> green_;
+  std::vector<std::uint8_t> valid_;
   Index row_ = 0;
 };
 
