@@ -216,6 +216,8 @@ TEST_CASE("published contact region: centers every 5 pixels", "[published]") {
 TEST_CASE("published flat contact: F = p S", "[published]") {
   CHECK(published::flat_contact_force_n(0.02, 300.0) == Approx(6.0));
   CHECK(published::flat_contact_force_n(0.0, 300.0) == 0);
+  CHECK(published::flat_contact_force_n(0.02, 0.5) == Approx(0.01));  // of a small contact, too
+  CHECK(std::isnan(published::flat_contact_force_n(0.02, -0.5)));
   CHECK(std::isnan(published::flat_contact_force_n(-0.02, 300.0)));
   CHECK(std::isnan(published::flat_contact_force_n(0.02, test::nan)));
 }

@@ -141,6 +141,22 @@ TEST_CASE("published normal force: the printed curves", "[published]") {
   CHECK(by_area(300, {3, 0}).force_n == Approx(0.748 * plain - 0.637 * 3 + 1.7));
 }
 
+TEST_CASE("published normal force: both curves are of 1 to 28 N, eqs. 21 and 22 as printed",
+          "[published]") {
+  const auto area = published::force_of_area();
+  const auto depth = published::force_of_depth();
+  CHECK(area.force_n(area.from) == Approx(1).margin(0.01));
+  CHECK(depth.force_n(depth.from) == Approx(1).margin(0.01));
+  CHECK(area.force_n(area.to) == Approx(28).margin(0.05));
+  CHECK(depth.force_n(depth.to) == Approx(28).margin(0.05));
+  constexpr double degree = 0.017453292519943295;
+  const auto by_area = published::compensation_by_area();
+  const auto by_depth = published::compensation_by_depth();
+  CHECK(by_area.rotated(10, 20 * degree) == Approx(1.2 * 10 + 0.00171 * 20 - 1.8));
+  CHECK(by_depth.displaced(10, 3) == Approx(1.2 * 10 + 0.509 * 3 - 3.5));
+  CHECK(by_depth.rotated(10, 20 * degree) == Approx(0.8 * 10 - 0.00102 * 20 - 0.0518));
+}
+
 TEST_CASE("published shear: straight lines, normalised by the printed exponents", "[published]") {
   const auto by_area = published::shear_by_area(2.0, 300.0);
   CHECK(by_area(100, {0.5, 0}, 0.1).tangential_force_n.x == Approx(1.0));
@@ -174,6 +190,18 @@ TEST_CASE("published pre-slip rules: what makes a pair", "[published]") {
   CHECK(alarm(lift, sample(1, 3, 4), sample(9, 5, 5)));        // force has moved, and more waves
   CHECK_FALSE(alarm(lift, sample(1, 3, 4), sample(9, 5, 4)));  // as many
   CHECK_FALSE(alarm(lift, sample(1, 3, 4), sample(1, 5, 5)));  // force stays
+  // loosening needs it of both fingers, lifting of either
+  const auto alarm_by = [](const auto& rule, const auto& older, const auto& left,
+                           const auto& right) {
+    auto state = rule.start();
+    (void)rule(std::array{older, older}, state);
+    return rule(std::array{left, right}, state).alarm;
+  };
+  const auto was = sample(1, 3, 4), other = sample(1, 5, 4), moved = sample(9, 5, 5);
+  CHECK_FALSE(alarm_by(optimise, was, was, other));
+  CHECK_FALSE(alarm_by(optimise, was, other, was));
+  CHECK(alarm_by(lift, was, was, moved));
+  CHECK(alarm_by(lift, was, moved, was));
 }
 
 TEST_CASE("published wrench: its columns and rows, and what it refuses", "[published]") {
