@@ -15,7 +15,7 @@ TEST_CASE("grip in a closed loop holds, with little more force than that takes",
       INFO("scene " << static_cast<int>(scene) << ", run " << number << ": slid " << run.slip_mm
                     << " mm, mean force beyond need " << run.beyond);
       CHECK(run.slip_mm < 0.5);
-      CHECK(run.beyond < 0.9);  // measured: 0.29 to 0.76; by the ratio alone up to 10
+      CHECK(run.beyond < 0.9);  // measured: 0.30 to 0.85; by the ratio alone up to 10
     }
   }
 }
@@ -23,4 +23,12 @@ TEST_CASE("grip in a closed loop holds, with little more force than that takes",
 TEST_CASE("grip in a closed loop: a constant force drops what grows", "[closed_loop]") {
   const auto run = test::run_grip(GripLaw<double>(), GripScene::fast, 2, {.is_controlled = false});
   CHECK(run.slip_mm > 5);
+}
+
+// Twice the noise, and a load so steady that no ratio is ever known: the force must not follow it
+// down when friction falls. It slid by 21 mm when it did.
+TEST_CASE("grip in a closed loop: without a ratio nothing is loosened", "[closed_loop]") {
+  const auto run = test::run_grip(GripLaw<double>(), GripScene::changes, 9,
+                                  {.lateral_mm = 0.01, .depth_mm = 0.05});
+  CHECK(run.slip_mm < 0.5);
 }

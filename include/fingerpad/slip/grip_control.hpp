@@ -189,9 +189,7 @@ class GripControl {
     const S spare = S(10) / S(3) * S(ratio - law_.slip_ratio);
     const S share = value(spare) < 1 ? spare : S(1);
     const S per_s = state.has_slipped_ ? law_.search_per_s : law_.first_search_per_s;
-    const S growth = is_finite(ratio)     ? S(share * per_s)
-                     : state.has_slipped_ ? S(0)
-                                          : law_.search_per_s;
+    const S growth = is_finite(ratio) ? S(share * per_s) : S(0);
     state.friction_ = state.friction_ * S(S(1) + growth * step_s);
   }
 

@@ -129,8 +129,7 @@ struct GripLaw {
                                    ///< to 1.5 %, the rest what the load gains before the next frame
   S first_search_per_s = S(2) / S(10);  ///< share by which it grows while all sticks, before the
                                         ///< first slip, >= 0
-  S search_per_s = S(4) / S(100);       ///< and later, >= 0; before the first slip also where no
-                                        ///< ratio is known yet
+  S search_per_s = S(4) / S(100);       ///< and later, >= 0; by neither while no ratio is known
   S response_s = S(1) / S(10);  ///< by how much the load is foreseen: camera and gripper, >= 0
 };
 
