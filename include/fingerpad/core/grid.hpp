@@ -231,7 +231,8 @@ LazyView(Index, Index, F) -> LazyView<F>;
 template <class G>
 class RefView {
  public:
-  constexpr explicit RefView(G& g) : grid_(&g) {}
+  // A grid may have an operator& of its own; std::addressof would cost a third of all headers.
+  constexpr explicit RefView(G& g) : grid_(__builtin_addressof(g)) {}
   constexpr Index rows() const { return detail::traits_of<G>::rows(*grid_); }
   constexpr Index cols() const { return detail::traits_of<G>::cols(*grid_); }
   constexpr decltype(auto) operator()(Index i, Index j) const {

@@ -198,23 +198,38 @@ class NormalEquations {
 /// Whether a matrix can be a covariance: symmetric, and no combination of parameters has a variance
 /// below 0. Rounding of a singular one passes.
 template <scalar S, std::size_t N>
-bool is_covariance(SmallMatrix<S, N> a) {
-  using std::sqrt;
-  const S rounding = S(sqrt(S(epsilon<S>())));
+bool is_covariance(const SmallMatrix<S, N>& covariance) {
+  const double rounding =
+      std::sqrt(static_cast<double>(epsilon<S>()) + static_cast<double>(epsilon<double>()));
+  SmallMatrix<double, N> a{};
+  for (std::size_t i = 0; i < N; ++i) {
+    for (std::size_t j = 0; j < N; ++j) {
+      a[i][j] = static_cast<double>(value(covariance[i][j]));
+    }
+  }
   for (std::size_t i = 0; i < N; ++i) {
     for (std::size_t j = 0; j < i; ++j) {
-      const S largest = S(sqrt(a[i][i])) * S(sqrt(a[j][j]));
-      const S difference = S(a[i][j] - a[j][i]);
-      const bool is_symmetric = value(square(difference)) <= value(square(S(rounding * largest)));
-      if (!is_symmetric || (value(largest) == 0 && value(a[i][j]) != 0)) {
+      const double largest = std::sqrt(a[i][i]) * std::sqrt(a[j][j]);
+      const bool is_symmetric = std::abs(a[i][j] - a[j][i]) <= rounding * largest;
+      if (!is_symmetric || !(std::abs(a[i][j]) <= (1 + rounding) * largest)) {
         return false;
       }
     }
   }
   for (std::size_t i = 0; i < N; ++i) {
-    a[i][i] = value(a[i][i]) == 0 ? S(1) : S(a[i][i] * (S(1) + rounding));
+    a[i][i] += a[i][i] > 0 ? rounding * a[i][i] : 1.0;
   }
-  return NormalEquations<S, N>(a, 0).good;
+  for (std::size_t k = 0; k < N; ++k) {  // elimination: a pivot below 0 is a variance below 0
+    if (!(a[k][k] > 0)) {
+      return false;
+    }
+    for (std::size_t i = k + 1; i < N; ++i) {
+      for (std::size_t j = k + 1; j < N; ++j) {
+        a[i][j] -= a[i][k] * a[k][j] / a[k][k];
+      }
+    }
+  }
+  return true;
 }
 
 }  // namespace detail
