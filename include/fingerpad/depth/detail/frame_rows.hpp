@@ -153,7 +153,7 @@ void load_pixels(const StridedView<const Pixel>& red,
     return;
   }
   Index done = 0;
-  const bool together = step == green.col_stride() && r - g < step && g - r < step;
+  const bool together = n > 0 && step == green.col_stride() && r - g < step && g - r < step;
   if (together && (step == 3 || step == 4)) {
     // Which channel is first in a pixel is not known, so the last pixel is left: a block that
     // begins at the first of the two would reach past it.
