@@ -25,8 +25,8 @@ TEST_CASE("grip in a closed loop: a constant force drops what grows", "[closed_l
   CHECK(run.slip_mm > 5);
 }
 
-// Twice the noise, and a load so steady that no ratio is ever known: the force must not follow it
-// down when friction falls. It slid by 21 mm when it did.
+// Twice the noise, and a load so steady that no ratio is ever known: a force that follows it down
+// when friction falls lets the object slide by 21 mm.
 TEST_CASE("grip in a closed loop: without a ratio nothing is loosened", "[closed_loop]") {
   const auto run = test::run_grip(GripLaw<double>(), GripScene::changes, 9,
                                   {.lateral_mm = 0.01, .depth_mm = 0.05});

@@ -143,18 +143,13 @@ inline void require(bool holds, const char* what) {
 }
 
 /// Whether a call takes longer than bounded time allows: ten times the median of its kind, once a
-/// thousand have been seen. Below 10 ms it may be the machine; above, run() tries again.
+/// thousand have been seen. Below 10 ms it may be the machine.
 class BoundedTime {
  public:
-  void add(double seconds) {
+  bool holds(double seconds) {
     ++count_;
     ++of_[bin(seconds)];
-    is_late() = is_late() || (count_ >= 1000 && seconds >= 0.01 && seconds >= 10 * median());
-  }
-  /// Whether any call was, since this was last set.
-  static bool& is_late() {
-    static bool late = false;
-    return late;
+    return count_ < 1000 || seconds < 0.01 || seconds < 10 * median();
   }
 
  private:
@@ -177,7 +172,7 @@ class BoundedTime {
   long count_ = 0;
 };
 
-/// Of this thread alone, so that other work of the machine hardly counts.
+/// Of this thread alone, so that other work of the machine does not count.
 inline double processor_seconds() {
   std::timespec now{};
   clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
@@ -193,7 +188,7 @@ auto frame(const Frame& call) noexcept {
   auto result = call();
   const double seconds = processor_seconds() - begin;
   require(test::allocations() == before, "a frame takes no memory");
-  time.add(seconds);
+  require(time.holds(seconds), "a frame takes bounded time");
   return result;
 }
 
@@ -211,23 +206,16 @@ bool same_bits(const fingerpad::Point3<T>& a, const fingerpad::Point3<T>& b) {
   return same_bits(a.x, b.x) && same_bits(a.y, b.y) && same_bits(a.z, b.z);
 }
 
-/// What a target does with an input; parameters that are refused end it. What takes long does so
-/// each of five times, or it was the machine.
+/// What a target does with an input; parameters that are refused end it.
 template <class Target>
 int run(const std::uint8_t* data, std::size_t size, const Target& target) {
-  for (int times = 1;; ++times) {
-    BoundedTime::is_late() = false;
-    Input in(data, size);
-    try {
-      target(in);
-    } catch (const fingerpad::parameter_error&) {
-      // refused, as it should be
-    }
-    if (!BoundedTime::is_late()) {
-      return 0;
-    }
-    require(times < 5, "a frame takes bounded time");
+  Input in(data, size);
+  try {
+    target(in);
+  } catch (const fingerpad::parameter_error&) {
+    // refused, as it should be
   }
+  return 0;
 }
 
 }  // namespace fuzz

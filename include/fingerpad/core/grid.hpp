@@ -231,7 +231,7 @@ LazyView(Index, Index, F) -> LazyView<F>;
 template <class G>
 class RefView {
  public:
-  // A grid may have an operator& of its own; std::addressof would cost a third of all headers.
+  // A grid may overload operator&, and std::addressof would bring <memory> into every header.
   constexpr explicit RefView(G& g) : grid_(__builtin_addressof(g)) {}
   constexpr Index rows() const { return detail::traits_of<G>::rows(*grid_); }
   constexpr Index cols() const { return detail::traits_of<G>::cols(*grid_); }
