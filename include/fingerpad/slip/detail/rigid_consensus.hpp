@@ -1,7 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// One rigid motion in space of the dots that stick, fitted to those that follow it.
+// One rigid motion in space of the dots that stick, fitted to those that follow it. Parameters of
+// the loops over dots are values: compilers need not fear that a write to a dot changes them.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -52,10 +53,9 @@ struct AxisNoise {
 /// noise of the axes is independent. For a vector w = axis / variances, by = w / sqrt(axis w),
 /// whatever the axis' length.
 template <class S>
-void set_surface(const AxisNoise<S>& given_noise, SpatialPairs<S>& pairs) {
+void set_surface(AxisNoise<S> noise, SpatialPairs<S>& pairs) {
   using std::sqrt;
   const Quadric<S> surface = quadric_through(pairs);
-  const AxisNoise<S> noise = given_noise;
   const S lateral_by = S(sqrt(noise.lateral_info));
   for (PairBlock<S>& b : pairs) {
     for (std::size_t k = 0; k < block_dots; ++k) {
@@ -78,9 +78,8 @@ void set_surface(const AxisNoise<S>& given_noise, SpatialPairs<S>& pairs) {
 /// Weights of a bell 4/3 pitches wide around a place, (1 + x / 4096)^-4096 for exp(-x), without
 /// calls; all alike where there is no pitch.
 template <class S>
-void weigh_around(const Point3<S>& from, const S& pitch_sq, SpatialPairs<S>& pairs) {
+void weigh_around(Point3<S> middle, const S& pitch_sq, SpatialPairs<S>& pairs) {
   const S scale = S(0) < pitch_sq ? S(S(9.0 / (32 * 4096)) / pitch_sq) : S(0);
-  const Point3<S> middle = from;
   for (PairBlock<S>& b : pairs) {
     for (std::size_t k = 0; k < block_dots; ++k) {
       S bell = S(1) / (S(1) + scale * squared_norm(b.now[k] - middle));
@@ -96,8 +95,7 @@ void weigh_around(const Point3<S>& from, const S& pitch_sq, SpatialPairs<S>& pai
 /// along the normal is noise, and depth, which is known worse, counts only where the surface is
 /// inclined.
 template <class S>
-void set_slips(const Pose<S>& motion_now, SpatialPairs<S>& pairs) {
-  const Pose<S> motion = motion_now;
+void set_slips(Pose<S> motion, SpatialPairs<S>& pairs) {
   for (PairBlock<S>& b : pairs) {
     for (std::size_t k = 0; k < block_dots; ++k) {
       const Point3<S> residual = b.now[k] - motion(b.then[k]);
@@ -113,12 +111,11 @@ void set_slips(const Pose<S>& motion_now, SpatialPairs<S>& pairs) {
 
 /// Weight 1 for the dots whose slip is within the limit; how many they are.
 template <class S>
-S weigh_followers(const S& limit_sq, SpatialPairs<S>& pairs) {
-  const S limit = limit_sq;
+S weigh_followers(S limit_sq, SpatialPairs<S>& pairs) {
   Block<S> followers = zeros<S, block_dots>();
   for (PairBlock<S>& b : pairs) {
     for (std::size_t k = 0; k < block_dots; ++k) {
-      const S weight = (b.slip_sq[k] < limit ? S(1) : S(0)) * b.is_dot[k];
+      const S weight = (b.slip_sq[k] < limit_sq ? S(1) : S(0)) * b.is_dot[k];
       b.weight[k] = weight;
       followers[k] = followers[k] + weight;
     }
@@ -144,11 +141,10 @@ void weigh_nearest(Index rank, std::vector<S>& sorted, SpatialPairs<S>& pairs) {
 
 /// Weights that fall with the averaged slip, to a fourth at this one.
 template <class S>
-void weigh_by_mean(const S& quarter_sq, SpatialPairs<S>& pairs) {
-  const S width = quarter_sq;
+void weigh_by_mean(S quarter_sq, SpatialPairs<S>& pairs) {
   for (PairBlock<S>& b : pairs) {
     for (std::size_t k = 0; k < block_dots; ++k) {
-      const S ratio = width / (width + b.mean_sq[k]);
+      const S ratio = quarter_sq / (quarter_sq + b.mean_sq[k]);
       b.weight[k] = b.is_dot[k] * ratio * ratio;
     }
   }
@@ -158,13 +154,11 @@ void weigh_by_mean(const S& quarter_sq, SpatialPairs<S>& pairs) {
 /// `room`: a grid with a border of one cell and this many columns, in which cells without a pair
 /// are empty.
 template <class S>
-void average_slips(const S& gate_sq,
-                   const AxisNoise<S>& given_noise,
+void average_slips(S gate_sq,
+                   AxisNoise<S> noise,
                    Index across,
                    std::vector<SmallSlip<S>>& room,
                    SpatialPairs<S>& pairs) {
-  const S gate = gate_sq;
-  const AxisNoise<S> noise = given_noise;
   const S lateral = S(1) / noise.lateral_info, deep = S(1) / noise.depth_info;
   for (PairBlock<S>& b : pairs) {
     for (std::size_t k = 0; k < block_dots; ++k) {
@@ -172,7 +166,7 @@ void average_slips(const S& gate_sq,
       b.mean_slip.x[k] = lateral * (u * b.by_u.x[k] + v * b.by_v_x[k]);
       b.mean_slip.y[k] = lateral * (u * b.by_u.y[k] + v * b.by_v_y[k]);
       b.mean_slip.z[k] = deep * u * b.by_u.z[k];
-      b.counts[k] = (b.slip_sq[k] < gate ? S(1) : S(0)) * b.is_dot[k];
+      b.counts[k] = (b.slip_sq[k] < gate_sq ? S(1) : S(0)) * b.is_dot[k];
     }
   }
   for (PairBlock<S>& b : pairs) {
@@ -208,8 +202,7 @@ struct PairMoments {
 };
 
 template <class S>
-PairMoments<S> moments_of(const SpatialPairs<S>& pairs, const Point3<S>& about) {
-  const Point3<S> center = about;
+PairMoments<S> moments_of(const SpatialPairs<S>& pairs, Point3<S> center) {
   const Block<S> none = zeros<S, block_dots>();
   PairMoments<Block<S>> sum = {none, none, none, none, none, none, none, none, none,
                                none, none, none, none, none, none, none, none, none};
