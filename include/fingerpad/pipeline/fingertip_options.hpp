@@ -22,12 +22,39 @@
 #include "fingerpad/force/wrench.hpp"
 #include "fingerpad/motion/contact_shift.hpp"
 #include "fingerpad/motion/object_motion.hpp"
-#include "fingerpad/pipeline/detail/one_thread.hpp"
 #include "fingerpad/slip/friction_limit.hpp"
 #include "fingerpad/slip/spatial_stick_ratio.hpp"
 
 namespace fingerpad {
 inline namespace v0 {
+
+namespace detail {
+
+/// Does the work of a frame in the calling thread. An executor of your own has the same members;
+/// bench/report/chain has one of two threads.
+struct OneThread {
+  static constexpr int threads = 1;
+
+  /// Calls work(thread, first, last) until all rows are done.
+  template <class Work>
+  void bands(Index rows, const Work& work) {
+    work(0, 0, rows);
+  }
+  /// Calls both, in any order or at once.
+  template <class First, class Second>
+  void both(const First& first, const Second& second) {
+    first();
+    second();
+  }
+};
+
+/// Ignores the stages that are reported to it.
+struct NoWatch {
+  template <class Stage>
+  void operator()(Stage) const {}
+};
+
+}  // namespace detail
 
 /// The stages of a fingertip and their methods. Derive from it and override what differs. A stage
 /// that is false is not instantiated and costs nothing; all stages after contact need contact. A
