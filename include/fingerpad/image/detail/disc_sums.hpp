@@ -232,8 +232,7 @@ class SummedArea {
     T run = T(0);
     Index j = 0;
 #if defined(FINGERPAD_HAS_VECTORS)
-    if constexpr (row_lanes < T >> 1 && std::same_as<Cell, T>) {
-      constexpr int n = row_lanes<T>;
+    if constexpr (constexpr int n = row_lanes<T>; n > 1 && std::same_as<Cell, T>) {
       constexpr auto order = std::make_index_sequence<std::size_t(n)>{};
       lanes<T, n> carry{};
       for (; j + n <= cols_; j += n) {
