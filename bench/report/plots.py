@@ -157,8 +157,11 @@ def chain_samples(points, path):
         of = [p for p in points if p[0] == policies]
         axes.plot([p[3] for p in of], [p[2] for p in of], marker="o", color=colour, label=policies)
         for _, step, ms, mm in of:
-            axes.annotate(f"{step} px", (mm, ms), xytext=(6, -12 if step % 2 else 6),
-                          textcoords="offset points", fontsize=8, color=colour)
+            is_last = step == of[-1][1]  # beside the one before, whose label is on the right
+            axes.annotate(f"{step} px", (mm, ms), xytext=(-6 if is_last else 6, -12 if step % 2 else 6),
+                          ha="right" if is_last else "left", textcoords="offset points", fontsize=8,
+                          color=colour)
+    axes.margins(x=0.1)
     axes.set_ylim(bottom=0)
     axes.set_xlabel("error of the depth of a pixel, 99th percentile, mm")
     axes.set_ylabel("ms a frame, native")
