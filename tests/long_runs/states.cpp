@@ -287,6 +287,8 @@ TEST_CASE("long runs: after a reset a slide of the contact is that of a start", 
     }
   }
   CHECK(sound);
+  const auto last = imprint(any, 12, 10);
+  (void)slide(last, pressed(last), lattice(any, 0), state);  // there is something to forget
   state.reset();
   for (int k = 0; k < 20; ++k) {
     const auto cells = imprint(any, 8 + 0.2 * k, 10);
