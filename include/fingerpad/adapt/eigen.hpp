@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// Eigen matrices, arrays, maps, references and blocks as grids in plain memory, row- or column-
-// major. Expressions without memory (a + b) need no adapter: they have rows(), cols() and (i, j).
+// Eigen matrices, arrays, maps, references and blocks as grids in memory, row- or column-major.
+// Expressions without memory (a + b) need no adapter: they have rows(), cols() and (i, j).
 #include <Eigen/Core>
 
 #include "fingerpad/core/grid.hpp"

@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// mdspan of rank two as a grid, whichever library it comes from (std, std::experimental, Kokkos):
-// it is known by its members, so nothing is included, and cells are reached through accessor and
-// mapping, so it does not matter whether this mdspan is indexed by [] or by ().
+// mdspan of rank two as a grid, from any library (std, std::experimental, Kokkos). It is recognised
+// by its members, so no mdspan header is included. Cells are read through accessor and mapping, so
+// both [] and () as index operator work.
 #include <concepts>
 #include <type_traits>
 
@@ -31,7 +31,7 @@ struct grid_traits<G> {
     const auto offset = g.mapping()(static_cast<Extent>(row), static_cast<Extent>(col));
     return g.accessor().access(g.data_handle(), offset);
   }
-  // Plain memory only where the accessor hands out the memory itself, not a value computed from it.
+  // Only if the accessor returns a reference into memory, not a computed value.
   static constexpr auto* data(const G& g) requires
       std::is_same_v<typename G::data_handle_type, typename G::element_type*> &&
       std::is_same_v<typename G::reference, typename G::element_type&> &&

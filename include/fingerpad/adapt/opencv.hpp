@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// OpenCV images as grids: cv::Mat_<T> as it is; one channel of an interleaved cv::Mat as a view
-// without a copy. A cv::Mat knows its type only at run time, so it is viewed by naming the type.
+// OpenCV images as grids: cv::Mat_<T> directly, and one channel of an interleaved cv::Mat as a view
+// without a copy. A cv::Mat knows its type only at run time, so the caller names the type.
 #include <opencv2/core/mat.hpp>
 
 #include "fingerpad/core/expects.hpp"
@@ -16,8 +16,8 @@ struct grid_traits<cv::Mat_<T>> {
   using Image = cv::Mat_<T>;
   static Index rows(const Image& m) { return m.rows; }
   static Index cols(const Image& m) { return m.cols; }
-  // A row is a whole number of values but, where it is padded, not always of pixels: only images of
-  // one channel have a stride.
+  // A padded row is a whole number of values, but not always of pixels. Only images of one channel
+  // therefore have a stride.
   static constexpr bool has_stride = cv::DataType<T>::channels == 1;
   static const T& at(const Image& m, Index i, Index j) {
     return m.template ptr<T>(static_cast<int>(i))[j];
@@ -29,7 +29,7 @@ struct grid_traits<cv::Mat_<T>> {
   static Index col_stride(const Image&) { return 1; }
 };
 
-/// A cv::Mat does not say what its pixels are.
+/// Rejects an untyped cv::Mat with a readable message.
 template <std::same_as<cv::Mat> M>
 struct grid_traits<M> {
   static_assert(!std::same_as<M, cv::Mat>,
@@ -37,9 +37,9 @@ struct grid_traits<M> {
                 "fingerpad::channel<T>(image, c) of a colour image");
 };
 
-/// Channel `c` of `image` (B = 0, G = 1, R = 2 as OpenCV reads colour files), viewed as T, which
-/// must be the type of its values; refuses another type or a channel that is not there
-/// (parameter_error). The image must outlive the view.
+/// A view of channel `c` of `image` (B = 0, G = 1, R = 2 as OpenCV reads colour files). T must be
+/// the type of its values. Refuses another type or a missing channel (parameter_error). The image
+/// must outlive the view.
 template <class T>
 StridedView<T> channel(cv::Mat& image, int c) {
   expects(image.depth() == cv::DataType<std::remove_const_t<T>>::depth, "channel", "image.depth()",

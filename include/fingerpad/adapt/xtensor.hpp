@@ -1,11 +1,11 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// xtensor containers, adaptors and views of two dimensions as grids. Those in plain memory become
-// strided views; other expressions are read cell by cell. Another number of dimensions does not
-// compile; where it is only known when running (xt::xarray), it is a grid without rows and columns,
-// which every method refuses as one of another size. Both header layouts of xtensor (flat, as in
-// 0.24, and in folders, as from 0.26 on) are found.
+// xtensor containers, adaptors and views of two dimensions as grids. Those in memory become strided
+// views; other expressions are read cell by cell. Another number of dimensions does not compile. If
+// it is known only at run time (xt::xarray), the grid has no rows and columns, and every method
+// refuses it for its size. Both header layouts of xtensor (flat, as in 0.24, and in folders, from
+// 0.26 on) are supported.
 #if __has_include(<xtensor/core/xexpression.hpp>)
 #include <xtensor/core/xexpression.hpp>
 #else
@@ -27,7 +27,7 @@ template <class G> concept xtensor_in_memory = requires(G& g) {
   g.strides();
 };
 
-/// Of an xtensor expression; 0: known only when running.
+/// Rank of an xtensor expression; 0: known only at run time.
 template <class G>
 inline constexpr std::size_t rank_when_compiling = 0;
 template <class G>
@@ -71,8 +71,8 @@ struct grid_traits<G> {
   }
 };
 
-/// Dots of a (rows, cols, 2) tensor, or of (rows, cols, 3) with depths, in memory, without a copy;
-/// of another shape: a grid without dots. The tensor must outlive the view.
+/// A view of the dots of a (rows, cols, 2) tensor in memory, or of (rows, cols, 3) with depths. A
+/// tensor of another shape gives a grid without dots. The tensor must outlive the view.
 template <int Coordinates = 2, class Tensor>
   requires(xt::is_xexpression<Tensor>::value&& detail::xtensor_in_memory<const Tensor>)
 auto dots_of_tensor(const Tensor& tensor) {

@@ -6,8 +6,8 @@
 // where E is the statistic's mean over the frames and sigma its standard deviation.
 //
 // As published, the single worst pixel of the pad sets the threshold; here a quantile replaces the
-// minimum. E - 2 sigma is the highest threshold that noise allows, not the level at the edge of the
-// contact: at a straight edge that is half the level of the free pad, which is the default.
+// minimum. E - 2 sigma is the highest threshold that noise allows. It is not the level at the edge
+// of the contact: at a straight edge this is half the level of the free pad, which is the default.
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -25,8 +25,8 @@ namespace fingerpad {
 inline namespace v0 {
 
 /// delta = min(level_share x median of E, quantile over the pad of E - sigmas x sigma).
-/// The sigma of a single pixel, as published, takes dozens of frames to be known; that of the whole
-/// pad takes two.
+/// The sigma of a single pixel, as published, needs dozens of frames; that of the whole pad needs
+/// two.
 struct ThresholdRule {
   double level_share = 0.5;  ///< in (0, 1]
   double sigmas = 2;         ///< >= 0
@@ -40,20 +40,20 @@ struct [[nodiscard]] FreePadCurvature {
   FitStatus status = FitStatus::ok;
   S threshold_per_mm = S(0);  ///< delta, for ContactTest
   S median_per_mm = S(0);     ///< of E over the pad
-  S median_error_per_mm =     ///< its standard error, by how the frames' own medians differ; of
-      not_a_number<S>();      ///< the threshold level_share of it, where the level sets that;
-                              ///< NaN from a single frame
-  S noise_per_mm = S(0);      ///< root mean square of sigma over the pad; 0 from a single frame
-  S edge_noise_mm = S(0);     ///< standard deviation that it alone would leave a point of a flat
-                              ///< object's edge; HalfLevelEdge, which smooths, comes to less
-  Index pixels = 0;           ///< with a curvature in every frame
+  /// Standard error of the median, from the scatter of the frames' medians; NaN for a single frame.
+  /// Times level_share it is that of the threshold, if the level sets the threshold.
+  S median_error_per_mm = not_a_number<S>();
+  S noise_per_mm = S(0);   ///< root mean square of sigma over the pad; 0 for a single frame
+  S edge_noise_mm = S(0);  ///< standard deviation of an edge point of a flat object due to this
+                           ///< noise alone; smaller with HalfLevelEdge, which smooths
+  Index pixels = 0;        ///< with a curvature in every frame
   int frames = 0;
 
   bool ok() const { return status == FitStatus::ok; }
 };
 
-/// Collects curvature statistics of the free pad. It must be the statistic, the ring and the camera
-/// of the contact test. Sums of float are double. Takes 32 bytes per pixel.
+/// Collects curvature statistics of the free pad. Statistic, ring and camera must be those of the
+/// contact test. Sums of float are double. Takes 32 bytes per pixel.
 template <class Statistic = ClampedMean<>, class CameraType = Camera<double>, scalar S = float>
 class FreePadCalibration {
   using Map = CurvatureMap<Statistic, CameraType, S>;
@@ -84,7 +84,7 @@ class FreePadCalibration {
     ++frames_;
     of_frame_.clear();
     for (std::size_t k = 0; k < mean_.size(); ++k) {
-      // a pixel that is once without curvature is NaN from then on
+      // a pixel without curvature in one frame remains NaN
       const T here = T(curvature_[k]);
       const T change = here - mean_[k];
       mean_[k] += T(change / T(frames_));
@@ -99,8 +99,8 @@ class FreePadCalibration {
     return true;
   }
 
-  /// Refuses a rule out of range, no frames, no pixel with a curvature in all of them, and a pad
-  /// that the rule leaves no positive threshold (parameter_error).
+  /// Refuses a rule out of range, no frames, no pixel with a curvature in all frames, and a pad for
+  /// which the rule gives no positive threshold (parameter_error).
   FreePadCurvature<T> fit(const ThresholdRule& rule = {}) const {
     check(rule);
     FreePadCurvature<T> pad;
@@ -137,7 +137,7 @@ class FreePadCalibration {
             pad.threshold_per_mm,
             "> 0: the pad bulges too little for its noise; a larger ring, or "
             "more smoothing of the depth, helps");
-    if (pad.median_per_mm < T(1e-3)) {  // as of a sphere of a metre: no pad is as flat
+    if (pad.median_per_mm < T(1e-3)) {  // a sphere of 1 m radius: no pad is as flat
       pad.status = FitStatus::depths_not_in_mm;
     } else if (2 * means.size() < mean_.size()) {
       pad.status = FitStatus::depths_missing;
@@ -167,7 +167,7 @@ class FreePadCalibration {
     return values[static_cast<std::size_t>(at)];
   }
 
-  /// Of the mean of values that are independent; NaN of a single one.
+  /// Standard error of the mean of independent values; NaN for a single value.
   static T standard_error(const std::vector<T>& values) {
     const T n = T(static_cast<double>(values.size()));
     T mean = T(0), squares = T(0);
@@ -180,7 +180,7 @@ class FreePadCalibration {
     return root_of(T(squares / T(n * T(n - T(1)))));
   }
 
-  /// 0 of 0 without the derivative, which would be infinite.
+  /// Square root; 0 at 0, without the infinite derivative.
   static T root_of(const T& x) {
     using std::sqrt;
     return value(x) == 0 ? T(0) : T(sqrt(x));

@@ -3,14 +3,14 @@
 #pragma once
 // Fits the optical properties of the fluid to colours at known depths: c_red, c_green (through
 // their difference), kappa and g, by least squares on the depth equation F(l) = 0 of
-// absorption_law.hpp, with as many samples as there are. Source: Ito, Kim, Obinata, "Shape sensing
-// by vision-based tactile sensor" (slides), parameter identification, which solves three equations
-// for three unknowns; printed error E005.
+// absorption_law.hpp, with any number of samples. Source: Ito, Kim, Obinata, "Shape sensing by
+// vision-based tactile sensor" (slides), parameter identification, which solves three equations for
+// three unknowns; printed error E005.
 //
-// The parameters are far less certain than the depth: with a noise of 0.034 grey levels in 4
-// samples c_red is known to 73 % and not even the sign of delta, while their errors compensate to
-// microns of depth. Therefore the result includes the covariance and predicts the error of a depth
-// from it.
+// The parameters are far less certain than the depth. With a noise of 0.034 grey levels in 4
+// samples, c_red has an error of 73 % and even the sign of delta is unknown, while the errors
+// compensate to microns of depth. The result therefore includes the covariance, from which the
+// error of a depth is predicted.
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
@@ -31,8 +31,8 @@
 namespace fingerpad {
 inline namespace v0 {
 
-/// The mean colour of one place of the membrane whose depth is known. The reference frame gives
-/// such samples too.
+/// The mean colour of one place of the membrane with known depth. The reference frame gives such
+/// samples, too.
 template <scalar S = double>
 struct DepthSample {
   Pencil<S> pencil;  ///< of the pixel
@@ -54,7 +54,7 @@ DepthSample<S> depth_sample(const Camera<S>& camera,
   return {pencil_of<Heights>(camera, ray), square(ray.plate_rho_mm), depth_mm, colour, weight};
 }
 
-/// The fluid, and how well it is known. Parameters are in the order c_red, delta, kappa, g_0, ...
+/// The fluid and its uncertainty. Parameters are in the order c_red, delta, kappa, g_0, ...
 template <scalar S = double, int Degree = 0>
 struct [[nodiscard]] AbsorptionFit {
   static constexpr int parameters = 4 + Degree;
@@ -66,16 +66,16 @@ struct [[nodiscard]] AbsorptionFit {
   Covariance covariance = {};  ///< NaN with as many samples as parameters and no given grey_noise
   S condition = S(0);          ///< of dF / d ln(parameter); 6e3 for depths of 0.5, 4, 8 and 12 mm
   S residual_rms = S(0);       ///< of F, grey levels
-  S grey_noise = S(0);         ///< sd of a colour of weight 1: as given, else as the residuals say
-  S explained = S(0);          ///< of the variance of F that a fit without depths leaves, for equal
-                               ///< degrees of freedom; NaN with as many samples as parameters
-  bool delta_at_limit = false;  ///< the samples would rather have delta < 0; it is 0
+  S grey_noise = S(0);         ///< sd of a colour of weight 1: as given, else from the residuals
+  S explained = S(0);          ///< share of the variance that a fit without depths leaves, both per
+                               ///< degree of freedom; NaN with as many samples as parameters
+  bool delta_at_limit = false;  ///< the best delta would be < 0; it is held at 0
 
   bool ok() const { return status == FitStatus::ok; }
 };
 
-/// sd in mm of the depth found from this sample's colours, as far as it comes from the uncertainty
-/// of the fit: the covariance carried through F(l) = 0. Evaluates at the sample's depth.
+/// sd in mm of the depth found from this sample's colours, due to the uncertainty of the fit alone:
+/// the covariance propagated through F(l) = 0 at the sample's depth.
 template <scalar S, int Degree>
 S predicted_depth_sd(const AbsorptionFit<S, Degree>& fit, const DepthSample<S>& at) {
   using std::exp;
@@ -99,7 +99,7 @@ S predicted_depth_sd(const AbsorptionFit<S, Degree>& fit, const DepthSample<S>& 
 
 namespace detail {
 
-/// How many values differ by more than a thousandth of the largest; 0 counts as one if there.
+/// Number of values that differ by more than a thousandth of the largest.
 template <scalar S>
 long long distinct_values(std::vector<S> values) {
   std::sort(values.begin(), values.end());
@@ -110,7 +110,7 @@ long long distinct_values(std::vector<S> values) {
   return distinct;
 }
 
-/// Refuses samples from which no fluid can be found, naming what they lack. Returns the largest
+/// Refuses samples that do not determine a fluid, and names what is missing. Returns the largest
 /// rho^2.
 template <scalar S>
 S expects_valid(std::span<const DepthSample<S>> samples, int degree) {
@@ -145,7 +145,7 @@ S expects_valid(std::span<const DepthSample<S>> samples, int degree) {
   return rho_sq;
 }
 
-/// Sizes of the parameters, for a condition number that no unit changes; delta may be 0.
+/// Scales of the parameters, for a condition number that does not depend on units. delta may be 0.
 template <class Point>
 auto sizes_of(const Point& p) {
   using S = std::remove_cvref_t<decltype(p.delta)>;
@@ -156,8 +156,8 @@ auto sizes_of(const Point& p) {
   return size.cwiseAbs().eval();
 }
 
-/// Share of the variance that depths explain: beside the fit of kappa and g alone to F without
-/// absorption and with W = 1, both by their degrees of freedom.
+/// Share of the variance explained by depth. The comparison is a fit of kappa and g alone, without
+/// absorption and with W = 1; both variances are per degree of freedom.
 template <class Problem>
 auto explained_by_depth(const Problem& problem, const typename Problem::Point& p) {
   using S = std::remove_cvref_t<decltype(p.cost)>;
@@ -167,7 +167,7 @@ auto explained_by_depth(const Problem& problem, const typename Problem::Point& p
                   : not_a_number<S>();
 }
 
-/// Of F, grey levels.
+/// rms of F, grey levels.
 template <scalar S, int Degree>
 S residual_rms(const AbsorptionFit<S, Degree>& fit, std::span<const DepthSample<S>> samples) {
   using std::sqrt;
@@ -179,7 +179,7 @@ S residual_rms(const AbsorptionFit<S, Degree>& fit, std::span<const DepthSample<
   return S(sqrt(S(sum / S(static_cast<double>(samples.size())))));
 }
 
-/// What a fit that settled may still get wrong.
+/// Likely mistake in the samples of a converged fit.
 template <scalar S, int Degree>
 FitStatus mistake_in(const AbsorptionFit<S, Degree>& fit, std::span<const DepthSample<S>> samples) {
   S deepest = S(0), g_least = fit.scattering.at(S(0));
@@ -203,11 +203,11 @@ FitStatus mistake_in(const AbsorptionFit<S, Degree>& fit, std::span<const DepthS
 }  // namespace detail
 
 /// Finds the fluid and g, a polynomial of degree `Degree` in rho^2, from at least 4 + Degree
-/// samples at 3 or more depths; with no more than that there can be two exact solutions (4 % of
-/// random sensors), of which this is the one with the smaller delta: give one depth more. Samples
-/// that do not determine them are refused with what is lacking (parameter_error). `grey_noise`: sd
-/// of a colour of weight 1, grey levels; 0: from the residuals. Allocates; O(samples) per
-/// iteration, some 700 trial fluids to begin with.
+/// samples at 3 or more depths. With only that many there can be two exact solutions (4 % of random
+/// sensors); the one with the smaller delta is returned. One more depth avoids this. Refuses
+/// samples that do not determine the parameters, and names what is missing (parameter_error).
+/// `grey_noise`: sd of a colour of weight 1, grey levels; 0: from the residuals. Allocates;
+/// O(samples) per iteration, after some 700 trial fluids.
 template <int Degree = 0, scalar S = double>
 AbsorptionFit<S, Degree> fit_absorption(std::span<const DepthSample<S>> samples,
                                         const std::type_identity_t<S>& grey_noise = S(0)) {

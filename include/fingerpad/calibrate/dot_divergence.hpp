@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// Normal force over the divergence of the dots, from contacts that a force gauge measured beside
-// the camera. The scatter of the samples about the curve holds the noise of their dots, which the
-// force of a frame brings along by itself: it is taken out here, so that it does not count twice.
+// Calibration of the normal force by the divergence of the dots, with a force gauge as reference.
+// The scatter of the samples about the curve includes the noise of their dots. It is subtracted
+// here, because normal_force() adds the dot noise of each frame; otherwise it would count twice.
 #include <algorithm>
 #include <cmath>
 #include <span>
@@ -18,9 +18,9 @@
 namespace fingerpad {
 inline namespace v0 {
 
-/// The curve for normal_force(curve, divergence): least squares, as fit_normal_force, of the forces
-/// in N, >= 0, that belong to the divergences, one by one. Degree 1 for thick gels, 2 for thin
-/// ones. Refuses what fit_normal_force refuses, and spans of different lengths (parameter_error).
+/// Fits the curve for normal_force(curve, divergence) by least squares, like fit_normal_force.
+/// forces_n[k] in N, >= 0, belongs to divergences[k]. Degree 1 for thick gels, 2 for thin ones.
+/// Refuses what fit_normal_force refuses, and spans of different lengths (parameter_error).
 template <int Degree = 1, scalar S = double>
 NormalForceFit<PolynomialForce<Degree, S>> fit_divergence(
     std::type_identity_t<std::span<const DivergenceResult<S>>> divergences,

@@ -17,15 +17,15 @@ struct FitOptions {
   bool robust = false;             ///< Huber's loss: outliers weigh less
   double threshold = 1.345;        ///< of Huber's loss, in standard deviations of a sample, > 0
   int passes = 100;                ///< steps at most, >= 2
-  double min_independence = 1e-5;  ///< smallest independent fraction of a parameter's information,
-                                   ///< else it is refused; in (0, 1)
-  double min_explained = 0.9;      ///< share of the variance about the mean that the model must
-                                   ///< explain, or the samples contradict each other; in [0, 1)
-  // fit_normal_force alone
-  bool through_zero = true;  ///< no force without contact; the published curves do without
-  bool rising = true;        ///< it never falls from 0 to the largest measure
+  double min_independence = 1e-5;  ///< refuses parameters with a smaller independent fraction of
+                                   ///< information; in (0, 1)
+  double min_explained = 0.9;      ///< refuses samples as contradictory if the model explains a
+                                   ///< smaller share of the variance about the mean; in [0, 1)
+  // only for fit_normal_force
+  bool through_zero = true;  ///< no force without contact; the published curves lack this
+  bool rising = true;        ///< the force never falls from 0 to the largest measure
   bool displaced = false;    ///< also fits the compensation for displacement
-  bool rotated = false;      ///< also fits the one for rotation
+  bool rotated = false;      ///< also fits the compensation for rotation
 };
 
 /// Refuses what has no meaning (parameter_error).

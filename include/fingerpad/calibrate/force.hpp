@@ -35,41 +35,41 @@
 namespace fingerpad {
 inline namespace v0 {
 
-/// One measurement. NaN: not measured; a fit leaves out samples that lack what it needs.
+/// One measurement. NaN: not measured; a fit leaves out samples that lack a value it needs.
 template <scalar S = double>
 struct ForceSample {
   S measure = not_a_number<S>();  ///< area in mm^2, depth in mm or radius in mm, > 0
   Point2<S> displacement_mm = {S(0), S(0)};
   S rotation_rad = S(0);
-  S normal_force_n = not_a_number<S>();  ///< that presses, >= 0
+  S normal_force_n = not_a_number<S>();  ///< positive in a press, >= 0
   Point2<S> tangential_force_n = {not_a_number<S>(), not_a_number<S>()};
   S moment_n_mm = not_a_number<S>();  ///< about the contact's normal, through its middle
-  int load = 0;  ///< samples of one load have one number, and are left out together
+  int load = 0;  ///< number of the load; leave_one_load_out leaves out its samples together
 };
 
-/// For a plot of fitted against measured values.
+/// Fitted and measured value of one sample, for example for a plot.
 template <scalar S = double>
 struct ForceResidual {
-  std::size_t sample;  ///< its place among those given
+  std::size_t sample;  ///< index among the given samples
   S measured;          ///< N, or N mm
   S fitted;
-  S weight;  ///< 1; less for what counts as an outlier
+  S weight;  ///< 1; less for an outlier
 };
 
-/// Errors of predicted forces that took no part in the calibration.
+/// Errors of predictions for samples left out of the calibration.
 template <scalar S = double>
 struct CrossValidation {
-  std::vector<S> errors;  ///< predicted less measured, of each sample; NaN: no prediction
-  int loads = 0;          ///< how many times a load was left out
+  std::vector<S> errors;  ///< predicted less measured, for each sample; NaN: no prediction
+  int loads = 0;          ///< number of loads left out in turn
   Index samples = 0;      ///< with a prediction
   S mean_abs = not_a_number<S>();
   S rms = not_a_number<S>();
   S worst = not_a_number<S>();  ///< largest absolute error
 };
 
-/// Leaves out one load after the other, calibrates with the rest, and predicts what was left out:
-/// model = fit(span of samples); error = error_of(model, sample). O(loads) fits; allocates. What
-/// the fit refuses is refused.
+/// Leaves out one load after the other, calibrates with the rest, and predicts the samples left
+/// out: model = fit(span of samples); error = error_of(model, sample). O(loads) fits; allocates.
+/// Refuses what the fit refuses.
 template <scalar S, class Fit, class ErrorOf>
 CrossValidation<S> leave_one_load_out(std::span<const ForceSample<S>> samples,
                                       const Fit& fit,
@@ -123,14 +123,14 @@ struct [[nodiscard]] NormalForceFit {
   FitStatus status = FitStatus::not_converged;
   Curve curve = {};
   CurveErrors<Curve::parameters, S> errors = {};  ///< for NormalForce
-  ScaledCompensation<S> compensation = {};        ///< 0 where it was not asked for
+  ScaledCompensation<S> compensation = {};        ///< 0 if not fitted
   S per_mm_sq_sd = S(0);                          ///< standard errors
   S per_rad_sq_sd = S(0);
   std::vector<ForceResidual<S>> residuals = {};
   S explained = S(0);             ///< share of the measured variance about the mean
-  S largest_residual_sds = S(0);  ///< in standard deviations that outliers do not raise
-  bool held_rising = false;  ///< without `rising` it would have fallen somewhere; the covariance is
-                             ///< then that of the parameters that were left free
+  S largest_residual_sds = S(0);  ///< in robust standard deviations
+  bool held_rising = false;  ///< without `rising` the curve would fall somewhere; the covariance
+                             ///< is then that of the free parameters
 
   bool ok() const { return status == FitStatus::ok; }
 };
@@ -144,15 +144,15 @@ struct [[nodiscard]] ShearFit {
   detail::OddPolynomial<Degree, S> polynomial = {};
   S exponent = S(0);
   std::array<S, size> standard_errors = detail::zeros<S, size>();
-  S exponent_sd = S(0);  ///< 0 if it was given
+  S exponent_sd = S(0);  ///< 0 for a given exponent
   std::array<std::array<S, size + 1>, size + 1> covariance =
       detail::zero_matrix<S, size + 1>();  ///< of the coefficients and, last, the exponent
   S residual_sd = S(0);  ///< of a component of the force in N, or of the moment in N mm
-  std::vector<ForceResidual<S>> residuals = {};  ///< of a force x and y in turn
+  std::vector<ForceResidual<S>> residuals = {};  ///< for a force, x and y alternate
   S explained = S(0);
   S largest_residual_sds = S(0);
   S gauge_angle_rad = not_a_number<S>();     ///< of the gauge against the image, about the normal,
-                                             ///< +x toward +y; NaN for a moment, and where the
+                                             ///< +x toward +y; NaN for a moment, and if the
                                              ///< displacements lie near one line
   S gauge_angle_sd_rad = not_a_number<S>();  ///< its standard error
 
@@ -173,8 +173,8 @@ struct [[nodiscard]] LinearShearFit {
   bool ok() const { return status == FitStatus::ok; }
 };
 
-/// Normal force from area or depth: least squares for F = P(measure) (1 + a |d|^2 + b theta^2) with
-/// a polynomial P of this degree. Uses the samples with a measure > 0 and a normal force.
+/// Normal force from area or depth: least-squares fit of F = P(measure) (1 + a |d|^2 + b theta^2)
+/// with a polynomial P of degree `Degree`. Uses the samples with a measure > 0 and a normal force.
 /// Allocates; O(passes samples Degree^2).
 template <int Degree = 2, scalar S = double>
 NormalForceFit<PolynomialForce<Degree, S>> fit_normal_force(std::span<const ForceSample<S>> samples,
@@ -228,8 +228,8 @@ NormalForceFit<PolynomialForce<Degree, S>> fit_normal_force(std::span<const Forc
   return result;
 }
 
-/// Elastic pads: r = c f^gamma by least squares in r; the measure of a sample is the radius, the
-/// residuals are those of forces by the inverse.
+/// Elastic pads: least-squares fit of r = c f^gamma, in r. The measure of a sample is the radius.
+/// The reported residuals are those of the force, from the inverse.
 template <scalar S = double>
 NormalForceFit<PowerLawForce<S>> fit_power_law(std::span<const ForceSample<S>> samples,
                                                const FitOptions& options = {}) {
@@ -289,9 +289,9 @@ NormalForceFit<PowerLawForce<S>> fit_power_law(std::span<const ForceSample<S>> s
   return result;
 }
 
-/// Tangential force from displacement, normalised by (measure / reference) to an exponent, which is
-/// found where it is not given. Uses the samples with a measure > 0 that have both. Allocates;
-/// O(80 samples Degree^2).
+/// Tangential force from displacement, normalised by a power of (measure / reference). The exponent
+/// is fitted if it is not given. Uses the samples with a measure > 0, a tangential force and a
+/// finite motion. Allocates; O(80 samples Degree^2).
 template <int Degree = 1, scalar S = double>
 ShearFit<Degree, S> fit_tangential_force(
     std::span<const ForceSample<S>> samples,
@@ -319,7 +319,7 @@ ShearFit<Degree, S> fit_tangential_force(
                                                 equations, exponent, options);
 }
 
-/// Moment from rotation, likewise.
+/// Moment from rotation, in the same way.
 template <int Degree = 1, scalar S = double>
 ShearFit<Degree, S> fit_moment(std::span<const ForceSample<S>> samples,
                                const std::type_identity_t<S>& reference,
@@ -342,7 +342,7 @@ ShearFit<Degree, S> fit_moment(std::span<const ForceSample<S>> samples,
                                                 equations, exponent, options);
 }
 
-/// A linear map of both components with offsets, for axes that are not those of the image. The
+/// A linear map of both components with offsets, for axes other than those of the image. The
 /// normalisation is given; the moment is not fitted.
 template <scalar S = double>
 LinearShearFit<S> fit_linear_shear(std::span<const ForceSample<S>> samples,

@@ -1,11 +1,11 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// The law of a one-channel pad, from presses of a ball of known radius. Where the ball touches, the
-// depth is d - R + sqrt(R^2 - r^2), r from the ball's axis; its place and depth d are found
-// together with the law, by Gauss-Newton steps on the depths. The start is in closed form: near the
-// axis the logarithm is a paraboloid, whose curvature is 1 / (R a). Accuracy: the law is as good as
-// the gel follows the ball, which it does not near the rim of the contact.
+// The law of a one-channel pad, from presses of a ball of known radius R. In contact, at the
+// distance r from the ball's axis, the depth is d - R + sqrt(R^2 - r^2). The position and depth d
+// of the ball are found together with the law, by Gauss-Newton steps on the depths. The start is in
+// closed form: near the axis the logarithm is a paraboloid with curvature 1 / (R a). The law is
+// only as accurate as the gel follows the ball, which it does not near the rim of the contact.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -24,13 +24,13 @@
 namespace fingerpad {
 inline namespace v0 {
 
-/// A ball and the camera that sees it pressed.
+/// A press of a ball, and the scale of the image.
 template <scalar S = double>
 struct BallPress {
-  S ball_mm = S(4);             ///< its radius; finite, > 0
+  S ball_mm = S(4);             ///< radius of the ball; finite, > 0
   S mm_per_px = S(5) / S(100);  ///< finite, > 0
-  double contact_share = 0.1;   ///< pixels count where the ball is deeper than this share of its
-                                ///< depth: nearer to the rim the gel bridges; in [0, 1)
+  double contact_share = 0.1;   ///< uses pixels where the ball is deeper than this share of its
+                                ///< largest depth; the gel bridges near the rim; in [0, 1)
 };
 template <scalar S>
 void expects_valid(const BallPress<S>& press) {
@@ -43,25 +43,25 @@ void expects_valid(const BallPress<S>& press) {
           press.contact_share, "in [0, 1)");
 }
 
-/// The law, and how well it is known.
+/// The law and its uncertainty.
 template <scalar S = double>
 struct [[nodiscard]] IntensityFit {
   FitStatus status = FitStatus::nothing_to_check;
   IntensityLaw<S> law = {};
-  /// Of linear_mm, square_mm and cube_mm, mm^2; 0 for what was not fitted. Neighbouring pixels err
-  /// alike: they count as one in blocks of 16 x 16.
+  /// Of linear_mm, square_mm and cube_mm, mm^2; 0 for constants not fitted. Errors of neighbouring
+  /// pixels are correlated: a block of 16 x 16 pixels counts as one.
   detail::SmallMatrix<S, 3> covariance = detail::zero_matrix<S, 3>();
   S mean_error_mm = S(0);  ///< |depth by the law - depth of the ball|, over all presses
   S max_error_mm = S(0);
-  S max_depth_mm = S(0);  ///< of the balls: beyond it the law is a guess
+  S max_depth_mm = S(0);  ///< of the balls; beyond it the law is extrapolated
   Index pixels = 0;       ///< in contact with a ball
 
   bool ok() const { return status == FitStatus::ok; }
 };
 
-/// Collects presses and fits the law to all of them. One press tells one constant; three take
-/// presses that differ in depth, or one that is deep. In long double or double; sums over thousands
-/// of pixels leave a float three digits.
+/// Collects presses and fits the law to all of them. One press determines one constant; three
+/// constants need presses of different depths, or a deep one. Use double or long double: in float,
+/// sums over thousands of pixels keep only three digits.
 template <scalar S = double>
 class IntensityCalibration {
  public:
@@ -70,9 +70,9 @@ class IntensityCalibration {
     expects_valid(options);
   }
 
-  /// Adds a press: a frame of the free pad and one with the ball in it. False, and nothing added,
-  /// where their sizes differ, where the light beside the ball is not that of the free pad, or
-  /// where no ball shows: a darkest spot that is round and tells 30 pixels.
+  /// Adds a press: a frame of the free pad and one with the ball pressed in. False, and nothing
+  /// added, if their sizes differ, if the light beside the ball is not that of the free pad, or if
+  /// no ball is visible: a round darkest spot of at least 30 pixels.
   template <grid Free, grid Pressed>
   bool add(const Free& free, const Pressed& pressed, const BallPress<S>& ball) {
     expects_valid(ball);
@@ -89,11 +89,11 @@ class IntensityCalibration {
     return true;
   }
 
-  /// The law a l (terms = 1), or with b l^2 and c l^3 (terms = 3). `depths_not_in_mm` where no ball
-  /// is as deep as 0.05 mm; `colours_unexplained` where a ball would be deeper than its radius, or
-  /// the mean error is more than a thirtieth of the depth: a real gel leaves half of that. A ball
-  /// of twice the radius, pressed half as deep, looks the same: nothing tells a diameter for a
-  /// radius.
+  /// The law a l (terms = 1), or with b l^2 and c l^3 (terms = 3). `depths_not_in_mm`: no ball is
+  /// as deep as 0.05 mm. `colours_unexplained`: a ball would be deeper than its radius, or the mean
+  /// error exceeds a thirtieth of the largest depth; a real gel leaves half of that. A ball of
+  /// twice the radius, pressed half as deep, looks the same, so a diameter given as radius is not
+  /// detected.
   IntensityFit<S> fit(int terms = 1) const {
     expects(terms == 1 || terms == 3, "IntensityCalibration", "terms",
             static_cast<long long>(terms), "1 or 3");
@@ -103,7 +103,7 @@ class IntensityCalibration {
     }
     std::vector<Press> presses = presses_;
     Law law = {start_mm(), S(0), S(0)};
-    // with one constant the contact is found as well; with three it stands
+    // one constant is fitted together with the contact, which stays fixed for three
     result.status = solve(presses, law, 1);
     if (terms == 3 && result.ok()) {
       result.status = solve(presses, law, 3);
@@ -130,9 +130,9 @@ class IntensityCalibration {
     std::vector<S> log = {};           // ln(free / now), NaN: unknown
     Point2<S> axis_mm = {S(0), S(0)};  // from the first pixel
     S depth_mm = S(0);
-    S start_mm = S(0);  // the constant that this press alone suggests
+    S start_mm = S(0);  // initial constant from this press alone
     Index cols;
-    Point2<S> contact_mm = {S(0), S(0)};  // the contact that counts: its middle and
+    Point2<S> contact_mm = {S(0), S(0)};  // center of the pixels used
     S contact_radius_sq = S(0);
 
     void settle() {
@@ -145,8 +145,8 @@ class IntensityCalibration {
       return {S(ball.mm_per_px * S(static_cast<double>(k % cols))),
               S(ball.mm_per_px * S(static_cast<double>(k / cols)))};
     }
-    /// Calls visit(k, l, p, root) for the pixels in contact: l the logarithm, p from the axis,
-    /// root = sqrt(R^2 - r^2).
+    /// Calls visit(k, l, p, root) for the pixels in contact: l is the logarithm, p the position
+    /// relative to the axis, root = sqrt(R^2 - r^2).
     template <class Visit>
     void for_contact(const Visit& visit) const {
       using std::sqrt;
@@ -206,8 +206,9 @@ class IntensityCalibration {
     return pressed_depth_mm(IntensityLaw<S>{law[0], law[1], law[2]}, l);
   }
 
-  /// Where the ball is and what it suggests, from the paraboloid l = q0 + q1 x + q2 y + q3 (x^2 +
-  /// y^2) fitted to where the logarithm is above half its largest.
+  /// Initial axis, depth and constant of a press, from a paraboloid
+  ///   l = q0 + q1 x + q2 y + q3 (x^2 + y^2)
+  /// fitted to the pixels whose logarithm exceeds half of the largest.
   static bool begin(Press& press) {
     S largest = S(0);
     for (const S& l : press.log) {
@@ -235,7 +236,7 @@ class IntensityCalibration {
     }
     const std::array<S, 4> q = equations.solve(right);
     if (!(q[3] < S(0))) {
-      return false;  // not darkest in the middle
+      return false;  // the middle is not the darkest part
     }
     const S twice = S(-2) * q[3];
     press.axis_mm = {S(q[1] / twice), S(q[2] / twice)};
@@ -245,7 +246,7 @@ class IntensityCalibration {
     return S(0) < press.depth_mm && press.depth_mm < press.ball.ball_mm;
   }
 
-  /// Below it a column is no longer independent: 1e-12, or what rounding leaves.
+  /// Smallest pivot of an independent column: 1e-12, or the roundoff of S.
   static double pivot_least() { return (std::max)(1e-12, static_cast<double>(epsilon<S>())); }
 
   S start_mm() const {
@@ -256,7 +257,7 @@ class IntensityCalibration {
     return S(sum / S(static_cast<double>(presses_.size())));
   }
 
-  /// Normal equations of law and poses; the poses, which do not meet each other, are eliminated.
+  /// Normal equations of law and poses. The poses do not depend on each other and are eliminated.
   struct Equations {
     struct OfPose {
       detail::SmallMatrix<S, 3> pose = detail::zero_matrix<S, 3>();
@@ -291,7 +292,7 @@ class IntensityCalibration {
         good = good && count >= min_pixels;
       }
       for (std::size_t k = static_cast<std::size_t>(terms); k < 3; ++k) {
-        law[k][k] = S(1);  // not fitted: no change
+        law[k][k] = S(1);  // not fitted: its change is 0
       }
       eliminate();
     }

@@ -1,11 +1,11 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// How neighbouring light acts, from frames whose true depth is known: r, m0 and n of
-// neighbour_light.hpp by the least squares
-//   min over r, m0, n of the sum over pixels of (l - l_true - m0 e^{n (l - l0)} psi_sum)^2,
-// linear in m0 for given n and r: a search along n for every r. The published fit takes logarithms
-// of l - l_true and of psi_sum, which are often negative, and of noise where they are small (E011).
+// Calibration of the neighbouring light from frames with known true depth: r, m0 and n of
+// neighbour_light.hpp by least squares,
+//   min over r, m0, n of the sum over pixels of (l - l_true - m0 e^{n (l - l0)} psi_sum)^2.
+// For given n and r it is linear in m0, so only n is searched, for every r. The published fit takes
+// logarithms of l - l_true and psi_sum. These are often negative, and mostly noise if small (E011).
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -23,11 +23,11 @@
 namespace fingerpad {
 inline namespace v0 {
 
-/// Where to look, and at how many pixels. n is looked for in [-1, 1] per mm.
+/// Range of the search, and which pixels are used. n is searched in [-1, 1] per mm.
 struct NeighbourLightSearch {
   Index min_radius_px = 1;
   Index max_radius_px = 50;  ///< as published
-  Index every_px = 4;        ///< use each n-th row and column: neighbours say the same anyway
+  Index every_px = 4;        ///< uses each n-th row and column: neighbours hardly differ
 };
 
 template <scalar S = double>
@@ -35,11 +35,11 @@ struct [[nodiscard]] NeighbourLightFit {
   FitStatus status = FitStatus::not_converged;
   NeighbourLight<S> light = {};
   S rms_before_mm = S(0);  ///< of l - l_true
-  S rms_after_mm = S(0);   ///< of what the best fit leaves
-  S m0_sd = S(0);    ///< standard deviations as of independent pixels: too small where the errors
-  S n_sd = S(0);     ///< of neighbouring pixels are alike
-  Index pixels = 0;  ///< that took part
-  std::vector<S> rms_of_radius_mm = {};  ///< after the best m0 and n, smallest radius first
+  S rms_after_mm = S(0);   ///< of the residual of the best fit
+  S m0_sd = S(0);          ///< standard deviations for independent pixels: too small if the
+  S n_sd = S(0);           ///< errors of neighbouring pixels are correlated
+  Index pixels = 0;        ///< used
+  std::vector<S> rms_of_radius_mm = {};  ///< with the best m0 and n, smallest radius first
 
   bool ok() const { return status == FitStatus::ok; }
 };
@@ -53,14 +53,14 @@ struct LightSample {
   S risen_mm;  ///< l - l0
   S psi_sum_rad;
 
-  /// What m0 is multiplied by at n.
+  /// Factor of m0: e^{n dl} psi_sum.
   S per_m0(const S& n) const {
     using std::exp;
     return S(S(exp(S(n * risen_mm))) * psi_sum_rad);
   }
 };
 
-/// The best m0 for one n, and what it leaves.
+/// The best m0 for one n, and its residual.
 template <scalar S>
 struct LightAtN {
   S n = S(0);
@@ -91,7 +91,7 @@ LightAtN<S> light_at(const S& n, const std::vector<LightSample<S>>& samples) {
   return at;
 }
 
-/// Where the residual is orthogonal to v: half the slope of left_sq along n, less its sign.
+/// Minus half the slope of left_sq along n. It is 0 where the residual is orthogonal to v.
 template <scalar S>
 S slope_along_n(const S& n, const std::vector<LightSample<S>>& samples) {
   const S m0 = light_at(n, samples).m0;
@@ -103,9 +103,9 @@ S slope_along_n(const S& n, const std::vector<LightSample<S>>& samples) {
   return S(m0 * slope);
 }
 
-/// The best n: the lowest of a scan, then the zero of the slope beside it by bisection, which keeps
-/// all digits where a search for the lowest value would keep half. A dual number has its
-/// derivatives from a last step by Newton, which bisection, on values, does not give.
+/// The best n: a scan finds the lowest left_sq, then bisection finds the zero of the slope beside
+/// it. Bisection on the slope keeps all digits; a search for the lowest value would keep half. For
+/// dual numbers a last Newton step gives the derivatives, because bisection works on values.
 template <scalar S>
 LightAtN<S> best_along_n(const std::vector<LightSample<S>>& samples) {
   constexpr int steps = 16;
@@ -133,11 +133,11 @@ LightAtN<S> best_along_n(const std::vector<LightSample<S>>& samples) {
   const S beside = S(1e-4);
   const S fall = slope_along_n(S(n - beside), samples) - slope_along_n(S(n + beside), samples);
   const S step = slope_along_n(n, samples) * S(beside + beside) / fall;
-  // at an end of the search there is no zero
+  // the slope has no zero at an end of the search
   return light_at(square(step) < square(beside) ? S(n + step) : n, samples);
 }
 
-/// Refuses frames that do not belong together.
+/// Refuses a bad search or pitch, and frames of different numbers or sizes.
 template <scalar S, class Reference, class Measured, class True>
 void expects_valid(const NeighbourLightSearch& search,
                    const S& pitch_mm,
@@ -163,8 +163,8 @@ void expects_valid(const NeighbourLightSearch& search,
   }
 }
 
-/// The pixels of all frames with the sums over a disc of this radius. Refuses frames that do not
-/// tell.
+/// The pixels of all frames with the sums over a disc of this radius. Refuses frames with fewer
+/// than 3 known pixels or without a change of shape.
 template <scalar S, class Reference, class Measured, class True>
 std::vector<LightSample<S>> light_samples(Index radius_px,
                                           Index every_px,
@@ -187,7 +187,7 @@ std::vector<LightSample<S>> light_samples(Index radius_px,
         const S l = S(measured(i, j));
         const S error = l - S(truth(i, j));
         const S risen = l - S(reference(i, j));
-        const S most_sq = S(1e4);  // beyond 100 mm: no depth of a fingertip
+        const S most_sq = S(1e4);  // more than 100 mm is not a depth of a fingertip
         if (square(error) < most_sq && square(risen) < most_sq) {
           samples.push_back({error, risen, workspace.sum[static_cast<std::size_t>(j)]});
           psi_sq += square(samples.back().psi_sum_rad);
@@ -208,13 +208,13 @@ std::vector<LightSample<S>> light_samples(Index radius_px,
 }  // namespace detail
 
 /// Fits r, m0 and n to frames `measured_mm` (smoothed, not compensated) of known depth `true_mm`,
-/// with the reference and the pitch that the compensation will use. Pixels count where reference,
-/// measured and true depth are finite and less than 100 mm apart. Refuses frames without a change
-/// of inclination, or whose change of depth is too uniform to tell n from m0 (parameter_error). Not
-/// ok: a fit that takes off less than a tenth of the error, light that is taken away instead of
-/// added (m0 < 0, as of measured and true depths exchanged), and a best n or radius at an end of
-/// the search. Computed in S, whatever the frames are in. Allocates;
-/// O(radii (frames rows cols + 70 pixels)).
+/// with the reference and the pitch that the compensation will use. Uses the pixels where
+/// reference, measured and true depth are finite and less than 100 mm apart. Refuses frames without
+/// a change of inclination, or with a change of depth too uniform to tell n from m0
+/// (parameter_error). Not ok: a fit that removes less than a tenth of the error; m0 < 0, that is,
+/// light is taken away, as when measured and true depths are exchanged; and a best n or radius at
+/// an end of the search. Computed in S for any type of the frames. Allocates; O(radii (frames rows
+/// cols + 70 pixels)).
 template <scalar S = double, grid Reference, grid Measured, grid True>
 NeighbourLightFit<S> fit_neighbour_light(const std::type_identity_t<S>& pitch_mm,
                                          const Reference& reference_mm,

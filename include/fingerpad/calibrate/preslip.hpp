@@ -1,10 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// Thresholds of the pre-slip rules from recordings in which a person, or a camera, has marked when
-// slip begins. The paper prints none ("Pre-Slip Sensing Using Tactile Sensor", 2007). A rule is as
-// good as the onsets that it finds and the alarms that are right; the one without the other says
-// nothing, since a rule that always alarms finds every onset.
+// Thresholds of the pre-slip rules from recordings in which a person, or a camera, has marked the
+// onset of slip. The paper prints none ("Pre-Slip Sensing Using Tactile Sensor", 2007). A rule is
+// judged by both its recall (onsets found) and its precision (alarms that are right). Recall alone
+// is meaningless, since a rule that always alarms finds every onset.
 #include <algorithm>
 #include <array>
 #include <cstddef>
@@ -21,7 +21,7 @@
 namespace fingerpad {
 inline namespace v0 {
 
-/// Alarms beside marked onsets.
+/// Comparison of alarms with marked onsets.
 template <scalar S = double>
 struct [[nodiscard]] PreslipFit {
   FitStatus status = FitStatus::onsets_not_found;
@@ -29,15 +29,15 @@ struct [[nodiscard]] PreslipFit {
   Index onsets = 0;                ///< marked samples in a row count as one
   Index found = 0;                 ///< onsets with an alarm
   Index alarms = 0;                ///< samples with an alarm
-  Index right = 0;                 ///< of these, marked
+  Index right = 0;                 ///< alarms in marked samples
   Index samples = 0;
   Index marked = 0;
-  Index ties = 0;  ///< thresholds as good as these, these included: the more, the less they matter
+  Index ties = 0;  ///< equally good thresholds, these included: the more, the less they matter
 
   bool ok() const { return status == FitStatus::ok; }
   double recall() const { return onsets > 0 ? share(found, onsets) : 0; }
   double precision() const { return alarms > 0 ? share(right, alarms) : 0; }
-  /// The precision of a rule that always alarms: `precision` must be above it to say anything.
+  /// The precision of a rule that always alarms. A useful rule has a higher `precision`.
   double chance() const { return samples > 0 ? share(marked, samples) : 0; }
 
  private:
@@ -56,20 +56,20 @@ class PreslipCalibration {
     expects_valid(options_);
   }
 
-  /// The next sample belongs to another recording: nothing is compared across.
+  /// The next sample belongs to another recording and is not compared with earlier ones.
   void begin_recording() { begins_ = true; }
 
-  /// A sample of all fingers, and whether slip begins within it. Mark as long as an alarm would be
-  /// right: about a window of samples from the first that slips.
+  /// Adds a sample of all fingers. `is_onset` marks the onset of slip. Mark the samples in which an
+  /// alarm would be right: about a window of samples from the first that slips.
   void add(const std::array<FingerSample<S>, Fingers>& samples, bool is_onset) {
     samples_.push_back({samples, is_onset, begins_ || samples_.empty()});
     begins_ = false;
   }
 
-  /// The thresholds that find most onsets with at least `min_precision` of the alarms right; the
-  /// middle of those that are as good. `onsets_not_found` where there are none, or where the alarms
-  /// are no better than chance. Refuses (parameter_error) samples of which none, or all, are marked
-  /// and a `min_precision` that is not in [0, 1]. Takes O(samples history) time, 96 times.
+  /// The thresholds that find the most onsets with a precision of at least `min_precision`; of
+  /// equally good ones, the middle. `onsets_not_found`: there are none, or the alarms are no better
+  /// than chance. Refuses (parameter_error) samples of which none, or all, are marked, and a
+  /// `min_precision` outside [0, 1]. Takes O(samples history) time, 96 times.
   PreslipFit<S> fit(double min_precision = 0.9) const {
     const char* const owner = "PreslipCalibration";
     expects(min_precision >= 0 && min_precision <= 1, owner, "min_precision", min_precision,
@@ -91,8 +91,8 @@ class PreslipCalibration {
     return best_of(all, min_precision);
   }
 
-  /// How thresholds of one's own, or of other recordings, do on these. Its status is not set.
-  /// Refuses bad parameters (parameter_error).
+  /// Judges given thresholds, for example from other recordings, on these samples. The status of
+  /// the result is not set. Refuses bad parameters (parameter_error).
   PreslipFit<S> judge(const PreslipOptions<S>& options) const {
     const Preslip<Rule, Fingers, S> rule(options);
     auto state = rule.start();
@@ -142,7 +142,7 @@ class PreslipCalibration {
     }
     std::vector<PreslipFit<S>> ties;
     for (const PreslipFit<S>& score : all) {
-      // of equal numbers of waves, so that the middle is one of them
+      // only with the same min_waves, so that the middle is one of the ties
       if (!is_better(best, score) && score.options.min_waves == best.options.min_waves) {
         ties.push_back(score);
       }

@@ -1,28 +1,29 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// The rim from frames of the free pad: the stress-free lengths of its side dots and the membrane's
-// mu t (shear modulus times thickness), for wrench.hpp. Source of the law: rim_traction.hpp; Ito,
-// Kim, Obinata 2011 do not say how side dots are calibrated.
+// Calibration of the rim from frames of the free pad: the stress-free lengths of its side dots and
+// the membrane's mu t (shear modulus times thickness), for wrench.hpp. Source of the law:
+// rim_traction.hpp; Ito, Kim, Obinata 2011 do not say how side dots are calibrated.
 //
-// The free pad balances as a whole: 2 pi a T_z = p pi a^2, so the mean vertical pull of the rim is
-// p a / 2, whatever the shape. With D_j = x_j - b_j (for two rows 2 L d), C_j its part across the
-// rim, w_j its share of the rim and L_j = r_j L the stress-free length, clamped_rim_pull says that
-// the mean is
+// The free pad as a whole is in balance: 2 pi a T_z = p pi a^2. The mean vertical pull of the rim
+// is therefore p a / 2 for any shape. Let D_j = x_j - b_j (for two rows 2 L d), C_j its part across
+// the rim, w_j its share of the rim and L_j = r_j L the stress-free length. By clamped_rim_pull the
+// mean is
 //   mu t (A / L - B L^3),   A = sum w_j D_jz / r_j,   B = sum w_j D_jz r_j^3 / |C_j|^4,
-// linear in u = mu t / L and v = mu t L^3: two pressures give both, L = (v / u)^(1/4). The free pad
-// is the same all around, so r_j, the share of dot j in L, is its length over the mean length.
+// linear in u = mu t / L and v = mu t L^3. Two pressures give both, with L = (v / u)^(1/4). The
+// free pad is the same all around, so r_j, the share of dot j in L, is its length over the mean
+// length.
 //
-// How shear softens the rim of another rubber (m, rim_traction.hpp) is not seen there, since the
-// free rim is not sheared, but at the apex, where the membrane is stretched both ways: the heights
-// of the apex are those of an inflated cap of this rubber (calibrate/detail/inflated_cap.hpp). At
-// 16 kPa, mu t = 0.5 N/mm and 11 mm of stress-free height it lies 0.19 mm lower for m = 1 than for
-// m = 0, so 0.01 mm of error of the apex, as well as 0.5 % of mu t, is 0.05 in m and 1.5 % in M_z.
+// The free rim is not sheared, so it does not show how shear softens the rim of another rubber (m,
+// rim_traction.hpp). The apex does, where the membrane is stretched in both directions: its height
+// is that of an inflated cap of this rubber (calibrate/detail/inflated_cap.hpp). At 16 kPa,
+// mu t = 0.5 N/mm and 11 mm of stress-free height it lies 0.19 mm lower for m = 1 than for m = 0.
+// An error of 0.01 mm of the apex, or of 0.5 % of mu t, therefore changes m by 0.05 and M_z by
+// 1.5 %.
 //
-// One pressure gives mu t for a known L. OneRow takes the chord for the
-// derivative at the rim, so mu t comes out 1.4 % too large for side dots of 0.8 mm on a rim of
-// 18.7 mm, and L 0.1 % too small; with the inclination 0.1 % and 0.03 % are left (finite elements,
-// see tests/calibrate/rim.cpp).
+// One pressure gives mu t for a known L. OneRow uses the chord as the derivative at the rim. For
+// side dots of 0.8 mm on a rim of 18.7 mm, mu t is therefore 1.4 % too large and L 0.1 % too small;
+// with the inclination the errors are 0.1 % and 0.03 % (finite elements, tests/calibrate/rim.cpp).
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -42,13 +43,13 @@
 namespace fingerpad {
 inline namespace v0 {
 
-/// What the standard errors come from; dot and pressure noise 0: the residual, of 3 pressures or
-/// more.
+/// Noise from which the standard errors follow. If dot and pressure noise are 0, the residual of 3
+/// or more pressures is used.
 struct RimFitOptions {
   double side_dot_noise_mm = 0;   ///< sd of each coordinate of a side dot in one frame, >= 0
-  double pressure_noise_mpa = 0;  ///< that of a frame's pressure, >= 0
-  double apex_noise_mm = 0;       ///< that of a frame's apex height, >= 0
-  /// Of the pad's apex, a spherical cap; > 0: the rubber's m is found, too, from apex heights.
+  double pressure_noise_mpa = 0;  ///< sd of the pressure of a frame, >= 0
+  double apex_noise_mm = 0;       ///< sd of the apex height of a frame, >= 0
+  /// Apex height of the stress-free pad, a spherical cap. > 0: also fits m to the apex heights.
   double stress_free_height_mm = 0;
 };
 
@@ -60,26 +61,26 @@ struct [[nodiscard]] RimFit {
   S length_mm = S(0);                  ///< L, the mean stress-free length, mm
   S modulus_n_per_mm = S(0);           ///< mu t
   std::vector<S> side_dot_share = {};  ///< r_j of each column of the border; mean about 1
-  S mooney_share = S(0);  ///< m = C2 / (C1 + C2), for ClampedRim; what noise carries out of [0, 1]
-                          ///< is put on its border; 0 where it was not asked for
-  S mooney_share_sd = S(0);  ///< from apex_noise_mm and the standard error of mu t, if there is one
-  S apex_residual_mm = S(0);     ///< of the apex heights, rms
-  S length_sd_mm = S(0);         ///< standard errors; 0 for what was given, NaN where neither
-  S modulus_sd_n_per_mm = S(0);  ///< noise nor residual tells them
-  S correlation = S(0);          ///< of the two; near 1: their errors make up for each other
-  S condition = S(0);            ///< of the equations by the relative changes of L and mu t
+  S mooney_share = S(0);      ///< m = C2 / (C1 + C2), for ClampedRim, clamped to [0, 1]; 0 if not
+                              ///< fitted
+  S mooney_share_sd = S(0);   ///< from apex_noise_mm and the standard error of mu t, if known
+  S apex_residual_mm = S(0);  ///< of the apex heights, rms
+  S length_sd_mm = S(0);      ///< standard errors; 0 for a given value, NaN if neither noise
+  S modulus_sd_n_per_mm = S(0);  ///< nor residual is known
+  S correlation = S(0);          ///< of the two; near 1: their errors compensate
+  S condition = S(0);            ///< of the equations in relative changes of L and mu t
   S residual = S(0);             ///< of the vertical balance, rms, as a share of the mean p a / 2
-  S share_scatter = S(0);       ///< sd of one level's lengths / mean length about r_j: noise of the
-                                ///< dots; NaN from a single level
+  S share_scatter = S(0);       ///< sd of one level's lengths / mean length about r_j, due to noise
+                                ///< of the dots; NaN for a single level
   std::vector<S> stretch = {};  ///< mean lambda at each level
-  Index missing = 0;            ///< side dots that some level did not see; r_j from the others
+  Index missing = 0;  ///< side dots not seen at some level; their r_j is from the other levels
 
   bool ok() const { return status == FitStatus::ok; }
   S operator()(Index k) const { return S(length_mm * side_dot_share[static_cast<std::size_t>(k)]); }
 };
 
-/// Collects frames of the free pad at one pressure or several, then fits. `Row` as in Wrench; the
-/// standard errors leave out that what OneRow says with an inclination depends on L and mu t.
+/// Collects frames of the free pad at one or more pressures, then fits. `Row` as in Wrench. The
+/// standard errors ignore that OneRow with an inclination depends on L and mu t.
 template <class Row = OneRow, scalar S = double>
 class RimCalibration {
  public:
@@ -90,10 +91,10 @@ class RimCalibration {
     expects_valid(row);
   }
 
-  /// Adds a frame of the free pad to level 0, 1, ... of pressure; the frames of a level, of about
-  /// the same pressure, are averaged. NaN: a dot was not found. False, and nothing added, where
-  /// pressure or grid are not usable, or the level is neither there nor the next. `apex_mm`: height
-  /// of the pad's apex above the base; NaN: not measured.
+  /// Adds a frame of the free pad to pressure level 0, 1, ... The frames of a level have about the
+  /// same pressure and are averaged. A NaN dot was not found. False, and nothing added, if pressure
+  /// or grid are not usable, or the level is neither an existing one nor the next. `apex_mm`:
+  /// height of the pad's apex above the base; NaN: not measured.
   template <spatial_dot_grid Dots>
   bool add(std::size_t level,
            const Dots& side_dots_mm,
@@ -113,8 +114,9 @@ class RimCalibration {
 
   std::size_t levels() const { return levels_.size(); }
 
-  /// Both, from 2 pressures or more. Refuses (parameter_error) fewer, equal ones, dots that are not
-  /// there, that do not stretch or that stretch alike at all pressures, a pull that is not upward.
+  /// Fits L and mu t to 2 or more pressures. Refuses (parameter_error) fewer or equal pressures,
+  /// dots that are missing, do not stretch, or stretch alike at all pressures, and a pull that is
+  /// not upward.
   RimFit<S> fit(const RimFitOptions& options = {}) const {
     using std::sqrt;
     check(options, 2);
@@ -133,7 +135,7 @@ class RimCalibration {
     });
   }
 
-  /// mu t, where the mean length L is known.
+  /// Fits mu t for a known mean length L.
   RimFit<S> fit_modulus(const S& length_mm, const RimFitOptions& options = {}) const {
     check(options, 1);
     expects(is_finite(length_mm) && value(length_mm) > 0, owner, "length_mm", length_mm,
@@ -202,13 +204,13 @@ class RimCalibration {
     S mooney_share = S(0);
   };
 
-  /// How far the apexes lie above those of a rubber, sums over the levels.
+  /// Sums over the levels for the fit of m; miss = measured less modelled apex height.
   struct ApexSums {
     S miss_sq = S(0);
-    S slope_miss = S(0);  ///< slope: of a height by m
+    S slope_miss = S(0);  ///< slope: of the height by m
     S slope_sq = S(0);
     S slope_modulus = S(0);  ///< times the slope by ln(mu t)
-    S slope_frames = S(0);   ///< squares of slopes over frames
+    S slope_frames = S(0);   ///< squared slope / number of frames
   };
   ApexSums apex_sums(const RimFitOptions& options, const S& modulus, const S& m) const {
     const S step = S(1) / S(100);
@@ -236,14 +238,14 @@ class RimCalibration {
     return sums;
   }
 
-  /// One step of Gauss and Newton toward m, not out of [0, 1].
+  /// One Gauss-Newton step toward m, clamped to [0, 1].
   S next_share(const RimFitOptions& options, const Membrane& found) const {
     const ApexSums sums = apex_sums(options, found.modulus, found.mooney_share);
     const S m = found.mooney_share + sums.slope_miss / sums.slope_sq;
     return m < S(0) ? S(0) : (S(1) < m ? S(1) : m);
   }
 
-  /// Solves; again and again where what the dots tell depends on the solution.
+  /// Solves. Repeats until it converges if the reading of the dots depends on the solution.
   template <class Solve>
   RimFit<S> settled(Balance& balance,
                     const RimFitOptions& options,
@@ -251,7 +253,7 @@ class RimCalibration {
                     const Solve& solve) const {
     Membrane found = solve();
     S change = S(0);
-    // in float the equations leave more than that
+    // float cannot reach 1e-10
     const double least = (std::max)(1e-10, 1e4 * static_cast<double>(epsilon<S>()));
     const bool asks_rubber = options.stress_free_height_mm > 0;
     if (row_.needs_modulus() || asks_rubber) {

@@ -1,17 +1,16 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// U of the stick ratio for a sensor of one's own, from a recording in which slip begins; delta_0
-// and U_min from the noise of its dots are in slip_noise.hpp. Source: "Selection of U" of 003,
-// corrected: docs/errata.md, E038.
+// Calibration of U of the stick ratio for a given sensor, from a recording in which slip begins.
+// delta_0 and U_min, from the noise of the dots, are in slip_noise.hpp. Source: "Selection of U" of
+// 003, corrected: docs/errata.md, E038.
 //
-// Published: "desirable: U, S and D are small", and U = 2.0 px by eye. Here the best is the U with
-// the lowest S + D' (published::measures_of), in which a step counts 1 that has no answer of its
-// own: slip is not seen then, and an old answer that happens to be low is no merit. Of those that
-// are not worse by more than two standard errors, which the recording hardly tells apart, the
-// smallest is taken, as it answers soonest. D' alone would choose a U so small or so large that
-// nothing is ever seen to slip. Frames on which the pad stands still are no steps: how long it
-// stands says nothing of U.
+// Published: "desirable: U, S and D are small", and U = 2.0 px by eye. Here the best U has the
+// lowest S + D' (published::measures_of). A step without a new answer counts as ratio 1, because
+// slip is not seen in it and an old answer that happens to be low has no merit. U that are worse by
+// at most two standard errors are hardly distinguishable; the smallest of them is taken, as it
+// answers soonest. D' alone would choose a U so small or so large that slip is never seen. Frames
+// in which the pad stands still are not steps, because their number is unrelated to U.
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -26,30 +25,30 @@
 namespace fingerpad {
 inline namespace v0 {
 
-/// The choice, and what each U makes of the recording.
+/// The chosen U, and the result of each U on the recording.
 struct [[nodiscard]] StickTestFit {
   FitStatus status = FitStatus::ok;
   struct Row {
     StickTest test;
-    Index updates = 0;                       ///< frames with an answer of their own; 0 where U is
-                                             ///< below both thresholds, and was not tried
+    Index updates = 0;                       ///< frames with a new answer; 0 if U does not exceed
+                                             ///< both thresholds and was not tried
     double cost = not_a_number<double>();    ///< S + D', unknown ratios counted as 1
     double behind = not_a_number<double>();  ///< cost less that of the best
     double behind_error = not_a_number<double>();  ///< its sampling error: the standard deviation
-                                                   ///< of the sum of as many independent steps
+                                                   ///< of a sum of as many independent steps
     bool chosen = false;
   };
 
   StickTest test;          ///< for StickRatio
   std::vector<Row> table;  ///< from the smallest U to the largest
   Index steps = 0;         ///< frames with contact and motion
-  double furthest_px = 0;  ///< the largest d_max of the smallest U that was tried
+  double furthest_px = 0;  ///< the largest d_max with the smallest U tried
 
   bool ok() const { return status == FitStatus::ok; }
 };
 
-/// Runs the stick ratio with all U over a recording, frame by frame as they come. The recording: at
-/// least one contact that begins sticking and slips at last, better several.
+/// Runs the stick ratio with all U over a recording, frame by frame. The recording needs at least
+/// one contact that begins sticking and finally slips; several are better.
 template <class Motion = StickConsensus<>,
           class Reference = UpdatedReference,
           class Denoising = ResidualMean,
@@ -96,7 +95,7 @@ class StickTestCalibration {
   bool add(const Dots& dots_px, const Contact& contact, double time_s = not_a_number<double>()) {
     const Index cols = runs_.front().estimator.cols();
     const StridedView<DotState> states(states_.data(), runs_.front().estimator.rows(), cols, cols);
-    bool stands = false;  // as the smallest U says
+    bool stands = false;  // by the smallest U
     for (Run& run : runs_) {
       const auto result = run.estimator(dots_px, contact, states, run.state, time_s);
       if (!result.accepted()) {
@@ -118,8 +117,8 @@ class StickTestCalibration {
     return true;
   }
 
-  /// Refuses recordings that do not tell (parameter_error): of fewer than 20 frames with motion,
-  /// with fewer than 10 answers, without three that stick or three that slip.
+  /// Chooses U. Refuses recordings with fewer than 20 frames with motion, fewer than 10 answers,
+  /// fewer than three answers that stick or fewer than three that slip (parameter_error).
   StickTestFit fit() const {
     StickTestFit fit;
     fit.table = table_;
@@ -142,7 +141,7 @@ class StickTestCalibration {
       fit.test = row.chosen ? row.test : fit.test;
       chosen = chosen || row.chosen;
     }
-    const bool at_start = &best == &runs_.front() && best.row == 0;  // no noise forbids less
+    const bool at_start = &best == &runs_.front() && best.row == 0;  // not limited by noise
     const bool at_end = runs_.size() > 1 && (&best == &runs_.back() || at_start);
     fit.status = at_end ? FitStatus::at_end_of_search : FitStatus::ok;
     return fit;
@@ -155,8 +154,8 @@ class StickTestCalibration {
     std::size_t row;                         ///< of the table
     std::vector<double> costs = {};          ///< of the steps; NaN: no contact
     double before = not_a_number<double>();  ///< the ratio of the last step
-    Index sticking = 0;                      ///< answers above a half
-    Index slipping = 0;                      ///< and below
+    Index sticking = 0;                      ///< answers above 0.5
+    Index slipping = 0;                      ///< answers below 0.5
   };
 
   void add_step(double ratio, bool updated, Run& run) {
@@ -167,7 +166,7 @@ class StickTestCalibration {
     run.slipping += updated && ratio < 0.5 ? 1 : 0;
   }
 
-  /// The one with the lowest cost of those with enough answers.
+  /// The run with the lowest cost among those with enough answers.
   const Run& best_run(const StickTestFit& fit) const {
     expects(fit.steps >= min_steps, owner, "frames with contact and motion",
             static_cast<long long>(fit.steps), ">= 20");
@@ -193,7 +192,7 @@ class StickTestCalibration {
     return *best;
   }
 
-  /// The frames are the same for both, so their steps are compared one by one.
+  /// Compares costs step by step, since both runs have the same frames.
   static void compare(const std::vector<double>& costs, const std::vector<double>& best, Row& row) {
     double count = 0, sum = 0, squares = 0;
     for (std::size_t k = 0; k < costs.size(); ++k) {
@@ -208,7 +207,7 @@ class StickTestCalibration {
   }
 
   std::vector<Row> table_;
-  std::vector<Run> runs_;  ///< of the U that noise allows, smallest first
+  std::vector<Run> runs_;  ///< one for each U that noise allows, smallest first
   std::vector<DotState> states_;
   double furthest_px_ = 0;
 };

@@ -1,13 +1,13 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// Noise of dot positions, from frames of a pad on which nothing moves, and the thresholds of the
-// stick ratio that follow from it. Source: "Method to decrease of data variation of dots" and
-// "Selection of delta_0" of 003.
+// Noise of dot positions, from frames of a pad at rest, and the thresholds of the stick ratio that
+// follow from it. Source: "Method to decrease of data variation of dots" and "Selection of delta_0"
+// of 003.
 //
-// Published: "standard deviation of relative dot position in reference to central dot". That holds
-// the noise of two positions, sqrt(2) times that of one, and the central dot's is in all of them.
-// Here each frame's mean motion is taken out instead, which holds the noise of none.
+// Published: "standard deviation of relative dot position in reference to central dot". This
+// includes the noise of two positions, sqrt(2) times that of one, and the noise of the central dot
+// affects all dots. Here the mean motion of each frame is subtracted instead, which avoids both.
 #include <algorithm>
 #include <cmath>
 #include <type_traits>
@@ -29,30 +29,30 @@ template <scalar S = double>
 struct [[nodiscard]] DotNoise {
   FitStatus status = FitStatus::ok;
   S noise_px = S(0);        ///< root mean square over dots and axes
-  S noise_error_px = S(0);  ///< its standard error, of noise that differs from frame to frame
+  S noise_error_px = S(0);  ///< its standard error, for noise independent between frames
   S largest_px = S(0);      ///< of a single dot, both axes together
-  S inner_px = S(0);  ///< after averaging with DotWeights: dots with eight neighbours; NaN: none
-  S edge_px = S(0);   ///< dots that lack neighbours, averaged with those there are; NaN: none
-  S published_px = S(0);  ///< the largest sd, over dots and axes, of a position relative to the
-                          ///< dot nearest to the center
-  S slow_share = S(0);    ///< of the variance, what frames next to each other do not differ by:
-                          ///< near 0 for noise, near 1 if the pad did not stand still; 0 from two
-                          ///< frames, which cannot tell
-  Index dots = 0;         ///< that took part
-  Index out_of_place =
-      0;  ///< positions left out as further than a quarter of a pitch from the mean
+  S inner_px = S(0);        ///< averaged with DotWeights: dots with eight neighbours; NaN: none
+  S edge_px = S(0);         ///< averaged likewise: dots that lack neighbours; NaN: none
+  S published_px = S(0);    ///< the largest sd, over dots and axes, of a position relative to the
+                            ///< dot nearest to the center
+  S slow_share = S(0);      ///< share of the variance that does not appear in the differences of
+                            ///< successive frames: near 0 for noise, near 1 if the pad moved; 0 for
+                            ///< two frames, which cannot show it
+  Index dots = 0;           ///< used
+  /// Positions left out because they are more than a quarter of a pitch from the dot's place.
+  Index out_of_place = 0;
   int frames = 0;
-  /// Standard error of edge_px: of fewer dots than noise_px, and their averages share noise.
+  /// Standard error of edge_px. It has fewer dots than noise_px, and their averages share noise.
   S edge_error_px = S(0);
 
   bool ok() const { return status == FitStatus::ok; }
-  /// Of the noise, what averaging leaves, as measured; denoising_gain() if neighbours are
-  /// independent.
+  /// Measured share of the noise that remains after averaging. It equals denoising_gain() if
+  /// neighbours are independent.
   S gain() const { return S(inner_px / noise_px); }
 };
 
-/// Of independent noise, what a mean over a dot, `sides` of its four and `diagonals` of its other
-/// four neighbours leaves.
+/// Share of independent noise that remains in the mean over a dot, `sides` of its four side
+/// neighbours and `diagonals` of its four diagonal ones.
 inline double denoising_gain(const DotWeights& weights, int sides = 4, int diagonals = 4) {
   expects_valid(weights, "denoising_gain");
   const double self = weights.self, side = weights.side, diagonal = weights.diagonal;
@@ -62,8 +62,9 @@ inline double denoising_gain(const DotWeights& weights, int sides = 4, int diago
 
 namespace detail::stick {
 
-/// By how much more than independent numbers the averages along an edge scatter in their mean
-/// square: the sum of the squared correlations with those beside them.
+/// Factor by which the mean square of the averages along an edge varies more than that of
+/// independent numbers: the sum of the squared correlations of an average with itself and those
+/// beside it.
 inline double shared_along_edge(const DotWeights& w) {
   const double self = w.self, side = w.side, diagonal = w.diagonal;
   const double own = self * self + 3 * side * side + 2 * diagonal * diagonal;
@@ -74,7 +75,7 @@ inline double shared_along_edge(const DotWeights& w) {
 
 }  // namespace detail::stick
 
-/// The noise of which only sigma of one position is known, if that of neighbours is independent.
+/// The noise for a known sigma of one position, if neighbours are independent.
 template <scalar S = double>
 DotNoise<S> independent_dot_noise(const std::type_identity_t<S>& noise_px,
                                   const DotWeights& weights = {}) {
@@ -86,8 +87,8 @@ DotNoise<S> independent_dot_noise(const std::type_identity_t<S>& noise_px,
   return noise;
 }
 
-/// Collects frames of a standing pad, 16 bytes per dot and frame. Lost dots do no harm, neither
-/// does a camera that shakes: the motion of the pattern as a whole is no noise.
+/// Collects frames of a pad at rest, 16 bytes per dot and frame. Lost dots and a shaking camera do
+/// no harm: the motion of the whole pattern does not count as noise.
 template <scalar S = double>
 class DotNoiseCalibration {
  public:
@@ -103,7 +104,7 @@ class DotNoiseCalibration {
   bool add(const Dots& dots_px) {
     return add(dots_px, LazyView(rows_, cols_, [](Index, Index) { return true; }));
   }
-  /// Adds those in contact: a dot can jitter more where it is not held.
+  /// Adds the dots in contact: a dot can jitter more where it is not held.
   template <dot_grid Dots, contact_mask Contact>
   bool add(const Dots& dots_px, const Contact& contact) {
     const auto dots = as_view(dots_px);
@@ -127,9 +128,9 @@ class DotNoiseCalibration {
     return true;
   }
 
-  /// Refuses fewer than two frames, dots in too few of them, and frames that are all the same, as a
-  /// recording has that repeats its frames (parameter_error). O(frames rows cols) for each of a few
-  /// passes, more the more dots are lost.
+  /// Refuses fewer than two frames, dots in too few frames, and identical frames, as in a recording
+  /// that repeats frames (parameter_error). O(frames rows cols) for each of a few passes, with more
+  /// passes the more dots are lost.
   DotNoise<S> fit() const {
     using std::sqrt;
     const char* const owner = "DotNoiseCalibration";
@@ -152,12 +153,13 @@ class DotNoiseCalibration {
     noise.largest_px = rest.largest_px();
     noise.published_px = rest.relative_to_center_px();
 
-    // without motion, differences keep 1 - 1 / dots of their variance
+    // subtracting the motion leaves 1 - 1 / dots of the variance of differences
     const detail::stick::SumOfSquares<S> steps = rest.steps();
     const S kept = variance * S(4 * steps.count * (1 - 1 / rest.dots_found));
     noise.slow_share = S(1) - S(steps.sum / kept);
     noise.status = S(0.5) < noise.slow_share ? FitStatus::pad_moved : FitStatus::ok;
-    // places and motion take (1 - 1 / frames) (gain^2 - 1 / dots) of the variance of means
+    // subtracting places and motion leaves means with (1 - 1 / frames) (gain^2 - 1 / dots) of the
+    // variance of a position
     const double frames_of_dot = rest.positions / rest.dots_found;
     const double dots_of_frame = rest.positions / rest.frames_found;
     const auto averaged = [&](const detail::stick::SumOfSquares<S>& means) {
@@ -186,13 +188,13 @@ class DotNoiseCalibration {
 // deviation sigma per axis in each, both axes of the difference have sigma sqrt(2), and its length
 // r is Rayleigh distributed:
 //   p = P(r > delta_0) = exp(-delta_0^2 / (4 sigma^2)).
-// The published delta_0 = 4 sigma, said to hold 95.44 %, holds 1 - exp(-4) = 98.17 %: 1.83 % of the
-// sticking dots are taken for slipping.
+// The published delta_0 = 4 sigma is said to hold 95.44 % of the dots. In fact it holds
+// 1 - exp(-4) = 98.17 %: 1.83 % of the sticking dots are taken for slipping.
 
-/// p: that of a sticking dot which seems to move by more than `slip_px` between two frames; 0 for
-/// noise 0. noise_px >= 0: sigma of one position, per axis, as it is compared: after denoising.
-/// With x = slip^2 / (4 noise^2) the relative error is at most (4 x + 2) epsilon, as much as 2
-/// epsilon in an argument make.
+/// p: probability that a sticking dot seems to move by more than `slip_px` between two frames; 0
+/// for noise 0. noise_px >= 0 is sigma of one position, per axis, after denoising. With
+/// x = slip^2 / (4 noise^2) the relative error is at most (4 x + 2) epsilon, the effect of 2
+/// epsilon in an argument.
 template <scalar S>
 S false_slip_probability(const S& slip_px, const S& noise_px) {
   using std::exp;
@@ -201,8 +203,8 @@ S false_slip_probability(const S& slip_px, const S& noise_px) {
   return S(exp(exponent));
 }
 
-/// delta_0 that a sticking dot passes with this probability, in (0, 1]; NaN where it is > 1. The
-/// relative error is a few epsilon, however small the probability.
+/// delta_0 that a sticking dot exceeds with this probability, in (0, 1]; NaN for a probability > 1.
+/// The relative error is a few epsilon for any probability.
 template <scalar S>
 S slip_threshold_for(const S& noise_px, const S& probability) {
   using std::log;
@@ -212,7 +214,8 @@ S slip_threshold_for(const S& noise_px, const S& probability) {
   return S(S(2) * noise_px * root);
 }
 
-/// That of at least one in `dots` independent dots, each of which has `probability`, in [0, 1).
+/// Probability that at least one of `dots` independent dots is mistaken, if each is with
+/// `probability`, in [0, 1).
 template <scalar S>
 S false_slip_among(const S& probability, Index dots) {
   using std::expm1;
@@ -222,7 +225,8 @@ S false_slip_among(const S& probability, Index dots) {
   return S(S(0) - S(expm1(nats)));
 }
 
-/// The probability of each of `dots` for which that of at least one is `among`, in [0, 1).
+/// Inverse of false_slip_among: the probability of each of `dots` if that of at least one is
+/// `among`, in [0, 1).
 template <scalar S>
 S false_slip_of_each(const S& among, Index dots) {
   using std::expm1;
@@ -232,14 +236,15 @@ S false_slip_of_each(const S& among, Index dots) {
   return S(S(0) - S(expm1(nats)));
 }
 
-/// How often noise may be mistaken, and which U are tried.
+/// Allowed probabilities of errors due to noise, and the range of U.
 struct StickTestOptions {
   double false_slip = 0.02;    ///< in (0, 1): probability that a sticking dot that lacks neighbours
                                ///< is taken for slipping; less for others. Published: 0.0183
-  double false_motion = 0.01;  ///< in (0, 1): that a standing pad is taken for moving, for U_min
+  double false_motion = 0.01;  ///< in (0, 1): probability that a pad at rest is taken for moving,
+                               ///< for U_min
   double smallest_px = 0.5;    ///< U, > 0
   double largest_px = 8;       ///< > smallest_px
-  int candidates = 13;         ///< 2 to 1000, in equal ratios; by default three to the octave
+  int candidates = 13;         ///< 2 to 1000, in equal ratios; by default three per octave
   bool covers_pattern = false;  ///< of StickTest
 };
 inline void expects_valid(const StickTestOptions& options) {
@@ -259,8 +264,8 @@ inline void expects_valid(const StickTestOptions& options) {
 
 namespace detail::stick {
 
-/// sigma of a position in the difference that is compared with delta_0: that of the dots with the
-/// most noise of those that are averaged.
+/// sigma of a position in the difference that is compared with delta_0. With averaging it is the
+/// larger one of inner and edge dots.
 template <scalar S>
 S compared_noise_px(const NoDenoising&, const DotNoise<S>& noise) {
   return noise.noise_px;
@@ -280,7 +285,8 @@ S placed_noise_px(const ResidualMean&, const DotNoise<S>& noise) {
   return noise.noise_px;
 }
 
-/// By how much the object's motion adds to a dot's noise: of many dots next to nothing.
+/// Factor by which the object's motion increases the noise of a dot. Motion from many dots adds
+/// hardly any.
 template <Freedom Free>
 double motion_noise_factor(const StickConsensus<Free>&) {
   return 1;
@@ -288,9 +294,9 @@ double motion_noise_factor(const StickConsensus<Free>&) {
 
 }  // namespace detail::stick
 
-/// delta_0 and U_min for a sensor with this noise, U being given (by default the published one):
-/// all three in the unit of the noise, as plain numbers: they decide.
-/// Refuses noise that makes U too small (parameter_error).
+/// delta_0 and U_min for a sensor with this noise and a given U, by default the published one. All
+/// three are in the unit of the noise, and double, without derivatives, because they are
+/// thresholds. Refuses noise that makes U too small (parameter_error).
 template <class Motion = StickConsensus<>, class Denoising = ResidualMean, scalar S = double>
 StickTest stick_test_for(Index dots,
                          const DotNoise<S>& noise,
@@ -301,7 +307,7 @@ StickTest stick_test_for(Index dots,
   const char* const owner = "stick_test_for";
   expects_valid(options);
   expects(dots >= 1, owner, "dots", static_cast<long long>(dots), ">= 1");
-  using detail::stick::compared_noise_px;  // published policies bring their own
+  using detail::stick::compared_noise_px;  // published policies have their own
   using detail::stick::motion_noise_factor;
   using detail::stick::placed_noise_px;
   const auto compared_px = static_cast<double>(value(compared_noise_px(denoising, noise)));
@@ -312,7 +318,7 @@ StickTest stick_test_for(Index dots,
           "finite and > 0");
   StickTest test;
   test.pitch = 1;
-  test.free_frames = 0;  // these are measured already
+  test.free_frames = 0;  // the noise is already known
   test.covers_pattern = options.covers_pattern;
   test.reference = reference_px;
   test.slip = slip_threshold_for(compared_px * motion_noise_factor(motion), options.false_slip);

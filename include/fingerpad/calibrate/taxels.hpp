@@ -1,10 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// The noise of the taxels of an array of one's own, from a recording that is at rest for more than
-// half of the time: the standard deviation of each, the most that a window shows of it, and how
-// still the centroid is. The paper gives no rule for them. Medians over the windows are taken, so
-// that a touch or a slip now and then does not count as noise.
+// Noise of the taxels of a given array, from a recording that is at rest for more than half of the
+// time: the standard deviation of each taxel, its largest value in a window, and that of the
+// centroid. The paper gives no rule for them. Medians over the windows are used, so that an
+// occasional touch or slip does not count as noise.
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -20,34 +20,34 @@
 namespace fingerpad {
 inline namespace v0 {
 
-/// Readings in the unit of the sensor.
+/// Noise of a taxel array. Readings are in the unit of the sensor.
 template <scalar S = double>
 struct [[nodiscard]] TaxelNoise {
   FitStatus status = FitStatus::ok;
   Index rows = 0;
   Index cols = 0;
-  std::vector<S> deviations;       ///< rows x cols, row by row: for TaxelFeatures. At least
-                                   ///< `typical`, as a taxel that rested will not once it is
-                                   ///< pressed; NaN: never read, a dead taxel
-  S typical = S(0);                ///< of the taxels whose readings changed, root mean square
-  S typical_error = S(0);          ///< its standard error, of independent Gaussian readings
-  S largest_factor = S(0);         ///< the most that any window spread, in `deviations` of its
-                                   ///< taxel: where nothing was touched, TaxelOptions::noise_factor
-                                   ///< must be above it
+  std::vector<S> deviations;       ///< rows x cols, row by row, for TaxelFeatures. At least
+                                   ///< `typical`, because a constant reading becomes noisy once the
+                                   ///< taxel is pressed; NaN: never read, a dead taxel
+  S typical = S(0);                ///< root mean square over the taxels whose readings changed
+  S typical_error = S(0);          ///< its standard error, for independent Gaussian readings
+  S largest_factor = S(0);         ///< largest deviation in a window, in `deviations` of its taxel.
+                                   ///< TaxelOptions::noise_factor must exceed it if nothing was
+                                   ///< touched
   S centroid_deviation_mm = S(0);  ///< of the centroid, in a window; NaN: never pressed
-  Index windows = 0;               ///< that were looked at
+  Index windows = 0;               ///< number of windows used
 
   bool ok() const { return status == FitStatus::ok; }
   StridedView<const S> view() const { return {deviations.data(), rows, cols, cols}; }
 };
 
-/// Gathers samples at rest.
+/// Collects samples at rest.
 template <scalar S = double>
 class TaxelNoiseCalibration {
   using Features = TaxelFeatures<ZeroCrossings, S>;
 
  public:
-  /// Refuses bad parameters (parameter_error). Of the options, those that noise does not decide.
+  /// Refuses bad parameters (parameter_error). Options that depend on the noise need not be set.
   TaxelNoiseCalibration(Index rows, Index cols, const TaxelOptions<S>& options = {})
       : features_(rows, cols, options),
         state_(features_.start()),
@@ -57,9 +57,9 @@ class TaxelNoiseCalibration {
         spread_(held_.size(), S(0)),
         taxels_(held_.size()) {}
 
-  /// The next sample; false, and nothing changed, if the array has another size or the time is not
-  /// later. A clock that jumps begins a new window; a taxel that is bad is not judged in the window
-  /// in which it was.
+  /// Adds the next sample; false, and nothing changed, if the array has another size or the time is
+  /// not later. A jump of the clock begins a new window. A window with a bad reading of a taxel is
+  /// not used for this taxel.
   template <grid Taxels>
     requires std::constructible_from<S, cell_t<Taxels>>
   bool add(const Taxels& taxels, double time_s) {
@@ -87,8 +87,8 @@ class TaxelNoiseCalibration {
     return true;
   }
 
-  /// Refuses a recording that does not tell (parameter_error): of less than four windows, or in
-  /// which no reading changed.
+  /// Refuses a recording of less than four windows, or in which no reading changed
+  /// (parameter_error).
   TaxelNoise<S> fit() const {
     using std::sqrt;
     const char* const owner = "TaxelNoiseCalibration";
@@ -109,8 +109,8 @@ class TaxelNoiseCalibration {
             ">= 1");
     const S typical_sq = S(sum / S(static_cast<double>(changed)));
     noise.typical = sqrt(typical_sq);
-    // a median has pi / 2 times the variance of the mean; a mean square of f freedoms has 2 / f of
-    // its square, and its root half of the relative error
+    // A median has pi / 2 times the variance of the mean. A mean square with f degrees of freedom
+    // has a relative variance of 2 / f, and its root half of the relative error.
     const double freedom = static_cast<double>((features_.options().window - 2) * windows_);
     noise.typical_error =
         noise.typical *
@@ -136,11 +136,12 @@ class TaxelNoiseCalibration {
  private:
   struct Taxel {
     std::vector<S> variances;  // of its windows
-    bool is_bad = false;       // in the present window
+    bool is_bad = false;       // a bad reading in the present window
   };
 
-  /// From the median of the windows' mean squares; NaN: there are none. What the line
-  /// takes of each is given back, and what the median of a chi-square is below its mean.
+  /// Variance from the median of the windows' mean squares; NaN if there are none. It is corrected
+  /// for the part removed by the line of each window, and for the median of a chi-square
+  /// distribution, which is below its mean.
   S mean_square_of(std::vector<S> variances) const {
     if (variances.empty()) {
       return not_a_number<S>();
@@ -191,9 +192,9 @@ class TaxelNoiseCalibration {
   std::vector<S> held_;
   std::vector<S> spread_;
   std::vector<Taxel> taxels_;
-  std::vector<S> centroid_variances_;  // along either axis
+  std::vector<S> centroid_variances_;  // mean of both axes
   Index in_window_ = 0;                // samples of the present window
-  bool is_pressed_ = false;            // in all of them
+  bool is_pressed_ = false;            // in all samples of the present window
   Index windows_ = 0;
 };
 

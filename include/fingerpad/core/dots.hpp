@@ -3,8 +3,8 @@
 #pragma once
 // Vocabulary: dots printed inside the membrane. A dot grid is a grid whose cells are points, in the
 // order in which the dots are printed, so that a dot's neighbours in the grid are its neighbours on
-// the membrane. A dot that was not found is a point with a coordinate that is not finite, or of a
-// million px or mm or more.
+// the membrane. A dot that was not found is a point with a coordinate that is not finite, or has a
+// magnitude of a million (px or mm) or more.
 #include <concepts>
 #include <type_traits>
 #include <utility>
@@ -16,8 +16,8 @@
 namespace fingerpad {
 inline namespace v0 {
 
-/// How coordinates are read from a point type: p[0], p[1] (and p[2]) as in Eigen vectors, cv::Vec
-/// and arrays; members x, y (and z) where there are any; specialise it for anything else.
+/// Reads the coordinates of a point type: the members x, y (and z) if it has them, else p[0], p[1]
+/// (and p[2]) as in Eigen vectors, cv::Vec and arrays. Specialise it for other types.
 template <class P>
 struct point_traits {
   static constexpr auto x(const P& p) { return p[0]; }
@@ -62,11 +62,11 @@ template <class P> concept spatial_point = planar_point<P> && requires(const P& 
 /// A grid of points in the order in which the dots are printed.
 template <class G> concept dot_grid = grid<G> && planar_point<cell_t<G>>;
 
-/// The same with depths, in mm.
+/// A dot grid whose points have depths, in mm.
 template <class G> concept spatial_dot_grid = dot_grid<G> && spatial_point<cell_t<G>>;
 
-/// True when the dot was found: x and y (and z where the point has it as a member) are finite, and
-/// less than a million in size.
+/// True when the dot was found: x and y (and z where the point has it as a member) are finite and
+/// below a million in magnitude.
 template <planar_point P>
 constexpr bool is_present(const P& p) {
   using Traits = point_traits<P>;
@@ -77,8 +77,8 @@ constexpr bool is_present(const P& p) {
   return present;
 }
 
-// Dots that are stored in another layout than a grid of points, viewed without a copy. If the sizes
-// do not fit together the result is an empty dot grid, which every method refuses for its size.
+// Views, without a copy, of dots that are not stored as a grid of points. If the sizes do not
+// match, the view is an empty dot grid, which every method refuses for its size.
 
 namespace detail {
 template <int Coordinates, scalar S>
@@ -117,8 +117,8 @@ constexpr auto dots_of_planes(X&& x, Y&& y, Z&& z) {
   });
 }
 
-/// rows x cols dots from a matrix with a row for each dot, row by row of the pattern, and a column
-/// for each of 2 or 3 coordinates. The matrix must outlive the view.
+/// row_count x col_count dots from a matrix with one row per dot, in row-major order of the
+/// pattern, and one column per coordinate (2 or 3). The matrix must outlive the view.
 template <int Coordinates = 2, class Matrix>
   requires(grid<Matrix>)
 constexpr auto dots_of_matrix(Matrix&& matrix, Index row_count, Index col_count) {
@@ -133,7 +133,7 @@ constexpr auto dots_of_matrix(Matrix&& matrix, Index row_count, Index col_count)
   });
 }
 
-/// A place in the dot grid; row -1: none.
+/// Row and column of a dot in the grid; row -1 means no dot.
 struct DotIndex {
   Index row = -1;
   Index col = -1;
@@ -142,8 +142,8 @@ struct DotIndex {
   friend constexpr bool operator==(const DotIndex&, const DotIndex&) = default;
 };
 
-/// Calls visit(row, col, point) for each dot beside (row, col) that is present: 4 neighbours share
-/// a side, 8 also a corner. Returns how many there were. O(1), no allocation.
+/// Calls visit(row, col, point) for each neighbour of (row, col) that is present, and returns their
+/// number. 4 neighbours share a side with the dot, 8 a side or a corner. O(1), no allocation.
 template <int Neighbours = 8, dot_grid G, class Visit>
 constexpr int for_each_neighbour(const G& dots, Index row, Index col, Visit&& visit) {
   static_assert(Neighbours == 4 || Neighbours == 8,
@@ -168,7 +168,7 @@ constexpr int for_each_neighbour(const G& dots, Index row, Index col, Visit&& vi
 }
 
 namespace detail {
-/// The dot in the scalar S; NaN where it was not found.
+/// The dot converted to the scalar S; all NaN if it was not found.
 template <scalar S, spatial_point P>
 constexpr Point3<S> spatial_dot(const P& p) {
   using Traits = point_traits<P>;

@@ -2,9 +2,9 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 // Vocabulary: how bad parameters are refused. Constructors check every parameter and refuse a bad
-// one with a message that names the parameter, its value and its range: by an exception
-// (parameter_error), or, in a program compiled without exceptions, by the installed handler or,
-// where there is none, a line on standard error, and then std::abort. Only constructors and
+// one with a message that names the parameter, its value and its range. They call the installed
+// handler, if any, and throw parameter_error. A program compiled without exceptions prints the
+// message on standard error if there is no handler, and calls std::abort. Only constructors and
 // calibration refuse; per-frame calls report a status. Compile a whole program either with
 // exceptions or without.
 #include <cstdio>
@@ -30,7 +30,7 @@ namespace detail {
 inline refusal_handler installed_refusal_handler = nullptr;
 }
 
-/// Installs `handler` (nullptr: none) and returns the one before it. Not synchronised: install it
+/// Installs `handler` (nullptr: none) and returns the previous one. Not synchronised: install it
 /// before other threads construct anything.
 inline refusal_handler set_refusal_handler(refusal_handler handler) noexcept {
   const refusal_handler before = detail::installed_refusal_handler;

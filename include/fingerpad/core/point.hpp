@@ -97,7 +97,7 @@ constexpr auto squared_norm(const Point& a) -> decltype(dot(a, a)) {
   return dot(a, a);
 }
 
-/// |a|, as it is computed: squares must not overflow.
+/// |a|. The squares of the coordinates must not overflow.
 template <class Point>
 auto norm(const Point& a) -> decltype(dot(a, a)) {
   using std::sqrt;
@@ -120,7 +120,7 @@ constexpr bool is_finite(const Point3<S>& p) {
   return is_finite(p.x) && is_finite(p.y) && is_finite(p.z);
 }
 
-/// Whether all coordinates can be measurements: less than a million in size.
+/// Whether all coordinates can be measurements: below a million in magnitude.
 template <scalar S>
 constexpr bool is_plausible(const Point2<S>& p) {
   return is_plausible(p.x) && is_plausible(p.y);

@@ -17,19 +17,21 @@
 #if defined(__FINITE_MATH_ONLY__) && __FINITE_MATH_ONLY__
 #error "fingerpad marks missing data by NaN: compile without -ffast-math or -ffinite-math-only"
 #endif
-#if defined(__ASSOCIATIVE_MATH__)  // GCC 12 tells; clang does not
+#if defined(__ASSOCIATIVE_MATH__)  // defined by GCC 12, not by clang
 #error "fingerpad rounds and sums in a set order: compile without -ffast-math or -fassociative-math"
 #endif
 
 namespace fingerpad {
 inline namespace v0 {
 
-/// What the library must know of a number beyond its arithmetic; specialise it for your own.
+/// What the library needs to know about a number type beyond its arithmetic; specialise it for your
+/// own type.
 ///   real       the plain number in which thresholds are stated
 ///   epsilon()  relative spacing of `real`
-///   value(x)   x as a `real`, without derivatives: what branches look at
+///   value(x)   x as a `real`, without derivatives, for branches
 /// The primary template serves every type with its own std::numeric_limits. A dual number has none
-/// (asking for it gives 0 in silence), so it needs its own traits: see adapt/autodiff.hpp.
+/// (the unspecialised std::numeric_limits silently returns 0), so it needs its own traits: see
+/// adapt/autodiff.hpp.
 template <class S>
 struct scalar_traits {
   static_assert(std::numeric_limits<S>::is_specialized,
@@ -62,13 +64,13 @@ constexpr scalar_real_t<S> value(const S& x) {
   return scalar_traits<S>::value(x);
 }
 
-/// Relative spacing of the real type behind S; the yardstick of every threshold.
+/// Relative spacing of the real type behind S. Rounding thresholds are multiples of it.
 template <scalar S>
 constexpr scalar_real_t<S> epsilon() {
   return scalar_traits<S>::epsilon();
 }
 
-/// The missing value.
+/// NaN, which marks a missing value.
 template <scalar S>
 constexpr S not_a_number() {
   return S((std::numeric_limits<scalar_real_t<S>>::quiet_NaN)());
@@ -82,9 +84,9 @@ constexpr bool is_finite(const S& x) {
   return difference == scalar_real_t<S>(0);
 }
 
-/// Whether x can be a measurement: less than a million in size, in every unit that is used here
-/// (mm, px, N, N mm, MPa, rad). Squares and products of such numbers are finite in every scalar.
-/// False for NaN and for both infinities.
+/// Whether x can be a measurement: below a million in magnitude, whatever its unit (mm, px, N, N
+/// mm, MPa, rad). Squares and products of such numbers are finite in every scalar. False for NaN
+/// and for both infinities.
 template <scalar S>
 constexpr bool is_plausible(const S& x) {
   const scalar_real_t<S> v = value(x);
@@ -109,7 +111,8 @@ struct real_of<Cell> {
 };
 }  // namespace detail
 
-/// The scalar to compute in for what a grid stores: double for integers, else the cell type itself.
+/// The scalar in which cells of this type are computed: double for integers, else the cell type
+/// itself.
 template <class Cell>
 using real_of_t = typename detail::real_of<std::remove_cvref_t<Cell>>::type;
 

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// Vocabulary: the outcome of a frame, for methods that always write a result.
+// Vocabulary: the outcome of one frame. Every status except `refused` comes with a written result.
 #include <cstdint>
 
 namespace fingerpad {
@@ -9,9 +9,9 @@ inline namespace v0 {
 
 enum class FrameStatus : std::uint8_t {
   ok,
-  not_of_this_pad,  ///< written, but do not trust it: unit, lamp or layout differ from those of the
-                    ///< free pad, or the object is larger than the camera's view
-  refused,          ///< a grid or the memory given with it has another size: nothing was written
+  not_of_this_pad,  ///< the result is unreliable: the sensor unit, lamp or layout is not that of
+                    ///< the free pad, or the object is larger than the camera's view
+  refused,          ///< a grid or the memory given with it has the wrong size: nothing was written
 };
 
 /// "ok", "not of this pad" or "refused".

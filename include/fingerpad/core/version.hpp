@@ -2,11 +2,11 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 // The version of the library, as numbers and as one comparable integer (10000 major + 100 minor +
-// patch). A test holds it equal to the version that CMakeLists.txt declares. Older dialects are
-// refused here, once, instead of in thousands of lines.
+// patch). A test checks that it equals the version that CMakeLists.txt declares. Language standards
+// before C++20 are refused here with one error instead of thousands of lines.
 #if !defined(_MSVC_LANG) && __cplusplus < 202002L
 #error "fingerpad needs C++20: compile with -std=c++20"
-#include "compile_with_-std=c++20"  // there is none: compilation ends here
+#include "compile_with_-std=c++20"  // no such file: compilation ends here
 #endif
 
 #define FINGERPAD_VERSION_MAJOR 0

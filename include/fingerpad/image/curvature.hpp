@@ -1,20 +1,21 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// Curvature of the membrane from few depths. Depth grows away from the plate, and curvature is
-// positive where the membrane bulges outward (a dome), as the sign rule of the papers has it.
+// Curvature of the membrane along sections of three depths. Depth grows away from the plate, and
+// curvature is positive where the membrane bulges outward (a dome), as in the papers.
 // Source: Ito et al. 2011, eqs. 10-12 (misprints: E012-E015), and the slides, contact region.
 //
-// Both papers find the center of the circle through three points, which is 0/0 on a level membrane:
-// the very case that they are looking for. With a = l(0) - l(-r) and b = l(r) - l(0) Menger's form
-// of the same circle has no division that can fail:
+// Both papers compute the center of the circle through three points. This is 0/0 on a level
+// membrane, the very case that they look for. Menger's form of the same circle has no division that
+// can fail. With a = l(0) - l(-r) and b = l(r) - l(0):
 //
 //   K = 2 r (a - b) / sqrt((r^2 + a^2) (r^2 + b^2) (4 r^2 + (a + b)^2))                     (K1)
 //
 // K is the curvature of the vertical section, not the normal curvature (E016): on a sphere of
 // radius R at slope tan(alpha) it is 1/R along the gradient and 1/(R cos(alpha)) across it, and its
-// mean over all directions is (2 / pi) K_ell(sin(alpha)) / R, K_ell the complete elliptic integral:
-// 1.03, 1.14 and 1.37 times 1/R at 20, 40 and 60 degrees. Its sign is that of the normal curvature.
+// mean over all directions is (2 / pi) K_ell(sin(alpha)) / R, where K_ell is the complete elliptic
+// integral of the first kind: 1.03, 1.14 and 1.37 times 1/R at 20, 40 and 60 degrees. Its sign is
+// that of the normal curvature.
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -30,7 +31,7 @@ namespace fingerpad {
 inline namespace v0 {
 namespace detail {
 
-/// A whole number as a number, or in every lane of a vector.
+/// The integer n as a scalar, or in every lane of a vector.
 template <class V>
 [[gnu::always_inline]] inline V whole(int n) {
   if constexpr (scalar<V>) {
@@ -40,7 +41,7 @@ template <class V>
   }
 }
 
-/// (K1) in two factors, for numbers and for vectors of them: K = 2 r bend inverse_root.
+/// (K1) in two factors, for scalars and vectors: K = 2 r bend inverse_root.
 template <class V>
 struct Section {
   V bend;  ///< has the sign of K
@@ -73,15 +74,15 @@ S section_curvature(const S& radius_mm, const S& before_mm, const S& center_mm, 
 
 /// The ring of pixels on which curvature is measured: sections through the center pixel in evenly
 /// spaced directions, each with one pixel at either end. An end is the pixel nearest to the circle,
-/// and its true distance is what counts as the radius: interpolation would bias the second
+/// and its true distance is used as the radius, because interpolation would bias the second
 /// difference by up to curvature px^2 / 4 per sample. Default: the slides' radius, 1.92 mm on the
 /// published pad.
 struct CurvatureRing {
   double radius_px = 25;             ///< in [1, 1000]
-  double min_direction_share = 0.5;  ///< sections that must be complete, in (0, 1]
+  double min_direction_share = 0.5;  ///< share of sections that must be complete, in (0, 1]
 };
 
-/// Refuses what has no meaning (parameter_error).
+/// Refuses values out of range (parameter_error).
 inline void expects_valid(const CurvatureRing& ring) {
   expects(ring.radius_px >= 1 && ring.radius_px <= 1000, "CurvatureRing", "radius_px",
           ring.radius_px, "in [1, 1000]");
@@ -89,11 +90,13 @@ inline void expects_valid(const CurvatureRing& ring) {
           "min_direction_share", ring.min_direction_share, "in (0, 1]");
 }
 
-// What is made of the curvatures in all directions, in 1/mm. A statistic says how many directions
-// it takes, how many times the mean it is, and whether negative curvatures count as 0.
+// Statistics of the curvatures in all directions, in 1/mm. A statistic states its number of
+// directions, its factor on the mean (`means`) and whether negative curvatures count as 0
+// (`clamped`).
 
-/// The slides' mean with negative curvatures as 0: below p / (2 sigma) only in contact, and 0
-/// wherever the object is convex or flat. Take this for any object and any pad.
+/// The slides' mean, in which negative curvatures count as 0. It is below p / (2 sigma) (pressure
+/// p, membrane tension sigma) only in contact, and 0 where the object is convex or flat. Take this
+/// for any object and any pad.
 template <int Directions = 18>
 struct ClampedMean {
   static constexpr int directions = Directions;
@@ -101,9 +104,9 @@ struct ClampedMean {
   static constexpr bool clamped = true;
 };
 
-/// Center less ring, linear in depth: for small slopes only. At a slope s it overstates normal
-/// curvature by the factor (1 + s^2)^(3/2) along the slope and (1 + s^2)^(1/2) across it. Take this
-/// when time counts and contacts are flat.
+/// Difference of center and ring, linear in depth; for small slopes only. At a slope s it
+/// overstates normal curvature by the factor (1 + s^2)^(3/2) along the slope and (1 + s^2)^(1/2)
+/// across it. Take this when time counts and contacts are flat.
 template <int Directions = 18>
 struct RingStencil {
   static constexpr int directions = Directions;
@@ -113,7 +116,7 @@ struct RingStencil {
 
 namespace detail {
 
-/// The plain mean, which the edge of contact is placed by.
+/// The plain mean, which locates the edge of contact.
 template <int Directions = 18>
 struct PlainMean {
   static constexpr int directions = Directions;
@@ -121,7 +124,7 @@ struct PlainMean {
   static constexpr bool clamped = false;
 };
 
-/// One end of a section, counted from the center; the other end is opposite.
+/// One end of a section as an offset from the center pixel; the other end is its negative.
 struct RingOffset {
   Index row;
   Index col;
@@ -130,8 +133,8 @@ struct RingOffset {
   friend constexpr bool operator==(const RingOffset&, const RingOffset&) = default;
 };
 
-/// The pixel nearest to radius (cos, sin) of pi step / (2 directions), an angle of the first
-/// octant; ties go to the center, whatever the rounding of the cosine.
+/// The pixel nearest to radius (cos, sin) at the angle pi step / (2 directions) in the first
+/// octant. Ties round toward the center, whatever the rounding of the cosine.
 inline RingOffset ring_offset_in_octant(double radius_px, int step, int directions) {
   const double angle = 1.5707963267948966 * step / directions;
   const auto nearest = [&](double unit) {
@@ -140,7 +143,7 @@ inline RingOffset ring_offset_in_octant(double radius_px, int step, int directio
   return {nearest(std::sin(angle)), nearest(std::cos(angle))};
 }
 
-/// One end of each section in the directions pi k / directions, from the shortest to the longest.
+/// One end of each section in the directions pi k / directions, sorted from shortest to longest.
 /// The set is its own mirror image in both axes and, for an even number of directions, under
 /// exchange of rows and columns.
 inline std::vector<RingOffset> ring_offsets(double radius_px, int directions) {
@@ -160,15 +163,15 @@ inline std::vector<RingOffset> ring_offsets(double radius_px, int directions) {
   return offsets;
 }
 
-/// x where it is positive, else 0; not_a_number() stays.
+/// x where it is positive, else 0; not_a_number() stays NaN.
 template <class V>
 [[gnu::always_inline]] inline V not_negative(const V& x) {
   if constexpr (scalar<V>) {
     return value(x) < 0 ? V(0) : V(x);
 #if defined(FINGERPAD_HAS_VECTORS)
   } else if constexpr (sizeof(V{}[0]) == 4) {
-    // As integers floats of either sign order the same against 0, a positive NaN too; and of
-    // integers compilers make one instruction.
+    // Compared with 0 as integers, floats keep their sign and a positive NaN counts as positive.
+    // Compilers emit one instruction for the integer form.
     using Bits = lanes<std::int32_t, static_cast<int>(sizeof(V) / 4)>;
     const Bits bits = Bits(x);
     return V(bits > 0 ? bits : Bits{});

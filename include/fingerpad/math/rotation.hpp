@@ -2,9 +2,9 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 // Rotations and poses in three dimensions, and the angles about z, y and x in which the papers
-// state them. Source: Ito, Kim, Nagai, Obinata 2011, eq. 18: R = Rz(z) Ry(y) Rx(x). The slides take
-// y by asin first: half the digits are lost near 90 degrees, and roundoff above 1 gives NaN; here
-// every angle comes from atan2.
+// state them. Source: Ito, Kim, Nagai, Obinata 2011, eq. 18: R = Rz(z) Ry(y) Rx(x). The slides
+// compute y by asin first, which loses half the digits near 90 degrees and gives NaN if roundoff
+// exceeds 1. Here every angle comes from atan2.
 #include <cmath>
 
 #include "fingerpad/core/dots.hpp"
@@ -14,7 +14,7 @@
 namespace fingerpad {
 inline namespace v0 {
 
-/// A 3x3 matrix that turns vectors: x_now = R x_before. Rows before columns, identity by default.
+/// A 3x3 rotation matrix: x_now = R x_before. Indexed as m[row][col], identity by default.
 template <scalar S = double>
 struct Rotation {
   S m[3][3] = {{S(1), S(0), S(0)}, {S(0), S(1), S(0)}, {S(0), S(0), S(1)}};
@@ -27,7 +27,7 @@ struct Rotation {
   }
 };
 
-/// The rotation back: the transpose.
+/// The inverse rotation: the transpose.
 template <scalar S>
 Rotation<S> inverse(const Rotation<S>& r) {
   return {{{r.m[0][0], r.m[1][0], r.m[2][0]},
@@ -35,7 +35,7 @@ Rotation<S> inverse(const Rotation<S>& r) {
            {r.m[0][2], r.m[1][2], r.m[2][2]}}};
 }
 
-/// First `first`, then `second`.
+/// Applies `first`, then `second`.
 template <scalar S>
 Rotation<S> operator*(const Rotation<S>& second, const Rotation<S>& first) {
   Rotation<S> product;
@@ -63,7 +63,7 @@ Pose<S> inverse(const Pose<S>& pose) {
   return {back, S(-1) * back(pose.translation_mm)};
 }
 
-/// First `first`, then `second`.
+/// Applies `first`, then `second`.
 template <scalar S>
 Pose<S> operator*(const Pose<S>& second, const Pose<S>& first) {
   return {second.rotation * first.rotation, second(first.translation_mm)};
@@ -78,9 +78,9 @@ struct Angles {
   S z_rad = S(0);
 };
 
-/// The angles of a rotation. z is taken from what remains when x is undone, so that the angles
-/// give R back even where x and z by themselves are ill determined. In gimbal lock (y = +-90
-/// degrees) only x -+ z has a meaning; then z = 0.
+/// The angles of a rotation. z is computed after x is undone, so that the angles reproduce R even
+/// where x and z alone are ill-conditioned. In gimbal lock (y = +-90 degrees) only x -+ z is
+/// defined; z is then 0.
 template <scalar S>
 Angles<S> zyx_angles(const Rotation<S>& r) {
   using std::atan2;
@@ -113,8 +113,8 @@ Rotation<S> rotation_of(const Angles<S>& angles) {
            {S(-sy), S(cy * sx), S(cy * cx)}}};
 }
 
-/// The angle between two rotations, in rad: how far the one must be rotated to become the other.
-/// From its sine and its cosine, so that small angles keep their digits.
+/// The angle between two rotations, in rad: how far one must be rotated to become the other. It is
+/// computed from its sine and its cosine, so that small angles keep their digits.
 template <scalar S>
 S angle_between(const Rotation<S>& a, const Rotation<S>& b) {
   using std::atan2;
@@ -128,8 +128,8 @@ S angle_between(const Rotation<S>& a, const Rotation<S>& b) {
 }
 
 namespace detail::motion {
-/// One Newton step toward the nearest rotation: R (3 - R^T R) / 2. Takes the roundoff out of long
-/// products; for matrices that are rotations but for roundoff.
+/// One Newton step toward the nearest rotation: R (3 - R^T R) / 2. Removes the roundoff of long
+/// products; the matrix must be a rotation up to roundoff.
 template <scalar S>
 Rotation<S> renormalized(const Rotation<S>& r) {
   const Rotation<S> square = inverse(r) * r;

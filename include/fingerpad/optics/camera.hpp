@@ -28,15 +28,15 @@ inline namespace v0 {
 template <scalar S = double>
 struct Camera {
   S plate_distance_mm = S(50);           ///< camera center to the plate's inner face, > 0
-  S refractive_index = S(133) / S(100);  ///< of the fluid against air, >= 1 (water)
+  S refractive_index = S(133) / S(100);  ///< of the fluid relative to air, >= 1 (water)
   S center_x_px = S(639) / S(2);         ///< pixel on the optical axis, along columns
   S center_y_px = S(479) / S(2);         ///< the same along rows
   S pitch_mm = S(8) / S(100);   ///< size of a pixel on the plate's inner face near the axis, > 0
-  S plate_thickness_mm = S(0);  ///< part of plate_distance_mm that is plate; 0: as the papers do
-  S plate_index = S(149) / S(100);  ///< of the plate (acrylic) against air, >= 1
+  S plate_thickness_mm = S(0);  ///< included in plate_distance_mm; 0 as in the papers
+  S plate_index = S(149) / S(100);  ///< of the plate (acrylic) relative to air, >= 1
 };
 
-/// Refuses what no camera can have (parameter_error).
+/// Refuses values out of range (parameter_error).
 template <scalar S>
 void expects_valid(const Camera<S>& camera) {
   expects(is_finite(camera.plate_distance_mm) && camera.plate_distance_mm > S(0), "Camera",
@@ -83,8 +83,8 @@ S tangent_ratio(const S& t_sq, const S& n) {
   return S(1) / root;
 }
 
-/// Heights of the point from which the returning pencil seems to come, above the plate: the area
-/// that a pixel sees at depth z grows as (z + meridional_mm)(z + sagittal_mm).
+/// Heights above the plate of the point from which the returning pencil seems to come. The area
+/// that a pixel sees at depth z is proportional to (z + meridional_mm)(z + sagittal_mm).
 template <scalar S = double>
 struct VirtualHeights {
   S meridional_mm;
@@ -93,7 +93,7 @@ struct VirtualHeights {
 
 }  // namespace detail
 
-/// One pixel's ray, all that the depth model needs of it.
+/// The ray of one pixel, as the depth model needs it.
 template <scalar S = double>
 struct Ray {
   S tan_air;       ///< t = tan(phi_air)
@@ -138,9 +138,9 @@ Ray<S> ray_at_pixel(const Camera<S>& camera, const S& row, const S& col) {
   return ray_at_tangent(camera, S(r * tangent_per_px(camera)));
 }
 
-/// Where the returning pencil seems to come from. It is astigmatic (erratum E007): the height
-/// differs along and across the plane of the ray. Exact for thin pencils; 72.7 and 68.5 mm at 20
-/// degrees where n h1 = 66.5 mm.
+/// Virtual heights of the returning pencil. The pencil is astigmatic (erratum E007): its heights
+/// along and across the plane of the ray differ. Exact for thin pencils; 72.7 and 68.5 mm at 20
+/// degrees for n h1 = 66.5 mm.
 struct AstigmaticHeights {
   template <scalar S>
   static detail::VirtualHeights<S> heights(const Camera<S>& camera, const Ray<S>& ray) {
@@ -176,10 +176,10 @@ Point3<S> point_at(const Camera<S>& camera, const S& row, const S& col, const S&
   return {S(tx * rho_per_t), S(ty * rho_per_t), depth_mm};
 }
 
-/// The pixel that sees `point` (x along columns, y along rows); inverse of point_at.
-/// Needs point.z >= 0. The distance from the axis is concave in t, so Newton's method
-/// from the paraxial ray rises to the root without a safeguard: three to five steps in double,
-/// eight at most up to 50 digits.
+/// The pixel that sees `point` (x along columns, y along rows); inverse of point_at. Requires
+/// point.z >= 0. The distance from the axis is concave in t, so Newton's method from the paraxial
+/// ray rises to the root and needs no safeguard: three to five steps in double, at most eight for
+/// up to 50 digits.
 template <scalar S>
 Point2<S> pixel_of(const Camera<S>& camera, const Point3<S>& point) {
   using std::sqrt;
@@ -200,7 +200,7 @@ Point2<S> pixel_of(const Camera<S>& camera, const Point3<S>& point) {
                     point.z * n * n * fluid * fluid * fluid;
     const S change = (rho - t * reach) / slope;
     t = t + change;
-    if (value(change) <= epsilon<S>() * value(t)) {  // from below, but for roundoff
+    if (value(change) <= epsilon<S>() * value(t)) {  // t rises to the root, up to roundoff
       break;
     }
   }
@@ -208,16 +208,16 @@ Point2<S> pixel_of(const Camera<S>& camera, const Point3<S>& point) {
   return {S(camera.center_x_px + point.x * px_per_mm), S(camera.center_y_px + point.y * px_per_mm)};
 }
 
-/// A camera without perspective: a height map, whose pixels see points straight above them. For
-/// maps that other sensors or simulations give.
+/// A camera without perspective, for height maps from other sensors or simulations: each pixel sees
+/// the point straight above it.
 template <scalar S = double>
 struct OrthographicCamera {
   S center_x_px = S(639) / S(2);  ///< pixel on the axis, along columns
   S center_y_px = S(479) / S(2);  ///< the same along rows
-  S pitch_mm = S(8) / S(100);     ///< distance of neighbouring pixels' points, > 0
+  S pitch_mm = S(8) / S(100);     ///< distance of the points that neighbouring pixels see, > 0
 };
 
-/// Refuses what no camera can have (parameter_error).
+/// Refuses values out of range (parameter_error).
 template <scalar S>
 void expects_valid(const OrthographicCamera<S>& camera) {
   expects(is_finite(camera.center_x_px), "OrthographicCamera", "center_x_px", camera.center_x_px,

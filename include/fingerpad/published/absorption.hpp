@@ -3,10 +3,10 @@
 #pragma once
 // Identification of c_R, c_G and kappa as printed: Ito, Kim, Obinata, "Shape sensing by
 // vision-based tactile sensor" (slides), "Parameter identification": three measurements at known
-// depths against the reference give three equations f(l_i) = f(l_0) in three unknowns, "solving by
-// numerical analytical approach such as Newton method". The parameters are hardly determined so:
+// depths and a reference give three equations f(l_i) = f(l_0) in three unknowns, "solving by
+// numerical analytical approach such as Newton method". This hardly determines the parameters:
 // noise of 0.03 grey levels moves c_R by 70 %. calibrate/depth.hpp takes any number of samples and
-// says how well they determine what; docs/errata.md, E002-E005.
+// reports how well they determine each parameter; docs/errata.md, E002-E005.
 #include <array>
 #include <cmath>
 #include <cstddef>
@@ -23,7 +23,7 @@ namespace published {
 template <scalar S = double>
 struct [[nodiscard]] Identification {
   FitStatus status = FitStatus::not_converged;
-  Absorption<S> fluid = {};  ///< where it came to
+  Absorption<S> fluid = {};  ///< parameters after the last step
   S residual = S(0);         ///< largest of |f(l_i) - f(l_0)| over |f(l_0)|
   int iterations = 0;
 
@@ -37,7 +37,7 @@ namespace detail::identification {
 template <scalar S>
 using Triple = std::array<S, 3>;
 
-/// f(l_i) - f(l_0), as shares of f(l_0).
+/// (f(l_i) - f(l_0)) / f(l_0).
 template <scalar S>
 Triple<S> residuals(const DepthSample<S>& reference,
                     const std::array<DepthSample<S>, 3>& at,
@@ -51,7 +51,7 @@ Triple<S> residuals(const DepthSample<S>& reference,
   return r;
 }
 
-/// x with x_0 a_0 + x_1 a_1 + x_2 a_2 = b, by Cramer's rule; not finite where a_i lie in one plane.
+/// Solves x_0 a_0 + x_1 a_1 + x_2 a_2 = b by Cramer's rule. Not finite if the a_i are coplanar.
 template <scalar S>
 Triple<S> solve(const std::array<Point3<S>, 3>& a, const Point3<S>& b) {
   const S volume = dot(a[0], cross(a[1], a[2]));
@@ -63,9 +63,9 @@ Triple<S> solve(const std::array<Point3<S>, 3>& a, const Point3<S>& b) {
 
 namespace published {
 
-/// Depths > 0, pencils of published::SingleHeight; weights are not looked at, nor where a pixel
-/// lies. Newton's method from `guess`, with derivatives by differences and steps halved until the
-/// residual falls. Never throws, bounded time.
+/// Newton's method from `guess`, with derivatives by central differences. Each step is halved until
+/// the residual falls. Depths must be > 0 and pencils those of published::SingleHeight; weights and
+/// pixel positions are not used. Never throws, bounded time.
 template <scalar S>
 Identification<S> identify_absorption(const DepthSample<S>& reference,
                                       const std::array<DepthSample<S>, 3>& measured,
@@ -99,7 +99,7 @@ Identification<S> identify_absorption(const DepthSample<S>& reference,
     }
     const Triple<S> change = detail::identification::solve(slope, {r[0], r[1], r[2]});
     if (!is_finite(size(change))) {
-      break;  // the depths do not tell the parameters apart
+      break;  // the depths do not determine the parameters
     }
     const S before = size(r);
     S share = S(1);
@@ -116,7 +116,7 @@ Identification<S> identify_absorption(const DepthSample<S>& reference,
         r = there;
       }
     }
-    if (!falls) {  // as near as roundoff lets it come, or stuck
+    if (!falls) {  // converged to roundoff, or stuck
       if (value(before) < value(S(1000) * step * step)) {
         out.status = FitStatus::ok;
       }

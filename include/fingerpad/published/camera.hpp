@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// What the papers print of the camera and the default does otherwise: one height for all pencils
-// (the slides), and the sine in eq. 13 (Ito, Kim, Nagai, Obinata 2011).
+// Camera equations as printed, where the default differs: one height for both directions of a
+// pencil (the slides), and the sine in eq. 13 (Ito, Kim, Nagai, Obinata 2011).
 #include <cmath>
 
 #include "fingerpad/optics/camera.hpp"
@@ -11,8 +11,8 @@ namespace fingerpad {
 inline namespace v0 {
 namespace published {
 
-/// One height for both directions: h2 = n h1 cos^3(phi1) / cos^3(phi2), with phi1 in the fluid and
-/// phi2 in air (closed form of the slides' chain of differentials).
+/// The same height in both directions: h2 = n h1 cos^3(phi1) / cos^3(phi2), with phi1 in the fluid
+/// and phi2 in air (closed form of the slides' chain of differentials).
 struct SingleHeight {
   template <scalar S>
   static detail::VirtualHeights<S> heights(const Camera<S>& camera, const Ray<S>& ray) {
@@ -21,9 +21,9 @@ struct SingleHeight {
   }
 };
 
-/// Eq. 13 with the sine, for a camera without a plate: right only where depth_mm is a length along
-/// the ray. At most 0.026 mm short on a pad 50 mm from the camera, 0.39 mm at 30 degrees and 13 mm
-/// of depth.
+/// Eq. 13 with the sine, for a camera without a plate. It is right only if depth_mm is a length
+/// along the ray. With a depth along z it is at most 0.026 mm short on a pad 50 mm from the camera,
+/// and 0.39 mm at 30 degrees and a depth of 13 mm.
 template <scalar S>
 Point3<S> point_at(const Camera<S>& camera, const S& row, const S& col, const S& depth_mm) {
   using std::sqrt;

@@ -3,8 +3,9 @@
 #pragma once
 // The Young-Laplace contact test as printed: Ito, Kim, Nagai, Obinata, "Acquisition of tactile
 // information by vision-based tactile sensor for dexterous handling of robot hands", III.B, eqs.
-// 8-12: twice the mean of 36 section curvatures over 10 px below 0.00015 per mm, nothing cleaned.
-// It misses half of a flat contact in noise: docs/errata.md, E018.
+// 8-12. A pixel is in contact if twice the mean of 36 section curvatures over 10 px is below
+// 0.00015 per mm; the mask is not cleaned. With noise the test misses half of a flat contact:
+// docs/errata.md, E018.
 #include <cmath>
 
 #include "fingerpad/calibrate/contact.hpp"
@@ -14,8 +15,9 @@ namespace fingerpad {
 inline namespace v0 {
 namespace published {
 
-/// The same by the center of the circle, as published (eqs. 10 and 11 in the plane of the section,
-/// repaired by E012-E014), NaN on a level section, and few digits on a flat one.
+/// Curvature of a section from the center of the circle through three points, as published: eqs. 10
+/// and 11 in the plane of the section, repaired by E012-E014. NaN on a level section, and few
+/// correct digits on a nearly flat one.
 template <scalar S>
 S circle_center_curvature(const S& radius_mm,
                           const S& before_mm,
@@ -36,7 +38,7 @@ S circle_center_curvature(const S& radius_mm,
   return value(height) < 0 ? S(-curvature) : curvature;
 }
 
-/// Eq. 12: over 36 directions, divided by half as many, so twice the mean (E015).
+/// Eq. 12: the sum over 36 directions, divided by 18. This is twice the mean (E015).
 template <int Directions = 36>
 struct TwiceMean {
   static constexpr int directions = Directions;
@@ -44,18 +46,19 @@ struct TwiceMean {
   static constexpr bool clamped = false;
 };
 
-/// The slides' f, the mean over 18 directions. Low in contact, but low on a free saddle too (E017).
+/// f of the slides: the mean over 18 directions. It is low in contact, but also on a free saddle
+/// (E017).
 template <int Directions = 18>
 using SectionMean = detail::PlainMean<Directions>;
 
-/// The threshold is two orders below the paper's own rule for it (E018).
+/// The published test. Its threshold is two orders of magnitude below the paper's own rule (E018).
 constexpr ContactTest contact_test() {
   ContactTest test{0.00015, 13, {10}};
   test.min_region_px = 1;
   return test;
 }
 
-/// The slides' rule of the threshold, E - 2 sigma: the worst pixel alone counts.
+/// The slides' rule for the threshold: the minimum of E - 2 sigma over the pixels.
 constexpr ThresholdRule threshold_rule() {
   return {1, 2, 0, false};
 }

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// How far a contact was carried along, as printed: Ito, Kim and Obinata, "Acquisition of Contact
+// Displacement and rotation of a contact as printed: Ito, Kim and Obinata, "Acquisition of Contact
 // Force and Slippage ...", figure 5: the displacement of the central dot, and the rotation angle of
 // the contact surface.
 #include "fingerpad/motion/contact_shift.hpp"
@@ -10,8 +10,8 @@ namespace fingerpad {
 inline namespace v0 {
 namespace published {
 
-/// The dot in the middle of the dot grid, as published, or any other; the angle is that of all dots
-/// in contact.
+/// Takes the displacement of one dot: the middle one of the grid, as published, or any other. The
+/// angle is that of all dots in contact.
 struct OneDot {
   DotIndex dot = {};
 };

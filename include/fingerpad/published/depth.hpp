@@ -2,9 +2,10 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 // The RGB depth model as printed: Ito, Kim, Nagai, Obinata, "Acquisition of tactile information by
-// vision-based tactile sensor for dexterous handling of robot hands", III.A. A quotient of the
-// scattering for each pixel, the mean over 29 x 29 px, one height for all rays, bisection. What is
-// wrong with it, and what the default does instead: docs/errata.md and docs/depth/depth.md.
+// vision-based tactile sensor for dexterous handling of robot hands", III.A. It uses a scattering
+// quotient for each pixel, the mean over 29 x 29 px, one height in both directions of a pencil, and
+// bisection. docs/errata.md and docs/depth/depth.md list its errors and what the default does
+// instead.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -26,9 +27,8 @@ struct BoxMean {
   std::array<int, 1> windows_px() const { return {window_px}; }
 };
 
-/// The published quotient f(l) = g at the depth l > 0 of a pixel, as printed after the repairs
-/// E003-E005: (b_G e^{c_G k l} - kappa b_R e^{c_R k l}) / (Q1 (1 - e^{c_R k l}) + Q2). It is 0/0 at
-/// l = 0, so never ask for it there.
+/// The published quotient f(l) = g at the depth l > 0 of a pixel, with the repairs E003-E005:
+/// (b_G e^{c_G k l} - kappa b_R e^{c_R k l}) / (Q1 (1 - e^{c_R k l}) + Q2). It is 0/0 at l = 0.
 template <scalar S>
 S quotient(const Absorption<S>& fluid,
            const Pencil<S>& pencil,
@@ -49,9 +49,10 @@ S quotient(const Absorption<S>& fluid,
            (q1 * (S(1) - e_red) + q2));
 }
 
-/// The published bisection of `halvings` halvings: half-width max_depth / 2^(halvings - 1) at the
-/// end (0.43 um for 16 and 14 mm). As printed it starts at l = 0, where f is 0/0 and every pixel
-/// goes astray (E006); here the first step is taken unconditionally, to the middle.
+/// The published bisection with `halvings` halvings. The final half-width is
+/// max_depth / 2^(halvings - 1): 0.43 um for 16 halvings and 14 mm. As printed it starts at l = 0,
+/// where f is 0/0, and every pixel ends at the wrong end of the range (E006). Here the first step
+/// always goes to the middle.
 template <scalar S>
 DepthRoot<S> bisect_depth(const Absorption<S>& fluid,
                           const Pencil<S>& pencil,
@@ -109,7 +110,7 @@ struct PixelScattering {
     }
     return out;
   }
-  /// Means of step x step pixels.
+  /// Means over blocks of step x step pixels.
   PixelScattering sampled(Index rows, Index sampled_cols, int step) const {
     PixelScattering out{sampled_cols, {}};
     for (Index i = 0; i < rows; ++i) {
@@ -132,10 +133,10 @@ struct PixelScattering {
   }
 };
 
-/// The free pad as printed: its colours b(t0) are averaged as those of every frame are, then g is a
-/// quotient for each pixel, without bound toward the rim. NoSmoothing{} takes the colours as they
-/// are: their noise then goes into every later depth. Refuses what fit_reference refuses
-/// (parameter_error).
+/// Reference of the free pad as printed. Its colours b(t0) are averaged as those of every frame,
+/// and g is a quotient for each pixel, which grows without bound toward the rim. NoSmoothing{} uses
+/// the colours without averaging; their noise then enters every later depth. Refuses what
+/// fit_reference refuses (parameter_error).
 template <scalar S = float,
           class Heights = SingleHeight,
           class Smoothing = BoxMean,

@@ -2,13 +2,14 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 // How near an object is to slipping, from the forces. Source: "Another Approach for Estimation of
-// Slippage Degree" of the slides on slip: at a macroscopic slip the ratio of tangential to normal
-// force is about the friction coefficient, mu0 = F0 / N0, and is remembered; from then on
+// Slippage Degree" of the slides on slip. At a macroscopic slip the ratio of tangential to normal
+// force is about the friction coefficient, mu0 = F0 / N0. It is stored, and from then on
 //
 //   F / N < F0 / N0   perfect contact or partial slip
 //   F / N ~ F0 / N0   macroscopic slip
 //
-// Coulomb's law holds badly for soft pads: mu0 is a memory of the last slip, not a constant.
+// Coulomb's law is a poor approximation for soft pads: mu0 is the ratio at the last slip, not a
+// constant.
 #include <cmath>
 #include <cstdint>
 
@@ -22,8 +23,8 @@ namespace published {
 
 template <scalar S = double>
 struct FrictionTest {
-  S alarm_fraction = S(9) / S(10);  ///< F/N beyond this share of F0/N0 is an alarm, in (0, 1]
-  S min_normal_n = S(5) / S(100);   ///< a smaller normal force has no ratio, N, > 0
+  S alarm_fraction = S(9) / S(10);  ///< alarm at F/N >= this share of F0/N0, in (0, 1]
+  S min_normal_n = S(5) / S(100);   ///< N, > 0; no ratio below this normal force
 };
 
 /// Refuses what has no meaning (parameter_error).
@@ -37,12 +38,12 @@ void expects_valid(const FrictionTest<S>& test) {
 
 enum class FrictionStatus : std::uint8_t {
   held,             ///< F/N is below the alarm: perfect contact or partial slip
-  near_slip,        ///< F/N is about what it was at the last slip
-  sliding,          ///< the caller says so; F/N is remembered
-  no_slip_yet,      ///< nothing to compare with
+  near_slip,        ///< F/N is about that of the last slip
+  sliding,          ///< reported by the caller; F/N is stored
+  no_slip_yet,      ///< no F0/N0 to compare with
   no_contact,       ///< the normal force is too small
-  negative_normal,  ///< as large as that of a press, but negative: F_z of a wrench? Give the force
-                    ///< as a point, or WrenchResult::normal_force_n()
+  negative_normal,  ///< at least min_normal_n, but negative: F_z of a wrench? Pass the force as a
+                    ///< Point3, or WrenchResult::normal_force_n()
   no_force_known,   ///< a force is not finite
 };
 
@@ -70,7 +71,7 @@ constexpr const char* name_of(FrictionStatus status) {
 template <scalar S = double>
 struct [[nodiscard]] FrictionResult {
   FrictionStatus status = FrictionStatus::no_force_known;
-  bool alarm = false;                      ///< near slip, or the caller says that it slides
+  bool alarm = false;                      ///< near slip, or the caller reports sliding
   S ratio = not_a_number<S>();             ///< F / N; NaN: none
   S remembered_ratio = not_a_number<S>();  ///< F0 / N0; NaN: none yet
   S margin = not_a_number<S>();            ///< 1 - (F/N) / (F0/N0): 0 at slip; NaN where unknown
@@ -79,7 +80,7 @@ struct [[nodiscard]] FrictionResult {
   bool ok() const { return is_finite(ratio); }
 };
 
-/// F/N against the ratio at the last macroscopic slip. Const, O(1), no memory from the heap.
+/// Compares F/N with the ratio at the last macroscopic slip. Const, O(1), allocates nothing.
 template <scalar S = double>
 class FrictionRatio {
  public:
@@ -101,8 +102,8 @@ class FrictionRatio {
   State start() const { return State(); }
 
   /// `normal_n` is positive in a press. `sliding`: the object slips as a whole in this frame, for
-  /// example because the stick ratio is below a bound; while it lasts the ratio is remembered anew,
-  /// so that what stays is that of the last frame of the last slip.
+  /// example because the stick ratio is below a bound. The ratio of every sliding frame replaces
+  /// the stored one; what remains is that of the last frame of the last slip.
   FrictionResult<S> operator()(const S& tangential_n,
                                const S& normal_n,
                                bool sliding,
@@ -123,7 +124,7 @@ class FrictionRatio {
       return result;
     }
     result.ratio = ratio;
-    if (sliding && ratio > S(1e-6)) {  // without a tangential force it says nothing
+    if (sliding && ratio > S(1e-6)) {  // without a tangential force there is no friction ratio
       state.ratio_ = result.remembered_ratio = ratio;
       state.has_slipped_ = true;
     }
@@ -141,7 +142,7 @@ class FrictionRatio {
     return (*this)(value(sum_sq) > 0 ? S(sqrt(sum_sq)) : sum_sq, normal_n, sliding, state);
   }
 
-  /// The same for the force on the pad as WrenchResult has it: F_z < 0 in a press.
+  /// The same for the force on the pad, as in WrenchResult: F_z < 0 in a press.
   FrictionResult<S> operator()(const Point3<S>& force_n, bool sliding, State& state) const {
     return (*this)(Point2<S>{force_n.x, force_n.y}, S(-force_n.z), sliding, state);
   }

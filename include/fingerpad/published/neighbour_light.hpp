@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// The disc of the slides' compensation for approximation error, pixel by pixel: Ito, Kim, Obinata,
-// "Shape sensing by vision-based tactile sensor". Its time grows with the radius.
+// The exact disc of the slides' "compensation for approximation error": Ito, Kim, Obinata, "Shape
+// sensing by vision-based tactile sensor". Its time grows with the radius.
 #include "fingerpad/depth/neighbour_light.hpp"
 
 namespace fingerpad {

@@ -2,10 +2,10 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 // The fit of the neighbouring light as printed: Ito, Kim, Obinata, "Shape sensing by vision-based
-// tactile sensor" (slides), "Parameter identification of r, m_0, n": the least squares of
-//   L = ln(l - l_a)   against   F = ln psi_sum + ln m_0 + n (l - l_0)
-// for each radius r, the best of which is taken. Logarithms do not exist where an error or a sum is
-// not positive: those pixels drop out, and the rest is biased toward large errors (E011).
+// tactile sensor" (slides), "Parameter identification of r, m_0, n". It fits, by least squares,
+//   F = ln psi_sum + ln m_0 + n (l - l_0)   to   L = ln(l - l_a)
+// for each radius r and takes the best radius. Pixels whose error or sum is not positive have no
+// logarithm and are left out, which biases the fit toward large errors (E011).
 // calibrate/neighbour_light.hpp fits the errors themselves.
 #include <cmath>
 #include <span>
@@ -17,18 +17,18 @@ namespace fingerpad {
 inline namespace v0 {
 namespace published {
 
-/// One pixel, for one radius.
+/// Data of one pixel, for one radius.
 struct LoggedLight {
-  double error_mm;     ///< l - l_a: measured less actual depth
-  double risen_mm;     ///< l - l_0: measured less that of the free pad
-  double psi_sum_rad;  ///< of the disc
+  double error_mm;     ///< l - l_a: measured depth less actual depth
+  double risen_mm;     ///< l - l_0: measured depth less that of the free pad
+  double psi_sum_rad;  ///< sum over the disc of psi(t) - psi(t0)
 };
 
 struct [[nodiscard]] LoggedFit {
-  bool determined = false;  ///< two pixels or more with logarithms, of different depth
+  bool determined = false;  ///< at least two pixels of different depth have logarithms
   double m0_mm_per_rad = 0;
   double n_per_mm = 0;
-  double sum_sq = 0;  ///< S = sum (L - F)^2, by which radii are compared
+  double sum_sq = 0;  ///< S = sum (L - F)^2; the best radius has the smallest
   Index used = 0;     ///< pixels whose logarithms exist
   Index left_out = 0;
 

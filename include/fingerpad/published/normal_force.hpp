@@ -1,10 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// The look-up of the normal force as printed: Ito, Kim, Obinata, "Acquisition of contact force and
-// slippage using a vision-based tactile sensor with a fluid-type touchpad", eqs. 18, 21 and 22, for
-// the paper's own pad: by contact area and by contact depth; and the fit of eqs. 21 and 22 for
-// another. docs/errata.md, E029 and E030.
+// Normal force by look-up as printed: Ito, Kim, Obinata, "Acquisition of contact force and slippage
+// using a vision-based tactile sensor with a fluid-type touchpad". Eqs. 18, 21 and 22 for the
+// paper's own pad, by contact area and by contact depth, and the fit of eqs. 21 and 22 for other
+// pads. docs/errata.md, E029 and E030.
 #include <array>
 #include <cmath>
 #include <span>
@@ -32,10 +32,10 @@ struct AffineForce {
   }
 };
 
-/// Eq. 21 for a displaced contact and eq. 22 for a rotated one. Neither equals the plain force
-/// where nothing moved, and nothing is said of both at once. So each is blended in: its part grows
-/// from 0 to 1 over `blend_mm` or `blend_rad`, beyond which it is the printed equation, and where
-/// both act their changes add.
+/// Eq. 21 for a displaced contact and eq. 22 for a rotated one. Neither equals the plain force at
+/// zero motion, and the paper does not say how to combine them. Each is therefore blended in: its
+/// weight grows from 0 to 1 over `blend_mm` or `blend_rad`, beyond which it is the printed
+/// equation. With both motions, the two changes add.
 template <scalar S = double>
 struct Compensation {
   static constexpr bool reads_motion = true;
@@ -47,7 +47,7 @@ struct Compensation {
 
   detail::ForceChange<S> operator()(const S& displacement_sq_mm2, const S& rotation_rad) const {
     using std::sqrt;
-    // a root at 0 has no derivative
+    // the square root has no derivative at 0
     const bool still = value(displacement_sq_mm2) == 0;
     const S length = still ? S(0) : S(sqrt(displacement_sq_mm2));
     const S angle = value(rotation_rad) < 0 ? S(-rotation_rad) : rotation_rad;
@@ -76,8 +76,8 @@ void expects_valid(const Compensation<S>& compensation) {
           "blend_rad", compensation.blend_rad, "finite and > 0");
 }
 
-/// Eq. 18, over about 1 to 28 N, where both curves rise together. They give 0.62 N and 0.34 N
-/// without contact, which NormalForce fades out.
+/// Eq. 18, valid over about 1 to 28 N, where both curves rise together. Without contact they give
+/// 0.62 N (area) and 0.34 N (depth), which NormalForce fades out.
 template <scalar S = double>
 PolynomialForce<2, S> force_of_area() {
   return {{S(0.6242), S(0.0191), S(0.00008)}, S(18), S(478)};
@@ -87,9 +87,9 @@ PolynomialForce<2, S> force_of_depth() {
   return {{S(0.3435), S(0.5563), S(0.776)}, S(0.63), S(5.62)};
 }
 
-/// Eqs. 21 and 22. The displacement is in mm (the paper says m) and the angle in rad (there in
-/// degrees). Eqs. 19 and 20 give the same twice more with other numbers, under which the force
-/// falls with depth and turns negative: docs/errata.md, E029 and E030.
+/// Eqs. 21 and 22. The displacement is in mm (the paper says m) and the angle in rad (the paper
+/// uses degrees). Eqs. 19 and 20 give the same quantities with other numbers; by depth, these let
+/// the force fall and turn negative: docs/errata.md, E029 and E030.
 template <scalar S = double>
 Compensation<S> compensation_by_area() {
   const S degrees_per_rad = S(57.295779513082320877);
@@ -130,8 +130,8 @@ struct [[nodiscard]] AffineForceFit {
   bool ok() const { return status == FitStatus::ok; }
 };
 
-/// By least squares. Uses the samples with a measure > 0, a normal force and a finite motion, and
-/// refuses what the fits of calibrate/force.hpp refuse (parameter_error). Allocates.
+/// Least-squares fit to the samples with a measure > 0, a normal force and a finite motion. Refuses
+/// what the fits of calibrate/force.hpp refuse (parameter_error). Allocates.
 template <class Curve, scalar S = typename Curve::number>
 AffineForceFit<S> fit_affine_force(std::span<const ForceSample<S>> samples,
                                    const Curve& curve,

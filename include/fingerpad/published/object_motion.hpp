@@ -2,9 +2,9 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 // The object's motion as printed: Ito, Kim, Nagai, Obinata, "Acquisition of tactile information by
-// vision-based tactile sensor for dexterous handling of robot hands", III.C, eqs. 13-19: the
-// rotation of the contact reference dot from a basis of its neighbours, and Euler angles that are
-// added up from frame to frame. The sum errs as rotations do not commute: docs/errata.md,
+// vision-based tactile sensor for dexterous handling of robot hands", III.C, eqs. 13-19. A basis of
+// its neighbours gives the rotation of the contact reference dot, and Euler angles are added up
+// from frame to frame. The sum is wrong because rotations do not commute: docs/errata.md,
 // E019-E024.
 #include <array>
 #include <cstddef>
@@ -16,7 +16,8 @@ namespace fingerpad {
 inline namespace v0 {
 namespace published {
 
-/// Published, with E021 and E022 repaired: exact for rigid motions, else not even a rotation.
+/// The published basis, with E021 and E022 repaired. The result is exact for a rigid motion;
+/// otherwise it is in general not a rotation matrix.
 struct PublishedBasis {
   static constexpr bool gives_rotations = false;
 
@@ -34,7 +35,7 @@ struct PublishedBasis {
   }
 };
 
-/// The same directions, made orthonormal without preference for either.
+/// The same two directions, orthonormalised symmetrically.
 struct SymmetricFrame {
   static constexpr bool gives_rotations = true;
 
@@ -52,7 +53,7 @@ struct SymmetricFrame {
   }
 };
 
-/// The rotation that carries the dots of the one frame nearest to those of the other.
+/// The rotation of the rigid motion that fits the common dots best, in the least-squares sense.
 struct Kabsch {
   static constexpr bool gives_rotations = true;
 
@@ -78,10 +79,9 @@ struct Kabsch {
   }
 };
 
-/// Published: the angles and the displacement of the object are the sums of those of the steps from
-/// frame to frame, each of the dot that was the contact reference dot before it. Noise grows with
-/// the number of frames only where the dot changes, but the error of summed angles is there without
-/// any: see docs/motion/object_motion.md.
+/// As published: the angles and the displacement of the object are sums over the steps from frame
+/// to frame. Each step is that of the contact reference dot before it. Noise accumulates only when
+/// the dot changes, but summed angles are wrong even without noise: docs/motion/object_motion.md.
 template <class Local = PublishedBasis>
 struct SumOfAngles {
   template <scalar S>
@@ -123,7 +123,7 @@ struct SumOfAngles {
   }
 
  private:
-  /// Of the dot itself, or of its neighbours where it is missing.
+  /// Displacement of the dot itself, or of the center of the common dots where it is missing.
   template <scalar S>
   static Point3<S> moved(const detail::motion::Neighbourhood<S>& anchor,
                          const detail::motion::DotStep<S>& step) {
@@ -135,9 +135,9 @@ struct SumOfAngles {
   }
 };
 
-/// The exact composition: the pose is that of the followed dot since its anchor frame, after the
-/// pose of the object in that frame; only when another dot becomes the contact reference dot is it
-/// composed. So noise grows with the number of changes, not with that of the frames.
+/// Exact composition of poses: the motion of the followed dot since its anchor frame is applied
+/// after the pose of the object in that frame. The anchor moves only when another dot becomes the
+/// contact reference dot, so noise grows with the number of changes, not of frames.
 template <class Local = SymmetricFrame>
 struct AnchoredComposition {
   static_assert(Local::gives_rotations, "only rotations can be composed: use SymmetricFrame");

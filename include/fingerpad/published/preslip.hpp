@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// The rules of pre-slip as printed: of each finger one vibrating location, that of the strongest;
-// both indices go through the whole stack at each sample; and a sample without waves is not silent.
-// docs/foam/preslip.md.
+// The rules of pre-slip as printed. Each finger has one vibrating location, that of its strongest
+// vibration. At each sample both indices scan the whole stack. A sample without waves does not
+// count as silent. docs/foam/preslip.md.
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -14,7 +14,7 @@ namespace fingerpad {
 inline namespace v0 {
 namespace published {
 
-/// As printed: a later sample with fewer waves is not silent.
+/// Options as printed: no later sample counts as silent.
 template <scalar S = double>
 PreslipOptions<S> preslip_options() {
   PreslipOptions<S> options;
@@ -22,7 +22,7 @@ PreslipOptions<S> preslip_options() {
   return options;
 }
 
-/// First experiment: another location vibrates, with the same number of waves, on all fingers.
+/// First experiment: on all fingers another location vibrates, with the same number of waves.
 struct GraspOptimise {
   static constexpr const char* name = "grasp_optimise";
 
@@ -40,8 +40,9 @@ struct GraspOptimise {
   }
 };
 
-/// Second experiment: force has moved, another location vibrates, and with more waves, on any
-/// finger. Where nothing vibrates there is no location, which differs from any.
+/// Second experiment: on any finger the centroid of force has moved and another location vibrates,
+/// with more waves. An earlier sample without vibration has no location, which differs from every
+/// location.
 struct GraspLift {
   static constexpr const char* name = "grasp_lift";
 
@@ -59,9 +60,8 @@ struct GraspLift {
   }
 };
 
-/// The scan of the stack: index 1 goes from the oldest sample on, and for each of its places index
-/// 2 from the newest sample down to it (E042). O(history^2); the answers are those of
-/// fingerpad::Preslip.
+/// The scan of the stack: index 1 runs from the oldest sample up, and index 2 from the newest
+/// sample down to index 1 (E042). The answers are those of fingerpad::Preslip. O(history^2).
 template <class Rule, std::size_t Fingers = 2, scalar S = double>
 class StackScan {
  public:
@@ -95,7 +95,7 @@ class StackScan {
         if (Rule::holds(stack[index_1], stack[index_2], tolerance)) {
           result.alarm = true;
           result.is_fresh = result.is_fresh || index_2 == last;
-          result.samples_ago = last - index_1;  // in the end of the latest
+          result.samples_ago = last - index_1;  // that of the latest index 1 remains
         }
       }
     }

@@ -1,14 +1,15 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// The iteration of the six-axis force word for word. Source: Ito, Kim, Obinata 2011, III.C and
-// III.F; misprints: docs/errata.md, E025-E027. A pass:
-//   1. eq. 12 for the lines i_0 that are free up to where they are level: f_v(i_0, 1)
+// The iteration of the six-axis force, word for word. Source: Ito, Kim, Obinata 2011, III.C and
+// III.F; misprints: docs/errata.md, E025-E027. Steps of a pass:
+//   1. eq. 12 for the lines i_0 that end level: f_v(i_0, 1)
 //   2. eq. 6 on M(i_0, j) in order of j: f_v(i_0, j + 1), then f_h(i_0, j) and f_h(i_0 + 1, j)
-//   3. eq. 6 on M(i, j) of the others, from i_0 around: f_h(i + 1, j) from f_h(i, j)
-//   4. f_h into eq. 9: f_v(i, 1) of these
-//   5. direction of the side dots: tau_v(i, 1), eq. 3; then eqs. 8 and 7 upward: tau_h, tau_v
-// published::Iteration takes eq. 12 for every line, level or not, and uses f_h for nothing else.
+//   3. eq. 6 on M(i, j) of the other lines, from i_0 around: f_h(i + 1, j) from f_h(i, j)
+//   4. eq. 9 with these f_h: f_v(i, 1) of the other lines
+//   5. eq. 3, direction of the side dots: tau_v(i, 1); then eqs. 8 and 7 upward: tau_h, tau_v
+// published::Iteration differs: it applies eq. 12 to every line, level or not, and its f_h does not
+// affect the other tensions.
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -20,17 +21,16 @@ namespace fingerpad {
 inline namespace v0 {
 namespace published {
 
-/// Lines perpendicular to the contour lines, cut by these: at every 0.2 mm of height, so that each
-/// has segments of its own number m(i), the last of them up to A_g.
+/// Lines perpendicular to the contour lines, cut by contour lines at every 0.2 mm of height. Each
+/// line has its own number m(i) of segments; the last segment ends at A_g.
 struct ContourLines {
   static constexpr bool straight = false;
   static constexpr bool by_height = true;
   static constexpr double step_mm = 0.2;  ///< delta_z
 };
 
-/// The printed iteration, as it stands. What f_h errs is carried from line to line where lines do
-/// not end level, over objects that are tilted or curved: there it is far off, or diverges
-/// (`not_solved`).
+/// The printed iteration, unchanged. Where lines do not end level, the error of f_h propagates from
+/// line to line. Over tilted or curved objects the result is far off or diverges (`not_solved`).
 struct PrintedIteration {
   static constexpr auto magnitude = detail::membrane::Magnitude::of_column;
   static constexpr bool finds_tensions = true;
@@ -75,7 +75,7 @@ struct PrintedIteration {
     for (Index i = 0; i < g.columns(); ++i) {
       const std::size_t k = at(g, i, 0);
       const S load = t.around_normal[k] * g.around(i, 0).normal.z;
-      good = good && load < all && -load < all;  // no line carries what all carry together
+      good = good && load < all && -load < all;  // a single line cannot carry the load of all
     }
     return detail::membrane::load_rim(g, pulls, t) && good;
   }
@@ -98,7 +98,7 @@ struct PrintedIteration {
     return -1;
   }
 
-  /// Of the right side of eq. 6 on M(i, j), what is known: pressure and shear.
+  /// The known terms of eq. 6 on M(i, j): pressure and shear.
   template <scalar S>
   static Point3<S> known(const detail::membrane::Segments<S>& g,
                          Index i,
@@ -141,7 +141,7 @@ struct PrintedIteration {
     }
   }
 
-  /// f_v of both ends of M(i, j), on it.
+  /// Force on M(i, j) from f_v at its lower and upper end.
   template <scalar S>
   static Point3<S> around_forces(const detail::membrane::Segments<S>& g,
                                  Index i,
@@ -151,7 +151,7 @@ struct PrintedIteration {
            S(-t.around_normal[at(g, i, j)]) * g.around(i, j).normal;
   }
 
-  /// Eq. 6 along z in order of j: f_v(i, j + 1) from f_v(i, j).
+  /// Step 2, f_v(i, j + 1) from f_v(i, j): eq. 6 along z in order of j.
   template <scalar S>
   static void climb(const detail::membrane::Segments<S>& g,
                     Index i,
@@ -161,7 +161,7 @@ struct PrintedIteration {
     for (Index j = 0; j < g.rows(); ++j) {
       load = load - known(g, i, j, pressure_mpa, t).z;
       const Point3<S>& up = g.around(i, j + 1).normal;
-      // where the membrane is level, 0 / 0: as below
+      // a level membrane gives 0 / 0: take the value below
       const bool steep = value(S(S(400) * up.z * up.z)) > value(squared_norm(up));
       t.around_normal[at(g, i, j + 1)] = steep ? S(load / up.z) : t.around_normal[at(g, i, j)];
     }

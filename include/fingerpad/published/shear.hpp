@@ -3,16 +3,16 @@
 #pragma once
 // Tangential force and moment as printed: Ito, Kim, Obinata, "Acquisition of contact force and
 // slippage using a vision-based tactile sensor with a fluid-type touchpad", eqs. 4 and 5:
-// displacement and rotation normalised by area or depth, one straight line for each. The slopes
-// belong to a pad; the source prints none in numbers, so they are given.
+// displacement and rotation normalised by area or depth, with one straight line for each. The
+// slopes depend on the pad and the source prints no numbers, so the caller passes them.
 #include "fingerpad/force/shear.hpp"
 
 namespace fingerpad {
 inline namespace v0 {
 namespace published {
 
-/// The constants of "Measurement results of tangential force" and "... of rotational moment": by
-/// contact area in mm^2, and by contact depth in mm.
+/// The constants of "Measurement results of tangential force" and "... of rotational moment", by
+/// contact area in mm^2 and by contact depth in mm.
 template <scalar S = double>
 ShearNormalisation<S> shear_normalisation_by_area() {
   return {S(100), S(0.65), S(1.7)};

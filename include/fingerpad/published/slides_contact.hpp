@@ -1,13 +1,12 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// The contact region word for word as paper and slides have it: Ito, Kim, Nagai, Obinata,
-// "Acquisition of tactile information by vision-based tactile sensor for dexterous handling of
-// robot hands": circles through three points of the membrane in many sections (E012 repaired), by
-// plain loops over every fifth pixel. Three tests: eq. 12; the slides' mean of curvatures of which
-// negative ones count as 0; and the slides' first one, every direction below delta_R. A level
-// section has no circle: its curvature is NaN and passes no test (E013). Heights are orthographic,
-// as printed.
+// The contact region, word for word as in paper and slides: Ito, Kim, Nagai, Obinata, "Acquisition
+// of tactile information by vision-based tactile sensor for dexterous handling of robot hands".
+// Plain loops over every fifth pixel fit circles through three points of the membrane in many
+// sections (E012 repaired). There are three tests: eq. 12; the slides' mean curvature with negative
+// ones set to 0; and the slides' first test, every direction below delta_R. A level section has no
+// circle: its curvature is NaN and passes no test (E013). Heights are orthographic, as printed.
 #include <cmath>
 #include <cstdint>
 #include <numbers>
@@ -24,7 +23,7 @@ namespace published {
 
 enum class ContactCondition : std::uint8_t {
   twice_mean,       ///< eq. 12: the sum over 2n directions, divided by n
-  clamped_mean,     ///< f of the slides: the mean over n directions, negative ones set to 0
+  clamped_mean,     ///< f of the slides: the mean over n directions, negative curvatures set to 0
   every_direction,  ///< 1/R' < delta_R in each of n directions
 };
 
@@ -33,12 +32,13 @@ struct SlidesContactOptions {
   double threshold_per_mm = 0.00015;  ///< delta, delta_f or delta_R, finite
   int directions = 18;                ///< n, in [1, 360]
   double radius_px = 10;              ///< r, in [1, 1000]; 25 px in the slides
-  double pitch_mm = 0.08;             ///< of a pixel on the membrane, in (0, 10]
+  double pitch_mm = 0.08;             ///< size of a pixel on the membrane, in (0, 10]
   int step_px = 5;                    ///< "changing the center point P by 5 pixel", in [1, 1000]
 };
 
-/// 1/R' of the section at the angle theta through (row, col), by the circle through the nearest
-/// pixels r before and after it and itself; NaN outside of the map and on a level section.
+/// 1/R' of the section at the angle theta through (row, col). The circle passes through the pixel
+/// itself and the pixels nearest to the distance r before and after it. NaN if a pixel lies outside
+/// the map, and on a level section.
 template <scalar S, grid Depth>
 S section_curvature(const Depth& depth_mm,
                     Index row,
@@ -59,7 +59,7 @@ S section_curvature(const Depth& depth_mm,
                                  at(row + down, col + right));
 }
 
-/// Whether the membrane touches at (row, col).
+/// Whether the membrane is in contact at (row, col).
 template <scalar S = double, grid Depth>
 bool touches(const Depth& depth_mm, Index row, Index col, const SlidesContactOptions& o) {
   const bool twice = o.condition == ContactCondition::twice_mean;
@@ -78,9 +78,9 @@ bool touches(const Depth& depth_mm, Index row, Index col, const SlidesContactOpt
   return o.condition == ContactCondition::every_direction ? all_below : mean < threshold;
 }
 
-/// The contact of a height map: every pixel has the answer of the center of its block of step_px x
-/// step_px. Returns the area that touches in mm^2; NaN, and nothing written, where the mask has
-/// another size. Refuses bad parameters (parameter_error). O(pixels directions / step_px^2).
+/// The contact mask of a height map. Every pixel gets the answer at the center of its block of
+/// step_px x step_px. Returns the contact area in mm^2. If the mask has another size it returns NaN
+/// and writes nothing. Refuses bad parameters (parameter_error). O(pixels directions / step_px^2).
 template <scalar S = double, grid Depth, class Mask>
 double contact_by_slides(const Depth& depth_mm, Mask&& mask, const SlidesContactOptions& o = {}) {
   static_assert(writable_grid<Mask, bool>,

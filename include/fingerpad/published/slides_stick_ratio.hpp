@@ -1,12 +1,12 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// The stick ratio word for word as the slides have it: Ito, Kim, Obinata, "Robust slippage degree
+// The stick ratio, word for word as in the slides: Ito, Kim, Obinata, "Robust slippage degree
 // estimation based on reference update of vision-based tactile sensor", the talk and its backup
-// slides; plain loops over all stored frames. Against published/stick_ratio.hpp, which repairs what
-// has no answer (docs/errata.md, E032-E036), it keeps the mean of four angles, which wraps, and the
-// stages of the talk: a fixed delta, no scale or the plain one, and when there is an answer at all.
-// Every dot must be found.
+// slides; plain loops over all stored frames. published/stick_ratio.hpp repairs the cases without
+// an answer (docs/errata.md, E032-E036). This file keeps the mean of four angles, which wraps, and
+// the stages of the talk: a fixed delta, no scale or the plain scale, and the two conditions for an
+// answer. Every dot must be found.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -29,7 +29,7 @@ namespace published {
 enum class SlidesScale : std::uint8_t {
   none,    ///< before Case 3
   plain,   ///< sums of all distances between neighbours
-  across,  ///< "elimination of parallel component": only what lies across the motion
+  across,  ///< "elimination of parallel component": only the part perpendicular to the motion
 };
 
 /// "Detail of delta".
@@ -38,22 +38,22 @@ enum class SlidesDelta : std::uint8_t {
   proportional,  ///< delta_0 d_max / U
 };
 
-/// "phi estimation timing": phi is estimated only when d_max > U, d_max being the largest
+/// "phi estimation timing": phi is estimated only if d_max > U, where d_max is the largest
 /// displacement ...
 enum class AnswerWhen : std::uint8_t {
   contact_moved,       ///< ... of a dot in contact
-  stick_region_moved,  ///< ... of a dot "in stick region" in the last answer
+  stick_region_moved,  ///< ... of a dot "in stick region" of the last answer
 };
 
 /// "Reference dot": d_0 is the displacement of ...
 enum class SlidesReference : std::uint8_t {
   central,          ///< ... the dot in the middle of the grid, the conventional method
   of_stick_region,  ///< ... the dot nearest to the center of the stick region of the last answer;
-                    ///< of the contact before the first
+                    ///< before the first answer, to the center of the contact
 };
 
 struct SlidesOptions {
-  StickTest test = stick_test_px;  ///< U, U_min and delta_0, in px; nothing else is looked at
+  StickTest test = stick_test_px;  ///< U, U_min and delta_0, in px; the rest is not used
   DotWeights weights = {};         ///< S1, S2, S3
   bool cancels_rotation = true;
   SlidesReference reference = SlidesReference::of_stick_region;
@@ -63,9 +63,9 @@ struct SlidesOptions {
   Index capacity = 64;  ///< stored frames, in [1, 1e6]; the slides keep all
 };
 
-/// theta_0 = (theta_1 + theta_2 + theta_3 + theta_4) / 4, the angles by which four neighbours have
-/// rotated about the reference dot, each a difference of two directions as it comes. Wrong by pi/2
-/// or pi where a neighbour's direction passes that of -x: E034.
+/// theta_0 = (theta_1 + theta_2 + theta_3 + theta_4) / 4, the mean angle by which four neighbours
+/// have rotated about the reference dot. Each angle is a difference of two directions, not wrapped.
+/// The mean is wrong by pi/2 or pi if a neighbour's direction passes that of -x: E034.
 template <scalar S>
 S mean_of_four_angles(const std::array<Point2<S>, 4>& then, const std::array<Point2<S>, 4>& now) {
   using std::atan2;
@@ -77,9 +77,9 @@ S mean_of_four_angles(const std::array<Point2<S>, 4>& then, const std::array<Poi
 }
 
 struct [[nodiscard]] SlidesResult {
-  bool accepted = false;        ///< false: a grid of another size, or a dot is missing or wild
+  bool accepted = false;        ///< false: a grid of another size, or a dot missing or implausible
   bool updated = false;         ///< this frame has an answer
-  double stick_ratio = 1;       ///< N_s / N_c; the last one where there is no new one
+  double stick_ratio = 1;       ///< N_s / N_c; without a new answer, the last one
   Index reference_age = 0;      ///< frames from the reference to this one; 0: none
   double furthest_px = 0;       ///< d_max from the reference
   DotIndex reference_dot = {};  ///< whose displacement is d_0
@@ -89,7 +89,7 @@ struct [[nodiscard]] SlidesResult {
   bool ok() const { return accepted && updated; }
 };
 
-/// The stick ratio of a grid of dots, by the talk. Const; each recording has a state of its own. A
+/// The stick ratio of a grid of dots, as in the talk. Const; each recording has its own state. A
 /// frame takes O(capacity dots) and allocates nothing.
 class SlidesStickRatio {
   using Point = Point2<double>;
@@ -184,7 +184,7 @@ class SlidesStickRatio {
     return found;
   }
 
-  /// "Weighted average of target dot and the adjacent 8 dots", not at the border.
+  /// "Weighted average of target dot and the adjacent 8 dots"; border dots stay as they are.
   void denoise(State& state) const {
     state.now = state.given;
     const DotWeights& w = options_.weights;
@@ -210,7 +210,7 @@ class SlidesStickRatio {
     return std::hypot(a.x - b.x, a.y - b.y);
   }
 
-  /// i_ref = sup{i: d_max(i) > U, i_C <= i <= N}; state.size: there is none.
+  /// i_ref = sup{i: d_max(i) > U, i_C <= i <= N}; state.size if there is none.
   std::size_t reference_of(State& state) const {
     const bool in_sticks = options_.answers == AnswerWhen::stick_region_moved && state.has_sticks;
     const std::vector<char>& followed = in_sticks ? state.sticks : state.touches;
@@ -235,7 +235,7 @@ class SlidesStickRatio {
     return state.size;
   }
 
-  /// Of the dots with four neighbours; the central one where none is in contact.
+  /// The reference dot among the dots with four neighbours; the central dot if none is in contact.
   DotIndex reference_dot(const State& state) const {
     DotIndex best{rows_ / 2, cols_ / 2};
     if (options_.reference == SlidesReference::central) {
@@ -282,7 +282,7 @@ class SlidesStickRatio {
       rotate_back(then, result.reference_dot, state);
     }
     result.scale = scale_of(then, state);
-    // the middle of the image cancels in differences: the reference dot's place will do
+    // the center of scaling cancels in differences: use the position of the reference dot
     const Point middle = state.moved[center];
     for (std::size_t k = 0; k < cells(); ++k) {
       state.moved[k] = result.scale * (state.moved[k] - middle) + middle - then[k];
@@ -331,7 +331,8 @@ class SlidesStickRatio {
     result.stick_ratio = result.updated ? sticking / touching : result.stick_ratio;
   }
 
-  /// Over neighbours that both touch, (x, y) = (-1, 1), (0, 1), (1, 1), (1, 0); 1 where none does.
+  /// alpha over pairs of neighbours in contact at (x, y) = (-1, 1), (0, 1), (1, 1), (1, 0); 1 if
+  /// there is no such pair.
   double scale_of(const Points& then, const State& state) const {
     if (options_.scale == SlidesScale::none) {
       return 1;

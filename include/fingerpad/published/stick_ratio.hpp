@@ -2,9 +2,10 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 // The stick ratio by reference update as printed: Ito, Kim, Obinata, "Robust slippage degree
-// estimation based on reference update of vision-based tactile sensor", with its backup slides: the
-// reference dot's motion, its four neighbours' rotation and the scale of all neighbours, the newest
-// stored frame beyond U, positions averaged over neighbours. docs/errata.md, E032-E038.
+// estimation based on reference update of vision-based tactile sensor", with its backup slides. The
+// object's motion is the displacement of the reference dot, the rotation of its four neighbours and
+// the scale of all neighbours. The reference is the newest stored frame beyond U, and positions are
+// averaged over neighbours. docs/errata.md, E032-E038.
 #include <array>
 #include <cmath>
 #include <span>
@@ -16,23 +17,23 @@ namespace fingerpad {
 inline namespace v0 {
 namespace published {
 
-/// The object moves as the reference dot does, rotates as its four neighbours do about it, and
-/// scales as all neighbours in contact do. The noise of those dots is in every dot's answer. alpha
-/// is from the distances between neighbouring dots across the direction in which they move, sums of
-/// absolute values. Where nothing moves there is no direction and alpha is 1 (E036).
+/// The object is displaced like the reference dot, rotated like its four neighbours about it, and
+/// scaled like all neighbours in contact. The noise of those dots affects the answer for every dot.
+/// alpha is the ratio of two sums of absolute distances between neighbouring dots, taken
+/// perpendicular to their motion. Without motion there is no direction and alpha is 1 (E036).
 template <Freedom Free = Freedom::similarity>
 struct ReferenceDotMotion {};
 
-/// The conventional way that reference update is compared with: the first frame with contact, for
-/// good. It tells stick from slip until the object first slips as a whole, turns round, or is
-/// pressed harder.
+/// The conventional method, with which the slides compare reference update: the reference is always
+/// the first frame with contact. It tells stick from slip until the object first slips as a whole,
+/// reverses its motion, or is pressed harder.
 struct FirstReference {
   static constexpr Index capacity = 1;
 };
 
-/// Positions are averaged before anything else; dots at the edge of the pattern stay. Two opposite
-/// neighbours count or miss together: one alone would pull the mean by its distance. The weights
-/// are not printed.
+/// Averages positions before all other steps; dots at the edge of the pattern stay as they are. Two
+/// opposite neighbours are used only together, because one alone would pull the mean toward itself.
+/// The source does not print the weights.
 struct DotMean {
   DotWeights weights = {};
 };
@@ -44,8 +45,8 @@ inline void expects_valid(const DotMean& mean) {
   fingerpad::expects_valid(mean.weights, "DotMean");
 }
 
-/// What calibrate/slip.hpp has to know of them: dots at the edge of the pattern are not averaged,
-/// and one reference dot has as much noise as the dot that is judged.
+/// Noise terms for calibrate/slip.hpp. Dots at the edge of the pattern are not averaged, and the
+/// single reference dot has as much noise as the dot that is judged.
 template <class Noise>
 auto compared_noise_px(const DotMean&, const Noise& noise) {
   return noise.inner_px;
@@ -59,18 +60,18 @@ double motion_noise_factor(const ReferenceDotMotion<Free>&) {
   return 1.4142135623730951;
 }
 
-// How good a sequence of stick ratios is. Source: "Two measures for U" of 003:
-//   S = sum of phi_i                            the earlier the ratio falls, the smaller
-//   D = sum of phi_(i-1) - phi_i where it falls "regarded as the level of estimation error"
-// D contains the fall that there is to measure: D = (phi_1 - phi_n) + sum of the rises (E038). The
-// error is what is left without it, D' = D - (phi_1 - phi_n), the sum of the rises: 0 for a ratio
-// that only falls. A ratio that never changes has D' = 0 too, so D' says nothing without S.
+// Quality of a sequence of stick ratios. Source: "Two measures for U" of 003:
+//   S = sum of phi_i                              smaller the earlier the ratio falls
+//   D = sum of phi_(i-1) - phi_i over its falls   "regarded as the level of estimation error"
+// D includes the true fall: D = (phi_1 - phi_n) + sum of the rises (E038). The error is therefore
+// D' = D - (phi_1 - phi_n), the sum of the rises. It is 0 for a ratio that only falls, but also for
+// one that never changes, so D' is meaningful only together with S.
 
 struct RatioMeasures {
   double sum = 0;        ///< S
   double decreases = 0;  ///< D
-  double rises = 0;      ///< D'; added up as such, so it is >= 0 and exact where it is 0
-  Index steps = 0;       ///< ratios that are numbers
+  double rises = 0;      ///< D', summed directly: >= 0, and exactly 0 without rises
+  Index steps = 0;       ///< number of finite ratios
 
   double sum_per_step() const { return per_step(sum); }
   double decreases_per_step() const { return per_step(decreases); }
@@ -82,9 +83,9 @@ struct RatioMeasures {
   }
 };
 
-/// Of the ratios of all frames in turn. A frame whose answer was kept counts as a step with the
-/// last ratio: it adds to S, as slip that is not yet known is late, and nothing to D and D'. NaN
-/// (no contact) is no step, and what comes after it is not compared with what was before. O(steps).
+/// Measures of the ratios of all frames in order. A frame without a new answer counts as a step
+/// with the last ratio. It adds to S, because slip not yet detected is late, and nothing to D and
+/// D'. NaN (no contact) is no step, and the ratios before and after it are not compared. O(steps).
 template <scalar S>
 RatioMeasures measures_of(std::span<const S> ratios) {
   RatioMeasures m;
@@ -102,7 +103,7 @@ RatioMeasures measures_of(std::span<const S> ratios) {
   return m;
 }
 
-/// As printed, for dots in px. U_min is not printed.
+/// The printed values, for dots in px. U_min (`store`) is not printed.
 inline constexpr StickTest stick_test_px = {.reference = 2, .store = 0.5, .slip = 0.24, .pitch = 1};
 
 template <scalar S = float>
@@ -141,17 +142,18 @@ bool is_stored(const published::FirstReference&, const Repository<P>& stored) {
 
 // ---- motion
 
-/// Sums of distances between neighbours across their motion: what they were, and what they are.
+/// Sums of distances between neighbours perpendicular to their motion, in the reference frame and
+/// now.
 template <class S>
 struct ScaleSums {
   S then = S(0), now = S(0);
-  S all = S(0);  ///< what `then` would be if all lay across
+  S all = S(0);  ///< sum of |x| + |y| of the distances then: scale for roundoff
 
-  /// Two dots; `moved` is the sum of their displacements, the object's rotation taken out.
+  /// Adds a pair of dots. `moved` is the sum of their displacements without the object's rotation.
   void add(const Point2<S>& e_then, const Point2<S>& e_now, const Point2<S>& moved) {
     using std::sqrt;
     const S moved_sq = squared_norm(moved);
-    // 1e-12: what moves less has no direction
+    // 1e-12: a smaller motion has no direction
     if (S(1e-12) < moved_sq && is_distance_sq(moved_sq)) {
       const S size = sqrt(moved_sq);
       all = all + absolute(e_then.x) + absolute(e_then.y);
@@ -162,8 +164,8 @@ struct ScaleSums {
   static S absolute(const S& s) { return s < S(0) ? S(-s) : s; }
 };
 
-/// alpha of the frames, `rotated` being the object's motion without it; 1 where the pairs determine
-/// none or one that is not plausible.
+/// alpha between the two frames. `rotated` is the object's motion without scaling. 1 if the pairs
+/// do not determine alpha, or its value is not plausible.
 template <class S>
 S scale_between(const FramePair<S>& pair, const Similarity<S>& rotated) {
   const Point2<S> object = rotated.now_at - rotated.then_at;
@@ -183,7 +185,7 @@ S scale_between(const FramePair<S>& pair, const Similarity<S>& rotated) {
   }
   const S roundoff = S(1000 * epsilon<S>()) * sums.all;
   if (!(roundoff < sums.then)) {
-    return S(1);  // they all lie along the motion
+    return S(1);  // all pairs lie along the motion
   }
   const S alpha = sums.then / sums.now;
   return is_plausible_scale(alpha) ? alpha : S(1);
@@ -207,8 +209,8 @@ Similarity<S> motion_between(const published::ReferenceDotMotion<Free>&,
         sums.add(S(1), now, then);
       }
     }
-    // about the dot itself, not the centroid of its neighbours: theta_0 as the angle of summed
-    // products, which is the mean of four small angles and does not wrap (E034)
+    // theta_0 about the dot itself, not about the centroid of its neighbours. The angle of the
+    // summed products is the mean of four small angles and does not wrap (E034).
     const S size_sq = sums.along * sums.along + sums.across * sums.across;
     if (S(0) < size_sq) {
       const S size = sqrt(size_sq);

@@ -1,15 +1,15 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// The six-axis force as printed. Source: Ito, Kim, Obinata 2011. The iteration, III.F, made
+// The six-axis force as printed. Source: Ito, Kim, Obinata 2011. The iteration, III.F, is made
 // explicit where the text leaves a choice (docs/errata.md, E025-E027):
 //   1. column by column from the top down, eq. 12: vertical balance gives f_v
 //   2. segment by segment, eq. 6 along x and y: f_h on both sides, each found twice, averaged
-//   3. at the rim the direction of the pull gives tau_v, eq. 3
+//   3. at the rim, eq. 3: the direction of the pull gives tau_v
 //   4. row by row upward, eqs. 8 and 7: tau_h = (tau_v left + tau_v right) / 2, and tau_v of the
 //      next row = tau_h left + tau_h right - tau_v
-// and again, with the new tau_h in 1. Shear is advanced by its symmetry, not by the balance of
-// forces: it settles, but not on a solution of eqs. 6-8.
+// The next pass uses the new tau_h in step 1. Shear is advanced by its symmetry, not by the balance
+// of forces: the iteration converges, but not to a solution of eqs. 6-8 (E046).
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -23,13 +23,13 @@ inline namespace v0 {
 
 namespace detail::membrane {
 
-/// Where tensions of M(i, j) are stored.
+/// Storage index of the tensions of M(i, j).
 template <scalar S>
 std::size_t at(const Segments<S>& g, Index i, Index j) {
   return static_cast<std::size_t>(j * g.columns() + i);
 }
 
-/// tau_v at the rim by the direction of the pull, eq. 3; false where a pull does not point upward.
+/// tau_v at the rim from the direction of the pull, eq. 3. False if a pull does not point upward.
 template <scalar S>
 bool shear_at_rim(const Segments<S>& g, const std::vector<Point3<S>>& pulls, Tensions<S>& t) {
   bool good = true;
@@ -59,8 +59,8 @@ void advance_shear(const Segments<S>& g, Tensions<S>& t) {
   }
 }
 
-/// What the rim carries: f_v by its vertical part, in the direction of the pull; false where a pull
-/// does not point upward.
+/// Forces on the rim: the vertical part is that of f_v, the direction that of the pull. False if a
+/// pull does not point upward.
 template <scalar S>
 bool load_rim(const Segments<S>& g, const std::vector<Point3<S>>& pulls, Tensions<S>& t) {
   bool good = true;
@@ -75,8 +75,8 @@ bool load_rim(const Segments<S>& g, const std::vector<Point3<S>>& pulls, Tension
 
 namespace published {
 
-/// The direction of the side dots, as published: 72 % of the true tangential force of a drag, 36 %
-/// of the true moment of a twist, on a pad stretched by 8.5 %.
+/// The pull has the direction of the side dots, as published. On a pad stretched by 8.5 % it yields
+/// 72 % of the true tangential force of a drag and 36 % of the true moment of a twist.
 struct Direction {
   /// Whether pulls of different rim points can be compared.
   static constexpr bool tells_magnitude = false;
@@ -94,16 +94,16 @@ struct Direction {
 
 inline void expects_valid(const Direction&) {}
 
-/// Lines perpendicular to the contour lines, cut at equal steps of height: the published ones.
-/// Where the summit is level all around (a contact parallel to the plate) the lines around are
-/// contour lines. They crowd at the highest points of a summit that is not level.
+/// The published lines: perpendicular to the contour lines, cut at equal steps of height. If the
+/// summit is level all around (a contact parallel to the plate), the lines around are contour
+/// lines. On a summit that is not level, the lines crowd at its highest points.
 struct SteepestLines {
   static constexpr bool straight = false;
   static constexpr bool by_height = true;
 };
 
-/// One pass: each column carries the pressure on it, in the direction of its side dots. Takes the
-/// shear between columns for 0. Reference and first guess.
+/// One pass: each column carries the pressure on it, in the direction of its side dots. The shear
+/// between columns is taken as 0. Used as reference and first guess.
 struct ClosedForm {
   static constexpr auto magnitude = detail::membrane::Magnitude::of_column;
   static constexpr bool finds_tensions = false;
@@ -131,7 +131,7 @@ struct ClosedForm {
 
 inline void expects_valid(const ClosedForm&) {}
 
-/// The printed iteration.
+/// The printed iteration, with eq. 12 for every column.
 struct Iteration {
   static constexpr auto magnitude = detail::membrane::Magnitude::of_column;
   static constexpr bool finds_tensions = true;
@@ -141,7 +141,7 @@ struct Iteration {
   struct Work {
     Work(const Iteration&, Index columns, Index rows)
         : right(static_cast<std::size_t>(columns * rows)) {}
-    std::vector<S> right;  // f_h as the segment to its left finds it
+    std::vector<S> right;  // f_h found from the segment to its left
   };
 
   template <bool, scalar S>
@@ -155,7 +155,7 @@ struct Iteration {
     std::fill(t.upward_shear.begin(), t.upward_shear.end(), S(0));
     for (int pass = 0; pass < passes; ++pass) {
       balance_columns(g, pressure_mpa, t);
-      if (pass + 1 == passes) {  // f_h is used for nothing else
+      if (pass + 1 == passes) {  // f_h does not affect the other tensions
         balance_segments(g, pressure_mpa, work, t);
       }
       if (!detail::membrane::shear_at_rim(g, pulls, t)) {
@@ -184,7 +184,7 @@ struct Iteration {
           t.around_normal[at(g, i, j)] = S(0);
         }
       }
-      // 0 / 0 where the membrane is level: as below
+      // a level membrane gives 0 / 0: take the value below
       t.around_normal[at(g, i, g.rows())] = t.around_normal[at(g, i, g.rows() - 1)];
     }
   }
@@ -233,9 +233,9 @@ inline void expects_valid(const Iteration& iteration) {
           static_cast<long long>(iteration.passes), "in [1, 100]");
 }
 
-/// The direction of the side dots, steepest lines, 72 columns and 65
-/// rows of segments, the tensions by iteration. It loses 28 % of a drag and 64 % of a twist:
-/// docs/errata.md, E043.
+/// The published method: direction of the side dots, steepest lines, 72 columns and 65 rows of
+/// segments, tensions by iteration. It loses 28 % of a drag and 64 % of a twist: docs/errata.md,
+/// E043.
 template <scalar S = double>
 using Wrench = fingerpad::Wrench<Iteration, OneRow, Direction, SteepestLines, S>;
 
@@ -247,7 +247,7 @@ WrenchOptions<S> wrench_options() {
   return options;
 }
 
-/// `border_mm` as Wrench has it. Refuses bad parameters (parameter_error).
+/// `border_mm` as for Wrench. Refuses bad parameters (parameter_error).
 template <scalar S = double, spatial_dot_grid Border>
 Wrench<S> wrench(const Border& border_mm, const WrenchOptions<S>& options = wrench_options<S>()) {
   return Wrench<S>(border_mm, options);

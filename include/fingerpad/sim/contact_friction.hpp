@@ -4,9 +4,9 @@
 // Friction and contact area of polymers as powers of the load (Howell and Mazur; Lincoln), and
 // Hertz's contact of a sphere.
 //
-// The paper writes F = (K N^(beta-1)) N and calls the bracket the coefficient of friction. Where
-// the load goes to 0 that coefficient has no bound, while the force goes to 0: so here it is always
-// the force.
+// The paper writes F = (K N^(beta-1)) N and calls the bracket the coefficient of friction. As the
+// load goes to 0, this coefficient is unbounded but the force goes to 0. Computations here
+// therefore use the force.
 #include <cmath>
 #include <concepts>
 #include <numbers>
@@ -19,7 +19,7 @@ inline namespace v0 {
 namespace detail {
 namespace foam {
 
-/// x^exponent for x > 0; 0, with no slope, for the rest; NaN of NaN.
+/// x^exponent for x > 0, else 0 with derivative 0; NaN for NaN.
 template <scalar S>
 S positive_power(const S& x, const S& exponent) {
   using std::exp;
@@ -36,7 +36,7 @@ S positive_power(const S& x, const S& exponent) {
   }
 }
 
-/// The cube root of x > 0; 0, with no slope, for the rest; NaN of NaN.
+/// The cube root of x for x > 0, else 0 with derivative 0; NaN for NaN.
 template <scalar S>
 S positive_cube_root(const S& x) {
   if constexpr (std::floating_point<S>) {
@@ -56,7 +56,7 @@ struct PolymerFriction {
   S exponent = S(2) / S(3);  ///< beta, in (0, 1]: 2/3 for rubber-like solids, 1 is Coulomb's law
 };
 
-/// Refuses what has no meaning (parameter_error).
+/// Refuses values out of range (parameter_error).
 template <scalar S>
 void expects_valid(const PolymerFriction<S>& friction) {
   expects(is_finite(friction.factor) && value(friction.factor) > 0, "PolymerFriction", "factor",
@@ -65,20 +65,21 @@ void expects_valid(const PolymerFriction<S>& friction) {
           "exponent", friction.exponent, "in (0, 1]");
 }
 
-/// The friction force that a load can bear, N; 0 where nothing presses.
+/// The maximum friction force under a normal load, N; 0 for loads <= 0.
 template <scalar S>
 S friction_force(const PolymerFriction<S>& friction, const S& normal_n) {
   return S(friction.factor * detail::foam::positive_power(normal_n, friction.exponent));
 }
 
-/// The load that bears a friction force, N: the inverse.
+/// The normal load that a friction force requires, N: the inverse of friction_force.
 template <scalar S>
 S normal_force_for(const PolymerFriction<S>& friction, const S& friction_n) {
   const S power = friction_n / friction.factor;
   return detail::foam::positive_power(power, S(S(1) / friction.exponent));
 }
 
-/// 1/mu = N^(1 - beta) / K, the factor of eqs. 5 and 7: without a bound is only its inverse.
+/// 1/mu = N^(1 - beta) / K, the factor of eqs. 5 and 7. It is finite for every load; only its
+/// inverse mu is unbounded.
 template <scalar S>
 S inverse_friction_coefficient(const PolymerFriction<S>& friction, const S& normal_n) {
   const S exponent = S(1) - friction.exponent;
@@ -89,10 +90,10 @@ S inverse_friction_coefficient(const PolymerFriction<S>& friction, const S& norm
 template <scalar S = double>
 struct HertzContact {
   S radius_mm = S(10);                   ///< R > 0
-  S reduced_modulus_mpa = S(1) / S(10);  ///< E* > 0: E / (1 - nu^2) where only one body yields
+  S reduced_modulus_mpa = S(1) / S(10);  ///< E* > 0: E / (1 - nu^2) if only one body deforms
 };
 
-/// Refuses what has no meaning (parameter_error).
+/// Refuses values out of range (parameter_error).
 template <scalar S>
 void expects_valid(const HertzContact<S>& hertz) {
   expects(is_finite(hertz.radius_mm) && value(hertz.radius_mm) > 0, "HertzContact", "radius_mm",
@@ -101,7 +102,7 @@ void expects_valid(const HertzContact<S>& hertz) {
           "HertzContact", "reduced_modulus_mpa", hertz.reduced_modulus_mpa, "finite and > 0");
 }
 
-/// How deep the sphere is pressed in, mm: (9 N^2 / (16 R E*^2))^(1/3).
+/// Indentation of the sphere, mm: (9 N^2 / (16 R E*^2))^(1/3); 0 for loads <= 0.
 template <scalar S>
 S hertz_depth(const HertzContact<S>& hertz, const S& normal_n) {
   using detail::foam::positive_cube_root;
@@ -112,14 +113,14 @@ S hertz_depth(const HertzContact<S>& hertz, const S& normal_n) {
   return positive_cube_root(S(S(load * load) / hertz.radius_mm));
 }
 
-/// A = pi R depth, mm^2: a power 2/3 of the load, 0 where nothing presses.
+/// A = pi R depth, mm^2: proportional to N^(2/3), and 0 for loads <= 0.
 template <scalar S>
 S contact_area(const HertzContact<S>& hertz, const S& normal_n) {
   const S pi = S(std::numbers::pi_v<long double>);
   return S(S(pi * hertz.radius_mm) * hertz_depth(hertz, normal_n));
 }
 
-/// N / A in MPa, as a power 1/3 of its own: 0 where nothing presses, not 0/0.
+/// N / A in MPa, computed as proportional to N^(1/3), so that it is 0 and not 0/0 for loads <= 0.
 template <scalar S>
 S contact_stress(const HertzContact<S>& hertz, const S& normal_n) {
   return S(detail::foam::positive_cube_root(normal_n) / contact_area(hertz, S(1)));

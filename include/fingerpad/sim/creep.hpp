@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// How foam gives way under a stress that lasts (paper, section 3): Kelvin and Voigt's element has
-// delayed elasticity, as of a crosslinked polymer, Maxwell's gives way for ever, as of an uncured
-// one; both in series have both (Burgers). Strains are linear in the stress; units MPa, s.
+// Creep of foam under a lasting stress (paper, section 3). The Kelvin-Voigt element has delayed
+// elasticity, like a crosslinked polymer; the Maxwell element flows without limit, like an uncured
+// one; the Burgers model has both in series. Strains are linear in the stress; units MPa, s.
 #include <cmath>
 
 #include "fingerpad/core/expects.hpp"
@@ -41,7 +41,7 @@ DecayMeans<S> decay_means(const S& x) {
   return sum;
 }
 
-/// Whether a time is one that can have passed.
+/// Whether a time is finite and >= 0.
 template <scalar S>
 bool can_pass(const S& time_s) {
   return value(time_s) >= 0 && is_finite(time_s);
@@ -50,17 +50,17 @@ bool can_pass(const S& time_s) {
 }  // namespace foam
 }  // namespace detail
 
-/// "The composition model": Maxwell's element in series with Kelvin and Voigt's. Without one of the
-/// two, make its modulus and viscosity infinite. The paper prints no values.
+/// The paper's "composition model": a Maxwell element in series with a Kelvin-Voigt element. To
+/// leave one of them out, make its modulus and viscosity infinite. The paper prints no values.
 template <scalar S = double>
 struct Burgers {
-  S maxwell_modulus_mpa = S(1);           ///< E > 0: what gives way at once
-  S maxwell_viscosity_mpa_s = S(1);       ///< eta > 0: what flows; stress relaxes in eta / E
-  S kelvin_voigt_modulus_mpa = S(1);      ///< E > 0: what gives way with delay
-  S kelvin_voigt_viscosity_mpa_s = S(1);  ///< eta > 0; the delay is eta / E
+  S maxwell_modulus_mpa = S(1);           ///< E > 0: instantaneous elasticity
+  S maxwell_viscosity_mpa_s = S(1);       ///< eta > 0: viscous flow; relaxation time eta / E
+  S kelvin_voigt_modulus_mpa = S(1);      ///< E > 0: delayed elasticity
+  S kelvin_voigt_viscosity_mpa_s = S(1);  ///< eta > 0; retardation time eta / E
 };
 
-/// Refuses what has no meaning (parameter_error).
+/// Refuses values out of range (parameter_error).
 template <scalar S>
 void expects_valid(const Burgers<S>& foam) {
   const auto positive = [](const S& given, const char* name) {
@@ -72,8 +72,8 @@ void expects_valid(const Burgers<S>& foam) {
   positive(foam.kelvin_voigt_viscosity_mpa_s, "kelvin_voigt_viscosity_mpa_s");
 }
 
-/// Creep: the strain of 1 MPa after it has acted for a time, 1/MPa. NaN for a time that is negative
-/// or not finite.
+/// Creep compliance, 1/MPa: the strain per MPa after a constant stress has acted for a time. NaN
+/// for a time that is negative or not finite.
 template <scalar S>
 S creep_compliance(const Burgers<S>& foam, const S& time_s) {
   if (!detail::foam::can_pass(time_s)) {
@@ -87,7 +87,8 @@ S creep_compliance(const Burgers<S>& foam, const S& time_s) {
   return S(S(at_once + delayed) + S(time_s / foam.maxwell_viscosity_mpa_s));
 }
 
-/// Recovery: the share of a delayed strain that is left a time after unloading.
+/// Recovery: the share of the delayed strain that is left at a time after unloading. NaN for a time
+/// that is negative or not finite.
 template <scalar S>
 S recovery(const Burgers<S>& foam, const S& time_s) {
   using std::exp;
@@ -96,8 +97,8 @@ S recovery(const Burgers<S>& foam, const S& time_s) {
                                         : not_a_number<S>();
 }
 
-/// Relaxation: the stress of a strain of 1 that is held from time 0 on, MPa, of Maxwell's element
-/// alone.
+/// Relaxation modulus of the Maxwell element alone, MPa: the stress under a strain of 1 that is
+/// held from time 0 on. NaN for a time that is negative or not finite.
 template <scalar S>
 S relaxation_modulus(const Burgers<S>& foam, const S& time_s) {
   using std::exp;
@@ -107,17 +108,17 @@ S relaxation_modulus(const Burgers<S>& foam, const S& time_s) {
              : not_a_number<S>();
 }
 
-/// Strain under any history of stress, exact where the stress is linear from sample to sample.
-/// Const, O(1), no memory from the heap.
+/// Strain under any history of stress, exact if the stress is linear from sample to sample. Const,
+/// O(1), no heap allocation.
 template <scalar S = double>
 class Creep {
  public:
   /// A value: copy it to go back to this sample later.
   class State {
    public:
-    S elastic() const { return elastic_; }  ///< gone as soon as the stress is
-    S delayed() const { return delayed_; }  ///< goes away
-    S viscous() const { return viscous_; }  ///< stays
+    S elastic() const { return elastic_; }  ///< vanishes with the stress
+    S delayed() const { return delayed_; }  ///< recovers with delay
+    S viscous() const { return viscous_; }  ///< remains
     S strain() const { return S(S(elastic_ + delayed_) + viscous_); }
 
    private:
@@ -137,13 +138,15 @@ class Creep {
   const Burgers<S>& foam() const { return foam_; }
   State start() const { return State(); }
 
-  /// The strain at the end of a step, with the stress at both ends of it in MPa. A stress may jump
-  /// between two steps. One that is not finite is no step: the answer is NaN, the state stays.
+  /// Returns the strain at the end of a step, from the stress at its start and end in MPa. The
+  /// stress may jump between two steps. A stress that is not finite gives NaN and leaves the state
+  /// unchanged.
   S operator()(const S& before_mpa, const S& after_mpa, State& state) const {
     return advance(factors_, step_s_, before_mpa, after_mpa, state);
   }
 
-  /// A step of another length; one that is not finite or <= 0 is none: NaN, the state stays.
+  /// A step of another length. A length that is not finite or <= 0 gives NaN and leaves the state
+  /// unchanged.
   S operator()(const S& before_mpa, const S& after_mpa, const S& step_s, State& state) const {
     if (!is_finite(step_s) || !(value(step_s) > 0)) {
       return not_a_number<S>();
@@ -152,11 +155,12 @@ class Creep {
   }
 
  private:
-  /// delayed += by_delayed delayed + ..., or delayed = ... over long steps.
+  /// The coefficients of delayed = (kept + by_delayed) delayed + by_before before + by_after after.
+  /// `kept` is 1 for short steps and 0 for long ones.
   struct Factors {
     S kept = S(0);  ///< 1 or 0
     S by_delayed = S(0);
-    S by_before = S(0);  ///< stress at the beginning
+    S by_before = S(0);  ///< of the stress at the start
     S by_after = S(0);   ///< and at the end
   };
 

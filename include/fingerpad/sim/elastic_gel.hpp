@@ -1,13 +1,13 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// A thick gel pad that a rigid ball is pressed into and dragged along: where it sticks, where it
-// slips, and where that takes every point of the gel's surface. It makes test signals whose truth
-// is known: the shape of the imprint and the motion of dots, in the contact and around it.
-// The pad is an elastic half-space (Hertz; Cattaneo and Mindlin; surface displacements of
+// A rigid ball that is pressed into a thick gel pad and dragged along it: where the contact sticks,
+// where it slips, and how every point of the gel's surface is displaced. It makes test signals with
+// known ground truth: the shape of the imprint and the motion of dots, in the contact and around
+// it. The pad is an elastic half-space (Hertz; Cattaneo and Mindlin; surface displacements of
 // Boussinesq and Cerruti in closed form: K. L. Johnson, "Contact Mechanics", 1985, eqs. 3.41-3.43,
-// 3.91-3.92, 7.36-7.42). Normal and shear load do not change each other's fields, which is exact
-// for an incompressible gel (poisson = 0.5) and good for a nearly incompressible one.
+// 3.91-3.92, 7.36-7.42). The fields of normal and shear load are not coupled, which is exact for an
+// incompressible gel (poisson = 0.5) and good for a nearly incompressible one.
 #include <cmath>
 
 #include "fingerpad/core/expects.hpp"
@@ -34,9 +34,9 @@ inline void expects_valid(const GelPad& pad) {
           "finite and >= 0");
 }
 
-/// A ball on the gel: its place, how hard it is pressed, and where the gel under it would be
-/// without it. A value; drag() moves it on. x and y are in mm on the free surface, z points out of
-/// the gel. Every function is O(1).
+/// A ball on the gel: its position, its normal force, and the anchor, where the gel under it would
+/// be without the ball. A value; drag() moves the ball. x and y are in mm on the free surface, z
+/// points out of the gel. Every function is O(1).
 template <scalar S = double>
 class GelContact {
  public:
@@ -47,8 +47,8 @@ class GelContact {
   }
 
   /// Presses with `force_n` (0: the contact is lost; the gel springs back) and then moves the ball
-  /// to `ball_mm`. As the ball goes, the gel under it follows until friction holds it no longer;
-  /// from there the ball slides and the gel stays behind.
+  /// to `ball_mm`. The gel under the ball follows up to the limit of friction. Beyond it the ball
+  /// slides and the gel stays behind.
   void drag(const S& force_n, const Point2<S>& ball_mm) {
     force_n_ = S(0) < force_n ? force_n : S(0);
     ball_mm_ = ball_mm;
@@ -66,16 +66,16 @@ class GelContact {
   }
 
   bool touches() const { return S(0) < force_n_; }
-  /// Whether the last drag was further than friction carries the gel.
+  /// Whether the last drag went beyond the limit of friction, so that the whole contact slid.
   bool slides() const { return slides_; }
   const Point2<S>& ball_mm() const { return ball_mm_; }
 
-  /// a of Hertz, eq. 3.40 (of 4.22): a^3 = 3 P R / (4 E*).
+  /// Hertz's contact radius a, eq. 4.22: a^3 = 3 P R / (4 E*).
   S radius_mm() const {
     using std::cbrt;
     return S(cbrt(S(force_n_ * S(0.75 * pad_.ball_mm) / modulus_mpa())));
   }
-  /// How deep the ball's lowest point is, a^2 / R.
+  /// Depth of the ball's lowest point, a^2 / R.
   S depth_mm() const { return S(square(radius_mm()) / S(pad_.ball_mm)); }
   /// How far the ball can be moved before all of the contact slides, eq. 7.42 with Q = mu P.
   S max_pull_mm() const {
@@ -83,7 +83,7 @@ class GelContact {
                          (S(16 * shear_mpa()) * radius_mm()))
                      : S(0);
   }
-  /// c of Cattaneo and Mindlin: inside it the gel sticks, eqs. 7.40 and 7.42.
+  /// Stick radius c of Cattaneo and Mindlin: inside it the gel sticks, eqs. 7.40 and 7.42.
   S stick_radius_mm() const {
     using std::sqrt;
     const S max_pull = max_pull_mm();
@@ -94,7 +94,7 @@ class GelContact {
   S stick_share() const {
     return touches() ? S(square(S(stick_radius_mm() / radius_mm()))) : not_a_number<S>();
   }
-  /// Q, from the ball on the gel.
+  /// Shear force Q of the ball on the gel, N.
   Point2<S> shear_n() const {
     const S c = touches() ? S(stick_radius_mm() / radius_mm()) : S(0);
     const S size = S(S(pad_.friction) * force_n_ * (S(1) - c * c * c));
@@ -102,7 +102,7 @@ class GelContact {
     return S(0) < distance ? S(size / distance) * pull_mm() : Point2<S>{S(0), S(0)};
   }
 
-  /// How far a point of the free surface has been moved, in mm; z < 0 is into the gel.
+  /// Displacement of a point of the free surface, in mm; z < 0 is into the gel.
   Point3<S> displacement_mm(const Point2<S>& at_mm) const {
     if (!touches()) {
       return {S(0), S(0), S(0)};
@@ -112,7 +112,7 @@ class GelContact {
     const Point2<S> p = at_mm - ball_mm_;
     const S r = norm_of(p);
     Point3<S> u = {S(0), S(0), S(-sunk(r, a) / S(2 * pad_.ball_mm))};
-    if (S(0) < r) {  // eq. 3.43, nothing in an incompressible gel
+    if (S(0) < r) {  // eq. 3.43; 0 in an incompressible gel
       const S inner = r < a ? S(S(1) - r * r / (a * a)) : S(0);
       const S radial = S(S((1 - 2 * pad_.poisson) / (6 * shear_mpa())) * a * a * p0 / (r * r) *
                          (S(1) - inner * root(inner)));
@@ -147,7 +147,7 @@ class GelContact {
     return a < r ? S(asin(S(a / r))) : S(pi / 2);
   }
 
-  /// 2 R times how deep the surface is, eq. 3.42.
+  /// 2 R times the depth of the surface, eq. 3.42.
   static S sunk(const S& r, const S& a) {
     const S inside = S(S(2) * a * a - r * r);
     if (!(a < r)) {
@@ -159,7 +159,7 @@ class GelContact {
   /// Displacement under the traction sqrt(1 - r^2 / a^2) along a direction, eqs. 3.91 and 3.92.
   Point2<S> sheared(const Point2<S>& p, const Point2<S>& along, const S& r, const S& a) const {
     const S even = S(S((2 - pad_.poisson) * pi / 2) * sunk(r, a));
-    // the part that turns with twice the angle from the direction of the pull
+    // the part that varies with twice the angle to the direction of the pull
     const S x = dot(p, along);
     const S y = S(along.x * p.y - along.y * p.x);
     S twice = S(pad_.poisson * pi / 4);

@@ -11,7 +11,7 @@
 //   f = A + B t, cbrt(C + D sin at)(A + B t) loads in slip, in a lift slip_load.hpp
 //   Kelvin-Voigt and Maxwell in series       creep                    creep.hpp
 //
-// docs/sim/foam_contact.md has what the model can tell and what it cannot.
+// docs/sim/foam_contact.md says what the model can predict and what it cannot.
 #include "fingerpad/sim/contact_friction.hpp"
 #include "fingerpad/sim/creep.hpp"
 #include "fingerpad/sim/mass_spring_damper.hpp"

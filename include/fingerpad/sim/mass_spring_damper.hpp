@@ -1,13 +1,13 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// The mass-spring-damper on the contact (paper, eqs. 3-8), in closed form and step by step:
+// The mass-spring-damper model of the contact (paper, eqs. 3-8), in closed form and step by step:
 //
 //   m y'' + c (y' - y_ie') + k (y - y_ie) = f(t)
 //
-// Published are m = c = k = 1. Units: mm, N, s, so that masses are in N s^2/mm = 1000 kg. Float is
-// computed in double and double in long double: without damping a motion is as exact as the phase
-// sqrt(k/m) t in that number.
+// The paper uses m = c = k = 1. Units: mm, N, s, so that masses are in N s^2/mm = 1000 kg. Float is
+// computed in double and double in long double. Without damping, a motion is as accurate as the
+// phase sqrt(k/m) t in that type.
 #include <cmath>
 
 #include "fingerpad/core/expects.hpp"
@@ -22,16 +22,16 @@ template <scalar S = double>
 struct MassSpringDamper {
   S mass_n_s2_per_mm = S(1);    ///< m > 0; 0.001 is 1 kg
   S damping_n_s_per_mm = S(1);  ///< c >= 0
-  S stiffness_n_per_mm = S(1);  ///< k > 0: without a spring there is no place to come to rest at
+  S stiffness_n_per_mm = S(1);  ///< k > 0: without a spring there is no rest position
 
-  /// Where the mass is and how fast it goes.
+  /// Motion of the mass at one time.
   struct Motion {
     S position_mm = S(0);
     S velocity_mm_per_s = S(0);
   };
 };
 
-/// Refuses what has no meaning (parameter_error).
+/// Refuses values out of range (parameter_error).
 template <scalar S>
 void expects_valid(const MassSpringDamper<S>& oscillator) {
   const auto check = [](bool good, const char* name, const S& given, const char* range) {
@@ -45,7 +45,7 @@ void expects_valid(const MassSpringDamper<S>& oscillator) {
         oscillator.stiffness_n_per_mm, "finite and > 0");
 }
 
-/// c / (2 sqrt(m k)): below 1 the oscillator swings, above it creeps back.
+/// c / (2 sqrt(m k)): the oscillator is underdamped below 1 and overdamped above 1.
 template <scalar S>
 S damping_ratio(const MassSpringDamper<S>& oscillator) {
   using std::sqrt;
@@ -63,7 +63,7 @@ struct RampLoad {
   S operator()(const S& time_s) const { return S(start_n + S(rise_n_per_s * time_s)); }
 };
 
-/// What a moving frame, at y_ie with the speed y_ie', adds to the load: c y_ie' + k y_ie.
+/// The load that a moving frame at y_ie with the speed y_ie' adds: c y_ie' + k y_ie.
 template <scalar S>
 S frame_load(const MassSpringDamper<S>& oscillator,
              const typename MassSpringDamper<S>::Motion& frame) {
@@ -99,8 +99,8 @@ typename MassSpringDamper<S>::Motion printed_particular_solution(const RampLoad<
   return {S(S(load.start_n * S(time_s - S(1))) + load.rise_n_per_s), load.start_n};
 }
 
-/// y_c: the oscillator left alone, a time after `start`. Exact for any damping; a time that is
-/// negative or no number gives NaN.
+/// y_c: the free motion at a time after `start`. Exact for any damping; NaN for a time that is
+/// negative or not finite.
 template <scalar S>
 typename MassSpringDamper<S>::Motion free_motion(const MassSpringDamper<S>& oscillator,
                                                  const typename MassSpringDamper<S>::Motion& start,
@@ -117,8 +117,9 @@ typename MassSpringDamper<S>::Motion free_motion(const MassSpringDamper<S>& osci
   return {S(position), S(velocity)};
 }
 
-/// The full solution y = y_c + y_p of eq. 8 for the ramp load, from any start. For times far below
-/// a period and a start at rest both parts nearly cancel: FirstOrderHold has no such loss.
+/// The full solution y = y_c + y_p of eq. 8 for the ramp load, from any start. For a start at rest
+/// and times far below a period the two parts nearly cancel; FirstOrderHold does not lose digits
+/// there.
 template <scalar S>
 typename MassSpringDamper<S>::Motion ramp_response(
     const MassSpringDamper<S>& oscillator,
@@ -135,9 +136,9 @@ typename MassSpringDamper<S>::Motion ramp_response(
           S(forced.velocity_mm_per_s + left.velocity_mm_per_s)};
 }
 
-/// The oscillator step by step, exact where the load is linear within a step, whatever the damping
-/// and the step. Const: one serves any number of oscillators, each with a state of its own. O(1),
-/// no memory from the heap.
+/// Moves the oscillator step by step, exactly if the load is linear within a step, for any damping
+/// and step length. Const: one object serves any number of oscillators, each with its own state.
+/// O(1), no heap allocation.
 template <scalar S = double>
 class FirstOrderHold {
   using W = detail::foam::wide_t<S>;
@@ -159,7 +160,7 @@ class FirstOrderHold {
   };
 
   /// For samples `step_s` apart. Refuses bad parameters (parameter_error), and a step so long that
-  /// an oscillator still swings but no digit of its phase is left: some 10^12 periods.
+  /// the oscillator still swings but no digits of its phase are left: some 10^12 periods.
   FirstOrderHold(const MassSpringDamper<S>& oscillator, const S& step_s)
       : oscillator_(checked(oscillator)),
         rates_(oscillator.mass_n_s2_per_mm,
@@ -173,14 +174,14 @@ class FirstOrderHold {
   const MassSpringDamper<S>& oscillator() const { return oscillator_; }
   State start(const Motion& motion = {}) const { return State(motion); }
 
-  /// The motion at the end of a step, with the load at both ends of it in N. A load may jump
-  /// between two steps. One that is not finite is no step: the answer is NaN, the state stays.
+  /// Returns the motion at the end of a step, from the load at its start and end in N. The load may
+  /// jump between two steps. A load that is not finite gives NaN and leaves the state unchanged.
   Motion operator()(const S& before_n, const S& after_n, State& state) const {
     return advance(of_step_, before_n, after_n, state);
   }
 
-  /// A step of another length, as of a clock that jitters; its coefficients are computed anew. A
-  /// step that the constructor would refuse is none: NaN, the state stays.
+  /// A step of another length, for example of a clock that jitters; its coefficients are
+  /// recomputed. A step that the constructor would refuse gives NaN and leaves the state unchanged.
   Motion operator()(const S& before_n, const S& after_n, const S& step_s, State& state) const {
     Coefficients by;
     if (!is_finite(step_s) || !(value(step_s) > 0) || !coefficients(step_s, by)) {
@@ -190,7 +191,8 @@ class FirstOrderHold {
   }
 
  private:
-  /// y += y_by_y y + y_by_v v + ..., or y = ... where hardly anything is left of it.
+  /// The coefficients of y = (kept + y_by_y) y + y_by_v v + y_by_before before + y_by_after after,
+  /// and of v likewise. `kept` is 1 for short steps and 0 for long ones.
   struct Coefficients {
     W kept = W(0);  ///< 1 or 0
     W y_by_y = W(0), y_by_v = W(0), y_by_before = W(0), y_by_after = W(0);
@@ -203,11 +205,11 @@ class FirstOrderHold {
   }
   static Motion no_motion() { return {not_a_number<S>(), not_a_number<S>()}; }
 
-  /// False where the phase is lost.
+  /// Returns false if the phase is lost or a coefficient is not finite.
   bool coefficients(const S& step_s, Coefficients& to) const {
     const detail::foam::StepAnswers<W> a = detail::foam::step_answers(rates_, step_s);
     const W damped = rates_.decay * a.lag;
-    const W lost = rates_.natural_sq * a.raised;  // of a start at 1
+    const W lost = rates_.natural_sq * a.raised;  // of a start at position 1
     const W slowed = lost + W(damped + damped);
     const bool short_step = value(slowed) < scalar_real_t<W>(1) / scalar_real_t<W>(2);
     const W mass = W(oscillator_.mass_n_s2_per_mm);
@@ -246,10 +248,10 @@ class FirstOrderHold {
   Coefficients of_step_;
 };
 
-/// y_p of any load, by the causal integral of eq. 10: (1/m) Int_0^t lag(t - u) f(u) du, with `lag`
-/// the oscillator's answer to a push (2/sqrt(3) e^(-t/2) sin(sqrt(3)/2 t) for m = c = k = 1). The
-/// load is taken as linear between `steps` + 1 samples of it, so the error falls with the square of
-/// the step. NaN for a time that is negative or not finite, and for no steps.
+/// y_p of any load, by the causal integral of eq. 10: (1/m) Int_0^t lag(t - u) f(u) du, where `lag`
+/// is the oscillator's impulse response (2/sqrt(3) e^(-t/2) sin(sqrt(3)/2 t) for m = c = k = 1).
+/// The load is taken as linear between `steps` + 1 samples, so that the error falls with the square
+/// of the step. NaN for a time that is negative or not finite, and for steps <= 0.
 template <scalar S, class Load>
 typename MassSpringDamper<S>::Motion causal_response(const MassSpringDamper<S>& oscillator,
                                                      const Load& load,

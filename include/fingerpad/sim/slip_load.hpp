@@ -26,7 +26,7 @@ struct SlipDrag {
   S frame_mm = S(0);            ///< x_ie; 0 in eq. 7
 };
 
-/// Refuses what has no meaning (parameter_error).
+/// Refuses values out of range (parameter_error).
 template <scalar S>
 void expects_valid(const SlipDrag<S>& drag) {
   const auto check = [](bool good, const char* name, const S& given, const char* range) {
@@ -40,8 +40,8 @@ void expects_valid(const SlipDrag<S>& drag) {
   check(true, "frame_mm", drag.frame_mm, "finite");
 }
 
-/// y = z^2 / 2p: how deep the surface gives way at z from the middle of the contact, mm. p is the
-/// radius of curvature there, mm; p <= 0 is no such surface: NaN.
+/// y = z^2 / 2p: the deformation of the surface at z from the middle of the contact, mm. p is the
+/// radius of curvature there, mm; p <= 0 gives NaN.
 template <scalar S>
 S deformation(const S& z_mm, const S& radius_mm) {
   if (!(value(radius_mm) > 0)) {
@@ -50,7 +50,7 @@ S deformation(const S& z_mm, const S& radius_mm) {
   return S(square(z_mm) / S(radius_mm + radius_mm));
 }
 
-/// c_a H - k_a x_ie + k_a H t: the drag without friction, which is A and B as eq. 10 has them.
+/// c_a H - k_a x_ie + k_a H t: the drag without friction, with A and B as in eq. 10.
 template <scalar S>
 RampLoad<S> drag_load(const SlipDrag<S>& drag) {
   const S damped = drag.damping_n_s_per_mm * drag.speed_mm_per_s;
@@ -59,7 +59,7 @@ RampLoad<S> drag_load(const SlipDrag<S>& drag) {
 }
 
 /// A + B t of eq. 8, for a deformation y in mm that counts as a load of y N. The printed factor
-/// z^(2/3) is that of 2p = 1 and K = 1.
+/// z^(2/3) holds for 2p = 1 and K = 1.
 template <scalar S>
 RampLoad<S> slip_load(const SlipDrag<S>& drag,
                       const PolymerFriction<S>& friction,
@@ -72,7 +72,7 @@ RampLoad<S> slip_load(const SlipDrag<S>& drag,
 /// cbrt(C + D sin(a t)) (A + B t), the load while lifting.
 template <scalar S = double>
 struct LiftLoad {
-  S middle = S(2);               ///< C >= |D|: below that friction would pull
+  S middle = S(2);               ///< C >= |D|, otherwise friction would pull
   S swing = S(1);                ///< D
   S frequency_rad_per_s = S(1);  ///< a
   RampLoad<S> drag = {S(1), S(1)};
@@ -85,7 +85,7 @@ struct LiftLoad {
   }
 };
 
-/// Refuses what has no meaning (parameter_error).
+/// Refuses values out of range (parameter_error).
 template <scalar S>
 void expects_valid(const LiftLoad<S>& load) {
   const auto check = [](bool good, const char* name, const S& given, const char* range) {
@@ -99,7 +99,7 @@ void expects_valid(const LiftLoad<S>& load) {
   check(true, "drag.rise_n_per_s", load.drag.rise_n_per_s, "finite");
 }
 
-/// The lift's load for friction of exponent 2/3: C = z^2 / (2p K^3), D = 1 mm / K^3.
+/// The load while lifting, for friction with exponent 2/3: C = z^2 / (2p K^3), D = 1 mm / K^3.
 template <scalar S>
 LiftLoad<S> lift_load(const SlipDrag<S>& drag,
                       const S& friction_factor,

@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// Rows and columns of a grid of spots of which nothing else is known. Rows are the direction that
-// runs more nearly along the frame's; a grid may be rotated, sheared, and bent a little from dot to
-// dot, as a print on a dome is.
+// Finds the rows and columns of a grid of spots without further knowledge of it. Rows are the
+// direction closer to the rows of the frame. The grid may be rotated, sheared, and slightly bent
+// from dot to dot, like a print on a dome.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -19,15 +19,15 @@ namespace fingerpad {
 inline namespace v0 {
 namespace detail {
 
-constexpr Index min_lattice_dots = 9;  // fewer in order are chance
+constexpr Index min_lattice_dots = 9;  // fewer may form a grid by chance
 
-/// Along the rows and along the columns of a grid, from a dot to the next.
+/// Steps from a dot to the next one, along the rows and along the columns of a grid.
 struct LatticeSteps {
   Place right{0, 0};
   Place down{0, 0};
 };
 
-/// From each spot to its nearest ones, each step to the right or down.
+/// Steps from each spot to its nearest ones, reversed where needed to point right or down.
 inline std::vector<Place> steps_between(const std::vector<Place>& spots) {
   constexpr std::size_t nearest = 6;
   std::vector<Place> steps, around;
@@ -50,16 +50,16 @@ inline std::vector<Place> steps_between(const std::vector<Place>& spots) {
   return steps;
 }
 
-/// The mean of those steps that are alike, opposite ones included, and how many they are.
+/// Mean and number of similar steps, opposite ones included.
 struct CommonStep {
   Place step{0, 0};
   int count = 0;
 };
 
-constexpr double steps_alike = 0.2;  // in parts of their length
+constexpr double steps_alike = 0.2;  // as a fraction of their length
 
-/// The step that most of `steps` are like, among those that `allowed` lets through. Some hundreds
-/// are tried: of a grid's, which are many and alike, one is among them.
+/// The most frequent step among those that `allowed` accepts. Only some hundreds of candidates are
+/// tried: the steps of a grid are so frequent that one of them is among these.
 template <class Allowed>
 CommonStep most_common(const std::vector<Place>& steps, const Allowed& allowed) {
   constexpr std::size_t max_tried = 500;
@@ -105,7 +105,8 @@ inline std::optional<LatticeSteps> lattice_steps(const std::vector<Place>& spots
   return steps;
 }
 
-/// Names spots from one dot outward, the best fitting first. Steps follow the grid as it bends.
+/// Assigns rows and columns to spots from a seed outward, the best fit first. The steps adapt to
+/// the bending of the grid.
 class LatticeGrowth {
  public:
   using At = std::pair<int, int>;  // row and column from the seed
@@ -113,7 +114,7 @@ class LatticeGrowth {
   LatticeGrowth(const SpotMap& spots, const LatticeSteps& steps)
       : spots_(spots), steps_(steps), taken_(static_cast<std::size_t>(spots.size()), 0) {}
 
-  /// The spot at each row and column.
+  /// The spot at each row and column, counted from the seed.
   const std::map<At, int>& from(int seed) {
     name({{0, 0}, seed, steps_, 0});
     while (!open_.empty()) {
@@ -145,7 +146,7 @@ class LatticeGrowth {
   }
 
   void look(const Claim& from, int sign, Place LatticeSteps::*way, const At& at) {
-    constexpr double reach = 0.42;  // of a step, between a spot and where it is looked for
+    constexpr double reach = 0.42;  // largest distance from the predicted position, in steps
     LatticeSteps steps = from.steps;
     Place& step = steps.*way;
     const double length = norm(step);
@@ -163,8 +164,7 @@ class LatticeGrowth {
   std::priority_queue<Claim> open_;
 };
 
-/// The spot with a neighbour on all four sides, or on as many as there are, that is nearest to the
-/// middle.
+/// The spot with the most neighbours on its four sides; of several, the one nearest to the middle.
 inline int lattice_seed(const SpotMap& spots, const LatticeSteps& steps) {
   Place middle{0, 0};
   for (int k = 0; k < spots.size(); ++k) {
@@ -185,7 +185,7 @@ inline int lattice_seed(const SpotMap& spots, const LatticeSteps& steps) {
   return best;
 }
 
-/// `size_rows` x `size_cols` of a grid, or of the places around it, from (top, left).
+/// The window of `size_rows` x `size_cols` from (top, left); NaN outside of the grid.
 inline Places window_of(
     const Places& dots, Index top, Index left, Index size_rows, Index size_cols) {
   Places window(size_rows, size_cols, no_place());
@@ -199,7 +199,8 @@ inline Places window_of(
   return window;
 }
 
-/// Without the outer rows and columns that hold a single dot: no one knows whether it belongs.
+/// Removes outer rows and columns with fewer than two dots: a single dot may not belong to the
+/// grid.
 inline Places without_single_dots(Places dots) {
   for (bool cut = true; cut && dots.rows() > 0 && dots.cols() > 0;) {
     cut = false;
@@ -218,7 +219,7 @@ inline Places without_single_dots(Places dots) {
   return dots;
 }
 
-/// Median distance of neighbours in a row or column; 0 where there are none.
+/// Median distance of neighbours in a row or column; 0 if there are none.
 inline double pitch_of(const Places& dots) {
   std::vector<double> lengths;
   for (Index i = 0; i < dots.rows(); ++i) {
@@ -234,8 +235,8 @@ inline double pitch_of(const Places& dots) {
   return lengths.empty() ? 0 : median_of(lengths.begin(), lengths.end());
 }
 
-/// How far a typical dot lies from the middle between its neighbours on both sides, in pitches.
-/// Spots at random can be named like a grid, but lie anywhere.
+/// Median distance of a dot from the midpoint of its neighbours on both sides, in pitches. It
+/// rejects random spots, which can be given rows and columns but are not regular.
 inline double unevenness(const Places& dots) {
   std::vector<double> off;
   const auto add = [&](const Place& before, const Place& at, const Place& after) {
@@ -257,10 +258,10 @@ inline double unevenness(const Places& dots) {
   return off.empty() ? 0.0 : median_of(off.begin(), off.end()) / pitch_of(dots);
 }
 
-/// Spots that lie in rows and columns, named by them; empty where there is no such grid. Spots
-/// between the rows are left out. O(spots^2) time.
+/// The spots that lie in rows and columns, at their row and column; empty if there is no such grid.
+/// Spots between the rows are left out. O(spots^2) time.
 inline Places lattice_of(const std::vector<Place>& spots) {
-  constexpr std::size_t max_spots = 1200;  // more are the grain of the picture
+  constexpr std::size_t max_spots = 1200;  // more are image noise
   constexpr double max_uneven = 0.15;
   if (spots.size() < static_cast<std::size_t>(min_lattice_dots) || spots.size() > max_spots) {
     return {};
@@ -287,9 +288,9 @@ inline Places lattice_of(const std::vector<Place>& spots) {
   return is_grid ? dots : Places();
 }
 
-/// Rows x cols of a grid, or of the places around it, that hold the most dots; of several such the
-/// one whose middle lies nearest to `middle_px`, or, where that is NaN, the first: a grid with
-/// fewer rows than there are lies at their beginning.
+/// The window of rows x cols that holds the most dots; it may extend beyond the grid. Of several
+/// such windows, the one with the middle nearest to `middle_px` is taken or, if that is NaN, the
+/// one nearest to the first row and column.
 inline Places best_window(const Places& dots, Index rows, Index cols, const Place& middle_px) {
   const Places flat = flattened(dots);  // of at least two rows and columns
   const Place down = flat(1, 0) - flat(0, 0);

@@ -1,10 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// Which spot is which printed dot, given about where the dots were. The membrane moves smoothly, so
-// labels grow from dots that are sure to their neighbours: where a dot is looked for follows from
-// how the dots beside it have moved. Moves of several pitches come out right as long as neighbours
-// move nearly alike.
+// Assigns spots to printed dots from their approximate earlier positions. The membrane moves
+// smoothly, so labels grow from reliable dots to their neighbours: the motion of labelled dots
+// predicts the position of the dots beside them. Motions of several pitches are recognised as long
+// as neighbours move nearly alike.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -16,7 +16,7 @@ namespace fingerpad {
 inline namespace v0 {
 namespace detail {
 
-/// Number of the spot that is each printed dot; -1: none.
+/// Index of the spot of each printed dot; -1: none.
 using Labels = Table<int>;
 
 inline int count_labels(const Labels& labels) {
@@ -24,7 +24,7 @@ inline int count_labels(const Labels& labels) {
                                         [](int label) { return label >= 0; }));
 }
 
-/// The spots of `labels` as dots.
+/// Positions of the labelled dots; NaN without a label.
 inline Places places_of(const Labels& labels, const SpotMap& spots) {
   Places dots(labels.rows(), labels.cols(), no_place());
   for (Index i = 0; i < labels.rows(); ++i) {
@@ -35,26 +35,27 @@ inline Places places_of(const Labels& labels, const SpotMap& spots) {
   return dots;
 }
 
-/// Labels the spots of one frame from a base: where the dots were (NaN: nobody knows). Base,
-/// spacings of the base and spots must outlive it.
+/// Labels the spots of one frame. The base holds the earlier positions of the dots (NaN: unknown).
+/// Base, its spacings and the spots must outlive the matcher.
 class DotMatcher {
  public:
-  /// `max_strange`: in parts of the spacing; a dot that is farther from where its neighbours put
-  /// it, and much farther than is usual in the frame, is a shadow or half a dot.
+  /// `max_strange`: largest deviation from the position predicted by the neighbours, as a fraction
+  /// of the spacing. A spot with a larger deviation, and one much larger than usual in the frame,
+  /// is a shadow or half a dot.
   DotMatcher(const Places& base,
              const Table<double>& spacing_px,
              const SpotMap& spots,
              double max_strange)
       : base_(base), spacing_px_(spacing_px), spots_(spots), max_strange_(max_strange) {}
 
-  /// Labels of the dots that `is_seed(i, j)` names, each taken to have moved by about
-  /// `move(i, j)`, and of all dots that are reached from them.
+  /// Labels the dots for which `is_seed(i, j)` holds, each assumed to have moved by about
+  /// `move(i, j)`, and all dots reached from them.
   template <class IsSeed, class Move>
   Labels match(const IsSeed& is_seed, const Move& move) const {
     constexpr int max_rounds = 5;
     Labels labels = seeded(is_seed, move);
     drop_misfits(labels);
-    // What was dropped may grow again, and better, from what stayed.
+    // Dropped labels may grow again, and better, from the remaining ones.
     for (int round = 0; round < max_rounds && grow(labels); ++round) {
       drop_misfits(labels);
     }
@@ -62,7 +63,7 @@ class DotMatcher {
     return labels;
   }
 
-  /// Number of labels, less what the irregularity and the amount of their moves cost.
+  /// Number of labels, less penalties for irregular and for large moves.
   double score(const Labels& labels) const {
     constexpr double cost_of_misfit = 0.5;
     constexpr double cost_of_move = 0.003;
@@ -77,9 +78,9 @@ class DotMatcher {
   }
 
  private:
-  // In parts of the spacing between dots:
-  static constexpr double growth_gate = 0.35;    // of a spot from where a dot is looked for
-  static constexpr double largest_misfit = 0.3;  // of a dot from where its neighbours put it
+  // As fractions of the spacing between dots:
+  static constexpr double growth_gate = 0.35;    // spot to predicted position, while growing
+  static constexpr double largest_misfit = 0.3;  // labelled dot to position predicted by neighbours
 
   template <class Visit>
   static void for_each_label(const Labels& labels, const Visit& visit) {
@@ -96,7 +97,7 @@ class DotMatcher {
     return labels(row, col) >= 0 ? spots_[labels(row, col)] - base_(row, col) : no_place();
   }
 
-  /// Where a dot should be that moves as its neighbours.
+  /// Position of a dot that moves like its neighbours.
   Place expected(const Labels& labels, Index row, Index col) const {
     return base_(row, col) + by_neighbours(labels.rows(), labels.cols(), row, col,
                                            spacing_px_(row, col),
@@ -109,7 +110,7 @@ class DotMatcher {
                             : std::numeric_limits<double>::infinity();
   }
 
-  /// Seeds whose spot is in reach; those that claim the same spot all lose it.
+  /// Labels of the seeds that have a spot within reach. Seeds that claim the same spot get none.
   template <class IsSeed, class Move>
   Labels seeded(const IsSeed& is_seed, const Move& move) const {
     Labels labels(base_.rows(), base_.cols(), -1);
@@ -131,8 +132,8 @@ class DotMatcher {
     return labels;
   }
 
-  /// Dots with many labelled neighbours come first: where they are is known best. False where
-  /// nothing grew.
+  /// Adds labels, first for dots with many labelled neighbours: these are predicted best. False if
+  /// nothing was added.
   bool grow(Labels& labels) const {
     constexpr int most = 5;
     constexpr int least = 2;
@@ -201,7 +202,7 @@ class DotMatcher {
     return misfits;
   }
 
-  /// Takes labels away until every dot lies where its neighbours put it, the worst first.
+  /// Removes labels, the worst first, until no misfit exceeds `largest_misfit`.
   void drop_misfits(Labels& labels) const {
     constexpr Index reach = Neighbours::reach;
     Table<double> misfits = misfits_of(labels);
@@ -224,9 +225,10 @@ class DotMatcher {
     }
   }
 
-  /// Takes away what fits much worse than most: half a dot beside a shadow, or the shadow itself.
+  /// Removes labels that fit much worse than most: half a dot beside a shadow, or the shadow
+  /// itself.
   void drop_strangers(Labels& labels) const {
-    constexpr double strange = 8;  // times the median is much more than usual
+    constexpr double strange = 8;  // times the median misfit
     const Table<double> misfits = misfits_of(labels);
     std::vector<double> sorted;
     for_each_label(labels, [&](Index i, Index j) { sorted.push_back(misfits(i, j)); });

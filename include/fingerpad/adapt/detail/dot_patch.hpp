@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// The surroundings of one spot: by which share its pixels are darker than the ground.
+// The pixels around one spot, and by which share each is darker than the background.
 #include <cmath>
 #include <opencv2/core.hpp>
 #include <vector>
@@ -14,8 +14,8 @@ namespace detail {
 
 class DotPatch {
  public:
-  /// The pixels of a frame within `half_px` of a place, along rows and columns; their darkness is
-  /// yet to be written.
+  /// Selects the pixels of a frame within `half_px` of a place, along rows and columns. The caller
+  /// then writes their darkness.
   void move_to(const Place& place, double half_px, cv::Size frame) {
     box_ = square(place, half_px) & cv::Rect({0, 0}, frame);
     dark_.resize(static_cast<std::size_t>(box_.area()));
@@ -23,7 +23,8 @@ class DotPatch {
   const cv::Rect& box() const { return box_; }
   float* row(int i) { return dark_.data() + (i - box_.y) * box_.width; }
 
-  /// visit(x, y, darkness) for the pixels within `radius_px` of a place.
+  /// Calls visit(x, y, darkness) for the pixels within `radius_px` of a place; x and y are relative
+  /// to it.
   template <class Visit>
   void for_each(const Place& place, double radius_px, const Visit& visit) const {
     const cv::Rect box = square(place, radius_px) & box_;
@@ -39,8 +40,8 @@ class DotPatch {
     }
   }
 
-  /// Mean over the pixels farther than `inner_px` and not farther than `outer_px`; NaN where there
-  /// are none.
+  /// Mean darkness over the pixels farther than `inner_px` and not farther than `outer_px`; NaN if
+  /// there are none.
   double mean_within(const Place& place, double inner_px, double outer_px) const {
     double sum = 0;
     int count = 0;
@@ -53,8 +54,8 @@ class DotPatch {
     return count > 0 ? sum / count : not_a_number<double>();
   }
 
-  /// Center of gravity of the darkness within a disc that follows it; NaN where there is none. The
-  /// ground has darkness 0 on average and so does not pull.
+  /// Center of gravity of the darkness within a disc that follows it; NaN if there is none. The
+  /// background does not bias it, as its mean darkness is 0.
   Place center_of_gravity(Place center, double reach_px) const {
     constexpr int max_rounds = 6;
     constexpr double small_px = 0.01;

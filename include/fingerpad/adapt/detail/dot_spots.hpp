@@ -1,11 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// Spots of about the size of a printed dot in a frame, dark or bright. What counts is by which
-// share a spot is darker than the ground around it, so neither the depth nor the fall of the light
-// matters; bright spots are looked for in the negative. Spots are looked for in a frame that is
-// made smaller, where its pixels are still finer than a dot; their centers come from the frame's
-// own pixels.
+// Finds spots of about the size of a printed dot in a frame, dark or bright. The criterion is by
+// which share a spot is darker than the background around it, so neither depth nor uneven
+// illumination matters. Bright spots are found in the negative. Spots are detected in a reduced
+// frame, whose pixels are still finer than a dot; their centers come from the full frame.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -21,29 +20,29 @@ namespace fingerpad {
 inline namespace v0 {
 namespace detail {
 
-/// How spots look.
+/// Appearance of spots.
 struct SpotLook {
   double radius_px = 0;
   double pitch_px = 0;                              ///< between neighbours
-  bool bright = false;                              ///< brighter than what is around them
+  bool bright = false;                              ///< brighter than the background
   double min_contrast = 0.08;                       ///< share of the light around
   std::array<double, 3> color_weights = {1, 1, 1};  ///< of blue, green and red
 };
 
 struct TypicalSpot {
-  double radius_px = 0;  ///< of a disc as large as what is at least half as dark as the middle
-  double contrast = 0;   ///< of the middle: 0 as light as the ground, 1 black
+  double radius_px = 0;  ///< of a disc with the area that is more than half as dark as the middle
+  double contrast = 0;   ///< of the middle: 0 as light as the background, 1 black
 };
 
-/// Whether a frame can be looked at: 8 or 16 bit, one, three or four channels.
+/// Whether a frame has a supported type: 8 or 16 bit, one, three or four channels.
 inline bool is_picture(const cv::Mat& frame) {
   const int channels = frame.channels();
   return !frame.empty() && (frame.depth() == CV_8U || frame.depth() == CV_16U) &&
          (channels == 1 || channels == 3 || channels == 4);
 }
 
-/// Pictures that a frame is turned into on the way. They are kept for the next frame: fresh memory
-/// costs as much time as all that is done in it. A copy is empty, as OpenCV's would be shared.
+/// Intermediate images. They are kept for the next frame, because allocating them costs as much
+/// time as filling them. A copy is empty, because copies of a cv::Mat share their data.
 class SpotWorkspace {
  public:
   SpotWorkspace() = default;
@@ -52,14 +51,14 @@ class SpotWorkspace {
 
  private:
   friend class SpotFinder;
-  // Of the size of the frame made smaller:
+  // Size of the reduced frame, except eight_bit (full size):
   cv::Mat eight_bit, small;
   std::array<cv::Mat, 4> planes;
   cv::Mat_<float> light, part, around;
-  cv::Mat_<std::uint8_t> dull, shown;  // 255 where there is no reflection, where light counts
-  cv::Mat_<float> half;                // of half that size
-  cv::Mat_<float> ground;              // light around, made smaller once more
-  double brightest = 0;                // light above is a reflection
+  cv::Mat_<std::uint8_t> dull, shown;  // 255: not a reflection; 255: light counts
+  cv::Mat_<float> half;                // half that size
+  cv::Mat_<float> ground;              // light of the background, coarse cells
+  double brightest = 0;                // more light is a reflection
 };
 
 class SpotFinder {
@@ -73,7 +72,7 @@ class SpotFinder {
         pad_(size / fine_ / coarse_, 1.0F),
         around_(two_boxes(0.75 * look.pitch_px / (fine_ * coarse_))) {
     if (!where.empty()) {
-      // Cells of the border hold a part of the ring around the pad.
+      // Leave out cells at the border: they contain part of the ring around the pad.
       cv::Mat inside = where > 0;
       cv::erode(inside, inside, cv::Mat(), {-1, -1}, 1, cv::BORDER_CONSTANT, 0);
       where_ = inside;
@@ -83,8 +82,8 @@ class SpotFinder {
     }
   }
 
-  /// Centers of the spots of a frame of the size given, in any order; none where there are more
-  /// than `max_spots`, which is the grain of the picture.
+  /// Centers of the spots of a frame of the given size, in any order; none if there are more than
+  /// `max_spots`, which are image noise.
   std::vector<Place> find(const cv::Mat& frame,
                           SpotWorkspace& seen,
                           std::size_t max_spots = 4000) const {
@@ -111,7 +110,7 @@ class SpotFinder {
     return found;
   }
 
-  /// The medians of some spots; all 0 where there are none.
+  /// Median radius and contrast of some spots; 0 without spots.
   TypicalSpot typical(const cv::Mat& frame, const std::vector<Place>& spots) const {
     if (spots.empty()) {
       return {};
@@ -133,10 +132,10 @@ class SpotFinder {
   }
 
  private:
-  static constexpr double min_light = 2;  // grey levels; darker places show nothing
-  static constexpr double glare = 2;      // light above this many times the median is a reflection
+  static constexpr double min_light = 2;  // grey levels; darker areas are ignored
+  static constexpr double glare = 2;      // more light than this times the median is a reflection
 
-  /// What two means over `width` cells, one after the other, weigh the cells along a line by.
+  /// Weights along a line of two successive box means over about `width` cells.
   static cv::Mat_<float> two_boxes(double width) {
     const int half = (std::max)(static_cast<int>(std::lround(0.5 * (width - 1))), 1);
     const int side = 2 * half + 1;
@@ -148,13 +147,13 @@ class SpotFinder {
     return weights;
   }
 
-  /// Mean over squares of `factor` pixels; what is left over at the right and below is dropped.
+  /// Mean over squares of `factor` pixels. Incomplete squares at the right and bottom are dropped.
   static void shrink(const cv::Mat& image, int factor, cv::Mat& small) {
     const cv::Size size = image.size() / factor;
     cv::resize(image({0, 0, size.width * factor, size.height * factor}), small, size, 0, 0,
                cv::INTER_AREA);
   }
-  /// The same in twos where that can be, which OpenCV does in a third of the time.
+  /// The same in steps of two where possible, for which OpenCV takes a third of the time.
   static cv::Mat shrunk(const cv::Mat& image, int factor) {
     cv::Mat small = image({0, 0, image.cols / factor * factor, image.rows / factor * factor});
     for (int step = 2; factor > 1; factor /= step) {
@@ -172,7 +171,7 @@ class SpotFinder {
     return (frame.depth() == CV_16U ? 1.0 / 256 : 1.0) / sum;
   }
 
-  /// Light in grey levels, bright spots made dark.
+  /// Light in grey levels, inverted for bright spots.
   void light_of(const cv::Mat& frame, SpotWorkspace& seen) const {
     const double unit = unit_of(frame) * (look_.bright ? -1 : 1);
     const double offset = look_.bright ? 256 : 0;
@@ -191,8 +190,8 @@ class SpotFinder {
   void look_at(const cv::Mat& frame, SpotWorkspace& seen) const {
     const cv::Mat* all = &frame;
     if (fine_ > 1 && frame.depth() == CV_16U) {
-      frame.convertTo(seen.eight_bit, CV_8U,
-                      1.0 / 256);  // spots show in 8 bit; centers take all 16
+      // detection needs only 8 bit; centers use all 16
+      frame.convertTo(seen.eight_bit, CV_8U, 1.0 / 256);
       all = &seen.eight_bit;
     }
     if (fine_ > 1) {
@@ -207,7 +206,7 @@ class SpotFinder {
   }
 
   double median_light(const cv::Mat_<float>& light) const {
-    const int step = 1 + light.rows / 50;  // some thousand cells tell it as well as all
+    const int step = 1 + light.rows / 50;  // some thousand cells suffice
     std::vector<float> inside;
     for (int i = 0; i < light.rows; i += step) {
       for (int j = 0; j < light.cols; j += step) {
@@ -219,8 +218,8 @@ class SpotFinder {
     return inside.empty() ? 0.0 : median_of(inside.begin(), inside.end());
   }
 
-  /// The ground's light: the mean of what is left around when what is darker than its surroundings
-  /// is taken away, first cell by cell of `light`, then pixel by pixel.
+  /// Light of the background: the mean around each cell without everything darker than its
+  /// surroundings. Dark parts are excluded first by cell of `light`, then by pixel.
   void find_ground(SpotWorkspace& seen, const cv::Mat_<float>& light) const {
     const double lit = 1 - look_.min_contrast;
     cv::Mat weight = pad_.clone();
@@ -236,11 +235,11 @@ class SpotFinder {
     seen.shown.convertTo(seen.part, CV_32F, 1.0 / 255);
     weight = shrunk(seen.part, coarse_).mul(pad_);
     cv::multiply(seen.light, seen.part, seen.part);
-    constexpr double no_light = 1e-3;  // to divide by where nothing is known
+    constexpr double no_light = 1e-3;  // avoids a division by 0 where nothing is known
     cv::max(mean_around(shrunk(seen.part, coarse_).mul(pad_), weight), no_light, seen.ground);
   }
 
-  /// Weighted mean around each cell, of sums and weights; 0 where there is no weight.
+  /// Weighted mean around each cell, from weighted values and weights; 0 where there is no weight.
   cv::Mat_<float> mean_around(const cv::Mat& sum, const cv::Mat& weight) const {
     const auto blur_over = [&](const cv::Mat& from, cv::Mat& to) {
       cv::sepFilter2D(from, to, CV_32F, around_, around_, {-1, -1}, 0, cv::BORDER_CONSTANT);
@@ -253,16 +252,16 @@ class SpotFinder {
     return mean;
   }
 
-  /// Out to two and a half standard deviations or more.
+  /// Gaussian blur, cut off at no less than 2.5 standard deviations.
   static void blur(cv::Mat& image, double sigma) {
     const int side = 2 * static_cast<int>(std::ceil(2.5 * sigma)) + 1;
     cv::GaussianBlur(image, image, {side, side}, sigma);
   }
 
-  /// Where the difference of two blurs, which answers to spots of about the dots' size and to no
-  /// slope, is the largest around.
+  /// Local maxima of the difference of two blurs. It responds to spots of about the dots' size and
+  /// not to a gradient.
   std::vector<Place> peaks(SpotWorkspace& seen) const {
-    cv::Mat_<float>& dark = seen.light;  // which is not looked at again
+    cv::Mat_<float>& dark = seen.light;  // the light is not needed afterwards
     cv::resize(seen.ground, seen.around, dark.size(), 0, 0, cv::INTER_LINEAR);
     cv::compare(seen.around, min_light, seen.shown, cv::CMP_GT);
     cv::bitwise_and(seen.shown, seen.dull, seen.shown);
@@ -275,7 +274,7 @@ class SpotFinder {
     cv::multiply(dark, seen.part, dark);
     const double radius = look_.radius_px / fine_;
     blur(dark, 0.5 * radius);
-    // What is blurred more shows as much in half the pixels.
+    // The wider blur loses nothing at half the resolution.
     cv::resize(dark, seen.half, dark.size() / 2, 0, 0, cv::INTER_LINEAR);
     blur(seen.half, 0.5 * std::sqrt(1.2 * 1.2 - 0.5 * 0.5) * radius);
     cv::resize(seen.half, seen.around, dark.size(), 0, 0, cv::INTER_LINEAR);
@@ -292,7 +291,7 @@ class SpotFinder {
       const float* here = response[i];
       for (int j = 0; j < response.cols; ++j) {
         if (here[j] > least && is_peak(response, i, j, reach)) {
-          // Pixels of the same height on both sides of a middle are one spot.
+          // Neighbouring peak pixels of equal height are one spot.
           const Place peak{fine_ * (j + 0.5) - 0.5, fine_ * (i + 0.5) - 0.5};
           const auto above = std::find_if(found.rbegin(), found.rend(), [&](const Place& other) {
             return other.y <= peak.y - near_px || is_beside(other, peak);
@@ -311,7 +310,7 @@ class SpotFinder {
     const float here = response(row, col);
     const int left = (std::max)(col - reach, 0);
     const int right = (std::min)(col + reach, response.cols - 1);
-    // The nearest rows first: most pixels have a higher one beside them.
+    // Nearest rows first: most pixels have a higher one beside them.
     for (int away = 0; away <= reach; ++away) {
       for (const int i : {row - away, row + away}) {
         if (i >= 0 && i < response.rows &&
@@ -373,7 +372,7 @@ class SpotFinder {
     }
   }
 
-  /// The ground's light beside a place.
+  /// Linear approximation of the background's light around a place.
   struct Plane {
     float value = 0, right = 0, down = 0;
     float x = 0, y = 0;
@@ -405,14 +404,14 @@ class SpotFinder {
             static_cast<float>(place.y)};
   }
 
-  /// Whether all of a spot lies within the frame.
+  /// Whether the whole spot lies within the frame.
   bool is_whole(const Place& center, cv::Size size) const {
     const double r = look_.radius_px;
     return center.x >= r && center.x <= size.width - 1 - r && center.y >= r &&
            center.y <= size.height - 1 - r;
   }
 
-  /// Dark inside and bright around, which the border of a shadow is not.
+  /// Whether a spot is dark inside and bright all around, unlike the border of a shadow.
   bool looks_like_a_dot(const DotPatch& patch, const Place& center) const {
     const double r = look_.radius_px;
     const double core = patch.mean_within(center, 0, r / 2);
@@ -423,11 +422,11 @@ class SpotFinder {
 
   SpotLook look_;
   cv::Mat_<std::uint8_t> where_;   ///< 255 where spots may be; empty: anywhere
-  int fine_;                       ///< pixels a side of what spots are looked for in
-  int coarse_;                     ///< of those a side of what the ground is told by
+  int fine_;                       ///< frame pixels per side of a pixel of the reduced frame
+  int coarse_;                     ///< reduced pixels per side of a background cell
   cv::Mat_<float> pad_;            ///< coarse: 1 where spots may be
-  cv::Mat_<float> around_;         ///< coarse: weights of the cells around, along rows and columns
-  cv::Mat_<std::uint8_t> inside_;  ///< fine: 255 where they may be; empty: anywhere
+  cv::Mat_<float> around_;         ///< coarse: blur weights along rows and columns
+  cv::Mat_<std::uint8_t> inside_;  ///< fine: 255 where spots may be; empty: anywhere
 };
 
 }  // namespace detail

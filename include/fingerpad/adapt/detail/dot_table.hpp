@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// What the parts of the dot finder share: a grid that owns its cells, the spots of a frame by
-// place, and what the dots around one say of it.
+// Shared parts of the dot finder: a grid that owns its cells, a nearest-neighbour search among the
+// spots of a frame, and interpolation of a dot from its neighbours.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -52,7 +52,8 @@ class Table {
 };
 
 using Places = Table<Place>;
-/// Median of values that are reordered; the upper one of an even number. At least one value.
+
+/// Median of at least one value; the upper one of an even number. Reorders the values.
 template <class Iterator>
 double median_of(Iterator first, Iterator last) {
   const Iterator middle = first + (last - first) / 2;
@@ -60,8 +61,8 @@ double median_of(Iterator first, Iterator last) {
   return static_cast<double>(*middle);
 }
 
-/// The spots of a frame, to ask for the nearest one to a place: sorted by rows. They must outlive
-/// the map. A question takes O(log spots + spots in a strip of 2 reach_px) time.
+/// Nearest-neighbour search among the spots of a frame, sorted by y. The spots must outlive the
+/// map. A query takes O(log spots + spots in a strip of height 2 reach_px) time.
 class SpotMap {
  public:
   explicit SpotMap(const std::vector<Place>& spots) : spots_(&spots), order_(spots.size()) {
@@ -98,7 +99,7 @@ class SpotMap {
   std::vector<int> order_;
 };
 
-/// Values of the dots around one: at most 2 away in the grid.
+/// Values of the dots around a dot, at most 2 rows and columns away.
 class Neighbours {
  public:
   static constexpr Index reach = 2;
@@ -109,15 +110,15 @@ class Neighbours {
     values_[count_++] = value;
   }
 
-  /// Value at the middle of the plane through the values, near ones counting more and those that
-  /// are off the median by `scale` or more counting less; NaN where there are fewer than three. The
-  /// slopes are held back a little, so that neighbours in one line do no harm.
+  /// Value at the middle of a plane fitted to the values; NaN if there are fewer than three. Near
+  /// values weigh more, and values off the median by `scale` or more weigh less. A small ridge term
+  /// on the slopes keeps the fit stable for neighbours in one line.
   Place at_middle(double scale) const {
     if (count_ < 3) {
       return no_place();
     }
     constexpr double hold = 0.05;
-    // Moves that are all alike need no median: their weights would change by less than 1e-4.
+    // Similar values need no median: the weights would change by less than 1e-4.
     const Place middle = spread() < 0.1 * scale ? values_[0] : median();
     double s = 0, r = 0, c = 0, rr = hold, rc = 0, cc = hold;
     Place b{0, 0}, br{0, 0}, bc{0, 0};
@@ -172,7 +173,7 @@ class Neighbours {
   std::array<Place, most> values_{};
 };
 
-/// What the dots around (row, col) say of it; `value_at(i, j)` is NaN where nothing is known.
+/// Value at (row, col) interpolated from the dots around it; `value_at(i, j)` is NaN if unknown.
 template <class ValueAt>
 Place by_neighbours(
     Index rows, Index cols, Index row, Index col, double scale, const ValueAt& value_at) {
@@ -191,7 +192,7 @@ Place by_neighbours(
   return around.at_middle(scale);
 }
 
-/// Distance of each dot to the nearest of its four neighbours; their mean where it has none.
+/// Distance of each dot to the nearest of its four neighbours; the mean of all where it has none.
 inline Table<double> spacings_px(const Places& dots) {
   Table<double> spacing(dots.rows(), dots.cols(), 0.0);
   double sum = 0;
@@ -215,8 +216,8 @@ inline Table<double> spacings_px(const Places& dots) {
   return spacing;
 }
 
-/// A grid whose steps along rows and columns are everywhere the mean of those in `dots`, which
-/// holds at least one of each.
+/// The regular grid with the mean steps along rows and columns of `dots`, which must hold at least
+/// one step of each.
 inline Places flattened(const Places& dots) {
   Place right{0, 0}, down{0, 0}, first{0, 0};
   double rights = 0, downs = 0, all = 0;
@@ -251,8 +252,8 @@ inline Places flattened(const Places& dots) {
   return flat;
 }
 
-/// Every dot of the grid: those that are missing continue the bend of their neighbours, outward
-/// from where dots are known.
+/// Fills in missing dots, outward from the known ones. Their deviation from the regular grid
+/// continues that of their neighbours.
 inline Places extrapolated(Places dots) {
   const Places flat = flattened(dots);
   for (bool grown = true; grown;) {

@@ -3,8 +3,8 @@
 #pragma once
 // Least squares on the depth equation F(l_i) = 0 by variable projection. For fixed c_red and
 // delta = c_green - c_red it is linear in kappa and in the coefficients of g, which a QR
-// factorisation eliminates; Levenberg and Marquardt's method moves the two that are left, as
-// (ln c_red, delta), so that c_red > 0, with delta held at >= 0. Nothing forms normal equations.
+// factorisation eliminates. The Levenberg-Marquardt method finds the other two, as (ln c_red,
+// delta), so that c_red > 0, with delta held at >= 0. No normal equations are formed.
 #include <Eigen/Core>
 #include <cmath>
 #include <utility>
@@ -42,7 +42,7 @@ S scattered_light_per_absorption(const S& depth_mm, const S& c_per_mm, const Pen
   return S(depth_mm * (lower - t * higher));
 }
 
-/// What the equations need of one sample; `v` is the variable of g's polynomial.
+/// Data of one equation; `v` is the variable of g's polynomial.
 template <scalar S>
 struct AbsorptionEquation {
   Pencil<S> pencil;
@@ -52,7 +52,7 @@ struct AbsorptionEquation {
   S weight;
 };
 
-/// c_red and delta, and the linear parameters that belong to them: kappa, g_0, g_1, ...
+/// c_red and delta, with the best linear parameters for them: kappa, g_0, g_1, ...
 template <scalar S, int Linear>
 struct AbsorptionPoint {
   static constexpr int linear_size = Linear;
@@ -88,8 +88,8 @@ class AbsorptionProblem {
     return sum;
   }
 
-  /// Divides each equation by the noise of F there, sqrt(e^{2 delta k l} + kappa^2) times that of
-  /// a colour: constant to a few per cent over the depths of a pad.
+  /// Divides each equation by the noise of F there, sqrt(e^{2 delta k l} + kappa^2) times the noise
+  /// of a colour. It is constant to a few per cent over the depths of a pad.
   void weigh(const Point& p) {
     using std::exp;
     using std::sqrt;
@@ -101,9 +101,9 @@ class AbsorptionProblem {
     }
   }
 
-  /// Eliminates the linear parameters. Where asked for, also gives the residual and its Jacobian
-  /// in (ln c_red, delta), both in the space that the linear parameters cannot reach; that Jacobian
-  /// leaves out how this space rotates (Kaufman), which changes steps but not the minimum.
+  /// Eliminates the linear parameters. Optionally also gives the residual and its Jacobian in (ln
+  /// c_red, delta), both projected on the complement of the linear columns. The Jacobian ignores
+  /// that this space rotates (Kaufman), which affects the steps but not the minimum.
   Point project(const S& c_red, const S& delta, Vector* residual, Matrix* jacobian) const {
     Matrix a(size(), Linear), rest(size(), 3);
     for (Index i = 0; i < size(); ++i) {
@@ -127,7 +127,7 @@ class AbsorptionProblem {
     return p;
   }
 
-  /// Sum of squares that the linear parameters leave where no depth counts: delta = 0 and W = 1.
+  /// Residual sum of squares of the linear parameters alone, without depth: delta = 0 and W = 1.
   S left_without_depth() const {
     Matrix a(size(), Linear), green(size(), 1);
     for (Index i = 0; i < size(); ++i) {
@@ -189,13 +189,13 @@ class AbsorptionProblem {
   Vector row_weight_;
 };
 
-/// Light is neither negative nor scattered with a negative sign. There are minima where it is.
+/// Whether kappa and g_0 are positive. There are unphysical minima where they are not.
 template <class Point>
 bool is_physical(const Point& p) {
   return is_finite(p.cost) && p.linear(0) > 0 && p.linear(1) > 0;
 }
 
-/// Levenberg and Marquardt from p downhill, to where roundoff stops it; true if it did.
+/// Levenberg-Marquardt descent from p; true if it converged to roundoff.
 template <class Problem>
 bool descend(const Problem& problem, typename Problem::Point& p, int max_iterations) {
   using std::exp;
@@ -242,17 +242,17 @@ bool descend(const Problem& problem, typename Problem::Point& p, int max_iterati
       converged = !(moved > tiny) || !gained;
     } else {
       damping = damping < tiny ? tiny : S(damping * S(10));
-      // Uphill however short the step: nothing is left to gain.
+      // Even the shortest step leads uphill: converged.
       converged = !(moved > tiny) || damping > S(1) / tiny;
     }
   }
   return converged;
 }
 
-/// The lowest minimum below a coarse grid of every fluid that a pad could hold: for each delta the
-/// best c_red, and from each of these downhill, because there can be several minima. Of minima that
-/// only roundoff tells apart (four samples can have two exact solutions) that of the smallest
-/// delta. Needs no first guess. The cost is not a number if no fluid at all is physical.
+/// The lowest minimum found from a coarse grid over all fluids that a pad could hold. The descent
+/// starts at the best c_red for each delta, because there can be several minima. Of minima equal up
+/// to roundoff (four samples can have two exact solutions), that of the smallest delta is taken.
+/// Needs no initial guess. The cost is NaN if no fluid is physical.
 template <class Problem>
 auto search_absorption(const Problem& problem, int max_iterations) {
   using std::exp;

@@ -1,7 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// Which samples of a force a fit can use, and mistakes that they show. See calibrate/force.hpp.
+// Selects the force samples that a fit can use, and detects mistakes in them. See
+// calibrate/force.hpp.
 #include <cmath>
 #include <cstddef>
 #include <span>
@@ -17,7 +18,7 @@ namespace fingerpad {
 inline namespace v0 {
 namespace detail {
 
-/// The samples that a fit can use, and which they were.
+/// The samples that a fit can use, and their indices among the given ones.
 template <class Sample>
 struct UsableSamples {
   std::vector<Sample> samples;
@@ -42,7 +43,7 @@ bool has_finite_motion(const Sample& s) {
   return is_finite(s.displacement_mm) && is_finite(s.rotation_rad);
 }
 
-/// What a fit needs of the samples' units: which of them it looks at.
+/// Quantities whose units are checked.
 struct UnitsLookedAt {
   bool normal = false;
   bool tangential = false;
@@ -51,10 +52,10 @@ struct UnitsLookedAt {
   bool moment = false;
 };
 
-/// A unit that cannot be the one that is asked for. The bounds hold for every fingertip: a contact
-/// of 0.05 mm or 0.05 mm^2 is not seen, none is larger than 10000 mm^2 or displaced by 100 mm; a
-/// calibration goes beyond 0.05 N pressed and 0.01 N along the pad, and 300 N are more than 0.2 MPa
-/// press through a pad of 40 mm; a moment has a lever between 0.05 and 100 mm.
+/// Detects a quantity in a wrong unit. The bounds hold for every fingertip. A contact of 0.05 mm or
+/// 0.05 mm^2 is not visible, and none is larger than 10000 mm^2 or displaced by 100 mm. A
+/// calibration exceeds 0.05 N of normal and 0.01 N of tangential force, and 300 N are more than the
+/// force of 0.2 MPa on a pad of 40 mm. A moment has a lever between 0.05 and 100 mm.
 template <class Sample>
 FitStatus unit_mistake(const std::vector<Sample>& samples, const UnitsLookedAt& looked_at) {
   double measure = 0, displacement = 0, rotation = 0, force = 0, aside = 0, moment = 0;
@@ -89,8 +90,8 @@ FitStatus unit_mistake(const std::vector<Sample>& samples, const UnitsLookedAt& 
   return looked_at.moment && !lever ? FitStatus::moment_not_in_n_mm : FitStatus::ok;
 }
 
-/// An outlier is a sample more than ten standard deviations off that makes most of what is left. In
-/// this order: what makes the parameters wrong before what makes them inexact.
+/// Status of a fit. Causes of wrong parameters come before causes of inexact ones. An outlier is a
+/// sample more than ten standard deviations off that makes up most of the residual.
 template <scalar S>
 FitStatus status_of(const ModelFit<S>& fit,
                     FitStatus units,

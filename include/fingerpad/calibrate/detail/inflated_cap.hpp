@@ -11,11 +11,11 @@ namespace fingerpad {
 inline namespace v0 {
 namespace detail::membrane {
 
-/// Mooney-Rivlin membrane, stress-free a cap of a sphere. With S the arc from the apex, rho and r
-/// the radii without and with stress, lambda_2 = r / rho, and the tensions per mu t
+/// Mooney-Rivlin membrane that is a spherical cap without stress. S is the arc from the apex, rho
+/// and r are the radii without and with stress, and lambda_2 = r / rho. The tensions per mu t are
 ///   T_1 = (lambda_1 / lambda_2 - (lambda_1 lambda_2)^-3) (1 - m + m lambda_2^2),
-/// T_2 with 1 and 2 exchanged, what lies above r balances: T_1 = q r / (2 sin(phi)), q = p / (mu
-/// t); and r' = lambda_1 cos(phi), z' = -lambda_1 sin(phi),
+/// and T_2 with 1 and 2 exchanged. The balance of the part inside r gives T_1 = q r / (2 sin(phi))
+/// with q = p / (mu t). The profile follows from r' = lambda_1 cos(phi), z' = -lambda_1 sin(phi),
 ///   phi' = lambda_1 (q - T_2 sin(phi) / r) / T_1.
 template <scalar S>
 class InflatedCap {
@@ -29,8 +29,8 @@ class InflatedCap {
     arc_mm_ = S(2) * bend_mm_ * S(atan(S(stress_free_height_mm / base_radius_mm)));
   }
 
-  /// Height of the apex, mm, under p / (mu t) = `load_per_mm` > 0; NaN where there is no balance
-  /// with an apex stretched by less than 2.
+  /// Height of the apex, mm, under p / (mu t) = `load_per_mm` > 0. NaN if there is no equilibrium
+  /// with a stretch of the apex below 2.
   S apex_mm(const S& load_per_mm) const {
     double low = 1.001, high = 2;
     const auto misses = [&](double stretch) {
@@ -43,7 +43,7 @@ class InflatedCap {
       const double middle = (low + high) / 2;
       (misses(middle) < 0 ? low : high) = middle;
     }
-    // the last steps in S, so that derivatives are right, too
+    // the last steps are in S, so that derivatives are right, too
     const double step = 1e-4;
     const S slope = S((misses(low + step) - misses(low - step)) / (2 * step));
     S stretch = S(low);
@@ -70,8 +70,8 @@ class InflatedCap {
     return {S(x * S(cos(at.phi))), S(-x * sine), S(x * (q - t2 * sine / at.r) / t1)};
   }
 
-  /// lambda_1 of a tension: lambda - k lambda^-3 = c rises and is concave, so Newton's steps come
-  /// from below.
+  /// lambda_1 for a tension, from lambda - k lambda^-3 = c by Newton's method. The left side rises
+  /// and is concave, so the iteration converges from below.
   S stretch_of(const S& t1, const S& hoop) const {
     const S k = S(1) / (hoop * hoop);
     const S c = t1 * hoop / (S(1) - m_ + m_ * hoop * hoop);
@@ -83,7 +83,8 @@ class InflatedCap {
     return x;
   }
 
-  /// At the rim, by Runge and Kutta from the apex at (0, 0); r = 0 where the cap closes before.
+  /// State at the rim, by the Runge-Kutta method from the apex at (0, 0). r = 0 if the cap closes
+  /// before the rim.
   Place profile(const S& apex_stretch, const S& q) const {
     const S l = apex_stretch, l_sq = l * l;
     const S tension = (S(1) - S(1) / (l_sq * l_sq * l_sq)) * (S(1) - m_ + m_ * l_sq);

@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// Least squares by Gauss and Newton's method, each step by QR of the scaled Jacobian, with Huber's
-// weights where asked for. A model that is linear in its parameters is found in the first step, and
-// the second one refines it. Nothing forms normal equations.
+// Least squares by the Gauss-Newton method, with a QR factorisation of the scaled Jacobian and,
+// optionally, Huber's weights. The first step solves a model that is linear in its parameters, and
+// the second one refines it. No normal equations are formed.
 #include <Eigen/Core>
 #include <algorithm>
 #include <array>
@@ -37,11 +37,11 @@ struct ModelFit {
   S explained = S(0);  ///< share of the measured variance about the mean
   S left_sq = S(0);    ///< weighted sum of squared residuals
   S worst_sq = S(0);   ///< largest squared residual
-  S worst_sds = S(0);  ///< largest residual in standard deviations that outliers do not raise
+  S worst_sds = S(0);  ///< largest residual in robust standard deviations
   bool converged = false;
 };
 
-/// What is fitted. A base class, so that the fitter is compiled once for all of them.
+/// A model to be fitted. It is a base class so that the fitter is compiled once for all models.
 template <scalar S>
 class FitModel {
  public:
@@ -69,8 +69,8 @@ class LinearModel final : public FitModel<S> {
   Matrix columns;
 };
 
-/// Standard deviation of normal residuals from their median size, which a third of outliers moves
-/// little.
+/// Standard deviation of normal residuals from their median magnitude. A third of outliers changes
+/// it little.
 template <class Vector>
 typename Vector::Scalar robust_sd(const Vector& residuals, Index parameters) {
   using S = typename Vector::Scalar;
@@ -142,7 +142,7 @@ class ModelFitter {
     }
   }
 
-  /// Columns of length 1, weighted; `lengths` of what they were.
+  /// The weighted Jacobian with columns scaled to length 1. `lengths` are the original ones.
   Matrix scaled(const Matrix& jacobian, const Vector& weights, Vector& lengths) const {
     using std::sqrt;
     Matrix a = jacobian;
@@ -158,7 +158,7 @@ class ModelFitter {
     return a;
   }
 
-  /// True when roundoff ends the search.
+  /// One step; true if it is below roundoff.
   bool step(const Matrix& jacobian, int pass, Fit& fit) const {
     using std::sqrt;
     Vector lengths;
@@ -179,7 +179,8 @@ class ModelFitter {
     return pass > 0 && !(moved > tiny * tiny * size);
   }
 
-  /// What the samples say of a parameter beside those before it is the diagonal of R.
+  /// Refuses a parameter that depends on those before it. The diagonal of R is the independent
+  /// share of its column.
   void refuse_undetermined(const HouseholderQr<S>& qr) const {
     for (Index k = 0; k < static_cast<Index>(names_.size()); ++k) {
       const S diagonal = qr.diagonal(k);
@@ -234,7 +235,7 @@ class ModelFitter {
   FitOptions options_;
 };
 
-/// Refuses a model that does not explain the samples; `cause` says what may be wrong.
+/// Refuses a model that does not explain the samples; `cause` is the likely cause.
 template <scalar S>
 void expects_explained(const ModelFit<S>& fit,
                        const FitOptions& options,
@@ -259,7 +260,7 @@ std::array<S, N> standard_errors_of(const ModelFit<S>& fit) {
   return errors;
 }
 
-/// The covariance of the first parameters; 0 for what was not fitted.
+/// The covariance of the first N parameters; 0 for parameters not fitted.
 template <scalar S, std::size_t N>
 std::array<std::array<S, N>, N> covariance_of(const ModelFit<S>& fit) {
   std::array<std::array<S, N>, N> covariance;

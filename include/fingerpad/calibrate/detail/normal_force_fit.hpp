@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// The curves of the normal force as models, and their fits. See calibrate/force.hpp.
+// Models of the normal force curves, and their fits. See calibrate/force.hpp.
 #include <Eigen/Core>
 #include <array>
 #include <cmath>
@@ -20,13 +20,13 @@ namespace fingerpad {
 inline namespace v0 {
 namespace detail {
 
-// The normal force as a model that is fitted: a polynomial of the measure, times what displacement
-// and rotation change. The polynomial is written in sums of Bernstein's polynomials over [0, to],
-//   G_k(t) = sum over j >= k of B_j(t), t = measure / to,
-// in which columns are well told apart, G_0 = 1 alone is not 0 at 0, and a polynomial whose
-// coefficients from the first on are not negative never falls (for degree 2 also the reverse).
+// The model is a polynomial of the measure, times a factor for displacement and rotation. The
+// polynomial is a combination of sums of Bernstein polynomials over [0, to],
+//   G_k(t) = sum over j >= k of B_j(t), t = measure / to.
+// Their columns are well conditioned, and only G_0 = 1 is not 0 at 0. A polynomial whose
+// coefficients from G_1 on are not negative never falls (for degree 2 also the reverse).
 
-/// Coefficient of t^power in G_k; whole numbers.
+/// Coefficients of t^0, t^1, ... in each G_k; integers.
 template <int Degree>
 constexpr auto rising_basis() {
   constexpr std::size_t size = static_cast<std::size_t>(Degree) + 1;
@@ -50,7 +50,7 @@ constexpr auto rising_basis() {
   return basis;
 }
 
-/// A contact as the normal force depends on it.
+/// The quantities of a contact on which the normal force depends.
 template <scalar S>
 struct PressedContact {
   S measure;
@@ -58,7 +58,7 @@ struct PressedContact {
   S rotation_sq;
 };
 
-/// What takes part in the fit.
+/// The terms that are fitted.
 struct PolynomialTerms {
   std::vector<std::size_t> columns;  ///< of the basis
   bool displaced = false;            ///< per_mm_sq
@@ -119,7 +119,8 @@ class PolynomialModel final : public FitModel<S> {
     return names;
   }
 
-  /// Powers of the measure from the columns that took part: size x columns.
+  /// Matrix from the coefficients of the fitted columns to those of the powers of the measure: size
+  /// x columns.
   Matrix to_powers() const {
     Matrix powers(static_cast<Index>(size), static_cast<Index>(terms_.columns.size()));
     for (std::size_t c = 0; c < terms_.columns.size(); ++c) {
@@ -168,7 +169,7 @@ class PowerLawModel final : public FitModel<S> {
   Vector log_forces;
 };
 
-/// A polynomial with some of its columns: first without a compensation, then with it.
+/// Fits a polynomial of some columns: first without a compensation, then with it.
 template <int Degree, scalar S>
 ModelFit<S> fit_columns(const std::vector<PressedContact<S>>& samples,
                         const typename ModelFit<S>::Vector& forces,
@@ -200,7 +201,8 @@ bool rises(const ModelFit<S>& fit, const PolynomialTerms& terms) {
   return true;
 }
 
-/// Of all choices of columns without a falling one that with the least left: few enough to try.
+/// The best fit that never falls. Tries all subsets of columns, which are few, and takes the one
+/// with the smallest residual.
 template <int Degree, scalar S>
 ModelFit<S> fit_rising(const std::vector<PressedContact<S>>& samples,
                        const typename ModelFit<S>::Vector& forces,
@@ -237,8 +239,8 @@ ModelFit<S> fit_rising(const std::vector<PressedContact<S>>& samples,
   return best;
 }
 
-/// Whether a constant would explain most of what a curve through 0 leaves, and is more than a tenth
-/// of the largest force: a gauge that was not tared.
+/// Detects a gauge that was not tared: a constant would explain more than half of the residual of
+/// the curve through 0, and exceeds a tenth of the largest force.
 template <int Degree, scalar S>
 FitStatus offset_in(const std::vector<PressedContact<S>>& samples,
                     const typename ModelFit<S>::Vector& forces,
@@ -268,7 +270,7 @@ FitStatus offset_in(const std::vector<PressedContact<S>>& samples,
   return explains && matters ? FitStatus::gauge_not_tared : FitStatus::ok;
 }
 
-/// The curve, and how it changes with displacement and rotation.
+/// Converts a fit to a result: the curve, and the compensation for displacement and rotation.
 template <class Result, int Degree, scalar S>
 Result polynomial_of(const ModelFit<S>& fit,
                      const PolynomialModel<Degree, S>& model,

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// From the side dots of the free pad to the equations of its vertical balance,
-// mu t (A / L - B L^3) = p a / 2, their solutions and the errors of these. See calibrate/rim.hpp.
+// Equations of the vertical balance of the free pad from its side dots,
+// mu t (A / L - B L^3) = p a / 2, their solution and its errors. See calibrate/rim.hpp.
 #include <cmath>
 #include <cstddef>
 #include <vector>
@@ -18,17 +18,18 @@ namespace fingerpad {
 inline namespace v0 {
 namespace detail::membrane {
 
-/// Of a level of pressure.
+/// The equation of a pressure level.
 template <scalar S>
 struct RimEquation {
   S a;
   S b;
   S pull;  ///< p a / 2, N/mm
-  /// For mu t = 1.
+  /// Mean pull for mu t = 1.
   S mean_pull(const S& length) const { return S(a / length - b * length * length * length); }
 };
 
-/// Root of the ratio of the eigenvalues of [aa ab; ab bb], columns scaled to length 1.
+/// Condition number of two columns scaled to length 1: the root of the ratio of the eigenvalues of
+/// [aa ab; ab bb].
 template <scalar S>
 S condition_of(const S& aa, const S& ab, const S& bb) {
   using std::sqrt;
@@ -37,7 +38,7 @@ S condition_of(const S& aa, const S& ab, const S& bb) {
   return S(sqrt(S((S(1) + cosine) / (S(1) - cosine))));
 }
 
-/// Both unknowns.
+/// Solution for both unknowns.
 template <scalar S>
 struct RimUnknowns {
   S u;  ///< mu t / L
@@ -45,7 +46,7 @@ struct RimUnknowns {
   S condition;
 };
 
-/// Least squares, all levels alike.
+/// Both unknowns by least squares, with equal weights of all levels.
 template <scalar S>
 RimUnknowns<S> both_of(const std::vector<RimEquation<S>>& equations) {
   S aa = S(0), ab = S(0), bb = S(0), ap = S(0), bp = S(0);
@@ -73,7 +74,7 @@ S modulus_of(const S& length, const std::vector<RimEquation<S>>& equations) {
   return S(gp / gg);
 }
 
-/// The rim at all levels of pressure. Refers to rim, levels and row.
+/// The rim at all pressure levels. Rim, levels and row must outlive it.
 template <class Row, scalar S>
 class FreeRimBalance {
  public:
@@ -86,7 +87,7 @@ class FreeRimBalance {
     set_equations();
   }
 
-  /// Takes D anew as the row of dots tells it for this L, mu t and rubber.
+  /// Recomputes D from the dots for this L, mu t and rubber.
   void correct(const S& length, const S& modulus, const S& mooney_share) {
     mooney_share_ = mooney_share;
     take_levers(length, modulus);
@@ -96,7 +97,7 @@ class FreeRimBalance {
   const std::vector<S>& shares() const { return shares_; }
   const std::vector<RimEquation<S>>& equations() const { return equations_; }
 
-  /// sd of the relative lengths of one level about their means; NaN from a single level.
+  /// sd of the relative lengths of one level about their means; NaN for a single level.
   S share_scatter() const {
     using std::sqrt;
     S squares = S(0);
@@ -129,7 +130,7 @@ class FreeRimBalance {
     return S(sum / weights);
   }
 
-  /// Of the balance, rms over the levels, as a share of their mean p a / 2.
+  /// Residual of the balance, rms over the levels, as a share of their mean p a / 2.
   S residual(const S& length, const S& modulus) const {
     using std::sqrt;
     S squares = S(0), pulls = S(0);
@@ -147,15 +148,15 @@ class FreeRimBalance {
     S correlation;
     S condition;
   };
-  /// Standard errors to first order: of what was found, from given noise or, without, from the
-  /// residual.
+  /// First-order standard errors of the fitted values, from the given noise or, without noise, from
+  /// the residual.
   Errors errors(const S& length,
                 const S& modulus,
                 bool length_found,
                 const S& dot_noise,
                 const S& pressure_noise) const {
     using std::sqrt;
-    // Jacobian by ln L and ln mu t; what is given has a column of 0
+    // Jacobian by ln L and ln mu t; the column of a given L is 0
     S ll = S(0), lm = S(0), mm = S(0);
     S vl = S(0), vlm = S(0), vm = S(0);  // J^T V J
     const bool noisy = value(dot_noise) > 0 || value(pressure_noise) > 0;
@@ -194,18 +195,18 @@ class FreeRimBalance {
   }
 
  private:
-  /// |C|^2: of the part of D across the rim.
+  /// |C|^2, where C is the part of D across the rim.
   S across_sq(const Point3<S>& lever, std::size_t column) const {
     return S(squared_norm(lever) - square(dot(lever, rim_[column].tangent)));
   }
 
-  /// Length of dot j over the mean length of those dots that every level sees.
+  /// Length of a dot over the mean length of the dots seen at every level.
   S relative_length(std::size_t level, std::size_t column) const {
     using std::sqrt;
     return S(sqrt(across_sq(lever_mm_[level][column], column)) / mean_length_[level]);
   }
 
-  /// D of every dot; of a row that asks for the load, only where mu t > 0.
+  /// Computes D of every dot seen, under the load p / (mu t); without load if mu t is not > 0.
   void take_levers(const S& length, const S& modulus) {
     for (std::size_t k = 0; k < levels_.size(); ++k) {
       const RimLevel<S>& level = levels_[k];
@@ -271,7 +272,7 @@ class FreeRimBalance {
     }
   }
 
-  /// Of a level's balance, from the noise of a frame's dots and pressure.
+  /// Variance of the balance of a level, from the noise of the dots and the pressure of a frame.
   S variance(std::size_t k,
              const S& length,
              const S& modulus,

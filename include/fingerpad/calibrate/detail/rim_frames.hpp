@@ -16,7 +16,7 @@ namespace fingerpad {
 inline namespace v0 {
 namespace detail::membrane {
 
-/// Border points, their tangents and how much of the rim each stands for, by column of the border.
+/// Border points, their tangents and their shares of the rim, by column of the border.
 template <scalar S>
 class CalibratedRim {
  public:
@@ -52,14 +52,14 @@ class CalibratedRim {
   std::vector<Column> columns_;
 };
 
-/// The frames of one pressure: mean pressure and mean places of the side dots.
+/// Averages over the frames of one pressure level: pressure, apex height and side dots.
 template <scalar S>
 struct RimLevel {
   RimLevel(Index rows, Index columns)
       : dot_mm(static_cast<std::size_t>(rows * columns), Point3<S>{S(0), S(0), S(0)}),
         count(static_cast<std::size_t>(columns), 0) {}
 
-  /// Only dots of which the frame has all `Row::rows` count.
+  /// Adds a frame. A column counts only if all its `Row::rows` dots are found.
   template <class Row, class Dots>
   void add(const Dots& dots, const S& pressure, const S& apex) {
     ++frames;
@@ -88,9 +88,9 @@ struct RimLevel {
   S pressure_mpa = S(0);
   S apex_mm = S(0);
   int frames = 0;
-  int apex_frames = 0;            ///< of these, that told the apex
-  std::vector<Point3<S>> dot_mm;  ///< the dots of a column lie together
-  std::vector<int> count;         ///< frames that saw the column's dots
+  int apex_frames = 0;            ///< frames with an apex height
+  std::vector<Point3<S>> dot_mm;  ///< mean positions; the dots of a column are adjacent
+  std::vector<int> count;         ///< frames with the column's dots
 };
 
 template <class Rim, class Levels>

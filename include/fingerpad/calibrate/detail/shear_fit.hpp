@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// Tangential force and moment as a model, its fit, and what its residuals say of the measurement.
-// See calibrate/force.hpp.
+// The model of tangential force and moment, its fit, and mistakes that the residuals show. See
+// calibrate/force.hpp.
 #include <Eigen/Core>
 #include <cmath>
 #include <cstddef>
@@ -23,11 +23,11 @@ namespace fingerpad {
 inline namespace v0 {
 namespace detail {
 
-// A force or moment as an odd polynomial of something displaced or rotated, normalised by a power
+// A force or moment y is an odd polynomial of a displacement or rotation x, normalised by a power
 // of the contact's measure: y = sum over k of c_k (u |x|)^(k-1) u x, u = (measure / reference)^T.
-// The exponent T is found by a search along it, then together with the coefficients.
+// The exponent T is first found by a search, then fitted together with the coefficients.
 
-/// One equation: a component of x and of y, and the length of the whole x.
+/// One equation: a component of x and of y, and the length |x|.
 template <scalar S>
 struct ShearEquation {
   S log_measure;  ///< log(measure / reference)
@@ -43,7 +43,7 @@ class ShearModel final : public FitModel<S> {
   using typename FitModel<S>::Matrix;
   using typename FitModel<S>::Vector;
 
-  /// With the exponent as the last parameter, unless it is `given`.
+  /// The exponent is the last parameter, unless it is `given`.
   ShearModel(const std::vector<ShearEquation<S>>& equations,
              Index degree,
              const std::optional<S>& given)
@@ -69,8 +69,8 @@ class ShearModel final : public FitModel<S> {
     }
   }
 
-  /// The best coefficients for an exponent, and what they leave: the sum of squares or, if robust,
-  /// of sizes.
+  /// The best coefficients for an exponent. Returns the residual: the sum of squares or, if robust,
+  /// of magnitudes.
   S left_at(const S& exponent, bool robust, Vector& coefficients) const {
     const Index n = static_cast<Index>(equations_.size());
     Matrix a(n, degree_);
@@ -103,7 +103,7 @@ class ShearModel final : public FitModel<S> {
   std::optional<S> given_;
 };
 
-/// The fit of a shear model: a search along the exponent from -2 to 6, then all together.
+/// Fits a shear model: a search for the exponent from -2 to 6, then all parameters together.
 template <scalar S>
 ModelFit<S> fit_shear_model(const char* owner,
                             const std::vector<std::string>& names,
@@ -135,15 +135,16 @@ ModelFit<S> fit_shear_model(const char* owner,
   return fit;
 }
 
-/// A force beside the displacement that should cause it, at some normalisation.
+/// A force and the normalised displacement that should cause it.
 template <scalar S>
 struct PlaneForce {
   Point2<S> normalised;  ///< u d
   Point2<S> force;
-  Point2<S> left;  ///< of it, what the fit does not explain
+  Point2<S> left;  ///< residual of the force
 };
 
-/// Equations of a force come in pairs, x and y; those of a moment alone. `left`: of each equation.
+/// Collects equations in samples: pairs of x and y for a force, single ones for a moment. `left(i)`
+/// is the residual of equation i.
 template <scalar S, class Left>
 std::vector<PlaneForce<S>> plane_forces(const std::vector<ShearEquation<S>>& equations,
                                         const S& exponent,
@@ -166,7 +167,7 @@ std::vector<PlaneForce<S>> plane_forces(const std::vector<ShearEquation<S>>& equ
   return forces;
 }
 
-/// How forces lie to displacements, as sums over all samples.
+/// Sums over all samples that relate the directions of forces and displacements.
 template <scalar S>
 struct ForceDirections {
   S dd = S(0), ff = S(0), along = S(0), across = S(0), mirrored_x = S(0), mirrored_y = S(0);
@@ -182,23 +183,24 @@ struct ForceDirections {
       mirrored_y = mirrored_y + S(d.x * f.y + d.y * f.x);
     }
   }
-  /// Sums of squares that a rotation with a scale explains, and a mirror with one.
+  /// Sums of squares explained by a rotation with a scale, and by a reflection with a scale.
   S by_rotation() const { return S(S(square(along) + square(across)) / dd); }
   S by_mirror() const { return S(S(square(mirrored_x) + square(mirrored_y)) / dd); }
   static bool exceeds(const S& a, const S& b) { return value(a) > value(b); }
 };
 
-/// By how much a force gauge is turned about the normal, against the image; NaN: not told.
+/// Rotation of a force gauge about the normal, against the image; NaN: not determined.
 template <scalar S>
 struct GaugeAngle {
   S rad = not_a_number<S>();
   S sd_rad = not_a_number<S>();  ///< standard error, for samples with independent errors
 };
 
-/// From the linear map A of normalised displacements to forces, by least squares: the stiffness of
-/// an elastic pad is symmetric (Betti), so what is antisymmetric in A is a rotation. Along one line
-/// a pad that is stiffer askew looks the same, and near one what is not linear in the pad outweighs
-/// it: no angle where the displacements spread less than a fifth of what is even in all directions.
+/// The rotation from the least-squares linear map A of normalised displacements to forces. The
+/// stiffness of an elastic pad is symmetric (Betti), so an antisymmetric part of A is a rotation.
+/// Displacements along one line do not distinguish it from an anisotropic pad, and near one line
+/// the nonlinearity of the pad outweighs it. There is no angle if the determinant of sum d d^T is
+/// below a fifth of that for displacements even in all directions.
 template <scalar S>
 GaugeAngle<S> gauge_angle(const std::vector<PlaneForce<S>>& samples) {
   using std::atan2;
@@ -233,7 +235,7 @@ GaugeAngle<S> gauge_angle(const std::vector<PlaneForce<S>>& samples) {
   return {S(atan2(across, along)), S(sqrt(S(variance * trace * over / size_sq)))};
 }
 
-/// "; " and the likely cause, for refusals: that of a gauge that is turned with its angle.
+/// "; " and the likely cause, for refusals; for a rotated gauge with its angle.
 template <scalar S>
 std::string cause_of(FitStatus mistake, const GaugeAngle<S>& angle) {
   if (mistake != FitStatus::gauge_rotated) {
@@ -249,7 +251,7 @@ std::string cause_of(FitStatus mistake, const GaugeAngle<S>& angle) {
               : " By how much, only displacements in several directions tell");
 }
 
-/// Axes with which no fit can succeed: mirrored, or rotated by more than 45 degrees.
+/// Detects axes with which no fit can succeed: mirrored, or rotated by more than 45 degrees.
 template <scalar S>
 FitStatus wrong_axes(const std::vector<PlaneForce<S>>& samples) {
   const ForceDirections<S> sums(samples);
@@ -263,9 +265,9 @@ FitStatus wrong_axes(const std::vector<PlaneForce<S>>& samples) {
                                                                   : FitStatus::ok;
 }
 
-/// The likely mistake behind what a fit leaves; ok: none that can be seen. A constant, or a
-/// rotation, is one where it explains more than half of it, and is more than a tenth of the largest
-/// force, or of the force along the displacement.
+/// The likely mistake behind the residual of a fit; ok: none detected. A constant counts as one if
+/// it explains more than half of the residual and exceeds a tenth of the largest force. A rotation
+/// does if it explains more than half and exceeds a tenth of the force along the displacement.
 template <scalar S>
 FitStatus mistake_in(const std::vector<PlaneForce<S>>& samples) {
   const ForceDirections<S> sums(samples);
@@ -292,7 +294,7 @@ FitStatus mistake_in(const std::vector<PlaneForce<S>>& samples) {
   return explains && matters ? FitStatus::gauge_rotated : FitStatus::ok;
 }
 
-/// The result. `places`: of the sample behind each equation.
+/// Converts a fit to a result.
 template <class Result, scalar S>
 Result shear_fit_of(const ModelFit<S>& fit,
                     const typename ModelFit<S>::Vector& measured,
@@ -325,7 +327,7 @@ Result shear_fit_of(const ModelFit<S>& fit,
   return result;
 }
 
-/// The parts that force and moment share.
+/// Checks, fit and result, common to force and moment.
 template <class Result, class Sample, scalar S>
 Result fit_shear(const char* owner,
                  const char* exponent_name,

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// Positions of dots in the frames of a standing pad, split into the place of each dot, the motion
-// of the pattern as a whole in each frame, and a rest, which is noise.
+// Splits the positions of dots in frames of a pad at rest into the place of each dot, the motion of
+// the whole pattern in each frame, and a remainder, which is noise.
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -17,7 +17,7 @@ namespace fingerpad {
 inline namespace v0 {
 namespace detail::stick {
 
-/// What of the values first, first + step, ... are numbers, less what `taken` says.
+/// The finite ones among the values first, first + step, ..., each less `taken(i)`.
 template <scalar S, class Taken>
 std::vector<S> numbers_of(const std::vector<S>& values,
                           std::size_t first,
@@ -55,8 +55,9 @@ struct MedianOf {
   }
 };
 
-/// One axis, frame after frame, NaN where a dot is missing, becomes the rest of the split. With
-/// means it has the least squares; with medians wild positions do not show in others.
+/// Replaces the values of one axis (frame after frame, NaN for missing dots) by the remainder of
+/// the split. With means this is the least-squares split; with medians outliers do not affect other
+/// dots.
 template <scalar S, class Middle>
 void remove_places_and_motion(std::vector<S>& values,
                               std::vector<S>& places,
@@ -68,7 +69,7 @@ void remove_places_and_motion(std::vector<S>& values,
   for (const S& v : values) {
     largest_sq = largest_sq < square(v) ? S(square(v)) : largest_sq;
   }
-  // where dots are lost the middles are of different frames, and have to be found together
+  // with lost dots, places and motion depend on each other: iterate
   S change_sq = largest_sq;
   // 1e-13 of the largest, for double
   const S settled_sq = S(square(scalar_real_t<S>(450) * epsilon<S>())) * largest_sq;
@@ -91,7 +92,7 @@ void remove_places_and_motion(std::vector<S>& values,
   }
 }
 
-/// A sum of squares over both axes, and over how many positions.
+/// A sum of squares over both axes, and the number of positions.
 template <scalar S>
 struct SumOfSquares {
   S sum = S(0);
@@ -121,9 +122,9 @@ class DotPositions {
   }
 
   double positions = 0, dots_found = 0, frames_found = 0;
-  Index out_of_place = 0;  ///< dropped: another dot was found there, or none
+  Index out_of_place = 0;  ///< positions dropped: not those of the dot
 
-  /// Positions beyond those that places and motion account for.
+  /// Degrees of freedom: positions less those for places and motion.
   double freedom() const { return positions - dots_found - frames_found + 1; }
 
   SumOfSquares<S> rests() const {
@@ -136,7 +137,7 @@ class DotPositions {
     return squares;
   }
 
-  /// Of differences between one frame and the next.
+  /// Squares of the differences between successive frames.
   SumOfSquares<S> steps() const {
     SumOfSquares<S> squares;
     for (std::size_t i = dots_; i < x_.size(); ++i) {
@@ -147,8 +148,8 @@ class DotPositions {
     return squares;
   }
 
-  /// Of the weighted means of the dots and their neighbours that are there: of dots with all eight,
-  /// or of all others.
+  /// Squares of the weighted means of each dot and its neighbours found: for dots with all eight
+  /// neighbours, or for all others.
   SumOfSquares<S> means(const DotWeights& weights, bool of_inner_dots) const {
     SumOfSquares<S> squares;
     for (std::size_t i = 0; i < x_.size(); ++i) {
@@ -177,8 +178,8 @@ class DotPositions {
     return squares;
   }
 
-  /// The largest standard deviation of a dot, both axes together. Without places and motion a dot
-  /// has (frames - 1) (1 - 1 / dots) of its variance.
+  /// The largest standard deviation of a dot, both axes together. After subtracting places and
+  /// motion, the sum of squares of an axis is (frames - 1) (1 - 1 / dots) variances.
   S largest_px() const {
     using std::sqrt;
     std::vector<S> squares(dots_, S(0));
@@ -226,7 +227,7 @@ class DotPositions {
     return steps == 0 ? weights.self : steps == 1 ? weights.side : weights.diagonal;
   }
 
-  /// Drops dots that are in one frame alone, which say nothing, and counts the others.
+  /// Drops dots found in a single frame, which carry no information, and counts the others.
   void count() {
     found_.assign(dots_, 0);
     for (std::size_t i = 0; i < x_.size(); ++i) {
@@ -250,7 +251,7 @@ class DotPositions {
     }
   }
 
-  /// Drops what is further than a quarter of a pitch from its place.
+  /// Drops positions more than a quarter of a pitch from the dot's place.
   void drop_out_of_place() {
     count();
     std::vector<S> off_x = x_, off_y = y_;
@@ -265,7 +266,7 @@ class DotPositions {
     }
   }
 
-  /// Of the median distance between neighbours, the square; 0 if there are none.
+  /// Square of the median distance between neighbours; 0 if there are none.
   S pitch_sq_px() const {
     const auto cols = static_cast<std::size_t>(cols_);
     std::vector<S> squares;
@@ -286,8 +287,8 @@ class DotPositions {
     return MedianOf()(std::move(squares));
   }
 
-  /// The dot nearest to the mean place that is found in more than half of the frames in which the
-  /// best is.
+  /// The dot nearest to the mean place, among those found in more than half as many frames as the
+  /// dot found most often.
   std::size_t central_dot() const {
     S mean_x = S(0), mean_y = S(0);
     for (std::size_t k = 0; k < dots_; ++k) {
@@ -310,7 +311,7 @@ class DotPositions {
   Index rows_, cols_;
   std::size_t dots_;
   std::vector<S> x_, y_, place_x_, place_y_;
-  std::vector<double> found_;  ///< in how many frames each dot is; 0 for what was dropped
+  std::vector<double> found_;  ///< number of frames with each dot; 0 for dropped dots
 };
 
 }  // namespace detail::stick

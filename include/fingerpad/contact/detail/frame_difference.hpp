@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// By how much a frame differs from the free pad, cell by cell: dots left out, gain matched,
-// smoothed over what is left.
+// The difference between a frame and the free pad, cell by cell. Dots are left out, the gain is
+// matched, and the remaining cells are smoothed.
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -20,8 +20,8 @@ namespace fingerpad {
 inline namespace v0 {
 namespace detail {
 
-/// Channel means of a frame's cells; 1 for those that show the gel, 0 for dots and bad cells; and 1
-/// for those whose mean is known, dots included.
+/// Channel means of a frame's cells. `weight` is 1 for cells that show the gel, and 0 for dots and
+/// bad cells; `known` is 1 for cells whose mean is known, filled-in dots included.
 template <int Channels, scalar S>
 struct CellColours {
   CellColours(Index rows, Index cols, Index pad)
@@ -30,7 +30,7 @@ struct CellColours {
   PaddedCells<S> weight, known;
 };
 
-/// What the reductions of a frame need to know.
+/// The parameters for reducing frames to cells.
 struct CellLayout {
   Index rows, cols;  ///< of the frame, px
   Index cell_px;
@@ -40,11 +40,11 @@ struct CellLayout {
   Index cell_rows() const { return (rows + cell_px - 1) / cell_px; }
   Index cell_cols() const { return (cols + cell_px - 1) / cell_px; }
   double in_cells(double px) const { return px / static_cast<double>(cell_px); }
-  /// Cells beside a dot's that it may reach into.
+  /// How many cells a dot may reach into beside its own.
   Index dot_edge() const { return dot_px > 0 ? 1 : 0; }
 };
 
-/// Where most cells are taken for free.
+/// The part of a frame in which most cells are assumed to be free of contact.
 enum class GainFrom { frame, border };
 
 /// visit(i, j) for the cells along the four sides.
@@ -89,13 +89,13 @@ class FrameDifference {
 
   const CellLayout& layout() const { return layout_; }
   Index pad() const { return pad_; }
-  /// What the frame that was read last shows.
+  /// The cells of the frame that was read last.
   const Colours& now() const { return now_; }
   PaddedCells<S>& length() { return length_; }
   const PaddedCells<S>& length() const { return length_; }
   const PaddedCells<S>& imprint() const { return imprint_; }
 
-  /// Takes a frame in.
+  /// Reduces a frame to cells, and leaves out and fills its dots.
   template <class View>
   void read(const View& frame) {
     cells_(frame, [&](Index i, Index j, int c, const S& mean) {
@@ -114,9 +114,9 @@ class FrameDifference {
     }
   }
 
-  /// length() becomes the root mean square over the channels of now / gain / free - 1, smoothed
-  /// over the gel that both frames show; NaN where that is too little. imprint() likewise, of gel
-  /// that dots hide too.
+  /// Sets length() to the root mean square over the channels of now / gain / free - 1, smoothed
+  /// over the gel that both frames show; NaN where there is too little gel. imprint() is the same
+  /// but includes gel that dots hide.
   void compare(const Colours& free, GainFrom from) {
     for_cells([&]<class V>(Index i, Index j) {
       put<V>(weight_, i, j, V(get<V>(now_.weight, i, j) * get<V>(free.weight, i, j)));
@@ -168,14 +168,15 @@ class FrameDifference {
     }
   }
 
-  /// Brightness of a cell to part_, weight 0 where a channel says nothing.
+  /// Writes the brightness of each cell to part_; its weight is 0 if a channel is NaN, not positive
+  /// or saturated.
   void brightness() {
     for_cells([&]<class V>(Index i, Index j) {
       V sum{};
       V weight = V{} + S(1);
       for (const PaddedCells<S>& mean : now_.mean) {
         const V m = get<V>(mean, i, j);
-        weight = m > V{} ? weight : V{};  // NaN is not
+        weight = m > V{} ? weight : V{};  // false for NaN
         weight = m < V{} + S(layout_.saturated) ? weight : V{};
         sum = sum + m;
       }
@@ -193,7 +194,7 @@ class FrameDifference {
     });
   }
 
-  /// To `sum` the square of the mean of `part` around each cell.
+  /// Adds the square of the mean of `part` around each cell to `sum`.
   void add_square(const PaddedCells<S>& part, const PaddedCells<S>& shares, PaddedCells<S>& sum) {
     mean_(part, between_, smooth_);
     for_cells([&]<class V>(Index i, Index j) {
@@ -204,8 +205,8 @@ class FrameDifference {
     });
   }
 
-  /// Fills in what is no wider than a dot from the gel beside it. An imprint with holes where dots
-  /// are would seem to move with them.
+  /// Fills gaps no wider than a dot from the gel beside them. An imprint with holes at the dots
+  /// would seem to move with the dots.
   void fill_dots() {
     const auto is_hole = [&](Index i, Index j) { return !(S(0) < now_.weight(i, j)); };
     for (Index i = 0; i < weight_.rows(); ++i) {
@@ -222,7 +223,7 @@ class FrameDifference {
       }
     }
   }
-  /// The last cell before a hole along a line and the first one behind it.
+  /// The last gel cell before a hole in a row or column and the first one behind it.
   struct Gap {
     Index before, behind;
 
@@ -249,7 +250,7 @@ class FrameDifference {
     }
     return gap;
   }
-  /// Between the ends of both gaps, of a short one more.
+  /// Interpolates between the ends of both gaps, each weighted by 1 / size^2.
   void fill(Index i, Index j, const Gap& row, const Gap& column) {
     const bool in_row = row.is_of_dot(max_gap(), weight_.cols());
     const bool in_column = column.is_of_dot(max_gap(), weight_.rows());
@@ -273,8 +274,8 @@ class FrameDifference {
     now_.known(i, j) = S(1);
   }
 
-  /// The median of seen / was over the cells of the border that count, or over a lattice of all; 1
-  /// where there are none.
+  /// The median of seen / was over the gel cells of the border, or of a lattice over the whole
+  /// frame; 1 if there are none.
   S gain(const PaddedCells<S>& seen, const PaddedCells<S>& was, GainFrom from) {
     samples_.clear();
     const auto add = [&](Index i, Index j) {

@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// The curvature of the free membrane around a contact, where a ring sees nothing of it: a mean over
-// a window, because a sheared pad bulges unevenly around the object. On every fourth pixel, which
-// is finer than the ring can tell.
+// The curvature of the free membrane around a contact, measured where a ring sees nothing of the
+// contact. It is a mean over a window, because a sheared pad bulges unevenly around the object. It
+// is computed for every fourth pixel, which is finer than the ring can resolve.
 #include <algorithm>
 #include <cstddef>
 #include <vector>
@@ -16,8 +16,8 @@ namespace fingerpad {
 inline namespace v0 {
 namespace detail {
 
-/// Sums over windows of 2 reach + 1 cells, by running along the rows and then along the columns, of
-/// all columns at once.
+/// Sums over square windows of 2 reach + 1 cells: running sums along each row, then down all
+/// columns at once.
 template <class S>
 class CellSums {
  public:
@@ -102,12 +102,13 @@ class OutsideLevel {
     const Index j = (std::min)((col + step / 2) / step, cols_ - 1);
     return i * cols_ + j;
   }
-  /// In 1/mm.
+  /// The level at a cell, 1/mm.
   const S& operator[](std::size_t cell) const { return level_[cell]; }
 
-  /// From the curvatures of a frame and its seeds of contact. Negative sections count as 0 in
-  /// `curvature`, or do not: there are none on a free membrane. What is below the threshold is not
-  /// free, even if cleaning dropped it. Where nothing is, the threshold is taken for half of it.
+  /// Computes the levels from the curvatures of a frame and its seeds of contact. `curvature` may
+  /// count negative sections as 0 or not: a free membrane has none. Pixels below the threshold are
+  /// not free, even if cleaning dropped them. A window without free pixels gets the mean over the
+  /// frame, and twice the threshold if the frame has none either.
   template <class Curvature, class Marks>
   void measure(const Curvature& curvature, const Marks& marks, const S& threshold) {
     visit_cells([&](std::size_t k, Index i, Index j) {
@@ -134,7 +135,7 @@ class OutsideLevel {
   }
 
  private:
-  /// visit(cell, row, col) with the pixel that stands for the cell.
+  /// Calls visit(cell, row, col) with the pixel that represents the cell.
   template <class Visit>
   void visit_cells(const Visit& visit) const {
     std::size_t k = 0;

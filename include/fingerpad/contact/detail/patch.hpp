@@ -1,8 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// Sums over the points of a patch: collected in blocks, so that the sums do not see the image's
-// type and run in vectors, and moved to the patch's centroid, so that they keep their digits.
+// Sums over the points of a patch. The points are collected in blocks, so that the sums do not
+// depend on the image's type and run in vectors. The sums are moved to the patch's centroid, so
+// that they keep their digits.
 #include <array>
 #include <cstddef>
 #include <utility>
@@ -18,7 +19,7 @@ namespace fingerpad {
 inline namespace v0 {
 namespace detail {
 
-/// Some points, coordinate by coordinate.
+/// A block of points, stored coordinate by coordinate.
 template <scalar S>
 struct PointBlock {
   static constexpr Index capacity = 512;
@@ -49,8 +50,8 @@ template <class V, std::size_t K, std::size_t... I>
   ((sums.term[I] = sums.term[I] + terms.term[I]), ...);
 }
 
-/// Adds to `sums` what the points of the block give: kernel.terms<V>(x, y, z) is Terms<V, K>, for V
-/// a vector of S, and S itself for the points that fill no vector.
+/// Adds the terms of the block's points to `sums`. kernel.terms<V>(x, y, z) returns Terms<V, K>,
+/// where V is a vector of S, or S itself for the points that do not fill a vector.
 template <int VectorBytes = native_vector_bytes, std::size_t K, scalar S, class Kernel>
 void add_block(const PointBlock<S>& block, const Kernel& kernel, std::array<S, K>& sums) {
   constexpr auto order = std::make_index_sequence<K>{};
@@ -80,8 +81,8 @@ void add_block(const PointBlock<S>& block, const Kernel& kernel, std::array<S, K
   }
 }
 
-/// First and second moments; with Fourth also those of q = x^2 + y^2 + z^2 with x, y, z and itself,
-/// which is all that a sphere needs.
+/// First and second moments; with Fourth also q x, q y, q z and q^2 of q = x^2 + y^2 + z^2, which
+/// is all that a sphere fit needs.
 template <scalar S, bool Fourth>
 struct MomentKernel {
   static constexpr std::size_t sums = Fourth ? 13 : 9;
@@ -107,7 +108,7 @@ struct MomentKernel {
   }
 };
 
-/// Mean moments of a patch about its centroid, in the sensor's directions.
+/// Mean moments of a patch about its centroid, along the sensor's axes.
 template <scalar S>
 struct PatchMoments {
   Index pixels = 0;
@@ -125,7 +126,7 @@ Point3<S> times(const SmallMatrix<S, 3>& a, const Point3<S>& p) {
           S(a[2][0] * p.x + a[2][1] * p.y + a[2][2] * p.z)};
 }
 
-/// Sums about `origin` as means about the centroid.
+/// Converts sums about `origin` to means about the centroid.
 template <scalar S, std::size_t K>
 PatchMoments<S> centered(Index pixels, const Point3<S>& origin, std::array<S, K> sums) {
   PatchMoments<S> out;
@@ -157,7 +158,8 @@ PatchMoments<S> centered(Index pixels, const Point3<S>& origin, std::array<S, K>
   return out;
 }
 
-/// How far the pixels spread in the image, in whole numbers: pixels in one line are seen exactly.
+/// The spread of the pixels in the image, from sums of integers: pixels in one line are detected
+/// exactly.
 struct PixelSpread {
   double n = 0, i = 0, j = 0, ii = 0, ij = 0, jj = 0;
 
@@ -172,7 +174,7 @@ struct PixelSpread {
     ij += r * static_cast<double>(sum_j);
     jj += static_cast<double>(sum_jj);
   }
-  /// The spread across is below a thousandth of that along.
+  /// True if the spread across a line is below a thousandth of the spread along it.
   bool is_line() const {
     const double rows = n * ii - i * i;
     const double cols = n * jj - j * j;

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// Area, center and depth of a region of the image, in mm: each pixel counts with the area that it
-// sees, projected on the plate.
+// Area, center and depth of a region of the image, in mm. Each pixel is weighted with the area that
+// it sees, projected on the plate.
 #include <algorithm>
 #include <cstddef>
 #include <iterator>
@@ -17,7 +17,7 @@ namespace fingerpad {
 inline namespace v0 {
 namespace detail {
 
-/// A sum over numbers that come one at a time or a vector at a time.
+/// A sum of numbers that are added one at a time or a vector at a time.
 class LaneSum {
  public:
   template <class V>
@@ -30,10 +30,11 @@ class LaneSum {
   double lane_[static_cast<std::size_t>(row_lanes<double>)] = {};
 };
 
-/// Sums over the pixels of a region, in double: there may be a million of them. The area on the
-/// plate under a pixel is that of differences between its neighbours; one that is unknown is taken
-/// to be as deep, and so are all where the surface would be seen from behind, which no camera does.
-/// Linear in the differences along each axis, so noise does not add up.
+/// Sums over the pixels of a region, in double because there may be a million of them. The area of
+/// a pixel on the plate follows from the differences between its neighbours. An unknown neighbour
+/// counts as being as deep as the pixel. If the surface would be seen from behind, which no camera
+/// can do, all neighbours count as being as deep. The area is linear in the differences along each
+/// axis, so that noise does not add up.
 template <class Depth, class Rays>
 class RegionMeasures {
  public:
@@ -62,8 +63,8 @@ class RegionMeasures {
   }
 
  private:
-  /// Pixels side by side of a row, and how far away the neighbours are that they are measured by: 0
-  /// where the image ends, else 1.
+  /// Adjacent pixels of a row, and the distances of the neighbours from which their area is
+  /// computed: 0 at the image's edge, else 1.
   struct Run {
     Index row;
     Index left, right, up, down;
@@ -120,7 +121,7 @@ class RegionMeasures {
     z_.add(V(depth * area));
   }
 
-  /// The same bits from every kind of grid.
+  /// The depth in double, with the same bits for every kind of grid.
   template <class V>
   [[gnu::always_inline]] V depth_at(Index row, Index col) const {
     if constexpr (plain_rows<Depth, float> || plain_rows<Depth, double>) {

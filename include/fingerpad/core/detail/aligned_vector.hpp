@@ -10,7 +10,8 @@ namespace fingerpad {
 inline namespace v0 {
 namespace detail {
 
-/// Memory that begins on a cache line, so that aligned vectors never straddle two.
+/// Allocates memory that begins on a cache line, so that aligned SIMD vectors never straddle two
+/// lines.
 template <class T>
 struct AlignedAllocator {
   using value_type = T;

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// A vector whose copies have its capacity too. A copied State or Workspace must not take memory in
-// a frame, and a copied std::vector forgets what was reserved.
+// A vector whose copies keep its capacity. A copied State or Workspace must not allocate during a
+// frame, but a copied std::vector drops the reserved capacity.
 #include <cstddef>
 #include <vector>
 

@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// From two channels of a frame to rows of smoothed red and green in grey levels, one row after the
-// other. A pixel counts where the reference knows the pad and both its channels lie strictly
-// between the limits of the grey scale; a mean over no such pixel is NaN.
+// Converts two channels of a frame to rows of smoothed red and green in grey levels, row by row. A
+// pixel counts if it lies in the reference's pad and both its channels lie strictly between the
+// limits of the grey scale; a mean over no such pixel is NaN.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -27,8 +27,8 @@ namespace fingerpad {
 inline namespace v0 {
 namespace detail {
 
-/// 8- and 16-bit images are averaged as whole numbers, exactly and fast, where means are wanted in
-/// float; everything else in the scalar itself.
+/// True if pixels are averaged as integers, exactly and fast: 8- and 16-bit images with means in
+/// float. All others are averaged in the scalar itself.
 template <class Pixel, class S>
 inline constexpr bool averages_integers = std::same_as<S, float> &&
                                           (std::same_as<Pixel, std::uint8_t> ||
@@ -43,7 +43,7 @@ struct ColourSetup {
   Anchor<S> anchor;                  ///< empty unless the smoothing is anchored
 };
 
-/// Whether a channel's value carries information.
+/// Whether a channel's value lies strictly between the limits of the grey scale.
 template <class Pixel>
 struct Counts {
   GreyScale scale;
@@ -53,7 +53,7 @@ struct Counts {
   }
 };
 
-/// Rows of plain colours, in grey levels.
+/// Rows of unsmoothed colours, in grey levels.
 template <class Pixel, class S>
 class PlainRows {
  public:
@@ -114,8 +114,8 @@ class PlainRows {
   Index row_ = 0;
 };
 
-/// Rows of window means of whatever was loaded: colours, or an anchored residual and green.
-/// Everything that is averaged passes through as `Element`: first = offset + units * what it means.
+/// Rows of window means of two channels: colours, or an anchored residual and green. Averaged
+/// values are stored as `Element`: offset + units * value.
 template <class Pixel, class S, class Smoothing>
 class MeanRowsOf {
   static constexpr auto windows =
@@ -154,7 +154,7 @@ class MeanRowsOf {
   void next(
       const ColourSetup<S>& setup, const Red& red, const Green& green, S* to_red, S* to_green) {
     MeanRows<S> out[static_cast<std::size_t>(windows)];
-    if constexpr (!anchored) {  // the means are what is wanted
+    if constexpr (!anchored) {  // the means are the result
       static_assert(windows == 1);
       out[0] = {to_red, to_green};
       sums_.advance(source(setup, red, green), out);
@@ -168,7 +168,8 @@ class MeanRowsOf {
   }
 
  private:
-  /// Residuals as 16-bit numbers: 1/128 of a grey level around the middle of the range.
+  /// Residuals are stored as 16-bit numbers in steps of 1/128 grey level around the middle of the
+  /// range.
   static constexpr int residual_units = 128;
   static constexpr int residual_zero = 32768;
   static constexpr int green_units = 256;
@@ -183,7 +184,7 @@ class MeanRowsOf {
     }
   }
 
-  /// Fills one row for the window sums, and says which of its pixels count.
+  /// The row source of the window sums: fills one row and marks which of its pixels count.
   template <class Red, class Green>
   auto source(const ColourSetup<S>& setup, const Red& red, const Green& green) {
     return [this, &setup, &red, &green](Index row, Element* first, Element* second,
@@ -223,7 +224,7 @@ class MeanRowsOf {
       const ClosedRange<Pixel> range({scale_.dark, scale_.saturated});
       mark_valid(range, reds, greens, inside, valid, setup.cols);
       const S units = S(residual_units);
-      const S zero = S(residual_zero) + S(0.5);  // the half rounds
+      const S zero = S(residual_zero) + S(0.5);  // + 1/2: truncation then rounds
       for_each_cell<S>(setup.cols, [&]<class V>(Index j) {
         const V green = load_cells<V, S>(greens + j) * level;
         const V membrane = load_cells<V, S>(rise + j) * green;
@@ -246,9 +247,9 @@ class MeanRowsOf {
     }
   }
 
-  /// Weighs the means and turns residuals back into red. Where the inner window holds no valid
-  /// pixel its mean is NaN, and so is the row. One window will do for green: its share in the
-  /// equation is small.
+  /// Combines the means of the windows and converts residuals back to red. If a pixel's inner
+  /// window holds no valid pixel, its mean is NaN and so is the result. Green needs only one
+  /// window, because its share in the equation is small.
   void finish(const ColourSetup<S>& setup, Index row, S* to_red, S* to_green) const {
     const S* rise = setup.anchor.rise.data() + row * setup.cols;
     const S* scattered = setup.anchor.scattered.data() + row * setup.cols;

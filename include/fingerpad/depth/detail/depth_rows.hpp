@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// Rows of depth from rows of colour, by each way to find a root.
+// Rows of depth from rows of colour, for each root finder.
 #include <algorithm>
 #include <cmath>
 #include <concepts>
@@ -15,7 +15,7 @@ namespace fingerpad {
 inline namespace v0 {
 namespace detail {
 
-/// Pixel by pixel, by an `Inverse` that finds one root.
+/// Pixel by pixel, with an `Inverse` that finds the root of one pixel.
 template <class Inverse, class Heights, class S, class Scattering>
 class DepthRows {
  public:
@@ -63,7 +63,7 @@ class DepthRows<ExponentialFree<Order, Degree, Radial>, Heights, S, Scattering> 
             const DepthReference<S, Scattering, Heights>& reference,
             const ExponentialFree<Order, Degree, Radial>&)
       : scattering_(reference.scattering) {
-    const auto pencil = [&](double rho_mm) {  // rho as a pinhole has it: radius in px times pitch
+    const auto pencil = [&](double rho_mm) {  // rho of a pinhole: radius in px times pitch
       const double tangent = rho_mm / camera.pitch_mm * tangent_per_px(camera);
       return pencil_of<Heights>(camera, ray_at_tangent(camera, tangent));
     };

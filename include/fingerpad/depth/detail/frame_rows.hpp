@@ -1,7 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// Rows of a frame, of any kind of grid, to plain memory and back; and what is wrong with a pixel.
+// Copies rows of a frame, of any kind of grid, to plain memory and back, and tells what is wrong
+// with a pixel.
 #include <algorithm>
 #include <cmath>
 #include <concepts>
@@ -28,10 +29,10 @@ inline namespace v0 {
 
 namespace detail {
 
-// What an anchored mean is anchored at: the colours that the free pad's known shape predicts.
+// The anchor of an anchored mean: the colours that the free pad's known shape predicts.
 
-/// Per pixel, what an anchored mean needs of the free pad's depth l0: the residual
-/// r = rise green - kappa red + scattered is F(l0), 0 where the membrane is where it was.
+/// The terms of the free pad's depth l0 that an anchored mean needs, per pixel. The residual r =
+/// rise green - kappa red + scattered is F(l0), which is 0 where the membrane has not moved.
 template <class S>
 struct Anchor {
   std::vector<S> rise;       ///< exp(delta k l0)
@@ -39,8 +40,8 @@ struct Anchor {
   S kappa = S(1);
 };
 
-/// The anchor at the free pad of `reference`. Outside the pad, where nothing is averaged, it holds
-/// harmless numbers.
+/// The anchor at the free pad of `reference`. Outside the pad, where nothing is averaged, `rise` is
+/// 1 and `scattered` 0.
 template <class S, class Scattering, class Heights>
 Anchor<S> anchor_of(const Camera<double>& camera,
                     const Absorption<double>& fluid,
@@ -71,7 +72,7 @@ Anchor<S> anchor_of(const Camera<double>& camera,
 
 // Which pixels of a row count: those inside the pad with both channels within a closed range.
 
-/// valid[j] becomes nonzero where inside[j] is and both channels are in `range`.
+/// Sets valid[j] to nonzero if inside[j] is nonzero and both channels are in `range`, else to 0.
 template <std::unsigned_integral Pixel, int VectorBytes = native_vector_bytes>
 void mark_valid(const ClosedRange<Pixel>& range,
                 const Pixel* red,
@@ -99,7 +100,7 @@ void mark_valid(const ClosedRange<Pixel>& range,
   }
 }
 
-/// Why a pixel without a smoothed colour has none: what is wrong with its own.
+/// Why a pixel has no smoothed colour, judged by its own channels.
 template <class Cell>
 PixelStatus status_of_cells(const Cell& red, const Cell& green, const GreyScale& scale) {
   using S = real_of_t<Cell>;
@@ -114,7 +115,7 @@ PixelStatus status_of_cells(const Cell& red, const Cell& green, const GreyScale&
   return r <= scale.dark || g <= scale.dark ? PixelStatus::dark : PixelStatus::not_a_number;
 }
 
-/// A status grid that nobody asked for.
+/// The status grid of a caller that wants none: it ignores what is assigned.
 struct IgnoredCell {
   struct Sink {
     constexpr const Sink& operator=(PixelStatus) const { return *this; }
@@ -122,7 +123,7 @@ struct IgnoredCell {
   constexpr Sink operator()(Index, Index) const { return {}; }
 };
 
-/// The other forms are in row_lanes.hpp.
+/// Writes nothing. The other overloads are in row_lanes.hpp.
 template <class View>
 void store_row(const PixelStatus*, const View& view, Index row) requires
     std::is_same_v<decltype(view(row, Index(0))), IgnoredCell::Sink> {}
@@ -155,8 +156,8 @@ void load_pixels(const StridedView<const Pixel>& red,
   Index done = 0;
   const bool together = n > 0 && step == green.col_stride() && r - g < step && g - r < step;
   if (together && (step == 3 || step == 4)) {
-    // Which channel is first in a pixel is not known, so the last pixel is left: a block that
-    // begins at the first of the two would reach past it.
+    // The last pixel is left to the loop below. It is not known which channel of a pixel `first`
+    // is, and a block from there on may reach past the last pixel.
     const Pixel* first = (std::min)(r, g);
     const auto red_at = static_cast<int>(r - first);
     const auto green_at = static_cast<int>(g - first);

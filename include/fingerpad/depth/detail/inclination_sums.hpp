@@ -1,14 +1,14 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// Sums over a disc of how much the membrane's inclination changed since a reference:
+// Sums over a disc of the change of the membrane's inclination since a reference:
 //   psi_sum(x, y) = sum over the disc of [psi(t) - psi(t0)],  psi = atan|grad depth|, rad
 // from a summed-area table, see disc_sums.hpp.
 //
 // Gradients are central differences, one-sided where one neighbour is missing; psi is missing where
-// both are, along either axis. Missing pixels of the frame that the reference has stand for
-// membrane that was not seen: they are taken to have changed as the mean of the disc's others.
-// Pixels that the reference does not have are no membrane and add nothing.
+// both are, along either axis. A pixel that is missing in the frame but not in the reference is
+// membrane that was not seen: it counts with the mean change of the disc's other pixels. A pixel
+// that is missing in the reference is not membrane and adds nothing.
 #include <algorithm>
 #include <concepts>
 #include <cstddef>
@@ -26,14 +26,14 @@ namespace fingerpad {
 inline namespace v0 {
 namespace detail {
 
-/// The engine: what the reference fixes, and the passes over one frame.
+/// The quantities that the reference fixes, and the passes over one frame.
 template <class Disc, scalar S>
 class InclinationSums {
   using Total = InclinationTotal<S>;
   using T = typename Total::type;
 
  public:
-  /// By vectors where inclination() is.
+  /// Bytes of a vector; 0 unless inclination() has a vector form for S.
   static constexpr int bytes = std::same_as<S, float> ? native_vector_bytes : 0;
   /// Columns [first, last).
   struct Span {
@@ -64,7 +64,7 @@ class InclinationSums {
     std::vector<std::uint8_t> lost;  ///< 1 where the reference has psi and the frame has not
     std::vector<T> psi;
     std::vector<std::uint8_t> present;
-    std::vector<S> sum;     ///< the row that sum_row made, rad
+    std::vector<S> sum;     ///< the row that sum_row computed, rad
     std::vector<S> row_mm;  ///< a row of depths
     Line lines[3];
     Index lost_px = 0;
@@ -107,7 +107,7 @@ class InclinationSums {
 
   Index rows() const { return rows_; }
   Index cols() const { return cols_; }
-  /// What the reference has of the pad in a row; beyond it there is nothing to sum.
+  /// The columns that the reference's pad spans in a row; outside them there is nothing to sum.
   Span span(Index row) const { return span_[static_cast<std::size_t>(row)]; }
   Workspace workspace() const { return Workspace(rows_, cols_, radius_, shape_); }
 
@@ -175,7 +175,7 @@ class InclinationSums {
     std::fill(row + span.last, row + cols_, Cell(0));
   }
 
-  /// Calls visit(i) for each row, with s.psi and s.present of its span.
+  /// Calls visit(i) for each row, with s.psi and s.present computed in its span.
   template <class View, class Visit>
   void each_row(const View& depth, Workspace& s, const Visit& visit) const {
     clear(s.lines[2]);
@@ -199,12 +199,12 @@ class InclinationSums {
     const S* from = row_of<S>(depth, row, l);
     for_each_cell<S>(cols_, [=]<class V>(Index j) {
       const V depth_mm = load_cells<V, S>(from + j);
-      const V nothing = depth_mm - depth_mm;  // or NaN, of an infinity, too
+      const V nothing = depth_mm - depth_mm;  // 0, or NaN if the depth is NaN or infinite
       store_cells<S>(l + j, V(depth_mm - nothing));
     });
   }
 
-  /// s.psi and s.present of a row from it and its neighbours.
+  /// Computes s.psi and s.present of a row from it and the rows above and below.
   void find_psi(
       const Span& span, const Line& up, const Line& here, const Line& down, Workspace& s) const {
     const Index first = span.first;
@@ -237,8 +237,8 @@ class InclinationSums {
         });
   }
 
-  /// s.psi becomes the change of psi, 0 where either is missing, and s.lost of the row is marked.
-  /// Returns how many pixels are lost.
+  /// Sets s.psi to the change of psi, 0 where either is missing, and marks the row's lost pixels in
+  /// s.lost. Returns their number.
   Index compare(Index row, Workspace& s) const {
     const Span span = this->span(row);
     const Index count = span.last - span.first, begin = row * cols_ + span.first;
@@ -252,7 +252,7 @@ class InclinationSums {
       const V here = load_cells<V, std::uint8_t>(present + j);
       const V there = load_cells<V, std::uint8_t>(present0 + j);
       const V gone = there & ~here;
-      store_cells<std::uint8_t>(present + j, V(here & there));  // from here on: in both
+      store_cells<std::uint8_t>(present + j, V(here & there));  // from here on: present in both
       store_cells<std::uint8_t>(lost + j, gone);
       if (any_lane(gone != every_lane<V>(std::uint8_t(0)))) {
         lost_px += std::count(lost + j, lost + j + lanes_in<V, std::uint8_t>, 1);
@@ -270,10 +270,10 @@ class InclinationSums {
   Index rows_, cols_, radius_;
   DiscShape shape_;
   S unit_, per_mm_;
-  std::vector<Span> span_;             // of each row, what the reference has of the pad
+  std::vector<Span> span_;             // per row, the columns that the reference's pad spans
   std::vector<T> psi_;                 // of the reference
   std::vector<std::uint8_t> present_;  // where it is known
-  std::vector<S> count_;               // how many such pixels each disc holds
+  std::vector<S> count_;               // weighted number of such pixels in each disc
 };
 
 }  // namespace detail

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// One image row of depths from a ScatterPolynomial, as many pixels at a time as a register holds.
-// No allocation, no branch per pixel; a pixel without an answer gets NaN and the reason.
+// Computes one image row of depths from a ScatterPolynomial, one vector register of pixels at a
+// time. No allocation, no branch per pixel; a pixel without a depth gets NaN and the reason.
 #include <algorithm>
 #include <bit>
 #include <cmath>
@@ -49,7 +49,7 @@ template <int Order, std::size_t Degree, class V>
   }
 }
 
-/// A NaN that says why in its last two bits; any other NaN reads as `not_a_number`.
+/// A NaN that holds the reason in its last two bits; any other NaN reads as `not_a_number`.
 template <class Scalar>
 constexpr Scalar nan_because(PixelStatus why) {
   using Bits = std::conditional_t<sizeof(Scalar) == 4, std::uint32_t, std::uint64_t>;
@@ -71,7 +71,8 @@ void write_status(const Scalar* depth_mm, PixelStatus* status) noexcept {
   std::memcpy(status, code, sizeof code);
 }
 
-/// Depth of one register of pixels, or a NaN with its reason. `gain` is a V, or null when folded.
+/// Depth of one register of pixels, or a NaN with its reason. `gain` is a V, or nullptr if g is
+/// folded into the table.
 template <int Order, class Table, class V, class Gain>
 [[gnu::always_inline]] inline V invert(
     const Table& table, V u, V red, V green, Gain gain) noexcept {
@@ -126,10 +127,11 @@ ColumnSpan covered_columns(const Table& table, std::ptrdiff_t row, std::ptrdiff_
   return {first, last < first ? first : last};
 }
 
-/// Pixels that are inverted between two looks at what became of them.
+/// Number of pixels that are inverted between two checks of their status.
 inline constexpr std::ptrdiff_t inversion_block = 64;
 
-/// Depths of a block of pixels from column `first` on. False when one of them has none.
+/// Computes the depths of a block of pixels from column `first` on. Returns false if any of them
+/// has none.
 template <int Order, class V, class Table, class Scalar, class Gain>
 [[gnu::always_inline]] inline bool invert_block(const Table& table,
                                                 std::ptrdiff_t row,
@@ -178,7 +180,7 @@ void invert_row(const Table& table,
   constexpr bool has_gain = !std::is_null_pointer_v<Gain>;
   constexpr auto block = inversion_block;
   using V = typename RowVector<Scalar, row_lanes<Scalar, VectorBytes>>::type;
-  const Table local = table;  // out of reach of the outputs, so it can stay in registers
+  const Table local = table;  // cannot alias the outputs, so it can stay in registers
   const auto [begin, end] = covered_columns(table, row, cols);
   std::fill(depth_mm, depth_mm + begin, std::numeric_limits<Scalar>::quiet_NaN());
   std::fill(depth_mm + end, depth_mm + cols, std::numeric_limits<Scalar>::quiet_NaN());

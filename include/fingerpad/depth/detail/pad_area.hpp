@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// The rectangle of pixels that holds the pad. Everything per frame is done on it alone; what lies
-// outside is marked and left.
+// The rectangle of pixels that holds the pad. All work per frame is limited to it; pixels outside
+// are only marked.
 #include <algorithm>
 #include <cstdint>
 #include <cstring>
@@ -26,8 +26,8 @@ struct PadArea {
   bool operator==(const PadArea&) const = default;
 };
 
-/// A reference and its camera in the coordinates of the pad's rectangle, and where that lies in
-/// frames of rows x cols pixels.
+/// A reference and its camera in the coordinates of the pad's rectangle, and the place of this
+/// rectangle in frames of rows x cols pixels.
 template <class S, class Scattering, class Heights>
 struct PadReference {
   Index rows;
@@ -70,7 +70,8 @@ PadReference<S, Scattering, Heights> crop_to_pad(
   return pad;
 }
 
-/// 1 for each pixel that has a depth in the reference and a g > 0; another would spoil its window.
+/// 1 for each pixel that has a depth in the reference and a g > 0, else 0. Other pixels would spoil
+/// the windows that contain them.
 template <class S, class Scattering, class Heights>
 std::vector<std::uint8_t> usable_pixels(const Camera<double>& camera,
                                         const DepthReference<S, Scattering, Heights>& reference) {

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// The light near the pad's rim, which a press hardly moves, as a share of that in the reference: it
-// shows a lamp or a membrane that is no longer that of the reference.
+// The light near the pad's rim, relative to the reference. A press hardly moves the rim, so that a
+// change shows that the lamp or the membrane is no longer that of the reference.
 #include <cstddef>
 #include <vector>
 
@@ -17,8 +17,8 @@ namespace detail {
 
 class RimLight {
  public:
-  /// `pixels` were looked at, `lit` of them are neither dark nor saturated, `light` is the sum of
-  /// their green over the reference's mean.
+  /// `pixels` were examined, and `lit` of them are neither dark nor saturated. `light` is the sum
+  /// of green over the reference's mean for the lit ones.
   struct Sum {
     Index pixels = 0;
     Index lit = 0;
@@ -47,7 +47,7 @@ class RimLight {
     }
   }
 
-  /// Of rows [first, last) of a frame.
+  /// Sums over rows [first, last) of a frame.
   template <class Red, class Green>
   Sum sum(
       Index first, Index last, const Red& red, const Green& green, const GreyScale& scale) const {

@@ -4,9 +4,10 @@
 // Depth from two colours without an exponential or a square root per pixel. With s = l / l_max and
 // u = (rho / rho_max)^2 the absorption balance b e^{delta k l} - kappa r + g W(l) = 0 becomes
 //   kappa r - b = sum_j (b E_j(u) + g W_j(u)) s^j,   j = 1..Degree,
-// where E stands for e^{delta k l} - 1 and W for the scatter integral, both near-minimax.
-// The right side grows from 0 at s = 0 to `total` at s = 1, so the range tests are exact signs and
-// the start, a hyperbola through both ends with the slope at s = 0, never leaves [0, 1].
+// where E stands for e^{delta k l} - 1 and W for the scatter integral, both fitted near-minimax.
+// The right side grows from 0 at s = 0 to `total` at s = 1, so the range tests are exact
+// comparisons. The start of the iteration, a hyperbola through both ends with the slope at s = 0,
+// never leaves [0, 1].
 #include <algorithm>
 #include <bit>
 #include <cmath>
@@ -35,7 +36,7 @@ struct ScatterDomain {
 template <int Degree, class Scalar = float, int Radial = (sizeof(Scalar) > 4 ? 8 : 3)>
 struct ScatterPolynomial {
   static_assert(Degree >= 4 && Degree <= 16 && Radial >= 2 && Radial <= 8);
-  static constexpr int exp_degree = (Degree + 3) / 2;  // delta k l_max is small: fewer terms do
+  static constexpr int exp_degree = (Degree + 3) / 2;  // fewer terms, as delta k l_max is small
 
   // Higher powers of s carry less of the sum, so they need less of u.
   static constexpr int scatter_radial(int j) { return at_least(1, Radial - j / 2); }
@@ -149,7 +150,7 @@ double error_bound_mm(const Table& table,
       const double e = sum(table.exp_minus_1, s, u, e_slope) - std::expm1(l * delta_k(rho));
       const double miss = gain * std::abs(w) + green_max * std::abs(e);
       const double error_mm = domain.l_max_mm * miss / (gain * w_slope);
-      if (!(w_slope > 0 && error_mm >= 0)) {  // not rising, or not a number
+      if (!(w_slope > 0 && error_mm >= 0)) {  // not rising, or NaN
         return std::numeric_limits<double>::infinity();
       }
       bound = (std::max)(bound, error_mm);

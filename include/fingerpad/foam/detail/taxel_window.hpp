@@ -1,11 +1,11 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// The last readings of every taxel with their running sums, so that the spread of each about a
-// straight line is known in O(1) a sample. With d = reading - reference and u = 0 (oldest) ... n -
-// 1 (newest) the sums are sum d, sum u d and sum d^2. A running sum collects rounding, and one
-// about a far reference loses digits: so at each sample a few taxels are summed anew about their
-// newest reading, all of them once within a window.
+// The last n readings of every taxel with running sums, so that the variance of each taxel about a
+// straight line takes O(1) per sample. With d = reading - reference and u = 0 (oldest) ... n - 1
+// (newest), the sums are sum d, sum u d and sum d^2. Running sums accumulate roundoff, and lose
+// digits if the reference is far off. Each sample therefore recomputes the sums of a few taxels
+// about their newest reading, so that every taxel is recomputed once per window.
 #include <algorithm>
 #include <cstddef>
 #include <vector>
@@ -35,7 +35,7 @@ class TaxelWindow {
   Index taxels() const { return taxels_; }
   Index length() const { return length_; }
 
-  /// As if `now` had been read all along.
+  /// Fills the whole window with `now`.
   void restart(const S* now) {
     for (Index u = 0; u < length_; ++u) {
       std::copy(now, now + taxels_, row(u));
@@ -47,7 +47,7 @@ class TaxelWindow {
     oldest_ = 0;
   }
 
-  /// `now` becomes the newest reading of every taxel; the oldest is forgotten.
+  /// Adds `now` as the newest reading of every taxel and removes the oldest.
   void push(const S* now) {
     S* const oldest = row(oldest_);
     const S last = S(static_cast<int>(length_ - 1));
@@ -55,7 +55,7 @@ class TaxelWindow {
       const auto i = static_cast<std::size_t>(k);
       const S gone = oldest[k] - reference_[i];
       const S come = now[k] - reference_[i];
-      const S rest = sum_[i] - gone;  // of those that stay; each of them grows one sample older
+      const S rest = sum_[i] - gone;  // sum of the remaining readings, whose u falls by 1
       moment_[i] = moment_[i] - rest + S(last * come);
       sum_[i] = rest + come;
       squares_[i] = squares_[i] + S(S(come - gone) * S(come + gone));
@@ -68,7 +68,7 @@ class TaxelWindow {
     }
   }
 
-  /// Mean square of what is left of each taxel without its line; rounding may make it negative.
+  /// Mean square of the residuals of each taxel about its line; roundoff may make it negative.
   void variances(S* out) const {
     const S share = S(1) / S(static_cast<int>(length_));
     for (std::size_t i = 0; i < sum_.size(); ++i) {
@@ -78,11 +78,11 @@ class TaxelWindow {
     }
   }
 
-  /// What is left of a taxel at each time of the window, oldest first; returns its mean square.
+  /// Residuals of a taxel about its line, oldest first. Returns their mean square.
   S residuals(Index taxel, S* out) const {
     const auto i = static_cast<std::size_t>(taxel);
     const S length = S(static_cast<int>(length_));
-    const S mean = sum_[i] / length;  // of the differences from the reference, which are exact
+    const S mean = sum_[i] / length;  // of the exact differences from the reference
     const S slope = S(moment_[i] - S(middle_ * sum_[i])) * spread_;
     S squares = S(0);
     for (Index u = 0; u < length_; ++u) {
@@ -95,7 +95,7 @@ class TaxelWindow {
 
  private:
   void sum_anew(Index taxel) {
-    const S reference = row(place(length_ - 1))[taxel];  // finite, whatever the sums had become
+    const S reference = row(place(length_ - 1))[taxel];  // finite, even if the sums are not
     S sum = S(0), moment = S(0), squares = S(0);
     for (Index u = 0; u < length_; ++u) {
       const S d = row(place(u))[taxel] - reference;
@@ -119,8 +119,8 @@ class TaxelWindow {
   S middle_;  // mean of u
   S spread_;  // 1 / sum (u - middle)^2
   Index oldest_ = 0;
-  Index next_ = 0;           // to be summed anew
-  std::vector<S> readings_;  // length x taxels, from `oldest_` round
+  Index next_ = 0;           // the next taxel to recompute
+  std::vector<S> readings_;  // length x taxels, a ring from `oldest_`
   std::vector<S> reference_;
   std::vector<S> sum_;
   std::vector<S> moment_;

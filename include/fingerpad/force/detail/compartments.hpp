@@ -21,7 +21,8 @@ inline namespace v0 {
 
 namespace detail::membrane {
 
-/// Nodes x(i, j): line i = 0 ... n - 1, row j = 0 (rim) ... m (A_g). Memory is taken once.
+/// Nodes x(i, j): line i = 0 ... n - 1, row j = 0 (rim) ... m (A_g). Allocates only in the
+/// constructor.
 template <scalar S>
 class Compartments {
  public:
@@ -31,13 +32,13 @@ class Compartments {
         base_radius_mm_(base_radius_mm),
         steps_(steps),
         nodes_(static_cast<std::size_t>(columns * (rows + 1))) {
-    // four times the way over a hemisphere
+    // five times the arc from the rim to the apex of a hemisphere
     const S most = S(8) * base_radius_mm / steps.arc_mm;
     const std::size_t points = static_cast<std::size_t>(value(most)) + 8;
     lines_.assign(static_cast<std::size_t>(columns), Meridian<S>(points));
     level_sums_.resize(lines_.size());
     for (Meridian<S>& line : lines_) {
-      line = Meridian<S>(points);  // a copy would not keep the room
+      line = Meridian<S>(points);  // a copy would not keep the reserved memory
     }
   }
 
@@ -50,9 +51,9 @@ class Compartments {
   const Point3<S>& end_normal(Index line) const {
     return lines_[static_cast<std::size_t>(line)].end_normal();
   }
-  /// Lines that ended in a hole and were put between their neighbours.
+  /// Number of lines that ended in a hole and were interpolated from their neighbours.
   Index broken() const { return broken_; }
-  /// Lines along which the membrane is level at its end.
+  /// Number of lines at whose end the membrane is level.
   Index level() const {
     Index count = 0;
     for (const Meridian<S>& line : lines_) {
@@ -70,8 +71,8 @@ class Compartments {
     return top;
   }
 
-  /// Area within A_g in plan, as a polygon; `per_mm`: root of the sum of squares of its changes
-  /// when a line ends 1 mm further out.
+  /// Area within A_g in plan, as a polygon. `per_mm`: root sum of squares, over the lines, of its
+  /// change if a line ends 1 mm further out.
   S summit_area(S& per_mm) const {
     using std::sqrt;
     S area = S(0), squares = S(0);
@@ -93,8 +94,8 @@ class Compartments {
            S(static_cast<double>(columns_));
   }
 
-  /// Lays the lines over `shape`; `center` is the middle of the contact. Lines that end in a hole
-  /// are put between their neighbours.
+  /// Traces the lines over `shape`; `center` is the middle of the contact. Lines that end in a hole
+  /// are interpolated from their neighbours.
   template <class Lines, class Shape>
   void lay(const Shape& shape, const Point3<S>& center) {
     using std::cos;
@@ -144,8 +145,9 @@ class Compartments {
     return by_height ? (climb < S(0) ? S(0) : climb) : length_of(S(squared_norm(b - a)));
   }
 
-  /// Nodes of a line at equal parts of its height or length, or at steps of height of their own;
-  /// then those beyond its end lie there, and what steps do not reach belongs to the last segment.
+  /// Places the nodes of a line at equal parts of its height or length, or at fixed steps if Lines
+  /// has a step_mm. With fixed steps, nodes beyond the end of the line lie at its end, and the last
+  /// segment takes the rest of a longer line.
   template <class Lines>
   void cut(Index line) {
     constexpr bool ByHeight = Lines::by_height;
@@ -161,7 +163,7 @@ class Compartments {
     at(line, 0) = points.front();
     at(line, rows_) = points.back();
     std::size_t k = 1;
-    S before = S(0);  // of point k - 1
+    S before = S(0);  // up to point k - 1
     S length = measure(points[0], points[1], ByHeight);
     for (Index j = 1; j < rows_; ++j) {
       const S wanted = step * S(static_cast<double>(j));
@@ -176,7 +178,8 @@ class Compartments {
     }
   }
 
-  /// Broken lines lie between the whole ones on both sides, rotated about the axis.
+  /// Interpolates broken lines between the nearest whole ones on both sides, rotated about the
+  /// axis.
   void bridge() {
     for (Index i = 0; i < columns_; ++i) {
       if (end(i) != LineEnd::hole) {

@@ -1,8 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// A cell of the dot grid: four dots and the membrane between them. Its energy is the mean over its
-// two diagonals, each of which makes two triangles of it, so that no diagonal is preferred.
+// A cell of the dot grid: four dots and the membrane between them. Each of its two diagonals
+// divides it into two triangles. Its energy is the mean over both diagonals, so that none is
+// preferred.
 #include <array>
 #include <cmath>
 #include <cstddef>
@@ -15,26 +16,26 @@ namespace fingerpad {
 inline namespace v0 {
 namespace detail::traction {
 
-// A triangle of membrane, stretched alike all over: its energy and what it pulls its corners with.
-// The membrane is incompressible and neo-Hookean; per stress-free area, with the surface
-// deformation gradient F and J = det F,
+// Energy and corner forces of a uniformly stretched triangle of membrane. The membrane is
+// incompressible and neo-Hookean. Per stress-free area, with the surface deformation gradient F and
+// J = det F,
 //   W = (mu t / 2) (|F|^2 + J^-2 - 3).
 // |F|^2 of a triangle is a sum over its edges, weighted with half the cotangents of the stress-free
-// angles opposite to them; J is its area now by that without stress. So neither F nor a frame in
-// the triangle's plane is needed. All energies and forces here are for mu t = 1 N/mm.
+// angles opposite to them. J is its area over its stress-free area. Neither F nor a frame in the
+// triangle's plane is therefore needed. All energies and forces here are for mu t = 1 N/mm.
 
 /// Corners in the order of the grid, or any other.
 template <scalar S>
 using Triangle = std::array<Point3<S>, 3>;
 
-/// What the energy needs of a triangle without stress.
+/// Properties of a stress-free triangle for the energy.
 template <scalar S>
 struct StressFreeTriangle {
   S area_mm2 = S(0);
   std::array<S, 3> half_cotangent = {S(0), S(0), S(0)};  ///< of the angle at each corner
 };
 
-/// Twice the area vector: normal to the triangle, by the order of its corners.
+/// Twice the area vector: normal to the triangle, with the sense of its corners.
 template <scalar S>
 Point3<S> twice_area_vector(const Triangle<S>& x) {
   return cross(x[1] - x[0], x[2] - x[0]);
@@ -64,20 +65,20 @@ S principal_tension(const S& stretch_sq, const S& area_ratio) {
   return S(shrunk * (stretch_sq - shrunk * shrunk));
 }
 
-/// The principal tensions in a cell, N/mm; below 0 the membrane is slack there and would wrinkle.
+/// The principal tensions in a cell, N/mm. Below 0 the membrane is slack and would wrinkle.
 template <scalar S>
 struct CellTension {
   S larger = not_a_number<S>();
   S smaller = not_a_number<S>();
-  Point3<S> direction = detail::missing_point<S>();  ///< unit vector along which the larger pulls
+  Point3<S> direction = detail::missing_point<S>();  ///< unit vector of the larger one
 };
 
 /// In the order around the cell: (row, col), (row, col + 1), (row + 1, col + 1), (row + 1, col).
 template <scalar S>
 using Corners = std::array<Point3<S>, 4>;
 
-/// The four triangles of the two diagonals are the cell's ears: a corner between the one before it
-/// and the one after it. Ears 1 and 3 share one diagonal, ears 0 and 2 the other.
+/// The triangle of a corner with the corner before and after it. The four ears are the triangles of
+/// both diagonals: ears 1 and 3 share one diagonal, ears 0 and 2 the other.
 template <scalar S>
 Triangle<S> ear(const Corners<S>& x, std::size_t corner) {
   return {x[(corner + 3) % 4], x[corner], x[(corner + 1) % 4]};
@@ -94,17 +95,17 @@ struct CellTangents {
         along_col(S(0.5) * (x[3] - x[0] + x[2] - x[1])) {}
 };
 
-/// What is known of a cell before any frame.
+/// Properties of a cell without stress.
 template <scalar S>
 struct StressFreeCell {
-  bool usable = false;  ///< all four dots are there, and no triangle is flat
+  bool usable = false;  ///< all four dots exist, and no triangle is degenerate
   std::array<StressFreeTriangle<S>, 4> ear = {};
   std::array<S, 4> side_stiffness = {S(0), S(0), S(0), S(0)};  ///< from corner k to the next one
   std::array<S, 2> diagonal_stiffness = {S(0), S(0)};          ///< from corner k to k + 2
-  /// Tangents of the grid -> an orthonormal pair in the cell's plane: column 1 of the inverse is
-  /// {to_first, 0}, column 2 {shear, to_second}.
+  /// Map from the tangents of the grid to an orthonormal pair in the cell's plane: column 1 of the
+  /// inverse is {to_first, 0}, column 2 {shear, to_second}.
   S to_first = S(0), shear = S(0), to_second = S(0);
-  S upward = S(0);  ///< z of the normal by the order of rows and columns, times the area
+  S upward = S(0);  ///< z of along_row x along_col: normal times area
 
   StressFreeCell() = default;
   explicit StressFreeCell(const Corners<S>& x) {
@@ -117,7 +118,7 @@ struct StressFreeCell {
         longest_sq = longest_sq < edge_sq ? edge_sq : longest_sq;
       }
       const S doubled_sq = squared_norm(twice_area_vector(corners));
-      // flatter than 1 : 1000 is a line; false for NaN
+      // a triangle flatter than 1 : 1000 is degenerate; false for NaN
       if (!(value(doubled_sq) > value(S(S(1e-6) * longest_sq * longest_sq)))) {
         return;
       }
@@ -147,16 +148,16 @@ struct StressFreeCell {
   }
 };
 
-/// A cell as it is in a frame.
+/// Forces and areas of a cell in a frame.
 template <scalar S>
 struct CellPull {
-  bool sound = false;    ///< else nothing else is meant
+  bool sound = false;    ///< false: the other members have no meaning
   Corners<S> force;      ///< on each corner, N for mu t = 1 N/mm
   Corners<S> area;       ///< each corner's share of the area vector, mm^2
   Point3<S> whole_area;  ///< their sum
 };
 
-/// The squares of the largest and of the smallest stretch that are believed.
+/// Squares of the largest and smallest plausible stretch.
 template <scalar S>
 struct StretchLimits {
   S high;
@@ -165,8 +166,8 @@ struct StretchLimits {
   explicit StretchLimits(double largest)
       : high(S(largest * largest)), low(S(1.0 / (largest * largest))) {}
 
-  /// True when both principal stretches lie between. Their squares are the roots of
-  /// s^2 - sq_sum s + area_ratio_sq, whose sign tells without computing them; false for NaN.
+  /// Whether both principal stretches lie between the limits. Their squares are the roots of
+  /// s^2 - sq_sum s + area_ratio_sq, whose sign at the limits decides; false for NaN.
   bool allow(const S& sq_sum, const S& area_ratio_sq) const {
     const S above = high * (high - sq_sum) + area_ratio_sq;
     const S below = low * (low - sq_sum) + area_ratio_sq;
@@ -175,9 +176,8 @@ struct StretchLimits {
   }
 };
 
-/// The pull of a cell: the mean of corner_forces() over its two diagonals, with what they share
-/// computed once. And whether it can be a piece of membrane: not folded along a diagonal, no
-/// principal stretch beyond the limits.
+/// The corner forces of a cell, averaged over its two diagonals with common terms computed once.
+/// `sound`: not folded along a diagonal, and no principal stretch beyond the limits.
 template <scalar S>
 CellPull<S> cell_pull(const StressFreeCell<S>& free,
                       const Corners<S>& x,
@@ -212,7 +212,7 @@ CellPull<S> cell_pull(const StressFreeCell<S>& free,
     out.force[k] = out.force[k] - (on_last + on_next);
   }
   out.whole_area = S(0.5) * (doubled[0] + doubled[2]);
-  for (std::size_t k = 0; k < 4; ++k) {  // each ear has three corners: all but the one across
+  for (std::size_t k = 0; k < 4; ++k) {  // corner k belongs to all ears but the opposite one
     out.area[k] = S(S(1) / S(12)) * (S(4) * out.whole_area - doubled[(k + 2) % 4]);
   }
   out.sound = value(dot(doubled[0], doubled[2])) > 0 && value(dot(doubled[1], doubled[3])) > 0;
@@ -230,13 +230,13 @@ CellTension<S> cell_tension(const StressFreeCell<S>& free, const Corners<S>& x) 
   const S c11 = squared_norm(first), c22 = squared_norm(second), c12 = dot(first, second);
   const S half_sum = S(0.5) * (c11 + c22), half_difference = S(0.5) * (c11 - c22);
   const S spread_sq = half_difference * half_difference + c12 * c12;
-  // a root at 0 has no derivative
+  // the square root has no derivative at 0
   const S spread = value(spread_sq) > 0 ? S(sqrt(spread_sq)) : S(0);
   const S area_ratio_sq = squared_norm(cross(first, second));
   const S area_ratio = sqrt(area_ratio_sq);
   const S along_sq = half_sum + spread;
   const S across_sq = area_ratio_sq / along_sq;
-  // the eigenvector (c12, spread - half_difference), in the form that does not cancel
+  // the eigenvector (c12, spread - half_difference), in the form without cancellation
   const bool first_leads = value(half_difference) >= 0;
   const S a = first_leads ? S(spread + half_difference) : c12;
   const S b = first_leads ? c12 : S(spread - half_difference);

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// The loads of a frame, from what the cells pull their dots with, the pressure and mu t.
+// The loads of a frame, from the pull of the cells on their dots, the pressure and mu t.
 #include <array>
 #include <cmath>
 #include <cstddef>
@@ -20,19 +20,20 @@ inline namespace v0 {
 
 namespace detail::traction {
 
-// A dot that was not found, put where its neighbours say. No load is told from it; but the sum of
-// the loads over a patch is the pull across the patch's border and the pressure on whatever surface
-// spans it, wherever the dots inside are: there a bridged dot serves as well as a found one.
+// Dots that were not found are bridged: placed by their neighbours. A bridged dot has no load of
+// its own. The sum of the loads over a patch, however, depends only on the pull across the border
+// of the patch and the pressure on any surface that spans it. For this sum a bridged dot is as good
+// as a found one.
 
-/// Where dot (row, col) would lie. With all eight neighbours the surface of degree two through
-/// them, else the mean of those that lie opposite to each other; missing where no two do.
-/// found(row, col) tells whether a dot of the frame is there, also for places outside of the grid;
-/// at(row, col) is its place.
+/// Expected position of dot (row, col): on the surface of degree two through all eight neighbours
+/// or, if some are missing, the mean of opposite pairs; missing if there is no pair.
+/// found(row, col) says whether a dot was found, and accepts indices outside of the grid.
+/// at(row, col) is its position.
 template <scalar S, class Found, class At>
 Point3<S> bridged_dot(Index row, Index col, const Found& found, const At& at) {
   constexpr Index step[4][2] = {{0, 1}, {1, 0}, {1, 1}, {1, -1}};
   const Point3<S> none = {S(0), S(0), S(0)};
-  std::array<Point3<S>, 2> sums = {none, none};  // of the pairs beside, and of those at the corners
+  std::array<Point3<S>, 2> sums = {none, none};  // of pairs at the sides, and at the corners
   std::array<int, 2> pairs = {0, 0};
   for (std::size_t k = 0; k < 4; ++k) {
     const Index i = step[k][0], j = step[k][1];
@@ -48,8 +49,8 @@ Point3<S> bridged_dot(Index row, Index col, const Found& found, const At& at) {
   return pairs[use] == 0 ? missing_point<S>() : (S(S(0.5) / S(pairs[use])) * sums[use]);
 }
 
-// The geometry of a frame: where the dots are, which belong to the contact, and what the cells pull
-// them with for mu t = 1 N/mm. Pressure and modulus come later, in frame_loads.hpp.
+// The geometry of a frame: positions of the dots, distance to the contact, and the pull of the
+// cells for mu t = 1 N/mm. Pressure and modulus are used further below.
 
 template <scalar S, class Dots>
 void read_dots(const Dots& dots, FrameMemory<S>& frame) {
@@ -86,8 +87,9 @@ void bridge_dots(FrameMemory<S>& frame, Result& result) {
   }
 }
 
-/// Steps from each dot to the nearest in contact, where a step leads to any of the eight
-/// neighbours: what the four before it know, in the order of rows, and then the four after it.
+/// Steps from each dot to the nearest dot in contact, where a step leads to any of the eight
+/// neighbours. Two passes: forward over the four preceding neighbours, then backward over the four
+/// following ones.
 template <scalar S, class Touch, class Result>
 void count_steps(const Touch& touch, FrameMemory<S>& frame, Result& result) {
   const auto look = [&](Index i, Index j, Index way) {
@@ -115,7 +117,7 @@ void count_steps(const Touch& touch, FrameMemory<S>& frame, Result& result) {
   }
 }
 
-/// One cell's share of what pulls its corners.
+/// Adds the pull and area of one cell to its corners.
 template <scalar S, class Result>
 void pull_cell(const StressFreeCell<S>& free,
                Index i,
@@ -171,8 +173,8 @@ void pull_cells(const std::vector<StressFreeCell<S>>& cells,
   }
 }
 
-/// A dot has a load when the four cells around it are known and all look to the same side: else the
-/// membrane would be folded there.
+/// Marks the dots with a load: the four cells around are known and face the same side. Otherwise
+/// the membrane would be folded there.
 template <scalar S, class Result>
 void settle_dots(FrameMemory<S>& frame, Result& result) {
   for (Index i = 1; i + 1 < frame.rows; ++i) {
@@ -198,13 +200,13 @@ void settle_dots(FrameMemory<S>& frame, Result& result) {
   }
 }
 
-/// Has a load, and lies beyond the ring around the contact.
+/// Whether a dot has a load and lies beyond the ring around the contact.
 template <scalar S>
 bool is_free(const FrameMemory<S>& frame, std::size_t dot, Index ring) {
   return frame.has(dot, loaded) && frame.steps[dot] > ring;
 }
 
-/// The free part's two sides of the balance; see modulus.hpp.
+/// Both sides of the balance of the free part; see modulus.hpp.
 template <scalar S>
 ModulusBalance<S> balance_of(const S& pressure_mpa, Index ring, const FrameMemory<S>& frame) {
   ModulusBalance<S> balance;
@@ -219,7 +221,7 @@ ModulusBalance<S> balance_of(const S& pressure_mpa, Index ring, const FrameMemor
   return balance;
 }
 
-/// The tensions for `mu_t` (NaN: unknown), and what stands out among them.
+/// Writes the tensions for `mu_t` (NaN: unknown), the smallest one, and the number of slack cells.
 template <scalar S, class Result>
 void write_tensions(const S& mu_t, FrameMemory<S>& frame, Result& result) {
   for (std::size_t k = 0; k < frame.tension.size(); ++k) {
@@ -238,7 +240,7 @@ void write_tensions(const S& mu_t, FrameMemory<S>& frame, Result& result) {
   }
 }
 
-/// Force of the object on the dot's share of the membrane, N: what pressure and tension leave over.
+/// Force of the object on the dot's share of the membrane, N, which balances pressure and tension.
 template <scalar S>
 Point3<S> force_on(const S& pressure_mpa, const S& mu_t, const FrameMemory<S>& f, std::size_t k) {
   const S push = -pressure_mpa;
@@ -246,7 +248,7 @@ Point3<S> force_on(const S& pressure_mpa, const S& mu_t, const FrameMemory<S>& f
   return push * f.area[k] + pull * f.pull[k];
 }
 
-/// The load of one dot, in a part along its normal and one along the membrane.
+/// Writes the load of one dot, and its parts along the normal and along the membrane.
 template <scalar S>
 void write_load(const S& pressure_mpa, const S& mu_t, std::size_t k, FrameMemory<S>& frame) {
   using std::sqrt;
@@ -259,7 +261,7 @@ void write_load(const S& pressure_mpa, const S& mu_t, std::size_t k, FrameMemory
   frame.shear[k] = load + pressing * normal;
 }
 
-/// All loads; none without a modulus.
+/// Writes all loads; none without a modulus.
 template <scalar S, class Result>
 void write_loads(
     const S& pressure_mpa, const S& mu_t, Index ring, FrameMemory<S>& frame, Result& result) {
@@ -284,8 +286,8 @@ void write_loads(
   }
 }
 
-/// Force and moment: the loads of the dots in contact and of the ring around it, and with less and
-/// less weight those of `fade` dots more, bridged dots included.
+/// Force and moment: the sum of the loads of the dots in contact and in the ring around it, and
+/// with decreasing weight of `fade` more dots. Bridged dots are included.
 template <scalar S, class Result>
 void sum_loads(const S& pressure_mpa,
                const S& mu_t,

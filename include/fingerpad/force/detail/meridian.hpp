@@ -1,17 +1,17 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// One line B(i) up the membrane, from a point of the rim to the line A_g above which the membrane
-// no longer carries the load by tension alone: its summit, where it is level, or the edge of the
-// contact. Source: Ito, Kim, Obinata 2011, III.C.
+// One line B(i) up the membrane, from a point of the rim to the line A_g, above which the membrane
+// no longer carries the load by tension alone. A_g is the summit, where the membrane is level, or
+// the edge of the contact. Source: Ito, Kim, Obinata 2011, III.C.
 //
-// A smoothed depth map does not show the edge of a contact, but what lies a little beside it. At a
-// distance r from the middle of a level contact of radius r_g the vertical balance of what lies
-// between is
+// A smoothed depth map blurs the edge of a contact, so the edge is extrapolated from the free
+// membrane beside it. At a distance r from the middle of a level contact of radius r_g the vertical
+// balance of the membrane between r_g and r is
 //   p (r^2 - r_g^2) / 2 = T r sin(inclination),
-// and the tension T grows slowly outward, as 1 + g (r - r_g). So r_g^2 is what a straight line
-// through (r (1 + g (r - r_g)) sin(inclination), r^2) says of inclination 0, and g the curvature of
-// the same points, which all lines of a frame share.
+// and the tension T grows slowly outward, as 1 + g (r - r_g). A straight line through the points
+// (r (1 + g (r - r_g)) sin(inclination), r^2) therefore has the value r_g^2 at inclination 0. g
+// follows from the curvature of the same points; all lines of a frame share it.
 #include <array>
 #include <cmath>
 #include <cstddef>
@@ -30,22 +30,23 @@ namespace fingerpad {
 inline namespace v0 {
 namespace detail::membrane {
 
-/// How a line ended.
+/// Where a line ended.
 enum class LineEnd : std::uint8_t {
   edge,    ///< at the edge of the contact
-  summit,  ///< where the membrane is level without touching
-  hole,    ///< where there is no height
+  summit,  ///< where the membrane is level without contact
+  hole,    ///< where the height is unknown
 };
 
 template <scalar S>
 struct LineSteps {
   S arc_mm;    ///< length of a step along the membrane
-  S blur_mm;   ///< what lies nearer to the edge is not looked at: half the width of smoothing
-  S reach_mm;  ///< how far beyond that inclinations are looked at
+  S blur_mm;   ///< points nearer to the edge are not used: half the width of smoothing
+  S reach_mm;  ///< inclinations are used up to this far beyond blur_mm
 };
 
-/// Sums for the least squares of r^2 - r_edge^2 = r_g^2 - r_edge^2 + level x + growth x (r -
-/// r_edge), x = r sin(inclination), r_edge where the contact is seen to begin.
+/// Sums for the least-squares fit of
+///   r^2 - r_edge^2 = r_g^2 - r_edge^2 + level x + growth x (r - r_edge),   x = r sin(inclination).
+/// r_edge is where the contact begins in the map.
 template <scalar S>
 struct LevelSums {
   SmallMatrix<S, 3> normal = zero_matrix<S, 3>();
@@ -64,7 +65,7 @@ struct LevelSums {
     ++count;
   }
 
-  /// Adds what the points say of g: its numerator and its denominator.
+  /// Adds this line's contribution to g: its numerator and its denominator.
   void add_growth(S& growth, S& level) const {
     const NormalEquations<S, 3> equations(normal, 1e-10);
     if (count >= 6 && equations.good) {
@@ -74,7 +75,7 @@ struct LevelSums {
     }
   }
 
-  /// r_g^2 for a given g; NaN where the points do not tell.
+  /// r_g^2 for a given g; NaN with fewer than 3 points.
   S level_radius_sq(const S& growth) const {
     // x (1 + g (r - r_edge)) as the one unknown
     const S xx = normal[1][1] + S(2) * growth * normal[1][2] + growth * growth * normal[2][2];
@@ -86,19 +87,19 @@ struct LevelSums {
   }
 };
 
-/// The points of a line; memory is taken once.
+/// The points of a line. Allocates only in the constructor.
 template <scalar S>
 class Meridian {
  public:
   explicit Meridian(std::size_t max_points)
       : most_(max_points), points_(max_points), rises_(max_points) {}
 
-  /// From the rim to the end, one step apart but for the first and the last.
+  /// Points from the rim to the end, one step apart except for the first and the last.
   const std::vector<Point3<S>>& points() const { return points_; }
   LineEnd end() const { return end_; }
-  /// Normal of what the membrane lies against at the end: of the object, or of its own summit.
+  /// Normal at the end: of the object at an edge, of the membrane at a summit.
   const Point3<S>& end_normal() const { return end_normal_; }
-  /// Whether it is level there, along the line.
+  /// Whether the membrane is level at the end, along the line.
   bool is_level() const {
     const S rise = end_rise();
     return end_ == LineEnd::summit || (end_ == LineEnd::edge && rise * rise < S(1) / S(100));
@@ -141,7 +142,7 @@ class Meridian {
     }
   }
 
-  /// What the free membrane beside the contact says of the place of its edge.
+  /// Sums over the free membrane beside the contact, to locate its edge.
   LevelSums<S> level_sums(const Point3<S>& center, const LineSteps<S>& steps) const {
     using std::sqrt;
     LevelSums<S> sums;
@@ -158,8 +159,8 @@ class Meridian {
     return sums;
   }
 
-  /// Ends the line: at the edge, where r^2 = `edge_sq` (if that is a number and near), or at the
-  /// summit.
+  /// Cuts the line at its end: at the edge, where r^2 = `edge_sq` (if that is finite and near the
+  /// visible edge), or at the summit.
   void finish(const S& edge_sq, const Point3<S>& center, const LineSteps<S>& steps) {
     using std::sqrt;
     if (end_ == LineEnd::summit) {
@@ -190,7 +191,7 @@ class Meridian {
     rises_.push_back(rise);
   }
 
-  /// Goes on along (x, y), if that is a direction.
+  /// Sets the direction to (x, y), unless it is 0 or not finite.
   void turn(const S& x, const S& y) {
     using std::sqrt;
     const S length_sq = x * x + y * y;
@@ -201,7 +202,7 @@ class Meridian {
     }
   }
 
-  /// To the first slope beside the rim: a map has none at its border.
+  /// Moves from the rim to the first position with a slope: a map has none at its border.
   template <class Shape>
   bool leave_rim(const Shape& shape, Point3<S>& at, const LineSteps<S>& steps) const {
     const S step = steps.arc_mm / S(4);
@@ -233,7 +234,7 @@ class Meridian {
     end_ = touched_ == 0 ? LineEnd::summit : LineEnd::edge;
     S x = here.along_x;
     S y = here.along_y;
-    if (end_ == LineEnd::summit) {  // it has been passed by a part of a step
+    if (end_ == LineEnd::summit) {  // the last step went beyond the summit
       const S rise = x * dir_x_ + y * dir_y_;
       x = x - rise * dir_x_;
       y = y - rise * dir_y_;
@@ -254,7 +255,7 @@ class Meridian {
     return S(rise / S(sqrt(S(S(1) + rise * rise))));
   }
 
-  /// Between the last two points the inclination goes through 0.
+  /// Cuts where the inclination is 0, between the last two points.
   void cut_at_summit() {
     const std::size_t k = points_.size() - 1;
     const S share = rises_[k - 1] / S(rises_[k - 1] - rises_[k]);
@@ -271,7 +272,7 @@ class Meridian {
     shorten(k, S((outer - found_sq) / (outer - inner)));
   }
 
-  /// The last point lies between those numbered k - 1 and k.
+  /// Makes a point between points k - 1 and k the last one.
   void shorten(std::size_t k, S share) {
     share = is_finite(share) ? share : S(1);
     share = share < S(0) ? S(0) : (share > S(1) ? S(1) : share);

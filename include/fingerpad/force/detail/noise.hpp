@@ -1,8 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// How noise of side dots, of the line A_g and of the pressure spreads into force and moment, to
-// first order.
+// First-order propagation of the noise of side dots, line A_g and pressure into force and moment.
 #include <array>
 #include <cstddef>
 
@@ -19,7 +18,7 @@ namespace fingerpad {
 inline namespace v0 {
 namespace detail::membrane {
 
-/// Sum of the squares of what single errors do.
+/// Covariance of force and moment, summed over independent errors.
 template <scalar S>
 class CovarianceSum {
  public:
@@ -37,19 +36,19 @@ class CovarianceSum {
   std::array<std::array<S, 6>, 6> sum_ = detail::zero_matrix<S, 6>();
 };
 
-/// What a frame's forces were found from.
+/// The quantities from which a frame's forces were computed.
 template <scalar S>
 struct RimSolution {
   Point3<S> force_n;  ///< of the rim alone
   Point3<S> moment_n_mm;
-  S modulus_n_per_mm;  ///< tension over pull
+  S modulus_n_per_mm;  ///< tension / pull
   S base_area_mm2;
   S summit_area_mm2;
-  S edge_moment_mm2;  ///< change of that area by an error of 1 mm on each line, rms sum
+  S edge_moment_mm2;  ///< change of that area per mm of error of the lines, root sum of squares
   S pressure_mpa;
 };
 
-/// What an error `change` of the pull at point k, per mm of rim, does to the rim's sums.
+/// Adds the effect on force and moment of an error `change` of the pull at point k, per mm of rim.
 template <Magnitude Fixed, scalar S>
 void add_dot(const Rim<S>& rim,
              Index k,
@@ -60,7 +59,7 @@ void add_dot(const Rim<S>& rim,
   const S weight = found.modulus_n_per_mm * rim.share_mm(k);
   Point3<S> force = weight * change;
   if constexpr (Fixed == Magnitude::of_column) {
-    // the vertical component stays
+    // the vertical component is fixed
     force = force + S(-weight * change.z / pull.z) * pull;
   }
   Point3<S> moment = cross(rim.border(k), force);

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// The rim with its side dots: from dots to the pull on each of n equal segments of the rim.
+// The rim with its side dots: computes the pull on each of n equal segments of the rim.
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -19,9 +19,9 @@ namespace fingerpad {
 inline namespace v0 {
 namespace detail::membrane {
 
-/// Pull per mu t and stress-free length across the direction of `other`: dW/d(along) of
-/// Mooney-Rivlin rubber, from the derivatives of the place along two directions that were
-/// perpendicular unit vectors. With both exchanged it is the pull across the other one.
+/// Pull of Mooney-Rivlin rubber across the direction of `other`, per mu t and stress-free length:
+/// dW/d(along). `along` and `other` are derivatives of the position along two directions that are
+/// perpendicular unit vectors without stress. Exchanged arguments give the pull across `along`.
 template <scalar S>
 Point3<S> rubber_pull(const Point3<S>& along, const Point3<S>& other, const S& mooney_share) {
   const S a = squared_norm(along), b = squared_norm(other), c = dot(along, other);
@@ -32,29 +32,30 @@ Point3<S> rubber_pull(const Point3<S>& along, const Point3<S>& other, const S& m
   return S(neo_hookean + mooney_share * inverse) * along + by_area * of_area;
 }
 
-/// Of the strip between the rim and the middle of the chord to a side dot.
+/// The strip between the rim and the middle of the chord to a side dot.
 template <scalar S>
 struct Strip {
-  Point3<S> chord;   ///< over its stress-free length
+  Point3<S> chord;   ///< divided by its stress-free length
   Point3<S> middle;  ///< of the chord, mm
   Point3<S> around;  ///< change of the middle with the angle, mm
   Point3<S> hoop;    ///< pull across the chord, per mu t
 };
 
-/// What the frame's side dots said, dot by dot in the order of the angle.
+/// Pulls from the side dots of a frame, dot by dot in the order of the angle, and numbers of dots
+/// with a defect.
 template <scalar S>
 struct RimPulls {
   std::vector<RimPull<S>> dots;
   std::vector<Point3<S>> along;     ///< d of each dot
   std::vector<Strip<S>> strips;     ///< between the rim and the middles of the chords
-  std::vector<Point3<S>> segments;  ///< integral over each rim segment, mm times what a pull is in
+  std::vector<Point3<S>> segments;  ///< integral over each rim segment, mm times the unit of a pull
   Index missing = 0;                ///< not found
-  Index unstretched = 0;            ///< too little to tell a direction
+  Index unstretched = 0;            ///< stretched too little for a direction
   Index slack = 0;                  ///< shorter than without stress
-  Index misplaced = 0;              ///< nearer to another border point, or nowhere near their own
-  Index below = 0;                  ///< the base
-  S carried_mm = S(0);              ///< along the rim, mean of those that are near their own
-  Index outward = 0;  ///< pulls that lean out of the pad: there the membrane bulges past the rim
+  Index misplaced = 0;              ///< nearer to another border point, or far from their own
+  Index below = 0;                  ///< below the base
+  S carried_mm = S(0);              ///< mean displacement along the rim, without misplaced dots
+  Index outward = 0;  ///< pulls that lean out of the pad, where the membrane bulges past the rim
 };
 
 /// Points of the rim in the order of their angle. Between them pulls are interpolated linearly.
@@ -94,14 +95,14 @@ class Rim {
     return points_[static_cast<std::size_t>(k)].point.tangent;
   }
   const S& angle(Index k) const { return points_[static_cast<std::size_t>(k)].angle; }
-  /// Column of the dots' grid that belongs to the k-th point.
+  /// Column of the k-th point in the grid of dots.
   Index column(Index k) const { return points_[static_cast<std::size_t>(k)].column; }
   const S& length_mm(Index k) const { return points_[static_cast<std::size_t>(k)].point.length_mm; }
-  /// Length of rim for which the k-th point stands, mm.
+  /// Length of rim that the k-th point represents, mm.
   const S& share_mm(Index k) const { return points_[static_cast<std::size_t>(k)].share_mm; }
 
-  /// Pulls from this frame's side dots (`Row::rows` rows of size() dots). `load_per_mm`: pressure
-  /// over mu t, 0 where that is not known.
+  /// Pulls from this frame's side dots (`Row::rows` rows of size() dots). `load_per_mm`:
+  /// pressure / mu t, 0 if unknown.
   template <class Row, class Law, class Dots>
   void measure(const Dots& side_dots_mm,
                const Row& row,
@@ -131,8 +132,9 @@ class Rim {
     }
   }
 
-  /// Whether the side dots are those of these border points. All may be carried along by what
-  /// shears a membrane, at most a quarter of its length, but not to the next border point.
+  /// Whether the side dots belong to these border points: at most a third is misplaced, and shear
+  /// of the membrane displaces them along the rim by less than half the spacing of border points or
+  /// a quarter of their length, whichever is larger.
   bool in_order(const RimPulls<S>& pulls) const {
     const S spacing = S(2 * std::numbers::pi) * radius_mm_ / S(static_cast<double>(size()));
     const S shear = points_.front().point.length_mm / S(4);
@@ -141,8 +143,8 @@ class Rim {
     return 3 * pulls.misplaced <= size() && carried < most && -carried < most;
   }
 
-  /// Fills what is not known from the neighbours on both sides, and integrates over the segments.
-  /// Needs one usable dot.
+  /// Fills unknown pulls from the neighbours on both sides, and integrates over the segments. Needs
+  /// at least one usable dot.
   void integrate(RimPulls<S>& pulls) const {
     fill_gaps(pulls.dots);
     for (Point3<S>& sum : pulls.segments) {
@@ -155,11 +157,12 @@ class Rim {
   }
 
  private:
-  /// The rim's pull by the balance of the strip between it and the ring through the middles of the
-  /// chords, per angle, with the ring's stress-free radius R = a - L cos(phi_0) / 2:
+  /// Replaces the rim's pull by that of the balance of the strip between the rim and the ring
+  /// through the middles of the chords, per angle. With the ring's stress-free radius
+  /// R = a - L cos(phi_0) / 2:
   ///   a P_rim = R dW/dd + L / 2 d(dW/dh)/dpsi + p / (mu t) area,   h = (dx/dpsi) / R
-  /// OneRow leaves out what changes along the rim, which is 1.5 % of a drag; neighbours tell it. A
-  /// point without two neighbours keeps the pull that it has.
+  /// OneRow ignores changes along the rim, 1.5 % of a drag; here neighbours provide them. A point
+  /// without two known neighbours on each side keeps its pull.
   template <class Dots>
   void balance_strips(const Dots& side_dots_mm,
                       double stress_free_inclination_rad,
@@ -203,8 +206,8 @@ class Rim {
     }
   }
 
-  /// Derivative by the angle of a vector that is known at each point, from its two neighbours in
-  /// the frame that turns with the angle.
+  /// Derivative by the angle of a vector known at each point, from its two neighbours in the frame
+  /// that rotates with the angle.
   template <class VectorAt>
   Point3<S> change_around(std::size_t k, const VectorAt& at) const {
     const std::size_t left = before(k), right = after(k);
@@ -253,7 +256,7 @@ class Rim {
     return S(points_[after(k)].angle + turn - points_[k].angle);
   }
 
-  /// Shares of the points k and k + 1 in the segments that lie between them.
+  /// Weights of the points k and k + 1 in the segments between them.
   void add_weights(std::size_t k) {
     const S step = S(2 * std::numbers::pi) / S(static_cast<double>(segments_));
     const S gap = gap_after(k);
@@ -322,7 +325,7 @@ class Rim {
       }
     }
     along = row.along(place.point, dot, load_per_mm, mooney_share_of<S>(law));
-    // no membrane stretches tenfold: such a dot is another one
+    // no membrane stretches tenfold: it is another dot
     if (!(value(squared_norm(along)) < 100)) {
       return {};
     }

@@ -4,10 +4,10 @@
 // The forces on a segment and their balance. Source: Ito, Kim, Obinata 2011, III.D, eqs. 6-12.
 //
 // A segment M(i, j) has four borders: two pieces of the lines around, below (j) and above (j + 1),
-// and two of the lines from the rim, left (i) and right (i + 1). Across each runs a tension normal
-// to it, f_v or f_h, and a shear along it, tau_v or tau_h (N/mm), both in the membrane; the
-// pressure pushes on the area vector S. What a border pulls at the segment below or to the left of
-// it, it pulls the other way at the segment above or to the right.
+// and two of the lines from the rim, left (i) and right (i + 1). Each border transmits a tension
+// normal to it, f_v or f_h, and a shear along it, tau_v or tau_h (N/mm), both in the membrane. The
+// pressure acts on the area vector S. The force of a border on the segment below or to the left of
+// it is opposite to that on the segment above or to the right.
 #include <cmath>
 #include <cstddef>
 #include <vector>
@@ -22,15 +22,15 @@ namespace fingerpad {
 inline namespace v0 {
 namespace detail::membrane {
 
-/// A border of two segments. The forces on the segment on the near side (below, left) are
-/// f `normal` + tau `along`, each times the border's length, which the vectors contain.
+/// A border of two segments. The force on the segment on the near side (below, left) is
+/// f `normal` + tau `along`; the vectors include the length of the border.
 template <scalar S>
 struct Border {
   Point3<S> along;   ///< from line i to i + 1, or from row j to j + 1; as long as the border, mm
   Point3<S> normal;  ///< in the membrane, upward or toward line i + 1; as long as the border, mm
 };
 
-/// Borders and areas of all segments. Memory is taken once.
+/// Borders and areas of all segments. Allocates only in the constructor.
 template <scalar S>
 class Segments {
  public:
@@ -47,9 +47,9 @@ class Segments {
   Index next(Index line) const { return line + 1 == columns_ ? 0 : line + 1; }
   Index previous(Index line) const { return line == 0 ? columns_ - 1 : line - 1; }
 
-  /// Between lines i and i + 1 in row j = 0 ... m.
+  /// Border between lines i and i + 1 in row j = 0 ... m.
   const Border<S>& around(Index i, Index j) const { return around_[at(i, j)]; }
-  /// On line i, between rows j and j + 1.
+  /// Border on line i, between rows j and j + 1.
   const Border<S>& upward(Index i, Index j) const { return upward_[at(i, j)]; }
   /// Area vector of M(i, j), out of the fluid, mm^2.
   const Point3<S>& area(Index i, Index j) const { return area_[at(i, j)]; }
@@ -70,7 +70,7 @@ class Segments {
     for (Index j = 0; j <= rows_; ++j) {
       for (Index i = 0; i < columns_; ++i) {
         const Point3<S> along = nodes.node(next(i), j) - nodes.node(i, j);
-        // the membrane's normal at the border is the mean of both sides'
+        // the membrane's normal at the border is the mean of both sides
         const Point3<S> out = j == 0       ? normal(i, 0)
                               : j == rows_ ? (nodes.end_normal(i) + nodes.end_normal(next(i)))
                                            : (normal(i, j) + normal(i, j - 1));
@@ -91,7 +91,7 @@ class Segments {
 
   const Point3<S>& normal(Index i, Index j) const { return normal_[at(i, j)]; }
 
-  /// `direction` made as long as `like`; 0 where it has no direction.
+  /// `direction` scaled to the length of `like`; 0 stays 0.
   static Point3<S> stretched(const Point3<S>& direction, const Point3<S>& like) {
     using std::sqrt;
     const S from = squared_norm(direction);
@@ -104,7 +104,7 @@ class Segments {
   std::vector<Border<S>> around_;
   std::vector<Border<S>> upward_;
   std::vector<Point3<S>> area_;
-  std::vector<Point3<S>> normal_;  // unit vectors of the areas; 0 of none
+  std::vector<Point3<S>> normal_;  // unit vectors of the areas; 0 for area 0
 };
 
 }  // namespace detail::membrane

@@ -1,10 +1,11 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// Sparse Cholesky for normal equations that couple only the four borders of one segment of a ring
-// of n x m: the multifrontal method (Duff and Reid 1983) in the order of nested dissection.
+// Sparse Cholesky factorisation of normal equations that couple only the four borders of each
+// segment of a ring of n x m: the multifrontal method (Duff and Reid 1983) in the order of nested
+// dissection.
 //
-// Eigen::SimplicialLLT takes 4.5 ms for 1.4 ms here (36 x 30, -O2), and memory in every frame.
+// It takes 1.4 ms (36 x 30, -O2). Eigen::SimplicialLLT takes 4.5 ms, and allocates in every frame.
 #include <Eigen/Core>
 #include <algorithm>
 #include <array>
@@ -21,10 +22,10 @@ namespace fingerpad {
 inline namespace v0 {
 namespace detail::membrane {
 
-// Dense blocks, column by column; every count is even. Tiles of a fixed size stay in registers and
-// take no memory, as Eigen's large products do.
+// Dense blocks are stored column by column; every count is even. Tiles of fixed size stay in
+// registers and do not allocate, unlike Eigen's large products.
 
-/// c -= a b^T for Rows x Cols numbers.
+/// c -= a b^T for a tile of Rows x Cols.
 template <int Rows, int Cols, class R>
 void subtract_tile(
     R* c, std::size_t c_step, const R* a, const R* b, std::size_t step, std::size_t depth) {
@@ -41,7 +42,7 @@ void subtract_tile(
   to = tile;
 }
 
-/// c -= a b^T for Cols columns: the tallest tiles first, then lower ones.
+/// c -= a b^T for Cols columns, with the tallest tiles first, then lower ones.
 template <int Cols, int Rows = 8, class R>
 void subtract_columns(R* c,
                       std::size_t c_step,
@@ -59,8 +60,8 @@ void subtract_columns(R* c,
   }
 }
 
-/// The lower half of c -= a a^T for the first `cols` columns of c; what lies above the diagonal may
-/// be overwritten.
+/// The lower triangle of c -= a a^T for the first `cols` columns of c. Entries above the diagonal
+/// may be overwritten.
 template <class R>
 void subtract_square(
     R* c, std::size_t rows, std::size_t cols, const R* a, std::size_t step, std::size_t depth) {
@@ -80,8 +81,8 @@ auto vector(R* from, std::size_t size) {
                                                                                   Index(size));
 }
 
-/// Cholesky of the first `cols` columns of a block with `rows` rows, Cols at a time; false where a
-/// pivot is not > 0.
+/// Cholesky factorisation of the first `cols` columns of a block with `rows` rows, Cols at a time.
+/// False if a pivot is not > 0.
 template <int Cols, class R>
 bool factorise(R* a, std::size_t rows, std::size_t cols, std::size_t from = 0) {
   using std::sqrt;
@@ -106,8 +107,8 @@ bool factorise(R* a, std::size_t rows, std::size_t cols, std::size_t from = 0) {
   return Cols == 2 || factorise<2>(a, rows, cols, k);
 }
 
-/// What one segment adds: two unknowns for each of its borders below, above, left and right. Only
-/// the lower half of the first eight rows is read.
+/// Contribution of one segment: two unknowns for each of its borders below, above, left and right.
+/// Only the lower triangle of the first eight rows is read.
 template <class R>
 struct SegmentEquations {
   static constexpr std::size_t unknowns = 8;
@@ -117,8 +118,9 @@ struct SegmentEquations {
   std::array<std::array<R, unknowns>, 10> entries;
 };
 
-/// Two rows ride along at the foot of every block, so that the factorisation carries them forward:
-/// the couplings with one unknown that is coupled with many borders, and the right side.
+/// Multifrontal factorisation and solution. Every block has two additional rows at its foot, to
+/// which the factorisation applies the forward substitution: the couplings with one shared unknown,
+/// which is coupled with many borders, and the right side.
 template <class R>
 class FrontalCholesky {
  public:
@@ -128,7 +130,7 @@ class FrontalCholesky {
     for (const Front& front : dissection_.fronts()) {
       factor_at_.push_back(factor);
       factor += front.height() * 2 * front.eliminated;
-      // its own remainder is made above those of its parts, then takes their place
+      // its remainder is computed above those of its parts on the stack, then replaces them
       max_open = (std::max)(max_open, open + front.remainder());
       if (!front.is_segment) {
         open -= part(front.first).remainder() + part(front.second).remainder();
@@ -143,8 +145,8 @@ class FrontalCholesky {
 
   const BorderNumbers& numbers() const { return dissection_.numbers(); }
 
-  /// Factorises the sum of what `add(i, j, equations)` writes for all segments; false where that is
-  /// not positive definite.
+  /// Factorises the sum of the equations that `add(i, j, equations)` writes for all segments. False
+  /// if it is not positive definite.
   template <class Add>
   bool factorise(const Add& add) {
     std::size_t open = 0;
@@ -177,12 +179,12 @@ class FrontalCholesky {
     return true;
   }
 
-  /// With N the matrix, c the couplings of the shared unknown and g the right side: c^T N^-1 c.
+  /// c^T N^-1 c, with the matrix N, the couplings c of the shared unknown and the right side g.
   const R& shared_shared() const { return shared_shared_; }
   /// c^T N^-1 g.
   const R& shared_right() const { return shared_right_; }
 
-  /// N^-1 (g - shared c); the two unknowns of border k are at 2 k.
+  /// Computes N^-1 (g - shared c). The two unknowns of border k are at 2 k.
   void solve(const R& shared) {
     for (std::size_t k = dissection_.fronts().size(); k-- > 0;) {
       substitute(part(k), factor_.data() + factor_at_[k], shared);
@@ -191,8 +193,8 @@ class FrontalCholesky {
   const std::vector<R>& unknowns() const { return unknowns_; }
 
  private:
-  /// The columns of the borders eliminated with a piece, over all its rows; and the rest, over the
-  /// rows of those it keeps. The two rows that ride along are the last of both.
+  /// The matrix of a piece. `pivots` has the columns of the borders eliminated with it, over all
+  /// rows; `rest` has those of the borders it keeps. The two additional rows are the last of both.
   struct Block {
     R* pivots;
     R* rest;
@@ -200,7 +202,7 @@ class FrontalCholesky {
     std::size_t pivot_columns;
     std::size_t rest_height;
 
-    /// Row `row` >= column of the lower half.
+    /// Entry of the lower triangle, row >= column.
     R* at(std::size_t row, std::size_t column) const {
       return column < pivot_columns
                  ? pivots + column * height + row
@@ -227,7 +229,7 @@ class FrontalCholesky {
     }
   }
 
-  /// Adds what is left of a part, border by border: 2 x 2 numbers at a time.
+  /// Adds the remainder of a part, border by border: 2 x 2 numbers at a time.
   static void add_remainder(const Front& part, const R* from, const Block& block) {
     using Pair = Eigen::Matrix<R, 2, 1>;
     using Constant = Eigen::Map<const Pair>;
@@ -283,7 +285,7 @@ class FrontalCholesky {
   Dissection dissection_;
   std::vector<std::size_t> factor_at_;  // where the columns of each piece begin in factor_
   std::vector<R> factor_;
-  std::vector<R> remainders_;  // what the pieces not yet joined have left, a stack
+  std::vector<R> remainders_;  // of the pieces not yet joined, a stack
   std::vector<R> gathered_;    // the unknowns of one piece
   std::vector<R> unknowns_;
   R shared_shared_ = R(0);

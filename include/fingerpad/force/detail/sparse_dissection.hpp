@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// In which order the borders of a ring of n x m segments are eliminated: nested dissection (George
-// 1973). The ring is cut into halves, each again along its shorter side, down to single segments;
-// going back up, the borders that two pieces share go where they meet.
+// Elimination order of the borders of a ring of n x m segments: nested dissection (George 1973).
+// The ring is divided into halves, each again along its shorter side, down to single segments. On
+// the way back up, borders shared by two pieces are eliminated where the pieces join.
 #include <algorithm>
 #include <array>
 #include <cstddef>
@@ -16,7 +16,7 @@ namespace fingerpad {
 inline namespace v0 {
 namespace detail::membrane {
 
-/// Numbers of the borders of segments: first those around, (i, j) at j * columns + i, then those
+/// Indices of the borders of segments: first those around, (i, j) at j * columns + i, then those
 /// upward.
 struct BorderNumbers {
   std::size_t columns;
@@ -32,24 +32,24 @@ struct BorderNumbers {
 /// A piece of the ring.
 struct Front {
   bool is_segment;
-  std::size_t first;                      ///< the two pieces it is made of; of a segment its
-  std::size_t second;                     ///< column and its row
-  std::size_t eliminated = 0;             ///< how many borders
+  std::size_t first;                      ///< its two parts; for a segment its
+  std::size_t second;                     ///< column and row
+  std::size_t eliminated = 0;             ///< number of borders eliminated with it
   std::vector<std::size_t> borders = {};  ///< those eliminated with it, then those it keeps, all in
                                           ///< the order of elimination
-  std::vector<std::size_t> places = {};   ///< of those it keeps, among those of the whole
+  std::vector<std::size_t> places = {};   ///< of the borders it keeps, among those of the whole
   std::vector<std::size_t> segment = {};  ///< places of the borders below, above, left and right
 
   std::size_t kept() const { return borders.size() - eliminated; }
-  /// Two unknowns a border, and the two rows that ride along.
+  /// Two unknowns per border, and two additional rows.
   std::size_t height() const { return 2 * borders.size() + 2; }
   std::size_t remainder() const { return (2 * kept() + 2) * 2 * kept(); }
 };
 
-/// The pieces, each after those it is made of.
+/// The pieces, each after its parts.
 class Dissection {
  public:
-  /// At least 3 columns and 1 row.
+  /// For at least 3 columns and 1 row.
   Dissection(Index columns, Index rows)
       : numbers_{static_cast<std::size_t>(columns), static_cast<std::size_t>(rows)},
         rank_(numbers_.count()) {
@@ -84,7 +84,7 @@ class Dissection {
     const std::size_t wide = right - left, high = top - bottom;
     if (wide == 1 && high == 1) {
       const auto four = borders_of(left, bottom);
-      Borders alone, shared;  // the rim and A_g are borders of one segment
+      Borders alone, shared;  // borders on the rim and on A_g belong to one segment only
       for (std::size_t k = 0; k < 4; ++k) {
         const bool outer = (k == 0 && bottom == 0) || (k == 1 && top == numbers_.rows);
         (outer ? alone : shared).push_back(four[k]);
@@ -135,7 +135,7 @@ class Dissection {
 
   BorderNumbers numbers_;
   std::size_t eliminated_ = 0;
-  std::vector<std::size_t> rank_;  // of a border in the order of elimination
+  std::vector<std::size_t> rank_;  // of each border in the order of elimination
   std::vector<Front> fronts_;
 };
 

@@ -18,7 +18,7 @@ namespace fingerpad {
 inline namespace v0 {
 namespace detail::membrane {
 
-/// Forces per length in the membrane on every border. Memory is taken once.
+/// Forces per length in the membrane on every border. Allocates only in the constructor.
 template <scalar S>
 struct Tensions {
   Tensions(Index columns, Index rows)
@@ -32,7 +32,7 @@ struct Tensions {
   std::vector<S> around_shear;   ///< tau_v
   std::vector<S> upward_normal;  ///< f_h, j = 0 ... m - 1
   std::vector<S> upward_shear;   ///< tau_h
-  std::vector<Point3<S>> rim;    ///< what the membrane pulls the base with at rim segment i, N
+  std::vector<Point3<S>> rim;    ///< pull of the membrane on the base at rim segment i, N
 };
 
 /// Force of a border on the segment on its near side, N.
@@ -49,7 +49,7 @@ struct Unbalanced {
 };
 
 /// The left sides of (6) and (7) for M(i, j). Forces act at the middles of the borders, pressure at
-/// the mean of the four nodes; the force on the lowest border is what pulls the base.
+/// the mean of the four nodes. The force on the lowest border is the pull on the base.
 template <scalar S>
 Unbalanced<S> unbalanced(const Segments<S>& segments,
                          const Compartments<S>& nodes,
@@ -85,15 +85,15 @@ Unbalanced<S> unbalanced(const Segments<S>& segments,
   return {force, flat ? S(0) : dot(torque, normalized(area))};
 }
 
-/// How far tensions are from balance, as shares of what the pressure does.
+/// Deviation of the tensions from balance, relative to the effect of the pressure.
 template <scalar S>
 struct Imbalance {
   S force;   ///< sqrt(sum |force|^2 / |S| / (p^2 sum |S|)): rms, by area, of |force| / (p |S|)
   S torque;  ///< sqrt(sum torque^2 / |S|^2 / (p^2 sum |S|)): rms, by area, of torque / (p |S|^1.5)
 };
 
-/// How well any solution satisfies (6) and (7). Segments without area do not count; NaN where all
-/// are. Time in proportion to the number of segments.
+/// Residual of (6) and (7) for any solution. Segments without area do not count; NaN if none has an
+/// area. O(segments).
 template <scalar S>
 Imbalance<S> residual(const Segments<S>& segments,
                       const Compartments<S>& nodes,

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// The memory that frames need.
+// Working memory of a frame.
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -17,20 +17,20 @@ inline namespace v0 {
 
 namespace detail::traction {
 
-/// A pressure (MPa) or mu t (N/mm) there can be. Squares of larger ones might overflow.
+/// Whether x is a possible pressure (MPa) or mu t (N/mm). Squares of larger values might overflow.
 template <scalar S>
 bool is_measure(const S& x) {
   return value(x) > 0 && !(S(1e6) < x);  // false for NaN
 }
 
-/// The two sides of the balance. Add up those of several frames, of the free pad say.
+/// The two sides of the balance. Those of several frames, for example of the free pad, add up.
 template <scalar S>
 struct ModulusBalance {
   Index dots = 0;           ///< of the free part
   S pressing_mpa = S(0);    ///< sum p
   S holding_per_mm = S(0);  ///< -sum f . n / A, MPa for mu t = 1 N/mm
 
-  /// NaN where the membrane does not hold the pressure.
+  /// NaN if the membrane does not balance the pressure.
   S mu_t_n_per_mm() const {
     return value(holding_per_mm) > 0 && value(pressing_mpa) > 0 ? S(pressing_mpa / holding_per_mm)
                                                                 : not_a_number<S>();
@@ -43,23 +43,23 @@ struct ModulusBalance {
   }
 };
 
-/// What is known of a dot in a frame.
+/// State of a dot in a frame.
 enum DotFlag : std::uint8_t {
   found = 1,
-  bridged = 2,  ///< not found, but put between its neighbours
-  summed = 4,   ///< has a load, be it from bridged dots
-  loaded = 8,   ///< has a load of its own, from found dots only
+  bridged = 2,  ///< not found, but placed by its neighbours
+  summed = 4,   ///< has a load, possibly from bridged dots
+  loaded = 8,   ///< has a load from found dots only
 };
 
 enum class CellState : std::uint8_t {
   unknown,  ///< or refused
-  bridged,  ///< a corner was not found, but bridged
+  bridged,  ///< at least one corner is bridged
   found,
 };
 
 inline constexpr std::uint8_t far_away = 255;
 
-/// Everything of a frame, dot by dot and cell by cell, in the order of rows.
+/// Data of a frame, dot by dot and cell by cell, row by row.
 template <scalar S>
 struct FrameMemory {
   Index rows;
@@ -88,7 +88,7 @@ struct FrameMemory {
 
   bool inside(Index i, Index j) const { return i >= 0 && j >= 0 && i < rows && j < cols; }
   std::size_t dot_at(Index i, Index j) const { return static_cast<std::size_t>(i * cols + j); }
-  /// Between dots (i, j) and (i + 1, j + 1).
+  /// The cell between dots (i, j) and (i + 1, j + 1).
   std::size_t cell_at(Index i, Index j) const {
     return static_cast<std::size_t>(i * (cols - 1) + j);
   }

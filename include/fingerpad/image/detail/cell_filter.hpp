@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// Small images of numbers within a border of zeros, and what is done to them with a kernel along
-// both axes: means, and masks made larger or smaller by counting.
+// Small images with a border of zeros, and separable filters on them: weighted means, and dilation,
+// erosion and closing of masks by counting.
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -16,7 +16,7 @@ namespace fingerpad {
 inline namespace v0 {
 namespace detail {
 
-/// Cells within a border of `pad` zeros, which nobody writes to.
+/// Cells with a border of `pad` zeros, which is never written.
 template <scalar S>
 class PaddedCells {
  public:
@@ -42,7 +42,8 @@ class PaddedCells {
   std::vector<S> cells_;
 };
 
-/// Weights at distance 0, 1, ... of a kernel that is the same on both sides; their sum is 1.
+/// A symmetric kernel, given by its weights at distance 0, 1, ...; the weights of both sides sum to
+/// 1.
 template <scalar S>
 class EvenKernel {
  public:
@@ -61,7 +62,8 @@ class EvenKernel {
 
   Index reach() const { return static_cast<Index>(weights_.size()) - 1; }
 
-  /// Sums of `from` weighted around each cell to `to`; both have a border of reach() or more.
+  /// Writes the weighted sum of `from` around each cell to `to`; `between` is scratch memory.
+  /// `from` and `between` have a border of reach() or more.
   void operator()(const PaddedCells<S>& from, PaddedCells<S>& between, PaddedCells<S>& to) const {
     for (Index i = 0; i < from.rows(); ++i) {
       along(from.row(i), from.stride(), from.cols(), between.row(i));
@@ -97,8 +99,8 @@ class EvenKernel {
   std::vector<S> weights_;
 };
 
-/// Masks (0 and 1) of one size, made larger or smaller by a square of 2 reach + 1 cells. What lies
-/// beyond the image neither adds nor takes away.
+/// Dilation (grow) and erosion (shrink) of masks (0 and 1) of one size by a square of 2 reach + 1
+/// cells. Cells beyond the image have no influence.
 template <scalar S>
 class CellMorphology {
  public:
@@ -141,8 +143,9 @@ class CellMorphology {
   S half_;
 };
 
-/// Closes gaps of masks (0 and 1) that are no wider than 2 reach cells. A mask grows beyond the
-/// image's edge and shrinks from there, so that one near the edge is not drawn to it.
+/// Morphological closing: closes gaps of masks (0 and 1) that are no wider than 2 reach cells. A
+/// mask is dilated beyond the image's edge and eroded from there, so that a region near the edge is
+/// not extended to it.
 template <scalar S>
 class CellClosing {
  public:

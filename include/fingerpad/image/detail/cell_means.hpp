@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// A frame reduced to the means of its square cells, channel by channel: what a method reads that
-// looks at things much larger than a pixel. It costs one pass over the frame.
+// Reduces a frame to the means of its square cells, channel by channel, in one pass. It serves
+// methods that look at structures much larger than a pixel.
 #include <algorithm>
 #include <concepts>
 #include <cstddef>
@@ -19,7 +19,7 @@ namespace fingerpad {
 inline namespace v0 {
 namespace detail {
 
-/// The number of a pixel's channel: the pixel itself, or pixel[c].
+/// The value of a pixel's channel: the pixel itself if it is a number, else pixel[c].
 template <class Pixel>
 inline constexpr bool is_number = std::is_arithmetic_v<Pixel> || scalar<Pixel>;
 template <class Pixel>
@@ -35,7 +35,7 @@ decltype(auto) channel_of(const Pixel& pixel, int c) {
   }
 }
 
-/// Pixels of so many bytes side by side and nothing else.
+/// True if a pixel consists of `Channels` bytes and nothing else.
 template <class View, int Channels>
 inline constexpr bool is_packed_bytes = false;
 template <class T, int Channels>
@@ -59,8 +59,8 @@ inline void add_bytes(const std::uint8_t* bytes, Index count, std::uint16_t* sum
   }
 }
 
-/// Means over cells of size_px x size_px (1..16) pixels; cells at the end of the image may be
-/// smaller. A cell with a pixel that is NaN is NaN. Each object is the workspace of one thread.
+/// Means over cells of size_px x size_px (1..16) pixels; the last cells of a row or column may be
+/// smaller. A NaN pixel makes its cell NaN. Each object is the workspace of one thread.
 template <int Channels, scalar S>
 class CellMeans {
  public:
@@ -126,7 +126,8 @@ class CellMeans {
     }
   }
 
-  /// Of sums_ to line_. `size`: size_px_, known to the compiler where it is the usual one.
+  /// Adds up the columns of each cell, from sums_ to line_. `size` is size_px_; for the usual size
+  /// it is a compile-time constant.
   template <class Size>
   void sum_columns(const Size& size) {
     const std::uint16_t* at = sums_.data();

@@ -1,16 +1,16 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// How far apart the points are that neighbouring pixels see.
+// The distance between the points that neighbouring pixels see.
 //
-// Looking through a camera, that distance grows with depth, s = pitch (1 + c l), and a tilted plane
-// looks hollow: by 2 c slope^2 / ((1 + c l) (1 + slope^2)^(3/2)) in a section along the slope,
-// which is 5e-3 per mm at a slope of 1/2. Both are undone at once: with zeta = l / (1 + c l) planes
-// are planes again, for a camera at 1/c behind the plate, and
+// Through a camera, this distance grows with the depth l, s = pitch (1 + c l), and a tilted plane
+// seems to be concave, by 2 c slope^2 / ((1 + c l) (1 + slope^2)^(3/2)) in a section along the
+// slope: 5e-3 per mm at a slope of 1/2. The substitution zeta = l / (1 + c l) removes both effects:
+// it maps planes to planes for a camera at 1/c behind the plate, and
 //   K = K of (K1) for radius r / (1 + c l) and depths zeta, over (1 + c l)^2
-// on the axis. A flat section stays flat; where K is not 0 it is off by a share of the order of
-// c x slope, x the distance from the axis. Refraction makes c fall off the axis (3 % at 20
-// degrees), which leaves less than 5e-4 per mm of a plane with slope 1/2
+// on the axis. A flat section stays flat. Where K is not 0, its relative error is of the order of c
+// times the slope times the distance from the axis. Refraction makes c smaller off the axis (by 3 %
+// at 20 degrees), which leaves less than 5e-4 per mm on a plane of slope 1/2
 // (tests/image/curvature.cpp).
 #include <algorithm>
 #include <cmath>
@@ -26,7 +26,7 @@ namespace fingerpad {
 inline namespace v0 {
 namespace detail {
 
-/// Distance in mm of the points that neighbouring pixels see, pitch (1 + c l).
+/// Distance in mm between the points that neighbouring pixels see: pitch (1 + c l).
 template <scalar T = double>
 struct PixelPitch {
   T at_plate_mm;    ///< in [1e-9, 1e9]
@@ -50,7 +50,7 @@ PixelPitch<T> checked(const PixelPitch<T>& pitch) {
   return pitch;
 }
 
-/// In which a pitch is computed: at least in double.
+/// The scalar in which a pitch is computed: at least double.
 template <scalar S>
 using pitch_scalar_t = std::conditional_t<std::is_same_v<S, float>, double, S>;
 
@@ -67,7 +67,7 @@ auto pixel_pitch(const OrthographicCamera<S>& camera) {
   return checked(PixelPitch<T>{T(camera.pitch_mm), T(0)});
 }
 
-/// x as an S; without its derivatives where S has none.
+/// x converted to S, without its derivatives if S has none.
 template <scalar S, scalar T>
 S narrowed(const T& x) {
   if constexpr (std::is_constructible_v<S, T>) {
@@ -82,9 +82,9 @@ inline constexpr bool sees_perspective = true;
 template <scalar S>
 inline constexpr bool sees_perspective<OrthographicCamera<S>> = false;
 
-/// Depths in units of about one pitch, a power of two so that nothing is rounded: the products of
-/// six lengths in (K1) then stay far from the limits of float. Depths from 4096 units on, or too
-/// deep, or next to the camera, are missing.
+/// Converts depths to units of about one pitch, so that the products of six lengths in (K1) stay
+/// far from the limits of float. The unit is a power of two, so that nothing is rounded. Depths of
+/// magnitude 4096 units or `too_deep_mm` or more, or next to the camera, count as missing.
 template <class CameraType, class S>
 struct DepthUnits {
   static constexpr bool at_depth = sees_perspective<CameraType>;
@@ -105,7 +105,7 @@ struct DepthUnits {
     highest = scalar_real_t<S>(farthest);
   }
 
-  /// zeta, in units; NaN for what is missing.
+  /// zeta in units; NaN if the depth is missing.
   template <class V>
   [[gnu::always_inline]] V flattened(const V& depth_mm) const {
     const V l = depth_mm * per_mm;

@@ -1,11 +1,11 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// Sums over a disc from a summed-area table: a fixed number of table entries per rectangle of the
-// disc, whatever its size. For float and double the table holds integers (steps of 4e-6 and 9e-16
-// rad for a radius of 30 px) that may wrap: their differences are exact, so nothing drifts, and a
-// sum depends on nothing but the pixels of its own disc. Other numbers are summed as they are,
-// which costs about epsilon (rows + cols) of the largest table entry.
+// Sums over a disc from a summed-area table. Each rectangle of the disc reads a fixed number of
+// table entries, whatever its size. For float and double the table holds integers (steps of 4e-6
+// and 9e-16 rad for a radius of 30 px) that may wrap: their differences are exact, so that errors
+// do not accumulate and a sum depends only on the pixels of its own disc. Other scalars are summed
+// as they are, with an error of about epsilon (rows + cols) times the largest table entry.
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -27,7 +27,7 @@ inline namespace v0 {
 
 namespace detail {
 
-// A disc of pixels as a pile of rectangles, for sums over the disc from a summed-area table.
+// A disc of pixels as a stack of rectangles, for sums over the disc from a summed-area table.
 //
 //        ____            Rectangle k reaches half_cols[k] to each side and half_rows[k] up and
 //      _|____|_          down; wider ones are lower. Their union is the sum of all rectangles
@@ -56,8 +56,8 @@ inline Index disc_half_width(Index radius, Index row) {
   return w;
 }
 
-/// The union of rectangles with these falling half widths; half heights are the same numbers from
-/// the other end, so that rows and columns count alike.
+/// The union of rectangles with these decreasing half widths. The half heights are the same numbers
+/// in reverse order, so that rows and columns are treated alike.
 inline DiscShape staircase(const std::vector<Index>& half_cols) {
   DiscShape shape;
   const std::size_t n = half_cols.size();
@@ -77,7 +77,8 @@ inline Index staircase_half_width(const DiscShape& shape, Index row) {
   return -1;
 }
 
-/// Number of pixels and their second moment sum(x^2) of a figure given by half width per row.
+/// Number of pixels and second moment sum(x^2) of a figure that is given by its half width in each
+/// row.
 struct DiscMoments {
   double area = 0;
   double second = 0;
@@ -101,9 +102,10 @@ inline DiscShape exact_disc(Index radius_px) {
   return staircase(half_cols);
 }
 
-/// At most five rectangles, weighted so that area and second moment are those of the disc: exact
-/// for a change of inclination up to second order over the disc, at a cost per pixel that does not
-/// depend on the radius. Their number is odd, so that the middle rectangle is a square.
+/// At most five rectangles, weighted so that area and second moment are those of the disc. Sums are
+/// exact for a change of inclination of up to second order over the disc, and the cost per pixel
+/// does not depend on the radius. The number of rectangles is odd, so that the middle one is a
+/// square.
 struct SteppedDisc {
   static constexpr int levels = 5;
 
@@ -112,7 +114,7 @@ struct SteppedDisc {
     if (exact.levels.size() <= static_cast<std::size_t>(levels)) {
       return exact;
     }
-    // The steps that share the fewest pixels with what the disc leaves out, over a few scales.
+    // Of steps in a few scales, take those that differ from the disc in the fewest pixels.
     std::vector<Index> best;
     Index best_difference = 0;
     for (int percent = 95; percent <= 106; ++percent) {
@@ -170,7 +172,7 @@ struct SteppedDisc {
   }
 };
 
-/// How sums of inclinations are kept.
+/// The number type of inclination sums: an integer for float and double, else S itself.
 template <scalar S>
 struct InclinationTotal {
   using type = S;
@@ -181,7 +183,8 @@ struct InclinationTotal {
 template <class S, class Unsigned, class Signed>
 struct IntegerTotal {
   using type = Unsigned;
-  /// Steps per rad: a power of two at which `area` right angles still fit.
+  /// Integer steps per rad: a power of two, at most 1 / epsilon, with which `area` right angles
+  /// still fit.
   static S unit(double area) {
     S steps = S(1);
     const S most = S(std::uint64_t(1) << (8 * sizeof(S) - 2)) / S(area * 1.6);
@@ -190,7 +193,7 @@ struct IntegerTotal {
     }
     return steps;
   }
-  /// Of a number, or of each in a vector.
+  /// Rounds steps >= 0 to integers; takes a number or a vector.
   template <class V>
   [[gnu::always_inline]] static auto from(const V& steps) {
     using Ints = typename RowVector<Signed, lanes_in<V, S>>::type;
@@ -209,8 +212,8 @@ struct InclinationTotal<float> : IntegerTotal<float, std::uint32_t, std::int32_t
 template <>
 struct InclinationTotal<double> : IntegerTotal<double, std::uint64_t, std::int64_t> {};
 
-/// Two lines of a table; the sum over a band of rows and the columns before j is below[j] less
-/// above[j].
+/// Two rows of a table: below[j] - above[j] is the sum over a band of image rows and the columns
+/// before j.
 template <class T>
 struct Band {
   const T* below;
@@ -249,7 +252,7 @@ class SummedArea {
     }
   }
 
-  /// The rows [row - half, row + half]; those beyond the image are empty.
+  /// The band of rows [row - half, row + half], clipped to the image.
   Band<T> band(Index row, Index half) const {
     return {line(row + half + 1 < rows_ ? row + half + 1 : rows_),
             line(row - half > 0 ? row - half : 0)};
@@ -271,10 +274,10 @@ class SummedArea {
   std::vector<T> table_;
 };
 
-/// One row of disc sums in the table's own number: over the staircase, and over its square.
-/// Level k adds to those before it the rows that they do not reach, as wide as it is:
+/// One row of disc sums in the table's number type: over the staircase, and over its square. Level
+/// k adds the rows that the levels before it do not reach, over its own width:
 ///   sum over k of [D_k(j + half_cols[k] + 1) - D_k(j - half_cols[k])],  D_k = B_k - B_{k - 1},
-/// B_k(j) the sum over the columns before j of the band of level k.
+/// where B_k(j) is the sum over the band of level k and the columns before j.
 template <class T>
 class DiscRow {
  public:
@@ -295,12 +298,12 @@ class DiscRow {
   const T* stairs() const { return stairs_.data(); }
   const T* square() const { return square_.data(); }
 
-  /// Whether it was made for this image and radius.
+  /// Whether it was made for this image width and radius.
   bool fits(Index cols, Index radius_px) const {
     return stairs_.size() == static_cast<std::size_t>(cols) && margin_ == radius_px;
   }
 
-  /// Sums around the columns [first, last) of a row.
+  /// Computes the sums over the discs centered on the columns [first, last) of a row.
   void sum(const SummedArea<T>& table, const DiscShape& shape, Index row, Index first, Index last) {
     Band<T> inner = table.no_band();
     for (std::size_t k = 0; k < ends_.size(); ++k) {
@@ -317,8 +320,8 @@ class DiscRow {
   }
 
  private:
-  /// Where in bands_ the sums before the first and after the last column of a disc around column 0
-  /// lie.
+  /// Offsets in bands_ of the two column sums that bound a disc around column 0: past its last
+  /// column (`right`) and before its first (`left`).
   struct Ends {
     Index right = 0;
     Index left = 0;
@@ -328,8 +331,8 @@ class DiscRow {
     return {center + level.half_cols + 1, center - level.half_cols};
   }
 
-  /// Band k becomes outer less inner, for all columns within reach; sums beyond the image are those
-  /// at its edge.
+  /// Sets band k to outer - inner for all columns within reach. Beyond the image, the sums at its
+  /// edge are repeated.
   void subtract(
       const Band<T>& outer, const Band<T>& inner, std::size_t k, Index first, Index last) {
     const Index cols = static_cast<Index>(stairs_.size());
@@ -360,7 +363,7 @@ class DiscRow {
   Index margin_;
   Index pitch_;
   std::vector<T> stairs_, square_;
-  std::vector<T> bands_;  ///< D_k of each level and B of the square, with the radius on either side
+  std::vector<T> bands_;  ///< D_k of each level and B of the square, with a margin of the radius
   std::vector<Ends> ends_;
   Ends square_ends_;
 };

@@ -1,13 +1,14 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// The few vector operations behind the row kernels: load, store, convert, running sum over lanes.
-// A thin layer over the vector extensions that GCC and clang share. Explicit because GCC 12 does
-// not vectorise loops of run-time length at -O2; the width is that of the instruction set compiled
-// for, since wider vectors are split badly, and is a template argument everywhere, so that
-// translation units compiled for different sets never share a function by name.
-// Unsupported compiler, byte order or machine, or FINGERPAD_NO_VECTORS defined by the user (for the
-// whole program): `native_vector_bytes` is 0 and nothing else is declared.
+// The few vector operations behind the row kernels: load, store, convert, running sum over lanes. A
+// thin layer over the vector extensions that GCC and clang share. Vectors are explicit because GCC
+// 12 does not vectorise loops of run-time length at -O2. Their width is that of the target
+// instruction set, since compilers split wider vectors badly. The width is a template argument
+// everywhere, so that translation units compiled for different instruction sets never share a
+// function name. If the compiler, byte order or machine is not supported, or the user defines
+// FINGERPAD_NO_VECTORS (for the whole program), `native_vector_bytes` is 0 and nothing else is
+// declared.
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
@@ -62,7 +63,7 @@ template <class To, int N, class V>
   return __builtin_convertvector(v, lanes<To, N>);
 }
 
-/// Lanes moved up by `Step`, zeros moving in.
+/// Lanes shifted up by `Step`, filled with zeros.
 template <int Step, class V, std::size_t... I>
 [[gnu::always_inline]] inline V moved_up(V v, std::index_sequence<I...>) {
   constexpr int n = int(sizeof...(I));
@@ -105,13 +106,13 @@ template <class T, int N>
   }
 }
 
-/// Where `mask` (all bits or none, lane by lane) takes a, else b.
+/// Lane by lane a where `mask` has all bits set, and b where it has none.
 template <class V, class M>
 [[gnu::always_inline]] inline V choose(M mask, V a, V b) {
   return V((M(a) & mask) | (M(b) & ~mask));
 }
 
-/// Lanes of a and b in turn: a0 b0 a1 b1 ..., as two vectors.
+/// Two vectors. zip() interleaves the lanes of a and b into them: a0 b0 a1 b1 ...
 template <class V>
 struct Two {
   V first, second;
@@ -127,7 +128,7 @@ template <int N, class V>
   return zip(a, b, std::make_index_sequence<std::size_t(N)>{});
 }
 
-/// Even and odd lanes as lanes twice as wide, of `Wide`: no shuffle on any machine.
+/// Even and odd lanes, widened to `Wide` (twice as wide) without a shuffle.
 template <class Wide, int N, class V>
 [[gnu::always_inline]] inline Two<lanes<Wide, N>> unzip_wide(V v) {
   using W = lanes<Wide, N>;
@@ -135,7 +136,7 @@ template <class Wide, int N, class V>
   return {W(v) & (W{} + Wide((Wide(1) << half) - 1)), W(v) >> half};
 }
 
-/// 2 N lanes as lanes twice as wide.
+/// 2 N lanes in order, widened to `Wide` (twice as wide).
 template <class Wide, int N, class V>
 [[gnu::always_inline]] inline Two<lanes<Wide, N>> widen(V v) {
   using W = lanes<Wide, N>;
@@ -158,7 +159,7 @@ inline void running_sum_row(const In* in, Lane* out, std::ptrdiff_t n, std::ptrd
       store(out + i, V(local + carry));
       carry += last_everywhere(local, order);
     }
-  } else {  // over pairs of columns: half the lanes to sum over
+  } else {  // sums over pairs of columns: half as many lanes
     for (std::ptrdiff_t i = 0; i < n; i += 2 * N) {
       const Two<V> columns = unzip_wide<Lane, N>(load<In, 2 * N>(in + i));
       const V local = running_sum<N>(V(columns.first + columns.second));

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// What a camera's pixels see at a depth, with all that does not depend on the depth computed
-// beforehand: point_at() of optics/camera.hpp without its square roots and divisions.
+// The points that a camera's pixels see at given depths. All that does not depend on the depth is
+// precomputed: point_at() of optics/camera.hpp without its square roots and divisions.
 #include <cmath>
 #include <cstddef>
 
@@ -26,8 +26,9 @@ Point3<S> point_beside(const S& x_px, const S& y_px, const S& mm_per_px, const S
   return {S(x_px * mm_per_px), S(y_px * mm_per_px), depth_mm};
 }
 
-/// A pixel's ray is straight and lies in a plane with the axis: its point is (column - center, row
-/// - center) times a number that grows linearly with the depth. Two numbers per pixel.
+/// A pixel's ray is straight and lies in a plane with the optical axis. Its point is (column -
+/// center, row - center) times a factor that is linear in the depth, so that two numbers per pixel
+/// are stored.
 template <scalar S>
 class PixelRays<Camera<S>> {
  public:
@@ -46,11 +47,11 @@ class PixelRays<Camera<S>> {
     }
   }
 
-  /// A column and a row from the center, px.
+  /// Distance of a column or row from the center, px.
   S x_px(Index col) const { return S(static_cast<double>(col)) - center_x_; }
   S y_px(Index row) const { return S(static_cast<double>(row)) - center_y_; }
 
-  /// Of a pixel, or as many beside each other as V has lanes.
+  /// The factor of one pixel, or of as many adjacent pixels as V has lanes.
   template <class V>
   [[gnu::always_inline]] V mm_per_px(Index row, Index col, const V& depth_mm) const {
     const Index at = row * cols_ + col;
@@ -73,9 +74,9 @@ class PixelRays<Camera<S>> {
     const S x = S(static_cast<double>(col)) - camera.center_x_px;
     const S y = S(static_cast<double>(row)) - camera.center_y_px;
     const S r_sq = x * x + y * y;
-    // on the axis, the limit from beside it
+    // on the axis, approximate the limit by a pixel close to it
     const S r = value(r_sq) == 0 ? S(1) / S(1048576) : S(sqrt(r_sq));
-    // one depth, far enough for the difference of two points to keep its digits
+    // a second depth, far enough that the difference of the two points keeps its digits
     const S far = S(64);
     const S near_x = point_at(camera, camera.center_y_px, S(camera.center_x_px + r), S(0)).x;
     const S far_x = point_at(camera, camera.center_y_px, S(camera.center_x_px + r), far).x;
@@ -89,7 +90,7 @@ class PixelRays<Camera<S>> {
   aligned_vector<S> per_mm_;
 };
 
-/// Nothing to remember.
+/// All pixels have the same factor, so that nothing is stored per pixel.
 template <scalar S>
 class PixelRays<OrthographicCamera<S>> {
  public:

@@ -21,11 +21,11 @@ namespace detail {
 template <class V>
 concept float_lanes = std::same_as<V, float> ||
     (!scalar<V> && std::same_as<V, typename RowVector<float, lanes_in<V, float>>::type>);
-/// As many integers.
+/// A 32-bit integer, or a vector with as many of them as V has lanes.
 template <float_lanes V>
 using bits_of = typename RowVector<std::int32_t, lanes_in<V, float>>::type;
 
-/// exp(x), with x held within [-80, 80]: finite for whatever x. Float: relative error 1e-6 for
+/// exp(x) with x clamped to [-80, 80], which is finite for every x. Float: relative error 1e-6 for
 /// |x| <= 10.
 template <scalar S>
   requires(!float_lanes<S>)
@@ -35,10 +35,10 @@ S quick_exp(const S& x) {
   const S held = value(above) < 80 ? above : S(80);
   return S(exp(held));
 }
-/// Of a float, or of each in a vector.
+/// For a float, or each lane of a vector.
 template <float_lanes V>
 [[gnu::always_inline]] inline V quick_exp(const V& x) {
-  // One comparison of integers: of two of floats, GCC 12 makes branches.
+  // One integer comparison: GCC 12 turns two float comparisons into branches.
   using Bits = bits_of<V>;
   const Bits bits = std::bit_cast<Bits>(x);
   const Bits size = bits & 0x7FFFFFFF;
@@ -58,8 +58,9 @@ template <float_lanes V>
 }
 
 /// 1 / sqrt(x) for normal x > 0 up to a quarter of the largest, with a relative error of 2.1e-5;
-/// finite at 0 and NaN for NaN. Half the exponent gives y to some percent; a polynomial in x y^2
-/// does the rest. y aims where the highest coefficient is 1 and costs nothing.
+/// finite at 0 and NaN for NaN. Halving the exponent gives y to within some percent; a polynomial
+/// in x y^2 corrects it. y is chosen such that the highest coefficient is 1 and needs no
+/// multiplication.
 template <float_lanes V>
 [[gnu::always_inline]] inline V rough_inverse_sqrt(const V& x) {
   using Bits = typename RowVector<std::uint32_t, lanes_in<V, float>>::type;
@@ -68,9 +69,9 @@ template <float_lanes V>
   return y * ((t - 2.25330492F) * t + 2.28251864F);
 }
 
-/// atan(sqrt(slope_sq)), the inclination in rad of a surface whose slope has this square; in
-/// [0, pi/2]. Its derivative at 0 is taken as 0. Float: absolute error 4e-7 rad; a slope that is no
-/// number, or above 1e12, counts as 1e12.
+/// atan(sqrt(slope_sq)), the inclination in rad of a surface whose slope has this square; in [0,
+/// pi/2]. Its derivative at 0 is taken as 0. Float: absolute error 4e-7 rad; a slope that is NaN or
+/// above 1e12 counts as 1e12.
 template <scalar S>
   requires(!float_lanes<S>)
 S inclination(const S& slope_sq) {
@@ -82,7 +83,7 @@ S inclination(const S& slope_sq) {
   const S slope = sqrt(slope_sq);
   return S(atan(slope));
 }
-/// Of a float, or of each in a vector.
+/// For a float, or each lane of a vector.
 template <float_lanes V>
 [[gnu::always_inline]] inline V inclination(const V& slope_sq) {
   const V largest = V{} + 1e24F;
@@ -105,9 +106,9 @@ template <float_lanes V>
   return steep ? 1.57079633F - angle : angle;
 }
 
-/// 1 / sqrt(x) for x > 0; of a whole vector of normal numbers up to a quarter of the largest with a
-/// relative error of 2.1e-5 in float, 2e-15 in double, finite at 0 and NaN for NaN. In double the
-/// polynomial in x y^2 is followed by a Newton step.
+/// 1 / sqrt(x) for x > 0. Vectors of normal numbers up to a quarter of the largest have a relative
+/// error of 2.1e-5 in float and 2e-15 in double; they are finite at 0 and NaN for NaN. In double
+/// the polynomial in x y^2 is followed by a Newton step.
 template <class V>
 [[gnu::always_inline]] inline V inverse_sqrt(const V& x) {
   if constexpr (scalar<V>) {

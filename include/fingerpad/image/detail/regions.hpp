@@ -1,8 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// Connected regions of a mask (neighbours share a side), found one after the other and grown, in
-// memory taken up front: a pixel is in the queue once at most, and a region is a stretch of it.
+// Finds and grows the connected regions of a mask (neighbours share a side) one after the other, in
+// memory allocated up front. A pixel is in the queue at most once, and a region is a contiguous
+// part of the queue.
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
@@ -25,14 +26,15 @@ inline std::uint8_t* bytes_of(Mark* marks) {
   return reinterpret_cast<std::uint8_t*>(marks);
 }
 
-/// The first such mark in [first, last), or last.
+/// The first mark equal to `which` in [first, last), or last.
 inline const Mark* find_mark(const Mark* first, const Mark* last, Mark which) {
   const auto count = static_cast<std::size_t>(last - first);
   const void* found = std::memchr(first, static_cast<int>(which), count);
   return found == nullptr ? last : static_cast<const Mark*>(found);
 }
 
-/// Marks of a row of curvatures: seed below the threshold, unknown where there is none.
+/// Marks a row of curvatures: seed below the threshold, unknown where the curvature is NaN, else
+/// free.
 template <class S>
 void mark_below(const S& threshold, const S* curvature, Index count, Mark* marks) {
   for_each_cell<S>(count, [&]<class V>(Index j) {
@@ -45,7 +47,8 @@ void mark_below(const S& threshold, const S* curvature, Index count, Mark* marks
   });
 }
 
-/// Pixels of an image within a border of one pixel, which is unknown for ever: no bounds to test.
+/// Layout of an image with a border of one pixel. The border always stays `unknown`, so that no
+/// bounds are tested.
 struct BorderedImage {
   Index rows;
   Index cols;
@@ -53,9 +56,9 @@ struct BorderedImage {
   friend constexpr bool operator==(const BorderedImage&, const BorderedImage&) = default;
   constexpr Index stride() const { return cols + 2; }
   constexpr Index size() const { return (rows + 2) * stride(); }
-  /// Where the pixel (row, col) lies.
+  /// Offset of the pixel (row, col).
   constexpr Index at(Index row, Index col) const { return (row + 1) * stride() + col + 1; }
-  /// The image in memory of size() cells.
+  /// View of the image without its border, in memory of size() cells.
   template <class T>
   constexpr StridedView<T> view(T* cells) const {
     return {cells + at(0, 0), rows, cols, stride()};
@@ -83,9 +86,9 @@ class Regions {
   const Index* begin(const Region& region) const { return queue_.data() + region.begin; }
   const Index* end(const Region& region) const { return queue_.data() + region.end; }
 
-  /// Finds the connected regions of seeds, which become contact, drops those for which keep(region)
-  /// is false, calls visit(region) for the others and returns how many these were. A region that
-  /// visit lets grow may swallow others before they are found.
+  /// Finds the connected regions of seeds and marks them as contact. Drops those for which
+  /// keep(region) is false, calls visit(region) for the others and returns how many of these are
+  /// not empty afterwards. A region that visit() grows may absorb others before they are found.
   template <class Keep, class Visit>
   Index for_each(const Keep& keep, const Visit& visit) {
     Index count = 0;
@@ -105,8 +108,7 @@ class Regions {
     return count;
   }
 
-  /// Adds to the region that was found last what borders on it and fulfils `belongs`, then what
-  /// borders on that, `layers` times.
+  /// Grows the region found last by up to `layers` layers of adjacent pixels that fulfil `belongs`.
   template <class Belongs>
   void grow(Region& region, Index layers, const Belongs& belongs) {
     spread(region.begin, layers, [&](Index pixel) {
@@ -115,8 +117,8 @@ class Regions {
     region.end = tail_;
   }
 
-  /// Frees what does not fulfil `belongs` of the region that was found last. It leaves the queue,
-  /// or a pixel that regions take in turns would be there twice.
+  /// Frees the pixels of the region found last that do not fulfil `belongs`. They leave the queue,
+  /// because a pixel that several regions take in turn must not be in it twice.
   template <class Belongs>
   void trim(Region& region, const Belongs& belongs) {
     tail_ = region.begin;

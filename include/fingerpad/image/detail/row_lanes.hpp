@@ -1,9 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// One formula, applied along a row: by vectors where the number is float, double or a whole
-// one and the compiler has them, else one by one. Every cell is computed alike, whichever way it is
-// reached.
+// Applies one formula along a row: by vectors for float, double and unsigned integers if the
+// compiler has them, else cell by cell. Both ways compute a cell alike.
 #include <algorithm>
 #include <concepts>
 #include <cstdint>
@@ -17,7 +16,7 @@ namespace fingerpad {
 inline namespace v0 {
 namespace detail {
 
-/// The number of S in a vector of VectorBytes; 1 where there are no vectors of S.
+/// The number of lanes of S in a vector of VectorBytes; 1 if there are no vectors of S.
 template <class S, int VectorBytes = native_vector_bytes>
 inline constexpr int row_lanes = 1;
 template <class S, int VectorBytes>
@@ -33,7 +32,7 @@ struct RowVector<S, 1> {
   using type = S;
 };
 
-/// x in every lane; x itself without lanes (empty braces leave some dual numbers undefined).
+/// x in every lane; x itself if V is a scalar (empty braces leave some dual numbers undefined).
 template <class V, class S>
 [[gnu::always_inline]] inline V every_lane(const S& x) {
   if constexpr (scalar<V>) {
@@ -50,7 +49,7 @@ V load_cells(const T* from) {
   return static_cast<S>(*from);
 }
 
-/// The cells of v, truncated to T where T is an integer, to to[0], to[1], ...
+/// Stores the cells of v in to[0], to[1], ..., truncated if T is an integer.
 template <class S, class V, class T>
   requires(std::same_as<V, S>)
 void store_cells(T* to, const V& v) {
@@ -71,8 +70,8 @@ struct RowVector<S, N> {
   using type = lanes<S, N>;
 };
 
-/// Integers that widen or narrow by a factor of two at a time, for which machines have
-/// instructions and GCC 12 uses them.
+/// Integers that are widened or narrowed by a factor of two at a time. Machines have instructions
+/// for these steps, and GCC 12 uses them.
 template <class T> concept narrow_integer = std::unsigned_integral<T> && sizeof(T) <= 2;
 
 /// The first four of 16 bytes or of eight 16-bit numbers, as 32-bit ones.
@@ -89,7 +88,7 @@ template <class V, class S, class T>
   constexpr int n = lanes_in<V, S>;
   if constexpr (std::same_as<S, T>) {
     return load<T, n>(from);
-  } else if constexpr (narrow_integer<T> && n == 4) {  // GCC 12 would go by a general register
+  } else if constexpr (narrow_integer<T> && n == 4) {  // avoids a general register in GCC 12
     std::uint64_t word = 0;
     std::memcpy(&word, from, n * sizeof(T));
     const lanes<std::uint64_t, 2> words{word, 0};
@@ -118,7 +117,7 @@ template <class S, class V, class T>
 
 #endif
 
-/// True when some lane of a comparison is.
+/// True if any lane of a comparison is true.
 template <class Mask>
 [[gnu::always_inline]] inline bool any_lane(const Mask& mask) {
   if constexpr (std::same_as<Mask, bool>) {
@@ -129,7 +128,7 @@ template <class Mask>
   }
 }
 
-/// True where x is a number.
+/// True where x is not NaN.
 template <class V>
 [[gnu::always_inline]] inline auto known(const V& x) {
   if constexpr (scalar<V>) {
@@ -139,14 +138,15 @@ template <class V>
   }
 }
 
-/// Whether rows hold S in memory, which vectors can be loaded from where cells lie side by side.
+/// Whether View holds cells S in memory, so that vectors can be loaded from rows whose cells are
+/// adjacent.
 template <class View, class S>
 inline constexpr bool plain_rows = false;
 template <class T, class S>
   requires(std::same_as<std::remove_const_t<T>, S>)
 inline constexpr bool plain_rows<StridedView<T>, S> = true;
 
-/// The numbers of v as those of another type, of which a vector `To` holds as many.
+/// v converted to `To`, a number or a vector with as many lanes.
 template <class To, class V>
 [[gnu::always_inline]] inline To each_as(const V& v) {
   if constexpr (std::is_arithmetic_v<V>) {
@@ -156,7 +156,7 @@ template <class To, class V>
   }
 }
 
-/// Row i of a grid as numbers S side by side: where it lies, or copied to `spare`.
+/// Row i of a grid as contiguous numbers S: in place if possible, else copied to `spare`.
 template <class S, class View>
 const S* row_of(const View& from, Index i, S* spare) {
   if constexpr (plain_rows<View, S>) {
@@ -170,7 +170,7 @@ const S* row_of(const View& from, Index i, S* spare) {
   return spare;
 }
 
-/// Numbers to row i of a grid.
+/// Writes numbers to a row of a grid.
 template <class S, class View>
 void store_row(const S* from, const View& view, Index row) {
   for (Index j = 0; j < view.cols(); ++j) {
@@ -188,9 +188,9 @@ void store_row(const S* from, const StridedView<S>& view, Index row) {
   }
 }
 
-/// Calls kernel.operator()<V>(j) for j in [0, count) in steps of V's lanes, V = S at the end.
-/// Inline, since a call would load all that the kernel holds again for each vector; for that a
-/// large kernel is to be marked always_inline, too.
+/// Calls kernel.operator()<V>(j) for j in [0, count) in steps of V's lanes, with V = S for the
+/// rest. Always inlined, since a call would reload the kernel's captures for each vector. A large
+/// kernel must therefore be marked always_inline, too.
 template <class S, int VectorBytes = native_vector_bytes, class Kernel>
 [[gnu::always_inline]] inline void for_each_cell(Index count, const Kernel& kernel) {
   constexpr int n = row_lanes<S, VectorBytes>;

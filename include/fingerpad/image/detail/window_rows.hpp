@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// What both ways of summing over windows share: which pixels count, how rows come in and go out,
-// and the rule that turns a sum and a count into a mean. See window_sums.hpp.
+// Shared by both implementations of window sums: which pixels count, how rows are passed in and
+// out, and how a sum and a count become a mean. See window_sums.hpp.
 #include <array>
 #include <cmath>
 #include <concepts>
@@ -19,29 +19,30 @@ namespace fingerpad {
 inline namespace v0 {
 namespace detail {
 
-/// A pixel counts when dark < red, green < saturated, which no NaN is.
+/// A pixel counts if dark < red < saturated and dark < green < saturated; NaN never counts.
 template <class S>
 struct ValueLimits {
   S dark;
   S saturated;
 };
 
-/// Limits are given as double for integer pixels (5.5 and infinity are fine), else as the pixel.
+/// Limits are given as double for integer pixels (5.5 and infinity are fine), else in the pixel
+/// type.
 template <class Pixel>
 using window_limits_t = ValueLimits<real_of_t<Pixel>>;
 
-/// What a mean is computed in: float for integer pixels, whose sums are exact, else the pixel type.
+/// The type of a mean: float for integer pixels, whose sums are exact, else the pixel type.
 template <class Pixel>
 using window_mean_t = std::conditional_t<std::integral<Pixel>, float, Pixel>;
 
-/// Where one row of means goes: `cols` elements each; green of the first window only.
+/// Output of one row of means, `cols` elements each; green for the first window only.
 template <class Mean>
 struct MeanRows {
   Mean* red;
   Mean* green;
 };
 
-/// Integer pixels inside an open interval, as a closed one; empty as [1, 0].
+/// The integer pixels inside an open interval as a closed range; [1, 0] if there are none.
 template <std::unsigned_integral Pixel>
 struct ClosedRange {
   Pixel low;
@@ -79,16 +80,15 @@ std::array<Index, std::size_t(Windows)> window_radii(
   return radii;
 }
 
-/// A caller's row source: load(row, red, green), or load(row, red, green, inside) where it also
-/// fills one byte per pixel, nonzero where the pixel may count. All rows asked for lie in the
-/// image.
+/// A caller's row source: load(row, red, green), or load(row, red, green, inside), which also fills
+/// one byte per pixel, nonzero where the pixel may count. Only rows inside the image are requested.
 template <class Load, class Pixel>
 concept masked_row_source = std::invocable<Load&, Index, Pixel*, Pixel*, std::uint8_t*>;
 template <class Load, class Pixel>
 concept row_source = masked_row_source<Load, Pixel> || std::invocable<Load&, Index, Pixel*, Pixel*>;
 
-/// The mean of integer pixels. Multiplying by the reciprocal is what box filters do, so that whole
-/// windows have their bits, and it lets both channels share one division.
+/// The mean of integer pixels. It multiplies by the reciprocal, as box filters do, so that complete
+/// windows give the same bits and both channels can share one division.
 inline float window_mean(std::uint32_t sum, std::uint16_t count) {
   return count == 0 ? not_a_number<float>() : float(sum) * (1.0f / float(count));
 }

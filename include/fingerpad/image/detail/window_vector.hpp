@@ -5,9 +5,9 @@
 // contract.
 //
 // Each row is cleaned (invalid pixels become 0) and replaced by its running sum, kept for as many
-// rows as the largest window is high. A sum along the row is then one difference, whatever the
-// window, and a sum over the window moves down by adding one such difference and taking off
-// another. Unsigned arithmetic wraps, so running sums may overflow: differences stay exact.
+// rows as the largest window is high. A sum along a row is then one difference for any window
+// width, and a sum over a window moves down by adding one such difference and subtracting another.
+// Unsigned arithmetic wraps, so running sums may overflow: differences stay exact.
 #include <algorithm>
 #include <array>
 #include <cstddef>
@@ -26,8 +26,8 @@ inline namespace v0 {
 
 namespace detail {
 
-// A block of neighbouring windows: their sums along a row, what they hold of valid pixels, and by
-// what their sums are weighed.
+// A block of neighbouring windows: their sums along a row, how many valid pixels they hold, and the
+// factors of their sums.
 
 enum class Cover : std::uint8_t {
   none,   ///< no window of the block holds a valid pixel
@@ -57,7 +57,8 @@ template <int N>
   return choose(empty, Floats{} + not_a_number<float>(), one / choose(empty, one, count));
 }
 
-/// The cover of N windows with counts n of at most `full`; where it is cut, `weight` becomes 1 / n.
+/// The cover of N windows with n of at most `full` valid pixels; if it is `cut`, `weight` is set to
+/// 1 / n.
 template <int N>
 [[gnu::always_inline]] inline Cover weigh(lanes<std::uint16_t, N> n,
                                           lanes<std::uint16_t, N> full,
@@ -149,7 +150,8 @@ class VectorWindowSums {
   }
 
  private:
-  /// Holds window sums of a row: 255 * 255 = 65025 for 8 bits, all of 32 bits for 16.
+  /// Holds window sums along a row: up to 255 * 255 = 65025 for 8-bit pixels; 16-bit pixels need 32
+  /// bits.
   using Lane = std::conditional_t<sizeof(Pixel) == 1, std::uint16_t, std::uint32_t>;
   struct Sums {
     aligned_vector<std::uint32_t> red, green;
@@ -214,7 +216,8 @@ class VectorWindowSums {
         slide_sums<Emit, Signed>(k, green_ring_.data(), in, past, sums_[k].green.data(), out.green);
       }
     };
-    // Sums that fit a signed int are cheaper to convert: all of 8 bit, of 16 bit up to 181 x 181.
+    // Sums that fit a signed int are cheaper to convert: all sums of 8-bit pixels, and those of
+    // 16-bit pixels in windows up to 181 x 181.
     if (sizeof(Pixel) == 1 || area(radius_[k]) <= 32767) {
       slide_both(std::true_type{});
     } else {

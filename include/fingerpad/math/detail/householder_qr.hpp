@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// Least squares by Householder's reflections, for every scalar. Eigen's factorisation is blocked,
-// which gains nothing for a dozen columns: with it fit_absorption takes 4.7 times as long to
+// Least squares by Householder reflections, for every scalar. Eigen's factorisation is blocked,
+// which gains nothing for a dozen columns and makes fit_absorption take 4.7 times as long to
 // compile.
 #include <Eigen/Core>
 #include <cmath>
@@ -31,10 +31,11 @@ class HouseholderQr {
     }
   }
 
-  /// R(k, k): what column k says beside those before it.
+  /// R(k, k): up to its sign, the length of the part of column k that is orthogonal to the columns
+  /// before it.
   const S& diagonal(Index k) const { return a_(k, k); }
 
-  /// Q^T b, in place of each column of b.
+  /// Replaces each column of b by Q^T b.
   template <class Columns>
   void apply_transposed(Columns& b) const {
     for (Index j = 0; j < b.cols(); ++j) {
@@ -44,7 +45,7 @@ class HouseholderQr {
     }
   }
 
-  /// x with the least |A x - b|.
+  /// The x that minimises |A x - b|.
   Vector solve(Vector b) const {
     apply_transposed(b);
     Vector x = b.head(a_.cols());
@@ -72,8 +73,8 @@ class HouseholderQr {
   }
 
  private:
-  /// Column k becomes the vector of its reflection, with its leading 1 left out: R(k, k) stands
-  /// there. Returns the factor 2 / |v|^2.
+  /// Replaces column k from the diagonal down by its reflection vector v. R(k, k) takes the place
+  /// of the leading 1. Returns the factor 2 / |v|^2.
   S reflect(Index k) {
     using std::sqrt;
     S below_sq = S(0);
@@ -86,7 +87,7 @@ class HouseholderQr {
     }
     const S length = sqrt(S(square(head) + below_sq));
     const S r = head > S(0) ? S(-length) : length;
-    const S lead = head - r;  // no cancellation: r has the other sign
+    const S lead = head - r;  // no cancellation: r has the opposite sign
     for (Index i = k + 1; i < a_.rows(); ++i) {
       a_(i, k) = a_(i, k) / lead;
     }
@@ -118,12 +119,12 @@ class HouseholderQr {
     }
   }
 
-  Matrix a_;       // R on and above the diagonal, the reflections' vectors below
-  Vector factor_;  // 0: column k needs none
+  Matrix a_;       // R on and above the diagonal, the reflection vectors below
+  Vector factor_;  // 0: column k needs no reflection
 };
 
-/// The largest over the smallest singular value of a small square matrix, by Jacobi's one-sided
-/// rotations; infinite, or not a number, where it is singular.
+/// Condition number of a small square matrix: its largest over its smallest singular value, by
+/// one-sided Jacobi rotations. Infinite or NaN if the matrix is singular.
 template <class Matrix>
 auto condition_number(Matrix a) {
   using S = typename Matrix::Scalar;

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// Symmetric matrices of a few rows, for every scalar: eigenvectors of 3x3 (Jacobi's rotations) and
-// the solution and inverse of normal equations (Cholesky, equilibrated).
+// Symmetric matrices of a few rows, for every scalar: eigenvectors of 3x3 (Jacobi rotations),
+// solution and variances of normal equations (equilibrated Cholesky), and a test for covariances.
 #include <array>
 #include <cmath>
 #include <cstddef>
@@ -19,13 +19,14 @@ namespace detail {
 template <scalar S, std::size_t N>
 using SmallMatrix = std::array<std::array<S, N>, N>;
 
-/// a or -a, whichever looks toward the object.
+/// a or -a, whichever points toward the object (z >= 0).
 template <scalar S>
 Point3<S> toward_object(const Point3<S>& a) {
   const S side = S(value(a.z) < 0 ? -1 : 1);
   return {S(side * a.x), S(side * a.y), S(side * a.z)};
 }
-/// A right-handed frame whose third axis is the unit vector n; u lies in the plane of x and n.
+/// A right-handed frame whose third axis is the unit vector n; u lies in the plane of n and the x
+/// axis, or the y axis if n is within 45 degrees of x.
 template <scalar S>
 struct SurfaceFrame {
   Point3<S> u;
@@ -33,7 +34,7 @@ struct SurfaceFrame {
   Point3<S> n;
 
   static SurfaceFrame around(const Point3<S>& n) {
-    // the axis that n is least along keeps the cross product away from 0
+    // an axis at 45 degrees or more from n keeps the cross product away from 0
     const bool steep = value(S(n.x * n.x)) > 0.5;
     const Point3<S> along = steep ? Point3<S>{S(0), S(1), S(0)} : Point3<S>{S(1), S(0), S(0)};
     const Point3<S> v = normalized(cross(n, along));
@@ -46,8 +47,8 @@ struct SurfaceFrame {
   }
 };
 
-/// Tangent of the angle by which a symmetric 2x2 block {pp, pq; pq, qq} is made diagonal, at
-/// most 1.
+/// Tangent of the rotation that diagonalises the symmetric 2x2 block {pp, pq; pq, qq}; at most 1 in
+/// magnitude.
 template <scalar S>
 S jacobi_tangent(const S& pp, const S& qq, const S& pq) {
   using std::sqrt;
@@ -62,14 +63,14 @@ S jacobi_tangent(const S& pp, const S& qq, const S& pq) {
   return value(theta) < 0 ? S(S(1) / (theta - root)) : S(S(1) / (theta + root));
 }
 
-/// Eigenvalues, largest first, and the eigenvectors beside them.
+/// Eigenvalues, largest first, and their eigenvectors in the same order.
 template <scalar S>
 struct Eigen3 {
   std::array<S, 3> value;
   std::array<Point3<S>, 3> vector;
 };
 
-/// One Jacobi rotation: a becomes diagonal in (p, q), the columns of `vectors` turn with it.
+/// One Jacobi rotation: makes a[p][q] zero and rotates the columns of `vectors` likewise.
 template <scalar S>
 void jacobi_rotate(SmallMatrix<S, 3>& a, SmallMatrix<S, 3>& vectors, std::size_t p, std::size_t q) {
   using std::sqrt;
@@ -93,8 +94,8 @@ void jacobi_rotate(SmallMatrix<S, 3>& a, SmallMatrix<S, 3>& vectors, std::size_t
   }
 }
 
-/// Eigenvectors of a symmetric matrix. Each sweep squares what is left beside the diagonal: eight
-/// are enough for fifty digits.
+/// Eigenvalues and eigenvectors of a symmetric matrix. Each sweep squares the relative size of the
+/// off-diagonal elements: eight are enough for fifty digits.
 template <scalar S>
 Eigen3<S> eigenvectors(SmallMatrix<S, 3> a) {
   SmallMatrix<S, 3> vectors = zero_matrix<S, 3>();
@@ -128,9 +129,9 @@ Eigen3<S> eigenvectors(SmallMatrix<S, 3> a) {
   return out;
 }
 
-/// Cholesky factor of a symmetric matrix whose columns are first brought to the same length, so
-/// that units do not matter. `good` is false where a column is (to `least` of its length) a
-/// combination of those before it.
+/// Cholesky factor of normal equations A^T A, scaled to a unit diagonal so that units do not
+/// matter. `good` is false if a diagonal element is not positive and finite, or if a column of A is
+/// nearly a combination of those before it: the rest is at most `least` of its squared length.
 template <scalar S, std::size_t N>
 class NormalEquations {
  public:
@@ -178,7 +179,7 @@ class NormalEquations {
     return b;
   }
 
-  /// h^T A^-1 h: the variance of h^T x where that of one equation is 1.
+  /// h^T (A^T A)^-1 h: the variance of h^T x if each equation has variance 1.
   S variance(const std::array<S, N>& h) const {
     const std::array<S, N> x = solve(h);
     S sum = S(0);
@@ -195,8 +196,7 @@ class NormalEquations {
   std::array<S, N> scale_ = detail::zeros<S, N>();
 };
 
-/// Whether a matrix can be a covariance: symmetric, and no combination of parameters has a variance
-/// below 0. Rounding of a singular one passes.
+/// Whether a matrix can be a covariance: symmetric and positive semidefinite, up to rounding.
 template <scalar S, std::size_t N>
 bool is_covariance(const SmallMatrix<S, N>& covariance) {
   const double rounding =

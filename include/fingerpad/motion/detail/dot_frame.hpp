@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// One frame of dots and contact flags as the methods read it, and the contact reference dot.
-// Source: Ito, Kim, Nagai, Obinata 2011, III.C: "the dot which displacement from the initial
-// position is biggest", among the dots in contact whose eight neighbours are there.
+// One frame of dots and contact flags, and the contact reference dot. Source: Ito, Kim, Nagai,
+// Obinata 2011, III.C: "the dot which displacement from the initial position is biggest", among the
+// dots in contact whose eight neighbours are found.
 #include <algorithm>
 #include <cmath>
 #include <concepts>
@@ -22,7 +22,7 @@ inline namespace v0 {
 
 namespace detail::motion {
 
-/// Any spatial point in the scalar S.
+/// Converts any spatial point to the scalar S.
 template <scalar S, spatial_point P>
 constexpr Point3<S> spatial(const P& p) {
   using Traits = point_traits<P>;
@@ -40,7 +40,7 @@ class DotFrame {
   bool flagged(Index row, Index col) const {
     return is_contact(cell_t<Contact>(contact_(row, col)));
   }
-  /// In the middle of the plate lies no membrane: (0, 0, 0) is what some give for a lost dot.
+  /// (0, 0, 0) counts as lost: no membrane is there, and some software marks lost dots in this way.
   bool found(Index row, Index col) const {
     const Point3<S> p = dot(row, col);
     return is_plausible(p) && !(value(p.x) == 0 && value(p.y) == 0 && value(p.z) == 0);
@@ -71,7 +71,7 @@ class DotFrame {
   Contact contact_;
 };
 
-/// A frame of which only the dots that do not slip count as in contact.
+/// A frame in which only dots that do not slip count as in contact.
 template <class Frame, class Slips>
 class SteadyFrame : public Frame {
  public:
@@ -88,7 +88,8 @@ class SteadyFrame : public Frame {
   bool flagged(Index row, Index col) const {
     return Frame::flagged(row, col) && !is_contact(cell_t<Slips>(slips_(row, col)));
   }
-  /// Whether fewer than a fifth of the dots in contact hold the object: their motion is not its.
+  /// Whether fewer than a fifth of the dots in contact hold the object. The motion of the dots is
+  /// then not that of the object.
   bool slides() const { return touching_ > 0 && 5 * steady_ < touching_; }
 
  private:
@@ -97,7 +98,7 @@ class SteadyFrame : public Frame {
   Index steady_ = 0;
 };
 
-/// The dots before anything touched them, rows x cols; NaN where one was not found.
+/// The dots of the free pad, rows x cols; NaN for a dot not found.
 template <scalar S>
 struct InitialDots {
   std::vector<Point3<S>> dots;
@@ -109,7 +110,7 @@ struct InitialDots {
   }
 };
 
-/// Refuses dots of which no pad has neighbours so near or far: in m, um?
+/// Refuses dots whose median distance of neighbours no pad has, for example in m or um.
 template <scalar S>
 void expects_in_mm(const InitialDots<S>& initial) {
   std::vector<double> steps_mm;
@@ -126,13 +127,13 @@ void expects_in_mm(const InitialDots<S>& initial) {
   }
   const auto middle = steps_mm.begin() + static_cast<std::ptrdiff_t>(steps_mm.size() / 2);
   std::nth_element(steps_mm.begin(), middle, steps_mm.end());
-  const bool one_place = !(*middle > 0);  // no dots at all, which every frame says
+  const bool one_place = !(*middle > 0);  // no real dots, which every frame reports
   expects(one_place || (*middle > 0.05 && *middle < 50), "ObjectMotion",
           "distance of neighbouring dots, mm", *middle,
           "in (0.05, 50): are the dots of the free pad in mm, and none a mark of lost ones?");
 }
 
-/// True when the dot and its eight neighbours are found, now and initially.
+/// Whether the dot and its eight neighbours are found, now and initially.
 template <scalar S, class Frame>
 bool is_complete(const Frame& frame, const InitialDots<S>& initial, DotIndex d) {
   if (d.row < 1 || d.col < 1 || d.row > frame.rows() - 2 || d.col > frame.cols() - 2) {
@@ -148,7 +149,8 @@ bool is_complete(const Frame& frame, const InitialDots<S>& initial, DotIndex d) 
   return true;
 }
 
-/// True when all of its eight neighbours touch the object as well; d must not lie on the border.
+/// Whether the dot and its eight neighbours are flagged as in contact; d must not lie on the
+/// border.
 template <class Frame>
 bool is_within_contact(const Frame& frame, DotIndex d) {
   for (Index i = d.row - 1; i <= d.row + 1; ++i) {
@@ -161,10 +163,10 @@ bool is_within_contact(const Frame& frame, DotIndex d) {
   return true;
 }
 
-/// The contact reference dot; of equal displacements the first in the order of rows. The dot
-/// `before` stays for as long as the largest displacement is not more than `margin_mm` above its
-/// own and its neighbourhood is wholly in contact. Neighbours are looked at only where a dot is in
-/// contact and moved further than the best.
+/// The contact reference dot; of equal displacements, the first in row order. The dot `before`
+/// stays as long as the largest displacement exceeds its own by at most `margin_mm`, and its
+/// neighbourhood is complete and in contact. Neighbours are examined only for a dot in contact that
+/// has moved further than the best.
 template <scalar S, class Frame>
 DotIndex reference_dot(const Frame& frame,
                        const InitialDots<S>& initial,
@@ -196,12 +198,12 @@ DotIndex reference_dot(const Frame& frame,
   return best;
 }
 
-/// What every way of accumulation keeps.
+/// State common to all policies of accumulation.
 template <scalar S>
 struct Track {
   Pose<S> pose = {};
   Angles<S> angles = {};
-  Point3<S> start_mm = {S(0), S(0), S(0)};  ///< the point whose position is reported, at first
+  Point3<S> start_mm = {S(0), S(0), S(0)};  ///< initial position of the reported point
   Index dots_used = 0;
   S residual_rms_mm = S(0);
 };

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// The rigid shift in the plane that carries weighted dots nearest to where they are now: middle to
-// middle, and rotated by atan2(sum of cross products, sum of dot products) about it.
+// The weighted least-squares rigid motion of dots in the plane: it maps centroid to centroid, and
+// rotates by atan2(sum of cross products, sum of dot products) about it.
 #include <cmath>
 #include <vector>
 
@@ -13,7 +13,7 @@ namespace fingerpad {
 inline namespace v0 {
 namespace detail {
 
-/// A dot in the reference and in the frame, and how much it counts.
+/// A dot in the reference and in the frame, and its weight.
 template <scalar S>
 struct DotPair {
   Point2<S> from;
@@ -24,13 +24,13 @@ struct DotPair {
 template <scalar S>
 class RigidShift {
  public:
-  /// Of at least one pair, not all of weight 0.
+  /// Needs at least one pair with a weight > 0.
   explicit RigidShift(const std::vector<DotPair<S>>& pairs) {
     for (const DotPair<S>& p : pairs) {
       weight_ = weight_ + p.weight;
     }
-    // A sum of places far from the origin is coarse; that of what is left to the middle is not, and
-    // makes the middle of dots in one place exactly that place.
+    // The second pass removes the roundoff of summing positions far from the origin. It also makes
+    // the centroid of coinciding dots exact.
     move_middles(pairs);
     move_middles(pairs);
     turn(pairs);
@@ -38,21 +38,21 @@ class RigidShift {
 
   const S& weight() const { return weight_; }
   const Point2<S>& from() const { return from_; }
-  /// False where the dots do not tell an angle: one dot, or all in one place.
+  /// False if the dots do not determine an angle: a single dot, or all in one place.
   bool turns() const { return turns_; }
   S angle_rad() const {
     using std::atan2;
     return turns_ ? S(atan2(cross_, dot_)) : not_a_number<S>();
   }
 
-  /// How far it carries a place.
+  /// Displacement of a position by the motion.
   Point2<S> carried(const Point2<S>& place) const {
     const Point2<S> arm = {S(place.x - from_.x), S(place.y - from_.y)};
     const Point2<S> end = rotated(arm);
     return {S(S(to_.x - from_.x) + S(end.x - arm.x)), S(S(to_.y - from_.y) + S(end.y - arm.y))};
   }
 
-  /// Squared distance of a dot from where it is carried.
+  /// Squared distance of a dot from its mapped position.
   S residual_sq(const DotPair<S>& p) const {
     const Point2<S> end = rotated({S(p.from.x - from_.x), S(p.from.y - from_.y)});
     return S(square(S(S(p.to.x - to_.x) - end.x)) + square(S(S(p.to.y - to_.y) - end.y)));
@@ -92,8 +92,8 @@ class RigidShift {
   }
 
   S weight_ = S(0);
-  Point2<S> from_ = {S(0), S(0)};  ///< the middle in the reference
-  Point2<S> to_ = {S(0), S(0)};    ///< and in the frame
+  Point2<S> from_ = {S(0), S(0)};  ///< centroid in the reference
+  Point2<S> to_ = {S(0), S(0)};    ///< centroid in the frame
   S cross_ = S(0);
   S dot_ = S(0);
   S cosine_ = S(1);

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// The samples of a fingertip's frame, and from what they say back to every pixel.
+// The samples of a fingertip's frame, and the interpolation of their results to all pixels.
 #include <algorithm>
 #include <array>
 #include <cstddef>
@@ -28,14 +28,14 @@ struct OwnedGrid {
   StridedView<const T> view() const { return {cells.data(), rows, cols, cols}; }
 };
 
-/// Red and green, or whatever comes in two.
+/// Red and green, or another pair.
 template <class First, class Second>
 struct Channels {
   First red;
   Second green;
 };
 
-/// Samples of Step x Step pixels. What is asked for by the pixel is made when asked for, once.
+/// Samples of Step x Step pixels. Maps over all pixels are computed on the first request per frame.
 template <class Reference, class Pixel, int Step, int Threads>
 class FrameSamples {
   using Sampler = FrameSampler<Pixel, Step>;
@@ -64,7 +64,7 @@ class FrameSamples {
     }
   }
 
-  /// Of a new frame, of the right size; beside the pad they stay 0.
+  /// Samples a new frame, which must have the right size. Samples beside the pad stay 0.
   template <class Frame, class Executor>
   auto operator()(const Frame& frame, Executor& executor) {
     has_depth_ = has_touch_ = false;
@@ -111,7 +111,7 @@ class FrameSamples {
   }
 
   Reference free_, free_samples_;
-  std::vector<PadArea> rows_;  // of the samples in each row, those from the pad's first to its last
+  std::vector<PadArea> rows_;  // in each row, from the first sample of the pad to the last
   OwnedGrid<Cell> red_, green_;
   OwnedGrid<float> depth_;
   OwnedGrid<PixelStatus> status_;

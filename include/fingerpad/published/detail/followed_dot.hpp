@@ -13,13 +13,13 @@ namespace fingerpad {
 inline namespace v0 {
 namespace detail::motion {
 
-/// A dot with its neighbours as they were in an earlier frame.
+/// A dot with its neighbours in an earlier frame, its anchor frame.
 template <scalar S>
 struct FollowedDot {
   DotIndex index = {};
   Neighbourhood<S> anchor = {};
   std::array<bool, 9> touching = {};  ///< the dots of the anchor that were in contact
-  bool has_left = false;              ///< it was found out of contact in the last frame
+  bool has_left = false;              ///< when last found, the dot was out of contact
 };
 
 /// How a followed dot has moved since its anchor.
@@ -75,8 +75,9 @@ FollowedDot<S> follow(const Frame& frame, DotIndex index) {
   return {index, neighbourhood<S>(frame, index), touching(frame, index), false};
 }
 
-/// False when the dot is out of contact for the second time. Once it may be asked, so that another
-/// can take its place without a gap; after that its motion is no longer the object's.
+/// False if the dot is found out of contact for the second time in a row. The first time it is
+/// still used, so that another dot can replace it without a gap. After that its motion is no longer
+/// the object's.
 template <scalar S, class Frame>
 bool is_still_held(const Frame& frame, FollowedDot<S>& followed) {
   const bool found = frame.found(followed.index.row, followed.index.col);
@@ -86,7 +87,7 @@ bool is_still_held(const Frame& frame, FollowedDot<S>& followed) {
   return !(out && was_out);
 }
 
-/// The step of those that touch the object, then and now; of all where those are too few.
+/// The step of the dots in contact both then and now; of all dots if those give no rotation.
 template <class Local, scalar S, class Frame>
 DotStep<S> step_of(const Frame& frame, const FollowedDot<S>& followed) {
   const Neighbourhood<S> now = neighbourhood<S>(frame, followed.index);
@@ -99,7 +100,7 @@ DotStep<S> step_of(const Frame& frame, const FollowedDot<S>& followed) {
   return step.status == MotionStatus::ok ? step : step_between<Local>(followed.anchor, now);
 }
 
-/// A dot is followed from the frame in which the object begins.
+/// Starts to follow the reference dot in the first frame of the object.
 template <scalar S, class Frame, class FollowingTrack>
 MotionStatus begin_following(const Frame& frame, DotIndex reference, FollowingTrack& t) {
   if (!reference.exists()) {
@@ -112,11 +113,11 @@ MotionStatus begin_following(const Frame& frame, DotIndex reference, FollowingTr
   return MotionStatus::ok;
 }
 
-/// Whether the dots moved as one: to a quarter of a pitch.
+/// Whether the dots moved rigidly: the residual is at most a quarter of the pitch.
 template <scalar S>
 bool is_rigid(const Neighbourhood<S>& anchor, const S& residual_mm) {
   S least_sq = S(std::numeric_limits<scalar_real_t<S>>::infinity());
-  for (std::size_t k = 1; k < 9; k += 2) {  // the four beside it
+  for (std::size_t k = 1; k < 9; k += 2) {  // the four nearest neighbours
     if (anchor.found[k] && anchor.found[4]) {
       const S sq = squared_norm(anchor.dot[k] - anchor.dot[4]);
       least_sq = value(sq) < value(least_sq) ? sq : least_sq;

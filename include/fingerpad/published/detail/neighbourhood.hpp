@@ -1,12 +1,12 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// How a dot has rotated with its eight neighbours, between two frames k and l. Source: Ito, Kim,
-// Nagai, Obinata 2011, eqs. 14-18. As printed, eq. 17 stacks the basis vectors as rows and is
-// solved by [n2, n2, n3]^-T: the first is n1 (E021), and for rows the result is the rotation seen
-// from the rotated frame, transposed (E022). With columns:
+// Rotation of a dot with its eight neighbours between two frames k and l. Source: Ito, Kim, Nagai,
+// Obinata 2011, eqs. 14-18. As printed, eq. 17 stacks the basis vectors as rows and is solved by
+// [n2, n2, n3]^-T. The first vector must be n1 (E021), and with rows the result is the rotation
+// seen from the rotated frame, transposed (E022). With columns:
 //   N = [n1 n2 n3],  n1 = q1/|q1|,  n2 = q2/|q2|,  n3 = n1 x n2,   R = N_l N_k^-1
-// n1 and n2 are orthogonal only while the neighbourhood is not sheared: R is no rotation (E023).
+// In a sheared neighbourhood n1 and n2 are not orthogonal, and R is not a rotation (E023).
 #include <array>
 #include <cmath>
 #include <cstddef>
@@ -19,13 +19,13 @@ namespace fingerpad {
 inline namespace v0 {
 namespace detail::motion {
 
-// A dot with its eight neighbours, and the two directions in which the papers measure how it has
-// rotated. Source: Ito, Kim, Nagai, Obinata 2011, eqs. 14 and 15:
+// The two directions from which the papers measure the rotation of a dot with its eight neighbours.
+// Source: Ito, Kim, Nagai, Obinata 2011, eqs. 14 and 15:
 //   q1 = sum over k of p(I+1, J+k) - p(I-1, J+k)     along the columns of the grid
 //   q2 = sum over k of p(I+k, J+1) - p(I+k, J-1)     along its rows
 // (I-th from the left, J-th from the top). These are the slopes of the affine map from the grid to
-// space that fits the nine dots best; so, where dots are missing, the slopes of the map that fits
-// the remaining ones take their place.
+// space that fits the nine dots best. If dots are missing, the slopes of the map that fits the
+// remaining ones are used instead.
 
 /// Nine points of the grid, row by row, the middle one at index 4; NaN or inf: missing.
 template <scalar S = double>
@@ -50,7 +50,7 @@ CommonDots common_dots(const Neighbourhood<S>& a, const Neighbourhood<S>& b) {
   return common;
 }
 
-/// q1 and q2 but for a common positive factor; both 0 where the dots lie on one line of the grid.
+/// q1 and q2 up to a common positive factor. Both are 0 if the dots lie on one line of the grid.
 template <scalar S>
 struct GridDirections {
   Point3<S> q1;
@@ -66,8 +66,8 @@ GridDirections<S> directions_of_all(const std::array<Point3<S>, 9>& p) {
   return {steps(0, 3, 6, 2), steps(0, 1, 2, 6)};
 }
 
-/// The least-squares slopes over the dots that remain, times the positive determinant of the
-/// normal equations, whose coefficients are whole numbers.
+/// The least-squares slopes over the dots found, times the positive determinant of the normal
+/// equations, whose coefficients are integers.
 template <scalar S>
 GridDirections<S> directions_of_some(const std::array<Point3<S>, 9>& p,
                                      const std::array<bool, 9>& found) {
@@ -96,7 +96,7 @@ GridDirections<S> directions_of_some(const std::array<Point3<S>, 9>& p,
     const int u = n * (k % 3 - 1) - su, v = n * (k / 3 - 1) - sv;
     const auto at = static_cast<std::size_t>(k);
     if (found[at]) {
-      const Point3<S> from_first = p[at] - p[first];  // 0, not roundoff, if all are equal
+      const Point3<S> from_first = p[at] - p[first];  // exactly 0 if all dots coincide
       q.q1 = q.q1 + S(cvv * u - cuv * v) * from_first;
       q.q2 = q.q2 + S(cuu * v - cuv * u) * from_first;
     }
@@ -139,10 +139,10 @@ struct Basis {
   Point3<S> n1;
   Point3<S> n2;
   Point3<S> n3;
-  bool determined = false;  ///< false: n1 and n2 are missing or parallel
+  bool determined = false;  ///< false: n1 or n2 is missing, or they are parallel
 };
 
-/// What rotated between two frames.
+/// Rotation of a neighbourhood between two frames.
 template <scalar S>
 struct LocalRotation {
   Rotation<S> rotation = {};
@@ -165,9 +165,10 @@ Basis<S> published_basis(const GridDirections<S>& q) {
 }
 
 /// The orthonormal frame nearest to n1 and n2, which both deviate from it by the same angle:
-///   n3 = normalized(n1 x n2),  s = normalized(n1 + n2),  t = n3 x s,  n1' = (s - t)/sqrt 2,  n2' =
-///   (s + t)/sqrt 2
-/// A shear of the neighbourhood turns n1 and n2 against each other and leaves it where it is.
+///   n3 = normalized(n1 x n2),  s = normalized(n1 + n2),  t = n3 x s,
+///   n1' = (s - t)/sqrt 2,  n2' = (s + t)/sqrt 2
+/// A shear of the neighbourhood turns n1 and n2 in opposite directions and leaves the frame as it
+/// is.
 template <scalar S>
 Basis<S> symmetric_frame(const GridDirections<S>& q) {
   using std::sqrt;
@@ -179,7 +180,7 @@ Basis<S> symmetric_frame(const GridDirections<S>& q) {
     return {};
   }
   const Point3<S> n3 = normalized(normal);
-  // n1 + n2, but for a factor: the shorter direction is stretched to the length of the other
+  // n1 + n2 up to a factor: q2 is scaled to the length of q1
   const S stretch = sqrt(S(sq1 / sq2));
   const Point3<S> s = normalized(q.q1 + stretch * q.q2);
   const Point3<S> t = cross(n3, s);
@@ -199,7 +200,7 @@ Rotation<S> turn_between(const Basis<S>& k, const Basis<S>& l) {
   return {{{x.x, x.y, x.z}, {y.x, y.y, y.z}, {z.x, z.y, z.z}}};
 }
 
-/// The basis whose rows are those of N^-1: N_l N^-1 = N_l (inverse_transpose N)^T.
+/// N^-T as a basis: its vectors are the rows of N^-1, so N_l N^-1 = N_l (N^-T)^T.
 template <scalar S>
 Basis<S> inverse_transposed(const Basis<S>& n) {
   const Point3<S> c = cross(n.n1, n.n2);

@@ -1,16 +1,17 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// The motion of a mass-spring-damper: without load at any time, and over a step with a load that is
-// linear in it. With s = c/2m and D = s^2 - k/m every motion without load is
+// The motion of a mass-spring-damper: without load at any time, and over one step with a load that
+// is linear in time. With s = c/2m and D = s^2 - k/m every motion without load is
 // e^{-st} [C1 C(D t^2) + C2 t S(D t^2)], where
 //
 //   C(x) = 1 + x/2! + x^2/4! + ... = cosh sqrt(x) = cos sqrt(-x)
 //   S(x) = 1 + x/3! + x^2/5! + ... = sinh sqrt(x) / sqrt(x) = sin sqrt(-x) / sqrt(-x)
 //
-// have no branch at critical damping (D = 0). Neither function is taken without its decay: nothing
-// overflows, however long the time. A step is the Taylor series of a step so short that nothing
-// cancels, doubled as often as needed: one formula for any damping, any step and any number type.
+// have no branch at critical damping (D = 0). Each function is computed together with its decay, so
+// that nothing overflows for long times. A step is the Taylor series of a step so short that
+// nothing cancels, doubled as often as needed: one formula for any damping, any step and any number
+// type.
 #include <cmath>
 
 #include "fingerpad/core/scalar.hpp"
@@ -20,8 +21,8 @@ inline namespace v0 {
 namespace detail {
 namespace foam {
 
-/// What a number is computed in: the next wider built-in one, since the phase of 10^4 rad loses
-/// four digits. Other numbers are computed in themselves.
+/// The type in which S is computed: the next wider built-in type, since a phase of 10^4 rad loses
+/// four digits. Other scalars are computed in themselves.
 template <class S>
 struct wide {
   using type = S;
@@ -43,7 +44,7 @@ struct MassSpringDamperRates {
   using W = wide_t<S>;
   W decay;       ///< s, 1/s
   W natural_sq;  ///< k/m, 1/s^2
-  W split;       ///< D, 1/s^2: < 0 swings, > 0 creeps
+  W split;       ///< D, 1/s^2: < 0 underdamped, > 0 overdamped
 
   MassSpringDamperRates(const S& mass, const S& damping, const S& stiffness)
       : decay(W(damping) / W(S(mass + mass))),
@@ -89,7 +90,8 @@ FreeWave<R> swinging(const MassSpringDamperRates<S>& rates, const wide_t<S>& tim
   return {R(decayed * in_phase), R(R(decayed * out_of_phase) / R(frequency))};
 }
 
-/// D > 0, by two decays; the slow one is (k/m) / (s + sqrt(D)), since s - sqrt(D) would cancel.
+/// D > 0, by two exponential decays. The slow rate is (k/m) / (s + sqrt(D)), since s - sqrt(D)
+/// would cancel.
 template <scalar S, class R = wide_t<S>>
 FreeWave<R> creeping(const MassSpringDamperRates<S>& rates, const wide_t<S>& time) {
   using std::exp;
@@ -124,18 +126,18 @@ FreeWave<R> free_wave(const MassSpringDamperRates<S>& rates, const S& time_s) {
   return {R(decayed * pair.wave), R(R(decayed * R(time)) * pair.lag)};
 }
 
-/// Answers after a step, for m = 1.
+/// Responses after a step, for m = 1.
 template <scalar W>
 struct StepAnswers {
   W step;    ///< h, s
   W wave;    ///< e^{-sh} C(D h^2)
-  W lag;     ///< e^{-sh} h S(D h^2), the answer to a start with speed 1
+  W lag;     ///< e^{-sh} h S(D h^2), the response to a start with speed 1
   W raised;  ///< to a load of 1, from rest: the integral of lag
-  W ramped;  ///< to a load that rises by 1 per s, from rest: the integral of that
+  W ramped;  ///< to a load that rises by 1 per s, from rest: the integral of raised
 };
 
-/// For (2 s + sqrt(k/m)) h <= `size` <= 1/2. With g = lag, g'' = -2 s g' - (k/m) g gives one
-/// derivative at 0 after another.
+/// For (2 s + sqrt(k/m)) h <= `size` <= 1/2. With g = lag, g'' = -2 s g' - (k/m) g gives the
+/// derivatives at 0 one after another.
 template <scalar S, class W>
 StepAnswers<W> short_step(const MassSpringDamperRates<S>& rates,
                           const W& step,
@@ -145,7 +147,7 @@ StepAnswers<W> short_step(const MassSpringDamperRates<S>& rates,
   W derivative(0), next(step);  // the n-th of g, times h^n
   W share(1);                   // 1 / n!
   StepAnswers<W> sum{step, W(0), W(0), W(0), W(0)};
-  scalar_real_t<W> bound(1);  // size^n / n!; the n-th term is that over `size`, of the step
+  scalar_real_t<W> bound(1);  // size^n / n!; the n-th term is at most this / size * step
   for (int n = 0; n < 2 || bound > epsilon<W>() * size; ++n) {
     const W term = derivative * share;
     const W once = term / W(n + 1);
@@ -164,10 +166,10 @@ StepAnswers<W> short_step(const MassSpringDamperRates<S>& rates,
   return sum;
 }
 
-/// The answers after twice the time.
+/// The responses after twice the time.
 template <scalar S, class W>
 StepAnswers<W> doubled(const MassSpringDamperRates<S>& rates, const StepAnswers<W>& a) {
-  const W kept = a.wave + W(rates.decay * a.lag);  // of a start at 1
+  const W kept = a.wave + W(rates.decay * a.lag);  // of a start at position 1
   const W once_more = W(1) + kept;
   return {W(a.step + a.step), W(W(a.wave * a.wave) + W(rates.split * W(a.lag * a.lag))),
           W(W(a.wave + a.wave) * a.lag), W(W(once_more * a.raised) + W(a.lag * a.lag)),
@@ -183,8 +185,8 @@ scalar_real_t<wide_t<S>> fastest_rate(const MassSpringDamperRates<S>& rates) {
   return Real(decay + decay + Real(sqrt(natural_sq)));
 }
 
-/// Whether a step is short enough for the digits of its phase, or so long that the phase does not
-/// matter, as nothing is left of the motion.
+/// Whether a step is short enough to know digits of its phase, or so long that nothing is left of
+/// the motion and the phase does not matter.
 template <scalar S>
 bool knows_phase(const MassSpringDamperRates<S>& rates, const S& step_s) {
   using W = wide_t<S>;

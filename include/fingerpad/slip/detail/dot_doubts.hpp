@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// By how much noise scatters the number of dots that stick.
+// Uncertainty of the number of sticking dots due to noise.
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -17,27 +17,27 @@ namespace fingerpad {
 inline namespace v0 {
 namespace detail::stick {
 
-/// Standard deviation that noise gives to "sticks" (1) or "slips" (0) of a dot whose slip is near
-/// the limit: sqrt(p (1 - p)), p by the logistic curve nearest to the normal one. `sd`: of that
-/// slip along one axis, in the unit of both.
+/// Standard deviation of the answer "sticks" (1) or "slips" (0) of a dot due to noise:
+/// sqrt(p (1 - p)), with p from the logistic curve nearest to the normal distribution. `sd` is that
+/// of the slip along one axis, in the unit of slip and limit.
 template <class S>
 S doubt_of(const S& slip_sq, const S& limit_sq, const S& sd) {
   using std::exp;
   using std::sqrt;
   if (!(slip_sq < S(9) * limit_sq)) {
-    return S(0);  // two limits beyond it there is none
+    return S(0);  // no doubt beyond three times the limit
   }
   const S off = (S(sqrt(slip_sq)) - S(sqrt(limit_sq))) / sd;
   const S grown = exp(S(S(-0.851) * (off < S(0) ? S(-off) : off)));
   return grown / (S(1) + grown * grown);
 }
 
-/// How the answers of two dots go together whose slips are means over neighbours: where these have
+/// Correlation of the answers of two dots whose slips are means over neighbours. If the means have
 /// the correlation r, answers near the limit have (2 / pi) asin(r) (Sheppard 1899).
 struct SharedDoubt {
   double beside, diagonal;
 
-  /// Weights of the mean: of the dot, those beside it, those across.
+  /// Weights of the mean: of the dot, of side neighbours and of diagonal ones.
   SharedDoubt(double self, double side, double across) {
     const double all = self * self + 4 * side * side + 4 * across * across;
     const auto shared = [&](double weight) {
@@ -48,8 +48,8 @@ struct SharedDoubt {
   }
 };
 
-/// Doubts of the dots of one frame, in a grid with a border of one cell. Dots that are two apart
-/// share a 15th and less: left out.
+/// Doubts of the dots of one frame, in a grid with a border of one cell. Dots two apart have a
+/// correlation of at most 1/15, which is neglected.
 template <class S>
 class DotDoubts {
  public:
@@ -61,7 +61,7 @@ class DotDoubts {
   void set(const DotIndex& d, const S& doubt) {
     doubts_[static_cast<std::size_t>((d.row + 1) * across_ + d.col + 1)] = doubt;
   }
-  /// Of the number of dots that stick.
+  /// Variance of the number of sticking dots.
   S variance(const SharedDoubt& shared) const {
     S sum = S(0);
     const S* const end = doubts_.data() + doubts_.size() - across_;
@@ -80,14 +80,14 @@ class DotDoubts {
   std::vector<S> doubts_;
 };
 
-/// Room in which dots are marked.
+/// Working memory for marking dots.
 template <class S>
 struct MarkingRoom {
   Dots<Point2<S>> residuals;
   DotDoubts<S> doubts;
 };
 
-/// Standard deviation of the share of so many dots.
+/// Standard deviation of the ratio of sticking dots to `dots`, from the variance of their number.
 template <class S>
 S ratio_sd_of(const S& variance, const S& dots) {
   using std::sqrt;

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 // Frames of dots as the stick ratio reads and stores them: points in the order of the dot grid, NaN
-// where there is none. NaN makes every comparison false, so that a missing dot needs no flag.
+// for a missing dot. NaN makes every comparison false, so a missing dot needs no flag.
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -20,7 +20,7 @@ namespace fingerpad {
 inline namespace v0 {
 namespace detail::stick {
 
-/// Squares of distances from here on are no distances between dots, NaN neither.
+/// Upper limit of squared distances between dots. NaN is not a distance either.
 template <class S>
 constexpr S no_distance_sq() {
   return S(1e18);
@@ -33,7 +33,7 @@ constexpr bool is_distance_sq(const S& sq) {
 template <class P>
 using coordinate = decltype(P::x);
 
-/// A dot that is not there: all coordinates NaN.
+/// A missing dot: all coordinates are NaN.
 template <class P>
 constexpr P no_dot() {
   constexpr auto nan = [] { return not_a_number<coordinate<P>>(); };
@@ -53,7 +53,7 @@ struct DotLayout {
   friend constexpr bool operator==(const DotLayout&, const DotLayout&) = default;
 };
 
-/// The same of indices that ascend, without a division each.
+/// DotLayout::dot_at() for ascending indices, without a division for each.
 class DotWalk {
  public:
   explicit DotWalk(const DotLayout& layout) : cols_(layout.cols) {}
@@ -88,7 +88,7 @@ P beside(const P* dots, const DotLayout& layout, const DotIndex& d, Index down, 
                       d.col + right < layout.cols;
   return inside ? dots[(d.row + down) * layout.cols + d.col + right] : no_dot<P>();
 }
-/// The same from dot k. A division each: ask for dot_at(k) once where there are many.
+/// The same from dot k. Takes a division: for several neighbours, call dot_at(k) once instead.
 template <class P>
 P beside(const P* dots, const DotLayout& layout, Index k, Index down, Index right) {
   return beside(dots, layout, layout.dot_at(k), down, right);
@@ -97,9 +97,9 @@ P beside(const P* dots, const DotLayout& layout, Index k, Index down, Index righ
 /// A frame as it was given, of points in the image or in space.
 template <class P>
 struct GivenDots {
-  Dots<P> found;                   ///< NaN where none was found
-  ReservedVector<Index> touching;  ///< the cells with a flag of contact, found or not
-  Index count = 0;                 ///< of the dots found
+  Dots<P> found;                   ///< NaN for a dot not found
+  ReservedVector<Index> touching;  ///< the cells flagged as in contact, found or not
+  Index count = 0;                 ///< number of dots found
 
   GivenDots() = default;
   explicit GivenDots(const DotLayout& layout)
@@ -121,7 +121,7 @@ struct GivenDots {
         if constexpr (requires { p.z; }) {
           p.z = coordinate<P>(Traits::z(given));
         }
-        // squares that sum to less tell at once
+        // quick test: a smaller sum of squares is always plausible
         const bool there = squared_norm(p) < square(coordinate<P>(1000000)) || is_plausible(p);
         at(found, k) = there ? p : no_dot<P>();
         count += there ? 1 : 0;
@@ -163,7 +163,7 @@ struct GivenDots {
     }
   }
 
-  /// Dots that share a place by which others mark what they did not find are not found.
+  /// Removes dots at a position that marks lost dots in other software, if several dots share it.
   void leave_out(const coordinate<P>& mark, Index marked) {
     if (marked > 1) {
       std::replace_if(
@@ -173,7 +173,7 @@ struct GivenDots {
   }
 };
 
-/// The latest frames, at most `capacity`; a new one takes the place of the oldest.
+/// The latest frames, at most `capacity`; a new frame replaces the oldest.
 template <class P>
 class Repository {
  public:
@@ -186,7 +186,7 @@ class Repository {
   Index size() const { return size_; }
   Index capacity() const { return static_cast<Index>(frames_.size()); }
 
-  /// `age` 0: the newest.
+  /// `age` 0 is the newest frame.
   const P* dots(Index age) const { return dots_.data() + slot(age) * cells_; }
   std::int64_t frame(Index age) const { return frames_[static_cast<std::size_t>(slot(age))]; }
 
@@ -210,11 +210,11 @@ class Repository {
   Index size_ = 0;
 };
 
-/// What time says of a recording. Times that are not finite say nothing.
+/// Times of the frames of a recording. Times that are not finite are unknown.
 class Clock {
  public:
-  /// Notes the time of a frame; true when it lies more than `hold_s` before the latest one: another
-  /// recording.
+  /// Sets the time of a frame. True if it is more than `hold_s` before the latest one: another
+  /// recording has begun.
   bool goes_back(double time_s, double hold_s) {
     const bool back = time_s < latest_s_ - hold_s;
     if (back) {
@@ -225,7 +225,7 @@ class Clock {
     return back;
   }
   void touch() { contact_s_ = is_finite(now_s_) ? now_s_ : contact_s_; }
-  /// Whether the last frame with contact is no longer ago than that.
+  /// Whether the last frame with contact is at most `hold_s` ago.
   bool touched_within(double hold_s) const { return now_s_ - contact_s_ <= hold_s; }
 
  private:
@@ -235,8 +235,8 @@ class Clock {
   double contact_s_ = never;
 };
 
-/// d_max^2: the largest displacement of a dot of `touching` that both frames have; -1 if there is
-/// none.
+/// d_max^2: the largest squared displacement of a dot of `touching` found in both frames; -1 if
+/// there is none.
 template <class P>
 auto furthest_sq(const std::vector<Index>& touching, const P* now, const P* before)
     -> decltype(squared_norm(*now)) {
@@ -249,8 +249,8 @@ auto furthest_sq(const std::vector<Index>& touching, const P* now, const P* befo
   return furthest;
 }
 
-/// Whether the dots have gone back toward their free places, at more than half a right angle to any
-/// other way; false where these are not known. Along the pad: the depth of a contact is its load's.
+/// Whether the dots have moved back toward their free positions, to within 45 degrees; false if
+/// these are not known. Only x and y count, because the depth of a contact depends on its load.
 template <class P>
 bool falls_back(const std::vector<Index>& touching,
                 const P* now,
@@ -281,23 +281,23 @@ template <class S>
 struct FramePair {
   const Point2<S>* now;
   const Point2<S>* then;
-  const std::vector<Index>& touching;  ///< now
+  const std::vector<Index>& touching;  ///< dots now in contact
   DotLayout layout;
   S furthest_sq;  ///< d_max^2
 };
 
-/// With which stored frame the present one is compared.
+/// The stored frame with which the present one is compared.
 template <class S>
 struct Choice {
-  Index age = -1;         ///< in the repository; -1: no frame will do
+  Index age = -1;         ///< in the repository; -1: no frame is suitable
   S furthest_sq = S(-1);  ///< d_max^2 from it; else from the newest stored frame
-  S newest_sq = S(-1);    ///< d_max^2 from a frame of a moment ago, from which a leap is a leap of
-                          ///< names; -1: there is none
+  S newest_sq = S(-1);    ///< d_max^2 from the newest stored frame, to detect a jump of labels; -1:
+                          ///< there is none
   bool standing = false;
 };
 
-/// Settles what each dot does: marks of dots that do not touch any more are dropped, dots that
-/// newly touch are unknown. Counts them, and writes them to `to`.
+/// Updates the marks of the dots: those no longer in contact have none, those newly in contact are
+/// unknown. Counts the marks and writes them to `to`.
 template <class Result, class States>
 void settle_marks(const DotLayout& layout,
                   const std::vector<Index>& all_touching,
@@ -324,8 +324,8 @@ void settle_marks(const DotLayout& layout,
   }
 }
 
-/// Whether nothing tells dots that slip from dots that lie outside of the contact: all are said to
-/// touch, and more than a tenth have not followed, where noise makes a hundredth.
+/// Whether slipping dots cannot be distinguished from dots outside of the contact: all dots are
+/// flagged as in contact, and more than a tenth slip, where noise alone causes a hundredth.
 template <class Result, class P>
 bool lacks_outline(const Result& result, const DotLayout& layout, const GivenDots<P>& given) {
   return 10 * result.slip > result.stick + result.slip && given.all_touch(layout);

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// The dots that two frames have, in blocks, and what is fitted to their places alone.
+// The dots found in both of two frames, in blocks, and fits to their positions.
 #include <algorithm>
 #include <array>
 #include <cstddef>
@@ -15,8 +15,8 @@ namespace fingerpad {
 inline namespace v0 {
 namespace detail::stick {
 
-/// Dots are worked on in blocks of so many, side by side: a loop of fixed length over arrays is
-/// what compilers turn into vectors, and sums that are kept place by place have a set order.
+/// Number of dots in a block. Compilers vectorise loops of fixed length over arrays, and sums kept
+/// for each place of a block have a fixed order.
 inline constexpr std::size_t block_dots = 8;
 
 template <class S>
@@ -44,25 +44,25 @@ struct PointBlock {
   }
 };
 
-/// Dots of two frames, and the surface where they are now.
+/// Dots of two frames, and the surface at their present positions.
 template <class S>
 struct PairBlock {
   Block<Index> cell;
   Block<std::size_t> padded;  ///< the cell in a grid with a border of one
-  Block<S> is_dot;            ///< 1; 0 in places of the last block that hold no dot
+  Block<S> is_dot;            ///< 1; 0 for unused places of the last block
   PointBlock<S> then, now;
-  PointBlock<S> by_u;       ///< what a residual is multiplied by for its slip up the slope
-  Block<S> by_v_x, by_v_y;  ///< and level
+  PointBlock<S> by_u;       ///< factor of a residual that gives its slip up the slope
+  Block<S> by_v_x, by_v_y;  ///< factor that gives its level slip
   Block<S> weight;          ///< in the fit of the motion
-  PointBlock<S> residual;   ///< now less then, carried by the motion
+  PointBlock<S> residual;   ///< now - motion(then)
   Block<S> slip_u, slip_v;  ///< in standard deviations of one position
   Block<S> slip_sq;
-  Block<S> counts;          ///< 1: in the mean of its neighbours; 0: slips by too much
+  Block<S> counts;          ///< 1: counts in the mean of its neighbours; 0: slips too much
   PointBlock<S> mean_slip;  ///< averaged over neighbours
   Block<S> mean_sq;         ///< in variances of one position
 };
 
-/// The dots that two frames have, in blocks.
+/// The dots found in both of two frames, in blocks.
 template <class S>
 class SpatialPairs {
  public:
@@ -71,7 +71,7 @@ class SpatialPairs {
 
   void clear() { size_ = 0; }
   Index size() const { return static_cast<Index>(size_); }
-  /// `spare`: a place with a border, which no dot has.
+  /// Adds a dot. `spare` is a padded place without a dot, for the unused places of a block.
   void add(Index cell,
            std::size_t padded,
            std::size_t spare,
@@ -93,7 +93,7 @@ class SpatialPairs {
     ++size_;
   }
 
-  /// visit(block, k) of each dot.
+  /// Calls visit(block, k) for each dot.
   template <class Visit>
   void for_each(const Visit& visit) {
     for (std::size_t i = 0; i < size_; ++i) {
@@ -128,7 +128,7 @@ Point3<S> middle_of(const SpatialPairs<S>& pairs) {
   return Point3<S>{total(sum.x), total(sum.y), total(sum.z)} / S(static_cast<double>(pairs.size()));
 }
 
-/// The surface on which the dots are now.
+/// The surface through the present positions of the dots.
 template <class S>
 Quadric<S> quadric_through(const SpatialPairs<S>& pairs) {
   const Point3<S> middle = middle_of(pairs);
@@ -162,7 +162,7 @@ Quadric<S> quadric_through(const SpatialPairs<S>& pairs) {
   const S o = S(0), n = S(static_cast<double>(pairs.size()));
   const S sxx = total(xx), sxy = total(xy), syy = total(yy), sxxy = total(xxy), sxyy = total(xyy);
   const S sxxyy = total(xxyy);
-  const SmallMatrix<S, 6> a = {{{n, o, o, o, o, o},  // x, y and z are counted from their middles
+  const SmallMatrix<S, 6> a = {{{n, o, o, o, o, o},  // x, y and z are relative to their means
                                 {o, sxx, o, o, o, o},
                                 {o, sxy, syy, o, o, o},
                                 {sxx, total(xxx), sxxy, total(xxxx), o, o},
@@ -175,9 +175,9 @@ Quadric<S> quadric_through(const SpatialPairs<S>& pairs) {
   return q;
 }
 
-/// d_max^2: the largest displacement of a dot, -1 of none. Its depth is that of the plane through
-/// the depth displacements of all, which a rigid motion follows: one dot's depth is known too
-/// badly.
+/// d_max^2: the largest squared displacement of a dot; -1 without dots. Its depth component is that
+/// of the plane through the depth displacements of all dots, which holds for a rigid motion,
+/// because the depth of a single dot is too noisy.
 template <class S>
 S furthest_rigid_sq(const SpatialPairs<S>& pairs) {
   if (pairs.size() == 0) {
@@ -199,7 +199,7 @@ S furthest_rigid_sq(const SpatialPairs<S>& pairs) {
     }
   }
   const S o = S(0), count = S(static_cast<double>(pairs.size()));
-  const SmallMatrix<S, 3> a = {{{count, o, o},  // x and y are counted from their middles
+  const SmallMatrix<S, 3> a = {{{count, o, o},  // x and y are relative to their means
                                 {o, total(xx), o},
                                 {o, total(xy), total(yy)}}};
   const NormalEquations<S, 3> plane(a, 1e-6);

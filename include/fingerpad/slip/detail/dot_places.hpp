@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// Dots that carry another dot's name: two exchanged, one found at a spot of glare, or the whole
-// pattern taken for its neighbour. One such dot would be the furthest of all and set the threshold.
+// Detects wrongly labelled dots: two exchanged, one found at a spot of glare, or the whole pattern
+// shifted by a pitch. A single such dot would have the largest displacement and set the threshold.
 #include <algorithm>
 
 #include "fingerpad/slip/detail/dot_frames.hpp"
@@ -12,8 +12,8 @@ namespace fingerpad {
 inline namespace v0 {
 namespace detail::stick {
 
-/// Whether dot d lies further than half a pitch from the middle of the two dots beside it; false
-/// where one of the three is missing.
+/// Whether dot d is further than half a pitch from the middle of the two dots beside it; false if
+/// one of the three is missing.
 template <class P>
 bool is_out_of_line(
     const P* dots, const DotLayout& layout, const DotIndex& d, Index down, Index right) {
@@ -28,8 +28,8 @@ bool is_out_of_line(
   return squared_norm(across) < coordinate<P>(4) * squared_norm(off);
 }
 
-/// The corners of the pattern lie between no two neighbours: they are held against the line through
-/// the next two, along their row and their column.
+/// The same for the corners of the pattern, which do not lie between two neighbours. They are
+/// compared with the line through the next two dots, along their row and their column.
 template <class P>
 bool is_corner_out_of_line(const P* dots, const DotLayout& layout, const DotIndex& d) {
   if ((d.row != 0 && d.row != layout.rows - 1) || (d.col != 0 && d.col != layout.cols - 1)) {
@@ -52,12 +52,12 @@ bool is_out_of_place(const P* dots, const DotLayout& layout, const DotIndex& d) 
 
 struct PlacedDots {
   Index dots = 0;          ///< in contact and in place
-  Index out_of_place = 0;  ///< in contact and found, but not where their neighbours say
-  Index crossed = 0;       ///< of these, both in their row and in their column: not the fault of
-                           ///< one neighbour
+  Index out_of_place = 0;  ///< in contact and found, but not between their neighbours
+  Index crossed = 0;       ///< of these, out of line in both row and column, which a single wrong
+                           ///< neighbour does not cause
 };
 
-/// Writes to `now` the dots in contact that are where their neighbours say; all others are missing.
+/// Writes to `now` the dots in contact that lie between their neighbours; all others are missing.
 template <class P>
 PlacedDots place_dots(const GivenDots<P>& given, const DotLayout& layout, Dots<P>& now) {
   std::fill(now.begin(), now.end(), no_dot<P>());
@@ -82,8 +82,8 @@ PlacedDots place_dots(const GivenDots<P>& given, const DotLayout& layout, Dots<P
   return placed;
 }
 
-/// Whether so many dots are out of place that the others cannot be trusted either: more than a
-/// fifth.
+/// Whether more than a fifth of the dots are out of place in row and column, so that the others
+/// cannot be trusted either.
 inline bool is_not_in_order(const PlacedDots& placed) {
   return 5 * placed.crossed > placed.out_of_place + placed.dots;
 }
@@ -115,10 +115,9 @@ coordinate<P> mean_pitch_sq(const std::vector<Index>& touching,
   return count > 0 ? S(sum / S(count)) : S(0);
 }
 
-/// Whether dots this far apart cannot be compared after a move U for slips of delta_0: a U of more
-/// than half a pitch reaches the next dot, a pitch of less than four delta_0 is one of noise, and
-/// to one of more than 200 U any noise is slip. The likely cause is another unit. Of no neighbours,
-/// which have no pitch, nothing is said.
+/// Whether the pitch does not fit U (`reference`) and delta_0 (`slip`), probably because of another
+/// unit. A U of more than half a pitch reaches the next dot. A pitch of less than 4 delta_0 is
+/// noise. With a pitch of more than 200 U any noise is slip. False for pitch 0: no neighbours.
 template <class S>
 bool is_wrong_scale(const S& pitch_sq, double reference, double slip) {
   const S least =
@@ -127,15 +126,15 @@ bool is_wrong_scale(const S& pitch_sq, double reference, double slip) {
   return S(0) < pitch_sq && (pitch_sq < least || most < pitch_sq);
 }
 
-/// Whether dots are twice as far apart as they were, or half as far, which no load does: they have
-/// come in another unit, or are other dots.
+/// Whether the pitch is more than twice or less than half the first one. No load causes this: the
+/// unit has changed, or these are other dots.
 template <class S>
 bool is_rescaled(const S& pitch_sq, const S& first_sq) {
   return S(0) < pitch_sq && S(0) < first_sq &&
          (S(4) * first_sq < pitch_sq || S(4) * pitch_sq < first_sq);
 }
 
-/// Mean of vectors, and of their squares.
+/// Mean and variance of vectors.
 template <class S>
 struct MeanOfVectors {
   Point2<S> sum = {S(0), S(0)};
@@ -153,7 +152,7 @@ struct MeanOfVectors {
   S spread_sq() const { return sum_sq / S((std::max)(count, 1)) - squared_norm(mean()); }
 };
 
-/// Mean square of what one similarity leaves of the moves of dots that both frames have; 0 of none.
+/// Mean squared residual of a similarity fitted to the dots found in both frames; 0 without dots.
 template <class P>
 coordinate<P> mean_residual_sq(const std::vector<Index>& touching, const P* now, const P* before) {
   using S = coordinate<P>;
@@ -180,9 +179,9 @@ coordinate<P> mean_residual_sq(const std::vector<Index>& touching, const P* now,
   return sum / sums.weight;
 }
 
-/// True when the names have jumped, not the dots: all have moved by one pitch of the pattern, along
-/// rows, columns or diagonals, to a quarter of a pitch; or they lie half a pitch from any shift,
-/// rotation and scale of themselves, which no stretch of a membrane between two frames does: rows
+/// Whether the labels have jumped, not the dots. Either all have moved by one pitch of the pattern,
+/// along rows, columns or diagonals, to within a quarter of a pitch. Or the rms residual of a
+/// similarity exceeds half a pitch, which no stretch of a membrane between two frames causes: rows
 /// and columns exchanged, a mirrored pattern, two halves exchanged.
 template <class P>
 bool has_jumped(const std::vector<Index>& touching,

@@ -14,8 +14,8 @@ namespace fingerpad {
 inline namespace v0 {
 namespace detail::stick {
 
-/// The slope and the bend of a surface z = c0 + c1 x + c2 y + c3 x^2 + c4 x y + c5 y^2 about a
-/// middle.
+/// A surface z = c0 + c1 x + c2 y + c3 x^2 + c4 x y + c5 y^2, with coordinates relative to
+/// `middle`.
 template <class S>
 struct Quadric {
   std::array<S, 6> c = {S(0), S(0), S(0), S(0), S(0), S(0)};
@@ -30,15 +30,15 @@ struct Quadric {
     const S x = p.x - middle.x, y = p.y - middle.y;
     return {S(c[1] + S(2) * c[3] * x + c[4] * y), S(c[2] + c[4] * x + S(2) * c[5] * y)};
   }
-  /// Toward the object.
+  /// Unit normal toward the object.
   Point3<S> normal(const Point3<S>& p) const {
     const Point2<S> z = slope(p);
     return normalized(Point3<S>{S(-z.x), S(-z.y), S(1)});
   }
 };
 
-/// From the normal equations of its terms; a plane where they do not determine a bend, level where
-/// they determine no plane.
+/// The surface from the normal equations of its terms. A plane if these do not determine the
+/// quadratic terms; level if they do not determine a plane either.
 template <class S>
 Quadric<S> quadric_of(const SmallMatrix<S, 6>& a, const std::array<S, 6>& b) {
   Quadric<S> q;
@@ -61,7 +61,7 @@ Quadric<S> quadric_of(const SmallMatrix<S, 6>& a, const std::array<S, 6>& b) {
   return q;
 }
 
-/// Through all points that for_each(visit) visits, twice.
+/// The surface through all points that for_each(visit) visits. It is called twice.
 template <class S, class ForEach>
 Quadric<S> quadric_through(const ForEach& for_each) {
   Point3<S> middle = {S(0), S(0), S(0)};

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// Noise of the dots, measured while nothing touches the pad: what thresholds of slip follow from.
+// Noise of the dots, measured while nothing touches the pad, for the thresholds of slip.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -16,16 +16,17 @@ namespace fingerpad {
 inline namespace v0 {
 namespace detail::stick {
 
-/// From one free frame to the next a dot moves as the mean of the two beside it does, but for
-/// noise: of positions with a standard deviation s, e = 2 d - d_before - d_after has 12 s^2 an
-/// axis, whatever the pad's shift, rotation, scale and shear. A frame counts by the median of e^2,
-/// which a few wrong dots do not change; what is told is the median of the latest frames, which a
-/// frame in which the pad was touched unseen does not change either.
+/// Measures noise from successive free frames. Except for noise, a dot moves like the mean of the
+/// two dots beside it. With displacements d and a standard deviation s of a position,
+/// e = 2 d - d_before - d_after has the variance 12 s^2 per axis, for any shift, rotation, scale
+/// and shear of the pad. Each frame yields the median of e^2, which is robust to a few wrong dots.
+/// The result is the median over the latest frames, which is robust to frames with an unnoticed
+/// touch.
 template <class P>
 class FreeDots {
   static constexpr bool in_space = requires(P p) { p.z; };
   static constexpr std::size_t memory = 32;  // frames
-  static constexpr std::size_t fewest = 12;  // values of a frame
+  static constexpr std::size_t fewest = 12;  // values needed of a frame
 
  public:
   FreeDots() = default;
@@ -35,7 +36,7 @@ class FreeDots {
         moved_(before_),
         squares_(2 * before_.size()) {}
 
-  /// Adds a frame in which nothing touches. Frames that repeat the one before do not count.
+  /// Adds a frame without contact. Frames that repeat the one before do not count.
   void add(const Dots<P>& now) {
     if (has_before_) {
       for (std::size_t k = 0; k < now.size(); ++k) {
@@ -56,16 +57,16 @@ class FreeDots {
     std::copy(now.begin(), now.end(), before_.begin());
     has_before_ = true;
   }
-  /// A frame that is not free lies in between.
+  /// Call for a frame with contact: the frames before and after it are not compared.
   void interrupt() { has_before_ = false; }
   void reset() {
     interrupt();
     frames_ = newest_ = 0;
   }
 
-  /// Pairs of frames measured, of the latest 32.
+  /// Number of pairs of frames measured, at most the latest 32.
   Index frames() const { return static_cast<Index>(frames_); }
-  /// Standard deviation of one position along x and y; NaN with no frames.
+  /// Standard deviation of one position along x or y; NaN without frames.
   double lateral() const { return middle_of(lateral_sq_); }
   double depth() const { return middle_of(depth_sq_); }
 

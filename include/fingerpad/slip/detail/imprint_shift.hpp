@@ -1,12 +1,12 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// How an imprint has moved between two frames: the translation and rotation that bring what was
-// seen in the contact onto what is seen now, up to a gain and an offset. Gauss-Newton steps on the
-// squared differences (Baker and Matthews, "Lucas-Kanade 20 years on", 2004, inverse
-// compositional); with gain and offset it is the largest correlation (Evangelidis and Psarakis,
-// 2008). A round imprint looks the same after any turn, and would be turned until its noise fits
-// best: no rotation is expected, and as much is believed as the imprint shows beyond its residuals.
+// Motion of an imprint between two frames: the translation and rotation that map the earlier image
+// of the contact to the present one, up to a gain and an offset. Gauss-Newton steps on the squared
+// differences (Baker and Matthews, "Lucas-Kanade 20 years on", 2004, inverse compositional); with
+// gain and offset this maximises the correlation (Evangelidis and Psarakis, 2008). A round imprint
+// does not determine the rotation, which would then fit noise. A prior toward no rotation limits it
+// to what the imprint shows beyond its residuals.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -29,14 +29,13 @@ namespace detail {
 template <scalar S>
 struct PlanarMotion {
   Point2<S> shift = {S(0), S(0)};
-  S angle_rad = S(0);  ///< from x to y
+  S angle_rad = S(0);       ///< from x to y
   S shift_variance = S(0);  ///< mean of both axes
   S angle_variance = S(0);
   S correlation = S(0);
 };
 
-/// What is looked for: cells of an imprint, each with its slopes. Reserved once, no allocation
-/// later.
+/// Tracks an imprint, stored as cells with their slopes. Allocates only in the constructor.
 template <scalar S>
 class ImprintShift {
  public:
@@ -44,8 +43,8 @@ class ImprintShift {
     cells_.reserve(static_cast<std::size_t>((std::min)(rows * cols, 2 * max_cells)));
   }
 
-  /// Takes the cells of `imprint` where `region` is not 0; those with an unknown neighbour are
-  /// left out. About max_cells, evenly.
+  /// Stores the cells of `imprint` where `region` is > 0, about max_cells of them, evenly spaced.
+  /// Cells with an unknown neighbour are left out.
   void take(const PaddedCells<S>& imprint, const PaddedCells<S>& region) {
     cells_.clear();
     const Index step = lattice_step(region);
@@ -60,8 +59,8 @@ class ImprintShift {
     about_center();
   }
 
-  /// Where that is in `now`, from a guess of its shift and not further than `max_shift` from it.
-  /// Correlation 0: nowhere.
+  /// Finds the imprint in `now`, from a guess of its shift and within `max_shift` of the guess.
+  /// Correlation 0: not found.
   PlanarMotion<S> find(const PaddedCells<S>& now,
                        const Point2<S>& guess,
                        const S& max_shift) const {
@@ -77,7 +76,7 @@ class ImprintShift {
       }
       const Row q = equations.solve(sums.right);
       if (!(S(0) < q[3])) {
-        return nowhere;  // what was bright is dark
+        return nowhere;  // inverted contrast
       }
       const Point2<S> back = {S(q[0] / q[3]), S(q[1] / q[3])};
       const S turn = S(q[2] / q[3]);
@@ -99,16 +98,16 @@ class ImprintShift {
   static constexpr Index max_cells = 2048;
   static constexpr Index min_cells = 30;
   static constexpr int max_steps = 12;
-  static constexpr double enough = 0.02;  // cells; a step is a hundred times nearer than the last
-  static constexpr double rim = 20;       // cells that a rotation is felt at
-  static constexpr double expected_turn = 0.1;  // sd, rad, since the imprint was taken
-  static constexpr double smoothed_cells = 28;  // that differ together: 4 pi sd^2 of a mean whose sd
-                                                // is 1.5 cells
-  static constexpr double least_noise = 0.01;   // of the imprint's spread
+  static constexpr double enough = 0.02;        // cells; each step reduces the error a hundredfold
+  static constexpr double rim = 20;             // cells; converts a rotation into a displacement
+  static constexpr double expected_turn = 0.1;  // prior sd, rad, since the imprint was taken
+  static constexpr double smoothed_cells = 28;  // correlated cells: 4 pi sd^2 of a smoothing with
+                                                // an sd of 1.5 cells
+  static constexpr double least_noise = 0.01;   // relative to the spread of the imprint
 
   using Row = std::array<S, 5>;  // x slope, y slope, slope along a rotation, level, 1
   struct Cell {
-    Point2<S> at;  // from the middle
+    Point2<S> at;  // relative to the middle
     Row row;
   };
 
@@ -119,7 +118,7 @@ class ImprintShift {
 
     double count() const { return static_cast<double>(value(matrix[4][4])); }
     S mean() const { return S(matrix[4][3] / matrix[4][4]); }
-    /// Of what is looked for.
+    /// Variance of the imprint.
     S spread() const { return S(matrix[3][3] / matrix[4][4] - mean() * mean()); }
     S correlation() const {
       using std::sqrt;
@@ -129,7 +128,7 @@ class ImprintShift {
       const S spreads = S(spread() * (now_sq / n - mean_now * mean_now));
       return S(0) < spreads ? S(both / S(sqrt(spreads))) : S(0);
     }
-    /// Mean square of what is left, at the gain of what is looked for.
+    /// Mean squared residual, at the gain of the imprint.
     S noise() const {
       constexpr double least_correlation = 0.1;
       const S r = correlation();
@@ -137,7 +136,8 @@ class ImprintShift {
       const S left = S(S(1) / (known * known) - S(1));
       return S(spread() * (left + S(square(least_noise))));
     }
-    /// Adds weight (angle - q[2] / q[3])^2 q[3]^2 to the squares: that a turn takes `angle` back.
+    /// Adds the prior weight (angle - q[2] / q[3])^2 q[3]^2 to the squares: the step should undo
+    /// `angle`.
     void expect_angle(const S& angle, const S& weight) {
       matrix[2][2] = matrix[2][2] + weight;
       matrix[3][2] = matrix[2][3] = S(matrix[3][2] - weight * angle);
@@ -176,7 +176,8 @@ class ImprintShift {
     }
   }
 
-  /// Moves the origin to the middle of the cells, and sums up what does not depend on the frame.
+  /// Moves the origin to the middle of the cells, and computes the sums that do not depend on the
+  /// frame.
   void about_center() {
     center_ = {S(0), S(0)};
     for (const Cell& cell : cells_) {
@@ -226,7 +227,7 @@ class ImprintShift {
     return sums;
   }
 
-  /// Between four cells; NaN beyond the image.
+  /// Bilinear interpolation; NaN beyond the image.
   static S sample(const PaddedCells<S>& from, const Point2<S>& at) {
     const double x = static_cast<double>(value(at.x));
     const double y = static_cast<double>(value(at.y));

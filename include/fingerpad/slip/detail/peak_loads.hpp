@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// The largest load of a contact since a frame.
+// The largest load of a contact since a given frame.
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -13,13 +13,13 @@ namespace fingerpad {
 inline namespace v0 {
 namespace detail::stick {
 
-/// The largest load since a frame, of loads that come frame by frame. Of those that no later one
-/// has exceeded at most `room` are kept; the oldest then stand for a later frame than their own, so
-/// that an answer may be too large, never too small.
+/// The largest load since a given frame. At most `room` loads that no later one exceeds are kept.
+/// If there are more, the oldest load is assigned to a later frame than its own, so the answer may
+/// be too large, but never too small.
 template <class S>
 class PeakLoads {
  public:
-  /// NaN: not known, and nothing is known of a time with this frame in it.
+  /// Adds the load of the next frame. NaN: unknown, as is the largest load of any period with it.
   void add(const S& load) {
     ++frame_;
     if (!is_finite(load)) {
@@ -39,7 +39,7 @@ class PeakLoads {
     }
     peaks_[size_++] = {load, frame_};
   }
-  /// Of this frame and the `age` frames before; NaN where not known.
+  /// The largest load of this frame and the `age` frames before; NaN if unknown.
   S since(Index age) const {
     if (age < 0 || frame_ - age <= unknown_) {
       return not_a_number<S>();
@@ -60,7 +60,7 @@ class PeakLoads {
   std::array<Peak, room> peaks_ = {};
   std::size_t size_ = 0;
   std::int64_t frame_ = 0;
-  std::int64_t unknown_ = 0;  // the latest frame of which the load is not known
+  std::int64_t unknown_ = 0;  // the latest frame with an unknown load
 };
 
 }  // namespace detail::stick

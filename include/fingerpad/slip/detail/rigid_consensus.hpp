@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// One rigid motion in space of the dots that stick, fitted to those that follow it. Parameters of
-// the loops over dots are values: compilers need not fear that a write to a dot changes them.
+// One rigid motion in space of the sticking dots, fitted to the dots that follow it. The loops over
+// dots take parameters by value, so that compilers know that writing to a dot does not change them.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -18,18 +18,18 @@ namespace fingerpad {
 inline namespace v0 {
 namespace detail::stick {
 
-/// Of the noise of one dot, what the mean of it and its eight neighbours leaves (sum_around).
+/// Share of the noise of one dot that remains in its mean with eight neighbours (sum_around).
 inline double neighbour_gain() {
   return std::sqrt(36.0 + 4 * 4 + 4 * 1) / 18;
 }
 
-/// A slip that counts in the mean of its neighbours', x, y, z and weight 1; or none, all 0. And
-/// sums of these.
+/// x, y, z and weight 1 of a slip that counts in the mean of its neighbours; all 0 for one that
+/// does not. Also sums of these.
 template <class S>
 using SmallSlip = std::array<S, 4>;
 
-/// The sum of a slip, which has weight 6, and its eight neighbours, those beside it with weight 2,
-/// those across with 1, in a grid of `across` columns.
+/// The weighted sum of a slip (6), its side neighbours (2) and its diagonal neighbours (1), in a
+/// grid of `across` columns.
 template <class S>
 SmallSlip<S> sum_around(const SmallSlip<S>* slips, Index across) {
   const SmallSlip<S>* const above = slips - across;
@@ -49,9 +49,9 @@ struct AxisNoise {
   S depth_info;
 };
 
-/// Gives each pair the axes of the surface at its dot, u up its slope and v level: along these the
-/// noise of the axes is independent. For a vector w = axis / variances, by = w / sqrt(axis w),
-/// whatever the axis' length.
+/// Computes by_u and by_v for the axes of the surface at each dot: u up its slope and v level. The
+/// noise along these axes is independent. With w = axis / variances, by = w / sqrt(axis . w), for
+/// any length of the axis.
 template <class S>
 void set_surface(AxisNoise<S> noise, SpatialPairs<S>& pairs) {
   using std::sqrt;
@@ -75,8 +75,8 @@ void set_surface(AxisNoise<S> noise, SpatialPairs<S>& pairs) {
   }
 }
 
-/// Weights of a bell 4/3 pitches wide around a place, (1 + x / 4096)^-4096 for exp(-x), without
-/// calls; all alike where there is no pitch.
+/// Gaussian weights around a place with a standard deviation of 4/3 pitches; equal weights without
+/// a pitch. exp(-x) is approximated by (1 + x / 4096)^-4096, which needs no calls.
 template <class S>
 void weigh_around(Point3<S> middle, const S& pitch_sq, SpatialPairs<S>& pairs) {
   const S scale = S(0) < pitch_sq ? S(S(9.0 / (32 * 4096)) / pitch_sq) : S(0);
@@ -91,9 +91,9 @@ void weigh_around(Point3<S> middle, const S& pitch_sq, SpatialPairs<S>& pairs) {
   }
 }
 
-/// The slip of each dot against a motion, by generalised least squares: what of its residual lies
-/// along the normal is noise, and depth, which is known worse, counts only where the surface is
-/// inclined.
+/// The slip of each dot relative to a motion, by generalised least squares. The part of the
+/// residual along the normal is noise. Depth, which is less certain, counts only where the surface
+/// is inclined.
 template <class S>
 void set_slips(Pose<S> motion, SpatialPairs<S>& pairs) {
   for (PairBlock<S>& b : pairs) {
@@ -109,7 +109,7 @@ void set_slips(Pose<S> motion, SpatialPairs<S>& pairs) {
   }
 }
 
-/// Weight 1 for the dots whose slip is within the limit; how many they are.
+/// Sets weight 1 for the dots whose slip is within the limit, else 0. Returns their number.
 template <class S>
 S weigh_followers(S limit_sq, SpatialPairs<S>& pairs) {
   Block<S> followers = zeros<S, block_dots>();
@@ -123,8 +123,8 @@ S weigh_followers(S limit_sq, SpatialPairs<S>& pairs) {
   return total(followers);
 }
 
-/// Weights of a bell as wide as the slip of the dot that is `rank` from the least; `sorted` is room
-/// to work in.
+/// Gaussian weights whose standard deviation is the slip of rank `rank`, from the smallest.
+/// `sorted` is working memory.
 template <class S>
 void weigh_nearest(Index rank, std::vector<S>& sorted, SpatialPairs<S>& pairs) {
   using std::exp;
@@ -139,7 +139,7 @@ void weigh_nearest(Index rank, std::vector<S>& sorted, SpatialPairs<S>& pairs) {
   });
 }
 
-/// Weights that fall with the averaged slip, to a fourth at this one.
+/// Weights that fall with the averaged slip: 1/4 where its square is `quarter_sq`.
 template <class S>
 void weigh_by_mean(S quarter_sq, SpatialPairs<S>& pairs) {
   for (PairBlock<S>& b : pairs) {
@@ -150,9 +150,8 @@ void weigh_by_mean(S quarter_sq, SpatialPairs<S>& pairs) {
   }
 }
 
-/// Slips averaged over neighbours; those beyond the gate do not count, and stay as they are.
-/// `room`: a grid with a border of one cell and this many columns, in which cells without a pair
-/// are empty.
+/// Averages slips over neighbours. Slips beyond the gate do not count, and stay as they are.
+/// `room`: a grid of `across` columns with a border of one cell; cells without a pair must be 0.
 template <class S>
 void average_slips(S gate_sq,
                    AxisNoise<S> noise,
@@ -193,7 +192,7 @@ void average_slips(S gate_sq,
   }
 }
 
-/// Weighted sums over pairs, of their places q and residuals r.
+/// Weighted sums over pairs, of their positions q and residuals r.
 template <class T>
 struct PairMoments {
   T weight, x, y, z, xx, yy, zz, xy, xz, yz;
@@ -239,9 +238,8 @@ PairMoments<S> moments_of(const SpatialPairs<S>& pairs, Point3<S> center) {
           total(sum.xrz),    total(sum.zry), total(sum.zrx)};
 }
 
-/// One step of Gauss and Newton, from where the pairs' residuals are, toward the rigid motion that
-/// fits the weighted pairs best; false where they do not determine it. `center`: any place among
-/// them.
+/// One Gauss-Newton step toward the rigid motion that fits the weighted pairs best, from the motion
+/// of their residuals. False if the pairs do not determine it. `center`: any position among them.
 template <class S>
 bool refine_motion(const SpatialPairs<S>& pairs,
                    const AxisNoise<S>& noise,
@@ -267,7 +265,7 @@ bool refine_motion(const SpatialPairs<S>& pairs,
     return false;
   }
   const auto x = normal.solve(b);
-  // the rotation of a quaternion (1, w / 2): right to the third order of w
+  // the rotation of the quaternion (1, w / 2); its error is of third order in w
   const S hx = x[0] / S(2), hy = x[1] / S(2), hz = x[2] / S(2);
   const S n = S(1) + hx * hx + hy * hy + hz * hz, two = S(2) / n;
   const Rotation<S> turn = {

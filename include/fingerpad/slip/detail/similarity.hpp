@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// The map between two frames of an object seen in the image: a shift, a rotation and a scale.
+// The map between two frames of an object in the image: a shift, a rotation and a scale.
 #include <cmath>
 
 #include "fingerpad/core/point.hpp"
@@ -11,9 +11,9 @@ namespace fingerpad {
 inline namespace v0 {
 namespace detail::stick {
 
-/// The motion of the object in the image: it takes its dots of now back to where they were. What it
-/// leaves of a dot's displacement is slip.
-///   then = [cosine sine; -sine cosine] (now - now_at) + then_at; cosine and sine carry the scale.
+/// The motion of the object in the image. It maps the present positions of its dots back to the
+/// earlier ones; the residual of a dot is its slip. Cosine and sine include the scale:
+///   then = [cosine sine; -sine cosine] (now - now_at) + then_at
 template <class S>
 struct Similarity {
   S cosine = S(1);
@@ -21,18 +21,18 @@ struct Similarity {
   Point2<S> now_at = {S(0), S(0)};
   Point2<S> then_at = {S(0), S(0)};
 
-  /// What of the displacement from `then` to `now` is not the object's, seen in the frame of then.
+  /// Displacement from `then` to `now` beyond the object's motion, in the orientation of then.
   Point2<S> residual(const Point2<S>& now, const Point2<S>& then) const {
     const Point2<S> arm = now - now_at;
     const Point2<S> back = {S(cosine * arm.x + sine * arm.y), S(cosine * arm.y - sine * arm.x)};
     return back - (then - then_at);
   }
-  /// The rotation of the object from then to now, x to y positive.
+  /// The rotation of the object from then to now, positive from x to y.
   S angle_rad() const {
     using std::atan2;
     return S(atan2(sine, cosine));
   }
-  /// alpha, by which now is multiplied to be as large as then.
+  /// alpha, the factor from the present size to the earlier one.
   S scale() const {
     using std::sqrt;
     const S sq = cosine * cosine + sine * sine;
@@ -40,7 +40,7 @@ struct Similarity {
   }
 };
 
-/// Sums over pairs of a dot now and then, both as seen from origins of their own.
+/// Sums over pairs of present and earlier positions of dots, each relative to its own origin.
 template <class S>
 struct PairSums {
   S weight = S(0);
@@ -60,14 +60,14 @@ struct PairSums {
   }
 };
 
-/// A scale outside of 0.8 to 1.25 is none that a membrane can show between two frames.
+/// Whether a scale is possible for a membrane between two frames: 0.8 to 1.25.
 template <class S>
 constexpr bool is_plausible_scale(const S& scale) {
   return S(0.8) < scale && scale < S(1.25);
 }
 
-/// The map that fits the pairs best by least squares. `about` gives the origins of the sums, and
-/// the rotation and the scale where the pairs determine none: where they are one dot, or opposed.
+/// The least-squares map of the pairs. `about` gives the origins of the sums. It also gives
+/// rotation and scale if the pairs do not determine them, as a single dot does not.
 template <bool rotates, bool scales, class S>
 Similarity<S> fit(const PairSums<S>& sums, const Similarity<S>& about) {
   using std::sqrt;

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// What a stick ratio in space remembers from frame to frame, and the memory in which it works.
+// State of a stick ratio in space from frame to frame, and its working memory.
 #include <algorithm>
 #include <cstdint>
 #include <vector>
@@ -23,7 +23,7 @@ struct DotNoiseMm {
 template <class S>
 class SpatialState {
  public:
-  /// As before the first frame.
+  /// Returns to the state before the first frame.
   void reset() {
     forget();
     free_dots.reset();
@@ -33,12 +33,12 @@ class SpatialState {
     frame = 0;
   }
   Index stored_frames() const { return repository.size(); }
-  /// Slip of each dot since the reference of the last answer; NaN where it is not known.
+  /// Slip of each dot since the reference of the last answer; NaN if unknown.
   StridedView<const DotSlip<S>> slips() const {
     return {dot_slips.data(), layout.rows, layout.cols, layout.cols};
   }
 
-  /// Noise of the dots along x and y, of the free frames or as it was given.
+  /// Noise of the dots along x and y, measured in free frames or as given.
   double lateral_mm() const { return noise.lateral_mm; }
 
   SpatialState(const DotLayout& layout_of_dots, Index capacity, const DotNoiseMm& noise_mm)
@@ -57,7 +57,7 @@ class SpatialState {
         marks(given.found.size(), DotState::none),
         repository(layout, capacity) {}
 
-  /// The contact is over: nothing of it is comparable with the next.
+  /// Call at the end of a contact: its frames cannot be compared with those of the next one.
   void forget() {
     repository.clear();
     has_center = false;
@@ -67,23 +67,23 @@ class SpatialState {
   }
   void clear_answer() { std::fill(dot_slips.begin(), dot_slips.end(), DotSlip<S>{}); }
 
-  /// Where a dot is in a grid with a border of one cell.
+  /// Index of a dot in a grid with a border of one cell.
   std::size_t padded(const DotIndex& d) const {
     return static_cast<std::size_t>((d.row + 1) * (layout.cols + 2) + d.col + 1);
   }
 
-  /// A place behind that grid, with a border of its own.
+  /// An index behind that grid, with its own border.
   std::size_t spare() const { return padded({layout.rows + 2, 0}); }
 
   DotLayout layout;
   DotNoiseMm given_noise, noise;
   FreeDots<Point3<S>> free_dots;
   GivenDots<Point3<S>> given;  // this frame
-  Dots<Point3<S>> now;         // of it, the dots in contact, in their places
-  Dots<Point3<S>> free;        // where they were when nothing touched
+  Dots<Point3<S>> now;         // of it, the dots in contact and in place
+  Dots<Point3<S>> free;        // their positions without contact
   SpatialPairs<S> pairs;
-  std::vector<SmallSlip<S>>
-      small_slips;  // of a grid with a border of one cell, and three rows more
+  // a grid with a border of one cell, and three more rows
+  std::vector<SmallSlip<S>> small_slips;
   DotDoubts<S> doubts;
   std::vector<S> sorted;
   std::vector<DotSlip<S>> dot_slips;

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// What a stick ratio remembers from frame to frame, and the memory in which it works.
+// State of a stick ratio from frame to frame, and its working memory.
 #include <algorithm>
 #include <cstdint>
 #include <vector>
@@ -32,7 +32,7 @@ class StickState {
         marks(given.found.size(), DotState::none),
         repository(layout, capacity) {}
 
-  /// As before the first frame.
+  /// Returns to the state before the first frame.
   void reset() {
     forget();
     free_dots.reset();
@@ -43,7 +43,7 @@ class StickState {
   }
   Index stored_frames() const { return repository.size(); }
 
-  /// The contact is over: nothing of it is comparable with the next.
+  /// Call at the end of a contact: its frames cannot be compared with those of the next one.
   void forget() {
     repository.clear();
     std::fill(marks.begin(), marks.end(), DotState::none);
@@ -54,10 +54,10 @@ class StickState {
   FreeDots<Point2<S>> free_dots;
   double noise_px = not_a_number<double>();  // of the free frames
   GivenDots<Point2<S>> given;                // this frame
-  Dots<Point2<S>> now;                       // of it, the dots in contact, in their places
-  Dots<Point2<S>> free;                      // where they were when nothing touched
+  Dots<Point2<S>> now;                       // of it, the dots in contact and in place
+  Dots<Point2<S>> free;                      // their positions without contact
   MarkingRoom<S> room;
-  std::vector<DotState> marks;            // what each dot did in the last answer
+  std::vector<DotState> marks;            // of each dot in the last answer
   Point2<S> stick_center = {S(0), S(0)};  // of the last answer
   S pitch_sq = S(0);                      // of the first frame of this contact
   Repository<Point2<S>> repository;
@@ -80,8 +80,8 @@ Point2<S> centroid(const FramePair<S>& pair, const std::vector<DotState>& marks,
   return sum / S(count);
 }
 
-/// Of the dots that both frames have and that are marked at least as `least`, the one nearest to
-/// `center`; -1 if there is none.
+/// The dot nearest to `center` among those found in both frames and marked at least as `least`; -1
+/// if there is none.
 template <class S>
 Index nearest_dot(const FramePair<S>& pair,
                   const Point2<S>& center,
@@ -100,8 +100,8 @@ Index nearest_dot(const FramePair<S>& pair,
   return nearest;
 }
 
-/// Where the search for sticking dots begins: the dot nearest to the centroid of the last stick
-/// region; where none of it is left, the one nearest to that of the contact.
+/// The dot at which the search for sticking dots begins: the one nearest to the centroid of the
+/// last stick region or, if none of its dots is left, to that of the contact.
 template <class S>
 Index first_dot(const FramePair<S>& pair, const StickState<S>& state) {
   const Index tracked = nearest_dot(pair, state.stick_center, state.marks, DotState::stick);
@@ -110,7 +110,7 @@ Index first_dot(const FramePair<S>& pair, const StickState<S>& state) {
                       : nearest_dot(pair, centroid(pair, state.marks, any), state.marks, any);
 }
 
-/// How many dots both frames have.
+/// Number of dots found in both frames.
 template <class S>
 Index count_pairs(const FramePair<S>& pair) {
   Index count = 0;
