@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 // Contact regions of finite-element membranes, from exact heights and from noisy frames, against
-// the contact that the finite elements say. That is known to half a mesh width only (0.37 mm, 9 to
-// 21 % of the area): nodes are in contact or not, and the edge runs somewhere in the triangles
-// between the last of the ones and the first of the others. See tests/data/README.md.
+// the contact of the finite elements. That contact is known only to half a mesh width (0.37 mm, 9
+// to 21 % of the area): nodes are in contact or not, and the edge lies somewhere in the triangles
+// between the last touching and the first free nodes. See tests/data/README.md.
 #include "fingerpad/contact/contact_region.hpp"
 
 #include <cmath>

@@ -24,8 +24,8 @@ struct Error {
 };
 
 namespace bound_mm {
-constexpr Error best = {0.03, 0.04};   // promised for the anchored means
-constexpr Error box = {0.045, 0.065};  // the published box, a guard: 0.040 and 0.049 measured
+constexpr Error best = {0.03, 0.04};   // documented for the anchored means
+constexpr Error box = {0.045, 0.065};  // the published box as a guard: 0.040 and 0.049 measured
 }  // namespace bound_mm
 
 template <class Smoothing>
@@ -54,7 +54,7 @@ Error error_of(const test::Scene& scene,
       }
     }
   }
-  return {sum[0] / count[0], sum[1] / count[1]};  // one missing depth makes it NaN
+  return {sum[0] / count[0], sum[1] / count[1]};  // NaN if a depth is missing
 }
 
 }  // namespace

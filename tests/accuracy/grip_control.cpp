@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
-// Grip in a closed loop: whether the object is held, and by how much more force than that takes.
+// Grip in a closed loop: whether the object is held, and the force beyond the least holding force.
 // All 40 runs and other laws: bench/report/run grip_control.
 #include "support/catch.hpp"
 #include "support/grip_runs.hpp"
@@ -15,7 +15,7 @@ TEST_CASE("grip in a closed loop holds, with little more force than that takes",
       INFO("scene " << static_cast<int>(scene) << ", run " << number << ": slid " << run.slip_mm
                     << " mm, mean force beyond need " << run.beyond);
       CHECK(run.slip_mm < 0.5);
-      CHECK(run.beyond < 0.9);  // measured: 0.30 to 0.85; by the ratio alone up to 10
+      CHECK(run.beyond < 0.9);  // measured: 0.30 to 0.85; with the ratio alone up to 10
     }
   }
 }
@@ -25,8 +25,8 @@ TEST_CASE("grip in a closed loop: a constant force drops what grows", "[closed_l
   CHECK(run.slip_mm > 5);
 }
 
-// Twice the noise, and a load so steady that no ratio is ever known: a force that follows it down
-// when friction falls lets the object slide by 21 mm.
+// Twice the noise, and a load so steady that no ratio is ever known. If the force followed the load
+// down when friction falls, the object would slide by 21 mm.
 TEST_CASE("grip in a closed loop: without a ratio nothing is loosened", "[closed_loop]") {
   const auto run = test::run_grip(GripLaw<double>(), GripScene::changes, 9,
                                   {.lateral_mm = 0.01, .depth_mm = 0.05});

@@ -44,7 +44,7 @@ Samples samples_of(const Scenes& scenes,
   return test::force_samples(test::contact_records(scenes), measure, dots);
 }
 
-/// Absolute errors over samples, and the largest that was measured.
+/// Absolute errors over samples, and the largest measured force.
 struct Errors {
   double mean = 0, worst = 0, bias = 0, largest = 0;
   int count = 0;
@@ -64,14 +64,14 @@ std::string rounded(double x, int digits) {
   return text.str();
 }
 
-/// A line a test: errors in the unit, and as per cent of a full scale.
+/// Table with one line per test: errors in the unit and in per cent of a full scale.
 class Table {
  public:
   Table(const std::string& title, const std::string& unit, const std::string& note) {
     text_ << '\n' << title << '\n' << std::setw(33) << ("mean/" + unit) << std::setw(9) << "worst";
     text_ << std::setw(9) << "mean %" << std::setw(9) << "worst %" << std::setw(12) << note << '\n';
   }
-  /// Returns the mean as a share of the full scale.
+  /// Returns the mean error relative to the full scale.
   double add(const std::string& name, const Errors& e, double full_scale, const std::string& note) {
     text_ << std::left << std::setw(24) << name << std::right << std::setw(9) << rounded(e.mean, 3)
           << std::setw(9) << rounded(e.worst, 3) << std::setw(9)
@@ -100,7 +100,7 @@ double largest_force(const Samples& samples) {
   return largest;
 }
 
-/// The largest normal force of all plate scenes, in N: what errors of normal forces are shares of.
+/// Full scale of normal forces: the largest one of all plate scenes, in N.
 double full_scale_n() {
   return largest_force(samples_of(plates, ContactMeasure::area));
 }
@@ -143,10 +143,10 @@ bool all_below(const std::vector<double>& shares, double bound) {
   return std::all_of(shares.begin(), shares.end(), [&](double share) { return share <= bound; });
 }
 
-/// Forces by area and by depth, with cubic curves, combined.
+/// Fused forces by area and by depth, with cubic curves.
 struct FusedErrors {
   Errors errors;
-  double flagged = 0;  ///< share of the contacts of which the two forces disagree beyond 3
+  double flagged = 0;  ///< share of contacts whose two forces have a disagreement above 3
 };
 FusedErrors fused_errors(const Scenes& calibration, const std::string& scene) {
   const auto by_area = calibrated<3>(calibration, ContactMeasure::area);
@@ -169,7 +169,7 @@ FusedErrors fused_errors(const Scenes& calibration, const std::string& scene) {
 }  // namespace
 
 TEST_CASE("normal force of plates, calibrated on other scenes", "[force]") {
-  // Errors are shares of the largest normal force of all plate scenes, 9.93 N in `press`; without
+  // Errors are relative to the largest normal force of all plate scenes, 9.93 N in `press`; without
   // `press` the calibration ends at 9.10 N.
   CHECK(full_scale_n() == Approx(9.93).margin(0.01));
   Table table("Normal force of a plate, calibrated on the other three scenes", "N", "bias/N");
@@ -190,13 +190,13 @@ TEST_CASE("normal force of plates, calibrated on other scenes", "[force]") {
   CHECK(all_below(area_3, 0.005));   // goal 0.03; 0.002
   CHECK(all_below(both, 0.005));     // 0.002
   CHECK(all_below(area_2, 0.012));   // 0.008
-  CHECK(all_below(depth_2, 0.027));  // 0.021: as published, it misses the goal on `press` alone
+  CHECK(all_below(depth_2, 0.027));  // 0.021: as published, misses the goal on `press` only
   CHECK(flagged <= 0.051);           // one frame of `press`
 }
 
 TEST_CASE("normal force of other shapes from curves of plates", "[force]") {
-  // A sphere or a cylinder of the same area presses harder. That area and depth disagree is what
-  // tells; the equivalent flat area, below, is what helps.
+  // A sphere or a cylinder with the same area presses harder. The disagreement of area and depth
+  // detects this; the equivalent flat area, below, corrects it.
   Table table("Other shapes, calibrated on all four scenes of plates, degree 3", "N", "bias/N");
   Table disagree("Contacts of which area and depth disagree beyond 3", "N", "flagged");
   for (const std::string& scene : others) {
@@ -207,8 +207,8 @@ TEST_CASE("normal force of other shapes from curves of plates", "[force]") {
       CAPTURE(scene, name_of(measure));
       CHECK(share < 0.13);  // up to 0.109 measured
       const bool plate_by_area = scene == "tilt" && measure == ContactMeasure::area;
-      CHECK((share < 0.007) == plate_by_area);  // an area has no tilt
-      // a curved object is deeper and touches less
+      CHECK((share < 0.007) == plate_by_area);  // an area does not show a tilt
+      // a curved object goes deeper and touches less
       CHECK((e.bias > 0) == (measure == ContactMeasure::depth));
     }
     const auto f = fused_errors(plates, scene);
@@ -221,7 +221,7 @@ TEST_CASE("normal force of other shapes from curves of plates", "[force]") {
 
 namespace {
 
-/// A height map of the finite elements, what touches it, and its true load.
+/// A height map of the finite elements with its contact and its true load.
 struct PressedMembrane {
   OrthographicCamera<double> camera{79.5, 79.5, 0.24};
   std::string scene;
@@ -255,7 +255,7 @@ struct PressedMembrane {
 
 TEST_CASE("normal force of any shape from a curve of plates, by the equivalent flat area",
           "[force]") {
-  // The curve has seen plates alone, and no tilted one. Its error is a share of 9.93 N.
+  // The curve is calibrated on level plates only. Its error is relative to 9.93 N.
   const auto force = calibrated<3>(plates, ContactMeasure::area);
   Table table("All shapes, calibrated on all four scenes of plates, degree 3", "N", "by area");
   std::map<std::string, std::array<Errors, 2>> found;
@@ -267,7 +267,7 @@ TEST_CASE("normal force of any shape from a curve of plates, by the equivalent f
     auto work = flat.workspace();
     const auto equivalent = flat(pressed.mask, pressed.height, work);
     REQUIRE(equivalent.ok());
-    // p S against the truth, no curve fitted
+    // p S against the truth, without a fitted curve
     const double sds = (frame.pressure_mpa * equivalent.area_mm2 + frame.force_n.z) /
                        (frame.pressure_mpa * std::sqrt(equivalent.variance_mm4));
     within_two_sd += std::abs(sds) <= 2 ? 1 : 0;
@@ -287,12 +287,12 @@ TEST_CASE("normal force of any shape from a curve of plates, by the equivalent f
   INFO("within two standard deviations: " << within_two_sd << " of 15; rms "
                                           << std::sqrt(sd_squares) << " of one");
   CHECK(within_two_sd >= 14);           // 95 %
-  CHECK(std::sqrt(sd_squares) > 0.25);  // and not by sheer width
+  CHECK(std::sqrt(sd_squares) > 0.25);  // and not because the deviations are too large
 }
 
 namespace {
 
-/// What a half that is not tested is filled with.
+/// Values for the half of the map that is not tested.
 template <int Degree>
 detail::OddPolynomial<Degree> any_polynomial(double coefficient) {
   detail::OddPolynomial<Degree> polynomial;
@@ -343,7 +343,7 @@ ShearFit<Degree> tangential_fit(const Samples& samples, double reference) {
   return fit;
 }
 
-/// One measure and one choice of dots: mean errors as shares of the largest force of each scene.
+/// Mean errors of one measure and one choice of dots, relative to the largest force of each scene.
 struct TangentialShares {
   double drag, tilt, cylinder;  ///< calibrated on mix
   double mix;                   ///< calibrated on drag and cylinder
@@ -367,7 +367,7 @@ TangentialShares add_tangential(ContactMeasure measure, ContactDotsOf dots, Tabl
 }  // namespace
 
 TEST_CASE("tangential force, calibrated on other scenes", "[force]") {
-  // Exponents are fitted; the published 0.65 and 0.75 are those of another pad.
+  // Exponents are fitted; the published 0.65 and 0.75 belong to another pad.
   Table table("drag, tilt, cylinder: calibrated on mix; mix: on drag and cylinder", "N",
               "exponent");
   const auto depth = add_tangential<1>(ContactMeasure::depth, ContactDotsOf::edge, table);
@@ -386,14 +386,15 @@ TEST_CASE("tangential force, calibrated on other scenes", "[force]") {
   CHECK(area.tilt <= 0.04);
   CHECK(area.cylinder <= 0.07);  // 0.055: the cylinder's contact is a strip
   CHECK(area.mix <= 0.025);
-  // A second degree does no better: 0.044 and 0.049 on the cylinder, 0.041 by depth on the mix.
+  // A second degree is no better: 0.044 and 0.049 on the cylinder, 0.041 by depth on the mix.
   for (const auto& two : {depth_2, area_2}) {
     CHECK(two.drag <= 0.03);
     CHECK(two.tilt <= 0.04);
     CHECK(two.cylinder <= 0.06);
     CHECK(two.mix <= 0.05);
   }
-  // The central dot, as published, misses the goal wherever the direction of motion changes.
+  // The central dot, as published, misses the goal in every scene where the direction of motion
+  // changes.
   for (const auto& published : {central, central_area}) {
     CHECK(published.drag > 0.06);
     CHECK(published.tilt > 0.06);
@@ -403,8 +404,8 @@ TEST_CASE("tangential force, calibrated on other scenes", "[force]") {
 }
 
 TEST_CASE("tangential force after a reversal", "[force]") {
-  // The plate of `drag` turns back after step 22. The central dot then still lies where the object
-  // took it, while the force is gone and soon of the other sign.
+  // The plate of `drag` turns back after step 22. The central dot then stays where the object
+  // carried it, while the force falls to zero and soon changes sign.
   constexpr std::ptrdiff_t turned_back = 22;
   const auto measure = ContactMeasure::depth;
   Table table("drag, calibrated on mix, degree 1, by depth", "N", "exponent");
@@ -430,8 +431,8 @@ TEST_CASE("tangential force after a reversal", "[force]") {
 }
 
 TEST_CASE("moment, calibrated on other scenes", "[force]") {
-  // Shares of the largest moment of the scene. Alone, `twist` does not tell an exponent: it turns
-  // at one depth.
+  // Errors are relative to the largest moment of the scene. `twist` alone does not determine an
+  // exponent, because it rotates at one depth.
   Table table("twist: calibrated on mix; mix: on twist, exponent as published", "N mm", "exponent");
   const auto share = [&](const std::string& name, const auto& fit, ContactMeasure measure,
                          const Samples& samples) {
@@ -461,8 +462,8 @@ TEST_CASE("moment, calibrated on other scenes", "[force]") {
       // the goal is 0.05
       CHECK(forth <= (edge ? 0.015 : 0.06));   // 0.009 and 0.010; all dots 0.049 and 0.050
       CHECK(forth_2 <= (edge ? 0.015 : 0.1));  // 0.007; all dots 0.080
-      // The published exponents are too large for this pad, whose moment grows as depth to the 1.6
-      // and as area to the 1.0.
+      // The published exponents are too large for this pad, whose moment grows as depth^1.6 and
+      // area^1.0.
       CHECK(given <= (by_depth ? 0.1 : 0.2));     // 0.082 and 0.158
       CHECK(back <= (by_depth ? 0.045 : 0.075));  // 0.028 and 0.057; all dots 0.035 and 0.062
     }

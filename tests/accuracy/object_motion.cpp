@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
-// Motion of the object on finite-element membranes, by the dots that stick. test_accuracy
+// Motion of the object on finite-element membranes, from the sticking dots. test_accuracy
 // "[object_motion]" -s prints all figures.
 #include "fingerpad/motion/object_motion.hpp"
 
@@ -22,10 +22,10 @@ namespace {
 constexpr double degree = 0.017453292519943295;
 
 struct PoseErrors {
-  double place_mm = 0;               ///< rms, of the middle of the contact, since the object began
+  double place_mm = 0;               ///< rms, of the middle of the contact, since the pose began
   double rotation_deg = 0;           ///< rms
   double told = 0;                   ///< share of the frames in contact with a pose
-  double held_mm = 0, held_deg = 0;  ///< the same of poses since whose beginning a fifth has stuck
+  double held_mm = 0, held_deg = 0;  ///< the same while at least a fifth has stuck since the start
 };
 
 Point3<double> middle_of(const SpatialStep& step) {
@@ -40,7 +40,7 @@ Point3<double> middle_of(const SpatialStep& step) {
   return sum / count;
 }
 
-/// With the slips of the dots known, or as before, all of them counting.
+/// Errors with the slips of the dots known, or with all dots counted as sticking.
 PoseErrors errors_of(const std::string& name, bool knows_slip) {
   const SpatialScene scene(name);
   const Index n = scene.dots_across();
@@ -116,8 +116,8 @@ void check(const std::string& name, double place_mm, double rotation_deg) {
 }  // namespace
 
 TEST_CASE("object motion on finite-element membranes, by the dots that stick", "[object_motion]") {
-  // over all poses that are told, slides too; measured: 0.016 mm 0.3 degrees, 0.006 0.2, 0.014 0.9,
-  // 0.015 0.6, 0.016 0.6, 0.016 1.0, 0.038 1.1, 0.009 0.9, 0.012 0.8
+  // all poses, slides included; measured: 0.016 mm 0.3 degrees, 0.006 0.2, 0.014 0.9, 0.015 0.6,
+  // 0.016 0.6, 0.016 1.0, 0.038 1.1, 0.009 0.9, 0.012 0.8
   check("drag", 0.02, 0.5);
   check("twist", 0.02, 0.5);
   check("tilt", 0.03, 1.5);
@@ -127,7 +127,7 @@ TEST_CASE("object motion on finite-element membranes, by the dots that stick", "
   check("rod_turn", 0.10, 1.5);
   check("rubber", 0.03, 1.5);
   check("press", 0.03, 1.5);
-  // slides that are noticed late: 0.21 mm 1.7 degrees, 0.23 1.3
+  // slides detected late: 0.21 mm 1.7 degrees, 0.23 1.3
   check("slide", 0.30, 2);
   check("ball_slip", 0.40, 2);
 }

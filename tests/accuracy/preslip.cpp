@@ -1,8 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
-// Whole chains, from readings to alarms, on signals of known truth: how often slip is found and how
-// late, and how often it is found where there is none. test_accuracy "[preslip]" -s
-// prints all figures.
+// Whole chains from readings to alarms on signals of known truth: how often and how late slip is
+// detected, and how often falsely. test_accuracy "[preslip]" -s prints all figures.
 #include "fingerpad/foam/preslip.hpp"
 
 #include <algorithm>
@@ -27,7 +26,7 @@ using test::FoamSignal;
 
 namespace {
 
-/// Features and rule over both fingers.
+/// Features and rule of both fingers.
 template <class Rule, class Waves = ZeroCrossings>
 class Chain {
  public:
@@ -37,7 +36,7 @@ class Chain {
         history_(rule_.start()) {}
 
   bool alarms(FoamSignal& signal, double time_s) { return alarms(signal, time_s, time_s); }
-  /// Received at another time than taken.
+  /// The sample is taken at `time_s` and received at `received_s`.
   bool alarms(FoamSignal& signal, double time_s, double received_s) {
     std::array<FingerSample<double>, 2> samples;
     for (std::size_t f = 0; f < 2; ++f) {
@@ -67,10 +66,10 @@ struct Detection {
   int scenes = 0;
   int found = 0;
   int early = 0;              // scenes with an alarm before anything slips
-  double latest_windows = 0;  // from the slip to the alarm
+  double latest_windows = 0;  // from the onset of slip to the alarm
 };
 
-/// Two fingers on which square patches begin to slip at random places, frequency and time.
+/// Two fingers on which square patches begin to slip at random positions, frequencies and times.
 FoamScene any_slip(std::mt19937& random, double rate_hz, int patches, Index side) {
   const auto any = [&](double low, double high) {
     return std::uniform_real_distribution<double>(low, high)(random);
@@ -150,7 +149,7 @@ int false_alarms(double minutes, double rate_hz, unsigned seed) {
 }  // namespace
 
 TEST_CASE("pre-slip of known signals: slip is found", "[preslip]") {
-  // a window has 16 samples, and three of a new vibration are its first wave and a half
+  // a window has 16 samples; three samples of a new vibration cover its first wave and a half
   const auto check = [](const std::string& name, const Detection& d, double windows) {
     show(name, d);
     CHECK(d.found >= 0.99 * d.scenes);
@@ -166,7 +165,7 @@ TEST_CASE("pre-slip of known signals: slip is found", "[preslip]") {
 }
 
 TEST_CASE("pre-slip of known signals: one taxel of each finger is enough", "[preslip]") {
-  // as printed the location of the strongest never differs: what that rule cannot see
+  // as printed the location of the strongest taxel never differs: this rule cannot detect it
   const Detection printed = detection<published::GraspOptimise>(40, 1, 1);
   show("grasp-optimise as printed, patches of one taxel", printed);
   CHECK(printed.found <= 2);
@@ -181,13 +180,13 @@ TEMPLATE_TEST_CASE("pre-slip of known signals: gaps delay no alarm by more than 
                    "[preslip]",
                    GraspLift,
                    GraspOptimise) {
-  // samples lost on the way for 0.3 to 1.3 s, right before the slip and after it has begun, on two
-  // clocks: that of the sensor, and that of who receives late by up to a period
+  // samples are lost for 0.3 to 1.3 s, right before the slip and after its onset, on two clocks:
+  // that of the sensor, and that of a receiver that is late by up to a period
   std::mt19937 random(23);
   const double rate_hz = 31;
   for (int n = 0; n < 40; ++n) {
     const FoamScene scene = any_slip(random, rate_hz, 1, 2);
-    std::array<int, 3> first = {-1, -1, -1};  // without gaps, and with them on either clock
+    std::array<int, 3> first = {-1, -1, -1};  // without gaps, and with gaps on either clock
     for (std::size_t clock = 0; clock < 3; ++clock) {
       FoamSignal signal(scene, static_cast<unsigned>(n));
       Chain<TestType> chain(scene, rate_hz, 2);
@@ -218,8 +217,8 @@ TEST_CASE("pre-slip of known signals: no alarm where nothing slips", "[preslip]"
 
 namespace {
 
-/// Alarms of a rule on a simulated object, against the samples in which a taxel slipped less than a
-/// window ago. Such samples in a row are an onset.
+/// Alarms of a rule on a simulated object, compared with the samples in which a taxel slipped less
+/// than a window ago. Consecutive such samples are one onset.
 struct Onsets {
   int onsets = 0;
   int found = 0;
@@ -239,7 +238,8 @@ struct Loosening {
   double slipped_at_n = 0;
 };
 
-/// The grip on a simulated object is loosened until it slips as a whole, with a warning on the way.
+/// Loosens the grip on a simulated object until it slips as a whole, and counts the alarms on the
+/// way.
 template <class Rule>
 Loosening loosened(const grip::FoamFingersSetup& object, unsigned seed, Onsets& onsets) {
   grip::FoamFingers hand(object, seed);
@@ -317,7 +317,7 @@ TEST_CASE("pre-slip of a simulated object: a warning before it slips, and only w
   const Onsets lift = every_loosening_is_warned_of<GraspLift>("grasp-lift");
   every_loosening_is_warned_of<published::GraspOptimise>("grasp-optimise as printed");
   every_loosening_is_warned_of<published::GraspLift>("grasp-lift as printed");
-  // a rule that always alarms has the precision of chance, one that never does no recall
+  // a rule that always alarms has the precision of chance; one that never alarms has no recall
   CHECK(lift.chance() < 0.9);
   CHECK(lift.precision() >= 0.99);
   CHECK(lift.recall() >= 0.95);
@@ -329,13 +329,13 @@ namespace {
 
 struct Lift {
   HoldingCommand<double> end;
-  double least_force_n = 0;  // at which friction bears the weight with nothing to spare
+  double least_force_n = 0;  // at which friction just bears the weight
   bool has_slipped = false;
   int alarms_on_the_way_down = 0;
 };
 
-/// The paper's second experiment: an object stands on a surface, is gripped with little force,
-/// lifted, its weight going over to the fingers within 5 mm, and put back.
+/// The paper's second experiment: an object stands on a surface and is gripped with little force,
+/// lifted and put back. Its weight passes to the fingers within 5 mm.
 template <class Rule>
 Lift lifted(grip::FoamFingersSetup object, unsigned seed) {
   const LiftOptions<double> plan{.first_force_n = 1,

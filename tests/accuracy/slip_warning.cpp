@@ -22,13 +22,13 @@ using test::SpatialScene;
 
 namespace {
 
-/// One way to be warned, over the recordings of a scene.
+/// A warning method on the recordings of a scene.
 struct Warner {
-  std::vector<std::vector<double>> leads;  ///< of each slide; one a recording that was warned of it
-  double calm = 0, false_warnings = 0;     ///< steps in which 0.95 of the contact sticks
+  std::vector<std::vector<double>> leads;  ///< per slide, of each recording with a warning
+  double calm = 0, false_warnings = 0;     ///< steps in which more than 0.95 sticks
 
   void reset() { since_ = -1, slides_ = 0, sliding_ = false; }
-  /// `sticks`: the true share within step k.
+  /// `sticks` is the true share in step k.
   void add(Index k, double sticks, bool warns) {
     if (sticks > 0.95) {
       calm += 1;
@@ -103,7 +103,7 @@ Warners warned_on(const std::string& name) {
           contact_load(test::noisy(scene[k].force_n, 0.015, random),
                        test::noisy(scene[k].moment_n_mm, 0.02, random), dots, scene[k].contact);
       const auto slip = limit(load, r, limit_state);
-      // as its page says: the stick ratio tells it when the object slides
+      // as on its page, the stick ratio reports when the object slides
       const bool slides = r.updated() && r.stick_ratio < 0.1;
       const auto by_ratio = friction(load.tangential_n, load.normal_n, slides, friction_state);
       const double sticks = scene[k].stick_ratio;
@@ -119,7 +119,7 @@ Warners warned_on(const std::string& name) {
   return w;
 }
 
-/// "10 of 10 by 3.8, ... false 0.00": of each slide, recordings warned, and by how many steps.
+/// "10 of 10 by 3.8, ... false 0.00": for each slide, the warned recordings and the lead in steps.
 std::string figures(const Warner& w) {
   std::ostringstream text;
   text << std::fixed << std::setprecision(1);
@@ -143,7 +143,7 @@ TEST_CASE("warning before an object slides, on finite-element membranes", "[slip
     CHECK(w.fused.false_share() == 0);
     REQUIRE(!w.fused.leads.empty());
     for (std::size_t slide = 0; slide < w.fused.leads.size(); ++slide) {
-      CHECK(w.fused.leads[slide].size() == recordings);  // none slides unannounced
+      CHECK(w.fused.leads[slide].size() == recordings);  // a warning before every slide
       CHECK(w.fused.mean_lead(slide) >= 1);
     }
   }

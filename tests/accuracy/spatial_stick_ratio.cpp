@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
-// Stick ratio in space, and with the friction limit, on finite-element membranes.
+// Stick ratio in space, without and with the friction limit, on finite-element membranes.
 // test_accuracy "[spatial_stick]" -s prints all figures, "[spatial_noise]" those of the page.
 #include "fingerpad/slip/spatial_stick_ratio.hpp"
 
@@ -21,16 +21,15 @@ namespace {
 constexpr double lateral_mm = 0.005, depth_mm = 0.025;  // 0.06 px, and depth from rendered frames
 
 struct SceneErrors {
-  double dots = 0;   ///< mean absolute error over all frames in contact, kept answers included
-  double told = 0;   ///< of these, over the frames that the dots answer
-  double fused = 0;  ///< over all, with the friction limit
-  double on_ball =
-      0;  ///< as `told`, the truth being the slip along a ball about the object's origin
-  double lifted = 0;  ///< between these two truths
+  double dots = 0;     ///< mean absolute error over all frames in contact, kept answers included
+  double told = 0;     ///< the same over the frames with an answer from the dots
+  double fused = 0;    ///< over all frames, with the friction limit
+  double on_ball = 0;  ///< as `told`; the truth is the slip along a ball about the object's origin
+  double lifted = 0;   ///< difference of these two truths
 };
 
-/// As truth_between, of the slip along the ball: a dot at the edge that comes to it or leaves it
-/// has not slipped by that.
+/// As truth_between, for the slip along the ball: the normal motion of a dot that meets or leaves
+/// the ball at the edge is not slip.
 double truth_on_ball(const SpatialStep& then, const SpatialStep& now) {
   const Pose<double> motion = now.object * inverse(then.object);
   const double limit = test::slip_share * test::longest_move(then, now);
@@ -46,7 +45,8 @@ double truth_on_ball(const SpatialStep& then, const SpatialStep& now) {
   return stick / all;
 }
 
-/// `noise`: of dots, depth and forces, times the usual. `every`: of the rows and columns of dots.
+/// `noise` is a factor of the usual noise of dots, depth and forces. Each `every`-th row and column
+/// of dots is kept.
 SceneErrors errors_of(const std::string& name,
                       int recordings = 6,
                       double noise = 1,
@@ -111,8 +111,8 @@ void check(const std::string& name, double max_dots, double max_told, double max
 }  // namespace
 
 TEST_CASE("stick ratio in space on finite-element membranes", "[spatial_stick]") {
-  // goal of the fused answer: 0.05, mix 0.10. Where dots fall back their last answer stands, and is
-  // not told to be one of this frame
+  // Goal of the fused answer: 0.05, mix 0.10. Where the dots fall back, the last answer is kept and
+  // not reported as one of this frame.
   check("drag", 0.16, 0.09, 0.05);
   check("twist", 0.05, 0.05, 0.05);
   check("tilt", 0.09, 0.09, 0.05);
@@ -131,8 +131,9 @@ TEST_CASE("stick ratio in space of what rolls, and what slides as a whole", "[sp
 
 TEST_CASE("stick ratio in space of a rolling ball: what is off are dots that lift",
           "[spatial_stick]") {
-  // The truth takes all of a dot's way from the object as slip, also at the edge of the contact,
-  // where an eighth of the dots come to the ball or leave it by 0.02 mm. Measured: 0.110 and 0.035.
+  // The truth counts the whole motion of a dot relative to the object as slip, also at the edge of
+  // the contact, where an eighth of the dots meet or leave the ball by 0.02 mm. Measured: 0.110 and
+  // 0.035.
   const SceneErrors e = errors_of("roll");
   INFO("roll: where the dots answer " << e.told << ", along the ball " << e.on_ball);
   CHECK(e.on_ball < 0.045);

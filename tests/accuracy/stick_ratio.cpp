@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
-// Stick ratios against the truth: of synthetic dots, with each effect and without it, and of dots
-// of finite-element membranes. test_accuracy "[stick_ratio]" -s prints all figures.
+// Stick ratios against the truth, on synthetic dots with and without each effect and on dots of
+// finite-element membranes. test_accuracy "[stick_ratio]" -s prints all figures.
 #include "fingerpad/published/stick_ratio.hpp"
 
 #include <array>
@@ -29,7 +29,7 @@ using test::StickScene;
 
 namespace {
 
-constexpr double noise_px = 0.14;  // for which the published 0.24 px are
+constexpr double noise_px = 0.14;  // noise of the published 0.24 px
 
 using Published = StickRatio<published::ReferenceDotMotion<>, UpdatedReference, published::DotMean>;
 
@@ -62,7 +62,7 @@ class Errors {
   std::vector<StickError> of_;
 };
 
-/// Shown with -s.
+/// Prints with -s.
 void show(const std::vector<const Errors*>& table) {
   std::string text = "\nmean error      shear back  slips turn  +shft press in    out   all\n";
   for (const Errors* e : table) {
@@ -75,8 +75,8 @@ void show(const std::vector<const Errors*>& table) {
 }  // namespace
 
 TEST_CASE("stick ratio of synthetic dots, with all effects", "[stick_ratio]") {
-  // Of the dots in the shear zone those that follow the object to less than delta_0 count as
-  // sticking, which makes the ratio too large; their noise makes it too small.
+  // In the shear zone, dots that follow the object to within delta_0 count as sticking, which makes
+  // the ratio too large. Noise of the dots makes it too small.
   const Errors all("all effects", StickRatio(21, 21));
   for (const SlipScene scene : test::all_slip_scenes) {
     const StickError& e = all[scene];
@@ -90,8 +90,8 @@ TEST_CASE("stick ratio of synthetic dots, with all effects", "[stick_ratio]") {
 
 TEST_CASE("stick ratio of synthetic dots, by the width of the shear zone", "[stick_ratio]") {
   // The goal of 0.03 is met at one pitch. In wider zones the dots next to the stick region slip
-  // less than delta_0, and the ratio is too large: by 0.040 and 0.076 at two and three pitches.
-  // A jump smears, by the mean over neighbours, into the dots before it: 0.02 to 0.07.
+  // less than delta_0, and the ratio is too large, by 0.040 and 0.076 at two and three pitches. The
+  // mean over neighbours smears a jump into the dots before it: 0.02 to 0.07.
   const StickRatio ratio(21, 21);
   const Errors jump("jump", ratio, 0), one("1 pitch", ratio, 1), two("2 pitches", ratio, 2),
       three("3 pitches", ratio, 3);
@@ -102,7 +102,7 @@ TEST_CASE("stick ratio of synthetic dots, by the width of the shear zone", "[sti
     CHECK(two[scene].mean_abs < 0.07);
     CHECK(three[scene].mean_abs < 0.12);
   }
-  // slip that is not seen is an error of one sign
+  // undetected slip is an error of one sign
   CHECK(three[SlipScene::reversal].mean > 0.9 * three[SlipScene::reversal].mean_abs);
 }
 
@@ -118,8 +118,8 @@ TEST_CASE("stick ratio of synthetic dots, each effect left out", "[stick_ratio]"
   const Errors one_dot("one dot", StickRatio<published::ReferenceDotMotion<>>(n, n));
   const Errors published("published", Published(n, n));
   show({&all, &first, &no_turn, &no_zoom, &noisy, &one_dot, &published});
-  // Without it, the scene of an effect fails: far above the goal, and several times worse than
-  // with it.
+  // Without an effect, its scene fails: the error is far above the goal and several times larger
+  // than with the effect.
   const auto needs = [&](const Errors& without, SlipScene scene, double times) {
     CAPTURE(without.name(), name_of(scene));
     CHECK(without[scene].mean_abs > 0.045);
@@ -140,7 +140,7 @@ TEST_CASE("stick ratio of synthetic dots, each effect left out", "[stick_ratio]"
   needs(one_dot, SlipScene::press, 10);
   needs(published, SlipScene::shear, 3);
   needs(published, SlipScene::zoom_in, 4);
-  // and no effect does harm where it is not needed
+  // and no effect does harm in other scenes
   const double with = all[SlipScene::shear].mean_abs;
   CHECK(no_turn[SlipScene::shear].mean_abs > with - 0.005);
   CHECK(no_zoom[SlipScene::shear].mean_abs > with - 0.005);
@@ -151,8 +151,8 @@ namespace {
 
 constexpr double jitter_px = 0.06;
 constexpr Index recordings = 20;
-/// The defaults, but with the threshold that this noise has: 2 sigma sqrt(ln(1 / p)), of which
-/// p = 1 % of sticking dots are told to slip, sigma = 0.416 x 0.06 px after denoising.
+/// The defaults with the threshold for this noise: 2 sigma sqrt(ln(1 / p)), where p = 1 % of
+/// sticking dots are taken for slipping and sigma = 0.416 x 0.06 px after denoising.
 const StickTest scene_test{.reference = 2,
                            .store = 0.5,
                            .slip = 2 * 0.416 * jitter_px * std::sqrt(std::log(100.0)),
@@ -161,11 +161,11 @@ const StickTest scene_test{.reference = 2,
 struct SceneResult {
   double mean_abs = 0;  ///< over frames with an answer
   double mean = 0;
-  double answers = 0;       ///< frames with one, mean of the recordings
+  double answers = 0;       ///< frames with an answer, mean of the recordings
   double to_reference = 0;  ///< the same error against the area that slipped less than the
                             ///< threshold since the reference
-  Index announced_from = 1000, announced_to = -1;  ///< steps; of all recordings
-  double max_sticking = 0;                         ///< the truth when slip is announced
+  Index announced_from = 1000, announced_to = -1;  ///< steps, over all recordings
+  double max_sticking = 0;                         ///< the true ratio when slip is announced
 
   std::string line(const std::string& name) const {
     std::ostringstream line;
@@ -178,7 +178,7 @@ struct SceneResult {
 };
 constexpr Index never = 999;
 
-/// `slipped` is compared with besides; `keep` tells in which steps.
+/// Compares with `slipped` as well; `keep` selects the steps.
 template <class Slipped, class Keep>
 SceneResult follow(const StickScene& scene,
                    const Slipped& slipped,
@@ -201,7 +201,7 @@ SceneResult follow(const StickScene& scene,
       }
       if (r.updated() && keep(k)) {
         const double found = static_cast<double>(r.stick_ratio);
-        // 0.092 mm of membrane, 10 mm from the plate, per pixel
+        // a pixel is 0.092 mm of membrane, 10 mm from the plate
         const double length_mm =
             0.092 * test.slip * static_cast<double>(r.furthest_px) / test.reference;
         result.mean_abs += std::abs(found - scene.stick_ratio(k));
@@ -240,15 +240,15 @@ TEST_CASE("stick ratio of finite-element membranes", "[stick_ratio]") {
     CHECK(r.max_sticking < 0.7);
     return r;
   };
-  // The truth is slip by 5 um within a step. What is found is slip by the threshold, 10 to 19 um,
-  // since a reference one to three steps back: slow slip counts as sticking.
+  // The truth is slip by 5 um within a step. The estimate is slip by the threshold, 10 to 19 um,
+  // since a reference one to three steps back, so slow slip counts as sticking.
   check("drag", 0.06);      // 0.050 measured, goal 0.08
   check("cylinder", 0.10);  // 0.082, goal 0.12
-  // 0.088, goal 0.08: slow creep at the end, where 0.3 of the nodes stick by the truth, but by the
-  // threshold 0.36 to 0.45 of the area.
+  // 0.088, goal 0.08: slow creep at the end, where 0.3 of the nodes stick by the truth, but 0.36 to
+  // 0.45 of the area by the threshold.
   const SceneResult mix = check("mix", 0.105);
   CHECK(mix.to_reference < 0.08);
-  // 0.096, goal 0.08: only four frames have an answer, of 97 dots.
+  // 0.096, goal 0.08: only four frames, with 97 dots, have an answer.
   check("twist", 0.12);
   const StickScene drag("drag");
   const SceneResult back = follow(drag, SlippedLess("drag", drag.steps()),
@@ -260,10 +260,10 @@ TEST_CASE("stick ratio of finite-element membranes", "[stick_ratio]") {
 TEST_CASE("no slip is announced on finite-element membranes that stick", "[stick_ratio]") {
   const auto unknown = [](Index, Index, double) { return test::nan; };
   const StickScene press("press"), roll("roll"), tilt("tilt");
-  // Dots that hold on to what is pressed or rolled hardly move: there is nothing to compare.
+  // Dots that stick to a pressed or rolled object hardly move, so there is no motion to compare.
   CHECK(follow(press, unknown, every_step).announced_from == never);
   CHECK(follow(roll, unknown, every_step).announced_from == never);
-  // Compared all the same, after 1 px:
+  // With a comparison after 1 px:
   StickTest closer = scene_test;
   closer.reference = 1;
   closer.store = 0.25;
@@ -272,7 +272,7 @@ TEST_CASE("no slip is announced on finite-element membranes that stick", "[stick
   CHECK(r.answers > 3);
   CHECK(r.announced_from == never);
   CHECK(r.mean_abs < 0.1);
-  // A tilted plate, dragged until it slips; no goal.
+  // A tilted plate is dragged until it slips; there is no goal.
   const SceneResult dragged = follow(tilt, unknown, every_step);
   INFO(dragged.line("tilt"));
   CHECK(dragged.announced_to < tilt.first_slip_of_all());
@@ -282,15 +282,15 @@ TEST_CASE("no slip is announced on finite-element membranes that stick", "[stick
 namespace {
 
 struct GrossSlip {
-  int wrong_runs = 0;  ///< runs with a frame above 0.5 while under 5 % stick
+  int wrong_runs = 0;  ///< runs with a ratio above 0.5 while under 5 % stick
   int wrong_frames = 0;
   int sliding_frames = 0;
 };
 
-/// An object dragged until nothing sticks any more, and on.
+/// An object is dragged until nothing sticks any more, and beyond.
 GrossSlip drag_to_gross_slip(double step_px, double dot_noise_px, double spring_share) {
   const DotPattern pattern{.rows = 15, .cols = 15, .contact_pitches = 6};
-  // as calibrate/slip.hpp: 1 % of sticking dots told to slip
+  // as in calibrate/slip.hpp: 1 % of sticking dots are taken for slipping
   const StickRatio ratio(15, 15,
                          {.reference = 2,
                           .store = 0.5,
@@ -323,8 +323,8 @@ GrossSlip drag_to_gross_slip(double step_px, double dot_noise_px, double spring_
 }  // namespace
 
 TEST_CASE("gross slip is never taken for sticking", "[stick_ratio]") {
-  // Before standing dots were told from the object, up to 40 of 40 runs had hundreds of frames
-  // above 0.5. Now none has one; asked for is one in 40 runs at most.
+  // Without the distinction of standing dots from the object, up to 40 of 40 runs had hundreds of
+  // frames above 0.5. Now none has one; the requirement is at most one in 40 runs.
   for (const double spring_share : {0.0, 0.05, 0.3}) {
     for (const double dot_noise_px : {0.03, 0.06, 0.14}) {
       for (const double step_px : {0.2, 0.5, 1.0, 2.0}) {

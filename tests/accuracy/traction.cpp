@@ -35,7 +35,7 @@ class Table {
       text_ << std::setw(6) << 100 * f;
     }
     text_ << " |";
-    // a press has no moment about Q to be a share of
+    // a press has no moment about Q to relate errors to
     for (const double m : e.moment) {
       text_ << std::setw(6) << (s.largest_moment_n_mm() > 0.1 ? 100 * m : 0);
     }
@@ -109,7 +109,7 @@ TEST_CASE("traction of finite-element membranes, noisy dots", "[traction]") {
       table.add(s, e);
       CAPTURE(s.name, noise_mm);
       CHECK(e.frames == frames);
-      // the balance stays where it is without noise
+      // noise does not change the balance
       CHECK(std::abs(e.mu_t - true_mu_t) <= 0.03 * true_mu_t);
       CHECK(largest(e.force) <= 0.02 + 6 * noise_mm);
       CHECK(e.pressure_mean < e.pressure_rms / 2);
@@ -178,8 +178,8 @@ TEST_CASE("mu t from frames of the free pad", "[traction]") {
 }
 
 TEST_CASE("what noise of the dots does to a load", "[traction]") {
-  // The load is a second difference of places: noise goes with mu t / pitch^2 along the membrane,
-  // with its tension / pitch^2 across.
+  // The load is a second difference of positions: noise scales with mu t / pitch^2 along the
+  // membrane and with its tension / pitch^2 across it.
   const double mu_t = 0.5, stretch = 1.15, noise_mm = 0.005;
   const double tension = mu_t * (1 - std::pow(stretch, -6));
   for (const double pitch : {0.75, 1.5, 3.0}) {

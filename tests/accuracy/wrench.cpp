@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
-// Force and moment of finite-element membranes against the truth: by their exact shape and side
-// dots, and by noisy frames. test_accuracy "[wrench]" -s prints all figures.
+// Force and moment of finite-element membranes against the truth, from their exact shape and side
+// dots and from noisy frames. test_accuracy "[wrench]" -s prints all figures.
 #include "fingerpad/force/wrench.hpp"
 
 #include <algorithm>
@@ -39,8 +39,8 @@ constexpr double stress_free_inclination_rad = 1.0623;  // of a cap 11 mm high: 
 constexpr double true_modulus = 0.5;                    // N/mm: 0.5 MPa, 1 mm thick
 
 enum class Share {
-  of_scene,  ///< of the largest of the frame's scene
-  of_all,    ///< of the largest of all scenes
+  of_scene,  ///< relative to the largest of the frame's scene
+  of_all,    ///< relative to the largest of all scenes
 };
 
 struct Input {
@@ -53,12 +53,12 @@ Input exact_input() {
           [](const WrenchFrame& f) { return f.dots; }};
 }
 
-/// Mean and largest absolute errors over frames, as shares of the largest there is: F_x and F_y
-/// together, F_z, M_x and M_y together, M_z. Scenes without a component do not count in it.
+/// Mean and largest absolute errors over frames, relative to the largest value: F_x and F_y
+/// together, F_z, M_x and M_y together, M_z. Scenes without a component are not counted in it.
 struct Errors {
   std::array<double, 4> mean{};
   std::array<double, 4> worst{};
-  std::array<double, 4> gain{};  ///< slope of what was found over the truth
+  std::array<double, 4> gain{};  ///< slope of the results over the truth
   double residual = 0;
   int failed = 0;
 };
@@ -110,7 +110,7 @@ Errors errors_of(const W& wrench,
     }
   }
   for (std::size_t k = 0; k < 4; ++k) {
-    e.mean[k] /= count[k];  // NaN: no such frames
+    e.mean[k] /= count[k];  // NaN if there are no such frames
     e.gain[k] = products[k] / squares[k];
   }
   e.residual /= frames_seen;
@@ -170,7 +170,7 @@ WrenchOptions<double> with_modulus(WrenchOptions<double> options) {
 using Published =
     Wrench<published::Iteration, OneRow, published::Direction, published::SteepestLines>;
 
-/// What a method is known to lose, it must be seen to lose: mean errors to a tenth.
+/// A known loss of a method must appear: mean errors to a tenth.
 void about(const Errors& e, double fxy, double fz, double mxy, double mz) {
   CHECK(e.failed == 0);
   CHECK(e.mean[0] == Approx(fxy).epsilon(0.1));
@@ -179,7 +179,7 @@ void about(const Errors& e, double fxy, double fz, double mxy, double mz) {
   CHECK(e.mean[3] == Approx(mz).epsilon(0.1));
 }
 
-/// Mean errors; the bounds are about a quarter above what was measured.
+/// Mean errors; the bounds are about a quarter above the measured values.
 void at_most(const Errors& e, double fxy, double fz, double mxy, double mz) {
   CHECK(e.failed == 0);
   CHECK(e.mean[0] <= fxy);
@@ -270,14 +270,14 @@ TEST_CASE("the printed iteration, word for word, on finite-element membranes", "
     table.add(scene, errors_of(printed, 1, input, scene));
   }
   table.show();
-  // as from eq. 12 for all lines where all end level
+  // the same loss as eq. 12 gives for all lines that end level
   const Errors drag = errors_of(printed, 1, input, "drag"),
                mix = errors_of(printed, 1, input, "mix");
   CHECK(drag.gain[0] == Approx(0.72).margin(0.03));
   CHECK(mix.gain[3] == Approx(0.33).margin(0.04));
   CHECK(errors_of(printed, 1, input, "twist").gain[3] == Approx(0.31).margin(0.03));
   CHECK(errors_of(printed, 1, input, "press").mean[1] < 0.01);
-  // over a tilted plate f_h decides, through eq. 9: 24 % too much; dragged, it diverges
+  // over a tilted plate f_h dominates through eq. 9: 24 % too much; dragged, it diverges
   for (const WrenchFrame& f : test::wrench_frames()) {
     auto workspace = printed.workspace();
     const auto r = printed(exact_heights(f.heights), rows_of(f.dots, 1), f.pressure_mpa, workspace);
@@ -305,7 +305,7 @@ TEST_CASE("wrench without a pressure gauge", "[wrench]") {
     worst_pressure = (std::max)(worst_pressure, std::abs(r.pressure_mpa / f.pressure_mpa - 1));
     worst_force = (std::max)(worst_force, off);
     mean_force += off / 15;
-    // the forces are those that the wrench finds at this pressure
+    // the forces are those of the wrench at this pressure
     const auto same = carried(heights, dots, r.pressure_mpa, work);
     CHECK(same.force_n.x == r.force_n.x);
     CHECK(same.pressure_mpa == r.pressure_mpa);
@@ -346,15 +346,15 @@ TEST_CASE("the published rim finds too little of drag and twist", "[wrench]") {
 
 namespace {
 
-/// What is known of the shape.
+/// Source of the shape.
 enum class Seen {
   noisy,    ///< a frame of 8 bit, noise of 1 grey level in each channel
   rounded,  ///< a frame of 8 bit
   rays,     ///< the depth of every pixel, exact
-  exact,    ///< the heights themselves
+  exact,    ///< exact heights
 };
 
-/// Which noise there is.
+/// Noise of the inputs.
 struct Noise {
   Seen seen = Seen::noisy;
   bool dots = true;  ///< 0.06 px of 0.08 mm in x and y
@@ -362,7 +362,7 @@ struct Noise {
 };
 constexpr double jitter_mm = 0.06 * 0.08;
 
-/// From frames to height maps, once for each frame and noise.
+/// Renders frames and makes height maps of them, once for each frame and noise.
 class Rendered {
  public:
   Rendered()
@@ -497,7 +497,7 @@ TEST_CASE("wrench of finite-element membranes, noisy frames", "[wrench]") {
   at_most(given_errors, 0.025, 0.18, 0.125, 0.07);
   at_most(carried_full, 0.016, 0.015, 0.075, 0.021);
   at_most(squares_full, 0.021, 0.025, 0.038, 0.031);
-  // noise of the shape makes F_z err, that of the side dots all the rest
+  // noise of the shape affects F_z, noise of the side dots everything else
   CHECK(only_frames.mean[1] > 1.5 * only_dots.mean[1]);
   CHECK(only_dots.mean[1] < 1.1 * exact.mean[1]);
   CHECK(only_dots.mean[2] > 3 * only_frames.mean[2]);

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 // Force and moment of a membrane of Mooney-Rivlin rubber (finite elements, C2 / (C1 + C2) = 0.3),
-// the rubber and mu t from its free pad alone.
+// with the rubber and mu t calibrated on its free pad alone.
 #include <cmath>
 #include <cstdint>
 
@@ -14,7 +14,7 @@ using namespace fingerpad;
 
 namespace {
 
-/// Slope of what was found over the truth.
+/// Slope of the results over the truth.
 struct Gain {
   double tangential = 0, turning = 0, normal_worst = 0;
 };
@@ -65,7 +65,7 @@ TEST_CASE("wrench of another rubber: its second constant from the free pad", "[w
             << told.turning << "; taken for neo-Hookean " << neo_hookean.tangential << ", "
             << neo_hookean.turning);
   SUCCEED();
-  // 0.4 % too much mu t, from dots on flat triangles, takes 0.05 from m
+  // mu t is 0.4 % too large, from dots on flat triangles, which lowers m by 0.05
   CHECK(fit.modulus_n_per_mm == Approx(0.5).epsilon(0.006));
   CHECK(fit.mooney_share == Approx(0.3).margin(0.07));
   CHECK(found.tangential == Approx(1).margin(0.01));

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
-// One depth map, held by every kind of grid, gives one contact; and every kind of grid takes the
+// One depth map in every kind of grid gives the same contact, and every kind of grid receives the
 // mask.
 #include <array>
 #include <cstdint>

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
-// One frame, held by every kind of grid, gives one depth map, to the last bit; and every kind of
-// grid takes the depth map.
+// One frame in every kind of grid gives the same depth map to the last bit, and every kind of grid
+// receives the depth map.
 #include <algorithm>
 #include <cstdint>
 #include <opencv2/core.hpp>
@@ -34,7 +34,7 @@ using RowMajor = Eigen::Matrix<T, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajo
 template <class T>
 using ColMajor = Eigen::Matrix<T, Eigen::Dynamic, Eigen::Dynamic>;
 
-/// A grid of its own size, filled cell by cell through the vocabulary.
+/// Fills a grid cell by cell through the grid functions.
 template <class Grid, class T>
 void fill_from(Grid&& grid, const Image<T>& from) {
   const auto view = as_view(grid);
@@ -61,7 +61,7 @@ bool holds(const Grid& grid, const Image<T>& expected) {
   return true;
 }
 
-/// A frame with noise and lost pixels, its estimator, and what test::Image gives.
+/// A frame with noise and lost pixels, its estimator, and the result for test::Image.
 template <class Pixel, class Smoothing>
 struct Case {
   test::Pad pad;
@@ -82,7 +82,7 @@ struct Case {
     REQUIRE(expected.result.valid_pixels() > 1000);
   }
 
-  /// From any two grids.
+  /// Whether any two grids as input give the same result.
   template <class Red, class Green>
   bool reads(const Red& red, const Green& green) {
     test::Estimate<float> e(pad.rows, pad.cols);
@@ -91,14 +91,14 @@ struct Case {
            test::same_bits(e.depth_mm, expected.depth_mm) &&
            e.status.cells == expected.status.cells;
   }
-  /// From two grids of one kind, which can be filled.
+  /// The same for two grids of one kind, which are filled first.
   template <class Grid>
   bool reads_filled(Grid red, Grid green) {
     fill_from(red, frame.red);
     fill_from(green, frame.green);
     return reads(red, green);
   }
-  /// Into any two grids.
+  /// Whether any two grids receive the same output.
   template <class Depth, class Status>
   bool writes(Depth&& depth, Status&& status) {
     fill_from(depth, Image<float>(pad.rows, pad.cols, -1));
@@ -107,12 +107,12 @@ struct Case {
   }
 };
 
-/// Both channels in one interleaved image, among others that hold something else.
+/// Both channels interleaved in one image, among others with different content.
 template <class Pixel>
 cv::Mat interleaved(const Frame<Pixel>& frame, int channels) {
   const int rows = static_cast<int>(frame.red.rows());
   const int cols = static_cast<int>(frame.red.cols());
-  // a region of a wider image, so that rows do not follow one another in memory
+  // a region of a wider image, so that rows are not contiguous in memory
   cv::Mat wide(rows, cols + 5, CV_MAKETYPE(cv::DataType<Pixel>::depth, channels));
   cv::Mat image = wide(cv::Rect(3, 0, cols, rows));
   for (int c = 0; c < channels; ++c) {
@@ -160,7 +160,7 @@ TEMPLATE_TEST_CASE(
       test::LayoutStride::right(static_cast<test::MdIndex>(rows), static_cast<test::MdIndex>(cols));
   CHECK(c.reads(Span(red.cells.data(), mapping), Span(green.cells.data(), mapping)));
 
-  // stored upside down and back to front, with space between
+  // stored upside down and back to front, with gaps
   std::vector<Pixel> rotated(static_cast<std::size_t>(2 * 2 * rows * cols));
   const StridedView<Pixel> back(&rotated.back(), rows, cols, -4 * cols, -2);
   fill_from(back, red);
@@ -224,7 +224,7 @@ TEST_CASE("depth and status are written into every grid", "[adapt][depth]") {
   ColMajor<float> wide(rows + 4, cols + 6);
   CHECK(c.writes(wide.block(1, 2, rows, cols), status));
 
-  // a double grid takes what float computes
+  // a double grid receives the results of float
   RowMajor<double> wider(rows, cols);
   CHECK(c.estimator(c.frame.red, c.frame.green, wider, status, c.workspace).ok());
   const RowMajor<float> narrowed = wider.cast<float>();

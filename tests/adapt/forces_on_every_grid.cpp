@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
-// Dots, flags, depths and readings held by Eigen and xtensor, in rows and in columns, as a view of
-// something larger: every method that reads them gives one answer, to the bit. Depth, neighbour
-// light, contact region and stick ratio have tests of their own.
+// Dots, flags, depths and readings in grids of Eigen and xtensor, row by row and column by column,
+// and as a view of a larger grid: every method that reads them gives the same result to the bit.
+// Depth, neighbour light, contact region and stick ratio have tests of their own.
 #include <Eigen/Core>
 #include <array>
 #include <cmath>
@@ -243,7 +243,7 @@ TEST_CASE("stick ratio in space and divergence from every grid", "[adapt]") {
 
 namespace {
 
-/// A pad that a plate has pressed, 0.5 mm a pixel: a level contact of 5 mm in a dome.
+/// A pad under a plate, 0.5 mm a pixel: a level contact of 5 mm in a dome.
 struct Pressed {
   test::Cells<double> depth{60, 64};
   test::Cells<unsigned char> mask{60, 64};
@@ -302,7 +302,7 @@ TEST_CASE("curvature, measures, flat area and surface of a contact from every gr
 }
 
 TEST_CASE("depth, contact and slide of a gel from every grid", "[adapt]") {
-  // a dark spot that comes nearer the middle
+  // a dark spot that moves toward the middle
   const auto image = [](double x, double dark) {
     test::Cells<double> level(64, 80);
     for (Index i = 0; i < 64; ++i) {

@@ -14,7 +14,7 @@ using namespace fingerpad;
 
 namespace {
 
-/// Every channel of `image` is viewed in place: its cells are the very values of the image.
+/// Checks that every channel of `image` is viewed in place: its cells are the values of the image.
 template <class T>
 void check_channels(cv::Mat& image) {
   const cv::Mat& constant = image;
@@ -73,8 +73,8 @@ TEST_CASE("colour images are grids of pixels", "[opencv]") {
   cv::Mat_<cv::Vec3b> region = image(cv::Rect(2, 1, 4, 3));
   CHECK(as_view(region)(2, 3) == cv::Vec3b(3, 5, 7));
 
-  // Rows that begin where an even number of bytes ends, as cameras and BMP files pad them: 22 are
-  // no whole number of pixels.
+  // Rows that begin at an even number of bytes, as cameras and BMP files pad them: 22 bytes are not
+  // a whole number of pixels.
   std::vector<std::uint8_t> memory(5 * 24);
   cv::Mat_<cv::Vec3b> padded(5, 7, reinterpret_cast<cv::Vec3b*>(memory.data()), 22);
   image.copyTo(padded);

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
-// Dots, flags and states held by every kind of grid: one answer, to the bit.
+// Dots, flags and states in every kind of grid: the same result to the bit.
 #include <Eigen/Core>
 #include <array>
 #include <cstdint>
@@ -40,7 +40,7 @@ using RowMajor = Eigen::Matrix<T, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajo
 template <class T>
 using ColMajor = Eigen::Matrix<T, Eigen::Dynamic, Eigen::Dynamic>;
 
-/// Three frames; the first two have been followed.
+/// Three frames; the first two have been processed.
 struct Case {
   test::Image<Point2<float>> dots{n, n};
   test::ContactFlags contact;
@@ -141,7 +141,7 @@ TEST_CASE("dots that stick are read from every grid", "[adapt][stick_ratio]") {
   const auto spatial = [&](Index i, Index j) {
     return Point3<float>{c.dots(i, j).x, c.dots(i, j).y, 7};
   };
-  CHECK(c.reads_dots(LazyView(n, n, spatial)));  // their depth is not looked at
+  CHECK(c.reads_dots(LazyView(n, n, spatial)));  // their depth is not read
 }
 
 TEST_CASE("dots in planes, matrices, tensors and vectors are read without a copy",

@@ -28,7 +28,7 @@ namespace {
 
 const double expected = test::pattern_sum(6, 4);
 
-/// Plain memory: the view points into it and gives the same sum as everything else.
+/// Plain memory: the view points into it and gives the same sum as every other grid.
 template <class G>
 void check_strided(G& g) {
   STATIC_REQUIRE(strided_grid<G>);

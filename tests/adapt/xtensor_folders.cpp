@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
-// Compiled with tests/support/xtensor_folders in front of the include path: xtensor's headers then
-// lie in folders, as they do from 0.26 on. The adapter must find them there.
+// Compiled with tests/support/xtensor_folders first in the include path. xtensor's headers then are
+// in folders, as from 0.26 on, where the adapter must find them.
 #include "fingerpad/adapt/xtensor.hpp"
 
 #ifndef FINGERPAD_TEST_XTENSOR_FOLDERS

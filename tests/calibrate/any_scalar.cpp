@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
-// Every calibration that does not solve for forces or fluid (their tests do the same), in float and
-// in dual numbers: the same result, and the derivatives of finite differences.
+// Every calibration that does not solve for forces or fluid (whose own tests do the same), in float
+// and in dual numbers: the same result, and the derivatives of finite differences.
 #include <Eigen/Core>
 #include <algorithm>
 #include <array>
@@ -30,7 +30,7 @@ namespace {
 template <class S>
 using Results = std::vector<S>;
 
-/// A bulging membrane, pressed or free.
+/// Height of a bulging membrane, pressed or free.
 double membrane_mm(Index i, Index j, double pressed_mm) {
   const double x = 0.2 * (static_cast<double>(j) - 24), y = 0.2 * (static_cast<double>(i) - 20);
   const double cap = 8 - 0.08 * (x * x + y * y);
@@ -48,7 +48,7 @@ Image<S> map_of(Index rows, Index cols, const Cell& cell) {
   return map;
 }
 
-/// m0 and n by the pitch between pixels: what is too deep grows with the square of what is pressed.
+/// m0 and n by the pitch between pixels: the excess of depth grows with the square of the press.
 struct LightByPitch {
   template <class S>
   Results<S> operator()(const S& p) const {
@@ -91,7 +91,7 @@ struct IntensityByBall {
   }
 };
 
-/// Noise of dots, one frame of which is drawn larger.
+/// Noise of dots with one frame scaled up.
 struct DotNoiseByScale {
   template <class S>
   Results<S> operator()(const S& p) const {
@@ -109,13 +109,13 @@ struct DotNoiseByScale {
       REQUIRE(calibration.add(dots));
     }
     const DotNoise<S> noise = calibration.fit();
-    // thresholds are plain numbers, which decide
+    // thresholds are plain numbers that only decide
     CHECK(stick_test_for(49, noise).slip == Approx(stick_test_for(49, calibration.fit()).slip));
     return {noise.noise_px, noise.largest_px, noise.inner_px, noise.edge_px, noise.published_px};
   }
 };
 
-/// Noise of an array, one taxel of which is read with another gain.
+/// Noise of an array with another gain of one taxel.
 struct TaxelsByGain {
   template <class S>
   Results<S> operator()(const S& p) const {
@@ -177,7 +177,7 @@ struct DivergenceByForce {
   }
 };
 
-/// Thresholds that tell marked onsets, which are of a list; none has a derivative.
+/// Thresholds that separate marked onsets. They come from a list, so none has a derivative.
 struct PreslipThresholds {
   template <class S>
   Results<S> operator()(const S& p) const {
@@ -200,7 +200,8 @@ struct PreslipThresholds {
   }
 };
 
-/// U of the stick ratio, which is one of a list: a patch dragged while dots let go from outside.
+/// U of the stick ratio, which comes from a list: a patch is dragged while its dots begin to slip
+/// from the edge.
 struct ReferenceOfSlip {
   template <class S>
   Results<S> operator()(const S& p) const {
@@ -230,7 +231,7 @@ struct ReferenceOfSlip {
   }
 };
 
-/// The largest difference of two lists, relative.
+/// Largest relative difference of two lists.
 template <class A, class B>
 double furthest(const Results<A>& a, const Results<B>& b) {
   REQUIRE(a.size() == b.size());

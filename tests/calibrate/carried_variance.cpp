@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
-// How far results move with their calibration: derivatives by dual numbers against differences, and
-// the variance that they carry against calibrations repeated with fresh noise.
+// Dependence of results on their calibration: derivatives by dual numbers against differences, and
+// the propagated variance against calibrations repeated with fresh noise.
 #include <Eigen/Dense>
 #include <array>
 #include <cmath>
@@ -119,8 +119,8 @@ Camera<S> camera_of(const Places<S>& p) {
   return camera;
 }
 
-/// Slips of four dots of a patch that is dragged while its edge lets go; pixels and depths are as
-/// the default camera has them, `p` is what one takes it for.
+/// Slips of four dots of a dragged patch whose edge begins to slip. Pixels and depths are those of
+/// the default camera; `p` is the camera that the method assumes.
 template <class S>
 std::array<Point3<S>, 4> slips_of(const Places<S>& p) {
   constexpr Index n = 21;
@@ -203,7 +203,7 @@ TEST_CASE("variance of a force by look-up is what repeated calibrations scatter 
     variance += carried_variance(force.x, covariance) / trials;
     scatter += square(force.x.value() - truth.x) / trials;
   }
-  // 400 trials know a variance to 7 %
+  // 400 trials determine a variance to 7 %
   CHECK(scatter / variance == Approx(1).margin(0.25));
 }
 

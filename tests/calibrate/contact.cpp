@@ -51,7 +51,7 @@ TEST_CASE("calibration: half of the free pad's curvature", "[contact_region]") {
       CHECK(by_plan.add(test::depths_of<float>(plan, free_pad(curvature), 70, 80)));
       CHECK(by_camera.add(test::depths_of<double>(camera, free_pad(curvature), 70, 80)));
     }
-    // sections are vertical, which makes a few percent on the slopes; through a camera as many
+    // vertical sections cause a few per cent on the slopes, as many as a camera does
     for (const FreePadCurvature<>& pad : {by_plan.fit(), by_camera.fit()}) {
       CHECK(pad.median_per_mm == Approx(curvature).epsilon(0.08));
       CHECK(pad.threshold_per_mm == Approx(pad.median_per_mm / 2));
@@ -132,7 +132,7 @@ TEST_CASE("calibration: two frames are enough for half of the level", "[contact_
   const FreePadCurvature pad = calibration.fit();
   CHECK(pad.noise_per_mm > 0.003);
   CHECK(pad.threshold_per_mm == Approx(pad.median_per_mm / 2));
-  // a pixel's own sigma from two frames is now and then many times too large
+  // a pixel's own sigma from two frames is sometimes many times too large
   CHECK(calibration.fit({0.5, 2, 0.001, false}).threshold_per_mm < pad.threshold_per_mm);
 }
 
@@ -156,11 +156,11 @@ TEST_CASE("calibration: the standard error of the median is how far medians scat
     sum += pad.median_per_mm;
     squares += pad.median_per_mm * pad.median_per_mm;
     said += pad.median_error_per_mm * pad.median_error_per_mm / pads;
-    // the error of a single pixel is another thing
+    // not the error of a single pixel
     CHECK(pad.median_error_per_mm < pad.noise_per_mm / std::sqrt(6.0) / 3);
   }
   const double scatter = std::sqrt((squares - sum * sum / pads) / (pads - 1));
-  // 60 pads tell the scatter to 9 %, their errors the mean of these to 4 %
+  // 60 pads determine the scatter to 9 % and the mean of their errors to 4 %
   CHECK(std::sqrt(said) == Approx(scatter).epsilon(0.3));
 }
 
@@ -175,7 +175,7 @@ TEST_CASE("calibration: one bad pixel sets the published threshold, but no quant
     auto noisy = depth;
     add_noise(noisy, 2e-4, random);
     good.add(noisy);
-    noisy(90, 100) -= 0.02F;  // it and the 36 pixels that see it
+    noisy(90, 100) -= 0.02F;  // this pixel and the 36 pixels that see it
     spoilt.add(noisy);
   }
   CHECK(spoilt.fit().threshold_per_mm == Approx(good.fit().threshold_per_mm).epsilon(0.01));
@@ -203,8 +203,8 @@ TEST_CASE("calibration: pixels that are once missing do not count", "[contact_re
 }
 
 TEST_CASE("calibration: the noise of the edge", "[contact_region]") {
-  // Edges of many noisy frames, straight and round, by the rows that cross them: the mean curvature
-  // there, followed from inside to where it passes the level of the edge.
+  // Edges of many noisy frames, straight and round, along the rows that cross them: the mean
+  // curvature there, followed from inside to where it crosses the level of the edge.
   const Index rows = 96, cols = 128, ring = 12;
   const auto camera = test::height_map(rows, cols, 0.08);
   const double noise_mm = 3e-4;

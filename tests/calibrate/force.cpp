@@ -42,8 +42,7 @@ std::span<const ForceSample<S>> all(const std::vector<ForceSample<S>>& samples) 
   return samples;
 }
 
-/// A pad whose every number is known. The measure is a depth in mm, or the radius of an elastic
-/// pad.
+/// A pad with known numbers. The measure is a depth in mm, or the radius of an elastic pad.
 template <class S = double>
 struct Pad {
   S constant = S(0), linear = S(0.5), square_term = S(0.3), cubic = S(0);
@@ -80,7 +79,7 @@ struct Pad {
   }
 };
 
-/// Contacts of all sizes, displaced and rotated, of five loads; without forces.
+/// Contacts of all sizes, displaced and rotated, at five loads; without forces.
 template <class S = double>
 std::vector<ForceSample<S>> contacts(int count, Random& random) {
   std::vector<ForceSample<S>> samples;
@@ -125,7 +124,8 @@ Samples measured(const Pad<>& pad, int count, const Noise& noise, int degree, Ra
   return samples;
 }
 
-/// How often the truth is within two standard errors, and how large errors are over them.
+/// Share of the fits with the truth within two standard errors, and size of the errors relative to
+/// them.
 class Coverage {
  public:
   explicit Coverage(const std::string& name) : name_(name) {}
@@ -135,8 +135,8 @@ class Coverage {
     sum_sq_ += z * z;
     ++fits_;
   }
-  /// Three standard deviations of a count around `expected`, and of the root mean square around
-  /// `size`, with `slack` for standard errors that hold for many samples only.
+  /// Allows three standard deviations of a count around `expected`, and of the root mean square
+  /// around `size`, with `slack` for standard errors that hold only for many samples.
   void check(double slack = 0, double expected = 0.95, double size = 1.02) const {
     const double share = within_ / fits_, rms = std::sqrt(sum_sq_ / fits_);
     CAPTURE(name_, share, rms, fits_);
@@ -149,7 +149,7 @@ class Coverage {
   double within_ = 0, sum_sq_ = 0, fits_ = 0;
 };
 
-/// Coverage of some parameters over fits of fresh samples: `fit(random)` returns for each of them
+/// Coverage of some parameters over fits of fresh samples. For each of them `fit(random)` returns
 /// {found, truth, standard error}.
 template <std::size_t N, class Fit>
 void check_coverage(const std::array<const char*, N>& names,
@@ -178,8 +178,8 @@ struct Way {
   int fits;
   double slack;
 };
-/// Huber's standard errors are those of many samples; with 40 of which 15 % are outliers, 91 % are
-/// within two.
+/// Huber's standard errors hold for many samples. With 40 samples, 15 % of them outliers, 91 % are
+/// within two standard errors.
 const std::array<Way, 3> ways = {
     {{"plain", false, {}, 60, 200, 0},
      {"Huber without outliers", true, {}, 60, 80, 0.02},
@@ -188,7 +188,7 @@ const std::array<Way, 3> ways = {
 FitOptions options_of(const Way& way) {
   FitOptions options;
   options.robust = way.robust;
-  options.passes = 25;  // its weights then still move, but by little
+  options.passes = 25;  // its weights then still change, but little
   return options;
 }
 
@@ -228,7 +228,7 @@ TEST_CASE("curves of the normal force are found within their errors", "[calibrat
               {.robust = way.robust, .passes = 25, .through_zero = false, .rising = false});
           const auto& c = fit.errors.covariance;
           const auto& p = fit.curve.coefficients;
-          // The variance of a force takes all of the covariance.
+          // The variance of a force uses the whole covariance.
           const double at = 3.3;
           const double variance =
               fit.errors.variance_n2(fit.curve.gradient(at), 0) - square(fit.errors.residual_sd_n);
@@ -296,12 +296,12 @@ void check_shear_coverage(const Way& way, bool given) {
   CAPTURE(Degree, given);
   constexpr double second = Degree == 2 ? 1 : 0;
   const auto row = [&](const auto& fit, double c_1, double c_2, double exponent) {
-    // what was given is no estimate: the first coefficient stands in for it
+    // a given number is no estimate: the first coefficient is used instead
     const auto& c = fit.polynomial.coefficients;
     const std::array<double, 3> first = {c[0], c_1, fit.standard_errors[0]};
     std::array<double, 3> last = {c[Degree - 1], Degree == 1 ? c_1 : c_2,
                                   fit.standard_errors[Degree - 1]};
-    if (Degree == 1) {  // the slope at twice the reference, in which all parameters err together
+    if (Degree == 1) {  // the slope at twice the reference, which depends on all parameters
       const auto& v = fit.covariance;
       const double u = std::pow(2, fit.exponent), by_exponent = c[0] * u * std::log(2.0);
       const double variance =
@@ -383,7 +383,7 @@ TEST_CASE("a calibration tells how far the next force is off", "[calibrate][forc
   Random random(8);
   const Noise noise;
   for (int k = 0; k < 1000; ++k) {
-    // few samples, so that the parameters matter, too
+    // few samples, so that the parameters matter as well
     const auto samples = measured(pad, 12, noise, 1, random);
     const auto fit = fit_normal_force<2>(all(samples), {.rising = false});
     PolynomialForce<2> curve = fit.curve;
@@ -399,7 +399,7 @@ TEST_CASE("a calibration tells how far the next force is off", "[calibrate][forc
 
 namespace {
 
-/// Largest relative error of each parameter, of samples without noise.
+/// Largest relative error of each parameter for samples without noise.
 template <class S>
 double error_without_noise(bool robust) {
   const Pad<S> pad;
@@ -467,7 +467,7 @@ double error_without_noise(bool robust) {
 }  // namespace
 
 TEST_CASE("samples without noise give back the parameters", "[calibrate][force]") {
-  // A few hundred times the number's spacing.
+  // A few hundred times the spacing of the number type.
   CHECK(error_without_noise<double>(false) < 1e-13);
   CHECK(error_without_noise<double>(true) < 1e-13);
   CHECK(error_without_noise<float>(false) < 1e-4);
@@ -476,7 +476,7 @@ TEST_CASE("samples without noise give back the parameters", "[calibrate][force]"
 
 namespace {
 
-/// Samples with noise, and fits of them, for what must hold of every calibration.
+/// Samples with noise and their fits, for properties of every calibration.
 Samples any_samples(int count = 30) {
   Random random(static_cast<std::uint64_t>(test::whole(1, 1000000)));
   Pad<> pad;
@@ -497,8 +497,8 @@ FitOptions any_options() {
   return options;
 }
 
-/// Parameters and standard errors of all fits, each with the powers in which it grows with the unit
-/// of force and with that of the measure.
+/// A parameter or standard error with its powers of the unit of force and of the unit of the
+/// measure.
 struct Number {
   double value;
   int force_power = 0;
@@ -629,7 +629,7 @@ TEST_CASE("samples given twice count twice", "[calibrate][force]") {
 
 TEST_CASE("the covariance is that which the forces' errors carry into the parameters",
           "[calibrate][force]") {
-  // Parameters and their derivatives by all forces, in one pass.
+  // Parameters and their derivatives by all forces in one pass.
   constexpr int count = 10;
   using S = Eigen::AutoDiffScalar<Eigen::Matrix<double, count, 1>>;
   Random random(11);
@@ -677,7 +677,7 @@ TEST_CASE("Huber's loss withstands gross outliers", "[calibrate][force]") {
             (std::max)(worst, std::abs(robust.curve.force_n(at) - pad.plain(at)) / standard_error);
         plain_far += plain.curve.force_n(at) - pad.plain(at) > 10 * standard_error ? 1 : 0;
       }
-      // and they are found: all that weigh less than a third lie far off
+      // and the outliers are found: all samples with a weight below a third are far off
       for (const auto& r : robust.residuals) {
         const double off = r.measured - pad.plain(samples[r.sample].measure);
         CHECK((off < 1 || r.weight < 1.0 / 3));
@@ -711,14 +711,14 @@ TEST_CASE("a force that would fall is held", "[calibrate][force]") {
   CHECK(free.errors.residual_sd_n < fit.errors.residual_sd_n);
   CHECK(begins_with(refusal([&] { (void)NormalForce<>(free.curve); }),
                     "PolynomialForce: slope within the range"));
-  // what is not close to falling is not touched
+  // a curve that is far from falling is unchanged
   const Samples rising = measured({}, 40, {}, 1, random);
   const auto held = fit_normal_force<2>(all(rising));
   CHECK_FALSE(held.held_rising);
   CHECK(held.curve.coefficients ==
         fit_normal_force<2>(all(rising), {.rising = false}).curve.coefficients);
 
-  // whatever a rising fit returns, NormalForce takes
+  // NormalForce accepts every result of a rising fit
   std::set<std::string> complaints;
   int held_fits = 0, refused = 0;
   const auto make = [&](const auto& fitted) {
@@ -791,7 +791,7 @@ TEST_CASE("options add what they name and nothing else", "[calibrate][force]") {
 TEST_CASE("residuals are complete and in order", "[calibrate][force]") {
   Random random(15);
   Samples samples = measured({}, 40, {}, 1, random);
-  // in between: samples that a fit cannot use
+  // samples in between that a fit cannot use
   std::vector<std::size_t> usable;
   for (std::size_t k = 0; k < samples.size(); ++k) {
     if (k % 7 == 2) {
@@ -855,7 +855,7 @@ TEST_CASE("residuals are complete and in order", "[calibrate][force]") {
 TEST_CASE("predictions never use the load that is left out", "[calibrate][force]") {
   Random random(16);
   Samples samples = measured({}, 30, {}, 1, random);
-  constexpr std::array<int, 5> loads = {7, -2, 0, 1000000, 3};  // interleaved, in no order
+  constexpr std::array<int, 5> loads = {7, -2, 0, 1000000, 3};  // interleaved and unordered
   for (Sample& s : samples) {
     s.load = loads[static_cast<std::size_t>(s.load)];
   }
@@ -879,7 +879,7 @@ TEST_CASE("predictions never use the load that is left out", "[calibrate][force]
       CHECK((result.errors[k] == clean.errors[k]) == (samples[k].load == poisoned));
     }
   }
-  // summed up
+  // summed
   const auto off = [](const auto& model, const Sample& s) {
     return s.load == 3 ? test::nan : model.curve.force_n(s.measure) - s.normal_force_n;
   };
@@ -896,7 +896,7 @@ TEST_CASE("predictions never use the load that is left out", "[calibrate][force]
   CHECK(result.rms == Approx(std::sqrt(sum_sq / 24)).epsilon(1e-12));
   CHECK(result.worst == worst);
   CHECK(worst < 1.5);
-  // what the fit refuses is refused; no samples, no answer
+  // unusable fits are refused; without samples there is no answer
   for (Sample& s : samples) {
     s.load = 1;
   }
@@ -975,7 +975,7 @@ TEST_CASE("samples that do not tell the parameters are refused by name", "[calib
     const auto at_reference = changed(good, [](Sample& s) { s.measure = 2; });
     check_refused(pull(at_reference),
                   "fit_tangential_force: what the samples tell of displacement_exponent");
-    // two measures tell no more than two coefficients
+    // two measures determine at most two coefficients
     const auto two = changed(good, [](Sample& s) { s.measure = s.measure < 3 ? 1 : 4; });
     check_refused([&] { return fit_normal_force<3>(all(two)); },
                   "fit_normal_force: what the samples tell of measure^3");
@@ -1125,7 +1125,7 @@ TEST_CASE("samples that are no numbers are left out", "[calibrate][force]") {
 
 namespace {
 
-/// True where all of a result are numbers.
+/// Whether all numbers of a result are finite.
 template <class... Numbers>
 bool finite(const Numbers&... numbers) {
   return (is_finite(numbers) && ...);
@@ -1152,7 +1152,7 @@ bool finite_shear(const ShearFit<Degree>& fit) {
          finite_residuals(fit.residuals);
 }
 
-/// Sometimes something else than what was measured.
+/// Sometimes replaces a measured value by another.
 double odd(double x, double share, Random& random) {
   constexpr std::array<double, 16> values = {test::nan, infinity, -infinity, 0,     -0.0, -1,
                                              1e-320,    1e-160,   1e-30,     1e-10, 1e-3, 1e3,

@@ -22,7 +22,7 @@ namespace {
 constexpr Index height = 110;
 constexpr Index width = 130;
 
-/// A ball pressed into a gel whose law is known: a frame of the free pad and one with the ball.
+/// A ball in a gel of known law: a frame of the free pad and one with the ball.
 struct Gel {
   IntensityLaw<> law{4, 0, 0};
   double ball_mm = 4;

@@ -34,8 +34,7 @@ Map membrane(double pressed_mm, double shift_mm) {
   return l;
 }
 
-/// What neighbouring light of this kind makes of the true depths: l_true = l - m psi_sum by the
-/// compensation's own sums.
+/// True depths for this neighbouring light: l_true = l - m psi_sum by the sums of the compensation.
 Frames truths(const NeighbourLight<double>& light, const Map& reference, const Frames& measured) {
   Frames truth;
   const detail::InclinationSums<detail::SteppedDisc, double> sums(light.radius_px, pitch_mm,

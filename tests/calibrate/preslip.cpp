@@ -16,7 +16,7 @@ namespace {
 
 using Samples = std::array<FingerSample<double>, 2>;
 
-/// A finger that vibrates at a place with some waves, its force at x.
+/// A finger that vibrates at `location` with `waves`; its force is at x.
 FingerSample<double> finger(double x_mm, Index location, Index waves) {
   FingerSample<double> s;
   s.status = waves > 0 ? TaxelStatus::vibrating : TaxelStatus::quiet;
@@ -30,8 +30,8 @@ FingerSample<double> finger(double x_mm, Index location, Index waves) {
   return s;
 }
 
-/// A hand that trembles: between slips the force wanders by 0.3 mm and a taxel vibrates with two
-/// waves now and then; where slip begins the force moves by 1.5 mm and one vibrates with `waves`.
+/// A trembling hand. Between slips the force moves by 0.3 mm and a taxel vibrates with two waves
+/// now and then; at the onset of slip the force moves by 1.5 mm and a taxel vibrates with `waves`.
 template <class Calibration>
 void add_trembling(Calibration& calibration, unsigned seed, Index waves, Index late = 0) {
   test::Random random(seed);
@@ -62,11 +62,11 @@ TEST_CASE("pre-slip calibration: thresholds between what trembles and what slips
   CHECK(fit.chance() == Approx(0.12));
   CHECK(fit.precision() == 1);
   CHECK(fit.options.history == 20);
-  // either threshold tells them apart
+  // either threshold separates them
   CHECK((fit.options.min_waves == 3 || fit.options.centroid_tolerance_mm >= 0.3));
   CHECK(fit.ties >= 1);
 
-  // with as many waves, the centroid alone does
+  // with equal waves, the centroid alone separates them
   PreslipCalibration<> alike(20);
   add_trembling(alike, 3, 2);
   const auto by_centroid = alike.fit();
@@ -98,7 +98,7 @@ TEST_CASE("pre-slip calibration: marks that do not fit are told", "[preslip]") {
 }
 
 TEST_CASE("pre-slip calibration: nothing is compared across recordings", "[preslip]") {
-  // of each recording one sample: a pair would need two
+  // one sample per recording: a pair would need two
   PreslipCalibration<> calibration;
   for (int k = 0; k < 20; ++k) {
     calibration.begin_recording();
@@ -111,8 +111,8 @@ TEST_CASE("pre-slip calibration: nothing is compared across recordings", "[presl
 
 namespace {
 
-/// Loosens simulated fingers until the object falls, noise three times that of the default; an
-/// onset is what slipped less than a window ago.
+/// Loosens simulated fingers until the object falls, with three times the default noise. An onset
+/// is a slip less than a window ago.
 template <class Calibration>
 void add_loosening(Calibration& calibration, unsigned seed) {
   grip::FoamFingersSetup object;
@@ -148,7 +148,7 @@ TEST_CASE("pre-slip calibration: thresholds of some objects hold for others", "[
   CHECK(fit.ok());
   CHECK(fit.precision() >= 0.95);
   CHECK(fit.recall() >= 0.9);
-  // on objects that it has not seen
+  // on objects outside the calibration
   for (unsigned seed = 7; seed < 10; ++seed) {
     PreslipCalibration<GraspLift> unseen;
     add_loosening(unseen, seed);

@@ -33,14 +33,14 @@ constexpr double radius_mm = 18.735;
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double none = std::numeric_limits<double>::quiet_NaN();
 
-/// One row of points, or two below each other, as a grid.
+/// One row of points, or two rows, as a grid.
 template <class S = double>
 auto grid_of(const std::vector<Point3<S>>& points, Index rows = 1) {
   const auto columns = static_cast<Index>(points.size()) / rows;
   return StridedView<const Point3<S>>(points.data(), rows, columns, columns);
 }
 
-/// A pad whose rim pulls as the law says, exactly.
+/// A pad whose rim pulls exactly by the law.
 struct Pad {
   double length_mm = 0.8;
   double modulus_n_per_mm = 0.5;
@@ -159,7 +159,7 @@ TEST_CASE("rim calibration: a rim that follows the law is found exactly", "[wren
         const auto fit = calibration.fit();
         CAPTURE(modulus, length, equal_angles);
         CHECK(fit.modulus_n_per_mm == Approx(modulus).epsilon(1e-9));
-        // L is the mean, weighted by the rim that each dot stands for
+        // L is the mean weighted by each dot's share of the rim
         double weighted = 0;
         for (int j = 0; j < pad.columns; ++j) {
           const double share = (pad.angle(j + 1) - pad.angle(j - 1)) / (4 * std::numbers::pi);
@@ -195,7 +195,7 @@ TEST_CASE("rim calibration: two rows of side dots", "[wrench]") {
     const double p = four_pressures[k];
     auto dots = pad.dots(p);
     CHECK_FALSE(calibration.add(k, grid_of(dots), p));  // one row only
-    // bent: the second row falls short by twice what makes the first row's derivative wrong
+    // bent: the second row falls short by twice the error of the first row's derivative
     auto second = pad.dots(p, 2);
     for (std::size_t j = 0; j < dots.size(); ++j) {
       dots[j].z -= 0.01;
@@ -217,7 +217,7 @@ TEST_CASE("rim calibration: units and the order of levels and dots do not matter
   CHECK(backward.modulus_n_per_mm == Approx(fit.modulus_n_per_mm).epsilon(1e-12));
   CHECK(backward.stretch[0] == Approx(fit.stretch[3]));
 
-  // columns that run the other way round, or begin elsewhere
+  // columns in the opposite order, or with another first column
   const auto rotated = [](Row row) {
     std::reverse(row.begin(), row.end());
     std::rotate(row.begin(), row.begin() + 7, row.end());
@@ -276,7 +276,7 @@ TEST_CASE("rim calibration: dots that are missing now and then", "[wrench]") {
       gaps[j].y = none;
     }
     CHECK(calibration.add(k, grid_of(gaps), four_pressures[k]));
-    if (k != 2) {  // at level 2 every fifth dot is never seen
+    if (k != 2) {  // at level 2 every fifth dot is always missing
       CHECK(calibration.add(k, grid_of(whole), four_pressures[k]));
     }
   }
@@ -329,9 +329,9 @@ TEST_CASE("rim calibration: standard errors are those of repeated measurements",
       CHECK(last.modulus_sd_n_per_mm == Approx(sd(1)).epsilon(0.15));
       CHECK(last.correlation == Approx(both / runs / (sd(0) * sd(1))).margin(0.03));
       CHECK(with_length.modulus_sd_n_per_mm == Approx(sd(2)).epsilon(0.15));
-      // without given noise, from how far the four levels are from one line
+      // without given noise: from the deviation of the four levels from a line
       CHECK(std::sqrt(residuals / runs) == Approx(sd(0)).epsilon(0.2));
-      // not biased
+      // without bias
       for (int i = 0; i < 4; ++i) {
         CAPTURE(i);
         CHECK(std::abs(sums[i] / runs) < 0.25 * sd(i));
@@ -340,7 +340,7 @@ TEST_CASE("rim calibration: standard errors are those of repeated measurements",
       CHECK(last.share_scatter == Approx(dot_noise_mm / 0.88 / std::sqrt(frames)).epsilon(0.15));
     }
   }
-  // two levels leave no residual to tell errors from
+  // two levels leave no residual to estimate errors from
   const auto two = calibration_of(pad, {0.01, 0.02}).fit();
   CHECK(std::isnan(two.length_sd_mm));
   CHECK(std::isnan(two.modulus_sd_n_per_mm));
@@ -348,7 +348,7 @@ TEST_CASE("rim calibration: standard errors are those of repeated measurements",
 }
 
 TEST_CASE("rim calibration: its errors carry into the six axes as told", "[wrench]") {
-  // length and mu t by four pressures with fresh noise, and what they make of one dragged rim
+  // length and mu t by four pressures with fresh noise, and their effect on one dragged rim
   const Pad pad{.uneven = 0};
   const auto border = pad.border();
   auto dragged = pad.dots(0.016);
@@ -402,7 +402,7 @@ TEST_CASE("rim calibration: its errors carry into the six axes as told", "[wrenc
   }
   for (std::size_t axis = 0; axis < 6; ++axis) {
     CAPTURE(axis, scatter[axis], told[axis]);
-    CHECK(scatter[axis] / told[axis] == Approx(1).margin(0.3));  // 200 runs know it to 10 %
+    CHECK(scatter[axis] / told[axis] == Approx(1).margin(0.3));  // 200 runs determine it to 10 %
   }
 }
 
@@ -418,7 +418,7 @@ TEST_CASE("rim calibration: finite elements of a free pad", "[wrench]") {
   CHECK(chord.share_scatter < 2e-4);
   CHECK(calibration.fit_modulus(0.79995).modulus_n_per_mm == Approx(0.5135).margin(1e-3));
 
-  // carried to the rim: the cap is 11 mm high without stress
+  // extrapolated to the rim: the unstressed cap is 11 mm high
   RimCalibration<OneRow> at_rim(grid_of(pad.border), radius_mm,
                                 {.stress_free_inclination_rad = 2 * std::atan(11 / radius_mm)});
   add_all(pad, at_rim);
@@ -460,7 +460,7 @@ TEST_CASE("rim calibration: float", "[wrench]") {
 }
 
 TEST_CASE("rim calibration: other numbers, here of fifty digits", "[wrench]") {
-  // a pad that balances to all digits: flat, so that sines are 1 and one stretch gives its pressure
+  // a pad in exact balance: flat, so that sines are 1 and one stretch gives its pressure
   using std::abs;
   using std::sqrt;
   using S = test::Lazy50;
@@ -504,13 +504,13 @@ TEST_CASE("rim calibration: what it refuses", "[wrench]") {
                     }),
                     "OneRow: stress_free_inclination_rad = "));
 
-  // frames that are no use: nothing is added
+  // unusable frames: nothing is added
   RimCalibration<> calibration(grid_of(border), radius_mm);
   const Row dots = dots_at(0.01);
   for (const double bad : {0.0, -0.01, none, infinity}) {
     CHECK_FALSE(calibration.add(0, grid_of(dots), bad));
   }
-  CHECK_FALSE(calibration.add(1, grid_of(dots), 0.01));  // the levels before it are not there
+  CHECK_FALSE(calibration.add(1, grid_of(dots), 0.01));  // the earlier levels are missing
   CHECK_FALSE(calibration.add(0, grid_of(dots, 2), 0.01));
   CHECK(calibration.levels() == 0);
   CHECK(begins_with(refusal([&] { (void)(void)calibration.fit_modulus(0.8); }),
@@ -523,7 +523,7 @@ TEST_CASE("rim calibration: what it refuses", "[wrench]") {
     CHECK(begins_with(refusal([&] { (void)(void)calibration.fit_modulus(bad); }),
                       owner + "length_mm = "));
   }
-  // shorter than without stress
+  // shorter than the unstressed length
   CHECK(begins_with(refusal([&] { (void)(void)calibration.fit_modulus(1.2); }),
                     owner + "stretch of the side dots = "));
 

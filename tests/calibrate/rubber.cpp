@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
-// The rubber's second constant, from inflated caps whose truth is the energy alone.
+// The rubber's second constant, from inflated caps whose truth follows from the energy alone.
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -39,7 +39,7 @@ std::vector<Point> border_of(const InflatedRubber& pad) {
   return border;
 }
 
-/// Side dots of a pad that is sheared along its rim by shear(angle), small.
+/// Side dots of a pad with a small shear along its rim, shear(angle).
 template <class Shear>
 std::vector<Point> dots_of(const InflatedRubber& pad,
                            const std::vector<InflatedRubber::Place>& profile,
@@ -65,15 +65,15 @@ struct NoShape {
 struct Found {
   RimFit<double> fit;
   double moment_error = 0;       ///< of M_z
-  double neo_hookean_error = 0;  ///< of M_z, were the rubber taken for one
+  double neo_hookean_error = 0;  ///< of M_z, for the neo-Hookean assumption
 };
 
 OneRow carried(const InflatedRubber& pad) {
   return OneRow{2 * std::atan(pad.height_mm / pad.radius_mm)};
 }
 
-/// Calibrates by four pressures, then twists the rim. A drag has no closed form: what changes along
-/// the rim carries a part of it (tests/accuracy/wrench_of_another_rubber.cpp).
+/// Calibrates by four pressures, then twists the rim. A drag has no closed form, because load that
+/// varies along the rim is partly carried there (tests/accuracy/wrench_of_another_rubber.cpp).
 Found found_of(InflatedRubber pad, double pressure_scale = 1) {
   const auto border = border_of(pad);
   RimCalibration<> calibration(grid_of(border), pad.radius_mm, carried(pad));
@@ -151,10 +151,10 @@ TEST_CASE("rim calibration: what the apex says of the rubber, and what it does n
   CHECK(fit.mooney_share_sd == Approx(0.01 / 0.188).epsilon(0.1));
   const auto higher = share_of(apex + 0.01, {.stress_free_height_mm = 11});
   CHECK(fit.mooney_share - higher.mooney_share == Approx(fit.mooney_share_sd).epsilon(0.1));
-  // out of the range: on its border, with a residual
+  // out of range: on its border, with a residual
   CHECK(share_of(apex + 0.3, {.stress_free_height_mm = 11}).mooney_share == 0);
   CHECK(share_of(apex + 0.3, {.stress_free_height_mm = 11}).apex_residual_mm > 0.2);
-  CHECK(share_of(apex, {}).mooney_share == 0);  // not asked for
+  CHECK(share_of(apex, {}).mooney_share == 0);  // not requested
   CHECK(test::refusal([&] { (void)share_of(none, {.stress_free_height_mm = 11}); }) ==
         "RimCalibration: levels with an apex height = 0, must be >= 1, where m is asked for");
   CHECK(

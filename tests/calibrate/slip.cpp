@@ -34,7 +34,7 @@ using Flags = Image<unsigned char>;
 constexpr double pitch_px = 19.5;
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-/// Gaussian to the far tail, which a sum of uniform numbers is not.
+/// Gaussian up to the far tail, unlike a sum of uniform numbers.
 Point2<double> gaussian_pair(Random& random) {
   const double length = std::sqrt(-2 * std::log(1 - random.uniform()));
   const double angle = 2 * std::numbers::pi * random.uniform();
@@ -93,8 +93,8 @@ struct MeanOfSeeds {
   double error() const { return sd() / std::sqrt(count); }
 };
 
-/// An object that drags the membrane along while the stick disc shrinks from all of the contact to
-/// a small rest; dots outside of it stay behind, the more the further they are from it.
+/// An object that drags the membrane along while the stick disc shrinks from the whole contact to a
+/// small rest. Dots outside the disc lag, the more the further they are from it.
 struct Slipping {
   double noise_px = 0.06;
   double step_px = 0.5;
@@ -153,7 +153,7 @@ const StickTestFit::Row& chosen_row(const StickTestFit& choice) {
   throw std::string("no row is chosen");
 }
 
-/// Of the ratio, where it is updated.
+/// Mean error of the ratio over the frames with an update.
 double mean_error(const Recording& recording, const StickTest& test) {
   const StickRatio<> estimator(21, 21, test);
   auto state = estimator.start();
@@ -203,7 +203,7 @@ TEST_CASE("dot noise: found again, whatever is lost and however the camera shake
         }
         CAPTURE(noise_px, lost, size, noise.mean(), noise.error(), claimed.mean());
         CHECK(std::abs(noise.mean() - noise_px) < 2 * claimed.mean() / std::sqrt(12.0));
-        // the spread over 12 seeds is itself known to 21 %
+        // the spread over 12 seeds is itself known only to 21 %
         CHECK(noise.sd() / claimed.mean() < 1.6);
         CHECK(noise.sd() / claimed.mean() > 0.5);
         if (lost == 0) {
@@ -223,7 +223,7 @@ TEST_CASE("dot noise: found again, whatever is lost and however the camera shake
 }
 
 TEST_CASE("dot noise: a few dots in a few frames have no bias", "[stick]") {
-  // of 9 dots in 3 frames, places and motion take 11 of 27 numbers
+  // of 9 dots in 3 frames, positions and motion take 11 of 27 numbers
   for (const bool lost : {false, true}) {
     MeanOfSeeds noise, inner, edge, largest;
     for (std::uint64_t seed = 1; seed <= 1500; ++seed) {
@@ -232,7 +232,7 @@ TEST_CASE("dot noise: a few dots in a few frames have no bias", "[stick]") {
       for (int t = 0; t < 3; ++t) {
         auto dots = moved(noisy(pattern(3, 3), 0.1, random), random.uniform(-3, 3), 0);
         dots(t, 0).x = lost ? test::nan : dots(t, 0).x;
-        dots(2, 2).y = lost && t > 0 ? test::nan : dots(2, 2).y;  // once says nothing
+        dots(2, 2).y = lost && t > 0 ? test::nan : dots(2, 2).y;  // seen once: no information
         calibration.add(dots);
       }
       const DotNoise found = calibration.fit();
@@ -262,8 +262,8 @@ TEST_CASE("dot noise: what averaging leaves", "[stick]") {
   CHECK(denoising_gain({6, 2, 1}, 3, 2) == Approx(std::sqrt(36.0 + 12 + 2) / 14));
   CHECK(independent_dot_noise(0.1).gain() == Approx(denoising_gain({})));
 
-  // noise that neighbours share is averaged away less: of a mean over three dots in a row, a mean
-  // over nine keeps 9 sqrt(19 3) / 81 of 1/sqrt(3)
+  // noise shared by neighbours averages out less: of a mean over three dots in a row, a mean over
+  // nine keeps 9 sqrt(19 3) / 81 of 1/sqrt(3)
   Random random(4);
   DotNoiseCalibration calibration(40, 40, {1, 1, 1});
   for (int t = 0; t < 20; ++t) {
@@ -285,7 +285,7 @@ TEST_CASE("dot noise: what averaging leaves", "[stick]") {
 }
 
 TEST_CASE("dot noise: the published measure holds the noise of two dots", "[stick]") {
-  // of the central dot and of the worst of the others, here the corners
+  // noise of the central dot and of the worst of the others, here the corners
   MeanOfSeeds published, largest;
   for (std::uint64_t seed = 1; seed <= 10; ++seed) {
     Random random(seed);
@@ -338,7 +338,7 @@ TEST_CASE("dot noise: exchanged dots are left out, slow motion is said", "[stick
   };
   const DotNoise good = measured(false, 0, false), bad = measured(true, 0, false);
   CHECK(good.out_of_place == 0);
-  CHECK(bad.out_of_place == 6);  // two in three frames; what is no place is not found
+  CHECK(bad.out_of_place == 6);  // two in three frames; an invalid position counts as not found
   CHECK(bad.noise_px == Approx(good.noise_px).epsilon(0.01));
   CHECK(bad.largest_px < 1.3 * 0.1);
   CHECK(std::abs(good.slow_share) < 0.05);
@@ -378,7 +378,7 @@ TEST_CASE("dot noise: what it refuses", "[stick]") {
   calibration.add(noisy(found, 0.1, random));
   CHECK(said() == "accepted");
 
-  // two dots that are never in the same frame have nothing to be compared with
+  // two dots that are never in the same frame cannot be compared
   DotNoiseCalibration apart(1, 2);
   for (int t = 0; t < 6; ++t) {
     Points dots = noisy(pattern(1, 2), 0.1, random);
@@ -464,7 +464,7 @@ TEST_CASE("false slip: as often as drawn", "[stick]") {
   const double p = false_slip_probability(4.0, 1.0);
   CHECK(p == Approx(0.0183156).epsilon(1e-5));
   CHECK(std::abs(beyond / draws - p) < 3 * std::sqrt(p / draws));
-  // what 95.44 % is of: one axis of one position
+  // 95.44 % refers to one axis of one position
   CHECK(std::abs(along_x / draws - 0.0455) < 3 * std::sqrt(0.0455 / draws));
 
   for (const Index dots : {Index(1), Index(12), Index(300)}) {
@@ -485,8 +485,8 @@ TEST_CASE("false slip: as often as drawn", "[stick]") {
 }
 
 TEST_CASE("false slip: as often as the stick ratio says", "[stick]") {
-  // Everything sticks, so all that slips is false. d_max is the largest of many displacements and
-  // so is larger than the motion by noise, which widens the threshold in proportion.
+  // Everything sticks, so every slip is false. d_max is the largest of many displacements,
+  // therefore it exceeds the motion by noise, which widens the threshold in proportion.
   const double noise_px = 0.05;
   StickTest test = published::stick_test_px;
   test.slip = slip_threshold_for(noise_px, 0.05);
@@ -539,7 +539,7 @@ TEST_CASE("thresholds from noise: no sticking dot slips more often than was aske
   using Consensus = StickConsensus<Freedom::translation>;
   using OneDot = published::ReferenceDotMotion<Freedom::translation>;
   for (const double share : {0.02, 0.2}) {
-    // d_max is more than U by some 15 %, and only the edge has the noise that is reckoned with
+    // d_max exceeds U by some 15 %, and only the edge has the assumed noise
     for (const double got :
          {share_of(Consensus(), NoDenoising(), share), share_of(Consensus(), ResidualMean(), share),
           share_of(OneDot(), NoDenoising(), share)}) {
@@ -606,7 +606,7 @@ TEST_CASE("choice of U: a recording that slips", "[stick]") {
           Approx(slip_threshold_for(noise_px * denoising_gain({}, 3, 2), 0.02)));
     CHECK(choice.furthest_px > choice.test.store);
 
-    // the rule, from the table: the smallest of those that are not worse than the best
+    // the rule, from the table: the smallest U that is not worse than the best
     double best = infinity;
     for (const auto& c : choice.table) {
       best = c.updates >= 10 ? std::min(best, c.cost) : best;
@@ -626,9 +626,9 @@ TEST_CASE("choice of U: a recording that slips", "[stick]") {
       passed = passed || as_good;
     }
 
-    // with it, the ratio is right
+    // with it the ratio is right
     CHECK(mean_error(recording, choice.test) < 0.1);
-    for (const auto& c : choice.table) {  // and one that was refused is worse
+    for (const auto& c : choice.table) {  // and a refused one is worse
       if (c.behind > 2 * c.behind_error && c.test.reference < choice.test.reference / 1.5) {
         CHECK(mean_error(recording, c.test) > mean_error(recording, choice.test));
       }
@@ -667,12 +667,12 @@ TEST_CASE("choice of U: the table is what the stick ratio says", "[stick]") {
       updates += result.updated() ? 1 : 0;
     }
     CHECK(c.updates == updates);
-    // what is not known counts as stick
+    // unknown counts as sticking
     CHECK(c.cost >= measures(ratios).sum + measures(ratios).rises - 1e-9);
     CHECK(c.cost == Approx(measures(costs).sum));
     costs_of.push_back(costs);
   }
-  CHECK(kept);  // where it turns round
+  CHECK(kept);  // at the turning point
   std::size_t best = 0;
   for (std::size_t k = 1; k < 3; ++k) {
     best = choice.table[k].cost < choice.table[best].cost ? k : best;
@@ -719,7 +719,7 @@ TEST_CASE("choice of U: one that hardly ever answers is not considered", "[stick
   search.smallest_px = 1;
   search.largest_px = 55;
   StickTestCalibration<> calibration(21, 21, independent_dot_noise(0.06), search);
-  add(record({}), calibration);  // 60 px in all
+  add(record({}), calibration);  // 60 px in total
   const StickTestFit choice = calibration.fit();
   int rare = 0;
   for (const StickTestFit::Row& c : choice.table) {
@@ -752,7 +752,7 @@ TEST_CASE("choice of U: how long the pad stands, and lost contact, change nothin
     CHECK(a.table[k].chosen == b.table[k].chosen);
   }
 
-  // twice the same contact: everything doubles, the choice stays or gets finer
+  // the same contact twice: everything doubles, and the choice stays or gets finer
   StickTestCalibration<> twice(21, 21, independent_dot_noise(0.06));
   add(recording, twice);
   twice.add(recording.dots[0], no_contact);
@@ -763,7 +763,7 @@ TEST_CASE("choice of U: how long the pad stands, and lost contact, change nothin
     CHECK((a.table[k].updates == 0 || c.table[k].cost == Approx(2 * a.table[k].cost)));
     CHECK(c.table[k].updates == 2 * a.table[k].updates);
   }
-  // and so it does where time says that another recording begins
+  // the same where time marks the start of another recording
   StickTestCalibration<> timed(21, 21, independent_dot_noise(0.06));
   for (int pass = 0; pass < 2; ++pass) {
     for (std::size_t t = 0; t < recording.dots.size(); ++t) {
@@ -772,7 +772,7 @@ TEST_CASE("choice of U: how long the pad stands, and lost contact, change nothin
   }
   const StickTestFit d = timed.fit();
   for (std::size_t k = 0; k < a.table.size(); ++k) {
-    // less the frame with which the other begins: no step
+    // minus the first frame of the other: no step
     CHECK((a.table[k].updates == 0 || d.table[k].cost == Approx(2 * a.table[k].cost - 1)));
     CHECK(d.table[k].updates == 2 * a.table[k].updates);
   }
@@ -845,7 +845,7 @@ TEST_CASE("choice of U: what it refuses", "[stick]") {
   // noise that was measured too small makes steps, but no displacement
   Recording shaken = record({.noise_px = 0.1, .step_px = 0, .frames = 60});
   CHECK(begins_with(choose(shaken, {.smallest_px = 1}), owner + "largest displacement in px = 0."));
-  // twenty frames of motion of which fewer than ten went further than the smallest U that is tried
+  // twenty frames of motion, fewer than ten of them beyond the smallest tried U
   CHECK(begins_with(choose(record({.frames = 24}), {.smallest_px = 8, .largest_px = 9.5}),
                     owner + "updated answers = "));
   CHECK(begins_with(choose(record({.last_radius = 9})), owner + "answers that slip = "));

@@ -31,7 +31,7 @@ double gaussian(Random& random) {
   return length * std::cos(2 * std::numbers::pi * random.uniform());
 }
 
-/// Sample k of a recording, reading(k, row, col, noise of deviation 1).
+/// A recording whose sample k is reading(k, row, col, noise of deviation 1).
 template <class Reading>
 TaxelNoiseCalibration<> recorded(Index rows,
                                Index cols,
@@ -55,7 +55,7 @@ TaxelNoiseCalibration<> recorded(Index rows,
   return calibration;
 }
 
-/// Of one taxel: what was found, in deviations of its noise.
+/// Estimated noise of one taxel, in deviations of its true noise.
 template <class Reading>
 double found(Index windows, std::uint64_t seed, const Reading& reading, Index window = 16) {
   const Options options{.window = window};
@@ -66,9 +66,9 @@ double found(Index windows, std::uint64_t seed, const Reading& reading, Index wi
       .typical;
 }
 
-/// Standard error of a deviation by the median of so many windows, relative. The median of a sample
-/// of n has variance pi / (2 n) of that of the sample; a variance of f freedoms has deviation
-/// sqrt(2 / f), and its root half of that.
+/// Relative standard error of a deviation from the median of this many windows. The median of n
+/// samples has pi / (2 n) of the variance of one sample; a variance with f degrees of freedom has
+/// the relative deviation sqrt(2 / f), and its root half of that.
 double standard_error(Index windows, Index freedoms) {
   return 0.5 * std::sqrt(2 / static_cast<double>(freedoms)) *
          std::sqrt(std::numbers::pi / (2 * static_cast<double>(windows)));
@@ -116,13 +116,13 @@ TEST_CASE("taxel noise: gaussian noise is found within its sampling error", "[ta
     mean += ratio / seeds;
     squares += (ratio - 1) * (ratio - 1) / seeds;
   }
-  // as much as the calibration says of nine taxels, each of which is one of these; 400 tell it to
-  // 3.5 %, the asymptotic formula of the median is good to 2 %
+  // as much as the calibration reports for nine taxels, each of which is one of these; 400 windows
+  // determine it to 3.5 %, and the asymptotic formula of the median is accurate to 2 %
   const TaxelNoise nine = recorded(3, 3, 16 * windows, 1, [](Index, Index, Index, double noise) {
                             return 800 + 7 * noise;
                           }).fit();
   CHECK(3 * nine.typical_error / nine.typical == Approx(std::sqrt(squares)).epsilon(0.09));
-  // 95 % of them, give or take twice sqrt(0.95 0.05 / 400)
+  // 95 % of them, plus or minus twice sqrt(0.95 0.05 / 400)
   CHECK(within >= seeds * 0.93);
   CHECK(within <= seeds * 0.975);
   CHECK(std::abs(mean - 1) <= 0.004);
@@ -135,14 +135,14 @@ TEST_CASE("taxel noise: no window is too short or too long", "[taxel_noise]") {
     const double ratio = found(
         windows, 3, [](Index, double noise) { return 800 + 0.5 * noise; }, window);
     const Index freedoms = window - 2;
-    // and what the median of a chi-square is said to be below its mean is good to 0.7 %
+    // and the assumed ratio of the median of a chi-square to its mean is accurate to 0.7 %
     CHECK(std::abs(ratio / 0.5 - 1) <= 3 * standard_error(windows, freedoms) + 0.007);
   }
 }
 
 TEST_CASE("taxel noise: a drift is not noise", "[taxel_noise]") {
   const double bound = 3 * standard_error(101, 14);
-  for (const double drift : {-3.0, 0.4, 20.0}) {  // a sample
+  for (const double drift : {-3.0, 0.4, 20.0}) {  // per sample
     CAPTURE(drift);
     const auto drifting = [&](Index k, double noise) {
       return 5000 + drift * static_cast<double>(k) + 7 * noise;
@@ -150,9 +150,9 @@ TEST_CASE("taxel noise: a drift is not noise", "[taxel_noise]") {
     const auto resting = [](Index, double noise) { return 5000 + 7 * noise; };
     const double with = found(101, 5, drifting), without = found(101, 5, resting);
     CHECK(std::abs(with / 7 - 1) <= bound);
-    CHECK(with == Approx(without).epsilon(1e-9));  // the same noise, the same answer
+    CHECK(with == Approx(without).epsilon(1e-9));  // the same noise gives the same result
   }
-  // a slow wave is nearly straight in a window
+  // a slow wave is nearly straight within a window
   const auto slow = [](Index k, double noise) {
     return 800 + 100 * std::sin(2 * std::numbers::pi * static_cast<double>(k) / 400) + 7 * noise;
   };
@@ -168,14 +168,14 @@ TEST_CASE("taxel noise: touches in a third of the windows hardly count", "[taxel
   const auto shaken = [&](Index k, double noise) {
     return 800 + (in_touch(k) ? 300 * (k % 2 == 0 ? 1 : -1) : 0) + 7 * noise;
   };
-  // The median of all is then the 3/4 quantile of those at rest: for a chi-square of 14 freedoms
-  // 17.12, and its median is 13.34.
+  // The median of all windows is then the 3/4 quantile of those at rest: 17.12 for a chi-square
+  // with 14 degrees of freedom, whose median is 13.34.
   const double expected = std::sqrt(17.12 / 13.34);
   for (const std::uint64_t seed : {1U, 2U, 3U}) {
     CHECK(found(201, seed, touched) / 7 == Approx(expected).epsilon(0.06));
     CHECK(found(201, seed, shaken) / 7 == Approx(expected).epsilon(0.06));
   }
-  // steps from one load to another, each within a window, and rest between them
+  // steps from one load to another, each within a window, with rest between them
   const auto steps = [](Index k, double noise) {
     return 800 + 300 * std::floor(static_cast<double>(k + 8) / 160) + 7 * noise;
   };
@@ -183,7 +183,7 @@ TEST_CASE("taxel noise: touches in a third of the windows hardly count", "[taxel
 }
 
 TEST_CASE("taxel noise: each taxel has its own, but none less than is typical", "[taxel_noise]") {
-  // noise 2 in most, 10 in one, none in one that rested
+  // noise 2 in most taxels, 10 in one, none in a resting one
   const auto deviation = [](Index i, Index j) { return i == 1 && j == 2 ? 10.0 : 2.0; };
   const auto calibration = recorded(3, 4, 16 * 400, 9, [&](Index, Index i, Index j, double noise) {
     return i == 2 && j == 0 ? 3.0 : 500 + deviation(i, j) * noise;
@@ -207,7 +207,7 @@ TEST_CASE("taxel noise: each taxel has its own, but none less than is typical", 
       }
     }
   }
-  // it is what the features take
+  // it is accepted by the features
   CHECK(refusal([&] { TaxelFeatures<>{noise.view()}; }) == "accepted");
 }
 
@@ -232,8 +232,7 @@ TEST_CASE("taxel noise: the most that a window spread", "[taxel_noise]") {
   CHECK(noise.largest_factor > 1);
   CHECK(noise.largest_factor < 3);
 
-  // A little above it nothing of the recording vibrates at the ends of those windows; below, it
-  // does.
+  // Slightly above it no window of the recording vibrates at its end; below, one does.
   for (const double share : {1.0001, 0.9999}) {
     Options options;
     options.noise_factor = share * noise.largest_factor;
@@ -254,8 +253,8 @@ TEST_CASE("taxel noise: the most that a window spread", "[taxel_noise]") {
 }
 
 TEST_CASE("taxel noise: how still the centroid is", "[taxel_noise]") {
-  // A load f_k at x_k, with noise s of each taxel: the centroid of sum F has variance
-  // s^2 sum (x_k - x)^2 / F^2 along x.
+  // A load f_k at x_k, with noise s of each taxel: the centroid with sum F has the variance s^2 sum
+  // (x_k - x)^2 / F^2 along x.
   const Index rows = 5, cols = 4;
   const auto load = [](Index i, Index j) {
     return 200 + 100 * static_cast<double>(i) - 40 * static_cast<double>(j);
@@ -281,12 +280,12 @@ TEST_CASE("taxel noise: how still the centroid is", "[taxel_noise]") {
   };
   const Options options{.pitch_mm = pitch_mm};
   const auto noise = recorded(rows, cols, 16 * 400, 31, pressed, options).fit();
-  // Both axes are judged at once: with some 28 freedoms the median is nearer to the mean than is
-  // taken into account, by 2.4 % of the variance.
+  // Both axes are judged together: with some 28 degrees of freedom the median is nearer to the mean
+  // than assumed, by 2.4 % of the variance.
   CHECK(std::abs(noise.centroid_deviation_mm / expected_mm - 1) <=
         3 * standard_error(400, 28) + 0.013);
 
-  // pressed in some windows only: those are judged
+  // pressed in some windows only: these are judged
   const auto sometimes = [&](Index k, Index i, Index j, double one) {
     return k / 16 % 4 == 3 ? -1 - std::abs(one) : pressed(k, i, j, one);
   };
@@ -294,7 +293,7 @@ TEST_CASE("taxel noise: how still the centroid is", "[taxel_noise]") {
   CHECK(seldom.windows == 400);
   CHECK(std::abs(seldom.centroid_deviation_mm / expected_mm - 1) <=
         3 * standard_error(300, 28) + 0.013);
-  // let go for one sample of each window, or never pressed: there is none
+  // released for one sample of each window, or never pressed: no result
   for (const Index every : {16, 1}) {
     const auto let_go = [&](Index k, Index i, Index j, double one) {
       return k % every == every / 2 ? -1 - std::abs(one) : pressed(k, i, j, one);
@@ -309,7 +308,7 @@ TEST_CASE("taxel noise: taxels that are bad for a while or always", "[taxel_nois
   for (const double bad : {none, infinity, -infinity, 4095.0, 1e300}) {
     CAPTURE(bad);
     const Options options{.saturated_at = 4095};
-    // always: it is dead, and the others are as they were
+    // always: the taxel is dead, and the others are unchanged
     const auto always = recorded(
                             2, 2, 16 * 99, 41,
                             [&](Index k, Index i, Index j, double noise) {
@@ -322,7 +321,7 @@ TEST_CASE("taxel noise: taxels that are bad for a while or always", "[taxel_nois
     for (const std::size_t k : {0U, 2U, 3U}) {
       CHECK(always.deviations[k] == Approx(reference.deviations[k]).epsilon(0.06));
     }
-    // in one sample of every second window: those are not judged
+    // in one sample of every second window: these windows are not judged
     for (const Index at : {0, 5, 15}) {
       CAPTURE(at);
       const auto seldom =
@@ -338,7 +337,7 @@ TEST_CASE("taxel noise: taxels that are bad for a while or always", "[taxel_nois
       CHECK(seldom.largest_factor < 2.5);
       CHECK(seldom.typical == Approx(std::sqrt((400 + 3 * 49) / 4.0)).epsilon(0.1));
     }
-    // in every window: it is never judged
+    // in every window: the taxel is never judged
     const auto often = recorded(
                            2, 2, 16 * 99, 41,
                            [&](Index k, Index i, Index j, double noise) {
@@ -363,7 +362,7 @@ TEST_CASE("taxel noise: a dead taxel takes nothing from what is typical", "[taxe
                      }).fit();
   CHECK(noise.typical == Approx(7).epsilon(0.04));
   CHECK(std::isnan(noise.deviations[0]));
-  CHECK(noise.deviations[1] == noise.typical);  // it rested
+  CHECK(noise.deviations[1] == noise.typical);  // at rest
   CHECK(noise.deviations[2] == noise.typical);
 }
 
@@ -375,7 +374,7 @@ TEST_CASE("taxel noise: a clock that jumps begins a new window", "[taxel_noise]"
     for (Index k = 0; k < samples; ++k) {
       const bool jumps = k > 0 && k % between_jumps == 0;
       time_s += jumps ? jump_s : period_s;
-      // after a jump the load is another
+      // after a jump the load differs
       const double load = 1000 * static_cast<double>(1 + k / between_jumps);
       Array taxels(1, 2);
       taxels(0, 0) = load + 7 * gaussian(random);
@@ -397,7 +396,7 @@ TEST_CASE("taxel noise: a clock that jumps begins a new window", "[taxel_noise]"
     CHECK(cut.typical == Approx(7).epsilon(0.1));
     CHECK(cut.largest_factor < 2.5);
   }
-  // what is no jump goes on
+  // smaller gaps do not restart
   CHECK(run(160, 10, 0.25).fit().windows == 10);
   CHECK(run(160, 10, 1.9).fit().windows == 10);
 }
@@ -440,7 +439,7 @@ TEST_CASE("taxel noise: recordings that do not tell are refused", "[taxel_noise]
         unchanged);
   CHECK(said(recorded(2, 2, 640, 1, [](Index, Index, Index, double) { return 4095.0; },
                       {.saturated_at = 4095})) == unchanged);
-  // and options that mean nothing
+  // and invalid options
   CHECK(refusal([] { TaxelNoiseCalibration<>(0, 3); }) ==
         "TaxelFeatures: rows = 0, must be in [1, 4096]");
   CHECK(refusal([] { TaxelNoiseCalibration<>(3, -1); }) ==

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
-// A program that looks at the same cells through OpenCV and through xtensor, and for dots in a
-// picture that shows none.
+// A program that views the same cells through OpenCV and through xtensor, and searches for dots in
+// an image without any.
 #include "fingerpad/adapt/dot_finder.hpp"
 #include "fingerpad/adapt/mdspan.hpp"
 #include "fingerpad/adapt/opencv.hpp"

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 // A user whose own headers define min and max as macros, as <windows.h> does. The standard library
-// and the foreign libraries come first, since not all of them withstand it.
+// and the foreign libraries come first, because some of them do not compile with such macros.
 #include <Eigen/Core>
 #include <algorithm>
 #include <array>

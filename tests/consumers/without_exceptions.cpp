@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
-// Without exceptions and without a handler a refusal says why before it aborts.
+// Without exceptions and without a handler, a refusal prints its reason before it aborts.
 #include <csignal>
 #include <cstdlib>
 

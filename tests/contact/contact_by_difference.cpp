@@ -71,7 +71,7 @@ TEST_CASE("contact by difference: a ball on a gel", "[contact_by_difference]") {
     CHECK(std::abs(found.result.center_mm.y - ball.y) < 0.3);
     CHECK(found.result.area_mm2 == Approx(double(found.result.contact_px) * 0.08 * 0.08));
     CHECK(std::isnan(found.result.center_mm.z));
-    // all of the contact is found; the dent around it is seen too
+    // all of the contact is found, and so is part of the dent around it
     const auto touched = scene.camera.touched(scene.contact);
     Index missed = 0;
     Index truth = 0;
@@ -87,7 +87,7 @@ TEST_CASE("contact by difference: a ball on a gel", "[contact_by_difference]") {
 
 TEST_CASE("contact by difference: as much of a ball's dent as the gel's slope says",
           "[contact_by_difference]") {
-  // eq. 3.42 of Johnson, its slope at rho radii of the contact as a share of that at its edge
+  // eq. 3.42 of Johnson: the slope at rho radii of the contact, relative to that at its edge
   const auto slope = [](double rho) {
     return 2 / 3.14159265358979 * (rho * std::asin(1 / rho) - std::sqrt(1 - 1 / (rho * rho)));
   };
@@ -109,7 +109,7 @@ TEST_CASE("contact by difference: as much of a ball's dent as the gel's slope sa
         ball.drag(force_n, {0, 0});
         const double a = ball.radius_mm();
         const double at_edge =
-            scene.camera.contrast * a / ball_mm / std::sqrt(2.0);  // rms of lamps
+            scene.camera.contrast * a / ball_mm / std::sqrt(2.0);  // rms of the lamps
         double rho = 1;
         while (slope(rho) > threshold / at_edge) {
           rho += 1e-3;
@@ -126,7 +126,7 @@ TEST_CASE("contact by difference: as much of a ball's dent as the gel's slope sa
 TEST_CASE("contact by difference: a contact near the frame's edge is as large as one in the middle",
           "[contact_by_difference]") {
   Scene scene;
-  scene.camera.dot_mm = 0;  // dots on the outline would change the area, too
+  scene.camera.dot_mm = 0;  // dots on the outline would also change the area
   DifferenceTest test;
   test.dot_px = 0;
   test.max_gap_px = 56;
@@ -137,7 +137,7 @@ TEST_CASE("contact by difference: a contact near the frame's edge is as large as
     return find(contact, scene.camera.frame(scene.contact, scene.random)).result.area_mm2;
   };
   const double middle = area_mm2({0, 0});
-  // from its dent's edge to the frame's
+  // from the edge of the dent to that of the frame
   const double radius = std::sqrt(middle / 3.14159265358979);
   const double half_mm = 160 * scene.camera.mm_per_px;
   for (const double left_px : {4, 8, 12, 16}) {
@@ -199,7 +199,7 @@ TEST_CASE("contact by difference: every kind of image, one answer", "[contact_by
   });
   CHECK(find(contact, lazy).mask.cells == packed.mask.cells);
 
-  // one channel of it, in another scalar
+  // one channel, in another scalar
   const auto red = [](const ColourFrame& of) {
     return LazyView(240, 320, [&of](Index i, Index j) { return of(i, j)[0]; });
   };
@@ -228,7 +228,7 @@ TEST_CASE("contact by difference: bad pixels say nothing, nor do they spread",
     CHECK(found.mask(120, 260) == Touch::unknown);
     CHECK(found.result.unknown_px > 50 * 50);
     CHECK(found.result.unknown_px == count(found.mask, Touch::unknown));
-    // only the exposure is taken from fewer pixels
+    // only the exposure is measured on fewer pixels
     CHECK(std::abs(double(found.result.contact_px - whole.result.contact_px)) <
           0.02 * double(whole.result.contact_px));
   }
@@ -236,7 +236,7 @@ TEST_CASE("contact by difference: bad pixels say nothing, nor do they spread",
 
 TEST_CASE("contact by difference: numbers are those of the mask, whatever the cells",
           "[contact_by_difference]") {
-  // narrower cells at the right and the lower edge, unknown pixels and contact on both
+  // narrower cells at the right and lower edge, with unknown pixels and contact on both
   for (const Index cell_px : {1, 3, 4, 5, 16}) {
     const Index rows = 83;
     const Index cols = 101;
@@ -252,7 +252,7 @@ TEST_CASE("contact by difference: numbers are those of the mask, whatever the ce
     Image<double> frame(rows, cols, 100.0);
     for (Index i = 35; i < rows; ++i) {
       for (Index j = 50; j < cols; ++j) {
-        frame(i, j) = i < 60 ? 130 : j < 80 ? 100 : 0;  // black says nothing
+        frame(i, j) = i < 60 ? 130 : j < 80 ? 100 : 0;  // black pixels are unknown
       }
     }
     const Found found = find(contact, frame);

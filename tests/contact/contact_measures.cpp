@@ -17,7 +17,7 @@ using test::Image;
 
 namespace {
 
-/// A pad of half-millimetre pixels pressed by a plate, and its contact.
+/// A pad of half-millimetre pixels under a plate, and its contact.
 struct Pressed {
   test::Pad pad;
   Image<double> depth;
@@ -49,7 +49,8 @@ TEST_CASE("measures of a contact are those of the region", "[contact]") {
     CAPTURE(press_mm);
     Pressed pressed(press_mm);
     REQUIRE(pressed.found.contact_px > 100);
-    pressed.depth(47, 55) = test::nan;  // in the middle; a neighbour's area is then the flat one's
+    // in the middle; the area of a neighbour is then that of a flat pixel
+    pressed.depth(47, 55) = test::nan;
     pressed.mask(47, 55) = 0;
     const auto measures = contact_measures(pressed.pad.camera, pressed.mask, pressed.depth);
     CHECK(measures.pixels == pressed.found.contact_px - 1);
@@ -62,7 +63,7 @@ TEST_CASE("measures of a contact are those of the region", "[contact]") {
 }
 
 TEST_CASE("area of a disc at a depth, whatever the camera", "[contact]") {
-  // a disc of 8 mm around a place off the axis, through a strongly refracting plate
+  // a disc of 8 mm around an off-axis point, through a strongly refracting plate
   Camera<double> camera;
   camera.plate_thickness_mm = 5;
   camera.pitch_mm = 0.2;
@@ -77,7 +78,7 @@ TEST_CASE("area of a disc at a depth, whatever the camera", "[contact]") {
     }
   }
   const auto measures = contact_measures(camera, mask, depth);
-  // pixels at the border are in or out: some 250 of 0.06 mm^2, at random
+  // pixels at the border are randomly in or out: some 250 of 0.06 mm^2
   CHECK(measures.area_mm2 == Approx(64 * std::numbers::pi).epsilon(5e-3));
   CHECK(measures.center_mm.x == Approx(2).margin(0.02));
   CHECK(measures.center_mm.y == Approx(-1).margin(0.02));

@@ -59,12 +59,12 @@ Index count(const Image<T>& mask, T what) {
   return static_cast<Index>(std::count(mask.cells.begin(), mask.cells.end(), what));
 }
 
-/// Radius of the disc that has the area of the contact.
+/// Radius of a disc with the area of the contact.
 double radius_of(const ContactResult& result) {
   return std::sqrt(result.area_mm2 / 3.14159265358979323846);
 }
 
-/// Pixels around a contact of that radius, enough for the free membrane to be seen.
+/// Pixels around a contact of that radius, enough to include some free membrane.
 Index pixels_for(double radius_mm, Index ring_px, double pitch_mm = 0.08) {
   return 2 * static_cast<Index>(radius_mm / pitch_mm + 3.2 * static_cast<double>(ring_px)) + 1;
 }
@@ -77,7 +77,7 @@ TEST_CASE("a round contact is found where it is", "[contact_region]") {
   struct Case {
     double radius_mm;
     Index ring_px;
-    double map_share;     ///< of the area that may be missing or too much, of a height map
+    double map_share;     ///< allowed relative error of the area, for a height map
     double camera_share;  ///< the same through a camera, where a large ring errs more
   };
   const Case cases[] = {{3, 12, 0.015, 0.02},  {3, 25, 0.015, 0.07}, {6, 25, 0.015, 0.045},
@@ -136,7 +136,7 @@ TEST_CASE("a threshold near zero erodes by a ring's radius", "[contact_region]")
       test.threshold_per_mm = 1e-4;
       const double eroded = radius_of(find<ClampedMean<>, AtThreshold>(camera, depth, test).result);
       CHECK(eroded == Approx(radius_mm - 0.9 * ring_mm).margin(0.12));
-      test.threshold_per_mm = 0.025;  // half the level of the free pad: near the edge by itself
+      test.threshold_per_mm = 0.025;  // half the level of the free pad: already near the edge
       CHECK(radius_of(find<ClampedMean<>, AtThreshold>(camera, depth, test).result) ==
             Approx(radius_mm).margin(0.15));
     }
@@ -178,14 +178,14 @@ TEST_CASE("curved and tilted objects", "[contact_region]") {
   const Index size = pixels_for(6, 12, 0.16);
   const auto check = [&](const test::RoundContact& contact) {
     INFO("curvature " << contact.object_per_mm << ", slope " << contact.slope);
-    // the edge is put as for an object that is not hollow
+    // the edge is placed as for an object that is not hollow
     const double hollow = (std::max)(contact.object_per_mm, 0.0) * 12;
     const RoundFilm film(contact);
     const auto by = [&](const auto& camera, double share) {
       const auto depth = depths_of<float>(camera, film, size, size);
       const ContactResult r = find(camera, depth, with_ring(12), no_gap).result;
       CHECK(r.regions == 1);
-      // on the plate: the area of the disc that touches, times the cosine of its tilt
+      // on the plate: the area of the touching disc, times the cosine of its tilt
       CHECK(r.area_mm2 == Approx(film.area_mm2()).epsilon(share));
       CHECK(r.center_mm.x == Approx(film.x_mm).margin(0.1));
       CHECK(r.center_mm.y == Approx(film.y_mm).margin(0.05));
@@ -247,11 +247,11 @@ TEST_CASE("the published test is eq. 12 with its printed numbers, told by what i
     }
     return depth;
   };
-  // twice the mean: bulging by 0.000075 per mm is the threshold of 0.00015
+  // twice the mean: a curvature of 0.000075 per mm equals the threshold of 0.00015
   CHECK(region(bowl(0.000074)).first == Touch::contact);
   CHECK(region(bowl(0.000076)).first == Touch::none);
   CHECK(region(bowl(0.01)).second == Approx(0.02).epsilon(1e-3));
-  // 36 directions of two pixels each, 10 px away: one pixel raised by e there is one section of
+  // 36 directions of two pixels each, 10 px away: a pixel raised by e there is one section of
   // curvature e / r^2 among 36, counted twice
   auto level = bowl(0);
   const double raised = 1e-4;
@@ -261,7 +261,7 @@ TEST_CASE("the published test is eq. 12 with its printed numbers, told by what i
   auto farther = bowl(0);
   farther(30, 41) -= raised;
   farther(30, 39) -= raised;
-  CHECK(region(farther).second == 0);  // no pixel 9 or 11 px away takes part
+  CHECK(region(farther).second == 0);  // no pixel 9 or 11 px away counts
   // a single pixel is a region
   CHECK(published::contact_test().min_region_px == 1);
 }
@@ -311,13 +311,13 @@ void check_edge() {
   }
   const auto r = find<typename Way::statistic, Edge>(camera, depth, test).result;
   CHECK(r.regions == 1);
-  // the edge is where a contact of 6 mm ends; HalfLevelEdge adds what is nearer than its gap
+  // the edge is the end of a contact of 6 mm; HalfLevelEdge adds the area within its gap
   const RoundFilm film({});
   const double nearer_mm = std::is_same_v<Edge, AtThreshold>
                                ? 0
                                : std::sqrt(HalfLevelEdge().touching_gap_mm / film.free_per_mm);
   INFO("radius " << radius_of(r) << " for " << 6 + nearer_mm);
-  CHECK(radius_of(r) == Approx(6 + nearer_mm).margin(0.27));  // a pixel has 0.32 mm
+  CHECK(radius_of(r) == Approx(6 + nearer_mm).margin(0.27));  // a pixel is 0.32 mm
   CHECK(r.center_mm.x == Approx(0).margin(0.1));
   CHECK(r.center_mm.y == Approx(0).margin(0.1));
   CHECK(r.depth_mm == Approx(3).margin(0.05));
@@ -364,7 +364,7 @@ TEST_CASE("specks are dropped", "[contact_region]") {
 }
 
 TEST_CASE("the edge needs no free membrane in sight", "[contact_region]") {
-  // an image that shows little but the contact: the threshold then says what a free pad is like
+  // an image with little but the contact: the threshold then represents the free pad
   const auto camera = height_map(40, 40, 0.16);
   test::RoundContact contact;
   contact.radius_mm = 2.3;
@@ -372,14 +372,14 @@ TEST_CASE("the edge needs no free membrane in sight", "[contact_region]") {
   const auto found = find(camera, depth, with_ring(6), no_gap);
   CHECK(found.result.regions == 1);
   CHECK(found.result.area_mm2 == Approx(contact.area_mm2()).epsilon(0.13));
-  // and all of it in contact
+  // an image entirely in contact
   const auto flat = find(camera, Image<float>(40, 40, 9.0F), with_ring(6));
   CHECK(flat.result.contact_px + flat.result.unknown_px == 1600);
   CHECK(flat.result.contact_px > 900);
 }
 
 TEST_CASE("other contacts, dropped or not, are no free membrane", "[contact_region]") {
-  // of two contacts side by side, cleaning has dropped the right one: it is no seed any more
+  // of two adjacent contacts cleaning has dropped the right one, which is no longer a seed
   const detail::BorderedImage image{60, 120};
   Image<double> curvature(60, 120, 0.05);
   Image<detail::Mark> marks(60, 120, detail::Mark::free);
@@ -397,8 +397,8 @@ TEST_CASE("other contacts, dropped or not, are no free membrane", "[contact_regi
 }
 
 TEST_CASE("a region may take what another has lost", "[contact_region]") {
-  // seed, free, seed: the first is dropped, the second grows over all three, and more pixels enter
-  // the queue in all than the image has
+  // seed, free, seed: the first is dropped and the second grows over all three, so more pixels
+  // enter the queue than the image has
   detail::Regions regions({1, 3});
   const auto marks = regions.marks();
   marks(0, 0) = detail::Mark::seed;
@@ -442,7 +442,7 @@ TEST_CASE("masks of bytes, of bool and of Touch say the same", "[contact_region]
   CHECK(count(touch, Touch::contact) == result.contact_px);
   CHECK(count(touch, Touch::unknown) == result.unknown_px);
   CHECK(touch(30, 30) == Touch::unknown);
-  // unknown is what has no statistic
+  // pixels without a statistic are unknown
   const auto statistic = workspace.statistic();
   for (Index i = 0; i < 60; ++i) {
     for (Index j = 0; j < 64; ++j) {
@@ -479,14 +479,14 @@ TEST_CASE("missing depth is never contact and reaches no farther than its ring",
         }
       }
     }
-    CHECK(moved <= 2);  // the level of the edge is a mean over what is known
+    CHECK(moved <= 2);  // the level of the edge is a mean over known pixels
     CHECK(edge.result.area_mm2 == Approx(edge_before.result.area_mm2).epsilon(0.03));
     CHECK(edge.result.depth_mm == Approx(edge_before.result.depth_mm).margin(1e-3));
   }
 }
 
 TEST_CASE("missing neighbours count as just as deep", "[contact_region]") {
-  // a pixel of contact beside depths of 1e38 mm, seen by a camera whose rays would go with them
+  // a contact pixel beside depths of 1e38 mm, seen by a camera whose rays would scale with them
   const auto camera = pad_camera(60, 64, 0.32);
   auto depth = depths_of<float>(camera, RoundFilm({}), 60, 64);
   const double area = find(camera, depth, with_ring(5)).result.area_mm2;
@@ -581,7 +581,7 @@ TEST_CASE("bad parameters are refused by name", "[contact_region]") {
   camera.center_y_px = -1e300;
   CHECK(begins_with(refusal([&] { const ContactRegion<> region(camera, 60, 60); }),
                     "ContactRegion: camera: corner of the image, mm = "));
-  // a pixel without neighbours on either side has no area
+  // a pixel without neighbours on both sides has no area
   for (const Index one : {0, 1}) {
     CHECK(begins_with(refusal([&] { const ContactRegion<> region({}, one, 60); }),
                       "ContactRegion: rows = "));

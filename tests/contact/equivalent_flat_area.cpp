@@ -17,12 +17,12 @@ using test::Image;
 
 namespace {
 
-/// An object with an axis, and the membrane around it.
+/// An object of revolution and the membrane around it.
 struct Press {
-  double flat_mm = 5;     ///< radius of the plate that would press as hard
+  double flat_mm = 5;     ///< radius of the plate with the same force
   double touched_mm = 5;  ///< of the contact
   double tension = 8;     ///< T / p at the contact, mm
-  double steeper = 0;     ///< its growth by 1/mm of the flux
+  double steeper = 0;     ///< relative growth of the tension per mm of flux
   double bump_mm = 0;     ///< in the middle of the object
 
   /// tan(alpha) by the balance of each disc, r^2 - s^2 = 2 r sin(alpha) T / p with the tension
@@ -33,7 +33,7 @@ struct Press {
     const double sine = 2 * balance / (1 + std::sqrt(1 + 4 * g * balance));
     return sine / std::sqrt(1 - sine * sine);
   }
-  /// The object is tangent to the membrane at the contact's edge.
+  /// Height of object and membrane, which are tangent at the edge of the contact.
   double height_mm(double rho) const {
     if (rho <= touched_mm) {
       const double share = 1 - rho * rho / (touched_mm * touched_mm);
@@ -98,14 +98,14 @@ TEST_CASE("equivalent flat area: the balance of the membrane around any contact"
     press.bump_mm = 0.01 * *rc::gen::inRange(-50, 50);
     const double beyond_mm = 0.01 * *rc::gen::inRange(-50, 50);
     const Seen<> seen(press, beyond_mm);
-    // points 0.5 mm apart see a circle's area, and the slope at its rim, to 2 %
+    // points 0.5 mm apart resolve a circle's area, and the slope at its rim, to 2 %
     RC_ASSERT(std::abs(seen.error()) < 0.03);
     RC_ASSERT(seen().curves >= 5);
   });
 }
 
 TEST_CASE("equivalent flat area: a tension that grows with the distance", "[contact]") {
-  const Press press{5, 5, 8, 0.001, 0};  // by 20 % from the contact's edge to the pad's
+  const Press press{5, 5, 8, 0.001, 0};  // by 20 % from the edge of the contact to that of the pad
   CHECK(std::abs(Seen<>(press).error()) < 0.015);
   CHECK(std::abs(Seen<>({6, 4, 8, 0.001, 0.4}).error()) < 0.015);
 }
@@ -127,7 +127,7 @@ TEST_CASE("equivalent flat area: the same in float, and what lacks counts for no
   for (const auto& [row, col] : {std::pair<Index, Index>{60, 60}, {40, 66}, {70, 30}}) {
     with_holes.height(row, col) = test::nan;
   }
-  CHECK(with_holes.error() == Approx(exact.error()).margin(0.02));  // 0.026 were holes nothing
+  CHECK(with_holes.error() == Approx(exact.error()).margin(0.02));  // 0.026 if holes were ignored
 }
 
 TEST_CASE("equivalent flat area: variance is that of the tension within the first curve",
@@ -138,7 +138,7 @@ TEST_CASE("equivalent flat area: variance is that of the tension within the firs
   CHECK(found.variance_mm4 > 0);
   CHECK(twice.variance_mm4 == Approx(4 * found.variance_mm4).epsilon(1e-9));
   CHECK(twice.area_mm2 == found.area_mm2);
-  // within 0.8 mm, 1 point and what the steps add
+  // within 0.8 mm, 1 point and the effect of the steps
   const double first_mm2 = seen.true_mm2 + std::sqrt(found.variance_mm4) / 0.2;
   CHECK(std::sqrt(first_mm2 / std::numbers::pi) == Approx(5 + 0.8).margin(0.4));
 }
@@ -146,14 +146,14 @@ TEST_CASE("equivalent flat area: variance is that of the tension within the firs
 TEST_CASE("equivalent flat area: no answer where there is none", "[contact]") {
   const Press press{5, 5, 8, 0, 0};
   CHECK(Seen<>(press)().ok());
-  CHECK_FALSE(Seen<>(press, 20)().ok());                 // nowhere free
-  CHECK_FALSE(Seen<>(press, -6)().ok());                 // nowhere touched
+  CHECK_FALSE(Seen<>(press, 20)().ok());                 // no free part
+  CHECK_FALSE(Seen<>(press, -6)().ok());                 // no contact
   CHECK_FALSE(Seen<>(press)({.margin_mm = 30}).ok());    // no curve
   CHECK_FALSE(Seen<>(press)({.min_curves = 100}).ok());  // too few
   CHECK_FALSE(Seen<>(press)({.max_slope = 1e-6}).ok());  // all too steep
   Seen<> hollow(press);
   for (double& h : hollow.height.cells) {
-    h = 20 - h;  // bulges inward where it is free: no membrane under pressure
+    h = 20 - h;  // hollow where it is free: no membrane under pressure
   }
   CHECK_FALSE(hollow().ok());
   Seen<> far(press);

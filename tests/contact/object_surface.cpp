@@ -27,7 +27,7 @@ using Mask = Image<unsigned char>;
 constexpr int height = 60;
 constexpr int width = 80;
 
-/// n.q = (k1 (a.q)^2 + k2 (b.q)^2) / 2 + g (n.q)^2 with q from `foot`: every object here.
+/// n.q = (k1 (a.q)^2 + k2 (b.q)^2) / 2 + g (n.q)^2 with q from `foot` describes every object here.
 struct Object {
   Point foot = {0.4, -0.3, 9};
   Point n = {0, 0, 1};
@@ -51,7 +51,7 @@ struct Object {
     object.g = 0.5 / radius_mm;
     return object;
   }
-  /// Its axis is rotated by `angle` in the tangent plane.
+  /// A cylinder whose axis is rotated by `angle` in the tangent plane.
   static Object cylinder(const Point& normal, double radius_mm, double angle) {
     Object object = saddle(normal, 1 / radius_mm, 0, angle);
     object.g = 0.5 / radius_mm;
@@ -72,7 +72,7 @@ struct Object {
     const double along = dot(n, q);
     return along - 0.5 * (k1 * square(dot(a, q)) + k2 * square(dot(b, q))) - g * square(along);
   }
-  /// Depth at which the pixel's ray, a straight line, meets it near the foot: `miss` is quadratic.
+  /// Depth at which the pixel's straight ray meets the object near the foot; `miss` is quadratic.
   template <class CameraType>
   double depth(const CameraType& camera, Index row, Index col) const {
     const auto at = [&](double z) {
@@ -128,7 +128,7 @@ double apart(const Point& p, const Point& q) {
   const Point d = p - q;
   return std::sqrt(dot(d, d));
 }
-/// Between the lines along two unit vectors.
+/// Angle between the lines along two unit vectors.
 double angle_between(const Point& p, const Point& q) {
   const Point c = cross(p, q);
   return std::asin((std::min)(1.0, std::sqrt(dot(c, c))));
@@ -231,7 +231,7 @@ TEMPLATE_TEST_CASE("object surface: a saddle bends both ways",
   for (const double angle : {0.0, 0.6, 2.5}) {
     const Object object = Object::saddle({0, 0, 1}, 0.04, -0.03, angle);
     Image<double> residual(height, width);
-    // the closed form belongs to the foot: a small patch around it
+    // the closed form holds at the foot: a small patch around it
     const auto at = pixel_of(camera, object.foot);
     const Mask mask = disc(std::lround(at.y), std::lround(at.x), 10);
     const SurfaceFit<Quadric<>, TestType> surface(height, width, camera);
@@ -403,7 +403,7 @@ TEST_CASE("object surface: a strip along the border is left out", "[surface]") {
   for (Index i = 0; i < height; ++i) {
     for (Index j = 0; j < width; ++j) {
       const bool outer = (i - 28) * (i - 28) + (j - 41) * (j - 41) > 16 * 16;
-      depth(i, j) += outer ? 1 : 0;  // where the membrane is just leaving the object
+      depth(i, j) += outer ? 1 : 0;  // where the membrane leaves the object
     }
   }
   CHECK(fit<Plane<>>(camera, depth, mask).rms_mm > 0.1);
@@ -420,7 +420,7 @@ TEST_CASE("object surface: a strip along the border is left out", "[surface]") {
   }
   CHECK(inner.pixels == expected);
   const auto frame = fit<Plane<>>(camera, depth, Mask(height, width, 1), {.border_px = 5});
-  CHECK(frame.pixels == height * width);  // beyond the image there may be contact
+  CHECK(frame.pixels == height * width);  // contact may continue beyond the image
   CHECK(fit<Plane<>>(camera, depth, mask, {.border_px = 30}).pixels == 0);
 }
 
@@ -445,7 +445,7 @@ TEST_CASE("object surface: too few pixels", "[surface]") {
 }
 
 TEST_CASE("object surface: noise leaves the errors that are reported", "[surface]") {
-  // The sphere's radius, the plane's distance, the quadric's curvature, over frames of noise.
+  // Over noisy frames: the plane's distance, the sphere's and the quadric's curvature.
   const auto camera = small_camera<OrthographicCamera<double>>();
   const double noise_mm = 0.05;
   test::Random random(4);
@@ -483,7 +483,7 @@ TEST_CASE("object surface: noise leaves the errors that are reported", "[surface
     CHECK(std::sqrt(bent / reported[2]) < 1.2);
     const double of_mean = std::sqrt(curvature) / frames;
     CHECK(std::abs(bias / frames) < 4 * of_mean);
-    // n^(-1/2) for the number of pixels, 1/A^2 for the lever
+    // n^(-1/2) for the number of pixels, 1/A^2 for the lever arm
     const double now = std::sqrt(curvature / frames);
     CHECK((before == 0 || (before / now > 5 && before / now < 13)));
     before = now;
@@ -498,7 +498,7 @@ TEST_CASE("object surface: float depth maps keep their digits", "[surface]") {
   const auto r = fit<Sphere<>>(camera, depth, disc(28, 41, 20));
   REQUIRE(r.ok());
   CHECK(r.shape.radius_mm() == Approx(18).epsilon(1e-6));
-  CHECK(r.rms_mm < 5e-7);  // 9 mm in float: 4.8e-7 from one to the next
+  CHECK(r.rms_mm < 5e-7);  // 9 mm in float: 4.8e-7 between neighbouring numbers
 }
 
 TEST_CASE("object surface: a camera of float has its sums in double", "[surface]") {
@@ -541,7 +541,7 @@ TEST_CASE("object surface: derivatives pass through the fit", "[surface]") {
   const auto camera = small_camera<OrthographicCamera<double>>();
   const OrthographicCamera<Dual> dual_camera{Dual(38.5), Dual(30.25), Dual(0.2)};
   const Mask mask = disc(28, 41, 20);
-  // d/dk of a sphere's curvature, when the depths grow by k r^2 / 2
+  // d/dk of a sphere's curvature when the depths grow by k r^2 / 2
   const auto curvature = [&](const auto& cam, auto seed) {
     using S = decltype(seed);
     Image<S> depth(height, width);

@@ -22,7 +22,7 @@ using test::ForeignImage;
 
 namespace {
 
-/// A point of a user's own, with names that no trait can guess.
+/// A user's own point type, with names that no trait can guess.
 struct OwnPoint {
   double across;
   double down;
@@ -114,7 +114,7 @@ TEST_CASE("a dot with a coordinate that is not finite is missing", "[dots]") {
     CHECK_FALSE(is_present(OwnPoint{0, bad}));
   }
   CHECK(is_present(Point2<double>{999999, -999999}));
-  CHECK_FALSE(is_present(Point2<double>{1e6, 0}));  // no place of a pad or of an image
+  CHECK_FALSE(is_present(Point2<double>{1e6, 0}));  // outside any pad or image
   CHECK_FALSE(is_present(Point3<double>{0, 0, -1e300}));
 }
 

@@ -48,7 +48,8 @@ void throw_own(const char*) {
   throw OwnError();
 }
 
-/// Every bad value is refused with a message that names owner and field; every good one passes.
+/// Checks that every bad value is refused with a message that names owner and field, and that every
+/// good one is accepted.
 template <class Parameters>
 void check_field(double Parameters::*field,
                  const std::string& owner,

@@ -29,7 +29,7 @@ struct OnlySizes {
   int rows() const { return 1; }
   int cols() const { return 1; }
 };
-/// A grid by its members alone, with a proxy for a cell, as bit sets have.
+/// A grid by its members alone, with a proxy as cell, as in bit sets.
 struct MemberGrid {
   std::vector<bool> bits = std::vector<bool>(6);
   int rows() const { return 2; }
@@ -44,7 +44,7 @@ int ten_rows_and_col(Index i, Index j) {
 using LazyInts = LazyView<int (*)(Index, Index)>;
 using LazyPoints = LazyView<Point2<double> (*)(Index, Index)>;
 
-/// Memory with a random strided view in it; strides of both signs, gaps between rows and columns.
+/// Memory with a random strided view: strides of both signs, gaps between rows and columns.
 struct RandomView {
   std::vector<int> memory;
   View view;
@@ -56,7 +56,7 @@ struct RandomView {
     const Index row_step = cols * col_step + test::whole(0, 3);
     memory.resize(static_cast<std::size_t>(rows * row_step));
     for (std::size_t i = 0; i < memory.size(); ++i) {
-      memory[i] = static_cast<int>(i);  // every place is known by its number
+      memory[i] = static_cast<int>(i);  // every cell is identified by its number
     }
     const bool up = test::whole(0, 1) == 1;
     const bool left = test::whole(0, 1) == 1;
@@ -66,7 +66,7 @@ struct RandomView {
   }
 };
 
-/// Each cell of `derived` is the very cell of `v` (not a copy) that `place` names.
+/// Checks that each cell of `derived` is the cell of `v` at `place` itself, not a copy.
 template <class Place>
 void check_cells(View derived, View v, Index rows, Index cols, const Place& place) {
   RC_ASSERT(derived.rows() == rows);
@@ -92,8 +92,7 @@ static_assert(writable_grid<ForeignImage<double>> && !writable_grid<const Foreig
 static_assert(writable_grid<View> && writable_grid<const View> && writable_grid<MemberGrid>);
 static_assert(!writable_grid<StridedView<const int>> && !writable_grid<const MemberGrid>);
 static_assert(writable_grid<View, std::uint8_t> && !writable_grid<View, Point2<float>>);
-// A cell that is computed on demand cannot be written, not even where its type could be assigned
-// to.
+// A computed cell is not writable, even if its type is assignable.
 static_assert(!writable_grid<LazyInts>);
 
 static_assert(strided_grid<View> && !strided_grid<ForeignImage<int>> && !strided_grid<LazyInts>);
@@ -118,7 +117,7 @@ TEST_CASE("as_view picks the strongest view and keeps const", "[grid]") {
   CHECK(rows(as_view(read_only)) == 2);
   CHECK(cols(as_view(read_only)) == 3);
 
-  // Views are themselves: by value, from lvalues, constants and temporaries alike.
+  // Views are passed by value, from lvalues, constants and temporaries alike.
   const View view(nullptr, 0, 0, 0);
   STATIC_REQUIRE(std::same_as<decltype(as_view(view)), View>);
   STATIC_REQUIRE(std::same_as<decltype(as_view(View())), View>);
@@ -135,7 +134,7 @@ TEST_CASE("strided views", "[grid]") {
     RandomView r;
     const View v = r.view;
     check_cells(v, v, v.rows(), v.cols(), [](Index i, Index j) { return std::pair(i, j); });
-    for (Index i = 0; i < v.rows(); ++i) {  // and no two cells share a place
+    for (Index i = 0; i < v.rows(); ++i) {  // and no two cells share an address
       for (Index j = 0; j < v.cols(); ++j) {
         RC_ASSERT(&v(i, j) == r.memory.data() + v(i, j));
         v(i, j) = -1;
@@ -230,7 +229,7 @@ TEST_CASE("one sum on every kind of grid, to the last bit", "[grid]") {
   CHECK(test::weighted_sum(StridedView<const double>(view)) == expected);
   CHECK(test::weighted_sum(transpose(view)) != expected);
 
-  // Bytes are summed in double; the working scalar can be asked for.
+  // Bytes are summed in double; another working scalar can be selected.
   const LazyView bytes(7, 5, [](Index i, Index j) { return static_cast<std::uint8_t>(9 * i + j); });
   const LazyView reals(7, 5, [](Index i, Index j) { return static_cast<double>(9 * i + j); });
   STATIC_REQUIRE(std::same_as<decltype(test::weighted_sum(bytes)), double>);

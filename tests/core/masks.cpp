@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
-// Masks of contact, and that every method reads them alike.
+// Contact masks, which every method reads in the same way.
 #include <limits>
 #include <string>
 #include <vector>

@@ -29,7 +29,7 @@ static_assert(std::same_as<real_of_t<const float&>, float>);
 static_assert(std::same_as<real_of_t<long double>, long double>);
 static_assert(std::same_as<real_of_t<Dual<double>>, Dual<double>>);
 
-// What needs no mathematics is usable at compile time.
+// Functions without mathematics are usable at compile time.
 static_assert(value(2.5) == 2.5 && square(3.0f) == 9.0f);
 static_assert(epsilon<float>() == (std::numeric_limits<float>::epsilon)());
 static_assert(is_finite(1.0));
@@ -71,5 +71,5 @@ TEST_CASE("the value of a dual number leaves its derivative out", "[scalar]") {
   const Dual<double> x(2, 5);
   REQUIRE(value(x) == 2);
   REQUIRE(square(x).d == 20);
-  REQUIRE(is_finite(Dual<double>(1, not_a_number<double>())));  // branches look at values only
+  REQUIRE(is_finite(Dual<double>(1, not_a_number<double>())));  // branches use values only
 }

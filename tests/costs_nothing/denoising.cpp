@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
-// Denoising of dots in the stick ratio: a dot is judged by itself.
+// Denoising of dots in the stick ratio: without it, each dot is judged by itself.
 #include "fingerpad/slip/stick_ratio.hpp"
 
 using namespace fingerpad;

@@ -13,7 +13,7 @@ struct NoRules : FoamHandMethods {
   static constexpr bool has_grasp_lift = false;
 };
 
-/// The features alone, written out.
+/// The features alone, written by hand.
 struct ByHand {
   std::vector<TaxelFeatures<>> features;
   std::vector<TaxelFeatures<>::State> windows;
@@ -28,7 +28,7 @@ struct ByHand {
   }
 };
 
-// flatten: so that what is called is counted, too.
+// flatten: so that called functions are counted, too.
 extern "C" __attribute__((flatten)) void switched_off(FoamHand<1, NoRules>& hand,
                                                       const std::array<Readings, 1>& readings,
                                                       double time_s,

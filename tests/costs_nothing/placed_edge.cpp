@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
-// The placed edge of a contact: what is below the threshold touches.
+// The placed edge of a contact: without it, pixels below the threshold touch.
 #include "fingerpad/contact/contact_region.hpp"
 
 using namespace fingerpad;

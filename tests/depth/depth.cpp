@@ -34,7 +34,7 @@ Pad fine_pad() {
   return pad;
 }
 
-/// Clumps of bad pixels, each of one kind, until they cover a share of the frame.
+/// Adds clumps of bad pixels, each of one kind, until they cover a share of the frame.
 template <class Pixel>
 Image<std::uint8_t> spoil_in_clumps(Frame<Pixel>& frame, double share, test::Random& random) {
   const Index rows = frame.red.rows();
@@ -63,13 +63,13 @@ Image<std::uint8_t> spoil_in_clumps(Frame<Pixel>& frame, double share, test::Ran
   return bad;
 }
 
-/// Share of a pixel's variance that is left by a mean of n1 of n2 pixels with weights a and 1 - a.
+/// Remaining share of a pixel's variance after a mean of n1 of n2 pixels with weights a and 1 - a.
 double variance_left(double n1, double n2, double a) {
   const double b = a - 1;
   return a * a / n1 - 2 * a * b / n2 + b * b / n2;
 }
 
-/// Depth error per grey level of F: 1 / F', for the darkest membrane, whose F rises least.
+/// Depth error per grey level of F: 1 / F', for the darkest membrane, where F rises least.
 double mm_per_level(const Pad& pad, Index i, Index j, double l) {
   const auto light = pad.pencil(i, j);
   const auto c = pad.colour(i, j, l, 0.4 * pad.brightness);
@@ -85,7 +85,7 @@ PixelStatus reason(const Pixel& red, const Pixel& green) {
   return red >= top || green >= top ? PixelStatus::saturated : PixelStatus::dark;
 }
 
-/// Windows that the policy averages over, and the weight of the first.
+/// Windows of the policy's mean, and the weight of the first.
 struct Windows {
   Index inner;
   Index outer;
@@ -144,15 +144,15 @@ TEMPLATE_TEST_CASE("with a fifth of the pixels lost, the others are as good as t
           continue;
         }
         // The anchored mean of the free pad has no bias, so the error is noise alone: of 1 grey
-        // level, and 1/12 more for the steps of 8 bit, in both channels (rise is below 1.15). Six
-        // standard deviations of it, which no pixel in 1e8 should exceed, and the steps of 1/128
-        // grey level in which residuals are stored.
+        // level, and 1/12 more for the steps of 8 bit, in both channels (rise is below 1.15). The
+        // bound is six standard deviations, which no pixel in 1e8 should exceed, and the steps of
+        // 1/128 grey level of the stored residuals.
         const double sd =
             std::sqrt(13.0 / 12 * (1.15 * 1.15 + 1) * variance_left(n[0], n[1], w.weight));
         const double allowed = mm_per_level(pad, i, j, l) * (6 * sd + 1.0 / 128);
         if (status == PixelStatus::ok) {
           expect(std::abs(depth - l) <= 1.1 * allowed);
-        } else {  // only the noise may have led out of the range
+        } else {  // noise near the ends of the range
           const double end = pad.fluid.max_depth_mm;
           expect((status == PixelStatus::below_range && l < 1.1 * allowed) ||
                  (status == PixelStatus::above_range && l > end - 1.1 * allowed));
@@ -164,7 +164,7 @@ TEMPLATE_TEST_CASE("with a fifth of the pixels lost, the others are as good as t
     check(AnchoredMean{7}, {3, 3, 1}, seed);
     check(BiasFreeMean{5}, {3, 5, 120.0 / 72}, seed);
   }
-  CHECK(lost > 0);  // or nothing was proved about them
+  CHECK(lost > 0);  // otherwise nothing was tested about them
 }
 
 TEST_CASE("a frame of another size is refused and nothing written", "[depth]") {
@@ -203,7 +203,7 @@ TEST_CASE("a frame of another size is refused and nothing written", "[depth]") {
   CHECK_FALSE(estimator(good.red, good.green, e.depth_mm, e.status, foreign).ok());
   CHECK(e.depth_mm.cells == untouched.depth_mm.cells);
   CHECK(e.status.cells == untouched.status.cells);
-  // and the workspace is none the worse for it
+  // and the workspace remains usable
   CHECK(estimator(good.red, good.green, e.depth_mm, workspace).ok());
 }
 
@@ -287,7 +287,8 @@ namespace {
 
 using D = Dual<double>;
 
-/// Depth as a function of (red, green, c_red, kappa, g), shifted by x in the one that is asked for.
+/// Depth as a function of (red, green, c_red, kappa, g), with the one of index `which` shifted by
+/// x.
 template <class S>
 S shifted_depth(const Pad& pad, double l, int which, const S& x) {
   const auto shift = [&](int k, double v) { return which == k ? S(S(v) + x) : S(v); };
@@ -308,7 +309,7 @@ TEST_CASE("a dual number carries the derivative of depth", "[depth]") {
   rc::prop("with respect to red, green, c_red, kappa and g", [] {
     const Pad pad;
     const double l = test::uniform(1, 13);
-    // steps that move the depth by some micrometres: differences are then good to 1e-7
+    // steps that change the depth by some micrometres: differences are then accurate to 1e-7
     const double steps[] = {1e-4, 1e-4, 1e-7, 1e-6, 1e-6};
     for (int which = 0; which < 5; ++which) {
       const double by_dual = shifted_depth(pad, l, which, D(0, 1)).d;

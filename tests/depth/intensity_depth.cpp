@@ -23,12 +23,12 @@ namespace {
 
 constexpr double none = std::numeric_limits<double>::quiet_NaN();
 
-/// A lamp that is uneven.
+/// Grey level of an uneven lamp.
 double free_level(Index i, Index j) {
   return 150 + 0.3 * static_cast<double>(i) - 0.2 * static_cast<double>(j);
 }
 
-/// A ball in a gel of 4 mm, from free frames of which a one-channel camera knows how dark they get.
+/// A ball in a gel of 4 mm. A one-channel camera has calibrated the darkening on free frames.
 struct PressedBall {
   static constexpr Index rows = 96;
   static constexpr Index cols = 120;
@@ -59,7 +59,7 @@ struct PressedBall {
   }
 };
 
-/// What is seen of a frame: heights of the gel's surface, and the contact.
+/// Results of a frame: heights of the gel's surface, and the contact.
 struct BallSeen {
   Image<double> depth_mm{PressedBall::rows, PressedBall::cols};
   Image<double> height_mm = depth_mm;
@@ -155,7 +155,7 @@ TEST_CASE("intensity depth: smoothing averages the noise", "[intensity_depth]") 
     return std::sqrt(sum / 3600);
   };
   CHECK(spread(0) == Approx(3.0 / 120).epsilon(0.1));
-  // the mean of a Gaussian of sd s has the noise of 4 pi s^2 pixels
+  // the mean of a Gaussian with the sd s has the noise of 4 pi s^2 pixels
   CHECK(spread(2) == Approx(spread(0) / std::sqrt(4 * 3.14159 * 4)).epsilon(0.2));
 }
 
@@ -182,7 +182,7 @@ TEST_CASE("intensity depth: contact, surface and slide of a ball", "[intensity_d
     };
     const BallSeen before = see({0, 0});
     const double radius_px = std::sqrt(double(before.found.contact_px) / 3.14159265358979);
-    // where the frame differs enough; the mean over 2 px reaches beyond the contact
+    // where the frame differs enough; the mean over 2 px extends beyond the contact
     RC_LOG() << radius_px << " px for " << ball.contact_px << "\n";
     const double dark = -ball.law.linear_mm * std::log(1 - region.threshold());
     RC_ASSERT(ball.depth_mm(radius_px + 2) < dark);
@@ -194,14 +194,14 @@ TEST_CASE("intensity depth: contact, surface and slide of a ball", "[intensity_d
     const auto surface = fit(before.height_mm, before.contact);
     RC_ASSERT(surface.status == SurfaceStatus::ok);
     RC_LOG() << surface.shape.radius_mm() << " mm for " << ball.ball_mm << "\n";
-    // the standard error takes pixels for independent, which a mean over 2 px leaves no more
+    // the standard error assumes independent pixels, but the mean over 2 px correlates them
     const double as_one = std::sqrt(4 * 3.14159265358979) * 2;
     const double sd = as_one * surface.shape.curvature_sd_per_mm * ball.ball_mm;
-    RC_ASSERT(sd < 0.04);  // or the next line would allow anything
+    RC_ASSERT(sd < 0.04);  // otherwise the next line would allow anything
     RC_ASSERT(std::abs(surface.shape.curvature_per_mm * ball.ball_mm - 1) < 0.01 + 4 * sd);
 
     const Point2<double> way = {test::uniform(-6, 6), test::uniform(-6, 6)};
-    Image<Point2<double>> dots(3, 3);  // that stay behind
+    Image<Point2<double>> dots(3, 3);  // standing dots
     for (Index k = 0; k < 9; ++k) {
       dots(k / 3, k % 3) = {double(39 + 20 * (k % 3)), double(27 + 20 * (k / 3))};
     }

@@ -42,7 +42,7 @@ Map<double> membrane(Index rows, Index cols, double pressed_mm, double phase) {
   return l;
 }
 
-/// Equal to the last bit, NaN where the other is NaN.
+/// Whether two maps are equal to the last bit; NaN equals NaN.
 template <class A, class B>
 bool identical(const A& a, const B& b) {
   if (a.rows() != b.rows() || a.cols() != b.cols()) {
@@ -68,7 +68,7 @@ Map<S> compensated(const NeighbourLight<S>& light, const Map<S>& reference, cons
   return out;
 }
 
-/// The definition, pixel by pixel over the disc, in double.
+/// The definition: pixel by pixel over the disc, in double.
 double slow_psi(const Map<double>& l, Index i, Index j, double pitch) {
   const auto at = [&](Index r, Index c) {
     return r >= 0 && r < l.rows() && c >= 0 && c < l.cols() ? l(r, c) : missing;

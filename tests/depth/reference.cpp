@@ -52,7 +52,7 @@ TEMPLATE_TEST_CASE("the scattering of a frame without noise is found",
   Pad pad;
   pad.scattering_loss = GENERATE(0.0, 0.05, 0.5);
   const auto reference = pad.reference<S>();
-  // normal equations of a cubic lose four to five digits, none of which float misses
+  // normal equations of a cubic lose four to five digits, which float still resolves
   CHECK(worst_g(pad, reference) <= (std::is_same_v<S, float> ? 1e-6 : 1e-11));
   // the residual comes from a difference of sums of squares, which loses half the digits
   CHECK(static_cast<double>(reference.residual_rms) <= 57 * 1e-7);
@@ -72,9 +72,9 @@ TEMPLATE_TEST_CASE("the scattering of a frame without noise is found",
 }
 
 TEST_CASE("noise in the reference averages out", "[reference]") {
-  // g's error of one pixel is about 2.3 % at 1 mm and 0.24 % at 12 mm per 0.034 grey levels; one
-  // level over 1500 pixels and four coefficients leaves 0.3 % on average, and a few times that at
-  // the rim, where g matters least.
+  // The error of g of one pixel is about 2.3 % at 1 mm and 0.24 % at 12 mm per 0.034 grey levels.
+  // One level over 1500 pixels and four coefficients leaves 0.3 % on average, and a few times that
+  // at the rim, where g matters least.
   const Pad pad;
   const auto depth = pad.free_depths();
   double inner = 0;
@@ -235,7 +235,7 @@ TEST_CASE("a reference that determines nothing is refused", "[reference]") {
   CHECK_THAT(fit(Image<double>(pad.rows, pad.cols, 0)), StartsWith("fit_reference: deepest"));
   CHECK_THAT(fit(Image<double>(pad.rows, pad.cols, 100)), StartsWith("fit_reference: share"));
 
-  // Four pixels alike in radius say nothing about g over the radius.
+  // Four pixels at one radius do not determine g as a function of the radius.
   Image<double> ring(pad.rows, pad.cols, test::nan);
   for (const auto& [i, j] : {std::pair<Index, Index>{13, 27}, {34, 27}, {23, 17}, {24, 38}}) {
     ring(i, j) = pad.free_depth(i, j);

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
-// Sampled frames: means against a naive mean, bad pixels stay in their sample, a sample is where
-// its pixels are, and from samples back to pixels.
+// Sampled frames: means against a naive mean, bad pixels affect only their sample, a sample lies
+// where its pixels are, and conversion from samples back to pixels.
 #include "fingerpad/depth/sampling.hpp"
 
 #include <algorithm>
@@ -23,7 +23,7 @@ namespace {
 template <class Pixel, int Step>
 using Case = std::pair<Pixel, std::integral_constant<int, Step>>;
 
-/// What a mean of these pixels is: of those that count, else why none does.
+/// Mean of the valid pixels of a sample, or the mark of the reason why there are none.
 template <class Pixel>
 double naive(const Image<Pixel>& of, const Image<Pixel>& beside, Index i, Index j, int step) {
   const double top = grey_scale_of<Pixel>().saturated;
@@ -45,7 +45,7 @@ double naive(const Image<Pixel>& of, const Image<Pixel>& beside, Index i, Index 
   return count > 0 ? sum / count * units : saturated ? top * units : none;
 }
 
-/// Mostly grey, with pixels of each kind that says nothing, in patches and alone.
+/// Mostly grey, with invalid pixels of each kind, in patches and alone.
 template <class Pixel>
 Image<Pixel> any_channel(Index rows, Index cols) {
   Image<Pixel> image(rows, cols);
@@ -123,7 +123,7 @@ TEST_CASE("a sampled frame of another size is refused", "[sampling]") {
   CHECK(out(2, 3) == 9 * 256);
 }
 
-// A row of a frame may see nothing of a round pad.
+// A row of a frame may contain no pixel of a round pad.
 TEST_CASE("rows without a column are read into nothing", "[sampling]") {
   const std::vector<std::uint8_t> bgr(12, std::uint8_t(9));
   const StridedView<const std::uint8_t> red(bgr.data() + 5, 1, 0, 12, 3);

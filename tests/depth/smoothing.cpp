@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
-// Smoothing policies against a mean that adds up every window anew.
+// Smoothing policies against a mean that sums every window anew.
 #include "fingerpad/depth/smoothing.hpp"
 
 #include <cmath>
@@ -23,7 +23,7 @@ using test::Pad;
 namespace {
 
 namespace bound {
-// In grey levels of up to 255, with weights of two windows that add up to less than 2.5.
+// Roundoff in grey levels of up to 255, with weights of two windows that sum to less than 2.5.
 constexpr double single = 2.5 * 255 * 4 * 1.2e-7;
 constexpr double twice = 2.5 * 255 * 1e3 * 2.3e-16;  // running sums of up to 1e3 pixels
 constexpr double residual_step = 2.5 / 256;          // residuals are stored in steps of 1/128
@@ -51,8 +51,8 @@ Smoothed<S> smooth(const detail::ColourSetup<S>& setup,
   return out;
 }
 
-/// A frame and a mask of which every part is random; wide enough for whole vectors and a rest.
-/// Valid levels are 20 to 230, whose residuals are below the 256 levels that 16 bits hold.
+/// A random frame and mask, wide enough for whole SIMD vectors and a remainder. Valid levels are 20
+/// to 230, whose residuals are below the 256 levels that 16 bits hold.
 template <class Pixel, class S>
 struct Scene {
   GreyScale scale = grey_scale_of<Pixel>();
@@ -141,7 +141,7 @@ double oracle_mean(
 double oracle_mean(const auto& scene, const AnchoredMean& mean, Index i, Index j, const auto& f) {
   return window_mean_of(scene, i, j, mean.window_px, f);
 }
-/// Sizes and weights as published in the policy's own words.
+/// Sizes and weights as the documentation of the policy states them.
 double oracle_mean(const auto& scene, const BiasFreeMean& mean, Index i, Index j, const auto& f) {
   const auto odd_near = [](double x) { return 2 * static_cast<int>(std::floor(x / 2)) + 1; };
   const double in = odd_near(1.4 * mean.window_px);
@@ -149,7 +149,7 @@ double oracle_mean(const auto& scene, const BiasFreeMean& mean, Index i, Index j
   const double inner = window_mean_of(scene, i, j, static_cast<int>(in), f);
   const double outer = window_mean_of(scene, i, j, static_cast<int>(out), f);
   const double b = (in * in - 1) / (out * out - in * in);
-  return (1 + b) * inner - b * outer;  // NaN where the inner window is empty
+  return (1 + b) * inner - b * outer;  // NaN if the inner window is empty
 }
 
 double oracle_red(const auto& scene, const published::BoxMean& mean, Index i, Index j) {
@@ -260,7 +260,7 @@ TEST_CASE("the bias-free mean leaves a quadratic deviation as it is", "[smoothin
     scene.setup.in_pad.assign(1600, 1);
     scene.frame = Frame<double>(40, 40);
     scene.scale = {};
-    // an anchor at nothing: the deviation is minus red
+    // an anchor of zero: the deviation is minus red
     scene.setup.anchor = {std::vector<double>(1600, 0), std::vector<double>(1600, 0), 1};
     double c[6];
     for (double& x : c) {
@@ -279,7 +279,7 @@ TEST_CASE("the bias-free mean leaves a quadratic deviation as it is", "[smoothin
     for (Index i = 8; i < 32; ++i) {
       for (Index j = 8; j < 32; ++j) {
         RC_ASSERT(near(out.red(i, j), scene.frame.red(i, j), bound::twice));
-        // of which a box has the bias curvature (w^2 - 1) / 12
+        // the bias of a box is its curvature times (w^2 - 1) / 12
         const double bias = 9 * (c[2] + c[3]) / 400 * (49 - 1) / 12;
         RC_ASSERT(near(box.red(i, j), scene.frame.red(i, j) + bias, bound::twice));
       }
@@ -342,8 +342,9 @@ TEST_CASE("an anchored mean leaves the free pad as it is, rim and printed dots i
   Pad pad;
   pad.sphere_radius_mm = GENERATE(19.0, 20.0, 40.0);  // the first is steep at the rim
   const int window = GENERATE(3, 9, 21);
-  // Double: roundoff. Float: of 57 grey levels, where F rises by 1.3 per mm; the rim's first pixels
-  // are the least sharp. 16 bit: residuals of half of 1/128 grey level, if all lay alike.
+  // Double: roundoff. Float: roundoff of 57 grey levels, where F rises by 1.3 per mm; the first
+  // pixels of the rim are the least accurate. 16 bit: residuals of half of 1/128 grey level, if all
+  // have the same sign.
   CHECK(free_pad_error<double, AnchoredMean, double>(pad, window) <= 1e-10);
   CHECK(free_pad_error<double, BiasFreeMean, double>(pad, window) <= 1e-10);
   CHECK(free_pad_error<float, AnchoredMean, float>(pad, window) <= 3e-5);
@@ -352,7 +353,7 @@ TEST_CASE("an anchored mean leaves the free pad as it is, rim and printed dots i
   CHECK(free_pad_error<std::uint16_t, BiasFreeMean, float>(pad, window) <= 2.2 * 3e-3);
 }
 
-TEST_CASE("a plain mean does not", "[smoothing]") {  // or the test above would prove nothing
+TEST_CASE("a plain mean does not", "[smoothing]") {  // otherwise the test above would prove nothing
   const Pad pad;
   const auto depth = pad.free_depths();
   const auto frame = pad.frame<double>(depth);

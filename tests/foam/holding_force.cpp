@@ -27,7 +27,7 @@ PreslipStatus update_of(char letter) {
                          : PreslipStatus::steady;
 }
 
-/// The command after the last of the signal.
+/// The command after the last letter of the signal.
 template <class Search>
 auto tell(const Search& search, typename Search::State& state, const std::string& signal) {
   auto command = state.command();
@@ -42,7 +42,8 @@ auto told(const Search& search, const std::string& signal) {
   return tell(search, state, signal);
 }
 
-/// The phase after each of the signal: s(ettling), w(atching), F(ound), L(ifted), A(t limit), X.
+/// The phase after each letter of the signal:
+/// s(ettling), w(atching), F(ound), L(ifted), A(t limit), X (slipped).
 template <class Search>
 std::string phases(const Search& search, const std::string& signal) {
   auto state = search.start();
@@ -52,7 +53,7 @@ std::string phases(const Search& search, const std::string& signal) {
   }
   return all;
 }
-/// The force after each of the signal; plans here keep it a digit.
+/// The force after each letter of the signal; the plans here keep it to one digit.
 template <class Search>
 std::string forces(const Search& search, const std::string& signal) {
   auto state = search.start();
@@ -118,7 +119,7 @@ TEST_CASE("loosening: settles, watches, loosens, down to the least force", "[hol
   CHECK(first.warning_steps == 0);
 
   const std::string steady(18, '-');
-  // the sample that follows the settling is the first to be watched
+  // the first sample after the settling is the first watched one
   CHECK(phases(search, steady) ==
         "sswws"
         "sswws"
@@ -142,7 +143,7 @@ TEST_CASE("loosening: pre-slip ends it, with the margin given back", "[holding_f
   const auto found = [&](const std::string& signal) {
     return told(LoosenUntilPreslip<double>(plan), signal);
   };
-  // at each of the three samples that are watched
+  // at each of the three watched samples
   for (const char* const signal : {"-------p", "--------p", "---------p"}) {
     CAPTURE(signal);
     const auto at_8 = found(signal);
@@ -158,7 +159,7 @@ TEST_CASE("loosening: pre-slip ends it, with the margin given back", "[holding_f
   CHECK(found("------------p").force_n == 7);
   plan.margin_steps = 2;
   CHECK(found("------------p").force_n == 9);
-  plan.margin_steps = 1000000;  // never more than at first
+  plan.margin_steps = 1000000;  // at most the first force
   CHECK(found("------------p").force_n == 9);
   CHECK(found("--p").force_n == 9);
   CHECK(found("--p").preslip_force_n == 9);
@@ -182,7 +183,7 @@ TEST_CASE("loosening: while the last step settles, only a slip is listened to", 
     CAPTURE(signal);
     const auto end = told(search, signal);
     CHECK(end.phase == SearchPhase::slipped);
-    CHECK(end.force_n == 9);  // gripped as at first
+    CHECK(end.force_n == 9);  // the first force again
     CHECK(std::isnan(end.preslip_force_n));
   }
 }
@@ -200,7 +201,7 @@ TEST_CASE("loosening until the object slips counts the steps of warning", "[hold
   CHECK(state.command().preslip_force_n == 8);
   CHECK(state.command().force_n == 8);
   CHECK(state.command().warning_steps == 0);
-  auto now = tell(search, state, "p-");  // the rest of the watch: it is not cut short
+  auto now = tell(search, state, "p-");  // the rest of the watch: it is not shortened
   CHECK(now.phase == SearchPhase::settling);
   CHECK(now.force_n == 7);
   CHECK(now.warning_steps == 1);
@@ -216,12 +217,12 @@ TEST_CASE("loosening until the object slips counts the steps of warning", "[hold
   CHECK(now.force_n == 9);
   CHECK(now.warning_steps == 3);
   CHECK(now.preslip_force_n == 8);
-  // pre-slip on the last sample that is watched
+  // pre-slip on the last watched sample
   now = told(search, "----p");
   CHECK(now.force_n == 8);
   CHECK(now.preslip_force_n == 9);
   CHECK(now.warning_steps == 1);
-  // what never slips ends at the least force
+  // without any slip the search ends at the least force
   now = told(search, "--p--" + std::string(40, '-'));
   CHECK(now.phase == SearchPhase::at_limit);
   CHECK(now.force_n == 1);
@@ -262,7 +263,7 @@ TEST_CASE("loosening: forces do not collect rounding, and the last step may be s
   CHECK(state.command().phase == SearchPhase::settling);
   CHECK(search(PreslipStatus::steady, state).phase == SearchPhase::at_limit);
   CHECK(state.command().steps == 98);
-  plan.step_n = 1000;  // one step to the least
+  plan.step_n = 1000;  // one step to the least force
   CHECK(told(LoosenUntilPreslip<double>(plan), "-").force_n == 0.25);
   CHECK(told(LoosenUntilPreslip<double>(plan), "--").phase == SearchPhase::at_limit);
 }
@@ -325,7 +326,7 @@ TEST_CASE("lifting: up in steps to the full height", "[holding_force]") {
   CHECK(tell(search, state, "-").height_mm == 10);  // not 12
   CHECK(state.command().phase == SearchPhase::lifted);
   CHECK(state.command().force_n == 1);
-  // a step that divides the height ends on it
+  // a step that divides the height ends exactly on it
   LiftOptions<double> plan = short_lift();
   plan.height_step_mm = 5;
   CHECK(told(LiftWithRegrip<double>(plan), "-").phase == SearchPhase::watching);
@@ -345,7 +346,7 @@ TEST_CASE("lifting: pre-slip holds the lift and tightens the grip", "[holding_fo
   CHECK(now.force_n == 2);
   CHECK(now.height_mm == 4);
   CHECK(now.steps == 1);
-  now = tell(search, state, "p-");  // not listened to
+  now = tell(search, state, "p-");  // ignored
   CHECK(now.phase == SearchPhase::settling);
   CHECK(now.force_n == 2);
   CHECK(now.height_mm == 4);
@@ -354,22 +355,22 @@ TEST_CASE("lifting: pre-slip holds the lift and tightens the grip", "[holding_fo
   now = tell(search, state, "p");
   CHECK(now.force_n == 3);
   CHECK(now.steps == 2);
-  now = tell(search, state, "-p-");  // settled again, from the start
+  now = tell(search, state, "-p-");  // settled again from the start
   CHECK(now.phase == SearchPhase::lifted);
   CHECK(now.height_mm == 10);
   CHECK(now.force_n == 3);
 
-  // pre-slip at once after the settling
+  // pre-slip right after the settling
   CHECK(told(search, "p--p").force_n == 3);
   CHECK(phases(search, "pppppp") == "ssssss");
   CHECK(forces(search, "pppppp") == "222333");
-  // at the largest force it gives up
+  // at the largest force the search ends
   now = told(search, "-p--p--p");
   CHECK(now.phase == SearchPhase::at_limit);
   CHECK(now.force_n == 3);
   CHECK(now.height_mm == 0);
   CHECK(now.steps == 2);
-  // and does not where the largest force is enough
+  // and it goes on if the largest force suffices
   CHECK(told(search, "-p--p----").phase == SearchPhase::lifted);
 
   LiftOptions<double> plan = short_lift();

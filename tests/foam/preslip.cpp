@@ -37,7 +37,7 @@ Sample felt(Index location, Index waves, double x_mm = 0, double y_mm = 0) {
   return sample;
 }
 
-/// Quiet, and pressed at a place.
+/// A quiet sample that is pressed at a place.
 Sample silent(double x_mm = 0, double y_mm = 0) {
   return felt(nowhere, 0, x_mm, y_mm);
 }
@@ -47,7 +47,7 @@ bool pair(const Sample& older, const Sample& later, const Options& options = {})
   return is_preslip<Rule>(Hand<1>{older}, Hand<1>{later}, options);
 }
 
-/// Alarm, is it fresh, and how many samples ago.
+/// Alarm, whether it is fresh, and its age in samples.
 using Answer = std::array<std::int64_t, 3>;
 Answer answer(const PreslipResult& r) {
   return {r.alarm ? 1 : 0, r.is_fresh ? 1 : 0, r.samples_ago};
@@ -67,7 +67,7 @@ Hand<Fingers> all(const Sample& sample) {
   return hand;
 }
 
-/// A rule and a way to search.
+/// A rule and its search method.
 template <class Rule_>
 struct ByNewest {
   using Rule = Rule_;
@@ -130,15 +130,15 @@ TEST_CASE("grasp-optimise: every clause of the rule is needed", "[preslip]") {
     CHECK_FALSE(is_preslip<Rule>(older, changed(later, lost)));
     CHECK_FALSE(is_preslip<Rule>(changed(older, lost), later));
     CHECK_FALSE(is_preslip<Rule>(changed(older, none_seen), changed(later, none_seen)));
-    // where the force is does not matter, nor whether there is any
+    // the position of the force does not matter, nor whether there is any
     const auto unpressed = [](Sample& s) { s.center_x_mm = none; };
     const auto far = [](Sample& s) { s.center_y_mm = 1e300; };
     CHECK(is_preslip<Rule>(older, changed(later, unpressed)));
     CHECK(is_preslip<Rule>(changed(older, far), later));
-    // the waves of one finger are not compared with those of another
+    // waves are not compared across fingers
     CHECK(is_preslip<Rule>(changed(older, more), changed(later, more)));
   }
-  // the locations of one finger are not compared with those of another
+  // locations are not compared across fingers
   CHECK(is_preslip<Rule>(Hand<2>{felt(3, 5), felt(4, 5)}, Hand<2>{felt(4, 5), felt(3, 5)}));
 }
 
@@ -162,17 +162,17 @@ TEST_CASE("grasp-lift: every clause of the rule is needed", "[preslip]") {
   CHECK_FALSE(pair<Rule>(older, felt(5, 4, 2, 2)));         // waves
   CHECK_FALSE(pair<Rule>(older, felt(5, 3, 2, 2)));         // waves
   CHECK_FALSE(pair<Rule>(older, felt(5, 6, 1, 1)));         // centroid
-  CHECK_FALSE(pair<Rule>(older, felt(nowhere, 6, 2, 2)));   // nothing vibrates now
-  CHECK_FALSE(pair<Rule>(older, felt(5, 6, none, 2)));      // nothing presses
+  CHECK_FALSE(pair<Rule>(older, felt(nowhere, 6, 2, 2)));   // no vibration now
+  CHECK_FALSE(pair<Rule>(older, felt(5, 6, none, 2)));      // no pressure
   CHECK_FALSE(pair<Rule>(older, felt(5, 6, 2, infinity)));  // the same
   CHECK_FALSE(pair<Rule>(felt(3, 4, 1, none), later));
   CHECK_FALSE(pair<Rule>(felt(3, 4, -infinity, 1), later));
-  // a finger that was silent had no location, which differs from any
+  // a silent finger had no location, which differs from any location
   CHECK(pair<Rule>(silent(1, 1), later));
   CHECK(pair<Rule>(silent(1, 1), felt(0, 1, 2, 2)));
   CHECK_FALSE(pair<Rule>(later, silent(1, 1)));
   CHECK_FALSE(pair<Rule>(silent(1, 1), silent(2, 2)));
-  // waves that were counted before the location was lost still count
+  // waves counted before the location was lost still count
   CHECK_FALSE(pair<Rule>(felt(nowhere, 6, 1, 1), later));
 }
 
@@ -184,7 +184,7 @@ TEST_CASE("grasp-lift: one finger is enough, but it must fulfil the whole rule",
   CHECK(is_preslip<published::GraspLift>(older, Hand<2>{pair_of_0, felt(nowhere, 0, none, none)}));
   CHECK(is_preslip<published::GraspLift>(older, Hand<2>{felt(nowhere, 0, none, none), pair_of_0}));
   CHECK_FALSE(is_preslip<published::GraspLift>(older, older));
-  // location and waves of the one, centroid of the other
+  // location and waves of one finger, centroid of the other
   CHECK_FALSE(is_preslip<published::GraspLift>(older, Hand<2>{felt(5, 6, 1, 1), felt(7, 4, 2, 2)}));
   CHECK_FALSE(is_preslip<published::GraspLift>(older, Hand<2>{felt(5, 4, 2, 2), felt(7, 6, 2, 2)}));
 }
@@ -203,7 +203,7 @@ TEST_CASE("centroids differ from beyond the tolerance on", "[preslip]") {
     CHECK(moved(sign * beyond, 0));
     CHECK(moved(0, sign * beyond));
   }
-  // none: what is not the same differs
+  // a tolerance of zero: any difference counts
   const Options exact{.centroid_tolerance_mm = 0};
   CHECK_FALSE(pair<published::GraspLift>(felt(3, 4, 0, 1), felt(5, 6, -0.0, 1), exact));
   CHECK(pair<published::GraspLift>(felt(3, 4, 0, 1), felt(5, 6, 5e-324, 1), exact));
@@ -224,12 +224,12 @@ TEST_CASE("samples with fewer waves than asked for are silent", "[preslip]") {
   const auto optimise = [](Index waves, Index least) {
     return pair<published::GraspOptimise>(felt(3, waves), felt(4, waves), {.min_waves = least});
   };
-  CHECK(optimise(0, 0));  // as published: none and none are equal
+  CHECK(optimise(0, 0));  // as published: two missing locations are equal
   CHECK_FALSE(optimise(0, 1));
   CHECK(optimise(1, 1));
   CHECK_FALSE(optimise(1, 2));
   CHECK(optimise(2, 2));
-  // what has no location makes no pair, however few waves are asked for
+  // a sample without a location makes no pair, whatever min_waves
   CHECK_FALSE(pair<published::GraspOptimise>(silent(), felt(4, 0), {.min_waves = 0}));
   CHECK_FALSE(pair<published::GraspOptimise>(felt(4, 0), silent(), {.min_waves = 0}));
   const auto lift = [](Index before, Index now, Index least) {
@@ -241,7 +241,7 @@ TEST_CASE("samples with fewer waves than asked for are silent", "[preslip]") {
   CHECK(lift(0, 1, 1));
   CHECK_FALSE(lift(0, 1, 2));
   CHECK(lift(0, 2, 2));
-  CHECK(lift(1, 2, 2));  // the older one may be silent
+  CHECK(lift(1, 2, 2));  // the older sample may be silent
 }
 
 TEST_CASE("waves and locations out of range", "[preslip]") {
@@ -254,12 +254,12 @@ TEST_CASE("waves and locations out of range", "[preslip]") {
   CHECK(optimise(max_index, max_index, {}));
   CHECK_FALSE(optimise(max_index - 1, max_index, {}));
   CHECK(lift(max_index - 1, max_index, {}));
-  // fewer than none are none
+  // negative waves count as none
   CHECK(lift(-3, 1, {}));
   CHECK(lift(min_index, 1, {}));
   CHECK_FALSE(lift(-3, -2, {.min_waves = 0}));
   CHECK_FALSE(optimise(-3, -3, {.min_waves = 0}));
-  // locations before the first taxel are none
+  // locations before the first taxel count as none
   CHECK_FALSE(pair<published::GraspOptimise>(felt(-7, 2), felt(4, 2)));
   CHECK_FALSE(pair<published::GraspOptimise>(felt(4, 2), felt(min_index, 2)));
   CHECK(pair<published::GraspLift>(felt(min_index, 2, 0, 0), felt(4, 3, 1, 1)));
@@ -275,22 +275,22 @@ TEMPLATE_TEST_CASE("pre-slip: an alarm begins with a pair and stands until its o
   const Detector preslip({.history = 5});
   auto state = preslip.start();
   const auto see = [&](const Sample& sample) { return answer(preslip(all<2>(sample), state)); };
-  CHECK(see(felt(3, 5)) == no_alarm);  // nothing to be compared with
+  CHECK(see(felt(3, 5)) == no_alarm);  // no sample to compare with
   CHECK(see(felt(3, 5)) == no_alarm);
   CHECK(see(felt(4, 5)) == fresh(1));
   CHECK(see(silent()) == stands(2));
   CHECK(see(silent()) == stands(3));
   CHECK(see(silent()) == stands(4));
   CHECK(see(silent()) == no_alarm);
-  CHECK(see(silent()) == no_alarm);  // nothing but the one sample at 4 and silence
-  // another pair prolongs it
+  CHECK(see(silent()) == no_alarm);  // only the sample at 4 and silence
+  // another pair prolongs the alarm
   CHECK(see(felt(1, 2)) == no_alarm);
   CHECK(see(felt(2, 2)) == fresh(1));
   CHECK(see(felt(2, 3)) == stands(2));
-  CHECK(see(felt(2, 2)) == fresh(3));  // with the older one, which is still there
+  CHECK(see(felt(2, 2)) == fresh(3));  // with the older sample, which is still stored
   CHECK(see(felt(1, 2)) == fresh(1));
   CHECK(see(felt(2, 3)) == stands(2));
-  CHECK(see(felt(1, 2)) == fresh(3));  // not with the one before, which is at the same place
+  CHECK(see(felt(1, 2)) == fresh(3));  // not with the previous sample, which is at the same place
   CHECK(see(silent()) == stands(4));
   CHECK(see(silent()) == no_alarm);
 
@@ -299,14 +299,14 @@ TEMPLATE_TEST_CASE("pre-slip: an alarm begins with a pair and stands until its o
   CHECK(see(silent()) == no_alarm);
   CHECK(see(silent()) == no_alarm);
   CHECK(see(silent()) == no_alarm);
-  CHECK(see(felt(4, 5)) == fresh(4));  // the oldest of the history
+  CHECK(see(felt(4, 5)) == fresh(4));  // the oldest sample of the history
   state.reset();
-  CHECK(see(felt(3, 5)) == no_alarm);  // all are forgotten
+  CHECK(see(felt(3, 5)) == no_alarm);  // all samples are forgotten
   CHECK(see(silent()) == no_alarm);
   CHECK(see(silent()) == no_alarm);
   CHECK(see(silent()) == no_alarm);
   CHECK(see(silent()) == no_alarm);
-  CHECK(see(felt(4, 5)) == no_alarm);  // the first has left
+  CHECK(see(felt(4, 5)) == no_alarm);  // the first sample has left
 }
 
 TEMPLATE_TEST_CASE("pre-slip: what a lift stirs up and how long it stands",
@@ -320,13 +320,13 @@ TEMPLATE_TEST_CASE("pre-slip: what a lift stirs up and how long it stands",
     return answer(preslip(Hand<2>{silent(5, 5), sample}, state));
   };
   CHECK(see(felt(3, 2, 1, 1)) == no_alarm);
-  CHECK(see(felt(4, 2, 2, 2)) == no_alarm);  // no more waves
+  CHECK(see(felt(4, 2, 2, 2)) == no_alarm);  // not more waves
   CHECK(see(felt(4, 3, 2, 2)) == fresh(2));  // than the first, elsewhere
   CHECK(see(felt(5, 3, 3, 3)) == fresh(2));  // than the second
   CHECK(see(felt(5, 3, 3, 3)) == fresh(3));
   CHECK(see(felt(5, 2, 3, 3)) == no_alarm);
   CHECK(see(silent(3, 3)) == no_alarm);
-  CHECK(see(felt(6, 1, 3, 3)) == no_alarm);  // where it was silent
+  CHECK(see(felt(6, 1, 3, 3)) == no_alarm);  // at a silent sample
   CHECK(see(felt(6, 1, 4, 4)) == fresh(2));
   CHECK(see(silent(none, none)) == stands(3));
   CHECK(see(silent(none, none)) == no_alarm);
@@ -412,7 +412,7 @@ TEST_CASE("pre-slip: what is written down of itself", "[preslip]") {
 }
 
 TEST_CASE("rules take all taxels that vibrate", "[preslip]") {
-  using List = std::vector<std::array<Index, 2>>;  // location and waves, the strongest first
+  using List = std::vector<std::array<Index, 2>>;  // location and waves, strongest first
   const auto listed = [](const List& list, double x_mm = 0) {
     Sample sample = list.empty() ? silent(x_mm) : felt(list[0][0], list[0][1], x_mm);
     for (const auto& one : list) {
@@ -423,13 +423,13 @@ TEST_CASE("rules take all taxels that vibrate", "[preslip]") {
   const auto optimise = [&](const List& older, const List& later) {
     return is_preslip<GraspOptimise>(Hand<1>{listed(older)}, Hand<1>{listed(later)});
   };
-  CHECK(optimise({{3, 5}, {8, 2}}, {{3, 5}, {9, 2}}));        // 9 vibrates like 8 did
-  CHECK(optimise({{3, 5}, {8, 5}}, {{3, 5}, {8, 5}}));        // two alike are enough
+  CHECK(optimise({{3, 5}, {8, 2}}, {{3, 5}, {9, 2}}));        // 9 vibrates as 8 did
+  CHECK(optimise({{3, 5}, {8, 5}}, {{3, 5}, {8, 5}}));        // two equal ones suffice
   CHECK(optimise({{3, 5}}, {{8, 2}, {4, 5}}));                // not the strongest
-  CHECK_FALSE(optimise({{3, 5}, {8, 2}}, {{3, 5}, {8, 2}}));  // each the same as before
-  CHECK_FALSE(optimise({{3, 5}, {8, 2}}, {{4, 6}, {9, 3}}));  // none as fast
+  CHECK_FALSE(optimise({{3, 5}, {8, 2}}, {{3, 5}, {8, 2}}));  // each as before
+  CHECK_FALSE(optimise({{3, 5}, {8, 2}}, {{4, 6}, {9, 3}}));  // none equally fast
   CHECK_FALSE(optimise({{3, 5}}, {}));
-  // a taxel of another finger is another one, of whichever place
+  // a taxel of another finger is a different one, wherever it is
   const auto two = [&](const List& a, const List& b) { return Hand<2>{listed(a), listed(b)}; };
   CHECK(is_preslip<GraspOptimise>(two({{3, 5}}, {{3, 5}}), two({{3, 5}}, {{3, 5}})));
   CHECK_FALSE(is_preslip<GraspOptimise>(two({{3, 5}}, {{3, 6}}), two({{3, 5}}, {{3, 6}})));
@@ -437,14 +437,14 @@ TEST_CASE("rules take all taxels that vibrate", "[preslip]") {
   const auto lift = [&](const List& older, const List& later) {
     return is_preslip<GraspLift>(Hand<1>{listed(older, 1)}, Hand<1>{listed(later, 2)});
   };
-  CHECK(lift({{3, 5}}, {{3, 5}, {8, 6}}));  // one more, and faster
+  CHECK(lift({{3, 5}}, {{3, 5}, {8, 6}}));  // one more, which is faster
   CHECK(lift({}, {{8, 1}}));
-  CHECK_FALSE(lift({{3, 5}}, {{3, 6}}));  // the same, faster
+  CHECK_FALSE(lift({{3, 5}}, {{3, 6}}));  // the same one, faster
   CHECK_FALSE(lift({{3, 5}}, {{8, 5}, {9, 4}}));
   CHECK_FALSE(lift({{3, 5}}, {}));
   CHECK_FALSE(is_preslip<GraspLift>(Hand<1>{listed({{3, 5}}, 1)},
-                                    Hand<1>{listed({{3, 5}, {8, 6}}, 1)}));  // force stays
-  // more numbers of waves than are kept
+                                    Hand<1>{listed({{3, 5}, {8, 6}}, 1)}));  // force unchanged
+  // more numbers of waves than are stored
   Sample many = felt(0, 1);
   for (Index k = 0; k < 40; ++k) {
     many.add_vibration({k + 1, k});
@@ -465,7 +465,7 @@ TEST_CASE("a finger that cannot be judged makes no pair", "[preslip]") {
     const Preslip<> preslip;
     auto state = preslip.start();
     CHECK(preslip({older, bad}, state).status == PreslipStatus::cannot_tell);
-    CHECK(preslip({later, bad}, state).status == PreslipStatus::preslip);  // the other one slips
+    CHECK(preslip({later, bad}, state).status == PreslipStatus::preslip);  // the other finger slips
     CHECK(preslip({older, older}, state).status == PreslipStatus::steady);
   }
   Sample restless = later;

@@ -45,7 +45,7 @@ Image<T> array(Index rows, Index cols, const Reading& reading) {
   return taxels;
 }
 
-/// The features after `count` samples of a clock that runs evenly.
+/// The features after `count` evenly timed samples.
 template <class Features, class Reading>
 FingerSample<double> after(const Features& features,
                            typename Features::State& state,
@@ -66,7 +66,7 @@ FingerSample<double> after(const Features& features, int count, const Reading& r
   return after(features, state, count, reading);
 }
 
-/// A sine of `waves` in a window of 16 at one taxel, 10 elsewhere.
+/// A sine with `waves` in a window of 16 at one taxel, and 10 at all others.
 struct Sine {
   double waves;
   Index row = 1;
@@ -98,7 +98,7 @@ TEST_CASE("taxel features: centroid of force in mm, x along columns", "[taxel_fe
   const auto two = centroid_of({{0, 0, 1}, {2, 4, 3}});
   CHECK(two.center_x_mm == 6);
   CHECK(two.center_y_mm == 3);
-  // readings below zero press nothing
+  // negative readings count as no pressure
   const auto three = centroid_of({{0, 0, 1}, {2, 4, 3}, {1, 1, -5}});
   CHECK(three.center_x_mm == 6);
   CHECK(three.sum == 4);
@@ -129,7 +129,7 @@ TEST_CASE("taxel features: the taxel that spreads most vibrates, of equals the f
   CHECK(after(features, 16, two(2, 1)).location == 7);
   CHECK(after(features, 16, two(2, 2)).location == 7);
   CHECK(after(features, 16, two(2, 2)).status == TaxelStatus::vibrating);
-  // what does not spread beyond the noise does not vibrate: 2.5 times 0.1 by default
+  // a deviation within the noise is no vibration: 2.5 times 0.1 by default
   CHECK(after(features, 16, two(0.24, 0.24)).status == TaxelStatus::quiet);
   CHECK(after(features, 16, two(0.24, 0.24)).location == FingerSample<double>::no_location);
   CHECK(after(features, 16, two(0.24, 0.27)).location == 11);
@@ -158,7 +158,7 @@ TEST_CASE("taxel features: every taxel that vibrates is listed", "[taxel_feature
   }
   CHECK(sample.location == 12);
   CHECK(sample.has_rested);
-  REQUIRE(sample.vibration_count == 3);  // by their waves, the strongest first
+  REQUIRE(sample.vibration_count == 3);  // by their waves, strongest first
   CHECK(sample.vibrations[0].location == 12);
   CHECK(sample.vibrations[0].waves == 8);
   CHECK_FALSE(sample.vibrations[0].is_several);
@@ -188,8 +188,8 @@ TEMPLATE_TEST_CASE("taxel features: as many waves as a sine has in the window",
                    ZeroCrossings,
                    SpectralPeak) {
   const TaxelFeatures<TestType> features(3, 5, options());
-  // a crossing may be missed where waves are shorter than three samples, and one wave less its line
-  // crosses it three times
+  // a crossing may be missed where waves are shorter than three samples, and one wave minus its
+  // line crosses it three times
   const int least = std::is_same_v<TestType, SpectralPeak> ? 1 : 2;
   const int most = std::is_same_v<TestType, SpectralPeak> ? 7 : 5;
   for (int waves = least; waves <= most; ++waves) {
@@ -202,8 +202,8 @@ TEMPLATE_TEST_CASE("taxel features: as many waves as a sine has in the window",
 }
 
 TEST_CASE("taxel features: rms of the vibrating taxel", "[taxel_features]") {
-  // of the power of w whole waves in n samples a line takes 6 / ((n^2 - 1) sin(pi w / n)^2), or
-  // less
+  // of the power of w whole waves in n samples, a line takes at most
+  //   6 / ((n^2 - 1) sin(pi w / n)^2)
   const TaxelFeatures features(3, 5, options());
   const double line = 6 / (255 * 0.5);
   const double rms = after(features, 40, Sine{4}).deviation;
@@ -248,7 +248,7 @@ TEMPLATE_TEST_CASE("taxel features: waves of the window, frequency by the clock"
                    "[taxel_features]",
                    ZeroCrossings,
                    SpectralPeak) {
-  // 12.5 Hz seen at 0.8 to 1.25 times the nominal rate: 10 to 6.4 waves in 64 samples
+  // 12.5 Hz sampled at 0.8 to 1.25 times the nominal rate: 10 to 6.4 waves in 64 samples
   for (const double rate : {0.8, 1.0, 1.25}) {
     CAPTURE(rate);
     auto o = options();
@@ -289,14 +289,14 @@ TEST_CASE("taxel features: a gap counts as at most two periods and is told", "[t
             Approx(k >= 20 && k < 35 ? even.frequency_hz * 15 / 16 : even.frequency_hz));
     }
   }
-  // no gap: two periods
+  // two periods are no gap
   auto state = features.start();
   CHECK(features(array(3, 5, [](Index, Index) { return 10; }), 0, state).gaps == 0);
   CHECK(features(array(3, 5, [](Index, Index) { return 11; }), 0.02, state).gaps == 0);
 }
 
 TEST_CASE("taxel features: the spectrum takes uneven times as they are", "[taxel_features]") {
-  // jitter of up to a third of the period, from a fixed sequence
+  // jitter of up to a third of the period, as a fixed sequence
   auto o = options();
   o.window = 32;
   const TaxelFeatures<SpectralPeak> features(1, 1, o);
@@ -324,7 +324,7 @@ TEST_CASE("taxel features: times that do not grow are refused, jumps begin a new
   CHECK(state.samples() == 0);
   after(features, state, 16, Sine{3});
   CHECK(state.samples() == 16);
-  CHECK(status_at(0.15) == TaxelStatus::time_not_later);  // the last one again
+  CHECK(status_at(0.15) == TaxelStatus::time_not_later);  // the last time again
   CHECK(status_at(0.10) == TaxelStatus::time_not_later);
   CHECK(status_at(test::nan) == TaxelStatus::time_not_later);
   CHECK(state.samples() == 16);
@@ -342,7 +342,7 @@ TEST_CASE("taxel features: bad taxels are left out and the others stay right", "
   o.saturated_at = 4095;
   const TaxelFeatures features(3, 5, o);
   double bad = 0;
-  // taxel 7 vibrates by 3, taxel 11 by 1; taxel 7 is bad once, at sample 20
+  // taxel 7 vibrates by 3, taxel 11 by 1; taxel 7 is invalid once, at sample 20
   const auto reading = [&](int k, Index i, Index j) {
     const Index taxel = i * 5 + j;
     const double turn = k % 4 < 2 ? 1 : -1;
@@ -356,14 +356,14 @@ TEST_CASE("taxel features: bad taxels are left out and the others stay right", "
     const auto there = after(features, state, 1, reading, 20);
     CHECK(there.left_out == 1);
     CHECK(there.location == 11);
-    // the centroid without taxel 7, by hand: all are 10 but 11, which is 11
+    // the centroid without taxel 7, by hand: all read 10 except taxel 11, which reads 11
     CHECK(there.sum == 141);
     CHECK(there.center_x_mm == Approx(2 * (10.0 * (30 - 2) + 1 * 1) / 141));
     const auto next = after(features, state, 1, reading, 21);
     CHECK(next.left_out == 0);
     CHECK(next.location == 11);
     CHECK(after(features, state, 14, reading, 22).location == 11);
-    CHECK(after(features, state, 1, reading, 36).location == 7);  // a window after
+    CHECK(after(features, state, 1, reading, 36).location == 7);  // a window later
   }
 }
 
@@ -379,13 +379,13 @@ TEST_CASE("taxel features: a taxel that is stuck does not count", "[taxel_featur
   CHECK(before.left_out == 0);
   CHECK(before.sum >= 60);
   const auto later = after(features, state, 1, reading, 5);
-  CHECK(later.left_out == 1);  // zero is not stuck: nothing presses there
+  CHECK(later.left_out == 1);  // zero is not stuck: no pressure there
   CHECK(later.sum < 11);
   CHECK(later.center_x_mm == 4);
 }
 
 TEST_CASE("taxel features: the edge of a contact may let go and come back", "[taxel_features]") {
-  // all read about 100; taxel 2 goes between 0 and another reading every second sample
+  // all read about 100; taxel 2 alternates between 0 and another reading
   const TaxelFeatures features(1, 4, options());
   const auto vibrates = [&](double comes_back_to) {
     return after(features, 60,
@@ -396,7 +396,7 @@ TEST_CASE("taxel features: the edge of a contact may let go and come back", "[ta
         .is_vibrating();
   };
   CHECK(vibrates(40));
-  CHECK_FALSE(vibrates(130));  // to more than the others: a loose contact
+  CHECK_FALSE(vibrates(130));  // higher than the others: a loose contact
 }
 
 TEST_CASE("taxel features: noise taxel by taxel, and dead ones", "[taxel_features]") {
@@ -429,7 +429,7 @@ TEST_CASE("taxel features: arrays that say nothing", "[taxel_features]") {
   CHECK(all(test::nan).status == TaxelStatus::no_taxels);
   CHECK_FALSE(all(test::nan).is_pressed());
   CHECK(all(7).status == TaxelStatus::frozen);
-  // one taxel alive
+  // a single live taxel
   const auto one = after(features, 20, [](int k, Index i, Index j) {
     return i == 2 && j == 3 ? 10 + (k % 4 < 2 ? 1.0 : -1.0) : test::nan;
   });

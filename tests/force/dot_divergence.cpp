@@ -23,7 +23,7 @@ using Mask = Image<std::uint8_t>;
 
 namespace {
 
-/// A gel with dots, and a ball that presses it.
+/// A gel with dots and a ball that presses it.
 struct Gel {
   GelPad pad{.young_mpa = 0.2, .poisson = 0.4, .ball_mm = 10, .friction = 0.6};
   double pitch_mm = 2;
@@ -63,7 +63,7 @@ struct Gel {
     const double modulus = pad.young_mpa / (1 - pad.poisson * pad.poisson);
     return radius_mm * radius_mm * radius_mm * 4 * modulus / (3 * pad.ball_mm);
   }
-  /// Of the half-space: |area| per N.
+  /// |area| per N for the half-space.
   double area_per_n() const { return (1 - 2 * pad.poisson) * (1 + pad.poisson) / pad.young_mpa; }
   DotDivergence<> divergence() const {
     return DotDivergence<>(free(), {.noise_mm = noise_mm, .free_frames = 10000, .parts = false});
@@ -114,7 +114,7 @@ TEST_CASE("dot divergence: the half-space's, whatever the pad, the pitch and the
     const double force = gel.force_for(uniform(2.5, 5));
     const auto seen = gel.seen(gel.pressed(force));
     RC_ASSERT(seen.ok());
-    // the squares of displacements and the corners of the cells: a few per cent
+    // error of a few per cent from the squares of displacements and the corners of the cells
     RC_ASSERT(std::abs(seen.area_mm2 / (gel.area_per_n() * force) - 1) < 0.06);
   });
 }
@@ -238,7 +238,7 @@ TEST_CASE("dot divergence: missing, wild and mistaken input", "[dot_divergence]"
   const Dots dots = gel.moved(contact);
   const double area = divergence(dots, mask, workspace).area_mm2;
 
-  // inside, a dot's place does not matter; of one at the border those beside it tell
+  // the position of a dot inside does not matter; a dot at the border is replaced by its neighbours
   for (const Index row : {7, 5, 4}) {
     for (const double bad : {test::nan, 0.0, 1e9}) {
       Dots some = dots;

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
-// The tensions by least squares over all equations of equilibrium, on membranes whose tensions are
+// Tensions by least squares over all equations of equilibrium, on membranes whose tensions are
 // known in closed form.
 #include <algorithm>
 #include <cmath>
@@ -25,7 +25,7 @@ namespace {
 constexpr double rim_mm = 18.735;
 constexpr double pressure_mpa = 0.01;
 
-/// A sphere through the rim, nothing touching it.
+/// A sphere through the rim without contact.
 template <class S>
 struct Cap {
   S radius_mm = S(25);
@@ -38,7 +38,7 @@ struct Cap {
   bool in_contact(const S&, const S&) const { return false; }
 };
 
-/// A flat disc of radius 8 mm pressed on, with an arc from its edge to the rim.
+/// A pressed flat disc of radius 8 mm, with an arc from its edge to the rim.
 template <class S>
 struct FlatPress {
   static constexpr double disc_mm = 8;
@@ -57,13 +57,13 @@ struct FlatPress {
   }
   bool in_contact(const S& x, const S& y) const { return x * x + y * y < S(disc_mm * disc_mm); }
 
-  /// f_v / p at a distance from the axis: vertical balance of what lies between.
+  /// f_v / p at a distance from the axis, from the vertical balance of the part between disc and r.
   static double tension(double r) {
     return (r * r - disc_mm * disc_mm) / (2 * r) * bend_mm / (r - disc_mm);
   }
 };
 
-/// Free, and higher on one side, in two directions.
+/// A free membrane that is higher on one side, in two directions.
 template <class S>
 struct Leaning {
   S turn = S(0);
@@ -81,7 +81,7 @@ struct Leaning {
   bool in_contact(const S&, const S&) const { return false; }
 };
 
-/// A membrane cut into segments, and what is known of its pull.
+/// A membrane cut into segments, with its pull at the rim.
 template <class S>
 struct Membrane {
   template <class Shape>
@@ -101,8 +101,8 @@ struct Membrane {
     lean(0);
   }
 
-  /// A pull in the plane of the membrane at the rim that leans along the rim by `shear` sin(angle),
-  /// as `turn` columns before.
+  /// Sets a pull in the plane of the membrane at the rim that leans along the rim by `shear`
+  /// sin(angle), rotated by `turn` columns.
   void lean(double shear, Index turn = 0) {
     for (Index i = 0; i < segments.columns(); ++i) {
       const auto& border = segments.around(i, 0);
@@ -127,7 +127,7 @@ struct Membrane {
     return sum;
   }
 
-  /// Area in plan of the polygon that row j makes.
+  /// Area in plan of the polygon of row j.
   double plan_area(Index j) const {
     double twice = 0;
     for (Index i = 0; i < nodes.columns(); ++i) {
@@ -138,7 +138,7 @@ struct Membrane {
     return twice / 2;
   }
 
-  /// The largest error of f_v in the lowest `rows` rows, as a share; `truth(r)` is f_v / p.
+  /// Largest relative error of f_v in the lowest `rows` rows; `truth(r)` is f_v / p.
   template <class Truth>
   double tension_error(Index rows, const Truth& truth) const {
     double worst = 0;
@@ -160,7 +160,7 @@ struct Membrane {
   std::vector<Point3<S>> pull;
 };
 
-/// Every tension the same in all directions, without shear: a soap film's.
+/// Sets one tension everywhere without shear, as in a soap film.
 template <class S>
 void fill_evenly(Membrane<S>& m, double tension_n_per_mm, double around_n_per_mm) {
   Tensions<S>& t = m.tensions;
@@ -185,7 +185,8 @@ double of_cap(double) {
 }  // namespace
 
 TEMPLATE_TEST_CASE("least squares: an inflated cap is a soap film", "[membrane]", double, float) {
-  // p R / 2 on every border, up to the summit, where the uppermost borders have no length.
+  // The tension is p R / 2 on every border up to the summit, where the uppermost borders have no
+  // length.
   const Index columns = 36;
   double error = 0;
   for (const Index rows : {15, 30}) {
@@ -217,7 +218,7 @@ TEMPLATE_TEST_CASE("least squares: a flat disc pressed on", "[membrane]", double
   const Index columns = 36, rows = 30;
   Membrane<TestType> press(FlatPress<TestType>{}, columns, rows);
   REQUIRE(press.solve());
-  // the load on A_g is what the base carries but the rim does not
+  // the load on A_g is the load on the base minus the force of the rim
   const double contact_n = pressure_mpa * press.plan_area(0) - press.rim_force().z;
   CHECK(std::abs(contact_n / (pressure_mpa * press.plan_area(rows)) - 1) < 1e-6);
   CHECK(std::abs(contact_n / (pressure_mpa * std::numbers::pi * 64) - 1) < 0.01);
@@ -228,14 +229,14 @@ TEMPLATE_TEST_CASE("least squares: a flat disc pressed on", "[membrane]", double
 
 TEMPLATE_TEST_CASE("least squares: a flat disc pulled sideways", "[membrane]", double, float) {
   // The pull leans along the rim by 0.01 sin(angle). To first order in it the tensions follow from
-  // two ordinary differential equations; integrated up to the edge of the disc, where the solution
-  // has to remain finite, they give 0.050044 N.
+  // two ordinary differential equations. Integrated up to the edge of the disc, where the solution
+  // must remain finite, they give 0.050044 N.
   Membrane<TestType> press(FlatPress<TestType>{}, 36, 30);
   press.lean(0.01);
   REQUIRE(press.solve());
   CHECK(std::abs(press.rim_force().x / -0.050044 - 1) < 0.01);
   CHECK(std::abs(press.rim_force().y) < 1e-5);
-  // and the lean rotated by some columns turns the force
+  // rotating the lean by some columns rotates the force
   const Point3<double> before = press.rim_force();
   press.lean(0.01, 9);
   REQUIRE(press.solve());
@@ -282,7 +283,7 @@ TEST_CASE("least squares: tensions grow with the pressure", "[membrane]") {
 }
 
 TEMPLATE_TEST_CASE("least squares: float loses no more than 1e-3", "[membrane]", double, float) {
-  // the forces of the double solution
+  // forces of the solution in double
   Membrane<double> exact(Leaning<double>{}, 36, 30);
   exact.lean(0.1);
   REQUIRE(exact.solve());
@@ -349,7 +350,7 @@ TEMPLATE_TEST_CASE("membrane residual: nothing for a true field, much for a wron
     // a tenth more in one direction is a twentieth of the pressure, and more near the summit
     fill_evenly(cap, 1.1 * tension, tension);
     CHECK(double(imbalance(cap).force) > 0.05);
-    // a shear that is not the same on both sides of a corner turns the segment
+    // a shear that differs between the two sides of a corner twists the segment
     fill_evenly(cap, tension, tension);
     std::fill(cap.tensions.upward_shear.begin(), cap.tensions.upward_shear.end(),
               TestType(tension / 10));

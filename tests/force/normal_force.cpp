@@ -33,7 +33,7 @@ const NormalForce by_depth(published::force_of_depth());
 const NormalForce area_in_motion(published::force_of_area(), published::compensation_by_area());
 const NormalForce depth_in_motion(published::force_of_depth(), published::compensation_by_depth());
 
-/// Sums of printed decimals, done on paper: nothing but the roundoff of double may differ.
+/// Sums of printed decimals, computed by hand: only the roundoff of double may differ.
 Approx printed(double n) {
   return Approx(n).epsilon(1e-14).margin(1e-14);
 }
@@ -107,7 +107,7 @@ TEST_CASE("normal force: eqs. 21 and 22 beyond the blend", "[normal_force]") {
   // 0.748 F_S - 0.637 d + 1.7
   CHECK(area(100, {1.8, 2.4}) == printed(2.2829816));
   CHECK(area(250, {-3, 4}) == printed(6.2936016));
-  CHECK(area(250, {1, 0}) == printed(7.7786016 - 0.637 + 1.7));  // where the blend ends
+  CHECK(area(250, {1, 0}) == printed(7.7786016 - 0.637 + 1.7));  // at the end of the blend
   // 1.2 F_D + 0.509 d - 3.5
   CHECK(depth(4, {0, -2}) == printed(15.49964));
   CHECK(depth(2.5, {1.2, 0.9}) == printed(7.9011 + 0.7635 - 3.5));
@@ -120,7 +120,7 @@ TEST_CASE("normal force: eqs. 21 and 22 beyond the blend", "[normal_force]") {
   // both at once: gain 1 - 0.252 + 0.2, and both shifts
   CHECK(area(250, {3, 4}, 10) == printed(9.8584416 - 1.485 - 1.7829));
   CHECK(depth(4, {2, 0}, 10) == printed(14.9847 + 1.018 - 3.5 - 0.0102 - 0.0518));
-  // plain where nothing moved
+  // plain without motion
   for (const double s : {50.0, 100.0, 250.0, 400.0}) {
     CHECK(area(s, {0, 0}) == by_area(s).force_n);
     CHECK(area(s, {0, 0}, -0.0) == by_area(s).force_n);
@@ -132,7 +132,7 @@ TEST_CASE("normal force: eqs. 21 and 22 beyond the blend", "[normal_force]") {
   CHECK(area(250, {0, 0.5}) == printed(9.0889008 + 0.69075));
   CHECK(area(250, {0, 0}, 0.0085 / degree) ==
         printed(1.1 * 10.3992 + (0.00171 * 0.0085 / degree - 1.8) / 2));
-  // and at a quarter, where 3/16 - 2/64 = 0.15625 of it counts: gain 0.960625
+  // and at a quarter, where the weight is 3/16 - 2/64 = 0.15625: gain 0.960625
   CHECK(area(250, {0.25, 0}) == printed(0.960625 * 10.3992 + 0.15625 * (1.7 - 0.15925)));
 }
 
@@ -205,7 +205,7 @@ TEST_CASE("normal force: below the range it fades out", "[normal_force]") {
   const auto r = by_area(9);  // half the start: half of 0.00648 + 0.1719 + 0.6242
   CHECK(r.status == ForceStatus::below_range);
   CHECK(r.force_n == printed(0.40129));
-  // what a compensation adds fades, too: (0.748 * 0.80258 - 0.637 + 1.7) / 2
+  // the part of the compensation fades, too: (0.748 * 0.80258 - 0.637 + 1.7) / 2
   const auto moved = area_in_motion(9, {0, 1});
   CHECK(moved.status == ForceStatus::below_range);
   CHECK(moved.force_n == printed(0.83166492));
@@ -213,9 +213,9 @@ TEST_CASE("normal force: below the range it fades out", "[normal_force]") {
   CHECK(by_area(18 - 1e-9).force_n == Approx(0.99392).epsilon(1e-9));
   CHECK(by_area(1e-9).force_n < 1e-19);
   CHECK(by_area(1e-9).force_n > 0);
-  // 27/64 of the way at a quarter: 3/16 - 2/64 of the force
+  // at a quarter of the range's start: 3/16 - 2/64 of the force
   CHECK(NormalForce(hertz())(0.125).force_n == printed(0.15625 * 0.000244140625));
-  // a curve that was identified from 0 on is not faded
+  // a curve identified from 0 on is not faded
   CHECK(NormalForce(PolynomialForce<>{{0, 2, 0}, 0, 10})(1e-9).force_n == printed(2e-9));
   CHECK(NormalForce(PolynomialForce<>{{0, 2, 0}, 0, 10})(1e-9).status == ForceStatus::measured);
 }
@@ -229,7 +229,7 @@ TEST_CASE("normal force: beyond the range it goes on along the tangent", "[norma
   // 64 + 24 (r - 8) instead of r^3 / 8
   CHECK(NormalForce(hertz())(9).force_n == printed(88));
   CHECK(NormalForce(hertz())(9).status == ForceStatus::beyond_range);
-  // a cubic that would turn down beyond the range does not
+  // a cubic that would turn down beyond the range continues along its tangent
   const PolynomialForce<3> bent{{0, 3, 0, -1}, 0.25, 0.9};
   CHECK(NormalForce(bent)(5).force_n == printed(2.7 - 0.729 + 4.1 * (3 - 2.43)));
   // value and slope are continuous: differences on both sides
@@ -247,7 +247,7 @@ TEST_CASE("normal force: the variance beyond the range is that of the tangent, a
   const NormalForce force(published::force_of_area(), NoCompensation{}, errors);
   const double area = 578, past = 100;
   const double tangent = 0.01 + 1e-6 * area * area + 1e-12 * square(478.0 * 478 + past * 2 * 478);
-  const double bend = 0.00008 * past * past;  // of the curve over its tangent
+  const double bend = 0.00008 * past * past;  // distance of the curve from its tangent
   CHECK(force(area).variance_n2 == Approx(tangent + bend * bend).epsilon(1e-12));
   CHECK_FALSE(force(area).ok());
   CHECK(force(area).has_force());
@@ -296,11 +296,11 @@ TEST_CASE("normal force: what is no number gives none", "[normal_force]") {
     expect_none(area_in_motion(100, {bad, 0}));
     expect_none(area_in_motion(100, {0, bad}));
     expect_none(area_in_motion(100, {0, 0}, bad));
-    expect_none(area_in_motion(0, {0, 0}, bad));  // even without contact: it was not computed
+    expect_none(area_in_motion(0, {0, 0}, bad));  // even without contact: no force was computed
     expect_none(NormalForce(line(), Scaled{})(4, {bad, 0}));
     expect_none(NormalForce(line(), Scaled{})(4, {0, bad}));
     expect_none(NormalForce(line(), Scaled{})(4, {0, 0}, bad));
-    // what is not looked at does no harm
+    // unused input does no harm
     CHECK(by_area(100, {bad, bad}, bad).force_n == by_area(100).force_n);
   }
   expect_none(NormalForceResult<double>());
@@ -327,7 +327,7 @@ TEST_CASE("normal force: curves that are refused", "[normal_force]") {
   CHECK(refused(PolynomialForce<>{{0, 1, 0}, 2, 2}) == owner + "to = 2, must be finite and > from");
   CHECK(refused(PolynomialForce<>{{0, 1, 0}, 2, infinity}) ==
         owner + "to = inf, must be finite and > from");
-  // at either end, and between
+  // at either end and in between
   const std::string slope = owner + "slope within the range = ";
   CHECK(refused(PolynomialForce<>{{0, 1, -0.25}, 1, 3}) == slope + "-0.5, must be >= 0");
   CHECK(refused(PolynomialForce<>{{0, -3, 1}, 1, 3}) == slope + "-1, must be >= 0");
@@ -399,7 +399,7 @@ TEST_CASE("normal force: compensations and errors that are refused", "[normal_fo
   CHECK(refused_with(errors) == no_covariance);
   errors.covariance = {{{0, 0.5, 0}, {0.5, 1, 0}, {0, 0, 1}}};
   CHECK(refused_with(errors) == no_covariance);
-  // each pair of parameters could be so, not all three: the eigenvalue of (1, 1, 1) is -0.2
+  // each pair of parameters is possible, but not all three: the eigenvalue of (1, 1, 1) is -0.2
   errors.covariance = {{{1, -0.6, -0.6}, {-0.6, 1, -0.6}, {-0.6, -0.6, 1}}};
   CHECK(refused_with(errors) == no_covariance);
   errors.covariance = {{{1, -0.5, -0.5}, {-0.5, 1, -0.5}, {-0.5, -0.5, 1}}};  // singular
@@ -431,11 +431,11 @@ TEST_CASE("normal force: variance by hand", "[normal_force]") {
   CHECK(variance(4) == printed(by_parameters + 0.25 + 0.36));
   CHECK(variance(0) == 0.25);
   CHECK(variance(-3) == 0.25);
-  // a compensation's gain multiplies all but the residual
+  // a compensation's gain multiplies all terms but the residual
   const NormalForce doubled(line(), Scaled{.per_mm_sq = 1}, errors);
   CHECK(doubled(4, {1, 0}).variance_n2 == printed(4 * (by_parameters + 0.36) + 0.25));
   CHECK(doubled(4, {0, 0}).variance_n2 == printed(by_parameters + 0.25 + 0.36));
-  // none without errors
+  // no variance without errors
   CHECK(std::isnan(by_area(100).variance_n2));
 }
 
@@ -455,20 +455,20 @@ TEST_CASE("normal force: two measures fused", "[normal_force]") {
   CHECK(twice.variance_n2 == 0.25);
   CHECK(twice.disagreement == 0);
   CHECK(twice.sources == 2);
-  // one is exact
+  // one force is exact
   const auto exact = fused(at(3, 0), at(5, 1));
   CHECK(exact.force_n == 3);
   CHECK(exact.variance_n2 == 0);
   CHECK(exact.disagreement == -2);
   CHECK(fused(at(5, 1), at(3, 0)).force_n == 3);
-  // both are: that they differ then has no measure
+  // both are exact: their difference then has no measure
   CHECK(fused(at(3, 0), at(3, 0)).disagreement == 0);
   const auto exact_both = fused(at(3, 0), at(5, 0));
   CHECK(exact_both.force_n == 4);
   CHECK(exact_both.variance_n2 == 0);
   CHECK(std::isnan(exact_both.disagreement));
   CHECK(exact_both.sources == 2);
-  // only one
+  // only one force is usable
   for (const R& lacking :
        {R{}, at(9, missing), at(9, infinity), R{ForceStatus::not_finite, missing, 1}}) {
     for (const auto& one : {fused(at(3, 0.5), lacking), fused(lacking, at(3, 0.5))}) {
@@ -483,7 +483,7 @@ TEST_CASE("normal force: two measures fused", "[normal_force]") {
     CHECK(std::isnan(none.disagreement));
     CHECK(none.sources == 0);
   }
-  // the worse status of two, and none where they contradict each other
+  // the worse status of the two, and none where they contradict each other
   CHECK(twice.ok());
   CHECK(fused(at(3, 1), R{ForceStatus::beyond_range, 4, 1}).status == ForceStatus::beyond_range);
   CHECK(fused(R{ForceStatus::no_contact, 0, 1}, at(2, 1)).status == ForceStatus::measured);
@@ -492,7 +492,7 @@ TEST_CASE("normal force: two measures fused", "[normal_force]") {
   CHECK(fused(at(3, 0.5), at(6.1, 0.5)).status == ForceStatus::disagreeing);
   CHECK(fused(at(3, 0.5), at(6.1, 0.5), 4).ok());
   CHECK(exact_both.status == ForceStatus::disagreeing);
-  // zero forces take part, too
+  // zero forces take part as well
   CHECK(fused(R{ForceStatus::no_contact, 0, 1}, at(2, 1)).force_n == 1);
   CHECK(fused(R{ForceStatus::held_at_zero, 0, 1}, at(2, 1)).sources == 2);
 }
@@ -512,7 +512,7 @@ TEST_CASE("normal force: forces by area and by depth that agree, fused", "[norma
   CHECK(both.force_n < (std::max)(a.force_n, d.force_n));
   CHECK(both.variance_n2 < (std::min)(a.variance_n2, d.variance_n2));
   CHECK(std::abs(both.disagreement) < 1);
-  // a sharper object: as deep, but of half the area
+  // a sharper object: as deep, but half the area
   CHECK(std::abs(fused(area(110), depth(3)).disagreement) > 3);
 }
 
@@ -533,7 +533,7 @@ TEST_CASE("normal force: no curve begins with a step", "[normal_force]") {
       "begin with a step");
   const NormalForce<> nearly(PolynomialForce<>{{1, 1, 0}, 1e-310, 10});
   CHECK(nearly(0).force_n == 0);
-  // a level curve is none that falls, whatever its sign
+  // a constant curve does not fall, whatever its sign
   const NormalForce<> level(PolynomialForce<>{{-3, 0, 0}, 1, 3});
   CHECK(level(2).status == ForceStatus::held_at_zero);
 }
@@ -548,7 +548,7 @@ TEST_CASE("normal force: the variance knows how a compensation fades", "[normal_
     const double slope =
         (force(area_mm2 + step, moved).force_n - force(area_mm2 - step, moved).force_n) /
         (2 * step);
-    // beyond the range, how far the curve is from its tangent besides
+    // beyond the range, also the distance of the curve from its tangent
     const double bend = area_mm2 > 478 ? 0.748 * 0.00008 * square(area_mm2 - 478) : 0;
     CHECK(force(area_mm2, moved).variance_n2 ==
           Approx(square(0.1 * slope) + square(bend)).epsilon(2e-6));

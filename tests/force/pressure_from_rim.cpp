@@ -78,7 +78,7 @@ TEST_CASE("pressure from the rim: a free pad has no force, and its pressure is n
 TEST_CASE("pressure from the rim: what cannot be is said", "[wrench]") {
   const auto rim = test::rim_border();
   const Wrench<BalancedRim> wrench(rim);
-  for (const double modulus :  // and in N/m
+  for (const double modulus :  // also in N/m
        {0.0, -0.5, 500.0, std::numeric_limits<double>::infinity(), not_a_number<double>()}) {
     CHECK(found_by(wrench, modulus).status == WrenchStatus::refused);
   }

@@ -26,14 +26,14 @@ namespace {
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double none = test::nan;
 
-/// What a contact of one size makes of a displacement of 1 mm and of a turn of 1 rad.
+/// Normalised values of a displacement of 1 mm and a rotation of 1 rad at one contact size.
 struct Factors {
   double measure;
   double of_displacement;
   double of_rotation;
 };
 
-/// 1 N/mm and 1 N mm/rad: forces are what the displacement is normalised to.
+/// 1 N/mm and 1 N mm/rad: forces equal the normalised displacement.
 RadialShear<> ones() {
   return {{{1.0}}, {{1.0}}};
 }
@@ -113,9 +113,9 @@ TEST_CASE("shear: normalised as published (eqs. 4 and 5)", "[shear]") {
 }
 
 TEST_CASE("shear: elastic pads, by the radius of the contact", "[shear]") {
-  // Tangential stiffness as the radius, torsional as its cube.
+  // Tangential stiffness is proportional to the radius, torsional stiffness to its cube.
   check_factors(shear_by_radius(5.0), {{5, 1, 1}, {10, 2, 8}, {2.5, 0.5, 0.125}, {15, 3, 27}});
-  // The same by the contact's area.
+  // The same by the area of the contact.
   const double pi = 3.14159265358979323846;
   const ShearNormalisation<double> by_area{25 * pi, 0.5, 1.5};
   for (const double radius : {0.1, 1.0, 4.0, 9.0}) {
@@ -156,7 +156,7 @@ TEST_CASE("shear: a polynomial along the displacement, and its tangent beyond", 
   CHECK(r.moment_n_mm == Approx(-(30 * 0.25 + 8 * 0.015625)).epsilon(1e-15));
   CHECK(r.force_status == ForceStatus::measured);
   CHECK(r.moment_status == ForceStatus::measured);
-  // |d| = 2.5, identified up to 1.5: there 3.28125 with the slope 2 + 1.5 - 0.75 * 2.25
+  // |d| = 2.5, identified up to 1.5: 3.28125 there, with the slope 2 + 1.5 - 0.75 * 2.25
   r = shear(1.0, {-1.5, 2}, 0.75);
   CHECK(std::hypot(r.tangential_force_n.x, r.tangential_force_n.y) ==
         Approx(3.28125 + 1.8125).epsilon(1e-15));
@@ -166,13 +166,13 @@ TEST_CASE("shear: a polynomial along the displacement, and its tangent beyond", 
   // 0.5: 15 + 1, slope 30 + 6
   CHECK(r.moment_n_mm == Approx(16 + 0.25 * 36).epsilon(1e-15));
   CHECK(r.moment_status == ForceStatus::beyond_range);
-  // at the end itself it is still within
+  // the end itself is within the range
   r = shear(1.0, {0, 1.5}, -0.5);
   CHECK(r.force_status == ForceStatus::measured);
   CHECK(r.tangential_force_n.y == Approx(3.28125).epsilon(1e-15));
   CHECK(r.moment_status == ForceStatus::measured);
   CHECK(r.moment_n_mm == Approx(-16).epsilon(1e-15));
-  // nothing displaced, no force
+  // no displacement, no force
   r = shear(1.0, {0, 0}, 0);
   CHECK(r.tangential_force_n.x == 0);
   CHECK(r.moment_n_mm == 0);
@@ -184,7 +184,7 @@ TEST_CASE("shear: a straight line needs no range, but reports the one it has", "
   const Shear closed(shear_without_measure(), RadialShear<>{{{2.0}, 1.0}, {{3.0}, 0.5}});
   for (const double size : {0.5, 5.0, 5e5}) {
     const auto a = open(1.0, {size, 0}, size), b = closed(1.0, {size, 0}, size);
-    // neither 100 mm nor half a turn are those of a fingertip
+    // neither 100 mm nor half a turn is plausible for a fingertip
     const bool far = size > 100, turned = size > 3.2;
     CHECK(a.force_status == (far ? ForceStatus::implausible : ForceStatus::measured));
     CHECK(a.moment_status == (turned ? ForceStatus::implausible : ForceStatus::measured));
@@ -204,7 +204,7 @@ TEST_CASE("shear: any linear map", "[shear]") {
   CHECK(r.tangential_force_n.x == 2 - 1 + 0.125);
   CHECK(r.tangential_force_n.y == 0.25 + 6 - 0.25);
   CHECK(r.moment_n_mm == 10.5);
-  // offsets are the force of a contact that is not displaced, not that of no contact
+  // offsets are the force of a contact that is not displaced, not of a missing contact
   r = shear(1.0, {0, 0}, 0);
   CHECK(r.tangential_force_n.x == 0.125);
   CHECK(r.tangential_force_n.y == -0.25);
@@ -219,7 +219,7 @@ TEST_CASE("shear: any linear map", "[shear]") {
   CHECK(r.tangential_force_n.x == Approx(1.56916819579350147 + 0.125).epsilon(1e-14));
   CHECK(r.tangential_force_n.y == Approx(6.25 * 1.56916819579350147 - 0.25).epsilon(1e-14));
   CHECK(r.moment_n_mm == Approx(10 * 3.24900958542494209 + 0.5).epsilon(1e-14));
-  // no displacement of a fingertip is beyond what it knows
+  // no displacement of a fingertip is beyond the range of this map
   CHECK(shear(1.0, {99, 0}, -3.1).ok());
   CHECK(shear(1.0, {101, 0}, 0.1).force_status == ForceStatus::implausible);
   CHECK(shear(1.0, {101, 0}, 0.1).moment_status == ForceStatus::measured);
@@ -279,7 +279,7 @@ TEST_CASE("shear: force and moment fail each by itself", "[shear]") {
 }
 
 TEST_CASE("shear: the moment about the origin", "[shear]") {
-  // a force along y at x = 3 mm turns from x toward y
+  // a force along y at x = 3 mm rotates from x toward y
   CHECK(moment_about_origin(0.0, {0.0, 2.0}, {3.0, 0.0}) == 6);
   CHECK(moment_about_origin(0.0, {2.0, 0.0}, {0.0, 3.0}) == -6);
   CHECK(moment_about_origin(5.0, {2.0, 1.0}, {4.0, 2.0}) == 5);  // in line with the origin

@@ -65,13 +65,13 @@ Flags touch(Index n, Index first, Index last) {
   return flags;
 }
 
-/// The cap stretched alike, and the pressure that it holds.
+/// The uniformly stretched cap and the pressure that it holds.
 struct Balloon {
   double radius = 20, stretch = 1.2, mu_t = 0.5;
 
   double tension() const { return mu_t * (1 - std::pow(stretch, -6)); }
   double pressure() const { return 2 * tension() / (radius * stretch); }
-  /// rms load, share of the pressure, of dots `pitch` apart
+  /// rms load relative to the pressure, of dots `pitch` apart
   double load_rms(double pitch) const {
     const Index n = 2 * static_cast<Index>(9 / pitch) + 1;
     const TractionField field(cap(n, pitch, radius, 1), {.mu_t_n_per_mm = mu_t});
@@ -90,7 +90,7 @@ const Triangle<double> pulled_triangle = {Vector{0.0, -0.3, 0.2}, Vector{1.8, 0.
 }  // namespace
 
 TEST_CASE("membrane triangle: energy of a known deformation", "[traction]") {
-  // stretched by a along x and b along y, then sheared, then laid somewhere in space
+  // stretched by a along x and b along y, then sheared, then placed anywhere in space
   const double a = 1.3, b = 0.9, shear = 0.4;
   const auto put = [&](double x, double y) {
     return Vector{a * x + shear * y, 0.6 * b * y, 0.8 * b * y};
@@ -246,7 +246,7 @@ TEST_CASE("traction: a stretched sheet on a plate is pressed by p", "[traction]"
     }
   }
   CHECK(distance(r.force_n, Vector{0, 0, -p * 25 * 1.2 * 1.1 * 2.25}) < 1e-12);
-  CHECK(std::isnan(maps.pressure_mpa()(0, 3)));  // the edge of the grid has no load
+  CHECK(std::isnan(maps.pressure_mpa()(0, 3)));  // dots at the edge of the grid have no load
 }
 
 TEST_CASE("traction: shear that grows along x is held by the object", "[traction]") {
@@ -284,8 +284,8 @@ TEST_CASE("traction: moment about the origin", "[traction]") {
 }
 
 TEST_CASE("traction: the ring and what fades out", "[traction]") {
-  // loads are alike everywhere, so the force counts weights: 1 in contact and in the ring, then
-  // 2/3 and 1/3
+  // loads are equal everywhere, so the force counts weights: 1 in contact and in the ring, then 2/3
+  // and 1/3
   const Index n = 15;
   const double p = 0.01;
   const TractionField field(flat(n, 1), {.mu_t_n_per_mm = 0.4, .ring_dots = 1, .fade_dots = 2});
@@ -302,7 +302,7 @@ TEST_CASE("traction: the ring and what fades out", "[traction]") {
   r = field(dots, touch(n, 1, 1), p, maps);  // its ring touches the edge of the grid
   CHECK(r.status == TractionStatus::incomplete);
   CHECK(r.dots_left_out == 5);
-  r = field(dots, touch(n, 2, 2), p, maps);  // only what fades would lie there
+  r = field(dots, touch(n, 2, 2), p, maps);  // only the fading part would lie there
   CHECK(r.status == TractionStatus::modulus_not_of_this_pad);
 }
 
@@ -333,11 +333,11 @@ TEST_CASE("traction: a dot that is not found", "[traction]") {
       }
     }
   }
-  // inside the contact it matters for nothing where it lies
+  // the position of a dot inside the contact does not matter
   CHECK(distance(r.force_n, whole.force_n) < 1e-13);
   CHECK(distance(r.moment_n_mm, whole.moment_n_mm) < 1e-12);
 
-  // two side by side are put between those across; four leave a hole
+  // two adjacent missing dots are interpolated from the dots across; four by four leave a hole
   holed(10, 12).y = missing;
   const auto two = field(holed, s.contact, s.pressure_mpa, maps);
   CHECK(two.ok());
@@ -351,7 +351,7 @@ TEST_CASE("traction: a dot that is not found", "[traction]") {
   CHECK(hole.status == TractionStatus::incomplete);
   CHECK(hole.dots_left_out > 0);
 
-  // on the free part it leaves no gap in the sums worth the name
+  // on the free part it leaves no significant gap in the sums
   auto free_hole = s.dots;
   free_hole(3, 10).x = missing;
   const auto outside = field(free_hole, s.contact, s.pressure_mpa, maps);
@@ -518,8 +518,8 @@ TEST_CASE("traction: derivatives with respect to the pressure", "[traction]") {
 }
 
 TEST_CASE("traction: least squares would err where the balance does not", "[traction]") {
-  // Noise adds to the square of the pulls. What the balance takes, pulls along the normals, it
-  // leaves alone.
+  // Noise adds to the square of the pulls, but not to the pulls along the normals, which the
+  // balance uses.
   const Balloon b;
   const Index n = 13;
   const TractionField field(cap(n, 1.5, b.radius, 1), {.mu_t_n_per_mm = b.mu_t});
@@ -532,7 +532,7 @@ TEST_CASE("traction: least squares would err where the balance does not", "[trac
     balance += field(dots, Flags(n, n, 0), b.pressure(), maps).balance;
     for (Index i = 1; i + 1 < n; ++i) {
       for (Index j = 1; j + 1 < n; ++j) {
-        // the pull for mu t = 1 N/mm: what is left of the load without the pressure
+        // pull for mu t = 1 N/mm: the load without the pressure
         const Vector& area = maps.area_mm2()(i, j);
         const Vector pull =
             -1 / b.mu_t * (size(area) * maps.load_mpa()(i, j) + b.pressure() * area);

@@ -48,7 +48,7 @@ double size(const Vector& a) {
   return std::sqrt(squared_norm(a));
 }
 
-/// d and e of a rim, stretched by 1 % to 60 % and sheared as far.
+/// d and e of a rim, stretched by 1 % to 60 % and sheared as much.
 struct AnyRim {
   Vector along, tangent;
   explicit AnyRim(test::Random& random) {
@@ -130,7 +130,7 @@ TEMPLATE_TEST_CASE("clamped rim: every number type follows 50 digits",
   const double allowed = 8 * static_cast<double>(epsilon<TestType>());
   for (int k = 0; k < 200; ++k) {
     const AnyRim rim(random);
-    // what the type can hold is what both are given
+    // both get the numbers that the type can hold
     const auto along = as<TestType>(rim.along), tangent = as<TestType>(rim.tangent);
     const auto pull = clamped_rim_pull(along, tangent);
     const auto exact = clamped_rim_pull(as<Digits50>(along), as<Digits50>(tangent));
@@ -152,7 +152,7 @@ TEST_CASE("clamped rim: it leans further sideways than the dots, by l^4 / (l^4 -
     CHECK(leaning / published == Approx(fourth / (fourth - 1)).epsilon(1e-12));
     CHECK(leaning / published == Approx(factor).epsilon(0.01));
   }
-  // what is hardly stretched tells no direction
+  // a hardly stretched rim has no clear direction
   CHECK(ClampedRim().pull(Vector{-1.004, 0.2, 0}, e).status ==
         detail::membrane::RimPullStatus::unstretched);
   CHECK(ClampedRim().pull(Vector{-1.006, 0.2, 0}, e).status == detail::membrane::RimPullStatus::ok);
@@ -171,7 +171,7 @@ TEST_CASE("side dots: two rows give the derivative at the rim of any parabola", 
     const Vector dots[2] = {at(length), at(2 * length)};
     const detail::membrane::RimPoint<double> rim = {x0, {0, 1, 0}, length, 18.735};
     CHECK(distance(TwoRows().along(rim, dots, 0.0), d) < 1e-13);
-    // one row has the mean of d from the rim to the dot
+    // one row gives the mean of d from the rim to the dot
     CHECK(distance(OneRow().along(rim, dots, 0.0), d + length * c) < 1e-13);
     CHECK(distance(OneRow{1.1}.along(rim, dots, 0.0), d + length * c) < 1e-13);
   }
@@ -180,9 +180,10 @@ TEST_CASE("side dots: two rows give the derivative at the rim of any parabola", 
 
 namespace {
 
-/// What a lateral force, a torque about z and a flat press do to the rim of a round pad, whose
-/// contact is flat at height H: pressure has no moment about Q, a lateral force that of its height,
-/// M = H z x F. So T = T_0 + a cos(at) up the membrane and tau sin(at) along the rim, with
+/// Load of a lateral force, a torque about z and a flat press on the rim of a round pad, whose
+/// contact is flat at height H. Pressure has no moment about Q, and the lateral force has the
+/// moment of its height, M = H z x F. This gives
+///   T = T_0 + a cos(at) up the membrane and tau sin(at) along the rim, with
 ///   -a (R sin(phi) - H cos(phi)) = H tau.
 struct TrueLoad {
   double normal = 0, lean = 0, shear = 0, turning = 0;
@@ -203,12 +204,12 @@ struct TrueLoad {
   }
 };
 
-/// What an estimator says of a pad and a load.
+/// Result of an estimator for a pad and a load.
 struct Found {
   WrenchResult<double> result;
   test::Wrench6 truth;
   Vector force_error, moment_error;
-  double tension_error = 0;  ///< largest, of the tensions at the dots, as a share of the mean
+  double tension_error = 0;  ///< largest error of the tensions at the dots, relative to the mean
 
   double lateral() const { return std::hypot(truth.force_n.x, truth.force_n.y); }
 };
@@ -269,7 +270,7 @@ TEMPLATE_TEST_CASE("wrench of a flat press in closed form",
     } else {
       CHECK(f.result.residual != f.result.residual);
     }
-    // what is solved for cannot depend on how finely the membrane is cut
+    // the solution does not depend on the fineness of the mesh
     for (const auto& [columns, rows] : {std::pair{18, 16}, {36, 30}}) {
       const Found coarse = find<TestType>(pad, load, columns, rows);
       INFO(columns << " x " << rows << ": F_z wrong by " << coarse.force_error.z);
@@ -286,7 +287,7 @@ TEMPLATE_TEST_CASE("wrench of lateral loads and torques",
                    "[wrench]",
                    BalancedRim,
                    test::KnownModulus) {
-  // exact in the tensions at the rim, and so in force and moment
+  // exact in the tensions at the rim, therefore in force and moment
   const RoundPad<FilmSide> pad;
   for (const double heading : {0.0, 0.7}) {
     for (const double twist : {0.0, 0.2}) {
@@ -309,8 +310,8 @@ TEST_CASE("wrench of lateral loads and torques, each column by itself", "[wrench
   const RoundPad<FilmSide> pad;
   const TrueLoad drag(pad, 0.1, 0), twist(pad, 0, 0.2);
   const auto error = [](const Found& f) { return std::abs(f.force_error.x) / f.lateral(); };
-  // the closed form takes the shear between columns for 0: their vertical pull is that of a press,
-  // so there is no moment about x and y
+  // the closed form neglects the shear between columns: their vertical pull is that of a press, so
+  // there is no moment about x and y
   const Found closed = find<published::ClosedForm>(pad, drag);
   CHECK(size(closed.result.moment_n_mm) <= 1e-8);
   CHECK(std::abs(closed.force_error.z) <= 1e-3 * std::abs(closed.truth.force_n.z));
@@ -337,7 +338,7 @@ TEST_CASE("wrench of lateral loads and torques, each column by itself", "[wrench
 
 namespace {
 
-/// Largest error of f_v inside, as a share of its largest value, and of the residual.
+/// Largest error of f_v inside, relative to its largest value, and of the residual.
 struct InnerError {
   double tension = 0;
   double residual = 0;
@@ -416,7 +417,7 @@ TEST_CASE("an inflated cap that touches nothing", "[wrench]") {
   check(Wrench<published::Iteration, OneRow, published::Direction, published::SteepestLines>(
       rim.borders()));
 
-  // the material alone needs no contact: its tension, p R / 2, carries the pressure on the base
+  // by_modulus() needs no contact: the tension, p R / 2, carries the pressure on the base
   const test::ByModulus<> given(rim.borders());
   const Found f = find(given, cap, rim, load);
   CHECK(f.result.status == WrenchStatus::ok);
@@ -428,7 +429,7 @@ TEST_CASE("an inflated cap that touches nothing", "[wrench]") {
 }
 
 TEST_CASE("an inflated cap marked as touching, but not pressed", "[wrench]") {
-  // Its tension p R / 2 also pulls at what is above A_g, up as much as the pressure there.
+  // Its tension p R / 2 also pulls the part above A_g upward, as much as the pressure pushes there.
   const RoundPad<CapSide> cap{{.contact_mm = 1.5}};
   const auto load = [&](double) { return RimLoad{pressed_mpa * cap.sphere_mm / 2, 0}; };
   const double marked = pressed_mpa * pi * 1.5 * 1.5;
@@ -437,7 +438,7 @@ TEST_CASE("an inflated cap marked as touching, but not pressed", "[wrench]") {
   CHECK(std::abs(balanced.result.force_n.z) < 0.2 * marked);
   CHECK(balanced.tension_error < 1e-3);
   CHECK(balanced.result.modulus_n_per_mm == Approx(0.5).epsilon(1e-3));
-  // one that is level nowhere does not tell how much it pulls
+  // a membrane without a level line does not show how much it pulls
   const RoundPad<CapSide> steep{{.contact_mm = 9}};
   CHECK(find<BalancedRim>(steep, load).result.status == WrenchStatus::no_level_line);
   CHECK(find<test::KnownModulus>(steep, load).result.status == WrenchStatus::ok);
@@ -468,10 +469,10 @@ TEMPLATE_TEST_CASE("wrench: where the shape does not tell, the modulus does, if 
   CHECK(r.force_n.z == given.force_n.z);
   CHECK(r.covariance[2][2] == given.covariance[2][2]);
   CHECK(work.rim_tension(3).z == other.rim_tension(3).z);
-  // what the shape has said stays
+  // the values from the shape are kept
   CHECK(r.summit_area_mm2 != r.summit_area_mm2);
   CHECK(r.level_lines == 0);
-  // what the shape tells is taken from it, and what is wrong with the dots is still refused
+  // where the shape suffices it is used, and bad side dots are still refused
   const auto told = falls_back(level, dots, pressed_mpa, work, noise);
   CHECK(told.status == WrenchStatus::ok);
   CHECK(!told.by_modulus);
@@ -482,7 +483,7 @@ TEMPLATE_TEST_CASE("wrench: where the shape does not tell, the modulus does, if 
   }
   CHECK(falls_back(steep, lost, pressed_mpa, work).status == WrenchStatus::too_few_side_dots);
   CHECK(falls_back(steep, dots, -1, work).status == WrenchStatus::bad_pressure);
-  // without a modulus nothing is answered
+  // without a modulus there is no answer
   const Wrench<TestType> without(rim.borders(), test::exact_options());
   CHECK(without.by_modulus(dots, pressed_mpa, other).status == WrenchStatus::refused);
 }
@@ -507,7 +508,7 @@ TEST_CASE("the published direction: too little lateral force and torque, by 1 - 
   CHECK((share > 0.1 && share < 0.7));
   const auto options = test::exact_options();
   const TrueLoad twist(pad, 0, 0.1);
-  // a lateral force without a moment: columns pull upward as much as they are pressed
+  // a lateral force without a moment: columns pull upward as much as they are pressed down
   const auto slide = [&](double at) {
     return RimLoad{twist.normal, -0.1 * twist.normal * std::sin(at)};
   };
@@ -531,7 +532,7 @@ TEST_CASE("the published direction: too little lateral force and torque, by 1 - 
 
 namespace {
 
-/// Covariance of force and moment over draws.
+/// Covariance of force and moment over random draws.
 class Draws {
  public:
   void add(const WrenchResult<double>& r) {
@@ -556,8 +557,8 @@ class Draws {
   double count_ = 0;
 };
 
-/// Both covariances, in shares of the told standard deviations, within the scatter of the draws.
-/// `floor`: standard deviations below this do not count.
+/// Checks that both covariances agree, relative to the reported standard deviations, within the
+/// scatter of the draws. `floor`: smaller standard deviations do not count.
 void check_covariance(const std::array<std::array<double, 6>, 6>& told,
                       const Draws& draws,
                       double floor = 1e-4,
@@ -617,7 +618,7 @@ TEMPLATE_TEST_CASE("covariance of force and moment, by draws of noisy side dots"
   }
   check_covariance(told, draws);
   CHECK(told[0][0] > 0);
-  // one source at a time adds up
+  // the variances of single sources add up
   const auto dots_alone = wrench(pad, exact, pressed_mpa, workspace, {.side_dot_mm = 0.003});
   const auto p_alone = wrench(pad, exact, pressed_mpa, workspace, {.pressure_mpa = 5e-5});
   CHECK(dots_alone.covariance[2][2] + p_alone.covariance[2][2] ==
@@ -627,7 +628,7 @@ TEMPLATE_TEST_CASE("covariance of force and moment, by draws of noisy side dots"
 
 namespace {
 
-/// A film whose contact ends at another radius on each line.
+/// A film whose contact ends at a different radius on each line.
 struct UnevenFilm {
   std::vector<RoundPad<FilmSide>> of_line;
 
@@ -665,7 +666,7 @@ void check_edge_covariance() {
     REQUIRE(r.status == WrenchStatus::ok);
     draws.add(r);
   }
-  // of a share of the force that falls on the edge at all
+  // the tolerance includes the share of the force that acts on the edge
   check_covariance(told, draws, 0.02 * std::sqrt(told[2][2]), 0.15);
 }
 
@@ -722,7 +723,7 @@ TEST_CASE("lines straight or steepest: the same on a round pad", "[wrench]") {
            pad, rim, load);
   CHECK(straight.result.force_n.z == Approx(steepest.result.force_n.z).epsilon(1e-4));
   CHECK(straight.result.moment_n_mm.z == Approx(steepest.result.moment_n_mm.z).epsilon(1e-4));
-  // the published rows are at equal steps of height
+  // the published rows are equally spaced in height
   const Wrench<published::ClosedForm, OneRow, ClampedRim, published::SteepestLines> published(
       rim.borders(), options);
   auto workspace = published.workspace();
@@ -752,7 +753,7 @@ TEST_CASE("side dots of different stress-free lengths", "[wrench]") {
 }
 
 namespace {
-/// A tilted bowl over the plate, as a camera sees it.
+/// A tilted bowl over the plate as the camera sees it.
 struct Bowl {
   Camera<double> camera{
       .center_x_px = test::uniform(75, 85), .center_y_px = test::uniform(55, 65), .pitch_mm = 0.3};
@@ -762,7 +763,7 @@ struct Bowl {
   double height(double x, double y) const {
     return top_mm + along_x * x + along_y * y - (x * x + y * y) / (2 * radius_mm);
   }
-  /// A ray is steep, so heights above where it ends hardly depend on where that is.
+  /// A ray is steep, so the height at its end hardly depends on where it ends.
   double depth(Index i, Index j) const {
     double mm = top_mm;
     for (int k = 0; k < 20; ++k) {

@@ -22,7 +22,7 @@ Pencil<S> pencil(double k, double h_m, double h_s) {
   return {S(k), {S(h_m), S(h_s)}};
 }
 
-/// A pencil at random: every camera's k lies in [2, 2.6], heights from a lens to a wide camera.
+/// A random pencil: every camera's k lies in [2, 2.6], with heights from a lens to a wide camera.
 Pencil<double> any_pencil() {
   return {test::uniform(2, 2.6), {test::log_uniform(1, 200), test::log_uniform(1, 200)}};
 }
@@ -51,7 +51,7 @@ Digits50 published_scattered_light(const Digits50& l,
   return Digits50(q1 * (1 - e) - q2 * e);
 }
 
-/// Relative error of W in S, in epsilons of S, against the closed form at the very same inputs.
+/// Relative error of W in S, in epsilons of S, against the closed form with the same inputs.
 template <class S>
 double error_in_epsilons(S l, S c, const Pencil<S>& p) {
   const Digits50 reference = published_scattered_light(Digits50(l), Digits50(c), as<Digits50>(p));
@@ -59,7 +59,7 @@ double error_in_epsilons(S l, S c, const Pencil<S>& p) {
   return static_cast<double>(error) / static_cast<double>(epsilon<S>());
 }
 
-/// A fluid, a pencil, scattering, brightness and depth at random.
+/// Random fluid, pencil, scattering, brightness and depth.
 struct Sensor {
   Absorption<double> fluid;
   Pencil<double> light = any_pencil();
@@ -69,7 +69,7 @@ struct Sensor {
 
   Sensor() {
     fluid.c_red_per_mm = test::log_uniform(1e-4, 0.2);
-    fluid.c_green_per_mm = fluid.c_red_per_mm;  // the difference may be nothing
+    fluid.c_green_per_mm = fluid.c_red_per_mm;  // the difference may be zero
     if (test::whole(0, 3) != 0) {
       fluid.c_green_per_mm += test::log_uniform(1e-6, 0.1);
     }
@@ -204,7 +204,7 @@ TEST_CASE("the forward model", "[absorption]") {
     const Sensor s;
     const auto colour = colour_at_depth(s.fluid, s.light, s.brightness, s.scattering, s.depth_mm);
     const auto f = depth_equation(s.fluid, s.light, s.scattering, colour, s.depth_mm);
-    // the exponents' own rounding counts: up to c k l of it
+    // rounding of the exponents counts: up to c k l of it
     const double path = s.fluid.c_green_per_mm * s.light.path_factor * s.depth_mm;
     RC_ASSERT(near(f.value, 0, s.fluid.kappa * colour.red, 8 + 4 * path));
   });

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
-// The level of the edge against the mean over the ring, summed up in 50 digits.
+// Level of the edge against the mean over the ring, integrated in 50 digits.
 #include <boost/math/constants/constants.hpp>
 #include <boost/math/quadrature/gauss.hpp>
 #include <cmath>
@@ -35,9 +35,9 @@ S integral(const F& f, const S& from, const S& to) {
   return boost::math::quadrature::gauss<S, 60>::integrate(f, from, to);
 }
 
-/// Mean curvature that a ring of radius 1 sees at the distance `offset` outside a straight edge
-/// across which the gap is s^2: the mean of gap(ring) - gap(center) by definition, twice as the
-/// section of a parabola s^2 has curvature 2.
+/// Mean curvature on a ring of radius 1 whose center is `offset` outside a straight edge with the
+/// gap s^2. By definition it is the mean of gap(ring) - gap(center), doubled because the section of
+/// a parabola s^2 has curvature 2.
 Digits50 share_by_integration(const Digits50& offset) {
   using std::acos;
   const Digits50 last = offset < 1 ? Digits50(acos(Digits50(-offset))) : pi;  // beyond: in contact
@@ -49,9 +49,9 @@ Digits50 share_by_integration(const Digits50& offset) {
   return Digits50((integral(gap, Digits50(0), last) / pi - offset * offset) * 2);
 }
 
-/// The same of a ring centered on the edge of a round contact, in double.
+/// The same for a ring centered on the edge of a round contact, in double.
 double share_on_round_edge(double ring, double patch) {
-  // the gap to first order in slope, per jump; the ring is beyond the edge on one side
+  // the gap to first order in slope, per jump; the ring is outside the edge on one side
   const auto gap = [&](double angle) {
     const double rho_sq = patch * patch + ring * ring + 2 * patch * ring * std::cos(angle);
     const double excess = (rho_sq - patch * patch) / (patch * patch);
@@ -95,7 +95,7 @@ TEST_CASE("the share's derivative by dual numbers", "[contact_region]") {
     const Digits50 nearly = test::slope_by_difference(share, offset, Digits50("1e-16"));
     RC_ASSERT(test::relative_error(nearly, exact) < Digits50("1e-25"));
   });
-  // on the edge: 4 / pi, by which calibration turns noise of curvature into noise of the edge
+  // on the edge: 4 / pi, the factor of calibration from noise of curvature to noise of the edge
   CHECK(test::slope_by_dual(share, 0.0) == Approx(4 / pi.convert_to<double>()).epsilon(1e-14));
 }
 

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
-// Curvature against 50 digits: the error of the arithmetic, depths being rounded to the type first.
+// Curvature against 50 digits: the error of the arithmetic, with depths rounded to the type first.
 #include <algorithm>
 #include <cmath>
 
@@ -27,10 +27,10 @@ double any_curvature() {
   return (test::whole(0, 1) == 0 ? 1 : -1) * size[test::whole(0, 2)];
 }
 
-/// The error of a map at the center of a random patch of that curvature.
+/// Error of a map at the center of a random patch of that curvature.
 template <class Statistic, class S, class CameraType>
 double map_error(const CameraType& camera) {
-  const Index radius = test::whole(0, 7) == 0 ? 25 : 10;  // 50 digits of the larger take long
+  const Index radius = test::whole(0, 7) == 0 ? 25 : 10;  // 50 digits of the larger ring take long
   const Index size = 2 * radius + 1;
   const double middle = test::uniform(5, 13), slope = test::uniform(0, 1.5);
   const double turn = test::uniform(0, 7), bend_x = any_curvature();

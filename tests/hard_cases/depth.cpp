@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
-// Every way to find a depth against the root in fifty digits of the equation with the same inputs.
+// Every inverse for depth against the root in fifty digits of the equation with the same inputs.
 #include "fingerpad/published/depth.hpp"
 
 #include <algorithm>
@@ -19,13 +19,13 @@ using test::Digits50;
 namespace {
 
 namespace bound_mm {
-constexpr double newton_double = 1e-12;  // promised by the issue and by newton_depth()
-// A float colour of 57 grey levels is known to 3.8e-6; F rises by at least 1.3 grey levels per mm,
-// and F itself is rounded to a few such units.
+constexpr double newton_double = 1e-12;  // documented for newton_depth()
+// A float colour of 57 grey levels has a resolution of 3.8e-6; F rises by at least 1.3 grey levels
+// per mm and is itself rounded to a few such units.
 constexpr double newton_float = 2e-5;
-constexpr double two_steps_float = 1e-5;     // promised by the issue
-constexpr double one_step_float = 1e-4;      // promised by the issue
-constexpr double polynomial_double = 1e-12;  // degree 12: what the fit leaves is below this
+constexpr double two_steps_float = 1e-5;     // documented
+constexpr double one_step_float = 1e-4;      // documented
+constexpr double polynomial_double = 1e-12;  // degree 12: the error of the fit is below this
 constexpr double smallest = 1e-6;
 constexpr double deepest = 14;
 }  // namespace bound_mm
@@ -75,7 +75,7 @@ struct ExactEquation {
         green(colour.green),
         g(scatter) {}
 
-  /// From a depth that is right to about 1e-3 mm, five of Newton's steps give fifty digits.
+  /// From a depth with an error of about 1e-3 mm, five Newton steps give fifty digits.
   Digits50 root(double near) const {
     const Digits50 ck = c * k;
     const Digits50 q1 = (product + (sum + 2 / ck) / ck) / k;
@@ -97,7 +97,7 @@ double error_mm(const S& depth, const Digits50& exact) {
   return static_cast<double>(abs(Digits50(Digits50(depth) - exact)));
 }
 
-/// Colours in S of a pixel at depth l, and the exact root for these very colours.
+/// Colours in S of a pixel at depth l, and the exact root for these colours.
 template <class S>
 struct Pixel {
   Absorption<S> fluid;
@@ -110,7 +110,7 @@ struct Pixel {
       : fluid(cast<S>(f)) {
     const auto camera = camera_at_corner();
     light = pencil_of(camera, ray_at_pixel(camera, 0.0, rho_px));
-    // what rounding the pencil does to the root is not the solver's error
+    // rounding of the pencil is no error of the solver
     light = as<double>(Pencil<double>{static_cast<double>(S(light.path_factor)),
                                       {static_cast<double>(S(light.height.meridional_mm)),
                                        static_cast<double>(S(light.height.sagittal_mm))}});
@@ -144,7 +144,7 @@ double worst_error(const Solve& solve, double bright = brightness) {
         const Pixel<S> p(fluid_with(delta), rho, l, bright);
         const DepthRoot<S> root = solve(p.fluid, as<S>(p.light), p.g, p.colour);
         if (root.status == PixelStatus::below_range && p.exact < 2 * bound_mm::newton_float) {
-          continue;  // a float colour cannot tell such a depth from nothing
+          continue;  // a float colour cannot resolve such a depth
         }
         const double error =
             root.status == PixelStatus::ok ? error_mm(root.depth_mm, p.exact) : HUGE_VAL;
@@ -189,17 +189,17 @@ TEST_CASE("the bisection stays within the half-width it states", "[depth]") {
           return published::bisect_depth(fluid, light, g, colour, halvings);
         });
     INFO(halvings);
-    CHECK(error <= half_width + 1e-9);  // some depths lie just between two of its values
-    CHECK(error > 0.2 * half_width);    // it would be suspicious if it did much better
+    CHECK(error <= half_width + 1e-9);  // some depths lie midway between two of its values
+    CHECK(error > 0.2 * half_width);    // a much smaller error would be suspicious
   }
 }
 
 TEST_CASE("the published quotient has no value where the published bisection starts", "[depth]") {
-  // E006: at depth 0 it is (b - kappa r) / 0, and the sign of its infinity is the wrong one.
+  // E006: at depth 0 it is (b - kappa r) / 0, an infinity with the wrong sign.
   const Pixel<double> p(fluid_with(published_delta), 50, 6);
   const double at_start = published::quotient(p.fluid, p.light, p.colour, 0.0);
   CHECK_FALSE(is_finite(at_start));
-  CHECK_FALSE(at_start >= p.g);  // so the first step would go up, out of the fluid
+  CHECK_FALSE(at_start >= p.g);  // the first step would go up, out of the fluid
   CHECK(published::quotient(p.fluid, p.light, p.colour, 1e-3) > p.g);
   const auto exact = static_cast<double>(p.exact);
   CHECK(published::quotient(p.fluid, p.light, p.colour, exact) == Approx(p.g).epsilon(1e-10));
@@ -244,7 +244,7 @@ TEST_CASE("a depth beyond either end of the range is refused, never clamped", "[
 
 namespace {
 
-/// The row solver of an exponential-free policy over one row of pixels, and what to compare with.
+/// Row solver of an exponential-free policy over one row of pixels, with its references.
 template <class Inverse, class S>
 class RowSolver {
  public:
@@ -303,7 +303,8 @@ class RowSolver {
   detail::DepthRows<Inverse, AstigmaticHeights, S, RadialScattering<S>> rows_;
 };
 
-/// Worst over all differences of absorption; for membranes as bright as the published and darker.
+/// Worst error over all differences of absorption, for membranes of the published brightness and
+/// darker.
 template <class S, int Order, int Degree, int Radial = 3>
 double worst_of_rows(double max_depth_mm = 18) {
   double worst = 0;
@@ -318,7 +319,7 @@ double worst_of_rows(double max_depth_mm = 18) {
 }  // namespace
 
 TEST_CASE("the exponential-free depth in float", "[depth]") {
-  // A single Newton step depends on how far the range goes on beyond the depths: 2.8e-4 for 18 mm.
+  // The error of a single Newton step depends on the range beyond the depths: 2.8e-4 for 18 mm.
   CHECK((worst_of_rows<float, 2, 6>(14.5)) <= bound_mm::one_step_float);
   CHECK((worst_of_rows<float, 3, 6>()) <= bound_mm::one_step_float);
   CHECK((worst_of_rows<float, 4, 6>()) <= bound_mm::two_steps_float);

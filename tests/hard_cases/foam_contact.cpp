@@ -1,12 +1,11 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
-// Numbers: the oscillator's closed form and its steps against 50 digits over times of 10^4 and all
+// The oscillator's closed form and its steps against 50 digits over times of up to 10^4 and all
 // kinds of damping, the lift against quadrature, creep, powers of the load, derivatives.
 //
-// What an error is relative to: the larger of |y| and the sizes of the parts that it is the sum of,
-// each as large as it is within a period at that time; of a velocity also sqrt(k/m) times the parts
-// that the load holds in place. Below the smallest normal number nothing is
-// relative.
+// Errors are relative to the larger of |y| and the sizes of its summands, each taken as its maximum
+// within a period at that time; for a velocity also to sqrt(k/m) times the summands that the load
+// holds in place. Errors below the smallest normal number are ignored.
 #include "fingerpad/sim/foam_contact.hpp"
 
 #include <cmath>
@@ -70,7 +69,7 @@ constexpr double bound() {
 template <class Wide>
 constexpr double wide_epsilon = static_cast<double>(std::numeric_limits<Wide>::epsilon());
 
-/// An oscillator whose damping is this ratio as nearly as the type can say.
+/// An oscillator whose damping ratio is as near to `ratio` as the type allows.
 template <class S>
 MassSpringDamper<S> rider_of(double mass, double stiffness, double ratio) {
   const S m = static_cast<S>(mass), k = static_cast<S>(stiffness);
@@ -78,7 +77,7 @@ MassSpringDamper<S> rider_of(double mass, double stiffness, double ratio) {
   return {m, static_cast<S>(ratio * critical), k};
 }
 
-/// The textbook's wave and lag in 50 digits, and how large they are within a period.
+/// The textbook's wave and lag in 50 digits, and their maxima within a period.
 struct Truth {
   Digits50 wave, lag, max_wave, max_lag;
   Digits50 decay, natural_sq;
@@ -112,7 +111,7 @@ struct Case {
 const std::vector<Case> cases = {
     {{0, 0}, {1, 0}}, {{0, 0}, {0, 1}}, {{1, 0.0625}, {0, 0}}, {{-3, 0}, {0.5, -2}}};
 
-/// y and v of a ramp load, and what their errors are relative to.
+/// y and v of a ramp load, and the scales of their errors.
 struct Answer {
   Digits50 y, v, y_scale, v_scale;
 };
@@ -180,7 +179,7 @@ double worst_closed_form(double ratio) {
   return worst;
 }
 
-/// Up to time 10^4 in steps of 1/8; the worst of looks after 8, 64, 512, ... steps and at the end.
+/// Worst error up to time 10^4 in steps of 1/8, checked after 8, 64, 512, ... steps and at the end.
 template <class S>
 double worst_of_steps(double mass, double stiffness, double ratio) {
   double worst = 0;
@@ -219,8 +218,8 @@ TEMPLATE_TEST_CASE("foam contact: the closed form follows 50 digits",
 
 TEST_CASE("foam contact: the closed form follows 50 digits in other types", "[foam_contact]") {
   for (const Damping& damping : dampings) {
-    // not carried in a wider number: the phase at the end is 6e5 rad, and near critical damping D
-    // cancels, by which a wave that is gone after 11000 rad is off by half of their square
+    // no wider number is used here: the phase at the end is 6e5 rad. Near critical damping D
+    // cancels, and a wave that has decayed after 11000 rad has an error of half of their square.
     const bool is_critical = std::abs(damping.ratio - 1) < 1e-6;
     const double lost = is_critical ? 11000.0 * 11000 / 2 : 6e5;
     const double epsilon = static_cast<double>(std::numeric_limits<long double>::epsilon());
@@ -261,11 +260,11 @@ TEMPLATE_TEST_CASE("foam contact: steps tiny and huge follow 50 digits",
         const RampLoad<S> load = as<S>(of.load);
         auto state = hold.start(motion_as<S>(of.start));
         const S end = load(step);
-        // the load is linear between what it is at both ends, rounded
+        // the load is linear between its rounded values at both ends
         const Digits50 rise = (Digits50(end) - Digits50(load.start_n)) / Digits50(step);
         const Answer a = answer(oscillator, truth, of, Digits50(step));
         const Digits50 rounding = abs(Digits50(rise - of.load.rise_n_per_s)) * Digits50(step);
-        // the fastest rate times the step, in the number that S is computed in
+        // the fastest rate times the step, in the number in which S is computed
         const double phase = length * (1 + 2 * damping.ratio) * std::sqrt(2.9 / 0.37);
         const double of_phase =
             4 * phase *
@@ -277,9 +276,8 @@ TEMPLATE_TEST_CASE("foam contact: steps tiny and huge follow 50 digits",
                   Digits50((std::numeric_limits<S>::min)()));
       }
     }
-    // of a load on an oscillator at rest even the smallest step has all digits: f t^2 / 2m and f t
-    // /
-    // m
+    // for a load on an oscillator at rest even the smallest step has all digits:
+    //   f t^2 / 2m and f t / m
     const S step = static_cast<S>(1e-12);
     const FirstOrderHold<S> hold(oscillator, step);
     auto state = hold.start();
@@ -296,8 +294,8 @@ TEMPLATE_TEST_CASE("foam contact: many tiny steps do not lose the spring",
                    "[foam_contact]",
                    double,
                    float) {
-  // 1 - h^2/2 rounds to nearly nothing but 1: what is added in a step must not be taken from it.
-  // Taken from it, 42000 epsilons in 200000 steps.
+  // 1 - h^2/2 rounds to almost 1, so the increment of a step must not be computed as a difference
+  // from it. Computed that way, the error is 42000 epsilons in 200000 steps.
   using S = TestType;
   const S step = static_cast<S>(3e-4);
   const FirstOrderHold<S> hold({S(1), S(0), S(1)}, step);
@@ -313,8 +311,8 @@ TEMPLATE_TEST_CASE("foam contact: many tiny steps do not lose the spring",
 }
 
 TEMPLATE_TEST_CASE("foam contact: the lift follows quadrature", "[foam_contact]", double, float) {
-  // (2/sqrt3) Int_0^40 e^(-(40-u)/2) sin(w (40-u)) cbrt(C + D sin(a u)) (A + B u) du by Gauss and
-  // Legendre in 40 digits
+  // (2/sqrt3) Int_0^40 e^(-(40-u)/2) sin(w (40-u)) cbrt(C + D sin(a u)) (A + B u) du by
+  // Gauss-Legendre quadrature in 40 digits
   using S = TestType;
   const bool single = std::is_same_v<S, float>;
   const LiftLoad<S> gentle{S(2), S(0.5), S(3), {S(0.3), S(0.05)}};
@@ -357,19 +355,19 @@ TEMPLATE_TEST_CASE("foam contact: creep follows 50 digits", "[foam_contact]", do
     const S strain = creep_compliance(element, t);
     CHECK(abs(Digits50(strain) - exact) <= 8 * Digits50(e) * exact);
     const Digits50 left = exp(Digits50(-delays));
-    const Digits50 scale = left * (1 + delays);  // by rounding the exponent
+    const Digits50 scale = left * (1 + delays);  // from rounding the exponent
     CHECK(abs(Digits50(recovery(element, t)) - left) <=
           4 * Digits50(e) * scale + Digits50((std::numeric_limits<S>::min)()));
     const Digits50 steady =
         1 / Digits50(flowing.maxwell_modulus_mpa) + at / Digits50(flowing.maxwell_viscosity_mpa_s);
     CHECK(abs(Digits50(creep_compliance(flowing, t)) - steady) <= 2 * Digits50(e) * steady);
     if (time > 0) {
-      // a stress that rises from 0 to 1 within one step, of any length
+      // a stress that rises from 0 to 1 within one step of any length
       const Creep<S> creep(both, t);
       auto state = creep.start();
       creep(S(0), S(1), state);
       const Digits50 risen = (delays + expm1(Digits50(-delays))) / (delays * modulus);
-      // the difference above cancels in 50 digits where the time is tiny
+      // the difference above cancels even in 50 digits for a tiny time
       const Digits50 small = delays / 2 / modulus * (1 - delays / 3);
       const Digits50 delayed = time < 1e-8 ? small : risen;
       CHECK(abs(Digits50(state.delayed()) - delayed) <= 16 * Digits50(e) * delayed);
@@ -402,7 +400,7 @@ TEST_CASE("foam contact: derivatives are those of differences", "[foam_contact]"
     CHECK(std::abs(static_cast<double>(Digits50(dual - slope))) <
           1e-20 + 1e-20 * std::abs(static_cast<double>(slope)));
   };
-  // by the damping, across the critical one (2), and by the stiffness, after short and long times
+  // by the damping, across the critical value (2), and by the stiffness, after short and long times
   for (const double time : {0.25, 3.0, 20.0}) {
     for (const double c : {0.01, 0.5, 1.99, 2.0, 2.01, 7.0}) {
       const auto motion_by = [&]<class S>(const S& damping, const S& stiffness) {
@@ -431,7 +429,7 @@ TEST_CASE("foam contact: derivatives are those of differences", "[foam_contact]"
     const Digits50 stiffness = hertz_stiffness(hertz, Dual(Digits50(load))).v;
     CHECK(std::abs(static_cast<double>(Digits50(depth.d * stiffness - 1))) < 1e-40);
   }
-  // nothing presses: no force and no slope, where a coefficient would have no bound
+  // no pressure: no force and no slope, where a coefficient would be unbounded
   for (const double load : {0.0, -2.0}) {
     const Dual none = friction_force(PolymerFriction<Dual>{}, Dual(Digits50(load), Digits50(1)));
     CHECK((none.v == 0 && none.d == 0));

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 // Every row of the table of docs/hard_cases.md: fingerpad's form keeps its digits in float and in
-// double, and the naive form does lose them on the same inputs. A row on which the naive form did
-// well would be no hard case.
+// double, and the naive form loses them on the same inputs. A row in which the naive form does well
+// would be no hard case.
 #include <cmath>
 #include <cstddef>
 #include <vector>
@@ -12,7 +12,7 @@
 
 namespace {
 
-/// The naive form comes out as NaN or inf, or with an answer where there is none.
+/// The naive form gives NaN or inf, or an answer where none exists.
 constexpr double none = HUGE_VAL;
 
 struct Bounds {
@@ -81,7 +81,7 @@ void check(const std::vector<Bounds>& rows) {
     CHECK(row.in_double.naive.loss() >= b.naive_double);
     CHECK(row.in_float.stable.loss() <= b.stable_float);
     CHECK(row.in_double.stable.loss() <= b.stable_double);
-    // what is refused is no answer: something has to be left, unless nothing has one
+    // a refusal is no answer: some answers must remain, unless no input has one
     const hard::Tally& answers = row.in_double.stable;
     CHECK((answers.refused < answers.cases || b.stable_double == 0));
   }

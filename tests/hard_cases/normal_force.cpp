@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
-// Numbers: against 50 digits, where terms cancel, at the ends of the number range, derivatives.
+// Forces against 50 digits: where terms cancel, at the ends of the number range, and derivatives.
 #include "fingerpad/force/normal_force.hpp"
 
 #include <algorithm>
@@ -22,13 +22,13 @@ using test::Digits50;
 
 namespace {
 
-/// Numbers that float holds exactly, so that every type starts from the same.
+/// Numbers that float holds exactly, so every type starts from the same ones.
 double any(test::Random& random, double low, double high) {
   return static_cast<double>(static_cast<float>(random.uniform(low, high)));
 }
 
-/// A curve, a compensation, errors and a contact in one list, so that each can be seeded with a
-/// derivative; made in any number.
+/// A curve, a compensation, errors and a contact in one list of any number type, so that each can
+/// be seeded with a derivative.
 template <std::size_t N>
 using Inputs = std::array<double, N>;
 
@@ -118,7 +118,7 @@ struct Of {
   static NormalForceResult<S> result(const std::array<S, size>& p) {
     return force(p)(p[0], {p[1], p[2]}, p[3]);
   }
-  /// Below, within and beyond the range, with and without motion; some within the blend.
+  /// Inputs below, within and beyond the range, with and without motion; some within the blend.
   static List draw(test::Random& random) {
     List p{};
     p[4] = any(random, 0.5, 2);
@@ -149,8 +149,8 @@ double eps() {
   return static_cast<double>(std::numeric_limits<S>::epsilon());
 }
 
-/// How many epsilons of the sizes of all that is added up a force may be off. A power is as wrong
-/// as its logarithm, over the exponent.
+/// Allowed error of a force, in epsilons of the sum of the sizes of its terms. The error of a power
+/// is that of its logarithm over the exponent.
 template <class Case>
 double roundings(const typename Case::List& p) {
   double n = 5;
@@ -163,7 +163,7 @@ double roundings(const typename Case::List& p) {
   return n;
 }
 
-/// The sizes of what is added up.
+/// Sum of the sizes of the terms.
 double sum_of_sizes(const Inputs<Of<Polynomial, Published>::size>& p, double plain) {
   const double* c = p.data() + contact + Polynomial::size;
   const double d = std::hypot(p[1], p[2]), t = std::abs(p[3]);
@@ -186,7 +186,7 @@ void follows_50_digits(const typename Case::List& p) {
     CHECK(found.status == exact.status);
   }
   CHECK(off(found.force_n, exact.force_n) <= roundings<Case>(p) * eps<S>() * size);
-  // a gradient and a slope have some more roundings, and are squared
+  // gradient and slope have some more roundings and are squared
   if constexpr (!std::is_same_v<Case, Of<Polynomial, Published>>) {
     CHECK(off(found.variance_n2, exact.variance_n2) <=
           4 * roundings<Case>(p) * eps<S>() * static_cast<double>(exact.variance_n2));
@@ -234,7 +234,7 @@ TEMPLATE_TEST_CASE("expression templates give the same normal force",
 }
 
 TEST_CASE("the published equations hold in all of 50 digits", "[normal_force]") {
-  // beyond the blend nothing of it is left
+  // beyond the blend nothing of it remains
   const auto n = [](const char* digits) { return Digits50(digits); };
   const PolynomialForce<2, Digits50> area{
       {n("0.6242"), n("0.0191"), n("0.00008")}, Digits50(18), Digits50(478)};
@@ -256,7 +256,8 @@ TEST_CASE("the published equations hold in all of 50 digits", "[normal_force]") 
 }
 
 TEMPLATE_TEST_CASE("a compensation that cancels the force", "[normal_force]", float, double) {
-  // 1.2 F + 0.509 d - 3.5 around 0: off by roundoff of what is added up, and never below 0.
+  // 1.2 F + 0.509 d - 3.5 around 0: the error is the roundoff of the terms, and the force is never
+  // below 0.
   using S = TestType;
   const auto curve = published::force_of_depth<S>();
   const auto compensation = published::compensation_by_depth<S>();
@@ -273,7 +274,7 @@ TEMPLATE_TEST_CASE("a compensation that cancels the force", "[normal_force]", fl
       published::Compensation<Digits50>{
           exactly(compensation.displaced), exactly(compensation.rotated),
           Digits50(compensation.blend_mm), Digits50(compensation.blend_rad)});
-  // where the sum is 0 along the axis x, by 50 digits
+  // zero of the sum along the x axis, in 50 digits
   Digits50 low(2), high(4);
   const Digits50 depth_mm(S(1));
   const auto sum = [&](const Digits50& x) {
@@ -297,7 +298,7 @@ TEMPLATE_TEST_CASE("a compensation that cancels the force", "[normal_force]", fl
 }
 
 TEMPLATE_TEST_CASE("a curve that is flat where it begins", "[normal_force]", float, double) {
-  // (m - 8)^2 from its vertex on: the terms are 128 times what is left of them
+  // (m - 8)^2 from its vertex on: the terms are 128 times their sum
   using S = TestType;
   const NormalForce force(PolynomialForce<2, S>{{S(64), S(-16), S(1)}, S(8), S(16)});
   const NormalForce exact(PolynomialForce<2, Digits50>{
@@ -334,7 +335,7 @@ TEMPLATE_TEST_CASE("the largest and the smallest contacts", "[normal_force]", fl
     CHECK(off(r.force_n, e) <=
           20 * eps<S>() * static_cast<double>(e) + 4 * static_cast<double>(least));
   }
-  // what is larger than any number is no answer
+  // overflow is no answer
   const NormalForce steep(PolynomialForce<1, S>{{S(0), S(8)}, S(1), S(2)});
   CHECK(steep(S(max / 16)).force_n == S(max / 2));
   CHECK(std::isnan(steep(max).force_n));
@@ -355,7 +356,7 @@ TEMPLATE_TEST_CASE("the largest and the smallest contacts", "[normal_force]", fl
 }
 
 TEST_CASE("exponents at both ends of their range", "[normal_force]") {
-  // The force is as wrong as the logarithm of the radius, over the exponent.
+  // The error of the force is that of the logarithm of the radius over the exponent.
   for (const double exponent : {1.0 / 512, 1.0 / 64, 0.125, 1.0, 2.0}) {
     const PowerLawForce<> curve{4, exponent, 3, 5};
     const PowerLawForce<Digits50> exact{Digits50(4), Digits50(exponent), Digits50(3), Digits50(5)};
@@ -365,7 +366,7 @@ TEST_CASE("exponents at both ends of their range", "[normal_force]") {
       const double n = 4 + 2 * (1 + std::abs(std::log(radius / 4))) / exponent;
       const Digits50 e = NormalForce(exact)(Digits50(radius)).force_n;
       CHECK(test::relative_error(Digits50(force(radius).force_n), e) < n * eps<double>());
-      // and back: the force's own roundoff counts as little as the exponent
+      // and back: the roundoff of the force is multiplied by the exponent
       const double again = curve.radius_mm(force(radius).force_n);
       CHECK(std::abs(again - radius) < (4 + n * exponent) * eps<double>() * radius);
     }
@@ -385,7 +386,7 @@ TEMPLATE_TEST_CASE("derivatives of the normal force are those of differences",
   test::Random random(7);
   for (int k = 0; k < 14; ++k) {
     auto p = TestType::draw(random);
-    switch (k) {  // ends of the range, of the blend, of contact, and nothing moved
+    switch (k) {  // ends of the range, of the blend, of contact, and no motion
       case 0:
         p[1] = p[2] = p[3] = 0;
         break;

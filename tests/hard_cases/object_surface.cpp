@@ -74,7 +74,7 @@ double error(const Point3<double>& a, const Point3<Digits50>& b) {
   return error(a.x, b.x) + error(a.y, b.y) + error(a.z, b.z);
 }
 
-/// Pixels that see a rough patch: smooth, tilted and curved at random, with noise.
+/// Pixels of a patch that is smooth, tilted and curved at random, with noise.
 Image<double> any_patch(Index rows, Index cols, double pitch_mm) {
   const double slope_x = test::uniform(-1, 1), slope_y = test::uniform(-1, 1);
   const double bend = test::uniform(-0.05, 0.05), twist = test::uniform(-0.05, 0.05);
@@ -148,8 +148,8 @@ TEST_CASE("object surface: numbers whose sums are expressions", "[surface]") {
 }
 
 TEST_CASE("object surface: the sphere is the one of least square distance", "[surface]") {
-  // A step in any of its numbers, alone, makes the sum of squares larger, but for a ten-thousandth
-  // of what one standard error does.
+  // A step in any single number increases the sum of squares, except for a ten-thousandth of the
+  // effect of one standard error.
   for (const double curvature : {1 / 18.0, -1 / 18.0, 1 / 6.0, 0.0}) {
     const Index size = 33;
     const Flat camera = centered_on(size, size, 0.2);
@@ -224,7 +224,7 @@ TEST_CASE("object surface: a patch of ten pixels, and one far from the axis", "[
   CHECK(1 / q.shape.curvature_1_per_mm == Approx(18).epsilon(1e-8));
   CHECK(fit<Plane<>>(camera, depth, tiny).ok());
 
-  const Flat far{-1e4, 2e4, 0.08};  // a kilometer of image away from the patch
+  const Flat far{-1e4, 2e4, 0.08};  // a kilometre of image away from the patch
   const Mask all(20, 20, 1);
   const auto f = fit<Sphere<>>(far, bowl(20, 20, 0.08, 1 / 18.0), all);
   REQUIRE(f.ok());
@@ -257,7 +257,7 @@ TEST_CASE("object surface: pixels in one line determine nothing", "[surface]") {
     refused(Camera<double>(), *line);
     refused(centered_on(40, 40, 0.08), *line);
   }
-  // two lines: where they are level, nothing says how the object bends across
+  // two lines: where they are level, the curvature across them is undetermined
   const Flat camera = centered_on(40, 40, 0.08);
   const Image<double> depth = bowl(40, 40, 0.08, 0.05);
   CHECK(fit<Plane<>>(camera, depth, rows).ok());

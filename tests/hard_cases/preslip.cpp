@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
-// Histories that are against the search, and numbers at the ends of their range.
+// Histories that are hard for the search, and numbers at the ends of their range.
 #include "fingerpad/foam/preslip.hpp"
 
 #include <array>
@@ -42,7 +42,7 @@ bool equal(const PreslipResult& a, const PreslipResult& b) {
   return a.alarm == b.alarm && a.is_fresh == b.is_fresh && a.samples_ago == b.samples_ago;
 }
 
-/// In how many of the samples both searches differ. Sample k is hand(k).
+/// Number of samples in which both searches differ. Sample k is hand(k).
 template <class Rule, std::size_t Fingers, class Make>
 int differences(int samples, const Options& options, const Make& hand) {
   const Preslip<Rule, Fingers> newest(options);
@@ -90,17 +90,17 @@ TEST_CASE("pre-slip: a hundred thousand samples alike", "[preslip]") {
   const auto alike = [](int) { return Hand<2>{felt(3, 5), felt(4, 5)}; };
   CHECK(alarms<published::GraspOptimise, 2>(samples, options, alike) == std::pair{0, 0});
   CHECK(alarms<published::GraspLift, 2>(samples, options, alike) == std::pair{0, 0});
-  // two places in turn: from the second sample on, each makes a pair with the one before
+  // two alternating places: from the second sample on, each makes a pair with the previous one
   const auto in_turn = [](int k) { return Hand<2>{felt(k % 2, 5), felt(1 - k % 2, 5)}; };
   CHECK(alarms<published::GraspOptimise, 2>(samples, options, in_turn) ==
         std::pair{samples - 1, samples - 1});
-  // a wave that comes every 60 samples, at another place: no two are ever in the history
+  // a wave every 60 samples, each at another place: the history never holds two of them
   const auto seldom = [](int k) {
     const Index location = k % 60 == 0 ? k / 60 % 7 : FingerSample<>::no_location;
     return Hand<2>{felt(location, 5), felt(location, 5)};
   };
   CHECK(alarms<published::GraspOptimise, 2>(samples, options, seldom) == std::pair{0, 0});
-  const Options longer{.history = 61};  // now there are: each is seen with the last, for a sample
+  const Options longer{.history = 61};  // now it does: each meets the previous one for one sample
   const int pairs = (samples - 1) / 60;
   CHECK(alarms<published::GraspOptimise, 2>(samples, longer, seldom) == std::pair{pairs, pairs});
 }
@@ -116,7 +116,7 @@ TEST_CASE("pre-slip: centroids at the ends of their range", "[preslip]") {
   CHECK_FALSE(lift(largest, largest, 0));
   CHECK(lift(5e-324, 0, 0));
   CHECK_FALSE(lift(5e-324, 0, 5e-324));
-  CHECK_FALSE(lift(infinity, 0, 1));  // is no centroid
+  CHECK_FALSE(lift(infinity, 0, 1));  // not a centroid
   CHECK_FALSE(lift(0, -infinity, 1));
   CHECK_FALSE(lift(infinity, -infinity, 1));
   CHECK_FALSE(lift(none, 0, 0));

@@ -41,7 +41,7 @@ Neighbourhood<To> as(const Neighbourhood<From>& n) {
   return out;
 }
 
-/// A curved, bumpy neighbourhood somewhere on the pad.
+/// A curved, bumpy neighbourhood anywhere on the pad.
 Neighbourhood<double> any_neighbourhood() {
   Neighbourhood<double> n;
   const double x0 = test::uniform(-15, 15), y0 = test::uniform(-15, 15);
@@ -58,7 +58,7 @@ Angles<double> any_angles() {
   return {test::uniform(-3.1, 3.1), test::uniform(-1.5, 1.5), test::uniform(-3.1, 3.1)};
 }
 
-/// Rigidly moved, with noise of the size `bumps`.
+/// The neighbourhood after a rigid motion, with noise of the size `bumps`.
 Neighbourhood<double> moved(Neighbourhood<double> n, double bumps) {
   const auto turn = rotation_of(any_angles());
   for (auto& p : n.dot) {
@@ -171,7 +171,7 @@ TEST_CASE("angles and rotations follow 50 digits, near gimbal lock as well", "[r
 
 TEST_CASE("in gimbal lock only x -+ z is defined, and z is 0", "[rotation]") {
   for (const double sign : {1.0, -1.0}) {
-    // cos(pi/2) in double is 6e-17: a lock for every purpose
+    // cos(pi/2) in double is 6e-17: in practice a gimbal lock
     const auto turn = rotation_of(Angles<double>{0.7, sign * std::numbers::pi / 2, 0.2});
     const auto a = zyx_angles(turn);
     CHECK(a.z_rad == 0);

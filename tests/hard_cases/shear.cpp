@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
-// Numbers: forces and moments against 50 digits, derivatives.
+// Forces and moments against 50 digits, and derivatives.
 #include "fingerpad/force/shear.hpp"
 
 #include <array>
@@ -87,7 +87,7 @@ TEST_CASE("tangential forces and moments follow 50 digits", "[shear]") {
 
 TEST_CASE("derivatives of forces and moments are those of differences", "[shear]") {
   using Dual = test::Dual<Digits50>;
-  // by the measure, the displacement and the angle; within the range and beyond
+  // derivatives by measure, displacement and angle; within the range and beyond
   const std::vector<std::array<double, 4>> places = {{80, 0.25, -0.125, 0.0625},
                                                      {400, 1.5, -0.75, -0.5},
                                                      {0.5, -0.1, 0.2, 0.3},
@@ -110,25 +110,25 @@ TEST_CASE("derivatives of forces and moments are those of differences", "[shear]
       for (std::size_t k = 0; k < 3; ++k) {
         const Digits50 slope = (above[k] - below[k]) / (2 * h);
         CAPTURE(place[0], place[1], by, k);
-        // at no displacement |d| d has a corner in its second derivative
+        // at zero displacement |d| d has a corner in its second derivative
         CHECK(std::abs(static_cast<double>(Digits50(dual[k].d - slope))) < 1e-13);
       }
     }
   }
-  // nothing displaced: the first coefficients, by what the contact is normalised
+  // no displacement: the first coefficients, by the normalised contact
   const Shear<RadialShear<3, Dual>> shear({Dual(100), Dual(0.625), Dual(1.75)}, bent<Dual>());
   const Dual zero(Digits50(0)), one(Digits50(0), Digits50(1));
   const auto by_x = shear(Dual(100), {one, zero}, zero);
   CHECK(by_x.tangential_force_n.x.d == 2);
   CHECK(by_x.tangential_force_n.y.d == 0);
   CHECK(shear(Dual(100), {zero, zero}, one).moment_n_mm.d == 30);
-  // and no contact has no slope either
+  // and without contact the slope is zero, too
   CHECK(shear(zero, {one, zero}, one).tangential_force_n.x.d == 0);
   CHECK(shear(zero, {one, zero}, one).moment_n_mm.d == 0);
 }
 
 TEST_CASE("derivatives of forces by many seeds at once", "[shear]") {
-  // by the coefficients and exponents of the calibration
+  // derivatives by the coefficients and exponents of the calibration
   using Ad = Eigen::AutoDiffScalar<Eigen::Matrix<double, 5, 1>>;
   const auto seed = [](double number, int k) { return Ad(number, 5, k); };
   const ShearNormalisation<Ad> normalisation{Ad(100), seed(0.65, 0), seed(1.7, 1)};

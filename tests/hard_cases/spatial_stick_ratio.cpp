@@ -21,7 +21,7 @@ struct Answers {
   Index updated = 0;
 };
 
-/// Free frames, then a patch that is rolled, dragged and rotated while it lets go.
+/// Free frames, then a patch that is rolled, dragged and rotated while it begins to slip.
 template <class S>
 Answers follow() {
   const SpatialStickRatio<S> ratio(21, 21);

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
-// Numbers: against 50 digits, derivatives, angles at the cut, and motions that determine little.
+// Stick ratios against 50 digits, derivatives, angles at the cut, and poorly determined motions.
 #include "fingerpad/published/stick_ratio.hpp"
 
 #include <algorithm>
@@ -41,7 +41,7 @@ namespace {
 
 constexpr double pi = std::numbers::pi;
 
-/// A motion and what is published of it, in any number.
+/// A motion and its published form, in any number.
 template <class Motion_, class Denoising_>
 struct Of {
   using Motion = Motion_;
@@ -115,7 +115,7 @@ StickRatioResult<S> between(const PointsPx& before,
 
 TEMPLATE_TEST_CASE("stick ratios follow 50 digits", "[stick_ratio]", Default, OneDot, Published) {
   // Dots that are not within rounding of the threshold have the same state. Positions of some
-  // hundred px have an error of 3e-5 px in float, a threshold is 0.2 px and more.
+  // hundred px have an error of 3e-5 px in float; the threshold is at least 0.2 px.
   const DotPattern pattern{.rows = 11, .cols = 11, .contact_pitches = 5.2};
   const ContactFlags contact = SlippingDots(pattern).contact;
   int updated = 0;
@@ -155,9 +155,9 @@ TEMPLATE_TEST_CASE("stick ratios follow 50 digits", "[stick_ratio]", Default, On
 
 TEST_CASE("stick ratios by another formula: what sticks is what one similarity fits",
           "[stick_ratio]") {
-  // The same code in more digits is no reference for what it computes. This is: dots as complex
-  // numbers, then = a now + b, by least squares over the dots that stick; and of those that it fits
-  // to within delta there are as many.
+  // The same code in more digits is no independent reference. This is one: dots as complex numbers,
+  // then = a now + b, by least squares over the sticking dots; and the number of dots that it fits
+  // to within delta is the same.
   using Complex = std::complex<double>;
   const DotPattern pattern{.rows = 11, .cols = 11, .contact_pitches = 5.2};
   const ContactFlags contact = SlippingDots(pattern).contact;
@@ -297,8 +297,9 @@ TEMPLATE_TEST_CASE(
 }
 
 TEST_CASE("a plain press has its scale", "[stick_ratio]") {
-  // Nothing moves along, q = 0 at the middle. What is published takes the part across the motion of
-  // each pair, which a press has all around the middle; without any motion it has no scale.
+  // There is no common motion: q = 0 at the middle. The published form uses the part across the
+  // motion of each pair, which a press has all around the middle; without any motion it has no
+  // scale.
   SlippingDots truth;
   const PointsPx before = truth.dots;
   truth.step({.zoom = 1.05});
@@ -310,7 +311,7 @@ TEST_CASE("a plain press has its scale", "[stick_ratio]") {
     CHECK(r.scale == Approx(1 / 1.05).margin(2e-3));
     CHECK(std::abs(r.angle_rad) < 1e-12);
   }
-  // A scale that no membrane has is none.
+  // An implausible scale is ignored.
   SlippingDots far;
   far.step({.shift_px = 1, .zoom = 1.3});
   CHECK(between<Default>(before, far.dots, far.contact).scale == 1);
@@ -340,7 +341,7 @@ TEMPLATE_TEST_CASE("dots on a line, and displacements that are all parallel",
       }
     }
   }
-  // a whole field shifted: across the motion nothing tells the scale but what is across it
+  // a field shifted as a whole: only the part across the motion determines the scale
   for (const double direction : {0.0, pi / 4, pi / 2, 1.0}) {
     SlippingDots truth;
     const PointsPx before = truth.dots;

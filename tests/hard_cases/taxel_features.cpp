@@ -16,7 +16,7 @@ using test::Image;
 
 namespace {
 
-/// The deviation of taxel 0 of two, without line, by two passes in double over the last window.
+/// Deviation of taxel 0 of two, without a line, by two passes in double over the last window.
 double deviation_by_hand(const std::vector<double>& readings, std::size_t n) {
   const double length = static_cast<double>(n), middle = (length - 1) / 2;
   const double* const first = readings.data() + readings.size() - n;
@@ -51,8 +51,8 @@ TEMPLATE_TEST_CASE("taxel features: a small vibration on a large load that wande
                    "[taxel_features]",
                    float,
                    double) {
-  // 4000 counts, a random walk over hundreds of them, a vibration of 8, for 20000 samples. The
-  // bound is that of one window, however long it runs: the sums are made anew within each
+  // 4000 counts with a random walk over hundreds of them and a vibration of 8, for 20000 samples.
+  // The bound is that of one window at any length, because the sums restart within each window.
   using S = TestType;
   const Index window = GENERATE(8, 64);
   const TaxelFeatures<ZeroCrossings, S> features(1, 1, options<S>(window));
@@ -80,7 +80,7 @@ TEMPLATE_TEST_CASE("taxel features: a huge reading is forgotten with its window"
                    "[taxel_features]",
                    float,
                    double) {
-  // the sums of squares keep what it left over until they are made anew: at most one window more
+  // sums of squares keep its remainder until they restart: at most one more window
   using S = TestType;
   auto o = options<S>(16);
   o.noise = S(1);
@@ -127,8 +127,7 @@ TEMPLATE_TEST_CASE("taxel features: readings at the ends of what a number holds"
 
 TEST_CASE("taxel features: bursts of late samples keep the clock of the vibration",
           "[taxel_features]") {
-  // a sensor that samples evenly, but whose samples are received late by up to two periods, in
-  // order
+  // a sensor that samples evenly, but whose samples arrive late by up to two periods, in order
   TaxelOptions<double> o;
   o.window = 32;
   o.sample_period_s = 0.032;
@@ -157,7 +156,7 @@ TEST_CASE("taxel features: bursts of late samples keep the clock of the vibratio
 }
 
 TEST_CASE("taxel features: times of a long run, in float", "[taxel_features]") {
-  // a float holds 1e6 s to 0.06 s, two periods: the time is a double whatever the number
+  // a float resolves 1e6 s to 0.06 s, two periods, so the time is always a double
   TaxelOptions<float> o;
   o.noise = 1;
   const TaxelFeatures<ZeroCrossings, float> features(1, 1, o);

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
-// The traction field against itself with fifty digits.
+// The traction field against itself in fifty digits.
 #include "fingerpad/force/traction.hpp"
 
 #include <cmath>
@@ -26,7 +26,8 @@ Triangle<S> as(const Triangle<From>& x) {
   return out;
 }
 
-/// Largest error of a load and of the force, by the pressure and by the largest component.
+/// Largest errors of a load and of the force, relative to the pressure and to the largest
+/// component.
 struct Loss {
   double load = 0;
   double pressure = 0;
@@ -36,7 +37,7 @@ struct Loss {
 template <class S>
 Loss loss_of(const test::TractionScene& s) {
   const auto free = test::stress_free_dots();
-  // what S cannot hold is no error of the method: both begin with the numbers of S
+  // rounding of the inputs to S is no error of the method: both start from the numbers of S
   test::Cells<Point3<S>> stored_free(21, 21), stored(21, 21);
   for (std::size_t k = 0; k < free.cells.size(); ++k) {
     const auto& f = free.cells[k];

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
-// Window means at the limits of their arithmetic: largest windows of largest values, sums that run
-// over long columns, images smaller than the window, every way of computing them.
+// Window means at the limits of their arithmetic: largest windows of largest values, running sums
+// over long columns, images smaller than the window, every implementation.
 #include <array>
 #include <cmath>
 #include <limits>
@@ -68,7 +68,7 @@ TEST_CASE("the largest window of the brightest 16-bit pixels", "[window]") {
   const Frame<std::uint16_t> frame(256, 270, 65535);
   const Image<std::uint8_t> all(256, 270, 1);
   const auto means = means_of<native>(frame, all, 255, {0, 65536});
-  // 65025 * 65535 fits 32 bits, and is rounded to float once, times a rounded reciprocal
+  // 65025 * 65535 fits into 32 bits and is rounded to float once, times a rounded reciprocal
   CHECK(means.red(127, 140) == Approx(65535).epsilon(2e-7));
   CHECK(means.green(0, 269) == Approx(65535).epsilon(2e-7));
 }
@@ -89,7 +89,7 @@ TEMPLATE_TEST_CASE("whole numbers have exact sums, rounded as a box filter does"
     for (std::size_t k = 0; k < frame.red.cells.size(); ++k) {
       frame.red.cells[k] = static_cast<Pixel>(random.whole(0, top));
       frame.green.cells[k] = static_cast<Pixel>(random.whole(0, top));
-      // any nonzero byte says that a pixel may count
+      // any nonzero byte marks a valid pixel
       inside.cells[k] = random.uniform() < share ? std::uint8_t(0)
                                                  : static_cast<std::uint8_t>(random.whole(1, 255));
     }
@@ -132,7 +132,7 @@ TEMPLATE_TEST_CASE("rounding does not pile up down a long image",
                    double,
                    long double,
                    test::Digits50) {
-  // A bright band, then 400 rows of 1e-3 of it: what the band left behind would show.
+  // A bright band followed by 400 rows of 1e-3 of it: a remainder of the band would be visible.
   using S = TestType;
   const Index rows = 440;
   Frame<S> frame(rows, 9);

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
-// Inputs that no pad gives on a good day.
+// Inputs that no intact pad gives.
 #include "fingerpad/force/wrench.hpp"
 
 #include <cmath>
@@ -47,7 +47,7 @@ Shape pressed() {
   return {[](double x, double y) { return film(x, y); },
           [](double x, double y) { return film.in_contact(x, y); }};
 }
-/// A pressed pad that is not seen where `lost(x, y)`.
+/// A pressed pad that is invisible where `lost(x, y)`.
 Shape with_hole(const std::function<bool(double, double)>& lost) {
   return {[lost](double x, double y) {
             return lost(x, y)
@@ -56,7 +56,7 @@ Shape with_hole(const std::function<bool(double, double)>& lost) {
           },
           [lost](double x, double y) { return !lost(x, y) && film.in_contact(x, y); }};
 }
-/// With a flag of what touches that has nothing to do with the shape.
+/// A contact flag that does not fit the shape.
 Shape touching(const std::function<bool(double, double)>& touches) {
   return {[](double x, double y) { return film(x, y); }, touches};
 }
@@ -78,7 +78,7 @@ Image<Point3<S>> as(const Image<Point3<double>>& from) {
   return to;
 }
 
-/// What a result must be, whatever the input.
+/// Whether a result is consistent, for any input.
 template <class S>
 bool consistent(const WrenchResult<S>& r) {
   const auto finite = [](const Point3<S>& p) { return is_finite(p); };
@@ -175,7 +175,7 @@ TEST_CASE("wrench: side dots that are missing", "[wrench]") {
       }
     }
   }
-  // a third in one piece
+  // a contiguous third
   auto dots = good_dots();
   for (Index k = 10; k < 34; ++k) {
     dots(0, k).z = test::nan;
@@ -209,7 +209,7 @@ TEST_CASE("wrench: a slack membrane, one that is not stretched, one that bulges"
   CHECK(barely.status == WrenchStatus::unstretched);
   CHECK(barely.slack == 0);
   CHECK(barely.unstretched == 30);
-  // pulls that lean out of the pad: overhang, which the camera does not see
+  // pulls that lean outward: overhang, which the camera does not see
   const auto bulging = measure<Balanced>(pressed(), stretched_to(1.1, 20, 25, 1));
   CHECK(bulging.status == WrenchStatus::ok);
   CHECK(bulging.outward == 5);
@@ -240,7 +240,7 @@ TEST_CASE("wrench: shapes with holes", "[wrench]") {
   CHECK(large.broken_lines >= 8);
   const auto nothing = measure<Balanced>(with_hole([](double, double) { return true; }));
   CHECK(nothing.status == WrenchStatus::no_shape);
-  // the rim is not seen: half the pads there are
+  // the rim is invisible, as on half of all pads
   const auto no_rim =
       measure<Balanced>(with_hole([](double x, double y) { return std::hypot(x, y) > 18.3; }));
   CHECK(no_rim.status == WrenchStatus::ok);
@@ -251,12 +251,12 @@ TEST_CASE("wrench: shapes with holes", "[wrench]") {
 }
 
 TEST_CASE("wrench: odd contacts", "[wrench]") {
-  // reaching the rim all around, and on one side
+  // contact that reaches the rim all around, and on one side
   (void)measure<Balanced>(touching([](double, double) { return true; }));
   (void)measure<Balanced>(touching([](double x, double) { return x > 5; }));
   (void)measure<Wrench<LeastSquares>>(touching([](double x, double) { return x > 5; }));
   (void)measure<Wrench<published::Iteration>>(touching([](double x, double) { return x > 5; }));
-  // one place of the search only, and one that it does not see
+  // a single position of the search, and one that it does not see
   const double one = 18.735 / 64;
   CHECK(measure<Balanced>(touching([&](double x, double y) {
           return std::hypot(x - one, y - one) < 0.05;
@@ -264,7 +264,7 @@ TEST_CASE("wrench: odd contacts", "[wrench]") {
   CHECK(measure<Balanced>(touching([](double x, double y) {
           return x == 0.123 && y == 0.456;
         })).status == WrenchStatus::no_contact);
-  // two at once, a ring, a checkerboard
+  // two contacts, a ring, a checkerboard
   (void)measure<Balanced>(
       touching([](double x, double y) { return std::abs(x) > 3 && std::abs(y) < 6; }));
   (void)measure<Balanced>(touching([](double x, double y) {
@@ -329,7 +329,7 @@ double any_number(double usual) {
   return kind < 8 ? odd[kind] : usual;
 }
 
-/// A shape made of lumps, holes and slopes that need not fit the heights.
+/// A shape of lumps, holes and slopes that need not fit the heights.
 template <class S>
 detail::membrane::HeightMap<S> any_map() {
   detail::membrane::HeightMap<S> map(S(19.5), S(1.5));
@@ -383,7 +383,7 @@ void fuzz() {
     RC_ASSERT(r.slack <= r.unstretched);
     RC_ASSERT(r.broken_lines <= options.columns);
     RC_ASSERT(r.level_lines <= options.columns);
-    // a good frame afterwards does not remember
+    // a later good frame is not affected
     const auto good = rim.dots(even_load, Way::rows);
     const auto again = wrench(film, as<S>(good), S(pressed_mpa), workspace);
     auto fresh_workspace = wrench.workspace();

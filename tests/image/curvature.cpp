@@ -55,7 +55,7 @@ Image<S> curvatures(const Image<S>& depth,
   return out;
 }
 
-/// At the pixel in the middle of an image of odd size.
+/// The statistic at the middle pixel of an image of odd size.
 template <class Statistic, class F, class CameraType = Plan>
 double in_the_middle(const F& depth_at_mm, Index radius_px = 10, const CameraType& camera = plate) {
   const Index size = 2 * radius_px + 1;
@@ -69,7 +69,7 @@ double in_the_middle(const F& depth_at_mm, Index radius_px = 10, const CameraTyp
 TEST_CASE("curvature: (K1) is the circle through three points, bulging outward positive") {
   const double radius = 20, angle = 0.03;
   for (const double middle : {0.0, 0.4, -1.1}) {
-    // equally spaced in u: the ends lie at sin(middle) +- step
+    // equally spaced in u: the ends are at sin(middle) +- step
     const double u = radius * std::sin(middle), step = radius * angle;
     const auto dome = [&](double x) { return std::sqrt(radius * radius - x * x); };
     const double k = section_curvature(step, dome(u - step), dome(u), dome(u + step));
@@ -118,7 +118,7 @@ TEST_CASE("curvature: maps of sphere, cylinder and saddle") {
   CHECK(in_the_middle<published::SectionMean<>>(cylinder) == Approx(0.025).epsilon(2e-3));
 
   CHECK(in_the_middle<published::SectionMean<>>(saddle) == Approx(0).margin(1e-6));
-  // the nearest pixels lie in directions that are not quite evenly spaced
+  // the directions of the nearest pixels are not quite evenly spaced
   CHECK(in_the_middle<ClampedMean<>>(saddle) == Approx(0.05 / pi).epsilon(6e-2));
   CHECK(in_the_middle<ClampedMean<>>(saddle, 40) == Approx(0.05 / pi).epsilon(2e-2));
 }
@@ -182,7 +182,7 @@ TEST_CASE("curvature: seen through a camera a tilted plane stays flat, and a bal
   const double growth = 1 / 66.5;
   const Through camera = through(0.0768, growth);
   for (const double slope : {0.0, 0.1, 0.5, 1.0}) {
-    // the point at depth l is seen at x if it lies at x (1 + c l)
+    // the point at depth l is seen at x if it is at x (1 + c l)
     const auto plane = [&](double x, double y) {
       const double lateral = x * 0.6 + y * 0.8;
       return (8 + slope * lateral) / (1 - slope * lateral * growth);
@@ -191,7 +191,7 @@ TEST_CASE("curvature: seen through a camera a tilted plane stays flat, and a bal
     CHECK(in_the_middle<RingStencil<>>(plane, 25) ==
           Approx(-slope * slope * growth * (1 + 8 * growth)).epsilon(1e-2).margin(1e-12));
   }
-  // a ball whose top is so far from the axis that the membrane slopes on the axis
+  // a ball whose top is far enough from the axis that the membrane slopes on the axis
   for (const double degrees : {0.0, 25.0}) {
     const double alpha = degrees * pi / 180;
     const auto ball = [&](double x, double y) {
@@ -242,7 +242,7 @@ TEST_CASE("curvature: what refraction off the axis leaves of a tilted plane") {
 
 TEST_CASE("curvature: a ring is its own mirror image, at true distances") {
   const auto slides =
-      detail::ring_offsets(25, 18);  // 25 cos(60 degrees) is half way between two pixels
+      detail::ring_offsets(25, 18);  // 25 cos(60 degrees) is midway between two pixels
   CHECK(std::count(slides.begin(), slides.end(), detail::RingOffset{22, 12}) == 1);
   CHECK(std::count(slides.begin(), slides.end(), detail::RingOffset{12, 22}) == 1);
   for (const double radius : {1., 2., 3., 10., 12.5, 25., 30.}) {

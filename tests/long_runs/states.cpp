@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
-// What is remembered from frame to frame, after many frames with drop-outs, jumps of the clock and
-// restarts: it has not drifted and is not stuck. LONG_RUN_FRAMES=10000000 runs as many frames of
-// each instead of a few thousand.
+// States after many frames with drop-outs, jumps of the clock and restarts: they have not drifted
+// and are not stuck. LONG_RUN_FRAMES=10000000 runs that many frames of each instead of a few
+// thousand.
 #include <array>
 #include <cstdlib>
 #include <random>
@@ -33,7 +33,7 @@ class Any {
   double number(double min, double max) {
     return std::uniform_real_distribution<>(min, max)(engine_);
   }
-  /// True once in so many.
+  /// True with a probability of 1 / count.
   bool once_in(int count) { return std::uniform_int_distribution<>(1, count)(engine_) == 1; }
 
  private:
@@ -53,7 +53,7 @@ test::Image<Point2<float>> lattice(Any& any, float shift) {
   return dots;
 }
 
-/// A pad's dots in mm, moved along x, some of them missing.
+/// A pad's dots in mm, displaced along x, some of them missing.
 test::Image<Point3<double>> dots_in_space(Any& any, double shift_mm) {
   test::Image<Point3<double>> dots(6, 6);
   for (Index i = 0; i < 6; ++i) {
@@ -66,7 +66,7 @@ test::Image<Point3<double>> dots_in_space(Any& any, double shift_mm) {
   return dots;
 }
 
-/// A round contact with a pattern of its own, somewhere on a gel; holes where nothing is known.
+/// A round contact with a pattern of its own, anywhere on a gel; holes are unknown.
 test::Image<float> imprint(Any& any, double x, double y) {
   test::Image<float> cells(20, 20, 0);
   for (Index i = 0; i < 20; ++i) {
@@ -108,7 +108,7 @@ void search_again_and_again(const Search& search) {
     }
   }
   CHECK(stays);
-  CHECK(ended > 0);  // none goes on for ever
+  CHECK(ended > 0);  // no run is endless
 }
 
 }  // namespace
@@ -132,7 +132,7 @@ TEST_CASE("long runs: grip control comes back from anything", "[long_run]") {
     }
   }
   CHECK(within);
-  // a force that is asked for now goes by now alone
+  // the force now depends on the current input alone
   auto fresh = control.start();
   state.follow(5);
   fresh.follow(5);
@@ -206,7 +206,7 @@ TEST_CASE("long runs: a window of taxels forgets all that was before it", "[long
   }
   FoamHand<2> fresh(options);
   for (int k = 0; k < 300; ++k) {
-    time_s += k == 0 ? 1000 : 0.03;  // the clock jumps: both begin anew
+    time_s += k == 0 ? 1000 : 0.03;  // the clock jumps: both restart
     const auto left = sample(30), right = sample(30);
     const auto a = hand(std::array{as_view(left), as_view(right)}, time_s);
     const auto b = fresh(std::array{as_view(left), as_view(right)}, time_s);
@@ -288,7 +288,7 @@ TEST_CASE("long runs: after a reset a slide of the contact is that of a start", 
   }
   CHECK(sound);
   const auto last = imprint(any, 12, 10);
-  (void)slide(last, pressed(last), lattice(any, 0), state);  // there is something to forget
+  (void)slide(last, pressed(last), lattice(any, 0), state);  // now there is a state to forget
   state.reset();
   for (int k = 0; k < 20; ++k) {
     const auto cells = imprint(any, 8 + 0.2 * k, 10);

@@ -27,7 +27,7 @@ struct Points {
         static_cast<Index>(from.size()), [&](Index k) { return from[at(k)]; },
         [&](Index k) { return to[at(k)]; }, [&](Index k) { return weight[at(k)]; });
   }
-  /// What a pose leaves, weighted sum of squares.
+  /// Weighted sum of the squared residuals of a pose.
   S left(const Pose<S>& pose) const {
     S sum = S(0);
     for (std::size_t k = 0; k < from.size(); ++k) {
@@ -44,7 +44,7 @@ Pose<double> any_pose(double size = 10) {
           {test::uniform(-size, size), test::uniform(-size, size), test::uniform(-size, size)}};
 }
 
-/// Dots of a contact: a disc with some height, carried by a pose, with noise.
+/// Dots of a contact: a disc with some height, moved by a pose, with noise.
 Points<double> any_points(const Pose<double>& pose, double noise_mm) {
   Points<double> points;
   for (std::ptrdiff_t k = test::whole(4, 40); k > 0; --k) {
@@ -73,7 +73,7 @@ double difference(const Pose<double>& a, const Pose<double>& b) {
   return angle_between(a.rotation, b.rotation) + norm(a.translation_mm - b.translation_mm) / 10;
 }
 
-/// Digits are lost where points nearly lie on a line.
+/// Whether the points are far enough from a line that no digits are lost.
 bool well_spread(const Points<double>& points) {
   double xx = 0, xy = 0, yy = 0, x = 0, y = 0;
   const double n = static_cast<double>(points.from.size());
@@ -122,7 +122,7 @@ TEST_CASE("the best motion moves with what it is measured in", "[math]") {
     std::reverse(reversed.weight.begin(), reversed.weight.end());
     RC_ASSERT(difference(reversed.fit().pose, best) < 1e-12);
     RC_ASSERT(difference(heavier.fit().pose, best) < 1e-13);
-    Points<double> more = points;  // a point of weight 0 is none
+    Points<double> more = points;  // a point of weight 0 is ignored
     more.from.push_back({100, 0, 0});
     more.to.push_back({0, 0, 300});
     more.weight.push_back(0);
@@ -156,8 +156,8 @@ TEST_CASE("no other rigid motion leaves less", "[math]") {
 }
 
 TEST_CASE("the best motion against fifty digits", "[math]") {
-  // In fifty digits it is held by the condition of the optimum itself: the cross-covariance of the
-  // rotated points is symmetric, and the centers are carried onto each other.
+  // In fifty digits the optimum fulfils its own condition: the cross-covariance of the rotated
+  // points is symmetric, and the centers coincide.
   rc::prop("of points with noise", [] {
     const auto points = any_points(any_pose(), 0.5);
     RC_PRE(well_spread(points));
@@ -213,7 +213,7 @@ TEST_CASE("points that determine no rotation are said", "[math]") {
   auto same = line(9, 3);
   same.to.assign(9, {1, 2, 3});
   CHECK_FALSE(same.fit().determined);
-  auto far = line(9, 3);  // a spread that is roundoff of the coordinates is none
+  auto far = line(9, 3);  // a spread that is only roundoff of the coordinates counts as none
   for (auto& p : far.from) {
     p = {1e17 + p.x, 1e17, 1e17};
   }

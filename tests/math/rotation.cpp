@@ -52,7 +52,7 @@ double difference(const Pose<double>& a, const Pose<double>& b) {
   return difference(a.rotation, b.rotation) + difference(a.translation_mm, b.translation_mm);
 }
 
-/// By the angle alone about one axis of the three.
+/// Rotation by an angle about one of the three axes.
 Rotation<double> about(int axis, double angle) {
   const double c = std::cos(angle), s = std::sin(angle);
   Rotation<double> r;

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
-// Mistakes that are made when a sensor is calibrated, and what is said of each: the name of a
-// status, or the message with which the samples are refused. "ok" where nothing can tell, with the
-// reason.
+// Mistakes in the calibration of a sensor, and the response to each: the name of a status, or the
+// message with which the samples are refused. "ok" means that the mistake cannot be detected, with
+// the reason.
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -30,7 +30,7 @@ using test::Random;
 
 namespace {
 
-/// What a fit says: the name of its status, or why it refused.
+/// Response of a fit: the name of its status, or the message of its refusal.
 template <class Fit>
 std::string said(const Fit& fit) {
   std::string status;
@@ -41,7 +41,7 @@ std::string said(const Fit& fit) {
 struct Mistake {
   const char* name;
   std::function<std::string()> says;
-  const char* expected;  ///< part of it
+  const char* expected;  ///< part of the response
 };
 
 void check(const std::vector<Mistake>& mistakes) {
@@ -56,7 +56,7 @@ void check(const std::vector<Mistake>& mistakes) {
 
 using Forces = std::vector<ForceSample<double>>;
 
-/// A press of twelve loads and a drag and a twist at three depths, as a gauge and a camera see
+/// A press of twelve loads, and a drag and a twist at three depths, as a gauge and a camera measure
 /// them.
 Forces forces(std::uint64_t seed = 1) {
   Random random(seed);
@@ -114,7 +114,7 @@ void rotate(Point2<double>& p, double angle) {
        p.x * std::sin(angle) + p.y * std::cos(angle)};
 }
 
-/// Forces of no contact in particular.
+/// Forces unrelated to the contact.
 Change any_force() {
   return [random = Random(7)](ForceSample<double>& s) mutable {
     s.normal_force_n = 10 * random.uniform();
@@ -123,7 +123,7 @@ Change any_force() {
   };
 }
 
-/// Forty presses, in any order, as a gauge and the dots beside it see them.
+/// Forty presses in any order, as a gauge and the dots beside it measure them.
 struct Presses {
   std::vector<DivergenceResult<double>> dots;
   std::vector<double> forces_n;
@@ -182,7 +182,7 @@ std::function<std::string()> absorption(const std::function<void(Colours&)>& cha
   };
 }
 
-/// Some are refused, some are fitted; none is to be trusted.
+/// Some are refused, some are fitted; none is reliable.
 std::string random_colours() {
   std::string unexplained;
   for (std::uint64_t seed = 1; seed <= 40; ++seed) {
@@ -222,7 +222,7 @@ TEST_CASE("mistakes: forces by look-up", "[mistakes]") {
        "sign of an axis reversed"},
       {"normal force negative, as a wrench has it", normal([](auto& s) { s.normal_force_n *= -1; }),
        "the force falls while the contact grows"},
-      {"normal force and measure exchanged",  // a contact that grows ever less is as likely
+      {"normal force and measure exchanged",  // a contact that grows ever less is as plausible
        normal([](auto& s) { std::swap(s.normal_force_n, s.measure); }), "ok"},
       {"gauge not tared", normal([](auto& s) { s.normal_force_n += 6; }), "was the gauge tared?"},
       {"gauge not tared", tangential([](auto& s) { s.tangential_force_n.y += 0.9; }),
@@ -238,7 +238,7 @@ TEST_CASE("mistakes: forces by look-up", "[mistakes]") {
       {"area in m^2", normal([](auto& s) { s.measure *= 1e-6; }), "areas in mm^2"},
       {"depth in m", normal([](auto& s) { s.measure *= 1e-3; }), "depths and radii in mm"},
       {"area in um^2", normal([](auto& s) { s.measure *= 1e6; }), "areas in mm^2"},
-      {"depth in um",  // as an area would be; a force that is looked up is then "below range"
+      {"depth in um",  // as plausible as an area; a looked-up force is then "below range"
        normal([](auto& s) { s.measure *= 1e3; }), "ok"},
       {"forces in mN", normal([](auto& s) { s.normal_force_n *= 1e3; }), "in N?"},
       {"forces in kN", normal([](auto& s) { s.normal_force_n *= 1e-3; }), "in N?"},
@@ -259,7 +259,7 @@ TEST_CASE("mistakes: forces by look-up", "[mistakes]") {
       {"moment in N m", moment([](auto& s) { s.moment_n_mm /= 1000; }), "in N mm?"},
       {"a bumped gauge",
        normal([k = 0](auto& s) mutable { s.normal_force_n += k++ == 30 ? 3 : 0; }), "gauge bumped"},
-      {"a gauge that reads 1e300 once",  // it says nothing beside that sample
+      {"a gauge that reads 1e300 once",  // harmless except for that sample
        normal(
            [k = 0](auto& s) mutable { s.normal_force_n = k++ == 30 ? 1e300 : s.normal_force_n; }),
        "too few, too alike or tied"},
@@ -298,7 +298,7 @@ TEST_CASE("mistakes: force over the divergence of the dots", "[mistakes]") {
        "as many as divergences"},
       {"dots in m", divergence([](Presses& p) { areas_times(p, 1e-6); }), "areas in mm^2"},
       {"dots in um", divergence([](Presses& p) { areas_times(p, 1e6); }), "areas in mm^2"},
-      {"dots in px",  // a pixel is as good a unit, if the frames have it too
+      {"dots in px",  // a valid unit if the frames use it too
        divergence([](Presses& p) { areas_times(p, 150); }), "ok"},
       {"forces in mN", divergence([](Presses& p) { times(p.forces_n, 1e3); }), "in N?"},
       {"forces in kN", divergence([](Presses& p) { times(p.forces_n, 1e-3); }), "in N?"},
@@ -339,7 +339,7 @@ TEST_CASE("mistakes: by how much a gauge is turned", "[mistakes]") {
                                    {.min_explained = 0.1});
   };
   const auto as_it_is = [](auto&) {};
-  // the standard error is that of the angle, whatever the angle
+  // the standard error holds at any angle
   for (const double turned_rad : {0.0, 0.3, -0.52}) {
     double ratio_sq = 0;
     constexpr int fits = 200;
@@ -350,7 +350,7 @@ TEST_CASE("mistakes: by how much a gauge is turned", "[mistakes]") {
     }
     CHECK(std::sqrt(ratio_sq / fits) == Approx(1).margin(4 / std::sqrt(2.0 * fits)));
   }
-  // a pad twice as stiff along one of its axes is not turned
+  // a pad twice as stiff along one of its axes is not rotated
   const auto stiffer = fitted(1, 0, [](auto& s) {
     const double askew = s.tangential_force_n.x + s.tangential_force_n.y;
     s.tangential_force_n = s.tangential_force_n + 0.2 * Point2<double>{askew, askew};
@@ -422,7 +422,7 @@ namespace {
 
 // ---- frames
 
-/// Dots of a standing pad with 0.06 px of noise, changed frame by frame.
+/// Dots of a resting pad with 0.06 px of noise, changed frame by frame.
 std::function<std::string()> standing(
     const std::function<void(Image<Point2<double>>&, int)>& change, Index rows = 9) {
   return [=] {
@@ -445,7 +445,7 @@ std::function<std::string()> standing(
   };
 }
 
-/// Readings of 6 x 4 taxels at rest, every 30th of a second or as `period_s` says.
+/// Readings of 6 x 4 taxels at rest, every 30th of a second or every `period_s`.
 std::function<std::string()> resting(const std::function<double(double, Index, Index)>& reading,
                                      double period_s = 1.0 / 30) {
   return [=] {
@@ -464,7 +464,7 @@ std::function<std::string()> resting(const std::function<double(double, Index, I
   };
 }
 
-/// Depth maps of a free pad, a cap of 40 mm radius with 1 um of noise; `scale` of the unit.
+/// Depth maps of a free pad, a cap of 40 mm radius with 1 um of noise; `scale` is that of the unit.
 std::function<std::string()> free_pad(double scale, double share_seen, double noise_mm = 0.001) {
   return [=] {
     return said([&] {
@@ -490,12 +490,12 @@ std::function<std::string()> free_pad(double scale, double share_seen, double no
   };
 }
 
-/// Side dots of a flat free rim, 36 around a radius of 18 mm, at two pressures.
+/// Side dots of a flat free rim, 36 at a radius of 18 mm, at two pressures.
 struct RimMistake {
   double pressure = 1;       ///< unit over MPa
-  double unlike = 1;         ///< the second pressure over what it is
+  double unlike = 1;         ///< factor of the second pressure
   double length = 1;         ///< unit over mm
-  bool exchanged = false;    ///< the frames of the two pressures
+  bool exchanged = false;    ///< frames of the two pressures
   bool upside_down = false;  ///< z points into the plate
 };
 std::function<std::string()> rim(const RimMistake& mistake, int levels = 2) {
@@ -553,7 +553,7 @@ TEST_CASE("mistakes: noise of the dots", "[mistakes]") {
          dots.cells[40].x = t % 3 == 0 ? 1.7e308 : dots.cells[40].x;
        }),
        "ok"},
-      {"dots in mm",  // noise is in the dots' unit, whatever it is
+      {"dots in mm",  // noise is in the unit of the dots
        standing([](Dots& dots, int) {
          for (auto& p : dots.cells) {
            p = {p.x * 0.06, p.y * 0.06};
@@ -576,7 +576,7 @@ TEST_CASE("mistakes: noise of the taxels", "[mistakes]") {
       {"none", resting([](double r, Index, Index) { return r; }), "ok"},
       {"a dead array", resting([](double, Index, Index) { return 0.0; }),
        "taxels whose readings change = 0"},
-      {"most readings at full scale",  // as rest without noise looks
+      {"most readings at full scale",  // looks like rest without noise
        resting([](double r, Index i, Index) { return i < 20 ? 4095.0 : r; }), "ok"},
       {"most readings missing",
        resting([](double r, Index i, Index) { return i < 20 ? test::nan : r; }), "in range"},

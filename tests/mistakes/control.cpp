@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
-// Mistakes with what decides on a grip: forces, ratios, times and signals, and what is said of each
-// at the end. Whatever is given, the force stays within its limits.
+// Mistakes in the inputs of grip control: forces, ratios, times and signals, and the response at
+// the end. With any input the force stays within its limits.
 #include <cmath>
 #include <functional>
 #include <string>
@@ -103,8 +103,8 @@ TEST_CASE("mistakes with the grip's control", "[mistakes]") {
 }
 
 TEST_CASE("mistakes with the grip's control by friction", "[mistakes]") {
-  // An object pulls with 1 N, then 2 N, at a friction of 0.8; the dots slip from 0.6 on. What is
-  // said at the end, and whether the object ever slid.
+  // An object pulls with 1 N, then 2 N, at a friction of 0.8; the dots slip from 0.6 on. Checks the
+  // last response and whether the object ever slid.
   struct Input {
     ContactLoad<> load;
     double stick_ratio;
@@ -166,7 +166,7 @@ TEST_CASE("mistakes with the grip's control by friction", "[mistakes]") {
 }
 
 TEST_CASE("mistakes with the search for the holding force", "[mistakes]") {
-  // Pre-slip at 4 N, then slip; a signal is what a hand says.
+  // Pre-slip at 4 N, then slip; `signal` is the hand's status.
   const auto ends = [](const std::function<PreslipStatus(double force_n, int k)>& signal) {
     const LoosenUntilPreslip<> loosen({.settle_samples = 2, .watch_samples = 4});
     const LiftWithRegrip<> lift({.settle_samples = 2});
@@ -186,7 +186,7 @@ TEST_CASE("mistakes with the search for the holding force", "[mistakes]") {
         }) == "found, lifted");
   CHECK(ends([](double, int) { return preslip; }) == "found, at limit");
   CHECK(ends([](double, int) { return slipped; }) == "slipped, slipped");
-  // a stuck "steady": nothing can tell, but for the least force, and the object that has gone
+  // a stuck "steady" is undetectable, except through the least force and the lost object
   CHECK(ends([](double, int) { return steady; }) == "at limit, lifted");
 
   const auto loosened = [](const LoosenOptions<>& o) {

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
-// Mistakes with depth and contact, and what is said of each.
+// Mistakes with depth and contact, and the response to each.
 #include "fingerpad/depth/depth.hpp"
 
 #include <algorithm>
@@ -36,7 +36,7 @@ using Frame8 = test::Frame<std::uint8_t>;
 
 namespace {
 
-/// What a user gives for the reference.
+/// Inputs of a user for the reference.
 struct Given {
   Pad pad;
   Image<double> depth_mm = pad.free_depths();
@@ -60,7 +60,7 @@ void each_pixel(Given& given, const Change& change) {
   }
 }
 
-/// Rows read one after the other with a stride that is off by `px`.
+/// Rows read one after the other with a stride that is wrong by `px`.
 Frame8 sheared(const Frame8& frame, Index px) {
   Frame8 out = frame;
   const Index cols = frame.red.cols();
@@ -84,7 +84,7 @@ Frame8 times(Frame8 frame, double factor) {
 struct Mistake {
   const char* what;
   void (*make)(Given&);
-  const char* said;  ///< is part of what is said
+  const char* said;  ///< part of the response
 };
 
 constexpr const char* exchanged = "are red and green exchanged";
@@ -138,7 +138,7 @@ const Mistake with_the_reference[] = {
      "is the frame one of the free pad"},
 };
 
-/// A camera that sees the pad as finely as cameras do, and frames of another light.
+/// A camera with a realistic resolution of the pad, and frames under another light.
 Pad fine_pad() {
   Pad pad;
   pad.rows = 240;
@@ -217,7 +217,7 @@ TEST_CASE("a frame that is not of this pad and lamp is told", "[mistakes]") {
 }
 
 TEST_CASE("a membrane that has aged: depths are those of the fluid", "[mistakes]") {
-  // by half a millimetre higher on the same base, and lower
+  // half a millimetre higher on the same base, and lower
   const Pad pad = fine_pad();
   const auto estimator = pad.estimator<BiasFreeMean, ExponentialFree<>, float>();
   const auto mean_error_mm = [&](double higher_mm) {
@@ -236,7 +236,7 @@ TEST_CASE("a membrane that has aged: depths are those of the fluid", "[mistakes]
     }
     return sum / count;
   };
-  // the light at each depth is another: the error is a tenth larger, and no more
+  // the light at each depth differs: the error is a tenth larger, and no more
   const double as_new = mean_error_mm(0);
   CHECK(mean_error_mm(0.5) / as_new == Approx(1.1).margin(0.05));
   CHECK(mean_error_mm(-0.5) / as_new == Approx(1.1).margin(0.05));
@@ -259,7 +259,7 @@ TEST_CASE("the light at the rim is that of all bands together", "[mistakes]") {
 }
 
 TEST_CASE("a depth that is ok lies in [0, max_depth_mm]", "[mistakes]") {
-  // constants of absorption and references as wrong as is accepted; colours of all kinds
+  // absorption constants and references at the limits of acceptance, with colours of all kinds
   test::Random random(11);
   for (int k = 0; k < 40; ++k) {
     Pad pad;
@@ -316,7 +316,7 @@ TEST_CASE("a bad pixel of the reference spoils no other", "[mistakes]") {
       worst = change > worst ? change : worst;
     }
     CAPTURE(size, worst);
-    // what the window has lost of its pixels, and no more
+    // the effect of the pixels that the window has lost, and no more
     CHECK(worst < (size == 1 ? 0.02 : 0.15));
     CHECK(std::isnan(after(100, 150)));
   }

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
-// Mistakes in the recordings of which light, thresholds of the stick ratio and of pre-slip, and the
-// grid of printed dots are found, and what is said of each: a status, the message of a refusal,
-// "right", or "wrong". A "wrong" has its reason in docs/mistakes.md.
+// Mistakes in the recordings for the calibration of light, of thresholds of the stick ratio and of
+// pre-slip, and of the grid of printed dots, and the response to each: a status, the message of a
+// refusal, "right", or "wrong". docs/mistakes.md has the reason of each "wrong".
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -36,7 +36,7 @@ template <class Input>
 struct Mistake {
   const char* name;
   std::function<void(Input&)> make;
-  const char* said;  ///< part of it
+  const char* said;  ///< part of the response
 };
 
 template <class Input, std::size_t N>
@@ -54,7 +54,7 @@ void check(const Mistake<Input> (&mistakes)[N], std::string (*said_of)(const Inp
 
 using Pixels = Image<double>;
 
-/// Cell (i, j) is that at from(i, j), around the edges.
+/// Cell (i, j) of the result is the one at from(i, j), wrapped around at the edges.
 template <class From>
 Pixels rearranged(const Pixels& image, const From& from) {
   Pixels out = image;
@@ -90,7 +90,7 @@ Pixels half_of(Pixels image) {
 
 // ---- light of one channel
 
-/// Two presses of balls into a gel under an uneven lamp, whose depth is 4 mm times the logarithm.
+/// Two presses of balls into a gel under an uneven lamp; the depth is 4 mm times the logarithm.
 struct Presses {
   static constexpr Index size = 96;
   struct Press {
@@ -145,7 +145,7 @@ std::function<void(Presses&)> in_each(const std::function<void(Presses::Press&)>
 
 // ---- neighbouring light
 
-/// A plate pressed into a cap twice: the depths as measured, in mm, and the true ones.
+/// A plate pressed into a cap twice: measured and true depths, in mm.
 struct Depths {
   static constexpr Index size = 64;
   double pitch_mm = 0.2;
@@ -200,7 +200,7 @@ void all_of(std::vector<Pixels>& images, const std::function<Pixels(const Pixels
 
 // ---- pre-slip
 
-/// A hand that trembles, and slips now and then: samples of two fingers, and whether slip begins.
+/// A trembling hand that slips now and then: samples of two fingers, and whether slip begins.
 struct Hand {
   static constexpr int samples = 400;
   std::vector<std::array<FingerSample<>, 2>> fingers;
@@ -255,7 +255,7 @@ std::function<void(Hand&)> each_sample(const std::function<void(Fingers&, std::s
 
 // ---- thresholds of the stick ratio
 
-/// An object that drags a membrane along while the disc that sticks shrinks, with 0.06 px of noise.
+/// An object drags a membrane along while its stick disc shrinks, with 0.06 px of noise.
 struct Drag {
   static constexpr Index across = 15;
   std::vector<test::PointsPx> dots;
@@ -312,7 +312,7 @@ void scale(Drag& drag, double factor) {
 
 // ---- the grid of dots
 
-/// A picture of the free pad, and one of the pad carried along.
+/// An image of the free pad, and one of the displaced pad.
 struct Pictures {
   test::Print print;
   DotFinderOptions options;
@@ -370,7 +370,7 @@ TEST_CASE("mistakes: the light of one channel", "[mistakes]") {
       {"none", [](Presses&) {}, "right"},
       {"ball in m", in_each([](auto& one) { one.ball.ball_mm /= 1000; }), "no ball"},
       {"ball in um", in_each([](auto& one) { one.ball.ball_mm *= 1000; }), "in mm?"},
-      {"diameter for radius",  // twice as large and half as deep: as dark
+      {"diameter for radius",  // twice as large and half as deep: equally dark
        in_each([](auto& one) { one.ball.ball_mm *= 2; }), "wrong"},
       {"pixels in m", in_each([](auto& one) { one.ball.mm_per_px /= 1000; }), "in mm?"},
       {"pixels in um", in_each([](auto& one) { one.ball.mm_per_px *= 1000; }), "no ball"},
@@ -451,7 +451,7 @@ TEST_CASE("mistakes: neighbouring light", "[mistakes]") {
          });
        },
        "less than a tenth"},
-      {"reference mirrored",  // of a pad that is nearly round
+      {"reference mirrored",  // of a nearly round pad
        [](Depths& d) { d.reference = mirrored(d.reference); }, "wrong"},
       {"all mirrored",
        [](Depths& d) {

@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
-// What is said of mistakes with foam fingers. Two fingers hold an object and nothing slips; each
-// line below is a mistake, what the hand then says at the end, what the finger says that has it,
-// and whether the hand ever said "steady" once the mistake could be seen. No mistake is taken for
-// slip, and where nothing can be told no controller moves.
+// Responses to mistakes with foam fingers. Two fingers hold an object and nothing slips. Each line
+// below has a mistake, the hand's status at the end, the status of the affected finger, and from
+// when on the hand must not report "steady". No mistake is taken for slip, and no controller moves
+// where the status is unknown.
 #include <array>
 #include <bit>
 #include <cmath>
@@ -31,7 +31,7 @@ namespace {
 constexpr double period_s = 1.0 / 30;
 constexpr Index array_rows = 8, array_cols = 4;
 
-/// What comes in at sample k, and can be spoilt.
+/// Data of sample k, which a mistake changes.
 struct Sample {
   int k = 0;
   double time_s = 0;
@@ -83,9 +83,9 @@ struct Mistake {
   std::string name;
   PreslipStatus hand;  // at the end
   TaxelStatus finger;  // of finger 1, at the end
-  Spoil spoil;         // each sample
+  Spoil spoil;         // changes each sample
   Change options = {};
-  int seen_from = 0;  // from this sample on the hand is not steady, if it cannot tell at the end
+  int seen_from = 0;  // from this sample on not steady, if the hand cannot tell
 };
 
 constexpr auto steady = PreslipStatus::steady;
@@ -232,7 +232,7 @@ TEST_CASE("mistakes with foam fingers: what is told of single taxels", "[mistake
   FingerSample<> felt;
   for (int k = 0; k < 60; ++k) {
     Sample sample = grip.next();
-    sample.fingers[0](0, 0) = 0;                    // nothing presses there, or it is dead
+    sample.fingers[0](0, 0) = 0;                    // no pressure there, or dead
     sample.fingers[0](7, 3) = 2000;                 // stuck
     sample.fingers[0](3, 3) *= k % 3 == 0 ? 1 : 0;  // loose
     sample.fingers[0](4, 3) = test::nan;            // missing
@@ -247,7 +247,7 @@ TEST_CASE("mistakes with foam fingers: what is told of single taxels", "[mistake
 
 namespace {
 
-/// What a rule says at the end of a grip in which a finger is dead, or both are well.
+/// Status of a rule at the end of a grip, with one dead finger or none.
 template <class Rule>
 PreslipStatus said_with(bool dead) {
   const TaxelFeatures<> features(array_rows, array_cols);

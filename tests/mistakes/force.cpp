@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
-// What is said of mistakes with the forces: each line is a mistake, and what is said of it. No
-// mistake gets a status of ok; what cannot be seen in a frame stands last, with the reason.
+// Responses to mistakes with the forces: each line has a mistake and its response. No mistake gets
+// the status ok. Mistakes that a frame does not show come last, with the reason.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -35,7 +35,8 @@ namespace {
 
 using Pad = test::RoundPad<test::FilmSide>;
 
-/// The shape as a caller might have it: heights and slopes times factors, the contact as it is.
+/// The shape as a caller might pass it: heights and slopes times factors, with the contact
+/// unchanged.
 struct Shape {
   Pad pad;
   double height = 1, slope = 1;
@@ -48,7 +49,7 @@ struct Shape {
   bool in_contact(double x, double y) const { return touches && pad.in_contact(x, y); }
 };
 
-/// A frame of a drag and a twist at 10 kPa, and the estimator, to be spoilt.
+/// A frame of a drag and a twist at 10 kPa, with its estimator, for mistakes to change.
 struct Frame {
   Pad pad;
   test::RimOfDots rim = test::rim_of(pad);
@@ -206,7 +207,7 @@ TEST_CASE("mistakes with the six-axis force: a calibrated rim brings its modulus
   };
   CHECK(at(0.01) == WrenchStatus::ok);
   CHECK(at(0.01 + 0.101325) == WrenchStatus::modulus_not_as_calibrated);
-  // not noticeable without a calibration: a stiffer membrane at a higher pressure looks the same
+  // undetectable without a calibration: a stiffer membrane at a higher pressure looks the same
   const Wrench<> knows_no_modulus(frame.border, frame.options);
   CHECK(knows_no_modulus(frame.shape, frame.dots, 0.01 + 0.101325, workspace).ok());
 }
@@ -228,7 +229,7 @@ TEST_CASE("mistakes with the six-axis force: two rows of side dots exchanged", "
 }
 
 TEST_CASE("mistakes with the six-axis force: shape and side dots of two pads", "[mistakes]") {
-  // a pad three times as high, and pulls in four lobes, which balance no such shape
+  // a pad three times as high, and pulls in four lobes, which cannot balance such a shape
   Frame frame;
   frame.shape.height = frame.shape.slope = 3;
   const double tension = frame.pad.tension(frame.pad.radius_mm, frame.pressure_mpa);
@@ -267,7 +268,7 @@ TEST_CASE("mistakes with the six-axis force: what the residual does not see, the
   const auto shifted = [&](const WrenchResult<double>& r) {
     return norm(r.force_n - right.force_n) / norm(right.force_n);
   };
-  // stiffer and softer: forces come from pressure and shape, and the modulus says it
+  // stiffer and softer: forces come from pressure and shape, and the modulus shows the change
   for (const double stiffer : {1.4, 1 / 1.4, 2.0, 0.5}) {
     const auto r = solved(aged(stiffer, 1));
     const bool little = stiffer < 1.5 && 1 < 1.5 * stiffer;
@@ -276,7 +277,7 @@ TEST_CASE("mistakes with the six-axis force: what the residual does not see, the
     CHECK(shifted(r) < 1e-6);
     CHECK(modulus(r) == Approx(stiffer).epsilon(1e-6));
   }
-  // a rim that has become longer without stress: by 5 % F_xy halves and so does the modulus
+  // a rim that has become longer without stress: 5 % halve F_xy and the modulus
   const auto longer = solved(aged(1, 1.05));
   CHECK(longer.status == WrenchStatus::pad_has_changed);
   CHECK(longer.has_force());
@@ -285,7 +286,7 @@ TEST_CASE("mistakes with the six-axis force: what the residual does not see, the
   CHECK(longer.force_n.x / right.force_n.x == Approx(0.53).margin(0.01));
   CHECK(modulus(longer) == Approx(0.5).margin(0.01));
   CHECK(solved(aged(1, 1.2)).status == WrenchStatus::modulus_not_as_calibrated);
-  // what is not told: F_xy off by no more than the bound
+  // undetected: the error of F_xy is within the bound
   for (const double length : {0.96, 0.97, 0.98, 0.99, 1.01, 1.02, 1.03, 1.04}) {
     const auto r = solved(aged(1, length));
     INFO(length << ": mu t " << modulus(r) << ", F_x " << r.force_n.x / right.force_n.x << ", "
@@ -298,7 +299,7 @@ TEST_CASE("mistakes with the six-axis force: what the residual does not see, the
   const auto pressed = solved([](Frame& f) { f.pressure_mpa *= 1.2; });
   CHECK(pressed.residual < 0.001);
   CHECK(modulus(pressed) == Approx(1.2).epsilon(1e-3));
-  // slopes that are off by a fifth do next to nothing; heights do a little, and nothing tells
+  // slopes with an error of a fifth have almost no effect; heights have a little, undetected
   for (const double off : {0.8, 1.2}) {
     CHECK(shifted(solved([=](Frame& f) { f.shape.slope = off; })) < 0.001);
     const auto r = solved([=](Frame& f) { f.shape.height = f.shape.slope = off; });
@@ -310,7 +311,7 @@ TEST_CASE("mistakes with the six-axis force: what the residual does not see, the
 
 TEST_CASE("mistakes with the six-axis force: by the modulus alone an aged membrane is not told",
           "[mistakes]") {
-  // the same frame with its pressure and shape tells it: pad_has_changed
+  // the same frame with its pressure and shape shows it: pad_has_changed
   Frame frame;
   frame.options.calibrated_modulus_n_per_mm = frame.rim.modulus_n_per_mm;
   const auto loaded = [&](double stiffer, double longer) {
@@ -324,7 +325,7 @@ TEST_CASE("mistakes with the six-axis force: by the modulus alone an aged membra
     });
   };
   const Wrench<BalancedRim> wrench(frame.border, frame.options);
-  // without a modulus there is nothing to compare with
+  // without a modulus there is no comparison
   WrenchOptions<double> without = frame.options;
   without.calibrated_modulus_n_per_mm.reset();
   const Wrench<BalancedRim> any_pad(frame.border, without);
@@ -364,7 +365,7 @@ TEST_CASE("mistakes with the six-axis force: a modulus of another unit", "[mista
 
 namespace {
 
-/// A contact that is pressed, carried along and rotated.
+/// A contact that is pressed, displaced and rotated.
 struct Contact {
   double area_mm2 = 225, depth_mm = 3;
   Point2<double> displacement_mm = {0.4, -0.2};
@@ -392,7 +393,7 @@ const std::vector<LookUpMistake> look_up_mistakes = {
     {"depth in um", [](Contact& c) { c.depth_mm *= 1e3; }, "measured", "beyond range",
      "beyond range", "measured"},
     {"no area", [](Contact& c) { c.area_mm2 = test::nan; }, "not finite", "measured", "measured",
-     "not finite"},  // that by depth alone
+     "not finite"},  // the force by depth alone
     {"area in px", [](Contact& c) { c.area_mm2 *= 150; }, "beyond range", "measured",
      "beyond range", "beyond range"},
     {"depth in m", [](Contact& c) { c.depth_mm *= 1e-3; }, "measured", "below range", "disagreeing",
@@ -449,7 +450,7 @@ TEST_CASE("mistakes with the look-ups", "[mistakes]") {
 
 TEST_CASE("mistakes with the look-ups: the variance belongs to the curve that answers",
           "[mistakes]") {
-  // 28.2 N where a quadratic up to 20 N goes on, 25.4 N along its tangent
+  // 28.2 N if a quadratic up to 20 N continues, 25.4 N along its tangent
   const PolynomialForce<> curve{{0, 0.02, 0.0001}, 20, 350};
   const NormalForce<> force(curve, {}, {.residual_sd_n = 0.08});
   const auto r = force(450);
@@ -474,7 +475,7 @@ TEST_CASE("mistakes with the look-ups: moments in N m", "[mistakes]") {
 TEST_CASE("mistakes with the friction ratio", "[mistakes]") {
   const published::FrictionRatio<> friction;
   auto state = friction.start();
-  const Vector on_pad = {0.8, 0, -1};  // as WrenchResult has it: a press
+  const Vector on_pad = {0.8, 0, -1};  // as in WrenchResult: a press
   CHECK(friction(on_pad, true, state).status == published::FrictionStatus::sliding);
   CHECK(friction(on_pad, false, state).status == published::FrictionStatus::near_slip);
   CHECK(friction(Point2<double>{0.8, 0}, 1.0, false, state).status ==
@@ -482,7 +483,7 @@ TEST_CASE("mistakes with the friction ratio", "[mistakes]") {
   const auto wrong = friction(Point2<double>{0.8, 0}, on_pad.z, false, state);
   CHECK(std::string(name_of(wrong.status)) == "negative normal force: F_z of a wrench?");
   CHECK_FALSE(wrong.ok());
-  // forces that no gauge gives, after a slide without friction
+  // forces that no gauge reports, after a slide without friction
   for (const double absurd : {1e6, 1e30, 1.7e308}) {
     auto slid = friction.start();
     CHECK_FALSE(friction(1e-300, 1.0, true, slid).margin < -1);
@@ -517,7 +518,7 @@ void each_dot(test::TractionScene& s, const Change& change) {
   }
 }
 
-/// Dot (i, j) is that at from(i, j).
+/// Dot (i, j) takes the place of the one at from(i, j).
 template <class From>
 std::function<void(test::TractionScene&)> renamed(const From& from) {
   return [=](test::TractionScene& s) {
@@ -604,14 +605,14 @@ TEST_CASE("mistakes with the traction field", "[mistakes]") {
     CHECK(r.ok() == (m.said == "ok"));
     CHECK((!r.has_force() || is_finite(r.force_n)));
   }
-  // dots a pitch aside would make a force that is off by its own size
+  // dots that are off by one pitch would give a force with an error of its own size
   for (test::TractionScene aside : test::traction_scenes()) {
     shift_by_one(aside);
     INFO(aside.name);
     CHECK(std::string(name_of(field(aside.dots, aside.contact, aside.pressure_mpa, maps).status)) ==
           "free part pulled: dots shifted by one?");
   }
-  // the free pad's dots where an object is said to touch: no force
+  // the free pad's dots with contact flags: no force
   auto free = test::traction_scene("tilt");
   free.dots = test::traction_scene("free").dots;
   CHECK(norm(field(free.dots, free.contact, free.pressure_mpa, maps).force_n) <
@@ -619,7 +620,7 @@ TEST_CASE("mistakes with the traction field", "[mistakes]") {
 }
 
 TEST_CASE("mistakes with the traction field: an aged membrane", "[mistakes]") {
-  // what the field takes the pad to be over what it is: its modulus and its stress-free length
+  // The field's assumption over the true value: modulus and stress-free length of the pad.
   struct Aged {
     std::optional<double> modulus;
     double length;
@@ -656,7 +657,7 @@ TEST_CASE("mistakes with the traction field: an aged membrane", "[mistakes]") {
       CHECK((!r.ok() || norm(r.force_n - scene.force_n) < 0.05 * norm(scene.force_n)));
     }
   }
-  // noise of the dots is neither taken for age nor hides it
+  // noise of the dots is not taken for age and does not hide it
   for (const test::TractionScene& scene : test::traction_scenes()) {
     test::Gauss gauss(7);
     for (const double length : {0.97, 1.0, 1.03}) {
@@ -675,7 +676,7 @@ TEST_CASE("mistakes with the traction field: an aged membrane", "[mistakes]") {
       }
     }
   }
-  // what is not told is small: by 1 % F_z is off by a tenth in the worst frame
+  // undetected errors are small: 1 % changes F_z by a tenth in the worst frame
   for (const test::TractionScene& scene : test::traction_scenes()) {
     for (const double length : {0.99, 1.01}) {
       auto free = test::stress_free_dots();
@@ -696,8 +697,8 @@ TEST_CASE("mistakes with the traction field: an aged membrane", "[mistakes]") {
 TEST_CASE(
     "mistakes with the traction field: without a given modulus a longer membrane is a softer one",
     "[mistakes]") {
-  // by 3 % F_xy is off by half with status ok: a stiffer membrane at less stretch holds as much;
-  // but the modulus of the frame is 1.5 times that of the pad when it was new
+  // 3 % change F_xy by half with status ok, because a stiffer membrane with less stretch holds as
+  // much. But the modulus of the frame is 1.5 times that of the new pad.
   auto free = test::stress_free_dots();
   for (Vector& dot : free.cells) {
     dot = 1.03 * dot;
@@ -713,7 +714,7 @@ TEST_CASE(
 
 namespace {
 
-/// Dots 2 mm apart on a gel that is pressed in the middle: they part under the load.
+/// Dots 2 mm apart on a gel that is pressed in the middle: they move apart under the load.
 struct PartedDots {
   static constexpr Index across = 15;
   using Dots = Image<Point2<double>>;
@@ -732,7 +733,7 @@ struct PartedDots {
     }
   }
 
-  /// Dot (i, j) of this frame is that at from(i, j).
+  /// Dot (i, j) of this frame becomes the one at from(i, j).
   template <class From>
   void rename(const From& from) {
     const Dots as_it_was = now;
@@ -834,7 +835,7 @@ TEST_CASE("mistakes with the divergence of the dots", "[mistakes]") {
 }
 
 TEST_CASE("one convention of signs: a press", "[mistakes]") {
-  // a vector is what the object exerts on the pad, z toward the object; a normal force presses, > 0
+  // a vector is the force of the object on the pad, z toward the object; a normal force > 0 presses
   const auto wrench = seen<LeastSquares>(Frame());
   CHECK(wrench.force_n.z < 0);
   CHECK(wrench.normal_force_n() == -wrench.force_n.z);
@@ -846,7 +847,7 @@ TEST_CASE("one convention of signs: a press", "[mistakes]") {
   const auto load = contact_load(on_pad, {0, 0, 0}, scene.dots, scene.contact);
   CHECK(load.normal_n == Approx(-on_pad.z).epsilon(0.01));
   CHECK(NormalForce(published::force_of_area())(225.0).force_n > 0);
-  // the other sign is told where a normal force is given
+  // the other sign is reported where a normal force is passed
   const FrictionLimit<> limit;
   auto state = limit.start();
   ContactLoad<> pulls = load;

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
-// Mistakes with pixels: frames of gels and depth maps, and what six methods say of each. "found":
-// the mistake does no harm, or is none for this method; a wrong number is told as "another ...",
-// and then nothing can tell, with the reason in docs/mistakes.md.
+// Mistakes with pixels: frames of gels and depth maps, and the responses of six methods. "found":
+// the mistake does no harm or does not apply to the method. "another ...": a wrong number that
+// cannot be detected; docs/mistakes.md has the reason.
 #include <array>
 #include <cmath>
 #include <functional>
@@ -35,7 +35,7 @@ std::array<double, 3> times(const std::array<double, 3>& p, double factor) {
   return {factor * p[0], factor * p[1], factor * p[2]};
 }
 
-/// Cell (i, j) is that at from(i, j), times a factor.
+/// Cell (i, j) of the result is the one at from(i, j), times a factor.
 template <class Cell, class From>
 Image<Cell> rearranged(const Image<Cell>& image, const From& from, double factor = 1) {
   Image<Cell> out = image;
@@ -48,7 +48,7 @@ Image<Cell> rearranged(const Image<Cell>& image, const From& from, double factor
   return out;
 }
 
-/// Of a frame; `free`: of the free pad, which is right.
+/// A frame with the mistake; `free` is the correct free pad.
 template <class Cell>
 Image<Cell> spoilt(const std::string& mistake, const Image<Cell>& now, const Image<Cell>& free) {
   const auto scaled = [&](double factor) {
@@ -94,7 +94,7 @@ bool is_near(const Point3<double>& a, const Point3<double>& b, double mm) {
   return std::hypot(a.x - b.x, a.y - b.y) < mm;
 }
 
-/// A contact as it is told, against that without the mistake.
+/// Response of a contact, compared with the one without the mistake.
 std::string told(const ContactResult& r, const ContactResult& right) {
   return !r.ok()                          ? name_of(r.status)
          : 2 * r.unknown_px > size * size ? "mostly unknown"
@@ -105,7 +105,7 @@ std::string told(const ContactResult& r, const ContactResult& right) {
              : "another contact";
 }
 
-/// A gel that darkens under a ball, off the middle, under an uneven lamp.
+/// A gel that darkens under an off-center ball, under an uneven lamp.
 std::string of_intensity(const std::string& mistake) {
   Pixels free(size, size), now(size, size), right(size, size);
   for (Index i = 0; i < size; ++i) {
@@ -223,7 +223,7 @@ std::string of_light(const std::string& mistake) {
                                                   : "another depth";
 }
 
-/// The area of the plate that would press as hard, by the true contact.
+/// The equivalent flat area for the true contact.
 std::string of_flat_area(const std::string& mistake) {
   const PressedPad pad;
   Image<std::uint8_t> mask(size, size);
@@ -237,7 +237,7 @@ std::string of_flat_area(const std::string& mistake) {
   auto workspace = area.workspace();
   const auto right = area(mask, pad.now, workspace);
   REQUIRE(right.ok());
-  if (mistake == "free pad and now exchanged") {  // of what touches, too
+  if (mistake == "free pad and now exchanged") {  // of the contact, too
     for (std::uint8_t& cell : mask.cells) {
       cell = cell != 0 ? 0 : 1;
     }

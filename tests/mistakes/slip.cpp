@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
-// Mistakes with printed dots, and what is said of each. An object is dragged, and nothing slips;
-// each line is a mistake in the dots and what six methods say of it in the last frame. "updated",
-// "ok", "measured": the mistake does no harm; a wrong number is told as "another motion", "another
-// shift", "false slip" or "alarm", and then nothing can tell, with the reason in docs/mistakes.md.
+// Mistakes with printed dots, and the responses to each. An object is dragged, and nothing slips.
+// Each line has a mistake in the dots and the responses of six methods in the last frame.
+// "updated", "ok", "measured": the mistake does no harm. "another motion", "another shift", "false
+// slip" or "alarm": a wrong number that cannot be detected; docs/mistakes.md has the reason.
 #include <array>
 #include <cmath>
 #include <functional>
@@ -41,10 +41,10 @@ constexpr double mm_per_px = 0.08;
 constexpr int frames = 12;
 using Spatial = Image<Point3<double>>;
 
-/// Of frame k; 0 is the free pad.
+/// Changes frame k; 0 is the free pad.
 using Spoil = std::function<void(PointsPx&, int k)>;
 
-/// What is said.
+/// Responses of the methods.
 struct Answers {
   std::string stick, spatial, motion, shift, recoil, slide;
 
@@ -203,7 +203,7 @@ const std::vector<Mistake>& mistakes() {
   return all;
 }
 
-/// A free frame, then a drag in which all sticks.
+/// A free frame, then a drag in which all dots stick.
 template <class See>
 void drag(const Mistake& mistake, const See& see) {
   SlippingDots truth({.rows = across, .cols = across, .pitch_px = 19.5, .contact_pitches = 5});
@@ -216,7 +216,7 @@ void drag(const Mistake& mistake, const See& see) {
   }
 }
 
-/// On a slope; marks of lost dots are marks there, too.
+/// Dots on a slope; marks of lost dots are kept.
 Spatial in_space(const PointsPx& dots) {
   Spatial out(dots.rows(), dots.cols());
   for (std::size_t k = 0; k < out.cells.size(); ++k) {
@@ -228,7 +228,7 @@ Spatial in_space(const PointsPx& dots) {
   return out;
 }
 
-/// The last status of a stick ratio, or that something was said to slip.
+/// The last status of a stick ratio, or "false slip".
 template <class Ratio, class Convert>
 std::string said_by_stick(const Ratio& ratio, const Mistake& mistake, const Convert& convert) {
   auto state = ratio.start();
@@ -243,7 +243,7 @@ std::string said_by_stick(const Ratio& ratio, const Mistake& mistake, const Conv
   return slip ? "false slip" : said;
 }
 
-constexpr double way_px = 0.6 * frames, way_rad = 0.4;  // of the object's middle, in all
+constexpr double way_px = 0.6 * frames, way_rad = 0.4;  // motion of the object's middle, in total
 
 template <class S>
 bool is_true_way(const S& x, const S& y, double unit) {
@@ -252,7 +252,7 @@ bool is_true_way(const S& x, const S& y, double unit) {
   return off < 0.05 * unit * way_px;
 }
 
-/// Refused by the constructor; else the last status, or that the object went elsewhere.
+/// The constructor's refusal, the last status, or "another motion".
 template <class Motion>
 std::string said_by_motion(const Mistake& mistake) {
   std::optional<Motion> motion;
@@ -310,7 +310,7 @@ std::string said_by_recoil(const Mistake& mistake) {
   return refused != "accepted" ? "refused" : alarm ? "alarm" : said;
 }
 
-/// The imprint goes with the dots.
+/// The imprint moves with the dots.
 std::string said_by_slide(const Mistake& mistake) {
   const ContactSlide<> slide(60, 80, across, across, {.pitch_px = 19.5, .cell_px = 8});
   auto state = slide.start();
@@ -353,7 +353,7 @@ TEST_CASE("mistakes with printed dots", "[mistakes]") {
         said_by_slide(mistake),
     };
     CHECK(said == mistake.said);
-    // as published it takes all for px
+    // the published form takes every unit for px
     const bool other_unit =
         mistake.said.spatial == "wrong scale" || mistake.name == std::string("dots times 1000");
     CHECK(said_by_stick(published::stick_ratio<double>(across, across), mistake, as_they_are) ==
@@ -418,8 +418,8 @@ TEST_CASE("patterns larger than any are refused by name", "[mistakes]") {
 
 namespace {
 
-/// What is said of a ball that drags a gel along without slipping, where either the dots under the
-/// ball are said to touch, or all. The gel follows around the ball, the less the further away.
+/// Response for a ball that drags a gel along without slip, with contact flags of the dots under
+/// the ball or of all dots. The gel follows around the ball, the less the further away.
 template <class Ratio, class Convert>
 std::string said_of_gel(const Ratio& ratio, bool all_touch, const Convert& convert) {
   const test::GelCamera camera{.pitch_mm = 1.2, .jitter_px = 0.06};
@@ -456,12 +456,12 @@ TEST_CASE("mistakes with printed dots: all are said to touch", "[mistakes]") {
   constexpr Index rows = 16, cols = 21;  // of the gel's camera
   both(StickRatio<>(rows, cols), as_they_are);
   both(SpatialStickRatio<>(rows, cols), in_space);
-  // one who says that the object is larger than the pattern is believed
+  // the option that the object covers the pattern is believed
   CHECK(said_of_gel(StickRatio<>(rows, cols, {.covers_pattern = true}), true, as_they_are) ==
         "false slip");
   CHECK(said_of_gel(SpatialStickRatio<>(rows, cols, {.covers_pattern = true}), true, in_space) ==
         "false slip");
-  // of one dot's motion and its neighbours': the noise alone makes dots slip, whatever touches
+  // by the motion of one dot and its neighbours: noise alone makes dots slip, whatever touches
   CHECK(said_of_gel(published::stick_ratio<double>(rows, cols), true, as_they_are) ==
         "no outline of the contact");
 }

@@ -44,7 +44,7 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 using Points = Image<Point2<double>>;
 using Mask = Image<std::uint8_t>;
 
-/// A turn about the origin, then a shift.
+/// A rotation about the origin, then a shift.
 struct Rigid {
   double angle_rad = 0;
   double x = 0;
@@ -61,7 +61,7 @@ Points moved(Points dots, const Rigid& motion) {
   return dots;
 }
 
-/// Dots every 1.5 mm about the origin, none quite in its place.
+/// Dots every 1.5 mm about the origin, with a small jitter of each.
 Points printed(Index rows = 21, Index cols = 21, double jitter_mm = 0.05) {
   Points dots(rows, cols);
   test::Random random(1);
@@ -73,7 +73,7 @@ Points printed(Index rows = 21, Index cols = 21, double jitter_mm = 0.05) {
   }
   return dots;
 }
-/// Within so many steps of the middle.
+/// Dots within `radius` steps of the middle.
 Mask disc(Index rows = 21, Index cols = 21, double radius = 5.2) {
   Mask mask(rows, cols, 0);
   for (Index i = 0; i < rows; ++i) {
@@ -96,7 +96,7 @@ Dots choice_for(Index rows, Index cols) {
   }
 }
 
-/// One frame.
+/// Shift of one frame.
 template <class Dots, class Mean = PlainMean, class S = double, class Free, class Grid, class Flags>
 ShiftResult<S> shift(const Free& free, const Grid& dots, const Flags& contact) {
   const ContactShift<Dots, Mean, S> estimator(free, choice_for<Dots>(rows(free), cols(free)));
@@ -104,7 +104,7 @@ ShiftResult<S> shift(const Free& free, const Grid& dots, const Flags& contact) {
   return estimator(dots, contact, workspace);
 }
 
-/// Which dots take part: those whose place matters.
+/// The dots that take part: those whose position matters.
 template <class Dots, class Flags>
 Mask taking_part(const Points& dots, const Flags& contact) {
   const ContactShift<Dots> estimator(dots, choice_for<Dots>(dots.rows(), dots.cols()));
@@ -166,8 +166,8 @@ TEMPLATE_TEST_CASE("contact shift: rigid motions are found to rounding",
     const auto in_float = shift<Dots, Mean, float>(free, dots, contact);
     REQUIRE(in_float.status == ShiftStatus::measured);
     CHECK(static_cast<double>(in_float.rotation_rad) == Approx(motion.angle_rad).margin(1e-6));
-    // a robust mean of what differs only in roundings weighs the dots by them: its middle is no
-    // certain one, but what it is carried along by is, to how far the turn carries it
+    // a robust mean of residuals that are only roundoff weighs the dots by roundoff. Its middle is
+    // therefore uncertain, and a rotation turns that into an uncertain displacement.
     const double moved_by = Mean::is_robust ? 1.5 * std::abs(motion.angle_rad) : 0;
     const auto close = [&](float a, double b) {
       return std::abs(static_cast<double>(a) - b) < 1e-5 + moved_by;
@@ -185,7 +185,7 @@ TEMPLATE_TEST_CASE("contact shift: angles near half a turn do not wrap",
                    OneDot) {
   const Points free = printed();
   for (const double angle : {pi - 1e-7, pi - 0.01, -pi + 1e-7, -pi + 0.01, 3.0, -3.0}) {
-    // noise that takes some of the dots across the cut and not others
+    // noise that moves some of the dots across the cut and not others
     Points dots = moved(free, {angle, 1, 2});
     test::Random random(2);
     for (auto& p : dots.cells) {
@@ -202,8 +202,8 @@ TEMPLATE_TEST_CASE("contact shift: angles near half a turn do not wrap",
 }
 
 TEST_CASE("contact shift: the rigid motion nearest to the dots", "[contact_shift]") {
-  // Four dots at the ends of a cross. Two are carried on by 1, two stay: the middle is carried by
-  // half, and none is rotated.
+  // Four dots at the ends of a cross. Two move by 1 and two rest: the middle moves by half, and
+  // nothing rotates.
   Points free(3, 3, {test::nan, test::nan});
   free(0, 1) = {0, -2};
   free(1, 0) = {-2, 0};
@@ -226,7 +226,7 @@ TEST_CASE("contact shift: the rigid motion nearest to the dots", "[contact_shift
   r = shift<ContactDots>(free, dots, all);
   CHECK(r.rotation_rad == Approx(std::atan2(4, 16)).epsilon(1e-15));
   CHECK(r.displacement.x == 0);
-  // grown evenly: no turn, and the residual is what it has grown
+  // uniform growth: no rotation, and the residual is the growth
   for (auto& p : dots.cells) {
     p = {1.25 * p.x, 1.25 * p.y};
   }
@@ -249,7 +249,7 @@ TEST_CASE("contact shift: one dot", "[contact_shift]") {
     auto workspace = estimator.workspace();
     return estimator(frame, mask, workspace);
   };
-  // its displacement, in contact or not; the angle is that of the dots in contact
+  // the displacement of that dot, in contact or not; the angle is that of the dots in contact
   for (const DotIndex dot : {DotIndex{10, 10}, {8, 12}, {0, 0}, {20, 3}}) {
     const auto r = by(dot, dots, contact);
     CHECK(r.status == ShiftStatus::measured);
@@ -258,13 +258,13 @@ TEST_CASE("contact shift: one dot", "[contact_shift]") {
     CHECK(r.displacement.y == dots(dot.row, dot.col).y - free(dot.row, dot.col).y);
     CHECK(r.rotation_rad == Approx(0.2).epsilon(1e-14));
   }
-  // without contact it still says how far it went, but nothing of a turn
+  // without contact it still has the displacement, but no rotation
   auto r = by({10, 10}, dots, none);
   CHECK(r.status == ShiftStatus::one_place_only);
   CHECK(r.displacement.x == dots(10, 10).x - free(10, 10).x);
   CHECK(std::isnan(r.rotation_rad));
   CHECK(r.dots == 0);
-  // lost
+  // a lost dot
   Points lost = dots;
   lost(10, 10).y = test::nan;
   r = by({10, 10}, lost, contact);
@@ -282,7 +282,7 @@ TEST_CASE("contact shift: one dot", "[contact_shift]") {
 
 TEST_CASE("contact shift: the dots on both sides of the edge", "[contact_shift]") {
   const Points free = printed(7, 8, 0);
-  // # in contact, . not, o and + those of them that take part
+  // # in contact, . not in contact, o and + those of either that take part
   const auto mask_of = [](const std::array<const char*, 7>& picture, const char* marks) {
     Mask mask(7, 8, 0);
     for (Index i = 0; i < 7; ++i) {
@@ -407,7 +407,7 @@ TEST_CASE("contact shift: a mask in any form", "[contact_shift]") {
   }
   check_same(bools);
   check_same(numbers);
-  check_same(gaps);  // a number that is none says no contact
+  check_same(gaps);  // NaN means no contact
   check_same(touches);
   check_same(white);
   check_same(LazyView(21, 21, [&](Index i, Index j) { return bytes(i, j) != 0; }));
@@ -447,7 +447,7 @@ TEST_CASE("contact shift: dots of any type", "[contact_shift]") {
   };
   const auto f = [](double x) { return static_cast<float>(x); };
   const auto small = [&](const auto& p) { return Point2<float>{f(p.x), f(p.y)}; };
-  // of dots in space the plane counts, whatever the depth
+  // for dots in space only the plane counts, whatever the depth
   const auto space = [](const auto& p) { return Point3<double>{p.x, p.y, test::nan}; };
   const auto pair = [&](const auto& p) { return std::array<float, 2>{f(p.x), f(p.y)}; };
   const auto vector = [](const auto& p) { return Eigen::Vector2d(p.x, p.y); };
@@ -464,7 +464,7 @@ TEST_CASE("contact shift: dots of any type", "[contact_shift]") {
     }
   }
   check(cv_free, cv_dots);
-  // rotated grids: the dots' order in memory is no matter
+  // rotated grids: the order of the dots in memory does not matter
   const StridedView<const Point2<double>> a(free.cells.data(), 9, 9, 9),
       b(dots.cells.data(), 9, 9, 9);
   const StridedView<const std::uint8_t> c(contact.cells.data(), 9, 9, 9);
@@ -536,7 +536,7 @@ TEMPLATE_TEST_CASE("contact shift: too few dots for an angle, or for anything",
   SECTION("all in one place, in the frame or in the reference") {
     test::Random random(4);
     for (int k = 0; k < 50; ++k) {
-      // the rounded sum of 25 such places, over 25, is not the place
+      // the rounded sum of 25 equal positions, over 25, is not the position
       const Point2<double> place = {random.uniform(-20, 20), random.uniform(-20, 20)};
       const Points heap(5, 5, place);
       for (const auto& r : {shift<ContactDots, TestType>(free, heap, Mask(5, 5, 1)),
@@ -585,16 +585,16 @@ TEST_CASE("contact shift: grids and workspaces of another size", "[contact_shift
   CHECK(refused(Points(), Mask()));
   CHECK(!refused(free, Mask(5, 6, 1)));
 
-  // of a smaller grid, which would have to grow
+  // a workspace of a smaller grid, which would have to grow
   const ContactShift small(printed(3, 3), ContactDots());
   auto its = small.workspace();
   const auto r = estimator(free, Mask(5, 6, 1), its);
   CHECK(r.status == ShiftStatus::refused);
   CHECK(has_no_answer(r));
-  CHECK(small(printed(3, 3), Mask(3, 3, 1), its).dots == 9);  // as good as before
+  CHECK(small(printed(3, 3), Mask(3, 3, 1), its).dots == 9);  // still usable
   decltype(its) nothing;
   CHECK(estimator(free, Mask(5, 6, 1), nothing).status == ShiftStatus::refused);
-  // a larger one will do
+  // a larger workspace is accepted
   CHECK(small(printed(3, 3), Mask(3, 3, 1), workspace).status == ShiftStatus::measured);
 }
 
@@ -602,7 +602,7 @@ namespace {
 
 enum class Mistake { stuck, mismatched };
 
-/// All dots carried along and rotated, but some that stand still or were taken for others.
+/// All dots displaced and rotated, except some that rest or are mistaken for others.
 Points with_mistakes(const Points& free,
                      const Mask& contact,
                      const Rigid& motion,
@@ -634,8 +634,8 @@ Points with_mistakes(const Points& free,
 }
 
 struct Bias {
-  double share = 0;      ///< of the displacement, the worst of the frames
-  double angle_rad = 0;  ///< likewise
+  double share = 0;      ///< relative to the displacement, worst of the frames
+  double angle_rad = 0;  ///< worst of the frames
 };
 
 template <class Mean>
@@ -680,11 +680,11 @@ TEST_CASE("contact shift: stuck and mistaken dots bias a robust mean little", "[
       CHECK(plain.angle_rad > 0.01);
       CHECK(robust.angle_rad < 0.003);
       CHECK(few.angle_rad < 0.001);
-      // The displacement is that of the middle of what counts. It is not where the middle of all
-      // is, and so a turn adds to it.
+      // The displacement is that of the middle of the dots that count. It differs from the middle
+      // of all dots, so a rotation adds to it.
       CHECK(robust.share < (turn_rad > 0 ? 0.06 : 0.03));
       CHECK(few.share < (turn_rad > 0 ? 0.05 : 0.01));
-      // nothing wrong: as good as the plain mean, which is the best there is for such noise
+      // no mistakes: as good as the plain mean, which is the optimum for such noise
       CHECK(no_plain.share < 0.006);
       CHECK(none.share < (turn_rad > 0 ? 0.02 : 0.006));
     }
@@ -709,7 +709,7 @@ TEST_CASE("contact shift: a robust mean without outliers is the plain one", "[co
   CHECK(std::sqrt(wrong_plain) == Approx(0.01 / std::sqrt(89.0)).epsilon(0.3));
   CHECK(wrong_robust < 1.3 * wrong_plain);
   CHECK(apart < 0.3 * wrong_plain);
-  // a threshold that nothing reaches
+  // a threshold that no residual reaches
   const ContactShift wide(free, ContactDots(), HuberMean{.threshold = 1e6});
   auto workspace = wide.workspace();
   const Points dots = with_mistakes(free, contact, {0.1, 1, 0}, 0.2, Mistake::stuck, random);
@@ -764,7 +764,7 @@ Image<std::array<S, 2>> as(const Points& dots) {
   }
   return out;
 }
-/// To what float holds.
+/// Dots rounded to float.
 Points rounded(Points dots) {
   for (auto& p : dots.cells) {
     p = {static_cast<double>(static_cast<float>(p.x)),
@@ -773,7 +773,7 @@ Points rounded(Points dots) {
   return dots;
 }
 
-/// Errors against 50 digits over angles from 1e-9 to 3, as found.
+/// Errors against 50 digits over angles from 1e-9 to 3.
 template <class S, class Mean>
 std::array<double, 2> errors(double away, bool in_float) {
   const Mask contact = disc();
@@ -807,7 +807,7 @@ std::array<double, 2> errors(double away, bool in_float) {
 }  // namespace
 
 TEMPLATE_TEST_CASE("contact shift: follows 50 digits", "[contact_shift]", PlainMean, HuberMean) {
-  // The weights of a robust mean follow residuals of 0.01, of which roundings are a larger share.
+  // The weights of a robust mean follow residuals of 0.01, of which roundoff is a larger share.
   constexpr bool robust = TestType::is_robust;
   SECTION("in double, about the origin, in a corner of an image, and far away") {
     const auto [near_mm, near_rad] = errors<double, TestType>(0, false);

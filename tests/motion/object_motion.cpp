@@ -57,7 +57,7 @@ double error_deg(const Rotation<double>& a, const Rotation<double>& b) {
   return angle_between(a, b) / degree;
 }
 
-/// Error of a way after 300 small turns of an object that all dots hold on to. turn(k) is the
+/// Error of a method after 300 small rotations of an object that carries all dots. turn(k) is the
 /// rotation vector of step k.
 template <class Way, class Turn>
 double path_error_deg(const Turn& turn) {
@@ -74,7 +74,7 @@ double path_error_deg(const Turn& turn) {
   return error_deg(result.pose.rotation, pose.rotation);
 }
 
-/// The digits of the tables are what counts: half a unit of the last one, and a little.
+/// Whether the error prints with these digits, to slightly more than half a unit of the last one.
 bool prints_as(double error, const char* digits) {
   const std::string text(digits);
   const auto point = text.find('.');
@@ -91,8 +91,8 @@ TEST_CASE("object motion: the published basis as printed and as repaired (E021, 
   const auto l = rotated(k, true_turn);
   CHECK(error_deg(PublishedBasis::turn(k, l).rotation, true_turn) < 1e-12);
 
-  // Eq. 17 with the vectors as rows: N_l^T = R N_k^T. Right only from an upright frame, and then
-  // it is the rotation back.
+  // Eq. 17 with the vectors as rows: N_l^T = R N_k^T. It holds only for an upright frame and gives
+  // the inverse rotation.
   const auto rows_of = [](const Neighbourhood<double>& n) {
     const auto b = published_basis(grid_directions(n, common_dots(n, n)));
     Eigen::Matrix3d m;
@@ -107,14 +107,14 @@ TEST_CASE("object motion: the published basis as printed and as repaired (E021, 
   CHECK(error_deg(rows_form, inverse(true_turn)) < 1e-12);
   CHECK(error_deg(rows_form, true_turn) > 40);
 
-  // A shear of the neighbourhood, as a skin under traction has it.
+  // A shear of the neighbourhood, as in a skin under traction.
   for (const auto& [shear, basis_deg] :
        {std::pair{0.02, 0.58}, {0.05, 1.45}, {0.1, 2.9}, {0.2, 5.7}}) {
     auto sheared = k;
     for (auto& p : sheared.dot) {
       p.x += shear * p.y;
     }
-    // the nearest rotation of such a shear is by atan(shear / 2)
+    // the nearest rotation to such a shear is by atan(shear / 2)
     const Rotation<double> nearest = test::turned_by({0, 0, -std::atan(shear / 2)});
     CAPTURE(shear);
     CHECK(error_deg(Kabsch::turn(k, sheared).rotation, nearest) < 1e-6);
@@ -230,7 +230,7 @@ TEMPLATE_TEST_CASE("object motion: dots that come into contact again sit elsewhe
                    "[object_motion]",
                    ContactMap,
                    AnchoredComposition<>) {
-  // Twice around a circle: the ball has spun meanwhile, and what was known of a dot is of no use.
+  // Twice around a circle: the ball has spun meanwhile, so earlier positions of a dot are useless.
   const test::RollingBall ball{.patch_mm = 4};
   const ObjectMotion<TestType> motion(ball.initial());
   auto state = motion.start();
@@ -248,8 +248,8 @@ TEMPLATE_TEST_CASE("object motion: dots that come into contact again sit elsewhe
 }
 
 TEST_CASE("object motion: noise after a roll with twenty changes of the reference dot", "[noise]") {
-  // 30 mm over dots 1.5 mm apart, 0.02 mm of noise in the plane and 0.05 mm in depth; rms of
-  // twenty.
+  // 30 mm over dots 1.5 mm apart, with 0.02 mm of noise in the plane and 0.05 mm in depth; rms of
+  // twenty rolls.
   const auto rms_deg = [](auto way, double patch_mm, int frames, double margin_mm = 0) {
     const test::RollingBall ball{.rows = 11, .cols = 31, .patch_mm = patch_mm};
     const std::uint64_t rolls = frames == 300 ? 20 : 100;
@@ -438,7 +438,7 @@ TEMPLATE_TEST_CASE("object motion: statuses",
       CHECK(motion(moved, elsewhere, other).status == MotionStatus::lost);
       CHECK(motion(moved, first, other).ok());
     } else {
-      Flags edge = none;  // no dot of the grid's border can be the reference dot
+      Flags edge = none;  // no dot at the border of the grid can be the reference dot
       edge(0, 6) = 1;
       CHECK(motion(moved, edge, state).status == MotionStatus::no_reference_dot);
       CHECK(motion(moved, elsewhere, state).status == MotionStatus::lost);
@@ -601,7 +601,7 @@ TEST_CASE("spatial dots: depth is read between pixels, at the dot's own pixel (E
   test::Cells<Point2<double>> dots(1, 7);
   dots(0, 0) = {1.25, 2.5};
   dots(0, 1) = {0, 0};
-  dots(0, 2) = {3, 3};      // needs no pixel that is missing
+  dots(0, 2) = {3, 3};      // needs no missing pixel
   dots(0, 3) = {3.5, 2.5};  // needs one
   dots(0, 4) = {-0.01, 1};  // outside
   dots(0, 5) = {std::nan(""), 1};
@@ -648,7 +648,7 @@ TEST_CASE("contact at dots: with a radius, all of a dot must touch") {
   test::Cells<Point2<double>> dots(1, 7);
   dots(0, 0) = {13.0, 10.0};
   dots(0, 1) = {12.4, 10.0};  // its pixel is 12
-  dots(0, 2) = {39.4, 0.0};   // what is outside of the mask does not count
+  dots(0, 2) = {39.4, 0.0};   // pixels outside the mask do not count
   dots(0, 3) = {32.0, 12.0};  // sqrt(8) from the hole
   dots(0, 4) = {33.0, 10.0};
   dots(0, 5) = {32.0, 11.0};
@@ -668,7 +668,7 @@ TEST_CASE("contact at dots: with a radius, all of a dot must touch") {
 }
 
 TEST_CASE("object motion: dots that slip do not count, and are entered anew") {
-  // Half of the dots stay behind, which is more than a robust fit bears.
+  // Half of the dots stay behind, too many for a robust fit.
   const Dots free = small_grid();
   const Flags contact(7, 7, 1);
   const ObjectMotion motion(free);
@@ -690,7 +690,7 @@ TEST_CASE("object motion: dots that slip do not count, and are entered anew") {
   CHECK(error_deg(seen.pose.rotation, pose.rotation) < 1e-9);
   CHECK(norm(seen.pose({1, 2, 10}) - pose({1, 2, 10})) < 1e-9);
   CHECK(error_deg(motion(dots, contact, blind).pose.rotation, pose.rotation) > 1);
-  // they hold on again, where they are now
+  // they stick again at their current positions
   const Dots later = rotated(dots, pose);
   const auto all = motion(later, contact, Flags(7, 7, 0), state);
   REQUIRE(all.ok());
@@ -718,12 +718,12 @@ TEST_CASE(
   CHECK(slides.status == MotionStatus::slipping);
   CHECK(std::string(name_of(slides.status)) == "slipping");
   CHECK_FALSE(slides.ok());
-  CHECK(error_deg(slides.pose.rotation, pose.rotation) < 1e-9);  // the last that is known
+  CHECK(error_deg(slides.pose.rotation, pose.rotation) < 1e-9);  // the last known rotation
   CHECK_FALSE(state.has_object());
   const auto next = motion(free, contact, Flags(7, 7, 0), state);
   CHECK(next.ok());
   CHECK(next.begun);
-  // no contact is no slide; other sizes are refused
+  // missing contact is no slide; other sizes are refused
   CHECK(motion(free, Flags(7, 7, 0), slips, state).status == MotionStatus::no_contact);
   CHECK_FALSE(motion(free, contact, Flags(6, 7, 0), state).accepted());
 }

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
-// An older dialect is refused in a line, not in thousands.
+// An older dialect is refused in one line, not in thousands.
 // first error: fingerpad needs C\+\+20: compile with -std=c\+\+20
 // flags: -std=c++17
 #include "fingerpad/slip/stick_ratio.hpp"

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
-// Optics in whole numbers would round everything away.
+// Optics in integers would lose everything to rounding.
 // message: (satisfaction of|does not satisfy) 'scalar
 #include "fingerpad/optics/camera.hpp"
 

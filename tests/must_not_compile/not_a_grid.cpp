@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
-// A type without cells is told what it lacks.
+// The first error for a type without cells names the missing members.
 // first error: no grid: give the type rows\(\), cols\(\) and a const operator
 #include "fingerpad/core/grid.hpp"
 #include "support/foreign_image.hpp"

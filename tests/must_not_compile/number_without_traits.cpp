@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
-// A number without limits of its own must say what its epsilon is.
+// A number type without limits of its own must define its epsilon.
 // message: specialise fingerpad::scalar_traits
 #include "fingerpad/core/scalar.hpp"
 

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
-// The scalar is the last of the types: the first error says which come before it.
+// The scalar is the last of the types: the first error says which types precede it.
 // first error: the scalar comes last: StickRatio<StickConsensus<>, UpdatedReference, ResidualMean,
 // double>
 #include "fingerpad/slip/stick_ratio.hpp"

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
-// What dots do is written: a grid that only reads cannot take it.
+// Dot states are output: a read-only grid cannot receive them.
 // first error: states are written: pass a grid whose cells can be assigned
 #include "fingerpad/slip/stick_ratio.hpp"
 #include "support/foreign_image.hpp"

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
-// A colour image of xtensor is no channel: the first error says what to pass.
+// A colour image of xtensor is not a channel: the first error says what to pass.
 // first error: a grid has two dimensions: pass one plane of the tensor
 #if __has_include(<xtensor/containers/xtensor.hpp>)
 #include <xtensor/containers/xtensor.hpp>

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
-// A vector of points is no dot grid: the first error says what to pass.
+// A vector of points is not a dot grid: the first error says what to pass.
 // first error: a vector has no rows and columns: pass fingerpad::grid_of\(vector, rows, cols\)
 #include <vector>
 

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
-// A vector of the rim's border points is no grid: the first error says what to pass.
+// A vector of the rim's border points is not a grid: the first error says what to pass.
 // first error: a vector has no rows and columns: pass fingerpad::grid_of\(vector, rows, cols\)
 #include <vector>
 

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
-// A view that reads does not become one that writes.
+// A read-only view does not convert to a writable one.
 // first error: a view that only reads does not become one that writes
 #include "fingerpad/core/grid.hpp"
 

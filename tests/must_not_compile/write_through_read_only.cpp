@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
-// What is read-only is refused where cells are written.
+// A read-only grid is refused as an output.
 // first error: cells are written: pass a grid whose cells can be assigned, neither const nor computed
 #include "fingerpad/contact/contact_region.hpp"
 #include "support/foreign_image.hpp"

@@ -50,7 +50,7 @@ TEMPLATE_TEST_CASE("contact shift: a frame allocates nothing",
   const auto estimator = estimator_of(21), smaller = estimator_of(5);
   const long before = test::allocations();
   auto workspace = estimator.workspace();
-  CHECK(test::allocations() > before);  // all memory is taken here
+  CHECK(test::allocations() > before);  // all memory is allocated here
   auto too_small = smaller.workspace();
   test::Image<std::uint8_t> contact(21, 21, 0);
   auto moved = dots(21, 0.1);
@@ -63,7 +63,7 @@ TEMPLATE_TEST_CASE("contact shift: a frame allocates nothing",
     }
     const long start = test::allocations();
     counted += estimator(moved, contact, workspace).dots;
-    // memory that does not suffice does not grow
+    // insufficient memory does not grow
     counted += estimator(moved, contact, too_small).dots;
     taken += test::allocations() - start;
   }

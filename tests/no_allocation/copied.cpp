@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
-// A copied state or workspace has all the memory of the first one.
+// A copied state or workspace has all the memory of the original.
 #include <array>
 #include <cmath>
 #include <cstdint>
@@ -36,7 +36,7 @@ auto lattice(double pitch) {
 
 const LazyView all_touch(side, side, [](Index, Index) { return true; });
 
-/// Memory that two frames take.
+/// Allocations of two frames.
 template <class Frame>
 long taken(const Frame& frame) {
   const long before = test::allocations();

@@ -7,8 +7,8 @@
 #include <cstdlib>
 #include <new>
 
-// Every way of taking memory is counted, in this whole program: replacing only some of the
-// operators would mix allocators.
+// Counts every kind of allocation in the whole program: replacing only some of the operators would
+// mix allocators.
 namespace {
 std::atomic<long> taken{0};
 std::atomic<long> bytes{0};
@@ -22,7 +22,8 @@ void* take(std::size_t size, std::size_t alignment) {
   }
   throw std::bad_alloc();
 }
-/// Not inlined, or GCC 12 sees free() for what it believes came from its own operator new.
+/// Not inlined, because GCC 12 otherwise sees free() for memory that it attributes to its own
+/// operator new.
 [[gnu::noinline]] void give_back(void* p) noexcept {
   std::free(p);
 }

@@ -3,8 +3,8 @@
 #pragma once
 
 namespace test {
-/// How often this program has taken memory from the heap so far.
+/// Number of heap allocations of this program so far.
 long allocations();
-/// How many bytes it has asked for, whether or not it gave them back.
+/// Number of bytes allocated so far, whether or not they were freed.
 long bytes_taken();
 }  // namespace test

@@ -15,7 +15,7 @@ using test::Pad;
 
 namespace {
 
-/// Memory taken by three frames.
+/// Allocations of three frames.
 template <class S, class Estimator, class Red, class Green, class Workspace>
 long taken(const Estimator& estimator, const Red& red, const Green& green, Workspace& workspace) {
   test::Estimate<S> e(rows(red), cols(red));
@@ -59,7 +59,7 @@ TEMPLATE_TEST_CASE("no frame takes memory",
       pad.estimator<typename TestType::smoothing, typename TestType::inverse, S>();
   const long before = test::allocations();
   auto workspace = estimator.template workspace<Pixel>();
-  CHECK(test::allocations() > before);  // the counter counts
+  CHECK(test::allocations() > before);  // the counter works
   CHECK(taken<S>(estimator, frame.red, frame.green, workspace) == 0);
   if constexpr (std::is_same_v<Pixel, std::uint8_t>) {
     cv::Mat image(static_cast<int>(pad.rows), static_cast<int>(pad.cols), CV_8UC3);

@@ -31,7 +31,7 @@ TEMPLATE_TEST_CASE("object motion: a frame allocates nothing",
     dots(10, 10).x = not_a_number<double>();
     auto flags = roll.contact;
     if (k == 20) {
-      flags = test::Flags(21, 21, 0);  // a new object begins
+      flags = test::Flags(21, 21, 0);  // start of a new object
     }
     const long before = test::allocations();
     (void)motion(dots, flags, state);

@@ -53,7 +53,7 @@ TEMPLATE_TEST_CASE("pre-slip: a sample allocates nothing",
       alarms += preslip(now, state).alarm ? 1 : 0;
       alarms += is_preslip<Rule>(last, now, preslip.options()) ? 1 : 0;
     }
-    state = copied;  // of the same size: the memory is there
+    state = copied;  // of the same size: the memory exists
     CHECK(test::allocations() == before);
     CHECK(alarms > 0);
   };

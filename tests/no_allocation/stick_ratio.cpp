@@ -28,7 +28,7 @@ TEMPLATE_TEST_CASE(
   const typename TestType::Ratio ratio(21, 21);
   const long before_state = test::allocations();
   auto state = ratio.start();
-  CHECK(test::allocations() > before_state);  // all memory is taken here
+  CHECK(test::allocations() > before_state);  // all memory is allocated here
   test::SlippingDots truth;
   test::Random random(1);
   test::DotStates states(21, 21);
@@ -44,7 +44,7 @@ TEMPLATE_TEST_CASE(
       dots = test::PointsPx(21, 21, {test::nan, test::nan});
     }
     const auto& contact = k == 50 ? nothing : truth.contact;
-    const double time_s = k == 60 ? -1 : k;  // once it goes back
+    const double time_s = k == 60 ? -1 : k;  // backward once
     const long before = test::allocations();
     const auto r = ratio(dots, contact, states, state, time_s);
     taken += test::allocations() - before;

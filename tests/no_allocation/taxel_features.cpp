@@ -15,7 +15,7 @@ TEMPLATE_TEST_CASE("taxel features: a sample allocates nothing",
   const TestType features(16, 4);
   const long before = test::allocations();
   auto state = features.start();
-  CHECK(test::allocations() > before);  // all memory is taken here
+  CHECK(test::allocations() > before);  // all memory is allocated here
   test::Image<double> taxels(16, 4, 100);
   const test::Image<double> other(4, 16, 100);
   Index vibrating = 0;

@@ -61,7 +61,7 @@ TEMPLATE_TEST_CASE(
   int good = 0, refused = 0;
   for (int k = 0; k < 5; ++k) {
     dots(0, 10 + 2 * k).x = not_a_number<S>();
-    // a hole that grows, at last through a third of the lines
+    // a growing hole, in the end through a third of the lines
     const double hole_mm = 2 * k * k;
     const auto missing = dots;
     const S pressure = k == 3 ? S(-1) : S(test::pressed_mpa);

@@ -256,7 +256,7 @@ TEST_CASE("the published sine shift is short by the audit's numbers", "[optics]"
   };
   CHECK(std::abs(missing_mm(std::tan(std::numbers::pi / 6), 13) - 0.387) < 0.001);
 
-  // Nowhere on a pad of radius 20 mm and height 13 mm is it more than 0.026 mm.
+  // On a pad of radius 20 mm and height 13 mm it is at most 0.026 mm everywhere.
   double worst = 0;
   for (double t = 0; t < 0.37; t += 1e-3) {
     double low = 0;

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
-// All methods one after another: results that are true, the same from run to run and from one
-// thread and two; stages that are off; inputs that are refused.
+// All methods in sequence: correct results that are the same from run to run and with one and two
+// threads, disabled stages, and refused inputs.
 #include <algorithm>
 #include <cmath>
 #include <string>
@@ -16,7 +16,7 @@ using namespace chain;
 
 namespace {
 
-/// Small, so that a test can afford it; the contact is still wider than the ring.
+/// Small enough for a test, with a contact wider than the ring.
 const PressedFrames& frames() {
   static const PressedFrames all(240, 320, 4);
   return all;
@@ -71,7 +71,7 @@ void check_same(A& a, B& b) {
 TEMPLATE_TEST_CASE("the whole chain tells what the plate does",
                    "[chain]",
                    (InSamples<ByDefault, 2>),
-                   (InSamples<WithLeastSquares, 2>)) {  // windows are half as wide as by default
+                   (InSamples<WithLeastSquares, 2>)) {  // windows are half the default width
   const Run<TestType> run;
   const auto& first = frames()[0];
   for (std::size_t k = 0; k < run.results.size(); ++k) {
@@ -162,7 +162,7 @@ TEST_CASE("without look-up no curve is needed, and the rest is the same", "[chai
 }
 
 TEST_CASE("sampled frames say what whole ones do", "[chain]") {
-  // rows that no whole sample fills
+  // rows that the samples do not fill completely
   static const PressedFrames wide(481, 642, 1);
   TipOf<Sampled<1>> every(wide.options());
   TipOf<Sampled<3>> third(wide.options());
@@ -268,7 +268,7 @@ TEST_CASE("a fingertip takes the neighbour light off as that method does", "[cha
   TipOf<WithLight> tip(options);
   (void)touch_of(tip, in);
 
-  // a pixel's pitch on the membrane, at the pad's mean depth
+  // pitch of a pixel on the membrane at the pad's mean depth
   double sum = 0, count = 0;
   for (Index i = 0; i < options.rows; ++i) {
     for (Index j = 0; j < options.cols; ++j) {
@@ -319,7 +319,7 @@ TEST_CASE("a fingertip refuses frames and dots of another size", "[chain]") {
 
 namespace {
 
-/// The pad of frames(), which nothing touches.
+/// The pad of frames() without contact.
 test::Frame<std::uint8_t> free_frame() {
   test::Pad pad;
   pad.rows = frames().options().rows;
@@ -392,7 +392,7 @@ TEST_CASE("mistakes with a fingertip's frames: neither an answer nor that nothin
        },
        "partial"},
   };
-  auto options = frames().options();  // by pixels alone
+  auto options = frames().options();  // by pixels only
   options.free_dots_mm = {};
   options.rim_mm = {};
   options.force_of_depth = {};

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
-// Features and rules by one object: the same as one after the other by hand, rules that are off,
-// samples that are refused.
+// Features and rules in one object: the same results as calling them in sequence, disabled rules,
+// and refused samples.
 #include "fingerpad/pipeline/foam_hand.hpp"
 
 #include <algorithm>
@@ -59,7 +59,7 @@ FoamHandOptions<2, S> options() {
   return o;
 }
 
-/// What each of 200 samples of two fingers says.
+/// Results of 200 samples of two fingers.
 template <class Hand>
 auto run(Hand& hand) {
   test::FoamSignal signal(slipping(), 1);

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
-// What must hold for every membrane, every ring and every policy.
+// Properties for every membrane, every ring and every policy.
 #include "fingerpad/contact/contact_region.hpp"
 
 #include <algorithm>
@@ -58,7 +58,7 @@ ContactTest any_test() {
   return test;
 }
 
-/// A pad with a contact somewhere, waves on it, and sometimes missing pixels.
+/// A pad with a contact anywhere, waves on it, and sometimes missing pixels.
 Image<double> any_membrane(Index rows, Index cols) {
   test::RoundContact contact;
   contact.radius_mm = test::uniform(1, 4);
@@ -104,7 +104,7 @@ bool within(const Image<std::uint8_t>& part, const Image<std::uint8_t>& whole) {
   return true;
 }
 
-/// Sizes of the parts of a mask, by OpenCV, from the largest.
+/// Sizes of the components of a mask by OpenCV, largest first.
 std::vector<Index> parts(Image<std::uint8_t> mask) {
   const cv::Mat image(static_cast<int>(mask.rows()), static_cast<int>(mask.cols()), CV_8U,
                       mask.cells.data());
@@ -134,7 +134,7 @@ TEST_CASE("the contact turns with the membrane", "[contact_region]") {
     const auto depth = any_membrane();
     const ContactTest test = any_test();
     const Found found = find_in(depth, test);
-    // in double no curvature comes as near the threshold as sums in another order differ
+    // in double no curvature is so near the threshold that the order of summation matters
     const Found rotated = find_in(transposed(depth), test);
     const Found flipped = find_in(mirrored(depth), test);
     const Found upset = find_in(transposed(mirrored(transposed(depth))), test);
@@ -231,7 +231,7 @@ TEST_CASE("cleaning keeps the regions that it says", "[contact_region]") {
 
 namespace {
 
-/// Anything at all: membranes, noise, flats with creases; and missing, infinite and huge depths.
+/// Any input: membranes, noise, flats with creases, with missing, infinite and huge depths.
 Image<double> anything(Index rows, Index cols) {
   Image<double> depth(rows, cols, 9.0);
   const auto kind = test::whole(0, 2);
@@ -283,7 +283,7 @@ void check_anything(const R& region,
   for (std::size_t k = 0; k < depth.cells.size(); ++k) {
     RC_ASSERT(found.mask.cells[k] == 0 || is_finite(depth.cells[k]));
   }
-  // it is read as it was written: of each pixel alone, by its statistic
+  // each pixel is classified by its own statistic
   const auto statistic = used.statistic();
   Index unknown = 0;
   for (Index i = 0; i < depth.rows(); ++i) {
@@ -292,13 +292,13 @@ void check_anything(const R& region,
       unknown += is_finite(k) ? 0 : 1;
       if (at_threshold && is_finite(k)) {
         const bool below = static_cast<double>(k) < threshold_per_mm;
-        RC_ASSERT(found.mask(i, j) == 0 || below);                 // contact is below
-        RC_ASSERT(!below || found.mask(i, j) != 0 || min_px > 1);  // and what is below, contact
+        RC_ASSERT(found.mask(i, j) == 0 || below);                 // contact is below the threshold
+        RC_ASSERT(!below || found.mask(i, j) != 0 || min_px > 1);  // and below it is contact
       }
     }
   }
   RC_ASSERT(unknown == r.unknown_px);
-  // nothing of the frames before is left in the workspace
+  // the workspace keeps nothing of earlier frames
   const Found fresh = find(region, depth);
   RC_ASSERT(fresh.mask.cells == found.mask.cells);
   RC_ASSERT(fresh.result.area_mm2 == r.area_mm2);

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
-// What must hold for the shift of every contact, whatever the dots.
+// Properties of the shift of every contact, for any dots.
 #include "fingerpad/published/contact_shift.hpp"
 
 #include <algorithm>
@@ -25,7 +25,7 @@ constexpr double pi = std::numbers::pi;
 using Points = Image<Point2<double>>;
 using Mask = Image<Touch>;
 
-/// A turn, then a shift.
+/// A rotation followed by a shift.
 struct Rigid {
   double angle_rad;
   double x;
@@ -67,7 +67,7 @@ Points shaken(Points dots, double mm) {
   return dots;
 }
 
-/// Any mask at all, a few dots of it unknown.
+/// Any mask, with a few unknown dots.
 Mask any_contact(Index rows, Index cols) {
   Mask mask(rows, cols, Touch::none);
   for (Touch& touch : mask.cells) {
@@ -77,7 +77,8 @@ Mask any_contact(Index rows, Index cols) {
   return mask;
 }
 
-/// Frames of dots that moved rigidly, but for some noise, with dots enough to tell how.
+/// Frames of dots that move rigidly except for some noise, with enough dots to determine the
+/// motion.
 struct Scene {
   Points free;
   Points dots;
@@ -86,7 +87,7 @@ struct Scene {
 Scene any_scene(double noise_mm = 0.05) {
   const Index rows = test::whole(3, 8), cols = test::whole(3, 8);
   Scene s{any_dots(rows, cols), {}, any_contact(rows, cols)};
-  for (Index i = 0; i < 2; ++i) {  // never without an edge
+  for (Index i = 0; i < 2; ++i) {  // ensures an edge
     s.contact(0, i) = Touch::contact;
     s.contact(2, i) = Touch::none;
     s.contact(1, i) = Touch::contact;
@@ -106,7 +107,7 @@ ShiftResult<double> shift(const Scene& s, const Mean& mean = {}) {
   return estimator(s.dots, s.contact, workspace);
 }
 
-/// As angles are compared.
+/// Distance of two angles, modulo a full turn.
 double apart(double a, double b) {
   return std::abs(std::remainder(a - b, 2 * pi));
 }
@@ -121,7 +122,7 @@ struct Way {
   static ShiftResult<double> of(const Scene& s) { return shift<Dots>(s, Mean()); }
 };
 
-/// Rounding, and for a robust mean what roundings do to its weights.
+/// Roundoff, and for a robust mean its effect on the weights.
 template <class Way>
 constexpr double tolerance = Way::Mean::is_robust ? 1e-9 : 1e-12;
 
@@ -170,7 +171,7 @@ TEMPLATE_TEST_CASE("contact shift: the axes are a matter of choice",
     const auto a = TestType::of(s), b = TestType::of({s.dots, s.free, s.contact});
     RC_ASSERT(apart(a.rotation_rad, -b.rotation_rad) < tolerance<TestType>);
     RC_ASSERT(std::abs(a.residual_rms - b.residual_rms) < tolerance<TestType>);
-    RC_ASSERT(TestType::Mean::is_robust ||  // else of places that count differently
+    RC_ASSERT(TestType::Mean::is_robust ||  // otherwise positions with unequal weights
               apart(a.displacement, {-b.displacement.x, -b.displacement.y}) < 1e-12);
   });
 }
@@ -216,7 +217,7 @@ TEST_CASE("contact shift: no rigid motion is nearer to the dots", "[contact_shif
   rc::prop("than the plain one", [] {
     const Scene s = any_scene(0.3);
     const auto r = shift<ContactDots, PlainMean>(s);
-    // the middle of the dots in contact is where the displacement is measured
+    // the displacement is measured at the middle of the dots in contact
     Point2<double> middle{0, 0};
     for (std::size_t k = 0; k < s.free.cells.size(); ++k) {
       if (s.contact.cells[k] == Touch::contact) {
@@ -260,7 +261,7 @@ TEST_CASE("contact shift: which dots take part", "[contact_shift][law]") {
         s.free.cells[k].x = -test::nan;
       }
     }
-    const auto side = [&](Index i, Index j) {  // 0: of neither
+    const auto side = [&](Index i, Index j) {  // 0: of neither side
       const Touch touch = s.contact(i, j);
       return placed(i, j) == 0 || touch == Touch::unknown ? 0 : touch == Touch::contact ? 1 : -1;
     };
@@ -278,7 +279,7 @@ TEST_CASE("contact shift: which dots take part", "[contact_shift][law]") {
         inside += side(i, j) == 1 && in_reference(i, j) != 0 ? 1 : 0;
         const bool counts = beside && in_reference(i, j) != 0;
         edge += counts ? 1 : 0;
-        if (test::whole(0, 1) == 1) {  // whose place tells that it counts
+        if (test::whole(0, 1) == 1) {  // random: its position shows whether it counts
           const double x = std::ldexp(1.0, static_cast<int>(test::whole(-12, -3)));
           s.dots(i, j).x += x;
           push.x += counts ? x : 0;
@@ -322,7 +323,7 @@ TEST_CASE("contact shift: which dots take part", "[contact_shift][law]") {
 }
 
 TEST_CASE("contact shift: mistaken dots", "[contact_shift][law]") {
-  // The others moved rigidly to rounding: nothing is lost by leaving the mistaken ones out.
+  // The other dots move rigidly to roundoff, so leaving out the mistaken ones loses nothing.
   rc::prop("a few, however far off, do not move a robust mean", [] {
     Scene s{any_dots(8, 8), {}, Mask(8, 8, Touch::contact)};
     const Rigid motion = any_motion(0.5);

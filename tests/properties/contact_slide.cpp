@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
-// What must hold for every gel, every pitch and every noise: balls on the gel of sim/, seen by a
-// camera, found by contact_by_difference, followed by contact_slide.
+// Properties for every gel, every pitch and every noise: balls on the gel of sim/, seen by a
+// camera, detected by contact_by_difference, tracked by contact_slide.
 #include "fingerpad/slip/contact_slide.hpp"
 
 #include <algorithm>
@@ -23,7 +23,7 @@ using test::Random;
 
 namespace {
 
-/// A sensor and an object, any: from soft to firm, from fine to coarse dots.
+/// Any sensor and object: soft to firm, with fine to coarse dots.
 struct AnyGel {
   GelPad pad;
   GelCamera camera;
@@ -39,7 +39,7 @@ struct AnyGel {
     camera.contrast = test::uniform(0.4, 1);
     pad.young_mpa = test::log_uniform(0.1, 0.5);
     pad.ball_mm = test::uniform(6, 16);
-    // a contact of 2.5 to 4 mm, whose gel gives way by a third of its radius before all slides
+    // a contact of 2.5 to 4 mm, whose gel yields by a third of its radius before all of it slides
     const double a = test::uniform(2.5, 4);
     force_n = a * a * a * 4 * pad.young_mpa / 0.75 / (3 * pad.ball_mm);
     pad.friction = 1;
@@ -53,8 +53,8 @@ struct AnyGel {
     contact.drag(force_n, {0, 0});
     return contact.max_pull_mm();
   }
-  /// How far, in pitches, the ball gets ahead of the gel under it before all of it slides: the
-  /// mean of eq. 3.91 over the contact is three quarters of what it is in the middle.
+  /// Lead of the ball over the gel under it, in pitches, before all of it slides. The mean of eq.
+  /// 3.91 over the contact is three quarters of its value in the middle.
   double slide_at_slip() const { return 0.25 * pull_mm() / camera.pitch_mm; }
 };
 
@@ -66,11 +66,11 @@ struct Step {
 struct Seen {
   std::vector<SlideResult<float>> slide;
   std::vector<RecoilResult<float>> recoil;
-  std::vector<double> sticks;  ///< the truth: the share that does
-  std::vector<bool> slides;    ///< the truth: all of the contact slides
+  std::vector<double> sticks;  ///< true stick ratio
+  std::vector<bool> slides;    ///< truth: the whole contact slides
   double true_slide = 0;       ///< in pitches, at the end
 
-  /// The first frame with an alarm; none: past the end.
+  /// The first frame with an alarm; past the end if there is none.
   std::size_t alarm() const {
     const auto is_alarm = [](const auto& result) { return result.alarm; };
     return std::size_t(std::find_if(slide.begin(), slide.end(), is_alarm) - slide.begin());
@@ -90,8 +90,8 @@ DifferenceTest test_of(const GelCamera& camera) {
   return test;
 }
 
-/// The radius, in mm, that a ball's dent differs by more than `threshold` within: the slope beyond
-/// the contact is that of eq. 3.42 of Johnson, and the lamps see its root mean square.
+/// Radius in mm within which a ball's dent differs by more than `threshold`. The slope beyond the
+/// contact is that of eq. 3.42 of Johnson, and the lamps see its root mean square.
 double dent_mm(const AnyGel& gel, double threshold) {
   GelContact<> contact(gel.pad);
   contact.drag(gel.force_n, {0, 0});
@@ -105,13 +105,13 @@ double dent_mm(const AnyGel& gel, double threshold) {
   return rho * a;
 }
 
-/// How far a ball gets ahead of the gel under its dent: the median of the dots that lie in it, step
-/// by step, by the gel's own equations.
+/// Lead of a ball over the gel under its dent: the median of the dots in the dent, step by step, by
+/// the gel's own equations.
 class TrueSlide {
  public:
   TrueSlide(const GelCamera& camera, double dent_mm) : camera_(camera), dent_mm_(dent_mm) {}
 
-  /// After another step of the ball.
+  /// Adds another step of the ball.
   void add(const GelContact<>& contact) {
     const auto dots = camera_.true_dots(contact);
     std::vector<bool> in;
@@ -176,7 +176,7 @@ Seen watch(const AnyGel& gel,
     contact.drag(step.force_n, step.ball_mm);
     true_slide.add(contact);
     const auto dots = camera.dots(contact, random);
-    // ok or, of these small frames, more than half touched
+    // ok or, in these small frames, more than half in contact
     RC_ASSERT(region(camera.frame(contact, random), mask, workspace).status !=
               FrameStatus::refused);
     seen.slide.push_back(all_touch ? slide(workspace.imprint(), all, dots, state)
@@ -194,7 +194,8 @@ Point2<double> any_direction() {
   return {std::cos(angle), std::sin(angle)};
 }
 
-/// Pressed, then dragged `far_mm` in steps of a tenth of what friction carries.
+/// The ball is pressed, then dragged `far_mm` in steps of a tenth of the displacement that friction
+/// carries.
 std::vector<Step> dragged(const AnyGel& gel, double far_mm) {
   const auto along = any_direction();
   std::vector<Step> steps(3, {gel.force_n, {0, 0}});
@@ -208,7 +209,7 @@ std::vector<Step> dragged(const AnyGel& gel, double far_mm) {
 
 namespace {
 
-/// A gel and a ball whose dent covers half of the frame or more, and at most a quarter of its
+/// A gel and a ball whose dent covers at least half of the frame and at most a quarter of its
 /// border.
 struct LargeContact {
   AnyGel gel;
@@ -256,7 +257,7 @@ TEST_CASE("contact by difference: a contact of half the frame is found in any ex
       }
     }
     RC_LOG() << seen.contact_px << " for " << expected << " px\n";
-    // the dent's tail reaches the border, whose gain it shifts
+    // the dent's tail reaches the border and shifts the gain there
     RC_ASSERT(std::abs(double(seen.contact_px) / double(expected) - 1) < 0.25);
   });
 }
@@ -272,7 +273,7 @@ TEST_CASE("contact by difference: other lamps are told from a large contact",
       ball.drag(large.gel.force_n, {0, 0});
     }
     auto frame = camera.frame(ball, large.random);
-    // brighter toward one side, each channel in a direction of its own
+    // brighter toward one side, in a different direction for each channel
     const double change = test::uniform(0.15, 0.4);
     const std::array directions = {any_direction(), any_direction(), any_direction()};
     for (Index i = 0; i < camera.rows; ++i) {
@@ -300,7 +301,7 @@ TEST_CASE("contact slide: partial slip is told before gross slip", "[contact_sli
     const Seen seen = watch(gel, dragged(gel, 1.6 * gel.pull_mm()), test);
     RC_ASSERT(seen.slip() < seen.slides.size());
     RC_ASSERT(seen.alarm() <= seen.slip());
-    // not before any of it slips
+    // not before some of it slips
     RC_ASSERT(seen.sticks[seen.alarm()] < 0.95);
   });
 }
@@ -314,7 +315,7 @@ TEST_CASE("contact slide: the imprint goes as far as the ball, whatever the dots
     const double way = double(norm(last.imprint_px)) * gel.camera.mm_per_px;
     const double sd = double(last.imprint_sd_px) * gel.camera.mm_per_px;
     RC_LOG() << way << " +- " << sd << " mm for " << gel.pull_mm() << "\n";
-    // dots that are filled in leave up to 4 %
+    // filled-in dots leave up to 4 %
     RC_ASSERT(std::abs(way - gel.pull_mm()) < 0.04 * gel.pull_mm() + 4 * sd);
     RC_ASSERT(sd < 0.5 * gel.camera.mm_per_px);
   });
@@ -345,7 +346,7 @@ TEST_CASE("contact slide: loading and unloading in place is no slip", "[contact_
     const Seen seen = watch(gel, steps, {});
     RC_ASSERT(seen.alarm() == seen.slide.size());
     RC_ASSERT(seen.slide.back().lost > 0.25F);
-    // what is round shows no turn, however badly it fits
+    // a round shape shows no rotation, however badly it fits
     for (const auto& result : seen.slide) {
       RC_ASSERT(std::abs(result.rotation_rad) < 0.2F);
     }
@@ -372,7 +373,7 @@ TEST_CASE("contact slide: what is held does not wander", "[contact_slide]") {
       RC_ASSERT(result.lost < 0.1F);
       RC_ASSERT(norm(result.imprint_px) <= 5 * result.imprint_sd_px);
       RC_ASSERT(std::abs(result.rotation_rad) <= 4 * result.rotation_sd_rad);
-      RC_ASSERT(result.rotation_sd_rad < 0.1F);  // that of an imprint that shows nothing
+      RC_ASSERT(result.rotation_sd_rad < 0.1F);  // that of an imprint without features
     }
   });
 }

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
-// What must hold for every membrane, with pixels missing anywhere, and every statistic.
+// Properties for every membrane, with any pixels missing, and every statistic.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -22,7 +22,7 @@ using test::transposed;
 
 namespace {
 
-/// A wavy membrane with holes; wide enough for whole vectors and a rest.
+/// A wavy membrane with holes, wide enough for whole SIMD vectors and a remainder.
 template <class S>
 Image<S> any_membrane() {
   Image<S> depth(test::whole(1, 30), test::whole(1, 60));
@@ -62,7 +62,7 @@ Image<S> curvatures(const Image<S>& depth,
   return out;
 }
 
-/// The same pixels known, and |a - b| within a bound for numbers of order 1 per mm.
+/// Whether the same pixels are known and |a - b| is within a bound for numbers of order 1 per mm.
 template <class A, class B>
 bool close(const Image<A>& a, const Image<B>& b, double bound) {
   for (std::size_t k = 0; k < a.cells.size(); ++k) {
@@ -75,7 +75,7 @@ bool close(const Image<A>& a, const Image<B>& b, double bound) {
   return a.cells.size() == b.cells.size();
 }
 
-constexpr double rounding = 1e-9;  // of fits through few sections left, in double
+constexpr double rounding = 1e-9;  // of fits through few remaining sections, in double
 
 }  // namespace
 
@@ -149,7 +149,7 @@ TEMPLATE_TEST_CASE("curvature is the same however it is computed",
     RC_ASSERT(test::same_bits(whole, bands));
     RC_ASSERT(low.known_px + high.known_px == all.known_px);
     RC_ASSERT(low.unknown_px + high.unknown_px == all.unknown_px);
-    RC_ASSERT(map(depth, bands, workspace).known_px == all.known_px);  // nothing left over
+    RC_ASSERT(map(depth, bands, workspace).known_px == all.known_px);  // workspace is reusable
     RC_ASSERT(test::same_bits(whole, bands));
   });
 }

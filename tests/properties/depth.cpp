@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
-// What must hold for every sensor, every frame and every policy.
+// Properties for every sensor, every frame and every policy.
 #include "fingerpad/published/depth.hpp"
 
 #include <algorithm>
@@ -27,12 +27,12 @@ namespace bound_mm {
 constexpr double bisection = 18.0 / 32768 + 1e-9;  // its half-width, 16 halvings of 18 mm
 constexpr double newton = 1e-10;                   // roundoff of g, of the rays and of the colours
 constexpr double polynomial = 1e-9;  // degree 10 in double; wider cameras need more powers of u
-// Single floats of up to 60 grey levels (3.8e-6 apart) where F rises by more than 1 level per mm.
+// Single floats of up to 60 grey levels (spacing 3.8e-6) where F rises by more than 1 level per mm.
 constexpr double single = 2e-4;
-constexpr double anchored_8_bit = 1e-3;  // 1/128 of a grey level: residuals are stored so
+constexpr double anchored_8_bit = 1e-3;  // 1/128 of a grey level, the step of the stored residuals
 }  // namespace bound_mm
 
-/// Any camera, fluid and pad; small, so that hundreds of them take no time.
+/// Any camera, fluid and pad; small, so that hundreds of them are fast.
 Pad any_pad() {
   Pad pad;
   pad.rows = test::whole(14, 26);
@@ -47,7 +47,7 @@ Pad any_pad() {
   pad.fluid.c_green_per_mm =
       pad.fluid.c_red_per_mm + (test::whole(0, 3) == 0 ? 0 : test::uniform(0, 0.01));
   pad.fluid.kappa = test::uniform(0.8, 1.2);
-  // g h^2 is what counts: the light scattered back stays between a few and some 50 grey levels.
+  // Only g h^2 matters: the light scattered back stays between a few and some 50 grey levels.
   const double h = pad.camera.refractive_index * pad.camera.plate_distance_mm;
   pad.scattering = test::uniform(0.008, 0.02) * square(66.5 / h);
   pad.scattering_loss = test::uniform(0, 0.1);
@@ -56,7 +56,7 @@ Pad any_pad() {
   return pad;
 }
 
-/// Each inverse policy with the number type it is meant for and what it leaves of an error.
+/// An inverse policy with its number type and its error.
 template <class Inverse, class Scalar, class Heights = AstigmaticHeights>
 struct Way {
   using inverse = Inverse;
@@ -74,7 +74,7 @@ struct Way {
   }
 };
 
-/// Some pixels of the frame become dark, saturated or, if they can, NaN.
+/// Makes some pixels dark, saturated or, if the type allows it, NaN.
 template <class Pixel>
 void spoil(Frame<Pixel>& frame, int share) {
   for (Index i = 0; i < frame.red.rows(); ++i) {
@@ -102,7 +102,7 @@ Frame<Pixel> rotated(const Frame<Pixel>& frame, const Turn& turn) {
   return out;
 }
 
-/// Largest difference; infinite where one is NaN and the other is not.
+/// Largest difference; infinite where only one is NaN.
 template <class S>
 double difference(const Image<S>& a, const Image<S>& b) {
   return (std::max)(test::largest_error(a, b), test::largest_error(b, a));
@@ -141,7 +141,7 @@ TEMPLATE_TEST_CASE("the membrane's brightness does not matter",
     const Pad pad = any_pad();
     const auto depth = pad.pressed_depths(test::uniform(0, 5));
     Frame<double> frame(pad.rows, pad.cols);
-    const double low = test::uniform(1, 40);  // times 3 at most: nothing saturates
+    const double low = test::uniform(1, 40);  // at most tripled, so nothing saturates
     for (Index i = 0; i < pad.rows; ++i) {
       for (Index j = 0; j < pad.cols; ++j) {
         const double bright = low * (1 + static_cast<double>((7 * i + 3 * j) % 5) / 2);
@@ -255,7 +255,7 @@ TEMPLATE_TEST_CASE("a mirrored or transposed frame gives the mirrored or transpo
     const auto depth = depth_of(pad, frame);
     Pad mirror = pad;
     mirror.camera.center_x_px = static_cast<double>(pad.cols - 1) - pad.camera.center_x_px;
-    // the reference's depths differ by roundoff, and so, in 8 bit, does the step they are stored in
+    // the reference's depths differ by roundoff and, in 8 bit, so does the step of storage
     const auto flip = [](const auto& image) { return mirrored(image); };
     RC_ASSERT(difference(depth_of(mirror, rotated(frame, flip)), mirrored(depth)) <=
               bound_mm::anchored_8_bit);
@@ -277,7 +277,7 @@ struct Rows {
   using scalar = Scalar;
 };
 
-/// Every other window size, so that restarts and borders fall everywhere.
+/// Any odd window size, so that restarts and borders fall everywhere.
 template <class Smoothing>
 Smoothing any_window() {
   const int window = 3 + 2 * static_cast<int>(test::whole(0, 9));
@@ -307,7 +307,7 @@ TEMPLATE_TEST_CASE("bands of rows give the bits of the whole frame, and the coun
     using S = typename TestType::scalar;
     using Pixel = typename TestType::pixel;
     Pad pad = any_pad();
-    pad.rows += test::whole(0, 50);  // more than the rows after which running sums begin anew
+    pad.rows += test::whole(0, 50);  // more than the rows after which running sums restart
     auto frame = pad.frame<Pixel>(pad.pressed_depths(test::uniform(0, 5)), 1, 3);
     spoil(frame, static_cast<int>(test::whole(0, 40)));
     const auto estimator = pad.estimator<typename TestType::smoothing, ExponentialFree<>, S>(

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
-// What must hold for every oscillator, every load and every foam.
+// Properties for every oscillator, every load and every foam.
 #include "fingerpad/sim/foam_contact.hpp"
 
 #include <algorithm>
@@ -16,7 +16,7 @@ namespace {
 
 using Motion = MassSpringDamper<double>::Motion;
 
-/// Of any damping: none, critical, nearly so, far from it.
+/// Any damping: none, critical, nearly critical, far from it.
 MassSpringDamper<double> any_oscillator() {
   MassSpringDamper<double> oscillator;
   oscillator.mass_n_s2_per_mm = test::log_uniform(1e-3, 10);
@@ -34,12 +34,12 @@ double frequency(const MassSpringDamper<double>& oscillator) {
 Motion any_motion(const MassSpringDamper<double>& oscillator) {
   return {test::uniform(-2, 2), test::uniform(-2, 2) * frequency(oscillator)};
 }
-/// From far below a period to many.
+/// From far below a period to many periods.
 double any_time(const MassSpringDamper<double>& oscillator) {
   return test::log_uniform(1e-4, 100) / frequency(oscillator);
 }
 
-/// The distance of two motions, with the velocity counted in periods.
+/// Distance of two motions, with the velocity divided by the natural frequency.
 double apart(const MassSpringDamper<double>& oscillator, const Motion& a, const Motion& b) {
   return std::abs(a.position_mm - b.position_mm) +
          std::abs(a.velocity_mm_per_s - b.velocity_mm_per_s) / frequency(oscillator);
@@ -65,7 +65,7 @@ Burgers<double> any_foam() {
   return {any(), any(), any(), any()};
 }
 
-/// Without what gives way at once or flows.
+/// The foam without its instantaneous and viscous parts.
 Burgers<double> delayed_part_of(Burgers<double> foam) {
   foam.maxwell_modulus_mpa = foam.maxwell_viscosity_mpa_s = std::numeric_limits<double>::infinity();
   return foam;
@@ -137,7 +137,7 @@ TEST_CASE("the oscillator's motion", "[foam_contact][law]") {
     oscillator.damping_n_s_per_mm +=
         0.1 * std::sqrt(oscillator.mass_n_s2_per_mm * oscillator.stiffness_n_per_mm);
     const double load = test::uniform(-3, 3), rest = load / oscillator.stiffness_n_per_mm;
-    // the slowest decay has the time c/k, the fastest mass 20 periods
+    // the slowest decay has the time c/k, that of the largest mass 20 periods
     const double time = 50 * (oscillator.damping_n_s_per_mm / oscillator.stiffness_n_per_mm) +
                         1000 / frequency(oscillator);
     const Motion start = any_motion(oscillator), still{rest, 0};
@@ -237,14 +237,14 @@ TEST_CASE("creep of any foam", "[foam_contact][law]") {
   });
   rc::prop("of a Maxwell element under the stress that relaxes in it stands still", [] {
     Burgers<double> foam = any_foam();
-    foam.kelvin_voigt_modulus_mpa = 1e12 * foam.maxwell_modulus_mpa;  // as good as rigid
+    foam.kelvin_voigt_modulus_mpa = 1e12 * foam.maxwell_modulus_mpa;  // practically rigid
     const double time = foam.maxwell_viscosity_mpa_s / foam.maxwell_modulus_mpa;
     const int steps = 200;
     const Creep<double> creep(foam, 3 * time / steps);
     auto state = creep.start();
     for (int k = 0; k < steps; ++k) {
       const auto stress = [&](int at) { return relaxation_modulus(foam, 3 * time * at / steps); };
-      // of a strain of 1; chords of an exponential lie above it by h^2/12 of what relaxes
+      // for a strain of 1: chords of an exponential lie above it by h^2/12 of the relaxing part
       const double strain = creep(stress(k), stress(k + 1), state);
       RC_ASSERT(std::abs(strain - 1) < 3e-5);
     }

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
-// What must hold for every law, every history and every input.
+// Properties for every law, every history and every input.
 #include "fingerpad/slip/grip_control.hpp"
 
 #include <algorithm>
@@ -17,7 +17,7 @@ namespace {
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double none = std::numeric_limits<double>::quiet_NaN();
 
-/// Zero as often as not, where zero has a meaning of its own.
+/// Zero in half of the cases, because zero has a meaning of its own.
 double zero_or(double high) {
   return test::whole(0, 1) == 0 ? 0 : test::uniform(0, high);
 }
@@ -59,7 +59,7 @@ RatioUpdate any_news() {
 
 using State = GripControl<double>::State;
 
-/// A state after any history.
+/// The state after any history.
 State any_state(const GripControl<>& control) {
   State state = control.start(test::uniform(-1, 40));
   const auto calls = test::whole(0, 8);
@@ -80,7 +80,7 @@ TEST_CASE("grip force whatever is given", "[grip_control][law]") {
     const GripControl control(law);
     State state = any_state(control);
     (void)control({none}, 0.001,
-                  state);  // a force that was followed is within the limits from here on
+                  state);  // after an update the force is within the limits
     for (int k = 0; k < 30; ++k) {
       const double before = state.force_n();
       const double step_s = any_step();
@@ -93,7 +93,7 @@ TEST_CASE("grip force whatever is given", "[grip_control][law]") {
       const double allowed_s = (std::min)(time_s, law.longest_step_s) + 1e-12;
       RC_ASSERT(change <= law.rise_limit_n_per_s * allowed_s + 1e-12);
       RC_ASSERT(change >= -law.fall_limit_n_per_s * allowed_s - 1e-12);
-      // and the answer says what was done
+      // and the status reports the change
       RC_ASSERT((change <= 0) || result.status == GripStatus::raising);
       RC_ASSERT((change >= 0) || result.status == GripStatus::lowering);
       RC_ASSERT((result.why != GripReason::no_time) == (time_s > 0));

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
-// What must hold for every plan and whatever the fingers say, and what is found of an object whose
-// friction is known.
+// Properties for every plan and any answers of the fingers, and the result for an object of known
+// friction.
 #include "fingerpad/foam/holding_force.hpp"
 
 #include <algorithm>
@@ -42,7 +42,7 @@ LiftOptions<double> any_lift_plan() {
   return plan;
 }
 
-/// Mostly steady; slips seldom or never.
+/// Mostly steady; slips are rare or absent.
 News any_news(Index most) {
   News signal(static_cast<std::size_t>(test::whole(1, most)));
   const Index slips = test::whole(0, 1), often = test::whole(1, 20);
@@ -75,20 +75,19 @@ bool equal(const HoldingCommand<double>& a, const HoldingCommand<double>& b) {
          a.warning_steps == b.warning_steps;
 }
 
-/// Steps of this size that fit into the way, the last of which may be short.
+/// Number of steps of this size that fit into `way`; the last may be shorter.
 Index steps_in(double way, double step) {
   return static_cast<Index>(std::ceil(way / step * (1 + 1e-12)));
 }
 
-/// As an object answers: it slips on some of its contact below one force, and as a whole below
-/// another.
+/// Answers of an object: part of its contact slips below one force, and all of it below another.
 PreslipStatus object(double force_n, double begins_below_n, double slips_below_n) {
   return force_n < slips_below_n    ? PreslipStatus::slipped
          : force_n < begins_below_n ? PreslipStatus::preslip
                                     : PreslipStatus::steady;
 }
 
-/// The command with which a search ends; what the object says may be missing for a while.
+/// The command at the end of a search; the object's answers may be missing for a while.
 template <class Search>
 auto end_of(const Search& search, double begins_below_n, double slips_below_n) {
   auto state = search.start();
@@ -119,7 +118,7 @@ void check_copies(const Search& search, const News& signal) {
     RC_ASSERT(equal(command, state.command()));
   }
   RC_ASSERT(equal(after(search, signal), state.command()));
-  // and what is missing might as well not have been asked
+  // and missing answers change nothing
   News heard;
   std::copy_if(signal.begin(), signal.end(), std::back_inserter(heard),
                [](PreslipStatus one) { return one != PreslipStatus::cannot_tell; });
@@ -146,7 +145,7 @@ TEST_CASE("loosening whatever is told", "[holding_force][law]") {
       if (!is_end(now.phase) || now.phase == SearchPhase::at_limit) {
         RC_ASSERT(now.force_n == (std::max)(stepped, plan.min_force_n));
       }
-      // where pre-slip was found first stays known
+      // the first force with pre-slip is kept
       RC_ASSERT(
           (std::isnan(before.preslip_force_n) || now.preslip_force_n == before.preslip_force_n));
       RC_ASSERT((!std::isnan(now.preslip_force_n) || now.warning_steps == 0));
@@ -161,7 +160,7 @@ TEST_CASE("loosening whatever is told", "[holding_force][law]") {
     const LoosenUntilPreslip<double> search(plan);
     const Index levels = steps_in(plan.first_force_n - plan.min_force_n, plan.step_n) + 1;
     const Index bound = levels * (plan.settle_samples + plan.watch_samples);
-    // steady signal takes the longest: all of the bound
+    // a steady signal takes longest: the whole bound
     const News steady(static_cast<std::size_t>(bound), PreslipStatus::steady);
     RC_ASSERT(after(search, steady).phase == SearchPhase::at_limit);
     RC_ASSERT(!is_end(after(search, News(steady.begin() + 1, steady.end())).phase));
@@ -231,7 +230,7 @@ TEST_CASE("loosening the grip of an object that is known", "[holding_force][law]
     }
     RC_ASSERT(end.phase == SearchPhase::slipped);
     RC_ASSERT(end.force_n == plan.first_force_n);
-    // no step lies between the two forces: it slips without a warning
+    // no step lies between the two forces, so it slips without a warning
     const auto first_below = [&](double force_n) {
       Index step = 0;
       while (!((std::max)(plan.first_force_n - static_cast<double>(step) * plan.step_n,
@@ -283,7 +282,7 @@ TEST_CASE("lifting whatever is told", "[holding_force][law]") {
     const LiftWithRegrip<double> search(plan);
     const Index regrips = steps_in(plan.max_force_n - plan.first_force_n, plan.force_step_n);
     const Index lifts = steps_in(plan.height_mm, plan.height_step_mm);
-    // each tightening settles; then at the latest the last lift or the giving up
+    // each tightening settles; after it follows at most the last lift or the end
     const Index bound = regrips * (1 + plan.settle_samples) + lifts;
     auto state = search.start();
     Index told = 0;
@@ -294,7 +293,7 @@ TEST_CASE("lifting whatever is told", "[holding_force][law]") {
       }
     }
     RC_ASSERT(is_end(state.command().phase));
-    // the longest way: all but one lift, all tightenings, the last lift
+    // the longest course: all but one lift, all tightenings, the last lift
     News longest(static_cast<std::size_t>(lifts - 1), PreslipStatus::steady);
     longest.insert(longest.end(), static_cast<std::size_t>(bound - lifts + 1),
                    PreslipStatus::preslip);

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
-// What must hold for every curve, every compensation and every contact.
+// Properties for every curve, every compensation and every contact.
 #include "fingerpad/force/normal_force.hpp"
 
 #include <algorithm>
@@ -25,7 +25,7 @@ using Vector = Point2<double>;
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double epsilon_of_double = std::numeric_limits<double>::epsilon();
 
-/// Rises everywhere: no coefficient is negative.
+/// A curve that rises everywhere: no coefficient is negative.
 template <int Degree>
 PolynomialForce<Degree> any_rising() {
   PolynomialForce<Degree> curve;
@@ -39,7 +39,7 @@ PolynomialForce<Degree> any_rising() {
   return curve;
 }
 
-/// Any quadratic that is accepted: its slope is not negative at either end, all else is free.
+/// Any valid quadratic: its slope is not negative at either end; all else is free.
 PolynomialForce<2> any_accepted() {
   const double from = test::log_uniform(0.01, 20), to = from * test::uniform(2, 40);
   const double slope_from = test::log_uniform(0.01, 10) / to;
@@ -53,7 +53,7 @@ PowerLawForce<> any_power() {
   return {test::log_uniform(0.5, 20), test::uniform(0.2, 1), from, from * test::uniform(2, 20)};
 }
 
-/// How a kind of curve or compensation is made.
+/// Generator of a kind of curve or compensation.
 template <class Kind>
 struct Any;
 template <int Degree>
@@ -114,8 +114,8 @@ Vector along(double angle, double length) {
   return {length * std::cos(angle), length * std::sin(angle)};
 }
 
-/// The largest change of f between neighbouring numbers that bisection finds: the half in which f
-/// changes more is halved again, until nothing is left but a step.
+/// Largest change of f between neighbouring numbers that bisection finds: it keeps the half in
+/// which f changes more, until a single step is left.
 template <class F>
 double step_within(const F& f, double low, double high) {
   double at_low = f(low), at_high = f(high);
@@ -131,7 +131,7 @@ double step_within(const F& f, double low, double high) {
   return std::abs(at_high - at_low);
 }
 
-/// Whether f has no step at x nor beside it, nor another value at x alone.
+/// Whether f has no step at x or beside it, and no other value at x alone.
 template <class F>
 bool no_step_at(const F& f, double x, double width) {
   const double margin = 1e-11 * (1 + f(x));
@@ -250,7 +250,7 @@ TEMPLATE_TEST_CASE("normal force: no step anywhere",
     const typename TestType::Force force(curve, compensation);
     const Vector displacement = any_displacement();
     const auto at = [&](double share) { return force(share * curve.from, displacement).force_n; };
-    // 3 x^2 of at most what is at the start of the range, and 30 N by the compensation
+    // 3 x^2 of at most the value at the start of the range, and 30 N by the compensation
     for (const double share : {1e-2, 1e-4, 1e-8}) {
       RC_ASSERT(at(share) <= 3 * share * share * 10 * (scale_of(curve) + 30));
     }
@@ -300,7 +300,7 @@ TEST_CASE("normal force: the inverse of the power law", "[normal_force][law]") {
     curve.exponent = test::uniform(0.05, 2);
     const double radius = test::log_uniform(1e-3, 1e3);
     const double again = curve.radius_mm(curve.force_n(radius));
-    // the exponent's own roundoff counts as much as the logarithm is long
+    // roundoff of the exponent is multiplied by the logarithm
     const double length = 2 + std::abs(std::log(radius / curve.coefficient_mm));
     RC_ASSERT(std::abs(again - radius) <= 4 * length * epsilon_of_double * radius);
     const double force = test::log_uniform(1e-6, 1e6);
@@ -329,7 +329,7 @@ TEMPLATE_TEST_CASE("normal force: a compensation knows no direction",
     const Vector d = any_displacement();
     const double rotation = test::uniform(-0.3, 0.3);
     const double moved = force(measure, d, rotation).force_n;
-    // mirrored, rotated by a right angle, twisted the other way: to the last bit
+    // mirrored, rotated by a right angle, twisted the other way: equal to the last bit
     for (const Vector& other : {Vector{-d.x, d.y}, Vector{d.x, -d.y}, Vector{-d.x, -d.y},
                                 Vector{d.y, d.x}, Vector{-d.y, d.x}}) {
       RC_ASSERT(force(measure, other, rotation).force_n == moved);
@@ -374,7 +374,7 @@ TEST_CASE("normal force: the published compensation between its ends", "[normal_
     };
     RC_ASSERT(between(force(m, along(1, length)).force_n, published.displaced(plain, length)));
     RC_ASSERT(between(force(m, {0, 0}, -angle).force_n, published.rotated(plain, angle)));
-    // and beyond them each is the printed one, and both their sum
+    // beyond them each is as printed, and both together are the sum
     const double far = published.blend_mm * test::uniform(1, 4) + 1e-9;
     const double wide = published.blend_rad * test::uniform(1, 4) + 1e-9;
     const double margin = 1e-13 * (300 + 10 * scale_of(curve));
@@ -428,7 +428,8 @@ TEST_CASE("normal force: units do not matter", "[normal_force][law]") {
 
 namespace {
 
-/// Sum over independent normal numbers: their covariance is factor times its transpose.
+/// Linear combinations of independent normal numbers; their covariance is factor times its
+/// transpose.
 template <std::size_t N>
 struct Spread {
   std::array<std::array<double, N>, N> factor = {};
@@ -470,7 +471,7 @@ PowerLawForce<> moved(PowerLawForce<> curve, const std::array<double, 2>& by) {
   return curve;
 }
 
-/// The variance that a result says over that of forces with parameters and measures drawn anew.
+/// Reported variance over that of forces with newly drawn parameters and measures.
 template <class Curve, std::size_t N, class Compensation>
 double said_over_drawn(const Curve& curve,
                        const Spread<N>& spread,
@@ -503,8 +504,8 @@ double said_over_drawn(const Curve& curve,
 
 TEST_CASE("normal force: the variance is that of parameters and measures drawn at random",
           "[normal_force][law]") {
-  // A variance from n draws has a relative standard deviation of sqrt(2 / n): four of it. What is
-  // left of higher order is below 0.1 %, for the parameters' errors are small.
+  // A variance from n draws has a relative standard deviation of sqrt(2 / n); the margin is four of
+  // it. Terms of higher order are below 0.1 %, because the errors of the parameters are small.
   constexpr int draws = 4000;
   const double margin = 4 * std::sqrt(2.0 / draws);
   const auto agrees = [&](const auto& curve, const auto& spread, const auto& compensation,
@@ -579,13 +580,13 @@ TEST_CASE("normal force: two forces fused", "[normal_force][law]") {
     RC_ASSERT(f.sources == 2);
     RC_ASSERT(f.force_n >= low - margin * high);
     RC_ASSERT(f.force_n <= high * (1 + margin));
-    // 1/v is the sum of both: never more than the smaller, never less than half of it
+    // 1/v is the sum of both, so v is between half of the smaller variance and all of it
     const double surer = (std::min)(a.variance_n2, b.variance_n2);
     RC_ASSERT(f.variance_n2 <= surer * (1 + margin));
     RC_ASSERT(f.variance_n2 >= surer / 2 * (1 - margin));
     const double information = 1 / a.variance_n2 + 1 / b.variance_n2;
     RC_ASSERT(std::abs(f.variance_n2 * information - 1) <= 2 * margin);
-    // nearer to the surer one
+    // nearer to the more certain one
     const R& sure = a.variance_n2 < b.variance_n2 ? a : b;
     const R& unsure = a.variance_n2 < b.variance_n2 ? b : a;
     RC_ASSERT(std::abs(f.force_n - sure.force_n) <=
@@ -618,8 +619,8 @@ TEST_CASE("normal force: two forces fused", "[normal_force][law]") {
 }
 
 TEST_CASE("normal force: fused forces err as they say", "[normal_force][law]") {
-  // Errors of both drawn at random: the variance of the fused force, and disagreements of unit
-  // variance. Four standard deviations of what is sampled.
+  // Errors of both forces are random: checks the variance of the fused force and the unit variance
+  // of the disagreement, to four standard deviations of the samples.
   constexpr int draws = 8000;
   const double margin = 4 * std::sqrt(2.0 / draws);
   for (const double variance_b : {0.01, 0.25, 4.0}) {

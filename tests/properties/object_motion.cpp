@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
-// What must hold for every object, every motion and every way.
+// Properties for every object, every motion and every method.
 #include "fingerpad/published/object_motion.hpp"
 
 #include <cmath>
@@ -92,7 +92,7 @@ struct Scene {
   std::vector<Flags> contact;
 };
 
-/// A few frames of an object that moves rigidly, with some noise on top.
+/// A few frames of a rigidly moving object with some noise.
 Scene any_scene(double noise_mm) {
   const Index rows = test::whole(7, 10), cols = test::whole(7, 10);
   Scene s{any_dots(rows, cols), {}, {}};
@@ -292,7 +292,7 @@ TEMPLATE_TEST_CASE("dots that come and go never give a wrong or a meaningless po
         RC_ASSERT(distance(result.pose, pose) < 1e-10);
       }
       if (result.status == MotionStatus::no_contact) {
-        break;  // every dot that was left lay out of contact: to the method the object is gone
+        break;  // all remaining dots were out of contact, so the object counts as gone
       }
     }
   });
@@ -329,7 +329,7 @@ TEMPLATE_TEST_CASE("nothing is worse than a status",
     };
     const Dots free = any(rows, cols);
     if (test::refusal([&] { const ObjectMotion<TestType> motion(free); }) != "accepted") {
-      return;  // no pad has dots so far apart
+      return;  // no pad has dots this far apart
     }
     const ObjectMotion<TestType> motion(free);
     const ObjectMotion<TestType, float> in_float(free);

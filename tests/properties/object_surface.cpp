@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
-// What must hold for every patch, every model and both cameras.
+// Properties for every patch, every model and both cameras.
 #include "fingerpad/contact/object_surface.hpp"
 
 #include <algorithm>
@@ -73,12 +73,12 @@ bool near(double a, double b, double by = 1e-9) {
 bool near(const Point& a, const Point& b, double by = 1e-9) {
   return near(a.x, b.x, by) && near(a.y, b.y, by) && near(a.z, b.z, by);
 }
-/// The same up to sign, as directions are.
+/// Whether two directions are equal up to sign.
 bool along(const Point& a, const Point& b, double by) {
   return near(a, b, by) || near(a, Point{-b.x, -b.y, -b.z}, by);
 }
 
-/// Whether `b` is `a` moved by `move`, curvatures times `bend`, lengths times 1 / bend.
+/// Whether `b` is `a` moved by `move`, with curvatures times `bend` and lengths times 1 / bend.
 template <class Move>
 bool is_moved(const Plane<double>& a, const Plane<double>& b, const Move& move, double) {
   return near(b.normal, move(a.normal, false)) && near(b.center_mm, move(a.center_mm, true));
@@ -258,7 +258,7 @@ TEST_CASE("object surface: a model with more unknowns fits no worse", "[surface]
     const auto sphere = fit<Sphere<>>(camera, patch.depth, patch.mask);
     const auto quadric = fit<Quadric<>>(camera, patch.depth, patch.mask);
     RC_ASSERT((plane.ok() && sphere.ok() && quadric.ok()));
-    // one Gauss-Newton step, and distances to first order: a share of the curved part is left
+    // a single Gauss-Newton step with distances to first order leaves a share of the curved part
     RC_ASSERT(sphere.rms_mm <= 1.01 * plane.rms_mm + 1e-7);
     RC_ASSERT(quadric.rms_mm <= 1.01 * sphere.rms_mm + 1e-7);
   });

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
-// What must hold for every history: that both searches give what the rule says of all pairs, what
-// does not matter, and what can only add an alarm. RC_PARAMS="max_success=1000000" tries a million
+// Properties for every history: both searches give the rule's result for all pairs, some changes do
+// not matter, and others can only add an alarm. RC_PARAMS="max_success=1000000" tries a million
 // histories.
 #include "fingerpad/foam/preslip.hpp"
 
@@ -32,8 +32,8 @@ template <std::size_t Fingers>
 using History = std::vector<Hand<Fingers>>;
 using Results = std::vector<PreslipResult>;
 
-/// Whole numbers, many and quickly. Only the seed is RapidCheck's: a failing case shrinks to a
-/// short history over few values.
+/// A fast source of many random integers. Only the seed is RapidCheck's, so a failing case shrinks
+/// to a short history with few values.
 class Bits {
  public:
   Bits() : bits_(static_cast<std::uint64_t>(test::whole(0, std::ptrdiff_t(1) << 40))) {}
@@ -46,12 +46,12 @@ class Bits {
   std::mt19937_64 bits_;
 };
 
-/// Few values of each kind, so that they are often equal.
+/// Few values of each kind, so equal ones are frequent.
 struct Values {
   Index locations = test::whole(1, 4);
   Index waves = test::whole(0, 5);
   Index places = test::whole(0, 3);
-  Index odd = test::whole(4, 40);  // one sample in so many is silent, one is not pressed
+  Index odd = test::whole(4, 40);  // one sample in `odd` is silent, one is not pressed
 };
 
 FingerSample<double> any_sample(const Values& values, Bits& bits) {
@@ -59,7 +59,7 @@ FingerSample<double> any_sample(const Values& values, Bits& bits) {
   sample.status = TaxelStatus::vibrating;
   sample.location = bits(0, values.odd) == 0 ? -1 : bits(0, values.locations);
   sample.waves = bits(0, values.odd) == 0 ? 0 : bits(0, values.waves);
-  // in quarters of a tolerance: exact, in the cell, at its edge, and beyond it
+  // in quarters of a tolerance: equal, in the cell, at its edge, and beyond it
   sample.center_x_mm = static_cast<double>(bits(-values.places, values.places)) / 16;
   sample.center_y_mm = static_cast<double>(bits(-values.places, values.places)) / 16;
   for (Index k = bits(0, 3); k-- > 0 && sample.location >= 0;) {
@@ -110,7 +110,7 @@ bool equal(const Results& a, const Results& b) {
                     [](const auto& one, const auto& other) { return equal(one, other); });
 }
 
-/// What the predicate says of all pairs among the last samples up to number `last`.
+/// Result of the predicate for all pairs among the last samples up to number `last`.
 template <class Rule, std::size_t Fingers>
 PreslipResult by_all_pairs(const History<Fingers>& history,
                            std::size_t first,
@@ -132,7 +132,7 @@ PreslipResult by_all_pairs(const History<Fingers>& history,
   return result;
 }
 
-/// Both searches through a history with resets before the samples of these numbers.
+/// Whether both searches agree on a history with resets before the samples of these numbers.
 template <class Rule, std::size_t Fingers>
 bool searches_agree(const History<Fingers>& history,
                     const std::vector<bool>& resets,
@@ -173,7 +173,7 @@ void check_searches() {
   RC_ASSERT((searches_agree<GraspLift, Fingers>(history, resets, options)));
 }
 
-/// One property for the rules as printed, of one location a finger.
+/// Checks a property of the rules as printed, which have one location per finger.
 template <class Check>
 void for_printed_rules(const Check& check) {
   check(published::GraspOptimise());
@@ -186,7 +186,7 @@ void for_all_rules(const Check& check) {
   check(GraspLift());
 }
 
-/// Whether b alarms wherever a does, and for as long.
+/// Whether b alarms wherever a does, and at least as long.
 bool alarms_wherever(const Results& a, const Results& b) {
   return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](const auto& one, const auto& more) {
     return !one.alarm ||
@@ -261,7 +261,7 @@ TEST_CASE("pre-slip: what does not matter", "[preslip][law]") {
         s.center_y_mm += f == 0 ? y_mm : -x_mm;
       });
     };
-    // exact in binary, so that no difference is rounded
+    // exact in binary, so no difference is rounded
     const auto any = moved(static_cast<double>(test::whole(-1000, 1000)) / 64,
                            static_cast<double>(test::whole(-1000, 1000)) / 64);
     const auto rotated =

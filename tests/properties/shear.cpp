@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
-// What must hold for tangential forces and moments of every pad, contact and shift.
+// Properties of tangential forces and moments for every pad, contact and shift.
 #include "fingerpad/force/shear.hpp"
 
 #include <Eigen/Core>
@@ -34,7 +34,7 @@ detail::OddPolynomial<Degree, S> any_rising() {
 template <int Degree, class S = double>
 RadialShear<Degree, S> any_radial() {
   RadialShear<Degree, S> map{any_rising<Degree, S>(), any_rising<Degree, S>()};
-  // of a contact between 0.6 and 60 mm
+  // for a contact between 0.6 and 60 mm
   map.moment.coefficients[0] =
       map.force.coefficients[0] * static_cast<S>(square(test::log_uniform(0.6, 60)));
   return map;
@@ -276,11 +276,11 @@ TEST_CASE("shear: the normalisation", "[shear][law]") {
     const double half_t = static_cast<double>(test::whole(0, 6)) / 2;
     const Shear shear(ShearNormalisation<double>{reference, half_d, half_t}, map);
     const auto at = [&](double measure) { return shear(measure, d, theta); };
-    // the reference itself changes nothing
+    // at the reference size nothing changes
     RC_ASSERT(at(reference).normalised_displacement_mm.x == d.x);
     RC_ASSERT(at(reference).normalised_displacement_mm.y == d.y);
     RC_ASSERT(at(reference).normalised_rotation_rad == theta);
-    // 4 times the size: 2 to twice the exponent
+    // 4 times the size gives a factor of 2 to twice the exponent
     const double measure = any_measure();
     const auto small = at(measure), large = at(4 * measure);
     const double by_d = std::ldexp(1.0, static_cast<int>(2 * half_d));
@@ -338,7 +338,7 @@ TEST_CASE("shear: moments about other points", "[shear][law]") {
 
 namespace {
 
-/// A number now and then missing.
+/// A number that is missing now and then.
 template <class S>
 S sometimes(double number) {
   const auto what = test::whole(0, 39);
@@ -347,7 +347,7 @@ S sometimes(double number) {
   return static_cast<S>(what < 5 ? gaps[what] : number);
 }
 
-/// NaN for NaN, and else within so many epsilons.
+/// Whether both are NaN or agree within `epsilons`.
 template <class S>
 bool agree(S a, S b, double scale, double epsilons) {
   if (a != a || b != b) {

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
-// What must hold of a stick ratio in space for every motion and every slip.
+// Properties of a stick ratio in space for every motion and every slip.
 #include "fingerpad/slip/spatial_stick_ratio.hpp"
 
 #include <cmath>
@@ -20,7 +20,8 @@ using Dots = test::Image<Point3<double>>;
 using Flags = test::Image<std::uint8_t>;
 using States = test::Image<DotState>;
 
-/// An object dragged, rolled, rotated and pressed any way, while its stick disc changes any way.
+/// An object is dragged, rolled, rotated and pressed at random while its stick disc changes at
+/// random.
 std::vector<Dots> any_recording(SlippingPatch& patch) {
   test::Random random(static_cast<std::uint64_t>(test::whole(0, 1 << 30)));
   std::vector<Dots> frames;

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
-// What must hold for every motion, every slip and every policy.
+// Properties for every motion, every slip and every policy.
 #include "fingerpad/published/stick_ratio.hpp"
 
 #include <algorithm>
@@ -34,7 +34,7 @@ struct Recording {
   Index cols() const { return dots[0].cols(); }
 };
 
-/// An object dragged, rotated and pressed any way, while its stick disc changes any way.
+/// An object is dragged, rotated and pressed at random while its stick disc changes at random.
 Recording any_recording(double lost_share = 0) {
   DotPattern pattern{.rows = 13, .cols = 12, .contact_pitches = test::uniform(3.5, 5.5)};
   pattern.disc_row = test::uniform(-1, 1);
@@ -62,7 +62,7 @@ Recording any_recording(double lost_share = 0) {
   return recording;
 }
 
-/// Dots and flags changed one by one, place by place.
+/// Maps the dots and flags of a recording one by one.
 template <class MapDots, class MapFlags>
 Recording mapped(const Recording& from, const MapDots& map_dots, const MapFlags& map_flags) {
   Recording to;
@@ -104,7 +104,8 @@ bool near(double a, double b, double margin = 1e-9) {
   return test::same_bits(a, b) || std::abs(a - b) <= margin * std::max(1.0, std::abs(b));
 }
 
-/// `sign` of the angle and `scale` of lengths in `b`; where dots are in b says `place`.
+/// `sign` is that of the angle in `b`, `scale` that of its lengths, and `place` maps dots of a to
+/// dots of b.
 template <class Place>
 void must_agree(const Said& a, const Said& b, double sign, double scale, const Place& place) {
   for (std::size_t k = 0; k < a.results.size(); ++k) {
@@ -202,8 +203,8 @@ TEMPLATE_TEST_CASE("a dot that begins to slip never raises the ratio",
                    (Policies<StickConsensus<>, UpdatedReference, NoDenoising>),
                    Policies<published::ReferenceDotMotion<>>,
                    (Policies<StickConsensus<Freedom::translation>, published::FirstReference>)) {
-  // Without noise; slip beyond the gate of the denoising; never of the dots around the middle, with
-  // which the search begins; never more than the motion, so that d_max stays.
+  // Without noise; the slip is beyond the gate of the denoising, never of the dots around the
+  // middle, where the search begins, and never more than the motion, so that d_max is unchanged.
   rc::prop("clear slip of one dot more lowers it by that dot", [] {
     SlippingDots truth({.rows = 13, .cols = 13, .contact_pitches = 5.9});
     const auto before = truth.dots;
@@ -287,9 +288,10 @@ TEST_CASE("a state is a value", "[stick_ratio][law]") {
 }
 
 TEST_CASE("dots lost at random change the ratio by the sampling error", "[stick_ratio][law]") {
-  // Of n dots, m are left: the ratio p of those errs by sqrt(p (1 - p) / m (n - m) / (n - 1)).
-  // Without averaging over neighbours by no more than that. With it the dots at the edge of the
-  // stick region are averaged with others, and some change sides: up to half as much again.
+  // With m of n dots left, the ratio p of these has the error
+  //   sqrt(p (1 - p) / m (n - m) / (n - 1)).
+  // Without averaging over neighbours the error is at most that. With it, dots at the edge of the
+  // stick region are averaged with others and some change sides: up to half as much again.
   const auto spread = [](const auto& ratio, double noise_px, double lost_share, bool lost_now) {
     double sum_sq = 0, expected_sq = 0;
     for (std::uint64_t seed = 1; seed <= 400; ++seed) {

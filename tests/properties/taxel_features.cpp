@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
-// What must hold for the features of every array.
+// Properties of the features of every array.
 #include "fingerpad/foam/taxel_features.hpp"
 
 #include <algorithm>
@@ -20,8 +20,8 @@ namespace {
 using Array = Image<double>;
 using Recording = std::vector<Array>;
 
-/// Whole readings from 1 to 4000 of a few taxels that vibrate, jump, drift or rest: sums of whole
-/// numbers are exact. None is 0, where nothing presses.
+/// Integer readings from 1 to 4000 of a few taxels that vibrate, jump, drift or rest: sums of
+/// integers are exact. No reading is 0, which means no pressure.
 Recording any_recording(Index rows, Index cols, Index samples) {
   struct Taxel {
     double level, amplitude, period, phase, drift;
@@ -50,7 +50,7 @@ Recording any_recording(Index rows, Index cols, Index samples) {
 
 TaxelOptions<double> any_options() {
   TaxelOptions<double> o;
-  o.window = Index(1) << test::whole(2, 5);  // a power of two: means of whole numbers are exact
+  o.window = Index(1) << test::whole(2, 5);  // a power of two: means of integers are exact
   o.sample_period_s = 1;
   o.longest_gap_s = 10;
   o.noise = test::uniform(0, 50);
@@ -158,7 +158,7 @@ TEMPLATE_TEST_CASE("taxel features: laws", "[taxel_features]", ZeroCrossings, Sp
     const auto rotated = features_of(across, transposed);
     for (std::size_t n = 0; n < plain.size(); ++n) {
       RC_ASSERT(plain[n].status == rotated[n].status);
-      // of equals another may be the first
+      // among equal taxels another may be the first
       RC_ASSERT(std::fabs(plain[n].deviation - rotated[n].deviation) <= 1e-9 * plain[n].deviation);
       RC_ASSERT(!plain[n].is_pressed() ||
                 std::fabs(plain[n].center_x_mm - rotated[n].center_y_mm) < 1e-12);
@@ -280,7 +280,7 @@ TEMPLATE_TEST_CASE("taxel features: whatever is read, what is said is in range",
       RC_ASSERT(sample.left_out >= 0 && sample.left_out <= 6);
       RC_ASSERT((sample.location >= 0) == (sample.status == TaxelStatus::vibrating));
       RC_ASSERT(is_finite(sample.frequency_hz));
-      if (sample.is_pressed()) {  // sums of huge readings may be too large for a number
+      if (sample.is_pressed()) {  // sums of huge readings may overflow
         RC_ASSERT(sample.center_x_mm >= 0 && sample.center_x_mm <= 2 * o.pitch_mm * (1 + 1e-12));
         RC_ASSERT(sample.center_y_mm >= 0 && sample.center_y_mm <= o.pitch_mm * (1 + 1e-12));
       }

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
-// What must hold for every membrane, every load and every grid.
+// Properties for every membrane, every load and every grid.
 #include "fingerpad/force/traction.hpp"
 
 #include <cmath>
@@ -30,7 +30,7 @@ Vector any_vector(double largest) {
           test::uniform(-largest, largest)};
 }
 
-/// A membrane, stretched and loaded in any way.
+/// A membrane that is stretched and loaded at random.
 struct Pad {
   Dots free{0, 0};
   Dots dots{0, 0};
@@ -73,7 +73,7 @@ Seen look(const Pad& pad, TractionOptions<> options = {}) {
   return look_with(pad, options);
 }
 
-/// A load of the size of those here, for comparison.
+/// Scale of the loads, for comparison.
 double typical_load(const Pad& pad) {
   return pad.pressure + pad.mu_t;
 }
@@ -86,8 +86,8 @@ Dots mapped(Dots dots, const Map& map) {
   return dots;
 }
 
-/// The maps of b are those of a, with map(load), `factor` times the contact pressure, and the dot
-/// (i, j) of a at place(i, j) in b.
+/// Asserts that the maps of b are those of a with map(load), `factor` times the contact pressure,
+/// and dot (i, j) of a at place(i, j) in b.
 template <class Map, class Place>
 void assert_same(const Seen& a,
                  const Seen& b,
@@ -111,7 +111,7 @@ void assert_same(const Seen& a,
 }
 const auto same_place = [](Index i, Index j) { return DotIndex{i, j}; };
 
-/// Whatever is said to be known is finite, and the counts are those of the maps.
+/// Asserts that all known values are finite and that the counts are those of the maps.
 template <class S = double, class Field>
 void assert_valid(const Pad& pad, const Field& field) {
   auto maps = field.maps();
@@ -158,7 +158,7 @@ TEST_CASE("traction turns and shifts with the dots", "[traction][law]") {
     const Vector shift = any_vector(20);
     Pad moved = pad;
     moved.dots = mapped(pad.dots, [&](const Vector& x) { return turn(x) + shift; });
-    // the stress-free shape may lie anywhere: only its side toward +z counts
+    // the stress-free shape may lie anywhere: only its side toward +z matters
     const Rotation<double> other = test::turned_by(any_vector(0.5));
     moved.free = mapped(pad.free, [&](const Vector& x) { return other(x) + shift; });
     const Seen after = look(moved);
@@ -281,7 +281,7 @@ TEST_CASE("the balanced mu t goes with the pressure", "[traction][law]") {
     assert_same(
         before, after, 1e-10 * f * (pad.pressure + mu_t), [&](const Vector& q) { return f * q; },
         same_place, f);
-    // given that mu t, the same comes out
+    // with that mu t given, the result is the same
     const Seen given = look_with(pad, {.mu_t_n_per_mm = mu_t, .max_pressure_mpa = 100});
     RC_ASSERT(distance(given.result.force_n, before.result.force_n) <=
               1e-9 * (pad.pressure + mu_t));
@@ -298,7 +298,7 @@ TEST_CASE("the sum of the loads is what crosses the border", "[traction][law]") 
     Index moved = 0;
     for (Index i = 1; i + 1 < pad.dots.rows(); ++i) {
       for (Index j = 1; j + 1 < pad.dots.cols(); ++j) {
-        if (pad.contact(i, j) != 0) {  // with the ring, all its neighbours are summed
+        if (pad.contact(i, j) != 0) {  // contact and ring include all its neighbours
           other.dots(i, j) = other.dots(i, j) + any_vector(0.2);
           ++moved;
         }
@@ -316,9 +316,9 @@ TEST_CASE("the sum of the loads is what crosses the border", "[traction][law]") 
 }
 
 TEST_CASE("the sum of the loads over all dots, from the border alone", "[traction][law]") {
-  // All interior dots are summed. What holds them is what the cells along the border of the grid
-  // pull the border dots with, rotated round, and the pressure on the area that the border's dots
-  // do not take.
+  // All interior dots are summed. Their load balances the pull of the cells along the border of the
+  // grid on the border dots, with the sign reversed, and the pressure on the area that does not
+  // belong to the border dots.
   rc::prop("force", [] {
     Pad pad = Pad::any();
     for (auto& flag : pad.contact.cells) {

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
-// What must hold for every pad, every load and every way.
+// Properties for every pad, every load and every method.
 #include "fingerpad/force/wrench.hpp"
 
 #include <algorithm>
@@ -26,7 +26,7 @@ namespace {
 constexpr double pi = std::numbers::pi;
 using Vector = Point3<double>;
 
-/// Turned about z, mirrored at the plane y = 0 before that, and scaled.
+/// Mirrored at the plane y = 0, then rotated about z, and scaled.
 struct Placed {
   double turn_rad = 0;
   bool mirrored = false;
@@ -37,7 +37,7 @@ struct Placed {
     const double y = mirrored ? -p.y : p.y;
     return {c * p.x - s * y, s * p.x + c * y, scale * p.z};
   }
-  /// A moment of forces: of an axial vector.
+  /// A moment is an axial vector.
   Vector moment(const Vector& m) const {
     const Vector rotated = (*this)(m);
     return mirrored ? Vector{-rotated.x, -rotated.y, -rotated.z} : rotated;
@@ -49,7 +49,7 @@ struct Placed {
   }
 };
 
-/// A pad without symmetry: of film, with another contact in each direction. The contact is flat.
+/// A film pad without symmetry: the radius of its flat contact differs by direction.
 struct Lopsided {
   double contact_mm = 8, oval = 0, triangle = 0;
   Placed placed;
@@ -61,7 +61,7 @@ struct Lopsided {
   detail::membrane::HeightAndSlope<double> operator()(double x, double y) const {
     const Vector p = placed.back({x, y, 0});
     const auto h = along(std::atan2(p.y, p.x))(p.x, p.y);
-    // the slope around the axis is small and left out, the same in every place
+    // the slope around the axis is small and left out, equally in every placement
     const Vector slope = placed({h.along_x, h.along_y, 0});
     return {placed.scale * h.height_mm, slope.x / placed.scale, slope.y / placed.scale};
   }
@@ -75,7 +75,7 @@ Lopsided any_shape() {
   return {test::uniform(5, 11), test::uniform(-0.1, 0.1), test::uniform(-0.05, 0.05), {}};
 }
 
-/// Any load that stretches everywhere.
+/// Any load under which the membrane is stretched everywhere.
 struct AnyLoad {
   double normal = test::uniform(0.08, 0.2);
   double first = test::uniform(0, 0.3), second = test::uniform(0, 0.2);
@@ -133,7 +133,7 @@ double far(const Vector& a, const Vector& b) {
 double size(const Vector& a) {
   return std::sqrt(squared_norm(a));
 }
-/// What errors are shares of: a force of that kind, not one that happens to be 0.
+/// Scale of the errors: a force of that kind that cannot be 0.
 double force_scale(const WrenchResult<double>& r) {
   return size(r.force_n) + 1;
 }
@@ -170,7 +170,7 @@ TEMPLATE_TEST_CASE("wrench: what is rotated, mirrored or scaled",
         measure<W>(rotated, moved(rim.borders(), rotated.placed), moved(dots, rotated.placed));
     RC_ASSERT(r.status == still.status);
     if (still.status == WrenchStatus::ok) {
-      // but for the mesh on which the middle of the contact is looked for
+      // except for the mesh that searches the middle of the contact
       const double allowed = TestType::needs_balance ? 0.03 : 1e-9;
       RC_ASSERT(far(r.force_n, rotated.placed(still.force_n)) <= allowed * force_scale(still));
       RC_ASSERT(far(r.moment_n_mm, rotated.placed(still.moment_n_mm)) <=
@@ -188,7 +188,7 @@ TEMPLATE_TEST_CASE("wrench: what is rotated, mirrored or scaled",
     const auto r = measure<W>(other, moved(rim.borders(), other.placed), moved(dots, other.placed));
     RC_ASSERT(r.status == still.status);
     if (still.status == WrenchStatus::ok) {
-      const double allowed = 1e-4;  // steps to and fro across the edge of the contact
+      const double allowed = 1e-4;  // small steps across the edge of the contact
       RC_ASSERT(far(r.force_n, other.placed(still.force_n)) <= allowed * force_scale(still));
       RC_ASSERT(far(r.moment_n_mm, other.placed.moment(still.moment_n_mm)) <=
                 allowed * moment_scale(still));
@@ -235,7 +235,7 @@ TEMPLATE_TEST_CASE("wrench: what is rotated, mirrored or scaled",
       const bool both = one.modulus_n_per_mm == one.modulus_n_per_mm;
       RC_ASSERT(!both || std::abs(other.modulus_n_per_mm / one.modulus_n_per_mm / k - 1) < 1e-9);
     } else if (one.status == WrenchStatus::ok) {
-      // the material alone: pressure only adds its push on the base
+      // of the material alone: pressure only adds its push on the base
       const double base = pi * square(options().base_radius_mm);
       RC_ASSERT(std::abs(other.force_n.z - one.force_n.z + 0.01 * (k - 1) * base) <
                 1e-9 * (1 + k) * force_scale(one));
@@ -296,7 +296,7 @@ TEMPLATE_TEST_CASE("wrench: side dots as they come",
     } else {
       RC_ASSERT(r.status == all.status);
       RC_ASSERT(r.missing == lost);
-      // between dots the pull is a line: what is lost goes with the square of the widest gap
+      // between dots the pull is linear: the error grows with the square of the widest gap
       double gap = 1, run = 1;
       for (Index k = 0; k < 2 * rim.count; ++k) {
         run = std::isnan(some(0, k % rim.count).y) ? run + 1 : 1;

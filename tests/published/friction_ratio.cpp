@@ -49,7 +49,7 @@ TEST_CASE("friction ratio: compared with the last slip", "[friction_ratio]") {
   CHECK(result.alarm);
   CHECK(result.margin == Approx(1 - 0.73 / 0.8));
 
-  // beyond what it slipped at: the margin says by how much
+  // beyond the remembered ratio the margin is the excess
   CHECK(friction(8.0, 5.0, false, state).margin == Approx(-1));
 
   // the last slip counts, and of it the last frame
@@ -94,7 +94,7 @@ TEST_CASE("friction ratio: forces that give no ratio", "[friction_ratio]") {
     CHECK(friction(Point2<double>{0.1, bad}, 1.0, true, state).status ==
           FrictionStatus::no_force_known);
   }
-  // nothing of this was remembered, nor is a slip without a tangential force
+  // none of these was remembered, nor is a slip without a tangential force
   (void)friction(0.0, 1.0, true, state);
   CHECK(friction(0.4, 1.0, false, state).margin == Approx(0.5));
 
@@ -122,7 +122,7 @@ TEST_CASE("friction ratio: any number type", "[friction_ratio]") {
   const auto result = digits(Lazy50(1), Lazy50(3), false, state);
   CHECK(static_cast<double>(result.margin) == Approx(1.0 / 3).epsilon(1e-15));
 
-  // how the margin changes with the grip: F/N^2 over the remembered ratio
+  // derivative of the margin by the grip: F/N^2 over the remembered ratio
   using D = test::Dual<double>;
   const FrictionRatio<D> dual;
   auto s = dual.start();

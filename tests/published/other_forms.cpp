@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
-// Printed forms that stand alone: each by its equation done by hand, and by what it is known to do.
+// Single printed forms: each by its equation computed by hand, and by its known errors.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -25,7 +25,7 @@ namespace {
 
 using Known = DepthSample<double>;
 
-/// What a pixel of the published pad sees at a depth, with noise of so many grey levels.
+/// Pixel of the published pad at a depth, with errors of `red` and `green` in grey levels.
 Known known(
     const Pad& pad, Index row, Index col, double depth_mm, double red = 0, double green = 0) {
   auto colour = pad.colour<published::SingleHeight>(row, col, depth_mm, 57);
@@ -72,9 +72,9 @@ TEST_CASE("published identification: depths that are one, and noise", "[publishe
   const Known one = known(pad, 24, 28, 5);
   const auto same =
       published::identify_absorption(known(pad, 24, 28, 12), std::array{one, one, one});
-  // one equation thrice: solved somewhere, or refused, but never by these three numbers
+  // the same equation three times: a solution or a refusal, but never these three numbers
   CHECK_FALSE((same.ok() && std::abs(same.fluid.c_red_per_mm - 0.029) > 1e-6));
-  // 0.03 grey levels at one depth move c_R by a tenth and more, but depths hardly
+  // 0.03 grey levels at one depth change c_R by a tenth and more, but depths hardly
   const auto noisy = published::identify_absorption(
       known(pad, 24, 28, 12),
       std::array{known(pad, 24, 28, 1, 0.03), known(pad, 24, 28, 4), known(pad, 24, 28, 8)});
@@ -93,13 +93,14 @@ TEST_CASE("published fit of the neighbouring light: a line of logarithms", "[pub
   CHECK(exact.n_per_mm == Approx(0.2));
   CHECK(exact.sum_sq < 1e-20);
   CHECK(exact.used == 50);
-  // what has no logarithm is left out
+  // pixels without a logarithm are left out
   pixels[3].error_mm = -0.01;
   pixels[7].psi_sum_rad = 0;
   const auto fewer = published::fit_by_logarithms(pixels);
   CHECK(fewer.left_out == 2);
   CHECK(fewer.n_per_mm == Approx(0.2));
-  // least squares of logarithms: a factor on one pixel weighs by its place, not by its size
+  // least squares of logarithms: the weight of a factor on one pixel depends on its position, not
+  // on its size
   pixels = {{std::exp(0.0), 0, 1}, {std::exp(1.0), 1, 1}, {std::exp(5.0), 2, 1}};
   const auto bent = published::fit_by_logarithms(pixels);
   CHECK(bent.n_per_mm == Approx(2.5));
@@ -109,7 +110,7 @@ TEST_CASE("published fit of the neighbouring light: a line of logarithms", "[pub
 }
 
 TEST_CASE("published circle through three points", "[published]") {
-  // a sphere of 20 mm, any direction: nearest pixels have their own distance
+  // a sphere of 20 mm in any direction: nearest pixels use their own distance
   Image<double> sphere(41, 41), level(41, 41, 9.0);
   for (Index i = 0; i < 41; ++i) {
     for (Index j = 0; j < 41; ++j) {
@@ -148,20 +149,20 @@ TEST_CASE("published contact conditions: what each lets pass", "[published]") {
   };
   const auto twice = ContactCondition::twice_mean, clamped = ContactCondition::clamped_mean,
              every = ContactCondition::every_direction;
-  // pressed by a ball: all
+  // pressed by a ball: all touch
   CHECK(touches(twice, -0.05, -0.05));
   CHECK(touches(clamped, -0.05, -0.05));
   CHECK(touches(every, -0.05, -0.05));
-  // free: none
+  // free: none touch
   CHECK_FALSE(touches(twice, 0.05, 0.05));
   CHECK_FALSE(touches(clamped, 0.05, 0.05));
   CHECK_FALSE(touches(every, 0.05, 0.05));
-  // a free saddle: only the plain mean errs (E017)
+  // a free saddle: only the plain mean is wrong (E017)
   CHECK(touches(twice, 0.05, -0.06));
   CHECK_FALSE(touches(clamped, 0.05, -0.06));
   CHECK_FALSE(touches(every, 0.05, -0.06));
-  // a cylinder that bulges in one direction by a little: the mean of 18 directions is half of it,
-  // twice the mean is all of it, and one direction has all of it
+  // a cylinder that bulges slightly in one direction: the mean of 18 directions is half of its
+  // curvature, and both twice the mean and one direction give all of it
   CHECK(touches(clamped, 0.015, -1e-6));
   CHECK_FALSE(touches(every, 0.015, -1e-6));
   CHECK_FALSE(touches(every, -1e-6, 0.015));
@@ -189,7 +190,7 @@ TEST_CASE("published contact region: centers every 5 pixels", "[published]") {
   double set = 0;
   for (Index i = 0; i < 60; ++i) {
     for (Index j = 0; j < 103; ++j) {
-      CHECK(mask(i, j) == mask(i / 5 * 5, j / 5 * 5));  // a block has one answer
+      CHECK(mask(i, j) == mask(i / 5 * 5, j / 5 * 5));  // one answer per block
       set += mask(i, j) != 0 ? 1 : 0;
     }
   }
@@ -205,7 +206,7 @@ TEST_CASE("published contact region: centers every 5 pixels", "[published]") {
       off_center += (mask(i, j) != 0) != published::touches(z, i, j, o) ? 1 : 0;
     }
   }
-  CHECK(off_center > 0);  // some corner would say otherwise
+  CHECK(off_center > 0);  // some corner would differ
   Image<unsigned char> other(60, 100, 9);
   CHECK(std::isnan(published::contact_by_slides(z, other, o)));
   CHECK(other(0, 0) == 9);
@@ -216,7 +217,7 @@ TEST_CASE("published contact region: centers every 5 pixels", "[published]") {
 TEST_CASE("published flat contact: F = p S", "[published]") {
   CHECK(published::flat_contact_force_n(0.02, 300.0) == Approx(6.0));
   CHECK(published::flat_contact_force_n(0.0, 300.0) == 0);
-  CHECK(published::flat_contact_force_n(0.02, 0.5) == Approx(0.01));  // of a small contact, too
+  CHECK(published::flat_contact_force_n(0.02, 0.5) == Approx(0.01));  // also for a small contact
   CHECK(std::isnan(published::flat_contact_force_n(0.02, -0.5)));
   CHECK(std::isnan(published::flat_contact_force_n(-0.02, 300.0)));
   CHECK(std::isnan(published::flat_contact_force_n(0.02, test::nan)));
@@ -230,11 +231,11 @@ TEST_CASE("published eqs. 19 and 20: as printed, and falling with depth", "[publ
   CHECK(depth.displaced(10, 3) == Approx(-0.356 * 10 + 0.548 * 3 + 0.2));
   CHECK(area.rotated(10, 20 * degree) == Approx(1.2 * 10 + 0.00171 * 20 - 1.0));
   CHECK(depth.rotated(10, 20 * degree) == Approx(-0.272 * 10 - 0.0074 * 20 + 0.5));
-  // E029: what eqs. 21 and 22 mend
+  // E029: the error that eqs. 21 and 22 correct
   CHECK(depth.displaced(20, 3) < depth.displaced(10, 3));
   const auto later = published::compensation_by_depth();
   CHECK(later.displaced(20, 3) > later.displaced(10, 3));
-  // they go where those go
+  // their limits
   const NormalForce<PolynomialForce<2>, published::Compensation<double>> force(
       published::force_of_area(), area);
   const double plain = force(300).force_n;

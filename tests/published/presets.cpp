@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
-// Each published method under its one name: that it is the method as printed, told by what only the
-// printed form does.
+// Each published method under its one name: a behaviour that only the printed form has shows that
+// it is the method as printed.
 #include <array>
 #include <cmath>
 #include <vector>
@@ -66,7 +66,7 @@ TEST_CASE("published contact region: free membrane is none, a flat one is contac
 }
 
 TEST_CASE("published object motion: Euler angles of steps are added up", "[published]") {
-  // a patch of dots rotated about z and then about x: the sum is not the rotation
+  // a patch of dots rotated about z and then about x: the sum differs from the rotation
   const auto motion = published::object_motion([] {
     Image<Point3<double>> dots(7, 7);
     for (Index i = 0; i < 7; ++i) {
@@ -107,7 +107,7 @@ TEST_CASE("published stick ratio: dots that move as one stick", "[published]") {
   auto state = ratio.start();
   test::ContactFlags touching(9, 9, 1);
   for (Index j = 0; j < 9; ++j) {
-    touching(8, j) = 0;  // the object's outline is within the print
+    touching(8, j) = 0;  // the object's outline lies within the print
   }
   test::DotStates states(9, 9);
   test::PointsPx dots(9, 9);
@@ -136,7 +136,7 @@ TEST_CASE("published normal force: the printed curves", "[published]") {
   const auto by_depth = published::normal_force_by_depth();
   CHECK(by_area(100).force_n == Approx(0.6242 + 0.0191 * 100 + 0.00008 * 100 * 100));
   CHECK(by_depth(3).force_n == Approx(0.3435 + 0.5563 * 3 + 0.776 * 9));
-  // eq. 21 far beyond where it is blended in
+  // eq. 21 far beyond its blend
   const double plain = by_area(300).force_n;
   CHECK(by_area(300, {3, 0}).force_n == Approx(0.748 * plain - 0.637 * 3 + 1.7));
 }
@@ -184,13 +184,13 @@ TEST_CASE("published pre-slip rules: what makes a pair", "[published]") {
     return rule(std::array{later, later}, state).alarm;
   };
   const auto optimise = published::grasp_optimise();
-  CHECK(alarm(optimise, sample(1, 3, 4), sample(1, 5, 4)));        // another taxel, as many waves
+  CHECK(alarm(optimise, sample(1, 3, 4), sample(1, 5, 4)));        // another taxel, equal waves
   CHECK_FALSE(alarm(optimise, sample(1, 3, 4), sample(1, 5, 5)));  // more waves
   const auto lift = published::grasp_lift();
-  CHECK(alarm(lift, sample(1, 3, 4), sample(9, 5, 5)));        // force has moved, and more waves
-  CHECK_FALSE(alarm(lift, sample(1, 3, 4), sample(9, 5, 4)));  // as many
-  CHECK_FALSE(alarm(lift, sample(1, 3, 4), sample(1, 5, 5)));  // force stays
-  // loosening needs it of both fingers, lifting of either
+  CHECK(alarm(lift, sample(1, 3, 4), sample(9, 5, 5)));        // force has moved, more waves
+  CHECK_FALSE(alarm(lift, sample(1, 3, 4), sample(9, 5, 4)));  // force has moved, equal waves
+  CHECK_FALSE(alarm(lift, sample(1, 3, 4), sample(1, 5, 5)));  // force has not moved
+  // loosening requires it of both fingers, lifting of either
   const auto alarm_by = [](const auto& rule, const auto& older, const auto& left,
                            const auto& right) {
     auto state = rule.start();

@@ -29,7 +29,7 @@ TEST_CASE("S and D by hand", "[stick]") {
   const RatioMeasures falls = measures({1, 0.9, 0.9, 0.5, 0});
   CHECK(falls.sum == Approx(3.3));
   CHECK(falls.decreases == Approx(1));
-  CHECK(falls.rises == 0);  // all of D was there to measure
+  CHECK(falls.rises == 0);  // all of D could be measured
   CHECK(falls.steps == 5);
   CHECK(falls.sum_per_step() == Approx(0.66));
   CHECK(falls.decreases_per_step() == Approx(0.2));
@@ -38,7 +38,7 @@ TEST_CASE("S and D by hand", "[stick]") {
   const RatioMeasures shakes = measures({1, 0.5, 0.75, 0.25, 0.5});
   CHECK(shakes.decreases == 1);
   CHECK(shakes.rises == 0.5);
-  // contact is lost between: nothing is compared across it
+  // contact is lost in between: nothing is compared across the gap
   const RatioMeasures two = measures({test::nan, 1, 0.25, test::nan, test::nan, 1, 0.5, test::nan});
   CHECK(two.sum == 2.75);
   CHECK(two.decreases == 1.25);
@@ -71,7 +71,7 @@ TEST_CASE("S and D: laws", "[stick]") {
     RC_ASSERT(std::abs(measures(rotated).rises - m.rises) < 1e-13);
     RC_ASSERT(std::abs(measures(rotated).sum + m.sum - static_cast<double>(m.steps)) < 1e-13);
 
-    auto kept = ratios;  // an answer that stands for some more frames
+    auto kept = ratios;  // an answer that is kept for some frames
     const auto at = static_cast<std::size_t>(test::whole(0, m.steps - 1));
     kept.insert(kept.begin() + static_cast<std::ptrdiff_t>(at), 3, ratios[at]);
     RC_ASSERT(measures(kept).decreases == m.decreases);

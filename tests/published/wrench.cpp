@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
-// What of the published six-axis force no result of a symmetric load shows: f_h, which is solved
-// for and not used, and how the lines run.
+// Parts of the published six-axis force that results of a symmetric load do not show: f_h, which is
+// solved for but not used, and the course of the lines.
 #include "fingerpad/published/wrench.hpp"
 
 #include <algorithm>
@@ -21,9 +21,9 @@ using test::RoundPad;
 
 namespace {
 
-/// Largest error of f_h on a pad pressed flat, as a share of the largest, but for `skipped` rows at
-/// either end: at the rim the membrane's edge counts twice, at the summit f_v is 0 / 0. Truth: f_v
-/// K_1 + f_h K_2 = p, with the arc's curvature along the meridian and sin(phi) / r around.
+/// Largest error of f_h on a pad pressed flat, relative to the largest f_h, without `skipped` rows
+/// at either end: at the rim the membrane's edge counts twice, at the summit f_v is 0 / 0. Truth:
+/// f_v K_1 + f_h K_2 = p, with the arc's curvature along the meridian and sin(phi) / r around.
 template <class Solver>
 double around_error(Index columns, Index rows, Index skipped) {
   using namespace detail::membrane;
@@ -59,7 +59,7 @@ double around_error(Index columns, Index rows, Index skipped) {
   return worst / largest;
 }
 
-/// Level at the rim; its summit is 2.8 mm off the middle.
+/// A mound that is level at the rim, with its summit 2.8 mm off the middle.
 struct Mound {
   template <class S>
   detail::membrane::HeightAndSlope<S> operator()(const S& x, const S& y) const {
@@ -73,7 +73,7 @@ struct Mound {
   }
 };
 
-/// A mound that leans askew, or its mirror image, in which y is reversed.
+/// An asymmetric mound, or its mirror image with y reversed.
 struct Leaning {
   double side = 1;
   template <class S>
@@ -89,7 +89,7 @@ struct Leaning {
   }
 };
 
-/// f_h over a leaning mound whose rim is twisted unevenly, row by row.
+/// f_h by row, over a leaning mound whose rim is twisted unevenly.
 std::vector<double> around_leaning(double side, Index columns, Index rows) {
   using namespace detail::membrane;
   const RoundPad<ArcSide> pad;
@@ -114,7 +114,7 @@ std::vector<double> around_leaning(double side, Index columns, Index rows) {
   return tensions.upward_normal;
 }
 
-/// How far a step from a to b departs from the gradient of the heights between them: a sine.
+/// Sine of the angle between a step from a to b and the gradient of the heights between them.
 double off_gradient(const Mound& mound, const Point3<double>& a, const Point3<double>& b) {
   const auto at = mound((a.x + b.x) / 2, (a.y + b.y) / 2);
   const double dx = b.x - a.x, dy = b.y - a.y;
@@ -130,7 +130,8 @@ TEST_CASE("published iteration: f_h of a flat press, in closed form", "[publishe
 }
 
 TEST_CASE("published iteration: f_h of a pad seen in a mirror", "[published]") {
-  // each f_h is found from the segments on both sides: with one of them left and right would differ
+  // each f_h is found from the segments on both sides; with one side alone, left and right would
+  // differ
   constexpr Index columns = 36, rows = 24;
   const auto plain = around_leaning(1, columns, rows), mirrored = around_leaning(-1, columns, rows);
   double largest = 0, off = 0, uneven = 0;
@@ -195,7 +196,8 @@ TEST_CASE("published six-axis force: its lines are the steepest, cut at equal st
   }
   CHECK(least == Approx(9.0 / 65).margin(4e-3));
   CHECK(most == Approx(9.0 / 65).margin(4e-3));
-  // where the summit is off the middle, a line runs along the gradient, not toward the summit
+  // where the summit is off the middle, a line follows the gradient, not the direction to the
+  // summit
   const Mound mound;
   (void)wrench(mound, rim.dots([&](double) {
     return RimLoad{pad.tension(pad.radius_mm, pressed_mpa), 0};

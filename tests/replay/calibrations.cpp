@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
-// What calibrations save is what is loaded again, bit for bit; what is strange is refused.
+// Saved calibrations load again bit for bit; invalid files are refused.
 #include "calibrate/calibrations.hpp"
 
 #include <algorithm>
@@ -101,7 +101,7 @@ TEST_CASE("A calibration that was saved is loaded bit for bit", "[calibrate]") {
   const fs::path file = scratch("round_trip");
   const Outcome outcome = camera_and_more();
   save(outcome, file);
-  save(outcome, file);  // again: nothing is doubled
+  save(outcome, file);  // again: no duplicates
   const auto reports = calibrate::load_reports(file);
   REQUIRE(reports.size() == 1);
   const Report &there = reports.front(), &here = outcome.reports.front();
@@ -262,5 +262,5 @@ TEST_CASE("Rays meet a cap and a ball where these are", "[calibrate]") {
     }
   }
   CHECK(calibrate::depth_on(camera, 30, 40, ball, false) < 12);
-  CHECK(std::isnan(calibrate::depth_on(camera, 300, 400, ball, false)));  // passes by
+  CHECK(std::isnan(calibrate::depth_on(camera, 300, 400, ball, false)));  // the ray misses the ball
 }

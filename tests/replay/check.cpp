@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
-// Mistakes that recordings come with, and what replay --check says of each.
+// Typical mistakes in recordings, and the findings of replay --check for each.
 #include "replay/check/check.hpp"
 
 #include <unistd.h>
@@ -31,7 +31,7 @@ const fs::path data =
 
 using Row = std::vector<std::string>;
 
-/// A copy of the first frames of the bundled recording, or of the foam recording, to spoil.
+/// A copy of the first frames of the bundled recording, or of the foam recording, to be modified.
 class Copy {
  public:
   static constexpr int frames = 3;
@@ -61,7 +61,7 @@ class Copy {
   const fs::path& folder() const { return folder_; }
   static std::string frame(int k) { return "frames/00000" + std::to_string(k) + ".png"; }
 
-  /// What is found to be wrong, one line each.
+  /// The findings, one per line.
   std::string said() const {
     std::string lines;
     for (const replay::Finding& finding : replay::check_recording(folder_)) {
@@ -83,7 +83,7 @@ class Copy {
   void write(const std::string& file, const std::string& text) const {
     std::ofstream(folder_ / file) << text;
   }
-  /// Rows for which `change` is false are left out.
+  /// Edits each row of a table; rows for which `change` is false are dropped.
   void edit_table(const std::string& file, const std::function<bool(Row&)>& change) const {
     std::ifstream in(folder_ / file);
     std::string line;
@@ -105,7 +105,7 @@ class Copy {
     in.close();
     write(file, text);
   }
-  /// Column `k` times `factor` plus `offset`.
+  /// Sets column `k` to `factor` times it plus `offset`.
   void scale(const std::string& file, std::size_t k, double factor, double offset = 0) const {
     edit_table(file, [&](Row& row) {
       std::ostringstream number;
@@ -130,7 +130,7 @@ class Copy {
   fs::path folder_;
 };
 
-/// dots.csv of a grid of 6 x 7 dots in the frames, as `place` puts row i, column j of a frame.
+/// dots.csv of a grid of 6 x 7 dots; `place` gives the position of row i, column j in a frame.
 std::string dots_csv(const std::function<cv::Vec2d(int frame, int i, int j)>& place) {
   std::string text = "frame,row,col,x_px,y_px\n";
   for (int frame = 0; frame < Copy::frames; ++frame) {
@@ -149,8 +149,7 @@ cv::Vec2d good_place(int frame, int i, int j) {
   return {150.0 + 25 * j + frame, 160.0 + 25 * i};
 }
 
-/// More frames, in which dots are dragged in three directions, and forces of a gauge that is
-/// turned.
+/// Adds frames in which dots are dragged in three directions, and forces of a rotated gauge.
 void drag(const Copy& copy, double turned_rad, int directions = 5) {
   std::string dots = "frame,row,col,x_px,y_px\n",
               forces = "frame,force_x_n,force_y_n,force_z_n,moment_z_nm\n";
@@ -196,7 +195,7 @@ Mistake dots_mistake(const char* name, const char* said, cv::Vec2d (*place)(int,
   return {name, [place](const Copy& copy) { copy.write("dots.csv", dots_csv(place)); }, said};
 }
 
-/// Heights along rays made heights above the place on the plate that each pixel shows.
+/// Converts heights along rays to heights above the point of the plate that each pixel shows.
 void in_plan(cv::Mat& depth) {
   const fingerpad::Camera<double> camera{.center_x_px = 239.5, .center_y_px = 239.5};
   const cv::Mat_<float> along = depth.clone();
@@ -218,7 +217,7 @@ void in_plan(cv::Mat& depth) {
   }
 }
 
-// Without a print, whose dots take most of the time to find.
+// Without a print, because finding its dots takes most of the time.
 const std::vector<Mistake> mistakes = {
     {"pressure in kPa", [](const Copy& c) { c.scale("signals.csv", 2, 1e3); },
      "in kPa? divide by 1000"},
@@ -569,7 +568,7 @@ TEST_CASE("check: good recordings are not complained about") {
   for (const char* name : {"free/000000.png", "free/000001.png"}) {
     fs::copy_file(data / "press/frames/000000.png", free_frames.folder() / name);
     free_frames.edit_picture(name, [&](cv::Mat& frame) {
-      cv::randu(frame(cv::Rect(0, 0, 9, 9)), 0, 9);  // no two are the same
+      cv::randu(frame(cv::Rect(0, 0, 9, 9)), 0, 9);  // all frames differ
     });
   }
   INFO(free_frames.said());

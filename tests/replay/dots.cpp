@@ -43,15 +43,15 @@ struct Recorded {
   }
 };
 
-/// Read once: the images are the same in every test.
+/// Read once, because the images are the same in every test.
 const Recorded& press() {
   static const Recorded recorded;
   return recorded;
 }
 
-/// Where the dots of the bundled recording really are, per frame. The file has float32 triples
-/// behind a header that ends with a line feed; on the free pad, its first step, the dots lie on
-/// multiples of the pitch in plan, and that is their place in the print.
+/// True dots of the bundled recording, per frame. The file has float32 triples behind a header that
+/// ends with a line feed. On the free pad, its first step, the dots lie on multiples of the pitch
+/// in plan, which is their place in the print.
 std::vector<DotGrid> true_dots() {
   std::ifstream file(bundled / "membrane" / "dots.npy", std::ios::binary);
   std::string header;
@@ -87,7 +87,7 @@ std::vector<DotGrid> true_dots() {
 struct Comparison {
   int true_count = 0;
   int found = 0;
-  int wrong = 0;      ///< farther than half a pitch from the truth, or no dot at all
+  int wrong = 0;      ///< more than half a pitch from the truth, or missing
   double rms_px = 0;  ///< of found dots within 16 mm of the axis on the plate
 };
 
@@ -106,7 +106,7 @@ Comparison compare(const DotGrid& found, const DotGrid& truth) {
       }
       ++result.found;
       const double error = cv::norm(found(i, j) - truth(i, j));
-      // Near the rim dots lie closer together in the image than half a pitch on the plate.
+      // Near the rim, dots are closer together in the image than half a pitch on the plate.
       const bool right = error < 3;
       result.wrong += right ? 0 : 1;
       if (right && cv::norm(truth(i, j) - axis) * sensor.camera.pitch_mm < 16) {
@@ -119,7 +119,7 @@ Comparison compare(const DotGrid& found, const DotGrid& truth) {
   return result;
 }
 
-/// Largest distance of dots that both grids have; both must have the same.
+/// Largest distance of corresponding dots; both grids must have the same dots.
 double largest_distance(const DotGrid& a, const DotGrid& b) {
   REQUIRE(a.size() == b.size());
   double largest = 0;
@@ -308,7 +308,7 @@ TEST_CASE("the reference shows the free pad's dots where dots.csv has fewer of t
   };
   folder.write("frame,row,col,x_px,y_px\n" + lines_of(3, half(0)));
   CHECK(largest_distance(press().source(folder.path()).initial(), free_pad) == 0);
-  // Another order of the columns: the file's word counts.
+  // Another order of the columns: the file's header determines it.
   folder.write("frame,row,col,x_px,y_px\n" + lines_of(3, half(1)));
   CHECK(largest_distance(press().source(folder.path()).initial(), half(1)) < 1e-5);
 }

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
-// Recordings of any pad with a grid of dots: nothing is known but the frames, which are drawn here.
+// Recordings of any pad with a grid of dots, of which only the frames, drawn here, are known.
 #include <unistd.h>
 
 #include <algorithm>
@@ -32,12 +32,12 @@ namespace {
 
 const cv::Size frame_size(320, 240);
 
-/// A pad whose dots are drawn where a test says.
+/// A pad whose dots are drawn at given positions.
 struct Pad {
   double radius_px = 5;
   bool bright = false;
   cv::Scalar ground{150, 110, 90};  ///< blue, green, red
-  double fall = 0.5;                ///< of the light from the left border to the right one
+  double fall = 0.5;                ///< relative loss of light from the left to the right border
 };
 
 /// Rows x cols of dots around the middle of the frame, rotated from x to y.
@@ -85,7 +85,7 @@ DotGrid moved(const DotGrid& dots, const cv::Vec2d& by) {
   return all;
 }
 
-/// The largest distance between dots of the same name; infinite where the sizes differ.
+/// Largest distance of dots of the same name; infinite if the sizes differ.
 double largest_error_px(const DotGrid& found, const DotGrid& truth) {
   if (found.size() != truth.size()) {
     return std::numeric_limits<double>::infinity();
@@ -101,7 +101,7 @@ double largest_error_px(const DotGrid& found, const DotGrid& truth) {
   return largest;
 }
 
-/// A recording with a sensor.json and frames, and a place for the results.
+/// A recording with a sensor.json and frames, and a folder for the results.
 class DotRecording {
  public:
   explicit DotRecording(const std::vector<cv::Mat>& frames, const std::string& sensor = "{}") {
@@ -136,7 +136,7 @@ class DotRecording {
     return "";
   }
 
-  /// The dots of every frame, as replay finds them.
+  /// The dots of every frame as replay finds them.
   std::vector<DotGrid> dots() const {
     replay::Recording recording = replay::open_recording(folder());
     auto source = replay::DotSource::of_dots_only(folder(), recording);
@@ -279,7 +279,7 @@ TEST_CASE("a compressed video gives the dots of its pictures") {
 }
 
 TEST_CASE("the stick ratio of a dots-only recording") {
-  // Two of eight rows stand still while the others are carried away.
+  // Two of eight rows stand still while the others move.
   const DotGrid truth = grid_of({10, 8}, 26, 0);
   std::vector<cv::Mat> frames;
   for (int k = 0; k < 8; ++k) {
@@ -291,7 +291,7 @@ TEST_CASE("the stick ratio of a dots-only recording") {
     }
     frames.push_back(drawn({}, now));
   }
-  const DotRecording unknown(frames);  // they may as well lie beside a small object
+  const DotRecording unknown(frames);  // as likely beside a small object
   REQUIRE(unknown.complaint().empty());
   CHECK(table(unknown.out() / "frames.csv")[7].at("stick_ratio").empty());
 
@@ -323,7 +323,7 @@ TEST_CASE("the stick ratio of a dots-only recording") {
   CHECK(fs::exists(recording.out() / "pictures" / "stick_ratio.png"));
   CHECK_FALSE(fs::exists(recording.out() / "depth"));
   CHECK_FALSE(fs::exists(recording.out() / "pictures" / "depth_000007.png"));
-  // Its own files are known again.
+  // It accepts its own files as output again.
   CHECK(recording.complaint(true).empty());
 }
 

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
-// Recordings of foam arrays: taxels.csv, made up here, with vibrations of known place and time.
+// Recordings of foam arrays: synthetic taxels.csv with vibrations of known place and time.
 #include <unistd.h>
 
 #include <algorithm>
@@ -34,7 +34,7 @@ const fs::path bundled =
 constexpr int window = 16;
 constexpr double rate_hz = 32;      // so that times have few digits
 constexpr int first_begins = 100;   // sample from which a taxel vibrates
-constexpr int second_begins = 124;  // and another one, faster
+constexpr int second_begins = 124;  // and another one begins, faster
 
 std::string number(double x) {
   char text[32];
@@ -42,7 +42,7 @@ std::string number(double x) {
   return text;
 }
 
-/// About normal with a standard deviation of 1, a function of its arguments alone.
+/// Nearly normal with a standard deviation of 1; a function of its arguments alone.
 double noise(int sample, int row, int col) {
   std::uint32_t state = 1 + static_cast<std::uint32_t>((sample * 64 + row) * 64 + col);
   double sum = -6;
@@ -103,13 +103,13 @@ Taxels taxels_of(int rows, int cols, int samples, const Signal& signal) {
   return taxels;
 }
 
-/// A hill of pressure in whole counts that shakes nowhere.
+/// A hill of pressure in integer counts without vibration.
 double held(int k, int i, int j) {
   return std::round(300 * std::exp(-((i - 2.5) * (i - 2.5) + (j - 1.5) * (j - 1.5)) / 4) + 20 +
                     3 * noise(k, i, j));
 }
 
-/// The same; taxel (1, 1) begins to shake, and then (4, 2), more and faster.
+/// The same, where taxel (1, 1) begins to vibrate and then (4, 2), more strongly and faster.
 double creeping(int k, int i, int j) {
   const auto shaken = [&](int row, int col, int from, double hz, double counts) {
     return i == row && j == col && k >= from
@@ -162,7 +162,7 @@ class Workplace {
     std::ofstream(folder() / file) << text;
   }
 
-  /// The line that a run complains with, empty where it does not; nothing may be left behind.
+  /// The error line of a run, or an empty string; a failed run must leave nothing behind.
   std::string complaint(bool pictures = false, const replay::Range& range = {}) const {
     replay::Options options;
     options.recording = folder();
@@ -220,7 +220,7 @@ std::vector<Line> run(const Taxels& taxels, const std::string& sensor = "") {
   return work.table();
 }
 
-/// Index of the first line with an alarm; -1: none.
+/// Index of the first line with an alarm; -1 if there is none.
 int first_alarm(const std::vector<Line>& lines) {
   const auto at = std::find_if(lines.begin(), lines.end(),
                                [](const Line& line) { return line.at("preslip") == "1"; });
@@ -299,7 +299,7 @@ TEST_CASE("a foam recording at rest gives no alarm") {
 }
 
 TEST_CASE("fingers are found where sensor.json says, each as if it were alone") {
-  // The second finger lies beside the first one, a row lower, with a column between them.
+  // The second finger is beside the first one, a row lower, with a column between them.
   const auto other = [](int k, int i, int j) {
     return std::round(1.5 * held(k, i, j)) +
            (i == 2 && j == 0 && k >= 110 ? 80 * std::sin(0.9 * k) : 0.0);
@@ -334,7 +334,7 @@ TEST_CASE("fingers are found where sensor.json says, each as if it were alone") 
 }
 
 TEST_CASE("one to five fingers that feel the same alarm as one does") {
-  // On all fingers, or on any of them: it is the same where all are the same.
+  // On all fingers or on any of them: the result is the same if all fingers are equal.
   const int count = GENERATE(2, 3, 4, 5);
   const auto one = run(taxels_of(rows, cols, samples, creeping));
   std::string fingers;
@@ -368,7 +368,7 @@ TEST_CASE("an alarm ends when the vibration does") {
 }
 
 TEST_CASE("either rule may be left out") {
-  // With as many waves in another place grasp-optimise alarms, too.
+  // With equal waves at another place grasp-optimise alarms, too.
   const auto signal = [](int k, int i, int j) {
     const bool first = i == 1 && j == 1 && k >= first_begins && k < second_begins;
     const bool second = i == 4 && j == 2 && k >= second_begins;
@@ -412,7 +412,7 @@ TEST_CASE("the order of the columns and the way of the file do not matter") {
   }
   CHECK(text_of(rotated) == expected);
 
-  std::string text = "\xEF\xBB\xBF";  // as a spreadsheet would write it
+  std::string text = "\xEF\xBB\xBF";  // as a spreadsheet writes it
   for (const char c : taxels.text()) {
     text += c == '\n' ? "\r\n" : c == ',' ? ", " : std::string(1, c);
   }
@@ -422,7 +422,7 @@ TEST_CASE("the order of the columns and the way of the file do not matter") {
 }
 
 TEST_CASE("the unit of the readings does not matter") {
-  constexpr double unit = 1.0 / 64;  // so that nothing is rounded
+  constexpr double unit = 1.0 / 64;  // nothing is rounded
   const auto scaled = [&](int k, int i, int j) { return unit * creeping(k, i, j); };
   const std::string of_counts = GENERATE(R"("pitch_mm": 2)", R"("noise": 4, "saturated_at": 370)");
   const std::string of_scaled =
@@ -509,7 +509,7 @@ TEST_CASE("lost readings do not end the run") {
     CHECK(lines[30].at("taxel_status") == "no taxels");
     CHECK(lines[30].at("center_x_mm") == "");
     CHECK(lines[30].at("waves") == "");
-    CHECK(lines[45].at("taxel_status") == "no taxels");  // none has a whole good window
+    CHECK(lines[45].at("taxel_status") == "no taxels");  // no taxel has a whole valid window
     CHECK(lines[46].at("taxel_status") == "quiet");
     CHECK(first_alarm(lines) >= first_begins);
   }
@@ -525,7 +525,7 @@ TEST_CASE("lost readings do not end the run") {
 
 TEST_CASE("samples whose time is missing or not later are as if they were not there") {
   const Taxels taxels = taxels_of(rows, cols, samples, creeping);
-  // a short history, from which nothing may be pushed out
+  // a short history, from which nothing may be dropped
   const std::string sensor = with_foam(R"("noise": 4, "sample_period_s": 0.03125, "history": 12)");
   const auto expected = run(taxels, sensor);
   REQUIRE(first_alarm(expected) >= first_begins);
@@ -603,7 +603,7 @@ TEST_CASE("vibration without noise is found, and more noise hides it") {
   CHECK(run(taxels).back().at("vibrating_row") == "1");
   CHECK(run(taxels, with_foam(R"("noise": 1.3)")).back().at("taxel_status") == "vibrating");
   CHECK(run(taxels, with_foam(R"("noise": 1.5)")).back().at("taxel_status") == "quiet");
-  // a thousandth of the largest reading, which here is another one, times 2.5
+  // a thousandth of the largest reading, which differs here, times 2.5
   const auto beside = [&](double largest, const std::string& keys = "") {
     return run(taxels_of(rows, cols, samples,
                          [&](int k, int i, int j) {

@@ -63,7 +63,7 @@ std::vector<Line> table(const fs::path& file) {
   return lines;
 }
 
-/// A copy of the bundled recording that tests may break.
+/// A copy of the bundled recording that tests may modify.
 class Workplace {
  public:
   Workplace() {
@@ -110,7 +110,7 @@ class Workplace {
     text.replace(text.find(old), old.size(), with);
     write(file, text);
   }
-  /// Keeps the lines of side_dots.csv that `good(frame, index)` says.
+  /// Keeps the lines of side_dots.csv for which `good(frame, index)` is true.
   template <class Good>
   void keep_side_dots(const Good& good) const {
     std::istringstream in(read("side_dots.csv"));
@@ -155,7 +155,7 @@ constexpr const char* shear_alone =
                   "displacement_exponent": 0.5, "force_n_per_mm": [2], "to_mm": 9,
                   "rotation_exponent": 1, "moment_n_mm_per_rad": [300, 10], "to_rad": 0.1}})";
 
-/// Puts this in the place of the bundled recording's "force"; nothing takes it away.
+/// Replaces the "force" of the bundled recording's sensor.json.
 void set_force(const Workplace& work, const std::string& force) {
   const std::string text = work.read("sensor.json");
   const auto at = text.find(",\n  \"force\"");
@@ -172,7 +172,7 @@ bool is_empty(const Line& line, const std::vector<std::string>& names) {
 }  // namespace
 
 TEST_CASE("replay: force and moment of the bundled recording", "[wrench]") {
-  // against what the finite elements say; from 8-bit frames with noise and side dots good to 5 um
+  // against the finite elements; from noisy 8-bit frames and side dots accurate to 5 um
   const Workplace work;
   const auto found = work.run({});
   const auto truth = table(bundled / "membrane" / "load.csv");
@@ -195,7 +195,7 @@ TEST_CASE("replay: force and moment of the bundled recording", "[wrench]") {
   CHECK(error[3] < 0.15 * largest_n_m);
   CHECK(error[4] < 0.15 * largest_n_m);
   CHECK(error[5] < 0.06 * largest_n_m);
-  // a free pad carries nothing
+  // a free pad has no load
   for (const std::string& name : components) {
     CHECK(number(found[0], "wrench_" + name) == 0);
   }
@@ -276,7 +276,7 @@ TEST_CASE("replay: how side dots are carried to the rim is said in sensor.json",
   const double chord_n_m = number(work.run({8, 9})[0], "wrench_my_nm");
   CHECK(chord_n_m != carried_n_m);
   CHECK(chord_n_m == Approx(carried_n_m).epsilon(0.3));
-  // a modulus that is given stands by for frames whose shape does not tell
+  // a given modulus is used for frames whose shape does not suffice
   work.replace("sensor.json", "0.79995", "0.79995, \"membrane_modulus_n_per_mm\": 0.7");
   CHECK(number(work.run({8, 9})[0], "wrench_my_nm") == chord_n_m);
 }
@@ -288,7 +288,7 @@ TEST_CASE("replay: a modulus stands for the gauge, and the rubber is said in sen
   const Line gauged = work.run({8, 9})[0];
   work.replace("sensor.json", "0.79995", "0.79995, \"mooney_share\": 0.3");
   const Line of_rubber = work.run({8, 9})[0];
-  // (1 - m + m / lambda^2) s in the place of s, at about 15 % stretch
+  // (1 - m + m / lambda^2) s instead of s, at about 15 % stretch
   const double change = number(of_rubber, "wrench_fy_n") / number(gauged, "wrench_fy_n");
   CHECK(change < 0.98);
   CHECK(change > 0.85);
@@ -305,7 +305,7 @@ TEST_CASE("replay: pictures of forces, and its own files are known again", "[wre
   const Workplace work;
   for (int again = 0; again < 2; ++again) {
     if (again == 1) {
-      fs::remove(work.recording() / "forces.csv");  // no truth to paint beside
+      fs::remove(work.recording() / "forces.csv");  // no truth to draw
     }
     work.run({6, 8}, true);
     for (const char* name : {"forces.png", "wrench.png", "rim_000006.png", "rim_000007.png",
@@ -414,7 +414,7 @@ TEST_CASE("replay: the border is the mean over the frames") {
 }
 
 TEST_CASE("replay: forces by look-up of the bundled recording", "[look-up]") {
-  // a rod, looked up in curves of a plate: the flat area and the shift tell as much of both
+  // a rod, looked up in curves of a plate: flat area and shift work for both
   const Workplace work;
   const auto found = work.run({});
   const auto truth = table(bundled / "forces.csv");
@@ -526,7 +526,7 @@ TEST_CASE("replay: without dots there is no shear, without contact no force", "[
   const auto lines = work.run({6, 7});
   CHECK(is_empty(lines[0], {"shift_x_mm", "shift_y_mm", "shift_rad", "tangential_force_x_n",
                             "tangential_force_y_n", "moment_z_nm"}));
-  // without a shift the compensation does not count, and it is small
+  // without a shift the compensation does not apply, and it is small
   CHECK(number(lines[0], "normal_force_n") == Approx(with_dots_n).epsilon(0.01));
   const Line free = work.run({0, 1})[0];
   for (const std::string& name : look_up) {
@@ -580,7 +580,7 @@ TEST_CASE("replay: curves that cannot be are refused with what is wrong", "[look
   says(changed(shear_alone, "[2]", "[-2]"), "force.shear: RadialShear: force: first of the");
   says(changed(shear_alone, "[300, 10]", "[1, 2, 3, 4, 5]"),
        "force.shear.moment_n_mm_per_rad is [1,2,3,4,5] (an array), must be 1 to 4 numbers");
-  // curves make no recording of dots alone one with depth
+  // curves alone do not give a recording of dots a depth
   work.write("sensor.json", std::string("{\"force\": ") + by_depth_alone + "}");
   CHECK(work.complaint().find("sensor.json: camera is missing") != std::string::npos);
 }

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 // Recordings of a gel pad: a ball of sim/elastic_gel.hpp is pressed, dragged until it slides, and
-// lifted; what replay says is held against where it slid.
+// lifted. The results of replay are compared with the true slide.
 #include <unistd.h>
 
 #include <algorithm>
@@ -33,7 +33,7 @@ struct Step {
   double ball_x_mm;
 };
 
-/// A folder of frames with a sensor.json of {}, and a place for the results.
+/// A folder of frames with a sensor.json of {}, and a folder for the results.
 class GelRecording {
  public:
   GelRecording() {
@@ -49,7 +49,7 @@ class GelRecording {
   fs::path folder() const { return root_ / "recording"; }
   fs::path out() const { return root_ / "out"; }
 
-  /// What the camera sees now.
+  /// Adds the current frame of the camera.
   void add(const char* part) {
     const auto frame = camera.frame(contact, random_);
     cv::Mat picture(static_cast<int>(frame.rows()), static_cast<int>(frame.cols()), CV_8UC3);
@@ -63,7 +63,7 @@ class GelRecording {
       add("frames");
     }
   }
-  /// The same frames as a video; false where none can be written.
+  /// Converts the frames to a video; false if none can be written.
   bool becomes_video() const {
     cv::VideoWriter video;
     for (int k = 0; k < count_; ++k) {
@@ -159,7 +159,7 @@ TEST_CASE("a gel on which a ball slides: contact, slide and slip") {
   CHECK(recording.column("slide_status").back() == "no contact");
   CHECK(fs::exists(recording.out() / "pictures" / "slide.png") == pictures);
   CHECK(fs::exists(recording.out() / "pictures" / "slide_000009.png") == pictures);
-  if (pictures) {  // its own files are known again
+  if (pictures) {  // its own files are accepted as output again
     recording.run();
     CHECK_FALSE(fs::exists(recording.out() / "pictures"));
   }

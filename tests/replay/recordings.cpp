@@ -29,7 +29,7 @@ namespace {
 const fs::path bundled =
     fs::path(__FILE__).parent_path().parent_path().parent_path() / "examples" / "data" / "press";
 
-/// A folder of its own for each test, with a copy of the first frames of the bundled recording.
+/// A separate folder for each test, with a copy of the first frames of the bundled recording.
 class Workplace {
  public:
   Workplace() {
@@ -57,7 +57,7 @@ class Workplace {
     return options;
   }
 
-  /// The line that a run complains with; empty where it does not. Nothing may be left behind.
+  /// The error line of a run, or an empty string. A failed run must leave nothing behind.
   std::string complaint() const {
     std::string line;
     try {
@@ -70,7 +70,7 @@ class Workplace {
     return line;
   }
 
-  /// What lies beside the recording, hidden files included.
+  /// Names of the files beside the recording, hidden files included.
   std::string names() const {
     std::vector<std::string> all;
     for (const auto& entry : fs::directory_iterator(root_)) {
@@ -145,14 +145,14 @@ TEST_CASE("a recording gives a table and one depth map per frame") {
   const auto columns = std::count(line.begin(), line.end(), ',');
   std::getline(table, line);
   CHECK(line.substr(0, 7) == "0,0.00,");
-  // the free pad: no contact, and so no place of it and no object
+  // the free pad: without contact it has no position and no object
   CHECK(line.find(",0.000000,,,,,,,,,,,") != std::string::npos);
   CHECK(std::count(line.begin(), line.end(), ',') == columns);
   std::getline(table, line);
   CHECK(line.substr(0, 3) == "1,,");
-  CHECK(ends_with(line, ",,,,,,"));  // nothing is known of the rim: no force
+  CHECK(ends_with(line, ",,,,,,"));  // without a rim there is no force
   line.resize(line.size() - 6);
-  CHECK(line.find(",,,,,,") == std::string::npos);  // a rod touches: every other column is there
+  CHECK(line.find(",,,,,,") == std::string::npos);  // a rod touches: every other column is filled
   CHECK(std::count(line.begin(), line.end(), ',') == columns - 6);
   std::getline(table, line);
   CHECK(line.substr(0, 7) == "2,0.25,");
@@ -428,7 +428,7 @@ TEST_CASE("a video takes the place of the folder of frames") {
   const fs::path file = work.recording() / "frames.avi";
   {
     const replay::QuietCodecs quiet;
-    // Without loss, so that the depth is that of the images.
+    // Lossless, so that the depth is that of the images.
     cv::VideoWriter video(file.string(), cv::VideoWriter::fourcc('F', 'F', 'V', '1'), 10,
                           cv::Size(480, 480));
     for (const char* name : {"000000.png", "000001.png", "000002.png"}) {

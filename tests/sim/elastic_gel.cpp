@@ -24,8 +24,8 @@ double shear_mpa(const GelPad& pad) {
   return pad.young_mpa / (2 * (1 + pad.poisson));
 }
 
-/// Surface displacement by summing Boussinesq's and Cerruti's point loads over the contact, in
-/// rings about the point: the pole of the kernels cancels with the ring's area.
+/// Surface displacement as the sum of Boussinesq's and Cerruti's point loads over the contact, in
+/// rings about the point: the pole of the kernels cancels with the area of the ring.
 Point3<double> by_point_loads(const GelPad& pad, const GelContact<>& contact, const Point& at) {
   const double a = contact.radius_mm();
   const double c = contact.stick_radius_mm();
@@ -55,11 +55,11 @@ Point3<double> by_point_loads(const GelPad& pad, const GelContact<>& contact, co
       }
       const double pressure = p0 * bump(r, a);
       const double shear = pad.friction * p0 * (bump(r, a) - (c > 0 ? c / a * bump(r, c) : 0));
-      const double area = ds * da;  // times s, which the kernels divide by
+      const double area = ds * da;  // times s, by which the kernels divide
       const double turned = shear * nu * dot(to, along);
       u.x += area * factor * (shear * (1 - nu) * along.x + turned * to.x);
       u.y += area * factor * (shear * (1 - nu) * along.y + turned * to.y);
-      // under a normal load the surface goes in, and toward the load
+      // under a normal load the surface moves inward and toward the load
       u.z -= area * factor * (1 - nu) * pressure;
       u.x += area * factor * (1 - 2 * nu) / 2 * pressure * to.x;
       u.y += area * factor * (1 - 2 * nu) / 2 * pressure * to.y;
@@ -127,7 +127,7 @@ TEST_CASE("elastic gel: what sticks goes with the ball, what slips stays behind"
     GelContact<> contact(pad);
     const double force = test::log_uniform(0.05, 20);
     contact.drag(force, {0, 0});
-    // without the tangential pull: what the normal load does, which is not to be counted
+    // without the tangential pull: the effect of the normal load, which is subtracted
     const double angle = test::uniform(0, 2 * pi);
     const Point along = {std::cos(angle), std::sin(angle)};
     const double pull = test::uniform(0.05, 1) * contact.max_pull_mm();

@@ -31,7 +31,8 @@ bool is_nan(const Motion& motion) {
   return is_nan(motion.position_mm) && is_nan(motion.velocity_mm_per_s);
 }
 
-/// Every value of `bad` in this field is refused by name, and by whom.
+/// Checks that every value of `bad` in this field is refused with a message that names owner and
+/// field.
 template <class Parameters>
 void check_refused(const std::string& owner,
                    double Parameters::*field,
@@ -58,7 +59,7 @@ TEST_CASE("foam contact: friction is a power of the load", "[foam_contact]") {
   CHECK(normal_force_for(PolymerFriction<double>{0.5, 0.5}, 3.0) == Approx(36));
   CHECK(inverse_friction_coefficient(published, 8.0) == Approx(2));
   CHECK(inverse_friction_coefficient(PolymerFriction<double>{4, 2.0 / 3}, 8.0) == Approx(0.5));
-  // the coefficient falls with the load, as the paper says of compressed areas
+  // the coefficient falls with the load, as the paper reports for compressed areas
   CHECK(friction_force(published, 27.0) / 27 < friction_force(published, 8.0) / 8);
   for (const double nothing : {0.0, -0.0, -1.0, -infinity}) {
     CHECK(friction_force(published, nothing) == 0);
@@ -148,7 +149,7 @@ TEST_CASE("foam contact: under a ramp load (eq. 9, E039)", "[foam_contact]") {
   check_motion(ramp_response(MassSpringDamper<double>{1, 0, 1}, load, {}, 5.0),
                2 * (1 - std::cos(5.0)) + 3 * (5 - std::sin(5.0)),
                2 * std::sin(5.0) + 3 * (1 - std::cos(5.0)));
-  // a frame that moves along carries the oscillator with it
+  // a moving frame carries the oscillator along
   const MassSpringDamper<double> oscillator{1, 2, 4};
   CHECK(frame_load(oscillator, {0.5, 3}) == 8);
 }
@@ -166,7 +167,7 @@ TEST_CASE("foam contact: residual of the printed solution", "[foam_contact]") {
     CHECK(printed_n == (load.start_n - load.rise_n_per_s) * (t - 1));
     CHECK(corrected_n == 0);
   }
-  // right only where A = B
+  // correct only where A = B
   CHECK(residual(oscillator, printed_particular_solution<double>({2, 2}, 7.0), 0.0, 16.0) == 0);
 }
 
@@ -268,7 +269,7 @@ TEST_CASE("foam contact: exact steps", "[foam_contact]") {
 }
 
 TEST_CASE("foam contact: the causal integral", "[foam_contact]") {
-  // of a ramp a single step is exact
+  // a single step is exact for a ramp
   const MassSpringDamper<double> oscillator{0.5, 0.3, 4};
   const RampLoad<double> ramp{1, 2};
   const auto closed = ramp_response(oscillator, ramp, {}, 3.0);
@@ -319,12 +320,13 @@ TEST_CASE("foam contact: strain under a history of stress", "[foam_contact]") {
   const double delayed = state.delayed();
   CHECK(state.elastic() == 1.5);
   CHECK(state.viscous() == Approx(3 * 3.0 / 40));
-  // unloaded: the elastic part is gone at once, the delayed one by and by, the viscous one stays
+  // unloaded: the elastic part vanishes at once, the delayed part gradually, the viscous part
+  // remains
   strain = creep(0.0, 0.0, 4.0, state);
   CHECK(state.elastic() == 0);
   CHECK(state.delayed() == Approx(delayed * recovery(foam, 4.0)));
   CHECK(strain == Approx(delayed * std::exp(-2.0) + 9.0 / 40));
-  // what is no step
+  // invalid steps
   for (const double bad : {none, infinity, -infinity}) {
     CHECK(is_nan(creep(bad, 1.0, state)));
     CHECK(is_nan(creep(1.0, bad, state)));
@@ -338,7 +340,7 @@ TEST_CASE("foam contact: strain under a history of stress", "[foam_contact]") {
   const Creep<double> elastic({3, infinity, infinity, infinity}, 0.5);
   auto of_elastic = elastic.start();
   CHECK(elastic(1.0, 6.0, of_elastic) == 2);
-  // a step without end
+  // an endless step
   auto fresh = creep.start();
   creep(1.0, 1.0, 1e308, fresh);
   CHECK(fresh.delayed() == 0.2);

@@ -29,7 +29,7 @@ GripLaw<double> lowering_law() {
   return law;
 }
 
-/// Calls with the same update for a time; the last answer.
+/// Repeats calls with the same update for a time and returns the last result.
 GripResult<double> after(const GripControl<>& control,
                          GripControl<>::State& state,
                          double time_s,
@@ -70,7 +70,7 @@ TEST_CASE("grip control: the law", "[grip_control]") {
   CHECK(grip_rate(law, 0.95) == Approx(-0.25));
   CHECK(grip_rate(law, 0.0) == 4);  // as fast as the gripper can
   CHECK(grip_rate(law, 1.0) == -0.3);
-  CHECK(grip_rate(GripLaw<double>(), 1.0) == 0);  // by default what is held is not let go
+  CHECK(grip_rate(GripLaw<double>(), 1.0) == 0);  // by default a held object is not released
 
   using test::Digits50;
   const double by_digits = static_cast<double>(grip_rate(GripLaw<Digits50>(), Digits50(0.75)));
@@ -89,7 +89,7 @@ TEST_CASE("grip control: slip is answered in the call that shows it", "[grip_con
   CHECK(result.why == GripReason::slipping);
   CHECK(result.force_n == Approx(3 + 10 * 0.4 * frame_s));
   CHECK(state.force_n() == result.force_n);
-  // and not a frame longer than slip lasts: the force that was reached is held
+  // and no longer than the slip: the reached force is held
   const auto later = control({0.8}, frame_s, state);
   CHECK(later.status == GripStatus::holding);
   CHECK(later.force_n == result.force_n);
@@ -115,7 +115,7 @@ TEST_CASE("grip control: nothing winds up at a limit", "[grip_control]") {
   CHECK(top.force_n == 20);
   CHECK(top.status == GripStatus::at_limit);
   CHECK(top.why == GripReason::slipping);
-  // the first call that asks for less gets less
+  // the first call that requires less force lowers it
   const auto down = control({1.0}, 0.01, state);
   CHECK(down.status == GripStatus::lowering);
   CHECK(down.force_n == Approx(20 - 0.01 * 2));
@@ -130,7 +130,7 @@ TEST_CASE("grip control: a gripper that lags does not wind it up either", "[grip
   const GripControl control(plain);
   auto state = control.start(3);
   for (int k = 0; k < 100; ++k) {
-    state.follow(3.5);  // it is stuck
+    state.follow(3.5);  // the gripper is stuck
     (void)control({0.2}, 0.01, state);
   }
   CHECK(state.force_n() == Approx(3.55));
@@ -161,7 +161,7 @@ TEST_CASE("grip control: dots that stand still", "[grip_control]") {
     const auto later = after(control, state, 100, 0.6, RatioUpdate::unmoved);
     CHECK(later.why == GripReason::unmoved);
     CHECK(later.force_n == Approx(3 + 1.0 * 0.11).margin(0.011));
-    (void)control({0.6}, 0.01, state);  // another one lasts as long again
+    (void)control({0.6}, 0.01, state);  // another gap may last as long again
     CHECK(control({0.6, RatioUpdate::unmoved}, 0.01, state).why == GripReason::slipping);
   }
   SECTION("an object that may slide over them is gripped harder, up to the safe force") {
@@ -174,9 +174,9 @@ TEST_CASE("grip control: dots that stand still", "[grip_control]") {
     const auto later = after(control, state, 100, 0.4, RatioUpdate::unmoved);
     CHECK(later.status == GripStatus::at_limit);
     CHECK(later.force_n == 10);
-    // a fresh ratio goes beyond
+    // a fresh ratio exceeds it
     CHECK(control({0.4}, 0.01, state).force_n > 10);
-    // and a standing one does not take back what a fresh one has asked for
+    // and a standing one does not undo the demand of a fresh one
     CHECK(control({0.4, RatioUpdate::unmoved}, 0.01, state).force_n > 10);
   }
   SECTION("nothing is ever let go") {
@@ -206,7 +206,7 @@ TEST_CASE("grip control: no ratio", "[grip_control]") {
     result = blind(state, 100);
     CHECK(result.status == GripStatus::at_limit);
     CHECK(result.force_n == 10);
-    // seen again: the waiting begins anew
+    // a new ratio restarts the waiting time
     CHECK(control({0.9}, 0.01, state).status == GripStatus::holding);
     CHECK(blind(state, 0.1).why == GripReason::waiting);
   }
@@ -269,7 +269,7 @@ TEST_CASE("grip control: the state is a value", "[grip_control]") {
   CHECK(after(control, again, 0.3, 0.2).force_n == once);
   state.reset();
   CHECK(state.force_n() == 3);
-  CHECK(control({none}, 0.01, state).why == GripReason::waiting);  // that it slipped is forgotten
+  CHECK(control({none}, 0.01, state).why == GripReason::waiting);  // the slip is forgotten
   CHECK(control.start().force_n() == 0.5);
   CHECK(control.start(none).force_n() == 0.5);
   CHECK(control.start(infinity).force_n() == 20);
@@ -280,7 +280,7 @@ TEST_CASE("grip control: the state is a value", "[grip_control]") {
 TEST_CASE("grip control: a lost object is not closed upon", "[grip_control]") {
   const GripControl control;
   auto state = control.start(2);
-  (void)control({0.3, RatioUpdate::fresh}, 0.01, state);  // it slips, and is gone
+  (void)control({0.3, RatioUpdate::fresh}, 0.01, state);  // it slips and is gone
   GripResult<double> result;
   for (int k = 0; k < 49; ++k) {
     result = control({not_a_number<double>(), RatioUpdate::no_contact}, 0.01, state);
@@ -294,18 +294,18 @@ TEST_CASE("grip control: a lost object is not closed upon", "[grip_control]") {
   CHECK(result.status == GripStatus::holding);
   CHECK(result.force_n <= force_n + 0.1);
   CHECK_FALSE(result.ok());
-  // what touches again is held on to
+  // an object that touches again is gripped
   CHECK(control({0.3, RatioUpdate::fresh}, 0.01, state).why == GripReason::slipping);
   result = control({not_a_number<double>(), RatioUpdate::no_contact}, 0.01, state);
   CHECK(result.why == GripReason::blind);
 }
 
-// a bare number could as well be the time step
+// a bare number could be mistaken for the time step
 static_assert(!std::is_invocable_v<const GripControl<>&, double, double, GripControl<>::State&>);
 
 namespace {
 
-/// Dots and friction: a contact pressed with `normal_n` that carries `tangential_n`.
+/// Result of dots and friction for a contact pressed with `normal_n` that carries `tangential_n`.
 SlipResult<double> carried(double normal_n, double tangential_n, double ratio, Index age = 1) {
   SlipResult<double> slip;
   slip.stick_ratio = slip.dots_ratio = ratio;
@@ -321,7 +321,7 @@ SlipResult<double> carried(double normal_n, double tangential_n, double ratio, I
 TEST_CASE("grip control: with friction the force follows the load", "[grip_control]") {
   const GripControl control;
   auto state = control.start(4);
-  // a slip at L = 0.5: less friction by the margin is asked for from now on
+  // a slip at L = 0.5: from now on the required friction is lower by the margin
   (void)control(carried(4, 2, 0.9), frame_s, state);
   const auto slipped = control(carried(4, 2, 0.1), frame_s, state);
   CHECK(slipped.why == GripReason::slipping);
@@ -367,8 +367,8 @@ TEST_CASE("grip control: with friction the force follows the load", "[grip_contr
     };
     CHECK(after(0.7, 1.6) < 0.95 * state.force_n());
     CHECK(after(0.3, 1.9) >= state.force_n());       // not taken for a smaller load
-    CHECK(after(0.3, 1.6) > 1.1 * state.force_n());  // and answered once it is no noise
-    // once dots stick again, a load that falls is one: the first such frame is no slip
+    CHECK(after(0.3, 1.6) > 1.1 * state.force_n());  // responds once it exceeds noise
+    // once dots stick again, a falling load is real: the first such frame is no slip
     CHECK(control(carried(copy.force_n(), 1, 0.9), frame_s, copy).why == GripReason::follows_load);
   }
   SECTION("dots that fall back with little of them carried are a slide") {

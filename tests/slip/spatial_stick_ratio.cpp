@@ -38,7 +38,7 @@ constexpr double degree = 0.017453292519943295;
 
 TEST_CASE("stick ratio in space: what moves as one sticks, and its motion is found",
           "[spatial_stick]") {
-  // A ball rolls by 2 degrees about y: in the image no shift, rotation and scale follow its dots.
+  // A ball rolls by 2 degrees about y. In the image no shift, rotation and scale fit its dots.
   for (const auto& motion :
        {test::moved_by({0, 2 * degree, 0}, {0, 0, 28}, {0, 0, 0}),
         test::moved_by({1 * degree, -1 * degree, 3 * degree}, {2, 1, 15}, {0.3, 0.1, 0.2}),
@@ -84,7 +84,7 @@ TEST_CASE("stick ratio in space: dots that stay behind slip, by how much is know
       CHECK(dot.sd_mm == Approx(0.005 * std::sqrt(2.0)).epsilon(0.01));
       if (patch.slipped_mm(i, j) > 0.25) {  // beyond the gate nothing is averaged
         CHECK(f.states(i, j) == DotState::slip);
-        // against the motion, level as it was seen: the dot stayed behind
+        // against the motion, in the plane: the dot stayed behind
         const double lag = patch.slipped_mm(i, j) / std::hypot(0.3, 0.1);
         worst = std::max(worst, std::hypot(dot.slip_mm.x + 0.3 * lag, dot.slip_mm.y + 0.1 * lag));
       }
@@ -106,11 +106,11 @@ TEST_CASE("stick ratio in space: reference, contact and time as in the image", "
   }
   patch.step(motion);
   CHECK(f(patch.dots, patch.contact).updated());
-  // at rest it is compared again: the answer is as fresh as the frame
+  // at rest the frame is compared again, so the answer is fresh
   const auto again = f(patch.dots, patch.contact);
   CHECK(again.updated());
   CHECK(again.stick_ratio == 1);
-  // back: behind the turn there is no reference
+  // backward: beyond the turning point there is no reference
   const auto back = test::moved_by({0, 0, 0}, {0, 0, 0}, {-step_mm, 0, 0});
   patch.step(back);
   CHECK(f(patch.dots, patch.contact).status == StickStatus::no_reference);
@@ -137,7 +137,7 @@ TEST_CASE("stick ratio in space: a mask that flickers, a clock that is late", "[
   (void)at(5, patch.contact);
   CHECK(at(5.15, none).status == StickStatus::no_contact);
   patch.step(motion);
-  const auto r = at(5.1, patch.contact);  // late by 0.05 s
+  const auto r = at(5.1, patch.contact);  // 0.05 s late
   CHECK(r.updated());
   CHECK(r.reference_age == 2);
   CHECK(at(5.4, none).status == StickStatus::no_contact);
@@ -170,7 +170,7 @@ TEST_CASE("stick ratio in space: dots that fall back to where they are on the fr
     patch.step(fro);
     const auto r = f(patch.dots, patch.contact);
     CHECK(r.status == StickStatus::falls_back);
-    CHECK(r.stick_ratio == before.stick_ratio);  // the last answer stands
+    CHECK(r.stick_ratio == before.stick_ratio);  // the last answer is kept
     CHECK(f.states.cells == states);
     CHECK(r.back.stick_ratio == 1);
     CHECK(r.back.reference_age == 1);
@@ -300,7 +300,8 @@ TEST_CASE("stick ratio in space: bad parameters are refused by name, value and r
 }
 
 TEST_CASE("stick ratio in space: noise makes as many dots slip as was asked", "[spatial_stick]") {
-  // All stick; a threshold for 1 % of dots, the averaged slips of neighbours not being independent.
+  // All dots stick. The threshold is for 1 % of dots; the averaged slips of neighbours are
+  // correlated.
   double slip = 0, all = 0, sd = 0, spread = 0;
   int frames = 0;
   test::Random random(5);
@@ -321,8 +322,8 @@ TEST_CASE("stick ratio in space: noise makes as many dots slip as was asked", "[
   REQUIRE(frames > 30);
   CAPTURE(slip / all, std::sqrt(sd / frames), std::sqrt(spread / frames));
   CHECK(slip / all < 0.03);
-  // the standard deviation that is told is no less than that of the answers, and up to four times
-  // it where all sticks: what noise has brought near the limit seems to be in doubt
+  // The reported standard deviation is at least that of the answers, and up to four times as large
+  // where all sticks: dots that noise brings near the limit appear uncertain.
   CHECK(std::sqrt(sd / frames) > std::sqrt(spread / frames));
   CHECK(std::sqrt(sd / frames) < 4 * std::sqrt(spread / frames));
 }
@@ -353,8 +354,8 @@ TEST_CASE("stick ratio in space: its standard deviation is the scatter of its an
 
 namespace {
 
-/// A pad before anything touches it, with this noise, shaken and turned; then `wrong` of its dots
-/// are found at a wrong place.
+/// Free frames of a pad with this noise, shaken and rotated; then a share `wrong` of its dots has
+/// wrong positions.
 template <class Ratio>
 void show_free(const Ratio& ratio,
                typename Ratio::State& state,
@@ -383,7 +384,7 @@ TEST_CASE("stick ratio in space: noise is measured in the free frames", "[spatia
   for (const double noise_mm : {0.002, 0.005, 0.02}) {
     auto state = ratio.start();
     show_free(ratio, state, noise_mm, 8);
-    CHECK(state.lateral_mm() == 0.005);  // too few to tell
+    CHECK(state.lateral_mm() == 0.005);  // too few to measure noise
     state.reset();
     show_free(ratio, state, noise_mm, 20);
     CHECK(state.lateral_mm() == Approx(noise_mm).epsilon(0.05));
@@ -405,7 +406,7 @@ TEST_CASE("stick ratio in space: noise is measured in the free frames", "[spatia
 
 TEST_CASE("stick ratio in space: with the noise of the free frames it says what it says when told",
           "[spatial_stick]") {
-  // Four times the noise that the defaults are for: all stick, and few dots are told to slip.
+  // Four times the noise of the defaults: all dots stick, and few are taken for slipping.
   constexpr double noise_mm = 0.02;
   const SpatialStickRatio<double> measured(21, 21), unmeasured(21, 21, {.free_frames = 0});
   const auto slipping = [&](const SpatialStickRatio<double>& ratio) {

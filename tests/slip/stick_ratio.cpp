@@ -28,7 +28,7 @@ namespace {
 
 const Point2<double> missing{test::nan, test::nan};
 
-/// Dots of 9 x 9, all in contact, moved by (x, y).
+/// Dots of 9 x 9, all in contact, displaced by (x, y).
 PointsPx shifted(double x, double y = 0, Index rows = 9, Index cols = 9) {
   PointsPx dots(rows, cols);
   for (Index i = 0; i < rows; ++i) {
@@ -39,7 +39,7 @@ PointsPx shifted(double x, double y = 0, Index rows = 9, Index cols = 9) {
   return dots;
 }
 
-/// An estimator of double and what it says, frame by frame.
+/// An estimator in double and its results, frame by frame.
 template <class Motion = StickConsensus<>,
           class Reference = UpdatedReference,
           class Denoising = ResidualMean>
@@ -202,10 +202,10 @@ TEST_CASE("stick ratio: behind a change of direction there is no reference") {
   const auto updated = f(shifted(6.75));
   CHECK(updated.updated());
   CHECK(updated.reference_age == 3);
-  // back: the frames of the way there are as near, and farther ones are not looked at
+  // backward: the frames of the way there are as near, and more distant ones are not searched
   CHECK(f(shifted(6)).status == StickStatus::no_reference);
   CHECK(f(shifted(5.3)).status == StickStatus::no_reference);
-  const auto kept = f(shifted(4.76));  // 1.99 from the turn
+  const auto kept = f(shifted(4.76));  // 1.99 from the turning point
   CHECK(kept.status == StickStatus::no_reference);
   CHECK(kept.stick_ratio == 1);
   CHECK(kept.reference_age == 3);
@@ -247,7 +247,7 @@ TEST_CASE("stick ratio: the first reference stays") {
     CHECK(r.reference_age == 1 + k);
     CHECK(r.furthest_px == Approx(2 + k));
   }
-  CHECK(f(shifted(1)).status == StickStatus::no_reference);  // back at where it was
+  CHECK(f(shifted(1)).status == StickStatus::no_reference);  // back at its starting position
   CHECK(f.state.stored_frames() == 1);
 }
 
@@ -280,7 +280,7 @@ TEST_CASE("stick ratio: dots in contact only, and those that were") {
   (void)f(dots, contact);
   dots = shifted(3);
   for (Index i = 0; i < 9; ++i) {
-    dots(i, 8).x += 7;  // not in contact: as if it were not there, were it not out of line
+    dots(i, 8).x += 7;  // not in contact: it has no effect, but would be out of line
   }
   auto r = f(dots, contact);
   CHECK(r.updated());
@@ -288,7 +288,7 @@ TEST_CASE("stick ratio: dots in contact only, and those that were") {
   CHECK(r.stick == 72);
   CHECK(r.dots_in_contact() == 72);
   CHECK(f.states(4, 8) == DotState::none);
-  // New ones are unknown until a reference has them; of those that have left nothing is said.
+  // New dots are unknown until a reference has them; dots that have left contact have no state.
   contact = ContactFlags(9, 9, 1);
   for (Index i = 0; i < 9; ++i) {
     contact(i, 0) = 0;
@@ -306,8 +306,8 @@ TEST_CASE("stick ratio: dots in contact only, and those that were") {
 }
 
 TEST_CASE("stick ratio: the search begins in the last stick region") {
-  // What sticks lies to the left; in the second step all the rest, twice as many dots, stays behind
-  // together. The center of the contact lies among these.
+  // The sticking dots lie on the left. In the second step all others, twice as many, stay behind
+  // together; the center of the contact is among them.
   const auto run = [](auto motion) {
     Follower<decltype(motion)> f({}, motion);
     (void)f(shifted(0));
@@ -340,8 +340,8 @@ TEMPLATE_TEST_CASE("stick ratio: noise is averaged over neighbours",
                    ResidualMean,
                    published::DotMean,
                    NoDenoising) {
-  // Weights 6, 2, 1 leave sqrt(36 + 4 * 4 + 4 * 1) / 18 of the noise. A threshold of 2 s
-  // sqrt(ln(1 / p)), s the noise that is left, is passed by p of the dots that have all neighbours.
+  // Weights 6, 2, 1 leave sqrt(36 + 4 * 4 + 4 * 1) / 18 of the noise. For the remaining noise s,
+  // the share p of the dots with all neighbours exceeds a threshold of 2 s sqrt(ln(1 / p)).
   const bool none = std::is_same_v<TestType, NoDenoising>;
   const double left = none ? 1 : std::sqrt(56.0) / 18;
   const double noise_px = 0.05, p = 0.05;
@@ -372,8 +372,8 @@ TEMPLATE_TEST_CASE("stick ratio: noise is averaged over neighbours",
 }
 
 TEST_CASE("stick ratio: positions are averaged with their neighbours in pairs") {
-  // Where a dot misses its neighbour to the right, the mean over the others lies 2.4 px to the left
-  // of it, ten thresholds: it would slip whenever the neighbour comes or goes.
+  // For a dot without its right neighbour the mean over the others lies 2.4 px to its left, ten
+  // thresholds: it would slip whenever the neighbour appears or disappears.
   const PointsPx still = test::SlippingDots().dots;
   double sum_px = 0, weights = 0;
   for (Index i = -1; i <= 1; ++i) {
@@ -450,7 +450,7 @@ TEST_CASE("stick ratio, bad input: missing and NaN dots") {
     CHECK(r.stick == 79);
     CHECK(r.stick_ratio == 1);
     CHECK(r.furthest_px == Approx(3));
-    // back again, they are unknown as long as the reference lacks them
+    // after their return they are unknown as long as the reference lacks them
     r = f(shifted(6));
     CHECK(r.updated());
     CHECK(r.unknown == 2);
@@ -483,15 +483,15 @@ TEST_CASE("stick ratio, bad input: missing and NaN dots") {
       const auto r = f(dots);
       CHECK(r.status == (left < 5 ? StickStatus::too_few_dots : StickStatus::updated));
       CHECK(r.stick_ratio == 1);
-      CHECK(r.stick == (left < 5 ? 81 : 5));  // states stand with the ratio
+      CHECK(r.stick == (left < 5 ? 81 : 5));  // states are kept with the ratio
       CHECK(r.unknown == (left < 5 ? 0 : 76));
     }
   }
 }
 
 TEST_CASE("stick ratio, bad input: swapped dots") {
-  // Two that took each other's name are not between their neighbours: missing, not slipping, and
-  // not the furthest of all.
+  // Two dots with swapped names are not between their neighbours: they are missing, not slipping,
+  // and not the furthest of all.
   const auto run = [](DotIndex a, DotIndex b, Index out_of_place) {
     Follower<> f;
     (void)f(shifted(0));
@@ -508,13 +508,13 @@ TEST_CASE("stick ratio, bad input: swapped dots") {
     (void)f(shifted(6));
     CHECK(f(shifted(9)).stick == 81);
   };
-  run({2, 3}, {6, 6}, 10);  // and of each the four beside
-  run({4, 4}, {4, 5}, 2);   // the others are in line still
+  run({2, 3}, {6, 6}, 10);  // and the four neighbours of each
+  run({4, 4}, {4, 5}, 2);   // the others are still in line
   run({4, 4}, {5, 5}, 4);
 }
 
 TEST_CASE("stick ratio, bad input: dots marked as lost by a place") {
-  // (0, 0) and (-1, -1) are what finders without NaN give; a third of the dots is lost.
+  // (0, 0) and (-1, -1) are the marks of finders without NaN; a third of the dots is lost.
   for (const Point2<double> mark : {Point2<double>{0, 0}, Point2<double>{-1, -1}}) {
     Follower<> f;
     (void)f(shifted(0));
@@ -532,7 +532,7 @@ TEST_CASE("stick ratio, bad input: dots marked as lost by a place") {
     CHECK(r.furthest_px == Approx(3));
     CHECK(f(PointsPx(9, 9, mark)).status == StickStatus::no_dots);
   }
-  // one dot that lies there is a dot
+  // a single dot at such a position is a dot
   Follower<> f;
   const auto at_origin = [](double x) { return shifted(x - 180, -180); };
   (void)f(at_origin(0));
@@ -570,7 +570,7 @@ TEST_CASE("stick ratio, bad input: dots in no order, and in another unit") {
       CHECK(r.status == StickStatus::wrong_scale);
       CHECK(std::isnan(r.stick_ratio));
     }
-    // a U of half a pitch of 20 px, and delta_0 of a fourth, are the ends
+    // the ends are a U of half a pitch of 20 px and a delta_0 of a quarter of it
     const auto status = [](double reference_px, double slip_px) {
       Follower<> f({.reference = reference_px, .store = 0.5, .slip = slip_px, .pitch = 1});
       return f(shifted(0)).status;
@@ -609,9 +609,9 @@ TEST_CASE("stick ratio: no answer while dots fall back toward their free places"
       CHECK((!free_known || r.stick_ratio == ratio));
     }
     CHECK((free_known ? answers == 0 : answers > 3));
-    CHECK(f(shifted(-3)).updated());  // beyond the free place it goes away again
+    CHECK(f(shifted(-3)).updated());  // beyond the free position it moves away again
   }
-  // aside is not back
+  // sideways is not back
   Follower<> f;
   (void)f(shifted(0), none);
   (void)f(shifted(0));
@@ -635,7 +635,7 @@ TEST_CASE("stick ratio: thresholds in pitches hold in every unit") {
     CHECK(at(0).status == StickStatus::no_reference);
     CHECK(at(0.49).status == StickStatus::standing);
     CHECK(at(1.99).status == StickStatus::no_reference);
-    const auto r = at(2.52);  // from 0, as 0.53 from the frame before are too little
+    const auto r = at(2.52);  // from 0, because 0.53 from the previous frame is too little
     CHECK(r.updated());
     CHECK(r.furthest_px == Approx(2.52 * unit));
     CHECK(r.stick_ratio == 1);
@@ -665,7 +665,8 @@ TEST_CASE("stick ratio, bad input: the unit changes within a contact") {
 }
 
 TEST_CASE("stick ratio, bad input: a misplaced corner of the pattern") {
-  // It lies between no two neighbours; left in, it would be the furthest dot and hide all slip.
+  // It lies between no two neighbours; if it counted, it would be the furthest dot and hide all
+  // slip.
   for (const DotIndex corner : {DotIndex{0, 0}, DotIndex{0, 8}, DotIndex{8, 0}, DotIndex{8, 8}}) {
     CAPTURE(corner.row, corner.col);
     Follower<> f;
@@ -674,7 +675,7 @@ TEST_CASE("stick ratio, bad input: a misplaced corner of the pattern") {
     dots(corner.row, corner.col).y += corner.row == 0 ? -30 : 30;
     const auto r = f(dots);
     REQUIRE(r.updated());
-    CHECK(r.out_of_place >= 1);  // and perhaps the one beside
+    CHECK(r.out_of_place >= 1);  // and perhaps its neighbour
     CHECK(r.furthest_px == Approx(3));
     CHECK(r.slip == 0);
     CHECK(f.states(corner.row, corner.col) == DotState::unknown);
@@ -682,7 +683,7 @@ TEST_CASE("stick ratio, bad input: a misplaced corner of the pattern") {
 }
 
 TEST_CASE("stick ratio: dots that stand still together are not the object") {
-  // A patch of 16 dots goes on with the object; the search begins among those that stand.
+  // A patch of 16 dots follows the object; the search begins among the standing dots.
   Follower<StickConsensus<>> f;
   (void)f(shifted(0));
   auto dots = shifted(0);
@@ -755,10 +756,10 @@ TEST_CASE("stick ratio, bad input: all dots lost for some frames, then back") {
     CHECK(r.accepted());
     CHECK(r.status == StickStatus::no_dots);
     CHECK(r.stick_ratio == before.stick_ratio);
-    CHECK(r.slip == 9);  // what was known stands
+    CHECK(r.slip == 9);  // known states are kept
     CHECK(f.states(3, 0) == DotState::slip);
   }
-  // without contact flags, as nothing is found where anything could touch
+  // without contact flags, because nothing is found where contact could be
   CHECK(f(blank, ContactFlags(9, 9, 0)).status == StickStatus::no_dots);
   const auto after = f(shifted(6), f.most);  // nothing was forgotten
   CHECK(after.updated());
@@ -769,8 +770,8 @@ TEST_CASE("stick ratio, bad input: time going backwards") {
   Follower<> f;
   CHECK(f.at(shifted(0), 10).status == StickStatus::no_reference);
   CHECK(f.at(shifted(3), 10.1).updated());
-  CHECK(f.at(shifted(6), 10.1).updated());   // twice the same time is no going back
-  CHECK(f.at(shifted(9), 10.05).updated());  // a clock that is a little late
+  CHECK(f.at(shifted(6), 10.1).updated());   // the same time again is not backward
+  CHECK(f.at(shifted(9), 10.05).updated());  // a clock that is slightly late
   CHECK(f.at(shifted(12), 9.91).updated());
   const auto r = f.at(shifted(9), 9.85);  // 0.25 s before the latest
   CHECK(r.status == StickStatus::restarted);
@@ -779,7 +780,7 @@ TEST_CASE("stick ratio, bad input: time going backwards") {
   CHECK(r.unknown == 81);
   CHECK(f.state.stored_frames() == 1);
   CHECK(f.at(shifted(12), 9.86).reference_age == 1);
-  // times that are no numbers say nothing
+  // times that are not numbers are ignored
   CHECK(f.at(shifted(15), test::nan).updated());
   CHECK(f.at(shifted(18), std::numeric_limits<double>::infinity()).updated());
   CHECK(f.at(shifted(21), 9.87).updated());
@@ -799,16 +800,16 @@ TEST_CASE("stick ratio, bad input: a contact mask that drops out for a moment") 
   CHECK(at(3, 1.1, true).updated());
   const auto lost = at(4, 1.2, false);
   CHECK(lost.status == StickStatus::no_contact);
-  CHECK(lost.stick_ratio == 1);  // stands
+  CHECK(lost.stick_ratio == 1);  // kept
   CHECK(lost.dots_in_contact() == 0);
   CHECK(at(4.5, 1.29, false).stick_ratio == 1);
   const auto back = at(6, 1.3, true);
-  CHECK(back.updated());  // against a frame before
+  CHECK(back.updated());  // against an earlier frame
   CHECK(back.reference_age == 3);
   CHECK(std::isnan(at(7, 1.51, false).stick_ratio));  // longer than 0.2 s: another contact
   CHECK(f.state.stored_frames() == 0);
   CHECK(at(9, 1.52, true).status == StickStatus::no_reference);
-  // without time a lost contact is over
+  // without time a lost contact has ended
   CHECK(at(12, test::nan, true).updated());
   CHECK(std::isnan(at(12, test::nan, false).stick_ratio));
 }
@@ -895,7 +896,7 @@ TEST_CASE("stick ratio, bad input: other sizes and foreign states are refused") 
   CHECK(std::isnan(refused.stick_ratio));
   CHECK(states.cells == written.cells);
   CHECK(other_states.cells == DotStates(9, 8).cells);
-  CHECK(ratio(shifted(6), all, states, state).updated());  // the state is as it was
+  CHECK(ratio(shifted(6), all, states, state).updated());  // the state is unchanged
 }
 
 TEST_CASE("stick ratio: bad parameters are refused by name, value and range") {
@@ -964,8 +965,8 @@ TEST_CASE("stick ratio: bad parameters are refused by name, value and range") {
 
 namespace {
 
-/// Frames of a free pad, then one dragged slowly until little sticks; the mean error of the ratio
-/// from U on, kept answers included.
+/// Frames of a free pad, then of one dragged slowly until little sticks. Returns the mean error of
+/// the ratio from U on, kept answers included.
 double slow_error(double noise_px, double scale, bool free_frames_first, const StickTest& test) {
   double error = 0;
   for (std::uint64_t seed = 1; seed <= 6; ++seed) {
@@ -997,8 +998,8 @@ double slow_error(double noise_px, double scale, bool free_frames_first, const S
 }  // namespace
 
 TEST_CASE("stick ratio: thresholds follow the noise of the free frames") {
-  // 0.14 px are more than U_min is made for: without the free frames all is stored, and nothing
-  // far enough away is left to compare with.
+  // 0.14 px exceed the noise for which U_min is made: without the free frames every frame is
+  // stored, and none of them is far enough away for a comparison.
   CAPTURE(slow_error(0.14, 1, true, {}), slow_error(0.14, 1, false, {}));
   CAPTURE(slow_error(0.03, 1, true, {}), slow_error(0.03, 1, false, {}));
   CHECK(slow_error(0.14, 1, true, {}) < 0.1);
@@ -1006,9 +1007,9 @@ TEST_CASE("stick ratio: thresholds follow the noise of the free frames") {
   CHECK(slow_error(0.14, 1, true, {.free_frames = 0}) > 0.08);
   // dots in mm
   CHECK(slow_error(0.14, 0.08, true, {}) == Approx(slow_error(0.14, 1, true, {})).margin(0.01));
-  // better dots: slip is seen sooner
+  // less noise of the dots: slip is detected sooner
   CHECK(slow_error(0.03, 1, true, {}) < slow_error(0.03, 1, false, {}));
-  // repeated frames have no noise to tell
+  // repeated frames show no noise
   CHECK(slow_error(0, 1, true, {}) == Approx(slow_error(0, 1, false, {})).margin(1e-6));
 }
 
@@ -1020,14 +1021,14 @@ TEST_CASE("stick ratio: at rest the last reference is asked again, if that is as
     return asked(shifted(x), test::ContactFlags(9, 9, 1), states, state);
   };
   (void)look(0);
-  CHECK(look(0.2).status == StickStatus::standing);  // nothing is far enough away
+  CHECK(look(0.2).status == StickStatus::standing);  // no frame is far enough away
   CHECK(look(2.5).updated());
   const Index stored = state.stored_frames();
   const auto rests = look(2.6);
   CHECK(rests.updated());
   CHECK(rests.reference_age == 3);
   CHECK(rests.stick_ratio == 1);
-  CHECK(state.stored_frames() == stored);  // what stands still is not stored
+  CHECK(state.stored_frames() == stored);  // standing frames are not stored
 }
 
 TEST_CASE("stick ratio: its standard deviation is the scatter of its answers", "[figures]") {
@@ -1078,7 +1079,7 @@ TEST_CASE("stick ratio: its standard deviation is the scatter of its answers", "
       CHECK(near > 0.85 * answers);  // measured: 0.90 to 1; of a normal distribution 0.95
     }
   }
-  // of a printed form it is not known
+  // the printed form has none
   const auto printed = published::stick_ratio(9, 9);
   auto state = printed.start();
   test::DotStates states(9, 9);

@@ -1,20 +1,19 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// Wrench::by_modulus() in the place of a solver, so that what is asked of the solvers is asked of
-// it.
+// Wrench::by_modulus() wrapped as a solver, so that the tests of the solvers also cover it.
 #include <type_traits>
 
 #include "fingerpad/force/wrench.hpp"
 
 namespace test {
 
-/// The solver's name in lists of types.
+/// Tag of this solver in lists of types.
 struct KnownModulus {
   static constexpr bool finds_tensions = false;
 };
 
-/// An estimator that looks at no shape. mu t is 0.5 N/mm unless the options say another.
+/// Estimator that ignores the shape. mu t is 0.5 N/mm unless the options set another.
 template <class Row = fingerpad::OneRow, class S = double>
 class ByModulus {
   using Wrench = fingerpad::
@@ -51,7 +50,7 @@ class ByModulus {
   Wrench wrench_;
 };
 
-/// Wrench, or ByModulus where the solver says so.
+/// Wrench, or ByModulus for the tag KnownModulus.
 template <class Solver,
           class Row = fingerpad::OneRow,
           class Law = fingerpad::ClampedRim,

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// Cameras and pixels at random, the same in every number type.
+// Random cameras and pixels, the same in every number type.
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -15,13 +15,13 @@ using fingerpad::Camera;
 using fingerpad::OrthographicCamera;
 using fingerpad::Point2;
 
-/// A height map's camera.
+/// Camera of a height map.
 inline OrthographicCamera<double> plan(double pitch_mm) {
   OrthographicCamera<double> camera;
   camera.pitch_mm = pitch_mm;
   return camera;
 }
-/// A camera whose pitch grows with depth by that share per mm.
+/// A camera whose pitch grows with depth by `growth_per_mm`, relative per mm.
 inline Camera<double> through(double pitch_mm, double growth_per_mm) {
   Camera<double> camera;
   camera.pitch_mm = pitch_mm;
@@ -29,7 +29,7 @@ inline Camera<double> through(double pitch_mm, double growth_per_mm) {
   return camera;
 }
 
-/// A camera at random, with a plate or without; exact in every type.
+/// A random camera, with a plate or without; its numbers are exact in every type.
 inline Camera<double> any_camera() {
   Camera<double> camera;
   camera.plate_distance_mm = test::uniform(5, 100);
@@ -55,14 +55,14 @@ inline double any_tangent() {
   return test::uniform(0, 3.7);
 }
 
-/// A pixel that looks at most 60 degrees from the axis, relative to the center pixel.
+/// A pixel, relative to the center pixel, that looks at most 60 degrees off the axis.
 inline Point2<double> any_offset(const Camera<double>& camera) {
   const double r = test::uniform(0, 1.7) / tangent_per_px(camera);
   const double angle = test::uniform(-std::numbers::pi, std::numbers::pi);
   return {r * std::cos(angle), r * std::sin(angle)};
 }
 
-/// |a - b| is at most so many epsilons of `scale`.
+/// Whether |a - b| is at most `epsilons` epsilons of `scale`.
 template <class S>
 bool near(const S& a, const S& b, const S& scale, double epsilons) {
   using std::abs;

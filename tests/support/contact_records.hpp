@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// Contacts of finite-element membranes, step by step: how large, how far carried along and rotated,
-// and their true loads. See tests/data/README.md.
+// Contacts of finite-element membranes, step by step: size, displacement, rotation and true loads.
+// See tests/data/README.md.
 #include <algorithm>
 #include <cstdlib>
 #include <sstream>
@@ -64,7 +64,7 @@ inline std::vector<ContactRecord> contact_records(const std::vector<std::string>
 enum class ContactMeasure { area, depth };
 enum class ContactDotsOf { edge, center };
 
-/// As a calibration is given it; each scene is a load.
+/// Samples for a calibration; each scene is one load.
 inline std::vector<fingerpad::ForceSample<double>> force_samples(
     const std::vector<ContactRecord>& records,
     ContactMeasure measure,

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// Finite-element membranes (tests/data/README.md): their shapes, what touches, and full-size frames
-// of them: refracted rays, printed dots, 8 bit, noise in each channel.
+// Finite-element membranes (tests/data/README.md): shapes, contact, and full-size frames with
+// refracted rays, printed dots, 8 bit and noise in each channel.
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -33,7 +33,7 @@ inline std::ifstream open_data(const std::string& name, const std::string& heade
   return file;
 }
 
-/// Heights of a membrane, 160 x 160 samples 0.24 mm apart around the axis.
+/// Heights of a membrane: 160 x 160 samples 0.24 mm apart around the axis.
 class Membrane {
  public:
   explicit Membrane(const std::string& name) : heights_(samples, samples) {
@@ -65,7 +65,7 @@ class Membrane {
     const double middle = (static_cast<double>(samples) - 1) / 2;
     return (std::min)((std::max)(mm / 0.24 + middle, 1.0), static_cast<double>(samples) - 3);
   }
-  static double cubic(const double* h, double t) {  // Catmull and Rom
+  static double cubic(const double* h, double t) {  // Catmull-Rom
     const double a = 3 * (h[1] - h[2]) + h[3] - h[0];
     const double b = 2 * h[0] - 5 * h[1] + 4 * h[2] - h[3];
     return h[1] + t * (h[2] - h[0] + t * (b + t * a)) / 2;
@@ -73,7 +73,7 @@ class Membrane {
   Image<double> heights_;
 };
 
-/// Which parts of a membrane touch, of the same samples.
+/// Contact of a membrane at the same samples.
 class TrueContact {
  public:
   explicit TrueContact(const std::string& name) : touches_(samples, samples) {
@@ -87,7 +87,7 @@ class TrueContact {
     require_data(file.good(), name + ".pbm is too short");
   }
 
-  /// In plan.
+  /// Area in plan.
   double area_mm2() const {
     double sum = 0;
     for (const int touches : touches_.cells) {
@@ -96,7 +96,7 @@ class TrueContact {
     return sum * 0.24 * 0.24;
   }
 
-  /// By linear interpolation between the samples.
+  /// Whether (x, y) touches, by linear interpolation between the samples.
   bool operator()(double x_mm, double y_mm) const {
     const double col = position(x_mm);
     const double row = position(y_mm);
@@ -127,7 +127,7 @@ inline Pad published_pad() {
   return pad;
 }
 
-/// Zero of a function that falls from above to below 0 between 0 and 14 mm.
+/// Zero of a function that falls from positive to negative between 0 and 14 mm.
 template <class F>
 double crossing(const F& above) {
   double low = 0;
@@ -138,7 +138,7 @@ double crossing(const F& above) {
     return 0;
   }
   for (int step = 0; step < 60 && high - low > 1e-6; ++step) {
-    // every third step halves, or a steep end would stay where it is
+    // every third step halves, because a steep end would otherwise stay where it is
     const double secant = low + (high - low) * at_low / (at_low - at_high);
     const double z = step % 3 == 2 ? (low + high) / 2 : secant;
     const double f = above(z);
@@ -151,7 +151,7 @@ double crossing(const F& above) {
   return (low + high) / 2;
 }
 
-/// Where every pixel's ray meets the membrane; NaN outside of the base.
+/// Depth at which each pixel's ray meets the membrane; NaN outside the base.
 inline Image<double> depths(const Pad& pad, const Membrane& membrane) {
   Image<double> depth(pad.rows, pad.cols, nan);
   for (Index i = 0; i < pad.rows; ++i) {
@@ -172,7 +172,8 @@ inline Image<double> depths(const Pad& pad, const Membrane& membrane) {
   return depth;
 }
 
-/// Membrane darker toward the rim, dots of 0.6 mm every 1.5 mm. `noise` in grey levels.
+/// A membrane that is darker toward the rim, with dots of 0.6 mm every 1.5 mm. `noise` is in grey
+/// levels.
 inline Frame<std::uint8_t> frame_of(const Pad& pad,
                                     const Image<double>& depth_mm,
                                     std::uint64_t seed,
@@ -198,9 +199,9 @@ inline Frame<std::uint8_t> frame_of(const Pad& pad,
   return frame;
 }
 
-/// The reference of a camera, or of what is taken for it, from the mean of many free frames, as one
-/// would take it: 16 bit, 1/4 of a grey level of noise. `seen_mm`: what there is; `known_mm`: where
-/// the rays of `camera` meet the free pad.
+/// Reference of `camera`, which may differ from the pad's own, from the mean of many free frames:
+/// 16 bit, 1/4 of a grey level of noise. `seen_mm` is the true depth; `known_mm` is where the rays
+/// of `camera` meet the free pad.
 inline fingerpad::DepthReference<float> reference_of(const Pad& pad,
                                                      const fingerpad::Camera<double>& camera,
                                                      const Image<double>& seen_mm,
@@ -219,7 +220,7 @@ inline fingerpad::DepthReference<float> reference_of(const Pad& pad,
   return fit_reference(camera, pad.fluid, mean.red, mean.green, known_mm);
 }
 
-/// The same for the published pad, by the names of the shapes.
+/// Frames and reference of the published pad, by the names of the shapes.
 class Scene {
  public:
   const Pad& pad() const { return pad_; }

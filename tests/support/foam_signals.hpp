@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 // Readings of two foam fingers that hold an object, with patches that begin to slip at a known
-// time: each taxel of a patch vibrates about its load, all in time. Added are white noise and a
-// slow drift of the load.
+// time. All taxels of a patch vibrate about their load in phase. White noise and a slow drift of
+// the load are added.
 #include <array>
 #include <cmath>
 #include <cstdint>
@@ -28,9 +28,9 @@ struct FoamScene {
   fingerpad::Index cols = 4;
   double load = 400;               // counts in the middle of the contact
   double noise = 4;                // counts, standard deviation
-  double drift = 0.2;              // share of the load by which it goes up and down
-  double drift_period_s = 20;      // within this time
-  double signal_to_noise_db = 20;  // power of the vibration against that of the noise
+  double drift = 0.2;              // amplitude of the drift, relative to the load
+  double drift_period_s = 20;      // period of the drift
+  double signal_to_noise_db = 20;  // power of the vibration relative to the noise
   std::array<std::vector<SlippingPatch>, 2> patches;  // of each finger
 
   double amplitude() const {
@@ -38,7 +38,7 @@ struct FoamScene {
   }
 };
 
-/// Both fingers, sample by sample.
+/// Readings of both fingers, sample by sample.
 class FoamSignal {
  public:
   FoamSignal(const FoamScene& scene, unsigned seed) : scene_(scene), random_(seed) {}
@@ -61,7 +61,7 @@ class FoamSignal {
           scene_.amplitude() * std::sin(tau * patch.frequency_hz * since_s + patch.phase);
       for (Index i = patch.row; i < patch.row + patch.rows && since_s >= 0; ++i) {
         for (Index j = patch.col; j < patch.col + patch.cols; ++j) {
-          taxels(i, j) += is_slipping(i, j) == 0 ? wave : 0;  // of patches that overlap the first
+          taxels(i, j) += is_slipping(i, j) == 0 ? wave : 0;  // overlaps: of the first patch only
           is_slipping(i, j) = 1;
         }
       }
@@ -70,7 +70,7 @@ class FoamSignal {
   }
 
  private:
-  /// Of the load: an elliptic contact that covers the array.
+  /// Relative load of a taxel in an elliptic contact that covers the array.
   double share(fingerpad::Index i, fingerpad::Index j) const {
     const double y = (double(i) + 0.5) / double(scene_.rows) * 2 - 1;
     const double x = (double(j) + 0.5) / double(scene_.cols) * 2 - 1;

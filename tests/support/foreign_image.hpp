@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// An image type that the library cannot know: rows allocated one by one, named in its own way. It
-// joins by grid_traits alone.
+// An image type that the library does not know: rows allocated one by one, with its own names. It
+// is connected by grid_traits alone.
 #include <cstddef>
 #include <vector>
 

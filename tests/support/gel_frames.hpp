@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// What a camera sees of the gel of sim/elastic_gel.hpp: colours that tell the surface's slope, as
-// under three lamps at the pad's sides, and dark dots that move with the gel; with grey noise, an
-// exposure of its own, and jitter of dots as a finder leaves it.
+// Frames of the gel of sim/elastic_gel.hpp. Colours show the slope of the surface, as under three
+// lamps at the pad's sides, and dark dots move with the gel. Noise in grey levels, an exposure, and
+// jitter of the detected dots are included.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -27,7 +27,7 @@ struct GelCamera {
   double dot_mm = 0.8;    ///< their diameter; 0: none
   double level = 130;     ///< grey level of the free gel in the middle
   double contrast = 0.5;  ///< relative change of brightness per slope
-  double noise = 1;       ///< sd of a grey level
+  double noise = 1;       ///< standard deviation, grey levels
   double exposure = 1;
   double jitter_px = 0.03;
 
@@ -44,7 +44,7 @@ struct GelCamera {
             mm.y / mm_per_px + static_cast<double>(rows - 1) / 2};
   }
 
-  /// The dots' places, without jitter.
+  /// Positions of the dots without jitter.
   GelDots true_dots(const fingerpad::GelContact<>& contact) const {
     GelDots dots(dot_rows(), dot_cols());
     for (Index i = 0; i < dots.rows(); ++i) {
@@ -134,7 +134,7 @@ struct GelCamera {
     for (std::size_t c = 0; c < 3; ++c) {
       const double bright =
           (1 + 0.5 * dot(lamps[c], place)) * (1 + contrast * dot(lamps[c], slope));
-      // the sum of three: enough of a normal one, and a camera's pixels are many
+      // a sum of three uniform numbers: near enough to a normal one, and fast for many pixels
       const double grain = 2 * (random.uniform() + random.uniform() + random.uniform()) - 3;
       pixel[c] = stored<std::uint8_t>(exposure * level * bright + noise * grain);
     }

@@ -9,7 +9,7 @@
 
 namespace test {
 
-/// Any whole number in [low, high], whatever RapidCheck's current size.
+/// Any integer in [low, high], whatever RapidCheck's current size.
 inline std::ptrdiff_t whole(std::ptrdiff_t low, std::ptrdiff_t high) {
   return *rc::gen::resize(rc::kNominalSize, rc::gen::inRange<std::ptrdiff_t>(low, high + 1));
 }
@@ -20,7 +20,7 @@ inline double uniform(double low, double high) {
   return low + (high - low) * unit;
 }
 
-/// Uniform in the logarithm, for quantities that run over decades.
+/// Uniform in the logarithm, for quantities that span decades.
 inline double log_uniform(double low, double high) {
   return low * std::pow(high / low, uniform(0, 1));
 }

@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// Closed loops of a simulated fingertip (examples/grip): dots in space and the force of the
-// contact, both with noise, go through SpatialStickRatio and FrictionLimit into GripControl, and
-// its force back, at 30 frames/s.
+// Closed loops of a simulated fingertip (examples/grip) at 30 frames/s. Dots in space and the force
+// of the contact, both with noise, go through SpatialStickRatio and FrictionLimit into GripControl,
+// whose force goes back to the fingertip.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -19,31 +19,31 @@ namespace test {
 
 enum class GripScene {
   slow,     ///< the load grows from 0.4 N to 3 N by 0.1 or 0.2 N/s
-  fast,     ///< by 1.5 or 3 N/s
+  fast,     ///< the same by 1.5 or 3 N/s
   changes,  ///< a load of 1.5 or 0.8 N; friction falls by 40 % in 3 s, rests, and comes back in 3 s
-  rolls,    ///< the contact rolls 3 mm to and fro while the load grows to 2 N by 0.2 N/s
+  rolls,    ///< the contact rolls 3 mm back and forth while the load grows to 2 N by 0.2 N/s
 };
 inline constexpr std::array grip_scenes = {GripScene::slow, GripScene::fast, GripScene::changes,
                                            GripScene::rolls};
 inline constexpr int runs_of_a_grip_scene = 10;
 
-/// How a run differs from the usual.
+/// Differences of a run from the usual one.
 struct GripVariation {
-  double friction = 1;                          ///< times as large
-  double load = 1;                              ///< times as large
+  double friction = 1;                          ///< factor
+  double load = 1;                              ///< factor
   double lateral_mm = 0.005, depth_mm = 0.025;  ///< noise of the dots
   double force_share = 0.015;                   ///< noise of the forces
   double lag_s = 0;                             ///< of the gripper
-  double first = 2;  ///< with so many times the least force the object is taken
+  double first = 2;  ///< force of the first grip over the least holding force
   bool falls_twice =
       false;  ///< friction, where it changes: by 30 % in 1 s, 3 s later by 40 % in 2 s
   bool knows_force = true;    ///< false: the stick ratio alone
-  bool is_controlled = true;  ///< false: the force stays as it is
+  bool is_controlled = true;  ///< false: the force is constant
 };
 
 struct GripRun {
   double slip_mm;  ///< of the object as a whole
-  double beyond;   ///< mean over time of the force by the least that holds, less 1
+  double beyond;   ///< mean over time of the force over the least holding force, minus 1
 };
 
 /// The dots of the free pad.
@@ -58,7 +58,7 @@ inline Image<fingerpad::Point3<double>> free_dots(const grip::Fingertip& tip) {
   return dots;
 }
 
-/// What is left of the friction at a time of GripScene::changes.
+/// Factor of the friction at a time of GripScene::changes.
 inline double friction_left(const GripVariation& vary, double time_s) {
   const auto part = [&](double from_s, double for_s) {
     return std::clamp((time_s - from_s) / for_s, 0.0, 1.0);
@@ -67,7 +67,8 @@ inline double friction_left(const GripVariation& vary, double time_s) {
                           : 1 - 0.4 * (part(2, 3) - part(7, 3));
 }
 
-/// Run 0 to 9: friction 0.4, 0.55, 0.7, 0.85, 1, by the slower and by the faster load.
+/// Runs 0 to 9 have the friction 0.4, 0.55, 0.7, 0.85 and 1, with the slower and with the faster
+/// load.
 template <class S>
 GripRun run_grip(const fingerpad::GripLaw<S>& law,
                  GripScene scene,
@@ -99,7 +100,7 @@ GripRun run_grip(const fingerpad::GripLaw<S>& law,
   Image<Point3<double>> dots = free_dots(tip);
   Image<unsigned char> touch(tip.dots, tip.dots);
   Image<DotState> states(tip.dots, tip.dots);
-  (void)stick_ratio(dots, touch, states, stick_state, -1);  // the pad before the object is taken
+  (void)stick_ratio(dots, touch, states, stick_state, -1);  // the pad before the grip
   double sum = 0, frames = 0;
   for (double time_s = 0; time_s < end_s && load.slip_mm() < 20; time_s += frame_s) {
     const double load_n = (std::min)(first_n + rise * time_s, last_n);

@@ -1,11 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// A cap of Mooney-Rivlin rubber, inflated, and then twisted a little, from its energy alone:
-// tensions are differences of the energy, the profile balances along and across itself from the
-// apex on.
-//   w = (1 - m) / 2 (tr C + J^-2 - 3) + m / 2 (tr C / J^2 + J^2 - 3) per mu t, C = F^T F, J^2 = det
-//   C
+// A cap of Mooney-Rivlin rubber that is inflated and then twisted a little, from its energy alone:
+// tensions are numerical derivatives of the energy, and the profile is integrated from the apex by
+// the balance along and across it. Energy per mu t, with C = F^T F and J^2 = det C:
+//   w = (1 - m) / 2 (tr C + J^-2 - 3) + m / 2 (tr C / J^2 + J^2 - 3)
 #include <cmath>
 #include <vector>
 
@@ -18,7 +17,7 @@ struct InflatedRubber {
   double height_mm = 11;  ///< stress-free
   double pressure_mpa = 0.016;
 
-  /// Of stretches along and around the meridian and the shear between them.
+  /// Energy per mu t of stretches along and around the meridian and of the shear between them.
   double energy(double along, double around, double shear) const {
     const double trace = along * along + shear * shear + around * around;
     const double area_sq = along * along * around * around;
@@ -40,7 +39,7 @@ struct InflatedRubber {
     double arc, r, z, stretch, inclination, stress_free_r;
   };
 
-  /// From the apex to the rim; z from the base.
+  /// Profile from the apex to the rim; z is measured from the base.
   std::vector<Place> profile() const {
     double low = 1.001, high = 1.9;
     std::vector<Place> places;
@@ -56,8 +55,8 @@ struct InflatedRubber {
     return places;
   }
 
-  /// Angle in rad by which the membrane has turned `arc_mm` from the rim, if it is sheared by
-  /// `shear` at the rim: the torque is the same all along.
+  /// Angle in rad by which the membrane rotates `arc_mm` from the rim if it is sheared by `shear`
+  /// at the rim. The torque is the same all along.
   double turn(const std::vector<Place>& places, double shear, double arc_mm) const {
     const Place& rim = places.back();
     const double torque =
@@ -75,7 +74,7 @@ struct InflatedRubber {
     return angle;
   }
 
-  /// Place on the meridian, `arc_mm` of stress-free arc from the rim.
+  /// Point of the meridian at `arc_mm` of stress-free arc from the rim.
   static Place near_rim(const std::vector<Place>& places, double arc_mm) {
     const double arc = places.back().arc - arc_mm;
     std::size_t k = places.size() - 1;
@@ -96,7 +95,7 @@ struct InflatedRubber {
   }
 
   struct State {
-    double r, z, inclination, tension;  ///< tension per stressed length and mu t
+    double r, z, inclination, tension;  ///< per stressed length and mu t
   };
 
   double stretch_of(double tension, double around) const {

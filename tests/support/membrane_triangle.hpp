@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// A triangle of membrane by the definition of its energy: what the cells of the traction field are
-// compared with.
+// A membrane triangle by the definition of its energy, as the reference of the cells of the
+// traction field.
 #include <array>
 #include <cmath>
 #include <cstddef>
@@ -37,8 +37,8 @@ S stored_energy(const StressFreeTriangle<S>& free, const Triangle<S>& x) {
   return S(S(0.5) * free.area_mm2 * (stretch_sq_sum(free, x) + shrunk * shrunk - S(3)));
 }
 
-/// What the triangle pulls its corners with, -d(energy)/dx, N for mu t = 1 N/mm. Their sum and
-/// their moment are 0.
+/// Forces of the triangle on its corners, -d(energy)/dx, N for mu t = 1 N/mm. Their sum and their
+/// moment are 0.
 template <class S>
 std::array<Point3<S>, 3> corner_forces(const StressFreeTriangle<S>& free, const Triangle<S>& x) {
   const Point3<S> doubled = twice_area_vector(x);

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// The numbers that the tests compute in besides float, double and long double: fifty digits as the
-// reference, the same with expression templates, and a dual number small enough to be read.
+// Number types of the tests besides float, double and long double: fifty digits as the reference,
+// the same with expression templates, and a small dual number.
 #include <boost/multiprecision/cpp_bin_float.hpp>
 #include <cmath>
 #include <limits>
@@ -13,7 +13,8 @@ namespace test {
 
 namespace mp = boost::multiprecision;
 using Digits50 = mp::number<mp::cpp_bin_float<50>, mp::et_off>;
-/// Its sums and products are expressions that hold references, as in many number libraries.
+/// Fifty digits whose sums and products are expressions that hold references, as in many number
+/// libraries.
 using Lazy50 = mp::number<mp::cpp_bin_float<50>, mp::et_on>;
 
 /// A number and its derivative with respect to one seed.
@@ -54,7 +55,8 @@ Real slope_by_dual(const F& f, Real x) {
   return f(Dual<Real>(x, Real(1))).d;
 }
 
-/// f'(x) by central differences; with a step of about epsilon^(1/3) good to about epsilon^(2/3).
+/// f'(x) by central differences. A step of about epsilon^(1/3) gives a precision of about
+/// epsilon^(2/3).
 template <class Real, class F>
 Real slope_by_difference(const F& f, const Real& x, const Real& step) {
   return Real((f(Real(x + step)) - f(Real(x - step))) / (step + step));

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// A pad whose every number is known, and frames of it: a spherical cap behind a plate, seen along
-// refracted rays through the forward model. Small, so that a test can afford many of them.
+// A pad with known numbers, and frames of it: a spherical cap behind a plate, seen along refracted
+// rays through the forward model. It is small enough for many tests.
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -18,7 +18,7 @@ namespace test {
 
 using fingerpad::Index;
 
-/// Rows of cells in plain memory.
+/// An image that owns its memory.
 template <class T>
 struct Image {
   Index height = 0;
@@ -55,7 +55,7 @@ namespace test {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
-/// Equal to the last bit, NaN and NaN being equal.
+/// Whether two values are equal to the last bit; NaN equals NaN.
 template <class T>
 bool same_bits(const T& a, const T& b) {
   return a == b || (a != a && b != b);
@@ -67,7 +67,7 @@ bool same_bits(const Image<T>& a, const Image<T>& b) {
                     [](const T& x, const T& y) { return same_bits(x, y); });
 }
 
-/// Bits at random, the same on every machine and in every run.
+/// Random numbers that are the same on every machine and in every run.
 class Random {
  public:
   explicit Random(std::uint64_t seed) : bits_(seed) {}
@@ -77,8 +77,8 @@ class Random {
   Index whole(Index low, Index high) {
     return low + static_cast<Index>(uniform() * static_cast<double>(high - low + 1));
   }
-  /// Mean 0, standard deviation 1; a sum of twelve, since std::normal_distribution differs between
-  /// libraries.
+  /// Mean 0, standard deviation 1. A sum of twelve uniform numbers, because
+  /// std::normal_distribution differs between libraries.
   double normal() {
     double sum = -6;
     for (int i = 0; i < 12; ++i) {
@@ -100,7 +100,7 @@ struct Frame {
       : red(rows, cols, cell), green(rows, cols, cell) {}
 };
 
-/// A grey level as a camera with this type of pixel stores it.
+/// A grey level as stored by a camera with this type of pixel.
 template <class Pixel>
 Pixel stored(double level) {
   if constexpr (std::is_integral_v<Pixel>) {
@@ -112,8 +112,8 @@ Pixel stored(double level) {
   }
 }
 
-/// Published fluid (defaults of Absorption) and pad: sphere of 20 mm cut 13 mm below its top, over
-/// 48 x 56 pixels of 0.8 mm. Brightness and scattering give the published change of colour.
+/// The published fluid (defaults of Absorption) and pad: a sphere of 20 mm cut 13 mm below its top,
+/// in 48 x 56 pixels of 0.8 mm. Brightness and scattering give the published change of colour.
 struct Pad {
   Index rows = 48;
   Index cols = 56;
@@ -123,7 +123,7 @@ struct Pad {
   double height_mm = 13;
   double brightness = 57;
   double scattering = 0.0163;
-  double scattering_loss = 0.05;  ///< share of it lost from the axis to the rim
+  double scattering_loss = 0.05;  ///< relative loss from the axis to the rim
 
   Pad() {
     camera.pitch_mm = 0.8;
@@ -147,7 +147,7 @@ struct Pad {
     return scattering * (1 - scattering_loss * share * share);
   }
 
-  /// Where the pixel's ray meets the free pad; NaN where it misses the base.
+  /// Depth at which the pixel's ray meets the free pad; NaN where it misses the base.
   double free_depth(Index row, Index col) const {
     const auto r = ray(row, col);
     if (!(r.plate_rho_mm < base_radius_mm())) {
@@ -193,7 +193,7 @@ struct Pad {
     return depth;
   }
 
-  /// The frame of a membrane at these depths, black outside, with noise of so many grey levels.
+  /// Frame of a membrane at these depths, black outside, with `noise` in grey levels.
   template <class Pixel, class Heights = fingerpad::AstigmaticHeights>
   Frame<Pixel> frame(const Image<double>& depth_mm,
                      double noise = 0,
@@ -213,7 +213,7 @@ struct Pad {
     return frame;
   }
 
-  /// What fit_reference() makes of a frame of the free pad without noise.
+  /// Result of fit_reference() for a frame of the free pad without noise.
   template <class S, class Heights = fingerpad::AstigmaticHeights>
   auto reference(const fingerpad::GreyScale& scale = {}) const {
     const Image<double> depth = free_depths();
@@ -228,7 +228,7 @@ struct Pad {
   }
 };
 
-/// What an estimator gives for one frame.
+/// Results of an estimator for one frame.
 template <class S>
 struct Estimate {
   fingerpad::DepthResult result;
@@ -248,7 +248,7 @@ Estimate<S> estimate(const Estimator& estimator,
   return e;
 }
 
-/// Largest |a - b| where b is a number; infinite where a is not.
+/// Largest |a - b| where b is a number; infinite if a is NaN there.
 template <class A, class B>
 double largest_error(const Image<A>& a, const Image<B>& b) {
   double worst = 0;

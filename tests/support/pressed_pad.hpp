@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// Round membranes whose tension is known in closed form, and side dots that pull as told. Of a
-// membrane that meets a flat object of radius r_c without a kink, what lies between r_c and r
-// balances by itself (r, inclination phi, tension f_v along the slope):
+// Round membranes whose tension is known in closed form, and side dots of a given pull. The
+// membrane meets a flat object of radius r_c without a kink; the part between r_c and r is in
+// balance by itself (r, inclination phi, tension f_v along the slope):
 //   f_v 2 pi r sin(phi) = p pi (r^2 - r_c^2).
 #include <cmath>
 #include <cstddef>
@@ -16,7 +16,7 @@
 
 namespace test {
 
-/// A membrane of revolution, of a profile that knows its own slope:
+/// A membrane of revolution. The profile provides
 ///   height(r), slope(r) < 0, touches(r).
 template <class Profile>
 struct RoundPad : Profile {
@@ -40,14 +40,14 @@ struct RoundPad : Profile {
     const double t = -this->slope(r);
     return t / std::sqrt(1 + t * t);
   }
-  /// f_v by the balance, N/mm.
+  /// f_v from the balance, N/mm.
   double tension(double r, double pressure_mpa) const {
     const double contact = this->contact_mm;
     return pressure_mpa * (r * r - contact * contact) / (2 * r * sine(r));
   }
 };
 
-/// Flat in the middle, an arc of a circle from there down to the rim.
+/// Flat in the middle, with a circular arc from there down to the rim.
 struct ArcSide {
   double radius_mm = 18.735;
   double contact_mm = 8;
@@ -71,7 +71,7 @@ struct ArcSide {
   bool touches(double r) const { return r <= contact_mm; }
 };
 
-/// The same tension everywhere, as of a soap film: sin(phi) = L (r - r_c^2 / r), f_v = p / (2 L).
+/// A uniform tension, as in a soap film: sin(phi) = L (r - r_c^2 / r), f_v = p / (2 L).
 struct FilmSide {
   double radius_mm = 18.735;
   double contact_mm = 8;
@@ -85,7 +85,7 @@ struct FilmSide {
         r <= contact_mm ? 0 : curvature_per_mm() * (r - contact_mm * contact_mm / r);
     return -sine / std::sqrt(1 - sine * sine);
   }
-  /// By Gauss' rule of four points in each of 16 steps from the rim.
+  /// Height by 4-point Gauss quadrature in each of 16 steps from the rim.
   double height(double r) const {
     if (!(r <= radius_mm + 1e-9)) {
       return nan;
@@ -105,8 +105,8 @@ struct FilmSide {
   bool touches(double r) const { return r <= contact_mm; }
 };
 
-/// An inflated cap that touches a flat object in no more than a marked disc, without being
-/// flattened: f_v = p R / 2 where it touches nothing.
+/// An inflated cap that touches a flat object in a marked disc only, without being flattened.
+/// Outside the contact f_v = p R / 2.
 struct CapSide {
   double radius_mm = 18.735;
   double sphere_mm = 20;
@@ -126,13 +126,13 @@ struct RimLoad {
   double shear = 0;
 };
 
-/// A rim and what its side dots are made from.
+/// A rim and the parameters of its side dots.
 struct RimOfDots {
   double radius_mm = 18.735;
-  double length_mm = 0.8;         ///< of a side dot, without stress
+  double length_mm = 0.8;         ///< of an unstressed side dot
   double modulus_n_per_mm = 0.5;  ///< mu t
   double rise = 2;                ///< tan of the membrane's inclination at the rim
-  double bend_per_mm = 0;         ///< of the line of material through both rows of dots
+  double bend_per_mm = 0;         ///< of the material line through both rows of dots
   Index count = 72;
 
   double angle(Index k) const {
@@ -144,7 +144,7 @@ struct RimOfDots {
   fingerpad::Point3<double> tangent(Index k) const {
     return {-std::sin(angle(k)), std::cos(angle(k)), 0};
   }
-  /// Up the membrane.
+  /// Unit vector up the membrane.
   fingerpad::Point3<double> upward(Index k) const {
     const double c = 1 / std::sqrt(1 + rise * rise);
     return {-c * std::cos(angle(k)), -c * std::sin(angle(k)), c * rise};
@@ -155,7 +155,7 @@ struct RimOfDots {
     return {load.normal * m.x + load.shear * e.x, load.normal * m.y + load.shear * e.y,
             load.normal * m.z};
   }
-  /// The stretch that gives this normal tension.
+  /// Stretch for this normal tension.
   double stretch(double normal_n_per_mm) const {
     const double wanted = normal_n_per_mm / modulus_n_per_mm;
     double l = 1 + wanted / 4;
@@ -179,7 +179,7 @@ struct RimOfDots {
     }
     return out;
   }
-  /// Side dots that pull as `load(angle)`, in one row or more.
+  /// Side dots of the pull `load(angle)`, in one row or more.
   template <class Load>
   Image<fingerpad::Point3<double>> dots(const Load& load, Index rows = 1) const {
     Image<fingerpad::Point3<double>> out(rows, count, {0, 0, 0});
@@ -205,7 +205,7 @@ template <class Load>
 Wrench6 wrench_of(const RimOfDots& rim, const Load& load, double pressure_mpa) {
   Wrench6 w;
   RimOfDots fine = rim;
-  fine.count = 7200;  // the sum of a smooth function over a circle
+  fine.count = 7200;  // for the integral of a smooth function over a circle
   const double step = 2 * std::numbers::pi * rim.radius_mm / static_cast<double>(fine.count);
   for (Index k = 0; k < fine.count; ++k) {
     const auto f = step * fine.pull(k, load(fine.angle(k)));
@@ -216,7 +216,7 @@ Wrench6 wrench_of(const RimOfDots& rim, const Load& load, double pressure_mpa) {
   return w;
 }
 
-/// What all wrench tests press with: p = 10 kPa, an exact shape.
+/// Pressure of all wrench tests with an exact shape: 10 kPa.
 constexpr double pressed_mpa = 0.01;
 
 template <class S = double>
@@ -230,7 +230,7 @@ fingerpad::WrenchOptions<S> exact_options(Index columns = 72, Index rows = 65) {
   return options;
 }
 
-/// The dots' rim of a pad, and its uniform pull.
+/// Rim of a pad for its side dots.
 template <class Pad>
 RimOfDots rim_of(const Pad& pad) {
   RimOfDots rim;

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// Pictures of a grid of printed dots whose places are known.
+// Images of a grid of printed dots at known positions.
 #include <cmath>
 #include <limits>
 #include <opencv2/core.hpp>
@@ -20,12 +20,12 @@ struct Print {
   double radius_px = 5;
   double rotation_rad = 0;
   double ink = 60;      ///< grey level of a dot
-  double ground = 150;  ///< of what is around
-  double fall = 0.3;    ///< share of the light that is lost from the left to the right border
+  double ground = 150;  ///< grey level of the background
+  double fall = 0.3;    ///< relative loss of light from the left to the right border
   double noise = 0;     ///< standard deviation, grey levels
 };
 
-/// The print around the middle of the frame.
+/// Dots of a print centered in the frame.
 inline DotPlaces places_of(const Print& print) {
   DotPlaces dots(print.rows, print.cols);
   const cv::Vec2d middle(0.5 * print.frame.width, 0.5 * print.frame.height);
@@ -49,7 +49,7 @@ inline DotPlaces moved(const DotPlaces& dots, const cv::Vec2d& by) {
   return all;
 }
 
-/// A disc of `value` in `light`: each pixel by the share of it that is covered.
+/// Draws a disc of `value` in `light`; each pixel is weighted by its covered share.
 inline void draw_disc(cv::Mat_<double>& light,
                       const cv::Vec2d& center,
                       double radius_px,
@@ -72,8 +72,8 @@ inline void draw_disc(cv::Mat_<double>& light,
   }
 }
 
-/// What a camera sees of `dots`, 8 bit and three channels alike; NaN: no dot there. `specks` are
-/// discs of a third of a dot's radius.
+/// Image of `dots`, 8 bit in three equal channels; NaN: no dot there. `specks` are discs of a third
+/// of a dot's radius.
 inline cv::Mat picture_of(const Print& print,
                           const DotPlaces& dots,
                           const std::vector<cv::Vec2d>& specks = {},
@@ -101,7 +101,7 @@ inline cv::Mat picture_of(const Print& print,
   return frame;
 }
 
-/// Root mean square and largest distance of dots of the same name that both have, px.
+/// Root mean square and largest distance of dots of the same name that exist in both, px.
 struct DotErrors {
   double rms_px = 0;
   double worst_px = 0;

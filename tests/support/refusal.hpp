@@ -1,14 +1,14 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// What constructors say of bad parameters.
+// Messages of constructors for bad parameters.
 #include <string>
 
 #include "fingerpad/core/expects.hpp"
 
 namespace test {
 
-/// The message with which `construct` is refused, or "accepted".
+/// The message with which `construct` throws, or "accepted".
 template <class F>
 std::string refusal(const F& construct) {
   try {

@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// A ball rolled over a grid of dots without slip. A dot takes hold of the ball where the ball comes
-// near it and moves rigidly with it until the contact has rolled on: the true pose is known
-// exactly, whatever the path.
+// A ball that rolls over a grid of dots without slip. A dot sticks to the ball where the ball comes
+// near it and moves rigidly with it until the contact has passed. The true pose is known exactly
+// for any path.
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -92,7 +92,7 @@ struct RollingBall {
   }
 };
 
-/// The ball on its way: step() moves the contact's center to (x, y).
+/// The rolling ball; step() moves the center of the contact to (x, y).
 class Rolling {
  public:
   Rolling(const RollingBall& ball, double x_mm, double y_mm)
@@ -152,7 +152,7 @@ class Rolling {
   double y_;
 };
 
-/// Dots as a camera measures them; only those with a flag, since no other is looked at.
+/// Dots with the noise of a camera. Dots without a flag have none, because nothing reads them.
 inline Dots noisy(
     Dots dots, const Flags& flags, Gauss& gauss, double plane_mm = 0.02, double depth_mm = 0.05) {
   for (std::size_t k = 0; k < dots.cells.size(); ++k) {

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// Images rotated and mirrored, for laws of symmetry.
+// Rotated and mirrored images, for tests of symmetry.
 #include <algorithm>
 
 #include "support/pad.hpp"
@@ -19,7 +19,7 @@ Image<T> transposed(const Image<T>& image) {
   return out;
 }
 
-/// By half a turn.
+/// Rotated by half a turn.
 template <class T>
 Image<T> rotated(const Image<T>& image) {
   Image<T> out = image;

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 // Steps of a membrane of Mooney-Rivlin rubber under known force and moment
-// (tests/data/wrench_rubber.csv), and what a camera sees of four of them.
+// (tests/data/wrench_rubber.csv), and frames of four of them.
 #include <cstdint>
 #include <sstream>
 #include <string>
@@ -24,7 +24,7 @@ struct RubberStep {
   Image<Point3<double>> dots{1, side_dots, {0, 0, 0}};
 };
 
-/// The first is the free pad.
+/// All steps; the first is the free pad.
 inline std::vector<RubberStep> rubber_steps() {
   auto file = open_data("wrench_rubber.csv", "step,pressure_mpa,");
   std::string line, cell;
@@ -54,7 +54,7 @@ inline std::vector<RubberStep> rubber_steps() {
   return all;
 }
 
-/// The shape of a step; empty where there is none.
+/// Name of the shape of a step; empty if it has none.
 inline std::string rubber_shape(int step) {
   return step == 0    ? "wrench_rubber_free"
          : step == 14 ? "wrench_rubber_drag"
@@ -66,7 +66,7 @@ inline std::string rubber_shape(int step) {
 constexpr double rubber_cap_height_mm = 11, rubber_apex_mm = 12.96482;
 constexpr double rubber_dot_length_mm = 0.79995;
 
-/// Side dots as a camera finds them: 0.06 px of 0.08 mm.
+/// Side dots with the noise of a camera: 0.06 px of 0.08 mm.
 inline Image<Point3<double>> jittered(Image<Point3<double>> dots, std::uint64_t seed) {
   Random random(seed);
   for (auto& p : dots.cells) {
@@ -76,8 +76,8 @@ inline Image<Point3<double>> jittered(Image<Point3<double>> dots, std::uint64_t 
   return dots;
 }
 
-/// Heights as the default methods find them in frames of 8 bit with one grey level of noise; the
-/// reference is this pad's own free shape.
+/// Heights from the default methods in 8-bit frames with one grey level of noise. The reference is
+/// this pad's own free shape.
 class RubberFrames {
  public:
   RubberFrames() {
@@ -111,12 +111,12 @@ class RubberFrames {
   fingerpad::ContactTest test_;
 };
 
-/// Slope of what was found over the truth, of F_x and F_y and of M_z.
+/// Slope of the result over the truth, for F_x and F_y together and for M_z.
 struct RubberGain {
   double tangential = 0, turning = 0;
 };
 
-/// From frames, three of each of the three steps that have shapes.
+/// Slope from frames, three of each of the three steps that have shapes.
 template <class W>
 RubberGain gain_from_frames(const W& wrench, const RubberFrames& frames) {
   auto work = wrench.workspace();

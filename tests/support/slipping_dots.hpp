@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// Dots on a membrane that an object drags along, with the truth of what sticks: dots within a stick
-// disc move as the object does, those outside of it stay behind, the more the further they are from
-// it, up to a width beyond which they stand still. How large the disc is is given step by step.
+// Dots on a membrane that an object drags along, with the true stick states. Dots within a stick
+// disc move as the object does. Dots outside lag, the more the further they are from it, up to a
+// width beyond which they stand still. The size of the disc is given step by step.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -28,9 +28,9 @@ struct DotPattern {
   double middle_x_px = 320;
   double middle_y_px = 240;
   double contact_pitches = 8.2;  ///< radius of the contact, in pitches of the dots
-  double shear_pitches = 1;      ///< from the stick disc to where dots stand still; 0: a jump
-  double disc_row = 0.3;         ///< the middle of the stick disc from that of the pattern, in
-  double disc_col = -0.2;        ///< pitches: between dots, so that they do not leave it in rings
+  double shear_pitches = 1;      ///< from the stick disc to standing dots; 0: a jump
+  double disc_row = 0.3;         ///< center of the stick disc from that of the pattern, in
+  double disc_col = -0.2;        ///< pitches: off the dots, so that rings do not leave at once
 
   double home_x_px(Index col) const {
     return middle_x_px + pitch_px * (static_cast<double>(col) - static_cast<double>(cols - 1) / 2);
@@ -38,19 +38,19 @@ struct DotPattern {
   double home_y_px(Index row) const {
     return middle_y_px + pitch_px * (static_cast<double>(row) - static_cast<double>(rows - 1) / 2);
   }
-  /// From a place of the pattern to (row, col), in pitches.
+  /// Distance of (row, col) from a place of the pattern, in pitches.
   double pitches_from(double at_row, double at_col, Index row, Index col) const {
     return std::hypot(static_cast<double>(row) - static_cast<double>(rows - 1) / 2 - at_row,
                       static_cast<double>(col) - static_cast<double>(cols - 1) / 2 - at_col);
   }
 };
 
-/// What happens from a frame to the next.
+/// Motion from one frame to the next.
 struct SlipStep {
   double shift_px = 0;
   double direction_rad = 0;
   double turn_rad = 0;     ///< about the object's middle
-  double zoom = 1;         ///< of all that the camera sees, about the middle of the image
+  double zoom = 1;         ///< of the whole image, about its center
   double stick_share = 9;  ///< radius of the stick disc / that of the contact
 };
 
@@ -91,7 +91,7 @@ class SlippingDots {
     object_y_px_ = zoomed(object_y_px_ + shift_y, pattern_.middle_y_px, s.zoom);
   }
 
-  /// Dots that did not follow in the last step go back by this share of their way from home.
+  /// Dots that did not follow in the last step return by this share of their distance from home.
   void spring_back(double share) {
     for (Index i = 0; i < dots.rows(); ++i) {
       for (Index j = 0; j < dots.cols(); ++j) {
@@ -128,7 +128,7 @@ class SlippingDots {
   static double zoomed(double p, double middle, double zoom) {
     return middle + zoom * (p - middle);
   }
-  /// The share of the object's motion by which a dot stays behind.
+  /// Share of the object's motion by which a dot lags.
   double lag_of(Index row, Index col, double stick_pitches) const {
     const double outside =
         pattern_.pitches_from(pattern_.disc_row, pattern_.disc_col, row, col) - stick_pitches;
@@ -144,7 +144,7 @@ class SlippingDots {
   Image<Index> stuck_steps_;
 };
 
-/// As a camera measures them.
+/// Dots with the noise of a camera.
 inline PointsPx noisy(PointsPx dots, double noise_px, Random& random) {
   for (auto& p : dots.cells) {
     const double x = random.normal(), y = random.normal();
@@ -153,16 +153,16 @@ inline PointsPx noisy(PointsPx dots, double noise_px, Random& random) {
   return dots;
 }
 
-/// Recordings, each with one effect; `everything` has all but the turning round.
+/// Recordings with one effect each; `everything` has all of them but the reversal.
 enum class SlipScene {
-  shear,       ///< dragged, until hardly anything sticks
+  shear,       ///< dragged until hardly anything sticks
   reversal,    ///< and back
   slips,       ///< three times in the same direction: after each slip all sticks again
   turn,        ///< by 20 degrees in place
   shift_turn,  ///< by 20 degrees while it is dragged
-  press,       ///< seen 1.15 times as large, all sticks
+  press,       ///< appears 1.15 times as large, all sticks
   zoom_in,     ///< the same while it is dragged and slips
-  zoom_out,    ///< seen 0.85 times as large while it is dragged and slips
+  zoom_out,    ///< appears 0.85 times as large while it is dragged and slips
   everything,  ///< dragged, rotated and pressed, twice
 };
 inline constexpr std::array all_slip_scenes = {
@@ -176,8 +176,7 @@ constexpr const char* name_of(SlipScene scene) {
   return names[static_cast<std::size_t>(scene)];
 }
 
-/// The steps of a recording: 16 for each time that the disc shrinks from all of the contact to a
-/// fifth of it.
+/// Steps of a recording: 16 for each time the disc shrinks from the whole contact to a fifth of it.
 inline std::vector<SlipStep> steps_of(SlipScene scene, double direction_rad) {
   constexpr int phase_steps = 16;
   const auto zoom_to = [](double zoom) { return std::pow(zoom, 1.0 / phase_steps); };
@@ -238,16 +237,16 @@ inline std::vector<SlipStep> steps_of(SlipScene scene, double direction_rad) {
   return steps;
 }
 
-/// How well a ratio follows recordings of a scene.
+/// Errors of a ratio in recordings of a scene.
 struct StickError {
   double mean_abs = 0;  ///< of the ratio, over frames with an answer
   double mean = 0;
   double worst = 0;
-  double updated = 0;     ///< of all frames, the share with an answer
-  double wrong_dots = 0;  ///< of the dots, the share that is told wrong, in one way or the other
+  double updated = 0;     ///< share of the frames with an answer
+  double wrong_dots = 0;  ///< share of the dots with a wrong state
 };
 
-/// With noise in each coordinate, the object dragged in one direction after the other.
+/// Errors with noise in each coordinate, for an object dragged in many directions.
 template <class Ratio>
 StickError error_of(const Ratio& ratio,
                     SlipScene scene,

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// Dots on a curved patch in space that an object carries along by any rigid motion: those within a
-// stick disc follow it, those outside stay behind, the more the further they are out.
+// Dots on a curved patch in space that an object carries along by any rigid motion. Dots within a
+// stick disc follow it; dots outside lag, the more the further out they are.
 #include <algorithm>
 #include <cmath>
 
@@ -39,8 +39,8 @@ struct SlippingPatch {
     }
   }
 
-  /// `stick_share`: radius of the stick disc / that of the contact; beyond it dots lag, a pitch
-  /// further out they stand still.
+  /// `stick_share`: radius of the stick disc / that of the contact. Beyond the disc dots lag; a
+  /// pitch further out they stand still.
   void step(const Pose& motion, double stick_share = 9) {
     for (Index i = 0; i < across; ++i) {
       for (Index j = 0; j < across; ++j) {
@@ -65,7 +65,7 @@ struct SlippingPatch {
   }
 };
 
-/// As a camera and its depth map measure them.
+/// Dots with the noise of a camera and its depth map.
 inline Image<fingerpad::Point3<double>> noisy(Image<fingerpad::Point3<double>> dots,
                                               double lateral_mm,
                                               double depth_mm,
@@ -77,7 +77,7 @@ inline Image<fingerpad::Point3<double>> noisy(Image<fingerpad::Point3<double>> d
   return dots;
 }
 
-/// A rotation about an axis through a point, in rad, then a shift.
+/// Rotation about an axis through a point, in rad, followed by a shift.
 inline fingerpad::Pose<double> moved_by(const fingerpad::Angles<double>& angles,
                                         const fingerpad::Point3<double>& about,
                                         const fingerpad::Point3<double>& shift) {

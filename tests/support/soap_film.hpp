@@ -1,14 +1,14 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// Membranes in equilibrium around what touches them. A dome cut off by a plane has a kink at the
-// edge and is none. A free membrane has one mean curvature L and leaves the object tangentially; so
-// around a round contact of radius R on an object of mean curvature H, both falling with the slope
-// tan(psi),
+// Membranes in equilibrium around a contact. A dome cut off by a plane is not in equilibrium,
+// because it has a kink at the edge. A free membrane has one mean curvature L and leaves the object
+// tangentially. Around a round contact of radius R on an object of mean curvature H, both falling
+// with the slope tan(psi), this gives
 //   sin(psi) = L rho - (L - H) R^2 / rho                   (rho sin(psi))' = 2 L rho,
-// which for small slopes opens a gap of J ((rho^2 - R^2) / 2 - R^2 ln(rho / R)), J = L - H, and
-// across a straight edge an arc of radius 1 / (2 L), a gap of J s^2. Over a hole in the object or a
-// slit between two, it bulges.
+// which for small slopes opens a gap of J ((rho^2 - R^2) / 2 - R^2 ln(rho / R)), J = L - H. Across
+// a straight edge it is an arc of radius 1 / (2 L), with a gap of J s^2. Over a hole in the object
+// or a slit between two objects, the membrane bulges.
 #include <cmath>
 #include <vector>
 
@@ -17,7 +17,7 @@
 
 namespace test {
 
-/// How far an arc has fallen at the distance s from its top; NaN beyond its end.
+/// Fall of an arc at the distance s from its top; NaN beyond its end.
 inline double arc(double curvature_per_mm, double s) {
   const double sine = curvature_per_mm * s;
   return s * sine / (1 + std::sqrt(1 - sine * sine));
@@ -45,7 +45,7 @@ struct RoundContact {
 class RoundFilm : public RoundContact {
  public:
   explicit RoundFilm(const RoundContact& contact) : RoundContact(contact) {
-    // falls by Simpson's rule in each step
+    // fall by Simpson's rule in each step
     fall_.push_back(arc(object_per_mm, radius_mm));
     for (double rho = radius_mm; fall_.size() < 3000; rho += step_mm) {
       const double middle = tangent(rho + step_mm / 2);
@@ -70,7 +70,7 @@ class RoundFilm : public RoundContact {
     const double sine = free_per_mm * rho - (rho > 0 ? turn / rho : 0);
     return sine / std::sqrt(1 - sine * sine);
   }
-  /// Cubic between the steps; NaN beyond the rim.
+  /// Fall outside the contact, cubic between the steps; NaN beyond the rim.
   double outside(double rho) const {
     const double at = (rho - radius_mm) / step_mm;
     if (!(at < static_cast<double>(fall_.size()) - 1)) {
@@ -105,8 +105,8 @@ struct StripFilm {
   bool touches(double x, double) const { return std::abs(x) >= slit_mm && std::abs(x) <= half_mm; }
 };
 
-/// Where the pixel's ray meets the film; NaN where that is below the plate or beyond the film.
-/// Rays are steep and films flat, so going back and forth between the two converges.
+/// Depth at which the pixel's ray meets the film; NaN where that is below the plate or beyond the
+/// film. Rays are steep and films flat, so alternating between the two converges.
 template <class CameraType, class Film>
 double depth_at_pixel(const CameraType& camera, const Film& film, Index row, Index col) {
   double z = film.top_mm;
@@ -133,7 +133,7 @@ Image<S> depths_of(const CameraType& camera, const Film& film, Index rows, Index
   return depth;
 }
 
-/// Of so many pixels, the axis in the middle.
+/// Height map of this many pixels with the axis in the middle.
 inline fingerpad::OrthographicCamera<double> height_map(Index rows,
                                                         Index cols,
                                                         double pitch_mm = 0.08) {

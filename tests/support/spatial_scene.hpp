@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// Printed dots of a finite-element membrane in space, step by step while an object moves on it, the
-// object's pose, and what it exerts (tests/data/README.md).
+// Printed dots of a finite-element membrane in space, step by step while an object moves on it,
+// with the pose and the loads of the object (tests/data/README.md).
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -31,7 +31,7 @@ struct SpatialStep {
 
 class SpatialScene {
  public:
-  /// `every`: of the rows and columns of dots, which are kept; 2 for those twice as far apart.
+  /// Keeps each `every`-th row and column of dots; 2 doubles their spacing.
   explicit SpatialScene(const std::string& name, Index every = 1) : name_(name), every_(every) {
     read_truth();
     read_dots();
@@ -107,8 +107,8 @@ class SpatialScene {
   Index across_ = 0;
 };
 
-// What truly sticks, for errors of a ratio: the share of the dots that slipped against the object's
-// known pose by less than slip_share of the longest move.
+// Truth for the errors of a stick ratio: the share of the dots whose slip relative to the object's
+// known pose is below slip_share of the longest move.
 
 inline constexpr double slip_share = 0.0086 / 0.16;
 inline constexpr double truth_reference_mm = 0.16;
@@ -123,7 +123,7 @@ inline double longest_move(const SpatialStep& then, const SpatialStep& now) {
   return longest;
 }
 
-/// Share of the dots that slipped against the object's known pose by less than slip_share of the
+/// Share of the dots whose slip relative to the object's known pose is below slip_share of the
 /// longest move.
 inline double truth_between(const SpatialStep& then, const SpatialStep& now) {
   const fingerpad::Pose<double> motion = now.object * inverse(then.object);
@@ -147,8 +147,8 @@ inline Index dots_of_both(const SpatialStep& then, const SpatialStep& now) {
   return both;
 }
 
-/// Since the reference of the answer; of a frame without one since the newest step from which a
-/// dot has moved far enough, else within the step.
+/// Truth since the reference of the answer. For a frame without an answer, since the newest step
+/// from which a dot has moved far enough; otherwise within the step.
 template <class Result>
 double spatial_truth(const SpatialScene& scene, Index k, const Result& r) {
   if (r.updated()) {
@@ -165,7 +165,7 @@ double spatial_truth(const SpatialScene& scene, Index k, const Result& r) {
   return scene[k].stick_ratio;
 }
 
-/// A vector that is known to a share of itself.
+/// A vector with noise relative to each component.
 inline fingerpad::Point3<double> noisy(const fingerpad::Point3<double>& p,
                                        double share,
                                        Random& random) {

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// Printed dots of a finite-element membrane, step by step while an object moves on it, and what
-// sticks (tests/data/README.md).
+// Printed dots of a finite-element membrane, step by step while an object moves on it, with the
+// true stick ratio (tests/data/README.md).
 #include <cmath>
 #include <cstddef>
 #include <fstream>
@@ -25,7 +25,7 @@ class StickScene {
   const PointsPx& dots(Index step) const { return frames_[at(step)].dots; }
   const ContactFlags& contact(Index step) const { return frames_[at(step)].contact; }
   const std::string& phase(Index step) const { return frames_[at(step)].phase; }
-  /// Of the nodes in contact, the share that slipped less than 5 um in this step.
+  /// Share of the nodes in contact that slipped less than 5 um in this step.
   double stick_ratio(Index step) const { return frames_[at(step)].stick_ratio; }
 
   Index first_slip_of_all() const {
@@ -88,7 +88,7 @@ class StickScene {
   std::vector<Frame> frames_;
 };
 
-/// Of the area in contact in a step and `age` steps earlier, the share that slipped less than a
+/// Share of the area in contact both in a step and `age` steps earlier that slipped less than a
 /// length in between.
 class SlippedLess {
  public:
@@ -99,7 +99,7 @@ class SlippedLess {
     }
     require_data(file.good(), name + "_slip.pgm is too short");
   }
-  /// NaN where it is not known.
+  /// NaN if unknown.
   double operator()(Index step, Index age, double length_mm) const {
     const double place = std::log(length_mm / 0.002) / std::log(1.5);
     if (age < 1 || age > ages || !(place >= 0 && place < lengths - 1)) {

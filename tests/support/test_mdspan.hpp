@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// A stand-in for mdspan of rank two, since neither compiler of the test machine has one: the
-// members that the standard names, indexed by () or by [array] as the libraries differ, and with
-// layouts and accessors of every kind that matters to the adapter.
+// A stand-in for mdspan of rank two, because neither compiler of the test machine has one. It has
+// the standard's members, indexed by () or by [array] as the libraries differ, and layouts and
+// accessors of every kind that matters to the adapter.
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -24,7 +24,7 @@ struct LayoutStride {  // also right and left, which differ only in the strides 
   static mapping left(MdIndex rows, MdIndex cols) { return {{rows, cols}, {1, rows}}; }
 };
 
-/// Lower triangle stored row by row, read symmetrically: no stride describes it.
+/// The lower triangle is stored row by row and read symmetrically; no stride describes it.
 struct LayoutSymmetric {
   struct mapping {
     std::array<MdIndex, 2> extents;
@@ -42,7 +42,7 @@ struct PlainAccessor {
   T& access(T* p, std::size_t i) const { return p[i]; }
 };
 
-/// Values computed from memory, as std::linalg::scaled does: the memory itself is not the grid.
+/// Values computed from memory, as by std::linalg::scaled: the memory itself is not the grid.
 template <class T>
 struct DoublingAccessor {
   using data_handle_type = T*;

@@ -22,7 +22,7 @@ inline Dots no_dots(std::ptrdiff_t rows = 21, std::ptrdiff_t cols = 21) {
   return {rows, cols, fingerpad::detail::missing_point<double>()};
 }
 
-/// A frame and what the object truly exerts.
+/// A frame with its true loads.
 struct TractionScene {
   std::string name;
   double pressure_mpa = 0;
@@ -38,7 +38,7 @@ struct TractionScene {
   double largest_moment_n_mm() const {
     return (std::max)({std::abs(moment_n_mm.x), std::abs(moment_n_mm.y), std::abs(moment_n_mm.z)});
   }
-  /// In contact, and so are all dots up to `ring` steps away.
+  /// Whether the dot and all dots up to `ring` steps away are in contact.
   bool inside_contact(std::ptrdiff_t i, std::ptrdiff_t j, std::ptrdiff_t ring) const {
     for (std::ptrdiff_t r = i - ring; r <= i + ring; ++r) {
       for (std::ptrdiff_t c = j - ring; c <= j + ring; ++c) {
@@ -99,7 +99,7 @@ inline TractionScene traction_scene(const std::string& name) {
   return s;
 }
 
-/// All with an object; the pad that nothing touches is traction_scene("free").
+/// All scenes with an object; the free pad is traction_scene("free").
 inline const std::vector<TractionScene>& traction_scenes() {
   static const std::vector<TractionScene> all = [] {
     std::vector<TractionScene> scenes;
@@ -118,17 +118,17 @@ inline Dots noisy(Dots dots, double noise_mm, Gauss& gauss) {
   return dots;
 }
 
-/// Errors in one scene, over frames with other noise: rms, in shares of the largest component of
-/// the true force or moment, of the pressure, and of the true mu t of 0.5 N/mm.
+/// Errors in one scene over frames with different noise. Force and moment are rms values relative
+/// to the largest true component; pressures are relative to the pressure of the pad.
 struct TractionError {
   std::array<double, 3> force{};
   std::array<double, 3> moment{};
   double pressure_rms = 0;    ///< contact pressure of dots whose neighbours all touch
-  double pressure_worst = 0;  ///< of dots with two rows of such around them
-  double pressure_mean = 0;   ///< of the mean over all those of pressure_rms
+  double pressure_worst = 0;  ///< largest, of dots with two rows of such around them
+  double pressure_mean = 0;   ///< of the mean pressure over the dots of pressure_rms
   double mu_t = 0;            ///< mean, N/mm
   double free_load = 0;       ///< rms load on the free part
-  int frames = 0;             ///< that gave a force of all dots
+  int frames = 0;             ///< with a force of all dots
 };
 
 template <class Field>

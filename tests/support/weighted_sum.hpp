@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// One algorithm on grids, in the shape that all of the library's have: a constrained door, then a
-// loop on views. Its weights differ from cell to cell, so that a transposed, shifted or repeated
-// cell changes the sum; its result must be the same on every grid type to the last bit.
+// One algorithm on grids in the form of the library's own: a constrained entry point, then a loop
+// on views. Its weights differ from cell to cell, so a transposed, shifted or repeated cell changes
+// the sum. The result must be the same to the last bit on every grid type.
 #include "fingerpad/core/grid.hpp"
 #include "fingerpad/core/scalar.hpp"
 
@@ -11,7 +11,7 @@ namespace test {
 
 using fingerpad::Index;
 
-/// The cell that every adapter's test writes at (row, col).
+/// The cell value that the test of every adapter writes at (row, col).
 template <class T = double>
 T pattern(Index row, Index col) {
   return T(1) / T(static_cast<double>(3 + 7 * row + 2 * col + row * col));
@@ -33,13 +33,13 @@ S weighted_sum(const G& g) {
   return weighted_sum_of_view<S>(fingerpad::as_view(g));
 }
 
-/// The sum that a rows x cols grid filled by `pattern` must give.
+/// The sum of a rows x cols grid filled by `pattern`.
 template <class T = double>
 T pattern_sum(Index rows, Index cols) {
   return weighted_sum(fingerpad::LazyView(rows, cols, pattern<T>));
 }
 
-/// Fills a grid that can be written with the pattern.
+/// Fills a writable grid with the pattern.
 template <fingerpad::writable_grid G>
 void fill_with_pattern(G& g) {
   auto view = fingerpad::as_view(g);

@@ -79,7 +79,7 @@ inline const std::vector<WrenchFrame>& wrench_frames() {
   return all;
 }
 
-/// Where the membrane is fixed, one point to a side dot.
+/// Border where the membrane is fixed, one point per side dot.
 inline Image<Point3<double>> rim_border() {
   Image<Point3<double>> points(1, side_dots, {0, 0, 0});
   for (Index k = 0; k < side_dots; ++k) {
@@ -89,7 +89,7 @@ inline Image<Point3<double>> rim_border() {
   return points;
 }
 
-/// One row of a frame's side dots, or both of two.
+/// Side dots of a frame measured in one row, or in two.
 inline Image<Point3<double>> rows_of(const Image<Point3<double>>& dots, Index rows) {
   Image<Point3<double>> out(rows, side_dots, {0, 0, 0});
   const auto from = dots.cells.begin() + (rows == 1 ? 0 : side_dots);
@@ -97,7 +97,7 @@ inline Image<Point3<double>> rows_of(const Image<Point3<double>>& dots, Index ro
   return out;
 }
 
-/// Shapes of the membranes, exactly as the finite elements have them.
+/// Exact shapes of the finite-element membranes.
 inline const fingerpad::PadHeights<>::Map& exact_heights(const std::string& name) {
   static std::map<std::string, fingerpad::PadHeights<>::Map> all;
   const auto found = all.find(name);
@@ -113,7 +113,7 @@ inline const fingerpad::PadHeights<>::Map& exact_heights(const std::string& name
         return std::hypot(x, y) > base_radius_mm ? nan : membrane(x, y);
       },
       [&](Index i, Index j, const auto&...) {
-        // a share, as the mean over the node's surroundings
+        // share of the node's surroundings in contact
         double share = 0;
         for (const double down : {-0.125, 0.125}) {
           for (const double right : {-0.125, 0.125}) {

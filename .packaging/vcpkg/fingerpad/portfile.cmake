@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The fingerpad authors
 # SPDX-License-Identifier: MIT
-# An overlay port of this very checkout: vcpkg install fingerpad --overlay-ports=.packaging/vcpkg
+# Overlay port of this checkout: vcpkg install fingerpad --overlay-ports=.packaging/vcpkg
 get_filename_component(SOURCE_PATH "${CURRENT_PORT_DIR}/../../.." ABSOLUTE)
 
 vcpkg_cmake_configure(SOURCE_PATH "${SOURCE_PATH}"

@@ -3,5 +3,5 @@
 #pragma once
 #include "fingerpad/core/grid.hpp"
 
-// The sum over an image, by a library that shows fingerpad in its interface.
+// The sum over an image, from a library with fingerpad in its interface.
 float sum_over(fingerpad::StridedView<const float> image);

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
-// Two translation units that include everything are linked together: nothing may be defined twice.
+// Two translation units that include everything are linked: nothing may be defined twice.
 #include "fingerpad/fingerpad.hpp"
 
 int cols_of_other(fingerpad::StridedView<const double> image);
