@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
-// From image files to a depth map in millimetres: the free pad once, then every frame.
+// Computes a depth map in mm from image files: the free pad once, then each frame.
 // Usage: 01_depth_in_ten_lines [RECORDING]
 #include <cstdio>
 #include <opencv2/imgcodecs.hpp>
@@ -9,7 +9,7 @@
 #include "fingerpad/adapt/opencv.hpp"
 #include "fingerpad/depth/depth.hpp"
 
-// Channels as views, without a copy; OpenCV reads colours as blue, green, red.
+// Views of the channels, without a copy. OpenCV stores colours as blue, green, red.
 static auto green_of(const cv::Mat& image) {
   return fingerpad::channel<std::uint8_t>(image, 1);
 }
@@ -31,7 +31,7 @@ int main(int argc, char** argv) {
   const fingerpad::Absorption<double> fluid;  // the published fluid
   const auto reference = fit_reference(camera, fluid, red_of(pad), green_of(pad), shape);
   const fingerpad::DepthEstimator estimate(camera, fluid, reference);
-  auto workspace = estimate.workspace<std::uint8_t>();  // the last memory that is taken
+  auto workspace = estimate.workspace<std::uint8_t>();  // nothing is allocated after this
 
   cv::Mat1f depth_mm(frame.size());
   const auto result = estimate(red_of(frame), green_of(frame), depth_mm, workspace);

@@ -1,19 +1,19 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
-// An image type that fingerpad has never heard of: say how it is read, and everything works on it.
+// Adapts an image type that fingerpad does not know: a specialisation of grid_traits is enough.
 #include <cstdint>
 #include <cstdio>
 #include <vector>
 
 #include "fingerpad/depth/depth.hpp"
 
-// Somebody's camera driver: lines of pixels, red and green packed into one 32-bit word each.
+// The image type of a camera driver: lines of pixels, each with red and green in a 32-bit word.
 struct PackedFrame {
   int width = 0;
   std::vector<std::vector<std::uint32_t>> lines;
 };
 
-// One channel of it, as a grid. This is the whole adapter.
+// One channel of a PackedFrame as a grid. This is the whole adapter.
 struct PackedChannel {
   const PackedFrame* frame;
   int shift;
@@ -34,7 +34,7 @@ constexpr int rows = 120, cols = 160;
 const fingerpad::Camera<double> camera{.center_x_px = 79.5, .center_y_px = 59.5, .pitch_mm = 0.32};
 const fingerpad::Absorption<double> fluid;
 
-/// A spherical cap, 13 mm high, cut off at `lid_mm` by a plate; NaN outside.
+/// Depth of a spherical cap, 13 mm high, flattened by a plate at `lid_mm`; NaN outside.
 double depth_of_pad(fingerpad::Index row, fingerpad::Index col, double lid_mm) {
   const double x = (static_cast<double>(col) - 79.5) * 0.32;
   const double y = (static_cast<double>(row) - 59.5) * 0.32;
@@ -65,7 +65,7 @@ PackedFrame photograph(double lid_mm) {
 int main() {
   const PackedFrame free_pad = photograph(100);
   const PackedFrame frame = photograph(9);
-  // The known shape is a function of the pixel: no array is needed for it either.
+  // The known shape is a function of the pixel; it needs no array.
   const fingerpad::LazyView shape(
       rows, cols, [](fingerpad::Index i, fingerpad::Index j) { return depth_of_pad(i, j, 100); });
 

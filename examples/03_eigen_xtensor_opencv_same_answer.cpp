@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
-// One frame held by four libraries; the depth is the same to the last bit.
+// Computes the depth of one frame from four image types; the results are identical to the last bit.
 #include <cstdint>
 #include <cstdio>
 #include <cstring>
@@ -24,7 +24,7 @@ int main() {
       .center_x_px = 79.5, .center_y_px = 59.5, .pitch_mm = 0.32};
   const fingerpad::Absorption<double> fluid;
 
-  // A free pad and its colours, as functions of the pixel.
+  // The free pad and its colours as functions of the pixel.
   const fingerpad::LazyView shape(rows, cols, [](Index i, Index j) {
     const double x = (double(j) - 79.5) * 0.32, y = (double(i) - 59.5) * 0.32;
     return std::sqrt(400 - x * x - y * y) - 7;  // NaN or negative outside
@@ -46,7 +46,7 @@ int main() {
                                            fingerpad::published::BoxMean{5});
   auto workspace = estimate.workspace<std::uint8_t>();
 
-  // The same frame in three more libraries: columns first, rows first, and interleaved.
+  // The same frame in three libraries: column-major, row-major, and with interleaved channels.
   Eigen::Array<std::uint8_t, -1, -1> eigen_red(rows, cols), eigen_green(rows, cols);
   xt::xtensor<std::uint8_t, 2> xt_red({rows, cols}), xt_green({rows, cols});
   cv::Mat3b image(rows, cols);

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
-// How far does a depth move when the colour or the calibration does? Compute with dual numbers, and
-// every kernel also returns its exact derivatives.
+// Computes the derivatives of a depth with respect to the colour and the calibration. With dual
+// numbers as the scalar type, each kernel also returns its exact derivatives.
 #include <Eigen/Core>
 #include <cmath>
 #include <cstdio>
@@ -11,7 +11,7 @@
 
 namespace {
 
-/// Depth of one pixel, 10 mm from the axis, for any scalar.
+/// Depth of one pixel, 10 mm from the axis, for any scalar type.
 template <fingerpad::scalar S>
 S depth_of(const S& red, const S& green, const S& c_red, const S& kappa, const S& scattering) {
   const fingerpad::Camera<S> camera;

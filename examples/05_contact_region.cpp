@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
-// Where a rod touches the pad and how it is curved, from depth maps: the threshold from the free
-// pad, then area and depth of the contact and the surface in it.
+// Finds where a rod touches the pad, and its curvature, from depth maps: first the threshold from
+// the free pad, then area and depth of the contact and the surface in it.
 // Usage: 05_contact_region [RECORDING]
 #include <cmath>
 #include <cstdio>
@@ -33,13 +33,14 @@ int main(int argc, char** argv) {
   const fingerpad::DepthEstimator depth_of(camera, fluid, reference);
   auto depth_workspace = depth_of.workspace<std::uint8_t>();
 
-  // Once per sensor: how much the free pad bulges. More frames of it would also tell the noise.
+  // Once per sensor: the threshold from the free pad's shape. More frames of it would also give the
+  // noise.
   fingerpad::FreePadCalibration<> free_pad(camera, shape.rows, shape.cols);
   free_pad.add(shape);
   fingerpad::ContactTest test{.free_apex_mm = 13.03};
   test.threshold_per_mm = free_pad.fit().threshold_per_mm;
   const fingerpad::ContactRegion<> contact_of(camera, shape.rows, shape.cols, test);
-  auto workspace = contact_of.workspace();  // the last memory that is taken
+  auto workspace = contact_of.workspace();  // nothing is allocated after this
   const fingerpad::SurfaceFit<fingerpad::Quadric<>> surface_of(shape.rows, shape.cols, camera);
 
   // Every frame.
@@ -51,7 +52,7 @@ int main(int argc, char** argv) {
 
   std::printf("contact of %.1f mm^2, %.2f mm deep, around (%.2f, %.2f) mm\n", contact.area_mm2,
               contact.depth_mm, contact.center_mm.x, contact.center_mm.y);
-  const double radius_mm = 1 / surface.shape.curvature_1_per_mm;  // of the rod it is 12
+  const double radius_mm = 1 / surface.shape.curvature_1_per_mm;  // the rod has 12 mm
   std::printf("object of radius %.1f mm, %.3f mm rms off that\n", radius_mm, surface.rms_mm);
   const bool plausible = contact.area_mm2 > 80 && contact.area_mm2 < 120 &&
                          std::abs(contact.center_mm.x) < 0.5 && std::abs(radius_mm - 12) < 2;

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
-// A plate is pressed into the pad, rocked and rotated: its pose from the dots that stick to it.
+// Computes the pose of a plate that is pressed into the pad, tilted and rotated, from the dots that
+// stick to it.
 #include <cmath>
 #include <cstdio>
 #include <vector>
@@ -11,7 +12,7 @@ using fingerpad::Index;
 using Dot = fingerpad::Point3<double>;
 
 int main() {
-  // 21 x 21 dots on the free pad, a cap 13 mm high; any grid of any points with x, y, z will do.
+  // 21 x 21 dots on the free pad, a cap 13 mm high. Any grid of points with x, y and z works.
   constexpr Index n = 21;
   std::vector<Dot> free(n * n), dots(n * n);
   std::vector<unsigned char> contact(n * n);
@@ -29,7 +30,7 @@ int main() {
   fingerpad::ObjectMotionResult<double> seen;
   fingerpad::Pose<double> plate;
   for (int frame = 0; frame <= 10; ++frame) {
-    const double s = 0.1 * frame;  // the true motion of the plate since it touched
+    const double s = 0.1 * frame;  // share of the plate's true motion since first contact
     plate = {fingerpad::rotation_of(fingerpad::Angles<double>{0.10 * s, -0.05 * s, 0.20 * s}),
              {1.0 * s, -0.5 * s, -0.5 * s}};
     for (std::size_t k = 0; k < free.size(); ++k) {
@@ -45,7 +46,7 @@ int main() {
                   seen.angles.z_rad);
     }
   }
-  // Any other point of the object goes along: here a corner of the plate.
+  // The pose moves any point of the object, here a corner of the plate.
   const Dot corner = seen.pose(Dot{20, 15, 11.5});
   std::printf("its corner is now at (%.3f, %.3f, %.3f) mm\n", corner.x, corner.y, corner.z);
   const Dot truth = plate(Dot{20, 15, 11.5});

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
-// An object drags the membrane along; slip creeps in from the edge of the contact and is told long
-// before the object slips as a whole.
+// Detects incipient slip of an object that drags the membrane along. Slip starts at the edge of the
+// contact; the stick ratio shows it long before the whole object slips.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -12,7 +12,7 @@
 using namespace fingerpad;
 
 int main() {
-  constexpr Index n = 21;  // dots 19.5 px apart; any grid of any points with x and y will do
+  constexpr Index n = 21;  // dots 19.5 px apart; any grid of points with x and y works
   std::vector<Point2<float>> dots(n * n);
   std::vector<unsigned char> contact(n * n);
   std::vector<DotState> states(n * n);
@@ -38,8 +38,8 @@ int main() {
     } else {
       std::printf("frame %2d: %s\n", frame, name_of(seen.status));
     }
-    for (std::size_t k = 0; k < dots.size(); ++k) {  // the object goes on by 1 px; dots that are
-      const Index row = Index(k) / n - 10;           // far from the middle follow less and less
+    for (std::size_t k = 0; k < dots.size(); ++k) {  // the object moves by 1 px; dots far from
+      const Index row = Index(k) / n - 10;           // the center follow less and less
       const Index col = Index(k) % n - 10;
       const float slipping = std::hypot(float(col), float(row)) - (8 - 0.6F * float(frame));
       dots[k].x += std::clamp(1 - slipping, 0.0F, 1.0F);

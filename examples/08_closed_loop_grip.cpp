@@ -1,8 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
-// A cup is filled while a fingertip holds it by friction; its weight and the friction are unknown.
-// The stick ratio of the dots sets the grip force: the cup stays. With a constant force it drops.
-// 08_closed_loop_grip [CHART.png] also draws both runs.
+// Controls the grip force on a cup that is filled while a fingertip holds it by friction. Its
+// weight and the friction are unknown. With the grip force from the stick ratio of the dots the cup
+// is held; with a constant force it drops. Usage: 08_closed_loop_grip [CHART.png], which also draws
+// both runs.
 #include <algorithm>
 #include <cstddef>
 #include <cstdio>
@@ -20,9 +21,9 @@ namespace {
 constexpr int n = 21;  // dots in each direction
 constexpr double frame_s = 1.0 / 30;
 constexpr double dropped_mm = 20;
-const fingerpad::GripLaw<> law{.raise_gain_n_per_s = 20};  // gently: the cup fills slowly
+const fingerpad::GripLaw<> law{.raise_gain_n_per_s = 20};  // low, because the cup fills slowly
 
-/// N that hang on the fingertip: a cup that is filled for 13 seconds, then held.
+/// Load on the fingertip, N: the cup is filled for 13 s, then held.
 double load_at(double time_s) {
   return 0.4 + 0.2 * std::clamp(time_s - 1, 0.0, 13.0);
 }
@@ -31,7 +32,7 @@ grip::Run run(bool controlled) {
   const fingerpad::StickRatio stick_ratio(n, n);  // once
   const fingerpad::GripControl control(law);
   auto stick_state = stick_ratio.start();
-  auto grip_state = control.start(1.5);  // N, with which the cup was taken
+  auto grip_state = control.start(1.5);  // N, when the cup was grasped
 
   std::vector<fingerpad::DotState> states(n * n);
   const fingerpad::StridedView<fingerpad::DotState> states_out(states.data(), n, n, n);

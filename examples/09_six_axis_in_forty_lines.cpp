@@ -1,7 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
-// Force and moment in six axes: a plate is pressed into the pad and rotated about its normal. Known
-// are the pressure of the fluid, the shape of the membrane and the dots beside its rim.
+// Computes the six-axis force and moment of a plate that is pressed into the pad and rotated about
+// its normal. The inputs are the fluid's pressure, the membrane's shape and the dots beside its
+// rim.
 #include <cmath>
 #include <cstdio>
 #include <numbers>
@@ -13,7 +14,7 @@ using Point = fingerpad::Point3<double>;
 using fingerpad::Index;
 constexpr double pi = std::numbers::pi, radius = 18, touch = 8;  // of the pad and the plate, mm
 
-/// Sine of the membrane's inclination where its tension is the same everywhere, 0.9 at the rim.
+/// Sine of the inclination of a membrane with uniform tension; 0.9 at the rim.
 double sine(double r) {
   return 0.9 * radius / (radius * radius - touch * touch) * (r * r - touch * touch) / r;
 }
@@ -22,7 +23,7 @@ struct Slope {
   double height_mm, along_x, along_y;
 };
 
-struct Pad {  // level under the plate, from there down to the rim a surface of constant curvature
+struct Pad {  // flat under the plate, then a surface of constant mean curvature down to the rim
   Slope operator()(double x, double y) const {
     const double r = std::fmax(std::hypot(x, y), touch);
     const auto steepness = [](double at) { return std::tan(std::asin(sine(at))); };
@@ -36,8 +37,8 @@ struct Pad {  // level under the plate, from there down to the rim a surface of 
 };
 
 int main() {
-  // The truth: how the rim is stretched, and how far the turn shears it. The pressure is the one at
-  // which the stretched rim holds what the plate does not bear.
+  // The truth: stretch of the rim, and its shear by the rotation. At this pressure the stretched
+  // rim balances the part of the pressure that the plate does not bear.
   constexpr double mu_t = 0.5, length = 0.8, stretch = 1.1, turn = 0.05;
   const double phi = std::asin(sine(radius));
   const double pull = mu_t * (stretch - std::pow(stretch, -3)) * std::sin(phi);

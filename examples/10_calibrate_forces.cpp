@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
-// Calibration of forces by look-up. In go contacts that a force gauge and the camera saw together;
-// out come what was fitted, how well it tells loads that it did not see, and a "force" section for
-// the sensor.json of a recording. data/README.md tells the columns.
-//   10_calibrate_forces [CONTACTS.csv]
+// Calibrates forces by look-up from contacts that a force gauge and the camera measured together.
+// Prints the fits, their errors for loads that were left out, and a "force" section for the
+// sensor.json of a recording. data/README.md describes the columns.
+// Usage: 10_calibrate_forces [CONTACTS.csv]
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -22,12 +22,12 @@
 using Sample = fingerpad::ForceSample<double>;
 using Samples = std::span<const Sample>;
 using LeftOut = fingerpad::CrossValidation<double>;
-constexpr int curve_degree = 3;  // of the normal force
+constexpr int curve_degree = 3;  // of the normal force's polynomial
 
-/// What forces are looked up by.
+/// A measure of the contact's size, by which forces are looked up.
 struct Measure {
   const char *name, *column, *unit;
-  double reference;  // a usual contact, as which displacement and rotation are counted
+  double reference;  // a typical contact, to which shear is normalised
 };
 constexpr Measure area{"area", "flat_area_mm2", "mm2", 100};
 constexpr Measure depth{"depth", "contact_depth_mm", "mm", 2};
@@ -78,7 +78,7 @@ void print(const char* unit, double residual, const LeftOut& left_out) {
               left_out.mean_abs, unit, left_out.worst, left_out.loads);
 }
 
-/// Samples that look as if something had gone wrong still give a fit, and this.
+/// Prints a warning for a fit to suspicious samples; the fit is still used.
 void warn(const char* what, const char* by, fingerpad::FitStatus status) {
   if (status != fingerpad::FitStatus::ok) {
     std::fprintf(stderr, "%s by %s: %s\n", what, by, name_of(status));
@@ -90,7 +90,7 @@ struct Normal {
   LeftOut left_out;
 };
 
-/// With a compensation for displacement and rotation where that tells unseen loads better.
+/// Compensates for displacement and rotation if that reduces the error for loads left out.
 Normal fit_normal(Samples samples, const Measure& by) {
   const auto fitted = [&](bool compensated) {
     fingerpad::FitOptions options;
@@ -127,7 +127,8 @@ struct Shear {
   LeftOut force_left_out, moment_left_out;
 };
 
-/// Exponents need loads of many sizes; those of all loads are kept while one is left out.
+/// The exponents need loads of many sizes, so they are fitted to all loads and kept while one load
+/// is left out.
 Shear fit_shear(Samples samples, const Measure& by) {
   using fingerpad::fit_moment, fingerpad::fit_tangential_force;
   Shear all;

@@ -1,10 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
-// When does a held object begin to slip? Foam fingers tell by vibrations, without a coefficient of
-// friction. Prints when each rule first alarms, and what the fingers felt then.
-//   11_preslip_on_a_recording [TAXELS.csv [FINGERS [QUIET_UNTIL_S]]]
-// The fingers (1 to 3, 2 when left out) share the rows of the table evenly, one below the other.
-// The noise is that of the part until QUIET_UNTIL_S (3 when left out), in which nothing may be
+// Detects when a held object begins to slip. Foam fingers detect it by vibrations, without a
+// coefficient of friction. Prints the first alarm of each rule and the state of the fingers then.
+// Usage: 11_preslip_on_a_recording [TAXELS.csv [FINGERS [QUIET_UNTIL_S]]]
+// The fingers (1 to 3, default 2) share the rows of the table evenly, one below the other. The
+// noise is estimated from the part until QUIET_UNTIL_S (default 3), in which nothing may be
 // touched.
 #include <array>
 #include <cmath>
@@ -36,7 +36,7 @@ struct Recording {
   std::vector<Sample> samples;
 };
 
-/// frame,time_s,r0_c0,r0_c1,...: columns in this order, all of them there.
+/// Reads the columns frame,time_s,r0_c0,r0_c1,...; all are required, in this order.
 Recording read(const char* file) {
   std::ifstream stream(file);
   std::string line, cell;
@@ -85,7 +85,7 @@ void print_alarm(const char* rule, double time_s, const Result& felt, Index cols
   }
 }
 
-/// Whether both rules find something.
+/// Returns whether both rules raise an alarm.
 template <std::size_t Fingers>
 bool look(const Recording& recording, double quiet_until_s) {
   const Index rows = recording.rows / Index(Fingers), cols = recording.cols;
@@ -97,7 +97,7 @@ bool look(const Recording& recording, double quiet_until_s) {
     return fingers;
   };
 
-  // Once: each finger has a noise of its own.
+  // Once: the noise of each finger.
   FoamHandOptions<Fingers> options;
   std::vector<TaxelNoise<>> noise;
   for (std::size_t f = 0; f < Fingers; ++f) {
@@ -145,7 +145,7 @@ int main(int argc, char** argv) {
     const bool found = fingers == 1   ? look<1>(recording, quiet_until_s)
                        : fingers == 2 ? look<2>(recording, quiet_until_s)
                                       : look<3>(recording, quiet_until_s);
-    return found || argc > 1 ? 0 : 1;  // the bundled recording has both
+    return found || argc > 1 ? 0 : 1;  // the bundled recording must raise both alarms
   } catch (const std::exception& error) {
     std::fprintf(stderr, "%s\n", error.what());
     return 1;

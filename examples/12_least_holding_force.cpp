@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
-// An object hangs between two foam fingers (simulated); its weight and the friction are unknown.
-// The grip is loosened until pre-slip, and then on, as the paper does to check: how many steps
-// before the object slips did the warning come?
+// Finds the least force that holds an object between two foam fingers (simulated). Its weight and
+// the friction are unknown. The grip is loosened until pre-slip and then until the object slips, as
+// in the paper, to count the steps from the warning to the slip.
 #include <array>
 #include <cstdio>
 

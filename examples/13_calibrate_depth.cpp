@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
-// The fluid's absorption from colours at known depths: a ball is pressed to four depths, and a
-// camera sees it at 49 pixels each. `calibrate absorption` does the same with pictures.
+// Fits the fluid's absorption to colours at known depths: a ball is pressed to four depths, each
+// seen at 49 pixels. `calibrate absorption` does the same with images.
 #include <cmath>
 #include <cstdio>
 #include <random>

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
-// From camera frames to force and moment in six axes, beside the truth of the bundled recording.
+// Computes six-axis force and moment from camera frames, and compares them with the true forces of
+// the recording.
 // Usage: 14_camera_to_wrench [RECORDING], a folder with sensor.json as `calibrate` writes it.
 #include <cmath>
 #include <cstdio>

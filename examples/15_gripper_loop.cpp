@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
-// The loop of a gripper, at the pace of a recording: a frame comes when its time has come, and the
-// grip force is out before the next. A rod is pressed in, then dragged until it slides.
-// Usage: 15_gripper_loop [RECORDING]
+// Runs the control loop of a gripper on a recording in real time: each frame arrives at its
+// recorded time, and the grip force is computed before the next. A rod is pressed in, then dragged
+// until it slides. Usage: 15_gripper_loop [RECORDING]
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
@@ -39,8 +39,8 @@ int main(int argc, char** argv) {
     const auto came = Clock::now();
     const auto touch = fingertip(frame, dots.of(k, frame), recording.side_dots->dots_mm.at(k),
                                  recording.signals.pressure_mpa(k), time_s);
-    // a recording's forces do not answer the grip, so the ratio alone sets it; on a hand, give
-    // touch.slip as it is, and the force follows the load
+    // Recorded forces do not react to the grip, so only the stick ratio is used here. On a real
+    // hand pass touch.slip itself; the grip force then follows the load.
     const auto answer = control({touch.slip.stick_ratio, touch.slip.update}, time_s - last_s, grip);
     const double ms = std::chrono::duration<double, std::milli>(Clock::now() - came).count();
 

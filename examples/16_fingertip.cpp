@@ -1,8 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
-// A fingertip as one object: frames in, touch out. Dots and side dots are not used here, so these
-// stages are switched off.
-// Usage: 16_fingertip [RECORDING]
+// Uses a fingertip as one object that turns frames into touch. Dots and side dots are not used
+// here, so their stages are switched off. Usage: 16_fingertip [RECORDING]
 #include <cmath>
 #include <cstdio>
 #include <opencv2/imgcodecs.hpp>

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
-// The rim's membrane, and the curves that tell forces from contacts.
+// Calibrates the membrane at the rim, and the curves for forces by look-up.
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
@@ -31,7 +31,7 @@ using Sample = fingerpad::ForceSample<double>;
 using Samples = std::span<const Sample>;
 using NormalFit = fingerpad::NormalForceFit<fingerpad::PolynomialForce<3>>;
 
-/// A table by the names of its columns; NaN: an empty cell or no such column.
+/// A table accessed by column names; NaN for an empty cell or a missing column.
 class Columns {
  public:
   explicit Columns(const Path& file) {
@@ -65,15 +65,15 @@ class Columns {
   std::vector<std::vector<std::string>> rows_;
 };
 
-/// What forces are looked up by.
+/// A measure of the contact's size, by which forces are looked up.
 struct Measure {
   const char *name, *column, *unit;
-  double reference;  ///< a usual contact
+  double reference;  ///< a typical contact
 };
 constexpr Measure area{"area", "flat_area_mm2", "mm2", 100};
 constexpr Measure depth{"depth", "contact_depth_mm", "mm", 2};
 
-/// Contacts beside the gauge's rows of the same frames.
+/// Joins contacts with the gauge's rows of the same frames.
 std::vector<Sample> samples_of(const Columns& contacts,
                                const std::optional<Columns>& gauge,
                                const Measure& measure) {
@@ -86,7 +86,7 @@ std::vector<Sample> samples_of(const Columns& contacts,
   for (std::size_t k = 0; k < contacts.rows(); ++k) {
     const auto row = row_of_frame.find(contacts.text(k, "frame"));
     if (gauge && row == row_of_frame.end()) {
-      continue;  // the gauge says nothing of this frame
+      continue;  // the gauge has no row for this frame
     }
     const Columns& forces = gauge ? *gauge : contacts;
     const std::size_t at = gauge ? row->second : k;
@@ -108,7 +108,7 @@ std::vector<Sample> samples_of(const Columns& contacts,
   return samples;
 }
 
-/// Error of a load that took no part, N; NaN where the rest would be too few.
+/// Mean absolute error for loads left out of the fit, N or N mm; NaN if too few loads remain.
 template <class Fit, class ErrorOf>
 double unseen(Samples samples, const Fit& fit, const ErrorOf& error_of) {
   try {
@@ -208,7 +208,7 @@ std::map<int, double> apexes_of(const Path& file) {
   return apexes;
 }
 
-/// Frames of the free pad, of which those of about one pressure make a level.
+/// Adds frames of the free pad; frames whose pressures differ by less than 2 % form a level.
 template <class Add>
 void add_levels(const Path& recording, const replay::SideDots& side, const Add& add) {
   const auto signals = replay::read_signals(recording / "signals.csv", any_frame);
@@ -229,7 +229,7 @@ void add_levels(const Path& recording, const replay::SideDots& side, const Add& 
   }
 }
 
-/// What the law says of the chords to the side dots, N/mm, for a plot.
+/// Mean tension that the law predicts from the chords to the side dots, N/mm, for a plot.
 double mean_pull(const replay::SpaceGrid& border,
                  const replay::SpaceGrid& dots,
                  const fingerpad::RimFit<double>& fit) {

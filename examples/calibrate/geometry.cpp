@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
-// Where the camera is, and the shape of the free pad.
+// Calibrates the camera and the shape of the free pad.
 #include "calibrate/geometry.hpp"
 
 #include <Eigen/Dense>
@@ -65,7 +65,7 @@ TouchedCap touched_cap(const Path& file, double ball_radius_mm) {
   return fit;
 }
 
-/// The mean of all pictures, 16 bit, 256 units a grey level.
+/// The mean of all pictures, 16 bit, 256 units per grey level.
 cv::Mat mean_picture(const std::vector<cv::Mat>& pictures) {
   cv::Mat sum(pictures.front().size(), CV_64FC3, cv::Scalar::all(0)), mean;
   for (const cv::Mat& picture : pictures) {
@@ -122,7 +122,8 @@ TouchedCap fit_cap(const std::vector<fingerpad::Point3<double>>& touches_mm,
     const auto& touch = touches_mm[static_cast<std::size_t>(k)];
     at.row(k) << touch.x, touch.y, touch.z + ball_radius_mm;
   }
-  // |p - c|^2 = (R + r)^2 is linear in c and in (R + r)^2 - |c|^2; then least squares of distances
+  // |p - c|^2 = (R + r)^2 is linear in c and in (R + r)^2 - |c|^2. This gives the start for the
+  // least squares of distances.
   Eigen::MatrixXd a(n, 4);
   a << 2 * at, Eigen::VectorXd::Ones(n);
   const Eigen::Vector4d linear = a.colPivHouseholderQr().solve(at.rowwise().squaredNorm());
@@ -183,7 +184,7 @@ Outcome camera(const Path& recording, const DotPlate& plate) {
     distance = found.mm;
     report.parameters.push_back({"plate_distance_mm", distance, sd});
     report.doubt(sd > 0.02 * distance, "the distance is known to less than 2 %: raise it further");
-    // a middle on the axis stays where it is
+    // a center on the axis does not move
     const double moved =
         std::hypot(high.middle_px.x - low.middle_px.x, high.middle_px.y - low.middle_px.y);
     report.doubt(

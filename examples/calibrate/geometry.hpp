@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// Where the camera is, by a plate of dots, and a cap, by a ball that touches it: the fits alone.
+// The fits of the camera to a plate of dots, and of a cap to touches of a ball.
 #include <vector>
 
 #include "calibrate/calibrations.hpp"
@@ -10,35 +10,36 @@
 
 namespace calibrate {
 
-/// A dot of a plate, from the middle one, and where the picture has it.
+/// A dot's position on the plate, relative to the center dot, and in the picture.
 struct PlateDot {
   fingerpad::Point2<double> plate_mm, picture_px;
 };
 
-/// A plate's dots as an affine picture of a square grid, by least squares.
+/// Least-squares fit of an affine image of a square grid to a plate's dots.
 struct PlatePicture {
   fingerpad::Point2<double> middle_px;
   double px_per_mm = 0;
-  double anisotropy = 0;  ///< longest over shortest px of a mm, less 1
+  double anisotropy = 0;  ///< ratio of largest to smallest px per mm, minus 1
   double residual_px = 0;
   double middle_sd_px = 0, px_per_mm_sd = 0;
   Plot plot{"distance from the middle of the plate [mm]", "distance in the picture [px]", {}};
 };
 PlatePicture fit_plate(const std::vector<PlateDot>& dots);
 
-/// From the entrance pupil to the plate, by two pictures between which it was raised by so much.
+/// Distance from the entrance pupil to the plate, from two pictures; the plate is raised between
+/// them by `raised_mm`.
 struct PlateDistance {
   double mm = 0, sd_mm = 0;
 };
 PlateDistance plate_distance(const PlatePicture& low, const PlatePicture& high, double raised_mm);
 
-/// The cap that balls have touched. Base NaN: the touches lie on no cap over the plate.
+/// A cap fitted to touches. The base is NaN if the touches lie on no cap over the plate.
 struct TouchedCap {
   CapSize size;
   double base_sd_mm = 0, apex_sd_mm = 0, off_axis_mm = 0, off_axis_sd_mm = 0, residual_mm = 0;
   Plot plot{"distance from the axis [mm]", "distance from the center of the cap [mm]", {}};
 };
-/// `touches_mm`: the lowest points of the ball, five or more.
+/// `touches_mm`: five or more lowest points of the ball.
 TouchedCap fit_cap(const std::vector<fingerpad::Point3<double>>& touches_mm, double ball_radius_mm);
 
 }  // namespace calibrate

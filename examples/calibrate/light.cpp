@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
-// What light does: the fluid, the neighbouring membrane, and the noise that contact must rise
-// above.
+// Calibrates the light: absorption of the fluid, light from neighbouring membrane, and the contact
+// threshold above the noise.
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -23,13 +23,13 @@ namespace {
 using fingerpad::Index;
 using Sample = fingerpad::DepthSample<double>;
 
-/// As wide on the plate as the published 29 px of 0.08 mm.
+/// Window with the same width on the plate as the published 29 px of 0.08 mm.
 int window_px(const replay::Sensor& sensor) {
   return sensor.smoothing_px.value_or(
       2 * static_cast<int>(std::lround(29 * 0.08 / sensor.camera.pitch_mm / 2 - 0.5)) + 1);
 }
 
-/// The free pad and the frames, whose depths are found out.
+/// The free pad and frames of known depth.
 struct KnownFrames {
   replay::Sensor sensor;
   cv::Mat reference;
@@ -59,11 +59,11 @@ KnownFrames read_known(const Path& recording,
   return known;
 }
 
-/// In a block: colours are curved over the depth by less than 0.01 grey levels then.
+/// Limit within a block, at which the curvature of colour over depth is below 0.01 grey levels.
 constexpr double max_depth_sd_mm = 0.3;
 
-/// Mean colours of blocks of a picture of which each pixel has a depth. Light that comes in from
-/// beside the pad is kept out by the margin.
+/// Adds the mean colours of blocks in which each pixel has a depth. A margin at the rim excludes
+/// stray light from beside the pad.
 void add_blocks(const replay::Sensor& sensor,
                 const cv::Mat& picture,
                 const DepthMap& depth_mm,
@@ -116,7 +116,7 @@ auto reference_of(const replay::Sensor& sensor, const cv::Mat& picture, const De
                                   fingerpad::channel<std::uint16_t>(wide, 1), free_mm);
 }
 
-/// Depth of frames by the sensor as it is known.
+/// Measures the depth of frames with the sensor as calibrated so far.
 class DepthMeter {
  public:
   DepthMeter(const replay::Sensor& sensor, const cv::Mat& reference, const DepthMap& free_mm)
@@ -203,7 +203,7 @@ Outcome neighbour_light(const Path& recording, const Path& sensor_file, int max_
   for (const cv::Mat& frame : known.frames) {
     measured.push_back(meter(frame));
   }
-  // between the points that neighbouring pixels see at the pad's mean depth
+  // distance between the points that neighbouring pixels see at the pad's mean depth
   const auto& camera = known.sensor.camera;
   const double mean_mm = cv::mean(free_mm, free_mm == free_mm)[0];
   const double pitch = point_at(camera, camera.center_y_px, camera.center_x_px + 1, mean_mm).x -

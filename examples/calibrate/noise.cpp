@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
-// Noise of dots and of taxels, and the thresholds that follow.
+// Calibrates the noise of dots and taxels, and the resulting thresholds.
 #include <cmath>
 
 #include "calibrate/calibrations.hpp"
@@ -15,7 +15,7 @@
 namespace calibrate {
 namespace {
 
-/// Dots of a folder's pictures, followed from the first picture of free/.
+/// Tracks the dots through the pictures of a folder, from the first picture of free/.
 template <class Take>
 void follow(const fingerpad::DotFinder& finder, const Path& folder, const Take& take) {
   auto state = finder.start();
@@ -28,11 +28,11 @@ void follow(const fingerpad::DotFinder& finder, const Path& folder, const Take& 
   }
 }
 
-/// The largest displacement between answers that the recording supports.
+/// Chooses the largest displacement between stick ratios that the recording supports.
 fingerpad::StickTestFit choose(const fingerpad::DotFinder& finder,
                                const Path& folder,
                                const fingerpad::DotNoise<>& noise) {
-  // --slips asks for an object that is larger than the print
+  // --slips requires an object larger than the print
   fingerpad::StickTestCalibration<> calibration(finder.rows(), finder.cols(), noise,
                                                 {.covers_pattern = true});
   follow(finder, folder, [&](const cv::Mat_<cv::Vec2d>& dots) {
@@ -71,7 +71,7 @@ Outcome dots(const Path& recording, bool slips) {
     plot.points.push_back({static_cast<double>(plot.points.size()), sum / count, 0});
   });
   const auto noise = calibration.fit();
-  // of independent noise of two pictures the distance is sqrt(pi) sigma on average
+  // with independent noise in two pictures the mean distance is sqrt(pi) sigma
   for (PlotPoint& point : plot.points) {
     point.fitted = point.x > 0 ? std::sqrt(3.141592653589793) * noise.noise_px : 0;
   }

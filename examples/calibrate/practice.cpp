@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
-// Recordings of a sensor that exists only as numbers, which docs/first_hour tells: every command
-// can be tried before one's own sensor is on the table, and tests know what must come out.
+// Writes recordings of a simulated sensor, which docs/first_hour describes. All commands can be
+// tried without hardware, and tests know the true results.
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
@@ -25,7 +25,7 @@ constexpr double ball_mm = 15;
 const fingerpad::Camera<double> practice_camera{50, 1.33, 120.3, 118.8, 0.153};
 const fingerpad::Absorption<double> practice_fluid{0.031, 0.0365, 0.98, 17};
 
-/// The same on every machine: twelve uniform numbers have variance 1.
+/// Noise that is the same on every machine: the sum of twelve uniform numbers has variance 1.
 class Noise {
  public:
   double operator()() {
@@ -63,12 +63,12 @@ std::string line(const char* format, Numbers... numbers) {
   return text;
 }
 
-/// Shot noise where the level is 57: a grey level.
+/// Standard deviation of shot noise: 1 grey level at a level of 57.
 double shot_noise(float level) {
   return std::sqrt(static_cast<double>(level) / 57);
 }
 
-/// The mean of 16 frames, 16 bit, 256 units a grey level.
+/// The mean of 16 noisy frames, 16 bit, 256 units per grey level.
 cv::Mat averaged(const cv::Mat_<cv::Vec3f>& ideal, Noise& noise) {
   cv::Mat_<cv::Vec3w> mean(ideal.size());
   for (int i = 0; i < ideal.rows; ++i) {
@@ -83,7 +83,7 @@ cv::Mat averaged(const cv::Mat_<cv::Vec3f>& ideal, Noise& noise) {
   return mean;
 }
 
-/// 8 bit.
+/// A noisy 8-bit frame.
 cv::Mat exposed(const cv::Mat_<cv::Vec3f>& ideal, Noise& noise) {
   cv::Mat_<cv::Vec3b> frame(ideal.size());
   for (int i = 0; i < ideal.rows; ++i) {
@@ -115,7 +115,7 @@ cv::Mat_<cv::Vec3f> rendered(const DepthMap& depth_mm) {
   return frame;
 }
 
-/// Dark dots on bright ground, each antialiased.
+/// An image of antialiased dark dots on a bright background.
 cv::Mat_<cv::Vec3f> dotted(const std::vector<cv::Point2d>& dots, double radius_px) {
   cv::Mat_<uchar> grey(size_px, size_px, static_cast<uchar>(170));
   for (const cv::Point2d& p : dots) {
@@ -131,7 +131,7 @@ cv::Mat_<cv::Vec3f> dotted(const std::vector<cv::Point2d>& dots, double radius_p
   return frame;
 }
 
-/// 9 x 9 dots, 3 mm apart, on the pad's plate and 10 mm above it.
+/// Writes plates of 9 x 9 dots, 3 mm apart, on the pad's plate and 10 mm above it.
 void write_plates(const Path& folder, Noise& noise) {
   for (const double raised_mm : {0.0, 10.0}) {
     const double scale = 50 / (50 + raised_mm) / practice_camera.pitch_mm;
@@ -145,7 +145,7 @@ void write_plates(const Path& folder, Noise& noise) {
   }
 }
 
-/// The free pad, balls that just touch it, and balls pressed into it.
+/// Writes the free pad, balls that just touch it, and balls pressed into it.
 void write_pad(const Path& folder, Noise& noise) {
   const DepthMap free_mm =
       spherical_cap_depth(practice_camera, {size_px, size_px}, base_mm, apex_mm);
@@ -184,8 +184,8 @@ void write_pad(const Path& folder, Noise& noise) {
   write_text(folder / "presses.csv", presses);
 }
 
-/// Side dots of the free pad at four pressures, as rim_traction.hpp has the law: length 0.8 mm and
-/// mu t = 0.5 N/mm.
+/// Writes side dots of the free pad at four pressures, by the law of rim_traction.hpp with length
+/// 0.8 mm and mu t = 0.5 N/mm.
 void write_rim(const Path& folder, Noise& noise) {
   std::filesystem::create_directories(folder);
   std::string signals = "frame,time_s,pressure_mpa\n";
@@ -209,8 +209,8 @@ void write_rim(const Path& folder, Noise& noise) {
   write_text(folder / "side_dots.csv", dots);
 }
 
-/// 15 x 15 dots at rest in free/; in frames/ an object carries them off three times, and lets go of
-/// more and more of them, from the edge.
+/// Writes 15 x 15 dots: at rest in free/; in frames/ an object drags them three times and loses
+/// more and more of them, starting at the edge.
 void write_dots(const Path& folder, Noise& noise) {
   constexpr double spacing_px = 15, jitter_px = 0.05;
   const auto picture = [&](double moved_px, double stuck_radius) {
@@ -236,7 +236,7 @@ void write_dots(const Path& folder, Noise& noise) {
   write_text(folder / "sensor.json", "{ \"stick\": { \"covers_pattern\": true } }\n");
 }
 
-/// 4 x 4 taxels at rest under a steady grip, with a noise of 3 counts.
+/// Writes 4 x 4 taxels at rest under a steady grip, with a noise of 3 counts.
 void write_taxels(const Path& folder, Noise& noise) {
   std::filesystem::create_directories(folder);
   std::string text = "frame,time_s";

@@ -26,8 +26,8 @@ const char* made_by(const std::string& section) {
                                                       : "calibrate absorption";
 }
 
-/// Depths on a ball of which the lowest point is at (x, y, z). The membrane lies on it as far as it
-/// reaches below the free pad by half of what it does in the middle; beyond, it may bridge.
+/// Depths on a ball. The membrane is assumed to lie on the ball where the indentation is more than
+/// half of the largest; farther out it may bridge.
 DepthMap depth_on_ball(const replay::Sensor& sensor, const Sphere& ball, const DepthMap& free_mm) {
   DepthMap depth(free_mm.size(), static_cast<float>(none));
   double deepest = 0;
@@ -56,7 +56,7 @@ replay::Sensor known_sensor(const fs::path& file, const std::vector<std::string>
       replay::fail(file, "has no section " + section + " yet: run " + made_by(section));
     }
   }
-  // what is not known yet is read, but not used
+  // placeholders for sections that are not calibrated yet; they are parsed but not used
   const json any = {
       {"camera",
        {{"plate_distance_mm", 50},
@@ -96,7 +96,7 @@ double depth_on(
     const fingerpad::Camera<double>& camera, int row, int col, const Sphere& sphere, bool far) {
   const auto start = point_at(camera, double(row), double(col), 0.0) - sphere.center_mm;
   const auto end = point_at(camera, double(row), double(col), 1.0) - sphere.center_mm;
-  const auto along = end - start;  // a ray in the fluid is straight
+  const auto along = end - start;  // rays are straight in the fluid
   const double a = squared_norm(along), b = dot(start, along);
   const double c = squared_norm(start) - sphere.radius_mm * sphere.radius_mm;
   const double root = std::sqrt(b * b - a * c);

@@ -40,7 +40,7 @@ void write_whole(const fs::path& file, const std::string& text) {
   }
 }
 
-/// `entry` as numbers; null stands for what is not known.
+/// The number in `entry`; null stands for an unknown value.
 double number_in(const fs::path& file, const std::string& name, const json& entry) {
   if (!entry.is_number() && !entry.is_null()) {
     replay::fail(file, name + " is " + entry.dump() + ", must be a number or null");
@@ -131,7 +131,7 @@ void save(const Outcome& outcome, const fs::path& file) {
   content["version"] = replay::sensor_version;
   for (const auto& item : outcome.sections.items()) {
     if (item.value().is_object() && content.contains(item.key())) {
-      content[item.key()].update(item.value());  // keys of other calibrations stay
+      content[item.key()].update(item.value());  // keeps keys of other calibrations
     } else {
       content[item.key()] = item.value();
     }

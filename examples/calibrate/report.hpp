@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// What a calibration says: its parameters with standard errors, what it leaves, and whether to
-// trust it. Kept in sensor.json under "calibration", beside the sections that replay reads.
+// The report of a calibration: parameters with standard errors, residual, and a verdict. Reports
+// are kept in sensor.json under "calibration", beside the sections that replay reads.
 #include <filesystem>
 #include <limits>
 #include <nlohmann/json.hpp>
@@ -11,9 +11,9 @@
 
 namespace calibrate {
 
-enum class Verdict { good, doubtful };  // what is refused has no report
+enum class Verdict { good, doubtful };  // a refused calibration has no report
 
-/// A parameter; no standard error: NaN.
+/// A parameter; its standard error is NaN if unknown.
 struct Parameter {
   std::string name;  ///< with its unit
   double value = 0;
@@ -21,16 +21,16 @@ struct Parameter {
 };
 
 struct Report {
-  std::string what;  ///< of the calibration: "camera", "absorption", ...
+  std::string what;  ///< name of the calibration: "camera", "absorption", ...
   Verdict verdict = Verdict::good;
   std::string because = {};  ///< why it is doubtful
   double residual = 0;
   std::string residual_unit = {};
   std::vector<Parameter> parameters = {};
   std::vector<std::vector<double>> covariance =
-      {};  ///< where there is one, in an order told in the page
+      {};  ///< may be empty; the documentation gives the order
 
-  /// The first cause counts.
+  /// Marks the report as doubtful; the first reason is kept.
   void doubt(bool is_doubtful, const std::string& why) {
     if (is_doubtful && verdict == Verdict::good) {
       verdict = Verdict::doubtful;
@@ -44,41 +44,41 @@ struct PlotPoint {
   double x, measured, fitted;
 };
 struct Plot {
-  std::string x, y;  ///< what the axes are, with units
+  std::string x, y;  ///< axis labels, with units
   std::vector<PlotPoint> points;
-  std::string measured = "measured", fitted = "fitted";  ///< what the numbers of a point are
+  std::string measured = "measured", fitted = "fitted";  ///< labels of the two values
 };
 
-/// A part of a calibration that its samples do not tell.
+/// A part of a calibration that its samples do not determine.
 struct Refusal {
   std::string what, because;
 };
 
-/// What a sub-command hands back.
+/// The result of a sub-command.
 struct Outcome {
   std::vector<Report> reports;
-  std::vector<Refusal> refusals;  ///< parts that are missing here; the others stand
-  nlohmann::json sections = nlohmann::json::object();  ///< for sensor.json; replaces what is there
-  std::vector<Plot> plots;                             ///< one a report
+  std::vector<Refusal> refusals;  ///< parts without a result; the others are valid
+  nlohmann::json sections = nlohmann::json::object();  ///< for sensor.json; replaces existing ones
+  std::vector<Plot> plots;                             ///< one per report
 };
 
-/// Prints a report, or why there is none, as people read it.
+/// Prints a report, or why there is none, for people.
 void print(const Report& report);
 void print(const Refusal& refusal);
 
-/// Both ways without loss. Reading refuses unknown keys; `file` names the culprit. Throws
-/// replay::Failure.
+/// Convert a report to JSON and back without loss. Reading refuses unknown keys; `file` is for the
+/// message. Throws replay::Failure.
 nlohmann::json to_json(const Report& report);
 Report report_of(const std::filesystem::path& file,
                  const std::string& what,
                  const nlohmann::json& entry);
 
-/// Puts the outcome into `file`, whole or not at all. Throws replay::Failure.
+/// Writes the outcome into `file` atomically. Throws replay::Failure.
 void save(const Outcome& outcome, const std::filesystem::path& file);
-/// All that earlier calibrations have said in `file`. Throws replay::Failure.
+/// Reads the reports of earlier calibrations in `file`. Throws replay::Failure.
 std::vector<Report> load_reports(const std::filesystem::path& file);
 
-/// "PLACE/WHAT.csv" for plot.py. Throws replay::Failure.
+/// Writes a plot as a .csv file for plot.py. Throws replay::Failure.
 void write_plot(const Plot& plot, const std::filesystem::path& file);
 
 }  // namespace calibrate

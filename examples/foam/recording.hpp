@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// A made-up recording of two foam fingers that hold an object: the grip is loosened from 3 s on,
-// and from 6.5 s on the object creeps, at first where it is pressed least. What creeps vibrates.
+// A synthetic recording of two foam fingers that hold an object. The grip is loosened from 3 s on.
+// From 6.5 s on the object creeps, first where the pressure is lowest; creeping taxels vibrate.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -13,17 +13,17 @@
 namespace foam {
 
 constexpr int fingers = 2;
-constexpr int rows = 8;  // of each finger; they lie below each other in the table
+constexpr int rows = 8;  // of each finger; the fingers lie one below the other in the table
 constexpr int cols = 4;
 constexpr int samples = 300;
 constexpr double rate_hz = 30;
 constexpr double loosened_from_s = 3;
 constexpr double creeps_from_s = 6.5;
-constexpr double slips_from_s = 9.5;  // nothing holds the object any more
+constexpr double slips_from_s = 9.5;  // from here on nothing holds the object
 constexpr double noise = 5;           // counts
-constexpr double peak = 1800;         // counts, of the firm grip
+constexpr double peak = 1800;         // counts, with the firm grip
 
-/// Standard normal, the same numbers everywhere.
+/// Standard normal noise; the same numbers on every platform.
 class Normal {
  public:
   double operator()() {
@@ -39,15 +39,15 @@ class Normal {
   std::mt19937 generator_{2007};
 };
 
-/// What share of the peak presses a taxel; the two fingers are not pressed alike.
+/// Pressure on a taxel as a share of the peak; it differs between the two fingers.
 inline double pressure(int finger, int row, int col) {
   const double from_row = row - (finger == 0 ? 3.2 : 4.1);
   const double from_col = col - (finger == 0 ? 1.4 : 1.7);
   return std::exp(-from_row * from_row / 9 - from_col * from_col / 3);
 }
 
-/// When a taxel begins to vibrate: those that are pressed least do first, those that are not do
-/// not.
+/// When a taxel begins to vibrate: the least pressed ones first. Those pressed by less than `least`
+/// never vibrate.
 inline double starts_s(double pressed) {
   constexpr double least = 0.1;
   return pressed < least
@@ -55,7 +55,7 @@ inline double starts_s(double pressed) {
              : creeps_from_s + (slips_from_s - creeps_from_s) * (pressed - least) / (1 - least);
 }
 
-/// Counts without noise.
+/// Reading in counts, without noise.
 inline double reading(double pressed, double time_s, double turn, double strength) {
   const double grip = 1 - 0.06 * (std::max)(0.0, time_s - loosened_from_s);
   const double since_s = (std::max)(0.0, time_s - creeps_from_s);
@@ -65,7 +65,7 @@ inline double reading(double pressed, double time_s, double turn, double strengt
          60 * strength * reach * std::sin(2 * std::numbers::pi * (waves + turn));
 }
 
-/// taxels.csv
+/// The content of taxels.csv.
 inline std::string recording() {
   Normal normal;
   double turns[fingers * rows][cols];

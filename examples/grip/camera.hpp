@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// The camera of the simulated fingertip: dots in px, with noise, and which of them touch.
+// The camera of the simulated fingertip: noisy dots in px, and which of them are in contact.
 #include <cstddef>
 #include <random>
 #include <vector>

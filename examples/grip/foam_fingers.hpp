@@ -1,14 +1,14 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// An object that hangs between two foam fingers, simulated: what the taxels read while the grip is
-// loosened, until the object slips.
+// Simulates an object that hangs between two foam fingers: the readings of the taxels while the
+// grip is loosened until the object slips.
 //
-// Each taxel carries its share of the grip, largest in the middle of the contact (Hertz), bears
-// friction K N^beta, and holds the object by a spring along the finger. The object sinks until the
-// springs carry its weight; where a spring would pull harder than friction bears, the taxel slips
-// on. A taxel that slips shakes: its speed is the load of an oscillator on the foam, whose motion
-// is felt as normal force.
+// Each taxel carries a share of the grip force, largest at the center of the contact (Hertz). It
+// bears friction up to K N^beta and holds the object by a spring along the finger. The object sinks
+// until the springs carry its weight. Where a spring would pull harder than friction can bear, the
+// taxel slips. A slipping taxel vibrates: its speed is the load of an oscillator on the foam, whose
+// motion adds to the measured normal force.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -25,13 +25,13 @@ struct FoamFingersSetup {
   fingerpad::Index rows = 16;
   fingerpad::Index cols = 4;
   double pitch_mm = 3.4;
-  double first_force_n = 10;                                 // that each finger presses with
+  double first_force_n = 10;                                 // of each finger
   double weight_n = 4.1;                                     // of the object
   fingerpad::PolymerFriction<> friction = {.factor = 0.35};  // of one taxel
-  double contact_radius_mm = 22;           // at the first force; goes with its cube root
+  double contact_radius_mm = 22;           // at the first force; scales with its cube root
   double shear_stiffness_n_per_mm = 0.05;  // of one taxel
   fingerpad::MassSpringDamper<> oscillator = {1e-5, 6e-5, 0.3};  // about 28 Hz
-  double drag_n_s_per_mm = 0.03;  // load on the oscillator for each mm/s of slip
+  double drag_n_s_per_mm = 0.03;  // load on the oscillator per mm/s of slip
   double counts_per_n = 800;
   double noise_counts = 4;
   double rate_hz = 100;
@@ -41,7 +41,7 @@ struct FoamFingersSetup {
 /// Both fingers and the object between them.
 class FoamFingers {
  public:
-  /// At first the fingers carry this share of the weight.
+  /// `carried_share` of the weight is carried by the fingers at first; see carry().
   FoamFingers(const FoamFingersSetup& setup, unsigned seed, double carried_share = 1)
       : setup_(setup),
         hold_(setup.oscillator, 1 / setup.rate_hz),
@@ -49,7 +49,7 @@ class FoamFingers {
         carried_share_(carried_share),
         random_(seed) {
     for (Finger& finger : fingers_) {
-      // no object is held just in the middle
+      // objects are not held exactly at the center
       std::uniform_real_distribution<double> place(-2, 2);
       finger.center_x_mm = place(random_);
       finger.center_y_mm = place(random_);
@@ -64,7 +64,7 @@ class FoamFingers {
     time_s_ = 0;
   }
 
-  /// The next sample, while the gripper goes toward `force_n`.
+  /// Advances by one sample, while the grip force approaches `force_n`.
   void advance(double force_n) {
     force_n_ += (force_n - force_n_) / (1 + setup_.grip_lag_s * setup_.rate_hz);
     time_s_ += 1 / setup_.rate_hz;
@@ -73,19 +73,19 @@ class FoamFingers {
     }
   }
 
-  /// What finger 0 or 1 reads, in counts.
+  /// Readings of finger 0 or 1, counts.
   fingerpad::StridedView<const double> readings(std::size_t finger) const {
     return {fingers_[finger].readings.data(), setup_.rows, setup_.cols, setup_.cols};
   }
   double time_s() const { return time_s_; }
   double force_n() const { return force_n_; }
-  /// How much of the object's weight the fingers carry, 0 to 1: the rest stands on a surface.
+  /// Sets the share of the weight that the fingers carry, 0 to 1; a surface carries the rest.
   void carry(double share) { carried_share_ = share; }
-  /// The farthest that the object slipped over a taxel of this finger in this sample.
+  /// Largest slip of the object over a taxel of this finger in this sample.
   double slipped_mm(std::size_t finger) const { return fingers_[finger].slipped_mm; }
-  /// Friction cannot hold the object on one of the fingers any more.
+  /// Whether friction can no longer hold the object on one of the fingers.
   bool has_slipped() const { return fingers_[0].has_slipped || fingers_[1].has_slipped; }
-  /// With which friction just bears the weight that is carried, if every taxel did its best.
+  /// Least grip force at which friction bears the carried weight, with every taxel at its limit.
   double least_force_n() const {
     double low = 0, high = 1000;
     for (int k = 0; k < 40; ++k) {
@@ -107,9 +107,9 @@ class FoamFingers {
  private:
   struct Finger {
     double center_x_mm = 0, center_y_mm = 0;
-    double sunk_mm = 0;  // the object, against the finger
+    double sunk_mm = 0;  // the object relative to the finger
     bool has_slipped = false;
-    double slipped_mm = 0;        // in this sample, the most
+    double slipped_mm = 0;        // in this sample, the largest
     std::vector<double> slip_mm;  // of the object over each taxel
     std::vector<double> load_n;   // on each oscillator
     std::vector<fingerpad::FirstOrderHold<>::State> oscillators;
@@ -158,7 +158,7 @@ class FoamFingers {
     }
   }
 
-  /// Lets the object sink until the taxels carry half of its weight.
+  /// Lets the object sink until this finger's taxels carry half of the carried weight.
   void sink(Finger& finger, const std::vector<double>& normal) const {
     const auto carried = [&](double sunk_mm) {
       double sum = 0;

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// A chart of two runs, one above the other's: load, grip force, stick ratio and slip over time.
+// A chart of two runs over time: load, grip force, stick ratio and slip.
 #include <cmath>
 #include <opencv2/core.hpp>
 #include <string>
@@ -46,7 +46,7 @@ struct Panel {
   double tick;
   std::vector<Curve> curves;
 
-  /// The first tick that no curve passes.
+  /// The first tick that no curve exceeds.
   double top() const {
     double highest = 0;
     for (const Curve& curve : curves) {
@@ -85,7 +85,7 @@ inline void paint(Canvas& canvas, const cv::Rect2d& box, const Panel& panel, dou
   }
 }
 
-/// A word beside a sample of its curve.
+/// A label beside a sample of its curve.
 inline void legend(
     Canvas& canvas, Spot at, const Ink& colour, bool dashed, const std::string& word) {
   const std::vector<Spot> sample = {at, {at.x + 30, at.y}};

@@ -1,15 +1,15 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// A load that hangs on a fluid fingertip by friction, as simply as that can be told honestly:
-//   - the membrane is a square net of springs, held at the rim; each knot is a printed dot. A fluid
-//     does not hold the membrane from behind, so there is no other spring;
+// A minimal model of a load that hangs on a fluid fingertip by friction:
+//   - the membrane is a square net of springs, fixed at the rim; each node is a printed dot. The
+//     fluid behind the membrane does not resist its motion, so there is no other spring;
 //   - the contact is a disc over which the fluid's pressure carries the grip force, so its area is
 //     force / pressure, and each dot in it carries an equal share;
-//   - a dot in contact moves with the object as long as the net pulls on it less than friction
-//     allows (Coulomb, one coefficient), and slides on it against that force otherwise;
-//   - the object has its mass, and a little drag so that it does not ring.
-// Left out: depth, lateral contraction, friction that falls when sliding begins, the other fingers.
+//   - a dot in contact moves with the object while the net pulls on it by less than the friction
+//     limit (Coulomb, one coefficient), and slides against that force otherwise;
+//   - the object has a mass, and a little drag so that it does not ring.
+// Not modelled: depth, lateral contraction, a drop of friction when sliding begins, other fingers.
 // "load" is the share of the weight that this fingertip bears.
 #include <algorithm>
 #include <cmath>
@@ -21,9 +21,9 @@
 namespace grip {
 
 struct Fingertip {
-  int dots = 21;  ///< in each direction, odd
+  int dots = 21;  ///< per direction, odd
   double pitch_mm = 1.5;
-  double rim_mm = 15.5;          ///< radius at which the membrane is held
+  double rim_mm = 15.5;          ///< radius at which the membrane is fixed
   double spring_n_per_mm = 0.1;  ///< of the net: shear modulus times thickness of the membrane
   double pressure_mpa = 0.02;
   double friction = 0.6;
@@ -32,7 +32,7 @@ struct Fingertip {
 
 class SlippingLoad {
  public:
-  /// The object hangs at rest.
+  /// Starts with the object hanging at rest.
   SlippingLoad(const Fingertip& tip, double load_n, double force_n)
       : tip_(tip),
         shift_mm_(cells(), 0),
@@ -50,7 +50,7 @@ class SlippingLoad {
     slip_mm_ = 0;
   }
 
-  /// For a time the object is pulled along x by `load_n`, and the tip presses with `force_n`.
+  /// Advances by `time_s`: `load_n` pulls the object along x, and the tip presses with `force_n`.
   void advance(double load_n, double force_n, double time_s) {
     constexpr int steps = 40;
     constexpr double gravity_mm_s2 = 9810;
@@ -63,18 +63,18 @@ class SlippingLoad {
     }
   }
 
-  /// From now on; a contact that gets wet, or comes to another face.
+  /// Changes the friction from now on, as when the contact gets wet.
   void set_friction(double friction) { tip_.friction = friction; }
-  /// Brings the middle of the contact to a place along x, as an object does that rolls.
+  /// Moves the center of the contact along x, as a rolling object does.
   void roll_to(double middle_mm) { middle_mm_ = middle_mm; }
 
   double x_mm(int row, int col) const { return place_mm(col) + shift_mm_[at(row, col)]; }
   double y_mm(int row, int) const { return place_mm(row); }
   bool touches(int row, int col) const { return touches_[at(row, col)] != 0; }
-  /// The force along the contact, as gauges of the fingertip have it.
+  /// The tangential force, as a force sensor in the fingertip measures it.
   double held_n() const { return held_n_; }
   double friction_limit_n() const { return tip_.friction * force_n_; }
-  /// How far the object has slid as a whole: the way of the dot that slips least, step by step.
+  /// Gross slip of the object: the sum over the steps of the slip of the dot that slips least.
   double slip_mm() const { return slip_mm_; }
 
  private:
@@ -85,7 +85,7 @@ class SlippingLoad {
   }
   double place_mm(int k) const { return tip_.pitch_mm * (k - tip_.dots / 2); }
 
-  /// Dots that come into contact are held where they are.
+  /// Sets the contact for this force. Dots that come into contact stick where they are.
   void press(double force_n) {
     force_n_ = force_n;
     touching_ = 0;
@@ -102,7 +102,7 @@ class SlippingLoad {
     }
   }
 
-  /// Brings the net to rest with the object where it is; the force with which it holds the object.
+  /// Relaxes the net with the object fixed; returns the force with which it holds the object.
   double relax() {
     const double max_mm = friction_limit_n() / touching_ / tip_.spring_n_per_mm;
     for (int sweep = 0; sweep < 12; ++sweep) {
@@ -136,9 +136,9 @@ class SlippingLoad {
 
   Fingertip tip_;
   std::vector<double> shift_mm_;  ///< of each dot, along x
-  std::vector<double> slid_mm_;   ///< of each dot against the object
+  std::vector<double> slid_mm_;   ///< of each dot relative to the object
   std::vector<char> touches_;
-  std::vector<char> free_;  ///< not held by the rim
+  std::vector<char> free_;  ///< not fixed at the rim
   int touching_ = 0;
   double middle_mm_ = 0;  ///< of the contact, along x
   double force_n_ = 0;

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// Recordings of how the dots of a pad moved under known loads, one file a load.
+// Recordings of the motion of a pad's dots under known loads, one file per load.
 #include <filesystem>
 #include <opencv2/core.hpp>
 #include <string>
@@ -12,14 +12,14 @@ namespace load_trials {
 /// The dots of all repeats of a load, in one row.
 struct Load {
   std::string name;
-  bool single_axis = false;  ///< tilted about one axis at most: its force is exact
+  bool single_axis = false;  ///< tilted about at most one axis, so its force is exact
   double fx_n = 0;           ///< along the pad
   double fz_n = 0;           ///< along the pad, across
   cv::Mat_<cv::Vec2d> from;  ///< px
   cv::Mat_<cv::Vec2d> to;
 };
 
-/// Sorted by name; throws replay::Failure where there are none, or one is not as expected.
+/// Reads the loads, sorted by name. Throws replay::Failure if there are none or one is malformed.
 std::vector<Load> loads_of(const std::filesystem::path& folder);
 
 }  // namespace load_trials

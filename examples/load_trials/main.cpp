@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
-// load_trials: how well the moves of a pad's dots tell the force along it, for loads that took no
-// part in the calibration. See --help.
+// load_trials: evaluates how well the motion of a pad's dots gives the tangential force, for loads
+// left out of the calibration. See --help.
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
@@ -25,7 +25,7 @@ using load_trials::Load;
 
 using Samples = std::vector<ForceSample<double>>;
 
-/// How far the dots moved, as the mean of all repeats; the displacement stays in px.
+/// Mean displacement of the dots over all repeats, in px.
 template <class Mean>
 Samples samples_of(const std::vector<Load>& loads, const Mean& mean) {
   using Shift = fingerpad::ContactShift<fingerpad::ContactDots, Mean>;
@@ -43,7 +43,7 @@ Samples samples_of(const std::vector<Load>& loads, const Mean& mean) {
   return samples;
 }
 
-/// Force by a straight line over the displacement along the same axis, least squares.
+/// Least-squares line of force over displacement along the same axis.
 struct Lines {
   Point2<double> slope;
   Point2<double> at_zero;
@@ -71,7 +71,7 @@ Lines fit_lines(std::span<const ForceSample<double>> samples) {
   return {{x.x, y.x}, {x.y, y.y}};
 }
 
-/// Mean absolute error of one component, each load left out once.
+/// Mean absolute error of one component, with each load left out once.
 template <class Fit>
 double left_out_error(const Samples& samples, const Fit& fit, double Point2<double>::*axis) {
   const auto error = [&](const auto& map, const ForceSample<double>& s) {
@@ -81,7 +81,7 @@ double left_out_error(const Samples& samples, const Fit& fit, double Point2<doub
       .mean_abs;
 }
 
-/// Displacements of all loads, and of those about one axis alone.
+/// Displacements of all loads, and of those tilted about one axis only.
 struct Displaced {
   Samples single;
   Samples all;
@@ -144,7 +144,7 @@ int main(int argc, char** argv) {
       "and against loads that do not fit.");
   std::string folder;
   app.add_option("FOLDER", folder, "the loads")->required();
-  // beyond it are as many of normal errors in the plane as beyond 1.345 on a line: 18 %
+  // normal errors in the plane exceed it as often as 1.345 on a line: 18 %
   double threshold = 1.86;
   app.add_option("--threshold", threshold, "of the robust mean, in standard deviations")
       ->capture_default_str();

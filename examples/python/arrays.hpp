@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// NumPy arrays as grids: views of the array's own memory, with whatever strides it has.
+// NumPy arrays as grids: views of the array's own memory, with any strides.
 #include <pybind11/numpy.h>
 
 #include <cstdint>
@@ -18,7 +18,7 @@ namespace python {
 namespace py = pybind11;
 using fingerpad::Index;
 
-/// What a caller gives for an array or a number: whatever it is, so that a refusal can name it.
+/// Arguments for arrays and numbers. They accept any object, so that an error can name its type.
 class Array : public py::object {
   PYBIND11_OBJECT_DEFAULT(Array, py::object, is_any)
   static bool is_any(PyObject*) { return true; }
@@ -36,13 +36,14 @@ inline std::string type_name(const py::handle& given) {
   return py::str(py::type::of(given).attr("__name__"));
 }
 
-/// Whether it is of a class of the module numbers, as NumPy's scalars are; not bool.
+/// Whether an object is an instance of a class of the module `numbers`, like NumPy scalars, but not
+/// bool.
 inline bool is_of_numbers(const py::handle& given, const char* kind) {
   return !PyBool_Check(given.ptr()) &&
          py::isinstance(given, py::module_::import("numbers").attr(kind));
 }
 
-/// The number. Raises TypeError for bool, complex numbers, arrays, text and None.
+/// Returns the number. Raises TypeError for bool, complex numbers, arrays, text and None.
 inline double number_of(const py::object& given, const char* name) {
   if (!PyFloat_Check(given.ptr()) && !is_of_numbers(given, "Real")) {
     throw py::type_error(std::string(name) + " must be a real number, not " + type_name(given));
@@ -50,7 +51,7 @@ inline double number_of(const py::object& given, const char* name) {
   return given.cast<double>();
 }
 
-/// The integer. Raises TypeError for what is none, and for bool.
+/// Returns the integer. Raises TypeError for bool and for anything that is not an integer.
 template <class T = Index>
 T count_of(const py::object& given, const char* name) {
   if (!is_of_numbers(given, "Integral")) {
@@ -59,7 +60,7 @@ T count_of(const py::object& given, const char* name) {
   return given.cast<T>();
 }
 
-/// Raises TypeError for an array with a mask, which would be lost.
+/// Raises TypeError for a masked array, because the mask would be lost.
 inline void refuse_masked(const py::handle& given, const char* name) {
   if (py::module_::import("numpy.ma").attr("isMaskedArray")(given).cast<bool>()) {
     throw py::type_error(std::string(name) +
@@ -68,7 +69,7 @@ inline void refuse_masked(const py::handle& given, const char* name) {
   }
 }
 
-/// The array itself. Raises TypeError for a list, None or text, and for a masked array.
+/// Returns the array itself. Raises TypeError for a list, None or text, and for a masked array.
 inline py::array array_of(const py::object& given, const char* name) {
   if (!py::isinstance<py::array>(given)) {
     throw py::type_error(std::string(name) + " must be a NumPy array, not " + type_name(given) +
@@ -78,8 +79,8 @@ inline py::array array_of(const py::object& given, const char* name) {
   return py::reinterpret_borrow<py::array>(given);
 }
 
-/// Numbers of any shape, from an array or a list: copied where they are no doubles. Raises
-/// TypeError for complex numbers, bool, text, dates and objects.
+/// Returns numbers of any shape from an array or a list; copies them unless they are doubles.
+/// Raises TypeError for complex numbers, bool, text, dates and objects.
 inline py::array_t<double> numbers_of(const py::object& given, const char* name) {
   refuse_masked(given, name);
   const py::array array = py::module_::import("numpy").attr("asarray")(given);
@@ -91,7 +92,7 @@ inline py::array_t<double> numbers_of(const py::object& given, const char* name)
   return array;
 }
 
-/// Raises TypeError: what the array must be, and what it is.
+/// Raises TypeError that names the expected and the given array.
 [[noreturn]] inline void refuse_array(const py::array& array,
                                       const char* name,
                                       const std::string& shape,
@@ -101,7 +102,7 @@ inline py::array_t<double> numbers_of(const py::object& given, const char* name)
                        std::string(py::str(array.dtype())));
 }
 
-/// The view of a two-dimensional array of cells T. Raises TypeError for another shape or type.
+/// Returns a view of a two-dimensional array of type T. Raises TypeError for another shape or type.
 template <class T>
 fingerpad::StridedView<const T> view_of(const py::object& given, const char* name) {
   const py::array array = array_of(given, name);
@@ -118,7 +119,7 @@ fingerpad::StridedView<const T> view_of(const py::object& given, const char* nam
           array.strides(0) / size, array.strides(1) / size};
 }
 
-/// The view of a mask: uint8 or bool, contact where it is not 0.
+/// Returns a view of a mask: uint8 or bool, nonzero in contact.
 inline fingerpad::StridedView<const std::uint8_t> mask_of(const py::object& given,
                                                           const char* name) {
   const py::array array = array_of(given, name);
@@ -126,15 +127,15 @@ inline fingerpad::StridedView<const std::uint8_t> mask_of(const py::object& give
   return view_of<std::uint8_t>(flags ? py::array(array.attr("view")("uint8")) : array, name);
 }
 
-/// An array of rows x cols cells T of its own, and the view to write to it.
+/// Returns a new array of rows x cols elements T, and a view to write to it.
 template <class T>
 std::pair<py::array_t<T>, fingerpad::StridedView<T>> new_array(Index rows, Index cols) {
   py::array_t<T> array({rows, cols});
   return {array, {array.mutable_data(), rows, cols, cols}};
 }
 
-/// `given`, or a new array where there is none, and the view to write rows x cols cells T to it.
-/// Raises TypeError or ValueError for another type or shape, or where it may not be written.
+/// Returns `given`, or a new array if it is None, and a view to write rows x cols elements T to it.
+/// Raises TypeError or ValueError for another type or shape, or for a read-only array.
 template <class T>
 std::pair<py::array, fingerpad::StridedView<T>> array_to_write(const py::object& given,
                                                                Index rows,
@@ -154,7 +155,7 @@ std::pair<py::array, fingerpad::StridedView<T>> array_to_write(const py::object&
       {static_cast<T*>(array.mutable_data()), rows, cols, view.row_stride(), view.col_stride()}};
 }
 
-/// Calls `call(T())` with the cell type of a camera's channel: uint8, uint16, float32 or float64.
+/// Calls `call(T())` with the type of a camera channel: uint8, uint16, float32 or float64.
 template <class Call>
 auto with_pixel_of(const py::object& given, const char* name, const Call& call) {
   const py::array channel = array_of(given, name);
@@ -174,7 +175,7 @@ auto with_pixel_of(const py::object& given, const char* name, const Call& call) 
                        std::string(py::str(channel.dtype())));
 }
 
-/// Dots from an array (rows, cols, 2) or (rows, cols, 3) of float64, in px or mm; NaN: not there.
+/// Dots from an array (rows, cols, 2) or (rows, cols, 3) of float64, px or mm; NaN if missing.
 template <class Point, std::size_t Coordinates>
 auto dots_of(const py::object& given, const char* name) {
   const py::array array = array_of(given, name);
@@ -203,7 +204,7 @@ inline auto dots_mm_of(const py::object& array, const char* name) {
   return dots_of<fingerpad::Point3<double>, 3>(array, name);
 }
 
-/// Dots of an array in memory of their own, where options want them so.
+/// A copy of the dots of an array, for options that need them in memory of their own.
 struct Dots {
   Index rows, cols;
   std::vector<fingerpad::Point3<double>> cells;

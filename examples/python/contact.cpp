@@ -16,7 +16,7 @@ namespace {
 using fingerpad::ContactResult;
 using fingerpad::ContactTest;
 
-/// A contact region with its workspace; calls from several threads take turns.
+/// A contact region with its workspace; calls from several threads are serialised.
 class Region {
   using Method = fingerpad::ContactRegion<>;
 

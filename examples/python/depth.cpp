@@ -38,7 +38,7 @@ Reference fit(const Camera<double>& camera,
   });
 }
 
-/// A depth estimator with the workspaces that it needs; calls from several threads take turns.
+/// A depth estimator with its workspaces; calls from several threads are serialised.
 class Estimator {
   using Method = fingerpad::DepthEstimator<>;
   template <class Pixel>

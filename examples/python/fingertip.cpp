@@ -20,14 +20,14 @@ using fingerpad::FingertipResult;
 using fingerpad::OneRow;
 using fingerpad::SpatialStickTest;
 using Reference = fingerpad::DepthReference<float>;
-/// Every pixel, as arrays are read.
+/// Depth at every pixel, because Python reads whole arrays.
 struct Methods : fingerpad::FingertipMethods {
   static constexpr int sampling = 1;
 };
 using Options = fingerpad::FingertipOptions<Reference>;
 using WrenchOptions = fingerpad::WrenchOptions<double>;
 
-/// Frames of several threads take turns.
+/// A fingertip; calls from several threads are serialised.
 class Fingertip {
  public:
   explicit Fingertip(const Options& options) : fingertip_(options) {}
@@ -49,7 +49,7 @@ class Fingertip {
     return fingertip_(frame, dots, side_dots, pressure_mpa, time_s);
   }
 
-  /// A copy of what `show` tells of the last frame.
+  /// A copy of the view that `show` returns for the last frame.
   template <class T, class Show>
   py::array_t<T> copied(const Show& show) {
     const std::scoped_lock lock(mutex_);
@@ -105,7 +105,7 @@ std::unique_ptr<Fingertip> make(const fingerpad::Camera<double>& camera,
   return std::make_unique<Fingertip>(options);
 }
 
-/// A rotation, in rows, and a translation in mm.
+/// A rotation matrix, row by row, and a translation in mm.
 py::tuple pose_tuple(const fingerpad::Pose<double>& pose) {
   const auto& r = pose.rotation;
   py::tuple rows(3);

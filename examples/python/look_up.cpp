@@ -24,7 +24,7 @@ using Sample = fingerpad::ForceSample<double>;
 using Samples = std::vector<Sample>;
 using ShearResult = fingerpad::ShearResult<double>;
 
-/// A fit with the measure that its displacements or rotations are counted by.
+/// A fit with the reference measure of its normalisation.
 struct ShearFit {
   fingerpad::ShearFit<> fit;
   double reference;
@@ -122,7 +122,7 @@ ShearFit fit_moment(const Array& measure,
   });
 }
 
-/// The curve of a fit as fingertips have it: the higher coefficients are 0.
+/// The curve of a fit in the type that Fingertip uses; the higher coefficients are 0.
 NormalForce normal_force_of(const NormalFit& fit) {
   fingerpad::PolynomialForce<5> curve;
   curve.from = fit.curve.from;

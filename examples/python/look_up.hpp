@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// The forces by look-up that a fingertip takes.
+// Forces by look-up, as arguments of a fingertip.
 #include "fingerpad/force/normal_force.hpp"
 #include "fingerpad/force/shear.hpp"
 

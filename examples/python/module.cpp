@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
-// The Python module `fingerpad`: the methods on NumPy arrays, without a copy and with the same bits
-// as in C++. What is slow runs without Python's lock.
+// The Python module `fingerpad`: the methods on NumPy arrays, without copies and with results
+// identical to C++. Slow functions release the GIL.
 #include <pybind11/pybind11.h>
 
 #include "fingerpad/core/expects.hpp"

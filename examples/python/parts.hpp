@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// The module's parts, a file each, and how structs of options become Python classes.
+// The module's parts, one file each, and the binding of option structs as Python classes.
 #include <pybind11/pybind11.h>
 
 #include <string>
@@ -18,7 +18,7 @@ void bind_wrench(pybind11::module_& module);
 void bind_foam(pybind11::module_& module);
 void bind_fingertip(pybind11::module_& module);
 
-/// Raises TypeError where a setting gets a value of another kind: a flag for a number and the like.
+/// Raises TypeError if a setting gets a value of another kind, such as a bool for a number.
 inline void check_kind(const char* owner,
                        const pybind11::str& field,
                        const pybind11::object& before,
@@ -33,8 +33,8 @@ inline void check_kind(const char* owner,
   }
 }
 
-/// A struct of settings as a class with keyword arguments: Camera(pitch_mm=0.1). Unknown names are
-/// refused.
+/// Binds a struct of settings as a class with keyword arguments, e.g. Camera(pitch_mm=0.1). Unknown
+/// names are refused.
 template <class Options>
 pybind11::class_<Options> bind_options(pybind11::module_& module,
                                        const char* name,

@@ -14,7 +14,7 @@ using fingerpad::DotState;
 using fingerpad::StickTest;
 using Result = fingerpad::StickRatioResult<float>;
 
-/// A stick ratio with its state; calls from several threads take turns.
+/// A stick ratio with its state; calls from several threads are serialised.
 class Ratio {
   using Method = fingerpad::StickRatio<>;
 

@@ -18,8 +18,8 @@ using Noise = fingerpad::WrenchNoise<double>;
 using Options = fingerpad::WrenchOptions<double>;
 using Result = fingerpad::WrenchResult<double>;
 
-/// Six-axis force from depth maps, with all memory of a frame; calls from several threads take
-/// turns.
+/// Six-axis force from depth maps, with all memory for a frame; calls from several threads are
+/// serialised.
 class WrenchOfDepth {
   using Method = fingerpad::Wrench<>;
   using Heights = fingerpad::PadHeights<>;

@@ -9,7 +9,7 @@
 namespace render {
 namespace {
 
-/// Grey levels outside the pad: the ring that clamps the membrane, and beyond it darkness.
+/// Grey level outside the pad: the ring that clamps the membrane, and darkness beyond it.
 float surroundings(const replay::Sensor& sensor, double rho_mm) {
   constexpr double ring_mm = 0.35;
   return rho_mm < sensor.pad.base_radius_mm + ring_mm ? 11.0F : 2.0F;
@@ -37,8 +37,8 @@ cv::Mat_<cv::Vec3f> ideal_frame(const replay::Sensor& sensor,
         pixel += cv::Vec3f(level, level, level);
         continue;
       }
-      // The light falls off toward the rim and with the membrane's inclination; the depth model
-      // knows neither, because the brightness cancels.
+      // The light decreases toward the rim and with the membrane's inclination. The depth model
+      // contains neither, because the brightness cancels.
       const double share = ray.plate_rho_mm / sensor.pad.base_radius_mm;
       const double upright = static_cast<double>(sight.upright(i, j));
       double brightness =

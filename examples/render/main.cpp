@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
-// render: makes the frames of a recording from a membrane, by the library's own forward
-// model. The first step of the membrane is the free pad. Same input, same bytes.
+// render: makes the frames of a recording from a membrane with the library's own forward model. The
+// first step of the membrane is the free pad. The same input gives the same bytes.
 #include <CLI/CLI.hpp>
 #include <cmath>
 #include <cstdio>
@@ -36,8 +36,8 @@ std::string numbered(std::size_t number, const char* extension) {
   return name;
 }
 
-/// Mean of many noisy frames, 16 bit (256 units a grey level), to 1/16 grey level: less than its
-/// noise, and the file packs better.
+/// Mean of many noisy frames, 16 bit (256 units per grey level). It is rounded to 1/16 grey level,
+/// which is less than its noise, for a smaller file.
 cv::Mat averaged(const cv::Mat_<cv::Vec3f>& ideal, int frames, render::Noise& noise) {
   cv::Mat sum(ideal.size(), CV_32SC3, cv::Scalar::all(0));
   for (int i = 0; i < frames; ++i) {
@@ -48,7 +48,7 @@ cv::Mat averaged(const cv::Mat_<cv::Vec3f>& ideal, int frames, render::Noise& no
   return sixteenths * 16;
 }
 
-/// To a whole number of 1/1024 mm, far below what anybody measures: the file packs better.
+/// Rounds to 1/1024 mm, far below the resolution of measurements, for a smaller file.
 cv::Mat_<float> rounded(cv::Mat_<float> depth_mm) {
   for (float& depth : depth_mm) {
     depth = std::round(depth * 1024) / 1024;
@@ -56,8 +56,8 @@ cv::Mat_<float> rounded(cv::Mat_<float> depth_mm) {
   return depth_mm;
 }
 
-/// Mean absolute difference in mm of two depth maps over the pixels that both know, no farther than
-/// `radius_mm` from the axis on the plate.
+/// Mean absolute difference of two depth maps, mm, over pixels valid in both and within `radius_mm`
+/// of the axis on the plate.
 double mean_error_mm(const fingerpad::Camera<double>& camera,
                      const cv::Mat_<float>& measured,
                      const cv::Mat_<float>& truth,
@@ -78,7 +78,7 @@ double mean_error_mm(const fingerpad::Camera<double>& camera,
   return sum / count;
 }
 
-/// Prints how far the depth maps of an earlier run of replay --raw are from the truth.
+/// Prints the errors of the depth maps of an earlier run of replay --raw.
 void compare_all(const Options& options) {
   const replay::Sensor sensor = replay::read_sensor(options.recording / "sensor.json");
   const render::Membrane membrane = render::read_membrane(options.recording / "membrane");

@@ -54,7 +54,7 @@ std::vector<Point> points_of(const Array& array, std::size_t step) {
   return points;
 }
 
-/// Unit normals of the nodes: mean of the adjacent triangles' normals, weighted by area.
+/// Unit normals of the nodes: area-weighted means of the adjacent triangles' normals.
 std::vector<Point> node_normals(const std::vector<std::array<int, 3>>& triangles,
                                 const std::vector<Point>& nodes) {
   std::vector<Point> normals(nodes.size(), Point{0, 0, 0});
@@ -73,7 +73,7 @@ std::vector<Point> node_normals(const std::vector<std::array<int, 3>>& triangles
   return normals;
 }
 
-/// The straight part of a ray, in the fluid: start + depth * direction, with direction.z = 1.
+/// The straight part of a ray in the fluid: start + depth * direction, with direction.z = 1.
 struct FluidRay {
   Point start;
   Point direction;
@@ -104,7 +104,7 @@ class Rays {
                  static_cast<std::size_t>(j)];
   }
 
-  /// Samples near those that see one of `points`, within `margin` samples.
+  /// Bounding box of the samples that see `points`, extended by `margin` samples.
   cv::Rect around(const std::vector<Point>& points, double margin) const {
     double left = std::numeric_limits<double>::infinity();
     double top = left;
@@ -132,7 +132,7 @@ class Rays {
   std::vector<FluidRay> rays_;
 };
 
-/// Marks in `sight` where rays meet the triangle; of several hits the nearest to the plate counts.
+/// Records in `sight` where rays hit the triangle; of several hits the nearest to the plate counts.
 void meet_triangle(const Rays& rays,
                    const std::array<Point, 3>& corner,
                    const std::array<Point, 3>& normal,
@@ -140,7 +140,7 @@ void meet_triangle(const Rays& rays,
   const Point e1 = corner[1] - corner[0];
   const Point e2 = corner[2] - corner[0];
   const cv::Rect box = rays.around({corner[0], corner[1], corner[2]}, 1.0);
-  constexpr double slack = 1e-9;  // so that no ray slips between two triangles
+  constexpr double slack = 1e-9;  // so that no ray passes between two triangles
   for (int i = box.y; i < box.y + box.height; ++i) {
     for (int j = box.x; j < box.x + box.width; ++j) {
       const FluidRay& ray = rays(i, j);
@@ -224,7 +224,7 @@ Sight look(const fingerpad::Camera<double>& camera,
            double dot_diameter_mm) {
   const Rays rays(camera, size, samples);
   Sight sight;
-  // Infinite where nothing was met yet, so that "nearer" needs no special case.
+  // Infinite before the first hit, so that the comparison needs no special case.
   sight.depth_mm = cv::Mat_<float>(rays.size(), std::numeric_limits<float>::infinity());
   sight.upright = cv::Mat_<float>(rays.size(), 1.0F);
   sight.on_dot = cv::Mat_<uchar>(rays.size(), uchar{0});

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// The membrane to render: a triangulated surface and its printed dots, step by step, and what a
-// camera behind the plate sees of it.
+// The membrane to render: a triangulated surface and its printed dots at each step, and its view
+// from a camera behind the plate.
 #include <array>
 #include <filesystem>
 #include <opencv2/core.hpp>
@@ -29,10 +29,10 @@ struct Membrane {
 /// throws replay::Failure.
 Membrane read_membrane(const std::filesystem::path& folder);
 
-/// What the rays of an image meet; each pixel holds samples x samples rays.
+/// The points that the rays of an image hit; each pixel has samples x samples rays.
 struct Sight {
   cv::Mat_<float> depth_mm;  ///< NaN where a ray misses the membrane
-  cv::Mat_<float> upright;   ///< cosine of the membrane's inclination, 1 where it lies flat
+  cv::Mat_<float> upright;   ///< cosine of the membrane's inclination; 1 where it is flat
   cv::Mat_<uchar> on_dot;    ///< 1 where the ray ends on a printed dot
 };
 

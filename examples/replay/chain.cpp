@@ -16,7 +16,7 @@ namespace {
 
 constexpr int published_window_px = 29;
 
-/// Of dots alone nothing is made of it.
+/// Empty for a dots-only recording, which does not need it.
 cv::Mat first_image_of(Recording& recording, const Options& options) {
   if (recording.sensor.dots_only) {
     return {};
@@ -64,7 +64,7 @@ double seconds(const std::string& text) {
                       : std::strtod(text.c_str(), nullptr);
 }
 
-/// What the pixels of a depth map say together.
+/// Sets the summary values of a depth map in `scene`.
 void describe_depth(const FingertipFrame& result, Scene& scene) {
   double sum = 0;
   double top = -std::numeric_limits<double>::infinity();

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// All that is computed of a recording, frame by frame in the order of time.
+// All computations on a recording, frame by frame in time order.
 #include <memory>
 #include <opencv2/core.hpp>
 #include <vector>
@@ -18,16 +18,16 @@ namespace replay {
 
 class Chain {
  public:
-  /// Sets every step up; throws Failure.
+  /// Sets up all steps; throws Failure.
   Chain(Recording& recording, const Options& options);
-  /// The same for frames that come from elsewhere and are all like `first_image`.
+  /// The same for frames from another source, all of the size and type of `first_image`.
   Chain(Recording& recording, const Options& options, const cv::Mat& first_image);
 
-  /// The frame's maps are new ones each time.
+  /// Processes a frame. The maps in the result are newly allocated.
   Scene operator()(int frame, const cv::Mat& image);
 
   const DotSource& dots() const { return dots_; }
-  /// Medians over the frames so far; of a dots-only recording there are none.
+  /// Medians over the frames so far; NaN for a dots-only recording.
   double depth_ms() const;
   double contact_ms() const;
   double wrench_ms() const;
@@ -37,9 +37,9 @@ class Chain {
 
   const Recording& recording_;
   DotSource dots_;
-  std::unique_ptr<FingertipStep> fingertip_;  ///< none where the recording is of dots only
-  StickStep stick_;                           ///< of dots alone
-  TractionStep traction_;                     ///< empty where the recording lacks something
+  std::unique_ptr<FingertipStep> fingertip_;  ///< null for a dots-only recording
+  StickStep stick_;                           ///< for dots-only recordings
+  TractionStep traction_;                     ///< empty if the recording lacks data for it
   std::vector<double> depth_ms_;
   std::vector<double> contact_ms_;
   std::vector<double> wrench_ms_;

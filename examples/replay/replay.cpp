@@ -23,7 +23,7 @@
 namespace replay {
 namespace {
 
-/// Mean of what is finite.
+/// Mean of the finite values.
 class Mean {
  public:
   void add(double value) {
@@ -46,7 +46,7 @@ class Mean {
   int count_ = 0;
 };
 
-/// Forces by look-up, and how far they are from the truth where that is known.
+/// Prints forces by look-up, and their errors where the truth is known.
 void print_look_up(const Writer& writer, const Recording& recording) {
   if (!recording.sensor.force) {
     return;
@@ -107,7 +107,7 @@ void print_wrench(const Chain& chain, const Writer& writer, const Recording& rec
   std::printf("force step   %.2f ms a frame (median)\n", chain.wrench_ms());
 }
 
-/// What is only known of a recording with depth.
+/// Prints the results that need depth.
 void print_depth(const Chain& chain, const Writer& writer) {
   double valid_share = 0;
   double deepest_mm = 0;
@@ -134,7 +134,7 @@ void print_depth(const Chain& chain, const Writer& writer) {
   std::printf("contact step %.2f ms a frame (median)\n", chain.contact_ms());
 }
 
-/// Of frames without a ratio: that of most use to the reader.
+/// The most useful reason why no frame has a stick ratio.
 const char* why_none(const std::vector<FrameRow>& rows) {
   const bool outline = std::any_of(rows.begin(), rows.end(), [](const FrameRow& row) {
     return row.stick.status == fingerpad::StickStatus::no_outline;
@@ -240,7 +240,7 @@ int run(const Options& options) {
   Chain chain(recording, options);
   watch_for_interrupts();
   Writer writer(recording, options, chain.dots().initial(), total);
-  std::optional<GelReplay> gel;  // where nothing is known but frames with dots
+  std::optional<GelReplay> gel;  // only for a dots-only recording
   if (recording.sensor.dots_only) {
     gel.emplace(recording, options, chain.dots(), writer.output(), total);
   }

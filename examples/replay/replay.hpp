@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// The run of the program, from its options to its output.
+// Runs the program, from its options to its output.
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -19,7 +19,7 @@ struct Range {
 /// Reads "A:B", "A:" or ":B"; throws std::invalid_argument.
 Range parse_range(const std::string& text);
 
-/// The range within the frames that there are; throws Failure.
+/// Resolves the range against the `size` existing frames; throws Failure if it names others.
 Range within(const Range& range, int size, const std::filesystem::path& recording);
 
 struct Options {
@@ -27,12 +27,12 @@ struct Options {
   std::filesystem::path out;
   std::optional<Smoothing> smoothing;
   Range range;
-  std::optional<Range> files;  ///< frames with files of their own; none: all
+  std::optional<Range> files;  ///< frames that get their own files; empty: all
   bool raw = false;
   bool pictures = true;
 };
 
-/// The exit status: 0, or 130 where the user interrupted. Throws Failure.
+/// Returns the exit status: 0, or 130 after an interrupt. Throws Failure.
 int run(const Options& options);
 
 }  // namespace replay

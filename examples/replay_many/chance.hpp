@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// Random numbers that are the same on every machine and in every order of work.
+// Random numbers that are the same on every machine and for every order of the work.
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -14,14 +14,14 @@ class Chance {
  public:
   explicit Chance(std::uint64_t seed) : state_(seed) {}
 
-  /// SplitMix64 (Steele, Lea and Flood 2014): a few numbers of each of many seeds are good.
+  /// SplitMix64 (Steele, Lea and Flood 2014), which is good even for a few numbers per seed.
   std::uint64_t bits() {
     std::uint64_t z = (state_ += 0x9e3779b97f4a7c15U);
     z = (z ^ (z >> 30U)) * 0xbf58476d1ce4e5b9U;
     z = (z ^ (z >> 27U)) * 0x94d049bb133111ebU;
     return z ^ (z >> 31U);
   }
-  /// In [0, 1).
+  /// Uniform in [0, 1).
   double uniform() { return static_cast<double>(bits() >> 11U) * 0x1p-53; }
   double uniform(double from, double to) { return from + (to - from) * uniform(); }
   double normal() {
@@ -31,7 +31,7 @@ class Chance {
   std::size_t below(std::size_t size) {
     return static_cast<std::size_t>(uniform() * static_cast<double>(size));
   }
-  /// As many, with replacement.
+  /// Draws as many elements as `all` has, with replacement.
   template <class T>
   std::vector<T> drawn_from(const std::vector<T>& all) {
     std::vector<T> drawn;

@@ -18,7 +18,7 @@
 namespace replay_many {
 namespace {
 
-/// In the new process, which may call little before it is another program.
+/// Runs in the new process, which may call only async-signal-safe functions before execv().
 [[noreturn]] void become(char* const* arguments, int words, pid_t parent) {
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);
   if (::getppid() != parent) {
@@ -32,7 +32,7 @@ namespace {
   ::_exit(127);
 }
 
-/// The last line that is not empty.
+/// The last non-empty line.
 std::string last_line(std::FILE* words) {
   std::rewind(words);
   std::string last, line;
@@ -50,7 +50,7 @@ std::string last_line(std::FILE* words) {
 }  // namespace
 
 void Children::start(std::size_t unit, const std::vector<std::string>& arguments) {
-  // In memory, so that a full disk can be told.
+  // Messages are kept in memory, so that a full disk can be reported.
   std::unique_ptr<std::FILE, Close> words(::fdopen(::memfd_create("words", MFD_CLOEXEC), "w+"));
   if (!words) {
     replay::fail("memory for messages", std::strerror(errno));

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// Units at work on this machine, each in a process that dies with this one.
+// Runs units on this machine, each in a process that dies with this one.
 #include <sys/types.h>
 
 #include <cstdio>
@@ -14,13 +14,13 @@ namespace replay_many {
 
 class Children {
  public:
-  /// `jobs` at a time, > 0.
+  /// Runs up to `jobs` processes at a time, > 0.
   explicit Children(int jobs) : jobs_(jobs) {}
 
   bool is_full() const { return static_cast<int>(running_.size()) >= jobs_; }
-  /// Where not full. Throws replay::Failure where no process can be made.
+  /// Requires !is_full(). Throws replay::Failure if no process can be created.
   void start(std::size_t unit, const std::vector<std::string>& arguments);
-  /// Those that have ended since the last call.
+  /// Reports of the units that have ended since the last call.
   std::vector<Report> ended();
 
  private:
@@ -30,7 +30,7 @@ class Children {
   struct Child {
     std::size_t unit;
     pid_t process;
-    std::unique_ptr<std::FILE, Close> words;  ///< what it says on standard error
+    std::unique_ptr<std::FILE, Close> words;  ///< its standard error
   };
   static Report report_of(const Child& child, int status);
 

@@ -16,17 +16,17 @@
 namespace replay_many {
 namespace {
 
-/// Ranks and children are asked in turn: a unit takes longer than this, and a rank that waits in
-/// MPI itself would keep a core busy.
+/// Polling interval for ranks and children. It is short compared with a unit. Waiting inside MPI
+/// instead would keep a core busy.
 constexpr std::chrono::milliseconds turn{2};
 
-// Without MPI there is one rank, and what is said to others is said to nobody.
+// Without MPI there is one rank, and messages go nowhere.
 #ifdef FINGERPAD_WITH_MPI
 void say(int rank, const std::string& words) {
   MPI_Send(words.data(), static_cast<int>(words.size()), MPI_CHAR, rank, 0, MPI_COMM_WORLD);
 }
 
-/// Who said what; false where nobody says anything now.
+/// Receives a message and its sender; returns false if there is none now.
 bool hear(int& rank, std::string& words) {
   int is_there = 0;
   MPI_Status status;
@@ -48,7 +48,7 @@ bool hear(int& /*rank*/, std::string& /*words*/) {
 }
 #endif
 
-// A message is a list of words, each ended by a zero byte.
+// A message is a list of words, each terminated by a zero byte.
 std::string joined(const std::vector<std::string>& words) {
   std::string text;
   for (const std::string& word : words) {

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// Who does the units: this process' children and, under MPI, those of the other ranks.
+// The workers for the units: the children of this process and, under MPI, of the other ranks.
 #include <vector>
 
 #include "children.hpp"
@@ -9,12 +9,12 @@
 
 namespace replay_many {
 
-/// Whether mpirun or srun started this program, and it is built with MPI.
+/// Whether the program is built with MPI and was started by mpirun or srun.
 bool has_ranks();
 
 class Crew {
  public:
-  /// `jobs` processes at a time on each rank. Under MPI, every rank makes one.
+  /// Runs `jobs` processes at a time on each rank. Under MPI, every rank creates a Crew.
   explicit Crew(int jobs);
   ~Crew();
   Crew(const Crew&) = delete;
@@ -24,16 +24,16 @@ class Crew {
   int ranks() const { return static_cast<int>(at_work_.size()); }
   int jobs() const { return jobs_ * ranks(); }
 
-  /// A rank that does not lead: works until the leader dismisses it.
+  /// For a rank that does not lead: works until the leader dismisses it.
   void serve();
 
-  /// Hands a unit out; false where everybody is busy.
+  /// Assigns a unit to a worker; returns false if all are busy.
   bool start(std::size_t unit, const std::vector<std::string>& arguments);
-  /// What has ended; waits up to a fiftieth of a second for it.
+  /// Reports of ended units; waits up to 20 ms for them.
   std::vector<Report> ended();
-  /// Nothing more for this rank.
+  /// Assigns no more units to this rank.
   void retire(int rank) { at_work_[static_cast<std::size_t>(rank)] += for_ever; }
-  /// The end of the work for all ranks.
+  /// Ends the work of all ranks.
   void dismiss();
 
  private:
@@ -41,7 +41,7 @@ class Crew {
   int jobs_;
   int rank_ = 0;
   Children children_;
-  std::vector<int> at_work_ = {0};  ///< by rank
+  std::vector<int> at_work_ = {0};  ///< number of running units by rank
   bool dismissed_ = false;
 };
 

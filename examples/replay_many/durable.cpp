@@ -21,7 +21,7 @@ namespace fs = std::filesystem;
   replay::fail(file, "cannot be written: " + std::generic_category().message(error));
 }
 
-/// A file's bytes, or a folder's list of names.
+/// Syncs a file's content, or a folder's directory entries.
 void sync(const Path& path) {
   const int file = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
   if (file < 0) {
@@ -29,7 +29,7 @@ void sync(const Path& path) {
   }
   const int error = ::fsync(file) == 0 ? 0 : errno;
   ::close(file);
-  if (error != 0 && error != EINVAL) {  // EINVAL: this file system has nothing to sync
+  if (error != 0 && error != EINVAL) {  // EINVAL: the file system does not support it
     refuse(path, error);
   }
 }

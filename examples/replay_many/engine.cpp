@@ -16,7 +16,7 @@
 namespace replay_many {
 namespace {
 
-/// On standard error: one line that changes in a terminal, else a line now and then.
+/// Progress on standard error: one changing line in a terminal, otherwise a line at intervals.
 class Progress {
  public:
   Progress(const Crew& crew, std::string noun)
@@ -95,7 +95,7 @@ class Work {
     Unit unit;
     int tries = 0;
   };
-  /// Of equal sizes the first one first.
+  /// Larger units come first; of equal sizes the first one.
   struct Place {
     double size;
     std::size_t index;
@@ -145,7 +145,7 @@ class Work {
     }
   }
 
-  /// Whether it is the recording's fault, the machine's, or that of a mount that is gone.
+  /// Decides whether the recording, the machine or a lost mount is at fault.
   void judge(const Report& report) {
     const Unit unit = units_[report.unit].unit;
     try {

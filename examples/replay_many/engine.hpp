@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// Works units off, the largest first, and survives what happens to them.
+// Processes units, the largest first, and survives their failures.
 #include <functional>
 #include <string>
 #include <vector>
@@ -11,23 +11,23 @@
 
 namespace replay_many {
 
-/// What the job makes of a unit that has ended.
+/// Callbacks for units that have ended.
 struct Job {
-  /// Units that become possible now; perhaps none.
+  /// Returns the units that become possible now; may be empty.
   std::function<std::vector<Unit>(const Unit& unit)> done;
-  /// Named for good, with its reason.
+  /// Records the final failure of a unit with its reason.
   std::function<void(const Unit& unit, const std::string& reason)> failed;
-  /// Whether the leader sees what a unit did not see, which is then its machine's fault; throws
-  /// replay::Failure where all of the input is gone.
+  /// Whether the leader sees the input that a unit did not see; then the unit's machine is at
+  /// fault. Throws replay::Failure if all of the input is gone.
   std::function<bool(const Unit& unit)> is_there;
   std::string noun = "recordings";
 };
 
-/// A unit whose process died is given this many tries.
+/// Number of tries of a unit whose process dies.
 constexpr int max_tries = 3;
 
-/// Throws replay::Failure where the output cannot be written or the input is gone: what runs is
-/// finished first, and the rest is left for the next run.
+/// Processes all units. Throws replay::Failure if the output cannot be written or the input is
+/// gone; running units are finished first, and the rest is left for the next run.
 void work_off(Crew& crew, std::vector<Unit> units, const Job& job);
 
 }  // namespace replay_many

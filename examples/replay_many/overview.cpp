@@ -19,7 +19,7 @@ namespace {
 
 using Words = std::vector<std::string>;
 
-/// As a cell of a .csv file.
+/// Quotes a cell of a .csv file.
 std::string quoted(const std::string& text) {
   if (text.find_first_of(",\"\n") == text.npos) {
     return text;
@@ -31,7 +31,7 @@ std::string quoted(const std::string& text) {
   return cell + "\"";
 }
 
-/// As text of a page, or in quotes there.
+/// Escapes HTML text or an attribute value.
 std::string in_html(const std::string& text) {
   std::string safe;
   for (const char c : text) {
@@ -55,7 +55,7 @@ std::string in_html(const std::string& text) {
   return safe;
 }
 
-/// As part of an address; slashes stay.
+/// Percent-encodes a URL path; keeps slashes.
 std::string in_address(const std::string& name) {
   std::string safe;
   for (const char c : name) {
@@ -69,7 +69,7 @@ std::string in_address(const std::string& name) {
   return safe;
 }
 
-/// A file that grows aside.
+/// A file that is written under a temporary name.
 class Growing {
  public:
   explicit Growing(const Path& place)
@@ -93,12 +93,12 @@ class Growing {
   std::ofstream stream_;
 };
 
-/// The largest and the least of columns over the frames of a recording; NaN: not known.
+/// Maximum or minimum of columns over the frames of a recording; NaN if unknown.
 struct Extremes {
   struct Column {
-    const char* name;  ///< in frames.csv
+    const char* name;  ///< column in frames.csv
     bool is_least;
-    const char* title;  ///< in summary.csv
+    const char* title;  ///< column in summary.csv
     double value = std::numeric_limits<double>::quiet_NaN();
   };
   std::vector<Column> columns = {
@@ -174,7 +174,7 @@ class Overview {
     return std::filesystem::exists(recordings_.place_of(name), error);
   }
 
-  /// Those of all tables, in the order in which they are first met.
+  /// Collects the columns of all tables, in order of first occurrence.
   void find_columns() {
     for (const auto& found : recordings_.all()) {
       if (is_done(found.name)) {

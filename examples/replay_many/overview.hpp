@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// What is told of all recordings together.
+// Tables and a page over all recordings.
 #include "recordings.hpp"
 
 namespace replay_many {
@@ -11,9 +11,9 @@ struct Counts {
   long long frames = 0;
 };
 
-/// Writes DIR/all_frames.csv (every line of every frames.csv, with the recording's name before it
-/// and the columns of all), DIR/summary.csv (a line a recording) and DIR/overview.html (a small
-/// picture of each). Throws replay::Failure.
+/// Writes DIR/all_frames.csv (all lines of all frames.csv, preceded by the recording's name, with
+/// the union of the columns), DIR/summary.csv (one line per recording) and DIR/overview.html (a
+/// small picture of each). Throws replay::Failure.
 Counts write_overview(const Recordings& recordings, const Path& out);
 
 }  // namespace replay_many

@@ -24,8 +24,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A folder of this process alone in OUT/aside; where the process is killed, the next run removes
-/// it.
+/// A folder in OUT/aside for this process only. If the process is killed, the next run removes it.
 class Aside {
  public:
   explicit Aside(const Path& out) {
@@ -51,7 +50,7 @@ struct Interrupted {};
 
 constexpr int small_width_px = 360;
 
-/// The picture that tells most, made small, for the page of all recordings.
+/// Writes small.png, a reduced overview picture, for the page of all recordings.
 void write_small_picture(const Path& folder) {
   for (const char* name : {"montage.png", "slide.png", "preslip.png"}) {
     const cv::Mat picture = cv::imread((folder / "pictures" / name).string());
@@ -65,14 +64,14 @@ void write_small_picture(const Path& folder) {
   }
 }
 
-/// Where a run must begin whose files begin at `first`: what is followed from frame to frame is
-/// dots, so with dots all frames before are computed too, and without dots none.
+/// The first frame to compute for files from frame `first` on. Dots are tracked from frame to
+/// frame, so with dots all earlier frames are computed, too; without dots none.
 int warm_up(const Path& folder, int first) {
   const replay::Sensor sensor = replay::read_sensor(folder / "sensor.json");
   return sensor.dots || fs::exists(folder / "dots.csv") ? 0 : first;
 }
 
-/// Frames [first, last) have files of their own; last < 0: all of them do.
+/// Processes a recording and writes files for frames [first, last), or for all if last < 0.
 void do_recording(const std::vector<std::string>& arguments) {
   replay::Options options;
   options.recording = arguments.at(1);
@@ -107,7 +106,7 @@ bool is_of_a_frame(const Path& file) {
   return stem.size() >= 6 && stem.find_first_not_of("0123456789", stem.size() - 6) == stem.npos;
 }
 
-/// The first part has the tables and what is drawn of all frames, the others files of their frames.
+/// Joins parts: the first has the tables and charts, the others add the files of their frames.
 void join_parts(const std::vector<std::string>& arguments) {
   const Path out = arguments.at(1);
   const Path place = arguments.at(2);
@@ -121,7 +120,7 @@ void join_parts(const std::vector<std::string>& arguments) {
       if (entry.is_directory()) {
         fs::create_directories(to);
       } else if (k == 3 || is_of_a_frame(to)) {
-        fs::create_hard_link(entry.path(), to);  // a part stays whole until all is in place
+        fs::create_hard_link(entry.path(), to);  // parts stay complete until the whole is in place
       }
     }
   }
@@ -129,14 +128,14 @@ void join_parts(const std::vector<std::string>& arguments) {
   fs::remove_all(Path(arguments.at(3)).parent_path());
 }
 
-/// What is left on the output's file system, for people.
+/// The free space on the output's file system, as text.
 std::string room_in(const Path& out) {
   std::error_code error;
   const auto space = fs::space(out, error);
   return error ? "" : " (" + std::to_string(space.available >> 20U) + " MiB are free)";
 }
 
-/// Whether a message begins with a path of the output.
+/// Whether a message begins with a path in the output.
 bool is_of_output(const std::string& message, const Path& out) {
   return message.rfind(out.string() + "/", 0) == 0;
 }
@@ -155,7 +154,7 @@ int run_unit(const std::vector<std::string>& arguments) {
     return is_of_output(message, out) ? End::no_room : End::failed;
   };
   try {
-    cv::setNumThreads(1);  // the other cores have units of their own
+    cv::setNumThreads(1);  // the other cores process other units
     if (resamples) {
       do_resamples(arguments);
       return static_cast<int>(End::done);

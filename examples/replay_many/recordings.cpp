@@ -18,7 +18,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// 0: nothing is there.
+/// The device of a folder's file system; 0 if there is no folder.
 unsigned long long device_of(const Path& folder) {
   struct stat about {};
   return ::stat(folder.c_str(), &about) == 0 && S_ISDIR(about.st_mode) ? about.st_dev : 0;
@@ -66,8 +66,8 @@ Recordings::Recordings(Path input, Path out, Settings settings)
             [](const Found& a, const Found& b) { return a.name < b.name; });
 }
 
-/// A folder without a recording that holds folders may have them deeper; one that holds none is
-/// taken for a recording that is broken, so that it is named.
+/// Adds the recordings in a folder. A folder that is no recording is searched if it has subfolders;
+/// otherwise it counts as a broken recording, so that it is reported.
 void Recordings::look_into(const Path& folder, const std::string& name) {
   Found found{name, folder};
   std::vector<Path> folders;
@@ -127,7 +127,7 @@ std::vector<Unit> Recordings::left(bool retry) {
   return units;
 }
 
-/// Only files of single frames are worth it: tables need each frame after the one before.
+/// Only files of single frames are worth splitting: tables need all frames in sequence.
 bool Recordings::is_split(const Found& found) const {
   if (found.frames <= settings_.split_frames ||
       !(settings_.replay.pictures || settings_.replay.raw)) {
@@ -137,7 +137,7 @@ bool Recordings::is_split(const Found& found) const {
     const replay::Sensor sensor = replay::read_sensor(found.folder / "sensor.json");
     return !sensor.dots_only && !sensor.video;
   } catch (const replay::Failure&) {
-    return false;  // its unit says why
+    return false;  // its unit reports the reason
   }
 }
 
@@ -195,7 +195,7 @@ Unit Recordings::join_of(const Found& found) const {
   return unit;
 }
 
-/// The recordings' folder on the file system that it was on.
+/// Throws Failure unless the input folder is still on the same file system.
 void Recordings::expects_input() const {
   if (device_of(input_) != device_) {
     replay::fail(input_, "is not there any more: is it mounted?");

@@ -1,11 +1,11 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// A folder of recordings as units of work, and what is there of the output:
-//   DIR/recordings/NAME/  what replay writes, and small.png; it is done when it is there
-//   DIR/failed/NAME.txt   why there is none
-//   DIR/parts/NAME/PART/  of a long recording, until all parts are there
-//   DIR/aside/            what grows; of no use to anybody else
+// Splits a folder of recordings into units of work. The output consists of:
+//   DIR/recordings/NAME/  the output of replay, and small.png; a recording is done if this exists
+//   DIR/failed/NAME.txt   the reason of a failure
+//   DIR/parts/NAME/PART/  parts of a long recording, until all parts exist
+//   DIR/aside/            temporary files
 #include <map>
 #include <optional>
 #include <string>
@@ -21,29 +21,29 @@ namespace replay_many {
 struct Settings {
   replay::Options replay;
   int split_frames =
-      2000;  ///< longer recordings with files for each frame are split into such parts
+      2000;  ///< longer recordings with files for each frame are split into parts of this size
 };
 
 class Recordings {
  public:
-  /// Finds the recordings in `input`; throws replay::Failure where there are none.
+  /// Finds the recordings in `input`; throws replay::Failure if there are none.
   Recordings(Path input, Path out, Settings settings);
 
   struct Found {
-    std::string name;  ///< its path within the input
+    std::string name;  ///< path relative to the input
     Path folder;
     double bytes = 0;
-    int frames = 0;            ///< 0: not a folder of frames
-    std::string refused = {};  ///< why it cannot be looked into
+    int frames = 0;            ///< 0 if there is no folder of frames
+    std::string refused = {};  ///< why it cannot be read
   };
-  const std::vector<Found>& all() const { return all_; }  ///< by name
+  const std::vector<Found>& all() const { return all_; }  ///< sorted by name
 
-  /// What is left to do. Recordings that have failed before are tried again if `retry`.
+  /// The remaining units. With `retry`, recordings that failed before are tried again.
   std::vector<Unit> left(bool retry);
   Job job();
 
   Path place_of(const std::string& name) const { return out_ / "recordings" / name; }
-  /// Why it has failed; none: it has not.
+  /// Why a recording failed; empty if it did not.
   std::optional<std::string> failure_of(const std::string& name) const;
 
  private:
@@ -58,12 +58,12 @@ class Recordings {
   Path input_, out_;
   Settings settings_;
   std::vector<Found> all_;
-  std::map<std::string, int> parts_left_;  ///< of split recordings at work
-  unsigned long long device_ = 0;          ///< that the input is on
+  std::map<std::string, int> parts_left_;  ///< of split recordings in progress
+  unsigned long long device_ = 0;          ///< device of the input's file system
 };
 
-/// What a process of its own does with a unit's arguments: the exit status, as End has it; says why
-/// on standard error.
+/// Runs a unit with these arguments in its own process. Returns the exit status, a value of End,
+/// and prints the reason of a failure on standard error.
 int run_unit(const std::vector<std::string>& arguments);
 
 }  // namespace replay_many

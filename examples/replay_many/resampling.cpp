@@ -30,7 +30,7 @@ std::string in_digits(double value) {
   return text;
 }
 
-/// A stream of its own for each resample, whoever does it.
+/// Seed of a resample, independent of the process that runs it.
 std::uint64_t seed_of(const std::string& name, const std::string& kind, int resample) {
   std::uint64_t seed = 14695981039346656037U;  // FNV-1a
   for (const char c : name + "/" + kind + "/" + std::to_string(resample)) {
@@ -39,10 +39,10 @@ std::uint64_t seed_of(const std::string& name, const std::string& kind, int resa
   return seed;
 }
 
-/// Mean and covariance of all that gave an answer.
+/// Mean and covariance over the resamples with a result.
 struct Moments {
   int answers = 0, refused = 0;
-  std::vector<double> mean, told;  ///< told: mean of the variances that the fits tell themselves
+  std::vector<double> mean, told;  ///< told: mean of the variances reported by the fits
   std::vector<std::vector<double>> covariance;
 
   Moments(const std::vector<Path>& files, std::size_t parameters)
@@ -199,7 +199,7 @@ void do_resamples(const std::vector<std::string>& arguments) {
         values[i] = estimate.values[i];
         values[size + i] = estimate.covariance[i][i];
       }
-    } catch (const fingerpad::parameter_error&) {  // refused: an empty line
+    } catch (const fingerpad::parameter_error&) {  // refused: no values
     }
     text += std::to_string(k);
     for (const double value : values) {

@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// Calibrations done ten thousand times, in units of five hundred:
-//   DIR/resamples/NAME/KIND/FIRST-LAST.csv  a line a resample; done when it is there
-//   DIR/covariance.csv                      of all parameters, beside what the fits say themselves
+// Repeats calibrations ten thousand times, in units of five hundred:
+//   DIR/resamples/NAME/KIND/FIRST-LAST.csv  one line per resample; the unit is done if this exists
+//   DIR/covariance.csv                      of all parameters, beside that reported by the fits
 #include <string>
 #include <vector>
 
@@ -14,12 +14,12 @@ namespace replay_many {
 
 class Resampling {
  public:
-  /// `names` as in trial_names(); none: all. Throws replay::Failure for others.
+  /// `names` from trial_names(), or empty for all. Throws replay::Failure for other names.
   Resampling(Path out, std::vector<std::string> names, int resamples);
 
   std::vector<Unit> left() const;
   Job job() const;
-  /// Throws replay::Failure where something is not done.
+  /// Throws replay::Failure if a unit is not done.
   void write_covariance() const;
 
  private:
@@ -30,7 +30,7 @@ class Resampling {
   int resamples_;
 };
 
-/// The work of one process: "resamples" NAME OUT KIND FIRST LAST FILE. Throws replay::Failure.
+/// Runs a unit: "resamples" NAME OUT KIND FIRST LAST FILE. Throws replay::Failure.
 void do_resamples(const std::vector<std::string>& arguments);
 
 }  // namespace replay_many

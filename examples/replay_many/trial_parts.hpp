@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// What the trials are made of.
+// Common parts of the trials.
 #include <cstddef>
 #include <limits>
 #include <string>
@@ -16,7 +16,7 @@ using Matrix = std::vector<std::vector<double>>;
 constexpr double none = std::numeric_limits<double>::quiet_NaN();
 constexpr std::uint64_t measured_once = 20110801;
 
-/// Of standard errors alone.
+/// Covariance from standard errors only; the other elements are NaN.
 inline Matrix diagonal(const std::vector<double>& sds) {
   Matrix matrix(sds.size(), std::vector<double>(sds.size(), none));
   for (std::size_t k = 0; k < sds.size(); ++k) {
@@ -37,7 +37,7 @@ Matrix block(const Covariance& covariance, const std::vector<std::size_t>& place
   return matrix;
 }
 
-/// A calibration in three functions: Data measure(Chance&), Data draw(const Data&, Chance&) and
+/// Makes a trial from three functions: Data measure(Chance&), Data draw(const Data&, Chance&) and
 /// Estimate fit(const Data&).
 template <class Measure, class Draw, class Fit>
 Trial trial(std::vector<std::string> parameters,
@@ -57,12 +57,12 @@ Trial trial(std::vector<std::string> parameters,
           .weight = weight};
 }
 
-/// What is measured one by one is drawn one by one.
+/// Bootstrap for independent samples: draws them one by one.
 inline const auto draw_samples = [](const auto& data, Chance& chance) {
   return chance.drawn_from(data);
 };
 
-/// Makers in files of their own: of where things are, and of when they slip.
+/// Trials defined in trials_of_shape.cpp and trials_of_slip.cpp.
 Trial camera_plate();
 Trial cap();
 Trial rubber();

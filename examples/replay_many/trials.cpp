@@ -66,7 +66,7 @@ Trial absorption() {
 constexpr int light_rows = 20, light_cols = 24;
 constexpr double light_pitch_mm = 0.64;
 
-/// A plate pressed into a pad, at a place.
+/// Depth of a pad with a plate pressed into it at a shifted position.
 Map pressed_pad(double pressed_mm, double shift_mm) {
   Map depth(light_rows, light_cols);
   for (int i = 0; i < light_rows; ++i) {
@@ -80,7 +80,7 @@ Map pressed_pad(double pressed_mm, double shift_mm) {
   return depth;
 }
 
-/// Twelve presses of known depth, 0.02 mm of noise of the known depths.
+/// Twelve presses of known depth, with 0.02 mm of noise in the known depths.
 Trial neighbour_light() {
   using Press = std::pair<Map, Map>;  ///< measured and true depth
   const fingerpad::NeighbourLight<float> light{3, 0.004F, 0.2F};
@@ -121,7 +121,7 @@ Trial neighbour_light() {
   return trial({"m0_mm_per_rad", "n_per_mm"}, {0.004, 0.2}, 7, measure, draw_samples, fit);
 }
 
-/// Ten frames of a free pad, 0.005 mm of noise; what the rule says without noise is not known here.
+/// Ten frames of a free pad with 0.005 mm of noise. The threshold's true value is not known here.
 Trial contact() {
   constexpr int rows = 28, cols = 28;
   constexpr double pitch_mm = 0.4, radius_mm = 20;
@@ -219,7 +219,7 @@ Trial rim() {
     }
     return frames;
   };
-  // A level without a frame would be another calibration: frames are drawn within their level.
+  // Frames are drawn within their level, because without a level the calibration would differ.
   const auto draw = [](const std::vector<Frame>& frames, Chance& chance) {
     std::vector<Frame> drawn;
     for (std::size_t k = 0; k < frames.size(); ++k) {
@@ -252,7 +252,7 @@ constexpr double force_noise_n = 0.05;
 constexpr double reference_mm = 2;
 constexpr fingerpad::FitOptions robust{.robust = true};
 
-/// Forty contacts of all sizes, displaced and rotated, with noise of 0.05 N and 0.05 N mm.
+/// Forty contacts of various sizes, displaced and rotated, with noise of 0.05 N and 0.05 N mm.
 Samples contacts(Chance& chance) {
   Samples samples;
   for (int k = 0; k < 40; ++k) {
@@ -273,7 +273,7 @@ Samples contacts(Chance& chance) {
   return samples;
 }
 
-/// The same, of which every twentieth has all forces wrong by a newton: for Huber's loss.
+/// The same contacts, but in every twentieth all forces are off by 1 N, for Huber's loss.
 Samples contacts_with_outliers(Chance& chance) {
   Samples samples = contacts(chance);
   for (std::size_t k = 0; k < samples.size(); k += 20) {
@@ -303,7 +303,7 @@ Trial robust_normal_force() {
                draw_samples, fit);
 }
 
-/// The published compensation of a known curve, by how far the contact was displaced.
+/// The published compensation of a known curve by the contact's displacement.
 Trial affine_force() {
   const fingerpad::PolynomialForce<2> curve{{0, 0.5, 0.3}, 0.1, 6};
   const auto measure = [curve](Chance& chance) {
@@ -410,7 +410,7 @@ Trial robust_moment() {
                draw_samples, fit);
 }
 
-/// Forces along by a matrix, of contacts whose size does not matter.
+/// Tangential forces by a matrix, for contacts whose size does not matter.
 Trial linear_shear() {
   const auto measure = [](Chance& chance) {
     Samples samples = contacts(chance);

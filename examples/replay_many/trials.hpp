@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// Calibrations of a sensor that exists only as numbers, to be done again and again: with fresh
-// noise (Monte Carlo), or with what was measured once, drawn with replacement (bootstrap).
+// Calibrations of a simulated sensor that can be repeated: with new noise (Monte Carlo), or with
+// samples drawn with replacement from one measurement (bootstrap).
 #include <functional>
 #include <string>
 #include <vector>
@@ -11,25 +11,25 @@
 
 namespace replay_many {
 
-/// What a calibration says of its parameters.
+/// The parameters that a calibration estimates.
 struct Estimate {
   std::vector<double> values;
-  std::vector<std::vector<double>> covariance;  ///< analytic; NaN: it says nothing
+  std::vector<std::vector<double>> covariance;  ///< analytic; NaN where the fit reports none
 };
 
 struct Trial {
   std::string name;
   std::vector<std::string> parameters;
   std::vector<double> truth;
-  Estimate once;  ///< of what the bootstrap draws from
-  /// One more calibration; throws fingerpad::parameter_error where it is refused.
+  Estimate once;  ///< from the measurement that the bootstrap draws from
+  /// Repeats the calibration; throws fingerpad::parameter_error if the data are refused.
   std::function<Estimate(Chance&)> bootstrap, monte_carlo;
-  double weight = 1;  ///< time of one, in ms about
+  double weight = 1;  ///< approximate time of one calibration, ms
 };
 
-/// All of them; each makes its measurements when it is asked for.
+/// Names of all trials. A trial makes its measurements in trial_of().
 const std::vector<std::string>& trial_names();
-/// Throws replay::Failure for a name that there is not.
+/// Throws replay::Failure for an unknown name.
 Trial trial_of(const std::string& name);
 
 }  // namespace replay_many

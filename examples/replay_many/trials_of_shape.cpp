@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
-// Trials of the calibrations that say where things are: camera, free pad, and the gel's law.
+// Trials of the calibrations of geometry: camera, free pad, rubber at the rim, and gel intensity.
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -14,7 +14,7 @@
 
 namespace replay_many {
 
-/// A plate of 9 x 9 dots, 0.05 px of noise, and the same raised by 10 mm.
+/// A plate of 9 x 9 dots, and the same raised by 10 mm, with 0.05 px of noise.
 Trial camera_plate() {
   using Dots = std::vector<calibrate::PlateDot>;
   using Pair = std::pair<Dots, Dots>;
@@ -48,7 +48,7 @@ Trial camera_plate() {
                0.1, measure, draw, fit);
 }
 
-/// Thirty touches of a cap by a ball, 0.02 mm of noise along each axis.
+/// Thirty touches of a cap by a ball, with 0.02 mm of noise along each axis.
 Trial cap() {
   using Touches = std::vector<fingerpad::Point3<double>>;
   constexpr double base_mm = 18.735, apex_mm = 13.03, ball_mm = 3;
@@ -116,7 +116,7 @@ struct RubberFrame {
 
 }  // namespace
 
-/// Where the apex is known too, the share of Mooney's second constant.
+/// With known apex heights the share of Mooney's second constant is fitted, too.
 Trial rubber() {
   constexpr double height_mm = 11, share = 0.3;
   using Frames = std::vector<RubberFrame>;
@@ -124,7 +124,7 @@ Trial rubber() {
   for (int j = 0; j < RubberFrame::columns; ++j) {
     border(0, j) = RubberFrame::on_circle(RubberFrame::base_mm, j);
   }
-  // frames are drawn within their level, as of the rim
+  // frames are drawn within their level, as for the rim
   const auto draw = [](const Frames& seen, Chance& chance) {
     Frames drawn;
     for (std::size_t k = 0; k < seen.size(); ++k) {
@@ -146,7 +146,7 @@ Trial rubber() {
   return trial({"mooney_share"}, {share}, 20, RubberFrame::of, draw, fit);
 }
 
-/// Eight presses of a ball into a gel of one channel, a grey level of noise.
+/// Eight presses of a ball into a gel seen in one channel, with one grey level of noise.
 Trial intensity() {
   using Picture = cv::Mat_<double>;
   constexpr double law_mm = 4, bright = 150;

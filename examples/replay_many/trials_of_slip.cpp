@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
-// Trials of the calibrations that choose thresholds of slip. Whole recordings are drawn, since
-// their frames hang together.
+// Trials of the calibrations of slip thresholds. Whole recordings are drawn, because their frames
+// are correlated.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -17,8 +17,8 @@ namespace replay_many {
 
 namespace {
 
-/// Frames of 7 x 7 dots, 0.06 px of noise: twenty at rest, and six drags in which slip begins at
-/// the rim.
+/// Frames of 7 x 7 dots with 0.06 px of noise: twenty at rest, and six drags in which slip begins
+/// at the edge.
 struct DotRecordings {
   using Frame = cv::Mat_<cv::Vec2d>;
   static constexpr int size = 7;
@@ -49,7 +49,7 @@ struct DotRecordings {
   }
 
  private:
-  /// What lies outside of `holds_px` goes half as far as the object.
+  /// Dots outside the radius `holds_px` move half as far as the object.
   static void drag(Frame& dots, double moved_px, double holds_px) {
     for (int i = 0; i < size; ++i) {
       for (int j = 0; j < size; ++j) {
@@ -69,7 +69,7 @@ struct DotRecordings {
 
 }  // namespace
 
-/// The dots' noise, then five U in place of thirteen.
+/// The dots' noise, then a choice among five candidates U instead of thirteen.
 Trial stick_test() {
   using Data = DotRecordings;
   constexpr int size = Data::size;
@@ -102,7 +102,7 @@ Trial stick_test() {
   return trial({"reference_px", "slip_px", "store_px"}, {none, none, none}, 3, Data::of, draw, fit);
 }
 
-/// Eight lifts by a hand that trembles, with three marked slips each.
+/// Eight lifts by a trembling hand, with three marked slips each.
 Trial preslip() {
   struct Marked {
     std::array<fingerpad::FingerSample<double>, 2> fingers;

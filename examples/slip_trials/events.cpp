@@ -16,9 +16,9 @@ constexpr double none = std::numeric_limits<double>::quiet_NaN();
 constexpr double quiet_share = 0.95;
 
 struct Warnings {
-  int slips = 0, warned = 0;  // warned: beyond the threshold before the contact is gone
+  int slips = 0, warned = 0;  // warned: above the threshold before contact is lost
   int holds = 0, false_alarms = 0;
-  int lead_frames = 0;  // median of the warned, from the warning to the loss
+  int lead_frames = 0;  // median over the warned, from warning to loss
 };
 
 struct Found {
@@ -54,7 +54,7 @@ int median(std::vector<int> values) {
   return values.empty() ? 0 : values[values.size() / 2];
 }
 
-/// "-" where there is none.
+/// "-" if `value` is not finite.
 std::string number(double value) {
   char text[32] = "-";
   if (std::isfinite(value)) {
@@ -79,7 +79,7 @@ std::vector<Event> of_object(const std::vector<Event>& events, const std::string
   return found;
 }
 
-/// What 95 % of the holds of all other objects stay below; NaN where there are none.
+/// The value below which 95 % of the holds of all other objects stay; NaN if there are none.
 double threshold_without(const std::vector<Event>& events, const std::string& object) {
   std::vector<double> quiet;
   for (const Event& event : events) {

@@ -20,7 +20,7 @@ using replay::DotGrid;
 
 constexpr double far_px = 2;
 constexpr double none = std::numeric_limits<double>::quiet_NaN();
-constexpr int quiet_frames = 5;      // at the beginning; they tell the noise
+constexpr int quiet_frames = 5;      // at the beginning, for the noise
 constexpr double false_slip = 0.01;  // probability that noise alone makes a dot slip
 
 double median(std::vector<double> values) {
@@ -32,7 +32,7 @@ double median(std::vector<double> values) {
   return *middle;
 }
 
-/// How each dot that both frames show has moved, less the median of all.
+/// Displacement of each dot present in both frames, minus the median displacement.
 std::vector<cv::Vec2d> moves_off_median(const DotGrid& from, const DotGrid& to) {
   std::vector<cv::Vec2d> moves;
   std::vector<double> x;
@@ -61,8 +61,8 @@ double share_far_off(const DotGrid& first, const DotGrid& now) {
   return moves.empty() ? none : static_cast<double>(far) / static_cast<double>(moves.size());
 }
 
-/// Standard deviation of a dot's coordinate, from the differences of successive first frames. The
-/// median, because some dots may already move.
+/// Standard deviation of a dot's coordinate, from the differences of successive first frames. Uses
+/// the median, because some dots may already move.
 double noise_px(const std::vector<DotGrid>& frames) {
   std::vector<double> sizes;
   const std::size_t last = (std::min)(frames.size(), std::size_t{quiet_frames});
@@ -115,7 +115,7 @@ Followed follow(const std::filesystem::path& file) {
   return followed;
 }
 
-/// Mean and number of the values among the first ones; the lowest of them.
+/// Mean, minimum and number of the finite values in [first, last).
 struct Mean {
   double mean = none;
   double lowest = none;
@@ -149,7 +149,7 @@ View look_at(const std::filesystem::path& file, const std::vector<cv::Mat>& free
     const Followed followed = follow(file);
     const std::vector<DotGrid>& frames = followed.dots;
     fingerpad::StickTest test = fingerpad::published::stick_test_px;
-    test.covers_pattern = true;  // nobody knows: every dot counts as in contact
+    test.covers_pattern = true;  // unknown, so every dot counts as in contact
     view.ratio = ratios(frames, {.covers_pattern = true});
     test.slip = (std::max)(test.slip, slip_px_of(noise_px(frames)));
     view.ratio_by_noise = ratios(frames, test);

@@ -18,8 +18,8 @@ using replay::DotGrid;
 using Colours = cv::Mat_<cv::Vec3b>;
 using Contact = fingerpad::ContactByDifference<3>;
 
-constexpr std::size_t free_count = 3;  // of the candidates, those that agree best
-constexpr double gone = 0.1;           // of the largest area so far: less is no contact
+constexpr std::size_t free_count = 3;  // number of candidates that agree best
+constexpr double gone = 0.1;  // share of the largest area so far, below which contact is lost
 
 double median(std::vector<double> values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
@@ -34,7 +34,7 @@ cv::Mat last_frame(const std::filesystem::path& folder) {
   return frames.next();
 }
 
-/// Root mean square over the frame of what `other` differs from `free`.
+/// RMS difference of `other` from `free` over the frame.
 double difference(const cv::Mat& free, const cv::Mat& other) {
   const Contact contact(std::vector<Colours>{free});
   auto workspace = contact.workspace();
@@ -71,7 +71,8 @@ std::vector<cv::Mat> last_frames(const Trial& trial, const std::vector<Trial>& t
   return frames;
 }
 
-/// Those nearest to the one that the others are nearest to: a trial may end before the pad is free.
+/// The frames nearest to the most typical frame. A trial may end before the pad is free, so some
+/// frames are outliers.
 std::vector<cv::Mat> agreeing(const std::vector<cv::Mat>& frames) {
   double best = std::numeric_limits<double>::infinity();
   std::vector<std::pair<double, std::size_t>> order;

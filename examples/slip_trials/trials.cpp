@@ -34,7 +34,7 @@ bool has_extension(const fs::path& file, const std::set<std::string>& extensions
   return fs::is_regular_file(file) && extensions.count(extension) > 0;
 }
 
-/// The videos in a folder, or the folder itself where it holds pictures.
+/// The videos in a folder, or the folder itself if it contains pictures.
 std::vector<fs::path> views_in(const fs::path& folder) {
   std::vector<fs::path> videos;
   bool pictures = false;
@@ -47,7 +47,7 @@ std::vector<fs::path> views_in(const fs::path& folder) {
   return videos.empty() && pictures ? std::vector<fs::path>{folder} : videos;
 }
 
-/// `wiggle` is what a public set calls clips that shake and hold.
+/// A public data set labels clips that shake and hold as `wiggle`.
 bool says_slip(const fs::path& file, const std::string& label) {
   static const std::set<std::string> slip = {"fail", "slip"};
   static const std::set<std::string> hold = {"ok", "success", "hold", "wiggle"};
@@ -58,7 +58,7 @@ bool says_slip(const fs::path& file, const std::string& label) {
   return slip.count(label) > 0;
 }
 
-/// The trials that `file` names, in folders beside them or in `folder`.
+/// The trials listed in `file`; their folders are in `folder`.
 std::vector<Trial> by_labels(const fs::path& file,
                              const fs::path& folder,
                              const std::string& object) {
@@ -90,7 +90,7 @@ std::vector<Trial> by_labels(const fs::path& file,
   return trials;
 }
 
-/// OBJECT_result.dat beside the folder OBJECT, for each object.
+/// The trials of each object, from OBJECT_result.dat beside the folder OBJECT.
 std::vector<Trial> by_objects(const fs::path& folder) {
   const std::string ending = "_result.dat";
   std::vector<Trial> trials;

@@ -9,15 +9,15 @@
 namespace slip_trials {
 
 struct Trial {
-  std::string object;  ///< empty where there is one only
+  std::string object;  ///< empty if there is only one
   std::string name;
   bool slips = false;
   std::vector<std::filesystem::path> views;  ///< videos, or folders of frames
-  std::filesystem::path free;                ///< frames of the free pad; empty: none
+  std::filesystem::path free;                ///< frames of the free pad; may be empty
 };
 
-/// Sorted by object and name, slips first; throws replay::Failure where there are none, and for a
-/// label that says neither slip nor hold.
+/// Finds the trials, sorted by object and name, slips first. Throws replay::Failure if there are
+/// none, or for a label that is neither slip nor hold.
 std::vector<Trial> trials_of(const std::filesystem::path& folder);
 
 }  // namespace slip_trials

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
-// frame ROWS COLS FILE: the frame that speed.py computes, in C++. FILE has red and green of the
-// free pad, its depth (float), then red and green of a frame. For each line on standard input it
-// computes depth and contact once, and prints the times in s: depth, contact, both.
+// frame ROWS COLS FILE: computes the same frame as speed.py, in C++. FILE has red and green of the
+// free pad, its depth (float), then red and green of a frame. For each line on standard input the
+// program computes depth and contact once, and prints the times in s: depth, contact, both.
 #include <chrono>
 #include <cstdint>
 #include <cstdio>

@@ -12,7 +12,7 @@
 namespace replay {
 namespace {
 
-/// What a recording has no data for.
+/// Adds notes on results for which the recording has no data.
 void note_missing(const Recording& recording, Findings& findings) {
   const auto note = [&](const std::string& place, const std::string& what, const char* remedy) {
     findings.push_back({place, what, remedy, false});

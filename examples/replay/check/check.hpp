@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// What is wrong with a recording, before anything is computed from it: units, signs and order of
-// numbers, light, clock, calibration. Each check looks for one likely mistake, with a threshold far
-// from what a good recording shows; a recording that passes may still be wrong in other ways.
+// Checks a recording before anything is computed from it: units, signs and order of numbers, light,
+// clock, calibration. Each check looks for one likely mistake, with a threshold far from the values
+// of good recordings; a recording that passes may still be wrong in other ways.
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -11,17 +11,17 @@
 namespace replay {
 
 struct Finding {
-  std::string place;     ///< file, and what in it
-  std::string what;      ///< what is seen
-  std::string remedy;    ///< what to do about it
-  bool is_wrong = true;  ///< false: only something that cannot be computed without more
+  std::string place;     ///< file, and the part of it
+  std::string what;      ///< the symptom
+  std::string remedy;    ///< how to repair it
+  bool is_wrong = true;  ///< false: no mistake, only missing data
 };
 using Findings = std::vector<Finding>;
 
-/// All that is found; empty: nothing. What cannot be read at all is a finding, too.
+/// Returns all findings. A recording that cannot be read gives a finding, too.
 Findings check_recording(const std::filesystem::path& folder);
 
-/// Prints a line for each finding. The exit status: 0 nothing is wrong, 1 something is.
+/// Prints a line for each finding. Returns the exit status: 1 if any finding is wrong, else 0.
 int print_check(const std::filesystem::path& folder);
 
 }  // namespace replay

@@ -10,7 +10,8 @@
 namespace replay {
 namespace {
 
-/// Steps between neighbours in rows and columns, px, and how far a dot lies from between two.
+/// Steps between neighbours along rows and columns, and the distance of a dot from the midpoint of
+/// its two neighbours in the row, px.
 struct Steps {
   std::vector<double> right_x, right_y, down_x, down_y, bend, length;
 
@@ -45,7 +46,7 @@ struct Steps {
   }
 };
 
-/// Order of rows and columns.
+/// Checks the order of rows and columns.
 void check_order(const std::string& place, const DotGrid& dots, Findings& findings) {
   const Steps steps(dots);
   if (steps.bend.empty() || steps.down_x.empty()) {
@@ -66,7 +67,7 @@ void check_order(const std::string& place, const DotGrid& dots, Findings& findin
   }
 }
 
-/// Coordinates that are no pixels of the frame.
+/// Checks for coordinates that are not pixels of the frame.
 bool check_pixels(const std::string& place,
                   const DotGrid& dots,
                   cv::Size frame,
@@ -102,7 +103,7 @@ bool check_pixels(const std::string& place,
   return true;
 }
 
-/// Whether a dot keeps its name from frame to frame.
+/// Checks that a dot keeps its row and column from frame to frame.
 void check_names(const std::string& place, const std::map<int, DotGrid>& dots, Findings& findings) {
   int moves = 0, leaps = 0;
   const DotGrid* before = nullptr;

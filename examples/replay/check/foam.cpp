@@ -7,12 +7,12 @@
 namespace replay {
 namespace {
 
-/// How much a taxel changes from sample to sample, in all.
+/// Changes of a taxel from sample to sample, over the whole recording.
 struct TaxelChange {
   double sum = 0;
-  double swapped_sum = 0;  ///< if its two bytes were exchanged
+  double swapped_sum = 0;  ///< the sum with the two bytes of each reading exchanged
   double usual = 0;        ///< median of the changes
-  bool whole = true;       ///< whole numbers of 16 bits
+  bool whole = true;       ///< all readings are 16-bit integers
 };
 
 double swapped(double reading) {

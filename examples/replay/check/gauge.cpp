@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
-// Whether the force gauge is turned against the image: a pad is carried along where it is pushed.
+// Checks whether the force gauge is rotated against the image: the dots move along with the force.
 #include <cmath>
 
 #include "fingerpad/calibrate/force.hpp"
@@ -12,10 +12,10 @@ namespace {
 
 using Sample = fingerpad::ForceSample<double>;
 
-/// How far the dots have gone on average beside the force of each frame that has one, both less
-/// their means: what a press alone does to the dots is in all of them.
+/// Mean displacement of the dots and tangential force for each frame with a known force. The means
+/// over these frames are subtracted, because they contain the effect of the press alone.
 std::vector<Sample> drags_of(const std::filesystem::path& folder, Recording& recording) {
-  constexpr int most_frames = 300;  // that are looked at
+  constexpr int most_frames = 300;  // at most this many are used
   DotSource source(folder, recording.sensor, recording.reference, recording.reference_depth,
                    recording.frames.size());
   std::vector<Sample> samples;
@@ -39,7 +39,7 @@ std::vector<Sample> drags_of(const std::filesystem::path& folder, Recording& rec
     }
     if (force != recording.true_forces.end() && 2 * count > static_cast<int>(dots.total())) {
       const auto& f = force->second.force_n;
-      samples.push_back({.measure = 1,  // not looked at
+      samples.push_back({.measure = 1,  // not used
                          .displacement_mm = {way[0] / count, way[1] / count},
                          .tangential_force_n = {f.x, f.y}});
       mean.displacement_mm += samples.back().displacement_mm;
@@ -74,7 +74,7 @@ void check_gauge(const std::filesystem::path& folder, Recording& recording, Find
                                                         {.min_explained = 0});
     constexpr double degrees = 180 / CV_PI;
     const double angle = degrees * fit.gauge_angle_rad, sd = degrees * fit.gauge_angle_sd_rad;
-    constexpr double most = 6;  // of a pad that is not quite linear
+    constexpr double most = 6;  // the response of a pad is not quite linear
     if (!std::isfinite(sd)) {
       findings.push_back({"forces.csv",
                           "the dots move along one line: nothing tells whether the "

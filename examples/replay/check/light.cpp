@@ -10,10 +10,10 @@
 namespace replay {
 namespace {
 
-constexpr int most_frames = 300;     // that are looked at
-constexpr double free_share = 0.02;  // of a free pad that may look unlike the reference
+constexpr int most_frames = 300;     // at most this many are used
+constexpr double free_share = 0.02;  // of a free pad that may differ from the reference
 
-/// Red plus green, half of it, in grey levels.
+/// Mean of red and green, grey levels.
 cv::Mat_<float> light_of(const cv::Mat& frame) {
   cv::Mat green, red;
   cv::extractChannel(frame, green, 1);
@@ -24,7 +24,7 @@ cv::Mat_<float> light_of(const cv::Mat& frame) {
   return light;
 }
 
-/// Share of the pixels of `pad` in which a colour is at its end.
+/// Share of the pixels of `pad` in which a colour is saturated.
 double saturated_share(const cv::Mat& frame, const cv::Mat& pad) {
   cv::Mat high;
   cv::inRange(frame.reshape(1), frame.depth() == CV_16U ? 254 * 256 : 254, 65535, high);
@@ -46,14 +46,14 @@ double median_within(const cv::Mat_<float>& values, const cv::Mat_<uchar>& pad) 
   return median_of(inside);
 }
 
-/// What some frames show, each against the reference and the one before.
+/// Light in a set of frames, compared with the reference and with the previous frame.
 struct Light {
   double saturated = 0;              ///< largest share
   double level = 0;                  ///< median of the frames' medians, grey levels
   std::vector<double> of_reference;  ///< median of frame / reference
   double noise = std::numeric_limits<double>::infinity();  ///< least, grey levels
-  int same = 0;                                            ///< frames that equal the one before
-  std::vector<double> touched;  ///< share of the pad that is lighter or darker, each frame
+  int same = 0;                                            ///< frames equal to the previous one
+  std::vector<double> touched;  ///< share of the pad that is lighter or darker, by frame
   double dark = 1;  ///< least share of the pad with less than half of the reference's light
 };
 
@@ -140,7 +140,7 @@ void tell_lamp(const std::string& place,
   }
 }
 
-/// Whether something shows the free pad as the reference has it.
+/// Checks that some frame shows the free pad as in the reference.
 void check_free_pad(const Recording& recording, const Light& frames, Findings& findings) {
   const double least = *std::min_element(frames.touched.begin(), frames.touched.end());
   if (recording.free_frames.size() == 0 && least > free_share) {
@@ -150,8 +150,8 @@ void check_free_pad(const Recording& recording, const Light& frames, Findings& f
   }
 }
 
-/// What the gauge reads where nothing touches the pad: the least of frames that look free, since
-/// the first touch can hardly be seen.
+/// Checks the gauge's reading without contact: the smallest in frames that look free, because the
+/// first touch is hardly visible.
 void check_tare(const Recording& recording, const Light& frames, Findings& findings) {
   double free_n = std::numeric_limits<double>::infinity(), largest_n = 0;
   for (const auto& [frame, truth] : recording.true_forces) {
@@ -185,7 +185,7 @@ void check_light(Recording& recording, Findings& findings) {
   if (!has_reference) {
     return;
   }
-  if (frames.dark > 0.1 && frames.level >= 16) {  // no press takes light away
+  if (frames.dark > 0.1 && frames.level >= 16) {  // a press does not darken the pad
     findings.push_back({"frames",
                         percent(frames.dark) + " of the pad are dark that are not in the reference",
                         "are rows read with their padding? has the camera moved?"});

@@ -18,7 +18,7 @@ void check_pressure(const Recording& recording, Findings& findings) {
     return;
   }
   constexpr double max_plausible_mpa = 0.2;
-  constexpr double air_mpa = 0.085;  // on a mountain
+  constexpr double air_mpa = 0.085;  // air pressure on a mountain
   const double usual = median_of(values);
   const double least = *std::min_element(values.begin(), values.end());
   const std::string around = "around " + short_number(usual) + " MPa";
@@ -132,7 +132,7 @@ void check_true_forces(const Recording& recording, Findings& findings) {
         {"forces.csv, force_z_n", "the object pulls at the pad",
          "a press gives force_z_n < 0: forces are what the object exerts on the pad"});
   }
-  constexpr double most_friction = 2;  // of a soft pad
+  constexpr double most_friction = 2;  // coefficient of a soft pad
   if (along_n > most_friction * std::fmax(press_n, pull_n) && along_n > 0.1) {
     findings.push_back({"forces.csv",
                         "up to " + short_number(along_n) + " N along the plate by a press of " +

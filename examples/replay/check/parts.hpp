@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// The parts of check.hpp, each for one kind of mistake.
+// The parts of check.hpp, one for each kind of mistake.
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
@@ -17,26 +17,26 @@ namespace replay {
 
 /// Pressure, side dots, look-up curves and true forces: units, signs, order.
 void check_numbers(const Recording& recording, Findings& findings);
-/// The reference: its depth against camera, pad and light.
+/// The reference: its depth compared with camera, pad and light.
 void check_reference(const Recording& recording, Findings& findings);
-/// Exposure, noise and lamp of the frames, whether the free frames are free, and what the force
-/// gauge reads in them.
+/// Exposure, noise and lamp of the frames, contact in the free frames, and the tare of the force
+/// gauge.
 void check_light(Recording& recording, Findings& findings);
-/// The dots of dots.csv, or the print against what the reference shows.
+/// The dots of dots.csv, or the print compared with the dots in the reference.
 void check_dots(const std::filesystem::path& folder,
                 const Recording& recording,
                 Findings& findings);
-/// The directions of forces.csv against those in which the dots move.
+/// The directions of forces.csv compared with the motion of the dots.
 void check_gauge(const std::filesystem::path& folder, Recording& recording, Findings& findings);
 /// Clock and taxels of a foam array.
 void check_foam(const FoamRecording& recording, Findings& findings);
-/// Times in s, NaN where one is missing, `what` after `what` ("frame", "sample").
+/// Times in s, one per `what` ("frame", "sample"); NaN if missing.
 void check_clock(const std::string& place,
                  const std::string& what,
                  const std::vector<double>& times_s,
                  Findings& findings);
 
-/// NaN where there are none.
+/// NaN for no values.
 inline double median_of(std::vector<double> values) {
   if (values.empty()) {
     return std::numeric_limits<double>::quiet_NaN();

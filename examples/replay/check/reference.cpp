@@ -11,15 +11,15 @@
 namespace replay {
 namespace {
 
-/// What the known depth of the free pad says of itself.
+/// Measures of the free pad's known depth.
 struct Shape {
   double deepest_mm = 0;
   double area_px = 0;
-  double not_positive = 0;  ///< share of the known pixels
+  double not_positive = 0;  ///< share of the known pixels with depth <= 0
   cv::Vec2d center_px{0, 0};
   double middle_mm = 0;  ///< mean of the inner tenth of the area
   double outer_mm = 0;   ///< mean of the outer half
-  bool cut = false;      ///< reaches the frame's border
+  bool cut = false;      ///< the pad reaches the frame's border
 };
 
 Shape shape_of(const cv::Mat_<float>& depth_mm) {
@@ -109,7 +109,7 @@ void check_camera(const Recording& recording, const Shape& shape, Findings& find
   }
 }
 
-/// Slope of ln(green / red) against depth, 1/mm, and how well a line explains it.
+/// Regression of ln(green / red) on depth: slope, 1/mm, and correlation.
 struct ColourSlope {
   double slope = 0;
   double correlation = 0;
@@ -142,8 +142,8 @@ ColourSlope colour_slope(const cv::Mat& picture, const cv::Mat_<float>& depth_mm
   return {sxy / sxx, sxy / std::sqrt(sxx * syy)};
 }
 
-/// Share of the deeper half of the pad where less red is left than absorption alone leaves: the
-/// fluid's own light, which red holds besides, would be negative.
+/// Share of the deeper half of the pad in which red is darker than absorption alone predicts from
+/// green. There the light scattered by the fluid, which adds to red, would be negative.
 double share_without_scattering(const Recording& recording, double deepest_mm) {
   const auto& absorption = recording.sensor.absorption;
   const double delta = absorption.c_green_per_mm - absorption.c_red_per_mm;
@@ -157,7 +157,7 @@ double share_without_scattering(const Recording& recording, double deepest_mm) {
     for (int j = 0; j < green.cols; ++j) {
       const auto depth = static_cast<double>(recording.reference_depth(i, j));
       if (depth > deepest_mm / 2) {
-        constexpr double path = 2;  // there and back
+        constexpr double path = 2;  // down and back up
         const double left = static_cast<double>(green(i, j)) * std::exp(delta * path * depth);
         deep += 1;
         without += absorption.kappa * static_cast<double>(red(i, j)) < left ? 1 : 0;
@@ -187,7 +187,7 @@ void check_colours(const Recording& recording, const Shape& shape, Findings& fin
   }
 }
 
-/// Whether picture and depth go together, pixel by pixel; heights in plan do not.
+/// Checks that picture and depth match pixel by pixel; heights in plan view do not.
 void check_fit(const Recording& recording, Findings& findings) {
   const auto fit = [&]<class Pixel>(Pixel) {
     (void)fingerpad::fit_reference(recording.sensor.camera, recording.sensor.absorption,
@@ -213,7 +213,7 @@ void check_reference(const Recording& recording, Findings& findings) {
     check_camera(recording, shape, findings);
     check_colours(recording, shape, findings);
   }
-  if (findings.size() == before) {  // else its cause has been told
+  if (findings.size() == before) {  // else the cause is already reported
     check_fit(recording, findings);
   }
 }

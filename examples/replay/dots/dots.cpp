@@ -25,7 +25,7 @@ DotGrid free_dots(const fingerpad::DotFinder& finder) {
   return dots;
 }
 
-/// Whether two grids mean the same dots by the same row and column.
+/// Whether equal rows and columns of two grids denote the same dots.
 bool agree(const DotGrid& a, const DotGrid& b, double pitch_px) {
   int both = 0;
   int near = 0;
@@ -131,7 +131,7 @@ DotSource DotSource::of_dots_only(const std::filesystem::path& folder, Recording
   options.pattern.cols = given.cols;
   options.pattern.radius_px = given.diameter_px / 2;
   options.pattern.bright = given.bright;
-  options.tracker.max_off = 0.3;  // behind an elastic pad
+  options.tracker.max_off = 0.3;  // for an elastic pad
   auto finder = finder_of(folder, recording.reference, options);
   const int tried = (std::min)(first_frames, recording.frames.size());
   recording.frames.seek(0);

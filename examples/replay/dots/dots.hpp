@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// The printed dots of a recording, frame by frame and in print order: read from dots.csv where the
-// recording has it, else found in the frames, with the library's dot_finder.hpp, where sensor.json
-// says what is printed or the recording is of dots only.
+// The printed dots of a recording, frame by frame and in print order. They are read from dots.csv
+// if it exists. Otherwise the library's dot_finder.hpp finds them in the frames, if sensor.json
+// describes the print or the recording is dots-only.
 #include <filesystem>
 #include <map>
 #include <opencv2/core.hpp>
@@ -20,34 +20,33 @@ namespace replay {
 class DotSource {
  public:
   /// Reads dots.csv of the recording's folder, or finds the free pad's dots in `reference_image`.
-  /// Without frames (0) that it could name, dots.csv is not read. Throws Failure.
+  /// With `frame_count` 0, dots.csv is not read. Throws Failure.
   DotSource(const std::filesystem::path& folder,
             const Sensor& sensor,
             const cv::Mat& reference_image,
             const cv::Mat_<float>& reference_depth,
             int frame_count);
 
-  /// The same for a dots-only recording. Without dots.csv, dots are found by the grid that the
-  /// reference shows, else the first of the first ten frames that shows one. Throws Failure where
-  /// none does.
+  /// The same for a dots-only recording. Without dots.csv, the grid is found in the reference, else
+  /// in the first of the first ten frames that shows one. Throws Failure if none does.
   static DotSource of_dots_only(const std::filesystem::path& folder, Recording& recording);
 
-  /// False where there is neither dots.csv nor a print that the free pad shows; then every grid is
-  /// empty (0 x 0).
+  /// False if there is neither dots.csv nor a print on the free pad; then every grid is empty
+  /// (0 x 0).
   bool present() const { return !initial_.empty(); }
   /// "dots.csv", "found in the frames", or "none".
   const std::string& how() const { return how_; }
 
-  /// The free pad's dots. With dots.csv: those of the first frame that it names, or those found in
-  /// the reference, if these are more and are the same dots (half of those that both have lie
-  /// within half a pitch).
+  /// The free pad's dots. With dots.csv these are the dots of its first frame, or those found in
+  /// the reference if there are more of them and they are the same dots (more than half of the
+  /// common ones lie within half a pitch).
   DotGrid initial() const { return initial_.clone(); }
 
-  /// Of the dots, as the free pad shows them; 0 where they are read from dots.csv.
+  /// Diameter of the dots on the free pad; 0 if they are read from dots.csv.
   double diameter_px() const { return finder_ ? 2 * finder_->pattern().radius_px : 0; }
 
-  /// The dots of a frame; all NaN for a frame that dots.csv does not name. Found dots are followed
-  /// from frame to frame, so frames are asked for in ascending order.
+  /// The dots of a frame; all NaN for a frame that is not in dots.csv. Without dots.csv the dots
+  /// are tracked from frame to frame, so call it in ascending order of frames.
   DotGrid of(int frame, const cv::Mat& image);
 
  private:
@@ -62,8 +61,8 @@ class DotSource {
   std::optional<fingerpad::DotFinder::State> state_;
 };
 
-/// What is looked for on the free pad: the print of sensor.json's section on dots, as large as it
-/// appears at the pad's median depth, where the pad has a depth.
+/// The print to find on the free pad: section "dots" of sensor.json, scaled to the pad's median
+/// depth. Only pixels with a depth are searched.
 fingerpad::DotFinderOptions print_of(const Sensor& sensor, const cv::Mat_<float>& reference_depth);
 
 }  // namespace replay

@@ -18,7 +18,7 @@ namespace replay {
 namespace {
 
 const std::vector<std::string> header = {"frame", "row", "col", "x_px", "y_px"};
-constexpr int largest_print = 100;  // rows or columns that a file may ask for by itself
+constexpr int largest_print = 100;  // rows or columns of a print whose size only the file gives
 
 struct Line {
   int frame = 0;
@@ -27,7 +27,7 @@ struct Line {
   cv::Vec2d pixel;
 };
 
-/// The lines of one file, each checked by itself.
+/// Reads the lines of one file and checks each line alone.
 class LineReader {
  public:
   LineReader(const std::filesystem::path& file, int frame_count, std::optional<cv::Size> size)
@@ -41,7 +41,7 @@ class LineReader {
     }
   }
 
-  /// False at the end of the file.
+  /// Returns false at the end of the file.
   bool next(Line& line) {
     std::string text;
     while (std::getline(stream_, text)) {

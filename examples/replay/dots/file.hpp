@@ -10,8 +10,8 @@
 
 namespace replay {
 
-/// Dots of each frame that the file names; throws Failure with the line number. `size` is that of
-/// the print; without one the grid is as large as the file's largest row and column make it.
+/// Reads the dots of each frame in the file; throws Failure with the line number. `size` is the
+/// size of the print; without it the largest row and column in the file give the size.
 std::map<int, DotGrid> read_dots(const std::filesystem::path& file,
                                  int frame_count,
                                  std::optional<cv::Size> size);

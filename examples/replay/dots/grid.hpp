@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// The printed dots of one frame, as the library takes them: a grid of pixels in print order.
+// The printed dots of one frame in the library's form: a grid of positions in print order.
 #include <limits>
 #include <opencv2/core.hpp>
 

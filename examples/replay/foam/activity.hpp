@@ -1,31 +1,31 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// What each taxel of a foam array does by itself: the library tells the waves of that taxel alone
-// which vibrates most of its finger; here each is taken for a finger of one taxel.
+// Vibration of each taxel of a foam array. The library reports only the taxel of a finger that
+// vibrates most; here each taxel is processed as a finger of its own.
 #include <vector>
 
 #include "replay/foam/step.hpp"
 
 namespace replay {
 
-/// One taxel that vibrates at some time.
+/// A taxel that vibrates at some time.
 struct TaxelTrack {
   std::size_t finger = 0;
-  int row = 0;  ///< in its finger
+  int row = 0;  ///< within its finger
   int col = 0;
-  long long samples = 0;            ///< in which it vibrates
-  std::vector<float> frequency_hz;  ///< the largest of each bin; 0: it does not vibrate
+  long long samples = 0;            ///< number of samples in which it vibrates
+  std::vector<float> frequency_hz;  ///< largest in each bin; 0 without vibration
 };
 
 struct FoamActivity {
-  std::size_t bins = 0;            ///< over the rows, one a row where they are not too many
+  std::size_t bins = 0;            ///< over the rows; one per row up to `max_bins`
   std::vector<TaxelTrack> tracks;  ///< by finger, row and column
-  /// Of each row asked for: rms of each taxel of the array beyond its noise, 0 where there is none.
+  /// For each requested row: rms vibration of each taxel of the array, 0 without vibration.
   std::vector<std::vector<float>> deviations;
 };
 
-/// `asked` are indices of rows, which are samples one after the other.
+/// `rows` are the samples in order; `asked` are the indices of the rows for `deviations`.
 FoamActivity activity_of(const FoamRecording& recording,
                          const std::vector<FoamNoise>& noise,
                          const std::vector<FoamRow>& rows,

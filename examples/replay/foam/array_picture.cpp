@@ -19,7 +19,7 @@ constexpr double finger_gap = 8;
 constexpr double small_letter = 8;
 const Ink empty_ink(246, 244, 243);
 
-/// Where fingers and their taxels are in a column of the picture.
+/// Positions of fingers and taxels in a column of the picture.
 class Layout {
  public:
   explicit Layout(const std::vector<FingerPlace>& fingers) : fingers_(fingers) {
@@ -59,13 +59,13 @@ class Layout {
   double pitch_;
 };
 
-/// From 0 to a round number.
+/// A scale from 0 to a round number.
 ColourScale scale_to(double largest, const cv::Mat_<cv::Vec3b>& colours) {
   const double tick = round_up((std::max)(largest, 1e-12) / 4);
   return {0, tick * (std::max)(1.0, std::ceil(largest / tick - 1e-9)), tick, colours};
 }
 
-/// Pale to red, as changes of depth are.
+/// Pale to red, the upper half of change_scale().
 cv::Mat_<cv::Vec3b> reds() {
   const cv::Mat_<cv::Vec3b> both = change_scale(1).colours;
   cv::Mat_<cv::Vec3b> upper(1, 256);
@@ -172,7 +172,7 @@ class Strip {
     }
   }
 
-  /// The readings of a finger, or what they vibrate.
+  /// Paints the readings or the vibration of a finger.
   void paint_finger(Canvas& canvas,
                     std::size_t column,
                     std::size_t finger,

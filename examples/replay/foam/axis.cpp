@@ -11,7 +11,7 @@ namespace replay {
 namespace {
 
 constexpr double max_ticks = 10;
-constexpr double long_ago_s = 1e5;  // times from here on are those of a calendar
+constexpr double long_ago_s = 1e5;  // from here on times count as calendar times
 
 }  // namespace
 

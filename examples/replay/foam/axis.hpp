@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// The samples of a foam recording from left to right, and what stands below and across them.
+// The horizontal axis of pictures of a foam recording: one position per sample, with ticks.
 #include <optional>
 #include <string>
 #include <vector>
@@ -14,7 +14,7 @@ namespace replay {
 /// A round number at or above x > 0: 1, 2 or 5 times a power of ten.
 double round_up(double x);
 
-/// The first row with an alarm; none: no row has one.
+/// Index of the first row with an alarm; empty without alarm.
 std::optional<std::size_t> first_alarm(const std::vector<FoamRow>& rows);
 
 /// Colour of a finger's curves.
@@ -22,7 +22,7 @@ const Ink& finger_ink(std::size_t finger);
 
 class SampleAxis {
  public:
-  /// Ticks are at round times where times only grow, else at round frame numbers.
+  /// Ticks are at round times if the times increase monotonically, else at round frame numbers.
   SampleAxis(const FoamRecording& recording,
              const std::vector<FoamRow>& rows,
              double left,
@@ -33,7 +33,7 @@ class SampleAxis {
   double left() const { return left_; }
   double right() const { return left_ + width_; }
 
-  /// Numbers and name below `bottom`.
+  /// Paints tick labels and the axis title below `bottom`.
   void paint(Canvas& canvas, double bottom) const;
 
  private:

@@ -17,7 +17,7 @@ namespace {
 constexpr double left = 84;
 constexpr double width = 660;
 
-/// Heights of one curve over a panel.
+/// Vertical range of a panel.
 struct Panel {
   double top_px;
   double height_px;
@@ -34,7 +34,7 @@ struct Panel {
   double y(double value) const { return bottom_px() - height_px * value / highest; }
 };
 
-/// One value a row of one finger, NaN where it is not known; a curve with a gap there.
+/// A value of one finger in a row. NaN if unknown, which makes a gap in the curve.
 using Value = double (*)(const fingerpad::FingerSample<double>& finger);
 
 double sum_of(const fingerpad::FingerSample<double>& finger) {
@@ -93,7 +93,7 @@ void paint_legend(Canvas& canvas, std::size_t fingers, double y) {
   }
 }
 
-/// A bar at each sample that completes a pair of the rule.
+/// Paints a bar at each sample that completes a pair of the rule.
 void paint_rule(Canvas& canvas,
                 const SampleAxis& axis,
                 double y,

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// Load, waves and alarms of a foam recording over its samples.
+// A chart of load, waves and alarms of a foam recording over its samples.
 #include <opencv2/core.hpp>
 #include <string>
 #include <vector>

@@ -20,7 +20,7 @@ constexpr double finger_gap = 10;
 constexpr std::size_t max_tracks = 40;
 const Ink empty_ink(246, 244, 243);
 
-/// Those that vibrate longest, still by finger, row and column.
+/// The tracks that vibrate longest, still ordered by finger, row and column.
 std::vector<TaxelTrack> longest(std::vector<TaxelTrack> tracks) {
   if (tracks.size() > max_tracks) {
     std::vector<long long> samples;
@@ -36,7 +36,7 @@ std::vector<TaxelTrack> longest(std::vector<TaxelTrack> tracks) {
   return tracks;
 }
 
-/// The heights of the rows of taxels.
+/// Vertical positions of the taxels' rows in the picture.
 struct Rows {
   std::vector<double> top_px;
   double height_px;
@@ -78,7 +78,7 @@ void paint_track(Canvas& canvas,
   }
 }
 
-/// Lines under the samples in which it is the finger's strongest.
+/// Paints lines under the samples in which this taxel vibrates most of its finger.
 void paint_strongest(Canvas& canvas,
                      const SampleAxis& axis,
                      const std::vector<FoamRow>& rows,

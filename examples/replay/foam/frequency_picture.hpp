@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// How fast each taxel of a foam array vibrates over time.
+// A picture of the vibration frequency of each taxel of a foam array over time.
 #include <opencv2/core.hpp>
 #include <string>
 #include <vector>
@@ -11,7 +11,7 @@
 
 namespace replay {
 
-/// Samples side by side that are worth showing.
+/// Largest number of bins along the time axis.
 constexpr std::size_t max_frequency_bins = 660;
 
 cv::Mat foam_frequency_picture(const std::string& title,

@@ -23,7 +23,7 @@ using Place = std::pair<int, int>;  // row and column
 constexpr int max_places = 4096;  // rows or columns
 constexpr double no_number = std::numeric_limits<double>::quiet_NaN();
 
-/// Reads up to four digits from `at` on.
+/// Reads up to four digits from position `at`, which it advances; nullopt if none or too large.
 std::optional<int> digits(const std::string& text, std::size_t& at) {
   const std::size_t first = at;
   int number = 0;
@@ -33,7 +33,7 @@ std::optional<int> digits(const std::string& text, std::size_t& at) {
   return at > first && number < max_places ? std::optional<int>(number) : std::nullopt;
 }
 
-/// "r3_c0"
+/// Parses a column name such as "r3_c0".
 std::optional<Place> place_of(const std::string& name) {
   std::size_t at = 1;
   if (name.empty() || name[0] != 'r') {
@@ -54,7 +54,7 @@ std::string name_of(const Place& place) {
   return name;
 }
 
-/// Where the columns are in a line.
+/// Positions of the columns in a line.
 struct Header {
   std::vector<std::string> names;
   std::size_t frame = 0;
@@ -65,7 +65,7 @@ struct Header {
 };
 
 Header read_header(const fs::path& file, std::string line) {
-  if (line.rfind("\xEF\xBB\xBF", 0) == 0) {  // as spreadsheets begin their files
+  if (line.rfind("\xEF\xBB\xBF", 0) == 0) {  // byte order mark, as spreadsheets write it
     line.erase(0, 3);
   }
   const auto refuse = [&](const std::string& why) { fail(file, "line 1: " + why); };
@@ -109,7 +109,7 @@ Header read_header(const fs::path& file, std::string line) {
   return header;
 }
 
-/// NaN where there is none; false: it is no number.
+/// Sets `number` to NaN for an empty or non-finite text; returns false if it is not a number.
 bool read_number(const std::string& text, double& number) {
   char* end = nullptr;
   number = std::strtod(text.c_str(), &end);
@@ -189,7 +189,7 @@ class TableReader {
   int number_ = 1;
 };
 
-/// The median of the times from one sample to the next; 0: none goes forward.
+/// Median time step between samples; 0 if no step is positive.
 double median_step_s(const std::vector<double>& times_s) {
   std::vector<double> steps;
   for (std::size_t k = 1; k < times_s.size(); ++k) {
@@ -216,7 +216,7 @@ void check_fingers(const fs::path& file, const FoamRecording& recording) {
   for (std::size_t k = 0; k < fingers.size(); ++k) {
     const FingerPlace& place = fingers[k];
     const std::string name = "foam.fingers[" + std::to_string(k) + "]";
-    // compared so that no sum overflows
+    // written so that no sum overflows
     if (place.rows > recording.table.rows - place.first_row ||
         place.cols > recording.table.cols - place.first_col) {
       fail(file, name + " reaches beyond the array, which has " +
@@ -262,7 +262,7 @@ FoamRecording open_foam_recording(const fs::path& folder) {
   const double measured_s = median_step_s(recording.table.times_s);
   const double by_default_s = measured_s > 0 ? measured_s : taxels.sample_period_s;
   taxels.sample_period_s = sensor.sample_period_s.value_or(by_default_s);
-  // a slow recording is not one of gaps
+  // the steps of a slow recording must not count as gaps
   taxels.longest_gap_s =
       sensor.longest_gap_s.value_or((std::max)(taxels.longest_gap_s, 4 * taxels.sample_period_s));
   return recording;

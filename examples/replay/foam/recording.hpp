@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// A recording of a foam array: taxels.csv, and sensor.json where there is one.
+// A recording of a foam array: taxels.csv, and sensor.json if it exists.
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -13,15 +13,15 @@ namespace replay {
 
 using fingerpad::Index;
 
-/// taxels.csv: frame,time_s,r<row>_c<col>,... in any order of the columns.
+/// The content of taxels.csv: columns frame,time_s,r<row>_c<col>,... in any order.
 struct TaxelTable {
   int rows = 0;
   int cols = 0;
-  std::vector<int> frames;         ///< as written; where that is empty, one more than the last
+  std::vector<int> frames;         ///< as written; if empty, one more than the previous
   std::vector<std::string> times;  ///< as written
-  std::vector<double> times_s;     ///< NaN: not known
-  std::vector<double> readings;    ///< sample after sample, row by row; NaN: missing
-  long long missing = 0;           ///< readings
+  std::vector<double> times_s;     ///< NaN if unknown
+  std::vector<double> readings;    ///< by sample, row and column; NaN if missing
+  long long missing = 0;           ///< number of missing readings
 
   int samples() const { return static_cast<int>(frames.size()); }
   std::size_t taxels() const {
@@ -29,12 +29,12 @@ struct TaxelTable {
   }
 };
 
-/// Empty cells, missing ones at the end of a line, and those that are not finite are missing
-/// readings. Throws Failure.
+/// Reads taxels.csv. A cell that is empty, not finite, or absent at the end of a line is a missing
+/// reading. Throws Failure.
 TaxelTable read_taxels(const std::filesystem::path& file);
 
 struct FoamRecording {
-  FoamSensor sensor;  ///< with fingers, sample period and longest gap
+  FoamSensor sensor;  ///< with defaults for fingers, sample period and longest gap resolved
   TaxelTable table;
 
   int fingers() const { return static_cast<int>(sensor.fingers.size()); }

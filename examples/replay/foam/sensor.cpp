@@ -33,7 +33,7 @@ std::vector<FingerPlace> read_fingers(const std::filesystem::path& file, const J
   return fingers;
 }
 
-/// What sensor.json may know of a foam array, and what of other sensors.
+/// Section "foam" with its known keys.
 JsonSection foam_section(const JsonSection& root) {
   return root.section(
       "foam", {{"fingers", "where the fingers are in the array"},
@@ -88,7 +88,7 @@ void read_options(const JsonSection& foam, FoamSensor& sensor) {
   foam.check([&] { expects_valid(sensor.rules); });
 }
 
-/// Sections that other recordings have say that files were mixed up.
+/// Throws Failure for sections of other recordings: they indicate mixed-up files.
 void refuse_other_sections(const std::filesystem::path& file, const nlohmann::json& content) {
   for (const char* other : {"camera", "absorption", "pad", "reference", "video", "smoothing_px",
                             "dots", "rim", "neighbour_light", "force", "stick", "contact"}) {

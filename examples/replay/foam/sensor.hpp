@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// The section "foam" of sensor.json: what is known of a foam array. All of it is optional.
+// The section "foam" of sensor.json, which describes a foam array. All keys are optional.
 #include <filesystem>
 #include <optional>
 #include <vector>
@@ -11,7 +11,7 @@
 
 namespace replay {
 
-/// The rectangle of the array that one finger has.
+/// The rectangle of the array that belongs to one finger.
 struct FingerPlace {
   int first_row = 0;
   int rows = 0;
@@ -22,12 +22,12 @@ struct FingerPlace {
 constexpr int max_fingers = 5;
 
 struct FoamSensor {
-  std::vector<FingerPlace> fingers;        ///< none: the whole array is one
-  fingerpad::TaxelOptions<double> taxels;  ///< but for what follows
-  std::optional<double> noise;             ///< none: from the quiet part of the recording
-  std::optional<double> quiet_until_s;     ///< none: its first windows are taken to be quiet
-  std::optional<double> sample_period_s;   ///< none: from the recording
-  std::optional<double> longest_gap_s;     ///< none: the library's, at least four periods
+  std::vector<FingerPlace> fingers;        ///< empty: the whole array is one finger
+  fingerpad::TaxelOptions<double> taxels;  ///< except for the members below
+  std::optional<double> noise;             ///< empty: from the quiet part of the recording
+  std::optional<double> quiet_until_s;     ///< empty: the first windows are assumed quiet
+  std::optional<double> sample_period_s;   ///< empty: from the recording
+  std::optional<double> longest_gap_s;     ///< empty: library default, at least four periods
   fingerpad::PreslipOptions<double> rules;
   bool grasp_lift = true;
   bool grasp_optimise = false;

@@ -20,7 +20,7 @@ using fingerpad::TaxelStatus;
 
 constexpr double thousandth = 1e-3;
 
-/// Of all taxels; 0: there is none.
+/// Largest reading below saturation, at least 0.
 double largest_reading(const FoamRecording& recording) {
   double largest = 0;
   for (const double reading : recording.table.readings) {
@@ -31,7 +31,7 @@ double largest_reading(const FoamRecording& recording) {
   return largest;
 }
 
-/// Both rules; sensor.json says which of them are told.
+/// Evaluates both rules; sensor.json selects which of them are reported.
 struct Methods : fingerpad::FoamHandMethods {
   static constexpr bool has_grasp_optimise = true;
 };
@@ -74,7 +74,7 @@ FoamNoise noise_of(const FoamRecording& recording, int finger) {
                                                             static_cast<double>(first_windows)) +
                                                          ", taken to be quiet";
     return {calibration.fit().deviations, until};
-  } catch (const fingerpad::parameter_error& error) {  // too short, or without any noise
+  } catch (const fingerpad::parameter_error& error) {  // the part is too short or has no noise
     if (sensor.quiet_until_s) {
       fail("sensor.json",
            "foam.quiet_until_s = " + format("%.4g", *sensor.quiet_until_s) + ": " + error.what());

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// From the samples of a foam array to features and pre-slip, by the library's foam_hand.hpp; the
-// only place of the program that knows the rules.
+// Computes features and pre-slip of a foam array with the library's foam_hand.hpp. Only this step
+// evaluates the pre-slip rules.
 #include <functional>
 #include <string>
 #include <vector>
@@ -13,13 +13,13 @@
 
 namespace replay {
 
-/// Which rules a sample completes a pair of.
+/// The rules of which a sample completes a pair.
 struct FoamAlarm {
   bool grasp_lift = false;
   bool grasp_optimise = false;
 
   bool any() const { return grasp_lift || grasp_optimise; }
-  /// The names of the rules, with "+" between them; empty: none.
+  /// The names of the rules with "+" between them; empty without alarm.
   std::string names() const;
 };
 
@@ -27,23 +27,23 @@ struct FoamAlarm {
 struct FoamRow {
   int sample = 0;  ///< counted from 0
   int frame = 0;
-  std::string time_s;  ///< empty where unknown
+  std::string time_s;  ///< empty if unknown
   std::vector<fingerpad::FingerSample<double>> fingers;
   FoamAlarm alarm;
 
-  /// False: its time is missing or not later than the last; then nothing is known of it.
+  /// False if the sample was skipped: its time is missing or not later than the previous one.
   bool was_taken() const;
 };
 
 /// The noise of the taxels of one finger at rest.
 struct FoamNoise {
-  std::vector<double> deviations;  ///< row by row; NaN: dead
-  std::string source;              ///< where it is from, in words
+  std::vector<double> deviations;  ///< row by row; NaN for a dead taxel
+  std::string source;              ///< origin of the noise, in words
 };
 
-/// As sensor.json says; else of the part that it states to be quiet, or of the first four windows;
-/// where these do not tell a thousandth of the largest reading. Throws Failure where the stated
-/// part does not tell.
+/// The noise from sensor.json, else estimated from the quiet part given there. Without either it is
+/// estimated from the first four windows, or else set to a thousandth of the largest reading.
+/// Throws Failure if the given quiet part does not allow an estimate.
 FoamNoise noise_of(const FoamRecording& recording, int finger);
 
 class FoamStep {
@@ -51,13 +51,13 @@ class FoamStep {
   /// The recording must outlive the step. Throws fingerpad::parameter_error.
   FoamStep(const FoamRecording& recording, const std::vector<FoamNoise>& noise);
 
-  /// Samples in their order.
+  /// Takes the samples in order.
   FoamRow operator()(int sample);
-  /// Of the features and the rules, over the samples so far.
+  /// Median time of features and rules over the samples so far.
   double median_us() const;
 
  private:
-  /// Fills fingers and alarm of a row.
+  /// Fills `fingers` and `alarm` of a row.
   using Hand = std::function<void(int sample, FoamRow& row)>;
 
   template <std::size_t Fingers>

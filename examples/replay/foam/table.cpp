@@ -17,7 +17,7 @@ constexpr const char* finger_columns[] = {"center_x_mm",   "center_y_mm",     "s
                                           "vibrating_row", "vibrating_col",   "waves",
                                           "frequency_hz",  "taxels_left_out", "taxel_status"};
 
-/// Empty where there is no number.
+/// Empty if `value` is not finite.
 std::string cell(double value) {
   return std::isfinite(value) ? format("%.6f", value) : "";
 }

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// frames.csv of a foam recording.
+// Writes frames.csv of a foam recording.
 #include <filesystem>
 #include <fstream>
 
@@ -9,7 +9,7 @@
 
 namespace replay {
 
-/// "finger1_" where there are several fingers, else empty.
+/// "finger1_" or similar if there are several fingers, else empty.
 std::string finger_prefix(std::size_t finger, std::size_t fingers);
 
 class FoamCsv {

@@ -27,7 +27,7 @@ SlideStep step_of(const Options& options, const FreePad& free, const DotSource& 
   }
 }
 
-/// Empty where there is no number.
+/// Empty if `value` is not finite.
 std::string cell(double value) {
   char text[32] = "";
   if (std::isfinite(value)) {
@@ -36,7 +36,7 @@ std::string cell(double value) {
   return text;
 }
 
-/// Whether frame `done` of `total` stands above the chart; they lie evenly.
+/// Whether frame `done` of `total` is shown above the chart; the shown frames are evenly spaced.
 bool is_shown(int done, int total) {
   const int count = (std::min)(total, most_shown);
   for (int k = 0; k < count; ++k) {

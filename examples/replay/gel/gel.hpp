@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// What replay makes of a gel pad with dots: slide.csv, a picture of each frame, and one chart.
+// The output of replay for a gel pad with dots: slide.csv, a picture of each frame, and one chart.
 #include <fstream>
 #include <optional>
 #include <vector>
@@ -16,7 +16,8 @@ namespace replay {
 
 class GelReplay {
  public:
-  /// For `total` frames. Options and output must outlive it. Throws Failure, here and below.
+  /// For `total` frames. Options and output must outlive this object. Throws Failure, as do the
+  /// functions below.
   GelReplay(Recording& recording,
             const Options& options,
             const DotSource& dots,
@@ -24,7 +25,7 @@ class GelReplay {
             int total);
 
   void operator()(int frame, const std::string& time_s, const cv::Mat& image, const DotGrid& dots);
-  /// Writes what concerns all frames.
+  /// Writes the results over all frames.
   void finish();
   void print_summary() const;
 

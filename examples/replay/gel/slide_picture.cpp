@@ -19,7 +19,7 @@ double evidence_of(const GelFrame& seen) {
   return static_cast<double>(seen.slide.evidence);
 }
 
-/// Where a camera's image is on the sheet.
+/// Position of a camera's image on the sheet.
 struct Place {
   cv::Rect2d box;
   double shrink;
@@ -37,7 +37,7 @@ Outline outline_of(const cv::Mat_<uchar>& mask) {
   return outline;
 }
 
-/// White below every line, so that it shows on any ground.
+/// Solid lines get a white border, so that they are visible on any background.
 void paint_outline(Canvas& canvas,
                    const Place& place,
                    const Outline& outline,
@@ -79,11 +79,11 @@ void paint_arrow(Canvas& canvas, Spot from, Spot to, double width, const Ink& co
 }
 
 Spot middle_of(const GelScene& scene) {
-  const auto& center = scene.seen.contact.center_mm;  // from the middle of the image, in px
+  const auto& center = scene.seen.contact.center_mm;  // relative to the image center, px
   return {center.x + (scene.image.cols - 1) / 2.0, center.y + (scene.image.rows - 1) / 2.0};
 }
 
-/// The frame, the contact's outline, and its way past the dots.
+/// Paints the frame, the contact's outline, and its slide past the dots.
 void paint_scene(Canvas& canvas, const Place& place, const GelScene& scene, double line) {
   cv::Mat paper = canvas.area(place.box);
   displayed(scene.image, 245, paper.size()).copyTo(paper);
@@ -159,12 +159,12 @@ namespace {
 constexpr double chart_left = 84;
 constexpr double chart_width = 680;
 
-/// A panel with the frames along x, as wide as the chart.
+/// A panel with the frames along x, over the width of the chart.
 struct Axis {
   double y;
   double height;
   double top;   ///< value at its upper edge; 0 at the lower
-  double last;  ///< number of frames less one
+  double last;  ///< number of frames - 1
 
   double x_of(double k) const { return chart_left + chart_width * k / (std::max)(last, 1.0); }
   double y_of(double value) const { return y + height * (1 - (std::min)(value, top) / top); }
@@ -178,7 +178,8 @@ void paint_band(Canvas& canvas, const Axis& axis, double from, double to, const 
                  colour);
 }
 
-/// Evidence over a ground that is green where it holds and red where it slips.
+/// Paints the evidence on a background that is green where the contact holds and red where it
+/// slips.
 void paint_evidence(Canvas& canvas, const Axis& axis, const std::vector<GelRow>& rows) {
   paint_band(canvas, axis, 0, 0.5, Ink(226, 242, 222));
   paint_band(canvas, axis, 0.5, 1, Ink(210, 240, 252));
@@ -207,7 +208,7 @@ void paint_evidence(Canvas& canvas, const Axis& axis, const std::vector<GelRow>&
   }
 }
 
-/// How much touches, as a filled curve in the colour of what it does.
+/// Paints the contact area as a filled curve in the colour of slip_ink().
 void paint_area(Canvas& canvas, const Axis& axis, const std::vector<GelRow>& rows) {
   const auto area = [&](std::size_t k) {
     return axis.y_of(static_cast<double>(rows[k].seen.contact.contact_px));
@@ -236,7 +237,7 @@ void paint_frame_numbers(Canvas& canvas, const Axis& axis, const std::vector<Gel
               Align::center);
 }
 
-/// Frames side by side, a line from each down to its place on the axis.
+/// Paints frames side by side, each with a line down to its position on the axis.
 double paint_frames(Canvas& canvas,
                     const Axis& axis,
                     const std::vector<GelRow>& rows,
@@ -274,7 +275,7 @@ cv::Mat slide_chart(const std::string& title,
   const double count = static_cast<double>((std::max)(shown.size(), std::size_t{1}));
   const cv::Mat& image = shown.front().image;
   const double thumb = (chart_width - 8 * (count - 1)) / count * image.rows / image.cols;
-  const double thumbs_y = 78;  // below the title and the frames' numbers
+  const double thumbs_y = 78;  // below the title and the frame numbers
   const double top = thumbs_y + thumb + 34;
   double most = 1.5;
   double largest = 1;

@@ -14,10 +14,10 @@ namespace replay {
 namespace {
 
 using Colours = cv::Mat_<cv::Vec3b>;
-constexpr int first_frames = 3;                 // that may show the free pad
+constexpr int first_frames = 3;                 // at most this many may show the free pad
 constexpr double usual_dot_share = 14.0 / 640;  // of the frame's width
 
-/// 8 bit, blue, green, red.
+/// Converts to 8-bit BGR.
 Colours colours_of(const cv::Mat& image) {
   cv::Mat levels = image;
   if (image.depth() == CV_16U) {
@@ -61,7 +61,7 @@ double median(std::vector<double> values) {
   return *middle;
 }
 
-/// Those of the first frames that show no contact beside the first one.
+/// The first frames, up to the first that shows a contact relative to frame 0.
 std::vector<cv::Mat> free_first_frames(Recording& recording) {
   recording.frames.seek(0);
   std::vector<cv::Mat> frames = {next_frame(recording.frames, recording.reference.size())};
@@ -100,7 +100,7 @@ double pitch_px(const DotGrid& dots) {
 
 fingerpad::DifferenceTest difference_test_for(double dot_px) {
   fingerpad::DifferenceTest test;
-  const double larger = dot_px / test.dot_px;  // than those of the default
+  const double larger = dot_px / test.dot_px;  // than the default dots
   const auto cell = std::lround(larger * static_cast<double>(test.cell_px));
   test.cell_px =
       (std::clamp)(static_cast<fingerpad::Index>(cell), fingerpad::Index{1}, fingerpad::Index{16});

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// Contact, slide and slip of a gel pad with printed dots, of which nothing but its frames is known.
+// Contact, slide and slip of a gel pad with printed dots, from its frames only.
 #include <filesystem>
 #include <opencv2/core.hpp>
 #include <vector>
@@ -15,20 +15,20 @@
 
 namespace replay {
 
-/// Median distance of neighbours; NaN where no two are present.
+/// Median distance of neighbouring dots; NaN if no two neighbours are present.
 double pitch_px(const DotGrid& dots);
 
 /// Thresholds of contact by difference for dots of this diameter.
 fingerpad::DifferenceTest difference_test_for(double dot_px);
 
-/// What is taken for the free pad.
+/// The frames that are taken as the free pad.
 struct FreePad {
   std::vector<cv::Mat> frames;
   const char* source;  ///< in words
 };
 
-/// The frames in free/, else the picture that sensor.json names, else the recording's first ones,
-/// as far as they show the same. Throws Failure.
+/// The frames in free/, else the reference of sensor.json, else the first frames of the recording
+/// before any contact. Throws Failure.
 FreePad free_pad_of(Recording& recording);
 
 /// One frame of a gel.
@@ -36,20 +36,20 @@ struct GelFrame {
   fingerpad::ContactResult contact;  ///< in px: mm_per_px is 1
   fingerpad::SlideResult<float> slide;
   fingerpad::RecoilResult<float> recoil;
-  fingerpad::SlipResult<double> slip;  ///< fused; no force is known
+  fingerpad::SlipResult<double> slip;  ///< fused evidence, without a force
 };
 
 class SlideStep {
  public:
-  /// `dot_px`: diameter of the dots; 0: not known, as large as is usual for frames of this size.
+  /// `dot_px`: diameter of the dots; 0 if unknown, then 14 px in a frame 640 px wide is assumed.
   /// Throws fingerpad::parameter_error.
   SlideStep(const std::vector<cv::Mat>& free_frames, const DotGrid& free_dots, double dot_px);
 
-  /// Frames in the order of time; `mask` receives 255 in contact and 0 elsewhere.
+  /// Takes frames in time order; `mask` receives 255 in contact and 0 elsewhere.
   GelFrame operator()(const cv::Mat& image, const DotGrid& dots, cv::Mat_<uchar>& mask);
   /// The last frame's difference from the free pad, cell by cell.
   fingerpad::StridedView<const float> difference() const { return workspace_.difference(); }
-  /// Of contact and slide, over the frames so far.
+  /// Median time of contact and slide over the frames so far.
   double median_ms() const;
 
  private:

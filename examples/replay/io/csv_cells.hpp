@@ -1,7 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// The cells of a line of a .csv file, without quotes; blanks and a carriage return are left out.
+// Splits a line of a .csv file into cells, without quoting; blanks and a carriage return are
+// dropped.
 #include <string>
 #include <vector>
 

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// What goes wrong with a file: one line that says which file and why. Thrown anywhere, shown once,
-// in main.
+// An error with a file: one line that names the file and the reason. It may be thrown anywhere and
+// is printed once, in main().
 #include <filesystem>
 #include <stdexcept>
 #include <string>
@@ -14,7 +14,7 @@ class Failure : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// Throws "FILE: why" as one line, whatever a library put into `why`.
+/// Throws Failure("FILE: why") as one line, even if `why` from a library has several.
 [[noreturn]] inline void fail(const std::filesystem::path& file, const std::string& why) {
   std::string line = file.string() + ": " + why;
   for (char& c : line) {

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// Whether the user wants the program to stop, so that it can leave nothing behind.
+// Whether the user has interrupted the program, so that it can stop without leaving files behind.
 #include <csignal>
 
 namespace replay {

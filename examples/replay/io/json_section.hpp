@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// JSON files whose objects have known keys: unknown keys are refused with their name, missing ones
-// with what they are for, and values of the wrong type with what they should be.
+// JSON files whose objects have known keys. An unknown key is refused with its name, a missing key
+// with its purpose, and a value of the wrong type with the expected type.
 #include <algorithm>
 #include <array>
 #include <filesystem>
@@ -21,7 +21,7 @@ namespace replay {
 /// A key that an object may have.
 struct JsonKey {
   std::string name;
-  std::string purpose;  ///< what the reader of an error message learns about a missing key
+  std::string purpose;  ///< shown in the error message for a missing key
 };
 
 /// One object of the file and the keys that it may have.
@@ -114,7 +114,7 @@ class JsonSection {
   [[noreturn]] void refuse(const std::string& why) const {
     fail(file_, name_ + ": " + why + " (known here: " + known() + ")");
   }
-  /// Refuses with this section's name what `check` refuses.
+  /// Runs `check`; throws Failure with this section's name for a parameter_error.
   template <class Check>
   void check(const Check& check) const {
     try {
@@ -132,7 +132,7 @@ class JsonSection {
     return found.get<std::string>();
   }
 
-  /// As many numbers as the array has, followed by zeros.
+  /// The numbers of a JSON array, padded with zeros to `Most`.
   template <std::size_t Most>
   std::array<double, Most> numbers(const std::string& key) const {
     const nlohmann::json& found = at(key);

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// Tables of numbers in .csv files, checked as they are read.
+// Reads and checks tables of numbers in .csv files.
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -19,7 +19,7 @@ class NumberTable {
   };
   const std::vector<Line>& lines() const { return lines_; }
 
-  /// Value of a column as one of the `what` 0 to count - 1.
+  /// Value of a column as an index in [0, count); `what` names it in error messages.
   int index(const Line& line, std::size_t column, int count, const std::string& what) const;
   [[noreturn]] void refuse(const Line& line, const std::string& why) const;
 

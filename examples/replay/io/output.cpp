@@ -30,7 +30,7 @@ constexpr const char* columns =
     "wrench_fx_n,wrench_fy_n,wrench_fz_n,wrench_mx_nm,wrench_my_nm,wrench_mz_nm";
 constexpr const char* dot_columns = "frame,row,col,x_px,y_px,x_mm,y_mm,z_mm,contact,stick";
 
-/// Empty where there is no number.
+/// Empty if `value` is not finite.
 std::string cell(double value) {
   char text[32] = "";
   if (std::isfinite(value)) {
@@ -39,7 +39,6 @@ std::string cell(double value) {
   return text;
 }
 
-/// 1 or 0; empty where it is not known whether a dot sticks, or it touches nothing.
 const char* words_of(fingerpad::SlipEvidence evidence) {
   switch (evidence) {
     case fingerpad::SlipEvidence::none:
@@ -56,6 +55,7 @@ const char* words_of(fingerpad::SlipEvidence evidence) {
   return "";
 }
 
+/// "1" or "0"; empty if the state is unknown or the dot is not in contact.
 const char* stick_cell(DotState state) {
   return state == DotState::stick ? "1" : state == DotState::slip ? "0" : "";
 }
@@ -67,7 +67,7 @@ void close_file(std::ofstream& stream, const fs::path& file) {
   }
 }
 
-/// Whether a file of this path, relative to the output folder, is one that the program writes.
+/// Whether the program itself writes a file of this path, relative to the output folder.
 bool is_ours(const std::string& relative) {
   static const std::regex ours(
       R"(frames\.csv|dots\.csv|slide\.csv|depth|depth/\d{6}\.tiff|contact|contact/\d{6}\.png|pictures|)"
@@ -99,7 +99,7 @@ void refuse_foreign(const fs::path& place) {
   }
 }
 
-/// The folder itself, without "." or a trailing slash, behind symbolic links.
+/// The folder's path without "." and trailing slash, with symbolic links resolved.
 fs::path resolved(const fs::path& given) {
   fs::path place = fs::weakly_canonical(fs::absolute(given));
   return place.has_filename() ? place : place.parent_path();
@@ -167,7 +167,7 @@ void OutputFolder::remove_traces() {
     fs::remove_all(growing_, ignored);
   }
   for (; !made_parents_.empty(); made_parents_.pop_back()) {
-    fs::remove(made_parents_.back(), ignored);  // only where it is empty
+    fs::remove(made_parents_.back(), ignored);  // fails unless it is empty
   }
 }
 
@@ -182,9 +182,9 @@ fs::path OutputFolder::file(const std::string& part, const std::string& name) co
 
 void OutputFolder::publish() {
   try {
-    refuse_foreign(place_);  // again: somebody may have used it meanwhile
+    refuse_foreign(place_);  // again: another program may have used it meanwhile
     if (fs::exists(place_)) {
-      // The earlier run stays whole until the new one has its place.
+      // The earlier run stays complete until the new one is in place.
       const fs::path earlier = make_sibling(place_);
       fs::rename(place_, earlier);
       std::error_code error;

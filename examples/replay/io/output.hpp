@@ -1,8 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// The folder that the program writes, all or nothing: it grows under another name beside its place
-// and moves there when it is complete. An earlier run's folder is replaced; anybody else's is not.
+// The output folder, written all or nothing: it is built under a temporary name beside its place
+// and moved there when it is complete. The folder of an earlier run is replaced; any other is
+// refused.
 #include <filesystem>
 #include <fstream>
 #include <optional>
@@ -16,15 +17,15 @@ namespace replay {
 
 class OutputFolder {
  public:
-  /// Makes the folders above `place` where they lack. Refuses a place that holds anything but an
-  /// earlier run's files, or cannot be written; Failure.
+  /// Creates missing parent folders of `place`. Throws Failure if `place` contains anything but the
+  /// files of an earlier run, or cannot be written.
   explicit OutputFolder(const std::filesystem::path& place);
-  /// Removes what was written, unless publish() came first.
+  /// Removes the written files unless publish() was called.
   ~OutputFolder();
   OutputFolder(const OutputFolder&) = delete;
   OutputFolder& operator=(const OutputFolder&) = delete;
 
-  /// "PART/NAME" in the growing folder; makes PART.
+  /// Path of PART/NAME in the temporary folder; creates PART.
   std::filesystem::path file(const std::string& part, const std::string& name) const;
   std::filesystem::path file(const std::string& name) const { return growing_ / name; }
   /// Moves the folder to its place; throws Failure.
@@ -46,19 +47,19 @@ std::string numbered(const std::string& stem, int frame, const std::string& exte
 struct FrameRow {
   int frame = 0;
   std::string time_s;        ///< empty where unknown
-  double valid_share = 0;    ///< NaN, and empty in the file, where the recording is of dots only
-  double depth_mean_mm = 0;  ///< NaN where no pixel is valid, then empty in the file
+  double valid_share = 0;    ///< NaN, an empty cell, for a dots-only recording
+  double depth_mean_mm = 0;  ///< NaN, an empty cell, if no pixel is valid
   double depth_max_mm = 0;
-  ContactResult contact;  ///< not accepted: the recording is of dots only
+  ContactResult contact;  ///< not accepted for a dots-only recording
   fingerpad::ObjectMotionResult<double> motion;
   bool has_dots = false;
   fingerpad::StickRatioResult<float> stick;
   fingerpad::SlipEvidence slip_evidence = fingerpad::SlipEvidence::none;
   ForceFrame force;  ///< by look-up
   std::optional<TrueForce> truth;
-  fingerpad::WrenchResult<double> wrench;  ///< not ok(), and empty in the file: no answer
-  double pressure_mpa = 0;                 ///< NaN: not known
-  bool pad_has_changed = false;            ///< its light is not that of the reference
+  fingerpad::WrenchResult<double> wrench;  ///< not ok(), empty cells, if there is no result
+  double pressure_mpa = 0;                 ///< NaN if unknown
+  bool pad_has_changed = false;            ///< its light differs from the reference
 
   bool has_wrench() const { return wrench.ok(); }
 };

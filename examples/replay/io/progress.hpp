@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// A progress bar on standard error, where that is a terminal; nothing anywhere else.
+// A progress bar on standard error if that is a terminal, otherwise nothing.
 #include <unistd.h>
 
 #include <cstdio>
@@ -14,7 +14,7 @@ class Progress {
   explicit Progress(int total) : total_(total), shown_(::isatty(STDERR_FILENO) == 1) {}
   ~Progress() {
     if (shown_) {
-      std::fputs("\r\033[K", stderr);  // leaves the line as it found it
+      std::fputs("\r\033[K", stderr);  // clears the line
     }
   }
   Progress(const Progress&) = delete;

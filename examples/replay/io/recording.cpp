@@ -18,7 +18,7 @@ std::string size_of(const cv::Mat& image) {
   return std::to_string(image.cols) + " x " + std::to_string(image.rows) + " px";
 }
 
-/// As people sort: by numbers where names have numbers, so that frame10 follows frame2.
+/// Natural order: numbers in names compare by value, so frame10 comes after frame2.
 bool comes_before(const std::string& a, const std::string& b) {
   const auto is_digit = [](char c) { return c >= '0' && c <= '9'; };
   std::size_t i = 0;
@@ -153,7 +153,7 @@ cv::Mat next_frame(FrameSource& frames, cv::Size size) {
 
 namespace {
 
-/// The picture of the free pad and its depth.
+/// Reads the picture of the free pad and its depth.
 void read_reference(const fs::path& folder, Recording& recording) {
   const fs::path frame_file = folder / recording.sensor.reference_frame;
   const fs::path depth_file = folder / recording.sensor.reference_depth;
@@ -165,7 +165,7 @@ void read_reference(const fs::path& folder, Recording& recording) {
   }
 }
 
-/// The picture that a dots-only recording names, or its first frame.
+/// Reads the reference of a dots-only recording, or its first frame.
 void read_first_picture(const fs::path& folder, Recording& recording) {
   if (recording.sensor.reference_frame.empty()) {
     recording.frames.seek(0);

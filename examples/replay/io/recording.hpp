@@ -2,8 +2,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 // A recording on disk: sensor.json, the free pad, the frames (a folder or a video), the signals and
-// the dots beside the rim.
-// Everything that can be checked before the first frame is checked by open_recording().
+// the side dots at the rim. open_recording() checks all that can be checked before the first frame.
 #include <filesystem>
 #include <map>
 #include <opencv2/core.hpp>
@@ -19,19 +18,20 @@
 
 namespace replay {
 
-/// The frames, one after the other.
+/// Reads frames one after the other.
 class FrameSource {
  public:
-  /// Files of a folder, sorted by name, frame10 after frame2 (hidden ones left out), or a video file; throws Failure.
+  /// Frames from the files of a folder, without hidden ones, in natural order (frame10 after
+  /// frame2), or from a video file. Throws Failure.
   static FrameSource of_folder(const std::filesystem::path& folder);
   static FrameSource of_video(const std::filesystem::path& file);
 
   int size() const { return count_; }
-  /// Starts at frame `first`, in [0, size()].
+  /// Moves to frame `first`, in [0, size()].
   void seek(int first);
   /// The next frame, 8- or 16-bit colour; throws Failure.
   cv::Mat next();
-  /// Which file the last frame came from, for messages.
+  /// The file of the last frame, for messages.
   std::filesystem::path last_file() const;
 
  private:
@@ -47,12 +47,12 @@ cv::Mat next_frame(FrameSource& frames, cv::Size size);
 
 struct Recording {
   Sensor sensor;
-  cv::Mat reference;  ///< the free pad, 8- or 16-bit colour; dots only: may be the first frame
-  cv::Mat_<float> reference_depth;  ///< mm, NaN outside the pad; dots only: empty
+  cv::Mat reference;  ///< the free pad, 8- or 16-bit colour; if dots-only, maybe the first frame
+  cv::Mat_<float> reference_depth;  ///< mm, NaN outside the pad; empty if dots-only
   FrameSource frames;
-  FrameSource free_frames;  ///< more frames of the free pad; may be none
+  FrameSource free_frames;  ///< more frames of the free pad; may be empty
   Signals signals;
-  std::map<int, TrueForce> true_forces;  ///< by frame; may be none
+  std::map<int, TrueForce> true_forces;  ///< by frame; may be empty
   std::optional<SideDots> side_dots;
   std::optional<SpaceGrid> stress_free_dots;
 };
@@ -60,7 +60,7 @@ struct Recording {
 /// Opens and checks a recording; throws Failure.
 Recording open_recording(const std::filesystem::path& folder);
 
-/// The same without what belongs to single frames: the sensor and the free pad alone.
+/// Opens only the sensor and the free pad, without frames.
 Recording open_pad(const std::filesystem::path& folder);
 
 }  // namespace replay

@@ -101,7 +101,7 @@ fingerpad::StickTest read_stick(const Section& root) {
   }
   fingerpad::StickTest test = fingerpad::published::stick_test_px;
   test.covers_pattern = covers;
-  test.free_frames = 0;  // what is given stands
+  test.free_frames = 0;  // given thresholds are not calibrated on free frames
   const auto read = [&](const char* key, double& value) {
     value = section.has(key) ? section.number(key) : value;
   };
@@ -112,7 +112,7 @@ fingerpad::StickTest read_stick(const Section& root) {
   return test;
 }
 
-/// Whether the file names anything that depth needs.
+/// Whether the file has a key that only depth needs.
 bool names_depth(const Section& root) {
   for (const char* key : {"camera", "absorption", "pad", "smoothing_px", "rim", "neighbour_light",
                           "force", "contact"}) {
@@ -144,7 +144,7 @@ Rim read_rim(const Section& root) {
   return rim;
 }
 
-/// `unit` is that of the measure, as keys have it.
+/// `unit` is the unit of the measure in the keys: mm2 or mm.
 NormalForceLookUp read_normal_force(const Section& force,
                                     const std::string& key,
                                     const std::string& unit,
@@ -248,7 +248,7 @@ void read_dots_only(const Section& root, Sensor& sensor) {
   }
 }
 
-/// What only a recording with depth names.
+/// Reads the keys of a recording with depth.
 void read_depth(const std::filesystem::path& file, const Section& root, Sensor& sensor) {
   try {
     sensor.camera = read_camera(root);

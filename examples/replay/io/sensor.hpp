@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// sensor.json of a recording: what is known about the camera, the fluid and the pad. Unknown keys
-// are refused with their name, missing ones with what they are for, wrong values with their range.
-// A recording of which only the dots are looked at names no camera, no fluid, no pad and no depth.
+// sensor.json of a recording: the description of camera, fluid and pad. An unknown key is refused
+// with its name, a missing key with its purpose, a wrong value with its range. A dots-only
+// recording describes no camera, fluid, pad or depth.
 #include <filesystem>
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
@@ -30,12 +30,12 @@ struct Dots {
   double diameter_mm = 0;
 };
 
-/// What is known of the dots of a dots-only recording; what is not is found in the frames.
+/// Dots of a dots-only recording; unknown properties are found in the frames.
 struct DotPattern {
-  int rows = 0;  ///< 0: counted
+  int rows = 0;  ///< 0: counted in the frames
   int cols = 0;
-  double diameter_px = 0;      ///< 0: measured
-  std::optional<bool> bright;  ///< brighter than the ground around them, or darker
+  double diameter_px = 0;      ///< 0: measured in the frames
+  std::optional<bool> bright;  ///< brighter than their background, or darker; empty: found
 };
 
 struct Rim {
@@ -45,12 +45,12 @@ struct Rim {
   fingerpad::ClampedRim law;                          ///< of its rubber
 };
 
-/// What of a contact a force is looked up by.
+/// The measure of a contact by which a force is looked up.
 enum class ContactMeasure { area, depth };
 
 /// Normal force by area or depth.
 struct NormalForceLookUp {
-  using Curve = fingerpad::PolynomialForce<5>;  ///< higher powers than given count nothing
+  using Curve = fingerpad::PolynomialForce<5>;  ///< coefficients not given are 0
   Curve curve;
   fingerpad::ScaledCompensation<> compensation;
   fingerpad::CurveErrors<Curve::parameters> errors;
@@ -64,7 +64,7 @@ struct ShearLookUp {
   Map map;
 };
 
-/// Forces by look-up: curves from an earlier calibration, at least one.
+/// Curves of forces by look-up from an earlier calibration; at least one is set.
 struct ForceLookUp {
   std::optional<NormalForceLookUp> by_area;  ///< mm^2
   std::optional<NormalForceLookUp> by_depth;
@@ -81,29 +81,29 @@ struct Sensor {
   fingerpad::Camera<double> camera;
   fingerpad::Absorption<double> absorption;
   Pad pad;
-  std::string reference_frame;  ///< paths as written, relative to the recording; dots only: may
-                                ///< be empty
+  std::string reference_frame;  ///< paths as written, relative to the recording; may be empty
+                                ///< if dots-only
   std::string reference_depth;
-  std::optional<std::string> video;  ///< in the place of the folder frames/
-  std::optional<int> smoothing_px;   ///< width of the window, odd; none: colours as they are
+  std::optional<std::string> video;  ///< instead of the folder frames/
+  std::optional<int> smoothing_px;   ///< window width, odd; empty: replay does not smooth
   std::optional<Dots> dots;
-  bool dots_only = false;  ///< then camera, absorption, pad and dots are empty
-  DotPattern pattern;      ///< of a dots-only recording
+  bool dots_only = false;  ///< if true, camera, absorption, pad and dots are empty
+  DotPattern pattern;      ///< only of a dots-only recording
   fingerpad::StickTest stick;
-  std::optional<double> contact_threshold_per_mm;  ///< none: from free/
+  std::optional<double> contact_threshold_per_mm;  ///< empty: from the free pad
   std::optional<ForceLookUp> force;
   std::optional<Rim> rim;
   std::optional<NeighbourLight> neighbour_light;
 };
 
-/// Of sensor.json: files without "version" are of this one, others are refused.
+/// Version of sensor.json. Files without "version" have this one; other versions are refused.
 constexpr int sensor_version = 1;
 
 /// Reads and checks `file`; throws Failure.
 Sensor read_sensor(const std::filesystem::path& file);
-/// The same of what was read from `file`, or stands in for it.
+/// The same for content that was read from `file` or replaces it.
 Sensor read_sensor(const std::filesystem::path& file, const nlohmann::json& content);
-/// Throws Failure where "version" is not that of this program.
+/// Throws Failure if "version" is not sensor_version.
 void expects_known_version(const std::filesystem::path& file, const nlohmann::json& content);
 
 }  // namespace replay

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// Files of dots in space: side_dots.csv, the dots beside the rim, which an earlier program has
-// found in the frames, and stress_free_dots.csv, the printed dots of a membrane without stress.
+// Files of dots in space: side_dots.csv, the side dots at the rim, found in the frames by another
+// program, and stress_free_dots.csv, the printed dots on the stress-free membrane.
 #include <filesystem>
 #include <map>
 #include <opencv2/core.hpp>
@@ -10,7 +10,7 @@
 
 namespace replay {
 
-/// Points in mm; NaN: not there.
+/// Points in mm; NaN if missing.
 using SpaceGrid = cv::Mat_<cv::Vec3d>;
 
 struct SideDots {
@@ -18,11 +18,11 @@ struct SideDots {
   std::map<int, SpaceGrid> dots_mm;  ///< by frame, one row each
 };
 
-/// frame,index,border_x,border_y,border_z,dot_x,dot_y,dot_z in mm, a line for each dot that was
-/// found. Nothing where there is no such file; throws Failure.
+/// Reads frame,index,border_x,border_y,border_z,dot_x,dot_y,dot_z in mm, one line per found dot.
+/// Returns nullopt if there is no such file; throws Failure.
 std::optional<SideDots> read_side_dots(const std::filesystem::path& file, int frame_count);
 
-/// row,col,x_mm,y_mm,z_mm, a line for each dot that is known, of a print of `size`. Nothing where
+/// Reads row,col,x_mm,y_mm,z_mm, one line per known dot, of a print of `size`. Returns nullopt if
 /// there is no such file; throws Failure.
 std::optional<SpaceGrid> read_stress_free_dots(const std::filesystem::path& file, cv::Size size);
 

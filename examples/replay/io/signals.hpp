@@ -8,16 +8,16 @@
 
 namespace replay {
 
-/// What is known of the frames that the file names.
+/// Times and pressures of the frames in the file.
 struct Signals {
-  std::map<int, std::string> times_s;  ///< as written there
+  std::map<int, std::string> times_s;  ///< as written in the file
   std::map<int, double> pressures_mpa;
 
-  std::string time_s(int frame) const;   ///< empty where unknown
-  double pressure_mpa(int frame) const;  ///< NaN where unknown
+  std::string time_s(int frame) const;   ///< empty if unknown
+  double pressure_mpa(int frame) const;  ///< NaN if unknown
 };
 
-/// Throws Failure with the line number. An absent file is no fault and names no frame.
+/// Throws Failure with the line number. A missing file is no error and gives no frames.
 Signals read_signals(const std::filesystem::path& file, int frame_count);
 
 }  // namespace replay

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// forces.csv of a recording: what a force gauge measured, or a simulation knows.
+// forces.csv of a recording: true forces from a force gauge or a simulation.
 #include <filesystem>
 #include <map>
 
@@ -9,14 +9,14 @@
 
 namespace replay {
 
-/// What the object exerts on the pad.
+/// Load that the object exerts on the pad.
 struct TrueForce {
   fingerpad::Point3<double> force_n;
-  double moment_n_mm = 0;  ///< about the normal through the middle of the contact
+  double moment_n_mm = 0;  ///< about the normal through the contact's center
 };
 
-/// frame,force_x_n,force_y_n,force_z_n,moment_z_nm, a line for each frame that is known. Nothing
-/// where there is no such file; throws Failure.
+/// Reads frame,force_x_n,force_y_n,force_z_n,moment_z_nm, one line per known frame. Returns an
+/// empty map if there is no such file; throws Failure.
 std::map<int, TrueForce> read_true_forces(const std::filesystem::path& file, int frame_count);
 
 }  // namespace replay

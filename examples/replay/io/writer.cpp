@@ -18,7 +18,7 @@ namespace {
 
 constexpr int montage_columns = 6;
 
-/// Whether frame number `done` of `total` has a column in the montage; they lie evenly.
+/// Whether frame number `done` of `total` has a column in the montage; columns are evenly spaced.
 bool in_montage(int done, int total) {
   const int columns = (std::min)(total, montage_columns);
   for (int k = 0; k < columns; ++k) {
@@ -93,7 +93,7 @@ void Writer::write_pictures(const Scene& scene) {
     }
   }
   if (dots_) {
-    // The first frames of a camera may be dark, and nothing better is known without a free pad.
+    // Without a free pad each frame sets its own level; a camera's first frames may be dark.
     const double brightest = painter_ ? brightest_ : brightest_level(scene.image);
     write_picture(file("pictures", "stick_", scene, ".png"), stick_picture(scene, brightest));
   }

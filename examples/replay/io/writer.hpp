@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// All that is written of a recording, into a folder that appears when it is complete.
+// Writes all results of a recording into a folder that appears when it is complete.
 #include <filesystem>
 #include <optional>
 #include <vector>
@@ -16,15 +16,15 @@ namespace replay {
 
 class Writer {
  public:
-  /// For `total` frames of a recording whose free pad has `initial_dots`, which may be none. The
-  /// options must outlive the writer. Throws Failure, here and below.
+  /// For `total` frames of a recording; `initial_dots` are the free pad's dots, maybe empty. The
+  /// options must outlive the writer. Throws Failure, as do the functions below.
   Writer(const Recording& recording,
          const Options& options,
          const DotGrid& initial_dots,
          int total);
 
   void operator()(Scene scene);
-  /// Writes what concerns all frames, and moves the folder to its place.
+  /// Writes the results over all frames and moves the folder to its place.
   void finish();
 
   const std::vector<FrameRow>& rows() const { return rows_; }
@@ -39,7 +39,7 @@ class Writer {
   void write_pictures(const Scene& scene);
 
   const Options& options_;
-  std::optional<Painter> painter_;  ///< none where the recording is of dots only
+  std::optional<Painter> painter_;  ///< empty for a dots-only recording
   double brightest_;
   DotGrid initial_dots_;
   int total_;

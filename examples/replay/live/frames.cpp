@@ -25,7 +25,7 @@ LiveFrames LiveFrames::of_camera(int number, cv::Size size) {
   }
   frames.source_.set(cv::CAP_PROP_FRAME_WIDTH, size.width);
   frames.source_.set(cv::CAP_PROP_FRAME_HEIGHT, size.height);
-  frames.source_.set(cv::CAP_PROP_BUFFERSIZE, 1);  // a queue of frames would be latency
+  frames.source_.set(cv::CAP_PROP_BUFFERSIZE, 1);  // a queue of frames would add latency
   frames.rate_hz_ = (std::max)(frames.source_.get(cv::CAP_PROP_FPS), 0.0);
   return frames;
 }
@@ -76,7 +76,7 @@ void LiveFrames::skip() {
 bool LiveFrames::next(cv::Mat& frame) {
   if (in_real_time_ && number_ >= 0 && period_.count() > 0) {
     const auto next_is_due = start_ + (number_ + 1) * period_;
-    // Those that are late now, and no more: decoding may be slower than the video.
+    // Skips only the frames that are late now: decoding may be slower than the video.
     for (auto late = (Clock::now() - next_is_due) / period_; late > 0 && grab(); --late) {
     }
     std::this_thread::sleep_until(next_is_due);

@@ -30,10 +30,10 @@ namespace {
 struct Shown {
   int frame;
   std::string time_s;
-  double latency_ms;  ///< from the arrival of the frame until its picture was there
+  double latency_ms;  ///< from the arrival of the frame to its finished picture
 };
 
-/// What has been shown, and how soon.
+/// The shown frames and their latencies.
 class Log {
   using Clock = LiveFrames::Clock;
 
@@ -49,7 +49,7 @@ class Log {
     const double seconds = std::chrono::duration<double>(last_ - first_).count();
     return seconds > 0 ? static_cast<double>(shown_.size() - 1) / seconds : 0;
   }
-  /// Of the last `count` pictures, in ascending order.
+  /// Latencies of the last `count` pictures, in ascending order.
   std::vector<double> latencies_ms(std::size_t count) const {
     std::vector<double> values;
     for (std::size_t k = shown_.size() - (std::min)(count, shown_.size()); k < shown_.size(); ++k) {
@@ -64,11 +64,11 @@ class Log {
   Clock::time_point first_ = {}, last_ = {};
 };
 
-/// A window on the screen, until the user closes it.
+/// A window on the screen.
 class Window {
  public:
   Window() {
-#ifdef __linux__  // the toolkit would end the program without a word of ours
+#ifdef __linux__  // without a display the GUI toolkit would abort the program
     if (std::getenv("DISPLAY") == nullptr && std::getenv("WAYLAND_DISPLAY") == nullptr) {
       fail("window", "there is no screen; --headless --out DIR writes the pictures");
     }
@@ -81,7 +81,7 @@ class Window {
   Window(const Window&) = delete;
   Window& operator=(const Window&) = delete;
 
-  /// False when the user wants no more.
+  /// Returns false when the user closes the window or presses q or Esc.
   bool show(const cv::Mat& picture) const {
     cv::imshow(name, picture);
     const int key = cv::waitKey(1);
@@ -92,7 +92,8 @@ class Window {
   static constexpr const char* name = "fingerpad";
 };
 
-/// From frames to pictures; `show` is given a picture and its number, and ends it by false.
+/// Turns frames into pictures. `show` receives each picture and its frame number; the loop ends
+/// when it returns false.
 Log play(const Options& options,
          Recording& pad,
          LiveFrames& frames,

@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// A white sheet to draw figures on. Coordinates are pixels of the finished picture and may be
-// fractions; everything is drawn several times larger and shrunk at the end, so that lines and
-// letters are smooth, or as large as it is shown where that takes too long. ASCII text only.
+// A white canvas for figures. Coordinates are pixels of the finished picture and may be fractions.
+// Everything is drawn several times larger and shrunk at the end for smooth lines and letters; with
+// scale 1 it is drawn at its final size, which is faster. ASCII text only.
 #include <opencv2/core.hpp>
 #include <string>
 #include <vector>
@@ -25,7 +25,7 @@ enum class Align { left, center, right };
 
 class Canvas {
  public:
-  /// Everything is drawn `scale` times as large as it is shown, >= 1; time grows with its square.
+  /// Everything is drawn `scale` times larger, >= 1. The time grows with the square of `scale`.
   Canvas(double width, double height, int scale = smooth);
 
   void line(Spot from, Spot to, double width, const Ink& colour);
@@ -34,7 +34,7 @@ class Canvas {
   void polygon(const std::vector<Spot>& corners, const Ink& colour);
   void circle(Spot center, double radius, double width, const Ink& colour);
   void disc(Spot center, double radius, const Ink& colour);
-  /// `at` lies on the baseline; `height` is that of a capital letter.
+  /// `at` lies on the baseline; `height` is the height of a capital letter.
   void text(Spot at,
             const std::string& words,
             double height,
@@ -43,11 +43,12 @@ class Canvas {
             bool bold = false);
   double text_width(const std::string& words, double height, bool bold = false) const;
 
-  /// The large pixels that a rectangle covers, for pictures to be painted into directly.
+  /// The enlarged pixels of a rectangle, for direct painting.
   cv::Mat area(const cv::Rect2d& rectangle);
-  /// Paints only where `mask` (8 bit, of the size of area(rectangle)) is set, in its proportion.
+  /// Blends a picture in with the weight `mask` / 255; mask is 8-bit, of the size of
+  /// area(rectangle).
   void blend(const cv::Rect2d& rectangle, const cv::Mat& picture, const cv::Mat& mask);
-  /// Mask of area(rectangle) that is set inside a polygon.
+  /// A mask for area(rectangle) that is set inside a polygon.
   cv::Mat mask_of(const cv::Rect2d& rectangle, const std::vector<Spot>& corners) const;
 
   cv::Mat finished() const;

@@ -19,7 +19,7 @@ const Ink edge(255, 255, 255);
 const Ink held(90, 230, 255);
 const Ink loose(200, 190, 180);
 
-/// Where a pixel's center lies on the canvas.
+/// Maps pixel centers of the camera's image to the canvas.
 class Placement {
  public:
   Placement(const cv::Rect2d& rectangle, cv::Size size)
@@ -33,7 +33,7 @@ class Placement {
   double shrink_;
 };
 
-/// As it is printed: rounded, and never "-0.0".
+/// Rounds a value for printing; never gives "-0.0".
 double rounded(double value, double steps_per_unit) {
   return std::round(value * steps_per_unit) / steps_per_unit + 0.0;
 }

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// The contact region and the dots, drawn over the camera's image.
+// Draws the contact region and the dots over the camera's image.
 #include <opencv2/core.hpp>
 
 #include "replay/pictures/canvas.hpp"
@@ -9,14 +9,14 @@
 
 namespace replay {
 
-/// The edge of a mask that is shown over `rectangle`.
+/// Paints the outline of a mask over `rectangle`.
 void paint_outline(Canvas& canvas,
                    const cv::Rect2d& rectangle,
                    const cv::Mat_<uchar>& mask,
                    double width);
 
-/// Dots in contact are full, the others hollow; lines lead back to where they were on the free pad,
-/// and the contact reference dot has a ring. `size` is that of the camera's image.
+/// Paints dots in contact filled and the others hollow, with lines to their positions on the free
+/// pad. The contact reference dot has a ring. `size` is the size of the camera's image.
 void paint_dots(Canvas& canvas,
                 const cv::Rect2d& rectangle,
                 cv::Size size,

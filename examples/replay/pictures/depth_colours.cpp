@@ -10,10 +10,10 @@
 namespace replay {
 namespace {
 
-/// A map in the pixels of the canvas.
+/// A map resampled to the pixels of the canvas.
 struct Enlarged {
   cv::Mat_<float> value;
-  cv::Mat_<float> relief;  ///< the value blurred: its slopes show shapes, not noise
+  cv::Mat_<float> relief;  ///< blurred value, whose slopes show shapes instead of noise
   cv::Mat_<float> opacity;
 };
 
@@ -21,7 +21,7 @@ float clamped(float x) {
   return (std::min)((std::max)(x, 0.0F), 1.0F);
 }
 
-/// What is shown smaller than it is needs no more pixels than that.
+/// Reduces a map that is shown smaller than its own size.
 template <class T>
 cv::Mat_<T> shrunk(const cv::Mat_<T>& map, cv::Size size) {
   if (size.width >= map.cols || size.height >= map.rows) {
@@ -32,7 +32,8 @@ cv::Mat_<T> shrunk(const cv::Mat_<T>& map, cv::Size size) {
   return small;
 }
 
-/// `per_px`: pixels of the canvas for one of the camera's, which `values` has at most.
+/// `per_px`: pixels of the canvas per pixel of the camera. `values` has at most the camera's
+/// pixels.
 Enlarged enlarged(const cv::Mat_<float>& values,
                   const cv::Mat_<uchar>& in_pad,
                   cv::Size size,
@@ -50,7 +51,7 @@ Enlarged enlarged(const cv::Mat_<float>& values,
       missing(i, j) = !good && in_pad(i, j) != 0 ? 1.0F : 0.0F;
     }
   }
-  // Pixels without a value take the mean of those near them, so that edges enlarge smoothly.
+  // Pixels without a value take the mean of nearby ones, so that edges enlarge smoothly.
   const double cells_per_px = (std::min)(per_px, 1.0);
   const int near = 1 + 2 * static_cast<int>(std::lround(4 * cells_per_px));
   cv::Mat_<float> sum;
@@ -67,7 +68,7 @@ Enlarged enlarged(const cv::Mat_<float>& values,
   Enlarged large;
   cv::resize(filled, large.value, size, 0, 0, cv::INTER_LINEAR);
   cv::GaussianBlur(large.value, large.relief, {0, 0}, 5 * per_px);
-  // The pad's edge is smooth in truth and drawn so; a single missing pixel stays visible.
+  // The pad's edge is drawn smooth, as it is in reality; single missing pixels stay visible.
   cv::GaussianBlur(pad, pad, {0, 0}, 2 * cells_per_px);
   cv::resize(pad, large.opacity, size, 0, 0, cv::INTER_CUBIC);
   cv::Mat_<float> holes;
@@ -81,8 +82,8 @@ Enlarged enlarged(const cv::Mat_<float>& values,
   return large;
 }
 
-/// Differences over a distance of one pixel of the finished picture, per pixel of the canvas, which
-/// is `scale` times as large.
+/// Central differences over one pixel of the finished picture to either side, per pixel of the
+/// canvas, which is `scale` times as large.
 struct Slope {
   float x;
   float y;
@@ -96,7 +97,7 @@ Slope slope_at(const cv::Mat_<float>& field, int i, int j, int scale) {
           (field(down, j) - field(up, j)) / static_cast<float>(down - up)};
 }
 
-/// How much of a line of equal value covers a pixel, in [0, 1]. None at value 0, which is the rim.
+/// Coverage of a pixel by a contour line, in [0, 1]. Value 0, the rim, has no line.
 float line_cover(const cv::Mat_<float>& field, int i, int j, float every, int scale) {
   const float value = field(i, j);
   const Slope slope = slope_at(field, i, j, scale);
@@ -167,7 +168,7 @@ void paint_map(Canvas& canvas,
       const float share = clamped((map.value(i, j) - bottom) / range);
       const cv::Vec3b colour = scale.colours(0, static_cast<int>(std::lround(share * 255)));
       const Slope tilt = slope_at(map.relief, i, j, canvas.scale());
-      const float shade = 1 + 0.15F * std::tanh(slopes * (tilt.x + tilt.y));  // light: top left
+      const float shade = 1 + 0.15F * std::tanh(slopes * (tilt.x + tilt.y));  // lit from top left
       const float line =
           every > 0 ? 0.45F * line_cover(map.value, i, j, every, canvas.scale()) : 0.0F;
       for (int c = 0; c < 3; ++c) {

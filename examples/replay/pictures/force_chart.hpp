@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// Forces by look-up over the frames of a recording.
+// A chart of forces by look-up over the frames of a recording.
 #include <opencv2/core.hpp>
 #include <string>
 #include <vector>
@@ -10,8 +10,8 @@
 
 namespace replay {
 
-/// Panels above each other, each with the truth beside it where a frame has one. No line where
-/// there is no answer.
+/// Panels one above the other, each also with the true force of frames that have one. Lines have
+/// gaps where there is no result.
 cv::Mat force_chart(const std::string& title, const std::vector<FrameRow>& rows);
 
 }  // namespace replay

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
-// Painter's pictures of forces: the membrane's pull on the rim, and the load on each dot.
+// Painter's pictures of forces: the membrane's tension at the rim, and the load on each dot.
 #include <algorithm>
 #include <cmath>
 #include <string>
@@ -17,7 +17,7 @@ namespace {
 const Ink pull_ink(150, 80, 0);
 const Ink force_ink(255, 255, 255);
 
-/// A line with a head at its end; nothing where it is too short to be seen.
+/// Paints an arrow, or nothing if it is too short to be visible.
 void paint_arrow(Canvas& canvas, Spot from, Spot to, double width, const Ink& colour) {
   const Spot along = to - from;
   const double length = std::hypot(along.x, along.y);
@@ -32,12 +32,12 @@ void paint_arrow(Canvas& canvas, Spot from, Spot to, double width, const Ink& co
   canvas.polygon({to, neck + 0.42 * head * across, neck - 0.42 * head * across}, colour);
 }
 
-/// As it is printed: rounded, and never "-0.00".
+/// Rounds a value for printing; never gives "-0.00".
 double rounded(double value) {
   return std::round(value * 100) / 100 + 0.0;
 }
 
-/// A round number of no more than `most`.
+/// The largest round number not above `most`.
 double round_below(double most) {
   double best = 1e-6;
   for (double decade = 1e-6; decade < 1e6; decade *= 10) {
@@ -48,7 +48,7 @@ double round_below(double most) {
   return best;
 }
 
-/// The camera's image on a canvas, with a title, and room for words below.
+/// The camera's image on a canvas, with a title and space for text below.
 struct Sheet {
   cv::Rect2d picture;
   double shrink;
@@ -80,7 +80,7 @@ struct Sheet {
     paint_scale_bar(canvas, {picture.x, below() + 20}, bar_mm / camera.pitch_mm * shrink, bar_mm,
                     letter);
   }
-  /// An arrow of so many px with its meaning, right below the picture.
+  /// Paints an arrow of `length` px with its label at the right, below the picture.
   void arrow_legend(double length, const std::string& words, const Ink& colour) {
     const double right = picture.x + picture.width;
     const double y = below() + 20;
@@ -154,7 +154,7 @@ cv::Mat Painter::traction(const Scene& scene) const {
   Canvas& canvas = sheet.canvas;
   const TractionFrame& loads = scene.traction;
   const double fluid_kpa = 1000 * scene.pressure_mpa;
-  // inside a flat contact the load is that of the fluid: a quarter more is seen
+  // inside a flat contact the load equals the fluid's pressure; the scale exceeds it by a quarter
   const double step_kpa = fluid_kpa > 0 ? round_below(fluid_kpa / 4) : 1.0;
   const double reach_kpa =
       fluid_kpa > 0 ? step_kpa * std::ceil(1.25 * fluid_kpa / step_kpa) : step_kpa;

@@ -13,7 +13,7 @@ namespace {
 
 const Ink line_colours[] = {{180, 110, 30}, {60, 140, 40}, {48, 40, 214}};
 
-/// From a round number to a round number, with a tick at each in between.
+/// A scale between round numbers with ticks at round numbers.
 struct Scale {
   double bottom;
   double top;
@@ -32,7 +32,7 @@ struct Scale {
     const double decade = std::pow(10, std::floor(std::log10(span / 2)));
     const double digit = span / 2 / decade;
     tick = decade * (digit < 2 ? 1 : digit < 5 ? 2 : 5);
-    // what hardly crosses a tick needs no other one beyond it
+    // a value just beyond a tick does not extend the scale to the next one
     bottom = tick * std::floor(low / tick + 0.02);
     top = (std::max)(tick * std::ceil(high / tick - 0.02), bottom + tick);
   }

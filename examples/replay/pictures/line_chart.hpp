@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// Lines over the frames of a recording, in panels above each other.
+// Line charts over the frames of a recording, in panels one above the other.
 #include <opencv2/core.hpp>
 #include <string>
 #include <vector>
@@ -12,13 +12,13 @@ namespace replay {
 
 struct LineSeries {
   std::string name;
-  std::vector<double> values;  ///< one a frame; NaN: none
-  int beside = -1;             ///< which one of its panel it is the truth of: dashed, in its colour
+  std::vector<double> values;  ///< one per frame; NaN if missing
+  int beside = -1;             ///< series whose truth this is: dashed, in the same colour
 };
 
 struct LinePanel {
   std::string title;
-  std::vector<LineSeries> series;  ///< at most three, and as many truths after them
+  std::vector<LineSeries> series;  ///< at most three, then their truths
 };
 
 template <class Value>

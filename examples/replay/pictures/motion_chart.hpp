@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// Numbers over the frames of a recording: contact, and how the object moved.
+// A chart of contact and object motion over the frames of a recording.
 #include <opencv2/core.hpp>
 #include <string>
 #include <vector>
@@ -10,7 +10,7 @@
 
 namespace replay {
 
-/// Panels above each other: contact, displacement and angles of the object.
+/// Panels one above the other: contact, displacement and angles of the object.
 cv::Mat motion_chart(const std::string& title, const std::vector<FrameRow>& rows);
 
 }  // namespace replay

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// What several pictures have in common: words, the scale bar, the camera's image.
+// Parts that several pictures share: captions, the scale bar, the camera's image.
 #include <cstdio>
 #include <opencv2/core.hpp>
 #include <string>
@@ -19,7 +19,7 @@ std::string format(const char* pattern, Values... values) {
   return text;
 }
 
-/// "frame 5,  t = 0.2 s"; the time only where it is known.
+/// "frame 5,  t = 0.2 s", without the time if it is unknown.
 std::string caption(int frame, const std::string& time_s);
 
 /// A round number of mm that is a fifth of the image or a little less.
@@ -30,7 +30,7 @@ void paint_scale_bar(Canvas& canvas, Spot left, double length, double mm, double
 /// The grey level that only the brightest hundredth of the image's pixels exceed.
 double brightest_level(const cv::Mat& image);
 
-/// The camera's image, 8 bit, with `brightest` shown as nearly white.
+/// The camera's image as 8 bit, scaled so that `brightest` is nearly white.
 cv::Mat displayed(const cv::Mat& image, double brightest, cv::Size size);
 
 }  // namespace replay

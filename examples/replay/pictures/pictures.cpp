@@ -17,7 +17,7 @@ namespace {
 
 constexpr double dent_worth_showing_mm = 0.3;
 
-/// Little triangles on both sides of `rectangle` that point at the height `y`.
+/// Paints small triangles on both sides of `rectangle` that mark the row at `y`.
 void paint_row_markers(Canvas& canvas, const cv::Rect2d& rectangle, double y, double size) {
   const double left = rectangle.x;
   const double right = rectangle.x + rectangle.width;
@@ -48,7 +48,7 @@ Painter::Painter(const Sensor& sensor, const cv::Mat_<float>& free_depth_mm, dou
       brightest_((std::max)(brightest, 1.0)) {}
 
 Section Painter::find_section(const cv::Mat_<float>& depth_mm) const {
-  // Averaged over a small window, so that a single pixel's noise is not taken for a dent.
+  // Averages over a small window, so that the noise of a single pixel does not count as a dent.
   cv::Mat_<float> fall(depth_mm.size(), 0.0F);
   cv::Mat_<float> depth(depth_mm.size(), 0.0F);
   cv::Mat_<float> count(depth_mm.size(), 0.0F);
@@ -73,7 +73,7 @@ Section Painter::find_section(const cv::Mat_<float>& depth_mm) const {
     dent = 0;
     cv::minMaxLoc(depth, nullptr, nullptr, nullptr, &where, whole);
   }
-  if (where.x < 0) {  // not a single window of valid pixels
+  if (where.x < 0) {  // no window has only valid pixels
     where = {depth_mm.cols / 2, depth_mm.rows / 2};
   }
   return {where.y, where.x, dent};

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// What a person would look at: false-colour depth, a side view, the contact over the camera's
-// image, and a recording at a glance.
+// Pictures for people: false-colour depth, a side view, the contact over the camera's image, and an
+// overview of a recording.
 #include <opencv2/core.hpp>
 #include <optional>
 #include <string>
@@ -17,26 +17,26 @@
 
 namespace replay {
 
-/// The row that a side view shows.
+/// The image row of a side view.
 struct Section {
   int row = 0;
-  int col = 0;         ///< of the point that chose the row
-  double dent_mm = 0;  ///< how far it lies below the free pad; 0: nothing presses the pad
+  int col = 0;         ///< column of the point that determines the row
+  double dent_mm = 0;  ///< depth of that point below the free pad; 0 without contact
 };
 
-/// One frame, as far as pictures need it.
+/// The data of one frame for pictures.
 struct Scene {
   int frame = 0;
-  std::string time_s;        ///< empty where unknown
+  std::string time_s;        ///< empty if unknown
   cv::Mat image;             ///< 8- or 16-bit colour
-  cv::Mat_<float> depth_mm;  ///< empty where the recording is of dots only
+  cv::Mat_<float> depth_mm;  ///< empty for a dots-only recording
   Section section;
   double valid_share = not_known;
-  bool pad_has_changed = false;      ///< its light is not that of the reference
-  double depth_mean_mm = not_known;  ///< where no pixel is valid
+  bool pad_has_changed = false;      ///< its light differs from the reference
+  double depth_mean_mm = not_known;  ///< if no pixel is valid
   double depth_max_mm = not_known;
   double pressure_mpa = not_known;
-  cv::Mat_<uchar> contact_mask;  ///< nonzero: in contact; empty as the depth
+  cv::Mat_<uchar> contact_mask;  ///< nonzero in contact; empty like the depth
   ContactResult contact;
   FrameDots dots;
   ForceFrame force;
@@ -47,21 +47,21 @@ struct Scene {
 
 class Painter {
  public:
-  /// `brightest` is the grey level that shows as white in the camera's pictures.
+  /// `brightest` is the grey level that is shown as white.
   Painter(const Sensor& sensor, const cv::Mat_<float>& free_depth_mm, double brightest);
 
-  /// The row through the deepest dent, or, on a free pad, through the point of the largest depth.
+  /// The row through the deepest dent, or on a free pad through the point of largest depth.
   Section find_section(const cv::Mat_<float>& depth_mm) const;
 
   cv::Mat depth(const Scene& scene) const;
   cv::Mat side(const Scene& scene) const;
   /// `initial_px` are the free pad's dots.
   cv::Mat contact(const Scene& scene, const DotGrid& initial_px) const;
-  /// What the membrane pulls the rim with, over the camera's image.
+  /// Tension of the membrane at the rim, over the camera's image.
   cv::Mat rim(const Scene& scene) const;
   /// Contact pressure and shear at the dots, over the camera's image.
   cv::Mat traction(const Scene& scene) const;
-  /// One column a scene: camera image, depth, its change and side view. `scale` as Canvas has it.
+  /// One column per scene: camera image, depth, its change, side view. For `scale` see Canvas.
   cv::Mat montage(const std::string& title,
                   const std::vector<Scene>& scenes,
                   int scale = Canvas::smooth) const;

@@ -62,7 +62,7 @@ void paint_axes(Canvas& canvas, const Frame2d& frame, double text_height, Labels
   const double tick = text_height * 0.5;
   canvas.line(origin, end, 0.9, ink::black);
   canvas.line(origin, frame.at({-frame.half_width_mm, frame.top_mm}), 0.9, ink::black);
-  // Numbers at the very ends would run into those of a neighbouring view.
+  // Numbers at the ends would overlap those of a neighbouring view.
   const double reach = labels == Labels::full ? frame.half_width_mm : 0.9 * frame.half_width_mm;
   for (int mm = -10 * static_cast<int>(reach / 10); mm <= reach; mm += 10) {
     const Spot at = frame.at({static_cast<double>(mm), 0});

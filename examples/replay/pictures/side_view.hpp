@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// The pad seen from the side: depth over x along one row of the camera, in true proportions.
+// A side view of the pad: depth over x along one row of the camera, with equal scales.
 #include <opencv2/core.hpp>
 #include <vector>
 
@@ -11,14 +11,14 @@
 
 namespace replay {
 
-/// Points (x, z) in mm of one row; a new piece begins where pixels have no depth.
+/// Points (x, z) in mm of one row, split into pieces where pixels have no depth.
 using Profile = std::vector<std::vector<Spot>>;
 
 Profile profile_of(const fingerpad::Camera<double>& camera,
                    const cv::Mat_<float>& depth_mm,
                    int row);
 
-/// Where mm lie on the canvas.
+/// Maps mm to the canvas.
 struct Frame2d {
   cv::Rect2d rectangle;
   double half_width_mm;
@@ -30,7 +30,7 @@ struct Frame2d {
   }
 };
 
-/// The pad filled in the colours of the depth scale, its free shape dashed.
+/// Paints the pad filled in the colours of the depth scale, with its free shape dashed.
 void paint_profile(Canvas& canvas,
                    const Frame2d& frame,
                    const Profile& profile,
@@ -38,10 +38,10 @@ void paint_profile(Canvas& canvas,
                    const ColourScale& scale,
                    double line_width);
 
-/// Which words stand at the axes: their names and all numbers, or numbers where there is room.
+/// Text at the axes: names and all numbers, or only numbers, or only the numbers of x.
 enum class Labels { full, numbers, x_numbers };
 
-/// Axes with ticks; labels of `text_height`.
+/// Paints axes with ticks and labels of `text_height`.
 void paint_axes(Canvas& canvas, const Frame2d& frame, double text_height, Labels labels);
 
 }  // namespace replay

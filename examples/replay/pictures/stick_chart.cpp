@@ -18,7 +18,7 @@ const Ink kept_ink(226, 204, 168);
 struct Panel {
   cv::Rect2d box;
   double top;   ///< value at its upper edge; 0 at the lower
-  double last;  ///< number of frames less one
+  double last;  ///< number of frames - 1
 
   double x(double k) const { return box.x + box.width * k / (std::max)(last, 1.0); }
   double y(double value) const { return box.y + box.height * (1 - value / top); }
@@ -51,7 +51,7 @@ void paint_frame_numbers(Canvas& canvas, const Panel& panel, int first_frame) {
               letter, ink::grey, Align::center);
 }
 
-/// The last known ratio as a line of steps, and a mark at each new one.
+/// Paints the last known ratio as a step line, with a mark at each new one.
 void paint_ratio(Canvas& canvas, const Panel& panel, const std::vector<FrameRow>& rows) {
   std::vector<Spot> kept;
   std::vector<Spot> updated;

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// The stick ratio over the frames of a recording.
+// A chart of the stick ratio over the frames of a recording.
 #include <opencv2/core.hpp>
 #include <string>
 #include <vector>
@@ -10,8 +10,8 @@
 
 namespace replay {
 
-/// New answers are marks, and a faint line shows the last known one; below, the number of dots in
-/// contact.
+/// Marks show new results and a faint line the last known one; a panel below shows the number of
+/// dots in contact.
 cv::Mat stick_chart(const std::string& title, const std::vector<FrameRow>& rows);
 
 }  // namespace replay

@@ -15,14 +15,14 @@ namespace {
 const Ink stick_ink(178, 114, 0);
 const Ink slip_ink(0, 94, 235);
 constexpr double radius = 6;
-constexpr double enlarged = 10;  // slips are small: so many times as long as on the pad
+constexpr double enlarged = 10;  // magnification of slips, which are small
 
 void cross(Canvas& canvas, Spot at, double half, double width, const Ink& colour) {
   canvas.line(at - Spot(half, half), at + Spot(half, half), width, colour);
   canvas.line(at - Spot(half, -half), at + Spot(half, -half), width, colour);
 }
 
-/// White around every mark, so that it shows on any ground.
+/// Paints a dot's mark with a white border, so that it is visible on any background.
 void paint_dot(Canvas& canvas, Spot at, DotState state) {
   switch (state) {
     case DotState::stick:
@@ -43,7 +43,7 @@ void paint_dot(Canvas& canvas, Spot at, DotState state) {
   }
 }
 
-/// Pixels of the camera for a millimetre, by dots and their neighbours; 0 where there are none.
+/// Camera pixels per mm, from distances of neighbouring dots; 0 without dots.
 double px_per_mm(const FrameDots& dots) {
   double px = 0, mm = 0;
   for (int i = 0; i < dots.dots_mm.rows; ++i) {
@@ -59,7 +59,7 @@ double px_per_mm(const FrameDots& dots) {
   return mm > 0 ? px / mm : 0;
 }
 
-/// From the dot the way that it has slipped on the object.
+/// Paints the slip of a dot on the object as an arrow from the dot.
 void paint_slip(Canvas& canvas, Spot from, Spot slip) {
   const double length = std::hypot(slip.x, slip.y);
   if (!(length > 2)) {

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// What every dot does, over the camera's image: discs stick, crosses slip, rings nobody knows of,
-// and points touch nothing. Where dots are known in space an arrow shows how far each that slips
+// The state of each dot over the camera's image: discs stick, crosses slip, rings are unknown, and
+// points are not in contact. If 3D positions are known, an arrow shows how far each slipping dot
 // has slipped on the object.
 #include <opencv2/core.hpp>
 
@@ -10,7 +10,7 @@
 
 namespace replay {
 
-/// `brightest` is the grey level that shows as white in the camera's picture.
+/// `brightest` is the grey level that is shown as white.
 cv::Mat stick_picture(const Scene& scene, double brightest);
 
 }  // namespace replay

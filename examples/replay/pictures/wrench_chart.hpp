@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// Force and moment over the frames of a recording.
+// A chart of force and moment over the frames of a recording.
 #include <opencv2/core.hpp>
 #include <string>
 #include <vector>
@@ -10,7 +10,7 @@
 
 namespace replay {
 
-/// Panels above each other: force, moment and pressure. No line where there is no answer.
+/// Panels one above the other: force, moment and pressure. Lines have gaps without a result.
 cv::Mat wrench_chart(const std::string& title, const std::vector<FrameRow>& rows);
 
 }  // namespace replay

@@ -31,14 +31,14 @@ double threshold_of_shape(const Recording& recording) {
   return calibration.fit().threshold_per_mm;
 }
 
-/// Thresholds that sensor.json gives in px, as the noise that has them; without them those of the
-/// noise in the free frames.
+/// Converts thresholds in px from sensor.json to the noise from which they would follow. Without
+/// them the thresholds come from the noise in the free frames.
 fingerpad::SpatialStickTest stick_test_of(const Sensor& sensor) {
   const fingerpad::StickTest& given = sensor.stick;
   fingerpad::SpatialStickTest test;
   test.covers_pattern = given.covers_pattern;
   if (given.pitch > 0) {
-    // slip = 2 gain sigma sqrt(ln(1 / false_slip)), gain 0.416 by averaging over neighbours
+    // slip = 2 gain sigma sqrt(ln(1 / false_slip)); averaging over neighbours gives gain 0.416
     const double sigmas = 2 * 0.416 * std::sqrt(std::log(1 / test.false_slip));
     test.lateral_mm = given.slip * sensor.camera.pitch_mm / sigmas;
     test.slip_share = (std::min)(given.slip / given.reference, 0.5);
@@ -63,7 +63,7 @@ void set_look_up(const ForceLookUp& given, FingertipOptions& options) {
   }
 }
 
-/// Copies a grid into `cells`, and views it.
+/// Copies a grid into `cells` and returns a view of it.
 fingerpad::StridedView<const Point3<double>> kept(const SpaceGrid& points,
                                                   std::vector<Point3<double>>& cells) {
   for (const cv::Vec3d& p : points) {

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// From files to a fingertip: what sensor.json and the free pad say, as options of
-// pipeline/fingertip.hpp. The library itself reads no files.
+// Converts sensor.json and the free pad to options of pipeline/fingertip.hpp. The library itself
+// reads no files.
 #include <cstdint>
 #include <memory>
 #include <opencv2/core.hpp>
@@ -17,14 +17,14 @@
 
 namespace replay {
 
-/// Red and green of a picture as OpenCV stores it: blue, green, red.
+/// Views of red and green of an OpenCV image in BGR order.
 template <class Pixel = std::uint8_t>
 auto color_of(const cv::Mat& image) {
   return fingerpad::ColorFrame(fingerpad::channel<Pixel>(image, 2),
                                fingerpad::channel<Pixel>(image, 1));
 }
 
-/// Of the free pad; the same type for pictures of 8 and of 16 bits.
+/// The reference of the free pad; the same type for images of 8 and 16 bits.
 using Reference =
     decltype(fingerpad::fit_reference(std::declval<const fingerpad::Camera<double>&>(),
                                       std::declval<const fingerpad::Absorption<double>&>(),
@@ -32,7 +32,7 @@ using Reference =
                                       color_of(cv::Mat()).green,
                                       std::declval<const cv::Mat_<float>&>()));
 
-/// Options and the points that they view, which move with them.
+/// Options together with the points that they view.
 struct FingertipSettings {
   fingerpad::FingertipOptions<Reference> options;
   std::vector<fingerpad::Point3<double>> free_dots_mm = {};
@@ -42,22 +42,22 @@ struct FingertipSettings {
   FingertipSettings(FingertipSettings&&) = default;
 };
 
-/// `free_dots_px` are the free pad's dots, perhaps none. The contact's threshold is that of
-/// sensor.json, else that of the free pad's known shape; the neighbour light lacks the free pad's
-/// measured depth. The recording must outlive the settings. Throws fingerpad::parameter_error.
+/// `free_dots_px` are the free pad's dots, maybe empty. The contact threshold comes from
+/// sensor.json, else from the free pad's known shape. options.free_depth_mm, which neighbour light
+/// needs, is not set. The recording must outlive the settings. Throws fingerpad::parameter_error.
 FingertipSettings fingertip_settings(const Recording& recording, const DotGrid& free_dots_px);
 
-/// Why a recording has no six-axis forces; empty where it has.
+/// Why a recording has no six-axis forces; empty if it has them.
 std::string lacking_for_wrench(const Recording& recording);
 
-/// A whole fingertip with these settings and the default methods, for frames of 8 bits; compiled
-/// once for all programs.
+/// A complete fingertip with these settings and the default methods, for 8-bit frames. It is
+/// compiled once for all programs.
 class RecordedFingertip {
  public:
   explicit RecordedFingertip(const FingertipSettings& settings);
   ~RecordedFingertip();
 
-  /// As Fingertip has it.
+  /// See fingerpad::Fingertip.
   fingerpad::FingertipResult operator()(const cv::Mat& frame,
                                         const DotGrid& dots_px,
                                         const SpaceGrid& side_dots_mm,

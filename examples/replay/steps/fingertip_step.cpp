@@ -33,7 +33,7 @@ using FingertipOptions = fingerpad::FingertipOptions<Reference>;
 template <class SmoothingPolicy, class PixelType>
 struct Methods : fingerpad::FingertipMethods {
   static constexpr bool has_neighbour_light = true;
-  static constexpr int sampling = 1;  // every pixel is written
+  static constexpr int sampling = 1;  // depth is written at every pixel
   using Smoothing = SmoothingPolicy;
   using Pixel = PixelType;
 };
@@ -53,7 +53,7 @@ cv::Mat_<T> copy_of(const fingerpad::StridedView<const T>& from) {
   return to;
 }
 
-/// Depth of the free pad, whose frames may have other cells than those of the recording.
+/// Depth of the free pad, whose frames may have another pixel type than those of the recording.
 template <class SmoothingPolicy>
 cv::Mat_<float> free_depth_of(const FingertipOptions& options, const cv::Mat& image) {
   const auto depth = [&]<class Pixel>(Pixel) {
@@ -76,7 +76,7 @@ double contact_threshold_of(Recording& recording, const FingertipOptions& option
   return calibration.fit().threshold_per_mm;
 }
 
-/// Columns of the border in the order of their angle, in which Fingertip tells the tensions.
+/// Columns of the border in order of their angle, which is the order of Fingertip's tensions.
 std::vector<int> by_angle(const SpaceGrid& border_mm) {
   std::vector<std::pair<double, int>> columns;
   for (int k = 0; k < border_mm.cols; ++k) {
@@ -91,7 +91,7 @@ std::vector<int> by_angle(const SpaceGrid& border_mm) {
   return order;
 }
 
-/// How long each stage took.
+/// Measures the time of each stage.
 struct Watch {
   using Clock = std::chrono::steady_clock;
   Clock::time_point last = Clock::now();
@@ -220,7 +220,7 @@ class Step : public FingertipStep {
   const Recording& recording_;
   bool with_dots_;
   fingerpad::Fingertip<Reference, Methods<SmoothingPolicy, Pixel>> fingertip_;
-  std::vector<int> border_order_;  ///< empty without the six-axis force
+  std::vector<int> border_order_;  ///< empty without six-axis force
   SpaceGrid no_side_dots_;
 };
 

@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// What the program does with the library: a frame, its dots, its side dots and its pressure in, all
-// results out, with pipeline/fingertip.hpp; the only place of the program that knows it. The cells
-// of the frames and the smoothing are known only at run time here; the library has them as types.
+// Applies the library's pipeline/fingertip.hpp to a frame with its dots, side dots and pressure;
+// only this step uses that header. Pixel type and smoothing are template arguments of the library,
+// but are known here only at run time.
 #include <memory>
 #include <opencv2/core.hpp>
 
@@ -15,11 +15,11 @@ namespace replay {
 enum class Smoothing { none, box, anchored };
 
 struct FingertipFrame {
-  cv::Mat_<float> depth_mm;      ///< NaN where there is none
+  cv::Mat_<float> depth_mm;      ///< NaN where there is no depth
   cv::Mat_<uchar> contact_mask;  ///< 255 in contact, else 0
   fingerpad::Index valid_pixels = 0;
   fingerpad::Index pad_pixels = 0;
-  bool pad_has_changed = false;  ///< its light is not that of the reference
+  bool pad_has_changed = false;  ///< its light differs from the reference
   ContactResult contact;
   FrameDots dots;
   ForceFrame force;
@@ -30,18 +30,18 @@ struct FingertipFrame {
 class FingertipStep {
  public:
   virtual ~FingertipStep() = default;
-  /// Frames in the order of time, of the reference's size; throws Failure where one has other cells
-  /// than the first. `time_s` is NaN where unknown.
+  /// Takes frames of the reference's size in time order; throws Failure if the pixel type differs
+  /// from that of the first frame. `time_s` is NaN if unknown.
   virtual FingertipFrame operator()(int frame,
                                     const cv::Mat& image,
                                     const DotGrid& dots_px,
                                     double time_s) = 0;
 };
 
-/// Fits the reference and sets up everything that frames need, which are like `first_image`. The
-/// threshold of the contact comes from the recording's frames of the free pad, or, where it has
-/// none, from the known shape of the free pad. `initial_px` are the free pad's dots, perhaps none.
-/// The recording must outlive the step. Throws fingerpad::parameter_error.
+/// Fits the reference and sets up the step for frames of the type of `first_image`. The contact
+/// threshold comes from sensor.json, else from the recording's frames of the free pad, else from
+/// the free pad's known shape. `initial_px` are the free pad's dots, maybe empty. The recording
+/// must outlive the step. Throws fingerpad::parameter_error.
 std::unique_ptr<FingertipStep> make_fingertip_step(Recording& recording,
                                                    const cv::Mat& first_image,
                                                    Smoothing smoothing,

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// From dots of which nothing else is known to the stick ratio, with the library's stick_ratio.hpp;
-// the only place of the program that knows it.
+// Computes the stick ratio of a dots-only recording with the library's stick_ratio.hpp. Only this
+// step uses that header.
 #include <opencv2/core.hpp>
 #include <optional>
 
@@ -13,11 +13,12 @@ namespace replay {
 
 class StickStep {
  public:
-  /// For a grid of `size`; an empty one: the step does nothing. Throws fingerpad::parameter_error.
+  /// For a grid of `size`; with an empty size the step does nothing. Throws
+  /// fingerpad::parameter_error.
   StickStep(cv::Size size, const fingerpad::StickTest& test);
 
-  /// Frames in the order of time. `time_s` is NaN where unknown. Each dot that is found counts as
-  /// in contact.
+  /// Takes frames in time order. `time_s` is NaN if unknown. Each dot that is found counts as in
+  /// contact.
   FrameDots operator()(const DotGrid& dots_px, double time_s);
 
  private:

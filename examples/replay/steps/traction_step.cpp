@@ -21,7 +21,7 @@ TractionStep make_traction_step(const Recording& recording) {
   if (!recording.stress_free_dots) {
     return {};
   }
-  // Shared, because a std::function is copied and maps should not be.
+  // Shared, so that copies of the std::function do not copy the maps.
   const auto chain =
       std::make_shared<Chain>(Chain{fingerpad::TractionField<>(*recording.stress_free_dots)});
   return [chain](const FrameDots& dots, double pressure_mpa) {

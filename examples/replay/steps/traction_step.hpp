@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// From the dots of a frame and their stress-free places to what the object exerts on each of them,
-// with the library's traction.hpp; the only place of the program that knows it.
+// Computes the load of the object on each dot from the dots and their stress-free positions, with
+// the library's traction.hpp. Only this step uses that header.
 #include <functional>
 #include <opencv2/core.hpp>
 
@@ -12,7 +12,7 @@
 
 namespace replay {
 
-/// Maps are grids of dots, NaN where nothing is known; empty where the recording has no stress-free
+/// Maps are grids of dots, NaN where unknown; they are empty if the recording has no stress-free
 /// dots.
 struct TractionFrame {
   fingerpad::TractionResult<double> result;
@@ -23,7 +23,7 @@ struct TractionFrame {
 
 using TractionStep = std::function<TractionFrame(const FrameDots& dots, double pressure_mpa)>;
 
-/// Empty where the recording has no stress_free_dots.csv. Throws fingerpad::parameter_error.
+/// Empty if the recording has no stress_free_dots.csv. Throws fingerpad::parameter_error.
 TractionStep make_traction_step(const Recording& recording);
 
 }  // namespace replay
