@@ -1,11 +1,11 @@
 # SPDX-FileCopyrightText: 2026 The fingerpad authors
 # SPDX-License-Identifier: MIT
-# The optional components and the libraries that they need; read by the build and by the installed
-# package alike.
+# The optional components and the libraries that they need. The build and the installed package both
+# read this file.
 set(fingerpad_COMPONENTS dot_finder eigen mdspan opencv xtensor)
 
-# Looks for what a component needs: fingerpad_<name>_FOUND, fingerpad_<name>_LIBRARY to link, and
-# fingerpad_<name>_NEEDS, the library's name for people.
+# Finds the library of a component. Sets fingerpad_<name>_FOUND, fingerpad_<name>_LIBRARY to link,
+# and fingerpad_<name>_NEEDS, the library's name for messages.
 macro(fingerpad_find_component name)
   set(fingerpad_${name}_FOUND FALSE)
   set(fingerpad_${name}_LIBRARY "")
@@ -21,7 +21,7 @@ macro(fingerpad_find_component name)
     set(fingerpad_eigen_LIBRARY Eigen3::Eigen)
     set(fingerpad_eigen_NEEDS "Eigen 3.4")
   elseif("${name}" STREQUAL "mdspan")
-    set(fingerpad_mdspan_FOUND TRUE) # whichever mdspan the user has: nothing is included
+    set(fingerpad_mdspan_FOUND TRUE) # any mdspan of the user: nothing is included
   elseif("${name}" STREQUAL "opencv")
     find_package(OpenCV QUIET COMPONENTS core)
     set(fingerpad_opencv_FOUND ${OpenCV_FOUND})

@@ -2,8 +2,9 @@
 # SPDX-License-Identifier: MIT
 
 # fingerpad_programs(KIND PACKAGE...): declares the option FINGERPAD_BUILD_<KIND>. It is on by
-# default at the top level where all packages are found; asked for without them, it is an error.
-# A macro, since what find_package() sets is read where the programs are built.
+# default at the top level if all packages are found. If it is requested without them, configuration
+# fails. It is a macro, because the results of find_package() are needed where the programs are
+# built.
 macro(fingerpad_programs kind)
   set(fingerpad_missing "")
   if(PROJECT_IS_TOP_LEVEL OR FINGERPAD_BUILD_${kind})
@@ -23,7 +24,7 @@ macro(fingerpad_programs kind)
   endif()
 endmacro()
 
-# A frame takes some fifty times longer without optimisation.
+# Without optimisation a frame takes some fifty times longer.
 if(PROJECT_IS_TOP_LEVEL AND NOT CMAKE_BUILD_TYPE AND NOT CMAKE_CONFIGURATION_TYPES)
   message(STATUS "fingerpad: no build type was given; taking Release")
   set(CMAKE_BUILD_TYPE Release CACHE STRING "Debug, Release, RelWithDebInfo or MinSizeRel" FORCE)

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
-// Dots found, named and followed in noisy 8-bit frames of 640 x 480 pixels, three channels: a drawn
-// print that shifts to and fro by a fifth of a pitch. The error is the distance of each dot from
-// where it was drawn; a dot with another's name counts as lost.
+// Finding, naming and tracking of dots in noisy 8-bit frames of 640 x 480 pixels with three
+// channels. A drawn print shifts back and forth by a fifth of a pitch. The error is the distance of
+// each dot from its drawn position; a dot with another dot's name counts as lost.
 #include "fingerpad/adapt/dot_finder.hpp"
 
 #include <memory>
@@ -20,7 +20,7 @@ using test::DotPlaces;
 
 namespace {
 
-/// Frames of one print and where its dots are in them.
+/// Frames of one print and the true positions of its dots.
 struct Frames {
   explicit Frames(const test::Print& of) : print(of) {
     for (int k = 0; k < 8; ++k) {
@@ -36,7 +36,7 @@ struct Frames {
   std::vector<cv::Mat> frames;
 };
 
-/// Distances of the dots of one frame from where they were drawn; NaN: lost.
+/// Distances of the dots of one frame from their drawn positions; NaN for a lost dot.
 void add_errors(const DotPlaces& found,
                 const DotPlaces& truth,
                 double pitch_px,
@@ -77,7 +77,7 @@ void add_finder(const std::string& name, const Frames& frames, const DotFinderOp
   });
 }
 
-/// What OpenCV has for grids of circles: without a memory, and only where all are seen.
+/// OpenCV's detector of circle grids: it has no memory and needs every dot to be visible.
 void add_circles_grid(const std::string& group, const Frames& frames) {
   add(group + "/cv::findCirclesGrid", frames, 0, [&](const cv::Mat& frame, DotPlaces& dots) {
     std::vector<cv::Point2f> centers;
@@ -95,7 +95,7 @@ void add_circles_grid(const std::string& group, const Frames& frames) {
   });
 }
 
-/// Dark pieces and their centers of gravity; named by the truth, as nothing else names them.
+/// Dark components and their centroids. The truth names them, because nothing else does.
 void add_components(const std::string& group, const Frames& frames) {
   add(group + "/cv::connectedComponentsWithStats, no names", frames, 0,
       [&frames, k = std::size_t{0}](const cv::Mat& frame, DotPlaces& dots) mutable {

@@ -1,13 +1,16 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
-// Calibrations: time of a fit ("ns/pixel" is per fit). "a sensor of numbers": those that
-// replay_many repeats (examples/replay_many/trials.cpp), from measurements that are drawn anew.
-// Errors: of each parameter, as a share of the true one, over 100 fits with fresh noise. "...
-// on scenes": curves and maps from contacts of finite-element membranes (tests/data/contacts.csv).
-// Errors: those of the method, on a scene that was left out of the fit. Published: a quadratic with
-// a constant by the press alone; the central dot, straight lines and the printed exponents, from
-// "mix". "reference of a free pad": 480 x 640 pixels; error: of the depth under a flat plate from
-// exact colours, so of the reference alone, by a free frame with one grey level of noise.
+// Calibrations: time of a fit ("ns/pixel" is per fit).
+// "a sensor of numbers": the calibrations that replay_many repeats
+// (examples/replay_many/trials.cpp), from newly drawn measurements. Error: of each parameter,
+// relative to the true one, over 100 fits with fresh noise.
+// "... on scenes": curves and maps from contacts of finite-element membranes
+// (tests/data/contacts.csv). Error: of the method, on a scene that the fit does not use. Published
+// rows: a quadratic with a constant, from the press alone; the central dot, straight lines and the
+// printed exponents, from "mix".
+// "reference of a free pad": 480 x 640 pixels. Error: of the depth under a flat plate from exact
+// colours, with the reference of a free frame with one grey level of noise; it is therefore the
+// error of the reference alone.
 #include <cmath>
 #include <cstdint>
 #include <memory>
@@ -108,7 +111,7 @@ std::vector<double> depth_errors(const bench::Scene& scene,
   return errors;
 }
 
-/// `fit(scene, free frame)`.
+/// `fit(scene, free frame)` returns the reference.
 template <class Fit>
 void add_reference(const std::string& name, const Fit& fit) {
   const auto scene = std::make_shared<bench::Scene>(bench::round_pad());
@@ -144,7 +147,8 @@ Samples samples_of(const std::vector<std::string>& scenes,
                    ContactDotsOf dots = ContactDotsOf::edge) {
   return test::force_samples(test::contact_records(scenes), measure, dots);
 }
-/// `fit(samples)` from the calibration's scenes; `error(fit, sample)` on others.
+/// `fit(samples)` uses the scenes of the calibration; `error(fit, sample)` is evaluated on another
+/// scene.
 template <class Fit, class Error>
 struct OnScenes {
   ContactMeasure measure;
@@ -153,7 +157,7 @@ struct OnScenes {
   Error error;
 };
 
-/// Pairs of what is fitted and what is tested.
+/// Pairs of the scenes to fit and the scene to test.
 using Pairs = std::vector<std::pair<std::vector<std::string>, std::string>>;
 
 template <class Fit, class Error>
@@ -196,7 +200,7 @@ void add_normal(const std::string& name,
               OnScenes<decltype(fit), decltype(error)>{measure, ContactDotsOf::edge, fit, error});
 }
 
-/// By the radius of a disc of the contact's area.
+/// Power law of the radius of a disc with the contact's area.
 void add_power_law(const std::string& name, const Pairs& pairs) {
   const auto radius = [](double area_mm2) { return std::sqrt(area_mm2 / 3.141592653589793); };
   const auto fit = [=](Samples samples) {
@@ -254,7 +258,7 @@ void add_moment(const std::string& name,
 }  // namespace
 
 int main(int argc, char** argv) {
-  (void)test::contact_records({});  // reads the file, which is no fit's memory
+  (void)test::contact_records({});  // read the file now: its memory does not belong to a fit
   for (const std::string& name : replay_many::trial_names()) {
     add_trial(name);
   }

@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
-// Contact of a ball on a gel from frames of 640 x 480 pixels, as a camera renders them (three
-// colours, dots, 1 grey level of noise). Error: how much larger than the true contact what is found
-// is, as a share of it, since the gel's dent around the ball is seen too; the way of its center;
-// and of free frames the share that is taken for contact; over 24 balls and 24 free frames.
+// Contact of a ball on a gel in rendered frames of 640 x 480 pixels (three colours, dots, 1 grey
+// level of noise). Errors, over 24 balls and 24 free frames: the relative excess of the area over
+// the true contact, since the dent of the gel around the ball is visible too; the distance of its
+// center from the true one; and the share of a free frame that is taken for contact.
 #include "fingerpad/contact/contact_by_difference.hpp"
 
 #include <memory>
@@ -86,7 +86,7 @@ void add_region(const std::string& name, const std::shared_ptr<const Scenes>& sc
       });
 }
 
-/// The parts of the same in OpenCV, at full size: Gaussian means, difference, opening, closing.
+/// The same steps in OpenCV at full size: Gaussian means, difference, opening, closing.
 void add_opencv(const std::shared_ptr<const Scenes>& scenes) {
   const auto as_mat = [](const ColourFrame& frame) {
     return cv::Mat(480, 640, CV_8UC3, const_cast<std::array<std::uint8_t, 3>*>(frame.cells.data()));

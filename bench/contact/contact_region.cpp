@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
-// Contact regions of a round pad from exact depths, small and large ones. The errors are those of
-// the area, as a share of it, and of the center, over 30 contacts: of areas within a fifth of the
-// group's, up to 2 mm off the axis, flat or bulging, level or tilted. It is what the method leaves,
-// without noise. "On scenes": of finite-element membranes, from noisy frames.
+// Small and large contact regions of a round pad from exact depths. The errors are of the area,
+// relative to it, and of the center, over 30 contacts: areas within a fifth of the group's, up to 2
+// mm off the axis, flat or bulging, level or tilted. They are the errors of the method without
+// noise. "on scenes": finite-element membranes, from noisy frames.
 #include "fingerpad/contact/contact_region.hpp"
 
 #include <cmath>
@@ -32,7 +32,7 @@ cv::Mat as_mat(Image<std::uint8_t>& image) {
   return {int(rows), int(cols), CV_8U, image.cells.data()};
 }
 
-/// A contact and the depths that a camera sees.
+/// A contact and its depths as the camera sees them.
 template <class S>
 struct Scene {
   test::RoundContact contact;

@@ -1,10 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
-// Shapes fitted to a contact in a float depth map of 640x480 with noise of 0.02 mm, seen along
-// refracted rays and as a map of heights. Timed: a convex sphere of 18 mm, 200 px wide. Errors:
-// over 40 objects of other sizes and places, spheres of 15 to 40 mm, and for the plane planes of
-// slopes up to 0.4: that of the curvature or of the normal, and of the rms distance from the shape.
-// First row: a pass that reads depth and mask and adds up the depths in contact.
+// Shapes fitted to a contact in a float depth map of 640 x 480 pixels with noise of 0.02 mm, along
+// refracted rays and as a map of heights. Timed: a convex sphere of 18 mm, 200 px wide. Errors: of
+// the curvature or the normal, and of the rms distance from the shape, over 40 objects of other
+// sizes and places: spheres of 15 to 40 mm and, for the plane, planes of slopes up to 0.4. First
+// row: a pass that reads depth and mask and sums the depths in contact.
 #include "fingerpad/contact/object_surface.hpp"
 
 #include <algorithm>
@@ -30,7 +30,7 @@ constexpr Index height_px = 480, width_px = 640;
 constexpr std::size_t pixels = height_px * width_px;
 constexpr double noise_mm = 0.02;
 
-/// z = 9 mm + slope . (p - p0) + a sphere's rise about p0, which the middle of the contact sees.
+/// z = 9 mm + slope . (p - p0) + the rise of a sphere about p0, the middle of the contact.
 struct Object {
   double curvature_per_mm = 1.0 / 18;
   Point2<double> slope = {0, 0};
@@ -71,7 +71,7 @@ double error_of(const Quadric<double>& q, const Object& o) {
   return q.mean_curvature_per_mm() - o.curvature_per_mm;
 }
 
-/// Depths and mask of an object, NaN where it does not touch.
+/// Depths and mask of an object; NaN outside the contact.
 struct Contact {
   Image<float> depth{height_px, width_px, static_cast<float>(test::nan)};
   Mask mask{height_px, width_px, 0};
@@ -109,7 +109,7 @@ struct Bench {
   CameraType camera = {};
   std::shared_ptr<const Contact> timed = std::make_shared<Contact>(camera, Object(), 1);
 
-  /// fit(contact) gives a SurfaceResult.
+  /// `fit(contact)` returns a SurfaceResult.
   template <bool IsFlat, class Fit>
   std::vector<double> errors_of(const Fit& fit) const {
     std::vector<double> errors;

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
-// Depth from smoothed planes of red and green, every way there is. The error is that of each pixel
-// against the root in long double of the same equation with the same inputs. What depends on the
-// pixel only (its pencil and g) is made before the clock starts, for every way alike.
+// Depth from smoothed planes of red and green by every inverse. The error is of each pixel against
+// the root in long double of the same equation with the same inputs. Quantities that depend only on
+// the pixel (its pencil and g) are computed before the clock starts, for every inverse.
 #include "fingerpad/published/depth.hpp"
 
 #include <memory>
@@ -19,7 +19,7 @@ using bench::Image;
 
 namespace {
 
-/// What every way is given, in its own scalar; all hold the same numbers, those of float.
+/// Inputs of every inverse in its own scalar; all hold the same numbers, those of float.
 template <class S>
 struct Inputs {
   Absorption<S> fluid;
@@ -52,7 +52,7 @@ struct Inputs {
   }
 };
 
-/// The same as pointers, which no store to a byte can change.
+/// The same as pointers, which a store to a byte cannot change.
 template <class S>
 struct Planes {
   Absorption<S> fluid;
@@ -83,7 +83,7 @@ Image<double> exact_depths(const bench::Scene& scene) {
   return depth;
 }
 
-/// The published bisection as fast as it can be: no range is tested, no status written.
+/// The published bisection at its fastest: without range checks and without a status.
 double bisection(const Absorption<double>& fluid,
                  const Pencil<double>& pencil,
                  double g,
@@ -117,7 +117,8 @@ struct Bench {
            " mm";
   }
 
-  /// work(inputs, depth, status) fills the two outputs; `memory` was made before all that it holds.
+  /// `work(inputs, depth, status)` fills the two outputs. `memory` is made before everything that
+  /// `work` holds.
   template <class S, class Work>
   void add(const std::string& name, Work work, const bench::Memory& memory = {}) const {
     const auto depth = std::make_shared<Image<S>>(scene.pad.rows, scene.pad.cols);
@@ -133,7 +134,7 @@ struct Bench {
         });
   }
 
-  /// find_root(inputs, k) for every pixel k.
+  /// `find_root(inputs, k)` is called for every pixel k.
   template <class S, class FindRoot>
   void each_pixel(const std::string& name, FindRoot find_root) const {
     add<S>(name, [=](Planes<S> in, S* depth, PixelStatus* status) {
@@ -162,7 +163,7 @@ struct Bench {
     add<S>(name, work, memory);
   }
 
-  /// With g folded into the polynomials, and as a plane of its own.
+  /// Rows with g folded into the polynomials and with g as a plane of its own.
   template <int Order, int Degree, int Radial = 3>
   void add_single() const {
     const std::string name = "exponential-free float <" + std::to_string(Order) + ", " +

@@ -1,8 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 // Removal of the neighbouring membrane's light from a depth map, for small to large discs. The
-// error is that of each pixel that this changes, against the sum over every pixel of the disc in
-// long double.
+// error is of each corrected pixel, against the sum over every pixel of the disc in long double.
 #include "fingerpad/depth/neighbour_light.hpp"
 
 #include <memory>
@@ -19,7 +18,7 @@ using bench::Image;
 
 namespace {
 
-/// A depth map as a frame gives it: round and smooth, NaN outside the pad.
+/// A depth map as a frame gives it: round, smooth, NaN outside the pad.
 Image<float> smooth_depths(const Image<double>& depth_mm) {
   Image<float> out(depth_mm.rows(), depth_mm.cols());
   std::copy(depth_mm.cells.begin(), depth_mm.cells.end(), out.cells.begin());
@@ -39,7 +38,7 @@ struct Bench {
     return {NeighbourLight<S>{.radius_px = radius_px}, S(scene.pad.camera.pitch_mm * 1.1), free};
   }
 
-  /// NaN where no light is to be removed.
+  /// Exact corrected depths; NaN where no light is to be removed.
   Image<long double> truth() const {
     const auto compensate = compensation<published::ExactDisc, long double>();
     auto workspace = compensate.workspace();
@@ -76,7 +75,7 @@ struct Bench {
     add<S>(name, compensation<Disc, S>(), truth, memory);
   }
 
-  /// filter(from, to) by OpenCV.
+  /// `filter(from, to)` uses OpenCV.
   template <class Filter>
   void add_opencv(const std::string& name, Filter filter) const {
     const auto from = std::make_shared<Image<float>>(pressed);

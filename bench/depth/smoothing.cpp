@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
-// Two smoothed planes from one noisy frame, beside OpenCV's box filter. The error is that of each
-// pixel's depth which Newton's method in double then finds.
+// Two smoothed planes from one noisy frame, compared with OpenCV's box filter. The error is of each
+// pixel's depth, computed from these planes by Newton's method in double.
 #include <memory>
 #include <opencv2/imgproc.hpp>
 #include <string>
@@ -52,7 +52,7 @@ struct Bench {
     return bench::errors_of(depth, scene.pressed_mm);
   }
 
-  /// work(smooth) fills both planes; `memory` was made before all that it holds.
+  /// `work(smooth)` fills both planes. `memory` is made before everything that `work` holds.
   template <class S = float, class Work>
   void add(const std::string& group,
            const std::string& name,

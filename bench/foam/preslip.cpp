@@ -2,16 +2,17 @@
 // SPDX-License-Identifier: MIT
 // The rules of pre-slip over a full history of two fingers; "ns/pixel" is per sample.
 //   quiet     nothing vibrates
-//   no pair   both fingers vibrate always, by turns with 1 to 8 waves, but at one place: the whole
-//             history is gone through
-//   slipping  both vibrate at any place with any of 1 to 8 waves: pairs are found soon
-// Error: the share of the first 400 samples whose answer is not that of StackScan in double.
+//   no pair   both fingers always vibrate, with 1 to 8 waves in turn, but at one taxel: the whole
+//             history is searched
+//   slipping  both fingers vibrate at any taxel with any of 1 to 8 waves: pairs are found soon
+// Error: the share of the first 400 samples whose answer differs from that of StackScan in double.
 // "detection": patches of foam fingers begin to slip at a known time
-// (tests/support/foam_signals.hpp). Error: from there to the alarm, in windows of 16 samples; an
-// alarm before it counts as none. "least force": an object hangs between simulated foam fingers
-// (examples/grip/foam_fingers.hpp) that are loosened until it slips. Error: the force at the
-// warning beyond that at which it slips, as a share of this; of a lift the rounding of its
-// commands, against long double.
+// (tests/support/foam_signals.hpp). Error: the delay of the alarm, in windows of 16 samples; an
+// earlier alarm counts as none.
+// "least force": an object hangs between simulated foam fingers (examples/grip/foam_fingers.hpp),
+// which loosen their grip until it slips. Error: the excess of the force at the warning over the
+// slipping force, relative to the latter; for a lift, the rounding of its commands against long
+// double.
 #include "fingerpad/foam/preslip.hpp"
 
 #include <array>
@@ -38,7 +39,7 @@ template <class S>
 using HandOf = std::array<FingerSample<S>, 2>;
 using Hand = HandOf<double>;
 
-/// Ways to search.
+/// Search methods.
 struct Newest {
   template <class Rule, class S>
   using Estimator = Preslip<Rule, 2, S>;
@@ -54,7 +55,7 @@ const char* name_of(Scene scene) {
   return scene == Scene::quiet ? "quiet" : scene == Scene::no_pair ? "no pair" : "slipping";
 }
 
-/// What the rules compare, in S.
+/// The quantities that the rules compare, in S.
 template <class S>
 HandOf<S> as(const Hand& from) {
   HandOf<S> to;
@@ -90,7 +91,7 @@ std::vector<HandOf<S>> samples(Scene scene) {
   return all;
 }
 
-/// Rule and Search over the first samples of a scene.
+/// Answers of Rule and Search for the first samples of a scene.
 template <class Rule, class Search, class S>
 std::vector<PreslipResult> answers(Scene scene, Index history) {
   const typename Search::template Estimator<Rule, S> preslip({.history = history});
@@ -133,7 +134,7 @@ void add(const std::string& rule, const std::string& search, Scene scene, Index 
       memory.bytes(),
       [=] {
         while (d->k < static_cast<std::size_t>(history)) {
-          step();  // the history is filled before the time is taken
+          step();  // fill the history before timing
         }
         step();
       },
@@ -166,12 +167,12 @@ void add_searches(const std::string& rule) {
   }
 }
 
-/// Samples of foam fingers, of each recording.
+/// Samples of the foam fingers of each recording.
 using Recordings = std::vector<std::vector<Hand>>;
 
 constexpr std::size_t slip_begins = 60;
 
-/// Three patches on each finger begin to slip; where, how fast and at which rate varies.
+/// Three patches on each finger begin to slip; place, speed and rate vary.
 template <class Waves>
 const Recordings& slips() {
   static const Recordings all = [] {
@@ -213,7 +214,7 @@ const Recordings& slips() {
   return all;
 }
 
-/// A rule on all samples of a recording, one after the other.
+/// Applies a rule to the samples of a recording one after the other.
 template <class Estimator>
 struct Watching {
   Estimator preslip = Estimator();
@@ -248,7 +249,7 @@ void add_detection(const std::string& name) {
       });
 }
 
-/// How the grip is loosened: what is commanded does not depend on warnings.
+/// How the grip is loosened; the commands do not depend on warnings.
 template <class S>
 LoosenOptions<S> loosen_plan() {
   LoosenOptions<S> plan;
@@ -265,7 +266,7 @@ struct Loosened {
   std::vector<double> slip_force_n;
 };
 
-/// Eight objects, until they slip.
+/// Eight objects until they slip.
 const Loosened& loosened() {
   static const Loosened all = [] {
     Loosened runs;
@@ -328,7 +329,7 @@ void add_loosening(const std::string& name) {
       });
 }
 
-/// A lift without end: pre-slip in every 25th sample.
+/// An endless lift with pre-slip in every 25th sample.
 template <class S>
 struct Lifting {
   static LiftOptions<S> plan() {

@@ -1,11 +1,11 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
-// The features of 486 taxels, three fingers of 27 x 6, in windows of 16 and 64 samples; "ns/pixel"
-// is per taxel. "hand" rows are a whole sample: the features of three fingers and the rule over a
+// Features of 486 taxels, three fingers of 27 x 6, in windows of 16 and 64 samples; "ns/pixel" is
+// per taxel. "hand" rows are a whole sample: the features of three fingers and the rule over a
 // history of 1000. In "vibrating" rows one taxel of each finger vibrates, in "quiet" rows none.
-// Errors, in the windows of twelve recordings with 0.08 to 0.32 waves a sample: of the vibrating
-// taxel's rms, against two passes in long double; of its waves, which are whole numbers, against
-// those that a window truly has; of the centroid, against sums in double. "two passes": the plain
+// Errors, over twelve recordings with 0.08 to 0.32 waves a sample: of the vibrating taxel's rms,
+// against two passes in long double; of its waves, which are integers, against the true waves of a
+// window; of the centroid, against sums in double. "two passes": the direct method in double.
 // way in double.
 #include "fingerpad/foam/taxel_features.hpp"
 
@@ -31,10 +31,10 @@ namespace {
 
 constexpr Index rows = 27, cols = 6, period = 256;
 constexpr Index vibrating_taxel = 74;
-constexpr double timed_turn_rad = 1.7;  // of the vibration, from sample to sample
+constexpr double timed_turn_rad = 1.7;  // phase step of the vibration, per sample
 
-/// Readings of one finger: `period` arrays, again and again. The taxel that vibrates does so by
-/// `turn_rad` from sample to sample; 0: none does.
+/// Readings of one finger: `period` arrays, repeated. The phase of the vibrating taxel advances by
+/// `turn_rad` from sample to sample; 0: no taxel vibrates.
 template <class Cell>
 std::vector<Cell> recording(double turn_rad) {
   std::mt19937 random(3);
@@ -50,7 +50,7 @@ std::vector<Cell> recording(double turn_rad) {
   return readings;
 }
 
-/// The `length` readings up to the n-th of a taxel; before the first are the last of the round.
+/// The `length` readings of a taxel up to the n-th; the index wraps around within the round.
 template <class Cell>
 std::vector<double> window_of(const std::vector<Cell>& readings,
                               Index taxel,
@@ -65,7 +65,7 @@ std::vector<double> window_of(const std::vector<Cell>& readings,
   return window;
 }
 
-/// The rms beside a straight line, or beside the mean, in two passes.
+/// The rms about a straight line, or about the mean, in two passes.
 template <class T>
 T rms_of(const std::vector<double>& window) {
   const T length = static_cast<T>(window.size()), middle = (length - 1) / 2;
@@ -85,7 +85,7 @@ T rms_of(const std::vector<double>& window) {
   return std::sqrt(squares / length);
 }
 
-/// Errors of an rms against two passes in long double.
+/// Relative error of an rms against two passes in long double.
 double rms_error(double rms, const std::vector<double>& window) {
   const long double truth = rms_of<long double>(window);
   return static_cast<double>(static_cast<long double>(rms) / truth - 1);
@@ -155,7 +155,7 @@ struct Hand {
   Index n = 0;
 };
 
-/// Adds those of a round of the recording, after one that fills the window.
+/// Adds the errors of a round of the recording, after one that fills the window.
 template <class Cell, class S, class Waves>
 void add_errors(double turn_rad, Index window, FeatureErrors& errors) {
   const auto readings = recording<Cell>(turn_rad);
@@ -164,7 +164,7 @@ void add_errors(double turn_rad, Index window, FeatureErrors& errors) {
   for (Index k = 0; k < 2 * period; ++k) {
     hand.step(readings, false);
     if (k < period || hand.n < window - 1) {
-      continue;  // where a round begins a wave breaks off
+      continue;  // a wave is interrupted where a round begins
     }
     const FingerSample<S>& sample = hand.samples[0];
     const auto center = centroid_of(readings.data() + hand.n * rows * cols, pitch_mm);
@@ -208,7 +208,7 @@ void add(const std::string& name, bool vibrates, Index window, bool with_rule) {
       });
 }
 
-/// What spreads most of each finger, from the whole window in each sample.
+/// Largest rms of each finger, from the whole window in each sample.
 void add_two_passes(const std::string& group, Index window) {
   const auto readings =
       std::make_shared<const std::vector<std::uint16_t>>(recording<std::uint16_t>(timed_turn_rad));
@@ -234,7 +234,7 @@ void add_two_passes(const std::string& group, Index window) {
       });
 }
 
-/// Mean and deviation of the windows of all taxels.
+/// Mean and standard deviation of the windows of all taxels.
 void add_opencv(const std::string& group, Index window) {
   const auto length = static_cast<int>(window);
   const auto windows = std::make_shared<cv::Mat>(3 * rows * cols, length, CV_32F);
@@ -255,7 +255,7 @@ void add_opencv(const std::string& group, Index window) {
       [](auto&) {});
 }
 
-/// The spectra of the three windows that vibrate.
+/// Spectra of the windows of the three vibrating taxels.
 void add_opencv_spectrum(const std::string& group, Index window) {
   const auto windows = std::make_shared<cv::Mat>(3, static_cast<int>(window), CV_64F);
   cv::randn(*windows, 0, 60);

@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 // Normal force by look-up, of 4096 contacts ("ns/pixel" is per contact). "as printed": eqs. 18 and
-// 21 with nothing about range, contact or bad input. Error of each contact: that of rounding, from
-// long double, as a share of the largest force; of "as printed", from itself. What a curve errs by
-// is a matter of its calibration: docs/force/normal_force.md has it for finite elements.
+// 21 without checks of range, contact or bad input. Error of each contact: rounding, against long
+// double, relative to the largest force; of "as printed", against itself. The error of the curve
+// itself depends on its calibration: docs/force/normal_force.md has it for finite elements.
 #include "fingerpad/force/normal_force.hpp"
 
 #include <cmath>
@@ -24,7 +24,7 @@ namespace {
 constexpr double largest_mm2 = 400, largest_depth_mm = 5, largest_radius_mm = 12;
 using Long = long double;
 
-/// force(measure, displacement, angle) of contact k, in the scalar T.
+/// `force(measure, displacement, angle)` of contact k in the scalar T.
 template <class T, class S, class Force>
 T force_of(const Force& force, bench::Contacts<S>& contacts, Index k) {
   return force(T(contacts.at(k, 0)), Point2<T>{T(contacts.at(k, 1)), T(contacts.at(k, 2))},
@@ -43,7 +43,8 @@ void note(bench::Counters& counters,
   bench::note_errors(counters, "force", "share", bench::share_errors(found, true_n));
 }
 
-/// Work on each contact; make(S()) gives the force(measure, displacement, angle) in the scalar S.
+/// Adds a row that calls `make(S())`, a force(measure, displacement, angle) in the scalar S, for
+/// each contact.
 template <class S, class Make>
 void add_each(const std::string& name, double largest, const Make& make) {
   const auto contacts = std::make_shared<bench::Contacts<S>>(largest);
@@ -59,7 +60,7 @@ void add_each(const std::string& name, double largest, const Make& make) {
       [=](auto& counters) { note(counters, make(Long()), *contacts, *out); });
 }
 
-/// What a NormalForce says as a plain number.
+/// The force of a NormalForce as a plain number.
 template <class Estimator>
 auto number_of(const Estimator& estimator) {
   return [=](const auto& measure, const auto& displacement, const auto& rotation) {
@@ -67,7 +68,7 @@ auto number_of(const Estimator& estimator) {
   };
 }
 
-/// make(S()) gives a NormalForce in the scalar S.
+/// `make(S())` returns a NormalForce in the scalar S.
 template <class S, class Make>
 void add_plain(const std::string& type,
                const std::string& name,

@@ -1,10 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
-// Tangential force and moment by look-up, of 4096 contacts ("ns/pixel" is per contact).
-// "as printed": eqs. 4 and 5 by std::pow and a line each, with
-// nothing about contact or bad input. Errors: of each contact's moment and of the force along x
-// from long double, as shares of the largest. "with normal force": that by area and by depth, fused
-// by their variances, besides.
+// Tangential force and moment by look-up, of 4096 contacts ("ns/pixel" is per contact). "as
+// printed": eqs. 4 and 5 by std::pow, one line each, without checks of contact or bad input.
+// Errors: of each contact's moment and of the force along x, against long double, relative to the
+// largest. "with normal force": additionally the normal force by area and by depth, fused by their
+// variances.
 #include "fingerpad/force/shear.hpp"
 
 #include <cmath>
@@ -62,7 +62,7 @@ std::string row(const std::string& name) {
   return "4096 contacts/" + name + (sizeof(S) == sizeof(float) ? ", float" : ", double");
 }
 
-/// of(measure, displacement, angle, row of three results) for each contact.
+/// Calls `of(measure, displacement, angle, row of three results)` for each contact.
 template <class S, class Work, class Map>
 void add_each(const std::string& name,
               const Work& of,
@@ -116,7 +116,7 @@ LinearShear<S> any_linear() {
   return {S(2), S(0.25), S(-0.25), S(1.5), {S(0), S(0)}, S(250), S(0)};
 }
 
-/// The constants are those of S in the truth too.
+/// The constants in the truth are also those of S.
 template <class S>
 ShearNormalisation<Long> exactly(const ShearNormalisation<S>& n) {
   return {Long(n.reference), Long(n.displacement_exponent), Long(n.rotation_exponent)};
@@ -163,7 +163,7 @@ void add_all() {
       truth);
 }
 
-/// One power of each contact; the look-up has two.
+/// One power per contact; the look-up needs two.
 template <class S>
 void add_opencv() {
   const auto contacts = std::make_shared<bench::Contacts<S>>(largest_mm2);

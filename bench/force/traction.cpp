@@ -1,9 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
-// Loads of a frame of 21 x 21 dots. "ns/pixel" is per frame. Errors over seven membranes of known
-// load (tests/data/traction_*.csv): of the pressure of each dot whose neighbours all touch, as a
-// share of the pad's, and of each component of force and moment, as a share of the largest (of
-// the moment where there is one); exact, and with noise of 0.02 mm in x, y and z of each dot.
+// Loads of a frame of 21 x 21 dots; "ns/pixel" is per frame. Errors over seven membranes of known
+// load (tests/data/traction_*.csv): of the pressure at each dot whose neighbours all touch,
+// relative to the pad's pressure, and of each component of force and moment, relative to the
+// largest (of the moment where there is one); exact, and with noise of 0.02 mm in x, y and z of
+// each dot.
 #include "fingerpad/force/traction.hpp"
 
 #include <array>
@@ -38,7 +39,7 @@ struct Errors {
     bench::note_errors(counters, "moment" + noise, "share", moment);
   }
 
-  /// Components as shares of the largest true one.
+  /// Errors of the components, relative to the largest true one.
   template <class P>
   static void add(const P& found, const Point3<double>& truth, double of, std::vector<double>& to) {
     to.push_back((static_cast<double>(found.x) - truth.x) / of);
@@ -99,7 +100,7 @@ void add_frame(const std::string& name, const TractionOptions<S>& options = {}) 
       });
 }
 
-/// A membrane of 21 x 21 dots has 800 triangles, each with a deformation gradient to invert.
+/// A membrane of 21 x 21 dots has 800 triangles with one deformation gradient each to invert.
 void add_opencv() {
   const auto triangles = std::make_shared<std::vector<cv::Matx22d>>(800, cv::Matx22d(2, 1, 1, 3));
   const bench::Memory memory;

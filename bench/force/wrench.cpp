@@ -1,13 +1,14 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
-// Six-axis force by every solver. "ns/pixel" is per frame: mesh, side dots, forces; the shape is
-// given. Truth: 24 films pressed flat, dragged and rotated by forces of every direction and size at
-// 5 to 20 kPa, whose force, moment and side dots are known in closed form
-// (tests/support/pressed_pad.hpp), by the same law of the rim that ClampedRim has; "on scenes":
-// finite-element membranes, which know nothing of it. Errors: of F_z, of F_x and F_y together, M_x
-// and M_y together and M_z, in shares of the truth; "residual": of eqs. 6 and 7, rms, as a share of
-// the pressure's; of a mesh: heights of its nodes. "heights in plan": all heights in a disc of 18
-// mm, with the blur of a frame.
+// Six-axis force by every solver; "ns/pixel" is per frame: mesh, side dots, forces. The shape is
+// given.
+// Truth: 24 films pressed flat, dragged and rotated by forces of every direction and size at 5 to
+// 20 kPa. Their force, moment and side dots are known in closed form
+// (tests/support/pressed_pad.hpp), by the law of the rim that ClampedRim uses. "on scenes":
+// finite-element membranes, which do not follow this law.
+// Errors: of F_z, of F_x and F_y together, M_x and M_y together and M_z, relative to the truth;
+// "residual": rms of eqs. 6 and 7, relative to the force of the pressure; of a mesh: heights of its
+// nodes. "heights in plan": all heights in a disc of 18 mm, with the blur of a frame.
 #include "fingerpad/force/wrench.hpp"
 
 #include <cmath>
@@ -33,8 +34,7 @@ namespace {
 
 using Film = test::RoundPad<test::FilmSide>;
 
-/// A pad and what it is pressed with: a lateral force at the height of the object, a torque, and a
-/// press.
+/// A pressed pad with its pressure, a lateral force at the height of the object and a torque.
 struct Load {
   Film pad;
   double pressure_mpa, shear_share, turning_share, direction_rad;
@@ -51,7 +51,7 @@ struct Load {
   }
 };
 
-/// The first is the one that is timed.
+/// The first load is the timed one.
 const std::vector<Load>& loads() {
   static const std::vector<Load> all = [] {
     std::vector<Load> list;
@@ -175,7 +175,7 @@ void add_frame(const std::string& group,
       });
 }
 
-/// Lines and segments alone.
+/// Lines and segments only.
 template <class Lines, class S>
 void add_mesh(const std::string& group, const std::string& name, Index columns, Index rows) {
   struct Mesh {
@@ -212,7 +212,7 @@ void add_mesh(const std::string& group, const std::string& name, Index columns, 
       });
 }
 
-/// As many equations as the pull of each segment at the rim has.
+/// As many equations as unknown pulls of the segments at the rim.
 void add_opencv(const std::string& group, Index columns) {
   struct System {
     cv::Mat matrix, right, solution;
@@ -262,7 +262,7 @@ void add_all(Index columns, Index rows) {
   add_opencv(group, columns);
 }
 
-/// Heights in plan from a depth map of 640 x 480.
+/// Heights in plan from a depth map of 640 x 480 pixels.
 template <class S>
 void add_heights(const std::string& name) {
   struct Picture {
@@ -278,7 +278,7 @@ void add_heights(const std::string& name) {
   const Film& pad = picture->pad;
   for (Index i = 0; i < 480; ++i) {
     for (Index j = 0; j < 640; ++j) {
-      // the ray is below the membrane, then above
+      // bisection: the ray is below the membrane, then above
       double z = 0, high = 20;
       Point3<double> p{0, 0, 0};
       for (int step = 0; step < 40; ++step) {
@@ -314,7 +314,7 @@ void add_heights(const std::string& name) {
       });
 }
 
-/// A picture of 640 x 480 resampled at as many places.
+/// An image of 640 x 480 pixels resampled at as many positions.
 void add_opencv_heights() {
   struct Picture {
     cv::Mat depth{480, 640, CV_32F, cv::Scalar(8)}, column, row, plan;

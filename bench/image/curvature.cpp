@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
-// Maps of curvature of a pressed pad, beside the published circle through three points and beside
-// OpenCV's filters. "curvature" is the error against the mean normal curvature of each pixel whose
-// ring sees the free sphere alone; "rounding" is that of all against the same statistic in long
-// double, of the published circle against the mean of sections.
+// Maps of curvature of a pressed pad, compared with the published circle through three points and
+// with OpenCV's filters. "curvature" is the error against the mean normal curvature, at each pixel
+// whose ring sees the free sphere alone. "rounding" is the error of all pixels against the same
+// statistic in long double; for the published circle, against the mean of sections.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -41,7 +41,7 @@ struct Bench {
   OrthographicCamera<double> from_afar() const { return {.pitch_mm = pitch_mm()}; }
   std::string group() const { return scene.name + ", radius " + std::to_string(radius_px) + " px"; }
 
-  /// 1 / radius where the ring sees the free sphere alone, else NaN.
+  /// 1 / radius where the ring sees the free sphere alone; NaN elsewhere.
   Image<double> true_curvatures() const {
     const double plate_mm = scene.pressed_mm(scene.pad.rows / 2, scene.pad.cols / 2);
     const auto ring = detail::ring_offsets(double(radius_px), directions);
@@ -70,7 +70,7 @@ struct Bench {
     return out;
   }
 
-  /// Adds work(), which fills `out`.
+  /// Adds a row that times work(), which fills `out`.
   template <class Statistic, class Image, class CameraType, class Work>
   void add_map(const std::string& name,
                const CameraType& camera,
@@ -97,7 +97,7 @@ struct Bench {
                        [=] { (void)(*map)(*from, *out, *workspace); });
   }
 
-  /// Eqs. 10 and 11, with nearest pixels and their true distances.
+  /// Eqs. 10 and 11 with nearest pixels and their true distances.
   template <class S>
   void add_published(const std::string& name) const {
     const auto from = std::make_shared<Image<S>>(as<S>(depth));

@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 // The whole step: a noisy 8-bit frame, BGR BGR ..., to depth in mm and a status per pixel. The
-// error is that of each pixel under the plate and around it, all of the pad that is seen, against
-// its true depth. The reference is of a frame without noise, but for the quotient per pixel, which
-// takes one noisy 8-bit frame.
+// error is of each visible pixel of the pad, under the plate and around it, against its true depth.
+// The reference is of a frame without noise, except for the quotient per pixel, which takes one
+// noisy 8-bit frame.
 #include <memory>
 #include <opencv2/imgproc.hpp>
 #include <string>
@@ -45,7 +45,7 @@ struct Bench {
         });
   }
 
-  /// The light knows nothing of the Heights that the estimator reckons with.
+  /// The rendered light does not depend on the Heights of the estimator.
   template <class Smoothing, class Inverse, class S = float, class Heights = AstigmaticHeights>
   void add(const std::string& name) const {
     const auto free = scene.pad.frame<double>(scene.free_mm);
@@ -54,8 +54,7 @@ struct Bench {
                                         scene.free_mm));
   }
 
-  /// g pixel by pixel, as published, from an 8-bit frame with noise whose colours were averaged by
-  /// Before.
+  /// g pixel by pixel, as published, from a noisy 8-bit frame that `Before` smooths first.
   template <class Before, class Smoothing, class Inverse, class Heights, class S>
   void add_quotient(const std::string& name) const {
     const auto free = scene.pad.frame<std::uint8_t>(scene.free_mm, scene.noise, 2);

@@ -1,9 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
-// Displacement and rotation of a contact from 21 x 21 dots, 69 of them in contact ("ns/pixel" is
-// per dot of the grid), with 0.005 mm of noise; "stuck" rows with every seventh dot left where it
-// was. Errors: over 1000 contacts of 4 to 9 mm, displaced by up to 1 mm and rotated by up to 0.1
-// rad.
+// Displacement and rotation of a contact from 21 x 21 dots, 69 of them in contact, with 0.005 mm of
+// noise ("ns/pixel" is per dot of the grid). In "stuck" rows every seventh dot stays where it was.
+// Errors: over 1000 contacts of 4 to 9 mm, displaced by up to 1 mm and rotated by up to 0.1 rad.
 #include "fingerpad/published/contact_shift.hpp"
 
 #include <cmath>
@@ -55,7 +54,7 @@ struct Scene {
   static auto grid(const auto& cells) { return StridedView(cells.data(), side, side, side); }
 };
 
-/// shift(scene) for each of many scenes.
+/// Notes the errors of shift(scene) over 1000 scenes.
 template <class S, class Shift>
 void note(bench::Counters& counters, bool stuck, const Shift& shift) {
   std::mt19937 random(2);
@@ -97,7 +96,7 @@ void add(const std::string& name, bool stuck, const Dots& dots, const Mean& mean
       [=](auto& counters) { note<S>(counters, stuck, of); });
 }
 
-/// Least squares of turn, size and displacement: no dot is so far off that it is left out.
+/// Least squares of rotation, scale and displacement; no dot is far enough off to be an outlier.
 void add_opencv(const std::string& name, bool stuck) {
   struct Pairs {
     std::vector<cv::Point2f> from, to;

@@ -1,10 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
-// Motion of an object from the dots in contact. "ns/pixel" is per update, per frame or per dot.
-// Errors of a rotation: of neighbourhoods rotated by any angle, measured with noise, and of such
-// that are sheared by 0.2. Errors of a frame: of attitude and place in all frames of ten balls that
-// roll 30 mm. Errors of dots in space: against the rays. Noise: 0.02 mm in the plane, 0.05 mm in
-// depth. "On scenes": of a finite-element ball that rolls by 20 degrees, from noisy frames.
+// Motion of an object from the dots in contact; "ns/pixel" is per update, per frame or per dot.
+// Errors of a rotation: of neighbourhoods rotated by any angle, measured with noise, and of
+// neighbourhoods sheared by 0.2. Errors of a frame: of attitude and place in all frames of ten
+// balls that roll 30 mm. Errors of dots in space: against the rays. Noise: 0.02 mm in the plane,
+// 0.05 mm in depth. "on scenes": a finite-element ball that rolls by 20 degrees, from noisy frames.
 #include "fingerpad/published/object_motion.hpp"
 
 #include <cmath>
@@ -50,7 +50,7 @@ Rotation<double> in_double(const Rotation<S>& r) {
   return out;
 }
 
-/// How far the rotation that Local finds is from the true one; its angles are what users take.
+/// Angle between the true rotation and the one of Local, through the Euler angles that users read.
 template <class Local, class S>
 double turn_error_deg(const Neighbourhood<double>& before,
                       const Neighbourhood<double>& after,
@@ -72,7 +72,7 @@ void note_turns(bench::Counters& counters) {
       auto& p = rotated.dot[i];
       p = turn(p);
       measured.dot[i] = {p.x + 0.02 * gauss(), p.y + 0.02 * gauss(), p.z + 0.05 * gauss()};
-      // a shear by 0.2 turns by atan(0.1) about the normal besides deforming
+      // besides deforming, a shear by 0.2 rotates by atan(0.1) about the normal
       auto& q = shear.dot[i];
       const double along = 0.2 * (c * q.y - s * q.x);
       q = {q.x + c * along, q.y + s * along, q.z};
@@ -87,7 +87,7 @@ void note_turns(bench::Counters& counters) {
   bench::note_errors(counters, "exact dots", "deg", exact);
 }
 
-/// From an anchor to now, composed with what was before, and the angles.
+/// Rotation from an anchor to now, composed with the earlier one, and its Euler angles.
 template <class Local, class S>
 void add_rotation(const std::string& name) {
   struct Data {
@@ -111,7 +111,7 @@ void add_rotation(const std::string& name) {
       [](auto& counters) { note_turns<Local, S>(counters); });
 }
 
-/// What Kabsch's rotation would be made from by OpenCV.
+/// The SVD of which Kabsch's rotation would be made in OpenCV.
 void add_opencv_rotation() {
   struct Data {
     cv::Matx33d spread{5, 1, 0.1, -1, 6, 0.2, 0.3, 0.1, 0.4}, u, vt;
@@ -128,7 +128,7 @@ void add_opencv_rotation() {
       [](auto&) {});
 }
 
-/// A roll of 30 mm in a circle, in 300 frames.
+/// A roll of 30 mm along a circle, in 300 frames.
 struct Roll {
   explicit Roll(std::uint64_t seed) : initial(test::RollingBall().initial()) {
     test::Gauss gauss(seed);
@@ -167,7 +167,7 @@ struct RollErrors {
 template <class Way, class S>
 RollErrors roll_errors(const ObjectMotion<Way, S>& motion) {
   RollErrors errors;
-  const Point3<double> touched{5, 0, 10};  // where the ball is touched first
+  const Point3<double> touched{5, 0, 10};  // first contact point of the ball
   for (const Roll& roll : rolls()) {
     auto state = motion.start();
     for (std::size_t k = 0; k < roll.dots.size(); ++k) {
@@ -220,7 +220,7 @@ void add_frame(const std::string& name, double margin_mm = 0, Way way = {}) {
       });
 }
 
-/// The dots in contact, from one frame to the next but nine, by Umeyama's closed form.
+/// Umeyama's closed form for the dots in contact, from frame 0 to frame 10.
 void add_opencv_frame() {
   struct Data {
     std::vector<cv::Point3d> from, to;
@@ -245,7 +245,7 @@ void add_opencv_frame() {
       [](auto&) {});
 }
 
-/// Dots in space from a depth map of 640 x 480.
+/// Dots in space from a depth map of 640 x 480 pixels.
 template <class S>
 void add_spatial_dots(const std::string& name) {
   struct Data {
@@ -255,7 +255,7 @@ void add_spatial_dots(const std::string& name) {
     test::Image<Point3<S>> dots_mm{21, 21};
   };
   const auto d = std::make_shared<Data>();
-  // linear between pixels, so that where it lies between them is known
+  // linear between pixels, so depths between them are known
   const auto depth_at = [](double row, double col) { return 8 + 0.01 * row - 0.004 * col; };
   for (Index i = 0; i < 480; ++i) {
     for (Index j = 0; j < 640; ++j) {

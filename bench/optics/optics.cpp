@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 // Rays, points and pixels, one call for each pixel of an image. Errors are against long double at
-// the same pixel: of a ray its path factor, of the virtual heights the worse of the two, of a point
-// its place, of a pixel its distance from the one that the point was made of. "published": with
-// angles, one height, the sine of eq. 13.
+// the same pixel: of a ray, its path factor; of the virtual heights, the worse of the two; of a
+// point, its position; of a pixel, the distance from the one that the point was made of.
+// "published": with angles, one height, the sine of eq. 13.
 #include <algorithm>
 #include <cmath>
 #include <memory>
@@ -25,7 +25,7 @@ using Long = long double;
 constexpr Index rows = 480, cols = 640;
 constexpr std::size_t pixels = rows * cols;
 
-/// visit(k, row, col, depth) of each pixel.
+/// Calls `visit(k, row, col, depth)` for each pixel.
 template <class S, class Visit>
 void each_pixel(const Visit& visit) {
   for (Index i = 0; i < rows; ++i) {
@@ -35,7 +35,7 @@ void each_pixel(const Visit& visit) {
   }
 }
 
-/// By the angles of Snell's law, as the slides have it, through a plate without thickness.
+/// Rays by the angles of Snell's law, as in the slides, through a plate of zero thickness.
 template <class S>
 Ray<S> ray_by_angles(const Camera<S>& camera, const S& row, const S& col) {
   const S x = col - camera.center_x_px, y = row - camera.center_y_px;
@@ -77,7 +77,7 @@ Point2<Long> widened(const Point2<S>& p) {
   return {Long(p.x), Long(p.y)};
 }
 
-/// call(k, row, col, depth) and truth(row, col, depth), in mm, px or 1.
+/// `call(k, row, col, depth)` and `truth(row, col, depth)` are in mm, px or 1.
 template <class S, class Call, class Truth>
 void add(const std::string& name,
          const std::string& quantity,
@@ -164,7 +164,7 @@ struct Calls {
   }
 };
 
-/// Straight rays of a camera with radial distortion, and an image carried from pixel to pixel.
+/// Straight rays of a camera with radial distortion, and remapping of an image.
 void add_all_opencv() {
   const cv::Mat matrix = (cv::Mat_<double>(3, 3) << 1000, 0, 319.5, 0, 1000, 239.5, 0, 0, 1);
   const std::vector<double> distortion{-0.1, 0.01, 0, 0};

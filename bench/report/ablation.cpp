@@ -1,12 +1,13 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
-// Which effect is worth what in which scene: errors with each effect switched on and off, and what
-// it costs. No google-benchmark program: it prints Markdown tables, and with --csv FILE writes the
-// same as numbers. What a scene stands for is told where its frames are made:
-//   images  ablation/membranes.hpp, looked at by ablation/depth.hpp and ablation/contact.hpp
-//   dots    ablation/dots.hpp for stick and slip, ablation/slip.hpp for the same in space and by
+// Worth of each effect in each scene: errors with the effect switched on and off, and its cost.
+// This is no google-benchmark program: it prints Markdown tables, and with --csv FILE it writes the
+// same numbers to a file. The scenes are described where their frames are made:
+//   images  ablation/membranes.hpp, used by ablation/depth.hpp and ablation/contact.hpp
+//   dots    ablation/dots.hpp for the stick ratio, ablation/slip.hpp for the same in space and with
 //           friction, ablation/motion.hpp for the motion of the object
-//   forces  ablation/wrench.hpp by the membrane's balance; ablation/loads.hpp by look-up, with the
+//   forces  ablation/wrench.hpp from the membrane's balance; ablation/loads.hpp by look-up, with
+//   the
 //           shift of the contact, traction and the shape of the object
 #include <cstdio>
 #include <fstream>

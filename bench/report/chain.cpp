@@ -1,11 +1,11 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
-// The whole chain, a frame in, all results out (pipeline/fingertip.hpp), as JSON: error of
-// each result, time of each stage, time against error by the step of the samples, instructions and
-// cycles where the machine tells them, the distribution of latencies over 10,000 frames, growth
+// The whole chain from a frame to all results (pipeline/fingertip.hpp), as JSON: error of each
+// result, time of each stage, time against error by the step of the samples, instructions and
+// cycles where the machine counts them, the distribution of latencies over 10,000 frames, growth
 // with the size of the image, the number of dots and the length of the history, and two threads.
-// Frames and truth: bench/report/chain/pressed_frames.hpp. "chain FRAMES" times so many frames
-// instead.
+// Frames and truth: bench/report/chain/pressed_frames.hpp. "chain FRAMES" only times that many
+// frames.
 #include <algorithm>
 #include <array>
 #include <chrono>
@@ -34,7 +34,7 @@ double share_of(const std::vector<double>& sorted, double share) {
   return sorted[static_cast<std::size_t>(share * static_cast<double>(sorted.size() - 1))];
 }
 
-/// Times of one kind.
+/// Latencies of one kind.
 class Times {
  public:
   explicit Times(int count = 0) { ms_.reserve(static_cast<std::size_t>(count)); }
@@ -50,7 +50,7 @@ class Times {
   std::vector<double> ms_;
 };
 
-/// Notes how long each stage took.
+/// Records the time of each stage.
 struct Watch {
   std::array<Times, chain::stage_names.size()> stage;
   Clock::time_point last = Clock::now();
@@ -85,7 +85,7 @@ ordered_json stages_of(Chain chain, const chain::PressedFrames& frames, int coun
   return out;
 }
 
-/// {"unit", "median", "99 %", "worst", "found"} of each quantity.
+/// Writes {"unit", "median", "99 %", "worst", "found"} of each quantity.
 class Errors {
  public:
   void add(const std::string& quantity, const std::string& unit, double error) {
@@ -124,7 +124,8 @@ class Errors {
   std::vector<Quantity> all_;
 };
 
-/// Where the plate has carried the point of it that is now at `now`, from the first frame on.
+/// Error of the displacement since the first frame, at the point of the plate that is now at
+/// r.position_mm.
 double displacement_error_mm(const ObjectMotionResult<double>& r,
                              const chain::PressedFrame& first,
                              const chain::PressedFrame& frame) {
@@ -158,7 +159,7 @@ ordered_json errors_of(Chain chain, const chain::PressedFrames& frames) {
     errors.add("object's turn", "deg",
                degrees * (r.motion.angles.z_rad - f.plate.turn_rad + frames[0].plate.turn_rad));
     errors.add("object's displacement", "mm", displacement_error_mm(r.motion, frames[0], f));
-    if (k > 0) {  // the first frame has nothing to compare with
+    if (k > 0) {  // the first frame has no reference
       errors.add("stick ratio", "1", static_cast<double>(r.stick.stick_ratio) - 1);
     }
     errors.add("normal force by look-up", "N",
@@ -203,7 +204,7 @@ ordered_json latencies_of(Chain chain, const chain::PressedFrames& frames, int c
   return out;
 }
 
-/// Medians of the lean chain's stages over frames.
+/// Medians of the lean chain's stages over image sizes, dots and stored frames.
 ordered_json growth() {
   ordered_json out = ordered_json::array();
   const auto add = [&](const char* by, Index size, const auto& options, const auto& frames,
@@ -242,7 +243,7 @@ ordered_json in_samples(const char* policies,
   return out;
 }
 
-/// Instructions and cycles of a frame; null where the machine does not tell them.
+/// Instructions and cycles of a frame; null where the machine does not count them.
 template <class Chain>
 ordered_json events_of(Chain chain, const chain::PressedFrames& frames) {
   const auto a_frame = [&](chain::EventCounter& counter) -> ordered_json {

@@ -1,10 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
-// The tables of docs/hard_cases.md. First: what the published or textbook form of a formula loses
-// where it is hard, and what fingerpad's loses there, in float and in double against 50 digits.
-// Inputs are rounded to the type first, so that all of the error is the form's.
-// tests/hard_cases/naive_forms.cpp asserts every row. Second: cases that are hard whatever the
-// numbers.
+// The tables of docs/hard_cases.md. First table: the loss of accuracy of the published or textbook
+// form of a formula in its hard cases, and that of fingerpad's form, in float and in double against
+// 50 digits. Inputs are rounded to the type first, so the whole error belongs to the form.
+// tests/hard_cases/naive_forms.cpp asserts every row. Second table: cases that are hard in any
+// number type.
 #include <iostream>
 
 #include "hard_cases/all.hpp"

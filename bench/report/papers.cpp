@@ -1,16 +1,17 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
-// Every figure that the papers print beside what the published methods and the defaults make of the
-// nearest experiment that can be made here. No google-benchmark program: it prints the Markdown
-// tables of docs/papers.md. What each experiment is stands where it is made:
+// Every figure that the papers print, compared with the published methods and the defaults in the
+// nearest experiment that is possible here. This is no google-benchmark program: it prints the
+// Markdown tables of docs/papers.md. Each experiment is described where it is made:
 //   papers/shape.hpp, location.hpp    noisy frames of finite-element membranes
 //   papers/fluid.hpp                  colours by the model of light
-//   papers/six_axis.hpp, rim.hpp      their shapes, frames and side dots
-//   papers/look_up.hpp                their contacts
-//   papers/slippage.hpp               their dots
+//   papers/six_axis.hpp, rim.hpp      shapes, frames and side dots of these membranes
+//   papers/look_up.hpp                contacts of these membranes
+//   papers/slippage.hpp               dots of these membranes
 //   papers/preslip.hpp                simulated foam fingers
 //   papers/rates.hpp                  time
-// With the name of a section's first word (Shape, Position, Six-axis, ...) it prints that alone.
+// With the first word of a section's title (Shape, Position, Six-axis, ...) it prints only that
+// section.
 #include <iostream>
 #include <string>
 

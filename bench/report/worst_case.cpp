@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
-// For a real-time engineer, a row a method: how much longer than usual a call takes on the input
-// that is hardest for it, the slowest of many calls, page faults and allocations. No
-// google-benchmark program: it prints the Markdown table of docs/hard_cases.md. "worst_case CALLS"
-// makes so many calls of each row, but no more than half a minute's.
+// Real-time behaviour, one row per method: the time of a call on the usual and on the hardest
+// input, the slowest of many calls, page faults and allocations. This is no google-benchmark
+// program: it prints the Markdown table of docs/hard_cases.md. "worst_case CALLS" makes that many
+// calls of each row, for at most half a minute.
 #include <algorithm>
 #include <array>
 #include <cstdint>
@@ -60,7 +60,7 @@ test::Frame<std::uint8_t> noise_frame(test::Random& random) {
   return frame;
 }
 
-/// Dots anywhere, a tenth of them missing.
+/// Random dots, a tenth of them missing.
 template <class Point>
 Image<Point> scattered(Index rows, Index cols, double from, double to, test::Random& random) {
   Image<Point> dots(rows, cols);
@@ -79,7 +79,7 @@ const chain::PressedFrames& pressed() {
   return frames;
 }
 
-/// The chain on pressed frames, on noise, and on pressed frames with dots and side dots anywhere.
+/// The chain on pressed frames, on noise, and on pressed frames with random dots and side dots.
 template <class Methods>
 std::vector<Kind> of_chain() {
   const auto options = pressed().options();
@@ -197,8 +197,7 @@ std::vector<Kind> of_gel(bool with_slide) {
   return {{"a ball on a gel", call(usual)}, {"an image of noise", call(noisy)}};
 }
 
-/// Dots of a patch that slips, the same in contact anywhere, and one motion for each dot of a
-/// frame.
+/// Dots of a dragged patch, the same with all dots in contact and strong noise, and random dots.
 std::vector<Kind> of_stick_in_space() {
   static const SpatialStickRatio<double> ratio(21, 21);
   static auto state = ratio.start();

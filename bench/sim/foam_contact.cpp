@@ -1,17 +1,17 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
-// The foam contact model ("ns/pixel" is per call, or per step). "textbook": the underdamped
-// solution by exp, cos and sin as they are. "printed": both integrals of eq. 10 by the trapezoidal
-// rule, from 0; eq. 9 with its constants exchanged. Errors:
-//   closed form        share of the amplitude, of an undamped oscillator at 1000 times up to 10^4
-//   and of
-//                      the row's own up to 20
+// The foam contact model; "ns/pixel" is per call or per step. "textbook": the underdamped solution
+// by plain exp, cos and sin. "printed": both integrals of eq. 10 by the trapezoidal rule, from 0;
+// eq. 9 with its constants exchanged. Errors:
+//   closed form        relative to the amplitude, at 1000 times: up to 10^4 without damping, up to
+//   20
+//                      with the damping of the row
 //   ramp load          mm, at 1000 times up to 40
-//   steps              share, each 100th of 10^5 steps of 0.1, of an undamped oscillator or of the
-//   strain
-//                      of a held stress
+//   steps              relative, at each 100th of 10^5 steps of 0.1, of an undamped oscillator or
+//   of
+//                      the strain of a held stress
 //   lift               mm, at ten times up to 40; the time is that of the whole lift
-//   friction and area  share, over loads from 10^-6 to 100 N
+//   friction and area  relative, over loads from 10^-6 to 100 N
 #include "fingerpad/sim/foam_contact.hpp"
 
 #include <array>
@@ -35,13 +35,13 @@ std::string in(const std::string& name) {
   return name + (sizeof(S) == sizeof(float) ? ", float" : ", double");
 }
 
-/// How far, as a share of `of`.
+/// Error relative to `of`.
 template <class S>
 double off(const S& found, Long truth, Long of = 1) {
   return static_cast<double>((static_cast<Long>(found) - truth) / of);
 }
 
-/// Times as they come.
+/// Times in a fixed cycle.
 template <class S>
 struct Times {
   std::size_t k = 0;
@@ -55,7 +55,7 @@ S textbook(const MassSpringDamper<S>& oscillator, const S& time) {
   return std::exp(-s * time) * (std::cos(w * time) + s / w * std::sin(w * time));
 }
 
-/// of(oscillator, time): the position after a start at 1.
+/// `of(oscillator, time)` is the position after a start at 1.
 template <class S, class Solution>
 void add_closed_form(const std::string& name, double damping, const Solution& of) {
   const auto times = std::make_shared<Times<S>>();
@@ -125,8 +125,8 @@ void add_ramp(const std::string& name, const Solution& of) {
       });
 }
 
-/// step(before, after): the answer after one more step; run(): answers of a fresh one, which
-/// truth(time) knows.
+/// `step(before, after)` is timed. `run()` starts afresh and returns a function that gives the
+/// answer of each next step; `truth(answer, time)` is its error.
 template <class S, class Step, class Run, class Truth>
 void add_steps(
     const std::string& name, long bytes, const Step& step, const Run& run, const Truth& truth) {
@@ -215,8 +215,8 @@ double printed_lift(const LiftLoad<double>& load, double time, int steps) {
          (std::sin(w * time) * with_cosine - std::cos(w * time) * with_sine);
 }
 
-/// The causal integral by Gauss' rule of four points in steps of 0.01; at 40 it is
-/// 2.8009407050775539 (50 digits).
+/// The causal integral by 4-point Gauss quadrature in steps of 0.01. At 40 it is 2.8009407050775539
+/// (50 digits).
 double true_lift(const LiftLoad<double>& load, double time) {
   const double w = std::sqrt(3.0) / 2, half = 0.005;
   double sum = 0;
@@ -232,7 +232,7 @@ double true_lift(const LiftLoad<double>& load, double time) {
   return sum / w;
 }
 
-/// of(load, time, steps): the position.
+/// `of(load, time, steps)` is the position.
 template <class Lift>
 void add_lift(const std::string& name, int steps, const Lift& of) {
   const LiftLoad<double> load{2, 0.5, 3, {0.3, 0.05}};
@@ -260,7 +260,7 @@ void add_lifts(int steps) {
   add_causal("causal_response, the default", steps);
 }
 
-/// of(load) and truth(load) for loads of all sizes.
+/// `of(load)` and `truth(load)` are compared at loads of all sizes.
 template <class S, class Of, class Truth>
 void add_power(const std::string& name, const Of& of, const Truth& truth) {
   const auto loads = std::make_shared<std::vector<S>>();

@@ -26,7 +26,7 @@ struct Frame {
   Point2<double> ball_px;
 };
 
-/// A ball pressed, then dragged in a direction by 0.2 mm a frame.
+/// A ball is pressed, then dragged in one direction by 0.2 mm a frame.
 std::vector<Frame> recording(std::uint64_t seed) {
   const test::GelCamera camera{.rows = 480, .cols = 640, .mm_per_px = 0.04};
   test::Random random(seed);
@@ -94,7 +94,7 @@ void add(const std::string& name) {
       [](auto& counters) { bench::note_errors(counters, "imprint's way", "px", errors<S>()); });
 }
 
-/// Translation alone, of the whole picture.
+/// Translation only, of the whole image.
 void add_opencv() {
   const auto frames = std::make_shared<const std::vector<Frame>>(recording(99));
   const auto as_mat = [](const Image<float>& image) {

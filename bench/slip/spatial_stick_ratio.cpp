@@ -1,12 +1,14 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 // Stick ratio in space of 21 x 21 dots with 113 in contact, and the friction limit; "ns/pixel" is
-// per frame. Timed: a curved patch of dots dragged, rolled and rotated, while its stick disc
-// shrinks and grows. Error: of the ratio, against the dots that slipped in no step since the
-// reference, with 0.005 mm of noise in the plane and 0.025 mm in depth. "On scenes": all frames in
-// contact of finite-element membranes (tests/data), with forces known to 1.5 % and moments to 2 %:
-// of the ratio, an answer that is kept counted as one; of the limit, as a share of the coefficient
-// of friction, where plates are dragged.
+// per frame.
+// Timed: a curved patch of dots is dragged, rolled and rotated while its stick disc shrinks and
+// grows. Error: of the ratio in frames whose reference is the previous frame, against the dots that
+// did not slip in that step, with 0.005 mm of noise in the plane and 0.025 mm in depth.
+// "on scenes": all frames in contact of finite-element membranes (tests/data), with forces known to
+// 1.5 % and moments to 2 %. Errors: of the ratio, where a kept answer counts as an answer and a
+// missing one as 1; of the limit, relative to the coefficient of friction, where plates are
+// dragged.
 #include "fingerpad/slip/spatial_stick_ratio.hpp"
 
 #include <cmath>
@@ -28,7 +30,7 @@ using Dots = test::Image<Point3<double>>;
 
 struct Recording {
   std::vector<Dots> frames;
-  std::vector<double> truth;  ///< of the step to each frame
+  std::vector<double> truth;  ///< of the step that leads to each frame
   test::Image<std::uint8_t> contact;
 
   Recording() {
@@ -106,7 +108,7 @@ void add_limit() {
       [](auto&) {});
 }
 
-/// What each way says of the scenes' frames.
+/// Errors of each method on the frames of the scenes.
 struct OnScenes {
   std::vector<double> dots, fused;              ///< errors of the ratio
   std::vector<double> limit, remembered_ratio;  ///< errors of the limit, of plates
@@ -159,8 +161,8 @@ const OnScenes& on_scenes() {
   return errors;
 }
 
-/// A row of what the ratio and `after`, which takes the ratio, need for a frame, with the errors
-/// that the scenes show.
+/// Adds a row that times the ratio and `after`, which takes the ratio, for one frame. Its errors
+/// are those on the scenes.
 template <class After, class Note>
 void add_on_scenes(const std::string& name, const After& after, const Note& note) {
   struct Running {

@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 // Stick ratio of 21 x 21 dots with 64 stored frames; "ns/pixel" is per frame. Timed: dots dragged
-// to and fro, all in contact. Error: of the ratio, in each frame of recordings in which dots are
-// dragged, rotated and pressed, one by one and at once (tests/support/slipping_dots.hpp), with 0.14
-// px of noise; a frame without an answer (at rest, or too little moved) has none.
+// back and forth, all in contact. Error: of the ratio, in each frame of recordings in which dots
+// are dragged, rotated and pressed, one by one and at once (tests/support/slipping_dots.hpp), with
+// 0.14 px of noise. A frame without an answer (at rest, or moved too little) has no error.
 // "On scenes": the same noise on dots of finite-element membranes.
 #include "fingerpad/published/stick_ratio.hpp"
 
@@ -27,8 +27,8 @@ namespace {
 
 constexpr double noise_px = 0.14;
 
-/// Dragged to and fro for ever, all in contact, so that every frame looks for its reference among
-/// 64 stored ones.
+/// An endless drag back and forth with all dots in contact, in which every frame searches 64 stored
+/// ones for its reference.
 struct Recording {
   explicit Recording(Index rows, Index cols, double step_px) {
     test::Random random(1);
@@ -49,14 +49,15 @@ const Recording& recording() {
   return r;
 }
 
-/// A frame whose ratio is known, against any reference.
+/// A frame whose true ratio is known against any reference.
 struct KnownFrame {
   bool begins;
   test::PointsPx seen;
   test::SlippingDots truth;
 };
 
-/// All scenes, each in six directions, on a contact that covers as much of the pattern at any size.
+/// All scenes, each in six directions. The contact covers the same share of the pattern at any
+/// size.
 const std::vector<KnownFrame>& known_frames(Index dots) {
   static std::map<Index, std::vector<KnownFrame>> of_size;
   std::vector<KnownFrame>& frames = of_size[dots];
@@ -169,7 +170,7 @@ void add_naive() {
       });
 }
 
-/// The motion of the object between two frames, by random samples of the dots.
+/// Motion of the object between two frames, from random samples of the dots.
 void add_opencv() {
   struct Data {
     std::vector<cv::Point2f> from, to;

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// Frames of made-up contacts, and how far one column of results is from another.
+// Frames of synthetic contacts, and the difference between two columns of results.
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -12,7 +12,7 @@
 
 namespace bench {
 
-/// Columns: measure in [1, largest], displacement's x and y in mm, angle in rad.
+/// Columns: measure in [1, largest], displacement in x and y in mm, angle in rad.
 template <class S>
 struct Contacts {
   static constexpr fingerpad::Index frames = 4096;
@@ -33,7 +33,7 @@ struct Contacts {
   }
 };
 
-/// Differences, as shares of the largest value of `truth`.
+/// Differences relative to the largest value of `truth`.
 template <class S>
 std::vector<double> share_errors(const std::vector<S>& found,
                                  const std::vector<long double>& truth) {

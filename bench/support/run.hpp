@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// How a row of a table is measured. A name is "group/row". The report compares each row with the
-// first of its group and with those called "streaming ..." and "cv::..."; a row with "published"
-// in its name is the published way.
+// Measurement of one row of a table. A name is "group/row". The report compares each row with the
+// first of its group and with those called "streaming ..." and "cv::...". A row with "published" in
+// its name is the published method.
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
@@ -20,8 +20,8 @@ namespace bench {
 
 using Counters = benchmark::UserCounters;
 
-/// Bytes taken from the heap since it was made: what a row's estimator, workspace, state and
-/// outputs hold. Inputs are made before.
+/// Bytes taken from the heap since this object was made: the memory of a row's estimator,
+/// workspace, state and outputs. Inputs are made before it.
 class Memory {
  public:
   long bytes() const { return test::bytes_taken() - before_; }
@@ -30,9 +30,9 @@ class Memory {
   long before_ = test::bytes_taken();
 };
 
-/// Notes the median, the 99th percentile and the largest of |errors|, those that are numbers, and
-/// the share of errors that are numbers if it is not 1. The first quantity noted is the row's main
-/// one. A unit is "mm", "1/mm", "deg", "share" (relative to the truth) ...
+/// Notes the median, the 99th percentile and the maximum of |errors|, over the errors that are
+/// numbers, and the share of these if it is not 1. The first quantity noted is the main one of the
+/// row. A unit is "mm", "1/mm", "deg", "share" (relative to the truth) ...
 inline void note_errors(Counters& counters,
                         const std::string& quantity,
                         const std::string& unit,
@@ -58,8 +58,9 @@ inline void note_errors(Counters& counters,
   counters[name + "worst"] = errors.back();
 }
 
-/// Times `work`, which treats `pixels` pixels (or dots, frames, ...), and counts how often a call
-/// takes memory from the heap. `note` adds errors, once: Google Benchmark runs a row many times.
+/// Times `work`, which processes `pixels` pixels (or dots, frames, ...), and counts the heap
+/// allocations per call. `note` adds errors. It is called once, although Google Benchmark runs a
+/// row many times.
 template <class Work, class Note>
 void add(const std::string& name, std::size_t pixels, long bytes, Work work, Note note) {
   const auto noted = std::make_shared<std::optional<Counters>>();
@@ -84,7 +85,7 @@ void add(const std::string& name, std::size_t pixels, long bytes, Work work, Not
   })->Unit(benchmark::kMicrosecond);
 }
 
-/// What memory allows at most: four planes of floats in, one out, once.
+/// Memory bandwidth as a lower bound of time: reads four planes of floats and writes one, once.
 inline void add_streaming(const std::string& group, std::size_t pixels = 640 * 480) {
   const auto planes = std::make_shared<std::vector<float>>(5 * pixels, 1.0F);
   add(

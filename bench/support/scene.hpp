@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// What the benchmarks look at: the published pad by 640 x 480 pixels, from two cameras, with the
-// rays, dots and noise of tests/support/pad.hpp.
+// Scene of the benchmarks: the published pad in 640 x 480 pixels from two cameras, with the rays,
+// dots and noise of tests/support/pad.hpp.
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -21,7 +21,7 @@ using test::Frame;
 using test::Image;
 using test::Pad;
 
-/// A spherical cap 13 mm high on a base of 18.735 mm, alone and under a flat plate 3.5 mm below its
+/// A spherical cap 13 mm high on a base of 18.735 mm, free and under a flat plate 3.5 mm below its
 /// top.
 struct Scene {
   std::string name;
@@ -53,12 +53,12 @@ struct Scene {
 inline Scene full_pad(double max_depth_mm = 14) {
   return {"full pad", 0.0468, max_depth_mm};
 }
-/// The published scale: 488 pixels wide, four rows of it beyond either edge of the image.
+/// The published scale: 488 pixels wide, with four rows beyond either edge of the image.
 inline Scene round_pad() {
   return {"round pad", 0.0768, 14};
 }
 
-/// Both channels as BGR BGR ...
+/// Both channels interleaved as BGR BGR ...
 template <class Pixel>
 struct Interleaved {
   Image<Pixel> cells;
@@ -79,7 +79,7 @@ struct Interleaved {
   auto red() const { return channel(2); }
 };
 
-/// |found - truth| of every pixel that has a truth; NaN where nothing was found.
+/// |found - truth| of every pixel that has a truth; NaN where no depth was found.
 template <class S, class T>
 std::vector<double> errors_of(const Image<S>& found, const Image<T>& truth) {
   std::vector<double> errors;
@@ -92,8 +92,8 @@ std::vector<double> errors_of(const Image<S>& found, const Image<T>& truth) {
   return errors;
 }
 
-/// What `make` gives, made when it is first asked for and then kept, by all copies: truths take
-/// longer than the rows that are compared with them.
+/// The value of `make`, made at the first call and then shared by all copies, because truths take
+/// longer to compute than the rows that are compared with them.
 template <class Make>
 auto kept(Make make) {
   using Value = decltype(make());

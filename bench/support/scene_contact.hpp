@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// Errors of contact areas on finite-element membranes, in depths of noisy frames as the default
-// measures them; the true area is the finite elements' own (tests/data/contacts.csv). By one
-// threshold for all, that of half of the free pad's curvature, where a method has none of its own.
+// Errors of contact areas on finite-element membranes, from the depths that the default estimator
+// measures in noisy frames. The true area is that of the finite elements (tests/data/contacts.csv).
+// A method without a threshold of its own uses half of the free pad's curvature.
 #include <string>
 #include <utility>
 #include <vector>

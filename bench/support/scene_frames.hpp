@@ -1,10 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// Finite-element membranes as a camera sees them, and as the default chain measures them: what
-// errors on scenes are counted with. Nothing here is made by a method under test but the depths and
-// masks that are called measured. Each frame is made once: 640 x 480 pixels, 8 bit, one grey level
-// of noise.
+// Finite-element membranes as the camera sees them and as the default chain measures them, for the
+// errors on scenes. Only the depths and masks named "measured" come from a method under test. Each
+// frame is made once: 640 x 480 pixels, 8 bit, one grey level of noise.
 #include <cstdint>
 #include <map>
 #include <string>
@@ -17,12 +16,12 @@
 
 namespace bench {
 
-/// One membrane before the camera.
+/// Frame of one membrane.
 struct SceneFrame {
   test::Image<double> truth_mm;  ///< along each pixel's ray
   test::Frame<std::uint8_t> frame;
   test::Image<float> measured_mm;      ///< by the default estimator
-  test::Image<std::uint8_t> measured;  ///< contact in it, by the default region
+  test::Image<std::uint8_t> measured;  ///< contact therein, by the default region
 };
 
 class SceneFrames {
@@ -36,7 +35,7 @@ class SceneFrames {
   const test::Image<double>& free_mm() const { return free_mm_; }
   double contact_threshold_per_mm() const { return threshold_per_mm_; }
 
-  /// Of a shape in tests/data; the same name and seed give the same frame.
+  /// Frame of a shape in tests/data. The same name and seed give the same frame.
   const SceneFrame& operator()(const std::string& heights, std::uint64_t seed = 1) {
     const auto key = std::pair{heights, seed};
     const auto found = made_.find(key);

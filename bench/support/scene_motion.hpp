@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// Objects that move over finite-element membranes, frame by frame as the camera sees them: dots in
-// space from noisy frames (scene_frames.hpp) and dots with 0.06 px of noise, contact as measured,
-// and the object's true pose (tests/data/motion_poses.csv).
+// Objects that move over finite-element membranes, frame by frame: dots in space from noisy frames
+// (scene_frames.hpp), with 0.06 px of noise of the dots, measured contact, and the true pose of the
+// object (tests/data/motion_poses.csv).
 #include <cmath>
 #include <cstdint>
 #include <map>
@@ -102,7 +102,7 @@ inline SceneMotion make_scene_motion(const std::string& scene, std::uint64_t see
   return motion;
 }
 
-/// Made once.
+/// Each recording is made once.
 inline const SceneMotion& scene_motion(const std::string& scene, std::uint64_t seed) {
   static std::map<std::pair<std::string, std::uint64_t>, SceneMotion> made;
   const auto key = std::pair{scene, seed};
@@ -126,15 +126,15 @@ fingerpad::Pose<double> in_double(const fingerpad::Pose<S>& pose) {
 }
 
 struct SceneMotionErrors {
-  std::vector<double> attitude_deg;  ///< the angle of what is left
-  std::vector<double> about_deg[3];  ///< of the angles about x, y and z
+  std::vector<double> attitude_deg;  ///< angle of the remaining rotation
+  std::vector<double> about_deg[3];  ///< errors of the angles about x, y and z
   std::vector<double> plane_mm;      ///< of the middle of the first contact, in the plane
-  std::vector<double> depth_mm;      ///< and along z
+  std::vector<double> depth_mm;      ///< the same along z
   int no_answer = 0;
 };
 
-/// Every frame but the first, with noises 1 to `seeds`; `make` gives the method from the dots of
-/// the free pad.
+/// Errors of every frame but the first, with noises 1 to `seeds`. `make` makes the method from the
+/// dots of the free pad.
 template <class Make>
 SceneMotionErrors motion_on_scene(const std::string& scene, const Make& make, std::uint64_t seeds) {
   constexpr double degrees = 57.29577951308232;
@@ -166,7 +166,7 @@ SceneMotionErrors motion_on_scene(const std::string& scene, const Make& make, st
   return errors;
 }
 
-/// Notes errors of attitude and place called "... on scenes", of the ball that rolls.
+/// Notes errors of attitude and place named "... on scenes", for the rolling ball.
 template <class Make>
 void note_motion_on_scene(Counters& counters, const Make& make) {
   SceneMotionErrors errors = motion_on_scene("roll", make, 4);

@@ -1,10 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// Errors of stick ratios on finite-element membranes that are dragged, turned and pressed, in
-// frames with an answer. "On scenes": against the share of the area that slipped less than the
-// method's own threshold since its reference, which is what it asks for; "by 5 um a step": against
-// the nodes that slipped less than 5 um in the step, whatever the threshold.
+// Errors of stick ratios on finite-element membranes that are dragged, rotated and pressed, in
+// frames with an answer. "on scenes": against the share of the area that slipped less than the
+// method's own threshold since its reference, which is the quantity it estimates. "by 5 um a step":
+// against the nodes that slipped less than 5 um in the step, whatever the threshold.
 #include <cstdint>
 #include <string>
 #include <vector>

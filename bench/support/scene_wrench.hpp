@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// Errors of six-axis forces on finite-element membranes, by their exact shapes and side dots
-// (tests/data/wrench_*). Shares of the largest of a frame's scene; scenes without a component do
-// not count in it.
+// Errors of six-axis forces on finite-element membranes, from their exact shapes and side dots
+// (tests/data/wrench_*). Errors are relative to the largest force of a frame's scene; a component
+// that a scene lacks is not counted in it.
 #include <cmath>
 #include <map>
 #include <string>
@@ -33,7 +33,7 @@ const fingerpad::detail::membrane::HeightMap<S>& scene_heights(const std::string
   return all.emplace(name, map).first->second;
 }
 
-/// Notes errors called "... on scenes"; `rows` of side dots.
+/// Notes errors named "... on scenes"; `rows` is the number of rows of side dots.
 template <class S, class W>
 void note_wrench_on_scenes(Counters& counters, const W& wrench, fingerpad::Index rows) {
   auto workspace = wrench.workspace();

@@ -1,14 +1,14 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// Effects on the contact region, found in measured depth maps: many directions or one, the clamp,
-// the perspective of the camera, and, beside these, the placed edge and the cleaning. Every variant
-// has the threshold of half of what itself measures on the free pad.
+// Effects on the contact region in measured depth maps: many directions or one, the clamp, the
+// perspective of the camera, the placed edge and the cleaning. The threshold of every variant is
+// half of the curvature that the variant itself measures on the free pad.
 //
-// Error of the region: pixels that are told wrong, as a share of those that truly touch; on the
-// free pad, of all its pixels. Error of the area: that of area_mm2, as a share of the true one (on
-// the free pad: of the pad's). The truth is known to half a node of the finite elements (0.37 mm),
-// which is 9 to 21 % of these contacts: a share below 0.1 is as good as 0.
+// Error of the region: misclassified pixels, relative to those that truly touch; on the free pad,
+// to all its pixels. Error of the area: that of area_mm2, relative to the true one (on the free
+// pad: to the pad's). The truth is known to half a node of the finite elements (0.37 mm), which is
+// 9 to 21 % of these contacts: an error below 0.1 is as good as 0.
 #include <cmath>
 #include <cstdint>
 #include <memory>
@@ -25,7 +25,7 @@
 
 namespace bench::ablation {
 
-/// A region and all that it needs.
+/// A region with its workspace and mask.
 template <class Statistic = fingerpad::ClampedMean<>,
           class Edge = fingerpad::HalfLevelEdge,
           class CameraType = Camera<double>>
@@ -43,7 +43,7 @@ class ContactVariant {
         workspace_(region_.workspace()),
         mask_(region_.rows(), region_.cols()) {}
 
-  /// Of the region; of the area.
+  /// Errors of the region and of the area.
   struct Wrong {
     double region;
     double area;
@@ -62,7 +62,7 @@ class ContactVariant {
             (result.area_mm2 - seen.area_mm2) / (all > 0 ? seen.area_mm2 : pad_mm2)};
   }
 
-  /// The work of a frame.
+  /// Processes one frame, for timing.
   void run(const Image<float>& depth_mm) { (void)region_(depth_mm, mask_, workspace_); }
 
  private:
@@ -87,7 +87,7 @@ class ContactEffects {
                  const fingerpad::DepthEstimator<>& estimator)
       : pad_(pad), estimator_(estimator), free_(free_frames(free_mm)) {}
 
-  /// `depth_mm`: of one frame; another is made.
+  /// `depth_mm` is of one frame; a second one is made here.
   void add(const Seen& seen, const Image<float>& depth_mm) {
     add_frame(seen, depth_mm);
     add_frame(seen, measured(seen.depth_mm, seen.seed + 50, seen.of.noise));

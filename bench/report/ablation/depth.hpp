@@ -1,13 +1,13 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// Effects on depth: refraction, smoothing, the anchored mean, light from neighbouring membrane.
-// Errors are those of single pixels whose true place is within 17.5 mm of the axis; pixels without
-// an answer (of NoSmoothing: colours that no depth gives) are left out.
+// Effects on depth: refraction, smoothing, the anchored mean, light from the neighbouring membrane.
+// Errors are of single pixels whose true point is within 17.5 mm of the axis. Pixels without an
+// answer (with NoSmoothing: colours of no depth) are left out.
 //
-// Neighbouring light: frames are rendered as if the membrane were where that light makes it seem to
-// be, by the law of neighbour_light.hpp with its published numbers. So the row says how well the
-// law is undone, not how well it describes a pad.
+// Neighbouring light: frames are rendered as if the membrane were where that light makes it appear,
+// by the law of neighbour_light.hpp with its published numbers. The row therefore shows how well
+// the law is undone, not how well it describes a pad.
 #include <cmath>
 #include <memory>
 #include <string>
@@ -55,7 +55,7 @@ class DepthEffects {
     return test::estimate<float>(estimator, frame).depth_mm;
   }
 
-  /// Returns the depths as measured with everything on.
+  /// Returns the depths as measured with all effects on.
   Image<float> add(const Seen& seen) {
     const auto frame = frame_of(pad_, seen.depth_mm, seen.seed, seen.of.noise);
     const auto by_default = measured(estimator_, frame);
@@ -75,7 +75,7 @@ class DepthEffects {
     return by_default;
   }
 
-  /// The effects, after their cost on the frame of a press was measured.
+  /// Returns the effects, after measuring their cost on the frame of a press.
   std::vector<Effect> effects(const Seen& press) {
     const auto frame = frame_of(pad_, press.depth_mm, press.seed, press.of.noise);
     const auto work = [&](const auto& estimator) {
@@ -101,7 +101,7 @@ class DepthEffects {
 
   double pitch_mm() const { return 1.1 * pad_.camera.pitch_mm; }
 
-  /// What neighbouring light makes of these depths: l with l - m psi_sum(l) = the truth.
+  /// Depths with neighbouring light: l with l - m psi_sum(l) = the truth.
   Image<double> lit_depths(const Image<double>& truth_mm) const {
     Image<double> lit = truth_mm;
     Image<float> seen(truth_mm.rows(), truth_mm.cols());

@@ -1,22 +1,22 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// Effects on the stick ratio. Synthetic dots (tests/support/slipping_dots.hpp) with 0.14 px of
-// noise and the published thresholds, and dots of finite-element membranes (tests/data) with 0.06
-// px and the threshold that belongs to it:
-//   press                seen 1.15 times as large, all sticks
+// Effects on the stick ratio. Synthetic dots (tests/support/slipping_dots.hpp) have 0.14 px of
+// noise and the published thresholds. Dots of finite-element membranes (tests/data) have 0.06 px of
+// noise and the threshold for it:
+//   press                appears 1.15 times as large, all sticks
 //   drag                 dragged until hardly anything sticks
 //   reversal             and back
 //   twist                rotated by 20 degrees, in place and while it is dragged
-//   normal force change  seen 1.15 and 0.85 times as large while it is dragged and slips
-//   rolling              finite elements: a ball that sticks and rolls; U = 1 px, as with 2 px
-//                        there is no answer
+//   normal force change  appears 1.15 and 0.85 times as large while it is dragged and slips
+//   rolling              finite elements: a ball that sticks and rolls; U = 1 px, because 2 px give
+//                        no answer
 //   wedge                finite elements: a cylinder, dragged
 //   tilted               finite elements: a tilted plate, dragged
-//   noisy                the drag with 0.28 px, twice what the thresholds are for
-//   dots lost            the drag with a fifth of the dots not found, others in each frame
-// Error: of the ratio, in frames with an answer, against what stuck since the frame that it was
-// compared with; of finite elements, against what stuck within the step.
+//   noisy                the drag with 0.28 px, twice the noise for which the thresholds are made
+//   dots lost            the drag with a fifth of the dots missing, different ones in each frame
+// Error: of the ratio, in frames with an answer, against the dots that stuck since the reference
+// frame; of finite elements, against those that stuck within the step.
 #include <cmath>
 #include <cstdint>
 #include <functional>
@@ -43,7 +43,7 @@ struct StickRecordings {
   std::vector<StickRecording> recordings;
 };
 
-/// Shown in eight directions.
+/// Recordings of a scene in eight directions.
 inline std::vector<StickRecording> slipping(test::SlipScene scene,
                                             double noise_px = 0.14,
                                             double lost_share = 0) {
@@ -72,7 +72,7 @@ inline std::vector<StickRecording> slipping(test::SlipScene scene,
   return all;
 }
 
-/// NAME_dots.pgm and stick_truth.csv, with noise of 0.06 px.
+/// Dots of NAME_dots.pgm with noise of 0.06 px, and truth of stick_truth.csv.
 inline std::vector<StickRecording> finite_elements(const std::string& name) {
   const test::StickScene scene(name);
   StickRecording exact;
@@ -93,7 +93,7 @@ inline std::vector<StickRecording> finite_elements(const std::string& name) {
 
 inline std::vector<StickRecordings> stick_recordings() {
   using enum test::SlipScene;
-  // 1 % of sticking dots are told to slip
+  // 1 % of sticking dots are taken for slipping
   fingerpad::StickTest steady = fingerpad::published::stick_test_px;
   steady.slip = 2 * 0.416 * 0.06 * std::sqrt(std::log(100.0));
   fingerpad::StickTest closer = steady;
@@ -131,7 +131,7 @@ Errors stick_errors(const StickRecordings& of) {
   return errors;
 }
 
-/// The default against it with one effect off.
+/// The default with the effect and with it off.
 template <class Without>
 Effect stick_effect(const std::vector<StickRecordings>& all,
                     const std::string& name,

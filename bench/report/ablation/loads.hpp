@@ -1,20 +1,19 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// Effects on forces by look-up, on the shift of the contact that shear is looked up by, on traction
-// and on the shape of the object: contacts, dots and measured depths of finite-element membranes
-// (tests/data).
+// Effects on forces by look-up, on the shift of the contact used for shear, on traction and on the
+// shape of the object: contacts, dots and measured depths of finite-element membranes (tests/data).
 //   press, twist, rolling, tilted   the scenes of these names, all steps
-//   drag, reversal                  the drag until it turns round, and from there on
+//   drag, reversal                  the drag up to its turning point, and the rest of it
 //   normal force change             drag, rotation and depth at once
 //   wedge                           cylinder, pressed and dragged
-//   noisy                           the drag; noise of dots 0.12 px, not 0.06, of areas and depths
-//                                   4 %, not 2
+//   noisy                           the drag with twice the noise: dots 0.12 px instead of 0.06,
+//                                   areas and depths 4 % instead of 2
 //   dots lost                       the drag, one dot in twenty: taken for its neighbour (shift of
-//                                   the contact), not found (traction)
-// Curves and maps are calibrated on plates other than the one they are tested on (normal force) or
-// on "mix" (shear; "mix" itself on "drag" and "cylinder"). Areas and displacements are exact but
-// for that noise.
+//                                   the contact) or missing (traction)
+// The test plate is not among those that calibrate the normal force. Shear is calibrated on "mix"
+// ("mix" itself on "drag" and "cylinder"). Areas and displacements are exact except for the noise
+// above.
 #include <array>
 #include <cmath>
 #include <cstdint>
@@ -58,7 +57,7 @@ inline Scene scene_of_load(const std::string& name) {
 inline constexpr std::array<const char*, 7> load_scenes = {"press", "drag", "twist",   "mix",
                                                            "roll",  "tilt", "cylinder"};
 
-/// Samples of a recorded scene; noise of the measure as a share of it.
+/// Samples of recorded scenes; `noise` of the measure is relative to it.
 inline std::vector<LoadSample> load_samples(const std::vector<std::string>& scenes,
                                             ContactMeasure measure,
                                             ContactDotsOf dots = ContactDotsOf::edge,
@@ -82,7 +81,7 @@ inline bool has_turned(const std::vector<LoadSample>& samples, std::size_t k) {
   return std::hypot(d.x, d.y) < 0.98 * furthest;
 }
 
-/// Errors of `found(calibrated on, sample)` in all scenes; `errors(scene)` is where they go.
+/// Notes the errors of the function `calibrate(scene)` in all scenes; `where(scene)` receives them.
 template <class Calibrate, class Where>
 void note_loads(const Calibrate& calibrate,
                 ContactMeasure measure,
@@ -111,7 +110,7 @@ inline std::vector<std::string> other_plates(const std::string& scene) {
   return plates;
 }
 
-/// The error of the normal force in N, with the compensation for displacement and rotation or not.
+/// Error of the normal force in N, with or without the compensation for displacement and rotation.
 inline auto normal_force_of(ContactMeasure measure, bool compensates) {
   using namespace fingerpad;
   return [=](const std::string& scene) {
@@ -131,7 +130,7 @@ inline std::vector<std::string> shear_calibration(const std::string& scene) {
                         : std::vector<std::string>{"mix"};
 }
 
-/// The error of the tangential force in N; without `divides` the contact's size does not count.
+/// Error of the tangential force in N. Without `divides` the size of the contact is ignored.
 inline auto tangential_force_of(ContactMeasure measure, ContactDotsOf dots, bool divides) {
   using namespace fingerpad;
   return [=](const std::string& scene) {
@@ -199,7 +198,7 @@ inline PlaneDots in_plan(const test::Dots& dots) {
   return plane;
 }
 
-/// One dot in twenty has the place of its neighbour to the right.
+/// Replaces one dot in twenty by its neighbour to the right.
 inline void confuse(PlaneDots& dots, test::Random& random) {
   for (Index i = 0; i < dots.rows(); ++i) {
     for (Index j = 0; j + 1 < dots.cols(); ++j) {
@@ -210,7 +209,7 @@ inline void confuse(PlaneDots& dots, test::Random& random) {
   }
 }
 
-/// Against the shift of the exact dots.
+/// Errors are against the shift of the exact dots.
 inline Effect huber_effect() {
   using namespace fingerpad;
   Effect e{.name = "robust mean",
@@ -342,7 +341,7 @@ inline std::vector<Effect> surface_effects() {
   const SurfaceOptions inner{.border_px = 10};
   const auto plane_error = [&](const auto& fit, const SceneFrame& f, double tilt_rad) {
     const auto r = fit(f.measured_mm, f.measured);
-    const auto& n = r.shape.normal;  // the plate is tilted about x, to either side
+    const auto& n = r.shape.normal;  // the plate is tilted about x, by either sign
     const double along = n.z * std::cos(tilt_rad) + std::abs(n.y) * std::sin(tilt_rad);
     return r.ok() ? degrees * std::acos((std::min)(1.0, along)) : test::nan;
   };
@@ -390,8 +389,8 @@ inline std::vector<Effect> surface_effects() {
   return {strip_plate, strip_round, rays_plate, rays_round};
 }
 
-/// p S against the true force, no curve fitted: the area is that of the contact, or that of the
-/// plate that would press as hard. Measured depths and contacts, three frames a shape.
+/// p S against the true force without a fitted curve. S is the area of the contact or the
+/// equivalent flat area. Depths and contacts are measured, three frames a shape.
 inline Effect flat_area_effect() {
   using namespace fingerpad;
   SceneFrames& frames = SceneFrames::instance();

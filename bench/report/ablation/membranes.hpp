@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 // Finite-element membranes (tests/data/README.md) as shapes, as frames of 640 x 480 pixels and as
-// the contact that is known of them. What a scene stands for:
+// known contact. The scenes:
 //   free                 the pad that nothing touches
 //   press                flat plate, 3.5 mm deep
 //   drag                 flat plate dragged half way to slip, and slipping
@@ -33,7 +33,8 @@ using test::Image;
 using test::Membrane;
 using test::reference_of;
 
-/// Shapes by scene; `heights` is the name of the data. The same shapes serve depth, contact, force.
+/// Shapes by scene; `heights` is the name of the data. Depth, contact and force use the same
+/// shapes.
 struct ShapeOfScene {
   Scene scene;
   const char* heights;
@@ -60,7 +61,7 @@ inline const std::vector<ShapeOfScene>& shapes() {
   return all;
 }
 
-/// A shape, and of every pixel the point that it sees and whether that touches.
+/// A shape with the visible point of each pixel and its contact.
 struct Seen {
   ShapeOfScene of;
   std::uint64_t seed;

@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// Effects on the pose of the object. Dots 1.5 mm apart that a rigid object holds and carries along;
-// noise of 0.02 mm in the plane and 0.05 mm in depth; 60 frames, of a roll 150; the contact
-// reference dot is kept within 0.2 mm. A patch of 5 mm around the middle touches:
+// Effects on the pose of the object. A rigid object carries dots 1.5 mm apart; noise of 0.02 mm in
+// the plane and 0.05 mm in depth; 60 frames, 150 for a roll; the contact reference dot is kept
+// within 0.2 mm. A patch of 5 mm around the middle touches:
 //   press                carried 2 mm deeper
 //   drag                 dragged by 3 mm, while the patch slips from its edge to 3.8 mm
 //   reversal             the same, and back
@@ -14,8 +14,8 @@
 //                        then rotated by 20 about z
 //   tilted               tilted by 15 degrees, then in all directions, once around
 //   noisy                the tilt with three times the noise
-//   dots lost            the tilt with a fifth of the dots not found, others in each frame
-// Error: the angle of what is left of the attitude, in each frame with a pose.
+//   dots lost            the tilt with a fifth of the dots missing, different ones in each frame
+// Errors: the angle of the remaining rotation and the place, in each frame with a pose.
 #include <cmath>
 #include <cstdint>
 #include <functional>
@@ -43,7 +43,7 @@ struct MotionRecordings {
   std::vector<MotionRecording> recordings;
 };
 
-/// What an object does, by the share of the recording that is over.
+/// Motion of an object as functions of the elapsed share of the recording.
 struct Held {
   std::function<fingerpad::Pose<double>(double)> pose;  ///< about the middle of the contact
   std::function<double(double)> patch_mm = [](double) { return 5.0; };
@@ -78,7 +78,7 @@ inline MotionRecording recording_of(const Held& held, double noise, std::uint64_
         const auto taken = inverse(pose)(fingerpad::Point3<double>{f.x, f.y, 0});
         on_object.cells[c] = {taken.x, taken.y, depth_mm};
       } else if (touches && r > held.stick_mm(share)) {
-        // stays where it is in the plane
+        // a slipping dot keeps its position in the plane
         const auto slid = inverse(pose)(dots.cells[c]);
         on_object.cells[c] = {slid.x, slid.y, depth_mm};
       }
@@ -107,7 +107,7 @@ inline MotionRecording rolling_along_a_circle(double noise, std::uint64_t seed) 
     const auto dots = noisy(roll.dots, roll.contact, gauss, 0.02 * noise, 0.05 * noise);
     recording.push_back({dots, roll.contact, roll.pose});
   }
-  // counted from the first frame that is seen
+  // poses are relative to the first visible frame
   const auto first = inverse(recording.front().truth);
   for (auto& frame : recording) {
     frame.truth = frame.truth * first;
@@ -115,7 +115,7 @@ inline MotionRecording rolling_along_a_circle(double noise, std::uint64_t seed) 
   return recording;
 }
 
-/// How the object is held and moved in each scene that has no motion of its own.
+/// Motion of the held object in each scene that has no recording of its own.
 struct HeldScenes {
   Held press, drag, reversal, twist, force, strip, tilted;
 };
@@ -215,7 +215,7 @@ PoseErrors pose_errors(const Motion& motion, const MotionRecordings& of) {
 
 class MotionEffects {
  public:
-  /// Rows for exact dots, and for noisy ones by attitude and place.
+  /// Adds rows for exact dots, and for attitude and place with noisy dots.
   template <class With, class Without>
   void add(const std::string& name,
            const std::string& on,

@@ -1,21 +1,22 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// What space and friction are worth to the stick ratio: dots of finite-element membranes in space
+// Worth of space and friction to the stick ratio: dots of finite-element membranes in space
 // (tests/data) with 0.005 mm of noise in the plane (0.06 px) and 0.025 mm in depth, forces known to
 // 1.5 %, moments to 2 %.
 //   press                flat plate
 //   drag                 flat plate, dragged to slip and back
-//   reversal             flat plate that slides, deeper and turned meanwhile, and back
+//   reversal             flat plate that slides, deeper and rotated meanwhile, and back
 //   twist                flat plate, rotated to slip
 //   normal force change  drag, rotation and depth at once
 //   rolling              a ball that rolls
 //   wedge                cylinder, dragged until it slides
 //   tilted               tilted plate, dragged
 //   noisy                the drag with twice the noise
-//   dots lost            the drag with a fifth of the dots not found, others in each frame
-// Error: of the ratio, in all frames in contact, against the dots that slipped against the known
-// pose of the object since the reference; an answer that is kept counts as one, none as all sticks.
+//   dots lost            the drag with a fifth of the dots missing, different ones in each frame
+// Error: of the ratio, in all frames in contact, against the dots that slipped relative to the
+// known pose of the object since the reference. A kept answer counts as an answer, a missing one as
+// a ratio of 1.
 #include <cmath>
 #include <cstdint>
 #include <string>
@@ -39,7 +40,7 @@ struct SpatialRecording {
 struct SpatialRecordings {
   Scene scene;
   test::SpatialScene truth;
-  double noise = 1;  ///< times as much
+  double noise = 1;  ///< factor
   std::vector<SpatialRecording> recordings;
 
   SpatialRecordings(Scene of, const std::string& name, double times = 1, double lost_share = 0)
@@ -80,7 +81,7 @@ inline std::vector<SpatialRecordings> spatial_recordings() {
           {Scene::dots_lost, "drag", 1, 0.2}};
 }
 
-/// The three ways.
+/// Stick ratio of dots in space.
 class InSpace {
  public:
   explicit InSpace(const SpatialRecordings& of)
@@ -101,7 +102,7 @@ class InSpace {
   test::Image<fingerpad::DotState> states_;
 };
 
-/// As a camera straight above sees them, with as many free frames as tell it the noise.
+/// Stick ratio in the image of a camera straight above, after free frames that show it the noise.
 class InImage {
  public:
   explicit InImage(const SpatialRecordings& of)
@@ -136,7 +137,7 @@ class InImage {
   test::Image<fingerpad::DotState> states_;
 };
 
-/// One of these, and friction.
+/// One of the two above with the friction limit.
 template <class Dots>
 class WithFriction {
  public:

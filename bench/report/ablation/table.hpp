@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// Scenes, errors with an effect and without it, what the effect costs, and how that is printed.
+// Scenes, errors with and without an effect, cost of the effect, and their output.
 #include <algorithm>
 #include <array>
 #include <chrono>
@@ -36,7 +36,7 @@ inline const char* name_of(std::size_t scene) {
   return names[scene];
 }
 
-/// Absolute errors; one that is not a number is no answer and counts only in `missing()`.
+/// Absolute errors. NaN means no answer and counts only in `missing()`.
 class Errors {
  public:
   void add(double error) {
@@ -51,7 +51,7 @@ class Errors {
     missing_ += other.missing_;
   }
   bool any() const { return !errors_.empty(); }
-  /// Share of what was asked that got no answer.
+  /// Share of the cases without an answer.
   double missing() const {
     const double all = static_cast<double>(missing_ + errors_.size());
     return all > 0 ? static_cast<double>(missing_) / all : 0;
@@ -68,7 +68,7 @@ class Errors {
   std::size_t missing_ = 0;
 };
 
-/// An effect, on ("with") and off ("without"), by one quantity that it serves.
+/// An effect, on ("with") and off ("without"), and one quantity that it improves.
 struct Effect {
   std::string name = {};
   std::string quantity = {};
@@ -84,9 +84,9 @@ struct Effect {
   bool has(std::size_t scene) const { return with[scene].any() || without[scene].any(); }
 };
 
-/// Time of `with` less that of `without`, in us per frame, each of them doing `frames` frames: the
-/// best of many rounds in turns. 0 where it is less than the two halves of the rounds differ by, or
-/// than 2 %.
+/// Cost of an effect in us per frame: time of `with` minus time of `without`, each of `frames`
+/// frames, as the best of many alternating rounds. 0 where the difference is below 2 % or below the
+/// difference between the two halves of the rounds.
 template <class With, class Without>
 double cost_us(const With& with, const Without& without, double frames = 1) {
   using Clock = std::chrono::steady_clock;
@@ -110,7 +110,7 @@ double cost_us(const With& with, const Without& without, double frames = 1) {
   return std::abs(on - off) <= noise ? 0 : (on - off) / frames;
 }
 
-/// Two digits that count, no exponent; 0 below 0.00005.
+/// Two significant digits without an exponent; 0 below 0.00005.
 inline std::string number(double x) {
   std::ostringstream text;
   if (std::abs(x) < 5e-5) {
@@ -150,7 +150,7 @@ inline void print_table(std::ostream& out, const std::vector<Effect>& effects, d
   }
 }
 
-/// Where more than one in a hundred got no answer, which the errors above leave out.
+/// Effects with more than one missing answer in a hundred, which the errors above leave out.
 inline void print_missing(std::ostream& out, const std::vector<Effect>& effects) {
   out << "| No answer, per cent | with | without |\n|---|--:|--:|\n";
   const auto percent = [](const Errors& errors) { return number(100 * errors.missing()); };
@@ -165,7 +165,7 @@ inline void print_missing(std::ostream& out, const std::vector<Effect>& effects)
   out << '\n';
 }
 
-/// What on and off stand for.
+/// Policies of each effect, on and off.
 inline void print_policies(std::ostream& out, const std::vector<Effect>& effects) {
   out << "| Effect | on | off |\n|---|---|---|\n";
   std::string last;

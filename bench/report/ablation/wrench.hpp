@@ -2,13 +2,13 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 // Effects on the six-axis force, from shapes and side dots of finite-element membranes
-// (tests/data/wrench_*). Scenes are those of membranes.hpp, beside:
+// (tests/data/wrench_*). Scenes are those of membranes.hpp, except:
 //   rolling, wedge, tilted  the steps of these names, and those while they are dragged
 //   noisy                   drag and twist, slipping, with twice the noise of the side dots
-//   dots lost               the same two, a fifth of the side dots not found
-// The shape is exact; side dots have 0.06 px (of 0.08 mm) of noise. Eight noises a frame. Errors:
-// length of the difference of force, and of moment, to the truth. The free pad has no force,
-// whatever is switched on.
+//   dots lost               the same two, a fifth of the side dots missing
+// The shape is exact; side dots have 0.06 px (of 0.08 mm) of noise, in eight realisations a frame.
+// Errors: length of the difference of force, and of moment, to the truth. The free pad has no
+// force, with any effect.
 #include <cmath>
 #include <cstdint>
 #include <random>
@@ -64,7 +64,7 @@ class WrenchEffects {
     }
   }
 
-  /// Two rows, by the force and by the moment.
+  /// Adds two rows, for the force and for the moment.
   template <class With, class Without>
   void add(const std::string& name,
            const std::string& on,

@@ -22,11 +22,11 @@ constexpr std::array<const char*, 7> stage_names = {
     "look-up forces",   "heights in plan", "wrench"};
 
 struct WithLeastSquares : fingerpad::FingertipMethods {};
-/// The methods by default, but the solver that the chain's budget is for.
+/// The default methods, with the solver that fits the chain's time budget.
 struct ByDefault : fingerpad::FingertipMethods {
   using Solver = fingerpad::published::Iteration;
 };
-/// The least that a flat contact on a pad with dark dots needs.
+/// The cheapest methods for a flat contact on a pad with dark dots.
 struct Lean : ByDefault {
   static constexpr int sampling = 4;
   using Smoothing = fingerpad::AnchoredMean;
@@ -39,13 +39,13 @@ template <class Methods, int Step>
 struct InSamples : Methods {
   static constexpr int sampling = Step;
 };
-/// The same, shared by two threads.
+/// The same with two threads.
 template <class Methods>
 struct Shared : Methods {
   using Executor = TwoThreads;
 };
 
-/// What a camera, a dot finder and a pressure gauge say of a frame.
+/// Data of a camera, a dot finder and a pressure gauge for one frame.
 struct Inputs {
   fingerpad::ColorFrame<fingerpad::StridedView<const std::uint8_t>,
                         fingerpad::StridedView<const std::uint8_t>>

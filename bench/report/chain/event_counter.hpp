@@ -1,8 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// Counts what this thread's instructions and cycles cost, where processor and system tell it
-// (Linux).
+// Counts the instructions and cycles of this thread where processor and system allow it (Linux).
 #include <cstdint>
 #include <optional>
 

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// Rows of cells that own their memory, and whole programs' view of them.
+// Images that own their memory, and views of them for whole programs.
 #include <cstddef>
 #include <vector>
 

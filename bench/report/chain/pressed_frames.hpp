@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// Frames for the whole chain with the truth of every result: a membrane in equilibrium, pressed
-// flat by a plate that drags its dots to and fro and turns them, all of them sticking; 8-bit
-// colours with one grey level of noise, side dots that pull as the plate pushes.
+// Frames for the whole chain with the truth of every result. A membrane in equilibrium is pressed
+// flat by a plate that drags its dots back and forth and rotates them without slip. Colours are
+// 8-bit with one grey level of noise; side dots pull as the plate pushes.
 #include <cmath>
 #include <cstdint>
 #include <numbers>
@@ -19,7 +19,7 @@ namespace chain {
 constexpr double pressure_mpa = test::pressed_mpa;
 constexpr double pitch_mm = 1.5;  ///< of the dots
 
-/// Where the plate is in frame k of `count`, and what it does to the pad.
+/// Pose of the plate in frame k of `count`, and its effect on the pad.
 struct Plate {
   double shift_x_mm = 0;
   double shift_y_mm = 0;
@@ -35,7 +35,7 @@ struct Plate {
   }
 };
 
-/// How the rim is pulled, so that the plate's force along the pad is balanced about the summit.
+/// Pull along the rim that balances the plate's force along the pad about the summit.
 struct RimPull {
   double normal, lean, shear, turning, direction_rad;
 
@@ -54,7 +54,7 @@ struct RimPull {
   }
 };
 
-/// One frame with all that is true of it.
+/// One frame with its truth.
 struct PressedFrame {
   Plate plate;
   test::RoundPad<test::FilmSide> membrane;
@@ -94,18 +94,18 @@ class PressedFrames {
   const PressedFrame& operator[](std::size_t k) const { return frames_[k]; }
   Index pixels() const { return pad_.rows * pad_.cols; }
 
-  /// Refers to this object.
+  /// Options that refer to this object.
   auto options() const {
     auto reference = pad_.reference<float>();
     fingerpad::FingertipOptions<decltype(reference)> f{pad_.camera, pad_.fluid,
                                                        std::move(reference), pad_.rows, pad_.cols};
     f.free_dots_mm = free_dots_.view();
     f.rim_mm = rim_.view();
-    // windows and rings as wide on the pad as those by default are at 640 x 480
+    // windows and rings of the default width on the pad, which is set for 640 x 480
     const double scale = static_cast<double>(pad_.cols) / 640;
     f.smoothing_px = 2 * static_cast<int>(14 * scale) + 1;
     f.contact.ring.radius_px = 25 * scale;
-    // what the plate's pressure on the area says; by depth, a line between two of the frames
+    // by area: the plate's pressure on it; by depth: a line between two of the frames
     using NormalLookUp = typename decltype(f)::NormalLookUp;
     const typename NormalLookUp::Errors errors{.residual_sd_n = 0.1};
     f.force_of_area = NormalLookUp({{0, pressure_mpa}, 50, 400}, {}, errors);
@@ -128,8 +128,8 @@ class PressedFrames {
   }
 
  private:
-  /// Where the plate carries what lies at `home` on the pad: rigidly under it, not at all at the
-  /// rim.
+  /// Where the plate carries a point from `home` on the pad: rigidly under the plate, not at all at
+  /// the rim.
   static Point2<double> carried(const Plate& plate, double radius_mm, const Point2<double>& home) {
     const double r = std::hypot(home.x, home.y);
     const double share =

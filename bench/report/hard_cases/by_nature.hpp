@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// Cases that are hard whatever the numbers: the second table of docs/hard_cases.md. The published
-// method beside the default, on the same input.
+// Cases that are hard in any number type: the second table of docs/hard_cases.md. It compares the
+// published method with the default on the same input.
 #include <array>
 #include <cmath>
 #include <cstdint>
@@ -48,17 +48,17 @@ inline std::string figures_of(const char* format, double a, double b) {
 
 // ---- contact region
 
-/// Where heights are looked at.
+/// Grid on which the heights are sampled.
 struct HeightMap {
   Index size = 120;
   double pitch_mm = 0.16;
-  double within_mm = 7.5;  ///< of the middle; farther out it is too steep to be a pad
+  double within_mm = 7.5;  ///< of the middle; beyond, it is too steep for a pad
 };
 using Heights = std::function<double(double x_mm, double y_mm)>;
 
 struct RegionFound {
-  double share_of_true = 0;  ///< of the pixels that touch, found
-  double false_share = 0;    ///< of those that do not, taken for contact
+  double share_of_true = 0;  ///< of the touching pixels, found
+  double false_share = 0;    ///< of the other pixels, taken for contact
 };
 
 template <class Statistic, class Edge>
@@ -103,7 +103,7 @@ RegionFound region_of(const Heights& height,
   return found;
 }
 
-/// Half of the curvature of a free pad of 20 mm, as FreePadCalibration has it.
+/// Half of the curvature of a free pad of 20 mm, as FreePadCalibration sets it.
 inline constexpr double half_of_free_per_mm = 0.025;
 
 inline RegionFound published_region(const Heights& height,
@@ -119,7 +119,7 @@ inline RegionFound default_region(const Heights& height,
                                                                        half_of_free_per_mm);
 }
 
-/// Two bars; what is off them by no more than the default's touching gap counts as touching.
+/// Two bars. Gaps up to the default's touching gap count as contact.
 inline void add_two_contacts(std::vector<CaseByNature>& rows) {
   const double touching_mm = fingerpad::HalfLevelEdge().touching_gap_mm;
   const HeightMap map{.size = 220, .pitch_mm = 0.08, .within_mm = 6.5};
@@ -141,7 +141,7 @@ inline void add_two_contacts(std::vector<CaseByNature>& rows) {
 }
 
 inline void add_regions(std::vector<CaseByNature>& rows) {
-  // dome of 20 mm that bends twice as much where it leaves a contact of 5 mm
+  // dome of 20 mm with twice the curvature where it leaves a contact of 5 mm
   const auto around = [](double rho, double inside) {
     const double off = rho - 5;
     return rho < 5 ? inside : inside - 0.03 * off * off;
@@ -226,8 +226,8 @@ inline void add_lamp(std::vector<CaseByNature>& rows) {
 
 // ---- six-axis force
 
-/// Mean error of the moment in N mm over the 15 frames, exact shapes, side dots with 0.06 px of
-/// noise.
+/// Mean error of the moment in N mm over the 15 frames, from exact shapes and side dots with 0.06
+/// px of noise.
 template <class W>
 double moment_error_n_mm(const W& wrench) {
   auto work = wrench.workspace();
@@ -294,8 +294,8 @@ inline void add_wrench(std::vector<CaseByNature>& rows) {
 
 // ---- foam
 
-/// Of 40 slips of single taxels, those that are found; two taxels of each finger slip, with waves
-/// of their own.
+/// Number of detected slips out of 40 slips of single taxels. Two taxels of each finger slip, each
+/// with waves of its own.
 template <class Rule>
 int slips_found() {
   using namespace fingerpad;

@@ -66,7 +66,7 @@ inline Row small_absorption() {
              []<class S>(S) { return scattered_light_forms<S>(sweep(1e-5, 1e-3, 1.5), {1.0}); });
 }
 
-/// Colours of a pixel at a depth, in S.
+/// Colours of a pixel at a depth in S.
 template <class S>
 struct SeenPixel {
   Absorption<S> fluid = fingerpad::cast<S>(Absorption<double>());
@@ -136,7 +136,7 @@ inline Row no_depth() {
              });
 }
 
-/// The mean of a window of all its pixels, whatever they are.
+/// Mean of all pixels of a window, whatever their values.
 template <class S>
 S plain_box(const test::Image<S>& image, fingerpad::Index row, fingerpad::Index col) {
   S sum = S(0);
@@ -189,7 +189,7 @@ inline Row saturated_pixels() {
              });
 }
 
-/// By the angles, as the slides write them.
+/// Virtual height by angles, as the slides write it.
 template <class S>
 S height_by_angles(const Camera<S>& camera, const S& tan_air) {
   using std::asin;
@@ -220,7 +220,7 @@ inline Row grazing_rays() {
              });
 }
 
-/// x of eq. 13 with the tangent in the place of the sine, by angles and the direction x / rho.
+/// x of eq. 13 with the tangent instead of the sine, by angles and the direction x / rho.
 template <class S>
 S position_by_angles(const Camera<S>& camera, const S& row, const S& col, const S& depth_mm) {
   const S x = (col - camera.center_x_px) * camera.pitch_mm;

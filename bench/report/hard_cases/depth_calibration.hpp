@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// What the depth needs to know: g from the free pad, and the fluid.
+// Calibration of the depth: g from the free pad, and the fluid.
 #include <array>
 #include <cmath>
 #include <cstddef>
@@ -65,8 +65,8 @@ inline Row scattering_at_rim() {
              });
 }
 
-/// Four equations F(l_i) = 0 for c_red, c_green, kappa and g by Newton's method as it stands, with
-/// the exponentials of the printed equation.
+/// Plain Newton's method for c_red, c_green, kappa and g from four equations F(l_i) = 0, with the
+/// exponentials of the printed equation.
 template <class S>
 std::array<S, 4> bare_newton(const std::array<SeenPixel<S>, 4>& seen,
                              const std::array<S, 4>& depth_mm,
@@ -88,7 +88,7 @@ std::array<S, 4> bare_newton(const std::array<SeenPixel<S>, 4>& seen,
         a[i][k] = (f(other, i) + a[i][4]) / step;
       }
     }
-    for (std::size_t j = 0; j < 4; ++j) {  // Gauss and Jordan
+    for (std::size_t j = 0; j < 4; ++j) {  // Gauss-Jordan elimination
       for (std::size_t i = 0; i < 4; ++i) {
         const S factor = a[i][j] / a[j][j];
         for (std::size_t k = j; i != j && k < 5; ++k) {

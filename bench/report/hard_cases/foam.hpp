@@ -22,7 +22,7 @@ MassSpringDamper<To> as(const MassSpringDamper<From>& r) {
   return {To(r.mass_n_s2_per_mm), To(r.damping_n_s_per_mm), To(r.stiffness_n_per_mm)};
 }
 
-/// Position after a start at 0 with speed 1: e^{-st} sin(wt)/w, or two decays.
+/// Position after a start at 0 with speed 1: e^{-st} sin(wt)/w, or two decaying exponentials.
 template <class S>
 S textbook_position(const MassSpringDamper<S>& oscillator, const S& t) {
   using std::exp;
@@ -39,7 +39,7 @@ S textbook_position(const MassSpringDamper<S>& oscillator, const S& t) {
   return S(exp(S(-s * t)) * sin(S(w * t)) / w);
 }
 
-/// The textbook in 50 digits; exactly critical damping by its limit.
+/// The textbook formula in 50 digits; at exactly critical damping, its limit.
 template <class S>
 Digits50 exact_position(const MassSpringDamper<S>& oscillator, const S& t) {
   const MassSpringDamper<Digits50> r = as<Digits50>(oscillator);
@@ -109,7 +109,8 @@ inline Row long_swing() {
              });
 }
 
-/// Both integrals of eq. 10 by the trapezoidal rule, for m = c = k = 1: e^{t/2} grows inside.
+/// Both integrals of eq. 10 by the trapezoidal rule, for m = c = k = 1; the integrand grows as
+/// e^{t/2}.
 template <class S>
 S printed_integrals(const RampLoad<S>& load, const S& t, int steps) {
   const S w = std::sqrt(S(3)) / S(2), h = t / S(steps);
@@ -131,7 +132,7 @@ inline Row long_times() {
                  const RampLoad<S> load{S(0.25), S(0.0625)};
                  const MassSpringDamper<S> oscillator;
                  const int steps = static_cast<int>(time * 20);
-                 // y_p and what is left of y_c
+                 // y_p and the remainder of y_c
                  const Digits50 exact = fingerpad::ramp_response(MassSpringDamper<Digits50>(),
                                                                  {Digits50(0.25), Digits50(0.0625)},
                                                                  Motion<Digits50>(), Digits50(time))
@@ -154,7 +155,7 @@ inline Row many_steps() {
                const Digits50 rate = sqrt(Digits50(oscillator.stiffness_n_per_mm) /
                                           Digits50(oscillator.mass_n_s2_per_mm));
                const Digits50 phase = rate / 8;
-               // the exact coefficients of a step, each rounded once
+               // the exact coefficients of a step, rounded once each
                const S c = static_cast<S>(cos(phase));
                const S y_by_v = static_cast<S>(Digits50(sin(phase) / rate));
                const S v_by_y = static_cast<S>(Digits50(-sin(phase) * rate));

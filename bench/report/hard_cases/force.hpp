@@ -60,8 +60,8 @@ inline Row below_range() {
              });
 }
 
-/// A pressed film cut into segments, its tensions by the published iteration, and by the same
-/// balance from the rim up.
+/// A pressed film cut into segments, with its tensions by the published iteration and by the same
+/// balance summed from the rim upward.
 template <class S>
 struct CutFilm {
   static constexpr Index columns = 18, rows = 30;
@@ -122,9 +122,10 @@ inline Row level_edge() {
              });
 }
 
-/// On a sphere the tensions that a load at the contact adds, U = N_phi sin^2(phi) and V =
-/// N_phi,theta sin^2(phi), are the parts of an analytic function of ln tan(phi / 2) and theta. Both
-/// are known at the rim and marched up by Runge and Kutta, with derivatives around by Fourier sums.
+/// The tensions that a load at the contact adds on a sphere, marched up from the rim.
+///   U = N_phi sin^2(phi) and V = N_phi,theta sin^2(phi)
+/// are the parts of an analytic function of ln tan(phi / 2) and theta. Both are known at the rim
+/// and marched upward by Runge-Kutta steps, with Fourier sums for the derivatives around the axis.
 template <class S>
 std::vector<S> marched_up(std::vector<S> u, std::vector<S> v, const S& way, int steps) {
   const std::size_t n = u.size();
@@ -217,7 +218,7 @@ inline Row march_from_rim() {
       });
 }
 
-/// Twice the area of a triangle from its edges, by Heron.
+/// Twice the area of a triangle from its edges, by Heron's formula.
 template <class S>
 S twice_area_of_edges(const fingerpad::detail::traction::Triangle<S>& x) {
   using std::sqrt;

@@ -20,14 +20,14 @@ using fingerpad::Point3;
 using fingerpad::Rotation;
 using fingerpad::detail::motion::Neighbourhood;
 
-/// The slides' order: y by asin first.
+/// Angles in the slides' order: y by asin first.
 template <class S>
 Angles<S> angles_by_asin(const Rotation<S>& r) {
   return {std::atan2(r.m[2][1], r.m[2][2]), std::asin(-r.m[2][0]),
           std::atan2(r.m[1][0], r.m[0][0])};
 }
 
-/// The largest element of the rotation of `angles`, less `r`.
+/// Largest element of the rotation of `angles` minus `r`.
 template <class S>
 Digits50 largest_difference(const Angles<S>& angles, const Rotation<S>& r) {
   const auto again = fingerpad::rotation_of(
@@ -83,7 +83,7 @@ inline Row small_angle() {
       });
 }
 
-/// Nine dots 1.5 mm apart, `across` of that in the second direction.
+/// Nine dots with a spacing of 1.5 mm in the first direction and `across` times that in the second.
 template <class S>
 Neighbourhood<S> dots(const Rotation<double>& turn, double shear, double across = 1) {
   Neighbourhood<S> n;
@@ -120,7 +120,7 @@ inline Row sheared_dots() {
              });
 }
 
-/// Eqs. 14-18 as they stand: no look at whether there are two directions.
+/// Eqs. 14-18 as printed, without a check that there are two directions.
 template <class S>
 Rotation<S> published_turn(const Neighbourhood<S>& from, const Neighbourhood<S>& to) {
   namespace d = fingerpad::detail;
@@ -140,7 +140,7 @@ inline Row collinear_dots() {
                std::vector<double> spreads = sweep(1e-12, 1, 4);
                spreads.push_back(0);
                for (const double across : spreads) {
-                 // a line of dots: both directions of the grid run along it
+                 // a line of dots: both directions of the grid are parallel to it
                  Neighbourhood<S> from, to;
                  for (std::size_t k = 0; k < 9; ++k) {
                    const double u = static_cast<double>(k % 3) - 1;

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// A row of the table of hard cases: what a naive form and fingerpad's lose over a sweep of inputs,
-// in float and in double, against 50 digits of the very same rounded inputs.
+// A row of the table of hard cases: the loss of accuracy of a naive form and of fingerpad's form
+// over a sweep of inputs, in float and in double, against 50 digits of the same rounded inputs.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -16,16 +16,16 @@ namespace hard {
 
 using test::Digits50;
 
-/// What came out over a sweep.
+/// Results of a sweep.
 struct Tally {
-  double worst = 0;  ///< error of the answers that are numbers
+  double worst = 0;  ///< error of the finite answers
   int cases = 0;
   int nan = 0;
   int infinite = 0;
-  int wrong = 0;    ///< an answer where there is none
+  int wrong = 0;    ///< an answer where none exists
   int refused = 0;  ///< a status instead of an answer
 
-  /// An answer that is off by |answer - exact| / size.
+  /// Adds an answer with the error |answer - exact| / size.
   template <class S>
   void add(const S& answer, const Digits50& exact, const Digits50& size) {
     ++cases;
@@ -52,7 +52,7 @@ struct Tally {
     ++(refuses ? refused : wrong);
   }
 
-  /// The worst error; infinite where something came out that is no answer.
+  /// The worst error; infinite if an answer is NaN, infinite or wrong.
   double loss() const { return nan + infinite + wrong > 0 ? HUGE_VAL : worst; }
 };
 
@@ -62,12 +62,12 @@ struct Forms {
 
 struct Row {
   std::string method;
-  std::string hard_case;  ///< with the sweep, and what the error is
-  std::string how;        ///< names the stable form
+  std::string hard_case;  ///< with the sweep and the kind of error
+  std::string how;        ///< name of the stable form
   Forms in_float, in_double;
 };
 
-/// `measure` is a template over the number: Forms measure(S()).
+/// `measure` is a template over the number type: `Forms measure(S())`.
 template <class Measure>
 Row row(const char* method, const char* hard_case, const char* how, const Measure& measure) {
   return {method, hard_case, how, measure(0.0F), measure(0.0)};
@@ -114,7 +114,7 @@ inline std::string text_of(const Tally& t) {
   return text;
 }
 
-/// As a line of a Markdown table.
+/// A line of a Markdown table.
 inline std::string line_of(const Row& r) {
   std::string line = "| ";
   line += r.method;
@@ -128,7 +128,7 @@ inline std::string line_of(const Row& r) {
   return line;
 }
 
-/// Numbers from `low` to `high`, each `factor` times the one before.
+/// Numbers from `low` to `high`, each `factor` times the previous one.
 inline std::vector<double> sweep(double low, double high, double factor) {
   std::vector<double> numbers;
   for (double x = low; x < high * 1.0001; x *= factor) {

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// Sums that run: windows over an image, and over the samples of a taxel.
+// Running sums: windows over an image and over the samples of a taxel.
 #include <array>
 #include <cmath>
 #include <cstddef>
@@ -106,7 +106,7 @@ inline Row small_vibration() {
                    }
                    // the sum of (u - 3.5)^2 is 42
                    const Digits50 exact = sqrt(Digits50(left - mean * mean - tilt * tilt / 336));
-                   S of_moment = S(0);  // as if it ran like the other sums
+                   S of_moment = S(0);  // recomputed in place of a running sum
                    for (int u = 0; u < 8; ++u) {
                      of_moment += readings[first + static_cast<std::size_t>(u)] * S(u - 3.5);
                    }

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// The motion of the dots from which the stick ratio comes.
+// Motion of the dots, from which the stick ratio follows.
 #include <array>
 #include <cmath>
 #include <cstddef>
@@ -13,7 +13,7 @@
 
 namespace hard {
 
-/// Four neighbours, then and now, about the reference dot.
+/// Four neighbours before and after a motion, relative to the reference dot.
 template <class S>
 struct Cross {
   std::array<std::array<S, 2>, 4> then, now;
@@ -68,7 +68,8 @@ inline Row half_a_turn() {
              });
 }
 
-/// alpha as printed: distances across unit(d_a + d_b), of every dot and its right and lower ones.
+/// alpha as printed: distances across unit(d_a + d_b), of every dot to its right and lower
+/// neighbour.
 template <class S>
 S published_alpha(const test::PointsPx& then, const test::PointsPx& now) {
   S of_then = S(0), of_now = S(0);
@@ -107,7 +108,8 @@ inline Row plain_press() {
              "least squares over all sticking dots: no direction", []<class S>(S) {
                Forms f;
                for (const double zoom : {33.0 / 32, 17.0 / 16, 31.0 / 32}) {
-                 // with an even number of columns two neighbours lie opposite about the middle
+                 // with an even number of columns, two neighbours lie opposite each other about the
+                 // middle
                  const test::SlippingDots truth({.cols = 20, .contact_pitches = 20});
                  test::PointsPx then = truth.dots, now = truth.dots;
                  for (auto& p : now.cells) {
@@ -133,7 +135,8 @@ inline Row nothing_moved() {
                Forms f;
                for (const double contact : {3.2, 5.2, 8.2}) {
                  const test::SlippingDots truth({.contact_pitches = contact});
-                 // delta = delta_0 d_max / U, stick: |d_0 - d_k| < delta, and the dot itself
+                 // delta = delta_0 d_max / U; a dot sticks if |d_0 - d_k| < delta, and the
+                 // reference always does
                  const double furthest = 0, delta = 0.24 * furthest / 2;
                  int stick = 1, all = 0;
                  for (const auto touches : truth.contact.cells) {

@@ -79,7 +79,7 @@ inline Row flat_contact() {
              });
 }
 
-/// Solves a x = b by Gauss with pivots.
+/// Solves a x = b by Gaussian elimination with pivots.
 template <class S, std::size_t N>
 std::array<S, N> solved(std::array<std::array<S, N + 1>, N> a) {
   using std::abs;
@@ -127,7 +127,7 @@ std::array<S, N> normal_equations(const test::Image<S>& depth,
   return solved<S, N>(a);
 }
 
-/// Curvature of the sphere x^2 + y^2 + z^2 = 2 a x + 2 b y + 2 c z + d nearest to the points.
+/// Curvature of the sphere x^2 + y^2 + z^2 = 2 a x + 2 b y + 2 c z + d that fits the points best.
 template <class S>
 S curvature_by_center(const test::Image<S>& depth, const fingerpad::OrthographicCamera<S>& camera) {
   using std::sqrt;
@@ -151,7 +151,7 @@ fingerpad::OrthographicCamera<To> in(const fingerpad::OrthographicCamera<S>& c) 
   return {To(c.center_x_px), To(c.center_y_px), To(c.pitch_mm)};
 }
 
-/// Sums over float depths are in double, as the camera's numbers are.
+/// Sums over float depths use double, like the numbers of the camera.
 template <class S>
 using wide_t = std::conditional_t<std::is_same_v<S, float>, double, S>;
 

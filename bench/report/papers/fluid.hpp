@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// Identification of the fluid from colours at known depths: by the printed three equations, and by
-// the default, from as much noise as a mean over 29 x 29 px leaves.
+// Identification of the fluid from colours at known depths, by the printed three equations and by
+// the default, with the noise that remains after a mean over 29 x 29 px.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -43,7 +43,7 @@ struct Fluids {
     c_green.push_back(fluid.c_green_per_mm);
     kappa.push_back(fluid.kappa);
   }
-  /// Half of all answers lie between the quartiles.
+  /// The quartiles, which enclose half of all answers.
   static std::string quartiles(std::vector<double> x) {
     std::sort(x.begin(), x.end());
     char text[64];

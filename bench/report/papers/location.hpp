@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// Object location: where objects have gone, from rendered frames of finite-element membranes.
+// Displacement of objects from rendered frames of finite-element membranes.
 #include <string>
 #include <vector>
 

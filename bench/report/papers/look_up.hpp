@@ -2,10 +2,10 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 // Forces by look-up on the contacts of finite-element scenes (tests/data/contacts.csv). Published:
-// quadratic curves with a constant, fitted to a press; equations like 21 and 22 fitted to and
-// tested on the same drag or twist, as the paper did; the central dot and straight lines with the
-// published exponents for shear. Default: cubics through 0, and shear by the dots of the edge with
-// fitted exponents, each tested on a scene that was not fitted.
+// quadratic curves with a constant, fitted to a press; equations like 21 and 22, fitted to and
+// tested on the same drag or twist, as in the paper; for shear, the central dot and straight lines
+// with the published exponents. Default: cubics through 0, and shear from the edge dots with fitted
+// exponents, each tested on a scene that was not fitted.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -38,7 +38,7 @@ inline double reference_of(test::ContactMeasure measure) {
   return measure == test::ContactMeasure::depth ? 10 : 100;  // as published
 }
 
-/// F = a F_plain + b |x| + c on a scene, by least squares over the plain quadratic.
+/// F = a F_plain + b |x| + c on a scene, by least squares; F_plain is the quadratic of the press.
 inline std::vector<double> published_normal(const std::string& scene,
                                             test::ContactMeasure measure) {
   using namespace fingerpad;
@@ -70,7 +70,7 @@ inline std::vector<std::string> plates_but(const std::string& scene) {
   return scenes;
 }
 
-/// The default curve, calibrated on the other plates.
+/// Errors of the default curve, calibrated on the other plates.
 inline std::vector<double> default_normal(const std::string& scene, test::ContactMeasure measure) {
   using namespace fingerpad;
   const Samples others = samples_of(plates_but(scene), measure);
@@ -82,7 +82,7 @@ inline std::vector<double> default_normal(const std::string& scene, test::Contac
   return errors;
 }
 
-/// Errors of the force along the plate (lengths), or of the moment; and the largest truth.
+/// Errors of the force along the plate (lengths), or of the moment, and the largest true value.
 struct ShearErrors {
   std::vector<double> errors;
   double largest = 0;

@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// Foam fingers: how many steps before the slip a loosening grip is warned of it, and how often a
-// grip that does not change, on which nothing slips, is warned of nothing. A warning counts only
-// beside its false alarms: a rule that always alarms warns before every slip.
+// Foam fingers: how many steps before the slip a loosening grip is warned, and how often a steady
+// grip without slip raises a false alarm. A warning counts only together with the false alarms,
+// because a rule that always alarms warns before every slip.
 #include <algorithm>
 #include <array>
 #include <string>
@@ -20,7 +20,7 @@ namespace bench::papers {
 struct Warnings {
   int runs = 0, warned = 0, at_once = 0;  ///< at_once: within the first step, at full grip
   int fewest = 1000, most = 0;            ///< steps of warning
-  double false_per_minute = 0;            ///< while the grip stays as it is
+  double false_per_minute = 0;            ///< with a steady grip
 
   std::string steps() const {
     return std::to_string(fewest) + " to " + std::to_string(most) + " steps, in " +
@@ -32,7 +32,7 @@ struct Warnings {
   }
 };
 
-/// Both fingers, from readings to an alarm.
+/// Processing of both fingers from readings to an alarm.
 template <class Rule>
 class Watch {
  public:
@@ -89,7 +89,7 @@ Warnings warnings_of(const Rule& rule) {
     }
     ++w.runs;
     if (warned_at >= 0) {
-      const int steps = step - 1 - warned_at;  // until the one in which it falls
+      const int steps = step - 1 - warned_at;  // until the step in which the object falls
       ++w.warned;
       w.at_once += warned_at == 0 ? 1 : 0;
       w.fewest = (std::min)(w.fewest, steps);

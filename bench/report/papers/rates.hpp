@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// How many frames a second each method treats, on one thread: the best of several runs. The printed
-// rates are those of whole programs on a PC of 2010; docs/whole_chain.md times the chain.
+// Frames per second of each method on one thread, the best of several runs. The printed rates are
+// those of whole programs on a PC of 2010; docs/whole_chain.md times the chain.
 #include <chrono>
 #include <string>
 #include <vector>
@@ -17,7 +17,7 @@
 
 namespace bench::papers {
 
-/// Frames a second; a call of `work` treats so many.
+/// Frames per second; a call of `work` processes `frames` frames.
 template <class Work>
 std::string rate(const Work& work, double frames = 1) {
   using Clock = std::chrono::steady_clock;

@@ -1,10 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// What the published direction of the pull at the rim loses, over the stretch of the membrane
-// there: 1 / lambda^4 of all that the rim carries by shear (docs/errata.md, E043). The stretch of
-// the scenes' pad is that of the side dots at four pressures; that of the paper's pad is reckoned
-// from what the papers print.
+// Loss due to the published direction of the pull at the rim, as a function of the stretch of the
+// membrane there: 1 / lambda^4 of the load that the rim carries by shear (docs/errata.md, E043).
+// The stretch of the scenes' pad is that of the side dots at four pressures; that of the paper's
+// pad is computed from the printed figures.
 #include <cmath>
 #include <cstdio>
 #include <ostream>
@@ -74,7 +74,7 @@ inline double stretch_under(double tension_n_per_mm, double modulus_n_per_mm) {
   return low;
 }
 
-/// Mean over the rim of the length from it to the first side dots.
+/// Stretch of the length from the rim to the first side dots, averaged over the rim.
 inline double mean_stretch(const test::WrenchFrame& frame) {
   const auto rim = test::rim_border();
   double sum = 0;

@@ -15,7 +15,8 @@
 
 namespace bench::papers {
 
-/// Of every pixel that sees a point within 17.5 mm of the axis; `contact`: that touches besides.
+/// Depth errors of all pixels whose point lies within 17.5 mm of the axis and, with `contact`,
+/// touches.
 inline std::vector<double> depth_errors(const SceneFrame& frame,
                                         const test::Image<float>& depth_mm,
                                         const std::string& contact = {}) {
@@ -44,7 +45,7 @@ inline std::vector<double> depth_errors(const SceneFrame& frame,
   return errors;
 }
 
-/// The published depth from a free pad that is the mean of many frames, as the default has it.
+/// The published depth with a free pad that is the mean of many frames, as in the default.
 class PublishedDepth {
  public:
   PublishedDepth() : estimate_(estimator()) {}
@@ -75,7 +76,7 @@ class PublishedDepth {
   fingerpad::published::DepthEstimator<float> estimate_;
 };
 
-/// sd of a pixel's depth from frame to frame, by two frames of one shape.
+/// Standard deviation of a pixel's depth from frame to frame, from two frames of one shape.
 inline double noise_mm(const test::Image<float>& one, const test::Image<float>& other) {
   double squares = 0, count = 0;
   for (std::size_t k = 0; k < one.cells.size(); ++k) {
@@ -88,7 +89,7 @@ inline double noise_mm(const test::Image<float>& one, const test::Image<float>& 
   return std::sqrt(squares / count);
 }
 
-/// How much red and green change on the axis from no depth to 11.7 mm.
+/// Change of red and green on the axis from zero depth to 11.7 mm.
 inline std::string colour_change() {
   const test::Pad& pad = SceneFrames::instance().pad();
   const fingerpad::Index row = pad.rows / 2, col = pad.cols / 2;

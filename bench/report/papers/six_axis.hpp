@@ -20,7 +20,7 @@
 
 namespace bench::papers {
 
-/// Largest of all scenes: the full scales. N, N, N mm.
+/// Full scales: the largest values of all scenes, in N, N and N mm.
 struct FullScale {
   double along = 0, normal = 0, moment_z = 0;
   FullScale() {
@@ -34,7 +34,7 @@ struct FullScale {
 
 struct Loads {
   std::vector<double> normal, along, moment_z;  ///< errors
-  double along_gain = 0;                        ///< slope of what was found over the truth
+  double along_gain = 0;                        ///< slope of the results over the truth
   double moment_gain = 0;
   int no_answer = 0;
 };
@@ -53,7 +53,7 @@ inline const fingerpad::PadHeights<>::Map& measured_heights(const std::string& n
   return all.emplace(name, map).first->second;
 }
 
-/// By the frames of one scene; `noisy`: from frames, else exact.
+/// Loads of the frames of one scene; `noisy`: from measured frames, otherwise from exact shapes.
 template <class W>
 Loads loads_of(const W& wrench, const std::string& scene, bool noisy) {
   Loads e;

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// Stick ratio of finite-element scenes with dots of 0.06 px of noise: S and D over U, what
-// denoising buys, and the course over slip and reversal.
+// Stick ratio of finite-element scenes with 0.06 px of noise of the dots: S and D over U, the
+// effect of denoising, and the course over slip and reversal.
 #include <cmath>
 #include <string>
 #include <vector>
@@ -19,9 +19,9 @@ constexpr double jitter_px = 0.06;
 /// One run of a scene.
 struct Course {
   std::vector<double> found, truth;  ///< in frames with an answer
-  double sum = 0;                    ///< S: of the ratios, as a share of the answers
-  double falls = 0;                  ///< D: of all decreases
-  double falls_beyond = 0;           ///< D': more than the net drop
+  double sum = 0;                    ///< S: mean of the ratios
+  double falls = 0;                  ///< D: sum of all decreases
+  double falls_beyond = 0;           ///< D': excess of D over the net drop
 };
 
 template <class Ratio>
@@ -49,7 +49,7 @@ Course course_of(const Ratio& ratio,
   return c;
 }
 
-/// The threshold that 0.06 px before the denoising ask for, as the accuracy tests have it.
+/// The threshold for 0.06 px of noise before denoising, as in the accuracy tests.
 inline fingerpad::StickTest test_of(double reference_px) {
   fingerpad::StickTest test = fingerpad::published::stick_test_px;
   test.reference = reference_px;
@@ -58,7 +58,7 @@ inline fingerpad::StickTest test_of(double reference_px) {
   return test;
 }
 
-/// S, D and D' of the drag, means over 10 noises.
+/// S, D and D' of the drag, averaged over 10 noises.
 template <class Ratio>
 std::string measures(const Ratio& ratio) {
   const test::StickScene drag("drag");
@@ -87,7 +87,8 @@ std::vector<double> ratio_errors(const Ratio& ratio,
   return errors;
 }
 
-/// sd of a dot's place against the central one, in frames at rest, before and after denoising.
+/// Standard deviation of a dot's position relative to the central dot at rest, before and after
+/// denoising.
 struct Noise {
   double before_px = 0, after_px = 0;
 };
@@ -117,7 +118,7 @@ Noise denoised(const Weights& mean) {
   return {std::sqrt(noise.before_px / count), std::sqrt(noise.after_px / count)};
 }
 
-/// The slides' mean over the 3 x 3 neighbours, S1 : S2 : S3 = 6 : 2 : 1.
+/// The slides' weighted mean over the 3 x 3 neighbours, S1 : S2 : S3 = 6 : 2 : 1.
 inline test::PointsPx weighted_mean(const test::PointsPx& dots) {
   test::PointsPx out = dots;
   for (fingerpad::Index i = 1; i + 1 < dots.rows(); ++i) {

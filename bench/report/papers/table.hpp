@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// Rows of docs/papers.md: what a paper printed beside what the published method and the default
-// make of the nearest experiment here.
+// Rows of docs/papers.md: the printed figure of a paper, compared with the results of the published
+// method and of the default in the nearest experiment here.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -14,7 +14,7 @@ namespace bench::papers {
 
 struct Row {
   std::string experiment;  ///< the paper's
-  std::string figure;      ///< what was measured, and in what unit
+  std::string figure;      ///< the measured quantity and its unit
   std::string printed;     ///< by the paper
   std::string published;   ///< by the published method, here
   std::string ours;        ///< by the default, here
@@ -38,7 +38,7 @@ inline void print(std::ostream& out, const Section& section) {
   out << '\n';
 }
 
-/// Two digits that count, at least one after the point below 10.
+/// Two significant digits, and at least one decimal below 10.
 inline std::string number(double x) {
   char text[32];
   const double size = std::abs(x);
@@ -50,7 +50,7 @@ inline std::string percent(double share) {
   return number(100 * share) + " %";
 }
 
-/// Of absolute values.
+/// Statistics of absolute values.
 struct Spread {
   double mean = 0, sd = 0, worst = 0;
 
@@ -67,7 +67,7 @@ struct Spread {
   }
   std::string mean_and_sd() const { return number(mean) + " / " + number(sd); }
   std::string mean_and_worst() const { return number(mean) + " / " + number(worst); }
-  /// As shares of a full scale.
+  /// Mean and worst value relative to a full scale.
   std::string shares(double full_scale) const {
     return percent(mean / full_scale) + " / " + percent(worst / full_scale);
   }

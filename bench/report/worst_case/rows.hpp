@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// How long a call takes on its usual input, on the input that takes it longest, and at the tail of
-// many calls of both; what memory it takes; and how often the system had to find it a page.
+// Time of a call on its usual input, on its slowest input, and at the tail of many calls of both;
+// its allocations and its page faults.
 #include <sys/resource.h>
 
 #include <algorithm>
@@ -18,7 +18,7 @@
 
 namespace bench::worst_case {
 
-/// A kind of input, and one call on the k-th of that kind; the first kind is the usual one.
+/// A kind of input, and a call on the k-th input of that kind. The first kind is the usual one.
 struct Kind {
   std::string name;
   std::function<void(int k)> call;
@@ -54,7 +54,8 @@ inline long page_faults() {
   return used.ru_minflt + used.ru_majflt;
 }
 
-/// The tail is that of `calls` calls, the usual input and the hardest by turns.
+/// Measures a row. The tail is that of `calls` calls, alternately on the usual and the hardest
+/// input.
 inline Row row_of(const std::string& method, const std::vector<Kind>& kinds, long calls) {
   Row row;
   row.method = method;
