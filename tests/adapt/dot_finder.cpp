@@ -24,7 +24,7 @@ DotPlaces lost_everywhere(const DotPlaces& like) {
   return DotPlaces(like.size(), cv::Vec2d::all(0));
 }
 
-/// The free pad's dots as the finder has them.
+/// The dots of the free pad as the finder has them.
 DotPlaces free_of(const DotFinder& finder) {
   DotPlaces dots(static_cast<int>(finder.rows()), static_cast<int>(finder.cols()));
   const auto view = finder.free_px();
@@ -36,7 +36,7 @@ DotPlaces free_of(const DotFinder& finder) {
   return dots;
 }
 
-/// Dots in `frame`, which follows the free pad.
+/// Dots of `frame`, which follows the free pad.
 DotPlaces dots_in(const DotFinder& finder, const cv::Mat& frame) {
   DotPlaces dots(static_cast<int>(finder.rows()), static_cast<int>(finder.cols()));
   auto state = finder.start();
@@ -139,7 +139,7 @@ TEST_CASE("dots: what is lost is NaN, the others stay, and it comes back under i
 }
 
 TEST_CASE("dots: specks that are no dots take no name and move no dot") {
-  // A speck whose edge is within a radius of a dot's edge is part of its spot, and moves it a
+  // A speck whose edge is within a radius of a dot's edge belongs to its spot and shifts it a
   // little.
   struct Case {
     double nearest_radii;  // from a dot's center; dots have 1, specks 1/3
@@ -211,7 +211,7 @@ TEST_CASE("dots: the order of the spots does not matter") {
 }
 
 TEST_CASE("dots: smooth moves of several pitches at once keep the labels") {
-  // A square print held at the rim; the middle moves and turns as one.
+  // A square print that is held at the rim; the middle moves and rotates as one.
   constexpr int count = 19;
   constexpr double pitch_px = 17;
   std::mt19937 random(20110801);
@@ -237,13 +237,13 @@ TEST_CASE("dots: smooth moves of several pitches at once keep the labels") {
         const cv::Matx22d rotated(std::cos(angle), -std::sin(angle), std::sin(angle),
                                   std::cos(angle));
         truth(i, j) = center + rotated * from + rest * rest * shift;
-        if (unit(random) < 0.9) {  // one in twenty is not seen
+        if (unit(random) < 0.9) {  // one in twenty is not visible
           spots.push_back(
               {truth(i, j)[0] + 0.1 * unit(random), truth(i, j)[1] + 0.1 * unit(random)});
         }
       }
     }
-    for (int k = 0; k < 10; ++k) {  // and some spots are no dots
+    for (int k = 0; k < 10; ++k) {  // and some spots are not dots
       spots.push_back(
           {center[0] + 9 * pitch_px * unit(random), center[1] + 9 * pitch_px * unit(random)});
     }
@@ -306,6 +306,9 @@ TEST_CASE("dots: a free frame without a grid says so") {
     const DotFinder finder(frame);
     CHECK_FALSE(finder.ok());
     CHECK(finder.rows() == 0);
+    auto state = finder.start();
+    DotPlaces dots(0, 0);
+    CHECK_FALSE(finder(frame, dots, state).ok());
   }
 }
 
@@ -387,7 +390,7 @@ TEST_CASE("dots: rows and columns that are given are kept") {
 }
 
 TEST_CASE("dots: what lies in a grid but is faint is not taken for the dots") {
-  // The blocks of a compressed picture: more of them than there are dots.
+  // The blocks of a compressed image; there are more of them than dots.
   Print print;
   print.rows = 4;
   print.cols = 6;

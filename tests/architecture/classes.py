@@ -1,16 +1,16 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: 2026 The fingerpad authors
 # SPDX-License-Identifier: MIT
-"""Every public class is in docs/classes.md, and its page has all that a page of a class has.
+"""Checks that every public class is in docs/classes.md, and that its page is complete.
 
 classes.py ROOT            prints what is missing; exit status 1 if anything is
-classes.py ROOT --planted  plants one gap of each kind in a copy, and expects it to be found
+classes.py ROOT --planted  plants one gap of each kind in a copy and expects it to be found
 
 1. A class of a room that computes is a row of the table, or one of the parts below it.
 2. A row has no empty cell, and its class and the types that it names exist.
 3. Each field of a parameter and each value of a status has a comment.
 4. The class's page, as the site writes it, has text under each heading.
-5. So has that of each printed form in docs/errata.md, among which is each class of published/.
+5. The same holds for each printed form in docs/errata.md, which includes each class of published/.
 """
 import importlib.util
 import re
@@ -22,7 +22,7 @@ from pathlib import Path
 ROOMS = ["depth", "contact", "motion", "slip", "force", "foam", "calibrate", "pipeline", "sim", "adapt"]
 CLASS = re.compile(r"^class (\w+)\b[^;]*\{", re.MULTILINE)
 FIELD = re.compile(r"^  (?!using |static |friend )(\w[\w:<>, ]*) \w+(?: = [^;]*)?;(.*)$")
-VALUE = re.compile(r"^  ()(?!ok,|none,)\w+(?: = \w+)?,(.*)$")  # these say themselves
+VALUE = re.compile(r"^  ()(?!ok,|none,)\w+(?: = \w+)?,(.*)$")  # these need no comment
 
 
 def site_of(root):
@@ -40,8 +40,8 @@ def body_of(name, header):
 
 
 def bare(name, wanted, site, root):
-    """Fields or values without a comment behind, above or below, which one of the same type before
-    may have instead; a field whose type is the library's has the comments of that type."""
+    """Fields or values without a comment behind, above or below. The previous one may have the
+    comment if its type is the same; a field of the library's type has the comments of that type."""
     before = None
     lines = body_of(name, site.header_of(name, root))
     for k, line in enumerate(lines):
@@ -103,7 +103,7 @@ def empty_headings(page, name, site):
 
 
 def in_detail(text, name):
-    """Whether a class of a public header stands in a detail namespace."""
+    """Whether a class of a public header is in a detail namespace."""
     before = text[: re.search(rf"^class {name}\b[^;]*\{{", text, re.MULTILINE).start()]
     return before.count("\nnamespace detail {") > before.count("\n}  // namespace detail")
 

@@ -1,16 +1,16 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: 2026 The fingerpad authors
 # SPDX-License-Identifier: MIT
-"""What pages and comments point at is there.
+"""Checks that targets named in pages and comments exist.
 
 links.py ROOT            prints every dead end; exit status 1 if there is one
-links.py ROOT --planted  plants one dead end of each kind in a copy, and expects it to be found
+links.py ROOT --planted  plants one dead end of each kind in a copy and expects it to be found
 
 1. A link of a page leads to a file, and its #anchor to a heading.
-2. A path named in a page or in a header's comment exists; but for those of a recording, and those
-   with a part in capitals, which stand for any.
-3. A block of code below <!-- PATH --> stands in that file, line by line.
-4. A link to a file of tests with a "name" behind it: that file has a test of this name.
+2. A path named in a page or in a header's comment exists, except for those of a recording and for
+   those with a part in capitals, which are placeholders.
+3. A block of code below <!-- PATH --> is in that file, line by line.
+4. A test file whose link is followed by a "name" has a test of this name.
 """
 import re
 import shutil
@@ -29,7 +29,7 @@ COMMENT = re.compile(r"//[^\n]*")
 
 
 def anchors(page):
-    """What GitHub names the headings of a page."""
+    """Anchors of GitHub for the headings of a page."""
     text = re.sub(r"[`*]|\[|\]\([^)]*\)", "", "\n".join(HEADING.findall(BLOCK.sub("", page))))
     return {re.sub(r"[^\w\- ]", "", heading.lower()).replace(" ", "-") for heading in text.split("\n")}
 

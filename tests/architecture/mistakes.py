@@ -1,15 +1,15 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: 2026 The fingerpad authors
 # SPDX-License-Identifier: MIT
-"""The matrix of docs/mistakes.md, held against the tests by tests/mistakes/cells.txt.
+"""Compares the matrix of docs/mistakes.md with the tests, by tests/mistakes/cells.txt.
 
 mistakes.py ROOT            prints every breach; exit status 1 if there is one
-mistakes.py ROOT --planted  plants one breach of each rule in a copy, and expects it to be found
+mistakes.py ROOT --planted  plants one breach of each rule in a copy and expects it to be found
 
-1. Each cell but a dash has a line in cells.txt, and each line has such a cell.
-2. Each name in that line is a row or a test case of the test file beside it.
-3. Each status in the cell is what one of these rows says.
-4. Each number of a reason is there below the matrix.
+1. Each cell except a dash has a line in cells.txt, and each line has such a cell.
+2. Each name in that line is a row or a test case of the test file named there.
+3. Each status in the cell is the expected status of one of these rows.
+4. Each number of a reason exists below the matrix.
 """
 import re
 import shutil
@@ -47,7 +47,7 @@ def lines_of(text):
 
 
 def bodies(source, name):
-    """The text of each row or test case of this name: to the brace that closes it."""
+    """The text of each row or test case of this name, up to its closing brace."""
     for match in re.finditer(re.escape(f'"{name}"'), source):
         before = source[: match.start()].rstrip()
         if before.endswith("TEST_CASE("):

@@ -1,14 +1,14 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: 2026 The fingerpad authors
 # SPDX-License-Identifier: MIT
-"""The rules of the folders of include/, held against the sources.
+"""Checks the rules of the folders of include/ on the sources.
 
 rooms.py ROOT            prints every breach; exit status 1 if there is one
-rooms.py ROOT --planted  plants one breach of each rule in a copy, and expects it to be found
+rooms.py ROOT --planted  plants one breach of each rule in a copy and expects it to be found
 
 1. A folder includes only folders below it, and no subject includes another subject.
 2. A file in a detail/ folder declares nothing outside of a detail namespace.
-3. Nothing outside of include/ includes a file of a detail/ folder.
+3. No file outside of include/ includes a file of a detail/ folder.
 4. No file includes itself through others.
 """
 import re
@@ -19,7 +19,7 @@ from pathlib import Path
 
 VOCABULARY = ["core", "math", "optics", "image"]  # each may include those before it
 SUBJECTS = ["depth", "contact", "motion", "slip", "force", "foam"]
-ABOVE = {  # what stands on the subjects, and what else it may include
+ABOVE = {  # folders above the subjects, and what else they may include
     "calibrate": [],
     "sim": [],
     "published": ["calibrate"],
@@ -41,7 +41,7 @@ def includes(text):
 
 
 def declared_outside_detail(text):
-    """The beginnings of declarations that stand in no detail namespace."""
+    """The beginnings of declarations outside of a detail namespace."""
     text = DIRECTIVE.sub("", COMMENT_OR_STRING.sub(" ", text))
     open_braces, head, found = [], "", []
 

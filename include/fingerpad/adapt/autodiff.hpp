@@ -3,16 +3,17 @@
 #pragma once
 // Eigen::AutoDiffScalar as a scalar: every kernel then also yields exact derivatives with respect
 // to whatever the caller seeds (colours, calibration, camera). With the covariance of a calibration
-// they tell the variance that its errors leave in a result.
+// they give the variance of a result due to calibration errors.
 #include <Eigen/Core>  // AutoDiff does not include it
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 #include <unsupported/Eigen/AutoDiff>
 
 #include "fingerpad/core/scalar.hpp"
 
-// Functions of kernels that AutoDiffScalar lacks; found where its others are.
+// Functions that kernels need and AutoDiffScalar lacks. They are in Eigen's namespace for ADL.
 namespace Eigen {
 
 template <class Derivatives>
@@ -50,7 +51,7 @@ struct scalar_traits<Eigen::AutoDiffScalar<Derivatives>> {
   static const real& value(const Eigen::AutoDiffScalar<Derivatives>& x) { return x.value(); }
 };
 
-/// N parameters as dual numbers, each with a seed of its own.
+/// N parameters as dual numbers: derivative k is 1 for parameter k and 0 for the others.
 template <scalar S, std::size_t N>
 auto seeded(const std::array<S, N>& parameters) {
   using Dual = Eigen::AutoDiffScalar<Eigen::Matrix<S, static_cast<int>(N), 1>>;
@@ -61,8 +62,8 @@ auto seeded(const std::array<S, N>& parameters) {
   return duals;
 }
 
-/// Variance of a result whose derivatives are by seeded parameters of this covariance, N x N, to
-/// first order: J C J^T. O(N^2).
+/// First-order variance J C J^T of a result, where C is the N x N covariance of the seeded
+/// parameters. O(N^2).
 template <class Derivatives, class Covariance>
 auto carried_variance(const Eigen::AutoDiffScalar<Derivatives>& result,
                       const Eigen::MatrixBase<Covariance>& covariance) {

@@ -1,15 +1,17 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// Printed dots in the frames of a camera: found, named by row and column, and followed from frame
-// to frame. What is not known of the print (size, spacing, dark or bright, how many rows) is found
+// Finds printed dots in camera frames, assigns them rows and columns, and tracks them from frame to
+// frame. Unknown properties of the print (size, spacing, dark or bright, number of rows) are found
 // in a frame of the free pad. Needs OpenCV (core, imgproc): target fingerpad::dot_finder.
 //
 //   DotFinder finder(free_frame);                    // any pad with a grid of dots
 //   auto state = finder.start();
 //   cv::Mat_<cv::Vec2d> dots(finder.rows(), finder.cols());
 //   auto result = finder(frame, dots, state);        // NaN where a dot is lost
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <limits>
 #include <opencv2/core.hpp>
 #include <optional>
@@ -24,44 +26,45 @@
 namespace fingerpad {
 inline namespace v0 {
 
-/// What is known of a print. What is 0, NaN or empty is found in the frame of the free pad.
+/// Known properties of a print. Values that are 0, NaN or empty are found in the frame of the free
+/// pad.
 struct DotPattern {
-  Index rows = 0;  ///< both or none; 2 to 100
+  Index rows = 0;  ///< 2 to 100; give both rows and cols, or neither
   Index cols = 0;
   double radius_px = 0;        ///< of a dot, >= 1
-  double pitch_px = 0;         ///< between neighbouring dots, > 2 radii; read only with a radius
-  std::optional<bool> bright;  ///< brighter than the ground around them, or darker
-  /// Where the middle of the print appears: of several ways to count rows and columns the one that
-  /// puts it nearest is taken, else the one that begins with the first dots.
+  double pitch_px = 0;         ///< between neighbouring dots, > 2 radii; needs a radius
+  std::optional<bool> bright;  ///< true: dots brighter than the background; false: darker
+  /// Position of the middle of the print. If rows and columns can be counted in several ways, the
+  /// one with the middle nearest to this position is taken; without it, the one that begins with
+  /// the first dots.
   Point2<double> middle_px = {not_a_number<double>(), not_a_number<double>()};
 };
 
 struct DotFinderOptions {
   DotPattern pattern;
-  cv::Mat_<unsigned char>
-      where;  ///< nonzero where dots may be, of the frames' size; empty: anywhere
-  double min_contrast =
-      0.08;  ///< between a dot and the ground around it, share of its light; (0, 1)
-  /// Of blue, green and red in the light that is looked at, >= 0 and not all 0; leave out a channel
-  /// that holds only noise.
+  /// Mask of the frames' size: nonzero where dots may be. Empty: anywhere.
+  cv::Mat_<unsigned char> where;
+  /// Least contrast of a dot, as a share of the light of the background around it; in (0, 1).
+  double min_contrast = 0.08;
+  /// Weights of blue, green and red, >= 0 and not all 0. Use 0 for a channel that holds only noise.
   std::array<double, 3> color_weights = {1, 1, 1};
   DotTrackerOptions tracker;
 };
 
-/// Const: what is remembered of a pad is a State.
+/// Finds and tracks the dots of a pad. Const: all memory of a pad is in its State.
 class DotFinder {
  public:
-  /// What is remembered of one pad. A value: copy it to try something, assign start() to forget.
+  /// Memory of one pad. A value: copy it to try something, assign start() to reset it.
   class State {
     friend DotFinder;
     DotTracker::State dots;
     detail::SpotWorkspace workspace;
   };
 
-  /// Looks for the grid in `free_frame`: a picture of the free pad, 8 or 16 bit (grey levels times
-  /// 256), of one, three or four channels. Where it shows no grid of 9 or more dots, ok() is false
-  /// and every frame is refused. Refuses bad options (parameter_error). Takes up to a second where
-  /// nothing is known of the print.
+  /// Finds the grid in `free_frame`: an image of the free pad, 8 or 16 bit (grey levels times 256),
+  /// with one, three or four channels. If it shows no grid of 9 or more dots, ok() is false and
+  /// every frame is refused. Refuses bad options (parameter_error). Takes up to a second if nothing
+  /// is known of the print.
   explicit DotFinder(const cv::Mat& free_frame, const DotFinderOptions& options = {})
       : size_(free_frame.size()) {
     check(free_frame, options);
@@ -90,9 +93,9 @@ class DotFinder {
   bool ok() const { return tracker_.has_value(); }
   Index rows() const { return free_.rows(); }
   Index cols() const { return free_.cols(); }
-  /// The free pad's dots, px; NaN where one was not seen.
+  /// The free pad's dots, px; NaN for a dot that was not seen.
   StridedView<const Point2<double>> free_px() const { return free_.view(); }
-  /// The print as it was found.
+  /// Properties of the print as found in the free frame.
   DotPattern pattern() const {
     DotPattern found;
     found.rows = rows();
@@ -103,16 +106,19 @@ class DotFinder {
     return found;
   }
 
-  /// The pad as the free frame shows it; ok() must be true.
+  /// State of the free pad, as in the free frame.
   State start() const {
     State state;
-    state.dots = tracker_->start();
+    if (ok()) {
+      state.dots = tracker_->start();
+    }
     return state;
   }
 
-  /// The dots of the next frame, in the order in which they are printed; NaN where one is lost.
-  /// Takes O(pixels + dots) time, and more after a leap of more than a third of a pitch. Small
-  /// buffers come from the heap, those of the frame's size stay in `state`: one for each thread.
+  /// The dots of the next frame, by their printed row and column; NaN for a lost dot. Takes
+  /// O(pixels + dots) time, and more after a jump of more than a third of a pitch. Small buffers
+  /// are allocated on each call; those of the frame's size stay in `state`. Use one state per
+  /// thread.
   template <dot_grid Dots>
   DotResult operator()(const cv::Mat& frame, Dots& dots_px, State& state) const {
     if (!ok() || frame.size() != size_ || !detail::is_picture(frame)) {
@@ -161,8 +167,9 @@ class DotFinder {
             o.min_contrast, o.color_weights};
   }
 
-  /// Many dots, few spots that are none, and dark ones: the blocks of a compressed picture lie in a
-  /// grid, too, but are faint.
+  /// Finds and scores the grid for one look. The score favours many dots, few other spots and a
+  /// high contrast. Contrast matters because the blocks of a compressed image form a grid, too, but
+  /// a faint one.
   static Attempt attempt(const cv::Mat& frame,
                          const DotFinderOptions& options,
                          const detail::SpotLook& look) {
@@ -185,7 +192,7 @@ class DotFinder {
     return one;
   }
 
-  /// The grid under the radius and the sign that show it best.
+  /// Tries radii and both signs (dark, bright), and returns the grid with the best score.
   static Attempt search(const cv::Mat& frame, const DotFinderOptions& options) {
     constexpr double smallest_px = 1.5, step = 1.4;
     constexpr double usual_pitch = 5;  // radii
@@ -206,7 +213,8 @@ class DotFinder {
     return refined(frame, options, best);
   }
 
-  /// With radius and pitch as they turned out to be, where that finds as many dots.
+  /// Repeats the attempt with the radius and pitch found, as long as the score stays at 90 % or
+  /// more of the last one.
   static Attempt refined(const cv::Mat& frame, const DotFinderOptions& options, Attempt one) {
     constexpr int rounds = 2;
     for (int round = 0; round < rounds && one.dots.rows() > 0; ++round) {
@@ -224,7 +232,7 @@ class DotFinder {
     return one;
   }
 
-  /// Where every dot should be on the free pad: outside of `where` there is none.
+  /// Expected positions of all dots on the free pad; NaN outside of `where`.
   static detail::Places places_of(const detail::Places& dots,
                                   const cv::Mat_<unsigned char>& where) {
     detail::Places all = detail::extrapolated(dots);

@@ -1,12 +1,14 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// Which spot of a frame is which printed dot, from frame to frame: the half of the dot finder that
-// looks at no image, for those who find spots in a way of their own. Several guesses of how the
-// dots moved are grown into labels; the one with the most and the most regular labels is taken.
-// Where two guesses do nearly as well but disagree, the dots they disagree about count as lost.
+// Assigns the spots of each frame to the printed dots. This is the part of the dot finder that
+// needs no image, for callers with their own spot detection. Several guesses of the dots' motion
+// are grown into labels, and the guess with the most and the most regular labels is taken. If
+// another guess scores nearly as well, the dots on which the two disagree count as lost.
+#include <algorithm>
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 #include "fingerpad/adapt/detail/dot_matcher.hpp"
@@ -19,7 +21,7 @@ inline namespace v0 {
 
 enum class DotStatus : std::uint8_t {
   ok,
-  lost,     ///< too few dots were recognised for any of them to be believed: all are NaN
+  lost,     ///< too few dots were recognised to trust any of them: all are NaN
   refused,  ///< frame or grid of another size or type: nothing was written
 };
 
@@ -31,36 +33,37 @@ constexpr const char* name_of(DotStatus status) {
 
 struct [[nodiscard]] DotResult {
   DotStatus status = DotStatus::refused;
-  Index found = 0;     ///< dots that have a place in this frame
-  Index expected = 0;  ///< dots that the free pad shows
-  Index spots = 0;     ///< what looked like a dot in this frame, dots or not
+  Index found = 0;     ///< dots located in this frame
+  Index expected = 0;  ///< dots seen on the free pad
+  Index spots = 0;     ///< spots in this frame, whether they are dots or not
 
   bool ok() const { return status == DotStatus::ok; }
 };
 
 struct DotTrackerOptions {
-  /// A dot farther than this from where its neighbours put it may be lost, in parts of the pitch;
-  /// > 0. Take 0.1 for a membrane over a fluid, which moves smoothly, and 0.3 for dots behind an
-  /// elastic pad, where a contact moves dots while those beside it stand still.
+  /// Deviation of a dot from the position predicted by its neighbours beyond which it may count as
+  /// lost, as a fraction of the pitch, > 0. Use 0.1 for a membrane over a fluid, which moves
+  /// smoothly, and 0.3 for dots behind an elastic pad, where a contact moves dots while those
+  /// beside it stay still.
   double max_off = 0.1;
 };
 
-/// Const: what is remembered of a pad is a State. Memory: O(dots).
+/// Tracks the dots of a pad. Const: all memory of a pad is in its State. Memory: O(dots).
 class DotTracker {
   using Place = detail::Place;
   using Places = detail::Places;
 
  public:
-  /// Where the dots of one pad were in the last frame, and how they moved. A value: copy it to try
-  /// something, assign start() to forget.
+  /// Positions and velocities of the dots of one pad in the last frame. A value: copy it to try
+  /// something, assign start() to reset it.
   class State {
     friend DotTracker;
-    Places last, velocity;  // px, px a frame; NaN and 0 where unknown
+    Places last, velocity;  // px, px per frame; unknown: NaN, 0
   };
 
-  /// `free_px` are the dots of the free pad in px, NaN where one was not seen; `places_px`, of the
-  /// same size, says where those that were not seen should be (NaN: nowhere). Refuses grids of
-  /// different sizes, fewer than 9 dots and bad options (parameter_error).
+  /// `free_px` are the dots of the free pad in px, NaN for a dot that was not seen. `places_px`, of
+  /// the same size, gives the expected positions of the dots not seen; NaN: there is no dot.
+  /// Refuses grids of different sizes, fewer than 9 dots and bad options (parameter_error).
   template <dot_grid Dots, dot_grid AllDots>
   DotTracker(const Dots& free_px, const AllDots& places_px, const DotTrackerOptions& options = {})
       : max_off_(options.max_off) {
@@ -76,14 +79,14 @@ class DotTracker {
     border_ = border_of(found);
     find_middle(found);
   }
-  /// The same where nothing is known of dots that were not seen: neighbours tell their places.
+  /// The same without `places_px`: dots that were not seen are extrapolated from their neighbours.
   template <dot_grid Dots>
   explicit DotTracker(const Dots& free_px, const DotTrackerOptions& options = {})
       : DotTracker(free_px, detail::extrapolated(copied(free_px)), options) {}
 
   Index rows() const { return free_.rows(); }
   Index cols() const { return free_.cols(); }
-  /// Every dot on the free pad: where it was seen, or where it should be.
+  /// Every dot on the free pad: its position where it was seen, else the expected one.
   StridedView<const Point2<double>> places_px() const { return free_.view(); }
 
   State start() const {
@@ -93,10 +96,10 @@ class DotTracker {
     return state;
   }
 
-  /// The dots among the spots of the next frame, in the order in which they are printed; NaN where
-  /// one is lost. Spots in any order; those that are not finite, or farther out than 1e6 px, are
-  /// none. Takes O(dots + spots) time where dots move little between frames, up to 60 times that
-  /// after a leap; a few buffers of the size of the dots are allocated.
+  /// The dots of the next frame, by their printed row and column; NaN for a lost dot. Spots may be
+  /// in any order; those that are not finite, or farther out than 1e6 px, are ignored. Takes
+  /// O(dots + spots) time if dots move little between frames, up to 60 times that after a jump.
+  /// Allocates a few buffers of the size of the dots.
   template <dot_grid Dots>
   DotResult operator()(const std::vector<Point2<double>>& spots,
                        Dots& dots_px,
@@ -126,11 +129,11 @@ class DotTracker {
   }
 
  private:
-  // Shares of the dots that labels explain:
-  static constexpr double nearly_all = 0.99;    // nothing better is looked for
-  static constexpr double max_of_all = 0.96;    // with less, leaps are tried
-  static constexpr double min_explained = 0.9;  // with less, the labels do not count
-  static constexpr double longest_leap = 3.5;   // pitches, from one frame to the next
+  // Shares of the dots that have a label:
+  static constexpr double nearly_all = 0.99;    // the search stops
+  static constexpr double max_of_all = 0.96;    // below this, jumps are tried
+  static constexpr double min_explained = 0.9;  // below this, all dots are lost
+  static constexpr double longest_leap = 3.5;   // pitches between two frames
 
   struct Guess {
     detail::Labels labels;
@@ -166,7 +169,8 @@ class DotTracker {
     return good;
   }
 
-  /// `found` where it is known. Elsewhere `base`, moved as the neighbours of the dot have moved.
+  /// `found` where it is known. Elsewhere `base`, moved like the neighbours of the dot, or
+  /// `otherwise` if these do not determine the move.
   static Places filled(const Places& found, const Places& base, const Places& otherwise) {
     Places all = found;
     for (Index i = 0; i < found.rows(); ++i) {
@@ -184,7 +188,7 @@ class DotTracker {
     return all;
   }
 
-  /// The dots that lack one of eight neighbours: the rim holds them.
+  /// Marks the dots that lack one of eight neighbours. They move little because the rim holds them.
   static detail::Table<char> border_of(const Places& dots) {
     detail::Table<char> border(dots.rows(), dots.cols(), 0);
     for (Index i = 0; i < dots.rows(); ++i) {
@@ -236,7 +240,7 @@ class DotTracker {
       return std::max_element(guesses.begin(), guesses.end(),
                               [](const Guess& a, const Guess& b) { return a.score < b.score; });
     };
-    // Small steps first: mostly they are all it takes.
+    // Small motions first: they usually suffice.
     if (!explains_all(from_last, everywhere, at_rest) &&
         !explains_all(from_last, everywhere,
                       [&](Index i, Index j) { return state.velocity(i, j); })) {
@@ -251,13 +255,13 @@ class DotTracker {
     }
     Guess taken = *best();
     drop_doubtful(taken, guesses);
-    // Many spots without a label inside the print: the labels are somewhere else's.
+    // Too few labels: they are not trustworthy.
     return taken.count >= min_explained * most ? places_of(taken.labels, spots)
                                                : Places(rows(), cols(), detail::no_place());
   }
 
-  /// After a leap any spot that is not too far may be the middle dot: tries them, the nearest
-  /// first, until `explains_all(seeds, move)`.
+  /// Handles a jump: any spot within `longest_leap` may be the middle dot. Tries these spots, the
+  /// nearest first, until `explains_all(seeds, move)`.
   template <class ExplainsAll>
   void leap(const detail::SpotMap& spots,
             const State& state,
@@ -284,7 +288,7 @@ class DotTracker {
     }
   }
 
-  /// Dots about which a guess that does nearly as well disagrees are lost.
+  /// Removes the labels on which another guess with nearly the same score disagrees.
   static void drop_doubtful(Guess& best, const std::vector<Guess>& guesses) {
     constexpr double nearly = 0.985;
     for (const Guess& other : guesses) {
@@ -311,10 +315,10 @@ class DotTracker {
   }
 
   double max_off_;
-  Places free_;  ///< every dot on the free pad: seen there, or where it should be
+  Places free_;  ///< every dot on the free pad, seen or expected
   detail::Table<double> spacing_px_;
   detail::Table<char> border_;
-  DotIndex middle_;  ///< the dot in the middle
+  DotIndex middle_;
   Index count_ = 0;  ///< dots seen on the free pad
 };
 

@@ -22,7 +22,7 @@
 #include "fingerpad/core/grid.hpp"
 #include "fingerpad/core/status.hpp"
 #include "fingerpad/image/curvature_map.hpp"
-#include "fingerpad/image/detail/image_size.hpp"
+#include "fingerpad/image/detail/pixel_box.hpp"
 #include "fingerpad/image/detail/pixel_rays.hpp"
 #include "fingerpad/image/detail/regions.hpp"
 #include "fingerpad/optics/camera.hpp"

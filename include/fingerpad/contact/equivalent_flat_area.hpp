@@ -31,7 +31,7 @@
 #include "fingerpad/core/grid.hpp"
 #include "fingerpad/core/point.hpp"
 #include "fingerpad/core/scalar.hpp"
-#include "fingerpad/image/detail/image_size.hpp"
+#include "fingerpad/image/detail/pixel_box.hpp"
 #include "fingerpad/image/detail/quick_math.hpp"
 #include "fingerpad/image/detail/row_lanes.hpp"
 #include "fingerpad/optics/camera.hpp"

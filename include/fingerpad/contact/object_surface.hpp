@@ -21,7 +21,7 @@
 #include "fingerpad/core/expects.hpp"
 #include "fingerpad/core/grid.hpp"
 #include "fingerpad/core/scalar.hpp"
-#include "fingerpad/image/detail/image_size.hpp"
+#include "fingerpad/image/detail/pixel_box.hpp"
 #include "fingerpad/image/detail/pixel_rays.hpp"
 #include "fingerpad/optics/camera.hpp"
 

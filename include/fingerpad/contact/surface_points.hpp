@@ -12,7 +12,7 @@
 #include "fingerpad/core/dots.hpp"
 #include "fingerpad/core/grid.hpp"
 #include "fingerpad/core/scalar.hpp"
-#include "fingerpad/image/detail/image_size.hpp"
+#include "fingerpad/image/detail/pixel_box.hpp"
 #include "fingerpad/optics/camera.hpp"
 
 namespace fingerpad {

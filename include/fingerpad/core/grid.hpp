@@ -88,7 +88,7 @@ template <class G> concept readable_grid = requires(const std::remove_cvref_t<G>
 };
 
 template <class G>
-struct cell {  // void, not an error, for what is no grid: the concept then names the culprit
+struct cell {  // void instead of an error if G is not a grid: the concept then reports G
   using type = void;
 };
 template <readable_grid G>
@@ -98,7 +98,7 @@ struct cell<G> {
 };
 }  // namespace detail
 
-/// What the grid stores, without reference or const; void for what is not a grid.
+/// The type of the grid's cells, without reference or const; void if G is not a grid.
 template <class G>
 using cell_t = typename detail::cell<G>::type;
 
@@ -108,15 +108,16 @@ template <class G> concept grid = detail::readable_grid<G> && !std::is_void_v<ce
 /// A grid whose cells can be assigned from T.
 template <class G, class T = cell_t<G>>
 concept writable_grid = grid<G> && requires(std::remove_reference_t<G>& g, const T& cell, Index i) {
-  // a cell returned by value is a copy: what is assigned to it would be lost
+  // a cell returned by value is a copy: an assignment to it would be lost
   requires !std::same_as<decltype(detail::traits_of<G>::at(g, i, i)), cell_t<G>>;
   detail::traits_of<G>::at(g, i, i) = static_cast<cell_t<G>>(cell);
 };
 
 namespace detail {
 template <class G>
-inline constexpr bool is_told = false;
-/// For functions that write cells T: the first error says why a grid cannot take them.
+inline constexpr bool always_false = false;  ///< of a template argument, for static_assert
+/// Called by functions that write cells of type T, so that the first compile error says why G
+/// cannot take them.
 template <class G, class T = void>
 constexpr void writes_to() {
   if constexpr (grid<G>) {
@@ -124,10 +125,10 @@ constexpr void writes_to() {
                   "cells are written: pass a grid whose cells can be assigned, neither const nor "
                   "computed");
   } else {
-    static_assert(is_told<G>, "cells are written: pass a grid");
+    static_assert(always_false<G>, "cells are written: pass a grid");
   }
 }
-/// A grid that takes cells T, NaN among them.
+/// A grid to which cells of type T can be written, NaN included.
 template <class G, class T>
 concept takes_numbers = writable_grid<G, T> && !std::is_integral_v<cell_t<G>>;
 }  // namespace detail
@@ -148,11 +149,11 @@ constexpr Index cols(const G& g) {
   return detail::traits_of<G>::cols(g);
 }
 
-/// A readable error for types that are not grids.
+/// Gives types that are not grids a readable compile error.
 template <class G>
   requires(!grid<G>)
 constexpr Index rows(const G&) {
-  static_assert(detail::is_told<G>,
+  static_assert(detail::always_false<G>,
                 "no grid: give the type rows(), cols() and a const operator()(row, col), or "
                 "specialise fingerpad::grid_traits for it");
   return 0;
@@ -178,11 +179,11 @@ class StridedView {
   constexpr StridedView() = default;
   constexpr StridedView(T* data, Index rows, Index cols, Index row_stride, Index col_stride = 1)
       : data_(data), rows_(rows), cols_(cols), row_stride_(row_stride), col_stride_(col_stride) {}
-  /// A readable error for the reverse direction.
+  /// Gives the conversion from a read-only to a writable view a readable compile error.
   template <class Other>
     requires(!std::is_const_v<T> && std::same_as<Other, const T>)
   constexpr explicit StridedView(const StridedView<Other>&) {
-    static_assert(detail::is_told<Other>,
+    static_assert(detail::always_false<Other>,
                   "a view that only reads does not become one that writes: take "
                   "StridedView<const T>, or make the view from cells that are not const");
   }
@@ -227,7 +228,7 @@ class LazyView {
 template <class F>
 LazyView(Index, Index, F) -> LazyView<F>;
 
-/// The fallback: refers to a grid that offers nothing but its cells.
+/// Fallback view: a reference to a grid that offers no more than access to its cells.
 template <class G>
 class RefView {
  public:
@@ -265,9 +266,9 @@ template <class G>
 inline constexpr bool is_view<RefView<G>> = true;
 }  // namespace detail
 
-/// The strongest view of a grid: itself if it is a view, strided if it lies in plain memory, else a
-/// reference. The grid must outlive the view; a temporary that owns its cells is refused at compile
-/// time ("use of deleted function").
+/// The most capable view of a grid: the grid itself if it is a view, a StridedView if it lies in
+/// plain memory, else a RefView. The grid must outlive the view; a temporary that owns its cells is
+/// refused at compile time ("use of deleted function").
 template <grid G>
 constexpr auto as_view(G& g) {
   if constexpr (detail::is_view<std::remove_cv_t<G>>) {
@@ -379,7 +380,7 @@ constexpr bool is_contact(const Cell& cell) {
   }
 }
 
-/// A mask: a grid of such cells.
+/// A contact mask: a grid whose cells convert to bool.
 template <class G> concept contact_mask = grid<G> && requires(const cell_t<G>& cell) {
   static_cast<bool>(cell);
 };

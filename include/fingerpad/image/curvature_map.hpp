@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// From a depth map to a map of curvature, by which contact is told from a free membrane: what a
-// pressure stretches bulges outward wherever nothing touches it.
+// Converts a depth map to a curvature map, which tells contact from free membrane: a membrane under
+// pressure bulges outward wherever nothing touches it.
 // Source: Ito et al. 2011, III.B (eqs. 1-12), and the slides, contact region; E012-E017.
 #include <algorithm>
 #include <cmath>
@@ -20,7 +20,7 @@
 #include "fingerpad/image/curvature.hpp"
 #include "fingerpad/image/detail/curvature_rows.hpp"
 #include "fingerpad/image/detail/depth_units.hpp"
-#include "fingerpad/image/detail/image_size.hpp"
+#include "fingerpad/image/detail/pixel_box.hpp"
 #include "fingerpad/optics/camera.hpp"
 
 namespace fingerpad {
@@ -34,35 +34,35 @@ struct [[nodiscard]] CurvatureResult {
   bool ok() const { return status == FrameStatus::ok; }
 };
 
-/// Curvature statistics of depth maps of one size, in the number S: float or double by vectors, any
-/// other one by one.
+/// Curvature statistics of depth maps of one size, computed in the scalar S: by vectors in float
+/// and double, pixel by pixel in any other.
 ///   Statistic   ClampedMean<>       take this for any object, saddles of the free pad included
 ///               RingStencil<>       take this when time counts and contacts are flat
 ///   CameraType  Camera<double>      take this for depth maps along a camera's rays
 ///               OrthographicCamera  take this for height maps
 ///
-/// A pixel gets NaN where its depth is missing (not finite) or too few of its sections are
-/// complete; else the statistic of the complete ones. What is missing never reaches beyond its
-/// ring.
+/// A pixel gets NaN if its depth is missing (not finite) or too few of its sections are complete,
+/// else the statistic of the complete sections. A missing depth affects no pixel beyond the ring's
+/// radius.
 ///
-/// Rounding: in double about 1e-15 per mm. In float, sections by vectors are good to 2.1e-5 of
-/// themselves; depths, and through a camera zeta, that are off by a unit in the last place e
-/// change a curvature by up to 4 e / r^2.
+/// Rounding: in double about 1e-15 per mm. In float, sections by vectors have a relative error of
+/// 2.1e-5. An error of one unit in the last place e in a depth (through a camera, in zeta) changes
+/// a curvature by up to 4 e / r^2.
 ///
-/// Const: threads may share one map, each with a workspace of its own, and take a band of rows
-/// each. Bounded time and no allocation per frame.
+/// Const: threads may share one map, each with its own workspace and band of rows. Bounded time and
+/// no allocation per frame.
 template <class Statistic = ClampedMean<>, class CameraType = Camera<double>, scalar S = float>
 class CurvatureMap {
  public:
-  /// Memory that one frame at a time needs, taken up front.
+  /// Memory for one frame at a time, allocated up front.
   struct Workspace {
     detail::aligned_vector<S> cells;  ///< zeta, with a margin of NaN on every side
     detail::aligned_vector<S> segment;
     Index stride = 0;
   };
 
-  /// rows, cols in [1, 1e6], 1e8 pixels at most; depths of `too_deep_mm` or more in size are
-  /// missing, > 0. Refuses bad parameters (parameter_error).
+  /// rows, cols in [1, 1e6], at most 1e8 pixels. Depths of magnitude `too_deep_mm` (> 0) or more
+  /// count as missing. Refuses bad parameters (parameter_error).
   CurvatureMap(const CameraType& camera,
                Index rows,
                Index cols,
@@ -91,21 +91,22 @@ class CurvatureMap {
             stride_};
   }
 
-  /// Curvatures in 1/mm into `out`, which may be the depth map itself.
+  /// Writes curvatures in 1/mm to `out`, which may be the depth map itself.
   template <grid Depth, class Out>
   CurvatureResult operator()(const Depth& depth_mm, Out&& out, Workspace& workspace) const {
     return band(0, rows_, depth_mm, out, workspace);
   }
 
-  /// Only the rows [first, last) of the output, the same bits as in the whole; both grids have the
-  /// size of the image. Rows of the depth map up to the ring's radius beyond are read.
+  /// Computes only rows [first, last) of the output, with the same bits as in the whole image. Both
+  /// grids have the size of the image. Rows of the depth map up to the ring's radius beyond the
+  /// band are read.
   template <grid Depth, class Out>
   CurvatureResult band(
       Index first, Index last, const Depth& depth_mm, Out&& out, Workspace& workspace) const {
     return box({first, last, 0, cols_}, depth_mm, out, workspace);
   }
 
-  /// The same of a part of the image.
+  /// The same for a rectangle of the image.
   template <grid Depth, class Out>
   CurvatureResult box(const detail::PixelBox& part,
                       const Depth& depth_mm,
@@ -156,8 +157,8 @@ class CurvatureMap {
     return rows;
   }
 
-  /// Margins to whole cache lines, and an odd number of lines in all: rows then lie in all sets of
-  /// a cache and not in a few.
+  /// Row stride: the left margin fills whole cache lines, and the total number of lines is odd, so
+  /// that rows spread over all sets of a cache instead of a few.
   static Index stride_of(Index margin, Index cols) {
     const Index lines = (left_of(margin) + cols + margin) / line + 2;
     return (lines + 1 - lines % 2) * line;
@@ -212,7 +213,7 @@ class CurvatureMap {
   Units units_;
   Index rows_;
   Index cols_;
-  Index margin_;  // the ring's radius; a larger ring than the image has no complete section anyway
+  Index margin_;  // the ring's radius, at most the image's size: larger rings are never complete
   Index stride_;
   int least_;
   Kernel kernel_;

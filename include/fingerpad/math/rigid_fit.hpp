@@ -1,11 +1,12 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// The rigid motion that carries one set of points nearest to another, by weighted least squares
-// (Kabsch's problem). It is solved in Horn's form: the best rotation is the quaternion that belongs
-// to the largest eigenvalue of a 4x4 matrix made of the cross-covariance. That maximum runs over
-// proper rotations only, so no reflection has to be repaired, and it needs no singular vectors:
-// Newton's method finds the eigenvalue, the adjugate the eigenvector, for every scalar.
+// The rigid motion that best maps one set of points to another in weighted least squares (Kabsch's
+// problem). It is solved in Horn's form: the best rotation is the quaternion that is the
+// eigenvector of the largest eigenvalue of a 4x4 matrix built from the cross-covariance. Only
+// proper rotations are considered, so that no reflection has to be repaired. No singular vectors
+// are needed: Newton's method finds the eigenvalue and the adjugate the eigenvector, for every
+// scalar.
 #include <array>
 #include <cmath>
 #include <cstddef>
@@ -17,7 +18,8 @@
 namespace fingerpad {
 inline namespace v0 {
 
-/// Points whose spread across is below a tenth of that along determine no rotation.
+/// Limit for collinear points: if their spread across the line is below a tenth of that along it,
+/// they do not determine a rotation.
 inline constexpr double collinear_spread_sq = 0.01;
 
 namespace detail::motion {
@@ -40,7 +42,7 @@ Matrix4<S> horn_matrix(const S (&c)[3][3]) {
            {xy, zx2, yz2, S(c[2][2] - c[0][0] - c[1][1])}}};
 }
 
-/// Determinants of the 2x2 blocks of two rows: what determinants and adjugates are made of.
+/// Determinants of the 2x2 blocks of two rows, from which determinants and adjugates are built.
 template <scalar S>
 std::array<S, 6> minors(const std::array<S, 4>& a, const std::array<S, 4>& b) {
   return {S(a[0] * b[1] - b[0] * a[1]), S(a[0] * b[2] - b[0] * a[2]), S(a[0] * b[3] - b[0] * a[3]),
@@ -54,7 +56,8 @@ S determinant(const Matrix4<S>& a) {
   return S(s[0] * c[5] - s[1] * c[4] + s[2] * c[3] + s[3] * c[2] - s[4] * c[1] + s[5] * c[0]);
 }
 
-/// Adjugate of a symmetric matrix; of a singular one: a multiple of v v^T, v the null vector.
+/// Adjugate of a symmetric matrix. If the matrix is singular with null vector v, it is a multiple
+/// of v v^T.
 template <scalar S>
 Matrix4<S> symmetric_adjugate(const Matrix4<S>& a) {
   const std::array<S, 6> s = minors(a[0], a[1]);
@@ -74,8 +77,8 @@ Matrix4<S> symmetric_adjugate(const Matrix4<S>& a) {
 /// Rotation of a quaternion (w, x, y, z) of any length but 0.
 template <scalar S>
 Rotation<S> rotation_of_quaternion(const std::array<S, 4>& q) {
-  const S norm = q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3];
-  const S two = S(2) / norm;
+  const S norm_sq = q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3];
+  const S two = S(2) / norm_sq;
   const S xx = two * q[1] * q[1], yy = two * q[2] * q[2], zz = two * q[3] * q[3];
   const S xy = two * q[1] * q[2], xz = two * q[1] * q[3], yz = two * q[2] * q[3];
   const S wx = two * q[0] * q[1], wy = two * q[0] * q[2], wz = two * q[0] * q[3];
@@ -85,7 +88,7 @@ Rotation<S> rotation_of_quaternion(const std::array<S, 4>& q) {
 }
 
 /// Largest root of l^4 + c2 l^2 + c1 l + c0, all of whose roots are real, by Newton's method from
-/// above, where it falls to the root without overshooting.
+/// above, which descends to the root without overshooting.
 template <scalar S>
 S largest_root(const S& c2, const S& c1, const S& c0, const S& above) {
   S l = above;
@@ -93,7 +96,7 @@ S largest_root(const S& c2, const S& c1, const S& c0, const S& above) {
     const S l_sq = l * l;
     const S slope = (S(4) * l_sq + S(2) * c2) * l + c1;
     if (!(value(slope) > 0)) {
-      break;  // a double root: reached, but for roundoff
+      break;  // a double root, reached up to roundoff
     }
     const S change = ((l_sq + c2) * l_sq + c1 * l + c0) / slope;
     l = l - change;
@@ -114,11 +117,12 @@ struct RigidFit {
   bool determined = false;  ///< false: collinear points, or all equal; the pose is the identity
 };
 
-/// The rotation nearest to carrying `from` onto `to`, from their cross-covariance (points counted
-/// from the two centers), with the sums of squares of both. With singular values s1 >= s2 >= |s3|
-/// of the cross-covariance (s3 < 0 if a reflection would fit better), it is determined as long as
+/// The rotation that best maps `from` to `to`, from their cross-covariance about the two centers
+/// and the sums of squares of both. Returns false if the points do not determine it. With singular
+/// values s1 >= s2 >= |s3| of the cross-covariance (s3 < 0 if a reflection would fit better), it is
+/// determined if
 ///   (s2 + s3) (s1 + s3) (s1 + s2) / (s1 + s2 + s3)^3 >= collinear_spread_sq,
-/// a fourth for a flat disc, s2 / s1 for points near a line. O(1).
+/// where the left side is 1/4 for a flat disc and s2 / s1 for points near a line. O(1).
 template <scalar S>
 bool best_rotation(const S (&covariance)[3][3],
                    const S& from_sq,
@@ -143,7 +147,7 @@ bool best_rotation(const S (&covariance)[3][3],
                 c[0][1] * (c[1][0] * c[2][2] - c[1][2] * c[2][0]) +
                 c[0][2] * (c[1][0] * c[2][1] - c[1][1] * c[2][0]);
   detail::motion::Matrix4<S> horn = detail::motion::horn_matrix(c);
-  // Both are bounds of the sum of singular values; the first is nearly reached by rigid motions.
+  // Both are upper bounds of the sum of singular values; rigid motions nearly reach the first.
   const S of_spreads = (from_sq + to_sq) / (S(2) * norm);
   const S of_norm = sqrt(S(3));
   const S above = value(of_spreads) < value(of_norm) ? of_spreads : of_norm;
@@ -205,7 +209,7 @@ RigidFit<S> fit_rigid(Index count, const From& from, const To& to, const Weight&
     covariance[2][1] = covariance[2][1] + wa.z * b.y;
     covariance[2][2] = covariance[2][2] + wa.z * b.z;
   }
-  // A spread that is roundoff of the coordinates is none.
+  // A spread within the roundoff of the coordinates does not count.
   const auto is_roundoff = [&](const S& spread_sq, const Point3<S>& center) {
     const scalar_real_t<S> tiny = 64 * epsilon<S>();
     return !(value(spread_sq) > tiny * tiny * value(S(mass * squared_norm(center))));

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// From the seeds that the threshold found to the contact, for each policy of the edge.
+// Turns the seeds that the threshold found into contact regions, for each edge policy.
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -15,7 +15,7 @@
 #include "fingerpad/core/scalar.hpp"
 #include "fingerpad/image/curvature_map.hpp"
 #include "fingerpad/image/detail/depth_units.hpp"
-#include "fingerpad/image/detail/image_size.hpp"
+#include "fingerpad/image/detail/pixel_box.hpp"
 #include "fingerpad/image/detail/regions.hpp"
 #include "fingerpad/image/detail/sparse_mean.hpp"
 
@@ -23,8 +23,8 @@ namespace fingerpad {
 inline namespace v0 {
 namespace detail {
 
-/// Turns the seeds of regions that `keep` wants into contact and returns the number of regions.
-/// `statistic` has the image's border.
+/// Turns the regions of seeds for which keep(region) is true into contact and returns their number.
+/// `statistic` has the layout of the BorderedImage.
 template <class Edge, class Statistic, class CameraType, class S>
 class EdgeFinder;
 
@@ -71,10 +71,10 @@ class EdgeFinder<HalfLevelEdge, Statistic, CameraType, S> {
     OutsideLevel<S> outside;
     typename MeanMap::Workspace curvature;
     SparseMean<S> smoothing;
-    std::vector<S> raw;    ///< mean curvature, with the image's border
+    std::vector<S> raw;    ///< mean curvature, in the layout of the BorderedImage
     std::vector<S> mean;   ///< the same, smoothed
-    std::vector<S> inner;  ///< of a region, to take a quantile of
-    std::vector<S> level;  ///< edge of the region at hand by cells of `outside`; NaN: not known yet
+    std::vector<S> inner;  ///< samples of a region, for a quantile
+    std::vector<S> level;  ///< edge of the current region by cell of `outside`; NaN: not computed
   };
   Workspace workspace() const {
     const SparseMean<S> smoothing(image_.cols, spread_px());
@@ -98,7 +98,7 @@ class EdgeFinder<HalfLevelEdge, Statistic, CameraType, S> {
       return 0;
     }
     w.outside.measure(image_.view(statistic), marks, threshold_);
-    // the region grows by a ring's radius at most, and is smoothed from a little farther
+    // a region grows by at most the ring's radius; smoothing needs a few more columns
     const PixelBox reach = seeds.grown(ring_px_, image_.rows, image_.cols);
     PixelBox part = seeds.grown(ring_px_ + spread_px(), image_.rows, image_.cols);
     part.first_row = reach.first_row;
@@ -131,7 +131,7 @@ class EdgeFinder<HalfLevelEdge, Statistic, CameraType, S> {
     return box;
   }
 
-  /// The region grows to where the mean curvature passes the level of the edge, and ends there.
+  /// Grows and trims the region to the pixels whose mean curvature is below the level of the edge.
   template <class Depth>
   void place(const Depth& depth_mm, Regions& regions, Regions::Region& region, Workspace& w) const {
     const S inside = inside_level(regions, region, w);
@@ -157,8 +157,9 @@ class EdgeFinder<HalfLevelEdge, Statistic, CameraType, S> {
     regions.trim(region, within);
   }
 
-  /// Mean curvature of the object: a quarter of the pixels lie so deep inside that the ring sees
-  /// nothing else. NaN where none has one, as it may be beside missing depth.
+  /// Mean curvature of the object, at most 0: the lower quartile over the region, because a quarter
+  /// of the pixels lie so far inside that their ring sees only the object. NaN if no pixel has a
+  /// curvature, as can happen beside missing depth.
   S inside_level(const Regions& regions, const Regions::Region& region, Workspace& w) const {
     S* end = w.inner.data();
     for (Index k = region.begin; k < region.end; k += sparse(region)) {
@@ -173,7 +174,7 @@ class EdgeFinder<HalfLevelEdge, Statistic, CameraType, S> {
     return *quarter < S(0) ? *quarter : S(0);
   }
 
-  /// Distance of what neighbouring pixels see, at the region's mean depth.
+  /// Distance in mm between the points that neighbouring pixels see, at the region's mean depth.
   template <class Depth>
   double pixel_size_at(const Depth& depth_mm,
                        const Regions& regions,
@@ -188,10 +189,12 @@ class EdgeFinder<HalfLevelEdge, Statistic, CameraType, S> {
     return pitch_.at_depth(sum / count);
   }
 
-  /// A third of the ring: noise leaves the edge smooth, and the edge stays where it is.
+  /// Smoothing distance: a third of the ring, which smooths noise along the edge without moving the
+  /// edge.
   Index spread_px() const { return (ring_px_ + 1) / 3; }
 
-  /// A region's properties come from a thousand of its pixels, or two.
+  /// Sampling step: a region's properties come from one to two thousand of its pixels, or from all
+  /// if there are fewer.
   static Index sparse(const Regions::Region& region) { return region.pixels() / max_samples + 1; }
   static constexpr Index max_samples = 2000;
 
@@ -199,10 +202,10 @@ class EdgeFinder<HalfLevelEdge, Statistic, CameraType, S> {
   S threshold_;
   double gap_mm_;
   double radius_px_;
-  Index ring_px_;  ///< the same, in whole pixels
+  Index ring_px_;  ///< radius_px_ rounded up to whole pixels
   PixelPitch<> pitch_;
   MeanMap mean_;
-  std::vector<std::uint32_t> cell_;  ///< of `outside`, by the image's border
+  std::vector<std::uint32_t> cell_;  ///< cell of `outside` for each pixel of the BorderedImage
 };
 
 }  // namespace detail

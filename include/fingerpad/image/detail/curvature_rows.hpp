@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// Curvature along a row, a vector of pixels at a time. Rows have a margin of NaN as wide as the
-// ring, so nothing tests bounds; a missing depth shows as a NaN in what the fast pass gives, and
-// only then a second pass leaves out the sections that are not complete.
+// Curvature along a row, one vector of pixels at a time. Rows have a margin of NaN as wide as the
+// ring, so that no bounds are tested. A missing depth makes the result of the fast pass NaN; only
+// then a second pass leaves out the incomplete sections.
 #include <array>
 #include <concepts>
 #include <cstddef>
@@ -17,7 +17,7 @@ namespace fingerpad {
 inline namespace v0 {
 namespace detail {
 
-/// True when some lane of `wanted` is not in `found`.
+/// True if any lane is set in `wanted` but not in `found`.
 template <class Mask>
 [[gnu::always_inline]] inline bool lacks(const Mask& wanted, const Mask& found) {
   if constexpr (std::same_as<Mask, bool>) {
@@ -27,7 +27,7 @@ template <class Mask>
   }
 }
 
-/// Where at least `least` sections were counted.
+/// Mask of the lanes that have at least `least` sections.
 template <class V>
 [[gnu::always_inline]] inline auto at_least(const V& sections, int least) {
   if constexpr (scalar<V>) {
@@ -37,18 +37,18 @@ template <class V>
   }
 }
 
-/// What the complete sections of a pixel give.
+/// The curvature of a pixel from its complete sections.
 template <class V>
 struct PartialCurvature {
-  V curvature;  ///< NaN when they are too few
-  V sections;   ///< their number
+  V curvature;  ///< NaN if there are too few
+  V sections;   ///< number of complete sections
 };
 
-// What a statistic computes per pixel. `cells` point to the center; `shrink` is 1 / (1 + c l) of
-// depth_units.hpp. complete() is NaN when anything is missing; partial() uses the
-// complete sections and is NaN when they are fewer than `least`.
+// Kernels: what a statistic computes per pixel. `cells` points to the center pixel; `shrink` is
+// that of depth_units.hpp, 1 / (1 + c l). complete() is NaN if any depth is missing; partial() uses
+// the complete sections and is NaN if there are fewer than `least`.
 
-/// Sections of equal radius in one group.
+/// Kernel of (K1). Sections of equal radius form a group and share its factors.
 template <class Statistic, class S>
 class SectionKernel {
  public:
@@ -74,13 +74,15 @@ class SectionKernel {
   template <class V>
   [[gnu::always_inline]] V complete(const S* cells, const V& shrink) const {
     V total = whole<V>(0);
-    for_each_group<V>(shrink, [&](const Group& group, const Index* step, const V& radius_sq) {
+    const auto add = [&](const Group& group, const Index* step, const V& radius_sq)
+        __attribute__((always_inline)) {
       V sum = whole<V>(0);
       for (int k = 0; k < group.sections; ++k) {
         sum = sum + weighed(section_at<V>(cells, step[k], radius_sq));
       }
       total = total + sum * group.radius;
-    });
+    };
+    for_each_group<V>(shrink, add);
     return total * (shrink * shrink * shrink * (scale_ / S(directions)));
   }
 
@@ -90,7 +92,8 @@ class SectionKernel {
                                                      int least) const {
     V total = whole<V>(0);
     V count = whole<V>(0);
-    for_each_group<V>(shrink, [&](const Group& group, const Index* step, const V& radius_sq) {
+    const auto add = [&](const Group& group, const Index* step, const V& radius_sq)
+        __attribute__((always_inline)) {
       V sum = whole<V>(0);
       for (int k = 0; k < group.sections; ++k) {
         const V term = weighed(section_at<V>(cells, step[k], radius_sq));
@@ -99,7 +102,8 @@ class SectionKernel {
         count = count + (complete ? whole<V>(1) : whole<V>(0));
       }
       total = total + sum * group.radius;
-    });
+    };
+    for_each_group<V>(shrink, add);
     const V mean = total * (shrink * shrink * shrink * scale_) / count;
     const V nan = every_lane<V>(not_a_number<S>());
     return {at_least<V>(count, least) ? mean : nan, count};
@@ -145,7 +149,7 @@ class SectionKernel {
   S scale_;
 };
 
-// Curvature linear in depth: what each section lacks of its center, over the radius squared.
+// Kernel linear in depth: (2 center - before - after) / radius^2 of each section.
 
 template <class Statistic, class S>
 class StencilKernel {
@@ -216,22 +220,22 @@ struct CurvatureKernelOf<Statistic, S> {
 template <class Statistic, class S>
 using CurvatureKernel = typename CurvatureKernelOf<Statistic, S>::type;
 
-/// A strip of columns, gone through from top to bottom. Every pixel of a row is computed the fast
-/// way first, except in vectors of which no pixel had a whole ring in the row above; what comes out
-/// as NaN is then looked at again. Every pixel gets the same bits whichever way led to it.
+/// A strip of columns, processed from top to bottom. Each vector of a row takes the fast pass
+/// first, unless none of its pixels had a complete ring in the row above. Pixels that come out as
+/// NaN then take the second pass. A pixel gets the same bits in either pass.
 template <class Kernel, class Units, class S>
 class CurvatureStrip {
   static constexpr int n = row_lanes<S>;
   using V = typename RowVector<S, n>::type;
 
  public:
-  static constexpr Index columns = 128;  ///< with a ring around them they stay in the cache
+  static constexpr Index columns = 128;  ///< these and a ring around them fit the cache
 
   CurvatureStrip(const Kernel& kernel, const Units& units, int least)
       : kernel_(kernel), units_(units), least_(least) {}
 
-  /// `count` <= columns curvatures, rounded up to whole vectors, around cells[0] and on. True when
-  /// all rings were whole: nothing is missing.
+  /// Writes the `count` <= columns curvatures from cells[0] on, rounded up to whole vectors.
+  /// Returns true if all rings were complete.
   bool row(const S* cells, Index count, S* out) {
     const bool whole = all_whole(cells, count, out);
     if (!whole) {
@@ -243,7 +247,7 @@ class CurvatureStrip {
  private:
   bool all_whole(const S* cells, Index count, S* out) const {
     bool tried = true;
-    V sum = whole<V>(0);  // NaN when any of them is
+    V sum = whole<V>(0);  // NaN if any curvature is
     for (Index j = 0; j < count; j += n) {
       if (ragged_[j / n]) {
         tried = false;

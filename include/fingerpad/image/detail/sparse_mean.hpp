@@ -1,22 +1,22 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// The mean of nine pixels, `distance` apart: of a map whose noise is as smooth as that, nearly as
-// good as the mean over the whole window and several times cheaper.
+// The mean of nine pixels (3 x 3) that are `distance` apart. If the map's noise is smooth over this
+// distance, it is nearly as good as the mean over the whole window and several times cheaper.
 #include <algorithm>
 #include <cstddef>
 #include <vector>
 
 #include "fingerpad/core/grid.hpp"
 #include "fingerpad/core/scalar.hpp"
-#include "fingerpad/image/detail/image_size.hpp"
+#include "fingerpad/image/detail/pixel_box.hpp"
 #include "fingerpad/image/detail/row_lanes.hpp"
 
 namespace fingerpad {
 inline namespace v0 {
 namespace detail {
 
-/// Mean of three; the middle one where another is missing.
+/// Mean of three values; the middle one if another is missing (NaN).
 template <class V, class S>
 [[gnu::always_inline]] inline V mean_of_three(const V& before, const V& middle, const V& after) {
   const V sum = before + middle + after;
@@ -30,8 +30,8 @@ class SparseMean {
       : distance_(distance),
         line_(static_cast<std::size_t>(cols + 2 * distance), not_a_number<S>()) {}
 
-  /// A part of `map` into that of `out`; what lies beyond counts as missing. `map` is left averaged
-  /// along its rows.
+  /// Averages a part of `map` into the same part of `out`. Beyond the part, columns count as
+  /// missing, and rows as equal to the middle row. `map` is left averaged along its rows.
   void operator()(const PixelBox& part, const StridedView<S>& map, const StridedView<S>& out) {
     const Index cols = part.last_col - part.first_col;
     for (Index i = part.first_row; i < part.last_row; ++i) {

@@ -1,23 +1,24 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// Means of two channels over square windows, down the rows.
-// A window holds the valid pixels of w x w (odd, 3..255) around a pixel: those of the image, inside
-// the caller's mask, with both channels between the limits. Where none is, the mean is NaN.
+// Means of two channels over square windows, row by row from top to bottom. A window holds the
+// valid pixels among the w x w (odd, 3..255) around a pixel: those in the image, inside the
+// caller's mask, with both channels between the limits. Without a valid pixel the mean is NaN.
 //
-// 8- and 16-bit sums are exact; whole windows give the bits of a float box filter. Each object is
-// the workspace of one thread, all of it taken at construction; a band of rows gives the bits that
-// the whole image gives. Several windows share all work but the last step.
+// 8- and 16-bit sums are exact; complete windows give the bits of a float box filter. Each object
+// is the workspace of one thread and allocates only at construction. A band of rows gives the same
+// bits as the whole image. Several windows share all work but the last step.
 //
 //   WindowSums<std::uint8_t, 2> sums(rows, cols, {33, 55}, {0, 255});
 //   sums.start(first, load_row);  // load_row(row, red, green) or (row, red, green, inside)
-//   for (Index row = first; row < last; ++row) sums.advance(load_row, {{r33, g33}, {r55,
-//   nullptr}});
+//   for (Index row = first; row < last; ++row) {
+//     sums.advance(load_row, {{r33, g33}, {r55, nullptr}});
+//   }
 //
-// Green is averaged over the first window only: {{r33, g33}, {r55, nullptr}}. One more argument of
-// the constructor, scale, multiplies the means of integers. load_row is asked for rows in order,
-// once each, from half a window before `first` on (the plain path, which starts anew every 32 rows,
-// may begin that much earlier).
+// Green is averaged over the first window only. The constructor's optional last argument, scale,
+// multiplies the means of integers. load_row is called for rows in order, once each, from half a
+// window before `first` on. The plain path restarts every 32 rows and may begin up to 31 rows
+// earlier.
 #include <array>
 #include <concepts>
 #include <cstddef>
@@ -39,13 +40,13 @@ namespace detail {
 // Two channels of an interleaved row (BGR, RGBA, ...) as two contiguous rows.
 
 #if defined(FINGERPAD_HAS_VECTORS)
-/// 16 pixels of C interleaved bytes, as one vector per channel.
-/// Riffling the two halves of 16 C bytes takes byte i to 2 i modulo 16 C - 1. Four riffles multiply
-/// by 16, and so take channel c of pixel p, byte C p + c, to byte p + 16 c.
+/// 16 pixels of C interleaved bytes, as one vector per channel. Riffling (interleaving) the two
+/// halves of 16 C bytes takes byte i to 2 i modulo 16 C - 1. Four riffles multiply by 16 and
+/// therefore take channel c of pixel p, byte C p + c, to byte p + 16 c.
 template <std::size_t C>
 using Planes = std::array<lanes<std::uint8_t, 16>, C>;
 
-/// Bytes of units a and b in turn, where unit u is half u % 2 of vector u / 2.
+/// Interleaves the bytes of units A and B, where unit u is half u % 2 of vector u / 2.
 template <std::size_t A, std::size_t B, std::size_t C>
 [[gnu::always_inline]] inline lanes<std::uint8_t, 16> riffle_units(const Planes<C>& v) {
   using V = lanes<std::uint8_t, 16>;
@@ -132,8 +133,8 @@ class RunningWindowSums {
     }
   }
 
-  /// Prepares for row `first_row`. Rounded sums would depend on where they began, so they begin
-  /// anew at fixed rows: bands of one image then agree in every bit.
+  /// Prepares for row `first_row`. Sums restart at fixed rows, because rounded sums depend on the
+  /// row where they start: bands of one image then agree in every bit.
   template <row_source<Pixel> Load>
   void start(Index first_row, Load&& load_row) {
     next_row_ = first_row - first_row % restart_rows;
@@ -147,7 +148,7 @@ class RunningWindowSums {
 
   Index next_row() const { return next_row_; }
 
-  /// Means of row next_row(), which then moves on by one.
+  /// Writes the means of row next_row() and advances next_row() by one.
   template <row_source<Pixel> Load>
   void advance(Load&& load_row, const MeanRows<Mean> (&out)[std::size_t(Windows)]) {
     slide(load_row);
@@ -292,7 +293,6 @@ struct WindowSumsOf {
   using type = RunningWindowSums<Pixel, Windows>;
 };
 #if defined(FINGERPAD_HAS_VECTORS)
-#if defined(FINGERPAD_HAS_VECTORS)
 template <class Pixel, int Windows, int VectorBytes>
   requires(VectorBytes > 0 &&
            (std::same_as<Pixel, std::uint8_t> || std::same_as<Pixel, std::uint16_t>))
@@ -300,9 +300,8 @@ struct WindowSumsOf<Pixel, Windows, VectorBytes> {
   using type = VectorWindowSums<Pixel, Windows, VectorBytes>;
 };
 #endif
-#endif
 
-/// The fastest way there is to sum pixels of this type; VectorBytes = 0 asks for the plain one.
+/// The fastest implementation for pixels of this type; VectorBytes = 0 selects the plain one.
 template <class Pixel, int Windows = 1, int VectorBytes = native_vector_bytes>
 using WindowSums = typename WindowSumsOf<Pixel, Windows, VectorBytes>::type;
 

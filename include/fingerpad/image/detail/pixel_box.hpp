@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// Parts of images.
+// Rectangles of pixels.
 #include <algorithm>
 
 #include "fingerpad/core/grid.hpp"
@@ -17,7 +17,7 @@ struct PixelBox {
   Index first_col = 0;
   Index last_col = 0;
 
-  /// Larger by so many pixels on every side, within the image.
+  /// The box grown by `by_px` pixels on every side, clipped to the image.
   PixelBox grown(Index by_px, Index rows, Index cols) const {
     return {(std::max)(first_row - by_px, Index(0)), (std::min)(last_row + by_px, rows),
             (std::max)(first_col - by_px, Index(0)), (std::min)(last_col + by_px, cols)};
