@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: 2026 The fingerpad authors
 # SPDX-License-Identifier: MIT
-"""Writes the report: pages.py BUILD DOCS COMPILER, from what the benchmarks left in BUILD.
+"""Writes the report: pages.py BUILD DOCS COMPILER, from the results in BUILD.
 
 docs/speed_and_error.md and docs/whole_chain.md with their pictures, and the tables within
 docs/hard_cases.md, docs/papers.md and docs/what_a_scene_needs.md.
@@ -18,7 +18,7 @@ import plots
 from runs import FLAGS, read
 from tables import number, print_group, size
 
-# {program: (heading, groups that get a picture)}
+# {program: (heading, groups with a picture)}
 METHODS = {
     "depth": ("Depth: inversion", ["full pad, depths up to 14 mm"]),
     "frame": ("Depth: the whole step", ["round pad"]),
@@ -44,7 +44,7 @@ METHODS = {
     "foam_contact": ("Foam contact", ["steps", "lift, 2000 steps"]),
     "calibrations": ("Calibrations", []),
 }
-# The published way against the default: (label, program, group, published row, our row).
+# The published method against the default: (label, program, group, published row, our row).
 COMPARED = [
     ("depth of a pixel, rendered", "depth", "full pad, depths up to 14 mm", "published bisection, double",
      "exponential-free float <3, 6>"),
@@ -123,13 +123,13 @@ needs](what_a_scene_needs.md) have pages of their own.
 
 
 def table(head, rows):
-    """A table with its first column to the left, the others to the right."""
+    """A table whose first column is left-aligned, the others right-aligned."""
     lines = [head, ["---"] + ["--:"] * (len(head) - 1), *rows]
     return "\n".join(f"| {' | '.join(cells)} |" for cells in lines) + "\n"
 
 
 def chain_stages(runs, chains):
-    """How long each stage takes, and its share of the frame; `runs` by flags."""
+    """Time of each stage, and its share of the frame; `runs` by flags."""
     def column(chain, run):
         of = run["chains"][chain]
         shares = [f"{number(ms, 3)} ({100 * ms / of['whole_ms']:.0f} %)"
@@ -235,9 +235,12 @@ follow the area.
 
 ## Latency
 
-{count} frames of the lean chain, one after another. Two threads share the depth's rows and work on
-dots and six-axis force side by side; their results are the same to the last bit, as they are from run
-to run (`tests/pipeline/fingertip.cpp`).
+{count} frames of the lean chain, one after another. Two threads share the rows of the samples, of the depth
+and of the heights in plan, and work on dots and six-axis force side by side. Contact region and object
+motion stay with one thread. Results are the same to the last bit, as they are from run to run
+(`tests/pipeline/fingertip.cpp`). A thread that waits for the other polls for half a millisecond before it
+sleeps (bench/report/chain/crew.hpp): a frame hands work over four times, and to wake a sleeping thread
+takes about as long as the work that is handed over.
 
 ![Share of frames that take longer](whole_chain/latency.png)
 

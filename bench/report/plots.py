@@ -23,14 +23,14 @@ def save(figure, path):
 
 
 def logarithmic(axis, name):
-    """Numbers between the powers of ten too, where these are few."""
+    """Labels between the powers of ten too, where these are few."""
     axis.axes.set(**{f"{name}scale": "log"})
     axis.set_minor_formatter(LogFormatterSciNotation(labelOnlyBase=False, minor_thresholds=(1.5, 0.6)))
     axis.set_tick_params(which="minor", labelsize=7)
 
 
 def front(points):
-    """Those that nothing beats in both time and error."""
+    """Points that no other beats in both time and error."""
     best, kept = math.inf, []
     for point in sorted(points):
         if point[1] < best:
@@ -40,7 +40,7 @@ def front(points):
 
 
 def number_points(axes, points, others, colours):
-    """Numbers beside `points`, each in the free place that is nearest; with a line if it is far."""
+    """Numbers beside `points`, each in the nearest free place; with a line if that is far."""
     dots_per_point = axes.figure.dpi / 72
     place = lambda point: axes.transData.transform(point) / dots_per_point
     taken = [place(p) for p in points + others]
@@ -58,10 +58,10 @@ def number_points(axes, points, others, colours):
 
 
 def pareto(title, rows, path):
-    """Time against error of every way that has one."""
+    """Time against error of every method that has an error."""
     rows = list(rows.values())
     quantity, error = main_quantity(rows)
-    # one that hardly ever answers is right all too easily
+    # a method that rarely answers is easily right
     ways = [r for r in rows if quantity in r.errors and not r.is_yardstick
             and r.found.get(quantity, 1) >= 0.2]
     positive = [r.errors[quantity].high for r in ways if r.errors[quantity].high > 0]
@@ -103,9 +103,9 @@ def pareto(title, rows, path):
 
 
 def summary(methods, path):
-    """Bars of how many times faster and better ours is: (label, published, ours).
+    """Bars of the factors of speed and accuracy of ours: (label, published, ours).
 
-    Hatched: not on finite-element scenes, but on a truth made with a law that the method has too."""
+    Hatched: not on finite-element scenes, but on a truth by a law that the method shares."""
     figure, axes = plt.subplots(figsize=(9, 0.42 * len(methods) + 1.5))
     better_colour, hatched = "#2e8b57", {"hatch": "////", "ec": "white", "lw": 0}
     for k, (_, published, ours) in enumerate(methods):
@@ -151,13 +151,13 @@ def chain_stages(runs, path):
 
 
 def chain_samples(points, path):
-    """Time over the depth's error; `points` (policies, step, ms, mm), a line for each policies."""
+    """Time over the depth's error; `points` (policies, step, ms, mm), one line per `policies`."""
     figure, axes = plt.subplots(figsize=(7, 3.6))
     for policies, colour in (("default", OURS), ("lean", PUBLISHED)):
         of = [p for p in points if p[0] == policies]
         axes.plot([p[3] for p in of], [p[2] for p in of], marker="o", color=colour, label=policies)
         for _, step, ms, mm in of:
-            is_last = step == of[-1][1]  # beside the one before, whose label is on the right
+            is_last = step == of[-1][1]  # the label of the previous point is on the right
             axes.annotate(f"{step} px", (mm, ms), xytext=(-6 if is_last else 6, -12 if step % 2 else 6),
                           ha="right" if is_last else "left", textcoords="offset points", fontsize=8,
                           color=colour)
@@ -170,7 +170,7 @@ def chain_samples(points, path):
 
 
 def chain_latencies(runs, path):
-    """How many frames take longer than so many ms."""
+    """Share of the frames that take longer than a given time, in ms."""
     figure, axes = plt.subplots(figsize=(9, 3.4))
     for flags, run in runs.items():
         for name, of in run["latencies"].items():
@@ -186,7 +186,7 @@ def chain_latencies(runs, path):
 
 
 def chain_growth(run, path):
-    """Stages over the number of pixels, of dots and of stored frames."""
+    """Times of the stages over the numbers of pixels, dots and stored frames."""
     kinds = list(dict.fromkeys(g["by"] for g in run["growth"]))
     figure, all_axes = plt.subplots(1, len(kinds), figsize=(11, 3.6), sharey=True)
     for axes, kind in zip(all_axes, kinds):
@@ -203,7 +203,7 @@ def chain_growth(run, path):
 
 
 def ablation(cells, path):
-    """Heat map: how many times larger an error is without the effect; `cells` of the program's CSV."""
+    """Heat map of the error without the effect over that with it; `cells` of the program's CSV."""
     cells = [c for c in cells if c["with_median"] and c["without_median"]]
     name = lambda c: f"{c['effect']}: {c['quantity']}"
     effects = list(dict.fromkeys(map(name, cells)))
@@ -211,7 +211,7 @@ def ablation(cells, path):
     ratio = [[math.nan] * len(scenes) for _ in effects]
     figure, axes = plt.subplots(figsize=(11, 0.34 * len(effects) + 1.6))
     for c in cells:
-        # below a millionth there is only rounding
+        # below 1e-6 there is only rounding
         with_it, without = (x if x > 1e-6 else 0.0 for x in (float(c["with_median"]),
                                                              float(c["without_median"])))
         times = without / with_it if with_it > 0 else math.inf if without > 0 else 1

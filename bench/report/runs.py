@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The fingerpad authors
 # SPDX-License-Identifier: MIT
-"""What the benchmarks have measured: Google Benchmark JSON of one program at both sets of flags."""
+"""Results of the benchmarks: Google Benchmark JSON of one program with both sets of flags."""
 import json
 from dataclasses import dataclass, field
 
@@ -31,7 +31,7 @@ class Row:
         return times[len(times) // 2]
 
     def spread(self, flags):
-        """Half the distance of the 10th and the 90th percentile, over the median."""
+        """Half the distance between the 10th and the 90th percentile, relative to the median."""
         times = self.seconds[flags]
         at = lambda share: times[round(share * (len(times) - 1))]
         return (at(0.9) - at(0.1)) / 2 / self.median(flags)
@@ -45,7 +45,7 @@ class Row:
         return self.name.startswith(("streaming", "cv::"))
 
     def main_error(self):
-        """The first; of finite-element scenes if there is one, for no method's law made these."""
+        """First error on finite-element scenes, which follow no law of a method, else the first."""
         on_scenes = [(q, e) for q, e in self.errors.items() if is_on_scenes(q)]
         return next(iter(on_scenes or self.errors.items()), (None, None))
 
@@ -55,7 +55,7 @@ def is_on_scenes(quantity):
 
 
 def main_quantity(rows):
-    """(quantity, Error) that a group is shown by; of finite-element scenes if a row has it."""
+    """(quantity, Error) that represents a group; on finite-element scenes if a row has it."""
     mains = [r.main_error() for r in rows if r.errors]
     return next((m for m in mains if is_on_scenes(m[0])), next(iter(mains), (None, None)))
 

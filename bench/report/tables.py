@@ -8,7 +8,7 @@ from runs import FLAGS, main_quantity, read
 
 
 def number(x, digits=2):
-    """0.0123, 12.3, 1.2e-09."""
+    """Formats as 0.0123, 12.3, 1.2e-09."""
     if x == 0:
         return "0"
     if 1e-3 <= abs(x) < 1e5:
@@ -25,12 +25,12 @@ def size(count):
 
 
 def label(text):
-    """As Markdown, which would take <...> for a tag."""
+    """Escapes `text` for Markdown, which would read <...> as a tag."""
     return text.replace("<", "&lt;").replace("|", "\\|")
 
 
 def time_unit(rows):
-    """The unit in which the quickest way has a number of at least 1."""
+    """The largest unit in which the fastest method takes at least 1."""
     least = min(row.median(flags) for row in rows for flags in row.seconds)
     return next((u, s) for u, s in (("ms", 1e-3), ("us", 1e-6), ("ns", 1e-9))
                 if least >= s or u == "ns")

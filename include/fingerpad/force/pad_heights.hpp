@@ -64,14 +64,33 @@ class PadHeights {
   template <grid Depth, contact_mask Mask>
     requires(std::constructible_from<Scalar, cell_t<Depth>>)
   bool operator()(const Depth& depth_mm, const Mask& contact, Map& heights) const {
+    for (int k = 0; k < parts; ++k) {
+      if (!part(k, depth_mm, contact, heights)) {
+        return false;
+      }
+    }
+    heights.find_slopes();
+    return true;
+  }
+
+  /// So many threads can share a frame. Fixed, because a row's heights start from those of the rows
+  /// before it in its part: the result is the same whoever fills which part.
+  static constexpr int parts = 2;
+  /// Fills part `k` of `heights`, in [0, parts); false, and nothing written, for another k or where
+  /// a size does not fit. Call heights.find_slopes() once all parts are filled.
+  template <grid Depth, contact_mask Mask>
+    requires(std::constructible_from<Scalar, cell_t<Depth>>)
+  bool part(int k, const Depth& depth_mm, const Mask& contact, Map& heights) const {
     const auto depth = as_view(depth_mm);
     const auto mask = as_view(contact);
-    if (depth.rows() != rows_ || depth.cols() != cols_ || !same_size(depth, mask) ||
-        heights.side() != side_) {
+    if (k < 0 || k >= parts || depth.rows() != rows_ || depth.cols() != cols_ ||
+        !same_size(depth, mask) || heights.side() != side_) {
       return false;
     }
-    heights.fill(
-        [&](Index i, Index j) { return height(depth, at(i, j), continued(heights, i, j)); },
+    const Index first = k * side_ / parts;
+    heights.fill_rows(
+        first, (k + 1) * side_ / parts,
+        [&](Index i, Index j) { return height(depth, at(i, j), continued(heights, first, i, j)); },
         [&](Index i, Index j, const S& z) { return contact_share(mask, at(i, j), z); });
     return true;
   }
@@ -153,9 +172,10 @@ class PadHeights {
     return {S(up + down * (low - up)), S(-outward * at.nearer)};
   }
 
-  /// The height of a node if the two before it in its column go on straight; NaN at first.
-  static S continued(const Map& heights, Index i, Index j) {
-    if (i < 2) {
+  /// The height of a node if the two before it in its column, from row `first` on, go on straight;
+  /// NaN at first.
+  static S continued(const Map& heights, Index first, Index i, Index j) {
+    if (i < first + 2) {
       return not_a_number<S>();
     }
     return S(S(2) * heights.node(i - 1, j).height_mm - heights.node(i - 2, j).height_mm);
@@ -204,13 +224,13 @@ class PadHeights {
     const S x = center_px_.x + at.x_px;
     const S y = center_px_.y + at.y_px;
     const S away = spacing_mm_ / S(4) * at.px_per_mm;
-    int touching = 0;
-    for (const Index row : {nearest(S(y - away), rows_), nearest(S(y + away), rows_)}) {
-      for (const Index col : {nearest(S(x - away), cols_), nearest(S(x + away), cols_)}) {
-        const bool inside = row >= 0 && col >= 0;
-        touching += inside && is_contact(mask(row, col)) ? 1 : 0;
-      }
-    }
+    const Index up = nearest(S(y - away), rows_), low = nearest(S(y + away), rows_);
+    const Index left = nearest(S(x - away), cols_), right = nearest(S(x + away), cols_);
+    const auto touches = [&](Index row, Index col) {
+      return row >= 0 && col >= 0 && is_contact(mask(row, col)) ? 1 : 0;
+    };
+    const int touching =
+        touches(up, left) + touches(up, right) + touches(low, left) + touches(low, right);
     return S(touching) / S(4);
   }
 

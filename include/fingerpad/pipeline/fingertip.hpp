@@ -67,13 +67,15 @@ class Fingertip {
     } else {
       touch.contact = region_.find(image_);
       watch(FingertipStage::contact);
+      balance_.measure(image_, region_, executor_);
+      watch(FingertipStage::heights);
       executor_.both(
           [&] {
             dots_.follow(image_, region_, dots_px, time_s, touch, watch);
             flat_area_.measure(image_, region_, touch);
             look_up_.measure(dots_, touch, watch);
           },
-          [&] { balance_.solve(image_, region_, side_dots_mm, pressure_mpa, touch, watch); });
+          [&] { balance_.solve(side_dots_mm, pressure_mpa, touch, watch); });
       dots_.conclude(touch, watch);
       touch.status = status_of(touch);
       return touch;

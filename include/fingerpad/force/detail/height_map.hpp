@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// The membrane's shape as a function of the place in plan: its height, its slope, and whether it
-// touches the object there.
+// The membrane's shape as a function of the position in plan: height, slope, and contact with the
+// object.
 #include <cmath>
 #include <concepts>
 #include <cstddef>
@@ -18,7 +18,7 @@ inline namespace v0 {
 
 namespace detail::membrane {
 
-/// Height of the membrane above a place, and its rise along x and y; NaN where there is none.
+/// Height of the membrane above a position, and its slope along x and y; NaN if unknown.
 template <scalar S>
 struct HeightAndSlope {
   S height_mm;
@@ -26,7 +26,7 @@ struct HeightAndSlope {
   S along_y;
 };
 
-/// Middle of the contact, from a mesh of places all over the base; false where none touches.
+/// Middle of the contact, from a 64 x 64 mesh of positions over the base; false without contact.
 template <class Shape, scalar S>
 bool find_contact(const Shape& shape, const S& base_radius_mm, Point3<S>& center) {
   constexpr int places = 64;
@@ -51,8 +51,8 @@ bool find_contact(const Shape& shape, const S& base_radius_mm, Point3<S>& center
   return true;
 }
 
-/// Whether the membrane is seen anywhere along x or y: where it is not, that nothing touches is not
-/// known.
+/// Whether any height is known along the x or y axis. Without one, it is unknown whether there is a
+/// contact.
 template <class Shape, scalar S>
 bool has_height(const Shape& shape, const S& base_radius_mm) {
   constexpr int places = 64;
@@ -65,12 +65,13 @@ bool has_height(const Shape& shape, const S& base_radius_mm) {
   return false;
 }
 
-/// Heights on a square mesh in plan about Q; between the nodes heights and slopes are interpolated
-/// bilinearly, slopes being central differences. 24 bytes a node in double.
+/// Heights on a square mesh in plan about Q. Slopes at the nodes are central differences; between
+/// nodes, heights and slopes are interpolated bilinearly. 32 bytes per node in double.
 template <scalar S>
 class HeightMap {
  public:
-  /// Memory for places within `half_width_mm` > 0 of Q along x and y, nodes `spacing_mm` > 0 apart.
+  /// Covers positions within `half_width_mm` > 0 of Q along x and y, with nodes `spacing_mm` > 0
+  /// apart. Refuses bad parameters (parameter_error).
   explicit HeightMap(const S& half_width_mm, const S& spacing_mm = S(1) / S(2))
       : spacing_mm_(spacing_mm), per_mm_(S(1) / spacing_mm) {
     expects(is_finite(spacing_mm) && value(spacing_mm) > 0, "HeightMap", "spacing_mm", spacing_mm,
@@ -84,21 +85,30 @@ class HeightMap {
     share_.assign(count, S(0));
   }
 
-  /// Nodes along each side, an odd number; the middle one is at Q.
+  /// Number of nodes along each side, odd; the middle node is at Q.
   Index side() const { return 2 * middle_ + 1; }
   const S& spacing_mm() const { return spacing_mm_; }
-  /// x of a column of nodes, and y of a row of the same number.
+  /// x of node column k, which is also y of node row k.
   S position_mm(Index k) const { return S(static_cast<double>(k - middle_)) * spacing_mm_; }
 
-  /// Height of a node and its rise along x and y.
+  /// Height and slope of a node.
   const HeightAndSlope<S>& node(Index row, Index col) const { return nodes_[at(row, col)]; }
 
-  /// Writes every node, row after row: `height(row, col)` in mm (NaN: none), and which share of the
-  /// membrane around it touches the object, from 0 to 1.
+  /// Writes every node, row after row: `height(row, col)` in mm (NaN: unknown), and
+  /// `contact_share(row, col, height)`, the share of the membrane around it in contact, from 0 to
+  /// 1.
   template <class Height, class Share>
   void fill(const Height& height, const Share& contact_share) {
-    for (Index i = 0; i < side(); ++i) {
-      // one after the other: a node's share waits for its height, those of a row do not
+    fill_rows(0, side(), height, contact_share);
+    find_slopes();
+  }
+
+  /// The same for rows [first, last) alone, so that threads can share a map. Call find_slopes()
+  /// once all rows are filled.
+  template <class Height, class Share>
+  void fill_rows(Index first, Index last, const Height& height, const Share& contact_share) {
+    for (Index i = first; i < last; ++i) {
+      // two loops, because a share waits for the height of its node, but not for others of the row
       for (Index j = 0; j < side(); ++j) {
         nodes_[at(i, j)].height_mm = S(height(i, j));
       }
@@ -106,6 +116,10 @@ class HeightMap {
         share_[at(i, j)] = S(contact_share(i, j, nodes_[at(i, j)].height_mm));
       }
     }
+  }
+
+  /// The slopes of the nodes, from their heights.
+  void find_slopes() {
     const S per_step = S(1) / (S(2) * spacing_mm_);
     for (Index i = 1; i + 1 < side(); ++i) {
       for (Index j = 1; j + 1 < side(); ++j) {
@@ -128,7 +142,7 @@ class HeightMap {
             between(cell, up[0].along_y, up[1].along_y, low[0].along_y, low[1].along_y)};
   }
 
-  /// Whether half of the membrane touches here, or more.
+  /// Whether at least half of the membrane here is in contact.
   bool in_contact(const S& x_mm, const S& y_mm) const {
     const Cell cell = cell_of(x_mm, y_mm);
     if (!cell.inside) {
@@ -140,7 +154,7 @@ class HeightMap {
   }
 
  private:
-  /// The nodes around a place, and where it lies between them.
+  /// The nodes around a position, and the position between them.
   struct Cell {
     bool inside;
     Index row;
@@ -154,7 +168,7 @@ class HeightMap {
     const S row = y_mm * per_mm_ + S(static_cast<double>(middle_));
     const auto last = static_cast<scalar_real_t<S>>(static_cast<double>(side() - 1));
     if (!(value(row) >= 0 && value(col) >= 0 && value(row) < last && value(col) < last)) {
-      return {false, 0, 0, S(0), S(0)};  // and for NaN
+      return {false, 0, 0, S(0), S(0)};  // also for NaN
     }
     const Index i = static_cast<Index>(value(row));
     const Index j = static_cast<Index>(value(col));
@@ -173,7 +187,7 @@ class HeightMap {
   }
 
   S spacing_mm_;
-  S per_mm_;  ///< nodes
+  S per_mm_;  ///< nodes per mm
   Index middle_ = 0;
   std::vector<HeightAndSlope<S>> nodes_;
   std::vector<S> share_;

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// The stages of pipeline/fingertip.hpp, each with its estimators and their memory. A stage is set
-// up from the options and fills its part of the result.
+// The stages of pipeline/fingertip.hpp, each with its estimators and their memory. A stage is
+// constructed from the options and fills its part of the result.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -20,7 +20,7 @@ namespace fingerpad {
 inline namespace v0 {
 namespace detail {
 
-/// The frame's depth.
+/// Depth of the frame.
 template <class Options, class Methods>
 struct FingertipImage {
   using Executor = typename Methods::Executor;
@@ -34,9 +34,9 @@ struct FingertipImage {
       FrameSamples<decltype(Options::reference), typename Methods::Pixel, step, Executor::threads>;
   using Workspace = typename Estimator::template Workspace<typename Samples::Cell>;
   Index rows, cols;       // of frames
-  Camera<double> camera;  // of samples, as all that follows
+  Camera<double> camera;  // of samples, like all members below
   Estimator estimate;
-  std::vector<Workspace> work;  // one a thread
+  std::vector<Workspace> work;  // one per thread
   Samples samples;
   OwnedGrid<float> depth;
   OwnedGrid<PixelStatus> status;
@@ -88,7 +88,7 @@ struct FingertipImage {
   }
 };
 
-/// What neighbouring membrane adds to the depth.
+/// Compensation of the light from neighbouring membrane.
 template <class Options, class Methods>
 struct FingertipLight {
   static_assert(Methods::sampling == 1,
@@ -114,7 +114,7 @@ struct FingertipLight {
     }
   }
 
-  /// Distance between the points that neighbouring pixels see at the pad's mean depth.
+  /// Distance between the points seen by neighbouring pixels at the pad's mean depth.
   static float pitch_on_membrane_mm(const Options& o) {
     double sum_mm = 0, count = 0;
     for (Index i = 0; i < o.rows; ++i) {
@@ -131,7 +131,7 @@ struct FingertipLight {
   }
 };
 
-/// Where the object touches.
+/// Contact region.
 template <class Options, class Methods>
 struct FingertipContact {
   using Region = ContactRegion<typename Methods::Statistic, typename Methods::Edge>;
@@ -158,7 +158,7 @@ struct FingertipContact {
   }
 };
 
-/// What the printed dots say.
+/// Slip and motion from the printed dots.
 template <class Options>
 struct FingertipDots {
   struct Followed {
@@ -182,7 +182,7 @@ struct FingertipDots {
   OwnedGrid<DotState> states;
   OwnedGrid<std::uint8_t> slips;
   double radius_px;
-  std::optional<Followed> followed;  // none without dots
+  std::optional<Followed> followed;  // empty without dots
 
   explicit FingertipDots(const Options& o)
       : at_mm(o.free_dots_mm.rows(), o.free_dots_mm.cols()),
@@ -238,7 +238,8 @@ struct FingertipDots {
     watch(FingertipStage::stick);
   }
 
-  /// Whether the object slides, once the forces are known; and its motion, by the dots that hold.
+  /// Decides whether the object slides, which needs the forces, and computes its motion from the
+  /// dots that stick.
   template <class Watch>
   void conclude(FingertipResult& touch, Watch& watch) {
     if (followed) {
@@ -253,7 +254,7 @@ struct FingertipDots {
     watch(FingertipStage::motion);
   }
 
-  /// By the six-axis force; without it by look-up; without either not known.
+  /// The load from the six-axis force, else from the look-up; unknown without both.
   ContactLoad<double> load_of(const FingertipResult& touch) const {
     if (touch.wrench.ok()) {
       return contact_load(touch.wrench.force_n, touch.wrench.moment_n_mm, at_mm.view(),
@@ -265,7 +266,7 @@ struct FingertipDots {
   }
 };
 
-/// The area of the plate that would press as hard.
+/// The area of a flat contact with the same force.
 template <class Options, class Methods>
 struct FingertipFlatArea {
   static constexpr int step = Methods::sampling;
@@ -287,7 +288,7 @@ struct FingertipFlatArea {
 /// Forces by look-up.
 template <class Options, bool by_flat_area>
 struct FingertipLookUp {
-  std::optional<ContactShift<>> shift;  // none without dots
+  std::optional<ContactShift<>> shift;  // empty without dots
   std::optional<ContactShift<>::Workspace> work;
   std::optional<typename Options::NormalLookUp> of_area, of_depth;
   std::optional<typename Options::ShearLookUp> of_shift;
@@ -320,8 +321,7 @@ struct FingertipLookUp {
     if (shift) {
       touch.shift = (*shift)(dots.at_mm.view(), dots.touching.view(), *work);
     }
-    // a contact whose dots do not tell its shift counts as one that is only pressed: the
-    // compensation is small beside the force
+    // an unknown shift counts as 0: the compensation is small compared with the force
     const auto known = [](double x) { return is_finite(x) ? x : 0; };
     const Point2<double> moved = touch.shift.displacement;
     const Point2<double> along = {known(moved.x), known(moved.y)};
@@ -339,7 +339,7 @@ struct FingertipLookUp {
       const NormalForceResult<double>& a = touch.by_area;
       touch.normal = {a.status, a.force_n, a.variance_n2, touch.normal.disagreement, 1};
     }
-    if (of_shift) {  // without contact there is no shift to know
+    if (of_shift) {  // without contact the shift is 0
       touch.shear = (*of_shift)(shear_by_depth ? depth_mm : area.area_mm2,
                                 pressed ? moved : Point2<double>{0, 0},
                                 pressed ? touch.shift.rotation_rad : 0);
@@ -372,7 +372,7 @@ struct FingertipBalance {
           work(wrench.workspace()),
           modulus_n_per_mm(o.wrench.calibrated_modulus_n_per_mm) {}
   };
-  std::optional<Balance> balance;  // none without a rim
+  std::optional<Balance> balance;  // empty without a rim
 
   explicit FingertipBalance(const Options& o) {
     if (o.rim_mm.rows() * o.rim_mm.cols() > 0) {
@@ -387,16 +387,25 @@ struct FingertipBalance {
                              *balance->modulus_n_per_mm, balance->work);
   }
 
-  template <class Image, class Contact, class SideDots, class Watch>
-  void solve(const Image& image,
-             const Contact& region,
-             const SideDots& side_dots_mm,
+  template <class Image, class Contact, class Executor>
+  void measure(const Image& image, const Contact& region, Executor& executor) {
+    if (balance) {
+      executor.bands(PadHeights<>::parts, [&](int, Index first, Index last) {
+        for (Index k = first; k < last; ++k) {
+          (void)balance->heights.part(static_cast<int>(k), image.depth.view(), region.mask.view(),
+                                      balance->map);
+        }
+      });
+      balance->map.find_slopes();
+    }
+  }
+
+  template <class SideDots, class Watch>
+  void solve(const SideDots& side_dots_mm,
              double pressure_mpa,
              FingertipResult& touch,
              Watch& watch) {
     if (balance) {
-      balance->heights(image.depth.view(), region.mask.view(), balance->map);
-      watch(FingertipStage::heights);
       touch.wrench = is_finite(pressure_mpa) || !balance->modulus_n_per_mm
                          ? balance->wrench(balance->map, side_dots_mm, pressure_mpa, balance->work)
                          : without_gauge(side_dots_mm);
@@ -405,7 +414,7 @@ struct FingertipBalance {
   }
 };
 
-/// In place of a stage that is switched off.
+/// Replaces a stage that is switched off.
 struct NoFingertipStage {
   template <class Options>
   explicit NoFingertipStage(const Options&) {}
