@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
-// replay: from a recording on disk to tables, maps and pictures. See --help.
+// replay: turns a recording on disk into tables, maps and pictures. See --help.
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <exception>
@@ -8,6 +8,7 @@
 #include <string>
 
 #include "replay/check/check.hpp"
+#include "replay/io/images.hpp"
 #include "replay/live/live.hpp"
 #include "replay/replay.hpp"
 
@@ -81,6 +82,7 @@ void add_options(CLI::App& app, replay::Options& options, std::string& frames, b
 }  // namespace
 
 int main(int argc, char** argv) {
+  replay::limit_image_size(argv);
   CLI::App app(about);
   replay::Options options;
   std::string frames;

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
-// replay_many: a folder of recordings, by all cores of a machine or, under MPI, of many. See
-// --help.
+// replay_many: processes a folder of recordings on all cores of one machine or, under MPI, of many.
+// See --help.
 #include <fcntl.h>
 #include <sys/file.h>
 #include <unistd.h>
@@ -20,6 +20,7 @@
 #include "overview.hpp"
 #include "recordings.hpp"
 #include "replay/io/failure.hpp"
+#include "replay/io/images.hpp"
 #include "resampling.hpp"
 
 namespace {
@@ -31,14 +32,14 @@ using Names = std::vector<std::string>;
 
 struct Arguments {
   Path recordings, out;
-  Names calibrations;  ///< to resample, in place of recordings
+  Names calibrations;  ///< to resample, instead of recordings
   int resamples = 10000;
   replay_many::Settings settings;
-  int jobs = 0;  ///< 0: one a core, or one a rank
+  int jobs = 0;  ///< 0: one per core, or one per rank
   bool retry = false;
 };
 
-/// Held until this process ends, however that is.
+/// Locks the output folder until this process ends in any way.
 void lock(const Path& out) {
   const int file = ::open((out / "lock").c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
   if (file >= 0 && ::flock(file, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) {
@@ -46,7 +47,7 @@ void lock(const Path& out) {
   }
 }
 
-/// What a run has begun, others go on with: all of it must be made in one way.
+/// Later runs continue an earlier one, so all must have the same options; else throws Failure.
 void expects_same(const Path& file, const std::string& options) {
   std::ifstream stream(file);
   std::string before;
@@ -57,7 +58,7 @@ void expects_same(const Path& file, const std::string& options) {
   }
 }
 
-/// Whether all was worked off; otherwise it is told why not.
+/// Processes the units; returns false, after printing the reason, if it had to stop.
 bool worked_off(Crew& crew, std::vector<replay_many::Unit> units, const replay_many::Job& job) {
   try {
     replay_many::work_off(crew, std::move(units), job);
@@ -134,6 +135,7 @@ int run(Arguments arguments) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  replay::limit_image_size(argv);
   if (argc > 2 && std::string(argv[1]) == "--unit") {
     return replay_many::run_unit({argv + 2, argv + argc});
   }

@@ -1,19 +1,19 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: 2026 The fingerpad authors
 # SPDX-License-Identifier: MIT
-"""The pages of docs/first_hour, done as they are written.
+"""Follows the pages of docs/first_hour as they are written.
 
 first_hour.py ROOT PROGRAMS...  runs the ```sh blocks of each page in a folder of its own; exit status
-                                1 if one fails, or a number or a word does not come out as told
-first_hour.py --planted         expects a failing command and a false number to be noticed
+                                1 if one fails, or if a number or a word is not as expected
+first_hour.py --planted         expects a failing command and a false number to be detected
 
-PROGRAMS are put on the path, and FINGERPAD is the library's folder. What a block must print is said
-in a comment below it:
+PROGRAMS are added to the path, and FINGERPAD is the library's folder. A comment below a block
+states what it must print:
 
     <!-- prints: good -->                     these words
     <!-- prints: pitch_mm 0.153 +- 0.001 -->  a line of this name with a number in this range
 
-Blocks without a language build the programs, or need what tests need not have: these are left out.
+Blocks without a language are skipped: they build the programs, or need more than tests have.
 """
 import os
 import re
@@ -25,7 +25,7 @@ from pathlib import Path
 
 STEP = re.compile(r"^```sh\n(.*?)^```$|^<!-- prints: (.*?) -->$", re.MULTILINE | re.DOTALL)
 NUMBER = re.compile(r"(\S+) (\S+) \+- (\S+)")
-PRACTICE = "calibrate practice practice\n"  # of every page: written once, then copied
+PRACTICE = "calibrate practice practice\n"  # for every page: made once, then copied
 
 
 def is_printed(wanted, printed):
@@ -38,7 +38,7 @@ def is_printed(wanted, printed):
 
 
 def complaints(page, folder, environment, practice):
-    """What does not come out as the page says, until a command fails."""
+    """Deviations from the page, up to the first failing command."""
     printed = ""
     for block, wanted in STEP.findall(page):
         if wanted:

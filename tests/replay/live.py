@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: 2026 The fingerpad authors
 # SPDX-License-Identifier: MIT
-"""live.py REPLAY RECORDING: a recorded video in place of a camera, in a window on a screen of its
-own (Xvfb). What the window shows is, below the title, what --headless writes."""
+"""live.py REPLAY RECORDING: replays a recorded video instead of a camera in a window on a separate
+screen (Xvfb). Below the title, the window must show what --headless writes."""
 import os
 import shutil
 import subprocess
@@ -21,12 +21,12 @@ if not shutil.which("Xvfb"):
     print("skipped: there is no Xvfb to show a window on")
     sys.exit(77)
 
-TITLE = 80  # rows of a picture: latency, number of the frame
+TITLE = 80  # rows of an image: latency, number of the frame
 CURSOR = 400  # pixels
 
 
 def screen_of(file):
-    """RGB of a screen that Xvfb keeps in a file, in the format of xwd; None: not complete."""
+    """RGB of a screen that Xvfb keeps in a file in the format of xwd; None if incomplete."""
     data = file.read_bytes()
     head = np.frombuffer(data[:100], ">u4")
     if len(head) < 25 or len(data) < head[0] + 12 * head[19] + head[5] * head[12]:
@@ -42,7 +42,7 @@ def differing(picture, screen):
 
 
 def run(replay, recording, work):
-    video = work / "video.pngs"  # pictures one after the other: nothing is lost
+    video = work / "video.pngs"  # a sequence of images: lossless
     frames = [f.read_bytes() for f in sorted((recording / "frames").iterdir())]
     video.write_bytes(b"".join(frames * 4))
     command = [replay, recording, "--video", video]

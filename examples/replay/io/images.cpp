@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include <cstdio>
+#include <cstdlib>
 #include <fstream>
 #include <opencv2/core/utils/logger.hpp>
 #include <opencv2/imgcodecs.hpp>
@@ -33,12 +34,13 @@ cv::Mat read_image(const fs::path& file) {
     image.release();
   }
   if (image.empty()) {
-    fail(file, "cannot be read as an image (damaged, cut short, or of an unknown format)");
+    fail(file,
+         "cannot be read as an image (damaged, cut short, of an unknown format, or too large)");
   }
   return image;
 }
 
-/// Encoded first and written by ourselves: codecs do not say when a disk is full.
+/// Encodes in memory and writes the bytes itself, because codecs do not report a full disk.
 void write_image(const fs::path& file,
                  const char* format,
                  const cv::Mat& image,
@@ -63,6 +65,13 @@ void write_image(const fs::path& file,
 }
 
 }  // namespace
+
+void limit_image_size(char** arguments) {
+  const char* const limit = "OPENCV_IO_MAX_IMAGE_PIXELS";
+  if (std::getenv(limit) == nullptr && ::setenv(limit, "67108864", 0) == 0) {
+    ::execv("/proc/self/exe", arguments);
+  }
+}
 
 QuietCodecs::QuietCodecs() {
   // libpng and video decoders print to the file descriptor, past OpenCV's own logger.
