@@ -114,6 +114,8 @@ void try_intensity(Input& in) {
   const Index rows = in.side(1, 40), cols = in.side(1, 40);
   Grid<std::uint8_t> free(rows, cols), pressed(rows, cols);
   const double x = in.number(0, 40), y = in.number(0, 40), r = in.number(2, 20);
+  expects(std::abs(x) < 100 && std::abs(y) < 100 && r > 1 && r < 100, "fuzz", "r", r,
+          "in (1, 100)");
   IntensityCalibration calibration;
   for (int press = 0; press < 2; ++press) {
     for (Index i = 0; i < rows; ++i) {

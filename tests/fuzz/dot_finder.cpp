@@ -58,7 +58,8 @@ cv::Mat picture(Input& in, int rows, int cols, double pitch, double radius, doub
 void try_finder(Input& in) {
   const int rows = static_cast<int>(in.side(20, 90)), cols = static_cast<int>(in.side(20, 90));
   const double pitch = in.number(8, 20), radius = in.number(1, 4);
-  expects(pitch >= 4 && radius < 100, "fuzz", "pitch", pitch, ">= 4");
+  expects(pitch >= 4 && pitch < 100 && radius > 0 && radius < 100, "fuzz", "pitch", pitch,
+          "in [4, 100)");
   DotFinderOptions options;
   if (in.flag()) {
     options.pattern.radius_px = radius;

@@ -31,7 +31,9 @@ DifferenceTest any_test(Input& in) {
 template <class Pixel>
 void try_slide(Input& in) {
   const Index rows = in.side(0, 32), cols = in.side(0, 32);
-  const Grid<Pixel> first(in, rows, cols, 50, 250), second(in, rows, cols, 50, 250);
+  const Grid<Pixel> first(in, rows, cols, 50, 250);
+  // two free frames that differ everywhere leave no difference to be seen
+  const Grid<Pixel> second = in.flag() ? first : Grid<Pixel>(in, rows, cols, 50, 250);
   const std::vector free = {first.view(), second.view()};
   const ContactByDifference<1> contact(free, any_test(in));
   auto work = contact.workspace(), fresh = contact.workspace();
@@ -62,7 +64,8 @@ void try_slide(Input& in) {
         mask == again && fuzz::same_bits(r.area_mm2, same.area_mm2) && r.regions == same.regions,
         "the same frame gives the same bits, whatever came before");
     require(is_finite(r.area_mm2) && r.area_mm2 >= 0, "an area is finite and not negative");
-    require(!r.in_contact() || is_finite(r.center_mm), "a contact has a finite center");
+    require(!r.in_contact() || (is_finite(r.center_mm.x) && is_finite(r.center_mm.y)),
+            "a contact has a finite center");
     const auto dots = fuzz::moved_dots(in, home);
     auto copy = state;
     const auto slid =
