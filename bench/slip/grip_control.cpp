@@ -1,14 +1,16 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
-// Grip control: time of a call ("ns/pixel" is per call), and what laws do in 40 closed loops with
-// simulated fingertips (tests/support/grip_runs.hpp). Errors of a call: rounding, against long
-// double. Errors of a loop, over the runs: how far the object slid, and the mean force beyond the
-// least that would hold, as a share of that, of the runs in which it slid less than 0.5 mm.
-// "friction ratio": F/N of the slides on slip. Friction that falls twice: ten loops, in which
-// nothing else changes.
+// Grip control: time of a call ("ns/pixel" is per call), and the results of laws in 40 closed loops
+// with simulated fingertips (tests/support/grip_runs.hpp). Error of a call: rounding, against long
+// double. Errors of a loop, over the runs: the slip of the object, and the excess of the mean force
+// over the least holding force, relative to the latter, in runs with less than 0.5 mm of slip.
+// "friction ratio": F/N of the slides on slip. "friction falls twice": ten loops that differ in
+// nothing else.
 #include "fingerpad/slip/grip_control.hpp"
 
+#include <array>
 #include <memory>
+#include <numeric>
 #include <string>
 #include <vector>
 
@@ -20,7 +22,7 @@ using namespace fingerpad;
 
 namespace {
 
-/// Ratios as they come: falling, standing, none.
+/// Ratios in a fixed cycle: falling, with missing ones.
 struct Calls {
   std::vector<double> ratios;
   std::size_t k = 0;
@@ -33,7 +35,7 @@ struct Calls {
   double next() { return ratios[k++ % ratios.size()]; }
 };
 
-/// A fingertip's control and calls without end.
+/// Grip control of one fingertip in an endless sequence of calls.
 template <class S>
 struct Gripping {
   GripControl<S> control;
@@ -63,7 +65,7 @@ struct Rubbing {
   }
 };
 
-/// Of<S>: what is called; Of<long double> is the truth.
+/// `Of<S>` is timed; `Of<long double>` is the truth.
 template <template <class> class Of, class S>
 void add_call(const std::string& name, const std::string& quantity, const std::string& unit) {
   const bench::Memory memory;
@@ -76,7 +78,7 @@ void add_call(const std::string& name, const std::string& quantity, const std::s
         std::vector<double> errors;
         for (int k = 0; k < 1000; ++k) {
           const long double exact = truth.next(), given = static_cast<long double>(found.next());
-          if (is_finite(exact)) {  // nothing can be said of a missing ratio, nor before a slip
+          if (is_finite(exact)) {  // no truth for a missing ratio or before a slip
             errors.push_back(static_cast<double>(given - exact));
           }
         }
@@ -84,9 +86,16 @@ void add_call(const std::string& name, const std::string& quantity, const std::s
       });
 }
 
+constexpr std::array scene_names = {"slow", "fast", "friction changes", "rolls"};
+
 struct Runs {
-  std::vector<double> slip_mm, beyond;
+  std::vector<double> slip_mm, beyond;                        // NaN if the object slid
+  std::array<std::vector<double>, scene_names.size()> force;  // by scene, per least holding force
 };
+
+double mean(const std::vector<double>& values) {
+  return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
+}
 
 template <class S>
 Runs all_runs(const GripLaw<S>& law, const test::GripVariation& vary) {
@@ -97,8 +106,12 @@ Runs all_runs(const GripLaw<S>& law, const test::GripVariation& vary) {
     }
     for (int k = 0; k < test::runs_of_a_grip_scene; ++k) {
       const test::GripRun run = test::run_grip(law, scene, k, vary);
+      const bool held = run.slip_mm < 0.5;
       runs.slip_mm.push_back(run.slip_mm);
-      runs.beyond.push_back(run.slip_mm < 0.5 ? run.beyond : not_a_number<double>());
+      runs.beyond.push_back(held ? run.beyond : not_a_number<double>());
+      if (held) {
+        runs.force[static_cast<std::size_t>(scene)].push_back(1 + run.beyond);
+      }
     }
   }
   return runs;
@@ -116,6 +129,14 @@ void add_loop(const std::string& name,
         runs = runs.beyond.empty() ? all_runs(law, vary) : runs;
         bench::note_errors(counters, "slip", "mm", runs.slip_mm);
         bench::note_errors(counters, "force beyond need", "share", runs.beyond);
+        std::vector<double> all;
+        for (std::size_t k = 0; k < scene_names.size(); ++k) {
+          const std::vector<double>& of_scene = runs.force[k];
+          all.insert(all.end(), of_scene.begin(), of_scene.end());
+          bench::note_errors(counters, std::string("mean force, ") + scene_names[k], "of the least",
+                             {mean(of_scene)});
+        }
+        bench::note_errors(counters, "mean force", "of the least", {mean(all)});
       });
 }
 
@@ -130,6 +151,10 @@ int main(int argc, char** argv) {
   add_loop("margin 0.1", {.slip_margin = 0.1});
   add_loop("margin 0.25", {.slip_margin = 0.25});
   add_loop("nothing searched", {.first_search_per_s = 0, .search_per_s = 0});
+  add_loop("searches faster", {.first_search_per_s = 0.3, .search_per_s = 0.08});
+  add_loop("friction 0.7 times as large", law, {.friction = 0.7});
+  add_loop("load twice as large", law, {.load = 2});
+  add_loop("load half as large", law, {.load = 0.5});
   add_loop("taken with 1.5 times the least force", law, {.first = 1.5});
   add_loop("twice the noise of dots", law, {.lateral_mm = 0.01, .depth_mm = 0.05});
   add_loop("twice the noise of forces", law, {.force_share = 0.03});

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
-// The slides word for word: each printed form by what only it does, and the published preset, made
-// of the library's parts, against it.
+// The slides word for word: each printed form by a behaviour that only it has, and compared with
+// the published preset, which is made of the library's parts.
 #include "fingerpad/published/slides_stick_ratio.hpp"
 
 #include <algorithm>
@@ -25,7 +25,7 @@ namespace {
 
 constexpr double pi = std::numbers::pi;
 
-/// 9 x 9 dots 20 px apart, moved by `move(row, col)`.
+/// 9 x 9 dots 20 px apart, displaced by `move(row, col)`.
 template <class Move>
 PointsPx grid_of(const Move& move) {
   PointsPx dots(9, 9);
@@ -42,7 +42,7 @@ PointsPx at_rest() {
   return grid_of([](Index, Index) { return Point2<double>{0, 0}; });
 }
 
-/// The answer of `then` and `now`, without an average over neighbours.
+/// Result for `then` and `now`, without an average over neighbours.
 template <class Then, class Now>
 SlidesResult answer_of(SlidesOptions options, const Then& then, const Now& now) {
   options.weights = {1, 0, 0};
@@ -68,7 +68,7 @@ TEST_CASE("slides: the mean of four angles, and where it wraps", "[published]") 
   };
   CHECK(mean(0.3, 0.2) == Approx(0.2));
   CHECK(mean(0.3, -0.2) == Approx(-0.2));
-  // a neighbour at 175 degrees that goes on to 186.5 is seen at -173.5
+  // a neighbour at 175 degrees that rotates to 186.5 is measured at -173.5
   CHECK(mean(pi - 0.1, 0.2) == Approx(0.2 - pi / 2));
 }
 
@@ -80,14 +80,14 @@ TEST_CASE("slides: a rotation is cancelled, and only where it is asked for", "[p
   });
   SlidesOptions with;
   with.reference = SlidesReference::central;
-  // the left neighbour looks along -x: its angle wraps as the pattern rotates the other way round
+  // the left neighbour lies along -x: its angle wraps when the pattern rotates the other way
   const auto then = grid_of([](Index, Index j) {
     return Point2<double>{0, 1e-3 * static_cast<double>(4 - j)};
   });
   const SlidesResult cancelled = answer_of(with, then, rotated);
   CHECK(cancelled.ok());
   CHECK(std::abs(cancelled.angle_rad - 0.08) > 1.5);  // it wraps
-  SlidesOptions tilted = with;  // and does not where no neighbour lies along -x
+  SlidesOptions tilted = with;                        // no wrap where no neighbour lies along -x
   const auto turned_by = [](double angle) {
     return grid_of([=](Index i, Index j) {
       const double x = 20.0 * static_cast<double>(j - 4), y = 20.0 * static_cast<double>(i - 4);
@@ -105,7 +105,8 @@ TEST_CASE("slides: a rotation is cancelled, and only where it is asked for", "[p
 }
 
 TEST_CASE("slides: the scale, plain and across the motion", "[published]") {
-  // all dots move along x; the right half is stretched along x by a tenth, and all is 1.05 as large
+  // all dots move along x; the right half is stretched along x by a tenth, and all is scaled by
+  // 1.05
   const auto now = grid_of([](Index i, Index j) {
     const double x = 20.0 * static_cast<double>(j - 4), y = 20.0 * static_cast<double>(i - 4);
     const double stretch = j > 4 ? 0.1 * x : 0;
@@ -114,7 +115,7 @@ TEST_CASE("slides: the scale, plain and across the motion", "[published]") {
   SlidesOptions options;
   options.cancels_rotation = false;
   options.scale = SlidesScale::across;
-  // the motion of 400 px has hardly a part along y: across it nothing is stretched
+  // the motion of 400 px has hardly a part along y, and nothing is stretched across it
   CHECK(answer_of(options, at_rest(), now).scale == Approx(1 / 1.05).margin(2e-3));
   options.scale = SlidesScale::plain;
   const double plain = answer_of(options, at_rest(), now).scale;
@@ -157,7 +158,9 @@ TEST_CASE("slides: delta fixed or in proportion; N_s / N_c over all dots in cont
   options.delta = SlidesDelta::fixed;
   // delta = 0.24: rows 2 to 6
   CHECK(answer_of(options, at_rest(), now).stick_ratio == Approx(5.0 / 9));
-  // a dot that touches without an answer of its own counts in N_c: nothing is left out
+  options.test.slip = 0.29;  // still rows 2 to 6
+  CHECK(answer_of(options, at_rest(), now).stick_ratio == Approx(5.0 / 9));
+  // a dot in contact without an answer of its own counts in N_c: none is left out
   options.test.slip = 1e-9;
   CHECK(answer_of(options, at_rest(), now).stick_ratio == Approx(9.0 / 81));  // row 4
 }
@@ -192,12 +195,13 @@ TEST_CASE("slides: when there is an answer", "[published]") {
   };
   // 3 px of a dot in contact are 2 frames
   CHECK(first_answers(AnswerWhen::contact_moved) == std::array<Index, 2>{2, 2});
-  // of the stick region, the middle column, 2.5 px are 5 frames; the first answer has none yet
+  // 2.5 px of the stick region, the middle column, are 5 frames; at the first answer there is none
+  // yet
   CHECK(first_answers(AnswerWhen::stick_region_moved) == std::array<Index, 2>{2, 5});
 }
 
 TEST_CASE("slides: the reference dot is one of the stick region", "[published]") {
-  // the columns at both sides and the dot in the middle stick; the others stay behind
+  // the columns on both sides and the dot in the middle stick; the others stay behind
   const auto sticks = [](Index i, Index j) { return j < 3 || j > 5 || (i == 4 && j == 4); };
   const auto frame = [&](int k) {
     return grid_of([&, k](Index i, Index j) {
@@ -214,10 +218,10 @@ TEST_CASE("slides: the reference dot is one of the stick region", "[published]")
   CHECK_FALSE(ratio(frame(0), contact, state).updated);
   const SlidesResult first = ratio(frame(1), contact, state);
   REQUIRE(first.ok());
-  CHECK(first.reference_dot == DotIndex{4, 4});  // of the contact: there was no answer before
+  CHECK(first.reference_dot == DotIndex{4, 4});  // of the contact: there was no earlier answer
   CHECK(first.stick_ratio == Approx(55.0 / 81));
-  // the middle dot is gone: of those that touch its neighbours are nearest, of those that stick
-  // the column to the left, which comes nearer
+  // the middle dot is gone: of the dots in contact its neighbours are the nearest; of the sticking
+  // dots those in the column to the left, which comes nearer
   contact(4, 4) = 0;
   const SlidesResult second = ratio(frame(2), contact, state);
   REQUIRE(second.ok());
@@ -242,7 +246,8 @@ TEST_CASE("slides: the mean over neighbours leaves the border", "[published]") {
     CHECK_FALSE(ratio(at_rest(), all, state).updated);
     return ratio(now, all, state).stick_ratio;
   };
-  // d_max = 3.6, delta = 0.43: within it is what the mean leaves of 0.6 px, a third, not all of it
+  // d_max = 3.6, delta = 0.43: the mean leaves a third of 0.6 px, which is within it, instead of
+  // all
   const auto preset = stick_ratio<double>(9, 9);
   const auto preset_ratio = [&](const PointsPx& now) {
     auto state = preset.start();
@@ -273,8 +278,8 @@ TEST_CASE("slides: what is refused", "[published]") {
 
 TEST_CASE("the published stick ratio is the slides'", "[published]") {
   // Frame by frame on all synthetic scenes with noise. The preset's angle is that of summed
-  // products (E034), and where nothing moves it has alpha = 1 (E036): a dot at the threshold may
-  // fall to either side.
+  // products (E034), and without motion it has alpha = 1 (E036), so a dot at the threshold may fall
+  // on either side.
   Index frames = 0, wrapped = 0, other_references = 0, other_frames = 0;
   double worst_angle = 0, worst_scale = 0;
   for (const test::SlipScene scene : test::all_slip_scenes) {
@@ -292,7 +297,7 @@ TEST_CASE("the published stick ratio is the slides'", "[published]") {
         const auto a = preset(seen, truth.contact, states, preset_state);
         const SlidesResult b = slides(seen, truth.contact, slides_state);
         REQUIRE(b.accepted);
-        if (a.status == StickStatus::standing) {  // the slides go on answering at rest
+        if (a.status == StickStatus::standing) {  // the slides still answer at rest
           return;
         }
         REQUIRE(a.updated() == b.updated);
@@ -325,7 +330,7 @@ TEST_CASE("the published stick ratio is the slides'", "[published]") {
               << ", other ratios " << other_frames << "; angle " << worst_angle << ", scale "
               << worst_scale);
   CHECK(frames > 700);
-  CHECK(wrapped > 100);  // E034: the pattern lies along x, and so does every left neighbour
+  CHECK(wrapped > 100);  // E034: the pattern is along x, and so is every left neighbour
   CHECK(other_references <= frames / 20);
   CHECK(other_frames <= frames / 50);
   CHECK(worst_angle < 1e-3);

@@ -24,7 +24,7 @@ constexpr Index height = 60;
 constexpr Index width = 80;
 using Dots = Image<Point2<double>>;
 
-/// A bumpy imprint in a disc, moved and rotated; the dots stand still unless told.
+/// A bumpy imprint in a disc, displaced and rotated; the dots stand still by default.
 struct Pad {
   Point2<double> shift = {0, 0};
   double angle_rad = 0;
@@ -156,7 +156,7 @@ TEST_CASE("contact slide: what it says when it cannot tell", "[contact_slide]") 
   CHECK(look({.radius = 2}, state).lost == 0);
   CHECK(look({}, state).status == SlideStatus::began);
 
-  // an imprint that cannot be found again: the slide stays, and goes on from there
+  // an imprint that cannot be found again: the slide is kept and continues from there
   CHECK(look({.shift = {0.5, 0}}, state).slide_px.x == Approx(2).margin(0.05));
   Image<double> other(height, width);
   for (Index i = 0; i < height; ++i) {
@@ -229,7 +229,9 @@ TEST_CASE("recoil: by how much dots have fallen back", "[recoil]") {
   CHECK(few.displaced == Approx(0.25));
   state.reset();
   CHECK(recoil(free.dots(), state).recoil == 0);
-  CHECK(recoil(Dots(4, 7), state).status == FrameStatus::refused);
+  const auto refused = recoil(Dots(4, 7), state);
+  CHECK(refused.status == FrameStatus::refused);
+  CHECK(refused.evidence == 0);
 }
 
 TEST_CASE("recoil: dots whose distance is no number do not count", "[recoil]") {

@@ -29,7 +29,7 @@ TEST_CASE("friction limit: the load of a contact from force, moment and dots", "
   // a flat patch about (0, 0, 10); its mean distance from the middle is 2/3 of its radius
   const test::SlippingPatch patch(0.6, 5.9, std::numeric_limits<double>::infinity());
   const Point3<double> force{0.3, 0.4, -2};
-  // a moment of 1.5 about the normal through (0, 0, 10), and what the force has about Q
+  // a moment of 1.5 about the normal through (0, 0, 10), plus the moment of the force about Q
   const Point3<double> arm{0, 0, 10};
   const Point3<double> moment = cross(arm, force) + Point3<double>{0, 0, 1.5};
   const auto load = contact_load(force, moment, patch.dots, patch.contact);
@@ -51,6 +51,13 @@ TEST_CASE("friction limit: the load of a contact from force, moment and dots", "
     CHECK(other.tangential_n == Approx(0.5));
     CHECK(other.moment_n_mm == Approx(1.5));
     CHECK(other.arm_mm == Approx(load.arm_mm));
+  }
+  SECTION("a domed contact has the arm of its plan") {
+    auto dots = patch.dots;
+    for (auto& p : dots.cells) {
+      p.z -= (p.x * p.x + p.y * p.y) / 20;
+    }
+    CHECK(contact_load(force, moment, dots, patch.contact).arm_mm == Approx(load.arm_mm));
   }
   SECTION("what is missing has no load") {
     const test::Image<std::uint8_t> free(21, 21, 0);
@@ -81,7 +88,7 @@ TEST_CASE("friction limit: learnt when the dots slide, answers when they do not"
   CHECK(r.limit == 0.55);
   CHECK(r.margin == Approx(0).margin(1e-12));
 
-  // the dots rest, and agree with one another; friction goes on
+  // the dots rest and agree with one another; friction continues
   r = limit(pull(2.2), 0.95, RatioUpdate::fresh, state);
   CHECK(r.status == FrictionLimitStatus::sliding);
   CHECK(r.evidence == SlipEvidence::friction);
@@ -91,7 +98,7 @@ TEST_CASE("friction limit: learnt when the dots slide, answers when they do not"
   CHECK(r.update == RatioUpdate::fresh);
   CHECK(r.ok());
 
-  // the load falls: the dots are asked again
+  // the load falls: the dots count again
   r = limit(pull(1.5), 0.95, RatioUpdate::unmoved, state);
   CHECK(r.status == FrictionLimitStatus::held);
   CHECK(r.evidence == SlipEvidence::dots);
@@ -99,7 +106,7 @@ TEST_CASE("friction limit: learnt when the dots slide, answers when they do not"
   CHECK(r.update == RatioUpdate::unmoved);
   CHECK(r.margin == Approx(1 - 1.5 / 2.2));
 
-  // a frame without force leaves the dots alone
+  // a frame without force leaves the result of the dots unchanged
   r = limit(ContactLoad<double>{}, 0.4, RatioUpdate::fresh, state);
   CHECK(r.status == FrictionLimitStatus::no_load);
   CHECK(r.stick_ratio == 0.4);
@@ -121,13 +128,13 @@ TEST_CASE("friction limit: a gel's imprint in place of the dots", "[friction_lim
   CHECK(r.status == FrictionLimitStatus::no_limit);
   CHECK(limit(ContactLoad<double>{}, slide, state).stick_ratio == 0.75);
 
-  slide.evidence = 1.5F;  // a limit is learnt from the alarm
+  slide.evidence = 1.5F;  // the alarm teaches the limit
   r = limit(pull(2.2), slide, state);
   CHECK(r.evidence == SlipEvidence::both);
   CHECK(r.stick_ratio == 0);
   CHECK(r.limit == 0.55);
 
-  slide.status = SlideStatus::not_found;  // an old alarm is no answer; friction is
+  slide.status = SlideStatus::not_found;  // an old alarm is no answer, but friction is
   r = limit(pull(2.2), slide, state);
   CHECK(r.evidence == SlipEvidence::friction);
   CHECK(r.stick_ratio == 0);
@@ -160,7 +167,7 @@ TEST_CASE("friction limit: what it learns", "[friction_limit]") {
     CHECK(slide(4) == Approx(0.5 * 1.075));  // half of the way to 1.15
     const double before = state.limit();
     CHECK(slide(4 * 0.97 * before) == Approx(before * 0.997));
-    CHECK(slide(4 * 0.9 * state.limit()) == state.limit());  // below: the limit stands
+    CHECK(slide(4 * 0.9 * state.limit()) == state.limit());  // below: the limit is kept
   }
   SECTION("noise of 1.5 % makes no bias to speak of, and misses next to no slide") {
     test::Random random(3);
@@ -178,18 +185,18 @@ TEST_CASE("friction limit: what it learns", "[friction_limit]") {
     CHECK(missed < 60);
   }
   SECTION("it follows friction that has fallen, frame by frame") {
-    // what slid since the reference did so under no larger load than the largest since then
+    // slip since the reference occurred under at most the largest load since then
     (void)slide(2.2);
     const auto seen = [&](double tangential_n, double ratio, Index age) {
       return limit(pull(tangential_n), ratio, RatioUpdate::fresh, state, age);
     };
     for (int k = 0; k < 3; ++k) {
-      (void)seen(1.2, 0.9, 1);  // regripped: it sticks
+      (void)seen(1.2, 0.9, 1);  // gripped again: it sticks
     }
     CHECK(state.limit() == 0.55);
-    (void)seen(1.32, 0, 5);  // compared with a frame in which 2.2 was borne: it may have slid then
+    (void)seen(1.32, 0, 5);  // the reference frame bore 2.2 N: the slip may date from then
     CHECK(state.limit() == 0.55);
-    (void)seen(1.32, 0, 0);  // since when is not known
+    (void)seen(1.32, 0, 0);  // age of the reference unknown
     CHECK(state.limit() == 0.55);
     (void)seen(1.32, 0, 3);
     CHECK(state.limit() == Approx(0.55 / 1.15));
@@ -197,7 +204,7 @@ TEST_CASE("friction limit: what it learns", "[friction_limit]") {
       (void)seen(1.32, 0, 3);
     }
     CHECK(state.limit() == Approx(0.33 / 0.95).epsilon(0.02));
-    CHECK(seen(1.32, 0.9, 3).status == FrictionLimitStatus::sliding);  // whatever the dots say
+    CHECK(seen(1.32, 0.9, 3).status == FrictionLimitStatus::sliding);  // whatever the dots report
   }
   SECTION("where a share still sticks the limit may lie further off") {
     (void)slide(2);
@@ -225,7 +232,7 @@ TEST_CASE("friction limit: what it learns", "[friction_limit]") {
     (void)limit(pull(2), 0.1, RatioUpdate::unmoved, state);
     CHECK(!is_finite(state.limit()));
     (void)limit(pull(0), 0.1, RatioUpdate::fresh, state);
-    CHECK(!is_finite(state.limit()));  // nothing pulls
+    CHECK(!is_finite(state.limit()));  // no load
   }
   SECTION("a limit that the object holds beyond is forgotten") {
     (void)slide(1);
@@ -233,7 +240,7 @@ TEST_CASE("friction limit: what it learns", "[friction_limit]") {
     CHECK(r.status == FrictionLimitStatus::no_limit);
     CHECK(r.stick_ratio == 0.9);
     (void)slide(2);
-    // but not where dots may be taken along alike
+    // but not where dots may all be carried along
     CHECK(limit(pull(2.1), 0.9, RatioUpdate::fresh, state).stick_ratio == 0);
     CHECK(limit(pull(3), 0.3, RatioUpdate::fresh, state).stick_ratio == 0);
   }
@@ -262,10 +269,10 @@ TEST_CASE("friction limit: dots that fall back are asked where the load falls wi
     struct Case {
       double told, pull_n, stick_ratio;
     };
-    for (const Case& c : {Case{0.4, 2.15, 0},      // less than half stuck, and the load stays
-                          Case{0.6, 2.15, 0.6},    // more did: an object that turns aside, maybe
-                          Case{0.4, 2.06, 0.4},    // falls a little: not known
-                          Case{0.4, 2.0, 0.8}}) {  // falls: carried
+    for (const Case& c : {Case{0.4, 2.15, 0},      // less than half sticks, and the load is kept
+                          Case{0.6, 2.15, 0.6},    // more sticks: the object may turn aside
+                          Case{0.4, 2.06, 0.4},    // the load falls a little: unknown
+                          Case{0.4, 2.0, 0.8}}) {  // it falls: carried
       CAPTURE(c.told, c.pull_n);
       state.reset();
       seen.status = StickStatus::updated;
@@ -319,22 +326,22 @@ TEST_CASE("friction limit: what it says feeds a grip", "[friction_limit]") {
   const GripControl control;
   auto state = limit.start();
   auto grip = control.start(3);
-  (void)limit(pull(2), 0.1, RatioUpdate::fresh, state);  // learnt
+  (void)limit(pull(2), 0.1, RatioUpdate::fresh, state);  // learns the limit
   CHECK(control(limit(pull(1), 0.9, RatioUpdate::fresh, state), 0.01, grip).why ==
         GripReason::follows_load);
-  // the membrane stands still, and the dots agree: without friction the force would be held, with
-  // it the force follows the load
+  // The membrane stands still and the dots agree. Without friction the force would be held; with
+  // friction it follows the load.
   const auto slip = limit(pull(2), 0.9, RatioUpdate::unmoved, state);
   const auto raised = control(slip, 0.01, grip);
   CHECK(raised.ok());
   CHECK(raised.why == GripReason::follows_load);
   CHECK(raised.force_n > 3);
-  // a ratio in percent is none: the force waits, and says so
+  // a ratio in percent is invalid: the force waits, and the status reports it
   auto other = control.start(3);
   const auto percent = control({90.0}, 0.01, other);
   CHECK_FALSE(percent.ok());
   CHECK(percent.force_n == 3);
-  // nor does it grip fully where it goes on: through the friction limit too
+  // nor does it lead to full grip when it continues, also through the friction limit
   for (int k = 0; k < 1000; ++k) {
     const auto wrong = control(limit(pull(1), 90.0, RatioUpdate::fresh, state), 0.01, other);
     CHECK_FALSE(wrong.ok());
