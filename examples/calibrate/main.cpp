@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
-// calibrate: from recordings to the sensor.json that replay reads. See --help.
+// calibrate: makes the sensor.json that replay reads from recordings. See --help.
 #include <CLI/CLI.hpp>
 #include <exception>
 #include <functional>
@@ -9,6 +9,7 @@
 #include "calibrate/calibrations.hpp"
 #include "fingerpad/core/expects.hpp"
 #include "replay/io/failure.hpp"
+#include "replay/io/images.hpp"
 
 namespace {
 
@@ -17,11 +18,11 @@ using calibrate::Path;
 
 struct Common {
   Path recording, into, plots;
-  /// The file that is read and written.
+  /// The sensor.json that is read and written.
   Path sensor() const { return into.empty() ? recording / "sensor.json" : into; }
 };
 
-/// A sub-command on a recording; `work` is called when all arguments are read.
+/// Adds a sub-command on a recording; `work` is called after all arguments are parsed.
 CLI::App* add(CLI::App& app,
               Common& common,
               const char* name,
@@ -58,7 +59,7 @@ int run(const Common& common, const std::function<Outcome()>& work) {
   return outcome.refusals.empty() ? 0 : 1;
 }
 
-/// What the sub-commands are given.
+/// Arguments of the sub-commands.
 struct Arguments {
   calibrate::DotPlate plate;
   calibrate::CapSize size;
@@ -150,6 +151,7 @@ void add_forces(CLI::App& app, Common& common, Arguments& given, std::function<O
 }  // namespace
 
 int main(int argc, char** argv) {
+  replay::limit_image_size(argv);
   CLI::App app(
       "Turns recordings into the sensor.json that replay reads, one sub-command a calibration.\n"
       "Each prints its parameters with standard errors, what the fit leaves, and whether it is\n"

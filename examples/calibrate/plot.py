@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: 2026 The fingerpad authors
 # SPDX-License-Identifier: MIT
-"""Draws what `calibrate ... --plots DIR` wrote: one picture a calibration, fit and residuals."""
+"""Draws the output of `calibrate ... --plots DIR`: one picture per calibration, fit and residuals."""
 import csv
 import os
 import pathlib

@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: 2026 The fingerpad authors
 # SPDX-License-Identifier: MIT
-"""The Python module on the bundled recording: pytest test_fingerpad.py, with the module's folder in
-PYTHONPATH. FINGERPAD_PROGRAMS is the folder of replay and calibrate, whose bits it must have."""
+"""Tests the Python module on the bundled recording: pytest test_fingerpad.py, with the module's folder
+in PYTHONPATH. FINGERPAD_PROGRAMS is the folder of replay and calibrate, whose results must be equal."""
 import base64
 import csv
 import hashlib
@@ -32,7 +32,7 @@ def picture(name):
 
 
 def table(file):
-    """Columns of a file by their names; NaN: an empty cell."""
+    """Columns of a file by name; NaN for an empty cell."""
     with open(file, newline="") as lines:
         rows = list(csv.DictReader(lines))
     number = lambda cell: float(cell) if cell else np.nan
@@ -48,7 +48,7 @@ def run(program, *arguments):
 
 
 def side_dots():
-    """Points of the rim (1, n, 3), and the dots beside it in each frame."""
+    """Points of the rim (1, n, 3), and the side dots in each frame."""
     points = table(PRESS / "side_dots.csv")
     columns = [f"{what}_{axis}" for what in ("border", "dot") for axis in "xyz"]
     n = int(points["index"].max()) + 1
@@ -89,7 +89,7 @@ def test_wider_pixels_of_the_same_values_give_the_same_depth(pad, estimate, kind
     frame = picture("frames/000005.png")
     depth, _, _ = estimate(*channels(frame))
     wide, status, result = estimate(*channels(frame.astype(kind)))
-    if kind == np.uint16:  # 16 bit have another full scale: these are dark
+    if kind == np.uint16:  # the full scale of 16 bit is larger, so these are dark
         assert not result.ok
     else:
         ok = status == int(fp.PixelStatus.ok)
@@ -111,7 +111,7 @@ def test_strides_do_not_matter(pad, estimate, kind):
 
 
 def test_arrays_are_read_where_they_lie(estimate):
-    # A single frame's memory serves as a thousand rows of the same row: a copy would need 1 GB.
+    # The memory of a single row serves as 2^24 rows; a copy would need 16 TiB.
     with pytest.raises(ValueError, match="480 x 480"):
         row = np.zeros(1 << 20, np.uint8)
         rows = np.lib.stride_tricks.as_strided(row, (1 << 24, 1 << 20), (0, 1))
@@ -156,7 +156,7 @@ def test_what_is_slow_runs_without_the_lock(pad, estimate):
         go.acquire()
         other = threading.Thread(target=lambda: go.acquire() and others.append(1))
         other.start()
-        sys.setswitchinterval(1000)  # from here on the lock is only given up willingly
+        sys.setswitchinterval(1000)  # from here on the GIL is released only explicitly
         try:
             go.release()
             for _ in range(1000):
@@ -249,7 +249,7 @@ def test_a_foam_hand_warns_of_vibration_that_moves_and_quickens():
     statuses = []
     for k in range(120):
         readings = [np.full((4, 4), 50.0) + rng.normal(0, 0.5, (4, 4)) for _ in range(2)]
-        if k > 60:  # the load moves on, and another taxel vibrates
+        if k > 60:  # the load moves, and another taxel vibrates
             readings[0][1, 2] += 20 * (-1) ** k
             readings[0][3, 3] += 200
         felt = hand(readings, 0.01 * k)
@@ -300,7 +300,7 @@ def test_dots_that_move_as_one_stick_and_those_that_stay_behind_slip():
 def test_frames_have_the_bits_of_cpp(tmp_path):
     recording = tmp_path / "press"
     shutil.copytree(PRESS, recording)
-    # The reference has 16 bit, of which Pillow reads 8: both read what it has read.
+    # The reference has 16 bit, of which Pillow reads 8; the file is replaced by what Pillow reads.
     Image.fromarray(picture("reference.png")).save(recording / "reference.png")
     sensor = json.loads((recording / "sensor.json").read_text())
     sensor["contact"] = {"threshold_per_mm": 0.025}

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
-// slip_trials: how well the imprint and the stick ratio tell recordings with slip from recordings
-// without, beside the simplest measure there is. See --help.
+// slip_trials: evaluates how well the imprint and the stick ratio separate recordings with slip
+// from recordings without, compared with the simplest measure. See --help.
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
@@ -13,6 +13,7 @@
 #include "events.hpp"
 #include "measures.hpp"
 #include "replay/io/failure.hpp"
+#include "replay/io/images.hpp"
 #include "trials.hpp"
 
 namespace {
@@ -21,15 +22,15 @@ using slip_trials::Measures;
 using slip_trials::Trial;
 using slip_trials::View;
 
-/// One trial: the mean of its views.
+/// One trial with the mean over its views.
 struct Scored {
   const Trial* trial;
   Measures whole;
   Measures early;
 };
 
-/// Share of the pairs of a slipping and a holding trial that the scores put in order; a tie is half
-/// a pair. Negative where there is no pair.
+/// Area under the ROC curve: the share of pairs of a slipping and a holding trial that the scores
+/// order correctly. A tie counts half. Negative without a pair.
 double roc_area(const std::vector<Scored>& trials, double (*score)(const Scored&)) {
   double won = 0;
   double pairs = 0;
@@ -65,7 +66,7 @@ void print_trial(const Scored& scored, const std::vector<View>& views) {
   std::printf("\n");
 }
 
-/// Slip as events, where the contact is known: of the first view of each trial.
+/// Prints slip as events for the first view of each trial, where the contact is known.
 void print_events_of(const std::vector<Trial>& trials,
                      const std::vector<std::vector<View>>& views) {
   const auto events = [&](const auto& measure_of) {
@@ -152,6 +153,7 @@ int run(const std::string& folder) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  replay::limit_image_size(argv);
   CLI::App app(
       "Slip in labelled recordings of pads with dots. FOLDER holds labels.dat (lines of: height\n"
       "LABEL 0|1 start end event trial) and a folder of frames for each trial whose\n"

@@ -68,7 +68,7 @@ void add_noise(Samples& samples, double sd, std::mt19937& random) {
   }
 }
 
-/// The depth that a fitted model finds in these colours, by bisection on F.
+/// Depth of these colours by a fitted model, by bisection on F.
 template <class Fit>
 double depth_of(const Fit& fit, const DepthSample<double>& s) {
   double low = -1, high = 20;
@@ -197,7 +197,7 @@ TEST_CASE("calibration of depth: the fit is where no parameter lowers the residu
     double sum = 0;
     for (const auto& s : samples) {
       const double path = s.pencil.path_factor * s.depth_mm;
-      const double delta = best[1];  // the weights stay those of the fit
+      const double delta = best[1];  // with the weights of the fit
       const double noise_sq = std::exp(2 * delta * path) + best[2] * best[2];
       const Absorption<double> fluid{p[0], p[0] + p[1], p[2]};
       const double f = depth_equation(fluid, s.pencil, p[3], s.colour, s.depth_mm).value;
@@ -279,7 +279,7 @@ TEST_CASE("calibration of depth: covariance against Monte Carlo where the noise 
 
 TEST_CASE("calibration of depth: a difference of absorption below 0 is held at 0") {
   Sensor sensor;
-  sensor.fluid.c_green_per_mm = 0.0285;  // no such fluid is accepted, but colours can look so
+  sensor.fluid.c_green_per_mm = 0.0285;  // such a fluid is refused, but colours can look like it
   const auto fit = fit_absorption<0, double>(samples_on_axis(sensor, 12));
   CHECK(fit.delta_at_limit);
   CHECK(fit.fluid.c_green_per_mm == fit.fluid.c_red_per_mm);
@@ -321,6 +321,11 @@ TEST_CASE("calibration of depth: degenerate samples are refused, saying what is 
     samples[0].weight = bad;
     CHECK(fit(samples).find("weight = ") != std::string::npos);
   }
+  for (double Colour<double>::*channel : {&Colour<double>::red, &Colour<double>::green}) {
+    Samples samples = at({0.5, 4, 8, 12});
+    samples[2].colour.*channel = 0;
+    CHECK(fit(samples).find("= 0, must be finite and > 0") != std::string::npos);
+  }
   Samples swapped = at({0.5, 4, 8, 12});
   for (auto& s : swapped) {
     std::swap(s.colour.red, s.colour.green);
@@ -331,5 +336,5 @@ TEST_CASE("calibration of depth: degenerate samples are refused, saying what is 
           (void)fit_absorption<1, double>(at_one_radius);
         }).find("rho_sq_mm2 = 1, must") != std::string::npos);
   const auto unknown = fit_absorption<0, double>(at({0.5, 4, 8, 12}));
-  CHECK(std::isnan(unknown.covariance(0, 0)));  // nothing left over to judge the noise by
+  CHECK(std::isnan(unknown.covariance(0, 0)));  // no residual to estimate the noise from
 }

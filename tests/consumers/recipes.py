@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: 2026 The fingerpad authors
 # SPDX-License-Identifier: MIT
-"""recipes.py ROOT CMAKE VERSION: the recipes of vcpkg and Conan as far as they can be checked where
-neither tool is: they are run with stand-ins for the tools' own functions."""
+"""recipes.py ROOT CMAKE VERSION: checks the recipes of vcpkg and Conan without these tools, with
+stand-ins for their functions."""
 import importlib.util
 import json
 import re

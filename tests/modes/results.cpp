@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
-// Prints results of methods on one made-up scene, in all digits: tests/modes compares what
-// different compilers, options and machines print. Two threads get them at once, from the same
-// estimators; they must agree to the bit.
+// Prints results of methods on one synthetic scene with all digits. tests/modes compares the output
+// of different compilers, options and machines. Two threads compute them at once with the same
+// estimators and must agree to the bit.
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
@@ -30,6 +30,17 @@ class Results {
   std::string lines_;
 };
 
+/// Mean of the known cells.
+template <class Image>
+double mean(const Image& image) {
+  double sum = 0, known = 0;
+  for (const auto cell : image.cells) {
+    sum += is_finite(static_cast<double>(cell)) ? static_cast<double>(cell) : 0;
+    known += is_finite(static_cast<double>(cell)) ? 1 : 0;
+  }
+  return sum / known;
+}
+
 void tell_depth_and_contact(Results& tell) {
   const test::Pad pad;
   const auto frame = pad.frame<std::uint8_t>(pad.pressed_depths(3));
@@ -40,13 +51,8 @@ void tell_depth_and_contact(Results& tell) {
   test::Image<PixelStatus> status(pad.rows, pad.cols);
   const auto result = estimate(frame.red, frame.green, depth, status, work);
   tell("depth accepted", result.ok() ? 1 : 0);
-  double sum = 0, valid = 0;
-  for (const float d : depth.cells) {
-    sum += is_finite(d) ? static_cast<double>(d) : 0;
-    valid += is_finite(d) ? 1 : 0;
-  }
-  tell("depth pixels", valid);
-  tell("depth mean mm", sum / valid);
+  tell("depth pixels", static_cast<double>(result.valid_pixels()));
+  tell("depth mean mm", mean(depth));
   tell("depth in the middle mm", static_cast<double>(depth(24, 28)));
   ContactTest test;
   test.ring.radius_px = 4;
@@ -57,6 +63,48 @@ void tell_depth_and_contact(Results& tell) {
   const auto contact = region(depth, mask, memory);
   tell("contact pixels", static_cast<double>(contact.contact_px));
   tell("contact area mm2", contact.area_mm2);
+}
+
+template <int Step, class Frame>
+void tell_samples(Results& tell, const char* name, const Frame& frame) {
+  using Sampler = FrameSampler<std::uint8_t, Step>;
+  const Index rows = frame.red.rows() / Step, cols = frame.red.cols() / Step;
+  test::Image<std::uint16_t> red(rows, cols), green(rows, cols);
+  auto work = Sampler::workspace(frame.red.cols());
+  const auto view = [](auto& image) {
+    return StridedView<std::uint16_t>(image.cells.data(), image.rows(), image.cols(), image.cols());
+  };
+  const bool done = Sampler::band(0, rows, frame.red, frame.green, view(red), view(green), work);
+  tell(name, done ? mean(red) + mean(green) : -1);
+}
+
+/// Methods with vector code of their own, other than depth and contact.
+void tell_images(Results& tell) {
+  const test::Pad pad;
+  const auto free_mm = pad.pressed_depths(0), pressed_mm = pad.pressed_depths(3);
+  const auto frame = pad.frame<std::uint8_t>(pressed_mm);
+  tell_samples<2>(tell, "samples of 2 x 2", frame);
+  tell_samples<3>(tell, "samples of 3 x 3", frame);
+  tell_samples<4>(tell, "samples of 4 x 4", frame);
+  static const DepthEstimator estimate(pad.camera, pad.fluid, pad.reference<float>(),
+                                       NoSmoothing{});
+  auto work = estimate.workspace<std::uint8_t>();
+  test::Image<float> depth(pad.rows, pad.cols);
+  test::Image<PixelStatus> status(pad.rows, pad.cols);
+  tell("depth without smoothing",
+       estimate(frame.red, frame.green, depth, status, work).ok() ? mean(depth) : -1);
+  test::Image<float> from(pad.rows, pad.cols), to(pad.rows, pad.cols);
+  for (std::size_t k = 0; k < from.cells.size(); ++k) {
+    from.cells[k] = static_cast<float>(free_mm.cells[k]);
+  }
+  static const NeighbourLightCompensation<> compensate(
+      {.radius_px = 6}, static_cast<float>(pad.camera.pitch_mm), from);
+  auto light_work = compensate.workspace();
+  for (std::size_t k = 0; k < from.cells.size(); ++k) {
+    from.cells[k] = static_cast<float>(pressed_mm.cells[k]);
+  }
+  (void)compensate(from, to, light_work);
+  tell("without neighbour light", mean(to));
 }
 
 template <class Point>
@@ -135,6 +183,7 @@ int main() {
   Results results, others;
   const auto tell_all = [](Results& tell) {
     tell_depth_and_contact(tell);
+    tell_images(tell);
     tell_dots(tell);
     tell_forces(tell);
   };

@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: 2026 The fingerpad authors
 # SPDX-License-Identifier: MIT
-"""speed.py FRAME [FRAMES]: what a frame takes from Python beside the program FRAME, which computes the
-same in C++. They take turns, so that whatever else the machine does meets both; the shortest time of
-each counts."""
+"""speed.py FRAME [FRAMES]: compares the time of a frame from Python with that of the program FRAME, which
+computes the same in C++. Both alternate, so that other load of the machine affects both alike; the
+shortest time of each is used."""
 import os
 import subprocess
 import sys
@@ -40,8 +40,8 @@ def main(frame, frames):
         file.flush()
         cpp = subprocess.Popen([frame, str(rows), str(cols), file.name], text=True,
                                stdin=subprocess.PIPE, stdout=subprocess.PIPE)
-        # New arrays, arrays of ours, C++ twice; depth, contact, both. The second of a turn finds the
-        # cache warm, so Python's ways change places.
+        # (new arrays, own arrays, C++ twice) x (depth, contact, both). The second call of a turn has a
+        # warm cache, so the two Python variants alternate.
         times = np.empty((frames, 4, 3))
         for k in range(frames):
             for way in (k % 2, 1 - k % 2):
