@@ -214,12 +214,16 @@ class FrameSampler {
 #if defined(FINGERPAD_HAS_VECTORS)
   using Bytes = detail::lanes<std::uint8_t, width>;
 
-  /// What a vector of pixels says: those that carry information, else 0, and which do not.
+  /// A vector of pixels: those that carry information, else 0, and which do not.
   struct Block {
     Bytes red, green, bright, bad;
   };
   [[gnu::always_inline]] Block block(Index row, Index col) const {
     const Index at = row * stride_ + col;
+    // The next row of samples: a new frame is not in the cache yet, and processors do not see that
+    // several rows are read at once.
+    __builtin_prefetch(red_ + at + Step * stride_);
+    __builtin_prefetch(green_ + at + Step * stride_);
     const Bytes r = detail::load<std::uint8_t, width>(red_ + at);
     const Bytes g = detail::load<std::uint8_t, width>(green_ + at);
     const Bytes top = Bytes{} + std::uint8_t(255);
