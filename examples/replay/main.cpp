@@ -15,33 +15,38 @@
 namespace {
 
 const char* const about =
-    "Depth, contact, the motion of the object, the stick ratio and the force from a recording\n"
-    "of a fluid-filled pad, or pre-slip from one of a foam array.\n"
-    "RECORDING is a folder with sensor.json, reference.png, reference_depth.tiff and frames/,\n"
-    "and perhaps free/ (frames of the free pad) and dots.csv;\n"
-    "force and moment need signals.csv with pressures, side_dots.csv and \"rim\" in sensor.json,\n"
-    "the load on each dot also stress_free_dots.csv; forces by look-up need \"force\" in\n"
-    "sensor.json, and are compared with forces.csv where there is one;\n"
-    "DIR receives frames.csv, dots.csv and pictures/, and depth/ and contact/ with --raw.\n"
-    "A recording of any other pad with a grid of dots needs a sensor.json of {} and frames/ or a\n"
-    "video, and perhaps free/: contact is where a frame differs from the free pad (the first\n"
-    "frames where nothing else shows it), and slip is where it slides past the dots: slide.csv\n"
-    "and pictures/slide.png. The stick ratio counts each dot that is found as in contact.\n"
-    "A recording of a foam array is taxels.csv, and perhaps a sensor.json with a section "
-    "\"foam\":\n"
-    "it gives frames.csv, with the vibration of each finger and pre-slip, and pictures/.\n"
-    "An earlier run's DIR is replaced when the new one is complete; nothing is left behind when\n"
-    "something fails.\n"
-    "--check computes and writes nothing: it says what is wrong with the recording.\n"
-    "--camera and --video show a pad as it is touched: of RECORDING they need sensor.json,\n"
-    "reference.png and reference_depth.tiff. q or Esc ends it.";
+    "Computes depth, contact, motion of the object, stick ratio and force from a recording of a\n"
+    "fluid-filled pad, or pre-slip from a recording of a foam array.\n"
+    "\n"
+    "Fluid-filled pad: RECORDING is a folder with sensor.json, reference.png,\n"
+    "reference_depth.tiff and frames/. free/ (frames of the free pad) and dots.csv are optional.\n"
+    "Six-axis force and moment need signals.csv with pressures, side_dots.csv and \"rim\" in\n"
+    "sensor.json; the load on each dot needs stress_free_dots.csv, too. Forces by look-up need\n"
+    "\"force\" in sensor.json; they are compared with forces.csv if it exists.\n"
+    "The results are frames.csv, dots.csv and pictures/, with --raw also depth/ and contact/.\n"
+    "\n"
+    "Any other pad with a grid of dots: sensor.json may be {}; frames/ or a video is needed and\n"
+    "free/ is optional. Contact is where a frame differs from the free pad, which is taken from\n"
+    "free/, else from the reference in sensor.json, else from the first frames. Slip is a contact\n"
+    "that slides past the dots. The additional results are slide.csv and pictures/slide.png. For\n"
+    "the stick ratio each detected dot counts as in contact.\n"
+    "\n"
+    "Foam array: taxels.csv, and optionally sensor.json with a section \"foam\". The results are\n"
+    "frames.csv, with the vibration of each finger and pre-slip, and pictures/.\n"
+    "\n"
+    "An earlier run's DIR is replaced when the new one is complete. A run that fails leaves\n"
+    "nothing behind.\n"
+    "--check writes nothing; it lists the problems of the recording.\n"
+    "--camera and --video show results live while the pad is touched; they need sensor.json,\n"
+    "reference.png and reference_depth.tiff in RECORDING. Press q or Esc to quit.";
 
 void add_live_options(CLI::App& app, replay::LiveOptions& live) {
-  const auto camera = app.add_option("--camera", live.camera, "show live what camera N sees")
+  const auto camera = app.add_option("--camera", live.camera, "show the results for camera N live")
                           ->check(CLI::NonNegativeNumber)
                           ->option_text("N");
-  const auto video = app.add_option("--video", live.video, "a recorded video in place of a camera")
-                         ->option_text("FILE");
+  const auto video =
+      app.add_option("--video", live.video, "play a recorded video instead of a camera")
+          ->option_text("FILE");
   camera->excludes(video);
   const auto headless =
       app.add_flag("--headless", live.headless, "write the live pictures to DIR, without a window");
@@ -57,26 +62,27 @@ void add_options(CLI::App& app, replay::Options& options, std::string& frames, b
       {"none", replay::Smoothing::none},
       {"box", replay::Smoothing::box},
       {"anchored", replay::Smoothing::anchored}};
-  app.add_option("RECORDING", options.recording, "the recording's folder")->required();
+  app.add_option("RECORDING", options.recording, "folder of the recording")->required();
   const auto check = app.add_flag("--check", checks,
-                                  "say what is wrong with the recording: a line each, with the "
-                                  "remedy; exit status 1 if there is anything");
-  const auto out = app.add_option("--out", options.out, "the folder to write")->option_text("DIR");
+                                  "list the problems of the recording, one per line with the "
+                                  "remedy; exit status 1 if there are any");
+  const auto out = app.add_option("--out", options.out, "output folder")->option_text("DIR");
   check->excludes(out);
   app.add_flag(
       "--raw", options.raw,
-      "also write depth/NNNNNN.tiff (32-bit float, mm, NaN: invalid) and contact/NNNNNN.png "
+      "also write depth/NNNNNN.tiff (32-bit float, mm, NaN where invalid) and contact/NNNNNN.png "
       "(255 in contact, else 0)");
   app.add_option_function<std::string>(
          "--smoothing", [&](const std::string& name) { options.smoothing = policies.at(name); },
-         "none, box or anchored (default; none without smoothing_px)")
+         "none, box or anchored; default: anchored if sensor.json has smoothing_px, else none")
       ->check(CLI::IsMember({"none", "box", "anchored"}))
       ->option_text("POLICY");
-  app.add_option("--frames", frames, "only frames A to B-1, counted from 0; A or B may be left out")
+  app.add_option("--frames", frames,
+                 "process frames A to B-1 only, counted from 0; A or B may be omitted")
       ->option_text("A:B");
   app.add_flag_callback(
-      "--no-pictures", [&] { options.pictures = false; }, "write no pictures");
-  app.footer("Exit status: 0 done, 1 something in the files, 2 wrong arguments.");
+      "--no-pictures", [&] { options.pictures = false; }, "do not write pictures");
+  app.footer("Exit status: 0 success, 1 error in the files, 2 wrong arguments.");
 }
 
 }  // namespace

@@ -70,19 +70,19 @@ void print_look_up(const Writer& writer, const Recording& recording) {
       moment_error.add(std::abs(f.moment_n_mm - truth.moment_n_mm));
     }
   }
-  std::printf("look-up      in %d frames, at most %.2f N normal, %.2f N along the plate\n", known,
+  std::printf("look-up      in %d frames; maximum %.2f N normal, %.2f N tangential\n", known,
               normal_n, tangential_n);
   if (disagreeing > 0) {
     std::printf(
-        "             in %d of them depth says otherwise: not the calibration's shape; area "
-        "counts\n",
+        "             %d of these: area and depth disagree: the object has another shape than in the\n"
+        "             calibration; the force by area is used\n",
         disagreeing);
   }
   if (beyond > 0) {
-    std::printf("             in %d of them beyond what was calibrated\n", beyond);
+    std::printf("             %d of these: outside the calibrated range\n", beyond);
   }
   if (normal_error.count() + tangential_error.count() > 0) {
-    std::printf("its error    %s normal, %s along the plate, %s moment (means)\n",
+    std::printf("mean error   %s normal, %s tangential, %s moment\n",
                 normal_error.words("N").c_str(), tangential_error.words("N").c_str(),
                 moment_error.words("N mm").c_str());
   }
@@ -91,7 +91,7 @@ void print_look_up(const Writer& writer, const Recording& recording) {
 void print_wrench(const Chain& chain, const Writer& writer, const Recording& recording) {
   const std::string lacking = lacking_for_wrench(recording);
   if (!lacking.empty()) {
-    std::printf("force        none: %s\n", lacking.c_str());
+    std::printf("six-axis     none: %s\n", lacking.c_str());
     return;
   }
   int known = 0;
@@ -103,8 +103,8 @@ void print_wrench(const Chain& chain, const Writer& writer, const Recording& rec
       largest_n = std::fmax(largest_n, std::sqrt(f.x * f.x + f.y * f.y + f.z * f.z));
     }
   }
-  std::printf("force        in %d frames, at most %.2f N\n", known, largest_n);
-  std::printf("force step   %.2f ms a frame (median)\n", chain.wrench_ms());
+  std::printf("six-axis     in %d frames; maximum %.2f N\n", known, largest_n);
+  std::printf("force step   %.2f ms per frame (median)\n", chain.wrench_ms());
 }
 
 /// Prints the results that need depth.
@@ -125,13 +125,13 @@ void print_depth(const Chain& chain, const Writer& writer) {
   std::printf("valid        %.2f %% of the pad's pixels\n", 100 * valid_share / frames);
   if (changed > 0) {
     std::printf(
-        "pad changed  in %d frames: its light is not that of reference.png; take a new one\n",
+        "pad changed  in %d frames: the light differs from the reference; record a new reference\n",
         changed);
   }
-  std::printf("deepest      %.2f mm\n", deepest_mm);
-  std::printf("contact      in %d frames, at most %.1f mm^2\n", in_contact, largest_mm2);
-  std::printf("depth step   %.2f ms a frame (median)\n", chain.depth_ms());
-  std::printf("contact step %.2f ms a frame (median)\n", chain.contact_ms());
+  std::printf("max depth    %.2f mm\n", deepest_mm);
+  std::printf("contact      in %d frames; maximum %.1f mm^2\n", in_contact, largest_mm2);
+  std::printf("depth step   %.2f ms per frame (median)\n", chain.depth_ms());
+  std::printf("contact step %.2f ms per frame (median)\n", chain.contact_ms());
 }
 
 /// The most useful reason why no frame has a stick ratio.
@@ -139,8 +139,9 @@ const char* why_none(const std::vector<FrameRow>& rows) {
   const bool outline = std::any_of(rows.begin(), rows.end(), [](const FrameRow& row) {
     return row.stick.status == fingerpad::StickStatus::no_outline;
   });
-  return outline ? "all dots count as in contact, and some do not follow; if the object is larger "
-                   "than the print, say \"stick\": {\"covers_pattern\": true} in sensor.json"
+  return outline ? "all dots count as in contact, but some do not follow the object; if the object "
+                   "is larger than the dot pattern, set \"stick\": {\"covers_pattern\": true} in "
+                   "sensor.json"
                  : "the dots never moved far enough";
 }
 
@@ -159,7 +160,7 @@ void print_dots(const Chain& chain, const Writer& writer) {
     }
   }
   if (updated > 0) {
-    std::printf("stick ratio  in %d frames, at least %.2f\n", updated, lowest);
+    std::printf("stick ratio  updated in %d frames; minimum %.2f\n", updated, lowest);
   } else {
     std::printf("stick ratio  none: %s\n", why_none(writer.rows()));
   }
@@ -190,7 +191,7 @@ void print_summary(const Chain& chain,
     std::printf("masks        %s\n", (writer.place() / "contact").c_str());
   }
   if (options.pictures) {
-    std::printf("pictures     %s; %s first\n", (writer.place() / "pictures").c_str(),
+    std::printf("pictures     %s; start with %s\n", (writer.place() / "pictures").c_str(),
                 dots_only ? "slide.png" : "montage.png");
   }
 }
@@ -223,9 +224,9 @@ Range parse_range(const std::string& text) {
 Range within(const Range& range, int size, const std::filesystem::path& recording) {
   const int last = range.last.value_or(size);
   if (range.first >= last || last > size) {
-    fail(recording, "holds frames 0 to " + std::to_string(size - 1) + ", so --frames " +
+    fail(recording, "has frames 0 to " + std::to_string(size - 1) + ", but --frames is " +
                         std::to_string(range.first) + ":" + std::to_string(last) +
-                        " names none or too many");
+                        "; A must be less than B, and B at most " + std::to_string(size));
   }
   return {range.first, last};
 }

@@ -66,9 +66,10 @@ class Copy {
     std::string lines;
     for (const replay::Finding& finding : replay::check_recording(folder_)) {
       CHECK_FALSE(finding.remedy.empty());
+      CHECK(finding.remedy.back() == '.');
       CHECK((finding.place + finding.what + finding.remedy).find('\n') == std::string::npos);
       if (finding.is_wrong) {
-        lines += finding.place + ": " + finding.what + "; " + finding.remedy + "\n";
+        lines += finding.place + ": " + finding.what + ". " + finding.remedy + "\n";
       }
     }
     return lines;
@@ -220,12 +221,15 @@ void in_plan(cv::Mat& depth) {
 // Without a print, because finding its dots takes most of the time.
 const std::vector<Mistake> mistakes = {
     {"pressure in kPa", [](const Copy& c) { c.scale("signals.csv", 2, 1e3); },
-     "in kPa? divide by 1000"},
-    {"pressure in Pa", [](const Copy& c) { c.scale("signals.csv", 2, 1e6); }, "in Pa? divide"},
-    {"absolute pressure", [](const Copy& c) { c.scale("signals.csv", 2, 1, 0.1013); }, "absolute?"},
+     "If the unit is kPa, divide by 1000"},
+    {"pressure in Pa", [](const Copy& c) { c.scale("signals.csv", 2, 1e6); },
+     "If the unit is Pa, divide by 1,000,000"},
+    {"absolute pressure", [](const Copy& c) { c.scale("signals.csv", 2, 1, 0.1013); },
+     "If the pressure is absolute"},
     {"pressure of a gauge that is turned", [](const Copy& c) { c.scale("signals.csv", 2, -1); },
-     "tare the gauge"},
-    {"no pressure", [](const Copy& c) { c.scale("signals.csv", 2, 0); }, "is the gauge connected?"},
+     "Tare the gauge with the pad open"},
+    {"no pressure", [](const Copy& c) { c.scale("signals.csv", 2, 0); },
+     "Check that the gauge is connected"},
     {"time in ms",
      [](const Copy& c) {
        c.edit_table("signals.csv", [](Row& r) {
@@ -233,7 +237,7 @@ const std::vector<Mistake> mistakes = {
          return true;
        });
      },
-     "in ms? divide by 1000"},
+     "If the unit is ms, divide by 1000"},
     {"time that goes back",
      [](const Copy& c) {
        c.edit_table("signals.csv", [](Row& r) {
@@ -241,17 +245,17 @@ const std::vector<Mistake> mistakes = {
          return true;
        });
      },
-     "goes back or stands still 1 times"},
+     "the time decreases or repeats 1 times"},
     {"time missing",
      [](const Copy& c) { c.edit_table("signals.csv", [](Row& r) { return r[0] != "1"; }); },
-     "time_s: 1 of them are missing"},
+     "time_s: missing for 1 of 3 frames"},
     {"side dots in m",
      [](const Copy& c) {
        for (std::size_t k = 2; k < 8; ++k) {
          c.scale("side_dots.csv", k, 1e-3);
        }
      },
-     "side_dots.csv, border: 0.01"},
+     "side_dots.csv, border: the border points are 0.01"},
     {"side dots below the base", [](const Copy& c) { c.scale("side_dots.csv", 7, -1); },
      "lie below the base"},
     {"side dots shifted by one",
@@ -269,7 +273,7 @@ const std::vector<Mistake> mistakes = {
          return true;
        });
      },
-     "shifted by one?"},
+     "indices are shifted by one"},
     {"side dots at another length",
      [](const Copy& c) {
        c.replace("sensor.json", "\"side_dot_length_mm\": 0.79995",
@@ -278,22 +282,22 @@ const std::vector<Mistake> mistakes = {
      "rim.side_dot_length_mm is 0.0008"},
     {"reference depth in m",
      [](const Copy& c) { c.edit_picture("reference_depth.tiff", [](cv::Mat& d) { d /= 1000; }); },
-     "in m? multiply by 1000"},
+     "If the unit is m, multiply by 1000"},
     {"reference depth 0 outside the pad",
      [](const Copy& c) {
        c.edit_picture("reference_depth.tiff", [](cv::Mat& d) { cv::patchNaNs(d, 0); });
      },
-     "write NaN outside the pad"},
+     "Write NaN outside the pad"},
     {"reference depth as indentation",
      [](const Copy& c) {
        c.edit_picture("reference_depth.tiff", [](cv::Mat& d) { d = 13.1 - d; });
      },
-     "no indentation"},
+     "not an indentation"},
     {"reference depth in plan",
      [](const Copy& c) { c.edit_picture("reference_depth.tiff", in_plan); }, "not in plan"},
     {"wrong center",
      [](const Copy& c) { c.replace("sensor.json", "[239.5, 239.5]", "[239.5, 320]"); },
-     "camera.center_px: the pad lies 6.4"},
+     "camera.center_px: the pad is 6.4"},
     {"pitch of the camera in another unit",
      [](const Copy& c) { c.replace("sensor.json", "\"pitch_mm\": 0.08", "\"pitch_mm\": 0.04"); },
      "sensor.json, camera.pitch_mm"},
@@ -301,7 +305,7 @@ const std::vector<Mistake> mistakes = {
      [](const Copy& c) {
        c.replace("sensor.json", "\"max_depth_mm\": 18.0", "\"max_depth_mm\": 9");
      },
-     "take the pad's height"},
+     "larger than the height of the pad"},
     {"red and green exchanged",
      [](const Copy& c) {
        const auto exchange = [](cv::Mat& p) {
@@ -311,7 +315,7 @@ const std::vector<Mistake> mistakes = {
        c.edit_picture("reference.png", exchange);
        c.edit_frames(exchange);
      },
-     "are red and green exchanged"},
+     "Check whether red and green are exchanged"},
     {"a pressed frame for the reference",
      [](const Copy& c) {
        const cv::Mat pressed = cv::imread((data / "press/frames/000006.png").string());
@@ -319,7 +323,7 @@ const std::vector<Mistake> mistakes = {
        fs::create_directory(c.folder() / "free");
        fs::copy_file(data / "press/frames/000000.png", c.folder() / "free/000000.png");
      },
-     "or in the reference: leave them out"},
+     "or replace the reference if it shows a contact"},
     {"a pressed frame for the reference, without free frames",
      [](const Copy& c) {
        const cv::Mat pressed = cv::imread((data / "press/frames/000006.png").string());
@@ -342,31 +346,31 @@ const std::vector<Mistake> mistakes = {
          }
        });
      },
-     "are rows read with their padding?"},
+     "Check that row padding is handled"},
     {"absorption in another unit",
      [](const Copy& c) {
        c.replace("sensor.json", "\"c_red_per_mm\": 0.0290", "\"c_red_per_mm\": 0.290");
        c.replace("sensor.json", "\"c_green_per_mm\": 0.0336", "\"c_green_per_mm\": 0.336");
      },
-     "coefficients in 1/mm?"},
+     "Give the coefficients in 1/mm"},
     {"a grey reference",
      [](const Copy& c) {
        c.edit_picture("reference.png", [](cv::Mat& p) { p.setTo(cv::Scalar::all(20000)); });
      },
-     "do not tell the depth"},
+     "its colours do not depend on the depth"},
     {"saturated frames",
      [](const Copy& c) {
        c.edit_frames(
            [](cv::Mat& f) { f(cv::Rect(150, 150, 100, 100)).setTo(cv::Scalar::all(255)); });
      },
-     "of the pad are saturated"},
+     "of the pad is saturated"},
     {"frames too dark", [](const Copy& c) { c.edit_frames([](cv::Mat& f) { f /= 16; }); },
-     "too dark"},
+     "the pad is too dark"},
     {"a lamp that has changed", [](const Copy& c) { c.edit_frames([](cv::Mat& f) { f *= 0.9; }); },
-     "darker than the reference"},
+     "darker than in the reference"},
     {"a lamp that fades",
      [](const Copy& c) { c.edit_picture(Copy::frame(2), [](cv::Mat& f) { f *= 0.9; }); },
-     "the last against the first"},
+     "darker than in the first frame"},
     {"noise",
      [](const Copy& c) {
        cv::theRNG().state = 7;
@@ -379,13 +383,13 @@ const std::vector<Mistake> mistakes = {
          w.convertTo(f, CV_8U);
        });
      },
-     "lower the gain"},
+     "Lower the gain"},
     {"a camera that stands still",
      [](const Copy& c) {
        fs::copy_file(c.folder() / Copy::frame(1), c.folder() / Copy::frame(2),
                      fs::copy_options::overwrite_existing);
      },
-     "1 frames are the same as the one before"},
+     "1 of 3 frames repeat the previous frame"},
     {"free frames that are not free",
      [](const Copy& c) {
        fs::create_directory(c.folder() / "free");
@@ -393,33 +397,33 @@ const std::vector<Mistake> mistakes = {
      },
      "free: "},
     dots_mistake("dots in mm",
-                 "in mm? they are pixels",
+                 "Give pixels, not mm",
                  [](int, int i, int j) { return cv::Vec2d(1.5 * j - 5, 1.5 * i - 5); }),
     dots_mistake("dots in m",
-                 "or in m? they are pixels",
+                 "Give pixels, not fractions of the frame and not m",
                  [](int, int i, int j) { return cv::Vec2d(1.5e-3 * j, 1.5e-3 * i); }),
     dots_mistake("dots in shares of the frame",
-                 "in shares of the frame",
+                 "Give pixels, not fractions of the frame",
                  [](int f, int i, int j) { return cv::Vec2d(good_place(f, i, j) / 480.0); }),
     dots_mistake(
         "lost dots as (0, 0)",
-        "leave out the lines of lost dots",
+        "Leave out the lines of lost dots",
         [](int f, int i, int j) { return i == 2 ? cv::Vec2d(0, 0) : good_place(f, i, j); }),
     dots_mistake("dots column by column",
-                 "are row and col, or x_px and y_px, exchanged?",
+                 "Check whether row and col, or x_px and y_px, are exchanged",
                  [](int f, int i, int j) {
                    return cv::Vec2d(good_place(f, i, j)[1], good_place(f, i, j)[0]);
                  }),
     dots_mistake("dots mirrored",
-                 "the print is mirrored",
+                 "the dot pattern is mirrored",
                  [](int f, int i, int j) { return good_place(f, i, 6 - j); }),
     dots_mistake(
         "dots shuffled",
-        "do not follow each other",
+        "the dots of a row are not in the order of their col",
         [](int f, int i, int j) { return good_place(f, (i + 3 * j) % 6, (5 * j + i) % 7); }),
     dots_mistake(
         "dots named anew in each frame",
-        "leaps",
+        "displacements between two frames exceed",
         [](int f, int i, int j) { return good_place(f, i, (j + 2 * f) % 7) + cv::Vec2d(0, 0); }),
     {"area in m^2",
      [](const Copy& c) {
@@ -429,13 +433,13 @@ const std::vector<Mistake> mistakes = {
      "by_area.to_mm2"},
     {"rotation in degrees",
      [](const Copy& c) { c.replace("sensor.json", "\"to_rad\": 0.1188", "\"to_rad\": 6.8"); },
-     "it is in rad"},
+     "Give it in rad"},
     {"moments in N mm",
      [](const Copy& c) {
        c.scale("forces.csv", 4, 1e3);
        c.scale("forces.csv", 4, 1, 50);
      },
-     "in N mm? divide by 1000"},
+     "If the unit is N mm, divide by 1000"},
     {"forces of the other sign",
      [](const Copy& c) {
        c.edit_table("forces.csv", [](Row& r) {
@@ -443,7 +447,7 @@ const std::vector<Mistake> mistakes = {
          return true;
        });
      },
-     "a press gives force_z_n < 0"},
+     "a press has force_z_n < 0"},
     {"force columns exchanged",
      [](const Copy& c) {
        c.edit_table("forces.csv", [](Row& r) {
@@ -452,9 +456,9 @@ const std::vector<Mistake> mistakes = {
          return true;
        });
      },
-     "are the columns exchanged?"},
+     "Check whether the columns are exchanged"},
     {"a force gauge turned by 30 degrees", [](const Copy& c) { drag(c, CV_PI / 6); },
-     "forces stand 30 +- "},
+     "the forces are rotated by 30 +- "},
     {"a force gauge turned by 90 degrees", [](const Copy& c) { drag(c, CV_PI / 2); },
      "Turned by 90 +- "},
     {"x and y of the forces exchanged",
@@ -467,7 +471,7 @@ const std::vector<Mistake> mistakes = {
      },
      "are x and y exchanged"},
     {"a force gauge that was not tared", [](const Copy& c) { c.scale("forces.csv", 3, 1, -0.4); },
-     "tare the gauge with nothing in contact"},
+     "Tare the gauge with nothing in contact"},
     {"no sensor.json", [](const Copy& c) { fs::remove(c.folder() / "sensor.json"); },
      "sensor.json: cannot be read"},
 };
@@ -475,7 +479,7 @@ const std::vector<Mistake> mistakes = {
 const std::vector<Mistake> print_mistakes = {
     {"dots of another pitch",
      [](const Copy& c) { c.replace("sensor.json", "\"pitch_mm\": 1.5", "\"pitch_mm\": 2.5"); },
-     "dots.pitch_mm: dots lie"},
+     "dots.pitch_mm: the dots are"},
     {"fewer dots than there are",
      [](const Copy& c) {
        c.replace("sensor.json", "\"rows\": 21, \"cols\": 21", "\"rows\": 11, \"cols\": 21");
@@ -498,7 +502,8 @@ void make_all(const Copy& copy, double reading) {
 }
 
 const std::vector<Mistake> foam_mistakes = {
-    {"time in ms", [](const Copy& c) { c.scale("taxels.csv", 1, 1000); }, "in ms? divide by 1000"},
+    {"time in ms", [](const Copy& c) { c.scale("taxels.csv", 1, 1000); },
+     "If the unit is ms, divide by 1000"},
     {"a gap",
      [](const Copy& c) {
        c.edit_table("taxels.csv", [](Row& r) {
@@ -518,7 +523,7 @@ const std::vector<Mistake> foam_mistakes = {
      [](const Copy& c) {
        c.replace("sensor.json", "\"pitch_mm\"", "\"noise\": 6000, \"pitch_mm\"");
      },
-     "give the noise in the unit of the readings"},
+     "Give the noise in the unit of the readings"},
     {"a taxel that flickers",
      [](const Copy& c) {
        c.edit_table("taxels.csv", [](Row& r) {
@@ -526,7 +531,7 @@ const std::vector<Mistake> foam_mistakes = {
          return true;
        });
      },
-     "flickers"},
+     "the reading changes by"},
     {"bytes exchanged",
      [](const Copy& c) {
        c.edit_table("taxels.csv", [](Row& r) {
@@ -537,7 +542,7 @@ const std::vector<Mistake> foam_mistakes = {
          return true;
        });
      },
-     "exchange the bytes"},
+     "Swap the two bytes"},
 };
 
 void check_all(
@@ -601,11 +606,11 @@ TEST_CASE("check: a gauge that is not turned, and one of which nothing can tell 
     const Copy copy("press");
     no_print(copy);
     drag(copy, turned_rad, directions);
-    CHECK(copy.said().find("turn the gauge, or its columns") == std::string::npos);
+    CHECK(copy.said().find("Rotate the gauge, or rotate its columns") == std::string::npos);
     const auto findings = replay::check_recording(copy.folder());
     const bool told =
         std::any_of(findings.begin(), findings.end(), [](const replay::Finding& finding) {
-          return finding.what.find("nothing tells whether the gauge is turned") !=
+          return finding.what.find("a rotation of the gauge cannot be detected") !=
                  std::string::npos;
         });
     CHECK(told == (directions == 1));

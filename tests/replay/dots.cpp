@@ -334,7 +334,7 @@ TEST_CASE("dots.csv is refused with the line's number") {
   const std::string header = "frame,row,col,x_px,y_px\n";
   const auto [text, complaint] = GENERATE(
       Fault{"", "dots.csv: is empty"}, Fault{"frame,row,col,x,y\n", "line 1: must be frame,row"},
-      Fault{"H", "dots.csv: names no dots"}, Fault{"H0,1,2,3\n", "line 2: has 4 values, must have"},
+      Fault{"H", "dots.csv: lists no dots"}, Fault{"H0,1,2,3\n", "line 2: has 4 values, must have"},
       Fault{"H0,1,2,3,4,5\n", "line 2: has 6 values, must have 5"},
       Fault{"H0,1,2,3,4\n\n0,1,2,5,6\n", "line 4: row 1, col 2 of frame 0 is given twice"},
       Fault{"H11,1,2,3,4\n", "line 2: frame '11' is not one of the frames 0 to 10"},

@@ -372,8 +372,8 @@ TEST_CASE("the sensor.json of a dots-only recording is refused with the key's na
   };
   const auto [sensor, complaint] = GENERATE(
       Fault{R"({"dots": {"pitch_mm": 1}})",
-            "unknown key dots.pitch_mm (known here: rows, cols, diameter_px, bright)"},
-      Fault{R"({"dots": {"rows": 5}})", "dots.cols is missing (columns of dots"},
+            "unknown key dots.pitch_mm (known keys: rows, cols, diameter_px, bright)"},
+      Fault{R"({"dots": {"rows": 5}})", "dots.cols is missing (number of columns of dots"},
       Fault{R"({"dots": {"rows": 5, "cols": 0}})", "dots.cols = 0"},
       Fault{R"({"dots": {"bright": 1}})", "dots.bright is 1 (a number), must be true or false"},
       Fault{R"({"dots": {"diameter_px": -2}})", "dots.diameter_px = -2, must be > 0"},

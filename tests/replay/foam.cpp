@@ -628,27 +628,29 @@ TEST_CASE("a table that is none of taxels is refused with the column's name") {
       Fault{"frame,time_s,r0_c0\n", "taxels.csv: holds no samples"},
       Fault{"frame,r0_c0\n0,1\n", "line 1: column time_s is missing"},
       Fault{"time_s,r0_c0\n0,1\n", "line 1: column frame is missing"},
-      Fault{"frame,time_s\n0,1\n", "line 1: columns r<row>_c<col> of taxels are missing"},
-      Fault{"frame,time_s,r0_c0,r0_c1,r1_c0\n0,0,1,1,1\n",
-            "line 1: column r1_c1 is missing: the others make an array of 2 x 2 taxels"},
+      Fault{"frame,time_s\n0,1\n", "line 1: there are no taxel columns r<row>_c<col>"},
+      Fault{
+          "frame,time_s,r0_c0,r0_c1,r1_c0\n0,0,1,1,1\n",
+          "line 1: column r1_c1 is missing; the other columns belong to an array of 2 x 2 taxels"},
       Fault{"frame,time_s,r1_c0\n0,0,1\n", "line 1: column r0_c0 is missing"},
       Fault{"frame,time_s,r0_c0,r2_c0\n0,0,1,1\n", "line 1: column r1_c0 is missing"},
       Fault{"frame,time_s,r0_c0,r0_c0\n0,0,1,1\n", "line 1: column r0_c0 is given twice"},
       Fault{"frame,time_s,r0_c0,r00_c0\n0,0,1,1\n", "line 1: column r00_c0 is given twice"},
       Fault{"frame,time_s,r0_c0,time_s\n0,0,1,1\n", "line 1: column time_s is given twice"},
       Fault{"frame,time_s,r0_c0,pressure\n0,0,1,1\n",
-            "line 1: column 'pressure' is none of frame, time_s and r<row>_c<col>"},
-      Fault{"frame,time_s,r0_c\n0,0,1\n", "column 'r0_c' is none of"},
-      Fault{"frame,time_s,r0_c0x\n0,0,1\n", "column 'r0_c0x' is none of"},
-      Fault{"frame,time_s,r9999_c0\n0,0,1\n", "column 'r9999_c0' is none of"},
-      Fault{"frame,time_s,r99999999999999999999_c0\n0,0,1\n", "is none of"},
-      Fault{"frame,time_s,r-1_c0\n0,0,1\n", "column 'r-1_c0' is none of"},
-      Fault{"frame,time_s,,r0_c0\n0,0,,1\n", "column '' is none of"},
-      Fault{"frame;time_s;r0_c0\n0;0;1\n", "column 'frame;time_s;r0_c0' is none of"},
-      Fault{"frame,time_s,r0_c0\n0,0,1\n1,1,2,3\n", "line 3: has 4 values, at most 3 are named"},
+            "line 1: unknown column 'pressure' (known: frame, time_s, r<row>_c<col>)"},
+      Fault{"frame,time_s,r0_c\n0,0,1\n", "unknown column 'r0_c'"},
+      Fault{"frame,time_s,r0_c0x\n0,0,1\n", "unknown column 'r0_c0x'"},
+      Fault{"frame,time_s,r9999_c0\n0,0,1\n", "unknown column 'r9999_c0'"},
+      Fault{"frame,time_s,r99999999999999999999_c0\n0,0,1\n", "unknown column 'r9999999"},
+      Fault{"frame,time_s,r-1_c0\n0,0,1\n", "unknown column 'r-1_c0'"},
+      Fault{"frame,time_s,,r0_c0\n0,0,,1\n", "unknown column ''"},
+      Fault{"frame;time_s;r0_c0\n0;0;1\n", "unknown column 'frame;time_s;r0_c0'"},
+      Fault{"frame,time_s,r0_c0\n0,0,1\n1,1,2,3\n",
+            "line 3: has 4 values, but the header has only 3"},
       Fault{"frame,time_s,r0_c0\n0,0,1\n1,1,two\n", "line 3: r0_c0 'two' is not a number"},
       Fault{"frame,time_s,r0_c0\n0,soon,1\n", "line 2: time_s 'soon' is not a number"},
-      Fault{"frame,time_s,r0_c0\n-1,0,1\n", "line 2: frame '-1' is not a whole number from 0 on"},
+      Fault{"frame,time_s,r0_c0\n-1,0,1\n", "line 2: frame '-1' is not a whole number >= 0"},
       Fault{"frame,time_s,r0_c0\n0.5,0,1\n", "line 2: frame '0.5' is not a whole number"});
   const Workplace work{std::string(text)};
   const std::string line = work.complaint();
@@ -662,8 +664,8 @@ TEST_CASE("the section foam of sensor.json is refused with the key's name") {
     const char* complaint;
   };
   const auto [sensor, complaint] = GENERATE(
-      Fault{R"({"foam": {"pich_mm": 1}})", "unknown key foam.pich_mm (known here: fingers, "},
-      Fault{R"({"foams": {}})", "unknown key foams (known here: version, calibration, foam)"},
+      Fault{R"({"foam": {"pich_mm": 1}})", "unknown key foam.pich_mm (known keys: fingers, "},
+      Fault{R"({"foams": {}})", "unknown key foams (known keys: version, calibration, foam)"},
       Fault{R"({"foam": [1]})", "foam is an array, must be an object"},
       Fault{R"({"foam": {"window": 3}})", "foam: TaxelOptions: window = 3, must be in [4, 4096]"},
       Fault{R"({"foam": {"window": 16.5}})", "foam.window is 16.5 (a number), must be a whole"},
@@ -686,21 +688,23 @@ TEST_CASE("the section foam of sensor.json is refused with the key's name") {
       Fault{R"({"foam": {"fingers": {}}})", "fingers must be a list [...] of 1 to 5 fingers"},
       Fault{R"({"foam": {"fingers": [1, 2, 3, 4, 5, 6]}})", "of 1 to 5 fingers"},
       Fault{R"({"foam": {"fingers": [{"rows": 1, "first_col": 0, "cols": 1}]}})",
-            "foam.fingers[0].first_row is missing (of the array, counted from 0)"},
+            "foam.fingers[0].first_row is missing (first row of the finger in the array, counted "
+            "from 0)"},
       Fault{R"({"foam": {"fingers": [{"first_row": 0, "rows": 0, "first_col": 0, "cols": 1}]}})",
             "foam.fingers[0].rows = 0, must be >= 1"},
       Fault{R"({"foam": {"fingers": [{"first_row": -1, "rows": 1, "first_col": 0, "cols": 1}]}})",
             "foam.fingers[0].first_row = -1, must be >= 0"},
       Fault{R"({"foam": {"fingers": [{"first_row": 1, "rows": 6, "first_col": 0, "cols": 4}]}})",
-            "foam.fingers[0] reaches beyond the array, which has 6 x 4 taxels"},
+            "foam.fingers[0] extends beyond the array, which has 6 x 4 taxels"},
       Fault{R"({"foam": {"fingers": [{"first_row": 0, "rows": 6, "first_col": 2147483647,
                                       "cols": 2147483647}]}})",
-            "foam.fingers[0] reaches beyond the array"},
+            "foam.fingers[0] extends beyond the array"},
       Fault{R"({"foam": {"fingers": [{"first_row": 0, "rows": 3, "first_col": 0, "cols": 4},
                                      {"first_row": 2, "rows": 4, "first_col": 3, "cols": 1}]}})",
-            "foam.fingers[1] has taxels of foam.fingers[0]"},
-      Fault{R"({"camera": {}})", "has camera, which a recording with taxels.csv does not need"},
-      Fault{R"({"foam": {}, "dots": {}})", "has dots, which a recording with taxels.csv"},
+            "foam.fingers[1] shares taxels with foam.fingers[0]"},
+      Fault{R"({"camera": {}})",
+            "has section camera, which a recording with taxels.csv cannot have"},
+      Fault{R"({"foam": {}, "dots": {}})", "has section dots, which a recording with taxels.csv"},
       Fault{"{", "parse error"}, Fault{"[]", "the whole file is an array, must be an object"});
   const Workplace work(taxels_of(rows, cols, 20, held), sensor);
   const std::string line = work.complaint();
@@ -712,14 +716,14 @@ TEST_CASE("the section foam of sensor.json is refused with the key's name") {
 TEST_CASE("a section foam without a table of taxels is refused") {
   const Workplace work(taxels_of(rows, cols, 20, held), with_foam(""));
   fs::remove(work.folder() / "taxels.csv");
-  CHECK(work.complaint().find("has a section foam, but there is no taxels.csv") !=
+  CHECK(work.complaint().find("has a section foam, but taxels.csv with the readings") !=
         std::string::npos);
 }
 
 TEST_CASE("a part of a foam recording") {
   const Taxels taxels = taxels_of(rows, cols, samples, creeping);
   const Workplace work(taxels, with_foam(R"("noise": 4, "sample_period_s": 0.03125)"));
-  CHECK(work.complaint(false, {100, 161}).find("holds frames 0 to 159") != std::string::npos);
+  CHECK(work.complaint(false, {100, 161}).find("has frames 0 to 159") != std::string::npos);
   REQUIRE(work.complaint(false, {80, 140}) == "");
   const auto part = work.table();
   REQUIRE(part.size() == 60);

@@ -347,7 +347,7 @@ TEST_CASE("replay: rims that cannot be are refused with what is wrong", "[wrench
   }
   SECTION("a key that is none") {
     work.replace("sensor.json", "stress_free_inclination_rad", "inclination");
-    says("unknown key rim.inclination (known here: side_dot_length_mm, ");
+    says("unknown key rim.inclination (known keys: side_dot_length_mm, ");
   }
   SECTION("another header") {
     work.write("side_dots.csv", "frame,index\n0,0\n");
@@ -357,7 +357,7 @@ TEST_CASE("replay: rims that cannot be are refused with what is wrong", "[wrench
     work.write("side_dots.csv", "");
     says("side_dots.csv: is empty");
     work.write("side_dots.csv", header);
-    says("side_dots.csv: names no side dots");
+    says("side_dots.csv: lists no side dots");
   }
   SECTION("lines that cannot be") {
     const std::string good = "0,0,18.735,0,0,18.4,0,0.8\n";
@@ -548,9 +548,9 @@ TEST_CASE("replay: curves that cannot be are refused with what is wrong", "[look
     REQUIRE(text.find(old) != std::string::npos);
     return text.replace(text.find(old), old.size(), with);
   };
-  says("{}", "force: holds no curve (known here: by_area, by_depth, shear)");
+  says("{}", "force: contains no curve (known keys: by_area, by_depth, shear)");
   says("3", "force is a number, must be an object");
-  says(R"({"by_volume": {}})", "unknown key force.by_volume (known here: by_area, by_depth,");
+  says(R"({"by_volume": {}})", "unknown key force.by_volume (known keys: by_area, by_depth,");
   says(changed(by_depth_alone, "to_mm", "to_mm2"), "unknown key force.by_depth.to_mm2");
   says(changed(by_area_alone, "to_mm2", "to_mm"), "unknown key force.by_area.to_mm");
   says(R"({"by_depth": {"from_mm": 0.1, "to_mm": 3.5}})",
@@ -569,7 +569,7 @@ TEST_CASE("replay: curves that cannot be are refused with what is wrong", "[look
        "force.by_depth.residual_n = 0, must be > 0");
   const std::string both =
       changed(by_area_alone, "}}", "},") + std::string(by_depth_alone).substr(1);
-  says(both, "force.by_area.residual_n is missing (what the calibration left, N; by_area and");
+  says(both, "force.by_area.residual_n is missing (standard deviation of the residual, N; by_area");
   says(changed(both, "340", "340, \"residual_n\": 0.1"), "force.by_depth.residual_n is missing");
   says(changed(shear_alone, "\"area\"", "\"volume\""),
        "force.shear.by is \"volume\" (a string), must be \"area\" or \"depth\"");

@@ -46,7 +46,7 @@ refuses 2 "A:B" "$recording" --out "$work/out" --frames three
 refuses 2 "smoothing" "$recording" --out "$work/out" --smoothing gauss
 refuses 1 "^replay: $work/none: there is no such folder" "$work/none" --out "$work/out"
 refuses 1 "frames 0 to 10" "$recording" --out "$work/out" --frames 4:90
-refuses 1 "which no earlier run wrote" "$recording" --out "$broken"
+refuses 1 "which replay did not write" "$recording" --out "$broken"
 refuses 1 "is not a folder" "$recording" --out "$broken/sensor.json"
 refuses 1 "sensor.json: cannot be written" "$recording" --out "$broken/sensor.json/out"
 refuses 2 "--headless" "$recording" --video "$work/none.avi" --out "$work/out"
@@ -111,7 +111,7 @@ fi
 
 "$replay" "$recording" --out "$work/out" --frames "$frames" >"$work/table" || fail "replay with pictures"
 grep -q "^frames  *$((7 - ${frames%:*}))$" "$work/table" || fail "the printed table: $(cat "$work/table")"
-grep -Eq "^its error    0\.[0-9]+ N normal, 0\.0[0-9] N along the plate, 0\.[0-9]+ N mm moment" \
+grep -Eq "^mean error   0\.[0-9]+ N normal, 0\.0[0-9] N tangential, 0\.[0-9]+ N mm moment" \
   "$work/table" || fail "the printed errors of the look-up: $(cat "$work/table")"
 for file in frames.csv pictures/{montage,stick_ratio,forces,wrench}.png \
             pictures/{depth,side,stick,rim,traction}_000006.png; do
@@ -182,6 +182,6 @@ fi
 sed 's/"max_depth_mm": 18.0/"max_depth_mm": 9/' "$recording/sensor.json" >"$broken/sensor.json"
 cp -r "$recording/frames" "$broken/"
 "$replay" "$broken" --check >"$work/said" && fail "a wrong recording has exit status 0"
-grep -q "max_depth_mm: 9, but the free pad is 13" "$work/said" || fail "--check: $(cat "$work/said")"
+grep -q "max_depth_mm: the value is 9, but the free pad is 13" "$work/said" || fail "--check: $(cat "$work/said")"
 
 ((failures == 0)) && echo "all as it should be"

@@ -176,7 +176,7 @@ TEST_CASE("sensor.json is refused with the key's name") {
       Fault{"\"pitch_mm\": 0.08", "\"pich_mm\": 0.08", "unknown key camera.pich_mm"},
       Fault{"\"smoothing_px\": 29", "\"smooth\": 29", "unknown key smooth "},
       Fault{"\"smoothing_px\"", "\"stick\": {\"slipp_px\": 1}, \"smoothing_px\"",
-            "unknown key stick.slipp_px (known here: reference_px, store_px, slip_px, "
+            "unknown key stick.slipp_px (known keys: reference_px, store_px, slip_px, "
             "covers_pattern)"},
       Fault{"\"smoothing_px\"", "\"stick\": {\"slip_px\": -1}, \"smoothing_px\"", "slip = -1"},
       Fault{"\"smoothing_px\"", "\"stick\": {\"store_px\": \"1\"}, \"smoothing_px\"",
@@ -281,7 +281,7 @@ TEST_CASE("files that cannot be used are refused with their name") {
   SECTION("a grey frame") {
     cv::imwrite((work.recording() / "frames" / "000001.png").string(),
                 cv::Mat(480, 480, CV_8UC1, cv::Scalar(9)));
-    CHECK(work.complaint().find("000001.png: has 1 channel, must be a colour") !=
+    CHECK(work.complaint().find("000001.png: has 1 channel, but must be a colour") !=
           std::string::npos);
   }
   SECTION("no reference") {
@@ -343,12 +343,12 @@ TEST_CASE("an earlier run is replaced, anything else is left alone") {
   }
   SECTION("a foreign file among the results") {
     std::ofstream(work.out() / "depth" / "notes.txt") << "mine";
-    CHECK_THROWS_WITH(replay::run(options), Catch::Contains("holds depth/notes.txt"));
+    CHECK_THROWS_WITH(replay::run(options), Catch::Contains("contains depth/notes.txt"));
     CHECK(fs::exists(work.out() / "depth" / "notes.txt"));
   }
   SECTION("a folder of somebody else") {
     options.out = work.recording();
-    CHECK_THROWS_WITH(replay::run(options), Catch::Contains("which no earlier run wrote"));
+    CHECK_THROWS_WITH(replay::run(options), Catch::Contains("which replay did not write"));
     CHECK(fs::exists(work.recording() / "sensor.json"));
   }
   SECTION("a file in the place of the folder") {
@@ -465,7 +465,8 @@ TEST_CASE("a range of frames must lie in the recording") {
   const Workplace work;
   auto options = work.options();
   options.range = {2, 5};
-  CHECK_THROWS_WITH(replay::run(options), Catch::Contains("holds frames 0 to 2, so --frames 2:5"));
+  CHECK_THROWS_WITH(replay::run(options),
+                    Catch::Contains("has frames 0 to 2, but --frames is 2:5"));
   CHECK(replay::parse_range("3:").first == 3);
   CHECK(replay::parse_range(":7").last == 7);
   for (const char* bad : {"", "3", "a:b", "1:2:3", "-1:2", "1 :2"}) {

@@ -19,22 +19,24 @@ void note_missing(const Recording& recording, Findings& findings) {
   };
   if (recording.sensor.dots_only) {
     if (!recording.sensor.stick.covers_pattern) {
-      note("sensor.json, stick.covers_pattern",
-           "every dot counts as in contact: no stick ratio once some stay behind",
-           "true where the object is larger than the print");
+      note(
+          "sensor.json, stick.covers_pattern",
+          "every dot counts as in contact, so there is no stick ratio once some dots do not follow "
+          "the object",
+          "Set it to true if the object is larger than the dot pattern.");
     }
     return;
   }
   if (const std::string lacking = lacking_for_wrench(recording); !lacking.empty()) {
-    note("six-axis force", lacking, "add it where the force is wanted");
+    note("six-axis force", lacking, "Add it if you need this force.");
   }
   if (!recording.sensor.force) {
     note("forces by look-up", "sensor.json has no section force",
-         "calibrate with known loads where these forces are wanted");
+         "Calibrate with known loads if you need these forces.");
   }
   if (recording.free_frames.size() == 0) {
     note("free", "there are no frames of the free pad",
-         "record twenty or more: the threshold of contact comes from their noise");
+         "Record at least twenty: the threshold of contact is computed from their noise.");
   }
 }
 
@@ -70,7 +72,8 @@ Findings check_recording(const std::filesystem::path& folder) {
       check_camera_recording(folder, findings);
     }
   } catch (const Failure& failure) {
-    findings.push_back({failure.what(), "cannot be used", "correct it and check again"});
+    findings.push_back(
+        {failure.what(), "the check stops here", "Correct this error and check again."});
   }
   return findings;
 }
@@ -78,11 +81,15 @@ Findings check_recording(const std::filesystem::path& folder) {
 int print_check(const std::filesystem::path& folder) {
   int wrong = 0;
   for (const Finding& finding : check_recording(folder)) {
-    std::printf("%s%s: %s; %s\n", finding.is_wrong ? "" : "(missing) ", finding.place.c_str(),
+    std::printf("%s%s: %s. %s\n", finding.is_wrong ? "" : "(optional) ", finding.place.c_str(),
                 finding.what.c_str(), finding.remedy.c_str());
     wrong += finding.is_wrong ? 1 : 0;
   }
-  std::printf(wrong == 0 ? "nothing is wrong as far as can be seen\n" : "%d to look at\n", wrong);
+  if (wrong == 0) {
+    std::printf("no problems found\n");
+  } else {
+    std::printf("%d problem%s found\n", wrong, wrong == 1 ? "" : "s");
+  }
   return wrong == 0 ? 0 : 1;
 }
 

@@ -12,8 +12,8 @@ namespace replay {
 
 struct Finding {
   std::string place;     ///< file, and the part of it
-  std::string what;      ///< the symptom
-  std::string remedy;    ///< how to repair it
+  std::string what;      ///< the symptom, without a full stop
+  std::string remedy;    ///< how to repair it, in whole sentences
   bool is_wrong = true;  ///< false: no mistake, only missing data
 };
 using Findings = std::vector<Finding>;

@@ -55,15 +55,15 @@ void check_order(const std::string& place, const DotGrid& dots, Findings& findin
   const cv::Vec2d right(median_of(steps.right_x), median_of(steps.right_y));
   const cv::Vec2d down(median_of(steps.down_x), median_of(steps.down_y));
   if (median_of(steps.bend) > 0.25 * median_of(steps.length)) {
-    findings.push_back(
-        {place, "dots of one row do not follow each other",
-         "give dots in the order of the print: are rows and columns numbered right?"});
+    findings.push_back({place, "the dots of a row are not in the order of their col",
+                        "Number the rows and columns in the order in which the dots are printed."});
   } else if (std::abs(right[1]) > std::abs(right[0]) && std::abs(down[0]) > std::abs(down[1])) {
-    findings.push_back({place, "rows run down the frame, columns across it",
-                        "are row and col, or x_px and y_px, exchanged?"});
+    findings.push_back({place, "the rows of dots run down the frame and the columns run across it",
+                        "Check whether row and col, or x_px and y_px, are exchanged."});
   } else if (right[0] * down[1] - right[1] * down[0] < 0) {
     findings.push_back(
-        {place, "the print is mirrored", "col grows to the right where row grows down"});
+        {place, "the dot pattern is mirrored",
+         "Number the columns from left to right if the rows are numbered downward."});
   }
 }
 
@@ -89,15 +89,16 @@ bool check_pixels(const std::string& place,
   const bool tiny = count > 1 && span < 0.1 * (std::min)(frame.width, frame.height);
   if (at_zero > 1) {
     findings.push_back({place, std::to_string(at_zero) + " dots lie at (0, 0)",
-                        "leave out the lines of lost dots"});
+                        "Leave out the lines of lost dots."});
     return false;
   }
   if (tiny || 4 * outside > count) {
     findings.push_back({place,
-                        "x_px from " + short_number(least[0]) + " to " + short_number(most[0]) +
-                            " in frames " + std::to_string(frame.width) + " px wide",
-                        most[0] <= 1.5 ? "in shares of the frame, or in m? they are pixels"
-                                       : "in mm? they are pixels"});
+                        "x_px ranges from " + short_number(least[0]) + " to " +
+                            short_number(most[0]) + ", but the frames are " +
+                            std::to_string(frame.width) + " px wide",
+                        most[0] <= 1.5 ? "Give pixels, not fractions of the frame and not m."
+                                       : "Give pixels, not mm."});
     return false;
   }
   return true;
@@ -120,8 +121,8 @@ void check_names(const std::string& place, const std::map<int, DotGrid>& dots, F
   if (10 * leaps > moves) {
     findings.push_back({place,
                         std::to_string(leaps) + " of " + std::to_string(moves) +
-                            " moves from frame to frame are leaps",
-                        "a dot keeps its row and column in all frames"});
+                            " displacements between two frames exceed 0.7 dot pitches",
+                        "Give a dot the same row and col in all frames."});
   }
 }
 
@@ -133,24 +134,26 @@ void check_print(const Recording& recording, Findings& findings) {
   options.pattern = {};
   const fingerpad::DotFinder finder(recording.reference, options);
   if (!finder.ok()) {
-    findings.push_back({recording.sensor.reference_frame, "shows no grid of 9 or more dots",
-                        "is it sharp and the free pad? else leave \"dots\" out of sensor.json"});
+    findings.push_back({recording.sensor.reference_frame,
+                        "the image shows no grid of 9 or more dots",
+                        "Use a sharp image of the free pad, or remove \"dots\" from sensor.json."});
     return;
   }
   const double ratio = finder.pattern().pitch_px / expected_px;
   const auto found = static_cast<int>(count_present(finder.free_px()));
   if (!(ratio > 0.85 && ratio < 1.15)) {
     findings.push_back({"sensor.json, dots.pitch_mm",
-                        "dots lie " + short_number(finder.pattern().pitch_px) +
-                            " px apart in the reference, but should " + short_number(expected_px),
-                        "in mm on the pad; is camera.pitch_mm right?"});
+                        "the dots are " + short_number(finder.pattern().pitch_px) +
+                            " px apart in the reference, but sensor.json predicts " +
+                            short_number(expected_px) + " px",
+                        "Give the pitch in mm on the pad, and check camera.pitch_mm."});
   } else if (finder.rows() > print.rows || finder.cols() > print.cols || 10 * found < 6 * wanted) {
     findings.push_back({"sensor.json, dots.rows and cols",
-                        std::to_string(print.rows) + " x " + std::to_string(print.cols) +
-                            ", but the reference shows " + std::to_string(found) + " dots in " +
-                            std::to_string(finder.rows()) + " rows and " +
-                            std::to_string(finder.cols()) + " columns",
-                        "count the printed ones"});
+                        "the pattern is " + std::to_string(print.rows) + " x " +
+                            std::to_string(print.cols) + ", but the reference shows " +
+                            std::to_string(found) + " dots in " + std::to_string(finder.rows()) +
+                            " rows and " + std::to_string(finder.cols()) + " columns",
+                        "Give the number of printed rows and columns."});
   }
 }
 
@@ -173,8 +176,8 @@ void check_dots(const std::filesystem::path& folder,
     fingerpad::DotFinderOptions options;
     options.pattern.bright = sensor.pattern.bright;
     if (!fingerpad::DotFinder(recording.reference, options).ok()) {
-      findings.push_back({"frames", "the first shows no grid of 9 or more dots",
-                          "name a sharp picture of the free pad as \"reference\" in sensor.json"});
+      findings.push_back({"frames", "the image of the free pad shows no grid of 9 or more dots",
+                          "Name a sharp image of the free pad as reference.frame in sensor.json."});
     }
   }
 }

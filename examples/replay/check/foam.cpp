@@ -72,30 +72,30 @@ void check_foam(const FoamRecording& recording, Findings& findings) {
     findings.push_back(
         {"taxels.csv, " + taxel_name(table, first_still),
          std::to_string(still) + " of " + std::to_string(table.taxels()) + " taxels never change",
-         "dead, saturated or not connected? leave their fingers out"});
+         "Check whether they are dead, saturated or disconnected, or leave out their fingers."});
   }
   if (whole && swapped_sum < 0.1 * sum) {
-    findings.push_back({"taxels.csv", "readings leap, but not with their two bytes exchanged",
-                        "exchange the bytes of each reading"});
+    findings.push_back({"taxels.csv", "the readings jump, but not if their two bytes are swapped",
+                        "Swap the two bytes of each reading."});
   } else {
     const double typical = median_of(usual);
     const auto worst = std::max_element(usual.begin(), usual.end());
     if (*worst > 30 * (std::max)(typical, 1.0)) {
       findings.push_back(
           {"taxels.csv, " + taxel_name(table, static_cast<std::size_t>(worst - usual.begin())),
-           "flickers by " + short_number(*worst) + " from sample to sample, others by " +
-               short_number(typical),
-           "a loose contact? leave this taxel's finger out"});
+           "the reading changes by " + short_number(*worst) +
+               " from sample to sample, that of other taxels by " + short_number(typical),
+           "Check for a loose contact, or leave out the finger of this taxel."});
     }
   }
   const double most =
       *std::max_element(table.readings.begin(), table.readings.end(),
                         [](double a, double b) { return a < b || (a != a && b == b); });
   if (recording.sensor.noise && most < *recording.sensor.noise) {
-    findings.push_back(
-        {"sensor.json, foam.noise",
-         short_number(*recording.sensor.noise) + ", but no reading exceeds " + short_number(most),
-         "give the noise in the unit of the readings"});
+    findings.push_back({"sensor.json, foam.noise",
+                        "the noise is " + short_number(*recording.sensor.noise) +
+                            ", but no reading exceeds " + short_number(most),
+                        "Give the noise in the unit of the readings."});
   }
 }
 

@@ -64,7 +64,7 @@ void check_gauge(const std::filesystem::path& folder, Recording& recording, Find
   if (along_n < 0.05) {
     return;
   }
-  const std::string remedy = "turn the gauge, or its columns x and y";
+  const std::string remedy = "Rotate the gauge, or rotate its columns x and y.";
   const std::vector<Sample> drags = drags_of(folder, recording);
   if (drags.size() < 3) {
     return;
@@ -77,13 +77,14 @@ void check_gauge(const std::filesystem::path& folder, Recording& recording, Find
     constexpr double most = 6;  // the response of a pad is not quite linear
     if (!std::isfinite(sd)) {
       findings.push_back({"forces.csv",
-                          "the dots move along one line: nothing tells whether the "
-                          "gauge is turned",
-                          "drag in several directions", false});
+                          "the dots move along one line, so a rotation of the gauge cannot be "
+                          "detected",
+                          "Drag in several directions.", false});
     } else if (std::abs(angle) > std::fmax(most, 3 * sd)) {
       findings.push_back({"forces.csv",
-                          "forces stand " + short_number(std::round(angle)) + " +- " +
-                              short_number(std::ceil(sd)) + " degrees askew to the way of the dots",
+                          "the forces are rotated by " + short_number(std::round(angle)) + " +- " +
+                              short_number(std::ceil(sd)) +
+                              " degrees against the motion of the dots",
                           remedy});
     }
   } catch (const fingerpad::parameter_error& error) {

@@ -107,35 +107,39 @@ std::string percent(double share) {
 
 void tell_exposure(const std::string& place, const Light& light, Findings& findings) {
   if (light.saturated > 0.01) {
-    findings.push_back({place, percent(light.saturated) + " of the pad are saturated",
-                        "expose for a shorter time, or take light away"});
+    findings.push_back({place, "up to " + percent(light.saturated) + " of the pad is saturated",
+                        "Shorten the exposure or reduce the light."});
   }
   if (light.level < 16) {
-    findings.push_back({place, "too dark: " + short_number(light.level) + " of 255 grey levels",
-                        "expose for longer, or add light"});
+    findings.push_back(
+        {place, "the pad is too dark: the median level is " + short_number(light.level) + " of 255",
+         "Lengthen the exposure or add light."});
   }
   if (light.noise < 1e9 && light.noise > 0.1 * light.level && light.level >= 16) {
-    findings.push_back(
-        {place,
-         "noise of " + short_number(light.noise) + " grey levels in " + short_number(light.level),
-         "lower the gain and add light, or average frames"});
+    findings.push_back({place,
+                        "the noise is " + short_number(light.noise) +
+                            " grey levels at a median level of " + short_number(light.level),
+                        "Lower the gain and add light, or average frames."});
   }
   if (light.same > 0) {
     findings.push_back({place,
-                        std::to_string(light.same) + " frames are the same as the one before",
-                        "does the camera or the copying stand still?"});
+                        std::to_string(light.same) + " of " +
+                            std::to_string(light.of_reference.size()) +
+                            " frames repeat the previous frame",
+                        "Check whether the camera or the copying stalls."});
   }
 }
 
 void tell_lamp(const std::string& place,
                double ratio,
+               const std::string& other,
                const std::string& remedy,
                Findings& findings) {
   constexpr double most = 0.05;
   if (!(std::abs(ratio - 1) <= most)) {
     findings.push_back({place,
-                        percent(std::abs(ratio - 1)) + (ratio < 1 ? " darker" : " lighter") +
-                            " than the reference",
+                        "the pad is " + percent(std::abs(ratio - 1)) +
+                            (ratio < 1 ? " darker" : " brighter") + " than in " + other,
                         remedy});
   }
 }
@@ -144,9 +148,10 @@ void tell_lamp(const std::string& place,
 void check_free_pad(const Recording& recording, const Light& frames, Findings& findings) {
   const double least = *std::min_element(frames.touched.begin(), frames.touched.end());
   if (recording.free_frames.size() == 0 && least > free_share) {
-    findings.push_back({recording.sensor.reference_frame,
-                        "no frame looks like it: " + percent(least) + " of the pad differ, or more",
-                        "is it of the free pad? begin recordings with nothing in contact"});
+    findings.push_back(
+        {recording.sensor.reference_frame,
+         "no frame looks like it: at least " + percent(least) + " of the pad differs",
+         "Check that it shows the free pad, and begin recordings with nothing in contact."});
   }
 }
 
@@ -164,8 +169,9 @@ void check_tare(const Recording& recording, const Light& frames, Findings& findi
   }
   if (std::isfinite(free_n) && free_n > 0.1 * largest_n && free_n > 0.05) {
     findings.push_back({"forces.csv",
-                        short_number(free_n) + " N or more in all frames that show the free pad",
-                        "tare the gauge with nothing in contact"});
+                        "the force is at least " + short_number(free_n) +
+                            " N in all frames that show the free pad",
+                        "Tare the gauge with nothing in contact."});
   }
 }
 
@@ -187,27 +193,29 @@ void check_light(Recording& recording, Findings& findings) {
   }
   if (frames.dark > 0.1 && frames.level >= 16) {  // a press does not darken the pad
     findings.push_back({"frames",
-                        percent(frames.dark) + " of the pad are dark that are not in the reference",
-                        "are rows read with their padding? has the camera moved?"});
+                        "at least " + percent(frames.dark) +
+                            " of the pad is less than half as bright as in the reference",
+                        "Check that row padding is handled when frames are read, and that the "
+                        "camera has not moved."});
   }
-  const std::string again = "record reference and free frames again with this lamp";
+  const std::string again = "Record the reference and the free frames again with this light.";
   if (recording.free_frames.size() > 0) {
     const Light free = light_in(recording.free_frames, recording.reference, pad);
     tell_exposure("free", free, findings);
-    tell_lamp("free", median_of(free.of_reference), again, findings);
+    tell_lamp("free", median_of(free.of_reference), "the reference", again, findings);
     const double touched = *std::max_element(free.touched.begin(), free.touched.end());
     if (touched > free_share) {
-      findings.push_back(
-          {"free", percent(touched) + " of the pad look unlike the reference",
-           "something touches the pad in these frames, or in the reference: leave them out"});
+      findings.push_back({"free", percent(touched) + " of the pad differs from the reference",
+                          "Remove the frames in which something touches the pad, or replace the "
+                          "reference if it shows a contact."});
     }
   }
   check_free_pad(recording, frames, findings);
   check_tare(recording, frames, findings);
-  tell_lamp("frames, the first", frames.of_reference.front(), again, findings);
-  tell_lamp("frames, the last against the first",
-            frames.of_reference.back() / frames.of_reference.front(),
-            "does the lamp or the exposure change by itself? fix both", findings);
+  tell_lamp("frames, first frame", frames.of_reference.front(), "the reference", again, findings);
+  tell_lamp("frames, last frame", frames.of_reference.back() / frames.of_reference.front(),
+            "the first frame",
+            "Check whether the light or the exposure changes by itself, and fix both.", findings);
 }
 
 }  // namespace replay

@@ -21,22 +21,26 @@ void check_pressure(const Recording& recording, Findings& findings) {
   constexpr double air_mpa = 0.085;  // air pressure on a mountain
   const double usual = median_of(values);
   const double least = *std::min_element(values.begin(), values.end());
-  const std::string around = "around " + short_number(usual) + " MPa";
+  const std::string around = "the median is " + short_number(usual) + " MPa";
   if (usual > max_plausible_mpa) {
-    findings.push_back({place, around + ": more than a soft pad holds",
-                        usual > 1000 ? "in Pa? divide by 1,000,000" : "in kPa? divide by 1000"});
+    findings.push_back({place, around + ", more than a soft pad withstands",
+                        usual > 1000 ? "If the unit is Pa, divide by 1,000,000."
+                                     : "If the unit is kPa, divide by 1000."});
   } else if (least > air_mpa) {
-    findings.push_back(
-        {place, around + ", never below the air's",
-         "absolute? subtract the air's pressure (about 0.1013); in bar? divide by 10"});
+    findings.push_back({place, around + " and no value is below atmospheric pressure",
+                        "If the pressure is absolute, subtract the atmospheric pressure (about "
+                        "0.1013). If the unit is bar, divide by 10."});
   } else if (least < 0) {
-    findings.push_back({place, "down to " + short_number(least) + " MPa, below the surrounding air",
-                        "tare the gauge with the pad open"});
+    findings.push_back(
+        {place, "the minimum is " + short_number(least) + " MPa, below atmospheric pressure",
+         "Tare the gauge with the pad open."});
   } else if (usual < 1e-4) {
-    findings.push_back({place, around + ": none", "is the gauge connected? in GPa or in bar?"});
+    findings.push_back({place, around + ", almost zero",
+                        "Check that the gauge is connected and that the unit is not GPa or bar."});
   }
   if (values.size() >= 10 && std::set<double>(values.begin(), values.end()).size() == 1) {
-    findings.push_back({place, "never changes", "is the gauge read at every frame?"});
+    findings.push_back(
+        {place, "the value never changes", "Check that the gauge is read at every frame."});
   }
 }
 
@@ -65,25 +69,25 @@ void check_side_dots(const Recording& recording, Findings& findings) {
   const double base = recording.sensor.pad.base_radius_mm;
   if (!(radius > 0.8 * base && radius < 1.25 * base)) {
     findings.push_back({"side_dots.csv, border",
-                        short_number(radius) + " mm from the axis, but pad.base_radius_mm is " +
-                            short_number(base),
-                        "in mm, from the center of the plate's inner face"});
+                        "the border points are " + short_number(radius) +
+                            " mm from the axis, but pad.base_radius_mm is " + short_number(base),
+                        "Give them in mm, from the center of the plate's inner face."});
   } else if (median_of(heights) < 0) {
     findings.push_back({"side_dots.csv, dot_z", "the side dots lie below the base",
-                        "z points from the plate into the pad, toward the object"});
+                        "Let z point from the plate into the pad, toward the object."});
   } else if (std::abs(median_of(angles)) > CV_PI / border.cols) {
     findings.push_back({"side_dots.csv, index",
-                        "each side dot lies beside another point of the rim than its own",
-                        "shifted by one? a dot and its border point have the same index"});
+                        "the side dots are not beside the border points of the same index",
+                        "Check whether the indices are shifted by one."});
   } else if (recording.sensor.rim) {
     const double ratio = median_of(lengths) / recording.sensor.rim->side_dot_length_mm;
     if (!(ratio > 1.0 / 3 && ratio < 3)) {
       findings.push_back({"side_dots.csv, dot",
-                          short_number(median_of(lengths)) +
+                          "the side dots are " + short_number(median_of(lengths)) +
                               " mm from the rim, but "
                               "rim.side_dot_length_mm is " +
                               short_number(recording.sensor.rim->side_dot_length_mm),
-                          "both in mm"});
+                          "Give both in mm."});
     }
   }
 }
@@ -98,9 +102,11 @@ void check_look_up(const Recording& recording, Findings& findings) {
   const auto outside = [&](const char* key, double to, double least, double most,
                            const char* unit) {
     if (!(to >= least && to <= most)) {
-      findings.push_back({std::string("sensor.json, force.") + key,
-                          short_number(to) + " is no contact of a pad of this size",
-                          std::string("calibrated in another unit? it is in ") + unit});
+      findings.push_back(
+          {std::string("sensor.json, force.") + key,
+           "the value is " + short_number(to) + ", but must be " + short_number(least) + " to " +
+               short_number(most) + " " + unit + " for a pad of this size",
+           std::string("Give it in ") + unit + "; check the unit of the calibration."});
     }
   };
   if (force.by_area) {
@@ -129,21 +135,24 @@ void check_true_forces(const Recording& recording, Findings& findings) {
   }
   if (pull_n > press_n && pull_n > 0.1) {
     findings.push_back(
-        {"forces.csv, force_z_n", "the object pulls at the pad",
-         "a press gives force_z_n < 0: forces are what the object exerts on the pad"});
+        {"forces.csv, force_z_n", "the object pulls on the pad",
+         "Give the force that the object exerts on the pad: a press has force_z_n < 0."});
   }
   constexpr double most_friction = 2;  // coefficient of a soft pad
   if (along_n > most_friction * std::fmax(press_n, pull_n) && along_n > 0.1) {
-    findings.push_back({"forces.csv",
-                        "up to " + short_number(along_n) + " N along the plate by a press of " +
-                            short_number(std::fmax(press_n, pull_n)) + " N: no friction holds that",
-                        "are the columns exchanged? z points from the plate into the pad"});
+    findings.push_back(
+        {"forces.csv",
+         "the force along the plate reaches " + short_number(along_n) +
+             " N, more than friction allows at a normal force of " +
+             short_number(std::fmax(press_n, pull_n)) + " N",
+         "Check whether the columns are exchanged; z points from the plate into the pad."});
   }
   if (largest_n_mm > 10 * recording.sensor.pad.base_radius_mm * largest_n) {
-    findings.push_back({"forces.csv, moment_z_nm",
-                        "up to " + short_number(largest_n_mm / 1000) + " N m by forces up to " +
-                            short_number(largest_n) + " N",
-                        "in N mm? divide by 1000; are the columns exchanged?"});
+    findings.push_back(
+        {"forces.csv, moment_z_nm",
+         "the moment reaches " + short_number(largest_n_mm / 1000) + " N m, but the force only " +
+             short_number(largest_n) + " N",
+         "If the unit is N mm, divide by 1000. Check also whether the columns are exchanged."});
   }
 }
 
@@ -176,25 +185,28 @@ void check_clock(const std::string& place,
   }
   const double usual = median_of(steps);
   if (missing > 0) {
-    findings.push_back({place, std::to_string(missing) + " of them are missing",
-                        "give each " + what + " its time"});
+    findings.push_back({place,
+                        "missing for " + std::to_string(missing) + " of " +
+                            std::to_string(times_s.size()) + " " + what + "s",
+                        "Give each " + what + " a time."});
   }
   if (back > 0) {
-    findings.push_back({place, "goes back or stands still " + std::to_string(back) + " times",
-                        "sort by time; does the clock wrap around?"});
+    findings.push_back({place, "the time decreases or repeats " + std::to_string(back) + " times",
+                        "Sort by time, and check whether the clock wraps around."});
   }
   if (usual > 5) {
-    findings.push_back({place, short_number(usual) + " s from one " + what + " to the next",
-                        "in ms? divide by 1000"});
+    findings.push_back({place, "the median interval is " + short_number(usual) + " s",
+                        "If the unit is ms, divide by 1000."});
   } else if (usual > 0 && usual < 1e-4) {
-    findings.push_back({place, short_number(usual) + " s from one " + what + " to the next",
-                        "in another unit than s?"});
+    findings.push_back({place, "the median interval is " + short_number(usual) + " s",
+                        "Check that the unit is s."});
   }
   if (longest_s > 5 * usual && steps.size() > 5) {
     findings.push_back({place,
                         "a gap of " + short_number(longest_s) + " s before " + what + " " +
-                            std::to_string(longest) + ", others take " + short_number(usual) + " s",
-                        "record without gaps, or cut the recording there"});
+                            std::to_string(longest) + "; the median interval is " +
+                            short_number(usual) + " s",
+                        "Record without gaps, or split the recording there."});
   }
 }
 

@@ -60,28 +60,30 @@ void check_shape(const Recording& recording, const Shape& shape, Findings& findi
   const Sensor& sensor = recording.sensor;
   const std::string place = sensor.reference_depth;
   if (shape.area_px < 1) {
-    findings.push_back({place, "knows no depth", "give the depth of the free pad in mm"});
+    findings.push_back({place, "no pixel has a depth", "Give the depth of the free pad in mm."});
     return;
   }
   const double ratio = shape.deepest_mm / sensor.pad.apex_height_mm;
   if (!(ratio > 0.5 && ratio < 2)) {
     findings.push_back({place,
-                        "deepest point " + short_number(shape.deepest_mm) +
+                        "the largest depth is " + short_number(shape.deepest_mm) +
                             ", but pad.apex_height_mm is " +
                             short_number(sensor.pad.apex_height_mm),
-                        ratio < 0.01 ? "in m? multiply by 1000" : "both in mm above the plate"});
+                        ratio < 0.01 ? "If the unit is m, multiply by 1000."
+                                     : "Give both in mm above the plate."});
   } else if (shape.deepest_mm > sensor.absorption.max_depth_mm) {
     findings.push_back({"sensor.json, absorption.max_depth_mm",
-                        short_number(sensor.absorption.max_depth_mm) + ", but the free pad is " +
-                            short_number(shape.deepest_mm) + " mm deep",
-                        "take the pad's height and some more"});
+                        "the value is " + short_number(sensor.absorption.max_depth_mm) +
+                            ", but the free pad is " + short_number(shape.deepest_mm) + " mm deep",
+                        "Set it somewhat larger than the height of the pad."});
   }
   if (shape.not_positive > 0.02) {
-    findings.push_back({place, short_number(100 * shape.not_positive) + " % of it are not above 0",
-                        "write NaN outside the pad; depths are heights above the plate"});
+    findings.push_back({place,
+                        short_number(100 * shape.not_positive) + " % of the depths are not above 0",
+                        "Write NaN outside the pad; depths are heights above the plate."});
   } else if (shape.middle_mm < shape.outer_mm) {
-    findings.push_back({place, "less deep in the middle than at the rim",
-                        "give the height of the free pad above the plate, no indentation"});
+    findings.push_back({place, "the depth is smaller in the middle than at the rim",
+                        "Give the height of the free pad above the plate, not an indentation."});
   }
 }
 
@@ -95,17 +97,17 @@ void check_camera(const Recording& recording, const Shape& shape, Findings& find
     findings.push_back({"sensor.json, camera.pitch_mm",
                         "the pad's depth covers a radius of " + short_number(radius_mm) +
                             " mm on the plate, but pad.base_radius_mm is " + short_number(base_mm),
-                        "pitch_mm is the size of a pixel on the plate's inner face, in mm"});
+                        "Give the size of a pixel on the plate's inner face, in mm."});
   }
   const double off_mm =
       cv::norm(shape.center_px - cv::Vec2d(camera.center_x_px, camera.center_y_px)) *
       camera.pitch_mm;
   if (!shape.cut && off_mm > 0.1 * base_mm) {
     findings.push_back({"sensor.json, camera.center_px",
-                        "the pad lies " + short_number(off_mm) + " mm beside it, around [" +
+                        "the pad is " + short_number(off_mm) + " mm away from it, around [" +
                             short_number(shape.center_px[0]) + ", " +
                             short_number(shape.center_px[1]) + "]",
-                        "it is [x, y], x along columns"});
+                        "Give [x, y], with x along the columns."});
   }
 }
 
@@ -173,17 +175,19 @@ void check_colours(const Recording& recording, const Shape& shape, Findings& fin
   const std::string place = recording.sensor.reference_frame;
   const double depths = 2 * absorption.c_red_per_mm * recording.sensor.pad.apex_height_mm;
   if (!(std::abs(found.correlation) > 0.3)) {
-    findings.push_back(
-        {place,
-         "its colours do not tell the depth (correlation " + short_number(found.correlation) + ")",
-         "is it the free pad, in colour, and its depth along the same rays?"});
+    findings.push_back({place,
+                        "its colours do not depend on the depth (correlation " +
+                            short_number(found.correlation) + ")",
+                        "Check that it is a colour image of the free pad, and that the depth is "
+                        "along the same rays."});
   } else if (found.slope > 0) {
     findings.push_back({place, "red fades faster with depth than green",
-                        "are red and green exchanged? the fluid is red"});
+                        "Check whether red and green are exchanged; the fluid is red."});
   } else if (!(depths > 0.01 && depths < 10) ||
              share_without_scattering(recording, shape.deepest_mm) > 0.5) {
-    findings.push_back({"sensor.json, absorption", "the reference's colours do not follow it",
-                        "coefficients in 1/mm? calibrate the fluid again"});
+    findings.push_back({"sensor.json, absorption",
+                        "the colours of the reference do not fit these coefficients",
+                        "Give the coefficients in 1/mm, or calibrate the fluid again."});
   }
 }
 
@@ -199,7 +203,7 @@ void check_fit(const Recording& recording, Findings& findings) {
     recording.reference.depth() == CV_16U ? fit(std::uint16_t()) : fit(std::uint8_t());
   } catch (const fingerpad::parameter_error& refusal) {
     findings.push_back({recording.sensor.reference_depth, refusal.what(),
-                        "give the height along each pixel's ray, not in plan"});
+                        "Give the height along the ray of each pixel, not in plan view."});
   }
 }
 

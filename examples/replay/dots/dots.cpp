@@ -140,8 +140,8 @@ DotSource DotSource::of_dots_only(const std::filesystem::path& folder, Recording
   }
   if (!finder.ok()) {
     fail(folder, "none of the first " + std::to_string(tried) +
-                     " frames shows a grid of nine or more dots (\"dots\" in sensor.json may say "
-                     "what they look like, or dots.csv where they are)");
+                     " frames shows a grid of nine or more dots (describe them by \"dots\" in "
+                     "sensor.json, or give their positions in dots.csv)");
   }
   source.follow(std::move(finder));
   return source;

@@ -117,7 +117,7 @@ std::map<int, DotGrid> read_dots(const std::filesystem::path& file,
     largest.width = (std::max)(largest.width, line.col + 1);
   }
   if (found.empty()) {
-    fail(file, "names no dots");
+    fail(file, "lists no dots");
   }
   std::map<int, DotGrid> dots;
   for (const auto& [where, pixel] : found) {

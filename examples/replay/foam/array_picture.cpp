@@ -102,8 +102,9 @@ class Strip {
     const ColourScale readings = scale_to(largest_reading(), depth_scale(1).colours);
     const ColourScale spreads = scale_to(largest_deviation(), reds());
     canvas.text({left, 60}, "above: readings", letter, ink::grey);
-    canvas.text({left + 124, 60}, "below: rms about a line in the window, where beyond the noise",
-                letter, ink::grey);
+    canvas.text({left + 124, 60},
+                "below: rms of the vibration in the window, where above the noise", letter,
+                ink::grey);
     for (std::size_t c = 0; c < shown_.size(); ++c) {
       paint_caption(canvas, c, first - 34);
       for (std::size_t f = 0; f < recording_.sensor.fingers.size(); ++f) {
@@ -244,7 +245,7 @@ class Strip {
     canvas.text({left + 20, y}, "centroid of force", letter, ink::black);
     canvas.circle({left + 170, y - letter / 2}, 5, 1.4, ink::accent);
     canvas.circle({left + 186, y - letter / 2}, 5, 1.4, ink::black);
-    canvas.text({left + 200, y}, "vibrates most of its finger", letter, ink::black);
+    canvas.text({left + 200, y}, "strongest vibration of the finger", letter, ink::black);
   }
 
   const FoamRecording& recording_;

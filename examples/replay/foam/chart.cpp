@@ -151,9 +151,9 @@ cv::Mat foam_chart(const std::string& title,
   }
   paint_curves(canvas, axis, sums, "sum of the readings", rows, sum_of);
   paint_legend(canvas, rows.front().fingers.size(), sums.top_px);
-  paint_curves(canvas, axis, waves, "waves in the window, of the taxel that vibrates most", rows,
+  paint_curves(canvas, axis, waves, "waves in the window of the strongest vibrating taxel", rows,
                waves_of);
-  canvas.text({left, first_rule - 40}, "samples that complete a pair of a rule", letter, ink::black,
+  canvas.text({left, first_rule - 40}, "samples with an alarm of a rule", letter, ink::black,
               Align::left, true);
   double y = first_rule;
   if (sensor.grasp_lift) {

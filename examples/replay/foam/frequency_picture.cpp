@@ -115,11 +115,11 @@ cv::Mat foam_frequency_picture(const std::string& title,
   canvas.text({28, 34}, title, 1.3 * letter, ink::black, Align::left, true);
   const bool is_part = tracks.size() < activity.tracks.size();
   canvas.text({28, 60},
-              "frequency of each taxel that vibrates" +
-                  (is_part ? format(" (the %zu of %zu that do longest)", tracks.size(),
+              "frequency of each vibrating taxel" +
+                  (is_part ? format(" (the %zu of %zu that vibrate longest)", tracks.size(),
                                     activity.tracks.size())
                            : std::string()) +
-                  "; underlined: vibrates most of its finger",
+                  "; underlined: strongest vibration of the finger",
               letter, ink::grey);
   for (std::size_t k = 0; k < tracks.size(); ++k) {
     const TaxelTrack& track = tracks[k];
@@ -133,7 +133,7 @@ cv::Mat foam_frequency_picture(const std::string& title,
                 finger + format("r%d_c%d", track.row, track.col), 8, ink::grey, Align::right);
   }
   if (tracks.empty()) {
-    canvas.text({left + width / 2, top + 68}, "no taxel vibrates by more than its noise", letter,
+    canvas.text({left + width / 2, top + 68}, "no taxel vibrates above its noise", letter,
                 ink::grey, Align::center);
   } else {
     paint_legend(canvas, {left + width + 24, top + 14, 14, 116}, scale, letter, "Hz");

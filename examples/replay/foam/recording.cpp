@@ -76,7 +76,7 @@ Header read_header(const fs::path& file, std::string line) {
     const std::string& name = header.names[k];
     const auto place = place_of(name);
     if (!place && name != "frame" && name != "time_s") {
-      refuse("column '" + name + "' is none of frame, time_s and r<row>_c<col>");
+      refuse("unknown column '" + name + "' (known: frame, time_s, r<row>_c<col>)");
     }
     if (!(place ? header.taxels.emplace(*place, k).second : others.emplace(name, k).second)) {
       refuse("column " + name + " is given twice");
@@ -92,7 +92,7 @@ Header read_header(const fs::path& file, std::string line) {
   header.frame = others["frame"];
   header.time = others["time_s"];
   if (header.taxels.empty()) {
-    refuse("columns r<row>_c<col> of taxels are missing");
+    refuse("there are no taxel columns r<row>_c<col>");
   }
   Place expected(0, 0);
   for (const auto& [place, column] : header.taxels) {
@@ -103,7 +103,7 @@ Header read_header(const fs::path& file, std::string line) {
                                                  : Place(expected.first + 1, 0);
   }
   if (expected.first < header.rows) {
-    refuse("column " + name_of(expected) + " is missing: the others make an array of " +
+    refuse("column " + name_of(expected) + " is missing; the other columns belong to an array of " +
            std::to_string(header.rows) + " x " + std::to_string(header.cols) + " taxels");
   }
   return header;
@@ -140,8 +140,8 @@ class TableReader {
         continue;
       }
       if (cells_.size() > header_.names.size()) {
-        refuse("has " + std::to_string(cells_.size()) + " values, at most " +
-               std::to_string(header_.names.size()) + " are named");
+        refuse("has " + std::to_string(cells_.size()) + " values, but the header has only " +
+               std::to_string(header_.names.size()) + " columns");
       }
       cells_.resize(header_.names.size());
       add_line();
@@ -168,7 +168,7 @@ class TableReader {
   void add_line() {
     const double frame = value(header_.frame);
     if (std::isfinite(frame) && (frame != std::floor(frame) || frame < 0 || frame > 1e9)) {
-      refuse("frame '" + cells_[header_.frame] + "' is not a whole number from 0 on");
+      refuse("frame '" + cells_[header_.frame] + "' is not a whole number >= 0");
     }
     const int next = table_.frames.empty() ? 0 : table_.frames.back() + 1;
     table_.frames.push_back(std::isfinite(frame) ? static_cast<int>(frame) : next);
@@ -219,13 +219,13 @@ void check_fingers(const fs::path& file, const FoamRecording& recording) {
     // written so that no sum overflows
     if (place.rows > recording.table.rows - place.first_row ||
         place.cols > recording.table.cols - place.first_col) {
-      fail(file, name + " reaches beyond the array, which has " +
+      fail(file, name + " extends beyond the array, which has " +
                      std::to_string(recording.table.rows) + " x " +
                      std::to_string(recording.table.cols) + " taxels in taxels.csv");
     }
     for (std::size_t other = 0; other < k; ++other) {
       if (share_taxels(fingers[other], place)) {
-        fail(file, name + " has taxels of foam.fingers[" + std::to_string(other) + "]");
+        fail(file, name + " shares taxels with foam.fingers[" + std::to_string(other) + "]");
       }
     }
   }

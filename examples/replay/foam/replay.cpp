@@ -92,11 +92,12 @@ void print_summary(const Options& options,
               1000 * recording.sensor.taxels.sample_period_s);
   print_fingers(recording, noise);
   if (recording.table.missing > 0) {
-    std::printf("missing      %lld readings of the recording\n", recording.table.missing);
+    std::printf("missing      %lld readings in the whole recording\n", recording.table.missing);
   }
   const auto not_taken = count([](const FoamRow& row) { return !row.was_taken(); });
   if (not_taken > 0) {
-    std::printf("left out     %td samples: no time, or not later than the one before\n", not_taken);
+    std::printf("left out     %td samples: the time is missing or not later than before\n",
+                not_taken);
   }
   std::printf("vibrating    in %td samples\n", count([](const FoamRow& row) {
                 return std::any_of(row.fingers.begin(), row.fingers.end(), [](const auto& finger) {
@@ -109,10 +110,10 @@ void print_summary(const Options& options,
     std::printf("alarms       in %td samples\n",
                 count([](const FoamRow& row) { return row.alarm.any(); }));
   }
-  std::printf("step         %.2f us a sample (median)\n", step.median_us());
+  std::printf("step         %.2f us per sample (median)\n", step.median_us());
   std::printf("table        %s\n", (place / "frames.csv").c_str());
   if (options.pictures) {
-    std::printf("pictures     %s; preslip.png first\n", (place / "pictures").c_str());
+    std::printf("pictures     %s; start with preslip.png\n", (place / "pictures").c_str());
   }
 }
 

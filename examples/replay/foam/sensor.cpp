@@ -24,11 +24,12 @@ std::vector<FingerPlace> read_fingers(const std::filesystem::path& file, const J
   std::vector<FingerPlace> fingers;
   for (const nlohmann::json& entry : list) {
     const std::string name = "foam.fingers[" + std::to_string(fingers.size()) + "]";
-    fingers.push_back(read_finger(JsonSection(file, name, entry,
-                                              {{"first_row", "of the array, counted from 0"},
-                                               {"rows", "how many rows the finger has"},
-                                               {"first_col", "of the array, counted from 0"},
-                                               {"cols", "how many columns the finger has"}})));
+    fingers.push_back(read_finger(
+        JsonSection(file, name, entry,
+                    {{"first_row", "first row of the finger in the array, counted from 0"},
+                     {"rows", "number of rows of the finger"},
+                     {"first_col", "first column of the finger in the array, counted from 0"},
+                     {"cols", "number of columns of the finger"}})));
   }
   return fingers;
 }
@@ -36,20 +37,21 @@ std::vector<FingerPlace> read_fingers(const std::filesystem::path& file, const J
 /// Section "foam" with its known keys.
 JsonSection foam_section(const JsonSection& root) {
   return root.section(
-      "foam", {{"fingers", "where the fingers are in the array"},
-               {"pitch_mm", "between taxels, mm"},
-               {"window", "samples in which vibration is looked for"},
-               {"sample_period_s", "nominal, s"},
-               {"noise", "standard deviation of a taxel at rest, in the unit of the readings"},
-               {"quiet_until_s", "nothing is touched or slips from the first sample until then, s"},
-               {"noise_factor", "vibration is more than this many of them"},
-               {"saturated_at", "readings from here on do not count"},
-               {"stuck_after", "so many equal readings in a row are frozen"},
-               {"longest_gap_s", "a longer time between samples begins a new window, s"},
-               {"history", "samples that are compared"},
-               {"least_waves", "a sample with fewer waves is silent"},
-               {"centroid_tolerance_mm", "what the noise of a centroid explains, mm"},
-               {"rule", "grasp_lift, grasp_optimise or both"}});
+      "foam",
+      {{"fingers", "position of each finger in the array"},
+       {"pitch_mm", "distance between neighbouring taxels, mm"},
+       {"window", "number of samples over which vibration is measured"},
+       {"sample_period_s", "nominal time between samples, s"},
+       {"noise", "standard deviation of a taxel at rest, in the unit of the readings"},
+       {"quiet_until_s", "time until which nothing is touched and nothing slips, s"},
+       {"noise_factor", "threshold of vibration, as a multiple of the noise"},
+       {"saturated_at", "readings at or above this value are ignored"},
+       {"stuck_after", "number of equal readings in a row after which a taxel counts as frozen"},
+       {"longest_gap_s", "a longer time between two samples starts a new window, s"},
+       {"history", "number of samples that are compared"},
+       {"least_waves", "a sample with fewer waves counts as silent"},
+       {"centroid_tolerance_mm", "motion of the centroid that noise can cause, mm"},
+       {"rule", "grasp_lift, grasp_optimise or both"}});
 }
 
 void read_options(const JsonSection& foam, FoamSensor& sensor) {
@@ -93,9 +95,9 @@ void refuse_other_sections(const std::filesystem::path& file, const nlohmann::js
   for (const char* other : {"camera", "absorption", "pad", "reference", "video", "smoothing_px",
                             "dots", "rim", "neighbour_light", "force", "stick", "contact"}) {
     if (content.is_object() && content.contains(other)) {
-      fail(file, std::string("has ") + other +
-                     ", which a recording with taxels.csv does not need: keep the frames of a "
-                     "camera in a recording of their own");
+      fail(file, std::string("has section ") + other +
+                     ", which a recording with taxels.csv cannot have; put the frames of a camera "
+                     "into a separate recording");
     }
   }
 }
@@ -111,8 +113,8 @@ FoamSensor read_foam_sensor(const std::filesystem::path& file) {
   refuse_other_sections(file, content);
   expects_known_version(file, content);
   const JsonSection root(file, "", content,
-                         {{"version", "of this file's form"},
-                          {"calibration", "what calibrations said of themselves"},
+                         {{"version", "version of the file format"},
+                          {"calibration", "reports of the calibrations"},
                           {"foam", "a foam array"}});
   if (root.has("foam")) {
     const JsonSection foam = foam_section(root);

@@ -56,7 +56,7 @@ FoamNoise noise_of(const FoamRecording& recording, int finger) {
   const auto taxels = static_cast<std::size_t>(first.rows() * first.cols());
   const FoamSensor& sensor = recording.sensor;
   if (sensor.noise) {
-    return {std::vector<double>(taxels, *sensor.noise), "sensor.json"};
+    return {std::vector<double>(taxels, *sensor.noise), "from sensor.json"};
   }
   const auto first_windows = static_cast<int>(4 * sensor.taxels.window);
   const auto is_quiet = [&](int sample) {
@@ -69,10 +69,11 @@ FoamNoise noise_of(const FoamRecording& recording, int finger) {
       calibration.add(recording.finger(sample, finger),
                       recording.table.times_s[static_cast<std::size_t>(sample)]);
     }
-    const std::string until = sensor.quiet_until_s ? format("until %.4g s", *sensor.quiet_until_s)
-                                                   : format("of the first %.0f samples",
-                                                            static_cast<double>(first_windows)) +
-                                                         ", taken to be quiet";
+    const std::string until =
+        sensor.quiet_until_s
+            ? format("measured until %.4g s", *sensor.quiet_until_s)
+            : format("measured in the first %.0f samples", static_cast<double>(first_windows)) +
+                  ", which are assumed to be quiet";
     return {calibration.fit().deviations, until};
   } catch (const fingerpad::parameter_error& error) {  // the part is too short or has no noise
     if (sensor.quiet_until_s) {
@@ -81,7 +82,7 @@ FoamNoise noise_of(const FoamRecording& recording, int finger) {
     }
     const double noise = thousandth * largest_reading(recording);
     return {std::vector<double>(taxels, noise),
-            "a thousandth of the largest reading: the first samples do not tell"};
+            "set to 1/1000 of the largest reading, because the first samples have no usable noise"};
   }
 }
 

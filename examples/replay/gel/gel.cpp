@@ -107,10 +107,10 @@ void GelReplay::finish() {
   const std::size_t slip = first_slip(rows_);
   const bool touched = std::any_of(rows_.begin(), rows_.end(),
                                    [](const GelRow& row) { return row.seen.contact.in_contact(); });
-  const std::string what = slip < rows_.size()
-                               ? "slip, first told in frame " + std::to_string(rows_[slip].frame)
-                           : touched ? "is held"
-                                     : "nothing touches";
+  const std::string what =
+      slip < rows_.size() ? "slip, first detected in frame " + std::to_string(rows_[slip].frame)
+      : touched           ? "held, no slip"
+                          : "no contact";
   write_picture(output_.file("pictures", "slide.png"),
                 slide_chart(name + ": " + what, rows_, shown_));
 }
@@ -118,15 +118,17 @@ void GelReplay::finish() {
 void GelReplay::print_summary() const {
   const auto touching = std::count_if(
       rows_.begin(), rows_.end(), [](const GelRow& row) { return row.seen.contact.in_contact(); });
-  std::printf("free pad     %zu of %s\n", free_.frames.size(), free_.source);
+  std::printf("free pad     %zu %s from %s\n", free_.frames.size(),
+              free_.frames.size() == 1 ? "frame" : "frames", free_.source);
   std::printf("contact      in %td frames\n", touching);
   const std::size_t slip = first_slip(rows_);
   if (slip < rows_.size()) {
-    std::printf("slip         first told in frame %d\n", rows_[slip].frame);
+    std::printf("slip         first detected in frame %d\n", rows_[slip].frame);
   } else {
     std::printf("slip         none\n");
   }
-  std::printf("slide step   %.2f ms a frame (median, with the contact)\n", step_.median_ms());
+  std::printf("slide step   %.2f ms per frame (median, including the contact)\n",
+              step_.median_ms());
 }
 
 }  // namespace replay

@@ -104,10 +104,10 @@ void paint_scene(Canvas& canvas, const Place& place, const GelScene& scene, doub
 std::string words_of(const GelFrame& seen) {
   using fingerpad::SlideStatus;
   if (!seen.contact.in_contact()) {
-    return seen.slide.lost > 0 ? "nothing touches any more" : "nothing touches";
+    return seen.slide.lost > 0 ? "no more contact" : "no contact";
   }
   const std::string known =
-      format("slid %.2f pitches past the dots, %.0f %% of the contact lost",
+      format("slid %.2f pitches past the dots, %.0f %% of the contact area lost",
              static_cast<double>(seen.slide.slide), 100 * static_cast<double>(seen.slide.lost));
   return seen.slide.ok() ? known : known + " (" + name_of(seen.slide.status) + ")";
 }
@@ -148,8 +148,8 @@ cv::Mat slide_picture(const GelScene& scene) {
   const Ink colour = slip_ink(scene.seen);
   canvas.disc({44, below + 24}, 8, colour);
   canvas.text({60, below + 24 + letter / 2}, verdict, letter, colour, Align::left, true);
-  canvas.text({right, below + 24 + letter / 2}, "dashed: where it would be, carried by the dots",
-              letter, ink::grey, Align::right);
+  canvas.text({right, below + 24 + letter / 2}, "dashed: contact if it moved with the dots", letter,
+              ink::grey, Align::right);
   canvas.text({36, below + 54}, words_of(scene.seen), letter, ink::black);
   return canvas.finished();
 }

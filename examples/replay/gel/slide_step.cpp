@@ -114,7 +114,7 @@ fingerpad::DifferenceTest difference_test_for(double dot_px) {
 
 FreePad free_pad_of(Recording& recording) {
   if (recording.free_frames.size() > 0) {
-    FreePad pad{{}, "the frames in free/"};
+    FreePad pad{{}, "free/"};
     recording.free_frames.seek(0);
     for (int k = 0; k < recording.free_frames.size(); ++k) {
       pad.frames.push_back(next_frame(recording.free_frames, recording.reference.size()));
@@ -122,9 +122,10 @@ FreePad free_pad_of(Recording& recording) {
     return pad;
   }
   if (!recording.sensor.reference_frame.empty()) {
-    return {{recording.reference}, "the reference of sensor.json"};
+    return {{recording.reference}, "the reference in sensor.json"};
   }
-  return {free_first_frames(recording), "the first frames: right if nothing touches there"};
+  return {free_first_frames(recording),
+          "the start of the recording, where nothing may touch the pad"};
 }
 
 SlideStep::SlideStep(const std::vector<cv::Mat>& free_frames,

@@ -94,12 +94,12 @@ QuietCodecs::~QuietCodecs() {
 
 void expects_colour_image(const cv::Mat& image, const fs::path& file) {
   if (image.depth() != CV_8U && image.depth() != CV_16U) {
-    fail(file, "holds values that are neither 8 nor 16 bit");
+    fail(file, "must have 8 or 16 bits per channel");
   }
   if (image.channels() < 3) {
     fail(file, "has " + std::to_string(image.channels()) +
                    (image.channels() == 1 ? " channel" : " channels") +
-                   ", must be a colour image (red and green are used)");
+                   ", but must be a colour image (red and green are used)");
   }
 }
 

@@ -38,7 +38,7 @@ class JsonSection {
     }
     for (const auto& item : object_.items()) {
       if (find(item.key()) == nullptr) {
-        fail(file_, "unknown key " + full_name(item.key()) + " (known here: " + known() + ")");
+        fail(file_, "unknown key " + full_name(item.key()) + " (known keys: " + known() + ")");
       }
     }
   }
@@ -112,7 +112,7 @@ class JsonSection {
   }
 
   [[noreturn]] void refuse(const std::string& why) const {
-    fail(file_, name_ + ": " + why + " (known here: " + known() + ")");
+    fail(file_, name_ + ": " + why + " (known keys: " + known() + ")");
   }
   /// Runs `check`; throws Failure with this section's name for a parameter_error.
   template <class Check>

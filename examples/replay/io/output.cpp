@@ -77,7 +77,7 @@ bool is_ours(const std::string& relative) {
 }
 
 void refuse_foreign(const fs::path& place) {
-  const std::string kept = ": nothing was touched; name another folder";
+  const std::string kept = ": nothing was changed; choose another folder";
   if (!fs::exists(fs::symlink_status(place))) {
     return;
   }
@@ -87,14 +87,14 @@ void refuse_foreign(const fs::path& place) {
   for (const fs::directory_entry& entry : fs::recursive_directory_iterator(place)) {
     const std::string relative = entry.path().lexically_relative(place).generic_string();
     if (entry.is_symlink() || !is_ours(relative)) {
-      fail(place, "holds " + relative + ", which no earlier run wrote" + kept);
+      fail(place, "contains " + relative + ", which replay did not write" + kept);
     }
   }
   if (!fs::is_empty(place)) {
     std::ifstream table(place / "frames.csv");
     std::string header;
     if (!std::getline(table, header) || header.rfind("frame,time_s", 0) != 0) {
-      fail(place, "is not empty and holds no frames.csv of an earlier run" + kept);
+      fail(place, "is not empty and has no frames.csv of an earlier run" + kept);
     }
   }
 }
@@ -156,7 +156,7 @@ void OutputFolder::make_parents(const fs::path& folder) {
   fs::create_directory(folder, error);
   if (error) {
     remove_traces();
-    fail(folder, "cannot be made: " + error.message());
+    fail(folder, "cannot be created: " + error.message());
   }
   made_parents_.push_back(folder);
 }

@@ -50,7 +50,7 @@ bool comes_before(const std::string& a, const std::string& b) {
 cv::VideoCapture opened(const fs::path& file) {
   std::error_code error;
   if (!fs::is_regular_file(file, error)) {
-    fail(file, "there is no such video (\"video\" in sensor.json names it)");
+    fail(file, "there is no such video (named by \"video\" in sensor.json)");
   }
   cv::VideoCapture video;
   try {
@@ -60,7 +60,7 @@ cv::VideoCapture opened(const fs::path& file) {
     video.release();
   }
   if (!video.isOpened()) {
-    fail(file, "cannot be read as a video (damaged, or no decoder for it)");
+    fail(file, "cannot be read as a video (the file is damaged, or no decoder is installed)");
   }
   return video;
 }
@@ -72,7 +72,8 @@ FrameSource FrameSource::of_folder(const fs::path& folder) {
   std::error_code error;
   fs::directory_iterator entries(folder, error);
   if (error) {
-    fail(folder, "there is no such folder (it holds the frames; sensor.json names no video)");
+    fail(folder,
+         "there is no such folder (a recording needs frames in it, or \"video\" in sensor.json)");
   }
   for (const fs::directory_entry& entry : entries) {
     const std::string name = entry.path().filename().string();

@@ -20,10 +20,11 @@ constexpr int max_dots = 100;
 
 fingerpad::Camera<double> read_camera(const Section& root) {
   const Section section = root.section(
-      "camera", {{"plate_distance_mm", "from the camera's center to the plate's inner face, mm"},
-                 {"refractive_index", "of the fluid, 1.33 for water"},
-                 {"center_px", "[x, y] of the pixel on the optical axis"},
-                 {"pitch_mm", "size of a pixel on the plate's inner face, mm"}});
+      "camera",
+      {{"plate_distance_mm", "distance from the camera's center to the plate's inner face, mm"},
+       {"refractive_index", "refractive index of the fluid, 1.33 for water"},
+       {"center_px", "[x, y] of the pixel on the optical axis"},
+       {"pitch_mm", "size of a pixel on the plate's inner face, mm"}});
   fingerpad::Camera<double> camera;
   camera.plate_distance_mm = section.number("plate_distance_mm");
   camera.refractive_index = section.number("refractive_index");
@@ -34,11 +35,11 @@ fingerpad::Camera<double> read_camera(const Section& root) {
 }
 
 fingerpad::Absorption<double> read_absorption(const Section& root) {
-  const Section section =
-      root.section("absorption", {{"c_red_per_mm", "absorption of red light in the fluid, 1/mm"},
-                                  {"c_green_per_mm", "absorption of green light, 1/mm"},
-                                  {"kappa", "ratio of light and camera in green to those in red"},
-                                  {"max_depth_mm", "depths are looked for up to here, mm"}});
+  const Section section = root.section(
+      "absorption", {{"c_red_per_mm", "absorption coefficient of red light in the fluid, 1/mm"},
+                     {"c_green_per_mm", "absorption coefficient of green light, 1/mm"},
+                     {"kappa", "ratio of light and camera in green to those in red"},
+                     {"max_depth_mm", "largest depth that is searched, mm"}});
   fingerpad::Absorption<double> absorption;
   absorption.c_red_per_mm = section.number("c_red_per_mm");
   absorption.c_green_per_mm = section.number("c_green_per_mm");
@@ -56,10 +57,11 @@ Pad read_pad(const Section& root) {
 }
 
 Dots read_dots(const Section& root) {
-  const Section section = root.section("dots", {{"rows", "rows of printed dots"},
-                                                {"cols", "columns of printed dots"},
-                                                {"pitch_mm", "between neighbouring dots, mm"},
-                                                {"diameter_mm", "of a printed dot, mm"}});
+  const Section section =
+      root.section("dots", {{"rows", "number of rows of printed dots"},
+                            {"cols", "number of columns of printed dots"},
+                            {"pitch_mm", "distance between neighbouring dots, mm"},
+                            {"diameter_mm", "diameter of a printed dot, mm"}});
   const Dots dots{section.integer("rows", min_dots, max_dots),
                   section.integer("cols", min_dots, max_dots), section.positive("pitch_mm"),
                   section.positive("diameter_mm")};
@@ -71,10 +73,10 @@ Dots read_dots(const Section& root) {
 
 DotPattern read_pattern(const Section& root) {
   const Section section =
-      root.section("dots", {{"rows", "rows of dots; counted without it"},
-                            {"cols", "columns of dots, where rows is given"},
-                            {"diameter_px", "of a dot; measured without it"},
-                            {"bright", "whether dots are brighter than the ground around them"}});
+      root.section("dots", {{"rows", "number of rows of dots; detected if absent"},
+                            {"cols", "number of columns of dots; needed together with rows"},
+                            {"diameter_px", "diameter of a dot, px; measured if absent"},
+                            {"bright", "whether the dots are brighter than their surroundings"}});
   DotPattern pattern;
   if (section.has("rows") || section.has("cols")) {
     pattern.rows = section.integer("rows", min_dots, max_dots);
@@ -90,11 +92,12 @@ DotPattern read_pattern(const Section& root) {
 }
 
 fingerpad::StickTest read_stick(const Section& root) {
-  const Section section =
-      root.section("stick", {{"reference_px", "dots are compared over moves longer than this, px"},
-                             {"store_px", "a frame is stored after a move longer than this, px"},
-                             {"slip_px", "a dot that is off by this at reference_px slips, px"},
-                             {"covers_pattern", "the object is larger than the print"}});
+  const Section section = root.section(
+      "stick",
+      {{"reference_px", "displacement over which dots are compared, px"},
+       {"store_px", "displacement after which a frame is stored, px"},
+       {"slip_px", "deviation from which a dot slips, at a displacement of reference_px, px"},
+       {"covers_pattern", "whether the object is larger than the dot pattern"}});
   const bool covers = section.has("covers_pattern") && section.truth("covers_pattern");
   if (!section.has("reference_px") && !section.has("store_px") && !section.has("slip_px")) {
     return {.covers_pattern = covers};
@@ -125,10 +128,11 @@ bool names_depth(const Section& root) {
 
 Rim read_rim(const Section& root) {
   const Section section = root.section(
-      "rim", {{"side_dot_length_mm", "stress-free length from the rim to its side dot, mm"},
-              {"membrane_modulus_n_per_mm", "shear modulus times thickness, N/mm"},
-              {"stress_free_inclination_rad", "of the stress-free membrane at the rim, rad"},
-              {"mooney_share", "C2 / (C1 + C2) of the rubber; neo-Hookean, 0, without it"}});
+      "rim",
+      {{"side_dot_length_mm", "stress-free length from the rim to its side dot, mm"},
+       {"membrane_modulus_n_per_mm", "shear modulus times thickness of the membrane, N/mm"},
+       {"stress_free_inclination_rad", "inclination of the stress-free membrane at the rim, rad"},
+       {"mooney_share", "C2 / (C1 + C2) of the rubber; 0 (neo-Hookean) if absent"}});
   Rim rim;
   rim.side_dot_length_mm = section.positive("side_dot_length_mm");
   if (section.has("membrane_modulus_n_per_mm")) {
@@ -150,14 +154,14 @@ NormalForceLookUp read_normal_force(const Section& force,
                                     const std::string& unit,
                                     bool needs_residual) {
   const Section section = force.section(
-      key,
-      {{"coefficients", "normal force in N, the constant first, then by powers of the measure"},
-       {"from_" + unit, "the smallest contact of the calibration"},
-       {"to_" + unit, "the largest contact of the calibration"},
-       {"residual_n", "what the calibration left, N; by_area and by_depth are weighted by it"},
-       {"covariance", "of the coefficients, a row for each"},
-       {"per_mm_sq", "share of the force by which it changes for each squared mm of shift"},
-       {"per_rad_sq", "the same for each squared rad"}});
+      key, {{"coefficients", "normal force in N, a polynomial in the measure, constant term first"},
+            {"from_" + unit, "the smallest contact of the calibration"},
+            {"to_" + unit, "the largest contact of the calibration"},
+            {"residual_n",
+             "standard deviation of the residual, N; by_area and by_depth are weighted by it"},
+            {"covariance", "covariance of the coefficients, one row for each"},
+            {"per_mm_sq", "relative change of the force per squared mm of shift"},
+            {"per_rad_sq", "relative change of the force per squared rad of rotation"}});
   NormalForceLookUp look_up;
   look_up.curve.coefficients =
       section.numbers<NormalForceLookUp::Curve::parameters>("coefficients");
@@ -182,14 +186,14 @@ NormalForceLookUp read_normal_force(const Section& force,
 
 ShearLookUp read_shear(const Section& force) {
   const Section section = force.section(
-      "shear", {{"by", "the measure that displacement and rotation count by, area or depth"},
-                {"reference", "the measure at which they count as they are, mm^2 or mm"},
-                {"displacement_exponent", "of measure / reference"},
-                {"rotation_exponent", "of measure / reference"},
-                {"force_n_per_mm", "odd polynomial of the displacement, the linear one first"},
-                {"moment_n_mm_per_rad", "odd polynomial of the rotation, the linear one first"},
-                {"to_mm", "the largest displacement of the calibration, as it counts"},
-                {"to_rad", "the largest rotation of the calibration, as it counts"}});
+      "shear", {{"by", "measure by which displacement and rotation are scaled, area or depth"},
+                {"reference", "measure at which they are not scaled, mm^2 or mm"},
+                {"displacement_exponent", "exponent of measure / reference for the displacement"},
+                {"rotation_exponent", "exponent of measure / reference for the rotation"},
+                {"force_n_per_mm", "odd polynomial in the displacement, linear coefficient first"},
+                {"moment_n_mm_per_rad", "odd polynomial in the rotation, linear coefficient first"},
+                {"to_mm", "the largest scaled displacement of the calibration, mm"},
+                {"to_rad", "the largest scaled rotation of the calibration, rad"}});
   constexpr std::size_t most = ShearLookUp::Map().force.size;
   ShearLookUp look_up;
   look_up.by = section.one_of("by", {"area", "depth"}) == "area" ? ContactMeasure::area
@@ -207,10 +211,10 @@ ShearLookUp read_shear(const Section& force) {
 }
 
 ForceLookUp read_force(const Section& root) {
-  const Section section =
-      root.section("force", {{"by_area", "normal force by contact area"},
-                             {"by_depth", "normal force by contact depth"},
-                             {"shear", "tangential force and moment by shift and rotation"}});
+  const Section section = root.section(
+      "force", {{"by_area", "curve of normal force against contact area"},
+                {"by_depth", "curve of normal force against contact depth"},
+                {"shear", "curves of tangential force and moment against shift and rotation"}});
   const bool both = section.has("by_area") && section.has("by_depth");
   ForceLookUp look_up;
   if (section.has("by_area")) {
@@ -223,16 +227,16 @@ ForceLookUp read_force(const Section& root) {
     look_up.shear = read_shear(section);
   }
   if (!look_up.by_area && !look_up.by_depth && !look_up.shear) {
-    section.refuse("holds no curve");
+    section.refuse("contains no curve");
   }
   return look_up;
 }
 
 NeighbourLight read_neighbour_light(const Section& root) {
-  const Section section =
-      root.section("neighbour_light", {{"radius_px", "of the disc that sends light, px"},
-                                       {"m0_mm_per_rad", "its strength, mm per rad"},
-                                       {"n_per_mm", "how its strength grows with depth, 1/mm"}});
+  const Section section = root.section(
+      "neighbour_light", {{"radius_px", "radius of the disc from which light arrives, px"},
+                          {"m0_mm_per_rad", "strength of the light, mm per rad"},
+                          {"n_per_mm", "growth of the strength with depth, 1/mm"}});
   return {section.positive_integer("radius_px"), section.number("m0_mm_per_rad"),
           section.number("n_per_mm")};
 }
@@ -259,7 +263,7 @@ void read_depth(const std::filesystem::path& file, const Section& root, Sensor& 
   sensor.pad = read_pad(root);
   const Section reference =
       root.section("reference", {{"frame", "picture of the free pad, a PNG file"},
-                                 {"depth", "its depth in mm per pixel, a 32-bit float TIFF file"}});
+                                 {"depth", "depth of each pixel in mm, a 32-bit float TIFF file"}});
   sensor.reference_frame = reference.path("frame");
   sensor.reference_depth = reference.path("depth");
   if (root.has("smoothing_px")) {
@@ -276,7 +280,8 @@ void read_depth(const std::filesystem::path& file, const Section& root, Sensor& 
   }
   if (root.has("contact")) {
     sensor.contact_threshold_per_mm =
-        root.section("contact", {{"threshold_per_mm", "curvature of the contact's edge, 1/mm"}})
+        root.section("contact",
+                     {{"threshold_per_mm", "curvature below which a pixel is in contact, 1/mm"}})
             .positive("threshold_per_mm");
   }
   if (root.has("rim")) {
@@ -304,23 +309,23 @@ Sensor read_sensor(const std::filesystem::path& file) {
 Sensor read_sensor(const std::filesystem::path& file, const nlohmann::json& content) {
   expects_known_version(file, content);
   const Section root(file, "", content,
-                     {{"version", "of this file's form"},
-                      {"calibration", "what calibrations said of themselves"},
+                     {{"version", "version of the file format"},
+                      {"calibration", "reports of the calibrations"},
                       {"camera", "position and resolution of the camera"},
-                      {"absorption", "how the fluid absorbs light"},
+                      {"absorption", "absorption of light in the fluid"},
                       {"pad", "size of the free pad"},
                       {"reference", "a frame of the free pad and its known depth"},
-                      {"video", "a video in the place of the folder frames/"},
+                      {"video", "a video instead of the folder frames/"},
                       {"smoothing_px", "width of the smoothing window, px"},
                       {"dots", "the printed dots"},
                       {"rim", "the dots at the rim"},
                       {"neighbour_light", "compensation of light from neighbouring membrane"},
-                      {"force", "curves that tell forces from contact and shift"},
-                      {"stick", "when dots are compared, and what counts as slip"},
-                      {"contact", "from which curvature on the pad counts as free"},
+                      {"force", "curves of force against contact and shift"},
+                      {"stick", "thresholds for comparing dots and detecting slip"},
+                      {"contact", "threshold of contact"},
                       {"foam", "a foam array"}});
   if (root.has("foam")) {
-    fail(file, "has a section foam, but there is no taxels.csv with the array's readings");
+    fail(file, "has a section foam, but taxels.csv with the readings of the array is missing");
   }
   Sensor sensor;
   if (root.has("video")) {

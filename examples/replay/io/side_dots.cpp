@@ -37,7 +37,7 @@ std::optional<SideDots> read_side_dots(const std::filesystem::path& file, int fr
     count = (std::max)(count, 1 + table.index(line, 1, max_side_dots, "side dots"));
   }
   if (count == 0) {
-    fail(file, "names no side dots");
+    fail(file, "lists no side dots");
   }
   SideDots all{SpaceGrid(1, count, cv::Vec3d::all(0)), {}};
   std::vector<int> times(static_cast<std::size_t>(count), 0);

@@ -45,7 +45,7 @@ LiveFrames LiveFrames::of_video(const std::filesystem::path& file,
     frames.source_.open(file.string());
   }
   if (!frames.source_.isOpened()) {
-    fail(file, "cannot be read as a video (damaged, or no decoder for it)");
+    fail(file, "cannot be read as a video (the file is damaged, or no decoder is installed)");
   }
   const double rate = frames.source_.get(cv::CAP_PROP_FPS);
   frames.rate_hz_ = rate > 0 ? rate : 30;
@@ -83,7 +83,7 @@ bool LiveFrames::next(cv::Mat& frame) {
   }
   if (!grab()) {
     if (period_.count() == 0) {
-      fail(name_, "gives no more frames");
+      fail(name_, "delivers no more frames");
     }
     return false;
   }
@@ -93,9 +93,9 @@ bool LiveFrames::next(cv::Mat& frame) {
   }
   expects_colour_image(frame, name_);
   if (frame.size() != size_ || frame.depth() != CV_8U) {
-    fail(name_, "gives " + std::to_string(frame.cols) + " x " + std::to_string(frame.rows) +
+    fail(name_, "delivers " + std::to_string(frame.cols) + " x " + std::to_string(frame.rows) +
                     " px of " + (frame.depth() == CV_8U ? "8" : "16") +
-                    " bit, but live frames have 8 bit and the size of the reference, " +
+                    " bits, but live frames must have 8 bits and the size of the reference, " +
                     std::to_string(size_.width) + " x " + std::to_string(size_.height) + " px");
   }
   return true;

@@ -70,7 +70,8 @@ class Window {
   Window() {
 #ifdef __linux__  // without a display the GUI toolkit would abort the program
     if (std::getenv("DISPLAY") == nullptr && std::getenv("WAYLAND_DISPLAY") == nullptr) {
-      fail("window", "there is no screen; --headless --out DIR writes the pictures");
+      fail("window",
+           "there is no screen; use --headless --out DIR to write the pictures to a folder");
     }
 #endif
     cv::namedWindow(name, cv::WINDOW_AUTOSIZE | cv::WINDOW_GUI_NORMAL);
@@ -119,8 +120,8 @@ Log play(const Options& options,
     const int left_out =
         frames.number() + 1 - options.range.first - static_cast<int>(log.shown().size());
     title = format("latency %.0f ms", recent[recent.size() / 2]) +
-            (log.rate_hz() > 0 ? format(",  %.0f pictures a second", log.rate_hz()) : "") +
-            (left_out > 0 ? format(",  %d left out", left_out) : "");
+            (log.rate_hz() > 0 ? format(",  %.0f pictures per second", log.rate_hz()) : "") +
+            (left_out > 0 ? format(",  %d frames skipped", left_out) : "");
   }
   if (log.shown().empty()) {
     fail(options.recording, "there was no frame to show");
@@ -131,12 +132,12 @@ Log play(const Options& options,
 void print(const Log& log, const LiveFrames& frames, int first) {
   const std::vector<double> ms = log.latencies_ms(log.shown().size());
   std::printf("shown        %zu of %d frames\n", ms.size(), frames.number() + 1 - first);
-  std::printf("rate         %.1f pictures a second", log.rate_hz());
+  std::printf("rate         %.1f pictures per second", log.rate_hz());
   if (frames.rate_hz() > 0) {
-    std::printf(", of %.1f frames", frames.rate_hz());
+    std::printf(", from %.1f frames per second", frames.rate_hz());
   }
   std::printf("\n");
-  std::printf("latency      %.1f ms from frame to picture (median), at most %.1f ms\n",
+  std::printf("latency      %.1f ms from frame to picture (median), maximum %.1f ms\n",
               ms[ms.size() / 2], ms.back());
 }
 
@@ -173,7 +174,7 @@ void play_to_folder(const Options& options, Recording& pad, LiveFrames& frames) 
 int run_live(const Options& options, const LiveOptions& live) {
   Recording pad = open_pad(options.recording);
   if (pad.sensor.dots_only) {
-    fail(options.recording, "live pictures need the free pad: reference.png and its depth");
+    fail(options.recording, "live pictures need a reference image of the free pad and its depth");
   }
   const cv::Size size = pad.reference.size();
   LiveFrames frames = live.camera ? LiveFrames::of_camera(*live.camera, size)

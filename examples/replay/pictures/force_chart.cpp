@@ -10,7 +10,7 @@ namespace replay {
 
 cv::Mat force_chart(const std::string& title, const std::vector<FrameRow>& rows) {
   LinePanel normal{
-      "normal force that presses, N",
+      "normal force (positive: press), N",
       {line_series("look-up", rows, [](const FrameRow& row) { return row.force.normal_n; })}};
   LinePanel tangential{
       "force along the plate, N",
@@ -20,9 +20,8 @@ cv::Mat force_chart(const std::string& title, const std::vector<FrameRow>& rows)
       "moment about the normal through the middle of the contact, N mm",
       {line_series("look-up", rows, [](const FrameRow& row) { return row.force.moment_n_mm; })}};
   const auto add_truth = [&](LinePanel& panel, int beside, const char* name, const auto& of) {
-    panel.series.push_back(line_series(name, rows, [&](const FrameRow& row) {
-      return row.truth ? of(*row.truth) : not_known;
-    }));
+    panel.series.push_back(line_series(
+        name, rows, [&](const FrameRow& row) { return row.truth ? of(*row.truth) : not_known; }));
     panel.series.back().beside = beside;
   };
   if (std::any_of(rows.begin(), rows.end(),

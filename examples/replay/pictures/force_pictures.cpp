@@ -100,13 +100,13 @@ std::string words_of_wrench(const WrenchFrame& wrench) {
   }
   const auto& f = result.force_n;
   return format("force (%.2f, %.2f, %.2f) N", rounded(f.x), rounded(f.y), rounded(f.z)) +
-         (result.by_modulus ? ", by the given modulus" : "");
+         (result.by_modulus ? ", from the given modulus" : "");
 }
 
 }  // namespace
 
 cv::Mat Painter::rim(const Scene& scene) const {
-  Sheet sheet(scene, "What the membrane pulls the rim with", brightest_, 0);
+  Sheet sheet(scene, "Pull of the membrane on the rim", brightest_, 0);
   Canvas& canvas = sheet.canvas;
   paint_outline(canvas, sheet.picture, scene.contact_mask, 1.2);
   double largest = 0;
@@ -143,7 +143,7 @@ cv::Mat Painter::rim(const Scene& scene) const {
                 format("moment (%.1f, %.1f, %.1f) N mm", rounded(m.x), rounded(m.y), rounded(m.z)),
                 letter, ink::black);
     canvas.text({sheet.picture.x + sheet.picture.width, sheet.below() + 50},
-                "white: force along the plate, 40 px a N", letter, ink::grey, Align::right);
+                "white: force along the plate, 40 px per N", letter, ink::grey, Align::right);
   }
   return canvas.finished();
 }
@@ -190,17 +190,17 @@ cv::Mat Painter::traction(const Scene& scene) const {
   sheet.scale_bar(camera_);
   sheet.arrow_legend(36, format("%g kPa along the membrane", reach_kpa), ink::black);
   const auto& result = loads.result;
-  std::string words = std::string("no sum: ") + name_of(result.status);
+  std::string words = std::string("no total force: ") + name_of(result.status);
   if (result.has_force()) {
     const auto& f = result.force_n;
     words =
-        format("all loads together (%.2f, %.2f, %.2f) N", rounded(f.x), rounded(f.y), rounded(f.z));
+        format("sum of all loads (%.2f, %.2f, %.2f) N", rounded(f.x), rounded(f.y), rounded(f.z));
     words += result.ok() ? "" : std::string(", ") + name_of(result.status);
   }
   canvas.text({sheet.picture.x, sheet.below() + 50}, words, letter, ink::black);
   if (std::isfinite(result.free_load_rms_mpa)) {
     canvas.text({sheet.picture.x, sheet.below() + 74},
-                format("a dot's load is good to %.1f kPa, the fluid has %.1f kPa",
+                format("error per dot %.1f kPa rms, fluid pressure %.1f kPa",
                        1000 * result.free_load_rms_mpa, fluid_kpa),
                 letter, ink::black);
   }

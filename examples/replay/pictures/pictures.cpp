@@ -198,8 +198,8 @@ cv::Mat Painter::montage(const std::string& title,
   canvas.text({left, camera_y - 10}, "camera image, brightened; contact outlined", small,
               ink::grey);
   canvas.text({left, depth_y - 10}, "depth, a line every 1 mm", small, ink::grey);
-  canvas.text({left, change_y - 10}, "pressed in (red) or bulging out (blue) against the free pad",
-              small, ink::grey);
+  canvas.text({left, change_y - 10},
+              "change from the free pad: pressed in (red), bulging out (blue)", small, ink::grey);
   canvas.text({left, side_y - 14}, "side view at the red marks, mm; dashed: the free pad", small,
               ink::grey);
   paint_legend(canvas, {right + 24, depth_y + 20, 13, height - 28}, scale_, small);

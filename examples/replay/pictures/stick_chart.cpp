@@ -84,10 +84,10 @@ void paint_legend(Canvas& canvas, double right, double y) {
     canvas.text({right, y}, text, letter, ink::black);
     right -= 12;
   };
-  words("kept");
+  words("previous value");
   canvas.line({right - 24, y - letter / 2}, {right, y - letter / 2}, 1.6, kept_ink);
   right -= 24 + 24;
-  words("new answer");
+  words("new value");
   canvas.disc({right - 4, y - letter / 2}, 3.4, ratio_ink);
 }
 

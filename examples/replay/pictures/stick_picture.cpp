@@ -126,8 +126,8 @@ cv::Mat stick_picture(const Scene& scene, double brightest) {
   }
   if (!slips.empty()) {
     paint_slip(canvas, {x - 4, below + 22}, {18, 0});
-    canvas.text({x + 22, below + 22 + letter / 2}, format("its slip, %.0f times as long", enlarged),
-                letter, ink::black);
+    canvas.text({x + 22, below + 22 + letter / 2},
+                format("slip, drawn %.0f times as long", enlarged), letter, ink::black);
   }
   canvas.text({picture.x, below + 54}, words_of(scene.dots.stick.result), letter, ink::black);
   return canvas.finished();

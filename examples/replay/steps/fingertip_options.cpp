@@ -112,11 +112,12 @@ std::string lacking_for_wrench(const Recording& recording) {
   const auto& rim = recording.sensor.rim;
   const bool has_pressure =
       !recording.signals.pressures_mpa.empty() || (rim && rim->membrane_modulus_n_per_mm);
-  return recording.sensor.dots_only ? "nothing is known but dots"
-         : !recording.side_dots     ? "there is no side_dots.csv"
-         : !rim                     ? "sensor.json has no rim"
-         : !has_pressure ? "signals.csv has no pressure, sensor.json no membrane_modulus_n_per_mm"
-                         : "";
+  return recording.sensor.dots_only ? "the recording has dots only"
+         : !recording.side_dots     ? "side_dots.csv is missing"
+         : !rim                     ? "sensor.json has no section rim"
+         : !has_pressure
+             ? "signals.csv has no pressure and sensor.json has no rim.membrane_modulus_n_per_mm"
+             : "";
 }
 
 }  // namespace replay

@@ -121,7 +121,7 @@ class Step : public FingertipStep {
                             const DotGrid& dots_px,
                             double time_s) override {
     if (!has_cells<Pixel>(image)) {
-      fail(recording_.frames.last_file(), "has not as many bits as the frames before");
+      fail(recording_.frames.last_file(), "has another bit depth than the frames before");
     }
     Watch watch;
     const FingertipResult touch = fingertip_(color_of<Pixel>(image), dots_px, side_dots_of(frame),
