@@ -142,8 +142,8 @@ void add_normal(Samples samples, const Measure& by, Outcome& outcome) {
   report.doubt(!fit.ok(), name_of(fit.status));
   report.doubt(
       std::isfinite(unseen_n) && unseen_n > 0.05 * largest_n,
-      "loads that took no part are told with an error of more than 5 % of the largest force");
-  report.doubt(!std::isfinite(unseen_n), "there are too few loads to leave one out");
+      "loads left out of the fit are predicted with an error above 5 % of the largest force");
+  report.doubt(!std::isfinite(unseen_n), "there are too few loads to leave one out of the fit");
   outcome.sections["force"][std::string("by_") + by.name] = {
       {"coefficients", coefficients},
       {std::string("from_") + by.unit, fit.curve.from},
@@ -173,8 +173,8 @@ void add_shear(Samples samples, const Measure& by, Outcome& outcome) {
     report.parameters.push_back({"angle_of_the_gauge_degrees", degrees * force.gauge_angle_rad,
                                  degrees * force.gauge_angle_sd_rad});
   }
-  report.doubt(!force.ok(), std::string("of the force, ") + name_of(force.status));
-  report.doubt(!moment.ok(), std::string("of the moment, ") + name_of(moment.status));
+  report.doubt(!force.ok(), std::string("for the force, ") + name_of(force.status));
+  report.doubt(!moment.ok(), std::string("for the moment, ") + name_of(moment.status));
   outcome.sections["force"]["shear"] = {
       {"by", by.name},
       {"reference", by.reference},
@@ -199,7 +199,7 @@ void add_shear(Samples samples, const Measure& by, Outcome& outcome) {
 std::map<int, double> apexes_of(const Path& file) {
   const Columns table(file);
   if (!table.has("frame") || !table.has("apex_mm")) {
-    replay::fail(file, "needs the columns frame and apex_mm");
+    replay::fail(file, "must have the columns frame and apex_mm");
   }
   std::map<int, double> apexes;
   for (std::size_t k = 0; k < table.rows(); ++k) {
@@ -224,7 +224,7 @@ void add_levels(const Path& recording, const replay::SideDots& side, const Add& 
     }
     if (!add(level, dots, pressure, frame)) {
       replay::fail(recording / "signals.csv",
-                   "frame " + std::to_string(frame) + " has no pressure > 0");
+                   "frame " + std::to_string(frame) + " has no pressure above 0");
     }
   }
 }
@@ -251,7 +251,8 @@ double mean_pull(const replay::SpaceGrid& border,
 Outcome rim(const Path& recording, const RimNoise& noise) {
   const auto side = replay::read_side_dots(recording / "side_dots.csv", any_frame);
   if (!side) {
-    replay::fail(recording / "side_dots.csv", "there is no such file: the dots beside the rim");
+    replay::fail(recording / "side_dots.csv",
+                 "there is no such file (it holds the dots beside the rim)");
   }
   fingerpad::RimCalibration<> calibration(side->border_mm, noise.base_radius_mm,
                                           {noise.inclination_rad});
@@ -280,9 +281,11 @@ Outcome rim(const Path& recording, const RimNoise& noise) {
                         fit.modulus_sd_n_per_mm * fit.modulus_sd_n_per_mm}};
   report.doubt(!fit.ok(), name_of(fit.status));
   report.doubt(!std::isfinite(fit.modulus_sd_n_per_mm),
-               "nothing tells how certain it is: give the noise, or three pressures or more");
-  report.doubt(fit.modulus_sd_n_per_mm > 0.05 * fit.modulus_n_per_mm,
-               "the modulus is uncertain by more than 5 %: pressures further apart, more frames");
+               "the uncertainty of the modulus is unknown: give the noise, or record at least "
+               "three pressures");
+  report.doubt(
+      fit.modulus_sd_n_per_mm > 0.05 * fit.modulus_n_per_mm,
+      "the modulus is uncertain by more than 5 %: use pressures further apart or more frames");
   Outcome outcome;
   outcome.sections["rim"] = {{"side_dot_length_mm", fit.length_mm},
                              {"membrane_modulus_n_per_mm", fit.modulus_n_per_mm}};
@@ -313,10 +316,10 @@ Outcome force(const Path& contacts_file, const Path& gauge_file) {
   const Columns& forces = gauge ? *gauge : contacts;
   if (!forces.has("force_z_n") || !contacts.has("flat_area_mm2") ||
       (gauge && !(gauge->has("frame") && contacts.has("frame")))) {
-    replay::fail(contacts_file,
-                 "contacts need the columns flat_area_mm2 and contact_depth_mm (frames.csv of "
-                 "replay has them), the gauge's table frame,force_x_n,force_y_n,force_z_n,"
-                 "moment_z_nm");
+    replay::fail(
+        contacts_file,
+        "the contacts must have the columns flat_area_mm2 and contact_depth_mm (as frames.csv of "
+        "replay), and the table of the gauge frame,force_x_n,force_y_n,force_z_n,moment_z_nm");
   }
   const std::vector<Sample> by_area = samples_of(contacts, gauge, area);
   const std::vector<Sample> by_depth = samples_of(contacts, gauge, depth);

@@ -29,7 +29,7 @@ std::vector<PlateDot> dots_of(const Path& folder, const DotPlate& plate) {
   if (found != plate.rows * plate.cols) {
     replay::fail(folder, std::to_string(found) + " of " + std::to_string(plate.rows) + " x " +
                              std::to_string(plate.cols) +
-                             " dots were found: all must be in the picture, sharp and evenly lit");
+                             " dots were found; all must be in the image, sharp and evenly lit");
   }
   std::vector<PlateDot> dots;
   for (int i = 0; i < plate.rows; ++i) {
@@ -53,14 +53,14 @@ TouchedCap touched_cap(const Path& file, double ball_radius_mm) {
     touches.push_back({line.values[0], line.values[1], line.values[2]});
   }
   if (touches.size() < 5) {
-    replay::fail(file,
-                 "has " + std::to_string(touches.size()) + " touches; four numbers need 5 or more");
+    replay::fail(file, "has " + std::to_string(touches.size()) +
+                           " touches; the fit of four parameters needs at least 5");
   }
   const TouchedCap fit = fit_cap(touches, ball_radius_mm);
   if (std::isnan(fit.size.base_radius_mm)) {
     replay::fail(file,
-                 "the touches lie on no cap over the plate: are they in mm, from the plate's "
-                 "inner face up, with the ball's radius right?");
+                 "the touches are not on a cap above the plate; give them in mm above the inner "
+                 "face of the plate, and check the radius of the ball");
   }
   return fit;
 }
@@ -163,7 +163,7 @@ TouchedCap fit_cap(const std::vector<fingerpad::Point3<double>>& touches_mm,
 
 Outcome camera(const Path& recording, const DotPlate& plate) {
   if (plate.rows < 3 || plate.cols < 3 || plate.rows % 2 == 0 || plate.cols % 2 == 0) {
-    replay::fail(recording, "rows and columns of the plate's dots must be odd and 3 or more");
+    replay::fail(recording, "the numbers of rows and columns of the target must be odd and >= 3");
   }
   const PlatePicture low = picture_of(recording / "plate", plate);
   Report report{.what = "camera", .residual = low.residual_px, .residual_unit = "px (dots)"};
@@ -176,27 +176,27 @@ Outcome camera(const Path& recording, const DotPlate& plate) {
     const PlatePicture high = picture_of(recording / "plate_raised", plate);
     if (!(high.px_per_mm < low.px_per_mm)) {
       replay::fail(recording / "plate_raised",
-                   "dots do not lie closer than in plate/: were the two "
-                   "exchanged?");
+                   "the dots are not closer together than in plate/; check whether the two folders "
+                   "are exchanged");
     }
     const PlateDistance found = plate_distance(low, high, plate.raised_mm);
     const double sd = found.sd_mm;
     distance = found.mm;
     report.parameters.push_back({"plate_distance_mm", distance, sd});
-    report.doubt(sd > 0.02 * distance, "the distance is known to less than 2 %: raise it further");
+    report.doubt(sd > 0.02 * distance,
+                 "the distance is uncertain by more than 2 %: raise the target further");
     // a center on the axis does not move
     const double moved =
         std::hypot(high.middle_px.x - low.middle_px.x, high.middle_px.y - low.middle_px.y);
-    report.doubt(
-        moved > 0.3 * low.px_per_mm,
-        "the plate's middle moved by more than 0.3 mm when it was raised: it is not on the "
-        "axis, or was shifted, or the camera is tilted");
+    report.doubt(moved > 0.3 * low.px_per_mm,
+                 "the middle of the target moved by more than 0.3 mm when it was raised: it is not "
+                 "on the axis, it was shifted, or the camera is tilted");
   }
   report.doubt(low.residual_px > 0.5,
-               "dots lie off a straight grid by more than half a pixel: a lens "
-               "that distorts, or a bent plate");
+               "the dots deviate from a straight grid by more than half a pixel: the lens "
+               "distorts, or the target is bent");
   report.doubt(low.anisotropy > 0.01,
-               "a mm is longer one way than the other by more than 1 %: the camera is tilted");
+               "the scales in two directions differ by more than 1 %: the camera is tilted");
   Outcome outcome;
   outcome.sections["camera"] = {{"plate_distance_mm", distance},
                                 {"refractive_index", plate.refractive_index},
@@ -220,25 +220,23 @@ Outcome shape(const Path& recording, const Path& sensor_file, const CapSize& giv
                          {"apex_height_mm", size.apex_height_mm, fit.apex_sd_mm},
                          {"off_axis_mm", fit.off_axis_mm, fit.off_axis_sd_mm}};
     report.doubt(fit.residual_mm > 0.2,
-                 "touches lie off a sphere by more than 0.2 mm: give a map of "
-                 "the shape instead (reference_depth.tiff)");
+                 "the touches deviate from a sphere by more than 0.2 mm: give a depth map "
+                 "(reference_depth.tiff) instead");
     report.doubt(fit.base_sd_mm > 0.2,
-                 "the base is uncertain by more than 0.2 mm: touch places "
-                 "nearer to the rim");
-    report.doubt(
-        fit.off_axis_mm > 0.3 + 2 * fit.off_axis_sd_mm,
-        "the cap's center is off the axis by more than 0.3 mm: the stage's zero, or the pad, "
-        "is not where the plate's middle dot was");
+                 "the base radius is uncertain by more than 0.2 mm: touch nearer to the rim");
+    report.doubt(fit.off_axis_mm > 0.3 + 2 * fit.off_axis_sd_mm,
+                 "the center of the cap is more than 0.3 mm off the axis: the zero of the stage, "
+                 "or the pad, is not at the middle dot of the target");
     outcome.plots = {fit.plot};
   } else {
     report.parameters = {{"base_radius_mm", size.base_radius_mm},
                          {"apex_height_mm", size.apex_height_mm}};
     report.residual = std::numeric_limits<double>::quiet_NaN();
-    report.doubt(true, "nothing was measured: the shape is that of a cap of the given size");
+    report.doubt(true, "nothing was measured: the shape is a cap of the given size");
     outcome.plots = {Plot{"", "", {}}};
   }
   if (!(size.base_radius_mm > 0) || !(size.apex_height_mm > 0)) {
-    replay::fail(recording, "base radius and apex height must be > 0");
+    replay::fail(recording, "the base radius and the apex height must be > 0");
   }
   const Path picture = recording / "reference.png";
   if (!std::filesystem::exists(picture)) {

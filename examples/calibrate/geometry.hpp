@@ -22,7 +22,7 @@ struct PlatePicture {
   double anisotropy = 0;  ///< ratio of largest to smallest px per mm, minus 1
   double residual_px = 0;
   double middle_sd_px = 0, px_per_mm_sd = 0;
-  Plot plot{"distance from the middle of the plate [mm]", "distance in the picture [px]", {}};
+  Plot plot{"distance from the middle of the plate [mm]", "distance in the image [px]", {}};
 };
 PlatePicture fit_plate(const std::vector<PlateDot>& dots);
 

@@ -53,7 +53,7 @@ KnownFrames read_known(const Path& recording,
   known.frames = read_pictures(recording / "frames");
   if (known.frames.front().size() != known.reference.size() ||
       known.free_mm.size() != known.reference.size()) {
-    replay::fail(recording, "frames, reference and its depth are not of one size");
+    replay::fail(recording, "the frames, the reference and its depth must have the same size");
   }
   known.depths_mm = true_depths(recording, known.sensor, known.free_mm, known.frames.size());
   return known;
@@ -97,8 +97,8 @@ std::vector<Sample> samples_of(const KnownFrames& known) {
   }
   if (samples.size() < of_reference + 10) {
     throw replay::Failure("frames/: fewer than 10 blocks of " + std::to_string(block_px) +
-                          " px lie on what pressed: larger balls, deeper presses, or other places "
-                          "in presses.csv");
+                          " px are in contact; use larger balls or deeper presses, or correct the "
+                          "places in presses.csv");
   }
   return samples;
 }
@@ -167,13 +167,14 @@ Outcome absorption(const Path& recording, const Path& sensor_file) {
     report.covariance.push_back({fit.covariance(i, 0), fit.covariance(i, 1), fit.covariance(i, 2)});
   }
   report.doubt(!fit.ok(), name_of(fit.status));
-  report.doubt(depth_sd > 0.05,
-               "the fit alone leaves depths uncertain by more than 0.05 mm: press "
-               "more places and depths");
+  report.doubt(
+      depth_sd > 0.05,
+      "the fit alone makes depths uncertain by more than 0.05 mm: press at more places and depths");
   report.doubt(fit.residual_rms > 0.1,
-               "noise of the colours biases the parameters: average more "
-               "frames of each press, or take more light");
-  report.doubt(fit.delta_at_limit, "green is absorbed no more than red: are red and green right?");
+               "noise of the colours biases the parameters: average more frames of each press, or "
+               "use more light");
+  report.doubt(fit.delta_at_limit,
+               "green is not absorbed more than red: check whether red and green are exchanged");
   Outcome outcome;
   outcome.sections["absorption"] = {{"c_red_per_mm", fluid.c_red_per_mm},
                                     {"c_green_per_mm", fluid.c_green_per_mm},
@@ -242,7 +243,7 @@ Outcome contact(const Path& recording, const Path& sensor_file) {
   for (const cv::Mat& frame : frames) {
     last = meter(frame);
     if (!calibration.add(last)) {
-      replay::fail(recording / "free", "frames are not of the reference's size");
+      replay::fail(recording / "free", "the frames must have the size of the reference");
     }
   }
   const auto pad = calibration.fit();
@@ -251,9 +252,10 @@ Outcome contact(const Path& recording, const Path& sensor_file) {
                        {"curvature_of_free_pad_per_mm", pad.median_per_mm, pad.median_error_per_mm},
                        {"edge_noise_mm", pad.edge_noise_mm}};
   report.doubt(!pad.ok(), name_of(pad.status));
-  report.doubt(pad.frames < 3, "two frames hardly tell the noise: take ten");
+  report.doubt(pad.frames < 3, "two frames are too few to estimate the noise: record ten");
   report.doubt(pad.threshold_per_mm < 0.4 * pad.median_per_mm,
-               "noise, not the edge, sets the threshold: more light, or a wider window");
+               "the threshold is set by the noise instead of the edge: use more light or a wider "
+               "smoothing window");
   Outcome outcome;
   outcome.sections["contact"] = {{"threshold_per_mm", pad.threshold_per_mm}};
   Plot plot{"column on the middle row [px]", "depth of the free pad [mm]", {}};

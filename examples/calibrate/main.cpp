@@ -30,12 +30,11 @@ CLI::App* add(CLI::App& app,
               std::function<Outcome()> work,
               std::function<Outcome()>& chosen) {
   CLI::App* const sub = app.add_subcommand(name, about);
-  sub->add_option("RECORDING", common.recording, "the recording's folder")->required();
+  sub->add_option("RECORDING", common.recording, "folder of the recording")->required();
   sub->add_option("--into", common.into,
-                  "the file that is read and written; without it, "
-                  "sensor.json in the recording")
+                  "sensor.json to read and update; default: the one in the recording")
       ->option_text("FILE");
-  sub->add_option("--plots", common.plots, "write what plot.py draws to this folder")
+  sub->add_option("--plots", common.plots, "write tables for plot.py to this folder")
       ->option_text("DIR");
   sub->callback([&chosen, work = std::move(work)] { chosen = work; });
   return sub;
@@ -71,38 +70,46 @@ struct Arguments {
 
 void add_geometry(CLI::App& app, Common& common, Arguments& given, std::function<Outcome()>& work) {
   auto* sub = add(
-      app, common, "camera", "pitch, center and distance, from plate/ and plate_raised/",
+      app, common, "camera",
+      "pitch, center and distance of the camera, from plate/ and plate_raised/",
       [&] { return calibrate::camera(common.recording, given.plate); }, work);
-  sub->add_option("--rows", given.plate.rows, "rows of the plate's dots, odd")->required();
-  sub->add_option("--cols", given.plate.cols, "columns, odd")->required();
-  sub->add_option("--pitch-mm", given.plate.pitch_mm, "between its dots")
+  sub->add_option("--rows", given.plate.rows, "rows of dots on the target, odd")->required();
+  sub->add_option("--cols", given.plate.cols, "columns of dots on the target, odd")->required();
+  sub->add_option("--pitch-mm", given.plate.pitch_mm,
+                  "distance between neighbouring dots of the target")
       ->required()
       ->check(CLI::PositiveNumber);
-  sub->add_option("--raised-mm", given.plate.raised_mm, "how far it was raised for plate_raised/");
-  sub->add_option("--plate-distance-mm", given.plate.plate_distance_mm,
-                  "from the camera to the plate's inner face, where it was not raised")
+  sub->add_option("--raised-mm", given.plate.raised_mm,
+                  "height by which the target was raised for plate_raised/");
+  sub->add_option(
+         "--plate-distance-mm", given.plate.plate_distance_mm,
+         "distance from the camera to the inner face of the plate, if there is no plate_raised/")
       ->check(CLI::PositiveNumber);
-  sub->add_option("--index", given.plate.refractive_index, "of the fluid, 1.33 for water");
+  sub->add_option("--index", given.plate.refractive_index,
+                  "refractive index of the fluid, 1.33 for water");
 
   sub = add(
-      app, common, "shape", "depth of the free pad: a cap, as given or as touched by a ball",
+      app, common, "shape",
+      "depth of the free pad, a cap of given size or fitted to touches of a ball",
       [&] { return calibrate::shape(common.recording, common.sensor(), given.size); }, work);
-  sub->add_option("--base-radius-mm", given.size.base_radius_mm, "of the pad on the plate");
+  sub->add_option("--base-radius-mm", given.size.base_radius_mm, "radius of the pad on the plate");
   sub->add_option("--apex-mm", given.size.apex_height_mm, "height of the free pad");
-  sub->add_option("--ball-radius-mm", given.size.ball_radius_mm, "of the ball of touches.csv");
+  sub->add_option("--ball-radius-mm", given.size.ball_radius_mm,
+                  "radius of the ball of touches.csv");
 }
 
 void add_light(CLI::App& app, Common& common, Arguments& given, std::function<Outcome()>& work) {
   add(
-      app, common, "absorption", "the fluid, from the free pad and frames of known depth",
+      app, common, "absorption",
+      "absorption of the fluid, from the free pad and frames of known depth",
       [&] { return calibrate::absorption(common.recording, common.sensor()); }, work);
   auto* sub = add(
-      app, common, "neighbour-light", "light from neighbouring membrane, from the same",
+      app, common, "neighbour-light", "light from neighbouring membrane, from the same recording",
       [&] {
         return calibrate::neighbour_light(common.recording, common.sensor(), given.max_radius_px);
       },
       work);
-  sub->add_option("--max-radius-px", given.max_radius_px, "radii are searched up to here");
+  sub->add_option("--max-radius-px", given.max_radius_px, "largest radius that is searched");
   add(
       app, common, "contact", "threshold of contact, from free/",
       [&] { return calibrate::contact(common.recording, common.sensor()); }, work);
@@ -112,27 +119,32 @@ void add_dots(CLI::App& app, Common& common, Arguments& given, std::function<Out
   auto* sub = add(
       app, common, "dots", "noise of the dots and thresholds of slip, from free/",
       [&] { return calibrate::dots(common.recording, given.slips); }, work);
-  sub->add_flag("--slips", given.slips,
-                "also choose reference_px by frames/, which stick and then slip");
+  sub->add_flag(
+      "--slips", given.slips,
+      "also choose reference_px, from frames/ in which the object first sticks and then slips");
 }
 
 void add_forces(CLI::App& app, Common& common, Arguments& given, std::function<Outcome()>& work) {
   auto* sub = add(
       app, common, "rim", "length of the side dots and the membrane's modulus",
       [&] { return calibrate::rim(common.recording, given.rim); }, work);
-  sub->add_option("--base-radius-mm", given.rim.base_radius_mm, "of the pad")
+  sub->add_option("--base-radius-mm", given.rim.base_radius_mm, "base radius of the pad")
       ->required()
       ->check(CLI::PositiveNumber);
-  sub->add_option("--length-mm", given.rim.length_mm, "of the side dots, where it is known");
-  sub->add_option("--inclination-rad", given.rim.inclination_rad, "of the membrane without stress");
-  sub->add_option("--dot-noise-mm", given.rim.dot_noise_mm, "of a side dot's coordinate");
-  sub->add_option("--pressure-noise-mpa", given.rim.pressure_noise_mpa, "of a frame's pressure");
+  sub->add_option("--length-mm", given.rim.length_mm, "length of the side dots, if known");
+  sub->add_option("--inclination-rad", given.rim.inclination_rad,
+                  "inclination of the membrane without stress");
+  sub->add_option("--dot-noise-mm", given.rim.dot_noise_mm, "noise of a coordinate of a side dot");
+  sub->add_option("--pressure-noise-mpa", given.rim.pressure_noise_mpa,
+                  "noise of the pressure of a frame");
   sub->add_option("--stress-free-height-mm", given.rim.stress_free_height_mm,
-                  "of the pad's apex without stress: finds the rubber, too, from apex.csv");
-  sub->add_option("--apex-noise-mm", given.rim.apex_noise_mm, "of an apex in apex.csv");
+                  "apex height of the pad without stress; with it the type of rubber is fitted, "
+                  "too, from apex.csv");
+  sub->add_option("--apex-noise-mm", given.rim.apex_noise_mm,
+                  "noise of an apex height in apex.csv");
 
   sub = add(
-      app, common, "force", "force curves, from contacts and a gauge's table",
+      app, common, "force", "force curves, from contacts and a table of the gauge",
       [&] {
         return calibrate::force(common.recording / given.contacts,
                                 given.gauge.empty() ? given.gauge : common.recording / given.gauge);
@@ -141,7 +153,7 @@ void add_forces(CLI::App& app, Common& common, Arguments& given, std::function<O
   sub->add_option("--contacts", given.contacts, "frames.csv of replay, or a table with its columns")
       ->required();
   sub->add_option("--gauge", given.gauge,
-                  "table with the columns of forces.csv, where contacts has none");
+                  "table with the columns of forces.csv, if the contacts have no forces");
 
   add(
       app, common, "taxels", "noise of a foam array at rest, from taxels.csv",
@@ -153,9 +165,10 @@ void add_forces(CLI::App& app, Common& common, Arguments& given, std::function<O
 int main(int argc, char** argv) {
   replay::limit_image_size(argv);
   CLI::App app(
-      "Turns recordings into the sensor.json that replay reads, one sub-command a calibration.\n"
-      "Each prints its parameters with standard errors, what the fit leaves, and whether it is\n"
-      "good, doubtful or refused, because of what. docs/first_hour tells what to record.");
+      "Computes the sensor.json that replay reads from recordings; each sub-command is one\n"
+      "calibration. It prints the parameters with standard errors, the residual of the fit, and\n"
+      "whether the result is good, doubtful or refused, with the reason. docs/first_hour explains\n"
+      "what to record.");
   app.require_subcommand(1);
   app.footer("Exit status: 0 good or doubtful, 1 refused in whole or in part, 2 wrong arguments.");
   Common common;
@@ -165,8 +178,9 @@ int main(int argc, char** argv) {
   add_light(app, common, given, work);
   add_dots(app, common, given, work);
   add_forces(app, common, given, work);
-  app.add_subcommand("practice", "write recordings of a virtual sensor, to try all this on")
-      ->add_option("DIR", given.practice, "the folder to write")
+  app.add_subcommand("practice",
+                     "write recordings of a virtual sensor to try the calibrations with")
+      ->add_option("DIR", given.practice, "output folder")
       ->required();
   try {
     app.parse(argc, argv);

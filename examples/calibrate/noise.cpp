@@ -52,7 +52,7 @@ fingerpad::StickTestFit choose(const fingerpad::DotFinder& finder,
 Outcome dots(const Path& recording, bool slips) {
   const fingerpad::DotFinder finder(read_pictures(recording / "free").front());
   if (!finder.ok()) {
-    replay::fail(recording / "free", "the first picture shows no grid of 9 dots or more");
+    replay::fail(recording / "free", "the first image shows no grid of 9 or more dots");
   }
   fingerpad::DotNoiseCalibration calibration(finder.rows(), finder.cols());
   Plot plot{"frame", "mean distance from frame 0 [px]", {}};
@@ -78,7 +78,7 @@ Outcome dots(const Path& recording, bool slips) {
   fingerpad::StickTest test = stick_test_for(finder.rows() * finder.cols(), noise);
   Report report{.what = "dots", .residual = noise.noise_px, .residual_unit = "px (noise)"};
   report.doubt(!noise.ok(), name_of(noise.status));
-  report.doubt(noise.frames < 5, "four frames hardly tell the noise: take twenty");
+  report.doubt(noise.frames < 5, "four frames are too few to estimate the noise: record twenty");
   if (slips) {
     const auto fit = choose(finder, recording / "frames", noise);
     test = fit.test;
@@ -118,17 +118,19 @@ Outcome taxels(const Path& recording) {
     (void)calibration.add(readings, table.times_s[static_cast<std::size_t>(k)]);
   }
   const auto noise = calibration.fit();
-  Report report{.what = "taxels", .residual = noise.typical, .residual_unit = "of the readings"};
+  Report report{
+      .what = "taxels", .residual = noise.typical, .residual_unit = "(unit of the readings)"};
   report.parameters = {{"noise", noise.typical, noise.typical_error},
                        {"largest_factor", noise.largest_factor},
                        {"centroid_noise_mm", noise.centroid_deviation_mm},
                        {"windows", static_cast<double>(noise.windows)}};
   report.doubt(!noise.ok(), name_of(noise.status));
   report.doubt(noise.largest_factor > options.noise_factor,
-               "a window spreads more than noise_factor times the noise: was the array touched?");
+               "the readings of a window spread by more than noise_factor times the noise: check "
+               "that nothing touched the array");
   Outcome outcome;
   outcome.sections["foam"] = {{"noise", noise.typical}};
-  Plot plot{"taxel (row by row)", "standard deviation [of the readings]", {}};
+  Plot plot{"taxel (row by row)", "standard deviation [unit of the readings]", {}};
   for (std::size_t k = 0; k < noise.deviations.size(); ++k) {
     plot.points.push_back({static_cast<double>(k), noise.deviations[k], noise.typical});
   }

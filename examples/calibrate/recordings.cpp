@@ -53,7 +53,7 @@ replay::Sensor known_sensor(const fs::path& file, const std::vector<std::string>
   json content = fs::exists(file) ? replay::parse_json(file) : json::object();
   for (const std::string& section : sections) {
     if (!content.contains(section)) {
-      replay::fail(file, "has no section " + section + " yet: run " + made_by(section));
+      replay::fail(file, "has no section " + section + "; run " + made_by(section) + " first");
     }
   }
   // placeholders for sections that are not calibrated yet; they are parsed but not used
@@ -132,7 +132,7 @@ std::vector<DepthMap> true_depths(const fs::path& recording,
       const fs::path file = recording / "true_depth" / name;
       depths[k] = fs::exists(file) ? replay::read_depth_image(file) : depths[k];
       if (depths[k].size() != free_mm.size()) {
-        replay::fail(file, "is not of the reference's size");
+        replay::fail(file, "must have the size of the reference");
       }
     }
     return depths;
@@ -143,7 +143,7 @@ std::vector<DepthMap> true_depths(const fs::path& recording,
     const int frame = table.index(line, 0, static_cast<int>(frames), "frames");
     const double x = line.values[1], y = line.values[2], z = line.values[3], r = line.values[4];
     if (!(r > 0) || !(z > 0)) {
-      table.refuse(line, "the ball's radius and the height of its lowest point must be > 0");
+      table.refuse(line, "radius_mm and z_mm of the ball must be > 0");
     }
     depths[static_cast<std::size_t>(frame)] = depth_on_ball(sensor, {{x, y, z + r}, r}, free_mm);
   }

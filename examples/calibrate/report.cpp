@@ -95,10 +95,10 @@ Report report_of(const fs::path& file, const std::string& what, const json& entr
   const replay::JsonSection section(file, name, entry,
                                     {{"verdict", "good or doubtful"},
                                      {"because", "why it is doubtful"},
-                                     {"residual", "what the fit leaves"},
-                                     {"residual_unit", "of the residual"},
+                                     {"residual", "residual of the fit"},
+                                     {"residual_unit", "unit of the residual"},
                                      {"parameters", "by name: [value, standard error]"},
-                                     {"covariance", "of the parameters"}});
+                                     {"covariance", "covariance of the parameters"}});
   Report report;
   report.what = what;
   report.verdict =

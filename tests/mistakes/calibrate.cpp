@@ -211,54 +211,62 @@ TEST_CASE("mistakes: forces by look-up", "[mistakes]") {
       {"random forces", moment(any_force()), "they are too few, too alike or tied to each other"},
       {"forces along x and y exchanged",
        tangential([](auto& s) { std::swap(s.tangential_force_n.x, s.tangential_force_n.y); }),
-       "are x and y exchanged"},
+       "check whether x and y are exchanged"},
       {"one axis reversed", tangential([](auto& s) { s.tangential_force_n.x *= -1; }),
-       "one of them reversed"},
+       "or one is reversed"},
       {"force on the object, not on the pad", tangential([](auto& s) {
          s.tangential_force_n = {-s.tangential_force_n.x, -s.tangential_force_n.y};
        }),
-       "sign of an axis reversed"},
+       "check the sign of each axis"},
       {"moment on the object", moment([](auto& s) { s.moment_n_mm *= -1; }),
-       "sign of an axis reversed"},
+       "check the sign of each axis"},
       {"normal force negative, as a wrench has it", normal([](auto& s) { s.normal_force_n *= -1; }),
        "the force falls while the contact grows"},
       {"normal force and measure exchanged",  // a contact that grows ever less is as plausible
        normal([](auto& s) { std::swap(s.normal_force_n, s.measure); }), "ok"},
-      {"gauge not tared", normal([](auto& s) { s.normal_force_n += 6; }), "was the gauge tared?"},
+      {"gauge not tared", normal([](auto& s) { s.normal_force_n += 6; }), "tare the gauge"},
       {"gauge not tared", tangential([](auto& s) { s.tangential_force_n.y += 0.9; }),
-       "was the gauge tared?"},
-      {"gauge not tared", moment([](auto& s) { s.moment_n_mm += 9; }), "was the gauge tared?"},
+       "tare the gauge"},
+      {"gauge not tared", moment([](auto& s) { s.moment_n_mm += 9; }), "tare the gauge"},
       {"gauge rotated by 15 degrees",
-       tangential([](auto& s) { rotate(s.tangential_force_n, 0.26); }), "is the gauge rotated"},
+       tangential([](auto& s) { rotate(s.tangential_force_n, 0.26); }),
+       "align the gauge with the image"},
       {"gauge rotated by 30 degrees",
-       tangential([](auto& s) { rotate(s.tangential_force_n, 0.52); }), "is the gauge rotated"},
+       tangential([](auto& s) { rotate(s.tangential_force_n, 0.52); }),
+       "align the gauge with the image"},
       {"gauge rotated by 90 degrees",
        tangential([](auto& s) { rotate(s.tangential_force_n, 1.57); }),
-       "is the gauge rotated against the image? Turned by 90 +- 2 degrees"},
+       "align the gauge with the image (rotated by 90 +- 2 degrees)"},
       {"area in m^2", normal([](auto& s) { s.measure *= 1e-6; }), "areas in mm^2"},
       {"depth in m", normal([](auto& s) { s.measure *= 1e-3; }), "depths and radii in mm"},
       {"area in um^2", normal([](auto& s) { s.measure *= 1e6; }), "areas in mm^2"},
       {"depth in um",  // as plausible as an area; a looked-up force is then "below range"
        normal([](auto& s) { s.measure *= 1e3; }), "ok"},
-      {"forces in mN", normal([](auto& s) { s.normal_force_n *= 1e3; }), "in N?"},
-      {"forces in kN", normal([](auto& s) { s.normal_force_n *= 1e-3; }), "in N?"},
+      {"forces in mN", normal([](auto& s) { s.normal_force_n *= 1e3; }), "give forces in N"},
+      {"forces in kN", normal([](auto& s) { s.normal_force_n *= 1e-3; }), "give forces in N"},
       {"forces in mN",
-       tangential([](auto& s) { s.tangential_force_n = 1e3 * s.tangential_force_n; }), "in N?"},
+       tangential([](auto& s) { s.tangential_force_n = 1e3 * s.tangential_force_n; }),
+       "give forces in N"},
       {"forces in kN",
-       tangential([](auto& s) { s.tangential_force_n = 1e-3 * s.tangential_force_n; }), "in N?"},
+       tangential([](auto& s) { s.tangential_force_n = 1e-3 * s.tangential_force_n; }),
+       "give forces in N"},
       {"forces times 1e300", normal([](auto& s) { s.normal_force_n *= 1e300; }), "too few"},
-      {"moment in N um", moment([](auto& s) { s.moment_n_mm *= 1e3; }), "in N mm?"},
+      {"moment in N um", moment([](auto& s) { s.moment_n_mm *= 1e3; }), "give moments in N mm"},
       {"displacement in um",
-       tangential([](auto& s) { s.displacement_mm = 1e3 * s.displacement_mm; }), "in mm?"},
+       tangential([](auto& s) { s.displacement_mm = 1e3 * s.displacement_mm; }),
+       "give displacements in mm"},
       {"displacement in m", tangential([](auto& s) {
          s.displacement_mm = {s.displacement_mm.x / 1000, s.displacement_mm.y / 1000};
        }),
        "no displacement reaches 0.01"},
-      {"rotation in degrees", moment([](auto& s) { s.rotation_rad *= 57.3; }), "in rad?"},
-      {"rotation in degrees", normal([](auto& s) { s.rotation_rad *= 57.3; }), "in rad?"},
-      {"moment in N m", moment([](auto& s) { s.moment_n_mm /= 1000; }), "in N mm?"},
+      {"rotation in degrees", moment([](auto& s) { s.rotation_rad *= 57.3; }),
+       "give rotations in rad"},
+      {"rotation in degrees", normal([](auto& s) { s.rotation_rad *= 57.3; }),
+       "give rotations in rad"},
+      {"moment in N m", moment([](auto& s) { s.moment_n_mm /= 1000; }), "give moments in N mm"},
       {"a bumped gauge",
-       normal([k = 0](auto& s) mutable { s.normal_force_n += k++ == 30 ? 3 : 0; }), "gauge bumped"},
+       normal([k = 0](auto& s) mutable { s.normal_force_n += k++ == 30 ? 3 : 0; }),
+       "check its dots and its gauge reading"},
       {"a gauge that reads 1e300 once",  // harmless except for that sample
        normal(
            [k = 0](auto& s) mutable { s.normal_force_n = k++ == 30 ? 1e300 : s.normal_force_n; }),
@@ -300,8 +308,8 @@ TEST_CASE("mistakes: force over the divergence of the dots", "[mistakes]") {
       {"dots in um", divergence([](Presses& p) { areas_times(p, 1e6); }), "areas in mm^2"},
       {"dots in px",  // a valid unit if the frames use it too
        divergence([](Presses& p) { areas_times(p, 150); }), "ok"},
-      {"forces in mN", divergence([](Presses& p) { times(p.forces_n, 1e3); }), "in N?"},
-      {"forces in kN", divergence([](Presses& p) { times(p.forces_n, 1e-3); }), "in N?"},
+      {"forces in mN", divergence([](Presses& p) { times(p.forces_n, 1e3); }), "give forces in N"},
+      {"forces in kN", divergence([](Presses& p) { times(p.forces_n, 1e-3); }), "give forces in N"},
       {"force negative, as a wrench has it", divergence([](Presses& p) { times(p.forces_n, -1); }),
        "the force falls while the contact grows"},
       {"gauge not tared", divergence([](Presses& p) {
@@ -309,7 +317,7 @@ TEST_CASE("mistakes: force over the divergence of the dots", "[mistakes]") {
            n += 6;
          }
        }),
-       "was the gauge tared?"},
+       "tare the gauge"},
       {"stuck gauge", divergence([](Presses& p) { p.forces_n.assign(40, 4.0); }),
        "the samples are constant"},
       {"no press seen by the dots", divergence([](Presses& p) { areas_times(p, test::nan); }),
@@ -365,7 +373,7 @@ TEST_CASE("mistakes: by how much a gauge is turned", "[mistakes]") {
   CHECK(fitted(1, 0.3, line).status == FitStatus::gauge_rotated);
   CHECK(test::refusal([&] {
           (void)fitted(1, 1.5, line);
-        }).find("only displacements in several directions tell") != std::string::npos);
+        }).find("displace in several directions to obtain the angle") != std::string::npos);
 }
 
 TEST_CASE("mistakes: the fluid", "[mistakes]") {
@@ -400,7 +408,7 @@ TEST_CASE("mistakes: the fluid", "[mistakes]") {
       {"four samples", absorption([](Colours& samples) {
          samples = {samples[0], samples[6], samples[12], samples[19]};
        }),
-       "nothing is left to check them by"},
+       "so the fit cannot be checked"},
       {"one depth", absorption([](Colours& samples) {
          for (auto& s : samples) {
            s.depth_mm = 4;
@@ -536,7 +544,7 @@ TEST_CASE("mistakes: noise of the dots", "[mistakes]") {
            p.x *= 1 + 2e-4 * t;
          }
        }),
-       "did the pad stand still?"},
+       "check that the pad is at rest"},
       {"the same frame again and again", standing([](Dots& dots, int) {
          for (std::size_t k = 0; k < dots.cells.size(); ++k) {
            dots.cells[k] = {20.0 * static_cast<double>(k % 9), 20.0 * static_cast<double>(k / 9)};
@@ -592,7 +600,7 @@ TEST_CASE("mistakes: noise of the taxels", "[mistakes]") {
 TEST_CASE("mistakes: threshold of the contact", "[mistakes]") {
   check({
       {"none", free_pad(1, 1), "ok"},
-      {"depths in m", free_pad(1e-3, 1), "in mm?"},
+      {"depths in m", free_pad(1e-3, 1), "give depths in mm"},
       {"most depths missing", free_pad(1, 0.4), "fewer than half of the pixels"},
       {"no depth at all", free_pad(1, 0), "pixels = 0"},
       {"height for depth", free_pad(-1, 1), "bulges too little"},
@@ -603,8 +611,8 @@ TEST_CASE("mistakes: threshold of the contact", "[mistakes]") {
 TEST_CASE("mistakes: the rim", "[mistakes]") {
   check({
       {"none", rim({}), "ok"},
-      {"pressure in kPa", rim({.pressure = 1e3}), "in MPa"},
-      {"pressure in Pa", rim({.pressure = 1e6}), "in MPa"},
+      {"pressure in kPa", rim({.pressure = 1e3}), "give it in MPa"},
+      {"pressure in Pa", rim({.pressure = 1e6}), "give it in MPa"},
       {"frames of the two pressures exchanged", rim({.exchanged = true}), "must be"},
       {"one of two pressures absolute",  // two pressures fit any two numbers
        rim({.unlike = 1 + 0.1 / 0.03}), "ok"},

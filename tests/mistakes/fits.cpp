@@ -369,10 +369,10 @@ TEST_CASE("mistakes: the light of one channel", "[mistakes]") {
   const Mistake<Presses> mistakes[] = {
       {"none", [](Presses&) {}, "right"},
       {"ball in m", in_each([](auto& one) { one.ball.ball_mm /= 1000; }), "no ball"},
-      {"ball in um", in_each([](auto& one) { one.ball.ball_mm *= 1000; }), "in mm?"},
+      {"ball in um", in_each([](auto& one) { one.ball.ball_mm *= 1000; }), "give depths in mm"},
       {"diameter for radius",  // twice as large and half as deep: equally dark
        in_each([](auto& one) { one.ball.ball_mm *= 2; }), "wrong"},
-      {"pixels in m", in_each([](auto& one) { one.ball.mm_per_px /= 1000; }), "in mm?"},
+      {"pixels in m", in_each([](auto& one) { one.ball.mm_per_px /= 1000; }), "give depths in mm"},
       {"pixels in um", in_each([](auto& one) { one.ball.mm_per_px *= 1000; }), "no ball"},
       {"pixels of another zoom", in_each([](auto& one) { one.ball.mm_per_px *= 2; }), "no ball"},
       {"light times 1000", in_each([](auto& one) {
@@ -420,7 +420,7 @@ TEST_CASE("mistakes: neighbouring light", "[mistakes]") {
   const Mistake<Depths> mistakes[] = {
       {"none", [](Depths&) {}, "right"},
       {"truth in m", [=](Depths& d) { all_of(d.truth, scaled(1e-3)); },
-       "measured and true depths exchanged"},
+       "check whether measured and true depths are exchanged"},
       {"truth in um", [=](Depths& d) { all_of(d.truth, scaled(1e3)); }, "true depth = 0"},
       {"all depths in m",
        [=](Depths& d) {
@@ -439,7 +439,7 @@ TEST_CASE("mistakes: neighbouring light", "[mistakes]") {
       {"pitch in m", [](Depths& d) { d.pitch_mm *= 1e-3; }, "an end of the search"},
       {"pitch in um", [](Depths& d) { d.pitch_mm *= 1e3; }, "mm between pixels"},
       {"measured and true exchanged", [](Depths& d) { std::swap(d.measured, d.truth); },
-       "measured and true depths exchanged"},
+       "check whether measured and true depths are exchanged"},
       {"frames exchanged", [](Depths& d) { std::swap(d.truth[0], d.truth[1]); },
        "an end of the search"},
       {"truth transposed", [](Depths& d) { all_of(d.truth, transposed); }, "less than a tenth"},
@@ -514,27 +514,27 @@ TEST_CASE("mistakes: thresholds of pre-slip", "[mistakes]") {
        }),
        "right"},
       {"a dead finger", each_sample([](auto& f, std::size_t) { f[0] = f[1]; }),
-       "no threshold tells the onsets"},
+       "no threshold separates the onsets"},
       {"two dead fingers", each_sample([](auto& f, std::size_t) {
          f[0].status = TaxelStatus::frozen;
          f[1].status = TaxelStatus::frozen;
        }),
-       "no threshold tells the onsets"},
+       "no threshold separates the onsets"},
       {"marks late by half a period",
        [](Hand& h) { std::rotate(h.marks.begin(), h.marks.end() - 25, h.marks.end()); },
-       "no threshold tells the onsets"},
+       "no threshold separates the onsets"},
       {"marks one late",
        [](Hand& h) { std::rotate(h.marks.begin(), h.marks.end() - 1, h.marks.end()); },
-       "no threshold tells the onsets"},
-      {"marks reversed", [](Hand& h) { h.marks.flip(); }, "no threshold tells the onsets"},
+       "no threshold separates the onsets"},
+      {"marks reversed", [](Hand& h) { h.marks.flip(); }, "no threshold separates the onsets"},
       {"marks in other order", [](Hand& h) { std::reverse(h.marks.begin(), h.marks.end()); },
-       "no threshold tells the onsets"},
+       "no threshold separates the onsets"},
       {"all marked", [](Hand& h) { h.marks.assign(h.marks.size(), true); },
        "samples without a mark = 0"},
       {"none marked", [](Hand& h) { h.marks.assign(h.marks.size(), false); }, "marked samples = 0"},
       {"half of the marks forgotten",
        [](Hand& h) { std::fill(h.marks.begin(), h.marks.begin() + 200, false); },
-       "no threshold tells the onsets"},
+       "no threshold separates the onsets"},
       {"half of the samples missing", each_sample([](auto& f, std::size_t k) {
          if (k < 200) {
            f = {};
@@ -548,7 +548,7 @@ TEST_CASE("mistakes: thresholds of pre-slip", "[mistakes]") {
            h.marks[k] = r.uniform() < 0.12;
          }
        },
-       "no threshold tells the onsets"},
+       "no threshold separates the onsets"},
   };
   check(mistakes, said_of_preslip);
 }

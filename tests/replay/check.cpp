@@ -460,7 +460,7 @@ const std::vector<Mistake> mistakes = {
     {"a force gauge turned by 30 degrees", [](const Copy& c) { drag(c, CV_PI / 6); },
      "the forces are rotated by 30 +- "},
     {"a force gauge turned by 90 degrees", [](const Copy& c) { drag(c, CV_PI / 2); },
-     "Turned by 90 +- "},
+     "(rotated by 90 +- "},
     {"x and y of the forces exchanged",
      [](const Copy& c) {
        drag(c, 0);
@@ -469,7 +469,7 @@ const std::vector<Mistake> mistakes = {
          return true;
        });
      },
-     "are x and y exchanged"},
+     "check whether x and y are exchanged"},
     {"a force gauge that was not tared", [](const Copy& c) { c.scale("forces.csv", 3, 1, -0.4); },
      "Tare the gauge with nothing in contact"},
     {"no sensor.json", [](const Copy& c) { fs::remove(c.folder() / "sensor.json"); },

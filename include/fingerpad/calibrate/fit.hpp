@@ -75,55 +75,62 @@ constexpr const char* name_of(FitStatus status) {
     case FitStatus::ok:
       return "ok";
     case FitStatus::not_converged:
-      return "not converged: more samples, or fewer parameters";
+      return "the fit has not converged: use more samples or fewer parameters";
     case FitStatus::nothing_to_check:
-      return "as many samples as parameters: nothing is left to check them by";
+      return "there are as many samples as parameters, so the fit cannot be checked";
     case FitStatus::at_end_of_search:
-      return "the best lies at an end of the search: other frames, or a wider search";
+      return "the best value is at an end of the search: use other frames or a wider search";
     case FitStatus::measure_not_in_mm:
-      return "no measure reaches 0.05, or one exceeds 10000: areas in mm^2, depths and radii in "
-             "mm?";
+      return "no measure reaches 0.05, or one exceeds 10000: give areas in mm^2, depths and radii "
+             "in mm";
     case FitStatus::displacement_not_in_mm:
-      return "no displacement reaches 0.01, or one exceeds 100: in mm?";
+      return "no displacement reaches 0.01, or one exceeds 100: give displacements in mm";
     case FitStatus::rotation_not_in_rad:
-      return "a rotation beyond a right angle: in rad?";
+      return "a rotation exceeds a right angle: give rotations in rad";
     case FitStatus::moment_not_in_n_mm:
-      return "moments of less than 0.05 mm or more than 100 mm times the normal force: in N mm?";
+      return "moments are below 0.05 mm or above 100 mm times the normal force: give moments in N "
+             "mm";
     case FitStatus::force_not_in_n:
-      return "no force reaches 0.05 (along the pad 0.01), or one exceeds 300: in N?";
+      return "no force reaches 0.05 (along the pad 0.01), or one exceeds 300: give forces in N";
     case FitStatus::gauge_not_tared:
-      return "a constant would explain most of what is left: was the gauge tared?";
+      return "a constant explains most of the residual: tare the gauge";
     case FitStatus::gauge_rotated:
-      return "forces stand askew to the displacements: is the gauge rotated against the image?";
+      return "the forces are rotated against the displacements: align the gauge with the image";
     case FitStatus::axes_exchanged:
-      return "forces mirror the displacements: are x and y exchanged, or one of them reversed?";
+      return "the forces mirror the displacements: check whether x and y are exchanged or one is "
+             "reversed";
     case FitStatus::sign_reversed:
-      return "forces point against the displacements: is the sign of an axis reversed?";
+      return "the forces point against the displacements: check the sign of each axis";
     case FitStatus::has_outlier:
-      return "a sample lies far off the others: a dot mistaken, a gauge bumped? Fit robustly";
+      return "a sample is far from the others: check its dots and its gauge reading, or fit "
+             "robustly";
     case FitStatus::pressure_not_in_mpa:
-      return "a pressure above 0.2: in MPa, above that around the pad?";
+      return "a pressure exceeds 0.2: give it in MPa above the pressure around the pad";
     case FitStatus::pressure_unbalanced:
-      return "pressure and pull of the rim do not balance: pressures of the same frames, tared?";
+      return "pressure and pull of the rim do not balance: check that the pressures are of the "
+             "same frames and tared";
     case FitStatus::depths_not_in_mm:
-      return "depths too small for a pad: in mm?";
+      return "the depths are too small for a pad: give depths in mm";
     case FitStatus::depths_missing:
-      return "fewer than half of the pixels have a depth: calibration, exposure, frame?";
+      return "fewer than half of the pixels have a depth: check calibration, exposure and frame";
     case FitStatus::colours_unexplained:
-      return "the colours do not follow from the depths: other order, other place, other frame?";
+      return "the colours do not follow from the depths: check that both have the same order, "
+             "place and frame";
     case FitStatus::scatters_no_light:
-      return "g is not positive everywhere: are red and green exchanged?";
+      return "g is not positive everywhere: check whether red and green are exchanged";
     case FitStatus::light_unexplained:
-      return "neighbouring light takes off less than a tenth of the error: other frame, order, "
-             "unit?";
+      return "neighbouring light removes less than a tenth of the error: check frame, order and "
+             "unit";
     case FitStatus::light_taken_away:
-      return "neighbouring light would darken: are measured and true depths exchanged?";
+      return "neighbouring light would darken the pad: check whether measured and true depths are "
+             "exchanged";
     case FitStatus::pad_moved:
-      return "dots move slowly, not as noise does: did the pad stand still?";
+      return "the dots move slowly, unlike noise: check that the pad is at rest";
     case FitStatus::taxels_missing:
-      return "fewer than half of the taxels gave readings in range: bytes, range, order?";
+      return "fewer than half of the taxels gave readings in range: check bytes, range and order";
     case FitStatus::onsets_not_found:
-      return "no threshold tells the onsets from the rest: marks late or early, or another rule?";
+      return "no threshold separates the onsets from the rest: check the marks, or use another "
+             "rule";
   }
   return "unknown";
 }

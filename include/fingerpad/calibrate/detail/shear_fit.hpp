@@ -131,7 +131,7 @@ ModelFit<S> fit_shear_model(const char* owner,
   const bool inside = !searched || (value(fit.parameters(degree)) >= value(lowest) &&
                                     value(fit.parameters(degree)) <= value(highest));
   expects(inside, owner, names.back().c_str(), S(fit.parameters(fit.parameters.size() - 1)),
-          "in [-2, 6]: the samples do not tell it");
+          "in [-2, 6]: the samples do not determine it");
   return fit;
 }
 
@@ -247,8 +247,8 @@ std::string cause_of(FitStatus mistake, const GaugeAngle<S>& angle) {
   };
   return cause_of(mistake) +
          (is_finite(angle.sd_rad)
-              ? " Turned by " + whole(angle.rad) + " +- " + whole(angle.sd_rad) + " degrees"
-              : " By how much, only displacements in several directions tell");
+              ? " (rotated by " + whole(angle.rad) + " +- " + whole(angle.sd_rad) + " degrees)"
+              : " (displace in several directions to obtain the angle)");
 }
 
 /// Detects axes with which no fit can succeed: mirrored, or rotated by more than 45 degrees.
@@ -355,7 +355,7 @@ Result fit_shear(const char* owner,
                    [&](std::size_t i) -> const S& { return equations[i].measured; });
   const FitStatus axes = wrong_axes(forces);
   const std::string need =
-      "such that forces follow displacements" + cause_of(axes, gauge_angle(forces));
+      "such that the forces follow the displacements" + cause_of(axes, gauge_angle(forces));
   expects(axes == FitStatus::ok, owner, "usable samples", static_cast<long long>(samples.size()),
           need.c_str());
   const ShearModel<S> model(equations, degree, exponent);
