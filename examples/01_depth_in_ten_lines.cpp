@@ -23,7 +23,7 @@ int main(int argc, char** argv) {
   const cv::Mat1f shape = cv::imread(recording + "/reference_depth.tiff", cv::IMREAD_UNCHANGED);
   const cv::Mat frame = cv::imread(recording + "/frames/000005.png");
   if (pad.empty() || shape.empty() || frame.empty()) {
-    std::fprintf(stderr, "%s: no reference or no frame 5 there\n", recording.c_str());
+    std::fprintf(stderr, "%s: the reference or frame 5 is missing\n", recording.c_str());
     return 1;
   }
 

@@ -78,7 +78,8 @@ int main() {
                  fingerpad::StridedView<float>(depth_mm.data(), rows, cols, cols), workspace);
 
   const double center = static_cast<double>(depth_mm[60 * cols + 80]);
-  std::printf("a plate 9 mm above the base is seen at %.2f mm; a step of a colour is 0.5 mm\n",
-              center);
+  std::printf(
+      "a plate 9 mm above the base is measured at %.2f mm; one grey level corresponds to 0.5 mm\n",
+      center);
   return center > 8.8 && center < 9.2 ? 0 : 1;
 }

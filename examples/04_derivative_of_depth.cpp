@@ -50,8 +50,8 @@ int main() {
     };
     const double difference = (moved(h) - moved(-h)) / (2 * h);
     const double derivative = depth.derivatives()[i];
-    std::printf("  d depth / d %-10s %12.6f mm, by differences %12.6f\n", names[i], derivative,
-                difference);
+    std::printf("  d depth / d %-10s %12.6f mm, by finite differences %12.6f mm\n", names[i],
+                derivative, difference);
     right = right && std::abs(derivative - difference) < 1e-6 * std::abs(derivative);
   }
   return right ? 0 : 1;

@@ -20,7 +20,7 @@ int main(int argc, char** argv) {
   const cv::Mat1f shape = cv::imread(recording + "/reference_depth.tiff", cv::IMREAD_UNCHANGED);
   const cv::Mat frame = cv::imread(recording + "/frames/000005.png");
   if (pad.empty() || shape.empty() || frame.empty()) {
-    std::fprintf(stderr, "%s: no reference or no frame 5 there\n", recording.c_str());
+    std::fprintf(stderr, "%s: the reference or frame 5 is missing\n", recording.c_str());
     return 1;
   }
   const auto red = [](const cv::Mat& image) { return fingerpad::channel<std::uint8_t>(image, 2); };
@@ -50,10 +50,10 @@ int main(int argc, char** argv) {
   const fingerpad::ContactResult contact = contact_of(depth_mm, mask, workspace);
   const auto surface = surface_of(depth_mm, mask);
 
-  std::printf("contact of %.1f mm^2, %.2f mm deep, around (%.2f, %.2f) mm\n", contact.area_mm2,
+  std::printf("contact: %.1f mm^2, %.2f mm deep, center (%.2f, %.2f) mm\n", contact.area_mm2,
               contact.depth_mm, contact.center_mm.x, contact.center_mm.y);
   const double radius_mm = 1 / surface.shape.curvature_1_per_mm;  // the rod has 12 mm
-  std::printf("object of radius %.1f mm, %.3f mm rms off that\n", radius_mm, surface.rms_mm);
+  std::printf("object: radius %.1f mm, residual %.3f mm rms\n", radius_mm, surface.rms_mm);
   const bool plausible = contact.area_mm2 > 80 && contact.area_mm2 < 120 &&
                          std::abs(contact.center_mm.x) < 0.5 && std::abs(radius_mm - 12) < 2;
   return plausible ? 0 : 1;

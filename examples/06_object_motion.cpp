@@ -48,7 +48,8 @@ int main() {
   }
   // The pose moves any point of the object, here a corner of the plate.
   const Dot corner = seen.pose(Dot{20, 15, 11.5});
-  std::printf("its corner is now at (%.3f, %.3f, %.3f) mm\n", corner.x, corner.y, corner.z);
+  std::printf("the corner of the object is now at (%.3f, %.3f, %.3f) mm\n", corner.x, corner.y,
+              corner.z);
   const Dot truth = plate(Dot{20, 15, 11.5});
   return seen.ok() && std::abs(corner.x - truth.x) + std::abs(corner.z - truth.z) < 1e-9 ? 0 : 1;
 }

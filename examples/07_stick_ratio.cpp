@@ -33,7 +33,7 @@ int main() {
     if (seen.updated()) {
       std::printf("frame %2d: stick ratio %.2f (%td of %td dots), %s\n", frame,
                   double(seen.stick_ratio), seen.stick, seen.dots_in_contact(),
-                  seen.stick_ratio < 0.5F ? "grip!" : "ok");
+                  seen.stick_ratio < 0.5F ? "grip harder" : "ok");
       last = seen.stick_ratio;
     } else {
       std::printf("frame %2d: %s\n", frame, name_of(seen.status));

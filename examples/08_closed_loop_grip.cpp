@@ -77,7 +77,7 @@ int main(int count, char** words) {
   print("grip force from the stick ratio", with);
   print("constant grip force", without);
   if (count > 1 && !cv::imwrite(words[1], grip::grip_chart(with, without, law.set_point))) {
-    std::fprintf(stderr, "cannot write %s\n", words[1]);
+    std::fprintf(stderr, "%s: cannot be written\n", words[1]);
     return 1;
   }
   const bool held = with.back().slip_mm < 0.5;

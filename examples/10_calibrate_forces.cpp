@@ -74,14 +74,14 @@ void print(const char* name, double fitted, double standard_error) {
 }
 void print(const char* unit, double residual, const LeftOut& left_out) {
   std::printf("  %-22s %10.3g %s\n", "residual", residual, unit);
-  std::printf("  %-22s %10.3g %s, at most %.3g, over %d loads\n", "error of a load unseen",
+  std::printf("  %-22s %10.3g %s, at most %.3g, over %d loads\n", "error of unseen load",
               left_out.mean_abs, unit, left_out.worst, left_out.loads);
 }
 
 /// Prints a warning for a fit to suspicious samples; the fit is still used.
 void warn(const char* what, const char* by, fingerpad::FitStatus status) {
   if (status != fingerpad::FitStatus::ok) {
-    std::fprintf(stderr, "%s by %s: %s\n", what, by, name_of(status));
+    std::fprintf(stderr, "warning: %s by %s: %s\n", what, by, name_of(status));
   }
 }
 
@@ -115,8 +115,8 @@ Normal fit_normal(Samples samples, const Measure& by) {
     print(name, curve.coefficients[k], std::sqrt(best.fit.errors.covariance[k][k]));
   }
   if (best.fit.per_mm_sq_sd > 0) {
-    print("displaced, 1/mm^2", best.fit.compensation.per_mm_sq, best.fit.per_mm_sq_sd);
-    print("rotated, 1/rad^2", best.fit.compensation.per_rad_sq, best.fit.per_rad_sq_sd);
+    print("per_mm_sq, 1/mm^2", best.fit.compensation.per_mm_sq, best.fit.per_mm_sq_sd);
+    print("per_rad_sq, 1/rad^2", best.fit.compensation.per_rad_sq, best.fit.per_rad_sq_sd);
   }
   print("N", best.fit.errors.residual_sd_n, best.left_out);
   return best;
@@ -201,7 +201,9 @@ int main(int argc, char** argv) {
     if (error_n < 0.02 * largest_n) {
       return 0;
     }
-    std::fprintf(stderr, "normal forces are off by %.2g N of %.2g N\n", error_n, largest_n);
+    std::fprintf(stderr,
+                 "the error of the normal force, %.2g N, is too large for forces up to %.2g N\n",
+                 error_n, largest_n);
   } catch (const std::exception& error) {
     std::fprintf(stderr, "%s\n", error.what());
   }

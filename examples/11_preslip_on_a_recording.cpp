@@ -45,7 +45,7 @@ Recording read(const char* file) {
   const auto last = line.rfind(",r");  // of the last taxel
   int row = 0, col = 0;
   if (last == std::string::npos || std::sscanf(line.c_str() + last, ",r%d_c%d", &row, &col) != 2) {
-    throw std::runtime_error(std::string(file) + " is no table of taxels");
+    throw std::runtime_error(std::string(file) + " is not a table of taxels");
   }
   recording.rows = row + 1;
   recording.cols = col + 1;
@@ -77,7 +77,7 @@ void print_alarm(const char* rule, double time_s, const Result& felt, Index cols
   for (const FingerSample<>& f : felt.fingers) {
     std::printf("  centroid (%.2f, %.2f) mm, ", f.center_x_mm, f.center_y_mm);
     if (f.is_vibrating()) {
-      std::printf("row %td col %td vibrates, waves: %td, %.2f Hz\n", f.location / cols,
+      std::printf("taxel at row %td, col %td vibrates: %td waves, %.2f Hz\n", f.location / cols,
                   f.location % cols, f.waves, f.frequency_hz);
     } else {
       std::printf("%s\n", name_of(f.status));
@@ -139,7 +139,7 @@ int main(int argc, char** argv) {
         read(argc > 1 ? argv[1] : FINGERPAD_EXAMPLE_RECORDING "/../foam/taxels.csv");
     const int fingers = argc > 2 ? std::atoi(argv[2]) : 2;
     if (fingers < 1 || fingers > 3 || recording.rows % fingers != 0) {
-      throw std::runtime_error("the rows of 1 to 3 fingers must share the array evenly");
+      throw std::runtime_error("the rows of the array must be divisible among 1 to 3 fingers");
     }
     const double quiet_until_s = argc > 3 ? std::atof(argv[3]) : 3;
     const bool found = fingers == 1   ? look<1>(recording, quiet_until_s)

@@ -36,7 +36,7 @@ int main() {
 
   const auto sd = [&](int k) { return std::sqrt(fit.covariance(k, k)); };
   const auto& fluid = fit.fluid;
-  std::printf("%s, leaves %.3f grey levels\n", name_of(fit.status), fit.residual_rms);
+  std::printf("%s, residual %.3f grey levels\n", name_of(fit.status), fit.residual_rms);
   std::printf("c_red            %.5f +- %.5f per mm, true %.5f\n", fluid.c_red_per_mm, sd(0),
               truth.c_red_per_mm);
   std::printf("c_green - c_red  %.5f +- %.5f per mm, true %.5f\n",
@@ -44,7 +44,7 @@ int main() {
               truth.c_green_per_mm - truth.c_red_per_mm);
   std::printf("kappa            %.5f +- %.5f, true %.5f\n", fluid.kappa, sd(2), truth.kappa);
   const double depth_sd = predicted_depth_sd(fit, samples.back());
-  std::printf("of a depth of %.1f mm: +- %.4f mm\n", samples.back().depth_mm, depth_sd);
+  std::printf("standard error of a depth of %.1f mm: %.4f mm\n", samples.back().depth_mm, depth_sd);
   const bool within = std::abs(fluid.c_red_per_mm - truth.c_red_per_mm) < 4 * sd(0);
   return fit.ok() && within && depth_sd < 0.05 ? 0 : 1;
 }

@@ -40,6 +40,6 @@ int main(int argc, char** argv) {
     }
     std::printf("  %s\n", name_of(touch.wrench.status));
   }
-  std::printf("off by at most %.2f N\n", worst_n);
+  std::printf("largest error %.2f N\n", worst_n);
   return worst_n > 0 && worst_n < 0.3 ? 0 : 1;
 }

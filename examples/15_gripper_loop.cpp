@@ -44,13 +44,13 @@ int main(int argc, char** argv) {
     const auto answer = control({touch.slip.stick_ratio, touch.slip.update}, time_s - last_s, grip);
     const double ms = std::chrono::duration<double, std::milli>(Clock::now() - came).count();
 
-    std::printf("%.1f s  sticks %4.2f  grip %5.2f N  after %5.1f ms\n", time_s,
+    std::printf("%.1f s  stick ratio %4.2f  grip %5.2f N  computed in %5.1f ms\n", time_s,
                 touch.slip.stick_ratio, answer.force_n, ms);
     raised_n = touch.slip.stick_ratio < 0.5 ? answer.force_n : raised_n;
     worst_ms = (std::max)(worst_ms, ms);
     last_s = time_s;
   }
-  std::printf("the slowest answer took %.1f ms; sliding raised the grip to %.1f N\n", worst_ms,
-              raised_n);
+  std::printf("the slowest frame took %.1f ms; the grip force rose to %.1f N during the slide\n",
+              worst_ms, raised_n);
   return raised_n > 4 ? 0 : 1;
 }

@@ -40,7 +40,7 @@ Load load_of(const fs::path& file) {
     replay::fail(file, error.what());
   }
   if (from.empty()) {
-    replay::fail(file, "holds no blobs");
+    replay::fail(file, "contains no blobs");
   }
   load.from = cv::Mat_<cv::Vec2d>(from, true).reshape(2, 1);
   load.to = cv::Mat_<cv::Vec2d>(to, true).reshape(2, 1);
@@ -60,7 +60,7 @@ std::vector<Load> loads_of(const fs::path& folder) {
     }
   }
   if (loads.empty()) {
-    replay::fail(folder, "holds no .json files");
+    replay::fail(folder, "contains no .json files");
   }
   std::sort(loads.begin(), loads.end(),
             [](const Load& a, const Load& b) { return a.name < b.name; });

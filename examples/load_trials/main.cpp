@@ -118,7 +118,7 @@ int run(const std::string& folder, double threshold) {
   const Displaced robust = displaced(loads, fingerpad::HuberMean{.threshold = threshold});
   const Displaced plain = displaced(loads, fingerpad::PlainMean{});
   std::printf(
-      "%zu loads about one axis, %zu in all; each left out once.\n"
+      "%zu loads tilted about one axis, %zu in all. Each load is left out of the fit once.\n"
       "Mean absolute error in N                one axis: fx       fz    all: fx       fz\n",
       robust.single.size(), robust.all.size());
   print_row("robust mean, robust linear map", robust, linear_map(true));
@@ -134,19 +134,21 @@ int run(const std::string& folder, double threshold) {
 
 int main(int argc, char** argv) {
   CLI::App app(
-      "Force along a pad from the moves of its dots. FOLDER holds a .json file for each load, "
-      "with\n"
-      "its force along the pad (fx, fz, in N), the tilts that it was resolved through (thetax,\n"
-      "thetaz) and, for each repeat, MoveData[].BlobMoves[] = [x, y, size, dx, dy, dsize] in px.\n"
-      "Each load is predicted from a calibration with all others: first of the loads that are\n"
-      "tilted about one axis, whose forces are exact, then of all. Linear map: both forces from\n"
-      "both displacements, with offsets. Robust: Huber's, against dots that are stuck or mistaken\n"
-      "and against loads that do not fit.");
+      "Evaluates the force along a pad that is computed from the displacements of its dots.\n"
+      "FOLDER contains a .json file for each load, with the force along the pad (fx, fz, in N), "
+      "the\n"
+      "tilt angles from which it was computed (thetax, thetaz) and, for each repeat,\n"
+      "MoveData[].BlobMoves[] = [x, y, size, dx, dy, dsize] in px.\n"
+      "Each load is predicted by a calibration with all others: first among the loads that are\n"
+      "tilted about one axis, whose forces are exact, then among all. The linear map computes "
+      "both\n"
+      "forces from both displacements, with offsets. Robust means Huber's loss, against stuck or\n"
+      "mismatched dots and against outlying loads.");
   std::string folder;
-  app.add_option("FOLDER", folder, "the loads")->required();
+  app.add_option("FOLDER", folder, "folder of the loads")->required();
   // normal errors in the plane exceed it as often as 1.345 on a line: 18 %
   double threshold = 1.86;
-  app.add_option("--threshold", threshold, "of the robust mean, in standard deviations")
+  app.add_option("--threshold", threshold, "threshold of the robust mean, in standard deviations")
       ->capture_default_str();
   try {
     app.parse(argc, argv);

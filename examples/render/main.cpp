@@ -86,7 +86,7 @@ void compare_all(const Options& options) {
   constexpr double outer_mm = 17.5;
   double inner_sum = 0;
   double outer_sum = 0;
-  std::printf("mean absolute error of the depth, mm, within %g and %g mm of the axis\n", inner_mm,
+  std::printf("Mean absolute error of the depth in mm, within %g and %g mm of the axis\n", inner_mm,
               outer_mm);
   for (std::size_t k = 0; k < membrane.steps.size(); ++k) {
     const cv::Mat_<float> measured =
@@ -114,7 +114,7 @@ void render_all(const Options& options) {
   const render::Membrane membrane = render::read_membrane(options.recording / "membrane");
   const cv::Size size(options.size_px, options.size_px);
   if (membrane.steps.empty()) {
-    replay::fail(options.recording / "membrane" / "nodes.npy", "holds no step");
+    replay::fail(options.recording / "membrane" / "nodes.npy", "contains no step");
   }
   const double dot_mm = sensor.dots ? sensor.dots->diameter_mm : 0.0;
   fs::create_directories(options.out / "frames");
@@ -155,21 +155,25 @@ int main(int argc, char** argv) {
   Options options;
   app.add_option("RECORDING", options.recording, "folder with sensor.json and membrane/")
       ->required();
-  app.add_option("--out", options.out, "where to write (default: into RECORDING)");
-  app.add_option("--truth", options.truth, "also write each frame's true depth into this folder");
-  app.add_option("--compare", options.measured,
-                 "render nothing, but print the errors of the depth maps in this folder, which "
-                 "replay --raw wrote");
+  app.add_option("--out", options.out, "output folder; default: RECORDING");
+  app.add_option("--truth", options.truth,
+                 "also write the true depth of each frame to this folder");
+  app.add_option(
+      "--compare", options.measured,
+      "render nothing; print the errors of the depth maps that replay --raw wrote to this "
+      "folder");
   app.add_option("--size", options.size_px, "width and height of the frames, px")
       ->capture_default_str()
       ->check(CLI::Range(16, 4096));
-  app.add_option("--reference-frames", options.reference_frames, "averaged in the reference")
+  app.add_option("--reference-frames", options.reference_frames,
+                 "number of frames averaged for the reference")
       ->capture_default_str()
       ->check(CLI::Range(1, 10000));
-  app.add_option("--noise", options.lighting.noise, "of the brightest pixels, grey levels")
+  app.add_option("--noise", options.lighting.noise,
+                 "standard deviation of the noise of the brightest pixels, grey levels")
       ->capture_default_str()
       ->check(CLI::NonNegativeNumber);
-  app.add_option("--seed", options.seed, "of the noise")->capture_default_str();
+  app.add_option("--seed", options.seed, "seed of the noise")->capture_default_str();
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

@@ -35,7 +35,7 @@ auto read_npy(const fs::path& file, std::size_t dimensions) {
   try {
     auto array = xt::load_npy<T>(file.string());
     if (array.dimension() != dimensions || array.shape(dimensions - 1) != 3) {
-      replay::fail(file, "does not have the shape of points or triangles");
+      replay::fail(file, "must be an array of points or triangles");
     }
     return array;
   } catch (const std::runtime_error& error) {
@@ -197,7 +197,7 @@ Membrane read_membrane(const fs::path& folder) {
   const auto dots = read_npy<float>(folder / "dots.npy", 3);
   const auto triangles = read_npy<int>(folder / "triangles.npy", 2);
   if (dots.shape(0) != nodes.shape(0)) {
-    replay::fail(folder / "dots.npy", "does not have as many steps as nodes.npy");
+    replay::fail(folder / "dots.npy", "must have as many steps as nodes.npy");
   }
   Membrane membrane;
   const int node_count = static_cast<int>(nodes.shape(1));
@@ -205,7 +205,7 @@ Membrane read_membrane(const fs::path& folder) {
     const std::array<int, 3> corners = {triangles(i, 0), triangles(i, 1), triangles(i, 2)};
     for (const int corner : corners) {
       if (corner < 0 || corner >= node_count) {
-        replay::fail(folder / "triangles.npy", "names a node that nodes.npy does not have");
+        replay::fail(folder / "triangles.npy", "refers to a node that is not in nodes.npy");
       }
     }
     membrane.triangles.push_back(corners);

@@ -52,7 +52,8 @@ class Progress {
     }
     shown_ = now;
     const double rate = size_ended_ / spent.count();
-    std::fprintf(stderr, "%s%d of %d %s, %d failed, %.3g /min on %d processes, %.0f s left%s",
+    std::fprintf(stderr,
+                 "%s%d of %d %s done, %d failed, %.3g per minute on %d processes, %.0f s left%s",
                  in_terminal_ ? "\r\033[K" : "", units_ended_, units_, noun_.c_str(), failed_,
                  60 * units_ended_ / spent.count(), workers_,
                  rate > 0 ? (size_ - size_ended_) / rate : 0, in_terminal_ ? "" : "\n");
@@ -153,7 +154,7 @@ class Work {
         give_up(unit, report.reason);
         return;
       }
-      std::fprintf(stderr, "rank %d does not see the recordings, and gets no more: %s\n",
+      std::fprintf(stderr, "rank %d cannot read the recordings and gets no more work: %s\n",
                    report.rank, report.reason.c_str());
       crew_.retire(report.rank);
     } catch (const replay::Failure& gone) {

@@ -43,7 +43,7 @@ struct Arguments {
 void lock(const Path& out) {
   const int file = ::open((out / "lock").c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
   if (file >= 0 && ::flock(file, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) {
-    replay::fail(out, "another run is at work there");
+    replay::fail(out, "another run is writing to this folder");
   }
 }
 
@@ -54,7 +54,8 @@ void expects_same(const Path& file, const std::string& options) {
   if (!std::getline(stream, before)) {
     replay_many::write_file(file, options + "\n");
   } else if (before != options) {
-    replay::fail(file, "was begun with other options (" + before + "): name another folder");
+    replay::fail(file,
+                 "was started with other options (" + before + "); choose another output folder");
   }
 }
 
@@ -64,7 +65,7 @@ bool worked_off(Crew& crew, std::vector<replay_many::Unit> units, const replay_m
     replay_many::work_off(crew, std::move(units), job);
     return true;
   } catch (const replay::Failure& failure) {
-    std::fprintf(stderr, "replay_many: stopped: %s; the same command goes on from here\n",
+    std::fprintf(stderr, "replay_many: stopped: %s; run the same command again to continue\n",
                  failure.what());
     return false;
   }
@@ -140,38 +141,41 @@ int main(int argc, char** argv) {
     return replay_many::run_unit({argv + 2, argv + argc});
   }
   CLI::App app(
-      "What replay does, for each recording in a folder (and the folders in it), by all cores;\n"
-      "under mpirun or srun by all ranks. Kill it at any moment: the same command goes on.\n"
-      "DIR receives recordings/NAME/ for each, whole or not at all, failed/NAME.txt with the\n"
-      "reason where there is none, and, of all together, summary.csv, all_frames.csv and\n"
+      "Runs replay for each recording in a folder and its subfolders on all cores, or on all "
+      "ranks\n"
+      "under mpirun or srun. It can be killed at any moment; the same command continues.\n"
+      "DIR receives complete results of each recording in recordings/NAME/, or the reason of a\n"
+      "failure in failed/NAME.txt, and for all together summary.csv, all_frames.csv and\n"
       "overview.html.");
   Arguments arguments;
-  const auto recordings = app.add_option("RECORDINGS", arguments.recordings, "the folder");
-  app.add_option("--out", arguments.out, "the folder to write")->option_text("DIR")->required();
+  const auto recordings =
+      app.add_option("RECORDINGS", arguments.recordings, "folder with the recordings");
+  app.add_option("--out", arguments.out, "output folder")->option_text("DIR")->required();
   app.add_option("--jobs", arguments.jobs,
-                 "processes at a time; default: one a core, or one a rank")
+                 "number of processes; default: one per core, or one per rank")
       ->check(CLI::PositiveNumber);
   app.add_option("--split", arguments.settings.split_frames,
-                 "files of single frames of recordings longer than this are made in such parts")
+                 "for recordings longer than this, write the files of single frames in parts of "
+                 "this length")
       ->option_text("FRAMES")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
-  app.add_flag("--raw", arguments.settings.replay.raw, "as of replay");
+  app.add_flag("--raw", arguments.settings.replay.raw, "as for replay");
   app.add_flag_callback(
-      "--no-pictures", [&] { arguments.settings.replay.pictures = false; }, "as of replay");
+      "--no-pictures", [&] { arguments.settings.replay.pictures = false; }, "as for replay");
   app.add_option("--calibrations", arguments.calibrations,
-                 "in place of RECORDINGS: bootstrap and Monte Carlo of these calibrations of a "
+                 "instead of RECORDINGS: bootstrap and Monte Carlo of these calibrations of a "
                  "virtual sensor, or of all; DIR receives covariance.csv")
       ->option_text("NAME,...")
       ->delimiter(',')
       ->excludes(recordings);
-  app.add_option("--resamples", arguments.resamples, "of each of them")
+  app.add_option("--resamples", arguments.resamples, "number of resamples of each calibration")
       ->check(CLI::Range(10, 1000000))
       ->capture_default_str();
-  app.add_flag("--retry", arguments.retry, "try again what has failed before");
+  app.add_flag("--retry", arguments.retry, "process failed recordings again");
   app.footer(
       "Exit status: 0 all done, 1 some failed, 2 wrong arguments, 3 stopped: the output cannot be\n"
-      "written, or there are no recordings (any more).");
+      "written, or the recordings are missing.");
   try {
     app.parse(argc, argv);
     if (arguments.recordings.empty() && arguments.calibrations.empty()) {

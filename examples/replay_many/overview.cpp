@@ -271,7 +271,7 @@ class Overview {
            std::to_string(counts_.done) + " done with " + std::to_string(counts_.frames) +
            " frames, " + std::to_string(counts_.failed) + " failed, " +
            std::to_string(counts_.left) +
-           " left. <a href=\"summary.csv\">summary.csv</a>, "
+           " to do. <a href=\"summary.csv\">summary.csv</a>, "
            "<a href=\"all_frames.csv\">all_frames.csv</a></p>\n<main>\n";
   }
 

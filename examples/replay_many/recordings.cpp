@@ -40,11 +40,11 @@ Recordings::Recordings(Path input, Path out, Settings settings)
     : input_(fs::absolute(input)), out_(fs::absolute(out)), settings_(std::move(settings)) {
   device_ = device_of(input_);
   if (device_ == 0) {
-    replay::fail(input_, "there is no such folder: is it mounted?");
+    replay::fail(input_, "there is no such folder; check that it is mounted");
   }
   const Path relative = fs::weakly_canonical(out_).lexically_relative(fs::canonical(input_));
   if (!relative.empty() && *relative.begin() != "..") {
-    replay::fail(out_, "lies within the recordings: name another folder");
+    replay::fail(out_, "is inside the folder of the recordings; choose another output folder");
   }
   if (is_recording(input_)) {
     look_into(input_, fs::canonical(input_).filename().string());
@@ -60,7 +60,7 @@ Recordings::Recordings(Path input, Path out, Settings settings)
     }
   }
   if (all_.empty()) {
-    replay::fail(input_, "holds no folders of recordings: is it mounted?");
+    replay::fail(input_, "contains no recordings; check that it is mounted");
   }
   std::sort(all_.begin(), all_.end(),
             [](const Found& a, const Found& b) { return a.name < b.name; });
@@ -198,7 +198,7 @@ Unit Recordings::join_of(const Found& found) const {
 /// Throws Failure unless the input folder is still on the same file system.
 void Recordings::expects_input() const {
   if (device_of(input_) != device_) {
-    replay::fail(input_, "is not there any more: is it mounted?");
+    replay::fail(input_, "has disappeared; check that it is mounted");
   }
 }
 

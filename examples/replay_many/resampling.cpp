@@ -53,7 +53,7 @@ struct Moments {
       std::ifstream table(file);
       std::string line;
       if (!std::getline(table, line)) {
-        replay::fail(file, "is not there");
+        replay::fail(file, "is missing");
       }
       while (std::getline(table, line)) {
         add(replay::cells_of(line));

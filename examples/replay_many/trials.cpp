@@ -512,7 +512,7 @@ const std::vector<std::string>& trial_names() {
 Trial trial_of(const std::string& name) {
   const auto found = makers().find(name);
   if (found == makers().end()) {
-    replay::fail(name, "there is no such calibration here");
+    replay::fail(name, "there is no such calibration");
   }
   Trial trial = found->second();
   trial.name = name;

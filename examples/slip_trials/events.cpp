@@ -155,12 +155,12 @@ void print_events(const std::string& name, const std::vector<Event>& events, dou
   };
   if (std::isfinite(by_others(events.front().object))) {
     print_line("all", look_at_all(events, true, by_others).warnings, area,
-               "from the others' holds");
+               "from the holds of other objects");
   }
   if (std::isfinite(own)) {
     const auto same = [&](const std::string&) { return own; };
     print_line("all", look_at_all(events, false, same).warnings, area,
-               number(own) + ", the method's own");
+               number(own) + ", default of the method");
   }
 }
 

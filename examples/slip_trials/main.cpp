@@ -114,7 +114,7 @@ int run(const std::string& folder) {
     for (const auto& file : trial.views) {
       View view = slip_trials::look_at(file, slip_trials::free_frames_for(trial, trials));
       if (view.size() == 0) {
-        std::printf("left out: %s: %s\n", file.c_str(), view.fault.c_str());
+        std::printf("skipped: %s: %s\n", file.c_str(), view.fault.c_str());
         continue;
       }
       shortest = shortest == 0 ? view.size() : (std::min)(shortest, view.size());
@@ -140,7 +140,7 @@ int run(const std::string& folder) {
       "stick ratio, low", scored, [](const Scored& s) { return -s.whole.ratio; },
       [](const Scored& s) { return -s.early.ratio; });
   print_roc_area(
-      "stick ratio, threshold by noise", scored,
+      "stick ratio, threshold from noise", scored,
       [](const Scored& s) { return -s.whole.ratio_by_noise; },
       [](const Scored& s) { return -s.early.ratio_by_noise; });
   print_roc_area(
@@ -155,30 +155,43 @@ int run(const std::string& folder) {
 int main(int argc, char** argv) {
   replay::limit_image_size(argv);
   CLI::App app(
-      "Slip in labelled recordings of pads with dots. FOLDER holds labels.dat (lines of: height\n"
-      "LABEL 0|1 start end event trial) and a folder of frames for each trial whose\n"
-      "name begins with the trial's; or this for several objects, as OBJECT_result.dat and the\n"
-      "folder OBJECT; or folders LABEL/, in which every folder with videos or frames is a trial;\n"
-      "its videos are views of it. LABEL is fail or slip; ok, success, hold or wiggle; another is\n"
-      "refused.\n"
-      "The free pad is shown by the frames in FOLDER/free; without it, by the last frames of\n"
-      "slipping trials, of other objects where there are any, as far as they agree.\n"
-      "Dots are found as replay finds them, and each that is found counts as in contact.\n"
-      "Columns: frames of the first view; new: answers of the stick ratio; ratio: mean of the new\n"
-      "answers (1 where there is none: nothing was seen to slip), lowest; noise: the same as "
-      "ratio\n"
-      "with slip_px set by the noise of the first five frames, where that is above the default;\n"
-      "moved: mean share of dots that are more than 2 px off the median motion since the first\n"
-      "frame; early: the same in as many first frames as the shortest recording has. No measure\n"
-      "depends on how long a recording is.\n"
-      "Then slip as events, for each object and for all: AUC is the area under the ROC curve of\n"
-      "the trial's largest value, - where an object only slips or only holds; warned is beyond the "
-      "threshold before the contact is gone (less than "
-      "a\n"
-      "tenth of its largest area is left), lead the median frames from there to the loss, false a\n"
-      "hold beyond it. Thresholds are what 95 % of the other objects' holds stay below.");
+      "Evaluates slip detection on labelled recordings of pads with dots.\n"
+      "\n"
+      "FOLDER has one of three forms:\n"
+      "- labels.dat (lines: height LABEL 0|1 start end event trial) and, for each trial, a folder\n"
+      "  of frames whose name begins with the name of the trial;\n"
+      "- the same for several objects: OBJECT_result.dat and a folder OBJECT for each;\n"
+      "- folders LABEL/, in which each folder with videos or frames is a trial; several videos of\n"
+      "  a trial are views of it.\n"
+      "LABEL is fail or slip, or ok, success, hold or wiggle. Other labels are refused.\n"
+      "The free pad is taken from the frames in FOLDER/free, else from the last frames of "
+      "slipping\n"
+      "trials (of other objects if possible) where they agree.\n"
+      "Dots are found as in replay; each found dot counts as in contact.\n"
+      "\n"
+      "Columns of the first table:\n"
+      "  frames  number of frames of the first view\n"
+      "  new     number of new values of the stick ratio\n"
+      "  ratio   mean of the new values; 1 if there are none, because no slip was seen\n"
+      "  lowest  smallest of the new values\n"
+      "  noise   as ratio, with slip_px from the noise of the first five frames if that is above\n"
+      "          the default\n"
+      "  moved   mean share of dots more than 2 px off the median motion since the first frame\n"
+      "  early   the value before it, for the first frames only: as many as the shortest "
+      "recording\n"
+      "          has\n"
+      "No measure depends on the length of a recording.\n"
+      "\n"
+      "Columns of the tables of slip events, for each object and for all:\n"
+      "  AUC        area under the ROC curve of the largest value of each trial; - if an object\n"
+      "             only slips or only holds\n"
+      "  warned     slips above the threshold before the contact is lost (less than a tenth of\n"
+      "             its largest area is left)\n"
+      "  lead       median number of frames from the warning to the loss\n"
+      "  false      holds above the threshold\n"
+      "  threshold  95 % of the holds of the other objects are below it");
   std::string folder;
-  app.add_option("FOLDER", folder, "the labelled recordings")->required();
+  app.add_option("FOLDER", folder, "folder of the labelled recordings")->required();
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

@@ -79,7 +79,7 @@ std::vector<Trial> by_labels(const fs::path& file,
     words >> outcome >> number >> start >> end >> event >> name;
     const bool slips = says_slip(file, outcome);
     if (name.empty()) {
-      replay::fail(file, "names no trial in \"" + line + "\"");
+      replay::fail(file, "line \"" + line + "\" names no trial");
     }
     for (const fs::path& entry : sorted_entries(folder)) {
       if (fs::is_directory(entry) && entry.filename().string().rfind(name, 0) == 0) {
@@ -155,7 +155,7 @@ std::vector<Trial> trials_of(const fs::path& folder) {
   });
   if (trials.empty()) {
     replay::fail(folder,
-                 "holds no labels.dat or OBJECT_result.dat with trials, nor folders of them");
+                 "contains no trials: neither labels.dat nor OBJECT_result.dat nor folders LABEL/");
   }
   return trials;
 }

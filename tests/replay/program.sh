@@ -169,7 +169,7 @@ if [[ -n $slip_trials ]]; then
     fail "slip_trials on an unknown label: $(cat "$work/stderr")"
   printf '5 success\n' >"$work/trials/rod_result.dat"
   "$slip_trials" "$work/trials" >/dev/null 2>"$work/stderr"
-  [[ $? == 1 ]] && grep -q 'rod_result.dat: names no trial' "$work/stderr" ||
+  [[ $? == 1 ]] && grep -q 'rod_result.dat: line "5 success" names no trial' "$work/stderr" ||
     fail "slip_trials on a line without a trial"
   rm "$work"/trials/*_result.dat
   "$slip_trials" "$work/trials" >/dev/null 2>"$work/stderr"
