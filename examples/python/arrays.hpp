@@ -64,8 +64,8 @@ T count_of(const py::object& given, const char* name) {
 inline void refuse_masked(const py::handle& given, const char* name) {
   if (py::module_::import("numpy.ma").attr("isMaskedArray")(given).cast<bool>()) {
     throw py::type_error(std::string(name) +
-                         " is a masked array, of which the mask would be lost: "
-                         "pass a plain one, with NaN where there is no value");
+                         " is a masked array, whose mask would be lost: "
+                         "pass a plain array, with NaN where there is no value");
   }
 }
 
@@ -73,7 +73,7 @@ inline void refuse_masked(const py::handle& given, const char* name) {
 inline py::array array_of(const py::object& given, const char* name) {
   if (!py::isinstance<py::array>(given)) {
     throw py::type_error(std::string(name) + " must be a NumPy array, not " + type_name(given) +
-                         ": np.asarray(" + name + ", dtype) makes one of a list");
+                         ": convert it with np.asarray(" + name + ", dtype)");
   }
   refuse_masked(given, name);
   return py::reinterpret_borrow<py::array>(given);
@@ -86,7 +86,7 @@ inline py::array_t<double> numbers_of(const py::object& given, const char* name)
   const py::array array = py::module_::import("numpy").attr("asarray")(given);
   if (std::string("fiu").find(array.dtype().kind()) == std::string::npos) {
     throw py::type_error(std::string(name) +
-                         " must hold real numbers, NaN where there is none, not " +
+                         " must contain real numbers, with NaN where there is none, not " +
                          std::string(py::str(array.dtype())));
   }
   return array;
@@ -112,8 +112,8 @@ fingerpad::StridedView<const T> view_of(const py::object& given, const char* nam
   constexpr auto size = static_cast<py::ssize_t>(sizeof(T));
   if (array.strides(0) % size != 0 || array.strides(1) % size != 0 ||
       reinterpret_cast<std::uintptr_t>(array.data()) % alignof(T) != 0) {
-    throw py::type_error(std::string(name) + " lies askew in memory: np.ascontiguousarray(" + name +
-                         ") copies it");
+    throw py::type_error(std::string(name) +
+                         " is not aligned in memory: pass np.ascontiguousarray(" + name + ")");
   }
   return {static_cast<const T*>(array.data()), array.shape(0), array.shape(1),
           array.strides(0) / size, array.strides(1) / size};

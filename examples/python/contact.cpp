@@ -53,7 +53,8 @@ class Region {
 }  // namespace
 
 void bind_contact(py::module_& module) {
-  bind_options<ContactTest>(module, "ContactTest", "What is contact; see contact/contact_test.hpp.")
+  bind_options<ContactTest>(module, "ContactTest",
+                            "The test for contact; see contact/contact_test.hpp.")
       .def_readwrite("threshold_per_mm", &ContactTest::threshold_per_mm)
       .def_readwrite("free_apex_mm", &ContactTest::free_apex_mm)
       .def_readwrite("min_region_px", &ContactTest::min_region_px);
@@ -70,7 +71,7 @@ void bind_contact(py::module_& module) {
       .def_property_readonly(
           "center_mm", [](const ContactResult& contact) { return as_tuple(contact.center_mm); });
   py::class_<Region>(module, "ContactRegion",
-                     "Where the object touches; contact/contact_region.hpp.")
+                     "Computes the contact region; see contact/contact_region.hpp.")
       .def(py::init<const fingerpad::Camera<double>&, const Count&, const Count&,
                     const ContactTest&>(),
            py::arg("camera"), py::arg("rows"), py::arg("cols"), py::arg("test") = ContactTest())

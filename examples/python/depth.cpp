@@ -118,14 +118,15 @@ void bind_depth(py::module_& module) {
       .value("dark", PixelStatus::dark)
       .value("saturated", PixelStatus::saturated)
       .value("outside_pad", PixelStatus::outside_pad);
-  py::class_<DepthResult>(module, "DepthResult", "How many pixels of the pad have which status.")
+  py::class_<DepthResult>(module, "DepthResult", "Numbers of pixels of the pad by status.")
       .def_property_readonly("ok", &DepthResult::ok)
       .def_property_readonly("status", [](const DepthResult& r) { return name_of(r.status); })
       .def_readonly("pad_pixels", &DepthResult::pad_pixels)
       .def("count", [](const DepthResult& result, PixelStatus status) {
         return result.count[static_cast<std::size_t>(status)];
       });
-  py::class_<Reference>(module, "DepthReference", "What the light of the free pad says.")
+  py::class_<Reference>(module, "DepthReference",
+                        "Light of the free pad; see depth/depth_reference.hpp.")
       .def_readonly("residual_rms", &Reference::residual_rms)
       .def_readonly("pixels_used", &Reference::pixels_used);
   module.def("fit_reference", &fit, py::arg("camera"), py::arg("fluid"), py::arg("red"),

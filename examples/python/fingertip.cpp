@@ -118,7 +118,7 @@ py::tuple pose_tuple(const fingerpad::Pose<double>& pose) {
 void bind_motion_result(py::module_& module) {
   using Motion = fingerpad::ObjectMotionResult<double>;
   py::class_<Motion>(module, "ObjectMotionResult",
-                     "How the object has moved; motion/motion_result.hpp.")
+                     "Motion of the object; see motion/motion_result.hpp.")
       .def_property_readonly("ok", &Motion::ok)
       .def_property_readonly("status", [](const Motion& r) { return name_of(r.status); })
       .def_property_readonly(
@@ -136,7 +136,7 @@ void bind_motion_result(py::module_& module) {
           [](const Motion& r) {
             return py::make_tuple(r.angles.z_rad, r.angles.y_rad, r.angles.x_rad);
           },
-          "about z, y, x, rad")
+          "rotations about z, y and x, rad")
       .def_property_readonly("position_mm", [](const Motion& r) { return as_tuple(r.position_mm); })
       .def_property_readonly("displacement_mm",
                              [](const Motion& r) { return as_tuple(r.displacement_mm); })
@@ -157,9 +157,10 @@ void bind_stick_result(py::module_& module) {
       .def_property_readonly(
           "back",
           [](const Stick& r) { return py::make_tuple(r.back.stick_ratio, r.back.reference_age); },
-          "stick ratio and age of its reference, where the dots fall back")
-      .def_readonly("stick_ratio", &Stick::stick_ratio, "in [0, 1]; NaN: none yet")
-      .def_readonly("ratio_sd", &Stick::ratio_sd, "of it, by the noise of the dots")
+          "stick ratio and age of its reference, if the dots fall back")
+      .def_readonly("stick_ratio", &Stick::stick_ratio, "in [0, 1]; NaN if not known yet")
+      .def_readonly("ratio_sd", &Stick::ratio_sd,
+                    "standard deviation of stick_ratio from the noise of the dots")
       .def_readonly("furthest_mm", &Stick::furthest_mm)
       .def_readonly("reference_age", &Stick::reference_age, "frames")
       .def_property_readonly(
@@ -169,26 +170,26 @@ void bind_stick_result(py::module_& module) {
 
 void bind_slip_result(py::module_& module) {
   using fingerpad::RatioUpdate, fingerpad::SlipEvidence;
-  py::enum_<RatioUpdate>(module, "RatioUpdate", "How fresh a stick ratio is.")
+  py::enum_<RatioUpdate>(module, "RatioUpdate", "Whether a stick ratio is new.")
       .value("fresh", RatioUpdate::fresh)
       .value("unmoved", RatioUpdate::unmoved)
       .value("missing", RatioUpdate::missing)
       .value("no_contact", RatioUpdate::no_contact);
-  py::enum_<SlipEvidence>(module, "SlipEvidence", "What told the stick ratio.")
+  py::enum_<SlipEvidence>(module, "SlipEvidence", "Evidence on which the stick ratio is based.")
       .value("none", SlipEvidence::none)
       .value("dots", SlipEvidence::dots)
       .value("imprint", SlipEvidence::imprint)
       .value("friction", SlipEvidence::friction)
       .value("both", SlipEvidence::both);
   using Slip = fingerpad::SlipResult<double>;
-  py::class_<Slip>(module, "SlipResult", "Slip by dots and forces; slip/friction_limit.hpp.")
+  py::class_<Slip>(module, "SlipResult", "Slip from dots and forces; see slip/friction_limit.hpp.")
       .def_property_readonly("ok", &Slip::ok)
       .def_property_readonly("status", [](const Slip& r) { return name_of(r.status); })
       .def_readonly("evidence", &Slip::evidence)
-      .def_readonly("stick_ratio", &Slip::stick_ratio, "in [0, 1]; NaN: nothing is known")
-      .def_readonly("update", &Slip::update, "how fresh the ratio is")
-      .def_readonly("dots_ratio", &Slip::dots_ratio, "what the dots say alone")
-      .def_readonly("reference_age", &Slip::reference_age, "frames; 0: not known")
+      .def_readonly("stick_ratio", &Slip::stick_ratio, "in [0, 1]; NaN if unknown")
+      .def_readonly("update", &Slip::update, "whether the ratio is new")
+      .def_readonly("dots_ratio", &Slip::dots_ratio, "stick ratio from the dots alone")
+      .def_readonly("reference_age", &Slip::reference_age, "frames; 0 if unknown")
       .def_readonly("falls_back", &Slip::falls_back)
       .def_readonly("normal_n", &Slip::normal_n)
       .def_readonly("friction", &Slip::friction)
@@ -199,18 +200,19 @@ void bind_slip_result(py::module_& module) {
 void bind_shift_and_area(py::module_& module) {
   using Shift = fingerpad::ShiftResult<double>;
   py::class_<Shift>(module, "ShiftResult",
-                    "How far a contact was carried; motion/contact_shift.hpp.")
+                    "Displacement and rotation of a contact; see motion/contact_shift.hpp.")
       .def_property_readonly("ok", &Shift::ok)
       .def_property_readonly("status", [](const Shift& r) { return name_of(r.status); })
       .def_readonly("dots", &Shift::dots, "that took part")
       .def_property_readonly(
           "displacement", [](const Shift& r) { return as_tuple(r.displacement); },
-          "(x, y) in the unit of the dots, mm of a Fingertip")
+          "(x, y) in the unit of the dots; mm for a Fingertip")
       .def_readonly("rotation_rad", &Shift::rotation_rad)
       .def_readonly("residual_rms", &Shift::residual_rms);
   using FlatArea = fingerpad::FlatAreaResult<double>;
-  py::class_<FlatArea>(module, "FlatAreaResult",
-                       "The plate that would press as hard; contact/equivalent_flat_area.hpp.")
+  py::class_<FlatArea>(
+      module, "FlatAreaResult",
+      "Flat plate that presses with the same force; see contact/equivalent_flat_area.hpp.")
       .def_property_readonly("ok", &FlatArea::ok)
       .def_readonly("area_mm2", &FlatArea::area_mm2)
       .def_readonly("variance_mm4", &FlatArea::variance_mm4)
@@ -220,16 +222,18 @@ void bind_shift_and_area(py::module_& module) {
 void bind_result(py::module_& module) {
   using Result = FingertipResult;
   py::class_<Result>(module, "FingertipResult",
-                     "What a frame says; pipeline/fingertip_options.hpp.")
+                     "Result of a frame; see pipeline/fingertip_options.hpp.")
       .def_property_readonly("ok", &Result::ok)
       .def_property_readonly("status", [](const Result& r) { return name_of(r.status); })
       .def_readonly("depth", &Result::depth)
       .def_readonly("contact", &Result::contact)
       .def_readonly("motion", &Result::motion)
       .def_readonly("stick", &Result::stick, "by the dots")
-      .def_readonly("slip", &Result::slip, "by dots and friction")
-      .def_readonly("shift", &Result::shift, "of the dots beside the contact's edge")
-      .def_readonly("flat_area", &Result::flat_area, "of the plate that would press as hard")
+      .def_readonly("slip", &Result::slip, "slip from dots and friction")
+      .def_readonly("shift", &Result::shift,
+                    "displacement of the dots on both sides of the contact's edge")
+      .def_readonly("flat_area", &Result::flat_area,
+                    "area of the flat plate that presses with the same force")
       .def_readonly("by_area", &Result::by_area)
       .def_readonly("by_depth", &Result::by_depth)
       .def_readonly("normal", &Result::normal, "by area and depth together")
@@ -246,7 +250,7 @@ void bind_fingertip(py::module_& module) {
   bind_shift_and_area(module);
   bind_options<SpatialStickTest>(
       module, "SpatialStickTest",
-      "Noise of the dots, and what is slip; slip/spatial_stick_ratio.hpp.")
+      "Noise of the dots and thresholds of slip; see slip/spatial_stick_ratio.hpp.")
       .def_readwrite("lateral_mm", &SpatialStickTest::lateral_mm)
       .def_readwrite("depth_mm", &SpatialStickTest::depth_mm)
       .def_readwrite("free_frames", &SpatialStickTest::free_frames)
@@ -254,9 +258,10 @@ void bind_fingertip(py::module_& module) {
       .def_readwrite("false_slip", &SpatialStickTest::false_slip)
       .def_readwrite("min_dots", &SpatialStickTest::min_dots);
   bind_result(module);
-  py::class_<Fingertip>(module, "Fingertip",
-                        "Frames, dots and pressure in, touch out; pipeline/fingertip.hpp.\n"
-                        "It remembers frames: one object serves one pad.")
+  py::class_<Fingertip>(
+      module, "Fingertip",
+      "Computes the touch from frames, dots and pressure; see pipeline/fingertip.hpp.\n"
+      "It stores past frames: use one object for each pad.")
       .def(py::init(&make), py::arg("camera"), py::arg("fluid"), py::arg("reference"),
            py::arg("free_dots_mm"), py::arg("rim_mm"),
            py::arg("contact") = fingerpad::ContactTest(), py::arg("stick") = SpatialStickTest(),
@@ -265,17 +270,17 @@ void bind_fingertip(py::module_& module) {
            py::arg("shear") = py::none(), py::arg("shear_by_depth") = false,
            py::arg("smoothing_px") = py::int_(29), py::arg("dot_radius_px") = py::float_(0.0),
            "free_dots_mm: float64 (rows, cols, 3), the printed dots of the free pad, NaN: none;\n"
-           "(0, 0, 3): no answer by dots. rim_mm: float64 (1, n, 3), where the side dots are\n"
+           "(0, 0, 3): no results from dots. rim_mm: float64 (1, n, 3), where the side dots are\n"
            "fixed; (0, 0, 3): no six-axis force. force_of_area, force_of_depth: NormalForce;\n"
-           "shear: Shear. Without them nothing is looked up.")
+           "shear: Shear. Without them no forces are looked up.")
       .def(
           "__call__", &Fingertip::operator(), py::arg("red"), py::arg("green"), py::arg("dots_px"),
           py::arg("side_dots_mm"), py::arg("pressure_mpa"),
           py::arg("time_s") = py::float_(fingerpad::not_a_number<double>()),
           "touch = fingertip(red, green, dots_px, side_dots_mm, pressure_mpa, time_s)\n\n"
           "red, green: uint8 (rows, cols). dots_px: float64 (rows, cols, 2), NaN where not found.\n"
-          "side_dots_mm: float64 (1, n, 3). pressure_mpa: MPa above the air's. time_s: s.\n"
-          "Another size: the status is \"refused\".")
+          "side_dots_mm: float64 (1, n, 3). pressure_mpa: MPa above the air pressure. time_s: s.\n"
+          "For arrays of another size the status is \"refused\".")
       .def_property_readonly(
           "depth_mm",
           [](Fingertip& f) { return f.copied<float>([](auto& tip) { return tip.depth_mm(); }); },

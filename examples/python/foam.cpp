@@ -40,7 +40,8 @@ Hand::Result feel(Hand& hand, const Array& readings, const Number& time_s) {
 }  // namespace
 
 void bind_foam(py::module_& module) {
-  bind_options<Taxels>(module, "TaxelOptions", "How taxels are read; see foam/taxel_options.hpp.")
+  bind_options<Taxels>(module, "TaxelOptions",
+                       "Evaluation of the taxels; see foam/taxel_options.hpp.")
       .def_readwrite("pitch_mm", &Taxels::pitch_mm)
       .def_readwrite("window", &Taxels::window)
       .def_readwrite("sample_period_s", &Taxels::sample_period_s)
@@ -48,7 +49,8 @@ void bind_foam(py::module_& module) {
       .def_readwrite("noise_factor", &Taxels::noise_factor)
       .def_readwrite("min_sum", &Taxels::min_sum)
       .def_readwrite("saturated_at", &Taxels::saturated_at);
-  bind_options<Rules>(module, "PreslipOptions", "What the rules compare; see foam/preslip.hpp.")
+  bind_options<Rules>(module, "PreslipOptions",
+                      "Options of the pre-slip rules; see foam/preslip.hpp.")
       .def_readwrite("history", &Rules::history)
       .def_readwrite("min_waves", &Rules::min_waves)
       .def_readwrite("centroid_tolerance_mm", &Rules::centroid_tolerance_mm);
@@ -57,7 +59,7 @@ void bind_foam(py::module_& module) {
       .value("preslip", PreslipStatus::preslip)
       .value("slipped", PreslipStatus::slipped)
       .value("cannot_tell", PreslipStatus::cannot_tell);
-  py::class_<FingerSample<double>>(module, "FingerSample", "What one finger feels.")
+  py::class_<FingerSample<double>>(module, "FingerSample", "Result of one finger.")
       .def_property_readonly("status",
                              [](const FingerSample<double>& s) { return name_of(s.status); })
       .def_readonly("center_x_mm", &FingerSample<double>::center_x_mm)
@@ -66,13 +68,13 @@ void bind_foam(py::module_& module) {
       .def_readonly("location", &FingerSample<double>::location)
       .def_readonly("waves", &FingerSample<double>::waves)
       .def_readonly("frequency_hz", &FingerSample<double>::frequency_hz);
-  py::class_<Hand::Result>(module, "FoamHandResult", "What a sample of all fingers says.")
+  py::class_<Hand::Result>(module, "FoamHandResult", "Result of one sample of all fingers.")
       .def_property_readonly("ok", &Hand::Result::ok)
       .def_readonly("status", &Hand::Result::status)
       .def_readonly("fingers", &Hand::Result::fingers);
   py::class_<Hand>(module, "FoamHand",
-                   "Two foam fingers; see pipeline/foam_hand.hpp. It remembers samples, so one\n"
-                   "object serves one hand and one thread.")
+                   "Two foam fingers; see pipeline/foam_hand.hpp. It stores past samples: use one\n"
+                   "object for each hand and thread.")
       .def(py::init(&make_hand), py::arg("rows"), py::arg("cols"), py::arg("taxels") = Taxels(),
            py::arg("rules") = Rules())
       .def("__call__", &feel, py::arg("readings"), py::arg("time_s"),

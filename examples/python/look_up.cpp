@@ -167,16 +167,17 @@ void bind_results(py::module_& module) {
   py::class_<NormalResult>(module, "NormalForceResult", "A normal force; force/normal_force.hpp.")
       .def_property_readonly("ok", &NormalResult::ok, "whether the calibration vouches for it")
       .def_property_readonly("status", [](const NormalResult& r) { return name_of(r.status); })
-      .def_readonly("force_n", &NormalResult::force_n, "N, that presses, >= 0")
+      .def_readonly("force_n", &NormalResult::force_n, "pressing force, N, >= 0")
       .def_readonly("variance_n2", &NormalResult::variance_n2, "N^2");
-  py::class_<fingerpad::FusedForce<double>>(module, "FusedForce", "By area and depth together.")
+  py::class_<fingerpad::FusedForce<double>>(module, "FusedForce",
+                                            "Normal force from area and depth together.")
       .def_property_readonly("ok", &fingerpad::FusedForce<double>::ok)
       .def_property_readonly(
           "status", [](const fingerpad::FusedForce<double>& r) { return name_of(r.status); })
       .def_readonly("force_n", &fingerpad::FusedForce<double>::force_n)
       .def_readonly("variance_n2", &fingerpad::FusedForce<double>::variance_n2)
       .def_readonly("disagreement", &fingerpad::FusedForce<double>::disagreement,
-                    "of the two, in standard deviations");
+                    "difference of the two forces, in standard deviations");
   py::class_<ShearResult>(module, "ShearResult", "Tangential force and moment; force/shear.hpp.")
       .def_property_readonly("ok", &ShearResult::ok)
       .def_property_readonly("force_status",
@@ -189,7 +190,7 @@ void bind_results(py::module_& module) {
 }
 
 void bind_normal_force_fit(py::module_& module) {
-  bind_options<FitOptions>(module, "FitOptions", "How forces are fitted; see calibrate/fit.hpp.")
+  bind_options<FitOptions>(module, "FitOptions", "Options of force fits; see calibrate/fit.hpp.")
       .def_readwrite("robust", &FitOptions::robust)
       .def_readwrite("threshold", &FitOptions::threshold)
       .def_readwrite("passes", &FitOptions::passes)
@@ -206,7 +207,8 @@ void bind_normal_force_fit(py::module_& module) {
           "coefficients", [](const NormalFit& f) { return f.curve.coefficients; },
           "c_0 to c_3 of c_0 + c_1 m + ..., N over the measure's unit to the k-th")
       .def_property_readonly(
-          "covariance", [](const NormalFit& f) { return f.errors.covariance; }, "4 x 4, of them")
+          "covariance", [](const NormalFit& f) { return f.errors.covariance; },
+          "4 x 4 covariance of the coefficients")
       .def_property_readonly(
           "range",
           [](const NormalFit& f) {
@@ -219,7 +221,7 @@ void bind_normal_force_fit(py::module_& module) {
                              [](const NormalFit& f) { return f.compensation.per_mm_sq; })
       .def_property_readonly("per_rad_sq",
                              [](const NormalFit& f) { return f.compensation.per_rad_sq; })
-      .def_readonly("explained", &NormalFit::explained, "share of the variance");
+      .def_readonly("explained", &NormalFit::explained, "explained share of the variance");
 }
 
 void bind_shear_fit(py::module_& module) {
@@ -240,19 +242,20 @@ void bind_shear_fit(py::module_& module) {
 }
 
 void bind_fits(py::module_& module) {
-  module.def("fit_normal_force", &fit_normal_force, py::arg("measure"), py::arg("normal_force_n"),
-             py::arg("displacement_mm") = py::none(), py::arg("rotation_rad") = py::none(),
-             py::arg("options") = FitOptions(),
-             "A cubic curve from n contacts that a gauge measured; calibrate/force.hpp.\n\n"
-             "measure: (n,), area in mm^2 or depth in mm. normal_force_n: (n,), N, that presses.\n"
-             "displacement_mm: (n, 2), rotation_rad: (n,), for FitOptions(displaced=True,\n"
-             "rotated=True). NaN: not measured.");
+  module.def(
+      "fit_normal_force", &fit_normal_force, py::arg("measure"), py::arg("normal_force_n"),
+      py::arg("displacement_mm") = py::none(), py::arg("rotation_rad") = py::none(),
+      py::arg("options") = FitOptions(),
+      "Fits a cubic curve to n contacts with forces of a gauge; see calibrate/force.hpp.\n\n"
+      "measure: (n,), area in mm^2 or depth in mm. normal_force_n: (n,), N, > 0 for a press.\n"
+      "displacement_mm: (n, 2), rotation_rad: (n,), for FitOptions(displaced=True,\n"
+      "rotated=True). NaN: not measured.");
   module.def("fit_tangential_force", &fit_tangential_force, py::arg("measure"),
              py::arg("displacement_mm"), py::arg("tangential_force_n"), py::arg("reference"),
              py::arg("exponent") = py::none(), py::arg("options") = FitOptions(),
              "Force along the plate, proportional to (measure / reference)^exponent d.\n\n"
              "measure: (n,). displacement_mm: (n, 2). tangential_force_n: (n, 2), N.\n"
-             "exponent: None, and it is fitted.");
+             "exponent: fitted if None.");
   module.def("fit_moment", &fit_moment, py::arg("measure"), py::arg("rotation_rad"),
              py::arg("moment_n_mm"), py::arg("reference"), py::arg("exponent") = py::none(),
              py::arg("options") = FitOptions(),
@@ -279,10 +282,10 @@ void bind_look_up(py::module_& module) {
           py::arg("measure"), py::arg("displacement_mm") = py::make_tuple(0.0, 0.0),
           py::arg("rotation_rad") = py::float_(0.0),
           "result = force(measure, displacement_mm, rotation_rad)\n\n"
-          "measure: mm^2 or mm, as the fit had it. displacement_mm: (x, y).");
+          "measure: mm^2 or mm, as in the fit. displacement_mm: (x, y).");
   py::class_<Shear>(module, "Shear", "Tangential force and moment by look-up; force/shear.hpp.")
       .def(py::init(&shear_of), py::arg("force"), py::arg("moment"),
-           "force, moment: what fit_tangential_force and fit_moment gave, of one reference.")
+           "force, moment: results of fit_tangential_force and fit_moment with the same reference.")
       .def(
           "__call__",
           [](const Shear& shear, const Number& measure, const Array& displacement_mm,

@@ -56,21 +56,23 @@ class Ratio {
 }  // namespace
 
 void bind_slip(py::module_& module) {
-  bind_options<StickTest>(module, "StickTest",
-                          "When dots are compared, and what is slip; slip/stick_ratio.hpp.")
+  bind_options<StickTest>(
+      module, "StickTest",
+      "Thresholds for comparing dots and detecting slip; see slip/stick_ratio.hpp.")
       .def_readwrite("reference", &StickTest::reference, "U, pitches, > 0")
       .def_readwrite("store", &StickTest::store, "U_min, pitches, in [0, reference]")
       .def_readwrite("slip", &StickTest::slip, "delta_0, pitches, > 0")
       .def_readwrite("pitch", &StickTest::pitch,
-                     "of the dots; 0: measured; 1: the three above are in their unit")
+                     "distance of neighbouring dots; 0: measured; 1: the three values above are in "
+                     "the unit of the dots")
       .def_readwrite("min_dots", &StickTest::min_dots, ">= 1")
       .def_readwrite("free_frames", &StickTest::free_frames,
-                     "frames of the free pad that tell the noise; 0: none")
+                     "frames of the free pad in which the noise is measured; 0: none")
       .def_readwrite("hold_s", &StickTest::hold_s, "s, >= 0")
       .def_readwrite("covers_pattern", &StickTest::covers_pattern,
-                     "whether the object is larger than the print; else no ratio once some dots of "
-                     "a contact of all stay behind");
-  py::enum_<DotState>(module, "DotState", "What a dot does.")
+                     "whether the object is larger than the dot pattern; if not, there is no ratio "
+                     "while all dots count as in contact and some do not follow");
+  py::enum_<DotState>(module, "DotState", "State of a dot.")
       .value("none", DotState::none)
       .value("unknown", DotState::unknown)
       .value("slip", DotState::slip)
@@ -78,21 +80,22 @@ void bind_slip(py::module_& module) {
   py::class_<Result>(module, "StickRatioResult",
                      "Stick and slip of a frame; slip/stick_result.hpp.")
       .def_property_readonly("ok", &Result::ok, "whether the ratio may be used")
-      .def_property_readonly("updated", &Result::updated, "whether it is that of this frame")
+      .def_property_readonly("updated", &Result::updated, "whether the ratio is of this frame")
       .def_property_readonly("status", [](const Result& r) { return name_of(r.status); })
       .def_readonly("stick", &Result::stick, "dots in contact that stick")
-      .def_readonly("slip", &Result::slip, "that slip")
-      .def_readonly("unknown", &Result::unknown, "of which neither is known")
+      .def_readonly("slip", &Result::slip, "dots in contact that slip")
+      .def_readonly("unknown", &Result::unknown, "dots in contact of unknown state")
       .def_readonly("out_of_place", &Result::out_of_place)
       .def_readonly("furthest_px", &Result::furthest_px)
-      .def_readonly("stick_ratio", &Result::stick_ratio, "in [0, 1]; NaN: none known yet")
-      .def_readonly("ratio_sd", &Result::ratio_sd, "of it, by the noise of the dots")
+      .def_readonly("stick_ratio", &Result::stick_ratio, "in [0, 1]; NaN if not known yet")
+      .def_readonly("ratio_sd", &Result::ratio_sd,
+                    "standard deviation of stick_ratio from the noise of the dots")
       .def_readonly("reference_age", &Result::reference_age, "frames")
-      .def_readonly("angle_rad", &Result::angle_rad, "of the object since the reference")
+      .def_readonly("angle_rad", &Result::angle_rad, "rotation of the object since the reference")
       .def_readonly("scale", &Result::scale);
   py::class_<Ratio>(module, "StickRatio",
-                    "The share of the contact that sticks, by printed dots;\n"
-                    "slip/stick_ratio.hpp. It remembers frames: one object serves one pad.")
+                    "Computes the share of the contact that sticks from printed dots; see\n"
+                    "slip/stick_ratio.hpp. It stores past frames: use one object for each pad.")
       .def(py::init<const Count&, const Count&, const StickTest&>(), py::arg("rows"),
            py::arg("cols"), py::arg("test") = StickTest())
       .def("__call__", &Ratio::operator(), py::arg("dots_px"), py::arg("in_contact"),

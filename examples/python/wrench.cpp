@@ -71,7 +71,8 @@ class WrenchOfDepth {
 }  // namespace
 
 void bind_wrench(py::module_& module) {
-  bind_options<Options>(module, "WrenchOptions", "Rim and mesh; see force/wrench_options.hpp.")
+  bind_options<Options>(module, "WrenchOptions",
+                        "Options of the rim and the mesh; see force/wrench_options.hpp.")
       .def_readwrite("base_radius_mm", &Options::base_radius_mm)
       .def_readwrite("side_dot_length_mm", &Options::side_dot_length_mm)
       .def_readwrite("columns", &Options::columns)
@@ -85,13 +86,14 @@ void bind_wrench(py::module_& module) {
       .def_readwrite("falls_back_on_modulus", &Options::falls_back_on_modulus);
   bind_options<OneRow>(module, "OneRow", "One row of side dots; see force/rim_traction.hpp.")
       .def_readwrite("stress_free_inclination_rad", &OneRow::stress_free_inclination_rad);
-  bind_options<Noise>(module, "WrenchNoise", "Standard deviations of what a wrench is made of.")
+  bind_options<Noise>(module, "WrenchNoise", "Standard deviations of the inputs of a wrench.")
       .def_readwrite("side_dot_mm", &Noise::side_dot_mm)
       .def_readwrite("edge_mm", &Noise::edge_mm)
       .def_readwrite("pressure_mpa", &Noise::pressure_mpa);
-  py::class_<Result>(module, "WrenchResult",
-                     "Force and moment in six axes: what the object exerts on the pad, the moment\n"
-                     "about the center of the base; a press has force_n[2] < 0. NaN unless ok.")
+  py::class_<Result>(
+      module, "WrenchResult",
+      "Six-axis force and moment that the object exerts on the pad, the moment about\n"
+      "the center of the base; a press has force_n[2] < 0. NaN unless ok.")
       .def_property_readonly("ok", &Result::ok)
       .def_property_readonly("status", [](const Result& r) { return name_of(r.status); })
       .def_property_readonly("force_n", [](const Result& r) { return as_tuple(r.force_n); })
@@ -103,7 +105,7 @@ void bind_wrench(py::module_& module) {
       .def_readonly("residual", &Result::residual)
       .def_readonly("by_modulus", &Result::by_modulus)
       .def_readonly("missing", &Result::missing, "side dots that were not found")
-      .def_readonly("unstretched", &Result::unstretched, "that do not tell a direction")
+      .def_readonly("unstretched", &Result::unstretched, "side dots without a usable direction")
       .def_readonly("broken_lines", &Result::broken_lines)
       .def_readonly("level_lines", &Result::level_lines);
   py::class_<WrenchOfDepth>(module, "Wrench",
@@ -120,10 +122,10 @@ void bind_wrench(py::module_& module) {
            "result = wrench(depth_mm, mask, side_dots_mm, pressure_mpa)\n\n"
            "depth_mm: float32 (rows, cols), NaN where unknown. mask: uint8 or bool (rows, cols).\n"
            "side_dots_mm: float64 (1, n, 3), NaN where not found. pressure_mpa: MPa above the\n"
-           "air's. Another size: the status is \"refused\".")
+           "air pressure. For arrays of another size the status is \"refused\".")
       .def("by_modulus", &WrenchOfDepth::by_modulus, py::arg("side_dots_mm"),
            py::arg("pressure_mpa"), py::arg("noise") = Noise(),
-           "The same without a shape, by calibrated_modulus_n_per_mm.");
+           "The same without a depth map, from calibrated_modulus_n_per_mm.");
 }
 
 }  // namespace python
