@@ -967,50 +967,50 @@ TEST_CASE("samples that do not tell the parameters are refused by name", "[calib
     const auto alike = changed(good, [](Sample& s) { s.measure = 3; });
     check_refused(normal(alike), "fit_normal_force: largest measure = 3, must be > the smallest");
     check_refused(pull(alike),
-                  "fit_tangential_force: what the samples tell of displacement_exponent");
-    check_refused(turn(alike), "fit_moment: what the samples tell of rotation_exponent");
+                  "fit_tangential_force: information in the samples on displacement_exponent");
+    check_refused(turn(alike), "fit_moment: information in the samples on rotation_exponent");
     check_refused(affine(alike, published::AffineBy::displacement),
-                  "fit_affine_force: what the samples tell of offset_n");
+                  "fit_affine_force: information in the samples on offset_n");
     CHECK(refusal(pull(alike, 0.7)) == "accepted");
     const auto at_reference = changed(good, [](Sample& s) { s.measure = 2; });
     check_refused(pull(at_reference),
-                  "fit_tangential_force: what the samples tell of displacement_exponent");
+                  "fit_tangential_force: information in the samples on displacement_exponent");
     // two measures determine at most two coefficients
     const auto two = changed(good, [](Sample& s) { s.measure = s.measure < 3 ? 1 : 4; });
     check_refused([&] { return fit_normal_force<3>(all(two)); },
-                  "fit_normal_force: what the samples tell of measure^3");
+                  "fit_normal_force: information in the samples on measure^3");
     check_refused(normal(two, {.through_zero = false}),
-                  "fit_normal_force: what the samples tell of measure^2");
+                  "fit_normal_force: information in the samples on measure^2");
   }
   SECTION("collinear or not moved at all") {
     const auto along =
         changed(good, [](Sample& s) { s.displacement_mm.y = 2 * s.displacement_mm.x; });
-    check_refused(linear(along), "fit_linear_shear: what the samples tell of x_by_y");
+    check_refused(linear(along), "fit_linear_shear: information in the samples on x_by_y");
     const auto still = changed(good, [](Sample& s) {
       s.displacement_mm = {0, 0};
       s.rotation_rad = 0;
     });
-    check_refused(linear(still), "fit_linear_shear: what the samples tell of x_by_x");
-    check_refused(pull(still), "fit_tangential_force: what the samples tell of coefficient 1");
-    check_refused(turn(still), "fit_moment: what the samples tell of coefficient 1");
+    check_refused(linear(still), "fit_linear_shear: information in the samples on x_by_x");
+    check_refused(pull(still), "fit_tangential_force: information in the samples on coefficient 1");
+    check_refused(turn(still), "fit_moment: information in the samples on coefficient 1");
     check_refused(normal(still, {.displaced = true}),
-                  "fit_normal_force: what the samples tell of per_mm_sq");
+                  "fit_normal_force: information in the samples on per_mm_sq");
     check_refused(normal(still, {.rotated = true}),
-                  "fit_normal_force: what the samples tell of per_rad_sq");
+                  "fit_normal_force: information in the samples on per_rad_sq");
     check_refused(affine(still, published::AffineBy::displacement),
-                  "fit_affine_force: what the samples tell of per_unit");
+                  "fit_affine_force: information in the samples on per_unit");
     check_refused(affine(still, published::AffineBy::rotation),
-                  "fit_affine_force: what the samples tell of per_unit");
+                  "fit_affine_force: information in the samples on per_unit");
     const auto tied = changed(good, [](Sample& s) {
       s.rotation_rad = 0.1 * std::hypot(s.displacement_mm.x, s.displacement_mm.y);
     });
     check_refused(normal(tied, {.displaced = true, .rotated = true}),
-                  "fit_normal_force: what the samples tell of per_rad_sq");
+                  "fit_normal_force: information in the samples on per_rad_sq");
     const auto one_size = changed(good, [](Sample& s) {
       s.measure = 3;
       s.rotation_rad = s.rotation_rad < 0 ? -0.1 : 0.1;
     });
-    check_refused(turn(one_size, 1), "fit_moment: what the samples tell of coefficient 2");
+    check_refused(turn(one_size, 1), "fit_moment: information in the samples on coefficient 2");
   }
   SECTION("forces that are constant, 0, or nothing but noise") {
     const auto constant = changed(good, [](Sample& s) { s.normal_force_n = 2; });
@@ -1018,7 +1018,7 @@ TEST_CASE("samples that do not tell the parameters are refused by name", "[calib
                   "fit_normal_force: share of the measured variance");
     check_refused(normal(constant, {.through_zero = false}),
                   "fit_normal_force: share of the measured variance");
-    check_refused(elastic(constant), "fit_power_law: what the samples tell of exponent");
+    check_refused(elastic(constant), "fit_power_law: information in the samples on exponent");
     check_refused(affine(constant, published::AffineBy::displacement),
                   "fit_affine_force: share of the measured variance");
     const auto zero = changed(good, [](Sample& s) {

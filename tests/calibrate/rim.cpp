@@ -544,12 +544,12 @@ TEST_CASE("rim calibration: what it refuses", "[wrench]") {
   for (std::size_t j = 0; j < 13; ++j) {
     few[2 * j].x = none;
   }
-  CHECK(begins_with(levels({low, few}, {0.01, 0.02}),
-                    owner + "side dots that every level sees = 23"));
+  CHECK(
+      begins_with(levels({low, few}, {0.01, 0.02}), owner + "side dots found at every level = 23"));
   Row never = low, nor_here = high;
   never[3].z = nor_here[3].z = infinity;
   CHECK(begins_with(levels({never, nor_here}, {0.01, 0.02}),
-                    owner + "side dots that some level sees = 35"));
+                    owner + "side dots found at any level = 35"));
   // a pad that hangs down
   Row down = low, further_down = high;
   for (std::size_t j = 0; j < down.size(); ++j) {

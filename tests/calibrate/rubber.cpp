@@ -156,7 +156,7 @@ TEST_CASE("rim calibration: what the apex says of the rubber, and what it does n
   CHECK(share_of(apex + 0.3, {.stress_free_height_mm = 11}).apex_residual_mm > 0.2);
   CHECK(share_of(apex, {}).mooney_share == 0);  // not requested
   CHECK(test::refusal([&] { (void)share_of(none, {.stress_free_height_mm = 11}); }) ==
-        "RimCalibration: levels with an apex height = 0, must be >= 1, where m is asked for");
+        "RimCalibration: levels with an apex height = 0, must be >= 1 if m is fitted");
   CHECK(
       test::begins_with(test::refusal([&] { (void)share_of(apex, {.stress_free_height_mm = -1}); }),
                         "RimFitOptions: stress_free_height_mm = -1"));

@@ -397,7 +397,7 @@ TEST_CASE("mistakes: the fluid", "[mistakes]") {
            std::swap(s.colour.red, s.colour.green);
          }
        }),
-       "are red and green right?"},
+       "check whether red and green are exchanged"},
       {"g negative at the rim", absorption<1>([](Colours& samples) {
          for (auto& s : samples) {
            const double g = 0.0163 * (1 - 1.2 * s.rho_sq_mm2 / samples[4].rho_sq_mm2);
@@ -550,7 +550,7 @@ TEST_CASE("mistakes: noise of the dots", "[mistakes]") {
            dots.cells[k] = {20.0 * static_cast<double>(k % 9), 20.0 * static_cast<double>(k / 9)};
          }
        }),
-       "the frames are the same"},
+       "the frames are identical"},
       {"all dots lost", standing([](Dots& dots, int) {
          for (auto& p : dots.cells) {
            p.x = test::nan;
@@ -617,11 +617,11 @@ TEST_CASE("mistakes: the rim", "[mistakes]") {
       {"one of two pressures absolute",  // two pressures fit any two numbers
        rim({.unlike = 1 + 0.1 / 0.03}), "ok"},
       {"one of four pressures absolute", rim({.unlike = 1 + 0.1 / 0.03}, 4),
-       "are pressures and dots right?"},
+       "check pressures and dots"},
       {"one of four pressures of another frame", rim({.unlike = 1.4}, 4), "do not balance"},
       {"z into the plate", rim({.upside_down = true}), "must be"},
       {"dots in m", rim({.length = 1e-3}), "must be"},
-      {"one pressure alone", rim({}, 1), "with one, fit_modulus"},
+      {"one pressure alone", rim({}, 1), "with one use fit_modulus"},
       {"more border points than memory",
        [] {
          return test::refusal([] {

@@ -102,7 +102,7 @@ const Mistake with_the_reference[] = {
      "center_x_px, center_y_px are not those of this image"},
     {"shape 0 outside of the pad",
      [](Given& g) { each_pixel(g, [](Index, Index, double& l) { l = l == l ? l : 0; }); },
-     "outside of the pad depth_mm is NaN"},
+     "depth_mm must be NaN outside of the pad"},
     {"shape in plan, not along rays",
      [](Given& g) {
        each_pixel(g, [&](Index i, Index j, double& l) {

@@ -573,7 +573,7 @@ TEST_CASE("mistakes: thresholds of the stick ratio", "[mistakes]") {
        },
        "which noise sets"},
       {"noise in thousandths", [](Drag& d) { d.noise = independent_dot_noise(6e-5); },
-       "has to begin sticking"},
+       "must begin with sticking"},
       {"noise times 1000", [](Drag& d) { d.noise = independent_dot_noise(60); },
        "which noise sets"},
       {"no noise", [](Drag& d) { d.noise = independent_dot_noise(0); }, "noise of a dot = 0"},
@@ -584,7 +584,7 @@ TEST_CASE("mistakes: thresholds of the stick ratio", "[mistakes]") {
       {"column by column from frame 50 on", renamed([](Index i, Index j, int k) {
          return k < 50 ? DotIndex{i, j} : DotIndex{j, i};
        }),
-       "has to slip at last"},
+       "must end with slip"},
       {"shifted by one from frame 50 on", renamed([](Index i, Index j, int k) {
          return DotIndex{i, k < 50 ? j : j + 1};
        }),
@@ -597,7 +597,7 @@ TEST_CASE("mistakes: thresholds of the stick ratio", "[mistakes]") {
        "frames with contact and motion = 1"},
       {"frozen from frame 50 on",
        [](Drag& d) { std::fill(d.dots.begin() + 50, d.dots.end(), d.dots[50]); },
-       "has to slip at last"},
+       "must end with slip"},
       {"half lost",
        [](Drag& d) {
          for (auto& dots : d.dots) {
@@ -613,7 +613,7 @@ TEST_CASE("mistakes: thresholds of the stick ratio", "[mistakes]") {
            c = c ? 0 : 1;
          }
        },
-       "has to begin sticking"},
+       "must begin with sticking"},
       {"all in contact",
        [](Drag& d) {
          for (auto& c : d.contact.cells) {
@@ -635,7 +635,7 @@ TEST_CASE("mistakes: thresholds of the stick ratio", "[mistakes]") {
          }
        },
        "right"},
-      {"all sticks", [](Drag& d) { d.dots.resize(40); }, "has to slip at last"},
+      {"all sticks", [](Drag& d) { d.dots.resize(40); }, "must end with slip"},
   };
   check(mistakes, said_of_thresholds);
 }

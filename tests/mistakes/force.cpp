@@ -466,7 +466,7 @@ TEST_CASE("mistakes with the look-ups: moments in N m", "[mistakes]") {
       Shear<>(published::shear_normalisation_by_area(), {{{force}}, {{moment}}});
     });
   };
-  const std::string said = "RadialShear: size of the contact that moment over force makes, mm = ";
+  const std::string said = "RadialShear: size of the contact from moment over force, mm = ";
   CHECK(with(2, 60) == "accepted");
   CHECK(test::begins_with(with(2, 60e-3), said));  // N m
   CHECK(test::begins_with(with(2, 60e6), said));   // uN m

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 // A colour image is not a channel: the first error says what to pass.
-// first error: a colour image is no channel: pass fingerpad::channel<T>\(image, c\) of it
+// first error: a colour image is not a channel: pass fingerpad::channel<T>\(image, c\) of it
 #include "fingerpad/adapt/opencv.hpp"
 #include "fingerpad/depth/depth.hpp"
 

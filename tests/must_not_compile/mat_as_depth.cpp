@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 // A cv::Mat has no static pixel type: the first error says what to pass.
-// first error: a cv::Mat does not say what its pixels are: pass cv::Mat_<T>\(image\)
+// first error: the type of the pixels of a cv::Mat is not known: pass cv::Mat_<T>\(image\)
 #include "fingerpad/adapt/opencv.hpp"
 #include "fingerpad/contact/contact_region.hpp"
 

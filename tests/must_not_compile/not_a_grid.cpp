@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 // The first error for a type without cells names the missing members.
-// first error: no grid: give the type rows\(\), cols\(\) and a const operator
+// first error: this type is not a grid: give it rows\(\), cols\(\) and a const operator
 #include "fingerpad/core/grid.hpp"
 #include "support/foreign_image.hpp"
 

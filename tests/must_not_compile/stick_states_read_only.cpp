@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 // Dot states are output: a read-only grid cannot receive them.
-// first error: states are written: pass a grid whose cells can be assigned
+// first error: this grid of states is written to: its cells must be assignable
 #include "fingerpad/slip/stick_ratio.hpp"
 #include "support/foreign_image.hpp"
 

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 // A computed cell is a copy; an assignment to it would be lost silently.
-// first error: cells are written: pass a grid whose cells can be assigned, neither const nor computed
+// first error: this grid is written to: its cells must be assignable, neither const nor computed
 #include "fingerpad/contact/contact_by_difference.hpp"
 #include "support/foreign_image.hpp"
 

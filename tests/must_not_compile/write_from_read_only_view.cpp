@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 // A read-only view does not convert to a writable one.
-// first error: a view that only reads does not become one that writes
+// first error: a read-only view cannot become a writable view
 #include "fingerpad/core/grid.hpp"
 
 using fingerpad::StridedView;

@@ -159,7 +159,8 @@ class DotFinder {
     }
     expects(sum > 0, owner, "the sum of color_weights", sum, "> 0");
     expects(o.where.empty() || o.where.size() == frame.size(), owner, "where.rows",
-            static_cast<long long>(o.where.rows), "those of the free frame, as its columns");
+            static_cast<long long>(o.where.rows),
+            "equal to the rows of the free frame, and where.cols to its columns");
   }
 
   static detail::SpotLook known_look(const DotFinderOptions& o) {

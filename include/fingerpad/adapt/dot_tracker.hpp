@@ -69,11 +69,11 @@ class DotTracker {
       : max_off_(options.max_off) {
     expects(options.max_off > 0, "DotTracker", "max_off", options.max_off, "> 0");
     expects(same_size(free_px, places_px), "DotTracker", "places_px",
-            static_cast<long long>(fingerpad::rows(places_px)), "of the size of free_px");
+            static_cast<long long>(fingerpad::rows(places_px)), "of the same size as free_px");
     const Places found = copied(free_px);
     count_ = count_present(found);
     expects(count_ >= 9, "DotTracker", "free_px", static_cast<long long>(count_),
-            "a grid of 9 or more dots that were found");
+            "a grid with at least 9 found dots");
     free_ = filled(found, copied(places_px), copied(places_px));
     spacing_px_ = detail::spacings_px(free_);
     border_ = border_of(found);

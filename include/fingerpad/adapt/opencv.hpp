@@ -33,7 +33,7 @@ struct grid_traits<cv::Mat_<T>> {
 template <std::same_as<cv::Mat> M>
 struct grid_traits<M> {
   static_assert(!std::same_as<M, cv::Mat>,
-                "a cv::Mat does not say what its pixels are: pass cv::Mat_<T>(image), or "
+                "the type of the pixels of a cv::Mat is not known: pass cv::Mat_<T>(image), or "
                 "fingerpad::channel<T>(image, c) of a colour image");
 };
 
@@ -43,7 +43,7 @@ struct grid_traits<M> {
 template <class T>
 StridedView<T> channel(cv::Mat& image, int c) {
   expects(image.depth() == cv::DataType<std::remove_const_t<T>>::depth, "channel", "image.depth()",
-          static_cast<long long>(image.depth()), "the depth of the type asked for");
+          static_cast<long long>(image.depth()), "the depth of the requested type");
   expects(c >= 0 && c < image.channels(), "channel", "c", static_cast<long long>(c),
           "in [0, image.channels())");
   return interleaved_channel(image.ptr<T>(), image.rows, image.cols, image.channels(), c,

@@ -135,8 +135,8 @@ class FreePadCalibration {
         pad.noise_per_mm / pad.median_per_mm * T(0.785398163397448) * ring_px_ * pixel_mm_;
     expects(T(0) < pad.threshold_per_mm, "FreePadCalibration", "threshold_per_mm",
             pad.threshold_per_mm,
-            "> 0: the pad bulges too little for its noise; a larger ring, or "
-            "more smoothing of the depth, helps");
+            "> 0: the pad bulges too little for its noise; use a larger ring or "
+            "smooth the depth more");
     if (pad.median_per_mm < T(1e-3)) {  // a sphere of 1 m radius: no pad is as flat
       pad.status = FitStatus::depths_not_in_mm;
     } else if (2 * means.size() < mean_.size()) {

@@ -228,7 +228,7 @@ AbsorptionFit<S, Degree> fit_absorption(std::span<const DepthSample<S>> samples,
   Problem problem(equations);
   auto p = detail::search_absorption(problem, 60);
   expects(is_finite(p.cost), owner, "residual", p.cost,
-          "finite with kappa > 0 and g > 0: are red and green right?");
+          "finite with kappa > 0 and g > 0: check whether red and green are exchanged");
   AbsorptionFit<S, Degree> fit;
   bool converged = false;
   for (int round = 0; round < 3; ++round) {  // the noise of F depends, weakly, on the fit

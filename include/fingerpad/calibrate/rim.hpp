@@ -129,7 +129,7 @@ class RimCalibration {
               "condition number", both.condition,
               "< 1e4: the side dots have to stretch more at the higher pressure");
       expects(value(both.u) > 0 && value(both.v) > 0, owner, "L^4 in mm^4", S(both.v / both.u),
-              "> 0, with mu t > 0: are pressures and dots right?");
+              "> 0, with mu t > 0: check pressures and dots");
       const S length = sqrt(S(sqrt(S(both.v / both.u))));
       return Membrane{length, S(both.u * length)};
     });
@@ -163,18 +163,19 @@ class RimCalibration {
     const double height = options.stress_free_height_mm;
     expects(is_finite(height) && height >= 0 && height <= 2 * as_double(rim_.radius_mm()),
             of_options, "stress_free_height_mm", height,
-            "in [0, 2 base_radius_mm]; 0: m is not asked for");
+            "in [0, 2 base_radius_mm]; 0 if m is not fitted");
     expects(!(height > 0) || apexes() > 0, owner, "levels with an apex height",
-            static_cast<long long>(apexes()), ">= 1, where m is asked for");
+            static_cast<long long>(apexes()), ">= 1 if m is fitted");
     expects(static_cast<long long>(levels_.size()) >= min_levels, owner, "levels of pressure",
             static_cast<long long>(levels_.size()),
-            min_levels > 1 ? ">= 2; with one, fit_modulus" : ">= 1");
+            min_levels > 1 ? ">= 2 (with one use fit_modulus)" : ">= 1");
     const Index seen = detail::membrane::seen_in_all(rim_, levels_);
-    expects(3 * seen >= 2 * rim_.size(), owner, "side dots that every level sees",
+    expects(3 * seen >= 2 * rim_.size(), owner, "side dots found at every level",
             static_cast<long long>(seen), ">= 2/3 of the border points");
     const Index ever = detail::membrane::seen_in_any(rim_, levels_);
-    expects(ever == rim_.size(), owner, "side dots that some level sees",
-            static_cast<long long>(ever), "all of them: leave others out of the border");
+    expects(ever == rim_.size(), owner, "side dots found at any level",
+            static_cast<long long>(ever),
+            "all of the border points: leave the others out of the border");
   }
 
   Index distinct_pressures() const {
@@ -234,7 +235,7 @@ class RimCalibration {
       }
     }
     expects(is_finite(sums.slope_sq) && value(sums.slope_sq) > 0, owner, "load on the pad", modulus,
-            "that of an inflated cap: are pressure and height right?");
+            "that of an inflated cap: check pressure and height");
     return sums;
   }
 

@@ -186,9 +186,9 @@ class StickTestCalibration {
             ">= 10: the dots moved too little in one direction");
     expects(best->sticking >= 3, owner, "answers that stick",
             static_cast<long long>(best->sticking),
-            ">= 3 above 0.5: the recording has to begin sticking");
+            ">= 3 above 0.5: the recording must begin with sticking");
     expects(best->slipping >= 3, owner, "answers that slip", static_cast<long long>(best->slipping),
-            ">= 3 below 0.5: the recording has to slip at last");
+            ">= 3 below 0.5: the recording must end with slip");
     return *best;
   }
 

@@ -143,13 +143,13 @@ class DotNoiseCalibration {
     expects(noise.dots >= 2, owner, "dots", static_cast<long long>(noise.dots),
             ">= 2, each found in two frames or more");
     const double freedom = rest.freedom();
-    expects(freedom >= 1, owner, "positions beyond those for places and motion", freedom,
-            ">= 1: more dots have to be in the same frames");
+    expects(freedom >= 1, owner, "degrees of freedom of the positions", freedom,
+            ">= 1: more dots must be found in the same frames");
     const S variance = rest.rests().sum / S(2 * freedom);
     noise.noise_px = sqrt(variance);
     noise.noise_error_px = noise.noise_px / S(2 * std::sqrt(freedom));
     expects(S(0) < noise.noise_px, owner, "noise_px", noise.noise_px,
-            "> 0: the frames are the same");
+            "> 0: the frames are identical");
     noise.largest_px = rest.largest_px();
     noise.published_px = rest.relative_to_center_px();
 

@@ -164,7 +164,7 @@ class ContactByDifference {
       height = count == 0 ? view.rows() : height;
       width = count == 0 ? view.cols() : width;
       expects(view.rows() == height && view.cols() == width, "ContactByDifference",
-              "free_frames of another size, number", count, "of the first one's size");
+              "free_frames of another size, number", count, "of the size of the first");
       ++count;
     }
     expects(count > 0, "ContactByDifference", "free_frames", count, "one or more");

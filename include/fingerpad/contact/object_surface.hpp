@@ -147,7 +147,7 @@ class SurfaceFit {
     requires(std::constructible_from<Scalar, cell_t<Depth>>)
   Result operator()(const Depth& depth_mm, const Mask& contact, Residual&& residual_mm) const {
     static_assert(detail::takes_numbers<Residual, Scalar>,
-                  "numbers are written: pass a grid whose cells can be assigned and hold NaN");
+                  "this grid is written to: its cells must be assignable and able to hold NaN");
     const auto depth = as_view(depth_mm);
     const auto mask = as_view(contact);
     const auto out = as_view(std::forward<Residual>(residual_mm));

@@ -56,7 +56,7 @@ struct grid_traits {
                 "a vector has no rows and columns: pass fingerpad::grid_of(vector, rows, cols)");
   static_assert(
       !detail::has_size_fields<G>,
-      "a cv::Mat does not say what its pixels are: include fingerpad/adapt/opencv.hpp and "
+      "the type of the pixels of a cv::Mat is not known: include fingerpad/adapt/opencv.hpp and "
       "pass cv::Mat_<T>(image), or fingerpad::channel<T>(image, c) of a colour image");
 
   static constexpr Index rows(const G& g) requires(detail::has_size_members<G>) {
@@ -122,10 +122,10 @@ template <class G, class T = void>
 constexpr void writes_to() {
   if constexpr (grid<G>) {
     static_assert(writable_grid<G, std::conditional_t<std::is_void_v<T>, cell_t<G>, T>>,
-                  "cells are written: pass a grid whose cells can be assigned, neither const nor "
+                  "this grid is written to: its cells must be assignable, neither const nor "
                   "computed");
   } else {
-    static_assert(always_false<G>, "cells are written: pass a grid");
+    static_assert(always_false<G>, "this argument is written to: pass a grid");
   }
 }
 /// A grid to which cells of type T can be written, NaN included.
@@ -153,9 +153,10 @@ constexpr Index cols(const G& g) {
 template <class G>
   requires(!grid<G>)
 constexpr Index rows(const G&) {
-  static_assert(detail::always_false<G>,
-                "no grid: give the type rows(), cols() and a const operator()(row, col), or "
-                "specialise fingerpad::grid_traits for it");
+  static_assert(
+      detail::always_false<G>,
+      "this type is not a grid: give it rows(), cols() and a const operator()(row, col), or "
+      "specialise fingerpad::grid_traits for it");
   return 0;
 }
 template <class G>
@@ -184,7 +185,7 @@ class StridedView {
     requires(!std::is_const_v<T> && std::same_as<Other, const T>)
   constexpr explicit StridedView(const StridedView<Other>&) {
     static_assert(detail::always_false<Other>,
-                  "a view that only reads does not become one that writes: take "
+                  "a read-only view cannot become a writable view: take "
                   "StridedView<const T>, or make the view from cells that are not const");
   }
   /// A read-only view from a writable one.

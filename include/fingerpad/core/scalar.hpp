@@ -18,7 +18,7 @@
 #error "fingerpad marks missing data by NaN: compile without -ffast-math or -ffinite-math-only"
 #endif
 #if defined(__ASSOCIATIVE_MATH__)  // defined by GCC 12, not by clang
-#error "fingerpad rounds and sums in a set order: compile without -ffast-math or -fassociative-math"
+#error "fingerpad needs a fixed order of sums: compile without -ffast-math or -fassociative-math"
 #endif
 
 namespace fingerpad {
@@ -35,7 +35,7 @@ inline namespace v0 {
 template <class S>
 struct scalar_traits {
   static_assert(std::numeric_limits<S>::is_specialized,
-                "this number has no std::numeric_limits: specialise fingerpad::scalar_traits");
+                "this number type has no std::numeric_limits: specialise fingerpad::scalar_traits");
   using real = S;
   static constexpr real epsilon() { return (std::numeric_limits<S>::epsilon)(); }
   static constexpr const real& value(const S& x) { return x; }

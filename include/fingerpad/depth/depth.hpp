@@ -188,7 +188,7 @@ class DepthEstimator {
                    Workspace<Pixel>& workspace) const {
     detail::writes_to<Depth, S>();
     static_assert(!detail::has_channels<cell_t<Red>> && !detail::has_channels<cell_t<Green>>,
-                  "a colour image is no channel: pass fingerpad::channel<T>(image, c) of it");
+                  "a colour image is not a channel: pass fingerpad::channel<T>(image, c) of it");
     static_assert(std::is_same_v<cell_t<Red>, Pixel> && std::is_same_v<cell_t<Green>, Pixel>,
                   "the workspace was made for another type of cell");
     DepthResult result;
@@ -254,7 +254,7 @@ class DepthEstimator {
     expects_valid(fluid);
     expects_grid_size("DepthEstimator", reference.rows, reference.cols);
     expects(reference.pixels_used > 0, "DepthEstimator", "reference.pixels_used",
-            static_cast<long long>(reference.pixels_used), "> 0, as fit_reference() gives it");
+            static_cast<long long>(reference.pixels_used), "> 0, as fit_reference() returns it");
     return camera;
   }
 

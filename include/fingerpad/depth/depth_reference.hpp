@@ -263,7 +263,7 @@ inline void expects_free_pad(const FreePadShape& shape, double max_depth_mm) {
   expects(shape.deepest_mm >= 0.1 * max_depth_mm, owner, "deepest point of depth_mm",
           shape.deepest_mm, ">= a tenth of max_depth_mm: give mm, not m");
   expects(shape.at_zero <= 0.1 * shape.pixels, owner, "share of pixels at depth 0",
-          shape.at_zero / shape.pixels, "<= 0.1: outside of the pad depth_mm is NaN");
+          shape.at_zero / shape.pixels, "<= 0.1: depth_mm must be NaN outside of the pad");
   expects(shape.off_axis <= 0.25, owner, "distance of the pad's center from the axis, in radii",
           shape.off_axis, "<= 0.25: camera.center_x_px, center_y_px are not those of this image");
 }

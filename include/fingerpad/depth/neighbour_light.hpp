@@ -131,7 +131,7 @@ class NeighbourLightCompensation {
   template <grid Depth, class Out>
   NeighbourLightResult operator()(const Depth& depth_mm, Out&& out, Workspace& workspace) const {
     static_assert(detail::takes_numbers<Out, S>,
-                  "numbers are written: pass a grid whose cells can be assigned and hold NaN");
+                  "this grid is written to: its cells must be assignable and able to hold NaN");
     const auto from = as_view(depth_mm);
     const auto to = as_view(std::forward<Out>(out));
     if (from.rows() != rows() || from.cols() != cols() || to.rows() != rows() ||

@@ -170,7 +170,7 @@ void expects_valid(const PolynomialForce<Degree, S>& curve) {
   detail::expects_range(curve, owner);
   const S& constant = curve.coefficients[0];
   expects(value(curve.from) > 0 || value(constant) == 0, owner, "first of the coefficients",
-          constant, "0 where from is 0: the force would begin with a step");
+          constant, "0 if from is 0, else the force would begin with a step");
   constexpr int steps = Degree > 2 ? 16 : 1;  // a slope of first degree is lowest at an end
   const S end = curve.force_n(curve.to);
   const S size = value(end) < 0 ? S(-end) : end;

@@ -33,7 +33,7 @@ WrenchResult<S> pressure_from_rim(const Wrench<Solver, Row, Law, Lines, S>& wren
                                   const S& modulus_n_per_mm,
                                   typename Wrench<Solver, Row, Law, Lines, S>::Workspace& work) {
   static_assert(Solver::magnitude != detail::membrane::Magnitude::given && Law::tells_magnitude,
-                "a direction alone does not tell the pressure: use BalancedRim or "
+                "a direction alone does not determine the pressure: use BalancedRim or "
                 "LeastSquares with ClampedRim");
   if (!detail::membrane::is_modulus(modulus_n_per_mm)) {
     return {};

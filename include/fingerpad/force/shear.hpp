@@ -175,8 +175,8 @@ void expects_valid(const RadialShear<Degree, S>& map) {
   using std::sqrt;
   const S size_mm = sqrt(S(map.moment.coefficients[0] / map.force.coefficients[0]));
   expects(2 * value(size_mm) >= 1 && value(size_mm) <= 1000, "RadialShear",
-          "size of the contact that moment over force makes, mm", size_mm,
-          "in [0.5, 1000]: N/mm and N mm/rad?");
+          "size of the contact from moment over force, mm", size_mm,
+          "in [0.5, 1000]: give N/mm and N mm/rad");
 }
 template <scalar S>
 void expects_valid(const LinearShear<S>& map) {

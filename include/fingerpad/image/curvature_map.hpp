@@ -113,7 +113,7 @@ class CurvatureMap {
                       Out&& out,
                       Workspace& workspace) const {
     static_assert(detail::takes_numbers<Out, S>,
-                  "numbers are written: pass a grid whose cells can be assigned and hold NaN");
+                  "this grid is written to: its cells must be assignable and able to hold NaN");
     const auto from = as_view(depth_mm);
     const auto to = as_view(out);
     if (from.rows() != rows_ || from.cols() != cols_ || to.rows() != rows_ || to.cols() != cols_ ||

@@ -76,8 +76,9 @@ class Recoil {
     using std::sqrt;
     const S found = sqrt(detail::stick::mean_pitch_sq(free.touching, free_.data(), layout_));
     const double ratio = static_cast<double>(value(found)) / test.pitch_px;
-    expects(!(ratio > 0) || (ratio > 1.0 / 3 && ratio < 3), "RecoilTest", "pitch_px", test.pitch_px,
-            "within a factor of three the distance of the free pad's dots: dots in mm?");
+    expects(
+        !(ratio > 0) || (ratio > 1.0 / 3 && ratio < 3), "RecoilTest", "pitch_px", test.pitch_px,
+        "within a factor of three of the dot distance in the free pad: check the unit of the dots");
   }
 
   /// A value: copy it to go back to this frame later. All memory that frames need is in it.

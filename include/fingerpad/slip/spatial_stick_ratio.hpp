@@ -106,7 +106,7 @@ class SpatialStickRatio {
                                    State& state,
                                    double time_s = not_a_number<double>()) const {
     static_assert(writable_grid<States>,
-                  "states are written: pass a grid whose cells can be assigned");
+                  "this grid of states is written to: its cells must be assignable");
     const auto dots = as_view(dots_mm);
     const auto touch = as_view(contact);
     const auto to = as_view(states);

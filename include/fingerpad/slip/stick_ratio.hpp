@@ -128,7 +128,7 @@ class StickRatio {
                                  State& state,
                                  double time_s) const {
     static_assert(writable_grid<States>,
-                  "states are written: pass a grid whose cells can be assigned");
+                  "this grid of states is written to: its cells must be assignable");
     const auto dots = as_view(dots_px);
     const auto touch = as_view(contact);
     const auto to = as_view(states);

@@ -185,9 +185,10 @@ class ModelFitter {
     for (Index k = 0; k < static_cast<Index>(names_.size()); ++k) {
       const S diagonal = qr.diagonal(k);
       const S share = value(diagonal) < 0 ? S(-diagonal) : diagonal;
-      const std::string name = "what the samples tell of " + names_[static_cast<std::size_t>(k)];
-      const bool told = value(share) > value(S(options_.min_independence));
-      expects(told, owner_, name.c_str(), share,
+      const std::string name =
+          "information in the samples on " + names_[static_cast<std::size_t>(k)];
+      const bool is_known = value(share) > value(S(options_.min_independence));
+      expects(is_known, owner_, name.c_str(), share,
               "> min_independence: they are too few, too alike or tied to each other");
     }
   }

@@ -130,7 +130,7 @@ void expects_in_mm(const InitialDots<S>& initial) {
   const bool one_place = !(*middle > 0);  // no real dots, which every frame reports
   expects(one_place || (*middle > 0.05 && *middle < 50), "ObjectMotion",
           "distance of neighbouring dots, mm", *middle,
-          "in (0.05, 50): are the dots of the free pad in mm, and none a mark of lost ones?");
+          "in (0.05, 50): give the dots of the free pad in mm, and NaN for lost dots");
 }
 
 /// Whether the dot and its eight neighbours are found, now and initially.

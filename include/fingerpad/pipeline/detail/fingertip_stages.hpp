@@ -92,7 +92,7 @@ struct FingertipImage {
 template <class Options, class Methods>
 struct FingertipLight {
   static_assert(Methods::sampling == 1,
-                "the neighbour light is that of whole frames: sampling = 1");
+                "neighbour light is computed from whole frames: use sampling = 1");
   using Compensation = NeighbourLightCompensation<>;
   std::optional<Compensation> compensate;
   std::optional<Compensation::Workspace> work;
@@ -101,7 +101,7 @@ struct FingertipLight {
     if (o.neighbour_light) {
       expects(o.free_depth_mm.rows() == o.rows && o.free_depth_mm.cols() == o.cols,
               "FingertipOptions", "rows of free_depth_mm",
-              static_cast<long long>(o.free_depth_mm.rows()), "the frame's size");
+              static_cast<long long>(o.free_depth_mm.rows()), "of the size of the frame");
       compensate.emplace(*o.neighbour_light, pitch_on_membrane_mm(o), o.free_depth_mm);
       work.emplace(compensate->workspace());
     }
