@@ -73,7 +73,7 @@ int main(int argc, char** argv) {
     std::ofstream file(argv[2]);
     print_csv(file, effects);
     if (!file) {
-      std::fprintf(stderr, "cannot write %s\n", argv[2]);
+      std::fprintf(stderr, "%s: cannot be written\n", argv[2]);
       return 1;
     }
   }

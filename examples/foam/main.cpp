@@ -9,7 +9,7 @@
 
 int main(int argc, char** argv) {
   if (argc != 2) {
-    std::fprintf(stderr, "foam_recording TAXELS.csv\n");
+    std::fprintf(stderr, "usage: foam_recording TAXELS.csv\n");
     return 2;
   }
   std::ofstream file(argv[1]);

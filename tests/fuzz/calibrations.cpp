@@ -61,12 +61,14 @@ void try_forces(Input& in) {
     }
     case 2: {
       const auto fit = fit_tangential_force<1>(samples, 100.0, {}, options);
-      require(!fit.ok() || fit.residuals.size() <= 2 * given.size(), "a residual a component");
+      require(!fit.ok() || fit.residuals.size() <= 2 * given.size(),
+              "there is at most one residual for each component");
       return;
     }
     case 3: {
       const auto fit = fit_moment<1>(samples, 100.0, 1.7, options);
-      require(!fit.ok() || fit.residuals.size() <= given.size(), "a residual a sample");
+      require(!fit.ok() || fit.residuals.size() <= given.size(),
+              "there is at most one residual for each sample");
       return;
     }
     default: {
@@ -221,7 +223,7 @@ void try_neighbour_light(Input& in) {
       in.number(0.05, 0.5), reference.view(), std::span<const View>(of),
       std::span<const View>(with), {.max_radius_px = in.whole(1, 5), .every_px = in.whole(1, 4)});
   require(!fit.ok() || (is_finite(fit.rms_after_mm) && fit.rms_after_mm >= 0),
-          "what is left is finite");
+          "the residual is finite");
 }
 
 }  // namespace

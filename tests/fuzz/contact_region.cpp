@@ -42,7 +42,7 @@ void try_contact(Input& in) {
       count += mask.view()(i, j) != 0 ? 1 : 0;
     }
   }
-  require(count == contact.contact_px, "as many pixels as the mask has");
+  require(count == contact.contact_px, "contact_px is the number of pixels in the mask");
   require(contact.contact_px + contact.unknown_px <= rows * cols, "no pixel counts twice");
   require(is_finite(contact.area_mm2) && contact.area_mm2 >= 0,
           "an area is finite and not negative");

@@ -80,7 +80,7 @@ void try_depth(Input& in) {
       const bool is_near = std::abs(i - row) <= reach && std::abs(j - col) <= reach;
       require(is_near || (fuzz::same_bits(depth.view()(i, j), again.view()(i, j)) &&
                           status.view()(i, j) == status_again.view()(i, j)),
-              "what lies beyond the window stays as it was");
+              "pixels beyond the window are unchanged");
     }
   }
 }

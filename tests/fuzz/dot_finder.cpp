@@ -78,7 +78,8 @@ void try_finder(Input& in) {
     const DotResult r = finder(now, to, state), same = finder(now, second, copy);
     require(r.status != DotStatus::refused, "a frame of the right size is accepted");
     require(dots == again && r.found == same.found, "a copied state gives the same bits");
-    require(present(dots) == r.found && r.found <= r.expected, "as many dots as are told");
+    require(present(dots) == r.found && r.found <= r.expected,
+            "the number of dots found is that in the result");
   }
 }
 
@@ -104,7 +105,7 @@ void try_tracker(Input& in) {
     const DotResult r = tracker(spots, to, state), same = tracker(spots, second, copy);
     require(r.status != DotStatus::refused, "a grid of the right size is accepted");
     require(dots == again && r.found == same.found, "a copied state gives the same bits");
-    require(present(dots) == r.found, "as many dots as are told");
+    require(present(dots) == r.found, "the number of dots found is that in the result");
   }
 }
 

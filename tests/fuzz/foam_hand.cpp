@@ -21,8 +21,9 @@ struct BothRules : FoamHandMethods {
 using Hand = FoamHand<2, BothRules>;
 
 void require_finite(const FingerSample<double>& finger) {
-  require(finger.waves >= 0 && finger.frequency_hz >= 0, "waves are counted");
-  require(is_finite(finger.deviation) && is_finite(finger.frequency_hz), "what vibrates is finite");
+  require(finger.waves >= 0 && finger.frequency_hz >= 0, "waves and frequency are not negative");
+  require(is_finite(finger.deviation) && is_finite(finger.frequency_hz),
+          "deviation and frequency are finite");
 }
 
 void try_hand(Input& in) {
@@ -50,7 +51,7 @@ void try_hand(Input& in) {
   hand.reset();
   const Grid<double> still(rows, cols);
   const auto felt = fuzz::frame([&] { return hand(std::array{still.view(), still.view()}, 0.0); });
-  require(felt.status == PreslipStatus::cannot_tell, "after a reset nothing is known");
+  require(felt.status == PreslipStatus::cannot_tell, "after a reset the status is cannot_tell");
 }
 
 }  // namespace

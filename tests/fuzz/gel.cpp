@@ -75,8 +75,8 @@ void try_slide(Input& in) {
                 fuzz::same_bits(slid.evidence, copied.evidence),
             "a copied state gives the same bits");
     require(is_finite(slid.slide_px) && slid.evidence >= 0 && slid.lost >= 0 && slid.lost <= 1,
-            "a slide is finite, a share is in [0, 1]");
-    require(slid.held() >= 0 && slid.held() <= 1, "what is held is a share");
+            "a slide is finite and a share is in [0, 1]");
+    require(slid.held() >= 0 && slid.held() <= 1, "the held share is in [0, 1]");
   }
 }
 
@@ -99,7 +99,7 @@ void try_intensity(Input& in) {
       valid += is_finite(depth.view()(i, j)) ? 1 : 0;
     }
   }
-  require(valid == r.valid_px, "as many depths as are told");
+  require(valid == r.valid_px, "valid_px is the number of depths");
   const Index row = in.whole(0, rows - 1), col = in.whole(0, cols - 1);
   now.view()(row, col) = in.cell<Pixel>(0, 260);
   (void)estimate(now.view(), again.view(), work);
@@ -108,7 +108,7 @@ void try_intensity(Input& in) {
     for (Index j = 0; j < cols; ++j) {
       require((std::abs(i - row) <= reach && std::abs(j - col) <= reach) ||
                   fuzz::same_bits(depth.view()(i, j), again.view()(i, j)),
-              "what lies beyond the mean stays as it was");
+              "pixels beyond the mean are unchanged");
     }
   }
 }

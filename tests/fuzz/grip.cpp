@@ -66,10 +66,10 @@ void try_grip(Input& in) {
     auto by_slip = control.start();
     const auto fed = fuzz::frame([&] { return control(slip, step_s, by_slip); });
     require(fed.force_n >= law.min_force_n && fed.force_n <= law.max_force_n,
-            "a force by friction is within its limits");
+            "a force from friction is within its limits");
   }
   state.reset();
-  require(state.force_n() >= law.min_force_n, "a reset is a start");
+  require(state.force_n() >= law.min_force_n, "a reset equals a start");
 }
 
 template <class Search>
@@ -83,7 +83,7 @@ void follow(Input& in, const Search& search, double least_n, double most_n) {
             "a force is within its limits");
     require(!is_end(before.phase) ||
                 (command.phase == before.phase && command.force_n == before.force_n),
-            "what has ended stays");
+            "a phase that has ended and its force do not change");
     if (in.is_empty()) {
       break;
     }

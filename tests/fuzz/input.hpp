@@ -137,7 +137,7 @@ class Grid {
 /// Ends the run: the input is kept by the fuzzer.
 inline void require(bool holds, const char* what) {
   if (!holds) {
-    std::fprintf(stderr, "does not hold: %s\n", what);
+    std::fprintf(stderr, "property violated: %s\n", what);
     std::abort();
   }
 }
@@ -192,7 +192,7 @@ auto frame(const Frame& call) noexcept {
   const double begin = processor_seconds();
   auto result = call();
   const double seconds = processor_seconds() - begin;
-  require(test::allocations() == before, "a frame takes no memory");
+  require(test::allocations() == before, "a frame allocates no memory");
   time.add(seconds);
   return result;
 }

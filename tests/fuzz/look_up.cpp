@@ -46,10 +46,11 @@ void try_normal(Input& in, const Curve& curve) {
     const auto b = fuzz::frame([&] { return compensated(measure, moved, turned); });
     require_force(a);
     require_force(b);
-    require(!a.ok() || measure <= curve.to, "beyond the range no force is vouched for");
+    require(!a.ok() || measure <= curve.to, "a force beyond the range is not ok");
     const auto both = fused(a, b, in.number(0.1, 5));
     require_force(both);
-    require(both.sources <= int(a.has_force()) + int(b.has_force()), "as many sources as forces");
+    require(both.sources <= int(a.has_force()) + int(b.has_force()),
+            "there are at most as many sources as forces");
   }
 }
 
@@ -60,9 +61,11 @@ void try_shear(Input& in, const Map& map) {
     const double measure = in.number(-10, 500), turned = in.number(-1, 1);
     const Point2<double> moved{in.number(-5, 5), in.number(-5, 5)};
     const auto r = fuzz::frame([&] { return shear(measure, moved, turned); });
-    require(r.has_force() == is_finite(r.tangential_force_n), "a force is finite, or not told");
-    require(r.has_moment() == is_finite(r.moment_n_mm), "a moment is finite, or not told");
-    require(!r.ok() || (r.has_force() && r.has_moment()), "what is vouched for is there");
+    require(r.has_force() == is_finite(r.tangential_force_n),
+            "a force is reported exactly if it is finite");
+    require(r.has_moment() == is_finite(r.moment_n_mm),
+            "a moment is reported exactly if it is finite");
+    require(!r.ok() || (r.has_force() && r.has_moment()), "an ok result has a force and a moment");
   }
 }
 

@@ -58,7 +58,7 @@ void try_recoil(Input& in) {
   const auto a = recoil(dots.view(), state), b = recoil(dots.view(), fresh);
   require(fuzz::same_bits(a.displaced, b.displaced) && fuzz::same_bits(a.recoil, b.recoil) &&
               a.alarm == b.alarm,
-          "a reset is a start");
+          "a reset equals a start");
 }
 
 template <class Surface>
@@ -76,7 +76,7 @@ void try_surface(Input& in) {
   const auto r = fuzz::frame([&] { return fit(depth.view(), contact.view(), residual.view()); });
   const auto again = fit(depth.view(), contact.view(), second.view());
   require(r.status == again.status && residual == second, "the same frame gives the same bits");
-  require(!r.ok() || (is_finite(r.rms_mm) && r.rms_mm >= 0), "what is left is finite");
+  require(!r.ok() || (is_finite(r.rms_mm) && r.rms_mm >= 0), "the residual is finite");
 }
 
 }  // namespace

@@ -116,7 +116,7 @@ void try_slides(Input& in) {
   try_ratio(in, estimate, rows, cols, [&](const auto& dots, const auto& contact, auto& state) {
     const auto seen = estimate(dots, contact, state);
     require(!seen.ok() || (is_finite(seen.angle_rad) && is_finite(seen.furthest_px)),
-            "what belongs to an answer is finite");
+            "the values of an ok result are finite");
     return seen.stick_ratio;
   });
 }
@@ -180,7 +180,7 @@ void try_preslip(Input& in) {
     }
     const auto seen = fuzz::frame([&] { return rule(fingers, state); });
     require(!seen.alarm || (seen.samples_ago >= 0 && seen.samples_ago <= options.history),
-            "an alarm is of what is remembered");
+            "an alarm is of a stored sample");
   }
 }
 

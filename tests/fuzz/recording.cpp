@@ -37,7 +37,7 @@ class File {
     path_ = (exists(memory) ? memory : std::filesystem::temp_directory_path()) / "fingerpad_XXXXXX";
     std::string name = path_.string();
     const int made = mkstemp(name.data());
-    require(made >= 0, "a file can be made");
+    require(made >= 0, "a file can be created");
     path_ = name;
   }
   ~File() { remove(path_); }
@@ -80,7 +80,8 @@ void read(std::uint8_t kind, const std::filesystem::path& path) {
     case 8: {
       const auto table = replay::read_taxels(path);
       const auto readings = static_cast<std::size_t>(table.samples()) * table.taxels();
-      require(table.readings.size() == readings, "a table has a reading of each taxel");
+      require(table.readings.size() == readings,
+              "a table has a reading of each taxel in each sample");
       break;
     }
     case 9:

@@ -40,7 +40,7 @@ double seconds_of(const Call& call) {
 
 int main(int argc, char** argv) {
   if (argc != 4) {
-    std::fprintf(stderr, "frame ROWS COLS FILE\n");
+    std::fprintf(stderr, "usage: frame ROWS COLS FILE\n");
     return 2;
   }
   rows = std::atoi(argv[1]);

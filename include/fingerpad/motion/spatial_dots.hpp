@@ -130,8 +130,7 @@ bool disc_in_contact(const Mask& mask, Index row, Index col, double radius_px) {
 /// or the radius is none. Allocates nothing; O(dots radius^2).
 template <dot_grid Dots, contact_mask Mask, class Out>
 bool contact_at_dots(const Dots& dots_px, const Mask& mask, Out&& out, double dot_radius_px = 0) {
-  static_assert(writable_grid<Out, bool>,
-                "this grid is written to: its cells must be assignable");
+  static_assert(writable_grid<Out, bool>, "this grid is written to: its cells must be assignable");
   const auto from = as_view(dots_px);
   const auto flags = as_view(mask);
   const auto to = as_view(std::forward<Out>(out));
