@@ -151,8 +151,8 @@ void bind_stick_result(py::module_& module) {
       .def_property_readonly("updated", &Stick::updated, "whether it is that of this frame")
       .def_property_readonly("status", [](const Stick& r) { return name_of(r.status); })
       .def_readonly("stick", &Stick::stick, "dots in contact that stick")
-      .def_readonly("slip", &Stick::slip, "that slip")
-      .def_readonly("unknown", &Stick::unknown, "of which neither is known")
+      .def_readonly("slip", &Stick::slip, "dots in contact that slip")
+      .def_readonly("unknown", &Stick::unknown, "dots in contact of unknown state")
       .def_readonly("out_of_place", &Stick::out_of_place)
       .def_property_readonly(
           "back",
