@@ -527,10 +527,9 @@ TEST_CASE("normal force: what is too large for a number is no answer", "[normal_
 }
 
 TEST_CASE("normal force: no curve begins with a step", "[normal_force]") {
-  CHECK(
-      refused(PolynomialForce<>{{1, 1, 0}, 0, 10}) ==
-      "PolynomialForce: first of the coefficients = 1, must be 0 if from is 0, else the force "
-      "would begin with a step");
+  CHECK(refused(PolynomialForce<>{{1, 1, 0}, 0, 10}) ==
+        "PolynomialForce: first of the coefficients = 1, must be 0 if from is 0, else the force "
+        "would begin with a step");
   const NormalForce<> nearly(PolynomialForce<>{{1, 1, 0}, 1e-310, 10});
   CHECK(nearly(0).force_n == 0);
   // a constant curve does not fall, whatever its sign

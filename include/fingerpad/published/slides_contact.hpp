@@ -83,8 +83,7 @@ bool touches(const Depth& depth_mm, Index row, Index col, const SlidesContactOpt
 /// and writes nothing. Refuses bad parameters (parameter_error). O(pixels directions / step_px^2).
 template <scalar S = double, grid Depth, class Mask>
 double contact_by_slides(const Depth& depth_mm, Mask&& mask, const SlidesContactOptions& o = {}) {
-  static_assert(writable_grid<Mask, bool>,
-                "this grid is written to: its cells must be assignable");
+  static_assert(writable_grid<Mask, bool>, "this grid is written to: its cells must be assignable");
   const char* const owner = "SlidesContactOptions";
   expects(is_finite(o.threshold_per_mm), owner, "threshold_per_mm", o.threshold_per_mm, "finite");
   expects(o.directions >= 1 && o.directions <= 360, owner, "directions",
