@@ -74,9 +74,8 @@ void print_look_up(const Writer& writer, const Recording& recording) {
               normal_n, tangential_n);
   if (disagreeing > 0) {
     std::printf(
-        "             %d of these: area and depth disagree: the object has another shape than in "
-        "the\n"
-        "             calibration; the force by area is used\n",
+        "             %d of these: area and depth disagree, so the object has another shape than\n"
+        "             in the calibration; the force by area is used\n",
         disagreeing);
   }
   if (beyond > 0) {
