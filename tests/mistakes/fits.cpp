@@ -420,7 +420,7 @@ TEST_CASE("mistakes: neighbouring light", "[mistakes]") {
   const Mistake<Depths> mistakes[] = {
       {"none", [](Depths&) {}, "right"},
       {"truth in m", [=](Depths& d) { all_of(d.truth, scaled(1e-3)); },
-       "check whether measured and true depths are exchanged"},
+       "measured and true depths may be exchanged"},
       {"truth in um", [=](Depths& d) { all_of(d.truth, scaled(1e3)); }, "true depth = 0"},
       {"all depths in m",
        [=](Depths& d) {
@@ -439,7 +439,7 @@ TEST_CASE("mistakes: neighbouring light", "[mistakes]") {
       {"pitch in m", [](Depths& d) { d.pitch_mm *= 1e-3; }, "an end of the search"},
       {"pitch in um", [](Depths& d) { d.pitch_mm *= 1e3; }, "mm between pixels"},
       {"measured and true exchanged", [](Depths& d) { std::swap(d.measured, d.truth); },
-       "check whether measured and true depths are exchanged"},
+       "measured and true depths may be exchanged"},
       {"frames exchanged", [](Depths& d) { std::swap(d.truth[0], d.truth[1]); },
        "an end of the search"},
       {"truth transposed", [](Depths& d) { all_of(d.truth, transposed); }, "less than a tenth"},

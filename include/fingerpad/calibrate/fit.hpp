@@ -122,8 +122,7 @@ constexpr const char* name_of(FitStatus status) {
       return "neighbouring light removes less than a tenth of the error: check frame, order and "
              "unit";
     case FitStatus::light_taken_away:
-      return "neighbouring light would darken the pad: check whether measured and true depths are "
-             "exchanged";
+      return "neighbouring light would darken: measured and true depths may be exchanged";
     case FitStatus::pad_moved:
       return "the dots move slowly, unlike noise: check that the pad is at rest";
     case FitStatus::taxels_missing:
