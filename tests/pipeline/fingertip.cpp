@@ -118,6 +118,9 @@ template <int Step>
 struct Sampled : DepthAndContact {
   static constexpr int sampling = Step;
 };
+struct SampledAtThreshold : Sampled<3> {
+  using Edge = fingerpad::AtThreshold;
+};
 struct EveryPixel : DepthAlone {
   static constexpr int sampling = 1;
 };
@@ -192,6 +195,20 @@ TEST_CASE("sampled frames say what whole ones do", "[chain]") {
   CHECK(differ < 0.04 * touching);
 }
 
+TEST_CASE("the least region in pixels counts whole samples", "[chain]") {
+  auto options = frames().options();
+  const Inputs in = frames()[0].view();
+  TipOf<SampledAtThreshold> any(options);
+  const Index samples = any(in.image, in.dots_px, 0.0).contact.contact_px;
+  REQUIRE(samples > 100);
+  options.contact.min_region_px = 9 * static_cast<int>(samples);
+  TipOf<SampledAtThreshold> just(options);
+  CHECK(just(in.image, in.dots_px, 0.0).contact.contact_px == samples);
+  ++options.contact.min_region_px;
+  TipOf<SampledAtThreshold> less(options);
+  CHECK(less(in.image, in.dots_px, 0.0).contact.contact_px == 0);
+}
+
 TEMPLATE_TEST_CASE("bad pixels leave a sampled frame as it was farther away than windows reach",
                    "[chain]",
                    Sampled<1>,
@@ -263,7 +280,7 @@ TEST_CASE("a fingertip takes the neighbour light off as that method does", "[cha
   (void)touch_of(plain, in);
   options.neighbour_light = fingerpad::NeighbourLight<float>{.radius_px = 12};
   CHECK(test::refusal([&] { TipOf<WithLight> without(options); }) ==
-        "FingertipOptions: rows of free_depth_mm = 0, must be the frame's size");
+        "FingertipOptions: rows of free_depth_mm = 0, must be the size of the frame");
   options.free_depth_mm = free.depth_mm();
   TipOf<WithLight> tip(options);
   (void)touch_of(tip, in);

@@ -101,7 +101,7 @@ struct FingertipLight {
     if (o.neighbour_light) {
       expects(o.free_depth_mm.rows() == o.rows && o.free_depth_mm.cols() == o.cols,
               "FingertipOptions", "rows of free_depth_mm",
-              static_cast<long long>(o.free_depth_mm.rows()), "of the size of the frame");
+              static_cast<long long>(o.free_depth_mm.rows()), "the size of the frame");
       compensate.emplace(*o.neighbour_light, pitch_on_membrane_mm(o), o.free_depth_mm);
       work.emplace(compensate->workspace());
     }
@@ -124,10 +124,9 @@ struct FingertipLight {
         count += is_finite(depth_mm) ? 1 : 0;
       }
     }
-    const auto x_mm = [&](double col) {
-      return point_at(o.camera, o.camera.center_y_px, col, sum_mm / count).x;
-    };
-    return static_cast<float>(x_mm(o.camera.center_x_px + 1) - x_mm(o.camera.center_x_px));
+    const double beside_axis_px = o.camera.center_x_px + 1;  // x is 0 on the axis
+    return static_cast<float>(
+        point_at(o.camera, o.camera.center_y_px, beside_axis_px, sum_mm / count).x);
   }
 };
 
