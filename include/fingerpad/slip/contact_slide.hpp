@@ -1,16 +1,16 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// Whether the object slides on the pad, from its imprint. On an elastic gel a slipping object moves
-// past dots that hardly move, and its contact shrinks before it is lost. There are two measures,
-// with an alarm on either:
-//   slide  how far the imprint has travelled past the dots in it, since the contact began
-//   lost   the fraction of the contact's largest area so far that is gone
-// The dots alone (slip/stick_ratio.hpp) cannot tell this: an object that slides as a whole leaves
-// them where they are. The stick ratio warns on membranes, this does on gels.
+// Detects gross slip of an object on an elastic gel, from its imprint. A slipping object moves past
+// dots that hardly move, and its contact shrinks before it is lost. There are two measures, and
+// either can raise the alarm:
+//   slide  displacement of the imprint relative to the dots in it since the contact began
+//   lost   fraction of the largest contact area so far that has been lost
+// The dots alone (slip/stick_ratio.hpp) do not show this, because an object that slides as a whole
+// leaves them where they are. Use the stick ratio on membranes and this method on gels.
 //
-// The imprint is any picture in which the contact shows: the difference of contact_by_difference,
-// or a depth map.
+// The imprint is any image in which the contact is visible: the difference image of
+// contact_by_difference, or a depth map.
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -29,17 +29,19 @@
 namespace fingerpad {
 inline namespace v0 {
 
-/// Thresholds of slide. They are in dot pitches and fractions, so they hold for pads of any size.
+/// Thresholds of the slide. They are in dot pitches and fractions, so they hold for pads of any
+/// size.
 struct SlideTest {
-  double pitch_px = 40;          ///< between neighbouring dots, > 0
-  double cell_px = 4;            ///< pixels of the dots' image per cell of the imprint, > 0
-  double max_slide = 0.25;       ///< alarm beyond so many pitches, > 0
-  double min_slide = 0.1;        ///< pitches, beyond a standard error, that lost area takes to
-                                 ///< count: an object that is let go shrinks in place; in (0,
-                                 ///< max_slide]
-  double max_lost = 0.25;        ///< alarm beyond this share of the area, in (0, 1)
-  double min_correlation = 0.6;  ///< of imprints that are compared; in [0, 1)
-  Index min_cells = 100;         ///< contacts of fewer cells have no slide; >= 30
+  double pitch_px = 40;     ///< distance of neighbouring dots, > 0
+  double cell_px = 4;       ///< pixels of the dots' image per cell of the imprint, > 0
+  double max_slide = 0.25;  ///< pitches; the alarm threshold of the slide, > 0
+  /// Limits the evidence from lost area to (slide - its standard error) / min_slide, because an
+  /// object that is let go shrinks in place. Pitches, in (0, max_slide].
+  double min_slide = 0.1;
+  double max_lost = 0.25;  ///< fraction of the area; the alarm threshold of the loss, in (0, 1)
+  /// An imprint whose correlation with the earlier one is smaller counts as not found; in [0, 1).
+  double min_correlation = 0.6;
+  Index min_cells = 100;  ///< a smaller area counts as no contact; >= 30
 };
 inline void expects_valid(const SlideTest& test) {
   constexpr const char* owner = "SlideTest";
@@ -59,13 +61,14 @@ inline void expects_valid(const SlideTest& test) {
 }
 
 enum class SlideStatus : std::uint8_t {
-  updated,     ///< slide and area are those of this frame
-  began,       ///< the first frame of a contact: what follows counts from here
-  no_dots,     ///< no dot in the contact was seen before and now, or they carry other names than
-               ///< before: the slide is the last one
-  not_found,   ///< the imprint was not found again: the slide is the last one
-  no_contact,  ///< too little touches; after a contact all of its area is lost
-  no_edge,     ///< contact fills the image, which has no imprint then: all is as it was
+  updated,  ///< slide and area are those of this frame
+  began,    ///< the first frame of a contact, from which slide and loss are measured
+  /// No dot in the contact was found both before and now, or the dots are labelled differently than
+  /// before. The last slide is kept.
+  no_dots,
+  not_found,   ///< the imprint was not found again: the last slide is kept
+  no_contact,  ///< the area is below min_cells; after a contact, all of its area counts as lost
+  no_edge,     ///< contact fills the image, so that there is no imprint: nothing changes
   refused,     ///< a grid or state has another size: nothing was done
 };
 
@@ -93,21 +96,24 @@ constexpr const char* name_of(SlideStatus status) {
 template <scalar S = float>
 struct [[nodiscard]] SlideResult {
   SlideStatus status = SlideStatus::refused;
-  Index dots = 0;                       ///< in contact, that the slide was taken from
-  Point2<S> imprint_px = {S(0), S(0)};  ///< travel of the imprint since the contact began
-  S imprint_sd_px = S(0);               ///< of it, along each axis
-  Point2<S> slide_px = {S(0), S(0)};    ///< the same past the dots in it
-  S rotation_rad = S(0);     ///< of the imprint past the dots, from x to y; at least 3 dots
-  S rotation_sd_rad = S(0);  ///< of it. A ball turns without its imprint: nothing shows that
+  Index dots = 0;                       ///< dots in contact from which the slide was computed
+  Point2<S> imprint_px = {S(0), S(0)};  ///< displacement of the imprint since the contact began
+  S imprint_sd_px = S(0);               ///< its standard deviation along each axis
+  Point2<S> slide_px = {S(0), S(0)};    ///< displacement of the imprint relative to the dots in it
+  /// Rotation of the imprint relative to the dots, from x to y; needs at least 3 dots. The rotation
+  /// of a ball does not show, because its imprint does not rotate with it.
+  S rotation_rad = S(0);
+  S rotation_sd_rad = S(0);  ///< its standard deviation
   S slide = S(0);            ///< |slide_px| in pitches
-  S lost = S(0);             ///< share of the largest area so far that is gone, in [0, 1]
-  S correlation = S(0);      ///< of the imprint with what it was
-  S evidence = S(0);   ///< for slip: slide / max_slide, or lost / max_lost as far as the slide
-                       ///< allows, whichever is larger
-  bool alarm = false;  ///< evidence is above 1
+  S lost = S(0);             ///< fraction of the largest area so far that has been lost, in [0, 1]
+  S correlation = S(0);      ///< of the imprint with the earlier one
+  /// Evidence for slip: the larger of slide / max_slide and lost / max_lost, the latter as far as
+  /// min_slide allows.
+  S evidence = S(0);
+  bool alarm = false;  ///< evidence > 1
 
-  /// 1 while nothing speaks for slip, 0 from the alarm on: what FrictionLimit and GripControl take
-  /// in place of a stick ratio, fresh where ok().
+  /// 1 without evidence for slip, falling to 0 at the alarm. FrictionLimit and GripControl take it
+  /// in place of a stick ratio; it is fresh if ok().
   S held() const { return evidence < S(1) ? S(S(1) - evidence) : S(0); }
   bool accepted() const { return status != SlideStatus::refused; }
   /// Whether slide and area are those of this frame.
@@ -115,8 +121,8 @@ struct [[nodiscard]] SlideResult {
   bool touches() const { return status != SlideStatus::no_contact; }
 };
 
-/// Slide of a contact, frame by frame. Const: threads may share one, each with a state of its own.
-/// A frame takes no memory, throws nothing, and needs O(rows cols) time.
+/// Slide of a contact, frame by frame. Const: threads may share one object, each with its own
+/// state. A frame allocates nothing, throws nothing, and takes O(rows cols) time.
 template <scalar S = float>
 class ContactSlide {
  public:
@@ -129,7 +135,7 @@ class ContactSlide {
     expects_valid(test);
   }
 
-  /// A value: copy it to go back to this frame later. All memory that frames need is in it.
+  /// A value: copy it to return to this frame later. It holds all memory that frames need.
   class State {
    public:
     explicit State(const ContactSlide& slide)
@@ -144,7 +150,7 @@ class ContactSlide {
       x_.reserve(dots);
       y_.reserve(dots);
     }
-    /// What was before is forgotten.
+    /// Returns to the state before the first frame.
     void reset() {
       began_ = false;
       max_area_ = 0;
@@ -167,8 +173,8 @@ class ContactSlide {
   };
   State start() const { return State(*this); }
 
-  /// The slide up to a frame with the imprint `imprint` (NaN: unknown), the contact `contact`, cell
-  /// by cell, and the dots `dots_px` (NaN: not found) in pixels, cell_px of which make a cell.
+  /// Processes a frame with `imprint` (NaN: unknown) and `contact`, cell by cell, and the dots
+  /// `dots_px` in pixels (NaN: not found). A cell is cell_px pixels wide.
   template <grid Imprint, contact_mask Contact, dot_grid Dots>
   SlideResult<S> operator()(const Imprint& imprint,
                             const Contact& contact,
@@ -211,7 +217,7 @@ class ContactSlide {
 
  private:
   static Point2<S> missing() { return {not_a_number<S>(), not_a_number<S>()}; }
-  /// The frame into the state; returns the area in cells.
+  /// Copies the frame into the state. Returns the contact area in cells.
   template <class From, class Touch, class Dots>
   Index read(const From& from, const Touch& touch, const Dots& dots, State& state) const {
     Index area = 0;
@@ -234,7 +240,7 @@ class ContactSlide {
     return area;
   }
 
-  /// What follows is compared with this frame.
+  /// Makes this frame the key frame, with which later frames are compared.
   void set_key(State& state) const {
     state.region_ = state.mask_;
     state.growth_.grow(state.region_);
@@ -294,7 +300,8 @@ class ContactSlide {
       }
       result.slide = S(norm(result.slide_px) / S(test_.pitch_px));
     }
-    // on the move each frame is compared with the one before; at rest nothing adds up
+    // in motion each frame becomes the key frame of the next; at rest the key frame stays, so that
+    // errors do not add up
     const bool moved = S(1) < squared_norm(motion.shift);
     if (moved || motion.correlation < S((1 + test_.min_correlation) / 2) || dots.count == 0) {
       set_key(state);
@@ -307,8 +314,8 @@ class ContactSlide {
     S angle_rad = S(0);
     S angle_variance = S(0);
   };
-  /// Median shift and least-squares rotation of the dots that touched in the key frame and touch
-  /// now.
+  /// Median shift and least-squares rotation of the dots that are in contact now and were in the
+  /// key frame.
   DotMotion motion_of_dots(const Point2<S>& imprint_px, State& state) const {
     using std::atan2;
     state.x_.clear();
@@ -342,14 +349,14 @@ class ContactSlide {
     motion.shift = {median(state.x_), median(state.y_)};
     if (S(0) < along) {
       motion.angle_rad = S(atan2(across, along));
-      // what is left of the squares, to their degrees of freedom
+      // residual sum of squares over its degrees of freedom
       const S left = S(moved - across * motion.angle_rad);
       motion.angle_variance = S(0) < left ? S(left / (S(2) * count - S(3)) / arms) : S(0);
     }
     return are_renamed(motion, imprint_px, state) ? DotMotion{} : motion;
   }
-  /// Whether the dots moved further past the imprint than gel springs back, or most of them further
-  /// apart than gel stretches: what was seen are other dots.
+  /// Whether the dots are labelled differently: their shift differs from that of the imprint by
+  /// more than a gel springs back, or most of them have moved apart by more than a gel stretches.
   bool are_renamed(const DotMotion& motion, const Point2<S>& imprint_px, State& state) const {
     const S limit = S(0.75 * test_.pitch_px);
     state.x_.clear();

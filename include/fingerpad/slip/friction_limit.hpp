@@ -1,17 +1,18 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// Whether the whole object slides, by comparing force and moment of the contact with their limit at
-// the last slide. It detects what dots cannot show: an object that slides over a membrane that
-// stands still, or that carries all dots along equally. The load of a contact is
+// Detects gross slip by comparing force and moment of the contact with their limit at the last
+// slide. Dots cannot show an object that slides over a membrane at rest, or that carries all dots
+// along equally. The load of a contact is
 //
 //   L = hypot(F_t / F_n, M_n / (arm F_n)),
 //
-// with F_n normal and F_t tangential to the contact, M_n about the normal through its center, and
-// `arm` the mean distance of the contact from its center. While the object slides under even
-// pressure, L is the friction coefficient: an ellipse through both axes of the true limit curve of
-// force and moment (Howe, Cutkosky, "Practical force-motion models for sliding manipulation",
-// 1996). Published for forces alone, "F / N ~ F0 / N0": published/friction_ratio.hpp.
+// with F_n normal and F_t tangential to the contact, M_n the moment about the normal through its
+// center, and `arm` the mean distance of the contact from its center. While the object slides under
+// uniform pressure, L is the friction coefficient. The true limit curve of force and moment is
+// replaced by an ellipse that meets it on both axes (Howe, Cutkosky, "Practical force-motion models
+// for sliding manipulation", 1996). The published form has forces only, "F / N ~ F0 / N0":
+// published/friction_ratio.hpp.
 #include <cmath>
 #include <cstdint>
 
@@ -26,18 +27,19 @@
 namespace fingerpad {
 inline namespace v0 {
 
-/// Load of a contact. NaN means not known, and so does a value of a million or more; an unknown
-/// moment counts as zero.
+/// Load of a contact. NaN and values of a million or more mean unknown; an unknown moment counts as
+/// zero.
 template <scalar S = double>
 struct ContactLoad {
-  S normal_n = not_a_number<S>();      ///< F_n, positive in a press
+  S normal_n = not_a_number<S>();      ///< F_n, positive under pressure
   S tangential_n = not_a_number<S>();  ///< F_t
   S moment_n_mm = S(0);                ///< M_n
-  S arm_mm = S(0);                     ///< > 0 where the moment counts
+  S arm_mm = S(0);                     ///< the moment counts only if this is > 0
 };
 
-/// From the six-axis force and moment (what the object exerts on the pad, about Q) and the dots in
-/// contact; NaN with fewer than three of them. Takes no memory, O(rows cols).
+/// Computes the load from the six-axis force and moment, which the object exerts on the pad, about
+/// Q, and from the dots in contact. The forces are NaN with fewer than three dots. Allocates
+/// nothing, O(rows cols).
 template <scalar S, spatial_dot_grid Dots, contact_mask Contact>
 ContactLoad<S> contact_load(const Point3<S>& force_n,
                             const Point3<S>& moment_n_mm,
@@ -79,7 +81,7 @@ ContactLoad<S> contact_load(const Point3<S>& force_n,
   return load;
 }
 
-/// The equation: L. NaN without a normal force.
+/// L; NaN unless the normal force is > 0 and both forces are known.
 template <scalar S>
 S friction_of(const ContactLoad<S>& load) {
   using std::sqrt;
@@ -95,11 +97,14 @@ S friction_of(const ContactLoad<S>& load) {
 }
 
 struct FrictionLimitOptions {
-  double slide_fraction = 0.95;  ///< in (0, 1]: at this share of the limit the object slides; 1
-                                 ///< less three times the noise of L, 1.5 % of forces
-  double learn_below = 0.2;  ///< stick ratio by the dots below which the limit is learnt, in (0, 1)
-  double max_rise = 1.15;    ///< > 1: a limit rises or falls by no more than this factor a frame
-  double min_normal_n = 0.05;  ///< a smaller normal force has no ratio, N, > 0
+  /// Fraction of the limit from which on the object counts as sliding, in (0, 1]. The default is 1
+  /// less three times the noise of L, for forces known to 1.5 %.
+  double slide_fraction = 0.95;
+  double learn_below = 0.2;  ///< stick ratio of the dots below which the limit is learnt, in (0, 1)
+  /// Largest factor by which the limit rises or falls in a frame, > 1. An object that exceeds the
+  /// limit by this factor while more than half of it sticks makes the limit unknown again.
+  double max_rise = 1.15;
+  double min_normal_n = 0.05;  ///< N, > 0: L is unknown with a smaller normal force
 };
 inline void expects_valid(const FrictionLimitOptions& o) {
   const auto check = [](bool good, const char* name, double given, const char* range) {
@@ -113,10 +118,10 @@ inline void expects_valid(const FrictionLimitOptions& o) {
 }
 
 enum class FrictionLimitStatus : std::uint8_t {
-  held,      ///< L is below the limit
-  sliding,   ///< L is at the limit: nothing sticks, whatever the dots say
-  no_limit,  ///< nothing has slid yet: the dots alone answer
-  no_load,   ///< no normal force, or a force that is not finite: the dots alone answer
+  held,      ///< L is below slide_fraction of the limit
+  sliding,   ///< L is above it: the stick ratio is 0, whatever the dots report
+  no_limit,  ///< no slide so far: the answer is that of the dots alone
+  no_load,   ///< no normal force, or a force is not finite: the answer is that of the dots alone
 };
 
 /// "held", "sliding", ...
@@ -134,48 +139,49 @@ constexpr const char* name_of(FrictionLimitStatus status) {
   return "unknown";
 }
 
-/// The evidence behind an answer.
+/// What an answer is based on.
 enum class SlipEvidence : std::uint8_t {
   none,
-  dots,      ///< the stick ratio
-  imprint,   ///< a gel's imprint past its dots, lost area, or recoil
-  friction,  ///< the limit alone
-  both,      ///< friction, and the dots or the imprint
+  dots,      ///< the stick ratio of the dots
+  imprint,   ///< on a gel: slide of the imprint, lost area, or recoil
+  friction,  ///< the friction limit alone
+  both,      ///< friction, and dots or imprint
 };
 
-/// Evidence for slip on a gel: a SlideResult, or a RecoilResult if only dots are known.
+/// Result with evidence for slip on a gel: SlideResult, or RecoilResult if only the dots are known.
 template <class T> concept imprint_result = requires(const T& seen) {
   seen.ok();
   seen.held();
   seen.touches();
 };
 
-/// The fused answer.
+/// The stick ratio by dots, or by the imprint on a gel, combined with friction.
 template <scalar S = double>
 struct [[nodiscard]] SlipResult {
   FrictionLimitStatus status = FrictionLimitStatus::no_load;
   SlipEvidence evidence = SlipEvidence::none;
-  S stick_ratio = not_a_number<S>();          ///< in [0, 1]; NaN: nothing is known; of an imprint
-                                              ///< 1 - its evidence for slip
-  RatioUpdate update = RatioUpdate::missing;  ///< how fresh it is, for GripControl
-  S dots_ratio = not_a_number<S>();  ///< what dots or imprint say alone in this frame; NaN: nothing
-  Index reference_age = 0;           ///< frames since the dots' reference; 0: not known
-  bool falls_back = false;           ///< dots go back to their free places: the load falls, or the
-                                     ///< object slides under friction that has fallen
-  S normal_n = not_a_number<S>();    ///< F_n, where L is known
-  S friction = not_a_number<S>();    ///< L
-  S limit = not_a_number<S>();       ///< at the last slide; NaN: none yet
-  S margin = not_a_number<S>();      ///< 1 - L / limit; NaN where unknown
+  /// In [0, 1]; NaN: unknown. With an imprint it is 1 - the imprint's evidence for slip.
+  S stick_ratio = not_a_number<S>();
+  RatioUpdate update = RatioUpdate::missing;  ///< how current it is, for GripControl
+  S dots_ratio = not_a_number<S>();           ///< of dots or imprint alone in this frame; NaN: none
+  Index reference_age = 0;  ///< frames since the reference of the dots; 0: unknown
+  /// The dots move back toward their free positions: the load falls, or the object slides because
+  /// friction has fallen.
+  bool falls_back = false;
+  S normal_n = not_a_number<S>();  ///< F_n; NaN where L is unknown
+  S friction = not_a_number<S>();  ///< L
+  S limit = not_a_number<S>();     ///< L at the last slide; NaN: none so far
+  S margin = not_a_number<S>();    ///< 1 - L / limit; NaN if unknown
 
   bool ok() const { return is_finite(stick_ratio); }
 };
 
-/// The dots, or a gel's imprint, and friction together. Const, O(1), takes no memory, throws
-/// nothing.
+/// Combines the dots, or the imprint on a gel, with friction. Const, O(1), allocates nothing,
+/// throws nothing.
 template <scalar S = double>
 class FrictionLimit {
  public:
-  /// A value: copy it to go back to this frame later.
+  /// A value: copy it to return to this frame later.
   class State {
    public:
     const S& limit() const { return limit_; }
@@ -195,10 +201,10 @@ class FrictionLimit {
 
   State start() const { return State(); }
 
-  /// `stick_ratio` and `update` are those of the dots (NaN: none); since how many frames they are
-  /// compared, `reference_age`, tells a limit that has fallen (0: not known, no limit falls far).
-  /// The limit outlives a contact: it belongs to the object, so reset the state when another one is
-  /// taken.
+  /// `stick_ratio` (NaN: none) and `update` are those of the dots. `reference_age`, the number of
+  /// frames since their reference, is needed to detect that the limit has fallen (0: unknown; the
+  /// limit is then not lowered far). The limit is a property of the object and outlives a contact,
+  /// so reset the state when another object is grasped.
   SlipResult<S> operator()(const ContactLoad<S>& load,
                            const S& stick_ratio,
                            RatioUpdate update,
@@ -207,8 +213,9 @@ class FrictionLimit {
     return fuse(load, stick_ratio, update, SlipEvidence::dots, reference_age, state);
   }
 
-  /// The same for the result of a stick ratio, whose reference tells GripControl what is news. Dots
-  /// that fall back in space are asked where the load shows that the object carries them.
+  /// The same for the result of a stick ratio, whose reference_age tells GripControl whether it is
+  /// new. If dots in space fall back, their ratio is used only if the load shows that the object
+  /// carries them.
   template <class Stick>
     requires requires(const Stick& seen) {
       seen.stick_ratio;
@@ -224,9 +231,9 @@ class FrictionLimit {
     return (*this)(load, S(seen.stick_ratio), update_of(seen.status), state, seen.reference_age);
   }
 
-  /// The same for a gel, where the imprint answers in place of the dots (`imprint` as
-  /// ContactSlide or Recoil give it): a limit is learnt from its alarms, and one that was learnt
-  /// answers where no imprint is found again.
+  /// The same for a gel, where `imprint`, the result of ContactSlide or Recoil, replaces the dots.
+  /// The limit is learnt while held() is below learn_below, and is used where the imprint is not
+  /// found.
   template <imprint_result Imprint>
   SlipResult<S> operator()(const ContactLoad<S>& load, const Imprint& imprint, State& state) const {
     const RatioUpdate update = imprint.ok()        ? RatioUpdate::fresh
@@ -237,7 +244,7 @@ class FrictionLimit {
   }
 
  private:
-  /// `ratio` is what `source` says.
+  /// `ratio` is that of `source`.
   SlipResult<S> fuse(const ContactLoad<S>& load,
                      const S& ratio,
                      RatioUpdate update,
@@ -263,15 +270,17 @@ class FrictionLimit {
       learn(result, state);
     } else if (known && update == RatioUpdate::fresh && 2 * value(ratio) > 1 &&
                result.friction > S(options_.max_rise) * state.limit_) {
-      state.limit_ = not_a_number<S>();  // it holds beyond what was taken for the limit
+      // The object holds at more than the limit, so the limit was wrong.
+      state.limit_ = not_a_number<S>();
     }
     judge(slides, state, result);
     return result;
   }
 
-  /// A membrane is carried back by an object that sticks with a load that falls: by more than three
-  /// times the noise of two L. Under one that slides it springs back with a load that stays. Before
-  /// a limit is known that is learnt, if the dots have told before that less than half sticks.
+  /// An object that sticks carries a membrane back only while its load falls, here by more than
+  /// three times the noise of two L. Under an object that slides, the membrane springs back while
+  /// the load stays. If no limit is known yet, such a slide is learnt, provided that less than half
+  /// stuck in the last ratio of the dots.
   template <class Stick>
   SlipResult<S> of_falling_back(const ContactLoad<S>& load, const Stick& seen, State& state) const {
     const Index age = seen.back.reference_age;
@@ -287,14 +296,14 @@ class FrictionLimit {
     return result;
   }
 
-  /// L; NaN where the normal force is too small to have one.
+  /// L; NaN if the normal force is below min_normal_n.
   S known_friction(const ContactLoad<S>& load) const {
     return !(load.normal_n < S(options_.min_normal_n)) ? friction_of(load) : not_a_number<S>();
   }
 
   void learn(const SlipResult<S>& seen, State& state) const {
     if (!is_finite(state.limit_)) {
-      // less is no friction
+      // a smaller L is no friction
       state.limit_ = seen.friction > S(1e-6) ? seen.friction : state.limit_;
       return;
     }
@@ -304,14 +313,14 @@ class FrictionLimit {
     }
     const S top = S(options_.max_rise) * state.limit_;
     const S toward = value(seen.friction) < value(top) ? seen.friction : top;
-    // up soon, down slowly: noise makes the mean a little too high, never too low
+    // rises fast and falls slowly: noise makes the mean slightly too high, never too low
     const S share = value(toward) > value(state.limit_) ? S(1) / S(2) : S(1) / S(10);
     state.limit_ = state.limit_ + share * S(toward - state.limit_);
   }
 
-  /// What slid since the reference did so under no larger load than the largest since then. Where
-  /// a share s sticks that is (1 - s^(3/2)) of the limit (Cattaneo, Mindlin): one that lies beyond
-  /// that, and the noise of L, has fallen.
+  /// Lowers a limit that has fallen. Whatever slid since the reference did so under no larger load
+  /// than the largest since then. If a fraction s sticks, that load is (1 - s^(3/2)) of the limit
+  /// (Cattaneo, Mindlin). A limit above this by more than the noise of L has fallen.
   void follow_fall(const SlipResult<S>& seen, State& state) const {
     using std::sqrt;
     if (seen.reference_age <= 0) {

@@ -1,25 +1,25 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// How hard to grip so that an object of unknown weight and friction does not slip, from the stick
-// ratio. Idea: Watanabe, Obinata, "Grip Force Control Using Vision-Based Tactile Sensor for
-// Dexterous Handling" (2008), as summed up by the paper on slippage ("Definition of stick ratio"):
-// the slippage degree is fed back in proportion; when all sticks the force is not increased, when
-// incipient slip shows it is increased before the object slips as a whole.
+// Controls the grip force by the stick ratio, so that an object of unknown weight and friction does
+// not slip. Idea: Watanabe, Obinata, "Grip Force Control Using Vision-Based Tactile Sensor for
+// Dexterous Handling" (2008), as summarized by the paper on slippage ("Definition of stick ratio"):
+// the slippage degree is fed back proportionally. While everything sticks the force is not
+// increased. At incipient slip it is increased before the object slips as a whole.
 //
-//   dF/dt = raise_gain (set_point - ratio)    where less than set_point sticks
-//         = -lower_gain (ratio - lower_above) where more than lower_above does, by default never
-//         = 0                                 in between
+//   dF/dt = raise_gain (set_point - ratio)      ratio < set_point
+//         = -lower_gain (ratio - lower_above)   ratio > lower_above; lower_gain is 0 by default
+//         = 0                                   in between
 //
-// The force itself is the only integrator, and it is kept within its limits: nothing winds up. The
+// The force itself is the only integrator and is kept within its limits, so there is no windup. The
 // form of the law, its limits and all defaults are this library's; the summary gives no formula.
 //
-// Where the tangential force F_t is known too, the force follows it at once,
+// If the tangential force F_t is known, the force follows it at once,
 //
 //   F = F_t / L*,
 //
-// and the ratio only corrects the friction L* that is asked of the contact: up slowly while the
-// dots have stick to spare, down to L / (1 + slip_margin) when they slip at L = F_t / F_n.
+// and the ratio only corrects L*, the friction demanded of the contact. L* grows slowly while the
+// dots have stick to spare, and falls to L / (1 + slip_margin) when they slip at L = F_t / F_n.
 #include "fingerpad/core/scalar.hpp"
 #include "fingerpad/slip/grip_law.hpp"
 
@@ -27,21 +27,21 @@ namespace fingerpad {
 inline namespace v0 {
 
 /// Grip force, call by call. One object serves any number of fingers, each with its own state. A
-/// call is O(1), allocates nothing and throws nothing, and reacts to slip at once. With the ratio
+/// call is O(1), allocates nothing, throws nothing, and reacts to slip at once. With the ratio
 /// alone, and the same state, update and time step, a smaller ratio never gives a smaller force.
 template <scalar S = double>
 class GripControl {
  public:
-  /// A value: copy it to go back to this call later.
+  /// A value: copy it to return to this call later.
   class State {
    public:
     const S& force_n() const { return force_n_; }
-    /// The friction asked of the contact, L*; NaN where the tangential force was never known.
+    /// L*, the friction demanded of the contact; NaN if the tangential force was never known.
     const S& friction() const { return friction_; }
-    /// The force that the gripper really applies, where it is measured and the gripper does not
-    /// follow; the next call goes on from there. Ignored if not finite.
+    /// Sets the force from which the next call continues. Use it if the gripper does not follow the
+    /// commands and its force is measured. Ignored if not finite.
     void follow(const S& measured_n) { force_n_ = is_finite(measured_n) ? measured_n : force_n_; }
-    /// Back to the force it was started with.
+    /// Returns to the state after start().
     void reset() { *this = State(start_n_); }
 
    private:
@@ -51,12 +51,12 @@ class GripControl {
     S start_n_;
     S force_n_;
     S ratio_age_s_ = S(0);   ///< since the last fresh ratio
-    S unseen_s_ = S(0);      ///< since the dots were seen
-    S untouched_s_ = S(0);   ///< since anything touched
+    S unseen_s_ = S(0);      ///< since the dots were last seen
+    S untouched_s_ = S(0);   ///< since the last contact
     bool slipping_ = false;  ///< the last fresh ratio was below the set point
     S friction_ = not_a_number<S>();
-    S load_n_ = S(0);       ///< of the object: F_t, smoothed
-    S seen_load_n_ = S(0);  ///< what is borne of it
+    S load_n_ = S(0);       ///< assumed load: F_t, smoothed; does not fall while little sticks
+    S seen_load_n_ = S(0);  ///< carried load: F_t, smoothed
     S load_rate_n_per_s_ = S(0);
     S smooth_friction_ = S(0);  ///< L, smoothed
     S held_s_ = S(0);           ///< since the last slip
@@ -69,10 +69,11 @@ class GripControl {
   const GripLaw<S>& law() const { return law_; }
 
   State start() const { return State(law_.min_force_n); }
-  /// From the force with which the object was grasped, clamped to the limits; NaN: the smallest.
+  /// Starts from the force with which the object was grasped, clamped to the limits; NaN: the
+  /// smallest.
   State start(const S& force_n) const { return State(within_limits(force_n)); }
 
-  /// The force for a stick ratio, `step_s` after the call before.
+  /// The force for a stick ratio. `step_s` is the time since the last call.
   GripResult<S> operator()(const StickReading<S>& seen, const S& step_s, State& state) const {
     state.force_n_ = within_limits(state.force_n_);
     if (!is_time(step_s)) {
@@ -92,8 +93,8 @@ class GripControl {
     return (*this)(StickReading<S>{S(seen.stick_ratio), update_of(seen.status)}, step_s, state);
   }
 
-  /// The same for the answer of the dots and friction together, SlipResult. Where it knows the
-  /// tangential force, and the dots are seen, the force follows the load.
+  /// The same for a SlipResult, the answer of dots and friction together. If it has the tangential
+  /// force and the dots are seen, the force follows the load.
   template <class Slip>
     requires requires(const Slip& slip) {
       slip.stick_ratio;
@@ -104,9 +105,9 @@ class GripControl {
   GripResult<S> operator()(const Slip& slip, const S& step_s, State& state) const {
     const S share = is_finite(slip.dots_ratio) ? S(slip.dots_ratio) : S(slip.stick_ratio);
     const bool sticks = !(value(share) < value(law_.sliding_ratio));
-    // dots that fall back are carried by an object whose load falls, or let go by one that slides
-    // under friction that has fallen; a contact that is unloaded keeps (1/2)^(2/3) of its area
-    // stuck (Mindlin and Deresiewicz 1953), so with less than half it slides
+    // Dots fall back with an object whose load falls, or because an object slides under friction
+    // that has fallen. A contact that is unloaded keeps (1/2)^(2/3) of its area stuck (Mindlin and
+    // Deresiewicz 1953), so it slides if less than half sticks.
     const bool back = falls_back(slip) && !sticks;
     const bool seen =
         slip.update == RatioUpdate::fresh || slip.update == RatioUpdate::unmoved || back;
@@ -118,9 +119,9 @@ class GripControl {
     state.untouched_s_ = state.unseen_s_ = state.ratio_age_s_ = S(0);
     const S counted_s = counted(step_s);
     follow_load(S(slip.normal_n * slip.friction), S(slip.friction), sticks, counted_s, state);
-    // a tenth: beyond the noise of a smoothed load, with forces known to 3 %
+    // a tenth exceeds the noise of a smoothed load, for forces known to 3 %
     const bool loses_load = !sticks && state.seen_load_n_ < S(9) / S(10) * state.load_n_;
-    // what the dots say since a reference before the last slip is that slip
+    // a ratio whose reference is older than the last slip shows that slip again
     const S age_s = S(static_cast<double>(slip.reference_age)) * step_s;
     state.held_s_ = S(state.held_s_ + step_s);
     const bool recent = !state.has_slipped_ || value(age_s) < value(state.held_s_);
@@ -133,7 +134,7 @@ class GripControl {
       state.has_slipped_ = true;
     } else {
       search(news ? S(slip.dots_ratio) : not_a_number<S>(), counted_s, state);
-      // where the dots do not speak for more, no more than what the limit bears
+      // without a new ratio, L* stays within the limit less the margin
       const S borne = S(slip.limit) / S(S(1) + law_.slip_margin);
       state.slipping_ = !news && borne < state.friction_;
       state.friction_ = state.slipping_ ? borne : state.friction_;
@@ -162,8 +163,9 @@ class GripControl {
     return value(law_.longest_step_s) < value(step_s) ? law_.longest_step_s : step_s;
   }
 
-  /// Smooths over about four frames: forces are noisier than a load is fast.
-  /// Where little sticks, a load that falls may be friction that does: it is taken for what it was.
+  /// Smooths load and friction over about four frames, because forces are noisier than loads are
+  /// fast. While little sticks, a falling load may mean falling friction, so the load is assumed
+  /// unchanged.
   static void follow_load(
       const S& load_n, const S& friction, bool may_fall, const S& step_s, State& state) {
     if (!is_finite(state.friction_)) {
@@ -181,7 +183,7 @@ class GripControl {
         state.smooth_friction_ + S(4) / S(10) * S(friction - state.smooth_friction_);
   }
 
-  /// Asks for more friction while the contact has stick to spare, once it carries what was asked.
+  /// Increases L* while the contact has stick to spare, once it carries the L* demanded so far.
   void search(const S& ratio, const S& step_s, State& state) const {
     if (20 * value(state.smooth_friction_) < 19 * value(state.friction_)) {
       return;
@@ -193,7 +195,7 @@ class GripControl {
     state.friction_ = state.friction_ * S(S(1) + growth * step_s);
   }
 
-  /// The rate that brings the force to F_t / L* in this step, as far as the gripper can.
+  /// The rate that brings the force to F_t / L* in this step, within the limits of the gripper.
   RateCommand rate_to_load(const S& step_s, const State& state) const {
     const S gained_n =
         value(state.load_rate_n_per_s_) > 0 ? S(state.load_rate_n_per_s_ * law_.response_s) : S(0);
@@ -231,7 +233,7 @@ class GripControl {
     return {grip_rate(law_, ratio), law_.max_force_n, why};
   }
 
-  /// Raises or holds: that nothing moves is no reason to let go.
+  /// Raises or holds: dots at rest are no reason to loosen the grip.
   RateCommand by_standing(const S& ratio, bool known, const S& step_s, State& state) const {
     state.ratio_age_s_ = S(state.ratio_age_s_ + step_s);
     if (known && value(ratio) < value(law_.set_point)) {
@@ -245,7 +247,7 @@ class GripControl {
     return {S(0), law_.safe_force_n, GripReason::unmoved};
   }
 
-  /// A contact that drops out is waited for as a ratio is; one that stays away is no object.
+  /// Treats a short loss of contact like a missing ratio; after a long one there is no object.
   RateCommand without_contact(const S& step_s, State& state) const {
     state.untouched_s_ = S(state.untouched_s_ + step_s);
     const RateCommand command = without_ratio(step_s, state);
@@ -278,7 +280,7 @@ class GripControl {
     return {state.force_n_, rise ? GripStatus::raising : GripStatus::lowering, command.why};
   }
 
-  /// NaN becomes the least force.
+  /// NaN becomes the smallest force.
   S within_limits(const S& force_n) const {
     const S raised = value(force_n) > value(law_.min_force_n) ? force_n : law_.min_force_n;
     return value(raised) < value(law_.max_force_n) ? raised : law_.max_force_n;

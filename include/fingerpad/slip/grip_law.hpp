@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// Inputs of grip control (grip_control.hpp), its law, and its results.
+// Inputs, law and results of grip control (grip_control.hpp).
 #include <cstdint>
 
 #include "fingerpad/core/expects.hpp"
@@ -10,15 +10,15 @@
 namespace fingerpad {
 inline namespace v0 {
 
-/// How current the stick ratio is since the last call.
+/// How current the stick ratio is.
 enum class RatioUpdate : std::uint8_t {
-  fresh,       ///< the ratio is that of now
-  unmoved,     ///< the dots were seen and have not moved enough to tell more: the last ratio stands
-  missing,     ///< nothing usable was seen
+  fresh,    ///< the ratio is that of this call
+  unmoved,  ///< the dots were seen but moved too little for a new ratio: the last one still applies
+  missing,  ///< there is no usable ratio
   no_contact,  ///< nothing touches: there is no object, or it has just been lost
 };
 
-/// The update that a status of the stick ratio brings.
+/// The update that a status of the stick ratio means.
 template <class StickStatus>
   requires requires {
     StickStatus::updated;
@@ -35,23 +35,23 @@ constexpr RatioUpdate update_of(StickStatus status) {
 }
 
 enum class GripStatus : std::uint8_t {
-  holding,   ///< the force stays
-  raising,   ///< less than the set point sticks, or nothing is known for long
-  lowering,  ///< more than enough sticks
-  at_limit,  ///< it would be raised or lowered further, but for a limit of the force
+  holding,  ///< the force does not change
+  raising,  ///< the ratio is below the set point or missing for long, or the force follows the load
+  lowering,  ///< the ratio is above `lower_above`, or the force follows the load
+  at_limit,  ///< the force would change further, but is at a limit
 };
 
-/// Why the force is what it is.
+/// Why the force changes or is held.
 enum class GripReason : std::uint8_t {
-  slipping,       ///< less than the set point sticks
-  enough_sticks,  ///< the set point is reached
-  all_sticks,     ///< more sticks than `lower_above`
-  follows_load,   ///< enough sticks: the force follows the load, and comes closer to what it needs
-  unmoved,        ///< the dots stand still, and nothing speaks for slip
-  may_slide,      ///< the dots stand still, but the last ratio was at most `sliding_ratio`
-  waiting,        ///< no ratio, for no longer than `blind_after_s`
+  slipping,       ///< the ratio is below the set point; if the load is known: a slip was detected
+  enough_sticks,  ///< the ratio is between the set point and `lower_above`
+  all_sticks,     ///< the ratio is above `lower_above`
+  follows_load,   ///< no slip: the force follows the load and approaches the smallest that holds
+  unmoved,        ///< the dots are at rest, without signs of slip
+  may_slide,      ///< the dots are at rest, but the last ratio was at most `sliding_ratio`
+  waiting,        ///< no ratio, for at most `blind_after_s`
   blind,          ///< no ratio for longer than that, or slipping when last seen
-  lost,           ///< nothing has touched for longer than `lost_after_s`: there is no object
+  lost,           ///< no contact for longer than `lost_after_s`: there is no object
   no_time,        ///< the time step was not a positive number: nothing was done
 };
 
@@ -97,43 +97,45 @@ constexpr const char* name_of(GripReason reason) {
   return "unknown";
 }
 
-/// The law and its limits. Forces in N, rates in N/s, all finite.
+/// Parameters of the control law. Forces in N, rates in N/s, all finite.
 template <scalar S = double>
 struct GripLaw {
-  S set_point = S(8) / S(10);       ///< stick ratio below which the force is raised, in (0, 1)
-  S raise_gain_n_per_s = S(60);     ///< N/s for each unit of ratio below the set point, > 0
-  S lower_above = S(95) / S(100);   ///< ratio above which it is lowered, in [set_point, 1]
-  S lower_gain_n_per_s = S(0);      ///< N/s for each unit above that, >= 0; 0: held, never lowered
-  S rise_limit_n_per_s = S(40);     ///< what the gripper can do, > 0
-  S fall_limit_n_per_s = S(2);      ///< >= 0
-  S min_force_n = S(1) / S(2);      ///< >= 0
-  S max_force_n = S(20);            ///< what the object can bear, > min_force_n
-  S safe_force_n = S(10);           ///< no rise beyond this without a fresh ratio, within the two
-  S ratio_lasts_s = S(1) / S(10);   ///< how long a ratio is acted on while the dots do not move
-                                    ///< enough for the next, >= 0
-  S sliding_ratio = S(5) / S(10);   ///< at or below this the object may slide as a whole under dots
-                                    ///< that stand still: acted on for as long as it stands, in
-                                    ///< [0, set_point]
-  S blind_after_s = S(2) / S(10);   ///< how long a missing ratio is waited for unless the object
-                                    ///< was slipping when last seen, >= 0
-  S blind_rise_n_per_s = S(5);      ///< from then on the force is raised so, to the safe force,
-                                    ///< >= 0; 0: held
-  S lost_after_s = S(5) / S(10);    ///< without contact for longer than this the object is lost:
-                                    ///< the force is no longer raised, >= 0
-  S longest_step_s = S(1) / S(10);  ///< a longer time between calls counts as this, > 0
+  S set_point = S(8) / S(10);      ///< stick ratio below which the force is raised, in (0, 1)
+  S raise_gain_n_per_s = S(60);    ///< N/s per unit of ratio below the set point, > 0
+  S lower_above = S(95) / S(100);  ///< ratio above which it is lowered, in [set_point, 1]
+  S lower_gain_n_per_s = S(0);   ///< N/s per unit of ratio above that, >= 0; 0: held, never lowered
+  S rise_limit_n_per_s = S(40);  ///< limit of the gripper, > 0
+  S fall_limit_n_per_s = S(2);   ///< limit of the gripper, >= 0
+  S min_force_n = S(1) / S(2);   ///< >= 0
+  S max_force_n = S(20);         ///< limit of the object, > min_force_n
+  /// No rise beyond this without a fresh ratio, in [min_force_n, max_force_n].
+  S safe_force_n = S(10);
+  /// How long a ratio is acted on while the dots move too little for a new one, >= 0.
+  S ratio_lasts_s = S(1) / S(10);
+  /// At or below this ratio the object may slide as a whole over dots at rest, so the ratio is
+  /// acted on for as long as they rest. In [0, set_point].
+  S sliding_ratio = S(5) / S(10);
+  /// How long a missing ratio is waited for, unless the object was slipping when last seen, >= 0.
+  S blind_after_s = S(2) / S(10);
+  S blind_rise_n_per_s = S(5);  ///< rate after that, up to safe_force_n, >= 0; 0: held
+  /// Without contact for longer than this the object is lost and the force no longer raised, >= 0.
+  S lost_after_s = S(5) / S(10);
+  S longest_step_s = S(1) / S(10);  ///< a longer time step counts as this, > 0
 
-  // where the tangential force is known
-  S slip_ratio = S(2) / S(10);     ///< dots' ratio below which the contact slips, in [0, 0.5]
-  S slip_margin = S(15) / S(100);  ///< after a slip the friction asked for is less by this share,
-                                   ///< > 0: 0.09 is three times the noise of two L by forces known
-                                   ///< to 1.5 %, the rest what the load gains before the next frame
-  S first_search_per_s = S(2) / S(10);  ///< share by which it grows while all sticks, before the
-                                        ///< first slip, >= 0
-  S search_per_s = S(4) / S(100);       ///< and later, >= 0; by neither while no ratio is known
-  S response_s = S(1) / S(10);  ///< by how much the load is foreseen: camera and gripper, >= 0
+  // used if the tangential force is known
+  S slip_ratio = S(2) / S(10);  ///< ratio of the dots below which the contact slips, in [0, 0.5]
+  /// After a slip, L* is L / (1 + slip_margin), > 0. In the default, 0.09 is three times the noise
+  /// of two L for forces known to 1.5 %; the rest is what the load gains before the next frame.
+  S slip_margin = S(15) / S(100);
+  /// Relative growth of L* per second while the contact has stick to spare, before the first slip,
+  /// >= 0. L* does not grow while no ratio is known.
+  S first_search_per_s = S(2) / S(10);
+  S search_per_s = S(4) / S(100);  ///< the same after the first slip, >= 0
+  /// How far ahead the load is predicted: delay of camera and gripper, >= 0.
+  S response_s = S(1) / S(10);
 };
 
-/// Refuses what has no meaning (parameter_error).
+/// Refuses bad parameters (parameter_error).
 template <scalar S>
 void expects_valid(const GripLaw<S>& law) {
   const auto check = [](bool good, const char* name, const S& given, const char* range) {
@@ -174,14 +176,15 @@ void expects_valid(const GripLaw<S>& law) {
   check(value(law.response_s) >= 0, "response_s", law.response_s, "finite and >= 0");
 }
 
-/// What the dots say, by name: a number alone could as well be the time step.
+/// A stick ratio and its update, by name: a bare number could as well be the time step.
 template <scalar S = double>
 struct StickReading {
-  S ratio = not_a_number<S>();  ///< in [0, 1]; anything else, as a ratio in percent: missing
+  /// In [0, 1]; anything else, such as a ratio in percent, counts as missing.
+  S ratio = not_a_number<S>();
   RatioUpdate update = RatioUpdate::fresh;
 };
 
-/// The equation: N/s for a stick ratio in [0, 1], within what the gripper can do.
+/// The law: rate of the force in N/s for a stick ratio in [0, 1], within the limits of the gripper.
 template <scalar S>
 S grip_rate(const GripLaw<S>& law, const S& ratio) {
   if (value(ratio) < value(law.set_point)) {
@@ -201,8 +204,8 @@ struct [[nodiscard]] GripResult {
   GripStatus status = GripStatus::holding;
   GripReason why = GripReason::no_time;
 
-  /// Whether the force rests on a stick ratio: false while none is seen, or what is given is none,
-  /// as a ratio in percent.
+  /// Whether the force is based on a stick ratio. False if there is none or it is invalid, such as
+  /// a ratio in percent.
   bool ok() const {
     return why != GripReason::no_time && why != GripReason::waiting && why != GripReason::blind &&
            why != GripReason::lost;

@@ -1,11 +1,11 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// Whether an elastic pad springs back, from its dots alone. A gel that was dragged along by an
-// object returns toward its free shape when the object slips or is lost. Use it for pads with dots
-// only; if the contact shows in the image, slip/contact_slide.hpp gives more information and
-// earlier. It cannot distinguish a slip from an object that is set down or let go: the load falls
-// in all three cases.
+// Detects that an elastic pad springs back, from its dots alone. A gel that an object has dragged
+// along returns toward its free shape when the object slips or is lost. Use it if only the dots are
+// available; if the contact is visible in the image, slip/contact_slide.hpp gives more information,
+// and earlier. Recoil cannot distinguish a slip from an object that is set down or let go: the load
+// falls in all three cases.
 #include <algorithm>
 #include <cstddef>
 #include <vector>
@@ -24,11 +24,12 @@ inline namespace v0 {
 
 /// Thresholds of recoil.
 struct RecoilTest {
-  double pitch_px = 40;     ///< between neighbouring dots, in [1e-6, 1e6)
-  double max_recoil = 0.1;  ///< alarm beyond so many pitches, > 0
-  double quantile = 0.95;   ///< of the dots' displacements is followed, in (0, 1): most dots are
-                            ///< beside the contact and hardly move
-  Index min_dots = 5;       ///< >= 1: fewer say nothing
+  double pitch_px = 40;     ///< distance of neighbouring dots, in [1e-6, 1e6)
+  double max_recoil = 0.1;  ///< pitches; the alarm threshold, > 0
+  /// The quantile of the dots' displacements that is followed, in (0, 1). Most dots are beside the
+  /// contact and hardly move.
+  double quantile = 0.95;
+  Index min_dots = 5;  ///< fewer dots give no answer, >= 1
 };
 inline void expects_valid(const RecoilTest& test) {
   constexpr const char* owner = "RecoilTest";
@@ -43,27 +44,29 @@ inline void expects_valid(const RecoilTest& test) {
 template <scalar S = float>
 struct [[nodiscard]] RecoilResult {
   FrameStatus status = FrameStatus::refused;
-  Index dots = 0;      ///< found now and in the free pad
-  S displaced = S(0);  ///< the quantile of their displacements, in pitches
-  S recoil = S(0);     ///< by how much it has fallen since it was largest, in pitches
+  Index dots = 0;      ///< found both now and in the free pad
+  S displaced = S(0);  ///< that quantile of their displacements, in pitches
+  S recoil = S(0);     ///< how far `displaced` is below its largest value so far, in pitches
   S evidence = S(0);   ///< for slip: recoil / max_recoil
-  bool alarm = false;  ///< evidence is above 1
+  bool alarm = false;  ///< evidence > 1
 
-  /// 1 while nothing speaks for slip, 0 from the alarm on, as of SlideResult.
+  /// 1 without evidence for slip, falling to 0 at the alarm, as in SlideResult.
   S held() const { return evidence < S(1) ? S(S(1) - evidence) : S(0); }
-  /// Whether there were enough dots; if not, all is as it was in the last frame that had them.
+  /// Whether there were enough dots. If not, displacement, recoil and evidence are those of the
+  /// last frame that had them.
   bool ok() const { return status == FrameStatus::ok && enough; }
-  bool touches() const { return true; }  ///< as far as dots can tell
-  bool enough = false;  ///< min_dots or more were found, under the names that they had before
+  bool touches() const { return true; }  ///< dots cannot show that contact is lost
+  bool enough = false;                   ///< at least min_dots were found, labelled as before
 };
 
-/// Recoil of a pad, frame by frame. Const: threads may share one, each with a state of its own.
-/// O(rows cols) and no allocation per frame.
+/// Recoil of a pad, frame by frame. Const: threads may share one object, each with its own state. A
+/// frame takes O(rows cols) time and allocates nothing.
 template <scalar S = float>
 class Recoil {
  public:
-  /// From the free pad's dots (NaN: not found). Refuses bad parameters, and a pitch_px that is not
-  /// within a factor of three that of these dots (parameter_error).
+  /// `free_px` are the dots of the free pad (NaN: not found). Refuses bad parameters, and a
+  /// pitch_px that differs from the pitch of these dots by more than a factor of three
+  /// (parameter_error).
   template <dot_grid Dots>
   explicit Recoil(const Dots& free_px, const RecoilTest& test = {}) : test_(test) {
     expects_valid(test);
@@ -81,13 +84,13 @@ class Recoil {
         "within a factor of three of the dot distance in the free pad: check the unit of the dots");
   }
 
-  /// A value: copy it to go back to this frame later. All memory that frames need is in it.
+  /// A value: copy it to return to this frame later. It holds all memory that frames need.
   class State {
    public:
     explicit State(const Recoil& recoil) : given_(recoil.layout_), before_(given_.found) {
       lengths_.reserve(recoil.free_.size());
     }
-    /// What was before is forgotten.
+    /// Returns to the state before the first frame.
     void reset() {
       result_ = {};
       largest_ = S(0);
@@ -97,14 +100,14 @@ class Recoil {
    private:
     friend class Recoil;
     detail::stick::GivenDots<Point2<S>> given_;
-    std::vector<Point2<S>> before_;  // in the last frame that counted
+    std::vector<Point2<S>> before_;  // of the last frame with enough of them
     detail::ReservedVector<S> lengths_;
     S largest_ = S(0);
     RecoilResult<S> result_;
   };
   State start() const { return State(*this); }
 
-  /// The recoil up to a frame with these dots (NaN: not found).
+  /// Processes a frame with these dots (NaN: not found).
   template <dot_grid Dots>
   RecoilResult<S> operator()(const Dots& dots_px, State& state) const {
     const auto dots = as_view(dots_px);

@@ -3,12 +3,12 @@
 #pragma once
 // The fraction of the contact that sticks to the object, from the dots in space. When an object
 // rolls, tilts or presses deeper, its dots move by different amounts in the image although all
-// stick; in space one rigid motion describes them all. The slip of a dot is its deviation from that
-// motion along the surface. Reference and relative threshold are those of stick_ratio.hpp. The
-// figures are in docs/slip/spatial_stick_ratio.md.
+// stick; in space one rigid motion describes them all. The slip of a dot is its residual from that
+// motion along the surface. Reference frame and relative threshold are those of stick_ratio.hpp.
+// Measured figures are in docs/slip/spatial_stick_ratio.md.
 //
-// Use it if there is depth, and stick_ratio.hpp if there is none. Neither sees an object that
-// slides as a whole while the membrane stands still; friction_limit.hpp does.
+// Use it if depth is known, otherwise use stick_ratio.hpp. Neither detects an object that slides as
+// a whole while the membrane is at rest; friction_limit.hpp does.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -32,21 +32,26 @@ inline namespace v0 {
 ///   delta_0 = 2 gain lateral_mm sqrt(ln(1 / false_slip)), gain 0.416 by averaging over neighbours,
 ///   U = delta_0 / slip_share: the reference is the newest stored frame from which a dot in contact
 ///   has moved further; a frame is stored when a dot has moved U / 4 from the newest stored one.
-/// The noise is measured in frames without contact; the given values apply until then. Along z,
-/// where a dot carries its depth error along, the larger of both applies.
+/// The noise is measured in frames without contact; the given values apply until then. Errors of
+/// depth move with the dots, so along z the larger of the given and the measured value applies.
 struct SpatialStickTest {
-  double lateral_mm = 0.005;     ///< sd along x and along y, > 0: 0.06 px of a pixel of 0.08 mm
-  double depth_mm = 0.025;       ///< sd along z, > 0; it counts where the surface is inclined
-  Index free_frames = 8;         ///< >= 0: free frames to measure the noise; 0: never measured
-  double slip_share = 1.0 / 18;  ///< in (0, 0.5]: a dot slips if its slip exceeds this fraction of
-                                 ///< the longest move
-  double false_slip = 0.01;      ///< in (0, 0.5]: fraction of sticking dots reported to slip
-  Index min_dots = 6;            ///< >= 6: to compare; fewer give no ratio
-  double hold_s = 0.2;           ///< >= 0: a contact lost and found again within this time is the
-                                 ///< same one, and a clock may go back by as much
-  Index capacity = 64;           ///< stored frames, in [1, 4096]; then the oldest is forgotten
-  bool covers_pattern = false;  ///< whether the object is known to be larger than the pattern; else
-                                ///< a contact with all dots in it has no ratio once some slip
+  /// Standard deviation along x and along y, > 0. The default is 0.06 px for a pixel of 0.08 mm.
+  double lateral_mm = 0.005;
+  /// Standard deviation along z, > 0; counts where the surface is inclined.
+  double depth_mm = 0.025;
+  Index free_frames = 8;  ///< free frames that measure the noise, >= 0; 0: never measured
+  /// A dot slips if its slip exceeds this fraction of the longest displacement, in (0, 0.5].
+  double slip_share = 1.0 / 18;
+  /// Fraction of sticking dots that noise makes appear to slip, in (0, 0.5].
+  double false_slip = 0.01;
+  Index min_dots = 6;  ///< needed to compare two frames, >= 6; with fewer there is no ratio
+  /// A contact lost and found again within this time is the same one, and a clock may go back by as
+  /// much. In s, >= 0.
+  double hold_s = 0.2;
+  Index capacity = 64;  ///< stored frames, in [1, 4096]; when full, the oldest is dropped
+  /// Whether the object is known to be larger than the dot pattern. If not, a contact that contains
+  /// all dots has no ratio once more than a tenth of them slip.
+  bool covers_pattern = false;
 };
 inline void expects_valid(const SpatialStickTest& test) {
   const auto check = [](bool good, const char* name, double given, const char* range) {
@@ -68,9 +73,9 @@ inline void expects_valid(const SpatialStickTest& test) {
 }
 
 /// Stick ratio of a pad whose dots are known in space, frame by frame. Threads may share one
-/// estimator, each with its own state. A frame allocates nothing, throws nothing, and takes
-/// O(rows cols) time plus O(dots in contact) for each stored frame that it examines, at most
-/// `capacity`.
+/// estimator, each with its own state. A frame takes O(rows cols) time, plus O(dots in contact) for
+/// each of at most `capacity` stored frames that it examines. It allocates nothing and throws
+/// nothing.
 template <scalar S = double>
 class SpatialStickRatio {
  public:
@@ -88,7 +93,7 @@ class SpatialStickRatio {
 
   Index rows() const { return layout_.rows; }
   Index cols() const { return layout_.cols; }
-  /// U, mm, of dots with this noise.
+  /// U in mm for dots with this noise.
   double reference_mm(double lateral_mm) const {
     return lateral_mm * std::sqrt(slip_quantile_) / test_.slip_share;
   }
@@ -97,8 +102,9 @@ class SpatialStickRatio {
   /// The state before any frame, with all the memory that frames will need.
   State start() const { return State(layout_, test_.capacity, {test_.lateral_mm, test_.depth_mm}); }
 
-  /// The ratio in a frame with dots `dots_mm` (NaN: not found) of which those with a true `contact`
-  /// touch the object, at a time in s (NaN: not known). Writes to `states` what each dot does.
+  /// Processes a frame with the dots `dots_mm` (NaN: not found), of which those with a true
+  /// `contact` touch the object, at a time in s (NaN: unknown). Writes the state of each dot to
+  /// `states`.
   template <spatial_dot_grid Dots, contact_mask Contact, class States>
   SpatialStickResult<S> operator()(const Dots& dots_mm,
                                    const Contact& contact,
@@ -135,7 +141,7 @@ class SpatialStickRatio {
   }
 
  private:
-  /// By the frames in which nothing touches.
+  /// Measures the noise in frames without contact.
   void measure_noise(State& state) const {
     if (!state.given.touching.empty() || test_.free_frames == 0) {
       state.free_dots.interrupt();
@@ -148,14 +154,14 @@ class SpatialStickRatio {
     }
   }
 
-  /// That of the axes, no less than a 2000th of a pitch along the pad: no camera finds dots better,
-  /// some files repeat them.
+  /// Noise along the axes. Along the pad it is at least a 2000th of a pitch, because no camera
+  /// finds dots better and some files repeat them.
   detail::stick::DotNoiseMm noise_of(const State& state) const {
     const double pitch_mm = std::sqrt(static_cast<double>(value(state.pitch_sq)));
     return {(std::max)(state.noise.lateral_mm, pitch_mm / 2000), state.noise.depth_mm};
   }
 
-  /// What this frame says; fills all of the result but the counts.
+  /// Status of this frame. Fills all of the result but the counts.
   StickStatus look(State& state) const {
     using namespace detail::stick;
     state.result.out_of_place = 0;
@@ -201,8 +207,8 @@ class SpatialStickRatio {
     return status;
   }
 
-  /// As UpdatedReference, but a frame that stands still is compared too. The pairs are those of the
-  /// chosen frame then.
+  /// As UpdatedReference, but a frame at rest is compared too. Afterwards the pairs are those of
+  /// the chosen frame.
   detail::stick::Choice<S> choose(const S& reference_sq, State& state) const {
     using namespace detail::stick;
     Choice<S> choice;
@@ -262,7 +268,7 @@ class SpatialStickRatio {
     return StickStatus::updated;
   }
 
-  /// The dots that both frames have.
+  /// Collects the dots found in both frames.
   void collect(const Point3<S>* then, State& state) const {
     using namespace detail::stick;
     state.pairs.clear();
@@ -276,9 +282,10 @@ class SpatialStickRatio {
     }
   }
 
-  /// The rigid motion on which the dots around `from` agree with those that follow it: dots within
-  /// the limit are taken, and the motion fitted to them, until they become no more; then weights by
-  /// the averaged slip take out the pull of dots that slip a little.
+  /// Finds the rigid motion of the dots around `from` and of those that follow it. Dots within the
+  /// limit are taken and the motion is fitted to them, until their number no longer changes.
+  /// Weights by the averaged slip then reduce the influence of dots that slip a little. False if
+  /// the dots do not determine a motion.
   bool consensus(const Point3<S>& from,
                  const detail::stick::AxisNoise<S>& noise,
                  const S& limit,
@@ -308,7 +315,7 @@ class SpatialStickRatio {
       }
       before = followers;
     }
-    // of averaged slips, noise explains a mean of 4 gain^2: weights fall to a fourth at twice that
+    // noise gives averaged slips a mean square of 4 gain^2; at twice that the weight is 1/4
     const double gain = neighbour_gain();
     const S quarter = S(8 * gain * gain), gate = S(36) * limit;
     const auto average = [&] {
@@ -328,7 +335,8 @@ class SpatialStickRatio {
     return true;
   }
 
-  /// Marks each dot of both frames, and writes its slip. `sd_mm`: of the difference of two places.
+  /// Marks each dot found in both frames and writes its slip. `sd_mm`: standard deviation of the
+  /// difference of two positions.
   void mark(const S& limit, const S& sd_mm, State& state) const {
     using namespace detail::stick;
     state.clear_answer();
@@ -336,7 +344,8 @@ class SpatialStickRatio {
     int stick = 0;
     state.doubts.clear();
     DotWalk walk(layout_);
-    const S sd = S(std::sqrt(2.0) * neighbour_gain());  // of a mean slip, in those of a position
+    // sd of an averaged slip, in units of that of a position
+    const S sd = S(std::sqrt(2.0) * neighbour_gain());
     state.pairs.for_each([&](const PairBlock<S>& b, std::size_t k) {
       const Index cell = b.cell[k];
       const bool sticks = b.mean_sq[k] < limit;
@@ -360,7 +369,8 @@ class SpatialStickRatio {
 
   SpatialStickTest test_;
   detail::stick::DotLayout layout_;
-  double slip_quantile_ = 0;  ///< of the squared slip of a sticking dot, in variances of a position
+  /// Quantile of the squared slip of a sticking dot, in variances of a position.
+  double slip_quantile_ = 0;
 };
 
 }  // namespace v0

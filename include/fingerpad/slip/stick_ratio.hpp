@@ -2,16 +2,16 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 // The fraction of the contact that sticks to the object, from the dots printed in the membrane: 1
-// when nothing slips, 0 when the whole object slips. Slip starts at the edge of the contact and
-// spreads inward long before that. Source: Ito, Kim, Obinata, "Robust slippage degree estimation
-// based on reference update of vision-based tactile sensor", the talk with its backup slides; and
-// "Acquisition of contact force and slippage using a vision-based tactile sensor with a fluid-type
-// touchpad", eqs. 6-8. Published and corrected forms in docs/errata.md, E032-E038.
+// when nothing slips, 0 when the whole object slips. It falls before gross slip, because slip
+// starts at the edge of the contact and spreads inward. Source: Ito, Kim, Obinata, "Robust slippage
+// degree estimation based on reference update of vision-based tactile sensor", the talk with its
+// backup slides; and "Acquisition of contact force and slippage using a vision-based tactile sensor
+// with a fluid-type touchpad", eqs. 6-8. Published and corrected forms in docs/errata.md,
+// E032-E038.
 //
 // A dot sticks if it has moved with the object since a reference frame. The reference is a stored
 // frame from which the dots have moved far enough in one direction to decide. The steps are in
-// stick_steps.hpp. Dots cannot show an object that slides as a whole while the membrane stands
-// still.
+// stick_steps.hpp. Dots cannot show an object that slides as a whole while the membrane is at rest.
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -26,28 +26,35 @@
 namespace fingerpad {
 inline namespace v0 {
 
-/// When dots are compared, and what counts as slip. Lengths are in pitches, so they hold for dots
-/// in mm, in m or in px of any camera. The given values apply until the noise of the dots has been
-/// measured in frames without contact. Then delta_0 becomes the distance that a sticking dot
-/// exceeds with a probability of 1 %; U becomes large enough that delta_0 / U does not grow; U_min
-/// becomes the distance that noise alone moves the furthest dot, exceeded with 1 %. U and U_min
-/// never fall below the given values.
+/// Thresholds of the stick ratio. Lengths are in pitches, so they hold for dots in mm, in m or in
+/// px of any camera. The given values apply until the noise of the dots has been measured in frames
+/// without contact. Then
+///   delta_0  is the distance that a sticking dot exceeds with a probability of 1 %,
+///   U        grows with delta_0, so that delta_0 / U does not grow,
+///   U_min    is the largest displacement by noise alone, exceeded with a probability of 1 %.
+/// U and U_min never fall below the given values.
 struct StickTest {
-  double reference = 0.1;  ///< U, > 0: the reference is the newest stored frame from which a dot in
-                           ///< contact has moved further; published: 2 px of about 20
-  double store = 0.025;    ///< U_min (not printed), in [0, reference]: a frame is stored when a dot
-                           ///< has moved further from the newest stored one
-  double slip = 0.012;     ///< delta_0, > 0: a dot slips that differs from the object's motion by
-                           ///< more than this times d_max / U; for dots with other noise than the
-                           ///< published 0.06 px of 20 see calibrate/slip.hpp
-  double pitch = 0;        ///< >= 0, of the dots, in their unit; 0: measured in the first frame of
-                           ///< each contact; 1: the lengths above are in the unit of the dots
-  Index min_dots = 5;      ///< >= 1: to compare; fewer give no ratio
-  Index free_frames = 8;   ///< >= 0: see above; 0: the thresholds stand as they are given
-  double hold_s = 0.2;     ///< >= 0: a contact lost and found again within this time is the same
-                           ///< one, and a clock may go back by as much
-  bool covers_pattern = false;  ///< whether the object is known to be larger than the pattern; else
-                                ///< a contact with all dots in it has no ratio once some slip
+  /// U, > 0. The reference is the newest stored frame from which a dot in contact has moved
+  /// further. Published: 2 px of about 20.
+  double reference = 0.1;
+  /// U_min (not printed), in [0, reference]. A frame is stored when a dot has moved further from
+  /// the newest stored one.
+  double store = 0.025;
+  /// delta_0, > 0. A dot slips if its residual from the object's motion is more than this times
+  /// d_max / U. For dots with other noise than the published 0.06 px of 20 see calibrate/slip.hpp.
+  double slip = 0.012;
+  /// Pitch in the unit of the dots, >= 0. 0: measured in the first frame of each contact; 1: the
+  /// lengths above are in the unit of the dots.
+  double pitch = 0;
+  Index min_dots = 5;  ///< needed to compare two frames, >= 1; with fewer there is no ratio
+  /// Free frames that measure the noise, >= 0; 0: the given thresholds always apply.
+  Index free_frames = 8;
+  /// A contact lost and found again within this time is the same one, and a clock may go back by as
+  /// much. In s, >= 0.
+  double hold_s = 0.2;
+  /// Whether the object is known to be larger than the dot pattern. If not, a contact that contains
+  /// all dots has no ratio once more than a tenth of them slip.
+  bool covers_pattern = false;
 };
 inline void expects_valid(const StickTest& test) {
   expects(is_finite(test.reference) && test.reference > 0, "StickTest", "reference", test.reference,
@@ -109,8 +116,8 @@ class StickRatio {
   /// The state before any frame.
   State start() const { return State(layout_, reference_.capacity); }
 
-  /// The ratio in a frame with dots `dots_px` (NaN: not found) of which those with a true `contact`
-  /// touch the object. Writes to `states` what each dot does.
+  /// Processes a frame with the dots `dots_px` (NaN: not found), of which those with a true
+  /// `contact` touch the object. Writes the state of each dot to `states`.
   template <dot_grid Dots, contact_mask Contact, class States>
   StickRatioResult<S> operator()(const Dots& dots_px,
                                  const Contact& contact,
@@ -119,8 +126,8 @@ class StickRatio {
     return (*this)(dots_px, contact, states, state, not_a_number<double>());
   }
 
-  /// The same at a time in s, which is what tells a contact that flickers from another one, and
-  /// another recording from a clock that is a little late.
+  /// The same at a time in s. The time distinguishes a contact that flickers from a new one, and a
+  /// new recording from a clock that goes back a little.
   template <dot_grid Dots, contact_mask Contact, class States>
   StickRatioResult<S> operator()(const Dots& dots_px,
                                  const Contact& contact,
@@ -166,7 +173,7 @@ class StickRatio {
  private:
   using Choice = detail::stick::Choice<S>;
 
-  /// By the frames in which nothing touches.
+  /// Measures the noise in frames without contact.
   void measure_noise(State& state) const {
     if (!state.given.touching.empty() || test_.free_frames == 0) {
       state.free_dots.interrupt();
@@ -178,13 +185,13 @@ class StickRatio {
     }
   }
 
-  /// That of the free frames. No camera finds dots better than a 2000th of a pitch, some files
-  /// repeat them.
+  /// Noise in the free frames. It is at least a 2000th of a pitch, because no camera finds dots
+  /// better and some files repeat them.
   static double noise_of(const State& state) {
     return (std::max)(state.noise_px, std::sqrt(static_cast<double>(value(state.pitch_sq))) / 2000);
   }
 
-  /// The thresholds for the noise that was measured.
+  /// The thresholds for the measured noise; those given if it is not known.
   detail::stick::StickLengths lengths_of(const State& state) const {
     using detail::stick::noise_left_by;
     const double pitch_px = std::sqrt(static_cast<double>(value(state.pitch_sq)));
@@ -205,7 +212,7 @@ class StickRatio {
     return px;
   }
 
-  /// What this frame says; fills all of the result but the counts.
+  /// Status of this frame. Fills all of the result but the counts.
   StickStatus look(State& state) const {
     using namespace detail::stick;
     StickRatioResult<S>& result = state.result;
@@ -230,7 +237,7 @@ class StickRatio {
     }
     const StickLengths px = lengths_of(state);
     if (is_wrong_scale(pitch_sq, px.reference, px.slip) || is_rescaled(pitch_sq, state.pitch_sq)) {
-      state.repository.clear();  // nothing in another unit is comparable
+      state.repository.clear();  // frames in another unit are not comparable
       return StickStatus::wrong_scale;
     }
     const S reference_sq = S(square(px.reference));
@@ -263,7 +270,7 @@ class StickRatio {
     return StickStatus::no_contact;
   }
 
-  /// The ratio against the chosen reference.
+  /// Compares the frame with the chosen reference.
   StickStatus answer(const Choice& choice,
                      const detail::stick::StickLengths& px,
                      State& state) const {
@@ -282,7 +289,7 @@ class StickRatio {
     const bool mostly_slipped = state.result.stick < state.result.slip;
     const Similarity<S> map = motion_between(motion_, pair, reference, slip_sq, mostly_slipped);
     const double left = noise_left_by(denoising_);
-    // of a mean residual of two frames; where no free frames told it, that which delta_0 is for
+    // of an averaged residual of two frames; without free frames, that for which delta_0 is right
     const double sd_px = state.noise_px > 0 && left > 0 ? std::sqrt(2.0) * left * noise_of(state)
                                                         : px.slip / std::sqrt(2 * std::log(100.0));
     const S variance = mark_dots(denoising_, pair, map, slip_sq, S(sd_px), state.room, state.marks);

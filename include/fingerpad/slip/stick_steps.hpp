@@ -1,10 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// The steps of the stick ratio and the choices in each: with which stored frame the present one is
-// compared, how the object has moved in between, and which dots have followed it. Source: Ito, Kim,
-// Obinata, "Robust slippage degree estimation based on reference update of vision-based tactile
-// sensor", the talk with its backup slides. Printed forms: published/stick_ratio.hpp.
+// The steps of the stick ratio and the policies of each step: the reference frame, the motion of
+// the object since then, and the dots that have followed it. Source: Ito, Kim, Obinata, "Robust
+// slippage degree estimation based on reference update of vision-based tactile sensor", the talk
+// with its backup slides. Printed forms: published/stick_ratio.hpp.
 #include <array>
 #include <cmath>
 #include <cstddef>
@@ -17,19 +17,20 @@
 namespace fingerpad {
 inline namespace v0 {
 
-/// Of the stored frames, the newest from which the dots in contact have moved further than U, as
-/// long as the distance grows from frame to frame further back. Where it begins to shrink the
-/// object has turned round, and no frame from there on is looked at; equal distances go on.
+/// The reference is the newest stored frame from which the dots in contact have moved further than
+/// U. The search goes back from the newest frame as long as the distance grows. Where it begins to
+/// shrink, the object has reversed, and older frames are not examined. Equal distances do not stop
+/// the search.
 struct UpdatedReference {
-  Index capacity = 64;   ///< 1 to 4096 frames; when it is full the oldest one is forgotten
-  bool at_rest = false;  ///< also compares frames that stand still within U_min
+  Index capacity = 64;   ///< stored frames, 1 to 4096; when full, the oldest is dropped
+  bool at_rest = false;  ///< also compares frames within U_min of the newest stored one
 };
 
-/// What may differ between two frames of one object, besides where it is.
+/// What may change between two frames of an object besides its position.
 enum class Freedom {
-  translation,  ///< nothing: it is shifted
-  rigid,        ///< it is rotated about the line of sight
-  scaling,      ///< it is seen larger or smaller, as the normal force changes
+  translation,  ///< nothing: it is only shifted
+  rigid,        ///< it rotates about the line of sight
+  scaling,      ///< it appears larger or smaller, as the normal force changes
   similarity,   ///< both
 };
 constexpr bool may_rotate(Freedom f) {
@@ -39,33 +40,33 @@ constexpr bool may_scale(Freedom f) {
   return f == Freedom::scaling || f == Freedom::similarity;
 }
 
-/// The map that fits all sticking dots best. Beginning with the reference dot and its 24 nearest,
-/// dots that follow the map are taken, and the map fitted to them, until they hardly become more.
-/// Where a dot has outrun the map, which none can that the object drags, the search begins anew
-/// from the one that has come furthest: the first has found dots that stand still together. Where
-/// most dots slipped in the last answer, standing dots are never taken for the object.
+/// The map that best fits all sticking dots. Starting with the reference dot and its 24 nearest
+/// dots, dots that follow the map are taken and the map is fitted to them, until hardly any are
+/// added. No dot that the object drags can outrun the map. If one has, the dots found so far only
+/// stand still together, and the search restarts from the dot that has moved furthest. If most dots
+/// slipped in the last answer, dots at rest are never taken for the object.
 template <Freedom Free = Freedom::similarity>
 struct StickConsensus {
-  int max_passes = 10;  ///< 0 to 100; two or three are the rule
+  int max_passes = 10;  ///< 0 to 100; two or three are typical
 };
 
-/// Weights of a dot, of its four neighbours and of those across; > 0, >= 0, >= 0. The defaults
-/// leave 0.42 of the noise, as the published 0.06 of 0.14 px.
+/// Weights of a dot, of its four side neighbours and of its four diagonal ones; > 0, >= 0, >= 0.
+/// The defaults leave 0.42 of the noise, as the published 0.06 of 0.14 px.
 struct DotWeights {
   double self = 6;      ///< S1
   double side = 2;      ///< S2
   double diagonal = 1;  ///< S3
 };
 
-/// Less noise: what is left of the displacements when the object's motion is taken out is averaged
+/// Reduces noise by averaging the residual displacements, which remain without the object's motion,
 /// over neighbours in contact. Neighbours that slip by more than `gate` times the threshold are
-/// left out, so that they do not smear into the sticking dots beside them.
+/// left out, so that they do not affect the sticking dots beside them.
 struct ResidualMean {
   DotWeights weights = {};
   double gate = 6;  ///< >= 1
 };
 
-/// A dot is judged by itself.
+/// Each dot is judged by itself.
 struct NoDenoising {};
 
 inline void expects_valid(const UpdatedReference& reference) {
@@ -94,7 +95,8 @@ inline void expects_valid(const NoDenoising&) {}
 
 namespace detail::stick {
 
-/// Of the noise of one dot, what a denoising leaves; 0: not known, and nothing follows from it.
+/// Share of the noise of one dot that a denoising leaves. 0: unknown, and no threshold follows from
+/// the noise.
 template <class Denoising>
 double noise_left_by(const Denoising&) {
   return 0;
@@ -108,7 +110,7 @@ inline double noise_left_by(const ResidualMean& mean) {
          (self + 4 * side + 4 * diagonal);
 }
 
-// ---- with which frame the present one is compared
+// ---- reference
 
 template <class P, class S>
 Choice<S> choose_reference(const UpdatedReference& reference,
@@ -138,15 +140,15 @@ Choice<S> choose_reference(const UpdatedReference& reference,
   return choice;
 }
 
-/// Whether a frame that is not standing is kept for later.
+/// Whether a frame that is not at rest is stored.
 template <class P>
 bool is_stored(const UpdatedReference&, const Repository<P>&) {
   return true;
 }
 
-// ---- how the object has moved
+// ---- motion
 
-/// Adds dot k, as seen from the origins of `about`, if both frames have it.
+/// Adds dot k, relative to the origins of `about`, if it was found in both frames.
 template <class S>
 void add_dot(const FramePair<S>& pair,
              Index k,
@@ -159,7 +161,7 @@ void add_dot(const FramePair<S>& pair,
   }
 }
 
-/// The reference dot and the 24 around it, with binomial weights.
+/// Sums over the reference dot and the 24 dots around it, with binomial weights.
 template <class S>
 PairSums<S> sums_around(const FramePair<S>& pair, Index reference, const Similarity<S>& about) {
   constexpr std::array<int, 5> binomial = {1, 4, 6, 4, 1};
@@ -184,10 +186,10 @@ Similarity<S> fit(const PairSums<S>& sums, const Similarity<S>& about) {
   return fit<may_rotate(Free), may_scale(Free)>(sums, about);
 }
 
-/// The map on which the dots around one agree with those that follow it.
+/// The map of the dots around `from` and of those that follow it.
 template <Freedom Free, class S>
 Similarity<S> consensus(const FramePair<S>& pair, Index from, const S& slip_sq, int max_passes) {
-  constexpr int fewest = 3;  // dots that a map can be wrong about
+  constexpr int fewest = 3;  // two dots fit a map exactly and do not confirm it
   const S hardly_more = S(1.005);
   const Similarity<S> about = {S(1), S(0), pair.now[from], pair.then[from]};
   Similarity<S> map = fit<Free>(sums_around(pair, from, about), about);
@@ -211,15 +213,16 @@ Similarity<S> consensus(const FramePair<S>& pair, Index from, const S& slip_sq, 
   return map;
 }
 
-/// Whether the object, as seen from the origins of the map, has come less than half of d_max.
+/// Whether the object, at the origins of the map, has moved by less than half of d_max.
 template <class S>
 bool has_hardly_moved(const Similarity<S>& map, const S& furthest_sq) {
   return S(4) * squared_norm(map.now_at - map.then_at) < furthest_sq;
 }
 
-/// Of the dots that have come half of d_max at least, and that the map leaves with more than half
-/// of it, in its direction, the one that has come furthest; -1 if there is none. A dot that the
-/// scale alone has moved by a quarter of that says nothing.
+/// The dot with the largest displacement among those that have outrun the map; -1 if there is none.
+/// Such a dot has moved by at least half of d_max, and its residual in the direction of its motion
+/// is more than half of its displacement. Dots of which the scale explains more than a quarter of
+/// the displacement do not count.
 template <class S>
 Index furthest_outrunner(const FramePair<S>& pair, const Similarity<S>& map) {
   const S growth = map.scale() - S(1);
@@ -240,7 +243,7 @@ Index furthest_outrunner(const FramePair<S>& pair, const Similarity<S>& map) {
   return furthest;
 }
 
-/// The shift of one dot and of those that follow it.
+/// The translation of one dot and of those that follow it.
 template <class S>
 Similarity<S> shift_with(const FramePair<S>& pair, Index from, const S& slip_sq) {
   const Similarity<S> about = {S(1), S(0), pair.now[from], pair.then[from]};
@@ -271,13 +274,13 @@ Similarity<S> motion_between(const StickConsensus<Free>& policy,
   if (!has_hardly_moved(other, pair.furthest_sq)) {
     return other;
   }
-  // dots that slipped and now agree to stand are not the object: it has gone on with the last few
+  // dots that slipped and now rest together are not the object: it has moved on with the last few
   return mostly_slipped ? shift_with(pair, ahead, slip_sq) : map;
 }
 
-// ---- which dots have followed it
+// ---- denoising and marking
 
-/// What becomes of the positions before anything is compared: nothing, by default.
+/// Denoises the positions before the comparison. By default nothing is done.
 template <class Denoising, class S>
 void denoise_positions(const Denoising&,
                        const GivenDots<Point2<S>>&,
@@ -291,9 +294,9 @@ DotState state_of(const S& residual_sq, const S& slip_sq) {
                                       : DotState::slip;
 }
 
-/// Marks the dots in contact: those that follow the object to within the square root of slip_sq
-/// stick. Returns the variance that noise gives to their number; `sd`: of one component of a
-/// residual.
+/// Marks the dots in contact: a dot sticks if its residual is less than the square root of slip_sq.
+/// Returns the variance of the number of sticking dots due to noise. `sd`: standard deviation of
+/// one component of a residual.
 template <class Denoising, class S>
 S mark_dots(const Denoising&,
             const FramePair<S>& pair,
@@ -312,7 +315,7 @@ S mark_dots(const Denoising&,
   return variance;
 }
 
-/// The mean of a dot's residual and its neighbours'; NaN ones do not count.
+/// Weighted mean of the residuals of a dot and its neighbours; NaN ones do not count.
 template <class S>
 Point2<S> mean_around(const DotWeights& weights,
                       const Point2<S>* residuals,
