@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// Sample of one foam finger at one time: what the paper stores at each location T_i of its stack.
+// Sample of one foam finger at one time, as the paper stores it at each location T_i of its stack.
 #include <algorithm>
 #include <array>
 #include <cstddef>
@@ -14,15 +14,17 @@ namespace fingerpad {
 inline namespace v0 {
 
 enum class TaxelStatus : std::uint8_t {
-  vibrating,    ///< a taxel moves by more than its noise: location and waves are known
-  quiet,        ///< none does, and all can be judged
-  filling,      ///< too few samples since the start or a new clock to tell
-  no_taxels,    ///< all are dead, saturated, stuck, flickering or missing
-  frozen,       ///< no reading has changed for long, or ever: a dead array, or nothing touches it
-  too_weak,     ///< all readings are below what counts as vibration: nothing presses, or the noise
-                ///< is given in another unit
-  clock_jumps,  ///< windows do not fill, or most steps of the clock are gaps: time in seconds?
-  other_size,   ///< the array or the state is not of the size of the features: nothing was done
+  vibrating,  ///< a taxel varies by more than its noise: location and waves are known
+  quiet,      ///< none does, although some taxel that can be judged is pressed enough to
+  filling,    ///< too few samples since the start or since a new clock
+  no_taxels,  ///< all taxels are dead, saturated, stuck, flickering or missing
+  frozen,     ///< no reading has changed for long, or ever: a dead array, or nothing touches it
+  /// All readings are below what counts as vibration: nothing presses, or the noise is given in
+  /// another unit.
+  too_weak,
+  /// Windows do not fill, or more than half of the clock's steps are gaps: time not in seconds?
+  clock_jumps,
+  other_size,  ///< the array or the state does not have the size of the features: nothing was done
   time_not_later,  ///< the time is missing or not later than the last one: nothing was done
 };
 
@@ -40,31 +42,34 @@ struct FingerSample {
   static constexpr Index no_location = -1;
   static constexpr std::size_t max_vibrations = 16;
 
-  /// The taxels that vibrate with one number of waves.
+  /// The taxels that vibrate with the same number of waves.
   struct Vibration {
     Index waves = 0;
     Index location = no_location;  ///< of one of them
-    bool is_several = false;       ///< there is another one
+    bool is_several = false;       ///< there are others
   };
 
   TaxelStatus status = TaxelStatus::filling;
-  S center_x_mm = not_a_number<S>();  ///< centroid of force, from the middle of the first taxel
-  S center_y_mm = not_a_number<S>();  ///< NaN: nothing presses
-  S sum = S(0);                       ///< of the readings, in their unit
-  Index location = no_location;       ///< row * cols + col of the vibrating element
-  Index waves = 0;                    ///< vibration waves in the window, 0 where none is seen
-  S frequency_hz = S(0);              ///< the same by the clock
-  S deviation = S(0);                 ///< rms of the vibrating element, in the unit of the readings
-  Index left_out = 0;                 ///< taxels that do not count now
-  Index frozen = 0;        ///< taxels whose reading has not changed for long, 0 or another
-  Index gaps = 0;          ///< steps of the clock in the window that are longer than two periods
-  bool has_rested = true;  ///< a window was quiet since the start: what vibrates now has begun to
+  /// Centroid of the force, x along columns, from the middle of the first taxel; NaN: nothing
+  /// presses.
+  S center_x_mm = not_a_number<S>();
+  S center_y_mm = not_a_number<S>();
+  S sum = S(0);                  ///< sum of the readings, in their unit
+  Index location = no_location;  ///< row * cols + col of the taxel that vibrates most
+  Index waves = 0;               ///< number of its waves in the window, 0 if nothing vibrates
+  S frequency_hz = S(0);         ///< its waves per second, by the clock
+  S deviation = S(0);            ///< its rms, in the unit of the readings
+  Index left_out = 0;            ///< taxels that do not count in this sample
+  Index frozen = 0;  ///< taxels whose reading has not changed for long, at 0 or another value
+  Index gaps = 0;    ///< steps of the clock in the window that are longer than two periods
+  /// Whether a window was quiet since the start, so that a present vibration has begun after it.
+  bool has_rested = true;
 
-  std::array<Vibration, max_vibrations> vibrations = {};  ///< of all that vibrate, by their waves;
-                                                          ///< that of `location` first
+  /// All vibrations, by their number of waves; that of `location` first.
+  std::array<Vibration, max_vibrations> vibrations = {};
   Index vibration_count = 0;
 
-  /// One more taxel that vibrates. Numbers of waves beyond `max_vibrations` are left out.
+  /// Adds a vibrating taxel. Numbers of waves beyond `max_vibrations` are left out.
   void add_vibration(const Vibration& one) {
     const auto end = vibrations.begin() + vibration_count;
     const auto same = std::find_if(vibrations.begin(), end,
@@ -77,8 +82,8 @@ struct FingerSample {
     }
   }
 
-  /// Whether slip can be judged: what vibrates where nothing ever rested may be noise or swapped
-  /// bytes.
+  /// Whether slip can be judged. A finger that has vibrated ever since the start may have noise or
+  /// swapped bytes.
   bool can_tell() const {
     return has_rested && (status == TaxelStatus::vibrating || status == TaxelStatus::quiet);
   }

@@ -5,13 +5,14 @@
 // "Pre- Slip Sensing Using Tactile Sensor" (2007), its two experiments:
 //
 //   grasp-optimise-replace  the object hangs between the fingers; the grip is loosened step by step
-//                           until pre-slip is found, which is the least force. As a check the paper
-//                           goes on until the object slips as a whole, three to six steps later
-//   grasp-lift-replace      the object stands on a surface and is lifted with little force; where
-//                           pre-slip is found the lift waits and the grip is tightened
+//                           until pre-slip is found: this is the smallest force. To check, the
+//                           paper goes on until the object slips as a whole, three to six steps
+//                           later
+//   grasp-lift-replace      the object stands on a surface and is lifted with little force; at
+//                           pre-slip the lift pauses and the grip is tightened
 //
-// Samples in, commands out: the caller moves the gripper, and passes the slip state of the fingers
-// with each sample, from preslip.hpp or elsewhere. While the state is not known the command stays.
+// The caller moves the gripper as commanded, and passes the slip state of the fingers with each
+// sample, from preslip.hpp or elsewhere. While the state is not known the command does not change.
 #include <cstdint>
 
 #include "fingerpad/core/expects.hpp"
@@ -23,12 +24,12 @@ namespace fingerpad {
 inline namespace v0 {
 
 enum class SearchPhase : std::uint8_t {
-  settling,  ///< vibration of the last command decays: only `slipped` is acted on
+  settling,  ///< the vibration of the last command decays: only `slipped` is acted on
   watching,  ///< waits for pre-slip
-  found,     ///< loosening: the smallest force is known. The end
-  lifted,    ///< lifting: at the full height. The end
-  at_limit,  ///< the force cannot be lowered or raised further. The end
-  slipped,   ///< the object slipped as a whole. The end
+  found,     ///< loosening: the smallest force is known. Final
+  lifted,    ///< lifting: at the full height. Final
+  at_limit,  ///< the force cannot be lowered or raised further. Final
+  slipped,   ///< the object slipped as a whole. Final
 };
 
 /// "settling", "watching", ...
@@ -50,7 +51,7 @@ constexpr const char* name_of(SearchPhase phase) {
   return "unknown";
 }
 
-/// No command changes after these.
+/// Whether the phase is final: the command no longer changes.
 constexpr bool is_end(SearchPhase phase) {
   return phase != SearchPhase::settling && phase != SearchPhase::watching;
 }
@@ -58,16 +59,16 @@ constexpr bool is_end(SearchPhase phase) {
 /// What to do from now on, within the limits of the options.
 template <scalar S = double>
 struct [[nodiscard]] HoldingCommand {
-  S force_n = S(0);    ///< to grip with
-  S height_mm = S(0);  ///< to lift to; 0 again where the lift is given up, and while loosening
+  S force_n = S(0);    ///< grip force
+  S height_mm = S(0);  ///< height to lift to; 0 while loosening, and after the lift is given up
   SearchPhase phase = SearchPhase::settling;
-  Index steps = 0;                        ///< by which the grip has been loosened or tightened
-  S preslip_force_n = not_a_number<S>();  ///< loosening: at which pre-slip was found first
-  Index warning_steps = 0;                ///< loosened since then
+  Index steps = 0;  ///< number of times that the grip was loosened or tightened
+  S preslip_force_n = not_a_number<S>();  ///< loosening: force at which pre-slip was first found
+  Index warning_steps = 0;                ///< steps of loosening since then
 };
 
 namespace detail {
-/// Whether `step` is a step that ends: at most a million go into the way.
+/// Whether steps of this size cover `way` in at most a million steps.
 template <scalar S>
 bool divides(const S& step, const S& way) {
   return is_finite(step) && value(step) > 0 && value(way) <= value(S(S(1000000) * step));
@@ -77,16 +78,18 @@ bool divides(const S& step, const S& way) {
 /// How the grip is loosened. The paper prints no values.
 template <scalar S = double>
 struct LoosenOptions {
-  S first_force_n = S(10);      ///< with which the object is held at first, > min_force_n
-  S min_force_n = S(1) / S(2);  ///< never less, >= 0
-  S step_n = S(1) / S(4);       ///< taken off at a time, > 0
-  Index settle_samples = 16;    ///< after each step, >= 0; a window of the taxels hides the step
-  Index watch_samples = 16;     ///< then, >= 1
-  Index margin_steps = 2;       ///< given back once pre-slip is found, >= 0
-  bool until_slipped = false;   ///< go on after pre-slip, as the paper does to check
+  S first_force_n = S(10);      ///< initial grip force, > min_force_n
+  S min_force_n = S(1) / S(2);  ///< smallest grip force, >= 0
+  S step_n = S(1) / S(4);       ///< reduction of the force per step, > 0
+  /// Samples to wait after each step, >= 0. With a window of the taxels or more, the step itself
+  /// does not count as vibration.
+  Index settle_samples = 16;
+  Index watch_samples = 16;    ///< samples to watch after that, >= 1
+  Index margin_steps = 2;      ///< steps to tighten again once pre-slip is found, in [0, 1000000]
+  bool until_slipped = false;  ///< goes on after pre-slip, as the paper does to check
 };
 
-/// Refuses what has no meaning (parameter_error).
+/// Refuses bad parameters (parameter_error).
 template <scalar S>
 void expects_valid(const LoosenOptions<S>& options) {
   const char* const owner = "LoosenOptions";
@@ -106,12 +109,12 @@ void expects_valid(const LoosenOptions<S>& options) {
           static_cast<long long>(options.margin_steps), "in [0, 1000000]");
 }
 
-/// Loosens step by step until pre-slip. Const, O(1), no memory from the heap; ends after at most
-/// (first - least) / step + 1 steps of signal that is not missing.
+/// Loosens the grip step by step until pre-slip. Const, O(1), allocates nothing. Ends after at most
+/// (first - least) / step + 1 steps, not counting samples with an unknown state.
 template <scalar S = double>
 class LoosenUntilPreslip {
  public:
-  /// A value: copy it to go back to this sample later.
+  /// A value: copy it to return to this sample later.
   class State {
    public:
     const HoldingCommand<S>& command() const { return command_; }
@@ -135,7 +138,7 @@ class LoosenUntilPreslip {
     return state;
   }
 
-  /// What to do after one more sample.
+  /// The command after one more sample.
   HoldingCommand<S> operator()(PreslipStatus signal, State& state) const {
     HoldingCommand<S>& command = state.command_;
     if (is_end(command.phase) || signal == PreslipStatus::cannot_tell) {
@@ -191,7 +194,7 @@ class LoosenUntilPreslip {
     }
     ++command.steps;
     command.warning_steps += is_finite(command.preslip_force_n) ? 1 : 0;
-    // from the first force, so that rounding does not add up
+    // computed from the first force, so that rounding does not accumulate
     const S taken = S(static_cast<int>(command.steps)) * options_.step_n;
     const S next = options_.first_force_n - taken;
     command.force_n = value(options_.min_force_n) < value(next) ? next : options_.min_force_n;
@@ -204,15 +207,15 @@ class LoosenUntilPreslip {
 /// How the object is lifted. The paper prints no values.
 template <scalar S = double>
 struct LiftOptions {
-  S first_force_n = S(1);          ///< with which it is gripped before the lift, > 0
-  S max_force_n = S(20);           ///< never more, >= first_force_n
-  S force_step_n = S(1) / S(2);    ///< by which the grip is tightened, > 0
-  S height_mm = S(50);             ///< to lift to, > 0
-  S height_step_mm = S(1) / S(4);  ///< lifted at each sample without pre-slip, > 0
-  Index settle_samples = 16;       ///< the lift waits after each tightening, >= 0
+  S first_force_n = S(1);          ///< grip force before the lift, > 0
+  S max_force_n = S(20);           ///< largest grip force, >= first_force_n
+  S force_step_n = S(1) / S(2);    ///< increase of the force per tightening, > 0
+  S height_mm = S(50);             ///< height to lift to, > 0
+  S height_step_mm = S(1) / S(4);  ///< lift per sample without pre-slip, > 0
+  Index settle_samples = 16;  ///< samples for which the lift pauses after each tightening, >= 0
 };
 
-/// Refuses what has no meaning (parameter_error).
+/// Refuses bad parameters (parameter_error).
 template <scalar S>
 void expects_valid(const LiftOptions<S>& options) {
   const auto positive = [](const S& x, const char* name) {
@@ -233,13 +236,13 @@ void expects_valid(const LiftOptions<S>& options) {
           static_cast<long long>(options.settle_samples), ">= 0");
 }
 
-/// Lifts, and tightens the grip where pre-slip shows. Const, O(1), no memory from the heap. At the
-/// largest force it gives up where pre-slip still shows; where the object slips as a whole, at
-/// once, with the grip as it is.
+/// Lifts the object, and tightens the grip at pre-slip. Const, O(1), allocates nothing. It gives up
+/// the lift if pre-slip is found at the largest force. If the object slips as a whole it gives up
+/// at once and leaves the grip as it is.
 template <scalar S = double>
 class LiftWithRegrip {
  public:
-  /// A value: copy it to go back to this sample later.
+  /// A value: copy it to return to this sample later.
   class State {
    public:
     const HoldingCommand<S>& command() const { return command_; }
@@ -247,8 +250,8 @@ class LiftWithRegrip {
    private:
     friend class LiftWithRegrip;
     HoldingCommand<S> command_;
-    Index samples_ = 0;       // of settling
-    Index height_steps_ = 0;  // lifted
+    Index samples_ = 0;       // samples of settling
+    Index height_steps_ = 0;  // steps lifted so far
   };
 
   /// Refuses bad parameters (parameter_error).
@@ -265,7 +268,7 @@ class LiftWithRegrip {
     return state;
   }
 
-  /// What to do after one more sample.
+  /// The command after one more sample.
   HoldingCommand<S> operator()(PreslipStatus signal, State& state) const {
     HoldingCommand<S>& command = state.command_;
     if (is_end(command.phase) || signal == PreslipStatus::cannot_tell) {

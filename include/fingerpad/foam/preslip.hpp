@@ -1,20 +1,20 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// Whether a held object is about to slip, from the readings of foam fingers and without a friction
+// Warns before a held object slips, from the readings of foam fingers and without a friction
 // coefficient. Source: "Pre-Slip Sensing Using Tactile Sensor" (2007), the rule sets of its two
-// experiments. The samples T_1, T_2, ... of all fingers lie in a stack; of any two of them, the
-// older a (index 1) and the later b (index 2), there is pre-slip where
+// experiments. The samples T_1, T_2, ... of all fingers are kept in a stack. Two of them, the older
+// a (index 1) and the later b (index 2), show pre-slip if
 //
 //   grasp-optimise  location(a) != location(b) and waves(a) == waves(b)      on all fingers
 //   grasp-lift      centroid(a) != centroid(b) and location(a) != location(b)
 //                   and waves(b) > waves(a)                                  on any finger
 //
 // "If there exist some tactile elements having the same frequency, then pre-slip can be
-// recognized": location and waves are those of any element that vibrates, for grasp-optimise of a
-// on any finger. Each pair is compared once (docs/errata.md, E042): the newest sample with those
-// before it. The scan of the whole stack as published, with the same answers, is in
-// published/preslip.hpp.
+// recognized": location and waves are those of any element that vibrates; for grasp-optimise those
+// of a may be on another finger. Each pair is compared once (docs/errata.md, E042): the newest
+// sample with those before it. The scan of the whole stack as published, with the same answers, is
+// in published/preslip.hpp.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -35,14 +35,15 @@ inline namespace v0 {
 /// Thresholds of the rules. The paper prints no values.
 template <scalar S = double>
 struct PreslipOptions {
-  Index history = 100;  ///< samples that are compared, in [2, 100000]
-  Index min_waves = 1;  ///< a later sample with fewer waves is silent, >= 0; 0 as published, where
-                        ///< none and none are an equal frequency
-  S centroid_tolerance_mm = S(1) / S(10);  ///< noise of a centroid, >= 0: centroids differ if they
-                                           ///< are farther apart along an axis
+  Index history = 100;  ///< number of samples compared, in [2, 100000]
+  /// A later sample with fewer waves counts as silent, >= 0. 0 as published: no waves in both
+  /// samples are then an equal frequency.
+  Index min_waves = 1;
+  /// Noise of a centroid, >= 0: centroids differ if they are farther apart along an axis.
+  S centroid_tolerance_mm = S(1) / S(10);
 };
 
-/// Refuses what has no meaning (parameter_error).
+/// Refuses bad parameters (parameter_error).
 template <scalar S>
 void expects_valid(const PreslipOptions<S>& o) {
   expects(o.history >= 2 && o.history <= 100000, "PreslipOptions", "history",
@@ -55,20 +56,21 @@ void expects_valid(const PreslipOptions<S>& o) {
 
 namespace detail {
 
-/// A finger's sample as the rules see it.
+/// A finger's sample as the rules use it.
 struct PairSide {
   struct Vibration {
     Index location;
     std::int32_t waves;
     bool is_several;
-    bool is_enough;  // as many waves as a later sample must have
+    bool is_enough;  // at least min_waves, as a later sample must have
   };
   double x_mm = 0;
   double y_mm = 0;
-  Index location = -1;  // of the strongest, with its waves
+  Index location = -1;  // of the strongest vibration, as are its waves
   Index waves = 0;
   bool is_pressed = false;
-  bool is_vibrating = false;  // the strongest has a location, and waves enough
+  // the strongest vibration has a location and at least min_waves
+  bool is_vibrating = false;
   std::int32_t count = 0;
   std::array<Vibration, FingerSample<>::max_vibrations> vibrations = {};
 
@@ -76,7 +78,7 @@ struct PairSide {
   const Vibration* end() const { return vibrations.data() + count; }
 };
 
-/// Whether a holds another taxel than the one, or those, of b.
+/// Whether the taxels of a and b include two different ones.
 inline bool differ(const PairSide::Vibration& a, const PairSide::Vibration& b) {
   return a.is_several || b.is_several || a.location != b.location;
 }
@@ -105,13 +107,14 @@ PairSide pair_side(const FingerSample<S>& s, const PreslipOptions<S>& o) {
     const auto& v = s.vibrations[static_cast<std::size_t>(k)];
     add(v.location, v.waves, v.is_several);
   }
-  if (s.vibration_count == 0) {  // not listed: the strongest is all that is known
+  // no list: only the strongest vibration is known
+  if (s.vibration_count == 0) {
     add(side.location, s.waves, false);
   }
   return side;
 }
 
-/// Whether the centroid is farther off along an axis.
+/// Whether the centroids differ by more than the tolerance along an axis.
 inline bool has_moved(const PairSide& a, const PairSide& b, double tolerance_mm) {
   return a.is_pressed && b.is_pressed &&
          (std::fabs(a.x_mm - b.x_mm) > tolerance_mm || std::fabs(a.y_mm - b.y_mm) > tolerance_mm);
@@ -142,7 +145,7 @@ class SideHistory {
   std::int64_t newest() const { return count_ - 1; }
   std::int64_t oldest() const { return (std::max)(std::int64_t{0}, count_ - size()); }
   const HandSides<Fingers>& operator[](std::int64_t number) const { return sides_[place(number)]; }
-  /// In the place of the oldest, once there is no other.
+  /// Replaces the oldest sample once the history is full.
   void add(const HandSides<Fingers>& sides) { sides_[place(count_++)] = sides; }
 
  private:
@@ -155,9 +158,9 @@ class SideHistory {
 
 }  // namespace detail
 
-/// First experiment: on all fingers a taxel vibrates with as many waves as another taxel, of this
-/// or another finger, at an earlier time. Take this when an object hangs between fingers that press
-/// alike and the grip is loosened.
+/// Rule of the first experiment: on all fingers, a taxel vibrates with as many waves as another
+/// taxel, of this or another finger, did at an earlier time. Use it when an object hangs between
+/// fingers that press alike and the grip is loosened.
 struct GraspOptimise {
   static constexpr const char* name = "grasp_optimise";
 
@@ -191,8 +194,8 @@ struct GraspOptimise {
   }
 };
 
-/// Second experiment: on any finger force has moved, and a taxel vibrates with more waves than
-/// another one did, or where nothing did. Take this in all other cases.
+/// Rule of the second experiment: on any finger, the centroid of force has moved, and a taxel
+/// vibrates with more waves than another taxel did before, or none did. Use it in all other cases.
 struct GraspLift {
   static constexpr const char* name = "grasp_lift";
 
@@ -226,18 +229,19 @@ struct GraspLift {
 struct [[nodiscard]] PreslipResult {
   static constexpr std::int64_t none = -1;
 
-  PreslipStatus status = PreslipStatus::cannot_tell;  ///< what to act on: `preslip` where the
-                                                      ///< newest sample completes a pair
+  /// What to act on: `preslip` if the newest sample completes a pair.
+  PreslipStatus status = PreslipStatus::cannot_tell;
   bool alarm = false;     ///< the history holds a pair that fulfils the rule
   bool is_fresh = false;  ///< the newest sample is the later one of such a pair
   std::int64_t samples_ago =
-      none;  ///< when the older one was taken, of the pair that stays longest
+      none;  ///< age in samples of the older one of the pair that stays in the history longest
 
   /// Whether the fingers could be judged.
   bool ok() const { return status != PreslipStatus::cannot_tell; }
 };
 
-/// Whether one older and one later sample of all fingers fulfil the rule: the predicate alone.
+/// Whether one older and one later sample of all fingers fulfil the rule. This is the predicate
+/// alone, without a history.
 template <class Rule, std::size_t Fingers, scalar S>
 bool is_preslip(const std::array<FingerSample<S>, Fingers>& older,
                 const std::array<FingerSample<S>, Fingers>& later,
@@ -247,7 +251,7 @@ bool is_preslip(const std::array<FingerSample<S>, Fingers>& older,
 }
 
 namespace detail {
-/// `is_fresh` is what the newest sample says where all fingers can be judged.
+/// Pre-slip if `is_fresh`; otherwise it depends on whether all fingers can be judged.
 template <std::size_t Fingers, scalar S>
 PreslipStatus preslip_status(const std::array<FingerSample<S>, Fingers>& newest, bool is_fresh) {
   const bool can_tell = std::all_of(newest.begin(), newest.end(),
@@ -258,15 +262,15 @@ PreslipStatus preslip_status(const std::array<FingerSample<S>, Fingers>& newest,
 }
 }  // namespace detail
 
-/// A rule over a history of samples. Rule: GraspLift or GraspOptimise (as printed: those of
-/// published/preslip.hpp). Const; each hand has a state
-/// of its own. A sample takes O(history) and allocates and throws nothing.
+/// Applies a rule to a history of samples. Rule: GraspLift or GraspOptimise; those as printed are
+/// in published/preslip.hpp. Const; each hand has its own state. A sample takes O(history) time,
+/// allocates nothing and throws nothing.
 template <class Rule = GraspLift, std::size_t Fingers = 2, scalar S = double>
 class Preslip {
   static_assert(Fingers >= 1, "at least one finger");
 
  public:
-  /// The history. A value: copy it to go back to this sample later.
+  /// The history. A value: copy it to return to this sample later.
   class State {
    public:
     /// Forgets all samples.
@@ -279,7 +283,8 @@ class Preslip {
     friend class Preslip;
     explicit State(Index history) : history_(history) {}
     detail::SideHistory<Fingers> history_;
-    std::int64_t older_ = PreslipResult::none;  // of the pairs found, the latest older sample
+    // the latest older sample of the pairs found
+    std::int64_t older_ = PreslipResult::none;
   };
 
   /// Refuses bad parameters (parameter_error).
@@ -289,13 +294,13 @@ class Preslip {
 
   const PreslipOptions<S>& options() const { return options_; }
 
-  /// Takes all memory.
+  /// The state before any sample, with all the memory that samples will need.
   State start() const { return State(options_.history); }
 
-  /// Adds the newest sample of all fingers to the history and says what the history then shows. A
-  /// finger that cannot be judged makes no pair; it never hides those of the others, and never
-  /// counts as steady. The
-  /// state of an estimator with another history is refused: nothing is done, `cannot_tell`.
+  /// Adds the newest sample of all fingers to the history and applies the rule. A finger that
+  /// cannot be judged forms no pair, never hides the pairs of other fingers, and never counts as
+  /// steady. The state of an estimator with another history is refused: nothing is done,
+  /// `cannot_tell`.
   PreslipResult operator()(const std::array<FingerSample<S>, Fingers>& newest, State& state) const {
     PreslipResult result;
     auto& history = state.history_;
@@ -307,7 +312,7 @@ class Preslip {
     const std::int64_t last = history.newest();
     const bool vibrates = std::any_of(history[last].begin(), history[last].end(),
                                       [](const detail::PairSide& side) { return side.count > 0; });
-    const std::int64_t oldest = vibrates ? history.oldest() : last;  // else nothing makes a pair
+    const std::int64_t oldest = vibrates ? history.oldest() : last;  // otherwise there is no pair
     for (std::int64_t older = last - 1; older >= oldest && !result.is_fresh; --older) {
       result.is_fresh = Rule::holds(history[older], history[last], tolerance);
       state.older_ = result.is_fresh ? (std::max)(state.older_, older) : state.older_;

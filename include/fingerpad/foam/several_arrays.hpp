@@ -17,7 +17,7 @@ namespace fingerpad {
 inline namespace v0 {
 namespace detail {
 
-/// What a finger says of whose arrays one is added.
+/// Adds the sample of one array to that of its finger.
 template <scalar S>
 void add_array(const FingerSample<S>& array,
                const Point2<S>& place_mm,
@@ -52,11 +52,12 @@ void add_array(const FingerSample<S>& array,
 
 }  // namespace detail
 
-/// One sample of a finger from those of its arrays at one time. `places_mm` is the place of the
-/// first taxel of each array in the unrolled plan of the finger's sides, `taxels` their number:
-/// locations are numbered consecutively over the arrays. A side that touches nothing does not
-/// matter: the finger can be judged if one of its arrays can. Refused where one is, and not judged
-/// where one vibrates that never rested.
+/// Joins the samples of a finger's arrays at one time to one sample of the finger. `places_mm` is
+/// the position of the first taxel of each array in the unrolled plan of the finger's sides.
+/// `taxels` is the number of taxels of each array; locations are numbered consecutively over the
+/// arrays. The finger can be judged if one of its arrays can, so a side that touches nothing does
+/// not matter. It is refused if an array is, and cannot be judged if an array vibrates that has
+/// never rested.
 template <std::size_t Arrays, scalar S>
 FingerSample<S> finger_of(const std::array<FingerSample<S>, Arrays>& arrays,
                           const std::array<Point2<S>, Arrays>& places_mm,
@@ -75,7 +76,8 @@ FingerSample<S> finger_of(const std::array<FingerSample<S>, Arrays>& arrays,
   for (std::size_t k = 0; k < Arrays; ++k) {
     detail::add_array(arrays[k], places_mm[k], first_location, finger);
     first_location += taxels[k];
-    finger.status = (std::min)(finger.status, arrays[k].status);  // those that tell come first
+    // the statuses that can be judged come first
+    finger.status = (std::min)(finger.status, arrays[k].status);
     finger.has_rested =
         finger.has_rested && (arrays[k].has_rested || arrays[k].status != TaxelStatus::vibrating);
   }

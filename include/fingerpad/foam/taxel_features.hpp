@@ -6,15 +6,15 @@
 // vibrating location, and vibration frequency as the number of sensed waves. The paper gives no
 // formulas for them; here they are
 //
-//   centroid   sum of reading x place / sum of readings, over the taxels that press
-//   location   the taxel whose readings spread most about a straight line in the window, beyond its
-//              noise: a grip that is loosened evenly does not vibrate. Of equals the first in
-//              row-major order
+//   centroid   sum of reading x position / sum of readings, over the taxels that press
+//   location   the taxel whose readings deviate most from a straight line in the window, by more
+//              than its noise: a grip that is loosened evenly does not vibrate. Among equals, the
+//              first in row-major order
 //   waves      crossings of that line, or the strongest line of the spectrum
 //
 // "Some tactile elements" may vibrate: all of them are listed, each with its waves.
-// Taxels that are dead, saturated, stuck, flickering or missing are left out, and come back a whole
-// window after they were last bad.
+// Taxels that are dead, saturated, stuck, flickering or missing are left out. They can vibrate
+// again a whole window after they were last bad.
 #include <algorithm>
 #include <cmath>
 #include <concepts>
@@ -38,8 +38,8 @@ inline namespace v0 {
 
 /// Features of one finger, sample by sample. Waves: ZeroCrossings or SpectralPeak. One object
 /// serves any number of fingers of its size, each with its own state. A sample takes O(rows cols)
-/// time plus that of Waves for each vibrating taxel; with a new clock O(rows cols window). Nothing
-/// is allocated or thrown.
+/// time plus that of Waves for each vibrating taxel; with a new clock O(rows cols window). It
+/// allocates nothing and throws nothing.
 template <class Waves = ZeroCrossings, scalar S = double>
 class TaxelFeatures {
   static_assert(!scalar<Waves>, "the scalar comes last: TaxelFeatures<ZeroCrossings, double>");
@@ -47,17 +47,17 @@ class TaxelFeatures {
   using Real = scalar_real_t<S>;
 
  public:
-  /// The window of one finger. A value: copy it to go back to this sample later.
+  /// The window of one finger. A value: copy it to return to this sample later.
   class State {
    public:
-    /// One taxel that vibrates.
+    /// A taxel that vibrates.
     struct Vibrating {
       Index location;
       Index waves;
       S deviation;  // rms, in the unit of the readings
     };
 
-    /// All that vibrate in the newest sample, row by row.
+    /// All taxels that vibrate in the newest sample, row by row.
     std::span<const Vibrating> vibrating() const { return vibrating_; }
 
     /// Forgets all samples.
@@ -87,12 +87,12 @@ class TaxelFeatures {
 
     detail::TaxelWindow<S> window_;
     std::vector<S> held_;               // the last good reading of each taxel
-    std::vector<Index> same_for_;       // samples for which it did not change
+    std::vector<Index> same_for_;       // samples since it last changed
     std::vector<Index> bad_for_;        // samples until it can vibrate again
     std::vector<Index> returned_for_;   // samples for which its return from 0 is remembered
     std::vector<double> time_s_;        // of the window, oldest first; gaps shortened
-    std::vector<std::uint8_t> is_gap_;  // before each of them
-    std::vector<S> spread_;             // variance of each taxel
+    std::vector<std::uint8_t> is_gap_;  // whether a gap precedes each of them
+    std::vector<S> spread_;             // variance of each taxel about its line
     std::vector<S> residual_;
     detail::ReservedVector<Vibrating> vibrating_;
     typename Waves::template Scratch<S> scratch_;
@@ -100,7 +100,7 @@ class TaxelFeatures {
     Index unfilled_for_ = 0;    // samples since the window was last full
     Index unchanged_for_ = 0;   // samples since any reading changed
     double last_time_s_ = 0;    // as received
-    Real typical_ = Real(0);    // reading of the last sample, of those that press
+    Real typical_ = Real(0);    // mean reading of the taxels that press, in the last sample
     bool has_changed_ = false;  // since the start or the last new clock
     bool has_rested_ = false;
   };
@@ -115,7 +115,8 @@ class TaxelFeatures {
     floor_.assign(static_cast<std::size_t>(rows * cols), floor_of(value(options.noise)));
   }
 
-  /// With a standard deviation for each taxel; one that is not a number >= 0 marks a dead taxel.
+  /// With a standard deviation for each taxel. A value that is not >= 0, such as NaN, marks a dead
+  /// taxel.
   template <grid Noise>
     requires std::constructible_from<S, cell_t<Noise>>
   explicit TaxelFeatures(const Noise& noise,
@@ -138,13 +139,14 @@ class TaxelFeatures {
   Index cols() const { return cols_; }
   const TaxelOptions<S>& options() const { return options_; }
 
-  /// Takes all memory.
+  /// The state before any sample, with all the memory that samples will need.
   State start() const { return State(rows_ * cols_, options_.window); }
 
-  /// The features at `time_s`, when the sample was received. NaN, saturated readings and those of a
-  /// billion are left out; so is a taxel that twice in a window comes back from 0 to more than
-  /// others read (a loose contact). A time that is NaN or not later than the last is refused; one
-  /// that is earlier by more than a window is a new clock.
+  /// Features of the sample received at `time_s`. Readings that are NaN, saturated, or a billion or
+  /// more are left out. So is a taxel that twice in a window returns from 0 to more than others
+  /// read (a loose contact). A time that is NaN or not later than the last one is refused. A time
+  /// earlier by more than a window or longest_gap_s, whichever is shorter, or later by more than
+  /// longest_gap_s, starts a new clock.
   template <grid Taxels>
     requires std::constructible_from<S, cell_t<Taxels>> FingerSample<S>
   operator()(const Taxels& taxels, double time_s, State& state) const {
@@ -216,7 +218,7 @@ class TaxelFeatures {
     std::fill(state.returned_for_.begin(), state.returned_for_.end(), 0);
   }
 
-  /// Takes over what can be used of the readings, and finds the centroid of what presses.
+  /// Stores the usable readings and computes the centroid of those that press.
   template <class View>
   void read(const View& readings, FingerSample<S>& sample, State& state) const {
     S sum_x = S(0), sum_y = S(0);
@@ -246,7 +248,7 @@ class TaxelFeatures {
     }
   }
 
-  /// Whether the taxel can be believed now, which is remembered.
+  /// Whether the reading of a taxel counts now. Updates what is remembered of the taxel.
   bool counts(const S& reading, std::size_t k, State& state) const {
     const bool is_good =
         detail::is_reading(reading) && value(reading) < value(options_.saturated_at);
@@ -270,8 +272,8 @@ class TaxelFeatures {
     return floor_[k] < infinite() && !flickers && !(is_frozen(k, state) && value(reading) != 0);
   }
 
-  /// A taxel that comes back from 0 to more than others read, twice in a window, is a loose
-  /// contact.
+  /// Detects a loose contact: a taxel that returns from 0 to more than others read, twice in a
+  /// window.
   void look_for_flicker(const Real& before, const Real& now, std::size_t k, State& state) const {
     Index& returned_for = state.returned_for_[k];
     returned_for = returned_for > 0 ? returned_for - 1 : 0;
@@ -285,7 +287,7 @@ class TaxelFeatures {
     return options_.stuck_after > 0 && state.same_for_[k] >= options_.stuck_after;
   }
 
-  /// The sample's time, and its readings; a gap counts as two periods.
+  /// Stores time and readings of the sample; a gap counts as two periods.
   void store(double time_s, State& state) const {
     if (state.samples_ == 0) {
       state.window_.restart(state.held_.data());
@@ -307,7 +309,7 @@ class TaxelFeatures {
         is_full ? 0 : (std::min)(state.unfilled_for_ + 1, 2 * options_.window + 1);
   }
 
-  /// What the sample says of vibration, or why it says nothing.
+  /// Sets the status of the sample: its vibration, or why this cannot be judged.
   void judge(FingerSample<S>& sample, State& state) const {
     state.vibrating_.clear();
     sample.has_rested = state.has_rested_;
@@ -327,13 +329,13 @@ class TaxelFeatures {
     }
   }
 
-  /// Whether no taxel has changed for long, or ever.
+  /// Whether no reading has changed for `stuck_after` samples, or ever.
   bool is_frozen(const State& state) const {
     return options_.stuck_after > 0 &&
            (!state.has_changed_ || state.unchanged_for_ >= options_.stuck_after);
   }
 
-  /// Quiet where some taxel that can be judged reads so much that it could vibrate.
+  /// `quiet` if some taxel that can be judged reads enough to vibrate.
   TaxelStatus status_without_vibration(const State& state) const {
     TaxelStatus status = TaxelStatus::no_taxels;
     for (std::size_t k = 0; k < floor_.size(); ++k) {
@@ -347,12 +349,12 @@ class TaxelFeatures {
     return status;
   }
 
-  /// Whether its whole window is good.
+  /// Whether the taxel was good in its whole window.
   bool can_vibrate(std::size_t k, const State& state) const {
     return floor_[k] < infinite() && state.bad_for_[k] == 0 && !is_frozen(k, state);
   }
 
-  /// Lists what vibrates; the strongest is the sample's own. False: nothing does.
+  /// Lists the taxels that vibrate and copies the strongest to the sample. False: none vibrates.
   bool find_vibration(FingerSample<S>& sample, State& state) const {
     state.window_.variances(state.spread_.data());
     for (std::size_t k = 0; k < floor_.size(); ++k) {
@@ -379,7 +381,7 @@ class TaxelFeatures {
     return true;
   }
 
-  /// Adds a taxel to the list, unless nothing is left of its spread when it is summed anew.
+  /// Adds a taxel to the list, unless its variance vanishes when computed anew.
   void list(Index location, State& state) const {
     using std::sqrt;
     const S mean_square = state.window_.residuals(location, state.residual_.data());
@@ -395,7 +397,8 @@ class TaxelFeatures {
   Index cols_;
   TaxelOptions<S> options_;
   Waves waves_;
-  std::vector<Real> floor_;  // variance beyond which each taxel vibrates; infinite: dead
+  // variance above which each taxel vibrates; infinite: dead
+  std::vector<Real> floor_;
 };
 
 }  // namespace v0

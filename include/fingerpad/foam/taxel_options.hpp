@@ -11,33 +11,36 @@
 namespace fingerpad {
 inline namespace v0 {
 
-/// The array and its window. Readings in the sensor's own unit (counts, V, N). The paper prints no
-/// values: the defaults suit arrays of 12-bit counts read 30 times a second.
+/// The array and its window. Readings are in the sensor's own unit (counts, V, N). The paper prints
+/// no values; the defaults suit arrays of 12-bit counts read 30 times a second.
 template <scalar S = double>
 struct TaxelOptions {
-  S pitch_mm = S(34) / S(10);        ///< between taxels, > 0
-  Index window = 16;                 ///< samples in which vibration is looked for, in [4, 4096]
+  S pitch_mm = S(34) / S(10);        ///< distance of neighbouring taxels, > 0
+  Index window = 16;                 ///< samples in which vibration is detected, in [4, 4096]
   S sample_period_s = S(1) / S(30);  ///< nominal, > 0
-  S longest_gap_s = S(2);  ///< a gap counts as at most two periods; a gap longer than this, or a
-                           ///< clock that is set back, begins a new window, > 0
-  S noise = S(6);          ///< standard deviation of a taxel at rest, >= 0
-  S noise_factor = S(5) / S(2);  ///< vibration is more than this many of them, >= 0
-  S min_sum = S(0);              ///< a smaller sum of readings has no centroid, >= 0
-  S saturated_at = S((std::numeric_limits<scalar_real_t<S>>::infinity)());  ///< readings from here
-                                                                            ///< on do not count
-  Index stuck_after = 30;  ///< a reading that was the same so many times in a row is frozen, and
-                           ///< does not count if it is not 0, >= 0; 0: not looked for
+  /// A gap counts as at most two periods. A gap longer than this, or a clock that is set back,
+  /// begins a new window. > 0.
+  S longest_gap_s = S(2);
+  S noise = S(6);                ///< standard deviation of a taxel at rest, >= 0
+  S noise_factor = S(5) / S(2);  ///< vibration exceeds this many standard deviations, >= 0
+  S min_sum = S(0);              ///< with a smaller sum of readings there is no centroid, >= 0
+  /// This reading and larger ones do not count, > 0.
+  S saturated_at = S((std::numeric_limits<scalar_real_t<S>>::infinity)());
+  /// A reading that was the same in this many samples is frozen and, unless it is 0, does not
+  /// count. >= 0; 0: not checked.
+  Index stuck_after = 30;
 };
 
 namespace detail {
-/// Whether a reading is below a billion in size, as every converter's is; false for NaN.
+/// Whether the magnitude of a reading is below a billion, as that of every converter is; false for
+/// NaN.
 template <scalar S>
 constexpr bool is_reading(const S& reading) {
   return -1000000000 < value(reading) && value(reading) < 1000000000;
 }
 }  // namespace detail
 
-/// Refuses what has no meaning (parameter_error).
+/// Refuses bad parameters (parameter_error).
 template <scalar S>
 void expects_valid(const TaxelOptions<S>& o) {
   const auto positive = [](const S& x, const char* name) {

@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// How many waves of vibration one taxel shows in its window: the paper's "number of sensed
-// vibrating waves", which it calls frequency; per window of samples, so that a gap of the clock
-// does not make fewer of them. Two ways, a policy of TaxelFeatures.
+// Counts the waves of vibration that one taxel shows in its window: the paper's "number of sensed
+// vibrating waves", which it calls frequency. They are counted per window of samples, so that a gap
+// of the clock does not reduce their number. There are two methods, policies of TaxelFeatures.
 #include <cmath>
 #include <cstddef>
 #include <numbers>
@@ -17,7 +17,7 @@ namespace fingerpad {
 inline namespace v0 {
 namespace detail {
 
-/// From the oldest sample to one period beyond the newest.
+/// Time from the oldest sample to one period beyond the newest.
 inline double span_s(const double* time_s, Index length) {
   const double length_s = time_s[length - 1] - time_s[0];
   return length_s / static_cast<double>(length - 1) * static_cast<double>(length);
@@ -26,7 +26,7 @@ inline double span_s(const double* time_s, Index length) {
 /// One taxel in its window, oldest sample first.
 template <scalar S>
 struct WaveWindow {
-  const S* residual;     // what is left without the line
+  const S* residual;     // readings without the straight line
   const double* time_s;  // by the clock, gaps shortened
   Index length;
   S rms;  // of the residual, > 0
@@ -34,11 +34,10 @@ struct WaveWindow {
 
 }  // namespace detail
 
-/// Counts how often the signal crosses its line. Take this by default: it tells a step, as of a
-/// taxel that lets go, as one wave that has begun, and takes O(window).
-/// A crossing counts when the signal goes beyond `hysteresis` times its rms on the other side, so
-/// that noise on a slow wave does not; a wave has two. Of waves shorter than three samples some are
-/// missed.
+/// Counts how often the signal crosses its straight line, twice per wave. Use it by default: a
+/// step, as of a taxel that lets go, counts as one wave that has begun, and it takes O(window). A
+/// crossing counts when the signal exceeds `hysteresis` times its rms on the other side, so that
+/// noise on a slow wave does not count. Some waves shorter than three samples are missed.
 struct ZeroCrossings {
   double hysteresis = 0.5;  ///< in [0, 1)
 
@@ -47,7 +46,7 @@ struct ZeroCrossings {
             "in [0, 1)");
   }
 
-  /// No memory of its own.
+  /// Needs no memory.
   template <scalar S>
   struct Scratch {
     explicit Scratch(Index) {}
@@ -68,9 +67,9 @@ struct ZeroCrossings {
   }
 };
 
-/// Counts the waves of the strongest line of the spectrum within a Hann window. Take this when the
-/// clock is uneven or waves are shorter than three samples: it takes the times as they are.
-/// O(window^2 / 2) for the one taxel.
+/// Counts the waves of the strongest line of the spectrum in a Hann window. Use it when the clock
+/// is uneven or waves are shorter than three samples: it uses the actual times. O(window^2 / 2) for
+/// each taxel.
 struct SpectralPeak {
   void check() const {}
 
@@ -78,8 +77,9 @@ struct SpectralPeak {
   struct Scratch {
     explicit Scratch(Index length)
         : real(static_cast<std::size_t>(length), S(0)), imaginary(real), cosine(real), sine(real) {}
-    std::vector<S> real, imaginary;  // residual times window times the k-th power of the turn
-    std::vector<S> cosine, sine;     // one turn for each wave in the window
+    // residual times window times the k-th power of the rotation
+    std::vector<S> real, imaginary;
+    std::vector<S> cosine, sine;  // the rotation by one wave per window
   };
 
   template <scalar S>
@@ -115,7 +115,7 @@ struct SpectralPeak {
     }
   }
 
-  /// Turns every term by one more wave and returns the power of their sum.
+  /// Rotates every term by one more wave and returns the power of their sum.
   template <scalar S>
   static S turn(Index length, Scratch<S>& scratch) {
     S real_sum = S(0), imaginary_sum = S(0);
