@@ -1,15 +1,15 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// Accumulation over all dots in contact, beyond the papers. A map holds where each dot that touches
-// the object sits on it, in the object's own coordinates (the sensor's in the frame of first
-// contact). The pose of a frame is the rigid motion that best fits the map to the dots. Then
-// dots new in contact are entered with that pose, those that stay refine their entry as a running
-// mean, and those that have left are removed.
+// Pose of an object from all dots in contact, which goes beyond the papers. A map stores where each
+// dot in contact sits on the object, in the object's own coordinates (those of the sensor in the
+// frame of first contact). The pose of a frame is the rigid motion that best fits the map to the
+// dots. Then dots new in contact are entered with that pose, those that stay refine their entry as
+// a running mean, and those that have left are removed.
 //
 // A chain of 3x3 neighbourhoods adds the tilt noise of nine dots at each change of dot. A patch of
-// about fifty dots has a tenth of it, and loses its memory only when the contact has rolled over
-// its whole width.
+// about fifty dots has a tenth of that noise, and its memory is lost only when the contact has
+// rolled over its whole width.
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -26,12 +26,12 @@ inline namespace v0 {
 
 /// Policy: pose from a map of the dots in contact.
 ///
-/// Slipping dots must not pull the pose along, so the fit is repeated with weights
-/// 1 / (1 + (r/c)^2)^2, where r is a dot's residual and c twice the median residual (three times in
-/// the last pass, to lower the noise). A dot beyond twice that c is entered again at its present
-/// place: after a slip it sticks elsewhere.
+/// Slipping dots must not bias the pose, so the fit is repeated with weights 1 / (1 + (r/c)^2)^2,
+/// where r is a dot's residual and c twice the median residual (three times in the last pass, to
+/// lower the noise). A dot with a residual of more than twice that c is entered again at its
+/// present position, because after a slip it sticks elsewhere.
 struct ContactMap {
-  Index dots_to_begin = 9;  ///< dots in contact with which an object begins, >= 3
+  Index dots_to_begin = 9;  ///< dots in contact needed to begin an object, >= 3
   int robust_passes = 3;    ///< repetitions of the fit, in [0, 10]; 0: plain least squares
 
   template <scalar S>
@@ -39,7 +39,7 @@ struct ContactMap {
     Point3<S> place_mm = {S(0), S(0), S(0)};
     S weight = S(0);  ///< of the mean; 0: not on the map
   };
-  /// One dot in contact in this frame. `cell` is its entry.
+  /// A dot in contact in this frame. `cell` is the index of its entry.
   template <scalar S>
   struct Observation {
     std::size_t cell = 0;
@@ -53,7 +53,7 @@ struct ContactMap {
   struct Track : detail::motion::Track<S> {
     std::vector<Entry<S>> map;
     std::vector<Observation<S>> observations;  // those on the map first
-    std::vector<std::size_t> leaving;          // cells of the map that are seen out of contact
+    std::vector<std::size_t> leaving;  // cells of the map whose dots are found, but out of contact
     std::vector<scalar_real_t<S>> sorted;
     S pitch_sq = S(0);  // mean square distance of neighbours in contact at first, mm^2
   };
@@ -126,18 +126,18 @@ struct ContactMap {
   }
 
  private:
-  /// No membrane turns so far from one pose to the next; rows and columns exchanged turn a flat
-  /// patch over.
+  /// No membrane rotates so far between two poses; exchanged rows and columns turn a flat patch
+  /// over.
   static constexpr double max_step_rad = 2.5;
 
-  /// How many dots in contact are on the map, how many are new, and how many have left.
+  /// Numbers of dots in contact that are on the map and that are new, and of dots that have left.
   struct Seen {
     Index known = 0;
     Index fresh = 0;
     Index left = 0;
   };
 
-  /// Infinite where no neighbours are in contact.
+  /// Mean square distance of neighbours in contact; infinite if there are none.
   template <scalar S, class Frame>
   static S pitch_sq(const Frame& frame) {
     S sum = S(0);
@@ -158,14 +158,15 @@ struct ContactMap {
     return count > 0 ? S(sum / S(count)) : S(std::numeric_limits<scalar_real_t<S>>::infinity());
   }
 
-  /// A new entry has the error of the pose in it besides that of its dot: half a observation.
+  /// A new entry has the error of the pose besides that of its dot, so it counts as half an
+  /// observation.
   template <scalar S>
   static S first_weight() {
     return S(1) / S(2);
   }
 
-  /// Lists the dots in contact, those on the map from the front, new ones from the back; and those
-  /// of the map that are seen out of contact. Missing ones may still be in it.
+  /// Lists the dots in contact: those on the map from the front, new ones from the back. Also lists
+  /// the dots of the map that are found out of contact; missing ones may still be in contact.
   template <scalar S, class Frame>
   static Seen look(const Frame& frame, Track<S>& t) {
     Seen seen;
@@ -229,8 +230,8 @@ struct ContactMap {
     }
   }
 
-  /// Repeats the fit with less and less weight on dots that do not follow the others; returns the
-  /// median square residual that the last weights were made of.
+  /// Repeats the fit with less and less weight on dots that do not follow the others. Returns the
+  /// median squared residual that the last weights are based on.
   template <scalar S>
   scalar_real_t<S> distrust(RigidFit<S>& fit, const Seen& seen, Track<S>& t) const {
     scalar_real_t<S> median_sq = scalar_real_t<S>(0);
@@ -243,7 +244,7 @@ struct ContactMap {
       weigh(S((pass < robust_passes ? 4 : 9) * median_sq), seen, t);
       const RigidFit<S> again = fit_map(seen, t);
       if (!again.determined) {
-        break;  // the weights have left a line of dots: the fit before is the better one
+        break;  // the weights leave dots on a line: keep the fit before
       }
       fit = again;
       residuals(fit.pose, seen, t);

@@ -1,19 +1,19 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// Displacement of a contact, and its rotation about the normal, from the dots.
-// Source: Ito, Kim and Obinata, "Acquisition of Contact Force and Slippage ...", figure 5: the
-// displacement of the central dot and the rotation angle of the contact surface. They are
-// the input of force/shear.hpp and of the compensations of force/normal_force.hpp.
+// Displacement of a contact, and its rotation about the normal, from the dots. Source: Ito, Kim and
+// Obinata, "Acquisition of Contact Force and Slippage ...", figure 5: the displacement of the
+// central dot and the rotation angle of the contact surface. They are the input of force/shear.hpp
+// and of the compensations of force/normal_force.hpp.
 //
 // The angle is that of the rigid rotation that best fits the reference dots to the dots,
 // theta = atan2(sum of cross products, sum of dot products) about the centers of both. It neither
 // wraps nor averages angles.
 //
 // The choice of dots matters. The central dot stays with the object while the contact slips from
-// its edge inward, so its displacement shows how far the object went rather than how hard it pulls,
-// most of all after a reversal. The whole force passes through the membrane along the contact's
-// edge; therefore EdgeDots is the default. The figures are in docs/force/shear.md.
+// its edge inward, so its displacement shows how far the object moved rather than the force, most
+// of all after a reversal. The whole force passes through the membrane along the contact's edge;
+// therefore EdgeDots is the default. Measured figures are in docs/force/shear.md.
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -43,21 +43,22 @@ struct PlainMean {
   static constexpr bool is_robust = false;
 };
 /// Huber's M-estimate: a dot whose residual is more than `threshold` times the noise gets less
-/// weight, so that up to about a third of stuck or mistaken dots bias it little. The scale is
-/// that of the median residual, whose own derivative a dual number does not carry.
+/// weight, so that up to about a third of stuck or mistaken dots bias the result little. The noise
+/// is estimated from the median residual, whose own derivative a dual number does not carry.
 struct HuberMean {
   static constexpr bool is_robust = true;
-  double threshold = 1.5;  ///< in standard deviations, > 0
-  int passes = 10;         ///< of reweighting, in [1, 100]
+  double threshold = 1.5;  ///< in standard deviations of the noise, > 0
+  int passes = 10;         ///< repetitions of weighting and fit, in [1, 100]
 };
 
 enum class ShiftStatus : std::uint8_t {
-  measured,        ///< displacement and angle
-  one_place_only,  ///< no angle: there are fewer than two dots, or all are in one place
+  measured,        ///< displacement and angle are known
+  one_place_only,  ///< displacement without angle: fewer than two dots, or all in one place
   no_dots,         ///< none of the chosen dots was found in both frames
-  not_rigid,       ///< no rigid shift brings the dots within 3/4 of a pitch, and no displacement is
-                   ///< given: another order or unit than the reference, or lost dots with a place?
-  refused,         ///< a grid or the workspace does not have the reference's size
+  /// The rms residual from the best rigid shift exceeds 3/4 of a pitch, so no displacement is
+  /// given: another order or unit than in the reference, or lost dots marked by a position?
+  not_rigid,
+  refused,  ///< a grid or the workspace does not have the reference's size
 };
 
 /// "measured", "one place only", ...
@@ -80,10 +81,10 @@ constexpr const char* name_of(ShiftStatus status) {
 template <scalar S = double>
 struct [[nodiscard]] ShiftResult {
   ShiftStatus status = ShiftStatus::refused;
-  Index dots = 0;                                                   ///< that took part
+  Index dots = 0;  ///< dots from which the shift was computed
   Point2<S> displacement = {not_a_number<S>(), not_a_number<S>()};  ///< in the unit of the dots
   S rotation_rad = not_a_number<S>();  ///< from x toward y, in [-pi, pi]
-  S residual_rms = not_a_number<S>();  ///< distance of the dots from the rigid shift
+  S residual_rms = not_a_number<S>();  ///< rms distance of the dots from the rigid shift
 
   bool ok() const { return status == ShiftStatus::measured; }
   bool has_displacement() const {
@@ -98,8 +99,8 @@ template <class Dots> concept names_one_dot = requires(const Dots& dots) {
 };
 }  // namespace detail
 
-/// Shift of chosen dots against the reference frame. Dots are in mm on the plate or in px; of dots
-/// in space only x and y are used.
+/// Shift of chosen dots since the reference frame. Dots are in mm on the plate or in px; of dots in
+/// space only x and y are used.
 ///   Dots  EdgeDots     use it for force/shear.hpp: the whole force passes through them
 ///         ContactDots  use it for the displacement of the object
 ///   Mean  PlainMean    use it if no dot is stuck or mistaken for another
@@ -179,8 +180,8 @@ class ContactShift {
   static Point2<S> planar(const P& p) {
     return {S(point_traits<P>::x(p)), S(point_traits<P>::y(p))};
   }
-  /// Dots of the reference that share a place by which others mark what they did not find are not
-  /// found.
+  /// Removes dots of the reference at a position that marks lost dots in other software, if several
+  /// dots share it.
   void leave_out(const S& mark) {
     const auto is_mark = [&](const Point2<S>& p) {
       return value(p.x) == value(mark) && value(p.y) == value(mark);
@@ -190,7 +191,7 @@ class ContactShift {
                       Point2<S>{not_a_number<S>(), not_a_number<S>()});
     }
   }
-  /// Mean square distance of neighbours in the reference; infinite where there are none.
+  /// Mean square distance of neighbours in the reference; infinite if there are none.
   S mean_pitch_sq() const {
     S sum = S(0);
     int count = 0;
@@ -259,7 +260,8 @@ class ContactShift {
       return touches(flags, i, j);
     }
   }
-  /// A neighbour that was lost, or of which nothing is known, makes no edge.
+  /// Whether a neighbour is on the other side of the edge. Missing and unknown neighbours do not
+  /// count.
   template <class View, class Flags>
   bool is_beside_edge(const View& to, const Flags& flags, Index i, Index j) const {
     const bool inside = touches(flags, i, j);
@@ -302,7 +304,7 @@ class ContactShift {
       return result;
     }
     Rigid shift(w.pairs_);
-    const Point2<S> middle = shift.from();  // of all, whatever they count
+    const Point2<S> middle = shift.from();  // of all dots with equal weights
     if constexpr (Mean::is_robust) {
       for (int pass = 0; pass < mean_.passes; ++pass) {
         reweigh(shift, w);
@@ -342,7 +344,7 @@ class ContactShift {
     }
     const auto middle = w.residuals_.begin() + static_cast<Index>(w.residuals_.size() / 2);
     std::nth_element(w.residuals_.begin(), middle, w.residuals_.end());
-    // The median distance of plane noise is sqrt(2 ln 2) standard deviations of a coordinate.
+    // the median distance of noise in the plane is sqrt(2 ln 2) standard deviations of a coordinate
     const Real limit_sq = *middle * Real(mean_.threshold * mean_.threshold / 1.3862943611198906);
     for (Pair& p : w.pairs_) {
       const S residual = shift.residual_sq(p);

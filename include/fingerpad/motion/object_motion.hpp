@@ -1,15 +1,15 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// How an object in contact has moved, from the dots of the membrane in space. Source: Ito, Kim,
-// Nagai, Obinata, "Acquisition of tactile information by vision-based tactile sensor for dexterous
+// Motion of an object in contact, from the dots of the membrane in space. Source: Ito, Kim, Nagai,
+// Obinata, "Acquisition of tactile information by vision-based tactile sensor for dexterous
 // handling of robot hands", III.C, eqs. 13-19; published and corrected forms in docs/errata.md,
 // E019-E024.
 //
-// While nothing slips, the dots in contact move with the object: the published way follows the one
-// that has moved furthest, with its eight neighbours; the default takes all of them. Dots in space
-// come from spatial_dots(), contact flags from contact_at_dots() (motion/spatial_dots.hpp).
-// What no dots can show: an object that slides as a whole, and one that is exchanged for another.
+// While nothing slips, the dots in contact move with the object. The published method follows the
+// one that has moved furthest, with its eight neighbours; the default uses all of them. Dots in
+// space come from spatial_dots(), contact flags from contact_at_dots() (motion/spatial_dots.hpp).
+// Dots cannot show that an object slides as a whole, or that it is exchanged for another.
 #include <concepts>
 #include <cstddef>
 #include <utility>
@@ -26,20 +26,20 @@ inline namespace v0 {
 
 template <scalar S = double>
 struct ObjectMotionOptions {
-  /// The contact reference dot stays as long as no other has moved further than it by more than
-  /// this, mm, >= 0; 0 as published, when noise may make it flicker between neighbours.
+  /// The contact reference dot is kept until another dot has moved further than it by more than
+  /// this, mm, >= 0. 0 as published; noise may then make it flicker between neighbours.
   S reference_margin_mm = S(0);
 };
 
 /// Pose of the object in contact, frame by frame.
 ///   Way   ContactMap  all dots that stick, with the least noise
-/// The printed forms are ways too: published/object_motion.hpp.
-/// Threads may share one estimator, each with its own state. A frame allocates nothing, throws
-/// nothing, and takes O(rows cols) time.
+/// The printed forms are ways too: published/object_motion.hpp. Threads may share one estimator,
+/// each with its own state. A frame allocates nothing, throws nothing, and takes O(rows cols) time.
 ///
 /// An object begins with the first frame with enough contact, and ends when no dot is in contact;
 /// the next contact is a new object. A frame with contact but without a pose keeps the last pose
-/// and says why. The object is found again as soon as enough of the known dots are back in contact.
+/// and gives the reason as its status. The object is found again as soon as enough of the known
+/// dots are back in contact.
 template <class Way = ContactMap, scalar S = double>
 class ObjectMotion {
   static_assert(!scalar<Way>, "the scalar comes last: ObjectMotion<ContactMap, double>");
@@ -90,8 +90,8 @@ class ObjectMotion {
   /// The state before any contact, with all the memory that frames will need.
   State start() const { return State(way_.template track<S>(rows(), cols()), rows(), cols()); }
 
-  /// The object in a frame with dots `dots_mm` (NaN: not found) of which those with a true
-  /// `contact` touch it.
+  /// Processes a frame with the dots `dots_mm` (NaN: not found), of which those with a true
+  /// `contact` touch the object.
   template <spatial_dot_grid Dots, contact_mask Contact>
   ObjectMotionResult<S> operator()(const Dots& dots_mm,
                                    const Contact& contact,
@@ -106,8 +106,8 @@ class ObjectMotion {
   }
 
   /// The same if it is known which dots slip, for instance from the stick ratio. Slipping dots
-  /// would bend the pose, so they are left out and entered again where they stick again. If fewer
-  /// than a fifth stick, the status is `slipping` and the pose stays; a new object begins
+  /// would bias the pose, so they are left out, and entered again where they stick again. If fewer
+  /// than a fifth stick, the status is `slipping` and the pose is kept. A new object begins
   /// afterwards, because it is not known how far the first one slid.
   template <spatial_dot_grid Dots, contact_mask Contact, contact_mask Slips>
   ObjectMotionResult<S> operator()(const Dots& dots_mm,
@@ -168,7 +168,7 @@ class ObjectMotion {
     return result;
   }
 
-  /// Keeps the memory: begin() writes whatever it reads.
+  /// Forgets the object but keeps the memory, because begin() writes whatever it reads.
   static void forget(State& state) {
     static_cast<detail::motion::Track<S>&>(state.track_) = {};
     state.reference_ = {};

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// Input of the object motion, from a frame: the dots in space, and whether each is in contact.
-// Source: Ito, Kim, Nagai, Obinata 2011, eq. 13, with E019 and E020 repaired: the depth is that of
+// Input of the object motion from a frame: the dots in space, and whether each is in contact.
+// Source: Ito, Kim, Nagai, Obinata 2011, eq. 13, with E019 and E020 corrected: the depth is that at
 // the dot's pixel.
 #include <algorithm>
 #include <concepts>
@@ -16,8 +16,8 @@
 namespace fingerpad {
 inline namespace v0 {
 
-/// The depth map between pixel centers, bilinearly; NaN outside of it and where one of the pixels
-/// that count is missing.
+/// Depth between pixel centers by bilinear interpolation; NaN outside of the map and where a pixel
+/// with a weight is missing.
 template <scalar S, grid Depth>
 S depth_between_pixels(const Depth& depth_mm, const S& row, const S& col) {
   const S last_row = S(static_cast<double>(rows(depth_mm) - 1));
@@ -32,7 +32,7 @@ S depth_between_pixels(const Depth& depth_mm, const S& row, const S& col) {
   const S down = row - S(static_cast<double>(i));
   const S right = col - S(static_cast<double>(j));
   const auto share = [&](Index r, Index c, const S& weight) {
-    // a pixel without weight need not be there
+    // a pixel with weight 0 may be missing or outside of the map
     return value(weight) == 0 ? S(0) : S(weight * S(grid_traits<Depth>::at(depth_mm, r, c)));
   };
   const S up = S(1) - down;
@@ -43,7 +43,7 @@ S depth_between_pixels(const Depth& depth_mm, const S& row, const S& col) {
 }
 
 namespace detail::motion {
-/// A point of any type from three coordinates.
+/// A point of type P with these coordinates.
 template <class P, scalar S>
 P point_from(const Point3<S>& p) {
   P out = P();
@@ -64,14 +64,13 @@ P point_from(const Point3<S>& p) {
 
 struct [[nodiscard]] SpatialDotsResult {
   FrameStatus status = FrameStatus::refused;
-  Index found = 0;  ///< dots that now have a place in space
+  Index found = 0;  ///< dots with a known position in space
 
   bool ok() const { return status == FrameStatus::ok; }
 };
 
-/// The dots of a frame in mm, from where the image shows them (px) and the depth map (mm, along
-/// each pixel's ray). NaN where a dot was not found or has no depth. Allocates
-/// nothing.
+/// Dots of a frame in space, in mm, from their positions in the image (px) and the depth map (mm,
+/// along each pixel's ray). NaN where a dot was not found or has no depth. Allocates nothing.
 template <scalar S, dot_grid Dots, grid Depth, spatial_dot_grid Out>
 SpatialDotsResult spatial_dots(const Camera<S>& camera,
                                const Dots& dots_px,
@@ -102,7 +101,7 @@ SpatialDotsResult spatial_dots(const Camera<S>& camera,
 
 namespace detail {
 
-/// Whether every pixel of the mask touches that is at most radius_px away from (row, col).
+/// Whether all pixels of the mask within radius_px of (row, col) are in contact.
 template <class Mask>
 bool disc_in_contact(const Mask& mask, Index row, Index col, double radius_px) {
   const auto reach = static_cast<Index>(radius_px);
@@ -122,12 +121,13 @@ bool disc_in_contact(const Mask& mask, Index row, Index col, double radius_px) {
 
 }  // namespace detail
 
-/// Which dots are in contact: those for which all pixels of the mask within `dot_radius_px` of the
-/// dot's nearest pixel touch, in [0, 1000]; pixels outside the mask do not count. A dot on the edge
-/// of the contact is about to let go, or has not been touched yet, so use the radius of the dots
-/// for their motion. With 0 only the nearest pixel counts. False where a dot was not found or lies
-/// outside of the mask. False, and nothing written, when `out` has another size than the dot grid,
-/// or the radius is none. Allocates nothing; O(dots radius^2).
+/// Computes which dots are in contact: those for which all pixels of the mask within
+/// `dot_radius_px`, in [0, 1000], of the dot's nearest pixel are in contact. Pixels outside of the
+/// mask do not count. With 0 only the nearest pixel counts. A dot on the edge of the contact is
+/// about to separate, or has not been touched yet, so use the radius of the dots for their motion.
+/// A dot that was not found or lies outside of the mask is not in contact. Returns false and writes
+/// nothing if `out` has another size than the dot grid or the radius is invalid. Allocates nothing;
+/// O(dots radius^2).
 template <dot_grid Dots, contact_mask Mask, class Out>
 bool contact_at_dots(const Dots& dots_px, const Mask& mask, Out&& out, double dot_radius_px = 0) {
   static_assert(writable_grid<Out, bool>, "this grid is written to: its cells must be assignable");

@@ -30,8 +30,8 @@ inline namespace v0 {
 
 namespace detail {
 
-/// Does the work of a frame in the calling thread. An executor of your own has the same members;
-/// bench/report/chain has one of two threads.
+/// Does the work of a frame in the calling thread. A custom executor has the same members;
+/// bench/report/chain has one with two threads.
 struct OneThread {
   static constexpr int threads = 1;
 
@@ -40,7 +40,7 @@ struct OneThread {
   void bands(Index rows, const Work& work) {
     work(0, 0, rows);
   }
-  /// Calls both, in any order or at once.
+  /// Calls both, in any order or at the same time.
   template <class First, class Second>
   void both(const First& first, const Second& second) {
     first();
@@ -48,7 +48,7 @@ struct OneThread {
   }
 };
 
-/// Ignores the stages that are reported to it.
+/// A watch that ignores the stages reported to it.
 struct NoWatch {
   template <class Stage>
   void operator()(Stage) const {}
@@ -58,22 +58,24 @@ struct NoWatch {
 
 /// The stages of a fingertip and their methods. Derive from it and override what differs. A stage
 /// that is false is not instantiated and costs nothing; all stages after contact need contact. A
-/// stage that is true gives no answer if the options lack what it needs.
+/// stage that is true gives no answer if the options lack its inputs.
 ///   struct DepthAndContact : FingertipMethods {
 ///     static constexpr bool has_dots = false, has_wrench = false;
 ///   };
 struct FingertipMethods {
-  static constexpr bool has_neighbour_light = false;  ///< taken off the depth; sampling 1
-  static constexpr bool has_contact = true;           ///< contact region
-  static constexpr bool has_dots = true;       ///< object motion, stick ratio, friction limit
-  static constexpr bool has_look_up = true;    ///< forces by calibrated curves; needs the dots
-  static constexpr bool has_flat_area = true;  ///< look up forces by the area of the flat
-                                               ///< plate that would press as hard, for objects of
-                                               ///< any shape; false: by the area of the contact
-  static constexpr bool has_wrench = true;     ///< six-axis force from pressure and side dots
+  /// Removes the neighbour light from the depth; requires sampling 1.
+  static constexpr bool has_neighbour_light = false;
+  static constexpr bool has_contact = true;  ///< contact region
+  static constexpr bool has_dots = true;     ///< object motion, stick ratio, friction limit
+  static constexpr bool has_look_up = true;  ///< forces from calibrated curves; needs the dots
+  /// Forces from curves use the area of the flat plate that would press as hard, for objects of any
+  /// shape; false: the area of the contact.
+  static constexpr bool has_flat_area = true;
+  static constexpr bool has_wrench = true;  ///< six-axis force from pressure and side dots
 
-  static constexpr int sampling = 3;  ///< width and height of a sample in pixels, less than a
-                                      ///< seventh of the window; 1: every pixel
+  /// Width and height of a sample in pixels, less than a seventh of the smoothing window; 1: every
+  /// pixel.
+  static constexpr int sampling = 3;
 
   using Smoothing = BiasFreeMean;
   using Inverse = ExponentialFree<>;
@@ -94,13 +96,13 @@ struct FingertipOptions {
   Index rows = 0;       ///< of a frame, px
   Index cols = 0;
   int smoothing_px = 29;  ///< width of the smoothing window, odd, 3 to 109
-  std::optional<NeighbourLight<float>> neighbour_light = {};  ///< empty: not taken off
-  StridedView<const float> free_depth_mm = {};  ///< of the free pad, for the neighbour light:
-                                                ///< the depth from a fingertip without it
+  std::optional<NeighbourLight<float>> neighbour_light = {};  ///< empty: not removed
+  /// Depth of the free pad, for the neighbour light, from a fingertip without it.
+  StridedView<const float> free_depth_mm = {};
   ContactTest contact = {};
 
-  StridedView<const Point3<double>> free_dots_mm = {};  ///< printed dots of the free pad, NaN:
-                                                        ///< none; empty: no answer by dots
+  /// Printed dots of the free pad; NaN: missing; empty: no answer from dots.
+  StridedView<const Point3<double>> free_dots_mm = {};
   double dot_radius_px = 0;     ///< a dot touches if its whole disc does; see contact_at_dots()
   SpatialStickTest stick = {};  ///< noise of the dots in space, and what counts as slip
   FrictionLimitOptions friction = {};
@@ -108,17 +110,19 @@ struct FingertipOptions {
   using NormalLookUp = NormalForce<PolynomialForce<5>, ScaledCompensation<>>;
   using ShearLookUp = Shear<RadialShear<4>>;
   FlatAreaOptions flat_area = {};
-  std::optional<NormalLookUp> force_of_area = {};   ///< by mm^2, with errors; empty: not looked up
-  std::optional<NormalLookUp> force_of_depth = {};  ///< by mm, with errors; empty: not looked up
-  std::optional<ShearLookUp> shear = {};            ///< empty: not looked up
-  bool shear_by_depth = false;  ///< look up by mm of depth instead of mm^2 of area
+  /// Force by contact area in mm^2, with errors; empty: not used.
+  std::optional<NormalLookUp> force_of_area = {};
+  /// Force by depth in mm, with errors; empty: not used.
+  std::optional<NormalLookUp> force_of_depth = {};
+  std::optional<ShearLookUp> shear = {};  ///< empty: not used
+  bool shear_by_depth = false;            ///< looks up shear by mm of depth instead of mm^2 of area
 
-  StridedView<const Point3<double>> rim_mm = {};  ///< where side dots are fixed; one row; empty: no
-                                                  ///< six-axis force
+  /// Positions at which the side dots are fixed; one row; empty: no six-axis force.
+  StridedView<const Point3<double>> rim_mm = {};
   OneRow side_dot_row = {};
-  ClampedRim rim_law = {};            ///< of the membrane's rubber
-  WrenchOptions<double> wrench = {};  ///< with calibrated_modulus_n_per_mm, pressure_from_rim()
-                                      ///< answers frames whose pressure is NaN
+  ClampedRim rim_law = {};  ///< of the membrane's rubber
+  /// With calibrated_modulus_n_per_mm, pressure_from_rim() answers frames whose pressure is NaN.
+  WrenchOptions<double> wrench = {};
 };
 template <class Reference>
 FingertipOptions(const Camera<double>&, const Absorption<double>&, const Reference&, Index, Index)
@@ -138,9 +142,10 @@ ColorFrame(const R&, const G&) -> ColorFrame<decltype(as_view(std::declval<const
                                              decltype(as_view(std::declval<const G&>()))>;
 
 enum class FingertipStatus : std::uint8_t {
-  ok,          ///< every stage that has its inputs has an answer
-  partial,     ///< a stage has no answer, or depth or contact do not fit this pad; the stage's
-               ///< result says why
+  ok,  ///< every stage that has its inputs has an answer
+  /// A stage has no answer, or depth or contact do not fit this pad; the result of the stage gives
+  /// the reason.
+  partial,
   no_contact,  ///< nothing touches the pad, and its depth can be trusted
   refused,     ///< frame or dots have another size: nothing was computed
 };
@@ -151,27 +156,28 @@ constexpr const char* name_of(FingertipStatus status) {
   return names[static_cast<std::size_t>(status)];
 }
 
-/// The results of a frame. A stage that is switched off leaves the default of its result: no
-/// answer.
+/// The results of a frame. A stage that is switched off leaves the default of its result, which is
+/// no answer.
 struct [[nodiscard]] FingertipResult {
   FingertipStatus status = FingertipStatus::refused;
   DepthResult depth;
   ContactResult contact;
   ObjectMotionResult<double> motion;
-  SpatialStickResult<double> stick;  ///< by the dots
-  SlipResult<double> slip;           ///< by dots and friction; the input of GripControl
+  SpatialStickResult<double> stick;  ///< from the dots
+  SlipResult<double> slip;           ///< from dots and friction; the input of GripControl
   ShiftResult<double> shift;         ///< of the dots beside the contact's edge, for the look-up
   FlatAreaResult<double> flat_area;  ///< of the plate that would press as hard
-  NormalForceResult<double> by_area, by_depth;  ///< by look-up,
-  FusedForce<double> normal;    ///< both combined; by the flat area alone where that is known,
-                                ///< because the curve by depth holds for one shape only
-  ShearResult<double> shear;    ///< by look-up
+  NormalForceResult<double> by_area, by_depth;  ///< from the curves
+  /// Both combined; from the flat area alone if that is known, because the curve by depth holds for
+  /// one shape only.
+  FusedForce<double> normal;
+  ShearResult<double> shear;    ///< from the curve
   WrenchResult<double> wrench;  ///< six axes
 
   bool ok() const { return status == FingertipStatus::ok; }
 };
 
-/// The stages of a frame, as they are reported to a watch.
+/// The stages of a frame, as reported to a watch.
 enum class FingertipStage : std::uint8_t {
   depth,
   contact,

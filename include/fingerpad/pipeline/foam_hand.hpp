@@ -1,10 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// Readings of foam fingers in, pre-slip out. One object computes the features of each finger and
-// applies the rules over all fingers. It only combines the methods of foam/.
+// Detects pre-slip from the readings of foam fingers. One object computes the features of each
+// finger and applies the rules over all fingers. It only combines the methods of foam/.
 //
-//   FoamHand<2> hand(options);  // takes all memory, refuses bad parameters
+//   FoamHand<2> hand(options);  // allocates all memory, refuses bad parameters
 //
 //   auto felt = hand(std::array{left, right}, time_s);  // every sample
 //
@@ -32,10 +32,10 @@ inline namespace v0 {
 ///     static constexpr bool has_grasp_optimise = true;
 ///   };
 struct FoamHandMethods {
-  static constexpr bool has_grasp_lift = true;       ///< slip of any finger; the default
-  static constexpr bool has_grasp_optimise = false;  ///< slip of all fingers at once, as in
-                                                     ///< the paper's first experiment
-  static constexpr std::size_t arrays = 1;           ///< of each finger
+  static constexpr bool has_grasp_lift = true;  ///< slip of any finger
+  /// Slip of all fingers at once, as in the paper's first experiment.
+  static constexpr bool has_grasp_optimise = false;
+  static constexpr std::size_t arrays = 1;  ///< number of arrays of each finger
   using Waves = ZeroCrossings;
   using Scalar = double;
 };
@@ -44,10 +44,11 @@ struct FoamHandMethods {
 struct FoamArray {
   Index rows = 0;
   Index cols = 0;
-  StridedView<const double> noise = {};  ///< standard deviation of each taxel at rest; NaN: dead.
-                                         ///< Empty: the options' noise for all taxels
-  Point2<double> place_mm = {0, 0};  ///< of its first taxel, in the unrolled plan of the finger's
-                                     ///< sides
+  /// Standard deviation of each taxel at rest; NaN: dead. Empty: the noise of the options for all
+  /// taxels.
+  StridedView<const double> noise = {};
+  /// Position of the first taxel in the unrolled plan of the finger's sides.
+  Point2<double> place_mm = {0, 0};
 };
 
 /// Everything that is known of a hand before its first sample.
@@ -70,8 +71,8 @@ struct [[nodiscard]] FoamHandResult {
   bool ok() const { return status != PreslipStatus::cannot_tell; }
 };
 
-/// Use one object per hand, and do not share it between threads: a sample changes the windows and
-/// the history. A sample allocates nothing, throws nothing, and takes O(taxels + history).
+/// Pre-slip detector of one hand. Do not share it between threads: a sample changes the windows and
+/// the history. A sample allocates nothing, throws nothing, and takes O(taxels + history) time.
 template <std::size_t Fingers = 2, class Methods = FoamHandMethods>
 class FoamHand {
   using S = typename Methods::Scalar;
@@ -96,7 +97,7 @@ class FoamHand {
   }
 
   /// Processes one sample: the readings of each array, in the order of the options, and the time
-  /// they were received. The rules ignore a sample that a finger refuses for its size or time.
+  /// when they were received. The rules ignore a sample that a finger refuses for its size or time.
   template <grid Readings>
   Result operator()(const std::array<Readings, all_arrays>& readings, double time_s) {
     Result felt;
@@ -149,7 +150,7 @@ class FoamHand {
   template <bool IsOn, class Rule>
   using Stage = std::conditional_t<IsOn, RuleStage<Rule>, NoStage>;
 
-  /// Where the arrays of a finger are.
+  /// Sizes and positions of the arrays of a finger.
   struct FingerPlan {
     std::array<Index, arrays_each> taxels = {};
     std::array<Point2<S>, arrays_each> places_mm = {};
@@ -183,7 +184,7 @@ class FoamHand {
     return finger.status == TaxelStatus::other_size || finger.status == TaxelStatus::time_not_later;
   }
 
-  /// Pre-slip of one rule is pre-slip; otherwise both can judge the same fingers.
+  /// Pre-slip of one rule is pre-slip; otherwise the rules agree, unless one is switched off.
   static PreslipStatus fused(PreslipStatus a, PreslipStatus b) {
     if (a == PreslipStatus::preslip || b == PreslipStatus::preslip) {
       return PreslipStatus::preslip;
