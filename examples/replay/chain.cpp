@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "replay/io/failure.hpp"
+#include "replay/median.hpp"
 
 namespace replay {
 namespace {
@@ -83,15 +84,6 @@ void describe_depth(const FingertipFrame& result, Scene& scene) {
   scene.depth_max_mm = valid > 0 ? top : none;
 }
 
-double median(std::vector<double> values) {
-  if (values.empty()) {
-    return std::numeric_limits<double>::quiet_NaN();
-  }
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
 }  // namespace
 
 Chain::Chain(Recording& recording, const Options& options)
@@ -143,13 +135,13 @@ Scene Chain::operator()(int frame, const cv::Mat& image) {
 }
 
 double Chain::depth_ms() const {
-  return median(depth_ms_);
+  return median_of(depth_ms_);
 }
 double Chain::contact_ms() const {
-  return median(contact_ms_);
+  return median_of(contact_ms_);
 }
 double Chain::wrench_ms() const {
-  return median(wrench_ms_);
+  return median_of(wrench_ms_);
 }
 
 }  // namespace replay

@@ -9,6 +9,8 @@
 #include <limits>
 #include <set>
 
+#include "replay/median.hpp"
+
 namespace slip_trials {
 namespace {
 
@@ -47,11 +49,6 @@ Found look(const std::vector<Event>& events, const std::string& object, double t
     }
   }
   return found;
-}
-
-int median(std::vector<int> values) {
-  std::sort(values.begin(), values.end());
-  return values.empty() ? 0 : values[values.size() / 2];
 }
 
 /// "-" if `value` is not finite.
@@ -112,11 +109,11 @@ Found look_at_all(const std::vector<Event>& events, bool each, const ThresholdOf
     all.leads.insert(all.leads.end(), found.leads.begin(), found.leads.end());
     if (each) {
       Warnings one = found.warnings;
-      one.lead_frames = median(found.leads);
+      one.lead_frames = replay::median_of(found.leads);
       print_line(object, one, roc_area(of_object(events, object)), number(threshold));
     }
   }
-  all.warnings.lead_frames = median(all.leads);
+  all.warnings.lead_frames = replay::median_of(all.leads);
   return all;
 }
 

@@ -11,6 +11,7 @@
 #include "fingerpad/published/stick_ratio.hpp"
 #include "replay/dots/dots.hpp"
 #include "replay/io/failure.hpp"
+#include "replay/median.hpp"
 #include "replay/steps/stick_step.hpp"
 
 namespace slip_trials {
@@ -22,15 +23,6 @@ constexpr double far_px = 2;
 constexpr double none = std::numeric_limits<double>::quiet_NaN();
 constexpr int quiet_frames = 5;      // at the beginning, for the noise
 constexpr double false_slip = 0.01;  // probability that noise alone makes a dot slip
-
-double median(std::vector<double> values) {
-  if (values.empty()) {
-    return none;
-  }
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 /// Displacement of each dot present in both frames, minus the median displacement.
 std::vector<cv::Vec2d> moves_off_median(const DotGrid& from, const DotGrid& to) {
@@ -47,7 +39,7 @@ std::vector<cv::Vec2d> moves_off_median(const DotGrid& from, const DotGrid& to) 
       }
     }
   }
-  const cv::Vec2d common(median(x), median(y));
+  const cv::Vec2d common(replay::median_of(x), replay::median_of(y));
   for (cv::Vec2d& move : moves) {
     move -= common;
   }
@@ -73,7 +65,7 @@ double noise_px(const std::vector<DotGrid>& frames) {
     }
   }
   constexpr double sd_of_median = 1.4826;
-  return sizes.empty() ? 0.0 : sd_of_median * median(sizes) / std::sqrt(2.0);
+  return sizes.empty() ? 0.0 : sd_of_median * replay::median_of(sizes) / std::sqrt(2.0);
 }
 
 /// The threshold that a difference of two noisy positions exceeds with probability false_slip.

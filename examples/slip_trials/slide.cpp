@@ -10,6 +10,7 @@
 #include "fingerpad/contact/contact_by_difference.hpp"
 #include "replay/gel/slide_step.hpp"
 #include "replay/io/recording.hpp"
+#include "replay/median.hpp"
 
 namespace slip_trials {
 namespace {
@@ -20,12 +21,6 @@ using Contact = fingerpad::ContactByDifference<3>;
 
 constexpr std::size_t free_count = 3;  // number of candidates that agree best
 constexpr double gone = 0.1;  // share of the largest area so far, below which contact is lost
-
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 cv::Mat last_frame(const std::filesystem::path& folder) {
   auto frames = std::filesystem::is_directory(folder) ? replay::FrameSource::of_folder(folder)
@@ -83,7 +78,7 @@ std::vector<cv::Mat> agreeing(const std::vector<cv::Mat>& frames) {
       all.push_back(a == b ? 0.0 : difference(frames[a], frames[b]));
       from.emplace_back(all.back(), b);
     }
-    const double typical = median(all);
+    const double typical = replay::median_of(all);
     if (typical < best) {
       best = typical;
       order = from;

@@ -2,16 +2,15 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 // The parts of check.hpp, one for each kind of mistake.
-#include <algorithm>
 #include <cstdio>
 #include <filesystem>
-#include <limits>
 #include <string>
 #include <vector>
 
 #include "replay/check/check.hpp"
 #include "replay/foam/recording.hpp"
 #include "replay/io/recording.hpp"
+#include "replay/median.hpp"
 
 namespace replay {
 
@@ -35,16 +34,6 @@ void check_clock(const std::string& place,
                  const std::string& what,
                  const std::vector<double>& times_s,
                  Findings& findings);
-
-/// NaN for no values.
-inline double median_of(std::vector<double> values) {
-  if (values.empty()) {
-    return std::numeric_limits<double>::quiet_NaN();
-  }
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 inline std::string short_number(double value) {
   char text[32];

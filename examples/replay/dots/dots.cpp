@@ -8,6 +8,7 @@
 
 #include "replay/dots/file.hpp"
 #include "replay/io/failure.hpp"
+#include "replay/median.hpp"
 
 namespace replay {
 namespace {
@@ -67,11 +68,9 @@ fingerpad::DotFinderOptions print_of(const Sensor& sensor, const cv::Mat_<float>
   if (depths_mm.empty()) {
     return options;
   }
-  const auto middle = depths_mm.begin() + static_cast<std::ptrdiff_t>(depths_mm.size() / 2);
-  std::nth_element(depths_mm.begin(), middle, depths_mm.end());
+  const double depth_mm = static_cast<double>(median_of(depths_mm));
   const auto x_px = [&](double x_mm) {
-    return pixel_of(sensor.camera, fingerpad::Point3<double>{x_mm, 0, static_cast<double>(*middle)})
-        .x;
+    return pixel_of(sensor.camera, fingerpad::Point3<double>{x_mm, 0, depth_mm}).x;
   };
   const double px_per_mm = x_px(0.5) - x_px(-0.5);
   options.pattern.rows = sensor.dots->rows;

@@ -13,6 +13,7 @@
 
 #include "replay/io/csv_cells.hpp"
 #include "replay/io/failure.hpp"
+#include "replay/median.hpp"
 
 namespace replay {
 namespace {
@@ -198,12 +199,7 @@ double median_step_s(const std::vector<double>& times_s) {
       steps.push_back(step);
     }
   }
-  if (steps.empty()) {
-    return 0;
-  }
-  const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
-  std::nth_element(steps.begin(), middle, steps.end());
-  return *middle;
+  return steps.empty() ? 0 : median_of(steps);
 }
 
 bool share_taxels(const FingerPlace& a, const FingerPlace& b) {

@@ -11,6 +11,7 @@
 #include "fingerpad/core/expects.hpp"
 #include "fingerpad/pipeline/foam_hand.hpp"
 #include "replay/io/failure.hpp"
+#include "replay/median.hpp"
 #include "replay/pictures/picture_parts.hpp"
 
 namespace replay {
@@ -143,10 +144,7 @@ FoamRow FoamStep::operator()(int sample) {
 }
 
 double FoamStep::median_us() const {
-  std::vector<double> sorted = us_;
-  const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
-  std::nth_element(sorted.begin(), middle, sorted.end());
-  return middle == sorted.end() ? 0 : *middle;
+  return us_.empty() ? 0 : median_of(us_);
 }
 
 }  // namespace replay

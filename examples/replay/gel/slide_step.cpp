@@ -5,10 +5,10 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <limits>
 #include <opencv2/imgproc.hpp>
 
 #include "fingerpad/adapt/opencv.hpp"
+#include "replay/median.hpp"
 
 namespace replay {
 namespace {
@@ -52,15 +52,6 @@ fingerpad::SlideTest slide_test_for(const DotGrid& dots, const fingerpad::Differ
   return slide;
 }
 
-double median(std::vector<double> values) {
-  if (values.empty()) {
-    return std::numeric_limits<double>::quiet_NaN();
-  }
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
 /// The first frames, up to the first that shows a contact relative to frame 0.
 std::vector<cv::Mat> free_first_frames(Recording& recording) {
   recording.frames.seek(0);
@@ -95,7 +86,7 @@ double pitch_px(const DotGrid& dots) {
       }
     }
   }
-  return median(distances);
+  return median_of(distances);
 }
 
 fingerpad::DifferenceTest difference_test_for(double dot_px) {
@@ -157,7 +148,7 @@ GelFrame SlideStep::operator()(const cv::Mat& image, const DotGrid& dots, cv::Ma
 }
 
 double SlideStep::median_ms() const {
-  return median(ms_);
+  return median_of(ms_);
 }
 
 }  // namespace replay
