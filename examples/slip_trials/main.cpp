@@ -4,6 +4,7 @@
 // from recordings without, compared with the simplest measure. See --help.
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <exception>
 #include <limits>
@@ -29,21 +30,14 @@ struct Scored {
   Measures early;
 };
 
-/// Area under the ROC curve: the share of pairs of a slipping and a holding trial that the scores
-/// order correctly. A tie counts half. Negative without a pair.
+/// Area under the ROC curve of the scores. Negative without a pair of a slip and a hold.
 double roc_area(const std::vector<Scored>& trials, double (*score)(const Scored&)) {
-  double won = 0;
-  double pairs = 0;
-  for (const Scored& slip : trials) {
-    for (const Scored& hold : trials) {
-      if (slip.trial->slips && !hold.trial->slips) {
-        const double difference = score(slip) - score(hold);
-        won += difference > 0 ? 1.0 : difference == 0 ? 0.5 : 0.0;
-        ++pairs;
-      }
-    }
+  std::vector<slip_trials::Event> events;
+  for (const Scored& one : trials) {
+    events.push_back({one.trial->object, one.trial->slips, {score(one)}, 1});
   }
-  return pairs > 0 ? won / pairs : -1;
+  const double area = slip_trials::roc_area(events);
+  return std::isnan(area) ? -1 : area;
 }
 
 void print_roc_area(const char* name,
