@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdlib>
 #include <fstream>
 #include <string>
 #include <tuple>
@@ -68,12 +67,6 @@ class LineReader {
   }
 
  private:
-  static bool is_number(const std::string& text, double& number) {
-    char* end = nullptr;
-    number = std::strtod(text.c_str(), &end);
-    return !text.empty() && *end == '\0' && std::isfinite(number);
-  }
-
   int index(std::size_t cell, int count, const std::string& what) const {
     double number = 0;
     if (!is_number(cells_[cell], number) || number != std::floor(number) || number < 0 ||

@@ -2,9 +2,9 @@
 // SPDX-License-Identifier: MIT
 #include "replay/foam/table.hpp"
 
-#include <cmath>
 #include <string>
 
+#include "replay/io/csv_cells.hpp"
 #include "replay/io/failure.hpp"
 #include "replay/pictures/picture_parts.hpp"
 
@@ -16,11 +16,6 @@ using fingerpad::TaxelStatus;
 constexpr const char* finger_columns[] = {"center_x_mm",   "center_y_mm",     "sum",
                                           "vibrating_row", "vibrating_col",   "waves",
                                           "frequency_hz",  "taxels_left_out", "taxel_status"};
-
-/// Empty if `value` is not finite.
-std::string cell(double value) {
-  return std::isfinite(value) ? format("%.6f", value) : "";
-}
 
 }  // namespace
 
@@ -45,7 +40,7 @@ void FoamCsv::write(const FoamRow& row) {
     const auto& finger = row.fingers[k];
     const bool has_waves =
         finger.status == TaxelStatus::vibrating || finger.status == TaxelStatus::quiet;
-    stream_ << ',' << cell(finger.center_x_mm) << ',' << cell(finger.center_y_mm) << ','
+    stream_ << ',' << cell_of(finger.center_x_mm) << ',' << cell_of(finger.center_y_mm) << ','
             << (row.was_taken() ? format("%.9g", finger.sum) : "");
     if (finger.location == finger.no_location) {
       stream_ << ",,";
@@ -54,7 +49,7 @@ void FoamCsv::write(const FoamRow& row) {
               << finger.location % fingers_[k].cols;
     }
     stream_ << ',' << (has_waves ? std::to_string(finger.waves) : "") << ','
-            << (has_waves ? cell(finger.frequency_hz) : "") << ','
+            << (has_waves ? cell_of(finger.frequency_hz) : "") << ','
             << (row.was_taken() ? std::to_string(finger.left_out) : "") << ','
             << name_of(finger.status);
   }

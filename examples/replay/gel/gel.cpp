@@ -3,10 +3,10 @@
 #include "replay/gel/gel.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <cstdio>
 
 #include "fingerpad/core/expects.hpp"
+#include "replay/io/csv_cells.hpp"
 #include "replay/io/failure.hpp"
 #include "replay/io/images.hpp"
 
@@ -25,15 +25,6 @@ SlideStep step_of(const Options& options, const FreePad& free, const DotSource& 
   } catch (const fingerpad::parameter_error& error) {
     fail(options.recording, error.what());
   }
-}
-
-/// Empty if `value` is not finite.
-std::string cell(double value) {
-  char text[32] = "";
-  if (std::isfinite(value)) {
-    std::snprintf(text, sizeof text, "%.6f", value);
-  }
-  return text;
 }
 
 /// Whether frame `done` of `total` is shown above the chart; the shown frames are evenly spaced.
@@ -83,11 +74,11 @@ void GelReplay::operator()(int frame,
 
 void GelReplay::write_row(const GelRow& row) {
   const GelFrame& seen = row.seen;
-  const auto number = [](float value) { return cell(static_cast<double>(value)); };
+  const auto number = [](float value) { return cell_of(static_cast<double>(value)); };
   const cv::Size size = free_.frames.front().size();
   table_ << row.frame << ',' << row.time_s << ',' << seen.contact.contact_px << ','
-         << cell(seen.contact.center_mm.x + (size.width - 1) / 2.0) << ','
-         << cell(seen.contact.center_mm.y + (size.height - 1) / 2.0) << ','
+         << cell_of(seen.contact.center_mm.x + (size.width - 1) / 2.0) << ','
+         << cell_of(seen.contact.center_mm.y + (size.height - 1) / 2.0) << ','
          << name_of(seen.slide.status) << ',' << seen.slide.dots << ','
          << number(seen.slide.slide_px.x) << ',' << number(seen.slide.slide_px.y) << ','
          << number(seen.slide.slide) << ',' << number(seen.slide.rotation_rad) << ','

@@ -3,22 +3,12 @@
 #include "replay/io/number_table.hpp"
 
 #include <cmath>
-#include <cstdlib>
 #include <fstream>
 
 #include "replay/io/csv_cells.hpp"
 #include "replay/io/failure.hpp"
 
 namespace replay {
-namespace {
-
-bool is_number(const std::string& text, double& number) {
-  char* end = nullptr;
-  number = std::strtod(text.c_str(), &end);
-  return !text.empty() && *end == '\0' && std::isfinite(number);
-}
-
-}  // namespace
 
 NumberTable::NumberTable(const std::filesystem::path& file, const std::vector<std::string>& header)
     : file_(file), header_(header) {

@@ -4,13 +4,13 @@
 
 #include <unistd.h>
 
-#include <cmath>
 #include <cstdio>
 #include <limits>
 #include <regex>
 #include <system_error>
 #include <vector>
 
+#include "replay/io/csv_cells.hpp"
 #include "replay/io/failure.hpp"
 
 namespace replay {
@@ -29,15 +29,6 @@ constexpr const char* columns =
     "moment_z_nm,"
     "wrench_fx_n,wrench_fy_n,wrench_fz_n,wrench_mx_nm,wrench_my_nm,wrench_mz_nm";
 constexpr const char* dot_columns = "frame,row,col,x_px,y_px,x_mm,y_mm,z_mm,contact,stick";
-
-/// Empty if `value` is not finite.
-std::string cell(double value) {
-  char text[32] = "";
-  if (std::isfinite(value)) {
-    std::snprintf(text, sizeof text, "%.6f", value);
-  }
-  return text;
-}
 
 const char* words_of(fingerpad::SlipEvidence evidence) {
   switch (evidence) {
@@ -216,10 +207,10 @@ FramesCsv::FramesCsv(const fs::path& file) : file_(file), stream_(file) {
 void FramesCsv::write(const FrameRow& row) {
   constexpr double none = std::numeric_limits<double>::quiet_NaN();
   const auto& contact = row.contact;
-  stream_ << row.frame << ',' << row.time_s << ',' << cell(row.valid_share) << ','
-          << cell(row.depth_mean_mm) << ',' << cell(row.depth_max_mm) << ','
-          << cell(contact.ok() ? contact.area_mm2 : none) << ',' << cell(contact.depth_mm) << ','
-          << cell(contact.center_mm.x) << ',' << cell(contact.center_mm.y);
+  stream_ << row.frame << ',' << row.time_s << ',' << cell_of(row.valid_share) << ','
+          << cell_of(row.depth_mean_mm) << ',' << cell_of(row.depth_max_mm) << ','
+          << cell_of(contact.ok() ? contact.area_mm2 : none) << ',' << cell_of(contact.depth_mm)
+          << ',' << cell_of(contact.center_mm.x) << ',' << cell_of(contact.center_mm.y);
   const auto& motion = row.motion;
   if (motion.reference.exists()) {
     stream_ << ',' << motion.reference.row << ',' << motion.reference.col;
@@ -228,13 +219,14 @@ void FramesCsv::write(const FrameRow& row) {
   }
   for (const double value : {motion.position_mm.x, motion.position_mm.y, motion.position_mm.z,
                              motion.angles.x_rad, motion.angles.y_rad, motion.angles.z_rad}) {
-    stream_ << ',' << cell(motion.ok() ? value : none);
+    stream_ << ',' << cell_of(motion.ok() ? value : none);
   }
   const auto& stick = row.stick;
   if (row.has_dots) {
-    stream_ << ',' << stick.dots_in_contact() << ',' << cell(static_cast<double>(stick.stick_ratio))
-            << ',' << (stick.updated() ? 1 : 0) << ',' << cell(static_cast<double>(stick.ratio_sd))
-            << ',' << words_of(row.slip_evidence);
+    stream_ << ',' << stick.dots_in_contact() << ','
+            << cell_of(static_cast<double>(stick.stick_ratio)) << ',' << (stick.updated() ? 1 : 0)
+            << ',' << cell_of(static_cast<double>(stick.ratio_sd)) << ','
+            << words_of(row.slip_evidence);
   } else {
     stream_ << ",,,,,";
   }
@@ -244,13 +236,13 @@ void FramesCsv::write(const FrameRow& row) {
        {shift.displacement.x, shift.displacement.y, shift.rotation_rad, row.force.flat_area_mm2,
         row.force.normal_n, row.force.normal_sd_n, row.force.tangential_n.x,
         row.force.tangential_n.y, row.force.moment_n_mm / metre}) {
-    stream_ << ',' << cell(value);
+    stream_ << ',' << cell_of(value);
   }
   const fingerpad::Point3<double>& force = row.wrench.force_n;
   const fingerpad::Point3<double>& moment = row.wrench.moment_n_mm;
   for (const double value :
        {force.x, force.y, force.z, moment.x / metre, moment.y / metre, moment.z / metre}) {
-    stream_ << ',' << cell(row.has_wrench() ? value : none);
+    stream_ << ',' << cell_of(row.has_wrench() ? value : none);
   }
   stream_ << '\n';
 }
@@ -269,8 +261,8 @@ void DotsCsv::write(int frame, const FrameDots& dots) {
       const cv::Vec2d& px = dots.dots_px(i, j);
       const cv::Vec3d& mm = dots.dots_mm(i, j);
       if (is_present(px)) {
-        stream_ << frame << ',' << i << ',' << j << ',' << cell(px[0]) << ',' << cell(px[1]) << ','
-                << cell(mm[0]) << ',' << cell(mm[1]) << ',' << cell(mm[2]) << ','
+        stream_ << frame << ',' << i << ',' << j << ',' << cell_of(px[0]) << ',' << cell_of(px[1])
+                << ',' << cell_of(mm[0]) << ',' << cell_of(mm[1]) << ',' << cell_of(mm[2]) << ','
                 << (dots.in_contact(i, j) != 0 ? 1 : 0) << ',' << stick_cell(dots.stick.state(i, j))
                 << '\n';
       }

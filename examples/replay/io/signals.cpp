@@ -3,7 +3,6 @@
 #include "replay/io/signals.hpp"
 
 #include <cmath>
-#include <cstdlib>
 #include <fstream>
 #include <limits>
 #include <vector>
@@ -12,15 +11,6 @@
 #include "replay/io/failure.hpp"
 
 namespace replay {
-namespace {
-
-bool is_number(const std::string& text, double& number) {
-  char* end = nullptr;
-  number = std::strtod(text.c_str(), &end);
-  return !text.empty() && *end == '\0' && std::isfinite(number);
-}
-
-}  // namespace
 
 std::string Signals::time_s(int frame) const {
   const auto found = times_s.find(frame);
