@@ -9,11 +9,12 @@
 #include "replay/io/csv_cells.hpp"
 #include "replay/io/failure.hpp"
 #include "replay/io/images.hpp"
+#include "replay/pictures/picture_parts.hpp"
 
 namespace replay {
 namespace {
 
-constexpr int most_shown = 5;
+constexpr int most_shown = 5;  // frames above the chart
 constexpr const char* columns =
     "frame,time_s,contact_area_px,contact_center_x_px,contact_center_y_px,slide_status,"
     "dots_in_contact,slide_x_px,slide_y_px,slide_pitches,rotation_rad,area_lost,recoil_pitches,"
@@ -25,17 +26,6 @@ SlideStep step_of(const Options& options, const FreePad& free, const DotSource& 
   } catch (const fingerpad::parameter_error& error) {
     fail(options.recording, error.what());
   }
-}
-
-/// Whether frame `done` of `total` is shown above the chart; the shown frames are evenly spaced.
-bool is_shown(int done, int total) {
-  const int count = (std::min)(total, most_shown);
-  for (int k = 0; k < count; ++k) {
-    if (done == (count == 1 ? 0 : (k * (total - 1) + (count - 1) / 2) / (count - 1))) {
-      return true;
-    }
-  }
-  return false;
 }
 
 }  // namespace
@@ -67,7 +57,7 @@ void GelReplay::operator()(int frame,
     return;
   }
   write_picture(output_.file("pictures", numbered("slide_", frame, ".png")), slide_picture(scene));
-  if (is_shown(static_cast<int>(rows_.size()) - 1, total_)) {
+  if (is_chosen(static_cast<int>(rows_.size()) - 1, total_, most_shown)) {
     shown_.push_back(scene);
   }
 }

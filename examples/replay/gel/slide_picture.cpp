@@ -7,6 +7,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "replay/pictures/picture_parts.hpp"
+#include "replay/pictures/sheet.hpp"
 
 namespace replay {
 namespace {
@@ -18,16 +19,6 @@ const Ink free_ink(150, 146, 142);
 double evidence_of(const GelFrame& seen) {
   return static_cast<double>(seen.slide.evidence);
 }
-
-/// Position of a camera's image on the sheet.
-struct Place {
-  cv::Rect2d box;
-  double shrink;
-
-  Spot of(double x_px, double y_px) const {
-    return {box.x + shrink * (x_px + 0.5), box.y + shrink * (y_px + 0.5)};
-  }
-};
 
 using Outline = std::vector<std::vector<cv::Point>>;
 
@@ -85,8 +76,7 @@ Spot middle_of(const GelScene& scene) {
 
 /// Paints the frame, the contact's outline, and its slide past the dots.
 void paint_scene(Canvas& canvas, const Place& place, const GelScene& scene, double line) {
-  cv::Mat paper = canvas.area(place.box);
-  displayed(scene.image, 245, paper.size()).copyTo(paper);
+  paint_image(canvas, place.box, scene.image, 245);
   const Outline outline = outline_of(scene.contact_mask);
   if (outline.empty()) {
     return;
@@ -127,13 +117,9 @@ std::size_t first_slip(const std::vector<GelRow>& rows) {
 }
 
 cv::Mat slide_picture(const GelScene& scene) {
-  const double shrink = 560.0 / (std::max)(scene.image.cols, scene.image.rows);
-  const Place place{{36, 56, scene.image.cols * shrink, scene.image.rows * shrink}, shrink};
-  const double right = place.box.x + place.box.width;
-  const double below = place.box.y + place.box.height;
-  Canvas canvas(right + 36, below + 76);
-  canvas.text({36, 34}, "Contact and slide", 1.3 * letter, ink::black, Align::left, true);
-  canvas.text({right, 34}, caption(scene.frame, scene.time_s), letter, ink::black, Align::right);
+  Sheet sheet("Contact and slide", caption(scene.frame, scene.time_s), scene.image.size(), 76);
+  Canvas& canvas = sheet.canvas;
+  const Place& place = sheet.place;
   paint_scene(canvas, place, scene, 2.6);
   for (const cv::Vec2d& dot : scene.dots_px) {
     if (is_present(dot)) {
@@ -146,11 +132,12 @@ cv::Mat slide_picture(const GelScene& scene) {
                         : evidence_of(scene.seen) > 0.5  ? "may slip"
                                                          : "held";
   const Ink colour = slip_ink(scene.seen);
-  canvas.disc({44, below + 24}, 8, colour);
-  canvas.text({60, below + 24 + letter / 2}, verdict, letter, colour, Align::left, true);
-  canvas.text({right, below + 24 + letter / 2}, "dashed: contact if it moved with the dots", letter,
+  const double y = place.below() + 24;
+  canvas.disc({44, y}, 8, colour);
+  canvas.text({60, y + letter / 2}, verdict, letter, colour, Align::left, true);
+  canvas.text({place.right(), y + letter / 2}, "dashed: contact if it moved with the dots", letter,
               ink::grey, Align::right);
-  canvas.text({36, below + 54}, words_of(scene.seen), letter, ink::black);
+  sheet.write(54, words_of(scene.seen));
   return canvas.finished();
 }
 

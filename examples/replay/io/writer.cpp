@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: MIT
 #include "replay/io/writer.hpp"
 
-#include <algorithm>
 #include <string>
 #include <utility>
 
@@ -17,17 +16,6 @@ namespace replay {
 namespace {
 
 constexpr int montage_columns = 6;
-
-/// Whether frame number `done` of `total` has a column in the montage; columns are evenly spaced.
-bool in_montage(int done, int total) {
-  const int columns = (std::min)(total, montage_columns);
-  for (int k = 0; k < columns; ++k) {
-    if (done == (columns == 1 ? 0 : (k * (total - 1) + (columns - 1) / 2) / (columns - 1))) {
-      return true;
-    }
-  }
-  return false;
-}
 
 }  // namespace
 
@@ -73,7 +61,7 @@ void Writer::operator()(Scene scene) {
     if (has_files) {
       write_pictures(scene);
     }
-    if (painter_ && in_montage(static_cast<int>(rows_.size()) - 1, total_)) {
+    if (painter_ && is_chosen(static_cast<int>(rows_.size()) - 1, total_, montage_columns)) {
       columns_.push_back(std::move(scene));
     }
   }

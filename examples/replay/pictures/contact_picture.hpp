@@ -4,22 +4,18 @@
 // Draws the contact region and the dots over the camera's image.
 #include <opencv2/core.hpp>
 
-#include "replay/pictures/canvas.hpp"
+#include "replay/pictures/sheet.hpp"
 #include "replay/steps/frame.hpp"
 
 namespace replay {
 
-/// Paints the outline of a mask over `rectangle`.
-void paint_outline(Canvas& canvas,
-                   const cv::Rect2d& rectangle,
-                   const cv::Mat_<uchar>& mask,
-                   double width);
+/// Paints the outline of a mask over the camera's image.
+void paint_outline(Canvas& canvas, const Place& place, const cv::Mat_<uchar>& mask, double width);
 
 /// Paints dots in contact filled and the others hollow, with lines to their positions on the free
-/// pad. The contact reference dot has a ring. `size` is the size of the camera's image.
+/// pad. The contact reference dot has a ring.
 void paint_dots(Canvas& canvas,
-                const cv::Rect2d& rectangle,
-                cv::Size size,
+                const Place& place,
                 const FrameDots& dots,
                 const DotGrid& initial_px);
 

@@ -1,12 +1,11 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// Parts that several pictures share: captions, the scale bar, the camera's image.
+// Parts that several pictures share: letters, numbers, captions.
+#include <cmath>
 #include <cstdio>
 #include <opencv2/core.hpp>
 #include <string>
-
-#include "replay/pictures/canvas.hpp"
 
 namespace replay {
 
@@ -22,15 +21,15 @@ std::string format(const char* pattern, Values... values) {
 /// "frame 5,  t = 0.2 s", without the time if it is unknown.
 std::string caption(int frame, const std::string& time_s);
 
-/// A round number of mm that is a fifth of the image or a little less.
-double scale_bar_mm(double image_width_mm);
-
-void paint_scale_bar(Canvas& canvas, Spot left, double length, double mm, double text_height);
-
 /// The grey level that only the brightest hundredth of the image's pixels exceed.
 double brightest_level(const cv::Mat& image);
 
-/// The camera's image as 8 bit, scaled so that `brightest` is nearly white.
-cv::Mat displayed(const cv::Mat& image, double brightest, cv::Size size);
+/// Whether item `done` of `total` is one of at most `most` evenly spaced ones.
+bool is_chosen(int done, int total, int most);
+
+/// Rounds a value for printing; never gives "-0.00".
+inline double rounded(double value, double steps_per_unit = 100) {
+  return std::round(value * steps_per_unit) / steps_per_unit + 0.0;
+}
 
 }  // namespace replay

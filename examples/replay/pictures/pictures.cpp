@@ -10,6 +10,7 @@
 #include "replay/pictures/contact_picture.hpp"
 #include "replay/pictures/depth_colours.hpp"
 #include "replay/pictures/picture_parts.hpp"
+#include "replay/pictures/sheet.hpp"
 #include "replay/pictures/side_view.hpp"
 
 namespace replay {
@@ -80,24 +81,22 @@ Section Painter::find_section(const cv::Mat_<float>& depth_mm) const {
 }
 
 cv::Mat Painter::depth(const Scene& scene) const {
-  const double shrink = 560.0 / (std::max)(scene.depth_mm.cols, scene.depth_mm.rows);
-  const cv::Rect2d map(36, 56, scene.depth_mm.cols * shrink, scene.depth_mm.rows * shrink);
-  const double right = map.x + map.width;
-  const double below = map.y + map.height;
+  const Place place = large_place(scene.depth_mm.size());
+  const cv::Rect2d& map = place.box;
+  const double right = place.right();
+  const double below = place.below();
   Canvas canvas(right + 116, below + 66);
   canvas.text({map.x, 34}, "Depth of the membrane", 1.3 * letter, ink::black, Align::left, true);
   canvas.text({right + 96, 34}, caption(scene.frame, scene.time_s), letter, ink::black,
               Align::right);
   paint_map(canvas, map, scene.depth_mm, in_pad_, scale_, 1);
   paint_legend(canvas, {right + 30, map.y + 50, 18, map.height - 100}, scale_, letter);
-  const double row_y = map.y + (scene.section.row + 0.5) * shrink;
-  paint_row_markers(canvas, map, row_y, 11);
+  const Spot at = place.of(scene.section.col, scene.section.row);
+  paint_row_markers(canvas, map, at.y, 11);
   if (scene.section.dent_mm > 0) {
-    const Spot at(map.x + (scene.section.col + 0.5) * shrink, row_y);
     canvas.circle(at, 5, 1.6, ink::white);
   }
-  const double bar_mm = scale_bar_mm(scene.depth_mm.cols * camera_.pitch_mm);
-  paint_scale_bar(canvas, {map.x, below + 20}, bar_mm / camera_.pitch_mm * shrink, bar_mm, letter);
+  paint_scale_bar(canvas, place, scene.depth_mm.cols, camera_.pitch_mm);
   canvas.text({right + 96, below + 20 + letter / 2}, "lines every 1 mm", letter, ink::grey,
               Align::right);
   std::string numbers = format("%.1f %% of the pad has a depth", 100 * scene.valid_share);
@@ -180,9 +179,9 @@ cv::Mat Painter::montage(const std::string& title,
     const double x = left + static_cast<double>(k) * (cell + gap);
     canvas.text({x + cell / 2, 66}, caption(scene.frame, scene.time_s), letter, ink::black,
                 Align::center);
-    cv::Mat paper = canvas.area({x, camera_y, cell, height});
-    displayed(scene.image, brightest_, paper.size()).copyTo(paper);
-    paint_outline(canvas, {x, camera_y, cell, height}, scene.contact_mask, 1.6);
+    const Place place{{x, camera_y, cell, height}, cell / scene.image.cols};
+    paint_image(canvas, place.box, scene.image, brightest_);
+    paint_outline(canvas, place, scene.contact_mask, 1.6);
     paint_map(canvas, {x, depth_y, cell, height}, scene.depth_mm, in_pad_, scale_, 1);
     const cv::Rect2d change_map(x, change_y, cell, height);
     cv::Mat_<float> pressed_in_mm;

@@ -6,8 +6,8 @@
 #include <cmath>
 #include <string>
 
-#include "replay/pictures/canvas.hpp"
 #include "replay/pictures/picture_parts.hpp"
+#include "replay/pictures/sheet.hpp"
 
 namespace replay {
 namespace {
@@ -86,50 +86,43 @@ std::string words_of(const fingerpad::StickRatioResult<float>& result) {
 }  // namespace
 
 cv::Mat stick_picture(const Scene& scene, double brightest) {
-  const double shrink = 560.0 / (std::max)(scene.image.cols, scene.image.rows);
-  const cv::Rect2d picture(36, 56, scene.image.cols * shrink, scene.image.rows * shrink);
-  const double right = picture.x + picture.width;
-  const double below = picture.y + picture.height;
-  Canvas canvas(right + 36, below + 76);
-  canvas.text({picture.x, 34}, "Stick and slip", 1.3 * letter, ink::black, Align::left, true);
-  canvas.text({right, 34}, caption(scene.frame, scene.time_s), letter, ink::black, Align::right);
-  cv::Mat paper = canvas.area(picture);
-  displayed(scene.image, (std::max)(brightest, 1.0), paper.size()).copyTo(paper);
+  Sheet sheet("Stick and slip", caption(scene.frame, scene.time_s), scene.image.size(), 76);
+  Canvas& canvas = sheet.canvas;
+  const Place& place = sheet.place;
+  paint_image(canvas, place.box, scene.image, (std::max)(brightest, 1.0));
   const DotGrid& dots = scene.dots.dots_px;
   for (int i = 0; i < dots.rows; ++i) {
     for (int j = 0; j < dots.cols; ++j) {
       if (is_present(dots(i, j))) {
-        const Spot at(picture.x + shrink * (dots(i, j)[0] + 0.5),
-                      picture.y + shrink * (dots(i, j)[1] + 0.5));
-        paint_dot(canvas, at, scene.dots.stick.state(i, j));
+        paint_dot(canvas, place.of(dots(i, j)[0], dots(i, j)[1]), scene.dots.stick.state(i, j));
       }
     }
   }
   const cv::Mat_<cv::Vec3d>& slips = scene.dots.stick.slips_mm;
-  const double length = enlarged * shrink * px_per_mm(scene.dots);
+  const double length = enlarged * place.shrink * px_per_mm(scene.dots);
   for (int i = 0; i < slips.rows; ++i) {
     for (int j = 0; j < slips.cols; ++j) {
       if (is_present(dots(i, j)) && scene.dots.stick.state(i, j) == DotState::slip) {
-        const Spot at(picture.x + shrink * (dots(i, j)[0] + 0.5),
-                      picture.y + shrink * (dots(i, j)[1] + 0.5));
-        paint_slip(canvas, at, length * Spot(slips(i, j)[0], slips(i, j)[1]));
+        paint_slip(canvas, place.of(dots(i, j)[0], dots(i, j)[1]),
+                   length * Spot(slips(i, j)[0], slips(i, j)[1]));
       }
     }
   }
-  double x = picture.x + radius;
+  const double y = place.below() + 22;
+  double x = place.box.x + radius;
   for (const auto& [state, word] :
        {std::pair(DotState::stick, "sticks"), std::pair(DotState::slip, "slips"),
         std::pair(DotState::unknown, "unknown")}) {
-    paint_dot(canvas, {x, below + 22}, state);
-    canvas.text({x + 14, below + 22 + letter / 2}, word, letter, ink::black);
+    paint_dot(canvas, {x, y}, state);
+    canvas.text({x + 14, y + letter / 2}, word, letter, ink::black);
     x += 42 + canvas.text_width(word, letter);
   }
   if (!slips.empty()) {
-    paint_slip(canvas, {x - 4, below + 22}, {18, 0});
-    canvas.text({x + 22, below + 22 + letter / 2},
-                format("slip, drawn %.0f times as long", enlarged), letter, ink::black);
+    paint_slip(canvas, {x - 4, y}, {18, 0});
+    canvas.text({x + 22, y + letter / 2}, format("slip, drawn %.0f times as long", enlarged),
+                letter, ink::black);
   }
-  canvas.text({picture.x, below + 54}, words_of(scene.dots.stick.result), letter, ink::black);
+  sheet.write(54, words_of(scene.dots.stick.result));
   return canvas.finished();
 }
 
