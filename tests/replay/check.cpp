@@ -3,14 +3,11 @@
 // Typical mistakes in recordings, and the findings of replay --check for each.
 #include "replay/check/check.hpp"
 
-#include <unistd.h>
-
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <functional>
-#include <iterator>
 #include <limits>
 #include <opencv2/core.hpp>
 #include <opencv2/imgcodecs.hpp>
@@ -21,13 +18,13 @@
 
 #include "fingerpad/optics/camera.hpp"
 #include "support/catch.hpp"
+#include "support/files.hpp"
 
 namespace fs = std::filesystem;
 
 namespace {
 
-const fs::path data =
-    fs::path(__FILE__).parent_path().parent_path().parent_path() / "examples" / "data";
+const fs::path& data = test::bundled_recordings;
 
 using Row = std::vector<std::string>;
 
@@ -37,34 +34,29 @@ class Copy {
   static constexpr int frames = 3;
 
   explicit Copy(const std::string& bundled) {
-    std::string pattern = (fs::temp_directory_path() / "fingerpad.XXXXXX").string();
-    folder_ = ::mkdtemp(pattern.data());
     for (const fs::directory_entry& entry : fs::directory_iterator(data / bundled)) {
       if (entry.is_regular_file()) {
-        fs::copy_file(entry.path(), folder_ / entry.path().filename());
+        fs::copy_file(entry.path(), folder() / entry.path().filename());
       }
     }
     if (bundled == "press") {
-      fs::create_directory(folder_ / "frames");
+      fs::create_directory(folder() / "frames");
       for (int k = 0; k < frames; ++k) {
-        fs::copy_file(data / bundled / frame(k), folder_ / frame(k));
+        fs::copy_file(data / bundled / frame(k), folder() / frame(k));
       }
       for (const char* file : {"signals.csv", "side_dots.csv", "forces.csv"}) {
         edit_table(file, [](Row& row) { return std::stoi(row[0]) < frames; });
       }
     }
   }
-  ~Copy() { fs::remove_all(folder_); }
-  Copy(const Copy&) = delete;
-  Copy& operator=(const Copy&) = delete;
 
-  const fs::path& folder() const { return folder_; }
+  const fs::path& folder() const { return folder_.path(); }
   static std::string frame(int k) { return "frames/00000" + std::to_string(k) + ".png"; }
 
   /// The findings, one per line.
   std::string said() const {
     std::string lines;
-    for (const replay::Finding& finding : replay::check_recording(folder_)) {
+    for (const replay::Finding& finding : replay::check_recording(folder())) {
       CHECK_FALSE(finding.remedy.empty());
       CHECK(finding.remedy.back() == '.');
       CHECK((finding.place + finding.what + finding.remedy).find('\n') == std::string::npos);
@@ -76,17 +68,14 @@ class Copy {
   }
 
   void replace(const std::string& file, const std::string& old, const std::string& with) const {
-    std::ifstream in(folder_ / file);
-    std::string text(std::istreambuf_iterator<char>(in), {});
-    REQUIRE(text.find(old) != std::string::npos);
-    std::ofstream(folder_ / file) << text.replace(text.find(old), old.size(), with);
+    test::replace_in(folder() / file, old, with);
   }
   void write(const std::string& file, const std::string& text) const {
-    std::ofstream(folder_ / file) << text;
+    std::ofstream(folder() / file) << text;
   }
   /// Edits each row of a table; rows for which `change` is false are dropped.
   void edit_table(const std::string& file, const std::function<bool(Row&)>& change) const {
-    std::ifstream in(folder_ / file);
+    std::ifstream in(folder() / file);
     std::string line;
     std::getline(in, line);
     std::string text = line + "\n";
@@ -117,9 +106,9 @@ class Copy {
     });
   }
   void edit_picture(const std::string& file, const std::function<void(cv::Mat&)>& change) const {
-    cv::Mat picture = cv::imread((folder_ / file).string(), cv::IMREAD_UNCHANGED);
+    cv::Mat picture = cv::imread((folder() / file).string(), cv::IMREAD_UNCHANGED);
     change(picture);
-    cv::imwrite((folder_ / file).string(), picture);
+    cv::imwrite((folder() / file).string(), picture);
   }
   void edit_frames(const std::function<void(cv::Mat&)>& change) const {
     for (int k = 0; k < frames; ++k) {
@@ -128,7 +117,7 @@ class Copy {
   }
 
  private:
-  fs::path folder_;
+  test::ScratchFolder folder_;
 };
 
 /// dots.csv of a grid of 6 x 7 dots; `place` gives the position of row i, column j in a frame.

@@ -2,8 +2,6 @@
 // SPDX-License-Identifier: MIT
 #include "replay/dots/dots.hpp"
 
-#include <unistd.h>
-
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
@@ -17,6 +15,7 @@
 #include "replay/io/failure.hpp"
 #include "replay/io/recording.hpp"
 #include "support/catch.hpp"
+#include "support/files.hpp"
 
 namespace fs = std::filesystem;
 using replay::DotGrid;
@@ -24,8 +23,7 @@ using replay::is_present;
 
 namespace {
 
-const fs::path bundled =
-    fs::path(__FILE__).parent_path().parent_path().parent_path() / "examples" / "data" / "press";
+const fs::path bundled = test::bundled_recordings / "press";
 
 struct Recorded {
   replay::Recording recording = replay::open_recording(bundled);
@@ -134,20 +132,8 @@ double largest_distance(const DotGrid& a, const DotGrid& b) {
   return largest;
 }
 
-class Folder {
- public:
-  Folder() {
-    std::string pattern = (fs::temp_directory_path() / "fingerpad.XXXXXX").string();
-    path_ = ::mkdtemp(pattern.data());
-  }
-  ~Folder() { fs::remove_all(path_); }
-  Folder(const Folder&) = delete;
-  Folder& operator=(const Folder&) = delete;
-  const fs::path& path() const { return path_; }
-  void write(const std::string& text) const { std::ofstream(path_ / "dots.csv") << text; }
-
- private:
-  fs::path path_;
+struct Folder : test::ScratchFolder {
+  void write(const std::string& text) const { std::ofstream(path() / "dots.csv") << text; }
 };
 
 std::string lines_of(int frame, const DotGrid& dots) {

@@ -1,8 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 // Recordings of any pad with a grid of dots, of which only the frames, drawn here, are known.
-#include <unistd.h>
-
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
@@ -14,7 +12,6 @@
 #include <opencv2/imgproc.hpp>
 #include <opencv2/videoio.hpp>
 #include <random>
-#include <sstream>
 #include <string>
 #include <vector>
 
@@ -23,10 +20,12 @@
 #include "replay/io/images.hpp"
 #include "replay/replay.hpp"
 #include "support/catch.hpp"
+#include "support/files.hpp"
 
 namespace fs = std::filesystem;
 using replay::DotGrid;
 using replay::is_present;
+using test::table_of;
 
 namespace {
 
@@ -105,8 +104,6 @@ double largest_error_px(const DotGrid& found, const DotGrid& truth) {
 class DotRecording {
  public:
   explicit DotRecording(const std::vector<cv::Mat>& frames, const std::string& sensor = "{}") {
-    std::string pattern = (fs::temp_directory_path() / "fingerpad.XXXXXX").string();
-    root_ = ::mkdtemp(pattern.data());
     fs::create_directories(folder() / "frames");
     std::ofstream(folder() / "sensor.json") << sensor;
     for (std::size_t k = 0; k < frames.size(); ++k) {
@@ -114,12 +111,9 @@ class DotRecording {
       cv::imwrite((folder() / "frames" / name).string(), frames[k]);
     }
   }
-  ~DotRecording() { fs::remove_all(root_); }
-  DotRecording(const DotRecording&) = delete;
-  DotRecording& operator=(const DotRecording&) = delete;
 
-  fs::path folder() const { return root_ / "recording"; }
-  fs::path out() const { return root_ / "out"; }
+  fs::path folder() const { return root_.path() / "recording"; }
+  fs::path out() const { return root_.path() / "out"; }
 
   std::string complaint(bool pictures = false) const {
     replay::Options options;
@@ -149,33 +143,8 @@ class DotRecording {
   }
 
  private:
-  fs::path root_;
+  test::ScratchFolder root_;
 };
-
-/// The lines of a table, each as a map from column to cell.
-std::vector<std::map<std::string, std::string>> table(const fs::path& file) {
-  std::ifstream stream(file);
-  std::vector<std::vector<std::string>> lines;
-  for (std::string line; std::getline(stream, line);) {
-    lines.emplace_back(1);
-    for (const char c : line) {
-      if (c == ',') {
-        lines.back().emplace_back();
-      } else {
-        lines.back().back() += c;
-      }
-    }
-  }
-  std::vector<std::map<std::string, std::string>> rows;
-  for (std::size_t k = 1; k < lines.size(); ++k) {
-    REQUIRE(lines[k].size() == lines[0].size());
-    rows.emplace_back();
-    for (std::size_t c = 0; c < lines[k].size(); ++c) {
-      rows.back()[lines[0][c]] = lines[k][c];
-    }
-  }
-  return rows;
-}
 
 }  // namespace
 
@@ -293,11 +262,11 @@ TEST_CASE("the stick ratio of a dots-only recording") {
   }
   const DotRecording unknown(frames);  // as likely beside a small object
   REQUIRE(unknown.complaint().empty());
-  CHECK(table(unknown.out() / "frames.csv")[7].at("stick_ratio").empty());
+  CHECK(table_of(unknown.out() / "frames.csv")[7].at("stick_ratio").empty());
 
   const DotRecording recording(frames, R"({"stick": {"covers_pattern": true}})");
   REQUIRE(recording.complaint(true).empty());
-  const auto rows = table(recording.out() / "frames.csv");
+  const auto rows = table_of(recording.out() / "frames.csv");
   REQUIRE(rows.size() == 8);
   CHECK(rows[0].at("dots_in_contact") == "80");
   CHECK(rows[0].at("stick_ratio").empty());
@@ -309,7 +278,7 @@ TEST_CASE("the stick ratio of a dots-only recording") {
   CHECK(std::abs(std::stod(rows[7].at("stick_ratio")) - 0.75) < 1e-6);
 
   std::map<std::string, int> states;
-  for (const auto& dot : table(recording.out() / "dots.csv")) {
+  for (const auto& dot : table_of(recording.out() / "dots.csv")) {
     CHECK(dot.at("contact") == "1");
     CHECK(dot.at("x_mm").empty());
     if (dot.at("frame") == "7") {
@@ -336,7 +305,7 @@ TEST_CASE("thresholds of the stick ratio come from sensor.json") {
   const auto answers = [&](const std::string& sensor) {
     const DotRecording recording(frames, sensor);
     REQUIRE(recording.complaint().empty());
-    const auto rows = table(recording.out() / "frames.csv");
+    const auto rows = table_of(recording.out() / "frames.csv");
     return std::count_if(rows.begin(), rows.end(),
                          [](const auto& row) { return row.at("stick_ratio_updated") == "1"; });
   };
@@ -360,7 +329,7 @@ TEST_CASE("dots.csv serves a dots-only recording, too") {
   }
   file.close();
   REQUIRE(recording.complaint().empty());
-  const auto rows = table(recording.out() / "frames.csv");
+  const auto rows = table_of(recording.out() / "frames.csv");
   CHECK(rows[2].at("dots_in_contact") == "12");
   CHECK(std::stod(rows[2].at("stick_ratio")) == 1);
 }

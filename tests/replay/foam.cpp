@@ -1,8 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 // Recordings of foam arrays: synthetic taxels.csv with vibrations of known place and time.
-#include <unistd.h>
-
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -15,7 +13,6 @@
 #include <numbers>
 #include <opencv2/core.hpp>
 #include <opencv2/imgcodecs.hpp>
-#include <sstream>
 #include <string>
 #include <vector>
 
@@ -23,13 +20,14 @@
 #include "replay/io/failure.hpp"
 #include "replay/replay.hpp"
 #include "support/catch.hpp"
+#include "support/files.hpp"
 
 namespace fs = std::filesystem;
+using test::Line;
 
 namespace {
 
-const fs::path bundled =
-    fs::path(__FILE__).parent_path().parent_path().parent_path() / "examples" / "data" / "foam";
+const fs::path bundled = test::bundled_recordings / "foam";
 
 constexpr int window = 16;
 constexpr double rate_hz = 32;      // so that times have few digits
@@ -124,26 +122,10 @@ constexpr int rows = 6;
 constexpr int cols = 4;
 constexpr int samples = 160;  // at rest for more than half of them
 
-using Line = std::map<std::string, std::string>;
-
-std::vector<std::string> cells_of(const std::string& line) {
-  std::vector<std::string> cells(1);
-  for (const char c : line) {
-    if (c == ',') {
-      cells.emplace_back();
-    } else {
-      cells.back() += c;
-    }
-  }
-  return cells;
-}
-
-/// A folder with a recording, removed at the end.
+/// A folder with a recording.
 class Workplace {
  public:
   explicit Workplace(const std::string& taxels, const std::string& sensor = "") {
-    std::string pattern = (fs::temp_directory_path() / "fingerpad.XXXXXX").string();
-    root_ = ::mkdtemp(pattern.data());
     fs::create_directories(folder());
     write("taxels.csv", taxels);
     if (!sensor.empty()) {
@@ -152,12 +134,9 @@ class Workplace {
   }
   explicit Workplace(const Taxels& taxels, const std::string& sensor = "")
       : Workplace(taxels.text(), sensor) {}
-  ~Workplace() { fs::remove_all(root_); }
-  Workplace(const Workplace&) = delete;
-  Workplace& operator=(const Workplace&) = delete;
 
-  fs::path folder() const { return root_ / "recording"; }
-  fs::path out() const { return root_ / "out"; }
+  fs::path folder() const { return root_.path() / "recording"; }
+  fs::path out() const { return root_.path() / "out"; }
   void write(const std::string& file, const std::string& text) const {
     std::ofstream(folder() / file) << text;
   }
@@ -176,36 +155,17 @@ class Workplace {
     } catch (const replay::Failure& failure) {
       const std::string line = failure.what();
       CHECK(line.find('\n') == std::string::npos);
-      CHECK(std::distance(fs::directory_iterator(root_), fs::directory_iterator()) == 1);
+      CHECK(std::distance(fs::directory_iterator(root_.path()), fs::directory_iterator()) == 1);
       return line;
     }
     return "";
   }
 
-  std::string table_text() const {
-    std::ifstream in(out() / "frames.csv");
-    return {std::istreambuf_iterator<char>(in), {}};
-  }
-  std::vector<Line> table() const {
-    std::istringstream stream(table_text());
-    std::string text;
-    REQUIRE(std::getline(stream, text));
-    const auto header = cells_of(text);
-    std::vector<Line> lines;
-    while (std::getline(stream, text)) {
-      const auto cells = cells_of(text);
-      REQUIRE(cells.size() == header.size());
-      Line line;
-      for (std::size_t k = 0; k < cells.size(); ++k) {
-        line[header[k]] = cells[k];
-      }
-      lines.push_back(line);
-    }
-    return lines;
-  }
+  std::string table_text() const { return test::text_of(out() / "frames.csv"); }
+  std::vector<Line> table() const { return test::table_of(out() / "frames.csv"); }
 
  private:
-  fs::path root_;
+  test::ScratchFolder root_;
 };
 
 std::string text_of(const Taxels& taxels, const std::string& sensor = "") {
@@ -771,11 +731,9 @@ TEST_CASE("pictures of foam recordings") {
 }
 
 TEST_CASE("the bundled foam recording is what its program makes, and alarms in time") {
-  std::ifstream in(bundled / "taxels.csv");
-  const std::string taxels(std::istreambuf_iterator<char>(in), {});
+  const std::string taxels = test::text_of(bundled / "taxels.csv");
   REQUIRE(taxels == foam::recording());
-  std::ifstream sensor(bundled / "sensor.json");
-  const Workplace work(taxels, std::string(std::istreambuf_iterator<char>(sensor), {}));
+  const Workplace work(taxels, test::text_of(bundled / "sensor.json"));
   REQUIRE(work.complaint() == "");
   const auto lines = work.table();
   REQUIRE(lines.size() == foam::samples);

@@ -1,13 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
-#include <unistd.h>
-
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
-#include <iterator>
-#include <map>
 #include <opencv2/core.hpp>
 #include <opencv2/imgcodecs.hpp>
 #include <sstream>
@@ -21,62 +17,25 @@
 #include "replay/io/true_forces.hpp"
 #include "replay/replay.hpp"
 #include "support/catch.hpp"
+#include "support/files.hpp"
 
 namespace fs = std::filesystem;
+using test::Line;
+using test::table_of;
 
 namespace {
 
-const fs::path bundled =
-    fs::path(__FILE__).parent_path().parent_path().parent_path() / "examples" / "data" / "press";
+const fs::path bundled = test::bundled_recordings / "press";
 
 const std::vector<std::string> components = {"fx_n", "fy_n", "fz_n", "mx_nm", "my_nm", "mz_nm"};
-
-using Line = std::map<std::string, std::string>;
-
-std::vector<std::string> cells_of(const std::string& line) {
-  std::vector<std::string> cells(1);
-  for (const char c : line) {
-    if (c == ',') {
-      cells.emplace_back();
-    } else {
-      cells.back() += c;
-    }
-  }
-  return cells;
-}
-
-std::vector<Line> table(const fs::path& file) {
-  std::ifstream stream(file);
-  std::string text;
-  REQUIRE(std::getline(stream, text));
-  const auto header = cells_of(text);
-  std::vector<Line> lines;
-  while (std::getline(stream, text)) {
-    const auto cells = cells_of(text);
-    REQUIRE(cells.size() == header.size());
-    Line line;
-    for (std::size_t k = 0; k < cells.size(); ++k) {
-      line[header[k]] = cells[k];
-    }
-    lines.push_back(line);
-  }
-  return lines;
-}
 
 /// A copy of the bundled recording that tests may modify.
 class Workplace {
  public:
-  Workplace() {
-    std::string pattern = (fs::temp_directory_path() / "fingerpad.XXXXXX").string();
-    root_ = ::mkdtemp(pattern.data());
-    fs::copy(bundled, recording(), fs::copy_options::recursive);
-  }
-  ~Workplace() { fs::remove_all(root_); }
-  Workplace(const Workplace&) = delete;
-  Workplace& operator=(const Workplace&) = delete;
+  Workplace() { fs::copy(bundled, recording(), fs::copy_options::recursive); }
 
-  fs::path recording() const { return root_ / "recording"; }
-  fs::path out() const { return root_ / "out"; }
+  fs::path recording() const { return root_.path() / "recording"; }
+  fs::path out() const { return root_.path() / "out"; }
 
   std::vector<Line> run(replay::Range range, bool pictures = false) const {
     replay::Options options;
@@ -85,7 +44,7 @@ class Workplace {
     options.range = range;
     options.pictures = pictures;
     replay::run(options);
-    return table(out() / "frames.csv");
+    return table_of(out() / "frames.csv");
   }
 
   std::string complaint() const {
@@ -97,18 +56,12 @@ class Workplace {
     return "";
   }
 
-  std::string read(const std::string& file) const {
-    std::ifstream in(recording() / file);
-    return {std::istreambuf_iterator<char>(in), {}};
-  }
+  std::string read(const std::string& file) const { return test::text_of(recording() / file); }
   void write(const std::string& file, const std::string& text) const {
     std::ofstream(recording() / file) << text;
   }
   void replace(const std::string& file, const std::string& old, const std::string& with) const {
-    std::string text = read(file);
-    REQUIRE(text.find(old) != std::string::npos);
-    text.replace(text.find(old), old.size(), with);
-    write(file, text);
+    test::replace_in(recording() / file, old, with);
   }
   /// Keeps the lines of side_dots.csv for which `good(frame, index)` is true.
   template <class Good>
@@ -118,14 +71,14 @@ class Workplace {
     std::getline(in, line);
     kept = line + "\n";
     while (std::getline(in, line)) {
-      const auto cells = cells_of(line);
+      const auto cells = test::cells_of(line);
       kept += good(std::stoi(cells[0]), std::stoi(cells[1])) ? line + "\n" : "";
     }
     write("side_dots.csv", kept);
   }
 
  private:
-  fs::path root_;
+  test::ScratchFolder root_;
 };
 
 bool is_empty(const Line& line) {
@@ -175,7 +128,7 @@ TEST_CASE("replay: force and moment of the bundled recording", "[wrench]") {
   // against the finite elements; from noisy 8-bit frames and side dots accurate to 5 um
   const Workplace work;
   const auto found = work.run({});
-  const auto truth = table(bundled / "membrane" / "load.csv");
+  const auto truth = table_of(bundled / "membrane" / "load.csv");
   REQUIRE(found.size() == 11);
   REQUIRE(truth.size() == 11);
   double error[6] = {};
@@ -417,7 +370,7 @@ TEST_CASE("replay: forces by look-up of the bundled recording", "[look-up]") {
   // a rod, looked up in curves of a plate: flat area and shift work for both
   const Workplace work;
   const auto found = work.run({});
-  const auto truth = table(bundled / "forces.csv");
+  const auto truth = table_of(bundled / "forces.csv");
   REQUIRE(found.size() == 11);
   REQUIRE(truth.size() == 11);
   double normal_n = 0, tangential_n = 0, moment_nm = 0, worst_sds = 0;

@@ -2,24 +2,21 @@
 // SPDX-License-Identifier: MIT
 // Recordings of a gel pad: a ball of sim/elastic_gel.hpp is pressed, dragged until it slides, and
 // lifted. The results of replay are compared with the true slide.
-#include <unistd.h>
-
 #include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
-#include <map>
 #include <opencv2/core.hpp>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/videoio.hpp>
-#include <sstream>
 #include <string>
 #include <vector>
 
 #include "replay/gel/slide_step.hpp"
 #include "replay/replay.hpp"
 #include "support/catch.hpp"
+#include "support/files.hpp"
 #include "support/gel_frames.hpp"
 
 namespace fs = std::filesystem;
@@ -37,17 +34,12 @@ struct Step {
 class GelRecording {
  public:
   GelRecording() {
-    std::string pattern = (fs::temp_directory_path() / "fingerpad.XXXXXX").string();
-    root_ = ::mkdtemp(pattern.data());
     fs::create_directories(folder() / "frames");
     std::ofstream(folder() / "sensor.json") << "{}";
   }
-  ~GelRecording() { fs::remove_all(root_); }
-  GelRecording(const GelRecording&) = delete;
-  GelRecording& operator=(const GelRecording&) = delete;
 
-  fs::path folder() const { return root_ / "recording"; }
-  fs::path out() const { return root_ / "out"; }
+  fs::path folder() const { return root_.path() / "recording"; }
+  fs::path out() const { return root_.path() / "out"; }
 
   /// Adds the current frame of the camera.
   void add(const char* part) {
@@ -92,20 +84,9 @@ class GelRecording {
 
   /// A column of slide.csv.
   std::vector<std::string> column(const std::string& name) const {
-    std::ifstream stream(out() / "slide.csv");
-    std::vector<std::vector<std::string>> lines;
-    for (std::string line; std::getline(stream, line);) {
-      std::istringstream cells(line);
-      lines.emplace_back();
-      for (std::string cell; std::getline(cells, cell, ',');) {
-        lines.back().push_back(cell);
-      }
-    }
     std::vector<std::string> column;
-    for (std::size_t c = 0; c < lines[0].size(); ++c) {
-      for (std::size_t k = 1; k < lines.size() && lines[0][c] == name; ++k) {
-        column.push_back(lines[k][c]);
-      }
+    for (const test::Line& line : test::table_of(out() / "slide.csv")) {
+      column.push_back(line.at(name));
     }
     return column;
   }
@@ -118,7 +99,7 @@ class GelRecording {
   GelContact<> contact{fingerpad::GelPad{}};
 
  private:
-  fs::path root_;
+  test::ScratchFolder root_;
   test::Random random_{3};
   int count_ = 0;
 };

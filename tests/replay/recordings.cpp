@@ -1,14 +1,11 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
-#include <unistd.h>
-
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <filesystem>
 #include <fstream>
 #include <functional>
-#include <iterator>
 #include <opencv2/core.hpp>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
@@ -21,32 +18,27 @@
 #include "replay/io/recording.hpp"
 #include "replay/replay.hpp"
 #include "support/catch.hpp"
+#include "support/files.hpp"
 
 namespace fs = std::filesystem;
 
 namespace {
 
-const fs::path bundled =
-    fs::path(__FILE__).parent_path().parent_path().parent_path() / "examples" / "data" / "press";
+const fs::path bundled = test::bundled_recordings / "press";
 
 /// A separate folder for each test, with a copy of the first frames of the bundled recording.
 class Workplace {
  public:
   Workplace() {
-    std::string pattern = (fs::temp_directory_path() / "fingerpad.XXXXXX").string();
-    root_ = ::mkdtemp(pattern.data());
     fs::create_directories(recording() / "frames");
     for (const char* file : {"sensor.json", "reference.png", "reference_depth.tiff",
                              "frames/000000.png", "frames/000001.png", "frames/000002.png"}) {
       fs::copy_file(bundled / file, recording() / file);
     }
   }
-  ~Workplace() { fs::remove_all(root_); }
-  Workplace(const Workplace&) = delete;
-  Workplace& operator=(const Workplace&) = delete;
 
-  fs::path recording() const { return root_ / "recording"; }
-  fs::path out() const { return root_ / "out"; }
+  fs::path recording() const { return root_.path() / "recording"; }
+  fs::path out() const { return root_.path() / "out"; }
 
   replay::Options options() const {
     replay::Options options;
@@ -73,7 +65,7 @@ class Workplace {
   /// Names of the files beside the recording, hidden files included.
   std::string names() const {
     std::vector<std::string> all;
-    for (const auto& entry : fs::directory_iterator(root_)) {
+    for (const auto& entry : fs::directory_iterator(root_.path())) {
       all.push_back(entry.path().filename().string());
     }
     std::sort(all.begin(), all.end());
@@ -85,12 +77,7 @@ class Workplace {
   }
 
   void replace_in_sensor(const std::string& old, const std::string& with) const {
-    std::ifstream in(recording() / "sensor.json");
-    std::string text(std::istreambuf_iterator<char>(in), {});
-    in.close();
-    REQUIRE(text.find(old) != std::string::npos);
-    text.replace(text.find(old), old.size(), with);
-    std::ofstream(recording() / "sensor.json") << text;
+    test::replace_in(recording() / "sensor.json", old, with);
   }
 
   void write(const std::string& file, const std::string& text) const {
@@ -98,7 +85,7 @@ class Workplace {
   }
 
  private:
-  fs::path root_;
+  test::ScratchFolder root_;
 };
 
 bool ends_with(const std::string& text, const std::string& end) {
