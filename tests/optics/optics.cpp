@@ -134,18 +134,7 @@ TEST_CASE("virtual heights", "[optics]") {
 
 TEMPLATE_TEST_CASE(
     "a point is seen by the pixel that looks at it", "[optics]", float, double, long double) {
-  using S = TestType;
-  rc::prop("pixel_of inverts point_at", [] {
-    const auto camera = as<S>(any_camera());
-    const auto offset = any_offset(as<double>(Camera<double>{}));
-    const S row = S(camera.center_y_px + S(offset.y));
-    const S col = S(camera.center_x_px + S(offset.x));
-    const Point3<S> point = point_at(camera, row, col, S(test::uniform(0, 20)));
-    const Point2<S> pixel = pixel_of(camera, point);
-    const S scale = S(1000 + std::hypot(offset.x, offset.y));
-    RC_ASSERT(near<S>(pixel.x, col, scale, 32));
-    RC_ASSERT(near<S>(pixel.y, row, scale, 32));
-  });
+  rc::prop("pixel_of inverts point_at", test::pixel_of_inverts_point_at<TestType>);
 }
 
 TEST_CASE("symmetry of the picture", "[optics]") {

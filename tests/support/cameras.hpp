@@ -69,4 +69,18 @@ bool near(const S& a, const S& b, const S& scale, double epsilons) {
   return S(abs(S(a - b))) <= S(epsilons) * (std::numeric_limits<S>::epsilon)() * scale;
 }
 
+/// The pixel that sees a point is the one that the point was found from.
+template <class S>
+void pixel_of_inverts_point_at() {
+  const auto camera = as<S>(any_camera());
+  const auto offset = any_offset(as<double>(Camera<double>{}));
+  const S row = S(camera.center_y_px + S(offset.y));
+  const S col = S(camera.center_x_px + S(offset.x));
+  const fingerpad::Point3<S> point = point_at(camera, row, col, S(test::uniform(0, 20)));
+  const Point2<S> pixel = pixel_of(camera, point);
+  const S scale = S(1000 + std::hypot(offset.x, offset.y));
+  RC_ASSERT(near<S>(pixel.x, col, scale, 32));
+  RC_ASSERT(near<S>(pixel.y, row, scale, 32));
+}
+
 }  // namespace test
