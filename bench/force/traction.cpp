@@ -17,18 +17,9 @@
 #include "support/traction_scenes.hpp"
 
 using namespace fingerpad;
+using test::as;
 
 namespace {
-
-template <class S>
-test::Cells<Point3<S>> as(const test::Dots& dots) {
-  test::Cells<Point3<S>> to(dots.rows(), dots.cols());
-  for (std::size_t k = 0; k < dots.cells.size(); ++k) {
-    const auto& p = dots.cells[k];
-    to.cells[k] = {static_cast<S>(p.x), static_cast<S>(p.y), static_cast<S>(p.z)};
-  }
-  return to;
-}
 
 struct Errors {
   std::vector<double> pressure, force, moment;

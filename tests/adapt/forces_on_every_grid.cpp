@@ -118,7 +118,7 @@ TEST_CASE("motion of the object from every grid", "[adapt]") {
 TEST_CASE("shift of the contact from every grid", "[adapt]") {
   const test::TractionScene& scene = test::traction_scenes()[2];
   const auto flat = [](const test::Dots& dots) {
-    test::Cells<Point2<double>> out(dots.rows(), dots.cols());
+    test::Image<Point2<double>> out(dots.rows(), dots.cols());
     for (std::size_t k = 0; k < dots.cells.size(); ++k) {
       out.cells[k] = {dots.cells[k].x, dots.cells[k].y};
     }
@@ -193,7 +193,7 @@ TEST_CASE("six-axis force from every grid", "[adapt]") {
 TEST_CASE("taxel features from every grid", "[adapt]") {
   const TaxelFeatures<> features(16, 4, TaxelOptions<>{});
   const auto readings = [](int k) {
-    test::Cells<double> taxels(16, 4, 500.0);
+    test::Image<double> taxels(16, 4, 500.0);
     taxels(3, 1) += 60 * std::sin(0.9 * k);
     taxels(9, 2) += 0.4 * k;
     return taxels;
@@ -220,7 +220,7 @@ TEST_CASE("stick ratio in space and divergence from every grid", "[adapt]") {
   const test::TractionScene& after = test::traction_scenes()[2];
   const SpatialStickRatio<> ratio(21, 21);
   auto begun = ratio.start();
-  test::Cells<DotState> states(21, 21);
+  test::Image<DotState> states(21, 21);
   (void)ratio(before.dots, before.contact, states, begun);
   auto state = begun;
   const auto truth = ratio(after.dots, after.contact, states, state);
@@ -245,8 +245,8 @@ namespace {
 
 /// A pad under a plate, 0.5 mm a pixel: a level contact of 5 mm in a dome.
 struct Pressed {
-  test::Cells<double> depth{60, 64};
-  test::Cells<unsigned char> mask{60, 64};
+  test::Image<double> depth{60, 64};
+  test::Image<unsigned char> mask{60, 64};
   Pressed() {
     for (Index i = 0; i < 60; ++i) {
       for (Index j = 0; j < 64; ++j) {
@@ -270,7 +270,7 @@ TEST_CASE("curvature, measures, flat area and surface of a contact from every gr
   auto flat_work = flat_area.workspace();
   const SurfaceFit<Plane<>, OrthographicCamera<double>> plane(60, 64, plan);
   struct Answer {
-    test::Cells<double> curvature{60, 64};
+    test::Image<double> curvature{60, 64};
     double flat_area_mm2, area_mm2, distance_mm;
   };
   const auto answer = [&](const auto& depth, const auto& mask) {
@@ -304,7 +304,7 @@ TEST_CASE("curvature, measures, flat area and surface of a contact from every gr
 TEST_CASE("depth, contact and slide of a gel from every grid", "[adapt]") {
   // a dark spot that moves toward the middle
   const auto image = [](double x, double dark) {
-    test::Cells<double> level(64, 80);
+    test::Image<double> level(64, 80);
     for (Index i = 0; i < 64; ++i) {
       for (Index j = 0; j < 80; ++j) {
         const double off = std::hypot(double(i) - 30, double(j) - x) / 9;
@@ -320,13 +320,13 @@ TEST_CASE("depth, contact and slide of a gel from every grid", "[adapt]") {
   const ContactByDifference<1, double> contact(frames);
   auto contact_work = contact.workspace();
   const ContactSlide<double> slide(64, 80, 5, 7);
-  test::Cells<Point2<double>> dots(5, 7);
+  test::Image<Point2<double>> dots(5, 7);
   for (Index i = 0; i < 5; ++i) {
     for (Index j = 0; j < 7; ++j) {
       dots(i, j) = {40.0 * double(j) + 40, 40.0 * double(i) + 40};
     }
   }
-  test::Cells<unsigned char> touches(64, 80);
+  test::Image<unsigned char> touches(64, 80);
   for (Index i = 0; i < 64; ++i) {
     for (Index j = 0; j < 80; ++j) {
       touches(i, j) = before(i, j) < 125 ? 1 : 0;
@@ -335,8 +335,8 @@ TEST_CASE("depth, contact and slide of a gel from every grid", "[adapt]") {
   auto begun = slide.start();
   (void)slide(before, touches, dots, begun);
   struct Answer {
-    test::Cells<double> depth{64, 80};
-    test::Cells<unsigned char> mask{64, 80};
+    test::Image<double> depth{64, 80};
+    test::Image<unsigned char> mask{64, 80};
     SlideResult<double> slide;
   };
   const auto answer = [&](const auto& frame, const auto& flags, const auto& points) {

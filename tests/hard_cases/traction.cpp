@@ -36,15 +36,9 @@ struct Loss {
 
 template <class S>
 Loss loss_of(const test::TractionScene& s) {
-  const auto free = test::stress_free_dots();
   // rounding of the inputs to S is no error of the method: both start from the numbers of S
-  test::Cells<Point3<S>> stored_free(21, 21), stored(21, 21);
-  for (std::size_t k = 0; k < free.cells.size(); ++k) {
-    const auto& f = free.cells[k];
-    const auto& d = s.dots.cells[k];
-    stored_free.cells[k] = {S(f.x), S(f.y), S(f.z)};
-    stored.cells[k] = {S(d.x), S(d.y), S(d.z)};
-  }
+  const auto stored_free = test::as<S>(test::stress_free_dots());
+  const auto stored = test::as<S>(s.dots);
   const TractionField<S> field(stored_free, {.mu_t_n_per_mm = S(0.5)});
   const TractionField<Digits50> exact(stored_free, {.mu_t_n_per_mm = Digits50(0.5)});
   auto maps = field.maps();

@@ -14,6 +14,7 @@
 #include "support/pressed_pad.hpp"
 
 using namespace fingerpad;
+using test::as;
 using test::FilmSide;
 using test::Image;
 using test::pressed_mpa;
@@ -67,15 +68,6 @@ RimLoad even_load(double) {
 
 Image<Point3<double>> good_dots() {
   return rim_of(film).dots(even_load);
-}
-
-template <class S>
-Image<Point3<S>> as(const Image<Point3<double>>& from) {
-  Image<Point3<S>> to(from.rows(), from.cols(), {S(0), S(0), S(0)});
-  for (std::size_t k = 0; k < from.cells.size(); ++k) {
-    to.cells[k] = {S(from.cells[k].x), S(from.cells[k].y), S(from.cells[k].z)};
-  }
-  return to;
 }
 
 /// Whether a result is consistent, for any input.

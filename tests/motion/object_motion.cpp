@@ -591,14 +591,14 @@ TEST_CASE("object motion: bad parameters are refused by name") {
 
 TEST_CASE("spatial dots: depth is read between pixels, at the dot's own pixel (E020)") {
   const Camera<double> camera;
-  test::Cells<double> depth(4, 5);
+  test::Image<double> depth(4, 5);
   for (Index i = 0; i < 4; ++i) {
     for (Index j = 0; j < 5; ++j) {
       depth(i, j) = 10 + 0.5 * static_cast<double>(i) - 0.25 * static_cast<double>(j);
     }
   }
   depth(3, 4) = std::nan("");
-  test::Cells<Point2<double>> dots(1, 7);
+  test::Image<Point2<double>> dots(1, 7);
   dots(0, 0) = {1.25, 2.5};
   dots(0, 1) = {0, 0};
   dots(0, 2) = {3, 3};      // needs no missing pixel
@@ -645,7 +645,7 @@ TEST_CASE("contact at dots: with a radius, all of a dot must touch") {
     }
   }
   mask(10, 30) = 0;
-  test::Cells<Point2<double>> dots(1, 7);
+  test::Image<Point2<double>> dots(1, 7);
   dots(0, 0) = {13.0, 10.0};
   dots(0, 1) = {12.4, 10.0};  // its pixel is 12
   dots(0, 2) = {39.4, 0.0};   // pixels outside the mask do not count

@@ -43,8 +43,8 @@ TEMPLATE_TEST_CASE("object motion: a frame allocates nothing",
 TEST_CASE("spatial dots: a frame allocates nothing", "[object_motion]") {
   const Camera<double> camera;
   test::Dots out(5, 6);
-  test::Cells<Point2<double>> dots(5, 6, {300, 200});
-  test::Cells<float> depth(480, 640, 9.0F);
+  test::Image<Point2<double>> dots(5, 6, {300, 200});
+  test::Image<float> depth(480, 640, 9.0F);
   test::Flags mask(480, 640, 1), flags(5, 6, 0);
   const long before = test::allocations();
   const auto result = spatial_dots(camera, dots, depth, out);

@@ -13,43 +13,7 @@
 #include <vector>
 
 #include "fingerpad/depth/depth.hpp"
-
-namespace test {
-
-using fingerpad::Index;
-
-/// An image that owns its memory.
-template <class T>
-struct Image {
-  Index height = 0;
-  Index width = 0;
-  std::vector<T> cells;
-
-  Image() = default;
-  Image(Index rows, Index cols, const T& cell = T())
-      : height(rows), width(cols), cells(static_cast<std::size_t>(rows * cols), cell) {}
-  Index rows() const { return height; }
-  Index cols() const { return width; }
-  T& operator()(Index i, Index j) { return cells[static_cast<std::size_t>(i * width + j)]; }
-  const T& operator()(Index i, Index j) const {
-    return cells[static_cast<std::size_t>(i * width + j)];
-  }
-};
-
-}  // namespace test
-
-template <class T>
-struct fingerpad::grid_traits<test::Image<T>> {
-  using Image = test::Image<T>;
-  static Index rows(const Image& g) { return g.height; }
-  static Index cols(const Image& g) { return g.width; }
-  static const T& at(const Image& g, Index row, Index col) { return g(row, col); }
-  static T& at(Image& g, Index row, Index col) { return g(row, col); }
-  static const T* data(const Image& g) { return g.cells.data(); }
-  static T* data(Image& g) { return g.cells.data(); }
-  static Index row_stride(const Image& g) { return g.width; }
-  static Index col_stride(const Image&) { return 1; }
-};
+#include "image.hpp"
 
 namespace test {
 

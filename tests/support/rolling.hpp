@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "fingerpad/published/object_motion.hpp"
+#include "image.hpp"
 
 namespace test {
 
@@ -29,26 +30,8 @@ class Gauss {
   std::mt19937_64 bits_;
 };
 
-template <class T>
-struct Cells {
-  std::vector<T> cells;
-  std::ptrdiff_t height = 0;
-  std::ptrdiff_t width = 0;
-
-  Cells(std::ptrdiff_t rows, std::ptrdiff_t cols, const T& fill = T())
-      : cells(static_cast<std::size_t>(rows * cols), fill), height(rows), width(cols) {}
-  std::ptrdiff_t rows() const { return height; }
-  std::ptrdiff_t cols() const { return width; }
-  T& operator()(std::ptrdiff_t i, std::ptrdiff_t j) {
-    return cells[static_cast<std::size_t>(i * width + j)];
-  }
-  const T& operator()(std::ptrdiff_t i, std::ptrdiff_t j) const {
-    return cells[static_cast<std::size_t>(i * width + j)];
-  }
-};
-
-using Dots = Cells<fingerpad::Point3<double>>;
-using Flags = Cells<unsigned char>;
+using Dots = Image<fingerpad::Point3<double>>;
+using Flags = Image<unsigned char>;
 
 /// Nine dots 1.5 mm apart on a ball of 18 mm.
 inline fingerpad::detail::motion::Neighbourhood<double> nine_dots() {

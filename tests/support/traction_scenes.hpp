@@ -30,7 +30,7 @@ struct TractionScene {
   fingerpad::Point3<double> moment_n_mm{};
   Dots dots = no_dots();
   Flags contact = Flags(21, 21, 0);
-  Cells<double> contact_pressure_mpa = Cells<double>(21, 21, 0);
+  Image<double> contact_pressure_mpa = Image<double>(21, 21, 0);
 
   double largest_force_n() const {
     return (std::max)({std::abs(force_n.x), std::abs(force_n.y), std::abs(force_n.z)});

@@ -8,7 +8,6 @@
 #include "crew.hpp"
 #include "fingerpad/pipeline/fingertip.hpp"
 #include "fingerpad/published/wrench.hpp"
-#include "plane.hpp"
 
 namespace chain {
 

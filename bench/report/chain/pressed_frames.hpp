@@ -60,13 +60,12 @@ struct PressedFrame {
   test::RoundPad<test::FilmSide> membrane;
   test::Image<double> depth_mm;  ///< NaN outside of the pad
   test::Frame<std::uint8_t> image;
-  Plane<Point2<double>> dots_px;
+  test::Image<Point2<double>> dots_px;
   test::Image<Point3<double>> side_dots_mm;
   test::Wrench6 wrench;
 
   Inputs view() const {
-    return {
-        {image.red, image.green}, dots_px.view(), fingerpad::as_view(side_dots_mm), pressure_mpa};
+    return {{image.red, image.green}, dots_px.view(), side_dots_mm.view(), pressure_mpa};
   }
   double contact_area_mm2() const { return std::numbers::pi * plate.contact_mm * plate.contact_mm; }
 };
@@ -85,9 +84,7 @@ class PressedFrames {
       frames_.push_back(made(Plate(k, count), static_cast<std::uint64_t>(k + 1)));
     }
     free_dots_ = free_dots();
-    const auto borders = rim_of(frames_.front().membrane).borders();
-    rim_ = Plane<Point3<double>>(1, borders.cols());
-    rim_.cells = borders.cells;
+    rim_ = rim_of(frames_.front().membrane).borders();
   }
 
   std::size_t size() const { return frames_.size(); }
@@ -148,16 +145,16 @@ class PressedFrames {
     return std::hypot(home.x, home.y) < 0.93 * pad_.base_radius_mm();
   }
 
-  Plane<Point3<double>> free_dots() const {
-    Plane<Point3<double>> dots(dots_, dots_, {test::nan, test::nan, test::nan});
+  test::Image<Point3<double>> free_dots() const {
+    test::Image<Point3<double>> dots(dots_, dots_, {test::nan, test::nan, test::nan});
     const double low = pad_.height_mm - pad_.sphere_radius_mm;
     for (Index i = 0; i < dots_; ++i) {
       for (Index j = 0; j < dots_; ++j) {
         const auto h = home(i, j);
         if (printed(h)) {
           const double r_sq = h.x * h.x + h.y * h.y;
-          dots.view()(i, j) = {
-              h.x, h.y, low + std::sqrt(pad_.sphere_radius_mm * pad_.sphere_radius_mm - r_sq)};
+          dots(i, j) = {h.x, h.y,
+                        low + std::sqrt(pad_.sphere_radius_mm * pad_.sphere_radius_mm - r_sq)};
         }
       }
     }
@@ -178,12 +175,12 @@ class PressedFrames {
         }
       }
     }
-    Plane<Point2<double>> dots(dots_, dots_, {test::nan, test::nan});
+    test::Image<Point2<double>> dots(dots_, dots_, {test::nan, test::nan});
     for (Index i = 0; i < dots_; ++i) {
       for (Index j = 0; j < dots_; ++j) {
         if (printed(home(i, j))) {
           const auto p = carried(plate, membrane.radius_mm, home(i, j));
-          dots.view()(i, j) = pixel_of(pad_.camera, Point3<double>{p.x, p.y, film(p.x, p.y)});
+          dots(i, j) = pixel_of(pad_.camera, Point3<double>{p.x, p.y, film(p.x, p.y)});
         }
       }
     }
@@ -201,8 +198,8 @@ class PressedFrames {
   test::Pad pad_;
   Index dots_;
   std::vector<PressedFrame> frames_;
-  Plane<Point3<double>> free_dots_{0, 0};
-  Plane<Point3<double>> rim_{0, 0};
+  test::Image<Point3<double>> free_dots_;
+  test::Image<Point3<double>> rim_;
 };
 
 }  // namespace chain
