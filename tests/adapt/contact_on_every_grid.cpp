@@ -23,6 +23,7 @@
 #include "support/test_mdspan.hpp"
 
 using namespace fingerpad;
+using test::fill_from;
 using test::Image;
 
 namespace {
@@ -34,16 +35,6 @@ template <class T>
 using RowMajor = Eigen::Matrix<T, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 template <class T>
 using ColMajor = Eigen::Matrix<T, Eigen::Dynamic, Eigen::Dynamic>;
-
-template <class Grid, class T>
-void fill_from(Grid&& grid, const Image<T>& from) {
-  const auto view = as_view(grid);
-  for (Index i = 0; i < from.rows(); ++i) {
-    for (Index j = 0; j < from.cols(); ++j) {
-      view(i, j) = static_cast<cell_t<Grid>>(from(i, j));
-    }
-  }
-}
 
 struct Case {
   using Region = ContactRegion<ClampedMean<>, HalfLevelEdge, OrthographicCamera<double>>;

@@ -24,6 +24,7 @@
 #include "support/test_mdspan.hpp"
 
 using namespace fingerpad;
+using test::fill_from;
 using test::Frame;
 using test::Image;
 
@@ -33,17 +34,6 @@ template <class T>
 using RowMajor = Eigen::Matrix<T, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 template <class T>
 using ColMajor = Eigen::Matrix<T, Eigen::Dynamic, Eigen::Dynamic>;
-
-/// Fills a grid cell by cell through the grid functions.
-template <class Grid, class T>
-void fill_from(Grid&& grid, const Image<T>& from) {
-  const auto view = as_view(grid);
-  for (Index i = 0; i < from.rows(); ++i) {
-    for (Index j = 0; j < from.cols(); ++j) {
-      view(i, j) = from(i, j);
-    }
-  }
-}
 
 template <class Grid, class T>
 bool holds(const Grid& grid, const Image<T>& expected) {

@@ -38,48 +38,39 @@
 #include "support/traction_scenes.hpp"
 
 using namespace fingerpad;
+using test::fill_from;
 using test::same_bits;
 
 namespace {
-
-template <class Grid, class From>
-void fill(Grid&& grid, const From& from) {
-  const auto to = as_view(grid);
-  for (Index i = 0; i < from.rows(); ++i) {
-    for (Index j = 0; j < from.cols(); ++j) {
-      to(i, j) = from(i, j);
-    }
-  }
-}
 
 /// Calls use(grid) with the cells of `from` in each kind of grid.
 template <class T, class From, class Use>
 void on_every_grid(const From& from, const Use& use) {
   const Index rows = from.rows(), cols = from.cols();
   Eigen::Matrix<T, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> in_rows(rows, cols);
-  fill(in_rows, from);
+  fill_from(in_rows, from);
   use(in_rows);
   Eigen::Array<T, Eigen::Dynamic, Eigen::Dynamic> in_columns(rows, cols);
-  fill(in_columns, from);
+  fill_from(in_columns, from);
   use(in_columns);
   use(Eigen::Map<const Eigen::Array<T, Eigen::Dynamic, Eigen::Dynamic>>(in_columns.data(), rows,
                                                                         cols));
   Eigen::Array<T, Eigen::Dynamic, Eigen::Dynamic> larger(rows + 3, cols + 2);
   auto block = larger.block(2, 1, rows, cols);
-  fill(block, from);
+  fill_from(block, from);
   use(block);
   const auto size = [](Index n) { return static_cast<std::size_t>(n); };
   const std::array<std::size_t, 2> shape = {size(rows), size(cols)};
   xt::xtensor<T, 2> tensor(shape);
-  fill(tensor, from);
+  fill_from(tensor, from);
   use(tensor);
   xt::xtensor<T, 2, xt::layout_type::column_major> columns(shape);
-  fill(columns, from);
+  fill_from(columns, from);
   use(columns);
   const std::array<std::size_t, 2> wide = {size(rows + 2), size(cols + 5)};
   xt::xtensor<T, 2> around(wide);
   auto part = xt::view(around, xt::range(1, rows + 1), xt::range(3, cols + 3));
-  fill(part, from);
+  fill_from(part, from);
   use(part);
 }
 

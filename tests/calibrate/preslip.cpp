@@ -7,28 +7,16 @@
 #include "fingerpad/foam/taxel_features.hpp"
 #include "grip/foam_fingers.hpp"
 #include "support/catch.hpp"
+#include "support/foam_signals.hpp"
 #include "support/pad.hpp"
 #include "support/refusal.hpp"
 
 using namespace fingerpad;
+using test::finger;
 
 namespace {
 
 using Samples = std::array<FingerSample<double>, 2>;
-
-/// A finger that vibrates at `location` with `waves`; its force is at x.
-FingerSample<double> finger(double x_mm, Index location, Index waves) {
-  FingerSample<double> s;
-  s.status = waves > 0 ? TaxelStatus::vibrating : TaxelStatus::quiet;
-  s.center_x_mm = x_mm;
-  s.center_y_mm = 10;
-  s.location = waves > 0 ? location : FingerSample<>::no_location;
-  s.waves = waves;
-  if (waves > 0) {
-    s.add_vibration({waves, location, false});
-  }
-  return s;
-}
 
 /// A trembling hand. Between slips the force moves by 0.3 mm and a taxel vibrates with two waves
 /// now and then; at the onset of slip the force moves by 1.5 mm and a taxel vibrates with `waves`.

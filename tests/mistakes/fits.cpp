@@ -21,6 +21,7 @@
 #include "fingerpad/calibrate/preslip.hpp"
 #include "fingerpad/calibrate/slip.hpp"
 #include "support/catch.hpp"
+#include "support/foam_signals.hpp"
 #include "support/pad.hpp"
 #include "support/printed_dots.hpp"
 #include "support/refusal.hpp"
@@ -211,23 +212,13 @@ struct Hand {
     for (int k = 0; k < samples; ++k) {
       const bool slips = k % 50 >= 44;
       const double x = 20 + random.uniform(-0.15, 0.15) + (slips ? 1.5 : 0);
-      fingers.push_back({finger(x, k % 11, slips ? 3 : k % 7 == 0 ? 2 : 0), finger(20, 0, 0)});
+      fingers.push_back({test::finger(x, k % 11,
+                                      slips        ? 3
+                                      : k % 7 == 0 ? 2
+                                                   : 0),
+                         test::finger(20, 0, 0)});
       marks.push_back(slips);
     }
-  }
-
- private:
-  static FingerSample<> finger(double x_mm, Index location, Index waves) {
-    FingerSample<> s;
-    s.status = waves > 0 ? TaxelStatus::vibrating : TaxelStatus::quiet;
-    s.center_x_mm = x_mm;
-    s.center_y_mm = 10;
-    s.location = waves > 0 ? location : FingerSample<>::no_location;
-    s.waves = waves;
-    if (waves > 0) {
-      s.add_vibration({waves, location, false});
-    }
-    return s;
   }
 };
 

@@ -11,6 +11,7 @@
 #include <random>
 #include <vector>
 
+#include "fingerpad/foam/taxel_features.hpp"
 #include "support/pad.hpp"
 
 namespace test {
@@ -81,5 +82,22 @@ class FoamSignal {
   std::mt19937 random_;
   std::normal_distribution<double> normal_{0, 1};
 };
+
+/// A finger that vibrates at `location` with `waves`; its force is at x.
+inline fingerpad::FingerSample<> finger(double x_mm,
+                                        fingerpad::Index location,
+                                        fingerpad::Index waves) {
+  using fingerpad::TaxelStatus;
+  fingerpad::FingerSample<> s;
+  s.status = waves > 0 ? TaxelStatus::vibrating : TaxelStatus::quiet;
+  s.center_x_mm = x_mm;
+  s.center_y_mm = 10;
+  s.location = waves > 0 ? location : s.no_location;
+  s.waves = waves;
+  if (waves > 0) {
+    s.add_vibration({waves, location, false});
+  }
+  return s;
+}
 
 }  // namespace test

@@ -31,6 +31,17 @@ struct Image {
   fingerpad::StridedView<const T> view() const { return {cells.data(), height, width, width}; }
 };
 
+/// Fills a grid cell by cell through the grid functions.
+template <class Grid, class T>
+void fill_from(Grid&& grid, const Image<T>& from) {
+  const auto view = fingerpad::as_view(grid);
+  for (Index i = 0; i < from.rows(); ++i) {
+    for (Index j = 0; j < from.cols(); ++j) {
+      view(i, j) = static_cast<fingerpad::cell_t<Grid>>(from(i, j));
+    }
+  }
+}
+
 /// The same points in another number type.
 template <class S>
 Image<fingerpad::Point3<S>> as(const Image<fingerpad::Point3<double>>& from) {
