@@ -47,7 +47,9 @@ void expects_valid(const NeighbourLight<S>& light) {
 
 namespace detail {
 
-/// The equation for a number, or for each in a vector of them.
+/// The equation for one pixel, or for each in a vector of them: depth less the light of its
+/// neighbours, never below 0. A depth that is not finite stays as it is; the reference depth must
+/// be finite.
 template <class V, scalar S>
 [[gnu::always_inline]] inline V without_light_of(const V& depth_mm,
                                                  const V& reference_depth_mm,
@@ -62,18 +64,6 @@ template <class V, scalar S>
 }
 
 }  // namespace detail
-
-/// The equation for one pixel: depth less the light of its neighbours, never below 0. A depth that
-/// is not finite stays as it is; the reference depth must be finite.
-template <scalar S>
-inline S without_neighbour_light(const S& depth_mm,
-                                 const S& reference_depth_mm,
-                                 const S& psi_sum_rad,
-                                 const S& m0_mm_per_rad,
-                                 const S& n_per_mm) {
-  return detail::without_light_of<S>(depth_mm, reference_depth_mm, psi_sum_rad, m0_mm_per_rad,
-                                     n_per_mm);
-}
 
 /// Not of this pad: the depths are on the whole a twentieth of the reference's or less, or twenty
 /// of it or more, as depths in m are.
