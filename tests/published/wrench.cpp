@@ -211,3 +211,31 @@ TEST_CASE("published six-axis force: its lines are the steepest, cut at equal st
     }
   }
 }
+
+TEST_CASE("a side dot on its border point has no direction", "[wrench][published]") {
+  const RoundPad<ArcSide> pad;
+  const auto rim = rim_of(pad);
+  const auto at_rim = rim.borders();
+  const double t0 = pad.tension(pad.radius_mm, pressed_mpa);
+  auto dots = rim.dots([&](double) { return RimLoad{t0, 0}; });
+  const Wrench<published::Iteration, OneRow, published::Direction> wrench(at_rim);
+  auto work = wrench.workspace();
+  const auto whole = wrench(pad, dots, pressed_mpa, work);
+  REQUIRE(whole.status == WrenchStatus::ok);
+
+  dots(0, 3) = at_rim(0, 3);
+  const auto without_one = wrench(pad, dots, pressed_mpa, work);
+  CHECK(without_one.status == WrenchStatus::ok);
+  CHECK(without_one.unstretched == 1);
+  CHECK(without_one.force_n.z == Approx(whole.force_n.z).epsilon(1e-6));
+  for (Index k = 0; k < work.rim_points(); ++k) {
+    CHECK(is_finite(work.rim_tension(k)));
+  }
+
+  for (Index k = 0; k < at_rim.cols(); ++k) {
+    dots(0, k) = at_rim(0, k);
+  }
+  const auto none = wrench(pad, dots, pressed_mpa, work);
+  CHECK(none.status == WrenchStatus::unstretched);
+  CHECK_FALSE(none.has_force());
+}

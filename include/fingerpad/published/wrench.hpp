@@ -75,15 +75,17 @@ bool load_rim(const Segments<S>& g, const std::vector<Point3<S>>& pulls, Tension
 
 namespace published {
 
-/// The pull has the direction of the side dots, as published. On a pad stretched by 8.5 % it yields
-/// 72 % of the true tangential force of a drag and 36 % of the true moment of a twist.
+/// The pull has the direction of the side dots, as published; a dot on its border point has none.
+/// On a pad stretched by 8.5 % it yields 72 % of the true tangential force of a drag and 36 % of the
+/// true moment of a twist.
 struct Direction {
   /// Whether pulls of different rim points can be compared.
   static constexpr bool tells_magnitude = false;
 
   template <scalar S>
   detail::membrane::RimPull<S> pull(const Point3<S>& along, const Point3<S>&) const {
-    return {detail::membrane::RimPullStatus::ok, along};
+    using Status = detail::membrane::RimPullStatus;
+    return {value(squared_norm(along)) > 0 ? Status::ok : Status::unstretched, along};
   }
   /// By how much the pull changes when `along` changes by `change`.
   template <scalar S>
