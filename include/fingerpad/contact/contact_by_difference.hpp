@@ -1,13 +1,15 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// Where the object touches a pad without depth, from the difference between the frame and the free
-// pad. For gel pads lit from the side (GelSight, DIGIT and similar), with or without printed dots,
-// and for gels that darken where they are pressed.
-// The difference is relative, (now / gain) / free - 1, so lamps may be uneven. The gain of each
-// channel is the median of now / free, so exposure and white balance may change; the median is
-// taken over the frame or, if more than half of the frame differs, over its border. Dots are left
-// out, because they move with the gel under a contact as well as beside it.
+// Contact region of a pad without depth, from the difference between a frame and the free pad. It
+// suits gel pads lit from the side (GelSight, DIGIT and similar), with or without printed dots, and
+// gels that darken where they are pressed.
+//
+// The difference is relative, (now / gain) / free - 1, so that lamps may be uneven. The gain of
+// each channel is the median of now / free, so that exposure and white balance may change. The
+// median is taken over the frame or, if more than half of the frame differs, over its border. Dots
+// are left out: they move with the gel beside a contact as well as under it, and would be taken for
+// contact.
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -29,19 +31,20 @@ inline namespace v0 {
 
 /// Options of the contact test. Lengths are in px of the frame.
 struct DifferenceTest {
-  Index cell_px = 4;          ///< side of a cell; contact is decided per cell; 1..16
-  double smoothing_px = 7;    ///< sd of the Gaussian mean of the difference; half a dot; in
-                              ///< [cell_px / 2, 16 cell_px]
-  double dot_px = 14;         ///< diameter of the printed dots; 0: there are none; <= 16 cell_px
+  Index cell_px = 4;        ///< side of a cell; contact is decided per cell; 1..16
+  double smoothing_px = 7;  ///< sd of the Gaussian that averages the difference, about half a dot;
+                            ///< in [cell_px / 2, 16 cell_px]
+  double dot_px = 14;       ///< diameter of the printed dots, at most 16 cell_px; 0: no dots
   double dot_contrast = 0.1;  ///< a cell darker than its surroundings by this fraction belongs to a
                               ///< dot; in (0, 1)
   double min_difference = 0.02;  ///< smallest threshold, as a fraction of the free brightness,
-                                 ///< however quiet the free frames are; in (0, 1)
-  double noise_factor = 1;       ///< threshold / 99th percentile of a free frame; >= 1
-  double max_gap_px = 28;  ///< gaps in a contact up to this are closed, two dots' diameters; >= 0
+                                 ///< however low the noise of the free frames; in (0, 1)
+  double noise_factor = 1;  ///< threshold / 99th percentile of the difference in free frames; >= 1
+  double max_gap_px = 28;   ///< gaps in a contact up to this width are closed, by default two dots;
+                            ///< in [0, 32 cell_px]
   Index min_region_px = 800;  ///< smaller regions are dropped; >= 0
-  double saturated = 254;     ///< cells as bright as this in a channel are unknown; > 0
-  double mm_per_px = 0.05;    ///< for the area; finite, > 0
+  double saturated = 254;     ///< cells as bright as this in a channel are ignored; > 0
+  double mm_per_px = 0.05;    ///< scale of area and center; finite, > 0
 };
 inline void expects_valid(const DifferenceTest& test) {
   constexpr const char* owner = "DifferenceTest";
@@ -67,11 +70,11 @@ inline void expects_valid(const DifferenceTest& test) {
           "finite and > 0");
 }
 
-/// The contact in frames of one size. Pixels are numbers (Channels = 1) or have them as pixel[c]
-/// (cv::Vec3b, std::array). Threads may share one object, each with its own workspace. Bounded time
-/// and no allocation per frame; O(rows cols), fastest for a strided view of packed bytes.
-/// Valid while less than half of the frame, or less than half of its border, is touched: the
-/// majority is taken for free.
+/// Finds the contact in frames of one size. A pixel is a number (Channels = 1) or gives its
+/// channels as pixel[c] (cv::Vec3b, std::array). Threads may share one object, each with its own
+/// workspace. A frame takes bounded time and allocates nothing; O(rows cols), fastest for a strided
+/// view of packed bytes. Valid while the object touches less than half of the frame or less than
+/// half of its border, because the majority is taken to be free.
 template <int Channels = 3, scalar S = float>
 class ContactByDifference {
   static_assert(Channels >= 1);
@@ -79,8 +82,9 @@ class ContactByDifference {
   using Colours = detail::CellColours<Channels, S>;
 
  public:
-  /// From frames of the free pad, a range of grids. The noise is measured if there are two or more.
-  /// Refuses an empty range, frames of different sizes and bad parameters (parameter_error).
+  /// Learns the free pad from `free_frames`, a range of grids. With two or more frames their noise
+  /// is measured and may raise the threshold. Refuses an empty range, frames of different sizes and
+  /// bad parameters (parameter_error).
   template <class FreeFrames>
   explicit ContactByDifference(const FreeFrames& free_frames, const DifferenceTest& test = {})
       : test_(checked(test)), layout_(layout_of(free_frames, test)), free_(colours()) {
@@ -98,9 +102,9 @@ class ContactByDifference {
           regions_({contact.layout_.cell_rows(), contact.layout_.cell_cols()}),
           line_(static_cast<std::size_t>(contact.layout_.cell_cols() * contact.layout_.cell_px)) {}
 
-    /// The difference from the free pad in the last frame, cell by cell: root mean square over the
-    /// channels, as a fraction of the free brightness; NaN where it is unknown. The threshold
-    /// applies to it.
+    /// The last frame's difference from the free pad, cell by cell, to which the threshold applies.
+    /// It is the root mean square over the channels, as a fraction of the free brightness; NaN
+    /// where it is unknown.
     StridedView<const S> difference() const { return difference_.length().view(); }
     /// The same, with the areas hidden by dots filled in from the gel beside them. ContactSlide
     /// reads it.
@@ -115,12 +119,13 @@ class ContactByDifference {
     detail::CellClosing<S> closing_;
     detail::PaddedCells<S> mask_;
     detail::Regions regions_;
-    std::vector<Touch> line_;  // of the mask
+    std::vector<Touch> line_;  // a row of the mask
   };
   Workspace workspace() const { return Workspace(*this); }
 
-  /// Writes to `mask` as ContactRegion does: a Touch, or 255 in contact and 0 elsewhere. The area
-  /// is flat, at mm_per_px; the center counts from the image's own. Depths are NaN.
+  /// Finds the contact of a frame and writes it to `mask` as ContactRegion does: a Touch, or 255 in
+  /// contact and 0 elsewhere. The area is the number of pixels times mm_per_px^2, and the center is
+  /// relative to the middle of the image. Depths are NaN.
   template <grid Frame, class Mask>
   ContactResult operator()(const Frame& frame, Mask&& mask, Workspace& w) const {
     detail::writes_to<Mask>();
@@ -134,7 +139,7 @@ class ContactByDifference {
     result = found(detail::GainFrom::frame, w);
     const bool is_mostly_free = 2 * result.contact_px < rows() * cols() - result.unknown_px;
     if (result.in_contact() && !is_mostly_free) {
-      // a contact has an outline; other lamps differ most along the border
+      // a contact leaves most of the border free; another lamp changes the border most
       result = found(detail::GainFrom::border, w);
       result.status = is_border_free(w) ? FrameStatus::ok : FrameStatus::not_of_this_pad;
     } else if (result.unknown_px == rows() * cols()) {
@@ -146,7 +151,7 @@ class ContactByDifference {
 
   Index rows() const { return layout_.rows; }
   Index cols() const { return layout_.cols; }
-  /// Differences above it are contact.
+  /// Cells whose difference exceeds it are contact.
   double threshold() const { return threshold_; }
 
  private:
@@ -191,7 +196,8 @@ class ContactByDifference {
     }
   }
 
-  /// The free pad as the frames' mean; the noise as what each differs from the mean of the others.
+  /// Sets the free pad to the mean of the frames, and the threshold from their noise. The noise is
+  /// the difference of each frame from the mean of the others.
   template <class FreeFrames>
   void learn(const FreeFrames& frames) {
     Difference difference(layout_);
@@ -213,14 +219,15 @@ class ContactByDifference {
     }
     set_free(seen, seen.size());
     threshold_ = test_.min_difference;
-    if (!noise.empty()) {  // the median, since one of them may not be free after all
+    if (!noise.empty()) {  // the median, since one frame may not be free after all
       const auto middle = noise.begin() + static_cast<std::ptrdiff_t>(noise.size() / 2);
       std::nth_element(noise.begin(), middle, noise.end());
       threshold_ = (std::max)(threshold_, test_.noise_factor * *middle);
     }
   }
 
-  /// The mean of all but one; a cell counts that all of them know.
+  /// Sets the free pad to the mean of the frames except number `without`; seen.size() excludes
+  /// none. A cell counts only if all of these frames know it.
   void set_free(const std::vector<Colours>& seen, std::size_t without) {
     const S share = S(1.0 / static_cast<double>(seen.size() - (without < seen.size() ? 1 : 0)));
     for_cells([&](Index i, Index j) {
@@ -259,7 +266,7 @@ class ContactByDifference {
     return *at;
   }
 
-  /// The contact in the frame that was read last.
+  /// Finds the contact in the frame that was read last.
   ContactResult found(detail::GainFrom from, Workspace& w) const {
     w.difference_.compare(free_, from);
     mark(w);
@@ -270,7 +277,7 @@ class ContactByDifference {
     return result;
   }
 
-  /// Whether less than half of what is known of the border differs.
+  /// Whether less than half of the known border cells differ.
   bool is_border_free(const Workspace& w) const {
     const detail::PaddedCells<S>& length = w.difference_.length();
     Index differs = 0;
@@ -282,7 +289,7 @@ class ContactByDifference {
     return 2 * differs < known;
   }
 
-  /// Cells above the threshold, opened and closed.
+  /// Marks the cells above the threshold, then opens and closes the mask.
   void mark(Workspace& w) const {
     const S threshold = S(threshold_);
     const detail::PaddedCells<S>& length = w.difference_.length();
@@ -297,8 +304,8 @@ class ContactByDifference {
     w.closing_(w.mask_);
   }
 
-  /// Fills holes, which is what is not contact and does not reach the image's edge, and drops
-  /// small regions. Returns how many are left.
+  /// Fills holes (regions without contact that do not reach the image's edge) and drops small
+  /// regions. Returns the number of regions left.
   Index fill_and_drop(Workspace& w) const {
     using detail::Mark;
     using Region = detail::Regions::Region;
@@ -335,7 +342,8 @@ class ContactByDifference {
     });
   }
 
-  /// A row of cells as a row of pixels in the workspace, then that to each of its rows of pixels.
+  /// Writes the mask: expands each row of cells to a row of pixels in the workspace, and copies
+  /// this to every row of pixels that the cells cover.
   template <class To>
   void write(Workspace& w, const To& to) const {
     using Cell = cell_t<To>;

@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 // Area and center of a contact from its mask and the depths, in any scalar. ContactRegion already
-// measures every frame in double; use this for your own masks, and for derivatives by camera and
-// depth.
+// measures every frame in double; use this for your own masks, and for derivatives with respect to
+// camera and depth.
 #include "fingerpad/core/dots.hpp"
 #include "fingerpad/core/grid.hpp"
 #include "fingerpad/core/scalar.hpp"
@@ -12,19 +12,20 @@
 namespace fingerpad {
 inline namespace v0 {
 
-/// Area and center of a contact. Without a pixel the area is 0 and the center NaN.
+/// Area and center of a contact. If no pixel counts, the area is 0 and the center NaN.
 template <scalar S>
 struct [[nodiscard]] ContactMeasures {
   S area_mm2 = S(0);  ///< projected on the plate
   Point3<S> center_mm = {not_a_number<S>(), not_a_number<S>(),
                          not_a_number<S>()};  ///< centroid of that area
-  Index pixels = 0;                           ///< in contact and with a depth
+  Index pixels = 0;                           ///< pixels in contact that have a depth
 };
 
-/// Sums the area that each pixel in contact covers at its depth, from the differences of its
-/// neighbours' points; a neighbour without depth is assumed to be as deep. Linear in the
-/// differences along each axis, so that noise does not add up. Grids of different sizes have no
-/// contact, and an image of a single row or column has no area. O(rows cols); allocates nothing.
+/// Measures a contact: its area is the sum of the areas that its pixels cover at their depths,
+/// projected on the plate. The area of a pixel follows from the differences of its neighbours'
+/// points; a neighbour without depth is taken to be as deep as the pixel. It is linear in the
+/// differences along each axis, so that noise does not accumulate. Grids of different sizes, and
+/// images of a single row or column, give no pixels and no area. O(rows cols); allocates nothing.
 template <template <class> class CameraType, scalar S, contact_mask Mask, grid Depth>
 ContactMeasures<S> contact_measures(const CameraType<S>& camera,
                                     const Mask& contact,

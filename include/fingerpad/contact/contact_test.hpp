@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// The parts of the contact test besides the curvature statistic: the threshold, the smallest
-// region, and the place of the edge.
+// Parameters of the contact test besides the curvature statistic: the threshold, the smallest
+// region, and where the edge is placed.
 #include "fingerpad/core/expects.hpp"
 #include "fingerpad/core/grid.hpp"
 #include "fingerpad/core/scalar.hpp"
@@ -13,16 +13,16 @@ inline namespace v0 {
 
 /// The test for contact: a curvature statistic below the threshold.
 struct ContactTest {
-  /// delta. Half the curvature of the free pad is a good choice: 1/40 per mm for the published pad
-  /// of 20 mm radius. calibrate/contact.hpp measures it. Finite, > 0.
+  /// delta in the sources. Half the curvature of the free pad is a good choice: 1/40 per mm for the
+  /// published pad of 20 mm radius. calibrate/contact.hpp measures it. Finite, > 0.
   double threshold_per_mm = 0.025;
-  double free_apex_mm = 13;  ///< height of the free pad; contact depth counts from it; finite
+  double free_apex_mm = 13;  ///< height of the free pad, from which contact depth counts; finite
   CurvatureRing ring = {};
   Index min_region_px = 200;  ///< smaller regions are dropped: noise makes specks of about half a
                               ///< ring's radius. >= 1; 1 drops none
 };
 
-/// Refuses what has no meaning (parameter_error).
+/// Refuses values out of range (parameter_error).
 inline void expects_valid(const ContactTest& test) {
   expects(is_finite(test.threshold_per_mm) && test.threshold_per_mm > 0, "ContactTest",
           "threshold_per_mm", test.threshold_per_mm, "finite and > 0");
@@ -48,7 +48,7 @@ struct HalfLevelEdge {
 };
 
 inline void expects_valid(const AtThreshold&) {}
-/// Refuses what has no meaning (parameter_error).
+/// Refuses values out of range (parameter_error).
 inline void expects_valid(const HalfLevelEdge& edge) {
   expects(edge.touching_gap_mm >= 0 && edge.touching_gap_mm <= 1, "HalfLevelEdge",
           "touching_gap_mm", edge.touching_gap_mm, "in [0, 1]");

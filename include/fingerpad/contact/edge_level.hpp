@@ -1,16 +1,20 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// The level that the mean curvature, measured on a ring, has at the edge of contact.
+// The mean curvature that a ring measures at the edge of contact. HalfLevelEdge ends the contact
+// region at this level.
 //
 // A membrane without stiffness leaves an object tangentially: at the edge its slope is that of the
 // object, and its mean curvature jumps from the object's (inside) to the free membrane's (outside).
-// Across a straight edge the gap between the two opens as
-//   gap(s) = (outside - inside) s^2                (all of the jump is in the section across it)
-// and the mean over all sections of a ring of radius r, centered at s >= 0 outside the edge, is
+// All of the jump is in the section across the edge. At the distance s from a straight edge the gap
+// between membrane and object is
+//   gap(s) = (outside - inside) s^2
+// A ring of radius r, centered at s >= 0 outside a straight edge, measures as the mean over all its
+// sections
 //   inside + q (outside - inside),  q = 1 + (2/pi) [(3/2) sigma sin(phi) - phi (1/2 + sigma^2)]
-// with sigma = s / r, cos(phi) = sigma: one half on the edge itself, 1 from sigma = 1 on. The edge
-// of a round patch of radius R curves away from the ring, which adds 2 r / (9 pi R) to first order.
+// with sigma = s / r, cos(phi) = sigma. q is 1/2 on the edge and 1 from sigma = 1 on. The edge of a
+// round patch of radius R curves away from the ring, which adds 2 r / (9 pi R) to q, to first
+// order.
 #include <cmath>
 
 #include "fingerpad/core/scalar.hpp"
@@ -18,8 +22,8 @@
 namespace fingerpad {
 inline namespace v0 {
 
-/// q: share of the jump that a ring sees at `offset` outside a straight edge, in radii of the ring.
-/// Inside it is what the other side lacks: q(-offset) = 1 - q(offset).
+/// q: the share of the jump that a ring measures if its center lies `offset` ring radii outside a
+/// straight edge. For a center inside, q(-offset) = 1 - q(offset).
 template <scalar S>
 S edge_share(const S& offset) {
   using std::acos;
@@ -36,9 +40,9 @@ S edge_share(const S& offset) {
   return S(S(1) + bracket * S(0.63661977236758134308));
 }
 
-/// The curvature in 1/mm at which the region ends, so that what is nearer than `gap_mm` to the
-/// object lies inside. Needs outside > inside; ring and patch radius in mm, > 0; `spread_mm` is the
-/// distance of the pixels of which SparseMean takes the mean, 0: none taken.
+/// The mean curvature in 1/mm at which the contact region ends. Membrane nearer than `gap_mm` to
+/// the object then counts as contact. Needs outside > inside; radii of ring and patch in mm, > 0.
+/// `spread_mm` is the distance between the pixels that SparseMean averages; 0: no averaging.
 template <scalar S>
 S edge_level(const S& inside_per_mm,
              const S& outside_per_mm,

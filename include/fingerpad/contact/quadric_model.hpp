@@ -1,17 +1,17 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// The quadric nearest to a patch, with its principal curvatures. About the patch's centroid, w
-// along the normal of its best plane, u and v in that plane:
+// The quadric that fits a patch best, with its principal curvatures. Its frame has the origin at
+// the patch's centroid, w along the normal of the best plane, and u and v in that plane:
 //
 //   w = a + b u + c v + d u^2 + e u v + f v^2 + g w^2
 //
-// Without g (a paraboloid) the curvature of a cap of radius A on a sphere of radius R comes out too
-// large by about A^2 / (4 R^2). So g is tied to d, e, f: with the curvatures k1, k2 that these
-// give, g = (k1^3 + k2^3) / (k1^2 + k2^2) / 2, which makes spheres and cylinders exact, is 0 for a
-// saddle that bends both ways alike, and lets |grad| be nearly 1, so that least squares are those
-// of the distance. As w^2 only adds a second right side, g is iterated without another look at the
-// points.
+// Without g (a paraboloid) the curvature of a cap of radius A on a sphere of radius R is too large
+// by a share of about A^2 / (4 R^2). Therefore g is set from d, e, f: with the curvatures k1, k2
+// that these give, g = (k1^3 + k2^3) / (k1^2 + k2^2) / 2. This g makes spheres and cylinders exact
+// and is 0 for a saddle that bends both ways alike. It also keeps |grad| close to 1, so that least
+// squares minimise the distance. As w^2 only adds a second right side, g is found by iteration
+// without another pass over the points.
 #include <array>
 #include <cmath>
 #include <cstddef>
@@ -25,19 +25,19 @@
 namespace fingerpad {
 inline namespace v0 {
 
-/// A quadric in mm, in a frame of its own, and how it bends at the patch's center. Curvatures are
-/// positive where the object is convex; the first is the larger in size. Standard errors hold for
-/// pixels whose errors are independent (see SurfaceFit).
+/// A quadric in mm in its own frame, with its principal curvatures at the patch's center.
+/// Curvatures are positive where the object is convex; the first is larger in magnitude. Standard
+/// errors hold for pixels with independent errors (see SurfaceFit).
 template <scalar S = double>
 struct Quadric {
-  S curvature_1_per_mm = not_a_number<S>();            ///< principal curvature, larger in size
-  S curvature_2_per_mm = not_a_number<S>();            ///< the other; 0 for a cylinder
-  Point3<S> direction_1 = detail::missing_point<S>();  ///< unit vector in which it bends so
+  S curvature_1_per_mm = not_a_number<S>();            ///< principal curvature, larger in magnitude
+  S curvature_2_per_mm = not_a_number<S>();            ///< the other one; 0 for a cylinder
+  Point3<S> direction_1 = detail::missing_point<S>();  ///< unit vector of the first curvature
   Point3<S> direction_2 =
-      detail::missing_point<S>();                   ///< the same for the other: a cylinder's axis
-  Point3<S> point_mm = detail::missing_point<S>();  ///< on it, along w from the centroid
-  Point3<S> normal = detail::missing_point<S>();    ///< there; unit vector toward the object
-  S curvature_1_sd_per_mm = not_a_number<S>();      ///< standard errors
+      detail::missing_point<S>();  ///< unit vector of the second one: a cylinder's axis
+  Point3<S> point_mm = detail::missing_point<S>();  ///< point of it, along w from the centroid
+  Point3<S> normal = detail::missing_point<S>();    ///< normal there; unit vector toward the object
+  S curvature_1_sd_per_mm = not_a_number<S>();      ///< standard errors of both
   S curvature_2_sd_per_mm = not_a_number<S>();
 
   Point3<S> origin_mm = detail::missing_point<S>();  ///< centroid of the patch
@@ -49,8 +49,8 @@ struct Quadric {
 
   S mean_curvature_per_mm() const { return S(S(0.5) * (curvature_1_per_mm + curvature_2_per_mm)); }
 
-  /// Signed distance of p from the quadric, mm, to first order in it; positive on the side away
-  /// from the object.
+  /// Signed distance of p from the quadric, mm, to first order in the distance; positive on the
+  /// side away from the object.
   S stands_out(const Point3<S>& p) const {
     using std::sqrt;
     const auto& [a, b, c, d, e, f] = coefficients;
@@ -89,7 +89,8 @@ Quadric<To> cast(const Quadric<From>& q) {
 
 namespace detail {
 
-/// The monomials of u and v to fourth order, and those with w that the normal equations need.
+/// Sums for the normal equations: the monomials of u and v to fourth order, and the products with w
+/// that the right sides need.
 template <scalar S>
 struct QuadricKernel {
   static constexpr std::size_t sums = 28;
@@ -111,7 +112,7 @@ struct QuadricKernel {
   }
 };
 
-/// Eigenvalues of {p, q; q, r}, the larger in size first, and the direction (cos, sin) of the
+/// Eigenvalues of {p, q; q, r}, the larger in magnitude first, and the direction (cos, sin) of the
 /// first.
 template <scalar S>
 struct Eigen2 {
@@ -135,7 +136,7 @@ struct Eigen2 {
   }
 };
 
-/// What ties g to the curvatures of d, e, f.
+/// g as a function of d, e, f, through the curvatures that they give.
 template <scalar S>
 S tied_g(const std::array<S, 6>& c) {
   const S twice_d = c[3] + c[3];
@@ -149,7 +150,7 @@ S tied_g(const std::array<S, 6>& c) {
   return S(S(0.5) * k.first * (S(1) + ratio * ratio_sq) / (S(1) + ratio_sq));
 }
 
-/// How a Quadric is fitted.
+/// Fits a Quadric to a patch.
 struct QuadricModel {
   static constexpr int unknowns = 6;
   template <scalar S>
@@ -173,7 +174,8 @@ struct QuadricModel {
   }
 
   /// The quadric of a patch, and the mean square distance from it. `add_up(kernel)` gives the sums
-  /// of a kernel over the points relative to the patch's centroid.
+  /// of a kernel over the points relative to the patch's centroid. False if the points do not
+  /// determine it.
   template <scalar S, class AddUp>
   static bool fit(const PatchMoments<S>& patch,
                   const AddUp& add_up,
@@ -215,8 +217,8 @@ struct QuadricModel {
   }
 
  private:
-  /// Finds g and with it the coefficients: each round brings them nearer by the square of the
-  /// patch's angle on the object.
+  /// Finds g and the coefficients by iteration: each round multiplies the error by about the square
+  /// of the angle that the patch spans on the object.
   template <scalar S>
   static void tie(const std::array<S, 6>& c_w, const std::array<S, 6>& c_w_sq, Quadric<S>& q) {
     q.coefficients = c_w;
@@ -234,8 +236,9 @@ struct QuadricModel {
     }
   }
 
-  /// Principal curvatures at the centroid's foot: the quadric as F = w - g w^2 - ... = 0 bends by
-  /// t^T (Hessian of -F) t / |grad F| along a tangent t.
+  /// Principal curvatures at the point of the quadric along w from the centroid. The quadric
+  /// F = w - g w^2 - ... = 0 has the curvature t^T (Hessian of -F) t / |grad F| along a unit
+  /// tangent t.
   template <scalar S>
   static void bend(const NormalEquations<S, 6>& equations, const S& variance, Quadric<S>& quadric) {
     using std::sqrt;

@@ -1,14 +1,15 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// The sphere nearest to a patch, in numbers that pass through flatness: the point of it that is
-// nearest to the patch's centroid, its normal there, and its curvature.
+// The plane and the sphere that fit a patch best. The sphere is described by numbers that remain
+// finite when it becomes flat: its point nearest to the patch's centroid, the normal n there, and
+// its curvature k. The signed distance from it is
 //
-//   distance along the normal:  d = (1 - s) / k,  s = sqrt(1 - 2 k Q),  Q = n.q - k |q|^2 / 2
+//   d = (1 - s) / k,  s = sqrt(1 - 2 k Q),  Q = n.q - k |q|^2 / 2
 //
-// with q from the point on the sphere. At k = 0 it is the plane n.q. Start: least squares of Q up
-// to a factor (linear; Q is d but for a share k d / 2, as in Pratt's algebraic fit); then one
-// Gauss-Newton step on d.
+// with q measured from that point of the sphere. At k = 0 it is n.q, as for a plane. The fit starts
+// with least squares of Q up to a factor, which are linear (Q differs from d by a share of k d / 2,
+// as in Pratt's algebraic fit). One Gauss-Newton step on d follows.
 #include <array>
 #include <cmath>
 #include <cstddef>
@@ -21,17 +22,17 @@
 namespace fingerpad {
 inline namespace v0 {
 
-// The plane nearest to a patch: orthogonal regression, from the moments alone.
+// The plane that fits a patch best: orthogonal regression, from the moments alone.
 
-/// A plane in mm. Standard errors hold for pixels whose errors are independent (see SurfaceFit).
+/// A plane in mm. Standard errors hold for pixels with independent errors (see SurfaceFit).
 template <scalar S = double>
 struct Plane {
-  Point3<S> normal = detail::missing_point<S>();     ///< unit vector toward the object
-  S distance_mm = not_a_number<S>();                 ///< of the origin from it: normal . p
+  Point3<S> normal = detail::missing_point<S>();  ///< unit vector toward the object
+  S distance_mm = not_a_number<S>();              ///< from the origin along the normal: normal . p
   Point3<S> center_mm = detail::missing_point<S>();  ///< centroid of the patch, on the plane
   S distance_sd_mm = not_a_number<S>();              ///< standard error along the normal, at the
                                                      ///< center
-  S tilt_sd_rad = not_a_number<S>();                 ///< of the normal, where it is least certain
+  S tilt_sd_rad = not_a_number<S>();  ///< of the normal, in its least certain direction
 
   /// Signed distance of p from the plane, mm; positive away from the object.
   S stands_out(const Point3<S>& p) const { return S(-dot(normal, p - center_mm)); }
@@ -44,7 +45,7 @@ Plane<To> cast(const Plane<From>& p) {
 
 namespace detail {
 
-/// How a Plane is fitted.
+/// Fits a Plane to a patch.
 struct PlaneModel {
   static constexpr int unknowns = 3;
   template <scalar S>
@@ -58,7 +59,8 @@ struct PlaneModel {
            is_finite(p.distance_sd_mm) && is_finite(p.tilt_sd_rad);
   }
 
-  /// The plane of a patch into `plane`, and the mean square distance from it.
+  /// The plane of a patch, and the mean square distance from it. False if the points do not spread
+  /// in two directions.
   template <scalar S, class AddUp>
   static bool fit(const PatchMoments<S>& patch, const AddUp&, Plane<S>& plane, S& mean_sq) {
     const Eigen3<S> e = eigenvectors(patch.second);
@@ -84,17 +86,17 @@ struct PlaneModel {
 
 }  // namespace detail
 
-/// A sphere in mm, or a plane where the curvature is 0. Standard errors hold for pixels whose
-/// errors are independent (see SurfaceFit).
+/// A sphere in mm, or a plane if the curvature is 0. Standard errors hold for pixels with
+/// independent errors (see SurfaceFit).
 template <scalar S = double>
 struct Sphere {
-  S curvature_per_mm = not_a_number<S>();           ///< > 0: convex object, which dents the pad
-  Point3<S> point_mm = detail::missing_point<S>();  ///< on it, nearest to the patch's centroid
-  Point3<S> normal = detail::missing_point<S>();    ///< there; unit vector toward the object
+  S curvature_per_mm = not_a_number<S>();           ///< > 0: a convex object, which dents the pad
+  Point3<S> point_mm = detail::missing_point<S>();  ///< point of it nearest to the patch's centroid
+  Point3<S> normal = detail::missing_point<S>();    ///< normal there; unit vector toward the object
   S curvature_sd_per_mm = not_a_number<S>();        ///< standard error
 
   bool is_convex() const { return value(curvature_per_mm) > 0; }
-  /// Negative: a hollow object. Infinite where the patch is exactly flat.
+  /// Negative for a hollow object, infinite for an exactly flat patch.
   S radius_mm() const { return S(S(1) / curvature_per_mm); }
   Point3<S> center_mm() const { return point_mm + radius_mm() * normal; }
 
@@ -117,8 +119,9 @@ Sphere<To> cast(const Sphere<From>& s) {
 
 namespace detail {
 
-/// J^T J and J^T d of the distance d, for the point's height along the normal, the normal's turn
-/// toward u and v, and the curvature; last: d^2. Points are relative to the patch's centroid.
+/// Sums of J^T J and J^T d for the Gauss-Newton step on the distance d, and of d^2, which is the
+/// last. The unknowns are the height of the sphere's point along the normal, the normal's rotation
+/// toward u and v, and the curvature. Points are relative to the patch's centroid.
 template <scalar S>
 struct SphereStepKernel {
   static constexpr std::size_t sums = 15;
@@ -133,7 +136,7 @@ struct SphereStepKernel {
     const V w = frame.n.x * x + frame.n.y * y + frame.n.z * z - height;
     const V q_sq = u * u + v * v + w * w;
     const V algebraic = w - S(0.5) * curvature * q_sq;
-    // d as a series in k Q: no square root; what is left out is (k Q)^4 of it
+    // d as a series in k Q, without a square root; the relative error is about (k Q)^4
     const V t = curvature * algebraic;
     const V d = algebraic * (S(1) + t * (S(0.5) + t * (S(0.5) + S(0.625) * t)));
     const V inverse = S(1) / (S(1) - curvature * d);
@@ -149,7 +152,7 @@ struct SphereStepKernel {
   }
 };
 
-/// How a Sphere is fitted.
+/// Fits a Sphere to a patch.
 struct SphereModel {
   static constexpr int unknowns = 4;
   template <scalar S>
@@ -164,7 +167,8 @@ struct SphereModel {
   }
 
   /// The sphere of a patch, and the mean square distance from it. `add_up(kernel)` gives the sums
-  /// of a kernel over the points relative to the patch's centroid.
+  /// of a kernel over the points relative to the patch's centroid. False if the points do not
+  /// determine it.
   template <scalar S, class AddUp>
   static bool fit(const PatchMoments<S>& patch,
                   const AddUp& add_up,
@@ -200,8 +204,8 @@ struct SphereModel {
   }
 
  private:
-  /// Height w of the patch in the frame of its best plane, by least squares of
-  /// w = a + b u + c v + e (u^2 + v^2 + w^2): needs the moments only.
+  /// The start of the fit, from the moments alone: least squares of
+  /// w = a + b u + c v + e (u^2 + v^2 + w^2), with w the height above the best plane.
   template <scalar S>
   static bool algebraic(const PatchMoments<S>& patch, SphereStepKernel<S>& start) {
     using std::sqrt;

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// The law between depth and colour: light is absorbed along its path k l through the red fluid, and
-// in the red channel the fluid also scatters light back from every depth z < l.
+// The law that relates depth and colour. Light is absorbed along its path k l through the red
+// fluid, and in the red channel the fluid also scatters light back from every depth z < l.
 // Source: Ito, Kim, Obinata, "Shape sensing by vision-based tactile sensor" (slides), theory of the
 // intensity of light and modification of equation; printed errors are E001-E005 of docs/errata.md.
 //
@@ -10,8 +10,9 @@
 //   kappa red = green exp(delta k l) + g W(l),  delta = c_green - c_red
 //   W(l) = c_red Int_0^l (z + h_m)(z + h_s) exp(-c_red k z) dz
 //
-// B is the membrane's brightness in green at depth 0, whatever its inclination, colour and dots; it
-// cancels when green is eliminated. Colours are grey levels, lengths mm, g grey levels per mm^2.
+// B is the membrane's brightness in green at depth 0, which depends on its inclination, colour and
+// dots. The second equation does not contain B, so these do not affect the depth. Colours are grey
+// levels, lengths mm, g grey levels per mm^2.
 #include <cmath>
 
 #include "fingerpad/core/expects.hpp"
@@ -28,7 +29,7 @@ struct Absorption {
   S c_green_per_mm = S(336) / S(10000);  ///< c_G, absorption of green, >= c_R
   S kappa =
       S(9924) / S(10000);  ///< alpha_G beta_G / (alpha_R beta_R), light source and camera, > 0
-  S max_depth_mm = S(14);  ///< the largest depth that is searched, > 0
+  S max_depth_mm = S(14);  ///< the largest depth searched, > 0
 };
 
 /// Refuses impossible values (parameter_error).
@@ -54,7 +55,7 @@ Absorption<To> cast(const Absorption<From>& f) {
 template <scalar S = double>
 struct Pencil {
   S path_factor;                     ///< k = 1 + 1/cos(phi_fluid), >= 2
-  detail::VirtualHeights<S> height;  ///< of the points from which it appears to come
+  detail::VirtualHeights<S> height;  ///< of the points from which the light appears to come
 };
 
 /// The pencil of a ray, with one of the height policies of optics/camera.hpp.
@@ -73,9 +74,10 @@ struct ExponentialMoments {
   S second;
 };
 
-/// The moments for t >= 0, to a few epsilon everywhere. Below t = 4 the second comes from a series
-/// of positive terms and the others by the recurrence downward, so nothing cancels however small t
-/// is; from there on the recurrence upward loses nothing. At most 80 terms in 50 digits.
+/// The moments for t >= 0, with an error of a few epsilon everywhere. Below t = 4 the second moment
+/// is a series of positive terms and the others follow by downward recurrence, so that nothing
+/// cancels even at small t. From t = 4 on, upward recurrence loses no digits. At most 80 terms in
+/// 50 digits.
 template <scalar S>
 ExponentialMoments<S> exponential_moments(const S& t) {
   using std::exp;
@@ -102,7 +104,8 @@ ExponentialMoments<S> exponential_moments(const S& t) {
 
 /// W(l): light scattered back by the fluid between the plate and depth l >= 0, in mm^2, for any
 /// c >= 0 (W = 0 at c = 0). Relative error <= 4 epsilon for c in [1e-6, 1] per mm. The published
-/// form Q1 (1 - E) + Q2 cancels to nothing at small c l; this sum has positive terms only.
+/// form Q1 (1 - E) + Q2 loses all digits to cancellation at small c l; this sum has positive terms
+/// only.
 template <scalar S>
 S scattered_light(const S& depth_mm, const S& c_per_mm, const Pencil<S>& pencil) {
   const S t = c_per_mm * (pencil.path_factor * depth_mm);

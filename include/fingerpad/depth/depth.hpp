@@ -38,7 +38,7 @@ inline namespace v0 {
 enum class DepthStatus : std::uint8_t {
   ok,
   pad_has_changed,  ///< depths were written, but the rim of the pad is more than 5 % lighter or
-                    ///< darker than in the reference, or mostly without light: another lamp or
+                    ///< darker than in the reference, or mostly dark or saturated: another lamp or
                     ///< gain, an aged membrane, another pixel layout. Take a new reference.
   refused,          ///< a grid or the memory given with it has another size: nothing was written
 };
@@ -52,11 +52,11 @@ constexpr const char* name_of(DepthStatus status) {
 /// The outcome of a frame, or of a band of its rows.
 struct [[nodiscard]] DepthResult {
   DepthStatus status = DepthStatus::refused;
-  Index pad_pixels = 0;  ///< pixels at which the reference knows the pad
+  Index pad_pixels = 0;  ///< pixels with a depth and g > 0 in the reference
   std::array<Index, pixel_status_count> count = {};  ///< pixels by PixelStatus
-  Index rim_pixels = 0;  ///< pixels near the rim whose light was compared with the reference's
+  Index rim_pixels = 0;  ///< pixels near the rim whose light was compared with the reference
   Index rim_lit = 0;     ///< those of them that are neither dark nor saturated
-  double rim_light = not_a_number<double>();  ///< their mean green, as a share of the reference's
+  double rim_light = not_a_number<double>();  ///< their mean green over that of the reference
 
   bool ok() const { return status == DepthStatus::ok; }
   Index valid_pixels() const { return count[static_cast<std::size_t>(PixelStatus::ok)]; }
@@ -84,14 +84,15 @@ struct [[nodiscard]] DepthResult {
   static double light_of(const DepthResult& r) {
     return r.rim_lit > 0 ? static_cast<double>(r.rim_lit) * r.rim_light : 0;
   }
-  /// Printed dots that wander leave 1 % of a thousand samples, and 4 % of 64.
+  /// Compares the light at the rim with the reference. Displaced printed dots change it by 1 % with
+  /// a thousand samples and by 4 % with 64; with fewer than 64 rim pixels the status is ok.
   void judge() {
     const bool same = 2 * rim_lit >= rim_pixels && std::abs(rim_light - 1) <= 0.05;
     status = same || rim_pixels < 64 ? DepthStatus::ok : DepthStatus::pad_has_changed;
   }
 };
 
-/// Depth of every pixel of a frame, in the scalar S.
+/// Computes the depth of every pixel of a frame, in the scalar S.
 ///   Smoothing  BiasFreeMean       the default; use it for curved contacts
 ///              AnchoredMean       use it when time matters and contacts are flat
 ///              NoSmoothing        use it for frames without noise
@@ -155,7 +156,7 @@ class DepthEstimator {
     return Workspace<Pixel>(*this, scale);
   }
 
-  /// Depth of a frame in mm from its red and green channel; NaN where there is none.
+  /// Depth of a frame in mm from its red and green channels; NaN where there is none.
   template <grid Red, grid Green, class Depth, class Pixel>
   DepthResult operator()(const Red& red,
                          const Green& green,
@@ -283,7 +284,7 @@ class DepthEstimator {
     }
   }
 
-  /// Counts the row's pixels by status, and tells for those without a colour why they have none.
+  /// Counts the row's pixels by status, and finds out why pixels without a colour have none.
   template <class Red, class Green, class Pixel>
   void explain(Index row,
                const Red& red,

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// Depth of one pixel from its colour: the root of the depth equation F(l) = 0 in [0, max_depth],
-// by Newton's method for any number, or by polynomials for whole rows of float or double.
+// Depth of one pixel from its colour: the root of the depth equation F(l) = 0 in [0, max_depth]. It
+// is found by Newton's method in any scalar, or by polynomials for whole rows of float or double.
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -16,8 +16,8 @@ inline namespace v0 {
 /// The outcome at a pixel. If the status is not `ok`, the depth is NaN; it is never clamped.
 enum class PixelStatus : std::uint8_t {
   ok = 0,            ///< the depth is valid
-  below_range = 1,   ///< the colours ask for a depth below zero
-  above_range = 2,   ///< the colours ask for a depth above max_depth_mm
+  below_range = 1,   ///< the colours correspond to a depth below 0
+  above_range = 2,   ///< the colours correspond to a depth above max_depth_mm
   not_a_number = 3,  ///< a colour is NaN or infinite
   dark = 4,          ///< a colour is at or below the dark limit
   saturated = 5,     ///< a colour is at or above the saturation limit
@@ -34,7 +34,8 @@ struct DepthRoot {
 
 namespace detail {
 
-/// Why there can be no root in [0, max_depth], or ok. F rises, so two signs decide.
+/// Whether there is a root in [0, max_depth] (ok), and if not, why. F rises, so its signs at both
+/// ends decide.
 template <scalar S>
 PixelStatus range_of_root(const Absorption<S>& fluid,
                           const Pencil<S>& pencil,
@@ -53,10 +54,11 @@ PixelStatus range_of_root(const Absorption<S>& fluid,
 
 }  // namespace detail
 
-/// Newton's method on F from `start_mm` (last frame's depth, or 0), kept inside the bracket around
-/// the root that the signs of F give. Converges to the roundoff of F: <= 1e-12 mm in double for
-/// depths up to 14 mm. Five steps are typical from 0, four from last frame; 60 at most. A dual
-/// number gets the exact derivative of the root with respect to whatever is seeded.
+/// Newton's method on F from `start_mm` (the depth in the last frame, or 0). Every step stays
+/// inside the bracket around the root that the signs of F give. Converges to the roundoff of F:
+/// <= 1e-12 mm in double for depths up to 14 mm. Five steps are typical from 0, four from the last
+/// frame; 60 at most. A dual number gets the exact derivative of the root with respect to whatever
+/// is seeded.
 template <scalar S>
 DepthRoot<S> newton_depth(const Absorption<S>& fluid,
                           const Pencil<S>& pencil,
@@ -109,8 +111,9 @@ inline void expects_valid(const Newton&) {}
 ///           each factor 2 and a Halley step for each factor 3
 ///   Degree  of the polynomials in depth, Radial of those in rho^2
 /// For depths up to 14 mm of the published fluid <2, 5> stays below 1e-4 mm and is the fastest; the
-/// default stays below 1e-5 mm; <3, 6, 4> suits wide-angle cameras and strongly varying g; <9, 12,
-/// 8> in double stays below 1e-12 mm. A sensor for which the polynomials miss 0.005 mm is refused.
+/// default stays below 1e-5 mm; <3, 6, 4> suits wide-angle cameras and strongly varying g;
+/// <9, 12, 8> in double stays below 1e-12 mm. A sensor for which the error of the polynomials
+/// exceeds 0.005 mm is refused.
 template <int Order = 3, int Degree = 6, int Radial = 3>
 struct ExponentialFree {};
 

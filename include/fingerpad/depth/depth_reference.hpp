@@ -1,11 +1,11 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// The reference of the depth model, from one frame of the free pad whose shape is known: which
-// pixels see the pad, and how strongly the fluid scatters, g. The published quotient per pixel,
-// g = (kappa red - green exp(delta k l)) / W, is useless at the rim, where W vanishes. But g
-// depends only on the ray's angle, so it is fitted as a polynomial in rho^2 by least squares on the
-// depth equation itself, which is linear in the coefficients and nowhere 0/0.
+// The reference of the depth model: which pixels see the pad, and how strongly the fluid scatters
+// light, g. Both come from one frame of the free pad, whose shape is known. The published quotient
+// per pixel, g = (kappa red - green exp(delta k l)) / W, is useless at the rim, where W vanishes.
+// But g depends only on the ray's angle. Therefore it is fitted as a polynomial in rho^2 by least
+// squares on the depth equation itself, which is linear in the coefficients and nowhere 0/0.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -24,8 +24,8 @@
 namespace fingerpad {
 inline namespace v0 {
 
-/// How stored intensities relate to grey levels 0..255, and which of them carry no information: a
-/// pixel counts only where both its channels lie strictly between the two limits.
+/// Relation of stored intensities to grey levels 0..255, and the limits beyond which they carry no
+/// information. A pixel counts only if both its channels lie strictly between the two limits.
 struct GreyScale {
   double units_per_level = 1;  ///< stored units in one grey level: 1 for 8 bit, 256 for 16 bit
   double dark = 0;             ///< in stored units
@@ -54,7 +54,7 @@ struct RadialScattering {
   static constexpr bool is_radial = true;
   std::array<S, static_cast<std::size_t>(Degree) + 1> coefficient =
       detail::zeros<S, static_cast<std::size_t>(Degree) + 1>();  ///< of 1, v, v^2, ...
-  S rho_max_mm = S(1);  ///< farthest pixel of the fit, on the plate
+  S rho_max_mm = S(1);  ///< distance from the axis of the farthest pixel of the fit, on the plate
 
   S at(const S& rho_sq_mm2) const {
     const S v = rho_sq_mm2 / (rho_max_mm * rho_max_mm);
@@ -71,8 +71,8 @@ struct RadialScattering {
   RadialScattering sampled(Index, Index, int) const { return *this; }
 };
 
-/// The free pad as the depth estimator needs it. The type includes the height policy with which g
-/// was fitted, so that the estimator uses the same one.
+/// The free pad, in the form that the depth estimator needs. The type includes the height policy
+/// with which g was fitted, so that the estimator uses the same one.
 template <scalar S, class Scattering = RadialScattering<S>, class Heights = AstigmaticHeights>
 struct DepthReference {
   Index rows = 0;
@@ -81,8 +81,8 @@ struct DepthReference {
   Scattering scattering;
   Index pixels_used = 0;
   S residual_rms = S(0);  ///< of the depth equation at the known depths, grey levels
-  S rim_green = S(0);     ///< mean green near the rim, grey levels, with which frames are compared
-                          ///< to detect a changed light; 0: not known
+  S rim_green = S(0);     ///< mean green near the rim, grey levels; frames are compared with it to
+                          ///< detect changed light. 0: unknown
 
   const S& depth(Index row, Index col) const {
     return depth_mm[static_cast<std::size_t>(row * cols + col)];
@@ -92,7 +92,7 @@ struct DepthReference {
 
 namespace detail {
 
-/// A cell of a grid in the scalar C; integers and floats by way of double, which holds them all.
+/// Converts a cell of a grid to the scalar C. Integers and floats go through double.
 template <scalar C, class Cell>
 C in_scalar(const Cell& cell) {
   if constexpr (std::is_floating_point_v<C>) {
@@ -145,7 +145,7 @@ void visit_reference(const Camera<C>& camera,
   }
 }
 
-/// Least squares of known = g(rho) scattered over the powers of v; in double, the cubic that is
+/// Least squares of known = g(rho) scattered over the powers of v. In double, the cubic that is
 /// needed is far from losing digits. Refuses data that do not determine g.
 template <scalar C, scalar S, int Degree, class Heights, class VisitAll>
 void fit_scattering(const VisitAll& visit_all,
@@ -193,9 +193,10 @@ void fit_scattering(const VisitAll& visit_all,
   reference.residual_rms = value(left_sq) > 0 ? S(C(sqrt(C(left_sq / count)))) : S(0);
 }
 
-/// The free pad's shape: its deepest point within range, its pixels, how many of them lie at depth
-/// 0, how far their centroid is from the optical axis, in radii of a disc of their number, and
-/// which share of those in the middle lies beyond max_depth_mm.
+/// Shape of the free pad, to detect mistakes. `deepest_mm` is its deepest point within range,
+/// `pixels` the number of its pixels, and `at_zero` how many of them lie at depth 0. `off_axis` is
+/// the distance of their centroid from the optical axis, in radii of a disc of as many pixels.
+/// `too_deep` is the share of the pixels in the middle that lie beyond max_depth_mm.
 struct FreePadShape {
   double deepest_mm = 0;
   double pixels = 0;
@@ -234,7 +235,7 @@ FreePadShape shape_of_free_pad(const Camera<C>& camera,
         reaches_border || i == 0 || j == 0 || i + 1 == depth_mm.rows() || j + 1 == depth_mm.cols();
   });
   const double radius_sq = shape.pixels / 3.14159265358979;
-  // else part of the pad is not seen, and its center not known, or there is no pad at all
+  // else part of the pad is not seen and its center is unknown, or there is no pad at all
   if (!reaches_border && shape.pixels >= 100) {
     shape.off_axis =
         std::sqrt((square(sum_x) + square(sum_y)) / (radius_sq * square(shape.pixels)));
@@ -252,11 +253,11 @@ FreePadShape shape_of_free_pad(const Camera<C>& camera,
   return shape;
 }
 
-/// Refuses shapes that no free pad has, with the likely mistake.
+/// Refuses shapes that no free pad has, and names the likely mistake.
 inline void expects_free_pad(const FreePadShape& shape, double max_depth_mm) {
   constexpr const char* owner = "fit_reference";
   if (shape.pixels == 0) {
-    return;  // told by the fit
+    return;  // the fit reports it
   }
   expects(shape.too_deep <= 0.5, owner, "share of the pad's middle beyond max_depth_mm",
           shape.too_deep, "<= 0.5: raise max_depth_mm, or give mm");
@@ -268,8 +269,9 @@ inline void expects_free_pad(const FreePadShape& shape, double max_depth_mm) {
           shape.off_axis, "<= 0.25: camera.center_x_px, center_y_px are not those of this image");
 }
 
-/// Refuses scatterings that no fluid has: g is that of one fluid, and a lens darkens toward the rim
-/// by less than half. Noise of the three grey levels that a poor camera has leaves a residual of 5.
+/// Refuses a g that no fluid has. The pad holds one fluid, and a lens darkens toward the rim by
+/// less than half, so g may vary by a factor of 2 at most. The limit of the residual, 5 grey
+/// levels, is what a poor camera with a noise of three grey levels leaves.
 template <scalar C, scalar S, int Degree, class Heights>
 void expects_scattering(const Camera<C>& camera,
                         const DepthReference<S, RadialScattering<S, Degree>, Heights>& reference) {
@@ -297,12 +299,13 @@ void expects_scattering(const Camera<C>& camera,
           "<= 5: do red, green and depth_mm show the same free pad?");
 }
 
-/// Depth up to which a pixel of a free pad counts as near the rim: a press hardly moves it.
+/// Depth up to which a pixel of the free pad counts as near the rim, where a press hardly moves it.
 inline double rim_depth_mm(double deepest_mm) {
   return 0.2 * deepest_mm;
 }
 
-/// A reference without its scattering: the free pad's depth. Refuses what has no meaning.
+/// The reference without its scattering: the depth of the free pad and the light near its rim.
+/// Refuses values out of range and shapes that no free pad has (parameter_error).
 template <class Reference, scalar S, scalar C, class Red, class Green, class Depth>
 Reference free_pad(const Camera<C>& camera,
                    const Absorption<C>& fluid,
@@ -348,11 +351,11 @@ Reference free_pad(const Camera<C>& camera,
 
 }  // namespace detail
 
-/// The reference from one frame of the free pad and its depth along each pixel's ray in mm, NaN
-/// outside the pad. An average of many frames is better: store it as 16 bit or float. Refuses grids
-/// of different sizes, data that do not determine g, and shapes that no free pad has, and names the
-/// likely mistake (parameter_error). If camera and fluid are of dual numbers and S is that dual
-/// number, g carries the derivatives. O(rows cols); allocates.
+/// Finds the reference from one frame of the free pad and its depth along each pixel's ray in mm,
+/// NaN outside the pad. An average of many frames is better: store it as 16 bit or float. Refuses
+/// grids of different sizes, data that do not determine g, and shapes that no free pad has, and
+/// names the likely mistake (parameter_error). If camera and fluid consist of dual numbers and S is
+/// that dual number, g carries the derivatives. O(rows cols); allocates.
 template <class Heights = AstigmaticHeights,
           scalar S = float,
           scalar C,

@@ -1,13 +1,13 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// Depth of one-channel pads (DTact, 9DTact): a translucent gel over a dark back, which darkens
-// where something presses it thin. How deep it is pressed follows from the logarithm of the free
-// pad's brightness over that of now,
+// Depth of one-channel pads (DTact, 9DTact). Such a pad is a translucent gel over a dark back,
+// which darkens where an object presses the gel thin. The indentation follows from the logarithm of
+// the ratio of the free pad's brightness to the present brightness,
 //   depth = a l + b l^2 + c l^3,   l = ln(free / now),
-// the first term alone by Beer and Lambert (Lin et al., "9DTact", 2023, use a table instead). The
-// ratio takes the lamp out, pixel by pixel; a difference does not. calibrate/intensity.hpp finds
-// a, b and c from presses of a ball.
+// where the first term alone is the law of Beer and Lambert (Lin et al., "9DTact", 2023, use a
+// table instead). The ratio cancels the lamp pixel by pixel; a difference does not.
+// calibrate/intensity.hpp finds a, b and c from presses of a ball.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -27,12 +27,12 @@
 namespace fingerpad {
 inline namespace v0 {
 
-/// How depth follows from the logarithm of the ratio, in mm.
+/// Coefficients of the law in mm: depth as a polynomial of the logarithm.
 template <scalar S = double>
 struct IntensityLaw {
-  S linear_mm = S(3);  ///< of the logarithm, > 0
-  S square_mm = S(0);  ///< of its square, finite
-  S cube_mm = S(0);    ///< of its cube, finite
+  S linear_mm = S(3);  ///< a, factor of the logarithm, > 0
+  S square_mm = S(0);  ///< b, factor of its square, finite
+  S cube_mm = S(0);    ///< c, factor of its cube, finite
 };
 template <scalar S>
 void expects_valid(const IntensityLaw<S>& law) {
@@ -42,7 +42,7 @@ void expects_valid(const IntensityLaw<S>& law) {
   expects(is_finite(law.cube_mm), "IntensityLaw", "cube_mm", law.cube_mm, "finite");
 }
 
-/// The depth at ln(free / now); < 0 where the gel bulges.
+/// The depth in mm at ln(free / now); negative where the gel bulges.
 template <scalar L, scalar S>
 constexpr S pressed_depth_mm(const IntensityLaw<L>& law, const S& log_ratio) {
   const S upper = S(S(law.square_mm) + S(law.cube_mm) * log_ratio);
@@ -50,9 +50,9 @@ constexpr S pressed_depth_mm(const IntensityLaw<L>& law, const S& log_ratio) {
 }
 
 struct IntensityOptions {
-  double smoothing_px = 2;  ///< sd of a Gaussian mean of the logarithms, in [0, 20]; 0: none
-  double dark = 5;          ///< pixels as dark as this say nothing, >= 0
-  double saturated = 255;   ///< pixels as bright as this say nothing, > dark
+  double smoothing_px = 2;  ///< sd of the Gaussian mean of the logarithms, in [0, 20]; 0: none
+  double dark = 5;          ///< pixels as dark as this carry no information, >= 0
+  double saturated = 255;   ///< pixels as bright as this carry no information, > dark
 };
 inline void expects_valid(const IntensityOptions& options) {
   constexpr const char* owner = "IntensityOptions";
@@ -62,24 +62,24 @@ inline void expects_valid(const IntensityOptions& options) {
   expects(options.saturated > options.dark, owner, "saturated", options.saturated, "> dark");
 }
 
-/// What became of a frame. Not of this pad: along half of the frame's edge the light is not that of
-/// the free pad, to 5 %: another lamp, exposure, channel or unit of grey, or an object as large as
-/// the frame.
+/// The outcome of a frame. The status is not_of_this_pad if, along half of the frame's edge, the
+/// light differs from that of the free pad by more than 5 %. The cause is another lamp, exposure,
+/// channel or unit of grey, or an object as large as the frame.
 struct [[nodiscard]] IntensityDepthResult {
   FrameStatus status = FrameStatus::refused;
-  Index valid_px = 0;  ///< with a depth
+  Index valid_px = 0;  ///< pixels with a depth
 
   bool accepted() const { return status != FrameStatus::refused; }
   bool ok() const { return status == FrameStatus::ok; }
 };
 
-/// Depths from frames of one size, whose pixels are numbers: a grey image, or one channel of a
-/// colour image. Const: threads may share one, each with a workspace of its own. No allocation and
-/// bounded time per frame, O(rows cols).
+/// Computes the indentation in frames of one size, whose pixels are numbers: a grey image, or one
+/// channel of a colour image. Threads may share one object, each with its own workspace. A frame
+/// takes bounded time and allocates nothing; O(rows cols).
 template <scalar S = float>
 class IntensityDepth {
  public:
-  /// From a frame of the free pad. Refuses bad parameters (parameter_error).
+  /// Takes a frame of the free pad. Refuses bad parameters (parameter_error).
   template <grid Free, scalar L = double>
   IntensityDepth(const Free& free, const IntensityLaw<L>& law, const IntensityOptions& options = {})
       : law_(checked(law, options)),
@@ -98,7 +98,7 @@ class IntensityDepth {
     }
   }
 
-  /// Memory that one frame at a time needs, taken up front; one per thread.
+  /// Scratch memory for a frame; one per thread.
   class Workspace {
    public:
     explicit Workspace(const IntensityDepth& depth)
@@ -118,8 +118,8 @@ class IntensityDepth {
   };
   Workspace workspace() const { return Workspace(*this); }
 
-  /// Writes how deep the gel is pressed, mm; NaN where there is no answer. The height of the
-  /// surface is the gel's thickness less that.
+  /// Writes the indentation of the gel in mm; NaN where it is unknown. The height of the surface is
+  /// the thickness of the gel minus the indentation.
   template <grid Frame, class Depth>
   IntensityDepthResult operator()(const Frame& frame, Depth&& depth_mm, Workspace& w) const {
     detail::writes_to<Depth, S>();
@@ -139,7 +139,7 @@ class IntensityDepth {
     }
     for (Index i = 0; i < rows_; ++i) {
       for (Index j = 0; j < cols_; ++j) {
-        // a pixel that says nothing itself has no depth, whatever is around it
+        // a pixel without information has no depth, even if its neighbours have one
         S depth = not_a_number<S>();
         if (S(0) < w.weight_(i, j)) {
           const S l = smooth ? S(w.mean_(i, j) / w.share_(i, j)) : w.log_(i, j);
@@ -163,7 +163,7 @@ class IntensityDepth {
     return {S(law.linear_mm), S(law.square_mm), S(law.cube_mm)};
   }
 
-  /// NaN where a level says nothing.
+  /// NaN for levels without information.
   template <class Level>
   S log_of(const Level& level) const {
     using std::log;
@@ -193,8 +193,8 @@ class IntensityDepth {
     }
   }
 
-  /// Whether the frame's edge is as light as on the free pad: in the median, since the object may
-  /// reach it somewhere.
+  /// Whether the frame's edge is as bright as on the free pad. The median decides, because the
+  /// object may reach the edge somewhere.
   bool is_free_at_edge(Workspace& w) const {
     w.edge_.clear();
     const auto add = [&](Index i, Index j) {

@@ -1,15 +1,16 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// Light from the neighbouring membrane: it brightens a pixel and so shifts its depth, the more the
-// inclination psi of the membrane around it has changed since the reference frame.
+// Compensation of light from the neighbouring membrane. This light brightens a pixel and so shifts
+// its depth. The shift grows with the change of the inclination psi of the surrounding membrane
+// since the reference frame.
 // Source: Ito, Kim, Obinata, "Shape sensing by vision-based tactile sensor" (slides), compensation
-// for approximation error; order of the values, names and psi repaired as E008-E010.
+// for approximation error; order of the values, names and psi corrected as in E008-E010.
 //
 //   psi = atan|grad l|,   psi_sum = sum over the disc of radius r of [psi(t) - psi(t0)]
 //   m = m0 exp(n [l(t) - l(t0)]),   l' = max(l - m psi_sum, 0)
 //
-// l must be the smoothed depth: atan of the gradient of a noisy one measures the noise.
+// l must be the smoothed depth: atan of the gradient of a noisy depth measures the noise.
 #include <concepts>
 #include <cstddef>
 #include <utility>
@@ -26,8 +27,9 @@
 namespace fingerpad {
 inline namespace v0 {
 
-/// How neighbouring light acts; the defaults are the published values, in the order that their
-/// units demand (E008). All three are fit parameters (E009): see calibrate/neighbour_light.hpp.
+/// Parameters of the neighbouring light. The defaults are the published values, in the order that
+/// their units require (E008). All three are fit parameters (E009): see
+/// calibrate/neighbour_light.hpp.
 template <scalar S = double>
 struct NeighbourLight {
   Index radius_px = 30;                   ///< r, radius of the disc, in [1, 1000]; published 1..50
@@ -35,7 +37,7 @@ struct NeighbourLight {
   S n_per_mm = S(224) / S(1000);          ///< n, growth of m with depth, finite
 };
 
-/// Refuses what has no meaning (parameter_error).
+/// Refuses values out of range (parameter_error).
 template <scalar S>
 void expects_valid(const NeighbourLight<S>& light) {
   expects(light.radius_px >= 1 && light.radius_px <= 1000, "NeighbourLight", "radius_px",
@@ -47,9 +49,9 @@ void expects_valid(const NeighbourLight<S>& light) {
 
 namespace detail {
 
-/// The equation for one pixel, or for each in a vector of them: depth less the light of its
-/// neighbours, never below 0. A depth that is not finite stays as it is; the reference depth must
-/// be finite.
+/// The equation for one pixel, or for each lane of a vector: the depth minus the effect of the
+/// neighbours' light, at least 0. A depth of NaN or +infinity stays as it is; the reference depth
+/// must be finite.
 template <class V, scalar S>
 [[gnu::always_inline]] inline V without_light_of(const V& depth_mm,
                                                  const V& reference_depth_mm,
@@ -65,8 +67,8 @@ template <class V, scalar S>
 
 }  // namespace detail
 
-/// Not of this pad: the depths are on the whole a twentieth of the reference's or less, or twenty
-/// of it or more, as depths in m are.
+/// The outcome of a frame. The status is not_of_this_pad if the depths are, on average, a twentieth
+/// of the reference's or less, or twenty times or more, for example because they are in m.
 struct [[nodiscard]] NeighbourLightResult {
   FrameStatus status = FrameStatus::refused;
   Index lost_px = 0;  ///< pixels of the reference whose inclination this frame does not show
@@ -74,28 +76,28 @@ struct [[nodiscard]] NeighbourLightResult {
   bool ok() const { return status == FrameStatus::ok; }
 };
 
-/// Removes the light of the neighbouring membrane from depth maps, computed in the number S. The
-/// time does not depend on r: the disc is five nested rectangles of its area and second moment.
-/// published::ExactDisc is every pixel of it.
+/// Removes the effect of neighbouring light from depth maps, computed in the scalar S. The time
+/// does not depend on r, because the disc is approximated by five nested rectangles with its area
+/// and second moment. published::ExactDisc sums every pixel of the disc.
 ///
-/// Missing pixels (not finite) leave their neighbours a one-sided difference and drop out of the
-/// disc. If the reference has them, membrane is there and only was not seen: the disc's sum is
-/// scaled up to the number of pixels that the reference has in it. Elsewhere there is no membrane,
-/// and nothing is added for it.
+/// Missing pixels (not finite) are left out of the disc, and their neighbours use a one-sided
+/// difference. If the reference has such a pixel, the membrane is there and was only not seen: the
+/// disc's sum is scaled up to the number of pixels that the reference has in it. Elsewhere there is
+/// no membrane, and nothing is added.
 ///
-/// Bounded time and no allocation per frame; const, so that threads may share one, each with its
-/// own workspace. Twice the work in frames where pixels of the reference are missing.
+/// Threads may share one object, each with its own workspace. A frame takes bounded time and
+/// allocates nothing. Frames in which pixels of the reference are missing take twice the work.
 template <class Disc = detail::SteppedDisc, scalar S = float>
 class NeighbourLightCompensation {
  public:
-  /// Memory that one frame at a time needs, taken up front.
+  /// Scratch memory for a frame; one per thread.
   using Workspace = typename detail::InclinationSums<Disc, S>::Workspace;
 
-  /// `pitch_mm` is the distance on the membrane between the points that neighbouring pixels see:
-  /// that is where the gradient is taken. It is the pitch on the plate times about 1 + l / h, h the
-  /// virtual height of optics/camera.hpp; one number, for the mean depth of the pad, is enough, as
-  /// m0 is fitted with the same number and takes up a common factor. `reference_depth_mm` is
-  /// smoothed as the frames will be; NaN outside the pad.
+  /// `pitch_mm` is the distance on the membrane between the points that neighbouring pixels see,
+  /// because the gradient is taken there. It is about 1 + l / h times the pitch on the plate, with
+  /// h the virtual height of optics/camera.hpp. One number, for the mean depth of the pad, is
+  /// enough: m0 is fitted with the same number and absorbs a common factor. `reference_depth_mm` is
+  /// smoothed like the frames; NaN outside the pad. Refuses bad parameters (parameter_error).
   template <grid Reference>
   NeighbourLightCompensation(const NeighbourLight<S>& light,
                              const S& pitch_mm,
@@ -116,8 +118,9 @@ class NeighbourLightCompensation {
   Index cols() const { return sums_.cols(); }
   Workspace workspace() const { return sums_.workspace(); }
 
-  /// Compensates `depth_mm` into `out`, which may be the same grid. NaN where the input is NaN and
-  /// nowhere else. A grid of another size than the reference is refused before anything is written.
+  /// Writes the compensated `depth_mm` to `out`, which may be the same grid. NaN where the input is
+  /// NaN and nowhere else. A grid of another size than the reference is refused before anything is
+  /// written.
   template <grid Depth, class Out>
   NeighbourLightResult operator()(const Depth& depth_mm, Out&& out, Workspace& workspace) const {
     static_assert(detail::takes_numbers<Out, S>,
@@ -128,7 +131,7 @@ class NeighbourLightCompensation {
         to.cols() != cols() || !sums_.fits(workspace)) {
       return {};
     }
-    const bool is_unit = is_in_unit_of_reference(from);  // before `out`, which may be the same grid
+    const bool is_unit = is_in_unit_of_reference(from);  // before `out`, which may be `from`
     sums_.scan(from, workspace);
     for (Index i = 0; i < rows(); ++i) {
       sums_.sum_row(i, workspace);
@@ -140,7 +143,8 @@ class NeighbourLightCompensation {
   }
 
  private:
-  /// By every eighth pixel of every eighth row.
+  /// Whether the depths are in the unit of the reference, judged from every eighth pixel of every
+  /// eighth row.
   template <class View>
   bool is_in_unit_of_reference(const View& from) const {
     S here = S(0), there = S(0);
@@ -168,7 +172,7 @@ class NeighbourLightCompensation {
     return light;
   }
 
-  /// `to` may be the depths.
+  /// `to` may equal `depth_mm`.
   void compensate_row(Index row, const S* depth_mm, const S* psi_sum_rad, S* to) const {
     const auto span = sums_.span(row);
     const S* reference_mm = reference_.data() + row * cols();
@@ -196,8 +200,8 @@ class NeighbourLightCompensation {
 
   NeighbourLight<S> light_;
   detail::InclinationSums<Disc, S> sums_;
-  std::vector<S> reference_;  // 0 where it is missing,
-  std::vector<S> m0_;         // and so is m0 there
+  std::vector<S> reference_;  // 0 where missing
+  std::vector<S> m0_;         // per pixel; 0 where the reference is missing
 };
 
 }  // namespace v0

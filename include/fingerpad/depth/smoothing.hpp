@@ -3,8 +3,8 @@
 #pragma once
 // Averages colours before the depth is computed. One grey level of noise in both channels is 0.7 mm
 // of depth in a single pixel, so several hundred pixels must be averaged. The means leave out
-// pixels that carry no information (outside the pad, dark, saturated, NaN), and the cost per pixel
-// does not depend on the window.
+// pixels that carry no information (outside the pad, dark, saturated, NaN). The cost per pixel does
+// not depend on the window.
 //
 // A mean of colours over a curved membrane is biased by curvature times window^2 / 24 per axis, and
 // near the rim, where the window is cut, also by slope. Therefore the deviation of the colours from
@@ -30,16 +30,16 @@ inline int nearest_odd(double x) {
 
 }  // namespace detail
 
-/// a box(inner) - b box(outer) of the deviations, centered alike, with a - b = 1 and the second
-/// moments cancelling: exact for deviations that are quadratic, where nothing is cut. Inner and
-/// outer are 1.4 and 2.3 times window_px, which gives the noise of a mean over window_px. The
-/// default; use it for curved contacts.
+/// The difference of two means of the deviations over concentric square windows,
+/// a box(inner) - b box(outer), with a - b = 1 and second moments that cancel. It is exact for
+/// quadratic deviations where no window is cut. Inner and outer are 1.4 and 2.3 times window_px,
+/// which gives the noise of a mean over window_px. The default; use it for curved contacts.
 struct BiasFreeMean {
   static constexpr bool anchored = true;
   int window_px = 29;  ///< odd, 3..109
   int step = 1;        ///< pixels from one sample to the next, for sampled frames
 
-  /// In samples, at least 3.
+  /// Sizes of the windows in samples, at least 3.
   std::array<int, 2> windows_px() const {
     expects(window_px >= 3 && window_px <= 109 && window_px % 2 == 1, "BiasFreeMean", "window_px",
             static_cast<long long>(window_px), "odd, 3..109");
@@ -55,7 +55,7 @@ struct AnchoredMean {
   int window_px = 29;  ///< odd, 3..255
   int step = 1;        ///< pixels from one sample to the next, for sampled frames
 
-  /// In samples, at least 3.
+  /// Sizes of the windows in samples, at least 3.
   std::array<int, 1> windows_px() const {
     expects(step >= 1, "AnchoredMean", "step", step, ">= 1");
     const int nearest = detail::nearest_odd(static_cast<double>(window_px) / step);
@@ -70,8 +70,8 @@ struct NoSmoothing {
 
 namespace detail {
 
-/// Weights of the means of windows of these sizes: they add up to 1 and, where there are two, their
-/// second moments (w^2 - 1) / 12 cancel.
+/// Weights of the means over windows of these sizes. They add up to 1; with two windows, the second
+/// moments (w^2 - 1) / 12 cancel.
 inline std::array<double, 1> window_weights(const std::array<int, 1>&) {
   return {1};
 }
