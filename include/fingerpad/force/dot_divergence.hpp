@@ -1,19 +1,19 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// How hard an object presses, from the dots alone: under a load they move apart, or together. The
-// measure is the divergence of their displacements, integrated over the contact. On an elastic
-// half-space it is -(1 - 2 nu) F / (2 G), whatever the shape of the contact, since the divergence
-// of Boussinesq's surface displacements is -(1 - 2 nu) / (2 G) times the pressure, point by point
-// (K. L. Johnson, "Contact Mechanics", 1985, eq. 3.18). A camera that the gel comes closer to and a
-// thin gel that is squeezed aside make it positive. So the constant is calibrated:
-// calibrate/dot_divergence.hpp fits a curve of normal_force.hpp over the measure.
+// Normal force from the dots alone: under a load they move apart, or together. The measure is the
+// divergence of their displacements, integrated over the contact. On an elastic half-space it is
+// -(1 - 2 nu) F / (2 G) for every shape of contact, because the divergence of Boussinesq's surface
+// displacements is -(1 - 2 nu) / (2 G) times the pressure, point by point (K. L. Johnson, "Contact
+// Mechanics", 1985, eq. 3.18). Gel that comes closer to the camera, and thin gel that is squeezed
+// aside, make it positive. So the constant is calibrated: calibrate/dot_divergence.hpp fits a curve
+// of normal_force.hpp over the measure.
 //
-// The integral is the area between the dots less what it was on the free pad. Cells that share a
-// side share its dots, so the noise of the dots around the contact counts alone; shift and rotation
-// of the pad leave areas as they are. Shear takes as much divergence behind the object as it adds
-// before it; what is left of it, as the cells do not lie evenly about the object, is in the
-// variance.
+// The integral is the area between the dots minus the same area on the free pad. Cells that share a
+// side share its dots, so only the noise of the dots around the contact counts. Shift and rotation
+// of the pad do not change areas. Shear removes as much divergence behind the object as it adds in
+// front of it. A remainder is left because the cells do not lie evenly about the object; it is
+// included in the variance.
 #include <algorithm>
 #include <array>
 #include <cstddef>
@@ -31,11 +31,11 @@ namespace fingerpad {
 inline namespace v0 {
 
 struct DivergenceOptions {
-  double noise_mm = 0.005;  ///< sd of a dot's place along x and along y, > 0: 0.06 px of 0.08 mm
-  Index free_frames = 1;    ///< that the free dots are the mean of, >= 1
-  bool parts = true;        ///< false: a load draws the dots together; areas count the other way
-  double max_filled = 0.2;  ///< in [0, 1): with a larger share of the dots missing or out of place
-                            ///< there is no measure
+  double noise_mm = 0.005;  ///< sd of a dot's position, per axis, > 0; default: 0.06 px of 0.08 mm
+  Index free_frames = 1;    ///< number of frames of which the free dots are the mean, >= 1
+  bool parts = true;        ///< false: a load draws the dots together; the area is negated
+  /// Largest share of dots missing or misplaced, in [0, 1); beyond it there is no measure.
+  double max_filled = 0.2;
 };
 inline void expects_valid(const DivergenceOptions& options) {
   constexpr const char* owner = "DivergenceOptions";
@@ -47,26 +47,27 @@ inline void expects_valid(const DivergenceOptions& options) {
           options.max_filled, "in [0, 1)");
 }
 
+/// The outcome of a frame. The status is not_of_this_pad if the area of the contact's cells has
+/// changed by more than half: the dots are in another unit or order than those of the free pad.
 template <scalar S = double>
 struct [[nodiscard]] DivergenceResult {
   FrameStatus status = FrameStatus::refused;
-  S area_mm2 = not_a_number<S>();      ///< by which load moves the dots apart; 0 without contact;
-                                       ///< NaN: too many dots are missing, or not_of_this_pad: the
-                                       ///< contact's cells are half as large again, or less: dots
-                                       ///< in another unit or order than those of the free pad
-  S variance_mm4 = not_a_number<S>();  ///< of it, by the noise of the dots and by shear
-  Index dots = 0;                      ///< in the contact and around it
-  Index filled = 0;  ///< of these, missing or out of place: taken to move as those beside them
+  /// Area by which the load moves the dots apart; 0 without contact. NaN if too many dots are
+  /// missing, or if not_of_this_pad.
+  S area_mm2 = not_a_number<S>();
+  S variance_mm4 = not_a_number<S>();  ///< variance of area_mm2, by noise of the dots and by shear
+  Index dots = 0;                      ///< dots in the contact and around it
+  Index filled = 0;  ///< of these, missing or misplaced: they move like their neighbours
 
   bool ok() const { return status == FrameStatus::ok && is_finite(area_mm2); }
 };
 
-/// Divergence of a contact. Threads may share one object, each with its own workspace. A frame
-/// allocates nothing, throws nothing, and takes O(rows cols) time.
+/// Measures the divergence over a contact. Threads may share one object, each with its own
+/// workspace. A frame allocates nothing, throws nothing, and takes O(rows cols) time.
 template <scalar S = double>
 class DotDivergence {
  public:
-  /// From the free pad's dots in mm (NaN: not found). Refuses bad parameters (parameter_error).
+  /// Takes the free pad's dots in mm (NaN: not found). Refuses bad parameters (parameter_error).
   template <dot_grid Dots>
   explicit DotDivergence(const Dots& free_mm, const DivergenceOptions& options = {})
       : rows_(as_view(free_mm).rows()), cols_(as_view(free_mm).cols()), options_(options) {
@@ -91,7 +92,7 @@ class DotDivergence {
     is_mirrored_ = area < S(0);
   }
 
-  /// The memory of a frame.
+  /// Scratch memory for a frame; one per thread.
   class Workspace {
    public:
     explicit Workspace(const DotDivergence& divergence)
@@ -102,17 +103,18 @@ class DotDivergence {
     struct Dot {
       bool counts = false;  // a corner of a cell that touches
       bool filled = false;
-      Point2<S> moved;  // since it was free
-      S variance;       // of its move, per axis
-      Point2<S> slope;  // of the area by its place
+      Point2<S> moved;  // displacement from the free pad
+      S variance;       // of the displacement, per axis
+      Point2<S> slope;  // derivative of the area by its position
     };
-    std::vector<Point2<S>> moves_;  // as found
+    std::vector<Point2<S>> moves_;  // displacements of the dots found
     std::vector<Dot> dots_;
   };
   Workspace workspace() const { return Workspace(*this); }
 
-  /// The divergence in a frame with dots `dots_mm` (NaN: not found) of which those with a true
-  /// `contact` touch the object: over the cells of four dots of which one touches, or more.
+  /// The divergence in a frame with dots `dots_mm` (NaN: not found). A true `contact` marks the
+  /// dots that touch the object. The area is summed over the cells of four dots of which at least
+  /// one touches.
   template <dot_grid Dots, contact_mask Contact>
   DivergenceResult<S> operator()(const Dots& dots_mm,
                                  const Contact& contact,
@@ -140,7 +142,7 @@ class DotDivergence {
   }
 
  private:
-  using Cell = std::array<std::size_t, 4>;  // its dots, in a round
+  using Cell = std::array<std::size_t, 4>;  // its dots, in order around the cell
 
   template <class View>
   static void read(const View& dots, std::vector<Point2<S>>& to) {
@@ -164,7 +166,8 @@ class DotDivergence {
     }
   }
 
-  /// Where a dot was that was not found: in the middle of the two beside it.
+  /// Free position of a dot that was not found on the free pad: the middle of its two neighbours in
+  /// the row, else of those in the column.
   Point2<S> between(std::size_t k) const {
     const auto cols = static_cast<std::size_t>(cols_);
     const S half = S(S(1) / S(2));
@@ -174,7 +177,8 @@ class DotDivergence {
     return is_finite(row) || !in_col ? row : half * (free_[k - cols] + free_[k + cols]);
   }
 
-  /// Moves of the dots; of those that are missing or move unlike those beside them, theirs.
+  /// Displacements of the dots. A dot that is missing, or moves unlike its neighbours, gets their
+  /// median displacement.
   void place(Workspace& workspace) const {
     std::vector<Point2<S>>& moves = workspace.moves_;
     for (std::size_t k = 0; k < free_.size(); ++k) {
@@ -196,7 +200,7 @@ class DotDivergence {
     Point2<S> moved = {S(0), S(0)};
     S variance = S(0);
   };
-  /// Median move of the up to eight dots around one, and how far they are from it.
+  /// Median displacement of the up to eight neighbours of a dot, and their scatter about it.
   Beside beside_of(std::size_t k, const std::vector<Point2<S>>& moves) const {
     std::array<S, 8> x, y;
     Beside beside;
@@ -253,8 +257,8 @@ class DotDivergence {
         (dot.counts ? inside : outside).add(dot.moved);
       }
     }
-    // the middle of the cells is off that of the load by anything up to half a pitch: a variance of
-    // a twelfth, which shear turns into area as it shifts the contact
+    // the center of the cells is off that of the load by up to half a pitch, a variance of
+    // pitch^2 / 12; shear shifts the contact and so turns this offset into area
     const S sheared_sq = squared_norm(inside.mean() - outside.mean());
     result.variance_mm4 = S(result.variance_mm4 + sheared_sq * max_off_sq_ / S(3));
     const double allowed = options_.max_filled * static_cast<double>(result.dots);
@@ -280,7 +284,8 @@ class DotDivergence {
     Point2<S> mean() const { return count > 0 ? sum / S(count) : sum; }
   };
 
-  /// By how much a cell has grown; half the cross product of its diagonals is its area.
+  /// Growth of a cell's area, which is half the cross product of its diagonals. Adds its
+  /// derivatives to the slopes of the dots.
   S parted(const Cell& at, std::vector<typename Workspace::Dot>& dots) const {
     const auto change = [&](std::size_t to, std::size_t from) {
       return dots[at[to]].moved - dots[at[from]].moved;
@@ -300,14 +305,14 @@ class DotDivergence {
 
   Index rows_ = 0, cols_ = 0;
   DivergenceOptions options_;
-  std::vector<Point2<S>> free_;   // as found
-  std::vector<Point2<S>> shape_;  // with those that were not
-  S max_off_sq_ = S(0);           // half a pitch
+  std::vector<Point2<S>> free_;   // NaN where not found
+  std::vector<Point2<S>> shape_;  // free_ with missing dots filled in
+  S max_off_sq_ = S(0);           // (pitch / 2)^2
   bool is_mirrored_ = false;      // y points up, or columns count to the left
 };
 
-/// The normal force by a curve over the divergence; to the variance of the curve that of the dots
-/// is added. What has no divergence has no force (not_finite).
+/// The normal force from a curve over the divergence. Its variance is that of the curve plus that
+/// of the dots. Without a divergence there is no force (not_finite).
 template <class Curve, class Compensation, scalar S>
 NormalForceResult<S> normal_force(const NormalForce<Curve, Compensation>& curve,
                                   const DivergenceResult<S>& divergence) {

@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// Normal force as a function of one measure of the contact, its area in mm^2, its depth in mm or
-// its radius in mm, and how certain that function is. calibrate/force.hpp fills both in. A curve
-// says how the force rises, and over which range that was identified.
+// Normal force as a function of one measure of the contact (its area in mm^2, depth in mm or radius
+// in mm), and the uncertainty of that function. calibrate/force.hpp fits both. A curve also stores
+// the range of measures in which it was identified.
 #include <array>
 #include <cmath>
 #include <cstddef>
@@ -16,7 +16,7 @@
 namespace fingerpad {
 inline namespace v0 {
 
-/// F = c_0 + c_1 m + c_2 m^2 + ..., in N; c_k in N over the measure's unit to the k-th.
+/// F = c_0 + c_1 m + c_2 m^2 + ..., in N, for the measure m; c_k in N per (unit of the measure)^k.
 template <int Degree = 2, scalar S = double>
 struct PolynomialForce {
   static_assert(Degree >= 1 && Degree <= 5);
@@ -43,7 +43,7 @@ struct PolynomialForce {
     }
     return sum;
   }
-  /// dF by each coefficient.
+  /// Derivatives of F by the coefficients.
   std::array<S, parameters> gradient(const S& measure) const {
     std::array<S, parameters> powers;
     powers[0] = S(1);
@@ -52,7 +52,7 @@ struct PolynomialForce {
     }
     return powers;
   }
-  /// The slope's derivative by each coefficient.
+  /// Derivatives of the slope by the coefficients.
   std::array<S, parameters> slope_gradient(const S& measure) const {
     const std::array<S, parameters> powers = gradient(measure);
     std::array<S, parameters> slopes;
@@ -64,9 +64,9 @@ struct PolynomialForce {
   }
 };
 
-/// Elastic pads: the contact radius grows with a power of the force, r_c = c f^gamma (eq. 1 there,
-/// after Xydas and Kao 1999; gamma is 1/3 for Hertz's contact). The measure is the radius. The
-/// sources print neither c nor gamma: fit_power_law identifies them.
+/// Elastic pads: the contact radius grows with a power of the force, r_c = c f^gamma (eq. 1 of the
+/// source of normal_force.hpp, after Xydas and Kao 1999; gamma is 1/3 for Hertz's contact). The
+/// measure is the radius. The sources print neither c nor gamma: fit_power_law identifies them.
 template <scalar S = double>
 struct PowerLawForce {
   using number = S;
@@ -85,7 +85,7 @@ struct PowerLawForce {
     const S force = force_n(radius_mm);
     return value(force) > 0 ? S(force / radius_mm / exponent) : S(0);
   }
-  /// dF by the coefficient and by the exponent.
+  /// Derivatives of F by the coefficient and by the exponent.
   std::array<S, parameters> gradient(const S& radius_mm) const {
     if (!(value(radius_mm) > 0)) {
       return {S(0), S(0)};
@@ -94,7 +94,7 @@ struct PowerLawForce {
     return {S(-force / S(exponent * coefficient_mm)),
             S(-force * log_ratio(radius_mm) / square(exponent))};
   }
-  /// The slope's derivative by each of the two.
+  /// Derivatives of the slope by both.
   std::array<S, parameters> slope_gradient(const S& radius_mm) const {
     if (!(value(radius_mm) > 0)) {
       return {S(0), S(0)};
@@ -103,7 +103,7 @@ struct PowerLawForce {
     return {S(-steep / S(exponent * coefficient_mm)),
             S(-steep * (log_ratio(radius_mm) / exponent + S(1)) / exponent)};
   }
-  /// The inverse; 0 for a force that does not press.
+  /// The radius in mm for a force in N, the inverse of force_n(); 0 for a force <= 0.
   S radius_mm(const S& force) const {
     using std::exp;
     using std::log;
@@ -122,8 +122,8 @@ struct PowerLawForce {
   }
 };
 
-/// How uncertain a force is that a curve gives: by the curve's parameters, by what the calibration
-/// could not explain, and by noise of the measure beyond that in the calibration.
+/// The uncertainty of a force from a curve. Three things contribute: the curve's parameters, what
+/// the calibration could not explain, and noise of the measure beyond that in the calibration.
 template <std::size_t Parameters, scalar S = double>
 struct CurveErrors {
   static constexpr std::size_t size = Parameters;
@@ -131,9 +131,9 @@ struct CurveErrors {
   std::array<std::array<S, size>, size> covariance =
       detail::zero_matrix<S, size>();  ///< of the parameters: symmetric, no eigenvalue < 0
   S residual_sd_n = S(0);              ///< standard deviation of a sample about the curve, N, >= 0
-  S measure_sd = S(0);                 ///< noise of the measure that the samples did not have, >= 0
+  S measure_sd = S(0);  ///< sd of noise in the measure beyond that of the samples, >= 0
 
-  /// Variance in N^2 of the force at a measure where the curve has this gradient and slope.
+  /// Variance in N^2 of the force where the curve has this gradient and slope.
   S variance_n2(const std::array<S, size>& gradient, const S& slope) const {
     S sum = square(residual_sd_n) + square(S(slope * measure_sd));
     for (std::size_t i = 0; i < size; ++i) {
@@ -147,7 +147,7 @@ struct CurveErrors {
 
 namespace detail {
 
-/// Refuses a range that is none, and a curve without an end.
+/// Refuses an empty range, and a curve whose force or slope is not finite at its end.
 template <class Curve>
 void expects_range(const Curve& curve, const char* owner) {
   expects(is_finite(curve.from) && value(curve.from) >= 0, owner, "from", curve.from,
@@ -160,7 +160,7 @@ void expects_range(const Curve& curve, const char* owner) {
 
 }  // namespace detail
 
-/// Refuses what has no meaning (parameter_error), and a force that falls while the contact grows.
+/// Refuses values out of range, and a force that falls while the contact grows (parameter_error).
 template <int Degree, scalar S>
 void expects_valid(const PolynomialForce<Degree, S>& curve) {
   const char* const owner = "PolynomialForce";
@@ -174,7 +174,7 @@ void expects_valid(const PolynomialForce<Degree, S>& curve) {
   constexpr int steps = Degree > 2 ? 16 : 1;  // a slope of first degree is lowest at an end
   const S end = curve.force_n(curve.to);
   const S size = value(end) < 0 ? S(-end) : end;
-  const S rounding = S(64 * epsilon<S>()) * size / curve.to;  // of the slope of a level end
+  const S rounding = S(64 * epsilon<S>()) * size / curve.to;  // of the slope at a level end
   for (int k = 0; k <= steps; ++k) {
     const S share = S(k) / S(steps);
     const S slope = curve.slope(S(curve.from + share * (curve.to - curve.from)));

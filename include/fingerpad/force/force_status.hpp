@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// Status of a force by look-up.
+// Status of a force that is looked up in a calibrated curve or map.
 #include <cstdint>
 
 #include "fingerpad/core/point.hpp"
@@ -10,19 +10,20 @@
 namespace fingerpad {
 inline namespace v0 {
 
-/// From the best to the worst.
+/// Statuses from the best to the worst.
 enum class ForceStatus : std::uint8_t {
-  no_contact,    ///< the measure is 0 or negative: no force, whatever is displaced
+  no_contact,    ///< the measure is 0 or negative: no force, whatever the displacement
   measured,      ///< within the calibrated range
   below_range,   ///< the contact is smaller than any in the calibration, and the force fades to 0
-                 ///< with it. If always: is the measure in another unit? Shear: below a hundredth
-                 ///< of the reference
-  beyond_range,  ///< a larger contact or shift: the curve continues along its tangent
-  held_at_zero,  ///< the curve or a compensation is negative there
-  disagreeing,   ///< area and depth give forces further apart than their errors allow: the contact
-                 ///< is unlike those of the calibration, or a measure is in another unit
-  implausible,   ///< a displacement above 100 mm, a rotation by more than half a turn, a measure
-                 ///< or a force of a million or more: in px, um, degrees?
+                 ///< with it; Shear: smaller than a hundredth of the reference. If this is always
+                 ///< so, the measure may be in another unit
+  beyond_range,  ///< a larger contact or displacement than in the calibration: the curve continues
+                 ///< along its tangent
+  held_at_zero,  ///< curve or compensation give a negative force, which is set to 0
+  disagreeing,   ///< the forces by area and by depth differ by more than their errors allow: the
+                 ///< contact is unlike those of the calibration, or a measure is in another unit
+  implausible,   ///< a displacement above 100 mm, a rotation by more than half a turn, or a measure
+                 ///< or force of a million or more: in px, um, degrees?
   not_finite,    ///< an input is not a number, or the force overflows
 };
 
@@ -51,12 +52,12 @@ constexpr const char* name_of(ForceStatus status) {
 
 namespace detail {
 
-/// Whether a value is finite but impossible for a contact of a fingertip.
+/// Whether a value is finite but impossible for the contact of a fingertip.
 template <class S>
 constexpr bool beyond_displacement(const Point2<S>& displacement_mm) {
   return is_finite(displacement_mm) && value(squared_norm(displacement_mm)) > 10000;
 }
-/// A number, but of no contact.
+/// The same for a measure or a force.
 template <class S>
 constexpr bool beyond_all(const S& measure_or_force) {
   return is_finite(measure_or_force) && !is_plausible(measure_or_force);

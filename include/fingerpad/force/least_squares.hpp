@@ -1,24 +1,24 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// The tensions that satisfy every equation of equilibrium, (6) and (7), as well as they can be
-// satisfied together, and what is known of the membrane's pull at the rim. Source of the equations:
-// Ito, Kim, Obinata 2011, III.D; solved there by symmetry, row by row.
+// Tensions of the membrane by least squares: they satisfy all equations of equilibrium, (6) and
+// (7), as well as possible together, and fit what is known of the membrane's pull at the rim.
+// Source of the equations: Ito, Kim, Obinata 2011, III.D; solved there by symmetry, row by row.
 //
 // There are two equations fewer per line than unknowns, and marching upward from the rim alone
-// multiplies the error of the k-th harmonic by about 3^k. So everything is asked for at once, with
-// a little smoothness for what the equations leave open. The unknowns are the tensions over the
+// multiplies the error of the k-th harmonic by about 3^k. So all equations are solved at once, with
+// a little smoothness for what they leave open. The unknowns are the tensions divided by the
 // pressure, in mm. Weights, all without dimension:
-//   1                 (6) of a segment, over the root of its area; (7), over its area
+//   1                 (6) of a segment, divided by the root of its area; (7), divided by its area
 //   smoothness        differences of the tensions on opposite borders of a segment
 //   rim_weight        the part of the pull at the rim that is perpendicular to the known direction
 //   magnitude_weight  pull at the rim minus the known one times a common factor, also unknown
-// Smoothness couples only borders of one segment, as the equations do: this keeps the solution
+// Smoothness couples only borders of one segment, as the equations do. This keeps the solution
 // fast.
 //
 // A membrane pulls in its own plane. So where the pull at the rim is known, the plane of the
-// membrane there is too, better than from a smoothed shape that ends there: the lowest borders lean
-// as the pull does.
+// membrane is known there, too, and more accurately than from a smoothed shape that ends at the
+// rim. Therefore the lowest borders take the inclination of the pull.
 #include <array>
 #include <cmath>
 #include <cstddef>
@@ -44,7 +44,7 @@ namespace detail::membrane {
 // The equilibrium of one segment as rows of a least-squares problem. Source: Ito, Kim, Obinata
 // 2011, III.D, eqs. 6 and 7.
 
-/// The equations of one segment, for tensions over pressure.
+/// The equations of one segment as rows, for tensions divided by the pressure.
 template <class R>
 class SegmentRows {
  public:
@@ -78,7 +78,7 @@ class SegmentRows {
     set(3, segments.upward(next, j), R(1), onward);
   }
 
-  /// Adds the squares of (6) and (7).
+  /// Adds (6) and (7) to the normal equations.
   void add_to(SegmentEquations<R>& equations) const {
     if (!has_area_) {
       return;
@@ -110,7 +110,7 @@ class SegmentRows {
   }
 
   bool has_area_ = false;
-  R root_ = R(0);  // of the area, mm
+  R root_ = R(0);  // square root of the area, mm
   Point3<R> out_{R(0), R(0), R(0)};
   std::array<Point3<R>, 8> force_;
   std::array<R, 8> torque_;
@@ -118,10 +118,10 @@ class SegmentRows {
 
 }  // namespace detail::membrane
 
-/// Every equation of equilibrium of every segment at once. Defaults were chosen on a flat press
-/// whose tensions are known in closed form, with noise on its nodes: with a smoothness of 1e-3 the
-/// vertical force is 1e-7 off and scatters least; with a magnitude weight above 0.03 sizes that are
-/// 3 % off spoil it.
+/// Solves all equations of equilibrium of all segments at once. The defaults were chosen on a flat
+/// press whose tensions are known in closed form, with noise on its nodes. With a smoothness of
+/// 1e-3 the vertical force has an error of 1e-7 and scatters least. With a magnitude weight above
+/// 0.03, known magnitudes that are 3 % off spoil it.
 struct LeastSquares {
   static constexpr auto magnitude = detail::membrane::Magnitude::of_all;
   static constexpr bool finds_tensions = true;
@@ -130,11 +130,12 @@ struct LeastSquares {
   double rim_weight = 10;          ///< in [1e-3, 1e3]
   double magnitude_weight = 0.03;  ///< in [1e-6, 1e3]
 
-  /// Sums of squares in float would keep no digit of what they are the squares of.
+  /// The type of the computation. Normal equations of floats use double, because in float they
+  /// would lose all digits.
   template <scalar S>
   using Real = std::conditional_t<std::is_same_v<S, float>, double, S>;
 
-  /// All memory, and the order of elimination.
+  /// Memory for a solution, and the order of elimination.
   template <scalar S>
   class Work {
    public:
@@ -143,19 +144,19 @@ struct LeastSquares {
 
    private:
     friend struct LeastSquares;
-    /// Known pull at a rim segment normal to its border and along it; 0 where unknown.
+    /// Known pull at a rim segment, as components normal to its border and along it; 0 if unknown.
     struct Pull {
       Real<S> normal;
       Real<S> along;
     };
     detail::membrane::FrontalCholesky<Real<S>> cholesky;
     std::vector<Pull> pulls;
-    std::vector<detail::membrane::Border<S>> rim;  // the lowest borders, as the pull leans
+    std::vector<detail::membrane::Border<S>> rim;  // the lowest borders, inclined like the pull
   };
 
-  /// Fills `tensions`; false where there is no solution. `pull[i]` is what is known of the pull of
-  /// the membrane at rim segment i, toward the membrane: its direction, and with `Magnitudes` its
-  /// size up to one factor for all. Where it is 0 or not finite, nothing is known.
+  /// Fills `tensions`; false if there is no solution. `pull[i]` is the known pull of the membrane
+  /// at rim segment i, toward the membrane. Its direction is used, and with `Magnitudes` also its
+  /// magnitude, up to one factor for all. A pull that is 0 or not finite counts as unknown.
   template <bool Magnitudes, scalar S>
   bool solve(const detail::membrane::Segments<S>& segments,
              const detail::membrane::Compartments<S>& nodes,
@@ -193,7 +194,8 @@ struct LeastSquares {
   }
 
  private:
-  /// The border leaning as `pull`; as it is where the pull does not say how, or points outward.
+  /// The border with the inclination of `pull`; unchanged if the pull does not determine one, or
+  /// points outward.
   template <scalar S>
   static detail::membrane::Border<S> leaning(const detail::membrane::Border<S>& border,
                                              const Point3<S>& pull) {
@@ -206,7 +208,8 @@ struct LeastSquares {
     return {border.along, known ? (stretch * normal) : border.normal};
   }
 
-  /// Sum of the squares of the equations of the common factor.
+  /// Stores the known pulls and the inclined borders. Returns the sum of squares of the common
+  /// factor's coefficients, 0 without `Magnitudes`.
   template <bool Magnitudes, scalar S>
   Real<S> take_pulls(const detail::membrane::Segments<S>& segments,
                      const std::vector<Point3<S>>& pull,
@@ -300,7 +303,7 @@ struct LeastSquares {
   }
 };
 
-/// Refuses what has no meaning (parameter_error).
+/// Refuses values out of range (parameter_error).
 inline void expects_valid(const LeastSquares& p) {
   expects(p.smoothness >= 1e-6 && p.smoothness <= 1, "LeastSquares", "smoothness", p.smoothness,
           "in [1e-6, 1]");

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// Normal force by look-up from the area or depth of the contact. Source: Ito, Kim and
+// Normal force by look-up from the area, depth or radius of the contact. Source: Ito, Kim and
 // Obinata, "Acquisition of Contact Force and Slippage Using a Vision-Based Tactile Sensor with a
 // Fluid-Type Touchpad for the Dexterous Handling of Robots", "Method for measuring normal force":
 //
@@ -13,8 +13,8 @@
 // calibration (calibrate/force.hpp). A curve holds for objects of the shape with which it was
 // calibrated; docs/force/normal_force.md shows the effect of other shapes.
 //
-// The force is how hard the object presses, >= 0; its z component on the pad is the negative. It is
-// 0 without contact, whatever has moved, and rises from there without a step.
+// The force is how hard the object presses, >= 0; on the pad it points along -z. Without contact it
+// is 0, whatever the displacement, and it rises from there without a step.
 #include <cmath>
 #include <cstddef>
 #include <optional>
@@ -30,7 +30,8 @@ inline namespace v0 {
 
 namespace detail {
 
-/// 3 x^2 - 2 x^3 for x held below 1: from 0 at 0 to 1 from 1 on, with slope 0 at both ends.
+/// 3 x^2 - 2 x^3, with x limited to 1. It rises from 0 at x = 0 to 1 at x = 1, with slope 0 at
+/// both, and stays 1 beyond.
 template <scalar S>
 S smooth_step(const S& share) {
   const S x = value(share) < 1 ? share : S(1);
@@ -50,7 +51,7 @@ struct ForceChange {
 };
 
 /// A curve extended to all measures: 0 without contact, faded in smoothly below the calibrated
-/// range, and continued along the tangent beyond it, where a polynomial could do anything.
+/// range, and continued along its tangent beyond it, because a polynomial may turn anywhere.
 template <class Curve>
 class WholeCurve {
  public:
@@ -63,7 +64,7 @@ class WholeCurve {
 
   const Curve& curve() const { return curve_; }
 
-  /// The same for whatever is not a number as for no contact: look at the measure first.
+  /// Treats NaN like no contact: check the measure first.
   S force_n(const S& measure) const {
     return S((curve_.force_n(held_within(measure)) + end_slope_ * beyond(measure)) * fade(measure));
   }
@@ -72,7 +73,7 @@ class WholeCurve {
     const S held = held_within(measure);
     return S(curve_.slope(held) * fade(measure) + curve_.force_n(held) * fade_slope(measure));
   }
-  /// dF by each of the curve's parameters.
+  /// Derivatives of F by the curve's parameters.
   auto gradient(const S& measure) const {
     const S held = held_within(measure), past = beyond(measure), faded = fade(measure);
     auto gradient = curve_.gradient(held);
@@ -82,11 +83,12 @@ class WholeCurve {
     }
     return gradient;
   }
-  /// How far the curve itself is from its tangent, beyond the range: nothing tells which is right.
+  /// Difference between the curve and its tangent beyond the range, else 0. Nothing shows which of
+  /// the two is right.
   S bend_n(const S& measure) const {
     return value(beyond(measure)) > 0 ? S(curve_.force_n(measure) - force_n(measure)) : S(0);
   }
-  /// How much of the force is faded in, in [0, 1]: 1 from the start of the range on.
+  /// The share of the force that is faded in, in [0, 1]; 1 from the start of the range on.
   S fade(const S& measure) const { return smooth_step(S(held_within(measure) * one_over_from_)); }
   S fade_slope(const S& measure) const {
     return S(smooth_step_slope(S(held_within(measure) * one_over_from_)) * one_over_from_);
@@ -113,9 +115,10 @@ struct NoCompensation {
   static constexpr bool reads_motion = false;
 };
 
-/// F = F_plain (1 + a |d|^2 + b theta^2). It is the plain force without displacement and rotation,
-/// handles both at once, and is even and smooth in both, as the symmetry of a round pad requires.
-/// The published form (eqs. 21 and 22, published/normal_force.hpp) has none of these properties.
+/// F = F_plain (1 + a |d|^2 + b theta^2). Without displacement and rotation it is the plain force.
+/// It handles both at once, and is even and smooth in both, as the symmetry of a round pad
+/// requires. The published form (eqs. 21 and 22, published/normal_force.hpp) has none of these
+/// properties.
 template <scalar S = double>
 struct ScaledCompensation {
   static constexpr bool reads_motion = true;
@@ -129,7 +132,7 @@ struct ScaledCompensation {
   }
 };
 
-/// Refuses what has no meaning (parameter_error).
+/// Refuses values out of range (parameter_error).
 inline void expects_valid(const NoCompensation&) {}
 template <scalar S>
 void expects_valid(const ScaledCompensation<S>& compensation) {
@@ -142,11 +145,11 @@ void expects_valid(const ScaledCompensation<S>& compensation) {
 template <scalar S = double>
 struct [[nodiscard]] NormalForceResult {
   ForceStatus status = ForceStatus::not_finite;
-  S force_n = not_a_number<S>();      ///< >= 0; NaN only where not finite
-  S variance_n2 = not_a_number<S>();  ///< NaN without CurveErrors; beyond the range that of the
-                                      ///< tangent, and how far the curve itself is from it
+  S force_n = not_a_number<S>();      ///< >= 0; NaN only if not_finite
+  S variance_n2 = not_a_number<S>();  ///< NaN without CurveErrors; beyond the range, that of the
+                                      ///< tangent plus the square of its difference from the curve
 
-  /// Whether the calibration vouches for the force.
+  /// Whether the calibration covers the force.
   bool ok() const { return status == ForceStatus::measured || status == ForceStatus::no_contact; }
   bool has_force() const { return status != ForceStatus::not_finite; }
 };
@@ -164,7 +167,7 @@ class NormalForce {
   using S = typename Curve::number;
   using Errors = CurveErrors<Curve::parameters, S>;
 
-  /// Without errors there is no variance. Refuses bad parameters (parameter_error).
+  /// Without `errors` results have no variance. Refuses bad parameters (parameter_error).
   explicit NormalForce(const Curve& curve, const Compensation& compensation = {})
       : curve_(checked(curve)), compensation_(compensation) {
     expects_valid(compensation);
@@ -175,9 +178,9 @@ class NormalForce {
     errors_ = errors;
   }
 
-  /// The force of one frame. `displacement_mm` and `rotation_rad` are those of the contact; without
-  /// a compensation they are ignored. `measure_variance` is the variance of this measure in
-  /// addition to that of the calibration.
+  /// The force of one frame. `displacement_mm` and `rotation_rad` are those of the contact;
+  /// NoCompensation ignores them. `measure_variance` is the variance of this measure in addition to
+  /// that of the calibration.
   NormalForceResult<S> operator()(const S& measure,
                                   const Point2<S>& displacement_mm = {S(0), S(0)},
                                   const S& rotation_rad = S(0),
@@ -224,11 +227,11 @@ class NormalForce {
     }
   }
 
-  /// What the compensation adds fades with the contact, too.
+  /// The shift of the compensation fades with the contact, too.
   S force_of(const S& measure, const detail::ForceChange<S>& change) const {
     if constexpr (Compensation::reads_motion) {
       return S(change.gain * curve_.force_n(measure) + change.shift_n * curve_.fade(measure));
-    } else {  // times 1 and plus 0 would not be left out by itself
+    } else {  // the compiler would not leave out times 1 and plus 0
       return curve_.force_n(measure);
     }
   }
@@ -259,17 +262,18 @@ struct [[nodiscard]] FusedForce {
                                                  ///< disagreeing
   S force_n = not_a_number<S>();
   S variance_n2 = not_a_number<S>();
-  S disagreement = not_a_number<S>();  ///< difference over its standard deviation
-  int sources = 0;                     ///< how many of the two took part
+  S disagreement = not_a_number<S>();  ///< difference of the two forces over its standard deviation
+  int sources = 0;                     ///< how many of the two measures took part
 
-  /// Whether the calibration vouches for the force.
+  /// Whether the calibration covers the force.
   bool ok() const { return status == ForceStatus::measured || status == ForceStatus::no_contact; }
   bool has_force() const { return is_finite(force_n); }
 };
 
-/// Forces by area and by depth combined by their variances, whose errors are taken for independent.
-/// One without a force or without a variance does not take part, but an implausible one makes the
-/// other implausible, too; two further apart than `max_disagreement` standard deviations disagree.
+/// Combines the forces by area and by depth, weighted by their variances; their errors are assumed
+/// to be independent. A force that is NaN or has no variance does not take part, but an implausible
+/// one makes the result implausible. Two forces that differ by more than `max_disagreement`
+/// standard deviations are disagreeing.
 template <scalar S>
 FusedForce<S> fused(const NormalForceResult<S>& a,
                     const NormalForceResult<S>& b,

@@ -18,9 +18,9 @@
 namespace fingerpad {
 inline namespace v0 {
 
-/// Fills height maps from the depth maps of a camera (or of an OrthographicCamera). Above a place
-/// in plan the pixel that sees the membrane there depends on the height that is looked for: it is
-/// found by Newton's method, from what depends on the place alone.
+/// Fills height maps from the depth maps of a camera (or of an OrthographicCamera). Which pixel
+/// sees the membrane above a position depends on the height there. So the height is found by
+/// Newton's method; what depends on the position alone is computed in advance.
 ///
 /// Threads may share one object. A frame allocates nothing, throws nothing, and takes bounded time
 /// for each node.
@@ -28,11 +28,12 @@ template <class CameraType = Camera<double>>
 class PadHeights {
  public:
   using Scalar = detail::camera_scalar_t<CameraType>;
-  /// Heights on a square mesh in plan about Q: the shape that Wrench is given.
+  /// Heights on a square mesh in plan about Q: the shape that Wrench takes.
   using Map = detail::membrane::HeightMap<Scalar>;
 
-  /// For depth maps of rows x cols pixels; places within `half_width_mm` of Q along x and y, at
-  /// least the radius of the base and a node more.
+  /// For depth maps of rows x cols pixels. The mesh covers positions within `half_width_mm` of Q
+  /// along x and y, which must be at least the radius of the base plus a node. Refuses bad
+  /// parameters (parameter_error).
   PadHeights(Index rows,
              Index cols,
              const CameraType& camera,
@@ -58,9 +59,9 @@ class PadHeights {
   /// Memory for the heights of a frame.
   Map map() const { return Map(half_width_mm_, spacing_mm_); }
 
-  /// Fills `heights` (from map()); false where a size does not fit: nothing is written. Places that
-  /// no pixel with a depth sees have no height; a place is in contact as far as the pixels around
-  /// it are.
+  /// Fills `heights` (from map()). False, and nothing written, if a size does not fit. Positions
+  /// that no pixel with a depth sees have no height. A position is in contact to the extent that
+  /// the pixels around it are.
   template <grid Depth, contact_mask Mask>
     requires(std::constructible_from<Scalar, cell_t<Depth>>)
   bool operator()(const Depth& depth_mm, const Mask& contact, Map& heights) const {
@@ -73,11 +74,12 @@ class PadHeights {
     return true;
   }
 
-  /// So many threads can share a frame. Fixed, because a row's heights start from those of the rows
-  /// before it in its part: the result is the same whoever fills which part.
+  /// Number of parts of a frame, for threads that share it. It is fixed, because the search for a
+  /// row's heights starts from the rows before it in its part: the result is the same whichever
+  /// thread fills which part.
   static constexpr int parts = 2;
-  /// Fills part `k` of `heights`, in [0, parts); false, and nothing written, for another k or where
-  /// a size does not fit. Call heights.find_slopes() once all parts are filled.
+  /// Fills part `k` of `heights`, in [0, parts). False, and nothing written, for another k or if a
+  /// size does not fit. Call heights.find_slopes() once all parts are filled.
   template <grid Depth, contact_mask Mask>
     requires(std::constructible_from<Scalar, cell_t<Depth>>)
   bool part(int k, const Depth& depth_mm, const Mask& contact, Map& heights) const {
@@ -98,12 +100,12 @@ class PadHeights {
  private:
   using S = Scalar;
 
-  /// Projections are exact up to this height, and no guess goes beyond: what a camera sees wildly
-  /// deep then reaches no farther than it is seen.
+  /// Projections are exact up to this height, and no guess exceeds it. So wildly wrong depths
+  /// affect only the positions where they are seen.
   static constexpr int highest_mm = 20;
 
-  /// Where the membrane above a place is seen: at center + (x, y) / mm_per_px, which depends on its
-  /// height: mm_per_px = at_plate + rising z + bending z^2, nearly straight.
+  /// Where a position in plan is seen: at center + (x, y) / mm_per_px, which depends on the height
+  /// z there: mm_per_px = at_plate + rising z + bending z^2, nearly linear.
   struct Projection {
     S x, y;
     S at_plate, rising, bending;
@@ -111,7 +113,7 @@ class PadHeights {
 
   static Projection projection(const CameraType& camera, const S& x, const S& y) {
     using std::sqrt;
-    // on the axis, the limit from beside it
+    // on the axis, a point beside it gives the limit
     const S r_sq = x * x + y * y;
     const S r = value(r_sq) == 0 ? S(1) / S(1024) : S(sqrt(r_sq));
     const S high = S(highest_mm);
@@ -129,11 +131,11 @@ class PadHeights {
     return projections_[static_cast<std::size_t>(i * side_ + j)];
   }
 
-  /// The pixel that sees a place at some height.
+  /// The pixel that sees a position at some height.
   struct ProjectedPlace {
     S x_px, y_px;  ///< from the center
     S px_per_mm;
-    S nearer;  ///< by this share of x_px and y_px it is nearer to the center for each mm of height
+    S nearer;  ///< shift toward the center per mm of height, as a share of x_px and y_px
   };
 
   static ProjectedPlace projected(const Projection& s, const S& z) {
@@ -142,13 +144,13 @@ class PadHeights {
             S((s.rising + S(2) * z * s.bending) * px_per_mm)};
   }
 
-  /// The depth there, and how it changes with the height of the place.
+  /// The depth there, and its derivative by the height of the position.
   struct Seen {
     S depth_mm;
     S per_mm;
   };
 
-  /// Bilinear; NaN outside of the map and beside pixels without depth.
+  /// Bilinear interpolation; NaN outside the map and beside pixels without depth.
   template <class View>
   Seen seen(const View& depth, const Projection& s, const S& z) const {
     const ProjectedPlace at = projected(s, z);
@@ -172,8 +174,8 @@ class PadHeights {
     return {S(up + down * (low - up)), S(-outward * at.nearer)};
   }
 
-  /// The height of a node if the two before it in its column, from row `first` on, go on straight;
-  /// NaN at first.
+  /// Height of a node by linear extrapolation from the two before it in its column; NaN where these
+  /// lie before row `first`.
   static S continued(const Map& heights, Index first, Index i, Index j) {
     if (i < first + 2) {
       return not_a_number<S>();
@@ -181,7 +183,7 @@ class PadHeights {
     return S(S(2) * heights.node(i - 1, j).height_mm - heights.node(i - 2, j).height_mm);
   }
 
-  /// The z that is seen at its own height.
+  /// The height z at which the depth seen equals z.
   template <class View>
   S height(const View& depth, const Projection& s, const S& guess) const {
     if (value(guess) >= 0 && value(guess) <= highest_mm) {
@@ -191,14 +193,14 @@ class PadHeights {
       }
     }
     const S on_plate = seen(depth, s, S(0)).depth_mm;
-    // steep membrane is seen from further inside
+    // where the membrane is steep, a pixel further inside sees it
     return root(depth, s, is_depth(on_plate) ? on_plate : S(4));
   }
 
   template <class View>
   S root(const View& depth, const Projection& s, S z) const {
     constexpr int max_steps = 8;
-    const S close = S(1) / S(20);  // mm; the step that follows leaves some 0.001 mm
+    const S close = S(1) / S(20);  // mm; the step that follows leaves an error of some 0.001 mm
     for (int step = 0; step < max_steps; ++step) {
       const Seen here = seen(depth, s, z);
       const S excess = here.depth_mm - z;
@@ -214,7 +216,7 @@ class PadHeights {
     return not_a_number<S>();
   }
 
-  /// Of four places around a node, those where the mask says contact.
+  /// The share of four positions around a node where the mask says contact.
   template <class View>
   S contact_share(const View& mask, const Projection& s, const S& z) const {
     if (!is_finite(z)) {
@@ -234,7 +236,7 @@ class PadHeights {
     return S(touching) / S(4);
   }
 
-  /// -1 outside of the image.
+  /// The nearest pixel; -1 outside the image.
   static Index nearest(const S& px, Index count) {
     const S shifted = px + S(1) / S(2);
     const bool inside =

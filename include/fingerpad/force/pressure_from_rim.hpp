@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// Six-axis force without a pressure gauge. The balance of a frame gives the ratio of pressure and
+// Six-axis force without a pressure gauge. The balance of a frame gives the ratio of pressure to
 // mu t. If mu t is calibrated (calibrate/rim.hpp), this gives the pressure, and with it the forces.
-// Source of the balance: Ito, Kim, Obinata 2011, eq. 12, who measure the pressure.
+// Source of the balance: Ito, Kim, Obinata 2011, eq. 12; the paper measures the pressure.
 #include <cmath>
 
 #include "fingerpad/core/dots.hpp"
@@ -14,12 +14,12 @@
 namespace fingerpad {
 inline namespace v0 {
 
-/// Force, moment and pressure (`pressure_mpa`) of a frame, as `wrench` would find them with the
-/// pressure at which mu t comes out as `modulus_n_per_mm`, in [0.005, 50] (otherwise `refused`).
-/// Errors of mu t are those of the pressure, F_z and all else: 1 % is 1 %. No covariance. Without
-/// contact the forces are 0 and the pressure is not known. `not_solved` where no pressure up to
-/// `max_pressure_mpa` fits. Takes 2 calls of `wrench` with OneRow or TwoRows, about 8 with
-/// OneRow{inclination}; no memory.
+/// Force, moment and pressure (`pressure_mpa`) of a frame. The pressure is that at which `wrench`
+/// finds the mu t `modulus_n_per_mm`, which must be in [0.005, 50] (otherwise `refused`). A
+/// relative error of mu t causes the same relative error of the pressure, F_z and all else. There
+/// is no covariance. Without contact the forces are 0 and the pressure is NaN. The status is
+/// `not_solved` if no pressure up to `max_pressure_mpa` fits. Takes 2 calls of `wrench` with OneRow
+/// or TwoRows, about 8 with OneRow{inclination}; allocates nothing.
 template <class Solver,
           class Row,
           class Law,
@@ -38,7 +38,8 @@ WrenchResult<S> pressure_from_rim(const Wrench<Solver, Row, Law, Lines, S>& wren
   if (!detail::membrane::is_modulus(modulus_n_per_mm)) {
     return {};
   }
-  // a first guess within three times of the truth, or the frame looks like another pad's
+  // a first guess within a factor of three of the truth; otherwise the frame looks like another
+  // pad's
   WrenchResult<S> found;
   S pressure = S(0);
   for (const double share : {0.1, 0.0125, 0.8}) {
@@ -48,7 +49,7 @@ WrenchResult<S> pressure_from_rim(const Wrench<Solver, Row, Law, Lines, S>& wren
       break;
     }
   }
-  if (found.by_modulus) {  // without a shape any pressure goes with the modulus
+  if (found.by_modulus) {  // without a shape any pressure fits the modulus
     found.status = WrenchStatus::no_level_line;
   }
   const auto is_answer = [&] {
@@ -66,7 +67,7 @@ WrenchResult<S> pressure_from_rim(const Wrench<Solver, Row, Law, Lines, S>& wren
       found.status = WrenchStatus::no_level_line;
     }
   }
-  if (found.status == WrenchStatus::no_contact) {  // no force, at whatever pressure
+  if (found.status == WrenchStatus::no_contact) {  // no force at any pressure
     found.pressure_mpa = not_a_number<S>();
     return found;
   }

@@ -1,7 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// The membrane's forces on the rim without an unknown inside: all columns together.
+// Forces of the membrane on the rim, from the balance of all columns together. No tension inside
+// the membrane needs to be found.
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -21,7 +22,7 @@ namespace fingerpad {
 inline namespace v0 {
 namespace detail::membrane {
 
-/// The vertical pull of column i by the pressure on it alone: eq. 12 without the shear between
+/// Vertical pull of column i that the pressure on it requires: eq. 12 without the shear between
 /// columns.
 template <scalar S>
 S column_load(const Segments<S>& segments, Index i, const S& pressure_mpa) {
@@ -32,7 +33,8 @@ S column_load(const Segments<S>& segments, Index i, const S& pressure_mpa) {
   return S(pressure_mpa * sum);
 }
 
-/// The force of direction `pull` with the vertical component `load`; false where there is none.
+/// The force along `pull` with the vertical component `load`; false if the pull does not point
+/// upward.
 template <scalar S>
 bool force_along(const Point3<S>& pull, const S& load, Point3<S>& force) {
   const bool upward = value(pull.z) > 0;
@@ -40,7 +42,7 @@ bool force_along(const Point3<S>& pull, const S& load, Point3<S>& force) {
   return upward;
 }
 
-/// The vertical pull at the top of column i, if its tension is that of the rim.
+/// Vertical pull at the top of column i, if the tension there equals that at the rim.
 template <scalar S>
 S lift_at_top(const Segments<S>& segments, Index i, const Point3<S>& pull) {
   using std::sqrt;
@@ -48,7 +50,8 @@ S lift_at_top(const Segments<S>& segments, Index i, const Point3<S>& pull) {
   return S(per_mm * segments.around(i, segments.rows()).normal.z);
 }
 
-/// Force per pull with which the rim carries what is below A_g; not above 0 where it cannot.
+/// Force per pull (mu t) at which the rim carries the pressure on the membrane below A_g. Not above
+/// 0 if the rim cannot carry it.
 template <scalar S>
 S balanced_modulus(const Segments<S>& segments,
                    const std::vector<Point3<S>>& pulls,
@@ -58,14 +61,15 @@ S balanced_modulus(const Segments<S>& segments,
   for (Index i = 0; i < segments.columns(); ++i) {
     const Point3<S>& pull = pulls[static_cast<std::size_t>(i)];
     load = load + column_load(segments, i, pressure_mpa);
-    // where A_g is not level, what is above it pulls up or down, with about the tension of the rim
+    // where A_g is not level, the membrane above pulls up or down with about the tension of the rim
     lift = lift + pull.z - lift_at_top(segments, i, pull);
   }
   return value(lift) > 0 ? S(load / lift) : S(0);
 }
 
-/// Scales the rim's forces so that together they carry what is below A_g: of the rows of an uneven
-/// mesh, which are not satisfied exactly, the sum is known better. False where they cannot.
+/// Scales the forces on the rim so that together they carry the pressure on the membrane below A_g.
+/// On an uneven mesh the single equations are not satisfied exactly, but their sum is more
+/// accurate. False if the forces cannot carry it.
 template <scalar S>
 bool carry_load(const Segments<S>& segments, const S& pressure_mpa, std::vector<Point3<S>>& rim) {
   const S scale = balanced_modulus(segments, rim, pressure_mpa);
@@ -88,8 +92,9 @@ RimSum<S> sum_of_rim(const std::vector<Point3<S>>& forces, const S& radius_mm) {
   using std::cos;
   using std::sin;
   const S half = S(std::numbers::pi) / S(static_cast<double>(forces.size()));
-  // a piece of the rim: the mean of its points lies a little inside, and the sum of what turns
-  // about the axis along it is a little shorter than its parts together
+  // on a piece of the rim, which is an arc, the mean of its points lies slightly inside the circle;
+  // and the vector sum of the forces along the arc, which turn about the axis, is slightly shorter
+  // than the sum of their lengths
   const S arm = radius_mm * S(sin(half)) / half;
   const S arm_along = radius_mm * half / S(sin(half));
   RimSum<S> sums = {{S(0), S(0), S(0)}, {S(0), S(0), S(0)}};
@@ -106,7 +111,7 @@ RimSum<S> sum_of_rim(const std::vector<Point3<S>>& forces, const S& radius_mm) {
   return sums;
 }
 
-/// Force per pull, root mean square.
+/// Force per pull (mu t), from the root mean squares of both.
 template <scalar S>
 S mean_factor(const std::vector<Point3<S>>& forces, const std::vector<Point3<S>>& pulls) {
   using std::sqrt;
@@ -118,18 +123,18 @@ S mean_factor(const std::vector<Point3<S>>& forces, const std::vector<Point3<S>>
   return S(sqrt(S(force_sq / pull_sq)));
 }
 
-/// What fixes the magnitude of a pull, and so how its noise spreads.
+/// What determines the magnitude of a pull, and so how its noise propagates.
 enum class Magnitude : std::uint8_t {
   of_all,     ///< the balance of all columns together
   of_column,  ///< the balance of its own column
-  given,      ///< the material
+  given,      ///< the calibrated mu t
 };
 
 }  // namespace detail::membrane
 
-/// All columns at once: the pulls are right up to one factor, mu t, and what they lift together is
-/// the pressure on the whole membrane below A_g. Needs no material constant, and of the shape
-/// nothing but the area of A_g.
+/// Balances all columns together. The pulls are known up to one factor, mu t, and together they
+/// carry the pressure on the whole membrane below A_g, which gives the factor. Needs no material
+/// constant, and of the shape only A_g.
 struct BalancedRim {
   static constexpr auto magnitude = detail::membrane::Magnitude::of_all;
   static constexpr bool finds_tensions = false;
@@ -157,7 +162,6 @@ struct BalancedRim {
   }
 };
 
-/// Refuses what has no meaning (parameter_error).
 inline void expects_valid(const BalancedRim&) {}
 
 }  // namespace v0

@@ -4,20 +4,20 @@
 // The pull of the membrane at its rim, from the side dots printed slightly above it. The rim is
 // clamped, so the membrane does not stretch along it. With e the unit tangent of the rim and d the
 // derivative of the position along the stress-free membrane, away from the rim, the surface
-// deformation gradient is [d, e]. Split d = s e + d_n, d_n perpendicular to e and lambda = |d_n|
-// (the area ratio J).
+// deformation gradient is [d, e]. Split d = s e + d_n, with d_n perpendicular to e and
+// lambda = |d_n|, which is also the area ratio J.
 //
-// Published (Ito, Kim, Obinata 2011, III.E): the pull has the direction of d. That of a
-// hyperelastic membrane has not: with W = mu t / 2 (|F|^2 + J^-2 - 3) per stress-free area
+// Published (Ito, Kim, Obinata 2011, III.E): the pull has the direction of d. This does not hold
+// for a hyperelastic membrane. With W = mu t / 2 (|F|^2 + J^-2 - 3) per stress-free area
 // (incompressible neo-Hookean) the force per length of rim is
 //   T / (mu t) = dW / dd = s e + (lambda - lambda^-3) d_n / lambda.
-// A little stretch gives little normal tension, but shear is resisted in full: T leans further
-// sideways than d, by lambda^4 / (lambda^4 - 1).
+// A small stretch gives little normal tension, but shear is resisted in full. So T leans further
+// sideways than d, by the factor lambda^4 / (lambda^4 - 1).
 //
-// Other rubbers resist shear less where they are stretched. With the Mooney-Rivlin energy, C1 of it
-// as above and C2 of the second invariant, mu = 2 (C1 + C2) and m = C2 / (C1 + C2),
+// Other rubbers resist shear less where they are stretched. In the Mooney-Rivlin energy, C1 belongs
+// to the form above and C2 to the second invariant. With mu = 2 (C1 + C2) and m = C2 / (C1 + C2),
 //   T / (mu t) = (1 - m + m lambda^-2) s e + (lambda - (1 + m s^2) lambda^-3) d_n / lambda.
-// Without shear m makes no difference: a free pad's rim does not tell it, its apex does
+// Without shear m makes no difference. So the rim of a free pad does not show m, but its apex does
 // (calibrate/rim.hpp).
 #include <cmath>
 #include <cstdint>
@@ -46,14 +46,14 @@ enum class RimPullStatus : std::uint8_t {
 template <scalar S>
 struct RimPull {
   RimPullStatus status = RimPullStatus::missing;
-  Point3<S> pull = {S(0), S(0), S(0)};  ///< T / (mu t), or only a direction; on the base
+  Point3<S> pull = {S(0), S(0), S(0)};  ///< T / (mu t), or only its direction; acts on the base
 };
 
 /// A point of the rim.
 template <scalar S>
 struct RimPoint {
   Point3<S> border;
-  Point3<S> tangent;  ///< unit vector along the rim, the way angles grow
+  Point3<S> tangent;  ///< unit vector along the rim, in the direction of growing angle
   S length_mm;        ///< from here to the side dot, along the stress-free membrane
   S radius_mm;        ///< of the rim
 };
@@ -75,11 +75,11 @@ Point3<S> clamped_rim_pull(const Point3<S>& along,
   return stiffness * shear * tangent + share * across;
 }
 
-/// The traction of a clamped rim of rubber.
+/// The pull of a membrane of rubber at its clamped rim.
 struct ClampedRim {
   static constexpr bool tells_magnitude = true;
 
-  double min_stretch = 1.005;  ///< lambda; less does not tell a direction, in (1, 2]
+  double min_stretch = 1.005;  ///< smallest lambda from which a direction can be found, in (1, 2]
   double mooney_share = 0;     ///< m = C2 / (C1 + C2), in [0, 1]; 0: neo-Hookean
 
   template <scalar S>
@@ -104,7 +104,7 @@ struct ClampedRim {
     const S shear_change = dot(change, tangent);
     const Point3<S> across_change = change + S(-shear_change) * tangent;
     const S inverse = S(1) / squared_norm(across);
-    const S stretching = inverse * dot(across, change);  // of lambda, relative
+    const S stretching = inverse * dot(across, change);  // relative change of lambda
     const S along_rim =
         (S(1) - m * (S(1) - inverse)) * shear_change - S(2) * m * inverse * stretching * shear;
     const S per = (S(1) + m * shear * shear) * inverse * inverse;
@@ -114,7 +114,7 @@ struct ClampedRim {
   }
 };
 
-/// Refuses what has no meaning (parameter_error).
+/// Refuses values out of range (parameter_error).
 inline void expects_valid(const ClampedRim& rim) {
   expects(rim.min_stretch > 1 && rim.min_stretch <= 2, "ClampedRim", "min_stretch", rim.min_stretch,
           "in (1, 2]");
@@ -123,7 +123,7 @@ inline void expects_valid(const ClampedRim& rim) {
 }
 
 namespace detail::membrane {
-/// m of a law; one that has none is taken for neo-Hookean.
+/// m of a law; 0 (neo-Hookean) if it has none.
 template <scalar S, class Law>
 S mooney_share_of(const Law& law) {
   if constexpr (requires { law.mooney_share; }) {
@@ -134,31 +134,33 @@ S mooney_share_of(const Law& law) {
 }
 }  // namespace detail::membrane
 
-/// One row of side dots: d is the chord from the rim to the dot, over its stress-free length. With
-/// the inclination of the stress-free membrane it is carried from the middle of the chord to the
-/// rim by the balance of the membrane there: how fast the chord's stretch, inclination and shear
-/// change along it. With s the arc from the rim, a its radius, phi the inclination (phi_0 without
-/// stress), and the tensions per mu t T1 = lambda - lambda^-3 and
-/// T2 = (1 - m + m lambda^2) (1 - lambda^-2) / lambda:
+/// One row of side dots: d is the chord from the rim to the dot, divided by its stress-free length
+/// L. If the inclination of the stress-free membrane is given, d is carried from the middle of the
+/// chord to the rim. The balance of the membrane there gives how fast stretch, inclination and
+/// shear change along the chord. With ds the arc length (dS without stress), a the radius of the
+/// rim, phi the inclination (phi_0 without stress), r and rho the radius with and without stress,
+/// and the tensions per mu t T1 = lambda - lambda^-3 and T2 = (1 - m + m lambda^2)
+/// (1 - lambda^-2) / lambda:
 ///   inclination  kappa_1 = (p / (mu t) - T2 sin(phi) / a) / T1          (normal balance)
 ///   tension      dT1/ds = (T1 - T2) cos(phi) / a                        (balance along the line)
 ///   hoop stretch dlambda_2/dS = (cos(phi_0) - lambda cos(phi)) / a      (geometry)
 ///   shear        d(r rho P_e)/dS = 0, so with P_e = g s, g = 1 - m + m (lambda lambda_2)^-2,
 ///                chord = s (1 + (cos(phi_0) / a - g' / g) L / 2)            (torque)
-/// What changes along the rim is left out here; the pull that Wrench takes from the balance of the
-/// strip between the rim and the middles of the chords has it.
+/// Here s is the shear along the chord, in the last line that at the rim. What changes along the
+/// rim is left out. With the inclination, Wrench includes it: it takes the pull from the balance of
+/// the strip between the rim and the middles of the chords.
 struct OneRow {
   static constexpr Index rows = 1;
-  /// Noise of d, over that of a dot and the length.
+  /// Noise of d, divided by (noise of a dot / length).
   static constexpr double noise_gain = 1;
 
-  /// phi_0, in [0, pi / 2]; of a spherical cap 2 atan(height / radius). Empty: the chord itself.
+  /// phi_0, in [0, pi / 2]; for a spherical cap 2 atan(height / radius). Empty: d is the chord.
   std::optional<double> stress_free_inclination_rad = {};
 
   /// Whether d depends on mu t.
   bool needs_modulus() const { return stress_free_inclination_rad.has_value(); }
 
-  /// `load_per_mm`: pressure / (mu t), 1/mm; 0: not known yet, the chord itself.
+  /// `load_per_mm`: pressure / (mu t), 1/mm; 0: not known yet, d is the chord.
   template <scalar S>
   Point3<S> along(const detail::membrane::RimPoint<S>& rim,
                   const Point3<S>* side_dots,
@@ -218,8 +220,8 @@ struct OneRow {
   }
 };
 
-/// Two rows, the second at twice the stress-free length: the derivative at the rim itself, to
-/// second order, d = (4 x1 - 3 x0 - x2) / (2 L).
+/// Two rows of side dots, the second at twice the stress-free length of the first. They give the
+/// derivative at the rim itself, to second order: d = (4 x1 - 3 x0 - x2) / (2 L).
 struct TwoRows {
   static constexpr Index rows = 2;
   static constexpr bool needs_modulus() { return false; }
@@ -236,7 +238,7 @@ struct TwoRows {
   }
 };
 
-/// Refuses what has no meaning (parameter_error).
+/// Refuses values out of range (parameter_error).
 inline void expects_valid(const TwoRows&) {}
 inline void expects_valid(const OneRow& row) {
   const double inclination = row.stress_free_inclination_rad.value_or(0);

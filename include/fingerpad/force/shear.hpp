@@ -2,18 +2,18 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 // Tangential force and moment about the contact's normal by look-up, from displacement and rotation
-// of the dots, normalised by the size of the contact. Source: Ito, Kim and Obinata,
-// "Acquisition of Contact Force and Slippage ...", "Method for measuring tangential force" and
-// "... moment around normal direction":
+// of the dots, normalised by the size of the contact. Source: Ito, Kim and Obinata, "Acquisition of
+// Contact Force and Slippage ...", "Method for measuring tangential force" and "... moment around
+// normal direction":
 //
 //   d_nor     = (S_c / S_ref)^T_S d     or (D / D_ref)^T_D d          (4)
 //   theta_nor = (S_c / S_ref)^R_S theta or (D / D_ref)^R_D theta      (5)
 //
-// with (5) corrected (docs/errata.md, E031), then a map from these to force and moment: "the
-// relationship between the normalized displacement and tangential force is almost linear"; its
-// slopes are not printed, so calibrate/force.hpp identifies them. Forces are what the object exerts
-// on the pad: a pad that is dragged along x is pushed along x. The moment is about the normal
-// through the center of the contact.
+// with (5) corrected (docs/errata.md, E031). A map then gives force and moment: "the relationship
+// between the normalized displacement and tangential force is almost linear". Its slopes are not
+// printed, so calibrate/force.hpp identifies them. Forces are what the object exerts on the pad: a
+// pad that is dragged along x is pushed along x. The moment is about the normal through the center
+// of the contact.
 //
 // motion/contact_shift.hpp chooses the dots. The paper takes the central one.
 #include <array>
@@ -28,12 +28,12 @@
 namespace fingerpad {
 inline namespace v0 {
 
-/// How the stiffness of a contact grows with its size: displacement and rotation are multiplied by
-/// (measure / reference) to these exponents.
+/// Normalisation by the size of the contact, because a larger contact is stiffer. Displacement and
+/// rotation are multiplied by (measure / reference) to these exponents.
 template <scalar S = double>
 struct ShearNormalisation {
   S reference = not_a_number<S>();  ///< in the measure's unit, finite, > 0
-  S displacement_exponent = S(0);   ///< T_S or T_D, finite; the sources have it > 0
+  S displacement_exponent = S(0);   ///< T_S or T_D, finite; > 0 in the sources
   S rotation_exponent = S(0);       ///< R_S or R_D, likewise
 };
 
@@ -44,7 +44,7 @@ template <scalar S = double>
 ShearNormalisation<S> shear_by_radius(const S& reference_mm) {
   return {reference_mm, S(1), S(3)};
 }
-/// Use it if the size of the contact is not known, with any positive measure.
+/// No normalisation, for contacts of unknown size. Pass any positive measure.
 template <scalar S = double>
 ShearNormalisation<S> shear_without_measure() {
   return {S(1), S(0), S(0)};
@@ -59,10 +59,10 @@ struct OddPolynomial {
   static constexpr std::size_t size = static_cast<std::size_t>(Degree);
 
   std::array<S, size> coefficients = none();  ///< c_1 first, finite, c_1 > 0
-  S to = not_a_number<S>();  ///< the largest |x| identified, > 0; beyond it along the tangent.
+  S to = not_a_number<S>();  ///< the largest |x| identified, > 0; beyond it the tangent continues.
                              ///< NaN: not known, for Degree 1 only
 
-  /// The polynomial over x, by which a vector x is multiplied.
+  /// The polynomial divided by x: the factor of a vector x of this length.
   S gain(const S& length) const {
     const bool beyond = value(length) > value(to);
     const S held = beyond ? to : length;
@@ -89,7 +89,7 @@ struct OddPolynomial {
 
 }  // namespace detail
 
-/// The same in all directions, as in the paper with Degree 1: a force along the displacement.
+/// An isotropic map: the force is along the displacement. Degree 1 is that of the paper.
 template <int Degree = 1, scalar S = double>
 struct RadialShear {
   using number = S;
@@ -121,7 +121,7 @@ struct RadialShear {
   static S size_of(const S& x) { return value(x) < 0 ? S(-x) : x; }
 };
 
-/// Any linear map, for sensors that are not round or whose axes are not those of the image:
+/// A general linear map, for sensors that are not round or whose axes are not those of the image:
 /// F = K d + offset, M = c theta + offset.
 template <scalar S = double>
 struct LinearShear {
@@ -147,7 +147,7 @@ struct LinearShear {
   bool within(const S&) const { return true; }
 };
 
-/// Refuses what has no meaning (parameter_error).
+/// Refuses values out of range (parameter_error).
 template <scalar S>
 void expects_valid(const ShearNormalisation<S>& normalisation) {
   const char* const owner = "ShearNormalisation";
@@ -196,7 +196,8 @@ void expects_valid(const LinearShear<S>& map) {
           "finite and > 0, or NaN");
 }
 
-/// (measure / reference)^exponent; 0 without contact, so that nothing is amplified there.
+/// (measure / reference)^exponent. Without contact (measure not above 0) it is 0, so that displaced
+/// dots give no force.
 template <scalar S>
 S shear_factor(const S& measure, const S& reference, const S& exponent) {
   using std::exp;
@@ -215,7 +216,8 @@ S moment_about_origin(const S& moment_n_mm, const Point2<S>& force_n, const Poin
   return S(moment_n_mm + center_mm.x * force_n.y - center_mm.y * force_n.x);
 }
 
-/// Force and moment fail each by itself.
+/// Tangential force and moment of a frame. Each has its own status, because one can fail without
+/// the other.
 template <scalar S = double>
 struct [[nodiscard]] ShearResult {
   ForceStatus force_status = ForceStatus::not_finite;
@@ -227,16 +229,16 @@ struct [[nodiscard]] ShearResult {
 
   /// The worse of both.
   ForceStatus status() const { return detail::worse(force_status, moment_status); }
-  /// Whether the calibration vouches for both.
+  /// Whether the calibration covers both.
   bool ok() const { return status() <= ForceStatus::measured; }
   bool has_force() const { return force_status != ForceStatus::not_finite; }
   bool has_moment() const { return moment_status != ForceStatus::not_finite; }
 };
 
-/// Tangential force and moment by look-up.
+/// Finds tangential force and moment by look-up.
 ///   Map  RadialShear<Degree>  take this for round pads; published with Degree 1
 ///        LinearShear          take this for others, or axes that are not those of the image
-/// Const, O(1), no memory from the heap.
+/// A call is const, O(1), and allocates nothing.
 template <class Map = RadialShear<>>
 class Shear {
  public:
@@ -249,8 +251,8 @@ class Shear {
     expects_valid(map);
   }
 
-  /// One frame: NaN where the measure or what force or moment come from is not finite; 0 without
-  /// contact.
+  /// Force and moment of one frame. The force is NaN if the measure or the displacement is not
+  /// finite, the moment if the measure or the rotation is not finite. Both are 0 without contact.
   ShearResult<S> operator()(const S& measure,
                             const Point2<S>& displacement_mm,
                             const S& rotation_rad) const {
@@ -286,7 +288,8 @@ class Shear {
   }
 
  private:
-  /// A contact of less than a hundredth of the reference is one that no calibration has.
+  /// A measure below a hundredth of the reference is below_range, because no calibration has such a
+  /// contact.
   ForceStatus status_of(const S& measure, const S& exponent, bool wild, bool within) const {
     const bool tiny =
         value(exponent) != 0 && value(S(S(100) * measure)) < value(normalisation_.reference);

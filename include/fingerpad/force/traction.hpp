@@ -2,22 +2,24 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 // The load of the object on each dot of the membrane: maps of contact pressure and shear, and force
-// and moment as their sums. Not in the papers. A membrane carries load by tension alone:
-//   q = -(div T + p n),   T = (mu t / J) (B - J^-2 P),   B = F F^T,
-// per current area, with p the pressure of the fluid, n pointing out of the pad, F the surface
-// deformation gradient against the stress-free membrane, J = det F, P the identity on the surface.
+// and moment as their sums. The method is not in the papers. A membrane carries load by tension
+// alone:
+//   q = -(div T + p n),   T = (mu t / J) (B - J^-2 P),   B = F F^T.
+// The load q is per current area, p is the pressure of the fluid, and n is the normal out of the
+// pad. F is the surface deformation gradient against the stress-free membrane, J = det F, and P the
+// identity on the surface.
 //
 // In discrete form, the divergence at a dot is the pull of the cells around it, the derivative of
-// their stored energy. Rigid motions therefore change nothing, and the sum of the loads over a
+// their stored energy. Therefore rigid motions change nothing, and the sum of the loads over a
 // patch equals the pull across its border plus the pressure on it, to rounding: the mesh blurs a
 // load by about one pitch but loses none of it. The steps are in detail/, in this order: dot_cell,
 // traction_memory, frame_loads.
 //
 // If mu t (shear modulus times thickness of the stress-free membrane) is not given, it is computed
-// from the free part of each frame, where the membrane alone holds the pressure: the mean of the
-// normal loads is 0, so with f the pull on a dot for mu t = 1 N/mm, A its area and n its normal,
-// sum p = -mu t sum f . n / A. Least squares of mu t f + p A n would be biased: noise of the dots
-// adds to f . f, which makes mu t too small, but does not affect f . n.
+// from the free part of each frame, where the membrane alone balances the pressure. There the mean
+// of the normal loads is 0. With f the pull on a dot for mu t = 1 N/mm, A its area and n its
+// normal, this gives sum p = -mu t sum f . n / A. Least squares of mu t f + p A n would be biased:
+// noise of the dots adds to f . f, which makes mu t too small, but does not affect f . n.
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -37,23 +39,25 @@ inline namespace v0 {
 
 enum class TractionStatus : std::uint8_t {
   ok,
-  no_contact,    ///< no dot is in contact: force and moment are 0; the maps are written
-  incomplete,    ///< force and moment miss the share of some dots in contact or beside them, which
-                 ///< have no load: they lie on the edge of the grid, or dots were not found
-  bad_pressure,  ///< <= 0 or not finite: nothing is known
-  pressure_not_in_mpa,      ///< above max_pressure_mpa: kPa, Pa? Nothing is known
-  not_of_this_membrane,     ///< most cells are folded or stretched beyond measure: dots in another
-                            ///< order or unit, or of another pad
-  too_few_dots,             ///< no dot was found with all its neighbours: nothing is known
-  modulus_not_of_this_pad,  ///< with the given mu t the free part does not hold the pressure, to
-                            ///< 5 % and the noise of the dots, at most a fifth: the membrane
-                            ///< has aged or is another, or the gauge is off. Force and maps are
-                            ///< those of the given mu t: F_z is off by about twice as much
-  free_part_pulled,  ///< the mean load on the free part, where nothing pulls, has more than a
-                     ///< quarter of the pressure along the base: dots shifted by one, or of another
-                     ///< pad. Force and maps are those of the dots as given: not to be trusted
-  no_balance,  ///< without a given mu t: the free part is too small, or does not hold the pressure
-  refused,     ///< a grid, state or workspace has another size: nothing was done
+  no_contact,  ///< no dot is in contact: force and moment are 0; the maps are written
+  incomplete,  ///< force and moment lack the share of some dots in contact or beside it. These dots
+               ///< have no load: they lie on the edge of the grid, or dots were not found
+  bad_pressure,             ///< <= 0 or not finite: no force
+  pressure_not_in_mpa,      ///< above max_pressure_mpa: kPa, Pa? No force
+  not_of_this_membrane,     ///< most cells are folded, or stretched beyond largest_stretch: dots in
+                            ///< another order or unit, or of another pad. No force
+  too_few_dots,             ///< no dot was found with all its neighbours: no force
+  modulus_not_of_this_pad,  ///< with the given mu t the free part does not balance the pressure,
+                            ///< within 5 % plus the noise of the dots, at most 20 %: the membrane
+                            ///< has aged or is another one, or the gauge is off. Force and maps use
+                            ///< the given mu t: F_z is off by about twice as much
+  free_part_pulled,         ///< the mean load on the free part, where nothing pulls, is more than a
+                            ///< quarter of the pressure along the base: dots shifted by one, or
+                            ///< of another pad. Force and maps are those of the dots as given and
+                            ///< are not reliable
+  no_balance,  ///< no mu t was given, and the free part is too small or does not balance the
+               ///< pressure
+  refused,     ///< a grid or the maps have another size: nothing was done
 };
 
 /// "ok", "no contact", ...
@@ -85,26 +89,26 @@ constexpr const char* name_of(TractionStatus status) {
   return "unknown";
 }
 
-/// `force_n` and `moment_n_mm` are finite where there is a force (see has_force). Any other number
-/// that is not known is NaN.
+/// Force and moment of a frame. `force_n` and `moment_n_mm` are finite where there is a force (see
+/// has_force). Any other number that is not known is NaN.
 template <scalar S = double>
 struct [[nodiscard]] TractionResult {
   TractionStatus status = TractionStatus::refused;
   Point3<S> force_n = detail::missing_point<S>();      ///< that the object exerts on the pad
   Point3<S> moment_n_mm = detail::missing_point<S>();  ///< about the origin
-  S mu_t_n_per_mm = not_a_number<S>();                 ///< that was used
+  S mu_t_n_per_mm = not_a_number<S>();                 ///< the mu t that was used
   detail::traction::ModulusBalance<S> balance =
-      {};  ///< what the free part says of mu t, whichever was used
+      {};  ///< mu t by the free part of this frame, even if it was given
   Point3<S> free_load_mpa = detail::missing_point<S>();  ///< mean of the loads on the free part
-  S free_load_rms_mpa = not_a_number<S>();  ///< of the loads on the free part, where there are
-                                            ///< none: the error of a single dot's load
+  S free_load_rms_mpa = not_a_number<S>();  ///< rms of the same loads, which should be 0: the error
+                                            ///< of a single dot's load
   Index dots_in_contact = 0;
-  Index dots_summed = 0;    ///< whose loads make the force
+  Index dots_summed = 0;    ///< dots whose loads make the force
   Index dots_left_out = 0;  ///< in contact or in the ring around it, but without a load
-  Index dots_bridged = 0;   ///< not found, but put between their neighbours for the sums
-  Index dots_loaded = 0;    ///< that have a load in the maps, if there is a modulus
-  Index cells_taken = 0;    ///< that pull their dots
-  Index cells_refused = 0;  ///< folded, or stretched beyond measure
+  Index dots_bridged = 0;   ///< not found, but placed between their neighbours for the sums
+  Index dots_loaded = 0;    ///< dots with a load in the maps, if mu t is known
+  Index cells_taken = 0;    ///< cells that pull their dots
+  Index cells_refused = 0;  ///< folded, or stretched beyond largest_stretch
   Index cells_slack = 0;    ///< with a tension below 0
   S smallest_tension_n_per_mm = not_a_number<S>();  ///< of all cells
 
@@ -118,20 +122,24 @@ struct [[nodiscard]] TractionResult {
 
 template <scalar S = double>
 struct TractionOptions {
-  std::optional<S> mu_t_n_per_mm = {};  ///< shear modulus times thickness, in (0, 1e6]: measured on
-                                        ///< the material, or the sum of the `balance` of frames of
-                                        ///< the free pad. Empty: from the free part of each frame
-  Index min_free_dots = 40;  ///< >= 1: of the free part, where mu t is empty; its noise goes with
-                             ///< their inverse root
-  Index ring_dots = 1;  ///< in [0, 5]: force and moment are summed over the dots in contact and
-                        ///< this many around it, to which the mesh carries a share of the load at
-                        ///< the contact's edge. What lies outside is the free part: its load is 0
-  Index fade_dots = 3;  ///< in [0, 20]: over this many dots more the weight in the sums falls to 0.
-                        ///< The true sums do not change by that; an abrupt end, 0, makes them
-                        ///< noisy, since all the pull across one line of dots then counts
-  double max_pressure_mpa = 0.2;  ///< > 0: more is taken for kPa or Pa
+  /// Shear modulus times thickness of the stress-free membrane, in (0, 1e6]. It is measured on the
+  /// material, or follows from the sum of the `balance` of frames of the free pad. Empty: computed
+  /// from the free part of each frame.
+  std::optional<S> mu_t_n_per_mm = {};
+  /// Smallest number of dots of the free part from which mu t is computed or checked, >= 1. The
+  /// noise of mu t goes with the inverse root of their number.
+  Index min_free_dots = 40;
+  /// In [0, 5]: force and moment are summed over the dots in contact and this many around it, to
+  /// which the mesh carries a share of the load at the contact's edge. The dots outside are the
+  /// free part, where the load is 0.
+  Index ring_dots = 1;
+  /// In [0, 20]: over this many further dots the weight in the sums falls to 0. This does not
+  /// change the true sums. An abrupt end (0) makes them noisy, because they then depend on the pull
+  /// across one line of dots.
+  Index fade_dots = 3;
+  double max_pressure_mpa = 0.2;  ///< > 0: a higher pressure is taken for kPa or Pa
   double largest_stretch = 5.0;   ///< in (1, 1000]: a cell with a principal stretch above this or
-                                  ///< below its inverse is no membrane: wrong dots
+                                  ///< below its inverse is refused, because its dots must be wrong
 };
 template <scalar S>
 void expects_valid(const TractionOptions<S>& options) {
@@ -149,29 +157,29 @@ void expects_valid(const TractionOptions<S>& options) {
           "largest_stretch", options.largest_stretch, "in (1, 1000]");
 }
 
-/// The traction field of a pad.
-/// Const: threads may share one, each with maps of its own. A frame takes no memory, throws
-/// nothing, and needs O(rows cols) time.
+/// Computes the loads on the dots of a pad. Threads may share one object, each with its own maps. A
+/// frame allocates nothing, throws nothing, and takes O(rows cols) time.
 template <scalar S = double>
 class TractionField {
  public:
-  /// What the last frame said of each dot and of each cell; NaN where it said nothing. A value, of
-  /// which each thread needs one of its own. Views hold as long as the maps do.
+  /// Results of the last frame for each dot and each cell; NaN where unknown. They hold the memory
+  /// of a frame, so each thread needs its own. Views are valid as long as the maps exist.
   class Maps {
    public:
     Index rows() const { return memory_.rows; }
     Index cols() const { return memory_.cols; }
 
-    /// What the object exerts on the pad, MPa: per area as it is now.
+    /// Load that the object exerts on the pad, MPa, per current area.
     StridedView<const Point3<S>> load_mpa() const { return dots(memory_.load); }
-    /// How hard it presses into the pad: -load . n, with n out of the pad.
+    /// Contact pressure, positive into the pad: -load . n, with n out of the pad.
     StridedView<const S> pressure_mpa() const { return dots(memory_.pressure); }
     /// The part of the load along the membrane.
     StridedView<const Point3<S>> shear_mpa() const { return dots(memory_.shear); }
-    /// Area that belongs to the dot, along n, mm^2; a load times its length is a force.
+    /// Area vector of the dot's share of the membrane, along n, mm^2; a load times its length is a
+    /// force.
     StridedView<const Point3<S>> area_mm2() const { return dots(memory_.area); }
-    /// Principal tensions of the cell between dots (i, j) and (i + 1, j + 1), N/mm; one row and one
-    /// column less than there are dots.
+    /// Principal tensions of the cell between dots (i, j) and (i + 1, j + 1), N/mm; the grid has
+    /// one row and one column fewer than the dots.
     StridedView<const detail::traction::CellTension<S>> tension_n_per_mm() const {
       return {memory_.tension.data(), rows() - 1, cols() - 1, cols() - 1};
     }
@@ -188,10 +196,10 @@ class TractionField {
     detail::traction::FrameMemory<S> memory_;
   };
 
-  /// `stress_free_mm`: where the dots are when the membrane carries nothing, neither pressure
-  /// nor touch; only its shape counts, not where it lies. NaN: no such dot. Rows and columns
-  /// may run any way; out of the pad is the side on which z grows. Refuses bad parameters and
-  /// fewer than 3 x 3 dots (parameter_error).
+  /// `stress_free_mm`: positions of the dots when the membrane carries neither pressure nor
+  /// contact; NaN: no such dot. Only their shape counts, not where it lies. Rows and columns may
+  /// run any way; out of the pad is the side on which z grows. Refuses bad parameters and fewer
+  /// than 3 x 3 dots (parameter_error).
   template <spatial_dot_grid Dots>
   explicit TractionField(const Dots& stress_free_mm, const TractionOptions<S>& options = {})
       : options_(options), limits_(options.largest_stretch) {
@@ -217,11 +225,11 @@ class TractionField {
   Index rows() const { return rows_; }
   Index cols() const { return cols_; }
 
-  /// Maps without a frame, with all the memory that frames will need.
+  /// Maps without a frame, with all the memory that frames need.
   Maps maps() const { return Maps(rows_, cols_); }
 
-  /// The loads in a frame with dots `dots_mm` (NaN: not found), of which those with a true
-  /// `contact` touch the object, at `pressure_mpa` of the fluid above that outside.
+  /// The loads in a frame with dots `dots_mm` (NaN: not found). A true `contact` marks the dots
+  /// that touch the object. `pressure_mpa` is the pressure of the fluid above that outside.
   template <spatial_dot_grid Dots, contact_mask Contact>
   TractionResult<S> operator()(const Dots& dots_mm,
                                const Contact& contact,
@@ -275,10 +283,11 @@ class TractionField {
     return !(S(square(quarter)) < pull_sq);
   }
 
-  /// Whether the free part holds the pressure with this mu t: the mean of its loads is 0, but for a
-  /// twentieth of the pressure, twice what the mesh misses, and for noise. The sum of the loads is
-  /// the pull across the border, so its noise is about that of one dot, of which three times are
-  /// allowed. A fifth is too much in any case. True where the free part is too small to tell.
+  /// Whether the free part balances the pressure with this mu t. The mean of its loads must be 0,
+  /// but for noise and a twentieth of the pressure, which is twice the error of the mesh. The sum
+  /// of the loads is the pull across the border, so its noise is about that of one dot, of which
+  /// three times are allowed. More than a fifth is refused in any case. True where the free part is
+  /// too small to tell.
   bool holds(const TractionResult<S>& result) const {
     const auto& balance = result.balance;
     if (balance.dots < options_.min_free_dots) {
@@ -291,7 +300,7 @@ class TractionField {
     return !(bound < off) && !(bound < -off);
   }
 
-  /// NaN, and a status that says why, where there is none.
+  /// The mu t of this frame. If there is none: NaN, and a status that gives the reason.
   S modulus_of(const S& pressure_mpa, const Memory& frame, TractionResult<S>& result) const {
     if (!detail::traction::is_measure(pressure_mpa)) {
       result.status = TractionStatus::bad_pressure;
@@ -324,7 +333,7 @@ class TractionField {
   Index rows_ = 0;
   Index cols_ = 0;
   std::vector<detail::traction::StressFreeCell<S>> cells_;
-  S outward_ = S(1);  ///< -1 where rows and columns of the grid run such that their normal looks in
+  S outward_ = S(1);  ///< -1 if the normal by the rows and columns of the grid points into the pad
 };
 
 template <spatial_dot_grid Dots>

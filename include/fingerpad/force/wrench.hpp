@@ -6,7 +6,7 @@
 // vision-based fluid-type hemispherical tactile sensor" (2011); published and corrected forms in
 // docs/errata.md, E025-E027 and E043-E046.
 //
-// The base feels the pull of the membrane along the rim and the pressure on its area (eqs. 1, 2):
+// The membrane pulls on the base along the rim, and the pressure acts on its area (eqs. 1, 2):
 //   F = integral of T ds - p S_base z,    M = integral of b x T ds.
 // F and M are what the object exerts on the pad, M about Q, the center of the base: a press gives
 // F_z < 0. The side dots give the direction of the membrane's pull (force/rim_traction.hpp). Its
@@ -36,14 +36,14 @@
 namespace fingerpad {
 inline namespace v0 {
 
-/// Six-axis force.
+/// Finds the six-axis force.
 ///   Solver  LeastSquares  use it if you also need the tensions inside the membrane
 ///           BalancedRim   use it for force and moment only: as good, 15 times as fast
 ///   Row     OneRow        use it for one row of side dots
 ///           TwoRows       use it for two rows, which give d at the rim itself
-/// ClampedRim is the pull of a clamped rubber rim; StraightLines do not meet on a summit that is
-/// not level. published/wrench.hpp has other laws and lines, and the whole method as printed. If
-/// the shape is not known, use by_modulus().
+/// ClampedRim is the pull of a clamped rubber rim. StraightLines do not crowd together on a summit
+/// that is not level. published/wrench.hpp has other laws and lines, and the whole method as
+/// printed. If the shape is not known, use by_modulus().
 ///
 /// Threads may share one estimator, each with its own workspace. A frame allocates nothing, throws
 /// nothing, and takes O(columns rows) time, with LeastSquares O((columns rows)^1.5).
@@ -58,11 +58,12 @@ class Wrench {
       "the scalar comes last: Wrench<LeastSquares, OneRow, ClampedRim, StraightLines, double>");
 
  public:
-  /// All the memory of a frame. After it, what the frame's forces were found from.
+  /// Scratch memory for a frame; one per thread. After a frame it holds the mesh and the tensions
+  /// from which the forces were computed.
   class Workspace {
    public:
     /// Points of the rim, in the order of the angle, and the membrane's pull on the base there in
-    /// N/mm; NaN where the status of the frame gives no force.
+    /// N/mm; NaN without contact, and where the status of the frame gives no force.
     Index rim_points() const { return static_cast<Index>(tension_.size()); }
     const Point3<S>& rim_tension(Index k) const { return tension_[static_cast<std::size_t>(k)]; }
     /// Nodes of the mesh: line 0 ... columns - 1, row 0 (rim) ... rows (A_g).
@@ -89,8 +90,8 @@ class Wrench {
     std::vector<Point3<S>> tension_;
   };
 
-  /// `border_mm`: one row of points of the rim, one for each column of side dots, in any order, at
-  /// most 5 % off the circle, 6 or more.
+  /// `border_mm`: one row of 6 or more points of the rim, one for each column of side dots, in any
+  /// order, at most 5 % off the circle. Refuses bad parameters (parameter_error).
   template <spatial_dot_grid Border>
   explicit Wrench(const Border& border_mm,
                   const WrenchOptions<S>& options = {},
@@ -105,7 +106,8 @@ class Wrench {
             row,
             law) {}
 
-  /// The same with the stress-free length of each side dot, from calibrate/rim.hpp.
+  /// The same with the stress-free length of each side dot in mm, side_dot_length_mm(column), as
+  /// from calibrate/rim.hpp.
   template <spatial_dot_grid Border, class Length>
     requires(std::invocable<const Length&, Index>)
   Wrench(const Border& border_mm,
@@ -134,10 +136,9 @@ class Wrench {
   Workspace workspace() const { return Workspace(*this); }
 
   /// Force and moment of a frame. `shape` is the membrane (the map of PadHeights, or any
-  /// membrane_shape);
-  /// `side_dots_mm` has Row::rows rows, the one nearer to the rim first, and a column for each
-  /// border point; NaN: not found. Pressure in MPa above that of the air. With `noise`
-  /// the result has a covariance.
+  /// membrane_shape). `side_dots_mm` has Row::rows rows, the one nearer to the rim first, and a
+  /// column for each border point; NaN: not found. `pressure_mpa` is the pressure above that of the
+  /// air. With `noise` the result has a covariance.
   template <class Shape, spatial_dot_grid Dots>
     requires(membrane_shape<Shape, S>)
   WrenchResult<S>
@@ -169,9 +170,9 @@ class Wrench {
     return result;
   }
 
-  /// The same without a shape, by calibrated_modulus_n_per_mm, and refused without it: the pulls of
-  /// the rim are forces. F_z is the small difference of pull and pressure, so one row of side dots
-  /// must have its stress-free inclination. O(columns).
+  /// The same without a shape: calibrated_modulus_n_per_mm turns the pulls at the rim into forces;
+  /// without it the frame is refused. F_z is the small difference of pull and pressure, so one row
+  /// of side dots must have its stress-free inclination. O(columns).
   template <spatial_dot_grid Dots>
     requires(Law::tells_magnitude)
   WrenchResult<S> by_modulus(const Dots& side_dots_mm,
@@ -226,7 +227,7 @@ class Wrench {
     WrenchStatus pulled = measure_rim(dots, S(0), work, result);
     if (row_.needs_modulus() && pulled == WrenchStatus::ok) {
       const S modulus = detail::membrane::balanced_modulus(
-          work.segments_, work.pulls_.segments, pressure);  // before dots are carried to the rim
+          work.segments_, work.pulls_.segments, pressure);  // from chords, not at the rim yet
       if (value(modulus) > 0) {
         pulled = measure_rim(dots, S(pressure_mpa / modulus), work, result);
       }
@@ -254,7 +255,7 @@ class Wrench {
     return compare_modulus(work);
   }
 
-  /// `result` holds what the shape has said.
+  /// `result` holds what is known from the shape.
   template <class Dots>
   WrenchResult<S> by_modulus(const Dots& dots,
                              const S& pressure_mpa,
@@ -290,7 +291,8 @@ class Wrench {
                                                     : WrenchStatus::ok;
   }
 
-  /// Half as much again: noise of 0.02 mm in each side dot, 3 % in the mean, is far below it.
+  /// Compares mu t with the calibrated one. A factor of 1.5 is far above the noise: 0.02 mm in each
+  /// side dot change mu t by 3 % in the mean.
   WrenchStatus compare_modulus(const Workspace& work) const {
     if (!Law::tells_magnitude || !options_.calibrated_modulus_n_per_mm) {
       return WrenchStatus::ok;
@@ -353,8 +355,9 @@ class Wrench {
     return WrenchStatus::ok;
   }
 
-  /// Area of a circle over that of the polygon of as many corners as there are lines: the mesh has
-  /// chords where rim and A_g are round, so the pressure on it is a little too small.
+  /// Area of a circle over that of the polygon with one corner for each line. The mesh has chords
+  /// where rim and A_g are round, so the pressure on it is slightly too small; this factor corrects
+  /// it.
   S chord_factor() const {
     using std::sin;
     const S turn = S(2 * std::numbers::pi) / S(static_cast<double>(options_.columns));
@@ -365,7 +368,7 @@ class Wrench {
     return S(std::numbers::pi) * options_.base_radius_mm * options_.base_radius_mm;
   }
 
-  /// Eqs. 4 and 5.
+  /// Sums force and moment over the rim, eqs. 4 and 5.
   template <detail::membrane::Magnitude Fixed>
   void add_up(const S& pressure_mpa,
               Workspace& work,
@@ -414,7 +417,8 @@ class Wrench {
     return out;
   }
 
-  /// The tension at each border point: that of its segment, in the direction of its own pull.
+  /// Stores the tension at each border point: its own pull, scaled by the ratio of tension to pull
+  /// in its segment.
   void keep_tensions(Workspace& work) const {
     using std::sqrt;
     const S step = S(2 * std::numbers::pi) / S(static_cast<double>(options_.columns));
