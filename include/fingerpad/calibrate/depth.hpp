@@ -3,7 +3,7 @@
 #pragma once
 // Fits the optical properties of the fluid to colours at known depths: c_red, c_green (through
 // their difference), kappa and g, by least squares on the depth equation F(l) = 0 of
-// absorption_law.hpp, with any number of samples. Source: Ito, Kim, Obinata, "Shape sensing by
+// depth/absorption.hpp, with any number of samples. Source: Ito, Kim, Obinata, "Shape sensing by
 // vision-based tactile sensor" (slides), parameter identification, which solves three equations for
 // three unknowns; printed error E005.
 //

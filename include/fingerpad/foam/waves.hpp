@@ -68,8 +68,8 @@ struct ZeroCrossings {
 };
 
 /// Counts the waves of the strongest line of the spectrum in a Hann window. Use it when the clock
-/// is uneven or waves are shorter than three samples: it uses the actual times. O(window^2 / 2) for
-/// each taxel.
+/// is uneven or waves are shorter than three samples: it uses the actual times. O(window^2) for each
+/// taxel.
 struct SpectralPeak {
   void check() const {}
 

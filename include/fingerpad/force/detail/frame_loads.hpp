@@ -206,7 +206,7 @@ bool is_free(const FrameMemory<S>& frame, std::size_t dot, Index ring) {
   return frame.has(dot, loaded) && frame.steps[dot] > ring;
 }
 
-/// Both sides of the balance of the free part; see modulus.hpp.
+/// Both sides of the balance of the free part (ModulusBalance).
 template <scalar S>
 ModulusBalance<S> balance_of(const S& pressure_mpa, Index ring, const FrameMemory<S>& frame) {
   ModulusBalance<S> balance;
