@@ -491,3 +491,18 @@ TEST_CASE("dots: garbage among the spots is none") {
   CHECK(result.spots == truth.rows * truth.cols);
   CHECK(test::errors_of(found, truth).worst_px == 0);
 }
+
+TEST_CASE("dots: a free dot at an impossible position counts as not seen") {
+  Print print;
+  DotPlaces free = test::places_of(print);
+  free(2, 3) = {1e300, 5};
+  const DotTracker tracker(free);
+  DotPlaces found(free.size());
+  auto state = tracker.start();
+  const DotResult result = tracker(std::vector<Point2<double>>{}, found, state);
+  CHECK(result.expected == free.rows * free.cols - 1);
+  CHECK(std::abs(tracker.places_px()(2, 3).x - test::places_of(print)(2, 3)[0]) < 1);
+
+  const DotPlaces far(free.rows, free.cols, cv::Vec2d(1e300, 1e300));
+  CHECK_THROWS_WITH(DotTracker(far), Catch::Matchers::Contains("free_px = 0"));
+}

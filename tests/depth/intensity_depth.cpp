@@ -136,6 +136,19 @@ TEST_CASE("intensity depth: bad pixels have no depth and change no other", "[int
   CHECK(missing == 4);
 }
 
+TEST_CASE("intensity depth: no depth where the law overflows", "[intensity_depth]") {
+  const Image<double> free(8, 8, 200.0);
+  const IntensityDepth<float> depth(free, {1, 1e30, 1e38});
+  auto workspace = depth.workspace();
+  Image<double> now(8, 8, 200.0);
+  now(2, 3) = 2;
+  Image<float> out(8, 8);
+  const auto result = depth(now, out, workspace);
+  CHECK(result.valid_px == 63);
+  CHECK(out(2, 3) != out(2, 3));
+  CHECK(out(2, 4) == 0);
+}
+
 TEST_CASE("intensity depth: smoothing averages the noise", "[intensity_depth]") {
   const Image<double> free(60, 60, 140.0);
   Image<double> now(60, 60);

@@ -72,11 +72,16 @@ void paint_slip(Canvas& canvas, Spot from, Spot slip) {
   canvas.polygon({tip, head + 2.5 * across, head - 2.5 * across}, ink::black);
 }
 
-std::string words_of(const fingerpad::StickRatioResult<float>& result) {
+std::string words_of(const StickFrame& stick) {
+  using fingerpad::SlipEvidence;
+  const auto& result = stick.result;
   const double ratio = static_cast<double>(result.stick_ratio);
   if (result.updated()) {
-    return format("stick ratio %.2f: %td of %td dots stick", ratio, result.stick,
-                  result.stick + result.slip);
+    const bool by_friction =
+        stick.evidence == SlipEvidence::friction || stick.evidence == SlipEvidence::both;
+    return format("stick ratio %.2f%s: %td of %td dots stick", ratio,
+                  by_friction ? ", the object slides by its friction; by the dots alone" : "",
+                  result.stick, result.stick + result.slip);
   }
   const std::string why = name_of(result.status);
   return std::isfinite(ratio) ? format("stick ratio still %.2f: ", ratio) + why
@@ -122,7 +127,7 @@ cv::Mat stick_picture(const Scene& scene, double brightest) {
     canvas.text({x + 22, y + letter / 2}, format("slip, drawn %.0f times as long", enlarged),
                 letter, ink::black);
   }
-  sheet.write(54, words_of(scene.dots.stick.result));
+  sheet.write(54, words_of(scene.dots.stick));
   return canvas.finished();
 }
 

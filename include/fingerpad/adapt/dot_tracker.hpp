@@ -62,7 +62,8 @@ class DotTracker {
   };
 
   /// `free_px` are the dots of the free pad in px, NaN for a dot that was not seen. `places_px`, of
-  /// the same size, gives the expected positions of the dots not seen; NaN: there is no dot.
+  /// the same size, gives the expected positions of the dots not seen; NaN: there is no dot. A dot
+  /// farther out than 1e6 px counts as NaN.
   /// Refuses grids of different sizes, fewer than 9 dots and bad options (parameter_error).
   template <dot_grid Dots, dot_grid AllDots>
   DotTracker(const Dots& free_px, const AllDots& places_px, const DotTrackerOptions& options = {})
@@ -152,7 +153,9 @@ class DotTracker {
       for (Index j = 0; j < all.cols(); ++j) {
         using Traits = point_traits<cell_t<Dots>>;
         const cell_t<Dots> dot = grid_traits<Dots>::at(dots, i, j);
-        all(i, j) = {static_cast<double>(Traits::x(dot)), static_cast<double>(Traits::y(dot))};
+        const Place place{static_cast<double>(Traits::x(dot)),
+                          static_cast<double>(Traits::y(dot))};
+        all(i, j) = is_plausible(place) ? place : detail::no_place();
       }
     }
     return all;

@@ -144,9 +144,10 @@ class IntensityDepth {
         if (S(0) < w.weight_(i, j)) {
           const S l = smooth ? S(w.mean_(i, j) / w.share_(i, j)) : w.log_(i, j);
           depth = pressed_depth_mm(law_, l);
-          ++result.valid_px;
         }
-        to(i, j) = static_cast<cell_t<Depth>>(depth);
+        const bool is_known = is_finite(depth);  // an extreme law overflows
+        result.valid_px += is_known ? 1 : 0;
+        to(i, j) = static_cast<cell_t<Depth>>(is_known ? depth : not_a_number<S>());
       }
     }
     return result;
