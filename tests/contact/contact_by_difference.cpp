@@ -234,6 +234,28 @@ TEST_CASE("contact by difference: bad pixels say nothing, nor do they spread",
   }
 }
 
+TEST_CASE("contact by difference: the mask reaches all four edges of the frame",
+          "[contact_by_difference]") {
+  Scene scene;
+  const auto free = scene.free(1);
+  const ColourFrame frame = scene.camera.frame(scene.contact, scene.random);
+  const ContactByDifference<> contact(free);
+  const LazyView framed(240, 320, [&](Index i, Index j) {
+    const bool is_bad = i < 30 || i >= 210 || j < 30 || j >= 290;
+    const auto& p = frame(i, j);
+    return is_bad ? std::array{0.0, 0.0, 0.0}
+                  : std::array{double(p[0]), double(p[1]), double(p[2])};
+  });
+  const Found found = find(contact, framed);
+  for (Index i = 0; i < 240; ++i) {
+    CHECK((found.mask(i, 0) == Touch::unknown && found.mask(i, 319) == Touch::unknown));
+  }
+  for (Index j = 0; j < 320; ++j) {
+    CHECK((found.mask(0, j) == Touch::unknown && found.mask(239, j) == Touch::unknown));
+  }
+  CHECK(found.mask(120, 160) == Touch::none);
+}
+
 TEST_CASE("contact by difference: numbers are those of the mask, whatever the cells",
           "[contact_by_difference]") {
   // narrower cells at the right and lower edge, with unknown pixels and contact on both

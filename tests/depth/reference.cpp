@@ -264,3 +264,28 @@ TEST_CASE("a reference that determines nothing is refused", "[reference]") {
   CHECK_THAT(refusal([&] { fit_reference(pad.camera, fluid, frame.red, frame.green, depth); }),
              StartsWith("Absorption: kappa = 0"));
 }
+
+TEST_CASE("a pad is judged off the axis only if its whole outline is in the image", "[reference]") {
+  // A square pad of 20 x 20 pixels; only inside the image is its center known.
+  const auto off_axis = [](Index top, Index left) {
+    test::Image<double> depth(60, 80, not_a_number<double>());
+    for (Index i = top; i < top + 20; ++i) {
+      for (Index j = left; j < left + 20; ++j) {
+        depth(i, j) = 5;
+      }
+    }
+    Camera<double> camera;
+    camera.center_x_px = 39.5;
+    camera.center_y_px = 29.5;
+    return detail::shape_of_free_pad(camera, 14, depth).off_axis;
+  };
+  CHECK(off_axis(20, 30) == 0);
+  const double radius_px = 20 / std::sqrt(std::numbers::pi);
+  CHECK(off_axis(1, 30) == Approx(19 / radius_px));
+  CHECK(off_axis(39, 30) == Approx(19 / radius_px));
+  CHECK(off_axis(20, 1) == Approx(29 / radius_px));
+  CHECK(off_axis(20, 59) == Approx(29 / radius_px));
+  for (const auto& [top, left] : {std::pair(0, 30), {40, 30}, {20, 0}, {20, 60}}) {
+    CHECK(off_axis(top, left) == 0);
+  }
+}

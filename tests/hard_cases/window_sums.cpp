@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <utility>
 #include <vector>
 
 #include "fingerpad/depth/depth.hpp"
@@ -198,4 +199,22 @@ TEST_CASE("interleaved rows come apart", "[window]") {
     check(std::integral_constant<int, 5>{}, std::uint8_t{});
     check(std::integral_constant<int, 3>{}, std::uint16_t{});
   });
+}
+
+TEST_CASE("pixels strictly between two limits, at the ends of their range", "[window]") {
+  const auto range = [](double dark, double saturated) {
+    const detail::ClosedRange<std::uint8_t> closed({dark, saturated});
+    return std::pair(int(closed.low), int(closed.high));
+  };
+  const std::pair none(1, 0);
+  CHECK(range(0, 255) == std::pair(1, 254));
+  CHECK(range(-1, 256) == std::pair(0, 255));
+  CHECK(range(254, 256) == std::pair(255, 255));
+  CHECK(range(255, 300) == none);
+  CHECK(range(-5, 1) == std::pair(0, 0));
+  CHECK(range(-5, 0) == none);
+  CHECK(range(9.5, 11) == std::pair(10, 10));
+  CHECK(range(10, 11) == none);
+  CHECK(range(std::nan(""), 11) == none);
+  CHECK(range(10, std::nan("")) == none);
 }

@@ -307,3 +307,11 @@ TEST_CASE("derivatives by the dual number are those of central differences", "[o
     RC_ASSERT(std::abs(test::slope_by_dual(k, camera.refractive_index)) < 1e-14);
   });
 }
+
+TEST_CASE("cameras are set for 640 x 480 pixels until they are told otherwise", "[optics]") {
+  CHECK(Camera<>().center_x_px == 319.5);
+  CHECK(Camera<>().center_y_px == 239.5);
+  CHECK(OrthographicCamera<>().center_x_px == 319.5);
+  CHECK(OrthographicCamera<>().center_y_px == 239.5);
+  CHECK(OrthographicCamera<>().pitch_mm == 0.08);
+}

@@ -7,11 +7,14 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "fingerpad/published/printed_iteration.hpp"
 #include "support/catch.hpp"
 #include "support/pressed_pad.hpp"
+#include "support/refusal.hpp"
 
 using namespace fingerpad;
 using test::ArcSide;
@@ -238,4 +241,46 @@ TEST_CASE("a side dot on its border point has no direction", "[wrench][published
   const auto none = wrench(pad, dots, pressed_mpa, work);
   CHECK(none.status == WrenchStatus::unstretched);
   CHECK_FALSE(none.has_force());
+}
+
+TEST_CASE("the printed iteration keeps the symmetry of a twisted pad", "[published]") {
+  // The shear that a twist puts into every segment turns with the segment: pushes along the plate
+  // cancel around the rim, and the pull does not depend on the sense of the twist.
+  const RoundPad<ArcSide> pad;
+  const auto rim = rim_of(pad);
+  const double t0 = pad.tension(pad.radius_mm, pressed_mpa);
+  const Wrench<published::PrintedIteration> wrench(rim.borders());
+  auto work = wrench.workspace();
+  const auto twisted = [&](double shear) {
+    const auto found = wrench(pad, rim.dots([&](double) { return RimLoad{t0, shear * t0}; }),
+                              pressed_mpa, work);
+    REQUIRE(found.status == WrenchStatus::ok);
+    return found;
+  };
+  const auto left = twisted(0.2), right = twisted(-0.2);
+  const double size = std::abs(left.force_n.z);
+  CHECK(std::abs(left.force_n.x) < 1e-6 * size);
+  CHECK(std::abs(left.force_n.y) < 1e-6 * size);
+  CHECK(left.force_n.z == Approx(right.force_n.z).epsilon(1e-6));
+  CHECK(left.moment_n_mm.z == Approx(-right.moment_n_mm.z).epsilon(1e-6));
+  CHECK(std::abs(left.moment_n_mm.z) > 1);
+}
+
+TEST_CASE("passes of the published iterations are in [1, 100]", "[published]") {
+  const auto said = [](int passes) {
+    const auto by = [&](auto iteration) {
+      iteration.passes = passes;
+      return test::refusal([&] {
+        expects_valid(iteration);
+        return 0;
+      });
+    };
+    return std::pair(by(published::Iteration()), by(published::PrintedIteration()));
+  };
+  CHECK(said(1) == std::pair<std::string, std::string>("accepted", "accepted"));
+  CHECK(said(100) == std::pair<std::string, std::string>("accepted", "accepted"));
+  for (const int passes : {0, 101}) {
+    CHECK(test::begins_with(said(passes).first, "published::Iteration: passes"));
+    CHECK(test::begins_with(said(passes).second, "published::PrintedIteration: passes"));
+  }
 }

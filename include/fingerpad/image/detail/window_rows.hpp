@@ -50,12 +50,9 @@ struct ClosedRange {
 
   constexpr ClosedRange(const ValueLimits<double>& open) : low(1), high(0) {
     constexpr double top = double((std::numeric_limits<Pixel>::max)());
-    if (!(open.dark < top) || !(open.saturated > 0)) {
-      return;
-    }
     const double first = open.dark < 0 ? 0 : std::floor(open.dark) + 1;
     const double last = open.saturated > top ? top : std::ceil(open.saturated) - 1;
-    if (first > last) {
+    if (!(first <= last)) {  // also for NaN
       return;
     }
     low = static_cast<Pixel>(first);
