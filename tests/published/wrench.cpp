@@ -243,6 +243,24 @@ TEST_CASE("a side dot on its border point has no direction", "[wrench][published
   CHECK_FALSE(none.has_force());
 }
 
+TEST_CASE("side dots level with the rim cannot carry the pressure", "[wrench][published]") {
+  const RoundPad<ArcSide> pad;
+  const auto rim = rim_of(pad);
+  const auto at_rim = rim.borders();
+  const double t0 = pad.tension(pad.radius_mm, pressed_mpa);
+  auto dots = rim.dots([&](double) { return RimLoad{t0, 0}; });
+  const Wrench<published::Iteration, OneRow, published::Direction> wrench(at_rim);
+  auto work = wrench.workspace();
+  for (const double height_mm : {0.0, 1e-300, 1e-12}) {
+    for (auto& dot : dots.cells) {
+      dot.z = height_mm;
+    }
+    const auto found = wrench(pad, dots, pressed_mpa, work);
+    CHECK(found.status == WrenchStatus::not_solved);
+    CHECK(found.force_n.x != found.force_n.x);
+  }
+}
+
 TEST_CASE("the printed iteration keeps the symmetry of a twisted pad", "[published]") {
   // The shear that a twist puts into every segment turns with the segment: pushes along the plate
   // cancel around the rim, and the pull does not depend on the sense of the twist.

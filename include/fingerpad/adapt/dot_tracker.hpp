@@ -33,7 +33,7 @@ constexpr const char* name_of(DotStatus status) {
 
 struct [[nodiscard]] DotResult {
   DotStatus status = DotStatus::refused;
-  Index found = 0;     ///< dots located in this frame
+  Index found = 0;     ///< dots located in this frame, also some that the free pad did not show
   Index expected = 0;  ///< dots seen on the free pad
   Index spots = 0;     ///< spots in this frame, whether they are dots or not
 

@@ -241,6 +241,7 @@ class Wrench {
     if constexpr (Solver::finds_tensions) {
       residual =
           detail::membrane::residual(work.segments_, work.nodes_, work.tensions_, pressure).force;
+      solved = solved && is_plausible(residual);
     }
     if constexpr (Solver::magnitude == detail::membrane::Magnitude::of_all) {
       solved = solved && detail::membrane::carry_load(work.segments_, pressure, work.tensions_.rim);
@@ -395,11 +396,11 @@ class Wrench {
                                            result.summit_area_mm2, edge_mm2, pressure_mpa},
           noise);
     }
-    bool finite = is_finite(result.force_n) && is_finite(moment);
+    bool is_possible = is_plausible(result.force_n) && is_plausible(moment);
     for (std::size_t k = 0; k < 6; ++k) {
-      finite = finite && is_finite(result.covariance[k][k]);
+      is_possible = is_possible && is_finite(result.covariance[k][k]);
     }
-    if (!finite) {
+    if (!is_possible) {
       result = failed(result);
       forget(work);
     }
