@@ -87,10 +87,12 @@ S inclination(const S& slope_sq) {
 template <float_lanes V>
 [[gnu::always_inline]] inline V inclination(const V& slope_sq) {
   const V largest = V{} + 1e24F;
-  const V held = slope_sq < largest ? slope_sq : largest;
+  const V smallest = V{} + 1e-36F;  // at 0, the square of `near` would overflow
+  const V square = slope_sq < largest ? slope_sq : largest;
+  const V held = square > smallest ? square : smallest;
   const V near = rough_inverse_sqrt<V>(held);
   const V inverse = near * (1.5F - 0.5F * held * near * near);
-  const V slope = held * inverse;
+  const V slope = square * inverse;
   const auto steep = slope > V{} + 1.0F;
   const V ratio = steep ? inverse : slope;
   const V u = ratio * ratio;
