@@ -385,6 +385,7 @@ TEMPLATE_TEST_CASE("object motion: statuses",
   CHECK(result.accepted());
   CHECK(result.status == MotionStatus::no_contact);
   CHECK(!is_finite(result.position_mm.x));
+  CHECK(norm(result.displacement_mm) == 0);
   result = motion(free, all, state);
   CHECK(result.ok());
   CHECK(result.begun);
@@ -571,6 +572,32 @@ TEST_CASE("object motion: other sizes are refused and the state stays as it is")
   const ObjectMotion<> other(Dots(8, 7));
   auto foreign = other.start();
   CHECK(!motion(free, Flags(7, 7, 1), foreign).accepted());
+  // nothing has moved
+  const auto refused = motion(free, Flags(8, 7, 1), state);
+  CHECK(norm(refused.displacement_mm) == 0);
+  CHECK(norm(refused.pose.translation_mm) == 0);
+  CHECK(refused.residual_rms_mm == 0);
+}
+
+TEST_CASE("object motion: a single dot at the end of a row is found, and may touch or slip") {
+  const Dots free = test::RollingBall{.rows = 4, .cols = 6}.initial();
+  const ObjectMotion<> motion(free);
+  for (const DotIndex at : {DotIndex{0, 5}, DotIndex{3, 0}, DotIndex{3, 5}}) {
+    const auto only = [&](Index i, Index j) { return DotIndex{i, j} == at; };
+    const LazyView dots(4, 6, [&](Index i, Index j) {
+      return only(i, j) ? free(i, j) : detail::missing_point<double>();
+    });
+    const LazyView flags(4, 6, only);
+    const Flags none(4, 6, 0), all(4, 6, 1);
+    const Dots lost(4, 6, detail::missing_point<double>());
+    auto state = motion.start();
+    CHECK(motion(dots, none, state).status == MotionStatus::no_contact);
+    CHECK(motion(lost, none, state).status == MotionStatus::no_dots);
+    CHECK(motion(free, flags, state).status != MotionStatus::no_contact);
+    CHECK(motion(free, flags, none, state).status != MotionStatus::slipping);
+    CHECK(motion(free, flags, all, state).status == MotionStatus::slipping);
+    CHECK(motion(dots, all, all, state).status == MotionStatus::slipping);
+  }
 }
 
 TEST_CASE("object motion: bad parameters are refused by name") {
@@ -665,6 +692,22 @@ TEST_CASE("contact at dots: with a radius, all of a dot must touch") {
     CHECK(!contact_at_dots(dots, mask, touching, bad));
     CHECK(touching(0, 0) == 9);
   }
+}
+
+TEST_CASE("contact at dots: a dot touches if its nearest pixel does") {
+  test::Flags mask(6, 9, 0);
+  mask(3, 5) = 1;
+  test::Image<Point2<double>> dots(2, 4);
+  const double inside[] = {-0.48, 0.48}, outside[] = {-0.52, 0.52};
+  for (Index k = 0; k < 2; ++k) {
+    dots(0, k) = {5 + inside[k], 3};
+    dots(0, k + 2) = {5, 3 + inside[k]};
+    dots(1, k) = {5 + outside[k], 3};
+    dots(1, k + 2) = {5, 3 + outside[k]};
+  }
+  test::Flags touching(2, 4, 9);
+  CHECK(contact_at_dots(dots, mask, touching));
+  CHECK(touching.cells == std::vector<unsigned char>{1, 1, 1, 1, 0, 0, 0, 0});
 }
 
 TEST_CASE("object motion: dots that slip do not count, and are entered anew") {

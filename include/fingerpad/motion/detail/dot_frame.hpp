@@ -90,7 +90,7 @@ class SteadyFrame : public Frame {
   }
   /// Whether fewer than a fifth of the dots in contact hold the object. The motion of the dots is
   /// then not that of the object.
-  bool slides() const { return touching_ > 0 && 5 * steady_ < touching_; }
+  bool slides() const { return 5 * steady_ < touching_; }
 
  private:
   Slips slips_;
