@@ -384,6 +384,31 @@ TEST_CASE("taxel features: a taxel that is stuck does not count", "[taxel_featur
   CHECK(later.center_x_mm == 4);
 }
 
+TEST_CASE("taxel features: with stuck_after 0 no reading is ever stuck", "[taxel_features]") {
+  auto o = options();
+  o.stuck_after = 0;
+  const TaxelFeatures features(2, 3, o);
+  const auto sample = after(features, 50, [](int, Index, Index j) { return 10.0 * double(j); });
+  CHECK(sample.status == TaxelStatus::quiet);
+  CHECK(sample.left_out == 0);
+  CHECK(sample.frozen == 0);
+  CHECK(sample.sum == 60);
+}
+
+TEST_CASE("taxel features: two windows of new clocks may pass, then they are told",
+          "[taxel_features]") {
+  const TaxelFeatures features(1, 2, options());  // a window of 16
+  auto state = features.start();
+  for (int run = 0; run < 2; ++run) {
+    for (int k = 1; k <= 34; ++k) {
+      CAPTURE(run, k);
+      const auto status = features(Image<double>(1, 2, 10.0), 1.0 * k, state).status;
+      CHECK(status == (k <= 2 * 16 ? TaxelStatus::filling : TaxelStatus::clock_jumps));
+    }
+    state.reset();
+  }
+}
+
 TEST_CASE("taxel features: the edge of a contact may let go and come back", "[taxel_features]") {
   // all read about 100; taxel 2 alternates between 0 and another reading
   const TaxelFeatures features(1, 4, options());
