@@ -2,7 +2,9 @@
 // SPDX-License-Identifier: MIT
 #include "fingerpad/slip/contact_slide.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <string>
 
@@ -206,6 +208,43 @@ TEST_CASE("contact slide: unknown cells and wild dots do not count", "[contact_s
   CHECK(result.status == SlideStatus::updated);
   CHECK(std::abs(result.slide_px.x - 2.4) < 0.05);
   CHECK(std::abs(result.slide_px.y + 1.2) < 0.05);
+}
+
+TEST_CASE("contact slide: the first and the last dot of the pattern count", "[contact_slide]") {
+  // 10 cells apart; within 14 cells of the middle lie the first dot and those beside and below it
+  const auto dots_counted = [](const Point2<double>& dots_shift) {
+    auto state = slide.start();
+    (void)look({.dots_shift = dots_shift}, state);
+    return look({.dots_shift = dots_shift}, state).dots;
+  };
+  CHECK(dots_counted({120, 80}) == 3);
+  CHECK(dots_counted({-120, -80}) == 4);  // the last dot and the three before it
+}
+
+TEST_CASE("contact slide: the standard deviation is the mean of both axes", "[contact_slide]") {
+  // steep along x, flat along y; with x and y exchanged, the mean is the same
+  const auto image = [](bool exchanged) {
+    Image<double> image(60, 60);
+    for (Index i = 0; i < 60; ++i) {
+      for (Index j = 0; j < 60; ++j) {
+        const double x = double(exchanged ? i : j) - 30, y = double(exchanged ? j : i) - 27;
+        image(i, j) = std::cos(x / 1.5) + 0.3 * std::cos(y / 6);
+      }
+    }
+    return image;
+  };
+  const auto sd_px = [&](bool exchanged) {
+    Image<std::uint8_t> contact(60, 60, 0);
+    for (Index i = 20; i < 40; ++i) {
+      std::fill_n(&contact(i, 20), 20, std::uint8_t{1});
+    }
+    const ContactSlide<double> square(60, 60, 5, 7);
+    auto state = square.start();
+    (void)square(image(exchanged), contact, Pad().dots(), state);
+    return square(image(exchanged), contact, Pad().dots(), state).imprint_sd_px;
+  };
+  CHECK(sd_px(false) > 0);
+  CHECK(sd_px(true) == Approx(sd_px(false)).epsilon(1e-9));
 }
 
 TEST_CASE("recoil: by how much dots have fallen back", "[recoil]") {

@@ -2,10 +2,13 @@
 // SPDX-License-Identifier: MIT
 #include "fingerpad/slip/friction_limit.hpp"
 
+#include <array>
 #include <cmath>
 #include <limits>
 #include <string>
+#include <type_traits>
 
+#include "fingerpad/adapt/autodiff.hpp"
 #include "fingerpad/slip/contact_slide.hpp"
 #include "fingerpad/slip/grip_control.hpp"
 #include "fingerpad/slip/recoil.hpp"
@@ -65,9 +68,33 @@ TEST_CASE("friction limit: the load of a contact from force, moment and dots", "
     CHECK(!is_finite(contact_load(force, moment, patch.dots, test::Image<int>(2, 2)).normal_n));
     CHECK(!is_finite(friction_of(ContactLoad<double>{})));
     CHECK(!is_finite(friction_of(pull(1, -2))));
+    CHECK(std::isnan(friction_of(pull(1, 0))));
     CHECK(friction_of(ContactLoad<double>{2, 1, none, 3}) == 0.5);  // the force alone
     CHECK(friction_of(ContactLoad<double>{2, 1, 7, 0}) == 0.5);
   }
+}
+
+TEST_CASE("friction limit: dots on a line lie in a level surface", "[friction_limit]") {
+  test::Image<Point3<double>> dots(1, 3);
+  const double along[] = {0, 1, 5};  // 2, 1 and 3 from their middle
+  for (Index j = 0; j < 3; ++j) {
+    dots(0, j) = Point3<double>{0, 0, 10} + along[j] * Point3<double>{1, 2, 1};
+  }
+  const Point3<double> force{0.3, 0.4, -2}, middle{2, 4, 12};
+  const Point3<double> moment = cross(middle, force) + Point3<double>{7, 8, 1.5};
+  const auto load = contact_load(force, moment, dots, test::Image<int>(1, 3, 1));
+  CHECK(load.normal_n == Approx(2));
+  CHECK(load.tangential_n == Approx(0.5));
+  CHECK(load.moment_n_mm == Approx(1.5));
+  CHECK(load.arm_mm == Approx(2 * std::sqrt(5.0)));
+}
+
+TEST_CASE("friction limit: without tangential force L is 0 and has a slope", "[friction_limit]") {
+  const auto [tangential] = seeded(std::array{0.0});
+  using Dual = std::remove_cvref_t<decltype(tangential)>;
+  const Dual friction = friction_of(ContactLoad<Dual>{Dual(4.0), tangential, Dual(0.0), Dual(0.0)});
+  CHECK(friction.value() == 0);
+  CHECK(std::isfinite(friction.derivatives()[0]));
 }
 
 TEST_CASE("friction limit: learnt when the dots slide, answers when they do not",
