@@ -104,6 +104,13 @@ TEST_CASE("stick ratio: names of statuses") {
   CHECK(std::string(name_of(StickStatus::no_outline)) == "no outline of the contact");
 }
 
+TEST_CASE("stick ratio: numbers of the states of a dot") {
+  CHECK(static_cast<int>(DotState::none) == 0);
+  CHECK(static_cast<int>(DotState::unknown) == 1);
+  CHECK(static_cast<int>(DotState::slip) == 2);
+  CHECK(static_cast<int>(DotState::stick) == 3);
+}
+
 TEMPLATE_TEST_CASE("stick ratio: what moves as one sticks, and its motion is found",
                    "[stick_ratio]",
                    StickConsensus<>,
@@ -371,6 +378,37 @@ TEMPLATE_TEST_CASE("stick ratio: noise is averaged over neighbours",
   CHECK(wrong / all < 0.06);
 }
 
+TEST_CASE("stick ratio: a mean of dots leaves the root of the squared weights of the noise") {
+  using detail::stick::noise_left_by;
+  CHECK(noise_left_by(ResidualMean{{1, 1, 1}}) == Approx(1.0 / 3));  // nine alike
+  CHECK(noise_left_by(ResidualMean{{2, 2, 0}}) == Approx(1 / std::sqrt(5.0)));
+  CHECK(noise_left_by(ResidualMean{{3, 0, 3}}) == Approx(1 / std::sqrt(5.0)));
+  CHECK(noise_left_by(ResidualMean{{5, 0, 0}}) == 1);
+  CHECK(noise_left_by(ResidualMean{}) == Approx(0.06 / 0.14).epsilon(0.05));
+}
+
+TEST_CASE("stick ratio: doubts of single dots add as variances") {
+  // Four of 81 dots are 0.45 px beside the others. The answer of each has the variance p (1 - p),
+  // with the logistic curve nearest to the normal distribution.
+  const StickTest test = published::stick_test_px;
+  auto now = shifted(3);
+  now(2, 2).y += 0.45;
+  now(6, 6).y += 0.45;
+  now(2, 6).y -= 0.45;
+  now(6, 2).y -= 0.45;
+  Follower<StickConsensus<Freedom::translation>, UpdatedReference, NoDenoising> f(test);
+  (void)f(shifted(0));
+  const auto r = f(now);
+  REQUIRE(r.slip == 4);
+  const double limit_px = test.slip / test.reference * std::hypot(3, 0.45);
+  const double sd_px = test.slip / std::sqrt(2 * std::log(100.0));  // 1 % exceed delta_0
+  const auto variance = [&](double residual_px) {
+    const double p = 1 / (1 + std::exp(1.702 * (residual_px - limit_px) / sd_px));
+    return p * (1 - p);
+  };
+  CHECK(r.ratio_sd == Approx(std::sqrt(4 * variance(0.45) + 77 * variance(0)) / 81));
+}
+
 TEST_CASE("stick ratio: positions are averaged with their neighbours in pairs") {
   // For a dot without its right neighbour the mean over the others lies 2.4 px to its left, ten
   // thresholds: it would slip whenever the neighbour appears or disappears.
@@ -532,11 +570,22 @@ TEST_CASE("stick ratio, bad input: dots marked as lost by a place") {
     CHECK(r.furthest_px == Approx(3));
     CHECK(f(PointsPx(9, 9, mark)).status == StickStatus::no_dots);
   }
-  // a single dot at such a position is a dot
-  Follower<> f;
-  const auto at_origin = [](double x) { return shifted(x - 180, -180); };
-  (void)f(at_origin(0));
-  CHECK(f(at_origin(3)).stick == 81);
+  for (const double mark : {0.0, -1.0}) {
+    // a single dot at such a position is a dot
+    const auto around = [&](double x) { return shifted(x + mark - 180, mark - 180); };
+    Follower<> f;
+    (void)f(around(0));
+    CHECK(f(around(3)).stick == 81);
+    // of several none is; the other dots with x = y remain
+    Follower<> g;
+    (void)g(around(-3));
+    auto dots = around(0);
+    dots(0, 3) = dots(2, 7) = dots(6, 1) = {mark, mark};
+    const auto r = g(dots);
+    CHECK(r.stick == 77);
+    CHECK(r.unknown == 4);
+    CHECK(r.out_of_place == 0);
+  }
 }
 
 TEST_CASE("stick ratio, bad input: dots in no order, and in another unit") {
@@ -662,6 +711,28 @@ TEST_CASE("stick ratio, bad input: the unit changes within a contact") {
     }
     CHECK(f(dots).updated());
   }
+}
+
+TEST_CASE("stick ratio: the pitch may double or halve within a contact, or be unknown") {
+  ContactFlags alternating(9, 9, 0);  // without neighbours in contact
+  for (Index k = 0; k < 81; k += 2) {
+    alternating(k / 9, k % 9) = 1;
+  }
+  for (const double unit : {0.5, 2.0}) {
+    Follower<> f;
+    (void)f(shifted(0));
+    auto dots = shifted(0);
+    for (auto& p : dots.cells) {
+      p = {unit * p.x, unit * p.y};
+    }
+    CHECK(f(dots).status != StickStatus::wrong_scale);
+  }
+  Follower<> known_later(published::stick_test_px);
+  (void)known_later(shifted(0), alternating);
+  CHECK(known_later(shifted(3)).stick == 41);
+  Follower<> known_before;
+  (void)known_before(shifted(0));
+  CHECK(known_before(shifted(3), alternating).stick == 41);
 }
 
 TEST_CASE("stick ratio, bad input: a misplaced corner of the pattern") {

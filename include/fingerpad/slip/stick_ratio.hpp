@@ -289,9 +289,8 @@ class StickRatio {
     const bool mostly_slipped = state.result.stick < state.result.slip;
     const Similarity<S> map = motion_between(motion_, pair, reference, slip_sq, mostly_slipped);
     const double left = noise_left_by(denoising_);
-    // of an averaged residual of two frames; without free frames, that for which delta_0 is right
-    const double sd_px = state.noise_px > 0 && left > 0 ? std::sqrt(2.0) * left * noise_of(state)
-                                                        : px.slip / std::sqrt(2 * std::log(100.0));
+    // of a residual of two frames, for which delta_0 is exceeded with a probability of 1 %
+    const double sd_px = px.slip / std::sqrt(2 * std::log(100.0));
     const S variance = mark_dots(denoising_, pair, map, slip_sq, S(sd_px), state.room, state.marks);
     state.stick_center = centroid(pair, state.marks, DotState::stick);
     StickRatioResult<S>& result = state.result;
