@@ -389,6 +389,82 @@ TEST_CASE("dots: rows and columns that are given are kept") {
   }
 }
 
+TEST_CASE("dots: a regular grid flattened is the same grid, also with dots missing") {
+  detail::Places dots(3, 5, detail::no_place());
+  for (Index i = 0; i < 3; ++i) {
+    for (Index j = 0; j < 5; ++j) {
+      dots(i, j) = {100 + 8.0 * static_cast<double>(j) - 2.0 * static_cast<double>(i),
+                    50 + 1.0 * static_cast<double>(j) + 10.0 * static_cast<double>(i)};
+    }
+  }
+  detail::Places some = dots;
+  some(0, 0) = some(1, 3) = some(2, 4) = detail::no_place();
+  const detail::Places flat = detail::flattened(some);
+  for (Index i = 0; i < 3; ++i) {
+    for (Index j = 0; j < 5; ++j) {
+      CHECK(norm(flat(i, j) - dots(i, j)) < 1e-12);
+    }
+  }
+}
+
+TEST_CASE("dots: of the windows with as many dots, the one around the given middle is taken") {
+  detail::Places dots(7, 9, detail::no_place());
+  for (Index i = 0; i < 7; ++i) {
+    for (Index j = 0; j < 9; ++j) {
+      dots(i, j) = {10.0 * static_cast<double>(j), 12.0 * static_cast<double>(i)};
+    }
+  }
+  // every window, by a middle off its own by less than half a step
+  for (const auto& [rows, cols] : {std::pair<Index, Index>{2, 5}, {5, 2}, {4, 3}}) {
+    for (Index top = 0; top <= 7 - rows; ++top) {
+      for (Index left = 0; left <= 9 - cols; ++left) {
+        const detail::Place first = dots(top, left), last = dots(top + rows - 1, left + cols - 1);
+        for (const double off : {-4.0, 4.0}) {
+          const detail::Place middle = 0.5 * (first + last) + detail::Place{off, -off};
+          const detail::Places window = detail::best_window(dots, rows, cols, middle);
+          CAPTURE(rows, cols, top, left, off);
+          CHECK(window.rows() == rows);
+          CHECK(window.cols() == cols);
+          CHECK(norm(window(0, 0) - first) == 0);
+        }
+      }
+    }
+  }
+}
+
+TEST_CASE("dots: an outlier among the neighbours weighs as little wherever the dots are") {
+  // moves of 24 neighbours on a plane, but for one
+  const auto expected_at = [](const detail::Place& everywhere) {
+    return detail::by_neighbours(5, 6, 2, 3, 2.0, [&](Index i, Index j) {
+      const double down = static_cast<double>(i - 2), right = static_cast<double>(j - 3);
+      const detail::Place off = i == 1 && j == 3 ? detail::Place{30, -20} : detail::Place{0, 0};
+      return everywhere + off + detail::Place{0.1 * down, 0.05 * right};
+    });
+  };
+  CHECK(norm(expected_at({0, 0})) < 0.01);
+  const detail::Place far = {70, -40};
+  CHECK(norm(expected_at(far) - far - expected_at({0, 0})) < 1e-12);
+}
+
+TEST_CASE("dots: every labelled dot counts, also that of the first spot") {
+  std::vector<detail::Place> spots;
+  detail::Places base(2, 4, detail::no_place());
+  for (Index i = 0; i < 2; ++i) {
+    for (Index j = 0; j < 4; ++j) {
+      base(i, j) = {10.0 * static_cast<double>(j), 10.0 * static_cast<double>(i)};
+      spots.push_back(base(i, j));
+    }
+  }
+  const detail::SpotMap map(spots);
+  const auto spacing_px = detail::spacings_px(base);
+  const detail::DotMatcher matcher(base, spacing_px, map, 1.0);
+  const auto labels = matcher.match([](Index, Index) { return true; },
+                                    [](Index, Index) { return detail::Place{0, 0}; });
+  CHECK(detail::count_labels(labels) == 8);
+  // nothing has moved: no penalty
+  CHECK(matcher.score(labels) == Approx(8).epsilon(1e-12));
+}
+
 TEST_CASE("dots: what lies in a grid but is faint is not taken for the dots") {
   // The blocks of a compressed image; there are more of them than dots.
   Print print;

@@ -37,7 +37,9 @@ void check_strided(G& g) {
   CHECK(test::weighted_sum(g) == expected);
   for (std::size_t i = 0; i < 6; ++i) {
     for (std::size_t j = 0; j < 4; ++j) {
-      CHECK(&as_view(g)(static_cast<Index>(i), static_cast<Index>(j)) == &g(i, j));
+      const auto row = static_cast<Index>(i), col = static_cast<Index>(j);
+      CHECK(&as_view(g)(row, col) == &g(i, j));
+      CHECK(&grid_traits<G>::at(g, row, col) == &g(i, j));
     }
   }
 }

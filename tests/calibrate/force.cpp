@@ -613,6 +613,37 @@ TEST_CASE("a calibration depends neither on order nor on units", "[calibrate][fo
   });
 }
 
+TEST_CASE("sums of Bernstein polynomials", "[calibrate][force]") {
+  // 1, 1 - (1 - t)^n, ..., t^n
+  CHECK(detail::rising_basis<1>() == std::array<std::array<int, 2>, 2>{{{1, 0}, {0, 1}}});
+  CHECK(detail::rising_basis<2>() ==
+        std::array<std::array<int, 3>, 3>{{{1, 0, 0}, {0, 2, -1}, {0, 0, 1}}});
+  CHECK(detail::rising_basis<3>() ==
+        std::array<std::array<int, 4>, 4>{
+            {{1, 0, 0, 0}, {0, 3, -3, 1}, {0, 0, 3, -2}, {0, 0, 0, 1}}});
+}
+
+TEST_CASE("a gauge is not tared if a constant explains most of the residual, in any unit",
+          "[calibrate][force]") {
+  // forces along the displacements; residuals of a size without direction, and a constant
+  const auto told = [](double force, double residual, const Point2<double>& constant) {
+    std::vector<detail::PlaneForce<double>> samples;
+    for (const Point2<double>& way : {Point2<double>{1, 0}, {-1, 0}, {0, 1}, {0, -1}}) {
+      samples.push_back({way, force * way, residual * way + constant});
+    }
+    return detail::mistake_in(samples);
+  };
+  for (const double unit : {1.0, 1e-4, 1e4}) {
+    for (const Point2<double>& way : {Point2<double>{unit, 0}, {0, -unit}}) {
+      CAPTURE(unit, way.x);
+      CHECK(told(unit, 0.2 * unit, 0.21 * way) == FitStatus::gauge_not_tared);
+      CHECK(told(unit, 0.2 * unit, 0.19 * way) == FitStatus::ok);
+      CHECK(told(unit, 0.01 * unit, 0.11 * way) == FitStatus::gauge_not_tared);
+      CHECK(told(unit, 0.01 * unit, 0.09 * way) == FitStatus::ok);
+    }
+  }
+}
+
 TEST_CASE("samples given twice count twice", "[calibrate][force]") {
   Random random(10);
   const Samples once = measured({}, 30, {}, 1, random);

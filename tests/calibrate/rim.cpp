@@ -347,6 +347,33 @@ TEST_CASE("rim calibration: standard errors are those of repeated measurements",
   CHECK(is_finite(two.condition));
 }
 
+TEST_CASE("rim calibration: standard errors do not depend on where the x axis points", "[wrench]") {
+  // a rim without symmetry: ten neighbouring dots are never seen
+  const Pad pad;
+  const auto fit_at = [&](double angle) {
+    const auto rotated = [&](Row row) {
+      for (Point& p : row) {
+        p = {std::cos(angle) * p.x - std::sin(angle) * p.y,
+             std::sin(angle) * p.x + std::cos(angle) * p.y, p.z};
+      }
+      return row;
+    };
+    RimCalibration<> calibration(grid_of(rotated(pad.border())), radius_mm);
+    for (std::size_t k = 0; k < 4; ++k) {
+      Row dots = rotated(pad.dots(four_pressures[k]));
+      for (std::size_t j = 0; j < 10 && k > 0; ++j) {
+        dots[j].x = none;
+      }
+      REQUIRE(calibration.add(k, grid_of(dots), four_pressures[k]));
+    }
+    return calibration.fit({0.004, 0.0});
+  };
+  const auto before = fit_at(0), after = fit_at(0.7);
+  CHECK(after.modulus_n_per_mm == Approx(before.modulus_n_per_mm).epsilon(1e-10));
+  CHECK(after.modulus_sd_n_per_mm == Approx(before.modulus_sd_n_per_mm).epsilon(1e-9));
+  CHECK(after.length_sd_mm == Approx(before.length_sd_mm).epsilon(1e-9));
+}
+
 TEST_CASE("rim calibration: its errors carry into the six axes as told", "[wrench]") {
   // length and mu t by four pressures with fresh noise, and their effect on one dragged rim
   const Pad pad{.uneven = 0};
@@ -495,6 +522,8 @@ TEST_CASE("rim calibration: what it refuses", "[wrench]") {
   const auto dots_at = [&](double p) { return pad.dots(p); };
   CHECK(begins_with(refusal([&] { const RimCalibration<> refused(grid_of(border), -1); }),
                     owner + "base_radius_mm = -1"));
+  CHECK(begins_with(refusal([&] { const RimCalibration<> refused(grid_of(border), 0); }),
+                    owner + "base_radius_mm = 0"));
   CHECK(begins_with(refusal([&] { const RimCalibration<> refused(grid_of(border), none); }),
                     owner + "base_radius_mm = "));
   CHECK(refusal([&] { const RimCalibration<> refused(grid_of(border), 30); }) != "accepted");

@@ -284,6 +284,35 @@ TEST_CASE("dot noise: what averaging leaves", "[stick]") {
   CHECK(noise.gain() == Approx(std::sqrt(3.0 * 19) / 27 * std::sqrt(3.0)).epsilon(0.02));
 }
 
+TEST_CASE("dot noise: averages along an edge share noise", "[stick]") {
+  // correlation of two averages `apart` dots apart: the products of the weights that both have
+  const auto shared = [](const DotWeights& w) {
+    const auto weight = [&](int row, int col) {
+      const bool near = (row == 0 || row == 1) && col >= -1 && col <= 1;
+      return !near ? 0.0 : row == 0 && col == 0 ? w.self : row == 0 || col == 0 ? w.side
+                                                                                 : w.diagonal;
+    };
+    const auto product = [&](int apart) {
+      double sum = 0;
+      for (int row = 0; row <= 1; ++row) {
+        for (int col = -1; col <= 1; ++col) {
+          sum += weight(row, col) * weight(row, col - apart);
+        }
+      }
+      return sum;
+    };
+    double squares = 0;
+    for (int apart = -3; apart <= 3; ++apart) {
+      squares += square(product(apart) / product(0));
+    }
+    return squares;
+  };
+  for (const DotWeights& w : {DotWeights{6, 2, 1}, DotWeights{1, 1, 1}, DotWeights{3, 0, 2},
+                              DotWeights{5, 2, 0}, DotWeights{1, 0, 0}}) {
+    CHECK(detail::stick::shared_along_edge(w) == Approx(shared(w)).epsilon(1e-14));
+  }
+}
+
 TEST_CASE("dot noise: the published measure holds the noise of two dots", "[stick]") {
   // noise of the central dot and of the worst of the others, here the corners
   MeanOfSeeds published, largest;
@@ -374,7 +403,8 @@ TEST_CASE("dot noise: what it refuses", "[stick]") {
   }
   CHECK(begins_with(said(), "DotNoiseCalibration: dots = 0"));
   calibration.add(found);
-  CHECK(begins_with(said(), "DotNoiseCalibration: noise_px = 0, must be > 0: the frames are the"));
+  CHECK(begins_with(said(),
+                    "DotNoiseCalibration: noise_px = 0, must be > 0: the frames are identical"));
   calibration.add(noisy(found, 0.1, random));
   CHECK(said() == "accepted");
 
@@ -385,7 +415,8 @@ TEST_CASE("dot noise: what it refuses", "[stick]") {
     dots(0, t % 2).y = test::nan;
     apart.add(dots);
   }
-  CHECK(begins_with(refusal([&] { (void)apart.fit(); }), "DotNoiseCalibration: positions beyond"));
+  CHECK(begins_with(refusal([&] { (void)apart.fit(); }),
+                    "DotNoiseCalibration: degrees of freedom of the positions = "));
 }
 
 TEST_CASE("false slip: against fifty digits, however rare", "[stick]") {

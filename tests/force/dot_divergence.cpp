@@ -229,6 +229,57 @@ TEST_CASE("dot divergence: a force by a gauge's calibration, with its variance",
   CHECK(worst < 0.1);
 }
 
+TEST_CASE("dot divergence: a free dot that was not found lies between its neighbours",
+          "[dot_divergence]") {
+  // pitch 2 mm by 3 mm, stretched by 2 % and 5 %, the dots around (3, 4) count
+  Dots home(6, 8), stretched(6, 8);
+  for (Index i = 0; i < 6; ++i) {
+    for (Index j = 0; j < 8; ++j) {
+      const Point at = {2 * static_cast<double>(j) - 5, 3 * static_cast<double>(i) + 1};
+      home(i, j) = at;
+      stretched(i, j) = {1.02 * at.x, 1.05 * at.y};
+    }
+  }
+  Mask mask(6, 8, 0);
+  mask(3, 4) = 1;
+  const double growth = (1.02 * 1.05 - 1) * 4 * 6;
+  // between those in the row; without these, between those in the column
+  for (const Index row : {2, 3, 4}) {
+    for (const int lost : {0, 1, 2}) {
+      for (const Index col : {3, 4, 5}) {
+        Dots some = home;
+        for (Index k = 0; k < lost; ++k) {
+          some(row, col + k) = {test::nan, test::nan};
+        }
+        const DotDivergence<> divergence(some, {.max_filled = 0.5});
+        auto workspace = divergence.workspace();
+        CAPTURE(row, col, lost);
+        CHECK(divergence(stretched, mask, workspace).area_mm2 == Approx(growth).epsilon(1e-12));
+      }
+    }
+  }
+}
+
+TEST_CASE("dot divergence: a fit leaves the noise of its dots to the frames", "[dot_divergence]") {
+  // a line with slope 3, scatter +-0.2 that a line does not explain, and noise unlike between dots
+  std::vector<DivergenceResult<>> seen;
+  std::vector<double> forces;
+  double noise_mm4 = 0;
+  for (int k = 0; k < 8; ++k) {
+    DivergenceResult<> d;
+    d.status = FrameStatus::ok;
+    d.area_mm2 = 1 + (k / 2) % 2;
+    d.variance_mm4 = 1e-4 * (1 + k);
+    noise_mm4 += d.variance_mm4;
+    seen.push_back(d);
+    forces.push_back(3 * d.area_mm2 + (k % 2 == 0 ? 0.2 : -0.2));
+  }
+  const auto fit = fit_divergence<1>(seen, forces);
+  CHECK(fit.curve.coefficients[1] == Approx(3));
+  // 8 samples less the slope; a line through 0
+  CHECK(square(fit.errors.residual_sd_n) == Approx(8 * 0.04 / 7 - 9 * noise_mm4 / 8));
+}
+
 TEST_CASE("dot divergence: missing, wild and mistaken input", "[dot_divergence]") {
   const Gel gel;
   const auto contact = gel.pressed(gel.force_for(4));

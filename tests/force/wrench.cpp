@@ -68,10 +68,9 @@ Vector any_step(test::Random& random) {
 /// Stored energy over mu t / 2 and per stress-free area, F = [d, e]: (1 - m) (I_1 - 3) +
 /// m (I_2 - 3), I_1 = |F|^2 + J^-2, I_2 = |F|^2 J^-2 + J^2.
 template <class S>
-S energy(const Point3<S>& along, const Point3<S>& tangent, const S& mooney_share) {
-  const S shear = dot(along, tangent);
-  const S trace = squared_norm(along) + S(1);
-  const S area_sq = trace - S(1) - shear * shear;
+S energy(const Point3<S>& along, const Point3<S>& other, const S& mooney_share) {
+  const S trace = squared_norm(along) + squared_norm(other);
+  const S area_sq = squared_norm(cross(along, other));
   const S first = trace + S(1) / area_sq - S(3);
   const S second = trace / area_sq + area_sq - S(3);
   return S((S(1) - mooney_share) * first + mooney_share * second);
@@ -90,6 +89,26 @@ TEST_CASE("clamped rim: the pull is the derivative of the membrane's energy", "[
     const Digits50 slope = test::slope_by_difference(
         [&](const Digits50& t) {
           return Digits50(energy(along + t * way, tangent, share) / Digits50(2));
+        },
+        Digits50(0), Digits50(1e-16));
+    CHECK(abs(Digits50(slope - dot(pull, way))) < Digits50(1e-27));
+  }
+}
+
+TEST_CASE("rubber: the pull across any direction is the derivative of the membrane's energy",
+          "[wrench]") {
+  test::Random random(3);
+  for (int k = 0; k < 50; ++k) {
+    const AnyRim rim(random);
+    const auto along = as<Digits50>(rim.along);
+    const auto other = Digits50(random.uniform(0.7, 1.5)) * as<Digits50>(rim.tangent) +
+                       Digits50(0.2) * as<Digits50>(any_step(random));
+    const Digits50 share = Digits50(random.uniform(0, 1));
+    const auto pull = detail::membrane::rubber_pull(along, other, share);
+    const auto way = as<Digits50>(any_step(random));
+    const Digits50 slope = test::slope_by_difference(
+        [&](const Digits50& t) {
+          return Digits50(energy(along + t * way, other, share) / Digits50(2));
         },
         Digits50(0), Digits50(1e-16));
     CHECK(abs(Digits50(slope - dot(pull, way))) < Digits50(1e-27));
@@ -814,6 +833,86 @@ TEST_CASE("heights in plan are those that a camera has seen along its rays", "[w
       }
     }
   });
+}
+
+TEST_CASE("a position is in contact if two of the four pixels around it are", "[wrench]") {
+  const OrthographicCamera<double> camera{
+      .center_x_px = 30.5, .center_y_px = 20.5, .pitch_mm = 0.25};
+  const PadHeights heights(42, 62, camera, 4.0);
+  const test::Image<double> depth(42, 62, 2.0);
+  auto map = heights.map();
+  for (int marked = 0; marked < 16; ++marked) {
+    test::Image<std::uint8_t> mask(42, 62, 0);
+    int count = 0;
+    for (Index k = 0; k < 4; ++k) {
+      const bool touches = (marked >> k & 1) != 0;
+      mask(16 + k / 2, 36 + k % 2) = touches;
+      count += touches ? 1 : 0;
+    }
+    REQUIRE(heights(depth, mask, map));
+    CAPTURE(marked);
+    CHECK(map.in_contact(1.5, -1.0) == (count >= 2));
+    CHECK_FALSE(map.in_contact(-1.0, 1.5));
+  }
+}
+
+TEST_CASE("heights on a mesh: every node has its height, and all but the border a slope",
+          "[wrench]") {
+  PadHeights<>::Map map(1.0, 0.5);
+  REQUIRE(map.side() == 7);
+  const auto plane = [&](Index i, Index j) {
+    return 3 + 2 * map.position_mm(j) - 5 * map.position_mm(i);
+  };
+  map.fill(plane, [](const auto&...) { return 0.0; });
+  for (Index i = 0; i < 7; ++i) {
+    for (Index j = 0; j < 7; ++j) {
+      CAPTURE(i, j);
+      const auto& node = map.node(i, j);
+      const bool inside = i > 0 && i < 6 && j > 0 && j < 6;
+      CHECK(node.height_mm == plane(i, j));
+      CHECK(is_finite(node.along_x) == inside);
+      CHECK(is_finite(node.along_y) == inside);
+      CHECK((!inside || (node.along_x == 2 && node.along_y == -5)));
+    }
+  }
+}
+
+namespace {
+/// Slopes of a membrane around a level contact of radius r_g, with
+/// r^2 - r_g^2 = level r sin(inclination) (1 + growth (r - r_g)). The map shows the edge too far
+/// out.
+struct LevelContact {
+  double edge_mm = 6, level_mm = 30, growth_per_mm = 0;
+
+  struct Slopes {
+    double height_mm, along_x, along_y;
+  };
+  Slopes operator()(double x, double y) const {
+    const double r = std::hypot(x, y);
+    if (!(r > edge_mm)) {
+      return {5, 0, 0};
+    }
+    const double sine = (r * r - edge_mm * edge_mm) /
+                        (level_mm * r * (1 + growth_per_mm * (r - edge_mm)));
+    const double fall = sine / std::sqrt(1 - sine * sine);
+    return {5, -fall * x / r, -fall * y / r};
+  }
+  bool in_contact(double x, double y) const { return std::hypot(x, y) < edge_mm + 0.3; }
+};
+}  // namespace
+
+TEST_CASE("the edge of a contact is where the balance of the membrane beside it ends",
+          "[wrench]") {
+  for (const double growth : {0.0, 0.02, -0.02}) {
+    detail::membrane::Compartments<double> nodes(8, 5, 15.0, {0.1, 0.5, 3.0});
+    nodes.lay<StraightLines>(LevelContact{.growth_per_mm = growth}, {0, 0, 0});
+    for (Index i = 0; i < 8; ++i) {
+      const auto& end = nodes.node(i, 5);
+      CAPTURE(growth, i);
+      CHECK(nodes.end(i) == detail::membrane::LineEnd::edge);
+      CHECK(std::hypot(end.x, end.y) == Approx(6).epsilon(1e-9));
+    }
+  }
 }
 
 TEST_CASE("heights on a mesh stand for the shape", "[wrench]") {
