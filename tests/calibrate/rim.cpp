@@ -232,20 +232,22 @@ TEST_CASE("rim calibration: units and the order of levels and dots do not matter
   CHECK(again(0) == Approx(fit(pad.columns - 1 - 7)).epsilon(1e-12));
 
   // a pad of another size and stiffness: lengths by 2, so p a by 2 for the same mu t
-  Row large_border = pad.border();
-  for (Point& b : large_border) {
-    b = {2 * b.x, 2 * b.y, 0};
-  }
-  RimCalibration<> large(grid_of(large_border), 2 * radius_mm);
-  for (std::size_t k = 0; k < 4; ++k) {
-    Row dots = pad.dots(four_pressures[k]);
-    for (Point& d : dots) {
-      d = {2 * d.x, 2 * d.y, 2 * d.z};
+  for (const double times : {2.0, 0.04}) {
+    const auto scaled = [&](Row row) {
+      for (Point& p : row) {
+        p = times * p;
+      }
+      return row;
+    };
+    RimCalibration<> other_size(grid_of(scaled(pad.border())), times * radius_mm);
+    for (std::size_t k = 0; k < 4; ++k) {
+      const Row dots = scaled(pad.dots(four_pressures[k]));
+      CHECK(other_size.add(k, grid_of(dots), 3 * four_pressures[k]));
     }
-    CHECK(large.add(k, grid_of(dots), 3 * four_pressures[k]));
+    const auto scaled_fit = other_size.fit();
+    CHECK(scaled_fit.modulus_n_per_mm == Approx(3 * times * fit.modulus_n_per_mm).epsilon(1e-9));
+    CHECK(scaled_fit.length_mm == Approx(times * fit.length_mm).epsilon(1e-9));
   }
-  CHECK(large.fit().modulus_n_per_mm == Approx(6 * fit.modulus_n_per_mm).epsilon(1e-9));
-  CHECK(large.fit().length_mm == Approx(2 * fit.length_mm).epsilon(1e-9));
 }
 
 TEST_CASE("rim calibration: frames of a level are averaged", "[wrench]") {

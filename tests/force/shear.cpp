@@ -220,7 +220,7 @@ TEST_CASE("shear: any linear map", "[shear]") {
   CHECK(r.tangential_force_n.y == Approx(6.25 * 1.56916819579350147 - 0.25).epsilon(1e-14));
   CHECK(r.moment_n_mm == Approx(10 * 3.24900958542494209 + 0.5).epsilon(1e-14));
   // no displacement of a fingertip is beyond the range of this map
-  CHECK(shear(1.0, {99, 0}, -3.1).ok());
+  CHECK(shear(1.0, {60, 80}, -3.1).ok());  // 100 mm
   CHECK(shear(1.0, {101, 0}, 0.1).force_status == ForceStatus::implausible);
   CHECK(shear(1.0, {101, 0}, 0.1).moment_status == ForceStatus::measured);
   CHECK(shear(1.0, {1, 0}, -15).moment_status == ForceStatus::implausible);

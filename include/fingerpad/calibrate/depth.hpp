@@ -99,11 +99,11 @@ S predicted_depth_sd(const AbsorptionFit<S, Degree>& fit, const DepthSample<S>& 
 
 namespace detail {
 
-/// Number of values that differ by more than a thousandth of the largest.
+/// Number of values, of at least one, that differ by more than a thousandth of the largest.
 template <scalar S>
 long long distinct_values(std::vector<S> values) {
   std::sort(values.begin(), values.end());
-  long long distinct = values.empty() ? 0 : 1;
+  long long distinct = 1;
   for (std::size_t i = 1; i < values.size(); ++i) {
     distinct += values[i] - values[i - 1] > values.back() / S(1000) ? 1 : 0;
   }
