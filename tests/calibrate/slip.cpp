@@ -289,8 +289,10 @@ TEST_CASE("dot noise: averages along an edge share noise", "[stick]") {
   const auto shared = [](const DotWeights& w) {
     const auto weight = [&](int row, int col) {
       const bool near = (row == 0 || row == 1) && col >= -1 && col <= 1;
-      return !near ? 0.0 : row == 0 && col == 0 ? w.self : row == 0 || col == 0 ? w.side
-                                                                                 : w.diagonal;
+      return !near                  ? 0.0
+             : row == 0 && col == 0 ? w.self
+             : row == 0 || col == 0 ? w.side
+                                    : w.diagonal;
     };
     const auto product = [&](int apart) {
       double sum = 0;

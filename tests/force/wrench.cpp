@@ -892,8 +892,8 @@ struct LevelContact {
     if (!(r > edge_mm)) {
       return {5, 0, 0};
     }
-    const double sine = (r * r - edge_mm * edge_mm) /
-                        (level_mm * r * (1 + growth_per_mm * (r - edge_mm)));
+    const double sine =
+        (r * r - edge_mm * edge_mm) / (level_mm * r * (1 + growth_per_mm * (r - edge_mm)));
     const double fall = sine / std::sqrt(1 - sine * sine);
     return {5, -fall * x / r, -fall * y / r};
   }
@@ -901,8 +901,7 @@ struct LevelContact {
 };
 }  // namespace
 
-TEST_CASE("the edge of a contact is where the balance of the membrane beside it ends",
-          "[wrench]") {
+TEST_CASE("the edge of a contact is where the balance of the membrane beside it ends", "[wrench]") {
   // a line is cut between points 0.1 mm apart, linearly in r^2
   const double cut_mm = 0.1 * 0.1 / (8 * 6);
   for (const double growth : {0.0, 0.02, -0.02}) {

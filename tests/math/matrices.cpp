@@ -30,8 +30,8 @@ TEST_CASE("least squares keep their digits where a column hardly differs from an
 
 TEST_CASE("the frame of a normal is right-handed, and u lies in its plane with an axis", "[math]") {
   rc::prop("whatever the normal", [] {
-    const Point n = normalized(
-        Point{test::uniform(-1, 1), test::uniform(-1, 1), test::uniform(0.01, 1)});
+    const Point n =
+        normalized(Point{test::uniform(-1, 1), test::uniform(-1, 1), test::uniform(0.01, 1)});
     const auto frame = detail::SurfaceFrame<double>::around(n);
     const bool steep = n.x * n.x > 0.5;
     const auto is_near = [](double a, double b) { return std::abs(a - b) < 1e-14; };
