@@ -223,7 +223,7 @@ TEST_CASE("contact slide: the first and the last dot of the pattern count", "[co
 
 TEST_CASE("contact slide: the standard deviation is the mean of both axes", "[contact_slide]") {
   // steep along x, flat along y; with x and y exchanged, the mean is the same
-  const auto image = [](bool exchanged) {
+  const auto waves = [](bool exchanged) {
     Image<double> image(60, 60);
     for (Index i = 0; i < 60; ++i) {
       for (Index j = 0; j < 60; ++j) {
@@ -240,8 +240,8 @@ TEST_CASE("contact slide: the standard deviation is the mean of both axes", "[co
     }
     const ContactSlide<double> square(60, 60, 5, 7);
     auto state = square.start();
-    (void)square(image(exchanged), contact, Pad().dots(), state);
-    return square(image(exchanged), contact, Pad().dots(), state).imprint_sd_px;
+    (void)square(waves(exchanged), contact, Pad().dots(), state);
+    return square(waves(exchanged), contact, Pad().dots(), state).imprint_sd_px;
   };
   CHECK(sd_px(false) > 0);
   CHECK(sd_px(true) == Approx(sd_px(false)).epsilon(1e-9));
