@@ -1,9 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
+// Least squares and small matrices, by the public headers that use them.
 #include <cmath>
 
-#include "fingerpad/math/detail/householder_qr.hpp"
-#include "fingerpad/math/detail/small_matrices.hpp"
+#include "fingerpad/calibrate/depth.hpp"
+#include "fingerpad/slip/friction_limit.hpp"
 #include "support/catch.hpp"
 #include "support/generators.hpp"
 

@@ -18,7 +18,7 @@
 namespace test {
 
 inline const std::filesystem::path bundled_recordings =
-    std::filesystem::path(__FILE__).parent_path().parent_path().parent_path() / "examples" / "data";
+    (std::filesystem::path(__FILE__).parent_path() / "../../examples/data").lexically_normal();
 
 /// An empty folder of its own, removed with all that is in it.
 class ScratchFolder {
