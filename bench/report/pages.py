@@ -240,7 +240,11 @@ and of the heights in plan, and work on dots and six-axis force side by side. Co
 motion stay with one thread. Results are the same to the last bit, as they are from run to run
 (`tests/pipeline/fingertip.cpp`). A thread that waits for the other polls for half a millisecond before it
 sleeps (bench/report/chain/crew.hpp): a frame hands work over four times, and to wake a sleeping thread
-takes about as long as the work that is handed over.
+takes about as long as the work that is handed over. Two threads gain most where the depth takes long. The
+six-axis force stays with one thread, and nothing else takes as long.
+
+A single frame that takes 4 ms or more has met another process: the kernel gave that one the core for a time
+slice. A process of high priority, pinned to a core, meets none (`nice -n -20 taskset -c 1`).
 
 ![Share of frames that take longer](whole_chain/latency.png)
 
