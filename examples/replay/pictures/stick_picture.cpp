@@ -79,9 +79,11 @@ std::string words_of(const StickFrame& stick) {
   if (result.updated()) {
     const bool by_friction =
         stick.evidence == SlipEvidence::friction || stick.evidence == SlipEvidence::both;
-    return format("stick ratio %.2f%s: %td of %td dots stick", ratio,
-                  by_friction ? ", the object slides by its friction; by the dots alone" : "",
-                  result.stick, result.stick + result.slip);
+    const auto counted = result.stick + result.slip;
+    return by_friction
+               ? format("stick ratio %.2f, a slide by friction; %td of %td dots seem to stick",
+                        ratio, result.stick, counted)
+               : format("stick ratio %.2f: %td of %td dots stick", ratio, result.stick, counted);
   }
   const std::string why = name_of(result.status);
   return std::isfinite(ratio) ? format("stick ratio still %.2f: ", ratio) + why
