@@ -109,7 +109,7 @@ enum class WrenchStatus : std::uint8_t {
   no_shape,       ///< more than a third of the lines run into holes, or no height is known
   no_level_line,  ///< nowhere between rim and contact is the membrane level, so its shape does not
                   ///< show how much it pulls (by_modulus() needs no such line)
-  not_solved,     ///< the equations have no solution, or one that pulls downward
+  not_solved,     ///< no solution, one that pulls downward, or tensions beyond any measure
   // likely mistakes
   pressure_not_in_mpa,  ///< above max_pressure_mpa: kPa, Pa?
   shape_not_in_mm,      ///< lower than the side dots, or higher than the base is wide: m, um?
