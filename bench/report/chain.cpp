@@ -12,6 +12,7 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <ctime>
 #include <iostream>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -29,6 +30,13 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 using Milliseconds = std::chrono::duration<double, std::milli>;
+
+/// Processor time of this thread: without what another process took.
+double thread_ms() {
+  std::timespec now{};
+  (void)clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+  return 1e3 * static_cast<double>(now.tv_sec) + 1e-6 * static_cast<double>(now.tv_nsec);
+}
 
 double share_of(const std::vector<double>& sorted, double share) {
   return sorted[static_cast<std::size_t>(share * static_cast<double>(sorted.size() - 1))];
@@ -180,11 +188,13 @@ ordered_json latencies_of(Chain chain, const chain::PressedFrames& frames, int c
   }
   Times times(count);
   const long before = test::allocations();
-  double sum_ms = 0;
+  double sum_ms = 0, worst_of_thread_ms = 0;
   for (int k = 0; k < count; ++k) {
+    const double thread_before_ms = thread_ms();
     const auto begin = Clock::now();
     (void)touch_of(chain, frames[static_cast<std::size_t>(k) % frames.size()].view());
     const double ms = Milliseconds(Clock::now() - begin).count();
+    worst_of_thread_ms = std::max(worst_of_thread_ms, thread_ms() - thread_before_ms);
     sum_ms += ms;
     times.add(ms);
   }
@@ -197,6 +207,7 @@ ordered_json latencies_of(Chain chain, const chain::PressedFrames& frames, int c
   out["99_ms"] = share_of(sorted, 0.99);
   out["999_ms"] = share_of(sorted, 0.999);
   out["worst_ms"] = sorted.back();
+  out["worst_of_thread_ms"] = worst_of_thread_ms;
   out["frames_per_s"] = 1000 * count / sum_ms;
   for (int k = 0; k <= 1000; ++k) {
     out["sorted_ms"].push_back(share_of(sorted, k / 1000.0));
@@ -243,6 +254,51 @@ ordered_json in_samples(const char* policies,
   return out;
 }
 
+/// Medians of the two passes from a frame to depth, alone and in sequence, and of a copy of what
+/// the first leaves for the second: what one pass over the frame could save.
+template <class Methods, class Options>
+ordered_json passes_of(const Options& options, const chain::PressedFrames& frames) {
+  constexpr int step = Methods::sampling;
+  using Sampler = FrameSampler<std::uint8_t, step>;
+  using Samples = test::Image<typename Sampler::Sample>;
+  const auto reference = sampled(options.reference, step);
+  const DepthEstimator estimate(sampled(options.camera, step), options.fluid, reference,
+                                typename Methods::Smoothing{options.smoothing_px, step},
+                                typename Methods::Inverse{});
+  auto work = estimate.template workspace<typename Sampler::Sample>();
+  auto rows = Sampler::workspace(options.cols);
+  test::Image<float> depth_mm(reference.rows, reference.cols);
+  test::Image<PixelStatus> status(reference.rows, reference.cols);
+  Samples red(reference.rows, reference.cols), green = red, copy = red;
+  const auto view = [](Samples& of) {
+    return StridedView<typename Sampler::Sample>(of.cells.data(), of.rows(), of.cols(), of.cols());
+  };
+  const auto sample = [&](const chain::Inputs& in) {
+    (void)Sampler::band(0, red.rows(), in.image.red, in.image.green, view(red), view(green), rows);
+  };
+  const auto invert = [&] { (void)estimate(red, green, depth_mm, status, work); };
+  const auto median = [&](const auto& pass) {
+    Times times;
+    for (std::size_t k = 0; k < 400; ++k) {
+      const auto in = frames[k % frames.size()].view();
+      const auto begin = Clock::now();
+      pass(in);
+      times.add(Milliseconds(Clock::now() - begin).count());
+    }
+    return times.median();
+  };
+  return {{"samples", median(sample)},
+          {"depth from the samples", median([&](const chain::Inputs&) { invert(); })},
+          {"both", median([&](const chain::Inputs& in) {
+             sample(in);
+             invert();
+           })},
+          {"copy of the samples", median([&](const chain::Inputs&) {
+             std::copy(red.cells.begin(), red.cells.end(), copy.cells.begin());
+             std::copy(green.cells.begin(), green.cells.end(), copy.cells.begin());
+           })}};
+}
+
 /// Instructions and cycles of a frame; null where the machine does not count them.
 template <class Chain>
 ordered_json events_of(Chain chain, const chain::PressedFrames& frames) {
@@ -286,6 +342,8 @@ int main(int argc, char** argv) {
                     in_samples<chain::ByDefault, 2>("default", options, frames),
                     in_samples<chain::ByDefault, 3>("default", options, frames),
                     in_samples<chain::ByDefault, 4>("default", options, frames)};
+  out["passes_ms"] = {{"lean", passes_of<chain::Lean>(options, frames)},
+                      {"default", passes_of<chain::ByDefault>(options, frames)}};
   out["growth"] = growth();
   const auto one = latencies_of(chain_of<chain::Lean>(options), frames, count);
   const auto two = latencies_of(chain_of<chain::Shared<chain::Lean>>(options), frames, count);

@@ -1,0 +1,88 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+// "kernels NAME CALLS" calls a pixel kernel so many times on the same frame of 320 x 240 pixels.
+// bench/report/instructions/count takes the difference between two numbers of calls.
+#include <cstdint>
+#include <cstdlib>
+#include <string>
+#include <vector>
+
+#include "fingerpad/contact/contact_region.hpp"
+#include "fingerpad/depth/depth.hpp"
+#include "fingerpad/depth/sampling.hpp"
+#include "support/pad.hpp"
+
+using namespace fingerpad;
+
+namespace {
+
+test::Pad pad_of_320_x_240() {
+  test::Pad pad;
+  pad.rows = 240;
+  pad.cols = 320;
+  pad.camera.pitch_mm = 0.1536;
+  pad.camera.center_x_px = 159.5;
+  pad.camera.center_y_px = 119.5;
+  return pad;
+}
+
+template <int Step>
+bool samples(const test::Frame<std::uint8_t>& frame, int calls) {
+  using Sampler = FrameSampler<std::uint8_t, Step>;
+  const Index rows = frame.red.rows() / Step, cols = frame.red.cols() / Step;
+  test::Image<std::uint16_t> red(rows, cols), green(rows, cols);
+  auto work = Sampler::workspace(frame.red.cols());
+  const auto view = [](test::Image<std::uint16_t>& image) {
+    return StridedView<std::uint16_t>(image.cells.data(), image.rows(), image.cols(), image.cols());
+  };
+  bool done = true;
+  for (int k = 0; k < calls; ++k) {
+    done &= Sampler::band(0, rows, frame.red, frame.green, view(red), view(green), work);
+  }
+  return done;
+}
+
+bool depth(const test::Pad& pad, const test::Frame<std::uint8_t>& frame, int calls) {
+  const DepthEstimator estimate(pad.camera, pad.fluid, pad.reference<float>(), BiasFreeMean{15});
+  auto work = estimate.workspace<std::uint8_t>();
+  test::Image<float> depth_mm(pad.rows, pad.cols);
+  test::Image<PixelStatus> status(pad.rows, pad.cols);
+  bool done = true;
+  for (int k = 0; k < calls; ++k) {
+    done &= estimate(frame.red, frame.green, depth_mm, status, work).ok();
+  }
+  return done;
+}
+
+bool contact(const test::Pad& pad, const test::Image<double>& pressed_mm, int calls) {
+  test::Image<float> depth_mm(pad.rows, pad.cols);
+  for (std::size_t k = 0; k < depth_mm.cells.size(); ++k) {
+    depth_mm.cells[k] = static_cast<float>(pressed_mm.cells[k]);
+  }
+  ContactTest test;
+  test.ring.radius_px = 12;
+  const ContactRegion<> region(pad.camera, pad.rows, pad.cols, test);
+  auto work = region.workspace();
+  test::Image<std::uint8_t> mask(pad.rows, pad.cols);
+  bool done = true;
+  for (int k = 0; k < calls; ++k) {
+    done &= region(depth_mm, mask, work).ok();
+  }
+  return done;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  const std::string name = argc > 1 ? argv[1] : "";
+  const int calls = argc > 2 ? std::atoi(argv[2]) : 1;
+  const test::Pad pad = pad_of_320_x_240();
+  const auto pressed_mm = pad.pressed_depths(3);
+  const auto frame = pad.frame<std::uint8_t>(pressed_mm);
+  const bool done = name == "samples3"   ? samples<3>(frame, calls)
+                    : name == "samples4" ? samples<4>(frame, calls)
+                    : name == "depth"    ? depth(pad, frame, calls)
+                    : name == "contact"  ? contact(pad, pressed_mm, calls)
+                                         : false;
+  return done ? 0 : 1;
+}
