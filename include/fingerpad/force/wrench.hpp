@@ -239,8 +239,7 @@ class Wrench {
         work.segments_, work.nodes_, work.pulls_.segments, pressure, work.work_, work.tensions_);
     S residual = not_a_number<S>();
     if constexpr (Solver::finds_tensions) {
-      residual =
-          detail::membrane::residual(work.segments_, work.nodes_, work.tensions_, pressure).force;
+      residual = detail::membrane::residual(work.segments_, work.tensions_, pressure);
       solved = solved && is_plausible(residual);
     }
     if constexpr (Solver::magnitude == detail::membrane::Magnitude::of_all) {

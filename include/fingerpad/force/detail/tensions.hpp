@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 // The tensions of a membrane cut into segments, and how well they balance the pressure. Source:
-// Ito, Kim, Obinata 2011, III.D, eqs. 6 and 7.
+// Ito, Kim, Obinata 2011, III.D, eq. 6.
 #include <cmath>
 #include <cstddef>
 #include <vector>
@@ -11,7 +11,6 @@
 #include "fingerpad/core/grid.hpp"
 #include "fingerpad/core/point.hpp"
 #include "fingerpad/core/scalar.hpp"
-#include "fingerpad/force/detail/compartments.hpp"
 #include "fingerpad/force/detail/segments.hpp"
 
 namespace fingerpad {
@@ -41,35 +40,17 @@ Point3<S> border_force(const Border<S>& border, const S& normal, const S& shear)
   return normal * border.normal + shear * border.along;
 }
 
-/// A segment's unbalanced force and its unbalanced torque about its own normal.
+/// The left side of (6) for M(i, j), N. The force on the lowest border is the pull on the base.
 template <scalar S>
-struct Unbalanced {
-  Point3<S> force_n;
-  S torque_nmm;
-};
-
-/// The left sides of (6) and (7) for M(i, j). Forces act at the middles of the borders, pressure at
-/// the mean of the four nodes. The force on the lowest border is the pull on the base.
-template <scalar S>
-Unbalanced<S> unbalanced(const Segments<S>& segments,
-                         const Compartments<S>& nodes,
-                         const Tensions<S>& tensions,
-                         const S& pressure_mpa,
-                         Index i,
-                         Index j) {
+Point3<S> unbalanced_force(const Segments<S>& segments,
+                           const Tensions<S>& tensions,
+                           const S& pressure_mpa,
+                           Index i,
+                           Index j) {
   const Index next = segments.next(i);
   const auto low = static_cast<std::size_t>(j * segments.columns() + i);
   const auto up = static_cast<std::size_t>((j + 1) * segments.columns() + i);
   const auto right = static_cast<std::size_t>(j * segments.columns() + next);
-  const S half = S(1) / S(2);
-  const Point3<S>& area = segments.area(i, j);
-  // half the diagonals: the arms of opposite borders about the mean of the nodes
-  const Point3<S> first = nodes.node(next, j + 1) - nodes.node(i, j);
-  const Point3<S> second = nodes.node(i, j + 1) - nodes.node(next, j);
-  const S quarter = half * half;
-  const Point3<S> upward = quarter * (first + second);
-  const Point3<S> onward = quarter * (first - second);
-
   const Point3<S> f_low = j == 0 ? tensions.rim[low]
                                  : border_force(segments.around(i, j), tensions.around_normal[low],
                                                 tensions.around_shear[low]);
@@ -79,29 +60,16 @@ Unbalanced<S> unbalanced(const Segments<S>& segments,
       border_force(segments.upward(i, j), tensions.upward_normal[low], tensions.upward_shear[low]);
   const Point3<S> f_right = border_force(segments.upward(next, j), tensions.upward_normal[right],
                                          tensions.upward_shear[right]);
-  const Point3<S> force = f_up - f_low + f_right - f_left + pressure_mpa * area;
-  const Point3<S> torque = cross(upward, f_up + f_low) + cross(onward, f_right + f_left);
-  const bool flat = !(value(squared_norm(area)) > 0);
-  return {force, flat ? S(0) : dot(torque, normalized(area))};
+  return f_up - f_low + f_right - f_left + pressure_mpa * segments.area(i, j);
 }
 
-/// Deviation of the tensions from balance, relative to the effect of the pressure.
+/// Residual of (6) for any solution, relative to the effect of the pressure:
+/// sqrt(sum |force|^2 / |S| / (p^2 sum |S|)), the rms, by area, of |force| / (p |S|). Segments
+/// without area do not count; NaN if none has an area. O(segments).
 template <scalar S>
-struct Imbalance {
-  S force;   ///< sqrt(sum |force|^2 / |S| / (p^2 sum |S|)): rms, by area, of |force| / (p |S|)
-  S torque;  ///< sqrt(sum torque^2 / |S|^2 / (p^2 sum |S|)): rms, by area, of torque / (p |S|^1.5)
-};
-
-/// Residual of (6) and (7) for any solution. Segments without area do not count; NaN if none has an
-/// area. O(segments).
-template <scalar S>
-Imbalance<S> residual(const Segments<S>& segments,
-                      const Compartments<S>& nodes,
-                      const Tensions<S>& tensions,
-                      const S& pressure_mpa) {
+S residual(const Segments<S>& segments, const Tensions<S>& tensions, const S& pressure_mpa) {
   using std::sqrt;
   S force = S(0);
-  S torque = S(0);
   S total = S(0);
   for (Index j = 0; j < segments.rows(); ++j) {
     for (Index i = 0; i < segments.columns(); ++i) {
@@ -109,15 +77,13 @@ Imbalance<S> residual(const Segments<S>& segments,
       if (!(value(area_sq) > 0)) {
         continue;
       }
-      const Unbalanced<S> left = unbalanced(segments, nodes, tensions, pressure_mpa, i, j);
       const S area = sqrt(area_sq);
-      force = force + squared_norm(left.force_n) / area;
-      torque = torque + square(left.torque_nmm) / area_sq;
+      const Point3<S> left_n = unbalanced_force(segments, tensions, pressure_mpa, i, j);
+      force = force + squared_norm(left_n) / area;
       total = total + area;
     }
   }
-  const S scale = square(pressure_mpa) * total;
-  return {S(sqrt(S(force / scale))), S(sqrt(S(torque / scale)))};
+  return S(sqrt(S(force / (square(pressure_mpa) * total))));
 }
 
 }  // namespace detail::membrane
