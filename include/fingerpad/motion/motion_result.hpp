@@ -66,10 +66,10 @@ struct [[nodiscard]] ObjectMotionResult {
   Pose<S> pose = {};  ///< x_now = R x_first + t, from the frame in which the object began
   Angles<S> angles =
       {};  ///< about z, y and x; with published::SumOfAngles the sums, which may exceed pi
-  Point3<S> position_mm = {not_a_number<S>(), not_a_number<S>(),
-                           not_a_number<S>()};  ///< present position of the object's point that
-                                                ///< lay under the contact reference dot at first;
-                                                ///< NaN before an object has begun
+  /// Present position of the object's point that lay under the contact reference dot at first, or,
+  /// if there was none, at the centroid of the dots with which the object began. NaN before an
+  /// object has begun.
+  Point3<S> position_mm = {not_a_number<S>(), not_a_number<S>(), not_a_number<S>()};
   Point3<S> displacement_mm = {S(0), S(0), S(0)};  ///< of that point
   S residual_rms_mm = S(0);  ///< rms residual of the dots used from the rigid motion
 
