@@ -98,7 +98,7 @@ S friction_of(const ContactLoad<S>& load) {
 
 struct FrictionLimitOptions {
   /// Fraction of the limit from which on the object counts as sliding, in (0, 1]. The default is 1
-  /// less three times the noise of L, for forces known to 1.5 %.
+  /// less 2.4 times the noise of L. With both forces known to 1.5 %, L is known to 2.1 %.
   double slide_fraction = 0.95;
   double learn_below = 0.2;  ///< stick ratio of the dots below which the limit is learnt, in (0, 1)
   /// Largest factor by which the limit rises or falls in a frame, > 1. An object that exceeds the
@@ -277,10 +277,10 @@ class FrictionLimit {
     return result;
   }
 
-  /// An object that sticks carries a membrane back only while its load falls, here by more than
-  /// three times the noise of two L. Under an object that slides, the membrane springs back while
-  /// the load stays. If no limit is known yet, such a slide is learnt, provided that less than half
-  /// stuck in the last ratio of the dots.
+  /// An object that sticks carries a membrane back only while its load falls, here by more than 2.5
+  /// times the noise of the difference of two L, 3.0 % for forces known to 1.5 %. Under an object
+  /// that slides, the membrane springs back while the load stays. If no limit is known yet, such a
+  /// slide is learnt, provided that less than half stuck in the last ratio of the dots.
   template <class Stick>
   SlipResult<S> of_falling_back(const ContactLoad<S>& load, const Stick& seen, State& state) const {
     const Index age = seen.back.reference_age;

@@ -125,7 +125,8 @@ struct GripLaw {
   // used if the tangential force is known
   S slip_ratio = S(2) / S(10);  ///< ratio of the dots below which the contact slips, in [0, 0.5]
   /// After a slip, L* is L / (1 + slip_margin), > 0. In the default, 0.09 is three times the noise
-  /// of two L for forces known to 1.5 %; the rest is what the load gains before the next frame.
+  /// of the difference of two L, 3.0 % for forces known to 1.5 %; the rest is what the load gains
+  /// before the next frame.
   S slip_margin = S(15) / S(100);
   /// Relative growth of L* per second while the contact has stick to spare, before the first slip,
   /// >= 0. L* does not grow while no ratio is known.
