@@ -8,14 +8,12 @@
 
 using namespace fingerpad;
 using fingerpad::published::AnchoredComposition;
-using fingerpad::published::Kabsch;
 using fingerpad::published::SumOfAngles;
 
 TEMPLATE_TEST_CASE("object motion: a frame allocates nothing",
                    "[object_motion]",
                    ContactMap,
-                   AnchoredComposition<>,
-                   AnchoredComposition<Kabsch>,
+                   AnchoredComposition,
                    SumOfAngles<>) {
   const test::RollingBall ball;
   const ObjectMotion<TestType> motion(ball.initial(), {.reference_margin_mm = 0.2});

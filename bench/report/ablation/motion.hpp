@@ -270,14 +270,13 @@ inline std::vector<Effect> motion_effects() {
   using published::SumOfAngles;
   using published::SymmetricFrame;
   MotionEffects all;
-  all.add("exact composition", "`AnchoredComposition<SymmetricFrame>`",
-          "`SumOfAngles<SymmetricFrame>`", AnchoredComposition<SymmetricFrame>(),
-          SumOfAngles<SymmetricFrame>());
+  all.add("exact composition", "`AnchoredComposition`", "`SumOfAngles<SymmetricFrame>`",
+          AnchoredComposition(), SumOfAngles<SymmetricFrame>());
   all.add("shear of a neighbourhood", "`SumOfAngles<SymmetricFrame>`",
           "`SumOfAngles<PublishedBasis>`", SumOfAngles<SymmetricFrame>(),
           SumOfAngles<PublishedBasis>());
-  all.add("map of all dots", "`ContactMap`", "`AnchoredComposition<SymmetricFrame>`", ContactMap(),
-          AnchoredComposition<SymmetricFrame>());
+  all.add("map of all dots", "`ContactMap`", "`AnchoredComposition`", ContactMap(),
+          AnchoredComposition());
   all.add("robust pass", "`ContactMap`", "`ContactMap{.robust_passes = 0}`", ContactMap(),
           ContactMap{.robust_passes = 0});
   return all.effects;

@@ -6,9 +6,6 @@
 // its neighbours gives the rotation of the contact reference dot, and Euler angles are added up
 // from frame to frame. The sum is wrong because rotations do not commute: docs/errata.md,
 // E019-E024.
-#include <array>
-#include <cstddef>
-
 #include "fingerpad/motion/object_motion.hpp"
 #include "fingerpad/published/detail/followed_dot.hpp"
 
@@ -19,8 +16,6 @@ namespace published {
 /// The published basis, with E021 and E022 repaired. The result is exact for a rigid motion;
 /// otherwise it is in general not a rotation matrix.
 struct PublishedBasis {
-  static constexpr bool gives_rotations = false;
-
   template <scalar S>
   static detail::motion::LocalRotation<S> turn(const detail::motion::Neighbourhood<S>& from,
                                                const detail::motion::Neighbourhood<S>& to) {
@@ -37,8 +32,6 @@ struct PublishedBasis {
 
 /// The same two directions, orthonormalised symmetrically.
 struct SymmetricFrame {
-  static constexpr bool gives_rotations = true;
-
   template <scalar S>
   static detail::motion::LocalRotation<S> turn(const detail::motion::Neighbourhood<S>& from,
                                                const detail::motion::Neighbourhood<S>& to) {
@@ -50,32 +43,6 @@ struct SymmetricFrame {
         [](const detail::motion::Basis<S>& k, const detail::motion::Basis<S>& l) {
           return detail::motion::turn_between(k, l);
         });
-  }
-};
-
-/// The rotation of the rigid motion that fits the common dots best, in the least-squares sense.
-struct Kabsch {
-  static constexpr bool gives_rotations = true;
-
-  template <scalar S>
-  static detail::motion::LocalRotation<S> turn(const detail::motion::Neighbourhood<S>& from,
-                                               const detail::motion::Neighbourhood<S>& to) {
-    std::array<std::size_t, 9> at = {};
-    std::size_t count = 0;
-    for (std::size_t k = 0; k < 9; ++k) {
-      if (from.found[k] && to.found[k]) {
-        at[count++] = k;
-      }
-    }
-    if (count < 3) {
-      return {};
-    }
-    const auto dot = [&at](const detail::motion::Neighbourhood<S>& n) {
-      return [&at, &n](Index k) { return n.dot[at[static_cast<std::size_t>(k)]]; };
-    };
-    const RigidFit<S> fit =
-        fit_rigid<S>(static_cast<Index>(count), dot(from), dot(to), [](Index) { return S(1); });
-    return {fit.pose.rotation, fit.determined ? MotionStatus::ok : MotionStatus::collinear};
   }
 };
 
@@ -138,10 +105,7 @@ struct SumOfAngles {
 /// Exact composition of poses: the motion of the followed dot since its anchor frame is applied
 /// after the pose of the object in that frame. The anchor moves only when another dot becomes the
 /// contact reference dot, so noise grows with the number of changes, not of frames.
-template <class Local = SymmetricFrame>
 struct AnchoredComposition {
-  static_assert(Local::gives_rotations, "only rotations can be composed: use SymmetricFrame");
-
   template <scalar S>
   struct Track : detail::motion::Track<S> {
     detail::motion::FollowedDot<S> followed = {};
@@ -160,7 +124,7 @@ struct AnchoredComposition {
   template <scalar S, class Frame>
   MotionStatus advance(const Frame& frame, DotIndex reference, Track<S>& t) const {
     const detail::motion::DotStep<S> step =
-        detail::motion::next_step<Local>(frame, reference, t.followed);
+        detail::motion::next_step<SymmetricFrame>(frame, reference, t.followed);
     if (step.status != MotionStatus::ok) {
       return step.status;
     }
