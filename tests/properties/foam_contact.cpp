@@ -252,11 +252,10 @@ TEST_CASE("creep of any foam", "[foam_contact][law]") {
 }
 
 TEST_CASE("friction of any polymer", "[foam_contact][law]") {
-  rc::prop("and the load that bears it are each other's inverse, and grow together", [] {
+  rc::prop("grows with the load, and by 1 / mu", [] {
     const PolymerFriction<double> friction{test::log_uniform(1e-2, 1e2), test::uniform(0.2, 1)};
     const double load = test::log_uniform(1e-6, 1e6);
     const double force = friction_force(friction, load);
-    RC_ASSERT(std::abs(normal_force_for(friction, force) - load) < 1e-13 * load);
     RC_ASSERT(friction_force(friction, 1.01 * load) > force);
     RC_ASSERT(std::abs(force * inverse_friction_coefficient(friction, load) - load) < 1e-13 * load);
   });

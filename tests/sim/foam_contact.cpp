@@ -55,8 +55,7 @@ TEST_CASE("foam contact: friction is a power of the load", "[foam_contact]") {
   CHECK(friction_force(published, 27.0) == Approx(9));
   CHECK(friction_force(PolymerFriction<double>{0.5, 2.0 / 3}, 8.0) == Approx(2));
   CHECK(friction_force(PolymerFriction<double>{0.5, 1}, 8.0) == 4);  // Coulomb's law
-  CHECK(normal_force_for(published, 4.0) == Approx(8));
-  CHECK(normal_force_for(PolymerFriction<double>{0.5, 0.5}, 3.0) == Approx(36));
+  CHECK(friction_force(PolymerFriction<double>{0.5, 0.5}, 36.0) == Approx(3));
   CHECK(inverse_friction_coefficient(published, 8.0) == Approx(2));
   CHECK(inverse_friction_coefficient(PolymerFriction<double>{4, 2.0 / 3}, 8.0) == Approx(0.5));
   // the coefficient falls with the load, as the paper reports for compressed areas
@@ -64,7 +63,6 @@ TEST_CASE("foam contact: friction is a power of the load", "[foam_contact]") {
   for (const double nothing : {0.0, -0.0, -1.0, -infinity}) {
     CHECK(friction_force(published, nothing) == 0);
     CHECK(inverse_friction_coefficient(published, nothing) == 0);
-    CHECK(normal_force_for(published, nothing) == 0);
   }
   CHECK(is_nan(friction_force(published, none)));
   CHECK(friction_force(published, 1e-300) == Approx(1e-200));  // where mu is 1e100
@@ -96,7 +94,6 @@ TEST_CASE("foam contact: the oscillator left alone", "[foam_contact]") {
     const double half_s = 2 * pi / std::sqrt(3.0);
     check_motion(free_motion(oscillator, at_one, half_s), -0.163033534821580, 0);
     check_motion(free_motion(oscillator, pushed, half_s), 0, -0.163033534821580);
-    CHECK(damping_ratio(oscillator) == 0.5);
   }
   SECTION("undamped") {
     const MassSpringDamper<double> oscillator{1, 0, 1};
@@ -107,7 +104,6 @@ TEST_CASE("foam contact: the oscillator left alone", "[foam_contact]") {
     const MassSpringDamper<double> oscillator{1, 2, 1};
     check_motion(free_motion(oscillator, at_one, 1.0), 2 / std::exp(1.0), -1 / std::exp(1.0));
     check_motion(free_motion(oscillator, pushed, 3.0), 3 / std::exp(3.0), -2 / std::exp(3.0));
-    CHECK(damping_ratio(oscillator) == 1);
   }
   SECTION("strong: decays 1/2 and 2 per s") {
     const MassSpringDamper<double> oscillator{1, 2.5, 1};

@@ -214,18 +214,7 @@ S slip_threshold_for(const S& noise_px, const S& probability) {
   return S(S(2) * noise_px * root);
 }
 
-/// Probability that at least one of `dots` independent dots is mistaken, if each is with
-/// `probability`, in [0, 1).
-template <scalar S>
-S false_slip_among(const S& probability, Index dots) {
-  using std::expm1;
-  using std::log1p;
-  const S minus = S(0) - probability;
-  const S nats = S(static_cast<double>(dots)) * S(log1p(minus));
-  return S(S(0) - S(expm1(nats)));
-}
-
-/// Inverse of false_slip_among: the probability of each of `dots` if that of at least one is
+/// Probability that a dot is mistaken, if that of at least one of `dots` independent dots is
 /// `among`, in [0, 1).
 template <scalar S>
 S false_slip_of_each(const S& among, Index dots) {

@@ -350,13 +350,6 @@ constexpr StridedView<T> flip_cols(StridedView<T> v) {
   return {v.data() + last * v.col_stride(), v.rows(), v.cols(), v.row_stride(), -v.col_stride()};
 }
 
-/// Rows and columns 0, n, 2n, ...; n >= 1.
-template <class T>
-constexpr StridedView<T> every_nth(StridedView<T> v, Index n) {
-  return {v.data(), (v.rows() + n - 1) / n, (v.cols() + n - 1) / n, n * v.row_stride(),
-          n * v.col_stride()};
-}
-
 /// Channel `c` of an image whose `channels` values lie side by side in each pixel (BGRBGR...).
 /// `row_stride` is counted in values, as in `channels * cols` for an image without padding.
 template <class T>

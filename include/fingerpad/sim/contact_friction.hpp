@@ -71,13 +71,6 @@ S friction_force(const PolymerFriction<S>& friction, const S& normal_n) {
   return S(friction.factor * detail::foam::positive_power(normal_n, friction.exponent));
 }
 
-/// The normal load that a friction force requires, N: the inverse of friction_force.
-template <scalar S>
-S normal_force_for(const PolymerFriction<S>& friction, const S& friction_n) {
-  const S power = friction_n / friction.factor;
-  return detail::foam::positive_power(power, S(S(1) / friction.exponent));
-}
-
 /// 1/mu = N^(1 - beta) / K, the factor of eqs. 5 and 7. It is finite for every load; only its
 /// inverse mu is unbounded.
 template <scalar S>

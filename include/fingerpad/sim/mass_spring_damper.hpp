@@ -45,15 +45,6 @@ void expects_valid(const MassSpringDamper<S>& oscillator) {
         oscillator.stiffness_n_per_mm, "finite and > 0");
 }
 
-/// c / (2 sqrt(m k)): the oscillator is underdamped below 1 and overdamped above 1.
-template <scalar S>
-S damping_ratio(const MassSpringDamper<S>& oscillator) {
-  using std::sqrt;
-  const S product = oscillator.mass_n_s2_per_mm * oscillator.stiffness_n_per_mm;
-  const S root = sqrt(product);
-  return S(oscillator.damping_n_s_per_mm / S(root + root));
-}
-
 /// f(t) = A + B t, the load of eq. 8.
 template <scalar S = double>
 struct RampLoad {
