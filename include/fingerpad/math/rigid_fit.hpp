@@ -108,15 +108,6 @@ S largest_root(const S& c2, const S& c1, const S& c0, const S& above) {
   return l;
 }
 
-}  // namespace detail::motion
-
-/// The best rigid motion, and whether the points determine it.
-template <scalar S = double>
-struct RigidFit {
-  Pose<S> pose = {};
-  bool determined = false;  ///< false: collinear points, or all equal; the pose is the identity
-};
-
 /// The rotation that best maps `from` to `to`, from their cross-covariance about the two centers
 /// and the sums of squares of both. Returns false if the points do not determine it. With singular
 /// values s1 >= s2 >= |s3| of the cross-covariance (s3 < 0 if a reflection would fit better), it is
@@ -170,6 +161,15 @@ bool best_rotation(const S (&covariance)[3][3],
   return true;
 }
 
+}  // namespace detail::motion
+
+/// The best rigid motion, and whether the points determine it.
+template <scalar S = double>
+struct RigidFit {
+  Pose<S> pose = {};
+  bool determined = false;  ///< false: collinear points, or all equal; the pose is the identity
+};
+
 /// The best rigid motion of count points. from(k) and to(k) are points, weight(k) >= 0.
 /// O(count), no allocation.
 template <scalar S, class From, class To, class Weight>
@@ -216,7 +216,7 @@ RigidFit<S> fit_rigid(Index count, const From& from, const To& to, const Weight&
   };
   RigidFit<S> fit;
   fit.determined = !is_roundoff(from_sq, from_center) && !is_roundoff(to_sq, to_center) &&
-                   best_rotation(covariance, from_sq, to_sq, fit.pose.rotation);
+                   detail::motion::best_rotation(covariance, from_sq, to_sq, fit.pose.rotation);
   if (fit.determined) {
     fit.pose.translation_mm = to_center - fit.pose.rotation(from_center);
   }

@@ -16,6 +16,8 @@
 namespace fingerpad {
 inline namespace v0 {
 
+namespace detail::motion {
+
 /// Depth between pixel centers by bilinear interpolation; NaN outside of the map and where a pixel
 /// with a weight is missing.
 template <scalar S, grid Depth>
@@ -42,7 +44,6 @@ S depth_between_pixels(const Depth& depth_mm, const S& row, const S& col) {
   return is_finite(depth) ? depth : not_a_number<S>();
 }
 
-namespace detail::motion {
 /// A point of type P with these coordinates.
 template <class P, scalar S>
 P point_from(const Point3<S>& p) {
@@ -89,7 +90,7 @@ SpatialDotsResult spatial_dots(const Camera<S>& camera,
       using Traits = point_traits<cell_t<Dots>>;
       const S row = S(Traits::y(p));
       const S col = S(Traits::x(p));
-      const S l = depth_between_pixels(depth, row, col);
+      const S l = detail::motion::depth_between_pixels(depth, row, col);
       const bool known = is_depth(l);
       to(i, j) = detail::motion::point_from<cell_t<Out>>(known ? point_at(camera, row, col, l)
                                                                : detail::missing_point<S>());
