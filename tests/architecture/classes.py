@@ -105,7 +105,7 @@ def empty_headings(page, name, site):
 def in_detail(text, name):
     """Whether a class of a public header is in a detail namespace."""
     before = text[: re.search(rf"^class {name}\b[^;]*\{{", text, re.MULTILINE).start()]
-    return before.count("\nnamespace detail {") > before.count("\n}  // namespace detail")
+    return len(re.findall(r"\nnamespace detail\b", before)) > before.count("\n}  // namespace detail")
 
 
 PLANTED = {
