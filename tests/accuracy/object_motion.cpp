@@ -1,14 +1,16 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 // Motion of the object on finite-element membranes, from the sticking dots. test_accuracy
-// "[object_motion]" -s prints all figures.
+// "[object_motion]" -s prints all figures, "[pose_noise]" those of other noise.
 #include "fingerpad/motion/object_motion.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <string>
 
 #include "fingerpad/slip/friction_limit.hpp"
+#include "fingerpad/slip/slipping_dots.hpp"
 #include "fingerpad/slip/spatial_stick_ratio.hpp"
 #include "support/catch.hpp"
 #include "support/spatial_scene.hpp"
@@ -24,7 +26,9 @@ constexpr double degree = 0.017453292519943295;
 struct PoseErrors {
   double place_mm = 0;               ///< rms, of the middle of the contact, since the pose began
   double rotation_deg = 0;           ///< rms
+  double furthest_mm = 0;            ///< the largest error of place
   double told = 0;                   ///< share of the frames in contact with a pose
+  double told_sticking = 0;          ///< the same while a fifth or more sticks
   double held_mm = 0, held_deg = 0;  ///< the same while at least a fifth has stuck since the start
 };
 
@@ -40,16 +44,22 @@ Point3<double> middle_of(const SpatialStep& step) {
   return sum / count;
 }
 
-/// Errors with the slips of the dots known, or with all dots counted as sticking.
-PoseErrors errors_of(const std::string& name, bool knows_slip) {
+/// Errors with the slips of the dots known, or with all dots counted as sticking. `noise` is a
+/// factor of the usual noise of the dots; forces have `force_noise` times 1.5 %, moments 2 %.
+PoseErrors errors_of(const std::string& name,
+                     bool knows_slip,
+                     double noise = 1,
+                     double force_noise = 0,
+                     std::uint64_t recordings = 6) {
   const SpatialScene scene(name);
   const Index n = scene.dots_across();
-  const SpatialStickRatio<double> ratio(n, n);
+  const double along = noise * 0.005, deep = noise * 0.025;
+  const SpatialStickRatio<double> ratio(n, n, {.lateral_mm = along, .depth_mm = deep});
   const FrictionLimit<double> limit;
   const ObjectMotion<> motion(test::DotsMm(n, n, {0, 0, 0}));
   PoseErrors e;
-  double told = 0, frames = 0, held = 0;
-  for (std::uint64_t seed = 1; seed <= 6; ++seed) {
+  double told = 0, frames = 0, held = 0, told_sticking = 0, sticking = 0;
+  for (std::uint64_t seed = 1; seed <= recordings; ++seed) {
     test::Random random(seed);
     auto stick_state = ratio.start();
     auto limit_state = limit.start();
@@ -63,18 +73,25 @@ PoseErrors errors_of(const std::string& name, bool knows_slip) {
       auto dots = scene[k].dots;
       for (auto& p : dots.cells) {
         const double x = random.normal(), y = random.normal(), z = random.normal();
-        p = {p.x + 0.005 * x, p.y + 0.005 * y, p.z + 0.025 * z};
+        p = {p.x + along * x, p.y + along * y, p.z + deep * z};
       }
       const auto seen = ratio(dots, scene[k].contact, states, stick_state);
-      const auto load =
-          contact_load(scene[k].force_n, scene[k].moment_n_mm, dots, scene[k].contact);
+      auto force_n = scene[k].force_n, moment_n_mm = scene[k].moment_n_mm;
+      if (force_noise > 0) {
+        force_n = test::noisy(force_n, force_noise * 0.015, random);
+        moment_n_mm = test::noisy(moment_n_mm, force_noise * 0.02, random);
+      }
+      const auto load = contact_load(force_n, moment_n_mm, dots, scene[k].contact);
       const auto slip = limit(load, seen, limit_state);
-      const bool slides = slip.status == FrictionLimitStatus::sliding;
-      for (std::size_t at = 0; at < states.cells.size(); ++at) {
-        slips.cells[at] = knows_slip && (slides || states.cells[at] == DotState::slip) ? 1 : 0;
+      if (knows_slip) {
+        slipping_dots(seen, slip, states, slips);
       }
       const auto r = motion(dots, scene[k].contact, slips, state);
-      frames += scene[k].contact_area_mm2 > 0 ? 1 : 0;
+      const bool touches = scene[k].contact_area_mm2 > 0;
+      const bool sticks = touches && scene[k].stick_ratio >= 0.2;
+      frames += touches ? 1 : 0;
+      sticking += sticks ? 1 : 0;
+      told_sticking += sticks && r.ok() ? 1 : 0;
       holds = (r.begun || holds) && scene[k].stick_ratio >= 0.2;
       if (!r.ok()) {
         continue;
@@ -87,6 +104,7 @@ PoseErrors errors_of(const std::string& name, bool knows_slip) {
       e.place_mm += off_mm_sq;
       e.rotation_deg += off_deg_sq;
       told += 1;
+      e.furthest_mm = std::max(e.furthest_mm, std::sqrt(off_mm_sq));
       e.held_mm += holds ? off_mm_sq : 0;
       e.held_deg += holds ? off_deg_sq : 0;
       held += holds ? 1 : 0;
@@ -95,6 +113,7 @@ PoseErrors errors_of(const std::string& name, bool knows_slip) {
   e.place_mm = std::sqrt(e.place_mm / told);
   e.rotation_deg = std::sqrt(e.rotation_deg / told);
   e.told = told / frames;
+  e.told_sticking = told_sticking / sticking;
   e.held_mm = std::sqrt(e.held_mm / held);
   e.held_deg = std::sqrt(e.held_deg / held);
   return e;
@@ -103,12 +122,16 @@ PoseErrors errors_of(const std::string& name, bool knows_slip) {
 void check(const std::string& name, double place_mm, double rotation_deg) {
   const PoseErrors e = errors_of(name, true), blind = errors_of(name, false);
   INFO(name << ": place " << e.place_mm << " mm, rotation " << e.rotation_deg << " degrees, in "
-            << e.told << " of the frames; while a fifth sticks " << e.held_mm << " mm, "
-            << e.held_deg << " degrees; without the slips " << blind.place_mm << " mm, "
-            << blind.rotation_deg << " degrees");
+            << e.told << " of the frames, " << e.told_sticking
+            << " of those in which a fifth sticks; furthest off " << e.furthest_mm
+            << " mm; while a fifth sticks " << e.held_mm << " mm, " << e.held_deg
+            << " degrees; without the slips " << blind.place_mm << " mm, " << blind.rotation_deg
+            << " degrees");
   CHECK(e.place_mm < place_mm);
   CHECK(e.rotation_deg < rotation_deg);
-  CHECK(e.told > 0.25);
+  // in the twist a fifth sticks in a quarter of the frames, and all of these have a pose
+  CHECK(e.told >= 0.25);
+  CHECK(e.told_sticking > 0.75);  // measured: 0.81 to 1
   CHECK(e.held_mm < 0.03);  // goal: 0.15 mm and 2 degrees; measured: 0.006 to 0.017, 0.2 to 1.1
   CHECK(e.held_deg < 1.5);
 }
@@ -116,23 +139,37 @@ void check(const std::string& name, double place_mm, double rotation_deg) {
 }  // namespace
 
 TEST_CASE("object motion on finite-element membranes, by the dots that stick", "[object_motion]") {
-  // all poses, slides included; measured: 0.016 mm 0.3 degrees, 0.006 0.2, 0.014 0.9, 0.015 0.6,
-  // 0.016 0.6, 0.016 1.0, 0.038 1.1, 0.009 0.9, 0.012 0.8
+  // all poses, slides included; measured: 0.010 mm 0.2 degrees, 0.006 0.2, 0.014 0.9, 0.014 0.6,
+  // 0.016 0.6, 0.015 1.0, 0.015 1.0, 0.010 0.9, 0.012 0.8
   check("drag", 0.02, 0.5);
   check("twist", 0.02, 0.5);
   check("tilt", 0.03, 1.5);
   check("roll", 0.03, 1);
   check("cylinder", 0.03, 1);
   check("mix", 0.03, 1.5);
-  check("rod_turn", 0.10, 1.5);
+  check("rod_turn", 0.05, 1.5);
   check("rubber", 0.03, 1.5);
   check("press", 0.03, 1.5);
-  // slides detected late: 0.21 mm 1.7 degrees, 0.23 1.3
-  check("slide", 0.30, 2);
-  check("ball_slip", 0.40, 2);
+  // slides that carry the dots along: 0.023 mm 0.8 degrees, 0.014 0.6
+  check("slide", 0.06, 1.5);
+  check("ball_slip", 0.06, 1.5);
 }
 
 TEST_CASE("object motion: slides that are not told bend the pose", "[object_motion]") {
   CHECK(errors_of("drag", false).place_mm > 0.5);
   CHECK(errors_of("twist", false).rotation_deg > 5);
+}
+
+TEST_CASE("object motion on finite-element membranes, by noise", "[.][pose_noise]") {
+  for (const char* name : {"drag", "twist", "tilt", "roll", "cylinder", "mix", "slide", "ball_slip",
+                           "rod_turn", "rubber"}) {
+    for (const double noise : {0.5, 1.0, 2.0}) {
+      const PoseErrors e = errors_of(name, true, noise, noise, 20);
+      WARN(name << ", " << noise << " times the noise: place " << e.place_mm << " mm, rotation "
+                << e.rotation_deg << " degrees, furthest off " << e.furthest_mm << " mm, in "
+                << e.told_sticking
+                << " of the frames in which a fifth sticks; while a fifth sticks " << e.held_mm
+                << " mm, " << e.held_deg << " degrees");
+    }
+  }
 }

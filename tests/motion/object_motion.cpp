@@ -763,3 +763,34 @@ TEST_CASE(
   CHECK(motion(free, Flags(7, 7, 0), slips, state).status == MotionStatus::no_contact);
   CHECK_FALSE(motion(free, contact, Flags(6, 7, 0), state).accepted());
 }
+
+TEST_CASE("object motion: after a slide an object begins once more than half of the dots stick") {
+  const Dots free = small_grid();
+  const Flags contact(7, 7, 1);
+  const ObjectMotion motion(free);
+  auto state = motion.start();
+  Flags few(7, 7, 1), half(7, 7, 1), most(7, 7, 1);
+  for (std::size_t k = 0; k < 25; ++k) {
+    few.cells[k] = k < 7 ? 0 : 1;
+    half.cells[k] = k < 24 ? 0 : 1;
+    most.cells[k] = 0;  // 25 of 49
+  }
+  CHECK(motion(free, contact, half, state).begun);  // nothing has slid
+  CHECK(motion(free, contact, few, state).status == MotionStatus::slipping);
+  CHECK(motion(free, contact, half, state).status == MotionStatus::slipping);
+  CHECK_FALSE(state.has_object());
+  SECTION("then half are enough again") {
+    CHECK(motion(free, contact, most, state).begun);
+    CHECK(motion(free, contact, half, state).ok());
+  }
+  SECTION("missing dots do not end the slide") {
+    const Dots missing(7, 7, {std::nan(""), std::nan(""), std::nan("")});
+    CHECK(motion(missing, contact, most, state).status == MotionStatus::too_few_dots);
+    CHECK(motion(missing, Flags(7, 7, 0), most, state).status == MotionStatus::no_dots);
+    CHECK(motion(free, contact, half, state).status == MotionStatus::slipping);
+  }
+  SECTION("another contact has not slid") {
+    CHECK(motion(free, Flags(7, 7, 0), most, state).status == MotionStatus::no_contact);
+    CHECK(motion(free, contact, half, state).begun);
+  }
+}

@@ -292,6 +292,36 @@ TEMPLATE_TEST_CASE("dots that come and go never give a wrong or a meaningless po
   });
 }
 
+TEST_CASE("no pose spans a slide, and none begins in one", "[object_motion][law]") {
+  rc::prop("whichever dots slip", [] {
+    const Dots free = any_dots(9, 9);
+    const Flags contact = any_contact(9, 9);
+    const ObjectMotion motion(free);
+    auto state = motion.start();
+    Index touching = 0;
+    for (const auto flag : contact.cells) {
+      touching += flag != 0 ? 1 : 0;
+    }
+    bool slid = false;
+    for (int k = 0; k < 20; ++k) {
+      Flags slips(9, 9, 0);
+      const auto share = test::whole(0, 100);
+      Index steady = 0;
+      for (std::size_t c = 0; c < slips.cells.size(); ++c) {
+        slips.cells[c] = test::whole(1, 100) <= share ? 1 : 0;
+        steady += contact.cells[c] != 0 && slips.cells[c] == 0 ? 1 : 0;
+      }
+      const bool had_object = state.has_object();
+      const auto result = motion(free, contact, slips, state);
+      const bool slides = 5 * steady < touching || (slid && 2 * steady <= touching);
+      RC_ASSERT((result.status == MotionStatus::slipping) == slides);
+      RC_ASSERT(!slides || !state.has_object());
+      RC_ASSERT(!result.begun || !had_object);
+      slid = slides || (slid && !result.begun);
+    }
+  });
+}
+
 TEMPLATE_TEST_CASE("nothing is worse than a status",
                    "[object_motion][law]",
                    ContactMap,

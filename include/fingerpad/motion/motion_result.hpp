@@ -22,8 +22,10 @@ enum class MotionStatus : std::uint8_t {
   /// The rms residual from the best rigid motion exceeds a quarter of a pitch, or the dots have
   /// turned over: dots labelled differently than before, or lost dots marked by a position?
   not_rigid,
-  slipping,  ///< fewer than a fifth of the dots in contact stick: the pose is not known
-  refused,   ///< a grid, state or workspace has another size: nothing was done
+  /// Fewer than a fifth of the dots in contact stick, or no more than half since they slid: the
+  /// pose is not known.
+  slipping,
+  refused,  ///< a grid, state or workspace has another size: nothing was done
 };
 
 /// "ok", "no contact", ...

@@ -58,6 +58,7 @@ class ObjectMotion {
     typename Way::template Track<S> track_;
     DotIndex reference_ = {};
     bool has_object_ = false;
+    bool has_slid_ = false;  // and no object has begun since
     Index rows_;
     Index cols_;
   };
@@ -108,7 +109,9 @@ class ObjectMotion {
   /// The same if it is known which dots slip, for instance from the stick ratio. Slipping dots
   /// would bias the pose, so they are left out, and entered again where they stick again. If fewer
   /// than a fifth stick, the status is `slipping` and the pose is kept. A new object begins
-  /// afterwards, because it is not known how far the first one slid.
+  /// afterwards, because it is not known how far the first one slid. It begins once more than half
+  /// stick: an object that stops sliding sticks with most of its contact at once, so a smaller part
+  /// that seems to stick is more likely carried along by a slide.
   template <spatial_dot_grid Dots, contact_mask Contact, contact_mask Slips>
   ObjectMotionResult<S> operator()(const Dots& dots_mm,
                                    const Contact& contact,
@@ -124,11 +127,12 @@ class ObjectMotion {
     using Frame = detail::motion::DotFrame<S, decltype(dots), decltype(flags)>;
     const detail::motion::SteadyFrame<Frame, decltype(slipping)> frame(Frame(dots, flags),
                                                                        slipping);
-    if (frame.slides()) {
+    if (frame.slides() || (state.has_slid_ && !frame.holds_most())) {
       ObjectMotionResult<S> result;
       result.status = MotionStatus::slipping;
       fill(state, result);
       forget(state);
+      state.has_slid_ = true;
       return result;
     }
     return follow(frame, state);
@@ -152,6 +156,7 @@ class ObjectMotion {
     } else {
       result.status = way_.begin(frame, result.reference, state.track_);
       result.begun = state.has_object_ = result.ok();
+      state.has_slid_ = state.has_slid_ && !result.begun;
     }
     fill(state, result);
     return result;
@@ -163,6 +168,7 @@ class ObjectMotion {
     if (any_found || !state.has_object_) {
       forget(state);
     }
+    state.has_slid_ = state.has_slid_ && !any_found;
     result.status = any_found ? MotionStatus::no_contact : MotionStatus::no_dots;
     fill(state, result);
     return result;

@@ -91,6 +91,8 @@ class SteadyFrame : public Frame {
   /// Whether fewer than a fifth of the dots in contact hold the object. The motion of the dots is
   /// then not that of the object.
   bool slides() const { return 5 * steady_ < touching_; }
+  /// Whether more than half of the dots in contact hold the object; also without contact.
+  bool holds_most() const { return 2 * steady_ > touching_ || touching_ == 0; }
 
  private:
   Slips slips_;

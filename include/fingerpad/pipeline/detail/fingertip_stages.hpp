@@ -15,6 +15,7 @@
 
 #include "fingerpad/pipeline/detail/frame_samples.hpp"
 #include "fingerpad/pipeline/fingertip_options.hpp"
+#include "fingerpad/slip/slipping_dots.hpp"
 
 namespace fingerpad {
 inline namespace v0 {
@@ -243,10 +244,7 @@ struct FingertipDots {
   void conclude(FingertipResult& touch, Watch& watch) {
     if (followed) {
       touch.slip = followed->friction(load_of(touch), touch.stick, followed->friction_state);
-      const bool slides = touch.slip.status == FrictionLimitStatus::sliding;
-      for (std::size_t k = 0; k < slips.cells.size(); ++k) {
-        slips.cells[k] = slides || states.cells[k] == DotState::slip ? 1 : 0;
-      }
+      slipping_dots(touch.stick, touch.slip, states.view(), slips.view());
       touch.motion =
           followed->motion(at_mm.view(), touching.view(), slips.view(), followed->motion_state);
     }
