@@ -187,7 +187,7 @@ const Recordings& slips() {
       scene.drift = any(0, 0.3);
       const double frequency_hz = rate_hz * any(0.08, 0.3);
       for (int p = 0; p < 6; ++p) {
-        test::SlippingPatch patch;
+        test::VibratingPatch patch;
         patch.row = static_cast<Index>(any(0, 14));
         patch.col = static_cast<Index>(any(0, 2));
         patch.begin_s = (static_cast<double>(slip_begins) + any(0, 1)) / rate_hz;

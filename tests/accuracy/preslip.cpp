@@ -79,7 +79,7 @@ FoamScene any_slip(std::mt19937& random, double rate_hz, int patches, Index side
   const double frequency = rate_hz * any(0.08, 0.3);
   for (auto& finger : scene.patches) {
     for (int p = 0; p < patches; ++p) {
-      test::SlippingPatch patch;
+      test::VibratingPatch patch;
       patch.rows = patch.cols = side;
       patch.row = static_cast<Index>(any(0, 14));
       patch.col = static_cast<Index>(any(0, 2));

@@ -17,7 +17,7 @@
 namespace test {
 
 /// A rectangle of taxels that vibrates from `begin_s` on.
-struct SlippingPatch {
+struct VibratingPatch {
   fingerpad::Index row = 0, col = 0, rows = 2, cols = 2;
   double begin_s = 0;
   double frequency_hz = 5;
@@ -32,7 +32,7 @@ struct FoamScene {
   double drift = 0.2;              // amplitude of the drift, relative to the load
   double drift_period_s = 20;      // period of the drift
   double signal_to_noise_db = 20;  // power of the vibration relative to the noise
-  std::array<std::vector<SlippingPatch>, 2> patches;  // of each finger
+  std::array<std::vector<VibratingPatch>, 2> patches;  // of each finger
 
   double amplitude() const {
     return noise * std::sqrt(2.0) * std::pow(10.0, signal_to_noise_db / 20);
@@ -56,7 +56,7 @@ class FoamSignal {
       }
     }
     Image<int> is_slipping(scene_.rows, scene_.cols, 0);
-    for (const SlippingPatch& patch : scene_.patches[f]) {
+    for (const VibratingPatch& patch : scene_.patches[f]) {
       const double since_s = time_s - patch.begin_s;
       const double wave =
           scene_.amplitude() * std::sin(tau * patch.frequency_hz * since_s + patch.phase);
