@@ -46,3 +46,27 @@ TEST_CASE("the frame of a normal is right-handed, and u lies in its plane with a
     RC_ASSERT((steep ? frame.u.y : frame.u.x) > 0);
   });
 }
+
+TEST_CASE("the inverse of normal equations solves them for each unit vector", "[math]") {
+  detail::SmallMatrix<double, 3> a{};
+  const double columns[4][3] = {{1, 2, 300}, {0, 1, -100}, {2, 1, 50}, {1, -1, 80}};
+  for (const auto& row : columns) {
+    for (std::size_t i = 0; i < 3; ++i) {
+      for (std::size_t j = 0; j < 3; ++j) {
+        a[i][j] += row[i] * row[j];
+      }
+    }
+  }
+  const detail::NormalEquations<double, 3> normal(a);
+  REQUIRE(normal.good);
+  const auto inverse = normal.inverse();
+  for (std::size_t i = 0; i < 3; ++i) {
+    for (std::size_t j = 0; j < 3; ++j) {
+      double product = 0;
+      for (std::size_t k = 0; k < 3; ++k) {
+        product += a[i][k] * inverse[k][j];
+      }
+      CHECK(product == Approx(i == j ? 1 : 0).margin(1e-9));
+    }
+  }
+}

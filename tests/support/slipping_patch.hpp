@@ -39,15 +39,15 @@ struct SlippingPatch {
     }
   }
 
-  /// `stick_share`: radius of the stick disc / that of the contact. Beyond the disc dots lag; a
-  /// pitch further out they stand still.
-  void step(const Pose& motion, double stick_share = 9) {
+  /// `stick_share`: radius of the stick disc / that of the contact. Beyond the disc dots lag;
+  /// `rim` pitches further out they stand still.
+  void step(const Pose& motion, double stick_share = 9, double rim = 1) {
     for (Index i = 0; i < across; ++i) {
       for (Index j = 0; j < across; ++j) {
         const double row = pitch_mm * static_cast<double>(i - across / 2);
         const double col = pitch_mm * static_cast<double>(j - across / 2);
         const double outside = std::hypot(row, col) - stick_share * radius_mm;
-        const double lag = std::clamp(outside / pitch_mm, 0.0, 1.0);
+        const double lag = std::clamp(outside / (rim * pitch_mm), 0.0, 1.0);
         Point& p = dots(i, j);
         const Point moved = motion(p) - p;
         slipped_mm(i, j) = lag * norm(moved);

@@ -19,9 +19,11 @@
 #include "fingerpad/core/dots.hpp"
 #include "fingerpad/core/expects.hpp"
 #include "fingerpad/core/grid.hpp"
+#include "fingerpad/math/detail/small_matrices.hpp"
 #include "fingerpad/slip/detail/dot_doubts.hpp"
 #include "fingerpad/slip/detail/dot_places.hpp"
 #include "fingerpad/slip/detail/rigid_consensus.hpp"
+#include "fingerpad/slip/detail/spatial_doubts.hpp"
 #include "fingerpad/slip/detail/spatial_state.hpp"
 #include "fingerpad/slip/stick_result.hpp"
 
@@ -248,7 +250,8 @@ class SpatialStickRatio {
     const S limit = S(slip_quantile_) * relative;
     const Point3<S> from = state.has_center ? state.stick_center : middle_of(state.pairs);
     Pose<S> motion;
-    if (!consensus(from, noise, limit, state, motion)) {
+    auto covariance = fingerpad::detail::zero_matrix<S, 6>();
+    if (!consensus(from, noise, limit, state, motion, covariance)) {
       return StickStatus::too_few_dots;
     }
     const Index age = static_cast<Index>(state.frame - state.repository.frame(choice.age));
@@ -262,6 +265,8 @@ class SpatialStickRatio {
       return StickStatus::falls_back;
     }
     mark(limit, S(std::sqrt(2.0) * noise_mm.lateral_mm), state);
+    const S variance = stick_variance(state.pairs, limit, covariance, from, state.doubts);
+    result.ratio_sd = ratio_sd_of(variance, S(static_cast<double>(state.pairs.size())));
     result.furthest_mm = S(sqrt(choice.furthest_sq));
     result.reference_age = age;
     result.motion = motion;
@@ -284,19 +289,23 @@ class SpatialStickRatio {
 
   /// Finds the rigid motion of the dots around `from` and of those that follow it. Dots within the
   /// limit are taken and the motion is fitted to them, until their number no longer changes.
-  /// Weights by the averaged slip then reduce the influence of dots that slip a little. False if
-  /// the dots do not determine a motion.
+  /// Weights by the averaged slip then reduce the influence of dots that slip a little. A dot of
+  /// weight w enters the covariance of the motion with 1 / w of the noise: the less it follows, the
+  /// more doubtful it is that it belongs to the object. False if the dots do not determine a
+  /// motion.
   bool consensus(const Point3<S>& from,
                  const detail::stick::AxisNoise<S>& noise,
                  const S& limit,
                  State& state,
-                 Pose<S>& motion) const {
+                 Pose<S>& motion,
+                 detail::SmallMatrix<S, 6>& covariance) const {
     using namespace detail::stick;
     SpatialPairs<S>& pairs = state.pairs;
     set_surface(noise, pairs);
     weigh_around(from, state.pitch_sq, pairs);
     set_slips(motion, pairs);
-    if (!refine_motion(pairs, noise, from, motion)) {
+    auto fit = refine_motion(pairs, noise, from, motion);
+    if (!fit.good) {
       return false;
     }
     set_slips(motion, pairs);
@@ -306,7 +315,8 @@ class SpatialStickRatio {
       if (followers < S(min_followers)) {
         weigh_nearest(min_followers, state.sorted, pairs);
       }
-      if (!refine_motion(pairs, noise, from, motion)) {
+      fit = refine_motion(pairs, noise, from, motion);
+      if (!fit.good) {
         return false;
       }
       set_slips(motion, pairs);
@@ -326,12 +336,20 @@ class SpatialStickRatio {
     for (int pass = 0; pass < 3; ++pass) {
       average();
       weigh_by_mean(quarter, pairs);
-      if (!refine_motion(pairs, noise, from, motion)) {
+      fit = refine_motion(pairs, noise, from, motion);
+      if (!fit.good) {
         return false;
       }
       set_slips(motion, pairs);
     }
     average();
+    set_total_weights(state.small_slips, layout_.cols + 2, pairs);
+    covariance = fit.inverse();
+    for (auto& row : covariance) {
+      for (S& c : row) {
+        c = S(2) * c;  // both positions of a dot have noise
+      }
+    }
     return true;
   }
 
@@ -342,10 +360,6 @@ class SpatialStickRatio {
     state.clear_answer();
     Point3<S> center = {S(0), S(0), S(0)};
     int stick = 0;
-    state.doubts.clear();
-    DotWalk walk(layout_);
-    // sd of an averaged slip, in units of that of a position
-    const S sd = S(std::sqrt(2.0) * neighbour_gain());
     state.pairs.for_each([&](const PairBlock<S>& b, std::size_t k) {
       const Index cell = b.cell[k];
       const bool sticks = b.mean_sq[k] < limit;
@@ -353,15 +367,12 @@ class SpatialStickRatio {
       at(state.dot_slips, cell) = {b.mean_slip[k], sd_mm};
       stick += sticks ? 1 : 0;
       center = sticks ? center + b.now[k] : center;
-      state.doubts.set(walk.to(cell), doubt_of(b.mean_sq[k], limit, sd));
     });
     if (stick > 0) {
       state.stick_center = center / S(stick);
       state.has_center = true;
     }
-    const S all = S(static_cast<double>(state.pairs.size()));
-    state.result.stick_ratio = S(stick) / all;
-    state.result.ratio_sd = ratio_sd_of(state.doubts.variance({6, 2, 1}), all);
+    state.result.stick_ratio = S(stick) / S(static_cast<double>(state.pairs.size()));
   }
 
   static constexpr int max_passes = 6;

@@ -132,7 +132,8 @@ struct [[nodiscard]] SpatialStickResult {
   Index out_of_place = 0;    ///< dots in contact that are not between their neighbours: left out
   FallingBack<S> back = {};  ///< if the status is falls_back
   S stick_ratio = not_a_number<S>();  ///< sticking dots / known dots, in [0, 1]; NaN: none yet
-  /// Its standard deviation due to the noise of the dots near the threshold.
+  /// Its standard deviation due to noise: of the dots near the threshold, and of the motion fitted
+  /// to those that stick. An error of the model is not included.
   S ratio_sd = not_a_number<S>();
   S furthest_mm = S(0);     ///< d_max, the largest displacement from the reference
   Index reference_age = 0;  ///< frames from the reference to the answer

@@ -189,6 +189,17 @@ class NormalEquations {
     return sum;
   }
 
+  /// (A^T A)^-1: the covariance of x if each equation has variance 1.
+  SmallMatrix<S, N> inverse() const {
+    SmallMatrix<S, N> columns{};
+    for (std::size_t i = 0; i < N; ++i) {
+      std::array<S, N> unit = detail::zeros<S, N>();
+      unit[i] = S(1);
+      columns[i] = solve(unit);
+    }
+    return columns;
+  }
+
   bool good = true;
 
  private:

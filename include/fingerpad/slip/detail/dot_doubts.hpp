@@ -59,8 +59,10 @@ class DotDoubts {
 
   void clear() { std::fill(doubts_.begin(), doubts_.end(), S(0)); }
   void set(const DotIndex& d, const S& doubt) {
-    doubts_[static_cast<std::size_t>((d.row + 1) * across_ + d.col + 1)] = doubt;
+    set(static_cast<std::size_t>((d.row + 1) * across_ + d.col + 1), doubt);
   }
+  /// `padded`: index of the dot in the grid with the border.
+  void set(std::size_t padded, const S& doubt) { doubts_[padded] = doubt; }
   /// Variance of the number of sticking dots.
   S variance(const SharedDoubt& shared) const {
     S sum = S(0);

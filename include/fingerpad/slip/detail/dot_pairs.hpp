@@ -27,6 +27,17 @@ S total(const Block<S>& b) {
   return S(S(b[0] + b[4]) + S(b[2] + b[6])) + S(S(b[1] + b[5]) + S(b[3] + b[7]));
 }
 
+/// exp(-x) of x >= 0, approximated by (1 + x / 4096)^-4096, which needs no calls and vectorises.
+/// Too large by a share of x^2 / 8192.
+template <class S>
+S falling_exp(const S& x) {
+  S power = S(1) / (S(1) + S(1.0 / 4096) * x);
+  for (int doubling = 0; doubling < 12; ++doubling) {
+    power = power * power;
+  }
+  return power;
+}
+
 template <class S>
 struct PointBlock {
   Block<S> x, y, z;
@@ -60,6 +71,7 @@ struct PairBlock {
   Block<S> counts;          ///< 1: counts in the mean of its neighbours; 0: slips too much
   PointBlock<S> mean_slip;  ///< averaged over neighbours
   Block<S> mean_sq;         ///< in variances of one position
+  Block<S> total_weight;    ///< of the slips in that average
 };
 
 /// The dots found in both of two frames, in blocks.

@@ -76,17 +76,13 @@ void set_surface(AxisNoise<S> noise, SpatialPairs<S>& pairs) {
 }
 
 /// Gaussian weights around a place with a standard deviation of 4/3 pitches; equal weights without
-/// a pitch. exp(-x) is approximated by (1 + x / 4096)^-4096, which needs no calls.
+/// a pitch.
 template <class S>
 void weigh_around(Point3<S> middle, const S& pitch_sq, SpatialPairs<S>& pairs) {
-  const S scale = S(0) < pitch_sq ? S(S(9.0 / (32 * 4096)) / pitch_sq) : S(0);
+  const S scale = S(0) < pitch_sq ? S(S(9.0 / 32) / pitch_sq) : S(0);
   for (PairBlock<S>& b : pairs) {
     for (std::size_t k = 0; k < block_dots; ++k) {
-      S bell = S(1) / (S(1) + scale * squared_norm(b.now[k] - middle));
-      for (int doubling = 0; doubling < 12; ++doubling) {
-        bell = bell * bell;
-      }
-      b.weight[k] = b.is_dot[k] * bell;
+      b.weight[k] = b.is_dot[k] * falling_exp(S(scale * squared_norm(b.now[k] - middle)));
     }
   }
 }
@@ -192,6 +188,23 @@ void average_slips(S gate_sq,
   }
 }
 
+/// Sets the total weights of the averages that average_slips() made in `room`. A function of its
+/// own because only the last averages need them.
+template <class S>
+void set_total_weights(const std::vector<SmallSlip<S>>& room,
+                       Index across,
+                       SpatialPairs<S>& pairs) {
+  for (PairBlock<S>& b : pairs) {
+    for (std::size_t k = 0; k < block_dots; ++k) {
+      const SmallSlip<S>* const row = &room[b.padded[k]];
+      const SmallSlip<S>*const above = row - across, *const below = row + across;
+      const S beside = above[0][3] + row[-1][3] + row[1][3] + below[0][3];
+      const S diagonal = above[-1][3] + above[1][3] + below[-1][3] + below[1][3];
+      b.total_weight[k] = b.counts[k] > S(0) ? S(S(6) + S(2) * beside + diagonal) : S(6);
+    }
+  }
+}
+
 /// Weighted sums over pairs, of their positions q and residuals r.
 template <class T>
 struct PairMoments {
@@ -239,12 +252,13 @@ PairMoments<S> moments_of(const SpatialPairs<S>& pairs, Point3<S> center) {
 }
 
 /// One Gauss-Newton step toward the rigid motion that fits the weighted pairs best, from the motion
-/// of their residuals. False if the pairs do not determine it. `center`: any position among them.
+/// of their residuals. Returns its normal equations, which are not good if the pairs do not
+/// determine it. `center`: any position among them.
 template <class S>
-bool refine_motion(const SpatialPairs<S>& pairs,
-                   const AxisNoise<S>& noise,
-                   const Point3<S>& center,
-                   Pose<S>& motion) {
+NormalEquations<S, 6> refine_motion(const SpatialPairs<S>& pairs,
+                                    const AxisNoise<S>& noise,
+                                    const Point3<S>& center,
+                                    Pose<S>& motion) {
   const PairMoments<S> m = moments_of(pairs, center);
   // rows: x: (0, qz, -qy | 1 0 0), y: (-qz, 0, qx | 0 1 0), z: (qy, -qx, 0 | 0 0 1)
   const S l = noise.lateral_info, d = noise.depth_info, o = S(0);
@@ -262,7 +276,7 @@ bool refine_motion(const SpatialPairs<S>& pairs,
                               S(d * m.rz)};
   const NormalEquations<S, 6> normal(a, 1e-6);
   if (!normal.good) {
-    return false;
+    return normal;
   }
   const auto x = normal.solve(b);
   // the rotation of the quaternion (1, w / 2); its error is of third order in w
@@ -274,7 +288,7 @@ bool refine_motion(const SpatialPairs<S>& pairs,
        {S(two * (hx * hz - hy)), S(two * (hy * hz + hx)), S(S(1) - two * (hx * hx + hy * hy))}}};
   const Pose<S> step = {turn, center + Point3<S>{x[3], x[4], x[5]} - turn(center)};
   motion = step * motion;
-  return true;
+  return normal;
 }
 
 }  // namespace detail::stick
