@@ -136,6 +136,81 @@ TEST_CASE("stick ratio in space of what rolls, and what slides as a whole", "[sp
   check("press", 0.08, 0.08, 0.08);
 }
 
+namespace {
+
+/// Dots in contact in both steps.
+bool in_both(const SpatialStep& then, const SpatialStep& now, Index row, Index col) {
+  const bool inside = row >= 0 && col >= 0 && row < now.contact.rows() && col < now.contact.cols();
+  return inside && then.contact(row, col) != 0 && now.contact(row, col) != 0;
+}
+bool is_at_edge(const SpatialStep& then, const SpatialStep& now, Index row, Index col) {
+  return !in_both(then, now, row - 1, col) || !in_both(then, now, row + 1, col) ||
+         !in_both(then, now, row, col - 1) || !in_both(then, now, row, col + 1);
+}
+
+/// The dots of a rolling ball that approach or leave it by more than the limit of the truth, per
+/// frame with an answer, and the error of ratios that use the outline of the contact.
+struct EdgeOfBall {
+  double dots = 0, at_edge = 0, lifted = 0, lifted_inside = 0;
+  double lift_mm = 0;  ///< mean of the lifted dots
+  double edge_slips = 0, edge_left_out = 0;
+
+  explicit EdgeOfBall(int recordings) {
+    double frames = 0;
+    for (int seed = 1; seed <= recordings; ++seed) {
+      test::Random random(static_cast<std::uint64_t>(seed));
+      auto state = ratio_.start();
+      for (Index k = 0; k < scene_.size(); ++k) {
+        const auto r = ratio_(noisy(scene_[k].dots, lateral_mm, depth_mm, random),
+                              scene_[k].contact, states_, state);
+        if (k >= 2 && test::dots_of_both(scene_[k], scene_[k]) >= 6 && r.updated()) {
+          add(scene_[k - r.reference_age], scene_[k]);
+          frames += 1;
+        }
+      }
+    }
+    lift_mm /= lifted;
+    for (double* mean : {&dots, &at_edge, &lifted, &lifted_inside, &edge_slips, &edge_left_out}) {
+      *mean /= frames;
+    }
+  }
+
+ private:
+  void add(const SpatialStep& then, const SpatialStep& now) {
+    const Pose<double> motion = now.object * inverse(then.object);
+    const double limit = test::slip_share * test::longest_move(then, now);
+    double all = 0, inside = 0, stick_inside = 0;
+    for (Index i = 0; i < now.dots.rows(); ++i) {
+      for (Index j = 0; j < now.dots.cols(); ++j) {
+        if (!in_both(then, now, i, j) || states_(i, j) < DotState::slip) {
+          continue;
+        }
+        const bool edge = is_at_edge(then, now, i, j);
+        const auto normal = normalized(now.dots(i, j) - now.object.translation_mm);
+        const double lift = std::abs(dot(now.dots(i, j) - motion(then.dots(i, j)), normal));
+        all += 1;
+        inside += edge ? 0 : 1;
+        stick_inside += !edge && states_(i, j) == DotState::stick ? 1 : 0;
+        lifted += lift > limit ? 1 : 0;
+        lifted_inside += lift > limit && !edge ? 1 : 0;
+        lift_mm += lift > limit ? lift : 0;
+      }
+    }
+    const double truth = test::truth_between(then, now);
+    dots += all;
+    at_edge += all - inside;
+    edge_slips += std::abs(stick_inside / all - truth);
+    edge_left_out += std::abs((inside > 0 ? stick_inside / inside : 1) - truth);
+  }
+
+  SpatialScene scene_{"roll"};
+  SpatialStickRatio<double> ratio_{
+      scene_.dots_across(), scene_.dots_across(), {.lateral_mm = lateral_mm, .depth_mm = depth_mm}};
+  test::Image<DotState> states_{scene_.dots_across(), scene_.dots_across()};
+};
+
+}  // namespace
+
 TEST_CASE("stick ratio in space of a rolling ball: what is off are dots that lift",
           "[spatial_stick]") {
   // The truth counts the whole motion of a dot relative to the object as slip, also at the edge of
@@ -146,6 +221,22 @@ TEST_CASE("stick ratio in space of a rolling ball: what is off are dots that lif
                                       << "; the exact slip along the ball " << e.lifted);
   CHECK(e.on_ball < 0.045);
   CHECK(e.told > 2 * e.on_ball);
+}
+
+TEST_CASE("stick ratio in space of a rolling ball: the outline does not tell which dots lift",
+          "[spatial_stick]") {
+  // The dots that lift are at the edge, but most dots at the edge do not lift. Measured: 3.1 of 24
+  // lift, 13 are at the edge; errors of 0.11, 0.44 and 0.14.
+  const EdgeOfBall edge(6);
+  const double told = errors_of("roll").told;
+  INFO("roll: " << edge.lifted << " of " << edge.dots << " dots lift, by " << edge.lift_mm
+                << " mm, of these inside " << edge.lifted_inside << "; at the edge " << edge.at_edge
+                << "; error " << told << ", edge counted as slip " << edge.edge_slips
+                << ", edge left out " << edge.edge_left_out);
+  CHECK(edge.lifted_inside < 0.1 * edge.lifted);
+  CHECK(edge.at_edge > 3 * edge.lifted);
+  CHECK(edge.edge_slips > 1.2 * told);
+  CHECK(edge.edge_left_out > 1.2 * told);
 }
 
 namespace {
@@ -159,6 +250,13 @@ struct Spread {
     error_sq += count * (variance + square(bias));
     told_sq += count * told;
     answers += count;
+  }
+  Spread& operator+=(const Spread& other) {
+    scatter_sq += other.scatter_sq;
+    told_sq += other.told_sq;
+    error_sq += other.error_sq;
+    answers += other.answers;
+    return *this;
   }
   double scatter() const { return std::sqrt(scatter_sq / answers); }
   double told() const { return std::sqrt(told_sq / answers); }
@@ -217,14 +315,18 @@ TEST_CASE("stick ratio in space: its standard deviation on finite-element membra
   for (const Index every : {1, 2}) {
     for (const double noise : {0.5, 1.0, 2.0}) {
       Spreads classes;
+      Spread all;
       std::ostringstream told;
       told << "noise " << noise << (every == 2 ? ", dots twice as far apart" : "")
            << "; sd / scatter:";
       for (const char* name : {"drag", "twist", "tilt", "roll", "cylinder", "mix", "slide",
                                "ball_slip", "rod_turn", "rubber", "press"}) {
         const Spread scene = add_spread(name, noise, every, classes);
+        all += scene;
         told << " " << name << " " << scene.told() / scene.scatter();
       }
+      told << "; all: sd " << all.told() << ", scatter " << all.scatter() << ", error "
+           << all.error();
       INFO(told.str());
       for (std::size_t k = 0; k < shares.size(); ++k) {
         const Spread& spread = classes[k];
