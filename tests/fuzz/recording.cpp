@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
-// What replay reads, with any bytes in it: each file is read, or refused by one line.
+// What replay reads but videos, with any bytes in it: each file is read, or refused by one line.
 // with: examples/replay/io/sensor.cpp examples/replay/io/number_table.cpp
 // with: examples/replay/io/signals.cpp examples/replay/io/images.cpp
 // with: examples/replay/io/side_dots.cpp examples/replay/io/true_forces.cpp
@@ -10,11 +10,10 @@
 #include "replay/foam/recording.hpp"
 
 #include <cstdint>
-#include <cstdlib>
 #include <filesystem>
-#include <fstream>
 #include <string>
 
+#include "fuzz/file.hpp"
 #include "fuzz/input.hpp"
 #include "replay/dots/file.hpp"
 #include "replay/foam/sensor.hpp"
@@ -28,27 +27,6 @@
 using fuzz::require;
 
 namespace {
-
-/// A file of its own for each process, in memory where the system has such a folder.
-class File {
- public:
-  File() {
-    const std::filesystem::path memory = "/dev/shm";
-    path_ = (exists(memory) ? memory : std::filesystem::temp_directory_path()) / "fingerpad_XXXXXX";
-    std::string name = path_.string();
-    const int made = mkstemp(name.data());
-    require(made >= 0, "a file can be created");
-    path_ = name;
-  }
-  ~File() { remove(path_); }
-  const std::filesystem::path& with(const std::string& content) const {
-    std::ofstream(path_, std::ios::binary) << content;
-    return path_;
-  }
-
- private:
-  std::filesystem::path path_;
-};
 
 /// As the file that the first byte names.
 void read(std::uint8_t kind, const std::filesystem::path& path) {
@@ -95,7 +73,7 @@ void read(std::uint8_t kind, const std::filesystem::path& path) {
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  static const File file;
+  static const fuzz::File file;
   if (size == 0) {
     return 0;
   }

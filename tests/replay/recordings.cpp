@@ -16,6 +16,7 @@
 #include "replay/io/failure.hpp"
 #include "replay/io/images.hpp"
 #include "replay/io/recording.hpp"
+#include "replay/io/video.hpp"
 #include "replay/replay.hpp"
 #include "support/catch.hpp"
 #include "support/files.hpp"
@@ -459,4 +460,38 @@ TEST_CASE("a range of frames must lie in the recording") {
   for (const char* bad : {"", "3", "a:b", "1:2:3", "-1:2", "1 :2"}) {
     CHECK_THROWS_AS(replay::parse_range(bad), std::invalid_argument);
   }
+}
+
+TEST_CASE("a video that claims too large frames and one that names other files are refused") {
+  const Workplace work;
+  const auto refusal = [&](const std::string& name) -> std::string {
+    try {
+      (void)replay::open_video(work.recording() / name);
+    } catch (const replay::Failure& failure) {
+      return failure.what();
+    }
+    return "";
+  };
+  const auto file = work.recording() / "frames.avi";
+  {
+    const replay::QuietCodecs quiet;
+    cv::VideoWriter video(file.string(), cv::VideoWriter::fourcc('F', 'F', 'V', '1'), 10,
+                          cv::Size(16, 16));
+    for (int k = 0; k < 3 && video.isOpened(); ++k) {
+      video.write(cv::Mat(16, 16, CV_8UC3, cv::Scalar(0, 80 * k, 0)));
+    }
+  }
+  work.write("playlist.avi", "ffconcat version 1.0\nfile frames.avi\n");
+  CHECK(refusal("playlist.avi").find("playlist") != std::string::npos);
+  std::string bytes = test::text_of(file);
+  const auto format = bytes.find("strf");
+  if (format == std::string::npos) {
+    WARN("no encoder for FFV1 here; the size that a video claims is not tested");
+    return;
+  }
+  CHECK(refusal("frames.avi").empty());
+  const std::string claimed("\x80\x3e\0\0\x80\x3e\0\0", 8);  // 16000 x 16000
+  bytes.replace(format + 12, claimed.size(), claimed);
+  work.write("frames.avi", bytes);
+  CHECK(refusal("frames.avi").find("16000 x 16000 px, but at most") != std::string::npos);
 }

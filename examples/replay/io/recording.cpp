@@ -8,6 +8,7 @@
 
 #include "replay/io/failure.hpp"
 #include "replay/io/images.hpp"
+#include "replay/io/video.hpp"
 
 namespace replay {
 namespace {
@@ -52,17 +53,7 @@ cv::VideoCapture opened(const fs::path& file) {
   if (!fs::is_regular_file(file, error)) {
     fail(file, "there is no such video (named by \"video\" in sensor.json)");
   }
-  cv::VideoCapture video;
-  try {
-    const QuietCodecs quiet;
-    video.open(file.string());
-  } catch (const cv::Exception&) {
-    video.release();
-  }
-  if (!video.isOpened()) {
-    fail(file, "cannot be read as a video (the file is damaged, or no decoder is installed)");
-  }
-  return video;
+  return open_video(file);
 }
 
 }  // namespace
@@ -97,8 +88,7 @@ FrameSource FrameSource::of_video(const fs::path& file) {
   source.files_ = {file};
   source.video_ = opened(file);
   // Counted, because the number in a video's header is an estimate.
-  const QuietCodecs quiet;
-  while (source.video_.grab()) {
+  while (grab(source.video_)) {
     ++source.count_;
   }
   if (source.count_ == 0) {
@@ -111,9 +101,8 @@ void FrameSource::seek(int first) {
   position_ = first;
   if (is_video_) {
     video_ = opened(files_.front());
-    const QuietCodecs quiet;
     for (int i = 0; i < first; ++i) {
-      video_.grab();
+      grab(video_);
     }
   }
 }
@@ -128,13 +117,7 @@ cv::Mat FrameSource::next() {
   if (!is_video_) {
     return read_colour_image(last_file());
   }
-  cv::Mat frame;
-  try {
-    const QuietCodecs quiet;
-    video_.read(frame);
-  } catch (const cv::Exception&) {
-    frame.release();
-  }
+  const cv::Mat frame = grab(video_) ? retrieve(video_) : cv::Mat();
   if (frame.empty()) {
     fail(last_file(), "frame " + std::to_string(position_ - 1) + " cannot be decoded");
   }

@@ -9,6 +9,7 @@
 
 #include "replay/io/failure.hpp"
 #include "replay/io/images.hpp"
+#include "replay/io/video.hpp"
 
 namespace replay {
 
@@ -40,15 +41,10 @@ LiveFrames LiveFrames::of_video(const std::filesystem::path& file,
   if (!std::filesystem::is_regular_file(file, error)) {
     fail(file, "there is no such video");
   }
-  {
-    const QuietCodecs quiet;
-    frames.source_.open(file.string());
-  }
-  if (!frames.source_.isOpened()) {
-    fail(file, "cannot be read as a video (the file is damaged, or no decoder is installed)");
-  }
+  frames.source_ = open_video(file);
   const double rate = frames.source_.get(cv::CAP_PROP_FPS);
-  frames.rate_hz_ = rate > 0 ? rate : 30;
+  // A damaged header may hold any rate; the times of frames must fit into a clock.
+  frames.rate_hz_ = rate >= 1e-3 && rate <= 1e6 ? rate : 30;
   const std::chrono::duration<double> period(1 / frames.rate_hz_);
   frames.period_ = std::chrono::duration_cast<Clock::duration>(period);
   frames.in_real_time_ = in_real_time;
@@ -56,8 +52,7 @@ LiveFrames LiveFrames::of_video(const std::filesystem::path& file,
 }
 
 bool LiveFrames::grab() {
-  const QuietCodecs quiet;
-  if (!source_.grab()) {
+  if (!replay::grab(source_)) {
     return false;
   }
   arrival_ = Clock::now();
@@ -87,7 +82,7 @@ bool LiveFrames::next(cv::Mat& frame) {
     }
     return false;
   }
-  source_.retrieve(frame);
+  frame = retrieve(source_);
   if (frame.empty()) {
     fail(name_, "frame " + std::to_string(number_) + " cannot be decoded");
   }
