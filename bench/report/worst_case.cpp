@@ -1,14 +1,17 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
-// Real-time behaviour, one row per method: the time of a call on the usual and on the hardest
-// input, the slowest of many calls, page faults and allocations. This is no google-benchmark
-// program: it prints the Markdown table of docs/hard_cases.md. "worst_case CALLS" makes that many
-// calls of each row, for at most half a minute.
+// Real-time behaviour, one row per method: the time and the instructions of a call on the usual and
+// on the hardest input, the slowest of many calls, page faults and allocations. This is no
+// google-benchmark program: it prints the Markdown table of docs/hard_cases.md. "worst_case count"
+// under callgrind leaves a dump for each input. "worst_case CALLS INSTRUCTIONS" makes that many
+// calls of each row, for at most a minute, and reads what the dumps say, a line each.
 #include <algorithm>
 #include <array>
 #include <cstdint>
 #include <cstdlib>
+#include <fstream>
 #include <iostream>
+#include <string>
 #include <vector>
 
 #include "chain/pressed_frames.hpp"
@@ -298,12 +301,28 @@ std::vector<Kind> of_taxels() {
 
 int main(int argc, char** argv) {
   using bench::worst_case::Row;
-  const long calls = argc > 1 ? std::atol(argv[1]) : 100000;
+  const bool counts = argc > 1 && std::string(argv[1]) == "count";
+  if (!counts && argc != 3) {
+    std::cerr << "worst_case count | worst_case CALLS INSTRUCTIONS\n";
+    return 2;
+  }
+  const long calls = counts ? 0 : std::atol(argv[1]);
+  std::ifstream dumps(counts ? "" : argv[2]);
   std::vector<Row> rows;
   const auto add = [&](const char* method, const std::vector<Kind>& kinds) {
-    const double hardest_us = bench::worst_case::row_of(method, kinds, 0).hardest_us;
-    const long affordable = static_cast<long>(3e7 / (std::max)(hardest_us, 1.0));
-    rows.push_back(bench::worst_case::row_of(method, kinds, (std::min)(calls, affordable)));
+    if (counts) {
+      bench::worst_case::count_instructions(kinds, variants);
+      return;
+    }
+    std::vector<double> instructions(kinds.size(), 0);
+    for (double& of : instructions) {
+      dumps >> of;
+      of /= variants;
+    }
+    const double hardest_us = bench::worst_case::row_of(method, kinds, 0, instructions).hardest_us;
+    const long affordable = static_cast<long>(6e7 / (std::max)(hardest_us, 1.0));
+    rows.push_back(
+        bench::worst_case::row_of(method, kinds, (std::min)(calls, affordable), instructions));
     std::cerr << method << '\n';
   };
   add("whole chain, lean", of_chain<chain::Lean>());
@@ -317,6 +336,12 @@ int main(int argc, char** argv) {
   add("stick ratio in space, 441 dots", of_stick_in_space());
   add("traction, 21 x 21 dots", of_traction());
   add("taxel features, 16 x 4", of_taxels());
-  bench::worst_case::print(std::cout, rows);
+  if (!counts) {
+    if (!dumps) {
+      std::cerr << "the file of instructions has too few lines\n";
+      return 1;
+    }
+    bench::worst_case::print(std::cout, rows);
+  }
   return 0;
 }
