@@ -372,4 +372,22 @@ TEST_CASE("contact by difference: bad parameters are refused by name", "[contact
   CHECK(begins_with(refused(&DifferenceTest::min_region_px, Index(-1)),
                     "DifferenceTest: min_region_px = -1"));
   CHECK(refused(&DifferenceTest::cell_px, Index(16)) != "accepted");  // the smoothing is too narrow
+  CHECK(refused(&DifferenceTest::max_gap_px, 0.0) == "accepted");     // no gap is closed
+}
+
+TEST_CASE("contact by difference: the border is each cell of the four sides, once",
+          "[contact_by_difference]") {
+  for (const Index rows : {1, 2, 5}) {
+    for (const Index cols : {1, 2, 7}) {
+      Image<int> visits(rows, cols, 0);
+      detail::for_border(rows, cols, [&](Index i, Index j) { ++visits(i, j); });
+      for (Index i = 0; i < rows; ++i) {
+        for (Index j = 0; j < cols; ++j) {
+          const bool at_side = i == 0 || j == 0 || i + 1 == rows || j + 1 == cols;
+          CAPTURE(rows, cols, i, j);
+          CHECK(visits(i, j) == (at_side ? 1 : 0));
+        }
+      }
+    }
+  }
 }

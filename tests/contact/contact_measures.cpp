@@ -128,3 +128,35 @@ TEST_CASE("area and center follow the camera", "[contact]") {
     }
   }
 }
+
+TEST_CASE("area and center of an image and of its reflections are the same", "[contact]") {
+  // the membrane is rough and the contact reaches all four edges, so that every pixel counts
+  constexpr Index rows = 7, cols = 9;
+  test::Random random(3);
+  Image<double> depth(rows, cols);
+  for (double& l : depth.cells) {
+    l = random.uniform(8, 10);
+  }
+  const Image<std::uint8_t> mask(rows, cols, 1);
+  Camera<double> camera;
+  camera.pitch_mm = 0.4;
+  camera.center_x_px = 3.2;
+  camera.center_y_px = 2.1;
+  const auto measures = contact_measures(camera, mask, depth);
+  Image<double> upside_down(rows, cols), left_to_right(rows, cols);
+  for (Index i = 0; i < rows; ++i) {
+    for (Index j = 0; j < cols; ++j) {
+      upside_down(i, j) = depth(rows - 1 - i, j);
+      left_to_right(i, j) = depth(i, cols - 1 - j);
+    }
+  }
+  auto below = camera, beside = camera;
+  below.center_y_px = static_cast<double>(rows - 1) - camera.center_y_px;
+  beside.center_x_px = static_cast<double>(cols - 1) - camera.center_x_px;
+  const auto turned = contact_measures(below, mask, upside_down);
+  const auto mirrored = contact_measures(beside, mask, left_to_right);
+  CHECK(turned.area_mm2 == Approx(measures.area_mm2).epsilon(1e-12));
+  CHECK(turned.center_mm.y == Approx(-measures.center_mm.y).epsilon(1e-12));
+  CHECK(mirrored.area_mm2 == Approx(measures.area_mm2).epsilon(1e-12));
+  CHECK(mirrored.center_mm.x == Approx(-measures.center_mm.x).epsilon(1e-12));
+}

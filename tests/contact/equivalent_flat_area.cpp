@@ -177,3 +177,39 @@ TEST_CASE("equivalent flat area: what has no meaning is refused", "[contact]") {
   CHECK_THROWS_AS(seen({.tension_share = -1}), parameter_error);
   CHECK_THROWS_AS(EquivalentFlatArea<>(test::Pad().camera, 0, 10), parameter_error);
 }
+
+TEST_CASE("equivalent flat area: the curvature of a surface does not depend on where x points",
+          "[contact]") {
+  // a camera's points on a slope are displaced along both axes
+  test::Random random(8);
+  for (int k = 0; k < 20; ++k) {
+    double x[9], y[9], z[9], x_turned[9], y_turned[9];
+    const double angle = random.uniform(0, 6.28);
+    for (int p = 0; p < 9; ++p) {
+      x[p] = p % 3 + random.uniform(-0.2, 0.2);
+      y[p] = p / 3 + random.uniform(-0.2, 0.2);
+      z[p] = random.uniform(-0.5, 0.5);
+      x_turned[p] = std::cos(angle) * x[p] - std::sin(angle) * y[p];
+      y_turned[p] = std::sin(angle) * x[p] + std::cos(angle) * y[p];
+    }
+    const detail::FlatAreaPoint<double> here(x + 4, y + 4, z + 4, 3, 10.0);
+    const detail::FlatAreaPoint<double> turned(x_turned + 4, y_turned + 4, z + 4, 3, 10.0);
+    CHECK(turned.area_mm2 == Approx(here.area_mm2).epsilon(1e-12));
+    CHECK(turned.flux_mm == Approx(here.flux_mm).epsilon(1e-10).margin(1e-12));
+  }
+}
+
+TEST_CASE("equivalent flat area: the curvature of a steep sphere is 2 / R", "[contact]") {
+  const double radius = 5, step = 0.01;
+  for (const Point2<double> middle : {Point2<double>{0, 0}, {3, 0}, {0, -3}, {-2.5, 3}}) {
+    double x[9], y[9], z[9];
+    for (int p = 0; p < 9; ++p) {
+      x[p] = middle.x + step * (p % 3 - 1);
+      y[p] = middle.y + step * (p / 3 - 1);
+      z[p] = std::sqrt(radius * radius - x[p] * x[p] - y[p] * y[p]);
+    }
+    const detail::FlatAreaPoint<double> here(x + 4, y + 4, z + 4, 3, 10.0);
+    CHECK(here.area_mm2 == Approx(step * step));
+    CHECK(here.flux_mm / here.area_mm2 == Approx(2 / radius).epsilon(1e-3));
+  }
+}

@@ -394,6 +394,7 @@ TEST_CASE("object surface: points in mm, as a view", "[surface]") {
 
   const Mask other(2, 2, 1);
   CHECK(surface_points(camera, depth, other).rows() == 0);
+  CHECK(surface_points(camera, depth, other).cols() == 0);
 }
 
 TEST_CASE("object surface: a strip along the border is left out", "[surface]") {

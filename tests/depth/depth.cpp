@@ -394,3 +394,42 @@ TEST_CASE("an estimator refuses what cannot be, and says why", "[depth]") {
   }
   CHECK(message([&] { DepthEstimator<>(pad.camera, pad.fluid, reference); }) == "accepted");
 }
+
+TEST_CASE("a root is refined by the order that is told", "[depth]") {
+  // sum f[j] s^(j + 1) with terms that fall like those of the depth
+  test::Random random(6);
+  for (int k = 0; k < 50; ++k) {
+    double f[6];
+    double scale = 1;
+    for (double& c : f) {
+      c = scale * random.uniform(0.5, 1);
+      scale *= -0.3;
+    }
+    const double truth = random.uniform(0.2, 1);
+    double target = 0;
+    for (int j = 5; j >= 0; --j) {
+      target = (target + f[j]) * truth;
+    }
+    const double off = 1e-2;
+    CHECK(detail::refine<1>(f, target, truth + off) == truth + off);
+    CHECK(std::abs(detail::refine<2>(f, target, truth + off) - truth) < off * off);
+    CHECK(std::abs(detail::refine<3>(f, target, truth + off) - truth) < off * off * off);
+    CHECK(std::abs(detail::refine<6>(f, target, truth + off) - truth) < 1e-11);
+  }
+}
+
+TEST_CASE("the rim is the part of the pad up to a fifth of its depth", "[depth]") {
+  struct {
+    detail::PadArea area;
+    DepthReference<double> reference;
+  } pad;
+  pad.reference.rows = 1;
+  pad.reference.cols = 5;
+  pad.reference.depth_mm = {10, 2, 2.01, 0, test::nan};
+  pad.reference.rim_green = 100;
+  const Image<double> light(1, 5, 50);
+  const auto sum = detail::RimLight(pad).sum(0, 1, as_view(light), as_view(light), GreyScale{});
+  CHECK(sum.pixels == 2);
+  CHECK(sum.lit == 2);
+  CHECK(sum.light == 1);
+}

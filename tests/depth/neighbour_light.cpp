@@ -377,6 +377,25 @@ TEST_CASE("neighbour light: lost pixels are counted") {
   CHECK(compensation(depth, depth, workspace).lost_px == 0);
   depth.block(3, 4, 2, 3).setConstant(std::nanf(""));
   CHECK(compensation(depth, depth, workspace).lost_px == 6);
+
+  // wherever they lie in a long row
+  const Map<float> wide = Map<float>::Constant(20, 150, 1.0F);
+  const NeighbourLightCompensation<> wider({5, 0.001F, 0.2F}, 0.1F, wide);
+  auto wide_workspace = wider.workspace();
+  depth = wide;
+  for (const Index j : {2, 30, 71, 100, 147}) {
+    depth(9, j) = std::nanf("");
+  }
+  CHECK(wider(depth, depth, wide_workspace).lost_px == 5);
+}
+
+TEST_CASE("neighbour light: a pixel around which nothing is seen keeps its depth") {
+  const Map<float> reference = Map<float>::Constant(20, 20, 1.0F);
+  Map<float> depth = Map<float>::Constant(20, 20, std::nanf(""));
+  depth(9, 11) = 1.0F;
+  const Map<float> out = compensated<detail::SteppedDisc>(NeighbourLight<float>{5, 0.001F, 0.2F},
+                                                          reference, depth);
+  CHECK(out(9, 11) == 1.0F);
 }
 
 TEST_CASE("neighbour light: bad parameters are refused by name, value and range") {

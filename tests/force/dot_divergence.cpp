@@ -258,6 +258,15 @@ TEST_CASE("dot divergence: a free dot that was not found lies between its neighb
       }
     }
   }
+  // of two below one another, each lies between its neighbours in the row
+  for (const Index row : {2, 3}) {
+    Dots some = home;
+    some(row, 4) = some(row + 1, 4) = {test::nan, test::nan};
+    const DotDivergence<> divergence(some, {.max_filled = 0.5});
+    auto workspace = divergence.workspace();
+    CAPTURE(row);
+    CHECK(divergence(stretched, mask, workspace).area_mm2 == Approx(growth).epsilon(1e-12));
+  }
 }
 
 TEST_CASE("dot divergence: a fit leaves the noise of its dots to the frames", "[dot_divergence]") {

@@ -247,6 +247,22 @@ TEST_CASE("traction: a stretched sheet on a plate is pressed by p", "[traction]"
   }
   CHECK(distance(r.force_n, Vector{0, 0, -p * 25 * 1.2 * 1.1 * 2.25}) < 1e-12);
   CHECK(std::isnan(maps.pressure_mpa()(0, 3)));  // dots at the edge of the grid have no load
+
+  // a cell's tension is that of the four dots around it, up to the last cell
+  auto corner = on_plate;
+  corner(n - 1, n - 1) = corner(n - 1, n - 1) + Vector{0.3, 0.3, 0};
+  (void)field(corner, touch(n, 3, 5), p, maps);
+  const auto tension = maps.tension_n_per_mm();
+  REQUIRE(tension.rows() == n - 1);
+  REQUIRE(tension.cols() == n - 1);
+  const double even = tension(0, 0).larger;
+  for (Index i = 0; i + 1 < n; ++i) {
+    for (Index j = 0; j + 1 < n; ++j) {
+      const bool is_last = i + 2 == n && j + 2 == n;
+      CAPTURE(i, j);
+      CHECK((std::abs(tension(i, j).larger - even) < 1e-12) == !is_last);
+    }
+  }
 }
 
 TEST_CASE("traction: shear that grows along x is held by the object", "[traction]") {

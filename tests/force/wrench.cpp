@@ -181,6 +181,61 @@ TEST_CASE("clamped rim: it leans further sideways than the dots, by l^4 / (l^4 -
         detail::membrane::RimPullStatus::unstretched);
 }
 
+TEST_CASE("side dots: one row and the inclination give the derivative at the rim to second order",
+          "[wrench]") {
+  // An inflated membrane of revolution, integrated from the rim along its stress-free length s:
+  //   (r T1)' = T2 r',  T1 kappa1 + T2 sin(theta) / r = p / (mu t),
+  // T1 and T2 per current length, theta the inclination, mapped from a cone.
+  const double a = 15, free_inclination = 1.1, load_per_mm = 0.09;
+  for (const double m : {0.0, 0.15, 0.4}) {
+    const auto tension = [&](double along, double across) {
+      return (along / across - std::pow(along * across, -3)) * (1 - m + m * across * across);
+    };
+    // the side dot at s, if the membrane leaves the rim with this stretch and inclination
+    const auto dot_at = [&](double s_end, double stretch, double inclination) {
+      using State = std::array<double, 4>;  // r, z, theta, T1
+      double along = stretch;
+      const auto slope = [&](double s, const State& x) {
+        const double across = x[0] / (a - s * std::cos(free_inclination));
+        for (int k = 0; k < 50; ++k) {  // the stretch of this T1
+          const double step = 1e-6;
+          const double rise = (tension(along + step, across) - tension(along - step, across)) / 2;
+          along -= (tension(along, across) - x[3]) * step / rise;
+        }
+        const double hoop = tension(across, along);
+        return State{-along * std::cos(x[2]), along * std::sin(x[2]),
+                     -along * (load_per_mm - hoop * std::sin(x[2]) / x[0]) / x[3],
+                     along * (x[3] - hoop) * std::cos(x[2]) / x[0]};
+      };
+      State x = {a, 0, inclination, tension(stretch, 1)};
+      const int steps = 20;
+      const double h = s_end / steps;
+      for (int k = 0; k < steps; ++k) {  // midpoint rule
+        const State begin = slope(k * h, x);
+        State middle = x;
+        for (std::size_t i = 0; i < 4; ++i) {
+          middle[i] += h / 2 * begin[i];
+        }
+        const State half = slope((k + 0.5) * h, middle);
+        for (std::size_t i = 0; i < 4; ++i) {
+          x[i] += h * half[i];
+        }
+      }
+      return Vector{x[0], 0, x[1]};
+    };
+    const double stretch = 1.4, inclination = 1.2;
+    const Vector truth = {-stretch * std::cos(inclination), 0, stretch * std::sin(inclination)};
+    const auto error = [&](double length) {
+      const Vector dots[1] = {dot_at(length, stretch, inclination)};
+      const detail::membrane::RimPoint<double> rim = {{a, 0, 0}, {0, 1, 0}, length, a};
+      return distance(OneRow{free_inclination}.along(rim, dots, load_per_mm, m), truth);
+    };
+    CAPTURE(m, error(0.2), error(0.1));
+    CHECK(error(0.1) < 1e-3);
+    CHECK(error(0.2) / error(0.1) == Approx(4).epsilon(0.15));
+  }
+}
+
 TEST_CASE("side dots: two rows give the derivative at the rim of any parabola", "[wrench]") {
   test::Random random(4);
   for (int k = 0; k < 50; ++k) {
@@ -1067,6 +1122,34 @@ TEST_CASE("wrench: bad parameters are refused by name, value and range", "[wrenc
        "LeastSquares: rim_weight = ");
   says(test::refusal([] { PadHeights<>::Map(19.0, 0.0); }), "HeightMap: spacing_mm = 0");
   says(test::refusal([] { PadHeights<>::Map(0.1, 0.5); }), "HeightMap: half_width_mm = 0.1");
+}
+
+TEST_CASE("rim: what border points and side dots it takes for its own", "[wrench]") {
+  const auto ring = [](double distance_mm) {
+    test::Image<Vector> points(1, 12);
+    for (Index k = 0; k < 12; ++k) {
+      const double at = 2 * pi * static_cast<double>(k) / 12;
+      points(0, k) = {20 * std::cos(at), 20 * std::sin(at), 0};
+    }
+    points(0, 0) = {distance_mm, 0, 0};
+    return detail::membrane::Rim<double>(points, [](Index) { return 0.8; }, 20.0, 12);
+  };
+  // 5 % are too much on both sides
+  const auto refused = [&](double distance_mm) {
+    return test::refusal([&] { (void)ring(distance_mm); });
+  };
+  CHECK(refused(19.01) == "accepted");
+  CHECK(refused(20.99) == "accepted");
+  CHECK(refused(19) != "accepted");
+  CHECK(refused(21) != "accepted");
+
+  // at most a third of the dots misplaced
+  const auto rim = ring(20);
+  auto pulls = rim.pulls();
+  pulls.misplaced = 4;
+  CHECK(rim.in_order(pulls));
+  pulls.misplaced = 5;
+  CHECK_FALSE(rim.in_order(pulls));
 }
 
 TEST_CASE("wrench: frames of another size are not looked at", "[wrench]") {

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <numbers>
 
 #include "fingerpad/published/wrench.hpp"
 #include "support/by_modulus.hpp"
@@ -240,6 +241,42 @@ TEST_CASE("wrench: shapes with holes", "[wrench]") {
   const auto all_but_top =
       measure<Balanced>(with_hole([](double x, double y) { return std::hypot(x, y) > 9; }));
   CHECK(all_but_top.status == WrenchStatus::no_shape);
+}
+
+TEST_CASE("wrench: on a round pad a line through a hole is that of its neighbours, rotated",
+          "[wrench]") {
+  detail::membrane::Compartments<double> whole(16, 6, film.radius_mm, {0.4, 0.5, 2});
+  auto holed = whole;
+  whole.lay<StraightLines>(pressed(), {0, 0, 0});
+  REQUIRE(whole.broken() == 0);
+  // one line, two adjacent lines, and the first and last of all
+  const auto is_lost = [](int line) {
+    return line == 0 || line == 4 || line == 9 || line == 10 || line == 15;
+  };
+  const auto lost = [&](double x, double y) {
+    const double line = 16 * std::atan2(y, x) / (2 * std::numbers::pi);
+    const double at = std::hypot(x, y);
+    return at > 13 && at < 14 && is_lost((static_cast<int>(std::lround(line)) + 16) % 16);
+  };
+  holed.lay<StraightLines>(with_hole(lost), {0, 0, 0});
+  CHECK(holed.broken() == 5);
+  for (Index line = 0; line < 16; ++line) {
+    CAPTURE(line);
+    for (Index row = 0; row <= 6; ++row) {
+      CHECK(std::sqrt(squared_norm(holed.node(line, row) - whole.node(line, row))) < 1e-9);
+    }
+  }
+}
+
+TEST_CASE("wrench: a line whose rim point is the center of the contact has no direction",
+          "[wrench]") {
+  detail::membrane::Meridian<double> line(100);
+  const Point3<double> rim = {film.radius_mm, 0, 0};
+  line.trace<true>(touching([](double, double) { return false; }), rim, rim, {0.4, 0.5, 2});
+  CHECK(line.end() == detail::membrane::LineEnd::hole);
+  for (const Point3<double>& p : line.points()) {
+    CHECK((p.x == rim.x && p.y == rim.y));
+  }
 }
 
 TEST_CASE("wrench: odd contacts", "[wrench]") {

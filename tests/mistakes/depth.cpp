@@ -256,6 +256,20 @@ TEST_CASE("the light at the rim is that of all bands together", "[mistakes]") {
   CHECK(sum.rim_pixels == whole.rim_pixels);
   CHECK(sum.rim_light == Approx(whole.rim_light));
   CHECK(sum.status == whole.status);
+  // one of them in the dark
+  auto dark = frame;
+  for (Index i = 0; i < 70; ++i) {
+    for (Index j = 0; j < pad.cols; ++j) {
+      dark.green(i, j) = 0;
+    }
+  }
+  const DepthResult lit = estimator(dark.red, dark.green, depth, workspace);
+  sum = estimator.band(0, 70, dark.red, dark.green, depth, status, workspace);
+  REQUIRE(sum.rim_pixels > 0);
+  REQUIRE(sum.rim_lit == 0);
+  sum.add(estimator.band(70, 240, dark.red, dark.green, depth, status, workspace));
+  CHECK(sum.rim_lit == lit.rim_lit);
+  CHECK(sum.rim_light == Approx(lit.rim_light).epsilon(1e-12));
 }
 
 TEST_CASE("a depth that is ok lies in [0, max_depth_mm]", "[mistakes]") {
