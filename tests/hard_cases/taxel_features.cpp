@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <random>
+#include <type_traits>
 #include <vector>
 
 #include "support/catch.hpp"
@@ -176,6 +177,31 @@ TEST_CASE("taxel features: times of a long run, in float", "[taxel_features]") {
         CHECK(sample.waves == 4);
         CHECK(sample.frequency_hz == Approx(7.5).epsilon(1e-5));
       }
+    }
+  }
+}
+
+TEMPLATE_TEST_CASE("taxel features: after large readings, ones that stay the same do not vibrate",
+                   "[taxel_features]",
+                   float,
+                   double) {
+  // the running sum of squares keeps roundoff of the large ones until it is taken anew
+  using S = TestType;
+  auto o = options<S>(8);
+  o.stuck_after = 0;
+  const TaxelFeatures<ZeroCrossings, S> features(2, 4, o);
+  const int most = std::is_same_v<S, float> ? 100000 : 1000000000;
+  std::mt19937 random(5);
+  std::uniform_int_distribution<int> any(1, most);
+  for (int k = 0; k < 100; ++k) {
+    auto state = features.start();
+    Image<S> readings(2, 4);
+    for (int sample = 0; sample < 30; ++sample) {
+      for (S& reading : readings.cells) {
+        reading = sample < 12 ? static_cast<S>(any(random)) : reading;
+      }
+      const auto seen = features(readings, sample, state);
+      CHECK((seen.status == TaxelStatus::quiet || sample < 19));
     }
   }
 }

@@ -271,7 +271,7 @@ TEST_CASE("wrench: on a round pad a line through a hole is that of its neighbour
 TEST_CASE("wrench: a line whose rim point is the center of the contact has no direction",
           "[wrench]") {
   detail::membrane::Meridian<double> line(100);
-  const Point3<double> rim = {film.radius_mm, 0, 0};
+  const Point3<double> rim = {-film.radius_mm, 0, 0};
   line.trace<true>(touching([](double, double) { return false; }), rim, rim, {0.4, 0.5, 2});
   CHECK(line.end() == detail::membrane::LineEnd::hole);
   for (const Point3<double>& p : line.points()) {
