@@ -393,8 +393,8 @@ TEST_CASE("neighbour light: a pixel around which nothing is seen keeps its depth
   const Map<float> reference = Map<float>::Constant(20, 20, 1.0F);
   Map<float> depth = Map<float>::Constant(20, 20, std::nanf(""));
   depth(9, 11) = 1.0F;
-  const Map<float> out = compensated<detail::SteppedDisc>(NeighbourLight<float>{5, 0.001F, 0.2F},
-                                                          reference, depth);
+  const Map<float> out =
+      compensated<detail::SteppedDisc>(NeighbourLight<float>{5, 0.001F, 0.2F}, reference, depth);
   CHECK(out(9, 11) == 1.0F);
 }
 

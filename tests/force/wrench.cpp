@@ -1132,7 +1132,8 @@ TEST_CASE("rim: what border points and side dots it takes for its own", "[wrench
       points(0, k) = {20 * std::cos(at), 20 * std::sin(at), 0};
     }
     points(0, 0) = {distance_mm, 0, 0};
-    return detail::membrane::Rim<double>(points, [](Index) { return 0.8; }, 20.0, 12);
+    return detail::membrane::Rim<double>(
+        points, [](Index) { return 0.8; }, 20.0, 12);
   };
   // 5 % are too much on both sides
   const auto refused = [&](double distance_mm) {
