@@ -644,6 +644,40 @@ TEST_CASE("a gauge is not tared if a constant explains most of the residual, in 
   }
 }
 
+TEST_CASE("a gauge of the normal force is not tared, however small the forces",
+          "[calibrate][force]") {
+  // a force along the measure with a constant: it explains all of the residual, and matters from a
+  // tenth of the largest force
+  const auto told = [](double unit, double constant) {
+    Samples samples(12);
+    for (int k = 0; k < 12; ++k) {
+      Sample& s = samples[static_cast<std::size_t>(k)];
+      s.measure = 0.5 + 0.25 * k;
+      s.normal_force_n = unit * ((1 - constant) * s.measure / 3.25 + constant);
+      s.load = k % 3;
+    }
+    return fit_normal_force<1>(all(samples)).status;
+  };
+  for (const double unit : {10.0, 1.0, 0.5, 0.3}) {
+    CAPTURE(unit);
+    CHECK(told(unit, 0.11) == FitStatus::gauge_not_tared);
+    CHECK(told(unit, 0.09) == FitStatus::ok);
+  }
+}
+
+TEST_CASE("a standard error of 0 has no slope", "[calibrate][force]") {
+  // the root of 0 has an infinite one
+  using Dual = decltype(seeded(std::array{1.0}))::value_type;
+  detail::ModelFit<Dual> fit;
+  fit.covariance.resize(2, 2);
+  fit.covariance << Dual(4, 1, 0), Dual(0, 1, 0), Dual(0, 1, 0), Dual(0, 1, 0);
+  const auto errors = detail::standard_errors_of<Dual, 2>(fit);
+  CHECK(errors[0].value() == 2);
+  CHECK(errors[0].derivatives()(0) == 0.25);
+  CHECK(errors[1].value() == 0);
+  CHECK((errors[1].derivatives().size() == 0 || errors[1].derivatives()(0) == 0));
+}
+
 TEST_CASE("samples given twice count twice", "[calibrate][force]") {
   Random random(10);
   const Samples once = measured({}, 30, {}, 1, random);

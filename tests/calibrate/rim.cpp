@@ -209,6 +209,28 @@ TEST_CASE("rim calibration: two rows of side dots", "[wrench]") {
   CHECK(fit(3) == Approx(pad.dot_length(3)).epsilon(1e-9));
 }
 
+TEST_CASE("rim calibration: the noise of a second row counts as the derivative weighs it",
+          "[wrench]") {
+  // Straight side dots: (4 x1 - x2) / 2 is the chord of the first row, with sqrt(4^2 + 1) / 2 times
+  // the noise of one dot.
+  const Pad pad;
+  RimCalibration<OneRow> one(grid_of(pad.border()), radius_mm);
+  RimCalibration<TwoRows> two(grid_of(pad.border()), radius_mm);
+  for (std::size_t k = 0; k < 4; ++k) {
+    const double p = four_pressures[k];
+    Row dots = pad.dots(p);
+    const Row second = pad.dots(p, 2);
+    REQUIRE(one.add(k, grid_of(dots), p));
+    dots.insert(dots.end(), second.begin(), second.end());
+    REQUIRE(two.add(k, grid_of(dots, 2), p));
+  }
+  const RimFitOptions noise = {.side_dot_noise_mm = 0.004, .pressure_noise_mpa = 0};
+  const auto from_one = one.fit(noise), from_two = two.fit(noise);
+  const double times = std::sqrt(17.0) / 2;
+  CHECK(from_two.length_sd_mm == Approx(times * from_one.length_sd_mm).epsilon(1e-6));
+  CHECK(from_two.modulus_sd_n_per_mm == Approx(times * from_one.modulus_sd_n_per_mm).epsilon(1e-6));
+}
+
 TEST_CASE("rim calibration: units and the order of levels and dots do not matter", "[wrench]") {
   const Pad pad;
   const auto fit = calibration_of(pad, four_pressures).fit();

@@ -161,3 +161,30 @@ TEST_CASE("rim calibration: what the apex says of the rubber, and what it does n
       test::begins_with(test::refusal([&] { (void)share_of(apex, {.stress_free_height_mm = -1}); }),
                         "RimFitOptions: stress_free_height_mm = -1"));
 }
+
+TEST_CASE("rim calibration: the rubber does not depend on the unit of length", "[wrench]") {
+  InflatedRubber pad;
+  pad.mooney_share = 0.3;
+  const auto profile = pad.profile();
+  // the height without pressure: 11, 1.1 and 0.55
+  const auto fit_in = [&](double unit) {
+    const auto scaled = [&](std::vector<Point> points) {
+      for (Point& p : points) {
+        p = unit * p;
+      }
+      return points;
+    };
+    const auto border = scaled(border_of(pad));
+    const auto dots = scaled(dots_of(pad, profile, [](double) { return 0.0; }));
+    RimCalibration<> calibration(grid_of(border), unit * pad.radius_mm, carried(pad));
+    REQUIRE(calibration.add(0, grid_of(dots), pad.pressure_mpa, unit * profile.front().z));
+    return calibration.fit_modulus(unit * 0.7997, {.stress_free_height_mm = unit * pad.height_mm});
+  };
+  const auto fit = fit_in(1);
+  for (const double unit : {0.1, 0.05}) {
+    CAPTURE(unit);
+    const auto other = fit_in(unit);
+    CHECK(other.mooney_share == Approx(fit.mooney_share).epsilon(1e-6));
+    CHECK(other.modulus_n_per_mm == Approx(unit * fit.modulus_n_per_mm).epsilon(1e-6));
+  }
+}

@@ -3,6 +3,7 @@
 #include "fingerpad/calibrate/taxels.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <limits>
@@ -10,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "fingerpad/adapt/autodiff.hpp"
 #include "support/catch.hpp"
 #include "support/pad.hpp"
 #include "support/refusal.hpp"
@@ -34,11 +36,11 @@ double gaussian(Random& random) {
 /// A recording whose sample k is reading(k, row, col, noise of deviation 1).
 template <class Reading>
 TaxelNoiseCalibration<> recorded(Index rows,
-                               Index cols,
-                               Index samples,
-                               std::uint64_t seed,
-                               const Reading& reading,
-                               const Options& options = {}) {
+                                 Index cols,
+                                 Index samples,
+                                 std::uint64_t seed,
+                                 const Reading& reading,
+                                 const Options& options = {}) {
   TaxelNoiseCalibration calibration(rows, cols, options);
   Random random(seed);
   Array taxels(rows, cols);
@@ -476,4 +478,22 @@ TEST_CASE("taxel noise: whole counts of an integer array", "[taxel_noise]") {
     const double expected = std::sqrt(deviation * deviation + 1.0 / 12);
     CHECK(calibration.fit().typical == Approx(expected).epsilon(0.015));
   }
+}
+
+TEST_CASE("taxel noise: a centroid that cannot move has no deviation, also in derivatives",
+          "[taxel_noise]") {
+  // of a single taxel; the root of 0 has an infinite slope
+  using Dual = decltype(seeded(std::array{1.0}))::value_type;
+  const Dual gain = seeded(std::array{1.0})[0];
+  TaxelNoiseCalibration<Dual> calibration(1, 1);
+  Random random(3);
+  for (int k = 0; k < 64; ++k) {
+    const test::Image<Dual> reading(1, 1, Dual(gain * (800 + 7 * gaussian(random))));
+    REQUIRE(calibration.add(reading, period_s * k));
+  }
+  const TaxelNoise<Dual> noise = calibration.fit();
+  CHECK(noise.typical.derivatives()(0) == Approx(noise.typical.value()).epsilon(1e-9));
+  CHECK(noise.centroid_deviation_mm.value() == 0);
+  const auto& slope = noise.centroid_deviation_mm.derivatives();
+  CHECK((slope.size() == 0 || slope(0) == 0));
 }
