@@ -718,6 +718,27 @@ TEST_CASE("contact shift: a robust mean without outliers is the plain one", "[co
   CHECK(a.rotation_rad == b.rotation_rad);
 }
 
+TEST_CASE("contact shift: a pair in a row or in a column is pulled apart as far",
+          "[contact_shift]") {
+  // 10 apart at first. The best rigid motion leaves half of the stretch at each dot, and more than
+  // 3/4 of the pitch is not rigid.
+  for (const bool in_row : {true, false}) {
+    const auto pair = [&](double distance) {
+      const Point2<double> end = in_row ? Point2<double>{distance, 0} : Point2<double>{0, distance};
+      Points dots(in_row ? 1 : 2, in_row ? 2 : 1, {7, 8});
+      dots.cells[1] = dots.cells[0] + end;
+      return dots;
+    };
+    const auto status = [&](double distance) {
+      const Points free = pair(10);
+      return shift<ContactDots>(free, pair(distance), Mask(free.rows(), free.cols(), 1)).status;
+    };
+    CAPTURE(in_row);
+    CHECK(status(24.9) == ShiftStatus::measured);
+    CHECK(status(25.1) == ShiftStatus::not_rigid);
+  }
+}
+
 TEST_CASE("contact shift: bad parameters are refused by name", "[contact_shift]") {
   const Points free = printed(5, 6);
   const auto one = [&](Index row, Index col) {

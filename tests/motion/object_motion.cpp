@@ -609,6 +609,31 @@ TEST_CASE("object motion: bad parameters are refused by name") {
   CHECK(refusal(0, {.robust_passes = 11}) == "ContactMap: robust_passes = 11, must be in [0, 10]");
 }
 
+TEST_CASE("object motion: the unit is judged by the dots that are found") {
+  const auto accepts = [](const Dots& dots) {
+    try {
+      const ObjectMotion<> motion(dots);
+    } catch (const parameter_error&) {
+      return false;
+    }
+    return true;
+  };
+  CHECK(accepts(Dots(0, 0)));
+  const double nan = std::nan("");
+  // one pair of neighbours, anywhere in the grid
+  for (Index i = 0; i < 3; ++i) {
+    for (Index j = 0; j < 4; ++j) {
+      for (const double step_mm : {0.001, 1.5, 1500.0}) {
+        Dots dots(3, 5, {nan, nan, nan});
+        dots(i, j) = {1, 2, 10};
+        dots(i, j + 1) = {1 + step_mm, 2, 10};
+        CAPTURE(i, j, step_mm);
+        CHECK(accepts(dots) == (step_mm == 1.5));
+      }
+    }
+  }
+}
+
 TEST_CASE("spatial dots: depth is read between pixels, at the dot's own pixel (E020)") {
   const Camera<double> camera;
   test::Image<double> depth(4, 5);

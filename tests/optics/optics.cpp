@@ -258,6 +258,19 @@ TEST_CASE("the published sine shift is short by the audit's numbers", "[optics]"
     worst = std::max(worst, missing_mm(t, low));
   }
   CHECK(std::abs(worst - 0.0258) < 1e-4);
+
+  // It lies along the pixel's direction, and is 0 on the plate.
+  const double row = 100, col = 400;
+  for (const double depth : {0.0, 5.0}) {
+    const auto right = point_at(camera, row, col, depth);
+    const auto sine = published::point_at(camera, row, col, depth);
+    const double shorter =
+        depth > 0 ? std::hypot(sine.x, sine.y) / std::hypot(right.x, right.y) : 1;
+    CHECK((shorter > 0.99 && shorter <= 1));
+    CHECK(sine.x == Approx(shorter * right.x).epsilon(1e-12));
+    CHECK(sine.y == Approx(shorter * right.y).epsilon(1e-12));
+    CHECK(sine.z == depth);
+  }
 }
 
 TEST_CASE("derivatives by the dual number are those of central differences", "[optics]") {

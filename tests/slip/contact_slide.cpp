@@ -112,6 +112,24 @@ TEST_CASE("contact slide: rotation past the dots", "[contact_slide]") {
   }
 }
 
+TEST_CASE("contact slide: an imprint that has become deeper or shallower is found alike",
+          "[contact_slide]") {
+  const auto found = [](double gain) {
+    auto state = slide.start();
+    CHECK(look({}, state).ok());
+    const auto result = look({.shift = {0.5, -0.3}, .angle_rad = 0.08, .gain = gain}, state);
+    CHECK(result.status == SlideStatus::updated);
+    return result;
+  };
+  const auto plain = found(1);
+  CHECK(std::abs(plain.rotation_rad - 0.08) < 0.003);
+  for (const double gain : {0.3, 3.0}) {
+    CAPTURE(gain);
+    CHECK(std::abs(found(gain).rotation_rad - plain.rotation_rad) < 1e-4);
+    CHECK(norm(found(gain).imprint_px - plain.imprint_px) < 1e-3);
+  }
+}
+
 TEST_CASE("contact slide: steps add up, and a way back takes back", "[contact_slide]") {
   auto state = slide.start();
   for (const double at : {0.0, 1.3, 2.6, 3.9, 5.2}) {
@@ -312,4 +330,14 @@ TEST_CASE("contact slide, recoil: names and bad parameters", "[contact_slide][re
   CHECK(begins_with(refusal([&] { Recoil<>{dots, {.pitch_px = 0}}; }), "RecoilTest: pitch_px = 0"));
   CHECK(begins_with(refusal([&] { Recoil<>{dots, {.quantile = 1}}; }), "RecoilTest: quantile = 1"));
   CHECK(begins_with(refusal([&] { Recoil<>{dots, {.min_dots = 0}}; }), "RecoilTest: min_dots = 0"));
+  // dots 40 px apart
+  const auto pitch = [](double pitch_px) {
+    return refusal([&] { Recoil<double>{Pad().dots(), {.pitch_px = pitch_px}}; });
+  };
+  for (const double factor : {2.95, 1 / 2.95}) {
+    CHECK(pitch(40 * factor) == "accepted");
+  }
+  for (const double factor : {3.05, 1 / 3.05}) {
+    CHECK(begins_with(pitch(40 * factor), "RecoilTest: pitch_px = "));
+  }
 }

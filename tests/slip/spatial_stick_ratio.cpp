@@ -3,8 +3,11 @@
 #include "fingerpad/slip/spatial_stick_ratio.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
+#include <numbers>
+#include <vector>
 
 #include "support/catch.hpp"
 #include "support/refusal.hpp"
@@ -279,6 +282,154 @@ TEST_CASE("stick ratio in space, bad input", "[spatial_stick]") {
     const auto refused = f.ratio(patch.dots, patch.contact, f.states, other);
     CHECK(refused.status == StickStatus::refused);
     CHECK(!refused.ok());
+    CHECK((refused.dots_in_contact() == 0 && refused.out_of_place == 0));
+  }
+}
+
+namespace {
+
+/// Dots of the given places in a grid with a border, `columns` wide without it, which do not move.
+detail::stick::SpatialPairs<double> pairs_at(const std::vector<Point3<double>>& places,
+                                             Index columns) {
+  detail::stick::SpatialPairs<double> pairs(places.size());
+  for (std::size_t k = 0; k < places.size(); ++k) {
+    const auto cell = static_cast<Index>(k);
+    const auto padded =
+        static_cast<std::size_t>((cell / columns + 1) * (columns + 2) + cell % columns + 1);
+    pairs.add(cell, padded, 0, places[k], places[k]);
+  }
+  return pairs;
+}
+
+/// The weights with which the slip at (0, 0) enters the sums around (-2, -2) to (2, 2).
+std::array<double, 25> weights_around() {
+  using Slip = detail::stick::SmallSlip<double>;
+  std::vector<Slip> room(49, Slip{0, 0, 0, 0});
+  room[24] = {0, 0, 0, 1};
+  std::array<double, 25> weights;
+  for (std::size_t k = 0; k < 25; ++k) {
+    weights[k] = detail::stick::sum_around(&room[(k / 5 + 1) * 7 + k % 5 + 1], 7)[3];
+  }
+  return weights;
+}
+
+}  // namespace
+
+TEST_CASE("stick ratio in space: a quadratic surface is found from any number of dots on it",
+          "[spatial_stick]") {
+  const auto height = [](double x, double y) {
+    return 10 + 0.1 * x - 0.2 * y + 0.03 * x * x + 0.02 * x * y - 0.04 * y * y;
+  };
+  for (std::size_t count = 12; count <= 24; ++count) {
+    std::vector<Point3<double>> places;
+    for (std::size_t k = 0; k < count; ++k) {
+      const double x = 1.5 * static_cast<double>(k % 4), y = 1.5 * static_cast<double>(k / 4);
+      places.push_back({x, y, height(x, y)});
+    }
+    const auto surface = detail::stick::quadric_through(pairs_at(places, 4));
+    CAPTURE(count);
+    for (const auto& p : places) {
+      const Point2<double> slope = surface.slope(p);
+      CHECK(slope.x == Approx(0.1 + 0.06 * p.x + 0.02 * p.y).margin(1e-9));
+      CHECK(slope.y == Approx(-0.2 + 0.02 * p.x - 0.08 * p.y).margin(1e-9));
+    }
+  }
+}
+
+TEST_CASE("stick ratio in space: the noise that a mean over neighbours leaves", "[spatial_stick]") {
+  double sum = 0, squares = 0;
+  for (const double weight : weights_around()) {
+    sum += weight;
+    squares += weight * weight;
+  }
+  CHECK(detail::stick::neighbour_gain() == Approx(std::sqrt(squares) / sum).epsilon(1e-15));
+}
+
+TEST_CASE("stick ratio in space: weights by the dots that slip least", "[spatial_stick]") {
+  auto pairs = pairs_at(std::vector<Point3<double>>(11, {0, 0, 0}), 11);
+  pairs.for_each([](auto& b, std::size_t k) { b.slip_sq[k] = static_cast<double>(b.cell[k] + 1); });
+  std::vector<double> sorted(11);
+  detail::stick::weigh_nearest(4, sorted, pairs);
+  // the slip of rank 4, from 0, is the standard deviation: its square is 5
+  pairs.for_each([](const auto& b, std::size_t k) {
+    CHECK(b.weight[k] == Approx(std::exp(-b.slip_sq[k] / 10)));
+  });
+}
+
+TEST_CASE("stick ratio in space: the doubts of neighbours are correlated as their means are",
+          "[spatial_stick]") {
+  // A dot at the limit and another one. Means that share neighbours have the correlation r, and
+  // answers then have (2 / pi) asin(r) (Sheppard 1899).
+  const auto variance_with = [](Index other) {
+    constexpr Index columns = 9;
+    const double limit = 3;
+    detail::stick::SpatialPairs<double> pairs(2);
+    for (const Index cell : {Index(0), other}) {
+      const auto padded =
+          static_cast<std::size_t>((cell / columns + 1) * (columns + 2) + cell % columns + 1);
+      pairs.add(cell, padded, 0, {0, 0, 0}, {0, 0, 0});
+    }
+    pairs.for_each([&](auto& b, std::size_t k) {
+      b.mean_sq[k] = limit * limit;
+      b.mean_slip.set(k, {limit, 0, 0});
+      b.by_u.set(k, {1, 0, 0});
+      b.by_v_x[k] = 0;
+      b.by_v_y[k] = 1;
+      b.total_weight[k] = 18;
+    });
+    detail::stick::DotDoubts<double> doubts({9, columns});
+    return detail::stick::stick_variance(pairs, limit * limit, detail::zero_matrix<double, 6>(),
+                                         {0, 0, 0}, doubts);
+  };
+  const auto weights = weights_around();
+  const auto correlation = [&](std::size_t rows, std::size_t cols) {
+    double shared = 0, own = 0;
+    for (std::size_t i = 0; i < 5; ++i) {
+      for (std::size_t j = 0; j < 5; ++j) {
+        const double here = weights[5 * i + j];
+        own += here * here;
+        shared += i + rows < 5 && j + cols < 5 ? here * weights[5 * (i + rows) + j + cols] : 0;
+      }
+    }
+    return shared / own;
+  };
+  const double apart = variance_with(5);
+  REQUIRE(apart > 0);
+  const auto expected = [&](std::size_t rows, std::size_t cols) {
+    return 1 + 2 / std::numbers::pi * std::asin(correlation(rows, cols));
+  };
+  CHECK(variance_with(1) / apart == Approx(expected(0, 1)).epsilon(1e-12));
+  CHECK(variance_with(9) / apart == Approx(expected(1, 0)).epsilon(1e-12));
+  CHECK(variance_with(10) / apart == Approx(expected(1, 1)).epsilon(1e-12));
+}
+
+TEST_CASE("stick ratio in space: a pad seen in a mirror moves as the mirrored object",
+          "[spatial_stick]") {
+  const auto mirrored = [](Point3<double> p, int axis) {
+    (axis == 0 ? p.x : axis == 1 ? p.y : p.z) *= -1;
+    return p;
+  };
+  for (const int axis : {0, 1, 2}) {
+    CAPTURE(axis);
+    SlippingPatch patch;
+    Follower f, other;
+    test::Random random(5);
+    const auto step = test::moved_by({0.01, 0.02, 0.01}, {1, 0, 28}, {0.1, 0.1, 0.02});
+    for (int k = 0; k < 4; ++k) {
+      const Dots seen = noisy(patch.dots, 0.005, 0.025, random);
+      Dots in_mirror = seen;
+      for (auto& p : in_mirror.cells) {
+        p = mirrored(p, axis);
+      }
+      const auto r = f(seen, patch.contact), m = other(in_mirror, patch.contact);
+      CHECK(r.updated() == (k > 0));
+      CHECK(m.status == r.status);
+      CHECK(m.stick == r.stick);
+      for (const Point3<double>& p : {Point3<double>{0, 0, 10}, {3, 0, 10}, {0, 3, 10}}) {
+        CHECK(norm(m.motion(mirrored(p, axis)) - mirrored(r.motion(p), axis)) < 1e-12);
+      }
+      patch.step(step, 0.7);
+    }
   }
 }
 

@@ -942,6 +942,71 @@ TEMPLATE_TEST_CASE("stick ratio, bad input: one single dot",
   }
 }
 
+TEST_CASE("stick ratio: where the pitch is unknown, thresholds are in the unit of the dots") {
+  const auto status = [](double moved_px) {
+    Follower<> f({.reference = 2, .store = 0.5, .min_dots = 1}, {}, {}, {}, 1, 1);
+    (void)f(shifted(0, 0, 1, 1));
+    return f(shifted(moved_px, 0, 1, 1)).status;
+  };
+  CHECK(status(1.9) == StickStatus::no_reference);
+  CHECK(status(2.1) == StickStatus::updated);
+}
+
+TEST_CASE("stick ratio: a contact of all dots lacks an outline once more than a tenth slip") {
+  const auto status = [](Index slipping) {
+    Follower<StickConsensus<>, UpdatedReference, NoDenoising> f({}, {}, {}, {}, 2, 5);
+    (void)f(shifted(0, 0, 2, 5));
+    auto dots = shifted(3, 0, 2, 5);
+    for (Index j = 0; j < slipping; ++j) {
+      dots(1, 4 - j).x -= 1;
+    }
+    const auto r = f(dots);
+    CHECK(r.slip == slipping);
+    CHECK(r.stick == 10 - slipping);
+    return r.status;
+  };
+  CHECK(status(1) == StickStatus::updated);
+  CHECK(status(2) == StickStatus::no_outline);
+}
+
+TEST_CASE("stick ratio: the doubt of an answer is half at the limit, and the same in every unit") {
+  const auto doubt = [](double slip, double limit, double sd) {
+    return detail::stick::doubt_of(slip * slip, limit * limit, sd);
+  };
+  for (const double unit : {1e-3, 1.0, 20.0}) {
+    CAPTURE(unit);
+    CHECK(doubt(unit, unit, 0.3 * unit) == Approx(0.5));
+    CHECK(doubt(0.7 * unit, unit, 0.3 * unit) == Approx(doubt(1.3 * unit, unit, 0.3 * unit)));
+    for (const double slip : {0.0, 0.5, 1.4, 2.0, 2.9}) {
+      CHECK(doubt(slip * unit, unit, unit) == Approx(doubt(slip, 1, 1)));
+      CHECK(doubt(slip * unit, unit, unit) > 0.1);
+    }
+    CHECK(doubt(3.01 * unit, unit, unit) == 0);
+  }
+}
+
+TEST_CASE(
+    "published stick ratio: a row of dots that moves along itself says nothing of the scale") {
+  // any direction, places whose differences have roundoff
+  for (int k = 0; k < 40; ++k) {
+    const double angle = 0.15 * k + 0.1;
+    const Point2<double> along = {std::cos(angle), std::sin(angle)};
+    const auto row = [&](double moved_px) {
+      PointsPx dots(1, 9);
+      for (Index j = 0; j < 9; ++j) {
+        const double at = 20 * static_cast<double>(j) + moved_px;
+        dots(0, j) = Point2<double>{2000, 3000} + at * along;
+      }
+      return dots;
+    };
+    Follower<published::ReferenceDotMotion<>> f({}, {}, {}, {}, 1, 9);
+    (void)f(row(0));
+    const auto r = f(row(3.3));
+    REQUIRE(r.updated());
+    CHECK(r.scale == 1);
+  }
+}
+
 TEST_CASE("stick ratio, bad input: other sizes and foreign states are refused") {
   const StickRatio ratio(9, 9);
   auto state = ratio.start();
