@@ -112,6 +112,38 @@ TEST_CASE("dots: a picture that is rotated by 90 degrees has its dots rotated") 
   CHECK(test::errors_of(free_of(turned), expected).worst_px < 0.03);
 }
 
+TEST_CASE("dots: a picture upside down has its dots upside down, also at the border") {
+  // The light falls toward one border, within half a cell of the background's light.
+  Print print;
+  print.rotation_rad = pi / 2;
+  print.frame = {240, 320};
+  print.rows = 5;
+  print.cols = 7;
+  print.radius_px = 2.5;
+  print.pitch_px = 32;
+  print.fall = 0.6;
+  const cv::Vec2d down = {52, 20};
+  cv::Mat upright, turned;
+  cv::rotate(test::picture_of(print, test::moved(test::places_of(print), down)), upright,
+             cv::ROTATE_90_CLOCKWISE);
+  cv::flip(upright, turned, 0);
+  const DotFinder a(upright), b(turned);
+  REQUIRE(a.ok());
+  REQUIRE(b.ok());
+  const DotPlaces dots = free_of(a);
+  DotPlaces expected = dots.clone();
+  for (int i = 0; i < dots.rows; ++i) {
+    for (int j = 0; j < dots.cols; ++j) {
+      const cv::Vec2d dot = dots(dots.rows - 1 - i, j);
+      expected(i, j) = {dot[0], upright.rows - 1 - dot[1]};
+    }
+  }
+  const auto errors = test::errors_of(free_of(b), expected);
+  CHECK(errors.count == dots.rows * dots.cols);
+  CAPTURE(errors.worst_px, errors.rms_px);
+  CHECK(errors.worst_px < 0.003);
+}
+
 TEST_CASE("dots: what is lost is NaN, the others stay, and it comes back under its own name") {
   Print print;
   const DotPlaces truth = test::places_of(print);
@@ -446,6 +478,69 @@ TEST_CASE("dots: an outlier among the neighbours weighs as little wherever the d
   CHECK(norm(expected_at(far) - far - expected_at({0, 0})) < 1e-12);
 }
 
+TEST_CASE("dots: the order of the neighbours does not matter") {
+  // a plane of moves with an outlier, the neighbours in both orders
+  const auto expected = [](bool backward) {
+    detail::Neighbours around;
+    for (int k = 0; k < 25; ++k) {
+      const int at = backward ? 24 - k : k;
+      const Index down = at / 5 - 2, right = at % 5 - 2;
+      const double x = static_cast<double>(right), y = static_cast<double>(down);
+      if (at != 12) {
+        around.add(down, right, {at == 6 ? 30.0 : 0.7 * x + 0.1 * y * y, 0.4 * y - 0.2 * x});
+      }
+    }
+    return around.at_middle(2.0);
+  };
+  CHECK(norm(expected(true) - expected(false)) < 1e-12);
+}
+
+TEST_CASE("dots: a grid is named from the spot with the most neighbours") {
+  // a cross, and nearer to the middle of all spots two groups
+  const detail::LatticeSteps steps = {{10, 0}, {0, 10}};
+  for (const double turn : {1.0, -1.0}) {
+    std::vector<detail::Place> spots = {{0, 0}, {10, 0}, {0, 10}, {-10, 0}, {0, -10}};
+    for (int k = 0; k < 4; ++k) {  // two rows and two columns of four: three neighbours at most
+      for (const double beside : {0.0, 10.0}) {
+        spots.push_back({60 + 10.0 * k, beside});
+        spots.push_back({60 + beside, 40 + 10.0 * k});
+      }
+    }
+    for (detail::Place& spot : spots) {
+      spot = turn * spot;
+    }
+    CHECK(detail::lattice_seed(detail::SpotMap(spots), steps) == 0);
+  }
+}
+
+TEST_CASE("dots: spots that fit badly are dropped whichever of them comes first") {
+  // two neighbours are off, the second one less than the first
+  detail::Places base(6, 7, detail::no_place());
+  std::vector<detail::Place> spots;
+  for (Index i = 0; i < 6; ++i) {
+    for (Index j = 0; j < 7; ++j) {
+      base(i, j) = {10.0 * static_cast<double>(j), 10.0 * static_cast<double>(i)};
+      const bool first = i == 2 && j == 3, second = i == 2 && j == 4;
+      spots.push_back(base(i, j) + detail::Place{0, first ? 3.45 : second ? -3.3 : 0.0});
+    }
+  }
+  const auto spacing_px = detail::spacings_px(base);
+  for (std::size_t first = 0; first < spots.size(); ++first) {
+    CAPTURE(first);
+    std::vector<detail::Place> order = spots;
+    std::swap(order[0], order[first]);
+    const detail::SpotMap map(order);
+    const detail::DotMatcher matcher(base, spacing_px, map, 1.0);
+    const auto labels = matcher.match([](Index, Index) { return true; },
+                                      [](Index, Index) {
+                                        return detail::Place{0, 0};
+                                      });
+    CHECK(detail::count_labels(labels) == 40);
+    CHECK(labels(2, 3) == -1);
+    CHECK(labels(2, 4) == -1);
+  }
+}
+
 TEST_CASE("dots: every labelled dot counts, also that of the first spot") {
   std::vector<detail::Place> spots;
   detail::Places base(2, 4, detail::no_place());
@@ -459,7 +554,9 @@ TEST_CASE("dots: every labelled dot counts, also that of the first spot") {
   const auto spacing_px = detail::spacings_px(base);
   const detail::DotMatcher matcher(base, spacing_px, map, 1.0);
   const auto labels = matcher.match([](Index, Index) { return true; },
-                                    [](Index, Index) { return detail::Place{0, 0}; });
+                                    [](Index, Index) {
+                                      return detail::Place{0, 0};
+                                    });
   CHECK(detail::count_labels(labels) == 8);
   // nothing has moved: no penalty
   CHECK(matcher.score(labels) == Approx(8).epsilon(1e-12));

@@ -25,7 +25,7 @@ S scattered_light_per_absorption(const S& depth_mm, const S& c_per_mm, const Pen
   const S t = c_per_mm * path;
   const ExponentialMoments<S> m = exponential_moments(t);
   // The third moment by its own series of positive terms, see exponential_moments.
-  S third = (S(3) * m.second - exp(S(-t))) / (value(t) > 0 ? t : S(1));
+  S third{};
   if (value(t) < 4) {
     S term = S(1) / S(4);
     third = term;
@@ -34,6 +34,8 @@ S scattered_light_per_absorption(const S& depth_mm, const S& c_per_mm, const Pen
       third = third + term;
     }
     third = third * exp(S(-t));
+  } else {
+    third = (S(3) * m.second - exp(S(-t))) / t;
   }
   const S& h_m = pencil.height.meridional_mm;
   const S& h_s = pencil.height.sagittal_mm;
