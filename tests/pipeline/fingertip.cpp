@@ -4,6 +4,8 @@
 // threads, disabled stages, and refused inputs.
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <numbers>
 #include <string>
 #include <vector>
 
@@ -111,6 +113,9 @@ struct DepthAndContact : fingerpad::FingertipMethods {
 struct WithoutLookUp : fingerpad::FingertipMethods {
   static constexpr bool has_look_up = false;
 };
+struct WithoutWrench : fingerpad::FingertipMethods {
+  static constexpr bool has_wrench = false;
+};
 struct DepthAlone : fingerpad::FingertipMethods {
   static constexpr bool has_contact = false;
 };
@@ -162,6 +167,53 @@ TEST_CASE("without look-up no curve is needed, and the rest is the same", "[chai
     CHECK_FALSE(touch.normal.has_force());
     CHECK(touch.status == expected.status);
   }
+}
+
+TEST_CASE("without the six-axis force friction is that of the look-up", "[chain]") {
+  // The moment of a contact with uniform pressure acts at the mean distance from its middle: 2/3 of
+  // the radius.
+  TipOf<WithoutWrench> tip(frames().options());
+  for (std::size_t k = 0; k < frames().size(); ++k) {
+    const Inputs in = frames()[k].view();
+    const FingertipResult touch = tip(in.image, in.dots_px, 0.0);
+    REQUIRE(touch.normal.has_force());
+    const double radius_mm = std::sqrt(touch.contact.area_mm2 / std::numbers::pi);
+    const double load_n = std::hypot(norm(touch.shear.tangential_force_n),
+                                     touch.shear.moment_n_mm / (2.0 / 3 * radius_mm));
+    CHECK(touch.slip.friction == Approx(load_n / touch.normal.force_n));
+    if (k == 1) {  // rotated most
+      CHECK(std::abs(touch.shear.moment_n_mm) > 0.1);
+    }
+  }
+}
+
+TEST_CASE("samples beside the pad are not taken", "[chain]") {
+  constexpr int step = 2;
+  const auto reference = frames().options().reference;
+  const auto pad = sampled(reference, step);
+  fingerpad::detail::FrameSamples<decltype(frames().options().reference), std::uint8_t, step, 1>
+      samples(reference);
+  test::Frame<std::uint8_t> bright(reference.rows, reference.cols);
+  for (auto* channel : {&bright.red, &bright.green}) {
+    std::fill(channel->cells.begin(), channel->cells.end(), std::uint8_t(200));
+  }
+  fingerpad::detail::OneThread executor;
+  const auto taken = samples(fingerpad::ColorFrame(bright.red, bright.green), executor);
+  Index beside = 0;
+  for (Index i = 0; i < pad.rows; ++i) {
+    Index first = pad.cols, last = -1;
+    for (Index j = 0; j < pad.cols; ++j) {
+      first = pad.in_pad(i, j) ? std::min(first, j) : first;
+      last = pad.in_pad(i, j) ? j : last;
+    }
+    for (Index j = 0; j < pad.cols; ++j) {
+      const bool within = first <= j && j <= last;
+      beside += within ? 0 : 1;
+      CHECK((taken.red(i, j) > 0) == within);
+      CHECK((taken.green(i, j) > 0) == within);
+    }
+  }
+  CHECK(beside > 100);
 }
 
 TEST_CASE("sampled frames say what whole ones do", "[chain]") {
