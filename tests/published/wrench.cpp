@@ -24,13 +24,24 @@ using test::RoundPad;
 
 namespace {
 
-/// Largest error of f_h on a pad pressed flat, relative to the largest f_h, without `skipped` rows
-/// at either end: at the rim the membrane's edge counts twice, at the summit f_v is 0 / 0. Truth:
-/// f_v K_1 + f_h K_2 = p, with the arc's curvature along the meridian and sin(phi) / r around.
-template <class Solver>
-double around_error(Index columns, Index rows, Index skipped) {
+/// A pad whose contact is inclined along x.
+struct Inclined : RoundPad<ArcSide> {
+  template <class S>
+  detail::membrane::HeightAndSlope<S> operator()(const S& x, const S& y) const {
+    const auto flat = RoundPad<ArcSide>::operator()(x, y);
+    const double u = value(x), v = value(y), sq = this->radius_mm * this->radius_mm;
+    const double cap = 1 - (u * u + v * v) / sq;
+    return {S(flat.height_mm + 0.5 * u * cap), S(flat.along_x + 0.5 * (cap - 2 * u * u / sq)),
+            S(flat.along_y - u * v / sq)};
+  }
+};
+
+/// Solves a pad without shear at the rim: use(nodes, segments, tensions). Returns
+/// whether the solver converges.
+template <class Pad, class Solver, class Use>
+bool solve_pressed(const Solver& iteration, Index columns, Index rows, const Use& use) {
   using namespace detail::membrane;
-  const RoundPad<ArcSide> pad;
+  const Pad pad;
   const auto dots_at_rim = rim_of(pad);
   const double t0 = pad.tension(pad.radius_mm, pressed_mpa);
   const Rim<double> rim(
@@ -46,19 +57,33 @@ double around_error(Index columns, Index rows, Index skipped) {
   Segments<double> segments(columns, rows);
   segments.measure(nodes);
   Tensions<double> tensions(columns, rows);
-  const Solver iteration;
   typename Solver::template Work<double> work(iteration, columns, rows);
+  const bool solved =
+      iteration.template solve<true>(segments, nodes, pulls.segments, pressed_mpa, work, tensions);
+  use(nodes, segments, tensions);
+  return solved;
+}
+
+/// Largest error of f_h on a pad pressed flat, relative to the largest f_h, without `skipped` rows
+/// at either end: at the rim the membrane's edge counts twice, at the summit f_v is 0 / 0. Truth:
+/// f_v K_1 + f_h K_2 = p, with the arc's curvature along the meridian and sin(phi) / r around.
+template <class Solver>
+double around_error(Index columns, Index rows, Index skipped) {
+  const RoundPad<ArcSide> pad;
   const double p = pressed_mpa;
-  REQUIRE(iteration.template solve<true>(segments, nodes, pulls.segments, p, work, tensions));
   double worst = 0, largest = 0;
-  for (Index j = skipped; j + skipped < rows; ++j) {
-    const auto &low = nodes.node(3, j), &up = nodes.node(3, j + 1);
-    const double r = (std::hypot(low.x, low.y) + std::hypot(up.x, up.y)) / 2;
-    const double truth = (p - pad.tension(r, p) / pad.bend_mm()) * r / pad.sine(r);
-    const double found = tensions.upward_normal[static_cast<std::size_t>(j * columns + 3)];
-    worst = (std::max)(worst, std::abs(found - truth));
-    largest = (std::max)(largest, std::abs(truth));
-  }
+  const bool solved = solve_pressed<RoundPad<ArcSide>>(
+      Solver(), columns, rows, [&](const auto& nodes, const auto&, const auto& tensions) {
+        for (Index j = skipped; j + skipped < rows; ++j) {
+          const auto &low = nodes.node(3, j), &up = nodes.node(3, j + 1);
+          const double r = (std::hypot(low.x, low.y) + std::hypot(up.x, up.y)) / 2;
+          const double truth = (p - pad.tension(r, p) / pad.bend_mm()) * r / pad.sine(r);
+          const double found = tensions.upward_normal[static_cast<std::size_t>(j * columns + 3)];
+          worst = (std::max)(worst, std::abs(found - truth));
+          largest = (std::max)(largest, std::abs(truth));
+        }
+      });
+  REQUIRE(solved);
   return worst / largest;
 }
 
@@ -130,6 +155,45 @@ double off_gradient(const Mound& mound, const Point3<double>& a, const Point3<do
 TEST_CASE("published iteration: f_h of a flat press, in closed form", "[published]") {
   CHECK(around_error<published::Iteration>(36, 32, 5) < 0.05);
   CHECK(around_error<published::PrintedIteration>(36, 32, 5) < 0.05);
+}
+
+TEST_CASE("published iteration: f_h is carried on where a line does not end level", "[published]") {
+  // Along the level direction across both f_v of a segment, f_h on its two sides carries the
+  // pressure (eq. 6 with eq. 10).
+  constexpr Index columns = 36, rows = 24;
+  double off = 0, largest = 0;
+  Index carried = 0;
+  const auto measure = [&](const auto&, const auto& segments, const auto& tensions) {
+    const auto f_h = [&](Index i, Index j) {
+      const Point3<double> n = segments.upward(i, j).normal;
+      return tensions.upward_normal[static_cast<std::size_t>(j * columns + i)] *
+             Point3<double>{n.x, n.y, 0};
+    };
+    const auto ends_level = [&](Index i) {
+      const Point3<double> up = segments.around(i, rows).normal;
+      return 100 * up.z * up.z < squared_norm(up);
+    };
+    for (Index i = 0; i < columns; ++i) {
+      const Index next = segments.next(i);
+      if (ends_level(i) || ends_level(next)) {
+        continue;  // where a line ends level, f_h on both its sides is found anew
+      }
+      ++carried;
+      for (Index j = 0; j < rows; ++j) {
+        const auto axis =
+            normalized(cross(segments.around(i, j + 1).normal, segments.around(i, j).normal));
+        const double pressure = pressed_mpa * dot(segments.area(i, j), axis);
+        const double rest = dot(f_h(next, j) - f_h(i, j), axis) + pressure;
+        largest = (std::max)(largest, std::abs(dot(f_h(i, j), axis)));
+        off = (std::max)(off, std::abs(rest));
+      }
+    }
+  };
+  // one pass: shear, which is 0 at first, follows from f_h
+  (void)solve_pressed<Inclined>(published::PrintedIteration{.passes = 1}, columns, rows, measure);
+  CHECK(carried >= 4);
+  CHECK(largest > 0.01);
+  CHECK(off < 1e-9 * largest);
 }
 
 TEST_CASE("published iteration: f_h of a pad seen in a mirror", "[published]") {
@@ -270,7 +334,9 @@ TEST_CASE("the printed iteration keeps the symmetry of a twisted pad", "[publish
   const Wrench<published::PrintedIteration> wrench(rim.borders());
   auto work = wrench.workspace();
   const auto twisted = [&](double shear) {
-    const auto found = wrench(pad, rim.dots([&](double) { return RimLoad{t0, shear * t0}; }),
+    const auto found = wrench(pad, rim.dots([&](double) {
+      return RimLoad{t0, shear * t0};
+    }),
                               pressed_mpa, work);
     REQUIRE(found.status == WrenchStatus::ok);
     return found;
