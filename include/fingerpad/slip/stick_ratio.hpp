@@ -44,7 +44,7 @@ struct StickTest {
   /// d_max / U. For dots with other noise than the published 0.06 px of 20 see calibrate/slip.hpp.
   double slip = 0.012;
   /// Pitch in the unit of the dots, >= 0. 0: measured in the first frame of each contact; 1: the
-  /// lengths above are in the unit of the dots.
+  /// lengths above are in the unit of the dots, as they are where no neighbours are in contact.
   double pitch = 0;
   Index min_dots = 5;  ///< needed to compare two frames, >= 1; with fewer there is no ratio
   /// Free frames that measure the noise, >= 0; 0: the given thresholds always apply.
