@@ -63,7 +63,7 @@ const std::vector<KnownFrame>& known_frames(Index dots) {
   std::vector<KnownFrame>& frames = of_size[dots];
   if (frames.empty()) {
     const double share = static_cast<double>(dots) / 21;
-    const test::DotPattern pattern{
+    const test::SlippingPattern pattern{
         .rows = dots, .cols = dots, .pitch_px = 19.5 / share, .contact_pitches = 8.2 * share};
     for (const test::SlipScene scene : test::all_slip_scenes) {
       for (int n = 0; n < 6; ++n) {

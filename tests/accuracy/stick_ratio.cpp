@@ -19,10 +19,10 @@
 
 using namespace fingerpad;
 using test::ContactFlags;
-using test::DotPattern;
 using test::DotStates;
 using test::PointsPx;
 using test::SlippedLess;
+using test::SlippingPattern;
 using test::SlipScene;
 using test::StickError;
 using test::StickScene;
@@ -38,7 +38,7 @@ class Errors {
  public:
   template <class Ratio>
   Errors(const char* name, const Ratio& ratio, double shear_pitches = 1) : name_(name) {
-    DotPattern pattern;
+    SlippingPattern pattern;
     pattern.shear_pitches = shear_pitches;
     for (const SlipScene scene : test::all_slip_scenes) {
       of_.push_back(test::error_of(ratio, scene, noise_px, pattern, 8));
@@ -289,7 +289,7 @@ struct GrossSlip {
 
 /// An object is dragged until nothing sticks any more, and beyond.
 GrossSlip drag_to_gross_slip(double step_px, double dot_noise_px, double spring_share) {
-  const DotPattern pattern{.rows = 15, .cols = 15, .contact_pitches = 6};
+  const SlippingPattern pattern{.rows = 15, .cols = 15, .contact_pitches = 6};
   // as in calibrate/slip.hpp: 1 % of sticking dots are taken for slipping
   const StickRatio ratio(15, 15,
                          {.reference = 2,

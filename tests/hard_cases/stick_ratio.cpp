@@ -32,10 +32,10 @@ Dual<Real>& operator+=(Dual<Real>& a, const Dual<Real>& b) {
 using namespace fingerpad;
 using test::ContactFlags;
 using test::Digits50;
-using test::DotPattern;
 using test::DotStates;
 using test::PointsPx;
 using test::SlippingDots;
+using test::SlippingPattern;
 
 namespace {
 
@@ -57,7 +57,7 @@ using OneDot = Of<published::ReferenceDotMotion<>, ResidualMean>;
 using Published = Of<published::ReferenceDotMotion<>, published::DotMean>;
 
 /// Frames with positions that float holds exactly.
-std::vector<PointsPx> frames(std::uint64_t seed, const DotPattern& pattern) {
+std::vector<PointsPx> frames(std::uint64_t seed, const SlippingPattern& pattern) {
   SlippingDots truth(pattern);
   test::Random random(seed);
   std::vector<PointsPx> out;
@@ -116,7 +116,7 @@ StickRatioResult<S> between(const PointsPx& before,
 TEMPLATE_TEST_CASE("stick ratios follow 50 digits", "[stick_ratio]", Default, OneDot, Published) {
   // Dots that are not within rounding of the threshold have the same state. Positions of some
   // hundred px have an error of 3e-5 px in float; the threshold is at least 0.2 px.
-  const DotPattern pattern{.rows = 11, .cols = 11, .contact_pitches = 5.2};
+  const SlippingPattern pattern{.rows = 11, .cols = 11, .contact_pitches = 5.2};
   const ContactFlags contact = SlippingDots(pattern).contact;
   int updated = 0;
   for (std::uint64_t seed = 1; seed <= 12; ++seed) {
@@ -159,7 +159,7 @@ TEST_CASE("stick ratios by another formula: what sticks is what one similarity f
   // then = a now + b, by least squares over the sticking dots; and the number of dots that it fits
   // to within delta is the same.
   using Complex = std::complex<double>;
-  const DotPattern pattern{.rows = 11, .cols = 11, .contact_pitches = 5.2};
+  const SlippingPattern pattern{.rows = 11, .cols = 11, .contact_pitches = 5.2};
   const ContactFlags contact = SlippingDots(pattern).contact;
   int updated = 0, other_dots = 0;
   double worst_angle = 0, worst_scale = 0;
@@ -220,7 +220,7 @@ TEST_CASE("stick ratios by another formula: what sticks is what one similarity f
 }
 
 TEST_CASE("expression templates give the same stick ratio", "[stick_ratio]") {
-  const DotPattern pattern{.rows = 9, .cols = 9, .contact_pitches = 4.2};
+  const SlippingPattern pattern{.rows = 9, .cols = 9, .contact_pitches = 4.2};
   const ContactFlags contact = SlippingDots(pattern).contact;
   const auto recording = frames(3, pattern);
   const auto a = follow<Default, Digits50>(recording, contact);
@@ -238,7 +238,7 @@ TEMPLATE_TEST_CASE("derivatives of the object's motion are those of differences"
                    Default,
                    OneDot,
                    Published) {
-  const DotPattern pattern{.rows = 9, .cols = 9, .contact_pitches = 4.2};
+  const SlippingPattern pattern{.rows = 9, .cols = 9, .contact_pitches = 4.2};
   const ContactFlags contact = SlippingDots(pattern).contact;
   SlippingDots truth(pattern);
   const PointsPx before = truth.dots;
@@ -278,7 +278,7 @@ TEMPLATE_TEST_CASE("derivatives of the object's motion are those of differences"
 
 TEMPLATE_TEST_CASE(
     "angles near half a turn do not wrap", "[stick_ratio]", Default, OneDot, Published) {
-  const DotPattern pattern{.rows = 11, .cols = 11, .contact_pitches = 5.2};
+  const SlippingPattern pattern{.rows = 11, .cols = 11, .contact_pitches = 5.2};
   for (const double angle : {pi - 1e-6, pi - 0.01, -pi + 1e-6, -pi + 0.01, 3.0, -3.0, pi / 2}) {
     SlippingDots truth(pattern);
     const PointsPx before = truth.dots;
@@ -326,7 +326,7 @@ TEMPLATE_TEST_CASE("dots on a line, and displacements that are all parallel",
                    Published) {
   for (const bool upright : {false, true}) {
     const Index rows = upright ? 15 : 1, cols = upright ? 1 : 15;
-    const DotPattern pattern{.rows = rows, .cols = cols, .contact_pitches = 20};
+    const SlippingPattern pattern{.rows = rows, .cols = cols, .contact_pitches = 20};
     for (const double direction : {0.0, pi / 4, pi / 2}) {
       for (const double turn : {0.0, 0.04}) {
         SlippingDots truth(pattern);

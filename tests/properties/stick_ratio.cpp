@@ -16,10 +16,10 @@
 
 using namespace fingerpad;
 using test::ContactFlags;
-using test::DotPattern;
 using test::DotStates;
 using test::PointsPx;
 using test::SlippingDots;
+using test::SlippingPattern;
 
 namespace {
 
@@ -36,7 +36,7 @@ struct Recording {
 
 /// An object is dragged, rotated and pressed at random while its stick disc changes at random.
 Recording any_recording(double lost_share = 0) {
-  DotPattern pattern{.rows = 13, .cols = 12, .contact_pitches = test::uniform(3.5, 5.5)};
+  SlippingPattern pattern{.rows = 13, .cols = 12, .contact_pitches = test::uniform(3.5, 5.5)};
   pattern.disc_row = test::uniform(-1, 1);
   pattern.disc_col = test::uniform(-1, 1);
   pattern.shear_pitches = test::uniform(0, 2);

@@ -284,7 +284,7 @@ TEST_CASE("the published stick ratio is the slides'", "[published]") {
   double worst_angle = 0, worst_scale = 0;
   for (const test::SlipScene scene : test::all_slip_scenes) {
     for (int n = 0; n < 4; ++n) {
-      test::DotPattern pattern;
+      test::SlippingPattern pattern;
       test::Random random(static_cast<std::uint64_t>(1 + n));
       SlippingDots truth(pattern);
       const auto preset = stick_ratio<double>(21, 21);

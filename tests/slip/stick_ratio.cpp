@@ -17,11 +17,11 @@
 
 using namespace fingerpad;
 using test::ContactFlags;
-using test::DotPattern;
 using test::DotStates;
 using test::PointsPx;
 using test::refusal;
 using test::SlippingDots;
+using test::SlippingPattern;
 using test::SlipStep;
 
 namespace {
@@ -153,7 +153,7 @@ TEMPLATE_TEST_CASE("stick ratio: dots that stay behind slip",
                    StickConsensus<Freedom::translation>,
                    published::ReferenceDotMotion<>,
                    published::ReferenceDotMotion<Freedom::rigid>) {
-  DotPattern pattern;
+  SlippingPattern pattern;
   pattern.shear_pitches = 0;
   SlippingDots truth(pattern);
   const StickRatio<TestType> ratio(21, 21);
@@ -1171,7 +1171,7 @@ TEST_CASE("stick ratio: its standard deviation is the scatter of its answers", "
   constexpr int answers = 150;
   for (const double noise_px : {0.06, 0.14}) {
     for (const double share : {0.5, 0.7, 0.9}) {
-      test::SlippingDots truth(test::DotPattern{.contact_pitches = 6});
+      test::SlippingDots truth(test::SlippingPattern{.contact_pitches = 6});
       const auto before = truth.dots;
       truth.step({.shift_px = 3, .stick_share = share});
       test::Random random(7);

@@ -21,7 +21,7 @@ using PointsPx = Image<fingerpad::Point2<double>>;
 using ContactFlags = Image<std::uint8_t>;
 using DotStates = Image<fingerpad::DotState>;
 
-struct DotPattern {
+struct SlippingPattern {
   Index rows = 21;
   Index cols = 21;
   double pitch_px = 19.5;
@@ -56,7 +56,7 @@ struct SlipStep {
 
 class SlippingDots {
  public:
-  explicit SlippingDots(const DotPattern& pattern = {})
+  explicit SlippingDots(const SlippingPattern& pattern = {})
       : dots(pattern.rows, pattern.cols),
         contact(pattern.rows, pattern.cols),
         pattern_(pattern),
@@ -138,7 +138,7 @@ class SlippingDots {
     return outside < pattern_.shear_pitches ? outside / pattern_.shear_pitches : 1;
   }
 
-  DotPattern pattern_;
+  SlippingPattern pattern_;
   double object_x_px_;
   double object_y_px_;
   Image<Index> stuck_steps_;
@@ -251,7 +251,7 @@ template <class Ratio>
 StickError error_of(const Ratio& ratio,
                     SlipScene scene,
                     double noise_px,
-                    const DotPattern& pattern = {},
+                    const SlippingPattern& pattern = {},
                     int recordings = 12) {
   StickError e;
   double frames = 0, answers = 0, dots = 0;
