@@ -309,7 +309,7 @@ int slips_found() {
     test::FoamScene scene;
     for (auto& finger : scene.patches) {
       for (const double share : {0.1, 0.22}) {
-        test::SlippingPatch patch;
+        test::VibratingPatch patch;
         patch.rows = patch.cols = 1;
         patch.row = static_cast<Index>(any(0, 15));
         patch.col = static_cast<Index>(any(0, 3));
