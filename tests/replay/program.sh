@@ -53,6 +53,10 @@ refuses 2 "--headless" "$recording" --video "$work/none.avi" --out "$work/out"
 refuses 2 "--camera or --video" "$recording" --headless --out "$work/out"
 refuses 1 "none.avi: there is no such video" "$recording" --video "$work/none.avi" --headless \
   --out "$work/out"
+# 8 x 4000 px by its container, 8 x 8 px by its stream: OpenCV 4.6 crashes.
+mkdir "$work/hostile" && echo '{"video": "film.webm"}' >"$work/hostile/sensor.json"
+cp "$(dirname "$0")/../fuzz/corpus/video/other_height.webm" "$work/hostile/film.webm"
+refuses 1 "^replay: $work/hostile/film.webm: " "$work/hostile" --out "$work/out"
 # Drivers of cameras leak, which LeakSanitizer would tell.
 ASAN_OPTIONS=detect_leaks=0 \
   refuses 1 "camera 99: cannot be opened" "$recording" --camera 99 --headless --out "$work/out"

@@ -1,7 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
+#include <sys/types.h>
+
 #include <algorithm>
 #include <cmath>
+#include <csignal>
 #include <cstdint>
 #include <filesystem>
 #include <fstream>
@@ -11,6 +14,7 @@
 #include <opencv2/imgproc.hpp>
 #include <opencv2/videoio.hpp>
 #include <string>
+#include <utility>
 
 #include "replay/chain.hpp"
 #include "replay/io/failure.hpp"
@@ -466,7 +470,7 @@ TEST_CASE("a video that claims too large frames and one that names other files a
   const Workplace work;
   const auto refusal = [&](const std::string& name) -> std::string {
     try {
-      (void)replay::open_video(work.recording() / name);
+      (void)replay::Video(work.recording() / name);
     } catch (const replay::Failure& failure) {
       return failure.what();
     }
@@ -494,4 +498,42 @@ TEST_CASE("a video that claims too large frames and one that names other files a
   bytes.replace(format + 12, claimed.size(), claimed);
   work.write("frames.avi", bytes);
   CHECK(refusal("frames.avi").find("16000 x 16000 px, but at most") != std::string::npos);
+}
+
+TEST_CASE("a decoder that ends before its video does is one failure") {
+  const Workplace work;
+  const auto file = work.recording() / "frames.avi";
+  {
+    const replay::QuietCodecs quiet;
+    cv::VideoWriter writer(file.string(), cv::VideoWriter::fourcc('F', 'F', 'V', '1'), 10,
+                           cv::Size(16, 16));
+    for (int k = 0; k < 3 && writer.isOpened(); ++k) {
+      writer.write(cv::Mat(16, 16, CV_8UC3, cv::Scalar(0, 80 * k, 0)));
+    }
+  }
+  if (!fs::exists(file)) {
+    WARN("no encoder for FFV1 here; decoders that end are not tested");
+    return;
+  }
+  // The children of this process. Where Linux does not tell them, there is none to end.
+  std::ifstream children("/proc/thread-self/children");
+  if (!children) {
+    WARN("this system does not tell which process decodes; decoders that end are not tested");
+    return;
+  }
+  replay::Video video(file);
+  REQUIRE(video.grab());
+  REQUIRE(video.retrieve().size() == cv::Size(16, 16));
+  pid_t decoder = 0;
+  REQUIRE(children >> decoder);
+  const auto [signal, reason] =
+      GENERATE(std::pair(SIGSEGV, "its decoder crashed"),
+               std::pair(SIGALRM, "its decoder takes more than a minute"));
+  REQUIRE(::kill(decoder, signal) == 0);
+  for (int again = 0; again < 2; ++again) {
+    CHECK_THROWS_WITH(video.retrieve(), Catch::Contains("frames.avi: ") && Catch::Contains(reason));
+    CHECK_THROWS_AS(video.grab(), replay::Failure);
+    CHECK_THROWS_AS(video.rewind(), replay::Failure);
+  }
+  CHECK(replay::Video(file).grab());
 }

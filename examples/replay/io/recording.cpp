@@ -8,7 +8,6 @@
 
 #include "replay/io/failure.hpp"
 #include "replay/io/images.hpp"
-#include "replay/io/video.hpp"
 
 namespace replay {
 namespace {
@@ -48,14 +47,6 @@ bool comes_before(const std::string& a, const std::string& b) {
   return a.size() - i != b.size() - j ? a.size() - i < b.size() - j : a < b;
 }
 
-cv::VideoCapture opened(const fs::path& file) {
-  std::error_code error;
-  if (!fs::is_regular_file(file, error)) {
-    fail(file, "there is no such video (named by \"video\" in sensor.json)");
-  }
-  return open_video(file);
-}
-
 }  // namespace
 
 FrameSource FrameSource::of_folder(const fs::path& folder) {
@@ -84,11 +75,14 @@ FrameSource FrameSource::of_folder(const fs::path& folder) {
 
 FrameSource FrameSource::of_video(const fs::path& file) {
   FrameSource source;
-  source.is_video_ = true;
+  std::error_code error;
+  if (!fs::is_regular_file(file, error)) {
+    fail(file, "there is no such video (named by \"video\" in sensor.json)");
+  }
   source.files_ = {file};
-  source.video_ = opened(file);
+  source.video_.emplace(file);
   // Counted, because the number in a video's header is an estimate.
-  while (grab(source.video_)) {
+  while (source.video_->grab()) {
     ++source.count_;
   }
   if (source.count_ == 0) {
@@ -99,25 +93,25 @@ FrameSource FrameSource::of_video(const fs::path& file) {
 
 void FrameSource::seek(int first) {
   position_ = first;
-  if (is_video_) {
-    video_ = opened(files_.front());
+  if (video_) {
+    video_->rewind();
     for (int i = 0; i < first; ++i) {
-      grab(video_);
+      video_->grab();
     }
   }
 }
 
 fs::path FrameSource::last_file() const {
-  const int last = is_video_ ? 0 : (std::max)(position_ - 1, 0);
+  const int last = video_ ? 0 : (std::max)(position_ - 1, 0);
   return files_[static_cast<std::size_t>(last)];
 }
 
 cv::Mat FrameSource::next() {
   ++position_;
-  if (!is_video_) {
+  if (!video_) {
     return read_colour_image(last_file());
   }
-  const cv::Mat frame = grab(video_) ? retrieve(video_) : cv::Mat();
+  const cv::Mat frame = video_->grab() ? video_->retrieve() : cv::Mat();
   if (frame.empty()) {
     fail(last_file(), "frame " + std::to_string(position_ - 1) + " cannot be decoded");
   }

@@ -6,7 +6,6 @@
 #include <filesystem>
 #include <map>
 #include <opencv2/core.hpp>
-#include <opencv2/videoio.hpp>
 #include <optional>
 #include <string>
 #include <vector>
@@ -15,6 +14,7 @@
 #include "replay/io/side_dots.hpp"
 #include "replay/io/signals.hpp"
 #include "replay/io/true_forces.hpp"
+#include "replay/io/video.hpp"
 
 namespace replay {
 
@@ -36,8 +36,7 @@ class FrameSource {
 
  private:
   std::vector<std::filesystem::path> files_;  ///< one per frame, or the video alone
-  cv::VideoCapture video_;
-  bool is_video_ = false;
+  std::optional<Video> video_;
   int count_ = 0;
   int position_ = 0;
 };

@@ -7,9 +7,9 @@
 #include <system_error>
 #include <thread>
 
+#include "replay/io/capture.hpp"
 #include "replay/io/failure.hpp"
 #include "replay/io/images.hpp"
-#include "replay/io/video.hpp"
 
 namespace replay {
 
@@ -19,15 +19,15 @@ LiveFrames LiveFrames::of_camera(int number, cv::Size size) {
   frames.size_ = size;
   {
     const QuietCodecs quiet;
-    frames.source_.open(number);
+    frames.camera_.open(number);
   }
-  if (!frames.source_.isOpened()) {
+  if (!frames.camera_.isOpened()) {
     fail(frames.name_, "cannot be opened");
   }
-  frames.source_.set(cv::CAP_PROP_FRAME_WIDTH, size.width);
-  frames.source_.set(cv::CAP_PROP_FRAME_HEIGHT, size.height);
-  frames.source_.set(cv::CAP_PROP_BUFFERSIZE, 1);  // a queue of frames would add latency
-  frames.rate_hz_ = (std::max)(frames.source_.get(cv::CAP_PROP_FPS), 0.0);
+  frames.camera_.set(cv::CAP_PROP_FRAME_WIDTH, size.width);
+  frames.camera_.set(cv::CAP_PROP_FRAME_HEIGHT, size.height);
+  frames.camera_.set(cv::CAP_PROP_BUFFERSIZE, 1);  // a queue of frames would add latency
+  frames.rate_hz_ = (std::max)(frames.camera_.get(cv::CAP_PROP_FPS), 0.0);
   return frames;
 }
 
@@ -41,8 +41,8 @@ LiveFrames LiveFrames::of_video(const std::filesystem::path& file,
   if (!std::filesystem::is_regular_file(file, error)) {
     fail(file, "there is no such video");
   }
-  frames.source_ = open_video(file);
-  const double rate = frames.source_.get(cv::CAP_PROP_FPS);
+  frames.video_.emplace(file);
+  const double rate = frames.video_->rate_hz();
   // A damaged header may hold any rate; the times of frames must fit into a clock.
   frames.rate_hz_ = rate >= 1e-3 && rate <= 1e6 ? rate : 30;
   const std::chrono::duration<double> period(1 / frames.rate_hz_);
@@ -52,7 +52,7 @@ LiveFrames LiveFrames::of_video(const std::filesystem::path& file,
 }
 
 bool LiveFrames::grab() {
-  if (!replay::grab(source_)) {
+  if (!(video_ ? video_->grab() : replay::grab(camera_))) {
     return false;
   }
   arrival_ = Clock::now();
@@ -82,7 +82,7 @@ bool LiveFrames::next(cv::Mat& frame) {
     }
     return false;
   }
-  frame = retrieve(source_);
+  frame = video_ ? video_->retrieve() : retrieve(camera_);
   if (frame.empty()) {
     fail(name_, "frame " + std::to_string(number_) + " cannot be decoded");
   }

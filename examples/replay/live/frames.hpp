@@ -6,6 +6,9 @@
 #include <filesystem>
 #include <opencv2/core.hpp>
 #include <opencv2/videoio.hpp>
+#include <optional>
+
+#include "replay/io/video.hpp"
 
 namespace replay {
 
@@ -35,7 +38,8 @@ class LiveFrames {
  private:
   bool grab();
 
-  cv::VideoCapture source_;
+  cv::VideoCapture camera_;
+  std::optional<Video> video_;  ///< in place of the camera
   std::filesystem::path name_;
   cv::Size size_;
   double rate_hz_ = 0;
