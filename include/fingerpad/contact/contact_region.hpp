@@ -33,7 +33,7 @@ inline namespace v0 {
 /// The contact of a frame. Without contact, areas are 0 and all other values NaN.
 ///
 /// `not_of_this_pad` means one of these: no pixel of the frame is known; the mean height of the
-/// contact is below a twentieth of the free apex or above twenty times it, as with depths in m
+/// contact is a twentieth of the free apex or less, or twenty times it or more, as with depths in m
 /// (contact_region.hpp); at least half of the frame and half of its border are in contact
 /// (contact_by_difference.hpp).
 struct [[nodiscard]] ContactResult {
