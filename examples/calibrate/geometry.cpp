@@ -3,7 +3,8 @@
 // Calibrates the camera and the shape of the free pad.
 #include "calibrate/geometry.hpp"
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -65,6 +66,25 @@ TouchedCap touched_cap(const Path& file, double ball_radius_mm) {
   return fit;
 }
 
+/// Least squares of N parameters by normal equations, which are well conditioned here: all lengths
+/// are in mm about the middle of a pad. (A decomposition of all rows takes ten seconds to compile.)
+template <int N>
+class LeastSquares {
+ public:
+  using Vector = Eigen::Matrix<double, N, 1>;
+
+  void add(const Vector& regressors, double value) {
+    normal_ += regressors * regressors.transpose();
+    right_ += regressors * value;
+  }
+  Eigen::Matrix<double, N, N> inverse() const { return normal_.inverse(); }
+  Vector solution() const { return inverse() * right_; }
+
+ private:
+  Eigen::Matrix<double, N, N> normal_ = Eigen::Matrix<double, N, N>::Zero();
+  Vector right_ = Vector::Zero();
+};
+
 /// The mean of all pictures, 16 bit, 256 units per grey level.
 cv::Mat mean_picture(const std::vector<cv::Mat>& pictures) {
   cv::Mat sum(pictures.front().size(), CV_64FC3, cv::Scalar::all(0)), mean;
@@ -80,30 +100,37 @@ cv::Mat mean_picture(const std::vector<cv::Mat>& pictures) {
 }  // namespace
 
 PlatePicture fit_plate(const std::vector<PlateDot>& pairs) {
-  const auto count = static_cast<Eigen::Index>(pairs.size());
-  Eigen::MatrixXd dots(count, 2), grid(count, 3);  // grid: 1, x, y
-  for (Eigen::Index k = 0; k < count; ++k) {
-    const PlateDot& dot = pairs[static_cast<std::size_t>(k)];
-    dots.row(k) << dot.picture_px.x, dot.picture_px.y;
-    grid.row(k) << 1, dot.plate_mm.x, dot.plate_mm.y;
+  const auto regressors = [](const PlateDot& dot) {
+    return Eigen::Vector3d(1, dot.plate_mm.x, dot.plate_mm.y);
+  };
+  LeastSquares<3> x_px, y_px;
+  for (const PlateDot& dot : pairs) {
+    x_px.add(regressors(dot), dot.picture_px.x);
+    y_px.add(regressors(dot), dot.picture_px.y);
   }
-  const Eigen::MatrixXd affine = grid.colPivHouseholderQr().solve(dots);
-  const Eigen::MatrixXd fitted = grid * affine;
-  const double freedom = 2 * static_cast<double>(dots.rows()) - 6;
-  const Eigen::Matrix2d map = affine.bottomRows(2);
-  const Eigen::Vector2d stretch = map.jacobiSvd().singularValues();
+  Eigen::Matrix<double, 3, 2> affine;
+  affine << x_px.solution(), y_px.solution();
+  const Eigen::RowVector2d middle = affine.row(0);
   PlatePicture picture;
-  picture.middle_px = {affine(0, 0), affine(0, 1)};
-  picture.px_per_mm = std::sqrt(std::abs(map.determinant()));
-  picture.anisotropy = stretch(0) / stretch(1) - 1;
-  picture.residual_px = std::sqrt((dots - fitted).squaredNorm() / freedom);
-  picture.middle_sd_px = picture.residual_px / std::sqrt(static_cast<double>(dots.rows()));
-  picture.px_per_mm_sd = picture.residual_px / grid.rightCols(2).norm();
-  for (Eigen::Index k = 0; k < dots.rows(); ++k) {
-    const Eigen::RowVector2d from = affine.row(0);
-    picture.plot.points.push_back(
-        {grid.row(k).tail(2).norm(), (dots.row(k) - from).norm(), (fitted.row(k) - from).norm()});
+  double residual_sq = 0, distance_sq = 0;
+  for (const PlateDot& dot : pairs) {
+    const Eigen::RowVector2d seen(dot.picture_px.x, dot.picture_px.y);
+    const Eigen::RowVector2d fitted = regressors(dot).transpose() * affine;
+    const double distance_mm = std::hypot(dot.plate_mm.x, dot.plate_mm.y);
+    residual_sq += (seen - fitted).squaredNorm();
+    distance_sq += distance_mm * distance_mm;
+    picture.plot.points.push_back({distance_mm, (seen - middle).norm(), (fitted - middle).norm()});
   }
+  const auto count = static_cast<double>(pairs.size());
+  const double xx = affine(1, 0), xy = affine(1, 1), yx = affine(2, 0), yy = affine(2, 1);
+  // The two scales of a map are the sum and the difference of its turning and its mirroring part.
+  const double turning = std::hypot(xx + yy, xy - yx), mirroring = std::hypot(xx - yy, xy + yx);
+  picture.middle_px = {middle(0), middle(1)};
+  picture.px_per_mm = std::sqrt(std::abs(xx * yy - xy * yx));
+  picture.anisotropy = (turning + mirroring) / std::abs(turning - mirroring) - 1;
+  picture.residual_px = std::sqrt(residual_sq / (2 * count - 6));
+  picture.middle_sd_px = picture.residual_px / std::sqrt(count);
+  picture.px_per_mm_sd = picture.residual_px / std::sqrt(distance_sq);
   return picture;
 }
 
@@ -116,28 +143,32 @@ PlateDistance plate_distance(const PlatePicture& low, const PlatePicture& high, 
 
 TouchedCap fit_cap(const std::vector<fingerpad::Point3<double>>& touches_mm,
                    double ball_radius_mm) {
-  const auto n = static_cast<Eigen::Index>(touches_mm.size());
-  Eigen::MatrixXd at(n, 3);  // center of the ball
-  for (Eigen::Index k = 0; k < n; ++k) {
-    const auto& touch = touches_mm[static_cast<std::size_t>(k)];
-    at.row(k) << touch.x, touch.y, touch.z + ball_radius_mm;
+  std::vector<Eigen::Vector3d> centers;  // of the ball
+  for (const auto& touch : touches_mm) {
+    centers.emplace_back(touch.x, touch.y, touch.z + ball_radius_mm);
   }
   // |p - c|^2 = (R + r)^2 is linear in c and in (R + r)^2 - |c|^2. This gives the start for the
   // least squares of distances.
-  Eigen::MatrixXd a(n, 4);
-  a << 2 * at, Eigen::VectorXd::Ones(n);
-  const Eigen::Vector4d linear = a.colPivHouseholderQr().solve(at.rowwise().squaredNorm());
+  LeastSquares<4> start;
+  for (const Eigen::Vector3d& at : centers) {
+    start.add({2 * at(0), 2 * at(1), 2 * at(2), 1}, at.squaredNorm());
+  }
+  const Eigen::Vector4d linear = start.solution();
   Eigen::Vector4d p;
   p << linear.head<3>(), std::sqrt(linear(3) + linear.head<3>().squaredNorm());
-  Eigen::MatrixXd jacobian(n, 4);
-  Eigen::VectorXd left(n);
-  for (int step = 0; step < 20; ++step) {
-    for (Eigen::Index k = 0; k < n; ++k) {
-      const Eigen::Vector3d from = at.row(k).transpose() - p.head<3>();
-      left(k) = from.norm() - p(3);
-      jacobian.row(k) << -from.transpose() / from.norm(), -1;
+  LeastSquares<4> step;
+  double left_sq = 0;
+  for (int k = 0; k < 20; ++k) {
+    step = {};
+    left_sq = 0;
+    for (const Eigen::Vector3d& at : centers) {
+      const Eigen::Vector3d from = at - p.head<3>();
+      const double distance = from.norm();
+      const double left = distance - p(3);
+      step.add({-from(0) / distance, -from(1) / distance, -from(2) / distance, -1}, left);
+      left_sq += left * left;
     }
-    p -= jacobian.colPivHouseholderQr().solve(left);
+    p -= step.solution();
   }
   const double radius = p(3) - ball_radius_mm;
   const double base_sq = radius * radius - p(2) * p(2);
@@ -146,17 +177,18 @@ TouchedCap fit_cap(const std::vector<fingerpad::Point3<double>>& touches_mm,
                                                : std::numeric_limits<double>::quiet_NaN(),
               radius + p(2), ball_radius_mm};
   fit.off_axis_mm = p.head<2>().norm();
-  fit.residual_mm = std::sqrt(left.squaredNorm() / (std::max)(1.0, static_cast<double>(n - 4)));
-  const Eigen::Matrix4d covariance =
-      (jacobian.transpose() * jacobian).inverse() * fit.residual_mm * fit.residual_mm;
+  const double freedom = (std::max)(1.0, static_cast<double>(centers.size()) - 4);
+  fit.residual_mm = std::sqrt(left_sq / freedom);
+  const Eigen::Matrix4d covariance = step.inverse() * fit.residual_mm * fit.residual_mm;
   const Eigen::Vector4d by_apex(0, 0, 1, 1);
   const Eigen::Vector4d by_base(0, 0, -p(2) / fit.size.base_radius_mm,
                                 radius / fit.size.base_radius_mm);
   fit.apex_sd_mm = std::sqrt(by_apex.dot(covariance * by_apex));
   fit.base_sd_mm = std::sqrt(by_base.dot(covariance * by_base));
   fit.off_axis_sd_mm = std::sqrt(covariance(0, 0) + covariance(1, 1));
-  for (Eigen::Index k = 0; k < n; ++k) {
-    fit.plot.points.push_back({at.row(k).head(2).norm(), left(k) + radius, radius});
+  for (const Eigen::Vector3d& at : centers) {
+    fit.plot.points.push_back(
+        {at.head<2>().norm(), (at - p.head<3>()).norm() - ball_radius_mm, radius});
   }
   return fit;
 }
