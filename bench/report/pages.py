@@ -31,7 +31,7 @@ METHODS = {
     "object_motion": ("Motion of the object", ["frame of 21x21 dots"]),
     "stick_ratio": ("Stick ratio", ["frame of 21x21 dots"]),
     "spatial_stick_ratio": ("Stick ratio in space", []),
-    "contact_slide": ("Contact slide", ["imprint 120x160"]),
+    "contact_slide": ("Contact slide", []),
     "grip_control": ("Grip control", ["closed loop"]),
     "wrench": ("Six-axis force", ["36x30 segments", "72x65 segments"]),
     "traction": ("Traction", ["frame of 21x21 dots"]),
@@ -43,6 +43,14 @@ METHODS = {
     "dot_finder": ("Printed dots", ["21x21 dots, radius 4.4 px"]),
     "foam_contact": ("Foam contact", ["steps", "lift, 2000 steps"]),
     "calibrations": ("Calibrations", []),
+}
+# {program: what its tables do not say themselves}
+NOTES = {
+    "spatial_stick_ratio": """"On scenes": ten finite-element scenes, six times each; the limit is that of
+dragged plates, as a share of the coefficient of friction.""",
+    "calibrations": """Times are those of a fit. "A sensor of numbers": errors of each parameter over 100 fits
+with fresh noise ([what each is](calibrate/calibration.md#the-covariance-tried)). "On scenes": errors of the
+method, on finite-element scenes that were left out of the fit.""",
 }
 # The published method against the default: (label, program, group, published row, our row).
 COMPARED = [
@@ -87,6 +95,8 @@ def write_methods(build, docs, about):
     body = io.StringIO()
     for program, (title, plotted) in METHODS.items():
         body.write(f"\n## {title}\n")
+        if program in NOTES:
+            body.write(f"\n{NOTES[program]}\n")
         for group, rows in runs[program].items():
             if group in plotted:
                 k = plotted.index(group)
@@ -112,11 +122,12 @@ and "times as fast" compares with the first row, both at the native flags. Error
 **median / 99th percentile / worst** of everything that was compared, and of how many if not all have
 an answer. Errors "on scenes" are against finite-element membranes, which share no law with any
 method; all others are against synthetic truths that do: light by the model that is inverted, caps,
-rigid motions, films. Where a method has the one kind, pictures and first tables show that. Memory is what a row's estimator, workspace, state and outputs take; allocations are those
-of one call. "over" columns give the native time over that of a yardstick in the same run: OpenCV's
-nearest primitive, or one streaming pass over four planes of 640 x 480 floats. In the pictures a star
-is the published way, the dotted line joins the ways that nothing beats in both time and error, and
-dashed lines are yardsticks. What is timed and what the truth is stands on top of each `bench/*/*.cpp`.
+rigid motions, films. Where a method has the one kind, pictures and first tables show that. Memory is
+what a row's estimator, workspace, state and outputs take; allocations are those of one call. "over"
+columns give the native time over that of a yardstick in the same run: OpenCV's nearest primitive, or
+one streaming pass over four planes of 640 x 480 floats. In the pictures a star is the published way,
+the dotted line joins the ways that nothing beats in both time and error, and dashed lines are
+yardsticks. What is timed and what the truth is stands on top of each `bench/*/*.cpp`.
 The [whole chain](whole_chain.md), [hard cases](hard_cases.md) and [what a scene
 needs](what_a_scene_needs.md) have pages of their own.
 {body.getvalue()}""", encoding="utf-8")

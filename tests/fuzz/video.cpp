@@ -169,7 +169,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const std::string content(reinterpret_cast<const char*>(data), size);
   const auto& path = file.with(content);
   Results results(content);
-  if (decode(path, size, results) && size % 32 == 0) {
+  if (decode(path, size, results) && size % 64 == 0) {
     read_or_refused([&] {
       const cv::Size frame_size = read(file.folder(), size, results);
       show(path, frame_size, size, results);
