@@ -11,6 +11,8 @@ links.py ROOT --planted  plants one dead end of each kind in a copy and expects 
    those with a part in capitals, which are placeholders.
 3. A block of code below <!-- PATH --> is in that file, line by line.
 4. A test file whose link is followed by a "name" has a test of this name.
+5. A test program of a command exists, and has a test or a tag that its filter selects; so has
+   bench/report/run its benchmark.
 """
 import re
 import shutil
@@ -25,6 +27,9 @@ QUOTED = re.compile(r"^<!-- (\S+) -->\n```\w*\n(.*?)^```", re.MULTILINE | re.DOT
 PATH = re.compile(r"(?<![\w/.<>{}*-])((?:[\w.-]+/)+[\w.-]+\.(?:hpp|cpp|py|md|png|csv|cmake))\b")
 OF_A_RECORDING = ("frames", "pictures", "membrane")
 TEST = re.compile(r"\]\(([^)\s]*tests/[^)\s]*\.cpp)\)\s+\"([^\"]+)\"")
+COMMAND = re.compile(r'\btest_(\w+) "([^"]+)"')
+BENCHMARKS = re.compile(r"bench/report/run((?: +[a-z_]+)+)")
+NO_PROGRAMS = ("instructions",)  # of bench/report/run
 COMMENT = re.compile(r"//[^\n]*")
 
 
@@ -74,16 +79,29 @@ def missing_tests(file, page):
             yield f"no such test in {path}: {name}"
 
 
+def dead_commands(root, text):
+    for program, words in COMMAND.findall(re.sub(r"\s+", " ", text)):
+        sources = "".join(file.read_text() for file in root.glob(f"tests/{program}/*.cpp"))
+        sources = re.sub(r'"\s*\n\s*"', "", sources)
+        if not all(part in sources for part in ("TEST_CASE", *words.split("*"))):
+            yield f"no such test: test_{program} \"{words}\""
+    for names in BENCHMARKS.findall(text):
+        for name in names.split():
+            if name not in NO_PROGRAMS and not any(root.glob(f"bench/*/{name}.cpp")):
+                yield f"no such benchmark: {name}"
+
+
 def dead_ends(root):
     for file in sorted([root / "README.md", *root.glob("docs/**/*.md"), *root.glob("examples/**/*.md"),
                         *root.glob("tests/**/*.md")]):
         page = file.read_text()
         for found in [*dead_links(root, file, page), *dead_paths(root, file, LINK.sub("", page)),
-                      *false_quotes(root, page), *missing_tests(file, page)]:
+                      *false_quotes(root, page), *missing_tests(file, page),
+                      *dead_commands(root, page)]:
             yield f"{file.relative_to(root)}: {found}"
     for file in sorted(root.glob("include/**/*.hpp")):
         comments = "\n".join(COMMENT.findall(file.read_text()))
-        for found in dead_paths(root, file, comments):
+        for found in [*dead_paths(root, file, comments), *dead_commands(root, comments)]:
             yield f"{file.relative_to(root)}: {found}"
 
 
@@ -91,6 +109,8 @@ PLANTED = {
     "docs/design.md": ["[a page](no_such_page.md)", "[a heading](design.md#no-such-heading)",
                        "`slip/no_such_header.hpp`",
                        '[tests](../tests/core/grid.cpp) "no such test"',
+                       '`test_core "no such test"`', '`test_no_folder "[grid]"`',
+                       "`bench/report/run no_such_benchmark`",
                        "<!-- README.md -->\n```cpp\nno_such_line();\n```"],
     "include/fingerpad/core/grid.hpp": ["// See core/no_such_header.hpp."],
 }
