@@ -25,12 +25,6 @@ namespace fs = std::filesystem;
 
 constexpr unsigned longest_answer_s = 60;
 
-// What a decoder may take for each pixel of a frame: to find out what the file holds, and for 16
-// threads and 16 earlier frames, all of 16 bits and three colours.
-constexpr double first_frame_bytes = 16;
-constexpr double all_frames_bytes = 32 * 6 + 2 * 6;
-constexpr double spare_bytes = 64e6;
-
 // The messages between the two processes.
 enum class Request : char { open, grab, retrieve };
 
@@ -88,9 +82,15 @@ std::size_t bytes_of(const cv::Mat& frame) {
 
 // What the decoder's process does.
 
-/// Limits how much more memory this process may take, as Linux counts it. A stream may claim larger
-/// frames than its file does.
-void limit_memory(double more_bytes) {
+/// How many threads OpenCV asks FFmpeg for.
+double threads() {
+  return static_cast<double>(std::max(1L, ::sysconf(_SC_NPROCESSORS_ONLN)));
+}
+
+/// Limits how much more memory this process may take, as Linux counts it: so many frames, of 16
+/// bits and three colours, stacks of threads, and tables. A stream may claim larger frames than its
+/// file.
+void limit_memory(double frames, double pixels) {
   std::ifstream statm("/proc/self/statm");
   double pages = 0;
   for (int field = 0; field < 6; ++field) {
@@ -98,7 +98,8 @@ void limit_memory(double more_bytes) {
   }
   rlimit limit{};
   if (statm && ::getrlimit(RLIMIT_DATA, &limit) == 0) {
-    const double bytes = pages * static_cast<double>(::sysconf(_SC_PAGESIZE)) + more_bytes;
+    const double bytes = pages * static_cast<double>(::sysconf(_SC_PAGESIZE)) +
+                         frames * 6 * pixels + threads() * 16e6 + 64e6;
     limit.rlim_cur = std::min(limit.rlim_max, static_cast<rlim_t>(bytes));
     ::setrlimit(RLIMIT_DATA, &limit);
   }
@@ -106,11 +107,11 @@ void limit_memory(double more_bytes) {
 
 cv::VideoCapture open(const fs::path& file, int socket) {
   try {
-    limit_memory(first_frame_bytes * max_frame_pixels() + spare_bytes);
+    limit_memory(3, max_frame_pixels());  // of any size, to find out what the file holds
     cv::VideoCapture source = open_video(file);
-    limit_memory(all_frames_bytes * source.get(cv::CAP_PROP_FRAME_WIDTH) *
-                     source.get(cv::CAP_PROP_FRAME_HEIGHT) +
-                 spare_bytes);
+    // One for each thread, 16 that later ones refer to, and two copies of the last.
+    limit_memory(threads() + 18,
+                 source.get(cv::CAP_PROP_FRAME_WIDTH) * source.get(cv::CAP_PROP_FRAME_HEIGHT));
     send(socket, Opened{source.get(cv::CAP_PROP_FPS), 0});
     return source;
   } catch (const Failure& failure) {
