@@ -6,6 +6,7 @@
 #include <cmath>
 #include <csignal>
 #include <cstdint>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <functional>
@@ -112,6 +113,16 @@ double largest_difference(const fs::path& a, const fs::path& b) {
     }
   }
   return largest;
+}
+
+/// Three frames of 16 x 16 px; no file where there is no encoder.
+void write_video(const fs::path& file) {
+  const replay::QuietCodecs quiet;
+  cv::VideoWriter video(file.string(), cv::VideoWriter::fourcc('F', 'F', 'V', '1'), 10,
+                        cv::Size(16, 16));
+  for (int k = 0; k < 3 && video.isOpened(); ++k) {
+    video.write(cv::Mat(16, 16, CV_8UC3, cv::Scalar(0, 80 * k, 0)));
+  }
 }
 
 }  // namespace
@@ -477,14 +488,7 @@ TEST_CASE("a video that claims too large frames and one that names other files a
     return "";
   };
   const auto file = work.recording() / "frames.avi";
-  {
-    const replay::QuietCodecs quiet;
-    cv::VideoWriter video(file.string(), cv::VideoWriter::fourcc('F', 'F', 'V', '1'), 10,
-                          cv::Size(16, 16));
-    for (int k = 0; k < 3 && video.isOpened(); ++k) {
-      video.write(cv::Mat(16, 16, CV_8UC3, cv::Scalar(0, 80 * k, 0)));
-    }
-  }
+  write_video(file);
   work.write("playlist.avi", "ffconcat version 1.0\nfile frames.avi\n");
   CHECK(refusal("playlist.avi").find("playlist") != std::string::npos);
   std::string bytes = test::text_of(file);
@@ -494,6 +498,9 @@ TEST_CASE("a video that claims too large frames and one that names other files a
     return;
   }
   CHECK(refusal("frames.avi").empty());
+  ::setenv("OPENCV_IO_MAX_IMAGE_PIXELS", "255", 1);
+  CHECK(refusal("frames.avi").find("16 x 16 px, but at most 255 px") != std::string::npos);
+  ::unsetenv("OPENCV_IO_MAX_IMAGE_PIXELS");
   const std::string claimed("\x80\x3e\0\0\x80\x3e\0\0", 8);  // 16000 x 16000
   bytes.replace(format + 12, claimed.size(), claimed);
   work.write("frames.avi", bytes);
@@ -503,14 +510,7 @@ TEST_CASE("a video that claims too large frames and one that names other files a
 TEST_CASE("a decoder that ends before its video does is one failure") {
   const Workplace work;
   const auto file = work.recording() / "frames.avi";
-  {
-    const replay::QuietCodecs quiet;
-    cv::VideoWriter writer(file.string(), cv::VideoWriter::fourcc('F', 'F', 'V', '1'), 10,
-                           cv::Size(16, 16));
-    for (int k = 0; k < 3 && writer.isOpened(); ++k) {
-      writer.write(cv::Mat(16, 16, CV_8UC3, cv::Scalar(0, 80 * k, 0)));
-    }
-  }
+  write_video(file);
   if (!fs::exists(file)) {
     WARN("no encoder for FFV1 here; decoders that end are not tested");
     return;
