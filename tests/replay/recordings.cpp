@@ -1,5 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
+#include <sys/resource.h>
 #include <sys/types.h>
 
 #include <algorithm>
@@ -536,4 +537,19 @@ TEST_CASE("a decoder that ends before its video does is one failure") {
     CHECK_THROWS_AS(video.rewind(), replay::Failure);
   }
   CHECK(replay::Video(file).grab());
+}
+
+TEST_CASE("a stream that claims a frame of a gigabyte gets no more memory than its file claims") {
+  try {
+    replay::Video video(test::bundled_recordings / "../../tests/fuzz/corpus/video" /
+                        "larger_stream.webm");
+    while (video.grab()) {
+      CHECK(video.retrieve().total() < 10000);
+    }
+  } catch (const replay::Failure& failure) {
+    CHECK(std::string(failure.what()).find("larger_stream.webm: ") != std::string::npos);
+  }
+  rusage used{};  // of the largest process that has been waited for; in kB on Linux
+  REQUIRE(getrusage(RUSAGE_CHILDREN, &used) == 0);
+  CHECK(used.ru_maxrss < 800'000);
 }
