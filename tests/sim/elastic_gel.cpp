@@ -177,4 +177,5 @@ TEST_CASE("elastic gel: bad parameters are refused by name", "[elastic_gel]") {
   CHECK(begins_with(refused({.ball_mm = -1}), "GelPad: ball_mm = -1"));
   CHECK(begins_with(refused({.friction = -0.1}), "GelPad: friction = -0.1"));
   CHECK(refused({}) == "accepted");
+  CHECK(refused({.young_mpa = 1e-9, .poisson = 0, .ball_mm = 1e-9, .friction = 0}) == "accepted");
 }

@@ -68,6 +68,15 @@ TEST_CASE("foam contact: friction is a power of the load", "[foam_contact]") {
   CHECK(friction_force(published, 1e-300) == Approx(1e-200));  // where mu is 1e100
 }
 
+TEST_CASE("foam contact: unless told otherwise, Hertz's sphere is of 10 mm and 0.1 MPa",
+          "[foam_contact]") {
+  const HertzContact<double> sphere;
+  CHECK(sphere.radius_mm == 10);
+  CHECK(sphere.reduced_modulus_mpa == 0.1);
+  // N = 4/3 E* sqrt(R) depth^(3/2)
+  CHECK(hertz_depth(sphere, 4.0 / 3 * 0.1 * std::sqrt(10.0) * 8) == Approx(4));
+}
+
 TEST_CASE("foam contact: Hertz's sphere, its area and its stiffness about a mean load",
           "[foam_contact]") {
   const HertzContact<double> sphere{9, 0.25};  // N = depth^(3/2)

@@ -239,6 +239,23 @@ TEST_CASE("contact slide: the first and the last dot of the pattern count", "[co
   CHECK(dots_counted({-120, -80}) == 4);  // the last dot and the three before it
 }
 
+TEST_CASE("contact slide: all cells of a small imprint count", "[contact_slide]") {
+  // 36 cells; 30 are needed
+  detail::PaddedCells<double> imprint(20, 20, 0), region(20, 20, 0);
+  for (Index i = 0; i < 20; ++i) {
+    for (Index j = 0; j < 20; ++j) {
+      const double x = double(j) - 9.7, y = double(i) - 9.4;
+      imprint(i, j) = std::exp(-(x * x + 0.8 * y * y + 0.3 * x * y) / 8);
+      region(i, j) = i >= 7 && i < 13 && j >= 7 && j < 13 ? 1 : 0;
+    }
+  }
+  detail::ImprintShift<double> shift(20, 20);
+  shift.take(imprint, region);
+  const auto motion = shift.find(imprint, {0.3, -0.2}, 2.0);
+  CHECK(motion.correlation > 0.99);
+  CHECK(norm(motion.shift) < 0.05);
+}
+
 TEST_CASE("contact slide: the standard deviation is the mean of both axes", "[contact_slide]") {
   // steep along x, flat along y; with x and y exchanged, the mean is the same
   const auto waves = [](bool exchanged) {

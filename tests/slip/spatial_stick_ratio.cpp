@@ -7,6 +7,8 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <tuple>
+#include <utility>
 #include <vector>
 
 #include "support/catch.hpp"
@@ -401,6 +403,123 @@ TEST_CASE("stick ratio in space: the doubts of neighbours are correlated as thei
   CHECK(variance_with(1) / apart == Approx(expected(0, 1)).epsilon(1e-12));
   CHECK(variance_with(9) / apart == Approx(expected(1, 0)).epsilon(1e-12));
   CHECK(variance_with(10) / apart == Approx(expected(1, 1)).epsilon(1e-12));
+}
+
+TEST_CASE("stick ratio in space: doubts add up alike along both diagonals", "[spatial_stick]") {
+  const detail::stick::SharedDoubt shared(6, 2, 1);
+  for (const auto& [a, b, part] : {std::tuple{DotIndex{0, 0}, DotIndex{1, 1}, shared.diagonal},
+                                   std::tuple{DotIndex{0, 1}, DotIndex{1, 0}, shared.diagonal},
+                                   std::tuple{DotIndex{0, 0}, DotIndex{0, 1}, shared.beside},
+                                   std::tuple{DotIndex{0, 0}, DotIndex{1, 0}, shared.beside},
+                                   std::tuple{DotIndex{0, 0}, DotIndex{2, 0}, 0.0}}) {
+    CAPTURE(a.row, a.col, b.row, b.col);
+    detail::stick::DotDoubts<double> doubts({3, 2});
+    doubts.set(a, 0.3);
+    doubts.set(b, 0.5);
+    CHECK(doubts.variance(shared) == Approx(0.09 + 0.25 + 2 * part * 0.3 * 0.5).epsilon(1e-14));
+  }
+}
+
+TEST_CASE("stick ratio in space: the mean of equal slips along the surface is that slip",
+          "[spatial_stick]") {
+  namespace stick = detail::stick;
+  const Point2<double> slope = {0.4, -0.7};
+  std::vector<Point3<double>> places;
+  for (Index k = 0; k < 20; ++k) {
+    const double x = 1.5 * static_cast<double>(k % 4), y = 1.5 * static_cast<double>(k / 4);
+    places.push_back({x, y, 10 + slope.x * x + slope.y * y});
+  }
+  for (const double depth_info : {0.25, 4.0, 100.0}) {
+    CAPTURE(depth_info);
+    const stick::AxisNoise<double> noise = {9, depth_info};
+    for (const auto& [x, y] : {std::pair{0.2, 0.0}, {0.0, 0.3}, {-0.1, 0.2}}) {
+      const Point3<double> slip = {x, y, slope.x * x + slope.y * y};
+      auto pairs = pairs_at(places, 4);
+      stick::set_surface(noise, pairs);
+      stick::set_slips(Pose<double>{{}, Point3<double>{0, 0, 0} - slip}, pairs);
+      std::vector<stick::SmallSlip<double>> room(6 * 10, {0, 0, 0, 0});
+      stick::average_slips(1e9, noise, 6, room, pairs);
+      pairs.for_each([&](const auto& b, std::size_t k) {
+        CHECK(norm(b.mean_slip[k] - slip) < 1e-12);
+        CHECK(b.mean_sq[k] == Approx(b.slip_sq[k]));
+      });
+    }
+  }
+}
+
+TEST_CASE("stick ratio in space: a motion changes averaged slips as its derivatives say",
+          "[spatial_stick]") {
+  namespace stick = detail::stick;
+  constexpr double step = 1e-6;
+  const Point3<double> center = {0.5, -1, 9}, at = {2, 3, 10.5};
+  const Point3<double> by_u = {3, -2, 0.8}, slip = {0.3, 0.2, -0.4};
+  const Point2<double> by_v = {1.5, 2.5};
+  const auto magnitude = [&](const Point3<double>& m) {
+    return std::hypot(dot(by_u, m), by_v.x * m.x + by_v.y * m.y);
+  };
+  stick::PairBlock<double> b{};
+  stick::SlipNoise<double> noise{};
+  b.now.fill(at);
+  b.mean_slip.fill(slip);
+  b.by_u.fill(by_u);
+  b.by_v_x.fill(by_v.x);
+  b.by_v_y.fill(by_v.y);
+  noise.m.fill(magnitude(slip));
+  // any symmetric matrix will do
+  auto covariance = detail::zero_matrix<double, 6>();
+  for (std::size_t i = 0; i < 6; ++i) {
+    for (std::size_t j = 0; j < 6; ++j) {
+      covariance[i][j] = std::cos(static_cast<double>(i * j)) + (i == j ? 6 : 0);
+    }
+  }
+  stick::MotionEffect<double> of;
+  stick::set_effect_of_motion(b, covariance, center, noise, of);
+  double variance = 0;
+  for (std::size_t i = 0; i < 6; ++i) {
+    CAPTURE(i);
+    Point3<double> axis = {i % 3 == 0 ? 1.0 : 0.0, i % 3 == 1 ? 1.0 : 0.0, i % 3 == 2 ? 1.0 : 0.0};
+    const Point3<double> moved = step * (i < 3 ? cross(axis, at - center) : axis);
+    const double slope = (magnitude(slip + moved) - magnitude(slip - moved)) / (2 * step);
+    CHECK(of.by[i][3] == Approx(slope).epsilon(1e-7));
+    for (std::size_t j = 0; j < 6; ++j) {
+      variance += covariance[i][j] * of.by[i][3] * of.by[j][3];
+    }
+  }
+  CHECK(of.variance[3] == Approx(variance).epsilon(1e-13));
+}
+
+TEST_CASE("stick ratio in space: the noise along the pad is at least a 2000th of a pitch",
+          "[spatial_stick]") {
+  // level dots on a pitch of 3 mm; U follows from the noise
+  const auto status = [](double moved_mm) {
+    Follower f({.lateral_mm = 1e-9});
+    const Flags contact(21, 21, 1);
+    Dots dots(21, 21);
+    StickStatus last = StickStatus::refused;
+    for (const double x : {0.0, moved_mm}) {
+      for (Index k = 0; k < 441; ++k) {
+        dots(k / 21, k % 21) = {3.0 * static_cast<double>(k % 21) + x,
+                                3.0 * static_cast<double>(k / 21), 10};
+      }
+      last = f(dots, contact).status;
+    }
+    return last;
+  };
+  const double reference_mm = SpatialStickRatio<double>(21, 21).reference_mm(3.0 / 2000);
+  CHECK(status(0.9999 * reference_mm) == StickStatus::no_reference);
+  CHECK(status(1.0001 * reference_mm) == StickStatus::updated);
+}
+
+TEST_CASE("stick ratio in space: before any frame there is neither a ratio nor a reference",
+          "[spatial_stick]") {
+  const SpatialStickResult<double> none;
+  CHECK((!none.accepted() && !none.ok() && !none.updated()));
+  CHECK((none.dots_in_contact() == 0 && none.out_of_place == 0));
+  CHECK((none.reference_age == 0 && none.furthest_mm == 0));
+  Follower f;
+  const auto first = f(SlippingPatch().dots, SlippingPatch().contact);
+  CHECK(first.status == StickStatus::no_reference);
+  CHECK((first.reference_age == 0 && first.furthest_mm == 0 && !first.ok()));
 }
 
 TEST_CASE("stick ratio in space: a pad seen in a mirror moves as the mirrored object",

@@ -342,6 +342,21 @@ TEST_CASE("stick ratio: the search begins in the last stick region") {
   CHECK(dot.stick == 36);
 }
 
+TEST_CASE("stick ratio: the search begins in the last stick region, be it the first dot alone") {
+  detail::stick::StickState<double> state({3, 3}, 1);
+  const auto dots = shifted(0, 0, 3, 3);
+  std::vector<Index> touching = {0, 1, 2, 3, 4, 5, 6, 7, 8};
+  const auto* const places = dots.cells.data();
+  const detail::stick::FramePair<double> pair = {places, places, touching, {3, 3}, 0};
+  CHECK(first_dot(pair, state) == 4);  // none sticks: the middle of the contact
+  for (const Index k : touching) {
+    std::fill(state.marks.begin(), state.marks.end(), DotState::slip);
+    state.marks[static_cast<std::size_t>(k)] = DotState::stick;
+    state.stick_center = places[k];
+    CHECK(first_dot(pair, state) == k);
+  }
+}
+
 TEMPLATE_TEST_CASE("stick ratio: noise is averaged over neighbours",
                    "[stick_ratio]",
                    ResidualMean,
@@ -628,6 +643,8 @@ TEST_CASE("stick ratio, bad input: dots in no order, and in another unit") {
     CHECK(status(10.1, 0.2) == StickStatus::wrong_scale);
     CHECK(status(2, 4.9) == StickStatus::no_reference);
     CHECK(status(2, 5.1) == StickStatus::wrong_scale);
+    CHECK(status(9.9, 4.9) == StickStatus::no_reference);
+    CHECK(status(10.1, 4.9) == StickStatus::wrong_scale);
   }
 }
 
@@ -940,6 +957,39 @@ TEMPLATE_TEST_CASE("stick ratio, bad input: one single dot",
     CHECK(one.stick == 1);
     CHECK(one.reference_dot == DotIndex{8, 8});
   }
+}
+
+TEST_CASE(
+    "stick ratio: of dots that stand still together, one ahead is found unless scale moves it") {
+  // up to a quarter of its displacement may be due to a change of scale
+  const auto outrunner = [](double grown) {
+    const Point2<double> now = {20, 0}, then = {16, 0};
+    const std::vector<Index> touching = {0};
+    const detail::stick::FramePair<double> pair = {&now, &then, touching, {1, 1}, 16};
+    return furthest_outrunner(pair, detail::stick::Similarity<double>{1 + grown * 4 / 20});
+  };
+  for (const double sign : {-1.0, 1.0}) {
+    CHECK(outrunner(0.249 * sign) == 0);
+    CHECK(outrunner(0.251 * sign) == -1);
+  }
+}
+
+TEST_CASE("stick ratio: the pitch is the mean of all neighbours in contact") {
+  // 3 columns of pitch 4, rows 3 and 5 apart: 6 distances along the rows, 3 and 3 across
+  std::vector<Point2<double>> dots;
+  std::vector<Index> touching;
+  for (const double y : {0.0, 3.0, 8.0}) {
+    for (const double x : {0.0, 4.0, 8.0}) {
+      touching.push_back(static_cast<Index>(dots.size()));
+      dots.push_back({x, y});
+    }
+  }
+  const auto mean_sq = [&] { return detail::stick::mean_pitch_sq(touching, dots.data(), {3, 3}); };
+  CHECK(mean_sq() == Approx((6 * 16 + 3 * 9 + 3 * 25) / 12.0));
+  touching = {4};  // to the right and below
+  CHECK(mean_sq() == Approx((16 + 25) / 2.0));
+  touching = {8};
+  CHECK(mean_sq() == 0);
 }
 
 TEST_CASE("stick ratio: where the pitch is unknown, thresholds are in the unit of the dots") {
