@@ -338,3 +338,21 @@ TEST_CASE("calibration of depth: degenerate samples are refused, saying what is 
   const auto unknown = fit_absorption<0, double>(at({0.5, 4, 8, 12}));
   CHECK(std::isnan(unknown.covariance(0, 0)));  // no residual to estimate the noise from
 }
+
+TEST_CASE("calibration of depth: errors of g's coefficients count by the power of the radius") {
+  const Sensor sensor;
+  const auto at = sensor.sample(100, 150, 5);
+  const auto sd_from = [&](int coefficient) {
+    AbsorptionFit<double, 2> fit;
+    fit.fluid = sensor.fluid;
+    fit.scattering.coefficient = {sensor.g[0], 0.001, 0.0005};
+    fit.scattering.rho_max_mm = 20;
+    fit.covariance.setZero();
+    fit.covariance(3 + coefficient, 3 + coefficient) = 1e-8;
+    return predicted_depth_sd(fit, at);
+  };
+  const double share = at.rho_sq_mm2 / 400;
+  REQUIRE((share > 0.01 && share != 1));
+  CHECK(sd_from(1) == Approx(share * sd_from(0)).epsilon(1e-12));
+  CHECK(sd_from(2) == Approx(share * share * sd_from(0)).epsilon(1e-12));
+}

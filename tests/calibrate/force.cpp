@@ -377,6 +377,24 @@ TEST_CASE("a linear map with offsets is found within its errors", "[calibrate][f
   }
 }
 
+TEST_CASE("a linear map reaches as far as the longest displacement", "[calibrate][force]") {
+  const Pad<> pad;
+  Random random(11);
+  for (const double across : {0.01, 1.0, 100.0}) {  // mostly along y, mixed, mostly along x
+    Samples samples = contacts(30, random);
+    double longest = 0;
+    for (Sample& s : samples) {
+      s.displacement_mm.x *= across;
+      const double u = pad.factor(s, pad.pull_exponent);
+      const Point2<double> scaled = {u * s.displacement_mm.x, u * s.displacement_mm.y};
+      s.tangential_force_n = pad.linear_map.force_n(scaled);
+      longest = (std::max)(longest, std::hypot(scaled.x, scaled.y));
+    }
+    const auto fit = fit_linear_shear(all(samples), {pad.reference, pad.pull_exponent, 0.0}, {});
+    CHECK(fit.map.to == Approx(longest));
+  }
+}
+
 TEST_CASE("a calibration tells how far the next force is off", "[calibrate][force]") {
   const Pad<> pad{.per_mm_sq = 0, .per_rad_sq = 0};
   Coverage predicted("next force");

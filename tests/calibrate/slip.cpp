@@ -369,6 +369,43 @@ TEST_CASE("dot noise: the central dot is one found in more than half of the fram
   CHECK(published(200) == Approx(1.03 * 0.3).epsilon(0.08));
 }
 
+TEST_CASE("dot noise: units do not matter", "[stick]") {
+  const auto noise_in = [](double unit) {
+    Random random(3);
+    DotNoiseCalibration calibration(7, 7);
+    for (int t = 0; t < 50; ++t) {
+      auto dots = jittered(pattern(7, 7), 0.1, random);
+      for (auto& p : dots.cells) {
+        p = {unit * p.x, unit * p.y};
+      }
+      calibration.add(dots);
+    }
+    return calibration.fit();
+  };
+  const auto in_px = noise_in(1);
+  for (const double unit : {1.0 / 64, 64.0}) {
+    const auto fit = noise_in(unit);
+    CHECK(fit.published_px == Approx(unit * in_px.published_px).epsilon(1e-9));
+    CHECK(fit.largest_px == Approx(unit * in_px.largest_px).epsilon(1e-9));
+  }
+}
+
+TEST_CASE("dot noise: a dot out of place is found in a single row or column as well", "[stick]") {
+  for (const bool row : {false, true}) {
+    Random random(4);
+    const Index rows = row ? 1 : 8, cols = row ? 8 : 1;
+    DotNoiseCalibration calibration(rows, cols);
+    for (int t = 0; t < 50; ++t) {
+      auto dots = jittered(pattern(rows, cols), 0.1, random);
+      if (t == 20) {
+        dots.cells[3].x += 0.4 * pitch_px;
+      }
+      calibration.add(dots);
+    }
+    CHECK(calibration.fit().out_of_place == 1);
+  }
+}
+
 TEST_CASE("dot noise: exchanged dots are left out, slow motion is said", "[stick]") {
   const auto measured = [](bool exchange, double drift_px, bool only_contact) {
     Random random(8);

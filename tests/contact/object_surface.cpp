@@ -562,3 +562,35 @@ TEST_CASE("object surface: derivatives pass through the fit", "[surface]") {
   const double expected = (curvature(camera, 0.01 + step) - curvature(camera, 0.01 - step)) / 2e-5;
   CHECK(slope == Approx(expected).epsilon(1e-6));
 }
+
+TEST_CASE("object surface: distance from a quadric grows by 1 mm per mm across it", "[surface]") {
+  Quadric<> quadric;
+  quadric.origin_mm = {1, -2, 3};
+  quadric.u = {0.6, 0.8, 0};
+  quadric.v = {-0.8, 0.6, 0};
+  quadric.w = {0, 0, 1};
+  quadric.coefficients = {0.1, 0.3, -0.2, 0.05, 0.08, -0.06};
+  quadric.g_per_mm = 0.04;
+  for (const double x : {-2.0, 0.0, 1.5}) {
+    for (const double y : {-1.0, 0.5, 2.0}) {
+      CAPTURE(x, y);
+      const auto at = [&](double z) {
+        return quadric.origin_mm + x * quadric.u + y * quadric.v + z * quadric.w;
+      };
+      double low = -5, high = 5;  // the surface lies between: its distance falls along w
+      for (int k = 0; k < 60; ++k) {
+        const double middle = (low + high) / 2;
+        (quadric.stands_out(at(middle)) > 0 ? low : high) = middle;
+      }
+      const Point on = at(low);
+      constexpr double step = 1e-4;
+      const auto slope = [&](const Point& along) {
+        return (quadric.stands_out(on + step * along) - quadric.stands_out(on + -step * along)) /
+               (2 * step);
+      };
+      const double squares =
+          square(slope({1, 0, 0})) + square(slope({0, 1, 0})) + square(slope({0, 0, 1}));
+      CHECK(std::sqrt(squares) == Approx(1).epsilon(1e-6));
+    }
+  }
+}
