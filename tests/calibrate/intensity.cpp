@@ -191,4 +191,7 @@ TEST_CASE("intensity calibration: what tells nothing is refused", "[intensity_de
   CHECK(begins_with(refused({.ball_mm = 0}), "BallPress: ball_mm = 0"));
   CHECK(begins_with(refused({.mm_per_px = -1}), "BallPress: mm_per_px = -1"));
   CHECK(begins_with(refused({.contact_share = 1}), "BallPress: contact_share = 1"));
+  CHECK(begins_with(refused({.contact_share = -0.01}), "BallPress: contact_share = -0.01"));
+  CHECK(refused({.contact_share = 0}) == "accepted");  // uses the whole contact
+  CHECK(refused({.contact_share = 0.999}) == "accepted");
 }

@@ -65,6 +65,22 @@ TEST_CASE("pre-slip calibration: thresholds between what trembles and what slips
   CHECK(alike.judge({.history = 20}).precision() < 0.6);  // the default of 0.1 mm
 }
 
+TEST_CASE("pre-slip calibration: round tolerances separate what moves little less or more",
+          "[preslip]") {
+  for (const double tolerance : {0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1.0, 2.0, 3.0, 5.0, 10.0}) {
+    PreslipCalibration<> calibration(20);
+    for (Index k = 0; k < 400; ++k) {
+      const bool slips = k % 50 == 44;
+      const double moved = k % 50 == 20 ? 0.98 * tolerance : (slips ? 1.02 * tolerance : 0);
+      calibration.add({finger(20 + moved, k % 11, moved > 0 ? 2 : 0), finger(20, 0, 0)}, slips);
+    }
+    const auto fit = calibration.fit();
+    CAPTURE(tolerance, fit.precision(), fit.recall());
+    CHECK(fit.ok());
+    CHECK(fit.options.centroid_tolerance_mm == tolerance);
+  }
+}
+
 TEST_CASE("pre-slip calibration: marks that do not fit are told", "[preslip]") {
   PreslipCalibration<> calibration(20);
   add_trembling(calibration, 1, 3, 25);
