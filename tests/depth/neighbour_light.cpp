@@ -398,6 +398,27 @@ TEST_CASE("neighbour light: a pixel around which nothing is seen keeps its depth
   CHECK(out(9, 11) == 1.0F);
 }
 
+TEST_CASE(
+    "neighbour light: the unit is judged by every eighth pixel where the reference has depth") {
+  const auto is_of_this_pad = [](const Map<double>& reference, const Map<double>& depth) {
+    const NeighbourLightCompensation<detail::SteppedDisc, double> compensation({2, 0.0, 0.0}, 0.125,
+                                                                               reference);
+    auto workspace = compensation.workspace();
+    Map<double> out(depth.rows(), depth.cols());
+    return compensation(depth, out, workspace).ok();
+  };
+  // depth beyond the pad of the reference does not count
+  Map<double> reference = Map<double>::Constant(64, 64, missing);
+  reference(0, 0) = 1;
+  CHECK(is_of_this_pad(reference, Map<double>::Constant(64, 64, 1)));
+  CHECK_FALSE(is_of_this_pad(reference, Map<double>::Constant(64, 64, 21)));
+  // an image of eight columns has one such pixel in its first row; the next lies a row below
+  reference = Map<double>::Constant(2, 8, 1);
+  Map<double> depth = reference;
+  depth(1, 0) = 100;
+  CHECK(is_of_this_pad(reference, depth));
+}
+
 TEST_CASE("neighbour light: bad parameters are refused by name, value and range") {
   CHECK(refusal({}, 0.1F, 4) == "accepted");
   CHECK(refusal({0, 0.1F, 0.1F}, 0.1F, 4) == "NeighbourLight: radius_px = 0, must be in [1, 1000]");

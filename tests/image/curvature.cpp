@@ -356,6 +356,8 @@ TEST_CASE("curvature: bad parameters are refused by name, value and range") {
   };
   const double nan = std::numeric_limits<double>::quiet_NaN();
   CHECK(map({}, plate, 4, 5) == "accepted");
+  CHECK(map({1}, plate, 4, 5) == "accepted");
+  CHECK(map({1000}, plate, 4, 5) == "accepted");
   CHECK(map({0}, plate, 4, 5) == "CurvatureRing: radius_px = 0, must be in [1, 1000]");
   CHECK(map({1001}, plate, 4, 5) == "CurvatureRing: radius_px = 1001, must be in [1, 1000]");
   CHECK(map({5, 0}, plate, 4, 5) == "CurvatureRing: min_direction_share = 0, must be in (0, 1]");

@@ -47,6 +47,16 @@ TEST_CASE("the frame of a normal is right-handed, and u lies in its plane with a
   });
 }
 
+TEST_CASE("a condition number does not depend on the matrix's unit", "[math]") {
+  using Matrix = detail::HouseholderQr<double>::Matrix;
+  for (const double unit : {1.0, 1e-20, 1e20}) {
+    Matrix a(2, 2);  // symmetric, with eigenvalues 3 and 1
+    a << 2 * unit, unit, unit, 2 * unit;
+    CAPTURE(unit);
+    CHECK(detail::condition_number(a) == Approx(3).epsilon(1e-14));
+  }
+}
+
 TEST_CASE("the inverse of normal equations solves them for each unit vector", "[math]") {
   detail::SmallMatrix<double, 3> a{};
   const double columns[4][3] = {{1, 2, 300}, {0, 1, -100}, {2, 1, 50}, {1, -1, 80}};

@@ -416,6 +416,8 @@ const std::vector<LookUpMistake> look_up_mistakes = {
      implausible, implausible, implausible, implausible},
     {"rotation in degrees", [](Contact& c) { c.rotation_rad *= 57.3; }, implausible, implausible,
      implausible, implausible},
+    {"rotation of more than half a turn", [](Contact& c) { c.rotation_rad = 3.2; }, implausible,
+     implausible, implausible, implausible},
     {"lost dots as 1e30", [](Contact& c) { c.displacement_mm.x = 1e30; }, implausible, implausible,
      implausible, implausible},
     {"beyond what was calibrated", [](Contact& c) { c.area_mm2 = 600, c.depth_mm = 6.88; },

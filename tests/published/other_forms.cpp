@@ -214,6 +214,29 @@ TEST_CASE("published contact region: centers every 5 pixels", "[published]") {
   CHECK_THROWS_AS(published::contact_by_slides(z, mask, o), parameter_error);
 }
 
+TEST_CASE("published contact region: radius and pitch at the ends of their ranges", "[published]") {
+  const Image<double> z(5, 5, 1.0);
+  Image<unsigned char> mask(5, 5);
+  const auto accepts = [&](double radius_px, double pitch_mm) {
+    published::SlidesContactOptions o;
+    o.radius_px = radius_px;
+    o.pitch_mm = pitch_mm;
+    try {
+      (void)published::contact_by_slides(z, mask, o);
+    } catch (const parameter_error&) {
+      return false;
+    }
+    return true;
+  };
+  CHECK(accepts(1, 0.1));
+  CHECK(accepts(1000, 0.1));
+  CHECK(accepts(2, 10));
+  CHECK_FALSE(accepts(0.99, 0.1));
+  CHECK_FALSE(accepts(1001, 0.1));
+  CHECK_FALSE(accepts(2, 0));
+  CHECK_FALSE(accepts(2, 10.1));
+}
+
 TEST_CASE("published flat contact: F = p S", "[published]") {
   CHECK(published::flat_contact_force_n(0.02, 300.0) == Approx(6.0));
   CHECK(published::flat_contact_force_n(0.0, 300.0) == 0);
