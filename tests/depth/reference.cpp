@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #include <cmath>
+#include <cstdio>
 #include <string>
 
 #include "fingerpad/depth/depth_reference.hpp"
@@ -263,6 +264,23 @@ TEST_CASE("a reference that determines nothing is refused", "[reference]") {
   fluid.kappa = 0;
   CHECK_THAT(refusal([&] { fit_reference(pad.camera, fluid, frame.red, frame.green, depth); }),
              StartsWith("Absorption: kappa = 0"));
+}
+
+TEST_CASE("a refusal of depths of 0 outside of the pad tells their share", "[reference]") {
+  Pad pad;
+  const auto frame = pad.frame<double>(pad.free_depths());
+  Image<double> depth = pad.free_depths();
+  double pixels = 0, at_zero = 0;
+  for (double& l : depth.cells) {
+    at_zero += l == l ? 0 : 1;
+    pixels += 1;
+    l = l == l ? l : 0;
+  }
+  char share[40];
+  std::snprintf(share, sizeof share, "%.9g", at_zero / pixels);
+  CHECK_THAT(refusal([&] { fit_reference(pad.camera, pad.fluid, frame.red, frame.green, depth); }),
+             Catch::Matchers::StartsWith(
+                 "fit_reference: share of pixels at depth 0 = " + std::string(share) + ","));
 }
 
 TEST_CASE("a pad is judged off the axis only if its whole outline is in the image", "[reference]") {

@@ -384,6 +384,36 @@ TEST_CASE("taxel features: a taxel that is stuck does not count", "[taxel_featur
   CHECK(later.center_x_mm == 4);
 }
 
+TEST_CASE("taxel features: a taxel without a first reading is stuck no sooner than others",
+          "[taxel_features]") {
+  auto o = options();
+  o.stuck_after = 5;
+  const TaxelFeatures features(1, 2, o);
+  const auto reading = [](int k, Index, Index j) {
+    return j == 1 ? 10 + 0.01 * (k % 2) : k == 0 ? test::nan : 1.0;
+  };
+  auto state = features.start();
+  CHECK(after(features, state, 6, reading).frozen == 0);  // five equal readings
+  CHECK(after(features, state, 1, reading, 6).frozen == 1);
+}
+
+TEST_CASE("taxel features: the first full window has no other vibration than later ones",
+          "[taxel_features]") {
+  auto o = options();
+  o.window = 4;
+  o.noise = 0.01;
+  const TaxelFeatures features(3, 5, o);  // more taxels than samples of the window
+  const auto reading = [](int k, Index, Index) { return k % 4 < 2 ? 10.0 : 11.0; };
+  auto state = features.start();
+  const auto first = after(features, state, 4, reading);
+  CHECK(first.is_vibrating());
+  CHECK(state.vibrating().size() == 15);
+  for (const auto& taxel : state.vibrating()) {
+    CHECK(taxel.deviation == Approx(first.deviation));
+  }
+  CHECK(first.deviation == Approx(after(features, state, 4, reading, 4).deviation));
+}
+
 TEST_CASE("taxel features: with stuck_after 0 no reading is ever stuck", "[taxel_features]") {
   auto o = options();
   o.stuck_after = 0;

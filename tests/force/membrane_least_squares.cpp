@@ -409,6 +409,11 @@ TEST_CASE("least squares: bad parameters are refused", "[membrane]") {
   bad = {};
   bad.rim_weight = not_a_number<double>();
   CHECK(test::begins_with(refusal(bad), "LeastSquares: rim_weight = "));
+  for (const double end : {1e-3, 1e3}) {
+    bad = {};
+    bad.rim_weight = end;
+    CHECK(refusal(bad) == "accepted");
+  }
   bad = {};
   bad.magnitude_weight = -1;
   CHECK(refusal(bad) == "LeastSquares: magnitude_weight = -1, must be in [1e-6, 1e3]");

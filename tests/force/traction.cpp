@@ -375,6 +375,28 @@ TEST_CASE("traction: a dot that is not found", "[traction]") {
   CHECK(distance(outside.force_n, whole.force_n) < 0.01 * size(whole.force_n));
 }
 
+TEST_CASE("traction: a dot that is not found lies between opposite neighbours", "[traction]") {
+  const auto at = [](Index i, Index j) {
+    return Vector{static_cast<double>(j), static_cast<double>(i), static_cast<double>(i * j)};
+  };
+  for (const auto& [i, j] : {std::pair<Index, Index>{0, 1}, {1, 0}, {1, 1}, {1, -1}}) {
+    for (int found = 0; found < 4; ++found) {  // on either side
+      const auto is_found = [&, i = i, j = j](Index row, Index col) {
+        return (row == 5 + i && col == 7 + j && (found & 1) != 0) ||
+               (row == 5 - i && col == 7 - j && (found & 2) != 0);
+      };
+      const auto dot = detail::traction::bridged_dot<double>(5, 7, is_found, at);
+      CAPTURE(i, j, found);
+      if (found == 3) {
+        CHECK(dot.x == 7);
+        CHECK(dot.y == 5);
+      } else {
+        CHECK(std::isnan(dot.x));
+      }
+    }
+  }
+}
+
 TEST_CASE("traction: dots that are no membrane", "[traction]") {
   const Index n = 9;
   const TractionField field(flat(n, 1.5), {.mu_t_n_per_mm = 0.4});

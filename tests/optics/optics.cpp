@@ -328,3 +328,10 @@ TEST_CASE("cameras are set for 640 x 480 pixels until they are told otherwise", 
   CHECK(OrthographicCamera<>().center_y_px == 239.5);
   CHECK(OrthographicCamera<>().pitch_mm == 0.08);
 }
+
+TEST_CASE("the default camera looks through water and a thin plate of acrylic", "[optics]") {
+  const Camera<double> camera;
+  CHECK(camera.refractive_index == 1.33);
+  CHECK(camera.plate_thickness_mm == 0);
+  CHECK(camera.plate_index == 1.49);
+}

@@ -324,6 +324,25 @@ TEST_CASE("what the options lack has no answer, and the rest is the same", "[cha
   tip.reset();
 }
 
+TEST_CASE("an unknown shift counts as none", "[chain]") {
+  auto options = frames().options();
+  options.free_dots_mm = {};
+  using LookUp = typename decltype(options)::NormalLookUp;
+  options.force_of_depth =
+      LookUp(options.force_of_depth->curve(), fingerpad::ScaledCompensation<>{0.02, 0.5});
+  TipOf<fingerpad::FingertipMethods> tip(options);
+  const FingertipResult touch = touch_of(tip, frames()[0].view());
+  const auto unmoved = (*options.force_of_depth)(touch.contact.depth_mm, {0, 0}, 0.0);
+  REQUIRE(unmoved.force_n > 0);
+  CHECK(touch.by_depth.force_n == unmoved.force_n);
+}
+
+TEST_CASE("the size of frames has no default", "[chain]") {
+  const decltype(frames().options()) options{};
+  CHECK(options.rows == 0);
+  CHECK(options.cols == 0);
+}
+
 TEST_CASE("a fingertip takes the neighbour light off as that method does", "[chain]") {
   auto options = frames().options();
   TipOf<EveryPixel> free(options), plain(options);

@@ -225,3 +225,14 @@ TEST_CASE("published wrench: its columns and rows, and what it refuses", "[publi
   CHECK(refused.status == WrenchStatus::refused);
   CHECK_FALSE(refused.ok());
 }
+
+TEST_CASE("published scattering per pixel: samples are means over blocks", "[published]") {
+  published::PixelScattering<double> g;
+  g.cols = 6;
+  for (int k = 0; k < 24; ++k) {
+    g.plane.push_back(k);
+  }
+  const auto sampled = g.sampled(2, 3, 2);
+  CHECK(sampled.cols == 3);
+  CHECK(sampled.plane == std::vector<double>{3.5, 5.5, 7.5, 15.5, 17.5, 19.5});
+}
