@@ -956,6 +956,16 @@ struct LevelContact {
 };
 }  // namespace
 
+TEST_CASE("heights on a mesh end before its last nodes", "[wrench]") {
+  PadHeights<>::Map map(2, 0.5);
+  map.fill([](Index, Index) { return 1.0; }, [](Index, Index, double) { return 1.0; });
+  const double last = 0.5 * static_cast<double>(map.side() / 2);
+  CHECK(map(last - 1e-9, 0.0).height_mm == 1);
+  CHECK(map(0.0, last - 1e-9).height_mm == 1);
+  CHECK(std::isnan(map(last, 0.0).height_mm));
+  CHECK(std::isnan(map(0.0, last).height_mm));
+}
+
 TEST_CASE("the edge of a contact is where the balance of the membrane beside it ends", "[wrench]") {
   // a line is cut between points 0.1 mm apart, linearly in r^2
   const double cut_mm = 0.1 * 0.1 / (8 * 6);
