@@ -17,7 +17,8 @@ int main() {
   for (const hard::MakeRow make : hard::all_rows()) {
     std::cout << hard::line_of(make()) << '\n';
   }
-  std::cout << "\nCases that are hard in any number type, with the published method next to the default:\n\n"
+  std::cout << "\nCases that are hard in any number type, with the published method next to the "
+               "default:\n\n"
             << "| method | hard case | figure | published | default |\n|---|---|---|--:|--:|\n";
   for (const hard::CaseByNature& c : hard::cases_by_nature()) {
     std::cout << hard::line_of(c) << '\n';

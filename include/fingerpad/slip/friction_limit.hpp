@@ -97,7 +97,7 @@ S friction_of(const ContactLoad<S>& load) {
 }
 
 struct FrictionLimitOptions {
-  /// Fraction of the limit from which on the object counts as sliding, in (0, 1]. The default is 1
+  /// Fraction of the limit above which the object counts as sliding, in (0, 1]. The default is 1
   /// less 2.4 times the noise of L. With both forces known to 1.5 %, L is known to 2.1 %.
   double slide_fraction = 0.95;
   double learn_below = 0.2;  ///< stick ratio of the dots below which the limit is learnt, in (0, 1)
@@ -118,7 +118,7 @@ inline void expects_valid(const FrictionLimitOptions& o) {
 }
 
 enum class FrictionLimitStatus : std::uint8_t {
-  held,      ///< L is below slide_fraction of the limit
+  held,      ///< L is at most slide_fraction of the limit
   sliding,   ///< L is above it: the stick ratio is 0, whatever the dots report
   no_limit,  ///< no slide so far: the answer is that of the dots alone
   no_load,   ///< no normal force, or a force is not finite: the answer is that of the dots alone
