@@ -294,11 +294,14 @@ namespace {
 detail::stick::SpatialPairs<double> pairs_at(const std::vector<Point3<double>>& places,
                                              Index columns) {
   detail::stick::SpatialPairs<double> pairs(places.size());
+  const auto padded = [columns](Index row, Index col) {
+    return static_cast<std::size_t>((row + 1) * (columns + 2) + col + 1);
+  };
+  const Index rows = (static_cast<Index>(places.size()) + columns - 1) / columns;
   for (std::size_t k = 0; k < places.size(); ++k) {
     const auto cell = static_cast<Index>(k);
-    const auto padded =
-        static_cast<std::size_t>((cell / columns + 1) * (columns + 2) + cell % columns + 1);
-    pairs.add(cell, padded, 0, places[k], places[k]);
+    pairs.add(cell, padded(cell / columns, cell % columns), padded(rows + 2, 0), places[k],
+              places[k]);
   }
   return pairs;
 }
