@@ -40,7 +40,7 @@ inline Row long_image() {
                  }
                  return sum;
                };
-               fingerpad::detail::WindowSums<S, 1> sums(rows, cols, {5}, {S(0), S(255)});
+               fingerpad::detail::WindowMeans<S, 1> sums(rows, cols, {5}, {S(0), S(255)});
                sums.start(0, load);
                std::vector<fingerpad::detail::window_mean_t<S>> red(9), green(9);
                S running = S(0);

@@ -21,7 +21,7 @@
 #include "fingerpad/depth/detail/frame_rows.hpp"
 #include "fingerpad/depth/smoothing.hpp"
 #include "fingerpad/image/detail/row_lanes.hpp"
-#include "fingerpad/image/detail/window_sums.hpp"
+#include "fingerpad/image/detail/window_means.hpp"
 
 namespace fingerpad {
 inline namespace v0 {
@@ -128,11 +128,7 @@ class MeanRowsOf {
  public:
   MeanRowsOf(const ColourSetup<S>& setup, const Smoothing& smoothing, const GreyScale& scale)
       : scale_(scale),
-        sums_(setup.rows,
-              setup.cols,
-              smoothing.windows_px(),
-              limits(scale),
-              anchored ? 1.0f : static_cast<float>(1 / scale.units_per_level)) {
+        sums_(setup.rows, setup.cols, smoothing.windows_px(), limits(scale)) {
     const auto size = static_cast<std::size_t>(setup.cols);
     const auto weight = window_weights(smoothing.windows_px());
     for (std::size_t k = 0; k < weight.size(); ++k) {
@@ -158,6 +154,13 @@ class MeanRowsOf {
       static_assert(windows == 1);
       out[0] = {to_red, to_green};
       sums_.advance(source(setup, red, green), out);
+      if constexpr (exact) {
+        const float level = static_cast<float>(1 / scale_.units_per_level);
+        for (Index j = 0; j < setup.cols; ++j) {
+          to_red[j] *= level;
+          to_green[j] *= level;
+        }
+      }
     } else {
       for (std::size_t k = 0; k < static_cast<std::size_t>(windows); ++k) {
         out[k] = {mean_[k].red.data(), mean_[k].green.data()};
@@ -284,7 +287,7 @@ class MeanRowsOf {
   };
 
   GreyScale scale_;
-  WindowSums<Element, windows> sums_;
+  WindowMeans<Element, windows> sums_;
   std::array<S, static_cast<std::size_t>(windows)> weight_;
   std::array<Means, static_cast<std::size_t>(windows)> mean_;
   std::vector<Pixel> red_;

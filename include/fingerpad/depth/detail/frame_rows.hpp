@@ -18,10 +18,10 @@
 #include "fingerpad/depth/depth_inverse.hpp"
 #include "fingerpad/depth/depth_reference.hpp"
 #include "fingerpad/depth/smoothing.hpp"
+#include "fingerpad/image/detail/interleaved.hpp"
 #include "fingerpad/image/detail/lanes.hpp"
 #include "fingerpad/image/detail/row_lanes.hpp"
-#include "fingerpad/image/detail/window_rows.hpp"
-#include "fingerpad/image/detail/window_sums.hpp"
+#include "fingerpad/image/detail/window_means.hpp"
 #include "fingerpad/optics/camera.hpp"
 
 namespace fingerpad {
