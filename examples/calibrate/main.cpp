@@ -7,7 +7,7 @@
 #include <string>
 
 #include "calibrate/calibrations.hpp"
-#include "fingerpad/core/expects.hpp"
+#include "fingerpad/core/check.hpp"
 #include "replay/io/failure.hpp"
 #include "replay/io/images.hpp"
 

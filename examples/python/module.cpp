@@ -4,7 +4,7 @@
 // identical to C++. Slow functions release the GIL.
 #include <pybind11/pybind11.h>
 
-#include "fingerpad/core/expects.hpp"
+#include "fingerpad/core/check.hpp"
 #include "python/parts.hpp"
 
 PYBIND11_MODULE(fingerpad, module) {

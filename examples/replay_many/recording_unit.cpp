@@ -11,7 +11,7 @@
 #include <opencv2/imgproc.hpp>
 #include <system_error>
 
-#include "fingerpad/core/expects.hpp"
+#include "fingerpad/core/check.hpp"
 #include "recordings.hpp"
 #include "replay/foam/recording.hpp"
 #include "replay/io/failure.hpp"

@@ -10,7 +10,7 @@
 #include <limits>
 #include <utility>
 
-#include "fingerpad/core/expects.hpp"
+#include "fingerpad/core/check.hpp"
 #include "replay/io/csv_cells.hpp"
 #include "replay/io/failure.hpp"
 #include "trials.hpp"

@@ -15,7 +15,7 @@
 #include "fingerpad/contact/contact_region.hpp"
 #include "fingerpad/contact/object_surface.hpp"
 #include "fingerpad/core/dots.hpp"
-#include "fingerpad/core/expects.hpp"
+#include "fingerpad/core/check.hpp"
 #include "fingerpad/core/grid.hpp"
 #include "fingerpad/core/point.hpp"
 #include "fingerpad/core/scalar.hpp"

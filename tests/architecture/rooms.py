@@ -140,7 +140,7 @@ PLANTED = {
     ),
     "an include cycle": (
         "include/fingerpad/core/scalar.hpp",
-        '#include "fingerpad/core/grid.hpp"\n#include "fingerpad/core/expects.hpp"\n',
+        '#include "fingerpad/core/grid.hpp"\n#include "fingerpad/core/check.hpp"\n',
     ),
 }
 

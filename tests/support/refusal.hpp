@@ -4,7 +4,7 @@
 // Messages of constructors for bad parameters.
 #include <string>
 
-#include "fingerpad/core/expects.hpp"
+#include "fingerpad/core/check.hpp"
 
 namespace test {
 

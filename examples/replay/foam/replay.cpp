@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "fingerpad/core/expects.hpp"
+#include "fingerpad/core/check.hpp"
 #include "replay/foam/activity.hpp"
 #include "replay/foam/array_picture.hpp"
 #include "replay/foam/axis.hpp"

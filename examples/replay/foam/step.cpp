@@ -8,7 +8,7 @@
 #include <cmath>
 
 #include "fingerpad/calibrate/taxels.hpp"
-#include "fingerpad/core/expects.hpp"
+#include "fingerpad/core/check.hpp"
 #include "fingerpad/pipeline/foam_hand.hpp"
 #include "replay/io/failure.hpp"
 #include "replay/median.hpp"

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cstdio>
 
-#include "fingerpad/core/expects.hpp"
+#include "fingerpad/core/check.hpp"
 #include "replay/io/csv_cells.hpp"
 #include "replay/io/failure.hpp"
 #include "replay/io/images.hpp"

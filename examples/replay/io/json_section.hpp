@@ -13,7 +13,7 @@
 #include <utility>
 #include <vector>
 
-#include "fingerpad/core/expects.hpp"
+#include "fingerpad/core/check.hpp"
 #include "replay/io/failure.hpp"
 
 namespace replay {

@@ -13,7 +13,7 @@
 
 #include "fingerpad/adapt/detail/dot_matcher.hpp"
 #include "fingerpad/core/dots.hpp"
-#include "fingerpad/core/expects.hpp"
+#include "fingerpad/core/check.hpp"
 #include "fingerpad/core/grid.hpp"
 
 namespace fingerpad {

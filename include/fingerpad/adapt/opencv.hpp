@@ -5,7 +5,7 @@
 // without a copy. A cv::Mat knows its type only at run time, so the caller names the type.
 #include <opencv2/core/mat.hpp>
 
-#include "fingerpad/core/expects.hpp"
+#include "fingerpad/core/check.hpp"
 #include "fingerpad/core/grid.hpp"
 
 namespace fingerpad {

@@ -21,7 +21,7 @@
 
 #include "fingerpad/calibrate/detail/absorption_fit.hpp"
 #include "fingerpad/calibrate/fit.hpp"
-#include "fingerpad/core/expects.hpp"
+#include "fingerpad/core/check.hpp"
 #include "fingerpad/core/scalar.hpp"
 #include "fingerpad/depth/absorption.hpp"
 #include "fingerpad/depth/depth_reference.hpp"

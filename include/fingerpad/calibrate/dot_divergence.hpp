@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "fingerpad/calibrate/force.hpp"
-#include "fingerpad/core/expects.hpp"
+#include "fingerpad/core/check.hpp"
 #include "fingerpad/core/scalar.hpp"
 #include "fingerpad/force/dot_divergence.hpp"
 

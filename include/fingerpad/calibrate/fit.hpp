@@ -6,7 +6,7 @@
 // status that names the likely cause.
 #include <cstdint>
 
-#include "fingerpad/core/expects.hpp"
+#include "fingerpad/core/check.hpp"
 #include "fingerpad/core/scalar.hpp"
 
 namespace fingerpad {

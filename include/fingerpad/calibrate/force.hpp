@@ -23,7 +23,7 @@
 #include "fingerpad/calibrate/detail/normal_force_fit.hpp"
 #include "fingerpad/calibrate/detail/shear_fit.hpp"
 #include "fingerpad/calibrate/fit.hpp"
-#include "fingerpad/core/expects.hpp"
+#include "fingerpad/core/check.hpp"
 #include "fingerpad/core/grid.hpp"
 #include "fingerpad/core/point.hpp"
 #include "fingerpad/core/scalar.hpp"

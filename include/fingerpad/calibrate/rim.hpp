@@ -34,7 +34,7 @@
 #include "fingerpad/calibrate/detail/rim_frames.hpp"
 #include "fingerpad/calibrate/fit.hpp"
 #include "fingerpad/core/dots.hpp"
-#include "fingerpad/core/expects.hpp"
+#include "fingerpad/core/check.hpp"
 #include "fingerpad/core/grid.hpp"
 #include "fingerpad/core/point.hpp"
 #include "fingerpad/core/scalar.hpp"

@@ -18,7 +18,7 @@
 
 #include "fingerpad/calibrate/slip_noise.hpp"
 #include "fingerpad/core/dots.hpp"
-#include "fingerpad/core/expects.hpp"
+#include "fingerpad/core/check.hpp"
 #include "fingerpad/core/grid.hpp"
 #include "fingerpad/slip/stick_ratio.hpp"
 

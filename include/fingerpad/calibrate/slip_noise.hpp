@@ -16,7 +16,7 @@
 #include "fingerpad/calibrate/detail/slip_positions.hpp"
 #include "fingerpad/calibrate/fit.hpp"
 #include "fingerpad/core/dots.hpp"
-#include "fingerpad/core/expects.hpp"
+#include "fingerpad/core/check.hpp"
 #include "fingerpad/core/grid.hpp"
 #include "fingerpad/core/scalar.hpp"
 #include "fingerpad/slip/stick_ratio.hpp"

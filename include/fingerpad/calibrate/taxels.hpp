@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "fingerpad/calibrate/fit.hpp"
-#include "fingerpad/core/expects.hpp"
+#include "fingerpad/core/check.hpp"
 #include "fingerpad/core/grid.hpp"
 #include "fingerpad/core/scalar.hpp"
 #include "fingerpad/foam/taxel_features.hpp"

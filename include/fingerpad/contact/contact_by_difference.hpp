@@ -19,7 +19,7 @@
 
 #include "fingerpad/contact/contact_region.hpp"
 #include "fingerpad/contact/detail/frame_difference.hpp"
-#include "fingerpad/core/expects.hpp"
+#include "fingerpad/core/check.hpp"
 #include "fingerpad/core/grid.hpp"
 #include "fingerpad/core/scalar.hpp"
 #include "fingerpad/image/detail/cell_filter.hpp"

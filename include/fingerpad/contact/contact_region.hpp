@@ -18,7 +18,7 @@
 #include "fingerpad/contact/contact_test.hpp"
 #include "fingerpad/contact/detail/edge_finder.hpp"
 #include "fingerpad/contact/detail/region_measures.hpp"
-#include "fingerpad/core/expects.hpp"
+#include "fingerpad/core/check.hpp"
 #include "fingerpad/core/grid.hpp"
 #include "fingerpad/core/status.hpp"
 #include "fingerpad/image/curvature_map.hpp"

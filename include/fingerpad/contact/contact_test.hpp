@@ -3,7 +3,7 @@
 #pragma once
 // Parameters of the contact test besides the curvature statistic: the threshold, the smallest
 // region, and where the edge is placed.
-#include "fingerpad/core/expects.hpp"
+#include "fingerpad/core/check.hpp"
 #include "fingerpad/core/grid.hpp"
 #include "fingerpad/core/scalar.hpp"
 #include "fingerpad/image/curvature.hpp"

@@ -18,7 +18,7 @@
 #include "fingerpad/contact/quadric_model.hpp"
 #include "fingerpad/contact/surface_models.hpp"
 #include "fingerpad/contact/surface_points.hpp"
-#include "fingerpad/core/expects.hpp"
+#include "fingerpad/core/check.hpp"
 #include "fingerpad/core/grid.hpp"
 #include "fingerpad/core/scalar.hpp"
 #include "fingerpad/image/detail/pixel_box.hpp"

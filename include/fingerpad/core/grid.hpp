@@ -15,7 +15,7 @@
 #include <type_traits>
 #include <utility>
 
-#include "fingerpad/core/expects.hpp"
+#include "fingerpad/core/check.hpp"
 #include "fingerpad/core/version.hpp"  // first: it refuses older dialects
 
 namespace fingerpad {

@@ -15,7 +15,7 @@
 // levels, lengths mm, g grey levels per mm^2.
 #include <cmath>
 
-#include "fingerpad/core/expects.hpp"
+#include "fingerpad/core/check.hpp"
 #include "fingerpad/core/scalar.hpp"
 #include "fingerpad/optics/camera.hpp"
 

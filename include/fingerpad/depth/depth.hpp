@@ -21,7 +21,7 @@
 #include <utility>
 #include <vector>
 
-#include "fingerpad/core/expects.hpp"
+#include "fingerpad/core/check.hpp"
 #include "fingerpad/core/grid.hpp"
 #include "fingerpad/core/status.hpp"
 #include "fingerpad/depth/depth_inverse.hpp"

@@ -17,7 +17,7 @@
 #include <vector>
 
 #include "fingerpad/core/detail/reserved_vector.hpp"
-#include "fingerpad/core/expects.hpp"
+#include "fingerpad/core/check.hpp"
 #include "fingerpad/core/grid.hpp"
 #include "fingerpad/core/scalar.hpp"
 #include "fingerpad/core/status.hpp"

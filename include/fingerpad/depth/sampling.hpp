@@ -16,7 +16,7 @@
 #include <utility>
 #include <vector>
 
-#include "fingerpad/core/expects.hpp"
+#include "fingerpad/core/check.hpp"
 #include "fingerpad/core/grid.hpp"
 #include "fingerpad/core/scalar.hpp"
 #include "fingerpad/depth/depth_inverse.hpp"

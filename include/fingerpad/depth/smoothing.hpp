@@ -15,7 +15,7 @@
 #include <cmath>
 #include <cstddef>
 
-#include "fingerpad/core/expects.hpp"
+#include "fingerpad/core/check.hpp"
 #include "fingerpad/core/grid.hpp"
 
 namespace fingerpad {

@@ -15,7 +15,7 @@
 // sample, from preslip.hpp or elsewhere. While the state is not known the command does not change.
 #include <cstdint>
 
-#include "fingerpad/core/expects.hpp"
+#include "fingerpad/core/check.hpp"
 #include "fingerpad/core/grid.hpp"
 #include "fingerpad/core/scalar.hpp"
 #include "fingerpad/foam/preslip_status.hpp"

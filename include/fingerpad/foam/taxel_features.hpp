@@ -25,7 +25,7 @@
 #include <vector>
 
 #include "fingerpad/core/detail/reserved_vector.hpp"
-#include "fingerpad/core/expects.hpp"
+#include "fingerpad/core/check.hpp"
 #include "fingerpad/core/grid.hpp"
 #include "fingerpad/core/scalar.hpp"
 #include "fingerpad/foam/detail/taxel_window.hpp"

@@ -4,7 +4,7 @@
 // Options of a foam array, and of the window in which its vibrations are detected.
 #include <limits>
 
-#include "fingerpad/core/expects.hpp"
+#include "fingerpad/core/check.hpp"
 #include "fingerpad/core/grid.hpp"
 #include "fingerpad/core/scalar.hpp"
 

@@ -8,7 +8,7 @@
 #include <cmath>
 #include <cstddef>
 
-#include "fingerpad/core/expects.hpp"
+#include "fingerpad/core/check.hpp"
 #include "fingerpad/core/scalar.hpp"
 #include "fingerpad/math/detail/small_matrices.hpp"
 #include "fingerpad/math/detail/zeros.hpp"

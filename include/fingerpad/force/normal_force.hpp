@@ -19,7 +19,7 @@
 #include <cstddef>
 #include <optional>
 
-#include "fingerpad/core/expects.hpp"
+#include "fingerpad/core/check.hpp"
 #include "fingerpad/core/point.hpp"
 #include "fingerpad/core/scalar.hpp"
 #include "fingerpad/force/force_curve.hpp"

@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "fingerpad/core/dots.hpp"
-#include "fingerpad/core/expects.hpp"
+#include "fingerpad/core/check.hpp"
 #include "fingerpad/core/scalar.hpp"
 #include "fingerpad/force/wrench.hpp"
 

@@ -20,7 +20,7 @@
 #include <cmath>
 #include <cstddef>
 
-#include "fingerpad/core/expects.hpp"
+#include "fingerpad/core/check.hpp"
 #include "fingerpad/core/point.hpp"
 #include "fingerpad/core/scalar.hpp"
 #include "fingerpad/force/force_status.hpp"

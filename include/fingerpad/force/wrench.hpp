@@ -19,7 +19,7 @@
 #include <vector>
 
 #include "fingerpad/core/dots.hpp"
-#include "fingerpad/core/expects.hpp"
+#include "fingerpad/core/check.hpp"
 #include "fingerpad/core/grid.hpp"
 #include "fingerpad/core/point.hpp"
 #include "fingerpad/core/scalar.hpp"

@@ -16,7 +16,7 @@
 #include <limits>
 #include <vector>
 
-#include "fingerpad/core/expects.hpp"
+#include "fingerpad/core/check.hpp"
 #include "fingerpad/math/rigid_fit.hpp"
 #include "fingerpad/motion/detail/dot_frame.hpp"
 #include "fingerpad/motion/motion_result.hpp"

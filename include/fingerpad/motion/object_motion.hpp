@@ -14,7 +14,7 @@
 #include <cstddef>
 #include <utility>
 
-#include "fingerpad/core/expects.hpp"
+#include "fingerpad/core/check.hpp"
 #include "fingerpad/core/grid.hpp"
 #include "fingerpad/motion/contact_map.hpp"
 #include "fingerpad/motion/detail/dot_frame.hpp"

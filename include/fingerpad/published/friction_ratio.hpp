@@ -14,7 +14,7 @@
 #include <cstdint>
 
 #include "fingerpad/core/dots.hpp"
-#include "fingerpad/core/expects.hpp"
+#include "fingerpad/core/check.hpp"
 #include "fingerpad/core/scalar.hpp"
 
 namespace fingerpad {

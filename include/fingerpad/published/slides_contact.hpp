@@ -12,7 +12,7 @@
 #include <numbers>
 #include <utility>
 
-#include "fingerpad/core/expects.hpp"
+#include "fingerpad/core/check.hpp"
 #include "fingerpad/core/grid.hpp"
 #include "fingerpad/core/scalar.hpp"
 #include "fingerpad/published/contact_region.hpp"

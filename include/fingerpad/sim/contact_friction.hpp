@@ -11,7 +11,7 @@
 #include <concepts>
 #include <numbers>
 
-#include "fingerpad/core/expects.hpp"
+#include "fingerpad/core/check.hpp"
 #include "fingerpad/core/scalar.hpp"
 
 namespace fingerpad {

@@ -6,7 +6,7 @@
 // one; the Burgers model has both in series. Strains are linear in the stress; units MPa, s.
 #include <cmath>
 
-#include "fingerpad/core/expects.hpp"
+#include "fingerpad/core/check.hpp"
 #include "fingerpad/core/scalar.hpp"
 
 namespace fingerpad {

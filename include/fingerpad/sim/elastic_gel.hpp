@@ -10,7 +10,7 @@
 // incompressible gel (poisson = 0.5) and good for a nearly incompressible one.
 #include <cmath>
 
-#include "fingerpad/core/expects.hpp"
+#include "fingerpad/core/check.hpp"
 #include "fingerpad/core/point.hpp"
 #include "fingerpad/core/scalar.hpp"
 

@@ -10,7 +10,7 @@
 // phase sqrt(k/m) t in that type.
 #include <cmath>
 
-#include "fingerpad/core/expects.hpp"
+#include "fingerpad/core/check.hpp"
 #include "fingerpad/core/scalar.hpp"
 #include "fingerpad/sim/detail/oscillation.hpp"
 

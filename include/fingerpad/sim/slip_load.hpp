@@ -9,7 +9,7 @@
 //   y = z^2 / 2p + sin(a t)                       while lifting
 #include <cmath>
 
-#include "fingerpad/core/expects.hpp"
+#include "fingerpad/core/check.hpp"
 #include "fingerpad/core/scalar.hpp"
 #include "fingerpad/sim/contact_friction.hpp"
 #include "fingerpad/sim/mass_spring_damper.hpp"

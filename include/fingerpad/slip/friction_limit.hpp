@@ -17,7 +17,7 @@
 #include <cstdint>
 
 #include "fingerpad/core/dots.hpp"
-#include "fingerpad/core/expects.hpp"
+#include "fingerpad/core/check.hpp"
 #include "fingerpad/core/grid.hpp"
 #include "fingerpad/core/scalar.hpp"
 #include "fingerpad/slip/detail/dot_surface.hpp"

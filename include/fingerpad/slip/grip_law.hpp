@@ -4,7 +4,7 @@
 // Inputs, law and results of grip control (grip_control.hpp).
 #include <cstdint>
 
-#include "fingerpad/core/expects.hpp"
+#include "fingerpad/core/check.hpp"
 #include "fingerpad/core/scalar.hpp"
 
 namespace fingerpad {

@@ -17,7 +17,7 @@
 #include <vector>
 
 #include "fingerpad/core/dots.hpp"
-#include "fingerpad/core/expects.hpp"
+#include "fingerpad/core/check.hpp"
 #include "fingerpad/core/grid.hpp"
 #include "fingerpad/math/detail/small_matrices.hpp"
 #include "fingerpad/slip/detail/dot_doubts.hpp"

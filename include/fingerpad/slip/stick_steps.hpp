@@ -9,7 +9,7 @@
 #include <cmath>
 #include <cstddef>
 
-#include "fingerpad/core/expects.hpp"
+#include "fingerpad/core/check.hpp"
 #include "fingerpad/slip/detail/dot_doubts.hpp"
 #include "fingerpad/slip/detail/dot_places.hpp"
 #include "fingerpad/slip/detail/similarity.hpp"

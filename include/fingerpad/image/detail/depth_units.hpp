@@ -17,7 +17,7 @@
 #include <limits>
 #include <type_traits>
 
-#include "fingerpad/core/expects.hpp"
+#include "fingerpad/core/check.hpp"
 #include "fingerpad/core/scalar.hpp"
 #include "fingerpad/image/detail/row_lanes.hpp"
 #include "fingerpad/optics/camera.hpp"

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
-#include "fingerpad/core/expects.hpp"
+#include "fingerpad/core/check.hpp"
 
 #include <limits>
 #include <string>
@@ -90,6 +90,31 @@ TEST_CASE("a refusal prints every kind of number", "[expects]") {
   REQUIRE(message(test::Dual<double>(3, 7)) == "A: b = 3, must be good");
   REQUIRE(contains(message(missing), "nan"));
   REQUIRE(contains(message(-infinity), "-inf"));
+}
+
+TEST_CASE("a table of parameters refuses the first that is out of its range", "[expects]") {
+  const auto refusal = [](const auto& given, const Range& range) {
+    return check("A", {{"good", 1, finite_number}, {"b", given, range}, {"later", missing, finite_number}});
+  };
+  const std::string later = "A: later = nan, must be finite";
+  CHECK(refusal(missing, finite_number) == "A: b = nan, must be finite");
+  CHECK(refusal(infinity, finite_number) == "A: b = inf, must be finite");
+  CHECK(refusal(-1e300, finite_number) == later);
+  CHECK(refusal(0.0, positive) == "A: b = 0, must be finite and > 0");
+  CHECK(refusal(infinity, positive) == "A: b = inf, must be finite and > 0");
+  CHECK(refusal(5e-324, positive) == later);
+  CHECK(refusal(-5e-324, not_negative) == "A: b = -4.94065646e-324, must be finite and >= 0");
+  CHECK(refusal(0.0f, not_negative) == later);
+  CHECK(refusal(0, at_least(1)) == "A: b = 0, must be >= 1");
+  CHECK(refusal(1, at_least(1)) == later);
+  CHECK(refusal(0.999, at_least(1)) == "A: b = 0.999, must be finite and >= 1");
+  CHECK(refusal(1.5, within(0, 1)) == "A: b = 1.5, must be in [0, 1]");
+  CHECK(refusal(test::Digits50(1), within(0, 1)) == later);
+  CHECK(refusal(test::Dual<double>(2, 1), within(0, 1)) == "A: b = 2, must be in [0, 1]");
+  CHECK(refusal(4, odd_within(3, 109)) == "A: b = 4, must be odd, in [3, 109]");
+  CHECK(refusal(-3LL, odd_within(-5, 5)) == later);
+  CHECK(refusal(1000000, within(1, 10)) == "A: b = 1000000, must be in [1, 10]");
+  CHECK(check("A", {{"b", 1, finite_number}}).empty());
 }
 
 TEST_CASE("nothing happens for good values", "[expects]") {

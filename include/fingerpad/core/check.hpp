@@ -1,0 +1,166 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+#pragma once
+// Vocabulary: how bad parameters are refused. Every options type has `check(options)`: a table of its
+// parameters and their ranges, which gives the text of the refusal, or "" if all are good. A program
+// can ask before it constructs. Constructors refuse with that text, which names the parameter, its
+// value and its range: they call the installed handler, if any, and throw parameter_error. A program
+// compiled without exceptions aborts instead. Only constructors and calibration refuse; per-frame
+// calls report a status. Compile a whole program either with exceptions or without.
+#include <cmath>
+#include <concepts>
+#include <cstdio>
+#include <cstdlib>
+#include <initializer_list>
+#include <limits>
+#include <stdexcept>
+#include <string>
+
+#include "fingerpad/core/scalar.hpp"
+
+namespace fingerpad {
+inline namespace v0 {
+
+/// What a constructor throws for a bad parameter: "Camera: refractive_index = 0.9, must be >= 1".
+class parameter_error : public std::invalid_argument {
+ public:
+  using std::invalid_argument::invalid_argument;
+};
+
+/// Called with the message before a bad parameter is refused; it may log, throw or not return.
+using refusal_handler = void (*)(const char* message);
+
+namespace detail {
+inline refusal_handler installed_refusal_handler = nullptr;
+}
+
+/// Installs `handler` (nullptr: none) and returns the previous one. Not synchronised: install it
+/// before other threads construct anything.
+inline refusal_handler set_refusal_handler(refusal_handler handler) noexcept {
+  const refusal_handler before = detail::installed_refusal_handler;
+  detail::installed_refusal_handler = handler;
+  return before;
+}
+
+/// Refuses with `message`; never returns.
+[[noreturn]] inline void refuse(const std::string& message) {
+  const refusal_handler handler = detail::installed_refusal_handler;
+  if (handler != nullptr) {
+    handler(message.c_str());
+  }
+#if defined(__cpp_exceptions)
+  throw parameter_error(message);
+#else
+  std::abort();
+#endif
+}
+
+/// The finite numbers that a parameter may have.
+struct Range {
+  double min = -(std::numeric_limits<double>::infinity)();
+  double max = (std::numeric_limits<double>::infinity)();
+  bool above_min = false;  ///< min itself is refused
+  bool odd = false;
+};
+inline constexpr Range finite_number = {};
+inline constexpr Range positive = {.min = 0, .above_min = true};
+inline constexpr Range not_negative = {.min = 0};
+constexpr Range at_least(double min) {
+  return {.min = min};
+}
+constexpr Range within(double min, double max) {
+  return {.min = min, .max = max};
+}
+constexpr Range odd_within(double min, double max) {
+  return {.min = min, .max = max, .odd = true};
+}
+
+/// One line of a table of parameters.
+struct Parameter {
+  template <scalar S>
+  Parameter(const char* label, const S& given, const Range& allowed)
+      : name(label), number(static_cast<double>(value(given))), range(allowed) {}
+  template <std::integral I>
+  Parameter(const char* label, I given, const Range& allowed)
+      : name(label), number(static_cast<double>(given)), range(allowed), whole(true) {}
+
+  const char* name;
+  double number;
+  Range range;
+  bool whole = false;
+
+  bool good() const {
+    return std::isfinite(number) && number >= range.min && number <= range.max &&
+           !(range.above_min && number == range.min) &&
+           !(range.odd && std::fmod(std::fabs(number), 2) != 1);
+  }
+};
+
+namespace detail {
+
+/// "0.025", or all digits of a whole number.
+inline std::string written(double number, bool whole) {
+  char text[64];
+  std::snprintf(text, sizeof text, whole ? "%.0f" : "%.9g", number);
+  return text;
+}
+
+/// "finite and > 0", "in [0, 1]", "odd, in [3, 109]".
+inline std::string written(const Range& range, bool whole) {
+  std::string text = range.odd ? "odd, " : "";
+  if (std::isfinite(range.max)) {
+    return text + (range.above_min ? "in (" : "in [") + written(range.min, false) + ", " +
+           written(range.max, false) + "]";
+  }
+  text += whole ? "" : "finite";
+  if (std::isfinite(range.min)) {
+    text += (whole ? "" : " and ") + std::string(range.above_min ? "> " : ">= ") +
+            written(range.min, false);
+  }
+  return text;
+}
+
+}  // namespace detail
+
+/// The refusal of the first parameter of `owner` that is out of its range, "Camera: pitch_mm = -1,
+/// must be finite and > 0"; "" if all are good.
+inline std::string check(const char* owner, std::initializer_list<Parameter> parameters) {
+  for (const Parameter& p : parameters) {
+    if (!p.good()) {
+      return std::string(owner) + ": " + p.name + " = " + detail::written(p.number, p.whole) +
+             ", must be " + detail::written(p.range, p.whole);
+    }
+  }
+  return "";
+}
+
+/// Refuses options whose check(options) is not "".
+template <class Options>
+void require(const Options& options) {
+  const std::string refusal = check(options);
+  if (!refusal.empty()) {
+    refuse(refusal);
+  }
+}
+
+/// Refuses parameter `name` of `owner` unless `good`; `range` says in words what is allowed.
+template <scalar S>
+void expects(bool good, const char* owner, const char* name, const S& given, const char* range) {
+  if (good) {
+    return;
+  }
+  char number[64];
+  std::snprintf(number, sizeof number, "%.9g", static_cast<double>(value(given)));
+  refuse(std::string(owner) + ": " + name + " = " + number + ", must be " + range);
+}
+
+/// The same for a whole-number parameter.
+inline void expects(
+    bool good, const char* owner, const char* name, long long given, const char* range) {
+  if (!good) {
+    refuse(std::string(owner) + ": " + name + " = " + std::to_string(given) + ", must be " + range);
+  }
+}
+
+}  // namespace v0
+}  // namespace fingerpad
