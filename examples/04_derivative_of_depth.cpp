@@ -2,11 +2,12 @@
 // SPDX-License-Identifier: MIT
 // Computes the derivatives of a depth with respect to the colour and the calibration. With dual
 // numbers as the scalar type, each kernel also returns its exact derivatives.
-#include <Eigen/Core>
+#include <array>
 #include <cmath>
+#include <cstddef>
 #include <cstdio>
 
-#include "fingerpad/adapt/autodiff.hpp"
+#include "fingerpad/adapt/dual.hpp"
 #include "fingerpad/depth/depth.hpp"
 
 namespace {
@@ -27,29 +28,24 @@ S depth_of(const S& red, const S& green, const S& c_red, const S& kappa, const S
 }  // namespace
 
 int main() {
-  constexpr int n = 5;
-  using Vector = Eigen::Matrix<double, n, 1>;
-  using Dual = Eigen::AutoDiffScalar<Vector>;
+  constexpr std::size_t n = 5;
   const char* names[n] = {"red", "green", "c_red", "kappa", "scattering"};
-  const Vector at{{58.0, 39.0, 0.0290, 0.9924, 0.0163}};
+  const std::array<double, n> at = {58.0, 39.0, 0.0290, 0.9924, 0.0163};
 
-  Dual x[n];
-  for (int i = 0; i < n; ++i) {
-    x[i] = Dual(at[i], n, i);
-  }
-  const Dual depth = depth_of(x[0], x[1], x[2], x[3], x[4]);
-  std::printf("depth %.4f mm\n", depth.value());
+  const auto [red, green, c_red, kappa, scattering] = fingerpad::seeded(at);
+  const fingerpad::Dual<n> depth = depth_of(red, green, c_red, kappa, scattering);
+  std::printf("depth %.4f mm\n", depth.value);
 
   bool right = true;
-  for (int i = 0; i < n; ++i) {
+  for (std::size_t i = 0; i < n; ++i) {
     const double h = 1e-5 * at[i];
     const auto moved = [&](double by) {
-      Vector v = at;
+      auto v = at;
       v[i] += by;
       return depth_of(v[0], v[1], v[2], v[3], v[4]);
     };
     const double difference = (moved(h) - moved(-h)) / (2 * h);
-    const double derivative = depth.derivatives()[i];
+    const double derivative = depth.slopes[i];
     std::printf("  d depth / d %-10s %12.6f mm, by finite differences %12.6f mm\n", names[i],
                 derivative, difference);
     right = right && std::abs(derivative - difference) < 1e-6 * std::abs(derivative);

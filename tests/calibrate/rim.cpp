@@ -14,7 +14,7 @@
 #include <string>
 #include <vector>
 
-#include "fingerpad/adapt/autodiff.hpp"
+#include "fingerpad/adapt/dual.hpp"
 #include "fingerpad/force/wrench.hpp"
 #include "support/catch.hpp"
 #include "support/numbers.hpp"
@@ -406,7 +406,7 @@ TEST_CASE("rim calibration: its errors carry into the six axes as told", "[wrenc
   for (Point& d : dragged) {
     d = {d.x + 0.05, d.y + 0.02 - 0.001 * d.x, d.z};
   }
-  using Dual = Eigen::AutoDiffScalar<Eigen::Vector2d>;
+  using Dual = fingerpad::Dual<2>;
   const auto six_axes = [&](const std::array<Dual, 2>& p) {
     const auto as_dual = [](const Row& from) {
       std::vector<Point3<Dual>> to;
@@ -448,7 +448,7 @@ TEST_CASE("rim calibration: its errors carry into the six axes as told", "[wrenc
     const auto found = six_axes(seeded(std::array{fit.length_mm, fit.modulus_n_per_mm}));
     for (std::size_t axis = 0; axis < 6; ++axis) {
       told[axis] += carried_variance(found[axis], covariance) / runs;
-      scatter[axis] += square(found[axis].value() - truth[axis].value()) / runs;
+      scatter[axis] += square(found[axis].value - truth[axis].value) / runs;
     }
   }
   for (std::size_t axis = 0; axis < 6; ++axis) {

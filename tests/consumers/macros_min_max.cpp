@@ -18,7 +18,6 @@
 #include <stdexcept>
 #include <string>
 #include <type_traits>
-#include <unsupported/Eigen/AutoDiff>
 #include <utility>
 #include <vector>
 #if __has_include(<xtensor/containers/xarray.hpp>)
@@ -29,7 +28,7 @@
 
 #define min(a, b) this does not compile
 #define max(a, b) this does not compile
-#include "fingerpad/adapt/autodiff.hpp"
+#include "fingerpad/adapt/dual.hpp"
 #include "fingerpad/adapt/eigen.hpp"
 #include "fingerpad/adapt/mdspan.hpp"
 #include "fingerpad/adapt/opencv.hpp"

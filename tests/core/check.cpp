@@ -94,7 +94,8 @@ TEST_CASE("a refusal prints every kind of number", "[expects]") {
 
 TEST_CASE("a table of parameters refuses the first that is out of its range", "[expects]") {
   const auto refusal = [](const auto& given, const Range& range) {
-    return check("A", {{"good", 1, finite_number}, {"b", given, range}, {"later", missing, finite_number}});
+    return check(
+        "A", {{"good", 1, finite_number}, {"b", given, range}, {"later", missing, finite_number}});
   };
   const std::string later = "A: later = nan, must be finite";
   CHECK(refusal(missing, finite_number) == "A: b = nan, must be finite");

@@ -11,7 +11,7 @@
 #include <type_traits>
 #include <vector>
 
-#include "fingerpad/adapt/autodiff.hpp"
+#include "fingerpad/adapt/dual.hpp"
 #include "fingerpad/published/normal_force.hpp"
 #include "support/catch.hpp"
 #include "support/numbers.hpp"
@@ -382,7 +382,7 @@ TEMPLATE_TEST_CASE("derivatives of the normal force are those of differences",
                    ScaledPower,
                    PublishedPower) {
   constexpr std::size_t n = TestType::size;
-  using D = Eigen::AutoDiffScalar<Eigen::Matrix<double, static_cast<int>(n), 1>>;
+  using D = fingerpad::Dual<n>;
   test::Random random(7);
   for (int k = 0; k < 14; ++k) {
     auto p = TestType::draw(random);
@@ -413,10 +413,10 @@ TEMPLATE_TEST_CASE("derivatives of the normal force are those of differences",
     }
     std::array<D, n> seeded;
     for (std::size_t i = 0; i < n; ++i) {
-      seeded[i] = D(p[i], static_cast<int>(n), static_cast<int>(i));
+      seeded[i] = D::parameter(p[i], i);
     }
     const auto r = TestType::result(seeded);
-    CHECK(r.force_n.value() == TestType::result(p).force_n);
+    CHECK(r.force_n.value == TestType::result(p).force_n);
     for (std::size_t i = 0; i < n; ++i) {
       CAPTURE(k, i, p[0], p[1], p[2], p[3], p[4], p[5]);
       const Digits50 step("1e-15");
@@ -427,7 +427,7 @@ TEMPLATE_TEST_CASE("derivatives of the normal force are those of differences",
       };
       const auto above = at(step), below = at(Digits50(-step));
       const Digits50 slope = (above.force_n - below.force_n) / (2 * step);
-      const double found = r.force_n.derivatives()(static_cast<int>(i));
+      const double found = r.force_n.slopes[i];
       // by roundoff of double, and of a difference across a change of curvature
       CHECK(off(found, slope) <= 1e-12 * (1 + 10 * std::abs(static_cast<double>(slope))));
     }
@@ -455,7 +455,7 @@ TEST_CASE("normal forces in the tests' own dual number", "[normal_force]") {
 }
 
 TEST_CASE("slopes and gradients of curves are derivatives", "[normal_force]") {
-  using D = Eigen::AutoDiffScalar<Eigen::Vector4d>;
+  using D = fingerpad::Dual<4>;
   test::Random random(9);
   const auto close = [](double a, double b) {
     return std::abs(a - b) <= 1e-13 * (1 + std::abs(b));
@@ -465,25 +465,25 @@ TEST_CASE("slopes and gradients of curves are derivatives", "[normal_force]") {
     const auto c = Polynomial::draw(random);
     const PolynomialForce<2> polynomial{c, 1, 10};
     const PolynomialForce<2, D> polynomial_d{
-        {D(c[0], 4, 0), D(c[1], 4, 1), D(c[2], 4, 2)}, D(1.0), D(10.0)};
-    const D force = polynomial_d.force_n(D(m, 4, 3));
-    CHECK(close(polynomial.slope(m), force.derivatives()(3)));
+        {D::parameter(c[0], 0), D::parameter(c[1], 1), D::parameter(c[2], 2)}, D(1.0), D(10.0)};
+    const D force = polynomial_d.force_n(D::parameter(m, 3));
+    CHECK(close(polynomial.slope(m), force.slopes[3]));
     for (std::size_t i = 0; i < 3; ++i) {
-      CHECK(close(polynomial.gradient(m)[i], force.derivatives()(static_cast<int>(i))));
+      CHECK(close(polynomial.gradient(m)[i], force.slopes[i]));
     }
     const auto q = Power::draw(random);
     const PowerLawForce<> power{q[0], q[1], 1, 10};
-    const PowerLawForce<D> power_d{D(q[0], 4, 0), D(q[1], 4, 1), D(1.0), D(10.0)};
-    const D by_power = power_d.force_n(D(m, 4, 3));
-    CHECK(close(power.slope(m), by_power.derivatives()(3)));
+    const PowerLawForce<D> power_d{D::parameter(q[0], 0), D::parameter(q[1], 1), D(1.0), D(10.0)};
+    const D by_power = power_d.force_n(D::parameter(m, 3));
+    CHECK(close(power.slope(m), by_power.slopes[3]));
     for (std::size_t i = 0; i < 2; ++i) {
-      CHECK(close(power.gradient(m)[i], by_power.derivatives()(static_cast<int>(i))));
+      CHECK(close(power.gradient(m)[i], by_power.slopes[i]));
     }
-    const D radius = power_d.radius_mm(D(m, 4, 3));
+    const D radius = power_d.radius_mm(D::parameter(m, 3));
     const D again = power_d.force_n(radius);  // the identity, in every parameter
-    CHECK(close(again.value(), m));
-    CHECK(close(again.derivatives()(3), 1));
-    CHECK(std::abs(again.derivatives()(0)) < 1e-12 * m);
-    CHECK(std::abs(again.derivatives()(1)) < 1e-11 * m);
+    CHECK(close(again.value, m));
+    CHECK(close(again.slopes[3], 1));
+    CHECK(std::abs(again.slopes[0]) < 1e-12 * m);
+    CHECK(std::abs(again.slopes[1]) < 1e-11 * m);
   }
 }

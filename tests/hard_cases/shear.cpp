@@ -9,7 +9,7 @@
 #include <limits>
 #include <vector>
 
-#include "fingerpad/adapt/autodiff.hpp"
+#include "fingerpad/adapt/dual.hpp"
 #include "support/catch.hpp"
 #include "support/numbers.hpp"
 #include "support/pad.hpp"
@@ -129,8 +129,8 @@ TEST_CASE("derivatives of forces and moments are those of differences", "[shear]
 
 TEST_CASE("derivatives of forces by many seeds at once", "[shear]") {
   // derivatives by the coefficients and exponents of the calibration
-  using Ad = Eigen::AutoDiffScalar<Eigen::Matrix<double, 5, 1>>;
-  const auto seed = [](double number, int k) { return Ad(number, 5, k); };
+  using Ad = fingerpad::Dual<5>;
+  const auto seed = [](double number, std::size_t k) { return Ad::parameter(number, k); };
   const ShearNormalisation<Ad> normalisation{Ad(100), seed(0.65, 0), seed(1.7, 1)};
   RadialShear<2, Ad> map;
   map.force = {{seed(2, 2), seed(0.5, 3)}, Ad(5)};
@@ -138,14 +138,14 @@ TEST_CASE("derivatives of forces by many seeds at once", "[shear]") {
   const auto r = Shear(normalisation, map)(Ad(200), {Ad(0.3), Ad(-0.4)}, Ad(0.1));
   const double factor = std::pow(2.0, 0.65), turn = std::pow(2.0, 1.7) * 0.1;
   const double u = 0.5 * factor;  // |d| normalised; the force is 2 u + u^2 / 2 along (0.6, -0.8)
-  const auto fx = r.tangential_force_n.x.derivatives(), fy = r.tangential_force_n.y.derivatives();
-  CHECK(fx(2) == Approx(0.6 * u).epsilon(1e-13));
-  CHECK(fx(3) == Approx(0.6 * u * u).epsilon(1e-13));
-  CHECK(fy(3) == Approx(-0.8 * u * u).epsilon(1e-13));
-  CHECK(fx(0) == Approx(0.6 * (2 * u + u * u) * std::log(2.0)).epsilon(1e-13));
-  CHECK(fx(1) == 0);
-  const auto m = r.moment_n_mm.derivatives();
-  CHECK(m(4) == Approx(turn).epsilon(1e-13));
-  CHECK(m(1) == Approx((30 * turn + 2 * turn * turn) * std::log(2.0)).epsilon(1e-13));
-  CHECK(m(0) == 0);
+  const auto fx = r.tangential_force_n.x.slopes, fy = r.tangential_force_n.y.slopes;
+  CHECK(fx[2] == Approx(0.6 * u).epsilon(1e-13));
+  CHECK(fx[3] == Approx(0.6 * u * u).epsilon(1e-13));
+  CHECK(fy[3] == Approx(-0.8 * u * u).epsilon(1e-13));
+  CHECK(fx[0] == Approx(0.6 * (2 * u + u * u) * std::log(2.0)).epsilon(1e-13));
+  CHECK(fx[1] == 0);
+  const auto m = r.moment_n_mm.slopes;
+  CHECK(m[4] == Approx(turn).epsilon(1e-13));
+  CHECK(m[1] == Approx((30 * turn + 2 * turn * turn) * std::log(2.0)).epsilon(1e-13));
+  CHECK(m[0] == 0);
 }

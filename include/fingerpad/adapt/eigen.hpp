@@ -3,8 +3,11 @@
 #pragma once
 // Eigen matrices, arrays, maps, references and blocks as grids in memory, row- or column-major.
 // Expressions without memory (a + b) need no adapter: they have rows(), cols() and (i, j).
+// Dual numbers as scalars of matrices.
 #include <Eigen/Core>
+#include <cstddef>
 
+#include "fingerpad/adapt/dual.hpp"
 #include "fingerpad/core/grid.hpp"
 
 namespace fingerpad {
@@ -35,3 +38,15 @@ struct grid_traits<G> {
 
 }  // namespace v0
 }  // namespace fingerpad
+
+template <std::size_t N, class Value>
+struct Eigen::NumTraits<fingerpad::Dual<N, Value>> : Eigen::NumTraits<Value> {
+  using Real = fingerpad::Dual<N, Value>;
+  using NonInteger = Real;
+  using Nested = Real;
+  enum {
+    RequireInitialization = 1,
+    AddCost = static_cast<int>(N) + 1,
+    MulCost = 3 * static_cast<int>(N) + 1
+  };
+};

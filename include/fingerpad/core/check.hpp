@@ -1,12 +1,13 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// Vocabulary: how bad parameters are refused. Every options type has `check(options)`: a table of its
-// parameters and their ranges, which gives the text of the refusal, or "" if all are good. A program
-// can ask before it constructs. Constructors refuse with that text, which names the parameter, its
-// value and its range: they call the installed handler, if any, and throw parameter_error. A program
-// compiled without exceptions aborts instead. Only constructors and calibration refuse; per-frame
-// calls report a status. Compile a whole program either with exceptions or without.
+// Vocabulary: how bad parameters are refused. Every options type has `check(options)`: a table of
+// its parameters and their ranges, which gives the text of the refusal, or "" if all are good. A
+// program can ask before it constructs. Constructors refuse with that text, which names the
+// parameter, its value and its range: they call the installed handler, if any, and throw
+// parameter_error. A program compiled without exceptions aborts instead. Only constructors and
+// calibration refuse; per-frame calls report a status. Compile a whole program either with
+// exceptions or without.
 #include <cmath>
 #include <concepts>
 #include <cstdio>

@@ -31,7 +31,7 @@ inline namespace v0 {
 ///   value(x)   x as a `real`, without derivatives, for branches
 /// The primary template serves every type with its own std::numeric_limits. A dual number has none
 /// (the unspecialised std::numeric_limits silently returns 0), so it needs its own traits: see
-/// adapt/autodiff.hpp.
+/// adapt/dual.hpp.
 template <class S>
 struct scalar_traits {
   static_assert(std::numeric_limits<S>::is_specialized,
@@ -43,7 +43,7 @@ struct scalar_traits {
 
 /// A number that behaves as a real one: copyable, built from an int and a double, ordered, and
 /// closed under + - * / (a result may be an expression, as long as it converts back).
-/// Models: float, double, long double, boost::multiprecision::number, Eigen::AutoDiffScalar.
+/// Models: float, double, long double, boost::multiprecision::number, Dual.
 template <class S>
 concept scalar = std::copyable<S> && !std::integral<S> && std::constructible_from<S, double> &&
                  std::constructible_from<S, int> && requires(const S a, const S b) {

@@ -218,14 +218,14 @@ struct LiftOptions {
 /// Refuses bad parameters (parameter_error).
 template <scalar S>
 void expects_valid(const LiftOptions<S>& options) {
-  const auto positive = [](const S& x, const char* name) {
+  const auto expect_positive = [](const S& x, const char* name) {
     expects(is_finite(x) && value(x) > 0, "LiftOptions", name, x, "finite and > 0");
   };
-  positive(options.first_force_n, "first_force_n");
+  expect_positive(options.first_force_n, "first_force_n");
   expects(
       is_finite(options.max_force_n) && value(options.max_force_n) >= value(options.first_force_n),
       "LiftOptions", "max_force_n", options.max_force_n, "finite and >= first_force_n");
-  positive(options.height_mm, "height_mm");
+  expect_positive(options.height_mm, "height_mm");
   expects(detail::divides(options.force_step_n, S(options.max_force_n - options.first_force_n)),
           "LiftOptions", "force_step_n", options.force_step_n,
           "finite and > 0, in at most a million steps from first to most force");

@@ -43,20 +43,20 @@ constexpr bool is_reading(const S& reading) {
 /// Refuses bad parameters (parameter_error).
 template <scalar S>
 void expects_valid(const TaxelOptions<S>& o) {
-  const auto positive = [](const S& x, const char* name) {
+  const auto expect_positive = [](const S& x, const char* name) {
     expects(is_finite(x) && value(x) > 0, "TaxelOptions", name, x, "finite and > 0");
   };
-  const auto not_negative = [](const S& x, const char* name) {
+  const auto expect_not_negative = [](const S& x, const char* name) {
     expects(is_finite(x) && value(x) >= 0, "TaxelOptions", name, x, "finite and >= 0");
   };
-  positive(o.pitch_mm, "pitch_mm");
+  expect_positive(o.pitch_mm, "pitch_mm");
   expects(o.window >= 4 && o.window <= 4096, "TaxelOptions", "window",
           static_cast<long long>(o.window), "in [4, 4096]");
-  positive(o.sample_period_s, "sample_period_s");
-  positive(o.longest_gap_s, "longest_gap_s");
-  not_negative(o.noise, "noise");
-  not_negative(o.noise_factor, "noise_factor");
-  not_negative(o.min_sum, "min_sum");
+  expect_positive(o.sample_period_s, "sample_period_s");
+  expect_positive(o.longest_gap_s, "longest_gap_s");
+  expect_not_negative(o.noise, "noise");
+  expect_not_negative(o.noise_factor, "noise_factor");
+  expect_not_negative(o.min_sum, "min_sum");
   expects(value(o.saturated_at) > 0, "TaxelOptions", "saturated_at", o.saturated_at, "> 0");
   expects(o.stuck_after >= 0, "TaxelOptions", "stuck_after", static_cast<long long>(o.stuck_after),
           ">= 0");

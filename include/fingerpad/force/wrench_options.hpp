@@ -75,11 +75,11 @@ bool is_modulus(const S& n_per_mm) {
 template <scalar S>
 void expects_valid(const WrenchOptions<S>& o) {
   const char* const owner = "WrenchOptions";
-  const auto positive = [&](const S& x, const char* name) {
+  const auto expect_positive = [&](const S& x, const char* name) {
     expects(is_finite(x) && value(x) > 0, owner, name, x, "finite and > 0");
   };
-  positive(o.base_radius_mm, "base_radius_mm");
-  positive(o.side_dot_length_mm, "side_dot_length_mm");
+  expect_positive(o.base_radius_mm, "base_radius_mm");
+  expect_positive(o.side_dot_length_mm, "side_dot_length_mm");
   expects(o.columns >= 8 && o.columns <= 720, owner, "columns", static_cast<long long>(o.columns),
           "in [8, 720]");
   expects(o.rows >= 2 && o.rows <= 1000, owner, "rows", static_cast<long long>(o.rows),
@@ -89,8 +89,8 @@ void expects_valid(const WrenchOptions<S>& o) {
           o.line_step_mm, "in [base_radius_mm / 1000, base_radius_mm / 10]");
   expects(is_finite(o.reach_mm) && !(o.reach_mm < S(4) * o.line_step_mm), owner, "reach_mm",
           o.reach_mm, "finite and >= 4 line_step_mm");
-  positive(o.max_pressure_mpa, "max_pressure_mpa");
-  positive(o.max_residual, "max_residual");
+  expect_positive(o.max_pressure_mpa, "max_pressure_mpa");
+  expect_positive(o.max_residual, "max_residual");
   const S modulus = o.calibrated_modulus_n_per_mm.value_or(S(1));
   expects(detail::membrane::is_modulus(modulus), owner, "calibrated_modulus_n_per_mm", modulus,
           "in [0.005, 50]: N/mm?");

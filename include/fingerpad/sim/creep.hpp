@@ -63,13 +63,13 @@ struct Burgers {
 /// Refuses values out of range (parameter_error).
 template <scalar S>
 void expects_valid(const Burgers<S>& foam) {
-  const auto positive = [](const S& given, const char* name) {
+  const auto expect_positive = [](const S& given, const char* name) {
     expects(value(given) > 0, "Burgers", name, given, "> 0; infinite: rigid");
   };
-  positive(foam.maxwell_modulus_mpa, "maxwell_modulus_mpa");
-  positive(foam.maxwell_viscosity_mpa_s, "maxwell_viscosity_mpa_s");
-  positive(foam.kelvin_voigt_modulus_mpa, "kelvin_voigt_modulus_mpa");
-  positive(foam.kelvin_voigt_viscosity_mpa_s, "kelvin_voigt_viscosity_mpa_s");
+  expect_positive(foam.maxwell_modulus_mpa, "maxwell_modulus_mpa");
+  expect_positive(foam.maxwell_viscosity_mpa_s, "maxwell_viscosity_mpa_s");
+  expect_positive(foam.kelvin_voigt_modulus_mpa, "kelvin_voigt_modulus_mpa");
+  expect_positive(foam.kelvin_voigt_viscosity_mpa_s, "kelvin_voigt_viscosity_mpa_s");
 }
 
 /// Creep compliance, 1/MPa: the strain per MPa after a constant stress has acted for a time. NaN
