@@ -514,7 +514,7 @@ TEST_CASE("rim calibration: other numbers, here of fifty digits", "[wrench]") {
   // a pad in exact balance: flat, so that sines are 1 and one stretch gives its pressure
   using std::abs;
   using std::sqrt;
-  using S = test::Lazy50;
+  using S = test::Digits50;
   const S radius = 18, modulus = S(1) / 3, length = S(4) / 5;
   std::vector<Point3<S>> border;
   for (int j = 0; j < 8; ++j) {

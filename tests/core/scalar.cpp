@@ -12,15 +12,18 @@
 using namespace fingerpad;
 using test::Digits50;
 using test::Dual;
-using test::Lazy50;
 
 static_assert(scalar<float> && scalar<double> && scalar<long double>);
-static_assert(scalar<Digits50> && scalar<Lazy50> && scalar<Dual<double>> && scalar<Dual<float>>);
+static_assert(scalar<Digits50> && scalar<Dual<double>> && scalar<Dual<float>>);
 static_assert(!scalar<int> && !scalar<bool> && !scalar<char> && !scalar<void*>);
 static_assert(!scalar<std::string> && !scalar<const double> && !scalar<double&>);
+// Sums that are expressions and hold references would dangle in `auto`.
+using Lazy50 = boost::multiprecision::number<boost::multiprecision::cpp_bin_float<50>,
+                                             boost::multiprecision::et_on>;
+static_assert(!scalar<Lazy50>);
 
 static_assert(std::same_as<scalar_real_t<float>, float>);
-static_assert(std::same_as<scalar_real_t<Lazy50>, Lazy50>);
+static_assert(std::same_as<scalar_real_t<Digits50>, Digits50>);
 static_assert(std::same_as<scalar_real_t<Dual<float>>, float>);
 
 static_assert(std::same_as<real_of_t<std::uint8_t>, double>);
@@ -40,7 +43,6 @@ TEMPLATE_TEST_CASE("every scalar has a value, an epsilon, NaN and infinities",
                    double,
                    long double,
                    Digits50,
-                   Lazy50,
                    Dual<float>,
                    Dual<Digits50>) {
   using S = TestType;

@@ -472,7 +472,6 @@ TEMPLATE_TEST_CASE("searches: in any number",
                    double,
                    long double,
                    test::Digits50,
-                   test::Lazy50,
                    test::Dual<double>) {
   using S = TestType;
   const auto number = [](const S& x) { return static_cast<double>(value(x)); };

@@ -564,8 +564,7 @@ TEMPLATE_TEST_CASE("taxel features: any scalar",
                    "[taxel_features]",
                    float,
                    long double,
-                   test::Digits50,
-                   test::Lazy50) {
+                   test::Digits50) {
   using S = TestType;
   TaxelOptions<S> o;
   o.pitch_mm = S(2);

@@ -144,7 +144,7 @@ TEMPLATE_TEST_CASE("clamped rim: every number type follows 50 digits",
                    float,
                    double,
                    long double,
-                   test::Lazy50) {
+                   test::Digits50) {
   test::Random random(3);
   const double allowed = 8 * static_cast<double>(epsilon<TestType>());
   for (int k = 0; k < 200; ++k) {

@@ -111,7 +111,7 @@ TEMPLATE_TEST_CASE("the level of the edge lies between inside and outside",
                    "[contact_region]",
                    float,
                    double,
-                   test::Lazy50) {
+                   test::Digits50) {
   using S = TestType;
   rc::prop("for every contact", [] {
     const S inside = static_cast<S>(test::uniform(-0.2, 0.02));

@@ -225,14 +225,6 @@ TEST_CASE("foam contact: the closed form follows 50 digits in other types", "[fo
     const double epsilon = static_cast<double>(std::numeric_limits<long double>::epsilon());
     CHECK(worst_closed_form<long double>(damping.ratio) / epsilon < 4 * lost);
   }
-  const MassSpringDamper<test::Lazy50> lazy{test::Lazy50(1), test::Lazy50(0.25), test::Lazy50(4)};
-  const MassSpringDamper<Digits50> oscillator{Digits50(1), Digits50(0.25), Digits50(4)};
-  const auto motion = ramp_response(lazy, RampLoad<test::Lazy50>{test::Lazy50(1), test::Lazy50(2)},
-                                    Motion<test::Lazy50>{}, test::Lazy50(30));
-  const Answer truth =
-      answer(oscillator, Truth(oscillator, Digits50(30)), {{1, 2}, {0, 0}}, Digits50(30));
-  CHECK(abs(Digits50(Digits50(motion.position_mm) - truth.y)) < Digits50("1e-46"));
-  CHECK(abs(Digits50(Digits50(motion.velocity_mm_per_s) - truth.v)) < Digits50("1e-46"));
 }
 
 TEMPLATE_TEST_CASE("foam contact: 80000 steps follow 50 digits", "[foam_contact]", double, float) {

@@ -218,21 +218,6 @@ TEMPLATE_TEST_CASE("normal forces follow 50 digits",
   }
 }
 
-TEMPLATE_TEST_CASE("expression templates give the same normal force",
-                   "[normal_force]",
-                   PublishedPolynomial,
-                   PublishedPower) {
-  test::Random random(6);
-  for (int k = 0; k < 6; ++k) {
-    const auto p = TestType::draw(random);
-    const auto a = TestType::result(in<Digits50>(p));
-    const auto b = TestType::result(in<test::Lazy50>(p));
-    CHECK(a.status == b.status);
-    CHECK(off(Digits50(b.force_n), a.force_n) < 1e-45);
-    CHECK(off(Digits50(b.variance_n2), a.variance_n2) < 1e-44);
-  }
-}
-
 TEST_CASE("the published equations hold in all of 50 digits", "[normal_force]") {
   // beyond the blend nothing of it remains
   const auto n = [](const char* digits) { return Digits50(digits); };

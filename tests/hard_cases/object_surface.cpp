@@ -138,8 +138,8 @@ TEST_CASE("object surface: fits follow 50 digits", "[surface]") {
 }
 
 TEST_CASE("object surface: numbers whose sums are expressions", "[surface]") {
-  const Image<test::Lazy50> depth = as<test::Lazy50>(bowl(9, 9, 0.5, 0.05));
-  const OrthographicCamera<test::Lazy50> camera = as<test::Lazy50>(centered_on(9, 9, 0.5));
+  const Image<test::Digits50> depth = as<test::Digits50>(bowl(9, 9, 0.5, 0.05));
+  const OrthographicCamera<test::Digits50> camera = as<test::Digits50>(centered_on(9, 9, 0.5));
   const Mask mask(9, 9, 1);
   const auto curvature = [](const auto& k) { return static_cast<double>(k); };
   CHECK(fit<Plane<>>(camera, depth, mask).ok());

@@ -149,7 +149,6 @@ TEMPLATE_TEST_CASE("pre-slip: the same answers in any number",
                    float,
                    long double,
                    test::Digits50,
-                   test::Lazy50,
                    test::Dual<double>) {
   using S = TestType;
   const auto check = [](auto rule) {

@@ -86,14 +86,6 @@ TEMPLATE_TEST_CASE("local rotations follow 50 digits",
     RC_ASSERT(turn.status != MotionStatus::ok ||
               largest_difference(turn.rotation, exact.rotation) < 1e-12);
   });
-  rc::prop("expression templates give the same", [] {
-    const auto before = as<Digits50>(any_neighbourhood());
-    const auto after = as<Digits50>(moved(any_neighbourhood(), 0.05));
-    const auto turn = TestType::turn(before, after);
-    const auto lazy = TestType::turn(as<test::Lazy50>(before), as<test::Lazy50>(after));
-    RC_ASSERT(turn.status == lazy.status);
-    RC_ASSERT(largest_difference(lazy.rotation, turn.rotation) < 1e-40);
-  });
 }
 
 TEST_CASE("the rigid fit is the best there is", "[rotation]") {
@@ -184,8 +176,8 @@ TEST_CASE("in gimbal lock only x -+ z is defined, and z is 0", "[rotation]") {
   }
 }
 
-TEMPLATE_TEST_CASE("whole ways follow in 50 digits", "[rotation]", Digits50, test::Lazy50) {
-  using S = TestType;
+TEST_CASE("whole ways follow in 50 digits", "[rotation]") {
+  using S = Digits50;
   const test::RollingBall ball;
   test::Rolling roll(ball, -3, 1);
   const ObjectMotion<ContactMap, S> map(ball.initial());

@@ -75,9 +75,6 @@ TEST_CASE("tangential forces and moments follow 50 digits", "[shear]") {
     by_float = (std::max)(by_float, worst(answer<float>(s)));
     by_double = (std::max)(by_double, worst(answer<double>(s)));
     by_long = (std::max)(by_long, worst(answer<long double>(s)));
-    const auto lazy = answer<test::Lazy50>(s);
-    CHECK(relative_off(Digits50(lazy.moment_n_mm), exact.moment_n_mm) < 1e-47);
-    CHECK(relative_off(Digits50(lazy.tangential_force_n.x), exact.tangential_force_n.x) < 1e-47);
   }
   INFO(by_float << ' ' << by_double << ' ' << by_long);
   CHECK(by_float < 3e-6);

@@ -219,20 +219,6 @@ TEST_CASE("stick ratios by another formula: what sticks is what one similarity f
   CHECK(other_dots <= updated / 10);
 }
 
-TEST_CASE("expression templates give the same stick ratio", "[stick_ratio]") {
-  const SlippingPattern pattern{.rows = 9, .cols = 9, .contact_pitches = 4.2};
-  const ContactFlags contact = SlippingDots(pattern).contact;
-  const auto recording = frames(3, pattern);
-  const auto a = follow<Default, Digits50>(recording, contact);
-  const auto b = follow<Default, test::Lazy50>(recording, contact);
-  for (std::size_t k = 0; k < recording.size(); ++k) {
-    CHECK(a.results[k].status == b.results[k].status);
-    CHECK(a.states[k].cells == b.states[k].cells);
-    CHECK(std::abs(static_cast<double>(test::Lazy50(
-              b.results[k].angle_rad - test::Lazy50(a.results[k].angle_rad)))) < 1e-40);
-  }
-}
-
 TEMPLATE_TEST_CASE("derivatives of the object's motion are those of differences",
                    "[stick_ratio]",
                    Default,

@@ -883,14 +883,3 @@ TEMPLATE_TEST_CASE("contact shift: derivatives are those of differences",
     }
   }
 }
-
-TEST_CASE("contact shift: expression templates give the same", "[contact_shift]") {
-  const Points free = printed(9, 9), dots = moved(free, {0.2, 0.5, -1});
-  const Mask contact = disc(9, 9, 3);
-  const auto a =
-      shift<EdgeDots, HuberMean, Digits50>(as<Digits50>(free), as<Digits50>(dots), contact);
-  using test::Lazy50;
-  const auto b = shift<EdgeDots, HuberMean, Lazy50>(as<Lazy50>(free), as<Lazy50>(dots), contact);
-  CHECK(a.status == b.status);
-  CHECK(std::abs(static_cast<double>(Digits50(Digits50(b.rotation_rad) - a.rotation_rad))) < 1e-45);
-}

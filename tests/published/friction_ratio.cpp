@@ -115,11 +115,11 @@ TEST_CASE("friction ratio: bad parameters are refused by name", "[friction_ratio
 }
 
 TEST_CASE("friction ratio: any number type", "[friction_ratio]") {
-  using test::Lazy50;
-  const FrictionRatio<Lazy50> digits;
+  using test::Digits50;
+  const FrictionRatio<Digits50> digits;
   auto state = digits.start();
-  (void)digits(Point2<Lazy50>{Lazy50(3), Lazy50(4)}, Lazy50(10), true, state);
-  const auto result = digits(Lazy50(1), Lazy50(3), false, state);
+  (void)digits(Point2<Digits50>{Digits50(3), Digits50(4)}, Digits50(10), true, state);
+  const auto result = digits(Digits50(1), Digits50(3), false, state);
   CHECK(static_cast<double>(result.margin) == Approx(1.0 / 3).epsilon(1e-15));
 
   // derivative of the margin by the grip: F/N^2 over the remembered ratio

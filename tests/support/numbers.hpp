@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 // Number types of the tests besides float, double and long double: fifty digits as the reference,
-// the same with expression templates, and a small dual number.
+// and a dual number that differs from the library's own.
 #include <boost/multiprecision/cpp_bin_float.hpp>
 #include <cmath>
 #include <limits>
@@ -13,9 +13,6 @@ namespace test {
 
 namespace mp = boost::multiprecision;
 using Digits50 = mp::number<mp::cpp_bin_float<50>, mp::et_off>;
-/// Fifty digits whose sums and products are expressions that hold references, as in many number
-/// libraries.
-using Lazy50 = mp::number<mp::cpp_bin_float<50>, mp::et_on>;
 
 /// A number and its derivative with respect to one seed.
 template <class Real>

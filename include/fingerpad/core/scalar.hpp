@@ -4,9 +4,8 @@
 // Vocabulary: what a number is. Every kernel is written once for any `scalar`: float, double, long
 // double, a multiprecision number, or a dual number that carries derivatives.
 //
-// Rules for code on scalars: keep every intermediate in a named S (expression-template numbers hold
-// references), return S and never auto, call mathematics unqualified after `using std::exp;`, write
-// constants as S(2) or from scalar_traits, and branch on value(x).
+// Rules for code on scalars: call mathematics unqualified after `using std::exp;`, write constants
+// as S(2) or from scalar_traits, and branch on value(x).
 #include <cmath>
 #include <concepts>
 #include <limits>
@@ -42,16 +41,16 @@ struct scalar_traits {
 };
 
 /// A number that behaves as a real one: copyable, built from an int and a double, ordered, and
-/// closed under + - * / (a result may be an expression, as long as it converts back).
-/// Models: float, double, long double, boost::multiprecision::number, Dual.
+/// closed under + - * /: the result is an S and not an expression.
+/// Models: float, double, long double, boost::multiprecision::number with et_off, Dual.
 template <class S>
 concept scalar = std::copyable<S> && !std::integral<S> && std::constructible_from<S, double> &&
                  std::constructible_from<S, int> && requires(const S a, const S b) {
-  S(a + b);
-  S(a - b);
-  S(a * b);
-  S(a / b);
-  S(-a);
+  { a + b } -> std::same_as<S>;
+  { a - b } -> std::same_as<S>;
+  { a* b } -> std::same_as<S>;
+  { a / b } -> std::same_as<S>;
+  { -a } -> std::same_as<S>;
   { a < b } -> std::convertible_to<bool>;
 };
 
@@ -96,7 +95,7 @@ constexpr bool is_plausible(const S& x) {
 
 template <scalar S>
 constexpr S square(const S& x) {
-  return S(x * x);
+  return x * x;
 }
 
 namespace detail {
