@@ -11,7 +11,6 @@
 
 #include "bench/support/run.hpp"
 #include "bench/support/scene.hpp"
-#include "fingerpad/published/neighbour_light.hpp"
 
 using namespace fingerpad;
 using bench::Image;
@@ -33,17 +32,16 @@ struct Bench {
 
   std::string group() const { return "radius " + std::to_string(radius_px) + " px"; }
 
-  template <class Disc, class S>
-  NeighbourLightCompensation<Disc, S> compensation() const {
+  template <class S>
+  NeighbourLightCompensation<S> compensation() const {
     return {NeighbourLight<S>{.radius_px = radius_px}, S(scene.pad.camera.pitch_mm * 1.1), free};
   }
 
   /// Exact corrected depths; NaN where no light is to be removed.
   Image<long double> truth() const {
-    const auto compensate = compensation<published::ExactDisc, long double>();
-    auto workspace = compensate.workspace();
+    auto compensate = compensation<long double>();
     Image<long double> out(scene.pad.rows, scene.pad.cols);
-    (void)compensate(pressed, out, workspace);
+    (void)compensate(pressed, out);
     for (std::size_t k = 0; k < out.cells.size(); ++k) {
       if (out.cells[k] == static_cast<long double>(pressed.cells[k])) {
         out.cells[k] = not_a_number<long double>();
@@ -52,27 +50,17 @@ struct Bench {
     return out;
   }
 
-  template <class S, class Compensation, class Truth>
-  void add(const std::string& name,
-           Compensation made,
-           const Truth& truth,
-           const bench::Memory& memory) const {
-    const auto compensate = std::make_shared<const Compensation>(std::move(made));
-    const auto workspace =
-        std::make_shared<typename Compensation::Workspace>(compensate->workspace());
+  template <class S, class Truth>
+  void add(const std::string& name, const Truth& truth) const {
+    const bench::Memory memory;
+    const auto compensate = std::make_shared<NeighbourLightCompensation<S>>(compensation<S>());
     const auto out = std::make_shared<Image<S>>(scene.pad.rows, scene.pad.cols);
     bench::add(
         group() + "/" + name, scene.pixels(), memory.bytes(),
-        [=, this] { (void)(*compensate)(pressed, *out, *workspace); },
+        [=, this] { (void)(*compensate)(pressed, *out); },
         [=](auto& counters) {
           bench::note_errors(counters, "depth", "mm", bench::errors_of(*out, truth()));
         });
-  }
-
-  template <class Disc, class S, class Truth>
-  void add(const std::string& name, const Truth& truth) const {
-    const bench::Memory memory;
-    add<S>(name, compensation<Disc, S>(), truth, memory);
   }
 
   /// `filter(from, to)` uses OpenCV.
@@ -96,10 +84,8 @@ struct Bench {
   void add_all() const {
     const auto exact = bench::kept([this] { return truth(); });
     const cv::Size window(int(2 * radius_px + 1), int(2 * radius_px + 1));
-    add<published::ExactDisc, double>("published::ExactDisc, double", exact);
-    add<published::ExactDisc, float>("published::ExactDisc, float", exact);
-    add<detail::SteppedDisc, double>("SteppedDisc, double", exact);
-    add<detail::SteppedDisc, float>("SteppedDisc, float, the default", exact);
+    add<double>("NeighbourLightCompensation, double", exact);
+    add<float>("NeighbourLightCompensation, float, the default", exact);
     bench::add_streaming(group(), scene.pixels());
     add_opencv("cv::boxFilter of the disc's size",
                [=](const cv::Mat& from, cv::Mat& to) { cv::boxFilter(from, to, CV_32F, window); });

@@ -86,13 +86,12 @@ Trial neighbour_light() {
   const fingerpad::NeighbourLight<float> light{3, 0.004F, 0.2F};
   const Map free_mm = pressed_pad(0, 0);
   std::vector<Press> exact;
-  const fingerpad::NeighbourLightCompensation<> compensation(
+  fingerpad::NeighbourLightCompensation<> compensation(
       light, static_cast<float>(light_pitch_mm), free_mm);
-  auto workspace = compensation.workspace();
   for (int k = 0; k < 12; ++k) {
     const Map measured = pressed_pad(0.8 + 0.2 * k, k % 3 - 1);
     cv::Mat_<float> truth(measured.size());
-    (void)compensation(measured, truth, workspace);
+    (void)compensation(measured, truth);
     exact.emplace_back(measured, Map());
     truth.convertTo(exact.back().second, CV_64F);
   }

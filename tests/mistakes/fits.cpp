@@ -154,18 +154,16 @@ struct Depths {
   std::vector<Pixels> measured = {cap(1, 1), cap(2.5, -2)}, truth;
 
   Depths() {
-    const detail::InclinationSums<detail::SteppedDisc, double> sums(5, pitch_mm,
-                                                                    as_view(reference));
-    auto workspace = sums.workspace();
+    NeighbourLightCompensation<double> light({.radius_px = 5}, pitch_mm, reference);
+    Pixels psi_sum_rad(size, size);
     Random random(3);
     for (const Pixels& l : measured) {
       Pixels t = l;
-      sums.scan(as_view(l), workspace);
+      (void)light.inclination_sums(l, psi_sum_rad);
       for (Index i = 0; i < size; ++i) {
-        sums.sum_row(i, workspace);
         for (Index j = 0; j < size; ++j) {
           const double m = 0.002 * std::exp(0.2 * (l(i, j) - reference(i, j)));
-          t(i, j) -= m * workspace.sum[static_cast<std::size_t>(j)] + 0.01 * random.normal();
+          t(i, j) -= m * psi_sum_rad(i, j) + 0.01 * random.normal();
         }
       }
       truth.push_back(t);
@@ -426,7 +424,7 @@ TEST_CASE("mistakes: neighbouring light", "[mistakes]") {
          all_of(d.measured, scaled(1e3));
          d.reference = times(d.reference, 1e3);
        },
-       "an end of the search"},
+       "less than 100 mm apart"},
       {"pitch in m", [](Depths& d) { d.pitch_mm *= 1e-3; }, "an end of the search"},
       {"pitch in um", [](Depths& d) { d.pitch_mm *= 1e3; }, "mm between pixels"},
       {"measured and true exchanged", [](Depths& d) { std::swap(d.measured, d.truth); },

@@ -211,14 +211,12 @@ std::string of_surface(const std::string& mistake) {
 std::string of_light(const std::string& mistake) {
   const PressedPad pad;
   const bool exchanged = mistake == "free pad and now exchanged";
-  const NeighbourLightCompensation<> light({10}, 0.32F, exchanged ? pad.now : pad.free);
-  auto workspace = light.workspace();
+  NeighbourLightCompensation<> light({10}, 0.32F, exchanged ? pad.now : pad.free);
   Pixels right(size, size), out(size, size);
-  const auto first =
-      light(exchanged ? pad.free : spoilt(mistake, pad.now, pad.free), out, workspace);
-  const NeighbourLightCompensation<> good({10}, 0.32F, pad.free);
-  CHECK(good(pad.now, right, workspace).ok());
-  return !first.ok()                              ? name_of(first.status)
+  const FrameStatus first = light(exchanged ? pad.free : spoilt(mistake, pad.now, pad.free), out);
+  NeighbourLightCompensation<> good({10}, 0.32F, pad.free);
+  CHECK(good(pad.now, right) == FrameStatus::ok);
+  return first != FrameStatus::ok                 ? name_of(first)
          : test::largest_error(right, out) < 0.02 ? "found"
                                                   : "another depth";
 }

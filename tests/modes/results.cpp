@@ -97,13 +97,12 @@ void tell_images(Results& tell) {
   for (std::size_t k = 0; k < from.cells.size(); ++k) {
     from.cells[k] = static_cast<float>(free_mm.cells[k]);
   }
-  static const NeighbourLightCompensation<> compensate(
+  static NeighbourLightCompensation<> compensate(
       {.radius_px = 6}, static_cast<float>(pad.camera.pitch_mm), from);
-  auto light_work = compensate.workspace();
   for (std::size_t k = 0; k < from.cells.size(); ++k) {
     from.cells[k] = static_cast<float>(pressed_mm.cells[k]);
   }
-  (void)compensate(from, to, light_work);
+  (void)compensate(from, to);
   tell("without neighbour light", mean(to));
 }
 

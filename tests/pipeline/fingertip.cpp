@@ -7,6 +7,8 @@
 #include <cstdint>
 #include <numbers>
 #include <string>
+#include <type_traits>
+#include <utility>
 #include <vector>
 
 #include "bench/report/chain/pressed_frames.hpp"
@@ -130,6 +132,9 @@ struct EveryPixel : DepthAlone {
   static constexpr int sampling = 1;
 };
 struct WithLight : EveryPixel {
+  static constexpr bool has_neighbour_light = true;
+};
+struct SampledWithLight : DepthAlone {
   static constexpr bool has_neighbour_light = true;
 };
 template <class Methods>
@@ -368,11 +373,10 @@ TEST_CASE("a fingertip takes the neighbour light off as that method does", "[cha
   const double center = options.camera.center_x_px;
   const double pitch =
       point_at(options.camera, options.camera.center_y_px, center + 1, sum / count).x;
-  const fingerpad::NeighbourLightCompensation<> compensate(
-      *options.neighbour_light, static_cast<float>(pitch), free.depth_mm());
-  auto work = compensate.workspace();
+  fingerpad::NeighbourLightCompensation<> compensate(*options.neighbour_light,
+                                                     static_cast<float>(pitch), free.depth_mm());
   test::Image<float> expected(options.rows, options.cols, 0.0F);
-  CHECK(compensate(plain.depth_mm(), expected, work).ok());
+  CHECK(compensate(plain.depth_mm(), expected) == fingerpad::FrameStatus::ok);
   double largest = 0, moved = 0;
   bool as_many = true;
   for (Index i = 0; i < options.rows; ++i) {
@@ -387,6 +391,67 @@ TEST_CASE("a fingertip takes the neighbour light off as that method does", "[cha
   CHECK(as_many);
   CHECK(largest < 1e-5);
   CHECK(moved > 0.01);
+}
+
+TEST_CASE("a fingertip takes as much neighbour light off samples", "[chain]") {
+  auto options = frames().options();
+  const auto taken_off = [&]<class Plain, class Lit>(TipOf<Plain> tip, std::type_identity<Lit>) {
+    (void)touch_of(tip, frames()[0].view());
+    test::Image<float> free_mm(options.rows, options.cols, 0.0F);
+    const auto copy = [](const auto& from, test::Image<float>& to) {
+      for (Index i = 0; i < to.rows(); ++i) {
+        std::copy_n(from.row(i), to.cols(), &to(i, 0));
+      }
+    };
+    copy(tip.depth_mm(), free_mm);
+    options.neighbour_light = fingerpad::NeighbourLight<float>{.radius_px = 12};
+    options.free_depth_mm = fingerpad::as_view(std::as_const(free_mm));
+    TipOf<Lit> lit(options);
+    CHECK(touch_of(tip, frames()[1].view()).ok());
+    CHECK(touch_of(lit, frames()[1].view()).ok());
+    test::Image<float> taken(options.rows, options.cols, 0.0F);
+    for (Index i = 0; i < options.rows; ++i) {
+      for (Index j = 0; j < options.cols; ++j) {
+        taken(i, j) = tip.depth_mm()(i, j) - lit.depth_mm()(i, j);
+      }
+    }
+    return taken;
+  };
+  const auto every_pixel = taken_off(TipOf<EveryPixel>(options), std::type_identity<WithLight>{});
+  const auto samples =
+      taken_off(TipOf<DepthAlone>(options), std::type_identity<SampledWithLight>{});
+  double product = 0, taken_sq = 0, count = 0;
+  for (std::size_t k = 0; k < samples.cells.size(); ++k) {
+    const auto found = static_cast<double>(samples.cells[k]);
+    const auto wanted = static_cast<double>(every_pixel.cells[k]);
+    if (found == found && wanted == wanted) {
+      product += found * wanted;
+      taken_sq += wanted * wanted;
+      ++count;
+    }
+  }
+  CHECK(count > 10000);
+  CHECK(taken_sq > 1e-5 * count);
+  CHECK(product / taken_sq == Approx(1).margin(0.1));
+}
+
+TEST_CASE("a fingertip says that the neighbour light's free depth is not this pad's", "[chain]") {
+  auto options = frames().options();
+  TipOf<EveryPixel> free(options);
+  (void)touch_of(free, frames()[0].view());
+  test::Image<float> in_m(options.rows, options.cols, 0.0F);
+  for (Index i = 0; i < options.rows; ++i) {
+    for (Index j = 0; j < options.cols; ++j) {
+      in_m(i, j) = free.depth_mm()(i, j) / 1000;
+    }
+  }
+  options.neighbour_light = fingerpad::NeighbourLight<float>{.radius_px = 12};
+  options.free_depth_mm = fingerpad::as_view(std::as_const(in_m));
+  TipOf<SampledWithLight> tip(options);
+  const auto touch = touch_of(tip, frames()[1].view());
+  CHECK(touch.depth.ok());
+  CHECK(touch.neighbour_light == fingerpad::FrameStatus::not_of_this_pad);
+  CHECK(touch.status == fingerpad::FingertipStatus::partial);
 }
 
 TEST_CASE("a fingertip refuses frames and dots of another size", "[chain]") {

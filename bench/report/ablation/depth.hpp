@@ -16,7 +16,6 @@
 #include "fingerpad/depth/depth.hpp"
 #include "fingerpad/depth/neighbour_light.hpp"
 #include "fingerpad/published/depth.hpp"
-#include "fingerpad/published/neighbour_light.hpp"
 #include "membranes.hpp"
 
 namespace bench::ablation {
@@ -43,8 +42,7 @@ class DepthEffects {
     const auto free = measured(estimator_, frame_of(pad, free_mm, 98, 0.25));
     light_ = std::make_unique<fingerpad::NeighbourLightCompensation<>>(
         fingerpad::NeighbourLight<float>(), float(pitch_mm()), free);
-    exact_light_ = std::make_unique<
-        fingerpad::NeighbourLightCompensation<fingerpad::published::ExactDisc, float>>(
+    true_light_ = std::make_unique<fingerpad::NeighbourLightCompensation<>>(
         fingerpad::NeighbourLight<float>(), float(pitch_mm()), free_mm);
   }
 
@@ -69,8 +67,7 @@ class DepthEffects {
     const auto lit = frame_of(pad_, lit_depths(seen.depth_mm), seen.seed, seen.of.noise);
     auto depth = measured(estimator_, lit);
     neighbours_.without_in(seen.of.scene).add(depth_errors(seen, depth));
-    auto workspace = light_->workspace();
-    (void)(*light_)(depth, depth, workspace);
+    (void)(*light_)(depth, depth);
     neighbours_.with_in(seen.of.scene).add(depth_errors(seen, depth));
     return by_default;
   }
@@ -90,8 +87,7 @@ class DepthEffects {
     anchor_.cost_us = cost_us(work(estimator_), work(*box_));
     const auto depth = measured(estimator_, frame);
     Image<float> out(pad_.rows, pad_.cols);
-    auto workspace = light_->workspace();
-    neighbours_.cost_us = cost_us([&] { (void)(*light_)(depth, out, workspace); }, [] {});
+    neighbours_.cost_us = cost_us([&] { (void)(*light_)(depth, out); }, [] {});
     return {place_, neighbours_, smoothing_, anchor_};
   }
 
@@ -106,11 +102,10 @@ class DepthEffects {
     Image<double> lit = truth_mm;
     Image<float> seen(truth_mm.rows(), truth_mm.cols());
     Image<float> out = seen;
-    auto workspace = exact_light_->workspace();
     for (int pass = 0; pass < 6; ++pass) {
       std::transform(lit.cells.begin(), lit.cells.end(), seen.cells.begin(),
                      [](double l) { return static_cast<float>(l); });
-      (void)(*exact_light_)(seen, out, workspace);
+      (void)(*true_light_)(seen, out);
       for (std::size_t k = 0; k < lit.cells.size(); ++k) {
         const double light = static_cast<double>(seen.cells[k]) - static_cast<double>(out.cells[k]);
         lit.cells[k] = (std::max)(truth_mm.cells[k] + light, 0.01 * truth_mm.cells[k]);
@@ -155,8 +150,7 @@ class DepthEffects {
   std::unique_ptr<Raw> raw_;
   std::unique_ptr<Box> box_;
   std::unique_ptr<fingerpad::NeighbourLightCompensation<>> light_;
-  std::unique_ptr<fingerpad::NeighbourLightCompensation<fingerpad::published::ExactDisc, float>>
-      exact_light_;
+  std::unique_ptr<fingerpad::NeighbourLightCompensation<>> true_light_;  // from true depths
 
   Effect place_{.name = "refraction",
                 .quantity = "place of a pixel's point",

@@ -17,7 +17,6 @@
 #include "fingerpad/core/check.hpp"
 #include "fingerpad/core/grid.hpp"
 #include "fingerpad/core/scalar.hpp"
-#include "fingerpad/depth/detail/inclination_sums.hpp"
 #include "fingerpad/depth/neighbour_light.hpp"
 
 namespace fingerpad {
@@ -173,23 +172,25 @@ std::vector<LightSample<S>> light_samples(Index radius_px,
                                           std::span<const Measured> measured_mm,
                                           std::span<const True> true_mm) {
   using std::sqrt;
-  const InclinationSums<SteppedDisc, S> sums(radius_px, pitch_mm, reference);
-  auto workspace = sums.workspace();
+  NeighbourLightCompensation<S> light({radius_px, S(0), S(0)}, pitch_mm, reference);
+  std::vector<S> cells(static_cast<std::size_t>(light.rows() * light.cols()), S(0));
+  const StridedView<S> psi_sum_rad(cells.data(), light.rows(), light.cols(), light.cols());
   std::vector<LightSample<S>> samples;
   S psi_sq = S(0);
+  double known = 0;
   for (std::size_t k = 0; k < measured_mm.size(); ++k) {
     const auto measured = as_view(measured_mm[k]);
     const auto truth = as_view(true_mm[k]);
-    sums.scan(measured, workspace);
-    for (Index i = 0; i < sums.rows(); i += every_px) {
-      sums.sum_row(i, workspace);
-      for (Index j = 0; j < sums.cols(); j += every_px) {
+    (void)light.inclination_sums(measured, psi_sum_rad);  // of any unit: the fit judges
+    for (Index i = 0; i < light.rows(); i += every_px) {
+      for (Index j = 0; j < light.cols(); j += every_px) {
         const S l = S(measured(i, j));
         const S error = l - S(truth(i, j));
         const S risen = l - S(reference(i, j));
+        known += is_finite(error) && is_finite(risen) ? 1 : 0;
         const S most_sq = S(1e4);  // more than 100 mm is not a depth of a fingertip
         if (square(error) < most_sq && square(risen) < most_sq) {
-          samples.push_back({error, risen, workspace.sum[static_cast<std::size_t>(j)]});
+          samples.push_back({error, risen, psi_sum_rad(i, j)});
           psi_sq += square(samples.back().psi_sum_rad);
         }
       }
@@ -198,6 +199,9 @@ std::vector<LightSample<S>> light_samples(Index radius_px,
   const char* const owner = "fit_neighbour_light";
   expects(samples.size() >= 3, owner, "pixels with a reference, measured and true depth",
           static_cast<long long>(samples.size()), ">= 3");
+  const double share = static_cast<double>(samples.size()) / known;
+  expects(share > 0.9, owner, "share of pixels whose depths are less than 100 mm apart", share,
+          "> 0.9: depths in mm");
   const S psi_rms = sqrt(S(psi_sq / S(static_cast<double>(samples.size()))));
   expects(static_cast<double>(value(psi_rms)) > 1e-9, owner,
           "rms of the inclination change summed over the disc", psi_rms,

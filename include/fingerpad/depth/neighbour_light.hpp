@@ -11,8 +11,13 @@
 //   m = m0 exp(n [l(t) - l(t0)]),   l' = max(l - m psi_sum, 0)
 //
 // l must be the smoothed depth: atan of the gradient of a noisy depth measures the noise.
+#include <algorithm>
+#include <cmath>
 #include <concepts>
 #include <cstddef>
+#include <limits>
+#include <string>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -20,7 +25,7 @@
 #include "fingerpad/core/grid.hpp"
 #include "fingerpad/core/scalar.hpp"
 #include "fingerpad/core/status.hpp"
-#include "fingerpad/depth/detail/inclination_sums.hpp"
+#include "fingerpad/image/detail/disc_sums.hpp"
 #include "fingerpad/image/detail/quick_math.hpp"
 #include "fingerpad/image/detail/row_lanes.hpp"
 
@@ -37,62 +42,54 @@ struct NeighbourLight {
   S n_per_mm = S(224) / S(1000);          ///< n, growth of m with depth, finite
 };
 
-/// Refuses values out of range (parameter_error).
 template <scalar S>
-void expects_valid(const NeighbourLight<S>& light) {
-  expects(light.radius_px >= 1 && light.radius_px <= 1000, "NeighbourLight", "radius_px",
-          static_cast<long long>(light.radius_px), "in [1, 1000]");
-  expects(is_finite(light.m0_mm_per_rad), "NeighbourLight", "m0_mm_per_rad", light.m0_mm_per_rad,
-          "finite");
-  expects(is_finite(light.n_per_mm), "NeighbourLight", "n_per_mm", light.n_per_mm, "finite");
+std::string check(const NeighbourLight<S>& light) {
+  return check("NeighbourLight", {{"radius_px", light.radius_px, within(1, 1000)},
+                                  {"m0_mm_per_rad", light.m0_mm_per_rad, finite_number},
+                                  {"n_per_mm", light.n_per_mm, finite_number}});
+}
+
+/// The same light for samples of step x step pixels: the disc has the nearest radius, and m0 makes
+/// up for its fewer pixels.
+template <scalar S>
+NeighbourLight<S> sampled(const NeighbourLight<S>& light, int step) {
+  NeighbourLight<S> out = light;
+  out.radius_px = (std::max)((light.radius_px + step / 2) / step, Index(1));
+  out.m0_mm_per_rad = S(light.m0_mm_per_rad * S(detail::disc_pixels(light.radius_px)) /
+                        S(detail::disc_pixels(out.radius_px)));
+  return out;
 }
 
 namespace detail {
 
 /// The equation for one pixel, or for each lane of a vector: the depth minus the effect of the
-/// neighbours' light, at least 0. A depth of NaN or +infinity stays as it is; the reference depth
-/// must be finite.
+/// neighbours' light, at least 0. A depth of NaN or +infinity stays as it is; a reference of NaN
+/// means that there is no such light.
 template <class V, scalar S>
 [[gnu::always_inline]] inline V without_light_of(const V& depth_mm,
                                                  const V& reference_depth_mm,
                                                  const V& psi_sum_rad,
-                                                 const V& m0_mm_per_rad,
-                                                 const S& n_per_mm) {
-  const V risen = depth_mm - reference_depth_mm;
-  const V m = m0_mm_per_rad * quick_exp(V(n_per_mm * risen));
-  const V compensated = depth_mm - m * psi_sum_rad;
+                                                 const NeighbourLight<S>& light) {
   const V none = every_lane<V>(S(0));
+  const V risen = depth_mm - reference_depth_mm;
+  const V m = light.m0_mm_per_rad * quick_exp(V(light.n_per_mm * risen));
+  const auto is_membrane = known<V>(reference_depth_mm);
+  const V compensated = depth_mm - V(is_membrane ? V(m * psi_sum_rad) : none);
   return compensated < none ? none : compensated;
 }
 
 }  // namespace detail
 
-/// The outcome of a frame. The status is not_of_this_pad if the depths are, on average, a twentieth
-/// of the reference's or less, or twenty times or more, for example because they are in m.
-struct [[nodiscard]] NeighbourLightResult {
-  FrameStatus status = FrameStatus::refused;
-  Index lost_px = 0;  ///< pixels of the reference whose inclination this frame does not show
-
-  bool ok() const { return status == FrameStatus::ok; }
-};
-
-/// Removes the effect of neighbouring light from depth maps, computed in the scalar S. The time
-/// does not depend on r, because the disc is approximated by five nested rectangles with its area
-/// and second moment. published::ExactDisc sums every pixel of the disc.
+/// Removes the effect of neighbouring light from depth maps, computed in the scalar S. Use one
+/// object a thread. A frame takes O(rows cols r) and allocates nothing.
 ///
-/// Missing pixels (not finite) are left out of the disc, and their neighbours use a one-sided
-/// difference. If the reference has such a pixel, the membrane is there and was only not seen: the
-/// disc's sum is scaled up to the number of pixels that the reference has in it. Elsewhere there is
-/// no membrane, and nothing is added.
-///
-/// Threads may share one object, each with its own workspace. A frame takes bounded time and
-/// allocates nothing. Frames in which pixels of the reference are missing take twice the work.
-template <class Disc = detail::SteppedDisc, scalar S = float>
+/// Gradients are central differences, one-sided beside a missing pixel (not finite). A pixel that
+/// is missing in the frame but not in the reference is membrane that was not seen: it counts with
+/// the mean change of the disc's other pixels. A pixel that is missing in the reference is not
+/// membrane and adds nothing.
+template <scalar S = float>
 class NeighbourLightCompensation {
  public:
-  /// Scratch memory for a frame; one per thread.
-  using Workspace = typename detail::InclinationSums<Disc, S>::Workspace;
-
   /// `pitch_mm` is the distance on the membrane between the points that neighbouring pixels see,
   /// because the gradient is taken there. It is about 1 + l / h times the pitch on the plate, with
   /// h the virtual height of optics/camera.hpp. One number, for the mean depth of the pad, is
@@ -103,105 +100,235 @@ class NeighbourLightCompensation {
                              const S& pitch_mm,
                              const Reference& reference_depth_mm)
       : light_(checked(light, pitch_mm, as_view(reference_depth_mm))),
-        sums_(light.radius_px, pitch_mm, as_view(reference_depth_mm)) {
-    const auto reference = as_view(reference_depth_mm);
-    for (Index i = 0; i < rows(); ++i) {
-      for (Index j = 0; j < cols(); ++j) {
-        const S l = S(reference(i, j));
-        reference_.push_back(is_finite(l) ? l : S(0));
-        m0_.push_back(is_finite(l) ? light.m0_mm_per_rad : S(0));
+        rows_(as_view(reference_depth_mm).rows()),
+        cols_(as_view(reference_depth_mm).cols()),
+        per_mm_(S(1) / pitch_mm),
+        steps_per_rad_(steps_per_rad(static_cast<double>(2 * light.radius_px + 1))),
+        depth_mm_(static_cast<std::size_t>((rows_ + 2) * (cols_ + 2)), not_a_number<S>()),
+        psi0_(static_cast<std::size_t>(rows_ * cols_), S(0)),
+        count_(psi0_),
+        change_(rows_, cols_, light.radius_px),
+        lost_(change_),
+        row_(static_cast<std::size_t>(cols_), S(0)),
+        lost_row_(row_),
+        sum_(row_) {
+    load(as_view(reference_depth_mm));
+    reference_mm_ = depth_mm_;
+    for (Index i = 0; i < rows_; ++i) {
+      S* psi0 = psi0_.data() + i * cols_;
+      find_psi(i, psi0);
+      for (Index j = 0; j < cols_; ++j) {
+        row_[static_cast<std::size_t>(j)] = S(detail::known<S>(psi0[j]) ? 1 : 0);
       }
+      lost_.set(i, row_.data());
+    }
+    for (Index i = 0; i < rows_; ++i) {
+      lost_.sum(i, S(1), count_.data() + i * cols_);
     }
   }
 
-  Index rows() const { return sums_.rows(); }
-  Index cols() const { return sums_.cols(); }
-  Workspace workspace() const { return sums_.workspace(); }
+  Index rows() const { return rows_; }
+  Index cols() const { return cols_; }
 
   /// Writes the compensated `depth_mm` to `out`, which may be the same grid. NaN where the input is
-  /// NaN and nowhere else. A grid of another size than the reference is refused before anything is
-  /// written.
+  /// NaN and nowhere else. Not of this pad: the depths are, on average, a twentieth of the
+  /// reference's or less, or twenty times or more, for example because they are in m. A grid of
+  /// another size than the reference is refused before anything is written.
   template <grid Depth, class Out>
-  NeighbourLightResult operator()(const Depth& depth_mm, Out&& out, Workspace& workspace) const {
+  [[nodiscard]] FrameStatus operator()(const Depth& depth_mm, Out&& out) {
+    return each_row(depth_mm, std::forward<Out>(out), [this](Index i, const auto& from) {
+      S* to = row_.data();
+      const S* l = detail::row_of<S>(from, i, to);
+      const S* l0 = padded_row(reference_mm_, i);
+      const S* psi_sum_rad = sum_.data();
+      const NeighbourLight<S> light = light_;
+      detail::for_each_cell<S, bytes>(
+          cols_, [=]<class V>(Index j) __attribute__((always_inline)) {
+            const auto at = [j](const S* cells) { return detail::load_cells<V, S>(cells + j); };
+            const V without = detail::without_light_of<V>(at(l), at(l0), at(psi_sum_rad), light);
+            detail::store_cells<S>(to + j, without);
+          });
+      return to;
+    });
+  }
+
+  /// Writes psi_sum in rad to `out`, for fits of m0 and n. Sizes and status as above.
+  template <grid Depth, class Out>
+  [[nodiscard]] FrameStatus inclination_sums(const Depth& depth_mm, Out&& out) {
+    return each_row(depth_mm, std::forward<Out>(out),
+                    [this](Index, const auto&) { return sum_.data(); });
+  }
+
+ private:
+  /// Bytes of a vector; 0 unless inclination() and quick_exp() have a vector form for S.
+  static constexpr int bytes = std::same_as<S, float> ? detail::native_vector_bytes : 0;
+  static constexpr bool by_steps = std::same_as<S, float> || std::same_as<S, double>;
+
+  static constexpr const char* owner = "NeighbourLightCompensation";
+  template <class View>
+  static const NeighbourLight<S>& checked(const NeighbourLight<S>& light,
+                                          const S& pitch_mm,
+                                          const View& reference) {
+    require(light);
+    if (const std::string text = check(owner, {{"pitch_mm", pitch_mm, positive}}); !text.empty()) {
+      refuse(text);
+    }
+    expects_grid_size(owner, reference.rows(), reference.cols());
+    return light;
+  }
+
+  /// Angles in whole steps have exact sums. A power of two, with which a square of right angles
+  /// stays below the limit of DiscSums.
+  static S steps_per_rad(double side_px) {
+    if constexpr (by_steps) {
+      const double most = detail::DiscSums<S>::limit / (1.6 * side_px * side_px);
+      const double exact = 1 / static_cast<double>((std::numeric_limits<S>::epsilon)());
+      return static_cast<S>((std::min)(std::exp2(std::floor(std::log2(most))), exact));
+    } else {
+      return S(1);
+    }
+  }
+
+  /// Calls result(row, view of the depths) with sum_ computed and writes the row that it returns.
+  template <class Depth, class Out, class Result>
+  FrameStatus each_row(const Depth& depth_mm, Out&& out, const Result& result) {
     static_assert(detail::takes_numbers<Out, S>,
                   "this grid is written to: its cells must be assignable and able to hold NaN");
     const auto from = as_view(depth_mm);
     const auto to = as_view(std::forward<Out>(out));
-    if (from.rows() != rows() || from.cols() != cols() || to.rows() != rows() ||
-        to.cols() != cols() || !sums_.fits(workspace)) {
-      return {};
+    if (from.rows() != rows_ || from.cols() != cols_ || !same_size(from, to)) {
+      return FrameStatus::refused;
     }
-    const bool is_unit = is_in_unit_of_reference(from);  // before `out`, which may be `from`
-    sums_.scan(from, workspace);
-    for (Index i = 0; i < rows(); ++i) {
-      sums_.sum_row(i, workspace);
-      S* row_mm = workspace.row_mm.data();
-      compensate_row(i, detail::row_of<S>(from, i, row_mm), workspace.sum.data(), row_mm);
-      detail::store_row(row_mm, to, i);
+    load(from);
+    is_any_lost_ = false;
+    for (Index i = 0; i < rows_; ++i) {
+      find_psi(i, row_.data());
+      compare(i);
     }
-    return {is_unit ? FrameStatus::ok : FrameStatus::not_of_this_pad, workspace.lost_px};
+    for (Index i = 0; i < rows_; ++i) {
+      find_sum(i);
+      detail::store_row(result(i, from), to, i);
+    }
+    return is_in_unit_of_reference() ? FrameStatus::ok : FrameStatus::not_of_this_pad;
   }
 
- private:
-  /// Whether the depths are in the unit of the reference, judged from every eighth pixel of every
-  /// eighth row.
+  /// First cell of a row in a map with a border of one missing cell.
+  template <class Cells>
+  auto* padded_row(Cells& cells, Index row) const {
+    return cells.data() + (row + 1) * (cols_ + 2) + 1;
+  }
+
+  /// Sets depth_mm_: NaN where missing.
   template <class View>
-  bool is_in_unit_of_reference(const View& from) const {
+  void load(const View& depth) {
+    for (Index i = 0; i < rows_; ++i) {
+      S* to = padded_row(depth_mm_, i);
+      const S* from = detail::row_of<S>(depth, i, to);
+      detail::for_each_cell<S>(cols_, [=]<class V>(Index j) {
+        const V depth_mm = detail::load_cells<V, S>(from + j);
+        const V nothing = depth_mm - depth_mm;  // 0, or NaN if the depth is NaN or infinite
+        detail::store_cells<S>(to + j, V(depth_mm - nothing));
+      });
+    }
+  }
+
+  /// psi of a row in steps; NaN where missing.
+  void find_psi(Index row, S* psi) const {
+    const S* l = padded_row(depth_mm_, row);
+    const Index next = cols_ + 2;
+    const S per_mm = per_mm_, half_per_mm = per_mm_ / S(2), steps_per_rad = steps_per_rad_;
+    const S missing = not_a_number<S>();
+    detail::for_each_cell<S, bytes>(
+        cols_, [=]<class V>(Index j) __attribute__((always_inline)) {
+          const auto at = [l, j](Index k) { return detail::load_cells<V, S>(l + j + k); };
+          const auto slope = [&](Index step) __attribute__((always_inline)) {
+            const V none = detail::every_lane<V>(S(0)), center = at(0);
+            const V after = at(step) - center, before = center - at(-step);
+            const auto has_after = detail::known<V>(after), has_before = detail::known<V>(before);
+            const V rise = V(has_after ? after : none) + V(has_before ? before : none);
+            const auto both = has_after & has_before, any = has_after | has_before;
+            const V per_step =
+                both ? detail::every_lane<V>(half_per_mm) : detail::every_lane<V>(per_mm);
+            return V(any ? V(rise * per_step) : detail::every_lane<V>(missing));
+          };
+          const V across = slope(1), down = slope(next);
+          const V slope_sq = V(across * across + down * down);
+          V steps = V(detail::inclination(slope_sq) * steps_per_rad);
+          if constexpr (by_steps) {
+            using Word = std::conditional_t<sizeof(S) == 4, std::int32_t, std::int64_t>;
+            using Ints = typename detail::RowVector<Word, detail::lanes_in<V, S>>::type;
+            steps = detail::each_as<V>(detail::each_as<Ints>(V(steps + S(0.5))));
+          }
+          detail::store_cells<S>(psi + j, V(steps + (slope_sq - slope_sq)));
+        });
+  }
+
+  /// Sets the row of change_, 0 where psi is missing in row_ or in the reference, and of lost_.
+  void compare(Index row) {
+    const S* psi0 = psi0_.data() + row * cols_;
+    S* psi = row_.data();
+    S* lost = lost_row_.data();
+    bool is_any_lost = false;
+    detail::for_each_cell<S>(cols_, [=, &is_any_lost]<class V>(Index j) {
+      const V none = detail::every_lane<V>(S(0)), one = detail::every_lane<V>(S(1));
+      const V before = detail::load_cells<V, S>(psi0 + j);
+      const V change = detail::load_cells<V, S>(psi + j) - before;
+      const auto is_seen = detail::known<V>(change);
+      const V gone = is_seen ? none : V(detail::known<V>(before) ? one : none);
+      detail::store_cells<S>(psi + j, V(is_seen ? change : none));
+      detail::store_cells<S>(lost + j, gone);
+      is_any_lost = is_any_lost || detail::any_lane(none < gone);
+    });
+    change_.set(row, psi);
+    if (is_any_lost && !is_any_lost_) {
+      lost_.clear();
+      is_any_lost_ = true;
+    }
+    if (is_any_lost_) {
+      lost_.set(row, lost);
+    }
+  }
+
+  /// Sets sum_ to psi_sum of a row in rad.
+  void find_sum(Index row) {
+    change_.sum(row, S(S(1) / steps_per_rad_), sum_.data());
+    if (is_any_lost_) {
+      lost_.sum(row, S(1), lost_row_.data());
+      const S* count = count_.data() + row * cols_;
+      for (std::size_t j = 0; j < sum_.size(); ++j) {
+        const S seen = S(count[j] - lost_row_[j]);
+        if (value(seen) > 0) {
+          sum_[j] = S(sum_[j] * S(count[j] / seen));
+        }
+      }
+    }
+  }
+
+  /// Judged from every eighth pixel of every eighth row.
+  bool is_in_unit_of_reference() const {
     S here = S(0), there = S(0);
-    for (Index i = 0; i < rows(); i += 8) {
-      for (Index j = 0; j < cols(); j += 8) {
-        const S l = S(from(i, j));
-        const S reference = reference_[static_cast<std::size_t>(i * cols() + j)];
+    for (Index i = 0; i < rows_; i += 8) {
+      for (Index j = 0; j < cols_; j += 8) {
+        const S l = padded_row(depth_mm_, i)[j];
+        const S reference = padded_row(reference_mm_, i)[j];
         if (is_finite(l) && S(0) < reference) {
-          here = here + l;
-          there = there + reference;
+          here = S(here + l);
+          there = S(there + reference);
         }
       }
     }
     return !(S(0) < there) || (there < S(20) * here && here < S(20) * there);
   }
 
-  template <class View>
-  static const NeighbourLight<S>& checked(const NeighbourLight<S>& light,
-                                          const S& pitch_mm,
-                                          const View& reference) {
-    expects_valid(light);
-    expects(is_finite(pitch_mm) && value(pitch_mm) > 0, "NeighbourLightCompensation", "pitch_mm",
-            pitch_mm, "finite and > 0");
-    expects_grid_size("NeighbourLightCompensation", reference.rows(), reference.cols());
-    return light;
-  }
-
-  /// `to` may equal `depth_mm`.
-  void compensate_row(Index row, const S* depth_mm, const S* psi_sum_rad, S* to) const {
-    const auto span = sums_.span(row);
-    const S* reference_mm = reference_.data() + row * cols();
-    const S* m0_mm_per_rad = m0_.data() + row * cols();
-    const auto copy = [=](Index first, Index last) {
-      detail::for_each_cell<S>(last - first, [=]<class V>(Index j) {
-        const V l = detail::load_cells<V, S>(depth_mm + first + j);
-        const V none = detail::every_lane<V>(S(0));
-        detail::store_cells<S>(to + first + j, V(l < none ? none : l));
-      });
-    };
-    copy(0, span.first);
-    constexpr int bytes = decltype(sums_)::bytes;
-    const S n_per_mm = light_.n_per_mm;
-    detail::for_each_cell<S, bytes>(
-        span.last - span.first, [=]<class V>(Index k) __attribute__((always_inline)) {
-          const Index j = span.first + k;
-          const auto at = [j](const S* cells) { return detail::load_cells<V, S>(cells + j); };
-          const V l = detail::without_light_of<V>(at(depth_mm), at(reference_mm), at(psi_sum_rad),
-                                                  at(m0_mm_per_rad), n_per_mm);
-          detail::store_cells<S>(to + j, l);
-        });
-    copy(span.last, cols());
-  }
-
   NeighbourLight<S> light_;
-  detail::InclinationSums<Disc, S> sums_;
-  std::vector<S> reference_;  // 0 where missing
-  std::vector<S> m0_;         // per pixel; 0 where the reference is missing
+  Index rows_, cols_;
+  S per_mm_, steps_per_rad_;
+  std::vector<S> depth_mm_, reference_mm_;  // NaN where missing, with a border of one cell
+  std::vector<S> psi0_;                     // of the reference; NaN where missing
+  std::vector<S> count_;                    // of the pixels that have psi0, in each disc
+  detail::DiscSums<S> change_, lost_;       // of psi in steps; of pixels
+  std::vector<S> row_, lost_row_, sum_;
+  bool is_any_lost_ = false;
 };
 
 }  // namespace v0

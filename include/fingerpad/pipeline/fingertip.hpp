@@ -59,10 +59,10 @@ class Fingertip {
       return touch;
     }
     image_.measure(frame, executor_, touch.depth);
-    light_.take_off(image_);
+    touch.neighbour_light = light_.take_off(image_);
     watch(FingertipStage::depth);
     if constexpr (!has_contact) {
-      touch.status = touch.depth.ok() ? FingertipStatus::ok : FingertipStatus::partial;
+      touch.status = has_depth(touch) ? FingertipStatus::ok : FingertipStatus::partial;
       return touch;
     } else {
       touch.contact = region_.find(image_);
@@ -149,8 +149,11 @@ class Fingertip {
                                      detail::FingertipBalance<Options, Methods>,
                                      detail::NoFingertipStage>;
 
+  static bool has_depth(const FingertipResult& touch) {
+    return touch.depth.ok() && touch.neighbour_light == FrameStatus::ok;
+  }
   FingertipStatus status_of(const FingertipResult& touch) const {
-    if (!touch.depth.ok() || !touch.contact.ok()) {
+    if (!has_depth(touch) || !touch.contact.ok()) {
       return FingertipStatus::partial;  // neither contact nor its absence is certain
     }
     const bool all = dots_.answers(touch) && look_up_.answers(touch) && balance_.answers(touch);

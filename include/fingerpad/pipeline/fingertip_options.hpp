@@ -63,7 +63,7 @@ struct NoWatch {
 ///     static constexpr bool has_dots = false, has_wrench = false;
 ///   };
 struct FingertipMethods {
-  /// Removes the neighbour light from the depth; requires sampling 1.
+  /// Removes the neighbour light from the depth.
   static constexpr bool has_neighbour_light = false;
   static constexpr bool has_contact = true;  ///< contact region
   static constexpr bool has_dots = true;     ///< object motion, stick ratio, friction limit
@@ -161,6 +161,8 @@ constexpr const char* name_of(FingertipStatus status) {
 struct [[nodiscard]] FingertipResult {
   FingertipStatus status = FingertipStatus::refused;
   DepthResult depth;
+  /// Of the neighbour light's removal; not_of_this_pad: free_depth_mm is of another pad or unit.
+  FrameStatus neighbour_light = FrameStatus::ok;
   ContactResult contact;
   ObjectMotionResult<double> motion;
   SpatialStickResult<double> stick;  ///< from the dots

@@ -92,30 +92,31 @@ struct FingertipImage {
 /// Compensation of the light from neighbouring membrane.
 template <class Options, class Methods>
 struct FingertipLight {
-  static_assert(Methods::sampling == 1,
-                "neighbour light is computed from whole frames: use sampling = 1");
-  using Compensation = NeighbourLightCompensation<>;
-  std::optional<Compensation> compensate;
-  std::optional<Compensation::Workspace> work;
+  static constexpr int step = Methods::sampling;
+  std::optional<NeighbourLightCompensation<>> compensate;
 
   explicit FingertipLight(const Options& o) {
     if (o.neighbour_light) {
       expects(o.free_depth_mm.rows() == o.rows && o.free_depth_mm.cols() == o.cols,
               "FingertipOptions", "rows of free_depth_mm",
               static_cast<long long>(o.free_depth_mm.rows()), "the size of the frame");
-      compensate.emplace(*o.neighbour_light, pitch_on_membrane_mm(o), o.free_depth_mm);
-      work.emplace(compensate->workspace());
+      const LazyView free_samples(o.rows / step, o.cols / step, [&o](Index i, Index j) {
+        float sum = 0;
+        for (Index k = 0; k < step * step; ++k) {
+          sum += o.free_depth_mm(i * step + k / step, j * step + k % step);
+        }
+        return sum / float(step * step);
+      });
+      compensate.emplace(sampled(*o.neighbour_light, step), pitch_on_membrane_mm(o), free_samples);
     }
   }
 
   template <class Image>
-  void take_off(Image& image) {
-    if (compensate) {
-      (void)(*compensate)(image.depth.view(), image.depth.view(), *work);
-    }
+  FrameStatus take_off(Image& image) {
+    return compensate ? (*compensate)(image.depth.view(), image.depth.view()) : FrameStatus::ok;
   }
 
-  /// Distance between the points seen by neighbouring pixels at the pad's mean depth.
+  /// Distance between the points seen by neighbouring samples at the pad's mean depth.
   static float pitch_on_membrane_mm(const Options& o) {
     double sum_mm = 0, count = 0;
     for (Index i = 0; i < o.rows; ++i) {
@@ -125,7 +126,7 @@ struct FingertipLight {
         count += is_finite(depth_mm) ? 1 : 0;
       }
     }
-    const double beside_axis_px = o.camera.center_x_px + 1;  // x is 0 on the axis
+    const double beside_axis_px = o.camera.center_x_px + step;  // x is 0 on the axis
     return static_cast<float>(
         point_at(o.camera, o.camera.center_y_px, beside_axis_px, sum_mm / count).x);
   }
@@ -421,7 +422,9 @@ struct NoFingertipStage {
   }
   bool answers(const FingertipResult&) const { return true; }
   template <class Image>
-  void take_off(const Image&) {}
+  FrameStatus take_off(const Image&) {
+    return FrameStatus::ok;
+  }
   template <class... Given>
   void follow(Given&&...) {}
   template <class... Given>
