@@ -79,9 +79,10 @@ void print(const char* unit, double residual, const LeftOut& left_out) {
 }
 
 /// Prints a warning for a fit to suspicious samples; the fit is still used.
-void warn(const char* what, const char* by, fingerpad::FitStatus status) {
-  if (status != fingerpad::FitStatus::ok) {
-    std::fprintf(stderr, "warning: %s by %s: %s\n", what, by, name_of(status));
+template <class Fit>
+void warn(const char* what, const char* by, const Fit& fit) {
+  if (!fit.ok()) {
+    std::fprintf(stderr, "warning: %s by %s: %s\n", what, by, fit.cause);
   }
 }
 
@@ -106,7 +107,7 @@ Normal fit_normal(Samples samples, const Measure& by) {
   };
   const Normal plain = fitted(false), compensated = fitted(true);
   const Normal& best = compensated.left_out.rms < plain.left_out.rms ? compensated : plain;
-  warn("normal force", by.name, best.fit.status);
+  warn("normal force", by.name, best.fit);
   const auto& curve = best.fit.curve;
   std::printf("normal force by %s: c1 m + c2 m^2 + c3 m^3 N, m from %.4g to %.4g %s\n", by.name,
               curve.from, curve.to, by.unit);
@@ -134,8 +135,8 @@ Shear fit_shear(Samples samples, const Measure& by) {
   Shear all;
   all.force = fit_tangential_force(samples, by.reference);
   all.moment = fit_moment(samples, by.reference);
-  warn("tangential force", by.name, all.force.status);
-  warn("moment", by.name, all.moment.status);
+  warn("tangential force", by.name, all.force);
+  warn("moment", by.name, all.moment);
   const auto fit = [&](Samples some) {
     const auto force = fit_tangential_force(some, by.reference, all.force.exponent);
     const auto moment = fit_moment(some, by.reference, all.moment.exponent);

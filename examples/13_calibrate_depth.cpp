@@ -36,7 +36,7 @@ int main() {
 
   const auto sd = [&](int k) { return std::sqrt(fit.covariance(k, k)); };
   const auto& fluid = fit.fluid;
-  std::printf("%s, residual %.3f grey levels\n", name_of(fit.status), fit.residual_rms);
+  std::printf("%s, residual %.3f grey levels\n", text_of(fit), fit.residual_rms);
   std::printf("c_red            %.5f +- %.5f per mm, true %.5f\n", fluid.c_red_per_mm, sd(0),
               truth.c_red_per_mm);
   std::printf("c_green - c_red  %.5f +- %.5f per mm, true %.5f\n",

@@ -139,7 +139,7 @@ void add_normal(Samples samples, const Measure& by, Outcome& outcome) {
   report.parameters.push_back({std::string("from_") + by.unit, fit.curve.from});
   report.parameters.push_back({std::string("to_") + by.unit, fit.curve.to});
   report.parameters.push_back({"error_of_an_unseen_load_n", unseen_n});
-  report.doubt(!fit.ok(), name_of(fit.status));
+  report.doubt(!fit.ok(), text_of(fit));
   report.doubt(
       std::isfinite(unseen_n) && unseen_n > 0.05 * largest_n,
       "loads left out of the fit are predicted with an error above 5 % of the largest force");
@@ -173,8 +173,8 @@ void add_shear(Samples samples, const Measure& by, Outcome& outcome) {
     report.parameters.push_back({"angle_of_the_gauge_degrees", degrees * force.gauge_angle_rad,
                                  degrees * force.gauge_angle_sd_rad});
   }
-  report.doubt(!force.ok(), std::string("for the force, ") + name_of(force.status));
-  report.doubt(!moment.ok(), std::string("for the moment, ") + name_of(moment.status));
+  report.doubt(!force.ok(), std::string("for the force, ") + text_of(force));
+  report.doubt(!moment.ok(), std::string("for the moment, ") + text_of(moment));
   outcome.sections["force"]["shear"] = {
       {"by", by.name},
       {"reference", by.reference},
@@ -279,7 +279,7 @@ Outcome rim(const Path& recording, const RimNoise& noise) {
                         fit.correlation * fit.length_sd_mm * fit.modulus_sd_n_per_mm},
                        {fit.correlation * fit.length_sd_mm * fit.modulus_sd_n_per_mm,
                         fit.modulus_sd_n_per_mm * fit.modulus_sd_n_per_mm}};
-  report.doubt(!fit.ok(), name_of(fit.status));
+  report.doubt(!fit.ok(), text_of(fit));
   report.doubt(!std::isfinite(fit.modulus_sd_n_per_mm),
                "the uncertainty of the modulus is unknown: give the noise, or record at least "
                "three pressures");

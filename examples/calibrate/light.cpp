@@ -166,7 +166,7 @@ Outcome absorption(const Path& recording, const Path& sensor_file) {
   for (int i = 0; i < 3; ++i) {
     report.covariance.push_back({fit.covariance(i, 0), fit.covariance(i, 1), fit.covariance(i, 2)});
   }
-  report.doubt(!fit.ok(), name_of(fit.status));
+  report.doubt(!fit.ok(), text_of(fit));
   report.doubt(
       depth_sd > 0.05,
       "the fit alone makes depths uncertain by more than 0.05 mm: press at more places and depths");
@@ -217,7 +217,7 @@ Outcome neighbour_light(const Path& recording, const Path& sensor_file, int max_
                        {"m0_mm_per_rad", fit.light.m0_mm_per_rad, fit.m0_sd},
                        {"n_per_mm", fit.light.n_per_mm, fit.n_sd},
                        {"residual_without_it_mm", fit.rms_before_mm}};
-  report.doubt(!fit.ok(), name_of(fit.status));
+  report.doubt(!fit.ok(), text_of(fit));
   Outcome outcome;
   outcome.sections["neighbour_light"] = {{"radius_px", fit.light.radius_px},
                                          {"m0_mm_per_rad", fit.light.m0_mm_per_rad},
@@ -251,7 +251,7 @@ Outcome contact(const Path& recording, const Path& sensor_file) {
   report.parameters = {{"threshold_per_mm", pad.threshold_per_mm, pad.median_error_per_mm / 2},
                        {"curvature_of_free_pad_per_mm", pad.median_per_mm, pad.median_error_per_mm},
                        {"edge_noise_mm", pad.edge_noise_mm}};
-  report.doubt(!pad.ok(), name_of(pad.status));
+  report.doubt(!pad.ok(), text_of(pad));
   report.doubt(pad.frames < 3, "two frames are too few to estimate the noise: record ten");
   report.doubt(pad.threshold_per_mm < 0.4 * pad.median_per_mm,
                "the threshold is set by the noise instead of the edge: use more light or a wider "

@@ -77,12 +77,12 @@ Outcome dots(const Path& recording, bool slips) {
   }
   fingerpad::StickTest test = stick_test_for(finder.rows() * finder.cols(), noise);
   Report report{.what = "dots", .residual = noise.noise_px, .residual_unit = "px (noise)"};
-  report.doubt(!noise.ok(), name_of(noise.status));
+  report.doubt(!noise.ok(), text_of(noise));
   report.doubt(noise.frames < 5, "four frames are too few to estimate the noise: record twenty");
   if (slips) {
     const auto fit = choose(finder, recording / "frames", noise);
     test = fit.test;
-    report.doubt(!fit.ok(), name_of(fit.status));
+    report.doubt(!fit.ok(), text_of(fit));
   }
   const double relative = noise.noise_error_px / noise.noise_px;
   report.parameters = {{"noise_px", noise.noise_px, noise.noise_error_px},
@@ -124,7 +124,7 @@ Outcome taxels(const Path& recording) {
                        {"largest_factor", noise.largest_factor},
                        {"centroid_noise_mm", noise.centroid_deviation_mm},
                        {"windows", static_cast<double>(noise.windows)}};
-  report.doubt(!noise.ok(), name_of(noise.status));
+  report.doubt(!noise.ok(), text_of(noise));
   report.doubt(noise.largest_factor > options.noise_factor,
                "the readings of a window spread by more than noise_factor times the noise: check "
                "that nothing touched the array");

@@ -202,7 +202,7 @@ void bind_normal_force_fit(py::module_& module) {
       .def_readwrite("rotated", &FitOptions::rotated);
   py::class_<NormalFit>(module, "NormalForceFit", "A fitted curve; NormalForce(fit) looks it up.")
       .def_property_readonly("ok", &NormalFit::ok)
-      .def_property_readonly("status", [](const NormalFit& f) { return name_of(f.status); })
+      .def_property_readonly("status", [](const NormalFit& f) { return text_of(f); })
       .def_property_readonly(
           "coefficients", [](const NormalFit& f) { return f.curve.coefficients; },
           "c_0 to c_3 of c_0 + c_1 m + ..., N over the measure's unit to the k-th")
@@ -227,7 +227,7 @@ void bind_normal_force_fit(py::module_& module) {
 void bind_shear_fit(py::module_& module) {
   py::class_<ShearFit>(module, "ShearFit", "A fitted stiffness; Shear(force, moment) looks it up.")
       .def_property_readonly("ok", [](const ShearFit& f) { return f.fit.ok(); })
-      .def_property_readonly("status", [](const ShearFit& f) { return name_of(f.fit.status); })
+      .def_property_readonly("status", [](const ShearFit& f) { return text_of(f.fit); })
       .def_property_readonly(
           "stiffness", [](const ShearFit& f) { return f.fit.polynomial.coefficients[0]; },
           "N/mm, or N mm/rad")

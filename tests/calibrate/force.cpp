@@ -655,10 +655,10 @@ TEST_CASE("a gauge is not tared if a constant explains most of the residual, in 
   for (const double unit : {1.0, 1e-4, 1e4}) {
     for (const Point2<double>& way : {Point2<double>{unit, 0}, {0, -unit}}) {
       CAPTURE(unit, way.x);
-      CHECK(told(unit, 0.2 * unit, 0.21 * way) == FitStatus::gauge_not_tared);
-      CHECK(told(unit, 0.2 * unit, 0.19 * way) == FitStatus::ok);
-      CHECK(told(unit, 0.01 * unit, 0.11 * way) == FitStatus::gauge_not_tared);
-      CHECK(told(unit, 0.01 * unit, 0.09 * way) == FitStatus::ok);
+      CHECK(told(unit, 0.2 * unit, 0.21 * way) == std::string(cause::gauge_not_tared));
+      CHECK(told(unit, 0.2 * unit, 0.19 * way) == nullptr);
+      CHECK(told(unit, 0.01 * unit, 0.11 * way) == std::string(cause::gauge_not_tared));
+      CHECK(told(unit, 0.01 * unit, 0.09 * way) == nullptr);
     }
   }
 }
@@ -675,12 +675,12 @@ TEST_CASE("a gauge of the normal force is not tared, however small the forces",
       s.normal_force_n = unit * ((1 - constant) * s.measure / 3.25 + constant);
       s.load = k % 3;
     }
-    return fit_normal_force<1>(all(samples)).status;
+    return fit_normal_force<1>(all(samples)).cause;
   };
   for (const double unit : {10.0, 1.0, 0.5, 0.3}) {
     CAPTURE(unit);
-    CHECK(told(unit, 0.11) == FitStatus::gauge_not_tared);
-    CHECK(told(unit, 0.09) == FitStatus::ok);
+    CHECK(told(unit, 0.11) == std::string(cause::gauge_not_tared));
+    CHECK(told(unit, 0.09) == nullptr);
   }
 }
 

@@ -171,7 +171,7 @@ TEST_CASE("intensity calibration: what tells nothing is refused", "[intensity_de
   const Gel gel;
   Random random(1);
   IntensityCalibration calibration(as_it_is);
-  CHECK(calibration.fit().status == FitStatus::nothing_to_check);
+  CHECK(calibration.fit().cause == std::string(cause::nothing_to_check));
   CHECK(!calibration.add(gel.free(), gel.free(), gel.press()));
   CHECK(!calibration.add(gel.free(), Image<double>(height, width + 1, 100.0), gel.press()));
   const Image<double> nothing(height, width, std::numeric_limits<double>::quiet_NaN());
@@ -182,7 +182,7 @@ TEST_CASE("intensity calibration: what tells nothing is refused", "[intensity_de
     level = 150 * 60 / level;
   }
   CHECK(!calibration.add(gel.free(), bright, gel.press()));
-  CHECK(calibration.fit().status == FitStatus::nothing_to_check);
+  CHECK(calibration.fit().cause == std::string(cause::nothing_to_check));
 
   CHECK(begins_with(refusal([&] { (void)calibration.fit(2); }), "IntensityCalibration: terms = 2"));
   const auto refused = [&](const BallPress<>& press) {

@@ -85,7 +85,7 @@ TEST_CASE("pre-slip calibration: marks that do not fit are told", "[preslip]") {
   PreslipCalibration<> calibration(20);
   add_trembling(calibration, 1, 3, 25);
   const auto fit = calibration.fit();
-  CHECK(fit.status == FitStatus::onsets_not_found);
+  CHECK(fit.cause == std::string(fit.onsets_not_found));
   CHECK(fit.precision() < 0.5);
 
   PreslipCalibration<> none, all;
@@ -110,7 +110,7 @@ TEST_CASE("pre-slip calibration: nothing is compared across recordings", "[presl
   }
   const auto fit = calibration.fit();
   CHECK(fit.alarms == 0);
-  CHECK(fit.status == FitStatus::onsets_not_found);
+  CHECK(fit.cause == std::string(fit.onsets_not_found));
 }
 
 namespace {

@@ -30,11 +30,11 @@ using test::Random;
 
 namespace {
 
-/// Response of a fit: the name of its status, or the message of its refusal.
+/// Response of a fit: the its likely mistake, or the message of its refusal.
 template <class Fit>
 std::string said(const Fit& fit) {
   std::string status;
-  const std::string refused = test::refusal([&] { status = name_of(fit().status); });
+  const std::string refused = test::refusal([&] { status = text_of(fit()); });
   return refused == "accepted" ? status : refused;
 }
 
@@ -370,7 +370,7 @@ TEST_CASE("mistakes: by how much a gauge is turned", "[mistakes]") {
     s.displacement_mm = {s.displacement_mm.x, 0};
   };
   CHECK(std::isnan(fitted(1, 0.3, line).gauge_angle_rad));
-  CHECK(fitted(1, 0.3, line).status == FitStatus::gauge_rotated);
+  CHECK(fitted(1, 0.3, line).cause == std::string(cause::gauge_rotated));
   CHECK(test::refusal([&] {
           (void)fitted(1, 1.5, line);
         }).find("displace in several directions to obtain the angle") != std::string::npos);

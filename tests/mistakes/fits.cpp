@@ -131,9 +131,7 @@ std::string said_of_intensity(const Presses& presses) {
     }
   }
   const IntensityFit fit = calibration.fit();
-  return !fit.ok()                               ? name_of(fit.status)
-         : std::abs(fit.law.linear_mm - 4) < 0.2 ? "right"
-                                                 : "wrong";
+  return !fit.ok() ? text_of(fit) : std::abs(fit.law.linear_mm - 4) < 0.2 ? "right" : "wrong";
 }
 
 std::function<void(Presses&)> in_each(const std::function<void(Presses::Press&)>& change) {
@@ -188,7 +186,7 @@ std::string said_of_neighbours(const Depths& depths) {
       depths.pitch_mm, depths.reference, std::span<const Pixels>(depths.measured),
       std::span<const Pixels>(depths.truth), {.min_radius_px = 3, .max_radius_px = 7});
   const bool right = fit.light.radius_px == 5 && std::abs(fit.light.m0_mm_per_rad - 0.002) < 2e-4;
-  return !fit.ok() ? name_of(fit.status) : right ? "right" : "wrong";
+  return !fit.ok() ? text_of(fit) : right ? "right" : "wrong";
 }
 
 void all_of(std::vector<Pixels>& images, const std::function<Pixels(const Pixels&)>& change) {
@@ -226,7 +224,7 @@ std::string said_of_preslip(const Hand& hand) {
     calibration.add(hand.fingers[k], hand.marks[k]);
   }
   const auto fit = calibration.fit();
-  return !fit.ok() ? name_of(fit.status)
+  return !fit.ok() ? text_of(fit)
          : fit.recall() == 1 && fit.precision() == 1
              ? "right"
              : "recall " + std::to_string(fit.recall()).substr(0, 3);
@@ -275,7 +273,7 @@ std::string said_of_thresholds(const Drag& drag) {
   }
   const StickTestFit fit = calibration.fit();
   const double u = fit.test.reference;
-  return !fit.ok() ? name_of(fit.status) : u > 0.7 && u < 3 ? "right" : "wrong";
+  return !fit.ok() ? text_of(fit) : u > 0.7 && u < 3 ? "right" : "wrong";
 }
 
 std::function<void(Drag&)> renamed(const std::function<DotIndex(Index i, Index j, int k)>& from) {

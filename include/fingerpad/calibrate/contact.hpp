@@ -37,9 +37,9 @@ struct ThresholdRule {
 /// Curvature of the free pad. All curvatures in 1/mm.
 template <scalar S = double>
 struct [[nodiscard]] FreePadCurvature {
-  FitStatus status = FitStatus::ok;
-  S threshold_per_mm = S(0);  ///< delta, for ContactTest
-  S median_per_mm = S(0);     ///< of E over the pad
+  const char* cause = nullptr;  ///< likely mistake
+  S threshold_per_mm = S(0);    ///< delta, for ContactTest
+  S median_per_mm = S(0);       ///< of E over the pad
   /// Standard error of the median, from the scatter of the frames' medians; NaN for a single frame.
   /// Times level_share it is that of the threshold, if the level sets the threshold.
   S median_error_per_mm = not_a_number<S>();
@@ -49,7 +49,7 @@ struct [[nodiscard]] FreePadCurvature {
   Index pixels = 0;        ///< with a curvature in every frame
   int frames = 0;
 
-  bool ok() const { return status == FitStatus::ok; }
+  bool ok() const { return cause == nullptr; }
 };
 
 /// Collects curvature statistics of the free pad. Statistic, ring and camera must be those of the
@@ -138,9 +138,11 @@ class FreePadCalibration {
             "> 0: the pad bulges too little for its noise; use a larger ring or "
             "smooth the depth more");
     if (pad.median_per_mm < T(1e-3)) {  // a sphere of 1 m radius: no pad is as flat
-      pad.status = FitStatus::depths_not_in_mm;
+      pad.cause = cause::depths_not_in_mm;
     } else if (2 * means.size() < mean_.size()) {
-      pad.status = FitStatus::depths_missing;
+      pad.cause =
+          "fewer than half of the pixels have a depth: "
+          "check calibration, exposure and frame";
     }
     return pad;
   }

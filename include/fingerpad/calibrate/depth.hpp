@@ -60,7 +60,7 @@ struct [[nodiscard]] AbsorptionFit {
   static constexpr int parameters = 4 + Degree;
   using Covariance = Eigen::Matrix<S, parameters, parameters, Eigen::DontAlign>;
 
-  FitStatus status = FitStatus::not_converged;
+  const char* cause = cause::not_converged;  ///< likely mistake
   Absorption<S> fluid = {};
   RadialScattering<S, Degree> scattering = {};
   Covariance covariance = {};  ///< NaN with as many samples as parameters and no given grey_noise
@@ -71,7 +71,7 @@ struct [[nodiscard]] AbsorptionFit {
                                ///< degree of freedom; NaN with as many samples as parameters
   bool delta_at_limit = false;  ///< the best delta would be < 0; it is held at 0
 
-  bool ok() const { return status == FitStatus::ok; }
+  bool ok() const { return cause == nullptr; }
 };
 
 /// sd in mm of the depth found from this sample's colours, due to the uncertainty of the fit alone:
@@ -181,7 +181,8 @@ S residual_rms(const AbsorptionFit<S, Degree>& fit, std::span<const DepthSample<
 
 /// Likely mistake in the samples of a converged fit.
 template <scalar S, int Degree>
-FitStatus mistake_in(const AbsorptionFit<S, Degree>& fit, std::span<const DepthSample<S>> samples) {
+const char* mistake_in(const AbsorptionFit<S, Degree>& fit,
+                       std::span<const DepthSample<S>> samples) {
   S deepest = S(0), g_least = fit.scattering.at(S(0));
   for (const DepthSample<S>& s : samples) {
     deepest = s.depth_mm < deepest ? deepest : s.depth_mm;
@@ -189,15 +190,15 @@ FitStatus mistake_in(const AbsorptionFit<S, Degree>& fit, std::span<const DepthS
     g_least = g < g_least ? g : g_least;
   }
   if (deepest < S(0.1)) {
-    return FitStatus::depths_not_in_mm;
+    return cause::depths_not_in_mm;
   }
   if (!(g_least > S(0))) {
-    return FitStatus::scatters_no_light;
+    return "g is not positive everywhere: check whether red and green are exchanged";
   }
   if (!is_finite(fit.explained)) {
-    return FitStatus::nothing_to_check;
+    return cause::nothing_to_check;
   }
-  return fit.explained < S(0.9) ? FitStatus::colours_unexplained : FitStatus::ok;
+  return fit.explained < S(0.9) ? cause::colours_unexplained : nullptr;
 }
 
 }  // namespace detail
@@ -260,7 +261,7 @@ AbsorptionFit<S, Degree> fit_absorption(std::span<const DepthSample<S>> samples,
   const Matrix scaled = size.asDiagonal() * qr.inverse_of_r() * fit.grey_noise;
   fit.covariance = scaled.lazyProduct(scaled.transpose());
   fit.explained = detail::explained_by_depth(problem, p);
-  fit.status = converged ? detail::mistake_in(fit, samples) : FitStatus::not_converged;
+  fit.cause = converged ? detail::mistake_in(fit, samples) : cause::not_converged;
   return fit;
 }
 

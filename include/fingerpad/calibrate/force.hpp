@@ -120,7 +120,7 @@ template <class Curve = PolynomialForce<2>>
 struct [[nodiscard]] NormalForceFit {
   using S = typename Curve::number;
 
-  FitStatus status = FitStatus::not_converged;
+  const char* cause = cause::not_converged;  ///< likely mistake
   Curve curve = {};
   CurveErrors<Curve::parameters, S> errors = {};  ///< for NormalForce
   ScaledCompensation<S> compensation = {};        ///< 0 if not fitted
@@ -132,7 +132,7 @@ struct [[nodiscard]] NormalForceFit {
   bool held_rising = false;  ///< without `rising` the curve would fall somewhere; the covariance
                              ///< is then that of the free parameters
 
-  bool ok() const { return status == FitStatus::ok; }
+  bool ok() const { return cause == nullptr; }
 };
 
 /// One half of a Shear: force from displacement, or moment from rotation.
@@ -140,7 +140,7 @@ template <int Degree = 1, scalar S = double>
 struct [[nodiscard]] ShearFit {
   static constexpr std::size_t size = static_cast<std::size_t>(Degree);
 
-  FitStatus status = FitStatus::not_converged;
+  const char* cause = cause::not_converged;  ///< likely mistake
   detail::OddPolynomial<Degree, S> polynomial = {};
   S exponent = S(0);
   std::array<S, size> standard_errors = detail::zeros<S, size>();
@@ -156,13 +156,13 @@ struct [[nodiscard]] ShearFit {
                                              ///< displacements lie near one line
   S gauge_angle_sd_rad = not_a_number<S>();  ///< its standard error
 
-  bool ok() const { return status == FitStatus::ok; }
+  bool ok() const { return cause == nullptr; }
 };
 
 /// A linear map of both components with offsets.
 template <scalar S = double>
 struct [[nodiscard]] LinearShearFit {
-  FitStatus status = FitStatus::not_converged;
+  const char* cause = cause::not_converged;                    ///< likely mistake
   LinearShear<S> map = {};                                     ///< its moment is 0
   std::array<S, 3> x_standard_errors = detail::zeros<S, 3>();  ///< of x_by_x, x_by_y, offset_n.x
   std::array<S, 3> y_standard_errors = detail::zeros<S, 3>();  ///< of y_by_x, y_by_y, offset_n.y
@@ -170,7 +170,7 @@ struct [[nodiscard]] LinearShearFit {
   std::vector<ForceResidual<S>> residuals = {};  ///< all of x, then all of y
   S largest_residual_sds = S(0);
 
-  bool ok() const { return status == FitStatus::ok; }
+  bool ok() const { return cause == nullptr; }
 };
 
 /// Normal force from area or depth: least-squares fit of F = P(measure) (1 + a |d|^2 + b theta^2)
@@ -203,10 +203,10 @@ NormalForceFit<PolynomialForce<Degree, S>> fit_normal_force(std::span<const Forc
   }
   Fit fit = detail::fit_columns<Degree>(contacts, forces, to, terms, options);
   const bool held = options.rising && !detail::rises(fit, terms);
-  const FitStatus mistake =
+  const char* const mistake =
       options.through_zero && !held
           ? detail::offset_in<Degree>(contacts, forces, to, terms, options, fit)
-          : FitStatus::ok;
+          : nullptr;
   if (held) {
     fit = detail::fit_rising<Degree>(contacts, forces, to, terms, options);
   } else {
@@ -221,10 +221,10 @@ NormalForceFit<PolynomialForce<Degree, S>> fit_normal_force(std::span<const Forc
   detail::add_residuals(fit, forces, usable.places, result.residuals);
   result.explained = fit.explained;
   result.largest_residual_sds = fit.worst_sds;
-  const FitStatus units = detail::unit_mistake(
+  const char* const units = detail::unit_mistake(
       usable.samples,
       {.normal = true, .displacement = options.displaced, .rotation = options.rotated});
-  result.status = detail::status_of(fit, units, mistake, options);
+  result.cause = detail::cause_in(fit, units, mistake, options);
   return result;
 }
 
@@ -284,8 +284,8 @@ NormalForceFit<PowerLawForce<S>> fit_power_law(std::span<const ForceSample<S>> s
           result.errors.residual_sd_n, "finite: the samples contradict each other");
   result.explained = fit.explained;
   result.largest_residual_sds = fit.worst_sds;
-  const FitStatus units = detail::unit_mistake(usable.samples, {.normal = true});
-  result.status = detail::status_of(fit, units, FitStatus::ok, options);
+  const char* const units = detail::unit_mistake(usable.samples, {.normal = true});
+  result.cause = detail::cause_in(fit, units, nullptr, options);
   return result;
 }
 
@@ -398,13 +398,13 @@ LinearShearFit<S> fit_linear_shear(std::span<const ForceSample<S>> samples,
   detail::add_residuals(of_y, y, usable.places, result.residuals);
   const Fit& worse = value(of_x.worst_sds) > value(of_y.worst_sds) ? of_x : of_y;
   result.largest_residual_sds = worse.worst_sds;
-  result.status =
+  result.cause =
       !of_x.converged || !of_y.converged
-          ? FitStatus::not_converged
-          : detail::status_of(
+          ? cause::not_converged
+          : detail::cause_in(
                 worse,
                 detail::unit_mistake(usable.samples, {.tangential = true, .displacement = true}),
-                FitStatus::ok, options);
+                nullptr, options);
   return result;
 }
 

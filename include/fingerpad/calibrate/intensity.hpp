@@ -46,7 +46,7 @@ void expects_valid(const BallPress<S>& press) {
 /// The law and its uncertainty.
 template <scalar S = double>
 struct [[nodiscard]] IntensityFit {
-  FitStatus status = FitStatus::nothing_to_check;
+  const char* cause = cause::nothing_to_check;  ///< likely mistake
   IntensityLaw<S> law = {};
   /// Of linear_mm, square_mm and cube_mm, mm^2; 0 for constants not fitted. Errors of neighbouring
   /// pixels are correlated: a block of 16 x 16 pixels counts as one.
@@ -56,7 +56,7 @@ struct [[nodiscard]] IntensityFit {
   S max_depth_mm = S(0);  ///< of the balls; beyond it the law is extrapolated
   Index pixels = 0;       ///< in contact with a ball
 
-  bool ok() const { return status == FitStatus::ok; }
+  bool ok() const { return cause == nullptr; }
 };
 
 /// Collects presses and fits the law to all of them. One press determines one constant; three
@@ -104,9 +104,9 @@ class IntensityCalibration {
     std::vector<Press> presses = presses_;
     Law law = {start_mm(), S(0), S(0)};
     // one constant is fitted together with the contact, which stays fixed for three
-    result.status = solve(presses, law, 1);
+    result.cause = solve(presses, law, 1);
     if (terms == 3 && result.ok()) {
-      result.status = solve(presses, law, 3);
+      result.cause = solve(presses, law, 3);
     }
     if (!result.ok()) {
       return result;
@@ -121,7 +121,7 @@ class IntensityCalibration {
   using Pose = std::array<S, 3>;  // x and y of the axis, depth
   static constexpr int max_steps = 50;
   static constexpr int settling_steps = 10;  // in which the contact may change
-  static constexpr Index min_pixels = 30;  // of a press: more than there are unknowns
+  static constexpr Index min_pixels = 30;    // of a press: more than there are unknowns
   static constexpr Index block_px = 16;
 
   struct Press {
@@ -165,13 +165,13 @@ class IntensityCalibration {
   static S size_of(const S& x) { return x < S(0) ? S(-x) : x; }
 
   /// Gauss-Newton steps on the law and the poses.
-  static FitStatus solve(std::vector<Press>& presses, Law& law, int terms) {
+  static const char* solve(std::vector<Press>& presses, Law& law, int terms) {
     const S settled_mm =
         S((std::max)(scalar_real_t<S>(1e-7), scalar_real_t<S>(1000) * epsilon<S>()));
     for (int step = 0; step < max_steps; ++step) {
       const Equations sums(presses, law, terms);
       if (!sums.good) {
-        return FitStatus::not_converged;
+        return cause::not_converged;
       }
       const Law change = sums.solve_law();
       S moved = S(0);
@@ -192,10 +192,10 @@ class IntensityCalibration {
         }
       }
       if (moved < settled_mm) {
-        return FitStatus::ok;
+        return nullptr;
       }
     }
-    return FitStatus::not_converged;
+    return cause::not_converged;
   }
 
   static Law powers(const S& l, int terms) {
@@ -354,13 +354,13 @@ class IntensityCalibration {
     }
     result.mean_error_mm /= S(static_cast<double>(result.pixels));
     if (result.max_depth_mm < S(0.05)) {
-      result.status = FitStatus::depths_not_in_mm;
+      result.cause = cause::depths_not_in_mm;
     } else if (too_deep || result.max_depth_mm < S(30) * result.mean_error_mm) {
-      result.status = FitStatus::colours_unexplained;
+      result.cause = cause::colours_unexplained;
     }
     const Equations sums(presses, law, terms);
     if (!sums.good) {
-      result.status = FitStatus::nothing_to_check;
+      result.cause = cause::nothing_to_check;
       return;
     }
     const detail::NormalEquations<S, 3> equations(sums.law);

@@ -31,7 +31,7 @@ struct NeighbourLightSearch {
 
 template <scalar S = double>
 struct [[nodiscard]] NeighbourLightFit {
-  FitStatus status = FitStatus::not_converged;
+  const char* cause = cause::not_converged;  ///< likely mistake
   NeighbourLight<S> light = {};
   S rms_before_mm = S(0);  ///< of l - l_true
   S rms_after_mm = S(0);   ///< of the residual of the best fit
@@ -40,7 +40,7 @@ struct [[nodiscard]] NeighbourLightFit {
   Index pixels = 0;        ///< used
   std::vector<S> rms_of_radius_mm = {};  ///< with the best m0 and n, smallest radius first
 
-  bool ok() const { return status == FitStatus::ok; }
+  bool ok() const { return cause == nullptr; }
 };
 
 namespace detail {
@@ -262,10 +262,13 @@ NeighbourLightFit<S> fit_neighbour_light(const std::type_identity_t<S>& pitch_mm
   const bool at_end =
       square(S(0.998)) < square(best.n) ||
       (fit.light.radius_px == search.max_radius_px && search.max_radius_px > search.min_radius_px);
-  fit.status = S(0.9) * fit.rms_before_mm < fit.rms_after_mm ? FitStatus::light_unexplained
-               : best.m0 < S(0)                              ? FitStatus::light_taken_away
-               : at_end                                      ? FitStatus::at_end_of_search
-                                                             : FitStatus::ok;
+  fit.cause = S(0.9) * fit.rms_before_mm < fit.rms_after_mm
+                  ? "neighbouring light removes less than a tenth of the error: "
+                    "check frame, order and unit"
+              : best.m0 < S(0) ? "neighbouring light would darken: "
+                                 "measured and true depths may be exchanged"
+              : at_end         ? cause::at_end_of_search
+                               : nullptr;
   return fit;
 }
 

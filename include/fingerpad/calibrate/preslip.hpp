@@ -24,17 +24,22 @@ inline namespace v0 {
 /// Comparison of alarms with marked onsets.
 template <scalar S = double>
 struct [[nodiscard]] PreslipFit {
-  FitStatus status = FitStatus::onsets_not_found;
-  PreslipOptions<S> options = {};  ///< for Preslip
-  Index onsets = 0;                ///< marked samples in a row count as one
-  Index found = 0;                 ///< onsets with an alarm
-  Index alarms = 0;                ///< samples with an alarm
-  Index right = 0;                 ///< alarms in marked samples
+  /// Cause of a fit without a useful threshold.
+  static constexpr const char* onsets_not_found =
+      "no threshold separates the onsets from the rest: check the marks, or use another "
+      "rule";
+
+  const char* cause = onsets_not_found;  ///< likely mistake
+  PreslipOptions<S> options = {};        ///< for Preslip
+  Index onsets = 0;                      ///< marked samples in a row count as one
+  Index found = 0;                       ///< onsets with an alarm
+  Index alarms = 0;                      ///< samples with an alarm
+  Index right = 0;                       ///< alarms in marked samples
   Index samples = 0;
   Index marked = 0;
   Index ties = 0;  ///< equally good thresholds, these included: the more, the less they matter
 
-  bool ok() const { return status == FitStatus::ok; }
+  bool ok() const { return cause == nullptr; }
   double recall() const { return onsets > 0 ? share(found, onsets) : 0; }
   double precision() const { return alarms > 0 ? share(right, alarms) : 0; }
   /// The precision of a rule that always alarms. A useful rule has a higher `precision`.
@@ -149,9 +154,9 @@ class PreslipCalibration {
     }
     PreslipFit<S> fit = ties[ties.size() / 2];
     fit.ties = static_cast<Index>(ties.size());
-    fit.status = fit.precision() >= min_precision && fit.found > 0 && fit.precision() > fit.chance()
-                     ? FitStatus::ok
-                     : FitStatus::onsets_not_found;
+    fit.cause = fit.precision() >= min_precision && fit.found > 0 && fit.precision() > fit.chance()
+                    ? nullptr
+                    : PreslipFit<S>::onsets_not_found;
     return fit;
   }
 

@@ -57,10 +57,10 @@ struct RimFitOptions {
 /// of the k-th side dot.
 template <scalar S = double>
 struct [[nodiscard]] RimFit {
-  FitStatus status = FitStatus::not_converged;
-  S length_mm = S(0);                  ///< L, the mean stress-free length, mm
-  S modulus_n_per_mm = S(0);           ///< mu t
-  std::vector<S> side_dot_share = {};  ///< r_j of each column of the border; mean about 1
+  const char* cause = cause::not_converged;  ///< likely mistake
+  S length_mm = S(0);                        ///< L, the mean stress-free length, mm
+  S modulus_n_per_mm = S(0);                 ///< mu t
+  std::vector<S> side_dot_share = {};        ///< r_j of each column of the border; mean about 1
   S mooney_share = S(0);      ///< m = C2 / (C1 + C2), for ClampedRim, clamped to [0, 1]; 0 if not
                               ///< fitted
   S mooney_share_sd = S(0);   ///< from apex_noise_mm and the standard error of mu t, if known
@@ -75,7 +75,7 @@ struct [[nodiscard]] RimFit {
   std::vector<S> stretch = {};  ///< mean lambda at each level
   Index missing = 0;  ///< side dots not seen at some level; their r_j is from the other levels
 
-  bool ok() const { return status == FitStatus::ok; }
+  bool ok() const { return cause == nullptr; }
   S operator()(Index k) const { return S(length_mm * side_dot_share[static_cast<std::size_t>(k)]); }
 };
 
@@ -288,20 +288,22 @@ class RimCalibration {
     fit.side_dot_share = balance.shares();
     fit.share_scatter = balance.share_scatter();
     fit.missing = rim_.size() - detail::membrane::seen_in_all(rim_, levels_);
-    fit.status = FitStatus::ok;
+    fit.cause = nullptr;
     for (std::size_t k = 0; k < levels_.size(); ++k) {
       const S lambda = balance.stretch(k, length);
       fit.stretch.push_back(lambda);
       expects(as_double(lambda) >= 1.005, owner, "stretch of the side dots", lambda,
               ">= 1.005 at all pressures");
       if (as_double(levels_[k].pressure_mpa) > 0.2) {
-        fit.status = FitStatus::pressure_not_in_mpa;
+        fit.cause = "a pressure exceeds 0.2: give it in MPa above the pressure around the pad";
       }
     }
     expects(is_finite(modulus) && value(modulus) > 0, owner, "membrane modulus", modulus, "> 0");
     fit.residual = balance.residual(length, modulus);
-    if (fit.status == FitStatus::ok && as_double(fit.residual) > 0.1) {
-      fit.status = FitStatus::pressure_unbalanced;
+    if (fit.cause == nullptr && as_double(fit.residual) > 0.1) {
+      fit.cause =
+          "pressure and pull of the rim do not balance: check that "
+          "the pressures are of the same frames and tared";
     }
     const auto errors = balance.errors(length, modulus, length_found, S(options.side_dot_noise_mm),
                                        S(options.pressure_noise_mpa));

@@ -27,7 +27,7 @@ inline namespace v0 {
 
 /// The chosen U, and the result of each U on the recording.
 struct [[nodiscard]] StickTestFit {
-  FitStatus status = FitStatus::ok;
+  const char* cause = nullptr;  ///< likely mistake
   struct Row {
     StickTest test;
     Index updates = 0;                       ///< frames with a new answer; 0 if U does not exceed
@@ -44,7 +44,7 @@ struct [[nodiscard]] StickTestFit {
   Index steps = 0;         ///< frames with contact and motion
   double furthest_px = 0;  ///< the largest d_max with the smallest U tried
 
-  bool ok() const { return status == FitStatus::ok; }
+  bool ok() const { return cause == nullptr; }
 };
 
 /// Runs the stick ratio with all U over a recording, frame by frame. The recording needs at least
@@ -143,7 +143,7 @@ class StickTestCalibration {
     }
     const bool at_start = &best == &runs_.front() && best.row == 0;  // not limited by noise
     const bool at_end = runs_.size() > 1 && (&best == &runs_.back() || at_start);
-    fit.status = at_end ? FitStatus::at_end_of_search : FitStatus::ok;
+    fit.cause = at_end ? cause::at_end_of_search : nullptr;
     return fit;
   }
 

@@ -27,25 +27,25 @@ inline namespace v0 {
 /// Standard deviations of one position, per axis, in px or whatever unit the dots are in.
 template <scalar S = double>
 struct [[nodiscard]] DotNoise {
-  FitStatus status = FitStatus::ok;
-  S noise_px = S(0);        ///< root mean square over dots and axes
-  S noise_error_px = S(0);  ///< its standard error, for noise independent between frames
-  S largest_px = S(0);      ///< of a single dot, both axes together
-  S inner_px = S(0);        ///< averaged with DotWeights: dots with eight neighbours; NaN: none
-  S edge_px = S(0);         ///< averaged likewise: dots that lack neighbours; NaN: none
-  S published_px = S(0);    ///< the largest sd, over dots and axes, of a position relative to the
-                            ///< dot nearest to the center
-  S slow_share = S(0);      ///< share of the variance that does not appear in the differences of
-                            ///< successive frames: near 0 for noise, near 1 if the pad moved; 0 for
-                            ///< two frames, which cannot show it
-  Index dots = 0;           ///< used
+  const char* cause = nullptr;  ///< likely mistake
+  S noise_px = S(0);            ///< root mean square over dots and axes
+  S noise_error_px = S(0);      ///< its standard error, for noise independent between frames
+  S largest_px = S(0);          ///< of a single dot, both axes together
+  S inner_px = S(0);            ///< averaged with DotWeights: dots with eight neighbours; NaN: none
+  S edge_px = S(0);             ///< averaged likewise: dots that lack neighbours; NaN: none
+  S published_px = S(0);  ///< the largest sd, over dots and axes, of a position relative to the
+                          ///< dot nearest to the center
+  S slow_share = S(0);    ///< share of the variance that does not appear in the differences of
+                          ///< successive frames: near 0 for noise, near 1 if the pad moved; 0 for
+                          ///< two frames, which cannot show it
+  Index dots = 0;         ///< used
   /// Positions left out because they are more than a quarter of a pitch from the dot's place.
   Index out_of_place = 0;
   int frames = 0;
   /// Standard error of edge_px. It has fewer dots than noise_px, and their averages share noise.
   S edge_error_px = S(0);
 
-  bool ok() const { return status == FitStatus::ok; }
+  bool ok() const { return cause == nullptr; }
   /// Measured share of the noise that remains after averaging. It equals denoising_gain() if
   /// neighbours are independent.
   S gain() const { return S(inner_px / noise_px); }
@@ -157,7 +157,9 @@ class DotNoiseCalibration {
     const detail::stick::SumOfSquares<S> steps = rest.steps();
     const S kept = variance * S(4 * steps.count * (1 - 1 / rest.dots_found));
     noise.slow_share = S(1) - S(steps.sum / kept);
-    noise.status = S(0.5) < noise.slow_share ? FitStatus::pad_moved : FitStatus::ok;
+    noise.cause = S(0.5) < noise.slow_share
+                      ? "the dots move slowly, unlike noise: check that the pad is at rest"
+                      : nullptr;
     // subtracting places and motion leaves means with (1 - 1 / frames) (gain^2 - 1 / dots) of the
     // variance of a position
     const double frames_of_dot = rest.positions / rest.dots_found;

@@ -23,7 +23,7 @@ inline namespace v0 {
 /// Noise of a taxel array. Readings are in the unit of the sensor.
 template <scalar S = double>
 struct [[nodiscard]] TaxelNoise {
-  FitStatus status = FitStatus::ok;
+  const char* cause = nullptr;  ///< likely mistake
   Index rows = 0;
   Index cols = 0;
   std::vector<S> deviations;       ///< rows x cols, row by row, for TaxelFeatures. At least
@@ -37,7 +37,7 @@ struct [[nodiscard]] TaxelNoise {
   S centroid_deviation_mm = S(0);  ///< of the centroid, in a window; NaN: never pressed
   Index windows = 0;               ///< number of windows used
 
-  bool ok() const { return status == FitStatus::ok; }
+  bool ok() const { return cause == nullptr; }
   StridedView<const S> view() const { return {deviations.data(), rows, cols, cols}; }
 };
 
@@ -126,8 +126,10 @@ class TaxelNoiseCalibration {
         noise.largest_factor = noise.largest_factor < factor ? factor : noise.largest_factor;
       }
     }
-    noise.status =
-        2 * read < static_cast<Index>(taxels_.size()) ? FitStatus::taxels_missing : FitStatus::ok;
+    noise.cause = 2 * read < static_cast<Index>(taxels_.size())
+                      ? "fewer than half of the taxels gave readings in range: "
+                        "check bytes, range and order"
+                      : nullptr;
     const S centroid_sq = mean_square_of(centroid_variances_);
     noise.centroid_deviation_mm = value(centroid_sq) == 0 ? S(0) : S(sqrt(centroid_sq));
     return noise;

@@ -22,12 +22,12 @@ namespace published {
 
 template <scalar S = double>
 struct [[nodiscard]] Identification {
-  FitStatus status = FitStatus::not_converged;
-  Absorption<S> fluid = {};  ///< parameters after the last step
-  S residual = S(0);         ///< largest of |f(l_i) - f(l_0)| over |f(l_0)|
+  const char* cause = cause::not_converged;  ///< likely mistake
+  Absorption<S> fluid = {};                  ///< parameters after the last step
+  S residual = S(0);                         ///< largest of |f(l_i) - f(l_0)| over |f(l_0)|
   int iterations = 0;
 
-  bool ok() const { return status == FitStatus::ok; }
+  bool ok() const { return cause == nullptr; }
 };
 
 }  // namespace published
@@ -118,7 +118,7 @@ Identification<S> identify_absorption(const DepthSample<S>& reference,
     }
     if (!falls) {  // converged to roundoff, or stuck
       if (value(before) < value(S(1000) * step * step)) {
-        out.status = FitStatus::ok;
+        out.cause = nullptr;
       }
       break;
     }

@@ -120,14 +120,14 @@ NormalForce<S> normal_force_by_depth() {
 enum class AffineBy { displacement, rotation };
 template <scalar S = double>
 struct [[nodiscard]] AffineForceFit {
-  FitStatus status = FitStatus::not_converged;
+  const char* cause = cause::not_converged;  ///< likely mistake
   AffineForce<S> force = {};
   std::array<S, 3> standard_errors = detail::zeros<S, 3>();  ///< of gain, per_unit and offset_n
   std::array<std::array<S, 3>, 3> covariance = detail::zero_matrix<S, 3>();  ///< of these
   S residual_sd_n = S(0);
   std::vector<ForceResidual<S>> residuals = {};
 
-  bool ok() const { return status == FitStatus::ok; }
+  bool ok() const { return cause == nullptr; }
 };
 
 /// Least-squares fit to the samples with a measure > 0, a normal force and a finite motion. Refuses
@@ -166,7 +166,7 @@ AffineForceFit<S> fit_affine_force(std::span<const ForceSample<S>> samples,
   result.covariance = detail::covariance_of<S, 3>(fit);
   result.residual_sd_n = fit.residual_sd;
   detail::add_residuals(fit, forces, usable.places, result.residuals);
-  result.status = detail::status_of(fit, FitStatus::ok, FitStatus::ok, options);
+  result.cause = detail::cause_in(fit, nullptr, nullptr, options);
   return result;
 }
 

@@ -57,7 +57,7 @@ struct UnitsLookedAt {
 /// calibration exceeds 0.05 N of normal and 0.01 N of tangential force, and 300 N are more than the
 /// force of 0.2 MPa on a pad of 40 mm. A moment has a lever between 0.05 and 100 mm.
 template <class Sample>
-FitStatus unit_mistake(const std::vector<Sample>& samples, const UnitsLookedAt& looked_at) {
+const char* unit_mistake(const std::vector<Sample>& samples, const UnitsLookedAt& looked_at) {
   double measure = 0, displacement = 0, rotation = 0, force = 0, aside = 0, moment = 0;
   const auto raise = [](double& largest, const auto& x) {
     const double size = std::abs(static_cast<double>(value(x)));
@@ -74,43 +74,50 @@ FitStatus unit_mistake(const std::vector<Sample>& samples, const UnitsLookedAt& 
     raise(moment, s.moment_n_mm);
   }
   if (measure < 0.05 || measure > 1e4) {
-    return FitStatus::measure_not_in_mm;
+    return "no measure reaches 0.05, or one exceeds 10000: give areas in mm^2, depths and radii "
+           "in mm";
   }
   if ((looked_at.normal && (force < 0.05 || force > 300)) ||
       (looked_at.tangential && (aside < 0.01 || aside > 300))) {
-    return FitStatus::force_not_in_n;
+    return "no force reaches 0.05 (along the pad 0.01), or one exceeds 300: give forces in N";
   }
   if (looked_at.displacement && (displacement < 0.01 || displacement > 100)) {
-    return FitStatus::displacement_not_in_mm;
+    return "no displacement reaches 0.01, or one exceeds 100: give displacements in mm";
   }
   if (looked_at.rotation && rotation > 1.6) {
-    return FitStatus::rotation_not_in_rad;
+    return "a rotation exceeds a right angle: give rotations in rad";
   }
   const bool lever = moment >= 0.05 * force && (moment <= 100 * force || force <= 0);
-  return looked_at.moment && !lever ? FitStatus::moment_not_in_n_mm : FitStatus::ok;
+  return looked_at.moment && !lever
+             ? "moments are below 0.05 mm or above 100 mm times the normal force: "
+               "give moments in N mm"
+             : nullptr;
 }
 
-/// Status of a fit. Causes of wrong parameters come before causes of inexact ones. An outlier is a
-/// sample more than ten standard deviations off that makes up most of the residual.
+/// The likely mistake; nullptr: none. Causes of wrong parameters come before causes of inexact
+/// ones. An outlier is a sample more than ten standard deviations off that makes up most of the
+/// residual.
 template <scalar S>
-FitStatus status_of(const ModelFit<S>& fit,
-                    FitStatus units,
-                    FitStatus mistake,
-                    const FitOptions& options) {
-  if (units != FitStatus::ok || mistake != FitStatus::ok) {
-    return units != FitStatus::ok ? units : mistake;
+const char* cause_in(const ModelFit<S>& fit,
+                     const char* units,
+                     const char* mistake,
+                     const FitOptions& options) {
+  if (units != nullptr || mistake != nullptr) {
+    return units != nullptr ? units : mistake;
   }
   if (!fit.converged) {
-    return FitStatus::not_converged;
+    return cause::not_converged;
   }
   const bool is_most = value(S(S(2) * fit.worst_sq)) > value(fit.left_sq);
   const bool is_off = !options.robust && is_most && value(fit.worst_sds) > 10;
-  return is_off ? FitStatus::has_outlier : FitStatus::ok;
+  return is_off ? "a sample is far from the others: check its dots and its gauge reading, "
+                  "or fit robustly"
+                : nullptr;
 }
 
 /// "; " and the likely cause, for refusals.
-inline std::string cause_of(FitStatus mistake) {
-  return mistake == FitStatus::ok ? std::string() : std::string("; ") + name_of(mistake);
+inline std::string cause_of(const char* mistake) {
+  return mistake == nullptr ? std::string() : std::string("; ") + mistake;
 }
 
 template <scalar S, class Residual>

@@ -242,16 +242,16 @@ ModelFit<S> fit_rising(const std::vector<PressedContact<S>>& samples,
 /// Detects a gauge that was not tared: a constant would explain more than half of the residual of
 /// the curve through 0, and exceeds a tenth of the largest force.
 template <int Degree, scalar S>
-FitStatus offset_in(const std::vector<PressedContact<S>>& samples,
-                    const typename ModelFit<S>::Vector& forces,
-                    const S& to,
-                    const PolynomialTerms& terms,
-                    const FitOptions& options,
-                    const ModelFit<S>& through_zero) {
+const char* offset_in(const std::vector<PressedContact<S>>& samples,
+                      const typename ModelFit<S>::Vector& forces,
+                      const S& to,
+                      const PolynomialTerms& terms,
+                      const FitOptions& options,
+                      const ModelFit<S>& through_zero) {
   PolynomialTerms with = terms;
   with.columns.insert(with.columns.begin(), 0);
   if (forces.size() < static_cast<Index>(with.columns.size()) + 3) {
-    return FitStatus::ok;
+    return nullptr;
   }
   const PolynomialModel<Degree, S> model(samples, to, with);
   typename ModelFit<S>::Vector start(through_zero.parameters.size() + 1);
@@ -267,7 +267,7 @@ FitStatus offset_in(const std::vector<PressedContact<S>>& samples,
   }
   const bool explains = value(S(S(2) * fit.left_sq)) < value(through_zero.left_sq);
   const bool matters = value(S(S(100) * square(fit.parameters(0)))) > value(largest_sq);
-  return explains && matters ? FitStatus::gauge_not_tared : FitStatus::ok;
+  return explains && matters ? cause::gauge_not_tared : nullptr;
 }
 
 /// Converts a fit to a result: the curve, and the compensation for displacement and rotation.

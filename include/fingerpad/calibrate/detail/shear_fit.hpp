@@ -237,8 +237,8 @@ GaugeAngle<S> gauge_angle(const std::vector<PlaneForce<S>>& samples) {
 
 /// "; " and the likely cause, for refusals; for a rotated gauge with its angle.
 template <scalar S>
-std::string cause_of(FitStatus mistake, const GaugeAngle<S>& angle) {
-  if (mistake != FitStatus::gauge_rotated) {
+std::string cause_of(const char* mistake, const GaugeAngle<S>& angle) {
+  if (mistake != cause::gauge_rotated) {
     return cause_of(mistake);
   }
   constexpr double degrees = 57.29577951308232;
@@ -253,27 +253,27 @@ std::string cause_of(FitStatus mistake, const GaugeAngle<S>& angle) {
 
 /// Detects axes with which no fit can succeed: mirrored, or rotated by more than 45 degrees.
 template <scalar S>
-FitStatus wrong_axes(const std::vector<PlaneForce<S>>& samples) {
+const char* wrong_axes(const std::vector<PlaneForce<S>>& samples) {
   const ForceDirections<S> sums(samples);
   const auto exceeds = sums.exceeds;
   if (exceeds(S(S(2) * sums.by_mirror()), sums.ff) &&
       exceeds(sums.ff, S(S(2) * sums.by_rotation()))) {
-    return FitStatus::axes_exchanged;
+    return "the forces mirror the displacements: check whether x and y are exchanged or "
+           "one is reversed";
   }
   const bool across = exceeds(square(sums.across), square(sums.along));
-  return across && exceeds(S(S(2) * sums.by_rotation()), sums.ff) ? FitStatus::gauge_rotated
-                                                                  : FitStatus::ok;
+  return across && exceeds(S(S(2) * sums.by_rotation()), sums.ff) ? cause::gauge_rotated : nullptr;
 }
 
 /// The likely mistake behind the residual of a fit; ok: none detected. A constant counts as one if
 /// it explains more than half of the residual and exceeds a tenth of the largest force. A rotation
 /// does if it explains more than half and exceeds a tenth of the force along the displacement.
 template <scalar S>
-FitStatus mistake_in(const std::vector<PlaneForce<S>>& samples) {
+const char* mistake_in(const std::vector<PlaneForce<S>>& samples) {
   const ForceDirections<S> sums(samples);
   const auto exceeds = sums.exceeds;
   if (exceeds(S(0), sums.along) && exceeds(S(S(2) * sums.by_rotation()), sums.ff)) {
-    return FitStatus::sign_reversed;
+    return "the forces point against the displacements: check the sign of each axis";
   }
   S left_sq = S(0), largest_sq = S(0);
   Point2<S> sum = {S(0), S(0)};
@@ -286,12 +286,12 @@ FitStatus mistake_in(const std::vector<PlaneForce<S>>& samples) {
   const S by_constant = squared_norm(sum) / count;
   if (exceeds(S(S(2) * by_constant), left_sq) &&
       exceeds(S(S(100) * S(by_constant / count)), largest_sq)) {
-    return FitStatus::gauge_not_tared;
+    return cause::gauge_not_tared;
   }
   const S across_sq = square(sums.across);
   const bool explains = exceeds(S(S(2) * S(across_sq / sums.dd)), left_sq);
   const bool matters = exceeds(S(S(100) * across_sq), square(sums.along));
-  return explains && matters ? FitStatus::gauge_rotated : FitStatus::ok;
+  return explains && matters ? cause::gauge_rotated : nullptr;
 }
 
 /// Converts a fit to a result.
@@ -353,10 +353,10 @@ Result fit_shear(const char* owner,
   const auto forces =
       plane_forces(equations, exponent.value_or(S(0)), components,
                    [&](std::size_t i) -> const S& { return equations[i].measured; });
-  const FitStatus axes = wrong_axes(forces);
+  const char* const axes = wrong_axes(forces);
   const std::string need =
       "such that the forces follow the displacements" + cause_of(axes, gauge_angle(forces));
-  expects(axes == FitStatus::ok, owner, "usable samples", static_cast<long long>(samples.size()),
+  expects(axes == nullptr, owner, "usable samples", static_cast<long long>(samples.size()),
           need.c_str());
   const ShearModel<S> model(equations, degree, exponent);
   const ModelFit<S> fit = fit_shear_model(owner, names, measured, model, degree, options);
@@ -367,14 +367,14 @@ Result fit_shear(const char* owner,
   const GaugeAngle<S> angle = components > 1 ? gauge_angle(left) : GaugeAngle<S>{};
   result.gauge_angle_rad = angle.rad;
   result.gauge_angle_sd_rad = angle.sd_rad;
-  const FitStatus mistake = mistake_in(left);
+  const char* const mistake = mistake_in(left);
   expects_explained(fit, options, owner, cause_of(mistake, angle).c_str());
   const bool is_moment = components == 1;
-  const FitStatus units = unit_mistake(samples, {.tangential = !is_moment,
-                                                 .displacement = !is_moment,
-                                                 .rotation = is_moment,
-                                                 .moment = is_moment});
-  result.status = status_of(fit, units, mistake, options);
+  const char* const units = unit_mistake(samples, {.tangential = !is_moment,
+                                                   .displacement = !is_moment,
+                                                   .rotation = is_moment,
+                                                   .moment = is_moment});
+  result.cause = cause_in(fit, units, mistake, options);
   return result;
 }
 
