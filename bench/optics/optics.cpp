@@ -48,7 +48,7 @@ Ray<S> ray_by_angles(const Camera<S>& camera, const S& row, const S& col) {
 double error(const Ray<Long>& a, const Ray<Long>& b) {
   return static_cast<double>(a.path_factor - b.path_factor);
 }
-double error(const detail::VirtualHeights<Long>& a, const detail::VirtualHeights<Long>& b) {
+double error(const PencilHeights<Long>& a, const PencilHeights<Long>& b) {
   return static_cast<double>((std::max)(std::abs(a.meridional_mm - b.meridional_mm),
                                         std::abs(a.sagittal_mm - b.sagittal_mm)));
 }
@@ -65,7 +65,7 @@ Ray<Long> widened(const Ray<S>& r) {
           Long(r.path_factor)};
 }
 template <class S>
-detail::VirtualHeights<Long> widened(const detail::VirtualHeights<S>& h) {
+PencilHeights<Long> widened(const PencilHeights<S>& h) {
   return {Long(h.meridional_mm), Long(h.sagittal_mm)};
 }
 template <class S>
@@ -115,7 +115,7 @@ struct Calls {
   void add_rays() const {
     const auto truth = [e = exact](Long i, Long j, Long) { return ray_at_pixel(e, i, j); };
     const auto heights = [e = exact](Long i, Long j, Long) {
-      return AstigmaticHeights::heights(e, ray_at_pixel(e, i, j));
+      return pencil_heights(e, ray_at_pixel(e, i, j));
     };
     const auto add_heights = [&]<class Heights>(const std::string& name, Heights) {
       add<S>(

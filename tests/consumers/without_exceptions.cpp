@@ -12,6 +12,6 @@ int main() {
   fingerpad::set_refusal_handler([](const char* message) { std::fputs(message, stderr); });
   fingerpad::Camera<double> camera;
   camera.refractive_index = 0.9;
-  fingerpad::expects_valid(camera);
+  fingerpad::require(camera);
   return 1;
 }

@@ -69,6 +69,8 @@ TEST_CASE("area of a disc at a depth, whatever the camera", "[contact]") {
   camera.pitch_mm = 0.2;
   camera.center_x_px = 59.5;
   camera.center_y_px = 59.5;
+  camera.pixel_aspect = GENERATE(1.0, 1.083, 0.9);
+  CAPTURE(camera.pixel_aspect);
   const Image<double> depth(120, 120, 9.0);
   Image<std::uint8_t> mask(120, 120);
   for (Index i = 0; i < 120; ++i) {

@@ -32,7 +32,13 @@ template <class Parameters>
 std::string refusal_of_field(double Parameters::*field, double given) {
   Parameters p;
   p.*field = given;
-  return refusal_of([&] { expects_valid(p); });
+  return refusal_of([&] {
+    if constexpr (requires { check(p); }) {
+      require(p);
+    } else {
+      expects_valid(p);
+    }
+  });
 }
 
 bool contains(const std::string& text, const std::string& part) {
@@ -121,8 +127,8 @@ TEST_CASE("a table of parameters refuses the first that is out of its range", "[
 TEST_CASE("nothing happens for good values", "[expects]") {
   REQUIRE_NOTHROW(expects(true, "A", "b", 1.0, "anything"));
   REQUIRE_NOTHROW(expects(true, "A", "b", 1LL, "anything"));
-  REQUIRE_NOTHROW(expects_valid(Camera<>{}));
-  REQUIRE_NOTHROW(expects_valid(Camera<test::Digits50>{}));
+  REQUIRE_NOTHROW(require(Camera<>{}));
+  REQUIRE_NOTHROW(require(Camera<test::Digits50>{}));
   REQUIRE_NOTHROW(expects_valid(Absorption<>{}));
   REQUIRE_NOTHROW(expects_valid(Absorption<test::Dual<float>>{}));
 }
@@ -156,6 +162,7 @@ TEST_CASE("a camera that cannot be is refused", "[expects][optics]") {
   check_field(&C::center_x_px, "Camera", "center_x_px", never, {-1e4, 0, 1e4});
   check_field(&C::center_y_px, "Camera", "center_y_px", never, {-1e4, 0, 1e4});
   check_field(&C::pitch_mm, "Camera", "pitch_mm", {missing, infinity, 0, -0.1}, {1e-6, 1});
+  check_field(&C::pixel_aspect, "Camera", "pixel_aspect", {missing, infinity, 0, -1}, {0.9, 1.1});
   check_field(&C::plate_thickness_mm, "Camera", "plate_thickness_mm",
               {missing, infinity, -1e-9, 50, 51}, {0, 49.999});
   check_field(&C::plate_index, "Camera", "plate_index", {missing, infinity, 0, 0.999}, {1, 1.49});

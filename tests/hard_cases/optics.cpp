@@ -33,7 +33,7 @@ TEST_CASE("virtual heights in 50 digits", "[optics]") {
     const auto camera = as<Digits50>(any_camera());
     const Digits50 t(test::uniform(1e-3, 3.7));
     const Digits50 step("1e-15");
-    const auto heights = AstigmaticHeights::heights(camera, ray_at_tangent(camera, t));
+    const auto heights = pencil_heights(camera, ray_at_tangent(camera, t));
     const auto rho = [&](const Digits50& s) { return ray_at_tangent(camera, s).plate_rho_mm; };
     const auto tangent = [&](const Digits50& s) { return ray_at_tangent(camera, s).tan_fluid; };
     const Digits50 along =
@@ -55,7 +55,7 @@ TEST_CASE("virtual heights in 50 digits", "[optics]") {
       const auto up = point_at(camera, Digits50(row - step), col, depth);
       return Digits50((right.x - left.x) * (down.y - up.y) - (right.y - left.y) * (down.x - up.x));
     };
-    const auto h = AstigmaticHeights::heights(camera, ray_at_pixel(camera, row, col));
+    const auto h = pencil_heights(camera, ray_at_pixel(camera, row, col));
     const Digits50 expected =
         (z + h.meridional_mm) * (z + h.sagittal_mm) / (h.meridional_mm * h.sagittal_mm);
     const Digits50 ratio = area(z) / area(Digits50(0));

@@ -57,7 +57,7 @@ TEST_CASE("rays obey Snell's law", "[optics]") {
     const auto ray = ray_at_tangent(camera, t);
     RC_ASSERT(ray.tan_fluid == t);
     RC_ASSERT(near(ray.plate_rho_mm, t * camera.plate_distance_mm, ray.plate_rho_mm, 4));
-    const auto h = AstigmaticHeights::heights(camera, ray);
+    const auto h = pencil_heights(camera, ray);
     RC_ASSERT(near(h.meridional_mm, camera.plate_distance_mm, h.meridional_mm, 16));
     RC_ASSERT(near(h.sagittal_mm, camera.plate_distance_mm, h.sagittal_mm, 16));
   });
@@ -77,8 +77,8 @@ TEST_CASE("the plate", "[optics]") {
     const auto a = ray_at_tangent(with, t);
     const auto b = ray_at_tangent(without, t);
     RC_ASSERT(near(a.plate_rho_mm, b.plate_rho_mm, b.plate_rho_mm, 4));
-    const auto h = AstigmaticHeights::heights(with, a);
-    const auto expected = AstigmaticHeights::heights(without, b);
+    const auto h = pencil_heights(with, a);
+    const auto expected = pencil_heights(without, b);
     RC_ASSERT(near(h.meridional_mm, expected.meridional_mm, expected.meridional_mm, 16));
     RC_ASSERT(near(h.sagittal_mm, expected.sagittal_mm, expected.sagittal_mm, 16));
     RC_ASSERT(near(tangent_per_px(with), tangent_per_px(without), tangent_per_px(without), 4));
@@ -93,8 +93,8 @@ TEST_CASE("the plate", "[optics]") {
     const double z = test::uniform(0, 15);
     const double expected = reach(fluid, t, z + plate.plate_thickness_mm);
     RC_ASSERT(near(reach(plate, t, z), expected, expected, 16));
-    const auto h = AstigmaticHeights::heights(plate, ray_at_tangent(plate, t));
-    const auto g = AstigmaticHeights::heights(fluid, ray_at_tangent(fluid, t));
+    const auto h = pencil_heights(plate, ray_at_tangent(plate, t));
+    const auto g = pencil_heights(fluid, ray_at_tangent(fluid, t));
     const double thickness = plate.plate_thickness_mm;
     RC_ASSERT(near(h.meridional_mm, g.meridional_mm + thickness, h.meridional_mm, 16));
     RC_ASSERT(near(h.sagittal_mm, g.sagittal_mm + thickness, h.sagittal_mm, 16));
@@ -102,7 +102,8 @@ TEST_CASE("the plate", "[optics]") {
   rc::prop("does not move the pixels' pitch near the axis", [] {
     const auto camera = any_camera();
     const auto ray = ray_at_pixel(camera, camera.center_y_px + 1e-4, camera.center_x_px);
-    RC_ASSERT(std::abs(ray.plate_rho_mm / (1e-4 * camera.pitch_mm) - 1) < 1e-7);
+    const double height_mm = camera.pitch_mm * camera.pixel_aspect;
+    RC_ASSERT(std::abs(ray.plate_rho_mm / (1e-4 * height_mm) - 1) < 1e-7);
   });
 }
 
@@ -116,7 +117,7 @@ TEST_CASE("virtual heights", "[optics]") {
     const double ratio = std::cos(fluid) / std::cos(air);
     const double nh = camera.refractive_index * camera.plate_distance_mm;
     const auto one = published::SingleHeight::heights(camera, ray);
-    const auto two = AstigmaticHeights::heights(camera, ray);
+    const auto two = pencil_heights(camera, ray);
     RC_ASSERT(one.meridional_mm == one.sagittal_mm);
     RC_ASSERT(std::abs(one.meridional_mm / (nh * std::pow(ratio, 3)) - 1) < 1e-13);
     RC_ASSERT(two.meridional_mm == one.meridional_mm);
@@ -126,7 +127,7 @@ TEST_CASE("virtual heights", "[optics]") {
   SECTION("at 20.5 degrees, 50 mm, water") {
     const Camera<double> camera;
     const auto ray = ray_at_tangent(camera, std::tan(20.5 / 180 * std::numbers::pi));
-    const auto h = AstigmaticHeights::heights(camera, ray);
+    const auto h = pencil_heights(camera, ray);
     CHECK(std::abs(h.meridional_mm - 72.7) < 0.1);
     CHECK(std::abs(h.sagittal_mm - 68.5) < 0.1);
   }
@@ -146,7 +147,8 @@ TEST_CASE("symmetry of the picture", "[optics]") {
     const double s = std::sin(angle);
     const double z = test::uniform(0, 15);
     const auto at = [&](double x, double y) {
-      return point_at(camera, camera.center_y_px + y, camera.center_x_px + x, z);
+      return point_at(camera, camera.center_y_px + y / camera.pixel_aspect, camera.center_x_px + x,
+                      z);
     };
     const auto a = at(p.x, p.y);
     const auto b = at(c * p.x - s * p.y, s * p.x + c * p.y);
@@ -170,7 +172,9 @@ TEST_CASE("symmetry of the picture", "[optics]") {
     RC_ASSERT(up.y == -a.y);
     RC_ASSERT(a.z == z);
     const double scale = std::abs(x) + std::abs(y);
-    RC_ASSERT(near(a.x * y, a.y * x, scale * (std::abs(a.x) + std::abs(a.y)), 4));  // one azimuth
+    const double tall = y * camera.pixel_aspect;
+    RC_ASSERT(
+        near(a.x * tall, a.y * x, scale * (std::abs(a.x) + std::abs(a.y)), 8));  // one azimuth
   });
   rc::prop("a deeper point on the same ray lies farther out, by the tangent in the fluid", [] {
     const auto camera = any_camera();
@@ -213,6 +217,29 @@ TEMPLATE_TEST_CASE("the center pixel looks along the axis, exactly",
   CHECK((k < 4 * epsilon<S>() && -k < 4 * epsilon<S>()));
 }
 
+TEST_CASE("a pixel that is not square sees what a square one sees at its place", "[optics]") {
+  rc::prop("along x and y, through a plate and from above", [] {
+    const auto camera = any_camera();
+    auto square = camera;
+    square.pixel_aspect = 1;
+    const auto p = any_offset(camera);
+    const double z = test::uniform(0, 15), col = camera.center_x_px + p.x;
+    const double row = camera.center_y_px + p.y;
+    const double low = camera.center_y_px + p.y * camera.pixel_aspect;
+    const auto a = point_at(camera, row, col, z), b = point_at(square, low, col, z);
+    const double scale = std::hypot(a.x, a.y) + 1000 * camera.pitch_mm;
+    RC_ASSERT(near(a.x, b.x, scale, 32));
+    RC_ASSERT(near(a.y, b.y, scale, 32));
+    RC_ASSERT(near(ray_at_pixel(camera, row, col).path_factor,
+                   ray_at_pixel(square, low, col).path_factor, 2.0, 64));
+    const OrthographicCamera<double> above{camera.center_x_px, camera.center_y_px, camera.pitch_mm,
+                                           camera.pixel_aspect};
+    const auto plan = point_at(above, row, col, z);
+    RC_ASSERT(near(plan.y, p.y * camera.pitch_mm * camera.pixel_aspect, scale, 32));
+    RC_ASSERT(near(pixel_of(above, plan).y, row, 1000 + std::abs(row), 32));
+  });
+}
+
 TEST_CASE("grazing pixels stay finite and NaN stays NaN", "[optics]") {
   const Camera<double> camera;
   for (const double t : {10.0, 1e3, 1e6, 1e9}) {  // 84 degrees and beyond
@@ -221,7 +248,7 @@ TEST_CASE("grazing pixels stay finite and NaN stays NaN", "[optics]") {
     CHECK(is_finite(ray.plate_rho_mm));
     CHECK(ray.cos_fluid > 0.65);  // never beyond the critical angle, 48.75 degrees
     CHECK(ray.tan_fluid < 1.1405);
-    const auto h = AstigmaticHeights::heights(camera, ray);
+    const auto h = pencil_heights(camera, ray);
     CHECK(is_finite(h.meridional_mm));
     CHECK(h.meridional_mm > h.sagittal_mm);
   }
@@ -334,4 +361,5 @@ TEST_CASE("the default camera looks through water and a thin plate of acrylic", 
   CHECK(camera.refractive_index == 1.33);
   CHECK(camera.plate_thickness_mm == 0);
   CHECK(camera.plate_index == 1.49);
+  CHECK(camera.pixel_aspect == 1);
 }

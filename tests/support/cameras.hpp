@@ -38,6 +38,7 @@ inline Camera<double> any_camera() {
   camera.center_y_px = test::uniform(0, 480);
   camera.pitch_mm = test::uniform(0.01, 0.2);
   camera.plate_index = test::uniform(1, 2);
+  camera.pixel_aspect = test::whole(0, 1) == 1 ? 1 : test::uniform(0.8, 1.25);
   if (test::whole(0, 1) == 1) {
     camera.plate_thickness_mm = test::uniform(0, 0.9) * camera.plate_distance_mm;
   }
@@ -47,7 +48,7 @@ inline Camera<double> any_camera() {
 template <class S>
 Camera<S> as(const Camera<double>& c) {
   return {S(c.plate_distance_mm), S(c.refractive_index),   S(c.center_x_px), S(c.center_y_px),
-          S(c.pitch_mm),          S(c.plate_thickness_mm), S(c.plate_index)};
+          S(c.pitch_mm),          S(c.plate_thickness_mm), S(c.plate_index), S(c.pixel_aspect)};
 }
 
 /// tan(phi_air), up to 75 degrees.

@@ -30,7 +30,7 @@ fingerpad::Camera<double> read_camera(const Section& root) {
   camera.refractive_index = section.number("refractive_index");
   std::tie(camera.center_x_px, camera.center_y_px) = section.pair("center_px");
   camera.pitch_mm = section.number("pitch_mm");
-  expects_valid(camera);
+  require(camera);
   return camera;
 }
 

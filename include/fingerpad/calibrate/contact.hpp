@@ -150,7 +150,7 @@ class FreePadCalibration {
  private:
   static const CameraType& checked(const CameraType& camera, Index rows, Index cols) {
     expects_grid_size("FreePadCalibration", rows, cols);
-    expects_valid(camera);
+    require(camera);
     return camera;
   }
 

@@ -145,7 +145,7 @@ class ContactRegion {
   static const ContactTest& checked(
       const CameraType& camera, Index rows, Index cols, const ContactTest& test, const Edge& edge) {
     expects_grid_size("ContactRegion", rows, cols, 2);  // areas need a neighbour
-    expects_valid(camera);
+    require(camera);
     expects_valid(test);
     expects_valid(edge);
     using C = decltype(camera.pitch_mm);

@@ -300,7 +300,7 @@ class EquivalentFlatArea {
                                         Index cols,
                                         const FlatAreaOptions& options) {
     expects_grid_size("EquivalentFlatArea", rows, cols, 1);
-    expects_valid(camera);
+    require(camera);
     expects_valid(options);
     return options;
   }

@@ -186,7 +186,7 @@ class SurfaceFit {
                                        const CameraType& camera,
                                        const SurfaceOptions& options) {
     expects_grid_size("SurfaceFit", rows, cols);
-    expects_valid(camera);
+    require(camera);
     expects_valid(options);
     return options;
   }

@@ -62,6 +62,7 @@ struct Range {
   double max = (std::numeric_limits<double>::infinity)();
   bool above_min = false;  ///< min itself is refused
   bool odd = false;
+  bool below_max = false;  ///< max itself is refused
 };
 inline constexpr Range finite_number = {};
 inline constexpr Range positive = {.min = 0, .above_min = true};
@@ -92,7 +93,7 @@ struct Parameter {
 
   bool good() const {
     return std::isfinite(number) && number >= range.min && number <= range.max &&
-           !(range.above_min && number == range.min) &&
+           !(range.above_min && number == range.min) && !(range.below_max && number == range.max) &&
            !(range.odd && std::fmod(std::fabs(number), 2) != 1);
   }
 };
@@ -106,12 +107,12 @@ inline std::string written(double number, bool whole) {
   return text;
 }
 
-/// "finite and > 0", "in [0, 1]", "odd, in [3, 109]".
+/// "finite and > 0", "in [0, 1]", "in (0, 1)", "odd, in [3, 109]".
 inline std::string written(const Range& range, bool whole) {
   std::string text = range.odd ? "odd, " : "";
   if (std::isfinite(range.max)) {
     return text + (range.above_min ? "in (" : "in [") + written(range.min, false) + ", " +
-           written(range.max, false) + "]";
+           written(range.max, false) + (range.below_max ? ")" : "]");
   }
   text += whole ? "" : "finite";
   if (std::isfinite(range.min)) {

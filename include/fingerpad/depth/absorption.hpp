@@ -55,7 +55,7 @@ Absorption<To> cast(const Absorption<From>& f) {
 template <scalar S = double>
 struct Pencil {
   S path_factor;                     ///< k = 1 + 1/cos(phi_fluid), >= 2
-  detail::VirtualHeights<S> height;  ///< of the points from which the light appears to come
+  PencilHeights<S> height;  ///< of the points from which the light appears to come
 };
 
 /// The pencil of a ray, with one of the height policies of optics/camera.hpp.

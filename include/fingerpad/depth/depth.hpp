@@ -251,7 +251,7 @@ class DepthEstimator {
   static const Camera<double>& checked(const Camera<double>& camera,
                                        const Absorption<double>& fluid,
                                        const Reference& reference) {
-    expects_valid(camera);
+    require(camera);
     expects_valid(fluid);
     expects_grid_size("DepthEstimator", reference.rows, reference.cols);
     expects(reference.pixels_used > 0, "DepthEstimator", "reference.pixels_used",

@@ -313,7 +313,7 @@ Reference free_pad(const Camera<C>& camera,
                    const Green& green,
                    const Depth& depth_mm,
                    const GreyScale& scale) {
-  expects_valid(camera);
+  require(camera);
   expects_valid(fluid);
   expects_valid(scale);
   expects(same_size(red, green) && same_size(red, depth_mm), "fit_reference", "rows of depth_mm",

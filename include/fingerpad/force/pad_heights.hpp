@@ -7,8 +7,8 @@
 #include <cstddef>
 #include <vector>
 
-#include "fingerpad/core/dots.hpp"
 #include "fingerpad/core/check.hpp"
+#include "fingerpad/core/dots.hpp"
 #include "fingerpad/core/grid.hpp"
 #include "fingerpad/core/scalar.hpp"
 #include "fingerpad/force/detail/height_map.hpp"
@@ -45,7 +45,7 @@ class PadHeights {
         half_width_mm_(half_width_mm),
         spacing_mm_(spacing_mm) {
     expects_grid_size("PadHeights", rows, cols, 2);
-    expects_valid(camera);
+    require(camera);
     const Map nodes = map();
     side_ = nodes.side();
     projections_.reserve(static_cast<std::size_t>(side_ * side_));
@@ -107,7 +107,7 @@ class PadHeights {
   /// Where a position in plan is seen: at center + (x, y) / mm_per_px, which depends on the height
   /// z there: mm_per_px = at_plate + rising z + bending z^2, nearly linear.
   struct Projection {
-    S x, y;
+    S x, y;  ///< y in pixel heights over widths
     S at_plate, rising, bending;
   };
 
@@ -124,7 +124,7 @@ class PadHeights {
     const S middle = mm_per_px(S(high / S(2)));
     const S top = mm_per_px(high);
     const S bending = S(2) * (top - S(2) * middle + low) / (high * high);
-    return {x, y, low, S((top - low) / high - bending * high), bending};
+    return {x, S(y / camera.pixel_aspect), low, S((top - low) / high - bending * high), bending};
   }
 
   const Projection& at(Index i, Index j) const {

@@ -15,9 +15,10 @@
 //          |   `-_ phi_fluid
 //          v z    `-_     sin(phi_air) = n sin(phi_fluid)
 #include <cmath>
+#include <string>
 
-#include "fingerpad/core/dots.hpp"
 #include "fingerpad/core/check.hpp"
+#include "fingerpad/core/point.hpp"
 #include "fingerpad/core/scalar.hpp"
 
 namespace fingerpad {
@@ -31,27 +32,26 @@ struct Camera {
   S refractive_index = S(133) / S(100);  ///< of the fluid relative to air, >= 1 (water)
   S center_x_px = S(639) / S(2);         ///< pixel on the optical axis, along columns
   S center_y_px = S(479) / S(2);         ///< the same along rows
-  S pitch_mm = S(8) / S(100);   ///< size of a pixel on the plate's inner face near the axis, > 0
+  S pitch_mm = S(8) / S(100);   ///< width of a pixel on the plate's inner face near the axis, > 0
   S plate_thickness_mm = S(0);  ///< included in plate_distance_mm; 0 as in the papers
   S plate_index = S(149) / S(100);  ///< of the plate (acrylic) relative to air, >= 1
+  S pixel_aspect = S(1);            ///< height of a pixel over its width, > 0
 };
 
-/// Refuses values out of range (parameter_error).
+/// Says which value is out of range; "" if none is.
 template <scalar S>
-void expects_valid(const Camera<S>& camera) {
-  expects(is_finite(camera.plate_distance_mm) && camera.plate_distance_mm > S(0), "Camera",
-          "plate_distance_mm", camera.plate_distance_mm, "finite and > 0");
-  expects(is_finite(camera.refractive_index) && !(camera.refractive_index < S(1)), "Camera",
-          "refractive_index", camera.refractive_index, "finite and >= 1");
-  expects(is_finite(camera.center_x_px), "Camera", "center_x_px", camera.center_x_px, "finite");
-  expects(is_finite(camera.center_y_px), "Camera", "center_y_px", camera.center_y_px, "finite");
-  expects(is_finite(camera.pitch_mm) && camera.pitch_mm > S(0), "Camera", "pitch_mm",
-          camera.pitch_mm, "finite and > 0");
-  expects(
-      !(camera.plate_thickness_mm < S(0)) && camera.plate_thickness_mm < camera.plate_distance_mm,
-      "Camera", "plate_thickness_mm", camera.plate_thickness_mm, "in [0, plate_distance_mm)");
-  expects(is_finite(camera.plate_index) && !(camera.plate_index < S(1)), "Camera", "plate_index",
-          camera.plate_index, "finite and >= 1");
+std::string check(const Camera<S>& c) {
+  const double distance_mm = static_cast<double>(value(c.plate_distance_mm));
+  return check("Camera", {{"plate_distance_mm", c.plate_distance_mm, positive},
+                          {"refractive_index", c.refractive_index, at_least(1)},
+                          {"center_x_px", c.center_x_px, finite_number},
+                          {"center_y_px", c.center_y_px, finite_number},
+                          {"pitch_mm", c.pitch_mm, positive},
+                          {"plate_thickness_mm",
+                           c.plate_thickness_mm,
+                           {.min = 0, .max = distance_mm, .below_max = true}},
+                          {"plate_index", c.plate_index, at_least(1)},
+                          {"pixel_aspect", c.pixel_aspect, positive}});
 }
 
 namespace detail {
@@ -68,7 +68,7 @@ constexpr bool is_depth(const S& depth_mm) {
 template <scalar To, scalar From>
 Camera<To> cast(const Camera<From>& c) {
   return {To(c.plate_distance_mm), To(c.refractive_index),   To(c.center_x_px), To(c.center_y_px),
-          To(c.pitch_mm),          To(c.plate_thickness_mm), To(c.plate_index)};
+          To(c.pitch_mm),          To(c.plate_thickness_mm), To(c.plate_index), To(c.pixel_aspect)};
 }
 
 namespace detail {
@@ -82,14 +82,6 @@ S tangent_ratio(const S& t_sq, const S& n) {
   const S root = sqrt(S(n_sq + (n_sq - S(1)) * t_sq));
   return S(1) / root;
 }
-
-/// Heights above the plate of the point from which the returning pencil seems to come. The area
-/// that a pixel sees at depth z is proportional to (z + meridional_mm)(z + sagittal_mm).
-template <scalar S = double>
-struct VirtualHeights {
-  S meridional_mm;
-  S sagittal_mm;
-};
 
 }  // namespace detail
 
@@ -118,46 +110,73 @@ Ray<S> ray_at_tangent(const Camera<S>& camera, const S& t) {
           S(S(1) + inv_cos_fluid)};
 }
 
-/// Tangent per pixel of distance from the center pixel.
+/// Tangent per pixel of distance from the center pixel, along a row.
 template <scalar S>
 S tangent_per_px(const Camera<S>& camera) {
   const S paraxial = camera.plate_distance_mm - camera.plate_thickness_mm +
                      camera.plate_thickness_mm / camera.plate_index;
-  return S(camera.pitch_mm / paraxial);
+  return camera.pitch_mm / paraxial;
 }
 
-/// The ray of the pixel at (row, col), which may lie between pixel centers.
+/// The direction in air of the pixel at (row, col), which may lie between pixel centers: tangents
+/// of its angles to the axis along x and along y. With pixel_at_tangents, the only place where
+/// pixels become rays.
+template <scalar S>
+Point2<S> tangents_of_pixel(const Camera<S>& camera, const S& row, const S& col) {
+  const S scale = tangent_per_px(camera);
+  return {S((col - camera.center_x_px) * scale),
+          S((row - camera.center_y_px) * camera.pixel_aspect * scale)};
+}
+/// The pixel that looks in this direction; inverse of tangents_of_pixel.
+template <scalar S>
+Point2<S> pixel_at_tangents(const Camera<S>& camera, const Point2<S>& tangents) {
+  const S px = S(1) / tangent_per_px(camera);
+  return {S(camera.center_x_px + tangents.x * px),
+          S(camera.center_y_px + tangents.y * px / camera.pixel_aspect)};
+}
+
+/// The ray of the pixel at (row, col).
 template <scalar S>
 Ray<S> ray_at_pixel(const Camera<S>& camera, const S& row, const S& col) {
   using std::sqrt;
-  const S x = col - camera.center_x_px;
-  const S y = row - camera.center_y_px;
-  const S r_sq = x * x + y * y;
+  const S t_sq = squared_norm(tangents_of_pixel(camera, row, col));
   // The square root has no derivative at 0; on the axis t itself is 0 for every camera.
-  const S r = value(r_sq) == 0 ? S(0) : S(sqrt(r_sq));
-  return ray_at_tangent(camera, S(r * tangent_per_px(camera)));
+  return ray_at_tangent(camera, value(t_sq) == 0 ? S(0) : S(sqrt(t_sq)));
 }
 
-/// Virtual heights of the returning pencil. The pencil is astigmatic (erratum E007): its heights
-/// along and across the plane of the ray differ. Exact for thin pencils; 72.7 and 68.5 mm at 20
-/// degrees for n h1 = 66.5 mm.
+/// Heights above the plate of the point from which the returning pencil seems to come. The area
+/// that a pixel sees at depth z is proportional to (z + meridional_mm)(z + sagittal_mm).
+template <scalar S = double>
+struct PencilHeights {
+  S meridional_mm;
+  S sagittal_mm;
+};
+
+/// Heights of the pencil along a ray. It is astigmatic (erratum E007): they differ along and across
+/// the plane of the ray. Exact for thin pencils.
+template <scalar S>
+PencilHeights<S> pencil_heights(const Camera<S>& camera, const Ray<S>& ray) {
+  using std::sqrt;
+  const S t_sq = ray.tan_air * ray.tan_air;
+  const S inv_cos_air = sqrt(S(S(1) + t_sq));
+  const S inv_cos_plate =
+      camera.plate_index * inv_cos_air * detail::tangent_ratio(t_sq, camera.plate_index);
+  const S in_air = camera.plate_distance_mm - camera.plate_thickness_mm;
+  const S in_plate = camera.plate_thickness_mm / camera.plate_index;
+  const S n_cos = camera.refractive_index * ray.cos_fluid;
+  const S sagittal = n_cos * (in_air * inv_cos_air + in_plate * inv_cos_plate);
+  const S air_cubed = inv_cos_air * inv_cos_air * inv_cos_air;
+  const S plate_cubed = inv_cos_plate * inv_cos_plate * inv_cos_plate;
+  const S cos_sq = ray.cos_fluid * ray.cos_fluid;
+  const S meridional = n_cos * cos_sq * (in_air * air_cubed + in_plate * plate_cubed);
+  return {meridional, sagittal};
+}
+
+/// pencil_heights as the policy of a reference.
 struct AstigmaticHeights {
   template <scalar S>
-  static detail::VirtualHeights<S> heights(const Camera<S>& camera, const Ray<S>& ray) {
-    using std::sqrt;
-    const S t_sq = ray.tan_air * ray.tan_air;
-    const S inv_cos_air = sqrt(S(S(1) + t_sq));
-    const S inv_cos_plate =
-        camera.plate_index * inv_cos_air * detail::tangent_ratio(t_sq, camera.plate_index);
-    const S in_air = camera.plate_distance_mm - camera.plate_thickness_mm;
-    const S in_plate = camera.plate_thickness_mm / camera.plate_index;
-    const S n_cos = camera.refractive_index * ray.cos_fluid;
-    const S sagittal = n_cos * (in_air * inv_cos_air + in_plate * inv_cos_plate);
-    const S air_cubed = inv_cos_air * inv_cos_air * inv_cos_air;
-    const S plate_cubed = inv_cos_plate * inv_cos_plate * inv_cos_plate;
-    const S cos_sq = ray.cos_fluid * ray.cos_fluid;
-    const S meridional = n_cos * cos_sq * (in_air * air_cubed + in_plate * plate_cubed);
-    return {meridional, sagittal};
+  static PencilHeights<S> heights(const Camera<S>& camera, const Ray<S>& ray) {
+    return pencil_heights(camera, ray);
   }
 };
 
@@ -165,15 +184,13 @@ struct AstigmaticHeights {
 /// eq. 13, with tan(phi_fluid) in the place of its sine, because z is a depth (E019).
 template <scalar S>
 Point3<S> point_at(const Camera<S>& camera, const S& row, const S& col, const S& depth_mm) {
-  const S scale = tangent_per_px(camera);
-  const S tx = (col - camera.center_x_px) * scale;
-  const S ty = (row - camera.center_y_px) * scale;
-  const S t_sq = tx * tx + ty * ty;
+  const Point2<S> tangents = tangents_of_pixel(camera, row, col);
+  const S t_sq = squared_norm(tangents);
   const S in_air = camera.plate_distance_mm - camera.plate_thickness_mm;
   const S in_plate = camera.plate_thickness_mm * detail::tangent_ratio(t_sq, camera.plate_index);
   const S rho_per_t =
       in_air + in_plate + depth_mm * detail::tangent_ratio(t_sq, camera.refractive_index);
-  return {S(tx * rho_per_t), S(ty * rho_per_t), depth_mm};
+  return {S(tangents.x * rho_per_t), S(tangents.y * rho_per_t), depth_mm};
 }
 
 /// The pixel that sees `point` (x along columns, y along rows); inverse of point_at. Requires
@@ -204,8 +221,7 @@ Point2<S> pixel_of(const Camera<S>& camera, const Point3<S>& point) {
       break;
     }
   }
-  const S px_per_mm = S(1) / (tangent_per_px(camera) * reach);
-  return {S(camera.center_x_px + point.x * px_per_mm), S(camera.center_y_px + point.y * px_per_mm)};
+  return pixel_at_tangents(camera, {S(point.x / reach), S(point.y / reach)});
 }
 
 /// A camera without perspective, for height maps from other sensors or simulations: each pixel sees
@@ -214,24 +230,23 @@ template <scalar S = double>
 struct OrthographicCamera {
   S center_x_px = S(639) / S(2);  ///< pixel on the axis, along columns
   S center_y_px = S(479) / S(2);  ///< the same along rows
-  S pitch_mm = S(8) / S(100);     ///< distance of the points that neighbouring pixels see, > 0
+  S pitch_mm = S(8) / S(100);     ///< distance of the points that pixels side by side see, > 0
+  S pixel_aspect = S(1);          ///< distance of those above one another over pitch_mm, > 0
 };
 
-/// Refuses values out of range (parameter_error).
+/// Says which value is out of range; "" if none is.
 template <scalar S>
-void expects_valid(const OrthographicCamera<S>& camera) {
-  expects(is_finite(camera.center_x_px), "OrthographicCamera", "center_x_px", camera.center_x_px,
-          "finite");
-  expects(is_finite(camera.center_y_px), "OrthographicCamera", "center_y_px", camera.center_y_px,
-          "finite");
-  expects(is_finite(camera.pitch_mm) && camera.pitch_mm > S(0), "OrthographicCamera", "pitch_mm",
-          camera.pitch_mm, "finite and > 0");
+std::string check(const OrthographicCamera<S>& c) {
+  return check("OrthographicCamera", {{"center_x_px", c.center_x_px, finite_number},
+                                      {"center_y_px", c.center_y_px, finite_number},
+                                      {"pitch_mm", c.pitch_mm, positive},
+                                      {"pixel_aspect", c.pixel_aspect, positive}});
 }
 
 /// The same camera in another scalar.
 template <scalar To, scalar From>
 OrthographicCamera<To> cast(const OrthographicCamera<From>& c) {
-  return {To(c.center_x_px), To(c.center_y_px), To(c.pitch_mm)};
+  return {To(c.center_x_px), To(c.center_y_px), To(c.pitch_mm), To(c.pixel_aspect)};
 }
 
 /// The point above (row, col) at height depth_mm; NaN depth gives NaN.
@@ -241,14 +256,14 @@ Point3<S> point_at(const OrthographicCamera<S>& camera,
                    const S& col,
                    const S& depth_mm) {
   return {S((col - camera.center_x_px) * camera.pitch_mm),
-          S((row - camera.center_y_px) * camera.pitch_mm), depth_mm};
+          S((row - camera.center_y_px) * (camera.pitch_mm * camera.pixel_aspect)), depth_mm};
 }
 
 /// The pixel that sees `point`.
 template <scalar S>
 Point2<S> pixel_of(const OrthographicCamera<S>& camera, const Point3<S>& point) {
   return {S(camera.center_x_px + point.x / camera.pitch_mm),
-          S(camera.center_y_px + point.y / camera.pitch_mm)};
+          S(camera.center_y_px + point.y / (camera.pitch_mm * camera.pixel_aspect))};
 }
 
 }  // namespace v0

@@ -15,8 +15,8 @@ namespace published {
 /// and phi2 in air (closed form of the slides' chain of differentials).
 struct SingleHeight {
   template <scalar S>
-  static detail::VirtualHeights<S> heights(const Camera<S>& camera, const Ray<S>& ray) {
-    const detail::VirtualHeights<S> both = AstigmaticHeights::heights(camera, ray);
+  static PencilHeights<S> heights(const Camera<S>& camera, const Ray<S>& ray) {
+    const PencilHeights<S> both = pencil_heights(camera, ray);
     return {both.meridional_mm, both.meridional_mm};
   }
 };
@@ -27,13 +27,11 @@ struct SingleHeight {
 template <scalar S>
 Point3<S> point_at(const Camera<S>& camera, const S& row, const S& col, const S& depth_mm) {
   using std::sqrt;
-  const S scale = tangent_per_px(camera);
-  const S tx = (col - camera.center_x_px) * scale;
-  const S ty = (row - camera.center_y_px) * scale;
-  const S inverse_cos = sqrt(S(S(1) + tx * tx + ty * ty));
+  const Point2<S> t = tangents_of_pixel(camera, row, col);
+  const S inverse_cos = sqrt(S(S(1) + squared_norm(t)));
   const S sine_per_t = S(1) / (camera.refractive_index * inverse_cos);
   const S rho_per_t = camera.plate_distance_mm + depth_mm * sine_per_t;
-  return {S(tx * rho_per_t), S(ty * rho_per_t), depth_mm};
+  return {S(t.x * rho_per_t), S(t.y * rho_per_t), depth_mm};
 }
 
 }  // namespace published

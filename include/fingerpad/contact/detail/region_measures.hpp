@@ -105,15 +105,15 @@ class RegionMeasures {
     const V down = scale(i + run.down, j);
     const double to_left = static_cast<double>(run.left);
     const double to_right = static_cast<double>(run.right);
-    const double to_up = static_cast<double>(run.up);
-    const double to_down = static_cast<double>(run.down);
+    const double to_up = static_cast<double>(run.up) * rays_.aspect();
+    const double to_down = static_cast<double>(run.down) * rays_.aspect();
     const V across_x = (x + to_right) * right - (x - to_left) * left;
     const V across_y = y * (right - left);
     const V down_x = x * (down - up);
     const V down_y = (y + to_down) * down - (y - to_up) * up;
     const V seen = (across_x * down_y - across_y * down_x) * run.per_span;
     const V mm_per_px = rays_.template mm_per_px<V>(i, j, depth);
-    const V area = seen > V{} ? seen : V(mm_per_px * mm_per_px);
+    const V area = seen > V{} ? seen : V(mm_per_px * mm_per_px * rays_.aspect());
     const V moment = area * mm_per_px;
     area_.add(area);
     x_.add(V(x * moment));

@@ -20,7 +20,7 @@ namespace detail {
 template <class CameraType>
 class PixelRays;
 
-/// The point at a distance of (x, y) pixels from the center of the image.
+/// The point at a distance of (x, y) pixel widths from the center of the image.
 template <scalar S>
 Point3<S> point_beside(const S& x_px, const S& y_px, const S& mm_per_px, const S& depth_mm) {
   return {S(x_px * mm_per_px), S(y_px * mm_per_px), depth_mm};
@@ -35,7 +35,10 @@ class PixelRays<Camera<S>> {
   using Scalar = S;
 
   PixelRays(const Camera<S>& camera, Index rows, Index cols)
-      : center_x_(camera.center_x_px), center_y_(camera.center_y_px), cols_(cols) {
+      : center_x_(camera.center_x_px),
+        center_y_(camera.center_y_px),
+        aspect_(camera.pixel_aspect),
+        cols_(cols) {
     at_plate_.reserve(static_cast<std::size_t>(rows * cols));
     per_mm_.reserve(static_cast<std::size_t>(rows * cols));
     for (Index i = 0; i < rows; ++i) {
@@ -47,9 +50,11 @@ class PixelRays<Camera<S>> {
     }
   }
 
-  /// Distance of a column or row from the center, px.
+  /// Distance of a column or row from the center, in pixel widths.
   S x_px(Index col) const { return S(static_cast<double>(col)) - center_x_; }
-  S y_px(Index row) const { return S(static_cast<double>(row)) - center_y_; }
+  S y_px(Index row) const { return (S(static_cast<double>(row)) - center_y_) * aspect_; }
+  /// Height of a pixel in pixel widths.
+  const S& aspect() const { return aspect_; }
 
   /// The factor of one pixel, or of as many adjacent pixels as V has lanes.
   template <class V>
@@ -72,7 +77,7 @@ class PixelRays<Camera<S>> {
   static MmPerPx ray(const Camera<S>& camera, Index row, Index col) {
     using std::sqrt;
     const S x = S(static_cast<double>(col)) - camera.center_x_px;
-    const S y = S(static_cast<double>(row)) - camera.center_y_px;
+    const S y = (S(static_cast<double>(row)) - camera.center_y_px) * camera.pixel_aspect;
     const S r_sq = x * x + y * y;
     // on the axis, approximate the limit by a pixel close to it
     const S r = value(r_sq) == 0 ? S(1) / S(1048576) : S(sqrt(r_sq));
@@ -85,6 +90,7 @@ class PixelRays<Camera<S>> {
 
   S center_x_;
   S center_y_;
+  S aspect_;
   Index cols_;
   aligned_vector<S> at_plate_;
   aligned_vector<S> per_mm_;
@@ -99,7 +105,10 @@ class PixelRays<OrthographicCamera<S>> {
   PixelRays(const OrthographicCamera<S>& camera, Index, Index) : camera_(camera) {}
 
   S x_px(Index col) const { return S(static_cast<double>(col)) - camera_.center_x_px; }
-  S y_px(Index row) const { return S(static_cast<double>(row)) - camera_.center_y_px; }
+  S y_px(Index row) const {
+    return (S(static_cast<double>(row)) - camera_.center_y_px) * camera_.pixel_aspect;
+  }
+  const S& aspect() const { return camera_.pixel_aspect; }
 
   template <class V>
   [[gnu::always_inline]] V mm_per_px(Index, Index, const V&) const {
