@@ -10,6 +10,7 @@
 #include <type_traits>
 #include <vector>
 
+#include "fingerpad/pipeline/detail/frame_samples.hpp"
 #include "support/catch.hpp"
 #include "support/generators.hpp"
 #include "support/pad.hpp"
@@ -172,8 +173,8 @@ TEST_CASE("what changes linearly over the free pad is right between samples", "[
   Image<PixelStatus> status(free.rows, free.cols);
   const Image<double>& from = samples;
   const Image<PixelStatus>& from_status = sample_status;
-  depth_between_samples(free, free_samples, step, as_view(from), as_view(from_status),
-                        as_view(depth), as_view(status));
+  REQUIRE(detail::depth_between_samples(free, free_samples, step, as_view(from),
+                                        as_view(from_status), as_view(depth), as_view(status)));
   Index found = 0;
   double worst = 0;
   for (Index i = 0; i < depth.rows(); ++i) {
@@ -195,6 +196,30 @@ TEST_CASE("what changes linearly over the free pad is right between samples", "[
       std::count_if(free.depth_mm.begin(), free.depth_mm.end(), [](double l) { return l == l; }));
   CHECK(found >= in_pad - (has_hole ? step * step : 0) - in_pad / 50);
   CHECK(worst < 1e-9);
+}
+
+// A frame may hold a single row or column of samples: nothing beside it may be read.
+TEST_CASE("what moves a single row or column of samples moves every pixel", "[sampling]") {
+  const auto [rows, cols] = GENERATE(std::pair(5, 5), std::pair(5, 12), std::pair(12, 5));
+  DepthReference<float> free;
+  free.rows = rows;
+  free.cols = cols;
+  free.depth_mm.assign(static_cast<std::size_t>(rows * cols), 5.0F);
+  const auto free_samples = sampled(free, 3);
+  const Image<float> samples(free_samples.rows, free_samples.cols, 6.0F);
+  const Image<PixelStatus> sample_status(samples.rows(), samples.cols(), PixelStatus::ok);
+  Image<float> depth(rows, cols, 0.0F), narrow(rows, cols - 1, 7.0F);
+  Image<PixelStatus> status(rows, cols), narrow_status(rows, cols - 1);
+  const auto spread = [&](auto& to, auto& of) {
+    return detail::depth_between_samples(free, free_samples, 3, as_view(samples),
+                                         as_view(sample_status), as_view(to), as_view(of));
+  };
+  CHECK(spread(depth, status));
+  CHECK(depth.cells == std::vector<float>(depth.cells.size(), 6.0F));
+  CHECK(status.cells == std::vector<PixelStatus>(status.cells.size(), PixelStatus::ok));
+  CHECK_FALSE(spread(narrow, narrow_status));
+  CHECK_FALSE(spread(depth, narrow_status));
+  CHECK(narrow.cells == std::vector<float>(narrow.cells.size(), 7.0F));
 }
 
 TEST_CASE("sampling refuses steps that no image has", "[sampling]") {

@@ -8,7 +8,6 @@
 // it. The methods need no change. Leftover pixels at the right and at the bottom are ignored.
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <concepts>
 #include <cstddef>
 #include <cstdint>
@@ -133,12 +132,7 @@ class FrameSampler {
 
  private:
   static constexpr GreyScale scale = grey_scale_of<Pixel>();
-  static constexpr bool by_vectors = std::same_as<Pixel, std::uint8_t> &&
-                                     (Step == 2 || Step == 3 || Step == 4) &&
-                                     detail::native_vector_bytes > 0;
-  /// Bytes of a vector: short ones where three are worked on at once.
-  static constexpr int width = (std::min)(Step == 3 ? 16 : 64, detail::native_vector_bytes);
-  static constexpr Index samples_at_once = Step == 3 ? width : width / Step;
+  static constexpr std::size_t block = 64;  ///< cells of a loop whose length the compiler knows
 
   /// Step rows of each channel, `stride` pixels apart.
   FrameSampler(const Pixel* red, const Pixel* green, Index stride)
@@ -149,12 +143,12 @@ class FrameSampler {
                Index row) const {
     const Index cols = to_red.cols();
     Index j = 0;
-    if constexpr (by_vectors) {
-      constexpr Index n = samples_at_once;
+    if constexpr (std::same_as<Pixel, std::uint8_t>) {
+      constexpr auto n = static_cast<Index>(block);
       if (to_red.col_stride() == 1 && to_green.col_stride() == 1 && cols >= n) {
         for (; j < cols; j += n) {
           const Index from = (std::min)(j, cols - n);  // the last ones twice
-          several(from, to_red.row(row) + from, to_green.row(row) + from);
+          average_block(from, to_red.row(row) + from, to_green.row(row) + from);
         }
       }
     }
@@ -211,208 +205,80 @@ class FrameSampler {
     }
   }
 
-#if defined(FINGERPAD_HAS_VECTORS)
-  using Bytes = detail::lanes<std::uint8_t, width>;
+  /// Sums over Step rows, column by column; pixels without information are left out.
+  struct Columns {
+    std::array<std::uint16_t, block*Step> red = {}, green = {};
+    std::array<std::uint8_t, block*Step> count = {}, bright = {};
 
-  /// A vector of pixels: those that carry information, else 0, and which do not.
-  struct Block {
-    Bytes red, green, bright, bad;
+    /// Adds `block` pixels of a row to the columns from `at` on.
+    void add(const std::uint8_t* from_red, const std::uint8_t* from_green, std::size_t at) {
+      std::uint16_t* __restrict reds = red.data() + at;
+      std::uint16_t* __restrict greens = green.data() + at;
+      std::uint8_t* __restrict counts = count.data() + at;
+      std::uint8_t* __restrict brights = bright.data() + at;
+      std::array<std::uint8_t, block> keep;  // 255: carries information, else 0
+      for (std::size_t i = 0; i < block; ++i) {
+        const auto top =
+            static_cast<std::uint8_t>(-int((from_red[i] == 255) | (from_green[i] == 255)));
+        const auto dark =
+            static_cast<std::uint8_t>(-int((from_red[i] == 0) | (from_green[i] == 0)));
+        brights[i] = static_cast<std::uint8_t>(brights[i] | top);
+        keep[i] = static_cast<std::uint8_t>(~(top | dark));
+      }
+      for (std::size_t i = 0; i < block; ++i) {
+        reds[i] = static_cast<std::uint16_t>(reds[i] + (from_red[i] & keep[i]));
+      }
+      for (std::size_t i = 0; i < block; ++i) {
+        greens[i] = static_cast<std::uint16_t>(greens[i] + (from_green[i] & keep[i]));
+      }
+      for (std::size_t i = 0; i < block; ++i) {
+        counts[i] = static_cast<std::uint8_t>(counts[i] - keep[i]);  // 255 is -1
+      }
+    }
   };
-  [[gnu::always_inline]] Block block(Index row, Index col) const {
-    const Index at = row * stride_ + col;
-    // The next row of samples: a new frame is not in the cache yet, and processors do not see that
-    // several rows are read at once.
-    __builtin_prefetch(red_ + at + Step * stride_);
-    __builtin_prefetch(green_ + at + Step * stride_);
-    const Bytes r = detail::load<std::uint8_t, width>(red_ + at);
-    const Bytes g = detail::load<std::uint8_t, width>(green_ + at);
-    const Bytes top = Bytes{} + std::uint8_t(255);
-    const Bytes bright = Bytes((r == top) | (g == top));
-    const Bytes bad = Bytes((r == Bytes{}) | (g == Bytes{})) | bright;
-    return {Bytes(r & ~bad), Bytes(g & ~bad), bright, bad};
-  }
 
-  /// The samples that a vector of pixels holds, from column `col` on.
-  void several(Index col, Sample* to_red, Sample* to_green) const requires(Step != 3) {
-    constexpr int n = width / 2;
-    using Pairs = detail::lanes<std::uint16_t, n>;
-    const auto pairs = [](const Bytes& pixels) __attribute__((always_inline)) {
-      const auto both = detail::unzip_wide<std::uint16_t, n>(pixels);
-      return Pairs(both.first + both.second);
-    };
-    Bytes bad{}, bright{}, bad_rows{};
-    Pairs red{}, green{};
+  /// `block` samples from column `col` on.
+  void average_block(Index col, Sample* to_red, Sample* to_green) const {
+    Columns columns;
     for (Index k = 0; k < Step; ++k) {
-      const Block b = block(k, col * Step);
-      bright |= b.bright;
-      bad |= b.bad;
-      bad_rows -= b.bad;  // 255 is -1
-      red += pairs(b.red);
-      green += pairs(b.green);
-    }
-    if (!detail::any_lane(bad)) {
-      store_means(red, to_red);
-      store_means(green, to_green);
-      return;
-    }
-    const Pairs count = Pairs{} + std::uint16_t(2 * Step) - pairs(bad_rows);
-    const Pairs told = pairs(bright & (Bytes{} + std::uint8_t(1)));
-    std::array<std::uint16_t, std::size_t(n)> reds, greens, counts, brights;
-    detail::store(reds.data(), red);
-    detail::store(greens.data(), green);
-    detail::store(counts.data(), count);
-    detail::store(brights.data(), told);
-    for (std::size_t k = 0; k < std::size_t(samples_at_once); ++k) {
-      set_sample<Step / 2>(k, reds, greens, counts, brights, to_red, to_green);
-    }
-  }
-
-  /// The samples that three vectors hold.
-  void several(Index col, Sample* to_red, Sample* to_green) const requires(Step == 3) {
-    using Words = detail::lanes<std::uint16_t, width / 2>;
-    using ColumnSums = std::array<std::uint16_t, std::size_t(3 * width)>;
-    alignas(Bytes) ColumnSums reds, greens, counts, brights;
-    Bytes bad{};
-    const auto keep =
-        [](const detail::Two<Words>& sums, std::uint16_t* to) __attribute__((always_inline)) {
-      detail::store(to, sums.first);
-      detail::store(to + width / 2, sums.second);
-    };
-    for (int part = 0; part < 3; ++part) {
-      detail::Two<Words> red{}, green{};
-      Bytes bright{}, count{};
-      for (Index k = 0; k < 3; ++k) {
-        const Block b = block(k, col * 3 + part * width);
-        bright |= b.bright;
-        bad |= b.bad;
-        count -= Bytes(~b.bad);
-        const auto r = detail::widen<std::uint16_t, width / 2>(b.red);
-        const auto g = detail::widen<std::uint16_t, width / 2>(b.green);
-        red.first += r.first;
-        red.second += r.second;
-        green.first += g.first;
-        green.second += g.second;
+      for (std::size_t at = 0; at < block * Step; at += block) {
+        const Index from = k * stride_ + col * Step + static_cast<Index>(at);
+        columns.add(red_ + from, green_ + from, at);
       }
-      keep(red, reds.data() + part * width);
-      keep(green, greens.data() + part * width);
-      keep(detail::widen<std::uint16_t, width / 2>(count), counts.data() + part * width);
-      keep(detail::widen<std::uint16_t, width / 2>(bright), brights.data() + part * width);
     }
-    if (!detail::any_lane(bad)) {
-      for (std::size_t k = 0; k < std::size_t(width); ++k) {
-        to_red[k] = mean(sum_of<3>(reds, k), 9);
-        to_green[k] = mean(sum_of<3>(greens, k), 9);
+    std::uint8_t lost = 0;
+    for (std::size_t k = 0; k < block * Step; ++k) {
+      lost = static_cast<std::uint8_t>(lost | (columns.count[k] ^ Step));
+    }
+    if (lost == 0) {  // a constant divisor needs no division
+      for (std::size_t j = 0; j < block; ++j) {
+        to_red[j] = mean(sum_of(columns.red, j), Step * Step);
+      }
+      for (std::size_t j = 0; j < block; ++j) {
+        to_green[j] = mean(sum_of(columns.green, j), Step * Step);
       }
       return;
     }
-    for (std::size_t k = 0; k < std::size_t(width); ++k) {
-      set_sample<3>(k, reds, greens, counts, brights, to_red, to_green);
+    for (std::size_t j = 0; j < block; ++j) {
+      const auto count = static_cast<int>(sum_of(columns.count, j));
+      const Sample none = sum_of(columns.bright, j) > 0 ? Sample(255 * 256) : Sample(0);
+      to_red[j] = count > 0 ? mean(sum_of(columns.red, j), count) : none;
+      to_green[j] = count > 0 ? mean(sum_of(columns.green, j), count) : none;
     }
   }
-
-  template <std::size_t Parts, class Sums>
-  static std::uint32_t sum_of(const Sums& sums, std::size_t sample) {
-    std::uint32_t sum = 0;
-    for (std::size_t k = 0; k < Parts; ++k) {
-      sum += sums[Parts * sample + k];
+  /// Sum over the columns of sample j.
+  template <class Cells>
+  [[gnu::always_inline]] static std::uint32_t sum_of(const Cells& cells, std::size_t j) {
+    return [&]<std::size_t... K>(std::index_sequence<K...>) __attribute__((always_inline)) {
+      return (std::uint32_t(0) + ... + std::uint32_t(cells[j * sizeof...(K) + K]));
     }
-    return sum;
+    (std::make_index_sequence<Step>{});
   }
-  /// A sample some of whose pixels may carry no information, from the sums over its parts.
-  template <std::size_t Parts, class Sums>
-  static void set_sample(std::size_t k,
-                         const Sums& reds,
-                         const Sums& greens,
-                         const Sums& counts,
-                         const Sums& brights,
-                         Sample* to_red,
-                         Sample* to_green) {
-    const auto count = static_cast<int>(sum_of<Parts>(counts, k));
-    const Sample none = sum_of<Parts>(brights, k) > 0 ? Sample(255 * 256) : Sample(0);
-    to_red[k] = count > 0 ? mean(sum_of<Parts>(reds, k), count) : none;
-    to_green[k] = count > 0 ? mean(sum_of<Parts>(greens, k), count) : none;
-  }
-
-  /// Of samples all of whose pixels carry information.
-  template <class Pairs>
-  [[gnu::always_inline]] static void store_means(const Pairs& sums, Sample* to) {
-    if constexpr (Step == 2) {
-      detail::store(to, Pairs(sums << 6));
-    } else {
-      constexpr int n = width / Step;
-      const auto both = detail::unzip_wide<std::uint32_t, n>(sums);
-      detail::store(to, detail::convert<std::uint16_t, n>(
-                            detail::lanes<std::uint32_t, n>((both.first + both.second) << 4)));
-    }
-  }
-#endif
 
   const Pixel* red_;
   const Pixel* green_;
   Index stride_;
 };
-
-/// Depth of every pixel from the depth of samples: the difference from the free pad is interpolated
-/// bilinearly and added to the free pad. Beside missing samples it is extrapolated from the other
-/// side. A pixel has no depth if its own sample has none, except at the pad's rim, where a sample
-/// may hold only some pixels. `free` and `free_samples` are the reference and sampled() of it; the
-/// other grids have their sizes. O(rows cols).
-template <class Reference, class S>
-void depth_between_samples(const Reference& free,
-                           const Reference& free_samples,
-                           int step,
-                           const StridedView<const S>& samples_mm,
-                           const StridedView<const PixelStatus>& sample_status,
-                           const StridedView<S>& depth_mm,
-                           const StridedView<PixelStatus>& status) {
-  const auto own = [step](Index px, Index count) { return (std::min)(px / step, count - 1); };
-  const auto place = [step](Index px, Index count) {  // the sample before, and how far behind it
-    const double at = sampled_px(static_cast<double>(px), step);
-    const double last = static_cast<double>(count - 2);
-    const double before = (std::max)(0.0, (std::min)(std::floor(at), last));
-    return std::pair(static_cast<Index>(before), S(at - before));
-  };
-  const auto moved = [&](Index i, Index j) {
-    return S(samples_mm(i, j) - S(free_samples.depth(i, j)));
-  };
-  const auto between = [&](Index i, Index j, const S& down, const S& right) {
-    const S up = moved(i, j) + right * (moved(i, j + 1) - moved(i, j));
-    const S low = moved(i + 1, j) + right * (moved(i + 1, j + 1) - moved(i + 1, j));
-    return S(up + down * (low - up));
-  };
-  const auto beside = [&](Index i, Index j, const S& down, const S& right) {
-    for (const Index di : {0, -1, 1}) {
-      for (const Index dj : {0, -1, 1}) {
-        const Index r = i + di, c = j + dj;
-        if (r >= 0 && c >= 0 && r + 1 < samples_mm.rows() && c + 1 < samples_mm.cols()) {
-          const S found = between(r, c, S(down - S(static_cast<double>(di))),
-                                  S(right - S(static_cast<double>(dj))));
-          if (found == found) {
-            return found;
-          }
-        }
-      }
-    }
-    return not_a_number<S>();
-  };
-  for (Index i = 0; i < depth_mm.rows(); ++i) {
-    const auto [row, down] = place(i, samples_mm.rows());
-    for (Index j = 0; j < depth_mm.cols(); ++j) {
-      const auto [col, right] = place(j, samples_mm.cols());
-      PixelStatus of = sample_status(own(i, samples_mm.rows()), own(j, samples_mm.cols()));
-      S depth = not_a_number<S>();
-      if (!free.in_pad(i, j)) {
-        of = PixelStatus::outside_pad;
-      } else if (of == PixelStatus::ok || of == PixelStatus::outside_pad) {
-        const S known = between(row, col, down, right);
-        depth = S(free.depth(i, j)) + (known == known ? known : beside(row, col, down, right));
-        of = depth == depth ? PixelStatus::ok : PixelStatus::not_a_number;
-      }
-      depth_mm(i, j) = depth;
-      status(i, j) = of;
-    }
-  }
-}
 
 }  // namespace v0
 }  // namespace fingerpad

@@ -4,8 +4,10 @@
 // The samples of a fingertip's frame, and the interpolation of their results to all pixels.
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 #include "fingerpad/core/grid.hpp"
@@ -34,6 +36,78 @@ struct Channels {
   First red;
   Second green;
 };
+
+/// Depth of every pixel from the depth of samples: the difference from the free pad is interpolated
+/// bilinearly and added to the free pad. Beside missing samples it is extrapolated from the other
+/// side. A pixel has no depth if its own sample has none, except at the pad's rim, where a sample
+/// may hold only some pixels. `free` and `free_samples` are the reference and sampled() of it; the
+/// other grids have their sizes; false, and nothing written, where they have not. O(rows cols).
+template <class Reference, class S>
+[[nodiscard]] bool depth_between_samples(const Reference& free,
+                                         const Reference& free_samples,
+                                         int step,
+                                         const StridedView<const S>& samples_mm,
+                                         const StridedView<const PixelStatus>& sample_status,
+                                         const StridedView<S>& depth_mm,
+                                         const StridedView<PixelStatus>& status) {
+  if (!same_size(samples_mm, sample_status) || !same_size(depth_mm, status) ||
+      samples_mm.rows() != free_samples.rows || samples_mm.cols() != free_samples.cols ||
+      depth_mm.rows() != free.rows || depth_mm.cols() != free.cols || step < 1 ||
+      free.rows / step != free_samples.rows || free.cols / step != free_samples.cols) {
+    return false;
+  }
+  const auto own = [step](Index px, Index count) { return (std::min)(px / step, count - 1); };
+  const auto place = [step](Index px, Index count) {  // the sample before, and how far behind it
+    const double at = sampled_px(static_cast<double>(px), step);
+    const double last = static_cast<double>(count - 2);
+    const double before = (std::max)(0.0, (std::min)(std::floor(at), last));
+    return std::pair(static_cast<Index>(before), S(at - before));
+  };
+  const auto moved = [&](Index i, Index j) {
+    return S(samples_mm(i, j) - S(free_samples.depth(i, j)));
+  };
+  const Index below = samples_mm.rows() > 1 ? 1 : 0;  // a single sample is everywhere
+  const Index beyond = samples_mm.cols() > 1 ? 1 : 0;
+  const auto between = [&](Index i, Index j, const S& down, const S& right) {
+    const S up = moved(i, j) + right * (moved(i, j + beyond) - moved(i, j));
+    const S low =
+        moved(i + below, j) + right * (moved(i + below, j + beyond) - moved(i + below, j));
+    return S(up + down * (low - up));
+  };
+  const auto beside = [&](Index i, Index j, const S& down, const S& right) {
+    for (const Index di : {0, -1, 1}) {
+      for (const Index dj : {0, -1, 1}) {
+        const Index r = i + di, c = j + dj;
+        if (r >= 0 && c >= 0 && r + below < samples_mm.rows() && c + beyond < samples_mm.cols()) {
+          const S found = between(r, c, S(down - S(static_cast<double>(di))),
+                                  S(right - S(static_cast<double>(dj))));
+          if (found == found) {
+            return found;
+          }
+        }
+      }
+    }
+    return not_a_number<S>();
+  };
+  for (Index i = 0; i < depth_mm.rows(); ++i) {
+    const auto [row, down] = place(i, samples_mm.rows());
+    for (Index j = 0; j < depth_mm.cols(); ++j) {
+      const auto [col, right] = place(j, samples_mm.cols());
+      PixelStatus of = sample_status(own(i, samples_mm.rows()), own(j, samples_mm.cols()));
+      S depth = not_a_number<S>();
+      if (!free.in_pad(i, j)) {
+        of = PixelStatus::outside_pad;
+      } else if (of == PixelStatus::ok || of == PixelStatus::outside_pad) {
+        const S known = between(row, col, down, right);
+        depth = S(free.depth(i, j)) + (known == known ? known : beside(row, col, down, right));
+        of = depth == depth ? PixelStatus::ok : PixelStatus::not_a_number;
+      }
+      depth_mm(i, j) = depth;
+      status(i, j) = of;
+    }
+  }
+  return true;
+}
 
 /// Samples of Step x Step pixels. Maps over all pixels are computed on the first request per frame.
 template <class Reference, class Pixel, int Step, int Threads>
@@ -104,9 +178,8 @@ class FrameSamples {
  private:
   void spread(const OwnedGrid<float>& mm, const OwnedGrid<PixelStatus>& status) {
     if (!has_depth_) {
-      depth_between_samples(free_, free_samples_, Step, mm.view(), status.view(), depth_.view(),
-                            status_.view());
-      has_depth_ = true;
+      has_depth_ = depth_between_samples(free_, free_samples_, Step, mm.view(), status.view(),
+                                         depth_.view(), status_.view());
     }
   }
 
