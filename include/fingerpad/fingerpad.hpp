@@ -43,6 +43,7 @@
 #include "fingerpad/published/contact_shift.hpp"
 #include "fingerpad/published/depth.hpp"
 #include "fingerpad/published/friction_ratio.hpp"
+#include "fingerpad/published/neighbour_light.hpp"
 #include "fingerpad/published/object_motion.hpp"
 #include "fingerpad/published/preslip.hpp"
 #include "fingerpad/published/shear.hpp"

@@ -8,9 +8,10 @@
 #include <vector>
 
 #include "fingerpad/calibrate/depth.hpp"
+#include "fingerpad/depth/neighbour_light.hpp"
 #include "fingerpad/published/absorption.hpp"
 #include "fingerpad/published/camera.hpp"
-#include "fingerpad/published/neighbour_light_fit.hpp"
+#include "fingerpad/published/neighbour_light.hpp"
 #include "fingerpad/published/normal_force_first_forms.hpp"
 #include "fingerpad/published/slides_contact.hpp"
 #include "support/catch.hpp"
@@ -107,6 +108,43 @@ TEST_CASE("published fit of the neighbouring light: a line of logarithms", "[pub
   CHECK(std::log(bent.m0_mm_per_rad) == Approx(-0.5));
   CHECK(bent.sum_sq == Approx(0.25 + 1 + 0.25));
   CHECK_FALSE(published::fit_by_logarithms(std::span(pixels).first(1)).ok());
+}
+
+TEST_CASE("published neighbouring light: r, m_0 and n of presses are found again", "[published]") {
+  constexpr Index size = 36, radius = 6;
+  constexpr double pitch_mm = 0.25;
+  test::Image<double> free(size, size), pressed(size, size), actual(size, size);
+  for (Index i = 0; i < size; ++i) {
+    for (Index j = 0; j < size; ++j) {
+      const double x = pitch_mm * static_cast<double>(j - 16);
+      const double y = pitch_mm * static_cast<double>(i - 19);
+      free(i, j) = 8 - 0.05 * (x * x + y * y);
+      pressed(i, j) = free(i, j) - 2 * std::exp(-(x * x + 0.7 * y * y) / 4);
+    }
+  }
+  const auto change = published::inclination_change(pressed, free, pitch_mm);
+  for (Index i = 0; i < size; ++i) {
+    for (Index j = 0; j < size; ++j) {
+      const double psi_sum = published::disc_sum(change, size, radius, i, j);
+      actual(i, j) =
+          published::without_neighbour_light(pressed(i, j), free(i, j), psi_sum, 2e-3, 0.3);
+    }
+  }
+  const auto found = published::identify_neighbour_light(pressed, actual, free, pitch_mm);
+  REQUIRE(found.ok());
+  CHECK(found.radius_px == radius);
+  CHECK(found.fit.m0_mm_per_rad == Approx(2e-3));
+  CHECK(found.fit.n_per_mm == Approx(0.3));
+  CHECK(found.sum_sq[radius - 1] < 1e-9);
+  CHECK(found.sum_sq[radius] > 1e-3);
+  CHECK(found.sum_sq[49] > 1e-3);
+  // the default compensation is the same in the middle of the image
+  NeighbourLightCompensation<double> light({radius, 2e-3, 0.3}, pitch_mm, free);
+  test::Image<double> out(size, size);
+  REQUIRE(light(pressed, out) == FrameStatus::ok);
+  CHECK(out(18, 17) == Approx(actual(18, 17)).epsilon(1e-9));
+  const test::Image<double> narrow(size, size - 1);
+  CHECK_FALSE(published::identify_neighbour_light(pressed, narrow, free, pitch_mm).ok());
 }
 
 TEST_CASE("published circle through three points", "[published]") {

@@ -272,7 +272,7 @@ class FrameSampler {
     return [&]<std::size_t... K>(std::index_sequence<K...>) __attribute__((always_inline)) {
       return (std::uint32_t(0) + ... + std::uint32_t(cells[j * sizeof...(K) + K]));
     }
-    (std::make_index_sequence<Step>{});
+    (std::make_index_sequence<std::size_t(Step)>{});
   }
 
   const Pixel* red_;
