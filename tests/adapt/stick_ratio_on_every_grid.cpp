@@ -144,40 +144,22 @@ TEST_CASE("dots that stick are read from every grid", "[adapt][stick_ratio]") {
   CHECK(c.reads_dots(LazyView(n, n, spatial)));  // their depth is not read
 }
 
-TEST_CASE("dots in planes, matrices, tensors and vectors are read without a copy",
-          "[adapt][stick_ratio]") {
+TEST_CASE("dots in tensors and vectors are read without a copy", "[adapt][stick_ratio]") {
   const Case c;
   const auto x = [&](Index i, Index j) { return c.dots(i, j).x; };
   const auto y = [&](Index i, Index j) { return c.dots(i, j).y; };
-  const auto by_x = Case::filled(RowMajor<float>(n, n), x);
-  const auto by_y = Case::filled(ColMajor<float>(n, n), y);
-  CHECK(c.reads_dots(dots_of_planes(by_x, by_y)));
-  CHECK(c.reads_dots(dots_of_planes(by_x, by_y, by_x)));
-  const RowMajor<float> smaller = by_y.topRows(3);
-  CHECK(rows(dots_of_planes(by_x, smaller)) == 0);
 
-  Eigen::Matrix<float, Eigen::Dynamic, 2> columns(n * n, 2);
-  RowMajor<float> lines(n * n, 3);
-  const std::array<std::size_t, 3> flat = {21, 21, 2}, deep = {21, 21, 3}, planes = {2, 21, 21};
-  xt::xtensor<float, 3> tensor(flat), spatial(deep), stack(planes);
+  const std::array<std::size_t, 3> flat = {21, 21, 2}, deep = {21, 21, 3};
+  xt::xtensor<float, 3> tensor(flat), spatial(deep);
   xt::xtensor<float, 3, xt::layout_type::column_major> column_major(flat);
   xt::xarray<float> array = xt::xarray<float>::from_shape({21, 21, 2});
   for (Index i = 0; i < n; ++i) {
     for (Index j = 0; j < n; ++j) {
-      columns.row(i * n + j) << x(i, j), y(i, j);
-      lines.row(i * n + j) << x(i, j), y(i, j), 7;
       tensor(i, j, 0) = column_major(i, j, 0) = array(i, j, 0) = spatial(i, j, 0) = x(i, j);
       tensor(i, j, 1) = column_major(i, j, 1) = array(i, j, 1) = spatial(i, j, 1) = y(i, j);
-      stack(0, i, j) = x(i, j);
-      stack(1, i, j) = y(i, j);
       spatial(i, j, 2) = 7;
     }
   }
-  CHECK(c.reads_dots(dots_of_matrix(columns, n, n)));
-  CHECK(c.reads_dots(dots_of_matrix<3>(lines, n, n)));
-  CHECK(rows(dots_of_matrix(lines, n, n)) == 0);
-  CHECK(rows(dots_of_matrix(columns, n, n - 1)) == 0);
-  CHECK(rows(dots_of_matrix(columns, 0, 0)) == 0);
   CHECK(c.reads_dots(dots_of_tensor(tensor)));
   CHECK(c.reads_dots(dots_of_tensor(column_major)));
   CHECK(c.reads_dots(dots_of_tensor(array)));
@@ -186,9 +168,6 @@ TEST_CASE("dots in planes, matrices, tensors and vectors are read without a copy
   CHECK(rows(dots_of_tensor(spatial)) == 0);
   const xt::xarray<float> line = xt::xarray<float>::from_shape({42});
   CHECK(rows(dots_of_tensor(line)) == 0);
-  const auto plane = [&](int k) { return xt::view(stack, k, xt::all(), xt::all()); };
-  const auto first = plane(0), second = plane(1);
-  CHECK(c.reads_dots(dots_of_planes(first, second)));
   CHECK(c.reads_dots(grid_of(c.dots.cells, n, n)));
 }
 

@@ -168,27 +168,3 @@ TEST_CASE("dots that come as a computed grid or a view are counted alike", "[dot
   points[5].x = std::numeric_limits<float>::quiet_NaN();
   CHECK(count_present(StridedView<const cv::Point2f>(points.data(), 3, 4, 4)) == 11);
 }
-
-TEST_CASE("rows of a matrix are dots in the plane or in space", "[dots]") {
-  Eigen::Matrix<double, 6, 3> matrix;
-  for (Index k = 0; k < 6; ++k) {
-    const auto number = static_cast<double>(k);
-    matrix.row(k) << number, 10 + number, 20 + number;
-  }
-  const auto in_space = dots_of_matrix<3>(matrix, 2, 3);
-  const Eigen::Matrix<double, 6, 2> left = matrix.leftCols<2>();
-  const auto in_plane = dots_of_matrix(left, 2, 3);
-  REQUIRE((rows(in_space) == 2 && cols(in_space) == 3));
-  REQUIRE((rows(in_plane) == 2 && cols(in_plane) == 3));
-  for (Index i = 0; i < 2; ++i) {
-    for (Index j = 0; j < 3; ++j) {
-      const auto number = static_cast<double>(3 * i + j);
-      const auto p = in_space(i, j);
-      CHECK((p.x == number && p.y == 10 + number && p.z == 20 + number));
-      const auto q = in_plane(i, j);
-      CHECK((q.x == number && q.y == 10 + number));
-    }
-  }
-  CHECK(rows(dots_of_matrix<3>(matrix, 4, 2)) == 0);
-  CHECK(rows(dots_of_matrix(matrix, 2, 3)) == 0);  // three columns are not two coordinates
-}

@@ -71,6 +71,17 @@ struct grid_traits<G> {
   }
 };
 
+namespace detail {
+template <int Coordinates, scalar S>
+constexpr auto point_of_coordinates(const S& x, const S& y, const S& z) {
+  if constexpr (Coordinates == 3) {
+    return Point3<S>{x, y, z};
+  } else {
+    return Point2<S>{x, y};
+  }
+}
+}  // namespace detail
+
 /// A view of the dots of a (rows, cols, 2) tensor in memory, or of (rows, cols, 3) with depths. A
 /// tensor of another shape gives a grid without dots. The tensor must outlive the view.
 template <int Coordinates = 2, class Tensor>

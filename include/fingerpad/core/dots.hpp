@@ -77,62 +77,6 @@ constexpr bool is_present(const P& p) {
   return present;
 }
 
-// Views, without a copy, of dots that are not stored as a grid of points. If the sizes do not
-// match, the view is an empty dot grid, which every method refuses for its size.
-
-namespace detail {
-template <int Coordinates, scalar S>
-constexpr auto point_of_coordinates(const S& x, const S& y, const S& z) {
-  if constexpr (Coordinates == 3) {
-    return Point3<S>{x, y, z};
-  } else {
-    return Point2<S>{x, y};
-  }
-}
-}  // namespace detail
-
-/// Dots whose coordinates are stored in separate planes: x, y and optionally depth. The planes must
-/// outlive the view.
-template <class X, class Y>
-  requires(grid<X>&& grid<Y>)
-constexpr auto dots_of_planes(X&& x, Y&& y) {
-  const auto from_x = as_view(std::forward<X>(x));
-  const auto from_y = as_view(std::forward<Y>(y));
-  const bool fits = same_size(from_x, from_y);
-  return LazyView(fits ? rows(from_x) : 0, fits ? cols(from_x) : 0, [=](Index i, Index j) {
-    using S = cell_t<X>;
-    return Point2<S>{from_x(i, j), static_cast<S>(from_y(i, j))};
-  });
-}
-template <class X, class Y, class Z>
-  requires(grid<X>&& grid<Y>&& grid<Z>)
-constexpr auto dots_of_planes(X&& x, Y&& y, Z&& z) {
-  const auto from_x = as_view(std::forward<X>(x));
-  const auto from_y = as_view(std::forward<Y>(y));
-  const auto from_z = as_view(std::forward<Z>(z));
-  const bool fits = same_size(from_x, from_y) && same_size(from_x, from_z);
-  return LazyView(fits ? rows(from_x) : 0, fits ? cols(from_x) : 0, [=](Index i, Index j) {
-    using S = cell_t<X>;
-    return Point3<S>{from_x(i, j), static_cast<S>(from_y(i, j)), static_cast<S>(from_z(i, j))};
-  });
-}
-
-/// row_count x col_count dots from a matrix with one row per dot, in row-major order of the
-/// pattern, and one column per coordinate (2 or 3). The matrix must outlive the view.
-template <int Coordinates = 2, class Matrix>
-  requires(grid<Matrix>)
-constexpr auto dots_of_matrix(Matrix&& matrix, Index row_count, Index col_count) {
-  static_assert(Coordinates == 2 || Coordinates == 3);
-  const auto from = as_view(std::forward<Matrix>(matrix));
-  const bool fits = cols(from) == Coordinates && row_count > 0 && rows(from) % row_count == 0 &&
-                    rows(from) / row_count == col_count;
-  return LazyView(fits ? row_count : 0, fits ? col_count : 0, [=](Index i, Index j) {
-    const Index k = i * col_count + j;
-    return detail::point_of_coordinates<Coordinates>(from(k, 0), from(k, 1),
-                                                     from(k, Coordinates - 1));
-  });
-}
-
 /// Row and column of a dot in the grid; row -1 means no dot.
 struct DotIndex {
   Index row = -1;

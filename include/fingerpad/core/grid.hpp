@@ -336,20 +336,6 @@ constexpr StridedView<T> transpose(StridedView<T> v) {
   return {v.data(), v.cols(), v.rows(), v.col_stride(), v.row_stride()};
 }
 
-/// Last row first.
-template <class T>
-constexpr StridedView<T> flip_rows(StridedView<T> v) {
-  const Index last = v.rows() > 0 ? v.rows() - 1 : 0;
-  return {v.row(last), v.rows(), v.cols(), -v.row_stride(), v.col_stride()};
-}
-
-/// Last column first.
-template <class T>
-constexpr StridedView<T> flip_cols(StridedView<T> v) {
-  const Index last = v.cols() > 0 ? v.cols() - 1 : 0;
-  return {v.data() + last * v.col_stride(), v.rows(), v.cols(), v.row_stride(), -v.col_stride()};
-}
-
 /// Channel `c` of an image whose `channels` values lie side by side in each pixel (BGRBGR...).
 /// `row_stride` is counted in values, as in `channels * cols` for an image without padding.
 template <class T>

@@ -33,19 +33,19 @@ constexpr Point3<To> cast(const Point3<From>& p) {
 
 template <scalar S>
 constexpr Point2<S> operator+(const Point2<S>& a, const Point2<S>& b) {
-  return {S(a.x + b.x), S(a.y + b.y)};
+  return {a.x + b.x, a.y + b.y};
 }
 template <scalar S>
 constexpr Point2<S> operator-(const Point2<S>& a, const Point2<S>& b) {
-  return {S(a.x - b.x), S(a.y - b.y)};
+  return {a.x - b.x, a.y - b.y};
 }
 template <scalar S>
 constexpr Point2<S> operator*(const std::type_identity_t<S>& factor, const Point2<S>& a) {
-  return {S(factor * a.x), S(factor * a.y)};
+  return {factor * a.x, factor * a.y};
 }
 template <scalar S>
 constexpr Point2<S> operator/(const Point2<S>& a, const std::type_identity_t<S>& divisor) {
-  return {S(a.x / divisor), S(a.y / divisor)};
+  return {a.x / divisor, a.y / divisor};
 }
 template <scalar S>
 constexpr Point2<S>& operator+=(Point2<S>& a, const Point2<S>& b) {
@@ -54,23 +54,23 @@ constexpr Point2<S>& operator+=(Point2<S>& a, const Point2<S>& b) {
 
 template <scalar S>
 constexpr Point3<S> operator+(const Point3<S>& a, const Point3<S>& b) {
-  return {S(a.x + b.x), S(a.y + b.y), S(a.z + b.z)};
+  return {a.x + b.x, a.y + b.y, a.z + b.z};
 }
 template <scalar S>
 constexpr Point3<S> operator-(const Point3<S>& a, const Point3<S>& b) {
-  return {S(a.x - b.x), S(a.y - b.y), S(a.z - b.z)};
+  return {a.x - b.x, a.y - b.y, a.z - b.z};
 }
 template <scalar S>
 constexpr Point3<S> operator-(const Point3<S>& a) {
-  return {S(-a.x), S(-a.y), S(-a.z)};
+  return {-a.x, -a.y, -a.z};
 }
 template <scalar S>
 constexpr Point3<S> operator*(const std::type_identity_t<S>& factor, const Point3<S>& a) {
-  return {S(factor * a.x), S(factor * a.y), S(factor * a.z)};
+  return {factor * a.x, factor * a.y, factor * a.z};
 }
 template <scalar S>
 constexpr Point3<S> operator/(const Point3<S>& a, const std::type_identity_t<S>& divisor) {
-  return {S(a.x / divisor), S(a.y / divisor), S(a.z / divisor)};
+  return {a.x / divisor, a.y / divisor, a.z / divisor};
 }
 template <scalar S>
 constexpr Point3<S>& operator+=(Point3<S>& a, const Point3<S>& b) {
@@ -79,16 +79,16 @@ constexpr Point3<S>& operator+=(Point3<S>& a, const Point3<S>& b) {
 
 template <scalar S>
 constexpr S dot(const Point2<S>& a, const Point2<S>& b) {
-  return S(a.x * b.x + a.y * b.y);
+  return a.x * b.x + a.y * b.y;
 }
 template <scalar S>
 constexpr S dot(const Point3<S>& a, const Point3<S>& b) {
-  return S(a.x * b.x + a.y * b.y + a.z * b.z);
+  return a.x * b.x + a.y * b.y + a.z * b.z;
 }
 
 template <scalar S>
 constexpr Point3<S> cross(const Point3<S>& a, const Point3<S>& b) {
-  return {S(a.y * b.z - a.z * b.y), S(a.z * b.x - a.x * b.z), S(a.x * b.y - a.y * b.x)};
+  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
 
 /// |a|^2.

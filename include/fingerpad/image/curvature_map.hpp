@@ -12,7 +12,7 @@
 #include <utility>
 #include <vector>
 
-#include "fingerpad/core/detail/aligned_vector.hpp"
+#include "fingerpad/core/detail/vectors.hpp"
 #include "fingerpad/core/check.hpp"
 #include "fingerpad/core/grid.hpp"
 #include "fingerpad/core/scalar.hpp"

@@ -22,7 +22,7 @@
 #include <type_traits>
 #include <vector>
 
-#include "fingerpad/core/detail/reserved_vector.hpp"
+#include "fingerpad/core/detail/vectors.hpp"
 #include "fingerpad/core/dots.hpp"
 #include "fingerpad/core/check.hpp"
 #include "fingerpad/core/grid.hpp"

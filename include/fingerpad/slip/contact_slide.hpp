@@ -17,7 +17,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "fingerpad/core/detail/reserved_vector.hpp"
+#include "fingerpad/core/detail/vectors.hpp"
 #include "fingerpad/core/dots.hpp"
 #include "fingerpad/core/check.hpp"
 #include "fingerpad/core/grid.hpp"

@@ -18,7 +18,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "fingerpad/core/detail/reserved_vector.hpp"
+#include "fingerpad/core/detail/vectors.hpp"
 #include "fingerpad/core/dots.hpp"
 #include "fingerpad/core/point.hpp"
 #include "fingerpad/core/scalar.hpp"

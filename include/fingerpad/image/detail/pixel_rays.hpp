@@ -6,7 +6,7 @@
 #include <cmath>
 #include <cstddef>
 
-#include "fingerpad/core/detail/aligned_vector.hpp"
+#include "fingerpad/core/detail/vectors.hpp"
 #include "fingerpad/core/dots.hpp"
 #include "fingerpad/core/grid.hpp"
 #include "fingerpad/core/scalar.hpp"

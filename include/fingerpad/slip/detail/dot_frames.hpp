@@ -10,7 +10,7 @@
 #include <limits>
 #include <vector>
 
-#include "fingerpad/core/detail/reserved_vector.hpp"
+#include "fingerpad/core/detail/vectors.hpp"
 #include "fingerpad/core/dots.hpp"
 #include "fingerpad/core/grid.hpp"
 #include "fingerpad/core/scalar.hpp"

@@ -9,7 +9,7 @@
 #include <initializer_list>
 #include <vector>
 
-#include "fingerpad/core/detail/reserved_vector.hpp"
+#include "fingerpad/core/detail/vectors.hpp"
 #include "fingerpad/slip/detail/dot_frames.hpp"
 
 namespace fingerpad {

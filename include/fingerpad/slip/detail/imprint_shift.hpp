@@ -13,7 +13,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "fingerpad/core/detail/reserved_vector.hpp"
+#include "fingerpad/core/detail/vectors.hpp"
 #include "fingerpad/core/grid.hpp"
 #include "fingerpad/core/point.hpp"
 #include "fingerpad/core/scalar.hpp"

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "fingerpad/core/detail/reserved_vector.hpp"
+#include "fingerpad/core/detail/vectors.hpp"
 #include "fingerpad/core/grid.hpp"
 #include "fingerpad/slip/detail/dot_doubts.hpp"
 #include "fingerpad/slip/detail/free_dots.hpp"
