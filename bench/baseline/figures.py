@@ -6,6 +6,8 @@
 figures.py write FOLDER OUT    reads PROGRAM_{o2,native}.json in FOLDER, writes OUT/errors.csv and OUT/times.csv
 figures.py compare OLD NEW     two folders with errors.csv and times.csv: each error whose median is
                                worse by more than a twentieth, each time by more than a tenth
+figures.py asserted FOLDER OUT what the tests of accuracy measured: each FOLDER/NAME.xml that `-s -r xml` wrote,
+                               into OUT/accuracy.csv
        --rename 'OLD=NEW' ...  rows or groups that have another name since, as regular expressions
 
 Errors do not depend on the machine. Times do: compare only those of one run on one machine.
@@ -16,6 +18,7 @@ import json
 import pathlib
 import re
 import sys
+from xml.etree import ElementTree
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "report"))
 from runs import FLAGS, read  # noqa: E402
@@ -65,6 +68,29 @@ def write(folder, out):
                                          f"{e.worst:.6g}", "" if found is None else f"{found:.6g}"])
 
 
+def asserted(folder, out):
+    squeeze = lambda text: " ".join((text or "").split())
+    with open(out / "accuracy.csv", "w", newline="") as file:
+        rows = csv.writer(file, lineterminator="\n")
+        rows.writerow(["program", "test", "where", "asserted", "measured"])
+        seen = set()
+        for path in sorted(folder.glob("*.xml")):
+            for case in ElementTree.parse(path).iter("TestCase"):
+                for of in [case, *case.iter("Section")]:
+                    where = []
+                    for part in of:
+                        if part.tag == "Info":
+                            where.append(squeeze(part.text))
+                        elif part.tag == "Expression":
+                            row = (path.stem, case.get("name"), "; ".join(([of.get("name")] if of is not case else [])
+                                                                          + where),
+                                   squeeze(part.find("Original").text), squeeze(part.find("Expanded").text))
+                            where = []
+                            if row not in seen and row[3] != row[4]:
+                                seen.add(row)
+                                rows.writerow(row)
+
+
 def rows_of(path, keys, renames):
     with open(path, newline="") as file:
         rows = {}
@@ -93,13 +119,15 @@ def compare(old, new, renames):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("what", choices=["write", "compare"])
+    parser.add_argument("what", choices=["write", "asserted", "compare"])
     parser.add_argument("first", type=pathlib.Path)
     parser.add_argument("second", type=pathlib.Path)
     parser.add_argument("--rename", nargs="*", default=[])
     args = parser.parse_args()
     if args.what == "write":
         write(args.first, args.second)
+    elif args.what == "asserted":
+        asserted(args.first, args.second)
     else:
         compare(args.first, args.second, [r.split("=", 1) for r in args.rename])
 
