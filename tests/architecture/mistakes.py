@@ -20,6 +20,7 @@ from pathlib import Path
 PAGE, CELLS = "docs/mistakes.md", "tests/mistakes/cells.txt"
 STATUS = re.compile(r"`(\w+)`")
 LITERAL = re.compile(r'"((?:[^"\\\n]|\\.)*)"')
+CAUSE = re.compile(r'const char\* (\w+) =\s*((?:"[^"]*"\s*)+);')
 NAME_OF = re.compile(r'case \w+::(\w+):\s*return "([^"]*)"|::(\w+)\s*\? "([^"]*)"')
 
 
@@ -76,6 +77,8 @@ def breaches(root):
     for header in (root / "include").rglob("*.hpp"):
         for a, text_a, b, text_b in NAME_OF.findall(header.read_text()):
             texts.setdefault(a or b, []).append(text_a or text_b)
+        for name, text in CAUSE.findall(header.read_text()):
+            texts.setdefault(name, []).append("".join(LITERAL.findall(text)))
     for key in sorted(set(cells) ^ set(lines)):
         yield f"{' | '.join(key)}: no {'line in ' + CELLS if key in cells else 'cell in ' + PAGE}"
     for key in sorted(set(cells) & set(lines)):

@@ -10,7 +10,7 @@
 #include <type_traits>
 #include <vector>
 
-#include "fingerpad/pipeline/detail/frame_samples.hpp"
+#include "fingerpad/pipeline/fingertip.hpp"
 #include "support/catch.hpp"
 #include "support/generators.hpp"
 #include "support/pad.hpp"
