@@ -4,6 +4,8 @@
 // Options and causes of all calibrations. Samples that do not determine the parameters are refused
 // (parameter_error). Samples that determine them but look wrong give parameters and the likely
 // cause.
+#include <string>
+
 #include "fingerpad/core/check.hpp"
 #include "fingerpad/core/scalar.hpp"
 
@@ -26,16 +28,15 @@ struct FitOptions {
   bool rotated = false;      ///< also fits the compensation for rotation
 };
 
-/// Refuses what has no meaning (parameter_error).
-inline void expects_valid(const FitOptions& options) {
-  const char* const owner = "FitOptions";
-  expects(is_finite(options.threshold) && options.threshold > 0, owner, "threshold",
-          options.threshold, "finite and > 0");
-  expects(options.passes >= 2, owner, "passes", static_cast<long long>(options.passes), ">= 2");
-  expects(options.min_independence > 0 && options.min_independence < 1, owner, "min_independence",
-          options.min_independence, "in (0, 1)");
-  expects(options.min_explained >= 0 && options.min_explained < 1, owner, "min_explained",
-          options.min_explained, "in [0, 1)");
+/// Says which option has no meaning; "" if all have one.
+inline std::string check(const FitOptions& o) {
+  return check("FitOptions",
+               {{"threshold", o.threshold, positive},
+                {"passes", o.passes, at_least(2)},
+                {"min_independence",
+                 o.min_independence,
+                 {.min = 0, .max = 1, .above_min = true, .below_max = true}},
+                {"min_explained", o.min_explained, {.min = 0, .max = 1, .below_max = true}}});
 }
 
 /// A fit that is not ok() says in its field `cause` what is likely wrong; nullptr if it is ok.

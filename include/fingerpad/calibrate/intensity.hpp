@@ -10,6 +10,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <string>
 #include <vector>
 
 #include "fingerpad/calibrate/fit.hpp"
@@ -32,15 +33,13 @@ struct BallPress {
   double contact_share = 0.1;   ///< uses pixels where the ball is deeper than this share of its
                                 ///< largest depth; the gel bridges near the rim; in [0, 1)
 };
+/// Says which value is out of range; "" if none is.
 template <scalar S>
-void expects_valid(const BallPress<S>& press) {
-  constexpr const char* owner = "BallPress";
-  expects(is_finite(press.ball_mm) && S(0) < press.ball_mm, owner, "ball_mm", press.ball_mm,
-          "finite and > 0");
-  expects(is_finite(press.mm_per_px) && S(0) < press.mm_per_px, owner, "mm_per_px", press.mm_per_px,
-          "finite and > 0");
-  expects(press.contact_share >= 0 && press.contact_share < 1, owner, "contact_share",
-          press.contact_share, "in [0, 1)");
+std::string check(const BallPress<S>& press) {
+  return check("BallPress",
+               {{"ball_mm", press.ball_mm, positive},
+                {"mm_per_px", press.mm_per_px, positive},
+                {"contact_share", press.contact_share, {.min = 0, .max = 1, .below_max = true}}});
 }
 
 /// The law and its uncertainty.
@@ -75,7 +74,7 @@ class IntensityCalibration {
   /// no ball is visible: a round darkest spot of at least 30 pixels.
   template <grid Free, grid Pressed>
   bool add(const Free& free, const Pressed& pressed, const BallPress<S>& ball) {
-    expects_valid(ball);
+    require(ball);
     const auto from = as_view(free);
     const IntensityDepth<S> log_ratio(from, {1, 0, 0}, options_);
     auto workspace = log_ratio.workspace();

@@ -104,7 +104,7 @@ class ModelFitter {
         measured_(measured),
         model_(model),
         options_(options) {
-    expects_valid(options);
+    require(options);
     const Index count = static_cast<Index>(names_.size());
     expects(measured.size() > count, owner, "usable samples",
             static_cast<long long>(measured.size()),
