@@ -189,9 +189,8 @@ class VirtualPad {
     for (std::size_t k = 0; k < dots_px_.size(); ++k) {
       const Point3<double>& home = home_.data()[k];
       const Point2<double> at = Point2<double>{home.x, home.y} + shift_mm_[k];
-      dots_px_[k] = fingerpad::is_finite(home)
-                        ? pixel_of(view_.camera, {at.x, at.y, membrane_.height(at)})
-                        : Point2<double>{home.x, home.y};
+      dots_px_[k] = is_finite(home) ? pixel_of(view_.camera, {at.x, at.y, membrane_.height(at)})
+                                    : Point2<double>{home.x, home.y};
     }
     view_.look(membrane_, dots_px_);
     const auto stored = [](double level) {

@@ -20,7 +20,6 @@
 #include "fingerpad/core/point.hpp"
 #include "fingerpad/core/scalar.hpp"
 #include "fingerpad/core/status.hpp"
-#include "fingerpad/core/version.hpp"
 #include "fingerpad/depth/depth.hpp"
 #include "fingerpad/depth/intensity_depth.hpp"
 #include "fingerpad/depth/neighbour_light.hpp"

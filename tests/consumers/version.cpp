@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 // Compiled with the version that CMakeLists.txt declares.
-#include "fingerpad/core/version.hpp"
+#include "fingerpad/core/scalar.hpp"
 
 static_assert(FINGERPAD_VERSION_MAJOR == MAJOR);
 static_assert(FINGERPAD_VERSION_MINOR == MINOR);

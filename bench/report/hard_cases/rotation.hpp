@@ -127,7 +127,7 @@ Rotation<S> published_turn(const Neighbourhood<S>& from, const Neighbourhood<S>&
   const auto basis = [](const Neighbourhood<S>& n) {
     const auto q = d::motion::directions_of_all(n.dot);
     const auto n1 = normalized(q.q1), n2 = normalized(q.q2);
-    return d::motion::Basis<S>{n1, n2, fingerpad::cross(n1, n2), true};
+    return d::motion::Basis<S>{n1, n2, cross(n1, n2), true};
   };
   return d::motion::turn_between(d::motion::inverse_transposed(basis(from)), basis(to));
 }

@@ -2,12 +2,10 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 // Vocabulary: how bad parameters are refused. Every options type has `check(options)`: a table of
-// its parameters and their ranges, which gives the text of the refusal, or "" if all are good. A
-// program can ask before it constructs. Constructors refuse with that text, which names the
-// parameter, its value and its range: they call the installed handler, if any, and throw
-// parameter_error. A program compiled without exceptions aborts instead. Only constructors and
-// calibration refuse; per-frame calls report a status. Compile a whole program either with
-// exceptions or without.
+// its parameters and their ranges, which gives the text of the refusal, or "" if all are good, so
+// that a program can ask before it constructs. Only constructors and calibration refuse: they call
+// the installed handler, if any, and throw parameter_error, or abort if the program is compiled
+// without exceptions. Compile a whole program either with exceptions or without.
 #include <cmath>
 #include <concepts>
 #include <cstdio>
@@ -101,7 +99,7 @@ struct Parameter {
 namespace detail {
 
 /// "0.025", or all digits of a whole number.
-inline std::string written(double number, bool whole) {
+inline std::string written(double number, bool whole = false) {
   char text[64];
   std::snprintf(text, sizeof text, whole ? "%.0f" : "%.9g", number);
   return text;
@@ -109,28 +107,31 @@ inline std::string written(double number, bool whole) {
 
 /// "finite and > 0", "in [0, 1]", "in (0, 1)", "odd, in [3, 109]".
 inline std::string written(const Range& range, bool whole) {
-  std::string text = range.odd ? "odd, " : "";
+  const std::string text = range.odd ? "odd, " : "";
+  const std::string min = written(range.min);
   if (std::isfinite(range.max)) {
-    return text + (range.above_min ? "in (" : "in [") + written(range.min, false) + ", " +
-           written(range.max, false) + (range.below_max ? ")" : "]");
+    return text + (range.above_min ? "in (" : "in [") + min + ", " + written(range.max) +
+           (range.below_max ? ")" : "]");
   }
-  text += whole ? "" : "finite";
-  if (std::isfinite(range.min)) {
-    text += (whole ? "" : " and ") + std::string(range.above_min ? "> " : ">= ") +
-            written(range.min, false);
+  if (!std::isfinite(range.min)) {
+    return text + (whole ? "" : "finite");
   }
-  return text;
+  return text + (whole ? "" : "finite and ") + (range.above_min ? "> " : ">= ") + min;
+}
+
+/// "Camera: pitch_mm = -1, must be finite and > 0".
+inline std::string refusal(const char* owner, const Parameter& p, const std::string& range) {
+  return std::string(owner) + ": " + p.name + " = " + written(p.number, p.whole) + ", must be " +
+         range;
 }
 
 }  // namespace detail
 
-/// The refusal of the first parameter of `owner` that is out of its range, "Camera: pitch_mm = -1,
-/// must be finite and > 0"; "" if all are good.
+/// The refusal of the first parameter of `owner` that is out of its range; "" if all are good.
 inline std::string check(const char* owner, std::initializer_list<Parameter> parameters) {
   for (const Parameter& p : parameters) {
     if (!p.good()) {
-      return std::string(owner) + ": " + p.name + " = " + detail::written(p.number, p.whole) +
-             ", must be " + detail::written(p.range, p.whole);
+      return detail::refusal(owner, p, detail::written(p.range, p.whole));
     }
   }
   return "";
@@ -146,21 +147,11 @@ void require(const Options& options) {
 }
 
 /// Refuses parameter `name` of `owner` unless `good`; `range` says in words what is allowed.
-template <scalar S>
-void expects(bool good, const char* owner, const char* name, const S& given, const char* range) {
-  if (good) {
-    return;
-  }
-  char number[64];
-  std::snprintf(number, sizeof number, "%.9g", static_cast<double>(value(given)));
-  refuse(std::string(owner) + ": " + name + " = " + number + ", must be " + range);
-}
-
-/// The same for a whole-number parameter.
-inline void expects(
-    bool good, const char* owner, const char* name, long long given, const char* range) {
+template <class Number>
+void expects(
+    bool good, const char* owner, const char* name, const Number& given, const char* range) {
   if (!good) {
-    refuse(std::string(owner) + ": " + name + " = " + std::to_string(given) + ", must be " + range);
+    refuse(detail::refusal(owner, {name, given, finite_number}, range));
   }
 }
 

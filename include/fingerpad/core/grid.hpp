@@ -16,7 +16,6 @@
 #include <utility>
 
 #include "fingerpad/core/check.hpp"
-#include "fingerpad/core/version.hpp"  // first: it refuses older dialects
 
 namespace fingerpad {
 inline namespace v0 {

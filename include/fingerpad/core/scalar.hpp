@@ -1,24 +1,31 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// Vocabulary: what a number is. Every kernel is written once for any `scalar`: float, double, long
-// double, a multiprecision number, or a dual number that carries derivatives.
-//
-// Rules for code on scalars: call mathematics unqualified after `using std::exp;`, write constants
-// as S(2) or from scalar_traits, and branch on value(x).
+// Vocabulary: what a number is, and the version of the library. Every kernel is written once for
+// any `scalar`: float, double, long double, a multiprecision number, or a dual number that carries
+// derivatives. Rules for code on scalars: call mathematics unqualified after `using std::exp;`,
+// write constants as S(2) or from scalar_traits, and branch on value(x).
 #include <cmath>
 #include <concepts>
 #include <limits>
 #include <type_traits>
 
-#include "fingerpad/core/version.hpp"  // first: it refuses older dialects
-
+#if !defined(_MSVC_LANG) && __cplusplus < 202002L
+#error "fingerpad needs C++20: compile with -std=c++20"
+#include "compile_with_-std=c++20"  // no such file: compilation ends here
+#endif
 #if defined(__FINITE_MATH_ONLY__) && __FINITE_MATH_ONLY__
 #error "fingerpad marks missing data by NaN: compile without -ffast-math or -ffinite-math-only"
 #endif
 #if defined(__ASSOCIATIVE_MATH__)  // defined by GCC 12, not by clang
 #error "fingerpad needs a fixed order of sums: compile without -ffast-math or -fassociative-math"
 #endif
+
+#define FINGERPAD_VERSION_MAJOR 0
+#define FINGERPAD_VERSION_MINOR 1
+#define FINGERPAD_VERSION_PATCH 0
+#define FINGERPAD_VERSION \
+  (FINGERPAD_VERSION_MAJOR * 10000 + FINGERPAD_VERSION_MINOR * 100 + FINGERPAD_VERSION_PATCH)
 
 namespace fingerpad {
 inline namespace v0 {
@@ -79,8 +86,7 @@ constexpr S not_a_number() {
 template <scalar S>
 constexpr bool is_finite(const S& x) {
   const scalar_real_t<S> v = value(x);
-  const scalar_real_t<S> difference = v - v;
-  return difference == scalar_real_t<S>(0);
+  return v - v == scalar_real_t<S>(0);
 }
 
 /// Whether x can be a measurement: below a million in magnitude, whatever its unit (mm, px, N, N
@@ -88,9 +94,8 @@ constexpr bool is_finite(const S& x) {
 /// and for both infinities.
 template <scalar S>
 constexpr bool is_plausible(const S& x) {
-  const scalar_real_t<S> v = value(x);
-  const scalar_real_t<S> bound = scalar_real_t<S>(1000000);
-  return -bound < v && v < bound;
+  const scalar_real_t<S> bound(1000000);
+  return -bound < value(x) && value(x) < bound;
 }
 
 template <scalar S>
@@ -98,22 +103,11 @@ constexpr S square(const S& x) {
   return x * x;
 }
 
-namespace detail {
-template <class Cell>
-struct real_of {
-  using type = Cell;
-};
-template <class Cell>
-  requires std::integral<Cell>
-struct real_of<Cell> {
-  using type = double;
-};
-}  // namespace detail
-
 /// The scalar in which cells of this type are computed: double for integers, else the cell type
 /// itself.
 template <class Cell>
-using real_of_t = typename detail::real_of<std::remove_cvref_t<Cell>>::type;
+using real_of_t =
+    std::conditional_t<std::integral<std::remove_cvref_t<Cell>>, double, std::remove_cvref_t<Cell>>;
 
 }  // namespace v0
 }  // namespace fingerpad

@@ -11,7 +11,8 @@
 #include <cmath>
 #include <cstddef>
 
-#include "fingerpad/core/dots.hpp"
+#include "fingerpad/core/grid.hpp"
+#include "fingerpad/core/point.hpp"
 #include "fingerpad/core/scalar.hpp"
 #include "fingerpad/math/rotation.hpp"
 

@@ -58,7 +58,7 @@ namespace detail {
 inline constexpr int no_pad_mm = 100;  // no pad is so thick
 }
 
-/// Whether a pixel can have this depth, mm: in (-100, 100). False for NaN.
+/// Whether a pixel can have this depth, in (-100, 100) mm. False for NaN.
 template <scalar S>
 constexpr bool is_depth(const S& depth_mm) {
   return -detail::no_pad_mm < value(depth_mm) && value(depth_mm) < detail::no_pad_mm;
@@ -72,17 +72,14 @@ Camera<To> cast(const Camera<From>& c) {
 }
 
 namespace detail {
-
 /// tan of the refracted angle in a medium of index n, over t = tan of the angle in air:
 /// 1 / sqrt(n^2 + (n^2 - 1) t^2); 1/n on the axis.
 template <scalar S>
 S tangent_ratio(const S& t_sq, const S& n) {
   using std::sqrt;
   const S n_sq = n * n;
-  const S root = sqrt(S(n_sq + (n_sq - S(1)) * t_sq));
-  return S(1) / root;
+  return S(1) / sqrt(n_sq + (n_sq - S(1)) * t_sq);
 }
-
 }  // namespace detail
 
 /// The ray of one pixel, as the depth model needs it.
@@ -101,13 +98,12 @@ Ray<S> ray_at_tangent(const Camera<S>& camera, const S& t) {
   using std::sqrt;
   const S t_sq = t * t;
   const S ratio = detail::tangent_ratio(t_sq, camera.refractive_index);
-  const S inv_cos_air = sqrt(S(S(1) + t_sq));
+  const S inv_cos_air = sqrt(S(1) + t_sq);
   // cos(phi_fluid) = sqrt(n^2 + (n^2 - 1) t^2) / (n sqrt(1 + t^2))
   const S inv_cos_fluid = camera.refractive_index * inv_cos_air * ratio;
   const S in_air = camera.plate_distance_mm - camera.plate_thickness_mm;
   const S in_plate = camera.plate_thickness_mm * detail::tangent_ratio(t_sq, camera.plate_index);
-  return {t, S(t * ratio), S(S(1) / inv_cos_fluid), S(t * (in_air + in_plate)),
-          S(S(1) + inv_cos_fluid)};
+  return {t, t * ratio, S(1) / inv_cos_fluid, t * (in_air + in_plate), S(1) + inv_cos_fluid};
 }
 
 /// Tangent per pixel of distance from the center pixel, along a row.
@@ -124,15 +120,15 @@ S tangent_per_px(const Camera<S>& camera) {
 template <scalar S>
 Point2<S> tangents_of_pixel(const Camera<S>& camera, const S& row, const S& col) {
   const S scale = tangent_per_px(camera);
-  return {S((col - camera.center_x_px) * scale),
-          S((row - camera.center_y_px) * camera.pixel_aspect * scale)};
+  return {(col - camera.center_x_px) * scale,
+          (row - camera.center_y_px) * camera.pixel_aspect * scale};
 }
 /// The pixel that looks in this direction; inverse of tangents_of_pixel.
 template <scalar S>
 Point2<S> pixel_at_tangents(const Camera<S>& camera, const Point2<S>& tangents) {
   const S px = S(1) / tangent_per_px(camera);
-  return {S(camera.center_x_px + tangents.x * px),
-          S(camera.center_y_px + tangents.y * px / camera.pixel_aspect)};
+  return {camera.center_x_px + tangents.x * px,
+          camera.center_y_px + tangents.y * px / camera.pixel_aspect};
 }
 
 /// The ray of the pixel at (row, col).
@@ -141,7 +137,7 @@ Ray<S> ray_at_pixel(const Camera<S>& camera, const S& row, const S& col) {
   using std::sqrt;
   const S t_sq = squared_norm(tangents_of_pixel(camera, row, col));
   // The square root has no derivative at 0; on the axis t itself is 0 for every camera.
-  return ray_at_tangent(camera, value(t_sq) == 0 ? S(0) : S(sqrt(t_sq)));
+  return ray_at_tangent(camera, value(t_sq) == 0 ? S(0) : sqrt(t_sq));
 }
 
 /// Heights above the plate of the point from which the returning pencil seems to come. The area
@@ -158,7 +154,7 @@ template <scalar S>
 PencilHeights<S> pencil_heights(const Camera<S>& camera, const Ray<S>& ray) {
   using std::sqrt;
   const S t_sq = ray.tan_air * ray.tan_air;
-  const S inv_cos_air = sqrt(S(S(1) + t_sq));
+  const S inv_cos_air = sqrt(S(1) + t_sq);
   const S inv_cos_plate =
       camera.plate_index * inv_cos_air * detail::tangent_ratio(t_sq, camera.plate_index);
   const S in_air = camera.plate_distance_mm - camera.plate_thickness_mm;
@@ -190,7 +186,7 @@ Point3<S> point_at(const Camera<S>& camera, const S& row, const S& col, const S&
   const S in_plate = camera.plate_thickness_mm * detail::tangent_ratio(t_sq, camera.plate_index);
   const S rho_per_t =
       in_air + in_plate + depth_mm * detail::tangent_ratio(t_sq, camera.refractive_index);
-  return {S(tangents.x * rho_per_t), S(tangents.y * rho_per_t), depth_mm};
+  return {tangents.x * rho_per_t, tangents.y * rho_per_t, depth_mm};
 }
 
 /// The pixel that sees `point` (x along columns, y along rows); inverse of point_at. Requires
@@ -204,7 +200,7 @@ Point2<S> pixel_of(const Camera<S>& camera, const Point3<S>& point) {
   const S m = camera.plate_index;
   const S in_air = camera.plate_distance_mm - camera.plate_thickness_mm;
   const S rho_sq = point.x * point.x + point.y * point.y;
-  const S rho = value(rho_sq) == 0 ? S(0) : S(sqrt(rho_sq));
+  const S rho = value(rho_sq) == 0 ? S(0) : sqrt(rho_sq);
   S t = rho / (in_air + camera.plate_thickness_mm / m + point.z / n);
   S reach = in_air;  // distance from the axis per unit of t
   for (int step = 0; step <= 8; ++step) {
@@ -221,7 +217,7 @@ Point2<S> pixel_of(const Camera<S>& camera, const Point3<S>& point) {
       break;
     }
   }
-  return pixel_at_tangents(camera, {S(point.x / reach), S(point.y / reach)});
+  return pixel_at_tangents(camera, {point.x / reach, point.y / reach});
 }
 
 /// A camera without perspective, for height maps from other sensors or simulations: each pixel sees
@@ -255,15 +251,15 @@ Point3<S> point_at(const OrthographicCamera<S>& camera,
                    const S& row,
                    const S& col,
                    const S& depth_mm) {
-  return {S((col - camera.center_x_px) * camera.pitch_mm),
-          S((row - camera.center_y_px) * (camera.pitch_mm * camera.pixel_aspect)), depth_mm};
+  return {(col - camera.center_x_px) * camera.pitch_mm,
+          (row - camera.center_y_px) * (camera.pitch_mm * camera.pixel_aspect), depth_mm};
 }
 
 /// The pixel that sees `point`.
 template <scalar S>
 Point2<S> pixel_of(const OrthographicCamera<S>& camera, const Point3<S>& point) {
-  return {S(camera.center_x_px + point.x / camera.pitch_mm),
-          S(camera.center_y_px + point.y / (camera.pitch_mm * camera.pixel_aspect))};
+  return {camera.center_x_px + point.x / camera.pitch_mm,
+          camera.center_y_px + point.y / (camera.pitch_mm * camera.pixel_aspect)};
 }
 
 }  // namespace v0

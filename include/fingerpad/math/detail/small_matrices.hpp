@@ -7,7 +7,6 @@
 #include <cmath>
 #include <cstddef>
 
-#include "fingerpad/core/dots.hpp"
 #include "fingerpad/core/point.hpp"
 #include "fingerpad/core/scalar.hpp"
 #include "fingerpad/math/detail/zeros.hpp"

@@ -7,6 +7,8 @@
 #include <cmath>
 #include <cstddef>
 
+#include "fingerpad/core/grid.hpp"
+#include "fingerpad/core/point.hpp"
 #include "fingerpad/math/detail/small_matrices.hpp"
 #include "fingerpad/math/detail/zeros.hpp"
 
