@@ -20,16 +20,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-Point operator-(const Point& a, const Point& b) {
-  return {a.x - b.x, a.y - b.y, a.z - b.z};
-}
-double dot(const Point& a, const Point& b) {
-  return a.x * b.x + a.y * b.y + a.z * b.z;
-}
-Point cross(const Point& a, const Point& b) {
-  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
-}
-
 template <class T>
 auto read_npy(const fs::path& file, std::size_t dimensions) {
   try {
