@@ -119,19 +119,14 @@ inline std::string written(const Range& range, bool whole) {
   return text + (whole ? "" : "finite and ") + (range.above_min ? "> " : ">= ") + min;
 }
 
-/// "Camera: pitch_mm = -1, must be finite and > 0".
-inline std::string refusal(const char* owner, const Parameter& p, const std::string& range) {
-  return std::string(owner) + ": " + p.name + " = " + written(p.number, p.whole) + ", must be " +
-         range;
-}
-
 }  // namespace detail
 
 /// The refusal of the first parameter of `owner` that is out of its range; "" if all are good.
 inline std::string check(const char* owner, std::initializer_list<Parameter> parameters) {
   for (const Parameter& p : parameters) {
     if (!p.good()) {
-      return detail::refusal(owner, p, detail::written(p.range, p.whole));
+      return std::string(owner) + ": " + p.name + " = " + detail::written(p.number, p.whole) +
+             ", must be " + detail::written(p.range, p.whole);
     }
   }
   return "";
@@ -151,7 +146,13 @@ template <class Number>
 void expects(
     bool good, const char* owner, const char* name, const Number& given, const char* range) {
   if (!good) {
-    refuse(detail::refusal(owner, {name, given, finite_number}, range));
+    std::string number;
+    if constexpr (std::integral<Number>) {
+      number = std::to_string(given);
+    } else {
+      number = detail::written(static_cast<double>(value(given)));
+    }
+    refuse(std::string(owner) + ": " + name + " = " + number + ", must be " + range);
   }
 }
 
