@@ -3,6 +3,7 @@
 #pragma once
 // Symmetric matrices of a few rows, for every scalar: eigenvectors of 3x3 (Jacobi rotations),
 // solution and variances of normal equations (equilibrated Cholesky), and a test for covariances.
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
@@ -51,15 +52,52 @@ struct SurfaceFrame {
 template <scalar S>
 S jacobi_tangent(const S& pp, const S& qq, const S& pq) {
   using std::sqrt;
-  if (value(pq) == 0) {
-    return S(0);
+  const S gap = qq - pp;
+  const S theta = gap / (pq + pq);
+  if (!(value(theta * theta) * epsilon<S>() * epsilon<S>() <= 1)) {  // too large, or pq is 0
+    return value(gap) == 0 ? S(0) : pq / gap;
   }
-  const S theta = (qq - pp) / (pq + pq);
-  if (!is_finite(theta) || value(S(theta * theta)) > 1e30) {
-    return S(pq / (qq - pp));
+  const S root = sqrt(theta * theta + S(1));
+  return S(1) / (value(theta) < 0 ? theta - root : theta + root);
+}
+
+/// Makes a symmetric matrix diagonal by Jacobi rotations; returns the eigenvectors, one a row. A
+/// sweep squares the size of the other elements; derivatives settle one sweep after the values.
+template <scalar S, std::size_t N>
+SmallMatrix<S, N> diagonalise(SmallMatrix<S, N>& a) {
+  using std::sqrt;
+  SmallMatrix<S, N> vectors = zero_matrix<S, N>();
+  for (std::size_t i = 0; i < N; ++i) {
+    vectors[i][i] = S(1);
   }
-  const S root = sqrt(S(theta * theta + S(1)));
-  return value(theta) < 0 ? S(S(1) / (theta - root)) : S(S(1) / (theta + root));
+  bool settled = false;
+  for (int sweep = 0; sweep < 12 && !settled; ++sweep) {
+    settled = true;
+    for (std::size_t p = 0; p < N; ++p) {
+      for (std::size_t q = p + 1; q < N; ++q) {
+        const S t = jacobi_tangent(a[p][p], a[q][q], a[p][q]);
+        settled = settled && value(t * t) <= square(epsilon<S>());
+        const S c = S(1) / sqrt(S(1) + t * t);
+        const S s = t * c;
+        const auto rotate = [&](S& x, S& y) {
+          const S before = x;
+          x = c * before - s * y;
+          y = s * before + c * y;
+        };
+        const S shift = t * a[p][q];
+        a[p][p] = a[p][p] - shift;
+        a[q][q] = a[q][q] + shift;
+        a[p][q] = S(0);
+        for (std::size_t k = 0; k < N; ++k) {
+          if (k != p && k != q) {
+            rotate(a[(std::min)(k, p)][(std::max)(k, p)], a[(std::min)(k, q)][(std::max)(k, q)]);
+          }
+          rotate(vectors[p][k], vectors[q][k]);
+        }
+      }
+    }
+  }
+  return vectors;
 }
 
 /// Eigenvalues, largest first, and their eigenvectors in the same order.
@@ -69,61 +107,18 @@ struct Eigen3 {
   std::array<Point3<S>, 3> vector;
 };
 
-/// One Jacobi rotation: makes a[p][q] zero and rotates the columns of `vectors` likewise.
-template <scalar S>
-void jacobi_rotate(SmallMatrix<S, 3>& a, SmallMatrix<S, 3>& vectors, std::size_t p, std::size_t q) {
-  using std::sqrt;
-  const S t = jacobi_tangent(a[p][p], a[q][q], a[p][q]);
-  const S c = S(1) / S(sqrt(S(S(1) + t * t)));
-  const S s = t * c;
-  const std::size_t r = 3 - p - q;
-  const S shift = t * a[p][q];
-  a[p][p] = a[p][p] - shift;
-  a[q][q] = a[q][q] + shift;
-  a[p][q] = a[q][p] = S(0);
-  const S rp = c * a[r][p] - s * a[r][q];
-  const S rq = s * a[r][p] + c * a[r][q];
-  a[r][p] = a[p][r] = rp;
-  a[r][q] = a[q][r] = rq;
-  for (std::size_t k = 0; k < 3; ++k) {
-    const S kp = c * vectors[k][p] - s * vectors[k][q];
-    const S kq = s * vectors[k][p] + c * vectors[k][q];
-    vectors[k][p] = kp;
-    vectors[k][q] = kq;
-  }
-}
-
-/// Eigenvalues and eigenvectors of a symmetric matrix. Each sweep squares the relative size of the
-/// off-diagonal elements: eight are enough for fifty digits.
+/// Eigenvalues and eigenvectors of a symmetric matrix.
 template <scalar S>
 Eigen3<S> eigenvectors(SmallMatrix<S, 3> a) {
-  SmallMatrix<S, 3> vectors = zero_matrix<S, 3>();
-  for (std::size_t i = 0; i < 3; ++i) {
-    for (std::size_t j = 0; j < 3; ++j) {
-      vectors[i][j] = S(i == j ? 1 : 0);
-    }
-  }
-  for (int sweep = 0; sweep < 8; ++sweep) {
-    jacobi_rotate(a, vectors, 0, 1);
-    jacobi_rotate(a, vectors, 0, 2);
-    jacobi_rotate(a, vectors, 1, 2);
-  }
+  const SmallMatrix<S, 3> vectors = diagonalise(a);
   std::array<std::size_t, 3> order = {0, 1, 2};
-  const auto put_larger_first = [&](std::size_t i, std::size_t j) {
-    if (a[order[i]][order[i]] < a[order[j]][order[j]]) {
-      const std::size_t held = order[i];
-      order[i] = order[j];
-      order[j] = held;
-    }
-  };
-  put_larger_first(0, 1);
-  put_larger_first(1, 2);
-  put_larger_first(0, 1);
+  std::sort(order.begin(), order.end(),
+            [&](std::size_t i, std::size_t j) { return a[j][j] < a[i][i]; });
   Eigen3<S> out{};
   for (std::size_t k = 0; k < 3; ++k) {
-    const std::size_t c = order[k];
-    out.value[k] = a[c][c];
-    out.vector[k] = {vectors[0][c], vectors[1][c], vectors[2][c]};
+    const auto& v = vectors[order[k]];
+    out.value[k] = a[order[k]][order[k]];
+    out.vector[k] = {v[0], v[1], v[2]};
   }
   return out;
 }
