@@ -154,6 +154,24 @@ std::string refusal(Index r, Index c, const SurfaceOptions& options, double pitc
 
 }  // namespace
 
+TEST_CASE("the frame of a normal is right-handed, and u lies in its plane with an axis", "[math]") {
+  rc::prop("whatever the normal", [] {
+    const Point n =
+        normalized(Point{test::uniform(-1, 1), test::uniform(-1, 1), test::uniform(0.01, 1)});
+    const auto frame = detail::SurfaceFrame<double>::around(n);
+    const bool steep = n.x * n.x > 0.5;
+    const auto is_near = [](double a, double b) { return std::abs(a - b) < 1e-14; };
+    RC_ASSERT((frame.n.x == n.x && frame.n.y == n.y && frame.n.z == n.z));
+    RC_ASSERT(is_near(squared_norm(frame.u), 1));
+    RC_ASSERT(is_near(squared_norm(frame.v), 1));
+    RC_ASSERT(is_near(dot(frame.u, frame.v), 0));
+    RC_ASSERT(is_near(dot(cross(frame.u, frame.v), n), 1));
+    // v is perpendicular to the axis
+    RC_ASSERT((steep ? frame.v.y : frame.v.x) == 0);
+    RC_ASSERT((steep ? frame.u.y : frame.u.x) > 0);
+  });
+}
+
 TEMPLATE_TEST_CASE("object surface: a plane is found with its tilt and distance",
                    "[surface]",
                    Camera<double>,

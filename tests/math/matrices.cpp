@@ -6,10 +6,8 @@
 #include "fingerpad/calibrate/depth.hpp"
 #include "fingerpad/slip/friction_limit.hpp"
 #include "support/catch.hpp"
-#include "support/generators.hpp"
 
 using namespace fingerpad;
-using Point = Point3<double>;
 
 TEST_CASE("least squares keep their digits where a column hardly differs from an axis", "[math]") {
   using Qr = detail::HouseholderQr<double>;
@@ -27,24 +25,6 @@ TEST_CASE("least squares keep their digits where a column hardly differs from an
       CHECK(std::abs(qr.diagonal(0)) == Approx(std::sqrt(1 + 2 * below * below)).epsilon(1e-15));
     }
   }
-}
-
-TEST_CASE("the frame of a normal is right-handed, and u lies in its plane with an axis", "[math]") {
-  rc::prop("whatever the normal", [] {
-    const Point n =
-        normalized(Point{test::uniform(-1, 1), test::uniform(-1, 1), test::uniform(0.01, 1)});
-    const auto frame = detail::SurfaceFrame<double>::around(n);
-    const bool steep = n.x * n.x > 0.5;
-    const auto is_near = [](double a, double b) { return std::abs(a - b) < 1e-14; };
-    RC_ASSERT((frame.n.x == n.x && frame.n.y == n.y && frame.n.z == n.z));
-    RC_ASSERT(is_near(squared_norm(frame.u), 1));
-    RC_ASSERT(is_near(squared_norm(frame.v), 1));
-    RC_ASSERT(is_near(dot(frame.u, frame.v), 0));
-    RC_ASSERT(is_near(dot(cross(frame.u, frame.v), n), 1));
-    // v is perpendicular to the axis
-    RC_ASSERT((steep ? frame.v.y : frame.v.x) == 0);
-    RC_ASSERT((steep ? frame.u.y : frame.u.x) > 0);
-  });
 }
 
 TEST_CASE("a condition number does not depend on the matrix's unit", "[math]") {

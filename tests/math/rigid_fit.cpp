@@ -7,6 +7,7 @@
 #include <numbers>
 #include <vector>
 
+#include "fingerpad/adapt/dual.hpp"
 #include "support/catch.hpp"
 #include "support/generators.hpp"
 #include "support/numbers.hpp"
@@ -189,6 +190,35 @@ TEST_CASE("the best motion against fifty digits", "[math]") {
       }
     }
   });
+}
+
+TEST_CASE("a dual number carries the derivatives of the best motion", "[math]") {
+  // A flat square grid has an eigenvalue twice; at rest Horn's matrix is diagonal.
+  using One = Dual<1>;
+  for (const double turn : {0.0, 1e-9, 0.4}) {
+    const auto pose = rotation_of(Angles<double>{turn, -turn / 2, 2 * turn});
+    const auto angles_with_corner = [&](auto lift) {
+      using S = decltype(lift);
+      Points<double> points;
+      for (int k = 0; k < 25; ++k) {
+        points.from.push_back({k % 5 - 2.0, k / 5 - 2.0, 0});
+        points.to.push_back(pose(points.from.back()));
+        points.weight.push_back(1);
+      }
+      auto wide = cast<S>(points);
+      wide.to[24].z = wide.to[24].z + lift;
+      wide.to[24].x = wide.to[24].x - lift;
+      return zyx_angles(wide.fit().pose.rotation);
+    };
+    const auto dual = angles_with_corner(One::parameter(0, 0));
+    const double h = 1e-4;
+    const auto above = angles_with_corner(h), below = angles_with_corner(-h);
+    CAPTURE(turn);
+    CHECK(dual.x_rad.slopes[0] == Approx((above.x_rad - below.x_rad) / (2 * h)).margin(1e-9));
+    CHECK(dual.y_rad.slopes[0] == Approx((above.y_rad - below.y_rad) / (2 * h)).margin(1e-9));
+    CHECK(dual.z_rad.slopes[0] == Approx((above.z_rad - below.z_rad) / (2 * h)).margin(1e-9));
+    CHECK(std::abs(dual.x_rad.slopes[0]) > 0.01);
+  }
 }
 
 TEST_CASE("points that determine no rotation are said", "[math]") {

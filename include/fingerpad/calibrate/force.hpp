@@ -30,7 +30,7 @@
 #include "fingerpad/force/force_curve.hpp"
 #include "fingerpad/force/normal_force.hpp"
 #include "fingerpad/force/shear.hpp"
-#include "fingerpad/math/detail/zeros.hpp"
+#include "fingerpad/math/detail/small_matrices.hpp"
 
 namespace fingerpad {
 inline namespace v0 {

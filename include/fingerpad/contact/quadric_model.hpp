@@ -20,7 +20,6 @@
 #include "fingerpad/core/dots.hpp"
 #include "fingerpad/core/scalar.hpp"
 #include "fingerpad/math/detail/small_matrices.hpp"
-#include "fingerpad/math/detail/zeros.hpp"
 
 namespace fingerpad {
 inline namespace v0 {

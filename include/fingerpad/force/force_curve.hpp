@@ -11,7 +11,6 @@
 #include "fingerpad/core/check.hpp"
 #include "fingerpad/core/scalar.hpp"
 #include "fingerpad/math/detail/small_matrices.hpp"
-#include "fingerpad/math/detail/zeros.hpp"
 
 namespace fingerpad {
 inline namespace v0 {
@@ -156,6 +155,42 @@ void expects_range(const Curve& curve, const char* owner) {
           "finite and > from");
   expects(is_finite(curve.force_n(curve.to)) && is_finite(curve.slope(curve.to)), owner, "to",
           curve.to, "where force and slope are finite");
+}
+
+/// Whether a matrix can be a covariance: symmetric and positive semidefinite, up to rounding.
+template <scalar S, std::size_t N>
+bool is_covariance(const SmallMatrix<S, N>& covariance) {
+  const double rounding =
+      std::sqrt(static_cast<double>(epsilon<S>()) + static_cast<double>(epsilon<double>()));
+  SmallMatrix<double, N> a{};
+  for (std::size_t i = 0; i < N; ++i) {
+    for (std::size_t j = 0; j < N; ++j) {
+      a[i][j] = static_cast<double>(value(covariance[i][j]));
+    }
+  }
+  for (std::size_t i = 0; i < N; ++i) {
+    for (std::size_t j = 0; j < i; ++j) {
+      const double largest = std::sqrt(a[i][i]) * std::sqrt(a[j][j]);
+      const bool is_symmetric = std::abs(a[i][j] - a[j][i]) <= rounding * largest;
+      if (!is_symmetric || !(std::abs(a[i][j]) <= (1 + rounding) * largest)) {
+        return false;
+      }
+    }
+  }
+  for (std::size_t i = 0; i < N; ++i) {
+    a[i][i] += a[i][i] > 0 ? rounding * a[i][i] : 1.0;
+  }
+  for (std::size_t k = 0; k < N; ++k) {  // elimination: a pivot below 0 is a variance below 0
+    if (!(a[k][k] > 0)) {
+      return false;
+    }
+    for (std::size_t i = k + 1; i < N; ++i) {
+      for (std::size_t j = k + 1; j < N; ++j) {
+        a[i][j] -= a[i][k] * a[k][j] / a[k][k];
+      }
+    }
+  }
+  return true;
 }
 
 }  // namespace detail

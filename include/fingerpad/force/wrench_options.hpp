@@ -12,7 +12,7 @@
 #include "fingerpad/core/check.hpp"
 #include "fingerpad/core/grid.hpp"
 #include "fingerpad/core/scalar.hpp"
-#include "fingerpad/math/detail/zeros.hpp"
+#include "fingerpad/math/detail/small_matrices.hpp"
 
 namespace fingerpad {
 inline namespace v0 {

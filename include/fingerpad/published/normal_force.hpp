@@ -14,7 +14,7 @@
 #include "fingerpad/core/check.hpp"
 #include "fingerpad/core/scalar.hpp"
 #include "fingerpad/force/normal_force.hpp"
-#include "fingerpad/math/detail/zeros.hpp"
+#include "fingerpad/math/detail/small_matrices.hpp"
 
 namespace fingerpad {
 inline namespace v0 {

@@ -10,14 +10,38 @@
 
 #include "fingerpad/core/dots.hpp"
 #include "fingerpad/core/grid.hpp"
+#include "fingerpad/core/point.hpp"
 #include "fingerpad/core/scalar.hpp"
 #include "fingerpad/image/detail/row_lanes.hpp"
 #include "fingerpad/math/detail/small_matrices.hpp"
-#include "fingerpad/math/detail/zeros.hpp"
 
 namespace fingerpad {
 inline namespace v0 {
 namespace detail {
+
+/// a or -a, whichever points toward the object (z >= 0).
+template <scalar S>
+Point3<S> toward_object(const Point3<S>& a) {
+  return value(a.z) < 0 ? -a : a;
+}
+/// A right-handed frame whose third axis is the unit vector n; u lies in the plane of n and the x
+/// axis, or the y axis if n is within 45 degrees of x.
+template <scalar S>
+struct SurfaceFrame {
+  Point3<S> u;
+  Point3<S> v;
+  Point3<S> n;
+
+  static SurfaceFrame around(const Point3<S>& n) {
+    // an axis at 45 degrees or more from n keeps the cross product away from 0
+    const bool steep = value(n.x * n.x) > 0.5;
+    const Point3<S> along = steep ? Point3<S>{S(0), S(1), S(0)} : Point3<S>{S(1), S(0), S(0)};
+    const Point3<S> v = normalized(cross(n, along));
+    return {cross(v, n), v, n};
+  }
+  Point3<S> to_frame(const Point3<S>& p) const { return {dot(u, p), dot(v, p), dot(n, p)}; }
+  Point3<S> from_frame(const Point3<S>& p) const { return p.x * u + p.y * v + p.z * n; }
+};
 
 /// A block of points, stored coordinate by coordinate.
 template <scalar S>

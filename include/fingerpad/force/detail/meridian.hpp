@@ -24,7 +24,6 @@
 #include "fingerpad/core/scalar.hpp"
 #include "fingerpad/force/detail/height_map.hpp"
 #include "fingerpad/math/detail/small_matrices.hpp"
-#include "fingerpad/math/detail/zeros.hpp"
 
 namespace fingerpad {
 inline namespace v0 {

@@ -12,7 +12,7 @@
 #include "fingerpad/force/detail/rim.hpp"
 #include "fingerpad/force/rim_balance.hpp"
 #include "fingerpad/force/wrench_options.hpp"
-#include "fingerpad/math/detail/zeros.hpp"
+#include "fingerpad/math/detail/small_matrices.hpp"
 
 namespace fingerpad {
 inline namespace v0 {

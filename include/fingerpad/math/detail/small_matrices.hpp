@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// Symmetric matrices of a few rows, for every scalar: eigenvectors of 3x3 (Jacobi rotations),
-// solution and variances of normal equations (equilibrated Cholesky), and a test for covariances.
+// Symmetric matrices of a few rows, for every scalar: eigenvectors (Jacobi rotations), solution and
+// variances of normal equations (equilibrated Cholesky).
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -10,7 +10,6 @@
 
 #include "fingerpad/core/point.hpp"
 #include "fingerpad/core/scalar.hpp"
-#include "fingerpad/math/detail/zeros.hpp"
 
 namespace fingerpad {
 inline namespace v0 {
@@ -19,33 +18,19 @@ namespace detail {
 template <scalar S, std::size_t N>
 using SmallMatrix = std::array<std::array<S, N>, N>;
 
-/// a or -a, whichever points toward the object (z >= 0).
-template <scalar S>
-Point3<S> toward_object(const Point3<S>& a) {
-  const S side = S(value(a.z) < 0 ? -1 : 1);
-  return {S(side * a.x), S(side * a.y), S(side * a.z)};
+/// Zeros: empty braces leave a number of some types undefined.
+template <scalar S, std::size_t N>
+constexpr std::array<S, N> zeros() {
+  std::array<S, N> all;
+  all.fill(S(0));
+  return all;
 }
-/// A right-handed frame whose third axis is the unit vector n; u lies in the plane of n and the x
-/// axis, or the y axis if n is within 45 degrees of x.
-template <scalar S>
-struct SurfaceFrame {
-  Point3<S> u;
-  Point3<S> v;
-  Point3<S> n;
-
-  static SurfaceFrame around(const Point3<S>& n) {
-    // an axis at 45 degrees or more from n keeps the cross product away from 0
-    const bool steep = value(S(n.x * n.x)) > 0.5;
-    const Point3<S> along = steep ? Point3<S>{S(0), S(1), S(0)} : Point3<S>{S(1), S(0), S(0)};
-    const Point3<S> v = normalized(cross(n, along));
-    return {cross(v, n), v, n};
-  }
-  Point3<S> to_frame(const Point3<S>& p) const { return {dot(u, p), dot(v, p), dot(n, p)}; }
-  Point3<S> from_frame(const Point3<S>& p) const {
-    return {S(u.x * p.x + v.x * p.y + n.x * p.z), S(u.y * p.x + v.y * p.y + n.y * p.z),
-            S(u.z * p.x + v.z * p.y + n.z * p.z)};
-  }
-};
+template <scalar S, std::size_t N>
+constexpr SmallMatrix<S, N> zero_matrix() {
+  SmallMatrix<S, N> all;
+  all.fill(zeros<S, N>());
+  return all;
+}
 
 /// Tangent of the rotation that diagonalises the symmetric 2x2 block {pp, pq; pq, qq}; at most 1 in
 /// magnitude.
@@ -133,7 +118,7 @@ class NormalEquations {
     using std::sqrt;
     for (std::size_t i = 0; i < N; ++i) {
       good = good && value(a[i][i]) > 0 && is_finite(a[i][i]);
-      scale_[i] = good ? S(S(1) / S(sqrt(a[i][i]))) : S(0);
+      scale_[i] = good ? S(1) / sqrt(a[i][i]) : S(0);
     }
     for (std::size_t j = 0; j < N && good; ++j) {
       S pivot = S(1);
@@ -141,7 +126,7 @@ class NormalEquations {
         pivot = pivot - factor_[j][k] * factor_[j][k];
       }
       good = value(pivot) > scalar_real_t<S>(least);
-      factor_[j][j] = good ? S(sqrt(pivot)) : S(1);
+      factor_[j][j] = good ? sqrt(pivot) : S(1);
       for (std::size_t i = j + 1; i < N; ++i) {
         S sum = a[i][j] * scale_[i] * scale_[j];
         for (std::size_t k = 0; k < j; ++k) {
@@ -187,7 +172,7 @@ class NormalEquations {
   SmallMatrix<S, N> inverse() const {
     SmallMatrix<S, N> columns{};
     for (std::size_t i = 0; i < N; ++i) {
-      std::array<S, N> unit = detail::zeros<S, N>();
+      std::array<S, N> unit = zeros<S, N>();
       unit[i] = S(1);
       columns[i] = solve(unit);
     }
@@ -198,44 +183,8 @@ class NormalEquations {
 
  private:
   SmallMatrix<S, N> factor_ = zero_matrix<S, N>();
-  std::array<S, N> scale_ = detail::zeros<S, N>();
+  std::array<S, N> scale_ = zeros<S, N>();
 };
-
-/// Whether a matrix can be a covariance: symmetric and positive semidefinite, up to rounding.
-template <scalar S, std::size_t N>
-bool is_covariance(const SmallMatrix<S, N>& covariance) {
-  const double rounding =
-      std::sqrt(static_cast<double>(epsilon<S>()) + static_cast<double>(epsilon<double>()));
-  SmallMatrix<double, N> a{};
-  for (std::size_t i = 0; i < N; ++i) {
-    for (std::size_t j = 0; j < N; ++j) {
-      a[i][j] = static_cast<double>(value(covariance[i][j]));
-    }
-  }
-  for (std::size_t i = 0; i < N; ++i) {
-    for (std::size_t j = 0; j < i; ++j) {
-      const double largest = std::sqrt(a[i][i]) * std::sqrt(a[j][j]);
-      const bool is_symmetric = std::abs(a[i][j] - a[j][i]) <= rounding * largest;
-      if (!is_symmetric || !(std::abs(a[i][j]) <= (1 + rounding) * largest)) {
-        return false;
-      }
-    }
-  }
-  for (std::size_t i = 0; i < N; ++i) {
-    a[i][i] += a[i][i] > 0 ? rounding * a[i][i] : 1.0;
-  }
-  for (std::size_t k = 0; k < N; ++k) {  // elimination: a pivot below 0 is a variance below 0
-    if (!(a[k][k] > 0)) {
-      return false;
-    }
-    for (std::size_t i = k + 1; i < N; ++i) {
-      for (std::size_t j = k + 1; j < N; ++j) {
-        a[i][j] -= a[i][k] * a[k][j] / a[k][k];
-      }
-    }
-  }
-  return true;
-}
 
 }  // namespace detail
 }  // namespace v0

@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "fingerpad/math/detail/small_matrices.hpp"
-#include "fingerpad/math/detail/zeros.hpp"
 #include "fingerpad/slip/detail/dot_surface.hpp"
 
 namespace fingerpad {

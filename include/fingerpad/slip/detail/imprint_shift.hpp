@@ -19,7 +19,6 @@
 #include "fingerpad/core/scalar.hpp"
 #include "fingerpad/image/detail/cell_filter.hpp"
 #include "fingerpad/math/detail/small_matrices.hpp"
-#include "fingerpad/math/detail/zeros.hpp"
 
 namespace fingerpad {
 inline namespace v0 {

@@ -10,7 +10,6 @@
 #include <vector>
 
 #include "fingerpad/math/detail/small_matrices.hpp"
-#include "fingerpad/math/detail/zeros.hpp"
 #include "fingerpad/math/rotation.hpp"
 #include "fingerpad/slip/detail/dot_pairs.hpp"
 

@@ -15,7 +15,6 @@
 #include <numbers>
 
 #include "fingerpad/math/detail/small_matrices.hpp"
-#include "fingerpad/math/detail/zeros.hpp"
 #include "fingerpad/slip/detail/dot_doubts.hpp"
 #include "fingerpad/slip/detail/dot_pairs.hpp"
 
