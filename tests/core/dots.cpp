@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "fingerpad/adapt/dot_tracker.hpp"
 #include "support/catch.hpp"
 #include "support/foreign_image.hpp"
 #include "support/generators.hpp"
@@ -47,7 +48,7 @@ Dots all_present(Index rows, Index cols) {
 template <int Neighbours>
 std::multiset<Cell> visited(const Dots& dots, Index row, Index col) {
   std::multiset<Cell> cells;
-  const int found = for_each_neighbour<Neighbours>(
+  const int found = detail::for_each_neighbour<Neighbours>(
       dots, row, col, [&](Index i, Index j, const Point2<double>& p) {
         cells.insert({i, j});
         RC_ASSERT(p.x == grid_traits<Dots>::at(dots, i, j).x);
@@ -149,12 +150,12 @@ TEST_CASE("neighbours", "[dots]") {
   SECTION("by number at the corner, the edge and inside") {
     const Dots dots = all_present(3, 4);
     const auto none = [](Index, Index, const Point2<double>&) {};
-    CHECK(for_each_neighbour(dots, 0, 0, none) == 3);
-    CHECK(for_each_neighbour(dots, 0, 1, none) == 5);
-    CHECK(for_each_neighbour(dots, 1, 1, none) == 8);
-    CHECK(for_each_neighbour<4>(dots, 2, 3, none) == 2);
-    CHECK(for_each_neighbour<4>(dots, 2, 1, none) == 3);
-    CHECK(for_each_neighbour<4>(dots, 1, 1, none) == 4);
+    CHECK(detail::for_each_neighbour(dots, 0, 0, none) == 3);
+    CHECK(detail::for_each_neighbour(dots, 0, 1, none) == 5);
+    CHECK(detail::for_each_neighbour(dots, 1, 1, none) == 8);
+    CHECK(detail::for_each_neighbour<4>(dots, 2, 3, none) == 2);
+    CHECK(detail::for_each_neighbour<4>(dots, 2, 1, none) == 3);
+    CHECK(detail::for_each_neighbour<4>(dots, 1, 1, none) == 4);
     CHECK(count_present(dots) == 12);
   }
 }

@@ -12,8 +12,9 @@
 #include <vector>
 
 #include "fingerpad/adapt/detail/dot_matcher.hpp"
-#include "fingerpad/core/dots.hpp"
+#include "fingerpad/adapt/detail/dot_table.hpp"
 #include "fingerpad/core/check.hpp"
+#include "fingerpad/core/dots.hpp"
 #include "fingerpad/core/grid.hpp"
 
 namespace fingerpad {
@@ -153,8 +154,7 @@ class DotTracker {
       for (Index j = 0; j < all.cols(); ++j) {
         using Traits = point_traits<cell_t<Dots>>;
         const cell_t<Dots> dot = grid_traits<Dots>::at(dots, i, j);
-        const Place place{static_cast<double>(Traits::x(dot)),
-                          static_cast<double>(Traits::y(dot))};
+        const Place place{static_cast<double>(Traits::x(dot)), static_cast<double>(Traits::y(dot))};
         all(i, j) = is_plausible(place) ? place : detail::no_place();
       }
     }
@@ -197,7 +197,8 @@ class DotTracker {
     for (Index i = 0; i < dots.rows(); ++i) {
       for (Index j = 0; j < dots.cols(); ++j) {
         const auto nothing = [](Index, Index, const Place&) {};
-        border(i, j) = is_finite(dots(i, j)) && for_each_neighbour(dots, i, j, nothing) < 8 ? 1 : 0;
+        border(i, j) =
+            is_finite(dots(i, j)) && detail::for_each_neighbour(dots, i, j, nothing) < 8 ? 1 : 0;
       }
     }
     return border;

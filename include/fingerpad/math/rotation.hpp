@@ -21,9 +21,9 @@ struct Rotation {
 
   const S& operator()(Index row, Index col) const { return m[row][col]; }
   Point3<S> operator()(const Point3<S>& v) const {
-    return {S(m[0][0] * v.x + m[0][1] * v.y + m[0][2] * v.z),
-            S(m[1][0] * v.x + m[1][1] * v.y + m[1][2] * v.z),
-            S(m[2][0] * v.x + m[2][1] * v.y + m[2][2] * v.z)};
+    return {m[0][0] * v.x + m[0][1] * v.y + m[0][2] * v.z,
+            m[1][0] * v.x + m[1][1] * v.y + m[1][2] * v.z,
+            m[2][0] * v.x + m[2][1] * v.y + m[2][2] * v.z};
   }
 };
 
@@ -41,8 +41,8 @@ Rotation<S> operator*(const Rotation<S>& second, const Rotation<S>& first) {
   Rotation<S> product;
   for (int i = 0; i < 3; ++i) {
     for (int j = 0; j < 3; ++j) {
-      product.m[i][j] = S(second.m[i][0] * first.m[0][j] + second.m[i][1] * first.m[1][j] +
-                          second.m[i][2] * first.m[2][j]);
+      product.m[i][j] = second.m[i][0] * first.m[0][j] + second.m[i][1] * first.m[1][j] +
+                        second.m[i][2] * first.m[2][j];
     }
   }
   return product;
@@ -60,7 +60,7 @@ struct Pose {
 template <scalar S>
 Pose<S> inverse(const Pose<S>& pose) {
   const Rotation<S> back = inverse(pose.rotation);
-  return {back, S(-1) * back(pose.translation_mm)};
+  return {back, -back(pose.translation_mm)};
 }
 
 /// Applies `first`, then `second`.
@@ -85,16 +85,16 @@ template <scalar S>
 Angles<S> zyx_angles(const Rotation<S>& r) {
   using std::atan2;
   using std::sqrt;
-  const S cos_y = sqrt(S(r.m[2][1] * r.m[2][1] + r.m[2][2] * r.m[2][2]));
-  const S y = atan2(S(-r.m[2][0]), cos_y);
+  const S cos_y = sqrt(r.m[2][1] * r.m[2][1] + r.m[2][2] * r.m[2][2]);
+  const S y = atan2(-r.m[2][0], cos_y);
   if (!(value(cos_y) > 16 * epsilon<S>())) {
-    return {S(atan2(S(-r.m[1][2]), r.m[1][1])), y, S(0)};
+    return {atan2(-r.m[1][2], r.m[1][1]), y, S(0)};
   }
   const S sin_x = r.m[2][1] / cos_y;
   const S cos_x = r.m[2][2] / cos_y;
   const S sin_z = sin_x * r.m[0][2] - cos_x * r.m[0][1];
   const S cos_z = cos_x * r.m[1][1] - sin_x * r.m[1][2];
-  return {S(atan2(r.m[2][1], r.m[2][2])), y, S(atan2(sin_z, cos_z))};
+  return {atan2(r.m[2][1], r.m[2][2]), y, atan2(sin_z, cos_z)};
 }
 
 /// Rz(z) Ry(y) Rx(x).
@@ -102,15 +102,12 @@ template <scalar S>
 Rotation<S> rotation_of(const Angles<S>& angles) {
   using std::cos;
   using std::sin;
-  const S cx = cos(angles.x_rad);
-  const S sx = sin(angles.x_rad);
-  const S cy = cos(angles.y_rad);
-  const S sy = sin(angles.y_rad);
-  const S cz = cos(angles.z_rad);
-  const S sz = sin(angles.z_rad);
-  return {{{S(cz * cy), S(cz * sy * sx - sz * cx), S(cz * sy * cx + sz * sx)},
-           {S(sz * cy), S(sz * sy * sx + cz * cx), S(sz * sy * cx - cz * sx)},
-           {S(-sy), S(cy * sx), S(cy * cx)}}};
+  const S cx = cos(angles.x_rad), sx = sin(angles.x_rad);
+  const S cy = cos(angles.y_rad), sy = sin(angles.y_rad);
+  const S cz = cos(angles.z_rad), sz = sin(angles.z_rad);
+  return {{{cz * cy, cz * sy * sx - sz * cx, cz * sy * cx + sz * sx},
+           {sz * cy, sz * sy * sx + cz * cx, sz * sy * cx - cz * sx},
+           {-sy, cy * sx, cy * cx}}};
 }
 
 /// The angle between two rotations, in rad: how far one must be rotated to become the other. It is
@@ -118,13 +115,10 @@ Rotation<S> rotation_of(const Angles<S>& angles) {
 template <scalar S>
 S angle_between(const Rotation<S>& a, const Rotation<S>& b) {
   using std::atan2;
-  using std::sqrt;
   const Rotation<S> d = b * inverse(a);
-  const S x = d.m[2][1] - d.m[1][2];
-  const S y = d.m[0][2] - d.m[2][0];
-  const S z = d.m[1][0] - d.m[0][1];
-  const S twice_sine = sqrt(S(x * x + y * y + z * z));
-  return S(atan2(twice_sine, S(d.m[0][0] + d.m[1][1] + d.m[2][2] - S(1))));
+  const Point3<S> twice_sine = {d.m[2][1] - d.m[1][2], d.m[0][2] - d.m[2][0],
+                                d.m[1][0] - d.m[0][1]};
+  return atan2(norm(twice_sine), d.m[0][0] + d.m[1][1] + d.m[2][2] - S(1));
 }
 
 namespace detail::motion {

@@ -27,6 +27,31 @@ constexpr Place no_place() {
   return {not_a_number<double>(), not_a_number<double>()};
 }
 
+/// Calls visit(row, col, point) for each neighbour of (row, col) that is present, and returns their
+/// number. 4 neighbours share a side with the dot, 8 a side or a corner. O(1), no allocation.
+template <int Neighbours = 8, dot_grid G, class Visit>
+constexpr int for_each_neighbour(const G& dots, Index row, Index col, Visit&& visit) {
+  static_assert(Neighbours == 4 || Neighbours == 8,
+                "a dot has 4 or 8 neighbours: for_each_neighbour<4> or for_each_neighbour<8>");
+  int found = 0;
+  for (Index i = row - 1; i <= row + 1; ++i) {
+    for (Index j = col - 1; j <= col + 1; ++j) {
+      const bool inside = i >= 0 && i < rows(dots) && j >= 0 && j < cols(dots);
+      const bool self = i == row && j == col;
+      const bool corner = i != row && j != col;
+      if (!inside || self || (Neighbours == 4 && corner)) {
+        continue;
+      }
+      const cell_t<G> p = grid_traits<G>::at(dots, i, j);
+      if (is_present(p)) {
+        visit(i, j, p);
+        ++found;
+      }
+    }
+  }
+  return found;
+}
+
 /// A grid that owns its cells.
 template <class T>
 class Table {

@@ -85,14 +85,14 @@ class HouseholderQr {
     if (!(below_sq > S(0))) {
       return S(0);
     }
-    const S length = sqrt(S(square(head) + below_sq));
-    const S r = head > S(0) ? S(-length) : length;
+    const S length = sqrt(square(head) + below_sq);
+    const S r = head > S(0) ? -length : length;
     const S lead = head - r;  // no cancellation: r has the opposite sign
     for (Index i = k + 1; i < a_.rows(); ++i) {
       a_(i, k) = a_(i, k) / lead;
     }
     a_(k, k) = r;
-    return S(-lead / r);
+    return -lead / r;
   }
 
   template <class Columns>
@@ -137,14 +137,14 @@ auto condition_number(Matrix a) {
       for (Index q = p + 1; q < n; ++q) {
         const S pp = a.col(p).squaredNorm(), qq = a.col(q).squaredNorm();
         const S pq = a.col(p).dot(a.col(q));
-        if (!(square(pq) > square(S(epsilon<S>())) * pp * qq)) {
+        if (!(square(pq) > S(square(epsilon<S>())) * pp * qq)) {
           continue;
         }
         rotated = true;
         const S zeta = (qq - pp) / (S(2) * pq);
-        const S root = sqrt(S(S(1) + square(zeta)));
-        const S t = S(1) / (zeta > S(0) ? S(zeta + root) : S(zeta - root));
-        const S c = S(1) / sqrt(S(S(1) + square(t)));
+        const S root = sqrt(S(1) + square(zeta));
+        const S t = S(1) / (zeta > S(0) ? zeta + root : zeta - root);
+        const S c = S(1) / sqrt(S(1) + square(t));
         const S s = c * t;
         for (Index i = 0; i < a.rows(); ++i) {
           const S x = a(i, p), y = a(i, q);
@@ -160,7 +160,7 @@ auto condition_number(Matrix a) {
     largest = size > largest ? size : largest;
     smallest = size < smallest ? size : smallest;
   }
-  return S(largest / smallest);
+  return largest / smallest;
 }
 
 }  // namespace detail
