@@ -237,6 +237,12 @@ TEST_CASE("points that determine no rotation are said", "[math]") {
   CHECK_FALSE(line(9, 0).fit().determined);
   CHECK_FALSE(line(9, 1e-3).fit().determined);
   CHECK(line(9, 3).fit().determined);
+  CHECK_FALSE(line(9, 0.5).fit().determined);
+  auto narrow = line(9, 0.55);  // the largest eigenvalue hardly stands out
+  CHECK(narrow.fit().determined);
+  const auto wide = cast<Digits50>(narrow).fit();
+  CHECK(angle_between(narrow.fit().pose.rotation, Rotation<double>{}) < 1e-13);
+  CHECK(angle_between(wide.pose.rotation, Rotation<Digits50>{}) < Digits50(1e-44));
   auto weightless = line(9, 3);
   weightless.weight.assign(9, 0.0);
   CHECK_FALSE(weightless.fit().determined);

@@ -6,6 +6,7 @@
 // largest eigenvalue of a 4x4 matrix built from the cross-covariance. Only proper rotations are
 // considered, so that no reflection has to be repaired.
 #include <array>
+#include <cmath>
 #include <cstddef>
 
 #include "fingerpad/core/grid.hpp"
@@ -42,34 +43,64 @@ Rotation<S> rotation_of_quaternion(const std::array<S, 4>& q) {
            {xz - wy, yz + wx, S(1) - xx - yy}}};
 }
 
-/// The rotation that best maps `from` to `to`, from their cross-covariance about the two centers,
-/// c[i][j] = sum of weight from_i to_j. Returns false if the points do not determine it. With
-/// singular values s1 >= s2 >= |s3| of c (s3 < 0 if a reflection would fit better), it is
-/// determined if
-///   (s2 + s3) (s1 + s3) (s1 + s2) / (s1 + s2 + s3)^3 > collinear_spread_sq,
-/// where the left side is 1/4 for a flat disc and s2 / s1 for points near a line. Horn's
-/// eigenvalues are s1 + s2 + s3 and those with two of the signs turned. O(1).
+/// Eigenvector of the largest eigenvalue of a symmetric positive semidefinite matrix, by squaring
+/// it: twenty times are enough for fifty digits if that eigenvalue stands out by 1/2000.
 template <scalar S>
-bool best_rotation(const SmallMatrix<S, 3>& c, Rotation<S>& rotation) {
-  const S yz = c[1][2] - c[2][1], zx = c[2][0] - c[0][2], xy = c[0][1] - c[1][0];
-  const S yz2 = c[1][2] + c[2][1], zx2 = c[2][0] + c[0][2], xy2 = c[0][1] + c[1][0];
-  SmallMatrix<S, 4> horn = {{{c[0][0] + c[1][1] + c[2][2], yz, zx, xy},
-                             {yz, c[0][0] - c[1][1] - c[2][2], xy2, zx2},
-                             {zx, xy2, c[1][1] - c[0][0] - c[2][2], yz2},
-                             {xy, zx2, yz2, c[2][2] - c[0][0] - c[1][1]}}};
-  const SmallMatrix<S, 4> vectors = diagonalise(horn);
+std::array<S, 4> dominant_vector(SmallMatrix<S, 4> a) {
+  for (int step = 0; step < 20; ++step) {
+    const S trace = a[0][0] + a[1][1] + a[2][2] + a[3][3];
+    if (step > 0 && 1 - value(trace) <= 16 * epsilon<S>()) {
+      break;  // the square of a matrix of trace 1 has trace 1 if no other eigenvalue is left
+    }
+    const S scale = S(1) / trace;
+    for (auto& row : a) {
+      row = {scale * row[0], scale * row[1], scale * row[2], scale * row[3]};
+    }
+    const SmallMatrix<S, 4> b = a;
+    for (std::size_t i = 0; i < 4; ++i) {
+      for (std::size_t j = 0; j <= i; ++j) {
+        a[i][j] = b[i][0] * b[j][0] + b[i][1] * b[j][1] + b[i][2] * b[j][2] + b[i][3] * b[j][3];
+        a[j][i] = a[i][j];
+      }
+    }
+  }
   std::size_t best = 0;
   for (std::size_t k = 1; k < 4; ++k) {
-    best = value(horn[best][best]) < value(horn[k][k]) ? k : best;
+    best = value(a[best][best]) < value(a[k][k]) ? k : best;
   }
-  scalar_real_t<S> gaps(1);
-  for (std::size_t k = 0; k < 4; ++k) {
-    gaps = k == best ? gaps : gaps * (1 - value(horn[k][k]) / value(horn[best][best]));
-  }
-  if (!(value(horn[best][best]) > 0 && gaps > scalar_real_t<S>(8 * collinear_spread_sq))) {
+  return a[best];
+}
+
+/// The rotation that best maps `from` to `to`, from their cross-covariance about the two centers:
+/// row x is sum of weight from.x to, and so on. Returns false if the points do not determine it.
+/// With singular values s1 >= s2 >= |s3| of the rows (s3 < 0 if a reflection would fit better), it
+/// is determined if
+///   (s2 + s3) (s1 + s3) (s1 + s2) / (s1 + s2 + s3)^3 > collinear_spread_sq,
+/// where the left side is 1/4 for a flat disc and s2 / s1 for points near a line. O(1).
+template <scalar S>
+bool best_rotation(const Point3<S>& x,
+                   const Point3<S>& y,
+                   const Point3<S>& z,
+                   Rotation<S>& rotation) {
+  using std::sqrt;
+  const S size_sq = squared_norm(x) + squared_norm(y) + squared_norm(z);
+  const S above = sqrt(S(3) * size_sq);  // no eigenvalue of Horn's matrix is below -above
+  const S yz = y.z - z.y, zx = z.x - x.z, xy = x.y - y.x;
+  const S yz2 = y.z + z.y, zx2 = z.x + x.z, xy2 = x.y + y.x;
+  const Rotation<S> best =
+      rotation_of_quaternion(dominant_vector<S>({{{above + x.x + y.y + z.z, yz, zx, xy},
+                                                  {yz, above + x.x - y.y - z.z, xy2, zx2},
+                                                  {zx, xy2, above + y.y - x.x - z.z, yz2},
+                                                  {xy, zx2, yz2, above + z.z - x.x - y.y}}}));
+  const Rotation<S> back = inverse(best);
+  const auto row = [&](int k) { return Point3<S>{back.m[k][0], back.m[k][1], back.m[k][2]}; };
+  const S largest = dot(x, row(0)) + dot(y, row(1)) + dot(z, row(2));  // eigenvalue
+  // Product of its distances to the others: slope of l^4 - 2 size^2 l^2 - 8 det l + ...
+  const S gaps = S(4) * largest * (square(largest) - size_sq) - S(8) * dot(x, cross(y, z));
+  if (!(value(gaps) > value(S(8 * collinear_spread_sq) * largest * square(largest)))) {
     return false;
   }
-  rotation = rotation_of_quaternion(vectors[best]);
+  rotation = best;
   return true;
 }
 
@@ -90,32 +121,29 @@ RigidFit<S> fit_rigid(Index count, const From& from, const To& to, const Weight&
   if (!(value(mass) > 0)) {
     return {};
   }
-  from_center = S(1) / mass * from_center;
-  to_center = S(1) / mass * to_center;
-
-  auto covariance = detail::zero_matrix<S, 3>();
+  const S per_mass = S(1) / mass;
+  from_center = per_mass * from_center;
+  to_center = per_mass * to_center;
+  Point3<S> x = {S(0), S(0), S(0)}, y = x, z = x;  // rows of the cross-covariance
   S from_sq = S(0), to_sq = S(0);
   for (Index k = 0; k < count; ++k) {
+    const S share = per_mass * S(weight(k));
     const Point3<S> a = Point3<S>(from(k)) - from_center;
     const Point3<S> b = Point3<S>(to(k)) - to_center;
-    const Point3<S> wa = S(weight(k)) * a;
-    from_sq = from_sq + dot(wa, a);
-    to_sq = to_sq + S(weight(k)) * squared_norm(b);
-    const S across[3] = {wa.x, wa.y, wa.z};
-    for (std::size_t i = 0; i < 3; ++i) {
-      covariance[i][0] = covariance[i][0] + across[i] * b.x;
-      covariance[i][1] = covariance[i][1] + across[i] * b.y;
-      covariance[i][2] = covariance[i][2] + across[i] * b.z;
-    }
+    from_sq = from_sq + share * squared_norm(a);
+    to_sq = to_sq + share * squared_norm(b);
+    x += share * a.x * b;
+    y += share * a.y * b;
+    z += share * a.z * b;
   }
   // A spread within the roundoff of the coordinates does not count.
   const auto is_roundoff = [&](const S& spread_sq, const Point3<S>& center) {
     const scalar_real_t<S> tiny = 64 * epsilon<S>();
-    return !(value(spread_sq) > tiny * tiny * value(mass * squared_norm(center)));
+    return !(value(spread_sq) > tiny * tiny * value(squared_norm(center)));
   };
   RigidFit<S> fit;
   fit.determined = !is_roundoff(from_sq, from_center) && !is_roundoff(to_sq, to_center) &&
-                   detail::motion::best_rotation(covariance, fit.pose.rotation);
+                   detail::motion::best_rotation(x, y, z, fit.pose.rotation);
   if (fit.determined) {
     fit.pose.translation_mm = to_center - fit.pose.rotation(from_center);
   }
