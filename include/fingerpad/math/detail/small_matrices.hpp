@@ -46,45 +46,6 @@ S jacobi_tangent(const S& pp, const S& qq, const S& pq) {
   return S(1) / (value(theta) < 0 ? theta - root : theta + root);
 }
 
-/// Makes a symmetric matrix diagonal by Jacobi rotations; returns the eigenvectors, one a row. A
-/// sweep squares the size of the other elements; derivatives settle one sweep after the values.
-template <scalar S, std::size_t N>
-SmallMatrix<S, N> diagonalise(SmallMatrix<S, N>& a) {
-  using std::sqrt;
-  SmallMatrix<S, N> vectors = zero_matrix<S, N>();
-  for (std::size_t i = 0; i < N; ++i) {
-    vectors[i][i] = S(1);
-  }
-  bool settled = false;
-  for (int sweep = 0; sweep < 12 && !settled; ++sweep) {
-    settled = true;
-    for (std::size_t p = 0; p < N; ++p) {
-      for (std::size_t q = p + 1; q < N; ++q) {
-        const S t = jacobi_tangent(a[p][p], a[q][q], a[p][q]);
-        settled = settled && value(t * t) <= square(epsilon<S>());
-        const S c = S(1) / sqrt(S(1) + t * t);
-        const S s = t * c;
-        const auto rotate = [&](S& x, S& y) {
-          const S before = x;
-          x = c * before - s * y;
-          y = s * before + c * y;
-        };
-        const S shift = t * a[p][q];
-        a[p][p] = a[p][p] - shift;
-        a[q][q] = a[q][q] + shift;
-        a[p][q] = S(0);
-        for (std::size_t k = 0; k < N; ++k) {
-          if (k != p && k != q) {
-            rotate(a[(std::min)(k, p)][(std::max)(k, p)], a[(std::min)(k, q)][(std::max)(k, q)]);
-          }
-          rotate(vectors[p][k], vectors[q][k]);
-        }
-      }
-    }
-  }
-  return vectors;
-}
-
 /// Eigenvalues, largest first, and their eigenvectors in the same order.
 template <scalar S>
 struct Eigen3 {
@@ -92,20 +53,35 @@ struct Eigen3 {
   std::array<Point3<S>, 3> vector;
 };
 
-/// Eigenvalues and eigenvectors of a symmetric matrix.
+/// Eigenvalues and eigenvectors of a symmetric matrix, by Jacobi rotations. A sweep squares the
+/// size of the elements beside the diagonal; derivatives settle one sweep after the values.
 template <scalar S>
 Eigen3<S> eigenvectors(SmallMatrix<S, 3> a) {
-  const SmallMatrix<S, 3> vectors = diagonalise(a);
-  std::array<std::size_t, 3> order = {0, 1, 2};
-  std::sort(order.begin(), order.end(),
-            [&](std::size_t i, std::size_t j) { return a[j][j] < a[i][i]; });
-  Eigen3<S> out{};
-  for (std::size_t k = 0; k < 3; ++k) {
-    const auto& v = vectors[order[k]];
-    out.value[k] = a[order[k]][order[k]];
-    out.vector[k] = {v[0], v[1], v[2]};
+  using std::sqrt;
+  std::array<Point3<S>, 3> v = {{{S(1), S(0), S(0)}, {S(0), S(1), S(0)}, {S(0), S(0), S(1)}}};
+  bool settled = false;
+  for (int sweep = 0; sweep < 12 && !settled; ++sweep) {
+    settled = true;
+    for (std::size_t r = 3; r-- > 0;) {  // r stays, p and q rotate
+      const std::size_t p = r == 0 ? 1 : 0, q = 3 - p - r;
+      const S t = jacobi_tangent(a[p][p], a[q][q], a[p][q]);
+      settled = settled && value(t * t) <= square(epsilon<S>());
+      const S c = S(1) / sqrt(S(1) + t * t), s = t * c;
+      const S shift = t * a[p][q];
+      a[p][p] = a[p][p] - shift;
+      a[q][q] = a[q][q] + shift;
+      a[p][q] = a[q][p] = S(0);
+      const S rp = c * a[r][p] - s * a[r][q], rq = s * a[r][p] + c * a[r][q];
+      a[r][p] = a[p][r] = rp;
+      a[r][q] = a[q][r] = rq;
+      const Point3<S> vp = c * v[p] - s * v[q];
+      v[q] = s * v[p] + c * v[q];
+      v[p] = vp;
+    }
   }
-  return out;
+  std::array<std::size_t, 3> k = {0, 1, 2};
+  std::sort(k.begin(), k.end(), [&](std::size_t i, std::size_t j) { return a[j][j] < a[i][i]; });
+  return {{a[k[0]][k[0]], a[k[1]][k[1]], a[k[2]][k[2]]}, {v[k[0]], v[k[1]], v[k[2]]}};
 }
 
 /// Cholesky factor of normal equations A^T A, scaled to a unit diagonal so that units do not
