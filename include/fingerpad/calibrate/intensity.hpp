@@ -11,6 +11,7 @@
 #include <cmath>
 #include <cstddef>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "fingerpad/calibrate/fit.hpp"
@@ -80,7 +81,7 @@ class IntensityCalibration {
     Press press(ball, from.cols());
     press.log.resize(static_cast<std::size_t>(from.rows() * from.cols()));
     const StridedView<S> to(press.log.data(), from.rows(), from.cols(), from.cols());
-    if (!log_ratio(pressed, to, workspace).ok() || !begin(press)) {
+    if (!log_ratio(pressed, to, workspace).ok() || !start(press)) {
       return false;
     }
     presses_.push_back(std::move(press));
@@ -100,7 +101,10 @@ class IntensityCalibration {
       return result;
     }
     std::vector<Press> presses = presses_;
-    Law law = {start_mm(), S(0), S(0)};
+    Law law = detail::zeros<S, 3>();
+    for (const Press& press : presses) {
+      law[0] += press.start_mm / S(static_cast<double>(presses.size()));
+    }
     // one constant is fitted together with the contact, which stays fixed for three
     result.cause = solve(presses, law, 1);
     if (terms == 3 && result.ok()) {
@@ -110,13 +114,12 @@ class IntensityCalibration {
       return result;
     }
     result.law = {law[0], law[1], law[2]};
-    judge(presses, law, terms, result);
+    judge(presses, law, static_cast<std::size_t>(terms), result);
     return result;
   }
 
  private:
   using Law = std::array<S, 3>;
-  using Pose = std::array<S, 3>;  // x and y of the axis, depth
   static constexpr int max_steps = 50;
   static constexpr int settling_steps = 10;  // in which the contact may change
   static constexpr Index min_pixels = 30;    // of a press: more than there are unknowns
@@ -125,11 +128,11 @@ class IntensityCalibration {
   struct Press {
     Press(const BallPress<S>& of, Index columns) : ball(of), cols(columns) {}
     BallPress<S> ball;
+    Index cols;
     std::vector<S> log = {};           // ln(free / now), NaN: unknown
     Point2<S> axis_mm = {S(0), S(0)};  // from the first pixel
     S depth_mm = S(0);
-    S start_mm = S(0);  // initial constant from this press alone
-    Index cols;
+    S start_mm = S(0);                    // initial constant from this press alone
     Point2<S> contact_mm = {S(0), S(0)};  // center of the pixels used
     S contact_radius_sq = S(0);
 
@@ -140,54 +143,117 @@ class IntensityCalibration {
       contact_radius_sq = S(0) < radius_sq ? radius_sq : S(0);
     }
     Point2<S> at(Index k) const {
-      return {S(ball.mm_per_px * S(static_cast<double>(k % cols))),
-              S(ball.mm_per_px * S(static_cast<double>(k / cols)))};
+      return {ball.mm_per_px * S(static_cast<double>(k % cols)),
+              ball.mm_per_px * S(static_cast<double>(k / cols))};
     }
-    /// Calls visit(k, l, p, root) for the pixels in contact: l is the logarithm, p the position
-    /// relative to the axis, root = sqrt(R^2 - r^2).
+    /// Calls visit(k, l, by, error) for the pixels in contact: l is the logarithm, `error` the
+    /// depth by the law less that of the ball, `by` its derivatives by x, y and depth of the ball.
     template <class Visit>
-    void for_contact(const Visit& visit) const {
+    void for_contact(const Law& law, const Visit& visit) const {
       using std::sqrt;
       for (std::size_t k = 0; k < log.size(); ++k) {
         const Point2<S> here = at(static_cast<Index>(k));
         const Point2<S> p = here - axis_mm;
         const S root_sq = square(ball.ball_mm) - squared_norm(p);
-        if (squared_norm(Point2<S>(here - contact_mm)) < contact_radius_sq && S(0) < root_sq &&
+        if (squared_norm(here - contact_mm) < contact_radius_sq && S(0) < root_sq &&
             is_finite(log[k])) {
-          visit(static_cast<Index>(k), log[k], p, S(sqrt(root_sq)));
+          const S root = sqrt(root_sq);
+          const S by_law = pressed_depth_mm(IntensityLaw<S>{law[0], law[1], law[2]}, log[k]);
+          visit(static_cast<Index>(k), log[k], std::array<S, 3>{-p.x / root, -p.y / root, S(-1)},
+                by_law - (depth_mm - ball.ball_mm + root));
         }
       }
     }
   };
 
-  static S size_of(const S& x) { return x < S(0) ? S(-x) : x; }
+  /// Normal equations of a step, solved by elimination without pivoting. The unknowns are x, y and
+  /// depth of each press, then the constants of the law.
+  struct Equations {
+    std::size_t size;
+    std::vector<std::vector<S>> row;  // left sides, right side, unit columns of the law
+    bool good = true;  // enough pixels, and no column is a combination of those before it
 
-  /// Gauss-Newton steps on the law and the poses.
-  static const char* solve(std::vector<Press>& presses, Law& law, int terms) {
+    Equations(const std::vector<Press>& presses, const Law& law, std::size_t terms)
+        : size(3 * presses.size() + terms), row(size, std::vector<S>(size + 1 + terms, S(0))) {
+      for (std::size_t p = 0; p < presses.size(); ++p) {
+        const auto at = [&](std::size_t i) { return 3 * (i < 3 ? p : presses.size() - 1) + i; };
+        Index count = 0;
+        auto sums = detail::zero_matrix<S, 7>();  // lower half
+        presses[p].for_contact(law, [&](Index, const S& l, const auto& pose, const S& error) {
+          const std::array<S, 7> by = {pose[0], pose[1], pose[2], l, l * l, l * l * l, error};
+          for (std::size_t i = 0; i < 7; ++i) {
+            for (std::size_t j = 0; j <= i; ++j) {
+              sums[i][j] += by[i] * by[j];
+            }
+          }
+          ++count;
+        });
+        for (std::size_t i = 0; i < 3 + terms; ++i) {
+          for (std::size_t j = 0; j < 3 + terms; ++j) {
+            row[at(i)][at(j)] += sums[(std::max)(i, j)][(std::min)(i, j)];
+          }
+          row[at(i)][size] += sums[6][i];
+        }
+        good = good && count >= min_pixels;
+      }
+      for (std::size_t k = 0; k < terms; ++k) {
+        row[size - terms + k][size + 1 + k] = S(1);
+      }
+      eliminate();
+    }
+
+    void eliminate() {
+      std::vector<S> whole;
+      for (std::size_t j = 0; j < size; ++j) {
+        whole.push_back(row[j][j]);
+      }
+      for (std::size_t j = 0; j < size && good; ++j) {
+        good = S(pivot_least()) * whole[j] < row[j][j];
+        const S pivot = row[j][j];
+        for (S& x : row[j]) {
+          x /= pivot;
+        }
+        for (std::size_t i = 0; i < size; ++i) {
+          const S share = row[i][j];
+          for (std::size_t k = j; k < row[i].size() && i != j; ++k) {
+            row[i][k] -= share * row[j][k];
+          }
+        }
+      }
+    }
+  };
+
+  static S size_of(const S& x) { return x < S(0) ? -x : x; }
+  static void raise(S& largest, const S& x) { largest = largest < x ? x : largest; }
+  /// Smallest share of an independent column: 1e-12, or the roundoff of S.
+  static double pivot_least() { return (std::max)(1e-12, static_cast<double>(epsilon<S>())); }
+
+  /// Gauss-Newton steps on the law and the balls.
+  static const char* solve(std::vector<Press>& presses, Law& law, std::size_t terms) {
     const S settled_mm =
         S((std::max)(scalar_real_t<S>(1e-7), scalar_real_t<S>(1000) * epsilon<S>()));
     for (int step = 0; step < max_steps; ++step) {
-      const Equations sums(presses, law, terms);
-      if (!sums.good) {
+      const Equations equations(presses, law, terms);
+      if (!equations.good) {
         return cause::not_converged;
       }
-      const Law change = sums.solve_law();
       S moved = S(0);
-      const auto moves = [&](const S& by) { moved = moved < size_of(by) ? size_of(by) : moved; };
-      for (std::size_t k = 0; k < 3; ++k) {
-        law[k] -= change[k];
-        moves(change[k]);
-      }
-      for (std::size_t p = 0; p < presses.size(); ++p) {
-        const Pose pose = sums.solve_pose(p, change);
-        presses[p].axis_mm = presses[p].axis_mm - Point2<S>{pose[0], pose[1]};
-        presses[p].depth_mm -= pose[2];
-        for (const S& by : pose) {
-          moves(by);
-        }
+      std::size_t i = 0;
+      const auto move = [&](S& x) {
+        const S& change = equations.row[i++][equations.size];
+        raise(moved, size_of(change));
+        x -= change;
+      };
+      for (Press& press : presses) {
+        move(press.axis_mm.x);
+        move(press.axis_mm.y);
+        move(press.depth_mm);
         if (terms == 1 && step < settling_steps) {
-          presses[p].settle();
+          press.settle();
         }
+      }
+      for (std::size_t k = 0; k < terms; ++k) {
+        move(law[k]);
       }
       if (moved < settled_mm) {
         return nullptr;
@@ -196,21 +262,13 @@ class IntensityCalibration {
     return cause::not_converged;
   }
 
-  static Law powers(const S& l, int terms) {
-    const S two = l * l;
-    return terms == 3 ? Law{l, two, S(two * l)} : Law{l, S(0), S(0)};
-  }
-  static S depth_of(const Law& law, const S& l) {
-    return pressed_depth_mm(IntensityLaw<S>{law[0], law[1], law[2]}, l);
-  }
-
   /// Initial axis, depth and constant of a press, from a paraboloid
   ///   l = q0 + q1 x + q2 y + q3 (x^2 + y^2)
-  /// fitted to the pixels whose logarithm exceeds half of the largest.
-  static bool begin(Press& press) {
+  /// fitted to the pixels whose logarithm exceeds half of the largest. False if there is no ball.
+  static bool start(Press& press) {
     S largest = S(0);
     for (const S& l : press.log) {
-      largest = largest < l ? l : largest;
+      raise(largest, l);
     }
     auto matrix = detail::zero_matrix<S, 4>();
     auto right = detail::zeros<S, 4>();
@@ -218,128 +276,42 @@ class IntensityCalibration {
     for (std::size_t k = 0; k < press.log.size(); ++k) {
       if (largest < S(2) * press.log[k]) {
         const Point2<S> p = press.at(static_cast<Index>(k));
-        const std::array<S, 4> row = {S(1), p.x, p.y, S(squared_norm(p))};
+        const std::array<S, 4> row = {S(1), p.x, p.y, squared_norm(p)};
         for (std::size_t i = 0; i < 4; ++i) {
           for (std::size_t j = 0; j < 4; ++j) {
-            matrix[i][j] += S(row[i] * row[j]);
+            matrix[i][j] += row[i] * row[j];
           }
-          right[i] += S(row[i] * press.log[k]);
+          right[i] += row[i] * press.log[k];
         }
         ++count;
       }
     }
     const detail::NormalEquations<S, 4> equations(matrix, pivot_least());
-    if (count < min_pixels || !equations.good) {
-      return false;
-    }
     const std::array<S, 4> q = equations.solve(right);
-    if (!(q[3] < S(0))) {
+    if (count < min_pixels || !equations.good || !(q[3] < S(0))) {
       return false;  // the middle is not the darkest part
     }
     const S twice = S(-2) * q[3];
-    press.axis_mm = {S(q[1] / twice), S(q[2] / twice)};
-    press.start_mm = S(1) / S(press.ball.ball_mm * twice);
-    press.depth_mm = press.start_mm * S(q[0] - S(q[3] * squared_norm(press.axis_mm)));
+    press.axis_mm = {q[1] / twice, q[2] / twice};
+    press.start_mm = S(1) / (press.ball.ball_mm * twice);
+    press.depth_mm = press.start_mm * (q[0] - q[3] * squared_norm(press.axis_mm));
     press.settle();
     return S(0) < press.depth_mm && press.depth_mm < press.ball.ball_mm;
   }
 
-  /// Smallest pivot of an independent column: 1e-12, or the roundoff of S.
-  static double pivot_least() { return (std::max)(1e-12, static_cast<double>(epsilon<S>())); }
-
-  S start_mm() const {
-    S sum = S(0);
-    for (const Press& press : presses_) {
-      sum += press.start_mm;
-    }
-    return S(sum / S(static_cast<double>(presses_.size())));
-  }
-
-  /// Normal equations of law and poses. The poses do not depend on each other and are eliminated.
-  struct Equations {
-    struct OfPose {
-      detail::SmallMatrix<S, 3> pose = detail::zero_matrix<S, 3>();
-      detail::SmallMatrix<S, 3> with_law = detail::zero_matrix<S, 3>();  // pose x law
-      Pose right = detail::zeros<S, 3>();
-    };
-    std::vector<OfPose> poses;
-    detail::SmallMatrix<S, 3> law = detail::zero_matrix<S, 3>();
-    Law right = detail::zeros<S, 3>();
-    bool good = true;
-
-    Equations(const std::vector<Press>& presses, const Law& at, int terms) {
-      for (const Press& press : presses) {
-        OfPose& of = poses.emplace_back();
-        Index count = 0;
-        press.for_contact([&](Index, const S& l, const Point2<S>& p, const S& root) {
-          const S ball = press.depth_mm - press.ball.ball_mm + root;
-          const S error = depth_of(at, l) - ball;
-          const Law dl = powers(l, terms);
-          const Pose dp = {S(-p.x / root), S(-p.y / root), S(-1)};
-          for (std::size_t i = 0; i < 3; ++i) {
-            for (std::size_t j = 0; j < 3; ++j) {
-              law[i][j] += S(dl[i] * dl[j]);
-              of.pose[i][j] += S(dp[i] * dp[j]);
-              of.with_law[i][j] += S(dp[i] * dl[j]);
-            }
-            right[i] += S(dl[i] * error);
-            of.right[i] += S(dp[i] * error);
-          }
-          ++count;
-        });
-        good = good && count >= min_pixels;
-      }
-      for (std::size_t k = static_cast<std::size_t>(terms); k < 3; ++k) {
-        law[k][k] = S(1);  // not fitted: its change is 0
-      }
-      eliminate();
-    }
-
-    void eliminate() {
-      for (const OfPose& of : poses) {
-        const detail::NormalEquations<S, 3> own(of.pose);
-        good = good && own.good;
-        for (std::size_t j = 0; good && j < 3; ++j) {
-          const auto x = own.solve({of.with_law[0][j], of.with_law[1][j], of.with_law[2][j]});
-          for (std::size_t k = 0; k < 3; ++k) {
-            right[j] -= S(x[k] * of.right[k]);
-            for (std::size_t i = 0; i < 3; ++i) {
-              law[i][j] -= S(of.with_law[k][i] * x[k]);
-            }
-          }
-        }
-      }
-      good = good && detail::NormalEquations<S, 3>(law).good;
-    }
-
-    Law solve_law() const { return detail::NormalEquations<S, 3>(law).solve(right); }
-    Pose solve_pose(std::size_t p, const Law& change) const {
-      Pose rest = poses[p].right;
-      for (std::size_t i = 0; i < 3; ++i) {
-        for (std::size_t j = 0; j < 3; ++j) {
-          rest[i] -= S(poses[p].with_law[i][j] * change[j]);
-        }
-      }
-      return detail::NormalEquations<S, 3>(poses[p].pose).solve(rest);
-    }
-  };
-
-  static void raise(S& largest, const S& x) { largest = largest < x ? x : largest; }
-
   static void judge(const std::vector<Press>& presses,
                     const Law& law,
-                    int terms,
+                    std::size_t terms,
                     IntensityFit<S>& result) {
     S blocks_sq = S(0);
     bool too_deep = false;
     for (const Press& press : presses) {
       too_deep = too_deep || !(press.depth_mm < press.ball.ball_mm);
+      raise(result.max_depth_mm, press.depth_mm);
       const Index block_cols = press.cols / block_px + 1;
       std::vector<S> blocks(press.log.size() / std::size_t(block_px) + std::size_t(block_cols),
                             S(0));
-      raise(result.max_depth_mm, press.depth_mm);
-      press.for_contact([&](Index k, const S& l, const Point2<S>&, const S& root) {
-        const S error = depth_of(law, l) - S(press.depth_mm - press.ball.ball_mm + root);
+      press.for_contact(law, [&](Index k, const S&, const auto&, const S& error) {
         result.mean_error_mm += size_of(error);
         raise(result.max_error_mm, size_of(error));
         ++result.pixels;
@@ -350,25 +322,22 @@ class IntensityCalibration {
         blocks_sq += square(sum);
       }
     }
-    result.mean_error_mm /= S(static_cast<double>(result.pixels));
+    const S pixels = S(static_cast<double>(result.pixels));
+    result.mean_error_mm /= pixels;
     if (result.max_depth_mm < S(0.05)) {
       result.cause = cause::depths_not_in_mm;
     } else if (too_deep || result.max_depth_mm < S(30) * result.mean_error_mm) {
       result.cause = cause::colours_unexplained;
     }
-    const Equations sums(presses, law, terms);
-    if (!sums.good) {
+    const Equations equations(presses, law, terms);
+    if (!equations.good) {
       result.cause = cause::nothing_to_check;
       return;
     }
-    const detail::NormalEquations<S, 3> equations(sums.law);
-    const S variance = blocks_sq / S(static_cast<double>(result.pixels));
-    for (std::size_t j = 0; j < static_cast<std::size_t>(terms); ++j) {
-      Law unit = detail::zeros<S, 3>();
-      unit[j] = S(1);
-      const Law column = equations.solve(unit);
-      for (std::size_t i = 0; i < static_cast<std::size_t>(terms); ++i) {
-        result.covariance[i][j] = variance * column[i];
+    for (std::size_t i = 0; i < terms; ++i) {
+      for (std::size_t j = 0; j < terms; ++j) {
+        result.covariance[i][j] =
+            blocks_sq / pixels * equations.row[3 * presses.size() + i][equations.size + 1 + j];
       }
     }
   }
