@@ -7,7 +7,6 @@
 #include <numbers>
 #include <vector>
 
-#include "fingerpad/calibrate/depth.hpp"
 #include "fingerpad/depth/neighbour_light.hpp"
 #include "fingerpad/published/absorption.hpp"
 #include "fingerpad/published/camera.hpp"
@@ -24,7 +23,7 @@ using test::Pad;
 
 namespace {
 
-using Known = DepthSample<double>;
+using Known = published::KnownDepth<double>;
 
 /// Pixel of the published pad at a depth, with errors of `red` and `green` in grey levels.
 Known known(
@@ -32,7 +31,7 @@ Known known(
   auto colour = pad.colour<published::SingleHeight>(row, col, depth_mm, 57);
   colour.red += red;
   colour.green += green;
-  return {pad.pencil<published::SingleHeight>(row, col), 0, depth_mm, colour};
+  return {pad.pencil<published::SingleHeight>(row, col), depth_mm, colour};
 }
 
 }  // namespace

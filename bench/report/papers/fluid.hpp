@@ -60,7 +60,7 @@ inline Section fluid_section() {
   Fluids printed, ours;
   for (int k = 0; k < 200; ++k) {
     const auto at = [&](double depth_mm) {
-      return DepthSample<double>{pencil, 0, depth_mm, noisy_colour(pad, depth_mm, random)};
+      return published::KnownDepth<double>{pencil, depth_mm, noisy_colour(pad, depth_mm, random)};
     };
     const auto found = published::identify_absorption(at(12), std::array{at(1), at(4), at(8)});
     printed.add(found.ok(), found.fluid);

@@ -8,11 +8,11 @@
 // instead.
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <cstddef>
 #include <vector>
 
 #include "fingerpad/depth/depth.hpp"
+#include "fingerpad/published/absorption.hpp"
 #include "fingerpad/published/camera.hpp"
 
 namespace fingerpad {
@@ -26,28 +26,6 @@ struct BoxMean {
 
   std::array<int, 1> windows_px() const { return {window_px}; }
 };
-
-/// The published quotient f(l) = g at the depth l > 0 of a pixel, with the repairs E003-E005:
-/// (b_G e^{c_G k l} - kappa b_R e^{c_R k l}) / (Q1 (1 - e^{c_R k l}) + Q2). It is 0/0 at l = 0.
-template <scalar S>
-S quotient(const Absorption<S>& fluid,
-           const Pencil<S>& pencil,
-           const Colour<S>& colour,
-           const S& depth_mm) {
-  using std::exp;
-  const S& c = fluid.c_red_per_mm;
-  const S& k = pencil.path_factor;
-  const S& l = depth_mm;
-  const S product = pencil.height.meridional_mm * pencil.height.sagittal_mm;
-  const S sum = pencil.height.meridional_mm + pencil.height.sagittal_mm;
-  const S ck = c * k;
-  const S q1 = (product + (sum + S(2) / ck) / ck) / k;
-  const S q2 = (l * l + sum * l + S(2) * l / ck) / k;
-  const S e_red = exp(S(ck * l));
-  const S e_green = exp(S(fluid.c_green_per_mm * k * l));
-  return S((colour.green * e_green - fluid.kappa * colour.red * e_red) /
-           (q1 * (S(1) - e_red) + q2));
-}
 
 /// The published bisection with `halvings` halvings. The final half-width is
 /// max_depth / 2^(halvings - 1): 0.43 um for 16 halvings and 14 mm. As printed it starts at l = 0,
