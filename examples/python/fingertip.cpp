@@ -226,6 +226,9 @@ void bind_result(py::module_& module) {
       .def_property_readonly("ok", &Result::ok)
       .def_property_readonly("status", [](const Result& r) { return name_of(r.status); })
       .def_readonly("depth", &Result::depth)
+      .def_property_readonly(
+          "neighbour_light", [](const Result& r) { return name_of(r.neighbour_light); },
+          "whether the depths suited the removal of neighbouring light")
       .def_readonly("contact", &Result::contact)
       .def_readonly("motion", &Result::motion)
       .def_readonly("stick", &Result::stick, "by the dots")
