@@ -3,7 +3,9 @@
 // Maps of curvature of a pressed pad, compared with the published circle through three points and
 // with OpenCV's filters. "curvature" is the error against the mean normal curvature, at each pixel
 // whose ring sees the free sphere alone. "rounding" is the error of all pixels against the same
-// statistic in long double; for the published circle, against the mean of sections.
+// mean in long double; for the published circle, against the mean of sections.
+#include "fingerpad/image/curvature.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -14,7 +16,6 @@
 
 #include "bench/support/run.hpp"
 #include "bench/support/scene.hpp"
-#include "fingerpad/image/curvature_map.hpp"
 #include "fingerpad/published/contact_region.hpp"
 
 using namespace fingerpad;
@@ -59,42 +60,48 @@ struct Bench {
     return curvature;
   }
 
-  /// The same statistic of the same depths in long double.
-  template <class Statistic, class CameraType>
-  Image<long double> exact(const CameraType& camera) const {
-    const CurvatureMap<Statistic, CameraType, long double> map(camera, depth.rows(), depth.cols(),
-                                                               {double(radius_px)});
-    auto workspace = map.workspace();
+  /// The same mean of the same depths in long double.
+  template <class CameraType>
+  Image<long double> exact(const CameraType& camera, bool clamped) const {
+    CurvatureMap<long double> map(camera, depth.rows(), depth.cols(), {double(radius_px)});
     Image<long double> out(depth.rows(), depth.cols());
-    (void)map(depth, out, workspace);
+    (void)map(depth, out);
+    if (!clamped) {
+      map.mean(0, out.rows(), 0, out.cols(), out);
+    }
     return out;
   }
 
   /// Adds a row that times work(), which fills `out`.
-  template <class Statistic, class Image, class CameraType, class Work>
+  template <class Image, class CameraType, class Work>
   void add_map(const std::string& name,
                const CameraType& camera,
+               bool clamped,
                const std::shared_ptr<Image>& out,
                long bytes,
                const Work& work) const {
-    const auto same = bench::kept([=, this] { return exact<Statistic>(camera); });
+    const auto same = bench::kept([=, this] { return exact(camera, clamped); });
     bench::add(group() + "/" + name, scene.pixels(), bytes, work, [=, this](auto& counters) {
       bench::note_errors(counters, "curvature", "1/mm", bench::errors_of(*out, truth));
       bench::note_errors(counters, "rounding", "1/mm", bench::errors_of(*out, same()));
     });
   }
 
-  template <class Statistic, class S, class CameraType>
-  void add(const std::string& name, const CameraType& camera) const {
-    using Map = CurvatureMap<Statistic, CameraType, S>;
+  template <class S, class CameraType>
+  void add(const std::string& name, const CameraType& camera, bool clamped = true) const {
+    using Map = CurvatureMap<S>;
     const auto from = std::make_shared<Image<S>>(as<S>(depth));
     const bench::Memory memory;
     const auto map =
         std::make_shared<Map>(camera, depth.rows(), depth.cols(), CurvatureRing{double(radius_px)});
-    const auto workspace = std::make_shared<typename Map::Workspace>(map->workspace());
     const auto out = std::make_shared<Image<S>>(depth.rows(), depth.cols());
-    add_map<Statistic>(name, camera, out, memory.bytes(),
-                       [=] { (void)(*map)(*from, *out, *workspace); });
+    if (clamped) {
+      add_map(name, camera, clamped, out, memory.bytes(), [=] { (void)(*map)(*from, *out); });
+      return;
+    }
+    (void)(*map)(*from, *out);
+    add_map(name, camera, clamped, out, memory.bytes(),
+            [=] { map->mean(0, out->rows(), 0, out->cols(), *out); });
   }
 
   /// Eqs. 10 and 11 with nearest pixels and their true distances.
@@ -107,7 +114,7 @@ struct Bench {
     const auto ring = detail::ring_offsets(double(radius_px), directions);
     std::vector<S> radius_mm;
     for (const detail::RingOffset& o : ring) {
-      radius_mm.push_back(S(std::sqrt(double(o.radius_sq())) * pitch_mm()));
+      radius_mm.push_back(S(std::sqrt(o.distance_sq()) * pitch_mm()));
     }
     const auto work = [=, r = radius_px] {
       const Image<S>& l = *from;
@@ -123,20 +130,20 @@ struct Bench {
         }
       }
     };
-    add_map<published::SectionMean<>>(name, from_afar(), out, memory.bytes(), work);
+    add_map(name, from_afar(), false, out, memory.bytes(), work);
   }
 
   void add_opencv() const {
     const int size = int(2 * radius_px + 1);
     cv::Mat kernel = cv::Mat::zeros(size, size, CV_32F);
     for (const detail::RingOffset& o : detail::ring_offsets(double(radius_px), directions)) {
-      const double weight = 1 / (double(o.radius_sq()) * pitch_mm() * pitch_mm() * directions);
+      const double weight = 1 / (o.distance_sq() * pitch_mm() * pitch_mm() * directions);
       const int center = int(radius_px);
       kernel.at<float>(center + int(o.row), center + int(o.col)) -= float(weight);
       kernel.at<float>(center - int(o.row), center - int(o.col)) -= float(weight);
       kernel.at<float>(center, center) += float(2 * weight);
     }
-    add_filter("cv::filter2D, RingStencil",
+    add_filter("cv::filter2D, center less ring",
                [=](const cv::Mat& l, cv::Mat& k) { cv::filter2D(l, k, CV_32F, kernel); });
     add_filter("cv::Laplacian, 5 x 5",
                [=](const cv::Mat& l, cv::Mat& k) { cv::Laplacian(l, k, CV_32F, 5); });
@@ -164,13 +171,11 @@ struct Bench {
     add_published<float>("published circle, float");
     add_opencv();
     bench::add_streaming(group(), scene.pixels());
-    add<published::TwiceMean<>, float>("published::TwiceMean<36>, float", plate);
-    add<published::SectionMean<>, float>("published::SectionMean<18>, float", plate);
-    add<ClampedMean<>, double>("ClampedMean<18>, double", plate);
-    add<ClampedMean<>, float>("ClampedMean<18>, float", plate);
-    add<ClampedMean<>, double>("ClampedMean<18>, double, through a camera", camera);
-    add<ClampedMean<>, float>("ClampedMean<18>, float, through a camera, the default", camera);
-    add<RingStencil<>, float>("RingStencil<18>, float", plate);
+    add<float>("plain mean, float", plate, false);
+    add<double>("clamped mean, double", plate);
+    add<float>("clamped mean, float", plate);
+    add<double>("clamped mean, double, through a camera", camera);
+    add<float>("clamped mean, float, through a camera, the default", camera);
   }
 };
 

@@ -59,7 +59,7 @@ COMPARED = [
     ("depth of a noisy frame, rendered", "frame", "round pad", "published: BoxMean + Bisection in double",
      "BiasFreeMean + ExponentialFree<>"),
     ("curvature of caps", "curvature", "round pad, radius 10 px", "published circle, double",
-     "ClampedMean<18>, float, through a camera, the default"),
+     "clamped mean, float, through a camera, the default"),
     ("contact's area", "contact_region", "350 mm^2", "published test", "default, with its gap"),
     ("attitude of a rolling ball", "object_motion", "frame of 21x21 dots",
      "published: SumOfAngles<PublishedBasis>", "ContactMap, double, the default"),
@@ -229,7 +229,7 @@ together in
 
 Three chains. **default**: the policies by default, with the published iteration as solver of the
 six-axis force. **least squares**: the same with the default solver. **lean**: what a flat contact on
-a pad with dark dots cannot do without: `AnchoredMean`, `ExponentialFree<2, 5>`, `RingStencil<9>`,
+a pad with dark dots cannot do without: `AnchoredMean`, `ExponentialFree<2, 5>`,
 `AtThreshold`, in samples of 4 x 4 pixels where the others have 3 x 3.
 
 ![Time of each stage](whole_chain/stages.png)

@@ -86,8 +86,8 @@ Trial neighbour_light() {
   const fingerpad::NeighbourLight<float> light{3, 0.004F, 0.2F};
   const Map free_mm = pressed_pad(0, 0);
   std::vector<Press> exact;
-  fingerpad::NeighbourLightCompensation<> compensation(
-      light, static_cast<float>(light_pitch_mm), free_mm);
+  fingerpad::NeighbourLightCompensation<> compensation(light, static_cast<float>(light_pitch_mm),
+                                                       free_mm);
   for (int k = 0; k < 12; ++k) {
     const Map measured = pressed_pad(0.8 + 0.2 * k, k % 3 - 1);
     cv::Mat_<float> truth(measured.size());
@@ -140,8 +140,7 @@ Trial contact() {
     return frames;
   };
   const auto fit = [=](const std::vector<Map>& frames) {
-    fingerpad::FreePadCalibration<fingerpad::ClampedMean<>, fingerpad::Camera<double>, double>
-        calibration(camera, rows, cols, {6});
+    fingerpad::FreePadCalibration<double> calibration(camera, rows, cols, {6});
     for (const Map& frame : frames) {
       (void)calibration.add(frame);
     }

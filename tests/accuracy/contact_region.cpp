@@ -46,7 +46,7 @@ Overlap overlap(const CameraType& camera,
 }
 
 template <class CameraType>
-using Region = ContactRegion<ClampedMean<>, HalfLevelEdge, CameraType>;
+using Region = ContactRegion<HalfLevelEdge, CameraType>;
 
 /// A height map of 0.08 mm per pixel.
 struct Exact {
@@ -70,8 +70,7 @@ struct Exact {
 
 TEST_CASE("contact of finite-element membranes by their heights", "[contact_region]") {
   const Exact exact;
-  FreePadCalibration<ClampedMean<>, OrthographicCamera<double>> calibration(exact.camera, 480, 480,
-                                                                            {12});
+  FreePadCalibration<> calibration(exact.camera, 480, 480, {12});
   calibration.add(exact.depth("free"));
   ContactTest test;
   test.ring.radius_px = 12;

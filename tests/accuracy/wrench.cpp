@@ -395,8 +395,8 @@ class Rendered {
       depth =
           test::estimate<float>(estimator_, scene_.frame(truth, 100 + f.number, noise)).depth_mm;
     }
-    const ContactRegion<ClampedMean<>, HalfLevelEdge, Camera<double>> region(pad.camera, pad.rows,
-                                                                             pad.cols, test_);
+    const ContactRegion<HalfLevelEdge, Camera<double>> region(pad.camera, pad.rows, pad.cols,
+                                                              test_);
     auto workspace = region.workspace();
     Image<std::uint8_t> mask(pad.rows, pad.cols);
     (void)region(depth, mask, workspace);

@@ -37,7 +37,7 @@ template <class T>
 using ColMajor = Eigen::Matrix<T, Eigen::Dynamic, Eigen::Dynamic>;
 
 struct Case {
-  using Region = ContactRegion<ClampedMean<>, HalfLevelEdge, OrthographicCamera<double>>;
+  using Region = ContactRegion<HalfLevelEdge, OrthographicCamera<double>>;
   Image<float> depth;
   Region region;
   Region::Workspace workspace;

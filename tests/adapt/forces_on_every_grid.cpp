@@ -28,7 +28,7 @@
 #include "fingerpad/force/dot_divergence.hpp"
 #include "fingerpad/force/traction.hpp"
 #include "fingerpad/force/wrench.hpp"
-#include "fingerpad/image/curvature_map.hpp"
+#include "fingerpad/image/curvature.hpp"
 #include "fingerpad/motion/contact_shift.hpp"
 #include "fingerpad/motion/object_motion.hpp"
 #include "fingerpad/slip/contact_slide.hpp"
@@ -254,9 +254,7 @@ const OrthographicCamera<double> plan{31, 29, 0.5};
 
 TEST_CASE("curvature, measures, flat area and surface of a contact from every grid", "[adapt]") {
   const Pressed pressed;
-  const CurvatureMap<ClampedMean<>, OrthographicCamera<double>, double> curvature(plan, 60, 64,
-                                                                                  {5});
-  auto curving = curvature.workspace();
+  CurvatureMap<double> curvature(plan, 60, 64, {5});
   const EquivalentFlatArea<OrthographicCamera<double>> flat_area(plan, 60, 64);
   auto flat_work = flat_area.workspace();
   const SurfaceFit<Plane<>, OrthographicCamera<double>> plane(60, 64, plan);
@@ -266,7 +264,7 @@ TEST_CASE("curvature, measures, flat area and surface of a contact from every gr
   };
   const auto answer = [&](const auto& depth, const auto& mask) {
     Answer a;
-    REQUIRE(curvature(depth, a.curvature, curving).ok());
+    REQUIRE(curvature(depth, a.curvature).ok());
     a.flat_area_mm2 = flat_area(mask, depth, flat_work).area_mm2;
     a.area_mm2 = contact_measures(plan, mask, depth).area_mm2;
     a.distance_mm = plane(depth, mask).shape.distance_mm;

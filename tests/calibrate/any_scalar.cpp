@@ -139,7 +139,7 @@ struct FreePadByPitch {
   Results<S> operator()(const S& p) const {
     OrthographicCamera<S> plan;
     plan.pitch_mm = S(0.16) * p;
-    FreePadCalibration<ClampedMean<>, OrthographicCamera<S>, S> calibration(plan, 40, 44, {6});
+    FreePadCalibration<S> calibration(plan, 40, 44, {6});
     Random random(7);
     for (int k = 0; k < 3; ++k) {
       REQUIRE(calibration.add(map_of<S>(40, 44, [&](Index i, Index j) {
@@ -257,8 +257,7 @@ void check(const char* name, const Calibration& run, double float_error, bool mo
   for (std::size_t k = 0; k < plain.size(); ++k) {
     CAPTURE(k);
     const double slope = (more[k] - less[k]) / (2 * step);
-    CHECK(dual[k].slopes[0] ==
-          Approx(slope).epsilon(1e-4).margin(1e-6 * std::abs(plain[k])));
+    CHECK(dual[k].slopes[0] == Approx(slope).epsilon(1e-4).margin(1e-6 * std::abs(plain[k])));
     largest = std::fmax(largest, std::abs(slope) / std::abs(plain[k]));
   }
   CHECK((largest > 1e-3) == moves);

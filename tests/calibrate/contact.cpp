@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "fingerpad/contact/contact_region.hpp"
-#include "fingerpad/published/contact_region.hpp"
 #include "support/catch.hpp"
 #include "support/refusal.hpp"
 #include "support/soap_film.hpp"
@@ -23,7 +22,8 @@ using test::RoundFilm;
 namespace {
 
 using Plan = OrthographicCamera<double>;
-using Calibration = FreePadCalibration<ClampedMean<>, Plan>;
+using Calibration = FreePadCalibration<>;
+constexpr ThresholdRule slides{1, 2, 0, false};  // the minimum of E - 2 sigma
 
 RoundFilm free_pad(double curvature_per_mm) {
   test::RoundContact none;
@@ -46,7 +46,7 @@ TEST_CASE("calibration: half of the free pad's curvature", "[contact_region]") {
     const auto plan = test::height_map(70, 80, 0.16);
     Calibration by_plan(plan, 70, 80, {8});
     const auto camera = test::pad_camera(70, 80, 0.16);
-    FreePadCalibration<ClampedMean<>, Camera<double>, double> by_camera(camera, 70, 80, {8});
+    FreePadCalibration<double> by_camera(camera, 70, 80, {8});
     for (int frame = 0; frame < 3; ++frame) {
       CHECK(by_plan.add(test::depths_of<float>(plan, free_pad(curvature), 70, 80)));
       CHECK(by_camera.add(test::depths_of<double>(camera, free_pad(curvature), 70, 80)));
@@ -67,17 +67,15 @@ TEST_CASE("calibration: half of the free pad's curvature", "[contact_region]") {
 TEST_CASE("calibration: the rules by definition", "[contact_region]") {
   const Index rows = 60, cols = 66;
   const auto camera = test::height_map(rows, cols, 0.16);
-  const CurvatureMap<ClampedMean<>, OrthographicCamera<double>, double> map({.pitch_mm = 0.16},
-                                                                            rows, cols, {8});
-  FreePadCalibration<ClampedMean<>, Plan, double> calibration(camera, rows, cols, {8});
-  auto workspace = map.workspace();
+  CurvatureMap<double> map(camera, rows, cols, {8});
+  FreePadCalibration<double> calibration(camera, rows, cols, {8});
   test::Random random(5);
   std::vector<Image<double>> frames;
   for (int k = 0; k < 6; ++k) {
     auto depth = test::depths_of<double>(camera, free_pad(0.05), rows, cols);
     add_noise(depth, 0.001, random);
     CHECK(calibration.add(depth));
-    (void)map(depth, depth, workspace);
+    (void)map(depth, depth);
     frames.push_back(depth);
   }
   std::vector<double> lows, means;
@@ -98,7 +96,7 @@ TEST_CASE("calibration: the rules by definition", "[contact_region]") {
   }
   std::sort(lows.begin(), lows.end());
   std::sort(means.begin(), means.end());
-  const FreePadCurvature published = calibration.fit(published::threshold_rule());
+  const FreePadCurvature published = calibration.fit(slides);
   CHECK(published.threshold_per_mm == Approx(lows.front()).epsilon(1e-12));
   CHECK(published.median_per_mm == Approx(means[(means.size() - 1) / 2]).epsilon(1e-12));
   CHECK(published.noise_per_mm ==
@@ -182,7 +180,7 @@ TEST_CASE("calibration: one bad pixel sets the published threshold, but no quant
   const ThresholdRule robust{1, 2, 0.005, false};
   CHECK(spoilt.fit(robust).threshold_per_mm ==
         Approx(good.fit(robust).threshold_per_mm).epsilon(0.01));
-  const ThresholdRule published = published::threshold_rule();
+  const ThresholdRule published = slides;
   CHECK(good.fit(published).threshold_per_mm > 0.04);
   CHECK(refusal([&] { (void)spoilt.fit(published); }) != "accepted");
 }
@@ -217,26 +215,28 @@ TEST_CASE("calibration: the noise of the edge", "[contact_region]") {
     calibration.add(noisy);
   }
   const FreePadCurvature pad = calibration.fit();
-  const CurvatureMap<published::SectionMean<>, OrthographicCamera<double>> mean({.pitch_mm = 0.08},
-                                                                                rows, cols, {ring});
-  auto workspace = mean.workspace();
+  CurvatureMap<> map(camera, rows, cols, {ring});
+  const auto mean = [&](const Image<float>& depth, Image<float>& out) {
+    (void)map(depth, out);
+    map.mean(0, rows, 0, cols, out);
+  };
   const auto spread = [&](const auto& film) {
     const auto exact = test::depths_of<float>(camera, film, rows, cols);
     double squares = 0, count = 0;
     Image<float> k(rows, cols), clean(rows, cols);
-    (void)mean(exact, clean, workspace);
-    const auto crossing = [&](const Image<float>& map, Index i) {
+    mean(exact, clean);
+    const auto crossing = [&](const Image<float>& of, Index i) {
       Index j = cols / 2;
-      while (map(i, j) < 0.025F) {
+      while (of(i, j) < 0.025F) {
         ++j;
       }
-      const double step = static_cast<double>(map(i, j) - map(i, j - 1));
-      return static_cast<double>(j) - static_cast<double>(map(i, j) - 0.025F) / step;
+      const double step = static_cast<double>(of(i, j) - of(i, j - 1));
+      return static_cast<double>(j) - static_cast<double>(of(i, j) - 0.025F) / step;
     };
     for (int frame = 0; frame < 12; ++frame) {
       auto noisy = exact;
       add_noise(noisy, noise_mm, random);
-      (void)mean(noisy, k, workspace);
+      mean(noisy, k);
       for (Index i = rows / 2 - 12; i <= rows / 2 + 12; i += 3) {
         const double moved_mm = 0.08 * (crossing(k, i) - crossing(clean, i));
         squares += moved_mm * moved_mm;

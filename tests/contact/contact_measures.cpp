@@ -35,8 +35,8 @@ struct Pressed {
     ContactTest test;
     test.ring = {3};
     test.free_apex_mm = pad.height_mm;
-    const ContactRegion<ClampedMean<>, HalfLevelEdge, Camera<double>, double> region(
-        pad.camera, pad.rows, pad.cols, test);
+    const ContactRegion<HalfLevelEdge, Camera<double>, double> region(pad.camera, pad.rows,
+                                                                      pad.cols, test);
     auto work = region.workspace();
     found = region(depth, mask, work);
   }

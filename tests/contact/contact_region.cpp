@@ -10,7 +10,6 @@
 #include <type_traits>
 #include <vector>
 
-#include "fingerpad/published/contact_region.hpp"
 #include "support/catch.hpp"
 #include "support/refusal.hpp"
 #include "support/soap_film.hpp"
@@ -33,13 +32,12 @@ struct Found {
   Image<Touch> mask;
 };
 
-template <class Statistic = ClampedMean<>, class Edge = HalfLevelEdge, class S, class CameraType>
+template <class Edge = HalfLevelEdge, class S, class CameraType>
 Found find(const CameraType& camera,
            const Image<S>& depth,
            const ContactTest& test = {},
            const Edge& edge = {}) {
-  const ContactRegion<Statistic, Edge, CameraType, S> region(camera, depth.rows(), depth.cols(),
-                                                             test, edge);
+  const ContactRegion<Edge, CameraType, S> region(camera, depth.rows(), depth.cols(), test, edge);
   auto workspace = region.workspace();
   Found found{{}, Image<Touch>(depth.rows(), depth.cols(), Touch::unknown)};
   found.result = region(depth, found.mask, workspace);
@@ -134,10 +132,10 @@ TEST_CASE("a threshold near zero erodes by a ring's radius", "[contact_region]")
       CAPTURE(radius_mm, ring_px);
       ContactTest test = with_ring(ring_px);
       test.threshold_per_mm = 1e-4;
-      const double eroded = radius_of(find<ClampedMean<>, AtThreshold>(camera, depth, test).result);
+      const double eroded = radius_of(find<AtThreshold>(camera, depth, test).result);
       CHECK(eroded == Approx(radius_mm - 0.9 * ring_mm).margin(0.12));
       test.threshold_per_mm = 0.025;  // half the level of the free pad: already near the edge
-      CHECK(radius_of(find<ClampedMean<>, AtThreshold>(camera, depth, test).result) ==
+      CHECK(radius_of(find<AtThreshold>(camera, depth, test).result) ==
             Approx(radius_mm).margin(0.15));
     }
   }
@@ -226,68 +224,10 @@ TEST_CASE("a free pad has no contact", "[contact_region]") {
   }
 }
 
-TEST_CASE("the published test is eq. 12 with its printed numbers, told by what it does",
-          "[contact_region]") {
-  const auto camera = height_map(61, 61, 0.08);
-  const auto region = [&](const Image<double>& depth) {
-    const ContactRegion<published::TwiceMean<>, AtThreshold, OrthographicCamera<double>, double>
-        published(camera, 61, 61, published::contact_test());
-    auto workspace = published.workspace();
-    Image<Touch> mask(61, 61);
-    (void)published(depth, mask, workspace);
-    return std::pair{mask(30, 30), workspace.statistic()(30, 30)};
-  };
-  const auto bowl = [](double per_mm) {
-    Image<double> depth(61, 61);
-    for (Index i = 0; i < 61; ++i) {
-      for (Index j = 0; j < 61; ++j) {
-        const double x = 0.08 * static_cast<double>(j - 30), y = 0.08 * static_cast<double>(i - 30);
-        depth(i, j) = 9 - per_mm * (x * x + y * y) / 2;
-      }
-    }
-    return depth;
-  };
-  // twice the mean: a curvature of 0.000075 per mm equals the threshold of 0.00015
-  CHECK(region(bowl(0.000074)).first == Touch::contact);
-  CHECK(region(bowl(0.000076)).first == Touch::none);
-  CHECK(region(bowl(0.01)).second == Approx(0.02).epsilon(1e-3));
-  // 36 directions of two pixels each, 10 px away: a pixel raised by e there is one section of
-  // curvature e / r^2 among 36, counted twice
-  auto level = bowl(0);
-  const double raised = 1e-4;
-  level(30, 40) -= raised;
-  const double r = 10 * 0.08;
-  CHECK(region(level).second == Approx(2 * raised / (r * r) / 36).epsilon(1e-3));
-  auto farther = bowl(0);
-  farther(30, 41) -= raised;
-  farther(30, 39) -= raised;
-  CHECK(region(farther).second == 0);  // no pixel 9 or 11 px away counts
-  // a single pixel is a region
-  CHECK(published::contact_test().min_region_px == 1);
-}
-
-TEST_CASE("the published test finds a flat contact less the ring", "[contact_region]") {
-  for (const double radius_mm : {2.0, 3.0, 4.0, 6.0}) {
-    const Index size = pixels_for(radius_mm, 10);
-    const auto camera = height_map(size, size);
-    test::RoundContact contact;
-    contact.radius_mm = radius_mm;
-    contact.x_mm = 0.21;
-    contact.y_mm = -0.13;
-    const auto found = find<published::TwiceMean<>, AtThreshold>(
-        camera, depths_of<double>(camera, RoundFilm(contact), size, size),
-        published::contact_test());
-    CAPTURE(radius_mm);
-    CHECK(found.result.regions == 1);
-    CHECK(radius_of(found.result) == Approx(radius_mm - 0.8).margin(0.1));
-  }
-}
-
 namespace {
 
-template <class Statistic, class CameraType, class Scalar>
+template <class CameraType, class Scalar>
 struct Way {
-  using statistic = Statistic;
   using camera = CameraType;
   using number = Scalar;
 };
@@ -305,11 +245,7 @@ template <class Edge, class Way>
 void check_edge() {
   const auto camera = small_camera(typename Way::camera{});
   const auto depth = depths_of<typename Way::number>(camera, RoundFilm({}), 60, 64);
-  ContactTest test = with_ring(5);
-  if constexpr (std::is_same_v<typename Way::statistic, published::TwiceMean<>>) {
-    test.threshold_per_mm *= 2;
-  }
-  const auto r = find<typename Way::statistic, Edge>(camera, depth, test).result;
+  const auto r = find<Edge>(camera, depth, with_ring(5)).result;
   CHECK(r.regions == 1);
   // the edge is the end of a contact of 6 mm; HalfLevelEdge adds the area within its gap
   const RoundFilm film({});
@@ -327,10 +263,9 @@ void check_edge() {
 
 TEMPLATE_TEST_CASE("every combination of policies finds the contact",
                    "[contact_region]",
-                   (Way<ClampedMean<>, Through, float>),
-                   (Way<published::SectionMean<>, Plan, float>),
-                   (Way<published::TwiceMean<>, Through, double>),
-                   (Way<RingStencil<>, Plan, float>)) {
+                   (Way<Through, float>),
+                   (Way<Plan, float>),
+                   (Way<Through, double>)) {
   check_edge<AtThreshold, TestType>();
   check_edge<HalfLevelEdge, TestType>();
 }
@@ -349,7 +284,7 @@ TEST_CASE("specks are dropped", "[contact_region]") {
     }
   }
   const auto with_least = [&](Index pixels) {
-    return find<ClampedMean<>, AtThreshold>(camera, depth, with_ring(5, pixels));
+    return find<AtThreshold>(camera, depth, with_ring(5, pixels));
   };
   const auto all = with_least(1);
   const auto large = with_least(all.result.contact_px / 2);
@@ -423,7 +358,7 @@ TEST_CASE("masks of bytes, of bool and of Touch say the same", "[contact_region]
   const auto camera = height_map(60, 64, 0.32);
   auto depth = depths_of<float>(camera, RoundFilm({}), 60, 64);
   depth(30, 30) = std::numeric_limits<float>::quiet_NaN();
-  const ContactRegion<ClampedMean<>, HalfLevelEdge, Plan> region(camera, 60, 64, with_ring(5));
+  const ContactRegion<HalfLevelEdge, Plan> region(camera, 60, 64, with_ring(5));
   auto workspace = region.workspace();
   Image<Touch> touch(60, 64);
   Image<std::uint8_t> bytes(60, 64, 3);
@@ -463,8 +398,8 @@ TEST_CASE("missing depth is never contact and reaches no farther than its ring",
     auto spoilt = depth;
     spoilt(30, 38) = bad;
     spoilt(31, 38) = bad;
-    const auto plain = find<ClampedMean<>, AtThreshold>(camera, depth, with_ring(ring, 1));
-    const auto found = find<ClampedMean<>, AtThreshold>(camera, spoilt, with_ring(ring, 1));
+    const auto plain = find<AtThreshold>(camera, depth, with_ring(ring, 1));
+    const auto found = find<AtThreshold>(camera, spoilt, with_ring(ring, 1));
     const auto edge = find(camera, spoilt, with_ring(ring));
     const auto edge_before = find(camera, depth, with_ring(ring));
     CHECK(found.mask(30, 38) == Touch::unknown);
@@ -503,7 +438,7 @@ TEST_CASE("pixels at the image's end count as much as others", "[contact_region]
   ContactTest test = with_ring(3);
   test.ring.min_direction_share = 0.01;
   const Image<double> plate(30, 41, 5.0);
-  const auto found = find<published::SectionMean<>, AtThreshold>(camera, plate, test);
+  const auto found = find<AtThreshold>(camera, plate, test);
   CHECK(found.mask(0, 20) == Touch::contact);
   CHECK(found.mask(29, 20) == Touch::contact);
   CHECK(found.mask(15, 0) == Touch::contact);
@@ -527,7 +462,7 @@ TEST_CASE("an image smaller than the ring is unknown", "[contact_region]") {
 }
 
 TEST_CASE("a grid or a workspace of another size is not accepted", "[contact_region]") {
-  using Region = ContactRegion<ClampedMean<>, HalfLevelEdge, Plan>;
+  using Region = ContactRegion<HalfLevelEdge, Plan>;
   const auto camera = height_map(60, 64, 0.32);
   const Region region(camera, 60, 64, with_ring(5));
   auto workspace = region.workspace();
@@ -568,7 +503,7 @@ TEST_CASE("bad parameters are refused by name", "[contact_region]") {
 
   const auto edge = [](const auto& e) {
     using Edge = std::decay_t<decltype(e)>;
-    return refusal([&] { const ContactRegion<ClampedMean<>, Edge> region({}, 60, 60, {}, e); });
+    return refusal([&] { const ContactRegion<Edge> region({}, 60, 60, {}, e); });
   };
   for (const double bad : {-0.01, 1.1, test::nan}) {
     CHECK(begins_with(edge(HalfLevelEdge{bad}), "HalfLevelEdge: touching_gap_mm = "));

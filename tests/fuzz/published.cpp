@@ -9,7 +9,6 @@
 #include "fingerpad/published/friction_ratio.hpp"
 #include "fingerpad/published/object_motion.hpp"
 #include "fingerpad/published/preslip.hpp"
-#include "fingerpad/published/slides_contact.hpp"
 #include "fingerpad/published/slides_stick_ratio.hpp"
 #include "fingerpad/published/stick_ratio.hpp"
 #include "fuzz/dots.hpp"
@@ -67,14 +66,6 @@ void try_contact(Input& in) {
   const Index rows = in.side(0, 50), cols = in.side(0, 50);
   const Grid<float> depth(in, rows, cols, 0, 15);
   Grid<std::uint8_t> mask(rows, cols);
-  if (in.flag()) {
-    const auto find = published::contact_region(any_camera(in, rows, cols), rows, cols);
-    auto work = find.workspace();
-    const auto found = fuzz::frame([&] { return find(depth.view(), mask.view(), work); });
-    require(found.accepted() && is_finite(found.area_mm2) && found.area_mm2 >= 0,
-            "an area is finite and not negative");
-    return;
-  }
   published::SlidesContactOptions options;
   options.condition = static_cast<published::ContactCondition>(in.whole(0, 2));
   options.threshold_per_mm = in.number(-0.1, 0.1);

@@ -1,5 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
+#include "fingerpad/image/curvature.hpp"
+
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
@@ -9,7 +11,6 @@
 
 #include "fingerpad/adapt/eigen.hpp"
 #include "fingerpad/adapt/opencv.hpp"
-#include "fingerpad/image/curvature_map.hpp"
 #include "fingerpad/published/contact_region.hpp"
 #include "support/cameras.hpp"
 #include "support/catch.hpp"
@@ -44,24 +45,27 @@ Image<S> depths(Index rows, Index cols, const F& depth_at_mm, double pitch_mm = 
   return depth;
 }
 
-template <class Statistic, class S, class CameraType = Plan>
+enum class Mean { clamped, plain };
+
+template <Mean Of, class S, class CameraType = Plan>
 Image<S> curvatures(const Image<S>& depth,
                     const CurvatureRing& ring,
                     const CameraType& camera = plate) {
-  const CurvatureMap<Statistic, CameraType, S> map(camera, depth.rows(), depth.cols(), ring);
-  auto workspace = map.workspace();
+  CurvatureMap<S> map(camera, depth.rows(), depth.cols(), ring);
   Image<S> out(depth.rows(), depth.cols(), S(7));
-  REQUIRE(map(depth, out, workspace).ok());
+  REQUIRE(map(depth, out).ok());
+  if (Of == Mean::plain) {
+    REQUIRE(map.mean(0, depth.rows(), 0, depth.cols(), out));
+  }
   return out;
 }
 
-/// The statistic at the middle pixel of an image of odd size.
-template <class Statistic, class F, class CameraType = Plan>
+/// The mean at the middle pixel of an image of odd size.
+template <Mean Of, class F, class CameraType = Plan>
 double in_the_middle(const F& depth_at_mm, Index radius_px = 10, const CameraType& camera = plate) {
   const Index size = 2 * radius_px + 1;
   const Image<double> depth = depths<double>(size, size, depth_at_mm, camera.pitch_mm);
-  return curvatures<Statistic>(depth, {static_cast<double>(radius_px)}, camera)(radius_px,
-                                                                                radius_px);
+  return curvatures<Of>(depth, {static_cast<double>(radius_px)}, camera)(radius_px, radius_px);
 }
 
 }  // namespace
@@ -110,43 +114,37 @@ TEST_CASE("curvature: maps of sphere, cylinder and saddle") {
   const auto sphere = [](double x, double y) { return std::sqrt(400 - x * x - y * y) - 7; };
   const auto cylinder = [](double x, double) { return std::sqrt(400 - x * x) - 7; };
   const auto saddle = [](double x, double y) { return 8 + (y * y - x * x) / 40; };
-  CHECK(in_the_middle<published::SectionMean<>>(sphere) == Approx(0.05).epsilon(1e-4));
-  CHECK(in_the_middle<ClampedMean<>>(sphere) == Approx(0.05).epsilon(1e-4));
-  CHECK(in_the_middle<published::TwiceMean<>>(sphere) == Approx(0.1).epsilon(1e-4));
-  CHECK(in_the_middle<RingStencil<>>(sphere) == Approx(0.05).epsilon(1e-3));
+  CHECK(in_the_middle<Mean::plain>(sphere) == Approx(0.05).epsilon(1e-4));
+  CHECK(in_the_middle<Mean::clamped>(sphere) == Approx(0.05).epsilon(1e-4));
 
-  CHECK(in_the_middle<published::SectionMean<>>(cylinder) == Approx(0.025).epsilon(2e-3));
+  CHECK(in_the_middle<Mean::plain>(cylinder) == Approx(0.025).epsilon(2e-3));
 
-  CHECK(in_the_middle<published::SectionMean<>>(saddle) == Approx(0).margin(1e-6));
+  CHECK(in_the_middle<Mean::plain>(saddle) == Approx(0).margin(1e-6));
   // the directions of the nearest pixels are not quite evenly spaced
-  CHECK(in_the_middle<ClampedMean<>>(saddle) == Approx(0.05 / pi).epsilon(6e-2));
-  CHECK(in_the_middle<ClampedMean<>>(saddle, 40) == Approx(0.05 / pi).epsilon(2e-2));
+  CHECK(in_the_middle<Mean::clamped>(saddle) == Approx(0.05 / pi).epsilon(6e-2));
+  CHECK(in_the_middle<Mean::clamped>(saddle, 40) == Approx(0.05 / pi).epsilon(2e-2));
 }
 
-TEST_CASE("curvature: on a slope sections and stencil differ by the factors they document") {
+TEST_CASE("curvature: on a slope the mean has the factor that it documents (E016)") {
   const double sphere = 20, alpha = 40 * pi / 180;
   const auto at_slope = [&](double x, double y) {
     const double from_top = x + sphere * std::sin(alpha);
     return std::sqrt(sphere * sphere - from_top * from_top - y * y);
   };
-  const double c = std::cos(alpha);
-  CHECK(in_the_middle<published::SectionMean<>>(at_slope) ==
+  CHECK(in_the_middle<Mean::plain>(at_slope) ==
         Approx(2 / pi * std::comp_ellint_1(std::sin(alpha)) / sphere).epsilon(5e-3));
-  CHECK(in_the_middle<RingStencil<>>(at_slope) ==
-        Approx((1 / (c * c * c) + 1 / c) / 2 / sphere).epsilon(1e-2));
 }
 
-TEMPLATE_TEST_CASE("curvature: nothing flat is lost, but by the published form",
-                   "",
-                   published::TwiceMean<>,
-                   published::SectionMean<>,
-                   ClampedMean<>,
-                   RingStencil<>) {
+TEMPLATE_TEST_CASE_SIG("curvature: nothing flat is lost, but by the published form",
+                       "",
+                       ((Mean Of), Of),
+                       Mean::clamped,
+                       Mean::plain) {
   const Index rows = 40, cols = 60, r = 10;
   const CurvatureRing whole_rings{r, 1.0};
   const auto flat = [&](const auto& depth_at_mm, double bound) {
     const Image<float> depth = depths<float>(rows, cols, depth_at_mm);
-    const Image<float> k = curvatures<TestType>(depth, whole_rings);
+    const Image<float> k = curvatures<Of>(depth, whole_rings);
     for (Index i = 0; i < rows; ++i) {
       for (Index j = 0; j < cols; ++j) {
         const bool inside = i >= r && i < rows - r && j >= r && j < cols - r;
@@ -187,9 +185,7 @@ TEST_CASE("curvature: seen through a camera a tilted plane stays flat, and a bal
       const double lateral = x * 0.6 + y * 0.8;
       return (8 + slope * lateral) / (1 - slope * lateral * growth);
     };
-    CHECK(in_the_middle<published::SectionMean<>>(plane, 25, camera) == Approx(0).margin(1e-12));
-    CHECK(in_the_middle<RingStencil<>>(plane, 25) ==
-          Approx(-slope * slope * growth * (1 + 8 * growth)).epsilon(1e-2).margin(1e-12));
+    CHECK(in_the_middle<Mean::plain>(plane, 25, camera) == Approx(0).margin(1e-12));
   }
   // a ball whose top is far enough from the axis that the membrane slopes on the axis
   for (const double degrees : {0.0, 25.0}) {
@@ -203,9 +199,8 @@ TEST_CASE("curvature: seen through a camera a tilted plane stays flat, and a bal
       return l;
     };
     const double sections = 2 / pi * std::comp_ellint_1(std::sin(alpha)) / 20;
-    CHECK(in_the_middle<published::SectionMean<>>(ball, 10, camera) ==
-          Approx(sections).epsilon(5e-3));
-    CHECK(in_the_middle<published::SectionMean<>>(ball, 10) > 1.1 * sections);
+    CHECK(in_the_middle<Mean::plain>(ball, 10, camera) == Approx(sections).epsilon(5e-3));
+    CHECK(in_the_middle<Mean::plain>(ball, 10) > 1.1 * sections);
   }
 }
 
@@ -226,8 +221,8 @@ TEST_CASE("curvature: what refraction off the axis leaves of a tilted plane") {
       depth(i, j) = l;
     }
   }
-  const Image<double> flat = curvatures<published::SectionMean<>>(depth, {6}, camera);
-  const Image<double> bent = curvatures<published::SectionMean<>>(depth, {6}, plan(0.3));
+  const Image<double> flat = curvatures<Mean::plain>(depth, {6}, camera);
+  const Image<double> bent = curvatures<Mean::plain>(depth, {6}, plan(0.3));
   double worst = 0, worst_bent = 0;
   for (Index i = 20; i <= 100; ++i) {
     for (Index j = 40; j <= 80; ++j) {  // depths of 4 to 12 mm
@@ -255,7 +250,7 @@ TEST_CASE("curvature: a ring is its own mirror image, at true distances") {
       };
       for (const detail::RingOffset& o : ring) {
         CAPTURE(radius, directions, o.row, o.col);
-        CHECK(std::abs(std::sqrt(static_cast<double>(o.radius_sq())) - radius) < 0.71);
+        CHECK(std::abs(std::sqrt(o.distance_sq()) - radius) < 0.71);
         if (radius > 2) {
           CHECK(count({o.row, -o.col}) == count(o));
           CHECK((directions % 2 != 0 || count({o.col, o.row}) == count(o)));
@@ -271,12 +266,10 @@ TEST_CASE("curvature: same bits on every grid") {
     return 9 - 0.02 * (x * x + y * y) + 0.1 * std::sin(3 * x + y);
   });
   depth(20, 30) = std::nanf("");
-  const CurvatureMap<ClampedMean<>, Plan> map(plate, rows, cols, {5});
-  auto workspace = map.workspace();
+  CurvatureMap<> map(plate, rows, cols, {5});
   Image<float> expected(rows, cols);
-  const CurvatureResult result = map(depth, expected, workspace);
+  const CurvatureResult result = map(depth, expected);
   CHECK(result.ok());
-  CHECK(result.known_px + result.unknown_px == rows * cols);
   CHECK(result.unknown_px == std::count_if(expected.cells.begin(), expected.cells.end(),
                                            [](float k) { return std::isnan(k); }));
 
@@ -303,56 +296,54 @@ TEST_CASE("curvature: same bits on every grid") {
     }
   }
   Image<double> wide(rows, cols);
-  REQUIRE(map(in_double, wide, workspace).ok());
+  REQUIRE(map(in_double, wide).ok());
   CHECK(same(wide));
-  REQUIRE(map(column_major, column_major, workspace).ok());  // in place
+  REQUIRE(map(column_major, column_major).ok());  // in place
   CHECK(same(column_major));
-  REQUIRE(map(image, image, workspace).ok());
+  REQUIRE(map(image, image).ok());
   CHECK(same(as_view(image)));
-  REQUIRE(map(foreign, foreign, workspace).ok());
+  REQUIRE(map(foreign, foreign).ok());
   CHECK(same(as_view(foreign)));
   Image<float> out(rows, cols);
   const LazyView lazy(rows, cols, [&](Index i, Index j) { return depth(i, j); });
-  REQUIRE(map(lazy, out, workspace).ok());
+  REQUIRE(map(lazy, out).ok());
   CHECK(same(out));
   Image<float> whole_numbers(rows, cols);
   const LazyView integers(rows, cols, [](Index i, Index j) { return static_cast<int>(i + j); });
-  CHECK(map(integers, whole_numbers, workspace).known_px > 0);
+  CHECK(map(integers, whole_numbers).unknown_px < rows * cols);
 }
 
 TEST_CASE("curvature: images smaller than the ring have no curvature") {
   for (const Index size : {1, 2, 7}) {
     const Image<float> depth(size, size + 1, 3.0F);
     for (const Index radius : {6, 30, 1000}) {
-      const Image<float> k = curvatures<ClampedMean<>>(depth, {static_cast<double>(radius), 0.01});
+      const Image<float> k = curvatures<Mean::clamped>(depth, {static_cast<double>(radius), 0.01});
       CHECK(std::all_of(k.cells.begin(), k.cells.end(), [](float x) { return std::isnan(x); }));
     }
   }
 }
 
 TEST_CASE("curvature: other sizes are refused and nothing is written") {
-  const CurvatureMap<ClampedMean<>, Plan> map(plate, 9, 10, {2});
-  auto workspace = map.workspace();
+  CurvatureMap<> map(plate, 9, 10, {2});
   const Image<float> depth(9, 10, 1.0F), narrow(9, 9, 1.0F);
   Image<float> out(9, 10, 7.0F), low(8, 10, 7.0F);
-  CHECK_FALSE(map(narrow, out, workspace).ok());
-  CHECK_FALSE(map(depth, low, workspace).ok());
-  CHECK_FALSE(map.band(-1, 4, depth, out, workspace).ok());
-  CHECK_FALSE(map.band(3, 2, depth, out, workspace).ok());
-  CHECK_FALSE(map.band(0, 10, depth, out, workspace).ok());
-  const CurvatureMap<ClampedMean<>, Plan> other(plate, 9, 10, {3});
-  auto foreign = other.workspace();
-  CHECK_FALSE(map(depth, out, foreign).ok());
+  CHECK_FALSE(map(narrow, out).ok());
+  CHECK_FALSE(map(depth, low).ok());
+  CHECK_FALSE(map.mean(0, 8, 0, 10, low));
+  CHECK_FALSE(map.mean(-1, 4, 0, 10, out));
+  CHECK_FALSE(map.mean(3, 2, 0, 10, out));
+  CHECK_FALSE(map.mean(0, 10, 0, 10, out));
+  CHECK_FALSE(map.mean(0, 9, -1, 10, out));
+  CHECK_FALSE(map.mean(0, 9, 3, 2, out));
+  CHECK_FALSE(map.mean(0, 9, 0, 11, out));
   CHECK(out.cells == Image<float>(9, 10, 7.0F).cells);
   CHECK(low.cells == Image<float>(8, 10, 7.0F).cells);
-  CHECK(map.band(4, 4, depth, out, workspace).ok());
+  CHECK(map.mean(4, 4, 0, 10, out));
 }
 
 TEST_CASE("curvature: bad parameters are refused by name, value and range") {
   const auto map = [](const CurvatureRing& ring, const auto& camera, Index rows, Index cols) {
-    return refusal([&] {
-      CurvatureMap<ClampedMean<>, std::decay_t<decltype(camera)>>(camera, rows, cols, ring);
-    });
+    return refusal([&] { CurvatureMap<>(camera, rows, cols, ring); });
   };
   const double nan = std::numeric_limits<double>::quiet_NaN();
   CHECK(map({}, plate, 4, 5) == "accepted");
@@ -363,22 +354,26 @@ TEST_CASE("curvature: bad parameters are refused by name, value and range") {
   CHECK(map({5, 0}, plate, 4, 5) == "CurvatureRing: min_direction_share = 0, must be in (0, 1]");
   CHECK(map({5, nan}, plate, 4, 5) ==
         "CurvatureRing: min_direction_share = nan, must be in (0, 1]");
-  CHECK(map({}, plan(0), 4, 5) == "CurvatureMap: camera.pitch_mm = 0, must be in [1e-9, 1e9]");
-  CHECK(map({}, through(nan, 0.01), 4, 5) ==
-        "CurvatureMap: camera.pitch_mm = nan, must be in [1e-9, 1e9]");
-  CHECK(
-      map({}, through(0.1, -1), 4, 5).starts_with("CurvatureMap: growth of the pitch per mm = -"));
+  CHECK(map({5, 1, 1}, plate, 4, 5) == "accepted");
+  CHECK(map({5, 1, 360}, plate, 4, 5) == "accepted");
+  CHECK(map({5, 1, 0}, plate, 4, 5) == "CurvatureRing: directions = 0, must be in [1, 360]");
+  CHECK(map({5, 1, 361}, plate, 4, 5) == "CurvatureRing: directions = 361, must be in [1, 360]");
+  CHECK(map({}, plan(0), 4, 5) == "OrthographicCamera: pitch_mm = 0, must be finite and > 0");
+  CHECK(map({}, plan(1e-5), 4, 5) ==
+        "CurvatureMap: camera.pitch_mm = 1e-05, must be in [0.0001, 10]");
+  CHECK(map({}, plan(11), 4, 5) == "CurvatureMap: camera.pitch_mm = 11, must be in [0.0001, 10]");
+  CHECK(map({}, through(nan, 0.01), 4, 5) == "Camera: pitch_mm = nan, must be finite and > 0");
+  CHECK(map({}, through(0.1, -1), 4, 5).starts_with("Camera: plate_distance_mm = -"));
   CHECK(map({}, plate, 0, 5) == "CurvatureMap: rows = 0, must be in [1, 1000000]");
   CHECK(map({}, plate, 4, -1) == "CurvatureMap: cols = -1, must be in [1, 1000000]");
 }
 
 TEST_CASE("curvature: a camera's pitch grows with depth as its rays spread") {
   const Camera<double> camera;
-  const auto pitch = detail::pixel_pitch(camera);
   const double row = camera.center_y_px, col = camera.center_x_px + 1;
   const auto spread = [&](double l) { return point_at(camera, row, col, l).x; };
-  CHECK(pitch.at_plate_mm == camera.pitch_mm);
-  CHECK(spread(10) / spread(0) == Approx(1 + 10 * pitch.growth_per_mm).epsilon(1e-5));
+  CHECK(spread(10) / spread(0) == Approx(1 + 10 * growth_per_mm(camera)).epsilon(1e-5));
+  CHECK(growth_per_mm(plate) == 0);
 }
 
 #if defined(FINGERPAD_HAS_VECTORS)

@@ -479,8 +479,7 @@ std::function<std::string()> free_pad(double scale, double share_seen, double no
       Random random(6);
       OrthographicCamera<double> camera;
       camera.pitch_mm = 0.16;
-      FreePadCalibration<ClampedMean<>, OrthographicCamera<double>> calibration(camera, 60, 80,
-                                                                                {8});
+      FreePadCalibration<> calibration(camera, 60, 80, {8});
       for (int t = 0; t < 4; ++t) {
         Image<double> depth(60, 80);
         for (Index i = 0; i < 60; ++i) {

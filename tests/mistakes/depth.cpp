@@ -383,8 +383,7 @@ TEST_CASE("wild finite depths move no contact and make no negative area", "[mist
     ContactTest contact_test;
     contact_test.ring.radius_px = 5;
     using CameraType = std::decay_t<decltype(camera)>;
-    const ContactRegion<ClampedMean<>, HalfLevelEdge, CameraType> region(camera, 60, 64,
-                                                                         contact_test);
+    const ContactRegion<HalfLevelEdge, CameraType> region(camera, 60, 64, contact_test);
     const SurfaceFit<Plane<>, CameraType> plane(60, 64, camera);
     auto workspace = region.workspace();
     Image<std::uint8_t> mask(60, 64), clean(60, 64);

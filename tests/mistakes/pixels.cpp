@@ -184,8 +184,8 @@ std::string of_region(const std::string& mistake) {
   const PressedPad pad;
   ContactTest options;
   options.ring.radius_px = 5;
-  const ContactRegion<ClampedMean<>, HalfLevelEdge, OrthographicCamera<double>> region(
-      pad.camera, size, size, options);
+  const ContactRegion<HalfLevelEdge, OrthographicCamera<double>> region(pad.camera, size, size,
+                                                                        options);
   auto workspace = region.workspace();
   Image<std::uint8_t> mask(size, size);
   const ContactResult right = region(pad.now, mask, workspace);

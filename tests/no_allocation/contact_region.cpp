@@ -17,8 +17,7 @@ TEMPLATE_TEST_CASE("contact region: a frame allocates nothing",
   depth(3, 3) = static_cast<float>(test::nan);
   ContactTest contact_test;
   contact_test.ring.radius_px = 5;
-  const ContactRegion<ClampedMean<>, TestType, OrthographicCamera<double>> region(camera, 60, 64,
-                                                                                  contact_test);
+  const ContactRegion<TestType, OrthographicCamera<double>> region(camera, 60, 64, contact_test);
   auto workspace = region.workspace();
   test::Image<Touch> mask(60, 64);
   const long before = test::allocations();

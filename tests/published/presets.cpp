@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "fingerpad/force/pad_heights.hpp"
-#include "fingerpad/published/contact_region.hpp"
 #include "fingerpad/published/depth.hpp"
 #include "fingerpad/published/normal_force.hpp"
 #include "fingerpad/published/object_motion.hpp"
@@ -40,29 +39,6 @@ TEST_CASE("published depth: the free pad is found, where one height for all rays
   // 16 halvings of 18 mm and the mean over 3 px of a dome
   CHECK(depth(24, 28) == Approx(free(24, 28)).margin(0.05));
   CHECK(depth(24, 20) == Approx(free(24, 20)).margin(0.05));
-}
-
-TEST_CASE("published contact region: free membrane is none, a flat one is contact", "[published]") {
-  Camera<double> camera;
-  camera.pitch_mm = 0.25;
-  camera.center_x_px = camera.center_y_px = 49.5;
-  const auto region = published::contact_region(camera, 100, 100);
-  auto workspace = region.workspace();
-  Image<float> depth(100, 100);
-  Image<unsigned char> mask(100, 100);
-  const auto area_of = [&](double press_mm) {
-    for (Index i = 0; i < 100; ++i) {
-      for (Index j = 0; j < 100; ++j) {
-        const double x = 0.25 * (static_cast<double>(j) - 49.5);
-        const double y = 0.25 * (static_cast<double>(i) - 49.5);
-        const double z = std::sqrt(400 - x * x - y * y) - 7;
-        depth(i, j) = static_cast<float>((std::min)(z, 13 - press_mm));
-      }
-    }
-    return region(depth, mask, workspace).area_mm2;
-  };
-  CHECK(area_of(0) == 0);
-  CHECK(area_of(1.5) > 10);
 }
 
 TEST_CASE("published object motion: Euler angles of steps are added up", "[published]") {

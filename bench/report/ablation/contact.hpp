@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// Effects on the contact region in measured depth maps: many directions or one, the clamp, the
-// perspective of the camera, the placed edge and the cleaning. The threshold of every variant is
-// half of the curvature that the variant itself measures on the free pad.
+// Effects on the contact region in measured depth maps: many directions or one, the perspective of
+// the camera, the placed edge and the cleaning. The threshold of every variant is half of the
+// curvature that the variant itself measures on the free pad.
 //
 // Error of the region: misclassified pixels, relative to those that truly touch; on the free pad,
 // to all its pixels. Error of the area: that of area_mm2, relative to the true one (on the free
@@ -20,26 +20,26 @@
 #include "depth.hpp"
 #include "fingerpad/calibrate/contact.hpp"
 #include "fingerpad/contact/contact_region.hpp"
-#include "fingerpad/published/contact_region.hpp"
 #include "membranes.hpp"
 
 namespace bench::ablation {
 
 /// A region with its workspace and mask.
-template <class Statistic = fingerpad::ClampedMean<>,
-          class Edge = fingerpad::HalfLevelEdge,
-          class CameraType = Camera<double>>
+template <class Edge = fingerpad::HalfLevelEdge, class CameraType = Camera<double>>
 class ContactVariant {
-  using Region = fingerpad::ContactRegion<Statistic, Edge, CameraType>;
+  using Region = fingerpad::ContactRegion<Edge, CameraType>;
 
  public:
   ContactVariant(const CameraType& camera,
                  const std::vector<Image<float>>& free_mm,
-                 Index min_region_px = fingerpad::ContactTest().min_region_px)
+                 Index min_region_px = fingerpad::ContactTest().min_region_px,
+                 const fingerpad::CurvatureRing& ring = {})
       : region_(camera,
                 free_mm.front().rows(),
                 free_mm.front().cols(),
-                {.threshold_per_mm = threshold(camera, free_mm), .min_region_px = min_region_px}),
+                {.threshold_per_mm = threshold(camera, free_mm, ring),
+                 .ring = ring,
+                 .min_region_px = min_region_px}),
         workspace_(region_.workspace()),
         mask_(region_.rows(), region_.cols()) {}
 
@@ -66,9 +66,11 @@ class ContactVariant {
   void run(const Image<float>& depth_mm) { (void)region_(depth_mm, mask_, workspace_); }
 
  private:
-  static double threshold(const CameraType& camera, const std::vector<Image<float>>& free_mm) {
-    fingerpad::FreePadCalibration<Statistic, CameraType> calibration(camera, free_mm.front().rows(),
-                                                                     free_mm.front().cols());
+  static double threshold(const CameraType& camera,
+                          const std::vector<Image<float>>& free_mm,
+                          const fingerpad::CurvatureRing& ring) {
+    fingerpad::FreePadCalibration<> calibration(camera, free_mm.front().rows(),
+                                                free_mm.front().cols(), ring);
     for (const auto& depth : free_mm) {
       calibration.add(depth);
     }
@@ -99,26 +101,20 @@ class ContactEffects {
       return cost_us([&] { all_.run(depth); }, [&] { without.run(depth); });
     };
     directions_.cost_us = cost(one_direction_);
-    clamp_.cost_us = cost(unclamped_);
     perspective_.cost_us = perspective_area_.cost_us = cost(orthographic_);
     edge_.cost_us = cost(at_threshold_);
     cleaning_.cost_us = cost(uncleaned_);
-    plain_clamp_.cost_us =
-        cost_us([&] { at_threshold_.run(depth); }, [&] { unclamped_at_threshold_.run(depth); });
-    return {directions_, clamp_, plain_clamp_, perspective_, perspective_area_, edge_, cleaning_};
+    return {directions_, perspective_, perspective_area_, edge_, cleaning_};
   }
 
  private:
   void add_frame(const Seen& seen, const Image<float>& depth) {
     const auto all = all_(seen, depth);
     note(directions_, seen, all.region, one_direction_(seen, depth).region);
-    note(clamp_, seen, all.region, unclamped_(seen, depth).region);
-    const auto plain = at_threshold_(seen, depth);
-    note(plain_clamp_, seen, plain.region, unclamped_at_threshold_(seen, depth).region);
     const auto flat = orthographic_(seen, depth);
     note(perspective_, seen, all.region, flat.region);
     note(perspective_area_, seen, all.area, flat.area);
-    note(edge_, seen, all.region, plain.region);
+    note(edge_, seen, all.region, at_threshold_(seen, depth).region);
     note(cleaning_, seen, all.region, uncleaned_(seen, depth).region);
   }
 
@@ -144,16 +140,11 @@ class ContactEffects {
                                                    pad_.camera.pitch_mm};
 
   ContactVariant<> all_{pad_.camera, free_};
-  ContactVariant<fingerpad::ClampedMean<1>> one_direction_{pad_.camera, free_};
-  ContactVariant<fingerpad::published::SectionMean<>> unclamped_{pad_.camera, free_};
-  ContactVariant<fingerpad::ClampedMean<>,
-                 fingerpad::HalfLevelEdge,
-                 fingerpad::OrthographicCamera<double>>
-      orthographic_{from_afar_, free_};
-  ContactVariant<fingerpad::ClampedMean<>, fingerpad::AtThreshold> at_threshold_{pad_.camera,
-                                                                                 free_};
-  ContactVariant<fingerpad::published::SectionMean<>, fingerpad::AtThreshold>
-      unclamped_at_threshold_{pad_.camera, free_};
+  ContactVariant<> one_direction_{
+      pad_.camera, free_, fingerpad::ContactTest().min_region_px, {.directions = 1}};
+  ContactVariant<fingerpad::HalfLevelEdge, fingerpad::OrthographicCamera<double>> orthographic_{
+      from_afar_, free_};
+  ContactVariant<fingerpad::AtThreshold> at_threshold_{pad_.camera, free_};
   ContactVariant<> uncleaned_{pad_.camera, free_, 1};
 
   static constexpr const char* of_region = "contact region";
@@ -161,18 +152,8 @@ class ContactEffects {
   Effect directions_{.name = "direction averaging",
                      .quantity = of_region,
                      .unit = share,
-                     .on = "`ClampedMean<18>`",
-                     .off = "`ClampedMean<1>`"};
-  Effect clamp_{.name = "clamp",
-                .quantity = of_region,
-                .unit = share,
-                .on = "`ClampedMean<>`",
-                .off = "`published::SectionMean<>`"};
-  Effect plain_clamp_{.name = "clamp without placed edge",
-                      .quantity = of_region,
-                      .unit = share,
-                      .on = "`ClampedMean<>`, `AtThreshold`",
-                      .off = "`published::SectionMean<>`, `AtThreshold`"};
+                     .on = "`CurvatureRing{.directions = 18}`",
+                     .off = "1"};
   Effect perspective_{.name = "perspective",
                       .quantity = of_region,
                       .unit = share,

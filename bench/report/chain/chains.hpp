@@ -30,7 +30,6 @@ struct Lean : ByDefault {
   static constexpr int sampling = 4;
   using Smoothing = fingerpad::AnchoredMean;
   using Inverse = fingerpad::ExponentialFree<2, 5>;
-  using Statistic = fingerpad::RingStencil<9>;
   using Edge = fingerpad::AtThreshold;
 };
 /// The same in samples of Step x Step pixels.

@@ -61,20 +61,16 @@ struct RegionFound {
   double false_share = 0;    ///< of the other pixels, taken for contact
 };
 
-template <class Statistic, class Edge>
+/// `find(camera, depth_mm, mask)` fills the mask.
+template <class Find>
 RegionFound region_of(const Heights& height,
                       const Heights& touches,
                       const HeightMap& map,
-                      double threshold_per_mm) {
+                      const Find& find) {
   using namespace fingerpad;
   const Index n = map.size;
   const double middle = static_cast<double>(n - 1) / 2;
   const OrthographicCamera<double> camera{middle, middle, map.pitch_mm};
-  ContactTest test;
-  test.ring.radius_px = 12;
-  test.threshold_per_mm = threshold_per_mm;
-  const ContactRegion<Statistic, Edge, OrthographicCamera<double>> region(camera, n, n, test);
-  auto workspace = region.workspace();
   test::Image<float> depth(n, n);
   test::Image<std::uint8_t> mask(n, n);
   const auto place = [&](Index k) { return map.pitch_mm * (static_cast<double>(k) - middle); };
@@ -84,7 +80,7 @@ RegionFound region_of(const Heights& height,
     }
   }
   RegionFound found;
-  (void)region(depth, mask, workspace);
+  find(camera, depth, mask);
   double touching = 0, free = 0;
   for (Index i = 0; i < n; ++i) {
     for (Index j = 0; j < n; ++j) {
@@ -109,14 +105,25 @@ inline constexpr double half_of_free_per_mm = 0.025;
 inline RegionFound published_region(const Heights& height,
                                     const Heights& touches,
                                     const HeightMap& map = {}) {
-  return region_of<fingerpad::published::TwiceMean<>, fingerpad::AtThreshold>(
-      height, touches, map, fingerpad::published::contact_test().threshold_per_mm);
+  return region_of(height, touches, map, [](const auto& camera, const auto& depth, auto& mask) {
+    fingerpad::published::SlidesContactOptions options;
+    options.radius_px = 12;
+    options.pitch_mm = camera.pitch_mm;
+    (void)fingerpad::published::contact_by_slides(depth, mask, options);
+  });
 }
 inline RegionFound default_region(const Heights& height,
                                   const Heights& touches,
                                   const HeightMap& map = {}) {
-  return region_of<fingerpad::ClampedMean<>, fingerpad::HalfLevelEdge>(height, touches, map,
-                                                                       half_of_free_per_mm);
+  return region_of(height, touches, map, [](const auto& camera, const auto& depth, auto& mask) {
+    fingerpad::ContactTest test;
+    test.ring.radius_px = 12;
+    test.threshold_per_mm = half_of_free_per_mm;
+    const fingerpad::ContactRegion<fingerpad::HalfLevelEdge, fingerpad::OrthographicCamera<double>>
+        region(camera, depth.rows(), depth.cols(), test);
+    auto workspace = region.workspace();
+    (void)region(depth, mask, workspace);
+  });
 }
 
 /// Two bars. Gaps up to the default's touching gap count as contact.

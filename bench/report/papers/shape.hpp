@@ -158,13 +158,11 @@ inline Section contact_section() {
   using namespace fingerpad;
   SceneFrames& frames = SceneFrames::instance();
   const test::Pad& pad = frames.pad();
-  const auto old = published::contact_region(pad.camera, pad.rows, pad.cols);
-  auto workspace = old.workspace();
   Section section{"Contact region [C]", {}};
   for (const std::string name : {"press", "tilt", "cylinder", "roll"}) {
     const SceneFrame& frame = frames(name);
     test::Image<std::uint8_t> mask(pad.rows, pad.cols);
-    (void)old(frame.measured_mm, mask, workspace);
+    (void)published::contact_by_slides(frame.measured_mm, mask, {.pitch_mm = pad.camera.pitch_mm});
     section.rows.push_back({name == "press" ? "square, hexagon bolt, ring (pictures)" : "",
                             "overlap with the true region: intersection over union", "none",
                             overlap(frame, mask, name), overlap(frame, frame.measured, name),

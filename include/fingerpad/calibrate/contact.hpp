@@ -18,8 +18,8 @@
 #include "fingerpad/core/check.hpp"
 #include "fingerpad/core/grid.hpp"
 #include "fingerpad/core/scalar.hpp"
-#include "fingerpad/image/curvature_map.hpp"
-#include "fingerpad/image/detail/depth_units.hpp"
+#include "fingerpad/image/curvature.hpp"
+#include "fingerpad/optics/camera.hpp"
 
 namespace fingerpad {
 inline namespace v0 {
@@ -52,24 +52,22 @@ struct [[nodiscard]] FreePadCurvature {
   bool ok() const { return cause == nullptr; }
 };
 
-/// Collects curvature statistics of the free pad. Statistic, ring and camera must be those of the
-/// contact test. Sums of float are double. Takes 32 bytes per pixel.
-template <class Statistic = ClampedMean<>, class CameraType = Camera<double>, scalar S = float>
+/// Collects mean curvatures of the free pad. Ring and camera must be those of the contact test.
+/// Sums of float are double. Takes 32 bytes per pixel.
+template <scalar S = float>
 class FreePadCalibration {
-  using Map = CurvatureMap<Statistic, CameraType, S>;
   using T = std::conditional_t<std::is_same_v<S, float>, double, S>;
 
  public:
   /// Refuses bad parameters (parameter_error).
+  template <class CameraType = Camera<double>>
   FreePadCalibration(const CameraType& camera,
                      Index rows,
                      Index cols,
                      const CurvatureRing& ring = {})
-      : pixel_mm_(
-            detail::narrowed<T>(detail::pixel_pitch(checked(camera, rows, cols)).at_plate_mm)),
+      : pixel_mm_(pitch_of(camera, rows, cols)),
         ring_px_(T(ring.radius_px)),
-        map_(camera, rows, cols, ring, detail::no_pad_mm),
-        workspace_(map_.workspace()),
+        map_(camera, rows, cols, ring),
         curvature_(static_cast<std::size_t>(rows * cols)),
         mean_(curvature_.size(), T(0)),
         squares_(curvature_.size(), T(0)) {}
@@ -78,7 +76,7 @@ class FreePadCalibration {
   template <grid Depth>
   bool add(const Depth& depth_mm) {
     const StridedView<S> curvature(curvature_.data(), map_.rows(), map_.cols(), map_.cols());
-    if (!map_(depth_mm, curvature, workspace_).ok()) {
+    if (!map_(depth_mm, curvature).ok()) {
       return false;
     }
     ++frames_;
@@ -148,10 +146,11 @@ class FreePadCalibration {
   }
 
  private:
-  static const CameraType& checked(const CameraType& camera, Index rows, Index cols) {
+  template <class CameraType>
+  static T pitch_of(const CameraType& camera, Index rows, Index cols) {
     expects_grid_size("FreePadCalibration", rows, cols);
     require(camera);
-    return camera;
+    return static_cast<T>(camera.pitch_mm);
   }
 
   static void check(const ThresholdRule& rule) {
@@ -190,8 +189,7 @@ class FreePadCalibration {
 
   T pixel_mm_;
   T ring_px_;
-  Map map_;
-  typename Map::Workspace workspace_;
+  CurvatureMap<S> map_;
   std::vector<S> curvature_;
   std::vector<T> mean_;     ///< E of each pixel
   std::vector<T> squares_;  ///< sum of squared deviations from it

@@ -7,8 +7,8 @@
 // Source: Ito et al. 2011, III.B, eqs. 1-12, and the slides, contact region. Published and
 // corrected forms in docs/errata.md, E012-E018.
 //
-// Parts: the curvature statistic (image/curvature_map.hpp), threshold and edge
-// (contact/contact_test.hpp), the level of the edge (contact/edge_level.hpp).
+// Parts: the mean curvature (image/curvature.hpp), threshold and edge (contact/contact_test.hpp),
+// the level of the edge (contact/edge_level.hpp).
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
@@ -21,7 +21,7 @@
 #include "fingerpad/core/check.hpp"
 #include "fingerpad/core/grid.hpp"
 #include "fingerpad/core/status.hpp"
-#include "fingerpad/image/curvature_map.hpp"
+#include "fingerpad/image/curvature.hpp"
 #include "fingerpad/image/detail/pixel_box.hpp"
 #include "fingerpad/image/detail/pixel_rays.hpp"
 #include "fingerpad/image/detail/regions.hpp"
@@ -52,8 +52,6 @@ struct [[nodiscard]] ContactResult {
 };
 
 /// The contact region of depth maps of one size.
-///   Statistic   ClampedMean<>       use it for any object, also where the free pad is a saddle
-///               RingStencil<9>      use it when time matters and contacts are flat
 ///   Edge        HalfLevelEdge       use it when the area matters
 ///               AtThreshold         use it when only the place of the contact matters
 ///   CameraType  Camera<double>      use it for depth maps along a camera's rays
@@ -64,17 +62,12 @@ struct [[nodiscard]] ContactResult {
 ///
 /// Threads may share one object, each with its own workspace. Bounded time and no allocation per
 /// frame; O(rows cols directions).
-template <class Statistic = ClampedMean<>,
-          class Edge = HalfLevelEdge,
-          class CameraType = Camera<double>,
-          scalar S = float>
+template <class Edge = HalfLevelEdge, class CameraType = Camera<double>, scalar S = float>
 class ContactRegion {
-  static_assert(
-      !scalar<Statistic>,
-      "the scalar comes last: ContactRegion<ClampedMean<>, HalfLevelEdge, Camera<double>, double>");
+  static_assert(!scalar<Edge>,
+                "the scalar comes last: ContactRegion<HalfLevelEdge, Camera<double>, double>");
 
-  using Curvature = CurvatureMap<Statistic, CameraType, S>;
-  using Finder = detail::EdgeFinder<Edge, Statistic, CameraType, S>;
+  using Finder = detail::EdgeFinder<Edge, S>;
 
  public:
   /// Refuses bad parameters (parameter_error).
@@ -85,7 +78,7 @@ class ContactRegion {
                 const Edge& edge = {})
       : test_(checked(camera, rows, cols, test, edge)),
         image_{rows, cols},
-        curvature_(camera, rows, cols, test.ring, detail::no_pad_mm),
+        curvature_(camera, rows, cols, test.ring),
         finder_(edge, test, camera, image_),
         rays_(camera, rows, cols) {}
 
@@ -94,7 +87,8 @@ class ContactRegion {
    public:
     explicit Workspace(const ContactRegion& region)
         : regions_(region.image_),
-          curvature_(region.curvature_.workspace()),
+          curvature_(region.curvature_),
+          ring_(region.test_.ring),
           statistic_(static_cast<std::size_t>(region.image_.size()), not_a_number<S>()),
           finder_(region.finder_.workspace()) {}
 
@@ -104,7 +98,8 @@ class ContactRegion {
    private:
     friend class ContactRegion;
     detail::Regions regions_;
-    typename Curvature::Workspace curvature_;
+    CurvatureMap<S> curvature_;
+    CurvatureRing ring_;
     std::vector<S> statistic_;
     typename Finder::Workspace finder_;
   };
@@ -118,20 +113,17 @@ class ContactRegion {
     ContactResult result;
     const auto depth = as_view(depth_mm);
     const auto to = as_view(mask);
-    if (!has_size(depth) || !has_size(to) || w.regions_.image() != image_) {
+    if (!has_size(depth) || !has_size(to) || w.regions_.image() != image_ ||
+        w.ring_ != test_.ring) {
       return result;
     }
     const auto statistic = image_.view(w.statistic_.data());
-    const CurvatureResult curvature = curvature_(depth, statistic, w.curvature_);
-    if (!curvature.ok()) {  // a workspace with another ring
-      return result;
-    }
-    result.unknown_px = curvature.unknown_px;
+    result.unknown_px = w.curvature_(depth, statistic).unknown_px;
     mark_seeds(statistic, w.regions_.marks());
     const auto keep = [this](const detail::Regions::Region& region) {
       return region.pixels() >= test_.min_region_px;
     };
-    result.regions = finder_(depth, w.statistic_.data(), keep, w.regions_, w.finder_);
+    result.regions = finder_(depth, w.statistic_.data(), w.curvature_, keep, w.regions_, w.finder_);
     write(w.regions_.marks(), to);
     measure(w.regions_.marks(), depth, result);
     result.status = is_of_this_pad(result) ? FrameStatus::ok : FrameStatus::not_of_this_pad;
@@ -223,7 +215,7 @@ class ContactRegion {
 
   ContactTest test_;
   detail::BorderedImage image_;
-  Curvature curvature_;
+  CurvatureMap<S> curvature_;
   Finder finder_;
   detail::PixelRays<CameraType> rays_;
 };

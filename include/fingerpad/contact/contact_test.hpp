@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// Parameters of the contact test besides the curvature statistic: the threshold, the smallest
-// region, and where the edge is placed.
+// Parameters of the contact test: the ring, the threshold, the smallest region, and where the edge
+// is placed.
 #include "fingerpad/core/check.hpp"
 #include "fingerpad/core/grid.hpp"
 #include "fingerpad/core/scalar.hpp"
@@ -11,7 +11,7 @@
 namespace fingerpad {
 inline namespace v0 {
 
-/// The test for contact: a curvature statistic below the threshold.
+/// The test for contact: a mean curvature below the threshold.
 struct ContactTest {
   /// delta in the sources. Half the curvature of the free pad is a good choice: 1/40 per mm for the
   /// published pad of 20 mm radius. calibrate/contact.hpp measures it. Finite, > 0.
@@ -29,7 +29,7 @@ inline void expects_valid(const ContactTest& test) {
   expects(is_finite(test.free_apex_mm), "ContactTest", "free_apex_mm", test.free_apex_mm, "finite");
   expects(test.min_region_px >= 1, "ContactTest", "min_region_px",
           static_cast<long long>(test.min_region_px), ">= 1");
-  expects_valid(test.ring);
+  require(test.ring);
 }
 
 /// Contact is where the statistic is below the threshold, as published. A ring that reaches beyond

@@ -1,9 +1,11 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// Curvature of the membrane along sections of three depths. Depth grows away from the plate, and
-// curvature is positive where the membrane bulges outward (a dome), as in the papers.
-// Source: Ito et al. 2011, eqs. 10-12 (misprints: E012-E015), and the slides, contact region.
+// Curvature of the membrane along sections of three depths, and its mean over all directions at
+// each pixel of a depth map. It tells contact from free membrane: under pressure, a membrane bulges
+// outward wherever nothing touches it. Depth grows away from the plate, and curvature is positive
+// where the membrane bulges outward (a dome), as in the papers.
+// Source: Ito et al. 2011, III.B (eqs. 1-12), and the slides, contact region; E012-E017.
 //
 // Both papers compute the center of the circle through three points. This is 0/0 on a level
 // membrane, the very case that they look for. Menger's form of the same circle has no division that
@@ -14,173 +16,262 @@
 // K is the curvature of the vertical section, not the normal curvature (E016): on a sphere of
 // radius R at slope tan(alpha) it is 1/R along the gradient and 1/(R cos(alpha)) across it, and its
 // mean over all directions is (2 / pi) K_ell(sin(alpha)) / R, where K_ell is the complete elliptic
-// integral of the first kind: 1.03, 1.14 and 1.37 times 1/R at 20, 40 and 60 degrees. Its sign is
-// that of the normal curvature.
+// integral of the first kind. Its sign is that of the normal curvature.
+//
+// Through a camera, the distance between the points that neighbouring pixels see grows with the
+// depth, pitch (1 + c l), and a tilted plane seems to be concave, by 2 c slope^2 / ((1 + c l) (1 +
+// slope^2)^(3/2)) in a section along the slope. The substitution zeta = l / (1 + c l) removes both
+// effects: it maps planes to planes for a camera at 1/c behind the plate, and on the axis
+//   K = K of (K1) for radius r / (1 + c l) and depths zeta, over (1 + c l)^2.
+// A flat section stays flat. Where K is not 0, its relative error is of the order of c times the
+// slope times the distance from the axis. Refraction makes c smaller off the axis, which leaves
+// less than 5e-4 per mm on a plane of slope 1/2 (tests/image/curvature.cpp).
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
-#include <type_traits>
-#include <vector>
+#include <cstddef>
+#include <string>
 
 #include "fingerpad/core/check.hpp"
+#include "fingerpad/core/detail/vectors.hpp"
 #include "fingerpad/core/grid.hpp"
 #include "fingerpad/core/scalar.hpp"
-#include "fingerpad/image/detail/quick_math.hpp"
+#include "fingerpad/core/status.hpp"
+#include "fingerpad/image/detail/curvature_rows.hpp"
+#include "fingerpad/image/detail/row_lanes.hpp"
+#include "fingerpad/optics/camera.hpp"
 
 namespace fingerpad {
 inline namespace v0 {
-namespace detail {
-
-/// The integer n as a scalar, or in every lane of a vector.
-template <class V>
-[[gnu::always_inline]] inline V whole(int n) {
-  if constexpr (scalar<V>) {
-    return V(n);
-  } else {
-    return V{} + static_cast<std::remove_cvref_t<decltype(V{}[0])>>(n);
-  }
-}
-
-/// (K1) in two factors, for scalars and vectors: K = 2 r bend inverse_root.
-template <class V>
-struct Section {
-  V bend;  ///< has the sign of K
-  V inverse_root;
-};
-
-template <class V>
-[[gnu::always_inline]] inline Section<V> section(const V& radius_sq,
-                                                 const V& before,
-                                                 const V& center,
-                                                 const V& after) {
-  const V a = center - before;
-  const V b = after - center;
-  const V rise = after - before;
-  const V ends = (radius_sq + a * a) * (radius_sq + b * b);
-  const V twice = radius_sq + radius_sq;
-  const V q = ends * (twice + twice + rise * rise);
-  return {V(a - b), inverse_sqrt<V>(q)};
-}
-
-}  // namespace detail
 
 /// Curvature in 1/mm of the section through depths at -radius, 0 and +radius; radius_mm > 0.
 template <scalar S>
 S section_curvature(const S& radius_mm, const S& before_mm, const S& center_mm, const S& after_mm) {
   const S radius_sq = radius_mm * radius_mm;
-  const detail::Section<S> k = detail::section<S>(radius_sq, before_mm, center_mm, after_mm);
-  return S(S(2) * radius_mm * k.bend * k.inverse_root);
+  return S(2) * radius_mm * detail::section<S>(radius_sq, before_mm, center_mm, after_mm);
 }
 
 /// The ring of pixels on which curvature is measured: sections through the center pixel in evenly
 /// spaced directions, each with one pixel at either end. An end is the pixel nearest to the circle,
 /// and its true distance is used as the radius, because interpolation would bias the second
 /// difference by up to curvature px^2 / 4 per sample. Default: the slides' radius, 1.92 mm on the
-/// published pad.
+/// published pad, and number of directions.
 struct CurvatureRing {
-  double radius_px = 25;             ///< in [1, 1000]
+  double radius_px = 25;             ///< in widths of a pixel, in [1, 1000]
   double min_direction_share = 0.5;  ///< share of sections that must be complete, in (0, 1]
+  int directions = 18;               ///< in [1, 360]; time grows with it
+
+  friend bool operator==(const CurvatureRing&, const CurvatureRing&) = default;
 };
 
-/// Refuses values out of range (parameter_error).
-inline void expects_valid(const CurvatureRing& ring) {
-  expects(ring.radius_px >= 1 && ring.radius_px <= 1000, "CurvatureRing", "radius_px",
-          ring.radius_px, "in [1, 1000]");
-  expects(ring.min_direction_share > 0 && ring.min_direction_share <= 1, "CurvatureRing",
-          "min_direction_share", ring.min_direction_share, "in (0, 1]");
+/// Says which value is out of range; "" if none is.
+inline std::string check(const CurvatureRing& ring) {
+  return check(
+      "CurvatureRing",
+      {{"radius_px", ring.radius_px, within(1, 1000)},
+       {"min_direction_share", ring.min_direction_share, {.min = 0, .max = 1, .above_min = true}},
+       {"directions", ring.directions, within(1, 360)}});
 }
 
-// Statistics of the curvatures in all directions, in 1/mm. A statistic states its number of
-// directions, its factor on the mean (`means`) and whether negative curvatures count as 0
-// (`clamped`).
+struct [[nodiscard]] CurvatureResult {
+  FrameStatus status = FrameStatus::refused;
+  Index unknown_px = 0;  ///< pixels that got NaN
 
-/// The slides' mean, in which negative curvatures count as 0. It is below p / (2 sigma) (pressure
-/// p, membrane tension sigma) only in contact, and 0 where the object is convex or flat. Take this
-/// for any object and any pad.
-template <int Directions = 18>
-struct ClampedMean {
-  static constexpr int directions = Directions;
-  static constexpr int means = 1;
-  static constexpr bool clamped = true;
+  bool ok() const { return status == FrameStatus::ok; }
 };
 
-/// Difference of center and ring, linear in depth; for small slopes only. At a slope s it
-/// overstates normal curvature by the factor (1 + s^2)^(3/2) along the slope and (1 + s^2)^(1/2)
-/// across it. Take this when time counts and contacts are flat.
-template <int Directions = 18>
-struct RingStencil {
-  static constexpr int directions = Directions;
-  static constexpr int means = 1;
-  static constexpr bool linear = true;
-};
-
-namespace detail {
-
-/// The plain mean, which locates the edge of contact.
-template <int Directions = 18>
-struct PlainMean {
-  static constexpr int directions = Directions;
-  static constexpr int means = 1;
-  static constexpr bool clamped = false;
-};
-
-/// One end of a section as an offset from the center pixel; the other end is its negative.
-struct RingOffset {
-  Index row;
-  Index col;
-
-  constexpr Index radius_sq() const { return row * row + col * col; }
-  friend constexpr bool operator==(const RingOffset&, const RingOffset&) = default;
-};
-
-/// The pixel nearest to radius (cos, sin) at the angle pi step / (2 directions) in the first
-/// octant. Ties round toward the center, whatever the rounding of the cosine.
-inline RingOffset ring_offset_in_octant(double radius_px, int step, int directions) {
-  const double angle = 1.5707963267948966 * step / directions;
-  const auto nearest = [&](double unit) {
-    return static_cast<Index>(std::ceil(radius_px * unit - 0.5 - 1e-9));
-  };
-  return {nearest(std::sin(angle)), nearest(std::cos(angle))};
-}
-
-/// One end of each section in the directions pi k / directions, sorted from shortest to longest.
-/// The set is its own mirror image in both axes and, for an even number of directions, under
-/// exchange of rows and columns.
-inline std::vector<RingOffset> ring_offsets(double radius_px, int directions) {
-  std::vector<RingOffset> offsets;
-  for (int k = 0; k < directions; ++k) {
-    const bool beyond_vertical = 2 * k > directions;
-    const int quarter = 2 * (beyond_vertical ? directions - k : k);  // of pi / (2 directions)
-    const bool steep = 2 * quarter > directions;
-    const RingOffset end =
-        ring_offset_in_octant(radius_px, steep ? directions - quarter : quarter, directions);
-    const RingOffset unfolded = steep ? RingOffset{end.col, end.row} : end;
-    offsets.push_back({unfolded.row, beyond_vertical ? -unfolded.col : unfolded.col});
+/// Mean curvature of depth maps of one size, computed in the scalar S: by vectors in float and
+/// double, pixel by pixel in any other.
+///
+/// A pixel gets NaN if its depth is missing (not in (-100, 100) mm, or next to the camera) or too
+/// few of its sections are complete, else the mean of the complete sections. A missing depth
+/// affects no pixel beyond the ring's radius.
+///
+/// Rounding: in double about 1e-15 per mm. In float, sections by vectors have a relative error of
+/// 2.1e-5. An error of one unit in the last place e in a depth (through a camera, in zeta) changes
+/// a curvature by up to 4 e / r^2.
+///
+/// One object a thread. Bounded time and no allocation per frame; O(rows cols directions).
+template <scalar S = float>
+class CurvatureMap {
+ public:
+  /// rows, cols in [1, 1e6], at most 1e8 pixels; the camera's pitch in [1e-4, 10] mm and its
+  /// pixel_aspect in [0.1, 10], at most the ring's radius in px. Depths along the rays of a Camera,
+  /// or heights of an OrthographicCamera. Refuses bad parameters (parameter_error).
+  template <class CameraType = Camera<double>>
+  CurvatureMap(const CameraType& camera, Index rows, Index cols, const CurvatureRing& ring = {})
+      : growth_(growth_of(camera, rows, cols, ring)),
+        rows_(rows),
+        cols_(cols),
+        least_(least_of(ring)),
+        segment_(static_cast<std::size_t>(columns), S(0)) {
+    const double aspect = static_cast<double>(value(camera.pixel_aspect));
+    const double size_px =
+        (std::max)(static_cast<double>(cols), aspect * static_cast<double>(rows));
+    const double reach_px = (std::min)(ring.radius_px, size_px);  // larger rings are never complete
+    row_margin_ = static_cast<Index>(std::ceil(reach_px / aspect));
+    const Index col_margin = static_cast<Index>(std::ceil(reach_px));
+    left_ = (col_margin + line - 1) / line * line;
+    stride_ = odd_lines(left_ + cols + col_margin);
+    sections_ = {detail::ring_offsets(reach_px, ring.directions, aspect), stride_,
+                 static_cast<S>(camera.pitch_mm), aspect};
+    cells_.assign(static_cast<std::size_t>((rows + 2 * row_margin_) * stride_ + 2 * line),
+                  not_a_number<S>());
   }
-  std::stable_sort(offsets.begin(), offsets.end(), [](const RingOffset& a, const RingOffset& b) {
-    return a.radius_sq() < b.radius_sq();
-  });
-  return offsets;
-}
 
-/// x where it is positive, else 0; not_a_number() stays NaN.
-template <class V>
-[[gnu::always_inline]] inline V not_negative(const V& x) {
-  if constexpr (scalar<V>) {
-    return value(x) < 0 ? V(0) : V(x);
-#if defined(FINGERPAD_HAS_VECTORS)
-  } else if constexpr (sizeof(V{}[0]) == 4) {
-    // Compared with 0 as integers, floats keep their sign and a positive NaN counts as positive.
-    // Compilers emit one instruction for the integer form.
-    using Bits = lanes<std::int32_t, static_cast<int>(sizeof(V) / 4)>;
-    const Bits bits = Bits(x);
-    return V(bits > 0 ? bits : Bits{});
-#endif
-  } else {
-    return whole<V>(0) > x ? whole<V>(0) : x;
+  Index rows() const { return rows_; }
+  Index cols() const { return cols_; }
+
+  /// Writes the mean of the curvatures in 1/mm, negative ones counted as 0, to `out`, which may be
+  /// the depth map itself. By the slides, this mean is below p / (2 sigma) (pressure p, membrane
+  /// tension sigma) only in contact; it is 0 where the object is convex or flat. Takes a depth map
+  /// in mm. Refuses other sizes, and then writes nothing.
+  template <grid Depth, class Out>
+  CurvatureResult operator()(const Depth& depth_mm, Out&& out) {
+    static_assert(detail::takes_numbers<Out, S>,
+                  "this grid is written to: its cells must be assignable and able to hold NaN");
+    const auto from = as_view(depth_mm);
+    const auto to = as_view(out);
+    if (!has_size(from) || !has_size(to)) {
+      return {};
+    }
+    for (Index i = 0; i < rows_; ++i) {
+      load_row(from, i);
+    }
+    return {FrameStatus::ok, write_means<true>(0, rows_, 0, cols_, to)};
   }
-}
 
-}  // namespace detail
+  /// Writes the plain mean of the last depth map, which locates the edge of contact, to rows
+  /// [first_row, last_row) and columns [first_col, last_col) of `out`, a grid of the same size.
+  /// False, and nothing written, for other sizes.
+  template <class Out>
+  bool mean(Index first_row, Index last_row, Index first_col, Index last_col, Out&& out) {
+    static_assert(detail::takes_numbers<Out, S>,
+                  "this grid is written to: its cells must be assignable and able to hold NaN");
+    const auto to = as_view(out);
+    if (!has_size(to) || first_row < 0 || last_row < first_row || last_row > rows_ ||
+        first_col < 0 || last_col < first_col || last_col > cols_) {
+      return false;
+    }
+    write_means<false>(first_row, last_row, first_col, last_col, to);
+    return true;
+  }
+
+ private:
+  static constexpr int lanes = detail::row_lanes<S>;
+  using V = typename detail::RowVector<S, lanes>::type;
+  static constexpr Index columns = 128;  // of a strip, which fits the cache with its ring
+  static constexpr Index line = 64 / static_cast<Index>(sizeof(float));
+
+  template <class CameraType>
+  static S growth_of(const CameraType& camera, Index rows, Index cols, const CurvatureRing& ring) {
+    require(camera);
+    require(ring);
+    expects_grid_size("CurvatureMap", rows, cols);
+    const std::string refusal =
+        check("CurvatureMap", {{"camera.pitch_mm", camera.pitch_mm, within(1e-4, 10)},
+                               {"camera.pixel_aspect", camera.pixel_aspect,
+                                within(0.1, (std::min)(10.0, ring.radius_px))}});
+    if (!refusal.empty()) {
+      refuse(refusal);
+    }
+    return static_cast<S>(growth_per_mm(camera));
+  }
+
+  static int least_of(const CurvatureRing& ring) {
+    const double share = ring.min_direction_share * ring.directions;
+    return (std::max)(1, static_cast<int>(std::ceil(share - 1e-9)));
+  }
+
+  /// Row stride: whole cache lines, an odd number of them, so that rows spread over all sets of a
+  /// cache instead of a few.
+  static Index odd_lines(Index cells) { return ((cells / line + 2) | 1) * line; }
+
+  template <class G>
+  bool has_size(const G& g) const {
+    return g.rows() == rows_ && g.cols() == cols_;
+  }
+
+  S* cell(Index row, Index col) {
+    return cells_.data() + (row + row_margin_) * stride_ + left_ + col;
+  }
+
+  /// Stores zeta of a row; NaN where the depth is missing.
+  template <class View>
+  void load_row(const View& from, Index i) {
+    S* row = cell(i, 0);
+    const S* depth_mm = detail::row_of(from, i, row);
+    const double growth = static_cast<double>(value(growth_));
+    const auto highest = scalar_real_t<S>(detail::no_pad_mm);
+    const auto lowest =
+        growth * detail::no_pad_mm > 0.99 ? scalar_real_t<S>(-0.99 / growth) : -highest;
+    detail::for_each_cell<S>(cols_, [&]<class W>(Index j) {
+      const W l = detail::load_cells<W, S>(depth_mm + j);
+      const W zeta = l / (1 + growth_ * l);
+      const W nan = detail::every_lane<W>(not_a_number<S>());
+      if constexpr (scalar<W>) {
+        row[j] = value(l) > lowest && value(l) < highest ? zeta : nan;
+      } else {
+        detail::store_cells<S>(row + j, W(((l > lowest) & (l < highest)) ? zeta : nan));
+      }
+    });
+  }
+
+  /// Writes means and returns how many pixels are unknown (of whole rows).
+  template <bool Clamped, class View>
+  Index write_means(
+      Index first_row, Index last_row, Index first_col, Index last_col, const View& to) {
+    Index known = 0;
+    for (Index j = first_col; j < last_col; j += columns) {
+      const Index count = (std::min)(columns, last_col - j);
+      for (Index i = first_row; i < last_row; ++i) {
+        known += compute_segment<Clamped>(cell(i, j), count);
+        store_segment(to, i, j, count);
+      }
+    }
+    return (last_row - first_row) * (last_col - first_col) - known;
+  }
+
+  /// Computes `count` means from cells[0] on, rounded up to whole vectors, and returns how many of
+  /// them are known. Beyond the image none is.
+  template <bool Clamped>
+  Index compute_segment(const S* cells, Index count) {
+    detail::lane_count<V> known{};
+    for (Index j = 0; j < count; j += lanes) {
+      const V zeta = detail::load_cells<V, S>(cells + j);
+      V mean = detail::every_lane<V>(not_a_number<S>());
+      if (detail::any_lane(detail::known<V>(zeta))) {
+        mean = sections_.template mean<Clamped, V>(cells + j, V(1 - growth_ * zeta), least_);
+      }
+      known = detail::plus_known<V>(known, mean);
+      detail::store_cells<S>(segment_.data() + j, mean);
+    }
+    return detail::sum_of<V>(known);
+  }
+
+  template <class View>
+  void store_segment(const View& to, Index row, Index first_col, Index count) const {
+    if constexpr (detail::plain_rows<View, S>) {
+      if (to.col_stride() == 1) {
+        std::copy_n(segment_.data(), count, to.row(row) + first_col);
+        return;
+      }
+    }
+    for (Index j = 0; j < count; ++j) {
+      to(row, first_col + j) = static_cast<cell_t<View>>(segment_[static_cast<std::size_t>(j)]);
+    }
+  }
+
+  S growth_;  // c
+  Index rows_;
+  Index cols_;
+  int least_;  // number of sections that must be complete
+  Index row_margin_ = 0;
+  Index left_ = 0;  // margin that fills whole cache lines
+  Index stride_ = 0;
+  detail::RingSections<S> sections_;
+  detail::aligned_vector<S> cells_;  // zeta, with a margin of NaN on every side
+  detail::aligned_vector<S> segment_;
+};
+
 }  // namespace v0
 }  // namespace fingerpad

@@ -114,6 +114,13 @@ S tangent_per_px(const Camera<S>& camera) {
   return camera.pitch_mm / paraxial;
 }
 
+/// c: at depth l, pixels near the axis see points that are pitch_mm (1 + c l) apart along x.
+template <scalar S>
+S growth_per_mm(const Camera<S>& camera) {
+  return tangent_per_px(camera) / camera.pitch_mm *
+         detail::tangent_ratio(S(0), camera.refractive_index);
+}
+
 /// The direction in air of the pixel at (row, col), which may lie between pixel centers: tangents
 /// of its angles to the axis along x and along y. With pixel_at_tangents, the only place where
 /// pixels become rays.
@@ -243,6 +250,12 @@ std::string check(const OrthographicCamera<S>& c) {
 template <scalar To, scalar From>
 OrthographicCamera<To> cast(const OrthographicCamera<From>& c) {
   return {To(c.center_x_px), To(c.center_y_px), To(c.pitch_mm), To(c.pixel_aspect)};
+}
+
+/// 0: pixels see points that are pitch_mm apart along x, at any depth.
+template <scalar S>
+S growth_per_mm(const OrthographicCamera<S>&) {
+  return S(0);
 }
 
 /// The point above (row, col) at height depth_mm; NaN depth gives NaN.

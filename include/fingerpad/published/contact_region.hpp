@@ -1,15 +1,23 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// The Young-Laplace contact test as printed: Ito, Kim, Nagai, Obinata, "Acquisition of tactile
-// information by vision-based tactile sensor for dexterous handling of robot hands", III.B, eqs.
-// 8-12. A pixel is in contact if twice the mean of 36 section curvatures over 10 px is below
-// 0.00015 per mm; the mask is not cleaned. With noise the test misses half of a flat contact:
-// docs/errata.md, E018.
+// The contact region, word for word as in paper and slides: Ito, Kim, Nagai, Obinata, "Acquisition
+// of tactile information by vision-based tactile sensor for dexterous handling of robot hands".
+// Plain loops over every fifth pixel fit circles through three points of the membrane in many
+// sections (E012 repaired). There are three tests: eq. 12; the slides' mean curvature with negative
+// ones set to 0; and the slides' first test, every direction below delta_R. A level section has no
+// circle: its curvature is NaN and passes no test (E013). Heights are orthographic, as printed. The
+// mask is not cleaned. With noise the printed threshold misses half of a flat contact: E018. The
+// slides' rule for it is the minimum of E - 2 sigma over the pixels: ThresholdRule{1, 2, 0, false}
+// of calibrate/contact.hpp.
 #include <cmath>
+#include <cstdint>
+#include <numbers>
+#include <utility>
 
-#include "fingerpad/calibrate/contact.hpp"
-#include "fingerpad/contact/contact_region.hpp"
+#include "fingerpad/core/check.hpp"
+#include "fingerpad/core/grid.hpp"
+#include "fingerpad/core/scalar.hpp"
 
 namespace fingerpad {
 inline namespace v0 {
@@ -38,38 +46,94 @@ S circle_center_curvature(const S& radius_mm,
   return value(height) < 0 ? S(-curvature) : curvature;
 }
 
-/// Eq. 12: the sum over 36 directions, divided by 18. This is twice the mean (E015).
-template <int Directions = 36>
-struct TwiceMean {
-  static constexpr int directions = Directions;
-  static constexpr int means = 2;
-  static constexpr bool clamped = false;
+enum class ContactCondition : std::uint8_t {
+  twice_mean,       ///< eq. 12: the sum over 2n directions, divided by n
+  clamped_mean,     ///< f of the slides: the mean over n directions, negative curvatures set to 0
+  every_direction,  ///< 1/R' < delta_R in each of n directions
 };
 
-/// f of the slides: the mean over 18 directions. It is low in contact, but also on a free saddle
-/// (E017).
-template <int Directions = 18>
-using SectionMean = detail::PlainMean<Directions>;
+struct SlidesContactOptions {
+  ContactCondition condition = ContactCondition::twice_mean;
+  double threshold_per_mm = 0.00015;  ///< delta, delta_f or delta_R, finite
+  int directions = 18;                ///< n, in [1, 360]
+  double radius_px = 10;              ///< r, in [1, 1000]; 25 px in the slides
+  double pitch_mm = 0.08;             ///< size of a pixel on the membrane, in (0, 10]
+  int step_px = 5;                    ///< "changing the center point P by 5 pixel", in [1, 1000]
+};
 
-/// The published test. Its threshold is two orders of magnitude below the paper's own rule (E018).
-constexpr ContactTest contact_test() {
-  ContactTest test{0.00015, 13, {10}};
-  test.min_region_px = 1;
-  return test;
+/// 1/R' of the section at the angle theta through (row, col). The circle passes through the pixel
+/// itself and the pixels nearest to the distance r before and after it. NaN if a pixel lies outside
+/// the map, and on a level section.
+template <scalar S, grid Depth>
+S section_curvature(const Depth& depth_mm,
+                    Index row,
+                    Index col,
+                    double theta_rad,
+                    double radius_px,
+                    double pitch_mm) {
+  const auto offset = [&](double direction) {
+    return static_cast<Index>(std::lround(radius_px * direction));
+  };
+  const Index down = offset(std::sin(theta_rad)), right = offset(std::cos(theta_rad));
+  const auto at = [&](Index i, Index j) {
+    const bool inside = i >= 0 && j >= 0 && i < rows(depth_mm) && j < cols(depth_mm);
+    return inside ? S(grid_traits<Depth>::at(depth_mm, i, j)) : not_a_number<S>();
+  };
+  const S reach = S(pitch_mm * std::hypot(static_cast<double>(down), static_cast<double>(right)));
+  return circle_center_curvature(reach, at(row - down, col - right), at(row, col),
+                                 at(row + down, col + right));
 }
 
-/// The slides' rule for the threshold: the minimum of E - 2 sigma over the pixels.
-constexpr ThresholdRule threshold_rule() {
-  return {1, 2, 0, false};
+/// Whether the membrane is in contact at (row, col).
+template <scalar S = double, grid Depth>
+bool touches(const Depth& depth_mm, Index row, Index col, const SlidesContactOptions& o) {
+  const bool twice = o.condition == ContactCondition::twice_mean;
+  const int count = twice ? 2 * o.directions : o.directions;
+  const S threshold = S(o.threshold_per_mm);
+  S sum = S(0);
+  bool all_below = true;
+  for (int i = 1; i <= count; ++i) {
+    const S k = section_curvature<S>(depth_mm, row, col, std::numbers::pi * i / count, o.radius_px,
+                                     o.pitch_mm);
+    const bool clamps = o.condition == ContactCondition::clamped_mean && k < S(0);
+    sum += clamps ? S(0) : k;
+    all_below = all_below && k < threshold;  // false for NaN
+  }
+  const S mean = sum / S(o.directions);  // eq. 12 divides 2n curvatures by n
+  return o.condition == ContactCondition::every_direction ? all_below : mean < threshold;
 }
 
-template <scalar S = float>
-using ContactRegion = fingerpad::ContactRegion<TwiceMean<>, AtThreshold, Camera<double>, S>;
-
-/// For depth maps of rows x cols pixels. Refuses bad parameters (parameter_error).
-template <scalar S = float>
-ContactRegion<S> contact_region(const Camera<double>& camera, Index rows, Index cols) {
-  return ContactRegion<S>(camera, rows, cols, contact_test());
+/// The contact mask of a height map. Every pixel gets the answer at the center of its block of
+/// step_px x step_px. Returns the contact area in mm^2. If the mask has another size it returns NaN
+/// and writes nothing. Refuses bad parameters (parameter_error). O(pixels directions / step_px^2).
+template <scalar S = double, grid Depth, class Mask>
+double contact_by_slides(const Depth& depth_mm, Mask&& mask, const SlidesContactOptions& o = {}) {
+  static_assert(writable_grid<Mask, bool>, "this grid is written to: its cells must be assignable");
+  const char* const owner = "SlidesContactOptions";
+  expects(is_finite(o.threshold_per_mm), owner, "threshold_per_mm", o.threshold_per_mm, "finite");
+  expects(o.directions >= 1 && o.directions <= 360, owner, "directions",
+          static_cast<long long>(o.directions), "in [1, 360]");
+  expects(o.radius_px >= 1 && o.radius_px <= 1000, owner, "radius_px", o.radius_px, "in [1, 1000]");
+  expects(o.pitch_mm > 0 && o.pitch_mm <= 10, owner, "pitch_mm", o.pitch_mm, "in (0, 10]");
+  expects(o.step_px >= 1 && o.step_px <= 1000, owner, "step_px", static_cast<long long>(o.step_px),
+          "in [1, 1000]");
+  const auto to = as_view(std::forward<Mask>(mask));
+  if (!same_size(depth_mm, to)) {
+    return not_a_number<double>();
+  }
+  double touching_px = 0;
+  for (Index top = 0; top < to.rows(); top += o.step_px) {
+    for (Index left = 0; left < to.cols(); left += o.step_px) {
+      const bool set = touches<S>(depth_mm, top + o.step_px / 2, left + o.step_px / 2, o);
+      for (Index i = top; i < top + o.step_px && i < to.rows(); ++i) {
+        for (Index j = left; j < left + o.step_px && j < to.cols(); ++j) {
+          to(i, j) = static_cast<cell_t<Mask>>(set);
+          touching_px += set ? 1 : 0;
+        }
+      }
+    }
+  }
+  return touching_px * o.pitch_mm * o.pitch_mm;
 }
 
 }  // namespace published

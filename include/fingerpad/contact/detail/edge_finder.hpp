@@ -13,8 +13,7 @@
 #include "fingerpad/contact/edge_level.hpp"
 #include "fingerpad/core/grid.hpp"
 #include "fingerpad/core/scalar.hpp"
-#include "fingerpad/image/curvature_map.hpp"
-#include "fingerpad/image/detail/depth_units.hpp"
+#include "fingerpad/image/curvature.hpp"
 #include "fingerpad/image/detail/pixel_box.hpp"
 #include "fingerpad/image/detail/regions.hpp"
 #include "fingerpad/image/detail/sparse_mean.hpp"
@@ -24,28 +23,33 @@ inline namespace v0 {
 namespace detail {
 
 /// Turns the regions of seeds for which keep(region) is true into contact and returns their number.
-/// `statistic` has the layout of the BorderedImage.
-template <class Edge, class Statistic, class CameraType, class S>
+/// `statistic`, with the layout of the BorderedImage, is the result of `map`.
+template <class Edge, class S>
 class EdgeFinder;
 
-template <class Statistic, class CameraType, class S>
-class EdgeFinder<AtThreshold, Statistic, CameraType, S> {
+template <class S>
+class EdgeFinder<AtThreshold, S> {
  public:
+  template <class CameraType>
   EdgeFinder(const AtThreshold&, const ContactTest&, const CameraType&, const BorderedImage&) {}
   struct Workspace {};
   Workspace workspace() const { return {}; }
 
   template <class Depth, class Keep>
-  Index operator()(const Depth&, const S*, const Keep& keep, Regions& regions, Workspace&) const {
+  Index operator()(const Depth&,
+                   const S*,
+                   CurvatureMap<S>&,
+                   const Keep& keep,
+                   Regions& regions,
+                   Workspace&) const {
     return regions.for_each(keep, [](const Regions::Region&) {});
   }
 };
 
-template <class Statistic, class CameraType, class S>
-class EdgeFinder<HalfLevelEdge, Statistic, CameraType, S> {
-  using MeanMap = CurvatureMap<PlainMean<>, CameraType, S>;
-
+template <class S>
+class EdgeFinder<HalfLevelEdge, S> {
  public:
+  template <class CameraType>
   EdgeFinder(const HalfLevelEdge& edge,
              const ContactTest& test,
              const CameraType& camera,
@@ -55,8 +59,8 @@ class EdgeFinder<HalfLevelEdge, Statistic, CameraType, S> {
         gap_mm_(edge.touching_gap_mm),
         radius_px_(test.ring.radius_px),
         ring_px_(static_cast<Index>(std::ceil(radius_px_))),
-        pitch_(pixel_pitch(camera).plain()),
-        mean_(camera, image.rows, image.cols, test.ring, no_pad_mm),
+        pitch_mm_(static_cast<double>(value(camera.pitch_mm))),
+        growth_per_mm_(static_cast<double>(value(growth_per_mm(camera)))),
         cell_(static_cast<std::size_t>(image.size())) {
     const OutsideLevel<S> outside(image, ring_px_);
     for (Index i = 0; i < image.rows; ++i) {
@@ -69,7 +73,6 @@ class EdgeFinder<HalfLevelEdge, Statistic, CameraType, S> {
 
   struct Workspace {
     OutsideLevel<S> outside;
-    typename MeanMap::Workspace curvature;
     SparseMean<S> smoothing;
     std::vector<S> raw;    ///< mean curvature, in the layout of the BorderedImage
     std::vector<S> mean;   ///< the same, smoothed
@@ -78,7 +81,7 @@ class EdgeFinder<HalfLevelEdge, Statistic, CameraType, S> {
   };
   Workspace workspace() const {
     const SparseMean<S> smoothing(image_.cols, spread_px());
-    Workspace w{OutsideLevel<S>(image_, ring_px_), mean_.workspace(), smoothing, {}, {}, {}, {}};
+    Workspace w{OutsideLevel<S>(image_, ring_px_), smoothing, {}, {}, {}, {}};
     w.raw.assign(static_cast<std::size_t>(image_.size()), not_a_number<S>());
     w.mean = w.raw;
     w.inner.resize(static_cast<std::size_t>(2 * max_samples));
@@ -89,6 +92,7 @@ class EdgeFinder<HalfLevelEdge, Statistic, CameraType, S> {
   template <class Depth, class Keep>
   Index operator()(const Depth& depth_mm,
                    const S* statistic,
+                   CurvatureMap<S>& map,
                    const Keep& keep,
                    Regions& regions,
                    Workspace& w) const {
@@ -103,7 +107,8 @@ class EdgeFinder<HalfLevelEdge, Statistic, CameraType, S> {
     PixelBox part = seeds.grown(ring_px_ + spread_px(), image_.rows, image_.cols);
     part.first_row = reach.first_row;
     part.last_row = reach.last_row;
-    (void)mean_.box(part, depth_mm, image_.view(w.raw.data()), w.curvature);
+    map.mean(part.first_row, part.last_row, part.first_col, part.last_col,
+             image_.view(w.raw.data()));
     w.smoothing(part, image_.view(w.raw.data()), image_.view(w.mean.data()));
     return regions.for_each(keep,
                             [&](Regions::Region& region) { place(depth_mm, regions, region, w); });
@@ -148,7 +153,7 @@ class EdgeFinder<HalfLevelEdge, Statistic, CameraType, S> {
       const auto pixel = static_cast<std::size_t>(at);
       S& level = w.level[cell_[pixel]];
       if (!(level == level)) {
-        const S outside = w.outside[cell_[pixel]] / S(Statistic::means);
+        const S outside = w.outside[cell_[pixel]];
         level = outside > inside ? edge(outside) : inside;
       }
       return w.mean[pixel] < level;
@@ -186,7 +191,7 @@ class EdgeFinder<HalfLevelEdge, Statistic, CameraType, S> {
       sum += static_cast<double>(depth_mm(pixel / image_.stride(), pixel % image_.stride()));
       count += 1;
     }
-    return pitch_.at_depth(sum / count);
+    return pitch_mm_ * (1 + growth_per_mm_ * (sum / count));
   }
 
   /// Smoothing distance: a third of the ring, which smooths noise along the edge without moving the
@@ -203,8 +208,8 @@ class EdgeFinder<HalfLevelEdge, Statistic, CameraType, S> {
   double gap_mm_;
   double radius_px_;
   Index ring_px_;  ///< radius_px_ rounded up to whole pixels
-  PixelPitch<> pitch_;
-  MeanMap mean_;
+  double pitch_mm_;
+  double growth_per_mm_;
   std::vector<std::uint32_t> cell_;  ///< cell of `outside` for each pixel of the BorderedImage
 };
 

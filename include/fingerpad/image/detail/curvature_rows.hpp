@@ -1,297 +1,179 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// Curvature along a row, one vector of pixels at a time. Rows have a margin of NaN as wide as the
-// ring, so that no bounds are tested. A missing depth makes the result of the fast pass NaN; only
-// then a second pass leaves out the incomplete sections.
-#include <array>
-#include <concepts>
+// The ring of a curvature map, and the mean curvature of its sections, a vector of pixels at a time
+// in one pass. Rows have a margin of NaN as wide as the ring, so that no bounds are tested.
+#include <algorithm>
+#include <cmath>
 #include <cstddef>
+#include <numbers>
 #include <type_traits>
 #include <vector>
 
-#include "fingerpad/image/curvature.hpp"
+#include "fingerpad/core/grid.hpp"
+#include "fingerpad/core/scalar.hpp"
+#include "fingerpad/image/detail/quick_math.hpp"
 #include "fingerpad/image/detail/row_lanes.hpp"
 
 namespace fingerpad {
 inline namespace v0 {
 namespace detail {
 
-/// True if any lane is set in `wanted` but not in `found`.
-template <class Mask>
-[[gnu::always_inline]] inline bool lacks(const Mask& wanted, const Mask& found) {
-  if constexpr (std::same_as<Mask, bool>) {
-    return wanted && !found;
-  } else {
-    return any_lane(Mask(wanted & ~found));
-  }
-}
-
-/// Mask of the lanes that have at least `least` sections.
+/// The integer n as a scalar, or in every lane of a vector.
 template <class V>
-[[gnu::always_inline]] inline auto at_least(const V& sections, int least) {
+[[gnu::always_inline]] inline V whole(int n) {
   if constexpr (scalar<V>) {
-    return !(sections < V(least));
+    return V(n);
   } else {
-    return sections >= whole<V>(least);
+    return V{} + static_cast<std::remove_cvref_t<decltype(V{}[0])>>(n);
   }
 }
 
-/// The curvature of a pixel from its complete sections.
+/// (K1) of curvature.hpp over 2 r, for scalars and vectors.
 template <class V>
-struct PartialCurvature {
-  V curvature;  ///< NaN if there are too few
-  V sections;   ///< number of complete sections
+[[gnu::always_inline]] inline V section(const V& radius_sq,
+                                        const V& before,
+                                        const V& center,
+                                        const V& after) {
+  const V a = center - before;
+  const V b = after - center;
+  const V rise = after - before;
+  const V ends = (radius_sq + a * a) * (radius_sq + b * b);
+  const V twice = radius_sq + radius_sq;
+  return (a - b) * inverse_sqrt<V>(ends * (twice + twice + rise * rise));
+}
+
+/// One end of a section as an offset from the center pixel; the other end is its negative.
+struct RingOffset {
+  Index row;
+  Index col;
+
+  /// Squared distance in widths of a pixel, which is `aspect` widths high.
+  constexpr double distance_sq(double aspect = 1) const {
+    return static_cast<double>(col * col) + aspect * aspect * static_cast<double>(row * row);
+  }
+  friend constexpr bool operator==(const RingOffset&, const RingOffset&) = default;
 };
 
-// Kernels: what a statistic computes per pixel. `cells` points to the center pixel; `shrink` is
-// that of depth_units.hpp, 1 / (1 + c l). complete() is NaN if any depth is missing; partial() uses
-// the complete sections and is NaN if there are fewer than `least`.
+/// One end of each section in the directions pi k / directions, sorted from shortest to longest.
+/// For pixels `aspect` times as high as wide; the radius is in widths. The set is its own mirror
+/// image and, for square pixels and an even number of directions, stays the same under exchange of
+/// rows and columns: ties round toward the center, whatever the rounding of sine and cosine.
+inline std::vector<RingOffset> ring_offsets(double radius_px, int directions, double aspect = 1) {
+  const auto nearest = [](double px) { return static_cast<Index>(std::ceil(px - 0.5 - 1e-9)); };
+  std::vector<RingOffset> offsets;
+  for (int k = 0; k < directions; ++k) {
+    const double angle = std::numbers::pi * k / directions, along = std::cos(angle);
+    const Index col = nearest(radius_px * std::abs(along));
+    offsets.push_back({nearest(radius_px * std::sin(angle) / aspect), along < 0 ? -col : col});
+  }
+  std::stable_sort(offsets.begin(), offsets.end(), [&](const RingOffset& a, const RingOffset& b) {
+    return a.distance_sq(aspect) < b.distance_sq(aspect);
+  });
+  return offsets;
+}
 
-/// Kernel of (K1). Sections of equal radius form a group and share its factors.
-template <class Statistic, class S>
-class SectionKernel {
+/// A count in every lane of V.
+template <class V>
+struct LaneCount {
+  using type = int;
+};
+template <class V>
+  requires(!scalar<V>)
+struct LaneCount<V> {
+  using type = decltype(V{} == V{});
+};
+template <class V>
+using lane_count = typename LaneCount<V>::type;
+
+/// The counts, one higher where x is not NaN.
+template <class V>
+[[gnu::always_inline]] inline lane_count<V> plus_known(const lane_count<V>& count, const V& x) {
+  if constexpr (scalar<V>) {
+    return count + (known<V>(x) ? 1 : 0);
+  } else {
+    return count - (x == x);  // true is -1
+  }
+}
+template <class V>
+Index sum_of(const lane_count<V>& count) {
+  if constexpr (scalar<V>) {
+    return count;
+  } else {
+    Index sum = 0;
+    for (int k = 0; k < lanes_in<V, std::remove_cvref_t<decltype(V{}[0])>>; ++k) {
+      sum += count[k];
+    }
+    return sum;
+  }
+}
+
+/// The sections of a ring. Those of equal length form a group and share its factors.
+template <scalar S>
+class RingSections {
  public:
-  static constexpr int directions = Statistic::directions;
-  static_assert(directions >= 1);
-
-  SectionKernel(const std::vector<RingOffset>& ring, Index stride, const S& pitch, const S& per_mm)
-      : scale_(S(2 * Statistic::means) * per_mm) {
+  RingSections() = default;
+  RingSections(const std::vector<RingOffset>& ring,
+               Index stride,
+               const S& pitch_mm,
+               double aspect) {
     using std::sqrt;
-    Index last_sq = -1;
-    for (std::size_t k = 0; k < ring.size(); ++k) {
-      step_[k] = ring[k].row * stride + ring[k].col;
-      if (ring[k].radius_sq() != last_sq) {
-        last_sq = ring[k].radius_sq();
-        const S radius_px = sqrt(S(static_cast<double>(last_sq)));
-        const S radius = radius_px * pitch;
-        group_[groups_++] = {radius, S(radius * radius), 0};
+    double last_sq = 0;
+    for (const RingOffset& end : ring) {
+      steps_.push_back(end.row * stride + end.col);
+      const double distance_sq = end.distance_sq(aspect);
+      if (distance_sq != last_sq) {
+        last_sq = distance_sq;
+        const S radius = sqrt(S(distance_sq)) * pitch_mm;
+        groups_.push_back({S(2) * radius, radius * radius, 0});
       }
-      ++group_[groups_ - 1].sections;
+      ++groups_.back().sections;
     }
   }
 
-  template <class V>
-  [[gnu::always_inline]] V complete(const S* cells, const V& shrink) const {
+  /// Mean curvature of the complete sections through the pixels from cells[0] on, in 1/mm; NaN
+  /// where fewer than `least` are complete. `Clamped`: negative curvatures count as 0. `shrink` is
+  /// 1 / (1 + c l), see curvature.hpp.
+  template <bool Clamped, class V>
+  [[gnu::always_inline]] V mean(const S* cells, const V& shrink, int least) const {
+    const V center = load_cells<V, S>(cells);
+    const V shrink_sq = shrink * shrink;
     V total = whole<V>(0);
-    const auto add = [&](const Group& group, const Index* step, const V& radius_sq)
-        __attribute__((always_inline)) {
+    lane_count<V> complete{};
+    const Index* step = steps_.data();
+    for (const Group& group : groups_) {
+      const V radius_sq = shrink_sq * group.radius_sq;
       V sum = whole<V>(0);
-      for (int k = 0; k < group.sections; ++k) {
-        sum = sum + weighed(section_at<V>(cells, step[k], radius_sq));
+      for (int k = 0; k < group.sections; ++k, ++step) {
+        const V term = section<V>(radius_sq, load_cells<V, S>(cells - *step), center,
+                                  load_cells<V, S>(cells + *step));
+        complete = plus_known<V>(complete, term);
+        if constexpr (scalar<V>) {
+          sum = known<V>(term) && (!Clamped || value(term) > 0) ? sum + term : sum;
+        } else {
+          sum = sum + ((Clamped ? term > whole<V>(0) : term == term) ? term : whole<V>(0));
+        }
       }
-      total = total + sum * group.radius;
-    };
-    for_each_group<V>(shrink, add);
-    return total * (shrink * shrink * shrink * (scale_ / S(directions)));
-  }
-
-  template <class V>
-  [[gnu::always_inline]] PartialCurvature<V> partial(const S* cells,
-                                                     const V& shrink,
-                                                     int least) const {
-    V total = whole<V>(0);
-    V count = whole<V>(0);
-    const auto add = [&](const Group& group, const Index* step, const V& radius_sq)
-        __attribute__((always_inline)) {
-      V sum = whole<V>(0);
-      for (int k = 0; k < group.sections; ++k) {
-        const V term = weighed(section_at<V>(cells, step[k], radius_sq));
-        const auto complete = known<V>(term);
-        sum = sum + (complete ? term : whole<V>(0));
-        count = count + (complete ? whole<V>(1) : whole<V>(0));
-      }
-      total = total + sum * group.radius;
-    };
-    for_each_group<V>(shrink, add);
-    const V mean = total * (shrink * shrink * shrink * scale_) / count;
+      total = total + sum * group.twice_radius;
+    }
+    const V mean = total * (shrink_sq * shrink) / each_as<V>(complete);
     const V nan = every_lane<V>(not_a_number<S>());
-    return {at_least<V>(count, least) ? mean : nan, count};
+    if constexpr (scalar<V>) {
+      return complete >= least ? mean : nan;
+    } else {
+      return complete >= whole<lane_count<V>>(least) ? mean : nan;
+    }
   }
 
  private:
   struct Group {
-    S radius;
+    S twice_radius;
     S radius_sq;
     int sections;
   };
 
-  template <class V, class Sections>
-  [[gnu::always_inline]] void for_each_group(const V& shrink, const Sections& sections) const {
-    const V shrink_sq = shrink * shrink;
-    const Index* step = step_.data();
-    for (std::size_t g = 0; g < groups_; ++g) {
-      sections(group_[g], step, V(shrink_sq * group_[g].radius_sq));
-      step += group_[g].sections;
-    }
-  }
-
-  template <class V>
-  [[gnu::always_inline]] static Section<V> section_at(const S* cells,
-                                                      Index step,
-                                                      const V& radius_sq) {
-    return section<V>(radius_sq, load_cells<V, S>(cells - step), load_cells<V, S>(cells),
-                      load_cells<V, S>(cells + step));
-  }
-
-  template <class V>
-  [[gnu::always_inline]] static V weighed(const Section<V>& k) {
-    if constexpr (Statistic::clamped) {
-      return not_negative<V>(k.bend) * k.inverse_root;
-    } else {
-      return k.bend * k.inverse_root;
-    }
-  }
-
-  std::array<Index, static_cast<std::size_t>(directions)> step_{};
-  std::array<Group, static_cast<std::size_t>(directions)> group_{};
-  std::size_t groups_ = 0;
-  S scale_;
-};
-
-// Kernel linear in depth: (2 center - before - after) / radius^2 of each section.
-
-template <class Statistic, class S>
-class StencilKernel {
- public:
-  static constexpr int directions = Statistic::directions;
-
-  StencilKernel(const std::vector<RingOffset>& ring,
-                Index stride,
-                const S& pitch,
-                const S& per_mm) {
-    for (std::size_t k = 0; k < ring.size(); ++k) {
-      const S radius_sq = S(static_cast<double>(ring[k].radius_sq())) * pitch * pitch;
-      section_[k] = {ring[k].row * stride + ring[k].col, S(per_mm / radius_sq)};
-    }
-  }
-
-  template <class V>
-  [[gnu::always_inline]] V complete(const S* cells, const V&) const {
-    const V center = load_cells<V, S>(cells);
-    V total = whole<V>(0);
-    for (const Weighted& at : section_) {
-      total = total + at.weight * bend_at<V>(cells, center, at.step);
-    }
-    return total * (S(1) / S(directions));
-  }
-
-  template <class V>
-  [[gnu::always_inline]] PartialCurvature<V> partial(const S* cells, const V&, int least) const {
-    const V center = load_cells<V, S>(cells);
-    V total = whole<V>(0);
-    V count = whole<V>(0);
-    for (const Weighted& at : section_) {
-      const V bend = bend_at<V>(cells, center, at.step);
-      const auto complete = known<V>(bend);
-      total = total + at.weight * (complete ? bend : whole<V>(0));
-      count = count + (complete ? whole<V>(1) : whole<V>(0));
-    }
-    const V mean = total / count;
-    const V nan = every_lane<V>(not_a_number<S>());
-    return {at_least<V>(count, least) ? mean : nan, count};
-  }
-
- private:
-  struct Weighted {
-    Index step;
-    S weight;
-  };
-
-  template <class V>
-  [[gnu::always_inline]] static V bend_at(const S* cells, const V& center, Index step) {
-    const V before = load_cells<V, S>(cells - step);
-    const V after = load_cells<V, S>(cells + step);
-    return (center - before) - (after - center);
-  }
-
-  std::array<Weighted, static_cast<std::size_t>(directions)> section_;
-};
-
-template <class Statistic, class S>
-struct CurvatureKernelOf {
-  using type = SectionKernel<Statistic, S>;
-};
-template <class Statistic, class S>
-  requires(Statistic::linear)
-struct CurvatureKernelOf<Statistic, S> {
-  using type = StencilKernel<Statistic, S>;
-};
-template <class Statistic, class S>
-using CurvatureKernel = typename CurvatureKernelOf<Statistic, S>::type;
-
-/// A strip of columns, processed from top to bottom. Each vector of a row takes the fast pass
-/// first, unless none of its pixels had a complete ring in the row above. Pixels that come out as
-/// NaN then take the second pass. A pixel gets the same bits in either pass.
-template <class Kernel, class Units, class S>
-class CurvatureStrip {
-  static constexpr int n = row_lanes<S>;
-  using V = typename RowVector<S, n>::type;
-
- public:
-  static constexpr Index columns = 128;  ///< these and a ring around them fit the cache
-
-  CurvatureStrip(const Kernel& kernel, const Units& units, int least)
-      : kernel_(kernel), units_(units), least_(least) {}
-
-  /// Writes the `count` <= columns curvatures from cells[0] on, rounded up to whole vectors.
-  /// Returns true if all rings were complete.
-  bool row(const S* cells, Index count, S* out) {
-    const bool whole = all_whole(cells, count, out);
-    if (!whole) {
-      mend(cells, count, out);
-    }
-    return whole;
-  }
-
- private:
-  bool all_whole(const S* cells, Index count, S* out) const {
-    bool tried = true;
-    V sum = whole<V>(0);  // NaN if any curvature is
-    for (Index j = 0; j < count; j += n) {
-      if (ragged_[j / n]) {
-        tried = false;
-      } else {
-        const V k = all_sections(cells + j);
-        sum = sum + k;
-        store_cells<S>(out + j, k);
-      }
-    }
-    return tried && !lacks(known<V>(whole<V>(0)), known<V>(sum));
-  }
-
-  void mend(const S* cells, Index count, S* out) {
-    const V nan = every_lane<V>(not_a_number<S>());
-    for (Index j = 0; j < count; j += n) {
-      bool& ragged = ragged_[j / n];
-      const V zeta = load_cells<V, S>(cells + j);
-      const auto here = known<V>(zeta);
-      V k = ragged ? nan : load_cells<V, S>(out + j);
-      if (!any_lane(here)) {
-        ragged = true;
-      } else if (ragged || lacks(here, known<V>(k))) {
-        const PartialCurvature<V> rest =
-            kernel_.template partial<V>(cells + j, units_.template shrink<V>(zeta), least_);
-        if (ragged && any_lane(at_least<V>(rest.sections, Kernel::directions))) {
-          k = all_sections(cells + j);
-        }
-        const auto found = known<V>(k);
-        ragged = !any_lane(found);
-        k = found ? k : rest.curvature;
-      }
-      store_cells<S>(out + j, k);
-    }
-  }
-
-  [[gnu::always_inline]] V all_sections(const S* cells) const {
-    const V zeta = load_cells<V, S>(cells);
-    return kernel_.template complete<V>(cells, units_.template shrink<V>(zeta));
-  }
-
-  const Kernel& kernel_;
-  const Units& units_;
-  int least_;
-  bool ragged_[static_cast<std::size_t>(columns / n)] = {};
+  std::vector<Index> steps_;
+  std::vector<Group> groups_;
 };
 
 }  // namespace detail

@@ -135,7 +135,7 @@ struct FingertipLight {
 /// Contact region.
 template <class Options, class Methods>
 struct FingertipContact {
-  using Region = ContactRegion<typename Methods::Statistic, typename Methods::Edge>;
+  using Region = ContactRegion<typename Methods::Edge>;
   static constexpr int step = Methods::sampling;
   Region region;
   typename Region::Workspace work;
