@@ -260,6 +260,44 @@ TEST_CASE("curvature: a ring is its own mirror image, at true distances") {
   }
 }
 
+TEST_CASE("curvature: pixels that are higher than wide see the same membrane") {
+  const double growth = 1 / 66.5;
+  const auto sphere = [](double x, double y) { return std::sqrt(400 - x * x - y * y) - 7; };
+  const auto cylinder = [](double x, double) { return std::sqrt(400 - x * x) - 7; };
+  const auto check = [&](auto camera, double aspect, double x_step, const auto& shape,
+                         double expected, double share) {
+    camera.pixel_aspect = aspect;
+    Image<double> depth(61, 61);
+    for (Index i = 0; i < 61; ++i) {
+      for (Index j = 0; j < 61; ++j) {
+        const double x = static_cast<double>(j - 30) * camera.pitch_mm;
+        const double y = static_cast<double>(i - 30) * camera.pitch_mm * aspect;
+        depth(i, j) = shape(x * x_step, y * x_step);
+      }
+    }
+    CAPTURE(aspect, expected);
+    for (const CurvatureRing& ring : {CurvatureRing{10}, CurvatureRing{12.5}}) {
+      CHECK(curvatures<Mean::plain>(depth, ring, camera)(30, 30) ==
+            Approx(expected).epsilon(share));
+      CHECK(curvatures<Mean::clamped>(depth, ring, camera)(30, 30) ==
+            Approx(expected).epsilon(share));
+    }
+  };
+  for (const double aspect : {0.5, 0.915, 1.0, 1.093, 2.0}) {
+    check(plate, aspect, 1, sphere, 0.05, 1e-3);
+    check(plate, aspect, 1, cylinder, 0.025, 0.03);  // directions are not quite evenly spaced
+    check(through(0.0768, growth), aspect, 1 + 13 * growth, sphere, 0.05, 0.01);
+  }
+  // the ring is round in mm, and its sections are mirror images of each other
+  const auto ring = detail::ring_offsets(25, 18, 1.25);
+  for (const detail::RingOffset& o : ring) {
+    CHECK(std::abs(std::sqrt(o.distance_sq(1.25)) - 25) < 0.81);
+    CHECK((o.row == 0 || o.col == 0 ||
+           std::count(ring.begin(), ring.end(), detail::RingOffset{o.row, -o.col}) == 1));
+  }
+  CHECK(std::count(ring.begin(), ring.end(), detail::RingOffset{20, 0}) == 1);
+}
+
 TEST_CASE("curvature: same bits on every grid") {
   const Index rows = 41, cols = 149;
   Image<float> depth = depths<float>(rows, cols, [](double x, double y) {
@@ -364,6 +402,12 @@ TEST_CASE("curvature: bad parameters are refused by name, value and range") {
   CHECK(map({}, plan(11), 4, 5) == "CurvatureMap: camera.pitch_mm = 11, must be in [0.0001, 10]");
   CHECK(map({}, through(nan, 0.01), 4, 5) == "Camera: pitch_mm = nan, must be finite and > 0");
   CHECK(map({}, through(0.1, -1), 4, 5).starts_with("Camera: plate_distance_mm = -"));
+  Plan high = plate;
+  high.pixel_aspect = 2;
+  CHECK(map({2}, high, 4, 5) == "accepted");  // a ring has pixels above its center
+  CHECK(map({1.9}, high, 4, 5) == "CurvatureMap: camera.pixel_aspect = 2, must be in [0.1, 1.9]");
+  high.pixel_aspect = 11;
+  CHECK(map({}, high, 4, 5) == "CurvatureMap: camera.pixel_aspect = 11, must be in [0.1, 10]");
   CHECK(map({}, plate, 0, 5) == "CurvatureMap: rows = 0, must be in [1, 1000000]");
   CHECK(map({}, plate, 4, -1) == "CurvatureMap: cols = -1, must be in [1, 1000000]");
 }
