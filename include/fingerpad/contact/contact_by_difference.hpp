@@ -23,8 +23,8 @@
 #include "fingerpad/core/grid.hpp"
 #include "fingerpad/core/scalar.hpp"
 #include "fingerpad/image/detail/cell_filter.hpp"
+#include "fingerpad/image/detail/lanes.hpp"
 #include "fingerpad/image/detail/regions.hpp"
-#include "fingerpad/image/detail/row_lanes.hpp"
 
 namespace fingerpad {
 inline namespace v0 {

@@ -26,14 +26,14 @@
 #include <cstddef>
 #include <vector>
 
-#include "fingerpad/core/dots.hpp"
 #include "fingerpad/core/check.hpp"
+#include "fingerpad/core/dots.hpp"
 #include "fingerpad/core/grid.hpp"
 #include "fingerpad/core/point.hpp"
 #include "fingerpad/core/scalar.hpp"
+#include "fingerpad/image/detail/lanes.hpp"
 #include "fingerpad/image/detail/pixel_box.hpp"
 #include "fingerpad/image/detail/quick_math.hpp"
-#include "fingerpad/image/detail/row_lanes.hpp"
 #include "fingerpad/optics/camera.hpp"
 
 namespace fingerpad {
@@ -338,11 +338,11 @@ class EquivalentFlatArea {
 
   /// Areas and fluxes; vectors of float would be too coarse.
   void measure(Workspace& w) const {
-    constexpr int bytes = std::same_as<S, double> ? detail::native_vector_bytes : 0;
+    constexpr int lanes = std::same_as<S, double> ? detail::row_lanes<S> : 1;
     const S max_slope = S(options_.max_slope);
     for (Index i = 1; i + 1 < rows_; ++i) {
       const Index first = i * cols_ + 1;
-      detail::for_each_cell<S, bytes>(cols_ - 2, [&]<class V>(Index j) {
+      detail::for_each_cell<S, lanes>(cols_ - 2, [&]<class V>(Index j) {
         const Index k = first + j;
         const detail::FlatAreaPoint<V> point(w.x_.data() + k, w.y_.data() + k, w.z_.data() + k,
                                              cols_, max_slope);

@@ -16,13 +16,13 @@
 #include <type_traits>
 #include <vector>
 
-#include "fingerpad/core/detail/vectors.hpp"
 #include "fingerpad/core/check.hpp"
+#include "fingerpad/core/detail/vectors.hpp"
 #include "fingerpad/core/grid.hpp"
 #include "fingerpad/core/scalar.hpp"
 #include "fingerpad/core/status.hpp"
 #include "fingerpad/image/detail/cell_filter.hpp"
-#include "fingerpad/image/detail/row_lanes.hpp"
+#include "fingerpad/image/detail/lanes.hpp"
 
 namespace fingerpad {
 inline namespace v0 {

@@ -26,8 +26,8 @@
 #include "fingerpad/core/scalar.hpp"
 #include "fingerpad/core/status.hpp"
 #include "fingerpad/image/detail/disc_sums.hpp"
+#include "fingerpad/image/detail/lanes.hpp"
 #include "fingerpad/image/detail/quick_math.hpp"
-#include "fingerpad/image/detail/row_lanes.hpp"
 
 namespace fingerpad {
 inline namespace v0 {
@@ -142,7 +142,7 @@ class NeighbourLightCompensation {
       const S* l0 = padded_row(reference_mm_, i);
       const S* psi_sum_rad = sum_.data();
       const NeighbourLight<S> light = light_;
-      detail::for_each_cell<S, bytes>(
+      detail::for_each_cell<S, lanes>(
           cols_, [=]<class V>(Index j) __attribute__((always_inline)) {
             const auto at = [j](const S* cells) { return detail::load_cells<V, S>(cells + j); };
             const V without = detail::without_light_of<V>(at(l), at(l0), at(psi_sum_rad), light);
@@ -160,8 +160,8 @@ class NeighbourLightCompensation {
   }
 
  private:
-  /// Bytes of a vector; 0 unless inclination() and quick_exp() have a vector form for S.
-  static constexpr int bytes = std::same_as<S, float> ? detail::native_vector_bytes : 0;
+  /// Lanes of a vector; 1 unless inclination() and quick_exp() have a vector form for S.
+  static constexpr int lanes = std::same_as<S, float> ? detail::row_lanes<S> : 1;
   static constexpr bool by_steps = std::same_as<S, float> || std::same_as<S, double>;
 
   static constexpr const char* owner = "NeighbourLightCompensation";
@@ -238,7 +238,7 @@ class NeighbourLightCompensation {
     const Index next = cols_ + 2;
     const S per_mm = per_mm_, half_per_mm = per_mm_ / S(2), steps_per_rad = steps_per_rad_;
     const S missing = not_a_number<S>();
-    detail::for_each_cell<S, bytes>(
+    detail::for_each_cell<S, lanes>(
         cols_, [=]<class V>(Index j) __attribute__((always_inline)) {
           const auto at = [l, j](Index k) { return detail::load_cells<V, S>(l + j + k); };
           const auto slope = [&](Index step) __attribute__((always_inline)) {
@@ -256,7 +256,7 @@ class NeighbourLightCompensation {
           V steps = V(detail::inclination(slope_sq) * steps_per_rad);
           if constexpr (by_steps) {
             using Word = std::conditional_t<sizeof(S) == 4, std::int32_t, std::int64_t>;
-            using Ints = typename detail::RowVector<Word, detail::lanes_in<V, S>>::type;
+            using Ints = detail::lanes<Word, detail::lanes_in<V, S>>;
             steps = detail::each_as<V>(detail::each_as<Ints>(V(steps + S(0.5))));
           }
           detail::store_cells<S>(psi + j, V(steps + (slope_sq - slope_sq)));

@@ -21,7 +21,7 @@
 #include "fingerpad/depth/depth_inverse.hpp"
 #include "fingerpad/depth/depth_reference.hpp"
 #include "fingerpad/depth/detail/frame_rows.hpp"
-#include "fingerpad/image/detail/row_lanes.hpp"
+#include "fingerpad/image/detail/lanes.hpp"
 #include "fingerpad/image/detail/window_means.hpp"
 #include "fingerpad/optics/camera.hpp"
 

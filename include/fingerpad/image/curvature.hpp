@@ -37,7 +37,7 @@
 #include "fingerpad/core/scalar.hpp"
 #include "fingerpad/core/status.hpp"
 #include "fingerpad/image/detail/curvature_rows.hpp"
-#include "fingerpad/image/detail/row_lanes.hpp"
+#include "fingerpad/image/detail/lanes.hpp"
 #include "fingerpad/optics/camera.hpp"
 
 namespace fingerpad {
@@ -157,8 +157,8 @@ class CurvatureMap {
   }
 
  private:
-  static constexpr int lanes = detail::row_lanes<S>;
-  using V = typename detail::RowVector<S, lanes>::type;
+  static constexpr int n = detail::row_lanes<S>;
+  using V = detail::lanes<S, n>;
   static constexpr Index columns = 128;  // of a strip, which fits the cache with its ring
   static constexpr Index line = 64 / static_cast<Index>(sizeof(float));
 
@@ -236,7 +236,7 @@ class CurvatureMap {
   template <bool Clamped>
   Index compute_segment(const S* cells, Index count) {
     detail::lane_count<V> known{};
-    for (Index j = 0; j < count; j += lanes) {
+    for (Index j = 0; j < count; j += n) {
       const V zeta = detail::load_cells<V, S>(cells + j);
       V mean = detail::every_lane<V>(not_a_number<S>());
       if (detail::any_lane(detail::known<V>(zeta))) {

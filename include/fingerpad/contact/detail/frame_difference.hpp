@@ -14,7 +14,7 @@
 #include "fingerpad/core/scalar.hpp"
 #include "fingerpad/image/detail/cell_filter.hpp"
 #include "fingerpad/image/detail/cell_means.hpp"
-#include "fingerpad/image/detail/row_lanes.hpp"
+#include "fingerpad/image/detail/lanes.hpp"
 
 namespace fingerpad {
 inline namespace v0 {

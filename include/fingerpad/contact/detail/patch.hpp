@@ -12,7 +12,7 @@
 #include "fingerpad/core/grid.hpp"
 #include "fingerpad/core/point.hpp"
 #include "fingerpad/core/scalar.hpp"
-#include "fingerpad/image/detail/row_lanes.hpp"
+#include "fingerpad/image/detail/lanes.hpp"
 #include "fingerpad/math/detail/small_matrices.hpp"
 
 namespace fingerpad {
@@ -76,13 +76,13 @@ template <class V, std::size_t K, std::size_t... I>
 
 /// Adds the terms of the block's points to `sums`. kernel.terms<V>(x, y, z) returns Terms<V, K>,
 /// where V is a vector of S, or S itself for the points that do not fill a vector.
-template <int VectorBytes = native_vector_bytes, std::size_t K, scalar S, class Kernel>
+template <std::size_t K, scalar S, class Kernel>
 void add_block(const PointBlock<S>& block, const Kernel& kernel, std::array<S, K>& sums) {
   constexpr auto order = std::make_index_sequence<K>{};
-  constexpr int n = row_lanes<S, VectorBytes>;
+  constexpr int n = row_lanes<S>;
   Index j = 0;
   if constexpr (n > 1) {
-    using V = typename RowVector<S, n>::type;
+    using V = lanes<S, n>;
     Terms<V, K> total{};
     for (; j + n <= block.count; j += n) {
       add_terms(

@@ -10,8 +10,8 @@
 
 #include "fingerpad/core/dots.hpp"
 #include "fingerpad/core/grid.hpp"
+#include "fingerpad/image/detail/lanes.hpp"
 #include "fingerpad/image/detail/regions.hpp"
-#include "fingerpad/image/detail/row_lanes.hpp"
 
 namespace fingerpad {
 inline namespace v0 {

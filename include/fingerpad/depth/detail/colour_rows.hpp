@@ -20,7 +20,7 @@
 #include "fingerpad/depth/depth_reference.hpp"
 #include "fingerpad/depth/detail/frame_rows.hpp"
 #include "fingerpad/depth/smoothing.hpp"
-#include "fingerpad/image/detail/row_lanes.hpp"
+#include "fingerpad/image/detail/lanes.hpp"
 #include "fingerpad/image/detail/window_means.hpp"
 
 namespace fingerpad {
@@ -127,8 +127,7 @@ class MeanRowsOf {
 
  public:
   MeanRowsOf(const ColourSetup<S>& setup, const Smoothing& smoothing, const GreyScale& scale)
-      : scale_(scale),
-        sums_(setup.rows, setup.cols, smoothing.windows_px(), limits(scale)) {
+      : scale_(scale), sums_(setup.rows, setup.cols, smoothing.windows_px(), limits(scale)) {
     const auto size = static_cast<std::size_t>(setup.cols);
     const auto weight = window_weights(smoothing.windows_px());
     for (std::size_t k = 0; k < weight.size(); ++k) {

@@ -15,7 +15,7 @@
 #include "fingerpad/depth/depth_inverse.hpp"
 #include "fingerpad/depth/depth_reference.hpp"
 #include "fingerpad/depth/detail/scatter_polynomial.hpp"
-#include "fingerpad/image/detail/row_lanes.hpp"
+#include "fingerpad/image/detail/lanes.hpp"
 
 namespace fingerpad {
 inline namespace v0 {
@@ -172,7 +172,7 @@ template <int Order, class V, class Table, class Scalar, class Gain>
 
 /// Depths of one image row. `gain` is a row of g, or nullptr when g is folded into the table; a
 /// pixel whose g is not positive gets no depth. An output may be an input of the same column.
-template <int Order, int VectorBytes = native_vector_bytes, class Table, class Scalar, class Gain>
+template <int Order, class Table, class Scalar, class Gain>
 void invert_row(const Table& table,
                 std::ptrdiff_t row,
                 std::ptrdiff_t cols,
@@ -183,7 +183,7 @@ void invert_row(const Table& table,
                 PixelStatus* status) noexcept {
   constexpr bool has_gain = !std::is_null_pointer_v<Gain>;
   constexpr auto block = inversion_block;
-  using V = typename RowVector<Scalar, row_lanes<Scalar, VectorBytes>>::type;
+  using V = lanes<Scalar, row_lanes<Scalar>>;
   const Table local = table;  // cannot alias the outputs, so it can stay in registers
   const auto [begin, end] = covered_columns(table, row, cols);
   std::fill(depth_mm, depth_mm + begin, std::numeric_limits<Scalar>::quiet_NaN());

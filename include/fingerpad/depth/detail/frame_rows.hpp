@@ -20,7 +20,6 @@
 #include "fingerpad/depth/smoothing.hpp"
 #include "fingerpad/image/detail/interleaved.hpp"
 #include "fingerpad/image/detail/lanes.hpp"
-#include "fingerpad/image/detail/row_lanes.hpp"
 #include "fingerpad/image/detail/window_means.hpp"
 #include "fingerpad/optics/camera.hpp"
 
@@ -73,7 +72,7 @@ Anchor<S> anchor_of(const Camera<double>& camera,
 // Which pixels of a row count: those inside the pad with both channels within a closed range.
 
 /// Sets valid[j] to nonzero if inside[j] is nonzero and both channels are in `range`, else to 0.
-template <std::unsigned_integral Pixel, int VectorBytes = native_vector_bytes>
+template <std::unsigned_integral Pixel>
 void mark_valid(const ClosedRange<Pixel>& range,
                 const Pixel* red,
                 const Pixel* green,
@@ -82,15 +81,16 @@ void mark_valid(const ClosedRange<Pixel>& range,
                 Index count) {
   Index j = 0;
 #if defined(FINGERPAD_HAS_VECTORS)
-  constexpr int n = VectorBytes / static_cast<int>(sizeof(Pixel));
+  constexpr int n = row_lanes<Pixel>;
   using V = lanes<Pixel, n>;
   const V low = V{} + range.low;
   const V high = V{} + range.high;
   for (; j + n <= count; j += n) {
-    const V r = load<Pixel, n>(red + j);
-    const V g = load<Pixel, n>(green + j);
+    const V r = load<V>(red + j);
+    const V g = load<V>(green + j);
     const V in_range = V((r >= low) & (r <= high) & (g >= low) & (g <= high));
-    store(valid + j, convert<std::uint8_t, n>(in_range) & load<std::uint8_t, n>(inside + j));
+    using Bytes = lanes<std::uint8_t, n>;
+    store(valid + j, each_as<Bytes>(in_range) & load<Bytes>(inside + j));
   }
 #endif
   for (; j < count; ++j) {
@@ -123,7 +123,7 @@ struct IgnoredCell {
   constexpr Sink operator()(Index, Index) const { return {}; }
 };
 
-/// Writes nothing. The other overloads are in row_lanes.hpp.
+/// Writes nothing. The other overload is in lanes.hpp.
 template <class View>
 void store_row(const PixelStatus*, const View& view, Index row) requires
     std::is_same_v<decltype(view(row, Index(0))), IgnoredCell::Sink> {}

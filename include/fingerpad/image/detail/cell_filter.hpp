@@ -10,7 +10,7 @@
 
 #include "fingerpad/core/grid.hpp"
 #include "fingerpad/core/scalar.hpp"
-#include "fingerpad/image/detail/row_lanes.hpp"
+#include "fingerpad/image/detail/lanes.hpp"
 
 namespace fingerpad {
 inline namespace v0 {

@@ -48,10 +48,10 @@ inline constexpr bool is_packed_bytes<StridedView<T>, Channels> =
 inline void add_bytes(const std::uint8_t* bytes, Index count, std::uint16_t* sums) {
   Index k = 0;
 #if defined(FINGERPAD_HAS_VECTORS)
-  constexpr int n = native_vector_bytes / 2;
+  using V = lanes<std::uint16_t, row_lanes<std::uint16_t>>;
+  constexpr int n = row_lanes<std::uint16_t>;
   for (; k + n <= count; k += n) {
-    store(sums + k, load<std::uint16_t, n>(sums + k) +
-                        convert<std::uint16_t, n>(load<std::uint8_t, n>(bytes + k)));
+    store(sums + k, load<V>(sums + k) + each_as<V>(load<lanes<std::uint8_t, n>>(bytes + k)));
   }
 #endif
   for (; k < count; ++k) {

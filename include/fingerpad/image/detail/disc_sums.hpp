@@ -13,7 +13,6 @@
 #include "fingerpad/core/grid.hpp"
 #include "fingerpad/core/scalar.hpp"
 #include "fingerpad/image/detail/lanes.hpp"
-#include "fingerpad/image/detail/row_lanes.hpp"
 
 namespace fingerpad {
 inline namespace v0 {
@@ -42,8 +41,8 @@ template <scalar S>
 class DiscSums {
   static constexpr bool by_integers = std::same_as<S, float> || std::same_as<S, double>;
   template <class V>
-  using Ints = typename RowVector<std::conditional_t<sizeof(S) == 4, std::int32_t, std::int64_t>,
-                                  lanes_in<V, S>>::type;
+  using Ints =
+      lanes<std::conditional_t<sizeof(S) == 4, std::int32_t, std::int64_t>, lanes_in<V, S>>;
 
  public:
   /// Disc sums must be less than this to be exact.
@@ -69,7 +68,7 @@ class DiscSums {
     for_each_cell<S>(cols_, [=]<class V>(Index j) {
       const V numbers = load_cells<V, S>(cells + j);
       if constexpr (by_integers) {
-        using Sums = typename RowVector<Sum, lanes_in<V, S>>::type;
+        using Sums = lanes<Sum, lanes_in<V, S>>;
         store_cells<Sum>(row + j, std::bit_cast<Sums>(each_as<Ints<V>>(numbers)));
       } else {
         row[j] = numbers;
@@ -94,7 +93,7 @@ class DiscSums {
         sum = sum + V(load_cells<V, Sum>(center + w) - load_cells<V, Sum>(center - w - 1));
       }
       if constexpr (by_integers) {
-        using Numbers = typename RowVector<S, lanes_in<V, S>>::type;
+        using Numbers = lanes<S, lanes_in<V, S>>;
         const Numbers numbers = each_as<Numbers>(std::bit_cast<Ints<V>>(sum));
         store_cells<S>(to + j, Numbers(unit * numbers));
       } else {

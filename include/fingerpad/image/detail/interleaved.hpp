@@ -50,7 +50,7 @@ void load_interleaved_row(
     for (; i + 16 <= n; i += 16) {
       std::array<Bytes16, std::size_t(channels)> planes;
       for (std::size_t c = 0; c < planes.size(); ++c) {
-        planes[c] = load<std::uint8_t, 16>(from + channels * i + 16 * Index(c));
+        planes[c] = load<Bytes16>(from + channels * i + 16 * Index(c));
       }
       mix(planes);
       mix(planes);

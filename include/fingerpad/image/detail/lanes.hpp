@@ -1,180 +1,239 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// The few vector operations behind the row kernels: load, store, convert, running sum over lanes. A
-// thin layer over the vector extensions that GCC and clang share. Vectors are explicit because GCC
-// 12 does not vectorise loops of run-time length at -O2. Their width is that of the target
-// instruction set, since compilers split wider vectors badly. The width is a template argument
-// everywhere, so that translation units compiled for different instruction sets never share a
-// function name. If the compiler, byte order or machine is not supported, or the user defines
-// FINGERPAD_NO_VECTORS (for the whole program), `native_vector_bytes` is 0 and nothing else is
-// declared.
+// Applies one formula along a row: by vectors for float, double and unsigned integers, else cell by
+// cell. Both ways compute a cell alike. A thin layer over the vector extensions that GCC and clang
+// share; vectors are explicit where GCC 12 does not vectorise plain loops (see docs/design.md).
+// Their width is that of the target instruction set, since compilers split wider vectors badly:
+// compile a whole program for one instruction set. If the compiler, byte order or machine is not
+// supported, or the user defines FINGERPAD_NO_VECTORS (for the whole program), everything goes cell
+// by cell.
+#include <algorithm>
+#include <concepts>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
 #include <type_traits>
-#include <utility>
+
+#include "fingerpad/core/grid.hpp"
+#include "fingerpad/core/scalar.hpp"
+
+#if !defined(FINGERPAD_NO_VECTORS) && defined(__GNUC__) &&               \
+    (defined(__clang__) || __GNUC__ >= 12) && defined(__BYTE_ORDER__) && \
+    __BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__ && (!defined(__i386__) || defined(__SSE2__))
+#define FINGERPAD_HAS_VECTORS
+#endif
 
 namespace fingerpad {
 inline namespace v0 {
 namespace detail {
 
-#if defined(FINGERPAD_NO_VECTORS) || !defined(__GNUC__) ||                \
-    (!defined(__clang__) && __GNUC__ < 12) || !defined(__BYTE_ORDER__) || \
-    __BYTE_ORDER__ != __ORDER_LITTLE_ENDIAN__ || (defined(__i386__) && !defined(__SSE2__))
-constexpr int native_vector_bytes = 0;
-#else
-#define FINGERPAD_HAS_VECTORS
-#if defined(__AVX512BW__) && defined(__AVX512VL__)
-constexpr int native_vector_bytes = 64;
+#if !defined(FINGERPAD_HAS_VECTORS)
+inline constexpr int vector_bytes = 0;
+#elif defined(__AVX512BW__) && defined(__AVX512VL__)
+inline constexpr int vector_bytes = 64;
 #elif defined(__AVX2__)
-constexpr int native_vector_bytes = 32;
+inline constexpr int vector_bytes = 32;
 #else
-constexpr int native_vector_bytes = 16;
-#endif
+inline constexpr int vector_bytes = 16;
 #endif
 
-#if defined(FINGERPAD_HAS_VECTORS)
+/// The number of lanes of S in a vector; 1 if there are no vectors of S.
+template <class S>
+inline constexpr int row_lanes = 1;
+template <class S>
+  requires(vector_bytes > 0 &&
+           (std::same_as<S, float> || std::same_as<S, double> || std::unsigned_integral<S>))
+inline constexpr int row_lanes<S> = vector_bytes / static_cast<int>(sizeof(S));
 
-/// N numbers of type T in one vector. A struct, because GCC 12 ignores a dependent size in a
+/// N numbers S in one vector, or S itself. A struct, because GCC 12 ignores a dependent size in a
 /// function-local alias.
-template <class T, int N>
-struct Lanes {
-  using type __attribute__((vector_size(N * sizeof(T)))) = T;
+template <class S, int N>
+struct RowVector {
+#if defined(FINGERPAD_HAS_VECTORS)
+  using type __attribute__((vector_size(N * sizeof(S)))) = S;
+#endif
 };
-template <class T, int N>
-using lanes = typename Lanes<T, N>::type;
+template <class S>
+struct RowVector<S, 1> {
+  using type = S;
+};
+template <class S, int N>
+using lanes = typename RowVector<S, N>::type;
 
-template <class T, int N>
-[[gnu::always_inline]] inline lanes<T, N> load(const T* from) {
-  lanes<T, N> v;
+/// The number of lanes of V, a vector of S or S itself.
+template <class V, class S>
+inline constexpr int lanes_in = static_cast<int>(sizeof(V) / sizeof(S));
+
+template <class V, class T>
+[[gnu::always_inline]] inline V load(const T* from) {
+  V v;
   std::memcpy(&v, from, sizeof v);
   return v;
 }
-
 template <class T, class V>
 [[gnu::always_inline]] inline void store(T* to, V v) {
   std::memcpy(to, &v, sizeof v);
 }
 
-/// The same numbers as another type, lane by lane.
-template <class To, int N, class V>
-[[gnu::always_inline]] inline lanes<To, N> convert(V v) {
-  return __builtin_convertvector(v, lanes<To, N>);
-}
-
-/// Lanes shifted up by `Step`, filled with zeros.
-template <int Step, class V, std::size_t... I>
-[[gnu::always_inline]] inline V moved_up(V v, std::index_sequence<I...>) {
-  constexpr int n = int(sizeof...(I));
-  return __builtin_shufflevector(v, V{}, (int(I) < Step ? n + int(I) : int(I) - Step)...);
-}
-
-template <class V, std::size_t... I>
-[[gnu::always_inline]] inline V last_everywhere(V v, std::index_sequence<I...>) {
-  constexpr int n = int(sizeof...(I));
-  return __builtin_shufflevector(v, v, (int(I) * 0 + n - 1)...);
-}
-
-/// Lane i becomes the sum of lanes 0..i, modulo the range of T (unsigned).
-template <int N, class V, int Step = 1>
-[[gnu::always_inline]] inline V running_sum(V v) {
-  if constexpr (Step < N) {
-    v += moved_up<Step>(v, std::make_index_sequence<std::size_t(N)>{});
-    return running_sum<N, V, 2 * Step>(v);
+/// v converted to `To`, a number or a vector with as many lanes.
+template <class To, class V>
+[[gnu::always_inline]] inline To each_as(const V& v) {
+  if constexpr (std::is_arithmetic_v<V>) {
+    return static_cast<To>(v);
   } else {
-    return v;
+    return __builtin_convertvector(v, To);
   }
 }
 
-/// True when every bit is 0.
-template <class T, int N>
-[[gnu::always_inline]] inline bool all_zero(lanes<T, N> v) {
-  constexpr int words = N * int(sizeof(T)) / 8;
-  using Words = lanes<std::uint64_t, words>;
-  const Words w = Words(v);
-  if constexpr (words > 2) {
-    constexpr int half = words / 2;
-    lanes<std::uint64_t, half> low, high;
-    std::memcpy(&low, &w, sizeof low);
-    std::memcpy(&high, reinterpret_cast<const char*>(&w) + sizeof low, sizeof high);
-    return all_zero<std::uint64_t, half>(low | high);
-  } else if constexpr (words == 2) {
-    return (w[0] | w[1]) == 0;
+/// x in every lane; x itself if V is a scalar (empty braces leave some dual numbers undefined).
+template <class V, class S>
+[[gnu::always_inline]] inline V every_lane(const S& x) {
+  if constexpr (scalar<V>) {
+    return V(x);
   } else {
-    return w[0] == 0;
+    return V{} + x;
   }
 }
 
-/// Lane by lane a where `mask` has all bits set, and b where it has none.
-template <class V, class M>
-[[gnu::always_inline]] inline V choose(M mask, V a, V b) {
-  return V((M(a) & mask) | (M(b) & ~mask));
-}
+/// Integers that are widened or narrowed by a factor of two at a time. Machines have instructions
+/// for these steps, and GCC 12 uses them.
+template <class T> concept narrow_integer = std::unsigned_integral<T> && sizeof(T) <= 2;
 
-/// Two vectors. zip() interleaves the lanes of a and b into them: a0 b0 a1 b1 ...
-template <class V>
-struct Two {
-  V first, second;
-};
-template <class V, std::size_t... I>
-[[gnu::always_inline]] inline Two<V> zip(V a, V b, std::index_sequence<I...>) {
-  constexpr int n = int(sizeof...(I));
-  return {__builtin_shufflevector(a, b, (int(I) / 2 + int(I) % 2 * n)...),
-          __builtin_shufflevector(a, b, (int(I) / 2 + int(I) % 2 * n + n / 2)...)};
-}
-template <int N, class V>
-[[gnu::always_inline]] inline Two<V> zip(V a, V b) {
-  return zip(a, b, std::make_index_sequence<std::size_t(N)>{});
-}
-
-/// Even and odd lanes, widened to `Wide` (twice as wide) without a shuffle.
-template <class Wide, int N, class V>
-[[gnu::always_inline]] inline Two<lanes<Wide, N>> unzip_wide(V v) {
-  using W = lanes<Wide, N>;
-  constexpr int half = 4 * int(sizeof(Wide));
-  return {W(v) & (W{} + Wide((Wide(1) << half) - 1)), W(v) >> half};
-}
-
-/// 2 N lanes in order, widened to `Wide` (twice as wide).
-template <class Wide, int N, class V>
-[[gnu::always_inline]] inline Two<lanes<Wide, N>> widen(V v) {
-  using W = lanes<Wide, N>;
-  const Two<V> both = zip<2 * N>(v, V{});
-  return {W(both.first), W(both.second)};
-}
-
-/// out[i] = sum of in[0..i], for i < n, a multiple of the lanes in a vector of In.
-/// After it `tail` further elements (rounded up to vectors) repeat the total.
-/// Sums are modulo the range of Lane: differences up to its maximum remain exact.
-template <int Bytes, class In, class Lane>
-inline void running_sum_row(const In* in, Lane* out, std::ptrdiff_t n, std::ptrdiff_t tail) {
-  constexpr int N = Bytes / int(sizeof(Lane));
-  using V = lanes<Lane, N>;
-  constexpr auto order = std::make_index_sequence<std::size_t(N)>{};
-  V carry{};
-  if constexpr (sizeof(In) == sizeof(Lane)) {
-    for (std::ptrdiff_t i = 0; i < n; i += N) {
-      const V local = running_sum<N>(load<Lane, N>(in + i));
-      store(out + i, V(local + carry));
-      carry += last_everywhere(local, order);
-    }
-  } else {  // sums over pairs of columns: half as many lanes
-    for (std::ptrdiff_t i = 0; i < n; i += 2 * N) {
-      const Two<V> columns = unzip_wide<Lane, N>(load<In, 2 * N>(in + i));
-      const V local = running_sum<N>(V(columns.first + columns.second));
-      const V odd = local + carry;
-      const Two<V> sums = zip<N>(V(odd - columns.second), odd);
-      store(out + i, sums.first);
-      store(out + i + N, sums.second);
-      carry += last_everywhere(local, order);
-    }
+#if defined(FINGERPAD_HAS_VECTORS)
+/// Four bytes or 16-bit numbers as 32-bit ones, which avoids a general register in GCC 12.
+template <narrow_integer T>
+[[gnu::always_inline]] inline lanes<std::int32_t, 4> load_four(const T* from) {
+  std::uint64_t word = 0;
+  std::memcpy(&word, from, 4 * sizeof(T));
+  const lanes<std::uint64_t, 2> words{word, 0};
+  using Shorts = lanes<std::uint16_t, 8>;
+  Shorts cells = Shorts(words);
+  if constexpr (sizeof(T) == 1) {
+    using Bytes = lanes<std::uint8_t, 16>;
+    cells = Shorts(__builtin_shufflevector(Bytes(words), Bytes{}, 0, 16, 1, 17, 2, 18, 3, 19, 4, 20,
+                                           5, 21, 6, 22, 7, 23));
   }
-  for (std::ptrdiff_t i = n; i < n + tail; i += N) {
-    store(out + i, carry);
-  }
+  return lanes<std::int32_t, 4>(__builtin_shufflevector(cells, Shorts{}, 0, 8, 1, 9, 2, 10, 3, 11));
 }
 #endif
+
+/// Cells from[0], from[1], ... as one V of S.
+template <class V, class S, class T>
+[[gnu::always_inline]] inline V load_cells(const T* from) {
+  if constexpr (std::same_as<V, S>) {
+    return static_cast<S>(*from);
+  } else if constexpr (std::same_as<S, T>) {
+    return load<V>(from);
+  } else if constexpr (narrow_integer<T>) {
+    constexpr int n = lanes_in<V, S>;
+    if constexpr (n == 4) {
+      return each_as<V>(load_four(from));
+    } else {
+      const auto cells = each_as<lanes<std::uint16_t, n>>(load<lanes<T, n>>(from));
+      return each_as<V>(each_as<lanes<std::int32_t, n>>(cells));
+    }
+  } else {
+    return each_as<V>(load<lanes<T, lanes_in<V, S>>>(from));
+  }
+}
+
+/// Stores the cells of v in to[0], to[1], ..., truncated if T is an integer.
+template <class S, class V, class T>
+[[gnu::always_inline]] inline void store_cells(T* to, const V& v) {
+  if constexpr (std::same_as<V, S>) {
+    if constexpr (std::integral<T> && scalar<S>) {
+      *to = static_cast<T>(value(v));
+    } else {
+      *to = static_cast<T>(v);
+    }
+  } else if constexpr (std::same_as<S, T>) {
+    store(to, v);
+  } else if constexpr (narrow_integer<T>) {
+    constexpr int n = lanes_in<V, S>;
+    const auto words = each_as<lanes<std::int32_t, n>>(v);
+    store(to, each_as<lanes<T, n>>(each_as<lanes<std::uint16_t, n>>(words)));
+  } else {
+    store(to, each_as<lanes<T, lanes_in<V, S>>>(v));
+  }
+}
+
+/// True if any lane of a comparison is true.
+template <class Mask>
+[[gnu::always_inline]] inline bool any_lane(const Mask& mask) {
+  if constexpr (std::same_as<Mask, bool>) {
+    return mask;
+  } else if constexpr (sizeof(Mask) > 16) {
+    using Half = lanes<std::uint64_t, static_cast<int>(sizeof(Mask) / 16)>;
+    const char* bytes = reinterpret_cast<const char*>(&mask);
+    return any_lane(Half(load<Half>(bytes) | load<Half>(bytes + sizeof(Half))));
+  } else {
+    const auto words = lanes<std::uint64_t, static_cast<int>(sizeof(Mask) / 8)>(mask);
+    return (words[0] | words[1]) != 0;
+  }
+}
+
+/// True where x is not NaN.
+template <class V>
+[[gnu::always_inline]] inline auto known(const V& x) {
+  if constexpr (scalar<V>) {
+    return value(x) == value(x);
+  } else {
+    return x == x;
+  }
+}
+
+/// Calls kernel.operator()<V>(j) for j in [0, count) in steps of V's n lanes, with V = S for the
+/// rest. Always inlined, since a call would reload the kernel's captures for each vector. A large
+/// kernel must therefore be marked always_inline, too.
+template <class S, int n = row_lanes<S>, class Kernel>
+[[gnu::always_inline]] inline void for_each_cell(Index count, const Kernel& kernel) {
+  Index j = 0;
+  if constexpr (n > 1) {
+    for (; j + n <= count; j += n) {
+      kernel.template operator()<lanes<S, n>>(j);
+    }
+  }
+  for (; j < count; ++j) {
+    kernel.template operator()<S>(j);
+  }
+}
+
+/// Whether View holds cells S in memory, so that vectors can be loaded from rows whose cells are
+/// adjacent.
+template <class View, class S>
+inline constexpr bool plain_rows = false;
+template <class T, class S>
+  requires(std::same_as<std::remove_const_t<T>, S>)
+inline constexpr bool plain_rows<StridedView<T>, S> = true;
+
+/// Row i of a grid as contiguous numbers S: in place if possible, else copied to `spare`.
+template <class S, class View>
+const S* row_of(const View& from, Index i, S* spare) {
+  if constexpr (plain_rows<View, S>) {
+    if (from.col_stride() == 1) {
+      return from.row(i);
+    }
+  }
+  for (Index j = 0; j < from.cols(); ++j) {
+    spare[j] = S(from(i, j));
+  }
+  return spare;
+}
+
+/// Writes numbers to a row of a grid.
+template <class S, class View>
+void store_row(const S* from, const View& view, Index row) {
+  if constexpr (plain_rows<View, S>) {
+    if (view.col_stride() == 1) {
+      std::copy_n(from, view.cols(), view.row(row));
+      return;
+    }
+  }
+  for (Index j = 0; j < view.cols(); ++j) {
+    view(row, j) = static_cast<cell_t<View>>(from[j]);
+  }
+}
 
 }  // namespace detail
 }  // namespace v0

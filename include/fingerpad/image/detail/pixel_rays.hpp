@@ -10,7 +10,7 @@
 #include "fingerpad/core/dots.hpp"
 #include "fingerpad/core/grid.hpp"
 #include "fingerpad/core/scalar.hpp"
-#include "fingerpad/image/detail/row_lanes.hpp"
+#include "fingerpad/image/detail/lanes.hpp"
 #include "fingerpad/optics/camera.hpp"
 
 namespace fingerpad {

@@ -11,7 +11,6 @@
 
 #include "fingerpad/core/scalar.hpp"
 #include "fingerpad/image/detail/lanes.hpp"
-#include "fingerpad/image/detail/row_lanes.hpp"
 
 namespace fingerpad {
 inline namespace v0 {
@@ -20,10 +19,10 @@ namespace detail {
 /// A float, or a vector of them.
 template <class V>
 concept float_lanes = std::same_as<V, float> ||
-    (!scalar<V> && std::same_as<V, typename RowVector<float, lanes_in<V, float>>::type>);
+    (!scalar<V> && std::same_as<V, lanes<float, lanes_in<V, float>>>);
 /// A 32-bit integer, or a vector with as many of them as V has lanes.
 template <float_lanes V>
-using bits_of = typename RowVector<std::int32_t, lanes_in<V, float>>::type;
+using bits_of = lanes<std::int32_t, lanes_in<V, float>>;
 
 /// exp(x) with x clamped to [-80, 80], which is finite for every x. Float: relative error 1e-6 for
 /// |x| <= 10.
@@ -63,7 +62,7 @@ template <float_lanes V>
 /// multiplication.
 template <float_lanes V>
 [[gnu::always_inline]] inline V rough_inverse_sqrt(const V& x) {
-  using Bits = typename RowVector<std::uint32_t, lanes_in<V, float>>::type;
+  using Bits = lanes<std::uint32_t, lanes_in<V, float>>;
   const V y = std::bit_cast<V>(Bits(0x5F111000U - (std::bit_cast<Bits>(x) >> 1)));
   const V t = x * y * y;  // y * y would be subnormal, and slow, where x is NaN
   return y * ((t - 2.25330492F) * t + 2.28251864F);

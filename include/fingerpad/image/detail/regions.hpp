@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "fingerpad/core/grid.hpp"
-#include "fingerpad/image/detail/row_lanes.hpp"
+#include "fingerpad/image/detail/lanes.hpp"
 
 namespace fingerpad {
 inline namespace v0 {

@@ -9,8 +9,8 @@
 
 #include "fingerpad/core/grid.hpp"
 #include "fingerpad/core/scalar.hpp"
+#include "fingerpad/image/detail/lanes.hpp"
 #include "fingerpad/image/detail/pixel_box.hpp"
-#include "fingerpad/image/detail/row_lanes.hpp"
 
 namespace fingerpad {
 inline namespace v0 {
