@@ -11,7 +11,7 @@
 #include "fingerpad/adapt/opencv.hpp"
 #include "fingerpad/calibrate/contact.hpp"
 #include "fingerpad/contact/contact_region.hpp"
-#include "fingerpad/contact/object_surface.hpp"
+#include "fingerpad/contact/surface.hpp"
 #include "fingerpad/depth/depth.hpp"
 
 int main(int argc, char** argv) {
@@ -41,18 +41,17 @@ int main(int argc, char** argv) {
   test.threshold_per_mm = free_pad.fit().threshold_per_mm;
   const fingerpad::ContactRegion<> contact_of(camera, shape.rows, shape.cols, test);
   auto workspace = contact_of.workspace();  // nothing is allocated after this
-  const fingerpad::SurfaceFit<fingerpad::Quadric<>> surface_of(shape.rows, shape.cols, camera);
 
   // Every frame.
   cv::Mat1f depth_mm(frame.size());
   cv::Mat1b mask(frame.size());
   (void)depth_of(red(frame), green(frame), depth_mm, depth_workspace);
   const fingerpad::ContactResult contact = contact_of(depth_mm, mask, workspace);
-  const auto surface = surface_of(depth_mm, mask);
+  const auto surface = fit_surface(camera, depth_mm, mask);
 
   std::printf("contact: %.1f mm^2, %.2f mm deep, center (%.2f, %.2f) mm\n", contact.area_mm2,
               contact.depth_mm, contact.center_mm.x, contact.center_mm.y);
-  const double radius_mm = 1 / surface.shape.curvature_1_per_mm;  // the rod has 12 mm
+  const double radius_mm = 1 / surface.curvature_1_per_mm;  // the rod has 12 mm
   std::printf("object: radius %.1f mm, residual %.3f mm rms\n", radius_mm, surface.rms_mm);
   const bool plausible = contact.area_mm2 > 80 && contact.area_mm2 < 120 &&
                          std::abs(contact.center_mm.x) < 0.5 && std::abs(radius_mm - 12) < 2;

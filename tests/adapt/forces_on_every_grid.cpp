@@ -22,7 +22,7 @@
 #include "fingerpad/contact/contact_by_difference.hpp"
 #include "fingerpad/contact/contact_measures.hpp"
 #include "fingerpad/contact/equivalent_flat_area.hpp"
-#include "fingerpad/contact/object_surface.hpp"
+#include "fingerpad/contact/surface.hpp"
 #include "fingerpad/depth/intensity_depth.hpp"
 #include "fingerpad/foam/taxel_features.hpp"
 #include "fingerpad/force/dot_divergence.hpp"
@@ -257,24 +257,23 @@ TEST_CASE("curvature, measures, flat area and surface of a contact from every gr
   CurvatureMap<double> curvature(plan, 60, 64, {5});
   const EquivalentFlatArea<OrthographicCamera<double>> flat_area(plan, 60, 64);
   auto flat_work = flat_area.workspace();
-  const SurfaceFit<Plane<>, OrthographicCamera<double>> plane(60, 64, plan);
   struct Answer {
     test::Image<double> curvature{60, 64};
-    double flat_area_mm2, area_mm2, distance_mm;
+    double flat_area_mm2, area_mm2, height_mm;
   };
   const auto answer = [&](const auto& depth, const auto& mask) {
     Answer a;
     REQUIRE(curvature(depth, a.curvature).ok());
     a.flat_area_mm2 = flat_area(mask, depth, flat_work).area_mm2;
     a.area_mm2 = contact_measures(plan, mask, depth).area_mm2;
-    a.distance_mm = plane(depth, mask).shape.distance_mm;
+    a.height_mm = fit_surface(plan, depth, mask).point_mm.z;
     return a;
   };
   const Answer truth = answer(pressed.depth, pressed.mask);
   REQUIRE(is_finite(truth.curvature(29, 31)));
   REQUIRE(is_finite(truth.flat_area_mm2));
   REQUIRE(truth.area_mm2 > 0);
-  REQUIRE(is_finite(truth.distance_mm));
+  REQUIRE(is_finite(truth.height_mm));
   const auto check = [&](const auto& depth, const auto& mask) {
     const Answer a = answer(depth, mask);
     bool same_cells = true;
@@ -284,7 +283,7 @@ TEST_CASE("curvature, measures, flat area and surface of a contact from every gr
     CHECK(same_cells);
     CHECK(same_bits(a.flat_area_mm2, truth.flat_area_mm2));
     CHECK(same_bits(a.area_mm2, truth.area_mm2));
-    CHECK(same_bits(a.distance_mm, truth.distance_mm));
+    CHECK(same_bits(a.height_mm, truth.height_mm));
   };
   on_every_grid<double>(pressed.depth, [&](const auto& depth) { check(depth, pressed.mask); });
   on_every_grid<unsigned char>(pressed.mask, [&](const auto& mask) { check(pressed.depth, mask); });

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "fingerpad/contact/object_surface.hpp"
+#include "fingerpad/contact/surface.hpp"
 #include "fingerpad/motion/object_motion.hpp"
 #include "support/catch.hpp"
 #include "support/pad.hpp"
@@ -51,6 +51,6 @@ TEST_CASE("what is unknown is no contact, for any method") {
       patch(i, j) = Touch::contact;
     }
   }
-  const SurfaceFit<Plane<>, OrthographicCamera<double>> plane(20, 30, {});
-  CHECK(plane(Image<float>(20, 30, 9.0F), patch).pixels == 12 * 15);
+  const Image<float> depth(20, 30, 9.0F);
+  CHECK(fit_surface(OrthographicCamera<double>(), depth, patch).pixels == 12 * 15);
 }

@@ -34,8 +34,6 @@ const std::vector<Bounds> depth = {
 const std::vector<Bounds> surface = {
     {hard::flat_section, 2e-7, 3e-16, 1e-10, 2e-19},
     {hard::flat_contact, none, none, 1e-9, 2e-18},
-    {hard::nearly_flat_sphere, none, 1e-8, 1e-16, 1e-16},
-    {hard::patch_far_away, 1e-2, 1e-9, 1e-15, 1e-15},
     {hard::center_pixel, none, none, 1e-5, 2e-14},
 };
 const std::vector<Bounds> motion = {

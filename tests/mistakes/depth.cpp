@@ -17,7 +17,7 @@
 #include "fingerpad/contact/contact_by_difference.hpp"
 #include "fingerpad/contact/contact_measures.hpp"
 #include "fingerpad/contact/contact_region.hpp"
-#include "fingerpad/contact/object_surface.hpp"
+#include "fingerpad/contact/surface.hpp"
 #include "fingerpad/depth/intensity_depth.hpp"
 #include "fingerpad/depth/neighbour_light.hpp"
 #include "fingerpad/force/pad_heights.hpp"
@@ -384,7 +384,6 @@ TEST_CASE("wild finite depths move no contact and make no negative area", "[mist
     contact_test.ring.radius_px = 5;
     using CameraType = std::decay_t<decltype(camera)>;
     const ContactRegion<HalfLevelEdge, CameraType> region(camera, 60, 64, contact_test);
-    const SurfaceFit<Plane<>, CameraType> plane(60, 64, camera);
     auto workspace = region.workspace();
     Image<std::uint8_t> mask(60, 64), clean(60, 64);
     const ContactResult before = region(depth, clean, workspace);
@@ -395,7 +394,7 @@ TEST_CASE("wild finite depths move no contact and make no negative area", "[mist
         spoilt(30, 32) = static_cast<float>(sign * wild);
         const ContactResult after = region(spoilt, mask, workspace);
         const auto measures = contact_measures(camera, clean, spoilt);
-        const auto flat = plane(spoilt, clean);
+        const auto flat = fit_surface(camera, spoilt, clean);
         CAPTURE(sign * wild, after.depth_mm, before.depth_mm, after.area_mm2, before.area_mm2);
         // below 100 mm it may be a depth: it counts as one pixel of some thousand
         const double most = wild < 100 ? 0.12 : 1e-4;
@@ -404,7 +403,7 @@ TEST_CASE("wild finite depths move no contact and make no negative area", "[mist
         CHECK(after.area_mm2 == Approx(before.area_mm2).epsilon(0.01));
         CHECK(measures.area_mm2 == Approx(measures_before.area_mm2).epsilon(0.01));
         CHECK(flat.ok());
-        CHECK((wild < 100 || flat.shape.normal.z > 0.999));
+        CHECK((wild < 100 || flat.normal.z > 0.999));
       }
     }
   };
@@ -439,7 +438,6 @@ TEST_CASE("images larger than any are refused by name", "[mistakes]") {
     return std::array{
         refusal([&] { const ContactRegion<> r({}, rows, cols); }),
         refusal([&] { const CurvatureMap<> r({}, rows, cols); }),
-        refusal([&] { const SurfaceFit<> r(rows, cols, {}); }),
         refusal([&] { const PadHeights<> r(rows, cols, {}); }),
         refusal([&] { (void)fit_reference(Camera<>{}, Absorption<>{}, image, image, image); }),
         refusal([&] { const NeighbourLightCompensation<> r({5}, 0.1F, image); }),

@@ -12,7 +12,7 @@
 #include "fingerpad/contact/contact_by_difference.hpp"
 #include "fingerpad/contact/contact_region.hpp"
 #include "fingerpad/contact/equivalent_flat_area.hpp"
-#include "fingerpad/contact/object_surface.hpp"
+#include "fingerpad/contact/surface.hpp"
 #include "fingerpad/depth/intensity_depth.hpp"
 #include "fingerpad/depth/neighbour_light.hpp"
 #include "support/catch.hpp"
@@ -201,11 +201,13 @@ std::string of_surface(const std::string& mistake) {
       mask(i, j) = std::hypot(p.x - 1.5, p.y + 1) < 3.5 ? 1 : 0;
     }
   }
-  const SurfaceFit<Sphere<>, OrthographicCamera<double>> surface(size, size, pad.camera);
-  const auto r = surface(spoilt(mistake, pad.now, pad.free), mask);
-  const auto right = surface(pad.now, mask);
-  const bool same = norm(r.shape.center_mm() - right.shape.center_mm()) < 0.1;
-  return !r.ok() ? (r.accepted() ? "degenerate" : "refused") : same ? "found" : "another object";
+  const auto r = fit_surface(pad.camera, spoilt(mistake, pad.now, pad.free), mask);
+  const auto right = fit_surface(pad.camera, pad.now, mask);
+  const auto middle = [](const SurfaceResult& s) {
+    return s.point_mm + 2 / (s.curvature_1_per_mm + s.curvature_2_per_mm) * s.normal;
+  };
+  const bool same = norm(middle(r) - middle(right)) < 0.1;
+  return !r.ok() ? (name_of(r.status)) : same ? "found" : "another object";
 }
 
 std::string of_light(const std::string& mistake) {
@@ -252,7 +254,7 @@ struct Said {
 
 const std::vector<Said> table = {
     {"none", "found", "found", "found", "found", "found", "found"},
-    {"x 1000", "not of this pad", "not of this pad", "not of this pad", "degenerate",
+    {"x 1000", "not of this pad", "not of this pad", "not of this pad", "too few",
      "not of this pad", "no answer"},
     {"/ 1000", "not of this pad", "found", "not of this pad", "another object", "not of this pad",
      "found"},
@@ -268,7 +270,7 @@ const std::vector<Said> table = {
     {"constant", "not of this pad", "not of this pad", "another contact", "another object",
      "another depth", "no answer"},
     {"half missing", "found", "found", "mostly unknown", "found", "found", "no answer"},
-    {"no number", "not of this pad", "not of this pad", "not of this pad", "degenerate", "found",
+    {"no number", "not of this pad", "not of this pad", "not of this pad", "too few", "found",
      "no answer"},
     {"the free pad for now", "another depth", "no contact", "no contact", "another object",
      "another depth", "another area"},

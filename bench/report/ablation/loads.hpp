@@ -27,7 +27,7 @@
 #include "fingerpad/calibrate/force.hpp"
 #include "fingerpad/contact/contact_measures.hpp"
 #include "fingerpad/contact/equivalent_flat_area.hpp"
-#include "fingerpad/contact/object_surface.hpp"
+#include "fingerpad/contact/surface.hpp"
 #include "fingerpad/force/normal_force.hpp"
 #include "fingerpad/force/shear.hpp"
 #include "fingerpad/force/traction.hpp"
@@ -331,31 +331,21 @@ inline std::vector<Effect> surface_effects() {
                   .on = on,
                   .off = off};
   };
-  const std::string strip_on = "`SurfaceOptions::border_px` 10", strip_off = "0";
-  Effect strip_plate = effect("strip at the border", true, strip_on, strip_off);
-  Effect strip_round = effect("strip at the border", false, strip_on, strip_off);
-  const std::string rays_on = "`SurfaceFit` of a `Camera`", rays_off = "of an `OrthographicCamera`";
+  const std::string rays_on = "`fit_surface` with a `Camera`",
+                    rays_off = "with an `OrthographicCamera`";
   Effect rays_plate = effect("rays", true, rays_on, rays_off);
   Effect rays_round = effect("rays", false, rays_on, rays_off);
 
-  const SurfaceOptions inner{.border_px = 10};
-  const auto plane_error = [&](const auto& fit, const SceneFrame& f, double tilt_rad) {
-    const auto r = fit(f.measured_mm, f.measured);
-    const auto& n = r.shape.normal;  // the plate is tilted about x, by either sign
-    const double along = n.z * std::cos(tilt_rad) + std::abs(n.y) * std::sin(tilt_rad);
-    return r.ok() ? degrees * std::acos((std::min)(1.0, along)) : test::nan;
+  const auto normal_error = [&](const auto& camera, const SceneFrame& f, double tilt_rad) {
+    const auto r = fit_surface(camera, f.measured_mm, f.measured);
+    // the plate is tilted about x, by either sign
+    const double along =
+        r.normal.z * std::cos(tilt_rad) + std::abs(r.normal.y) * std::sin(tilt_rad);
+    return degrees * std::acos((std::min)(1.0, along));
   };
-  const auto bend_error = [&](const auto& fit, const SceneFrame& f, double per_mm) {
-    const auto r = fit(f.measured_mm, f.measured);
-    return r.ok() ? std::abs(r.shape.curvature_1_per_mm) - per_mm : test::nan;
+  const auto bend_error = [&](const auto& camera, const SceneFrame& f, double per_mm) {
+    return std::abs(fit_surface(camera, f.measured_mm, f.measured).curvature_1_per_mm) - per_mm;
   };
-  const SurfaceFit<Plane<>> plane(pad.rows, pad.cols, pad.camera);
-  const SurfaceFit<Plane<>> inner_plane(pad.rows, pad.cols, pad.camera, inner);
-  const SurfaceFit<Plane<>, OrthographicCamera<double>> flat_plane(pad.rows, pad.cols, from_afar);
-  const SurfaceFit<Quadric<>> quadric(pad.rows, pad.cols, pad.camera);
-  const SurfaceFit<Quadric<>> inner_quadric(pad.rows, pad.cols, pad.camera, inner);
-  const SurfaceFit<Quadric<>, OrthographicCamera<double>> flat_quadric(pad.rows, pad.cols,
-                                                                       from_afar);
   for (const ShapeOfScene& shape : shapes()) {
     if (shape.scene == Scene::free || shape.scene == Scene::noisy) {
       continue;
@@ -365,28 +355,21 @@ inline std::vector<Effect> surface_effects() {
       const bool is_round = shape.scene == Scene::rolling || shape.scene == Scene::wedge;
       if (is_round) {
         const double per_mm = shape.scene == Scene::rolling ? 1.0 / 18 : 1.0 / 12;
-        strip_round.with_in(shape.scene).add(bend_error(inner_quadric, f, per_mm));
-        strip_round.without_in(shape.scene).add(bend_error(quadric, f, per_mm));
-        rays_round.with_in(shape.scene).add(bend_error(quadric, f, per_mm));
-        rays_round.without_in(shape.scene).add(bend_error(flat_quadric, f, per_mm));
+        rays_round.with_in(shape.scene).add(bend_error(pad.camera, f, per_mm));
+        rays_round.without_in(shape.scene).add(bend_error(from_afar, f, per_mm));
       } else {
         const double tilt = shape.scene == Scene::tilted ? 8 / degrees : 0;
-        strip_plate.with_in(shape.scene).add(plane_error(inner_plane, f, tilt));
-        strip_plate.without_in(shape.scene).add(plane_error(plane, f, tilt));
-        rays_plate.with_in(shape.scene).add(plane_error(plane, f, tilt));
-        rays_plate.without_in(shape.scene).add(plane_error(flat_plane, f, tilt));
+        rays_plate.with_in(shape.scene).add(normal_error(pad.camera, f, tilt));
+        rays_plate.without_in(shape.scene).add(normal_error(from_afar, f, tilt));
       }
     }
   }
   const SceneFrame& press = frames("press");
-  const auto run = [&](const auto& fit) {
-    return [&] { (void)fit(press.measured_mm, press.measured); };
+  const auto run = [&](const auto& camera) {
+    return [&] { (void)fit_surface(camera, press.measured_mm, press.measured); };
   };
-  strip_plate.cost_us = cost_us(run(inner_plane), run(plane));
-  rays_plate.cost_us = cost_us(run(plane), run(flat_plane));
-  strip_round.cost_us = cost_us(run(inner_quadric), run(quadric));
-  rays_round.cost_us = cost_us(run(quadric), run(flat_quadric));
-  return {strip_plate, strip_round, rays_plate, rays_round};
+  rays_plate.cost_us = rays_round.cost_us = cost_us(run(pad.camera), run(from_afar));
+  return {rays_plate, rays_round};
 }
 
 /// p S against the true force without a fitted curve. S is the area of the contact or the

@@ -29,8 +29,6 @@ inline std::vector<MakeRow> all_rows() {
           scattering_at_rim,
           flat_section,
           flat_contact,
-          nearly_flat_sphere,
-          patch_far_away,
           center_pixel,
           collinear_dots,
           sheared_dots,
