@@ -75,13 +75,15 @@ std::string refusal(const Map& reference, const Frames& measured, const Frames& 
 TEST_CASE("calibration of neighbour light: noise-free frames give it back") {
   rc::prop("random light", [] {
     const NeighbourLight<double> light{test::whole(3, 9), test::uniform(0.0005, 0.002),
-                                       test::uniform(-0.5, 0.5)};
+                                       test::uniform(-0.5, 0.5), *rc::gen::element(1.0, 1.25)};
     const Map reference = membrane(0, 0);
     const Frames measured = {membrane(1, 1), membrane(2.5, -2)};
-    const auto fit = fit_of(reference, measured, truths(light, reference, measured), {1, 12, 2});
+    const auto fit = fit_of(reference, measured, truths(light, reference, measured),
+                            {1, 12, 2, light.pixel_aspect});
     RC_ASSERT(fit.light.radius_px == light.radius_px);
     RC_ASSERT(std::abs(fit.light.m0_mm_per_rad / light.m0_mm_per_rad - 1) < 1e-9);
     RC_ASSERT(std::abs(fit.light.n_per_mm - light.n_per_mm) < 1e-9);
+    RC_ASSERT(fit.light.pixel_aspect == light.pixel_aspect);
     RC_ASSERT(fit.rms_after_mm < 1e-6 * fit.rms_before_mm);
     RC_ASSERT(fit.rms_of_radius_mm.size() == 12u);
     RC_ASSERT(fit.ok());

@@ -67,7 +67,7 @@ Map<S> compensated(const NeighbourLight<S>& light, const Map<S>& reference, cons
 }
 
 /// The definition: pixel by pixel over the disc, in double.
-double slow_psi(const Map<double>& l, Index i, Index j, double pitch) {
+double slow_psi(const Map<double>& l, Index i, Index j, double pitch, double aspect) {
   const auto at = [&](Index r, Index c) {
     return r >= 0 && r < l.rows() && c >= 0 && c < l.cols() ? l(r, c) : missing;
   };
@@ -76,7 +76,7 @@ double slow_psi(const Map<double>& l, Index i, Index j, double pitch) {
     return std::isnan(after) ? here - before : (after - before) / 2;
   };
   const double gx = along(at(i, j - 1), at(i, j), at(i, j + 1)) / pitch;
-  const double gy = along(at(i - 1, j), at(i, j), at(i + 1, j)) / pitch;
+  const double gy = along(at(i - 1, j), at(i, j), at(i + 1, j)) / (aspect * pitch);
   return std::isnan(l(i, j)) ? missing : std::atan(std::hypot(gx, gy));
 }
 
@@ -84,11 +84,12 @@ Map<double> slow_compensation(const NeighbourLight<double>& light,
                               const Map<double>& reference,
                               const Map<double>& depth,
                               double pitch) {
+  const double aspect = light.pixel_aspect;
   Map<double> change(depth.rows(), depth.cols()), known(depth.rows(), depth.cols());
   for (Index i = 0; i < depth.rows(); ++i) {
     for (Index j = 0; j < depth.cols(); ++j) {
-      known(i, j) = slow_psi(reference, i, j, pitch);
-      change(i, j) = slow_psi(depth, i, j, pitch) - known(i, j);
+      known(i, j) = slow_psi(reference, i, j, pitch, aspect);
+      change(i, j) = slow_psi(depth, i, j, pitch, aspect) - known(i, j);
     }
   }
   Map<double> out(depth.rows(), depth.cols());
@@ -97,7 +98,8 @@ Map<double> slow_compensation(const NeighbourLight<double>& light,
       double sum = 0, seen = 0, all = 0;
       for (Index r = 0; r < depth.rows(); ++r) {
         for (Index c = 0; c < depth.cols(); ++c) {
-          if ((r - i) * (r - i) + (c - j) * (c - j) <= light.radius_px * light.radius_px) {
+          const double y = aspect * static_cast<double>(r - i), x = static_cast<double>(c - j);
+          if (x * x + y * y <= static_cast<double>(light.radius_px * light.radius_px)) {
             all += std::isnan(known(r, c)) ? 0 : 1;
             seen += std::isnan(change(r, c)) ? 0 : 1;
             sum += std::isnan(change(r, c)) ? 0 : change(r, c);
@@ -121,7 +123,7 @@ NeighbourLight<double> random_light(Index largest_radius_px) {
 
 template <class S>
 NeighbourLight<S> as(const NeighbourLight<double>& light) {
-  return {light.radius_px, S(light.m0_mm_per_rad), S(light.n_per_mm)};
+  return {light.radius_px, S(light.m0_mm_per_rad), S(light.n_per_mm), S(light.pixel_aspect)};
 }
 
 /// Random clumps of missing pixels.
@@ -169,7 +171,8 @@ TEST_CASE("neighbour light: exact disc is the definition, with missing pixels or
     Map<double> depth = membrane(29, 34, test::uniform(0, 3), test::uniform(0, 6));
     punch(reference, test::whole(0, 3));
     punch(depth, test::whole(0, 6));
-    const NeighbourLight<double> light = random_light(20);
+    NeighbourLight<double> light = random_light(20);
+    light.pixel_aspect = *rc::gen::element(1.0, 1.25, 0.75);
     const Map<double> truth = slow_compensation(light, reference, depth, 0.125);
     const Map<double> fast = compensated(light, reference, depth);
     const Map<float> single =
@@ -389,6 +392,8 @@ TEST_CASE("neighbour light: bad parameters are refused by name, value and range"
   CHECK(refusal({5, std::nanf(""), 0.1F}, 0.1F, 4) ==
         "NeighbourLight: m0_mm_per_rad = nan, must be finite");
   CHECK(refusal({5, 0.1F, INFINITY}, 0.1F, 4) == "NeighbourLight: n_per_mm = inf, must be finite");
+  CHECK(refusal({5, 0.1F, 0.1F, 0}, 0.1F, 4) ==
+        "NeighbourLight: pixel_aspect = 0, must be in [0.1, 10]");
   CHECK(refusal({}, 0, 4) == "NeighbourLightCompensation: pitch_mm = 0, must be finite and > 0");
   CHECK(refusal({}, 0.1F, 0) == "NeighbourLightCompensation: rows = 0, must be in [1, 1000000]");
 }

@@ -424,7 +424,7 @@ TEST_CASE("mistakes: neighbouring light", "[mistakes]") {
        },
        "less than 100 mm apart"},
       {"pitch in m", [](Depths& d) { d.pitch_mm *= 1e-3; }, "an end of the search"},
-      {"pitch in um", [](Depths& d) { d.pitch_mm *= 1e3; }, "mm between pixels"},
+      {"pitch in um", [](Depths& d) { d.pitch_mm *= 1e3; }, "pitch_mm = 200"},
       {"measured and true exchanged", [](Depths& d) { std::swap(d.measured, d.truth); },
        "measured and true depths may be exchanged"},
       {"frames exchanged", [](Depths& d) { std::swap(d.truth[0], d.truth[1]); },

@@ -350,6 +350,7 @@ TEST_CASE("the size of frames has no default", "[chain]") {
 
 TEST_CASE("a fingertip takes the neighbour light off as that method does", "[chain]") {
   auto options = frames().options();
+  options.camera.pixel_aspect = 1.25;
   TipOf<EveryPixel> free(options), plain(options);
   const Inputs in = frames()[1].view();
   (void)touch_of(free, frames()[0].view());
@@ -373,8 +374,10 @@ TEST_CASE("a fingertip takes the neighbour light off as that method does", "[cha
   const double center = options.camera.center_x_px;
   const double pitch =
       point_at(options.camera, options.camera.center_y_px, center + 1, sum / count).x;
-  fingerpad::NeighbourLightCompensation<> compensate(*options.neighbour_light,
-                                                     static_cast<float>(pitch), free.depth_mm());
+  auto light = *options.neighbour_light;
+  light.pixel_aspect = 1.25F;
+  fingerpad::NeighbourLightCompensation<> compensate(light, static_cast<float>(pitch),
+                                                     free.depth_mm());
   test::Image<float> expected(options.rows, options.cols, 0.0F);
   CHECK(compensate(plain.depth_mm(), expected) == fingerpad::FrameStatus::ok);
   double largest = 0, moved = 0;

@@ -141,6 +141,14 @@ void require(const Options& options) {
   }
 }
 
+/// Refuses the first parameter of `owner` that is out of its range.
+inline void require(const char* owner, std::initializer_list<Parameter> parameters) {
+  const std::string refusal = check(owner, parameters);
+  if (!refusal.empty()) {
+    refuse(refusal);
+  }
+}
+
 /// Refuses parameter `name` of `owner` unless `good`; `range` says in words what is allowed.
 template <class Number>
 void expects(

@@ -4,6 +4,7 @@
 // Sums over every pixel of a disc: each of its rows is the difference of two running sums.
 #include <algorithm>
 #include <bit>
+#include <cmath>
 #include <concepts>
 #include <cstddef>
 #include <cstdint>
@@ -18,45 +19,39 @@ namespace fingerpad {
 inline namespace v0 {
 namespace detail {
 
-/// Half width of a disc in the row at this distance from its center: the largest w with
-/// w^2 + row^2 <= radius^2.
-inline Index disc_half_width(Index radius, Index row) {
-  Index w = radius;
-  while (w * w + row * row > radius * radius) {
-    --w;
+/// Half widths of a disc in its middle row, the next one and so on: the largest w with
+/// w^2 + (pixel_aspect row)^2 <= radius^2, in widths of a pixel.
+inline std::vector<Index> disc_half_widths(Index radius, double pixel_aspect) {
+  std::vector<Index> half_widths;
+  double left_sq = static_cast<double>(radius * radius);
+  for (double row = 1; left_sq >= 0; ++row) {
+    half_widths.push_back(static_cast<Index>(std::sqrt(left_sq)));
+    left_sq = static_cast<double>(radius * radius) - square(pixel_aspect * row);
   }
-  return w;
+  return half_widths;
 }
-inline double disc_pixels(Index radius) {
-  double pixels = 0;
-  for (Index y = -radius; y <= radius; ++y) {
-    pixels += static_cast<double>(2 * disc_half_width(radius, y) + 1);
+inline double disc_pixels(Index radius, double pixel_aspect) {
+  double pixels = static_cast<double>(-2 * radius - 1);  // the middle row is there once
+  for (const Index w : disc_half_widths(radius, pixel_aspect)) {
+    pixels += static_cast<double>(2 * (2 * w + 1));
   }
   return pixels;
 }
 
-/// Sums of numbers S. In float and double the numbers must be whole: they are added as integers,
-/// whose sums are exact in any order, even if they wrap on the way. O(radius) a pixel.
+/// Sums of numbers S in [-1.6, 1.6]. In float and double they are rounded to whole steps and added
+/// as integers, whose sums are exact in any order, even if they wrap on the way. O(radius) a pixel.
 template <scalar S>
 class DiscSums {
-  static constexpr bool by_integers = std::same_as<S, float> || std::same_as<S, double>;
-  template <class V>
-  using Ints =
-      lanes<std::conditional_t<sizeof(S) == 4, std::int32_t, std::int64_t>, lanes_in<V, S>>;
-
  public:
-  /// Disc sums must be less than this to be exact.
-  static constexpr double limit = sizeof(S) == 4 ? 0x1p30 : 0x1p62;
-
-  DiscSums(Index rows, Index cols, Index radius_px)
+  DiscSums(Index rows, Index cols, Index radius_px, double pixel_aspect)
       : rows_(rows),
         cols_(cols),
-        radius_(radius_px),
-        stride_(cols + 2 * radius_px + 1),
-        sums_(static_cast<std::size_t>(rows * stride_), Sum(0)) {
-    for (Index y = 0; y <= radius_px; ++y) {
-      half_widths_.push_back(disc_half_width(radius_px, y));
-    }
+        margin_(radius_px + 1),
+        half_widths_(disc_half_widths(radius_px, pixel_aspect)),
+        sums_(static_cast<std::size_t>(rows * (cols + 2 * margin_)), Sum(0)) {
+    const double limit = sizeof(S) == 4 ? 0x1p30 : 0x1p62;
+    const double steps = limit / (1.6 * disc_pixels(radius_px, pixel_aspect));
+    steps_ = S(std::exp2(std::floor(std::log2(steps))));  // a power of two: the unit is exact
   }
 
   /// Sets every cell to 0.
@@ -64,51 +59,59 @@ class DiscSums {
 
   /// Sets the cells of row i.
   void set(Index i, const S* cells) {
-    Sum* row = sums_.data() + i * stride_ + radius_ + 1;
-    for_each_cell<S>(cols_, [=]<class V>(Index j) {
-      const V numbers = load_cells<V, S>(cells + j);
+    Sum* row = first_cell(i);
+    for_each_cell<S>(cols_, [=, steps = steps_]<class V>(Index j) {
+      const V cell = load_cells<V, S>(cells + j);
       if constexpr (by_integers) {
-        using Sums = lanes<Sum, lanes_in<V, S>>;
-        store_cells<Sum>(row + j, std::bit_cast<Sums>(each_as<Ints<V>>(numbers)));
+        const V half = every_lane<V>(S(0.5)), in_steps = cell * steps;
+        const V rounded = in_steps + (in_steps < every_lane<V>(S(0)) ? -half : half);
+        store_cells<Sum>(row + j, std::bit_cast<Like<Sum, V>>(each_as<Like<Int, V>>(rounded)));
       } else {
-        row[j] = numbers;
+        row[j] = cell;
       }
     });
     for (Index j = 1; j < cols_; ++j) {
-      row[j] = Sum(row[j] + row[j - 1]);
+      row[j] = row[j] + row[j - 1];
     }
-    std::fill(row + cols_, row + cols_ + radius_, row[cols_ - 1]);
+    std::fill_n(row + cols_, margin_, row[cols_ - 1]);
   }
 
-  /// to[j] = unit times the sum over the disc around row i and column j. Cells beyond the image
-  /// count as 0.
-  void sum(Index i, const S& unit, S* to) const {
-    const Index top = (std::max)(-i, -radius_), bottom = (std::min)(rows_ - 1 - i, radius_);
-    const Sum* row = sums_.data() + i * stride_ + radius_ + 1;
-    for_each_cell<Sum>(cols_, [=, this, &unit]<class V>(Index j) {
+  /// to[j] = the sum over the disc around row i and column j. Cells beyond the image count as 0.
+  void sum(Index i, S* to) {
+    const Index reach = static_cast<Index>(half_widths_.size()) - 1, stride = cols_ + 2 * margin_;
+    const Index top = (std::max)(-i, -reach), bottom = (std::min)(rows_ - 1 - i, reach);
+    const Index* half_widths = half_widths_.data();
+    const Sum* row = first_cell(i);
+    for_each_cell<Sum>(cols_, [=, unit = S(1) / steps_]<class V>(Index j) {
       V sum = every_lane<V>(Sum(0));
       for (Index y = top; y <= bottom; ++y) {
-        const Sum* center = row + y * stride_ + j;
-        const Index w = half_widths_[static_cast<std::size_t>(y < 0 ? -y : y)];
+        const Sum* center = row + y * stride + j;
+        const Index w = half_widths[y < 0 ? -y : y];
         sum = sum + V(load_cells<V, Sum>(center + w) - load_cells<V, Sum>(center - w - 1));
       }
       if constexpr (by_integers) {
-        using Numbers = lanes<S, lanes_in<V, S>>;
-        const Numbers numbers = each_as<Numbers>(std::bit_cast<Ints<V>>(sum));
-        store_cells<S>(to + j, Numbers(unit * numbers));
+        const auto steps = each_as<Like<S, V>>(std::bit_cast<Like<Int, V>>(sum));
+        store_cells<S>(to + j, Like<S, V>(unit * steps));
       } else {
-        to[j] = S(unit * sum);
+        to[j] = sum;
       }
     });
   }
 
  private:
-  using Word = std::conditional_t<sizeof(S) == 4, std::uint32_t, std::uint64_t>;
-  using Sum = std::conditional_t<by_integers, Word, S>;
+  static constexpr bool by_integers = std::same_as<S, float> || std::same_as<S, double>;
+  using Int = std::conditional_t<sizeof(S) == 4, std::int32_t, std::int64_t>;
+  using Sum = std::conditional_t<by_integers, std::make_unsigned_t<Int>, S>;
+  /// T, or a vector with as many of it as V has lanes.
+  template <class T, class V>
+  using Like = lanes<T, lanes_in<V, T>>;
 
-  Index rows_, cols_, radius_, stride_;
-  std::vector<Index> half_widths_;  // of the disc, by distance from its middle row
-  std::vector<Sum> sums_;           // along each row, with a margin of the radius
+  Sum* first_cell(Index row) { return sums_.data() + row * (cols_ + 2 * margin_) + margin_; }
+
+  Index rows_, cols_, margin_;
+  S steps_ = S(1);
+  std::vector<Index> half_widths_;
+  std::vector<Sum> sums_;  // along each row, with a margin on both sides
 };
 
 }  // namespace detail

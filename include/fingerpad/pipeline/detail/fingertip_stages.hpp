@@ -107,7 +107,9 @@ struct FingertipLight {
         }
         return sum / float(step * step);
       });
-      compensate.emplace(sampled(*o.neighbour_light, step), pitch_on_membrane_mm(o), free_samples);
+      NeighbourLight<float> light = sampled(*o.neighbour_light, step);
+      light.pixel_aspect = static_cast<float>(o.camera.pixel_aspect);
+      compensate.emplace(light, pitch_on_membrane_mm(o), free_samples);
     }
   }
 
