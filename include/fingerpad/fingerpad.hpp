@@ -11,7 +11,6 @@
 #include "fingerpad/calibrate/slip.hpp"
 #include "fingerpad/calibrate/taxels.hpp"
 #include "fingerpad/contact/contact_by_difference.hpp"
-#include "fingerpad/contact/contact_measures.hpp"
 #include "fingerpad/contact/contact_region.hpp"
 #include "fingerpad/core/dots.hpp"
 #include "fingerpad/core/check.hpp"

@@ -11,6 +11,8 @@
 #include <vector>
 
 #include "support/catch.hpp"
+#include "support/contact_measures.hpp"
+#include "support/pad.hpp"
 #include "support/refusal.hpp"
 #include "support/soap_film.hpp"
 
@@ -446,6 +448,29 @@ TEST_CASE("pixels at the image's end count as much as others", "[contact_region]
   const double pixel_mm2 = camera.pitch_mm * camera.pitch_mm;
   const auto count = static_cast<double>(found.result.contact_px);
   CHECK(found.result.area_mm2 == Approx(count * pixel_mm2).epsilon(1e-12));
+}
+
+TEST_CASE("area and center are those of the plainest loop", "[contact_region]") {
+  test::Pad pad;
+  pad.rows = 96;
+  pad.cols = 112;
+  pad.camera.plate_thickness_mm = 5;
+  pad.camera.pitch_mm = 0.4;
+  pad.camera.center_x_px = 52.5;
+  pad.camera.center_y_px = 45.5;
+  for (const double press_mm : {1.0, 2.5, 4.0}) {
+    CAPTURE(press_mm);
+    const auto found = find(pad.camera, pad.pressed_depths(press_mm), with_ring(3));
+    REQUIRE(found.result.contact_px > 100);
+    Image<int> mask(pad.rows, pad.cols);
+    std::transform(found.mask.cells.begin(), found.mask.cells.end(), mask.cells.begin(),
+                   [](Touch t) { return t == Touch::contact ? 1 : 0; });
+    const auto plain = test::contact_measures(pad.camera, mask, pad.pressed_depths(press_mm));
+    CHECK(plain.pixels == found.result.contact_px);
+    // the rays of the estimator are a table
+    CHECK(found.result.area_mm2 == Approx(plain.area_mm2).epsilon(1e-6));
+    CHECK(norm(found.result.center_mm - plain.center_mm) < 1e-6);
+  }
 }
 
 TEST_CASE("an image smaller than the ring is unknown", "[contact_region]") {

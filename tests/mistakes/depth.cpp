@@ -15,7 +15,6 @@
 
 #include "fingerpad/calibrate/contact.hpp"
 #include "fingerpad/contact/contact_by_difference.hpp"
-#include "fingerpad/contact/contact_measures.hpp"
 #include "fingerpad/contact/contact_region.hpp"
 #include "fingerpad/contact/surface.hpp"
 #include "fingerpad/depth/intensity_depth.hpp"
@@ -387,21 +386,17 @@ TEST_CASE("wild finite depths move no contact and make no negative area", "[mist
     auto workspace = region.workspace();
     Image<std::uint8_t> mask(60, 64), clean(60, 64);
     const ContactResult before = region(depth, clean, workspace);
-    const auto measures_before = contact_measures(camera, clean, depth);
     for (const double wild : {30.0, 60.0, 99.0, 101.0, 300.0, 2000.0, 5000.0, 1e6, 1e30}) {
       for (const double sign : {1.0, -1.0}) {
         auto spoilt = depth;
         spoilt(30, 32) = static_cast<float>(sign * wild);
         const ContactResult after = region(spoilt, mask, workspace);
-        const auto measures = contact_measures(camera, clean, spoilt);
         const auto flat = fit_surface(camera, spoilt, clean);
         CAPTURE(sign * wild, after.depth_mm, before.depth_mm, after.area_mm2, before.area_mm2);
         // below 100 mm it may be a depth: it counts as one pixel of some thousand
         const double most = wild < 100 ? 0.12 : 1e-4;
         CHECK(std::abs(after.depth_mm - before.depth_mm) < most);
-        CHECK(std::abs(measures.center_mm.z - measures_before.center_mm.z) < most);
         CHECK(after.area_mm2 == Approx(before.area_mm2).epsilon(0.01));
-        CHECK(measures.area_mm2 == Approx(measures_before.area_mm2).epsilon(0.01));
         CHECK(flat.ok());
         CHECK((wild < 100 || flat.normal.z > 0.999));
       }

@@ -25,7 +25,6 @@
 
 #include "bench/support/scene_frames.hpp"
 #include "fingerpad/calibrate/force.hpp"
-#include "fingerpad/contact/contact_measures.hpp"
 #include "fingerpad/contact/equivalent_flat_area.hpp"
 #include "fingerpad/contact/surface.hpp"
 #include "fingerpad/force/normal_force.hpp"
@@ -33,6 +32,7 @@
 #include "fingerpad/force/traction.hpp"
 #include "fingerpad/motion/contact_shift.hpp"
 #include "membranes.hpp"
+#include "support/contact_measures.hpp"
 #include "support/contact_records.hpp"
 #include "support/traction_scenes.hpp"
 #include "support/wrench_frames.hpp"
@@ -393,7 +393,7 @@ inline Effect flat_area_effect() {
       e.with_in(scene).add(pressure * flat_area(seen.measured, seen.measured_mm, work).area_mm2 +
                            f.force_n.z);
       e.without_in(scene).add(
-          pressure * contact_measures(pad.camera, seen.measured, seen.measured_mm).area_mm2 +
+          pressure * test::contact_measures(pad.camera, seen.measured, seen.measured_mm).area_mm2 +
           f.force_n.z);
     }
   }
