@@ -46,17 +46,10 @@ inline constexpr bool is_packed_bytes<StridedView<T>, Channels> =
 
 /// sums[k] += bytes[k].
 inline void add_bytes(const std::uint8_t* bytes, Index count, std::uint16_t* sums) {
-  Index k = 0;
-#if defined(FINGERPAD_HAS_VECTORS)
-  using V = lanes<std::uint16_t, row_lanes<std::uint16_t>>;
-  constexpr int n = row_lanes<std::uint16_t>;
-  for (; k + n <= count; k += n) {
-    store(sums + k, load<V>(sums + k) + each_as<V>(load<lanes<std::uint8_t, n>>(bytes + k)));
-  }
-#endif
-  for (; k < count; ++k) {
-    sums[k] = static_cast<std::uint16_t>(sums[k] + bytes[k]);
-  }
+  using Sum = std::uint16_t;
+  for_each_cell<Sum>(count, [&]<class V>(Index k) {
+    store_cells<Sum>(sums + k, V(load_cells<V, Sum>(sums + k) + load_cells<V, Sum>(bytes + k)));
+  });
 }
 
 /// Means over cells of size_px x size_px (1..16) pixels; the last cells of a row or column may be

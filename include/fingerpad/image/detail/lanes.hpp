@@ -125,7 +125,7 @@ template <class V, class S, class T>
     return static_cast<S>(*from);
   } else if constexpr (std::same_as<S, T>) {
     return load<V>(from);
-  } else if constexpr (narrow_integer<T>) {
+  } else if constexpr (narrow_integer<T> && std::floating_point<S>) {
     constexpr int n = lanes_in<V, S>;
     if constexpr (n == 4) {
       return each_as<V>(load_four(from));
