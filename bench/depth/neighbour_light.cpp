@@ -1,7 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
-// Removal of the neighbouring membrane's light from a depth map, for small to large discs. The
-// error is of each corrected pixel, against the sum over every pixel of the disc in long double.
+// Removal of the neighbouring membrane's light from a depth map, for small to large discs, and from
+// its samples, as a fingertip does. The error is of each corrected pixel, against the sum over
+// every pixel of the disc in long double.
 #include "fingerpad/depth/neighbour_light.hpp"
 
 #include <memory>
@@ -63,6 +64,27 @@ struct Bench {
         });
   }
 
+  void add_samples(int step) const {
+    const auto samples = [&](const Image<float>& from) {
+      Image<float> out(from.rows() / step, from.cols() / step);
+      for (Index i = 0; i < out.rows(); ++i) {
+        for (Index j = 0; j < out.cols(); ++j) {
+          out(i, j) = from(step * i, step * j);
+        }
+      }
+      return out;
+    };
+    const auto from = std::make_shared<Image<float>>(samples(pressed));
+    const auto pitch_mm = static_cast<float>(scene.pad.camera.pitch_mm * 1.1 * step);
+    const bench::Memory memory;
+    const auto compensate = std::make_shared<NeighbourLightCompensation<>>(
+        sampled(NeighbourLight<float>{.radius_px = radius_px}, step), pitch_mm, samples(free));
+    const auto out = std::make_shared<Image<float>>(*from);
+    bench::add(
+        group() + "/float, of samples of " + std::to_string(step) + " x " + std::to_string(step),
+        scene.pixels(), memory.bytes(), [=] { (void)(*compensate)(*from, *out); }, [](auto&) {});
+  }
+
   /// `filter(from, to)` uses OpenCV.
   template <class Filter>
   void add_opencv(const std::string& name, Filter filter) const {
@@ -86,6 +108,7 @@ struct Bench {
     const cv::Size window(int(2 * radius_px + 1), int(2 * radius_px + 1));
     add<double>("NeighbourLightCompensation, double", exact);
     add<float>("NeighbourLightCompensation, float, the default", exact);
+    add_samples(3);
     bench::add_streaming(group(), scene.pixels());
     add_opencv("cv::boxFilter of the disc's size",
                [=](const cv::Mat& from, cv::Mat& to) { cv::boxFilter(from, to, CV_32F, window); });

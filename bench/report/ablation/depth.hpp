@@ -5,9 +5,10 @@
 // Errors are of single pixels whose true point is within 17.5 mm of the axis. Pixels without an
 // answer (with NoSmoothing: colours of no depth) are left out.
 //
-// Neighbouring light: frames are rendered as if the membrane were where that light makes it appear,
-// by the law of neighbour_light.hpp with its published numbers. The row therefore shows how well
-// the law is undone, not how well it describes a pad.
+// Neighbouring light, whose cost is that of samples of 3 x 3 pixels: frames are rendered as if the
+// membrane were where that light makes it appear, by the law of neighbour_light.hpp with its
+// published numbers. The row therefore shows how well the law is undone, not how well it describes
+// a pad.
 #include <cmath>
 #include <memory>
 #include <string>
@@ -85,9 +86,21 @@ class DepthEffects {
     place_.cost_us = cost_us(work(estimator_), work(*straight_estimator_));
     smoothing_.cost_us = cost_us(work(estimator_), work(*raw_));
     anchor_.cost_us = cost_us(work(estimator_), work(*box_));
-    const auto depth = measured(estimator_, frame);
-    Image<float> out(pad_.rows, pad_.cols);
-    neighbours_.cost_us = cost_us([&] { (void)(*light_)(depth, out); }, [] {});
+    const auto samples = [](const Image<float>& from) {  // as a fingertip has them
+      Image<float> out(from.rows() / 3, from.cols() / 3);
+      for (Index i = 0; i < out.rows(); ++i) {
+        for (Index j = 0; j < out.cols(); ++j) {
+          out(i, j) = from(3 * i, 3 * j);
+        }
+      }
+      return out;
+    };
+    auto depth = samples(measured(estimator_, frame));
+    fingerpad::NeighbourLightCompensation<> light(
+        sampled(fingerpad::NeighbourLight<float>(), 3), 3 * float(pitch_mm()),
+        samples(measured(estimator_, frame_of(pad_, free_mm_, 98, 0.25))));
+    const auto pressed = depth;
+    neighbours_.cost_us = cost_us([&] { (void)light(pressed, depth); }, [] {});
     return {place_, neighbours_, smoothing_, anchor_};
   }
 
