@@ -215,8 +215,7 @@ void bind_shift_and_area(py::module_& module) {
       "Flat plate that presses with the same force; see contact/equivalent_flat_area.hpp.")
       .def_property_readonly("ok", &FlatArea::ok)
       .def_readonly("area_mm2", &FlatArea::area_mm2)
-      .def_readonly("variance_mm4", &FlatArea::variance_mm4)
-      .def_readonly("curves", &FlatArea::curves);
+      .def_readonly("variance_mm4", &FlatArea::variance_mm4);
 }
 
 void bind_result(py::module_& module) {

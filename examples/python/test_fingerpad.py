@@ -423,7 +423,7 @@ def test_a_fingertip_gives_what_its_parts_give(pad, estimate):
     for field in fields:
         part = getattr(touch, field)
         assert field == "status" or all(getattr(part, name) is not None for name in dir(part) if name[0] != "_")
-    assert touch.flat_area.area_mm2 > 0 and touch.flat_area.curves > 0
+    assert touch.flat_area.area_mm2 > 0 and touch.flat_area.variance_mm4 > 0
     with pytest.raises(TypeError, match=r"\(rows, cols, 2\)"):
         fingertip(red, green, side_dots, side_dots, 0.016)
     assert fingertip(red, green, dots_px[1:], side_dots, 0.016).status == "refused"

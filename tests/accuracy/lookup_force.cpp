@@ -263,9 +263,8 @@ TEST_CASE("normal force of any shape from a curve of plates, by the equivalent f
   double sd_squares = 0;
   for (const auto& frame : test::wrench_frames()) {
     const PressedMembrane pressed(frame);
-    const EquivalentFlatArea<OrthographicCamera<double>> flat(pressed.camera, 160, 160);
-    auto work = flat.workspace();
-    const auto equivalent = flat(pressed.mask, pressed.height, work);
+    EquivalentFlatArea<> flat(pressed.camera, 160, 160);
+    const auto equivalent = flat(pressed.mask, pressed.height);
     REQUIRE(equivalent.ok());
     // p S against the truth, without a fitted curve
     const double sds = (frame.pressure_mpa * equivalent.area_mm2 + frame.force_n.z) /

@@ -254,8 +254,7 @@ const OrthographicCamera<double> plan{31, 29, 0.5};
 TEST_CASE("curvature, flat area and surface of a contact from every grid", "[adapt]") {
   const Pressed pressed;
   CurvatureMap<double> curvature(plan, 60, 64, {5});
-  const EquivalentFlatArea<OrthographicCamera<double>> flat_area(plan, 60, 64);
-  auto flat_work = flat_area.workspace();
+  EquivalentFlatArea<> flat_area(plan, 60, 64);
   struct Answer {
     test::Image<double> curvature{60, 64};
     double flat_area_mm2, height_mm;
@@ -263,7 +262,7 @@ TEST_CASE("curvature, flat area and surface of a contact from every grid", "[ada
   const auto answer = [&](const auto& depth, const auto& mask) {
     Answer a;
     REQUIRE(curvature(depth, a.curvature).ok());
-    a.flat_area_mm2 = flat_area(mask, depth, flat_work).area_mm2;
+    a.flat_area_mm2 = flat_area(mask, depth).area_mm2;
     a.height_mm = fit_surface(plan, depth, mask).point_mm.z;
     return a;
   };

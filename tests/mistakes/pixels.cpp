@@ -233,16 +233,15 @@ std::string of_flat_area(const std::string& mistake) {
       mask(i, j) = std::hypot(p.x - 1.5, p.y + 1) < 4 ? 1 : 0;
     }
   }
-  const EquivalentFlatArea area(pad.camera, size, size);
-  auto workspace = area.workspace();
-  const auto right = area(mask, pad.now, workspace);
+  EquivalentFlatArea<> area(pad.camera, size, size);
+  const auto right = area(mask, pad.now);
   REQUIRE(right.ok());
   if (mistake == "free pad and now exchanged") {  // of the contact, too
     for (std::uint8_t& cell : mask.cells) {
       cell = cell != 0 ? 0 : 1;
     }
   }
-  const auto r = area(mask, spoilt(mistake, pad.now, pad.free), workspace);
+  const auto r = area(mask, spoilt(mistake, pad.now, pad.free));
   return !r.ok()                                            ? "no answer"
          : std::abs(r.area_mm2 / right.area_mm2 - 1) < 0.05 ? "found"
                                                             : "another area";

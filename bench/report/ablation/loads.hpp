@@ -383,14 +383,13 @@ inline Effect flat_area_effect() {
            .unit = "N",
            .on = "`EquivalentFlatArea`",
            .off = "the contact's own area"};
-  const EquivalentFlatArea<Camera<double>> flat_area(pad.camera, pad.rows, pad.cols);
-  auto work = flat_area.workspace();
+  EquivalentFlatArea<> flat_area(pad.camera, pad.rows, pad.cols);
   for (const test::WrenchFrame& f : test::wrench_frames()) {
     const Scene scene = f.name == "drag_c" ? Scene::reversal : scene_of_load(f.scene);
     for (std::uint64_t seed = 1; seed <= 3; ++seed) {
       const SceneFrame& seen = frames(f.heights, seed);
       const double pressure = f.pressure_mpa;
-      e.with_in(scene).add(pressure * flat_area(seen.measured, seen.measured_mm, work).area_mm2 +
+      e.with_in(scene).add(pressure * flat_area(seen.measured, seen.measured_mm).area_mm2 +
                            f.force_n.z);
       e.without_in(scene).add(
           pressure * test::contact_measures(pad.camera, seen.measured, seen.measured_mm).area_mm2 +
@@ -398,7 +397,7 @@ inline Effect flat_area_effect() {
     }
   }
   const SceneFrame& press = frames("press");
-  e.cost_us = cost_us([&] { (void)flat_area(press.measured, press.measured_mm, work); }, [] {});
+  e.cost_us = cost_us([&] { (void)flat_area(press.measured, press.measured_mm); }, [] {});
   return e;
 }
 

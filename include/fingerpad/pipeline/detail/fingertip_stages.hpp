@@ -271,16 +271,14 @@ template <class Options, class Methods>
 struct FingertipFlatArea {
   static constexpr int step = Methods::sampling;
   EquivalentFlatArea<> of;
-  EquivalentFlatArea<>::Workspace work;
 
   explicit FingertipFlatArea(const Options& o)
-      : of(sampled(o.camera, step), o.rows / step, o.cols / step, o.flat_area),
-        work(of.workspace()) {}
+      : of(sampled(o.camera, step), o.rows / step, o.cols / step, o.flat_area) {}
 
   template <class Image, class Contact>
   void measure(const Image& image, const Contact& region, FingertipResult& touch) {
     if (touch.contact.in_contact()) {
-      touch.flat_area = of(region.mask.view(), image.depth.view(), work);
+      touch.flat_area = of(region.mask.view(), image.depth.view());
     }
   }
 };
