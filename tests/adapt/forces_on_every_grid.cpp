@@ -297,8 +297,7 @@ TEST_CASE("depth, contact and slide of a gel from every grid", "[adapt]") {
     return level;
   };
   const auto free = image(30, 0), before = image(30, 60), after = image(34, 60);
-  const IntensityDepth<double> depth(free, {});
-  auto depth_work = depth.workspace();
+  IntensityDepth<double> depth(free, {});
   const std::vector frames = {free};
   const ContactByDifference<1, double> contact(frames);
   auto contact_work = contact.workspace();
@@ -324,7 +323,7 @@ TEST_CASE("depth, contact and slide of a gel from every grid", "[adapt]") {
   };
   const auto answer = [&](const auto& frame, const auto& flags, const auto& points) {
     Answer a;
-    REQUIRE(depth(frame, a.depth, depth_work).accepted());
+    REQUIRE(depth(frame, a.depth).accepted());
     REQUIRE(contact(frame, a.mask, contact_work).accepted());
     auto state = begun;
     a.slide = slide(frame, flags, points, state);

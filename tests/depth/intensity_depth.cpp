@@ -82,10 +82,9 @@ TEST_CASE("intensity depth: the law holds pixel by pixel, whatever the lamp", "[
         now(i, j) = free(i, j) * std::exp(-l);
       }
     }
-    const IntensityDepth<double> depth(free, law, {.saturated = 1000});
-    auto workspace = depth.workspace();
+    IntensityDepth<double> depth(free, law, {.saturated = 1000});
     Image<double> out(20, 30);
-    RC_ASSERT(depth(now, out, workspace).valid_px == 600);
+    RC_ASSERT(depth(now, out).valid_px == 600);
     const double expected = l * (law.linear_mm + l * (law.square_mm + l * law.cube_mm));
     for (const double found : out.cells) {
       RC_ASSERT(std::abs(found - expected) < 1e-12 * (1 + std::abs(expected)));
@@ -105,12 +104,11 @@ TEST_CASE("intensity depth: bytes and numbers, one answer", "[intensity_depth]")
       now_float(i, j) = now(i, j);
     }
   }
-  const IntensityDepth<> depth(free, {});
-  auto workspace = depth.workspace();
+  IntensityDepth<> depth(free, {});
   Image<float> a(20, 30);
   Image<float> b(20, 30);
-  CHECK(depth(now, a, workspace).accepted());
-  CHECK(depth(now_float, b, workspace).accepted());
+  CHECK(depth(now, a).accepted());
+  CHECK(depth(now_float, b).accepted());
   for (std::size_t k = 0; k < a.cells.size(); ++k) {
     CHECK(std::abs(a.cells[k] - b.cells[k]) < 1e-5F);
   }
@@ -118,15 +116,14 @@ TEST_CASE("intensity depth: bytes and numbers, one answer", "[intensity_depth]")
 
 TEST_CASE("intensity depth: bad pixels have no depth and change no other", "[intensity_depth]") {
   const Image<double> free(40, 40, 100.0);
-  const IntensityDepth<double> depth(free, {});
-  auto workspace = depth.workspace();
+  IntensityDepth<double> depth(free, {});
   Image<double> now(40, 40, 100 * std::exp(-0.25));
   now(7, 8) = none;
   now(20, 20) = 255;
   now(21, 20) = 0;
   now(30, 1) = std::numeric_limits<double>::infinity();
   Image<double> out(40, 40);
-  const auto result = depth(now, out, workspace);
+  const auto result = depth(now, out);
   CHECK(result.valid_px == 1596);
   Index missing = 0;
   for (const double found : out.cells) {
@@ -138,12 +135,11 @@ TEST_CASE("intensity depth: bad pixels have no depth and change no other", "[int
 
 TEST_CASE("intensity depth: no depth where the law overflows", "[intensity_depth]") {
   const Image<double> free(8, 8, 200.0);
-  const IntensityDepth<float> depth(free, {1, 1e30, 1e38});
-  auto workspace = depth.workspace();
+  IntensityDepth<float> depth(free, {1, 1e30, 1e38});
   Image<double> now(8, 8, 200.0);
   now(2, 3) = 2;
   Image<float> out(8, 8);
-  const auto result = depth(now, out, workspace);
+  const auto result = depth(now, out);
   CHECK(result.valid_px == 63);
   CHECK(out(2, 3) != out(2, 3));
   CHECK(out(2, 4) == 0);
@@ -157,10 +153,9 @@ TEST_CASE("intensity depth: smoothing averages the noise", "[intensity_depth]") 
     level = 120 + random.normal();
   }
   const auto spread = [&](double smoothing_px) {
-    const IntensityDepth<double> depth(free, {}, {.smoothing_px = smoothing_px});
-    auto workspace = depth.workspace();
+    IntensityDepth<double> depth(free, {}, {.smoothing_px = smoothing_px});
     Image<double> out(60, 60);
-    CHECK(depth(now, out, workspace).accepted());
+    CHECK(depth(now, out).accepted());
     double sum = 0;
     for (const double found : out.cells) {
       sum += square(found - 3 * std::log(140.0 / 120));
@@ -176,16 +171,15 @@ TEST_CASE("intensity depth: contact, surface and slide of a ball", "[intensity_d
   rc::prop("for every ball and law", [] {
     PressedBall ball;
     const auto free = ball.frame(false, {0, 0});
-    const IntensityDepth<double> depth(free, ball.law);
+    IntensityDepth<double> depth(free, ball.law);
     const ContactByDifference<1, double> region(
         std::vector{free, ball.frame(false, {0, 0})},
         {.cell_px = 2, .smoothing_px = 2, .dot_px = 0, .max_gap_px = 8, .min_region_px = 100});
-    auto depth_workspace = depth.workspace();
     auto region_workspace = region.workspace();
     const auto see = [&](const Point2<double>& way_px) {
       const auto frame = ball.frame(true, way_px);
       BallSeen seen;
-      RC_ASSERT(depth(frame, seen.depth_mm, depth_workspace).ok());
+      RC_ASSERT(depth(frame, seen.depth_mm).ok());
       seen.found = region(frame, seen.contact, region_workspace);
       RC_ASSERT(seen.found.ok());
       for (std::size_t k = 0; k < seen.depth_mm.cells.size(); ++k) {
@@ -253,12 +247,9 @@ TEST_CASE("intensity depth: fifty digits and duals", "[intensity_depth]") {
 
 TEST_CASE("intensity depth: what does not fit is refused", "[intensity_depth]") {
   const Image<double> free(20, 30, 100.0);
-  const IntensityDepth<double> depth(free, {});
-  auto workspace = depth.workspace();
+  IntensityDepth<double> depth(free, {});
   Image<double> out(20, 30, 7.0);
-  CHECK(!depth(Image<double>(20, 29), out, workspace).accepted());
-  auto others = IntensityDepth<double>(Image<double>(20, 31, 100.0), {}).workspace();
-  CHECK(!depth(free, out, others).accepted());
+  CHECK(!depth(Image<double>(20, 29), out).accepted());
   CHECK(out(3, 3) == 7);
 
   const auto law = [&](const IntensityLaw<>& given) {
@@ -273,4 +264,6 @@ TEST_CASE("intensity depth: what does not fit is refused", "[intensity_depth]") 
   CHECK(begins_with(options({.smoothing_px = 21}), "IntensityOptions: smoothing_px = 21"));
   CHECK(begins_with(options({.dark = -1}), "IntensityOptions: dark = -1"));
   CHECK(begins_with(options({.saturated = 5}), "IntensityOptions: saturated = 5"));
+  CHECK(begins_with(options({.saturated = none}), "IntensityOptions: saturated = nan"));
+  CHECK(options({.saturated = std::numeric_limits<double>::infinity()}) == "accepted");
 }

@@ -86,12 +86,11 @@ void try_intensity(Input& in) {
   IntensityOptions options;
   options.smoothing_px = in.flag() ? in.number(0, 6) : 0;
   const Grid<Pixel> free(in, rows, cols, 0, 260);
-  const IntensityDepth<> estimate(free.view(),
-                                  {in.number(0.1, 5), in.number(-1, 1), in.number(-1, 1)}, options);
-  auto work = estimate.workspace();
+  IntensityDepth<> estimate(free.view(), {in.number(0.1, 5), in.number(-1, 1), in.number(-1, 1)},
+                            options);
   Grid<Pixel> now(in, rows, cols, 0, 260);
   Grid<float> depth(rows, cols), again(rows, cols);
-  const auto r = fuzz::frame([&] { return estimate(now.view(), depth.view(), work); });
+  const auto r = fuzz::frame([&] { return estimate(now.view(), depth.view()); });
   require(r.accepted(), "a frame of the right size is accepted");
   Index valid = 0;
   for (Index i = 0; i < rows; ++i) {
@@ -102,7 +101,7 @@ void try_intensity(Input& in) {
   require(valid == r.valid_px, "valid_px is the number of depths");
   const Index row = in.whole(0, rows - 1), col = in.whole(0, cols - 1);
   now.view()(row, col) = in.cell<Pixel>(0, 260);
-  (void)estimate(now.view(), again.view(), work);
+  (void)estimate(now.view(), again.view());
   const auto reach = static_cast<Index>(std::ceil(6 * options.smoothing_px)) + 1;
   for (Index i = 0; i < rows; ++i) {
     for (Index j = 0; j < cols; ++j) {

@@ -117,10 +117,9 @@ std::string of_intensity(const std::string& mistake) {
     }
   }
   const bool exchanged = mistake == "free pad and now exchanged";
-  const IntensityDepth<double> depth(exchanged ? now : free, {});
-  auto workspace = depth.workspace();
+  IntensityDepth<double> depth(exchanged ? now : free, {});
   Pixels out(size, size);
-  const auto r = depth(exchanged ? free : spoilt(mistake, now, free), out, workspace);
+  const auto r = depth(exchanged ? free : spoilt(mistake, now, free), out);
   return !r.ok()                                 ? name_of(r.status)
          : test::largest_error(right, out) < 0.2 ? "found"
                                                  : "another depth";

@@ -49,10 +49,9 @@ TEST_CASE("intensity depth: a frame allocates nothing", "[intensity_depth]") {
   const test::Image<std::uint8_t> free(40, 50, 140);
   const test::Image<std::uint8_t> now(40, 50, 120);
   test::Image<float> depth(40, 50);
-  const IntensityDepth<> pressed(free, {});
-  auto workspace = pressed.workspace();
+  IntensityDepth<> pressed(free, {});
   const long before = test::allocations();
-  const auto result = pressed(now, depth, workspace);
+  const auto result = pressed(now, depth);
   const long after = test::allocations();
   CHECK(result.valid_px == 2000);
   CHECK(after == before);

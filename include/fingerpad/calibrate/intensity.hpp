@@ -66,7 +66,7 @@ class IntensityCalibration {
  public:
   /// Refuses bad parameters (parameter_error).
   explicit IntensityCalibration(const IntensityOptions& options = {}) : options_(options) {
-    expects_valid(options);
+    require(options);
   }
 
   /// Adds a press: a frame of the free pad and one with the ball pressed in. False, and nothing
@@ -76,12 +76,11 @@ class IntensityCalibration {
   bool add(const Free& free, const Pressed& pressed, const BallPress<S>& ball) {
     require(ball);
     const auto from = as_view(free);
-    const IntensityDepth<S> log_ratio(from, {1, 0, 0}, options_);
-    auto workspace = log_ratio.workspace();
+    IntensityDepth<S> log_ratio(from, {1, 0, 0}, options_);
     Press press(ball, from.cols());
     press.log.resize(static_cast<std::size_t>(from.rows() * from.cols()));
     const StridedView<S> to(press.log.data(), from.rows(), from.cols(), from.cols());
-    if (!log_ratio(pressed, to, workspace).ok() || !start(press)) {
+    if (!log_ratio(pressed, to).ok() || !start(press)) {
       return false;
     }
     presses_.push_back(std::move(press));

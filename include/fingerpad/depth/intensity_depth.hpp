@@ -13,6 +13,8 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
+#include <string>
 #include <type_traits>
 #include <vector>
 
@@ -35,31 +37,31 @@ struct IntensityLaw {
   S cube_mm = S(0);    ///< c, factor of its cube, finite
 };
 template <scalar S>
-void expects_valid(const IntensityLaw<S>& law) {
-  expects(is_finite(law.linear_mm) && S(0) < law.linear_mm, "IntensityLaw", "linear_mm",
-          law.linear_mm, "finite and > 0");
-  expects(is_finite(law.square_mm), "IntensityLaw", "square_mm", law.square_mm, "finite");
-  expects(is_finite(law.cube_mm), "IntensityLaw", "cube_mm", law.cube_mm, "finite");
+std::string check(const IntensityLaw<S>& law) {
+  return check("IntensityLaw", {{"linear_mm", law.linear_mm, positive},
+                                {"square_mm", law.square_mm, finite_number},
+                                {"cube_mm", law.cube_mm, finite_number}});
 }
 
 /// The depth in mm at ln(free / now); negative where the gel bulges.
 template <scalar L, scalar S>
 constexpr S pressed_depth_mm(const IntensityLaw<L>& law, const S& log_ratio) {
-  const S upper = S(S(law.square_mm) + S(law.cube_mm) * log_ratio);
-  return S(log_ratio * (S(law.linear_mm) + log_ratio * upper));
+  const S upper = S(law.square_mm) + S(law.cube_mm) * log_ratio;
+  return log_ratio * (S(law.linear_mm) + log_ratio * upper);
 }
 
 struct IntensityOptions {
   double smoothing_px = 2;  ///< sd of the Gaussian mean of the logarithms, in [0, 20]; 0: none
   double dark = 5;          ///< pixels as dark as this carry no information, >= 0
-  double saturated = 255;   ///< pixels as bright as this carry no information, > dark
+  double saturated =
+      255;  ///< pixels as bright as this carry no information, > dark; infinity: none
 };
-inline void expects_valid(const IntensityOptions& options) {
-  constexpr const char* owner = "IntensityOptions";
-  expects(options.smoothing_px >= 0 && options.smoothing_px <= 20, owner, "smoothing_px",
-          options.smoothing_px, "in [0, 20]");
-  expects(options.dark >= 0, owner, "dark", options.dark, ">= 0");
-  expects(options.saturated > options.dark, owner, "saturated", options.saturated, "> dark");
+inline std::string check(const IntensityOptions& options) {
+  const double saturated = (std::min)(options.saturated, (std::numeric_limits<double>::max)());
+  return check("IntensityOptions",
+               {{"smoothing_px", options.smoothing_px, within(0, 20)},
+                {"dark", options.dark, not_negative},
+                {"saturated", saturated, {.min = options.dark, .above_min = true}}});
 }
 
 /// The outcome of a frame. The status is not_of_this_pad if, along half of the frame's edge, the
@@ -74,78 +76,60 @@ struct [[nodiscard]] IntensityDepthResult {
 };
 
 /// Computes the indentation in frames of one size, whose pixels are numbers: a grey image, or one
-/// channel of a colour image. Threads may share one object, each with its own workspace. A frame
-/// takes bounded time and allocates nothing; O(rows cols).
+/// channel of a colour image. Use one object a thread. A frame takes bounded time and allocates
+/// nothing; O(rows cols).
 template <scalar S = float>
 class IntensityDepth {
  public:
   /// Takes a frame of the free pad. Refuses bad parameters (parameter_error).
   template <grid Free, scalar L = double>
   IntensityDepth(const Free& free, const IntensityLaw<L>& law, const IntensityOptions& options = {})
-      : law_(checked(law, options)),
+      : law_(checked(law, options, as_view(free))),
         options_(options),
         rows_(as_view(free).rows()),
-        cols_(as_view(free).cols()) {
-    expects_grid_size("IntensityDepth", rows_, cols_);
+        cols_(as_view(free).cols()),
+        kernel_(detail::EvenKernel<S>::gaussian((std::max)(options.smoothing_px, 1e-3))),
+        log_(rows_, cols_, kernel_.reach()),
+        weight_(log_),
+        between_(log_),
+        mean_(log_),
+        share_(log_),
+        edge_(static_cast<std::size_t>(2 * (rows_ + cols_))) {
+    for (std::size_t level = 0; level < log_of_byte_.size(); ++level) {
+      log_of_byte_[level] = log_of(static_cast<int>(level));
+    }
     const auto from = as_view(free);
     for (Index i = 0; i < rows_; ++i) {
       for (Index j = 0; j < cols_; ++j) {
         free_.push_back(log_of(from(i, j)));
       }
     }
-    for (std::size_t level = 0; level < log_of_byte_.size(); ++level) {
-      log_of_byte_[level] = log_of(static_cast<int>(level));
-    }
   }
 
-  /// Scratch memory for a frame; one per thread.
-  class Workspace {
-   public:
-    explicit Workspace(const IntensityDepth& depth)
-        : kernel_(detail::EvenKernel<S>::gaussian((std::max)(depth.options_.smoothing_px, 1e-3))),
-          log_(depth.rows_, depth.cols_, kernel_.reach()),
-          weight_(log_),
-          between_(log_),
-          mean_(log_),
-          share_(log_),
-          edge_(static_cast<std::size_t>(2 * (depth.rows_ + depth.cols_))) {}
-
-   private:
-    friend class IntensityDepth;
-    detail::EvenKernel<S> kernel_;
-    detail::PaddedCells<S> log_, weight_, between_, mean_, share_;
-    detail::ReservedVector<S> edge_;
-  };
-  Workspace workspace() const { return Workspace(*this); }
-
   /// Writes the indentation of the gel in mm; NaN where it is unknown. The height of the surface is
-  /// the thickness of the gel minus the indentation.
+  /// the thickness of the gel minus the indentation. Grids of another size are refused.
   template <grid Frame, class Depth>
-  IntensityDepthResult operator()(const Frame& frame, Depth&& depth_mm, Workspace& w) const {
+  IntensityDepthResult operator()(const Frame& frame, Depth&& depth_mm) {
     detail::writes_to<Depth, S>();
-    IntensityDepthResult result;
     const auto from = as_view(frame);
     const auto to = as_view(depth_mm);
-    if (from.rows() != rows_ || from.cols() != cols_ || !same_size(from, to) ||
-        w.log_.rows() != rows_ || w.log_.cols() != cols_) {
-      return result;
+    if (from.rows() != rows_ || from.cols() != cols_ || !same_size(from, to)) {
+      return {};
     }
-    read(from, w);
-    result.status = is_free_at_edge(w) ? FrameStatus::ok : FrameStatus::not_of_this_pad;
+    read(from);
+    IntensityDepthResult result;
+    result.status = is_free_at_edge() ? FrameStatus::ok : FrameStatus::not_of_this_pad;
     const bool smooth = options_.smoothing_px > 0;
     if (smooth) {
-      w.kernel_(w.log_, w.between_, w.mean_);
-      w.kernel_(w.weight_, w.between_, w.share_);
+      kernel_(log_, between_, mean_);
+      kernel_(weight_, between_, share_);
     }
     for (Index i = 0; i < rows_; ++i) {
       for (Index j = 0; j < cols_; ++j) {
-        // a pixel without information has no depth, even if its neighbours have one
-        S depth = not_a_number<S>();
-        if (S(0) < w.weight_(i, j)) {
-          const S l = smooth ? S(w.mean_(i, j) / w.share_(i, j)) : w.log_(i, j);
-          depth = pressed_depth_mm(law_, l);
-        }
-        const bool is_known = is_finite(depth);  // an extreme law overflows
+        const S l = smooth ? mean_(i, j) / share_(i, j) : log_(i, j);
+        const S depth = pressed_depth_mm(law_, l);
+        // no depth without information, even if the neighbours have some, or if the law overflows
+        const bool is_known = S(0) < weight_(i, j) && is_finite(depth);
         result.valid_px += is_known ? 1 : 0;
         to(i, j) = static_cast<cell_t<Depth>>(is_known ? depth : not_a_number<S>());
       }
@@ -157,10 +141,13 @@ class IntensityDepth {
   Index cols() const { return cols_; }
 
  private:
-  template <scalar L>
-  static IntensityLaw<S> checked(const IntensityLaw<L>& law, const IntensityOptions& options) {
-    expects_valid(law);
-    expects_valid(options);
+  template <scalar L, class View>
+  static IntensityLaw<S> checked(const IntensityLaw<L>& law,
+                                 const IntensityOptions& options,
+                                 const View& free) {
+    require(law);
+    require(options);
+    expects_grid_size("IntensityDepth", free.rows(), free.cols());
     return {S(law.linear_mm), S(law.square_mm), S(law.cube_mm)};
   }
 
@@ -168,39 +155,36 @@ class IntensityDepth {
   template <class Level>
   S log_of(const Level& level) const {
     using std::log;
-    const S plain = S(level);
-    const bool tells = S(options_.dark) < plain && plain < S(options_.saturated);
-    return tells ? S(log(plain)) : not_a_number<S>();
+    if constexpr (std::is_same_v<Level, std::uint8_t>) {
+      return log_of_byte_[level];
+    } else {
+      const S plain = S(level);
+      const bool tells = S(options_.dark) < plain && plain < S(options_.saturated);
+      return tells ? S(log(plain)) : not_a_number<S>();
+    }
   }
 
+  /// Sets log_ to the logarithms of free over now, and weight_ to 1 where they are known, else 0.
   template <class View>
-  void read(const View& from, Workspace& w) const {
+  void read(const View& from) {
     const S* free = free_.data();
     for (Index i = 0; i < rows_; ++i) {
-      S* log_ratio = w.log_.row(i);
-      S* weight = w.weight_.row(i);
       for (Index j = 0; j < cols_; ++j, ++free) {
-        S now;
-        if constexpr (std::is_same_v<cell_t<View>, std::uint8_t>) {
-          now = log_of_byte_[from(i, j)];
-        } else {
-          now = log_of(from(i, j));
-        }
-        const S ratio = S(*free - now);
+        const S ratio = *free - log_of(from(i, j));
         const bool known = is_finite(ratio);
-        log_ratio[j] = known ? ratio : S(0);
-        weight[j] = S(known ? 1 : 0);
+        log_(i, j) = known ? ratio : S(0);
+        weight_(i, j) = S(known ? 1 : 0);
       }
     }
   }
 
   /// Whether the frame's edge is as bright as on the free pad. The median decides, because the
   /// object may reach the edge somewhere.
-  bool is_free_at_edge(Workspace& w) const {
-    w.edge_.clear();
+  bool is_free_at_edge() {
+    edge_.clear();
     const auto add = [&](Index i, Index j) {
-      if (S(0) < w.weight_(i, j)) {
-        w.edge_.push_back(w.log_(i, j));
+      if (S(0) < weight_(i, j)) {
+        edge_.push_back(log_(i, j));
       }
     };
     for (Index j = 0; j < cols_; ++j) {
@@ -211,22 +195,25 @@ class IntensityDepth {
       add(i, 0);
       add(i, cols_ - 1);
     }
-    const auto count = static_cast<std::ptrdiff_t>(w.edge_.size());
+    const auto count = static_cast<std::ptrdiff_t>(edge_.size());
     if (count < rows_ + cols_) {
       return false;
     }
-    const auto middle = w.edge_.begin() + count / 2;
-    std::nth_element(w.edge_.begin(), middle, w.edge_.end());
-    constexpr double change = 0.05;
-    return S(-change) < *middle && *middle < S(change);
+    const auto middle = edge_.begin() + count / 2;
+    std::nth_element(edge_.begin(), middle, edge_.end());
+    const S change = S(0.05);
+    return -change < *middle && *middle < change;
   }
 
   IntensityLaw<S> law_;
   IntensityOptions options_;
-  Index rows_;
-  Index cols_;
-  std::vector<S> free_;  ///< logarithms of the free pad
+  Index rows_, cols_;
+  std::vector<S> free_;  // logarithms of the free pad
   std::array<S, 256> log_of_byte_;
+  detail::EvenKernel<S> kernel_;
+  detail::PaddedCells<S> log_, weight_;  // of free over now; 1 where it is known
+  detail::PaddedCells<S> between_, mean_, share_;
+  detail::ReservedVector<S> edge_;
 };
 
 }  // namespace v0
