@@ -135,7 +135,7 @@ void try_intensity(Input& in) {
   }
   const IntensityFit fit = calibration.fit(in.flag() ? 3 : 1);
   if (fit.ok()) {
-    expects_valid(fit.law);
+    fingerpad::require(fit.law);
     require(is_finite(fit.mean_error_mm) && fit.max_error_mm >= fit.mean_error_mm,
             "the largest error is not below the mean");
   }

@@ -7,19 +7,24 @@
 // vision-based tactile sensor" (slides), parameter identification, which solves three equations for
 // three unknowns; printed error E005.
 //
-// The parameters are far less certain than the depth. With a noise of 0.034 grey levels in 4
-// samples, c_red has an error of 73 % and even the sign of delta is unknown, while the errors
-// compensate to microns of depth. The result therefore includes the covariance, from which the
-// error of a depth is predicted.
+// For fixed c_red and delta = c_green - c_red the equation is linear in kappa and in the
+// coefficients of g, which a QR factorisation eliminates (variable projection). The
+// Levenberg-Marquardt method finds the other two, as (ln c_red, delta), so that c_red > 0, with
+// delta held at >= 0. No normal equations are formed.
+//
+// The parameters are far less certain than the depth: their errors compensate to microns of depth
+// (docs/depth/depth.md). The result therefore includes the covariance, from which the error of a
+// depth is predicted.
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <span>
+#include <string>
 #include <type_traits>
+#include <utility>
 #include <vector>
 
-#include "fingerpad/calibrate/detail/absorption_fit.hpp"
 #include "fingerpad/calibrate/fit.hpp"
 #include "fingerpad/core/check.hpp"
 #include "fingerpad/core/scalar.hpp"
@@ -41,6 +46,16 @@ struct DepthSample {
   Colour<S> colour;  ///< grey levels, > 0
   S weight = S(1);   ///< 1 / (relative noise of the colour), > 0
 };
+
+template <scalar S>
+std::string check(const DepthSample<S>& s) {
+  return check("DepthSample", {{"pencil.path_factor", s.pencil.path_factor, at_least(2)},
+                               {"rho_sq_mm2", s.rho_sq_mm2, not_negative},
+                               {"depth_mm", s.depth_mm, not_negative},
+                               {"colour.red", s.colour.red, positive},
+                               {"colour.green", s.colour.green, positive},
+                               {"weight", s.weight, positive}});
+}
 
 /// The sample of pixel (row, col).
 template <class Heights = AstigmaticHeights, scalar S>
@@ -74,30 +89,251 @@ struct [[nodiscard]] AbsorptionFit {
   bool ok() const { return cause == nullptr; }
 };
 
-/// sd in mm of the depth found from this sample's colours, due to the uncertainty of the fit alone:
-/// the covariance propagated through F(l) = 0 at the sample's depth.
-template <scalar S, int Degree>
-S predicted_depth_sd(const AbsorptionFit<S, Degree>& fit, const DepthSample<S>& at) {
+namespace detail {
+
+/// dW/dc: W/c less the integral of c k z (z + h_m)(z + h_s) exp(-c k z).
+template <scalar S>
+S scattered_light_per_absorption(const S& depth_mm, const S& c_per_mm, const Pencil<S>& pencil) {
   using std::exp;
-  using std::sqrt;
-  const S delta = fit.fluid.c_green_per_mm - fit.fluid.c_red_per_mm;
-  const S path = at.pencil.path_factor * at.depth_mm;
-  const S g = fit.scattering.at(at.rho_sq_mm2);
-  const S c_red = fit.fluid.c_red_per_mm;
-  Eigen::Matrix<S, 4 + Degree, 1, Eigen::DontAlign> by;
-  by(0) = g * detail::scattered_light_per_absorption(at.depth_mm, c_red, at.pencil);
-  by(1) = at.colour.green * path * exp(S(delta * path));
-  by(2) = -at.colour.red;
-  by(3) = scattered_light(at.depth_mm, c_red, at.pencil);
-  for (int j = 1; j <= Degree; ++j) {
-    by(3 + j) = by(2 + j) * at.rho_sq_mm2 / square(fit.scattering.rho_max_mm);
+  const S path = pencil.path_factor * depth_mm;
+  const S t = c_per_mm * path;
+  const ExponentialMoments<S> m = exponential_moments(t);
+  // The third moment by its own series of positive terms, see exponential_moments.
+  S third{};
+  if (value(t) < 4) {
+    S term = S(1) / S(4);
+    third = term;
+    for (int j = 5; j < 200 && value(term) > epsilon<S>() * value(third) / 4; ++j) {
+      term = term * t / S(j);
+      third = third + term;
+    }
+    third = third * exp(-t);
+  } else {
+    third = (S(3) * m.second - exp(-t)) / t;
   }
-  const S slope = depth_equation(fit.fluid, at.pencil, g, at.colour, at.depth_mm).slope;
-  const S variance = by.dot(fit.covariance * by);
-  return S(sqrt(variance) / slope);
+  const S& h_m = pencil.height.meridional_mm;
+  const S& h_s = pencil.height.sagittal_mm;
+  const S lower = h_m * h_s * m.zeroth + depth_mm * ((h_m + h_s) * m.first + depth_mm * m.second);
+  const S higher = h_m * h_s * m.first + depth_mm * ((h_m + h_s) * m.second + depth_mm * third);
+  return depth_mm * (lower - t * higher);
 }
 
-namespace detail {
+/// c_red and delta, with the best linear parameters for them: kappa, g_0, g_1, ...
+template <scalar S, int Linear>
+struct AbsorptionPoint {
+  S c_red, delta;
+  Eigen::Matrix<S, Linear, 1, Eigen::DontAlign> linear;
+  S cost = not_a_number<S>();  ///< sum of squared residuals, each over its noise
+  // residual and its Jacobian in (ln c_red, delta), both projected on the complement of the linear
+  // columns; the Jacobian ignores that this space rotates (Kaufman), which affects the steps but
+  // not the minimum
+  Eigen::Matrix<S, Eigen::Dynamic, 1> residual = {};
+  Eigen::Matrix<S, Eigen::Dynamic, Eigen::Dynamic> jacobian = {};
+
+  /// Whether kappa and g_0 are positive. There are unphysical minima where they are not.
+  bool is_physical() const { return is_finite(cost) && linear(0) > 0 && linear(1) > 0; }
+};
+
+/// The equations, each over its noise, of fluids whose g has Linear - 1 coefficients.
+template <scalar S, int Linear>
+class AbsorptionProblem {
+ public:
+  using Matrix = Eigen::Matrix<S, Eigen::Dynamic, Eigen::Dynamic>;
+  using Vector = Eigen::Matrix<S, Eigen::Dynamic, 1>;
+  using Point = AbsorptionPoint<S, Linear>;
+
+  AbsorptionProblem(std::span<const DepthSample<S>> samples, const S& rho_sq_max)
+      : samples_(samples), rho_sq_max_(rho_sq_max), weight_(static_cast<Index>(samples.size())) {
+    for (Index i = 0; i < size(); ++i) {
+      weight_(i) = sample(i).weight;
+    }
+  }
+
+  Index size() const { return weight_.size(); }
+
+  /// Sum of squares of the weighted greens, the scale of the cost.
+  S green_sq() const {
+    S sum = S(0);
+    for (Index i = 0; i < size(); ++i) {
+      sum += square(weight_(i) * sample(i).colour.green);
+    }
+    return sum;
+  }
+
+  /// Divides each equation by the noise of F there, sqrt(e^{2 delta k l} + kappa^2) times the noise
+  /// of a colour. It is constant to a few per cent over the depths of a pad.
+  void weigh(const Point& p) {
+    using std::exp;
+    using std::sqrt;
+    for (Index i = 0; i < size(); ++i) {
+      weight_(i) = sample(i).weight / sqrt(exp(S(2) * p.delta * path(i)) + square(S(p.linear(0))));
+    }
+  }
+
+  /// Eliminates the linear parameters.
+  Point project(const S& c_red, const S& delta, bool with_jacobian) const {
+    Matrix rest(size(), with_jacobian ? 3 : 1);
+    for (Index i = 0; i < size(); ++i) {
+      rest(i, 0) = weight_(i) * membrane(i, delta);
+    }
+    const HouseholderQr<S> qr(linear_columns(c_red));
+    Point p{c_red, delta, qr.solve(-rest.col(0))};
+    for (Index i = 0; i < (with_jacobian ? size() : 0); ++i) {
+      rest(i, 1) = c_red * by_c_red(i, p);
+      rest(i, 2) = by_delta(i, delta);
+    }
+    qr.apply_transposed(rest);
+    p.residual = rest.col(0).tail(size() - Linear);
+    p.jacobian = rest.bottomRightCorner(size() - Linear, rest.cols() - 1);
+    p.cost = p.residual.squaredNorm();
+    return p;
+  }
+
+  /// Share of the variance explained by depth. The comparison is a fit of kappa and g alone,
+  /// without absorption and with W = 1; both variances are per degree of freedom.
+  S explained_by_depth(const Point& p) const {
+    const Index left = size() - Linear - 2;
+    Matrix green(size(), 1);
+    for (Index i = 0; i < size(); ++i) {
+      green(i, 0) = weight_(i) * sample(i).colour.green;
+    }
+    HouseholderQr<S>(columns([](Index) { return S(1); })).apply_transposed(green);
+    const S without = green.bottomRows(size() - Linear).squaredNorm();
+    return left > 0 ? S(1) - p.cost / S(static_cast<double>(left)) /
+                                 (without / S(static_cast<double>(left + 2)))
+                    : not_a_number<S>();
+  }
+
+  /// d(weighted F)/d(c_red, delta, kappa, g_0, ...): size x (2 + Linear).
+  Matrix full_jacobian(const Point& p) const {
+    Matrix j(size(), 2 + Linear);
+    for (Index i = 0; i < size(); ++i) {
+      j(i, 0) = by_c_red(i, p);
+      j(i, 1) = by_delta(i, p.delta);
+    }
+    j.rightCols(Linear) = linear_columns(p.c_red);
+    return j;
+  }
+
+ private:
+  const DepthSample<S>& sample(Index i) const { return samples_[static_cast<std::size_t>(i)]; }
+  S path(Index i) const { return sample(i).pencil.path_factor * sample(i).depth_mm; }
+  S v(Index i) const { return sample(i).rho_sq_mm2 / rho_sq_max_; }
+
+  S membrane(Index i, const S& delta) const {
+    using std::exp;
+    return sample(i).colour.green * exp(delta * path(i));
+  }
+  S by_delta(Index i, const S& delta) const { return weight_(i) * path(i) * membrane(i, delta); }
+  S by_c_red(Index i, const Point& p) const {
+    const DepthSample<S>& s = sample(i);
+    S g = p.linear(Linear - 1);
+    for (int k = Linear - 2; k >= 1; --k) {
+      g = g * v(i) + p.linear(k);
+    }
+    return weight_(i) * g * scattered_light_per_absorption(s.depth_mm, p.c_red, s.pencil);
+  }
+
+  Matrix linear_columns(const S& c_red) const {
+    return columns(
+        [&](Index i) { return scattered_light(sample(i).depth_mm, c_red, sample(i).pencil); });
+  }
+  /// Columns of kappa, g_0, g_1, ..., where light(i) is the W of sample i.
+  template <class Light>
+  Matrix columns(const Light& light) const {
+    Matrix a(size(), Linear);
+    for (Index i = 0; i < size(); ++i) {
+      a(i, 0) = -weight_(i) * sample(i).colour.red;
+      a(i, 1) = weight_(i) * light(i);
+      for (int k = 2; k < Linear; ++k) {
+        a(i, k) = a(i, k - 1) * v(i);
+      }
+    }
+    return a;
+  }
+
+  std::span<const DepthSample<S>> samples_;
+  S rho_sq_max_;
+  Vector weight_;  // of each equation
+};
+
+/// Levenberg-Marquardt descent from p; true if it converged to roundoff.
+template <scalar S, int Linear>
+bool descend(const AbsorptionProblem<S, Linear>& problem,
+             AbsorptionPoint<S, Linear>& p,
+             int max_iterations) {
+  using std::exp;
+  using std::sqrt;
+  using Vector = typename AbsorptionProblem<S, Linear>::Vector;
+  using Matrix = typename AbsorptionProblem<S, Linear>::Matrix;
+  const auto size_of = [](const S& x) { return x < S(0) ? -x : x; };
+  const S tiny = S(4) * epsilon<S>();
+  bool converged = false;
+  S damping = S(1) / S(1000);
+  p = problem.project(p.c_red, p.delta, true);
+  for (int iteration = 0; iteration < max_iterations && !converged; ++iteration) {
+    // At the limit delta = 0, delta only moves if that is downhill.
+    const bool at_limit = !(p.delta > S(0)) && p.jacobian.col(1).dot(p.residual) > S(0);
+    const Index n = p.residual.size();
+    Matrix damped = Matrix::Zero(n + 2, 2);
+    damped.topRows(n) = p.jacobian;
+    if (at_limit) {
+      damped.col(1).setZero();
+    }
+    for (Index k = 0; k < 2; ++k) {
+      const S length = damped.col(k).norm();
+      damped(n + k, k) = length > S(0) ? sqrt(damping) * length : S(1);
+    }
+    Vector right = Vector::Zero(n + 2);
+    right.head(n) = -p.residual;
+    const Vector step = HouseholderQr<S>(damped).solve(right);
+    const S c_red = p.c_red * exp((std::max)(S(-1), (std::min)(S(step(0)), S(1))));
+    const S delta = at_limit ? S(0) : (std::max)(p.delta + step(1), S(0));
+    const auto next = problem.project(c_red, delta, true);
+    const S moved = size_of(step(0)) + size_of(delta - p.delta) / c_red;
+    if (next.is_physical() && next.cost < p.cost) {
+      const bool gained = next.cost < p.cost * (S(1) - S(100) * epsilon<S>());
+      p = next;
+      damping = damping / S(10);
+      converged = !(moved > tiny) || !gained;
+    } else {
+      damping = damping < tiny ? tiny : damping * S(10);
+      // Even the shortest step leads uphill: converged.
+      converged = !(moved > tiny) || damping > S(1) / tiny;
+    }
+  }
+  return converged;
+}
+
+/// The lowest minimum found from a coarse grid over all fluids that a pad could hold. The descent
+/// starts at the best c_red for each delta, because there can be several minima. Of minima equal up
+/// to roundoff (four samples can have two exact solutions), that of the smallest delta is taken.
+/// Needs no initial guess. The cost is NaN if no fluid is physical.
+template <scalar S, int Linear>
+AbsorptionPoint<S, Linear> search_absorption(const AbsorptionProblem<S, Linear>& problem,
+                                             int max_iterations) {
+  using std::exp;
+  AbsorptionPoint<S, Linear> best{};
+  const S roundoff = square(S(1000) * epsilon<S>()) * problem.green_sq();
+  for (int j = 0; j <= 8; ++j) {
+    const S delta = S(j * j) / S(1000);  // 0 to 0.064 per mm
+    AbsorptionPoint<S, Linear> start{};
+    for (int i = 0; i <= 24; ++i) {
+      const S c_red = exp(S(i) / S(4)) / S(1000);  // 0.001 to 0.4 per mm
+      const auto p = problem.project(c_red, delta, false);
+      if (p.is_physical() && !(start.cost < p.cost)) {
+        start = p;
+      }
+    }
+    if (is_finite(start.cost)) {
+      descend(problem, start, max_iterations);
+      if (!(best.cost <= start.cost + roundoff)) {
+        best = start;
+      }
+    }
+  }
+  return best;
+}
 
 /// Number of values, of at least one, that differ by more than a thousandth of the largest.
 template <scalar S>
@@ -113,25 +349,13 @@ long long distinct_values(std::vector<S> values) {
 /// Refuses samples that do not determine a fluid, and names what is missing. Returns the largest
 /// rho^2.
 template <scalar S>
-S expects_valid(std::span<const DepthSample<S>> samples, int degree) {
+S expects_determined(std::span<const DepthSample<S>> samples, int degree) {
   const char* const owner = "fit_absorption";
   std::vector<S> depths, radii;
-  S rho_sq = S(0);
   for (const DepthSample<S>& s : samples) {
-    expects(is_finite(s.depth_mm) && !(s.depth_mm < S(0)), owner, "depth_mm", s.depth_mm,
-            "finite and >= 0");
-    expects(is_finite(s.colour.red) && s.colour.red > S(0), owner, "colour.red", s.colour.red,
-            "finite and > 0");
-    expects(is_finite(s.colour.green) && s.colour.green > S(0), owner, "colour.green",
-            s.colour.green, "finite and > 0");
-    expects(is_finite(s.weight) && s.weight > S(0), owner, "weight", s.weight, "finite and > 0");
-    expects(is_finite(s.rho_sq_mm2) && !(s.rho_sq_mm2 < S(0)), owner, "rho_sq_mm2", s.rho_sq_mm2,
-            "finite and >= 0");
-    expects(is_finite(s.pencil.path_factor) && !(s.pencil.path_factor < S(2)), owner,
-            "pencil.path_factor", s.pencil.path_factor, "finite and >= 2");
+    require(s);
     depths.push_back(s.depth_mm);
     radii.push_back(s.rho_sq_mm2);
-    rho_sq = rho_sq < s.rho_sq_mm2 ? s.rho_sq_mm2 : rho_sq;
   }
   expects(static_cast<int>(samples.size()) >= 4 + degree, owner, "number of samples",
           static_cast<long long>(samples.size()),
@@ -142,29 +366,7 @@ S expects_valid(std::span<const DepthSample<S>> samples, int degree) {
   const long long rings = distinct_values(radii);
   expects(rings > degree, owner, "number of distinct rho_sq_mm2", rings,
           "> Degree, further apart than a thousandth of the largest");
-  return rho_sq;
-}
-
-/// Scales of the parameters, for a condition number that does not depend on units. delta may be 0.
-template <class Point>
-auto sizes_of(const Point& p) {
-  using S = std::remove_cvref_t<decltype(p.delta)>;
-  Eigen::Matrix<S, Point::linear_size + 2, 1, Eigen::DontAlign> size;
-  const S delta_size = p.delta * S(10) < p.c_red ? S(p.c_red / S(10)) : p.delta;
-  size << p.c_red, delta_size, p.linear;
-  size.template tail<Point::linear_size - 1>().setConstant(p.linear(1));
-  return size.cwiseAbs().eval();
-}
-
-/// Share of the variance explained by depth. The comparison is a fit of kappa and g alone, without
-/// absorption and with W = 1; both variances are per degree of freedom.
-template <class Problem>
-auto explained_by_depth(const Problem& problem, const typename Problem::Point& p) {
-  using S = std::remove_cvref_t<decltype(p.cost)>;
-  const Index left = problem.size() - Problem::Point::linear_size - 2;
-  return left > 0 ? S(S(1) - S(p.cost / S(static_cast<double>(left))) /
-                                 S(problem.left_without_depth() / S(static_cast<double>(left + 2))))
-                  : not_a_number<S>();
+  return *std::max_element(radii.begin(), radii.end());
 }
 
 /// rms of F, grey levels.
@@ -176,7 +378,7 @@ S residual_rms(const AbsorptionFit<S, Degree>& fit, std::span<const DepthSample<
     const S g = fit.scattering.at(s.rho_sq_mm2);
     sum += square(depth_equation(fit.fluid, s.pencil, g, s.colour, s.depth_mm).value);
   }
-  return S(sqrt(S(sum / S(static_cast<double>(samples.size())))));
+  return sqrt(sum / S(static_cast<double>(samples.size())));
 }
 
 /// Likely mistake in the samples of a converged fit.
@@ -185,9 +387,8 @@ const char* mistake_in(const AbsorptionFit<S, Degree>& fit,
                        std::span<const DepthSample<S>> samples) {
   S deepest = S(0), g_least = fit.scattering.at(S(0));
   for (const DepthSample<S>& s : samples) {
-    deepest = s.depth_mm < deepest ? deepest : s.depth_mm;
-    const S g = fit.scattering.at(s.rho_sq_mm2);
-    g_least = g < g_least ? g : g_least;
+    deepest = (std::max)(deepest, s.depth_mm);
+    g_least = (std::min)(g_least, fit.scattering.at(s.rho_sq_mm2));
   }
   if (deepest < S(0.1)) {
     return cause::depths_not_in_mm;
@@ -213,20 +414,11 @@ template <int Degree = 0, scalar S = double>
 AbsorptionFit<S, Degree> fit_absorption(std::span<const DepthSample<S>> samples,
                                         const std::type_identity_t<S>& grey_noise = S(0)) {
   using std::sqrt;
-  using Equations = std::vector<detail::AbsorptionEquation<S>>;
-  using Problem = detail::AbsorptionProblem<S, Degree + 2, Equations>;
-  using Matrix = typename Problem::Matrix;
   const char* const owner = "fit_absorption";
-
-  expects(is_finite(grey_noise) && !(grey_noise < S(0)), owner, "grey_noise", grey_noise,
-          "finite and >= 0");
-  const S rho_sq = detail::expects_valid(samples, Degree);
+  require(owner, {{"grey_noise", grey_noise, not_negative}});
+  const S rho_sq = detail::expects_determined(samples, Degree);
   const S rho_sq_max = rho_sq > S(0) ? rho_sq : S(1);
-  Equations equations;
-  for (const DepthSample<S>& s : samples) {
-    equations.push_back({s.pencil, s.depth_mm, S(s.rho_sq_mm2 / rho_sq_max), s.colour, s.weight});
-  }
-  Problem problem(equations);
+  detail::AbsorptionProblem<S, Degree + 2> problem(samples, rho_sq_max);
   auto p = detail::search_absorption(problem, 60);
   expects(is_finite(p.cost), owner, "residual", p.cost,
           "finite with kappa > 0 and g > 0: check whether red and green are exchanged");
@@ -237,7 +429,11 @@ AbsorptionFit<S, Degree> fit_absorption(std::span<const DepthSample<S>> samples,
     converged = detail::descend(problem, p, 200);
   }
 
-  const auto size = detail::sizes_of(p);
+  // scales of the parameters, for a condition number that does not depend on units; delta may be 0
+  Eigen::Matrix<S, 4 + Degree, 1, Eigen::DontAlign> size;
+  size << p.c_red, (std::max)(p.delta, p.c_red / S(10)), p.linear;
+  size.template tail<Degree + 1>().setConstant(p.linear(1));
+  size = size.cwiseAbs().eval();
   const detail::HouseholderQr<S> qr(problem.full_jacobian(p) * size.asDiagonal());
   fit.condition = detail::condition_number(qr.r());
   expects(is_finite(fit.condition) && fit.condition < S(1e8), owner, "condition number",
@@ -255,14 +451,38 @@ AbsorptionFit<S, Degree> fit_absorption(std::span<const DepthSample<S>> samples,
 
   fit.residual_rms = detail::residual_rms(fit, samples);
   const int left = static_cast<int>(samples.size()) - (4 + Degree);
-  const S by_residual = left > 0 ? S(sqrt(S(p.cost / S(left)))) : not_a_number<S>();
+  const S by_residual = left > 0 ? S(sqrt(p.cost / S(left))) : not_a_number<S>();
   fit.grey_noise = grey_noise > S(0) ? grey_noise : by_residual;
   // (J^T J)^-1 = R^-1 R^-T, for parameters relative to their size.
-  const Matrix scaled = size.asDiagonal() * qr.inverse_of_r() * fit.grey_noise;
+  const typename detail::AbsorptionProblem<S, Degree + 2>::Matrix scaled =
+      size.asDiagonal() * qr.inverse_of_r() * fit.grey_noise;
   fit.covariance = scaled.lazyProduct(scaled.transpose());
-  fit.explained = detail::explained_by_depth(problem, p);
+  fit.explained = problem.explained_by_depth(p);
   fit.cause = converged ? detail::mistake_in(fit, samples) : cause::not_converged;
   return fit;
+}
+
+/// sd in mm of the depth found from this sample's colours, due to the uncertainty of the fit alone:
+/// the covariance propagated through F(l) = 0 at the sample's depth.
+template <scalar S, int Degree>
+S predicted_depth_sd(const AbsorptionFit<S, Degree>& fit, const DepthSample<S>& at) {
+  using std::exp;
+  using std::sqrt;
+  const S delta = fit.fluid.c_green_per_mm - fit.fluid.c_red_per_mm;
+  const S path = at.pencil.path_factor * at.depth_mm;
+  const S g = fit.scattering.at(at.rho_sq_mm2);
+  const S c_red = fit.fluid.c_red_per_mm;
+  Eigen::Matrix<S, 4 + Degree, 1, Eigen::DontAlign> by;
+  by(0) = g * detail::scattered_light_per_absorption(at.depth_mm, c_red, at.pencil);
+  by(1) = at.colour.green * path * exp(delta * path);
+  by(2) = -at.colour.red;
+  by(3) = scattered_light(at.depth_mm, c_red, at.pencil);
+  for (int j = 1; j <= Degree; ++j) {
+    by(3 + j) = by(2 + j) * at.rho_sq_mm2 / square(fit.scattering.rho_max_mm);
+  }
+  const S slope = depth_equation(fit.fluid, at.pencil, g, at.colour, at.depth_mm).slope;
+  const S variance = by.dot(fit.covariance * by);
+  return sqrt(variance) / slope;
 }
 
 }  // namespace v0
