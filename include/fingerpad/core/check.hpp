@@ -105,10 +105,13 @@ inline std::string written(double number, bool whole = false) {
   return text;
 }
 
-/// "finite and > 0", "in [0, 1]", "in (0, 1)", "odd, in [3, 109]".
+/// "finite and > 0", "<= 1", "in [0, 1]", "in (0, 1)", "odd, in [3, 109]".
 inline std::string written(const Range& range, bool whole) {
   const std::string text = range.odd ? "odd, " : "";
   const std::string min = written(range.min);
+  if (std::isfinite(range.max) && !std::isfinite(range.min)) {
+    return text + "<= " + written(range.max);
+  }
   if (std::isfinite(range.max)) {
     return text + (range.above_min ? "in (" : "in [") + min + ", " + written(range.max) +
            (range.below_max ? ")" : "]");

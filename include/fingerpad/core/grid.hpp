@@ -11,7 +11,6 @@
 #include <concepts>
 #include <cstddef>
 #include <cstdint>
-#include <string>
 #include <type_traits>
 #include <utility>
 
@@ -64,14 +63,8 @@ struct grid_traits {
   static constexpr Index cols(const G& g) requires(detail::has_size_members<G>) {
     return static_cast<Index>(g.cols());
   }
-  static constexpr decltype(auto) at(const G& g,
-                                     Index row,
-                                     Index col) requires(detail::has_call_operator<const G>) {
-    return g(row, col);
-  }
-  static constexpr decltype(auto) at(G& g,
-                                     Index row,
-                                     Index col) requires(detail::has_call_operator<G>) {
+  template <detail::has_call_operator Self>
+  static constexpr decltype(auto) at(Self& g, Index row, Index col) {
     return g(row, col);
   }
 };
@@ -270,41 +263,29 @@ inline constexpr bool is_view<RefView<G>> = true;
 /// plain memory, else a RefView. The grid must outlive the view; a temporary that owns its cells is
 /// refused at compile time ("use of deleted function").
 template <grid G>
-constexpr auto as_view(G& g) {
-  if constexpr (detail::is_view<std::remove_cv_t<G>>) {
+constexpr auto as_view(G&& g) {
+  using Traits = detail::traits_of<G>;
+  if constexpr (detail::is_view<std::remove_cvref_t<G>>) {
     return g;
   } else if constexpr (strided_grid<G>) {
-    using Traits = detail::traits_of<G>;
-    using T = std::remove_pointer_t<decltype(Traits::data(g))>;
-    return StridedView<T>(Traits::data(g), Traits::rows(g), Traits::cols(g), Traits::row_stride(g),
-                          Traits::col_stride(g));
+    return StridedView(Traits::data(g), Traits::rows(g), Traits::cols(g), Traits::row_stride(g),
+                       Traits::col_stride(g));
   } else {
-    return RefView<G>(g);
+    return RefView<std::remove_reference_t<G>>(g);
   }
 }
 template <grid G>
   requires(!std::is_lvalue_reference_v<G> && !detail::is_view<std::remove_cvref_t<G>>)
 constexpr auto as_view(G&& owner) = delete;
-template <grid G>
-  requires(!std::is_lvalue_reference_v<G> && detail::is_view<std::remove_cvref_t<G>>)
-constexpr auto as_view(G&& view) {
-  return view;
-}
 
 /// Refuses impossible sizes, for which memory would run out or overflow (parameter_error): rows and
 /// cols must be in [`min`, 1e6], with at most 1e8 cells, each stored `copies` times.
 inline void expects_grid_size(
     const char* owner, Index rows, Index cols, Index min = 1, Index copies = 1) {
-  constexpr Index max_side = 1000000;
-  constexpr Index max_cells = 100000000;
-  const std::string range = "in [" + std::to_string(min) + ", " + std::to_string(max_side) + "]";
-  const auto in_range = [&](Index n) { return n >= min && n <= max_side; };
-  expects(in_range(rows), owner, "rows", static_cast<long long>(rows), range.c_str());
-  expects(in_range(cols), owner, "cols", static_cast<long long>(cols), range.c_str());
+  const Range side = within(static_cast<double>(min), 1e6), total = {.max = 1e8};
+  require(owner, {{"rows", rows, side}, {"cols", cols, side}});
   const long long cells = static_cast<long long>(rows) * cols;
-  expects(cells <= max_cells, owner, "rows times cols", cells, "<= 100000000");
-  expects(copies <= 1 || cells <= max_cells / copies, owner, "cells in memory", cells * copies,
-          "<= 100000000");
+  require(owner, {{"rows times cols", cells, total}, {"cells in memory", cells * copies, total}});
 }
 
 /// The first rows x cols cells of a vector, array or span as a grid, row by row, without a copy.
