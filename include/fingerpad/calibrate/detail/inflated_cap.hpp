@@ -26,7 +26,7 @@ class InflatedCap {
                  (S(2) * stress_free_height_mm)),
         m_(mooney_share) {
     using std::atan;
-    arc_mm_ = S(2) * bend_mm_ * S(atan(S(stress_free_height_mm / base_radius_mm)));
+    arc_mm_ = S(2) * bend_mm_ * atan(stress_free_height_mm / base_radius_mm);
   }
 
   /// Height of the apex, mm, under p / (mu t) = `load_per_mm` > 0. NaN if there is no equilibrium
@@ -34,7 +34,7 @@ class InflatedCap {
   S apex_mm(const S& load_per_mm) const {
     double low = 1.001, high = 2;
     const auto misses = [&](double stretch) {
-      return static_cast<double>(value(S(profile(S(stretch), load_per_mm).r - base_mm_)));
+      return static_cast<double>(value(profile(S(stretch), load_per_mm).r - base_mm_));
     };
     if (!(misses(low) < 0) || !(misses(high) > 0)) {
       return not_a_number<S>();
@@ -50,7 +50,7 @@ class InflatedCap {
     for (int k = 0; k < 4; ++k) {
       stretch = stretch - (profile(stretch, load_per_mm).r - base_mm_) / slope;
     }
-    return S(-profile(stretch, load_per_mm).z);
+    return -profile(stretch, load_per_mm).z;
   }
 
  private:
@@ -62,12 +62,12 @@ class InflatedCap {
     using std::cos;
     using std::sin;
     const S sine = sin(at.phi);
-    const S hoop = at.r / (bend_mm_ * S(sin(S(arc / bend_mm_))));
+    const S hoop = at.r / (bend_mm_ * sin(arc / bend_mm_));
     const S t1 = q * at.r / (S(2) * sine);
     const S x = stretch_of(t1, hoop);
     const S area_cubed = x * hoop * x * hoop * x * hoop;
     const S t2 = (hoop / x - S(1) / area_cubed) * (S(1) - m_ + m_ * x * x);
-    return {S(x * S(cos(at.phi))), S(-x * sine), S(x * (q - t2 * sine / at.r) / t1)};
+    return {x * cos(at.phi), -x * sine, x * (q - t2 * sine / at.r) / t1};
   }
 
   /// lambda_1 for a tension, from lambda - k lambda^-3 = c by Newton's method. The left side rises
@@ -92,18 +92,18 @@ class InflatedCap {
     S arc = arc_mm_ / S(2000);
     const S step = (arc_mm_ - arc) / S(steps);
     const S bend = l * q / (S(2) * tension);
-    Place at = {S(l * arc), S(-bend * l * arc * arc / S(2)), S(bend * arc)};
+    Place at = {l * arc, -bend * l * arc * arc / S(2), bend * arc};
     const auto moved = [](const Place& from, const S& by, const Place& d) {
-      return Place{S(from.r + by * d.r), S(from.z + by * d.z), S(from.phi + by * d.phi)};
+      return Place{from.r + by * d.r, from.z + by * d.z, from.phi + by * d.phi};
     };
     for (int k = 0; k < steps; ++k) {
       const S half = step / S(2);
       const Place a = change(arc, at, q);
-      const Place b = change(S(arc + half), moved(at, half, a), q);
-      const Place c = change(S(arc + half), moved(at, half, b), q);
-      const Place d = change(S(arc + step), moved(at, step, c), q);
+      const Place b = change(arc + half, moved(at, half, a), q);
+      const Place c = change(arc + half, moved(at, half, b), q);
+      const Place d = change(arc + step, moved(at, step, c), q);
       const Place sum = moved(moved(moved(a, S(2), b), S(2), c), S(1), d);
-      at = moved(at, S(step / S(6)), sum);
+      at = moved(at, step / S(6), sum);
       arc = arc + step;
       if (!(value(at.phi) < 3) || !(value(at.r) > 0)) {
         return {S(0), S(0), S(0)};

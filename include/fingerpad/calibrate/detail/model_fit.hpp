@@ -76,14 +76,13 @@ typename Vector::Scalar robust_sd(const Vector& residuals, Index parameters) {
   using S = typename Vector::Scalar;
   using std::sqrt;
   std::vector<S> sizes;
-  for (Index i = 0; i < residuals.size(); ++i) {
-    sizes.push_back(value(residuals(i)) < 0 ? S(-residuals(i)) : residuals(i));
+  for (const S& residual : residuals) {
+    sizes.push_back(residual < S(0) ? -residual : residual);
   }
   const auto middle = sizes.begin() + static_cast<Index>(sizes.size() / 2);
-  std::nth_element(sizes.begin(), middle, sizes.end(),
-                   [](const S& a, const S& b) { return value(a) < value(b); });
-  const S freedom = S(static_cast<double>(residuals.size() - parameters));
-  return S(S(1.4826) * *middle * S(sqrt(S(S(static_cast<double>(residuals.size())) / freedom))));
+  std::nth_element(sizes.begin(), middle, sizes.end());
+  const auto count = static_cast<double>(sizes.size());
+  return S(1.4826) * *middle * sqrt(S(count / (count - static_cast<double>(parameters))));
 }
 
 /// One fit: measured values, a model, and the names of its parameters for refusals.
@@ -137,8 +136,8 @@ class ModelFitter {
     }
     const S limit = S(options_.threshold) * robust_sd(fit.residuals, fit.parameters.size());
     for (Index i = 0; i < fit.residuals.size(); ++i) {
-      const S size = value(fit.residuals(i)) < 0 ? S(-fit.residuals(i)) : fit.residuals(i);
-      fit.weights(i) = value(size) > value(limit) ? S(limit / size) : S(1);
+      const S size = fit.residuals(i) < S(0) ? S(-fit.residuals(i)) : fit.residuals(i);
+      fit.weights(i) = limit < size ? limit / size : S(1);
     }
   }
 
@@ -146,13 +145,13 @@ class ModelFitter {
   Matrix scaled(const Matrix& jacobian, const Vector& weights, Vector& lengths) const {
     using std::sqrt;
     Matrix a = jacobian;
-    lengths.resize(a.cols());
     for (Index i = 0; i < a.rows(); ++i) {
-      a.row(i) *= S(sqrt(weights(i)));
+      a.row(i) *= sqrt(weights(i));
     }
+    lengths.resize(a.cols());
     for (Index k = 0; k < a.cols(); ++k) {
       const S length_sq = a.col(k).squaredNorm();
-      lengths(k) = value(length_sq) > 0 ? S(sqrt(length_sq)) : S(1);
+      lengths(k) = S(0) < length_sq ? sqrt(length_sq) : S(1);
       a.col(k) /= lengths(k);
     }
     return a;
@@ -167,28 +166,24 @@ class ModelFitter {
     refuse_undetermined(qr);
     Vector right = fit.residuals;
     for (Index i = 0; i < right.size(); ++i) {
-      right(i) *= S(sqrt(fit.weights(i)));
+      right(i) *= sqrt(fit.weights(i));
     }
     const Vector move = qr.solve(right);
     for (Index k = 0; k < move.size(); ++k) {
-      fit.parameters(k) += S(move(k) / lengths(k));
+      fit.parameters(k) += move(k) / lengths(k);
     }
-    const auto moved = value(S(move.squaredNorm()));
-    const auto size = value(S(measured_.squaredNorm()));
-    const auto tiny = epsilon<S>() * 64;
-    return pass > 0 && !(moved > tiny * tiny * size);
+    const S tiny_sq = square(S(64) * S(epsilon<S>()));
+    return pass > 0 && !(tiny_sq * S(measured_.squaredNorm()) < S(move.squaredNorm()));
   }
 
   /// Refuses a parameter that depends on those before it. The diagonal of R is the independent
   /// share of its column.
   void refuse_undetermined(const HouseholderQr<S>& qr) const {
     for (Index k = 0; k < static_cast<Index>(names_.size()); ++k) {
-      const S diagonal = qr.diagonal(k);
-      const S share = value(diagonal) < 0 ? S(-diagonal) : diagonal;
+      const S share = qr.diagonal(k) < S(0) ? S(-qr.diagonal(k)) : S(qr.diagonal(k));
       const std::string name =
           "information in the samples on " + names_[static_cast<std::size_t>(k)];
-      const bool is_known = value(share) > value(S(options_.min_independence));
-      expects(is_known, owner_, name.c_str(), share,
+      expects(S(options_.min_independence) < share, owner_, name.c_str(), share,
               "> min_independence: they are too few, too alike or tied to each other");
     }
   }
@@ -196,29 +191,26 @@ class ModelFitter {
   void judge(const Matrix& jacobian, Fit& fit) const {
     using std::sqrt;
     const Index n = measured_.size(), p = fit.parameters.size();
-    const S freedom = S(static_cast<double>(n - p));
+    const S count = S(static_cast<double>(n)), freedom = S(static_cast<double>(n - p));
     const S mean = fit.weights.dot(measured_) / fit.weights.sum();
-    S all_sq = S(0), bounded_sq = S(0);
-    Index inside = 0;
+    S all_sq = S(0), bounded_sq = S(0), inside = S(0);
     for (Index i = 0; i < n; ++i) {
-      const S& w = fit.weights(i);
-      fit.left_sq += S(w * square(fit.residuals(i)));
-      all_sq += S(w * square(S(measured_(i) - mean)));
-      bounded_sq += square(S(w * fit.residuals(i)));  // Huber's psi
-      inside += value(w) < 1 ? 0 : 1;
-      const S residual_sq = square(S(fit.residuals(i)));
-      fit.worst_sq = value(residual_sq) > value(fit.worst_sq) ? residual_sq : fit.worst_sq;
+      const S w = fit.weights(i), residual_sq = square(S(fit.residuals(i)));
+      fit.left_sq += w * residual_sq;
+      all_sq += w * square(measured_(i) - mean);
+      bounded_sq += square(w) * residual_sq;  // Huber's psi
+      inside += w < S(1) ? S(0) : S(1);
+      fit.worst_sq = (std::max)(fit.worst_sq, residual_sq);
     }
-    fit.explained = value(all_sq) > 0 ? S(S(1) - S(fit.left_sq / all_sq)) : S(0);
+    fit.explained = S(0) < all_sq ? S(1) - fit.left_sq / all_sq : S(0);
     const S usual = robust_sd(fit.residuals, p);
-    fit.worst_sds = value(usual) > 0 ? S(S(sqrt(fit.worst_sq)) / usual) : S(0);
-    fit.residual_sd = options_.robust ? usual : S(sqrt(S(fit.left_sq / freedom)));
+    fit.worst_sds = S(0) < usual ? sqrt(fit.worst_sq) / usual : S(0);
     S variance = fit.left_sq / freedom;
+    fit.residual_sd = options_.robust ? usual : S(sqrt(variance));
     if (options_.robust) {  // Huber 1981, section 7.6
-      const S count = S(static_cast<double>(n));
-      const S share = S(static_cast<double>((std::max)(inside, Index(1)))) / count;
-      const S correction = S(1) + S(S(static_cast<double>(p)) / count) * S((S(1) - share) / share);
-      variance = S(square(correction) * S(bounded_sq / freedom)) / square(share);
+      const S share = (std::max)(inside, S(1)) / count;
+      const S correction = S(1) + (count - freedom) / count * ((S(1) - share) / share);
+      variance = square(correction) * (bounded_sq / freedom) / square(share);
     }
     Vector lengths;
     const Matrix a = scaled(jacobian, Vector::Constant(n, S(1)), lengths);
@@ -242,8 +234,7 @@ void expects_explained(const ModelFit<S>& fit,
                        const FitOptions& options,
                        const char* owner,
                        const char* cause = "") {
-  const bool agrees =
-      value(fit.explained) >= value(S(options.min_explained)) && value(fit.explained) > 0;
+  const bool agrees = !(fit.explained < S(options.min_explained)) && S(0) < fit.explained;
   const std::string range =
       std::string(">= min_explained: the samples are constant or contradict each other") + cause;
   expects(agrees, owner, "share of the measured variance that is explained", fit.explained,
@@ -256,7 +247,7 @@ std::array<S, N> standard_errors_of(const ModelFit<S>& fit) {
   std::array<S, N> errors;
   for (std::size_t k = 0; k < N; ++k) {
     const Index i = static_cast<Index>(k);
-    errors[k] = value(fit.covariance(i, i)) > 0 ? S(sqrt(fit.covariance(i, i))) : S(0);
+    errors[k] = S(0) < fit.covariance(i, i) ? S(sqrt(fit.covariance(i, i))) : S(0);
   }
   return errors;
 }
