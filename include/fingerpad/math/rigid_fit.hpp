@@ -48,18 +48,18 @@ Rotation<S> rotation_of_quaternion(const std::array<S, 4>& q) {
 template <scalar S>
 std::array<S, 4> dominant_vector(SmallMatrix<S, 4> a) {
   for (int step = 0; step < 20; ++step) {
-    const S trace = a[0][0] + a[1][1] + a[2][2] + a[3][3];
-    if (step > 0 && 1 - value(trace) <= 16 * epsilon<S>()) {
-      break;  // the square of a matrix of trace 1 has trace 1 if no other eigenvalue is left
-    }
-    const S scale = S(1) / trace;
-    for (auto& row : a) {
-      row = {scale * row[0], scale * row[1], scale * row[2], scale * row[3]};
-    }
     const SmallMatrix<S, 4> b = a;
+    const S trace = b[0][0] + b[1][1] + b[2][2] + b[3][3];
+    // the square of a matrix of trace 1 has trace 1 - 2 m if the other eigenvalues add up to m,
+    // which in the square add up to at most m^2
+    if (step > 0 && square(1 - value(trace)) <= epsilon<S>() / 16) {
+      break;
+    }
+    const S scale = S(1) / square(trace);
     for (std::size_t i = 0; i < 4; ++i) {
       for (std::size_t j = 0; j <= i; ++j) {
-        a[i][j] = b[i][0] * b[j][0] + b[i][1] * b[j][1] + b[i][2] * b[j][2] + b[i][3] * b[j][3];
+        a[i][j] =
+            scale * (b[i][0] * b[j][0] + b[i][1] * b[j][1] + b[i][2] * b[j][2] + b[i][3] * b[j][3]);
         a[j][i] = a[i][j];
       }
     }
@@ -128,13 +128,13 @@ RigidFit<S> fit_rigid(Index count, const From& from, const To& to, const Weight&
   S from_sq = S(0), to_sq = S(0);
   for (Index k = 0; k < count; ++k) {
     const S share = per_mass * S(weight(k));
-    const Point3<S> a = Point3<S>(from(k)) - from_center;
-    const Point3<S> b = Point3<S>(to(k)) - to_center;
-    from_sq = from_sq + share * squared_norm(a);
+    const Point3<S> a = Point3<S>(from(k)) - from_center, b = Point3<S>(to(k)) - to_center;
+    const Point3<S> shared = share * a;
+    from_sq = from_sq + dot(shared, a);
     to_sq = to_sq + share * squared_norm(b);
-    x += share * a.x * b;
-    y += share * a.y * b;
-    z += share * a.z * b;
+    x = x + shared.x * b;
+    y = y + shared.y * b;
+    z = z + shared.z * b;
   }
   // A spread within the roundoff of the coordinates does not count.
   const auto is_roundoff = [&](const S& spread_sq, const Point3<S>& center) {
